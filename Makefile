@@ -1,0 +1,128 @@
+# Protis: build, demo, tests, benchmarks. "make help" lists the targets.
+BUILD ?= release
+V     ?= 0
+JOBS  ?= $(shell nproc 2>/dev/null || echo 2)
+CC    ?= gcc
+
+out   := build/$(BUILD)
+Q     := $(if $(filter 1,$(V)),,@)
+
+packages := gcc make pkg-config libsuitesparse-dev libopenblas-dev \
+            liblapacke-dev libhdf5-dev libgmsh-dev check numdiff gnuplot-nox
+pc       := hdf5-serial check
+
+# Packages first: the variables below ask pkg-config.
+missing  := $(shell for p in $(packages); do \
+              dpkg-query -W -f='$${Status}\n' $$p 2>/dev/null | \
+              grep -q 'ok installed' || echo $$p; done)
+
+warnings := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
+optimise_release := -O3 -march=x86-64-v2 -g1 -fno-math-errno
+optimise_debug   := -O0 -g3
+optimise_asan    := -O1 -g2 -fsanitize=address,undefined \
+                    -fno-sanitize-recover=all -fno-omit-frame-pointer
+optimise_cover   := -O0 -g1 --coverage
+optimise := $(optimise_$(BUILD))
+$(if $(optimise),,$(error BUILD=$(BUILD): release, debug, asan or cover))
+
+CPPFLAGS += -Isrc -D_POSIX_C_SOURCE=200809L -D_DEFAULT_SOURCE \
+            $(shell pkg-config --cflags hdf5-serial 2>/dev/null) \
+            -I/usr/include/suitesparse
+CFLAGS   += -std=c11 $(warnings) $(optimise)
+LDFLAGS  += $(filter -fsanitize% --coverage,$(optimise))
+LDLIBS   += -lcholmod -lcamd -lsuitesparseconfig -llapacke -lopenblas \
+            $(shell pkg-config --libs hdf5-serial 2>/dev/null) -ldl -lm
+checklib := $(shell pkg-config --libs check 2>/dev/null)
+
+sources  := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
+objects  := $(sources:%.c=$(out)/%.o)
+library  := $(out)/libprotis.a
+program  := $(out)/protis
+
+unit_c   := $(wildcard tests/unit/*.c)
+unit     := $(unit_c:%.c=$(out)/%)
+regr_c   := $(wildcard tests/regression/*.c)
+regr     := $(regr_c:%.c=$(out)/%)
+bench_c  := $(wildcard tests/bench/*.c)
+bench    := $(bench_c:%.c=$(out)/%)
+support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c))
+
+.PHONY: all help deps demo test check unit regression layers style format \
+        bench bench-solvers clean
+.DEFAULT_GOAL := all
+.SECONDARY:
+
+all: deps
+	$(Q)$(MAKE) --no-print-directory -j$(JOBS) $(program)
+
+help:
+	@echo "make              build $(program) (BUILD=release|debug|asan|cover)"
+	@echo "make demo         install what is missing, build, run the examples"
+	@echo "make test         install what is missing, build, run every test"
+	@echo "make unit         unit tests alone;   make regression: decks alone"
+	@echo "make bench        benchmarks against the limits of the machine"
+	@echo "make format       clang-format on all sources"
+	@echo "make clean        remove build/"
+
+deps:
+ifneq ($(missing),)
+	@echo "installing: $(missing)"
+	@if [ "$$(id -u)" = 0 ]; then s=; else s=sudo; fi; \
+	  $$s apt-get update -qq && DEBIAN_FRONTEND=noninteractive \
+	  $$s apt-get install -y -qq --no-install-recommends $(missing) \
+	  > /dev/null || { echo "cannot install: $(missing)" >&2; exit 1; }
+endif
+
+$(out)/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	@echo "  CC   $<"
+	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
+
+$(library): $(objects)
+	@echo "  AR   $@"
+	$(Q)rm -f $@ && ar rcs $@ $^
+
+$(program): $(out)/src/main.o $(library)
+	@echo "  LD   $@"
+	$(Q)$(CC) $(LDFLAGS) $^ $(LDLIBS) -o $@
+
+$(out)/tests/%: $(out)/tests/%.o $(support) $(library)
+	@echo "  LD   $@"
+	$(Q)$(CC) $(LDFLAGS) $^ $(checklib) $(LDLIBS) -o $@
+
+$(out)/tests/%.o: CPPFLAGS += -Itests
+
+# A fresh machine has no pkg-config when make starts: install, then start anew.
+demo test bench: deps
+	$(Q)$(MAKE) --no-print-directory -j$(JOBS) $@-run
+
+.PHONY: demo-run test-run bench-run
+demo-run: $(program)
+	$(Q)tools/demo $(program) build/demo
+
+test-run: check
+
+check: unit regression layers style
+
+unit: $(unit)
+	$(Q)tools/run_tests $^
+
+regression: $(program) $(regr)
+	$(Q)PROTIS=$(abspath $(program)) tools/run_tests $(regr)
+
+layers:
+	$(Q)tools/check_layers src
+
+style:
+	$(Q)tools/check_style src tests
+
+bench-run: $(program) $(bench)
+	$(Q)for b in $(bench); do $$b || exit 1; done
+
+format:
+	$(Q)clang-format-14 --style=file:tools/clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] tests/*/*.[ch])
+
+clean:
+	rm -rf build
+
+-include $(shell find $(out) -name '*.d' 2>/dev/null)

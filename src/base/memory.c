@@ -1,0 +1,72 @@
+/*
+ * Counted allocation: a header of 16 bytes before each block keeps its size.
+ */
+#include "base/memory.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { HEADER = 16 };
+
+static size_t in_use, peak, allocated;
+static long requests, refuse_at;
+static int refuse_all;
+
+static int refused(void) {
+  ++requests;
+  if (refuse_at == 0) return 0;
+  if (refuse_at > 1) {
+    --refuse_at;
+    return 0;
+  }
+  if (!refuse_all) refuse_at = 0;
+  return 1;
+}
+
+void *memory_new(size_t n, size_t size) {
+  if (refused()) return NULL;
+  if (size != 0 && n > (SIZE_MAX - HEADER) / size) return NULL;
+  size_t bytes = n * size;
+  char *block = calloc(1, bytes + HEADER);
+  if (block == NULL) return NULL;
+  memcpy(block, &bytes, sizeof bytes);
+  allocated += bytes;
+  in_use += bytes;
+  if (in_use > peak) peak = in_use;
+  return block + HEADER;
+}
+
+void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size) {
+  void *grown = memory_new(new_n, size);
+  if (grown == NULL) return NULL;
+  if (p != NULL) memcpy(grown, p, (old_n < new_n ? old_n : new_n) * size);
+  memory_free(p);
+  return grown;
+}
+
+char *memory_text(const char *text) {
+  size_t length = strlen(text) + 1;
+  char *copy = memory_new(length, 1);
+  if (copy != NULL) memcpy(copy, text, length);
+  return copy;
+}
+
+void memory_free(void *p) {
+  if (p == NULL) return;
+  char *block = (char *)p - HEADER;
+  size_t bytes;
+  memcpy(&bytes, block, sizeof bytes);
+  in_use -= bytes;
+  free(block);
+}
+
+size_t memory_in_use(void) { return in_use; }
+size_t memory_peak(void) { return peak; }
+size_t memory_allocated(void) { return allocated; }
+long memory_requests(void) { return requests; }
+
+void memory_refuse(long k, int all) {
+  refuse_at = k;
+  refuse_all = all;
+}

@@ -1,0 +1,54 @@
+/*
+ * Counted allocation. Every block of the program comes from here, so that the
+ * bytes of a stage are known (timer.h) and a test can refuse the k-th request.
+ *
+ * Each request checks n*size for overflow, returns zeroed memory (memory_new)
+ * and never fails for n = 0: it then returns a block that can be released.
+ */
+#ifndef PROTIS_BASE_MEMORY_H
+#define PROTIS_BASE_MEMORY_H
+
+#include "base/status.h"
+
+#include <stddef.h>
+
+/* NEW(pointer, n): n zeroed items of what the pointer points to, or FAIL. */
+#define NEW(pointer, n)                                                   \
+  do {                                                                    \
+    (pointer) = memory_new((size_t)(n), sizeof *(pointer));               \
+    if ((pointer) == NULL)                                                \
+      FAIL(ERR_MEMORY, "memory exhausted: %zu items of %zu bytes for %s", \
+           (size_t)(n), sizeof *(pointer), #pointer);                     \
+  } while (0)
+
+/* GROW(pointer, n, capacity): room for item n (0-based), doubling as needed;
+ * capacity is an int lvalue that belongs to the pointer. */
+#define GROW(pointer, n, capacity)                                         \
+  do {                                                                     \
+    if ((n) >= (capacity)) {                                               \
+      int wanted_ = (capacity) > 0 ? 2 * (capacity) : 8;                   \
+      void *grown_ = memory_resize((pointer), (size_t)(capacity),          \
+                                   (size_t)wanted_, sizeof *(pointer));    \
+      if (grown_ == NULL)                                                  \
+        FAIL(ERR_MEMORY, "memory exhausted: %d items of %zu bytes for %s", \
+             wanted_, sizeof *(pointer), #pointer);                        \
+      (pointer) = grown_;                                                  \
+      (capacity) = wanted_;                                                \
+    }                                                                      \
+  } while (0)
+
+void *memory_new(size_t n, size_t size); /* zeroed; NULL if refused          */
+/* New place for old_n items, the rest zeroed; on NULL the old one is kept.  */
+void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size);
+char *memory_text(const char *text); /* copy of a string; NULL if refused    */
+void memory_free(void *p);           /* accepts NULL                         */
+
+size_t memory_in_use(void);    /* bytes now held                              */
+size_t memory_peak(void);      /* the most held at a time                     */
+size_t memory_allocated(void); /* bytes asked for since the start            */
+long memory_requests(void);    /* requests since the start                    */
+/* Refuse request number k (1 = the next) and, if "all", every later one.
+ * k = 0 switches it off. For tests of the way back from a refusal. */
+void memory_refuse(long k, int all);
+
+#endif

@@ -1,0 +1,53 @@
+/*
+ * Messages to the user about the input: collected, so that one pass shows
+ * them all, each with its place, a caret under it, a stable number and advice.
+ *
+ *   block.inp:14:1: error P1003: unknown card *FRICTON; did you mean *FRICTION?
+ *       14 | *FRICTON, CONTACT=FOOT
+ *          | ^
+ *
+ * The numbers are stable: a row may be added, none is used again for another
+ * meaning. P1: grammar of the deck; P2: cards and model; P3: mesh;
+ * P4: contact and supports; P5: results and files.
+ */
+#ifndef PROTIS_BASE_MESSAGE_H
+#define PROTIS_BASE_MESSAGE_H
+
+#include "base/status.h"
+
+#include <stdio.h>
+
+typedef struct place {
+  const char *file;       /* as the user named it; NULL: no file             */
+  int line_no, column_no; /* from 1; 0: unknown. Columns count bytes         */
+  const char *line;       /* text of the line for the caret, or NULL         */
+  const struct place *from; /* place of the *INCLUDE that led here, or NULL   */
+} place;
+
+typedef enum { NOTE, WARNING, ERROR } severity;
+
+typedef struct message_log message_log;
+
+/* Number, severity and manual entry of each message: messages.h */
+#include "base/messages.h"
+#define MESSAGE_ENUM(number, severity, title, remedy) P##number = number,
+typedef enum { MESSAGE_LIST(MESSAGE_ENUM) P_END } message_id;
+
+status message_log_new(message_log **log);
+void message_log_free(message_log *log);
+/* Add one; the texts are copied. "at" may be NULL (no place). After 100
+ * errors the rest is counted only. Never fails: without memory the message
+ * is counted, and message_status answers ERR_MEMORY. */
+void message_add(message_log *log, message_id id, const place *at,
+                 const char *format, ...) __attribute__((format(printf, 4, 5)));
+int message_count(const message_log *log, severity s);
+/* Print all of them, in the order of the files and lines, and the totals. */
+void message_print(const message_log *log, FILE *out);
+/* Print those of one severity without source line, for the listing. */
+void message_list(const message_log *log, severity s, FILE *out);
+/* Manual entry of "P1003" or "1003", or of all if NULL; 0 if unknown. */
+int message_explain(const char *number, FILE *out);
+/* OK without errors; else "code" (the record then tells how many). */
+status message_status(const message_log *log, status code);
+
+#endif

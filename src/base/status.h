@@ -1,0 +1,58 @@
+/*
+ * Status codes and the error record.
+ *
+ * A function that can fail returns a status. FAIL starts a failure and keeps
+ * its message, TRY passes one up and notes the way; both jump to the single
+ * label "done:" of the function, where locals are released. The function
+ * declares "status st = OK;". Only main prints the record and turns the code
+ * into the exit code of the process.
+ */
+#ifndef PROTIS_BASE_STATUS_H
+#define PROTIS_BASE_STATUS_H
+
+/* clang-format off */
+#define STATUS_LIST(X)                                                       \
+  X(OK,            0, "no error")                                            \
+  X(ERR_UNSETTLED, 1, "finished, but an increment missed its tolerance")     \
+  X(ERR_DECK,      2, "command line or input deck not valid")                \
+  X(ERR_MESH,      3, "mesh not valid")                                      \
+  X(ERR_FILE,      4, "file cannot be opened, read or written")              \
+  X(ERR_MEMORY,    5, "memory exhausted")                                    \
+  X(ERR_SINGULAR,  6, "no unique equilibrium: singular, not positive "       \
+                      "definite or not a number")                            \
+  X(ERR_INTERNAL,  7, "defect of the program")
+/* clang-format on */
+
+#define STATUS_ENUM(name, exit_code, text) name,
+typedef enum { STATUS_LIST(STATUS_ENUM) STATUS_COUNT } status;
+
+#define FAIL(code, ...)                                        \
+  do {                                                         \
+    st = status_fail((code), __func__, __LINE__, __VA_ARGS__); \
+    goto done;                                                 \
+  } while (0)
+
+#define TRY(call)                       \
+  do {                                  \
+    st = (call);                        \
+    if (st != OK) {                     \
+      status_trace(__func__, __LINE__); \
+      goto done;                        \
+    }                                   \
+  } while (0)
+
+/* Keep the message of a new failure, forget the record before; return code. */
+status status_fail(status code, const char *function, int line,
+                   const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* Note one function on the way up. */
+void status_trace(const char *function, int line);
+
+const char *status_message(void); /* what went wrong, one or more lines  */
+const char *status_path(void);    /* functions passed, innermost first   */
+const char *status_name(status s);
+const char *status_text(status s);
+int status_exit_code(status s);
+void status_clear(void);
+
+#endif

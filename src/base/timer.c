@@ -1,0 +1,67 @@
+/*
+ * CPU seconds and bytes by stage, kept on a small stack of open stages.
+ */
+#include "base/timer.h"
+
+#include "base/memory.h"
+
+#include <assert.h>
+#include <string.h>
+#include <time.h>
+
+enum { DEPTH = 16 };
+
+static stage_cost cost[STAGE_COUNT];
+static stage open_stage[DEPTH];
+static int depth;
+static double last_cpu;
+static size_t last_bytes;
+
+double timer_cpu(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Charge what was spent since the last change to the innermost stage. */
+static void charge(void) {
+  double cpu = timer_cpu();
+  size_t bytes = memory_allocated();
+  if (depth > 0) {
+    stage_cost *c = &cost[open_stage[depth - 1]];
+    c->cpu += cpu - last_cpu;
+    c->bytes += bytes - last_bytes;
+  }
+  last_cpu = cpu;
+  last_bytes = bytes;
+}
+
+void timer_enter(stage s) {
+  assert(depth < DEPTH);
+  charge();
+  open_stage[depth++] = s;
+  ++cost[s].calls;
+}
+
+void timer_leave(stage s) {
+  (void)s;
+  assert(depth > 0 && open_stage[depth - 1] == s);
+  charge();
+  --depth;
+}
+
+stage_cost timer_cost(stage s) {
+  charge();
+  return cost[s];
+}
+
+const char *timer_name(stage s) {
+#define STAGE_TEXT(name, text) text,
+  static const char *const names[] = {STAGE_LIST(STAGE_TEXT)};
+  return names[s];
+}
+
+void timer_reset(void) {
+  memset(cost, 0, sizeof cost);
+  depth = 0;
+}

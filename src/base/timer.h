@@ -1,0 +1,51 @@
+/*
+ * What each stage of a run costs: calls, CPU seconds (user and system) and
+ * bytes asked for. Stages nest; a stage is charged for itself only, not for
+ * the stages entered inside it.
+ */
+#ifndef PROTIS_BASE_TIMER_H
+#define PROTIS_BASE_TIMER_H
+
+#include <stddef.h>
+
+/* clang-format off */
+#define STAGE_LIST(X)                                      \
+  X(DECK,        "deck and model")                         \
+  X(MESH,        "mesh")                                   \
+  X(SURFACE,     "contact surface")                        \
+  X(ASSEMBLY,    "stiffness assembly")                     \
+  X(ORDERING,    "ordering and symbolic factor")           \
+  X(FACTOR,      "factorisation")                          \
+  X(CONDENSE,    "condensed stiffness")                    \
+  X(LOAD,        "loads")                                  \
+  X(LIMIT,       "sliding limit")                          \
+  X(NONLOCAL,    "nonlocal average")                       \
+  X(CONTACT,     "contact solver")                         \
+  X(RECOVERY,    "interior solves")                        \
+  X(STRESS,      "stresses and reactions")                 \
+  X(ENERGY,      "energies")                               \
+  X(INELASTIC,   "inelastic strains")                      \
+  X(THERMAL,     "thermal strains")                        \
+  X(ESTIMATE,    "error estimates")                        \
+  X(TABLES,      "tables")                                 \
+  X(HDF5,        "HDF5 output")                            \
+  X(RESTART,     "restart")
+/* clang-format on */
+
+#define STAGE_ENUM(name, text) STAGE_##name,
+typedef enum { STAGE_LIST(STAGE_ENUM) STAGE_COUNT } stage;
+
+typedef struct stage_cost {
+  long calls;   /* -            */
+  double cpu;   /* CPU time, s  */
+  size_t bytes; /* asked for    */
+} stage_cost;
+
+void timer_enter(stage s);
+void timer_leave(stage s);       /* must match the last timer_enter         */
+stage_cost timer_cost(stage s);  /* so far, running stages included         */
+const char *timer_name(stage s); /* the text of STAGE_LIST                  */
+double timer_cpu(void);          /* CPU seconds of the process so far       */
+void timer_reset(void);
+
+#endif

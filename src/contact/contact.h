@@ -1,0 +1,67 @@
+/*
+ * The discrete contact problem on the condensed unknowns (CPR98, problems N1
+ * and N2 reduced to Gamma_3), the one structure every solver works on.
+ *
+ *   A u = f + r,
+ *   u_n <= gap,  r_n <= 0,  r_n (u_n - gap) = 0,            (unilateral)
+ *   |r_t| <= g,  r_t = -g (u_t - ut0)/|u_t - ut0| on slip,   (friction)
+ *   g = g0 + B p,  p = -r_n.                                 (sliding limit)
+ *
+ * Unknowns are node by node n, t1[, t2]; dense matrices are column major.
+ * With g affine in p, Tresca (B = NULL), local (B diagonal) and nonlocal
+ * Coulomb friction are one problem.
+ */
+#ifndef PROTIS_CONTACT_CONTACT_H
+#define PROTIS_CONTACT_CONTACT_H
+
+#include "base/status.h"
+
+typedef struct sparse_rows {
+  int n;       /* rows                                                       */
+  int *start;  /* [n+1]                                                      */
+  int *col;    /* [start[n]] ascending in a row                              */
+  double *val; /* [start[n]]                                                 */
+} sparse_rows;
+
+typedef struct contact_problem {
+  int dim, n, m;     /* 2 or 3; contact nodes; m = dim*n unknowns           */
+  const double *A;   /* [m*m] condensed stiffness, N/m, symmetric, positive
+                        (semi)definite; NULL: only the compliance is known  */
+  const double *W;   /* [m*m] compliance, m/N; NULL until asked for. Given
+                        alone (A NULL) it may be semidefinite and slightly
+                        unsymmetric                                         */
+  const double *f;   /* [m] condensed load, N; with A NULL: q = W f, m      */
+  const double *gap; /* [n] normal gap of the undeformed body, m            */
+  const double *ut0; /* [n*(dim-1)] position of stick: tangential
+                        displacement at increment start, plus the obstacle's
+                        motion since, m; NULL: frictionless                 */
+  const double *g0;  /* [n] sliding limit without pressure, N; NULL:
+                        frictionless (then B and ut0 are NULL too)          */
+  const sparse_rows *B; /* [n*n], -; NULL: g = g0 (Tresca); rows of mu        */
+  const double *side_gap; /* [n*(dim-1)] or NULL: bounds u_t from above where
+                          the node touches a second (third) frictionless
+                          obstacle, HUGE_VAL elsewhere; such nodes have g = 0 */
+  int floating; /* A is singular: contact alone holds the body         */
+} contact_problem;
+
+typedef enum { CONTACT_OPEN, CONTACT_SLIP, CONTACT_STICK } contact_status;
+
+/* r = A u - f, N. r[m]. Stiffness form only. */
+void contact_reaction(const contact_problem *cp, const double *u, double *r);
+/* g[n] = max(0, g0 + B p) of the normal forces r[m], N. */
+void contact_limit(const contact_problem *cp, const double *r, double *g);
+/* Status of each node from u and r; a node without limit (g = 0) that touches
+ * slips. status[n]. */
+void contact_classify(const contact_problem *cp, const double *u,
+                      const double *r, contact_status *status);
+/*
+ * How far (u, r) is from a solution: the largest part over the nodes of the
+ * natural map, whose step is taken from the diagonal block of the node, over
+ * the scale of the problem; includes A u - f - r (or u - W r - q). No unit: a
+ * change of units or a factor 2^k leaves every bit. NaN if anything is NaN.
+ * 0 for f = 0, gap >= 0, u = r = 0.
+ */
+double contact_residual(const contact_problem *cp, const double *u,
+                        const double *r);
+
+#endif

@@ -1,0 +1,46 @@
+/*
+ * Friction laws: each fills the sliding limit g = g0 + B p of the contact
+ * nodes for a surface at time t. One law per file, one row in FRICTION_LIST.
+ */
+#ifndef PROTIS_CONTACT_FRICTION_H
+#define PROTIS_CONTACT_FRICTION_H
+
+#include "base/option.h"
+#include "contact/contact.h"
+#include "contact/surface.h"
+#include "deck/expression.h"
+
+typedef struct friction_limit {
+  double *g0;    /* [n] N                                                     */
+  sparse_rows B; /* [n*n] -; start == NULL if the law needs none              */
+} friction_limit;
+
+/* One *FRICTION card: the law on the nodes of one *CONTACT. */
+typedef struct friction_card {
+  quantity value;    /* mu, -, or the limit g, force/length^2 (dim 3) or
+                        force/length^2 times thickness: a traction        */
+  const void *param; /* [law->param_size] its options                      */
+} friction_card;
+
+typedef struct friction_ops {
+  const char *name, *reference; /* as in LAW=, source                         */
+  const char *help;             /* one line for --list friction               */
+  const char *value_name, *value_unit; /* the data line: "mu", "-"            */
+  size_t param_size;
+  const option *options;
+  /* Add the law's part for contact nodes node[0..n_node) to out (rows of the
+   * whole surface, all zero before). ERR_DECK if the value is negative or not
+   * a number at a node (message names node and time). */
+  status (*limit)(const friction_card *card, const contact_surface *s,
+                  int n_node, const int *node, double t, friction_limit *out);
+} friction_ops;
+
+/* clang-format off */
+#define FRICTION_LIST(X) X(none) X(tresca) X(coulomb)
+/* clang-format on */
+#define FRICTION_EXTERN(name) extern const friction_ops name##_friction;
+FRICTION_LIST(FRICTION_EXTERN)
+extern const friction_ops *const friction_list[]; /* NULL at the end          */
+const friction_ops *friction_find(const char *name); /* or NULL               */
+
+#endif

@@ -1,0 +1,33 @@
+/*
+ * Rigid obstacles: conforming (gap 0 everywhere), plane, cylinder, sphere, or a
+ * gap given as an expression; each may move by an amplitude.
+ */
+#ifndef PROTIS_CONTACT_OBSTACLE_H
+#define PROTIS_CONTACT_OBSTACLE_H
+
+#include "deck/expression.h"
+
+typedef enum {
+  OBSTACLE_CONFORMING, /* follows the body: gap 0                             */
+  OBSTACLE_PLANE,      /* point, outward normal (towards the body)            */
+  OBSTACLE_CYLINDER,   /* point of the axis, direction, radius                */
+  OBSTACLE_SPHERE,     /* centre, radius                                      */
+  OBSTACLE_GAP         /* gap along the normal as an expression of x y z t    */
+} obstacle_shape;
+#define OBSTACLE_SHAPES "CONFORMING|PLANE|CYLINDER|SPHERE|GAP"
+
+typedef struct obstacle {
+  const char *name;
+  int shape;  /* obstacle_shape                                      */
+  int inside; /* 1: the body is inside the cylinder or sphere        */
+  double point[3], direction[3], radius; /* m; direction of unit length       */
+  quantity gap;       /* OBSTACLE_GAP                                        */
+  quantity motion[3]; /* displacement of the obstacle at time t, m           */
+} obstacle;
+
+/* Distance from x along the unit vector n to the obstacle at time t, negative
+ * if x is inside it, HUGE_VAL if the line along n does not meet it. */
+double obstacle_gap(const obstacle *o, int dim, const double *x,
+                    const double *n, double t);
+
+#endif

@@ -1,0 +1,57 @@
+/*
+ * The contact surface Gamma_3: contact nodes with normal, tangents, tributary
+ * area and gap to their rigid obstacle.
+ */
+#ifndef PROTIS_CONTACT_SURFACE_H
+#define PROTIS_CONTACT_SURFACE_H
+
+#include "contact/obstacle.h"
+#include "mesh/mesh.h"
+
+typedef struct contact_surface {
+  int dim, n;
+  int *node_id;    /* [n] mesh node, ascending                                */
+  int *contact_id; /* [n] the *CONTACT the normal belongs to                  */
+  int *side_id;    /* [n*(dim-1)] *CONTACT of a second (third) obstacle, -1   */
+  double *x;       /* [dim*n] m                                               */
+  double *area;    /* [n] tributary area (integral of the P1 function), m2;
+                      2-D: times thickness; axisymmetric: whole turn          */
+  double *frame;   /* [dim*dim*n] rows n, t1[, t2]: a = frame u; orthonormal
+                      except where side_id >= 0 (then that row is the normal
+                      of the second obstacle)                                 */
+  double *basis;   /* [dim*dim*n] its inverse: u = basis a, column major      */
+  double *gap0;    /* [n] gap along the normal at time 0, m                   */
+  unsigned char *held; /* [dim*n] 1: this contact unknown is prescribed by
+                        *BOUNDARY (never the normal one) */
+} contact_surface;
+
+/* A *CONTACT as the surface sees it. */
+typedef struct contact_pair {
+  const char *name;
+  const mesh_group *group;
+  const obstacle *support;
+  place at;
+} contact_pair;
+
+/* Per node, what *BOUNDARY fixes: bit c of fixed[node_id] = component c. */
+typedef struct surface_input {
+  const mesh *mesh;
+  int n_pair;
+  const contact_pair *pairs;  /* [n_pair]                                */
+  const unsigned char *fixed; /* [n_node]                                */
+  const double *face_weight;  /* [n_face] thickness; 1 in 3-D            */
+  int axisymmetric;
+} surface_input;
+
+/* Build it; the normal of a node with fixed components is taken orthogonal to
+ * them. Nodes fixed in the normal direction are left out with a warning;
+ * nodes that the obstacle cannot reach along the normal are left out. */
+status surface_build(const surface_input *in, message_log *log,
+                     contact_surface **out);
+/* gap[n] at time t; motion[dim*n] (or NULL) displacement of the obstacle at
+ * the node since time 0 in the contact frame, m. side_gap[n*(dim-1)]. */
+void surface_gap(const contact_surface *s, const surface_input *in, double t,
+                 double *gap, double *side_gap, double *motion);
+void surface_free(contact_surface *s);
+
+#endif

@@ -1,0 +1,39 @@
+/*
+ * Expressions of x, y, z and t, compiled once to reverse Polish notation.
+ *
+ * Operators + - * / ^ (right associative), unary -, comparisons < <= > >= ==
+ * != and & | (1 or 0), parentheses, "a ? b : c" spelled if(a, b, c); functions
+ * sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 sqrt abs sign
+ * min max floor ceil mod step; constant pi. Numbers as in number.h. Names are
+ * not case sensitive. An unknown name is an error, never zero.
+ */
+#ifndef PROTIS_DECK_EXPRESSION_H
+#define PROTIS_DECK_EXPRESSION_H
+
+#include "base/status.h"
+
+typedef struct expression expression;
+
+/* Names other than x y z t and pi; return 1 and the value if known. */
+typedef int symbol_value_fn(const void *ctx, const char *name, double *value);
+
+/* ERR_DECK if the text is no expression: *column (from 0) is where, and the
+ * status record says what is wrong there. ERR_MEMORY. */
+status expression_compile(const char *text, symbol_value_fn *symbol,
+                          const void *ctx, expression **out, int *column);
+/* x[3] coordinates, length; t time. The result can be NaN or infinite (log of
+ * a negative number): the caller tests it where it knows what is computed. */
+double expression_value(const expression *e, const double x[3], double t);
+/* Bits 1 x, 2 y, 4 z, 8 t: the variables that occur. */
+unsigned expression_variables(const expression *e);
+const char *expression_text(const expression *e);
+void expression_free(expression *e);
+
+/* A number or an expression, as a value field of the deck gives it. */
+typedef struct quantity {
+  double number;
+  const expression *formula; /* NULL: the number counts; borrowed            */
+} quantity;
+double quantity_value(const quantity *q, const double x[3], double t);
+
+#endif

@@ -1,0 +1,92 @@
+/*
+ * P1 finite elements: stiffness, its condensation to the contact nodes with
+ * one sparse factor, interior solves with the same factor, strains, stresses,
+ * internal forces and the exact load vectors of P1 data.
+ *
+ * Degrees of freedom: dim per node, global components, except that a contact
+ * node counts in its contact frame (n, t1[, t2]; u = basis a).
+ */
+#ifndef PROTIS_FEM_FEM_H
+#define PROTIS_FEM_FEM_H
+
+#include "contact/surface.h"
+#include "material/material.h"
+#include "mesh/mesh.h"
+
+/* What the elements are made of. */
+typedef struct domain {
+  const mesh *mesh;
+  const contact_surface *surface; /* NULL: no contact                         */
+  int ns;                     /* 4 or 6                                      */
+  const int *section_id;      /* [n_elem]                                    */
+  const kinematics *kin;      /* [n_section]                                 */
+  const double *thickness;    /* [n_section] m; 1 in 3-D and axisymmetric    */
+  const double *E;            /* [ns*ns*n_section] Pa                        */
+  const unsigned char *fixed; /* [dim*n_node] 1: prescribed (global
+                                 components)                                 */
+} domain;
+
+/* B of one element: e = B u_e, B[ns*(dim+1)*dim] column major; returns the
+ * weight (volume, thickness or 2 pi r included). */
+double element_strain(const domain *d, int elem_id, double *B);
+double element_weight(const domain *d, int elem_id);
+
+typedef struct stiffness stiffness; /* sparse K of the free unknowns        */
+typedef struct condensed condensed; /* factor and condensed matrix          */
+
+status stiffness_assemble(const domain *d, stiffness **out);
+void stiffness_free(stiffness *k);
+long stiffness_unknowns(const stiffness *k);
+
+/* Motion that nothing holds, or only contact holds. */
+typedef struct free_motion {
+  int body_id;
+  char text[160]; /* "translation along x", "rotation about (1, 2)"      */
+} free_motion;
+
+/*
+ * Order (contact unknowns last), factor K (+ springs on the contact diagonal,
+ * taken off again, where contact alone holds a body), and form
+ *   A = K_cc - K_ci inv(K_ii) K_ic   [m*m].
+ * Bodies are factored apart. K is borrowed until condensed_free.
+ * ERR_SINGULAR: a body that neither supports nor contact hold (the record names
+ * body and motion), or K not positive definite. ERR_MEMORY.
+ */
+status condense(const stiffness *k, const domain *d, condensed **out);
+void condensed_free(condensed *c);
+const double *condensed_matrix(const condensed *c); /* A [m*m]                */
+int condensed_floating(const condensed *c); /* 1: contact alone holds a body  */
+double condensed_condition(const condensed *c); /* estimate, -                */
+
+typedef struct condense_info {
+  long unknowns, contact_unknowns, factor_entries;
+  int bodies;
+  double flops;
+  size_t bytes;
+  const char *ordering;
+} condense_info;
+condense_info condensed_info(const condensed *c);
+
+/*
+ * Condense a load: F[dim*n_node] forces in global components, ud[dim*n_node]
+ * prescribed displacements (read where fixed; NULL: all zero).
+ * f_c[m]. The forward solve is kept for condense_recover.
+ */
+status condense_load(condensed *c, const double *F, const double *ud,
+                     double *f_c);
+/* u[dim*n_node] (global components) from u_c[m] for the load last condensed. */
+status condense_recover(condensed *c, const double *u_c, double *u);
+
+/* Strains and stresses of the elements: e[ns*n_elem], sigma[ns*n_elem]; either
+ * may be NULL. Plane stress fills e_zz. */
+void domain_stress(const domain *d, const double *u, double *e, double *sigma);
+/* Internal forces F = sum B' sigma w, global components [dim*n_node]. */
+void domain_internal_force(const domain *d, const double *sigma, double *F);
+double domain_strain_energy(const domain *d, const double *u); /* J           */
+
+/* BLAS kernel: see blas.c. Called first in main; may replace the process. */
+void blas_choose_kernel(char **argv);
+const char *blas_kernel(void); /* core name, "SkylakeX"                       */
+int blas_kernel_changed(void); /* 1: mended at start-up                       */
+
+#endif

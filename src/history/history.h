@@ -1,0 +1,80 @@
+/*
+ * The loop over steps and increments, and the state it hands to the outputs.
+ */
+#ifndef PROTIS_HISTORY_HISTORY_H
+#define PROTIS_HISTORY_HISTORY_H
+
+#include "fem/fem.h"
+#include "model/model.h"
+
+/* Forces and moments of one contact: of the obstacle on the body. */
+typedef struct contact_total {
+  double force[3];  /* N, global components                                */
+  double moment[3]; /* N m, about the origin (2-D: moment[2] only)         */
+  double normal, tangential[2]; /* sums in the contact frame, N               */
+  double area; /* closed area, m2                                     */
+  int n_open, n_slip, n_stick;
+} contact_total;
+
+typedef struct energies {
+  double strain;   /* J, now                                              */
+  double external; /* J, work of loads and prescribed displacements so far */
+  double friction; /* J, dissipated so far, trapezoidal                   */
+  double friction_end; /* J, dissipated so far, limit of the increment's end  */
+  double obstacle;     /* J, work of moving or initially penetrated obstacles */
+  double defect;       /* J, external + obstacle - friction - strain          */
+} energies;
+
+/* One accepted increment. Arrays are borrowed and live until the next one. */
+typedef struct state {
+  int step_no, increment_no; /* from 1, increments counted within the step    */
+  int total_no; /* increments since the start, from 1                  */
+  int attempt;  /* 1: not cut                                          */
+  double t, dt; /* end of the increment, s                             */
+  int end_of_step;
+  const double *u; /* [dim*n_node] m                                      */
+  const double *strain, *stress; /* [ns*n_elem] -, Pa; NULL if no output asks */
+  const double *reaction; /* [dim*n_node] N, of the supports; 0 where free    */
+  const contact_surface *surface; /* NULL: no contact                         */
+  const double *uc, *rc; /* [dim*n] contact frame, m, N                     */
+  const double *gap;     /* [n] gap left open: gap0 - u_n, m                */
+  const double *slip;    /* [(dim-1)*n] slip of the increment, m            */
+  const double *limit;   /* [n] sliding limit g, N; NULL: frictionless      */
+  const contact_status *contact; /* [n]                                       */
+  const contact_total *totals; /* [n_contact]                                 */
+  int n_open, n_slip, n_stick;
+  energies energy;
+  solver_report report;
+  const char *solver_log;
+  double cpu;  /* of this increment, s                                */
+  int settled; /* 1: reached its tolerance                            */
+} state;
+
+/* Facts of the run before the first increment, for the listing. */
+typedef struct setup_facts {
+  condense_info info;
+  double condition; /* -                                                   */
+  int floating;     /* contact alone holds a body                          */
+  int n_contact_node;
+} setup_facts;
+
+/* Who is told what. Any function may be NULL. */
+typedef struct history_sink {
+  void *ctx;
+  status (*ready)(void *ctx, const setup_facts *facts,
+                  const contact_surface *surface);
+  status (*increment)(void *ctx, const state *s);
+  void (*iteration)(void *ctx, const solver_step *s); /* for .cvg             */
+  /* An attempt that failed and is cut or given up. */
+  status (*rejected)(void *ctx, const state *s, const char *why);
+} history_sink;
+
+/*
+ * Run all steps. *unsettled counts the increments that missed their
+ * tolerance at the smallest dt. Errors: ERR_SINGULAR (no equilibrium), those
+ * of the sink, ERR_MEMORY.
+ */
+status history_run(const model *m, const mesh *msh, const history_sink *sink,
+                   int *unsettled);
+
+#endif

@@ -1,0 +1,38 @@
+/*
+ * Material laws: sigma = E e^e, e = e^e + e^i (CPR98 3.14-3.16). One law per
+ * file, one row in MATERIAL_LIST.
+ *
+ * Components: plane and axisymmetric ns = 4: xx, yy, zz, xy (axisymmetric rr,
+ * zz, theta, rz); 3-D ns = 6: xx, yy, zz, xy, yz, zx. Shear strain is the
+ * engineering one.
+ */
+#ifndef PROTIS_MATERIAL_MATERIAL_H
+#define PROTIS_MATERIAL_MATERIAL_H
+
+#include "base/status.h"
+
+typedef enum { PLANE_STRAIN, PLANE_STRESS, AXISYMMETRIC, SOLID_3D } kinematics;
+#define KINEMATICS_WORDS \
+  "PLANE STRAIN|PLANE STRESS|AXISYMMETRIC|3D|CPE3|CPS3|CAX3|C3D4"
+
+typedef enum { ELASTIC_ISO, ELASTIC_ORTHO, ELASTIC_ANISO } elastic_type;
+#define ELASTIC_WORDS "ISO|ORTHO|ANISO"
+enum { ELASTIC_MAX = 21 };
+
+/*
+ * The 6x6 elasticity matrix (xx, yy, zz, xy, yz, zx; column major), Pa:
+ *   ISO    E, nu
+ *   ORTHO  E1, E2, E3, nu12, nu13, nu23, G12, G13, G23 (Abaqus ENGINEERING)
+ *   ANISO  21 constants of the symmetric matrix in the order of Abaqus
+ * Ellipticity (CPR98 2.2): the matrix must be positive definite. NULL, or what
+ * is wrong with the constants ("nu = 0.5 outside ]-1, 0.5[", ...); "text" may
+ * be used for the answer.
+ */
+const char *elastic_matrix(elastic_type type, int n, const double *constants,
+                           double C[36], char *text, int text_size);
+/* ns*ns matrix for the kinematics: plane stress gives sigma_zz = 0. */
+void elastic_reduce(const double C[36], kinematics kin, double *E);
+/* Strain zz of plane stress from the in-plane strains: e[4] in and out. */
+void elastic_zz_strain(const double C[36], double e[4]);
+
+#endif

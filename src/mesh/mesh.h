@@ -1,0 +1,67 @@
+/*
+ * The mesh: nodes, P1 elements (triangles or tetrahedra), faces and groups.
+ *
+ * Nodes and elements are stored in an order that keeps neighbours close in
+ * memory; node_no and elem_no are the numbers of the mesh file, the only ones
+ * a user sees. Nodes that no element uses are not stored.
+ */
+#ifndef PROTIS_MESH_MESH_H
+#define PROTIS_MESH_MESH_H
+
+#include "base/message.h"
+
+#include <stddef.h>
+
+typedef struct mesh_group {
+  const char *name; /* physical name, case kept                              */
+  int dim;          /* 0 points, 1 curves, 2 surfaces, 3 volumes             */
+  int tag;          /* physical tag                                          */
+  int n_item;       /* elements (dim = mesh dim) or faces (mesh dim - 1)     */
+  int *item_id;     /* [n_item] ascending elem or face ids; else NULL        */
+  int n_node;
+  int *node_id; /* [n_node] ascending                                    */
+} mesh_group;
+
+typedef struct mesh {
+  int dim; /* 2 or 3                                                */
+  int n_node, n_elem, n_face, n_group;
+  double *x;         /* [dim*n_node] coordinates, length                      */
+  size_t *node_no;   /* [n_node] number in the mesh file                      */
+  int *elem;         /* [(dim+1)*n_elem] node ids, positive orientation       */
+  size_t *elem_no;   /* [n_elem] number in the mesh file                      */
+  int *face;         /* [dim*n_face] node ids of the faces of the groups; seen
+                        from outside face_elem they turn so that the normal
+                        (2-D: tangent turned by -90 degrees) points outward   */
+  int *face_elem;    /* [n_face] the element the face bounds                  */
+  int *face_other;   /* [n_face] the element behind it, -1 on the boundary    */
+  mesh_group *group; /* [n_group]                                            */
+  double size;       /* largest extent of the bounding box, length            */
+} mesh;
+
+typedef struct mesh_number { /* a number handed to a .geo file               */
+  const char *name;
+  double value;
+} mesh_number;
+
+/* Read .msh (2.2, 4.1, ASCII, binary) or mesh a .geo with the numbers given.
+ * Coordinates are multiplied by scale. What is wrong with the mesh goes to
+ * the log with "at" (the *MESH card) as place and the answer is ERR_MESH;
+ * ERR_FILE if the file is missing, ERR_MEMORY. */
+status mesh_read_gmsh(const char *file, double scale, int n_number,
+                      const mesh_number *numbers, const place *at,
+                      message_log *log, mesh **out);
+void mesh_free(mesh *m);
+
+const mesh_group *mesh_find_group(const mesh *m,
+                                  const char *name); /* or NULL */
+/* Name of the nearest group for a message, or NULL. */
+const char *mesh_nearest_group(const mesh *m, const char *name);
+/* Area (2-D: length per unit thickness is the caller's) and outward normal of
+ * a face: normal[dim] of unit length; returns the measure, length^(dim-1). */
+double mesh_face_normal(const mesh *m, int face_id, double *normal);
+/* Area or volume of an element, > 0, length^dim. */
+double mesh_elem_measure(const mesh *m, int elem_id);
+/* Bodies: connected sets of elements. body[n_elem] 0..n_body-1. */
+status mesh_bodies(const mesh *m, int *n_body, int *body);
+
+#endif

@@ -1,0 +1,114 @@
+/*
+ * Solvers of the contact problem: one file and one row in SOLVER_LIST each.
+ * A solver works on one contact_problem; contact_solve wraps it: the fixed
+ * point on the sliding limit where the solver knows Tresca friction only
+ * (CPR98, 2.3), the verdict by contact_residual, the fallback chain of AUTO.
+ */
+#ifndef PROTIS_SOLVER_SOLVER_H
+#define PROTIS_SOLVER_SOLVER_H
+
+#include "base/option.h"
+#include "contact/contact.h"
+
+typedef enum {
+  CONVERGED = 1,
+  RUNNING = 0,
+  STOPPED_ITERATIONS = -1, /* limit of iterations                             */
+  STOPPED_STAGNATION = -2, /* no progress above the rounding level            */
+  STOPPED_RAY = -3,        /* no equilibrium: a secondary ray                 */
+  STOPPED_NAN = -4,
+  STOPPED_CYCLE = -5,   /* a status pattern came back                      */
+  STOPPED_SINGULAR = -6 /* a linear system of the method has no solution   */
+} outcome;
+const char *outcome_text(outcome o);
+
+typedef struct solver_report {
+  outcome outcome;
+  int iterations;     /* sweeps, pivots or steps                              */
+  int limit_updates;  /* passes of the fixed point on g                       */
+  double rate;        /* contraction of the fixed point, -; 0: not used       */
+  double residual;    /* contact_residual(), -                                */
+  double cpu;         /* s                                                    */
+  const char *solver; /* who answered                                         */
+} solver_report;
+
+/* One line per iteration, for .cvg; NULL: nobody listens. */
+typedef struct solver_step {
+  const char *solver;
+  int iteration, limit_update;
+  double residual;     /* the measure the method steers by, -; NAN: none      */
+  double limit_change; /* change of the sliding limit, relative; NAN: none    */
+  int status_changes;  /* nodes; -1: unknown                                  */
+  int cycle;           /* 1: a status pattern came back                       */
+} solver_step;
+typedef struct solver_listener {
+  void (*step)(void *ctx, const solver_step *s);
+  void *ctx;
+} solver_listener;
+
+/* What every solver is told besides its own options. */
+typedef struct solver_control {
+  double tol;   /* wanted contact_residual, -                          */
+  int max_iter; /* 0: the solver's own limit                           */
+  const solver_listener *listener; /* or NULL                                 */
+} solver_control;
+
+enum {
+  SOLVES_TRESCA = 1,
+  SOLVES_COULOMB = 2, /* g = g0 + B p directly                               */
+  SOLVES_3D = 4,
+  NEEDS_STIFFNESS = 8,
+  NEEDS_COMPLIANCE = 16,
+  SOLVES_FLOATING = 32 /* copes with a semidefinite A                         */
+};
+
+typedef struct solver_ops {
+  const char *name, *reference; /* METHOD= in lower case; source              */
+  const char *help;             /* manual text: method, when to choose it     */
+  unsigned handles;             /* bits above                                 */
+  size_t param_size;
+  const option *options;
+  /* Once per matrix; par: [param_size]. work receives the private state. */
+  status (*setup)(const contact_problem *cp, const void *par, void **work);
+  /* u[m] start value, then solution; r[m] start value, then reaction. */
+  status (*solve)(const contact_problem *cp, const void *par, void *work,
+                  const solver_control *control, double *u, double *r,
+                  solver_report *rep);
+  void (*release)(void *work); /* accepts NULL                                */
+} solver_ops;
+
+/* clang-format off */
+#define SOLVER_LIST(X) X(sor) X(newton)
+/* clang-format on */
+#define SOLVER_EXTERN(name) extern const solver_ops name##_solver;
+SOLVER_LIST(SOLVER_EXTERN)
+extern const solver_ops *const solver_list[]; /* NULL at the end              */
+const solver_ops *solver_find(const char *name); /* or NULL                   */
+
+/* The choice of the deck: one solver, or AUTO (ops NULL). */
+typedef struct solver_choice {
+  const solver_ops *ops; /* NULL: AUTO                                        */
+  const void *param;     /* [ops->param_size], NULL for AUTO                  */
+  double tol;            /* -                                                 */
+  int max_iter;          /* of the solver; 0: its own limit                   */
+  int limit_max_iter;    /* passes of the fixed point                         */
+} solver_choice;
+
+/* Work that is kept as long as A stays the same. */
+typedef struct contact_solver contact_solver;
+status contact_solver_new(const solver_choice *choice, contact_solver **out);
+/* A (or W) has changed: forget factors. */
+void contact_solver_reset(contact_solver *s);
+void contact_solver_free(contact_solver *s);
+/*
+ * Solve cp from the start values u[m], r[m]. rep->outcome > 0 only if
+ * contact_residual, recomputed from the returned u and r, is at most tol.
+ * Errors: ERR_MEMORY; ERR_SINGULAR never (read rep->outcome).
+ */
+status contact_solve(contact_solver *s, const contact_problem *cp,
+                     const solver_listener *listener, double *u, double *r,
+                     solver_report *rep);
+/* Who tried before the answer, "newton: cycle, sor: converged"; "" if one. */
+const char *contact_solver_log(const contact_solver *s);
+
+#endif

@@ -1,0 +1,82 @@
+/* src/base/memory.c, status.c, timer.c */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "support/unit.h"
+
+#include <string.h>
+
+START_TEST(bytes_in_use_return_to_the_start) {
+  size_t before = memory_in_use();
+  double *a = memory_new(100, sizeof *a);
+  ck_assert_ptr_nonnull(a);
+  ck_assert_uint_eq(memory_in_use(), before + 100 * sizeof *a);
+  for (int i = 0; i < 100; ++i) ck_assert(a[i] == 0.0);
+  memory_free(a);
+  memory_free(NULL);
+  ck_assert_uint_eq(memory_in_use(), before);
+}
+END_TEST
+
+START_TEST(overflowing_request_is_refused) {
+  ck_assert_ptr_null(memory_new((size_t)-1 / 4, 8));
+}
+END_TEST
+
+START_TEST(kth_request_is_refused_once_or_for_good) {
+  memory_refuse(2, 0);
+  void *a = memory_new(1, 1), *b = memory_new(1, 1), *c = memory_new(1, 1);
+  ck_assert(a != NULL && b == NULL && c != NULL);
+  memory_refuse(1, 1);
+  ck_assert_ptr_null(memory_new(1, 1));
+  ck_assert_ptr_null(memory_new(1, 1));
+  memory_refuse(0, 0);
+  memory_free(a);
+  memory_free(c);
+}
+END_TEST
+
+static status fails_inside(void) {
+  status st = OK;
+  FAIL(ERR_MESH, "element %d", 7);
+done:
+  return st;
+}
+
+static status passes_up(void) {
+  status st = OK;
+  TRY(fails_inside());
+done:
+  return st;
+}
+
+START_TEST(failure_keeps_message_and_path) {
+  ck_assert_int_eq(passes_up(), ERR_MESH);
+  ck_assert_str_eq(status_message(), "element 7");
+  ck_assert_ptr_nonnull(strstr(status_path(), "fails_inside"));
+  ck_assert_ptr_nonnull(strstr(status_path(), "passes_up"));
+  ck_assert_int_eq(status_exit_code(ERR_MESH), 3);
+  ck_assert_str_eq(status_name(ERR_MESH), "ERR_MESH");
+}
+END_TEST
+
+START_TEST(stage_is_charged_for_itself_only) {
+  timer_reset();
+  timer_enter(STAGE_LOAD);
+  void *outer = memory_new(1000, 1);
+  timer_enter(STAGE_STRESS);
+  void *inner = memory_new(50, 1);
+  timer_leave(STAGE_STRESS);
+  timer_leave(STAGE_LOAD);
+  ck_assert_int_eq(timer_cost(STAGE_LOAD).calls, 1);
+  ck_assert_uint_eq(timer_cost(STAGE_LOAD).bytes, 1000);
+  ck_assert_uint_eq(timer_cost(STAGE_STRESS).bytes, 50);
+  ck_assert_int_eq(timer_cost(STAGE_MESH).calls, 0);
+  memory_free(outer);
+  memory_free(inner);
+}
+END_TEST
+
+UNIT_MAIN("memory", bytes_in_use_return_to_the_start,
+          overflowing_request_is_refused,
+          kth_request_is_refused_once_or_for_good,
+          failure_keeps_message_and_path, stage_is_charged_for_itself_only)
