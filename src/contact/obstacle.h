@@ -5,7 +5,7 @@
 #ifndef PROTIS_CONTACT_OBSTACLE_H
 #define PROTIS_CONTACT_OBSTACLE_H
 
-#include "deck/expression.h"
+#include "deck/quantity.h"
 
 typedef enum {
   OBSTACLE_CONFORMING, /* follows the body: gap 0                             */

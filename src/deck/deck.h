@@ -9,7 +9,7 @@
 #define PROTIS_DECK_DECK_H
 
 #include "base/message.h"
-#include "deck/expression.h"
+#include "deck/quantity.h"
 
 typedef struct field {
   const char *text; /* blanks around it cut, <NAME> replaced; "" if empty    */

@@ -29,11 +29,4 @@ unsigned expression_variables(const expression *e);
 const char *expression_text(const expression *e);
 void expression_free(expression *e);
 
-/* A number or an expression, as a value field of the deck gives it. */
-typedef struct quantity {
-  double number;
-  const expression *formula; /* NULL: the number counts; borrowed            */
-} quantity;
-double quantity_value(const quantity *q, const double x[3], double t);
-
 #endif
