@@ -18,7 +18,75 @@
 
 #define MESSAGE_LIST_MODEL(X)                                                \
   X(2001, ERROR, "card not available in this version",                       \
-    "The card is reserved; a later version will read it.")
+    "The card is reserved; a later version will read it. Remove it.")        \
+  X(2002, ERROR, "value not available in this version",                      \
+    "The word is reserved; choose another one.")                             \
+  X(2003, ERROR, "unknown parameter",                                        \
+    "protis --keywords CARD lists the parameters of a card. Names match "    \
+    "in full.")                                                              \
+  X(2004, ERROR, "value of a parameter not valid",                           \
+    "The message gives the range or the words allowed.")                     \
+  X(2005, ERROR, "parameter missing",                                        \
+    "Add it to the card; protis --keywords CARD explains it.")               \
+  X(2006, ERROR, "card at the wrong place",                                  \
+    "Cards of the model stand before the first *STEP, cards of a step "      \
+    "between *STEP and *END STEP, cards of a material after its "            \
+    "*MATERIAL.")                                                            \
+  X(2007, ERROR, "data line missing",                                        \
+    "protis --keywords CARD shows what the data lines hold.")                \
+  X(2008, ERROR, "data line not expected",                                   \
+    "Remove it, or put the card before it that it belongs to.")              \
+  X(2009, ERROR, "wrong number of fields on a data line",                    \
+    "Fields are separated by commas; protis --keywords CARD shows them.")    \
+  X(2010, ERROR, "value on a data line not valid",                           \
+    "The message gives the range allowed.")                                  \
+  X(2011, ERROR, "defined twice",                                            \
+    "Names are unique within their kind of card, whatever their case.")      \
+  X(2012, ERROR, "name not defined",                                         \
+    "Define it with the card named in the message, or mend the "             \
+    "spelling.")                                                             \
+  X(2013, ERROR, "elastic constants not valid",                              \
+    "The elasticity must be symmetric and positive definite (CPR98 "         \
+    "2.2): for ISO E > 0 and -1 < nu < 0.5.")                                \
+  X(2014, ERROR, "material incomplete",                                      \
+    "Every material needs *ELASTIC; gravity needs *DENSITY as well.")        \
+  X(2015, ERROR, "one *MESH card is needed",                                 \
+    "*MESH, FILE=name.msh or name.geo")                                      \
+  X(2016, ERROR, "no *SOLID SECTION",                                        \
+    "*SOLID SECTION, ELSET=group, MATERIAL=name gives a group of "           \
+    "elements its material.")                                                \
+  X(2017, ERROR, "no *STEP",                                                 \
+    "Add *STEP, a procedure (*STATIC or *QUASISTATIC) and *END STEP.")       \
+  X(2018, ERROR, "a step needs one procedure",                               \
+    "Write *STATIC or *QUASISTATIC once between *STEP and *END STEP.")       \
+  X(2019, ERROR, "step not closed",                                          \
+    "Write *END STEP after the last card of the step.")                      \
+  X(2020, ERROR, "time increments not valid",                                \
+    "0 < dt <= total, and not more than 1e8 increments.")                    \
+  X(2021, ERROR, "group not in the mesh",                                    \
+    "Names of physical groups keep their case; protis JOB --check lists "    \
+    "them.")                                                                 \
+  X(2022, ERROR, "group of the wrong dimension",                             \
+    "Sections need elements, contacts and surface loads need faces.")        \
+  X(2023, ERROR, "elements without a section, or with two",                  \
+    "Every element of the mesh belongs to exactly one *SOLID SECTION.")      \
+  X(2024, ERROR, "kinematics do not fit the mesh",                           \
+    "Plane strain, plane stress and axisymmetric need triangles, 3D "        \
+    "needs tetrahedra.")                                                     \
+  X(2025, ERROR, "component does not exist",                                 \
+    "Components are 1 and 2 in 2-D, 1 to 3 in 3-D.")                         \
+  X(2026, ERROR, "axisymmetric and plane sections in one model",             \
+    "Use one kind for all sections.")                                        \
+  X(2027, ERROR, "direction is zero",                                        \
+    "Give a vector of any length but zero.")                                 \
+  X(2028, ERROR, "unknown load label",                                       \
+    "The message lists the labels of the card.")                             \
+  X(2029, ERROR, "table not ascending",                                      \
+    "The first column of a table grows from pair to pair.")                  \
+  X(2032, ERROR, "contact has two friction laws",                            \
+    "One *FRICTION card for each contact.")                                  \
+  X(2033, ERROR, "dependence not possible here",                             \
+    "The message says on what the value may depend.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

@@ -3,7 +3,9 @@
  */
 #include "deck/quantity.h"
 
-double table_value(const table *p, const double x[3], double t) {
+#include <stddef.h>
+
+double table_value(const value_table *p, const double x[3], double t) {
   if (p->n == 0)
     return p->formula == NULL ? 1.0 : expression_value(p->formula, x, t);
   double s = p->variable == TABLE_T ? t : x[p->variable];
@@ -29,7 +31,7 @@ double quantity_value(const quantity *q, const double x[3], double t) {
   return v * table_value(q->factor, x, t - q->factor_start);
 }
 
-static unsigned table_variables(const table *p) {
+static unsigned table_variables(const value_table *p) {
   if (p->n > 0) return 1u << p->variable;
   return p->formula == NULL ? 0u : expression_variables(p->formula);
 }

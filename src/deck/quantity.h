@@ -10,19 +10,19 @@
 enum { TABLE_X, TABLE_Y, TABLE_Z, TABLE_T };
 
 /* Pairs (at, value), linear between, constant outside; or an expression. */
-typedef struct table {
+typedef struct value_table {
   int variable;              /* TABLE_X..TABLE_T                              */
   int n;                     /* pairs                                         */
   double *at, *value;        /* [n] at ascending                              */
   const expression *formula; /* used if n == 0; NULL: 1                       */
-} table;
+} value_table;
 
-double table_value(const table *p, const double x[3], double t);
+double table_value(const value_table *p, const double x[3], double t);
 
 typedef struct quantity {
   double number;
   const expression *formula; /* NULL: the number counts; borrowed             */
-  const table *factor;       /* multiplies; NULL: 1; borrowed                 */
+  const value_table *factor; /* multiplies; NULL: 1; borrowed                 */
   double factor_start;       /* time at which the factor's time is zero, s    */
 } quantity;
 

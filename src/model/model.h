@@ -8,33 +8,33 @@
 #include "contact/friction.h"
 #include "contact/surface.h"
 #include "deck/deck.h"
+#include "deck/quantity.h"
 #include "material/material.h"
 #include "mesh/mesh.h"
 #include "solver/solver.h"
 
 typedef struct amplitude {
   const char *name;
-  int total_time; /* times are total (1) or step time (0)                */
-  int n;
-  double *t, *a;    /* [n] pairs, t ascending; s, -                        */
-  quantity formula; /* used if n == 0                                      */
+  int total_time; /* its times are total (1) or step time (0)                */
+  value_table table; /* s, -; arrays owned */
 } amplitude;
 
 typedef struct material {
   const char *name;
   place at;
   elastic_type type;
-  int n_constant; /* 0: no *ELASTIC                                      */
+  int n_constant;               /* 0: no *ELASTIC                             */
   double constant[ELASTIC_MAX]; /* Pa, -                                      */
-  double C[36];   /* Pa                                                  */
-  double density; /* kg/m3; 0 if absent                                  */
+  double C[36];                 /* Pa                                         */
+  double density;               /* kg/m3                                      */
+  int has_density;
 } material;
 
 typedef struct section {
   const char *elset, *material_name;
   place at;
-  int kin;          /* kinematics                                          */
-  double thickness; /* m                                                   */
+  int kin;          /* kinematics; -1: not given                              */
+  double thickness; /* m                                                      */
   int material_id, group_id;
 } section;
 
@@ -43,41 +43,49 @@ typedef struct contact {
   place at;
   int obstacle_id, group_id;
   const friction_ops *law; /* NULL: frictionless                              */
-  void *law_param; /* owned                                               */
-  quantity value;  /* mu or g                                             */
-  int friction_amplitude; /* amplitude id or -1                               */
+  friction_card friction;  /* its value and options (owned)                   */
+  value_table position;    /* TABLE= of the friction value; arrays owned      */
+  const char *amplitude_name;
   place friction_at;
 } contact;
 
 typedef enum {
-  LOAD_PRESSURE, /* P: force/length^2, pushes into the body             */
-  LOAD_TRACTION, /* TX TY TZ                                            */
-  LOAD_BODY,     /* BX BY BZ: force/length^3                            */
-  LOAD_GRAVITY,  /* GRAV, g, direction                                  */
-  LOAD_POINT     /* CLOAD: force on each node of the group              */
+  LOAD_PRESSURE, /* P: force/length^2, pushes into the body                   */
+  LOAD_TRACTION, /* TX TY TZ: force/length^2                                  */
+  LOAD_BODY,     /* BX BY BZ: force/length^3                                  */
+  LOAD_GRAVITY,  /* GRAV: acceleration along direction[3]                     */
+  LOAD_POINT,    /* *CLOAD: force on each node of the group                   */
+  LOAD_FIXING    /* *BOUNDARY: prescribed displacement, length                */
 } load_kind;
+
+/* How the value of a load runs over a step. */
+typedef enum {
+  RUN_RAMP,   /* linear from "before" to "value" over the step                */
+  RUN_DIRECT, /* value at the time itself (amplitude, expression of t)        */
+  RUN_HELD    /* value at before_t: kept from a step before                   */
+} load_run;
 
 /* A load or prescribed displacement in force during one step. */
 typedef struct load {
-  int kind; /* load_kind                                           */
+  int kind; /* load_kind                                                     */
+  int run;  /* load_run                                                      */
   const char *group;
   int group_id;
-  int component; /* 0..dim-1 of TX.., BX.., *CLOAD                      */
-  quantity value;
-  quantity before;     /* value at the end of the step before (ramp start)    */
-  double direction[3]; /* LOAD_GRAVITY                                        */
-  int amplitude_id;    /* -1: linear from "before" to "value" over the step   */
+  int component; /* 0..dim-1: of TX.., BX.., *CLOAD, *BOUNDARY                */
+  double direction[3]; /* LOAD_GRAVITY, unit length                           */
+  quantity value, before;
+  int has_before;  /* RUN_RAMP: starts from "before" at before_t, else from 0 */
+  double before_t; /* s, total time                                           */
+  const char *amplitude_name;
+  int amplitude_id; /* -1: none                                               */
+  int removed;      /* ends: by OP=NEW; dropped after its ramp to zero        */
   place at;
 } load;
 
-typedef struct fixing { /* *BOUNDARY                                         */
-  const char *group;
-  int group_id;
-  int first, last; /* components 0..dim-1                                 */
-  quantity value, before;
-  int amplitude_id;
-  place at;
-} fixing;
+typedef struct load_list {
+  int n, cap;
+  load *item; /* [n] owned                                                    */
+} load_list;
 
 typedef enum { STEP_NONE, STEP_STATIC, STEP_QUASISTATIC } step_kind;
 
@@ -91,73 +99,114 @@ enum {
 };
 
 typedef struct print_request { /* one table of *PRINT                         */
-  int table;         /* one bit of PRINT_*                                  */
-  const char *group; /* nodes or elements of a group only; NULL: all        */
-  int group_id;
-  int frequency; /* every n-th increment and the last; 0: last only     */
+  int table;                   /* one bit of PRINT_*                          */
+  const char *group; /* nodes or elements of a group only; NULL: all          */
+  int group_id;      /* -1: all                                               */
+  int frequency;     /* every n-th increment and the last; 0: last only       */
   place at;
 } print_request;
 
 typedef struct step {
   const char *name;
   place at;
-  int kind; /* step_kind                                           */
-  double dt, total, dt_min, dt_max; /* s                                      */
-  int n_load, n_fixing, n_print;
-  load *loads;     /* [n_load] all in force, kept ones included           */
-  fixing *fixings; /* [n_fixing]                                          */
+  int kind;                 /* step_kind                             */
+  double start;             /* total time, s                         */
+  double dt, total, dt_min; /* s                                     */
+  load_list loads;  /* all in force, those kept from before included        */
+  unsigned renewed; /* bit of each load_kind that OP=NEW ends               */
+  int n_print, cap_print;
   print_request *prints;
   int output_frequency; /* HDF5 fields: every n-th increment; 0: last only;
                            -1: no HDF5                                        */
-  solver_choice solver;
-  void *solver_param; /* owned                                               */
+  int has_print, has_output;
+  solver_choice solver; /* its param is owned by the step it came with        */
+  void *solver_param;   /* owned, or NULL                                     */
+  place solver_at;
 } step;
 
 typedef struct model {
   deck *deck;
   message_log *log;
-  const char *title; /* first line of *HEADING or ""                        */
-  const char *job;   /* name without .inp and folders                       */
+  char *job;         /* name of the deck without folder and .inp              */
+  const char *title; /* first line of *HEADING or ""                          */
   const char *mesh_file;
   double mesh_scale;
   place mesh_at;
+  int has_mesh;
   const char *length_unit, *force_unit, *time_unit; /* labels or NULL         */
   int n_amplitude, n_material, n_section, n_obstacle, n_contact, n_step;
+  int cap_amplitude, cap_material, cap_section, cap_obstacle, cap_contact,
+      cap_step;
   amplitude *amplitudes;
   material *materials;
   section *sections;
   obstacle *obstacles;
+  struct move *moves; /* [n_obstacle] amplitude names of the obstacles */
   contact *contacts;
+  load_list supports; /* *BOUNDARY before the first step                      */
   step *steps;
-  unsigned effects; /* bits EFFECT_*, set by model_check                   */
-  int dim, ns;      /* from the mesh                                       */
+  unsigned effects;  /* bits EFFECT_*, set by model_check                    */
+  int dim, ns;       /* from the mesh                                        */
+  int *elem_section; /* [n_elem] section of each element                     */
 } model;
 
+typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
+  const char *amplitude_name;
+  place at;
+} move;
+
 /* clang-format off */
-#define EFFECT_LIST(X)                                                        \
-  X(CONTACT,  "unilateral contact")                                           \
-  X(FRICTION, "friction")                                                     \
-  X(NONLOCAL, "nonlocal average")                                             \
-  X(HISTORY,  "history of slip")                                              \
-  X(INELASTIC,"inelastic strain")                                             \
-  X(THERMAL,  "thermal strain")                                               \
-  X(BODY,     "body forces")                                                  \
-  X(ESTIMATES,"error estimates")
+#define EFFECT_LIST(X)                                                       \
+  X(CONTACT,   "unilateral contact")                                         \
+  X(FRICTION,  "friction")                                                   \
+  X(NONLOCAL,  "nonlocal average")                                           \
+  X(HISTORY,   "history of slip")                                            \
+  X(INELASTIC, "inelastic strain")                                           \
+  X(THERMAL,   "thermal strain")                                             \
+  X(BODY,      "body forces")                                                \
+  X(STRESS,    "stresses")                                                   \
+  X(REACTION,  "reactions")                                                  \
+  X(ESTIMATES, "error estimates")
 /* clang-format on */
 #define EFFECT_BIT(name, text) EFFECT_BIT_##name,
 enum { EFFECT_LIST(EFFECT_BIT) EFFECT_COUNT };
 #define EFFECT_MASK(name, text) EFFECT_##name = 1 << EFFECT_BIT_##name,
 enum { EFFECT_LIST(EFFECT_MASK) EFFECT_ALL = (1 << EFFECT_COUNT) - 1 };
+const char *effect_name(int bit);
+/* Which card or fact switched it on or off, into text; returns text. */
+const char *model_effect_reason(const model *m, int bit, char *text,
+                                size_t size);
 
-/* Everything the deck says, names not yet compared with the mesh. Errors go
- * to the log; *out is valid (free it) unless ERR_MEMORY. */
+/*
+ * Everything the deck says; names are compared with each other, not yet with
+ * the mesh. Errors go to the log (ERR_DECK); *out is valid (free it) unless
+ * ERR_MEMORY. The model borrows deck and log.
+ */
 status model_from_deck(deck *d, message_log *log, model **out);
-/* Compare with the mesh: groups, sections, supports; fill the _id fields and
+/* Compare with the mesh: groups, sections, dimensions; fill the _id fields and
  * the effects. Errors go to the log: ERR_DECK or ERR_MESH. */
 status model_check(model *m, const mesh *msh);
 void model_free(model *m);
 
-/* Value of a load or amplitude; step time is t minus the start of the step. */
-double amplitude_value(const amplitude *a, double step_t, double t);
+/* The deck with all defaults written out, includes and parameters resolved;
+ * reading it gives the same model. */
+void model_echo(const model *m, FILE *out);
+/* Help from the keyword table: all cards in short, or one in full; 0 if there
+ * is no card of that name. */
+int keywords_print(const char *name, FILE *out);
+
+/* load.c */
+/* Nodal forces F[dim*n_node] (global components, N) of a step at total time t:
+ * the exact integrals of P1 data (values at the nodes, linear between).
+ * ERR_DECK if a value is not finite (the record names card, node and time). */
+status load_forces(const model *m, const mesh *msh, const step *s, double t,
+                   double *F);
+/* Prescribed displacements ud[dim*n_node] at t, written where fixed; errors
+ * as load_forces. */
+status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
+                       double *ud);
+/* fixed[dim*n_node] = 1 where a *BOUNDARY of the step holds the component. */
+void load_fixed(const model *m, const mesh *msh, const step *s,
+                unsigned char *fixed);
 
 #endif

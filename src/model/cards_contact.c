@@ -1,0 +1,246 @@
+/*
+ * Cards of the contact: rigid obstacles, contact pairs, friction laws.
+ */
+#include "model/keyword.h"
+
+#include "base/memory.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+static int read_point(const reading *r, const record *line, const char *what,
+                      double x[3]) {
+  if (record_fields(r, line, 2, 3, what) != 0) return -1;
+  for (int c = 0; c < line->n_field; ++c)
+    if (deck_real(&line->fields[c], r->m->log, &x[c]) != 0) return -1;
+  return 0;
+}
+
+/* A direction of any length, made a unit vector. */
+static int read_direction(const reading *r, const record *line,
+                          const char *what, double d[3]) {
+  if (read_point(r, line, what, d) != 0) return -1;
+  double largest = fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2])));
+  if (largest == 0.0) {
+    message_add(r->m->log, P2027, &line->at, "*%s: the direction is zero",
+                r->card->name);
+    return -1;
+  }
+  for (int c = 0; c < 3; ++c) d[c] /= largest;
+  double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  for (int c = 0; c < 3; ++c) d[c] /= length;
+  return 0;
+}
+
+/* MOVE, dx, dy[, dz] */
+static int read_move(const reading *r, const record *line, obstacle *o) {
+  if (record_fields(r, line, 3, 4, "MOVE, dx, dy [, dz]") != 0) return -1;
+  for (int c = 1; c < line->n_field; ++c) {
+    quantity *q = &o->motion[c - 1];
+    if (field_quantity(r, &line->fields[c], q) != 0) return -1;
+    if (quantity_variables(q) & 7u) {
+      message_add(r->m->log, P2033, &line->fields[c].at,
+                  "MOVE may depend on t only: the obstacle is rigid");
+      return -1;
+    }
+  }
+  return 0;
+}
+
+static int is_move(const record *line) {
+  return line->n_field > 0 && same_word(line->fields[0].text, "MOVE");
+}
+
+/* The lines before MOVE, as the shape wants them. */
+static void read_shape(const reading *r, int n_line, obstacle *o) {
+  const record *line = r->card->records;
+  static const char *const wanted[] = {
+      "no geometry lines", "point; normal towards the body",
+      "point of the axis; direction of the axis (3-D)", "centre",
+      "the gap: a number or an expression of x y z t"};
+  static const int least[] = {0, 2, 1, 1, 1}, most[] = {0, 2, 2, 1, 1};
+  if (n_line < least[o->shape] || n_line > most[o->shape]) {
+    message_add(r->m->log, n_line < least[o->shape] ? P2007 : P2008,
+                n_line > 0 ? &line[n_line - 1].at : &r->card->at,
+                "*OBSTACLE: this type needs: %s", wanted[o->shape]);
+    return;
+  }
+  switch ((obstacle_shape)o->shape) {
+    case OBSTACLE_CONFORMING:
+      break;
+    case OBSTACLE_PLANE:
+    case OBSTACLE_CYLINDER:
+    case OBSTACLE_SPHERE:
+      if (read_point(r, &line[0], "x, y [, z]", o->point) != 0) return;
+      if (n_line == 2)
+        read_direction(r, &line[1], "nx, ny [, nz]", o->direction);
+      break;
+    case OBSTACLE_GAP:
+      if (record_fields(r, &line[0], 1, 1, wanted[o->shape]) == 0)
+        field_quantity(r, &line[0].fields[0], &o->gap);
+      break;
+  }
+}
+
+status apply_obstacle(reading *r) {
+  status st = OK;
+  const obstacle_param *p = r->param;
+  model *m = r->m;
+  const card *c = r->card;
+  for (int i = 0; i < m->n_obstacle; ++i)
+    if (p->name != NULL && same_word(p->name, m->obstacles[i].name))
+      message_add(m->log, P2011, &c->at, "*OBSTACLE, NAME=%s is defined twice",
+                  p->name);
+  int n = m->n_obstacle, capacity = m->cap_obstacle;
+  GROW(m->moves, n, capacity);
+  GROW(m->obstacles, n, m->cap_obstacle);
+  obstacle *o = &m->obstacles[m->n_obstacle++];
+  o->name = p->name == NULL ? "" : p->name;
+  o->shape = p->type;
+  o->inside = p->side;
+  o->radius = p->radius;
+  m->moves[n].amplitude_name = p->amplitude;
+  m->moves[n].at = c->at;
+  int round = o->shape == OBSTACLE_CYLINDER || o->shape == OBSTACLE_SPHERE;
+  if (round && p->radius == 0.0)
+    message_add(m->log, P2005, &c->at,
+                "*OBSTACLE: this type needs the parameter RADIUS=");
+  if (!round && p->radius != 0.0)
+    message_add(m->log, P2004, &c->at,
+                "*OBSTACLE: RADIUS= belongs to CYLINDER and SPHERE only");
+  int lines = c->n_record;
+  if (lines > 0 && is_move(&c->records[lines - 1])) {
+    if (read_move(r, &c->records[--lines], o) != 0) goto done;
+  } else if (p->amplitude != NULL) {
+    message_add(m->log, P2007, &c->at,
+                "*OBSTACLE: AMPLITUDE= needs a line MOVE, dx, dy [, dz]");
+  }
+  read_shape(r, lines, o);
+done:
+  return st;
+}
+
+status apply_contact(reading *r) {
+  status st = OK;
+  const contact_param *p = r->param;
+  model *m = r->m;
+  for (int i = 0; i < m->n_contact; ++i)
+    if (p->name != NULL && same_word(p->name, m->contacts[i].name))
+      message_add(m->log, P2011, &r->card->at,
+                  "*CONTACT, NAME=%s is defined twice", p->name);
+  GROW(m->contacts, m->n_contact, m->cap_contact);
+  contact *c = &m->contacts[m->n_contact++];
+  c->name = p->name == NULL ? "" : p->name;
+  c->group = p->group == NULL ? "" : p->group;
+  c->obstacle_name = p->obstacle == NULL ? "" : p->obstacle;
+  c->at = r->card->at;
+  c->obstacle_id = -1;
+  c->group_id = -1;
+done:
+  return st;
+}
+
+static const char *law_name(const void *ctx, int i) {
+  (void)ctx;
+  return friction_list[i] == NULL ? NULL : friction_list[i]->name;
+}
+
+plugin names_law(const reading *r) {
+  const friction_param *p = r->param;
+  const parameter *law = card_parameter(r->card, "LAW");
+  plugin none = {NULL, 0};
+  if (p->law == NULL || law == NULL) return none;
+  const friction_ops *ops = friction_find(p->law);
+  if (ops != NULL) return (plugin){ops->options, ops->param_size};
+  const char *near = nearest_word(p->law, law_name, NULL);
+  if (same_word(p->law, "NONLOCAL"))
+    message_add(r->m->log, P2002, &law->value.at,
+                "LAW=NONLOCAL is not available in this version");
+  else
+    message_add(r->m->log, P2012, &law->value.at,
+                "*FRICTION: there is no LAW=%s%s%s%s", p->law,
+                near == NULL ? "" : "; did you mean ", near == NULL ? "" : near,
+                near == NULL ? "" : "?");
+  return none;
+}
+
+static contact *find_contact(const reading *r, const char *name) {
+  for (int i = 0; i < r->m->n_contact; ++i)
+    if (same_word(name, r->m->contacts[i].name)) return &r->m->contacts[i];
+  return NULL;
+}
+
+/* The value lines: one quantity, or pairs with TABLE=. */
+static status read_value(reading *r, const friction_ops *law, contact *c) {
+  status st = OK;
+  const friction_param *p = r->param;
+  const record *line = r->card->records;
+  if (card_parameter(r->card, "TABLE") != NULL) {
+    if (r->card->n_record == 0)
+      message_add(r->m->log, P2007, &r->card->at,
+                  "*FRICTION, TABLE= needs lines of pairs");
+    TRY(read_pairs(r, 0, p->table, &c->position));
+    for (int i = 0; i < c->position.n; ++i)
+      if (!(c->position.value[i] >= 0.0))
+        message_add(r->m->log, P2010, &line[0].at,
+                    "*FRICTION: %s = %.15g in the table is negative",
+                    law->value_name, c->position.value[i]);
+    c->friction.value.number = 1.0;
+    c->friction.value.factor = &c->position; /* set anew by model_resolve */
+    goto done;
+  }
+  if (r->card->n_record != 1) {
+    message_add(r->m->log, r->card->n_record < 1 ? P2007 : P2008, &r->card->at,
+                "*FRICTION needs one line with %s", law->value_name);
+    goto done;
+  }
+  if (record_fields(r, line, 1, 1, law->value_name) != 0) goto done;
+  quantity *q = &c->friction.value;
+  if (field_quantity(r, &line->fields[0], q) != 0) goto done;
+  if (q->formula == NULL && !(q->number >= 0.0))
+    message_add(r->m->log, P2010, &line->fields[0].at,
+                "*FRICTION: %s = %s is negative", law->value_name,
+                line->fields[0].text);
+done:
+  return st;
+}
+
+status apply_friction(reading *r) {
+  status st = OK;
+  const friction_param *p = r->param;
+  const friction_ops *law = p->law == NULL ? NULL : friction_find(p->law);
+  void *param = NULL;
+  if (law == NULL || p->contact == NULL) goto done;
+  contact *c = find_contact(r, p->contact);
+  if (c == NULL) {
+    message_add(r->m->log, P2012, &card_parameter(r->card, "CONTACT")->value.at,
+                "*FRICTION: there is no *CONTACT, NAME=%s before this card",
+                p->contact);
+    goto done;
+  }
+  if (c->law != NULL) {
+    message_add(r->m->log, P2032, &r->card->at,
+                "contact %s has its *FRICTION already, at line %d", c->name,
+                c->friction_at.line_no);
+    goto done;
+  }
+  c->law = law;
+  c->amplitude_name = p->amplitude;
+  c->friction_at = r->card->at;
+  if (law->param_size > 0) {
+    param = memory_new(1, law->param_size);
+    if (param == NULL) FAIL(ERR_MEMORY, "memory exhausted: friction options");
+    memcpy(param, r->plugin, law->param_size);
+    c->friction.param = param;
+  }
+  if (law->value_name == NULL) {
+    if (r->card->n_record > 0)
+      message_add(r->m->log, P2008, &r->card->records[0].at,
+                  "*FRICTION, LAW=%s has no data lines", p->law);
+    goto done;
+  }
+  TRY(read_value(r, law, c));
+done:
+  return st;
+}

@@ -1,0 +1,170 @@
+/*
+ * Cards of the model: title, units, mesh, materials, sections, amplitudes.
+ */
+#include "model/keyword.h"
+
+#include "base/memory.h"
+
+#include <float.h>
+#include <string.h>
+
+/* Report a name used twice; 1 if so. "old" is what has it, or NULL. */
+static int name_taken(const reading *r, const char *name, const char *old) {
+  if (name == NULL || old == NULL || !same_word(name, old)) return 0;
+  const parameter *p = card_parameter(r->card, "NAME");
+  message_add(r->m->log, P2011, p == NULL ? &r->card->at : &p->value.at,
+              "*%s, NAME=%s is defined twice", r->card->name, name);
+  return 1;
+}
+
+status apply_heading(reading *r) {
+  const card *c = r->card;
+  if (c->n_record > 0 && r->m->title[0] == '\0')
+    r->m->title = c->records[0].raw;
+  return OK;
+}
+
+status apply_units(reading *r) {
+  const units_param *p = r->param;
+  r->m->length_unit = p->length;
+  r->m->force_unit = p->force;
+  r->m->time_unit = p->time;
+  return OK;
+}
+
+status apply_mesh(reading *r) {
+  status st = OK;
+  const mesh_param *p = r->param;
+  model *m = r->m;
+  if (m->has_mesh) {
+    message_add(m->log, P2015, &r->card->at, "a deck has one *MESH card");
+    goto done;
+  }
+  m->has_mesh = 1;
+  m->mesh_at = r->card->at;
+  m->mesh_scale = p->scale;
+  const parameter *file = card_parameter(r->card, "FILE");
+  if (file == NULL || !file->has_value) goto done;
+  m->mesh_file = deck_path(m->deck, &file->value);
+  if (m->mesh_file == NULL) FAIL(ERR_MEMORY, "memory exhausted: mesh file");
+done:
+  return st;
+}
+
+status apply_material(reading *r) {
+  status st = OK;
+  const name_param *p = r->param;
+  model *m = r->m;
+  for (int i = 0; i < m->n_material; ++i)
+    name_taken(r, p->name, m->materials[i].name);
+  GROW(m->materials, m->n_material, m->cap_material);
+  r->material_id = m->n_material++;
+  m->materials[r->material_id].name = p->name == NULL ? "" : p->name;
+  m->materials[r->material_id].at = r->card->at;
+done:
+  return st;
+}
+
+/* Number of constants of each elastic_type. */
+static const int constants_of[] = {2, 9, 21};
+
+status apply_elastic(reading *r) {
+  const elastic_param *p = r->param;
+  const card *c = r->card;
+  material *mat = &r->m->materials[r->material_id];
+  char text[200];
+  double value[ELASTIC_MAX];
+  int n = 0, wanted = constants_of[p->type];
+  if (mat->n_constant > 0)
+    message_add(r->m->log, P2011, &c->at, "material %s has *ELASTIC twice",
+                mat->name);
+  for (int i = 0; i < c->n_record; ++i)
+    for (int k = 0; k < c->records[i].n_field; ++k, ++n) {
+      if (n == wanted) {
+        message_add(r->m->log, P2009, &c->records[i].fields[k].at,
+                    "*ELASTIC: %d constants expected, more found; constants "
+                    "that depend on temperature are not available in this "
+                    "version",
+                    wanted);
+        return OK;
+      }
+      if (deck_real(&c->records[i].fields[k], r->m->log, &value[n]) != 0)
+        return OK;
+    }
+  if (n < wanted) {
+    message_add(r->m->log, P2009, &c->at,
+                "*ELASTIC: %d constants expected, %d found", wanted, n);
+    return OK;
+  }
+  mat->type = (elastic_type)p->type;
+  mat->n_constant = n;
+  memcpy(mat->constant, value, sizeof mat->constant);
+  const char *wrong =
+      elastic_matrix(mat->type, n, value, mat->C, text, (int)sizeof text);
+  if (wrong != NULL)
+    message_add(r->m->log, P2013, &c->records[0].at, "material %s: %s",
+                mat->name, wrong);
+  return OK;
+}
+
+status apply_density(reading *r) {
+  material *mat = &r->m->materials[r->material_id];
+  const record *line = &r->card->records[0];
+  if (record_fields(r, line, 1, 1, "rho") != 0) return OK;
+  if (field_real(r, &line->fields[0], 0.0, DBL_MAX, "rho", &mat->density) == 0)
+    mat->has_density = 1;
+  return OK;
+}
+
+status apply_section(reading *r) {
+  status st = OK;
+  const section_param *p = r->param;
+  model *m = r->m;
+  GROW(m->sections, m->n_section, m->cap_section);
+  section *s = &m->sections[m->n_section++];
+  s->elset = p->elset == NULL ? "" : p->elset;
+  s->material_name = p->material == NULL ? "" : p->material;
+  s->at = r->card->at;
+  s->material_id = -1;
+  s->group_id = -1;
+  s->thickness = p->thickness;
+  /* The words of Abaqus repeat the four kinematics. */
+  s->kin = card_parameter(r->card, "TYPE") == NULL ? -1 : p->type % 4;
+  if (r->card->n_record > 0) {
+    const record *line = &r->card->records[0];
+    if (record_fields(r, line, 1, 1, "thickness") == 0)
+      field_real(r, &line->fields[0], DBL_MIN, DBL_MAX, "thickness",
+                 &s->thickness);
+  }
+done:
+  return st;
+}
+
+status apply_amplitude(reading *r) {
+  status st = OK;
+  const amplitude_param *p = r->param;
+  model *m = r->m;
+  const card *c = r->card;
+  for (int i = 0; i < m->n_amplitude; ++i)
+    name_taken(r, p->name, m->amplitudes[i].name);
+  GROW(m->amplitudes, m->n_amplitude, m->cap_amplitude);
+  amplitude *a = &m->amplitudes[m->n_amplitude++];
+  a->name = p->name == NULL ? "" : p->name;
+  a->total_time = p->time;
+  a->table.variable = TABLE_T;
+  if (c->records[0].n_field == 1 && c->n_record == 1) {
+    quantity q = {0};
+    if (field_quantity(r, &c->records[0].fields[0], &q) != 0) goto done;
+    a->table.formula = q.formula;
+    if (q.formula == NULL)
+      message_add(m->log, P2009, &c->records[0].at,
+                  "*AMPLITUDE needs pairs t, a or one expression in quotes");
+    else if (expression_variables(q.formula) & 7u)
+      message_add(m->log, P2033, &c->records[0].at,
+                  "*AMPLITUDE: the expression may depend on t only");
+    goto done;
+  }
+  TRY(read_pairs(r, 0, TABLE_T, &a->table));
+done:
+  return st;
+}

@@ -1,0 +1,133 @@
+/*
+ * What the keyword table prints: the deck with all defaults, and the help.
+ */
+#include "model/keyword.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { WIDTH = 78, TEXT = 512 };
+
+/* One parameter; a value with a comma or a blank end would need quotes, and
+ * such names are refused by the deck reader. */
+static void echo_option(const option *o, const void *param, int *column,
+                        FILE *out) {
+  char value[TEXT], item[TEXT + 80];
+  option_write(o, param, value, sizeof value);
+  if (value[0] == '\0') return;
+  int length = snprintf(item, sizeof item, "%s=%s", o->name, value);
+  if (*column + 2 + length > WIDTH) {
+    fputs(",\n    ", out);
+    *column = 4;
+  } else {
+    fputs(", ", out);
+    *column += 2;
+  }
+  fputs(item, out);
+  *column += length;
+}
+
+/* Options that are absent and have no value are left out. */
+static void echo_options(const card *c, const option *table, const void *param,
+                         int *column, FILE *out) {
+  for (const option *o = table; o != NULL && o->name != NULL; ++o) {
+    int absent = card_parameter(c, o->name) == NULL;
+    if (absent &&
+        (o->initial == NULL || strcmp(o->initial, OPTION_ABSENT) == 0))
+      continue;
+    echo_option(o, param, column, out);
+  }
+}
+
+static void echo_record(const card *c, const record *line, FILE *out) {
+  if (strcmp(c->name, "HEADING") == 0) {
+    fprintf(out, "%s\n", line->raw);
+    return;
+  }
+  int column = 0;
+  for (int k = 0; k < line->n_field; ++k) {
+    const field *f = &line->fields[k];
+    int length = (int)strlen(f->text) + 3;
+    if (k > 0 && column + length > WIDTH) {
+      fputs(",\n", out);
+      column = 0;
+    } else if (k > 0) {
+      fputs(", ", out);
+    }
+    fprintf(out, f->quoted ? "\"%s\"" : "%s", f->text);
+    column += length;
+  }
+  fputc('\n', out);
+}
+
+static void echo_card(const model *m, const card *c, FILE *out) {
+  _Alignas(16) char param[PARAM_SIZE], plugin_param[PARAM_SIZE];
+  const keyword *row = keyword_find(c->name);
+  if (row == NULL || (row->where & (LANGUAGE | LATER))) return;
+  reading r = {.m = (model *)m, .card = c, .material_id = -1};
+  keyword_parameters(row, &r, param, plugin_param);
+  int column = fprintf(out, "*%s", c->name);
+  echo_options(c, row->options, param, &column, out);
+  if (row->names != NULL)
+    echo_options(c, row->names(&r).options, plugin_param, &column, out);
+  fputc('\n', out);
+  for (int i = 0; i < c->n_record; ++i) echo_record(c, &c->records[i], out);
+}
+
+void model_echo(const model *m, FILE *out) {
+  const deck *d = m->deck;
+  if (d->n_symbol > 0) fputs("*PARAMETER\n", out);
+  for (int i = 0; i < d->n_symbol; ++i)
+    fprintf(out, "%s = %.17g\n", d->symbols[i].name, d->symbols[i].value);
+  for (int i = 0; i < d->n_card; ++i) echo_card(m, &d->cards[i], out);
+}
+
+static const char *where_text(unsigned where) {
+  if (where & LATER) return "not available in this version";
+  if (where & LANGUAGE) return "anywhere";
+  if (where & IN_MATERIAL) return "after *MATERIAL";
+  if ((where & (IN_STEP | IN_MODEL)) == (IN_STEP | IN_MODEL))
+    return "before the steps or in a step";
+  return where & IN_STEP ? "in a step" : "before the first *STEP";
+}
+
+static void print_option(const option *o, FILE *out) {
+  static const char *const type[] = {"integer", "real", "YES or NO", "text",
+                                     "word"};
+  fprintf(out, "  %-15s %s", o->name,
+          o->type == OPT_CHOICE ? o->choices : type[o->type]);
+  if (o->type == OPT_REAL || o->type == OPT_INT)
+    fprintf(out, " in [%g, %g], unit %s", o->min, o->max, o->unit);
+  if (o->initial == NULL)
+    fprintf(out, "; must be given");
+  else if (strcmp(o->initial, OPTION_ABSENT) != 0)
+    fprintf(out, "; default %s", o->initial);
+  fprintf(out, "\n  %-15s   %s\n", "", o->help);
+}
+
+static void print_keyword(const keyword *k, FILE *out) {
+  fprintf(out, "*%s  (%s)\n  %s\n", k->name, where_text(k->where), k->help);
+  for (const option *o = k->options; o != NULL && o->name != NULL; ++o)
+    print_option(o, out);
+  if (k->names != NULL)
+    fputs("  and the options of what it names: protis --list\n", out);
+  if (k->data[0] != '\0') fprintf(out, "  data lines: %s\n", k->data);
+}
+
+int keywords_print(const char *name, FILE *out) {
+  char upper[80];
+  if (name == NULL) {
+    for (const keyword *k = keyword_table; k->name != NULL; ++k)
+      fprintf(out, "*%-20s %s%s\n", k->name, k->help,
+              k->where & LATER ? " (not available in this version)" : "");
+    return 1;
+  }
+  if (name[0] == '*') ++name;
+  snprintf(upper, sizeof upper, "%s", name);
+  for (char *p = upper; *p != '\0'; ++p) *p = (char)toupper((unsigned char)*p);
+  const keyword *k = keyword_find(upper);
+  if (k == NULL) return 0;
+  print_keyword(k, out);
+  return 1;
+}

@@ -1,0 +1,155 @@
+/*
+ * Which effects a deck calls for. What is off is neither allocated nor
+ * computed; the listing says for each effect why it is on or off.
+ */
+#include "model/keyword.h"
+
+#include <stdio.h>
+
+const char *effect_name(int bit) {
+#define EFFECT_TEXT(name, text) text,
+  static const char *const names[] = {EFFECT_LIST(EFFECT_TEXT)};
+  return names[bit];
+}
+
+/* A friction value that is zero everywhere and always is no friction. */
+static int has_friction(const contact *c) {
+  if (c->law == NULL || c->law->value_name == NULL) return 0;
+  const quantity *q = &c->friction.value;
+  return q->formula != NULL || q->number != 0.0;
+}
+
+static const contact *first_friction(const model *m) {
+  for (int i = 0; i < m->n_contact; ++i)
+    if (has_friction(&m->contacts[i])) return &m->contacts[i];
+  return NULL;
+}
+
+static const load *first_body_load(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k) {
+      const load *l = &m->steps[i].loads.item[k];
+      if (l->kind == LOAD_BODY || l->kind == LOAD_GRAVITY) return l;
+    }
+  return NULL;
+}
+
+static const step *first_print(const model *m, int table, place *at) {
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].n_print; ++k)
+      if (m->steps[i].prints[k].table & table) {
+        *at = m->steps[i].prints[k].at;
+        return &m->steps[i];
+      }
+  return NULL;
+}
+
+static const step *first_fields(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    if (m->steps[i].output_frequency >= 0) return &m->steps[i];
+  return NULL;
+}
+
+/* More than one increment: slip and load have a history. */
+static int has_history(const model *m) {
+  if (m->n_step > 1) return 1;
+  return m->n_step == 1 && m->steps[0].dt < m->steps[0].total;
+}
+
+/* Reactions are computed when printed, or where a support moves. */
+static const load *moving_support(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k) {
+      const load *l = &m->steps[i].loads.item[k];
+      if (l->kind != LOAD_FIXING) continue;
+      if (l->value.formula != NULL || l->value.number != 0.0 || l->has_before)
+        return l;
+    }
+  return NULL;
+}
+
+void model_find_effects(model *m) {
+  place at;
+  m->effects = 0;
+  if (m->n_contact > 0) m->effects |= EFFECT_CONTACT;
+  if (first_friction(m) != NULL) m->effects |= EFFECT_FRICTION;
+  if (first_friction(m) != NULL && has_history(m)) m->effects |= EFFECT_HISTORY;
+  if (first_body_load(m) != NULL) m->effects |= EFFECT_BODY;
+  if (first_print(m, PRINT_ELEMENTS, &at) != NULL || first_fields(m) != NULL)
+    m->effects |= EFFECT_STRESS;
+  if (first_print(m, PRINT_REACTIONS, &at) != NULL || first_fields(m) != NULL ||
+      moving_support(m) != NULL)
+    m->effects |= EFFECT_REACTION;
+}
+
+static void reason_friction(const model *m, char *text, size_t size) {
+  const contact *c = first_friction(m);
+  if (c != NULL)
+    snprintf(text, size, "*FRICTION, LAW=%s on contact %s, line %d",
+             c->law->name, c->name, c->friction_at.line_no);
+  else if (m->n_contact == 0)
+    snprintf(text, size, "no *CONTACT card");
+  else
+    snprintf(text, size, "no *FRICTION card with a value above zero");
+}
+
+static void reason_output(const model *m, int table, char *text, size_t size) {
+  place at;
+  if (first_print(m, table, &at) != NULL)
+    snprintf(text, size, "*PRINT, line %d", at.line_no);
+  else if (first_fields(m) != NULL)
+    snprintf(text, size, "fields in JOB.h5");
+  else
+    snprintf(text, size, "no output asks for them");
+}
+
+static void reason_history(const model *m, char *text, size_t size) {
+  if (m->effects & EFFECT_HISTORY)
+    snprintf(text, size, "friction over more than one increment");
+  else if (m->effects & EFFECT_FRICTION)
+    snprintf(text, size, "one increment only");
+  else
+    snprintf(text, size, "no friction");
+}
+
+const char *model_effect_reason(const model *m, int bit, char *text,
+                                size_t size) {
+  const load *l;
+  switch (bit) {
+    case EFFECT_BIT_CONTACT:
+      if (m->n_contact > 0)
+        snprintf(text, size, "*CONTACT, NAME=%s, line %d", m->contacts[0].name,
+                 m->contacts[0].at.line_no);
+      else
+        snprintf(text, size, "no *CONTACT card");
+      break;
+    case EFFECT_BIT_FRICTION:
+      reason_friction(m, text, size);
+      break;
+    case EFFECT_BIT_HISTORY:
+      reason_history(m, text, size);
+      break;
+    case EFFECT_BIT_BODY:
+      l = first_body_load(m);
+      if (l != NULL)
+        snprintf(text, size, "*DLOAD on group %s, line %d", l->group,
+                 l->at.line_no);
+      else
+        snprintf(text, size, "no *DLOAD card");
+      break;
+    case EFFECT_BIT_STRESS:
+      reason_output(m, PRINT_ELEMENTS, text, size);
+      break;
+    case EFFECT_BIT_REACTION:
+      l = moving_support(m);
+      if (l != NULL)
+        snprintf(text, size, "work of the moving support %s, line %d", l->group,
+                 l->at.line_no);
+      else
+        reason_output(m, PRINT_REACTIONS, text, size);
+      break;
+    default:
+      snprintf(text, size, "no card calls for it");
+  }
+  return text;
+}

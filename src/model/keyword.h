@@ -1,0 +1,162 @@
+/*
+ * The table of deck keywords and what its functions are told. A card is one
+ * row of keyword_table; most rows need a function for their data lines.
+ */
+#ifndef PROTIS_MODEL_KEYWORD_H
+#define PROTIS_MODEL_KEYWORD_H
+
+#include "model/model.h"
+
+/* Where a card may stand. */
+enum {
+  IN_MODEL = 1,    /* before the first *STEP                                  */
+  IN_MATERIAL = 2, /* after *MATERIAL, up to the next card of the model       */
+  IN_STEP = 4,     /* between *STEP and *END STEP                             */
+  LANGUAGE = 8,    /* read by the deck reader; stands anywhere                */
+  LATER = 16       /* reserved: not available in this version                 */
+};
+
+/* State of reading a deck, card by card. */
+typedef struct reading {
+  model *m;
+  const card *card;   /* the card at hand                                   */
+  const void *param;  /* its options, as the row's table says               */
+  const void *plugin; /* options of the law or solver it names, or NULL     */
+  size_t plugin_size;
+  int material_id; /* open *MATERIAL, or -1                              */
+  int in_step;     /* inside *STEP ... *END STEP                         */
+} reading;
+
+/* Options of a law or solver that a card names; NULL: none. */
+typedef struct plugin {
+  const option *options;
+  size_t size;
+} plugin;
+
+typedef struct keyword {
+  const char *name;
+  unsigned where;        /* IN_..., LANGUAGE or LATER                        */
+  const option *options; /* of the struct of param_size bytes, or NULL       */
+  size_t param_size;
+  /* Options of what the card names; an unknown name goes to the log. */
+  plugin (*names)(const reading *r);
+  status (*apply)(reading *r); /* ERR_MEMORY only: the rest goes to the log   */
+  int min_line, max_line; /* data lines; max -1: any number                   */
+  const char *data;       /* what the data lines hold                         */
+  const char *help;
+} keyword;
+
+extern const keyword keyword_table[]; /* name NULL at the end                 */
+const keyword *keyword_find(const char *name); /* or NULL                     */
+
+enum { PARAM_SIZE = 512 }; /* room for the options of any row or plug-in      */
+
+/* Read the parameters of r->card into param[row->param_size] and
+ * plugin[PARAM_SIZE]; fills r->param and r->plugin. Errors go to the log. */
+void keyword_parameters(const keyword *row, reading *r, void *param,
+                        void *plugin_param);
+
+/* Rows of options for the cards of the model and of the steps. */
+typedef struct units_param {
+  const char *length, *force, *time;
+} units_param;
+typedef struct mesh_param {
+  const char *file;
+  double scale;
+} mesh_param;
+typedef struct name_param {
+  const char *name;
+} name_param;
+typedef struct elastic_param {
+  int type;
+} elastic_param;
+typedef struct section_param {
+  const char *elset, *material;
+  int type;
+  double thickness;
+} section_param;
+typedef struct obstacle_param {
+  const char *name, *amplitude;
+  int type, side;
+  double radius;
+} obstacle_param;
+typedef struct contact_param {
+  const char *name, *group, *obstacle;
+} contact_param;
+typedef struct friction_param {
+  const char *contact, *law, *amplitude;
+  int table;
+} friction_param;
+typedef struct amplitude_param {
+  const char *name;
+  int time;
+} amplitude_param;
+typedef struct quasistatic_param {
+  int form;
+} quasistatic_param;
+typedef struct load_param {
+  const char *amplitude;
+  int op;
+} load_param;
+typedef struct solver_param {
+  const char *method;
+  double tol;
+  int max_iter, limit_max_iter;
+} solver_param;
+typedef struct print_param {
+  int contact, totals, nodes, elements, energy, reactions, frequency;
+  const char *group;
+} print_param;
+typedef struct output_param {
+  int hdf5, frequency;
+} output_param;
+
+/* apply functions: cards_model.c */
+status apply_heading(reading *r);
+status apply_units(reading *r);
+status apply_mesh(reading *r);
+status apply_material(reading *r);
+status apply_elastic(reading *r);
+status apply_density(reading *r);
+status apply_section(reading *r);
+status apply_amplitude(reading *r);
+/* cards_contact.c */
+status apply_obstacle(reading *r);
+status apply_contact(reading *r);
+status apply_friction(reading *r);
+plugin names_law(const reading *r);
+/* cards_step.c */
+status apply_step(reading *r);
+status apply_end_step(reading *r);
+status apply_static(reading *r);
+status apply_quasistatic(reading *r);
+status apply_boundary(reading *r);
+status apply_dsload(reading *r);
+status apply_dload(reading *r);
+status apply_cload(reading *r);
+status apply_solver(reading *r);
+plugin names_solver(const reading *r);
+status apply_print(reading *r);
+status apply_output(reading *r);
+
+/* Helpers for the data lines; all errors go to the log. */
+/* 0 if the line has min..max fields. */
+int record_fields(const reading *r, const record *line, int min, int max,
+                  const char *expected);
+int field_real(const reading *r, const field *f, double min, double max,
+               const char *what, double *out);
+int field_int(const reading *r, const field *f, int min, int max,
+              const char *what, int *out);
+int field_quantity(const reading *r, const field *f, quantity *out);
+/* Pairs over all lines (any number per line) as a table; arrays are new. */
+status read_pairs(reading *r, int first_line, int variable, value_table *out);
+/* Compare words without regard to case. */
+int same_word(const char *a, const char *b);
+
+/* resolve.c: names to ids once all cards are read; loads carried from step to
+ * step. Errors of names go to the log. */
+status model_resolve(model *m);
+/* effects.c: which effects the deck calls for, into m->effects. */
+void model_find_effects(model *m);
+
+#endif

@@ -1,0 +1,198 @@
+/*
+ * THE table of deck keywords: where a card may stand, its parameters, its
+ * data lines. The parser, the range checks, --keywords, the echo of the deck
+ * and the tests all run over it.
+ */
+#include "model/keyword.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#define ANY (-1)
+
+/* clang-format off */
+static const option units_options[] = {
+  OPTION_NAME(units_param, length, "LENGTH", OPTION_ABSENT, "label, \"mm\""),
+  OPTION_NAME(units_param, force, "FORCE", OPTION_ABSENT, "label, \"N\""),
+  OPTION_NAME(units_param, time, "TIME", OPTION_ABSENT, "label, \"s\""),
+  OPTION_END};
+static const option mesh_options[] = {
+  OPTION_NAME(mesh_param, file, "FILE", NULL,
+              ".msh or .geo, relative to the deck"),
+  OPTION_REAL(mesh_param, scale, "SCALE", DBL_MIN, DBL_MAX, "1", "-",
+              "factor on all coordinates"),
+  OPTION_END};
+static const option name_options[] = {
+  OPTION_NAME(name_param, name, "NAME", NULL, "name for other cards"),
+  OPTION_END};
+static const option step_options[] = {
+  OPTION_NAME(name_param, name, "NAME", OPTION_ABSENT, "name in the output"),
+  OPTION_END};
+static const option elastic_options[] = {
+  OPTION_CHOICE(elastic_param, type, "TYPE", ELASTIC_WORDS, "ISO",
+                "symmetry of the material"),
+  OPTION_END};
+static const option section_options[] = {
+  OPTION_NAME(section_param, elset, "ELSET", NULL, "group of elements"),
+  OPTION_NAME(section_param, material, "MATERIAL", NULL, "name of a *MATERIAL"),
+  OPTION_CHOICE(section_param, type, "TYPE", KINEMATICS_WORDS, OPTION_ABSENT,
+                "absent: plane strain in 2-D"),
+  OPTION_REAL(section_param, thickness, "THICKNESS", DBL_MIN, DBL_MAX, "1",
+              "length", "of plane strain and plane stress"),
+  OPTION_END};
+static const option obstacle_options[] = {
+  OPTION_NAME(obstacle_param, name, "NAME", NULL, "name for *CONTACT"),
+  OPTION_CHOICE(obstacle_param, type, "TYPE", OBSTACLE_SHAPES, NULL, "shape"),
+  OPTION_REAL(obstacle_param, radius, "RADIUS", DBL_MIN, DBL_MAX,
+              OPTION_ABSENT, "length", "of cylinder and sphere"),
+  OPTION_CHOICE(obstacle_param, side, "SIDE", "OUTSIDE|INSIDE", "OUTSIDE",
+                "where the body is"),
+  OPTION_NAME(obstacle_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
+              "factor on MOVE, in total time"),
+  OPTION_END};
+static const option contact_options[] = {
+  OPTION_NAME(contact_param, name, "NAME", NULL, "name for *FRICTION"),
+  OPTION_NAME(contact_param, group, "GROUP", NULL, "faces of Gamma_3"),
+  OPTION_NAME(contact_param, obstacle, "OBSTACLE", NULL,
+              "name of an *OBSTACLE"),
+  OPTION_END};
+static const option friction_options[] = {
+  OPTION_NAME(friction_param, contact, "CONTACT", NULL, "name of a *CONTACT"),
+  OPTION_NAME(friction_param, law, "LAW", NULL, "protis --list friction"),
+  OPTION_NAME(friction_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
+              "factor in total time"),
+  OPTION_CHOICE(friction_param, table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
+                "data lines are pairs coordinate (or total time), value"),
+  OPTION_END};
+static const option amplitude_options[] = {
+  OPTION_NAME(amplitude_param, name, "NAME", NULL, "name for AMPLITUDE="),
+  OPTION_CHOICE(amplitude_param, time, "TIME", "STEP TIME|TOTAL TIME",
+                "STEP TIME", "which time the table counts"),
+  OPTION_END};
+static const option quasistatic_options[] = {
+  OPTION_CHOICE(quasistatic_param, form, "FORM", "DISPLACEMENT|VELOCITY",
+                "DISPLACEMENT", "N2 or N3 of CPR98"),
+  OPTION_END};
+static const option load_options[] = {
+  OPTION_NAME(load_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
+              "course in time; absent: linear over the step"),
+  OPTION_CHOICE(load_param, op, "OP", "MOD|NEW", "MOD",
+                "NEW ends what other steps left of this card"),
+  OPTION_END};
+static const option solver_options[] = {
+  OPTION_NAME(solver_param, method, "METHOD", "AUTO", "protis --list solvers"),
+  OPTION_REAL(solver_param, tol, "TOL", 1e-14, 0.1, "1E-10", "-",
+              "residual to reach"),
+  OPTION_INT(solver_param, max_iter, "MAX_ITER", 0, 100000000, "0", "-",
+             "of the method; 0: its own limit"),
+  OPTION_INT(solver_param, limit_max_iter, "LIMIT_MAX_ITER", 1, 1000000, "1000",
+             "-", "passes of the fixed point on the sliding limit"),
+  OPTION_END};
+static const option print_options[] = {
+  OPTION_FLAG(print_param, contact, "CONTACT", "NO", "contact nodes"),
+  OPTION_FLAG(print_param, totals, "TOTALS", "NO", "resultants per contact"),
+  OPTION_FLAG(print_param, nodes, "NODES", "NO", "nodal displacements"),
+  OPTION_FLAG(print_param, elements, "ELEMENTS", "NO", "strains and stresses"),
+  OPTION_FLAG(print_param, energy, "ENERGY", "NO", "energies and their balance"),
+  OPTION_FLAG(print_param, reactions, "REACTIONS", "NO", "forces of supports"),
+  OPTION_INT(print_param, frequency, "FREQUENCY", 0, 1000000000, "1", "-",
+             "every n-th increment and the last; 0: the last only"),
+  OPTION_NAME(print_param, group, "GROUP", OPTION_ABSENT,
+              "nodes or elements of one group only"),
+  OPTION_END};
+static const option output_options[] = {
+  OPTION_FLAG(output_param, hdf5, "HDF5", "YES", "write JOB.h5 and JOB.xdmf"),
+  OPTION_INT(output_param, frequency, "FREQUENCY", 0, 1000000000, "1", "-",
+             "fields every n-th increment and the last; 0: the last only"),
+  OPTION_END};
+
+#define OPTIONS(x) x##_options, sizeof(x##_param)
+#define NO_OPTIONS NULL, 0
+#define RESERVED(name, help) \
+  {name, LATER, NO_OPTIONS, NULL, NULL, 0, ANY, "", help}
+
+const keyword keyword_table[] = {
+  {"HEADING", IN_MODEL, NO_OPTIONS, NULL, apply_heading, 0, ANY,
+   "text", "title of the run"},
+  {"PARAMETER", LANGUAGE, NO_OPTIONS, NULL, NULL, 1, ANY,
+   "NAME = value or expression", "names for <NAME>, handed to a .geo too"},
+  {"INCLUDE", LANGUAGE, NO_OPTIONS, NULL, NULL, 0, 0,
+   "", "INPUT=file: read another file here"},
+  {"LEGACY", LANGUAGE, NO_OPTIONS, NULL, NULL, 0, 0,
+   "", "FORMAT=(I5,3F10.0): the next data block stands in fixed columns"},
+  {"UNITS", IN_MODEL, OPTIONS(units), NULL, apply_units, 0, 0,
+   "", "labels of the consistent set of units; changes no number"},
+  {"MESH", IN_MODEL, OPTIONS(mesh), NULL, apply_mesh, 0, 0,
+   "", "gmsh mesh or geometry; its physical groups are the names below"},
+  {"MATERIAL", IN_MODEL, OPTIONS(name), NULL, apply_material, 0, 0,
+   "", "opens a material: *ELASTIC, *DENSITY below belong to it"},
+  {"ELASTIC", IN_MATERIAL, OPTIONS(elastic), NULL, apply_elastic, 1, 3,
+   "ISO E, nu; ORTHO E1, E2, E3, nu12, nu13, nu23, G12, G13, G23; "
+   "ANISO 21 constants",
+   "elasticity a_ijkl (CPR98 2.2): symmetric and positive definite"},
+  {"DENSITY", IN_MATERIAL, NO_OPTIONS, NULL, apply_density, 1, 1,
+   "rho", "mass per volume, for GRAV"},
+  {"SOLID SECTION", IN_MODEL, OPTIONS(section), NULL, apply_section, 0, 1,
+   "[thickness]", "material and kinematics of a group of elements"},
+  {"AMPLITUDE", IN_MODEL, OPTIONS(amplitude), NULL, apply_amplitude, 1, ANY,
+   "t, a pairs, any number a line; or one expression of t",
+   "course of a load, a motion or a friction value in time"},
+  {"OBSTACLE", IN_MODEL, OPTIONS(obstacle), NULL, apply_obstacle, 0, 3,
+   "PLANE point; normal towards the body. CYLINDER point of the axis; "
+   "direction (3-D). SPHERE centre. GAP value. Then MOVE, dx, dy, dz",
+   "rigid obstacle, may move"},
+  {"CONTACT", IN_MODEL, OPTIONS(contact), NULL, apply_contact, 0, 0,
+   "", "unilateral contact of Gamma_3 with an obstacle"},
+  {"FRICTION", IN_MODEL, OPTIONS(friction), names_law, apply_friction, 0, ANY,
+   "mu or g: number, expression of x y z t, or pairs with TABLE=",
+   "friction law of a contact; without it the contact is frictionless"},
+  {"STEP", IN_MODEL, step_options, sizeof(name_param), NULL, apply_step, 0, 0,
+   "", "opens a step; loads stay from step to step until changed"},
+  {"STATIC", IN_STEP, NO_OPTIONS, NULL, apply_static, 0, 1,
+   "[duration, 1 if absent]",
+   "one static problem: friction against the total displacement (P2/D2)"},
+  {"QUASISTATIC", IN_STEP, OPTIONS(quasistatic), NULL, apply_quasistatic, 1, 1,
+   "dt, total [, dt_min [, dt_max]]",
+   "increments S_i^n: friction against the displacement of each (N2)"},
+  {"BOUNDARY", IN_STEP | IN_MODEL, OPTIONS(load), NULL, apply_boundary, 0, ANY,
+   "group, first dof [, last dof [, value [, amplitude]]]",
+   "supports and prescribed displacements"},
+  {"DSLOAD", IN_STEP, OPTIONS(load), NULL, apply_dsload, 0, ANY,
+   "group, P or TX TY TZ, value [, amplitude]",
+   "pressure (pushes into the body) or traction on faces"},
+  {"DLOAD", IN_STEP, OPTIONS(load), NULL, apply_dload, 0, ANY,
+   "group, BX BY BZ, value [, amplitude]; or GRAV, g, gx, gy [, gz "
+   "[, amplitude]]",
+   "body force per volume, gravity"},
+  {"CLOAD", IN_STEP, OPTIONS(load), NULL, apply_cload, 0, ANY,
+   "group, dof, value [, amplitude]", "force on each node of a group"},
+  {"SOLVER", IN_STEP, OPTIONS(solver), names_solver, apply_solver, 0, 0,
+   "", "method for the contact problem and its options"},
+  {"PRINT", IN_STEP, OPTIONS(print), NULL, apply_print, 0, 0,
+   "", "tables in JOB.dat"},
+  {"OUTPUT", IN_STEP, OPTIONS(output), NULL, apply_output, 0, 0,
+   "", "fields in JOB.h5"},
+  {"END STEP", IN_STEP, NO_OPTIONS, NULL, apply_end_step, 0, 0,
+   "", "closes the step"},
+  RESERVED("EXPANSION", "thermal expansion"),
+  RESERVED("INELASTIC", "inelastic law"),
+  RESERVED("CREEP", "creep law"),
+  RESERVED("VISCOELASTIC", "viscoelastic law"),
+  RESERVED("CONTACT FORCE", "given normal force (CPR98 3.19)"),
+  RESERVED("INITIAL CONDITIONS", "initial state"),
+  RESERVED("VISCO", "increments with inelastic strains"),
+  RESERVED("TEMPERATURE", "temperatures"),
+  RESERVED("ACCURACY", "error estimates and targets"),
+  RESERVED("EFFECTS", "which effects are simulated"),
+  RESERVED("RESTART", "restart file"),
+  RESERVED("CONDENSED PROBLEM", "contact problem from a file"),
+  RESERVED("REFERENCE", "closed form to compare with"),
+  {NULL, 0, NULL, 0, NULL, NULL, 0, 0, NULL, NULL}};
+/* clang-format on */
+
+const keyword *keyword_find(const char *name) {
+  for (const keyword *k = keyword_table; k->name != NULL; ++k)
+    if (strcmp(k->name, name) == 0) return k;
+  return NULL;
+}

@@ -1,0 +1,221 @@
+/*
+ * Loads and prescribed displacements of a step at a time: nodal forces are
+ * the exact integrals of data that is linear between the nodes (CPR98 2.5:
+ * phi_1 in the body, phi_2 on Gamma_2).
+ */
+#include "model/model.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MAX_NODE = 4 };
+
+/* Time at which the value of a kept load counts. */
+static double value_time(const load *l, double t) {
+  return l->run == RUN_HELD ? l->before_t : t;
+}
+
+/* Value of a load at a point and total time t of step s. */
+static double load_value(const load *l, const step *s, const double x[3],
+                         double t) {
+  double now = quantity_value(&l->value, x, value_time(l, t));
+  if (l->run != RUN_RAMP || t >= s->start + s->total) return now;
+  double w = (t - s->start) / s->total;
+  double from =
+      l->has_before ? quantity_value(&l->before, x, l->before_t) : 0.0;
+  return (1.0 - w) * from + w * now;
+}
+
+static void node_position(const mesh *msh, int node, double x[3]) {
+  x[2] = 0.0;
+  for (int c = 0; c < msh->dim; ++c)
+    x[c] = msh->x[(size_t)msh->dim * (size_t)node + (size_t)c];
+}
+
+/* Value at a node, or the error that it is not finite. */
+static status node_value(const mesh *msh, const load *l, const step *s,
+                         double t, int node, double *value) {
+  status st = OK;
+  double x[3];
+  node_position(msh, node, x);
+  *value = load_value(l, s, x, t);
+  if (!isfinite(*value))
+    FAIL(ERR_DECK,
+         "%s:%d: the value on group %s is %g at node %zu (%g, %g, %g), time %g",
+         l->at.file, l->at.line_no, l->group, *value, msh->node_no[node], x[0],
+         x[1], x[2], t);
+done:
+  return st;
+}
+
+/*
+ * M_ij = integral of N_i N_j w over a simplex of n nodes and given measure;
+ * w = 1, or the P1 function of the nodal values r (axisymmetric: 2 pi r).
+ * Integral of a product of barycentric coordinates: d! a! b! c! / (a+b+c+d)!
+ * times the measure, d = n - 1.
+ */
+static void simplex_mass(int n, double measure, const double *r, double *M) {
+  double d2 = (double)(n * (n + 1)), d3 = d2 * (double)(n + 2);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      double sum = 0.0;
+      if (r == NULL) {
+        M[i + n * j] = measure * (i == j ? 2.0 : 1.0) / d2;
+        continue;
+      }
+      for (int k = 0; k < n; ++k) {
+        int same = (i == j) + (j == k) + (i == k);
+        sum += r[k] * (same == 3 ? 6.0 : same == 1 ? 2.0 : 1.0);
+      }
+      M[i + n * j] = measure * sum / d3;
+    }
+}
+
+/* A face or an element and what a load does on it. */
+typedef struct patch {
+  int n, node[MAX_NODE]; /* its nodes                                         */
+  double measure;        /* length^(n-1), thickness included                  */
+  double direction[3];   /* of the load, unit length                          */
+  double factor;         /* density for gravity, else 1                       */
+} patch;
+
+static status add_patch(const model *m, const mesh *msh, const load *l,
+                        const step *s, double t, const patch *p, double *F) {
+  status st = OK;
+  double value[MAX_NODE], r[MAX_NODE], M[MAX_NODE * MAX_NODE];
+  int axisymmetric = m->sections[0].kin == AXISYMMETRIC;
+  for (int i = 0; i < p->n; ++i) {
+    TRY(node_value(msh, l, s, t, p->node[i], &value[i]));
+    r[i] = 2.0 * M_PI * msh->x[(size_t)msh->dim * (size_t)p->node[i]];
+  }
+  simplex_mass(p->n, p->measure, axisymmetric ? r : NULL, M);
+  for (int i = 0; i < p->n; ++i) {
+    double force = 0.0;
+    for (int j = 0; j < p->n; ++j) force += M[i + p->n * j] * value[j];
+    force *= p->factor;
+    double *Fi = F + (size_t)msh->dim * (size_t)p->node[i];
+    for (int c = 0; c < msh->dim; ++c) Fi[c] += force * p->direction[c];
+  }
+done:
+  return st;
+}
+
+static double elem_thickness(const model *m, int elem_id) {
+  return m->sections[m->elem_section[elem_id]].thickness;
+}
+
+static status add_faces(const model *m, const mesh *msh, const load *l,
+                        const step *s, double t, double *F) {
+  status st = OK;
+  const mesh_group *g = &msh->group[l->group_id];
+  for (int k = 0; k < g->n_item; ++k) {
+    int face = g->item_id[k];
+    double normal[3];
+    patch p = {.n = msh->dim, .factor = 1.0};
+    memcpy(p.node, msh->face + (size_t)msh->dim * (size_t)face,
+           (size_t)msh->dim * sizeof *p.node);
+    p.measure = mesh_face_normal(msh, face, normal) *
+                elem_thickness(m, msh->face_elem[face]);
+    for (int c = 0; c < msh->dim; ++c)
+      p.direction[c] = l->kind == LOAD_PRESSURE ? -normal[c]
+                       : c == l->component      ? 1.0
+                                                : 0.0;
+    TRY(add_patch(m, msh, l, s, t, &p, F));
+  }
+done:
+  return st;
+}
+
+static status add_elements(const model *m, const mesh *msh, const load *l,
+                           const step *s, double t, double *F) {
+  status st = OK;
+  const mesh_group *g = &msh->group[l->group_id];
+  for (int k = 0; k < g->n_item; ++k) {
+    int e = g->item_id[k];
+    patch p = {.n = msh->dim + 1, .factor = 1.0};
+    memcpy(p.node, msh->elem + (size_t)p.n * (size_t)e,
+           (size_t)p.n * sizeof *p.node);
+    p.measure = mesh_elem_measure(msh, e) * elem_thickness(m, e);
+    if (l->kind == LOAD_GRAVITY) {
+      const section *sec = &m->sections[m->elem_section[e]];
+      p.factor = m->materials[sec->material_id].density;
+      memcpy(p.direction, l->direction, sizeof p.direction);
+    } else {
+      p.direction[l->component] = 1.0;
+    }
+    TRY(add_patch(m, msh, l, s, t, &p, F));
+  }
+done:
+  return st;
+}
+
+static status add_points(const mesh *msh, const load *l, const step *s,
+                         double t, double *F) {
+  status st = OK;
+  const mesh_group *g = &msh->group[l->group_id];
+  for (int k = 0; k < g->n_node; ++k) {
+    double value;
+    TRY(node_value(msh, l, s, t, g->node_id[k], &value));
+    F[(size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component] += value;
+  }
+done:
+  return st;
+}
+
+status load_forces(const model *m, const mesh *msh, const step *s, double t,
+                   double *F) {
+  status st = OK;
+  memset(F, 0, (size_t)msh->dim * (size_t)msh->n_node * sizeof *F);
+  for (int i = 0; i < s->loads.n; ++i) {
+    const load *l = &s->loads.item[i];
+    switch ((load_kind)l->kind) {
+      case LOAD_PRESSURE:
+      case LOAD_TRACTION:
+        TRY(add_faces(m, msh, l, s, t, F));
+        break;
+      case LOAD_BODY:
+      case LOAD_GRAVITY:
+        TRY(add_elements(m, msh, l, s, t, F));
+        break;
+      case LOAD_POINT:
+        TRY(add_points(msh, l, s, t, F));
+        break;
+      case LOAD_FIXING:
+        break;
+    }
+  }
+done:
+  return st;
+}
+
+status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
+                       double *ud) {
+  status st = OK;
+  (void)m;
+  for (int i = 0; i < s->loads.n; ++i) {
+    const load *l = &s->loads.item[i];
+    if (l->kind != LOAD_FIXING) continue;
+    const mesh_group *g = &msh->group[l->group_id];
+    for (int k = 0; k < g->n_node; ++k) {
+      size_t dof =
+          (size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component;
+      TRY(node_value(msh, l, s, t, g->node_id[k], &ud[dof]));
+    }
+  }
+done:
+  return st;
+}
+
+void load_fixed(const model *m, const mesh *msh, const step *s,
+                unsigned char *fixed) {
+  (void)m;
+  memset(fixed, 0, (size_t)msh->dim * (size_t)msh->n_node);
+  for (int i = 0; i < s->loads.n; ++i) {
+    const load *l = &s->loads.item[i];
+    if (l->kind != LOAD_FIXING) continue;
+    const mesh_group *g = &msh->group[l->group_id];
+    for (int k = 0; k < g->n_node; ++k)
+      fixed[(size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component] =
+          1;
+  }
+}

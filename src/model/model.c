@@ -1,0 +1,259 @@
+/*
+ * From cards to the model: the driver over the keyword table.
+ */
+#include "model/keyword.h"
+
+#include "base/memory.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+int same_word(const char *a, const char *b) { return strcasecmp(a, b) == 0; }
+
+static const char *keyword_name(const void *ctx, int i) {
+  (void)ctx;
+  return keyword_table[i].name;
+}
+
+static const char *option_name(const void *ctx, int i) {
+  return ((const option *)ctx)[i].name;
+}
+
+/* Name of row i of two tables one after the other. */
+typedef struct two_tables {
+  const option *first, *second;
+} two_tables;
+
+static const char *either_name(const void *ctx, int i) {
+  const two_tables *t = ctx;
+  for (const option *o = t->first; o != NULL && o->name != NULL; ++o)
+    if (i-- == 0) return o->name;
+  return t->second == NULL ? NULL : option_name(t->second, i);
+}
+
+/* Read one parameter into the struct its row belongs to. */
+static void read_parameter(const reading *r, const option *row,
+                           const parameter *p, void *into) {
+  char why[256];
+  if (option_read(row, p->has_value ? p->value.text : NULL, into, why,
+                  sizeof why) != 0)
+    message_add(r->m->log, P2004, p->has_value ? &p->value.at : &p->at,
+                "*%s, %s: %s", r->card->name, p->name, why);
+}
+
+static void report_missing(const reading *r, const option *table) {
+  for (const option *o = table; o != NULL && o->name != NULL; ++o)
+    if (o->initial == NULL && card_parameter(r->card, o->name) == NULL)
+      message_add(r->m->log, P2005, &r->card->at,
+                  "*%s needs the parameter %s= (%s)", r->card->name, o->name,
+                  o->help);
+}
+
+void keyword_parameters(const keyword *row, reading *r, void *param,
+                        void *plugin_param) {
+  const card *c = r->card;
+  memset(param, 0, PARAM_SIZE);
+  memset(plugin_param, 0, PARAM_SIZE);
+  r->param = param;
+  r->plugin = NULL;
+  if (row->options != NULL) option_defaults(row->options, param);
+  for (int i = 0; i < c->n_parameter; ++i) {
+    const option *o = row->options == NULL
+                          ? NULL
+                          : option_find(row->options, c->parameters[i].name);
+    if (o != NULL) read_parameter(r, o, &c->parameters[i], param);
+  }
+  report_missing(r, row->options);
+  two_tables all = {row->options, NULL};
+  if (row->names != NULL) {
+    plugin p = row->names(r);
+    all.second = p.options;
+    r->plugin_size = p.size;
+    if (p.options != NULL) option_defaults(p.options, plugin_param);
+    if (p.size > 0) r->plugin = plugin_param;
+  }
+  for (int i = 0; i < c->n_parameter; ++i) {
+    const parameter *p = &c->parameters[i];
+    if (row->options != NULL && option_find(row->options, p->name) != NULL)
+      continue;
+    const option *o =
+        all.second == NULL ? NULL : option_find(all.second, p->name);
+    const char *near = nearest_word(p->name, either_name, &all);
+    if (o != NULL)
+      read_parameter(r, o, p, plugin_param);
+    else if (near != NULL)
+      message_add(r->m->log, P2003, &p->at,
+                  "*%s has no parameter %s; did you mean %s?", c->name, p->name,
+                  near);
+    else
+      message_add(r->m->log, P2003, &p->at, "*%s has no parameter %s", c->name,
+                  p->name);
+  }
+  report_missing(r, all.second);
+}
+
+/* 1 if the card may stand here; opens and closes the blocks. */
+static int right_place(reading *r, const keyword *row) {
+  message_log *log = r->m->log;
+  const card *c = r->card;
+  if (r->in_step) {
+    if (row->where & IN_STEP) return 1;
+    message_add(log, P2006, &c->at,
+                "*%s does not belong inside a step; end the step first with "
+                "*END STEP",
+                c->name);
+    return 0;
+  }
+  if (row->where & IN_MATERIAL) {
+    if (r->material_id >= 0) return 1;
+    message_add(log, P2006, &c->at, "*%s must follow its *MATERIAL card",
+                c->name);
+    return 0;
+  }
+  r->material_id = -1;
+  if (row->where & IN_MODEL) {
+    if (r->m->n_step == 0 || strcmp(row->name, "STEP") == 0) return 1;
+    message_add(log, P2006, &c->at, "*%s must stand before the first *STEP",
+                c->name);
+    return 0;
+  }
+  message_add(log, P2006, &c->at, "*%s belongs between *STEP and *END STEP",
+              c->name);
+  return 0;
+}
+
+static int right_lines(const reading *r, const keyword *row) {
+  const card *c = r->card;
+  if (c->n_record < row->min_line) {
+    message_add(r->m->log, P2007, &c->at, "*%s needs %d data line%s: %s",
+                c->name, row->min_line, row->min_line == 1 ? "" : "s",
+                row->data);
+    return 0;
+  }
+  if (row->max_line < 0 || c->n_record <= row->max_line) return 1;
+  if (row->max_line == 0)
+    message_add(r->m->log, P2008, &c->records[0].at, "*%s has no data lines",
+                c->name);
+  else
+    message_add(r->m->log, P2008, &c->records[row->max_line].at,
+                "*%s has at most %d data line%s: %s", c->name, row->max_line,
+                row->max_line == 1 ? "" : "s", row->data);
+  return 0;
+}
+
+static void unknown_card(const reading *r) {
+  const card *c = r->card;
+  const char *near = nearest_word(c->name, keyword_name, NULL);
+  if (near != NULL)
+    message_add(r->m->log, P1003, &c->at, "unknown card *%s; did you mean *%s?",
+                c->name, near);
+  else
+    message_add(r->m->log, P1003, &c->at, "unknown card *%s", c->name);
+}
+
+static status read_card(reading *r) {
+  status st = OK;
+  _Alignas(16) char param[PARAM_SIZE], plugin_param[PARAM_SIZE];
+  const keyword *row = keyword_find(r->card->name);
+  if (row == NULL) {
+    unknown_card(r);
+    goto done;
+  }
+  if (row->where & LANGUAGE) goto done;
+  if (row->where & LATER) {
+    message_add(r->m->log, P2001, &r->card->at,
+                "*%s is not available in this version", r->card->name);
+    goto done;
+  }
+  if (!right_place(r, row)) goto done;
+  keyword_parameters(row, r, param, plugin_param);
+  if (!right_lines(r, row)) goto done;
+  TRY(row->apply(r));
+done:
+  return st;
+}
+
+/* Name of the job: the file without folder and .inp. */
+static status name_job(model *m) {
+  status st = OK;
+  const char *slash = strrchr(m->deck->file, '/');
+  const char *base = slash == NULL ? m->deck->file : slash + 1;
+  m->job = memory_text(base);
+  if (m->job == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of the job");
+  size_t length = strlen(m->job);
+  if (length > 4 && same_word(m->job + length - 4, ".inp"))
+    m->job[length - 4] = '\0';
+done:
+  return st;
+}
+
+static void report_absent(const reading *r) {
+  const model *m = r->m;
+  place at = {.file = m->deck->file};
+  if (!m->has_mesh)
+    message_add(m->log, P2015, &at, "the deck has no *MESH card");
+  if (m->n_section == 0)
+    message_add(m->log, P2016, &at,
+                "the deck has no *SOLID SECTION: nothing says what the "
+                "elements are made of");
+  if (m->n_step == 0)
+    message_add(m->log, P2017, &at, "the deck has no *STEP: nothing to solve");
+  if (r->in_step)
+    message_add(m->log, P2019, &m->steps[m->n_step - 1].at,
+                "this *STEP is not closed by *END STEP");
+}
+
+status model_from_deck(deck *d, message_log *log, model **out) {
+  status st = OK;
+  model *m = NULL;
+  NEW(m, 1);
+  *out = m;
+  m->deck = d;
+  m->log = log;
+  m->title = "";
+  TRY(name_job(m));
+  reading r = {.m = m, .material_id = -1};
+  for (int i = 0; i < d->n_card; ++i) {
+    r.card = &d->cards[i];
+    TRY(read_card(&r));
+  }
+  report_absent(&r);
+  TRY(model_resolve(m));
+  TRY(message_status(log, ERR_DECK));
+done:
+  return st;
+}
+
+static void table_release(value_table *t) {
+  memory_free(t->at);
+  memory_free(t->value);
+}
+
+void model_free(model *m) {
+  if (m == NULL) return;
+  for (int i = 0; i < m->n_amplitude; ++i)
+    table_release(&m->amplitudes[i].table);
+  for (int i = 0; i < m->n_contact; ++i) {
+    table_release(&m->contacts[i].position);
+    memory_free((void *)m->contacts[i].friction.param);
+  }
+  for (int i = 0; i < m->n_step; ++i) {
+    memory_free(m->steps[i].loads.item);
+    memory_free(m->steps[i].prints);
+    memory_free(m->steps[i].solver_param);
+  }
+  memory_free(m->supports.item);
+  memory_free(m->amplitudes);
+  memory_free(m->materials);
+  memory_free(m->sections);
+  memory_free(m->obstacles);
+  memory_free(m->moves);
+  memory_free(m->contacts);
+  memory_free(m->steps);
+  memory_free(m->elem_section);
+  memory_free(m->job);
+  memory_free(m);
+}
