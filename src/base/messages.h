@@ -14,7 +14,8 @@
     "protis --keywords lists the cards. Names match in full, never by "      \
     "their beginning.")                                                      \
   MESSAGE_LIST_MODEL(X)                                                      \
-  MESSAGE_LIST_MESH(X)
+  MESSAGE_LIST_MESH(X)                                                       \
+  MESSAGE_LIST_CONTACT(X)
 
 #define MESSAGE_LIST_MODEL(X)                                                \
   X(2001, ERROR, "card not available in this version",                       \
@@ -91,6 +92,38 @@
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \
     "Check the name and that gmsh opens the file.")
+
+#define MESSAGE_LIST_CONTACT(X)                                              \
+  X(4001, ERROR, "contact group is not made of boundary faces",              \
+    "GROUP= of *CONTACT names curves (2-D) or surfaces (3-D) on the boundary "\
+    "of a body, with an element on one side only.")                          \
+  X(4002, WARNING, "contact nodes fixed in the normal direction",            \
+    "*BOUNDARY already prescribes the motion towards the obstacle: these "   \
+    "nodes are left out of the contact.")                                    \
+  X(4003, NOTE, "contact nodes that the obstacle cannot reach",              \
+    "The line along the outward normal does not meet the obstacle: these "   \
+    "nodes are left out of the contact.")                                    \
+  X(4004, WARNING, "body penetrates the obstacle at the start",              \
+    "The negative gap is part of the problem and is closed in the first "    \
+    "increment. Move the body or the obstacle if that is not meant.")        \
+  X(4005, WARNING, "no friction where two contacts meet",                    \
+    "A node that touches two obstacles at once is held by both without "     \
+    "friction; the other nodes of the contact keep their law.")              \
+  X(4006, ERROR, "contacts of one node are not independent",                 \
+    "The normals of the contacts that share a node must differ in "          \
+    "direction. Give both contacts the same obstacle, or part their groups.")\
+  X(4007, ERROR, "gap is not a number",                                      \
+    "The expression of the gap or of the motion of the obstacle must have "  \
+    "a value at every contact node at the start.")                           \
+  X(4008, ERROR, "contact node without outward normal",                      \
+    "The faces around the node cancel, as at the tip of a fin without "      \
+    "thickness. Leave them out of the contact group.")                       \
+  X(4009, ERROR, "sphere off the axis of symmetry",                          \
+    "In an axisymmetric model the centre of a sphere is on the axis, r = 0.")\
+  X(4010, ERROR, "contact without a node",                                   \
+    "The body cannot touch the obstacle: check the group, where the "        \
+    "obstacle is, that the normal of a plane points towards the body, and "  \
+    "whether the body is inside or outside of a cylinder or sphere.")
 /* clang-format on */
 
 #endif

@@ -29,8 +29,9 @@ typedef struct friction_ops {
   size_t param_size;
   const option *options;
   /* Add the law's part for contact nodes node[0..n_node) to out (rows of the
-   * whole surface, all zero before). ERR_DECK if the value is negative or not
-   * a number at a node (message names node and time). */
+   * whole surface, all zero before); none where surface_is_corner. ERR_DECK if
+   * the value is negative or not a number at a node (message names node and
+   * time). */
   status (*limit)(const friction_card *card, const contact_surface *s,
                   int n_node, const int *node, double t, friction_limit *out);
 } friction_ops;
@@ -41,6 +42,22 @@ typedef struct friction_ops {
 #define FRICTION_EXTERN(name) extern const friction_ops name##_friction;
 FRICTION_LIST(FRICTION_EXTERN)
 extern const friction_ops *const friction_list[]; /* NULL at the end          */
-const friction_ops *friction_find(const char *name); /* or NULL               */
+/* The law of that name, case ignored, or NULL. */
+const friction_ops *friction_find(const char *name);
+
+/* All zero for a surface of n nodes. */
+status friction_limit_new(int n, friction_limit *out);
+void friction_limit_free(friction_limit *limit); /* accepts all-zero, NULL    */
+
+/* For the laws. */
+extern const option friction_no_options[]; /* a law without options           */
+
+/* Value of the card at contact node i, not negative; ERR_DECK otherwise. */
+status friction_value(const friction_card *card, const contact_surface *s,
+                      int i, double t, double *value);
+/* Put row k of part (columns: contact nodes) into row node[k] of B, which was
+ * empty. */
+status friction_add_rows(friction_limit *out, int n, const int *node,
+                         const sparse_rows *part);
 
 #endif

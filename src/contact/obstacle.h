@@ -10,7 +10,7 @@
 typedef enum {
   OBSTACLE_CONFORMING, /* follows the body: gap 0                             */
   OBSTACLE_PLANE,      /* point, outward normal (towards the body)            */
-  OBSTACLE_CYLINDER,   /* point of the axis, direction, radius                */
+  OBSTACLE_CYLINDER,   /* point of the axis, direction (3-D), radius          */
   OBSTACLE_SPHERE,     /* centre, radius                                      */
   OBSTACLE_GAP         /* gap along the normal as an expression of x y z t    */
 } obstacle_shape;
@@ -25,9 +25,21 @@ typedef struct obstacle {
   quantity motion[3]; /* displacement of the obstacle at time t, m           */
 } obstacle;
 
-/* Distance from x along the unit vector n to the obstacle at time t, negative
- * if x is inside it, HUGE_VAL if the line along n does not meet it. */
+/*
+ * Distance s from x along the unit vector n to the obstacle at time t, negative
+ * if x is inside it; HUGE_VAL if the line does not meet it (a plane met from
+ * behind or at a grazing angle, a sphere that is missed); NaN if an expression
+ * is.  dim 2: a cylinder or sphere is a circle in the plane of the model, also
+ * in an axisymmetric one (a sphere about the axis, else a ring).
+ *
+ * An obstacle only shifts, by d(t): CONFORMING gives n.d, GAP the expression
+ * at the point that d has brought beside x, x - d + (n.d) n, plus n.d.
+ */
 double obstacle_gap(const obstacle *o, int dim, const double *x,
                     const double *n, double t);
+/* Shift d[3] of the obstacle at time t, m. */
+void obstacle_motion(const obstacle *o, double t, double *d);
+/* 1 if the gap can change with time. */
+int obstacle_moves(const obstacle *o);
 
 #endif

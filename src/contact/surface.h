@@ -11,11 +11,13 @@
 typedef struct contact_surface {
   int dim, n;
   int *node_id;    /* [n] mesh node, ascending                                */
+  size_t *node_no; /* [n] its number in the mesh file                         */
   int *contact_id; /* [n] the *CONTACT the normal belongs to                  */
   int *side_id;    /* [n*(dim-1)] *CONTACT of a second (third) obstacle, -1   */
   double *x;       /* [dim*n] m                                               */
-  double *area;    /* [n] tributary area (integral of the P1 function), m2;
-                      2-D: times thickness; axisymmetric: whole turn          */
+  double *area;    /* [n] tributary area (integral of the P1 function over the
+                      faces of contact_id), m2; 2-D: times thickness;
+                      axisymmetric: whole turn                                */
   double *frame;   /* [dim*dim*n] rows n, t1[, t2]: a = frame u; orthonormal
                       except where side_id >= 0 (then that row is the normal
                       of the second obstacle)                                 */
@@ -30,6 +32,7 @@ typedef struct contact_pair {
   const char *name;
   const mesh_group *group;
   const obstacle *support;
+  int friction; /* 1: its law has a sliding limit (for a warning only)    */
   place at;
 } contact_pair;
 
@@ -43,15 +46,32 @@ typedef struct surface_input {
   int axisymmetric;
 } surface_input;
 
-/* Build it; the normal of a node with fixed components is taken orthogonal to
- * them. Nodes fixed in the normal direction are left out with a warning;
- * nodes that the obstacle cannot reach along the normal are left out. */
+/*
+ * Build it. The normal of a node is the sum of the normals of its faces in the
+ * group weighted with its share of their area (the gradient of the volume),
+ * taken orthogonal to the components that are fixed there; those become
+ * tangents, flagged in held.
+ *
+ * Left out, and said in the log: nodes fixed in the normal direction, nodes
+ * that an obstacle at rest cannot reach along the normal.  A node in the groups
+ * of two contacts has the normal of the first and, as a side, of the second;
+ * where both have the same obstacle and the surface is smooth there, it belongs
+ * to the first with the faces of both.
+ *
+ * ERR_DECK with errors in the log; ERR_MEMORY.  *out is NULL on failure.
+ */
 status surface_build(const surface_input *in, message_log *log,
                      contact_surface **out);
-/* gap[n] at time t; motion[dim*n] (or NULL) displacement of the obstacle at
- * the node since time 0 in the contact frame, m. side_gap[n*(dim-1)]. */
-void surface_gap(const contact_surface *s, const surface_input *in, double t,
-                 double *gap, double *side_gap, double *motion);
-void surface_free(contact_surface *s);
+/*
+ * gap[n] at time t, m: the size of the mesh where the obstacle is out of
+ * reach at that time.  side_gap[n*(dim-1)] (or NULL): HUGE_VAL without a second
+ * obstacle.  motion[dim*n] (or NULL): displacement of the obstacle at the node
+ * since time 0 in the contact frame, m.  ERR_DECK if a gap is not a number.
+ */
+status surface_gap(const contact_surface *s, const surface_input *in, double t,
+                   double *gap, double *side_gap, double *motion);
+/* 1 if node i touches a second obstacle: it has no friction. */
+int surface_is_corner(const contact_surface *s, int i);
+void surface_free(contact_surface *s); /* accepts NULL */
 
 #endif

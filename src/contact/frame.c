@@ -1,0 +1,110 @@
+/*
+ * Contact frames: tangents, fixed directions, oblique frames of corners.
+ */
+#include "contact/frame.h"
+
+#include <math.h>
+
+/* Sine of the angle below which normals count as dependent: the condition of
+ * the oblique frame is its inverse. */
+static const double dependent_sine = 1e-3;
+
+static double dot(int dim, const double *a, const double *b) {
+  double s = 0;
+  for (int c = 0; c < dim; ++c) s += a[c] * b[c];
+  return s;
+}
+
+static void cross(const double *a, const double *b, double *c) {
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double normalise(int dim, double *v) {
+  double length = sqrt(dot(dim, v, v));
+  for (int c = 0; c < dim; ++c) v[c] = length > 0 ? v[c] / length : 0.0;
+  return length;
+}
+
+double frame_project(int dim, unsigned fixed, double *v) {
+  double before = normalise(dim, v);
+  if (before <= 0) return 0;
+  for (int c = 0; c < dim; ++c)
+    if (fixed >> c & 1) v[c] = 0;
+  return normalise(dim, v);
+}
+
+/* Tangents of n: in 2-D n turned by 90 degrees; in 3-D x (or y, where n is
+ * near x) projected, and the cross product. */
+static void add_tangents(int dim, double *frame) {
+  const double *n = frame;
+  double *t1 = frame + dim;
+  if (dim == 2) {
+    t1[0] = -n[1];
+    t1[1] = n[0];
+    return;
+  }
+  int axis = fabs(n[0]) > 0.9;
+  for (int c = 0; c < dim; ++c) t1[c] = (c == axis) - n[axis] * n[c];
+  normalise(dim, t1);
+  cross(n, t1, frame + 2 * dim);
+}
+
+/* Turn the tangents so that the one nearest to axis c is that axis; its row. */
+static int align_tangent(int dim, int c, double *frame) {
+  if (dim == 2) return 1;
+  double *t1 = frame + dim, *t2 = frame + 2 * dim;
+  int row = fabs(t1[c]) >= fabs(t2[c]) ? 1 : 2;
+  double *held = frame + row * dim, sign = held[c] < 0 ? -1.0 : 1.0;
+  for (int k = 0; k < dim; ++k) held[k] = k == c ? sign : 0.0;
+  if (row == 1)
+    cross(frame, t1, t2);
+  else
+    cross(t2, frame, t1);
+  return row;
+}
+
+static double determinant(int dim, const double *m) {
+  if (dim == 2) return m[0] * m[3] - m[1] * m[2];
+  double c[3];
+  cross(m + 3, m + 6, c);
+  return dot(3, m, c);
+}
+
+int frame_complete(int dim, int n_normal, unsigned fixed, double *frame,
+                   unsigned char *held) {
+  for (int k = 0; k < dim; ++k) held[k] = 0;
+  if (n_normal == 1) {
+    add_tangents(dim, frame);
+    for (int c = 0; c < dim; ++c)
+      if (fixed >> c & 1) held[align_tangent(dim, c, frame)] = 1;
+    return 0;
+  }
+  if (n_normal < dim) {
+    cross(frame, frame + dim, frame + 2 * dim);
+    if (normalise(dim, frame + 2 * dim) < dependent_sine) return -1;
+    held[2] = fixed != 0;
+  }
+  return fabs(determinant(dim, frame)) < dependent_sine ? -1 : 0;
+}
+
+void frame_invert(int dim, int orthonormal, const double *frame,
+                  double *basis) {
+  if (orthonormal) {
+    for (int k = 0; k < dim * dim; ++k) basis[k] = frame[k];
+    return;
+  }
+  double det = determinant(dim, frame);
+  if (dim == 2) {
+    basis[0] = frame[3] / det;
+    basis[1] = -frame[2] / det;
+    basis[2] = -frame[1] / det;
+    basis[3] = frame[0] / det;
+    return;
+  }
+  for (int k = 0; k < 3; ++k) {
+    cross(frame + 3 * ((k + 1) % 3), frame + 3 * ((k + 2) % 3), basis + 3 * k);
+    for (int c = 0; c < 3; ++c) basis[3 * k + c] /= det;
+  }
+}

@@ -1,0 +1,104 @@
+/*
+ * The list of friction laws, and what they share: the limit g = g0 + B p.
+ */
+#include "contact/friction.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+#define FRICTION_ROW(name) &name##_friction,
+const friction_ops *const friction_list[] = {FRICTION_LIST(FRICTION_ROW) NULL};
+const option friction_no_options[] = {OPTION_END};
+
+const friction_ops *friction_find(const char *name) {
+  for (int k = 0; friction_list[k] != NULL; ++k)
+    if (strcasecmp(friction_list[k]->name, name) == 0) return friction_list[k];
+  return NULL;
+}
+
+status friction_limit_new(int n, friction_limit *out) {
+  status st = OK;
+  memset(out, 0, sizeof *out);
+  NEW(out->g0, n);
+done:
+  return st;
+}
+
+static void free_rows(sparse_rows *rows) {
+  memory_free(rows->start);
+  memory_free(rows->col);
+  memory_free(rows->val);
+}
+
+void friction_limit_free(friction_limit *limit) {
+  if (limit == NULL) return;
+  memory_free(limit->g0);
+  free_rows(&limit->B);
+  memset(limit, 0, sizeof *limit);
+}
+
+static void coordinates(const contact_surface *s, int i, double *x) {
+  for (int c = 0; c < 3; ++c) x[c] = c < s->dim ? s->x[s->dim * i + c] : 0.0;
+}
+
+status friction_value(const friction_card *card, const contact_surface *s,
+                      int i, double t, double *value) {
+  status st = OK;
+  double x[3];
+  coordinates(s, i, x);
+  *value = quantity_value(&card->value, x, t);
+  if (!isfinite(*value) || *value < 0)
+    FAIL(ERR_DECK,
+         "*FRICTION: value %g at node %zu (%g, %g, %g), time %g; expected a "
+         "number that is not negative",
+         *value, s->node_no[i], x[0], x[1], x[2], t);
+done:
+  return st;
+}
+
+/* Entries of row i once the rows of part are in place. */
+static int row_length(const sparse_rows *old, const sparse_rows *part, int row,
+                      int i) {
+  int n = old->start == NULL ? 0 : old->start[i + 1] - old->start[i];
+  return n + (row < 0 ? 0 : part->start[row + 1] - part->start[row]);
+}
+
+static void copy_row(const sparse_rows *from, int row, sparse_rows *to, int i) {
+  int n = from->start[row + 1] - from->start[row];
+  for (int k = 0; k < n; ++k) {
+    to->col[to->start[i] + k] = from->col[from->start[row] + k];
+    to->val[to->start[i] + k] = from->val[from->start[row] + k];
+  }
+}
+
+status friction_add_rows(friction_limit *out, int n, const int *node,
+                         const sparse_rows *part) {
+  status st = OK;
+  const sparse_rows *old = &out->B;
+  sparse_rows all = {.n = n};
+  int *row_of = NULL;
+  NEW(row_of, n);
+  for (int i = 0; i < n; ++i) row_of[i] = -1;
+  for (int k = 0; k < part->n; ++k) row_of[node[k]] = k;
+  NEW(all.start, n + 1);
+  for (int i = 0; i < n; ++i)
+    all.start[i + 1] = all.start[i] + row_length(old, part, row_of[i], i);
+  NEW(all.col, all.start[n]);
+  NEW(all.val, all.start[n]);
+  for (int i = 0; i < n; ++i) {
+    if (row_of[i] >= 0)
+      copy_row(part, row_of[i], &all, i);
+    else if (old->start != NULL)
+      copy_row(old, i, &all, i);
+  }
+  free_rows(&out->B);
+  out->B = all;
+  memset(&all, 0, sizeof all);
+done:
+  free_rows(&all);
+  memory_free(row_of);
+  return st;
+}

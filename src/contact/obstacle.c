@@ -1,0 +1,102 @@
+/*
+ * Distance from a point to a rigid obstacle along a line.
+ *
+ *   PLANE             (x + s n - p).N = 0
+ *   CYLINDER, SPHERE  |y + s m|^2 = R^2, with y = x - p and m = n, in 3-D for a
+ *                     cylinder both without their part along the axis
+ */
+#include "contact/obstacle.h"
+
+#include <math.h>
+#include <stddef.h>
+
+/* Sine of the angle between line and plane (or line and axis) below which the
+ * line does not meet the obstacle. */
+static const double grazing_sine = 1e-6;
+
+enum { TIME_VARIABLE = 8 };
+
+static double dot(int dim, const double *a, const double *b) {
+  double s = 0;
+  for (int c = 0; c < dim; ++c) s += a[c] * b[c];
+  return s;
+}
+
+static double plane_gap(const obstacle *o, int dim, const double *y,
+                        const double *n) {
+  double approach = -dot(dim, n, o->direction);
+  return approach < grazing_sine ? HUGE_VAL
+                                 : dot(dim, y, o->direction) / approach;
+}
+
+/*
+ * Root of a s^2 + 2 b s + c = 0 where the line enters (outside) or leaves
+ * (inside) the circle, in the form without cancellation. A point on the wrong
+ * side of the circle (outside: c < 0) has passed it and gets s < 0.
+ */
+static double circle_gap(double a, double b, double c, int inside) {
+  double discriminant = b * b - a * c;
+  if (isnan(discriminant)) return NAN;
+  if (a < grazing_sine * grazing_sine || discriminant < 0) return HUGE_VAL;
+  double root = sqrt(discriminant);
+  if (inside) {
+    if (b > 0) return -c / (b + root);
+    return c > 0 ? HUGE_VAL : (root - b) / a;
+  }
+  if (b < 0) return c / (root - b);
+  return c < 0 ? -(b + root) / a : HUGE_VAL;
+}
+
+static double round_gap(const obstacle *o, int dim, const double *y,
+                        const double *n) {
+  double across[3] = {0, 0, 0}, m[3] = {0, 0, 0};
+  double y_axis = 0, n_axis = 0;
+  if (o->shape == OBSTACLE_CYLINDER && dim == 3) {
+    y_axis = dot(3, y, o->direction);
+    n_axis = dot(3, n, o->direction);
+  }
+  for (int c = 0; c < dim; ++c) {
+    across[c] = y[c] - y_axis * o->direction[c];
+    m[c] = n[c] - n_axis * o->direction[c];
+  }
+  double distance = sqrt(dot(dim, across, across));
+  return circle_gap(dot(dim, m, m), dot(dim, across, m),
+                    (distance - o->radius) * (distance + o->radius), o->inside);
+}
+
+void obstacle_motion(const obstacle *o, double t, double *d) {
+  for (int c = 0; c < 3; ++c) d[c] = quantity_value(&o->motion[c], o->point, t);
+}
+
+int obstacle_moves(const obstacle *o) {
+  const expression *formulas[4] = {o->gap.formula, o->motion[0].formula,
+                                   o->motion[1].formula, o->motion[2].formula};
+  for (int k = o->shape == OBSTACLE_GAP ? 0 : 1; k < 4; ++k)
+    if (formulas[k] != NULL &&
+        expression_variables(formulas[k]) & TIME_VARIABLE)
+      return 1;
+  return 0;
+}
+
+double obstacle_gap(const obstacle *o, int dim, const double *x,
+                    const double *n, double t) {
+  double d[3], y[3] = {0, 0, 0}, beside[3] = {0, 0, 0};
+  obstacle_motion(o, t, d);
+  double along = dot(dim, n, d);
+  for (int c = 0; c < dim; ++c) {
+    y[c] = x[c] - d[c] - o->point[c];
+    beside[c] = x[c] - (d[c] - along * n[c]);
+  }
+  switch ((obstacle_shape)o->shape) {
+    case OBSTACLE_CONFORMING:
+      return along;
+    case OBSTACLE_PLANE:
+      return plane_gap(o, dim, y, n);
+    case OBSTACLE_CYLINDER:
+    case OBSTACLE_SPHERE:
+      return round_gap(o, dim, y, n);
+    case OBSTACLE_GAP:
+      return quantity_value(&o->gap, beside, t) + along;
+  }
+  return NAN;
+}

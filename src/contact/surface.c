@@ -1,0 +1,459 @@
+/*
+ * The contact surface from the faces of the contact groups.
+ *
+ * Each node of each contact is a candidate: the sums over its faces of
+ *   w = integral of its P1 function over the face,   area = sum w,
+ *   normal ~ sum w n(face)   (the gradient of the volume with the node).
+ * Candidates of one node are merged (one obstacle, smooth surface) or become
+ * the rows of one frame (a corner on two obstacles).
+ */
+#include "contact/surface.h"
+
+#include "base/memory.h"
+#include "contact/frame.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Part of the unit normal that must be left when the fixed components are
+ * taken out of it. */
+static const double fixed_sine = 1e-3;
+/* Normals of two contacts on one obstacle nearer than this (45 degrees) are
+ * one smooth surface. */
+static const double smooth_cosine = 0.70710678;
+/* Depth of penetration over the size of the mesh that is rounding. */
+static const double rounding_depth = 1e-9;
+
+typedef struct candidate {
+  int node_id, pair_id;
+  int left_out;
+  double normal[3]; /* [dim] sum of w n, then the unit normal               */
+  double area;      /* m2                                                   */
+  double gap;       /* at time 0, m                                         */
+} candidate;
+
+/* What is said once per contact. */
+typedef struct tally {
+  int n_fixed, n_unreached, n_corner, n_kept; /* nodes                      */
+  int fixed_node, corner_node;                /* the first of them          */
+  int deep_node;
+  double depth; /* deepest penetration, m                                   */
+} tally;
+
+typedef struct builder {
+  const surface_input *in;
+  message_log *log;
+  int dim, n;
+  candidate *list; /* [n] by node, then by contact                          */
+  tally *tallies;  /* [n_pair]                                              */
+} builder;
+
+/* Position of a node as text for a message. */
+typedef struct node_text {
+  char text[128];
+} node_text;
+
+static node_text describe(const mesh *m, int node_id) {
+  node_text d;
+  const double *x = &m->x[(size_t)m->dim * (size_t)node_id];
+  if (m->dim == 2)
+    snprintf(d.text, sizeof d.text, "node %zu at (%g, %g)", m->node_no[node_id],
+             x[0], x[1]);
+  else
+    snprintf(d.text, sizeof d.text, "node %zu at (%g, %g, %g)",
+             m->node_no[node_id], x[0], x[1], x[2]);
+  return d;
+}
+
+/* Integrals w[dim] of the P1 functions of the nodes of a face, times thickness
+ * or once around the axis. */
+static void face_shares(const surface_input *in, int face_id, double measure,
+                        double *w) {
+  const mesh *m = in->mesh;
+  const int *node = &m->face[m->dim * face_id];
+  double weight = measure * in->face_weight[face_id];
+  for (int k = 0; k < m->dim; ++k) w[k] = weight / m->dim;
+  if (in->axisymmetric) {
+    double r0 = m->x[2 * (size_t)node[0]], r1 = m->x[2 * (size_t)node[1]];
+    double around = 2 * acos(-1.0) * weight / 6;
+    w[0] = around * (2 * r0 + r1);
+    w[1] = around * (r0 + 2 * r1);
+  }
+}
+
+/* 0 if the group consists of boundary faces; else a message and -1. */
+static int check_group(const builder *b, const contact_pair *p) {
+  const mesh *m = b->in->mesh;
+  const mesh_group *g = p->group;
+  if (g->dim != m->dim - 1 || g->n_item == 0) {
+    message_add(b->log, P4001, &p->at,
+                "*CONTACT %s: group %s has dimension %d, expected faces of "
+                "dimension %d",
+                p->name, g->name, g->dim, m->dim - 1);
+    return -1;
+  }
+  for (int k = 0; k < g->n_item; ++k) {
+    int face_id = g->item_id[k];
+    if (m->face_other[face_id] < 0) continue;
+    message_add(b->log, P4001, &p->at,
+                "*CONTACT %s: a face of group %s lies inside the body, at %s",
+                p->name, g->name, describe(m, m->face[m->dim * face_id]).text);
+    return -1;
+  }
+  return 0;
+}
+
+static void check_axis(const builder *b, const contact_pair *p) {
+  const obstacle *o = p->support;
+  if (b->in->axisymmetric && o->shape == OBSTACLE_SPHERE && o->point[0] != 0)
+    message_add(b->log, P4009, &p->at,
+                "*CONTACT %s: centre of sphere %s at r = %g, expected 0",
+                p->name, o->name, o->point[0]);
+}
+
+/* Add the faces of one contact to its candidates first[0..group->n_node);
+ * index[node_id] receives their place. */
+static void add_faces(const builder *b, int pair_id, candidate *first,
+                      int *index) {
+  const surface_input *in = b->in;
+  const mesh *m = in->mesh;
+  const mesh_group *g = in->pairs[pair_id].group;
+  for (int k = 0; k < g->n_node; ++k) {
+    index[g->node_id[k]] = k;
+    first[k].node_id = g->node_id[k];
+    first[k].pair_id = pair_id;
+  }
+  for (int k = 0; k < g->n_item; ++k) {
+    double normal[3], w[3];
+    int face_id = g->item_id[k];
+    face_shares(in, face_id, mesh_face_normal(m, face_id, normal), w);
+    for (int j = 0; j < b->dim; ++j) {
+      candidate *c = &first[index[m->face[b->dim * face_id + j]]];
+      c->area += w[j];
+      for (int d = 0; d < b->dim; ++d) c->normal[d] += w[j] * normal[d];
+    }
+  }
+}
+
+/* Order by node; the contacts of a node keep their order. */
+static status sort_candidates(builder *b) {
+  status st = OK;
+  int n_node = b->in->mesh->n_node;
+  int *start = NULL;
+  candidate *sorted = NULL;
+  NEW(start, n_node + 1);
+  NEW(sorted, b->n);
+  for (int i = 0; i < b->n; ++i) ++start[b->list[i].node_id + 1];
+  for (int k = 0; k < n_node; ++k) start[k + 1] += start[k];
+  for (int i = 0; i < b->n; ++i)
+    sorted[start[b->list[i].node_id]++] = b->list[i];
+  memory_free(b->list);
+  b->list = sorted;
+  sorted = NULL;
+done:
+  memory_free(start);
+  memory_free(sorted);
+  return st;
+}
+
+static status collect(builder *b) {
+  status st = OK;
+  const surface_input *in = b->in;
+  int *index = NULL, n = 0;
+  NEW(b->tallies, in->n_pair);
+  NEW(index, in->mesh->n_node);
+  for (int p = 0; p < in->n_pair; ++p) n += in->pairs[p].group->n_node;
+  NEW(b->list, n);
+  for (int p = 0; p < in->n_pair; ++p) {
+    check_axis(b, &in->pairs[p]);
+    if (check_group(b, &in->pairs[p]) != 0) continue;
+    add_faces(b, p, &b->list[b->n], index);
+    b->n += in->pairs[p].group->n_node;
+  }
+  TRY(message_status(b->log, ERR_DECK));
+  TRY(sort_candidates(b));
+done:
+  memory_free(index);
+  return st;
+}
+
+static double dot(int dim, const double *a, const double *b) {
+  double s = 0;
+  for (int c = 0; c < dim; ++c) s += a[c] * b[c];
+  return s;
+}
+
+/* Do two contacts of one node belong to one smooth surface? */
+static int is_smooth(const builder *b, const candidate *x, const candidate *y) {
+  const contact_pair *p = b->in->pairs;
+  double cosine = dot(b->dim, x->normal, y->normal) /
+                  sqrt(dot(b->dim, x->normal, x->normal) *
+                       dot(b->dim, y->normal, y->normal));
+  return p[x->pair_id].support == p[y->pair_id].support &&
+         cosine > smooth_cosine;
+}
+
+/* Candidates first..end are those of one node: move the faces of the later ones
+ * to an earlier one with the same obstacle. */
+static void merge_smooth(builder *b, int first, int end) {
+  for (int i = first; i < end; ++i)
+    for (int j = i + 1; j < end && !b->list[i].left_out; ++j) {
+      candidate *x = &b->list[i], *y = &b->list[j];
+      if (y->left_out || !is_smooth(b, x, y)) continue;
+      for (int c = 0; c < b->dim; ++c) x->normal[c] += y->normal[c];
+      x->area += y->area;
+      y->left_out = 1;
+      ++b->tallies[y->pair_id].n_kept;
+    }
+}
+
+/* Unit normal orthogonal to the fixed components, or left out. */
+static void orient(builder *b, candidate *c) {
+  const contact_pair *p = &b->in->pairs[c->pair_id];
+  tally *t = &b->tallies[c->pair_id];
+  if (!(dot(b->dim, c->normal, c->normal) > 0)) {
+    message_add(b->log, P4008, &p->at, "*CONTACT %s: no outward normal at %s",
+                p->name, describe(b->in->mesh, c->node_id).text);
+    c->left_out = 1;
+    return;
+  }
+  unsigned fixed = b->in->fixed[c->node_id];
+  if (frame_project(b->dim, fixed, c->normal) > fixed_sine) return;
+  c->left_out = 1;
+  if (t->n_fixed++ == 0) t->fixed_node = c->node_id;
+}
+
+/* Gap at time 0, or left out. */
+static void measure(builder *b, candidate *c) {
+  const mesh *m = b->in->mesh;
+  const contact_pair *p = &b->in->pairs[c->pair_id];
+  tally *t = &b->tallies[c->pair_id];
+  const double *x = &m->x[(size_t)b->dim * (size_t)c->node_id];
+  c->gap = obstacle_gap(p->support, b->dim, x, c->normal, 0);
+  if (isnan(c->gap) || c->gap == -HUGE_VAL) {
+    message_add(b->log, P4007, &p->at, "*CONTACT %s: gap is %g at %s, time 0",
+                p->name, c->gap, describe(m, c->node_id).text);
+    c->left_out = 1;
+  } else if (c->gap == HUGE_VAL) {
+    if (obstacle_moves(p->support)) {
+      c->gap = m->size;
+    } else {
+      c->left_out = 1;
+      ++t->n_unreached;
+    }
+  } else if (-c->gap > t->depth) {
+    t->depth = -c->gap;
+    t->deep_node = c->node_id;
+  }
+}
+
+/* Move the candidates of one node that stay to kept[]; their number. */
+static int gather(builder *b, int first, int end, const candidate **kept) {
+  int n = 0;
+  merge_smooth(b, first, end);
+  for (int i = first; i < end; ++i) {
+    candidate *c = &b->list[i];
+    if (!c->left_out) orient(b, c);
+    if (!c->left_out) measure(b, c);
+    if (c->left_out) continue;
+    ++b->tallies[c->pair_id].n_kept;
+    if (n < b->dim) kept[n] = c;
+    ++n;
+  }
+  return n;
+}
+
+/* The frame of contact node i from its n_kept contacts. */
+static void set_frame(builder *b, contact_surface *s, int i, int n_kept,
+                      const candidate *const *kept) {
+  int dim = b->dim, node_id = kept[0]->node_id, bad = n_kept > dim;
+  double *frame = &s->frame[dim * dim * i];
+  unsigned fixed = b->in->fixed[node_id] & ((1u << dim) - 1);
+  for (int k = 0; k < n_kept && k < dim; ++k)
+    memcpy(frame + dim * k, kept[k]->normal, (size_t)dim * sizeof *frame);
+  bad = bad || frame_complete(dim, n_kept, fixed, frame, &s->held[dim * i]) < 0;
+  if (bad) {
+    const contact_pair *p = &b->in->pairs[kept[1]->pair_id];
+    message_add(b->log, P4006, &p->at,
+                "*CONTACT %s: its normal depends on that of *CONTACT %s at %s",
+                p->name, b->in->pairs[kept[0]->pair_id].name,
+                describe(b->in->mesh, node_id).text);
+  }
+  frame_invert(dim, n_kept == 1 || bad, frame, &s->basis[dim * dim * i]);
+}
+
+/* A corner has no friction: noted for each of its contacts. */
+static void note_corner(builder *b, int n_kept, const candidate *const *kept) {
+  int friction = 0;
+  for (int k = 0; k < n_kept && k < b->dim; ++k)
+    friction |= b->in->pairs[kept[k]->pair_id].friction;
+  tally *t = &b->tallies[kept[0]->pair_id];
+  if (n_kept > 1 && friction && t->n_corner++ == 0)
+    t->corner_node = kept[0]->node_id;
+}
+
+static void set_node(builder *b, contact_surface *s, int n_kept,
+                     const candidate *const *kept) {
+  const mesh *m = b->in->mesh;
+  int dim = b->dim, i = s->n++;
+  const candidate *c = kept[0];
+  s->node_id[i] = c->node_id;
+  s->node_no[i] = m->node_no[c->node_id];
+  s->contact_id[i] = c->pair_id;
+  for (int k = 0; k < dim - 1; ++k)
+    s->side_id[i * (dim - 1) + k] = k + 1 < n_kept ? kept[k + 1]->pair_id : -1;
+  for (int k = 0; k < dim; ++k)
+    s->x[dim * i + k] = m->x[(size_t)dim * (size_t)c->node_id + (size_t)k];
+  s->area[i] = c->area;
+  s->gap0[i] = c->gap;
+  set_frame(b, s, i, n_kept, kept);
+  note_corner(b, n_kept, kept);
+}
+
+static void say(const builder *b, int pair_id) {
+  const contact_pair *p = &b->in->pairs[pair_id];
+  const tally *t = &b->tallies[pair_id];
+  const mesh *m = b->in->mesh;
+  if (t->n_fixed > 0)
+    message_add(b->log, P4002, &p->at,
+                "*CONTACT %s: nodes of group %s are also fixed in the normal "
+                "direction and left out of contact: %d, the first is %s",
+                p->name, p->group->name, t->n_fixed,
+                describe(m, t->fixed_node).text);
+  if (t->n_unreached > 0)
+    message_add(b->log, P4003, &p->at,
+                "*CONTACT %s: %d nodes cannot reach obstacle %s along their "
+                "normal and are left out",
+                p->name, t->n_unreached, p->support->name);
+  if (t->depth > rounding_depth * m->size)
+    message_add(b->log, P4004, &p->at,
+                "*CONTACT %s: deepest penetration of obstacle %s is %.4g, %.2g "
+                "of the size of the mesh, at %s",
+                p->name, p->support->name, t->depth, t->depth / m->size,
+                describe(m, t->deep_node).text);
+  if (t->n_corner > 0)
+    message_add(b->log, P4005, &p->at,
+                "*CONTACT %s: %d nodes touch a second obstacle and have no "
+                "friction, the first is %s",
+                p->name, t->n_corner, describe(m, t->corner_node).text);
+  if (t->n_kept == 0)
+    message_add(b->log, P4010, &p->at,
+                "*CONTACT %s: no node of group %s can touch obstacle %s",
+                p->name, p->group->name, p->support->name);
+}
+
+static status surface_new(int dim, int n, contact_surface **out) {
+  status st = OK;
+  contact_surface *s = NULL;
+  NEW(s, 1);
+  s->dim = dim;
+  NEW(s->node_id, n);
+  NEW(s->node_no, n);
+  NEW(s->contact_id, n);
+  NEW(s->side_id, n * (dim - 1));
+  NEW(s->x, n * dim);
+  NEW(s->area, n);
+  NEW(s->frame, n * dim * dim);
+  NEW(s->basis, n * dim * dim);
+  NEW(s->gap0, n);
+  NEW(s->held, n * dim);
+  *out = s;
+  s = NULL;
+done:
+  surface_free(s);
+  return st;
+}
+
+status surface_build(const surface_input *in, message_log *log,
+                     contact_surface **out) {
+  status st = OK;
+  builder b = {.in = in, .log = log, .dim = in->mesh->dim};
+  contact_surface *s = NULL;
+  *out = NULL;
+  TRY(collect(&b));
+  TRY(surface_new(b.dim, b.n, &s));
+  for (int first = 0, end; first < b.n; first = end) {
+    const candidate *kept[3];
+    for (end = first + 1; end < b.n; ++end)
+      if (b.list[end].node_id != b.list[first].node_id) break;
+    int n_kept = gather(&b, first, end, kept);
+    if (n_kept > 0) set_node(&b, s, n_kept, kept);
+  }
+  for (int p = 0; p < in->n_pair; ++p) say(&b, p);
+  TRY(message_status(log, ERR_DECK));
+  *out = s;
+  s = NULL;
+done:
+  surface_free(s);
+  memory_free(b.list);
+  memory_free(b.tallies);
+  return st;
+}
+
+int surface_is_corner(const contact_surface *s, int i) {
+  return s->side_id[i * (s->dim - 1)] >= 0;
+}
+
+/* Gap of contact node i along row k of its frame; reach where the obstacle is
+ * not met. */
+static status row_gap(const contact_surface *s, const contact_pair *p, int i,
+                      int k, double t, double reach, double *gap) {
+  status st = OK;
+  int dim = s->dim;
+  *gap = obstacle_gap(p->support, dim, &s->x[dim * i],
+                      &s->frame[dim * dim * i + dim * k], t);
+  if (isnan(*gap) || *gap == -HUGE_VAL)
+    FAIL(ERR_DECK, "*CONTACT %s: gap is %g at node %zu, time %g", p->name, *gap,
+         s->node_no[i], t);
+  if (*gap == HUGE_VAL) *gap = reach;
+done:
+  return st;
+}
+
+/* Shift of the obstacles since time 0 along the rows of the frame of node i. */
+static void row_motion(const contact_surface *s, const contact_pair *pairs,
+                       int i, double t, double *motion) {
+  int dim = s->dim;
+  for (int k = 0; k < dim; ++k) {
+    int side = k > 0 ? s->side_id[i * (dim - 1) + k - 1] : -1;
+    const obstacle *o = pairs[side >= 0 ? side : s->contact_id[i]].support;
+    double now[3], start[3];
+    obstacle_motion(o, t, now);
+    obstacle_motion(o, 0, start);
+    for (int c = 0; c < dim; ++c) now[c] -= start[c];
+    motion[k] = dot(dim, &s->frame[dim * dim * i + dim * k], now);
+  }
+}
+
+status surface_gap(const contact_surface *s, const surface_input *in, double t,
+                   double *gap, double *side_gap, double *motion) {
+  status st = OK;
+  const contact_pair *pairs = in->pairs;
+  for (int i = 0; i < s->n; ++i) {
+    TRY(row_gap(s, &pairs[s->contact_id[i]], i, 0, t, in->mesh->size, &gap[i]));
+    for (int k = 1; k < s->dim && side_gap != NULL; ++k) {
+      int at = i * (s->dim - 1) + k - 1, side = s->side_id[at];
+      side_gap[at] = HUGE_VAL;
+      if (side < 0) continue;
+      TRY(row_gap(s, &pairs[side], i, k, t, HUGE_VAL, &side_gap[at]));
+    }
+    if (motion != NULL) row_motion(s, pairs, i, t, &motion[s->dim * i]);
+  }
+done:
+  return st;
+}
+
+void surface_free(contact_surface *s) {
+  if (s == NULL) return;
+  memory_free(s->node_id);
+  memory_free(s->node_no);
+  memory_free(s->contact_id);
+  memory_free(s->side_id);
+  memory_free(s->x);
+  memory_free(s->area);
+  memory_free(s->frame);
+  memory_free(s->basis);
+  memory_free(s->gap0);
+  memory_free(s->held);
+  memory_free(s);
+}
