@@ -8,7 +8,6 @@
 #include "contact/obstacle.h"
 
 #include <math.h>
-#include <stddef.h>
 
 /* Sine of the angle between line and plane (or line and axis) below which the
  * line does not meet the obstacle. */
@@ -69,13 +68,10 @@ void obstacle_motion(const obstacle *o, double t, double *d) {
 }
 
 int obstacle_moves(const obstacle *o) {
-  const expression *formulas[4] = {o->gap.formula, o->motion[0].formula,
-                                   o->motion[1].formula, o->motion[2].formula};
-  for (int k = o->shape == OBSTACLE_GAP ? 0 : 1; k < 4; ++k)
-    if (formulas[k] != NULL &&
-        expression_variables(formulas[k]) & TIME_VARIABLE)
-      return 1;
-  return 0;
+  unsigned variables = 0;
+  for (int c = 0; c < 3; ++c) variables |= quantity_variables(&o->motion[c]);
+  if (o->shape == OBSTACLE_GAP) variables |= quantity_variables(&o->gap);
+  return (variables & TIME_VARIABLE) != 0;
 }
 
 double obstacle_gap(const obstacle *o, int dim, const double *x,
