@@ -1,0 +1,183 @@
+/*
+ * The loop over steps and increments: time grid, step cutting with exact
+ * rollback, verdict of each increment, hand-over to the outputs.
+ */
+#include "history/run.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { DEEPEST_CUT = 30 };
+
+/* End of piece "part" of 2^level pieces of increment number i (from 0) of n;
+ * computed from the ends of the step, so that no error adds up and the last
+ * one is the end of the step itself. */
+static double piece_end(const step *s, long n, long i, long part, int level) {
+  double pieces = ldexp(1.0, level);
+  double done = (double)i + (double)part / pieces;
+  if (i == n - 1 && part == (long)pieces) return s->start + s->total;
+  if (i < n - 1) return s->start + done * s->dt;
+  /* The last increment is what is left of the step. */
+  double left = s->total - (double)(n - 1) * s->dt;
+  return s->start + (double)(n - 1) * s->dt + (double)part / pieces * left;
+}
+
+static long increments_of(const step *s) {
+  double n = s->total / s->dt;
+  long whole = (long)floor(n + 0.5);
+  /* A step that is a multiple of dt up to rounding has no sliver at the end. */
+  if (whole >= 1 && fabs(n - (double)whole) <= 1e-9 * n) return whole;
+  return (long)ceil(n);
+}
+
+/* What the outputs see of an increment. */
+static state make_state(run *r, int attempt, int increment_no) {
+  const equilibrium *e = &r->now;
+  state s = {.step_no = (int)(r->step - r->m->steps) + 1,
+             .increment_no = increment_no,
+             .total_no = r->total_no,
+             .attempt = attempt,
+             .t = e->t,
+             .dt = e->t - r->old.t,
+             .u = e->u,
+             .strain = r->strain,
+             .stress = r->stress,
+             .reaction = e->reaction,
+             .surface = r->surface,
+             .uc = e->uc,
+             .rc = e->rc,
+             .gap = r->open_gap,
+             .slip = r->slip,
+             .limit = r->g,
+             .contact = r->contact,
+             .totals = r->totals,
+             .energy = e->energy,
+             .report = r->report,
+             .solver_log = contact_solver_log(r->solver),
+             .settled = r->report.outcome > 0};
+  if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
+  if (!(r->m->effects & EFFECT_REACTION)) s.reaction = NULL;
+  for (int i = 0; i < r->n; ++i) {
+    s.n_open += r->contact[i] == CONTACT_OPEN;
+    s.n_slip += r->contact[i] == CONTACT_SLIP;
+    s.n_stick += r->contact[i] == CONTACT_STICK;
+  }
+  return s;
+}
+
+/* Outcomes that no smaller increment and no more iterations can mend. */
+static int is_fatal(outcome o) {
+  return o == STOPPED_NAN || o == STOPPED_RAY || o == STOPPED_SINGULAR;
+}
+
+/* 1 if some output wants the stresses of this increment. */
+static int stress_is_due(const step *s, int increment_no, int last) {
+  int f = s->output_frequency;
+  if (f >= 0 && (last || (f > 0 && increment_no % f == 0))) return 1;
+  for (int i = 0; i < s->n_print; ++i) {
+    f = s->prints[i].frequency;
+    if (last || (f > 0 && increment_no % f == 0)) return 1;
+  }
+  return 0;
+}
+
+static status accept(run *r, int attempt, int increment_no, int last,
+                     double cpu) {
+  status st = OK;
+  ++r->total_no;
+  if (r->report.outcome <= 0) ++r->unsettled;
+  TRY(result_evaluate(r, stress_is_due(r->step, increment_no, last)));
+  state s = make_state(r, attempt, increment_no);
+  s.end_of_step = last;
+  s.cpu = timer_cpu() - cpu;
+  if (r->sink->increment != NULL) TRY(r->sink->increment(r->sink->ctx, &s));
+  result_accept(r);
+done:
+  return st;
+}
+
+static status reject(run *r, int attempt, int increment_no, const char *why) {
+  state s = make_state(r, attempt, increment_no);
+  s.n_open = s.n_slip = s.n_stick = 0;
+  if (r->sink->rejected == NULL) return OK;
+  return r->sink->rejected(r->sink->ctx, &s, why);
+}
+
+static status no_equilibrium(const run *r) {
+  status st = OK;
+  FAIL(ERR_SINGULAR,
+       "step %d, time %g: no equilibrium found: %s%s%s%s; the last state "
+       "written is that of time %g",
+       (int)(r->step - r->m->steps) + 1, r->now.t,
+       outcome_text(r->report.outcome),
+       contact_solver_log(r->solver)[0] == '\0' ? "" : " (",
+       contact_solver_log(r->solver),
+       contact_solver_log(r->solver)[0] == '\0' ? "" : ")", r->old.t);
+done:
+  return st;
+}
+
+/* Increment number i of n, cut into halves as often as needed. */
+static status run_increment(run *r, long n, long i, int *increment_no) {
+  status st = OK;
+  const step *s = r->step;
+  long part = 0;
+  int level = 0, attempt = 1;
+  while (part < (1L << level)) {
+    double cpu = timer_cpu(), t = piece_end(s, n, i, part + 1, level);
+    TRY(increment_solve(r, t));
+    int settled = r->report.outcome > 0;
+    int finer = s->kind == STEP_QUASISTATIC && level < DEEPEST_CUT &&
+                0.5 * (t - r->old.t) >= s->dt_min &&
+                r->report.outcome != STOPPED_STAGNATION;
+    if (!settled && finer) {
+      TRY(reject(r, attempt, *increment_no + 1,
+                 outcome_text(r->report.outcome)));
+      part *= 2;
+      ++level;
+      ++attempt;
+      continue;
+    }
+    if (!settled && is_fatal(r->report.outcome)) {
+      TRY(reject(r, attempt, *increment_no + 1,
+                 outcome_text(r->report.outcome)));
+      TRY(no_equilibrium(r));
+    }
+    ++part;
+    ++*increment_no;
+    TRY(accept(r, attempt, *increment_no, i == n - 1 && part == 1L << level,
+               cpu));
+    attempt = 1;
+  }
+done:
+  return st;
+}
+
+static status run_step(run *r) {
+  status st = OK;
+  long n = increments_of(r->step);
+  int increment_no = 0;
+  TRY(run_prepare(r));
+  for (long i = 0; i < n; ++i) TRY(run_increment(r, n, i, &increment_no));
+done:
+  return st;
+}
+
+status history_run(const model *m, const mesh *msh, const history_sink *sink,
+                   int *unsettled) {
+  status st = OK;
+  run r = {.m = m, .msh = msh, .sink = sink};
+  *unsettled = 0;
+  TRY(run_new(&r));
+  for (int i = 0; i < m->n_step; ++i) {
+    r.step = &m->steps[i];
+    TRY(run_step(&r));
+  }
+done:
+  *unsettled = r.unsettled;
+  run_free(&r);
+  return st;
+}

@@ -1,0 +1,160 @@
+/*
+ * One equilibrium: loads and obstacles at time t, condensed load, sliding
+ * limit, contact solver, recovery of the interior (CPR98, problem S_i^n).
+ */
+#include "history/run.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <string.h>
+
+/* 1 if a friction value of the model changes in time. */
+static int limit_varies(const model *m) {
+  for (int i = 0; i < m->n_contact; ++i)
+    if (quantity_variables(&m->contacts[i].friction.value) & 8u) return 1;
+  return 0;
+}
+
+/* The law of one contact on its nodes. */
+static status add_law(run *r, int contact_id, double t, int *node) {
+  const contact *c = &r->m->contacts[contact_id];
+  int n = 0;
+  for (int i = 0; i < r->n; ++i)
+    if (r->surface->contact_id[i] == contact_id) node[n++] = i;
+  return c->law->limit(&c->friction, r->surface, n, node, t, &r->limit);
+}
+
+static status update_limit(run *r, double t) {
+  status st = OK;
+  int *node = NULL;
+  if (!(r->m->effects & EFFECT_FRICTION) || r->limit_known) return OK;
+  timer_enter(STAGE_LIMIT);
+  friction_limit_free(&r->limit);
+  TRY(friction_limit_new(r->n, &r->limit));
+  NEW(node, r->n);
+  for (int i = 0; i < r->m->n_contact; ++i)
+    if (r->m->contacts[i].law != NULL) TRY(add_law(r, i, t, node));
+  r->limit_known = !limit_varies(r->m);
+done:
+  memory_free(node);
+  timer_leave(STAGE_LIMIT);
+  return st;
+}
+
+/* A contact unknown that *BOUNDARY prescribes: its value now, m. */
+static double held_value(const run *r, int i, int a) {
+  const contact_surface *s = r->surface;
+  int dim = s->dim;
+  double u = 0.0;
+  for (int c = 0; c < dim; ++c)
+    u += s->frame[dim * dim * i + dim * a + c] * r->ud[dim * s->node_id[i] + c];
+  return u;
+}
+
+/*
+ * Friction along t2 where t1 is made to move: the slip direction would depend
+ * on the prescribed motion, which the condensed problem does not hold.
+ */
+static status check_held(const run *r, int i, int a, double from, double to) {
+  status st = OK;
+  const contact_surface *s = r->surface;
+  int other = s->dim == 3 ? 3 - a : a;
+  if (s->dim == 3 && from != to && !s->held[3 * i + other])
+    FAIL(ERR_DECK,
+         "contact node %zu: *BOUNDARY moves it in one tangential direction "
+         "while friction acts in the other; prescribe both, or none",
+         s->node_no[i]);
+done:
+  return st;
+}
+
+/*
+ * Position of stick: the tangential displacement at the last equilibrium, moved
+ * along by the obstacle (CPR98 S_i^n); for one static problem the origin (P2).
+ * A prescribed unknown sticks where it is put: its force is the support's.
+ */
+static status set_stick_position(run *r) {
+  status st = OK;
+  int dim = r->msh->dim, fresh = r->step->kind == STEP_STATIC;
+  if (r->ut0 == NULL) goto done;
+  for (int i = 0; i < r->n; ++i)
+    for (int a = 1; a < dim; ++a) {
+      int k = dim * i + a;
+      double from = fresh ? 0.0 : r->old.uc[k] - r->old.motion[k];
+      double stick = from + r->now.motion[k];
+      if (r->surface->held[k]) {
+        double to = held_value(r, i, a);
+        TRY(check_held(r, i, a, stick, to));
+        stick = to;
+      }
+      r->ut0[(dim - 1) * i + a - 1] = stick;
+    }
+done:
+  return st;
+}
+
+static int has_side_gap(const contact_surface *s) {
+  for (int i = 0; i < s->n * (s->dim - 1); ++i)
+    if (s->side_id[i] >= 0) return 1;
+  return 0;
+}
+
+static void set_problem(run *r) {
+  int friction = (r->m->effects & EFFECT_FRICTION) != 0;
+  r->cp = (contact_problem){
+      .dim = r->msh->dim,
+      .n = r->n,
+      .m = r->n_c,
+      .A = condensed_matrix(r->c),
+      .f = r->f,
+      .gap = r->gap,
+      .ut0 = r->ut0,
+      .g0 = friction ? r->limit.g0 : NULL,
+      .B = friction && r->limit.B.start != NULL ? &r->limit.B : NULL,
+      .side_gap = has_side_gap(r->surface) ? r->side_gap : NULL,
+      .floating = condensed_floating(r->c)};
+}
+
+static status load_at(run *r, double t) {
+  status st = OK;
+  timer_enter(STAGE_LOAD);
+  st = load_forces(r->m, r->msh, r->step, t, r->now.F);
+  if (st == OK) st = load_prescribed(r->m, r->msh, r->step, t, r->ud);
+  timer_leave(STAGE_LOAD);
+  return st;
+}
+
+static status solve_contact(run *r, double t) {
+  status st = OK;
+  const solver_listener listener = {r->sink->iteration, r->sink->ctx};
+  timer_enter(STAGE_SURFACE);
+  st =
+      surface_gap(r->surface, &r->input, t, r->gap, r->side_gap, r->now.motion);
+  timer_leave(STAGE_SURFACE);
+  TRY(st);
+  TRY(update_limit(r, t));
+  TRY(set_stick_position(r));
+  set_problem(r);
+  memcpy(r->now.uc, r->old.uc, (size_t)r->n_c * sizeof *r->now.uc);
+  memcpy(r->now.rc, r->old.rc, (size_t)r->n_c * sizeof *r->now.rc);
+  timer_enter(STAGE_CONTACT);
+  st =
+      contact_solve(r->solver, &r->cp, listener.step == NULL ? NULL : &listener,
+                    r->now.uc, r->now.rc, &r->report);
+  timer_leave(STAGE_CONTACT);
+done:
+  return st;
+}
+
+status increment_solve(run *r, double t) {
+  status st = OK;
+  r->now.t = t;
+  r->report = (solver_report){.outcome = CONVERGED, .solver = "linear"};
+  TRY(load_at(r, t));
+  TRY(condense_load(r->c, r->now.F, r->ud, r->f));
+  if (r->n > 0) TRY(solve_contact(r, t));
+  TRY(condense_recover(r->c, r->now.uc, r->now.u));
+done:
+  return st;
+}

@@ -1,0 +1,122 @@
+/*
+ * What is derived from an equilibrium: stresses, reactions of the supports,
+ * resultants of the contacts, energies and their balance.
+ */
+#include "history/run.h"
+
+#include "base/timer.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Reactions: internal forces less loads less contact forces, where fixed. */
+static void find_reactions(run *r) {
+  int dim = r->msh->dim;
+  domain_internal_force(&r->d, r->stress, r->now.reaction);
+  for (size_t i = 0; i < r->n_dof; ++i)
+    r->now.reaction[i] = r->fixed[i] ? r->now.reaction[i] - r->now.F[i] : 0.0;
+  for (int i = 0; i < r->n; ++i)
+    for (int c = 0; c < dim; ++c) {
+      size_t dof = (size_t)(dim * r->surface->node_id[i] + c);
+      if (!r->fixed[dof]) continue;
+      for (int a = 0; a < dim; ++a)
+        r->now.reaction[dof] -= r->surface->frame[dim * dim * i + dim * a + c] *
+                                r->now.rc[dim * i + a];
+    }
+}
+
+/* Slip of the increment against the obstacle, gap left, status. */
+static void find_contact(run *r) {
+  int dim = r->msh->dim;
+  for (int i = 0; i < r->n; ++i) {
+    r->open_gap[i] = r->gap[i] - r->now.uc[dim * i];
+    for (int a = 1; a < dim; ++a) {
+      int k = dim * i + a;
+      r->slip[(dim - 1) * i + a - 1] =
+          (r->now.uc[k] - r->old.uc[k]) - (r->now.motion[k] - r->old.motion[k]);
+    }
+  }
+  if (r->g != NULL) contact_limit(&r->cp, r->now.rc, r->g);
+  contact_classify(&r->cp, r->now.uc, r->now.rc, r->contact);
+}
+
+static void add_node_to_total(const run *r, int i, contact_total *t) {
+  const contact_surface *s = r->surface;
+  int dim = s->dim;
+  double force[3] = {0.0, 0.0, 0.0}, x[3] = {0.0, 0.0, 0.0};
+  for (int c = 0; c < dim; ++c) {
+    x[c] = s->x[dim * i + c];
+    for (int a = 0; a < dim; ++a)
+      force[c] +=
+          s->frame[dim * dim * i + dim * a + c] * r->now.rc[dim * i + a];
+    t->force[c] += force[c];
+  }
+  t->moment[0] += x[1] * force[2] - x[2] * force[1];
+  t->moment[1] += x[2] * force[0] - x[0] * force[2];
+  t->moment[2] += x[0] * force[1] - x[1] * force[0];
+  t->normal += r->now.rc[dim * i];
+  for (int a = 1; a < dim; ++a) t->tangential[a - 1] += r->now.rc[dim * i + a];
+  t->n_open += r->contact[i] == CONTACT_OPEN;
+  t->n_slip += r->contact[i] == CONTACT_SLIP;
+  t->n_stick += r->contact[i] == CONTACT_STICK;
+  if (r->contact[i] != CONTACT_OPEN) t->area += s->area[i];
+}
+
+static void find_totals(run *r) {
+  memset(r->totals, 0, (size_t)r->m->n_contact * sizeof *r->totals);
+  for (int i = 0; i < r->n; ++i)
+    add_node_to_total(r, i, &r->totals[r->surface->contact_id[i]]);
+}
+
+/*
+ * Energies of the increment. The trapezoidal works balance to rounding for a
+ * linear elastic body, whatever the increment: with K symmetric
+ *   E - E_old = 1/2 (Ku + Ku_old)'(u - u_old).
+ */
+static void find_energies(run *r) {
+  const equilibrium *a = &r->old, *b = &r->now;
+  energies e = a->energy;
+  int dim = r->msh->dim;
+  for (size_t i = 0; i < r->n_dof; ++i)
+    e.external += 0.5 * (a->F[i] + b->F[i] + a->reaction[i] + b->reaction[i]) *
+                  (b->u[i] - a->u[i]);
+  double work = 0.0, friction = 0.0;
+  for (int i = 0; i < r->n; ++i) {
+    for (int c = 0; c < dim; ++c) {
+      int k = dim * i + c;
+      work += 0.5 * (a->rc[k] + b->rc[k]) * (b->uc[k] - a->uc[k]);
+      /* The side of a corner is a second obstacle, no friction. */
+      if (c == 0 || r->surface->side_id[(dim - 1) * i + c - 1] >= 0) continue;
+      double slip = r->slip[(dim - 1) * i + c - 1];
+      friction -= 0.5 * (a->rc[k] + b->rc[k]) * slip;
+      e.friction_end -= b->rc[k] * slip;
+    }
+  }
+  e.friction += friction;
+  e.obstacle += work + friction;
+  e.strain = domain_strain_energy(&r->d, b->u);
+  e.defect = e.external + e.obstacle - e.friction - e.strain;
+  r->now.energy = e;
+}
+
+status result_evaluate(run *r, int due) {
+  unsigned effects = r->m->effects;
+  timer_enter(STAGE_STRESS);
+  if ((effects & EFFECT_REACTION) || ((effects & EFFECT_STRESS) && due)) {
+    domain_stress(&r->d, r->now.u, r->strain, r->stress);
+    if (effects & EFFECT_REACTION) find_reactions(r);
+  }
+  if (r->n > 0) find_contact(r);
+  if (r->m->n_contact > 0) find_totals(r);
+  timer_leave(STAGE_STRESS);
+  timer_enter(STAGE_ENERGY);
+  find_energies(r);
+  timer_leave(STAGE_ENERGY);
+  return OK;
+}
+
+void result_accept(run *r) {
+  equilibrium e = r->old;
+  r->old = r->now;
+  r->now = e;
+}

@@ -1,0 +1,75 @@
+/*
+ * The running state of history_run, shared by the files of this folder only.
+ */
+#ifndef PROTIS_HISTORY_RUN_H
+#define PROTIS_HISTORY_RUN_H
+
+#include "history/history.h"
+
+/* One equilibrium: displacements, contact forces, loads, and its time. */
+typedef struct equilibrium {
+  double t;         /* s                                                      */
+  double *u;        /* [dim*n_node] m                                         */
+  double *F;        /* [dim*n_node] loads, N                                  */
+  double *reaction; /* [dim*n_node] forces of the supports, N                 */
+  double *uc, *rc;  /* [m] contact frame, m, N                                */
+  double *motion;   /* [m] of the obstacles since time 0, contact frame, m    */
+  energies energy;
+} equilibrium;
+
+typedef struct run {
+  const model *m;
+  const mesh *msh;
+  const history_sink *sink;
+  const step *step;
+  size_t n_dof; /* dim*n_node                                                 */
+  int n, n_c;   /* contact nodes; contact unknowns dim*n                      */
+
+  /* What the elements are made of. */
+  domain d;
+  kinematics *kin; /* [n_section]                                        */
+  double *thickness, *E; /* [n_section], [ns*ns*n_section]                    */
+  unsigned char *fixed; /* [dim*n_node]                                       */
+
+  /* Contact surface and condensed stiffness: as long as "fixed" stays. */
+  surface_input input;
+  contact_pair *pairs;       /* [n_contact]                                  */
+  double *face_weight;       /* [n_face]                                     */
+  unsigned char *node_fixed; /* [n_node] bits                                */
+  contact_surface *surface;
+  stiffness *k;
+  condensed *c;
+  contact_solver *solver;
+  friction_limit limit;
+  int limit_known; /* limit holds for all times of the step              */
+
+  /* Contact problem of the increment. */
+  double *f, *gap, *side_gap, *ut0; /* [m], [n], [n*(dim-1)] twice            */
+  contact_problem cp;
+
+  equilibrium old, now;
+  double *ud; /* [dim*n_node] prescribed displacements, m           */
+  double *strain, *stress; /* [ns*n_elem] or NULL                             */
+  double *open_gap, *slip, *g; /* [n], [n*(dim-1)], [n]                       */
+  contact_status *contact; /* [n]                                            */
+  contact_total *totals;   /* [n_contact]                                    */
+  solver_report report;
+  int total_no, unsettled;
+} run;
+
+/* setup.c */
+status run_new(run *r);
+/* Surface, stiffness, condensed matrix and solver for r->step. */
+status run_prepare(run *r);
+void run_free(run *r);
+
+/* increment.c: the equilibrium at time t into r->now; read r->report. */
+status increment_solve(run *r, double t);
+
+/* result.c: stresses, reactions, totals, energies of r->now as far as the
+ * effects call for them and "due" says. */
+status result_evaluate(run *r, int due);
+/* r->now becomes r->old. */
+void result_accept(run *r);
+
+#endif

@@ -1,0 +1,257 @@
+/*
+ * What a run keeps as long as the supports stay the same: elasticity of the
+ * sections, contact surface, condensed stiffness, solver.
+ */
+#include "history/run.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <string.h>
+
+static status new_equilibrium(const run *r, equilibrium *e) {
+  status st = OK;
+  NEW(e->u, r->n_dof);
+  NEW(e->F, r->n_dof);
+  NEW(e->reaction, r->n_dof);
+done:
+  return st;
+}
+
+static void free_equilibrium(equilibrium *e) {
+  memory_free(e->u);
+  memory_free(e->F);
+  memory_free(e->reaction);
+  memory_free(e->uc);
+  memory_free(e->rc);
+  memory_free(e->motion);
+}
+
+static status new_sections(run *r) {
+  status st = OK;
+  const model *m = r->m;
+  size_t square = (size_t)(m->ns * m->ns);
+  NEW(r->kin, m->n_section);
+  NEW(r->thickness, m->n_section);
+  NEW(r->E, square * (size_t)m->n_section);
+  for (int i = 0; i < m->n_section; ++i) {
+    const section *s = &m->sections[i];
+    r->kin[i] = (kinematics)s->kin;
+    r->thickness[i] = s->thickness;
+    elastic_reduce(m->materials[s->material_id].C, r->kin[i],
+                   r->E + square * (size_t)i);
+  }
+  r->d.mesh = r->msh;
+  r->d.ns = m->ns;
+  r->d.section_id = m->elem_section;
+  r->d.kin = r->kin;
+  r->d.thickness = r->thickness;
+  r->d.E = r->E;
+  NEW(r->fixed, r->n_dof);
+  r->d.fixed = r->fixed;
+done:
+  return st;
+}
+
+static status new_pairs(run *r) {
+  status st = OK;
+  const model *m = r->m;
+  const mesh *msh = r->msh;
+  NEW(r->pairs, m->n_contact);
+  NEW(r->node_fixed, msh->n_node);
+  NEW(r->face_weight, msh->n_face);
+  NEW(r->totals, m->n_contact);
+  for (int i = 0; i < m->n_contact; ++i) {
+    const contact *c = &m->contacts[i];
+    r->pairs[i].name = c->name;
+    r->pairs[i].group = &msh->group[c->group_id];
+    r->pairs[i].support = &m->obstacles[c->obstacle_id];
+    r->pairs[i].friction = c->law != NULL && c->law->value_name != NULL;
+    r->pairs[i].at = c->at;
+  }
+  for (int i = 0; i < msh->n_face; ++i)
+    r->face_weight[i] =
+        m->sections[m->elem_section[msh->face_elem[i]]].thickness;
+  r->input.mesh = msh;
+  r->input.n_pair = m->n_contact;
+  r->input.pairs = r->pairs;
+  r->input.fixed = r->node_fixed;
+  r->input.face_weight = r->face_weight;
+  r->input.axisymmetric = m->sections[0].kin == AXISYMMETRIC;
+done:
+  return st;
+}
+
+status run_new(run *r) {
+  status st = OK;
+  r->n_dof = (size_t)r->msh->dim * (size_t)r->msh->n_node;
+  TRY(new_sections(r));
+  TRY(new_equilibrium(r, &r->old));
+  TRY(new_equilibrium(r, &r->now));
+  NEW(r->ud, r->n_dof);
+  if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
+  if (r->m->effects & (EFFECT_STRESS | EFFECT_REACTION))
+    NEW(r->stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  if (r->m->effects & EFFECT_STRESS)
+    NEW(r->strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+done:
+  return st;
+}
+
+static void free_surface(run *r) {
+  contact_solver_free(r->solver);
+  condensed_free(r->c);
+  stiffness_free(r->k);
+  surface_free(r->surface);
+  r->solver = NULL;
+  r->c = NULL;
+  r->k = NULL;
+  r->surface = NULL;
+  double **owned[] = {&r->f,         &r->gap,    &r->side_gap, &r->ut0,
+                      &r->open_gap,  &r->slip,   &r->g,        &r->old.uc,
+                      &r->old.rc,    &r->now.uc, &r->now.rc,   &r->old.motion,
+                      &r->now.motion};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) {
+    memory_free(*owned[i]);
+    *owned[i] = NULL;
+  }
+  memory_free(r->contact);
+  r->contact = NULL;
+  friction_limit_free(&r->limit);
+}
+
+void run_free(run *r) {
+  free_surface(r);
+  free_equilibrium(&r->old);
+  free_equilibrium(&r->now);
+  memory_free(r->kin);
+  memory_free(r->thickness);
+  memory_free(r->E);
+  memory_free(r->fixed);
+  memory_free(r->pairs);
+  memory_free(r->node_fixed);
+  memory_free(r->face_weight);
+  memory_free(r->totals);
+  memory_free(r->ud);
+  memory_free(r->strain);
+  memory_free(r->stress);
+}
+
+static void node_bits(run *r) {
+  int dim = r->msh->dim;
+  for (int i = 0; i < r->msh->n_node; ++i) {
+    unsigned bits = 0;
+    for (int c = 0; c < dim; ++c)
+      bits |= (unsigned)(r->fixed[dim * i + c] != 0) << c;
+    r->node_fixed[i] = (unsigned char)bits;
+  }
+}
+
+static status new_contact_arrays(run *r) {
+  status st = OK;
+  int tangents = r->n * (r->msh->dim - 1);
+  NEW(r->f, r->n_c);
+  NEW(r->gap, r->n);
+  NEW(r->old.uc, r->n_c);
+  NEW(r->now.uc, r->n_c);
+  NEW(r->old.rc, r->n_c);
+  NEW(r->now.rc, r->n_c);
+  NEW(r->old.motion, r->n_c);
+  NEW(r->now.motion, r->n_c);
+  NEW(r->open_gap, r->n);
+  NEW(r->contact, r->n);
+  NEW(r->side_gap, tangents);
+  NEW(r->slip, tangents);
+  if (r->m->effects & EFFECT_FRICTION) {
+    NEW(r->ut0, tangents);
+    NEW(r->g, r->n);
+  }
+done:
+  return st;
+}
+
+/* a = frame u, and the forces dual to it: r = basis' force (equal for an
+ * orthonormal frame). Brings the old state into the frames of a new surface. */
+static void old_state_to_frames(run *r, const double *force) {
+  const contact_surface *s = r->surface;
+  int dim = s->dim;
+  for (int i = 0; i < s->n; ++i)
+    for (int a = 0; a < dim; ++a) {
+      double u = 0.0, rc = 0.0;
+      for (int c = 0; c < dim; ++c) {
+        size_t dof = (size_t)(dim * s->node_id[i] + c);
+        u += s->frame[dim * dim * i + dim * a + c] * r->old.u[dof];
+        rc += s->basis[dim * dim * i + dim * a + c] * force[dof];
+      }
+      r->old.uc[dim * i + a] = u;
+      r->old.rc[dim * i + a] = rc;
+    }
+}
+
+/* Contact forces of the old surface in global components, [dim*n_node]. */
+static void forces_to_global(const run *r, double *force) {
+  const contact_surface *s = r->surface;
+  if (s == NULL) return;
+  int dim = s->dim;
+  for (int i = 0; i < s->n; ++i)
+    for (int c = 0; c < dim; ++c)
+      for (int a = 0; a < dim; ++a)
+        force[dim * s->node_id[i] + c] +=
+            s->frame[dim * dim * i + dim * a + c] * r->old.rc[dim * i + a];
+}
+
+static status build_surface(run *r) {
+  status st = OK;
+  double *force = NULL;
+  NEW(force, r->n_dof);
+  forces_to_global(r, force);
+  free_surface(r);
+  timer_enter(STAGE_SURFACE);
+  node_bits(r);
+  st = surface_build(&r->input, r->m->log, &r->surface);
+  timer_leave(STAGE_SURFACE);
+  TRY(st);
+  r->n = r->surface->n;
+  r->n_c = r->msh->dim * r->n;
+  TRY(new_contact_arrays(r));
+  old_state_to_frames(r, force);
+  TRY(surface_gap(r->surface, &r->input, r->old.t, r->gap, r->side_gap,
+                  r->old.motion));
+done:
+  memory_free(force);
+  return st;
+}
+
+static status report_ready(run *r) {
+  if (r->sink->ready == NULL) return OK;
+  setup_facts facts = {.info = condensed_info(r->c),
+                       .condition = condensed_condition(r->c),
+                       .floating = condensed_floating(r->c),
+                       .n_contact_node = r->n};
+  return r->sink->ready(r->sink->ctx, &facts, r->surface);
+}
+
+status run_prepare(run *r) {
+  status st = OK;
+  unsigned char *fixed = NULL;
+  NEW(fixed, r->n_dof);
+  load_fixed(r->m, r->msh, r->step, fixed);
+  r->limit_known = 0;
+  if (r->c == NULL || memcmp(fixed, r->fixed, r->n_dof) != 0) {
+    memcpy(r->fixed, fixed, r->n_dof);
+    if (r->m->effects & EFFECT_CONTACT)
+      TRY(build_surface(r));
+    else
+      free_surface(r);
+    r->d.surface = r->surface;
+    TRY(stiffness_assemble(&r->d, &r->k));
+    TRY(condense(r->k, &r->d, &r->c));
+    TRY(report_ready(r));
+  }
+  contact_solver_free(r->solver);
+  r->solver = NULL;
+  TRY(contact_solver_new(&r->step->solver, &r->solver));
+done:
+  memory_free(fixed);
+  return st;
+}
