@@ -114,6 +114,7 @@ layers:
 	$(Q)tools/check_layers src
 
 style:
+	$(Q)tools/test_checks build/test_checks
 	$(Q)tools/check_style src tests
 
 bench-run: $(program) $(bench)
