@@ -36,11 +36,16 @@ typedef enum { MESSAGE_LIST(MESSAGE_ENUM) P_END } message_id;
 status message_log_new(message_log **log);
 void message_log_free(message_log *log);
 /* Add one; the texts are copied. "at" may be NULL (no place). After 100
- * errors the rest is counted only. Never fails: without memory the message
- * is counted, and message_status answers ERR_MEMORY. */
+ * of a severity the rest is counted only. Never fails: without memory the
+ * message is counted, and message_status answers ERR_MEMORY. */
 void message_add(message_log *log, message_id id, const place *at,
                  const char *format, ...) __attribute__((format(printf, 4, 5)));
+/* Memory ran out while the input was read: message_status tells. */
+void message_memory(message_log *log);
 int message_count(const message_log *log, severity s);
+/* 1 as long as one more message of that severity would be kept: who has to
+ * search for advice (nearest_word) need not once they are only counted. */
+int message_wanted(const message_log *log, severity s);
 /* Print all of them, in the order of the files and lines, and the totals. */
 void message_print(const message_log *log, FILE *out);
 /* Print those of one severity without source line, for the listing. */

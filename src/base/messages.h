@@ -7,15 +7,110 @@
 
 /* clang-format off */
 #define MESSAGE_LIST(X)                                                      \
-  X(1001, ERROR, "file of the deck cannot be read",                          \
-    "Check the name and the permissions; *INCLUDE is relative to the file "  \
-    "it stands in.")                                                         \
-  X(1003, ERROR, "unknown card",                                             \
-    "protis --keywords lists the cards. Names match in full, never by "      \
-    "their beginning.")                                                      \
+  MESSAGE_LIST_DECK(X)                                                       \
   MESSAGE_LIST_MODEL(X)                                                      \
   MESSAGE_LIST_MESH(X)                                                       \
   MESSAGE_LIST_CONTACT(X)
+
+#define MESSAGE_LIST_DECK(X)                                                 \
+  X(1001, ERROR, "file of the deck cannot be read",                          \
+    "Check the name and the permissions. The name in *INCLUDE is "           \
+    "relative to the file it stands in.")                                    \
+  X(1002, ERROR, "deck without a card",                                      \
+    "The file holds no line that starts with a card such as *HEADING. "      \
+    "Check that it is the deck and not, say, the mesh.")                     \
+  X(1003, ERROR, "unknown card",                                             \
+    "protis --keywords lists the cards. Names match in full, never by "      \
+    "their beginning.")                                                      \
+  X(1005, ERROR, "repeated parameter",                                       \
+    "A parameter may stand once on a card. Keep the one that is meant.")     \
+  X(1007, ERROR, "parameter without value",                                  \
+    "Write a value after the equals sign, or the name alone if the "         \
+    "parameter is a switch.")                                                \
+  X(1008, ERROR, "empty parameter",                                          \
+    "Two commas follow each other, or an equals sign has no name before "    \
+    "it. Remove the comma or write what is missing.")                        \
+  X(1009, ERROR, "card without a name",                                      \
+    "A line that starts with * is a card and needs a name; a comment "       \
+    "starts with **.")                                                       \
+  X(1010, ERROR, "missing comma",                                            \
+    "Card name and parameters are separated by commas: *CARD, "              \
+    "NAME=VALUE, NAME=VALUE. A value that holds an equals sign stands "      \
+    "in quotes.")                                                            \
+  X(1011, ERROR, "quote not closed",                                         \
+    "A value in quotes ends with a quote on the same line.")                 \
+  X(1012, ERROR, "text beside a quoted value",                               \
+    "A quote encloses the whole value, from comma to comma.")                \
+  X(1013, ERROR, "NUL byte in the file",                                     \
+    "The file is not plain text, or is stored as UTF-16. Save it as "        \
+    "text (ASCII or UTF-8). Nothing after the byte is read.")                \
+  X(1014, ERROR, "line too long",                                            \
+    "A line holds at most 4096 characters. End it after a comma: the "       \
+    "next line goes on.")                                                    \
+  X(1015, ERROR, "data before the first card",                               \
+    "The first line that is not a comment must be a card, as *HEADING. "     \
+    "Only the first such line is reported.")                                 \
+  X(1016, ERROR, "card does not go on",                                      \
+    "A card that ends in a comma goes on in the next line. Remove the "      \
+    "comma or write the parameter.")                                         \
+  X(1017, ERROR, "file includes itself",                                     \
+    "Directly or through other files an *INCLUDE leads back to a file "      \
+    "that is still being read. Break the circle.")                           \
+  X(1018, ERROR, "too many includes",                                        \
+    "Files may include each other 16 deep, and a deck may have 1000 "        \
+    "includes in all.")                                                      \
+  X(1019, ERROR, "no definition",                                            \
+    "A line under *PARAMETER reads NAME = VALUE, where NAME is a letter "    \
+    "followed by letters, digits and underscores, and VALUE a number or "    \
+    "an expression.")                                                        \
+  X(1020, ERROR, "unknown name",                                             \
+    "<NAME> stands for a value that *PARAMETER or -D defined before. "       \
+    "Check the spelling, or define it above.")                               \
+  X(1021, ERROR, "name defined twice",                                       \
+    "A name of *PARAMETER has one value. Remove one of the two "             \
+    "definitions; -D NAME=VALUE replaces a value from outside.")             \
+  X(1022, ERROR, "expression not valid",                                     \
+    "An expression is made of numbers, x, y, z, t, pi, names of "            \
+    "*PARAMETER, + - * / ^, comparisons, & and |, parentheses and "          \
+    "functions such as sin(x) or if(a, b, c).")                              \
+  X(1023, ERROR, "value not finite",                                         \
+    "The expression divides by zero, takes the root or logarithm of a "      \
+    "negative number, or overflows.")                                        \
+  X(1024, ERROR, "not a number",                                             \
+    "Numbers read 1, 1., .5, 1.5E3, 1.5D+03 or 1.5+03. An expression "       \
+    "stands in quotes.")                                                     \
+  X(1025, ERROR, "not an integer",                                           \
+    "The field takes a whole number without point and exponent.")            \
+  X(1026, ERROR, "definition on the command line not valid",                 \
+    "Write -D NAME=VALUE, each NAME once.")                                  \
+  X(1027, ERROR, "format not valid",                                         \
+    "*LEGACY, FORMAT=(...) takes Iw, Fw.d, Ew.d, Dw.d, Gw.d, Aw and nX, "    \
+    "repeat counts and groups in parentheses, as (I5,3F10.0), and at "       \
+    "most 4096 columns.")                                                    \
+  X(1028, ERROR, "fixed column field not valid",                             \
+    "The columns that FORMAT names do not hold a number of that kind. "      \
+    "Check that the columns are not shifted.")                               \
+  X(1029, ERROR, "tab in fixed columns",                                     \
+    "A tab has no fixed width: replace it by blanks.")                       \
+  X(1030, WARNING, "text after the last fixed column",                       \
+    "The format ends before the line does; what follows is not read. "       \
+    "Widen the format if it should be.")                                     \
+  X(1031, ERROR, "format without a data block",                              \
+    "*LEGACY stands before the card whose data lines it describes. Add "     \
+    "the card, or remove *LEGACY.")                                          \
+  X(1033, ERROR, "too many parameters",                                      \
+    "A card takes at most 64 parameters. Data belong on the lines below "    \
+    "the card.")                                                             \
+  X(1034, WARNING, "name of a variable",                                     \
+    "x, y, z, t and pi have a meaning of their own in expressions. The "     \
+    "value can be had as <NAME> only; a longer name avoids the doubt.")      \
+  X(1035, ERROR, "comment inside a definition",                              \
+    "** starts a comment. A power is written with ^.")                       \
+  X(1036, ERROR, "exponent after a name",                                    \
+    "A number put in for <NAME> and the sign behind it would read as "       \
+    "mantissa and exponent. Write an expression in quotes.")                 \
+  X(1037, ERROR, "empty field",                                              \
+    "A number is needed here. Fields are separated by commas.")
 
 #define MESSAGE_LIST_MODEL(X)                                                \
   X(2001, ERROR, "card not available in this version",                       \

@@ -5,10 +5,17 @@
 #ifndef PROTIS_BASE_NUMBER_H
 #define PROTIS_BASE_NUMBER_H
 
+enum { NUMBER_TEXT_SIZE = 32 };
+
 /* NULL and the value, or what is wrong in a few words ("not a number", ...).
  * The text may have blanks before and after the number. The answer does not
  * depend on the locale. Underflow gives the nearest double, zero included. */
 const char *number_real(const char *text, double *value);
 const char *number_int(const char *text, int *value);
+/* 1 if the text is a number whose exponent has a sign but no letter (1.5+03);
+ * the same text is a sum in an expression. */
+int number_bare_exponent(const char *text);
+/* Fewest digits that number_real takes back exactly; a point in any locale. */
+void number_text(double value, char text[NUMBER_TEXT_SIZE]);
 
 #endif

@@ -1,0 +1,361 @@
+/*
+ * The message log: messages are kept with copies of their places and printed
+ * in the order of the input. A limited number of each severity is kept.
+ */
+#include "base/message.h"
+
+#include "base/memory.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  KEPT = 100,       /* messages kept of each severity                        */
+  TEXT_SIZE = 1024, /* longest text of one message                           */
+  SHOWN = 120,      /* most characters of a source line                      */
+  WRAP = 74         /* columns of the manual                                 */
+};
+
+typedef struct message {
+  message_id id;
+  severity level;
+  place *at;  /* copy with its chain, owned; NULL: no place                  */
+  char *text; /* owned                                                       */
+  int rank;   /* of the outermost file, by first mention                     */
+} message;
+
+struct message_log {
+  int n, capacity;
+  message *items;
+  int count[3]; /* by severity, those not kept included                      */
+  int n_file, file_capacity;
+  char **files; /* outermost files in the order of their first message       */
+  int no_memory;
+};
+
+typedef struct manual_entry {
+  int number;
+  severity level;
+  const char *title, *remedy;
+} manual_entry;
+
+#define MANUAL_ENTRY(number, level, title, remedy) \
+  {number, level, title, remedy},
+static const manual_entry manual[] = {MESSAGE_LIST(MANUAL_ENTRY)};
+enum { MANUAL_SIZE = sizeof manual / sizeof *manual };
+
+static const manual_entry *find_entry(int number) {
+  for (int i = 0; i < MANUAL_SIZE; ++i)
+    if (manual[i].number == number) return &manual[i];
+  return NULL;
+}
+
+static const char *severity_word(severity s) {
+  static const char *const words[] = {"note", "warning", "error"};
+  return words[s];
+}
+
+static size_t text_bytes(const char *text) {
+  return text != NULL ? strlen(text) + 1 : 0;
+}
+
+/* Copy a text to *room and move on behind it. */
+static const char *put_text(const char *text, char **room) {
+  size_t bytes = text_bytes(text);
+  char *copy = *room;
+  if (text == NULL) return NULL;
+  memcpy(copy, text, bytes);
+  *room += bytes;
+  return copy;
+}
+
+/* Copy of a place, its chain and its texts in one block; NULL if refused. */
+static place *place_copy(const place *at) {
+  size_t n = 0, bytes = 0;
+  for (const place *p = at; p != NULL; p = p->from, ++n)
+    bytes += sizeof *p + text_bytes(p->file) + text_bytes(p->line);
+  place *copy = memory_new(1, bytes);
+  if (copy == NULL) return NULL;
+  char *room = (char *)(copy + n);
+  for (size_t i = 0; i < n; ++i, at = at->from) {
+    copy[i] = *at;
+    copy[i].file = put_text(at->file, &room);
+    copy[i].line = put_text(at->line, &room);
+    copy[i].from = i + 1 < n ? &copy[i + 1] : NULL;
+  }
+  return copy;
+}
+
+status message_log_new(message_log **log) {
+  status st = OK;
+  NEW(*log, 1);
+done:
+  return st;
+}
+
+void message_log_free(message_log *log) {
+  if (log == NULL) return;
+  for (int i = 0; i < log->n; ++i) {
+    memory_free(log->items[i].at);
+    memory_free(log->items[i].text);
+  }
+  for (int i = 0; i < log->n_file; ++i) memory_free(log->files[i]);
+  memory_free(log->files);
+  memory_free(log->items);
+  memory_free(log);
+}
+
+/* Place in the outermost file; NULL if the message has no file. */
+static const place *outermost(const place *p) {
+  while (p != NULL && p->from != NULL) p = p->from;
+  return p;
+}
+
+static status file_rank(message_log *log, const place *at, int *rank) {
+  status st = OK;
+  const place *root = outermost(at);
+  const char *file = root != NULL && root->file != NULL ? root->file : "";
+  for (*rank = 0; *rank < log->n_file; ++*rank)
+    if (strcmp(log->files[*rank], file) == 0) goto done;
+  GROW(log->files, log->n_file, log->file_capacity);
+  log->files[log->n_file] = memory_text(file);
+  if (log->files[log->n_file] == NULL) FAIL(ERR_MEMORY, "memory exhausted");
+  ++log->n_file;
+done:
+  return st;
+}
+
+/* Control characters of hostile input do not reach the terminal. */
+static void clean_text(char *text) {
+  for (; *text != '\0'; ++text)
+    if ((unsigned char)*text < ' ' || *text == 127) *text = '?';
+}
+
+static status keep(message_log *log, const message *m) {
+  status st = OK;
+  GROW(log->items, log->n, log->capacity);
+  message *item = &log->items[log->n];
+  *item = *m;
+  TRY(file_rank(log, m->at, &item->rank));
+  ++log->n;
+done:
+  return st;
+}
+
+int message_wanted(const message_log *log, severity s) {
+  return log->count[s] < KEPT;
+}
+
+void message_memory(message_log *log) { log->no_memory = 1; }
+
+void message_add(message_log *log, message_id id, const place *at,
+                 const char *format, ...) {
+  char text[TEXT_SIZE];
+  const manual_entry *entry = find_entry((int)id);
+  message m = {id, entry != NULL ? entry->level : ERROR, NULL, NULL, 0};
+  if (log->count[m.level]++ >= KEPT) return;
+  va_list args;
+  va_start(args, format);
+  int length = vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  if (length >= TEXT_SIZE) memcpy(text + TEXT_SIZE - 4, "...", 4);
+  clean_text(text);
+  m.text = memory_text(text);
+  if (at != NULL) m.at = place_copy(at);
+  if (m.text == NULL || (at != NULL && m.at == NULL) || keep(log, &m) != OK) {
+    memory_free(m.at);
+    memory_free(m.text);
+    log->no_memory = 1;
+  }
+}
+
+int message_count(const message_log *log, severity s) { return log->count[s]; }
+
+static int chain_length(const place *p) {
+  int n = 0;
+  for (; p != NULL; p = p->from) ++n;
+  return n;
+}
+
+/* Where the input that holds "p" was entered, "up" levels above it. */
+static const place *climb(const place *p, int up) {
+  for (; up > 0; --up) p = p->from;
+  return p;
+}
+
+/* In the order in which the input is read: outermost lines first. */
+static int compare_places(const place *a, const place *b) {
+  int n = chain_length(a), m = chain_length(b);
+  for (int level = 1; level <= n && level <= m; ++level) {
+    const place *p = climb(a, n - level), *q = climb(b, m - level);
+    if (p->line_no != q->line_no) return p->line_no < q->line_no ? -1 : 1;
+    if (level == n && level == m && p->column_no != q->column_no)
+      return p->column_no < q->column_no ? -1 : 1;
+  }
+  return n == m ? 0 : n < m ? -1 : 1;
+}
+
+static int compare_messages(const void *x, const void *y) {
+  const message *a = *(const message *const *)x;
+  const message *b = *(const message *const *)y;
+  if (a->rank != b->rank) return a->rank < b->rank ? -1 : 1;
+  int order = compare_places(a->at, b->at);
+  if (order != 0) return order;
+  return a < b ? -1 : a > b; /* in the order of their coming                  */
+}
+
+/* Messages in order into sorted[]; without memory as they came. */
+static const message **sorted_messages(const message_log *log) {
+  const message **sorted = memory_new((size_t)log->n, sizeof *sorted);
+  if (sorted == NULL) return NULL;
+  for (int i = 0; i < log->n; ++i) sorted[i] = &log->items[i];
+  qsort(sorted, (size_t)log->n, sizeof *sorted, compare_messages);
+  return sorted;
+}
+
+static void print_place(const place *at, FILE *out) {
+  if (at == NULL || at->file == NULL) return;
+  fprintf(out, "%s:", at->file);
+  if (at->line_no > 0) fprintf(out, "%d:", at->line_no);
+  if (at->line_no > 0 && at->column_no > 0) fprintf(out, "%d:", at->column_no);
+  fputc(' ', out);
+}
+
+static int is_continuation_byte(char c) { return ((unsigned char)c >> 6) == 2; }
+
+/* Part of a long line that holds the column: first byte and one past the last.
+ */
+static void visible_part(const char *line, int column, int *first, int *last) {
+  int length = (int)strlen(line);
+  *first = column > SHOWN / 2 ? column - SHOWN / 2 : 0;
+  if (*first + SHOWN > length) *first = length > SHOWN ? length - SHOWN : 0;
+  while (*first > 0 && is_continuation_byte(line[*first])) --*first;
+  *last = *first + SHOWN < length ? *first + SHOWN : length;
+}
+
+/* The line with a caret under the column. A tab is kept in both, and a
+ * character of several bytes takes one column. */
+static void print_source(const place *at, FILE *out) {
+  if (at == NULL || at->line == NULL || at->line_no <= 0) return;
+  int first, last, column = at->column_no - 1;
+  visible_part(at->line, column, &first, &last);
+  fprintf(out, "%8d | %s", at->line_no, first > 0 ? "..." : "");
+  for (int i = first; i < last; ++i) {
+    unsigned char c = (unsigned char)at->line[i];
+    fputc((c < ' ' && c != '\t') || c == 127 ? '?' : c, out);
+  }
+  fprintf(out, "%s\n", at->line[last] != '\0' ? "..." : "");
+  if (column < 0 || column > last) return;
+  fprintf(out, "%8s | %s", "", first > 0 ? "   " : "");
+  for (int i = first; i < column; ++i)
+    if (!is_continuation_byte(at->line[i]))
+      fputc(at->line[i] == '\t' ? '\t' : ' ', out);
+  fputs("^\n", out);
+}
+
+static void print_message(const message *m, FILE *out) {
+  print_place(m->at, out);
+  fprintf(out, "%s P%04d: %s\n", severity_word(m->level), (int)m->id, m->text);
+  print_source(m->at, out);
+  if (m->at == NULL) return;
+  for (const place *p = m->at->from; p != NULL; p = p->from)
+    fprintf(out, "%8s   included from %s:%d\n", "", p->file, p->line_no);
+}
+
+static void print_count(int n, const char *word, const char *before,
+                        FILE *out) {
+  fprintf(out, "%s%d %s%s", before, n, word, n == 1 ? "" : "s");
+  if (n > KEPT) fprintf(out, " (%d shown)", KEPT);
+}
+
+static void print_totals(const message_log *log, FILE *out) {
+  int errors = log->count[ERROR], warnings = log->count[WARNING];
+  if (errors > 0) print_count(errors, "error", "", out);
+  if (warnings > 0)
+    print_count(warnings, "warning", errors > 0 ? ", " : "", out);
+  if (errors + warnings > 0) fputc('\n', out);
+}
+
+void message_print(const message_log *log, FILE *out) {
+  const message **sorted = sorted_messages(log);
+  for (int i = 0; i < log->n; ++i)
+    print_message(sorted != NULL ? sorted[i] : &log->items[i], out);
+  memory_free(sorted);
+  print_totals(log, out);
+}
+
+/* Name of a file without its folders. */
+static const char *base_name(const char *file) {
+  const char *slash = strrchr(file, '/');
+  return slash != NULL ? slash + 1 : file;
+}
+
+void message_list(const message_log *log, severity s, FILE *out) {
+  const message **sorted = sorted_messages(log);
+  for (int i = 0; i < log->n; ++i) {
+    const message *m = sorted != NULL ? sorted[i] : &log->items[i];
+    if (m->level != s) continue;
+    if (m->at != NULL) {
+      place short_place = *m->at;
+      if (short_place.file != NULL)
+        short_place.file = base_name(short_place.file);
+      print_place(&short_place, out);
+    }
+    fprintf(out, "%s P%04d: %s\n", severity_word(s), (int)m->id, m->text);
+  }
+  memory_free(sorted);
+}
+
+/* Words of a paragraph in lines of at most WRAP columns, indented. */
+static void print_wrapped(const char *text, FILE *out) {
+  int column = 0;
+  while (*text != '\0') {
+    int length = (int)strcspn(text, " ");
+    if (column > 0 && column + 1 + length > WRAP) {
+      fputc('\n', out);
+      column = 0;
+    }
+    fprintf(out, "%s%.*s", column > 0 ? " " : "    ", length, text);
+    column += (column > 0 ? 1 : 4) + length;
+    text += length;
+    text += strspn(text, " ");
+  }
+  fputc('\n', out);
+}
+
+static void print_entry(const manual_entry *e, FILE *out) {
+  fprintf(out, "P%04d %s: %s\n", e->number, severity_word(e->level), e->title);
+  print_wrapped(e->remedy, out);
+}
+
+/* Number of "P1003", "p1003" or "1003"; 0 if it is none. */
+static int entry_number(const char *text) {
+  int number = 0;
+  if (*text == 'P' || *text == 'p') ++text;
+  for (int i = 0; i < 4; ++i) {
+    if (text[i] < '0' || text[i] > '9') return 0;
+    number = 10 * number + (text[i] - '0');
+  }
+  return text[4] == '\0' ? number : 0;
+}
+
+int message_explain(const char *number, FILE *out) {
+  if (number == NULL) {
+    for (int i = 0; i < MANUAL_SIZE; ++i) print_entry(&manual[i], out);
+    return 1;
+  }
+  const manual_entry *e = find_entry(entry_number(number));
+  if (e == NULL) return 0;
+  print_entry(e, out);
+  return 1;
+}
+
+status message_status(const message_log *log, status code) {
+  status st = OK;
+  int n = log->count[ERROR];
+  if (log->no_memory) FAIL(ERR_MEMORY, "memory exhausted by messages");
+  if (n > 0) FAIL(code, "%d error%s in the input", n, n == 1 ? "" : "s");
+done:
+  return st;
+}

@@ -1,0 +1,171 @@
+/*
+ * Reading and writing numbers. A real is taken apart into digits and a power
+ * of ten and handed to strtod as "DIGITSeEXPONENT": without a point, so that
+ * the locale has no say, and correctly rounded.
+ */
+#include "base/number.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* More digits than 767 cannot change how a double is rounded, but for one
+ * last digit that tells whether anything follows. */
+enum { DIGITS = 800, EXPONENT_LIMIT = 1000000 };
+
+typedef struct decimal {
+  int negative;
+  int n_digit;
+  char digit[DIGITS + 2]; /* without leading zeros                           */
+  long exponent;          /* value = digits * 10^exponent                    */
+  int bare;               /* exponent written without a letter               */
+} decimal;
+
+static int is_digit(char c) { return c >= '0' && c <= '9'; }
+static int is_blank(char c) { return c == ' ' || c == '\t'; }
+static int is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+static const char *skip_blanks(const char *p) {
+  while (is_blank(*p)) ++p;
+  return p;
+}
+
+static const char *wrong_end(const char *p) {
+  if (is_letter(*p)) return "letters after the number";
+  return "characters after the number";
+}
+
+static void add_digit(decimal *d, char c) {
+  if (d->n_digit == 0 && c == '0') return;
+  if (d->n_digit < DIGITS)
+    d->digit[d->n_digit++] = c;
+  else {
+    if (c != '0') d->digit[DIGITS] = '1';
+    if (d->exponent < EXPONENT_LIMIT) ++d->exponent;
+  }
+}
+
+/* Digits with at most one point; NULL if there is no digit. */
+static const char *read_mantissa(const char *p, decimal *d) {
+  int any = 0;
+  for (; is_digit(*p); ++p, any = 1) add_digit(d, *p);
+  if (*p == '.') {
+    for (++p; is_digit(*p); ++p, any = 1) {
+      long before = d->exponent;
+      int n = d->n_digit;
+      add_digit(d, *p);
+      /* A digit kept or a leading zero shifts; one dropped does not. */
+      if (d->n_digit > n || n == 0) {
+        if (d->exponent > -EXPONENT_LIMIT) --d->exponent;
+      } else {
+        d->exponent = before;
+      }
+    }
+  }
+  return any ? p : NULL;
+}
+
+/* Exponent after the mantissa, if any; NULL if its digits are missing. */
+static const char *read_exponent(const char *p, decimal *d) {
+  int letter = *p != '\0' && strchr("eEdD", *p) != NULL;
+  if (!letter && *p != '+' && *p != '-') return p;
+  d->bare = !letter;
+  p += letter;
+  int negative = *p == '-';
+  if (*p == '+' || *p == '-') ++p;
+  if (!is_digit(*p)) return NULL;
+  long e = 0;
+  for (; is_digit(*p); ++p)
+    if (e < EXPONENT_LIMIT) e = 10 * e + (*p - '0');
+  d->exponent += negative ? -e : e;
+  return p;
+}
+
+static const char *read_decimal(const char *text, decimal *d) {
+  const char *p = skip_blanks(text);
+  if (*p == '\0') return "empty";
+  d->negative = *p == '-';
+  if (*p == '+' || *p == '-') ++p;
+  if (p[0] == '0' && (p[1] == 'x' || p[1] == 'X'))
+    return "hexadecimal is not accepted";
+  const char *end = read_mantissa(p, d);
+  if (end == NULL) return "not a number";
+  p = read_exponent(end, d);
+  if (p == NULL)
+    return d->bare || is_letter(end[1]) ? wrong_end(end)
+                                        : "exponent without digits";
+  p = skip_blanks(p);
+  return *p == '\0' ? NULL : wrong_end(p);
+}
+
+static const char *convert(decimal *d, double *value) {
+  char text[DIGITS + 32];
+  if (d->n_digit == 0) d->digit[d->n_digit++] = '0';
+  if (d->n_digit == DIGITS && d->digit[DIGITS] == '1') {
+    ++d->n_digit;
+    --d->exponent;
+  }
+  snprintf(text, sizeof text, "%s%.*se%ld", d->negative ? "-" : "", d->n_digit,
+           d->digit, d->exponent);
+  int kept = errno;
+  double x = strtod(text, NULL);
+  errno = kept;
+  if (!isfinite(x)) return "too large";
+  *value = x;
+  return NULL;
+}
+
+const char *number_real(const char *text, double *value) {
+  decimal d = {.n_digit = 0};
+  const char *wrong = read_decimal(text, &d);
+  return wrong != NULL ? wrong : convert(&d, value);
+}
+
+int number_bare_exponent(const char *text) {
+  decimal d = {.n_digit = 0};
+  return read_decimal(text, &d) == NULL && d.bare;
+}
+
+const char *number_int(const char *text, int *value) {
+  const char *p = skip_blanks(text);
+  if (*p == '\0') return "empty";
+  int negative = *p == '-';
+  if (*p == '+' || *p == '-') ++p;
+  if (!is_digit(*p)) return "not an integer";
+  long n = 0;
+  for (; is_digit(*p); ++p)
+    if (n <= INT_MAX) n = 10 * n + (*p - '0');
+  p = skip_blanks(p);
+  if (*p != '\0') return "not an integer";
+  if (negative) n = -n;
+  if (n > INT_MAX || n < INT_MIN) return "too large";
+  *value = (int)n;
+  return NULL;
+}
+
+/* The decimal separator of the locale, of any length, becomes a point. */
+static void put_point(char *text) {
+  char *to = text;
+  for (const char *from = text; *from != '\0'; ++from) {
+    if (strchr("+-e0123456789", *from) != NULL)
+      *to++ = *from;
+    else if (to == text || to[-1] != '.')
+      *to++ = '.';
+  }
+  *to = '\0';
+}
+
+void number_text(double value, char text[NUMBER_TEXT_SIZE]) {
+  for (int digits = 15; digits <= 17; ++digits) {
+    double back = 0;
+    snprintf(text, NUMBER_TEXT_SIZE, "%.*g", digits, value);
+    if (!isfinite(value)) return;
+    put_point(text);
+    if (number_real(text, &back) == NULL && back == value) return;
+  }
+}
