@@ -3,6 +3,24 @@
  * place. Knows the grammar and the language cards (*INCLUDE, *PARAMETER,
  * *LEGACY), and no mechanics. The meaning of the cards is in model/keywords.c.
  *
+ * The language cards are used up here and do not appear in deck.card; what
+ * they did is seen in deck.symbols, deck.files and card.format. A card whose
+ * name cannot be read is reported and left out together with its data lines.
+ *
+ * Grammar, beyond what README says:
+ * - ** starts a comment wherever it stands outside quotes; under *HEADING only
+ *   at the start of a line. Blank lines mean nothing anywhere.
+ * - A line ending in a comma goes on, but a data line before a card or before
+ *   the end of its file just ends. Under *HEADING each line is a record of one
+ *   field, commas and quotes are text, and unknown <NAME> are left alone.
+ * - *INCLUDE does not end a card: the file may go on with its data lines.
+ * - NAME = VALUE under *PARAMETER is an expression: 3+1 is 4. Only the whole
+ *   of a value that has a point, as 1.5+03, is read as a number by itself.
+ * - The text of a quoted field without x y z t is its value, in full digits.
+ * - Fixed columns: a blank numeric field is 0 as in Fortran, but the line ends
+ *   with its last filled field; blanks inside a number are an error; a real
+ *   without a point gets that of Fw.d. Text after the last column: warning.
+ *
  * All strings belong to the deck and live until deck_free.
  */
 #ifndef PROTIS_DECK_DECK_H
@@ -36,6 +54,7 @@ typedef struct card {
   int n_parameter, n_record;
   parameter *parameters; /* [n_parameter] in the order of the deck           */
   record *records;       /* [n_record]                                       */
+  const char *format;    /* of the *LEGACY before it, or NULL                */
   place at;
 } card;
 
@@ -43,13 +62,16 @@ typedef struct symbol {
   const char *name; /* upper case                                            */
   double value;
   int overridden; /* by -D on the command line                             */
+  place at;       /* of its *PARAMETER line; at.file NULL: by -D alone     */
 } symbol;
 
 typedef struct deck {
   const char *file; /* as given                                              */
   int n_card, n_symbol;
   card *cards;
-  symbol *symbols;       /* [n_symbol] *PARAMETER and -D                     */
+  symbol *symbols; /* [n_symbol] *PARAMETER and -D                     */
+  int n_file;
+  const char **files;    /* [n_file] the deck and its includes, as read      */
   struct deck_text *own; /* strings, files, expressions: private             */
 } deck;
 
@@ -57,7 +79,7 @@ typedef struct deck {
  * which wins over *PARAMETER; one that no *PARAMETER names still counts.
  * Errors of grammar go to the log and reading goes on; *out is valid (free
  * it) unless the answer is ERR_MEMORY or ERR_FILE (the deck itself cannot be
- * read: message in the log too). */
+ * read: message in the log too). The answer is OK with grammar errors. */
 status deck_read(const char *file, int n_define, const char *const *defines,
                  message_log *log, deck **out);
 void deck_free(deck *d);

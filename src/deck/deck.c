@@ -1,0 +1,459 @@
+/*
+ * The deck reader: cards, their parameters and records; the language cards.
+ */
+#include "deck/deck.h"
+
+#include "base/memory.h"
+#include "base/option.h"
+#include "deck/reader.h"
+
+#include <string.h>
+
+/* What data lines are taken for. */
+enum {
+  DATA_EARLY,      /* no card yet                                             */
+  DATA_RECORDS,    /* records of the last card                                */
+  DATA_TEXT,       /* the same, free text                                     */
+  DATA_DEFINITION, /* of *PARAMETER                                           */
+  DATA_REFUSED,    /* the card has none                                       */
+  DATA_DROPPED     /* of a card that could not be read                        */
+};
+
+/* Cards whose data lines are free text. */
+static const char *const text_cards[] = {"HEADING", NULL};
+
+static int is_text_card(const char *name) {
+  for (const char *const *p = text_cards; *p != NULL; ++p)
+    if (strcmp(*p, name) == 0) return 1;
+  return 0;
+}
+
+/* ---- parameters of a card ---------------------------------------------- */
+
+const parameter *card_parameter(const card *c, const char *name) {
+  for (int i = 0; i < c->n_parameter; ++i)
+    if (strcmp(c->parameters[i].name, name) == 0) return &c->parameters[i];
+  return NULL;
+}
+
+/* Part of a piece between two bytes of it, blanks cut. */
+static piece part(const reader *r, int from, int to) {
+  size_t length;
+  const char *text =
+      trim(r->line.all.text + from, (size_t)(to - from), &length);
+  piece p = {(int)(text - r->line.all.text), (int)length, -1};
+  return p;
+}
+
+static void report(reader *r, message_id id, int byte, const char *text) {
+  place at = logical_place(&r->line, byte);
+  message_add(r->log, id, &at, "%s", text);
+}
+
+/* The value behind the equals sign at that byte. */
+static status read_value(reader *r, piece p, int equals, parameter *out) {
+  status st = OK;
+  piece value = part(r, equals + 1, p.start + p.length);
+  const char *text = r->line.all.text + value.start;
+  out->has_value = value.length > 0;
+  if (!out->has_value) {
+    place at = logical_place(&r->line, equals);
+    message_add(r->log, P1007, &at, "%s has no value", out->name);
+    goto done;
+  }
+  const char *second = memchr(text, '=', (size_t)value.length);
+  if (*text != '"' && *text != '(' && second != NULL)
+    report(r, P1010, (int)(second - r->line.all.text),
+           "a second equals sign; is a comma missing before?");
+  TRY(field_read(r, value, 1, &out->value));
+done:
+  return st;
+}
+
+/* NAME or NAME=VALUE; *ok 0 if it was refused. */
+static status read_parameter(reader *r, piece p, parameter *out, int *ok) {
+  status st = OK;
+  const char *text = r->line.all.text + p.start;
+  const char *equals =
+      p.length > 0 ? memchr(text, '=', (size_t)p.length) : NULL;
+  int end =
+      equals != NULL ? (int)(equals - r->line.all.text) : p.start + p.length;
+  piece name = part(r, p.start, end);
+  *ok = 0;
+  if (name.length == 0) {
+    report(r, P1008, p.start,
+           equals != NULL ? "no name before the equals sign"
+                          : "an empty parameter between commas");
+    goto done;
+  }
+  *out = (parameter){.value = {.text = ""}};
+  out->at = logical_place(&r->line, name.start);
+  out->value.at = out->at;
+  out->name =
+      store_name(r->d, r->line.all.text + name.start, (size_t)name.length);
+  if (out->name == NULL) FAIL(ERR_MEMORY, "memory exhausted: parameter");
+  if (equals != NULL) TRY(read_value(r, p, end, out));
+  *ok = equals == NULL || out->has_value;
+done:
+  return st;
+}
+
+/* Parameters from the piece behind the name of the card on. */
+static status read_parameters(reader *r, int next, int nested, card *c) {
+  status st = OK;
+  parameter list[PARAMETER_MAX];
+  c->parameters = list;
+  while (next >= 0) {
+    int ok;
+    piece p = logical_piece(&r->line, next, nested);
+    if (p.length == 0 && p.next < 0) break; /* P1016 was given                */
+    next = p.next;
+    if (c->n_parameter == PARAMETER_MAX) {
+      report(r, P1033, p.start, "more than 64 parameters");
+      break;
+    }
+    parameter *new = &list[c->n_parameter];
+    TRY(read_parameter(r, p, new, &ok));
+    if (ok && card_parameter(c, new->name) != NULL)
+      message_add(r->log, P1005, &new->at, "%s is repeated", new->name);
+    else
+      c->n_parameter += ok;
+  }
+  size_t n = (size_t)c->n_parameter;
+  parameter *kept = store_room(r->d, n, sizeof *kept);
+  if (kept == NULL) FAIL(ERR_MEMORY, "memory exhausted: parameters");
+  if (n > 0) memcpy(kept, list, n * sizeof *kept);
+  c->parameters = kept;
+done:
+  return st;
+}
+
+/* ---- language cards ---------------------------------------------------- */
+
+static const char *next_name(const void *ctx, int i) {
+  return ((const char *const *)ctx)[i];
+}
+
+/* Refuse parameters that are not among the names (NULL at the end). */
+static void check_names(reader *r, const card *c, const char *const *names) {
+  for (int i = 0; i < c->n_parameter; ++i) {
+    const parameter *p = &c->parameters[i];
+    const char *const *name = names;
+    while (*name != NULL && strcmp(*name, p->name) != 0) ++name;
+    if (*name != NULL) continue;
+    const char *near = nearest_word(p->name, next_name, names);
+    message_add(r->log, P1004, &p->at,
+                near != NULL ? "unknown parameter %s of *%s; did you mean %s?"
+                             : "unknown parameter %s of *%s",
+                p->name, c->name, near);
+  }
+}
+
+/* The parameter the card cannot do without; NULL after a message. */
+static const parameter *needed(reader *r, const card *c, const char *name) {
+  const parameter *p = card_parameter(c, name);
+  if (p != NULL && p->has_value) return p;
+  message_add(r->log, p == NULL ? P1006 : P1007, &c->at, "*%s needs %s=VALUE",
+              c->name, name);
+  return NULL;
+}
+
+static status use_parameter(reader *r, const card *c) {
+  (void)c;
+  r->mode = DATA_DEFINITION;
+  return OK;
+}
+
+/* Data lines behind *INCLUDE, in the file or after it, belong to the card
+ * before: the mode stays. */
+static status use_include(reader *r, const card *c) {
+  status st = OK;
+  const parameter *input = needed(r, c, "INPUT");
+  if (input == NULL) goto done;
+  if (++r->n_include > INCLUDE_TOTAL) {
+    if (r->n_include == INCLUDE_TOTAL + 1)
+      message_add(r->log, P1018, &c->at, "more than %d includes",
+                  INCLUDE_TOTAL);
+    goto done;
+  }
+  const char *path = deck_path(r->d, &input->value);
+  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  TRY(source_open(r->d, r->log, path, &input->value.at, &r->top));
+done:
+  return st;
+}
+
+static void report_waiting(reader *r) {
+  if (r->waiting_format != NULL)
+    message_add(r->log, P1031, &r->legacy_at, "no card with data follows");
+}
+
+static status use_legacy(reader *r, const card *c) {
+  status st = OK;
+  const parameter *p = needed(r, c, "FORMAT");
+  report_waiting(r);
+  format_free(r->waiting_format);
+  r->waiting_format = NULL;
+  r->mode = DATA_REFUSED;
+  if (p == NULL) goto done;
+  r->legacy_at = c->at;
+  r->waiting_text = p->value.text;
+  st = format_read(p->value.text, &r->waiting_format);
+  if (st == ERR_DECK) {
+    message_add(r->log, P1027, &p->value.at, "%s in '%.200s'", status_message(),
+                p->value.text);
+    st = OK;
+  }
+  TRY(st);
+done:
+  return st;
+}
+
+typedef struct language_card {
+  const char *name;
+  int keeps_mode; /* data lines go on with the card before                    */
+  int nested;     /* commas inside parentheses are part of a value            */
+  status (*use)(reader *r, const card *c);
+  const char *names[2]; /* of parameters, NULL at the end                     */
+} language_card;
+
+/* clang-format off */
+static const language_card language_cards[] = {
+  {"PARAMETER", 0, 0, use_parameter, {NULL,     NULL}},
+  {"INCLUDE",   1, 0, use_include,   {"INPUT",  NULL}},
+  {"LEGACY",    0, 1, use_legacy,    {"FORMAT", NULL}},
+  {NULL,        0, 0, NULL,          {NULL,     NULL}},
+};
+/* clang-format on */
+
+static const language_card *find_language(const char *name) {
+  const language_card *l = language_cards;
+  while (l->name != NULL && strcmp(l->name, name) != 0) ++l;
+  return l->name != NULL ? l : NULL;
+}
+
+/* ---- cards and records ------------------------------------------------- */
+
+/* A card of the model: append it; the format that waits is for its data. */
+static status add_card(reader *r, card *c) {
+  status st = OK;
+  deck *d = r->d;
+  GROW(d->cards, d->n_card, d->own->card_capacity);
+  format_free(r->format);
+  r->format = r->waiting_format;
+  r->waiting_format = NULL;
+  c->format = r->format != NULL ? r->waiting_text : NULL;
+  d->cards[d->n_card++] = *c;
+  r->record_capacity = 0;
+  r->mode =
+      is_text_card(c->name) && r->format == NULL ? DATA_TEXT : DATA_RECORDS;
+done:
+  return st;
+}
+
+/* Name of the card into c; 0 after a message. */
+static status read_name(reader *r, piece p, card *c, int *ok) {
+  status st = OK;
+  const char *text = r->line.all.text + p.start;
+  const char *equals = memchr(text, '=', (size_t)p.length);
+  *ok = 0;
+  c->at = logical_place(&r->line, p.start);
+  c->name = store_name(r->d, text + 1, (size_t)p.length - 1);
+  if (c->name == NULL) FAIL(ERR_MEMORY, "memory exhausted: card");
+  if (*c->name == '\0')
+    message_add(r->log, P1009, &c->at, "a card without a name");
+  else if (equals != NULL)
+    report(r, P1010, (int)(equals - r->line.all.text),
+           "an equals sign in the name of a card; is a comma missing before?");
+  else
+    *ok = 1;
+done:
+  return st;
+}
+
+static status read_card(reader *r, const physical *line) {
+  status st = OK;
+  card c = {.n_parameter = 0};
+  int ok;
+  TRY(logical_read(r, line, LINE_FREE));
+  piece p = logical_piece(&r->line, 0, 0);
+  TRY(read_name(r, p, &c, &ok));
+  const language_card *language = ok ? find_language(c.name) : NULL;
+  r->excess_seen = 0;
+  r->stray_seen = 0;
+  if (!ok) {
+    r->mode = DATA_DROPPED;
+    goto done;
+  }
+  TRY(read_parameters(r, p.next, language != NULL && language->nested, &c));
+  if (language == NULL) {
+    TRY(add_card(r, &c));
+  } else {
+    if (!language->keeps_mode) r->mode = DATA_DROPPED;
+    check_names(r, &c, language->names);
+    TRY(language->use(r, &c));
+  }
+done:
+  return st;
+}
+
+/* Room for one more record of the last card, with its raw text and place. */
+static status add_record(reader *r, const physical *line, record **out) {
+  status st = OK;
+  card *c = &r->d->cards[r->d->n_card - 1];
+  GROW(c->records, c->n_record, r->record_capacity);
+  record *new = &c->records[c->n_record];
+  size_t blanks = 0;
+  new->raw = store_text(r->d, line->text, (size_t)line->length);
+  if (new->raw == NULL) FAIL(ERR_MEMORY, "memory exhausted: line");
+  while (is_blank(line->text[blanks])) ++blanks;
+  new->at = (place){source_file(r->top), line->line_no, (int)blanks + 1,
+                    new->raw, source_from(r->top)};
+  ++c->n_record;
+  *out = new;
+done:
+  return st;
+}
+
+static status read_text(reader *r, const physical *line) {
+  status st = OK;
+  record *new;
+  size_t length;
+  const char *text = trim(line->text, (size_t)line->length, &length);
+  TRY(add_record(r, line, &new));
+  new->fields = store_room(r->d, 1, sizeof *new->fields);
+  if (new->fields == NULL) FAIL(ERR_MEMORY, "memory exhausted: field");
+  new->n_field = 1;
+  new->fields->at = new->at;
+  TRY(symbols_replace(r, text, length, REPLACE_LENIENT, &new->at,
+                      &new->fields->text));
+done:
+  return st;
+}
+
+static status read_fixed(reader *r, const physical *line) {
+  status st = OK;
+  record *new;
+  TRY(add_record(r, line, &new));
+  TRY(format_record(r, r->format, line, new));
+done:
+  return st;
+}
+
+/* Fields of the logical line; an empty one at the end does not count. */
+static int count_fields(const logical *l) {
+  int n = 0;
+  piece p = {.next = 0};
+  while (p.next >= 0) {
+    p = logical_piece(l, p.next, 0);
+    if (p.length > 0 || p.next >= 0) ++n;
+  }
+  return n > 0 ? n : 1;
+}
+
+static status read_record(reader *r, const physical *line) {
+  status st = OK;
+  record *new;
+  TRY(add_record(r, line, &new));
+  TRY(logical_read(r, line, LINE_FREE));
+  int n = count_fields(&r->line);
+  new->fields = store_room(r->d, (size_t)n, sizeof *new->fields);
+  if (new->fields == NULL) FAIL(ERR_MEMORY, "memory exhausted: fields");
+  piece p = {.next = 0};
+  for (; new->n_field < n; ++new->n_field) {
+    p = logical_piece(&r->line, p.next, 0);
+    TRY(field_read(r, p, 0, &new->fields[new->n_field]));
+  }
+done:
+  return st;
+}
+
+/* A data line where none may stand: one message for the lines that follow
+ * each other. */
+static void refuse_line(reader *r, const physical *line) {
+  if (r->stray_seen) return;
+  place at = {source_file(r->top), line->line_no, 1, line->text,
+              source_from(r->top)};
+  while (is_blank(line->text[at.column_no - 1])) ++at.column_no;
+  if (r->mode == DATA_EARLY)
+    message_add(r->log, P1015, &at, "data before the first card");
+  else
+    message_add(r->log, P1032, &at, "the card above takes no data lines");
+  r->stray_seen = 1;
+}
+
+static status read_data(reader *r, const physical *line) {
+  status st = OK;
+  switch (r->mode) {
+    case DATA_RECORDS:
+      TRY(r->format != NULL ? read_fixed(r, line) : read_record(r, line));
+      break;
+    case DATA_TEXT:
+      TRY(read_text(r, line));
+      break;
+    case DATA_DEFINITION:
+      TRY(logical_read(r, line, LINE_DEFINITION));
+      TRY(symbols_define(r));
+      break;
+    case DATA_EARLY:
+    case DATA_REFUSED:
+      refuse_line(r, line);
+      break;
+    default:
+      break;
+  }
+done:
+  return st;
+}
+
+/* ---- the whole deck ---------------------------------------------------- */
+
+static status read_all(reader *r) {
+  status st = OK;
+  while (r->top != NULL) {
+    const physical *line;
+    TRY(source_next(r->top, r->log, &line));
+    if (line == NULL) {
+      source_pop(&r->top);
+      continue;
+    }
+    const char *p = line->text;
+    while (is_blank(*p)) ++p;
+    TRY(*p == '*' ? read_card(r, line) : read_data(r, line));
+  }
+  report_waiting(r);
+  if (r->d->n_card == 0 && message_count(r->log, ERROR) == 0) {
+    place at = {.file = r->d->file};
+    message_add(r->log, P1002, &at, "no card in the file");
+  }
+done:
+  return st;
+}
+
+static void reader_free(reader *r) {
+  while (r->top != NULL) source_pop(&r->top);
+  logical_free(&r->line);
+  memory_free(r->scratch.text);
+  format_free(r->format);
+  format_free(r->waiting_format);
+}
+
+status deck_read(const char *file, int n_define, const char *const *defines,
+                 message_log *log, deck **out) {
+  status st = OK;
+  reader r = {.log = log, .mode = DATA_EARLY};
+  *out = NULL;
+  NEW(r.d, 1);
+  NEW(r.d->own, 1);
+  TRY(source_open(r.d, log, file, NULL, &r.top));
+  if (r.top == NULL) FAIL(ERR_FILE, "cannot read %s", file);
+  r.d->file = source_file(r.top);
+  for (int i = 0; i < n_define; ++i) TRY(symbols_from_command(&r, defines[i]));
+  TRY(read_all(&r));
+  *out = r.d;
+  r.d = NULL;
+done:
+  reader_free(&r);
+  deck_free(r.d);
+  return st;
+}

@@ -1,0 +1,286 @@
+/*
+ * Fixed columns: a Fortran format is unrolled into columns, which cut a line
+ * into the fields of a record. Groups are unrolled with a stack of their own;
+ * each turn of a group must take columns, so that the work is bounded.
+ */
+#include "base/memory.h"
+#include "base/number.h"
+#include "deck/reader.h"
+
+#include <string.h>
+
+enum { GROUP_MAX = 8, COUNT_MAX = 1000000 };
+
+typedef struct column_field {
+  char kind; /* I, F (also E, D, G) or A                                      */
+  int start, width, decimals;
+} column_field;
+
+struct format {
+  int n, capacity;
+  column_field *fields; /* [n]                                                */
+  int width;            /* columns in all                                     */
+};
+
+typedef struct group {
+  const char *start; /* behind the parenthesis                                */
+  int left;          /* turns to come                                         */
+  int width;         /* columns taken when this turn began                    */
+} group;
+
+typedef struct unroller {
+  format *f;
+  const char *text, *p;
+  int n_group;
+  group groups[GROUP_MAX];
+} unroller;
+
+void format_free(format *f) {
+  if (f == NULL) return;
+  memory_free(f->fields);
+  memory_free(f);
+}
+
+static void skip(unroller *u) {
+  while (is_blank(*u->p)) ++u->p;
+}
+
+/* Whole number at u->p, or "absent" if there is none. */
+static int read_count(unroller *u, int absent) {
+  int n = 0;
+  skip(u);
+  if (*u->p < '0' || *u->p > '9') return absent;
+  for (; *u->p >= '0' && *u->p <= '9'; ++u->p)
+    if (n < COUNT_MAX) n = 10 * n + (*u->p - '0');
+  skip(u);
+  return n;
+}
+
+/* Behind the width: .d of a real, .m of an integer, Ee of an exponent. */
+static int read_decimals(unroller *u, char letter) {
+  int decimals = 0;
+  if (*u->p == '.' && letter != 'A') {
+    ++u->p;
+    decimals = read_count(u, 0);
+  }
+  if (upper_case(*u->p) == 'E' && strchr("EDG", letter) != NULL) {
+    ++u->p;
+    (void)read_count(u, 0);
+  }
+  return letter == 'I' ? 0 : decimals;
+}
+
+static status add_fields(unroller *u, const column_field *c, int count) {
+  status st = OK;
+  format *f = u->f;
+  for (int i = 0; i < count; ++i) {
+    if (c->width > FORMAT_MAX - f->width)
+      FAIL(ERR_DECK, "more than %d columns", FORMAT_MAX);
+    if (c->kind != 'X') {
+      GROW(f->fields, f->n, f->capacity);
+      f->fields[f->n] = *c;
+      f->fields[f->n++].start = f->width;
+    }
+    f->width += c->width;
+  }
+done:
+  return st;
+}
+
+static status read_item(unroller *u, int count) {
+  status st = OK;
+  char letter = upper_case(*u->p);
+  column_field c = {letter, 0, 1, 0};
+  if (letter == '\0' || strchr("IFEDGAX", letter) == NULL)
+    FAIL(ERR_DECK, "I, F, E, D, G, A or X expected at character %d",
+         (int)(u->p - u->text) + 1);
+  ++u->p;
+  if (letter != 'X') {
+    c.width = read_count(u, 0);
+    if (c.width < 1) FAIL(ERR_DECK, "%c without a width", letter);
+    c.decimals = read_decimals(u, letter);
+    if (c.decimals > FORMAT_MAX) c.decimals = FORMAT_MAX;
+    if (letter != 'I' && letter != 'A') c.kind = 'F';
+  }
+  TRY(add_fields(u, &c, count));
+done:
+  return st;
+}
+
+static status open_group(unroller *u, int count) {
+  status st = OK;
+  if (u->n_group == GROUP_MAX)
+    FAIL(ERR_DECK, "groups more than %d deep", GROUP_MAX);
+  ++u->p;
+  u->groups[u->n_group++] = (group){u->p, count - 1, u->f->width};
+done:
+  return st;
+}
+
+/* At a closing parenthesis: once more, or on behind it. */
+static status close_group(unroller *u) {
+  status st = OK;
+  group *g = &u->groups[u->n_group - 1];
+  if (u->f->width == g->width) FAIL(ERR_DECK, "a group without columns");
+  ++u->p;
+  if (g->left > 0) {
+    --g->left;
+    g->width = u->f->width;
+    u->p = g->start;
+  } else {
+    --u->n_group;
+  }
+done:
+  return st;
+}
+
+/* From an item to behind the comma or parenthesis that follows it. */
+static status read_next(unroller *u) {
+  status st = OK;
+  int count = read_count(u, 1);
+  if (count < 1) FAIL(ERR_DECK, "a repeat count of zero");
+  if (*u->p == '(') {
+    TRY(open_group(u, count));
+    goto done;
+  }
+  TRY(read_item(u, count));
+  for (skip(u); *u->p == ')' && u->n_group > 0; skip(u)) {
+    int groups = u->n_group;
+    TRY(close_group(u));
+    if (u->n_group == groups) goto done; /* once more                         */
+  }
+  if (u->n_group == 0) goto done;
+  if (*u->p == '\0') FAIL(ERR_DECK, "')' missing at the end");
+  if (*u->p != ',')
+    FAIL(ERR_DECK, "a comma is missing at character %d",
+         (int)(u->p - u->text) + 1);
+  ++u->p;
+done:
+  return st;
+}
+
+status format_read(const char *text, format **out) {
+  status st = OK;
+  unroller u = {.text = text, .p = text};
+  *out = NULL;
+  NEW(u.f, 1);
+  skip(&u);
+  if (*u.p != '(') FAIL(ERR_DECK, "'(' expected at the start");
+  TRY(open_group(&u, 1));
+  while (u.n_group > 0) TRY(read_next(&u));
+  skip(&u);
+  if (*u.p != '\0') FAIL(ERR_DECK, "text after the last ')'");
+  *out = u.f;
+  u.f = NULL;
+done:
+  format_free(u.f);
+  return st;
+}
+
+/* Text of a column field within the line, blanks cut. */
+static const char *cut_column(const column_field *c, const physical *line,
+                              size_t *length) {
+  *length = 0;
+  if (c->start >= line->length) return line->text + line->length;
+  int rest = line->length - c->start;
+  return trim(line->text + c->start,
+              (size_t)(rest < c->width ? rest : c->width), length);
+}
+
+/* Put the point of Fw.d into digits that have none. */
+static status add_point(buffer *b, const char *text, int decimals) {
+  status st = OK;
+  size_t sign = *text == '+' || *text == '-';
+  size_t n = strspn(text + sign, "0123456789");
+  size_t d = (size_t)decimals, whole = n > d ? n - d : 0;
+  b->n = 0;
+  TRY(buffer_add(b, text, sign + whole));
+  TRY(buffer_add(b, ".", 1));
+  for (size_t zeros = n < d ? d - n : 0; zeros > 0; --zeros)
+    TRY(buffer_add(b, "0", 1));
+  TRY(buffer_add(b, text + sign + whole, strlen(text + sign + whole)));
+done:
+  return st;
+}
+
+/* Check a numeric column field; a real without point gets that of Fw.d. */
+static status settle_number(reader *r, const column_field *c, field *f,
+                            int named) {
+  status st = OK;
+  double real;
+  int whole;
+  const char *wrong = c->kind == 'I' ? number_int(f->text, &whole)
+                                     : number_real(f->text, &real);
+  if (wrong != NULL) {
+    message_add(r->log, P1028, &f->at, "%s in columns %d-%d: '%.200s'", wrong,
+                c->start + 1, c->start + c->width, f->text);
+    f->text = "1"; /* no message follows from it                              */
+  } else if (c->kind == 'F' && !named && c->decimals > 0 &&
+             strchr(f->text, '.') == NULL) {
+    TRY(add_point(&r->scratch, f->text, c->decimals));
+    f->text = store_text(r->d, r->scratch.text, (size_t)r->scratch.n);
+    if (f->text == NULL) FAIL(ERR_MEMORY, "memory exhausted: field");
+  }
+done:
+  return st;
+}
+
+static status read_column(reader *r, const column_field *c,
+                          const physical *line, const place *whole, field *f) {
+  status st = OK;
+  size_t length;
+  const char *text = cut_column(c, line, &length);
+  f->at = *whole;
+  f->at.column_no = (int)(length > 0 ? text - line->text : c->start) + 1;
+  if (length == 0) {
+    f->text = c->kind == 'A' ? "" : "0";
+    goto done;
+  }
+  TRY(symbols_replace(r, text, length, REPLACE_PLAIN, &f->at, &f->text));
+  if (c->kind != 'A')
+    TRY(settle_number(r, c, f, memchr(text, '<', length) != NULL));
+done:
+  return st;
+}
+
+/* Number of fields up to the last one that is filled; at least 1. */
+static int filled_fields(const format *f, const physical *line) {
+  int n = f->n;
+  size_t length = 0;
+  for (; n > 1; --n) {
+    (void)cut_column(&f->fields[n - 1], line, &length);
+    if (length > 0) break;
+  }
+  return n;
+}
+
+static void check_rest(reader *r, const format *f, const physical *line,
+                       const place *whole) {
+  place at = *whole;
+  const char *tab = memchr(line->text, '\t', (size_t)line->length);
+  if (tab != NULL) {
+    at.column_no = (int)(tab - line->text) + 1;
+    message_add(r->log, P1029, &at, "a tab in fixed columns");
+  }
+  if (line->length <= f->width || r->excess_seen) return;
+  size_t length;
+  const char *rest =
+      trim(line->text + f->width, (size_t)(line->length - f->width), &length);
+  if (length == 0) return;
+  at.column_no = (int)(rest - line->text) + 1;
+  message_add(r->log, P1030, &at, "text after column %d is not read", f->width);
+  r->excess_seen = 1;
+}
+
+status format_record(reader *r, const format *f, const physical *line,
+                     record *out) {
+  status st = OK;
+  out->n_field = filled_fields(f, line);
+  out->fields = store_room(r->d, (size_t)out->n_field, sizeof *out->fields);
+  if (out->fields == NULL) FAIL(ERR_MEMORY, "memory exhausted: fields");
+  check_rest(r, f, line, &out->at);
+  for (int i = 0; i < out->n_field; ++i)
+    TRY(read_column(r, &f->fields[i], line, &out->at, &out->fields[i]));
+done:
+  return st;
+}

@@ -1,0 +1,203 @@
+/*
+ * Physical lines of the files of a deck. Blank lines and comment lines are
+ * passed over here; what a line means is decided elsewhere.
+ */
+#include "base/memory.h"
+#include "deck/reader.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { BLOCK = 1 << 16 };
+
+struct source {
+  source *below; /* the file that includes this one, or NULL                  */
+  const char *file;
+  const place *from; /* of the *INCLUDE, or NULL                              */
+  FILE *stream;
+  dev_t device; /* with inode: which file it is, whatever its name            */
+  ino_t inode;
+  int n_block, at; /* bytes in the block, next one                            */
+  int line_no, held, ended, depth;
+  physical line;
+  char text[LINE_MAX_BYTES + 1];
+  char block[BLOCK];
+};
+
+const char *source_file(const source *s) { return s->file; }
+const place *source_from(const source *s) { return s->from; }
+void source_hold(source *s) { s->held = 1; }
+
+void source_pop(source **top) {
+  source *s = *top;
+  if (s == NULL) return;
+  *top = s->below;
+  if (s->stream != NULL) fclose(s->stream);
+  memory_free(s);
+}
+
+/* Next byte, or EOF. */
+static int next_byte(source *s) {
+  if (s->at == s->n_block) {
+    s->n_block = (int)fread(s->block, 1, BLOCK, s->stream);
+    s->at = 0;
+    if (s->n_block == 0) return EOF;
+  }
+  return (unsigned char)s->block[s->at++];
+}
+
+/* A byte order mark at the start of the file is passed over. */
+static void skip_mark(source *s) {
+  if (next_byte(s) != EOF) --s->at;
+  if (s->n_block - s->at >= 3 &&
+      memcmp(s->block + s->at, "\xEF\xBB\xBF", 3) == 0)
+    s->at += 3;
+}
+
+static place place_here(const source *s, int column, const char *line) {
+  return (place){s->file, s->line_no, column, line, s->from};
+}
+
+/* LF, CR and CR LF end a line. */
+static int ends_line(source *s, int c) {
+  if (c == '\r') {
+    int next = next_byte(s);
+    if (next != '\n' && next != EOF) --s->at;
+    return 1;
+  }
+  return c == '\n';
+}
+
+typedef enum { GOT_LINE, GOT_LONG, GOT_NUL, GOT_END } got;
+
+/* One line into s->text. After GOT_LONG the rest of the line is consumed. */
+static got read_line(source *s) {
+  int n = 0, c, too_long = 0;
+  ++s->line_no;
+  while ((c = next_byte(s)) != EOF) {
+    if (ends_line(s, c)) {
+      s->text[n] = '\0';
+      s->line.length = n;
+      return too_long ? GOT_LONG : GOT_LINE;
+    }
+    s->text[n] = '\0';
+    if (c == '\0') return GOT_NUL;
+    if (n == LINE_MAX_BYTES)
+      too_long = 1;
+    else
+      s->text[n++] = (char)c;
+  }
+  s->ended = 1;
+  s->text[n] = '\0';
+  s->line.length = n;
+  return too_long ? GOT_LONG : n > 0 ? GOT_LINE : GOT_END;
+}
+
+static int is_empty_or_comment(const char *p) {
+  while (is_blank(*p)) ++p;
+  return *p == '\0' || (p[0] == '*' && p[1] == '*');
+}
+
+static void report(source *s, message_log *log, got what) {
+  place at;
+  if (what == GOT_NUL) {
+    at = place_here(s, (int)strlen(s->text) + 1, s->text);
+    message_add(log, P1013, &at, "NUL byte: the file is not plain text");
+    s->ended = 1;
+  } else if (what == GOT_LONG) {
+    at = place_here(s, LINE_MAX_BYTES + 1, s->text);
+    message_add(log, P1014, &at, "line of more than %d characters",
+                LINE_MAX_BYTES);
+  }
+}
+
+status source_next(source *s, message_log *log, const physical **line) {
+  *line = &s->line;
+  if (s->held) {
+    s->held = 0;
+    return OK;
+  }
+  while (!s->ended) {
+    got what = read_line(s);
+    report(s, log, what);
+    if (what == GOT_LINE && !is_empty_or_comment(s->text)) {
+      s->line.text = s->text;
+      s->line.line_no = s->line_no;
+      return OK;
+    }
+  }
+  if (ferror(s->stream)) {
+    place at = place_here(s, 0, NULL);
+    message_add(log, P1001, &at, "reading stopped: %s", strerror(errno));
+    clearerr(s->stream);
+  }
+  *line = NULL;
+  return OK;
+}
+
+/* Is the file just opened one that is still being read? */
+static int is_open_already(const source *s) {
+  for (const source *p = s->below; p != NULL; p = p->below)
+    if (p->device == s->device && p->inode == s->inode) return 1;
+  return 0;
+}
+
+/* Open and check; 0, or -1 after a message. */
+static int open_stream(source *s, message_log *log, const place *at) {
+  struct stat info;
+  place whole = {.file = s->file};
+  const char *why = NULL;
+  s->stream = fopen(s->file, "rb");
+  if (s->stream == NULL || fstat(fileno(s->stream), &info) != 0)
+    why = strerror(errno);
+  else if (S_ISDIR(info.st_mode))
+    why = "it is a folder";
+  if (why != NULL) {
+    message_add(log, P1001, at != NULL ? at : &whole, "cannot read %s: %s",
+                s->file, why);
+    return -1;
+  }
+  skip_mark(s);
+  s->device = info.st_dev;
+  s->inode = info.st_ino;
+  if (is_open_already(s)) {
+    message_add(log, P1017, at, "%s includes itself", s->file);
+    return -1;
+  }
+  if (s->depth > INCLUDE_DEPTH) {
+    message_add(log, P1018, at, "includes more than %d deep", INCLUDE_DEPTH);
+    return -1;
+  }
+  return 0;
+}
+
+static status note_file(deck *d, const char *file) {
+  status st = OK;
+  GROW(d->files, d->n_file, d->own->file_capacity);
+  d->files[d->n_file++] = file;
+done:
+  return st;
+}
+
+status source_open(deck *d, message_log *log, const char *file, const place *at,
+                   source **top) {
+  status st = OK;
+  source *s = NULL;
+  NEW(s, 1);
+  s->below = *top;
+  s->depth = *top != NULL ? (*top)->depth + 1 : 0;
+  s->file = store_text(d, file, strlen(file));
+  if (s->file == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  if (at != NULL) {
+    s->from = store_place(d, at);
+    if (s->from == NULL) FAIL(ERR_MEMORY, "memory exhausted: place");
+  }
+  if (open_stream(s, log, at) != 0) goto done;
+  TRY(note_file(d, s->file));
+  *top = s;
+  s = NULL;
+done:
+  if (s != NULL) source_pop(&s);
+  return st;
+}

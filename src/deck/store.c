@@ -1,0 +1,137 @@
+/*
+ * The memory of a deck: chunks that are never moved, so that what points into
+ * them stays valid, and small helpers for texts.
+ */
+#include "base/memory.h"
+#include "deck/reader.h"
+
+#include <stdint.h>
+#include <string.h>
+
+enum { CHUNK_BYTES = 1 << 16, ALIGN = 16 };
+
+struct chunk {
+  chunk *next;
+  size_t used, size;
+  char *room; /* [size]                                                       */
+};
+
+static chunk *new_chunk(deck *d, size_t size) {
+  chunk *c = memory_new(1, sizeof *c);
+  if (c == NULL) return NULL;
+  c->size = size > CHUNK_BYTES ? size : CHUNK_BYTES;
+  c->room = memory_new(c->size, 1);
+  if (c->room == NULL) {
+    memory_free(c);
+    return NULL;
+  }
+  c->next = d->own->last;
+  d->own->last = c;
+  return c;
+}
+
+static void *take(deck *d, size_t bytes, size_t align) {
+  chunk *c = d->own->last;
+  size_t start = c != NULL ? (c->used + align - 1) & ~(align - 1) : 0;
+  if (c == NULL || start > c->size || bytes > c->size - start) {
+    c = new_chunk(d, bytes);
+    if (c == NULL) return NULL;
+    start = 0;
+  }
+  c->used = start + bytes;
+  return c->room + start;
+}
+
+void *store_room(deck *d, size_t n, size_t size) {
+  if (size != 0 && n > SIZE_MAX / 2 / size) return NULL;
+  return take(d, n * size, ALIGN);
+}
+
+char *store_text(deck *d, const char *text, size_t n) {
+  char *copy = take(d, n + 1, 1);
+  if (copy == NULL) return NULL;
+  if (n > 0) memcpy(copy, text, n);
+  copy[n] = '\0';
+  return copy;
+}
+
+const place *store_place(deck *d, const place *p) {
+  place *copy = store_room(d, 1, sizeof *copy);
+  if (copy != NULL) *copy = *p;
+  return copy;
+}
+
+status buffer_add(buffer *b, const char *text, size_t n) {
+  status st = OK;
+  if (n > INT32_MAX / 4 || b->n > INT32_MAX / 4)
+    FAIL(ERR_MEMORY, "a line of more than %d bytes", INT32_MAX / 4);
+  while ((size_t)b->n + n + 1 > (size_t)b->capacity)
+    GROW(b->text, b->capacity, b->capacity);
+  if (n > 0) memcpy(b->text + b->n, text, n);
+  b->n += (int)n;
+  b->text[b->n] = '\0';
+done:
+  return st;
+}
+
+char upper_case(char c) {
+  return c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+}
+
+int is_blank(char c) { return c == ' ' || c == '\t'; }
+
+int is_name_start(char c) {
+  return (upper_case(c) >= 'A' && upper_case(c) <= 'Z') || c == '_';
+}
+
+int is_name_part(char c) { return is_name_start(c) || (c >= '0' && c <= '9'); }
+
+const char *trim(const char *text, size_t n, size_t *length) {
+  while (n > 0 && is_blank(*text)) {
+    ++text;
+    --n;
+  }
+  while (n > 0 && is_blank(text[n - 1])) --n;
+  *length = n;
+  return text;
+}
+
+char *store_name(deck *d, const char *text, size_t n) {
+  size_t length, used = 0;
+  const char *p = trim(text, n, &length);
+  char *name = store_text(d, p, length);
+  if (name == NULL) return NULL;
+  for (size_t i = 0; i < length; ++i)
+    if (!is_blank(p[i]))
+      name[used++] = upper_case(p[i]);
+    else if (!is_blank(p[i - 1]))
+      name[used++] = ' ';
+  name[used] = '\0';
+  return name;
+}
+
+static void free_chunks(chunk *c) {
+  while (c != NULL) {
+    chunk *next = c->next;
+    memory_free(c->room);
+    memory_free(c);
+    c = next;
+  }
+}
+
+void deck_free(deck *d) {
+  if (d == NULL) return;
+  for (int i = 0; i < d->n_card; ++i) memory_free(d->cards[i].records);
+  memory_free(d->cards);
+  memory_free(d->symbols);
+  memory_free((void *)d->files);
+  if (d->own != NULL) {
+    for (int i = 0; i < d->own->n_expression; ++i)
+      expression_free(d->own->expressions[i]);
+    memory_free(d->own->expressions);
+    memory_free(d->own->slot);
+    free_chunks(d->own->last);
+    memory_free(d->own);
+  }
+  memory_free(d);
+}

@@ -1,0 +1,342 @@
+/*
+ * Names of *PARAMETER and -D: a hash table over deck.symbols, definition,
+ * and replacement of <NAME>.
+ */
+#include "base/memory.h"
+#include "base/number.h"
+#include "base/option.h"
+#include "deck/reader.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+  ADVICE_MAX = 2000
+}; /* names looked through for the nearest            */
+
+static unsigned hash_name(const char *name, size_t n) {
+  unsigned h = 2166136261u;
+  for (size_t i = 0; i < n; ++i)
+    h = (h ^ (unsigned char)upper_case(name[i])) * 16777619u;
+  return h ^ (h >> 15);
+}
+
+static int same_name(const char *stored, const char *name, size_t n) {
+  for (size_t i = 0; i < n; ++i)
+    if (stored[i] != upper_case(name[i])) return 0;
+  return stored[n] == '\0';
+}
+
+/* Slot of the name, or the free one where it belongs; NULL: no table yet. */
+static int *find_slot(const deck *d, const char *name, size_t n) {
+  const struct deck_text *own = d->own;
+  if (own->n_slot == 0) return NULL;
+  unsigned mask = (unsigned)own->n_slot - 1, i = hash_name(name, n) & mask;
+  while (own->slot[i] != 0 &&
+         !same_name(d->symbols[own->slot[i] - 1].name, name, n))
+    i = (i + 1) & mask;
+  return &own->slot[i];
+}
+
+static symbol *find_symbol(const deck *d, const char *name, size_t n) {
+  const int *slot = find_slot(d, name, n);
+  return slot != NULL && *slot != 0 ? &d->symbols[*slot - 1] : NULL;
+}
+
+int deck_symbol(const void *deck_, const char *name, double *value) {
+  const symbol *s = find_symbol(deck_, name, strlen(name));
+  if (s != NULL) *value = s->value;
+  return s != NULL;
+}
+
+/* At most half of the slots are taken. */
+static status make_room(deck *d) {
+  status st = OK;
+  struct deck_text *own = d->own;
+  int *slots = NULL;
+  if (2 * (d->n_symbol + 1) <= own->n_slot) goto done;
+  int n = own->n_slot > 0 ? 2 * own->n_slot : 64;
+  NEW(slots, n);
+  memory_free(own->slot);
+  own->slot = slots;
+  own->n_slot = n;
+  for (int i = 0; i < d->n_symbol; ++i)
+    *find_slot(d, d->symbols[i].name, strlen(d->symbols[i].name)) = i + 1;
+done:
+  return st;
+}
+
+static status add_symbol(deck *d, const char *name, size_t n, symbol **out) {
+  status st = OK;
+  GROW(d->symbols, d->n_symbol, d->own->symbol_capacity);
+  TRY(make_room(d));
+  symbol *s = &d->symbols[d->n_symbol];
+  s->name = store_name(d, name, n);
+  if (s->name == NULL) FAIL(ERR_MEMORY, "memory exhausted: name");
+  *find_slot(d, name, n) = ++d->n_symbol;
+  *out = s;
+done:
+  return st;
+}
+
+static const char *next_symbol(const void *ctx, int i) {
+  const deck *d = ctx;
+  return i < d->n_symbol && i < ADVICE_MAX ? d->symbols[i].name : NULL;
+}
+
+/* "; did you mean NAME?" or nothing, into text. */
+static void suggest(const deck *d, message_log *log, const char *name,
+                    const char *mark, buffer *text) {
+  const char *near = NULL;
+  if (message_wanted(log, ERROR)) near = nearest_word(name, next_symbol, d);
+  if (near == NULL) return;
+  (void)buffer_add(text, "; did you mean ", 15);
+  (void)buffer_add(text, mark, strlen(mark));
+  (void)buffer_add(text, near, strlen(near));
+  (void)buffer_add(text, mark[0] == '<' ? ">?" : "?", mark[0] == '<' ? 2 : 1);
+}
+
+/* Without memory for the advice the message goes without it. */
+static void report_unknown(reader *r, const place *at, const char *name) {
+  buffer advice = {NULL, 0, 0};
+  suggest(r->d, r->log, name, "<", &advice);
+  message_add(r->log, P1020, at, "unknown name <%s>%s", name,
+              advice.text != NULL ? advice.text : "");
+  memory_free(advice.text);
+}
+
+void report_expression(const deck *d, message_log *log, const place *at,
+                       const char *text, int start, int column) {
+  static const char unknown[] = "unknown name ";
+  buffer why = {NULL, 0, 0};
+  place there = *at;
+  if (start >= 0 && at->line != NULL && (size_t)start <= strlen(at->line) &&
+      strncmp(at->line + start, text, strlen(text)) == 0)
+    there.column_no = start + column + 1;
+  (void)buffer_add(&why, status_message(), strlen(status_message()));
+  if (strncmp(status_message(), unknown, sizeof unknown - 1) == 0)
+    suggest(d, log, status_message() + sizeof unknown - 1, "", &why);
+  message_add(log, P1022, &there, "%s in expression '%.200s'",
+              why.text != NULL ? why.text : "not valid", text);
+  memory_free(why.text);
+}
+
+/* Length of a name between < and >, or 0. */
+static size_t name_in_brackets(const char *p, const char *end) {
+  const char *q = p + 1;
+  if (q >= end || !is_name_start(*q)) return 0;
+  while (q < end && is_name_part(*q)) ++q;
+  return q < end && *q == '>' ? (size_t)(q - p - 1) : 0;
+}
+
+/* In an expression 0<x>1 is a comparison. */
+static int left_alone(replacing how, const char *name, size_t n) {
+  if (how == REPLACE_LENIENT) return 1;
+  return how == REPLACE_EXPRESSION && n == 1 &&
+         strchr("XYZT", upper_case(*name)) != NULL;
+}
+
+static status add_value(buffer *b, double value, replacing how) {
+  status st = OK;
+  char digits[NUMBER_TEXT_SIZE];
+  const char *p = digits;
+  number_text(value, digits);
+  int in_parentheses = how == REPLACE_EXPRESSION && *p == '-';
+  if (how != REPLACE_EXPRESSION && *p == '-' && b->n == 1 &&
+      (b->text[0] == '-' || b->text[0] == '+')) {
+    p += b->text[0] == '-'; /* - of a negative value                          */
+    b->n = 0;
+  }
+  if (in_parentheses) TRY(buffer_add(b, "(", 1));
+  TRY(buffer_add(b, p, strlen(p)));
+  if (in_parentheses) TRY(buffer_add(b, ")", 1));
+done:
+  return st;
+}
+
+/* Value of <NAME>; unknown: 1 after the message, so that no other follows. */
+static status add_named(reader *r, const char *name, size_t n, replacing how,
+                        const place *at) {
+  status st = OK;
+  const symbol *s = find_symbol(r->d, name, n);
+  if (s == NULL && left_alone(how, name, n)) {
+    TRY(buffer_add(&r->scratch, name - 1, n + 2));
+  } else if (s == NULL) {
+    const char *unknown = store_name(r->d, name, n);
+    if (unknown == NULL) FAIL(ERR_MEMORY, "memory exhausted: name");
+    report_unknown(r, at, unknown);
+    TRY(buffer_add(&r->scratch, "1", 1));
+  } else {
+    TRY(add_value(&r->scratch, s->value, how));
+  }
+done:
+  return st;
+}
+
+status symbols_replace(reader *r, const char *text, size_t n, replacing how,
+                       const place *at, const char **out) {
+  status st = OK;
+  const char *p = text, *end = text + n;
+  const char *open = n > 0 ? memchr(p, '<', n) : NULL;
+  r->scratch.n = 0;
+  while (open != NULL) {
+    size_t length = name_in_brackets(open, end);
+    size_t before = (size_t)(open - p) + (length == 0);
+    TRY(buffer_add(&r->scratch, p, before));
+    p += before;
+    if (length > 0) {
+      place there = *at;
+      there.column_no += (int)(open - text);
+      TRY(add_named(r, open + 1, length, how, &there));
+      p = open + length + 2;
+    }
+    open = p < end ? memchr(p, '<', (size_t)(end - p)) : NULL;
+  }
+  TRY(buffer_add(&r->scratch, p, (size_t)(end - p)));
+  *out = store_text(r->d, r->scratch.text, (size_t)r->scratch.n);
+  if (*out == NULL) FAIL(ERR_MEMORY, "memory exhausted: text");
+done:
+  return st;
+}
+
+/* Value of an expression that must not depend on place and time; 1 after a
+ * message. "start": byte of the text in the line, for the column. */
+static status constant_value(reader *r, const char *text, int start,
+                             const place *at, double *value) {
+  status st = OK;
+  expression *e = NULL;
+  int column;
+  const double origin[3] = {0, 0, 0};
+  *value = 1;
+  st = expression_compile(text, deck_symbol, r->d, &e, &column);
+  if (st == ERR_DECK) {
+    report_expression(r->d, r->log, at, text, start, column);
+    st = OK;
+    goto done;
+  }
+  TRY(st);
+  if (expression_variables(e) != 0) {
+    message_add(r->log, P1022, at,
+                "'%.200s' depends on x, y, z or t; a parameter of that name "
+                "is written <NAME>",
+                text);
+    goto done;
+  }
+  double x = expression_value(e, origin, 0);
+  if (isfinite(x))
+    *value = x;
+  else
+    message_add(r->log, P1023, at, "'%.200s' is not finite", text);
+done:
+  expression_free(e);
+  return st;
+}
+
+/* The value part of NAME = VALUE. 1.5+03 alone is a number, as anywhere. */
+static status definition_value(reader *r, const char *text, size_t n,
+                               const place *at, double *value) {
+  status st = OK;
+  const char *replaced, *raw = store_text(r->d, text, n);
+  if (raw == NULL) FAIL(ERR_MEMORY, "memory exhausted: definition");
+  if (strchr(raw, '.') != NULL && number_bare_exponent(raw) &&
+      number_real(raw, value) == NULL)
+    goto done;
+  TRY(symbols_replace(r, text, n, REPLACE_EXPRESSION, at, &replaced));
+  TRY(constant_value(r, replaced, at->column_no - 1, at, value));
+done:
+  return st;
+}
+
+typedef struct definition {
+  const char *name, *value;
+  size_t n_name, n_value;
+} definition;
+
+/* Cut NAME = VALUE; NULL, or what is wrong. */
+static const char *cut_definition(const char *text, size_t n, definition *d) {
+  const char *end = text + n, *equals = n > 0 ? memchr(text, '=', n) : NULL;
+  if (equals == NULL) return "NAME = VALUE expected";
+  d->name = trim(text, (size_t)(equals - text), &d->n_name);
+  d->value = trim(equals + 1, (size_t)(end - equals - 1), &d->n_value);
+  if (d->n_name == 0) return "no name before the equals sign";
+  for (size_t i = 0; i < d->n_name; ++i)
+    if (!is_name_part(d->name[i]) || !is_name_start(d->name[0]))
+      return "a name is a letter followed by letters, digits and underscores";
+  if (d->n_value > 0 && d->value[0] == '=') return "one equals sign expected";
+  if (d->n_value > 1 && d->value[0] == '"' && d->value[d->n_value - 1] == '"') {
+    ++d->value;
+    d->n_value -= 2;
+  }
+  d->value = trim(d->value, d->n_value, &d->n_value);
+  return d->n_value == 0 ? "no value after the equals sign" : NULL;
+}
+
+static void warn_of_variable(reader *r, const symbol *s, const place *at) {
+  if (strcmp(s->name, "PI") != 0 &&
+      (s->name[1] != '\0' || strchr("XYZT", s->name[0]) == NULL))
+    return;
+  message_add(r->log, P1034, at,
+              "%s keeps its own meaning in expressions; the value is <%s>",
+              s->name, s->name);
+}
+
+static status define_piece(reader *r, piece p) {
+  status st = OK;
+  const char *text = r->line.all.text;
+  definition def;
+  double value = 1;
+  place at = logical_place(&r->line, p.start);
+  const char *wrong = cut_definition(text + p.start, (size_t)p.length, &def);
+  if (wrong != NULL) {
+    message_add(r->log, P1019, &at, "%s", wrong);
+    goto done;
+  }
+  symbol *s = find_symbol(r->d, def.name, def.n_name);
+  if (s != NULL && s->at.file != NULL) {
+    message_add(r->log, P1021, &at, "%s is defined already, in %s:%d", s->name,
+                s->at.file, s->at.line_no);
+    goto done;
+  }
+  place value_at = logical_place(&r->line, (int)(def.value - text));
+  TRY(definition_value(r, def.value, def.n_value, &value_at, &value));
+  if (s == NULL) TRY(add_symbol(r->d, def.name, def.n_name, &s));
+  if (!s->overridden) s->value = value;
+  s->at = at;
+  warn_of_variable(r, s, &at);
+done:
+  return st;
+}
+
+status symbols_define(reader *r) {
+  status st = OK;
+  piece p = {.next = 0};
+  while (p.next >= 0) {
+    p = logical_piece(&r->line, p.next, 1);
+    if (p.length == 0 && p.next < 0) break;
+    TRY(define_piece(r, p));
+  }
+done:
+  return st;
+}
+
+status symbols_from_command(reader *r, const char *define) {
+  status st = OK;
+  definition def;
+  double value = 1;
+  const place at = {.file = "command line"};
+  const char *wrong = cut_definition(define, strlen(define), &def);
+  symbol *s = NULL;
+  if (wrong == NULL) s = find_symbol(r->d, def.name, def.n_name);
+  if (s != NULL) wrong = "the name is defined already";
+  if (wrong != NULL) {
+    message_add(r->log, P1026, &at, "-D %.200s: %s", define, wrong);
+    goto done;
+  }
+  TRY(definition_value(r, def.value, def.n_value, &at, &value));
+  TRY(add_symbol(r->d, def.name, def.n_name, &s));
+  s->value = value;
+  s->overridden = 1;
+  warn_of_variable(r, s, &at);
+done:
+  return st;
+}
