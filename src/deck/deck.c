@@ -142,7 +142,7 @@ static void check_names(reader *r, const card *c, const char *const *names) {
     while (*name != NULL && strcmp(*name, p->name) != 0) ++name;
     if (*name != NULL) continue;
     const char *near = nearest_word(p->name, next_name, names);
-    message_add(r->log, P1004, &p->at,
+    message_add(r->log, P2003, &p->at,
                 near != NULL ? "unknown parameter %s of *%s; did you mean %s?"
                              : "unknown parameter %s of *%s",
                 p->name, c->name, near);
@@ -153,7 +153,7 @@ static void check_names(reader *r, const card *c, const char *const *names) {
 static const parameter *needed(reader *r, const card *c, const char *name) {
   const parameter *p = card_parameter(c, name);
   if (p != NULL && p->has_value) return p;
-  message_add(r->log, p == NULL ? P1006 : P1007, &c->at, "*%s needs %s=VALUE",
+  message_add(r->log, p == NULL ? P2005 : P1007, &c->at, "*%s needs %s=VALUE",
               c->name, name);
   return NULL;
 }
@@ -378,7 +378,7 @@ static void refuse_line(reader *r, const physical *line) {
   if (r->mode == DATA_EARLY)
     message_add(r->log, P1015, &at, "data before the first card");
   else
-    message_add(r->log, P1032, &at, "the card above takes no data lines");
+    message_add(r->log, P2008, &at, "the card above takes no data lines");
   r->stray_seen = 1;
 }
 
