@@ -56,13 +56,17 @@ static int has_history(const model *m) {
   return m->n_step == 1 && m->steps[0].dt < m->steps[0].total;
 }
 
-/* Reactions are computed when printed, or where a support moves. */
+/* Reactions are computed when printed, or where a support does work: it moves,
+ * or is taken away under load. */
 static const load *moving_support(const model *m) {
   for (int i = 0; i < m->n_step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k) {
       const load *l = &m->steps[i].loads.item[k];
       if (l->kind != LOAD_FIXING) continue;
-      if (l->value.formula != NULL || l->value.number != 0.0 || l->has_before)
+      int let_go = i + 1 < m->n_step &&
+                   (m->steps[i + 1].renewed >> LOAD_FIXING & 1u) != 0;
+      if (l->value.formula != NULL || l->value.number != 0.0 || l->has_before ||
+          let_go)
         return l;
     }
   return NULL;
@@ -143,8 +147,9 @@ const char *model_effect_reason(const model *m, int bit, char *text,
     case EFFECT_BIT_REACTION:
       l = moving_support(m);
       if (l != NULL)
-        snprintf(text, size, "work of the moving support %s, line %d", l->group,
-                 l->at.line_no);
+        snprintf(text, size,
+                 "work of the support %s, line %d, that moves or is let go",
+                 l->group, l->at.line_no);
       else
         reason_output(m, PRINT_REACTIONS, text, size);
       break;

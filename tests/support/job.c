@@ -1,0 +1,204 @@
+/*
+ * Runs of the program for the tests.
+ */
+#include "support/job.h"
+
+#include <check.h>
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { PATH = 512, LINE = 8192 };
+
+job job_begin(const char *name) {
+  job j = {.dir = "/tmp/protis-test-XXXXXX"};
+  snprintf(j.name, sizeof j.name, "%s", name);
+  ck_assert_ptr_nonnull(mkdtemp(j.dir));
+  return j;
+}
+
+void job_end(job *j) {
+  char command[PATH];
+  snprintf(command, sizeof command, "rm -rf '%s'", j->dir);
+  ck_assert_int_eq(system(command), 0);
+  free(j->errors);
+  free(j->text);
+  j->errors = j->text = NULL;
+}
+
+void job_write(const job *j, const char *file, const char *format, ...) {
+  char path[PATH];
+  va_list args;
+  snprintf(path, sizeof path, "%s/%s", j->dir, file);
+  FILE *f = fopen(path, "w");
+  ck_assert_ptr_nonnull(f);
+  va_start(args, format);
+  vfprintf(f, format, args);
+  va_end(args);
+  ck_assert_int_eq(fclose(f), 0);
+}
+
+void job_copy(const job *j, const char *path) {
+  char command[2 * PATH];
+  snprintf(command, sizeof command, "cp '%s' '%s/'", path, j->dir);
+  ck_assert_int_eq(system(command), 0);
+}
+
+static char *read_all(const char *path) {
+  FILE *f = fopen(path, "rb");
+  if (f == NULL) return NULL;
+  fseek(f, 0, SEEK_END);
+  long size = ftell(f);
+  rewind(f);
+  char *text = calloc((size_t)size + 1, 1);
+  ck_assert_ptr_nonnull(text);
+  ck_assert_uint_eq(fread(text, 1, (size_t)size, f), (size_t)size);
+  fclose(f);
+  return text;
+}
+
+char *job_file(const job *j, const char *suffix) {
+  char path[PATH];
+  snprintf(path, sizeof path, "%s/%s.%s", j->dir, j->name, suffix);
+  return read_all(path);
+}
+
+static const char *program(void) {
+  const char *p = getenv("PROTIS");
+  return p == NULL ? "build/release/protis" : p;
+}
+
+int job_run(job *j, const char *words) {
+  char command[4 * PATH], path[PATH], cwd[PATH];
+  const char *p = program();
+  if (p[0] != '/') {
+    ck_assert_ptr_nonnull(getcwd(cwd, sizeof cwd));
+    snprintf(path, sizeof path, "%.250s/%.250s", cwd, p);
+    p = path;
+  }
+  snprintf(command, sizeof command,
+           "cd '%s' && '%s' %s %s > stdout.txt 2> stderr.txt", j->dir, p,
+           j->name, words);
+  int code = system(command);
+  snprintf(path, sizeof path, "%s/stderr.txt", j->dir);
+  free(j->errors);
+  j->errors = read_all(path);
+  snprintf(path, sizeof path, "%s/stdout.txt", j->dir);
+  free(j->text);
+  j->text = read_all(path);
+  return WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code);
+}
+
+static double read_cell(const char *cell) {
+  static const char *const words[] = {"OPEN", "SLIP", "STICK"};
+  for (int i = 0; i < 3; ++i)
+    if (strcmp(cell, words[i]) == 0) return i;
+  char *end;
+  double value = strtod(cell, &end);
+  return *end == '\0' ? value : NAN;
+}
+
+/* Names of the header line "# node_no[-] x[length]". */
+static void read_header(char *line, dat *d) {
+  d->name = calloc(64, sizeof *d->name);
+  char *save = NULL, *word = strtok_r(line + 1, " \t\n", &save);
+  for (; word != NULL && d->n_col < 64; word = strtok_r(NULL, " \t\n", &save)) {
+    char *unit = strchr(word, '[');
+    if (unit != NULL) *unit = '\0';
+    snprintf(d->name[d->n_col++], sizeof *d->name, "%s", word);
+  }
+}
+
+static void read_rows(FILE *f, dat *d) {
+  char line[LINE];
+  int capacity = 0;
+  while (fgets(line, sizeof line, f) != NULL && line[0] != '\n' &&
+         line[0] != '#') {
+    if (d->n_row == capacity) {
+      capacity = capacity == 0 ? 64 : 2 * capacity;
+      d->value =
+          realloc(d->value, (size_t)(capacity * d->n_col) * sizeof *d->value);
+      ck_assert_ptr_nonnull(d->value);
+    }
+    char *save = NULL, *word = strtok_r(line, " \t\n", &save);
+    for (int c = 0; c < d->n_col; ++c) {
+      ck_assert_ptr_nonnull(word);
+      d->value[d->n_row * d->n_col + c] = read_cell(word);
+      word = strtok_r(NULL, " \t\n", &save);
+    }
+    ++d->n_row;
+  }
+}
+
+/* 1 if the line opens a block of that kind: "# step ... table KIND". */
+static int opens_block(const char *line, const char *kind) {
+  const char *word =
+      strncmp(line, "# step ", 7) == 0 ? strstr(line, " table ") : NULL;
+  size_t n = strlen(kind);
+  return word != NULL && strncmp(word + 7, kind, n) == 0 &&
+         !isalnum((unsigned char)word[7 + n]);
+}
+
+dat job_table(const job *j, const char *kind, int k) {
+  char path[PATH], line[LINE];
+  long wanted = -1;
+  int found = 0;
+  snprintf(path, sizeof path, "%s/%s.dat", j->dir, j->name);
+  FILE *f = fopen(path, "r");
+  ck_assert_msg(f != NULL, "no %s; stderr: %s", path, j->errors);
+  while (fgets(line, sizeof line, f) != NULL)
+    if (opens_block(line, kind) && (found++ == k || k < 0)) wanted = ftell(f);
+  ck_assert_msg(wanted >= 0, "no block %d of table %s in %s", k, kind, path);
+  dat d = {0};
+  fseek(f, wanted, SEEK_SET);
+  ck_assert_ptr_nonnull(fgets(line, sizeof line, f));
+  read_header(line, &d);
+  read_rows(f, &d);
+  fclose(f);
+  return d;
+}
+
+void dat_free(dat *d) {
+  free(d->name);
+  free(d->value);
+  *d = (dat){0};
+}
+
+int dat_column(const dat *d, const char *name) {
+  for (int c = 0; c < d->n_col; ++c)
+    if (strcmp(d->name[c], name) == 0) return c;
+  ck_abort_msg("no column %s", name);
+  return -1;
+}
+
+double dat_at(const dat *d, int row, const char *name) {
+  ck_assert(row >= 0 && row < d->n_row);
+  return d->value[row * d->n_col + dat_column(d, name)];
+}
+
+int dat_row_near(const dat *d, const char *name, double value) {
+  int best = 0, c = dat_column(d, name);
+  for (int i = 1; i < d->n_row; ++i)
+    if (fabs(d->value[i * d->n_col + c] - value) <
+        fabs(d->value[best * d->n_col + c] - value))
+      best = i;
+  return best;
+}
+
+double dat_sum(const dat *d, const char *name) {
+  double sum = 0.0;
+  for (int i = 0; i < d->n_row; ++i) sum += dat_at(d, i, name);
+  return sum;
+}
+
+double dat_max(const dat *d, const char *name) {
+  double most = 0.0;
+  for (int i = 0; i < d->n_row; ++i)
+    most = fmax(most, fabs(dat_at(d, i, name)));
+  return most;
+}

@@ -1,0 +1,51 @@
+/*
+ * Runs of the program for the tests: a deck (with its mesh or .geo) in a folder
+ * of its own, the exit code, what was printed, the tables of JOB.dat.
+ *
+ * The program is $PROTIS, else build/release/protis.
+ */
+#ifndef PROTIS_TESTS_JOB_H
+#define PROTIS_TESTS_JOB_H
+
+#include <stddef.h>
+
+typedef struct job {
+  char dir[64];  /* its folder; removed by job_end                         */
+  char name[32]; /* JOB                                                    */
+  char *errors;  /* what it printed on stderr, or NULL                     */
+  char *text;    /* what it printed on stdout, or NULL                     */
+} job;
+
+/* A block of JOB.dat. OPEN, SLIP, STICK are read as 0, 1, 2, other words NaN.
+ */
+typedef struct dat {
+  int n_row, n_col;
+  char (*name)[32]; /* [n_col] without unit                                 */
+  double *value;    /* [n_row*n_col] row by row                             */
+} dat;
+
+/* A new empty folder; check fails if that is not possible. */
+job job_begin(const char *name);
+void job_end(job *j);
+/* Write a file of the folder; printf format. */
+void job_write(const job *j, const char *file, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Copy a file of the sources into the folder under its own name. */
+void job_copy(const job *j, const char *path);
+/* Run protis NAME with further words ("" or "-D N=4 --check"); exit code,
+ * or 1000 + signal. */
+int job_run(job *j, const char *words);
+/* All of a file of the folder as text (caller frees), or NULL. */
+char *job_file(const job *j, const char *suffix);
+/* Block number k (from 0; -1 the last) of a table (CONTACT, ...) of JOB.dat;
+ * check fails if there is none. */
+dat job_table(const job *j, const char *kind, int k);
+void dat_free(dat *d);
+int dat_column(const dat *d, const char *name); /* check fails if absent      */
+double dat_at(const dat *d, int row, const char *name);
+/* Row whose "name" is nearest to value. */
+int dat_row_near(const dat *d, const char *name, double value);
+double dat_sum(const dat *d, const char *name);
+double dat_max(const dat *d, const char *name); /* largest magnitude          */
+
+#endif
