@@ -52,13 +52,16 @@ char *memory_text(const char *text) {
   return copy;
 }
 
+size_t memory_size(const void *p) {
+  size_t bytes;
+  memcpy(&bytes, (const char *)p - HEADER, sizeof bytes);
+  return bytes;
+}
+
 void memory_free(void *p) {
   if (p == NULL) return;
-  char *block = (char *)p - HEADER;
-  size_t bytes;
-  memcpy(&bytes, block, sizeof bytes);
-  in_use -= bytes;
-  free(block);
+  in_use -= memory_size(p);
+  free((char *)p - HEADER);
 }
 
 size_t memory_in_use(void) { return in_use; }

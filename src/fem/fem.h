@@ -17,11 +17,12 @@
 typedef struct domain {
   const mesh *mesh;
   const contact_surface *surface; /* NULL: no contact                         */
-  int ns;                     /* 4 or 6                                      */
-  const int *section_id;      /* [n_elem]                                    */
-  const kinematics *kin;      /* [n_section]                                 */
-  const double *thickness;    /* [n_section] m; 1 in 3-D and axisymmetric    */
-  const double *E;            /* [ns*ns*n_section] Pa                        */
+  int ns;                  /* 4 or 6                                      */
+  const int *section_id;   /* [n_elem]                                    */
+  const kinematics *kin;   /* [n_section]                                 */
+  const double *thickness; /* [n_section] m; 1 in 3-D and axisymmetric    */
+  const double *E;         /* [ns*ns*n_section] Pa                        */
+  const double *C; /* [36*n_section] Pa, for e_zz of plane stress; NULL: 0   */
   const unsigned char *fixed; /* [dim*n_node] 1: prescribed (global
                                  components)                                 */
 } domain;
@@ -38,11 +39,23 @@ status stiffness_assemble(const domain *d, stiffness **out);
 void stiffness_free(stiffness *k);
 long stiffness_unknowns(const stiffness *k);
 
-/* Motion that nothing holds, or only contact holds. */
+/* What can resist a rigid motion that *BOUNDARY leaves to a body. */
+typedef enum {
+  HELD_BY_NOTHING,  /* no contact unknown moves with it: no equilibrium      */
+  HELD_BY_FRICTION, /* only tangential contact unknowns move with it         */
+  HELD_BY_CONTACT   /* contact nodes move along their normal (one-sided!)    */
+} motion_hold;
+
 typedef struct free_motion {
-  int body_id;
-  char text[160]; /* "translation along x", "rotation about (1, 2)"      */
+  int body_id; /* connected set of elements, from 0 in element order       */
+  motion_hold held_by;
+  size_t elem_no; /* an element of the body, number in the mesh file         */
+  char text[160]; /* "translation along x", "rotation about (1, 2)"          */
 } free_motion;
+
+/* The free motions of all bodies without solving anything, HELD_BY_NOTHING
+ * first in each body; *list is new (memory_free), NULL if there are none. */
+status domain_free_motions(const domain *d, int *n, free_motion **list);
 
 /*
  * Order (contact unknowns last), factor K (+ springs on the contact diagonal,
@@ -56,6 +69,8 @@ status condense(const stiffness *k, const domain *d, condensed **out);
 void condensed_free(condensed *c);
 const double *condensed_matrix(const condensed *c); /* A [m*m]                */
 int condensed_floating(const condensed *c); /* 1: contact alone holds a body  */
+/* The motions contact alone holds; list borrowed from c. */
+int condensed_motions(const condensed *c, const free_motion **list);
 double condensed_condition(const condensed *c); /* estimate, -                */
 
 typedef struct condense_info {
@@ -88,5 +103,8 @@ double domain_strain_energy(const domain *d, const double *u); /* J           */
 void blas_choose_kernel(char **argv);
 const char *blas_kernel(void); /* core name, "SkylakeX"                       */
 int blas_kernel_changed(void); /* 1: mended at start-up                       */
+/* Threads of BLAS and CHOLMOD; blas_choose_kernel sets 1 unless the
+ * environment (OPENBLAS_NUM_THREADS) says otherwise. */
+void blas_set_threads(int n);
 
 #endif

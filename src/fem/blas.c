@@ -1,0 +1,91 @@
+/*
+ * The BLAS kernel. OpenBLAS chooses it when the library is loaded, by a table
+ * of processors it knows; an unknown one gets a kernel for SSE3 that takes
+ * three times the time. The choice can only be mended by the environment of a
+ * new process: set it and run the same program again, once.
+ */
+#include "fem/fem.h"
+
+#include <dlfcn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+char *openblas_get_corename(void);
+void openblas_set_num_threads(int n);
+
+static const char choice[] = "OPENBLAS_CORETYPE";
+static const char guard[] = "PROTIS_BLAS_KERNEL";
+
+const char *blas_kernel(void) { return openblas_get_corename(); }
+
+int blas_kernel_changed(void) { return getenv(guard) != NULL; }
+
+/* Instruction set a kernel needs: 0 SSE, 1 AVX, 2 AVX2, 3 AVX-512. */
+static int kernel_level(const char *name) {
+  static const struct {
+    const char *name;
+    int level;
+  } known[] = {{"Sandybridge", 1},   {"Bulldozer", 1}, {"Piledriver", 1},
+               {"Steamroller", 1},   {"Haswell", 2},   {"Zen", 2},
+               {"Excavator", 2},     {"SkylakeX", 3},  {"Cooperlake", 3},
+               {"SapphireRapids", 3}};
+  for (size_t i = 0; i < sizeof known / sizeof *known; ++i)
+    if (strcmp(name, known[i].name) == 0) return known[i].level;
+  return 0;
+}
+
+/* The best kernel this processor can run, or NULL. */
+static const char *best_kernel(int *level) {
+  *level = 0;
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+    return NULL;
+  *level = 2;
+  if (!__builtin_cpu_supports("avx512f") ||
+      !__builtin_cpu_supports("avx512dq") ||
+      !__builtin_cpu_supports("avx512bw") ||
+      !__builtin_cpu_supports("avx512vl") ||
+      !__builtin_cpu_supports("avx512cd"))
+    return "HASWELL";
+  *level = 3;
+  return "SKYLAKEX";
+#else
+  return NULL;
+#endif
+}
+
+/* CHOLMOD's parallel regions ask for a fixed number of threads; level 0 makes
+ * them run on one. The OpenMP library is looked up, not linked. */
+static void limit_openmp(int levels) {
+  union {
+    void *object;
+    void (*call)(int);
+  } set;
+  void *self = dlopen(NULL, RTLD_LAZY);
+  if (self == NULL) return;
+  set.object = dlsym(self, "omp_set_max_active_levels");
+  if (set.object != NULL) set.call(levels);
+  dlclose(self);
+}
+
+void blas_set_threads(int n) {
+  openblas_set_num_threads(n);
+  limit_openmp(n > 1 ? 1 : 0);
+}
+
+void blas_choose_kernel(char **argv) {
+  int level;
+  const char *best = best_kernel(&level);
+  if (getenv("OPENBLAS_NUM_THREADS") == NULL)
+    blas_set_threads(1);
+  else
+    limit_openmp(0);
+  if (best == NULL || kernel_level(blas_kernel()) >= level) return;
+  if (getenv(choice) != NULL || getenv(guard) != NULL) return;
+  if (setenv(choice, best, 1) != 0 || setenv(guard, best, 1) != 0) return;
+  execv("/proc/self/exe", argv);
+  unsetenv(choice);
+  unsetenv(guard);
+}

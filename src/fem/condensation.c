@@ -1,0 +1,383 @@
+/*
+ * Condensation to the contact unknowns: the unknowns of K fall into bodies
+ * (connected through K), each with its own factor; A collects their parts.
+ * A contact unknown prescribed by *BOUNDARY keeps a row of its own in A that
+ * meets no other, with f_c such that r = 0 gives the prescribed value.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "fem/factor.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+struct condensed {
+  const stiffness *k; /* borrowed                                           */
+  domain d;           /* arrays borrowed                                    */
+  int m, n_body, n_motion;
+  double *A; /* [m*m]                                              */
+  body_factor *body;
+  free_motion *motion; /* those only contact holds                           */
+  double *load;        /* [dim*n_node] in local components                   */
+  double *prescribed;  /* [dim*n_node] local components, of the last load    */
+  const char *ordering;
+  cholmod_common *cm; /* owned                                              */
+};
+
+static void *suitesparse_malloc(size_t bytes) { return memory_new(bytes, 1); }
+
+static void *suitesparse_calloc(size_t n, size_t size) {
+  return memory_new(n, size);
+}
+
+static void *suitesparse_realloc(void *p, size_t bytes) {
+  return memory_resize(p, p == NULL ? 0 : memory_size(p), bytes, 1);
+}
+
+/* All blocks of SuiteSparse are counted and can be refused. */
+static void route_memory(void) {
+  SuiteSparse_config.malloc_func = suitesparse_malloc;
+  SuiteSparse_config.calloc_func = suitesparse_calloc;
+  SuiteSparse_config.realloc_func = suitesparse_realloc;
+  SuiteSparse_config.free_func = memory_free;
+}
+
+/* Both directions of the node graph among nodes with unknowns. */
+static status full_graph(const stiffness *k, graph *g) {
+  status st = OK;
+  size_t *at = NULL;
+  g->n = k->n_node;
+  NEW(g->start, k->n_node + 1);
+  NEW(at, k->n_node + 1);
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int j = 0; j < k->n_node; ++j)
+      for (size_t p = k->start[j] + 1; k->free[j] && p < k->start[j + 1]; ++p) {
+        const int i = k->row[p];
+        if (k->free[i] == 0) continue;
+        if (pass == 1) {
+          g->next[at[i]] = j;
+          g->next[at[j]] = i;
+        }
+        ++at[i];
+        ++at[j];
+      }
+    if (pass == 1) break;
+    for (int i = 0; i < k->n_node; ++i) {
+      g->start[i + 1] = g->start[i] + at[i];
+      at[i] = g->start[i];
+    }
+    NEW(g->next, g->start[k->n_node]);
+  }
+done:
+  memory_free(at);
+  return st;
+}
+
+/* The connected set of the graph that holds "first": list[0..) and its size;
+ * its nodes are marked. */
+static int connected_set(const graph *g, int first, unsigned char *seen,
+                         int *list) {
+  int n = 0;
+  list[n++] = first;
+  seen[first] = 1;
+  for (int q = 0; q < n; ++q)
+    for (size_t p = g->start[list[q]]; p < g->start[list[q] + 1]; ++p)
+      if (!seen[g->next[p]]) {
+        seen[g->next[p]] = 1;
+        list[n++] = g->next[p];
+      }
+  return n;
+}
+
+static int count_bodies(const stiffness *k, const graph *g, unsigned char *seen,
+                        int *list) {
+  int n = 0;
+  for (int i = 0; i < k->n_node; ++i) {
+    if (k->free[i] == 0 || seen[i]) continue;
+    connected_set(g, i, seen, list);
+    ++n;
+  }
+  memset(seen, 0, (size_t)k->n_node);
+  return n;
+}
+
+/* f->node: the interior ordered, then the contact nodes in descending order.
+ * list[n] ascending in, destroyed. */
+static status order_body(condensed *c, const graph *g, int n, int *list,
+                         body_factor *f) {
+  status st = OK;
+  const stiffness *k = c->k;
+  int interior = 0, last = n;
+  NEW(f->node, n);
+  f->n_node = n;
+  for (int q = 0; q < n; ++q)
+    if (k->contact[list[q]] >= 0)
+      f->node[--last] = list[q];
+    else
+      f->node[interior++] = list[q];
+  TRY(order_nodes(g, k->dim, c->d.mesh->x, interior, f->node, c->cm,
+                  &c->ordering));
+done:
+  return st;
+}
+
+/* A body nothing holds: name it and the motion. */
+static status check_support(const condensed *c) {
+  status st = OK;
+  for (int q = 0; q < c->n_motion; ++q)
+    if (c->motion[q].held_by == HELD_BY_NOTHING)
+      FAIL(ERR_SINGULAR,
+           "body %d (with element %zu) is not held: free %s. Neither "
+           "*BOUNDARY nor contact resists it",
+           c->motion[q].body_id + 1, c->motion[q].elem_no, c->motion[q].text);
+done:
+  return st;
+}
+
+/* The failure of one body, with the node where it broke down. */
+static status name_body(const condensed *c, const body_factor *f, status code) {
+  status st = OK;
+  char why[160];
+  if (code != ERR_SINGULAR) return code;
+  snprintf(why, sizeof why, "%s", status_message());
+  FAIL(ERR_SINGULAR, "body with node %zu: %s", c->d.mesh->node_no[f->bad_node],
+       why);
+done:
+  return st;
+}
+
+static status factor_bodies(condensed *c, const unsigned char *floating) {
+  status st = OK;
+  const stiffness *k = c->k;
+  graph g = {0};
+  int *list = NULL, q = 0;
+  unsigned char *seen = NULL;
+  long *number = NULL;
+  timer_enter(STAGE_ORDERING);
+  NEW(list, k->n_node);
+  NEW(seen, k->n_node);
+  NEW(number, (size_t)k->dim * (size_t)k->n_node);
+  TRY(full_graph(k, &g));
+  c->n_body = count_bodies(k, &g, seen, list);
+  NEW(c->body, c->n_body);
+  for (int i = 0; i < k->n_node; ++i) {
+    if (k->free[i] == 0 || seen[i]) continue;
+    body_factor *f = &c->body[q++];
+    const int n = connected_set(&g, i, seen, list);
+    f->bad_node = i;
+    TRY(order_body(c, &g, n, list, f));
+    body_factor_number(k, f, number);
+    st = body_factor_build(k, floating[i] && f->nc > 0, number, c->cm, f);
+    TRY(name_body(c, f, st));
+  }
+done:
+  timer_leave(STAGE_ORDERING);
+  memory_free(g.start);
+  memory_free(g.next);
+  memory_free(list);
+  memory_free(seen);
+  memory_free(number);
+  return st;
+}
+
+/* Rows of prescribed contact unknowns: the largest diagonal entry among the
+ * unknowns of the node, or of A. */
+static void fill_held(condensed *c) {
+  const contact_surface *s = c->d.surface;
+  const size_t m = (size_t)c->m;
+  double most = 0;
+  for (size_t i = 0; i < m; ++i) most = fmax(most, c->A[i * (m + 1)]);
+  if (most == 0) most = 1;
+  for (int q = 0; q < c->m; ++q) {
+    const int node = q / c->k->dim;
+    double own = 0;
+    if (!s->held[q]) continue;
+    for (int t = node * c->k->dim; t < (node + 1) * c->k->dim; ++t)
+      if (!s->held[t]) own = fmax(own, c->A[(size_t)t * (m + 1)]);
+    c->A[(size_t)q * (m + 1)] = own > 0 ? own : most;
+  }
+}
+
+status condense(const stiffness *k, const domain *d, condensed **out) {
+  status st = OK;
+  condensed *c = NULL;
+  unsigned char *floating = NULL;
+  route_memory();
+  NEW(c, 1);
+  NEW(c->cm, 1);
+  cholmod_l_start(c->cm);
+  c->cm->print = 0;
+  c->k = k;
+  c->d = *d;
+  c->m = d->surface != NULL ? k->dim * d->surface->n : 0;
+  c->ordering = "natural";
+  NEW(floating, k->n_node);
+  NEW(c->load, (size_t)k->dim * (size_t)k->n_node);
+  NEW(c->prescribed, (size_t)k->dim * (size_t)k->n_node);
+  TRY(support_motions(d, &c->n_motion, &c->motion, floating));
+  TRY(check_support(c));
+  TRY(factor_bodies(c, floating));
+  timer_enter(STAGE_CONDENSE);
+  c->A = memory_new((size_t)c->m * (size_t)c->m, sizeof *c->A);
+  st = c->A != NULL ? OK : ERR_MEMORY;
+  for (int q = 0; st == OK && q < c->n_body; ++q)
+    st = body_factor_condense(&c->body[q], c->m, c->A);
+  if (st == OK) fill_held(c);
+  timer_leave(STAGE_CONDENSE);
+  TRY(st);
+done:
+  memory_free(floating);
+  if (st != OK) {
+    condensed_free(c);
+    c = NULL;
+  }
+  *out = c;
+  return st;
+}
+
+void condensed_free(condensed *c) {
+  if (c == NULL) return;
+  for (int q = 0; c->body != NULL && q < c->n_body; ++q)
+    body_factor_release(&c->body[q], c->cm);
+  if (c->cm != NULL) cholmod_l_finish(c->cm);
+  memory_free(c->cm);
+  memory_free(c->A);
+  memory_free(c->body);
+  memory_free(c->motion);
+  memory_free(c->load);
+  memory_free(c->prescribed);
+  memory_free(c);
+}
+
+/* The local components of the prescribed displacements: prescribed[]. */
+static int set_prescribed(condensed *c, const double *ud) {
+  const stiffness *k = c->k;
+  const int dim = k->dim;
+  int any = 0;
+  for (int i = 0; i < k->n_node; ++i) {
+    const unsigned char *fixed = c->d.fixed + (size_t)dim * (size_t)i;
+    double *p = c->prescribed + (size_t)dim * (size_t)i;
+    for (int a = 0; a < dim; ++a) {
+      p[a] = 0;
+      if (ud == NULL || (k->free[i] >> a & 1)) continue;
+      const double *u = ud + (size_t)dim * (size_t)i;
+      if (k->contact[i] < 0) {
+        p[a] = u[a];
+      } else {
+        const double *row =
+            c->d.surface->frame + dim * (dim * k->contact[i] + a);
+        for (int b = 0; b < dim; ++b)
+          if (fixed[b]) p[a] += row[b] * u[b];
+      }
+      any |= p[a] != 0;
+    }
+  }
+  return any;
+}
+
+/* Forces in local components: contact nodes turn by their basis. */
+static void set_load(condensed *c, const double *F) {
+  const int dim = c->k->dim;
+  memcpy(c->load, F, (size_t)dim * (size_t)c->k->n_node * sizeof *F);
+  for (int q = 0; q < c->m / dim; ++q) {
+    const size_t at = (size_t)dim * (size_t)c->d.surface->node_id[q];
+    const double *T = c->d.surface->basis + dim * dim * q;
+    for (int a = 0; a < dim; ++a) {
+      c->load[at + (size_t)a] = 0;
+      for (int b = 0; b < dim; ++b)
+        c->load[at + (size_t)a] += T[dim * a + b] * F[at + (size_t)b];
+    }
+  }
+}
+
+/* load -= K prescribed over the blocks that couple them. */
+static void move_prescribed(condensed *c) {
+  const stiffness *k = c->k;
+  const size_t dim = (size_t)k->dim;
+  for (size_t t = 0; t < k->n_coupling; ++t) {
+    const size_t p = k->coupling[t];
+    const size_t i = dim * (size_t)k->row[p];
+    const size_t j = dim * (size_t)k->coupling_column[t];
+    const double *b = k->block + dim * dim * p;
+    for (size_t s = 0; s < dim; ++s)
+      for (size_t r = 0; r < dim; ++r) {
+        c->load[i + r] -= b[dim * s + r] * c->prescribed[j + s];
+        if (i != j) c->load[j + s] -= b[dim * s + r] * c->prescribed[i + r];
+      }
+  }
+}
+
+status condense_load(condensed *c, const double *F, const double *ud,
+                     double *f_c) {
+  status st = OK;
+  const contact_surface *s = c->d.surface;
+  timer_enter(STAGE_RECOVERY);
+  set_load(c, F);
+  if (set_prescribed(c, ud)) move_prescribed(c);
+  for (int q = 0; q < c->m; ++q) {
+    const size_t dim = (size_t)c->k->dim, row = (size_t)q;
+    if (s->held[q])
+      f_c[q] = c->A[row * (size_t)(c->m + 1)] *
+               c->prescribed[dim * (size_t)s->node_id[row / dim] + row % dim];
+  }
+  for (int q = 0; q < c->n_body; ++q)
+    TRY(body_factor_forward(&c->body[q], c->load, f_c, c->cm));
+done:
+  timer_leave(STAGE_RECOVERY);
+  return st;
+}
+
+status condense_recover(condensed *c, const double *u_c, double *u) {
+  status st = OK;
+  const int dim = c->k->dim;
+  timer_enter(STAGE_RECOVERY);
+  memcpy(u, c->prescribed, (size_t)dim * (size_t)c->k->n_node * sizeof *u);
+  for (int q = 0; q < c->n_body; ++q)
+    TRY(body_factor_back(&c->body[q], u_c, u, c->cm));
+  for (int q = 0; q < c->m / dim; ++q) {
+    double *v = u + (size_t)dim * (size_t)c->d.surface->node_id[q], a[3];
+    const double *T = c->d.surface->basis + dim * dim * q;
+    memcpy(a, v, (size_t)dim * sizeof *a);
+    for (int r = 0; r < dim; ++r) {
+      v[r] = 0;
+      for (int s = 0; s < dim; ++s) v[r] += T[dim * s + r] * a[s];
+    }
+  }
+done:
+  timer_leave(STAGE_RECOVERY);
+  return st;
+}
+
+const double *condensed_matrix(const condensed *c) { return c->A; }
+
+int condensed_floating(const condensed *c) { return c->n_motion > 0; }
+
+int condensed_motions(const condensed *c, const free_motion **list) {
+  *list = c->motion;
+  return c->n_motion;
+}
+
+double condensed_condition(const condensed *c) {
+  double worst = 1;
+  timer_enter(STAGE_RECOVERY);
+  for (int q = 0; q < c->n_body; ++q)
+    worst = fmax(worst, body_factor_condition(c->k, &c->body[q], c->cm));
+  timer_leave(STAGE_RECOVERY);
+  return worst;
+}
+
+condense_info condensed_info(const condensed *c) {
+  condense_info info = {
+      .bodies = c->n_body, .contact_unknowns = c->m, .ordering = c->ordering};
+  for (int q = 0; q < c->n_body; ++q) {
+    const body_factor *f = &c->body[q];
+    info.unknowns += f->n;
+    info.factor_entries += (long)f->L->xsize;
+    info.flops += f->flops;
+    info.bytes +=
+        f->L->xsize * sizeof(double) + f->L->ssize * sizeof(SuiteSparse_long);
+  }
+  info.bytes += (size_t)c->m * (size_t)c->m * sizeof(double);
+  return info;
+}

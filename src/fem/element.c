@@ -1,0 +1,143 @@
+/*
+ * P1 triangles and tetrahedra. The strain is constant in an element except
+ * for the hoop strain u_r / r of axisymmetry, taken at the centroid; the
+ * weight there is 2 pi r_c area (one whole turn).
+ */
+#include "fem/element.h"
+
+#include <string.h>
+
+static const double two_pi = 6.283185307179586476925286766559;
+
+static void triangle_shape(const domain *d, int elem_id, element_shape *s) {
+  const int *v = d->mesh->elem + 3 * elem_id;
+  const double *p[3];
+  for (int a = 0; a < 3; ++a) p[a] = d->mesh->x + 2 * v[a];
+  const double two_area = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
+                          (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);
+  for (int a = 0; a < 3; ++a) {
+    const double *q = p[(a + 1) % 3], *r = p[(a + 2) % 3];
+    s->grad[2 * a] = (q[1] - r[1]) / two_area;
+    s->grad[2 * a + 1] = (r[0] - q[0]) / two_area;
+  }
+  const int section = d->section_id[elem_id];
+  s->weight = 0.5 * two_area * d->thickness[section];
+  s->hoop = 0;
+  if (d->kin[section] == AXISYMMETRIC) {
+    const double three_r = p[0][0] + p[1][0] + p[2][0];
+    s->hoop = 1 / three_r;
+    s->weight *= two_pi * (three_r / 3);
+  }
+}
+
+static void cross(const double *a, const double *b, double *c) {
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void tetrahedron_shape(const domain *d, int elem_id, element_shape *s) {
+  const int *v = d->mesh->elem + 4 * elem_id;
+  const double *p0 = d->mesh->x + 3 * v[0];
+  double e[3][3];
+  for (int k = 0; k < 3; ++k)
+    for (int c = 0; c < 3; ++c) e[k][c] = d->mesh->x[3 * v[k + 1] + c] - p0[c];
+  double *g = s->grad;
+  cross(e[1], e[2], g + 3);
+  cross(e[2], e[0], g + 6);
+  cross(e[0], e[1], g + 9);
+  const double six_volume = e[0][0] * g[3] + e[0][1] * g[4] + e[0][2] * g[5];
+  for (int i = 3; i < 12; ++i) g[i] /= six_volume;
+  for (int c = 0; c < 3; ++c) g[c] = -(g[3 + c] + g[6 + c] + g[9 + c]);
+  s->hoop = 0;
+  s->weight = six_volume / 6 * d->thickness[d->section_id[elem_id]];
+}
+
+void element_shape_at(const domain *d, int elem_id, element_shape *s) {
+  if (d->mesh->dim == 2)
+    triangle_shape(d, elem_id, s);
+  else
+    tetrahedron_shape(d, elem_id, s);
+}
+
+/* E B_b of one vertex, columns of ns: the stress of its unit displacements. */
+static void stress_2d(const double *E, const double *g, double hoop,
+                      double *S) {
+  for (int i = 0; i < 4; ++i) {
+    S[i] = E[i] * g[0] + E[8 + i] * hoop + E[12 + i] * g[1];
+    S[4 + i] = E[4 + i] * g[1] + E[12 + i] * g[0];
+  }
+}
+
+static void stress_3d(const double *E, const double *g, double *S) {
+  for (int i = 0; i < 6; ++i) {
+    S[i] = E[i] * g[0] + E[18 + i] * g[1] + E[30 + i] * g[2];
+    S[6 + i] = E[6 + i] * g[1] + E[18 + i] * g[0] + E[24 + i] * g[2];
+    S[12 + i] = E[12 + i] * g[2] + E[24 + i] * g[1] + E[30 + i] * g[0];
+  }
+}
+
+static void block_2d(const double *g, double hoop, double w, const double *S,
+                     double *k) {
+  for (int c = 0; c < 2; ++c) {
+    const double *s = S + 4 * c;
+    k[2 * c] = w * (g[0] * s[0] + hoop * s[2] + g[1] * s[3]);
+    k[2 * c + 1] = w * (g[1] * s[1] + g[0] * s[3]);
+  }
+}
+
+static void block_3d(const double *g, double w, const double *S, double *k) {
+  for (int c = 0; c < 3; ++c) {
+    const double *s = S + 6 * c;
+    k[3 * c] = w * (g[0] * s[0] + g[1] * s[3] + g[2] * s[5]);
+    k[3 * c + 1] = w * (g[1] * s[1] + g[0] * s[3] + g[2] * s[4]);
+    k[3 * c + 2] = w * (g[2] * s[2] + g[1] * s[4] + g[0] * s[5]);
+  }
+}
+
+void element_stiffness(const domain *d, int elem_id, double *blocks) {
+  const int dim = d->mesh->dim, ns = d->ns;
+  const double *E = d->E + (size_t)(ns * ns) * (size_t)d->section_id[elem_id];
+  element_shape s;
+  double S[18];
+  element_shape_at(d, elem_id, &s);
+  for (int b = 0; b <= dim; ++b) {
+    const double *gb = s.grad + dim * b;
+    if (dim == 2)
+      stress_2d(E, gb, s.hoop, S);
+    else
+      stress_3d(E, gb, S);
+    for (int a = b; a <= dim; ++a) {
+      double *k = blocks + dim * dim * (a * (a + 1) / 2 + b);
+      if (dim == 2)
+        block_2d(s.grad + 2 * a, s.hoop, s.weight, S, k);
+      else
+        block_3d(s.grad + 3 * a, s.weight, S, k);
+    }
+  }
+}
+
+double element_strain(const domain *d, int elem_id, double *B) {
+  static const int shear[3][2] = {{0, 1}, {1, 2}, {2, 0}};
+  const int dim = d->mesh->dim, ns = d->ns;
+  element_shape s;
+  element_shape_at(d, elem_id, &s);
+  memset(B, 0, (size_t)(ns * dim * (dim + 1)) * sizeof *B);
+  for (int a = 0; a <= dim; ++a) {
+    const double *g = s.grad + dim * a;
+    double *b = B + (size_t)(ns * dim * a);
+    for (int c = 0; c < dim; ++c) b[ns * c + c] = g[c];
+    if (dim == 2) b[2] = s.hoop;
+    for (int k = 0; k < (dim == 2 ? 1 : 3); ++k) {
+      b[ns * shear[k][0] + 3 + k] = g[shear[k][1]];
+      b[ns * shear[k][1] + 3 + k] = g[shear[k][0]];
+    }
+  }
+  return s.weight;
+}
+
+double element_weight(const domain *d, int elem_id) {
+  element_shape s;
+  element_shape_at(d, elem_id, &s);
+  return s.weight;
+}

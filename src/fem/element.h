@@ -1,0 +1,22 @@
+/*
+ * One P1 element: gradients of its shape functions and its stiffness. Private
+ * to src/fem.
+ */
+#ifndef PROTIS_FEM_ELEMENT_H
+#define PROTIS_FEM_ELEMENT_H
+
+#include "fem/fem.h"
+
+typedef struct element_shape {
+  double grad[12]; /* [dim*(dim+1)] gradient of each shape function, 1/m      */
+  double hoop;     /* shape function over radius at the centroid, 1/m; 0
+                      unless axisymmetric                                     */
+  double weight;   /* volume, thickness or 2 pi r included, m3                */
+} element_shape;
+
+void element_shape_at(const domain *d, int elem_id, element_shape *s);
+/* Blocks K_ab = w B_a' E B_b [dim*dim], column major, of the vertex pairs
+ * a >= b in the order (0,0), (1,0), (1,1), (2,0), ... N/m. */
+void element_stiffness(const domain *d, int elem_id, double *blocks);
+
+#endif

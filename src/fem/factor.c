@@ -1,0 +1,375 @@
+/*
+ * The factor of one body:
+ *
+ *   P K P' = L L',  contact unknowns at the end of P.
+ *
+ * The rows and columns of L at the contact unknowns form L_cc with
+ * L_cc L_cc' = K_cc - K_ci inv(K_ii) K_ic. They are found by position, since
+ * the postorder may move columns between them.
+ */
+#include "fem/factor.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+/* Number the unknowns; contact nodes are met in descending order and their
+ * components too, so that L_cc stands reversed in A (see condense). */
+void body_factor_number(const stiffness *k, body_factor *f, long *number) {
+  long n = 0;
+  f->nc = 0;
+  for (int q = 0; q < f->n_node; ++q) {
+    const int i = f->node[q], contact = k->contact[i] >= 0;
+    for (int t = 0; t < k->dim; ++t) {
+      const int c = contact ? k->dim - 1 - t : t;
+      long *at = &number[(size_t)k->dim * (size_t)i + (size_t)c];
+      *at = k->free[i] >> c & 1 ? n++ : -1;
+      if (contact && *at >= 0) ++f->nc;
+    }
+  }
+  f->n = n;
+}
+
+typedef struct columns { /* lower triangle under construction             */
+  const stiffness *k;
+  const long *number;
+  double scale;
+  SuiteSparse_long *start, *row;
+  double *value;
+} columns;
+
+/* Entries of block p = (i, j) of the lower node graph: counted in start (row
+ * NULL) or stored at start[column]++. */
+static void put_block(columns *w, size_t p, int i, int j) {
+  const int dim = w->k->dim;
+  const double *b = w->k->block + (size_t)(dim * dim) * p;
+  const long *ni = w->number + (size_t)dim * (size_t)i;
+  const long *nj = w->number + (size_t)dim * (size_t)j;
+  for (int c = 0; c < dim; ++c) {
+    if (nj[c] < 0) continue;
+    for (int r = i == j ? c : 0; r < dim; ++r) {
+      if (ni[r] < 0) continue;
+      const long col = ni[r] < nj[c] ? ni[r] : nj[c];
+      if (w->row == NULL) {
+        ++w->start[col];
+        continue;
+      }
+      const SuiteSparse_long at = w->start[col]++;
+      w->row[at] = ni[r] < nj[c] ? nj[c] : ni[r];
+      w->value[at] = w->scale * b[dim * c + r];
+    }
+  }
+}
+
+static void put_blocks(columns *w, const body_factor *f) {
+  for (int q = 0; q < f->n_node; ++q) {
+    const int j = f->node[q];
+    for (size_t p = w->k->start[j]; p < w->k->start[j + 1]; ++p)
+      if (w->k->free[w->k->row[p]] != 0) put_block(w, p, w->k->row[p], j);
+  }
+}
+
+/* Largest diagonal entry of the unknowns of the body; of contact ones alone
+ * if asked. NaN if one is not a number. */
+static double largest_diagonal(const stiffness *k, const body_factor *f,
+                               int contact_only) {
+  const int dim = k->dim;
+  double most = 0;
+  for (int q = 0; q < f->n_node; ++q) {
+    const int i = f->node[q];
+    if (contact_only && k->contact[i] < 0) continue;
+    for (int c = 0; c < dim; ++c) {
+      const double v =
+          k->block[(size_t)(dim * dim) * k->start[i] + (size_t)(c * (dim + 1))];
+      if (!(k->free[i] >> c & 1)) continue;
+      if (!(v <= most)) most = v;
+    }
+  }
+  return most;
+}
+
+/* Scaled lower triangle of the body in elimination order, new. */
+static status body_matrix(const stiffness *k, const body_factor *f,
+                          const long *number, cholmod_common *cm,
+                          cholmod_sparse **out) {
+  status st = OK;
+  columns w = {.k = k, .number = number, .scale = ldexp(1, -f->exponent)};
+  SuiteSparse_long total = 0, *count = NULL;
+  cholmod_sparse *a = NULL;
+  NEW(count, f->n + 1);
+  w.start = count;
+  put_blocks(&w, f);
+  for (long c = 0; c < f->n; ++c) total += count[c];
+  a = cholmod_l_allocate_sparse((size_t)f->n, (size_t)f->n, (size_t)total, 0, 1,
+                                -1, CHOLMOD_REAL, cm);
+  if (a == NULL) FAIL(ERR_MEMORY, "memory exhausted: %ld unknowns", f->n);
+  SuiteSparse_long *start = a->p;
+  for (long c = 0; c < f->n; ++c) {
+    start[c + 1] = start[c] + count[c];
+    count[c] = start[c];
+  }
+  w.row = a->i;
+  w.value = a->x;
+  put_blocks(&w, f);
+  for (long c = f->n - f->nc; f->spring != 0 && c < f->n; ++c)
+    for (SuiteSparse_long p = start[c]; p < start[c + 1]; ++p)
+      if (w.row[p] == c) w.value[p] += f->spring;
+done:
+  memory_free(count);
+  *out = a;
+  return st;
+}
+
+static status analyse(cholmod_sparse *a, cholmod_common *cm, body_factor *f) {
+  status st = OK;
+  cm->nmethods = 1;
+  cm->method[0].ordering = CHOLMOD_NATURAL;
+  cm->postorder = 1;
+  cm->supernodal = CHOLMOD_SUPERNODAL;
+  f->L = cholmod_l_analyze(a, cm);
+  if (f->L == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: symbolic factor of %ld unknowns", f->n);
+  f->flops = cm->fl;
+done:
+  return st;
+}
+
+static status factorise(const stiffness *k, cholmod_sparse *a,
+                        cholmod_common *cm, body_factor *f) {
+  status st = OK;
+  const int done_ok = cholmod_l_factorize(a, f->L, cm);
+  if (!done_ok || cm->status < 0)
+    FAIL(ERR_MEMORY, "memory exhausted: factor of %ld unknowns (%.3g bytes)",
+         f->n, cm->lnz * sizeof(double));
+  if (f->L->minor < (size_t)f->n) {
+    const SuiteSparse_long *perm = f->L->Perm;
+    long column = perm[f->L->minor], at = 0;
+    int q = 0;
+    for (; q < f->n_node; ++q) {
+      for (int c = 0; c < k->dim; ++c) at += k->free[f->node[q]] >> c & 1;
+      if (at > column) break;
+    }
+    f->bad_node = f->node[q];
+    FAIL(ERR_SINGULAR, "stiffness not positive definite");
+  }
+done:
+  return st;
+}
+
+/* Positions of the unknowns and of the contact ones in the factor. */
+static status locate(const stiffness *k, const long *number, body_factor *f) {
+  status st = OK;
+  const SuiteSparse_long *perm = f->L->Perm;
+  long *position = NULL, q = 0;
+  NEW(position, f->n);
+  NEW(f->unknown, f->n);
+  NEW(f->contact_at, f->nc);
+  NEW(f->contact_id, f->nc);
+  for (long p = 0; p < f->n; ++p) position[perm[p]] = p;
+  for (int t = 0; t < f->n_node; ++t)
+    for (int c = 0; c < k->dim; ++c) {
+      const long id = (long)k->dim * f->node[t] + c;
+      if (number[id] >= 0) f->unknown[position[number[id]]] = id;
+    }
+  for (long p = 0; p < f->n; ++p) {
+    if (perm[p] < f->n - f->nc) continue;
+    f->contact_at[q] = p;
+    f->contact_id[q++] = k->dim * k->contact[f->unknown[p] / k->dim] +
+                         (int)(f->unknown[p] % k->dim);
+  }
+  if (f->nc > 0) {
+    const long first = f->contact_at[0];
+    NEW(f->rank, f->n - first);
+    for (long p = first; p < f->n; ++p) f->rank[p - first] = -1;
+    for (q = 0; q < f->nc; ++q) f->rank[f->contact_at[q] - first] = (int)q;
+  }
+done:
+  memory_free(position);
+  return st;
+}
+
+status body_factor_build(const stiffness *k, int floating, const long *number,
+                         cholmod_common *cm, body_factor *f) {
+  status st = OK;
+  cholmod_sparse *a = NULL;
+  timer_enter(STAGE_ORDERING);
+  const double most = largest_diagonal(k, f, 0);
+  if (!(most > 0 && isfinite(most)))
+    FAIL(ERR_SINGULAR, "stiffness is zero or not a number");
+  frexp(most, &f->exponent);
+  if (floating) f->spring = ldexp(largest_diagonal(k, f, 1), -f->exponent);
+  TRY(body_matrix(k, f, number, cm, &a));
+  TRY(analyse(a, cm, f));
+  timer_enter(STAGE_FACTOR);
+  st = factorise(k, a, cm, f);
+  timer_leave(STAGE_FACTOR);
+  TRY(st);
+  TRY(locate(k, number, f));
+  f->y = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
+  f->work = cholmod_l_zeros(f->L->maxesize + 1, 1, CHOLMOD_REAL, cm);
+  if (f->y == NULL || f->work == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
+done:
+  cholmod_l_free_sparse(&a, cm);
+  timer_leave(STAGE_ORDERING);
+  return st;
+}
+
+void body_factor_release(body_factor *f, cholmod_common *cm) {
+  cholmod_l_free_factor(&f->L, cm);
+  cholmod_l_free_dense(&f->y, cm);
+  cholmod_l_free_dense(&f->work, cm);
+  memory_free(f->node);
+  memory_free(f->unknown);
+  memory_free(f->contact_at);
+  memory_free(f->contact_id);
+  memory_free(f->rank);
+  *f = (body_factor){0};
+}
+
+/* Column of L from its diagonal entry down. */
+typedef struct factor_column {
+  long n;
+  const SuiteSparse_long *row; /* [n] positions */
+  const double *value;         /* [n]           */
+} factor_column;
+
+/* Column at position p; *super: search starts there and ends there. */
+static factor_column column_at(const cholmod_factor *L, long p, long *super) {
+  const SuiteSparse_long *first = L->super, *pi = L->pi, *px = L->px;
+  while (first[*super + 1] <= p) ++*super;
+  const long s = *super, n_row = pi[s + 1] - pi[s], skip = p - first[s];
+  return (factor_column){n_row - skip,
+                         (const SuiteSparse_long *)L->s + pi[s] + skip,
+                         (const double *)L->x + px[s] + skip * n_row + skip};
+}
+
+/* out = L_cc in, or L_cc' in; vectors [nc] by rank. */
+static void multiply_cc(const body_factor *f, int transposed, const double *in,
+                        double *out) {
+  long super = 0;
+  memset(out, 0, (size_t)f->nc * sizeof *out);
+  for (long q = 0; q < f->nc; ++q) {
+    const factor_column c = column_at(f->L, f->contact_at[q], &super);
+    double sum = 0;
+    for (long t = 0; t < c.n; ++t) {
+      const int r = f->rank[c.row[t] - f->contact_at[0]];
+      if (r < 0) continue;
+      if (transposed)
+        sum += c.value[t] * in[r];
+      else
+        out[r] += c.value[t] * in[q];
+    }
+    if (transposed) out[q] = sum;
+  }
+}
+
+/* U = L_cc in reversed order, so that U U' is the condensed matrix in the
+ * same order: the upper triangle LAPACK's lauum multiplies in place. */
+static void extract_reversed(const body_factor *f, double *U) {
+  const size_t nc = (size_t)f->nc;
+  long super = 0;
+  for (size_t q = 0; q < nc; ++q) {
+    const factor_column c = column_at(f->L, f->contact_at[q], &super);
+    double *to = U + nc * (nc - 1 - q);
+    for (long t = 0; t < c.n; ++t) {
+      const int r = f->rank[c.row[t] - f->contact_at[0]];
+      if (r >= 0) to[nc - 1 - (size_t)r] = c.value[t];
+    }
+  }
+}
+
+/* Are the reversed ranks the rows of A themselves? */
+static int covers(const body_factor *f, int m) {
+  if (f->nc != m) return 0;
+  for (long q = 0; q < f->nc; ++q)
+    if (f->contact_id[q] != m - 1 - (int)q) return 0;
+  return 1;
+}
+
+/* Blocked copy of the upper triangle to the lower one. */
+static void mirror(size_t n, double *A) {
+  enum { TILE = 32 };
+  for (size_t jb = 0; jb < n; jb += TILE)
+    for (size_t ib = 0; ib <= jb; ib += TILE)
+      for (size_t j = jb; j < n && j < jb + TILE; ++j)
+        for (size_t i = ib; i < j && i < ib + TILE; ++i)
+          A[j + n * i] = A[i + n * j];
+}
+
+status body_factor_condense(const body_factor *f, int m, double *A) {
+  status st = OK;
+  const size_t nc = (size_t)f->nc, stride = (size_t)m;
+  const int in_place = covers(f, m);
+  const double scale = ldexp(1, f->exponent);
+  double *U = NULL, *S = A;
+  if (nc == 0) goto done;
+  if (!in_place) {
+    NEW(U, nc * nc);
+    S = U;
+  }
+  extract_reversed(f, S);
+  if (LAPACKE_dlauum_work(LAPACK_COL_MAJOR, 'U', (lapack_int)nc, S,
+                          (lapack_int)nc) != 0)
+    FAIL(ERR_INTERNAL, "condensed matrix of order %zu not formed", nc);
+  for (size_t j = 0; j < nc; ++j) {
+    S[j * (nc + 1)] -= f->spring;
+    for (size_t i = 0; i <= j; ++i) S[i + nc * j] *= scale;
+  }
+  mirror(nc, S);
+  for (size_t j = 0; !in_place && j < nc; ++j) {
+    double *to = A + stride * (size_t)f->contact_id[nc - 1 - j];
+    for (size_t i = 0; i < nc; ++i)
+      to[f->contact_id[nc - 1 - i]] = S[i + nc * j];
+  }
+done:
+  memory_free(U);
+  return st;
+}
+
+status body_factor_forward(body_factor *f, const double *load, double *f_c,
+                           cholmod_common *cm) {
+  status st = OK;
+  double *y = f->y->x, *in = NULL, *out = NULL;
+  const double scale = ldexp(1, -f->exponent), back = ldexp(1, f->exponent);
+  NEW(in, f->nc);
+  NEW(out, f->nc);
+  for (long p = 0; p < f->n; ++p) y[p] = scale * load[f->unknown[p]];
+  if (!cholmod_l_super_lsolve(f->L, f->y, f->work, cm))
+    FAIL(ERR_INTERNAL, "forward solve of %ld unknowns failed", f->n);
+  for (long q = 0; q < f->nc; ++q) in[q] = y[f->contact_at[q]];
+  multiply_cc(f, 0, in, out);
+  for (long q = 0; q < f->nc; ++q) f_c[f->contact_id[q]] = back * out[q];
+done:
+  memory_free(in);
+  memory_free(out);
+  return st;
+}
+
+status body_factor_back(const body_factor *f, const double *u_c, double *u,
+                        cholmod_common *cm) {
+  status st = OK;
+  cholmod_dense *z = NULL;
+  double *in = NULL, *out = NULL;
+  NEW(in, f->nc);
+  NEW(out, f->nc);
+  z = cholmod_l_copy_dense(f->y, cm);
+  if (z == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
+  double *x = z->x;
+  for (long q = 0; q < f->nc; ++q) in[q] = u_c[f->contact_id[q]];
+  multiply_cc(f, 1, in, out);
+  for (long q = 0; q < f->nc; ++q) x[f->contact_at[q]] = out[q];
+  if (!cholmod_l_super_ltsolve(f->L, z, f->work, cm))
+    FAIL(ERR_INTERNAL, "back solve of %ld unknowns failed", f->n);
+  for (long p = 0; p < f->n; ++p) u[f->unknown[p]] = x[p];
+  for (long q = 0; q < f->nc; ++q) u[f->unknown[f->contact_at[q]]] = in[q];
+done:
+  cholmod_l_free_dense(&z, cm);
+  memory_free(in);
+  memory_free(out);
+  return st;
+}

@@ -1,0 +1,52 @@
+/*
+ * One sparse Cholesky factor per body, contact unknowns ordered last, and what
+ * is read off it. Private to src/fem.
+ *
+ * The matrix is scaled by 2^-exponent so that its largest diagonal entry lies
+ * in [0.5, 1): moduli times any power of two give the same factor bit by bit.
+ */
+#ifndef PROTIS_FEM_FACTOR_H
+#define PROTIS_FEM_FACTOR_H
+
+#include "fem/ordering.h"
+#include "fem/stiffness.h"
+
+typedef struct body_factor {
+  int n_node;
+  int *node;     /* [n_node] in elimination order, contact nodes last       */
+  int bad_node;  /* where the factor broke down, for the message            */
+  long n, nc;    /* unknowns; contact ones among them                       */
+  long *unknown; /* [n] dim*node + component of position p in the factor    */
+  long *contact_at; /* [nc] positions of the contact unknowns, ascending    */
+  int *contact_id;  /* [nc] their rows in A                                 */
+  int *rank;     /* [n - contact_at[0]] rank of a position among them or -1 */
+  int exponent;  /* see above                                               */
+  double flops;  /* of the factorisation                                    */
+  double spring; /* added to the scaled contact diagonal, 0: none           */
+  cholmod_factor *L;
+  cholmod_dense *y;    /* [n] kept forward solve                            */
+  cholmod_dense *work; /* [L->maxesize]                                     */
+} body_factor;
+
+/* Number the unknowns of f->node[n_node] (set by the caller): sets n, nc and
+ * number[dim*n_node], -1 where prescribed. */
+void body_factor_number(const stiffness *k, body_factor *f, long *number);
+/* Build the matrix and factor it; "floating" adds springs on the contact
+ * diagonal. ERR_SINGULAR, ERR_MEMORY. */
+status body_factor_build(const stiffness *k, int floating, const long *number,
+                         cholmod_common *cm, body_factor *f);
+void body_factor_release(body_factor *f, cholmod_common *cm);
+/* Put the body's part of the condensed stiffness into A[m*m] (zero there). */
+status body_factor_condense(const body_factor *f, int m, double *A);
+/* y = L^-1 P load, kept; the body's rows of f_c[m]. load[dim*n_node]. */
+status body_factor_forward(body_factor *f, const double *load, double *f_c,
+                           cholmod_common *cm);
+/* u[dim*n_node] at the body's unknowns from u_c[m] and the kept y. */
+status body_factor_back(const body_factor *f, const double *u_c, double *u,
+                        cholmod_common *cm);
+/* Estimate of the condition number of the matrix factored: its largest row sum
+ * times what inverse iteration finds for the inverse; 0 without memory. */
+double body_factor_condition(const stiffness *k, const body_factor *f,
+                             cholmod_common *cm);
+
+#endif

@@ -1,0 +1,27 @@
+/*
+ * Fill-reducing orders of a node graph. Private to src/fem.
+ */
+#ifndef PROTIS_FEM_ORDERING_H
+#define PROTIS_FEM_ORDERING_H
+
+#include "base/status.h"
+
+#include <cholmod.h>
+#include <stddef.h>
+
+/* Symmetric graph, both directions stored, no loops. */
+typedef struct graph {
+  int n;         /* nodes                                                 */
+  size_t *start; /* [n+1]                                                 */
+  int *next;     /* [start[n]]                                            */
+} graph;
+
+/*
+ * Order node[0..n) in place (the interior of one body); neighbours outside
+ * the list are ignored. x[dim*g->n] coordinates. "name" tells which order was
+ * taken. Nodes that follow later (contact) are the caller's.
+ */
+status order_nodes(const graph *g, int dim, const double *x, int n, int *node,
+                   cholmod_common *cm, const char **name);
+
+#endif

@@ -1,0 +1,29 @@
+/*
+ * The assembled stiffness: lower triangle of the node graph, one dense block
+ * per pair of neighbours, contact nodes in their frame. Private to src/fem.
+ */
+#ifndef PROTIS_FEM_STIFFNESS_H
+#define PROTIS_FEM_STIFFNESS_H
+
+#include "fem/fem.h"
+
+struct stiffness {
+  int dim, n_node;
+  size_t *start; /* [n_node+1] first block of column j                     */
+  int *row;      /* [start[n_node]] node i >= j; the diagonal comes first  */
+  double *block; /* [dim*dim*start[n_node]] K_ij, column major, N/m        */
+  unsigned char *free;  /* [n_node] bit c: local component c is unknown       */
+  int *contact;         /* [n_node] id of the contact node or -1              */
+  size_t *coupling;     /* [n_coupling] blocks next to a prescribed component */
+  int *coupling_column; /* [n_coupling] their columns                         */
+  size_t n_coupling;
+};
+
+/* Elements round each node: elem[start[i] .. start[i+1]). Both are new. */
+status node_elements(const mesh *m, size_t **start, int **elem);
+/* domain_free_motions, and floating[n_node] (or NULL): 1 on the nodes of
+ * bodies with such motions. */
+status support_motions(const domain *d, int *n, free_motion **list,
+                       unsigned char *floating);
+
+#endif

@@ -1,0 +1,451 @@
+/* src/fem: condensation against dense elimination, recovery, bits. */
+#include "base/memory.h"
+#include "fem/fem.h"
+#include "support/scene.h"
+#include "support/unit.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+static scene *square(kinematics kin) {
+  scene *s = scene_new(make_grid_2d((int[]){5, 4}, (double[]){1.5, 1}), kin, 7);
+  scene_contact(s, "BOTTOM", (double[]){0, -1}, 0);
+  return s;
+}
+
+static scene *plain_2d(void) {
+  scene *s = square(PLANE_STRAIN);
+  scene_fix(s, "TOP", 0);
+  scene_fix(s, "TOP", 1);
+  return s;
+}
+
+static scene *oblique_2d(void) {
+  scene *s =
+      scene_new(make_grid_2d((int[]){4, 6}, (double[]){1, 1}), AXISYMMETRIC, 3);
+  scene_contact(s, "BOTTOM", (double[]){0.6, -0.8}, 0.3);
+  scene_contact(s, "RIGHT", (double[]){0.8, 0.6}, 0);
+  scene_fix(s, "TOP", 1);
+  return s;
+}
+
+/* The foot of the symmetry line is a contact node held along x. */
+static scene *held_2d(void) {
+  scene *s = square(PLANE_STRESS);
+  scene_fix(s, "LEFT", 0);
+  scene_fix_node(s, s->m->n_node - 1, 1);
+  s->surface.held[1] = 1;
+  return s;
+}
+
+static scene *two_bodies(void) {
+  mesh *a = make_grid_2d((int[]){3, 3}, (double[]){1, 1});
+  mesh *b = grid_join(a, a, (double[]){2, 0.25});
+  scene *s = scene_new(b, PLANE_STRAIN, 2);
+  const int contact[] = {1, 2, 17, 18, 19}; /* feet of both */
+  b->group[0].n_node = 5;
+  memcpy(b->group[0].node_id, contact, sizeof contact);
+  scene_contact(s, "BODY", (double[]){0, -1}, 0);
+  for (int c = 0; c < 2; ++c) {
+    scene_fix_node(s, 12, c);
+    scene_fix_node(s, 15, c);
+  }
+  scene_fix_node(s, 16, 0);
+  grid_free(a);
+  return s;
+}
+
+static scene *floating_3d(void) {
+  scene *s = scene_new(make_grid_3d((int[]){3, 2, 2}, (double[]){1, 1, 2}),
+                       SOLID_3D, 5);
+  scene_contact(s, "FRONT", (double[]){0, 0, -1}, 0);
+  return s;
+}
+
+static scene *oblique_3d(void) {
+  scene *s = scene_new(make_grid_3d((int[]){3, 2, 3}, (double[]){1, 1, 2}),
+                       SOLID_3D, 5);
+  scene_contact(s, "FRONT", (double[]){0, 0.6, -0.8}, 0.4);
+  scene_contact(s, "LEFT", (double[]){-1, 0, 0}, 0);
+  for (int c = 0; c < 3; ++c) scene_fix(s, "BACK", c);
+  for (int q = 0; q < s->surface.n; ++q) {
+    const double *n = s->surface.frame + 9 * q;
+    if (n[2] == 0 && s->m->x[3 * s->surface.node_id[q] + 2] == 2)
+      s->surface.held[3 * q + 1] = s->surface.held[3 * q + 2] = 1;
+  }
+  return s;
+}
+
+/* Contact on all nodes of a row of cells: nothing interior. */
+static scene *all_contact(void) {
+  scene *s = scene_new(make_grid_2d((int[]){4, 1}, (double[]){1, 0.3}),
+                       PLANE_STRAIN, 1);
+  scene_contact(s, "BODY", (double[]){0, -1}, 0);
+  return s;
+}
+
+/* Contact nodes cut the body in two: the factor's trailing block has gaps. */
+static scene *cut_by_contact(void) {
+  scene *s =
+      scene_new(make_grid_2d((int[]){6, 6}, (double[]){1, 1}), PLANE_STRAIN, 1);
+  mesh_group *g = &s->m->group[0];
+  g->n_node = 0;
+  for (int i = 0; i < s->m->n_node; ++i)
+    if (i % 7 == 3) g->node_id[g->n_node++] = i;
+  scene_contact(s, "BODY", (double[]){0, -1}, 0);
+  scene_fix(s, "LEFT", 0);
+  scene_fix(s, "RIGHT", 1);
+  return s;
+}
+
+static scene *no_contact(void) {
+  scene *s =
+      scene_new(make_grid_2d((int[]){6, 6}, (double[]){1, 1}), PLANE_STRAIN, 1);
+  scene_fix(s, "LEFT", 0);
+  scene_fix(s, "LEFT", 1);
+  return s;
+}
+
+static scene *(*const scenes[])(void) = {
+    plain_2d,   oblique_2d,  held_2d,        two_bodies, floating_3d,
+    oblique_3d, all_contact, cut_by_contact, no_contact};
+enum { SCENES = sizeof scenes / sizeof *scenes };
+
+/* Lists of unknowns by their place in the dense matrix. */
+typedef struct parts {
+  int N, m, ni, nc;
+  double *K;
+  unsigned char *unknown;
+  int *inner, *contact, *row; /* row: of A, for contact[] */
+} parts;
+
+static void *get(size_t n) { return calloc(n + 1, sizeof(double)); }
+
+static parts split(const scene *s) {
+  const int dim = s->m->dim;
+  parts p = {.N = dim * s->m->n_node, .m = dim * s->surface.n};
+  const size_t N = (size_t)p.N;
+  p.K = get(N * N);
+  p.unknown = get(N);
+  p.inner = get(N);
+  p.contact = get(N);
+  p.row = get(N);
+  int *of = get(N);
+  scene_dense(s, p.K);
+  scene_unknowns(s, p.unknown);
+  for (int q = 0; q < p.m; ++q)
+    of[dim * s->surface.node_id[q / dim] + q % dim] = q + 1;
+  for (int i = 0; i < p.N; ++i) {
+    if (!p.unknown[i]) continue;
+    if (of[i] == 0) {
+      p.inner[p.ni++] = i;
+    } else {
+      p.row[p.nc] = of[i] - 1;
+      p.contact[p.nc++] = i;
+    }
+  }
+  free(of);
+  return p;
+}
+
+static void release(parts *p) {
+  free(p->K);
+  free(p->unknown);
+  free(p->inner);
+  free(p->contact);
+  free(p->row);
+}
+
+/* A[m*m] by dense elimination; rows of prescribed unknowns stay zero. */
+static void naive_schur(const parts *p, double *A) {
+  const size_t N = (size_t)p->N, ni = (size_t)p->ni, m = (size_t)p->m;
+  double *Kii = get(ni * ni), *Kic = get(ni * (size_t)p->nc);
+  for (size_t j = 0; j < ni; ++j)
+    for (size_t i = 0; i < ni; ++i)
+      Kii[i + ni * j] = p->K[(size_t)p->inner[i] + N * (size_t)p->inner[j]];
+  for (size_t j = 0; j < (size_t)p->nc; ++j)
+    for (size_t i = 0; i < ni; ++i)
+      Kic[i + ni * j] = p->K[(size_t)p->inner[i] + N * (size_t)p->contact[j]];
+  if (ni > 0)
+    ck_assert_int_eq(LAPACKE_dposv(LAPACK_COL_MAJOR, 'L', p->ni, p->nc, Kii,
+                                   p->ni, Kic, p->ni),
+                     0);
+  for (int j = 0; j < p->nc; ++j)
+    for (int i = 0; i < p->nc; ++i) {
+      double v = p->K[(size_t)p->contact[i] + N * (size_t)p->contact[j]];
+      for (size_t k = 0; k < ni; ++k)
+        v -= p->K[(size_t)p->contact[i] + N * (size_t)p->inner[k]] *
+             Kic[k + ni * (size_t)j];
+      A[(size_t)p->row[i] + m * (size_t)p->row[j]] = v;
+    }
+  free(Kii);
+  free(Kic);
+}
+
+static double largest(size_t n, const double *v) {
+  double most = 0;
+  for (size_t i = 0; i < n; ++i) most = fmax(most, fabs(v[i]));
+  return most;
+}
+
+static void solve(const scene *s, stiffness **k, condensed **c) {
+  ck_assert_int_eq(stiffness_assemble(&s->d, k), OK);
+  ck_assert_msg(condense(*k, &s->d, c) == OK, "%s", status_message());
+}
+
+static void end(scene *s, stiffness *k, condensed *c) {
+  condensed_free(c);
+  stiffness_free(k);
+  scene_free(s);
+}
+
+START_TEST(condensed_matrix_is_the_schur_complement) {
+  scene *s = scenes[_i]();
+  stiffness *k;
+  condensed *c;
+  parts p = split(s);
+  const size_t m = (size_t)p.m;
+  double *A = get(m * m);
+  const double *B;
+  naive_schur(&p, A);
+  solve(s, &k, &c);
+  B = condensed_matrix(c);
+  const double scale = largest(m * m, A);
+  for (size_t j = 0; j < m; ++j)
+    for (size_t i = 0; i < m; ++i) {
+      ck_assert(B[i + m * j] == B[j + m * i]);
+      if (!s->surface.held[i] && !s->surface.held[j])
+        ck_assert_double_eq_tol(B[i + m * j], A[i + m * j], 2e-14 * scale);
+      else if (i != j)
+        ck_assert(B[i + m * j] == 0);
+      else
+        ck_assert(B[i + m * j] > 0 && B[i + m * j] <= scale * (1 + 1e-12));
+    }
+  ck_assert_int_eq((int)stiffness_unknowns(k), p.ni + p.nc);
+  ck_assert_int_eq((int)condensed_info(c).unknowns, p.ni + p.nc);
+  ck_assert_double_gt(condensed_condition(c), 1);
+  free(A);
+  release(&p);
+  end(s, k, c);
+}
+END_TEST
+
+/* Prescribed local components from the global ones, as fem.h defines them. */
+static void local_prescribed(const scene *s, const double *ud, double *a) {
+  const int dim = s->m->dim;
+  for (int i = 0; i < dim * s->m->n_node; ++i) a[i] = s->fixed[i] ? ud[i] : 0;
+  for (int q = 0; q < s->surface.n; ++q) {
+    const int at = dim * s->surface.node_id[q];
+    double v[3] = {0};
+    for (int r = 0; r < dim; ++r)
+      for (int t = 0; t < dim; ++t)
+        if (s->fixed[at + t])
+          v[r] += s->surface.frame[dim * (dim * q + r) + t] * ud[at + t];
+    for (int r = 0; r < dim; ++r)
+      a[at + r] = s->surface.held[dim * q + r] ? v[r] : 0;
+  }
+}
+
+/*
+ * For a load, prescribed displacements and any contact displacement u_c, the
+ * recovered interior must be in equilibrium (rows of the dense matrix) and
+ * A u_c - f_c must be the force of the contact rows.
+ */
+START_TEST(load_and_recovery_agree_with_dense_equilibrium) {
+  scene *s = scenes[_i]();
+  stiffness *k;
+  condensed *c;
+  parts p = split(s);
+  const int dim = s->m->dim;
+  const size_t N = (size_t)p.N, m = (size_t)p.m;
+  unsigned seed = 5;
+  double *F = get(N), *ud = get(N), *fc = get(m), *uc = get(m), *u = get(N);
+  double *a = get(N), *f = get(N), *r = get(N);
+  for (size_t i = 0; i < N; ++i) {
+    F[i] = scene_random(&seed);
+    ud[i] = scene_random(&seed);
+  }
+  solve(s, &k, &c);
+  for (size_t i = 0; i < m; ++i) uc[i] = scene_random(&seed);
+  ck_assert_int_eq(condense_load(c, F, ud, fc), OK);
+  ck_assert_int_eq(condense_recover(c, uc, u), OK);
+  memcpy(a, u, N * sizeof *a);
+  memcpy(f, F, N * sizeof *f);
+  for (int q = 0; q < s->surface.n; ++q) {
+    const int at = dim * s->surface.node_id[q];
+    const double *T = s->surface.basis + dim * dim * q;
+    for (int i = 0; i < dim; ++i) {
+      a[at + i] = f[at + i] = 0;
+      for (int j = 0; j < dim; ++j) {
+        a[at + i] += s->surface.frame[dim * (dim * q + i) + j] * u[at + j];
+        f[at + i] += T[dim * i + j] * F[at + j];
+      }
+    }
+  }
+  double *given = get(N);
+  local_prescribed(s, ud, given);
+  for (size_t i = 0; i < N; ++i) {
+    if (!p.unknown[i]) ck_assert_double_eq_tol(a[i], given[i], 1e-14);
+    r[i] = -f[i];
+    for (size_t j = 0; j < N; ++j) r[i] += p.K[i + N * j] * a[j];
+  }
+  for (int q = 0; q < p.ni; ++q)
+    ck_assert_double_eq_tol(r[p.inner[q]], 0, 1e-12 * largest(N * N, p.K));
+  const double *A = condensed_matrix(c);
+  for (int q = 0; q < p.nc; ++q) {
+    double sum = -fc[p.row[q]];
+    for (size_t j = 0; j < m; ++j)
+      sum += A[(size_t)p.row[q] + m * j] * (s->surface.held[j] ? 0 : uc[j]);
+    ck_assert_double_eq_tol(a[p.contact[q]], uc[p.row[q]], 1e-14);
+    ck_assert_double_eq_tol(sum, r[p.contact[q]], 1e-12 * largest(N * N, p.K));
+  }
+  for (size_t i = 0; i < m; ++i)
+    if (s->surface.held[i])
+      ck_assert_double_eq_tol(fc[i] / A[i * (m + 1)],
+                              given[dim * s->surface.node_id[i / (size_t)dim] +
+                                    (int)(i % (size_t)dim)],
+                              1e-14);
+  double *all[] = {F, ud, fc, uc, u, a, f, r, given};
+  for (size_t i = 0; i < sizeof all / sizeof *all; ++i) free(all[i]);
+  release(&p);
+  end(s, k, c);
+}
+END_TEST
+
+START_TEST(floating_body_has_the_rigid_motions_as_null_space) {
+  scene *s = floating_3d();
+  stiffness *k;
+  condensed *c;
+  solve(s, &k, &c);
+  const free_motion *motion;
+  ck_assert_int_eq(condensed_floating(c), 1);
+  ck_assert_int_eq(condensed_motions(c, &motion), 6);
+  const int n = s->surface.n;
+  const size_t m = (size_t)(3 * n);
+  const double *A = condensed_matrix(c);
+  for (int mode = 0; mode < 6; ++mode) {
+    double *v = get(m);
+    for (int q = 0; q < n; ++q) {
+      const double *x = s->surface.x + 3 * q, *f = s->surface.frame + 9 * q;
+      double u[3] = {0};
+      if (mode < 3) {
+        u[mode] = 1;
+      } else {
+        const int i = (mode + 1) % 3, j = (mode + 2) % 3;
+        u[i] = -x[j];
+        u[j] = x[i];
+      }
+      for (int r = 0; r < 3; ++r)
+        for (int t = 0; t < 3; ++t) v[3 * q + r] += f[3 * r + t] * u[t];
+    }
+    for (size_t i = 0; i < m; ++i) {
+      double sum = 0;
+      for (size_t j = 0; j < m; ++j) sum += A[i + m * j] * v[j];
+      ck_assert_double_eq_tol(sum, 0, 1e-13 * largest(m * m, A));
+    }
+    free(v);
+  }
+  end(s, k, c);
+}
+END_TEST
+
+/* u for moduli and loads times 2^power. */
+static double *scaled_solution(scene *(*make)(void), int power, double *A0) {
+  scene *s = make();
+  stiffness *k;
+  condensed *c;
+  const size_t N = (size_t)(s->m->dim * s->m->n_node);
+  const size_t m = (size_t)(s->m->dim * s->surface.n);
+  double *F = get(N), *ud = get(N), *fc = get(m), *u = get(N);
+  unsigned seed = 3;
+  for (int i = 0; i < 36; ++i) s->E[i] = ldexp(s->E[i], power);
+  for (size_t i = 0; i < N; ++i) {
+    F[i] = ldexp(scene_random(&seed), power);
+    ud[i] = scene_random(&seed);
+  }
+  solve(s, &k, &c);
+  ck_assert_int_eq(condense_load(c, F, ud, fc), OK);
+  for (size_t i = 0; i < m; ++i) {
+    fc[i] = ldexp(fc[i], -power);
+    A0[i] = ldexp(condensed_matrix(c)[i * (m + 1)], -power);
+  }
+  ck_assert_int_eq(condense_recover(c, fc, u), OK);
+  free(F);
+  free(ud);
+  free(fc);
+  end(s, k, c);
+  return u;
+}
+
+START_TEST(power_of_two_in_the_moduli_leaves_every_bit) {
+  scene *s = scenes[_i]();
+  const size_t N = (size_t)(s->m->dim * s->m->n_node);
+  scene_free(s);
+  static const int power[] = {40, -40, 13, 1};
+  double A[2][400];
+  double *u = scaled_solution(scenes[_i], 0, A[0]);
+  for (int q = 0; q < 4; ++q) {
+    double *v = scaled_solution(scenes[_i], power[q], A[1]);
+    ck_assert(memcmp(u, v, N * sizeof *u) == 0);
+    free(v);
+  }
+  free(u);
+}
+END_TEST
+
+static status whole_way(const scene *s, double *work) {
+  stiffness *k = NULL;
+  condensed *c = NULL;
+  const int N = s->m->dim * s->m->n_node;
+  status st = stiffness_assemble(&s->d, &k);
+  if (st == OK) st = condense(k, &s->d, &c);
+  if (st == OK) st = condense_load(c, work, NULL, work + N);
+  if (st == OK) st = condense_recover(c, work + N, work + 2 * N);
+  if (st == OK) condensed_condition(c);
+  condensed_free(c);
+  stiffness_free(k);
+  return st;
+}
+
+START_TEST(every_refused_request_is_survived) {
+  scene *s = scenes[_i]();
+  double *work = get(3 * (size_t)(s->m->dim * s->m->n_node));
+  const size_t before = memory_in_use();
+  status st = ERR_MEMORY;
+  for (long r = 1; st != OK; ++r) {
+    const long seen = memory_requests();
+    memory_refuse(r, (int)(r % 2));
+    st = whole_way(s, work);
+    memory_refuse(0, 0);
+    ck_assert_uint_eq(memory_in_use(), before);
+    ck_assert_msg(st == OK || st == ERR_MEMORY, "request %ld: %s: %s", r,
+                  status_name(st), status_message());
+    if (memory_requests() - seen >= r && st == OK) st = ERR_MEMORY;
+    ck_assert_int_lt((int)r, 5000);
+    if (memory_requests() - seen < r) break;
+  }
+  free(work);
+  scene_free(s);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("condensation");
+  TCase *tests = tcase_create("condensation");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, condensed_matrix_is_the_schur_complement, 0,
+                      SCENES);
+  tcase_add_loop_test(tests, load_and_recovery_agree_with_dense_equilibrium, 0,
+                      SCENES);
+  tcase_add_test(tests, floating_body_has_the_rigid_motions_as_null_space);
+  tcase_add_loop_test(tests, power_of_two_in_the_moduli_leaves_every_bit, 0,
+                      SCENES);
+  tcase_add_loop_test(tests, every_refused_request_is_survived, 0, SCENES);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
