@@ -38,9 +38,12 @@ typedef struct contact_problem {
   const double *g0;  /* [n] sliding limit without pressure, N; NULL:
                         frictionless (then B and ut0 are NULL too)          */
   const sparse_rows *B; /* [n*n], -; NULL: g = g0 (Tresca); rows of mu        */
-  const double *side_gap; /* [n*(dim-1)] or NULL: bounds u_t from above where
-                          the node touches a second (third) frictionless
-                          obstacle, HUGE_VAL elsewhere; such nodes have g = 0 */
+  const double *side_gap;    /* [n*(dim-1)] or NULL: bounds u_t from above where
+                             the node touches a second (third) frictionless
+                             obstacle, HUGE_VAL elsewhere; such nodes have g = 0 */
+  const unsigned char *held; /* [m] or NULL: 1: a tangential unknown that is
+                          prescribed. Its row of A is decoupled (A_ii u_i =
+                          f_i), friction acts in the other direction only   */
   int floating; /* A is singular: contact alone holds the body         */
 } contact_problem;
 
@@ -55,13 +58,45 @@ void contact_limit(const contact_problem *cp, const double *r, double *g);
 void contact_classify(const contact_problem *cp, const double *u,
                       const double *r, contact_status *status);
 /*
- * How far (u, r) is from a solution: the largest part over the nodes of the
- * natural map, whose step is taken from the diagonal block of the node, over
- * the scale of the problem; includes A u - f - r (or u - W r - q). No unit: a
- * change of units or a factor 2^k leaves every bit. NaN if anything is NaN.
- * 0 for f = 0, gap >= 0, u = r = 0.
+ * Force scale of the problem, N (displacement scale, m, if A is NULL): how
+ * large the forces of its solution are to be expected, from the data alone.
+ *
+ *   F = min over d of max(|f - A d|_max, 2^-14 (|f| + diag(A) |d|)_max)
+ *
+ * where d is one of two displacements the solution is measured from: stick
+ * positions ut0 with the initial penetration taken back, d_n = min(gap, 0), or
+ * with every gap closed, d_n = gap. If f = A d, u = d without any contact force
+ * is a solution: a load that only carries the body along with its obstacle
+ * (f and A u large, r small) does not make F large. The second term keeps F
+ * above the rounding of the first.
+ * Compliance form: D = max(|q_t - ut0|, q_n - gap), at least 2^-14 |q|_max.
+ */
+double contact_scale(const contact_problem *cp);
+/*
+ * Largest part over the nodes of the natural map, N (m if A is NULL), without
+ * the equation A u = f + r:
+ *   normal      max(r_n, c (u_n - gap)),
+ *   tangential  r_t - P_g(r_t - c (u_t - ut0)),  P_g projects on the disc
+ * |.|<=g with c = A_nn, and the mean of the tangential diagonal of the node;
+ * the compliance form takes c = 1/W and multiplies by W. NaN if anything is
+ * NaN.
+ */
+double contact_mismatch(const contact_problem *cp, const double *u,
+                        const double *r);
+/*
+ * How far (u, r) is from a solution: the larger of contact_mismatch and of
+ * |A u - f - r|_max (|u - W r - q|_max), over contact_scale. No unit: a change
+ * of units by factors 2^k leaves every bit. A residual of 1e-10 is an error of
+ * the nodal forces of about 1e-10 of the largest. NaN if anything is NaN; 0 for
+ * f = 0, gap >= 0, u = r = 0; HUGE_VAL if the scale is zero and (u, r) is not
+ * a solution.
  */
 double contact_residual(const contact_problem *cp, const double *u,
                         const double *r);
+/* y = M x, M[m*m] column major. */
+void contact_product(int m, const double *M, const double *x, double *y);
+/* Sliding limit of one node, N. */
+double contact_node_limit(const contact_problem *cp, const double *r,
+                          int node_id);
 
 #endif

@@ -48,8 +48,10 @@ typedef struct solver_listener {
 
 /* What every solver is told besides its own options. */
 typedef struct solver_control {
-  double tol;   /* wanted contact_residual, -                          */
-  int max_iter; /* 0: the solver's own limit                           */
+  double tol;         /* wanted contact_residual, -                          */
+  int max_iter;       /* 0: the solver's own limit                           */
+  int limit_max_iter; /* passes of a fixed point on g; 0: 200           */
+  int limit_update;   /* pass now running, for the listener             */
   const solver_listener *listener; /* or NULL                                 */
 } solver_control;
 

@@ -1,0 +1,36 @@
+/*
+ * The contact problem of one node with the others held: the exact projections
+ * that the relaxation methods share.
+ *
+ *   K x = b + r,   x = (u_n - gap, u_t - ut0),   K symmetric positive definite,
+ *   x_n <= 0, r_n <= 0, x_n r_n = 0,
+ *   |r_t| <= g, r_t = -g x_t/|x_t| on slip,   g = max(0, g0 - mu r_n).
+ */
+#ifndef PROTIS_SOLVER_LOCAL_H
+#define PROTIS_SOLVER_LOCAL_H
+
+#include "contact/contact.h"
+
+typedef struct local_problem {
+  int dim;       /* 1, 2 or 3: unknowns, the normal one first                */
+  double K[9];   /* [dim*dim] N/m                                          */
+  double b[3];   /* [dim] N                                                */
+  double g0, mu; /* sliding limit without pressure, N; its growth with -r_n */
+  double bound[3]; /* [dim] upper bounds of x, m; bound[0] = 0; HUGE_VAL in a
+                      tangent unless bounded = 1                             */
+  int bounded;     /* 1: a second obstacle; frictionless                     */
+} local_problem;
+
+typedef enum { LOCAL_OPEN, LOCAL_STICK, LOCAL_SLIP } local_state;
+
+/*
+ * Solve it; "before" is the state tried first (with large mu a node can have
+ * several solutions). x[dim], r[dim] receive the solution, exact to rounding:
+ * closed form in 2-D, one safeguarded root in 3-D (the disc, no facets).
+ * Returns the state found. If no state fits (possible only by rounding, or for
+ * mu beyond the local limit) the one that misses least is returned.
+ */
+local_state local_solve(const local_problem *lp, local_state before, double *x,
+                        double *r);
+
+#endif

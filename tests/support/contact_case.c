@@ -1,0 +1,272 @@
+/* Contact problems for the tests of the solvers. */
+#include "support/contact_case.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+double case_random(unsigned long long *seed) {
+  *seed ^= *seed << 13;
+  *seed ^= *seed >> 7;
+  *seed ^= *seed << 17;
+  return (double)(*seed >> 11) * 0x1p-53;
+}
+
+static double *zeros(int n) { return calloc((size_t)n + 1, sizeof(double)); }
+
+contact_case case_new(int dim, int n, double mu) {
+  contact_case c;
+  memset(&c, 0, sizeof c);
+  int m = dim * n;
+  c.A = calloc((size_t)m * (size_t)m + 1, sizeof *c.A);
+  c.f = zeros(m);
+  c.gap = zeros(n);
+  c.ut0 = zeros(m - n);
+  c.g0 = zeros(n);
+  c.u = zeros(m);
+  c.r = zeros(m);
+  c.B = calloc(1, sizeof *c.B);
+  c.B->n = n;
+  c.B->start = calloc((size_t)n + 1, sizeof *c.B->start);
+  c.B->col = calloc((size_t)n + 1, sizeof *c.B->col);
+  c.B->val = zeros(n);
+  for (int i = 0; i < n; ++i) {
+    c.B->start[i + 1] = i + 1;
+    c.B->col[i] = i;
+    c.B->val[i] = mu;
+  }
+  c.cp.dim = dim;
+  c.cp.n = n;
+  c.cp.m = m;
+  c.cp.A = c.A;
+  c.cp.f = c.f;
+  c.cp.gap = c.gap;
+  if (mu > 0.0) {
+    c.cp.ut0 = c.ut0;
+    c.cp.g0 = c.g0;
+    c.cp.B = c.B;
+  }
+  return c;
+}
+
+void case_free(contact_case *c) {
+  free(c->A);
+  free(c->f);
+  free(c->gap);
+  free(c->ut0);
+  free(c->g0);
+  free(c->side_gap);
+  free(c->u);
+  free(c->r);
+  free(c->B->start);
+  free(c->B->col);
+  free(c->B->val);
+  free(c->B);
+}
+
+static void fill_spd(contact_case *c, unsigned long long *seed) {
+  int m = c->cp.m;
+  double *G = zeros(m * m);
+  for (int i = 0; i < m * m; ++i) G[i] = case_random(seed) - 0.5;
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j <= i; ++j) {
+      double sum = i == j ? 0.2 : 0.0;
+      for (int k = 0; k < m; ++k) sum += G[i + m * k] * G[j + m * k] * 12.0 / m;
+      c->A[i + m * j] = c->A[j + m * i] = sum;
+    }
+  free(G);
+}
+
+/* Neighbours joined by springs in random directions. */
+static void fill_chain(contact_case *c, unsigned long long *seed) {
+  int m = c->cp.m, d = c->cp.dim, n = c->cp.n;
+  for (int i = 0; i < n; ++i)
+    for (int s = 0; s < 3 * d; ++s) {
+      double v[3], stiffness = 0.1 + case_random(seed);
+      int other = i + 1 + (int)(3.0 * case_random(seed));
+      for (int k = 0; k < d; ++k) v[k] = case_random(seed) - 0.5;
+      for (int a = 0; a < d; ++a)
+        for (int b = 0; b < d; ++b) {
+          double k = stiffness * v[a] * v[b] + (a == b && s == 0 ? 0.05 : 0.0);
+          c->A[i * d + a + m * (i * d + b)] += k;
+          if (other >= n) continue;
+          c->A[other * d + a + m * (other * d + b)] += k;
+          c->A[i * d + a + m * (other * d + b)] -= k;
+          c->A[other * d + a + m * (i * d + b)] -= k;
+        }
+    }
+}
+
+contact_case case_any(int dim, int n, double mu, int kind,
+                      unsigned long long seed) {
+  contact_case c = case_new(dim, n, mu);
+  seed = seed * 2654435761u + 88172645463325252u; /* never zero              */
+  for (int i = 0; i < 20; ++i) case_random(&seed);
+  if (kind == 0)
+    fill_spd(&c, &seed);
+  else
+    fill_chain(&c, &seed);
+  double push = 2.0 * case_random(&seed) - 0.6;
+  double gaps = case_random(&seed) < 0.5 ? 0.0 : 0.3;
+  double moved = case_random(&seed) < 0.5 ? 0.0 : 0.5;
+  for (int i = 0; i < n; ++i) {
+    c.gap[i] = gaps * (case_random(&seed) - 0.2);
+    for (int k = 0; k < dim; ++k)
+      c.f[i * dim + k] = 2.0 * case_random(&seed) - 1.0 + (k == 0 ? push : 0.0);
+    for (int k = 0; k < dim - 1; ++k)
+      c.ut0[i * (dim - 1) + k] = moved * (case_random(&seed) - 0.5);
+  }
+  return c;
+}
+
+/* ---- block
+ * -----------------------------------------------------------------*/
+
+/* Stiffness of a triangle with corners x[3][2], plane strain, E = 1. */
+static void triangle(double nu, double x[3][2], double K[6][6]) {
+  double lambda = nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), G = 0.5 / (1.0 + nu);
+  double twice = (x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) -
+                 (x[2][0] - x[0][0]) * (x[1][1] - x[0][1]);
+  double g[3][2];
+  for (int a = 0; a < 3; ++a) {
+    const double *p = x[(a + 1) % 3], *q = x[(a + 2) % 3];
+    g[a][0] = (p[1] - q[1]) / twice;
+    g[a][1] = (q[0] - p[0]) / twice;
+  }
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) {
+      double dot = g[a][0] * g[b][0] + g[a][1] * g[b][1];
+      for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j)
+          K[2 * a + i][2 * b + j] =
+              0.5 * twice *
+              (lambda * g[a][i] * g[b][j] + G * g[a][j] * g[b][i] +
+               (i == j ? G * dot : 0.0));
+    }
+}
+
+/* Stiffness of one row of squares between two lines of nodes: low 0..n-1, high
+ * n..2n-1; unknowns x, y. K[(4n)^2] */
+static void row_stiffness(int columns, double nu, double *K) {
+  int n = columns + 1, size = 4 * n;
+  memset(K, 0, (size_t)size * (size_t)size * sizeof *K);
+  for (int c = 0; c < columns; ++c)
+    for (int half = 0; half < 2; ++half) {
+      /* the diagonal alternates */
+      int flip = c % 2;
+      int quad[4] = {c, c + 1, n + c + 1, n + c};
+      static const int corners[2][2][3] = {{{0, 1, 2}, {0, 2, 3}},
+                                           {{0, 1, 3}, {1, 2, 3}}};
+      double x[3][2], k[6][6];
+      int id[3];
+      for (int a = 0; a < 3; ++a) {
+        id[a] = quad[corners[flip][half][a]];
+        x[a][0] = id[a] % n;
+        x[a][1] = id[a] / n;
+      }
+      triangle(nu, x, k);
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j)
+          K[2 * id[i / 2] + i % 2 + size * (2 * id[j / 2] + j % 2)] += k[i][j];
+    }
+}
+
+contact_case case_block(int columns, int layers, double nu, double mu,
+                        int floating) {
+  int n = columns + 1, s = 2 * n, size = 4 * n;
+  contact_case c = case_new(2, n, mu);
+  double *K = zeros(size * size), *S = zeros(s * s), *X = zeros(s * s);
+  row_stiffness(columns, nu, K);
+  for (int layer = 0; layer < layers; ++layer) {
+    /* S: stiffness of what lies above the upper line, seen from it */
+    for (int j = 0; j < s; ++j)
+      for (int i = 0; i < s; ++i) {
+        S[i + s * j] += K[s + i + size * (s + j)];
+        X[i + s * j] = K[s + i + size * j];
+      }
+    int clamped = layer == 0 && !floating;
+    if (!clamped) {
+      LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', s, S, s);
+      LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', s, s, S, s, X, s);
+    }
+    for (int j = 0; j < s; ++j)
+      for (int i = 0; i < s; ++i) {
+        double sum = K[i + size * j];
+        for (int k = 0; !clamped && k < s; ++k)
+          sum -= K[i + size * (s + k)] * X[k + s * j];
+        c.A[i + s * j] = sum;
+      }
+    memcpy(S, c.A, (size_t)(s * s) * sizeof *S);
+  }
+  /* contact frame: outward normal -y, tangent x; symmetric to the last bit */
+  for (int j = 0; j < s; ++j)
+    for (int i = 0; i < s; ++i) {
+      double v = 0.5 * (S[i + s * j] + S[j + s * i]);
+      int a = i % 2 == 0 ? i + 1 : i - 1, b = j % 2 == 0 ? j + 1 : j - 1;
+      double sign = (i % 2 == 1) != (j % 2 == 1) ? -1.0 : 1.0;
+      c.A[a + s * b] = sign * v;
+    }
+  free(K);
+  free(S);
+  free(X);
+  c.cp.floating = floating;
+  return c;
+}
+
+/* ---- independent check
+ * -----------------------------------------------------*/
+
+static double worse(double a, double b) { return !(b <= a) ? b : a; }
+
+static double node_violation(const contact_case *c, const double *u,
+                             const double *r, int i) {
+  const contact_problem *cp = &c->cp;
+  int d = cp->dim, m = cp->m, first = i * d;
+  double k = c->A[(size_t)first * (size_t)m + (size_t)first];
+  double open = cp->gap[i] - u[first], push = -r[first], g = 0.0;
+  double bad = worse(worse(0.0, -push), -k * open);
+  bad = worse(bad, fmin(fmax(push, 0.0), fmax(k * open, 0.0)));
+  if (cp->g0 != NULL) {
+    g = cp->g0[i];
+    for (int e = 0; cp->B != NULL && e < cp->B->n; ++e)
+      if (e >= cp->B->start[i] && e < cp->B->start[i + 1])
+        g += cp->B->val[e] * fmax(0.0, -r[cp->B->col[e] * d]);
+  }
+  double t = 0.0, s = 0.0, dot = 0.0, cross = 0.0;
+  for (int a = 1; a < d; ++a) {
+    double slip = u[first + a] - (cp->ut0 ? cp->ut0[i * (d - 1) + a - 1] : 0.0);
+    t += r[first + a] * r[first + a];
+    s += slip * slip;
+    dot += slip * r[first + a];
+  }
+  t = sqrt(t);
+  s = sqrt(s);
+  if (cp->g0 == NULL) return worse(bad, t);
+  if (d == 3)
+    cross = fabs(
+        (u[first + 1] - (cp->ut0 ? cp->ut0[2 * i] : 0.0)) * r[first + 2] -
+        (u[first + 2] - (cp->ut0 ? cp->ut0[2 * i + 1] : 0.0)) * r[first + 1]);
+  bad = worse(bad, t - g);
+  /* slip only at the limit, and opposite */
+  bad = worse(bad, fmin(k * s, fmax(g - t, 0.0)));
+  if (s > 0.0) bad = worse(bad, fmin(k * s, fmax(0.0, dot / s + t)));
+  if (s > 0.0) bad = worse(bad, fmin(k * s, cross / s));
+  return bad;
+}
+
+double case_violation(const contact_case *c, const double *u, const double *r) {
+  const contact_problem *cp = &c->cp;
+  size_t m = (size_t)cp->m;
+  double scale = 0.0, bad = 0.0;
+  for (size_t i = 0; i < m; ++i) {
+    double sum = -cp->f[i] - r[i];
+    for (size_t j = 0; j < m; ++j) sum += c->A[i + m * j] * u[j];
+    bad = worse(bad, fabs(sum));
+    scale = worse(scale, fabs(r[i]));
+    scale = worse(scale, fabs(cp->f[i]));
+    scale = worse(scale, c->A[i + m * i] * fabs(u[i]));
+  }
+  for (int i = 0; i < cp->n; ++i) bad = worse(bad, node_violation(c, u, r, i));
+  return scale > 0.0 ? bad / scale : bad;
+}

@@ -1,0 +1,221 @@
+/* src/contact/contact.c */
+#include "contact/contact.h"
+#include "support/contact_case.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One node, K = diag(kn, kt), pushed by fn onto the floor and sheared by ft. */
+static contact_case one_node(double kn, double kt, double mu) {
+  contact_case c = case_new(2, 1, mu);
+  c.A[0] = kn;
+  c.A[3] = kt;
+  return c;
+}
+
+START_TEST(residual_is_zero_for_solved_node) {
+  contact_case c = one_node(4.0, 2.0, 0.5);
+  /* stick */
+  c.f[0] = 8.0;
+  c.f[1] = 3.0;
+  double u[2] = {0.0, 0.0}, r[2] = {-8.0, -3.0};
+  ck_assert(contact_residual(&c.cp, u, r) == 0.0);
+  /* slip: r_t = -mu p = -4, u_t = (5 - 4)/2 */
+  c.f[1] = 5.0;
+  u[1] = 0.5;
+  r[1] = -4.0;
+  ck_assert(contact_residual(&c.cp, u, r) == 0.0);
+  /* open */
+  c.f[0] = -8.0;
+  u[0] = -2.0;
+  u[1] = 2.5;
+  r[0] = r[1] = 0.0;
+  ck_assert(contact_residual(&c.cp, u, r) == 0.0);
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(each_broken_condition_shows_by_its_size) {
+  contact_case c = one_node(4.0, 2.0, 0.5);
+  c.f[0] = 8.0;
+  c.f[1] = 5.0; /* scale 8; exact: u = (0, 0.5), r = (-8, -4)                */
+  double tol = 1e-14;
+  double tension_u[2] = {2.5, 2.5}, tension_r[2] = {2.0, 0.0};
+  ck_assert_double_ge_tol(contact_residual(&c.cp, tension_u, tension_r), 0.25,
+                          tol);
+  double over_u[2] = {0.1, 0.5}, over_r[2] = {-7.6, -4.0};
+  ck_assert_double_eq_tol(contact_residual(&c.cp, over_u, over_r), 0.05, tol);
+  double strong_u[2] = {0.0, 0.0}, strong_r[2] = {-8.0, -5.0};
+  ck_assert_double_eq_tol(contact_residual(&c.cp, strong_u, strong_r), 0.125,
+                          tol);
+  double wrong_way_u[2] = {0.0, 4.5}, wrong_way_r[2] = {-8.0, 4.0};
+  ck_assert_double_eq_tol(contact_residual(&c.cp, wrong_way_u, wrong_way_r),
+                          1.0, tol);
+  double apart_u[2] = {0.0, 0.5}, apart_r[2] = {-8.8, -4.4};
+  ck_assert_double_eq_tol(contact_residual(&c.cp, apart_u, apart_r), 0.1, tol);
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(scale_is_of_the_problem) {
+  contact_case c = one_node(4.0, 2.0, 0.5);
+  ck_assert(contact_scale(&c.cp) == 0.0);
+  double u[2] = {0.0, 0.0}, r[2] = {0.0, 0.0};
+  ck_assert(contact_residual(&c.cp, u, r) == 0.0);
+  u[1] = 1e-300;
+  ck_assert(contact_residual(&c.cp, u, r) > 1.0);
+  /* initial penetration alone */
+  c.gap[0] = -0.25;
+  ck_assert(contact_scale(&c.cp) == 1.0);
+  /* moved stick position alone */
+  c.gap[0] = 0.0;
+  c.ut0[0] = 3.0;
+  ck_assert(contact_scale(&c.cp) == 6.0);
+  /* a load that only carries the body along with the obstacle: force 1e-3 */
+  c.f[1] = 6.0 + 1e-3;
+  ck_assert_double_eq_tol(contact_scale(&c.cp), 1e-3, 1e-12);
+  c.f[1] = 6.0; /* nothing but rounding left                                  */
+  ck_assert(contact_scale(&c.cp) == 0x1p-14 * 12.0);
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(closed_gap_counts_where_it_is_nearer) {
+  contact_case c = one_node(4.0, 2.0, 0.0);
+  c.gap[0] = 1.0;
+  c.f[0] = 4.0 + 0.01; /* brings it to the obstacle and pushes with 0.01     */
+  ck_assert_double_eq_tol(contact_scale(&c.cp), 0.01, 1e-12);
+  c.gap[0] = 1000.0; /* out of reach                                         */
+  ck_assert(contact_scale(&c.cp) == 4.01);
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(nan_anywhere_gives_nan) {
+  contact_case c = case_any(3, 3, 0.5, 0, 5);
+  double *all[] = {c.A, c.f, c.gap, c.ut0, c.g0, c.B->val, c.u, c.r};
+  for (size_t k = 0; k < sizeof all / sizeof *all; ++k) {
+    c.r[0] = -1.0; /* so that mu matters                                     */
+    double old = all[k][0];
+    ck_assert(!isnan(contact_residual(&c.cp, c.u, c.r)));
+    all[k][0] = NAN;
+    ck_assert_msg(isnan(contact_residual(&c.cp, c.u, c.r)), "array %zu", k);
+    all[k][0] = old;
+  }
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(factors_of_two_leave_every_bit) {
+  for (int seed = 1; seed < 40; ++seed) {
+    contact_case c = case_any(2 + seed % 2, 1 + seed, 0.7, seed % 2,
+                              (unsigned long long)seed);
+    unsigned long long s = 77u + (unsigned long long)seed;
+    int m = c.cp.m, n = c.cp.n;
+    for (int i = 0; i < m; ++i) {
+      c.u[i] = case_random(&s) - 0.5;
+      c.r[i] = case_random(&s) - 0.7;
+    }
+    double before = contact_residual(&c.cp, c.u, c.r);
+    for (int i = 0; i < m * m; ++i) c.A[i] *= 0x1p+41;
+    for (int i = 0; i < m; ++i) c.f[i] *= 0x1p+24;
+    for (int i = 0; i < m; ++i) c.r[i] *= 0x1p+24;
+    for (int i = 0; i < m; ++i) c.u[i] *= 0x1p-17;
+    for (int i = 0; i < n; ++i) c.gap[i] *= 0x1p-17;
+    for (int i = 0; i < m - n; ++i) c.ut0[i] *= 0x1p-17;
+    ck_assert(contact_residual(&c.cp, c.u, c.r) == before);
+    ck_assert(before > 0.0);
+    case_free(&c);
+  }
+}
+END_TEST
+
+START_TEST(disc_is_exact_at_any_angle) {
+  contact_case c = case_new(3, 1, 0.25);
+  for (int i = 0; i < 9; i += 4) c.A[i] = 2.0;
+  for (int degree = 0; degree < 360; degree += 7) {
+    double a = degree * acos(-1.0) / 180.0;
+    c.f[0] = 8.0;
+    c.f[1] = 5.0 * cos(a);
+    c.f[2] = 5.0 * sin(a);
+    double u[3] = {0.0, 1.5 * cos(a), 1.5 * sin(a)};
+    double r[3] = {-8.0, -2.0 * cos(a), -2.0 * sin(a)};
+    ck_assert(contact_residual(&c.cp, u, r) < 1e-15);
+    r[1] *= 1.01;
+    r[2] *= 1.01;
+    u[1] = (c.f[1] + r[1]) / 2.0;
+    u[2] = (c.f[2] + r[2]) / 2.0;
+    ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.02 / 8.0, 1e-12);
+  }
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(compliance_form_measures_the_same_state) {
+  contact_case c = one_node(0.25, 0.5, 0.5); /* the inverse of diag(4, 2)    */
+  c.cp.W = c.A;
+  c.cp.A = NULL;
+  c.f[0] = 2.0; /* q = W f, f = (8, 5)                                        */
+  c.f[1] = 2.5;
+  double u[2] = {0.0, 0.5}, r[2] = {-8.0, -4.0};
+  ck_assert(contact_residual(&c.cp, u, r) == 0.0);
+  r[1] = -4.4; /* W_tt dr = 0.2, scale q_t = 2.5                              */
+  ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.2 / 2.5, 1e-14);
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(statuses_of_a_row_of_nodes) {
+  contact_case c = case_new(2, 4, 0.5);
+  for (int i = 0; i < 8; ++i) c.A[i + 8 * i] = 2.0;
+  double f[8] = {-1, 1, 4, 1, 4, 3, 0, 0};
+  memcpy(c.f, f, sizeof f);
+  double u[8] = {-0.5, 0.5, 0, 0, 0, 0.5, 0, 0};
+  double r[8] = {0, 0, -4, -1, -4, -2, 0, 0};
+  contact_status s[4];
+  ck_assert(contact_residual(&c.cp, u, r) == 0.0);
+  contact_classify(&c.cp, u, r, s);
+  ck_assert_int_eq(s[0], CONTACT_OPEN);
+  ck_assert_int_eq(s[1], CONTACT_STICK);
+  ck_assert_int_eq(s[2], CONTACT_SLIP);
+  ck_assert_int_eq(s[3], CONTACT_OPEN); /* touches without force             */
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(second_obstacle_bounds_the_tangent) {
+  contact_case c = one_node(4.0, 2.0, 0.0);
+  double side[1] = {0.5};
+  c.cp.side_gap = side;
+  c.f[0] = 8.0;
+  c.f[1] = 3.0; /* would move 1.5                                             */
+  double u[2] = {0.0, 0.5}, r[2] = {-8.0, -2.0};
+  ck_assert(contact_residual(&c.cp, u, r) == 0.0);
+  double through_u[2] = {0.0, 1.5}, through_r[2] = {-8.0, 0.0};
+  ck_assert_double_eq_tol(contact_residual(&c.cp, through_u, through_r), 0.25,
+                          1e-14);
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(held_tangent_takes_no_friction) {
+  contact_case c = one_node(4.0, 2.0, 0.5);
+  unsigned char held[2] = {0, 1};
+  c.cp.held = held;
+  c.f[0] = 8.0;
+  c.f[1] = 2e6; /* prescribed displacement 1e6                               */
+  double u[2] = {0.0, 1e6}, r[2] = {-8.0, 0.0};
+  ck_assert(contact_scale(&c.cp) == 8.0);
+  ck_assert(contact_residual(&c.cp, u, r) == 0.0);
+  case_free(&c);
+}
+END_TEST
+
+UNIT_MAIN("contact", residual_is_zero_for_solved_node,
+          each_broken_condition_shows_by_its_size, scale_is_of_the_problem,
+          closed_gap_counts_where_it_is_nearer, nan_anywhere_gives_nan,
+          factors_of_two_leave_every_bit, disc_is_exact_at_any_angle,
+          compliance_form_measures_the_same_state, statuses_of_a_row_of_nodes,
+          second_obstacle_bounds_the_tangent, held_tangent_takes_no_friction)
