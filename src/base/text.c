@@ -1,0 +1,88 @@
+/*
+ * Text files: opened, written line by line, and checked.
+ */
+#include "base/text.h"
+
+#include "base/memory.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+char *text_path(const char *dir, const char *name, const char *suffix) {
+  const char *slash = "";
+  if (dir == NULL) dir = "";
+  if (dir[0] != '\0' && dir[strlen(dir) - 1] != '/') slash = "/";
+  size_t size = strlen(dir) + strlen(name) + strlen(suffix) + 3;
+  char *path = memory_new(size, 1);
+  if (path != NULL) snprintf(path, size, "%s%s%s.%s", dir, slash, name, suffix);
+  return path;
+}
+
+enum { BUFFER = 1 << 16 };
+
+status text_failed(const char *path, const char *doing, int error_no) {
+  return status_fail(ERR_FILE, __func__, __LINE__, "%s: cannot %s: %s", path,
+                     doing,
+                     error_no != 0 ? strerror(error_no) : "unknown reason");
+}
+
+status text_open(text_file *t, const char *path, int by_line) {
+  status st = OK;
+  t->path = memory_text(path);
+  if (t->path == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: the name of %s", path);
+  errno = 0;
+  t->f = fopen(path, "w");
+  if (t->f == NULL) TRY(text_failed(path, "open for writing", errno));
+  setvbuf(t->f, NULL, by_line ? _IOLBF : _IOFBF, BUFFER);
+done:
+  return st;
+}
+
+status text_check(text_file *t) {
+  if (t->f == NULL) return OK;
+  errno = 0;
+  int bad = ferror(t->f);
+  if (fflush(t->f) != 0) bad = 1;
+  return bad ? text_failed(t->path, "write", errno) : OK;
+}
+
+status text_close(text_file *t) {
+  status st = OK;
+  if (t->f != NULL) {
+    st = text_check(t);
+    errno = 0;
+    if (fclose(t->f) != 0 && st == OK)
+      st = text_failed(t->path, "close", errno);
+    t->f = NULL;
+  }
+  memory_free(t->path);
+  t->path = NULL;
+  return st;
+}
+
+/* printf gives two digits of the exponent below 100. */
+const char *text_number(char text[NUMBER_SIZE], double value, int digits) {
+  if (isnan(value)) return strcpy(text, "NaN");
+  if (isinf(value)) return strcpy(text, value > 0 ? "Inf" : "-Inf");
+  snprintf(text, NUMBER_SIZE, "%.*E", digits, value == 0 ? 0.0 : value);
+  char *e = strchr(text, 'E');
+  int exponent = atoi(e + 1);
+  snprintf(e, (size_t)(text + NUMBER_SIZE - e), "E%c%03d",
+           exponent < 0 ? '-' : '+', abs(exponent));
+  return text;
+}
+
+void text_cell(FILE *f, const char *text, int width) {
+  fprintf(f, " %*s", width - 1, text);
+}
+
+void text_word(char *word, size_t size, const char *text) {
+  size_t i = 0;
+  for (; text[i] != '\0' && i + 1 < size; ++i)
+    word[i] = isspace((unsigned char)text[i]) ? '_' : text[i];
+  word[i] = '\0';
+}

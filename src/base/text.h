@@ -1,0 +1,35 @@
+/*
+ * Text files of the results, every write checked, and the one way numbers are
+ * printed in them.
+ */
+#ifndef PROTIS_BASE_TEXT_H
+#define PROTIS_BASE_TEXT_H
+
+#include "base/status.h"
+
+#include <stdio.h>
+
+typedef struct text_file {
+  FILE *f;
+  char *path; /* owned                                                      */
+} text_file;
+
+/* DIR/NAME.SUFFIX, or NULL without memory; memory_free it. */
+char *text_path(const char *dir, const char *name, const char *suffix);
+/* Open for writing; by_line: each line is handed over when it ends. */
+status text_open(text_file *t, const char *path, int by_line);
+/* Hand everything to the system; ERR_FILE names the file and the reason. */
+status text_check(text_file *t);
+status text_close(text_file *t); /* checked; accepts one never opened      */
+/* ERR_FILE with the path and the text of the error number; 0: none known. */
+status text_failed(const char *path, const char *doing, int error_no);
+enum { NUMBER_SIZE = 40 };
+/* "1.5000E+000": digits after the point, three-digit exponent, no -0, NaN,
+ * Inf; the text is returned. */
+const char *text_number(char text[NUMBER_SIZE], double value, int digits);
+/* Right-aligned in a field of the width, at least one blank before it. */
+void text_cell(FILE *f, const char *text, int width);
+/* The text as one word: blanks become "_". */
+void text_word(char *word, size_t size, const char *text);
+
+#endif

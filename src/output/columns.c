@@ -1,0 +1,420 @@
+/*
+ * THE table of output columns: what tables, fields and histories show, each
+ * with its unit. Signs as in the manual: pressure p = -r_n/area >= 0, forces
+ * are those of the obstacle on the body, so f_n = -r_n >= 0 presses, and f_t
+ * is opposite to the slip.
+ */
+#include "output/output.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A value is one expression of the view v, the item id and the component. */
+#define VALUE(name, expression)                         \
+  static double name(const view *v, int id, int part) { \
+    (void)v, (void)id, (void)part;                      \
+    return (double)(expression);                        \
+  }
+
+static size_t at(int stride, int id, int part) {
+  return (size_t)stride * (size_t)id + (size_t)part;
+}
+
+/* Increments */
+VALUE(step_no, v->s->step_no)
+VALUE(increment_no, v->s->increment_no)
+VALUE(total_no, v->s->total_no)
+VALUE(attempt, v->s->attempt)
+VALUE(time_now, v->s->t)
+VALUE(time_step, v->s->dt)
+VALUE(settled, v->s->settled)
+VALUE(n_open, v->s->n_open)
+VALUE(n_slip, v->s->n_slip)
+VALUE(n_stick, v->s->n_stick)
+VALUE(iterations, v->s->report.iterations)
+VALUE(limit_updates, v->s->report.limit_updates)
+VALUE(residual, v->s->report.residual)
+VALUE(strain_energy, v->s->energy.strain)
+VALUE(external_work, v->s->energy.external)
+VALUE(friction_work, v->s->energy.friction)
+VALUE(friction_end, v->s->energy.friction_end)
+VALUE(obstacle_work, v->s->energy.obstacle)
+VALUE(energy_defect, v->s->energy.defect)
+
+double energy_defect_relative(const energies *e) {
+  double scale = fmax(fabs(e->strain), fabs(e->external));
+  scale = fmax(scale, fmax(fabs(e->friction), fabs(e->obstacle)));
+  return scale > 0 ? e->defect / scale : 0;
+}
+VALUE(defect_relative, energy_defect_relative(&v->s->energy))
+
+/* Nodes */
+VALUE(node_no, v->msh->node_no[id])
+VALUE(node_x, v->msh->x[at(v->msh->dim, id, part)])
+VALUE(node_u, v->s->u[at(v->msh->dim, id, part)])
+VALUE(reaction, v->s->reaction[at(v->msh->dim, id, part)])
+
+/* Elements */
+VALUE(elem_no, v->msh->elem_no[id])
+VALUE(strain, v->s->strain[at(v->m->ns, id, part)])
+VALUE(stress, v->s->stress[at(v->m->ns, id, part)])
+
+static double mises(const view *v, int id, int part) {
+  const double *s = v->s->stress + at(v->m->ns, id, 0);
+  (void)part;
+  double shear = s[3] * s[3];
+  if (v->m->ns == 6) shear += s[4] * s[4] + s[5] * s[5];
+  double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
+  return sqrt(0.5 * (a * a + b * b + c * c) + 3 * shear);
+}
+
+/* Contact nodes: unknowns node by node n, t1[, t2] */
+#define SURFACE (v->s->surface)
+VALUE(contact_node_no, v->msh->node_no[SURFACE->node_id[id]])
+VALUE(contact_x, SURFACE->x[at(SURFACE->dim, id, part)])
+VALUE(contact_u_n, v->s->uc[at(SURFACE->dim, id, 0)])
+VALUE(contact_u_t, v->s->uc[at(SURFACE->dim, id, part + 1)])
+VALUE(contact_gap, v->s->gap[id])
+VALUE(contact_f_n, -v->s->rc[at(SURFACE->dim, id, 0)])
+VALUE(contact_f_t, v->s->rc[at(SURFACE->dim, id, part + 1)])
+VALUE(contact_slip, v->s->slip[at(SURFACE->dim - 1, id, part)])
+VALUE(sliding_limit, v->s->limit[id])
+VALUE(contact_area, SURFACE->area[id])
+VALUE(contact_state, v->s->contact[id])
+
+/* Force over tributary area; a node without area carries none. */
+static double per_area(const view *v, int id, double force) {
+  double area = SURFACE->area[id];
+  return area > 0 ? force / area : 0;
+}
+
+VALUE(contact_pressure, per_area(v, id, contact_f_n(v, id, 0)))
+VALUE(contact_traction, per_area(v, id, contact_f_t(v, id, part)))
+
+/* F = frame' r_c, as u_c = frame u keeps the work. */
+static double contact_force(const view *v, int id, int part) {
+  int dim = SURFACE->dim;
+  const double *frame = SURFACE->frame + at(dim * dim, id, 0);
+  const double *r = v->s->rc + at(dim, id, 0);
+  double sum = 0;
+  for (int k = 0; k < dim; ++k) sum += frame[dim * k + part] * r[k];
+  return sum;
+}
+
+static const char *contact_word(const view *v, int id) {
+  static const char *const words[] = {"OPEN", "SLIP", "STICK"};
+  unsigned k = v->s->contact[id];
+  return k < 3 ? words[k] : "?";
+}
+
+/* Contacts */
+VALUE(contact_no, id + 1)
+VALUE(total_force, v->s->totals[id].force[part])
+VALUE(total_moment, v->s->totals[id].moment[part])
+VALUE(total_normal, -v->s->totals[id].normal)
+VALUE(total_tangential, v->s->totals[id].tangential[part])
+VALUE(total_area, v->s->totals[id].area)
+VALUE(total_open, v->s->totals[id].n_open)
+VALUE(total_slip, v->s->totals[id].n_slip)
+VALUE(total_stick, v->s->totals[id].n_stick)
+
+static const char *contact_name(const view *v, int id) {
+  return v->m->contacts[id].name;
+}
+
+/* clang-format off */
+#define C EFFECT_CONTACT
+#define F (EFFECT_CONTACT | EFFECT_FRICTION)
+#define INC   PER_INCREMENT, AS_REAL
+#define INC_N PER_INCREMENT, AS_COUNT
+#define NODE  PER_NODE, AS_REAL
+#define ELEM  PER_ELEMENT, AS_REAL
+#define CON   PER_CONTACT_NODE, AS_REAL
+#define TOT   PER_CONTACT, AS_REAL
+#define TOT_N PER_CONTACT, AS_COUNT
+#define NODES (PRINT_NODES | PRINT_REACTIONS)
+#define CART (SCENE_PLANE | SCENE_SOLID)
+#define ANY SCENE_ALL, 0
+#define SUR SCENE_ALL, NEEDS_SURFACE
+#define STRAIN(scenes) PRINT_ELEMENTS, EFFECT_STRESS, scenes, NEEDS_STRAIN
+#define STRESS(scenes) PRINT_ELEMENTS, EFFECT_STRESS, scenes, NEEDS_STRESS
+#define REACT(scenes) PRINT_REACTIONS, EFFECT_REACTION, scenes, NEEDS_REACTION
+#define TOTAL(scenes) PRINT_TOTALS, C, scenes, NEEDS_TOTALS
+#define PA "force/length^2"
+#define J "force*length"
+const column column_table[] = {
+/* name, unit, entity and form, tables, effects, scenes, needs, field, part,
+ * value, word, help */
+{"step", "-", INC_N, PRINT_ENERGY, 0, ANY, "step", 0, step_no, NULL,
+ "number of the step"},
+{"increment", "-", INC_N, PRINT_ENERGY, 0, ANY, "increment", 0, increment_no,
+ NULL, "increment within the step"},
+{"total", "-", INC_N, 0, 0, ANY, "total", 0, total_no, NULL,
+ "increments since the start"},
+{"attempt", "-", INC_N, 0, 0, ANY, "attempt", 0, attempt, NULL,
+ "1: the increment was not cut"},
+{"time", "time", INC, PRINT_ENERGY, 0, ANY, "time", 0, time_now, NULL,
+ "end of the increment"},
+{"dt", "time", INC, 0, 0, ANY, "dt", 0, time_step, NULL, "time step"},
+{"settled", "-", INC_N, 0, 0, ANY, "settled", 0, settled, NULL,
+ "1: the increment reached its tolerance"},
+{"open", "-", INC_N, 0, C, ANY, "open", 0, n_open, NULL, "open nodes"},
+{"slip", "-", INC_N, 0, C, ANY, "slip", 0, n_slip, NULL, "slipping nodes"},
+{"stick", "-", INC_N, 0, C, ANY, "stick", 0, n_stick, NULL, "sticking nodes"},
+{"iterations", "-", INC_N, 0, C, ANY, "iterations", 0, iterations, NULL,
+ "iterations of the contact solver"},
+{"limit_updates", "-", INC_N, 0, F, ANY, "limit_updates", 0, limit_updates,
+ NULL, "passes of the fixed point on the sliding limit"},
+{"residual", "-", INC, 0, C, ANY, "residual", 0, residual, NULL,
+ "residual of the contact problem"},
+{"strain_energy", J, INC, PRINT_ENERGY, 0, ANY, "strain_energy", 0,
+ strain_energy, NULL, "elastic energy stored"},
+{"external_work", J, INC, PRINT_ENERGY, 0, ANY, "external_work", 0,
+ external_work, NULL, "work of loads and supports so far"},
+{"friction_work", J, INC, PRINT_ENERGY, F, ANY, "friction_work", 0,
+ friction_work, NULL, "dissipated by friction so far, trapezoidal"},
+{"friction_work_end", J, INC, PRINT_ENERGY, F, ANY, "friction_work_end", 0,
+ friction_end, NULL, "the same with the forces at the end of increments"},
+{"obstacle_work", J, INC, PRINT_ENERGY, C, ANY, "obstacle_work", 0,
+ obstacle_work, NULL, "work of moving obstacles so far"},
+{"energy_defect", J, INC, PRINT_ENERGY, 0, ANY, "energy_defect", 0,
+ energy_defect, NULL, "external + obstacle - friction - strain"},
+{"energy_defect_relative", "-", INC, PRINT_ENERGY, 0, ANY,
+ "energy_defect_relative", 0, defect_relative, NULL,
+ "the defect over the largest of the energies"},
+
+{"node_no", "-", PER_NODE, AS_COUNT, NODES, 0, ANY, NULL, 0, node_no, NULL,
+ "number in the mesh"},
+{"x", "length", NODE, NODES, 0, CART, 0, NULL, 0, node_x,
+ NULL, "coordinate"},
+{"r", "length", NODE, NODES, 0, SCENE_AXI, 0, NULL, 0, node_x, NULL,
+ "coordinate"},
+{"y", "length", NODE, NODES, 0, CART, 0, NULL, 1, node_x,
+ NULL, "coordinate"},
+{"z", "length", NODE, NODES, 0, SCENE_AXI, 0, NULL, 1, node_x, NULL,
+ "coordinate"},
+{"z", "length", NODE, NODES, 0, SCENE_SOLID, 0, NULL, 2, node_x, NULL,
+ "coordinate"},
+{"u_x", "length", NODE, PRINT_NODES, 0, CART, 0, "u", 0,
+ node_u, NULL, "displacement"},
+{"u_r", "length", NODE, PRINT_NODES, 0, SCENE_AXI, 0, "u", 0, node_u, NULL,
+ "displacement"},
+{"u_y", "length", NODE, PRINT_NODES, 0, CART, 0, "u", 1,
+ node_u, NULL, "displacement"},
+{"u_z", "length", NODE, PRINT_NODES, 0, SCENE_AXI, 0, "u", 1, node_u, NULL,
+ "displacement"},
+{"u_z", "length", NODE, PRINT_NODES, 0, SCENE_SOLID, 0, "u", 2, node_u, NULL,
+ "displacement"},
+{"reaction_x", "force", NODE, REACT(CART), "reaction", 0,
+ reaction, NULL, "force of the support on the body"},
+{"reaction_r", "force", NODE, REACT(SCENE_AXI), "reaction", 0, reaction, NULL,
+ "force of the support on the body"},
+{"reaction_y", "force", NODE, REACT(CART), "reaction", 1,
+ reaction, NULL, "force of the support on the body"},
+{"reaction_z", "force", NODE, REACT(SCENE_AXI), "reaction", 1, reaction, NULL,
+ "force of the support on the body"},
+{"reaction_z", "force", NODE, REACT(SCENE_SOLID), "reaction", 2, reaction,
+ NULL, "force of the support on the body"},
+
+{"elem_no", "-", PER_ELEMENT, AS_COUNT, PRINT_ELEMENTS, 0, ANY, NULL, 0,
+ elem_no, NULL, "number in the mesh"},
+{"strain_xx", "-", ELEM, STRAIN(CART), "strain_xx", 0,
+ strain, NULL, "strain"},
+{"strain_yy", "-", ELEM, STRAIN(CART), "strain_yy", 1,
+ strain, NULL, "strain"},
+{"strain_zz", "-", ELEM, STRAIN(CART), "strain_zz", 2,
+ strain, NULL, "strain"},
+{"gamma_xy", "-", ELEM, STRAIN(CART), "gamma_xy", 3,
+ strain, NULL, "engineering shear strain"},
+{"gamma_yz", "-", ELEM, STRAIN(SCENE_SOLID), "gamma_yz", 4, strain, NULL,
+ "engineering shear strain"},
+{"gamma_zx", "-", ELEM, STRAIN(SCENE_SOLID), "gamma_zx", 5, strain, NULL,
+ "engineering shear strain"},
+{"strain_rr", "-", ELEM, STRAIN(SCENE_AXI), "strain_rr", 0, strain, NULL,
+ "strain"},
+{"strain_zz", "-", ELEM, STRAIN(SCENE_AXI), "strain_zz", 1, strain, NULL,
+ "strain"},
+{"strain_tt", "-", ELEM, STRAIN(SCENE_AXI), "strain_tt", 2, strain, NULL,
+ "hoop strain"},
+{"gamma_rz", "-", ELEM, STRAIN(SCENE_AXI), "gamma_rz", 3, strain, NULL,
+ "engineering shear strain"},
+{"stress_xx", PA, ELEM, STRESS(CART), "stress_xx", 0,
+ stress, NULL, "stress"},
+{"stress_yy", PA, ELEM, STRESS(CART), "stress_yy", 1,
+ stress, NULL, "stress"},
+{"stress_zz", PA, ELEM, STRESS(CART), "stress_zz", 2,
+ stress, NULL, "stress"},
+{"stress_xy", PA, ELEM, STRESS(CART), "stress_xy", 3,
+ stress, NULL, "shear stress"},
+{"stress_yz", PA, ELEM, STRESS(SCENE_SOLID), "stress_yz", 4, stress, NULL,
+ "shear stress"},
+{"stress_zx", PA, ELEM, STRESS(SCENE_SOLID), "stress_zx", 5, stress, NULL,
+ "shear stress"},
+{"stress_rr", PA, ELEM, STRESS(SCENE_AXI), "stress_rr", 0, stress, NULL,
+ "stress"},
+{"stress_zz", PA, ELEM, STRESS(SCENE_AXI), "stress_zz", 1, stress, NULL,
+ "stress"},
+{"stress_tt", PA, ELEM, STRESS(SCENE_AXI), "stress_tt", 2, stress, NULL,
+ "hoop stress"},
+{"stress_rz", PA, ELEM, STRESS(SCENE_AXI), "stress_rz", 3, stress, NULL,
+ "shear stress"},
+{"mises", PA, ELEM, STRESS(SCENE_ALL), "mises", 0, mises, NULL,
+ "von Mises stress"},
+
+{"node_no", "-", PER_CONTACT_NODE, AS_COUNT, PRINT_CONTACT, C, SUR, NULL, 0,
+ contact_node_no, NULL, "number in the mesh"},
+{"x", "length", CON, PRINT_CONTACT, C, CART,
+ NEEDS_SURFACE, NULL, 0, contact_x, NULL, "coordinate"},
+{"r", "length", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_SURFACE, NULL, 0,
+ contact_x, NULL, "coordinate"},
+{"y", "length", CON, PRINT_CONTACT, C, CART,
+ NEEDS_SURFACE, NULL, 1, contact_x, NULL, "coordinate"},
+{"z", "length", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_SURFACE, NULL, 1,
+ contact_x, NULL, "coordinate"},
+{"z", "length", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE, NULL, 2,
+ contact_x, NULL, "coordinate"},
+{"area", "length^2", CON, 0, C, SUR, NULL, 0, contact_area, NULL,
+ "tributary area"},
+{"u_n", "length", CON, PRINT_CONTACT, C, SUR, "u_n", 0, contact_u_n, NULL,
+ "displacement along the outward normal"},
+{"u_t", "length", CON, PRINT_CONTACT, C, SCENE_FLAT, NEEDS_SURFACE, "u_t", 0,
+ contact_u_t, NULL, "displacement along the tangent"},
+{"u_t1", "length", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE, "u_t1",
+ 0, contact_u_t, NULL, "displacement along the first tangent"},
+{"u_t2", "length", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE, "u_t2",
+ 1, contact_u_t, NULL, "displacement along the second tangent"},
+{"gap", "length", CON, PRINT_CONTACT, C, SUR, "gap", 0, contact_gap, NULL,
+ "gap left open"},
+{"f_n", "force", CON, PRINT_CONTACT, C, SUR, "f_n", 0, contact_f_n, NULL,
+ "normal force, positive when pressed"},
+{"f_t", "force", CON, PRINT_CONTACT, C, SCENE_FLAT, NEEDS_SURFACE, "f_t", 0,
+ contact_f_t, NULL, "tangential force of the obstacle on the body"},
+{"f_t1", "force", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE, "f_t1",
+ 0, contact_f_t, NULL, "tangential force of the obstacle on the body"},
+{"f_t2", "force", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE, "f_t2",
+ 1, contact_f_t, NULL, "tangential force of the obstacle on the body"},
+{"f_x", "force", CON, PRINT_CONTACT, C, CART,
+ NEEDS_SURFACE, "force", 0, contact_force, NULL,
+ "force of the obstacle on the body"},
+{"f_r", "force", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_SURFACE, "force", 0,
+ contact_force, NULL, "force of the obstacle on the body"},
+{"f_y", "force", CON, PRINT_CONTACT, C, CART,
+ NEEDS_SURFACE, "force", 1, contact_force, NULL,
+ "force of the obstacle on the body"},
+{"f_z", "force", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_SURFACE, "force", 1,
+ contact_force, NULL, "force of the obstacle on the body"},
+{"f_z", "force", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE, "force",
+ 2, contact_force, NULL, "force of the obstacle on the body"},
+{"pressure", PA, CON, PRINT_CONTACT, C, SUR, "pressure", 0, contact_pressure,
+ NULL, "normal force over tributary area, >= 0"},
+{"traction_t", PA, CON, PRINT_CONTACT, C, SCENE_FLAT, NEEDS_SURFACE,
+ "traction_t", 0, contact_traction, NULL,
+ "tangential force over tributary area"},
+{"traction_t1", PA, CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE,
+ "traction_t1", 0, contact_traction, NULL,
+ "tangential force over tributary area"},
+{"traction_t2", PA, CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE,
+ "traction_t2", 1, contact_traction, NULL,
+ "tangential force over tributary area"},
+{"slip", "length", CON, PRINT_CONTACT, F, SCENE_FLAT, NEEDS_SURFACE, "slip",
+ 0, contact_slip, NULL, "slip of the increment"},
+{"slip_1", "length", CON, PRINT_CONTACT, F, SCENE_SOLID, NEEDS_SURFACE,
+ "slip_1", 0, contact_slip, NULL, "slip of the increment"},
+{"slip_2", "length", CON, PRINT_CONTACT, F, SCENE_SOLID, NEEDS_SURFACE,
+ "slip_2", 1, contact_slip, NULL, "slip of the increment"},
+{"limit", "force", CON, PRINT_CONTACT, F, SCENE_ALL,
+ NEEDS_SURFACE | NEEDS_LIMIT, "limit", 0, sliding_limit, NULL,
+ "sliding limit"},
+{"status", "-", PER_CONTACT_NODE, AS_WORD, PRINT_CONTACT, C, SUR, "status", 0,
+ contact_state, contact_word, "OPEN, SLIP, STICK; as number 0, 1, 2"},
+
+{"contact", "-", PER_CONTACT, AS_WORD, PRINT_TOTALS, C, SCENE_ALL,
+ NEEDS_TOTALS, NULL, 0, contact_no, contact_name, "name of the *CONTACT"},
+{"force_x", "force", TOT, TOTAL(CART), "force_x", 0,
+ total_force, NULL, "force of the obstacle on the body"},
+{"force_r", "force", TOT, TOTAL(SCENE_AXI), "force_r", 0, total_force, NULL,
+ "sum of the radial nodal forces"},
+{"force_y", "force", TOT, TOTAL(CART), "force_y", 1,
+ total_force, NULL, "force of the obstacle on the body"},
+{"force_z", "force", TOT, TOTAL(SCENE_AXI), "force_z", 1, total_force, NULL,
+ "force of the obstacle on the body"},
+{"force_z", "force", TOT, TOTAL(SCENE_SOLID), "force_z", 2, total_force, NULL,
+ "force of the obstacle on the body"},
+{"moment_x", J, TOT, TOTAL(SCENE_SOLID), "moment_x", 0, total_moment, NULL,
+ "moment of the obstacle on the body about the origin"},
+{"moment_y", J, TOT, TOTAL(SCENE_SOLID), "moment_y", 1, total_moment, NULL,
+ "moment of the obstacle on the body about the origin"},
+{"moment_z", J, TOT, TOTAL(CART), "moment_z", 2,
+ total_moment, NULL, "moment of the obstacle on the body about the origin"},
+{"normal", "force", TOT, TOTAL(SCENE_ALL), "normal", 0, total_normal, NULL,
+ "sum of the normal forces, positive when pressed"},
+{"tangential", "force", TOT, TOTAL(SCENE_FLAT), "tangential", 0,
+ total_tangential, NULL, "sum of the tangential forces"},
+{"tangential_1", "force", TOT, TOTAL(SCENE_SOLID), "tangential_1", 0,
+ total_tangential, NULL, "sum of the tangential forces"},
+{"tangential_2", "force", TOT, TOTAL(SCENE_SOLID), "tangential_2", 1,
+ total_tangential, NULL, "sum of the tangential forces"},
+{"closed_area", "length^2", TOT, TOTAL(SCENE_ALL), "closed_area", 0,
+ total_area, NULL, "tributary area of the closed nodes"},
+{"open", "-", TOT_N, TOTAL(SCENE_ALL), "open", 0, total_open, NULL,
+ "open nodes"},
+{"slip", "-", TOT_N, TOTAL(SCENE_ALL), "slip", 0, total_slip, NULL,
+ "slipping nodes"},
+{"stick", "-", TOT_N, TOTAL(SCENE_ALL), "stick", 0, total_stick, NULL,
+ "sticking nodes"},
+{NULL, NULL, INC, 0, 0, 0, 0, NULL, 0, NULL, NULL, NULL}};
+/* clang-format on */
+
+unsigned scene_of(const model *m) {
+  if (m->dim == 3) return SCENE_SOLID;
+  for (int i = 0; i < m->n_section; ++i)
+    if (m->sections[i].kin % 4 == AXISYMMETRIC) return SCENE_AXI;
+  return SCENE_PLANE;
+}
+
+int column_visible(const column *c, const model *m) {
+  return (c->effects & ~m->effects) == 0 && (c->scenes & scene_of(m)) != 0;
+}
+
+int column_ready(const column *c, const state *s) {
+  unsigned have = 0;
+  if (s->strain != NULL) have |= NEEDS_STRAIN;
+  if (s->stress != NULL) have |= NEEDS_STRESS;
+  if (s->reaction != NULL) have |= NEEDS_REACTION;
+  if (s->surface != NULL) have |= NEEDS_SURFACE;
+  if (s->limit != NULL) have |= NEEDS_LIMIT;
+  if (s->totals != NULL) have |= NEEDS_TOTALS;
+  return (c->needs & ~have) == 0;
+}
+
+int column_items(entity of, const view *v) {
+  switch (of) {
+    case PER_NODE:
+      return v->msh->n_node;
+    case PER_ELEMENT:
+      return v->msh->n_elem;
+    case PER_CONTACT_NODE:
+      return v->s->surface != NULL ? v->s->surface->n : 0;
+    case PER_CONTACT:
+      return v->m->n_contact;
+    default:
+      return 1;
+  }
+}
+
+void column_unit(const char *unit, const model *m, char *text, size_t size) {
+  const char *const words[] = {"length", "force", "time"};
+  const char *const labels[] = {m->length_unit, m->force_unit, m->time_unit};
+  size_t used = 0;
+  text[0] = '\0';
+  while (*unit != '\0' && used + 1 < size) {
+    int k = 0;
+    while (k < 3 && strncmp(unit, words[k], strlen(words[k])) != 0) ++k;
+    int known = k < 3 && labels[k] != NULL;
+    int n = known ? snprintf(text + used, size - used, "%s", labels[k])
+                  : snprintf(text + used, size - used, "%c", *unit);
+    unit += known ? strlen(words[k]) : 1;
+    used += (size_t)n;
+  }
+}

@@ -1,0 +1,63 @@
+/*
+ * JOB.h5 as two files of this folder see it: hdf5.c decides what stands in
+ * it and writes while the job runs, hdf5_layout.c makes the empty file.
+ *
+ * All groups and datasets are made before the first increment (contiguous,
+ * allocated at once, no fill, no object times) and the space is reserved. From
+ * then on HDF5 is not called any more: raw numbers are written at the offsets
+ * of the datasets, so that no metadata ever changes and the file is readable
+ * after a kill at any moment. The time of a row or record is NaN until all of
+ * it is written.
+ */
+#ifndef PROTIS_OUTPUT_HDF5_H
+#define PROTIS_OUTPUT_HDF5_H
+
+#include "output/writers.h"
+
+#include <sys/types.h>
+
+typedef enum { DATA_REAL, DATA_INT, DATA_NUMBER, DATA_TEXT } data_type;
+
+typedef struct fixed_data { /* written once                                 */
+  char path[240];
+  data_type type;
+  int rows, columns; /* columns 1: a vector; DATA_TEXT: rows bytes           */
+  const void *data;  /* NULL once the first file is written                  */
+  void *own;         /* what to free then                                    */
+} fixed_data;
+
+typedef struct hdf5_layout {
+  int n_row, n_record; /* room for                                           */
+  off_t *fixed;        /* [n_fixed] offset in the file, bytes; 0: no dataset */
+  off_t *history;      /* [n_field] of PER_INCREMENT, PER_CONTACT            */
+  off_t *record;       /* [n_field * n_record] of the others, field by field */
+  off_t record_time, record_total; /* of "/fields/time" and "/fields/total"  */
+} hdf5_layout;
+
+struct hdf5_file {
+  const model *m;
+  const mesh *msh;
+  const output_options *o;
+  char *path, *aside;
+  int fd; /* -1: not open                                                    */
+  int n_field, cap_field, n_fixed, cap_fixed;
+  hdf5_field *fields;
+  fixed_data *fixed;
+  int n_contact_node, n_contact_face;
+  char *deck; /* text of the deck echo                                       */
+  hdf5_layout now;
+  int n_row, n_record, cap_time; /* written                                  */
+  double *times;                 /* [n_record]                               */
+};
+
+/* The times stand in "/history/time". */
+int hdf5_is_history(const hdf5_field *f);
+/* Items of a field in one record; 1 for histories. */
+int hdf5_items(const hdf5_file *h, const hdf5_field *f);
+size_t fixed_bytes(const fixed_data *d);
+/* Make the file "aside" with room for rows and records; l gets the offsets. */
+status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
+                        hdf5_layout *l);
+void hdf5_layout_free(hdf5_layout *l);
+
+#endif

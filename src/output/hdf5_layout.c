@@ -1,0 +1,261 @@
+/*
+ * The empty JOB.h5: groups, datasets, units; nothing but HDF5 calls. Each call
+ * is checked: on a full disk H5Fflush fails and H5Fclose does not.
+ */
+#include "base/memory.h"
+#include "output/hdf5.h"
+
+#include <errno.h>
+#include <hdf5.h>
+#include <string.h>
+
+/* The file while it is made. */
+typedef struct maker {
+  const char *path;
+  hid_t file, with_groups, plain;
+} maker;
+
+static status maker_failed(const maker *k, const char *doing) {
+  return text_failed(k->path, doing, errno);
+}
+
+static status open_maker(maker *k) {
+  status st = OK;
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  errno = 0;
+  k->file = H5Fcreate(k->path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  if (k->file < 0) TRY(maker_failed(k, "create"));
+  k->with_groups = H5Pcreate(H5P_LINK_CREATE);
+  k->plain = H5Pcreate(H5P_DATASET_CREATE);
+  if (k->with_groups < 0 || k->plain < 0 ||
+      H5Pset_create_intermediate_group(k->with_groups, 1) < 0 ||
+      H5Pset_layout(k->plain, H5D_CONTIGUOUS) < 0 ||
+      H5Pset_alloc_time(k->plain, H5D_ALLOC_TIME_EARLY) < 0 ||
+      H5Pset_fill_time(k->plain, H5D_FILL_TIME_NEVER) < 0 ||
+      H5Pset_obj_track_times(k->plain, 0) < 0)
+    TRY(maker_failed(k, "set up"));
+done:
+  return st;
+}
+
+static status close_maker(maker *k, int flush) {
+  int bad = 0;
+  errno = 0;
+  if (flush && H5Fflush(k->file, H5F_SCOPE_GLOBAL) < 0) bad = 1;
+  if (k->plain >= 0) H5Pclose(k->plain);
+  if (k->with_groups >= 0) H5Pclose(k->with_groups);
+  if (k->file >= 0 && H5Fclose(k->file) < 0) bad = 1;
+  return bad ? maker_failed(k, "write") : OK;
+}
+
+static status text_type(const maker *k, size_t size, hid_t *type) {
+  status st = OK;
+  *type = H5Tcopy(H5T_C_S1);
+  if (*type < 0 || H5Tset_size(*type, size) < 0 ||
+      H5Tset_strpad(*type, H5T_STR_NULLPAD) < 0)
+    TRY(maker_failed(k, "set up"));
+done:
+  return st;
+}
+
+/* An attribute of any type; type is closed. */
+static status attribute(const maker *k, hid_t object, const char *name,
+                        hid_t type, const void *value) {
+  status st = OK;
+  hid_t space = H5Screate(H5S_SCALAR);
+  hid_t a = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  if (a < 0 || H5Awrite(a, type, value) < 0)
+    TRY(maker_failed(k, "write an attribute of"));
+done:
+  if (a >= 0) H5Aclose(a);
+  if (space >= 0) H5Sclose(space);
+  return st;
+}
+
+static status attribute_text(const maker *k, hid_t object, const char *name,
+                             const char *value) {
+  status st = OK;
+  hid_t type = -1;
+  if (value == NULL) value = "";
+  TRY(text_type(k, strlen(value) + 1, &type));
+  TRY(attribute(k, object, name, type, value));
+done:
+  if (type >= 0) H5Tclose(type);
+  return st;
+}
+
+static status attribute_int(const maker *k, hid_t object, const char *name,
+                            int value) {
+  return attribute(k, object, name, H5T_NATIVE_INT, &value);
+}
+
+static status column_attributes(const maker *k, hid_t object, const column *c,
+                                const model *m) {
+  status st = OK;
+  char unit[80];
+  column_unit(c->unit, m, unit, sizeof unit);
+  TRY(attribute_text(k, object, "unit", unit));
+  TRY(attribute_text(k, object, "help", c->help));
+done:
+  return st;
+}
+
+/* A group and those above it. */
+static status make_group(const maker *k, const char *path, hid_t *group) {
+  status st = OK;
+  errno = 0;
+  *group = H5Gcreate2(k->file, path, k->with_groups, H5P_DEFAULT, H5P_DEFAULT);
+  if (*group < 0) TRY(maker_failed(k, "make a group of"));
+done:
+  return st;
+}
+
+static status make_dataset(const maker *k, const char *path, hid_t type,
+                           const hsize_t dims[2], const column *described,
+                           const model *m, off_t *offset) {
+  status st = OK;
+  haddr_t address = 0;
+  errno = 0;
+  hid_t space = H5Screate_simple(dims[1] > 1 ? 2 : 1, dims, NULL);
+  hid_t set = H5Dcreate2(k->file, path, type, space, k->with_groups, k->plain,
+                         H5P_DEFAULT);
+  if (set < 0) TRY(maker_failed(k, "make a dataset of"));
+  if (described != NULL) TRY(column_attributes(k, set, described, m));
+  address = H5Dget_offset(set);
+  if (address == HADDR_UNDEF) TRY(maker_failed(k, "reserve a dataset of"));
+  *offset = (off_t)address;
+done:
+  if (set >= 0) H5Dclose(set);
+  if (space >= 0) H5Sclose(space);
+  return st;
+}
+
+static status make_fixed(const maker *k, const hdf5_file *h, hdf5_layout *l) {
+  status st = OK;
+  for (int i = 0; i < h->n_fixed; ++i) {
+    const fixed_data *d = &h->fixed[i];
+    hsize_t dims[2] = {(hsize_t)d->rows, (hsize_t)d->columns};
+    hid_t type = d->type == DATA_REAL  ? H5T_NATIVE_DOUBLE
+                 : d->type == DATA_INT ? H5T_NATIVE_INT
+                                       : H5T_NATIVE_ULLONG;
+    hid_t text = -1;
+    if (d->rows == 0) continue;
+    if (d->type == DATA_TEXT) {
+      TRY(text_type(k, (size_t)d->rows, &text));
+      dims[0] = 1;
+    }
+    st = make_dataset(k, d->path, text >= 0 ? text : type, dims, NULL, h->m,
+                      &l->fixed[i]);
+    if (text >= 0) H5Tclose(text);
+    TRY(st);
+  }
+done:
+  return st;
+}
+
+static status make_records(const maker *k, const hdf5_file *h, int field_id,
+                           hdf5_layout *l) {
+  status st = OK;
+  const hdf5_field *f = &h->fields[field_id];
+  char path[400], name[40];
+  hid_t group = -1;
+  hsize_t dims[2] = {(hsize_t)hdf5_items(h, f), (hsize_t)f->n_part};
+  snprintf(path, sizeof path, "%s/%s", f->group, f->name);
+  TRY(make_group(k, path, &group));
+  TRY(column_attributes(k, group, f->part[0], h->m));
+  for (int i = 0; i < l->n_record && dims[0] > 0; ++i) {
+    hdf5_record_name(name, sizeof name, i);
+    snprintf(path, sizeof path, "%s/%s/%s", f->group, f->name, name);
+    size_t slot = (size_t)field_id * (size_t)l->n_record + (size_t)i;
+    TRY(make_dataset(k, path, H5T_NATIVE_DOUBLE, dims, NULL, h->m,
+                     &l->record[slot]));
+  }
+done:
+  if (group >= 0) H5Gclose(group);
+  return st;
+}
+
+static status make_history(const maker *k, const hdf5_file *h, int field_id,
+                           hdf5_layout *l) {
+  const hdf5_field *f = &h->fields[field_id];
+  char path[400];
+  hsize_t dims[2] = {(hsize_t)l->n_row, 1};
+  if (l->n_row == 0) return OK;
+  snprintf(path, sizeof path, "%s/%s", f->group, f->name);
+  return make_dataset(k, path, H5T_NATIVE_DOUBLE, dims, f->part[0], h->m,
+                      &l->history[field_id]);
+}
+
+static status make_record_times(const maker *k, const hdf5_file *h,
+                                hdf5_layout *l) {
+  status st = OK;
+  hsize_t dims[2] = {(hsize_t)l->n_record, 1};
+  if (l->n_record == 0) return OK;
+  TRY(make_dataset(k, "/fields/time", H5T_NATIVE_DOUBLE, dims, NULL, h->m,
+                   &l->record_time));
+  TRY(make_dataset(k, "/fields/total", H5T_NATIVE_DOUBLE, dims, NULL, h->m,
+                   &l->record_total));
+done:
+  return st;
+}
+
+static status root_attributes(const maker *k, const hdf5_file *h) {
+  status st = OK;
+  const model *m = h->m;
+  hid_t root = H5Gopen2(k->file, "/", H5P_DEFAULT);
+  if (root < 0) TRY(maker_failed(k, "write an attribute of"));
+  TRY(attribute_text(k, root, "program", "protis"));
+  TRY(attribute_text(k, root, "version", h->o->version));
+  TRY(attribute_text(k, root, "job", m->job));
+  TRY(attribute_text(k, root, "title", m->title));
+  TRY(attribute_text(k, root, "blas_kernel", h->o->kernel));
+  TRY(attribute_int(k, root, "threads", h->o->threads));
+  TRY(attribute_int(k, root, "dimension", m->dim));
+  TRY(attribute_text(k, root, "length_unit", m->length_unit));
+  TRY(attribute_text(k, root, "force_unit", m->force_unit));
+  TRY(attribute_text(k, root, "time_unit", m->time_unit));
+  TRY(attribute_text(k, root, "note",
+                     "rows and records whose time is NaN were not reached"));
+done:
+  if (root >= 0) H5Gclose(root);
+  return st;
+}
+
+static status alloc_layout(const hdf5_file *h, int n_row, int n_record,
+                           hdf5_layout *l) {
+  status st = OK;
+  *l = (hdf5_layout){.n_row = n_row, .n_record = n_record};
+  NEW(l->fixed, h->n_fixed);
+  NEW(l->history, h->n_field);
+  NEW(l->record, (size_t)h->n_field * (size_t)n_record);
+done:
+  return st;
+}
+
+status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
+                        hdf5_layout *l) {
+  status st = OK, closed;
+  maker k = {h->aside, -1, -1, -1};
+  TRY(alloc_layout(h, n_row, n_record, l));
+  TRY(open_maker(&k));
+  TRY(root_attributes(&k, h));
+  TRY(make_fixed(&k, h, l));
+  for (int i = 0; i < h->n_field; ++i)
+    if (hdf5_is_history(&h->fields[i]))
+      TRY(make_history(&k, h, i, l));
+    else
+      TRY(make_records(&k, h, i, l));
+  TRY(make_record_times(&k, h, l));
+done:
+  closed = close_maker(&k, st == OK);
+  if (st == OK) st = closed;
+  if (st != OK) hdf5_layout_free(l);
+  return st;
+}
+
+void hdf5_layout_free(hdf5_layout *l) {
+  memory_free(l->fixed);
+  memory_free(l->history);
+  memory_free(l->record);
+  *l = (hdf5_layout){0};
+}

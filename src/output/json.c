@@ -1,0 +1,228 @@
+/*
+ * JOB.json: the verdict and the figures of the run for programs. RFC 8259;
+ * what is no finite number is null.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "output/writers.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The writer knows whether a comma is due: one flag per depth. */
+typedef struct json {
+  FILE *f;
+  int depth;
+  int filled[8];
+} json;
+
+/* Well-formed UTF-8: first byte, and what the second may be (Unicode 3.9,
+ * table 3-7); the bytes after those are 80..BF. */
+static const struct {
+  unsigned char first, last, low, high, length;
+} utf8[] = {{0x00, 0x7F, 0x00, 0x00, 1}, {0xC2, 0xDF, 0x80, 0xBF, 2},
+            {0xE0, 0xE0, 0xA0, 0xBF, 3}, {0xE1, 0xEC, 0x80, 0xBF, 3},
+            {0xED, 0xED, 0x80, 0x9F, 3}, {0xEE, 0xEF, 0x80, 0xBF, 3},
+            {0xF0, 0xF0, 0x90, 0xBF, 4}, {0xF1, 0xF3, 0x80, 0xBF, 4},
+            {0xF4, 0xF4, 0x80, 0x8F, 4}};
+
+/* Length of the sequence at s; 0: none there. */
+static int utf8_length(const unsigned char *s) {
+  for (size_t i = 0; i < sizeof utf8 / sizeof *utf8; ++i) {
+    if (s[0] < utf8[i].first || s[0] > utf8[i].last) continue;
+    int n = utf8[i].length;
+    if (n > 1 && (s[1] < utf8[i].low || s[1] > utf8[i].high)) return 0;
+    for (int k = 2; k < n; ++k)
+      if ((s[k] & 0xC0) != 0x80) return 0;
+    return n;
+  }
+  return 0;
+}
+
+/* A byte that is no UTF-8 is taken as Latin-1, so that the file stays valid. */
+static void json_text(FILE *f, const char *text) {
+  fputc('"', f);
+  for (const unsigned char *s = (const unsigned char *)text; *s != '\0';) {
+    int n = utf8_length(s);
+    if (*s == '"' || *s == '\\')
+      fprintf(f, "\\%c", *s);
+    else if (*s == '\n')
+      fputs("\\n", f);
+    else if (*s < 0x20 || n == 0 || *s == 0x7F)
+      fprintf(f, "\\u%04x", *s);
+    else
+      fwrite(s, 1, (size_t)n, f);
+    s += n > 0 ? n : 1;
+  }
+  fputc('"', f);
+}
+
+static void json_next(json *w, const char *name) {
+  if (w->filled[w->depth]++ > 0) fputc(',', w->f);
+  fprintf(w->f, "\n%*s", 2 * w->depth, "");
+  if (name == NULL) return;
+  json_text(w->f, name);
+  fputs(": ", w->f);
+}
+
+static void json_open(json *w, const char *name, char bracket) {
+  if (w->depth > 0) json_next(w, name);
+  fputc(bracket, w->f);
+  w->filled[++w->depth] = 0;
+}
+
+static void json_close(json *w, char bracket) {
+  --w->depth;
+  fprintf(w->f, "\n%*s%c", 2 * w->depth, "", bracket);
+}
+
+static void json_string(json *w, const char *name, const char *text) {
+  json_next(w, name);
+  json_text(w->f, text != NULL ? text : "");
+}
+
+static void json_real(json *w, const char *name, double value) {
+  json_next(w, name);
+  if (isfinite(value))
+    fprintf(w->f, "%.17g", value == 0 ? 0.0 : value);
+  else
+    fputs("null", w->f);
+}
+
+static void json_count(json *w, const char *name, double value) {
+  json_next(w, name);
+  fprintf(w->f, "%.0f", value);
+}
+
+static void json_flag(json *w, const char *name, int value) {
+  json_next(w, name);
+  fputs(value ? "true" : "false", w->f);
+}
+
+/* "contact nodes" -> "contact_nodes". */
+static void json_named_count(json *w, const char *name, double value) {
+  char word[80];
+  text_word(word, sizeof word, name);
+  json_count(w, word, value);
+}
+
+static void write_exit(json *w, const run_summary *run) {
+  json_open(w, "exit", '{');
+  json_count(w, "code", status_exit_code(run->verdict));
+  json_string(w, "name", status_name(run->verdict));
+  json_string(w, "text", status_text(run->verdict));
+  json_string(w, "message", run->message);
+  json_close(w, '}');
+}
+
+static void write_effects(json *w, const model *m) {
+  char why[256];
+  json_open(w, "effects", '[');
+  for (int bit = 0; bit < EFFECT_COUNT; ++bit) {
+    json_open(w, NULL, '{');
+    json_string(w, "effect", effect_name(bit));
+    json_flag(w, "on", (m->effects & (1u << bit)) != 0);
+    json_string(w, "why", model_effect_reason(m, bit, why, sizeof why));
+    json_close(w, '}');
+  }
+  json_close(w, ']');
+}
+
+static void write_sizes(json *w, const job *j) {
+  size_row rows[SIZE_ROWS];
+  job_sizes(j, rows);
+  json_open(w, "sizes", '{');
+  for (int i = 0; rows[i].name != NULL; ++i)
+    json_named_count(w, rows[i].name, rows[i].value);
+  json_close(w, '}');
+}
+
+static void write_accuracy(json *w, const run_summary *run) {
+  json_open(w, "accuracy", '{');
+  json_count(w, "increments", run->n_increment);
+  json_count(w, "attempts_cut", run->n_rejected);
+  json_count(w, "tolerance_missed", run->n_unsettled);
+  json_real(w, "residual_worst", run->residual_worst);
+  json_real(w, "energy_defect_worst", run->defect_worst);
+  if (run->facts_known) json_real(w, "condition", run->facts.condition);
+  json_close(w, '}');
+}
+
+static void write_cost(json *w, const output_options *o) {
+  json_open(w, "cost", '{');
+  json_open(w, "stages", '[');
+  for (int i = 0; i < STAGE_COUNT; ++i) {
+    stage_cost c = timer_cost((stage)i);
+    json_open(w, NULL, '{');
+    json_string(w, "stage", timer_name((stage)i));
+    json_count(w, "calls", (double)c.calls);
+    if (!o->no_timing) json_real(w, "cpu", c.cpu);
+    json_count(w, "bytes", (double)c.bytes);
+    json_close(w, '}');
+  }
+  json_close(w, ']');
+  if (!o->no_timing) json_real(w, "cpu", timer_cpu());
+  json_count(w, "peak_bytes", (double)memory_peak());
+  json_close(w, '}');
+}
+
+static void write_increment(json *w, const increment_summary *s) {
+  json_open(w, NULL, '{');
+  json_count(w, "step", s->step_no);
+  json_count(w, "increment", s->increment_no);
+  json_count(w, "attempt", s->attempt);
+  json_real(w, "time", s->t);
+  json_real(w, "dt", s->dt);
+  json_count(w, "open", s->n_open);
+  json_count(w, "slip", s->n_slip);
+  json_count(w, "stick", s->n_stick);
+  json_count(w, "iterations", s->iterations);
+  json_real(w, "residual", s->residual);
+  json_real(w, "energy_defect", s->defect);
+  json_flag(w, "settled", s->settled);
+  json_close(w, '}');
+}
+
+static void write_all(json *w, const job *j) {
+  json_open(w, NULL, '{');
+  json_string(w, "program", "protis");
+  json_string(w, "version", j->o->version);
+  json_string(w, "job", j->m->job);
+  json_string(w, "title", j->m->title);
+  json_string(w, "blas_kernel", j->o->kernel);
+  json_count(w, "threads", j->o->threads);
+  write_exit(w, j->run);
+  write_effects(w, j->m);
+  write_sizes(w, j);
+  write_accuracy(w, j->run);
+  write_cost(w, j->o);
+  json_open(w, "increments", '[');
+  for (int i = 0; i < j->run->n_increment; ++i)
+    write_increment(w, &j->run->increments[i]);
+  json_close(w, ']');
+  json_close(w, '}');
+  fputc('\n', w->f);
+}
+
+status json_write(const job *j, const char *path) {
+  status st = OK;
+  text_file file = {0};
+  json w = {0};
+  char *aside = text_path("", path, "tmp");
+  if (aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of %s", path);
+  TRY(text_open(&file, aside, 0));
+  w.f = file.f;
+  write_all(&w, j);
+  TRY(text_close(&file));
+  if (rename(aside, path) != 0) TRY(text_failed(path, "replace", errno));
+done:
+  if (st != OK) {
+    text_close(&file);
+    if (aside != NULL) unlink(aside);
+  }
+  memory_free(aside);
+  return st;
+}

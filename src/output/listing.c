@@ -1,0 +1,219 @@
+/*
+ * JOB.lst: the listing. Deck with defaults, model, effect plan, one block per
+ * increment, accuracy and cost. No date, time of day or path stands in it; the
+ * cost columns (CPU seconds and bytes, which depend on the length of names)
+ * are left out on request, and then two runs give the same bytes.
+ */
+#include "base/timer.h"
+#include "output/writers.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { DIGITS = 5 };
+
+static void heading(FILE *f, const char *text) {
+  fprintf(f, "\n%s\n", text);
+  for (size_t i = 0; i < strlen(text); ++i) fputc('-', f);
+  fputc('\n', f);
+}
+
+int job_sizes(const job *j, size_row rows[SIZE_ROWS]) {
+  const condense_info *info = &j->run->facts.info;
+  int n = 0;
+  rows[n++] = (size_row){"dimension", j->m->dim};
+  rows[n++] = (size_row){"nodes", j->msh->n_node};
+  rows[n++] = (size_row){"elements", j->msh->n_elem};
+  rows[n++] = (size_row){"groups", j->msh->n_group};
+  rows[n++] = (size_row){"materials", j->m->n_material};
+  rows[n++] = (size_row){"sections", j->m->n_section};
+  rows[n++] = (size_row){"contacts", j->m->n_contact};
+  rows[n++] = (size_row){"steps", j->m->n_step};
+  int model_rows = n;
+  if (j->run->facts_known) {
+    rows[n++] = (size_row){"bodies", info->bodies};
+    rows[n++] = (size_row){"unknowns", (double)info->unknowns};
+    rows[n++] = (size_row){"contact nodes", j->run->facts.n_contact_node};
+    rows[n++] = (size_row){"contact unknowns", (double)info->contact_unknowns};
+    rows[n++] = (size_row){"factor entries", (double)info->factor_entries};
+  }
+  rows[n] = (size_row){NULL, 0};
+  return model_rows;
+}
+
+/* Those known before the equations, or those after. */
+static void print_sizes(const job *j, int equations, FILE *f) {
+  size_row rows[SIZE_ROWS];
+  int known = job_sizes(j, rows);
+  for (int i = equations ? known : 0; rows[i].name != NULL; ++i)
+    fprintf(f, "  %-18s %14.0f\n", rows[i].name, rows[i].value);
+}
+
+static const char *kinematics_text(int kin) {
+  static const char *const words[] = {"plane strain", "plane stress",
+                                      "axisymmetric", "3-D"};
+  return kin >= 0 ? words[kin % 4] : "?";
+}
+
+static void print_model(const job *j, FILE *f) {
+  const model *m = j->m;
+  for (int i = 0; i < j->msh->n_group; ++i) {
+    const mesh_group *g = &j->msh->group[i];
+    fprintf(f, "  group    %-20s dimension %d  items %8d  nodes %8d\n", g->name,
+            g->dim, g->n_item, g->n_node);
+  }
+  for (int i = 0; i < m->n_section; ++i)
+    fprintf(f, "  section  %-20s %s, material %s\n", m->sections[i].elset,
+            kinematics_text(m->sections[i].kin), m->sections[i].material_name);
+  for (int i = 0; i < m->n_contact; ++i) {
+    const contact *c = &m->contacts[i];
+    fprintf(f, "  contact  %-20s group %s, obstacle %s, friction %s\n", c->name,
+            c->group, c->obstacle_name, c->law != NULL ? c->law->name : "none");
+  }
+}
+
+static void print_effects(const model *m, FILE *f) {
+  char why[256];
+  for (int bit = 0; bit < EFFECT_COUNT; ++bit)
+    fprintf(f, "  %-20s %-3s  %s\n", effect_name(bit),
+            m->effects & (1u << bit) ? "on" : "off",
+            model_effect_reason(m, bit, why, sizeof why));
+}
+
+status listing_open(const job *j, text_file *lst) {
+  FILE *f = lst->f;
+  const char *version = j->o->version != NULL ? j->o->version : "";
+  fprintf(f, "PROTIS %s\n\n%s\n", version,
+          j->m->title != NULL ? j->m->title : "");
+  heading(f, "DECK");
+  if (j->m->deck != NULL) model_echo(j->m, f);
+  heading(f, "MODEL");
+  print_sizes(j, 0, f);
+  print_model(j, f);
+  heading(f, "EFFECTS");
+  print_effects(j->m, f);
+  if (j->m->log != NULL && message_count(j->m->log, WARNING) > 0) {
+    heading(f, "WARNINGS");
+    message_list(j->m->log, WARNING, f);
+  }
+  return text_check(lst);
+}
+
+status listing_ready(const job *j, text_file *lst) {
+  char text[NUMBER_SIZE];
+  const setup_facts *facts = &j->run->facts;
+  heading(lst->f, "EQUATIONS");
+  print_sizes(j, 1, lst->f);
+  if (facts->info.ordering != NULL)
+    fprintf(lst->f, "  %-18s %14s\n", "ordering", facts->info.ordering);
+  fprintf(lst->f, "  %-18s %14s\n", "condition",
+          text_number(text, facts->condition, 1));
+  if (facts->floating)
+    fprintf(lst->f, "  contact alone holds at least one body\n");
+  heading(lst->f, "INCREMENTS");
+  return text_check(lst);
+}
+
+static void print_totals(const job *j, const view *v, FILE *f) {
+  table t;
+  table_choose(&t, PER_CONTACT, PRINT_TOTALS, v, DIGITS);
+  if (j->m->n_contact == 0 || t.n == 0) return;
+  table_header(&t, j->m, " ", f);
+  for (int i = 0; i < j->m->n_contact; ++i) table_row(&t, v, i, f);
+}
+
+static void print_energies(const job *j, const view *v, FILE *f) {
+  table t;
+  table_choose(&t, PER_INCREMENT, PRINT_ENERGY, v, DIGITS);
+  int n = 0; /* step, increment and time stand in the first line already     */
+  for (int k = 0; k < t.n; ++k)
+    if (strstr(t.col[k]->unit, "force") != NULL ||
+        strstr(t.col[k]->name, "relative") != NULL) {
+      t.col[n] = t.col[k];
+      t.width[n++] = t.width[k];
+    }
+  t.n = n;
+  table_header(&t, j->m, " ", f);
+  table_row(&t, v, 0, f);
+}
+
+static void print_solver(const job *j, const state *s, FILE *f) {
+  char text[NUMBER_SIZE];
+  const solver_report *r = &s->report;
+  fprintf(f, "  contact nodes: open %d, slip %d, stick %d\n", s->n_open,
+          s->n_slip, s->n_stick);
+  fprintf(f, "  solver %s: %s, iterations %d, limit updates %d, residual %s",
+          r->solver != NULL ? r->solver : "-", outcome_text(r->outcome),
+          r->iterations, r->limit_updates, text_number(text, r->residual, 2));
+  if (!j->o->no_timing) fprintf(f, ", cpu %.3f s", r->cpu);
+  fputc('\n', f);
+  if (s->solver_log != NULL && s->solver_log[0] != '\0')
+    fprintf(f, "  tried: %s\n", s->solver_log);
+  if (!s->settled) fprintf(f, "  THE TOLERANCE WAS NOT REACHED\n");
+}
+
+static void print_when(const state *s, FILE *f) {
+  char t[NUMBER_SIZE], dt[NUMBER_SIZE];
+  fprintf(f, "\nstep %d  increment %d  time %s  dt %s", s->step_no,
+          s->increment_no, text_number(t, s->t, 9), text_number(dt, s->dt, 9));
+  if (s->attempt > 1) fprintf(f, "  attempt %d", s->attempt);
+}
+
+status listing_increment(const job *j, const state *s, text_file *lst) {
+  view v = {j->m, j->msh, s};
+  print_when(s, lst->f);
+  fputc('\n', lst->f);
+  if (s->surface != NULL) {
+    print_solver(j, s, lst->f);
+    print_totals(j, &v, lst->f);
+  }
+  print_energies(j, &v, lst->f);
+  return text_check(lst);
+}
+
+status listing_rejected(const state *s, const char *why, text_file *lst) {
+  print_when(s, lst->f);
+  fprintf(lst->f, "\n  cut: %s\n", why);
+  return text_check(lst);
+}
+
+static void print_accuracy(const job *j, FILE *f) {
+  char text[NUMBER_SIZE];
+  const run_summary *run = j->run;
+  fprintf(f, "  %-26s %12d\n", "increments", run->n_increment);
+  fprintf(f, "  %-26s %12d\n", "attempts cut", run->n_rejected);
+  fprintf(f, "  %-26s %12d\n", "tolerance missed", run->n_unsettled);
+  fprintf(f, "  %-26s %12s\n", "largest residual",
+          text_number(text, run->residual_worst, 2));
+  fprintf(f, "  %-26s %12s\n", "largest energy defect",
+          text_number(text, run->defect_worst, 2));
+}
+
+/* Stages that were never entered are shown too: 0 calls, 0 bytes. */
+static void print_stages(const job *j, FILE *f) {
+  int cost = !j->o->no_timing;
+  double cpu = 0;
+  fprintf(f, "  %-30s %8s", "stage", "calls");
+  fprintf(f, cost ? " %12s %14s\n" : "\n", "cpu[s]", "bytes");
+  for (int i = 0; i < STAGE_COUNT; ++i) {
+    stage_cost c = timer_cost((stage)i);
+    cpu += c.cpu;
+    fprintf(f, "  %-30s %8ld", timer_name((stage)i), c.calls);
+    if (cost) fprintf(f, " %12.3f %14zu", c.cpu, c.bytes);
+    fputc('\n', f);
+  }
+  if (cost) fprintf(f, "  %-30s %8s %12.3f\n", "all stages", "", cpu);
+}
+
+status listing_verdict(const job *j, text_file *lst) {
+  FILE *f = lst->f;
+  heading(f, "ACCURACY");
+  print_accuracy(j, f);
+  heading(f, "COST");
+  print_stages(j, f);
+  heading(f, "END");
+  fprintf(f, "  exit %d: %s\n", status_exit_code(j->run->verdict),
+          status_text(j->run->verdict));
+  if (j->run->message[0] != '\0') fprintf(f, "  %s\n", j->run->message);
+  return text_check(lst);
+}

@@ -1,0 +1,269 @@
+/*
+ * The open job: all files, and the sink that history_run tells. JOB.sta is
+ * written last: an increment that stands there stands in all files.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "output/writers.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+struct output {
+  const model *m;
+  const mesh *msh;
+  output_options o;
+  char *json, *xdmf;
+  text_file lst, sta, cvg;
+  tabular *dat;
+  hdf5_file *h5;
+  run_summary run;
+  int n_xdmf;  /* records named in JOB.xdmf                                  */
+  int attempt; /* of the increment now tried                                 */
+  int progress;
+};
+
+static job job_of(const output *o) {
+  return (job){o->m, o->msh, &o->o, &o->run};
+}
+
+/* ---- the summary of the run ------------------------------------------- */
+
+/* The larger; NaN wins, so that it is seen. */
+static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
+
+static status remember(output *o, const state *s) {
+  status st = OK;
+  run_summary *run = &o->run;
+  GROW(run->increments, run->n_increment, run->capacity);
+  increment_summary *i = &run->increments[run->n_increment++];
+  *i = (increment_summary){.step_no = s->step_no,
+                           .increment_no = s->increment_no,
+                           .total_no = s->total_no,
+                           .attempt = s->attempt,
+                           .t = s->t,
+                           .dt = s->dt,
+                           .n_open = s->n_open,
+                           .n_slip = s->n_slip,
+                           .n_stick = s->n_stick,
+                           .iterations = s->report.iterations,
+                           .settled = s->settled,
+                           .residual = s->report.residual,
+                           .defect = energy_defect_relative(&s->energy)};
+  if (s->surface != NULL)
+    run->residual_worst = worse(run->residual_worst, s->report.residual);
+  run->defect_worst = worse(run->defect_worst, fabs(i->defect));
+  if (!s->settled) ++run->n_unsettled;
+done:
+  return st;
+}
+
+/* ---- what the loop tells ---------------------------------------------- */
+
+static status sink_ready(void *ctx, const setup_facts *facts,
+                         const contact_surface *surface) {
+  status st = OK;
+  output *o = ctx;
+  job j = job_of(o);
+  o->run.facts = *facts;
+  o->run.facts_known = 1;
+  timer_enter(STAGE_TABLES);
+  st = listing_ready(&j, &o->lst);
+  timer_leave(STAGE_TABLES);
+  TRY(st);
+  timer_enter(STAGE_HDF5);
+  st = hdf5_open(o->m, o->msh, &o->o, surface, &o->h5);
+  timer_leave(STAGE_HDF5);
+  TRY(st);
+done:
+  return st;
+}
+
+/* The text is written anew each time; when it has grown long, not for every
+ * record, so that the cost stays in proportion. */
+static status show_records(output *o, int all) {
+  status st = OK;
+  hdf5_shape shape;
+  if (o->h5 == NULL) return OK;
+  hdf5_shape_of(o->h5, &shape);
+  int news = shape.n_record - o->n_xdmf;
+  if (news == 0 || (!all && news < 1 + o->n_xdmf / 64)) return OK;
+  TRY(xdmf_write(&shape, o->xdmf));
+  o->n_xdmf = shape.n_record;
+done:
+  return st;
+}
+
+static status write_fields(output *o, const state *s) {
+  status st = OK;
+  if (o->h5 == NULL) return OK;
+  timer_enter(STAGE_HDF5);
+  st = hdf5_increment(o->h5, s);
+  if (st == OK) st = show_records(o, 0);
+  timer_leave(STAGE_HDF5);
+  return st;
+}
+
+static status write_tables(output *o, const state *s) {
+  status st = OK;
+  job j = job_of(o);
+  timer_enter(STAGE_TABLES);
+  TRY(tabular_increment(o->dat, s));
+  TRY(listing_increment(&j, s, &o->lst));
+  TRY(text_check(&o->cvg));
+  TRY(remember(o, s));
+  TRY(sta_line(&o->o, s, NULL, &o->sta));
+done:
+  timer_leave(STAGE_TABLES);
+  return st;
+}
+
+static status sink_increment(void *ctx, const state *s) {
+  status st = OK;
+  output *o = ctx;
+  TRY(write_fields(o, s));
+  TRY(write_tables(o, s));
+  o->attempt = 1;
+  if (o->progress) progress_show(s);
+done:
+  return st;
+}
+
+static void sink_iteration(void *ctx, const solver_step *s) {
+  output *o = ctx;
+  cvg_line(o->run.n_increment + 1, o->attempt, s, &o->cvg);
+}
+
+static status sink_rejected(void *ctx, const state *s, const char *why) {
+  status st = OK;
+  output *o = ctx;
+  ++o->run.n_rejected;
+  ++o->attempt;
+  timer_enter(STAGE_TABLES);
+  TRY(text_check(&o->cvg));
+  TRY(listing_rejected(s, why, &o->lst));
+  TRY(sta_line(&o->o, s, why, &o->sta));
+done:
+  timer_leave(STAGE_TABLES);
+  return st;
+}
+
+history_sink output_sink(output *o) {
+  return (history_sink){o, sink_ready, sink_increment, sink_iteration,
+                        sink_rejected};
+}
+
+/* ---- open and close --------------------------------------------------- */
+
+static void release(output *o) {
+  memory_free(o->json);
+  memory_free(o->xdmf);
+  memory_free(o->run.increments);
+  memory_free(o);
+}
+
+/* What an earlier run left must not be taken for a result of this one. */
+static status remove_old(const output *o, const char *suffix) {
+  status st = OK;
+  char *path = text_path(o->o.dir, o->m->job, suffix);
+  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  if (unlink(path) != 0 && errno != ENOENT)
+    TRY(text_failed(path, "remove the earlier", errno));
+done:
+  memory_free(path);
+  return st;
+}
+
+static status open_text(const output *o, const char *suffix, text_file *t) {
+  status st = OK;
+  char *path = text_path(o->o.dir, o->m->job, suffix);
+  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  TRY(text_open(t, path, 1));
+done:
+  memory_free(path);
+  return st;
+}
+
+static status open_all(output *o) {
+  status st = OK;
+  job j = job_of(o);
+  o->json = text_path(o->o.dir, o->m->job, "json");
+  o->xdmf = text_path(o->o.dir, o->m->job, "xdmf");
+  if (o->json == NULL || o->xdmf == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  TRY(open_text(o, "lst", &o->lst));
+  TRY(open_text(o, "sta", &o->sta));
+  TRY(open_text(o, "cvg", &o->cvg));
+  TRY(remove_old(o, "h5"));
+  TRY(remove_old(o, "xdmf"));
+  TRY(remove_old(o, "json"));
+  TRY(tabular_open(o->m, o->msh, o->o.dir, &o->dat));
+  if (o->dat == NULL) TRY(remove_old(o, "dat"));
+  TRY(sta_header(&o->o, &o->sta));
+  cvg_header(&o->cvg);
+  TRY(text_check(&o->cvg));
+  TRY(listing_open(&j, &o->lst));
+done:
+  return st;
+}
+
+status output_open(const model *m, const mesh *msh, const output_options *opt,
+                   output **out) {
+  status st = OK;
+  output *o = NULL;
+  *out = NULL;
+  NEW(o, 1);
+  o->m = m;
+  o->msh = msh;
+  o->o = *opt;
+  o->attempt = 1;
+  o->run.message = "";
+  o->progress = opt->progress && isatty(STDERR_FILENO);
+  TRY(open_all(o));
+  *out = o;
+done:
+  if (st != OK && o != NULL) {
+    text_close(&o->lst);
+    text_close(&o->sta);
+    text_close(&o->cvg);
+    tabular_close(o->dat);
+    release(o);
+  }
+  return st;
+}
+
+/* The first failure is the one told; the files after it are closed as well. */
+static void first_of(status *kept, char *message, size_t size, status st) {
+  if (st == OK || *kept != OK) return;
+  *kept = st;
+  snprintf(message, size, "%s", status_message());
+}
+
+static status verdict_of(status run, int unsettled) {
+  return run == OK && unsettled > 0 ? ERR_UNSETTLED : run;
+}
+
+status output_close(output *o, status run, int unsettled) {
+  char message[2048] = "";
+  status kept = OK;
+  if (o == NULL) return verdict_of(run, unsettled);
+  job j = job_of(o);
+  if (o->progress) progress_line("");
+  first_of(&kept, message, sizeof message, run);
+  first_of(&kept, message, sizeof message, show_records(o, 1));
+  first_of(&kept, message, sizeof message, hdf5_close(o->h5, kept == OK));
+  first_of(&kept, message, sizeof message, tabular_close(o->dat));
+  first_of(&kept, message, sizeof message, text_close(&o->cvg));
+  first_of(&kept, message, sizeof message, text_close(&o->sta));
+  o->run.message = message;
+  o->run.verdict = verdict_of(kept, unsettled);
+  first_of(&kept, message, sizeof message, listing_verdict(&j, &o->lst));
+  first_of(&kept, message, sizeof message, text_close(&o->lst));
+  o->run.verdict = verdict_of(kept, unsettled);
+  first_of(&kept, message, sizeof message, json_write(&j, o->json));
+  release(o);
+  if (kept != OK) return status_fail(kept, __func__, __LINE__, "%s", message);
+  return verdict_of(OK, unsettled);
+}

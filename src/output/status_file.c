@@ -1,0 +1,72 @@
+/*
+ * JOB.sta: one line per attempt at an increment, for tail -f and scripts.
+ * JOB.cvg: one line per contact iteration.
+ * The line on the terminal.
+ */
+#include "output/writers.h"
+
+#include <math.h>
+
+status sta_header(const output_options *o, text_file *sta) {
+  fprintf(sta->f, "#%5s %5s %3s %11s %11s %7s %7s %7s %-9s %7s %10s %8s",
+          "step", "inc", "att", "time", "dt", "open", "slip", "stick", "solver",
+          "iter", "residual", "error");
+  if (!o->no_timing) fprintf(sta->f, " %9s", "cpu[s]");
+  fprintf(sta->f, " reason\n");
+  return text_check(sta);
+}
+
+/* OK, UNSETTLED: taken although it missed its tolerance, or CUT and why. */
+static const char *reason(const state *s, const char *why) {
+  if (why != NULL) return "CUT ";
+  return s->settled ? "OK" : "UNSETTLED";
+}
+
+/* The estimates of mesh and step have no value yet: "-". */
+status sta_line(const output_options *o, const state *s, const char *why,
+                text_file *sta) {
+  char t[NUMBER_SIZE], dt[NUMBER_SIZE], residual[NUMBER_SIZE];
+  const solver_report *r = &s->report;
+  fprintf(sta->f, "%6d %5d %3d %s %s %7d %7d %7d %-9s %7d %s %8s", s->step_no,
+          s->increment_no, s->attempt, text_number(t, s->t, 4),
+          text_number(dt, s->dt, 4), s->n_open, s->n_slip, s->n_stick,
+          r->solver != NULL ? r->solver : "-", r->iterations,
+          text_number(residual, r->residual, 3), "-");
+  if (!o->no_timing) fprintf(sta->f, " %9.3f", s->cpu);
+  fprintf(sta->f, " %s%s\n", reason(s, why), why != NULL ? why : "");
+  return text_check(sta);
+}
+
+void cvg_header(text_file *cvg) {
+  fprintf(cvg->f, "#%6s %3s %-9s %6s %6s %10s %8s %12s %5s\n", "total", "att",
+          "solver", "iter", "limit", "residual", "changes", "limit_change",
+          "cycle");
+}
+
+/* Unknown values are "-". */
+void cvg_line(int total_no, int attempt, const solver_step *s, text_file *cvg) {
+  char residual[NUMBER_SIZE] = "-", change[NUMBER_SIZE] = "-";
+  char changes[16] = "-";
+  if (!isnan(s->residual)) text_number(residual, s->residual, 3);
+  if (!isnan(s->limit_change)) text_number(change, s->limit_change, 3);
+  if (s->status_changes >= 0)
+    snprintf(changes, sizeof changes, "%d", s->status_changes);
+  fprintf(cvg->f, "%7d %3d %-9s %6d %6d %10s %8s %12s %5s\n", total_no, attempt,
+          s->solver != NULL ? s->solver : "-", s->iteration, s->limit_update,
+          residual, changes, change, s->cycle ? "YES" : "no");
+}
+
+void progress_line(const char *text) {
+  fprintf(stderr, "\r%s\033[K", text);
+  fflush(stderr);
+}
+
+void progress_show(const state *s) {
+  char text[160];
+  snprintf(text, sizeof text,
+           "step %d  increment %d  time %.4g  open %d  slip %d  stick %d  "
+           "iterations %d  residual %.1e",
+           s->step_no, s->increment_no, s->t, s->n_open, s->n_slip, s->n_stick,
+           s->report.iterations, s->report.residual);
+  progress_line(text);
+}

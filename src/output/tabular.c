@@ -1,0 +1,316 @@
+/*
+ * Tables of the columns: JOB.dat, asked for by *PRINT, and those of the
+ * listing.
+ *
+ *   # step 1 increment 3 time 3.0000000000000000E-001 table CONTACT
+ *   # node_no[-] x[mm] ...
+ *     17 1.2500000000000000E+000 ...
+ *
+ * Blocks are parted by two empty lines (gnuplot: index). Rows stand in the
+ * order of the numbers a user sees. Seventeen digits read back exactly.
+ */
+#include "base/memory.h"
+#include "output/writers.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGITS = 16, COLUMNS = sizeof((table *)0)->col / sizeof(column *) };
+
+struct tabular {
+  const model *m;
+  const mesh *msh;
+  text_file dat;
+  int n_block;           /* written so far                              */
+  int *node_order;       /* [n_node] ids by node_no                     */
+  int *elem_order;       /* [n_elem] ids by elem_no                     */
+  unsigned char *wanted; /* [items] rows of the table at hand           */
+};
+
+/* clang-format off */
+static const struct { int bit; entity of; const char *name; } kinds[] = {
+  {PRINT_CONTACT,   PER_CONTACT_NODE, "CONTACT"},
+  {PRINT_TOTALS,    PER_CONTACT,      "TOTALS"},
+  {PRINT_NODES,     PER_NODE,         "NODES"},
+  {PRINT_ELEMENTS,  PER_ELEMENT,      "ELEMENTS"},
+  {PRINT_ENERGY,    PER_INCREMENT,    "ENERGY"},
+  {PRINT_REACTIONS, PER_NODE,         "REACTIONS"},
+};
+/* clang-format on */
+
+static int larger(int a, int b) { return a > b ? a : b; }
+
+static void cell_name(const column *c, const model *m, char *text,
+                      size_t size) {
+  char unit[80];
+  column_unit(c->unit, m, unit, sizeof unit);
+  snprintf(text, size, "%s[%s]", c->name, unit);
+}
+
+/* Sign, point, E and three digits of the exponent: digits + 8. */
+static int cell_width(const column *c, const model *m, int digits) {
+  char name[160];
+  cell_name(c, m, name, sizeof name);
+  int width = c->form == AS_REAL ? digits + 8 : 11;
+  return larger(width, (int)strlen(name)) + 1;
+}
+
+void table_choose(table *t, entity of, unsigned print_bit, const view *v,
+                  int digits) {
+  t->n = 0;
+  t->digits = digits;
+  for (const column *c = column_table; c->name != NULL; ++c) {
+    if (c->of != of || (c->tables & print_bit) == 0) continue;
+    if (!column_visible(c, v->m) || !column_ready(c, v->s)) continue;
+    if (t->n == COLUMNS) break;
+    t->width[t->n] = cell_width(c, v->m, digits);
+    t->col[t->n++] = c;
+  }
+}
+
+void table_header(const table *t, const model *m, const char *lead, FILE *f) {
+  fputs(lead, f);
+  for (int k = 0; k < t->n; ++k) {
+    char name[160];
+    cell_name(t->col[k], m, name, sizeof name);
+    text_cell(f, name, t->width[k]);
+  }
+  fputc('\n', f);
+}
+
+static void row_cell(const table *t, int k, const view *v, int id, FILE *f) {
+  const column *c = t->col[k];
+  char text[NUMBER_SIZE], word[160];
+  if (c->form == AS_WORD) {
+    text_word(word, sizeof word, c->word(v, id));
+    text_cell(f, word, t->width[k]);
+    return;
+  }
+  double value = c->value(v, id, c->part);
+  if (c->form == AS_COUNT)
+    snprintf(text, sizeof text, "%.0f", value);
+  else
+    text_number(text, value, t->digits);
+  text_cell(f, text, t->width[k]);
+}
+
+void table_row(const table *t, const view *v, int id, FILE *f) {
+  fputc(' ', f);
+  for (int k = 0; k < t->n; ++k) row_cell(t, k, v, id, f);
+  fputc('\n', f);
+}
+
+int output_due(int frequency, const state *s) {
+  if (frequency < 0) return 0;
+  return s->end_of_step || (frequency > 0 && s->increment_no % frequency == 0);
+}
+
+static int kind_of(int table_bit) {
+  int k = 0;
+  while (kinds[k].bit != table_bit) ++k;
+  return k;
+}
+
+static const mesh_group *request_group(const mesh *msh,
+                                       const print_request *p) {
+  if (p->group == NULL || p->group_id < 0) return NULL;
+  return &msh->group[p->group_id];
+}
+
+static void want_nodes(tabular *t, const mesh_group *g) {
+  for (int i = 0; i < g->n_node; ++i) t->wanted[g->node_id[i]] = 1;
+}
+
+/* Nodes of a table: of the group, of the supports, or all. */
+static void choose_nodes(tabular *t, const print_request *p, const step *now) {
+  const mesh_group *g = request_group(t->msh, p);
+  memset(t->wanted, g == NULL && p->table == PRINT_NODES,
+         (size_t)t->msh->n_node);
+  if (p->table == PRINT_REACTIONS && g == NULL)
+    for (int i = 0; i < now->loads.n; ++i)
+      if (now->loads.item[i].kind == LOAD_FIXING)
+        want_nodes(t, &t->msh->group[now->loads.item[i].group_id]);
+  if (g != NULL) want_nodes(t, g);
+}
+
+static void choose_elements(tabular *t, const print_request *p) {
+  const mesh_group *g = request_group(t->msh, p);
+  memset(t->wanted, g == NULL, (size_t)t->msh->n_elem);
+  if (g != NULL && g->dim == t->msh->dim)
+    for (int i = 0; i < g->n_item; ++i) t->wanted[g->item_id[i]] = 1;
+}
+
+static void ordered_rows(const table *columns, const tabular *t, const view *v,
+                         int n, const int *order) {
+  for (int i = 0; i < n; ++i)
+    if (t->wanted[order[i]]) table_row(columns, v, order[i], t->dat.f);
+}
+
+/* A number and the id it belongs to, for qsort. */
+typedef struct numbered {
+  size_t no;
+  int id;
+} numbered;
+
+static int by_number(const void *a_, const void *b_) {
+  const numbered *a = a_, *b = b_;
+  return (a->no > b->no) - (a->no < b->no);
+}
+
+static status order_by_number(int n, const size_t *no, int **order) {
+  status st = OK;
+  numbered *list = NULL;
+  NEW(*order, n);
+  NEW(list, n);
+  for (int i = 0; i < n; ++i) list[i] = (numbered){no[i], i};
+  qsort(list, (size_t)n, sizeof *list, by_number);
+  for (int i = 0; i < n; ++i) (*order)[i] = list[i].id;
+done:
+  memory_free(list);
+  return st;
+}
+
+static int in_group(const mesh_group *g, int node_id) {
+  int low = 0, high = g->n_node;
+  while (low < high) {
+    int middle = low + (high - low) / 2;
+    if (g->node_id[middle] < node_id)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < g->n_node && g->node_id[low] == node_id;
+}
+
+/* The contact nodes in the order of their node_no. */
+static status contact_rows(const table *columns, tabular *t, const view *v,
+                           const mesh_group *g) {
+  status st = OK;
+  const contact_surface *surface = v->s->surface;
+  size_t *no = NULL;
+  int *order = NULL;
+  if (surface == NULL) return OK;
+  NEW(no, surface->n);
+  for (int i = 0; i < surface->n; ++i)
+    no[i] = t->msh->node_no[surface->node_id[i]];
+  TRY(order_by_number(surface->n, no, &order));
+  for (int i = 0; i < surface->n; ++i)
+    if (g == NULL || in_group(g, surface->node_id[order[i]]))
+      table_row(columns, v, order[i], t->dat.f);
+done:
+  memory_free(no);
+  memory_free(order);
+  return st;
+}
+
+static status table_rows(const table *columns, tabular *t, const view *v,
+                         const print_request *p) {
+  const step *now = &t->m->steps[v->s->step_no - 1];
+  switch (p->table) {
+    case PRINT_CONTACT:
+      return contact_rows(columns, t, v, request_group(t->msh, p));
+    case PRINT_NODES:
+    case PRINT_REACTIONS:
+      choose_nodes(t, p, now);
+      ordered_rows(columns, t, v, t->msh->n_node, t->node_order);
+      return OK;
+    case PRINT_ELEMENTS:
+      choose_elements(t, p);
+      ordered_rows(columns, t, v, t->msh->n_elem, t->elem_order);
+      return OK;
+    case PRINT_TOTALS:
+      for (int i = 0; i < t->m->n_contact; ++i)
+        table_row(columns, v, i, t->dat.f);
+      return OK;
+    default:
+      table_row(columns, v, 0, t->dat.f);
+      return OK;
+  }
+}
+
+static status write_table(tabular *t, const view *v, const print_request *p) {
+  status st = OK;
+  int k = kind_of(p->table);
+  char number[NUMBER_SIZE];
+  table columns;
+  table_choose(&columns, kinds[k].of, (unsigned)p->table, v, DIGITS);
+  fprintf(t->dat.f, "%s# step %d increment %d time %s table %s%s%s\n",
+          t->n_block++ > 0 ? "\n\n" : "", v->s->step_no, v->s->increment_no,
+          text_number(number, v->s->t, DIGITS), kinds[k].name,
+          p->group != NULL ? " group " : "", p->group != NULL ? p->group : "");
+  table_header(&columns, t->m, "#", t->dat.f);
+  TRY(table_rows(&columns, t, v, p));
+  TRY(text_check(&t->dat));
+done:
+  return st;
+}
+
+status tabular_increment(tabular *t, const state *s) {
+  status st = OK;
+  if (t == NULL) return OK;
+  view v = {t->m, t->msh, s};
+  const step *now = &t->m->steps[s->step_no - 1];
+  for (int i = 0; i < now->n_print; ++i)
+    if (output_due(now->prints[i].frequency, s))
+      TRY(write_table(t, &v, &now->prints[i]));
+done:
+  return st;
+}
+
+static unsigned tables_asked(const model *m) {
+  unsigned bits = 0;
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].n_print; ++k)
+      bits |= (unsigned)m->steps[i].prints[k].table;
+  return bits;
+}
+
+static status make_orders(tabular *t, unsigned tables) {
+  status st = OK;
+  const mesh *msh = t->msh;
+  const unsigned by_node = PRINT_NODES | PRINT_REACTIONS;
+  int items = 0;
+  if (tables & by_node) {
+    TRY(order_by_number(msh->n_node, msh->node_no, &t->node_order));
+    items = msh->n_node;
+  }
+  if (tables & PRINT_ELEMENTS) {
+    TRY(order_by_number(msh->n_elem, msh->elem_no, &t->elem_order));
+    items = larger(items, msh->n_elem);
+  }
+  NEW(t->wanted, items);
+done:
+  return st;
+}
+
+status tabular_open(const model *m, const mesh *msh, const char *dir,
+                    tabular **out) {
+  status st = OK;
+  tabular *t = NULL;
+  char *path = NULL;
+  unsigned tables = tables_asked(m);
+  *out = NULL;
+  if (tables == 0) return OK;
+  path = text_path(dir, m->job, "dat");
+  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of the tables");
+  NEW(t, 1);
+  t->m = m;
+  t->msh = msh;
+  TRY(make_orders(t, tables));
+  TRY(text_open(&t->dat, path, 0));
+  *out = t;
+done:
+  memory_free(path);
+  if (st != OK) tabular_close(t);
+  return st;
+}
+
+status tabular_close(tabular *t) {
+  if (t == NULL) return OK;
+  status st = text_close(&t->dat);
+  memory_free(t->node_order);
+  memory_free(t->elem_order);
+  memory_free(t->wanted);
+  memory_free(t);
+  return st;
+}

@@ -1,0 +1,132 @@
+/*
+ * What the writers of this folder share: text files, number format, tables,
+ * and the state of an open job. Private to src/output.
+ */
+#ifndef PROTIS_OUTPUT_WRITERS_H
+#define PROTIS_OUTPUT_WRITERS_H
+
+#include "base/text.h"
+#include "output/output.h"
+
+#include <stdio.h>
+
+/* ---- tabular.c: JOB.dat and the tables of the listing ----------------- */
+
+/* Columns of a table that the model and the state have. */
+typedef struct table {
+  int n;
+  const column *col[64];
+  int width[64];
+  int digits; /* after the point                                            */
+} table;
+void table_choose(table *t, entity of, unsigned print_bit, const view *v,
+                  int digits);
+/* The header with "lead" before it ("#", " "), and one record. */
+void table_header(const table *t, const model *m, const char *lead, FILE *f);
+void table_row(const table *t, const view *v, int id, FILE *f);
+
+typedef struct tabular tabular;
+/* NULL in *out if no step asks for a table. */
+status tabular_open(const model *m, const mesh *msh, const char *dir,
+                    tabular **out);
+status tabular_increment(tabular *t, const state *s);
+status tabular_close(tabular *t); /* frees t; accepts NULL                  */
+
+/* 1: an increment is shown by "every n-th and the last; 0: the last". */
+int output_due(int frequency, const state *s);
+
+/* ---- what the listing and JOB.json tell of the run -------------------- */
+
+typedef struct increment_summary {
+  int step_no, increment_no, total_no, attempt;
+  double t, dt;
+  int n_open, n_slip, n_stick, iterations, settled, outcome;
+  double residual, defect;
+} increment_summary;
+
+typedef struct run_summary {
+  int facts_known;
+  setup_facts facts;
+  int n_increment, capacity, n_rejected, n_unsettled;
+  increment_summary *increments; /* [n_increment]                          */
+  double residual_worst, defect_worst; /* - ; the defect relative           */
+  status verdict;
+  const char *message; /* of a failed run, or ""                            */
+} run_summary;
+
+typedef struct job {
+  const model *m;
+  const mesh *msh;
+  const output_options *o;
+  const run_summary *run;
+} job;
+
+/* Sizes of model and equations for listing and JSON, NULL ends; the answer
+ * counts those of the model, which come first. */
+typedef struct size_row {
+  const char *name;
+  double value;
+} size_row;
+enum { SIZE_ROWS = 20 };
+int job_sizes(const job *j, size_row rows[SIZE_ROWS]);
+
+/* ---- listing.c -------------------------------------------------------- */
+status listing_open(const job *j, text_file *lst);
+status listing_ready(const job *j, text_file *lst);
+status listing_increment(const job *j, const state *s, text_file *lst);
+status listing_rejected(const state *s, const char *why, text_file *lst);
+status listing_verdict(const job *j, text_file *lst);
+
+/* ---- status_file.c ---------------------------------------------------- */
+status sta_header(const output_options *o, text_file *sta);
+/* why: NULL for an accepted increment. */
+status sta_line(const output_options *o, const state *s, const char *why,
+                text_file *sta);
+void cvg_header(text_file *cvg);
+void cvg_line(int total_no, int attempt, const solver_step *s, text_file *cvg);
+/* One line on the terminal, rewritten; "" clears it. */
+void progress_line(const char *text);
+void progress_show(const state *s);
+
+/* ---- json.c ----------------------------------------------------------- */
+/* Written aside and renamed: a program sees the whole or nothing. */
+status json_write(const job *j, const char *path);
+
+/* ---- hdf5.c ----------------------------------------------------------- */
+typedef struct hdf5_file hdf5_file;
+
+/* A field of JOB.h5: one dataset per record under GROUP/NAME, or one row per
+ * increment in GROUP/NAME. */
+typedef struct hdf5_field {
+  const char *name;
+  char group[200]; /* "/fields", "/contact", "/history", "/totals/NAME"      */
+  entity of;
+  int id;     /* of the contact for "/totals"                         */
+  int n_part; /* 1 or 3                                               */
+  const column *part[3]; /* NULL: zero                                      */
+} hdf5_field;
+
+/* NULL in *out if no step asks for fields. */
+status hdf5_open(const model *m, const mesh *msh, const output_options *o,
+                 const contact_surface *surface, hdf5_file **out);
+/* The increment is in the file when this returns OK. */
+status hdf5_increment(hdf5_file *h, const state *s);
+/* Cut what was not used if "finished"; frees h; accepts NULL. */
+status hdf5_close(hdf5_file *h, int finished);
+
+typedef struct hdf5_shape { /* what JOB.xdmf has to know                      */
+  const char *path;
+  int n_node, n_elem, corners, n_contact_node, n_contact_face, face_corners;
+  int n_field, n_record;
+  const hdf5_field *fields; /* [n_field]                                     */
+  const double *times;      /* [n_record]                                    */
+} hdf5_shape;
+void hdf5_shape_of(const hdf5_file *h, hdf5_shape *shape);
+/* Name of record i (from 0) below GROUP/NAME. */
+void hdf5_record_name(char *text, size_t size, int i);
+
+/* ---- xdmf.c ----------------------------------------------------------- */
+/* Written aside and renamed. */
+status xdmf_write(const hdf5_shape *shape, const char *path);
+
+#endif

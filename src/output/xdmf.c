@@ -1,0 +1,154 @@
+/*
+ * JOB.xdmf: XDMF 3 text that tells a viewer where the fields stand in JOB.h5,
+ * named without folder. Two temporal collections: the contact surface and the
+ * body; the body is the last one, as some readers take that one only. Data
+ * items are whole datasets (hyperslabs are not read everywhere).
+ */
+#include "base/memory.h"
+#include "output/writers.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct part {
+  const char *name, *points, *cells, *topology;
+  int n_point, n_cell, corners;
+  entity on_points, on_cells; /* fields shown on it; PER_INCREMENT: none     */
+} part;
+
+static void xml_text(FILE *f, const char *text) {
+  for (; *text != '\0'; ++text) switch (*text) {
+      case '&':
+        fputs("&amp;", f);
+        break;
+      case '<':
+        fputs("&lt;", f);
+        break;
+      case '>':
+        fputs("&gt;", f);
+        break;
+      case '"':
+        fputs("&quot;", f);
+        break;
+      default:
+        fputc(*text, f);
+    }
+}
+
+static void data_item(FILE *f, const char *file, const char *dataset,
+                      const char *type, int rows, int columns) {
+  fprintf(f, "<DataItem Format=\"HDF\" %s Dimensions=\"%d", type, rows);
+  if (columns > 1) fprintf(f, " %d", columns);
+  fputs("\">", f);
+  xml_text(f, file);
+  fputc(':', f);
+  xml_text(f, dataset);
+  fputs("</DataItem>\n", f);
+}
+
+#define REAL_TYPE "NumberType=\"Float\" Precision=\"8\""
+#define INT_TYPE "NumberType=\"Int\" Precision=\"4\""
+
+static void write_mesh(FILE *f, const char *file, const part *p) {
+  fprintf(f, "<Topology TopologyType=\"%s\" NumberOfElements=\"%d\"",
+          p->topology, p->n_cell);
+  if (strcmp(p->topology, "Polyline") == 0 || p->corners == 1)
+    fprintf(f, " NodesPerElement=\"%d\"", p->corners);
+  fputs(">", f);
+  data_item(f, file, p->cells, INT_TYPE, p->n_cell,
+            p->corners > 1 ? p->corners : 0);
+  fputs("</Topology>\n<Geometry GeometryType=\"XYZ\">", f);
+  data_item(f, file, p->points, REAL_TYPE, p->n_point, 3);
+  fputs("</Geometry>\n", f);
+}
+
+static void write_field(FILE *f, const char *file, const part *p,
+                        const hdf5_field *shown, int record_id) {
+  char dataset[400], name[40];
+  int on_points = shown->of == p->on_points;
+  hdf5_record_name(name, sizeof name, record_id);
+  snprintf(dataset, sizeof dataset, "%s/%s/%s", shown->group, shown->name,
+           name);
+  fprintf(f, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">",
+          shown->name, shown->n_part == 3 ? "Vector" : "Scalar",
+          on_points ? "Node" : "Cell");
+  data_item(f, file, dataset, REAL_TYPE, on_points ? p->n_point : p->n_cell,
+            shown->n_part);
+  fputs("</Attribute>\n", f);
+}
+
+static void write_part(FILE *f, const char *file, const part *p,
+                       const hdf5_shape *s) {
+  char time[NUMBER_SIZE];
+  fprintf(f,
+          "<Grid Name=\"%s\" GridType=\"Collection\" "
+          "CollectionType=\"Temporal\">\n",
+          p->name);
+  for (int i = 0; i < s->n_record; ++i) {
+    fprintf(f,
+            "<Grid Name=\"%s\" GridType=\"Uniform\">\n"
+            "<Time Value=\"%s\"/>\n",
+            p->name, text_number(time, s->times[i], 16));
+    write_mesh(f, file, p);
+    for (int k = 0; k < s->n_field; ++k) {
+      entity of = s->fields[k].of;
+      if (of == PER_INCREMENT || of == PER_CONTACT) continue;
+      if (of == p->on_points || of == p->on_cells)
+        write_field(f, file, p, &s->fields[k], i);
+    }
+    fputs("</Grid>\n", f);
+  }
+  fputs("</Grid>\n", f);
+}
+
+/* Without faces (every neighbour was left out) the nodes are shown. */
+static part surface_part(const hdf5_shape *s) {
+  part p = {"contact",         "/contact/points",
+            "/contact/faces",  s->face_corners == 2 ? "Polyline" : "Triangle",
+            s->n_contact_node, s->n_contact_face,
+            s->face_corners,   PER_CONTACT_NODE,
+            PER_INCREMENT};
+  if (s->n_contact_face == 0) {
+    p.cells = "/contact/index";
+    p.topology = "Polyvertex";
+    p.n_cell = s->n_contact_node;
+    p.corners = 1;
+  }
+  return p;
+}
+
+static void write_all(FILE *f, const hdf5_shape *s) {
+  const char *slash = strrchr(s->path, '/');
+  const char *file = slash != NULL ? slash + 1 : s->path;
+  part body = {"body",           "/mesh/nodes",
+               "/mesh/elements", s->corners == 3 ? "Triangle" : "Tetrahedron",
+               s->n_node,        s->n_elem,
+               s->corners,       PER_NODE,
+               PER_ELEMENT};
+  fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n", f);
+  if (s->n_contact_node > 0) {
+    part surface = surface_part(s);
+    write_part(f, file, &surface, s);
+  }
+  write_part(f, file, &body, s);
+  fputs("</Domain>\n</Xdmf>\n", f);
+}
+
+status xdmf_write(const hdf5_shape *shape, const char *path) {
+  status st = OK;
+  text_file file = {0};
+  char *aside = text_path("", path, "tmp");
+  if (aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of %s", path);
+  TRY(text_open(&file, aside, 0));
+  write_all(file.f, shape);
+  TRY(text_close(&file));
+  if (rename(aside, path) != 0) TRY(text_failed(path, "replace", errno));
+done:
+  if (st != OK) {
+    text_close(&file);
+    if (aside != NULL) unlink(aside);
+  }
+  memory_free(aside);
+  return st;
+}

@@ -1,0 +1,192 @@
+#include "support/made_up.h"
+
+#include "base/memory.h"
+#include "support/grid.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+double made_up_value(int array, int item, int total_no) {
+  double x = sin(1.0 + array * 7.3 + item * 0.37 + total_no * 0.011);
+  return x * (array == MADE_U ? 1e-5 : array == MADE_STRESS ? 1e8 : 1);
+}
+
+static void *need(void *p) {
+  if (p == NULL) abort();
+  return p;
+}
+
+static int group_id(const mesh *m, const char *name) {
+  int id = 0;
+  while (strcmp(m->group[id].name, name) != 0) ++id;
+  return id;
+}
+
+/* n = -y, t1 = x[, t2 = z] */
+static void make_surface(made_up *run) {
+  contact_surface *s = &run->surface;
+  const mesh_group *g = &run->msh->group[group_id(run->msh, "BOTTOM")];
+  size_t dim = (size_t)run->m.dim, n = (size_t)g->n_node;
+  s->dim = (int)dim;
+  s->n = (int)n;
+  s->node_id = need(memory_new(n, sizeof *s->node_id));
+  s->contact_id = need(memory_new(n, sizeof *s->contact_id));
+  s->x = need(memory_new(dim * n, sizeof *s->x));
+  s->area = need(memory_new(n, sizeof *s->area));
+  s->frame = need(memory_new(dim * dim * n, sizeof *s->frame));
+  for (size_t i = 0; i < n; ++i) {
+    s->node_id[i] = g->node_id[i];
+    s->area[i] = 0.25;
+    for (size_t k = 0; k < dim; ++k)
+      s->x[dim * i + k] = run->msh->x[dim * (size_t)g->node_id[i] + k];
+    double *frame = s->frame + dim * dim * i;
+    frame[1] = -1;
+    frame[dim] = 1;
+    if (dim == 3) frame[8] = 1;
+  }
+}
+
+static void make_arrays(made_up *run) {
+  int dim = run->m.dim, n = run->surface.n;
+  int *count = run->count;
+  count[MADE_U] = count[MADE_REACTION] = dim * run->msh->n_node;
+  count[MADE_STRAIN] = count[MADE_STRESS] = run->m.ns * run->msh->n_elem;
+  count[MADE_UC] = count[MADE_RC] = dim * n;
+  count[MADE_GAP] = count[MADE_LIMIT] = n;
+  count[MADE_SLIP] = (dim - 1) * n;
+  for (int a = 0; a < MADE_ARRAYS; ++a)
+    run->array[a] = need(memory_new((size_t)count[a], sizeof(double)));
+  run->status = need(memory_new((size_t)n, sizeof *run->status));
+  run->s.u = run->array[MADE_U];
+  run->s.strain = run->array[MADE_STRAIN];
+  run->s.stress = run->array[MADE_STRESS];
+  run->s.reaction = run->array[MADE_REACTION];
+  run->s.uc = run->array[MADE_UC];
+  run->s.rc = run->array[MADE_RC];
+  run->s.gap = run->array[MADE_GAP];
+  run->s.slip = run->array[MADE_SLIP];
+  run->s.limit = run->array[MADE_LIMIT];
+  run->s.contact = run->status;
+  run->s.totals = run->totals;
+  run->s.surface = &run->surface;
+}
+
+static void make_step(made_up *run, int n_increment) {
+  step *s = run->steps;
+  run->support = (load){.kind = LOAD_FIXING, .group = "TOP"};
+  run->support.group_id = group_id(run->msh, "TOP");
+  for (int i = 0; i < 6; ++i)
+    run->prints[i] =
+        (print_request){.table = 1 << i, .group_id = -1, .frequency = 1};
+  *s = (step){.kind = STEP_QUASISTATIC, .dt = 0.5, .total = 0.5 * n_increment};
+  s->loads.n = 1;
+  s->loads.item = &run->support;
+  s->n_print = 6;
+  s->prints = run->prints;
+  s->output_frequency = 1;
+}
+
+static void make_model(made_up *run, int n_increment) {
+  model *m = &run->m;
+  run->foot = (contact){.name = "FOOT",
+                        .group = "BOTTOM",
+                        .obstacle_name = "FLOOR",
+                        .group_id = group_id(run->msh, "BOTTOM")};
+  run->body = (section){.elset = "BODY", .material_name = "STEEL"};
+  run->body.kin = m->dim == 3 ? SOLID_3D : PLANE_STRAIN;
+  m->job = (char *)"block";
+  m->title = "a made-up <block> & \"more\"";
+  m->n_section = m->n_contact = m->n_step = 1;
+  m->sections = &run->body;
+  m->contacts = &run->foot;
+  m->steps = run->steps;
+  m->effects =
+      EFFECT_CONTACT | EFFECT_FRICTION | EFFECT_STRESS | EFFECT_REACTION;
+  make_step(run, n_increment);
+}
+
+made_up *made_up_new(int dim, int cells, int n_increment) {
+  const int n[3] = {cells, cells, cells};
+  const double length[3] = {1, 1, 1};
+  made_up *run = need(memory_new(1, sizeof *run));
+  run->m.dim = dim;
+  run->m.ns = dim == 3 ? 6 : 4;
+  run->msh = need(dim == 3 ? make_grid_3d(n, length) : make_grid_2d(n, length));
+  for (int i = 0; i < run->msh->n_node; ++i)
+    run->msh->node_no[i] = (size_t)(3 * (run->msh->n_node - i));
+  make_model(run, n_increment);
+  make_surface(run);
+  make_arrays(run);
+  run->facts = (setup_facts){.info = {.unknowns = 100, .ordering = "AMD"},
+                             .condition = 1e3,
+                             .n_contact_node = run->surface.n};
+  return run;
+}
+
+void made_up_advance(made_up *run, int total_no) {
+  state *s = &run->s;
+  s->step_no = 1;
+  s->increment_no = s->total_no = total_no;
+  s->attempt = 1;
+  s->dt = run->steps[0].dt;
+  s->t = s->dt * total_no;
+  s->end_of_step = s->t >= run->steps[0].total;
+  s->settled = 1;
+  for (int a = 0; a < MADE_ARRAYS; ++a)
+    for (int i = 0; i < run->count[a]; ++i)
+      run->array[a][i] = made_up_value(a, i, total_no);
+  for (int i = 0; i < run->surface.n; ++i)
+    run->status[i] = (contact_status)((i + total_no) % 3);
+  s->report = (solver_report){.outcome = CONVERGED,
+                              .iterations = 7,
+                              .residual = 1e-12 * total_no,
+                              .solver = "newton"};
+  s->energy = (energies){.strain = 2, .external = 5, .friction = 3 - 1e-9};
+  s->energy.defect = 1e-9;
+  run->totals[0] = (contact_total){
+      .force = {1.5, 2.5, -3.5}, .normal = -2.5 * total_no, .area = 0.75};
+  s->n_open = s->n_slip = s->n_stick = total_no;
+}
+
+void made_up_free(made_up *run) {
+  grid_free(run->msh);
+  memory_free(run->surface.node_id);
+  memory_free(run->surface.contact_id);
+  memory_free(run->surface.x);
+  memory_free(run->surface.area);
+  memory_free(run->surface.frame);
+  for (int a = 0; a < MADE_ARRAYS; ++a) memory_free(run->array[a]);
+  memory_free(run->status);
+  memory_free(run);
+}
+
+char *folder_new(char path[64]) {
+  const char *base = getenv("TMPDIR");
+  snprintf(path, 64, "%s/protis-XXXXXX", base != NULL ? base : "/tmp");
+  return mkdtemp(path);
+}
+
+void folder_remove(const char *path) {
+  char command[128];
+  snprintf(command, sizeof command, "chmod -R u+w '%s'; rm -rf '%s'", path,
+           path);
+  if (system(command) != 0) abort();
+}
+
+char *folder_file(const char *path, const char *name, size_t *size) {
+  char full[256];
+  snprintf(full, sizeof full, "%s/%s", path, name);
+  FILE *f = fopen(full, "rb");
+  if (f == NULL) return NULL;
+  fseek(f, 0, SEEK_END);
+  long n = ftell(f);
+  rewind(f);
+  char *text = need(calloc((size_t)n + 1, 1));
+  size_t got = fread(text, 1, (size_t)n, f);
+  fclose(f);
+  if (size != NULL) *size = got;
+  return text;
+}

@@ -1,0 +1,160 @@
+/* src/output/columns.c: over the table, so that a new row is tested too. */
+#include "base/memory.h"
+#include "output/output.h"
+#include "support/made_up.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+START_TEST(every_row_has_unit_help_scene_and_value) {
+  for (const column *c = column_table; c->name != NULL; ++c) {
+    ck_assert_msg(c->unit != NULL && c->unit[0] != '\0', "%s", c->name);
+    ck_assert_msg(c->help != NULL && c->help[0] != '\0', "%s", c->name);
+    ck_assert_msg((c->scenes & SCENE_ALL) != 0, "%s", c->name);
+    ck_assert_msg(c->value != NULL, "%s", c->name);
+    ck_assert_msg((c->form == AS_WORD) == (c->word != NULL), "%s", c->name);
+    ck_assert_msg(strpbrk(c->name, " []#/") == NULL, "%s", c->name);
+  }
+}
+END_TEST
+
+START_TEST(names_are_unique_within_entity_and_scene) {
+  for (const column *a = column_table; a->name != NULL; ++a)
+    for (const column *b = a + 1; b->name != NULL; ++b)
+      ck_assert_msg(a->of != b->of || (a->scenes & b->scenes) == 0 ||
+                        strcmp(a->name, b->name) != 0,
+                    "%s", a->name);
+}
+END_TEST
+
+/* Components of one field of HDF5 have places of their own. */
+START_TEST(fields_have_distinct_components) {
+  for (const column *a = column_table; a->name != NULL; ++a)
+    for (const column *b = a + 1; b->name != NULL; ++b) {
+      if (a->of != b->of || (a->scenes & b->scenes) == 0) continue;
+      if (a->field == NULL || b->field == NULL) continue;
+      if (strcmp(a->field, b->field) == 0) ck_assert_int_ne(a->part, b->part);
+    }
+}
+END_TEST
+
+static int count_finite(const made_up *made) {
+  int n = 0;
+  view v = {&made->m, made->msh, &made->s};
+  for (const column *c = column_table; c->name != NULL; ++c) {
+    if (!column_visible(c, &made->m)) continue;
+    ck_assert(column_ready(c, &made->s));
+    for (int id = 0; id < column_items(c->of, &v); ++id) {
+      ck_assert_msg(isfinite(c->value(&v, id, c->part)), "%s", c->name);
+      if (c->form == AS_WORD) ck_assert_str_ne(c->word(&v, id), "?");
+      ++n;
+    }
+  }
+  return n;
+}
+
+START_TEST(every_value_is_finite) {
+  for (int dim = 2; dim <= 3; ++dim) {
+    made_up *made = made_up_new(dim, 2, 3);
+    made_up_advance(made, 2);
+    ck_assert_int_gt(count_finite(made), 100);
+    made_up_free(made);
+  }
+  made_up *axi = made_up_new(2, 2, 3);
+  axi->body.kin = AXISYMMETRIC;
+  made_up_advance(axi, 2);
+  ck_assert_int_eq(scene_of(&axi->m), SCENE_AXI);
+  ck_assert_int_gt(count_finite(axi), 100);
+  made_up_free(axi);
+}
+END_TEST
+
+START_TEST(columns_follow_the_effects) {
+  made_up *made = made_up_new(2, 1, 1);
+  made->m.effects = 0;
+  for (const column *c = column_table; c->name != NULL; ++c)
+    if (column_visible(c, &made->m)) {
+      ck_assert_int_ne(c->of, PER_CONTACT_NODE);
+      ck_assert_int_ne(c->of, PER_CONTACT);
+      ck_assert_ptr_null(strstr(c->name, "stress"));
+      ck_assert_ptr_null(strstr(c->name, "friction"));
+    }
+  made_up_free(made);
+}
+END_TEST
+
+static const column *named(const made_up *made, entity of, const char *name) {
+  for (const column *c = column_table; c->name != NULL; ++c)
+    if (c->of == of && column_visible(c, &made->m) &&
+        strcmp(c->name, name) == 0)
+      return c;
+  ck_abort_msg("no column %s", name);
+  return NULL;
+}
+
+static double value_of(const made_up *made, entity of, const char *name,
+                       int id) {
+  view v = {&made->m, made->msh, &made->s};
+  const column *c = named(made, of, name);
+  return c->value(&v, id, c->part);
+}
+
+/* n = -y, t1 = x, t2 = z; area 0.25: force (r_t1, -r_n, r_t2). */
+START_TEST(contact_signs_and_directions) {
+  made_up *made = made_up_new(3, 2, 3);
+  made_up_advance(made, 1);
+  double *r = made->array[MADE_RC] + 3 * 4;
+  r[0] = -2;
+  r[1] = 0.5;
+  r[2] = -0.25;
+  ck_assert(value_of(made, PER_CONTACT_NODE, "f_n", 4) == 2);
+  ck_assert(value_of(made, PER_CONTACT_NODE, "pressure", 4) == 8);
+  ck_assert(value_of(made, PER_CONTACT_NODE, "traction_t1", 4) == 2);
+  ck_assert(value_of(made, PER_CONTACT_NODE, "traction_t2", 4) == -1);
+  ck_assert(value_of(made, PER_CONTACT_NODE, "f_x", 4) == 0.5);
+  ck_assert(value_of(made, PER_CONTACT_NODE, "f_y", 4) == 2);
+  ck_assert(value_of(made, PER_CONTACT_NODE, "f_z", 4) == -0.25);
+  ck_assert(value_of(made, PER_CONTACT, "normal", 0) == 2.5);
+  made_up_free(made);
+}
+END_TEST
+
+/* Uniaxial: the stress itself; pure shear: sqrt(3) of it; pressure: 0. */
+START_TEST(mises_of_simple_states) {
+  made_up *made = made_up_new(3, 1, 3);
+  made_up_advance(made, 1);
+  double *s = made->array[MADE_STRESS];
+  memset(s, 0, 18 * sizeof *s);
+  s[2] = -7;
+  s[6 + 4] = 2;
+  s[12] = s[13] = s[14] = -5;
+  ck_assert_double_eq_tol(value_of(made, PER_ELEMENT, "mises", 0), 7, 1e-14);
+  ck_assert_double_eq_tol(value_of(made, PER_ELEMENT, "mises", 1), 2 * sqrt(3),
+                          1e-14);
+  ck_assert(value_of(made, PER_ELEMENT, "mises", 2) == 0);
+  made_up_free(made);
+}
+END_TEST
+
+START_TEST(units_are_composed_from_the_labels) {
+  model m = {.length_unit = "mm", .force_unit = "N"};
+  char text[80], tiny[4];
+  column_unit("force/length^2", &m, text, sizeof text);
+  ck_assert_str_eq(text, "N/mm^2");
+  column_unit("force*length", &m, text, sizeof text);
+  ck_assert_str_eq(text, "N*mm");
+  column_unit("time", &m, text, sizeof text);
+  ck_assert_str_eq(text, "time");
+  column_unit("-", &m, text, sizeof text);
+  ck_assert_str_eq(text, "-");
+  column_unit("force/length^2", &m, tiny, sizeof tiny);
+  ck_assert_str_eq(tiny, "N/m");
+}
+END_TEST
+
+UNIT_MAIN("columns", every_row_has_unit_help_scene_and_value,
+          names_are_unique_within_entity_and_scene,
+          fields_have_distinct_components, every_value_is_finite,
+          columns_follow_the_effects, contact_signs_and_directions,
+          mises_of_simple_states, units_are_composed_from_the_labels)
