@@ -61,6 +61,7 @@ help:
 	@echo "make test         install what is missing, build, run every test"
 	@echo "make unit         unit tests alone;   make regression: decks alone"
 	@echo "make bench        benchmarks against the limits of the machine"
+	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
 	@echo "make format       clang-format on all sources"
 	@echo "make clean        remove build/"
 
@@ -122,6 +123,26 @@ bench-run: $(program) $(bench)
 
 format:
 	$(Q)clang-format-14 --style=file:tools/clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] tests/*/*.[ch])
+
+# Hostile input for the deck reader; needs clang-14, no part of the tests.
+FUZZ_SECONDS ?= 60
+fuzzers := $(patsubst tests/fuzz/%.c,build/fuzz/%,$(wildcard tests/fuzz/*.c))
+
+.PHONY: fuzz
+fuzz: $(fuzzers)
+	$(Q)for f in $(fuzzers); do mkdir -p $$f.corpus; \
+	  cp input/*/*.inp $$f.corpus 2>/dev/null; \
+	  $$f -max_total_time=$(FUZZ_SECONDS) -max_len=4096 -timeout=10 \
+	    -print_final_stats=1 $$f.corpus > $$f.log 2>&1 || \
+	    { tail -n 40 $$f.log; exit 1; }; \
+	  echo "$$f: $$(grep number_of_executed_units $$f.log)"; \
+	done
+
+build/fuzz/%: tests/fuzz/%.c $(wildcard src/base/*.[ch] src/deck/*.[ch])
+	@mkdir -p $(@D)
+	@echo "  FUZZ $<"
+	$(Q)clang-14 $(CPPFLAGS) -Itests -std=c11 -g -O1 -fno-sanitize-recover=all \
+	  -fsanitize=fuzzer,address,undefined $(filter %.c,$^) -lm -o $@
 
 clean:
 	rm -rf build

@@ -127,9 +127,9 @@ done:
 }
 
 /* Control characters of hostile input do not reach the terminal. */
-static void clean_text(char *text) {
-  for (; *text != '\0'; ++text)
-    if ((unsigned char)*text < ' ' || *text == 127) *text = '?';
+static char shown_character(char c) {
+  int control = (unsigned char)c < ' ' || c == 127;
+  return control && c != '\t' ? '?' : c;
 }
 
 static status keep(message_log *log, const message *m) {
@@ -160,7 +160,7 @@ void message_add(message_log *log, message_id id, const place *at,
   int length = vsnprintf(text, sizeof text, format, args);
   va_end(args);
   if (length >= TEXT_SIZE) memcpy(text + TEXT_SIZE - 4, "...", 4);
-  clean_text(text);
+  for (char *p = text; *p != '\0'; ++p) *p = shown_character(*p);
   m.text = memory_text(text);
   if (at != NULL) m.at = place_copy(at);
   if (m.text == NULL || (at != NULL && m.at == NULL) || keep(log, &m) != OK) {
@@ -234,24 +234,24 @@ static void visible_part(const char *line, int column, int *first, int *last) {
   *last = *first + SHOWN < length ? *first + SHOWN : length;
 }
 
-/* The line with a caret under the column. A tab is kept in both, and a
- * character of several bytes takes one column. */
+/* A caret under a column of the part that starts at "first". A tab is kept,
+ * and a character of several bytes takes one column. */
+static void print_caret(const char *line, int first, int column, FILE *out) {
+  fprintf(out, "%8s | %s", "", first > 0 ? "   " : "");
+  for (int i = first; i < column; ++i)
+    if (!is_continuation_byte(line[i]))
+      fputc(line[i] == '\t' ? '\t' : ' ', out);
+  fputs("^\n", out);
+}
+
 static void print_source(const place *at, FILE *out) {
   if (at == NULL || at->line == NULL || at->line_no <= 0) return;
   int first, last, column = at->column_no - 1;
   visible_part(at->line, column, &first, &last);
   fprintf(out, "%8d | %s", at->line_no, first > 0 ? "..." : "");
-  for (int i = first; i < last; ++i) {
-    unsigned char c = (unsigned char)at->line[i];
-    fputc((c < ' ' && c != '\t') || c == 127 ? '?' : c, out);
-  }
+  for (int i = first; i < last; ++i) fputc(shown_character(at->line[i]), out);
   fprintf(out, "%s\n", at->line[last] != '\0' ? "..." : "");
-  if (column < 0 || column > last) return;
-  fprintf(out, "%8s | %s", "", first > 0 ? "   " : "");
-  for (int i = first; i < column; ++i)
-    if (!is_continuation_byte(at->line[i]))
-      fputc(at->line[i] == '\t' ? '\t' : ' ', out);
-  fputs("^\n", out);
+  if (column >= 0 && column <= last) print_caret(at->line, first, column, out);
 }
 
 static void print_message(const message *m, FILE *out) {

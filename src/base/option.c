@@ -94,22 +94,26 @@ static int starts_with(const char *word, const char *start, int n) {
   return 1;
 }
 
+/* A longer candidate that begins with the word, if none is near. */
+static int is_beginning(const char *word, int n, const char *candidate, int m) {
+  return n >= 3 && m > n && starts_with(candidate, word, n);
+}
+
 const char *nearest_word(const char *word,
                          const char *(*next)(const void *ctx, int i),
                          const void *ctx) {
-  size_t length = strnlen(word, WORD_MAX + 1);
-  if (length == 0 || length > WORD_MAX) return NULL;
-  int n = (int)length, limit = n < 3 ? 1 : 1 + n / 4, best = limit + 1;
+  int n = (int)strnlen(word, WORD_MAX + 1), best = 2 + n / 4;
   const char *found = NULL, *longer = NULL, *candidate;
+  if (n == 0 || n > WORD_MAX) return NULL;
+  if (best > n) best = n; /* something of the word must remain                */
   for (int i = 0; (candidate = next(ctx, i)) != NULL; ++i) {
-    size_t size = strnlen(candidate, WORD_MAX + 1);
-    if (size > WORD_MAX) continue;
-    int m = (int)size;
-    if (n >= 3 && m > n && longer == NULL && starts_with(candidate, word, n))
+    int m = (int)strnlen(candidate, WORD_MAX + 1);
+    if (m > WORD_MAX) continue;
+    if (longer == NULL && is_beginning(word, n, candidate, m))
       longer = candidate;
     if (m - n >= best || n - m >= best) continue;
     int d = word_distance(word, n, candidate, m);
-    if (d < best && d < n) {
+    if (d < best) {
       best = d;
       found = candidate;
     }

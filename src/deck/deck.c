@@ -134,8 +134,10 @@ static const char *next_name(const void *ctx, int i) {
   return ((const char *const *)ctx)[i];
 }
 
-/* Refuse parameters that are not among the names (NULL at the end). */
-static void check_names(reader *r, const card *c, const char *const *names) {
+/* Refuse parameters that are not among the names (NULL at the end); 1 if
+ * there are none. */
+static int check_names(reader *r, const card *c, const char *const *names) {
+  int good = 1;
   for (int i = 0; i < c->n_parameter; ++i) {
     const parameter *p = &c->parameters[i];
     const char *const *name = names;
@@ -146,7 +148,9 @@ static void check_names(reader *r, const card *c, const char *const *names) {
                 near != NULL ? "unknown parameter %s of *%s; did you mean %s?"
                              : "unknown parameter %s of *%s",
                 p->name, c->name, near);
+    good = 0;
   }
+  return good;
 }
 
 /* The parameter the card cannot do without; NULL after a message. */
@@ -290,8 +294,8 @@ static status read_card(reader *r, const physical *line) {
     TRY(add_card(r, &c));
   } else {
     if (!language->keeps_mode) r->mode = DATA_DROPPED;
-    check_names(r, &c, language->names);
-    TRY(language->use(r, &c));
+    if (check_names(r, &c, language->names) || language->names[0] == NULL)
+      TRY(language->use(r, &c));
   }
 done:
   return st;

@@ -49,6 +49,7 @@ typedef struct buffer {
   int n, capacity;
 } buffer;
 
+/* Append n bytes; the text stays closed by a NUL. */
 status buffer_add(buffer *b, const char *text, size_t n);
 
 /* Letters of ASCII only, whatever the locale. */

@@ -84,41 +84,38 @@ static const char *next_symbol(const void *ctx, int i) {
   return i < d->n_symbol && i < ADVICE_MAX ? d->symbols[i].name : NULL;
 }
 
-/* "; did you mean NAME?" or nothing, into text. */
-static void suggest(const deck *d, message_log *log, const char *name,
-                    const char *mark, buffer *text) {
+enum { ADVICE_SIZE = 128 };
+
+/* "; did you mean NAME?", the name between two marks, or nothing. */
+static void advise(const deck *d, const message_log *log, const char *name,
+                   const char *marks, char advice[ADVICE_SIZE]) {
   const char *near = NULL;
+  advice[0] = '\0';
   if (message_wanted(log, ERROR)) near = nearest_word(name, next_symbol, d);
-  if (near == NULL) return;
-  (void)buffer_add(text, "; did you mean ", 15);
-  (void)buffer_add(text, mark, strlen(mark));
-  (void)buffer_add(text, near, strlen(near));
-  (void)buffer_add(text, mark[0] == '<' ? ">?" : "?", mark[0] == '<' ? 2 : 1);
+  if (near != NULL)
+    snprintf(advice, ADVICE_SIZE, "; did you mean %.1s%s%s?", marks, near,
+             *marks != '\0' ? marks + 1 : "");
 }
 
-/* Without memory for the advice the message goes without it. */
 static void report_unknown(reader *r, const place *at, const char *name) {
-  buffer advice = {NULL, 0, 0};
-  suggest(r->d, r->log, name, "<", &advice);
-  message_add(r->log, P1020, at, "unknown name <%s>%s", name,
-              advice.text != NULL ? advice.text : "");
-  memory_free(advice.text);
+  char advice[ADVICE_SIZE];
+  advise(r->d, r->log, name, "<>", advice);
+  message_add(r->log, P1020, at, "unknown name <%s>%s", name, advice);
 }
 
 void report_expression(const deck *d, message_log *log, const place *at,
                        const char *text, int start, int column) {
   static const char unknown[] = "unknown name ";
-  buffer why = {NULL, 0, 0};
+  const char *why = status_message();
+  char advice[ADVICE_SIZE] = "";
   place there = *at;
   if (start >= 0 && at->line != NULL && (size_t)start <= strlen(at->line) &&
       strncmp(at->line + start, text, strlen(text)) == 0)
     there.column_no = start + column + 1;
-  (void)buffer_add(&why, status_message(), strlen(status_message()));
-  if (strncmp(status_message(), unknown, sizeof unknown - 1) == 0)
-    suggest(d, log, status_message() + sizeof unknown - 1, "", &why);
-  message_add(log, P1022, &there, "%s in expression '%.200s'",
-              why.text != NULL ? why.text : "not valid", text);
-  memory_free(why.text);
+  if (strncmp(why, unknown, sizeof unknown - 1) == 0)
+    advise(d, log, why + sizeof unknown - 1, "", advice);
+  message_add(log, P1022, &there, "%.300s in expression '%.200s'%s", why, text,
+              advice);
 }
 
 /* Length of a name between < and >, or 0. */

@@ -1,0 +1,13 @@
+/*
+ * Entry of a libFuzzer program (make fuzz): any bytes; a broken promise of the
+ * code under test ends in abort().
+ */
+#ifndef PROTIS_TESTS_FUZZ_H
+#define PROTIS_TESTS_FUZZ_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+#endif
