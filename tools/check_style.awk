@@ -127,12 +127,9 @@ function close_brace() {
 
 function body_token(token) {
   if (token ~ /^(if|for|while|case|\?|&&|\|\|)$/) ++complexity
-  if (token == "static") { collecting = 1; kept = "" }
-  else if (collecting && token ~ /^[=;]$/) {
-    collecting = 0
-    if (is_source && !is_base && !is_constant(kept))
-      fail(FNR, "static variable that can change")
-  } else if (collecting) kept = kept " " token
+  if (is_source && !is_base && before == "static" && token != "const")
+    fail(FNR, "static variable that can change")
+  before = token
 }
 
 # Parameters between the first parenthesis and its partner.
@@ -159,7 +156,7 @@ function begin_function() {
   name = declared_name(declaration)
   start = declared_at
   complexity = 1
-  collecting = 0
+  before = ""
   if (count_parameters(declaration) > MAX_PARAMETERS)
     fail(start, name ": over 7 parameters")
   if (!is_header && declaration !~ /^static / && name != "main" &&

@@ -186,7 +186,87 @@
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \
-    "Check the name and that gmsh opens the file.")
+    "Check the name and the permissions. FILE= of *MESH is relative to "     \
+    "the deck.")                                                             \
+  X(3002, ERROR, "not a mesh of gmsh",                                       \
+    "Give a .geo, or a .msh of version 2.2 or 4.1. In gmsh: File, "          \
+    "Export, Mesh - Gmsh MSH; in a script: gmsh -2 -o name.msh -format "     \
+    "msh41 name.geo.")                                                       \
+  X(3003, ERROR, "gmsh cannot read or mesh the file",                        \
+    "The message quotes gmsh. Open the file with gmsh itself to see "        \
+    "the place; a file cut short must be written again.")                    \
+  X(3004, WARNING, "warning of gmsh",                                        \
+    "gmsh read or meshed the file, but was not content. Open it with "       \
+    "gmsh itself to see the place.")                                         \
+  X(3010, ERROR, "mesh without physical groups",                             \
+    "Name the parts in the .geo: Physical Surface(\"BODY\") = {1}; "         \
+    "(3-D: Physical Volume) for what is solid, Physical "                    \
+    "Curve(\"FOOT\") = {3}; (3-D: Physical Surface) for its sides. "         \
+    "Then mesh it again.")                                                   \
+  X(3011, ERROR, "no physical group of surfaces or volumes",                 \
+    "The groups name only points or curves: add Physical Surface (2-D) "     \
+    "or Physical Volume (3-D) for what is solid and mesh again.")            \
+  X(3012, ERROR, "name of a group repeated",                                 \
+    "Names are unique over points, curves, surfaces and volumes. A "         \
+    "group without a name is called by its number. Rename one of the "       \
+    "two, or join them in one group.")                                       \
+  X(3013, ERROR, "group without elements",                                   \
+    "The geometry of the group is not meshed, or its elements are not "      \
+    "saved. Mesh it to its dimension, or remove the group.")                 \
+  X(3014, WARNING, "elements in no physical group",                          \
+    "They are left out of the model. Add them to a Physical Surface "        \
+    "(2-D) or Physical Volume (3-D) if they belong to the body.")            \
+  X(3020, ERROR, "elements that are no triangles or tetrahedra",             \
+    "Linear triangles and tetrahedra are needed. In the .geo remove "        \
+    "Recombine, Mesh.RecombineAll and layers with Recombine; or split "      \
+    "what is there with gmsh name.msh -save -o new.msh after "               \
+    "Mesh.SubdivisionAlgorithm = 0 and a new meshing.")                      \
+  X(3021, ERROR, "elements of higher order",                                 \
+    "Linear elements are needed: Mesh.ElementOrder = 1; in the .geo, "       \
+    "or gmsh -order 1, and mesh again.")                                     \
+  X(3022, ERROR, "elements without area or volume",                          \
+    "Their corners are in one line (2-D) or plane (3-D) to rounding. "       \
+    "Remesh there: coincident points, curves of length zero or a wrong "     \
+    "transfinite count are usual reasons.")                                  \
+  X(3023, ERROR, "coordinates that are no numbers",                          \
+    "The file is damaged, or a formula of the geometry divides by "          \
+    "zero. Write it again.")                                                 \
+  X(3024, ERROR, "mesh of surfaces not in a plane z = const",                \
+    "A 2-D mesh lies in x, y. Turn the geometry into that plane; for a "     \
+    "3-D body add a Physical Volume.")                                       \
+  X(3025, ERROR, "node that is not in the file",                             \
+    "An element names a node that the file does not define. The file "       \
+    "is damaged: write it again.")                                           \
+  X(3026, NOTE, "elements listed twice",                                     \
+    "They count once. Version 2.2 of the format lists an element once "      \
+    "for each of its groups; version 4.1 does not.")                         \
+  X(3027, ERROR, "mesh too large",                                           \
+    "Up to 500 million nodes and elements can be numbered.")                 \
+  X(3030, ERROR, "face of a group that bounds no element",                   \
+    "The curves (2-D) or surfaces (3-D) of a group are sides of "            \
+    "elements of the mesh. Remove construction lines from the group, "       \
+    "or add the surface or volume beside it to a group.")                    \
+  X(3031, NOTE, "faces listed twice",                                        \
+    "They count once. Version 2.2 of the format lists a face once for "      \
+    "each of its groups; version 4.1 does not.")                             \
+  X(3032, ERROR, "face of more than two elements",                           \
+    "Elements overlap there: the same surface or volume is there "           \
+    "twice, or parts are merged that intersect. Remove one of them.")        \
+  X(3033, ERROR, "node of a group that is in no element",                    \
+    "The points and curves of a group carry nodes of elements. Remove "      \
+    "construction points from the group; a point inside a body needs "       \
+    "Point{n} In Surface{m}; to be a node.")                                 \
+  X(3040, NOTE, "nodes that no element uses",                                \
+    "They are left out: centres of circles and other construction "          \
+    "points, or parts of the mesh in no group.")                             \
+  X(3041, WARNING, "coincident nodes inside one body",                       \
+    "Two nodes at one place are not joined: the body has a slit there. "     \
+    "If it is not meant, add Coherence; or Coherence Mesh; to the "          \
+    ".geo, or define the common curve once.")                                \
+  X(3042, WARNING, "bodies that touch without being joined",                 \
+    "Their nodes lie on each other but are not the same. If the bodies "     \
+    "are one, add Coherence; (built-in kernel), BooleanFragments "           \
+    "(OpenCASCADE) or Coherence Mesh; to the .geo.")
 
 #define MESSAGE_LIST_CONTACT(X)                                              \
   X(4001, ERROR, "contact group is not made of boundary faces",              \

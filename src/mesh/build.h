@@ -1,0 +1,57 @@
+/*
+ * From the raw mesh to the mesh, in steps that check what they use: groups,
+ * nodes, elements, faces, then the contents of the groups. Inside src/mesh.
+ *
+ * "Top" elements are those of the dimension of the mesh, "low" ones those of
+ * one dimension less: each in the order of the file, block after block.
+ */
+#ifndef PROTIS_MESH_BUILD_H
+#define PROTIS_MESH_BUILD_H
+
+#include "mesh/raw.h"
+
+enum { MAX_ITEMS = 500000000, SHOWN = 5 };
+
+typedef struct builder {
+  const raw_mesh *raw; /* borrowed                                       */
+  double scale;
+  const place *at; /* borrowed                                           */
+  message_log *log;
+  int errors; /* errors of the log before                                */
+  mesh *m;
+  int slot_bits;
+  int *slot;        /* [2^slot_bits] raw node + 1 by number, 0: none     */
+  int *node_id;     /* [raw->n_node] mesh node, -1 if not used           */
+  int n_top, n_low; /* elements of the mesh dimension, one dimension less */
+  int *corner;      /* [(dim+1)*n_top] raw nodes                         */
+  int *elem_of_top; /* [n_top] element id                                */
+  int *face_of_low; /* [n_low] face id                                   */
+  int *first; /* [raw->n_block] first top or low element of the block    */
+} builder;
+
+/* The first few of what is wrong, for a message. */
+typedef struct culprits {
+  int n;
+  char text[480];
+} culprits;
+void culprit_add(culprits *c, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/* " no. 17 at (0.5, 2)" for a number and raw or mesh coordinates. */
+void culprit_at(culprits *c, int dim, size_t no, const double *x);
+
+/* ERR_MESH if the log got errors since the start. */
+status build_check(const builder *b);
+
+status groups_check(builder *b); /* names, dimension of the mesh             */
+status groups_fill(builder *b);  /* items and nodes                          */
+status nodes_index(builder *b);  /* raw node by number                       */
+int nodes_find(const builder *b, size_t no); /* raw node or -1                */
+status nodes_order(builder *b); /* ids, coordinates, numbers                */
+status nodes_coincident(builder *b);
+status elements_gather(builder *b); /* types; corners as raw nodes            */
+status elements_finish(builder *b); /* orientation, order, repeated ones      */
+status faces_finish(builder *b);    /* ids, elements on both sides            */
+/* Type of the one kind of element of a dimension that is read: P1. */
+int first_order_type(int dim);
+
+#endif

@@ -1,0 +1,356 @@
+/*
+ * The child's side of the mesh reader: load libgmsh, open or mesh the file,
+ * send what it holds. Every end of this file is _exit: nothing the parent
+ * registered or buffered may run or be written twice.
+ *
+ * libgmsh is loaded by the name that belongs to the header gmshc.h, whose
+ * calls change from one minor version to the next.
+ */
+#include "mesh/raw.h"
+
+#include "base/memory.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <gmshc.h>
+#include <locale.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+#define TEXT_OF(x) #x
+#define TEXT(x) TEXT_OF(x)
+#define LIBGMSH \
+  "libgmsh.so." TEXT(GMSH_API_VERSION_MAJOR) "." TEXT(GMSH_API_VERSION_MINOR)
+
+/* clang-format off */
+#define CALL_LIST(X)                                                         \
+  X(Initialize) X(Open) X(OptionSetNumber) X(LoggerStart) X(LoggerGet)       \
+  X(LoggerGetLastError) X(ModelGetEntities) X(ModelGetPhysicalGroups)        \
+  X(ModelGetPhysicalName) X(ModelGetPhysicalGroupsForEntity)                 \
+  X(ModelMeshGenerate) X(ModelMeshGetNodes) X(ModelMeshGetElements)          \
+  X(ModelMeshGetElementProperties) X(Free)
+/* clang-format on */
+
+#define CALL_FIELD(name) __typeof__(&gmsh##name) name;
+typedef struct gmsh_calls {
+  CALL_LIST(CALL_FIELD)
+} gmsh_calls;
+
+typedef struct child {
+  const raw_request *request;
+  int fd;
+  gmsh_calls gmsh;
+} child;
+
+enum { LEFT_BY_ITSELF = 71, MAX_WARNING = 5, TEXT_SIZE = 1024 };
+
+static void put(const child *c, const void *data, size_t n) {
+  while (n > 0) {
+    ssize_t w = write(c->fd, data, n);
+    if (w < 0 && errno == EINTR) continue;
+    if (w <= 0) _exit(LEFT_BY_ITSELF); /* nobody reads any more */
+    data = (const char *)data + w;
+    n -= (size_t)w;
+  }
+}
+
+/* One record: head, then n items of the size given. */
+static void send(const child *c, wire_head head, const void *data,
+                 size_t size) {
+  head.magic = WIRE_MAGIC;
+  put(c, &head, sizeof head);
+  put(c, data, (size_t)head.n * size);
+}
+
+static void send_array(const child *c, wire_kind kind, size_t n, size_t size,
+                       const void *data) {
+  send(c, (wire_head){.kind = kind, .n = n}, data, size);
+}
+
+static void send_text(const child *c, wire_kind kind, int dim, int tag,
+                      const char *text) {
+  send(c, (wire_head){0, kind, dim, tag, strlen(text)}, text, 1);
+}
+
+static void give_up(const child *c, status code, const char *format, ...)
+    __attribute__((noreturn, format(printf, 3, 4)));
+static void give_up(const child *c, status code, const char *format, ...) {
+  char text[TEXT_SIZE];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  send_text(c, WIRE_FAILURE, 0, code, text);
+  _exit(0);
+}
+
+/* gmsh may leave by itself (Exit in a .geo): skip what the parent set up. */
+static void leave_at_once(void) { _exit(LEFT_BY_ITSELF); }
+
+/* Cut the process off: streams, signals, files of a crash; die with the
+ * parent. What gmsh writes about its errors goes to error_fd, which never
+ * blocks; what does not fit is lost. */
+static void detach(pid_t parent, int fd, int error_fd) {
+  static const int signals[] = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT, SIGPIPE,
+                                SIGCHLD, SIGABRT, SIGSEGV, SIGFPE,  SIGBUS,
+                                SIGILL,  SIGALRM, SIGUSR1, SIGUSR2};
+  for (size_t i = 0; i < sizeof signals / sizeof *signals; ++i)
+    signal(signals[i], SIG_DFL);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, NULL);
+#ifdef __linux__
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+  if (getppid() != parent) _exit(LEFT_BY_ITSELF);
+  setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+  fcntl(fd, F_SETFD, FD_CLOEXEC);
+  fcntl(error_fd, F_SETFL, O_NONBLOCK);
+  int nothing = open("/dev/null", O_RDWR);
+  if (nothing >= 0) {
+    dup2(nothing, STDIN_FILENO);
+    dup2(nothing, STDOUT_FILENO);
+  }
+  dup2(error_fd, STDERR_FILENO);
+  setlocale(LC_ALL, "C");
+  atexit(leave_at_once);
+}
+
+static void load(child *c) {
+  void *library = dlopen(LIBGMSH, RTLD_LAZY | RTLD_LOCAL);
+  if (library == NULL) {
+    const char *why = dlerror();
+    int memory = strstr(why, "annot allocate") || strstr(why, "failed to map");
+    give_up(c, memory ? ERR_MEMORY : ERR_MESH, "cannot load %s: %s", LIBGMSH,
+            why);
+  }
+#define CALL_LOAD(name)                                      \
+  do {                                                       \
+    void *symbol_ = dlsym(library, "gmsh" #name);            \
+    if (symbol_ == NULL)                                     \
+      give_up(c, ERR_MESH, "%s has no gmsh" #name, LIBGMSH); \
+    memcpy(&c->gmsh.name, &symbol_, sizeof symbol_);         \
+  } while (0);
+  CALL_LIST(CALL_LOAD)
+}
+
+/* gmsh failed in what it was doing: its last error tells the rest. */
+static void check(const child *c, int error, const char *doing) {
+  if (!error) return;
+  char *last = NULL;
+  int ignored;
+  c->gmsh.LoggerGetLastError(&last, &ignored);
+  int memory = last != NULL && strstr(last, "bad_alloc") != NULL;
+  give_up(c, memory ? ERR_MEMORY : ERR_MESH, "gmsh fails to %s: %s", doing,
+          last != NULL && last[0] != '\0' ? last : "it does not say why");
+}
+
+static void set(const child *c, const char *option, double value) {
+  int error;
+  c->gmsh.OptionSetNumber(option, value, &error);
+  check(c, error, option);
+}
+
+/* Numbers for the .geo go in as on the command line of gmsh: they win over
+ * what DefineConstant says, before the file is read. */
+static void start(const child *c) {
+  const raw_request *r = c->request;
+  int n = r->is_geo ? r->n_number : 0, error;
+  char **argv = memory_new(3 * (size_t)n + 2, sizeof *argv);
+  char *text = memory_new((size_t)n + 1, 40);
+  if (argv == NULL || text == NULL)
+    give_up(c, ERR_MEMORY, "memory exhausted: %d numbers for gmsh", n);
+  static char program[] = "protis", set_number[] = "-setnumber";
+  int argc = 0;
+  argv[argc++] = program;
+  for (int i = 0; i < n; ++i) {
+    char *value = text + 40 * i;
+    snprintf(value, 40, "%.17g", r->number[i].value);
+    argv[argc++] = set_number;
+    argv[argc] = memory_text(r->number[i].name);
+    if (argv[argc++] == NULL)
+      give_up(c, ERR_MEMORY, "memory exhausted: numbers for gmsh");
+    argv[argc++] = value;
+  }
+  c->gmsh.Initialize(argc, argv, 0, &error);
+  check(c, error, "start");
+  set(c, "General.Terminal", 1);
+  c->gmsh.LoggerStart(&error);
+}
+
+/* One thread and fixed seeds: the same input gives the same mesh. */
+static void fix_options(const child *c) {
+  set(c, "General.NumThreads", 1);
+  set(c, "Mesh.MaxNumThreads1D", 1);
+  set(c, "Mesh.MaxNumThreads2D", 1);
+  set(c, "Mesh.MaxNumThreads3D", 1);
+  set(c, "Mesh.RandomSeed", 1);
+  set(c, "Mesh.ElementOrder", 1);
+}
+
+/* Highest dimension of the physical groups: 3, or 2, or less; -1 if none. */
+static int send_groups(const child *c) {
+  int *dim_tag, error, dim = -1;
+  size_t n;
+  c->gmsh.ModelGetPhysicalGroups(&dim_tag, &n, -1, &error);
+  check(c, error, "list the physical groups");
+  for (size_t i = 0; i + 1 < n; i += 2) {
+    char *name;
+    c->gmsh.ModelGetPhysicalName(dim_tag[i], dim_tag[i + 1], &name, &error);
+    check(c, error, "name the physical groups");
+    send_text(c, WIRE_GROUP, dim_tag[i], dim_tag[i + 1], name);
+    if (dim_tag[i] > dim) dim = dim_tag[i];
+    c->gmsh.Free(name);
+  }
+  c->gmsh.Free(dim_tag);
+  return dim;
+}
+
+typedef struct elements { /* of one entity, as gmsh gives them */
+  int *type;
+  size_t n_type, **no, *no_n, no_nn, **node, *node_n, node_nn;
+} elements;
+
+static void get_elements(const child *c, int dim, int tag, elements *e) {
+  int error;
+  c->gmsh.ModelMeshGetElements(&e->type, &e->n_type, &e->no, &e->no_n,
+                               &e->no_nn, &e->node, &e->node_n, &e->node_nn,
+                               dim, tag, &error);
+  check(c, error, "list the elements");
+}
+
+static void free_elements(const child *c, elements *e) {
+  for (size_t i = 0; i < e->no_nn; ++i) c->gmsh.Free(e->no[i]);
+  for (size_t i = 0; i < e->node_nn; ++i) c->gmsh.Free(e->node[i]);
+  c->gmsh.Free(e->no);
+  c->gmsh.Free(e->node);
+  c->gmsh.Free(e->no_n);
+  c->gmsh.Free(e->node_n);
+  c->gmsh.Free(e->type);
+}
+
+static int has_elements(const child *c, int dim) {
+  elements e;
+  get_elements(c, dim, -1, &e);
+  size_t n = 0;
+  for (size_t i = 0; i < e.n_type; ++i) n += e.no_n[i];
+  free_elements(c, &e);
+  return n > 0;
+}
+
+static void send_block(const child *c, int dim, const elements *e, size_t i,
+                       const int *physical, size_t n_physical) {
+  char *name;
+  int type_dim, order, n_per, n_corner, error;
+  double *local;
+  size_t n_local;
+  c->gmsh.ModelMeshGetElementProperties(e->type[i], &name, &type_dim, &order,
+                                        &n_per, &local, &n_local, &n_corner,
+                                        &error);
+  check(c, error, "name a type of elements");
+  send_text(c, WIRE_BLOCK, dim, e->type[i], name);
+  send_array(c, WIRE_PHYSICAL, n_physical, sizeof(int), physical);
+  send_array(c, WIRE_ELEM_NO, e->no_n[i], sizeof(size_t), e->no[i]);
+  send_array(c, WIRE_ELEM_NODE, e->node_n[i], sizeof(size_t), e->node[i]);
+  c->gmsh.Free(name);
+  c->gmsh.Free(local);
+}
+
+/* The elements of one entity; how many are of dimension top in no group. */
+static size_t send_entity(const child *c, int dim, int tag, int top) {
+  int *physical, error;
+  size_t n_physical, loose = 0;
+  c->gmsh.ModelGetPhysicalGroupsForEntity(dim, tag, &physical, &n_physical,
+                                          &error);
+  check(c, error, "list the groups of an entity");
+  if (n_physical > 0 || dim == top) {
+    elements e;
+    get_elements(c, dim, tag, &e);
+    for (size_t i = 0; i < n_physical; ++i) /* the sign is an orientation */
+      physical[i] = abs(physical[i]);
+    for (size_t i = 0; i < e.n_type; ++i) {
+      if (n_physical == 0)
+        loose += e.no_n[i];
+      else if (e.no_n[i] > 0)
+        send_block(c, dim, &e, i, physical, n_physical);
+    }
+    free_elements(c, &e);
+  }
+  c->gmsh.Free(physical);
+  return loose;
+}
+
+static void send_entities(const child *c, int top) {
+  int *dim_tag, error, census[4] = {0, 0, 0, 0};
+  size_t n, loose = 0;
+  c->gmsh.ModelGetEntities(&dim_tag, &n, -1, &error);
+  check(c, error, "list the entities");
+  for (size_t i = 0; i + 1 < n; i += 2) {
+    if (dim_tag[i] >= 0 && dim_tag[i] < 4) ++census[dim_tag[i]];
+    if (top >= 2) loose += send_entity(c, dim_tag[i], dim_tag[i + 1], top);
+  }
+  send_array(c, WIRE_CENSUS, 4, sizeof(int), census);
+  send_array(c, WIRE_LOOSE, 1, sizeof(size_t), &loose);
+  c->gmsh.Free(dim_tag);
+}
+
+static void send_nodes(const child *c) {
+  size_t *no, n, n_x, n_parameter;
+  double *x, *parameter;
+  int error;
+  c->gmsh.ModelMeshGetNodes(&no, &n, &x, &n_x, &parameter, &n_parameter, -1, -1,
+                            0, 0, &error);
+  check(c, error, "list the nodes");
+  send_array(c, WIRE_NODE_NO, n, sizeof(size_t), no);
+  send_array(c, WIRE_NODE_X, n_x, sizeof(double), x);
+  c->gmsh.Free(no);
+  c->gmsh.Free(x);
+  c->gmsh.Free(parameter);
+}
+
+/* gmsh goes on after some errors: what it made then is not to be trusted. */
+static void send_warnings(const child *c, const char *doing) {
+  char **line;
+  size_t n;
+  int error, n_warning = 0;
+  c->gmsh.LoggerGet(&line, &n, &error);
+  check(c, error, "list its messages");
+  for (size_t i = 0; i < n; ++i) {
+    if (strncmp(line[i], "Error: ", 7) == 0)
+      give_up(c, ERR_MESH, "gmsh fails to %s: %s", doing, line[i] + 7);
+    if (strncmp(line[i], "Warning: ", 9) == 0 && n_warning++ < MAX_WARNING)
+      send_text(c, WIRE_WARNING, 0, 0, line[i] + 9);
+  }
+}
+
+void child_run(const raw_request *request, pid_t parent, int fd, int error_fd) {
+  child here = {.request = request, .fd = fd}, *c = &here;
+  int error;
+  detach(parent, fd, error_fd);
+  load(c);
+  start(c);
+  c->gmsh.Open(request->file, &error);
+  check(c, error, "read the file");
+  int dim = send_groups(c);
+  const char *doing = "read the file";
+  if (request->is_geo && dim >= 2 && !has_elements(c, dim)) {
+    doing = "mesh the geometry";
+    fix_options(c);
+    c->gmsh.ModelMeshGenerate(dim, &error);
+    check(c, error, doing);
+  }
+  send_warnings(c, doing);
+  send_entities(c, dim);
+  send_nodes(c);
+  send_array(c, WIRE_END, 0, 1, NULL);
+  _exit(0);
+}

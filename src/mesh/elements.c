@@ -1,0 +1,260 @@
+/*
+ * Elements: kinds, corners, orientation, order, and those listed twice.
+ */
+#include "mesh/build.h"
+#include "mesh/sort.h"
+
+#include "base/memory.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* An element whose measure is below this part of (longest edge)^dim is flat:
+ * far below any sliver that can be computed with, far above rounding. */
+static const double flat = 1e-12;
+
+int first_order_type(int dim) {
+  static const int type[] = {15, 1, 2, 4};
+  return type[dim];
+}
+
+/* Quadrangle, hexahedron, prism, pyramid; other types are of higher order. */
+static int wrong_shape(int type) {
+  return type == 3 || type == 5 || type == 6 || type == 7;
+}
+
+static const char *group_of(const raw_mesh *raw, const raw_block *b) {
+  for (int i = 0; i < raw->n_group; ++i)
+    if (raw->group[i].dim == b->dim && raw->group[i].tag == b->physical[0])
+      return raw->group[i].name;
+  return "";
+}
+
+/* One message for each type, at its first block. */
+static status check_types(builder *b) {
+  const raw_mesh *raw = b->raw;
+  for (int i = 0; i < raw->n_block; ++i) {
+    const raw_block *p = &raw->block[i];
+    if (p->dim >= 0 && p->dim < 4 && p->type == first_order_type(p->dim) &&
+        p->n_per == (size_t)(p->dim + 1))
+      continue;
+    size_t n = 0;
+    int first = i;
+    for (int j = 0; j < raw->n_block; ++j) {
+      if (raw->block[j].type != p->type) continue;
+      n += raw->block[j].n;
+      if (j < first) first = j;
+    }
+    if (first < i) continue;
+    const char *group = group_of(raw, p);
+    message_add(b->log, wrong_shape(p->type) ? P3020 : P3021, b->at,
+                "%zu element(s) of type \"%s\"; the first is no. %zu in group "
+                "\"%s\"",
+                n, p->type_name, p->no[0], group);
+  }
+  return build_check(b);
+}
+
+/* Count top and low elements and where each block starts among them. */
+static status count_items(builder *b) {
+  status st = OK;
+  size_t top = 0, low = 0;
+  for (int i = 0; i < b->raw->n_block; ++i) {
+    const raw_block *p = &b->raw->block[i];
+    size_t *n = p->dim == b->m->dim ? &top : &low;
+    if (p->dim < b->m->dim - 1) continue;
+    if (*n <= MAX_ITEMS) b->first[i] = (int)*n;
+    *n += p->n;
+  }
+  if (top > MAX_ITEMS || low > MAX_ITEMS || b->raw->n_node > MAX_ITEMS) {
+    message_add(b->log, P3027, b->at, "%zu nodes, %zu elements, %zu faces",
+                b->raw->n_node, top, low);
+    TRY(build_check(b));
+  }
+  b->n_top = (int)top;
+  b->n_low = (int)low;
+done:
+  return st;
+}
+
+static void gather_block(builder *b, int block, culprits *unknown) {
+  const raw_block *p = &b->raw->block[block];
+  int *corner = b->corner + p->n_per * (size_t)b->first[block];
+  for (size_t i = 0; i < p->n_per * p->n; ++i) {
+    int r = nodes_find(b, p->node[i]);
+    corner[i] = r < 0 ? 0 : r;
+    if (r >= 0)
+      b->node_id[r] = 0;
+    else
+      culprit_add(unknown, "node %zu of element %zu", p->node[i],
+                  p->no[i / p->n_per]);
+  }
+}
+
+/* Corners of the top elements as raw nodes; node_id marks the used ones. */
+status elements_gather(builder *b) {
+  status st = OK;
+  culprits unknown = {0};
+  TRY(check_types(b));
+  TRY(count_items(b));
+  TRY(nodes_index(b));
+  NEW(b->node_id, b->raw->n_node);
+  for (size_t i = 0; i < b->raw->n_node; ++i) b->node_id[i] = -1;
+  NEW(b->corner, (size_t)(b->m->dim + 1) * (size_t)b->n_top);
+  for (int i = 0; i < b->raw->n_block; ++i)
+    if (b->raw->block[i].dim == b->m->dim) gather_block(b, i, &unknown);
+  if (unknown.n > 0)
+    message_add(b->log, P3025, b->at, "%d corner(s) are missing: %s", unknown.n,
+                unknown.text);
+  TRY(build_check(b));
+done:
+  return st;
+}
+
+/* Determinant of the edges from corner 0, and the longest edge. */
+static double determinant(const mesh *m, const int *v, double *longest) {
+  double d[3][3], top = 0.0;
+  size_t dim = (size_t)m->dim;
+  for (size_t i = 0; i <= dim; ++i)
+    for (size_t j = 0; j < i; ++j) {
+      const double *x = m->x + dim * (size_t)v[i],
+                   *y = m->x + dim * (size_t)v[j];
+      double square = 0.0;
+      for (size_t k = 0; k < dim; ++k) {
+        double e = x[k] - y[k];
+        if (j == 0) d[i - 1][k] = e;
+        square += e * e;
+      }
+      top = fmax(top, square);
+    }
+  *longest = sqrt(top);
+  if (dim == 2) return d[0][0] * d[1][1] - d[0][1] * d[1][0];
+  return d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) -
+         d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0]) +
+         d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]);
+}
+
+static double largest_coordinate(const mesh *m) {
+  double top = 0.0;
+  for (size_t i = 0; i < (size_t)m->dim * (size_t)m->n_node; ++i)
+    top = fmax(top, fabs(m->x[i]));
+  return top;
+}
+
+static void swap(int *a, int *b) {
+  int t = *a;
+  *a = *b;
+  *b = t;
+}
+
+static void sort_corners(int *v, int n) {
+  for (int i = 1; i < n; ++i)
+    for (int j = i; j > 0 && v[j - 1] > v[j]; --j) swap(&v[j - 1], &v[j]);
+}
+
+/* Turn every element to positive orientation; flat ones are told. */
+static status orient(builder *b) {
+  mesh *m = b->m;
+  culprits bad = {0};
+  int n = m->dim + 1;
+  double far = largest_coordinate(m);
+  for (int e = 0; e < m->n_elem; ++e) {
+    int *v = m->elem + (size_t)n * (size_t)e;
+    double edge, det = determinant(m, v, &edge);
+    double face = m->dim == 2 ? edge : edge * edge;
+    double floor = fmax(flat * edge, 16.0 * DBL_EPSILON * far) * face;
+    if (det < 0.0) swap(&v[n - 2], &v[n - 1]);
+    if (fabs(det) > floor) continue;
+    double centre[3] = {0.0, 0.0, 0.0};
+    for (int i = 0; i < n; ++i)
+      for (int k = 0; k < m->dim; ++k)
+        centre[k] += m->x[(size_t)m->dim * (size_t)v[i] + (size_t)k] / n;
+    culprit_at(&bad, m->dim, m->elem_no[e], centre);
+  }
+  if (bad.n > 0)
+    message_add(b->log, P3022, b->at, "%d element(s) have no %s: %s", bad.n,
+                m->dim == 2 ? "area" : "volume", bad.text);
+  return build_check(b);
+}
+
+typedef struct top_list { /* top elements, corners ascending mesh nodes */
+  int n_corner;
+  const int *corner;
+  const size_t *no;
+} top_list;
+
+static int same_corners(const top_list *t, int a, int b) {
+  size_t n = (size_t)t->n_corner;
+  return memcmp(t->corner + n * (size_t)a, t->corner + n * (size_t)b,
+                n * sizeof(int)) == 0;
+}
+
+/* The key holds the first two corners: by the others, then by number. */
+static int by_corners(const void *ctx, int a, int b) {
+  const top_list *t = ctx;
+  const int *v = t->corner + (size_t)t->n_corner * (size_t)a;
+  const int *w = t->corner + (size_t)t->n_corner * (size_t)b;
+  for (int k = 2; k < t->n_corner; ++k)
+    if (v[k] != w[k]) return v[k] < w[k] ? -1 : 1;
+  return (t->no[a] > t->no[b]) - (t->no[a] < t->no[b]);
+}
+
+/* Corners become mesh nodes in ascending order; number and key of each. */
+static void fill_keys(builder *b, size_t *no, uint64_t *key, int *id) {
+  int n = b->m->dim + 1;
+  for (int i = 0; i < b->raw->n_block; ++i) {
+    const raw_block *p = &b->raw->block[i];
+    if (p->dim == b->m->dim) memcpy(no + b->first[i], p->no, p->n * sizeof *no);
+  }
+  for (int e = 0; e < b->n_top; ++e) {
+    int *v = b->corner + (size_t)n * (size_t)e;
+    for (int k = 0; k < n; ++k) v[k] = b->node_id[v[k]];
+    sort_corners(v, n);
+    key[e] = (uint64_t)v[0] << 32 | (uint64_t)v[1];
+    id[e] = e;
+  }
+}
+
+/* Sorted top elements to the mesh, each set of corners once. */
+static status store_elements(builder *b, const top_list *t, const int *id) {
+  status st = OK;
+  mesh *m = b->m;
+  size_t n = (size_t)t->n_corner;
+  NEW(m->elem, n * (size_t)b->n_top);
+  NEW(m->elem_no, b->n_top);
+  for (int i = 0; i < b->n_top; ++i) {
+    if (i == 0 || !same_corners(t, id[i - 1], id[i])) {
+      memcpy(m->elem + n * (size_t)m->n_elem, t->corner + n * (size_t)id[i],
+             n * sizeof(int));
+      m->elem_no[m->n_elem++] = t->no[id[i]];
+    }
+    b->elem_of_top[id[i]] = m->n_elem - 1;
+  }
+  if (m->n_elem < b->n_top)
+    message_add(b->log, P3026, b->at, "%d element(s) are listed more than once",
+                b->n_top - m->n_elem);
+done:
+  return st;
+}
+
+status elements_finish(builder *b) {
+  status st = OK;
+  uint64_t *key = NULL;
+  int *id = NULL;
+  size_t *no = NULL;
+  NEW(key, b->n_top);
+  NEW(id, b->n_top);
+  NEW(no, b->n_top);
+  NEW(b->elem_of_top, b->n_top);
+  fill_keys(b, no, key, id);
+  top_list t = {b->m->dim + 1, b->corner, no};
+  TRY(sort_by_key(b->n_top, key, id, by_corners, &t));
+  TRY(store_elements(b, &t, id));
+  TRY(orient(b));
+done:
+  memory_free(key);
+  memory_free(id);
+  memory_free(no);
+  return st;
+}

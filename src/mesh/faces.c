@@ -1,0 +1,225 @@
+/*
+ * Faces of the groups: one id for each set of nodes, turned outward from the
+ * element they bound, with the element on the other side.
+ */
+#include "mesh/build.h"
+#include "mesh/sort.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+typedef struct face_list {
+  int dim;
+  int *low;     /* [dim*n_low] mesh nodes ascending, -1: not in the mesh     */
+  size_t *no;   /* [n_low] number in the file                                */
+  int *start;   /* [n_node+1] faces whose lowest node is i                   */
+  int *corner;  /* [dim*n_face] ascending                                    */
+  int *n_elem;  /* [n_face] elements found                                   */
+  int *example; /* [n_face] a low element of the face                        */
+} face_list;
+
+static void release(face_list *f) {
+  memory_free(f->low);
+  memory_free(f->no);
+  memory_free(f->start);
+  memory_free(f->corner);
+  memory_free(f->n_elem);
+  memory_free(f->example);
+}
+
+static void sort_corners(int *v, int n) {
+  for (int i = 1; i < n; ++i)
+    for (int j = i; j > 0 && v[j - 1] > v[j]; --j) {
+      int t = v[j];
+      v[j] = v[j - 1];
+      v[j - 1] = t;
+    }
+}
+
+/* By the third corner, then by place in the file; the key holds two. */
+static int by_corners(const void *ctx, int a, int b) {
+  const face_list *f = ctx;
+  if (f->dim == 3) {
+    int v = f->low[3 * (size_t)a + 2], w = f->low[3 * (size_t)b + 2];
+    if (v != w) return v < w ? -1 : 1;
+  }
+  return (f->no[a] > f->no[b]) - (f->no[a] < f->no[b]);
+}
+
+static void find_centre(const builder *b, const raw_block *p, size_t i,
+                        double *x) {
+  memset(x, 0, 3 * sizeof *x);
+  for (size_t k = 0; k < p->n_per; ++k) {
+    int r = nodes_find(b, p->node[p->n_per * i + k]);
+    for (size_t d = 0; d < 3 && r >= 0; ++d)
+      x[d] += b->raw->xyz[3 * (size_t)r + d] * b->scale / (double)p->n_per;
+  }
+}
+
+/* Number and place of low element j, for a message. */
+static void tell(const builder *b, int j, culprits *bad) {
+  int i = 0;
+  while (b->raw->block[i].dim != b->m->dim - 1 || j < b->first[i] ||
+         (size_t)(j - b->first[i]) >= b->raw->block[i].n)
+    ++i;
+  const raw_block *p = &b->raw->block[i];
+  size_t item = (size_t)(j - b->first[i]);
+  double x[3];
+  find_centre(b, p, item, x);
+  culprit_at(bad, b->m->dim, p->no[item], x);
+}
+
+/* Corners as mesh nodes; faces with nodes outside of the mesh go to bad. */
+static status gather(builder *b, face_list *f, culprits *bad) {
+  status st = OK;
+  size_t dim = (size_t)f->dim;
+  NEW(f->low, dim * (size_t)b->n_low);
+  NEW(f->no, b->n_low);
+  for (int i = 0; i < b->raw->n_block; ++i) {
+    const raw_block *p = &b->raw->block[i];
+    if (p->dim != f->dim - 1) continue;
+    memcpy(f->no + b->first[i], p->no, p->n * sizeof *f->no);
+    int *v = f->low + dim * (size_t)b->first[i];
+    for (size_t j = 0; j < dim * p->n; ++j) {
+      int r = nodes_find(b, p->node[j]);
+      v[j] = r < 0 ? -1 : b->node_id[r];
+    }
+  }
+  for (int j = 0; j < b->n_low; ++j) {
+    int *v = f->low + dim * (size_t)j;
+    sort_corners(v, f->dim);
+    if (v[0] < 0) tell(b, j, bad);
+  }
+done:
+  return st;
+}
+
+/* Sort the low elements and give every set of corners one id. */
+static status number_faces(builder *b, face_list *f) {
+  status st = OK;
+  mesh *m = b->m;
+  uint64_t *key = NULL;
+  int *id = NULL;
+  size_t dim = (size_t)f->dim, bytes = dim * sizeof(int);
+  NEW(key, b->n_low);
+  NEW(id, b->n_low);
+  NEW(b->face_of_low, b->n_low);
+  NEW(f->corner, dim * (size_t)b->n_low);
+  NEW(f->example, b->n_low);
+  int n = 0;
+  for (int j = 0; j < b->n_low; ++j) {
+    const int *v = f->low + dim * (size_t)j;
+    b->face_of_low[j] = -1;
+    if (v[0] < 0) continue;
+    key[n] = (uint64_t)v[0] << 32 | (uint64_t)v[1];
+    id[n++] = j;
+  }
+  TRY(sort_by_key(n, key, id, by_corners, f));
+  for (int i = 0; i < n; ++i) {
+    const int *v = f->low + dim * (size_t)id[i];
+    int last = m->n_face - 1;
+    if (last < 0 || memcmp(f->corner + dim * (size_t)last, v, bytes) != 0) {
+      memcpy(f->corner + dim * (size_t)++last, v, bytes);
+      f->example[m->n_face++] = id[i];
+    }
+    b->face_of_low[id[i]] = last;
+  }
+  if (m->n_face < n)
+    message_add(b->log, P3031, b->at, "%d face(s) are listed more than once",
+                n - m->n_face);
+done:
+  memory_free(key);
+  memory_free(id);
+  return st;
+}
+
+/* The face with these ascending corners, or -1. */
+static int find_face(const face_list *f, const int *v) {
+  for (int i = f->start[v[0]]; i < f->start[v[0] + 1]; ++i)
+    if (memcmp(f->corner + (size_t)f->dim * (size_t)i, v,
+               (size_t)f->dim * sizeof(int)) == 0)
+      return i;
+  return -1;
+}
+
+/* One side of an element, its nodes turned outward. */
+static void meet(mesh *m, face_list *f, int elem, const int *outward) {
+  size_t dim = (size_t)f->dim;
+  int v[3] = {outward[0], outward[1], f->dim == 3 ? outward[2] : 0};
+  sort_corners(v, f->dim);
+  int face = find_face(f, v);
+  if (face < 0) return;
+  if (f->n_elem[face] == 0) {
+    memcpy(m->face + dim * (size_t)face, outward, dim * sizeof(int));
+    if (f->dim == 3) { /* lowest node first, same turn */
+      int *w = m->face + 3 * (size_t)face, k = w[0] == v[0]   ? 0
+                                               : w[1] == v[0] ? 1
+                                                              : 2;
+      int turned[3] = {w[k], w[(k + 1) % 3], w[(k + 2) % 3]};
+      memcpy(w, turned, sizeof turned);
+    }
+    m->face_elem[face] = elem;
+  } else {
+    m->face_other[face] = elem;
+  }
+  ++f->n_elem[face];
+}
+
+static void meet_elements(mesh *m, face_list *f) {
+  /* clang-format off */
+  static const int side_2d[3][3] = {{0, 1, 0}, {1, 2, 0}, {2, 0, 0}};
+  static const int side_3d[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+  /* clang-format on */
+  int n = m->dim + 1;
+  for (int e = 0; e < m->n_elem; ++e) {
+    const int *v = m->elem + (size_t)n * (size_t)e;
+    for (int s = 0; s < n; ++s) {
+      const int *side = m->dim == 2 ? side_2d[s] : side_3d[s];
+      int outward[3] = {v[side[0]], v[side[1]], v[side[2]]};
+      meet(m, f, e, outward);
+    }
+  }
+}
+
+static status find_elements(builder *b, face_list *f) {
+  status st = OK;
+  mesh *m = b->m;
+  size_t dim = (size_t)f->dim;
+  NEW(m->face, dim * (size_t)m->n_face);
+  NEW(m->face_elem, m->n_face);
+  NEW(m->face_other, m->n_face);
+  NEW(f->n_elem, m->n_face);
+  NEW(f->start, m->n_node + 1);
+  for (int i = 0; i < m->n_face; ++i) {
+    m->face_elem[i] = m->face_other[i] = -1;
+    ++f->start[f->corner[dim * (size_t)i] + 1];
+  }
+  for (int i = 0; i < m->n_node; ++i) f->start[i + 1] += f->start[i];
+  meet_elements(m, f);
+done:
+  return st;
+}
+
+status faces_finish(builder *b) {
+  status st = OK;
+  face_list f = {.dim = b->m->dim};
+  culprits alone = {0}, crowd = {0};
+  TRY(gather(b, &f, &alone));
+  TRY(number_faces(b, &f));
+  TRY(find_elements(b, &f));
+  for (int i = 0; i < b->m->n_face; ++i)
+    if (f.n_elem[i] == 0 || f.n_elem[i] > 2)
+      tell(b, f.example[i], f.n_elem[i] == 0 ? &alone : &crowd);
+  if (alone.n > 0)
+    message_add(b->log, P3030, b->at, "%d face(s) bound no element: %s",
+                alone.n, alone.text);
+  if (crowd.n > 0)
+    message_add(b->log, P3032, b->at,
+                "%d face(s) are sides of more than two elements: %s", crowd.n,
+                crowd.text);
+  TRY(build_check(b));
+done:
+  release(&f);
+  return st;
+}

@@ -1,0 +1,103 @@
+/*
+ * mesh_read_gmsh: look at the file, let gmsh read it, build the mesh.
+ */
+#include "mesh/raw.h"
+
+#include "base/memory.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+enum { HEAD_SIZE = 4096 };
+
+static int ends_in(const char *text, const char *end) {
+  size_t n = strlen(text), k = strlen(end);
+  return n >= k && strcasecmp(text + n - k, end) == 0;
+}
+
+/* gmsh does not tell a missing file from an empty one: look first. The first
+ * bytes go to head, with a zero after them. */
+static status read_head(const char *file, char head[HEAD_SIZE + 1],
+                        const place *at, message_log *log) {
+  status st = OK;
+  struct stat about;
+  const char *why = NULL;
+  FILE *in = NULL;
+  if (stat(file, &about) != 0)
+    why = strerror(errno);
+  else if (S_ISDIR(about.st_mode))
+    why = "it is a folder";
+  else if (!S_ISREG(about.st_mode))
+    why = "it is not a plain file";
+  else if ((in = fopen(file, "rb")) == NULL)
+    why = strerror(errno);
+  if (why == NULL) {
+    size_t n = fread(head, 1, HEAD_SIZE, in);
+    head[n] = '\0';
+    if (ferror(in))
+      why = strerror(errno);
+    else if (n == 0)
+      why = "it is empty";
+  }
+  if (why != NULL) {
+    message_add(log, P3001, at, "mesh file \"%s\" cannot be read: %s", file,
+                why);
+    FAIL(ERR_FILE, "mesh file \"%s\" cannot be read: %s", file, why);
+  }
+done:
+  if (in != NULL) fclose(in);
+  return st;
+}
+
+/* The version of the format from the head of a .msh, "" if it has none. */
+static void find_version(const char *head, char version[8]) {
+  static const char start[] = "$MeshFormat";
+  version[0] = '\0';
+  const char *p = strstr(head, start);
+  if (p == NULL || (p != head && p[-1] != '\n')) return;
+  p += sizeof start - 1;
+  p += strspn(p, " \t\r\n");
+  snprintf(version, 8, "%.*s", (int)strcspn(p, " \t\r\n"), p);
+}
+
+static status check_format(const char *file, const char *head, const place *at,
+                           message_log *log) {
+  status st = OK;
+  char version[8];
+  find_version(head, version);
+  if (version[0] == '2' || strncmp(version, "4.", 2) == 0) return OK;
+  if (strncmp(head, "$NOD", 4) == 0) strcpy(version, "1");
+  if (version[0] != '\0')
+    message_add(log, P3002, at,
+                "\"%s\" is a mesh of version %s; 2.2 and 4.1 are read", file,
+                version);
+  else
+    message_add(log, P3002, at,
+                "\"%s\" is no .geo and does not start with $MeshFormat", file);
+  FAIL(ERR_MESH, "\"%s\" is not a mesh of gmsh", file);
+done:
+  return st;
+}
+
+status mesh_read_gmsh(const char *file, double scale, int n_number,
+                      const mesh_number *numbers, const place *at,
+                      message_log *log, mesh **out) {
+  status st = OK;
+  char head[HEAD_SIZE + 1];
+  raw_mesh *raw = NULL;
+  raw_request request = {file, ends_in(file, ".geo"), n_number, numbers};
+  *out = NULL;
+  TRY(read_head(file, head, at, log));
+  if (!request.is_geo) TRY(check_format(file, head, at, log));
+  st = raw_read(&request, &raw);
+  if (st == ERR_MESH)
+    message_add(log, P3003, at, "mesh file \"%s\": %s", file, status_message());
+  TRY(st);
+  TRY(build_mesh(raw, scale, at, log, out));
+done:
+  raw_free(raw);
+  return st;
+}

@@ -1,0 +1,124 @@
+/*
+ * The finished mesh: release, look-up of groups, measures, bodies.
+ */
+#include "mesh/mesh.h"
+
+#include "base/memory.h"
+#include "base/option.h"
+
+#include <math.h>
+#include <string.h>
+
+void mesh_free(mesh *m) {
+  if (m == NULL) return;
+  for (int i = 0; i < m->n_group && m->group != NULL; ++i) {
+    memory_free((void *)m->group[i].name);
+    memory_free(m->group[i].item_id);
+    memory_free(m->group[i].node_id);
+  }
+  memory_free(m->group);
+  memory_free(m->x);
+  memory_free(m->node_no);
+  memory_free(m->elem);
+  memory_free(m->elem_no);
+  memory_free(m->face);
+  memory_free(m->face_elem);
+  memory_free(m->face_other);
+  memory_free(m);
+}
+
+const mesh_group *mesh_find_group(const mesh *m, const char *name) {
+  for (int i = 0; i < m->n_group; ++i)
+    if (strcmp(m->group[i].name, name) == 0) return &m->group[i];
+  return NULL;
+}
+
+static const char *group_name(const void *ctx, int i) {
+  const mesh *m = ctx;
+  return i < m->n_group ? m->group[i].name : NULL;
+}
+
+const char *mesh_nearest_group(const mesh *m, const char *name) {
+  return nearest_word(name, group_name, m);
+}
+
+/* d = x[b] - x[a] */
+static void difference(const mesh *m, int a, int b, double *d) {
+  for (int k = 0; k < m->dim; ++k)
+    d[k] = m->x[(size_t)m->dim * (size_t)b + (size_t)k] -
+           m->x[(size_t)m->dim * (size_t)a + (size_t)k];
+}
+
+static void cross(const double *a, const double *b, double *c) {
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+double mesh_face_normal(const mesh *m, int face_id, double *normal) {
+  const int *v = m->face + (size_t)m->dim * (size_t)face_id;
+  double a[3], b[3], c[3];
+  difference(m, v[0], v[1], a);
+  if (m->dim == 2) {
+    double length = hypot(a[0], a[1]);
+    normal[0] = a[1] / length;
+    normal[1] = -a[0] / length;
+    return length;
+  }
+  difference(m, v[0], v[2], b);
+  cross(a, b, c);
+  double twice = hypot(hypot(c[0], c[1]), c[2]);
+  for (int k = 0; k < 3; ++k) normal[k] = c[k] / twice;
+  return 0.5 * twice;
+}
+
+double mesh_elem_measure(const mesh *m, int elem_id) {
+  const int *v = m->elem + (size_t)(m->dim + 1) * (size_t)elem_id;
+  double a[3], b[3], c[3], ab[3];
+  difference(m, v[0], v[1], a);
+  difference(m, v[0], v[2], b);
+  if (m->dim == 2) return 0.5 * (a[0] * b[1] - a[1] * b[0]);
+  difference(m, v[0], v[3], c);
+  cross(a, b, ab);
+  return (ab[0] * c[0] + ab[1] * c[1] + ab[2] * c[2]) / 6.0;
+}
+
+/* Root of a node in the forest of bodies; the path is halved on the way. */
+static int root_of(int *parent, int i) {
+  while (parent[i] != i) {
+    parent[i] = parent[parent[i]];
+    i = parent[i];
+  }
+  return i;
+}
+
+/* The lower root wins, so that bodies are numbered by their first node. */
+static void join(int *parent, int a, int b) {
+  a = root_of(parent, a);
+  b = root_of(parent, b);
+  if (a < b)
+    parent[b] = a;
+  else
+    parent[a] = b;
+}
+
+status mesh_bodies(const mesh *m, int *n_body, int *body) {
+  status st = OK;
+  int *parent = NULL, *body_of = NULL, n_corner = m->dim + 1;
+  NEW(parent, m->n_node);
+  NEW(body_of, m->n_node);
+  for (int i = 0; i < m->n_node; ++i) parent[i] = i;
+  for (int e = 0; e < m->n_elem; ++e) {
+    const int *v = m->elem + (size_t)n_corner * (size_t)e;
+    for (int k = 1; k < n_corner; ++k) join(parent, v[0], v[k]);
+  }
+  *n_body = 0;
+  for (int i = 0; i < m->n_node; ++i) /* a root comes before its nodes */
+    body_of[i] = parent[i] == i ? (*n_body)++ : body_of[root_of(parent, i)];
+  for (int e = 0; e < m->n_elem; ++e)
+    body[e] = body_of[m->elem[(size_t)n_corner * (size_t)e]];
+done:
+  memory_free(parent);
+  memory_free(body_of);
+  return st;
+}

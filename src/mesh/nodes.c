@@ -1,0 +1,252 @@
+/*
+ * Nodes: found by number, ordered along a Hilbert curve, checked.
+ *
+ * The order depends on the coordinates alone (on the numbers only where nodes
+ * coincide). Curve: J. Skilling, Programming the Hilbert curve, AIP Conf.
+ * Proc. 707 (2004) 381.
+ */
+#include "mesh/build.h"
+#include "mesh/sort.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CURVE_BITS = 20 };
+
+/* Two nodes closer than this part of the extent of the mesh are one place. */
+static const double same_place = 1e-10;
+/* z may vary by this part of the extent in a plane mesh (ASCII digits). */
+static const double plane_digits = 1e-9;
+
+/* Numbers without gaps find themselves at once; others are spread. */
+static size_t slot_of(const builder *b, size_t no) {
+  size_t upper = no >> b->slot_bits;
+  return (no + upper * (size_t)0x9E3779B97F4A7C15u) &
+         (((size_t)1 << b->slot_bits) - 1);
+}
+
+status nodes_index(builder *b) {
+  status st = OK;
+  const raw_mesh *raw = b->raw;
+  size_t mask;
+  while (((size_t)1 << b->slot_bits) < 2 * raw->n_node + 2) ++b->slot_bits;
+  mask = ((size_t)1 << b->slot_bits) - 1;
+  NEW(b->slot, mask + 1);
+  for (size_t i = 0; i < raw->n_node; ++i) {
+    size_t s = slot_of(b, raw->node_no[i]);
+    while (b->slot[s] != 0) s = (s + 1) & mask;
+    b->slot[s] = (int)i + 1;
+  }
+done:
+  return st;
+}
+
+int nodes_find(const builder *b, size_t no) {
+  size_t mask = ((size_t)1 << b->slot_bits) - 1;
+  for (size_t s = slot_of(b, no);; s = (s + 1) & mask) {
+    int i = b->slot[s] - 1;
+    if (i < 0 || b->raw->node_no[i] == no) return i;
+  }
+}
+
+/* Position on the curve that fills the square or cube of side 2^bits. */
+static uint64_t on_curve(uint32_t *x, int dim) {
+  const uint32_t top = (uint32_t)1 << (CURVE_BITS - 1);
+  for (uint32_t q = top; q > 1; q >>= 1)
+    for (int i = 0; i < dim; ++i) {
+      uint32_t low = q - 1, t = (x[0] ^ x[i]) & low;
+      if (x[i] & q) {
+        x[0] ^= low;
+      } else {
+        x[0] ^= t;
+        x[i] ^= t;
+      }
+    }
+  for (int i = 1; i < dim; ++i) x[i] ^= x[i - 1];
+  uint32_t t = 0;
+  for (uint32_t q = top; q > 1; q >>= 1)
+    if (x[dim - 1] & q) t ^= q - 1;
+  uint64_t key = 0;
+  for (int bit = CURVE_BITS - 1; bit >= 0; --bit)
+    for (int i = 0; i < dim; ++i) key = key << 1 | (((x[i] ^ t) >> bit) & 1);
+  return key;
+}
+
+/* Bounding box of the used nodes; what is not finite is told. */
+static status find_box(builder *b, double lo[3], double hi[3]) {
+  culprits bad = {0};
+  for (int k = 0; k < 3; ++k) {
+    lo[k] = HUGE_VAL;
+    hi[k] = -HUGE_VAL;
+  }
+  for (size_t i = 0; i < b->raw->n_node; ++i) {
+    const double *x = b->raw->xyz + 3 * i;
+    if (b->node_id[i] < 0) continue;
+    int finite = 1;
+    for (int k = 0; k < 3; ++k) {
+      double v = x[k] * b->scale;
+      finite &= isfinite(v) != 0;
+      lo[k] = fmin(lo[k], v);
+      hi[k] = fmax(hi[k], v);
+    }
+    if (!finite) culprit_at(&bad, 3, b->raw->node_no[i], x);
+  }
+  if (bad.n > 0)
+    message_add(b->log, P3023, b->at,
+                "%d node(s) without finite coordinates: %s", bad.n, bad.text);
+  return build_check(b);
+}
+
+static status check_plane(builder *b, const double lo[3], const double hi[3]) {
+  double size = fmax(hi[0] - lo[0], hi[1] - lo[1]);
+  double digits =
+      64.0 * 2.2204460492503131e-16 * fmax(fabs(lo[2]), fabs(hi[2]));
+  if (b->m->dim == 3 || hi[2] - lo[2] <= plane_digits * size + digits)
+    return OK;
+  int k = hi[0] - lo[0] == 0.0 ? 0 : hi[1] - lo[1] == 0.0 ? 1 : -1;
+  const char *volumes = b->raw->n_entity[3] > 0
+                            ? "; the volumes of the file are in no group"
+                            : "";
+  if (k >= 0)
+    message_add(b->log, P3024, b->at,
+                "the surfaces lie in the plane %c = %.6g, not in z = const%s",
+                "xy"[k], lo[k], volumes);
+  else
+    message_add(b->log, P3024, b->at,
+                "the surfaces are not plane: z runs from %.6g to %.6g%s", lo[2],
+                hi[2], volumes);
+  return build_check(b);
+}
+
+typedef struct tie { /* nodes in one cell of the curve */
+  const raw_mesh *raw;
+} tie;
+
+static int by_coordinates(const void *ctx, int a, int b) {
+  const raw_mesh *raw = ((const tie *)ctx)->raw;
+  const double *x = raw->xyz + 3 * (size_t)a, *y = raw->xyz + 3 * (size_t)b;
+  for (int k = 0; k < 3; ++k)
+    if (x[k] != y[k]) return x[k] < y[k] ? -1 : 1;
+  return (raw->node_no[a] > raw->node_no[b]) -
+         (raw->node_no[a] < raw->node_no[b]);
+}
+
+/* The cells are shifted by odd fractions: round coordinates, which many
+ * nodes share up to the last bit, are inside of cells and not between. */
+static void fill_keys(const builder *b, const double lo[3], uint64_t *key,
+                      int *id) {
+  static const double shift[3] = {0.1321, 0.1732, 0.1579};
+  const double cells = (double)(1 << CURVE_BITS), share = 0.7071;
+  int n = 0;
+  for (size_t i = 0; i < b->raw->n_node; ++i) {
+    if (b->node_id[i] < 0) continue;
+    uint32_t cell[3];
+    for (int k = 0; k < b->m->dim; ++k) {
+      double part = b->raw->xyz[3 * i + (size_t)k] * b->scale - lo[k];
+      cell[k] = (uint32_t)((shift[k] + share * (part / b->m->size)) * cells);
+    }
+    id[n] = (int)i;
+    key[n++] = on_curve(cell, b->m->dim);
+  }
+}
+
+static status store_nodes(builder *b, const int *raw_id) {
+  status st = OK;
+  mesh *m = b->m;
+  size_t dim = (size_t)m->dim;
+  NEW(m->x, dim * (size_t)m->n_node);
+  NEW(m->node_no, m->n_node);
+  for (int i = 0; i < m->n_node; ++i) {
+    size_t r = (size_t)raw_id[i];
+    for (size_t k = 0; k < dim; ++k)
+      m->x[dim * (size_t)i + k] = b->raw->xyz[3 * r + k] * b->scale;
+    m->node_no[i] = b->raw->node_no[r];
+    b->node_id[r] = i;
+  }
+done:
+  return st;
+}
+
+/* The nodes of the top elements get their ids. */
+status nodes_order(builder *b) {
+  status st = OK;
+  mesh *m = b->m;
+  uint64_t *key = NULL;
+  int *id = NULL;
+  double lo[3], hi[3];
+  for (size_t i = 0; i < b->raw->n_node; ++i) m->n_node += b->node_id[i] >= 0;
+  TRY(find_box(b, lo, hi));
+  TRY(check_plane(b, lo, hi));
+  for (int k = 0; k < m->dim; ++k) m->size = fmax(m->size, hi[k] - lo[k]);
+  NEW(key, m->n_node);
+  NEW(id, m->n_node);
+  if (m->size == 0.0) { /* all in one point: the elements will tell */
+    for (size_t i = 0, n = 0; i < b->raw->n_node; ++i)
+      if (b->node_id[i] >= 0) id[n++] = (int)i;
+  } else {
+    fill_keys(b, lo, key, id);
+  }
+  TRY(sort_by_key(m->n_node, key, id, by_coordinates, &(tie){b->raw}));
+  TRY(store_nodes(b, id));
+  size_t unused = b->raw->n_node - (size_t)m->n_node;
+  if (unused > 0)
+    message_add(b->log, P3040, b->at,
+                "%zu node(s) of the file are in no element", unused);
+done:
+  memory_free(key);
+  memory_free(id);
+  return st;
+}
+
+static int coincide(const mesh *m, int a, int c) {
+  size_t dim = (size_t)m->dim;
+  double square = 0.0, near = same_place * m->size;
+  for (size_t k = 0; k < dim; ++k) {
+    double d = m->x[dim * (size_t)a + k] - m->x[dim * (size_t)c + k];
+    square += d * d / near / near; /* no overflow in any unit */
+  }
+  return square <= 1.0;
+}
+
+static status body_of_nodes(const mesh *m, int *body_of) {
+  status st = OK;
+  int n_body, *body = NULL, corners = m->dim + 1;
+  NEW(body, m->n_elem);
+  TRY(mesh_bodies(m, &n_body, body));
+  for (size_t i = 0; i < (size_t)corners * (size_t)m->n_elem; ++i)
+    body_of[m->elem[i]] = body[i / (size_t)corners];
+done:
+  memory_free(body);
+  return st;
+}
+
+/* Nodes at one place follow each other along the curve. */
+status nodes_coincident(builder *b) {
+  status st = OK;
+  const mesh *m = b->m;
+  culprits slit = {0}, touch = {0};
+  int *body_of = NULL;
+  for (int i = 1; i < m->n_node; ++i) {
+    if (!coincide(m, i - 1, i)) continue;
+    if (body_of == NULL) {
+      NEW(body_of, m->n_node);
+      TRY(body_of_nodes(m, body_of));
+    }
+    const double *x = m->x + (size_t)m->dim * (size_t)i;
+    culprit_at(body_of[i - 1] == body_of[i] ? &slit : &touch, m->dim,
+               m->node_no[i], x);
+  }
+  if (slit.n > 0)
+    message_add(b->log, P3041, b->at,
+                "%d node(s) lie on another node of the same body: %s", slit.n,
+                slit.text);
+  if (touch.n > 0)
+    message_add(b->log, P3042, b->at,
+                "%d node(s) lie on a node of another body: %s", touch.n,
+                touch.text);
+done:
+  memory_free(body_of);
+  return st;
+}

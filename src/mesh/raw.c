@@ -1,0 +1,292 @@
+/*
+ * The parent's side of the mesh reader: start the child, take its records,
+ * and tell from its end what went wrong.
+ */
+#include "mesh/raw.h"
+
+#include "base/memory.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { TAIL_SIZE = 65536, LAST_SIZE = 400 };
+
+/* n bytes, or fewer at the end of the stream. */
+static size_t read_bytes(int fd, void *data, size_t n) {
+  size_t got = 0;
+  while (got < n) {
+    ssize_t r = read(fd, (char *)data + got, n - got);
+    if (r < 0 && errno == EINTR) continue;
+    if (r <= 0) break;
+    got += (size_t)r;
+  }
+  return got;
+}
+
+/* Store one record; the raw mesh owns the payload from here on if it is an
+ * array (*payload is then NULL). 0 if it does not fit to what came before. */
+static status store_block_part(raw_mesh *raw, const wire_head *head,
+                               void **payload) {
+  status st = OK;
+  if (raw->n_block == 0)
+    FAIL(ERR_MESH, "the mesh reader sent parts of nothing");
+  raw_block *b = &raw->block[raw->n_block - 1];
+  void *part = *payload;
+  if (head->kind == WIRE_PHYSICAL && b->physical == NULL) {
+    b->physical = part;
+    b->n_physical = (int)head->n;
+  } else if (head->kind == WIRE_ELEM_NO && b->no == NULL) {
+    b->no = part;
+    b->n = (size_t)head->n;
+  } else if (head->kind == WIRE_ELEM_NODE && b->node == NULL && b->n > 0 &&
+             head->n % b->n == 0) {
+    b->node = part;
+    b->n_per = (size_t)head->n / b->n;
+  } else {
+    FAIL(ERR_MESH, "the mesh reader sent parts that do not fit");
+  }
+  *payload = NULL;
+done:
+  return st;
+}
+
+/* A new block, group or warning: the lists grow by doubling. */
+static void *list_item(void *list, int n, size_t size) {
+  if (n > 0 && (n < 8 || (n & (n - 1)) != 0)) return list;
+  size_t room = n < 8 ? 8 : 2 * (size_t)n;
+  return memory_resize(list, (size_t)n, room, size);
+}
+
+#define APPEND(list, n)                                                  \
+  do {                                                                   \
+    void *grown_ = list_item((list), (n), sizeof *(list));               \
+    if (grown_ == NULL) FAIL(ERR_MEMORY, "memory exhausted: %s", #list); \
+    (list) = grown_;                                                     \
+  } while (0)
+
+static status store(raw_mesh *raw, const wire_head *head, void **payload) {
+  status st = OK;
+  void *data = *payload;
+  switch ((wire_kind)head->kind) {
+    case WIRE_CENSUS:
+      if (head->n != 4) FAIL(ERR_MESH, "the mesh reader sent a wrong census");
+      memcpy(raw->n_entity, data, sizeof raw->n_entity);
+      return OK;
+    case WIRE_LOOSE:
+      if (head->n != 1) FAIL(ERR_MESH, "the mesh reader sent a wrong count");
+      memcpy(&raw->n_loose, data, sizeof raw->n_loose);
+      return OK;
+    case WIRE_NODE_NO:
+      if (raw->node_no != NULL)
+        FAIL(ERR_MESH, "the mesh reader sent nodes twice");
+      raw->node_no = data;
+      raw->n_node = (size_t)head->n;
+      break;
+    case WIRE_NODE_X:
+      if (raw->xyz != NULL || head->n != 3 * (uint64_t)raw->n_node)
+        FAIL(ERR_MESH, "the mesh reader sent coordinates that do not fit");
+      raw->xyz = data;
+      break;
+    case WIRE_GROUP:
+      APPEND(raw->group, raw->n_group);
+      raw->group[raw->n_group++] = (raw_group){head->dim, head->tag, data};
+      break;
+    case WIRE_BLOCK:
+      APPEND(raw->block, raw->n_block);
+      raw->block[raw->n_block++] =
+          (raw_block){.dim = head->dim, .type = head->tag, .type_name = data};
+      break;
+    case WIRE_WARNING:
+      APPEND(raw->warning, raw->n_warning);
+      raw->warning[raw->n_warning++] = data;
+      break;
+    case WIRE_FAILURE:
+      FAIL(head->tag == ERR_MEMORY ? ERR_MEMORY : ERR_MESH, "%s",
+           (const char *)data);
+    default:
+      return store_block_part(raw, head, payload);
+  }
+  *payload = NULL;
+done:
+  return st;
+}
+
+/* All that the later steps rely on: every array is there. */
+static status check_complete(const raw_mesh *raw) {
+  status st = OK;
+  if (raw->node_no == NULL || raw->xyz == NULL)
+    FAIL(ERR_MESH, "the mesh reader sent no nodes");
+  for (int i = 0; i < raw->n_block; ++i)
+    if (raw->block[i].node == NULL || raw->block[i].physical == NULL)
+      FAIL(ERR_MESH, "the mesh reader sent half a block of elements");
+done:
+  return st;
+}
+
+status raw_receive(int fd, raw_mesh *raw, int *stopped) {
+#define WIRE_SIZE(name, type) sizeof(type),
+  static const size_t item_size[] = {WIRE_LIST(WIRE_SIZE)};
+  status st = OK;
+  char *payload = NULL;
+  *stopped = 0;
+  for (;;) {
+    wire_head head;
+    *stopped = read_bytes(fd, &head, sizeof head) != sizeof head;
+    if (*stopped)
+      FAIL(ERR_MESH, "the mesh reader stopped before the mesh was complete");
+    if (head.magic != WIRE_MAGIC || head.kind >= WIRE_COUNT ||
+        head.n > (uint64_t)1 << 40)
+      FAIL(ERR_MESH, "the mesh reader sent what is no mesh");
+    if (head.kind == WIRE_END) break;
+    size_t size = (size_t)head.n * item_size[head.kind];
+    NEW(payload, size + 1); /* texts end in a zero byte */
+    *stopped = read_bytes(fd, payload, size) != size;
+    if (*stopped)
+      FAIL(ERR_MESH, "the mesh reader stopped before the mesh was complete");
+    void *part = payload;
+    st = store(raw, &head, &part);
+    payload = part;
+    if (st != OK) goto done;
+    memory_free(payload);
+    payload = NULL;
+  }
+  TRY(check_complete(raw));
+done:
+  memory_free(payload);
+  return st;
+}
+
+/* The last line of gmsh that tells an error, else its last line. */
+static void last_error(const char *text, char *last, size_t size) {
+  last[0] = '\0';
+  int found = 0;
+  while (*text != '\0') {
+    size_t length = strcspn(text, "\n");
+    int error =
+        strncmp(text, "Error", 5) == 0 || strncmp(text, "Fatal", 5) == 0;
+    if (length > 0 && (error || !found))
+      snprintf(last, size, "%.*s", (int)(length < size ? length : size - 1),
+               text);
+    found |= error;
+    text += length + (text[length] != '\0');
+  }
+}
+
+static int tells_of_memory(const char *text) {
+  return strstr(text, "bad_alloc") != NULL ||
+         strstr(text, "Out of memory") != NULL ||
+         strstr(text, "out of memory") != NULL ||
+         strstr(text, "annot allocate memory") != NULL ||
+         strstr(text, "length_error") != NULL;
+}
+
+/* How the child ended, when it did not send a whole mesh. */
+static status child_failure(int ended, int code, int error_fd) {
+  status st = OK;
+  char *text = NULL, last[LAST_SIZE];
+  NEW(text, TAIL_SIZE + 1);
+  /* What gmsh started itself may hold the other end: do not wait for it. */
+  fcntl(error_fd, F_SETFL, O_NONBLOCK);
+  read_bytes(error_fd, text, TAIL_SIZE);
+  last_error(text, last, sizeof last);
+  const char *said = last[0] != '\0' ? "; it said: " : "";
+  int killed = ended && WIFSIGNALED(code);
+  if (tells_of_memory(text))
+    FAIL(ERR_MEMORY, "gmsh ran out of memory while reading the mesh%s%s", said,
+         last);
+  if (killed && WTERMSIG(code) == SIGKILL)
+    FAIL(ERR_MEMORY,
+         "gmsh was killed while reading the mesh: the system has not the "
+         "memory, or somebody killed it%s%s",
+         said, last);
+  if (killed)
+    FAIL(ERR_MESH, "gmsh died of signal %d (%s)%s%s", WTERMSIG(code),
+         strsignal(WTERMSIG(code)), said, last);
+  FAIL(ERR_MESH, "gmsh left with code %d before the mesh was complete%s%s",
+       ended && WIFEXITED(code) ? WEXITSTATUS(code) : -1, said, last);
+done:
+  memory_free(text);
+  return st;
+}
+
+/* 0 and -1 in both if there is no pipe. */
+static int open_pipe(int ends[2]) {
+  if (pipe(ends) == 0) return 1;
+  ends[0] = ends[1] = -1;
+  return 0;
+}
+
+static void close_end(int *end) {
+  if (*end >= 0) close(*end);
+  *end = -1;
+}
+
+/* Wait for the child; 1 if its end is known (not if SIGCHLD is ignored). */
+static int wait_for(pid_t pid, int *code) {
+  pid_t r;
+  do r = waitpid(pid, code, 0);
+  while (r < 0 && errno == EINTR);
+  return r == pid;
+}
+
+status raw_read(const raw_request *request, raw_mesh **out) {
+  status st = OK;
+  raw_mesh *raw = NULL;
+  int data[2] = {-1, -1}, error[2] = {-1, -1}, stopped = 0, code = 0;
+  pid_t pid = -1, parent = getpid();
+  *out = NULL;
+  NEW(raw, 1);
+  if (!open_pipe(data) || !open_pipe(error))
+    FAIL(ERR_MESH, "no pipe for the mesh reader: %s", strerror(errno));
+  fflush(NULL); /* what is buffered must not be written by both */
+  pid = fork();
+  if (pid < 0)
+    FAIL(errno == ENOMEM ? ERR_MEMORY : ERR_MESH,
+         "no process for the mesh reader: %s", strerror(errno));
+  if (pid == 0) {
+    close(data[0]);
+    close(error[0]);
+    child_run(request, parent, data[1], error[1]);
+  }
+  close_end(&data[1]);
+  close_end(&error[1]);
+  st = raw_receive(data[0], raw, &stopped);
+  close_end(&data[0]);
+  if (!stopped) kill(pid, SIGKILL); /* it has nothing more to say */
+  int ended = wait_for(pid, &code);
+  if (stopped) st = child_failure(ended, code, error[0]);
+done:
+  close_end(&data[0]);
+  close_end(&data[1]);
+  close_end(&error[0]);
+  close_end(&error[1]);
+  if (st != OK) {
+    raw_free(raw);
+    raw = NULL;
+  }
+  *out = raw;
+  return st;
+}
+
+void raw_free(raw_mesh *raw) {
+  if (raw == NULL) return;
+  for (int i = 0; i < raw->n_block; ++i) {
+    memory_free(raw->block[i].type_name);
+    memory_free(raw->block[i].physical);
+    memory_free(raw->block[i].no);
+    memory_free(raw->block[i].node);
+  }
+  for (int i = 0; i < raw->n_group; ++i) memory_free(raw->group[i].name);
+  for (int i = 0; i < raw->n_warning; ++i) memory_free(raw->warning[i]);
+  memory_free(raw->block);
+  memory_free(raw->group);
+  memory_free(raw->warning);
+  memory_free(raw->node_no);
+  memory_free(raw->xyz);
+  memory_free(raw);
+}

@@ -1,0 +1,96 @@
+/*
+ * The mesh as gmsh tells it, before any check: numbers of the file, elements
+ * by entity and type, three coordinates. Inside src/mesh only.
+ *
+ * gmsh works in a child process that ends with the reading: it may crash, run
+ * out of memory or leave by itself, and its libraries cost nothing later. The
+ * child sends records through a pipe: a head, then n items of one size.
+ */
+#ifndef PROTIS_MESH_RAW_H
+#define PROTIS_MESH_RAW_H
+
+#include "mesh/mesh.h"
+
+#include <stdint.h>
+#include <sys/types.h>
+
+typedef struct raw_block { /* elements of one type on one entity              */
+  int dim;                 /* of the entity                                   */
+  int type;                /* number of gmsh: 1 line, 2 triangle, 4 tet, ...  */
+  char *type_name;         /* "Triangle 3", "Quadrilateral 4", ...            */
+  int n_physical;          /* physical groups the entity belongs to, > 0      */
+  int *physical;           /* [n_physical] their tags                         */
+  size_t n;                /* elements                                        */
+  size_t n_per;            /* nodes of each                                   */
+  size_t *no;              /* [n] element numbers                             */
+  size_t *node;            /* [n_per*n] node numbers                          */
+} raw_block;
+
+typedef struct raw_group { /* physical group                                  */
+  int dim, tag;
+  char *name; /* "" if it has none                               */
+} raw_group;
+
+typedef struct raw_mesh {
+  size_t n_node;
+  size_t *node_no; /* [n_node]                                        */
+  double *xyz;     /* [3*n_node]                                      */
+  int n_block, n_group, n_warning;
+  raw_block *block;
+  raw_group *group;
+  char **warning;  /* [n_warning] texts of gmsh                       */
+  int n_entity[4]; /* geometric entities by dimension                 */
+  size_t n_loose;  /* elements of the highest dimension of the groups
+                      that are in no group                            */
+} raw_mesh;
+
+/* clang-format off */
+#define WIRE_LIST(X)                                                          \
+  X(CENSUS,    int)     /* entities of dimension 0, 1, 2, 3                 */ \
+  X(NODE_NO,   size_t)                                                        \
+  X(NODE_X,    double)                                                        \
+  X(GROUP,     char)    /* name; head: dim, tag                             */ \
+  X(BLOCK,     char)    /* type name; head: dim, type as tag                */ \
+  X(PHYSICAL,  int)     /* of the last block; likewise the next two         */ \
+  X(ELEM_NO,   size_t)                                                        \
+  X(ELEM_NODE, size_t)                                                        \
+  X(LOOSE,     size_t)                                                        \
+  X(WARNING,   char)                                                          \
+  X(FAILURE,   char)    /* why there is no mesh; head: status as tag        */ \
+  X(END,       char)
+/* clang-format on */
+
+#define WIRE_ENUM(name, type) WIRE_##name,
+typedef enum { WIRE_LIST(WIRE_ENUM) WIRE_COUNT } wire_kind;
+
+typedef struct wire_head {
+  uint32_t magic, kind;
+  int32_t dim, tag;
+  uint64_t n; /* items that follow */
+} wire_head;
+
+enum { WIRE_MAGIC = 0x50524d31 }; /* "PRM1" */
+
+typedef struct raw_request {
+  const char *file;
+  int is_geo; /* mesh the geometry, else read the mesh           */
+  int n_number;
+  const mesh_number *number; /* [n_number] for the .geo, borrowed */
+} raw_request;
+
+/* Let a child process read the file. What fails is told in the record:
+ * ERR_MEMORY for want of memory on either side, else ERR_MESH. */
+status raw_read(const raw_request *request, raw_mesh **out);
+/* Parent's end of the pipe: everything up to END. ERR_MESH if the stream
+ * stops before (*stopped = 1) or holds what is no record. */
+status raw_receive(int fd, raw_mesh *raw, int *stopped);
+void raw_free(raw_mesh *raw);
+
+/* Child's end: gmsh from the request to the pipe. Never returns. */
+void child_run(const raw_request *request, pid_t parent, int fd, int error_fd);
+
+/* Check the raw mesh and make the mesh of it; messages go to the log. */
+status build_mesh(const raw_mesh *raw, double scale, const place *at,
+                  message_log *log, mesh **out);
+
+#endif

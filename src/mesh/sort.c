@@ -1,0 +1,115 @@
+/*
+ * Least significant digit first, 11 bits at a time; digits that are the same
+ * in all keys are passed over. Runs of equal keys: heap sort, in place.
+ */
+#include "mesh/sort.h"
+
+#include "base/memory.h"
+
+enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS, FEW = 32 };
+
+static void insertion(int n, uint64_t *key, int *id) {
+  for (int i = 1; i < n; ++i) {
+    uint64_t k = key[i];
+    int v = id[i], j = i;
+    for (; j > 0 && key[j - 1] > k; --j) {
+      key[j] = key[j - 1];
+      id[j] = id[j - 1];
+    }
+    key[j] = k;
+    id[j] = v;
+  }
+}
+
+/* One pass from (key, id) to (to_key, to_id); 0 if nothing would move. */
+static int pass(int n, int shift, const uint64_t *key, const int *id,
+                uint64_t *to_key, int *to_id) {
+  int start[DIGITS] = {0};
+  for (int i = 0; i < n; ++i) ++start[(key[i] >> shift) & (DIGITS - 1)];
+  if (start[(key[0] >> shift) & (DIGITS - 1)] == n) return 0;
+  for (int d = 0, sum = 0; d < DIGITS; ++d) {
+    int count = start[d];
+    start[d] = sum;
+    sum += count;
+  }
+  for (int i = 0; i < n; ++i) {
+    int to = start[(key[i] >> shift) & (DIGITS - 1)]++;
+    to_key[to] = key[i];
+    to_id[to] = id[i];
+  }
+  return 1;
+}
+
+static status radix(int n, uint64_t *key, int *id) {
+  status st = OK;
+  uint64_t *other_key = NULL, *from_key = key;
+  int *other_id = NULL, *from_id = id;
+  NEW(other_key, n);
+  NEW(other_id, n);
+  for (int shift = 0; shift < 64; shift += DIGIT_BITS) {
+    uint64_t *to_key = from_key == key ? other_key : key;
+    int *to_id = from_id == id ? other_id : id;
+    if (!pass(n, shift, from_key, from_id, to_key, to_id)) continue;
+    from_key = to_key;
+    from_id = to_id;
+  }
+  for (int i = 0; i < n && from_key != key; ++i) {
+    key[i] = from_key[i];
+    id[i] = from_id[i];
+  }
+done:
+  memory_free(other_key);
+  memory_free(other_id);
+  return st;
+}
+
+/* Let id[i] sink in the heap id[0..n-1] whose top is the last in order. */
+static void sink(int n, int *id, int i, sort_compare *compare,
+                 const void *ctx) {
+  for (;;) {
+    int c = 2 * i + 1;
+    if (c >= n) return;
+    if (c + 1 < n && compare(ctx, id[c], id[c + 1]) < 0) ++c;
+    if (compare(ctx, id[i], id[c]) >= 0) return;
+    int v = id[i];
+    id[i] = id[c];
+    id[c] = v;
+    i = c;
+  }
+}
+
+static void heap_sort(int n, int *id, sort_compare *compare, const void *ctx) {
+  for (int i = n / 2 - 1; i >= 0; --i) sink(n, id, i, compare, ctx);
+  for (int end = n - 1; end > 0; --end) {
+    int v = id[0];
+    id[0] = id[end];
+    id[end] = v;
+    sink(end, id, 0, compare, ctx);
+  }
+}
+
+status sort_by_key(int n, uint64_t *key, int *id, sort_compare *compare,
+                   const void *ctx) {
+  status st = OK;
+  if (n <= FEW)
+    insertion(n, key, id);
+  else
+    TRY(radix(n, key, id));
+  for (int i = 0, end; compare != NULL && i < n; i = end) {
+    for (end = i + 1; end < n && key[end] == key[i];) ++end;
+    if (end - i > 1) heap_sort(end - i, id + i, compare, ctx);
+  }
+done:
+  return st;
+}
+
+status sort_ids(int n, int *id) {
+  status st = OK;
+  uint64_t *key = NULL;
+  NEW(key, n);
+  for (int i = 0; i < n; ++i) key[i] = (uint64_t)id[i];
+  TRY(sort_by_key(n, key, id, NULL, NULL));
+done:
+  memory_free(key);
+  return st;
+}
