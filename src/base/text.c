@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 char *text_path(const char *dir, const char *name, const char *suffix) {
   const char *slash = "";
@@ -42,12 +43,23 @@ done:
   return st;
 }
 
+/* A write that failed inside fprintf has left no reason: ask for it again. */
+static int reason_again(FILE *f) {
+  errno = 0;
+  return write(fileno(f), "\n", 1) < 0 ? errno : 0;
+}
+
 status text_check(text_file *t) {
   if (t->f == NULL) return OK;
+  int bad = ferror(t->f), error_no = 0;
   errno = 0;
-  int bad = ferror(t->f);
-  if (fflush(t->f) != 0) bad = 1;
-  return bad ? text_failed(t->path, "write", errno) : OK;
+  if (fflush(t->f) != 0) {
+    bad = 1;
+    error_no = errno;
+  }
+  if (!bad) return OK;
+  if (error_no == 0) error_no = reason_again(t->f);
+  return text_failed(t->path, "write", error_no);
 }
 
 status text_close(text_file *t) {

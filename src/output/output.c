@@ -9,7 +9,10 @@
 #include <errno.h>
 #include <math.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
+
+enum { XDMF_PAUSE = 1 };
 
 struct output {
   const model *m;
@@ -20,7 +23,8 @@ struct output {
   tabular *dat;
   hdf5_file *h5;
   run_summary run;
-  int n_xdmf;  /* records named in JOB.xdmf                                  */
+  int n_xdmf; /* records named in JOB.xdmf                                  */
+  double xdmf_at; /* when, s                                                 */
   int attempt; /* of the increment now tried                                 */
   int progress;
 };
@@ -81,17 +85,26 @@ done:
   return st;
 }
 
-/* The text is written anew each time; when it has grown long, not for every
- * record, so that the cost stays in proportion. */
+/* Wall clock, s; only its differences count. */
+static double clock_now(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* The text is written anew each time, so not more than once in XDMF_PAUSE
+ * seconds: the cost stays small however long it grows. */
 static status show_records(output *o, int all) {
   status st = OK;
   hdf5_shape shape;
   if (o->h5 == NULL) return OK;
   hdf5_shape_of(o->h5, &shape);
-  int news = shape.n_record - o->n_xdmf;
-  if (news == 0 || (!all && news < 1 + o->n_xdmf / 64)) return OK;
+  if (shape.n_record == o->n_xdmf) return OK;
+  double now = clock_now();
+  if (!all && o->n_xdmf > 0 && now < o->xdmf_at + XDMF_PAUSE) return OK;
   TRY(xdmf_write(&shape, o->xdmf));
   o->n_xdmf = shape.n_record;
+  o->xdmf_at = now;
 done:
   return st;
 }

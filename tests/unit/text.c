@@ -1,0 +1,103 @@
+/* src/base/text.c */
+#include "base/text.h"
+
+#include "base/memory.h"
+#include "support/made_up.h"
+#include "support/unit.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+START_TEST(seventeen_digits_read_back_exactly) {
+  const double special[] = {0.1,    -1.0 / 3, DBL_MAX, DBL_MIN,
+                            5e-324, 1e100,    -1e-100, 9.9999999999999999e22};
+  char text[NUMBER_SIZE];
+  for (size_t i = 0; i < sizeof special / sizeof *special; ++i)
+    ck_assert(strtod(text_number(text, special[i], 16), NULL) == special[i]);
+  double x = 1e-200;
+  for (int i = 0; i < 3000; ++i) {
+    x *= -(1.3 + 0.1 * sin(i));
+    ck_assert(strtod(text_number(text, x, 16), NULL) == x);
+  }
+}
+END_TEST
+
+START_TEST(exponents_have_three_digits_and_zero_no_sign) {
+  char text[NUMBER_SIZE];
+  ck_assert_str_eq(text_number(text, 1.5, 4), "1.5000E+000");
+  ck_assert_str_eq(text_number(text, -1.5e-7, 1), "-1.5E-007");
+  ck_assert_str_eq(text_number(text, 2e-300, 2), "2.00E-300");
+  ck_assert_str_eq(text_number(text, 2e300, 2), "2.00E+300");
+  ck_assert_str_eq(text_number(text, -0.0, 2), "0.00E+000");
+  ck_assert_str_eq(text_number(text, NAN, 2), "NaN");
+  ck_assert_str_eq(text_number(text, -NAN, 2), "NaN");
+  ck_assert_str_eq(text_number(text, INFINITY, 2), "Inf");
+  ck_assert_str_eq(text_number(text, -INFINITY, 2), "-Inf");
+}
+END_TEST
+
+START_TEST(a_word_has_no_blank) {
+  char word[6];
+  text_word(word, sizeof word, "a\tb c d");
+  ck_assert_str_eq(word, "a_b_c");
+}
+END_TEST
+
+START_TEST(paths_are_joined_once) {
+  const char *const dirs[] = {NULL, "", "out", "out/"};
+  const char *const wanted[] = {"job.lst", "job.lst", "out/job.lst",
+                                "out/job.lst"};
+  for (int i = 0; i < 4; ++i) {
+    char *path = text_path(dirs[i], "job", "lst");
+    ck_assert_str_eq(path, wanted[i]);
+    memory_free(path);
+  }
+}
+END_TEST
+
+START_TEST(full_disk_is_told_with_file_and_reason) {
+  text_file t = {0};
+  ck_assert_int_eq(text_open(&t, "/dev/full", 1), OK);
+  fprintf(t.f, "one line\n");
+  ck_assert_int_eq(text_check(&t), ERR_FILE);
+  ck_assert_ptr_nonnull(strstr(status_message(), "/dev/full"));
+  ck_assert_ptr_nonnull(strstr(status_message(), "No space left"));
+  text_close(&t);
+  ck_assert_int_eq(text_open(&t, "/dev/full", 0), OK);
+  fprintf(t.f, "kept in the buffer until it is closed\n");
+  ck_assert_int_eq(text_close(&t), ERR_FILE);
+  ck_assert_ptr_nonnull(strstr(status_message(), "No space left"));
+}
+END_TEST
+
+START_TEST(missing_folder_is_told) {
+  text_file t = {0};
+  size_t before = memory_in_use();
+  ck_assert_int_eq(text_open(&t, "/no/such/folder/a.lst", 1), ERR_FILE);
+  ck_assert_ptr_nonnull(strstr(status_message(), "/no/such/folder/a.lst"));
+  ck_assert_ptr_nonnull(strstr(status_message(), "No such file"));
+  ck_assert_int_eq(text_close(&t), OK);
+  ck_assert_uint_eq(memory_in_use(), before);
+}
+END_TEST
+
+START_TEST(lines_are_handed_over_as_they_end) {
+  char dir[64], path[80];
+  ck_assert_ptr_nonnull(folder_new(dir));
+  snprintf(path, sizeof path, "%s/a.sta", dir);
+  text_file t = {0};
+  ck_assert_int_eq(text_open(&t, path, 1), OK);
+  fprintf(t.f, "first\nsec");
+  char *seen = folder_file(dir, "a.sta", NULL);
+  ck_assert_ptr_nonnull(strstr(seen, "first\n"));
+  free(seen);
+  ck_assert_int_eq(text_close(&t), OK);
+  folder_remove(dir);
+}
+END_TEST
+
+UNIT_MAIN("text", seventeen_digits_read_back_exactly,
+          exponents_have_three_digits_and_zero_no_sign, a_word_has_no_blank,
+          paths_are_joined_once, full_disk_is_told_with_file_and_reason,
+          missing_folder_is_told, lines_are_handed_over_as_they_end)
