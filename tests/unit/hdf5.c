@@ -1,0 +1,483 @@
+/*
+ * src/output/hdf5.c, hdf5_layout.c: JOB.h5 read back with the library; growth
+ * and cutting; kills, full disks and refused memory.
+ */
+#include <hdf5.h>
+
+#include "base/memory.h"
+#include "output/writers.h"
+#include "support/made_up.h"
+#include "support/unit.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+static const output_options plain = {.version = "1.2.3", .threads = 1};
+
+/* All numbers of a dataset (caller frees), its sizes in dims; NULL: none. */
+static double *dataset(const char *dir, const char *name, int dims[2]) {
+  char path[100];
+  snprintf(path, sizeof path, "%s/block.h5", dir);
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) return NULL;
+  hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  double *x = NULL;
+  if (set >= 0) {
+    hid_t space = H5Dget_space(set);
+    hsize_t sizes[2] = {1, 1};
+    H5Sget_simple_extent_dims(space, sizes, NULL);
+    for (int k = 0; k < 2; ++k) dims[k] = (int)sizes[k];
+    x = calloc((size_t)(sizes[0] * sizes[1]), sizeof *x);
+    if (H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, x) < 0)
+      ck_abort_msg("cannot read %s", name);
+    H5Sclose(space);
+    H5Dclose(set);
+  }
+  H5Fclose(file);
+  return x;
+}
+
+static void attribute_is(const char *dir, const char *object, const char *name,
+                         const char *wanted) {
+  char path[100], got[200] = "";
+  snprintf(path, sizeof path, "%s/block.h5", dir);
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  hid_t a = H5Aopen_by_name(file, object, name, H5P_DEFAULT, H5P_DEFAULT);
+  ck_assert_msg(a >= 0, "%s of %s", name, object);
+  hid_t type = H5Aget_type(a);
+  ck_assert_uint_le(H5Tget_size(type), sizeof got);
+  ck_assert_int_ge(H5Aread(a, type, got), 0);
+  ck_assert_str_eq(got, wanted);
+  H5Tclose(type);
+  H5Aclose(a);
+  H5Fclose(file);
+}
+
+/* A run of "told" increments as far as JOB.h5 is concerned. */
+static status write_file(made_up *made, const char *dir, int told,
+                         int finished) {
+  output_options o = plain;
+  hdf5_file *h = NULL;
+  o.dir = dir;
+  status st = hdf5_open(&made->m, made->msh, &o, &made->surface, &h);
+  for (int i = 1; i <= told && st == OK; ++i) {
+    made_up_advance(made, i);
+    st = hdf5_increment(h, &made->s);
+  }
+  status closed = hdf5_close(h, finished && st == OK);
+  return st != OK ? st : closed;
+}
+
+/* Record i (from 1) of a vector field against the formula. */
+static void vector_is(const char *dir, const char *group, int array, int n,
+                      int dim, int i) {
+  char name[80];
+  int dims[2];
+  snprintf(name, sizeof name, "%s/%05d", group, i);
+  double *x = dataset(dir, name, dims);
+  ck_assert_msg(x != NULL, "%s", name);
+  ck_assert_int_eq(dims[0], n);
+  ck_assert_int_eq(dims[1], 3);
+  for (int id = 0; id < n; ++id)
+    for (int k = 0; k < 3; ++k)
+      ck_assert(x[3 * id + k] ==
+                (k < dim ? made_up_value(array, dim * id + k, i) : 0));
+  free(x);
+}
+
+/* Everything of increment i that depends on it. */
+static void increment_is(const made_up *made, const char *dir, int i) {
+  int dims[2];
+  double *t = dataset(dir, "/history/time", dims);
+  ck_assert_ptr_nonnull(t);
+  ck_assert_int_ge(dims[0], i);
+  ck_assert(t[i - 1] == 0.5 * i);
+  free(t);
+  t = dataset(dir, "/history/residual", dims);
+  ck_assert(t[i - 1] == 1e-12 * i);
+  free(t);
+  t = dataset(dir, "/totals/FOOT/normal", dims);
+  ck_assert(t[i - 1] == 2.5 * i);
+  free(t);
+  t = dataset(dir, "/fields/time", dims);
+  ck_assert(t[i - 1] == 0.5 * i);
+  free(t);
+  vector_is(dir, "/fields/u", MADE_U, made->msh->n_node, made->m.dim, i);
+  vector_is(dir, "/fields/reaction", MADE_REACTION, made->msh->n_node,
+            made->m.dim, i);
+}
+
+/* Increments whose time is there. */
+static int count_reached(const char *dir) {
+  int dims[2] = {0, 0}, n = 0;
+  double *t = dataset(dir, "/history/time", dims);
+  while (t != NULL && n < dims[0] && !isnan(t[n])) ++n;
+  free(t);
+  return n;
+}
+
+static void rows_are(const char *dir, int n) {
+  int dims[2];
+  double *t = dataset(dir, "/history/time", dims);
+  ck_assert_int_eq(dims[0], n);
+  for (int i = 0; i < n; ++i) ck_assert(t[i] == 0.5 * (i + 1));
+  free(t);
+}
+
+START_TEST(fields_read_back_exactly) {
+  for (int dim = 2; dim <= 3; ++dim) {
+    char dir[64];
+    int dims[2];
+    folder_new(dir);
+    made_up *made = made_up_new(dim, 3, 4);
+    ck_assert_int_eq(write_file(made, dir, 4, 1), OK);
+    for (int i = 1; i <= 4; ++i) increment_is(made, dir, i);
+    rows_are(dir, 4);
+    double *x = dataset(dir, "/fields/stress_xy/00003", dims);
+    for (int id = 0; id < made->msh->n_elem; ++id)
+      ck_assert(x[id] == made_up_value(MADE_STRESS, made->m.ns * id + 3, 3));
+    free(x);
+    x = dataset(dir, "/contact/pressure/00002", dims);
+    ck_assert_int_eq(dims[0], made->surface.n);
+    for (int id = 0; id < made->surface.n; ++id)
+      ck_assert(x[id] == -made_up_value(MADE_RC, dim * id, 2) / 0.25);
+    free(x);
+    made_up_free(made);
+    folder_remove(dir);
+  }
+}
+END_TEST
+
+START_TEST(mesh_and_surface_stand_in_the_file) {
+  char dir[64];
+  int dims[2];
+  folder_new(dir);
+  made_up *made = made_up_new(3, 2, 1);
+  const mesh *m = made->msh;
+  made->m.length_unit = "mm";
+  made->m.force_unit = "N";
+  ck_assert_int_eq(write_file(made, dir, 1, 1), OK);
+  double *x = dataset(dir, "/mesh/nodes", dims);
+  for (int i = 0; i < 3 * m->n_node; ++i) ck_assert(x[i] == m->x[i]);
+  free(x);
+  x = dataset(dir, "/mesh/elements", dims);
+  ck_assert_int_eq(dims[1], 4);
+  for (int i = 0; i < 4 * m->n_elem; ++i) ck_assert(x[i] == m->elem[i]);
+  free(x);
+  x = dataset(dir, "/mesh/node_no", dims);
+  for (int i = 0; i < m->n_node; ++i) ck_assert(x[i] == (double)m->node_no[i]);
+  free(x);
+  x = dataset(dir, "/mesh/groups/TOP/nodes", dims);
+  ck_assert_int_eq(dims[0], 9);
+  free(x);
+  x = dataset(dir, "/contact/normal", dims);
+  ck_assert(x[0] == 0 && x[1] == -1 && x[2] == 0);
+  free(x);
+  double *faces = dataset(dir, "/contact/faces", dims);
+  double *points = dataset(dir, "/contact/points", (int[2]){0, 0});
+  ck_assert_int_eq(dims[0], 8); /* 2 x 2 squares of two triangles           */
+  for (int i = 0; i < 24; ++i) ck_assert(points[3 * (int)faces[i] + 1] == 0);
+  free(points);
+  free(faces);
+  attribute_is(dir, "/", "version", "1.2.3");
+  attribute_is(dir, "/", "title", made->m.title);
+  attribute_is(dir, "/contact/pressure", "unit", "N/mm^2");
+  attribute_is(dir, "/history/strain_energy", "unit", "N*mm");
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(more_increments_than_foreseen_are_kept) {
+  char dir[64];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 3);
+  ck_assert_int_eq(write_file(made, dir, 60, 1), OK);
+  for (int i = 1; i <= 60; ++i) increment_is(made, dir, i);
+  rows_are(dir, 60);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(room_not_used_is_cut_at_the_end) {
+  char dir[64];
+  int dims[2];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 50);
+  ck_assert_int_eq(write_file(made, dir, 7, 1), OK);
+  rows_are(dir, 7);
+  increment_is(made, dir, 7);
+  ck_assert_ptr_null(dataset(dir, "/fields/u/00008", dims));
+  ck_assert_int_eq(write_file(made, dir, 7, 0), OK); /* a failed run          */
+  double *t = dataset(dir, "/history/time", dims);
+  ck_assert_int_eq(dims[0], 50);
+  ck_assert(t[6] == 3.5 && isnan(t[7]) && isnan(t[49]));
+  free(t);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(frequency_chooses_the_records) {
+  char dir[64];
+  int dims[2];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 5);
+  made->steps[0].output_frequency = 2;
+  ck_assert_int_eq(write_file(made, dir, 5, 1), OK);
+  double *total = dataset(dir, "/fields/total", dims);
+  ck_assert_int_eq(dims[0], 3);
+  ck_assert(total[0] == 2 && total[1] == 4 && total[2] == 5);
+  free(total);
+  rows_are(dir, 5);
+  made->steps[0].output_frequency = -1;
+  hdf5_file *h = NULL;
+  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &plain, NULL, &h), OK);
+  ck_assert_ptr_null(h);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(missing_arrays_are_not_zero) {
+  char dir[64];
+  int dims[2];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 1);
+  made->s.stress = NULL;
+  ck_assert_int_eq(write_file(made, dir, 1, 1), OK);
+  double *x = dataset(dir, "/fields/mises/00001", dims);
+  ck_assert(isnan(x[0]) && isnan(x[made->msh->n_elem - 1]));
+  free(x);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(scene_without_contact_has_no_surface) {
+  char dir[64];
+  int dims[2];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 1);
+  hdf5_file *h = NULL;
+  output_options o = plain;
+  o.dir = dir;
+  made->m.effects = 0;
+  made->m.n_contact = 0;
+  made->s.surface = NULL;
+  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, NULL, &h), OK);
+  made_up_advance(made, 1);
+  ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
+  ck_assert_int_eq(hdf5_close(h, 1), OK);
+  ck_assert_ptr_null(dataset(dir, "/contact/points", dims));
+  double *u = dataset(dir, "/fields/u/00001", dims);
+  ck_assert_ptr_nonnull(u);
+  free(u);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(group_names_with_slashes_and_twins_are_kept) {
+  char dir[64];
+  int dims[2];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 1);
+  const char *kept[2] = {made->msh->group[1].name, made->msh->group[2].name};
+  made->msh->group[1].name = "a/b";
+  made->msh->group[2].name = "BODY"; /* also the name of the surface         */
+  ck_assert_int_eq(write_file(made, dir, 1, 1), OK);
+  double *x = dataset(dir, "/mesh/groups/a|b/nodes", dims);
+  ck_assert_ptr_nonnull(x);
+  free(x);
+  x = dataset(dir, "/mesh/groups/BODY_1/nodes", dims);
+  ck_assert_int_eq(dims[0], 3);
+  free(x);
+  made->msh->group[1].name = kept[0];
+  made->msh->group[2].name = kept[1];
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+/* ---- kills ------------------------------------------------------------ */
+
+/* The child acknowledges each increment by one byte in the pipe. */
+static void child_run(const char *dir, int pipe_end, int foreseen) {
+  made_up *made = made_up_new(2, 4, foreseen);
+  output_options o = plain;
+  hdf5_file *h = NULL;
+  o.dir = dir;
+  if (hdf5_open(&made->m, made->msh, &o, &made->surface, &h) != OK) _exit(1);
+  for (int i = 1; i <= 1000; ++i) {
+    made_up_advance(made, i);
+    if (hdf5_increment(h, &made->s) != OK) _exit(1);
+    if (write(pipe_end, "+", 1) != 1) _exit(1);
+  }
+  _exit(0);
+}
+
+/* Kill after some microseconds; the number of increments acknowledged. */
+static int run_and_kill(const char *dir, int foreseen, long microseconds) {
+  int ends[2], n = 0;
+  char c;
+  ck_assert_int_eq(pipe(ends), 0);
+  pid_t pid = fork();
+  ck_assert_int_ge(pid, 0);
+  if (pid == 0) {
+    close(ends[0]);
+    child_run(dir, ends[1], foreseen);
+  }
+  close(ends[1]);
+  struct timespec pause = {0, microseconds * 1000};
+  nanosleep(&pause, NULL);
+  kill(pid, SIGKILL);
+  waitpid(pid, NULL, 0);
+  while (read(ends[0], &c, 1) == 1) ++n;
+  close(ends[0]);
+  return n;
+}
+
+START_TEST(killed_at_any_moment_keeps_every_acknowledged_increment) {
+  int runs_with_results = 0, runs_grown = 0;
+  made_up *made = made_up_new(2, 4, 3);
+  for (int k = 0; k < 60; ++k) {
+    char dir[64];
+    folder_new(dir);
+    /* Small forecasts: some kills fall into the making of a larger file. */
+    int foreseen = k % 2 ? 3 : 500;
+    int n = run_and_kill(dir, foreseen, 500 + 1234 * (k % 30));
+    if (n > 0) ++runs_with_results;
+    if (n > foreseen) ++runs_grown;
+    for (int i = 1; i <= n; i += i < n - 3 && n > 20 ? 7 : 1)
+      increment_is(made, dir, i);
+    int reached = count_reached(dir); /* perhaps one more than told          */
+    ck_assert_int_ge(reached, n);
+    if (reached > 0) increment_is(made, dir, reached);
+    folder_remove(dir);
+  }
+  made_up_free(made);
+  ck_assert_int_gt(runs_with_results, 10);
+  ck_assert_int_gt(runs_grown, 5);
+}
+END_TEST
+
+/* ---- disks ------------------------------------------------------------ */
+
+/* In a child: the status of a run in a folder with files of at most "most"
+ * bytes. */
+static int run_with_limit(const char *dir, rlim_t most) {
+  pid_t pid = fork();
+  ck_assert_int_ge(pid, 0);
+  if (pid == 0) {
+    struct rlimit limit = {most, most};
+    signal(SIGXFSZ, SIG_IGN);
+    made_up *made = made_up_new(2, 4, 3);
+    if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(99);
+    status st = write_file(made, dir, 20, 1);
+    int named = strstr(status_message(), "block.h5") != NULL &&
+                strstr(status_message(), "unknown") == NULL;
+    _exit(st == ERR_FILE && !named ? 98 : (int)st);
+  }
+  int code;
+  waitpid(pid, &code, 0);
+  return WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code);
+}
+
+static long size_of(const char *dir, const char *name) {
+  char path[100];
+  struct stat info;
+  snprintf(path, sizeof path, "%s/%s", dir, name);
+  return stat(path, &info) == 0 ? (long)info.st_size : -1;
+}
+
+START_TEST(disk_full_at_any_size_is_told_and_loses_nothing) {
+  char dir[64];
+  int dims[2];
+  made_up *made = made_up_new(2, 4, 3);
+  folder_new(dir);
+  ck_assert_int_eq(run_with_limit(dir, RLIM_INFINITY), OK);
+  long full = size_of(dir, "block.h5");
+  folder_remove(dir);
+  int failures = 0;
+  for (long most = 0; most < full; most += full / 40) {
+    folder_new(dir);
+    int st = run_with_limit(dir, (rlim_t)most);
+    ck_assert_msg(st == OK || st == ERR_FILE, "limit %ld: %d", most, st);
+    if (st == ERR_FILE) ++failures;
+    ck_assert_int_eq(size_of(dir, "block.h5.tmp"), -1);
+    double *t = dataset(dir, "/history/time", dims);
+    if (t != NULL) /* the file of the forecast was made and has its rows     */
+      for (int i = 1; i <= 3; ++i) increment_is(made, dir, i);
+    free(t);
+    folder_remove(dir);
+  }
+  ck_assert_int_gt(failures, 20);
+  made_up_free(made);
+}
+END_TEST
+
+START_TEST(missing_folder_is_told) {
+  made_up *made = made_up_new(2, 1, 1);
+  ck_assert_int_eq(write_file(made, "/no/such/folder", 1, 1), ERR_FILE);
+  ck_assert_ptr_nonnull(strstr(status_message(), "/no/such/folder/block.h5"));
+  ck_assert_ptr_nonnull(strstr(status_message(), "No such file"));
+  made_up_free(made);
+}
+END_TEST
+
+/* ---- memory ----------------------------------------------------------- */
+
+static int open_files(void) {
+  int n = 0;
+  DIR *d = opendir("/proc/self/fd");
+  while (d != NULL && readdir(d) != NULL) ++n;
+  if (d != NULL) closedir(d);
+  return n;
+}
+
+START_TEST(every_refused_request_is_told_and_leaves_nothing) {
+  char dir[64];
+  int refused = 0;
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 2);
+  ck_assert_int_eq(write_file(made, dir, 12, 1), OK);
+  size_t bytes = memory_in_use();
+  int files = open_files();
+  for (long k = 1;; ++k) {
+    long first = memory_requests();
+    memory_refuse(k, 0);
+    status st = write_file(made, dir, 12, 1);
+    memory_refuse(0, 0);
+    ck_assert_msg(st == OK || st == ERR_MEMORY, "%s", status_message());
+    ck_assert_uint_eq(memory_in_use(), bytes);
+    ck_assert_int_eq(open_files(), files);
+    ck_assert_int_eq(size_of(dir, "block.h5.tmp"), -1);
+    if (st == ERR_MEMORY) ++refused;
+    if (memory_requests() - first < k) break;
+  }
+  ck_assert_int_gt(refused, 20);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+UNIT_MAIN("hdf5", fields_read_back_exactly, mesh_and_surface_stand_in_the_file,
+          more_increments_than_foreseen_are_kept,
+          room_not_used_is_cut_at_the_end, frequency_chooses_the_records,
+          missing_arrays_are_not_zero, scene_without_contact_has_no_surface,
+          group_names_with_slashes_and_twins_are_kept,
+          killed_at_any_moment_keeps_every_acknowledged_increment,
+          disk_full_at_any_size_is_told_and_loses_nothing,
+          missing_folder_is_told,
+          every_refused_request_is_told_and_leaves_nothing)

@@ -1,0 +1,454 @@
+/* src/output: all files of a made-up run, and what happens when one fails. */
+#include "output/output.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+#include "support/made_up.h"
+#include "support/unit.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+static output_options quiet(const char *dir) {
+  return (output_options){.dir = dir,
+                          .no_timing = 1,
+                          .version = "1.2.3",
+                          .kernel = "Generic",
+                          .threads = 1};
+}
+
+static status tell(made_up *made, const history_sink *sink, int told) {
+  solver_step iteration = {.solver = "newton",
+                           .iteration = 1,
+                           .residual = 0.5,
+                           .limit_change = NAN,
+                           .status_changes = -1};
+  status st = sink->ready(sink->ctx, &made->facts, &made->surface);
+  for (int i = 1; i <= told && st == OK; ++i) {
+    made_up_advance(made, i);
+    sink->iteration(sink->ctx, &iteration);
+    if (i == 2) st = sink->rejected(sink->ctx, &made->s, "no \"convergence\"");
+    if (st == OK) st = sink->increment(sink->ctx, &made->s);
+  }
+  return st;
+}
+
+/* The run as history_run would tell it. */
+static status run(made_up *made, const output_options *o, int told) {
+  output *out = NULL;
+  timer_reset();
+  status st = output_open(&made->m, made->msh, o, &out);
+  if (st != OK) return st;
+  history_sink sink = output_sink(out);
+  return output_close(out, tell(made, &sink, told), 0);
+}
+
+static const char *const names[] = {"block.lst", "block.sta", "block.cvg",
+                                    "block.dat", "block.h5",  "block.xdmf"};
+enum { NAMES = sizeof names / sizeof *names };
+
+START_TEST(two_runs_give_the_same_bytes) {
+  char dir[2][64];
+  for (int k = 0; k < 2; ++k) {
+    folder_new(dir[k]);
+    if (k == 1) { /* a longer name, and another second                       */
+      strcat(dir[k], "/longer");
+      ck_assert_int_eq(mkdir(dir[k], 0700), 0);
+      nanosleep(&(struct timespec){1, 100000000}, NULL);
+    }
+    made_up *made = made_up_new(2, 3, 3);
+    output_options o = quiet(dir[k]);
+    ck_assert_int_eq(run(made, &o, 5), OK);
+    made_up_free(made);
+  }
+  for (int i = 0; i < NAMES; ++i) {
+    size_t na, nb;
+    char *a = folder_file(dir[0], names[i], &na);
+    char *b = folder_file(dir[1], names[i], &nb);
+    ck_assert_msg(a != NULL && na > 100, "%s", names[i]);
+    ck_assert_msg(b != NULL && na == nb && memcmp(a, b, na) == 0, "%s",
+                  names[i]);
+    for (size_t k = 0; k + 7 < na; ++k)
+      ck_assert_msg(memcmp(a + k, "protis-", 7) != 0, "path in %s", names[i]);
+    free(a);
+    free(b);
+  }
+  *strrchr(dir[1], '/') = '\0';
+  folder_remove(dir[0]);
+  folder_remove(dir[1]);
+}
+END_TEST
+
+START_TEST(status_file_has_a_line_per_attempt) {
+  char dir[64];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 3);
+  output_options o = quiet(dir);
+  output *out = NULL;
+  ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
+  history_sink sink = output_sink(out);
+  ck_assert_int_eq(tell(made, &sink, 3), OK);
+  /* Before the job is closed: the lines are there already. */
+  char *text = folder_file(dir, "block.sta", NULL), *line = text;
+  int lines = 0;
+  for (; (line = strchr(line, '\n')) != NULL; ++line) ++lines;
+  ck_assert_int_eq(lines, 1 + 3 + 1);
+  ck_assert_ptr_nonnull(strstr(text, " CUT no \"convergence\"\n"));
+  ck_assert_ptr_nonnull(strstr(text, " OK\n"));
+  ck_assert_ptr_null(strstr(text, "cpu"));
+  free(text);
+  text = folder_file(dir, "block.cvg", NULL);
+  /* total 2 was cut: the next line is its second attempt.                   */
+  ck_assert_ptr_nonnull(strstr(text, "\n      2   1 newton"));
+  ck_assert_ptr_nonnull(strstr(text, "\n      3   1 newton"));
+  free(text);
+  ck_assert_int_eq(output_close(out, OK, 0), OK);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(unsettled_increment_is_seen_everywhere) {
+  char dir[64];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 1);
+  output_options o = quiet(dir);
+  output *out = NULL;
+  ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
+  history_sink sink = output_sink(out);
+  ck_assert_int_eq(sink.ready(sink.ctx, &made->facts, &made->surface), OK);
+  made_up_advance(made, 1);
+  made->s.settled = 0;
+  ck_assert_int_eq(sink.increment(sink.ctx, &made->s), OK);
+  ck_assert_int_eq(output_close(out, OK, 1), ERR_UNSETTLED);
+  const char *const wanted[][2] = {
+      {"block.sta", " UNSETTLED\n"},
+      {"block.lst", "THE TOLERANCE WAS NOT REACHED"},
+      {"block.lst", "exit 1: "},
+      {"block.json", "\"name\": \"ERR_UNSETTLED\""},
+      {"block.json", "\"settled\": false"}};
+  for (size_t i = 0; i < sizeof wanted / sizeof *wanted; ++i) {
+    char *text = folder_file(dir, wanted[i][0], NULL);
+    ck_assert_msg(strstr(text, wanted[i][1]) != NULL, "%s in %s", wanted[i][1],
+                  wanted[i][0]);
+    free(text);
+  }
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+/* ---- JSON, by the grammar of RFC 8259 --------------------------------- */
+
+static const char *value_end(const char *p);
+
+static const char *blanks(const char *p) {
+  while (*p == ' ' || *p == '\n' || *p == '\t' || *p == '\r') ++p;
+  return p;
+}
+
+/* Behind the string that starts at p, or NULL. */
+static const char *string_end(const char *p) {
+  if (*p++ != '"') return NULL;
+  for (; *p != '"'; ++p) {
+    if ((unsigned char)*p < 0x20) return NULL;
+    if (*p != '\\') continue;
+    ++p;
+    if (*p == 'u')
+      for (int i = 0; i < 4; ++i) {
+        if (!isxdigit((unsigned char)*++p)) return NULL;
+      }
+    else if (strchr("\"\\/bfnrt", *p) == NULL)
+      return NULL;
+  }
+  return p + 1;
+}
+
+static const char *number_end(const char *p) {
+  if (*p == '-') ++p;
+  if (!isdigit((unsigned char)*p)) return NULL;
+  if (*p == '0' && isdigit((unsigned char)p[1])) return NULL;
+  char *end;
+  strtod(p, &end);
+  return end;
+}
+
+static const char *list_end(const char *p, char close, int named) {
+  p = blanks(p + 1);
+  if (*p == close) return p + 1;
+  for (;;) {
+    if (named) {
+      p = string_end(blanks(p));
+      if (p == NULL) return NULL;
+      p = blanks(p);
+      if (*p++ != ':') return NULL;
+    }
+    p = value_end(blanks(p));
+    if (p == NULL) return NULL;
+    p = blanks(p);
+    if (*p == close) return p + 1;
+    if (*p++ != ',') return NULL;
+  }
+}
+
+static const char *value_end(const char *p) {
+  const char *const words[] = {"true", "false", "null"};
+  if (*p == '{') return list_end(p, '}', 1);
+  if (*p == '[') return list_end(p, ']', 0);
+  if (*p == '"') return string_end(p);
+  for (int i = 0; i < 3; ++i)
+    if (strncmp(p, words[i], strlen(words[i])) == 0)
+      return p + strlen(words[i]);
+  return number_end(p);
+}
+
+static char *checked_json(const char *dir) {
+  char *text = folder_file(dir, "block.json", NULL);
+  ck_assert_ptr_nonnull(text);
+  const char *end = value_end(text);
+  ck_assert_msg(end != NULL && *blanks(end) == '\0', "%s", text);
+  return text;
+}
+
+START_TEST(json_is_valid_whatever_the_texts_and_numbers) {
+  char dir[64];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 2);
+  output_options o = quiet(dir);
+  output *out = NULL;
+  made->m.title =
+      "tab\t quote\" back\\ \xC3\xA9 latin \xE9 bad \xED\xA0\x80\x01";
+  made->facts.condition = INFINITY;
+  ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
+  history_sink sink = output_sink(out);
+  ck_assert_int_eq(sink.ready(sink.ctx, &made->facts, &made->surface), OK);
+  made_up_advance(made, 1);
+  made->s.report.residual = NAN;
+  ck_assert_int_eq(sink.increment(sink.ctx, &made->s), OK);
+  status st = status_fail(ERR_SINGULAR, "f", 1, "body \"A\"\nfree");
+  ck_assert_int_eq(output_close(out, st, 0), ERR_SINGULAR);
+  ck_assert_str_eq(status_message(), "body \"A\"\nfree");
+  char *text = checked_json(dir);
+  ck_assert_ptr_nonnull(
+      strstr(text,
+             "\"title\": \"tab\\u0009 quote\\\" back\\\\ \xC3\xA9 latin "
+             "\\u00e9 bad \\u00ed\\u00a0\\u0080\\u0001\""));
+  ck_assert_ptr_nonnull(strstr(text, "\"message\": \"body \\\"A\\\"\\nfree\""));
+  ck_assert_ptr_nonnull(strstr(text, "\"code\": 6"));
+  ck_assert_ptr_nonnull(strstr(text, "\"residual\": null"));
+  ck_assert_ptr_nonnull(strstr(text, "\"residual_worst\": null"));
+  ck_assert_ptr_nonnull(strstr(text, "\"condition\": null"));
+  ck_assert_ptr_null(strstr(text, "\"cpu\""));
+  free(text);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(cost_is_shown_unless_left_out) {
+  char dir[64];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 2);
+  output_options o = quiet(dir);
+  o.no_timing = 0;
+  ck_assert_int_eq(run(made, &o, 2), OK);
+  char *text = checked_json(dir);
+  ck_assert_ptr_nonnull(strstr(text, "\"cpu\": "));
+  free(text);
+  text = folder_file(dir, "block.lst", NULL);
+  ck_assert_ptr_nonnull(strstr(text, "cpu[s]"));
+  free(text);
+  text = folder_file(dir, "block.sta", NULL);
+  ck_assert_ptr_nonnull(strstr(text, "cpu[s]"));
+  free(text);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(xdmf_names_every_record_of_the_file_beside_it) {
+  char dir[64], name[80];
+  folder_new(dir);
+  made_up *made = made_up_new(3, 2, 3);
+  output_options o = quiet(dir);
+  ck_assert_int_eq(run(made, &o, 5), OK);
+  char *text = folder_file(dir, "block.xdmf", NULL);
+  for (int i = 1; i <= 5; ++i) {
+    snprintf(name, sizeof name, ">block.h5:/fields/u/%05d<", i);
+    ck_assert_ptr_nonnull(strstr(text, name));
+    snprintf(name, sizeof name, ">block.h5:/contact/pressure/%05d<", i);
+    ck_assert_ptr_nonnull(strstr(text, name));
+  }
+  ck_assert_ptr_null(strstr(text, dir));
+  ck_assert_ptr_null(strstr(text, "/00006"));
+  ck_assert_ptr_nonnull(strstr(text, "</Xdmf>"));
+  free(text);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(files_of_an_earlier_run_do_not_stay) {
+  char dir[64];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 2);
+  output_options o = quiet(dir);
+  output *out = NULL;
+  ck_assert_int_eq(run(made, &o, 2), OK);
+  made->steps[0].n_print = 0;
+  ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
+  const char *const gone[] = {"block.dat", "block.h5", "block.xdmf",
+                              "block.json"};
+  for (int i = 0; i < 4; ++i)
+    ck_assert_msg(folder_file(dir, gone[i], NULL) == NULL, "%s", gone[i]);
+  ck_assert_int_eq(output_close(out, OK, 0), OK);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(run_that_never_became_ready_has_a_verdict) {
+  char dir[64];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 2);
+  output_options o = quiet(dir);
+  output *out = NULL;
+  ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
+  status st = status_fail(ERR_SINGULAR, "f", 1, "nothing holds body 1");
+  ck_assert_int_eq(output_close(out, st, 0), ERR_SINGULAR);
+  char *text = checked_json(dir);
+  ck_assert_ptr_nonnull(strstr(text, "nothing holds body 1"));
+  free(text);
+  text = folder_file(dir, "block.lst", NULL);
+  ck_assert_ptr_nonnull(strstr(text, "nothing holds body 1"));
+  free(text);
+  ck_assert_int_eq(output_close(NULL, ERR_MESH, 0), ERR_MESH);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+/* ---- failures --------------------------------------------------------- */
+
+START_TEST(full_disk_of_any_text_file_is_told_and_the_others_are_kept) {
+  const char *const files[] = {"block.lst", "block.sta",      "block.cvg",
+                               "block.dat", "block.json.tmp", "block.xdmf.tmp"};
+  for (int k = 0; k < 6; ++k) {
+    char dir[64], path[100];
+    folder_new(dir);
+    snprintf(path, sizeof path, "%s/%s", dir, files[k]);
+    ck_assert_int_eq(symlink("/dev/full", path), 0);
+    made_up *made = made_up_new(2, 2, 2);
+    output_options o = quiet(dir);
+    ck_assert_msg(run(made, &o, 2) == ERR_FILE, "%s", files[k]);
+    ck_assert_msg(strstr(status_message(), files[k]) != NULL, "%s: %s",
+                  files[k], status_message());
+    ck_assert_ptr_nonnull(strstr(status_message(), "No space left"));
+    if (k == 3 || k == 5) { /* open went well: the verdict is in JOB.json    */
+      char *text = checked_json(dir);
+      ck_assert_ptr_nonnull(strstr(text, "\"name\": \"ERR_FILE\""));
+      free(text);
+    }
+    made_up_free(made);
+    folder_remove(dir);
+  }
+}
+END_TEST
+
+START_TEST(folder_that_cannot_be_written_is_told) {
+  made_up *made = made_up_new(2, 2, 2);
+  const char *const dirs[] = {"/no/such/folder", "/proc", "/dev/null"};
+  for (int k = 0; k < 3; ++k) {
+    output_options o = quiet(dirs[k]);
+    output *out = NULL;
+    size_t before = memory_in_use();
+    ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), ERR_FILE);
+    ck_assert_ptr_null(out);
+    ck_assert_ptr_nonnull(strstr(status_message(), dirs[k]));
+    ck_assert_uint_eq(memory_in_use(), before);
+  }
+  made_up_free(made);
+}
+END_TEST
+
+START_TEST(every_refused_request_is_told_and_leaves_nothing) {
+  char dir[64];
+  int refused = 0;
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 2);
+  output_options o = quiet(dir);
+  size_t before = memory_in_use();
+  for (long k = 1;; ++k) {
+    long first = memory_requests();
+    memory_refuse(k, 0);
+    status st = run(made, &o, 10);
+    memory_refuse(0, 0);
+    ck_assert_msg(st == OK || st == ERR_MEMORY, "%ld: %s", k, status_message());
+    ck_assert_uint_eq(memory_in_use(), before);
+    if (st == ERR_MEMORY) ++refused;
+    if (memory_requests() - first < k) break;
+  }
+  ck_assert_int_gt(refused, 40);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+START_TEST(output_changes_nothing_it_is_given) {
+  char dir[64];
+  folder_new(dir);
+  made_up *made = made_up_new(3, 2, 2);
+  output_options o = quiet(dir);
+  ck_assert_int_eq(run(made, &o, 2), OK);
+  for (int a = 0; a < MADE_ARRAYS; ++a)
+    for (int i = 0; i < made->count[a]; ++i)
+      ck_assert(made->array[a][i] == made_up_value(a, i, 2));
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+/* stderr is a file here, as in a batch job. */
+START_TEST(no_progress_line_where_there_is_no_terminal) {
+  char dir[64], path[80];
+  folder_new(dir);
+  snprintf(path, sizeof path, "%s/errors", dir);
+  made_up *made = made_up_new(2, 2, 2);
+  output_options o = quiet(dir);
+  o.progress = 1;
+  fflush(stderr);
+  int kept = dup(STDERR_FILENO);
+  FILE *errors = fopen(path, "w");
+  dup2(fileno(errors), STDERR_FILENO);
+  status st = run(made, &o, 2);
+  fflush(stderr);
+  dup2(kept, STDERR_FILENO);
+  close(kept);
+  fclose(errors);
+  ck_assert_int_eq(st, OK);
+  char *text = folder_file(dir, "errors", NULL);
+  ck_assert_str_eq(text, "");
+  free(text);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+UNIT_MAIN("output", two_runs_give_the_same_bytes,
+          status_file_has_a_line_per_attempt,
+          unsettled_increment_is_seen_everywhere,
+          json_is_valid_whatever_the_texts_and_numbers,
+          cost_is_shown_unless_left_out,
+          xdmf_names_every_record_of_the_file_beside_it,
+          files_of_an_earlier_run_do_not_stay,
+          run_that_never_became_ready_has_a_verdict,
+          full_disk_of_any_text_file_is_told_and_the_others_are_kept,
+          folder_that_cannot_be_written_is_told,
+          every_refused_request_is_told_and_leaves_nothing,
+          output_changes_nothing_it_is_given,
+          no_progress_line_where_there_is_no_terminal)
