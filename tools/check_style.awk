@@ -127,9 +127,12 @@ function close_brace() {
 
 function body_token(token) {
   if (token ~ /^(if|for|while|case|\?|&&|\|\|)$/) ++complexity
-  if (is_source && !is_base && before == "static" && token != "const")
-    fail(FNR, "static variable that can change")
-  before = token
+  if (token == "static") { collecting = 1; kept = "" }
+  else if (collecting && token ~ /^[=;]$/) {
+    collecting = 0
+    if (is_source && !is_base && !is_constant(kept))
+      fail(FNR, "static variable that can change")
+  } else if (collecting) kept = kept " " token
 }
 
 # Parameters between the first parenthesis and its partner.
@@ -156,7 +159,7 @@ function begin_function() {
   name = declared_name(declaration)
   start = declared_at
   complexity = 1
-  before = ""
+  collecting = 0
   if (count_parameters(declaration) > MAX_PARAMETERS)
     fail(start, name ": over 7 parameters")
   if (!is_header && declaration !~ /^static / && name != "main" &&

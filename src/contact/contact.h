@@ -39,8 +39,8 @@ typedef struct contact_problem {
                         frictionless (then B and ut0 are NULL too)          */
   const sparse_rows *B; /* [n*n], -; NULL: g = g0 (Tresca); rows of mu        */
   const double *side_gap;    /* [n*(dim-1)] or NULL: bounds u_t from above where
-                             the node touches a second (third) frictionless
-                             obstacle, HUGE_VAL elsewhere; such nodes have g = 0 */
+                          the node touches a second (third) frictionless
+                          obstacle, HUGE_VAL elsewhere; such nodes have g = 0 */
   const unsigned char *held; /* [m] or NULL: 1: a tangential unknown that is
                           prescribed. Its row of A is decoupled (A_ii u_i =
                           f_i), friction acts in the other direction only   */

@@ -4,7 +4,11 @@
  */
 #include "solver/local.h"
 
+#include "base/memory.h"
+
+#include <cblas.h>
 #include <math.h>
+#include <string.h>
 
 enum { ROOT_STEPS = 100 };
 
@@ -253,4 +257,218 @@ local_state local_solve(const local_problem *lp, local_state before, double *x,
     if (best <= 0x1p-46 * force) break;
   }
   return found;
+}
+
+/* ---- visits of the nodes
+ * ---------------------------------------------------*/
+
+struct node_blocks {
+  double *K;          /* [dim*dim*n] stiffness of each node, N/m              */
+  local_state *state; /* [n] state found at the last visit                    */
+};
+
+void node_blocks_free(node_blocks *b) {
+  if (b == NULL) return;
+  memory_free(b->K);
+  memory_free(b->state);
+  memory_free(b);
+}
+
+/* Inverse of a d*d block by elimination with complete symmetric pivoting left
+ * out: the block is positive definite, else a share of "lift" is added to its
+ * diagonal (the iteration then keeps its fixed point). */
+static void invert_block(int d, const double *block, double lift, double *K) {
+  double M[9];
+  memcpy(M, block, (size_t)(d * d) * sizeof *M);
+  for (int k = 0; k < d; ++k)
+    if (!(M[k + d * k] > 0x1p-30 * lift)) M[k + d * k] += 0x1p-20 * lift;
+  for (int k = 0; k < d; ++k) {
+    double pivot = M[k + d * k];
+    if (!(pivot > 0x1p-40 * lift)) pivot = 0x1p-20 * lift;
+    M[k + d * k] = 1.0;
+    for (int j = 0; j < d; ++j) M[k + d * j] /= pivot;
+    for (int i = 0; i < d; ++i) {
+      if (i == k) continue;
+      double l = M[i + d * k];
+      M[i + d * k] = 0.0;
+      for (int j = 0; j < d; ++j) M[i + d * j] -= l * M[k + d * j];
+    }
+  }
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j < d; ++j)
+      K[i + d * j] = 0.5 * (M[i + d * j] + M[j + d * i]);
+}
+
+status node_blocks_new(const contact_problem *cp, node_blocks **out) {
+  status st = OK;
+  node_blocks *b = NULL;
+  const double *M = cp->A != NULL ? cp->A : cp->W;
+  int d = cp->dim;
+  NEW(b, 1);
+  NEW(b->K, cp->n * d * d);
+  NEW(b->state, cp->n);
+  double lift = 0.0;
+  for (size_t i = 0; i < (size_t)cp->m; ++i)
+    lift = fmax(lift, M[i * (size_t)cp->m + i]);
+  for (int node_id = 0; node_id < cp->n; ++node_id) {
+    double block[9], *K = b->K + node_id * d * d;
+    size_t first = (size_t)(node_id * d);
+    for (int j = 0; j < d; ++j)
+      for (int i = 0; i < d; ++i)
+        block[i + d * j] =
+            M[first + (size_t)i + (first + (size_t)j) * (size_t)cp->m];
+    if (cp->A != NULL)
+      memcpy(K, block, (size_t)(d * d) * sizeof *K);
+    else
+      invert_block(d, block, lift, K);
+  }
+  *out = b;
+  b = NULL;
+done:
+  node_blocks_free(b);
+  return st;
+}
+
+static int held(const contact_problem *cp, int dof) {
+  return cp->held != NULL && cp->held[dof];
+}
+
+/* Where x = 0 of a node is: gap and stick position, m. */
+static double origin(const contact_problem *cp, int node_id, int k) {
+  if (k == 0) return cp->gap[node_id];
+  return cp->ut0 == NULL ? 0.0 : cp->ut0[node_id * (cp->dim - 1) + k - 1];
+}
+
+/* The problem of a node: unknowns not held, listed in id[]; x[] now. */
+static void local_of(const relaxation *s, int node_id, local_problem *lp,
+                     int *id, double *x) {
+  const contact_problem *cp = s->cp;
+  const double *K = s->blocks->K + node_id * cp->dim * cp->dim;
+  int first = node_id * cp->dim;
+  lp->dim = lp->bounded = 0;
+  for (int k = 0; k < cp->dim; ++k) {
+    if (held(cp, first + k)) continue;
+    double bound = HUGE_VAL;
+    if (k > 0 && cp->side_gap != NULL)
+      bound = cp->side_gap[node_id * (cp->dim - 1) + k - 1];
+    id[lp->dim] = k;
+    x[lp->dim] = s->u[first + k] - origin(cp, node_id, k);
+    lp->bound[lp->dim] = k == 0 ? 0.0 : bound - origin(cp, node_id, k);
+    if (bound < HUGE_VAL) lp->bounded = 1;
+    ++lp->dim;
+  }
+  for (int i = 0; i < lp->dim; ++i) {
+    lp->b[i] = -s->r[first + id[i]];
+    for (int j = 0; j < lp->dim; ++j) {
+      lp->K[i + lp->dim * j] = K[id[i] + cp->dim * id[j]];
+      lp->b[i] += lp->K[i + lp->dim * j] * x[j];
+    }
+  }
+  lp->g0 = cp->g0 == NULL ? 0.0 : cp->g0[node_id];
+  lp->mu = 0.0;
+  if (cp->B == NULL) return;
+  for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
+    int j = cp->B->col[k];
+    double p = -s->r[(size_t)j * (size_t)cp->dim];
+    if (j == node_id)
+      lp->mu = cp->B->val[k];
+    else if (p > 0.0)
+      lp->g0 += cp->B->val[k] * p;
+  }
+}
+
+/* Go on past the solution x of the node by omega - 1 times the way from old,
+ * if the state stayed and the kink of friction is not crossed. */
+static void relax(const relaxation *s, const local_problem *lp, local_state now,
+                  const double *old, double *x) {
+  double further[3], dot = 0.0, more = s->omega - 1.0;
+  int first = now == LOCAL_OPEN ? 0 : 1;
+  if (lp->bounded || now == LOCAL_STICK) return;
+  for (int k = 1; k < lp->dim; ++k) {
+    further[k] = x[k] + more * (x[k] - old[k]);
+    dot += further[k] * x[k];
+  }
+  if (first == 0) x[0] = fmin(0.0, x[0] + more * (x[0] - old[0]));
+  if ((lp->g0 != 0.0 || lp->mu != 0.0) && !(dot > 0.0) &&
+      !(now == LOCAL_OPEN && lp->g0 == 0.0))
+    return;
+  for (int k = 1; k < lp->dim; ++k) x[k] = further[k];
+}
+
+/* The same for the forces, back onto their cone. */
+static void relax_forces(const relaxation *s, const local_problem *lp,
+                         const double *old, double *r) {
+  double size = 0.0, more = s->omega - 1.0;
+  if (lp->bounded) return;
+  r[0] = fmin(0.0, r[0] + more * (r[0] - old[0]));
+  double g = fmax(0.0, lp->g0 - lp->mu * r[0]);
+  for (int k = 1; k < lp->dim; ++k) {
+    r[k] += more * (r[k] - old[k]);
+    size += r[k] * r[k];
+  }
+  size = sqrt(size);
+  for (int k = 1; k < lp->dim && size > g; ++k) r[k] *= g / size;
+}
+
+static void visit(relaxation *s, int node_id) {
+  const contact_problem *cp = s->cp;
+  const double *M = cp->A != NULL ? cp->A : cp->W;
+  local_problem lp;
+  int id[3] = {0, 0, 0}, moved = 0;
+  size_t first = (size_t)(node_id * cp->dim), m = (size_t)cp->m;
+  double old[3], x[3], r[3], step[3] = {0.0, 0.0, 0.0};
+  local_of(s, node_id, &lp, id, old);
+  local_state before = s->blocks->state[node_id];
+  local_state now = local_solve(&lp, before, x, r);
+  s->blocks->state[node_id] = now;
+  if (cp->A != NULL && now == before) relax(s, &lp, now, old, x);
+  if (cp->A == NULL) {
+    double force[3] = {0.0, 0.0, 0.0};
+    for (int k = 0; k < lp.dim; ++k) force[k] = s->r[first + (size_t)id[k]];
+    if (now == before) relax_forces(s, &lp, force, r);
+    for (int k = 0; k < lp.dim; ++k) step[id[k]] = r[k] - force[k];
+  } else {
+    for (int k = 0; k < lp.dim; ++k) step[id[k]] = x[k] - old[k];
+    for (int k = 1; k < cp->dim; ++k)
+      if (held(cp, node_id * cp->dim + k))
+        step[k] = -s->r[first + (size_t)k] /
+                  M[(first + (size_t)k) * m + first + (size_t)k];
+  }
+  double *unknown = cp->A != NULL ? s->u : s->r;
+  for (int k = 0; k < cp->dim; ++k) {
+    double weight = M[(first + (size_t)k) * m + first + (size_t)k];
+    moved = moved || step[k] != 0.0;
+    unknown[first + (size_t)k] += step[k];
+    s->change += weight * step[k] * step[k];
+  }
+  if (moved)
+    cblas_dgemv(CblasColMajor, CblasNoTrans, cp->m, cp->dim, 1.0, M + first * m,
+                cp->m, step, 1, 1.0, cp->A != NULL ? s->r : s->u, 1);
+}
+
+void relaxation_sweep(relaxation *s, int backward) {
+  s->change = 0.0;
+  for (int i = 0; i < s->cp->n; ++i) visit(s, backward ? s->cp->n - 1 - i : i);
+}
+
+void relaxation_refresh(const relaxation *s) {
+  if (s->cp->A != NULL) {
+    contact_reaction(s->cp, s->u, s->r);
+    return;
+  }
+  contact_product(s->cp->m, s->cp->W, s->r, s->u);
+  for (int i = 0; i < s->cp->m; ++i) s->u[i] += s->cp->f[i];
+}
+
+void relaxation_start(const relaxation *s) {
+  const contact_problem *cp = s->cp;
+  for (int i = 0; i < cp->n; ++i) {
+    int first = i * cp->dim;
+    double slip = 0.0;
+    for (int k = 1; k < cp->dim; ++k)
+      slip += fabs(s->u[first + k] - origin(cp, i, k));
+    s->blocks->state[i] = s->u[first] < cp->gap[i] ? LOCAL_OPEN
+                          : slip > 0.0             ? LOCAL_SLIP
+                                                   : LOCAL_STICK;
+  }
 }

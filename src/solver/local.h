@@ -33,4 +33,29 @@ typedef enum { LOCAL_OPEN, LOCAL_STICK, LOCAL_SLIP } local_state;
 local_state local_solve(const local_problem *lp, local_state before, double *x,
                         double *r);
 
+/*
+ * Relaxation: the nodes visited in turn, each solved exactly with the others
+ * held. Stiffness form: the unknown is u, r = A u - f is carried along with
+ * the columns of A. Compliance form (A not known): the unknown is r, and
+ * u = W r + q is carried along with the columns of W. Both see the same
+ * problem of a node, K = A_ii or inv(W_ii), b = K x - r.
+ */
+typedef struct node_blocks node_blocks; /* what belongs to one matrix        */
+status node_blocks_new(const contact_problem *cp, node_blocks **out);
+void node_blocks_free(node_blocks *b); /* accepts NULL                       */
+
+typedef struct relaxation {
+  const contact_problem *cp;
+  node_blocks *blocks;
+  double *u, *r; /* [m] the iterate                                          */
+  double omega;  /* factor by which a visit goes past the solution, -        */
+  double change; /* sum of K (du)^2 of the sweep, N m                        */
+} relaxation;
+
+/* State of each node at the start, from u and r. */
+void relaxation_start(const relaxation *s);
+/* Carry anew r = A u - f, or u = W r + q. */
+void relaxation_refresh(const relaxation *s);
+void relaxation_sweep(relaxation *s, int backward);
+
 #endif

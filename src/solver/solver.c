@@ -51,6 +51,59 @@ const char *outcome_text(outcome o) {
   return "?";
 }
 
+/* ---- what the solvers share
+ * ------------------------------------------------*/
+
+double solver_mismatch(const contact_problem *cp, double scale, const double *u,
+                       const double *r) {
+  double worst = contact_mismatch(cp, u, r);
+  if (isnan(worst) || isnan(scale)) return NAN;
+  if (scale > 0.0) return worst / scale;
+  return worst > 0.0 ? HUGE_VAL : 0.0;
+}
+
+void solver_tell(const solver_control *control, const char *solver,
+                 int iteration, double residual) {
+  const solver_listener *l = control->listener;
+  if (l == NULL || l->step == NULL) return;
+  solver_step step = {.solver = solver,
+                      .iteration = iteration,
+                      .limit_update = control->limit_update,
+                      .residual = residual,
+                      .limit_change = NAN,
+                      .status_changes = -1};
+  l->step(l->ctx, &step);
+}
+
+status best_iterate_new(int m, best_iterate *best) {
+  status st = OK;
+  best->residual = HUGE_VAL;
+  NEW(best->u, m);
+  NEW(best->r, m);
+done:
+  return st;
+}
+
+void best_iterate_free(best_iterate *best) {
+  memory_free(best->u);
+  memory_free(best->r);
+  best->u = best->r = NULL;
+}
+
+void solver_keep_best(best_iterate *best, int m, double residual,
+                      const double *u, const double *r) {
+  if (!(residual < best->residual)) return;
+  best->residual = residual;
+  memcpy(best->u, u, (size_t)m * sizeof *u);
+  memcpy(best->r, r, (size_t)m * sizeof *r);
+}
+
+void solver_take_best(const best_iterate *best, int m, double *u, double *r) {
+  if (!(best->residual < HUGE_VAL)) return;
+  memcpy(u, best->u, (size_t)m * sizeof *u);
+  memcpy(r, best->r, (size_t)m * sizeof *r);
+}
+
 struct contact_solver {
   solver_choice choice;
   char log[LOG_SIZE];

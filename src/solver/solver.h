@@ -80,12 +80,32 @@ typedef struct solver_ops {
 } solver_ops;
 
 /* clang-format off */
-#define SOLVER_LIST(X) X(sor) X(newton)
+#define SOLVER_LIST(X) X(sor) X(newton) X(aitken)
 /* clang-format on */
 #define SOLVER_EXTERN(name) extern const solver_ops name##_solver;
 SOLVER_LIST(SOLVER_EXTERN)
 extern const solver_ops *const solver_list[]; /* NULL at the end              */
 const solver_ops *solver_find(const char *name); /* or NULL                   */
+
+/* ---- what the solvers share ---- */
+
+/* contact_residual of an iterate that satisfies A u = f + r, its scale known.
+ */
+double solver_mismatch(const contact_problem *cp, double scale, const double *u,
+                       const double *r);
+void solver_tell(const solver_control *control, const char *solver,
+                 int iteration, double residual);
+/* The iterate with the lowest residual. */
+typedef struct best_iterate {
+  double residual; /* -; HUGE_VAL: none yet                                   */
+  double *u, *r;   /* [m]                                                    */
+} best_iterate;
+status best_iterate_new(int m, best_iterate *best);
+void best_iterate_free(best_iterate *best);
+void solver_keep_best(best_iterate *best, int m, double residual,
+                      const double *u, const double *r);
+/* Copy it to u, r if there is one. */
+void solver_take_best(const best_iterate *best, int m, double *u, double *r);
 
 /* The choice of the deck: one solver, or AUTO (ops NULL). */
 typedef struct solver_choice {

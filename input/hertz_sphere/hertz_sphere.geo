@@ -1,0 +1,40 @@
+// Meridian section of the lower half of a sphere of radius R that stands on the
+// plane y = 0; x is the radius, y the axis.
+//   R        radius of the sphere
+//   A        radius of the contact that is expected
+//   NC       segments per radius, on an arc of 1.5 radii
+//   GROWTH   growth of the segments with the distance from there
+//   REACH    length of the arc that may touch, in radii
+DefineConstant[ R = 10, A = 0.3191252149, NC = 16, GROWTH = 0.15, REACH = 4 ];
+
+h = A / NC;
+fine = 1.5 * A / R;
+reach = REACH * A / R;
+
+Point(1) = {0, R, 0};
+Point(2) = {0, 0, 0};
+Point(3) = {R * Sin(fine), R * (1 - Cos(fine)), 0};
+Point(4) = {R * Sin(reach), R * (1 - Cos(reach)), 0};
+Point(5) = {R, R, 0};
+Circle(1) = {2, 1, 3};
+Circle(2) = {3, 1, 4};
+Circle(3) = {4, 1, 5};
+Line(4) = {5, 1};
+Line(5) = {1, 2};
+Curve Loop(1) = {1 ... 5};
+Plane Surface(1) = {1};
+
+Transfinite Curve{1} = Ceil(1.5 * NC) + 1;
+Field[1] = Distance;
+Field[1].CurvesList = {1};
+Field[1].NumPointsPerCurve = 200;
+Field[2] = MathEval;
+Field[2].F = Sprintf("%g + %g * Max(F1 - %g, 0)", h, GROWTH, A);
+Background Field = 2;
+Mesh.MeshSizeExtendFromBoundary = 0;
+Mesh.MeshSizeFromPoints = 0;
+
+Physical Surface("BODY") = {1};
+Physical Curve("CONTACT") = {1, 2};
+Physical Curve("TOP") = {4};
+Physical Curve("AXIS") = {5};

@@ -1,0 +1,312 @@
+/*
+ * Gauss-Seidel sweeps over the nodes (local.h), accelerated (CPR98, 3.3).
+ *
+ * With G(x) the iterate after a sweep from x and F = G(x) - x its defect, the
+ * next sweep starts from the combination
+ *
+ *   x+ = G_k - sum_j gamma_j (G_j+1 - G_j),
+ *   gamma minimises |F_k - sum_j gamma_j (F_j+1 - F_j)|_D,
+ *
+ * D the diagonal of the matrix. With one difference, taken after plain sweeps,
+ * it is Aitken's process in the vector form of Irons and Tuck (1969):
+ *
+ *   x+ = G_k - F_k (F_k . dF) / (dF . dF),   dF = F_k - F_k-1,
+ *
+ * which for one unknown is Aitken's delta-square formula; with DEPTH
+ * differences and after every sweep it is Anderson's mixing (1965; Walker, Ni
+ * 2011). The weights add up to one, so r = A u - f (or u = W r + q) is carried
+ * along by the same combination without a product.
+ *
+ * A combination after which a sweep moves farther than before is taken back.
+ */
+#include "base/memory.h"
+#include "solver/local.h"
+#include "solver/solver.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <string.h>
+
+typedef enum { BY_AITKEN, BY_ANDERSON, BY_NOTHING } acceleration_way;
+
+typedef struct aitken {
+  int acceleration; /* acceleration_way                                      */
+} aitken;
+
+/* clang-format off */
+static const option aitken_options[] = {
+  OPTION_CHOICE(aitken, acceleration, "ACCELERATION", "AITKEN|ANDERSON|NONE",
+                "AITKEN", "how the sweeps are combined"),
+  OPTION_END
+};
+/* clang-format on */
+
+enum {
+  SWEEPS = 20000, /* default limit                                           */
+  DEPTH = 8,      /* differences of Anderson's mixing                        */
+  PLAIN = 4,      /* sweeps from one step of Aitken to the next              */
+  REFRESH = 64,   /* sweeps from one product to the next                     */
+  PATIENCE = 400  /* sweeps without a lower residual before a cure           */
+};
+static const double PROGRESS = 0.9; /* a lower residual is lower by this    */
+static const double FARTHER = 4.0;  /* -, growth of |F|^2 that is borne     */
+static const double DEPENDENT = 1e-14; /* -, of |dF|^2: adds nothing          */
+
+typedef struct aitken_work {
+  node_blocks *blocks;
+  best_iterate best;
+  double *before;       /* [m] x before the sweep                          */
+  double *x, *y;        /* [m] G of the sweep before, and its Y            */
+  double *defect;       /* [m] F of the sweep before, then of this one     */
+  double *diagonal;     /* [m] of the matrix                               */
+  double *dx, *dy, *df; /* [m*DEPTH] differences, a ring                   */
+  double gram[DEPTH][DEPTH]; /* (dF_i . dF_j)_D by place in the ring         */
+} aitken_work;
+
+static void aitken_release(void *work) {
+  aitken_work *w = work;
+  if (w == NULL) return;
+  node_blocks_free(w->blocks);
+  best_iterate_free(&w->best);
+  memory_free(w->before);
+  memory_free(w->x);
+  memory_free(w->y);
+  memory_free(w->defect);
+  memory_free(w->diagonal);
+  memory_free(w->dx);
+  memory_free(w->dy);
+  memory_free(w->df);
+  memory_free(w);
+}
+
+static status aitken_setup(const contact_problem *cp, const void *par,
+                           void **work) {
+  status st = OK;
+  aitken_work *w = NULL;
+  const double *M = cp->A != NULL ? cp->A : cp->W;
+  size_t m = (size_t)cp->m;
+  (void)par;
+  NEW(w, 1);
+  TRY(node_blocks_new(cp, &w->blocks));
+  TRY(best_iterate_new(cp->m, &w->best));
+  NEW(w->before, m);
+  NEW(w->x, m);
+  NEW(w->y, m);
+  NEW(w->defect, m);
+  NEW(w->diagonal, m);
+  NEW(w->dx, m * DEPTH);
+  NEW(w->dy, m * DEPTH);
+  NEW(w->df, m * DEPTH);
+  for (size_t i = 0; i < m; ++i) w->diagonal[i] = M[i * m + i];
+  *work = w;
+  w = NULL;
+done:
+  aitken_release(w);
+  return st;
+}
+
+/* A run: the sweeps, and what is kept of them. */
+typedef struct run {
+  relaxation sweep;
+  aitken_work *w;
+  double *x, *y; /* unknown and what is carried: u and r, or r and u     */
+  int m, depth, period;
+  int kept, newest; /* differences; place of the newest                     */
+  int started;      /* w->x, w->y, w->defect are there                      */
+  int combined;     /* the sweep started from a combination                 */
+  double moved;     /* |F|^2 of the sweep before                            */
+  double mark;      /* residual at the last progress                        */
+  int since, cures; /* sweeps since; cures tried                            */
+  int symmetric;    /* every other sweep backward                           */
+} run;
+
+/* ---- combination ----------------------------------------------------------
+ */
+
+static double weighted_dot(const run *s, const double *a, const double *b) {
+  double sum = 0.0;
+  for (int i = 0; i < s->m; ++i) sum += s->w->diagonal[i] * a[i] * b[i];
+  return sum;
+}
+
+/* F into w->defect, the differences to the sweep before into the ring. */
+static void keep(run *s) {
+  aitken_work *w = s->w;
+  int at = (s->newest + 1) % s->depth;
+  size_t m = (size_t)s->m, offset = m * (size_t)at;
+  double *dx = w->dx + offset, *dy = w->dy + offset, *df = w->df + offset;
+  for (size_t i = 0; i < m; ++i) {
+    double f = s->x[i] - w->before[i];
+    dx[i] = s->x[i] - w->x[i];
+    dy[i] = s->y[i] - w->y[i];
+    df[i] = f - w->defect[i];
+    w->x[i] = s->x[i];
+    w->y[i] = s->y[i];
+    w->defect[i] = f;
+  }
+  if (!s->started) {
+    s->started = 1;
+    return;
+  }
+  s->newest = at;
+  if (s->kept < s->depth) ++s->kept;
+  for (int j = 0; j < s->kept; ++j) {
+    int other = (at + s->depth - j) % s->depth;
+    w->gram[at][other] = w->gram[other][at] =
+        weighted_dot(s, df, w->df + m * (size_t)other);
+  }
+}
+
+/* gamma[kept], newest first, by elimination; a difference that depends on the
+ * newer ones is left out. */
+static void weights(const run *s, double *gamma) {
+  double N[DEPTH][DEPTH + 1], first[DEPTH];
+  int n = s->kept, place[DEPTH];
+  for (int a = 0; a < n; ++a) place[a] = (s->newest + s->depth - a) % s->depth;
+  for (int a = 0; a < n; ++a) {
+    for (int b = 0; b < n; ++b) N[a][b] = s->w->gram[place[a]][place[b]];
+    N[a][n] = weighted_dot(s, s->w->df + (size_t)s->m * (size_t)place[a],
+                           s->w->defect);
+    first[a] = N[a][a];
+  }
+  for (int p = 0; p < n; ++p) {
+    if (!(N[p][p] > DEPENDENT * first[p])) continue;
+    for (int a = p + 1; a < n; ++a) {
+      double l = N[a][p] / N[p][p];
+      for (int b = p; b <= n; ++b) N[a][b] -= l * N[p][b];
+    }
+  }
+  for (int a = n - 1; a >= 0; --a) {
+    gamma[a] = 0.0;
+    if (!(N[a][a] > DEPENDENT * first[a])) continue;
+    gamma[a] = N[a][n];
+    for (int b = a + 1; b < n; ++b) gamma[a] -= N[a][b] * gamma[b];
+    gamma[a] /= N[a][a];
+  }
+}
+
+static void combine(run *s) {
+  double gamma[DEPTH];
+  weights(s, gamma);
+  for (int a = 0; a < s->kept; ++a) {
+    size_t offset =
+        (size_t)s->m * (size_t)((s->newest + s->depth - a) % s->depth);
+    cblas_daxpy(s->m, -gamma[a], s->w->dx + offset, 1, s->x, 1);
+    cblas_daxpy(s->m, -gamma[a], s->w->dy + offset, 1, s->y, 1);
+  }
+  s->combined = 1;
+}
+
+static void forget(run *s) { s->kept = s->started = s->combined = 0; }
+
+/* After a sweep: start of the next one. */
+static void accelerate(run *s, int k) {
+  double moved = s->sweep.change;
+  if (s->combined && !(moved <= FARTHER * s->moved)) {
+    memcpy(s->x, s->w->x, (size_t)s->m * sizeof *s->x);
+    memcpy(s->y, s->w->y, (size_t)s->m * sizeof *s->y);
+    forget(s);
+    return;
+  }
+  s->moved = moved;
+  s->combined = 0;
+  keep(s);
+  if (s->kept > 0 && k % s->period == 0) combine(s);
+}
+
+/* ---- control
+ * ---------------------------------------------------------------*/
+
+/* No progress for long: sweep both ways, then shorter steps. 0: no cure left.
+ */
+static int cure(run *s) {
+  static const double shorter[] = {1.0, 0.6, 0.3};
+  forget(s);
+  s->since = 0;
+  s->mark = HUGE_VAL;
+  s->symmetric = 1;
+  if (s->cures == (int)(sizeof shorter / sizeof *shorter)) return 0;
+  s->sweep.omega = shorter[s->cures++];
+  return 1;
+}
+
+static outcome sweeps(run *s, const solver_control *control,
+                      solver_report *rep) {
+  relaxation *z = &s->sweep;
+  int limit = control->max_iter > 0 ? control->max_iter : SWEEPS;
+  double scale = contact_scale(z->cp);
+  for (int k = 1; k <= limit; ++k) {
+    rep->iterations = k;
+    if (k % REFRESH == 1) relaxation_refresh(z);
+    memcpy(s->w->before, s->x, (size_t)s->m * sizeof *s->x);
+    relaxation_sweep(z, s->symmetric && k % 2 == 0);
+    double residual = solver_mismatch(z->cp, scale, z->u, z->r);
+    if (residual <= control->tol) {
+      relaxation_refresh(z);
+      residual = solver_mismatch(z->cp, scale, z->u, z->r);
+    }
+    solver_keep_best(&s->w->best, s->m, residual, z->u, z->r);
+    solver_tell(control, "aitken", k, residual);
+    if (isnan(residual)) return STOPPED_NAN;
+    if (residual <= control->tol) return CONVERGED;
+    ++s->since;
+    if (residual < PROGRESS * s->mark) {
+      s->mark = residual;
+      s->since = 0;
+    }
+    if (s->since > PATIENCE && !cure(s)) return STOPPED_STAGNATION;
+    if (s->depth > 0) accelerate(s, k);
+  }
+  return STOPPED_ITERATIONS;
+}
+
+static status aitken_solve(const contact_problem *cp, const void *par,
+                           void *work, const solver_control *control, double *u,
+                           double *r, solver_report *rep) {
+  const aitken *p = par;
+  aitken_work *w = work;
+  int by_anderson = p->acceleration == BY_ANDERSON;
+  run s = {.sweep = {cp, w->blocks, u, r, 1.0, 0.0},
+           .w = w,
+           .x = cp->A != NULL ? u : r,
+           .y = cp->A != NULL ? r : u,
+           .m = cp->m,
+           .depth = by_anderson ? DEPTH : p->acceleration == BY_AITKEN,
+           .period = by_anderson ? 1 : PLAIN,
+           .mark = HUGE_VAL};
+  *rep = (solver_report){.outcome = RUNNING};
+  w->best.residual = HUGE_VAL;
+  relaxation_start(&s.sweep);
+  rep->outcome = sweeps(&s, control, rep);
+  rep->residual = w->best.residual;
+  solver_take_best(&w->best, cp->m, u, r);
+  return OK;
+}
+
+/* clang-format off */
+const solver_ops aitken_solver = {
+  .name = "aitken",
+  .reference = "CPR98, 3.3; Irons, Tuck 1969; Walker, Ni 2011",
+  .help =
+    "Gauss-Seidel sweeps with Aitken's acceleration. The nodes are visited one\n"
+    "after the other, each solved exactly with the others held (closed form in\n"
+    "2-D, the true friction disc in 3-D, the sliding limit following the\n"
+    "pressure in the sweep). ACCELERATION=AITKEN extrapolates every fourth\n"
+    "sweep by the vector form of Irons and Tuck,\n"
+    "x+ = G - F (F.dF)/(dF.dF), F the change made by a sweep, dF its\n"
+    "difference from the one before, in the metric of the diagonal of A.\n"
+    "ACCELERATION=ANDERSON combines the last eight sweeps after every sweep so\n"
+    "that the linearised change is least. A step after which the sweep moves\n"
+    "farther is taken back, so the safety of Gauss-Seidel is kept; there is no\n"
+    "factor to choose. Where plain sweeps cycle they are made forward and\n"
+    "backward in turn, then shortened. Costs one product with the matrix a\n"
+    "sweep. Choose it when the compliance alone is known or is singular, when\n"
+    "the direct methods fail, or for a few digits of a very large problem.",
+  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
+  .param_size = sizeof(aitken),
+  .options = aitken_options,
+  .setup = aitken_setup,
+  .solve = aitken_solve,
+  .release = aitken_release
+};
+/* clang-format on */

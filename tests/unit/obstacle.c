@@ -1,0 +1,215 @@
+/* src/contact/obstacle.c: the gap against points made on the obstacle. */
+#include "base/memory.h"
+#include "contact/obstacle.h"
+#include "support/unit.h"
+
+#include <math.h>
+
+static double random_part(void) {
+  static unsigned long long state = 88172645463325252ull;
+  state ^= state << 13;
+  state ^= state >> 7;
+  state ^= state << 17;
+  return (double)(state >> 11) / 9007199254740992.0 * 2 - 1;
+}
+
+static void random_unit(int dim, double *v) {
+  double s;
+  do {
+    s = 0;
+    for (int c = 0; c < 3; ++c) {
+      v[c] = c < dim ? random_part() : 0.0;
+      s += v[c] * v[c];
+    }
+  } while (s < 0.01 || s > 1);
+  for (int c = 0; c < 3; ++c) v[c] /= sqrt(s);
+}
+
+static double dot(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Start from a point q of the obstacle, whose normal towards the body is w, and
+ * step back by s along n: the gap at q - s n is s. */
+static void expect_gap(const obstacle *o, int dim, const double *q,
+                       const double *n, double s) {
+  double x[3];
+  for (int c = 0; c < 3; ++c) x[c] = q[c] - s * n[c];
+  ck_assert_double_eq_tol(obstacle_gap(o, dim, x, n, 0), s, 1e-11);
+}
+
+START_TEST(plane_is_met_where_it_was_left) {
+  for (int k = 0; k < 500; ++k) {
+    int dim = 2 + k % 2;
+    obstacle o = {.shape = OBSTACLE_PLANE};
+    double n[3], q[3], a[3];
+    random_unit(dim, o.direction);
+    random_unit(dim, n);
+    double facing = dot(n, o.direction);
+    if (fabs(facing) < 0.1) continue;
+    for (int c = 0; c < dim; ++c) {
+      o.point[c] = 3 * random_part();
+      a[c] = random_part();
+    }
+    for (int c = dim; c < 3; ++c) a[c] = 0;
+    double off = dot(a, o.direction);
+    for (int c = 0; c < 3; ++c) q[c] = o.point[c] + a[c] - off * o.direction[c];
+    if (facing < 0)
+      expect_gap(&o, dim, q, n, 2 * random_part());
+    else
+      ck_assert(obstacle_gap(&o, dim, q, n, 0) == HUGE_VAL);
+  }
+}
+END_TEST
+
+/* Normal of the circle at q = centre + radius w towards the body is w outside,
+ * -w inside. */
+static void round_case(int k) {
+  int dim = 2 + k % 2;
+  obstacle o = {.shape = k % 3 == 0 ? OBSTACLE_CYLINDER : OBSTACLE_SPHERE,
+                .inside = k / 2 % 2,
+                .radius = 2 + random_part()};
+  double n[3], q[3], w[3];
+  random_unit(3, o.direction);
+  random_unit(dim, n);
+  random_unit(dim, w);
+  double slide = 0;
+  if (dim == 3 && o.shape == OBSTACLE_CYLINDER) {
+    double along = dot(w, o.direction);
+    for (int c = 0; c < 3; ++c) w[c] -= along * o.direction[c];
+    double length = sqrt(dot(w, w));
+    for (int c = 0; c < 3; ++c) w[c] /= length;
+    slide = random_part();
+  }
+  for (int c = 0; c < 3; ++c) {
+    o.point[c] = c < dim ? random_part() : 0.0;
+    q[c] = o.point[c] + o.radius * w[c] + slide * o.direction[c];
+  }
+  double facing = (o.inside ? -1 : 1) * dot(n, w);
+  if (facing > -0.2) return;
+  expect_gap(&o, dim, q, n, 0.3 * fabs(random_part()));
+  expect_gap(&o, dim, q, n, -0.1 * fabs(random_part()));
+}
+
+START_TEST(circle_and_sphere_are_met_where_they_were_left) {
+  for (int k = 0; k < 2000; ++k) round_case(k);
+}
+END_TEST
+
+START_TEST(gap_of_a_disc_above_a_cylinder_by_hand) {
+  obstacle o = {.shape = OBSTACLE_CYLINDER, .radius = 5, .point = {0, -5, 0}};
+  double down[3] = {0, -1, 0}, up[3] = {0, 1, 0};
+  double x[3] = {3, 1, 0}, inside[3] = {3, -2, 0}, beyond[3] = {5.5, 1, 0};
+  ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, down, 0), 2, 1e-14);
+  ck_assert_double_eq_tol(obstacle_gap(&o, 2, inside, down, 0), -1, 1e-14);
+  ck_assert(obstacle_gap(&o, 2, beyond, down, 0) == HUGE_VAL);
+  ck_assert(obstacle_gap(&o, 2, x, up, 0) == HUGE_VAL);
+  o.inside = 1;
+  double in_bore[3] = {3, -6, 0};
+  ck_assert_double_eq_tol(obstacle_gap(&o, 2, in_bore, down, 0), 3, 1e-14);
+  ck_assert_double_eq_tol(obstacle_gap(&o, 2, in_bore, up, 0), 5, 1e-14);
+  ck_assert(obstacle_gap(&o, 2, x, down, 0) == HUGE_VAL);
+  ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, up, 0), -2, 1e-14);
+}
+END_TEST
+
+START_TEST(line_along_the_axis_misses_the_cylinder) {
+  obstacle o = {
+      .shape = OBSTACLE_CYLINDER, .radius = 1, .direction = {0, 0, 1}};
+  double x[3] = {2, 0, 0}, n[3] = {0, 0, -1}, slant[3] = {-0.6, 0, 0.8};
+  ck_assert(obstacle_gap(&o, 3, x, n, 0) == HUGE_VAL);
+  ck_assert_double_eq_tol(obstacle_gap(&o, 3, x, slant, 0), 1 / 0.6, 1e-14);
+}
+END_TEST
+
+/* A tiny gap beside a radius 1e9 times larger keeps its digits. */
+START_TEST(flat_sphere_keeps_the_digits_of_the_gap) {
+  obstacle o = {.shape = OBSTACLE_SPHERE, .radius = 1048576};
+  o.point[1] = -1048576;
+  double down[3] = {0, -1, 0}, x[3] = {0, 0x1p-20, 0};
+  ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, down, 0), 0x1p-20, 1e-15);
+}
+END_TEST
+
+START_TEST(lengths_times_a_power_of_two_scale_every_bit) {
+  for (int k = 0; k < 300; ++k) {
+    int dim = 2 + k % 2, power = k % 81 - 40;
+    obstacle a = {.shape = OBSTACLE_PLANE + k % 3, .inside = k % 2}, b;
+    double n[3], x[3], far[3];
+    random_unit(dim, a.direction);
+    random_unit(dim, n);
+    a.radius = 1 + fabs(random_part());
+    b = a;
+    b.radius = ldexp(a.radius, power);
+    for (int c = 0; c < 3; ++c) {
+      a.point[c] = random_part();
+      a.motion[c].number = random_part();
+      x[c] = 2 * random_part();
+      b.point[c] = ldexp(a.point[c], power);
+      b.motion[c].number = ldexp(a.motion[c].number, power);
+      far[c] = ldexp(x[c], power);
+    }
+    double gap = obstacle_gap(&a, dim, x, n, 0);
+    ck_assert(obstacle_gap(&b, dim, far, n, 0) == ldexp(gap, power));
+  }
+}
+END_TEST
+
+static void compile(quantity *q, const char *text) {
+  expression *e = NULL;
+  int column;
+  ck_assert_int_eq(expression_compile(text, NULL, NULL, &e, &column), OK);
+  q->formula = e;
+}
+
+static void release(quantity *q) {
+  expression_free((expression *)q->formula);
+  q->formula = NULL;
+}
+
+START_TEST(obstacle_shifts_with_time) {
+  obstacle o = {.shape = OBSTACLE_PLANE, .direction = {0, 1, 0}};
+  double down[3] = {0, -1, 0}, x[3] = {7, 2, 0};
+  ck_assert_int_eq(obstacle_moves(&o), 0);
+  compile(&o.motion[1], "0.25*t");
+  ck_assert_int_eq(obstacle_moves(&o), 1);
+  ck_assert_double_eq(obstacle_gap(&o, 2, x, down, 4), 1);
+  o.shape = OBSTACLE_CONFORMING;
+  ck_assert_double_eq(obstacle_gap(&o, 2, x, down, 0), 0);
+  ck_assert_double_eq(obstacle_gap(&o, 2, x, down, 4), -1);
+  release(&o.motion[1]);
+}
+END_TEST
+
+/* A parabola that moves sideways is the parabola beside its new apex. */
+START_TEST(given_gap_is_that_of_the_point_now_opposite) {
+  obstacle o = {.shape = OBSTACLE_GAP};
+  double down[3] = {0, -1, 0}, x[3] = {3, 0, 0};
+  compile(&o.gap, "x*x/20");
+  ck_assert_int_eq(obstacle_moves(&o), 0);
+  ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, down, 0), 0.45, 1e-15);
+  compile(&o.motion[0], "t");
+  quantity sideways = o.motion[0];
+  o.motion[1].number = -0.5;
+  ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, down, 2), 0.55, 1e-15);
+  double slant[3] = {0.6, -0.8, 0};
+  o.motion[0].formula = NULL;
+  o.motion[0].number = 2 * 0.6;
+  o.motion[1].number = 2 * -0.8;
+  ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, slant, 0), 2.45, 1e-14);
+  release(&o.gap);
+  compile(&o.gap, "log(-1-x*x)");
+  ck_assert(isnan(obstacle_gap(&o, 2, x, down, 0)));
+  release(&o.gap);
+  release(&sideways);
+}
+END_TEST
+
+UNIT_MAIN("obstacle", plane_is_met_where_it_was_left,
+          circle_and_sphere_are_met_where_they_were_left,
+          gap_of_a_disc_above_a_cylinder_by_hand,
+          line_along_the_axis_misses_the_cylinder,
+          flat_sphere_keeps_the_digits_of_the_gap,
+          lengths_times_a_power_of_two_scale_every_bit,
+          obstacle_shifts_with_time,
+          given_gap_is_that_of_the_point_now_opposite)
