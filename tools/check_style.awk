@@ -195,6 +195,7 @@ function end_declaration(    text, before_value) {
 }
 
 function is_constant(text) {
+  if (text ~ /\( \* const /) return 1
   if (text ~ /\*/) return text ~ /\* const [^*]*$/
   return text ~ /(^| )const /
 }
