@@ -17,6 +17,8 @@
  * - NAME = VALUE under *PARAMETER is an expression: 3+1 is 4. Only the whole
  *   of a value that has a point, as 1.5+03, is read as a number by itself.
  * - The text of a quoted field without x y z t is its value, in full digits.
+ *   On a card what is no expression, or a name alone, is taken as it is: so a
+ *   name of a file may have commas and blanks.
  * - Fixed columns: a blank numeric field is 0 as in Fortran, but the line ends
  *   with its last filled field; blanks inside a number are an error; a real
  *   without a point gets that of Fw.d. Text after the last column: warning.

@@ -182,8 +182,9 @@ static int is_name_alone(const char *text) {
   return *text == '\0';
 }
 
-/* A quoted field without variables becomes the digits of its value. */
-static status settle_constant(reader *r, field *f) {
+/* A quoted field without variables becomes the digits of its value; *valid:
+ * it is an expression at all. */
+static status settle_constant(reader *r, field *f, int *valid) {
   status st = OK;
   expression *e = NULL;
   int column;
@@ -192,6 +193,7 @@ static status settle_constant(reader *r, field *f) {
   st = expression_compile(f->text, deck_symbol, r->d, &e, &column);
   if (st == ERR_DECK) st = OK; /* reported by who needs a value               */
   TRY(st);
+  *valid = e != NULL;
   if (e == NULL || expression_variables(e) != 0) goto done;
   double value = expression_value(e, origin, 0);
   if (!isfinite(value)) goto done;
@@ -210,24 +212,39 @@ static void check_exponent(reader *r, const char *raw, const field *f) {
               "'%s' becomes '%s', a number with exponent", raw, f->text);
 }
 
-status field_read(reader *r, piece p, int on_card, field *out) {
+/* Text in quotes: an expression, or on a card also a name with commas. */
+static status read_quoted(reader *r, const char *text, size_t n, int on_card,
+                          const place *at, field *out) {
   status st = OK;
-  out->at = logical_place(&r->line, p.start);
-  out->quoted = take_quotes(r, &p);
-  size_t length;
-  const char *text =
-      trim(r->line.all.text + p.start, (size_t)p.length, &length);
-  place inside = logical_place(&r->line, (int)(text - r->line.all.text));
-  TRY(symbols_replace(r, text, length,
-                      out->quoted ? REPLACE_EXPRESSION : REPLACE_PLAIN, &inside,
-                      &out->text));
-  if (out->quoted && !(on_card && is_name_alone(out->text)))
-    TRY(settle_constant(r, out));
-  if (!out->quoted && memchr(text, '<', length) != NULL) {
-    const char *raw = store_text(r->d, text, length);
+  int valid = 0;
+  TRY(symbols_replace(r, text, n, REPLACE_EXPRESSION, at, &out->text));
+  if (!(on_card && is_name_alone(out->text)))
+    TRY(settle_constant(r, out, &valid));
+  if (on_card && !valid)
+    TRY(symbols_replace(r, text, n, REPLACE_LENIENT, at, &out->text));
+done:
+  return st;
+}
+
+static status read_plain(reader *r, const char *text, size_t n, const place *at,
+                         field *out) {
+  status st = OK;
+  TRY(symbols_replace(r, text, n, REPLACE_PLAIN, at, &out->text));
+  if (n > 0 && memchr(text, '<', n) != NULL) {
+    const char *raw = store_text(r->d, text, n);
     if (raw == NULL) FAIL(ERR_MEMORY, "memory exhausted: field");
     check_exponent(r, raw, out);
   }
 done:
   return st;
+}
+
+status field_read(reader *r, piece p, int on_card, field *out) {
+  size_t n;
+  out->at = logical_place(&r->line, p.start);
+  out->quoted = take_quotes(r, &p);
+  const char *text = trim(r->line.all.text + p.start, (size_t)p.length, &n);
+  place inside = logical_place(&r->line, (int)(text - r->line.all.text));
+  return out->quoted ? read_quoted(r, text, n, on_card, &inside, out)
+                     : read_plain(r, text, n, &inside, out);
 }

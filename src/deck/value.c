@@ -12,6 +12,10 @@ static int report_number(const field *f, message_log *log, message_id id,
                          const char *kind, const char *why) {
   if (*f->text == '\0')
     message_add(log, P1037, &f->at, "empty field, %s expected", kind);
+  else if (f->quoted)
+    message_add(log, id, &f->at,
+                "not %s: '%.200s' (no expression of a constant value)", kind,
+                f->text);
   else if (strncmp(why, "not", 3) == 0)
     message_add(log, id, &f->at, "%s: '%.200s'", why, f->text);
   else

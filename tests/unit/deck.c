@@ -1,5 +1,6 @@
 /* src/deck: the grammar of the deck, good and wrong; each wrong deck with the
  * first line it is answered with. */
+#include "base/memory.h"
 #include "support/decks.h"
 #include "support/unit.h"
 
@@ -38,6 +39,8 @@ static const good_deck good_decks[] = {
   /* Quotes. */
   {"*A\n\"x*max(y,2)\", 2\n", "*A[\"x*max(y,2)\"|2]"},
   {"*A, F=\"a b,c.msh\", G=\"1+1\"\n", "*A{F=a b,c.msh}{G=2}"},
+  {"*PARAMETER\nN=-2\n*A, F=\"a <N>,b.msh\", G=\"<N>^2\", H=\"N\"\n",
+   "*A{F=a -2,b.msh}{G=4}{H=N}"},
   {"*A\n\"2*3\",\" x \"\n", "*A[\"6\"|\"x\"]"},
   {"*A, B=\"p=q\"\n", "*A{B=p=q}"},
   /* Headings. */
@@ -494,6 +497,7 @@ START_TEST(wrong_definitions_of_the_command_line_are_refused) {
 END_TEST
 
 START_TEST(thousands_of_names_are_found) {
+  size_t before = memory_in_use();
   decks_enter();
   FILE *f = fopen("a.inp", "w");
   fputs("*PARAMETER\n", f);
@@ -510,6 +514,7 @@ START_TEST(thousands_of_names_are_found) {
     ck_assert_int_eq(n, i);
   }
   decks_done(&r);
+  ck_assert_uint_eq(memory_in_use(), before);
   decks_leave();
 }
 END_TEST
@@ -550,13 +555,16 @@ START_TEST(wrong_values_are_reported_at_their_place) {
       "a.inp:2:11: error P1025: not an integer: '2.0'\n",
       "a.inp:2:18: error P1022: unknown name FOO in expression 'x+foo'\n",
       "a.inp:2:23: error P1023: '1/0' is not finite\n",
-      "a.inp:2:30: error P1025: not an integer: '9999999999' (too large)\n"};
+      "a.inp:2:30: error P1025: not an integer: '9999999999' (too large)\n",
+      "a.inp:3:1: error P1024: not a number: 'x*2' (no expression of a "
+      "constant "
+      "value)\n"};
   quantity q;
   double real;
   int whole;
   decks_enter();
-  read_deck r =
-      decks_read_good("*A\nx, 1.5q, ,2.0,\"x+foo\",\"1/0\", 9999999999\n");
+  read_deck r = decks_read_good(
+      "*A\nx, 1.5q, ,2.0,\"x+foo\",\"1/0\", 9999999999\n\"x*2\"\n");
   const field *f = r.d->cards[0].records[0].fields;
   ck_assert_int_eq(deck_real(&f[0], r.log, &real), -1);
   ck_assert_int_eq(deck_quantity(r.d, &f[1], r.log, &q), -1);
@@ -565,6 +573,8 @@ START_TEST(wrong_values_are_reported_at_their_place) {
   ck_assert_int_eq(deck_quantity(r.d, &f[4], r.log, &q), -1);
   ck_assert_int_eq(deck_quantity(r.d, &f[5], r.log, &q), -1);
   ck_assert_int_eq(deck_int(&f[6], r.log, &whole), -1);
+  f = r.d->cards[0].records[1].fields;
+  ck_assert_int_eq(deck_real(&f[0], r.log, &real), -1);
   decks_print(r.log);
   const char *p = decks_messages();
   for (size_t i = 0; i < sizeof wanted / sizeof *wanted; ++i) {

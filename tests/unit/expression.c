@@ -241,6 +241,16 @@ START_TEST(nesting_is_bounded) {
 }
 END_TEST
 
+/* The value stack holds 64: x^(x^(...^1)) needs one more for each level. */
+START_TEST(values_on_the_stack_are_bounded) {
+  for (int n = 1; n < 300; ++n)
+    ck_assert_int_eq(compile_nested("x^", "", n), n < 64 ? OK : ERR_DECK);
+  for (int n = 1; n < 300; ++n)
+    ck_assert_int_eq(compile_nested("if(x,y,", ")", n),
+                     2 * n < 64 ? OK : ERR_DECK);
+}
+END_TEST
+
 START_TEST(long_flat_expressions_are_no_matter) {
   ck_assert_int_eq(compile_nested("1+", "", 100000), OK);
   ck_assert_int_eq(compile_nested("x*2-", "", 100000), OK);
@@ -270,5 +280,5 @@ END_TEST
 UNIT_MAIN("expression", values_agree_with_c, what_is_not_defined_is_not_hidden,
           wrong_texts_are_refused_where_they_are_wrong,
           variables_are_those_that_occur, nesting_is_bounded,
-          long_flat_expressions_are_no_matter,
+          values_on_the_stack_are_bounded, long_flat_expressions_are_no_matter,
           a_refused_request_leaves_nothing_behind)
