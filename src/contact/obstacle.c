@@ -63,6 +63,20 @@ static double round_gap(const obstacle *o, int dim, const double *y,
                     (distance - o->radius) * (distance + o->radius), o->inside);
 }
 
+int obstacle_normal(const obstacle *o, int dim, const double *x, double *n) {
+  int round = o->shape == OBSTACLE_CYLINDER || o->shape == OBSTACLE_SPHERE;
+  double axis = 0, sign = o->inside ? 1 : -1;
+  if (!round && o->shape != OBSTACLE_PLANE) return 0;
+  for (int c = 0; c < dim; ++c)
+    n[c] = round ? sign * (x[c] - o->point[c]) : -o->direction[c];
+  if (o->shape == OBSTACLE_CYLINDER && dim == 3)
+    axis = dot(3, n, o->direction);
+  for (int c = 0; c < dim; ++c) n[c] -= axis * o->direction[c];
+  double length = sqrt(dot(dim, n, n));
+  for (int c = 0; c < dim; ++c) n[c] /= length;
+  return length > 0;
+}
+
 void obstacle_motion(const obstacle *o, double t, double *d) {
   for (int c = 0; c < 3; ++c) d[c] = quantity_value(&o->motion[c], o->point, t);
 }

@@ -217,6 +217,10 @@ static void orient(builder *b, candidate *c) {
     c->left_out = 1;
     return;
   }
+  if (p->obstacle_normal)
+    obstacle_normal(p->support, b->dim,
+                    &b->in->mesh->x[(size_t)b->dim * (size_t)c->node_id],
+                    c->normal);
   unsigned fixed = b->in->fixed[c->node_id];
   if (frame_project(b->dim, fixed, c->normal) > fixed_sine) return;
   c->left_out = 1;

@@ -33,6 +33,7 @@ typedef struct contact_pair {
   const mesh_group *group;
   const obstacle *support;
   int friction; /* 1: its law has a sliding limit (for a warning only)    */
+  int obstacle_normal; /* 1: n is that of the obstacle, not of the body      */
   place at;
 } contact_pair;
 

@@ -77,4 +77,9 @@ typedef struct history_sink {
 status history_run(const model *m, const mesh *msh, const history_sink *sink,
                    int *unsettled);
 
+/* Rigid motions that the supports of the first step leave free, nothing solved:
+ * *list is new (memory_free), NULL if there are none. */
+status history_motions(const model *m, const mesh *msh, int *n,
+                       free_motion **list);
+
 #endif

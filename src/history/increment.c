@@ -94,6 +94,12 @@ done:
   return st;
 }
 
+static int has_held(const contact_surface *s) {
+  for (int k = 0; k < s->n * s->dim; ++k)
+    if (s->held[k]) return 1;
+  return 0;
+}
+
 static int has_side_gap(const contact_surface *s) {
   for (int i = 0; i < s->n * (s->dim - 1); ++i)
     if (s->side_id[i] >= 0) return 1;
@@ -113,6 +119,7 @@ static void set_problem(run *r) {
       .g0 = friction ? r->limit.g0 : NULL,
       .B = friction && r->limit.B.start != NULL ? &r->limit.B : NULL,
       .side_gap = has_side_gap(r->surface) ? r->side_gap : NULL,
+      .held = has_held(r->surface) ? r->surface->held : NULL,
       .floating = condensed_floating(r->c)};
 }
 

@@ -67,6 +67,7 @@ static status new_pairs(run *r) {
     r->pairs[i].group = &msh->group[c->group_id];
     r->pairs[i].support = &m->obstacles[c->obstacle_id];
     r->pairs[i].friction = c->law != NULL && c->law->value_name != NULL;
+    r->pairs[i].obstacle_normal = c->obstacle_normal;
     r->pairs[i].at = c->at;
   }
   for (int i = 0; i < msh->n_face; ++i)
@@ -222,6 +223,41 @@ done:
   return st;
 }
 
+/* Name of the section an element belongs to, by the element's number. */
+static const char *body_name(const run *r, size_t elem_no) {
+  for (int e = 0; e < r->msh->n_elem; ++e)
+    if (r->msh->elem_no[e] == elem_no)
+      return r->m->sections[r->m->elem_section[e]].elset;
+  return "?";
+}
+
+/* Nothing resists: no contact there, or tangential contact without friction. */
+static int is_unheld(const run *r, const free_motion *f) {
+  int friction = (r->m->effects & EFFECT_FRICTION) != 0;
+  return f->held_by == HELD_BY_NOTHING ||
+         (f->held_by == HELD_BY_FRICTION && !friction);
+}
+
+/* Bodies without enough supports are refused before anything is solved. */
+static status check_supports(const run *r) {
+  status st = OK;
+  free_motion *list = NULL;
+  int n = 0;
+  TRY(domain_free_motions(&r->d, &n, &list));
+  for (int i = 0; i < n; ++i)
+    if (is_unheld(r, &list[i]))
+      FAIL(ERR_SINGULAR,
+           "step %d: body %d (%s, element %zu) is free to move: %s; neither "
+           "*BOUNDARY nor %s holds it",
+           (int)(r->step - r->m->steps) + 1, list[i].body_id + 1,
+           body_name(r, list[i].elem_no), list[i].elem_no, list[i].text,
+           list[i].held_by == HELD_BY_FRICTION ? "frictionless contact"
+                                               : "contact");
+done:
+  memory_free(list);
+  return st;
+}
+
 static status report_ready(run *r) {
   if (r->sink->ready == NULL) return OK;
   setup_facts facts = {.info = condensed_info(r->c),
@@ -244,6 +280,7 @@ status run_prepare(run *r) {
     else
       free_surface(r);
     r->d.surface = r->surface;
+    TRY(check_supports(r));
     TRY(stiffness_assemble(&r->d, &r->k));
     TRY(condense(r->k, &r->d, &r->c));
     TRY(report_ready(r));
@@ -253,5 +290,20 @@ status run_prepare(run *r) {
   TRY(contact_solver_new(&r->step->solver, &r->solver));
 done:
   memory_free(fixed);
+  return st;
+}
+
+status history_motions(const model *m, const mesh *msh, int *n,
+                       free_motion **list) {
+  status st = OK;
+  static const history_sink nobody;
+  run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[0]};
+  TRY(run_new(&r));
+  load_fixed(m, msh, r.step, r.fixed);
+  if (m->effects & EFFECT_CONTACT) TRY(build_surface(&r));
+  r.d.surface = r.surface;
+  TRY(domain_free_motions(&r.d, n, list));
+done:
+  run_free(&r);
   return st;
 }

@@ -82,6 +82,7 @@ typedef struct obstacle_param {
 } obstacle_param;
 typedef struct contact_param {
   const char *name, *group, *obstacle;
+  int normal;
 } contact_param;
 typedef struct friction_param {
   const char *contact, *law, *amplitude;
