@@ -1,0 +1,217 @@
+/*
+ * The command line: options, their help, and what is asked without a job.
+ */
+#include "command.h"
+
+#include "base/message.h"
+#include "base/memory.h"
+#include "inform.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum {
+  ASK_CHECK = 256,
+  ASK_THREADS,
+  ASK_RESTART,
+  ASK_QUIET,
+  ASK_NO_TIMING,
+  ASK_HELP,
+  ASK_VERSION,
+  ASK_KEYWORDS,
+  ASK_LIST,
+  ASK_EXPLAIN
+};
+
+/* clang-format off */
+static const char *const help_rows[][2] = {
+  {"-o DIR", "folder of the results; default: where the deck is"},
+  {"-D NAME=VALUE", "set a *PARAMETER, wins over the deck; may be repeated"},
+  {"--check", "read and check everything, print sizes and plan, solve nothing"},
+  {"--threads N", "threads of the dense algebra, 1 if not said"},
+  {"--no-timing", "no CPU seconds in the files: equal runs give equal bytes"},
+  {"--quiet", "no progress line"},
+  {"--help", "this text"},
+  {"--version", "version, libraries, BLAS kernel"},
+  {"--keywords [CARD]", "cards of the deck, or one card in full"},
+  {"--list KIND", "solvers, materials, friction or integrators"},
+  {"--explain [NUMBER]", "what a message such as P1003 means and what to do"}};
+
+static const char *const exit_rows[][2] = {
+  {"0", "done"},
+  {"1", "finished, but an increment missed its tolerance"},
+  {"2", "command line or deck not valid"},
+  {"3", "mesh not valid"},
+  {"4", "a file cannot be opened, read or written"},
+  {"5", "memory exhausted"},
+  {"6", "no unique equilibrium: singular, not positive definite, NaN"},
+  {"7", "a defect of the program"}};
+
+static const struct option words[] = {
+  {"check", no_argument, NULL, ASK_CHECK},
+  {"threads", required_argument, NULL, ASK_THREADS},
+  {"restart", no_argument, NULL, ASK_RESTART},
+  {"quiet", no_argument, NULL, ASK_QUIET},
+  {"no-timing", no_argument, NULL, ASK_NO_TIMING},
+  {"help", no_argument, NULL, ASK_HELP},
+  {"version", no_argument, NULL, ASK_VERSION},
+  {"keywords", no_argument, NULL, ASK_KEYWORDS},
+  {"list", required_argument, NULL, ASK_LIST},
+  {"explain", no_argument, NULL, ASK_EXPLAIN},
+  {NULL, 0, NULL, 0}};
+/* clang-format on */
+
+static void print_help(void) {
+  puts("protis: quasistatic frictional contact of elastic bodies");
+  puts("usage: protis JOB[.inp] [options]\n");
+  for (size_t i = 0; i < sizeof help_rows / sizeof *help_rows; ++i)
+    printf("  %-20s %s\n", help_rows[i][0], help_rows[i][1]);
+  puts(
+      "\nfiles: JOB.lst listing, JOB.sta a line per increment, JOB.cvg a line "
+      "per\niteration, JOB.dat tables, JOB.h5 and JOB.xdmf fields, JOB.json "
+      "figures");
+  puts("exit codes:");
+  for (size_t i = 0; i < sizeof exit_rows / sizeof *exit_rows; ++i)
+    printf("  %-3s %s\n", exit_rows[i][0], exit_rows[i][1]);
+}
+
+static int wrong(const char *what, const char *word) {
+  fprintf(stderr, "protis: error: %s%s; see protis --help\n", what, word);
+  return 2;
+}
+
+static int print_keywords(const char *card) {
+  if (inform_keywords(card)) return 0;
+  return wrong("there is no card ", card);
+}
+
+static int print_list(const char *kind) {
+  if (inform_list(kind)) return 0;
+  return wrong("--list knows solvers, materials, friction, integrators, not ",
+               kind);
+}
+
+static int print_explain(const char *number) {
+  if (message_explain(number, stdout)) return 0;
+  return wrong("there is no message ", number);
+}
+
+static int read_threads(const char *text, command *c) {
+  char *end;
+  long n = strtol(text, &end, 10);
+  if (*end != '\0' || end == text || n < 1 || n > 1024) return 0;
+  c->threads = (int)n;
+  return 1;
+}
+
+/* Word for option "what"; -1: go on, else the exit code. */
+static int take_option(int what, const char *value, const char *next,
+                       command *c) {
+  switch (what) {
+    case 'o':
+      memory_free(c->dir);
+      c->dir = memory_text(value);
+      return c->dir == NULL ? 5 : -1;
+    case 'D':
+      if (strchr(value, '=') == NULL)
+        return wrong("-D needs NAME=VALUE, not ", value);
+      c->defines[c->n_define++] = value;
+      return -1;
+    case ASK_CHECK:
+      c->check_only = 1;
+      return -1;
+    case ASK_THREADS:
+      return read_threads(value, c)
+                 ? -1
+                 : wrong("--threads needs a number from 1 to 1024, not ",
+                         value);
+    case ASK_RESTART:
+      return wrong("--restart is not available in this version", "");
+    case ASK_QUIET:
+      c->quiet = 1;
+      return -1;
+    case ASK_NO_TIMING:
+      c->no_timing = 1;
+      return -1;
+    case ASK_HELP:
+      print_help();
+      return 0;
+    case ASK_VERSION:
+      inform_version();
+      return 0;
+    case ASK_KEYWORDS:
+      return print_keywords(next);
+    case ASK_LIST:
+      return print_list(value);
+    case ASK_EXPLAIN:
+      return print_explain(next);
+    default:
+      return wrong("unknown option, or its value is missing", "");
+  }
+}
+
+static int file_exists(const char *name) {
+  struct stat info;
+  return stat(name, &info) == 0;
+}
+
+/* JOB or JOB.inp: the name as given if there is such a file, else with .inp. */
+static char *find_deck(const char *name) {
+  size_t length = strlen(name);
+  char *with = memory_new(length + 5, 1);
+  if (with == NULL) return NULL;
+  memcpy(with, name, length + 1);
+  int has = length > 4 && strcmp(name + length - 4, ".inp") == 0;
+  if (!has) {
+    memcpy(with + length, ".inp", 5);
+    if (!file_exists(with) && file_exists(name)) with[length] = '\0';
+  }
+  return with;
+}
+
+/* The folder the deck stands in. */
+static char *folder_of(const char *file) {
+  const char *slash = strrchr(file, '/');
+  if (slash == NULL) return memory_text(".");
+  size_t length = slash == file ? 1 : (size_t)(slash - file);
+  char *dir = memory_new(length + 1, 1);
+  if (dir != NULL) memcpy(dir, file, length);
+  return dir;
+}
+
+/* The job itself; -1: run it. */
+static int take_job(int n, char **job, command *c) {
+  if (n == 0) return wrong("no job given", "");
+  if (n > 1) return wrong("one job at a time; not expected: ", job[1]);
+  c->deck_file = find_deck(job[0]);
+  if (c->deck_file == NULL) return 5;
+  if (c->dir == NULL) c->dir = folder_of(c->deck_file);
+  return c->dir == NULL ? 5 : -1;
+}
+
+int command_read(int argc, char **argv, command *c, int *exit_code) {
+  int what, code = -1;
+  memset(c, 0, sizeof *c);
+  c->defines = memory_new((size_t)argc, sizeof *c->defines);
+  if (c->defines == NULL) code = 5;
+  while (code < 0 &&
+         (what = getopt_long(argc, argv, "o:D:", words, NULL)) != -1) {
+    const char *next = optind < argc ? argv[optind] : NULL;
+    code = take_option(what, optarg, next, c);
+  }
+  if (code < 0) code = take_job(argc - optind, argv + optind, c);
+  if (code < 0) return 1;
+  *exit_code = code;
+  command_free(c);
+  return 0;
+}
+
+void command_free(command *c) {
+  memory_free(c->deck_file);
+  memory_free(c->dir);
+  memory_free(c->defines);
+  memset(c, 0, sizeof *c);
+}

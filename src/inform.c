@@ -1,0 +1,133 @@
+/*
+ * What protis tells without solving: version, lists, the check of a deck.
+ */
+#include "inform.h"
+
+#include "base/memory.h"
+#include "history/history.h"
+
+#include <cholmod.h>
+#include <hdf5.h>
+#include <stdio.h>
+#include <string.h>
+
+#define PROTIS_VERSION "0.1"
+
+extern char *openblas_get_config(void);
+
+void inform_version(void) {
+  unsigned major, minor, release;
+  int cholmod[3];
+  cholmod_version(cholmod);
+  H5get_libversion(&major, &minor, &release);
+  printf("protis %s\n", PROTIS_VERSION);
+  printf("CHOLMOD %d.%d.%d\n", cholmod[0], cholmod[1], cholmod[2]);
+  printf("%s\n", openblas_get_config());
+  printf("BLAS kernel %s%s\n", blas_kernel(),
+         blas_kernel_changed() ? " (chosen by protis)" : "");
+  printf("HDF5 %u.%u.%u\n", major, minor, release);
+}
+
+static void list_options(const option *table) {
+  for (const option *o = table; o != NULL && o->name != NULL; ++o)
+    printf("    %-16s default %s; %s\n", o->name,
+           o->initial == NULL ? "none" : o->initial, o->help);
+}
+
+static void list_solvers(void) {
+  puts(
+      "AUTO\n  The default: newton first, then the others on the same "
+      "problem from a cold start.\n  The listing says who tried and who "
+      "answered.");
+  for (int i = 0; solver_list[i] != NULL; ++i) {
+    const solver_ops *s = solver_list[i];
+    printf("%s  (%s)\n  %s\n", s->name, s->reference, s->help);
+    list_options(s->options);
+  }
+}
+
+static void list_friction(void) {
+  for (int i = 0; friction_list[i] != NULL; ++i) {
+    const friction_ops *f = friction_list[i];
+    printf("%s  (%s)\n  %s\n", f->name, f->reference, f->help);
+    if (f->value_name != NULL)
+      printf("  data line: %s, unit %s\n", f->value_name, f->value_unit);
+    list_options(f->options);
+  }
+}
+
+int inform_keywords(const char *name) { return keywords_print(name, stdout); }
+
+int inform_list(const char *kind) {
+  if (strcmp(kind, "solvers") == 0)
+    list_solvers();
+  else if (strcmp(kind, "friction") == 0)
+    list_friction();
+  else if (strcmp(kind, "materials") == 0)
+    puts(
+        "elastic  (CPR98 2.2)\n  *ELASTIC, TYPE=ISO, ORTHO or ANISO: linear "
+        "elasticity, any symmetric and\n  positive definite a_ijkl");
+  else if (strcmp(kind, "integrators") == 0)
+    puts(
+        "none: all materials of this version are elastic, no inelastic strain "
+        "is integrated");
+  else
+    return 0;
+  return 1;
+}
+
+static void print_sizes(const model *m, const mesh *msh) {
+  printf("mesh      %d nodes, %d elements, %d-D\n", msh->n_node, msh->n_elem,
+         msh->dim);
+  for (int i = 0; i < msh->n_group; ++i)
+    printf("group     %-20s dimension %d, %d nodes\n", msh->group[i].name,
+           msh->group[i].dim, msh->group[i].n_node);
+  for (int i = 0; i < m->n_step; ++i)
+    printf("step      %d %s: %s, time %g to %g, %.0f increments\n", i + 1,
+           m->steps[i].name,
+           m->steps[i].kind == STEP_STATIC ? "static" : "quasistatic",
+           m->steps[i].start, m->steps[i].start + m->steps[i].total,
+           m->steps[i].total / m->steps[i].dt);
+}
+
+static void print_plan(const model *m) {
+  char why[200];
+  for (int i = 0; i < EFFECT_COUNT; ++i)
+    printf("effect    %-20s %-4s %s\n", effect_name(i),
+           m->effects >> i & 1u ? "on" : "off",
+           model_effect_reason(m, i, why, sizeof why));
+}
+
+/* Motions left by the supports; ERR_SINGULAR if nothing at all holds one. */
+static status print_motions(const model *m, const mesh *msh) {
+  status st = OK;
+  static const char *const held[] = {
+      "nothing holds it", "held by friction only", "held by contact only"};
+  free_motion *list = NULL;
+  int n = 0, unheld = -1;
+  TRY(history_motions(m, msh, &n, &list));
+  for (int i = 0; i < n; ++i) {
+    printf("free      body %d, %s: %s\n", list[i].body_id + 1, list[i].text,
+           held[list[i].held_by]);
+    int friction = (m->effects & EFFECT_FRICTION) != 0;
+    if (list[i].held_by == HELD_BY_NOTHING ||
+        (list[i].held_by == HELD_BY_FRICTION && !friction))
+      unheld = i;
+  }
+  if (n == 0) puts("supports  hold every body");
+  if (unheld >= 0)
+    FAIL(ERR_SINGULAR, "body %d (element %zu) is free to move: %s",
+         list[unheld].body_id + 1, list[unheld].elem_no, list[unheld].text);
+done:
+  memory_free(list);
+  return st;
+}
+
+status inform_check(const model *m, const mesh *msh) {
+  status st = OK;
+  print_sizes(m, msh);
+  print_plan(m);
+  TRY(print_motions(m, msh));
+done:
+  return st;
+}

@@ -1,0 +1,22 @@
+/*
+ * What protis tells without solving: version, lists, the check of a deck.
+ */
+#ifndef PROTIS_INFORM_H
+#define PROTIS_INFORM_H
+
+#include "base/status.h"
+
+struct mesh;
+struct model;
+
+void inform_version(void);
+/* All cards, or one in full; 0 if there is no card of that name. */
+int inform_keywords(const char *name);
+/* "solvers", "materials", "friction" or "integrators"; 0 if none of them. */
+int inform_list(const char *kind);
+
+/* protis JOB --check: sizes, memory, effect plan, motions that nothing or only
+ * contact holds; solves nothing. ERR_SINGULAR if a body is free. */
+status inform_check(const struct model *m, const struct mesh *msh);
+
+#endif
