@@ -1,0 +1,91 @@
+/*
+ * Bodies that nothing or contact alone holds: equilibrium where there is one,
+ * a verdict with exit 6 where there is none, never numbers.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Unit square on a floor with friction mu, no *BOUNDARY; the cards of the step
+ * and what stands before it. */
+static job run_free(double mu, const char *before, const char *loads,
+                    int expected) {
+  job j = job_begin("free");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "free.inp",
+            "*PARAMETER\nN = 5\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n%s"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n%s"
+            "*PRINT, TOTALS, CONTACT\n*END STEP\n",
+            before, mu, loads);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == expected, "exit %d, expected %d: %s", code, expected,
+                j.errors);
+  return j;
+}
+
+/* Pressed by 10 and pushed by 2 on the left: resultants and moment of the
+ * floor about the origin follow from statics. */
+START_TEST(resultants_are_those_of_statics) {
+  job j = run_free(0.5, "", "*DSLOAD\nTOP, P, 10.\nLEFT, P, 2.\n", 0);
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "force_y"), 10.0, 1e-9);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), -2.0, 1e-9);
+  /* 10 down at x = 1/2: -5; 2 to the right at y = 1/2: -1. */
+  ck_assert_double_eq_tol(dat_at(&t, 0, "moment_z"), 6.0, 1e-9);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(no_equilibrium_is_a_verdict) {
+  static const struct {
+    double mu;
+    const char *loads;
+  } scene[] = {
+      {0.5, "*DSLOAD\nTOP, P, -10.\n"},              /* lifted            */
+      {0.5, "*DSLOAD\nTOP, P, 10.\nLEFT, P, 6.\n"},  /* pushed too hard   */
+      {9.0, "*DSLOAD\nTOP, P, 10.\nLEFT, P, 12.\n"}, /* tips over         */
+      {0.5, "*DSLOAD\nTOP, P, \"120*x-50\"\n"}};     /* resultant outside */
+  for (size_t k = 0; k < sizeof scene / sizeof *scene; ++k) {
+    job j = run_free(scene[k].mu, "", scene[k].loads, 6);
+    ck_assert_ptr_nonnull(strstr(j.errors, "no equilibrium"));
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* Without any contact or support the free motions are named. */
+START_TEST(free_motions_are_named) {
+  static const struct {
+    const char *cards, *motion;
+  } scene[] = {{"*BOUNDARY\nBOTTOM, 2\n", "translation along x"},
+               {"*BOUNDARY\nLEFT, 1\n", "translation along y"},
+               {"", "translation"}};
+  for (size_t k = 0; k < sizeof scene / sizeof *scene; ++k) {
+    job j = job_begin("free");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(
+        &j, "free.inp",
+        "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n%s"
+        "*DSLOAD\nTOP, P, 1.\n*END STEP\n",
+        scene[k].cards);
+    for (int check = 0; check < 2; ++check) {
+      ck_assert_int_eq(job_run(&j, check ? "--check" : ""), 6);
+      ck_assert_ptr_nonnull(strstr(j.errors, scene[k].motion));
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("floating", resultants_are_those_of_statics,
+          no_equilibrium_is_a_verdict, free_motions_are_named)

@@ -1,0 +1,138 @@
+/*
+ * Units: the same scene in other units gives the same answer; powers of two in
+ * the forces or the lengths leave every bit.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Half block pressed from above and from the side, mu = 1, in four increments:
+ * open, slipping and sticking nodes. Length unit: 1/length of the base unit;
+ * force unit likewise. */
+static job run_scaled(double length, double force, const char *extra) {
+  double stress = force / (length * length);
+  job j = job_begin("scale");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "scale.inp",
+            "*PARAMETER\nN = 12\nLX = 40\nLY = 40\n"
+            "*MESH, FILE=square.geo, SCALE=%.17g\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n%.17g, 0.2\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, THICKNESS=%.17g\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.0\n*BOUNDARY\nRIGHT, 1\n"
+            "*DSLOAD\nTOP, P, %.17g\nLEFT, P, %.17g\n%s"
+            "*PRINT, CONTACT, ENERGY\n*END STEP\n",
+            length, 130000.0 * stress, length, 50.0 * stress, 150.0 * stress,
+            extra);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+static const char *const methods[] = {"*SOLVER, METHOD=AUTO\n",
+                                      "*SOLVER, METHOD=NEWTON\n",
+                                      "*SOLVER, METHOD=SOR, TOL=1E-11\n"};
+
+/* Columns of b are those of a times a factor, to a relative tolerance. */
+static void compare(const job *a, const job *b, double length, double force,
+                    double tol) {
+  static const struct {
+    const char *name;
+    int lengths, forces;
+  } column[] = {{"u_n", 1, 0}, {"u_t", 1, 0},  {"gap", 1, 0}, {"f_n", 0, 1},
+                {"f_t", 0, 1}, {"slip", 1, 0}, {"x", 1, 0},   {"limit", 0, 1}};
+  for (int block = 0; block < 4; ++block) {
+    dat p = job_table(a, "CONTACT", block), q = job_table(b, "CONTACT", block);
+    ck_assert_int_eq(p.n_row, q.n_row);
+    for (size_t c = 0; c < sizeof column / sizeof *column; ++c) {
+      double factor =
+          (column[c].lengths ? length : 1.0) * (column[c].forces ? force : 1.0);
+      double scale = dat_max(&p, column[c].name);
+      for (int i = 0; i < p.n_row; ++i) {
+        double expected = dat_at(&p, i, column[c].name) * factor;
+        double found = dat_at(&q, i, column[c].name);
+        ck_assert_msg(fabs(found - expected) <= tol * scale * factor,
+                      "%s: %.17g for %.17g", column[c].name, found, expected);
+      }
+    }
+    for (int i = 0; i < p.n_row; ++i)
+      ck_assert_double_eq(dat_at(&p, i, "status"), dat_at(&q, i, "status"));
+    dat_free(&p);
+    dat_free(&q);
+  }
+}
+
+START_TEST(five_units_of_length) {
+  /* mm is the base: m, um, inch, cm. */
+  static const double length[] = {1e-3, 1e3, 1.0 / 25.4, 0.1};
+  for (int s = 0; s < 3; ++s) {
+    job base = run_scaled(1.0, 1.0, methods[s]);
+    for (int k = 0; k < 4; ++k) {
+      job other = run_scaled(length[k], 1.0, methods[s]);
+      compare(&base, &other, length[k], 1.0, 1e-8);
+      job_end(&other);
+    }
+    job_end(&base);
+  }
+}
+END_TEST
+
+START_TEST(powers_of_two_leave_every_bit) {
+  static const double factor[][2] = {{1.0, 1099511627776.0},
+                                     {1.0, 1.0 / 1099511627776.0},
+                                     {1024.0, 1.0},
+                                     {1.0 / 1099511627776.0, 1.0},
+                                     {1099511627776.0, 1.0}};
+  for (int s = 0; s < 3; ++s) {
+    job base = run_scaled(1.0, 1.0, methods[s]);
+    for (int k = 0; k < 5; ++k) {
+      job other = run_scaled(factor[k][0], factor[k][1], methods[s]);
+      /* 17 digits identify a double: zero tolerance is bit for bit. */
+      compare(&base, &other, factor[k][0], factor[k][1], 0.0);
+      job_end(&other);
+    }
+    job_end(&base);
+  }
+}
+END_TEST
+
+START_TEST(loads_of_any_size) {
+  static const double force[] = {1e-12, 1e-6, 1e6, 1e12};
+  job base = run_scaled(1.0, 1.0, methods[0]);
+  for (int k = 0; k < 4; ++k) {
+    job other = run_scaled(1.0, force[k], methods[0]);
+    compare(&base, &other, 1.0, force[k], 1e-9);
+    job_end(&other);
+  }
+  job_end(&base);
+}
+END_TEST
+
+START_TEST(equal_runs_give_equal_bytes) {
+  static const char *const files[] = {"lst", "dat", "sta", "cvg", "xdmf"};
+  job a = run_scaled(1.0, 1.0, "*OUTPUT, FREQUENCY=1\n");
+  job b = run_scaled(1.0, 1.0, "*OUTPUT, FREQUENCY=1\n");
+  for (size_t k = 0; k < sizeof files / sizeof *files; ++k) {
+    char *p = job_file(&a, files[k]), *q = job_file(&b, files[k]);
+    ck_assert_msg(p != NULL && q != NULL, "no %s", files[k]);
+    ck_assert_msg(strcmp(p, q) == 0, "%s differs", files[k]);
+    ck_assert_uint_gt(strlen(p), 20);
+    free(p);
+    free(q);
+  }
+  char command[256];
+  snprintf(command, sizeof command, "cmp %s/scale.h5 %s/scale.h5", a.dir,
+           b.dir);
+  ck_assert_int_eq(system(command), 0);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
+UNIT_MAIN("scale", five_units_of_length, powers_of_two_leave_every_bit,
+          loads_of_any_size, equal_runs_give_equal_bytes)

@@ -1,0 +1,145 @@
+/*
+ * One triangle with two clamped vertices and the third on a rigid plane: every
+ * solution is known in closed form, up to three of them above the critical
+ * friction. K = area [(lambda + G) g g' + G |g|^2 I], g = grad of the P1
+ * function of the free vertex.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char mesh_text[] =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n"
+    "0 1 \"CLAMPED\"\n0 2 \"TIP\"\n1 3 \"FOOT\"\n2 4 \"BODY\"\n"
+    "$EndPhysicalNames\n$Nodes\n3\n1 -1 1 0\n2 1 3 0\n3 0 0 0\n$EndNodes\n"
+    "$Elements\n5\n1 15 2 1 1 1\n2 15 2 1 2 2\n3 15 2 2 3 3\n"
+    "4 1 2 3 1 1 3\n5 2 2 4 1 3 2 1\n$EndElements\n";
+
+static job run_triangle(double mu, double fx, double fy, const char *method,
+                        int *code) {
+  job j = job_begin("triangle");
+  job_write(&j, "triangle.msh", "%s", mesh_text);
+  job_write(&j, "triangle.inp",
+            "*MESH, FILE=triangle.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n%.17g\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\nTIP, 1, %.17g\nTIP, 2, %.17g\n"
+            "*SOLVER, METHOD=%s\n*PRINT, CONTACT, NODES\n*END STEP\n",
+            mu, fx, fy, method);
+  *code = job_run(&j, "");
+  return j;
+}
+
+/* K of the free vertex (0,0) with the others at (-1,1), (1,3): area 2,
+ * g = (2, -2) / 4 ... from the closed form of the gradient. */
+static void stiffness(double K[2][2]) {
+  double area = 2.0,
+         g[2] = {(1.0 - 3.0) / (2 * area), (1.0 - -1.0) / (2 * area)};
+  double G = 1 / 2.6, lambda = 0.3 / (1.3 * 0.4),
+         g2 = g[0] * g[0] + g[1] * g[1];
+  for (int a = 0; a < 2; ++a)
+    for (int b = 0; b < 2; ++b)
+      K[a][b] = area * ((lambda + G) * g[a] * g[b] + (a == b ? G * g2 : 0.0));
+}
+
+/* Solution number "which" (0 free, 1 stick, 2 slip to the right, 3 slip to the
+ * left) if it satisfies all conditions; u[2] displacement, r[2] force of the
+ * plane on the body. */
+static int solution(double mu, const double F[2], int which, double u[2],
+                    double r[2]) {
+  double K[2][2], det;
+  stiffness(K);
+  u[0] = u[1] = r[0] = r[1] = 0.0;
+  if (which == 0) {
+    det = K[0][0] * K[1][1] - K[0][1] * K[1][0];
+    u[0] = (K[1][1] * F[0] - K[0][1] * F[1]) / det;
+    u[1] = (K[0][0] * F[1] - K[1][0] * F[0]) / det;
+    return u[1] >= 0.0;
+  }
+  if (which == 1) {
+    r[0] = -F[0];
+    r[1] = -F[1];
+    return r[1] >= 0.0 && fabs(r[0]) <= mu * r[1];
+  }
+  /* K u = F + r, u_y = 0, r_x = -s mu r_y with s the direction of slip. */
+  double s = which == 2 ? 1.0 : -1.0;
+  u[0] = (F[0] + s * mu * F[1]) / (K[0][0] + s * mu * K[1][0]);
+  r[1] = K[1][0] * u[0] - F[1];
+  r[0] = -s * mu * r[1];
+  return r[1] >= 0.0 && s * u[0] >= 0.0;
+}
+
+/* Number of the solution that the run found, or -1. */
+static int found_solution(const job *j, double mu, const double F[2]) {
+  dat n = job_table(j, "NODES", -1), c = job_table(j, "CONTACT", -1);
+  ck_assert_int_eq(c.n_row, 1);
+  int tip = dat_row_near(&n, "y", 0.0), found = -1;
+  for (int k = 0; k < 4; ++k) {
+    double u[2], r[2];
+    if (!solution(mu, F, k, u, r)) continue;
+    double error = fabs(dat_at(&n, tip, "u_x") - u[0]) +
+                   fabs(dat_at(&n, tip, "u_y") - u[1]) +
+                   fabs(dat_at(&c, 0, "f_x") - r[0]) +
+                   fabs(dat_at(&c, 0, "f_y") - r[1]);
+    if (error < 1e-9) found = k;
+  }
+  dat_free(&n);
+  dat_free(&c);
+  return found;
+}
+
+static const char *const methods[] = {"AUTO", "NEWTON", "SOR"};
+
+START_TEST(closed_form_agrees_with_the_published_numbers) {
+  double K[2][2], u[2], r[2];
+  stiffness(K);
+  ck_assert_double_eq_tol(K[0][0], 0.8653846154, 1e-10);
+  ck_assert_double_eq_tol(K[0][1], -0.4807692308, 1e-10);
+  ck_assert(solution(1.0, (double[]){-1, 0.3}, 3, u, r));
+  ck_assert_double_eq_tol(u[0], -0.9657142857, 1e-9);
+  ck_assert_double_eq_tol(r[1], 0.1642857143, 1e-9);
+  ck_assert(solution(2.0, (double[]){1.9, -1}, 2, u, r));
+  ck_assert_double_eq_tol(u[0], 1.04, 1e-9);
+}
+END_TEST
+
+START_TEST(unique_solution_is_found) {
+  static const double F[][2] = {{0, -1},    {-1, 0.3},   {1.9, -1}, {1, 0.01},
+                                {-0.5, -1}, {0.2, -0.3}, {0, 0}};
+  static const double mu[] = {0.0, 0.3, 1.0, 1.7};
+  for (size_t s = 0; s < 3; ++s)
+    for (size_t k = 0; k < sizeof F / sizeof *F; ++k)
+      for (size_t m = 0; m < 4; ++m) {
+        int code;
+        job j = run_triangle(mu[m], F[k][0], F[k][1], methods[s], &code);
+        ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+        ck_assert_msg(found_solution(&j, mu[m], F[k]) >= 0,
+                      "%s, mu %g, F (%g, %g)", methods[s], mu[m], F[k][0],
+                      F[k][1]);
+        job_end(&j);
+      }
+}
+END_TEST
+
+/* Above mu = 1.8 one of the solutions, or an honest refusal; never another
+ * state. AUTO must answer. */
+START_TEST(one_of_several_solutions_is_found) {
+  static const double mu[] = {2.0, 3.0, 10.0}, F[] = {1.9, -1.0};
+  for (size_t s = 0; s < 3; ++s)
+    for (size_t m = 0; m < 3; ++m) {
+      int code;
+      job j = run_triangle(mu[m], F[0], F[1], methods[s], &code);
+      if (s == 0) ck_assert_int_eq(code, 0);
+      if (code == 0) ck_assert_int_ge(found_solution(&j, mu[m], F), 0);
+      job_end(&j);
+    }
+}
+END_TEST
+
+UNIT_MAIN("triangle", closed_form_agrees_with_the_published_numbers,
+          unique_solution_is_found, one_of_several_solutions_is_found)

@@ -1,0 +1,269 @@
+/* src/model: decks to models, loads of the steps, the echo of a deck. */
+#include "base/memory.h"
+#include "model/keyword.h"
+#include "support/grid.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* A deck read from text and checked against a mesh. */
+typedef struct scene {
+  message_log *log;
+  deck *d;
+  model *m;
+  mesh *msh;
+  status st;
+} scene;
+
+static char deck_name[] = "/tmp/protis-model-XXXXXX";
+
+static void read_text(scene *s, const char *text, mesh *msh) {
+  memset(s, 0, sizeof *s);
+  s->msh = msh;
+  strcpy(deck_name, "/tmp/protis-model-XXXXXX");
+  int fd = mkstemp(deck_name);
+  ck_assert_int_ge(fd, 0);
+  ck_assert_int_eq(write(fd, text, strlen(text)), (ssize_t)strlen(text));
+  close(fd);
+  ck_assert_int_eq(message_log_new(&s->log), OK);
+  ck_assert_int_eq(deck_read(deck_name, 0, NULL, s->log, &s->d), OK);
+  s->st = model_from_deck(s->d, s->log, &s->m);
+  if (s->st == OK && msh != NULL) s->st = model_check(s->m, msh);
+  if (s->st != OK) message_print(s->log, stdout);
+  unlink(deck_name);
+}
+
+static void close_scene(scene *s) {
+  model_free(s->m);
+  deck_free(s->d);
+  message_log_free(s->log);
+  grid_free(s->msh);
+}
+
+static mesh *square(void) {
+  const int n[] = {3, 2};
+  const double length[] = {6.0, 4.0};
+  return make_grid_2d(n, length);
+}
+
+static mesh *box(void) {
+  const int n[] = {2, 2, 2};
+  const double length[] = {2.0, 3.0, 4.0};
+  return make_grid_3d(n, length);
+}
+
+#define HEAD                                                        \
+  "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n" \
+  "*DENSITY\n2.5\n"
+
+/* Sum of the forces along c and moment about z of the nodal forces. */
+static double resultant(const mesh *msh, const double *F, int c) {
+  double sum = 0.0;
+  for (int i = 0; i < msh->n_node; ++i) sum += F[msh->dim * i + c];
+  return sum;
+}
+
+static double moment_z(const mesh *msh, const double *F) {
+  double sum = 0.0;
+  for (int i = 0; i < msh->n_node; ++i) {
+    const double *x = msh->x + msh->dim * i, *f = F + msh->dim * i;
+    sum += x[0] * f[1] - x[1] * f[0];
+  }
+  return sum;
+}
+
+/* One row per load: its card, and the resultant from the closed form. */
+typedef struct load_case {
+  const char *section, *cards;
+  int dim;
+  double force[3], moment;
+} load_case;
+
+/* Rectangle 6 x 4 thickness 0.5; box 2 x 3 x 4. Axisymmetric: radii 0 to 6. */
+static const load_case load_cases[] = {
+    {"THICKNESS=0.5", "*DSLOAD\nTOP, P, 3.\n", 2, {0, -9.0, 0}, -27.0},
+    {"THICKNESS=0.5", "*DSLOAD\nRIGHT, TY, 2.\n", 2, {0, 4.0, 0}, 24.0},
+    /* p = x on the top: 18*0.5, at x = 4 */
+    {"THICKNESS=0.5", "*DSLOAD\nTOP, P, \"x\"\n", 2, {0, -9.0, 0}, -36.0},
+    {"THICKNESS=0.5", "*DLOAD\nBODY, BX, 2.\n", 2, {24.0, 0, 0}, -48.0},
+    {"THICKNESS=0.5",
+     "*DLOAD\nBODY, GRAV, 10., 0., -2.\n",
+     2,
+     {0, -300.0, 0},
+     -900.0},
+    {"", "*CLOAD\nLEFT, 1, 7.\n", 2, {21.0, 0, 0}, -42.0},
+    /* Whole turn: pressure 3 on the disc of radius 6; moment is no matter. */
+    {"TYPE=AXISYMMETRIC",
+     "*DSLOAD\nTOP, P, 3.\n",
+     2,
+     {0, -339.29200658769764},
+     NAN},
+    /* Volume pi 36 4, force 2 per volume along z. */
+    {"TYPE=AXISYMMETRIC",
+     "*DLOAD\nBODY, BY, 2.\n",
+     2,
+     {0, 904.7786842338604},
+     NAN},
+    /* p = r on the disc: 2 pi 6^3 / 3 */
+    {"TYPE=CAX3", "*DSLOAD\nTOP, P, \"x\"\n", 2, {0, -452.3893421169302}, NAN},
+    {"", "*DSLOAD\nTOP, P, 3.\n", 3, {0, -24.0, 0}, -24.0},
+    {"", "*DSLOAD\nBACK, TX, \"y\"\n", 3, {9.0, 0, 0}, NAN},
+    {"", "*DLOAD\nBODY, BZ, 5.\n", 3, {0, 0, 120.0}, 0.0},
+    {"",
+     "*DLOAD\nBODY, GRAV, 10., 3., 0., -4.\n",
+     3,
+     {360.0, 0, -480.0},
+     -540.0}};
+
+START_TEST(resultant_is_the_integral_of_the_load) {
+  for (size_t k = 0; k < sizeof load_cases / sizeof *load_cases; ++k) {
+    const load_case *c = &load_cases[k];
+    char text[1024];
+    scene s;
+    snprintf(text, sizeof text,
+             HEAD
+             "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s%s\n*STEP\n*STATIC\n"
+             "%s*END STEP\n",
+             c->section[0] ? ", " : "", c->section, c->cards);
+    read_text(&s, text, c->dim == 2 ? square() : box());
+    ck_assert_int_eq(s.st, OK);
+    double *F = calloc((size_t)(c->dim * s.msh->n_node), sizeof *F);
+    ck_assert_int_eq(load_forces(s.m, s.msh, &s.m->steps[0], 1.0, F), OK);
+    for (int a = 0; a < c->dim; ++a)
+      if (!(c->section[0] == 'T' && c->section[1] == 'Y' && a == 0))
+        ck_assert_double_eq_tol(resultant(s.msh, F, a), c->force[a], 1e-10);
+    if (!isnan(c->moment))
+      ck_assert_double_eq_tol(moment_z(s.msh, F), c->moment, 1e-10);
+    free(F);
+    close_scene(&s);
+  }
+}
+END_TEST
+
+/* Value of the first load of a step at time t at the origin, as the force on
+ * the group of one corner... here: all nodes of LEFT carry the same force. */
+static double point_force(const scene *s, int step_id, double t) {
+  double *F = calloc((size_t)(2 * s->msh->n_node), sizeof *F);
+  ck_assert_int_eq(load_forces(s->m, s->msh, &s->m->steps[step_id], t, F), OK);
+  double f = F[2 * s->msh->group[1].node_id[0]];
+  free(F);
+  return f;
+}
+
+START_TEST(loads_ramp_stay_change_and_end) {
+  scene s;
+  read_text(&s,
+            HEAD
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*AMPLITUDE, NAME=UP\n0., 0., 1., 1., 3., 5.\n"
+            "*STEP\n*QUASISTATIC\n0.5, 2.\n*CLOAD\nLEFT, 1, 8.\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n1., 1.\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n1., 2.\n*CLOAD\nLEFT, 1, 2.\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n1., 2.\n*CLOAD\nLEFT, 1, 2., UP\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n1., 1.\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n1., 1.\n*CLOAD, OP=NEW\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n1., 1.\n*END STEP\n",
+            square());
+  ck_assert_int_eq(s.st, OK);
+  ck_assert_str_eq(s.msh->group[1].name, "LEFT");
+  ck_assert_double_eq(point_force(&s, 0, 0.5), 2.0); /* ramp 0 to 8 over 2 */
+  ck_assert_double_eq(point_force(&s, 0, 2.0), 8.0);
+  ck_assert_double_eq(point_force(&s, 1, 2.5), 8.0); /* stays               */
+  ck_assert_double_eq(point_force(&s, 2, 4.0), 5.0); /* ramp 8 to 2          */
+  ck_assert_double_eq(point_force(&s, 3, 6.0), 2.0); /* step time 1: 2 * 1   */
+  ck_assert_double_eq(point_force(&s, 3, 7.0), 6.0); /* step time 2: 2 * 3   */
+  ck_assert_double_eq(point_force(&s, 4, 7.5), 6.0); /* held at the end      */
+  ck_assert_double_eq(point_force(&s, 5, 8.5), 3.0); /* OP=NEW: down to zero */
+  ck_assert_int_eq(s.m->steps[6].loads.n, 0);
+  close_scene(&s);
+}
+END_TEST
+
+START_TEST(echo_reads_back_to_the_same_echo) {
+  static const char text[] =
+      "*HEADING\nA title, with a comma\n*PARAMETER\nH = 0.1\n"
+      "*UNITS, LENGTH=mm\n" HEAD
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3, THICKNESS=<H>\n"
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\nMOVE, 0., \"0.1*t\"\n"
+      "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n\"0.3 + h*x\"\n"
+      "*STEP\n*QUASISTATIC\n0.1, 1.\n*BOUNDARY\nTOP, 1, 2, 0.\n"
+      "*SOLVER, METHOD=SOR, TOL=1.D-9\n*PRINT, CONTACT\n*END STEP\n";
+  char *echo[2] = {NULL, NULL};
+  for (int pass = 0; pass < 2; ++pass) {
+    scene s;
+    size_t size;
+    read_text(&s, pass == 0 ? text : echo[0], square());
+    ck_assert_int_eq(s.st, OK);
+    FILE *f = open_memstream(&echo[pass], &size);
+    model_echo(s.m, f);
+    fclose(f);
+    close_scene(&s);
+  }
+  ck_assert_str_eq(echo[0], echo[1]);
+  ck_assert_ptr_nonnull(strstr(echo[0], "THICKNESS=0.1"));
+  ck_assert_ptr_nonnull(strstr(echo[0], "LIMIT_MAX_ITER=1000"));
+  ck_assert_ptr_nonnull(strstr(echo[0], "A title, with a comma"));
+  free(echo[0]);
+  free(echo[1]);
+}
+END_TEST
+
+START_TEST(effects_are_what_the_deck_calls_for) {
+  scene s;
+  read_text(&s,
+            HEAD
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.\n"
+            "*STEP\n*STATIC\n*DSLOAD\nTOP, P, 1.\n*OUTPUT, HDF5=NO\n"
+            "*END STEP\n",
+            square());
+  ck_assert_int_eq(s.st, OK);
+  ck_assert_uint_eq(s.m->effects, EFFECT_CONTACT);
+  close_scene(&s);
+}
+END_TEST
+
+START_TEST(every_refused_request_is_reported) {
+  static const char text[] = HEAD
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n"
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=C, LAW=COULOMB, TABLE=X\n0., 0.1, 1., 0.2\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n*DSLOAD\nRIGHT, P, 1., A\n"
+      "*SOLVER, METHOD=SOR\n*PRINT, CONTACT, NODES\n*END STEP\n"
+      "*STEP\n*STATIC\n*END STEP\n";
+  scene s;
+  read_text(&s, text, square());
+  ck_assert_int_eq(s.st, OK);
+  model_free(s.m);
+  size_t before = memory_in_use();
+  int refused = 0, done = 0;
+  for (long k = 1; !done; ++k) {
+    s.m = NULL;
+    memory_refuse(k, 0);
+    status st = model_from_deck(s.d, s.log, &s.m);
+    if (st == OK) st = model_check(s.m, s.msh);
+    done = st == OK;
+    memory_refuse(0, 0);
+    refused += st == ERR_MEMORY;
+    ck_assert(st == OK || st == ERR_MEMORY);
+    model_free(s.m);
+  }
+  s.m = NULL;
+  ck_assert_int_gt(refused, 10);
+  ck_assert_uint_le(memory_in_use(), before + 64);
+  close_scene(&s);
+}
+END_TEST
+
+UNIT_MAIN("model", resultant_is_the_integral_of_the_load,
+          loads_ramp_stay_change_and_end, echo_reads_back_to_the_same_echo,
+          effects_are_what_the_deck_calls_for,
+          every_refused_request_is_reported)
