@@ -110,9 +110,9 @@ static status print_motions(const model *m, const mesh *msh) {
     printf("free      body %d, %s: %s\n", list[i].body_id + 1, list[i].text,
            held[list[i].held_by]);
     int friction = (m->effects & EFFECT_FRICTION) != 0;
-    if (list[i].held_by == HELD_BY_NOTHING ||
-        (list[i].held_by == HELD_BY_FRICTION && !friction))
-      unheld = i;
+    int free = list[i].held_by == HELD_BY_NOTHING ||
+               (list[i].held_by == HELD_BY_FRICTION && !friction);
+    if (free && unheld < 0) unheld = i;
   }
   if (n == 0) puts("supports  hold every body");
   if (unheld >= 0)

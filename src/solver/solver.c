@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #define SOLVER_ROW(name) &name##_solver,
 const solver_ops *const solver_list[] = {SOLVER_LIST(SOLVER_ROW) NULL};
@@ -25,7 +26,7 @@ static const solver_ops *const auto_chain[] = {&newton_solver, &sor_solver};
 
 const solver_ops *solver_find(const char *name) {
   for (int i = 0; solver_list[i] != NULL; ++i)
-    if (strcmp(solver_list[i]->name, name) == 0) return solver_list[i];
+    if (strcasecmp(solver_list[i]->name, name) == 0) return solver_list[i];
   return NULL;
 }
 

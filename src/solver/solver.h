@@ -85,7 +85,7 @@ typedef struct solver_ops {
 #define SOLVER_EXTERN(name) extern const solver_ops name##_solver;
 SOLVER_LIST(SOLVER_EXTERN)
 extern const solver_ops *const solver_list[]; /* NULL at the end              */
-const solver_ops *solver_find(const char *name); /* or NULL                   */
+const solver_ops *solver_find(const char *name); /* case ignored; or NULL     */
 
 /* ---- what the solvers share ---- */
 
