@@ -68,7 +68,7 @@ START_TEST(free_motions_are_named) {
     const char *cards, *motion;
   } scene[] = {{"*BOUNDARY\nBOTTOM, 2\n", "translation along x"},
                {"*BOUNDARY\nLEFT, 1\n", "translation along y"},
-               {"", "translation"}};
+               {"", "free to move"}};
   for (size_t k = 0; k < sizeof scene / sizeof *scene; ++k) {
     job j = job_begin("free");
     job_copy(&j, "tests/regression/mesh/square.geo");
