@@ -43,37 +43,6 @@ static void route_memory(void) {
   SuiteSparse_config.free_func = memory_free;
 }
 
-/* Both directions of the node graph among nodes with unknowns. */
-static status full_graph(const stiffness *k, graph *g) {
-  status st = OK;
-  size_t *at = NULL;
-  g->n = k->n_node;
-  NEW(g->start, k->n_node + 1);
-  NEW(at, k->n_node + 1);
-  for (int pass = 0; pass < 2; ++pass) {
-    for (int j = 0; j < k->n_node; ++j)
-      for (size_t p = k->start[j] + 1; k->free[j] && p < k->start[j + 1]; ++p) {
-        const int i = k->row[p];
-        if (k->free[i] == 0) continue;
-        if (pass == 1) {
-          g->next[at[i]] = j;
-          g->next[at[j]] = i;
-        }
-        ++at[i];
-        ++at[j];
-      }
-    if (pass == 1) break;
-    for (int i = 0; i < k->n_node; ++i) {
-      g->start[i + 1] = g->start[i] + at[i];
-      at[i] = g->start[i];
-    }
-    NEW(g->next, g->start[k->n_node]);
-  }
-done:
-  memory_free(at);
-  return st;
-}
-
 /* The connected set of the graph that holds "first": list[0..) and its size;
  * its nodes are marked. */
 static int connected_set(const graph *g, int first, unsigned char *seen,
@@ -158,7 +127,7 @@ static status factor_bodies(condensed *c, const unsigned char *floating) {
   NEW(list, k->n_node);
   NEW(seen, k->n_node);
   NEW(number, (size_t)k->dim * (size_t)k->n_node);
-  TRY(full_graph(k, &g));
+  TRY(graph_of_unknowns(k, &g));
   c->n_body = count_bodies(k, &g, seen, list);
   NEW(c->body, c->n_body);
   for (int i = 0; i < k->n_node; ++i) {
@@ -173,8 +142,7 @@ static status factor_bodies(condensed *c, const unsigned char *floating) {
   }
 done:
   timer_leave(STAGE_ORDERING);
-  memory_free(g.start);
-  memory_free(g.next);
+  graph_release(&g);
   memory_free(list);
   memory_free(seen);
   memory_free(number);

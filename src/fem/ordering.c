@@ -10,9 +10,50 @@
 
 #include "base/memory.h"
 
+#include <math.h>
 #include <string.h>
 
-enum { LEAF = 40 };
+enum { LEAF = 24 };
+
+/* Sum of the cubes of the separators over n^1.5: about 2 on a square, less on
+ * a strip. Above this limit the cuts do not suit the body. */
+static const double work_limit = 5;
+
+status graph_of_unknowns(const stiffness *k, graph *g) {
+  status st = OK;
+  size_t *at = NULL;
+  g->n = k->n_node;
+  NEW(g->start, k->n_node + 1);
+  NEW(at, k->n_node + 1);
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int j = 0; j < k->n_node; ++j)
+      for (size_t p = k->start[j] + 1; k->free[j] && p < k->start[j + 1]; ++p) {
+        const int i = k->row[p];
+        if (k->free[i] == 0) continue;
+        if (pass == 1) {
+          g->next[at[i]] = j;
+          g->next[at[j]] = i;
+        }
+        ++at[i];
+        ++at[j];
+      }
+    if (pass == 1) break;
+    for (int i = 0; i < k->n_node; ++i) {
+      g->start[i + 1] = g->start[i] + at[i];
+      at[i] = g->start[i];
+    }
+    NEW(g->next, g->start[k->n_node]);
+  }
+done:
+  memory_free(at);
+  return st;
+}
+
+void graph_release(graph *g) {
+  memory_free(g->start);
+  memory_free(g->next);
+  *g = (graph){0};
+}
 
 typedef struct dissection {
   const graph *g;
@@ -20,7 +61,8 @@ typedef struct dissection {
   const double *x; /* [dim*g->n]                                     */
   int *side;       /* [g->n] stamp of the half a node is in, 0: none */
   int stamp;
-  int *spare; /* [n]                                              */
+  int *spare;  /* [n]                                              */
+  double work; /* sum of the cubes of the separators               */
 } dissection;
 
 static double coordinate(const dissection *w, int node, int axis) {
@@ -115,9 +157,25 @@ static int count_touching(const dissection *w, int n, const int *node,
   return count;
 }
 
+/* A leaf is swept along its longer side. */
+static void sort_leaf(const dissection *w, int n, int *node) {
+  if (n < 2) return;
+  const int axis = longest_axis(w, n, node);
+  for (int i = 1; i < n; ++i) {
+    const int moved = node[i];
+    int j = i;
+    for (; j > 0 && before(w, axis, moved, node[j - 1]); --j)
+      node[j] = node[j - 1];
+    node[j] = moved;
+  }
+}
+
 /* Order node[0..n): left part, right part, separator. */
 static void dissect(dissection *w, int n, int *node) {
-  if (n <= LEAF) return;
+  if (n <= LEAF) {
+    sort_leaf(w, n, node);
+    return;
+  }
   const int axis = longest_axis(w, n, node), half = n / 2;
   split_at(w, axis, half, n, node);
   const int left = ++w->stamp, right = ++w->stamp;
@@ -134,17 +192,20 @@ static void dissect(dissection *w, int n, int *node) {
   } else {
     n_right = keep_inner(w, n - half, node + half, left);
   }
+  const double cut = n - n_left - n_right;
+  w->work += cut * cut * cut;
   dissect(w, n_left, node);
   dissect(w, n_right, node + n_left);
 }
 
 static status order_by_cuts(const graph *g, int dim, const double *x, int n,
-                            int *node) {
+                            int *node, double *work) {
   status st = OK;
   dissection w = {.g = g, .dim = dim, .x = x};
   NEW(w.side, g->n);
   NEW(w.spare, n);
   dissect(&w, n, node);
+  *work = w.work;
 done:
   memory_free(w.side);
   memory_free(w.spare);
@@ -155,31 +216,31 @@ done:
 static status graph_pattern(const graph *g, int n, const int *node,
                             cholmod_common *cm, cholmod_sparse **out) {
   status st = OK;
-  int *place = NULL;
+  int *order = NULL;
   size_t edges = 0;
   cholmod_sparse *a = NULL;
-  NEW(place, g->n);
-  for (int i = 0; i < n; ++i) place[node[i]] = i + 1;
+  NEW(order, g->n);
+  for (int i = 0; i < n; ++i) order[node[i]] = i + 1;
   for (int i = 0; i < n; ++i)
     for (size_t p = g->start[node[i]]; p < g->start[node[i] + 1]; ++p)
-      edges += place[g->next[p]] > i + 1;
+      edges += order[g->next[p]] > i + 1;
   a = cholmod_l_allocate_sparse((size_t)n, (size_t)n, edges, 0, 1, -1,
                                 CHOLMOD_PATTERN, cm);
   if (a == NULL) FAIL(ERR_MEMORY, "memory exhausted: graph of %d nodes", n);
   SuiteSparse_long *start = a->p, *row = a->i, k = 0;
   for (int i = 0; i < n; ++i) {
     for (size_t p = g->start[node[i]]; p < g->start[node[i] + 1]; ++p)
-      if (place[g->next[p]] > i + 1) row[k++] = place[g->next[p]] - 1;
+      if (order[g->next[p]] > i + 1) row[k++] = order[g->next[p]] - 1;
     start[i + 1] = k;
   }
 done:
-  memory_free(place);
+  memory_free(order);
   *out = a;
   return st;
 }
 
-static status order_by_metis(const graph *g, int n, int *node,
-                             cholmod_common *cm) {
+static status order_by_pattern(order_method method, const graph *g, int n,
+                               int *node, cholmod_common *cm) {
   status st = OK;
   cholmod_sparse *a = NULL;
   SuiteSparse_long *perm = NULL;
@@ -187,8 +248,9 @@ static status order_by_metis(const graph *g, int n, int *node,
   TRY(graph_pattern(g, n, node, cm, &a));
   NEW(perm, n);
   NEW(old, n);
-  if (!cholmod_l_metis(a, NULL, 0, 0, perm, cm))
-    FAIL(ERR_MEMORY, "memory exhausted: METIS on %d nodes", n);
+  if (method == ORDER_METIS ? !cholmod_l_metis(a, NULL, 0, 0, perm, cm)
+                            : !cholmod_l_amd(a, NULL, 0, perm, cm))
+    FAIL(ERR_MEMORY, "memory exhausted: order of %d nodes", n);
   memcpy(old, node, (size_t)n * sizeof *node);
   for (int i = 0; i < n; ++i) node[i] = old[perm[i]];
 done:
@@ -198,17 +260,67 @@ done:
   return st;
 }
 
+status order_by(order_method method, const graph *g, int dim, const double *x,
+                int n, int *node, cholmod_common *cm) {
+  double work = 0;
+  return method == ORDER_CUTS ? order_by_cuts(g, dim, x, n, node, &work)
+                              : order_by_pattern(method, g, n, node, cm);
+}
+
+status order_flops(const graph *g, int n, const int *node, cholmod_common *cm,
+                   double *flops) {
+  status st = OK;
+  cholmod_sparse *a = NULL;
+  SuiteSparse_long *w = NULL;
+  const size_t size = (size_t)n;
+  TRY(graph_pattern(g, n, node, cm, &a));
+  NEW(w, 6 * size);
+  for (int i = 0; i < n; ++i) w[i] = i;
+  if (!cholmod_l_analyze_ordering(a, CHOLMOD_GIVEN, w, NULL, 0, w + size,
+                                  w + 2 * size, w + 3 * size, w + 4 * size,
+                                  w + 5 * size, cm))
+    FAIL(ERR_MEMORY, "memory exhausted: count of %d nodes", n);
+  *flops = cm->fl;
+done:
+  cholmod_l_free_sparse(&a, cm);
+  memory_free(w);
+  return st;
+}
+
+/* Both ways, the cheaper by count: node[] holds the cuts' order. */
+static status compare_with_metis(const graph *g, int n, int *node,
+                                 cholmod_common *cm, const char **name) {
+  status st = OK;
+  double cuts, metis;
+  int *other = NULL;
+  NEW(other, n);
+  memcpy(other, node, (size_t)n * sizeof *node);
+  TRY(order_by_pattern(ORDER_METIS, g, n, other, cm));
+  TRY(order_flops(g, n, node, cm, &cuts));
+  TRY(order_flops(g, n, other, cm, &metis));
+  if (metis < cuts) {
+    memcpy(node, other, (size_t)n * sizeof *node);
+    *name = "METIS";
+  }
+done:
+  memory_free(other);
+  return st;
+}
+
 status order_nodes(const graph *g, int dim, const double *x, int n, int *node,
                    cholmod_common *cm, const char **name) {
   status st = OK;
+  double work = 0;
   if (n <= LEAF) {
     *name = "natural";
-  } else if (dim == 2) {
-    *name = "nested dissection by coordinates";
-    TRY(order_by_cuts(g, dim, x, n, node));
-  } else {
+  } else if (dim == 3) {
     *name = "METIS";
-    TRY(order_by_metis(g, n, node, cm));
+    TRY(order_by_pattern(ORDER_METIS, g, n, node, cm));
+  } else {
+    *name = "coordinate cuts";
+    TRY(order_by_cuts(g, dim, x, n, node, &work));
+    if (work > work_limit * n * sqrt(n))
+      TRY(compare_with_metis(g, n, node, cm, name));
   }
 done:
   return st;

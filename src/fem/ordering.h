@@ -4,7 +4,7 @@
 #ifndef PROTIS_FEM_ORDERING_H
 #define PROTIS_FEM_ORDERING_H
 
-#include "base/status.h"
+#include "fem/stiffness.h"
 
 #include <cholmod.h>
 #include <stddef.h>
@@ -16,6 +16,17 @@ typedef struct graph {
   int *next;     /* [start[n]]                                            */
 } graph;
 
+/* The graph of the nodes with unknowns; g is new. */
+status graph_of_unknowns(const stiffness *k, graph *g);
+void graph_release(graph *g);
+
+typedef enum { ORDER_CUTS, ORDER_METIS, ORDER_AMD } order_method;
+/* Order node[0..n) in place by one method. */
+status order_by(order_method method, const graph *g, int dim, const double *x,
+                int n, int *node, cholmod_common *cm);
+/* Operations of a Cholesky factor in that order, one unknown per node. */
+status order_flops(const graph *g, int n, const int *node, cholmod_common *cm,
+                   double *flops);
 /*
  * Order node[0..n) in place (the interior of one body); neighbours outside
  * the list are ignored. x[dim*g->n] coordinates. "name" tells which order was
