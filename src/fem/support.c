@@ -218,6 +218,12 @@ static void write_vector(int dim, const double *v, int direction, char *text,
   if (used < size) snprintf(text + used, size - used, ")");
 }
 
+/* A coordinate of the body from one relative to its centre and size. */
+static double to_coordinate(const body *b, int c, double relative) {
+  const double x = b->centre[c] + b->size * relative;
+  return fabs(x) < 1e-9 * b->size ? 0 : x;
+}
+
 static void write_rotation_3d(const body *b, const double *w, const double *t,
                               char *text, size_t size) {
   char axis[64], through[64];
@@ -228,8 +234,7 @@ static void write_rotation_3d(const body *b, const double *w, const double *t,
   }
   for (int c = 0; c < 3; ++c) {
     const int i = (c + 1) % 3, j = (c + 2) % 3;
-    const double arm = (w[i] * t[j] - w[j] * t[i]) / ww;
-    point[c] = b->centre[c] + b->size * (fabs(arm) < 1e-9 ? 0 : arm);
+    point[c] = to_coordinate(b, c, (w[i] * t[j] - w[j] * t[i]) / ww);
   }
   write_vector(3, w, 1, axis, sizeof axis);
   write_vector(3, point, 0, through, sizeof through);
@@ -245,10 +250,8 @@ static void write_motion(const body *b, const double *v, char *text,
   if (b->modes == 1) {
     snprintf(text, size, "translation along y");
   } else if (dim == 2 && fabs(v[0]) > 1e-6 * hypot(v[1], v[2])) {
-    const double arm[2] = {-v[2] / v[0], v[1] / v[0]};
-    double point[2];
-    for (int c = 0; c < 2; ++c)
-      point[c] = b->centre[c] + b->size * (fabs(arm[c]) < 1e-9 ? 0 : arm[c]);
+    const double point[2] = {to_coordinate(b, 0, -v[2] / v[0]),
+                             to_coordinate(b, 1, v[1] / v[0])};
     write_vector(2, point, 0, vector, sizeof vector);
     snprintf(text, size, "rotation about %s", vector);
   } else if (dim == 3 &&
@@ -284,32 +287,47 @@ typedef struct motion_list {
   free_motion *item;
 } motion_list;
 
-/* Append the motions of Z that are not in the space of those known already
- * (known: orthonormal rows). */
+static int turns(const body *b, const double *z) {
+  const int rotations = b->modes == 6 ? 3 : b->modes == 3 ? 1 : 0;
+  double most = 0;
+  for (int k = 0; k < b->n; ++k)
+    if (k % b->modes < rotations) most = fmax(most, fabs(z[k]));
+  return most > 1e-6;
+}
+
+/* Add z to the orthonormal rows of "known" unless it depends on them. */
+static int is_new_motion(int n, const double *z, double *known, int *n_known) {
+  double rest[MAX_COLUMNS], norm = 0, left = 0;
+  memcpy(rest, z, (size_t)n * sizeof *rest);
+  for (int j = 0; j < n; ++j) norm += rest[j] * rest[j];
+  for (int pass = 0; pass < 2; ++pass)
+    for (int q = 0; q < *n_known; ++q) {
+      double dot = 0;
+      for (int j = 0; j < n; ++j) dot += known[q * n + j] * rest[j];
+      for (int j = 0; j < n; ++j) rest[j] -= dot * known[q * n + j];
+    }
+  for (int j = 0; j < n; ++j) left += rest[j] * rest[j];
+  if (!(left > 1e-12 * norm)) return 0;
+  for (int j = 0; j < n; ++j) known[*n_known * n + j] = rest[j] / sqrt(left);
+  ++*n_known;
+  return 1;
+}
+
+/* Append the motions of Z[n_row*n] that are new, translations first. */
 static status append_motions(const body *b, motion_hold hold, int n_row,
                              double *Z, double *known, int *n_known,
                              motion_list *list) {
   status st = OK;
-  const int n = b->n;
-  reduce_rows(n_row, n, Z);
-  for (int i = 0; i < n_row; ++i) {
-    double rest[MAX_COLUMNS], norm = 0, left = 0;
-    memcpy(rest, Z + i * n, (size_t)n * sizeof *rest);
-    for (int j = 0; j < n; ++j) norm += rest[j] * rest[j];
-    for (int pass = 0; pass < 2; ++pass)
-      for (int q = 0; q < *n_known; ++q) {
-        double dot = 0;
-        for (int j = 0; j < n; ++j) dot += known[q * n + j] * rest[j];
-        for (int j = 0; j < n; ++j) rest[j] -= dot * known[q * n + j];
-      }
-    for (int j = 0; j < n; ++j) left += rest[j] * rest[j];
-    if (!(left > 1e-12 * norm)) continue;
-    for (int j = 0; j < n; ++j) known[*n_known * n + j] = rest[j] / sqrt(left);
-    ++*n_known;
-    GROW(list->item, list->n, list->room);
-    list->item[list->n].held_by = hold;
-    describe(b, Z + i * n, &list->item[list->n++]);
-  }
+  reduce_rows(n_row, b->n, Z);
+  for (int rotation = 0; rotation < 2; ++rotation)
+    for (int i = 0; i < n_row; ++i) {
+      const double *z = Z + i * b->n;
+      if (turns(b, z) != rotation || !is_new_motion(b->n, z, known, n_known))
+        continue;
+      GROW(list->item, list->n, list->room);
+      list->item[list->n].held_by = hold;
+      describe(b, z, &list->item[list->n++]);
+    }
 done:
   return st;
 }

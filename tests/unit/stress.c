@@ -1,0 +1,204 @@
+/* src/fem/element.c, stress.c: patch tests, forces, energy. */
+#include "fem/fem.h"
+#include "support/scene.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+static const kinematics all_kinematics[] = {PLANE_STRAIN, PLANE_STRESS,
+                                            AXISYMMETRIC, SOLID_3D};
+
+static int on_boundary(const mesh *m, int node, const double *length) {
+  for (int c = 0; c < m->dim; ++c) {
+    const double x = m->x[m->dim * node + c];
+    if (x == (c == 0 ? 0.5 : 0) || x == length[c]) return 1;
+  }
+  return 0;
+}
+
+/* A box from x = 0.5 on, its interior nodes moved at random, fixed all round.
+ */
+static scene *patch(kinematics kin) {
+  static const double length[] = {2.5, 1, 1.5};
+  const double from_zero[] = {2, 1, 1.5};
+  unsigned seed = 7;
+  mesh *m = kin == SOLID_3D ? make_grid_3d((int[]){4, 3, 3}, from_zero)
+                            : make_grid_2d((int[]){6, 5}, from_zero);
+  scene *s = scene_new(m, kin, 3);
+  for (int i = 0; i < m->n_node; ++i) {
+    m->x[m->dim * i] += 0.5;
+    const int fixed = on_boundary(m, i, length);
+    for (int c = 0; c < m->dim; ++c)
+      if (fixed)
+        scene_fix_node(s, i, c);
+      else
+        m->x[m->dim * i + c] += 0.05 * scene_random(&seed);
+  }
+  return s;
+}
+
+/* Linear displacement; turned bodies u_r = a r, u_z = b z (the only uniform
+ * stress in equilibrium). */
+static void linear(const mesh *m, kinematics kin, int node, double *u) {
+  static const double G[3][3] = {{.3, -.2, .5}, {.7, .4, -.6}, {.1, .9, -.8}};
+  const double *x = m->x + m->dim * node;
+  for (int r = 0; r < m->dim; ++r) {
+    u[r] = 0;
+    for (int c = 0; c < m->dim; ++c)
+      if (kin != AXISYMMETRIC || r == c) u[r] += G[r][c] * x[c];
+  }
+}
+
+/* The strain of "linear": xx yy zz xy yz zx. */
+static void linear_strain(kinematics kin, double *e) {
+  const double solid[6] = {.3, .4, -.8, -.2 + .7, -.6 + .9, .1 + .5};
+  memcpy(e, solid, sizeof solid);
+  if (kin == SOLID_3D) return;
+  e[2] = kin == PLANE_STRAIN ? 0 : kin == AXISYMMETRIC ? .3 : -0.3 / 0.7 * .7;
+  if (kin == AXISYMMETRIC) e[3] = 0;
+}
+
+START_TEST(patch_of_constant_strain_is_reproduced) {
+  const kinematics kin = all_kinematics[_i];
+  scene *s = patch(kin);
+  stiffness *k;
+  condensed *c;
+  const int dim = s->m->dim, ns = s->d.ns;
+  const size_t N = (size_t)(dim * s->m->n_node);
+  const size_t T = (size_t)(ns * s->m->n_elem);
+  double *F = calloc(N, sizeof *F), *u = calloc(N, sizeof *u);
+  double *exact = calloc(N, sizeof *exact);
+  double *e = calloc(T, sizeof *e), *t = calloc(T, sizeof *t), strain[6];
+  for (int i = 0; i < s->m->n_node; ++i) linear(s->m, kin, i, exact + dim * i);
+  ck_assert_int_eq(stiffness_assemble(&s->d, &k), OK);
+  ck_assert_int_eq(condense(k, &s->d, &c), OK);
+  ck_assert_int_eq((int)condensed_info(c).contact_unknowns, 0);
+  ck_assert_int_eq(condense_load(c, F, exact, NULL), OK);
+  ck_assert_int_eq(condense_recover(c, NULL, u), OK);
+  for (size_t i = 0; i < N; ++i) ck_assert_double_eq_tol(u[i], exact[i], 1e-12);
+  domain_stress(&s->d, u, e, t);
+  linear_strain(kin, strain);
+  for (size_t i = 0; i < T; ++i) {
+    const size_t row = i % (size_t)ns;
+    double sigma = 0;
+    ck_assert_double_eq_tol(e[i], strain[row], 1e-12);
+    for (size_t q = 0; q < (size_t)ns; ++q)
+      sigma += s->E[row + (size_t)ns * q] * strain[q];
+    ck_assert_double_eq_tol(t[i], sigma, 1e-11);
+    if (kin == PLANE_STRESS && row == 2) ck_assert(t[i] == 0);
+  }
+  /* No force inside: the uniform stress is in equilibrium. */
+  domain_internal_force(&s->d, t, F);
+  for (size_t i = 0; i < N; ++i)
+    if (!s->fixed[i]) ck_assert_double_eq_tol(F[i], 0, 1e-12);
+  free(F);
+  free(u);
+  free(exact);
+  free(e);
+  free(t);
+  condensed_free(c);
+  stiffness_free(k);
+  scene_free(s);
+}
+END_TEST
+
+START_TEST(weights_add_up_to_the_volume) {
+  const kinematics kin = all_kinematics[_i];
+  scene *s = patch(kin);
+  double sum = 0;
+  s->thickness[0] = kin == PLANE_STRAIN || kin == PLANE_STRESS ? 0.25 : 1;
+  for (int e = 0; e < s->m->n_elem; ++e) sum += element_weight(&s->d, e);
+  /* 2 x 1 plane; ring of radii 0.5 and 2.5, height 1; box 2 x 1 x 1.5. */
+  const double volume = kin == SOLID_3D       ? 3
+                        : kin == AXISYMMETRIC ? acos(-1) * (6.25 - 0.25)
+                                              : 0.5;
+  ck_assert_double_eq_tol(sum, volume, 1e-12 * volume);
+  scene_free(s);
+}
+END_TEST
+
+START_TEST(internal_force_is_stiffness_times_displacement) {
+  scene *s = patch(all_kinematics[_i]);
+  const int dim = s->m->dim;
+  const size_t N = (size_t)(dim * s->m->n_node);
+  double *K = calloc(N * N, sizeof *K), *u = calloc(N, sizeof *u);
+  double *t = calloc((size_t)(s->d.ns * s->m->n_elem), sizeof *t);
+  double *F = calloc(N, sizeof *F), energy = 0, scale = 0;
+  unsigned seed = 11;
+  for (size_t i = 0; i < N; ++i) u[i] = scene_random(&seed);
+  scene_dense(s, K);
+  domain_stress(&s->d, u, NULL, t);
+  domain_internal_force(&s->d, t, F);
+  for (size_t i = 0; i < N; ++i) scale = fmax(scale, fabs(F[i]));
+  for (size_t i = 0; i < N; ++i) {
+    double sum = 0;
+    for (size_t j = 0; j < N; ++j) sum += K[i + N * j] * u[j];
+    ck_assert_double_eq_tol(F[i], sum, 1e-13 * scale);
+    energy += 0.5 * u[i] * sum;
+  }
+  ck_assert_double_eq_tol(domain_strain_energy(&s->d, u), energy,
+                          1e-13 * energy);
+  free(K);
+  free(u);
+  free(t);
+  free(F);
+  scene_free(s);
+}
+END_TEST
+
+/* Hand-derived: triangle (1,0) (3,0) (1,2), centroid radius 5/3. */
+START_TEST(strain_matrix_of_one_turned_triangle) {
+  mesh *m = make_grid_2d((int[]){1, 1}, (double[]){1, 1});
+  const double x[] = {1, 0, 3, 0, 1, 2, 3, 2};
+  memcpy(m->x, x, sizeof x);
+  memcpy(m->elem, (int[]){0, 1, 2}, 3 * sizeof(int));
+  scene *s = scene_new(m, AXISYMMETRIC, 1);
+  double B[4 * 6];
+  const double h = 1.0 / 5; /* N / r_c */
+  const double expected[4][6] = {{-.5, 0, .5, 0, 0, 0},
+                                 {0, -.5, 0, 0, 0, .5},
+                                 {h, 0, h, 0, h, 0},
+                                 {-.5, -.5, 0, .5, .5, 0}};
+  const double weight = element_strain(&s->d, 0, B);
+  ck_assert_double_eq_tol(weight, 2 * acos(-1) * 5 / 3 * 2, 1e-13);
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 6; ++c)
+      ck_assert_double_eq_tol(B[r + 4 * c], expected[r][c], 1e-15);
+  scene_free(s);
+}
+END_TEST
+
+START_TEST(element_beyond_the_axis_is_refused_by_number) {
+  scene *s = patch(AXISYMMETRIC);
+  stiffness *k;
+  s->m->x[0] = -0.25;
+  ck_assert_int_eq(stiffness_assemble(&s->d, &k), ERR_MESH);
+  ck_assert_ptr_null(k);
+  ck_assert_ptr_nonnull(strstr(status_message(), "element 1: node 1"));
+  scene_free(s);
+  s = patch(PLANE_STRAIN);
+  s->m->x[2] = s->m->x[0]; /* the first triangle collapses */
+  ck_assert_int_eq(stiffness_assemble(&s->d, &k), ERR_MESH);
+  ck_assert_ptr_nonnull(strstr(status_message(), "element 1"));
+  scene_free(s);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("stress");
+  TCase *tests = tcase_create("stress");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, patch_of_constant_strain_is_reproduced, 0, 4);
+  tcase_add_loop_test(tests, weights_add_up_to_the_volume, 0, 4);
+  tcase_add_loop_test(tests, internal_force_is_stiffness_times_displacement, 0,
+                      4);
+  tcase_add_test(tests, strain_matrix_of_one_turned_triangle);
+  tcase_add_test(tests, element_beyond_the_axis_is_refused_by_number);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
