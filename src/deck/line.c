@@ -54,7 +54,7 @@ typedef struct scan {
 
 static scan scan_line(const reader *r, const physical *line, line_kind kind) {
   scan s = {line->length, -1, -1};
-  for (int i = 0; kind != LINE_WHOLE && i < line->length; ++i) {
+  for (int i = 0; i < line->length; ++i) {
     const char *p = line->text + i;
     if (*p == '"') {
       s.open_quote = s.open_quote < 0 ? i : -1;
@@ -92,8 +92,7 @@ static status add_line(reader *r, const physical *line, line_kind kind,
   scan s = scan_line(r, line, kind);
   int start = r->line.all.n;
   TRY(add_segment(r, line, s.end));
-  *goes_on = kind != LINE_WHOLE && s.open_quote < 0 && s.end > 0 &&
-             line->text[s.end - 1] == ',';
+  *goes_on = s.open_quote < 0 && s.end > 0 && line->text[s.end - 1] == ',';
   if (s.open_quote >= 0) {
     place at = logical_place(&r->line, start + s.open_quote);
     message_add(r->log, P1011, &at, "quote not closed");

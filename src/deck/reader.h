@@ -115,8 +115,8 @@ typedef struct reader {
   int stray_seen, excess_seen; /* reported once for the lines below a card   */
 } reader;
 
-/* How a line is cut: what stands for a comment, and if commas go on. */
-typedef enum { LINE_FREE, LINE_DEFINITION, LINE_WHOLE } line_kind;
+/* Under *PARAMETER a ** that could be meant as a power is an error. */
+typedef enum { LINE_FREE, LINE_DEFINITION } line_kind;
 
 /* Fill r->line from the line given and those it goes on in. */
 status logical_read(reader *r, const physical *first, line_kind kind);
