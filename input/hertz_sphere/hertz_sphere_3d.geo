@@ -32,6 +32,12 @@ top() = Surface In BoundingBox{-eps, -eps, R - eps, R + eps, R + eps, R + eps};
 cap() = Surface In BoundingBox{-eps, -eps, -eps, reach + eps, reach + eps,
                                0.6 * reach * reach / R + eps};
 
+// The edge of the top is fine enough for its area, which carries the load.
+edge() = Curve In BoundingBox{-eps, -eps, R - eps, R + eps, R + eps, R + eps};
+edge() -= {Curve In BoundingBox{-eps, -eps, -eps, eps, R + eps, R + eps}};
+edge() -= {Curve In BoundingBox{-eps, -eps, -eps, R + eps, eps, R + eps}};
+Transfinite Curve{edge()} = 17;
+
 Physical Volume("BODY") = Volume{:};
 Physical Surface("CONTACT") = {cap()};
 Physical Surface("TOP") = {top()};
