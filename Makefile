@@ -62,6 +62,7 @@ help:
 	@echo "make unit         unit tests alone;   make regression: decks alone"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
+	@echo "make bench-solvers  what each digit costs, for every solver"
 	@echo "make format       clang-format on all sources"
 	@echo "make clean        remove build/"
 
@@ -120,6 +121,9 @@ style:
 
 bench-run: $(program) $(bench)
 	$(Q)for b in $(bench); do $$b || exit 1; done
+
+bench-solvers: $(out)/tests/bench/solvers
+	$(Q)$<
 
 format:
 	$(Q)clang-format-14 --style=file:tools/clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] tests/*/*.[ch])

@@ -43,8 +43,8 @@ static const option aitken_options[] = {
 
 enum {
   SWEEPS = 20000, /* default limit                                           */
-  DEPTH = 8,      /* differences of Anderson's mixing                        */
-  PLAIN = 4,      /* sweeps from one step of Aitken to the next              */
+  DEPTH = 12,      /* differences of Anderson's mixing                        */
+  PLAIN = 6,      /* sweeps from one step of Aitken to the next              */
   REFRESH = 64,   /* sweeps from one product to the next                     */
   PATIENCE = 400  /* sweeps without a lower residual before a cure           */
 };
@@ -291,11 +291,11 @@ const solver_ops aitken_solver = {
     "Gauss-Seidel sweeps with Aitken's acceleration. The nodes are visited one\n"
     "after the other, each solved exactly with the others held (closed form in\n"
     "2-D, the true friction disc in 3-D, the sliding limit following the\n"
-    "pressure in the sweep). ACCELERATION=AITKEN extrapolates every fourth\n"
+    "pressure in the sweep). ACCELERATION=AITKEN extrapolates every sixth\n"
     "sweep by the vector form of Irons and Tuck,\n"
     "x+ = G - F (F.dF)/(dF.dF), F the change made by a sweep, dF its\n"
     "difference from the one before, in the metric of the diagonal of A.\n"
-    "ACCELERATION=ANDERSON combines the last eight sweeps after every sweep so\n"
+    "ACCELERATION=ANDERSON combines the last twelve sweeps after every sweep so\n"
     "that the linearised change is least. A step after which the sweep moves\n"
     "farther is taken back, so the safety of Gauss-Seidel is kept; there is no\n"
     "factor to choose. Where plain sweeps cycle they are made forward and\n"
