@@ -43,7 +43,7 @@ static const option aitken_options[] = {
 
 enum {
   SWEEPS = 20000, /* default limit                                           */
-  DEPTH = 12,      /* differences of Anderson's mixing                        */
+  DEPTH = 12,     /* differences of Anderson's mixing                        */
   PLAIN = 6,      /* sweeps from one step of Aitken to the next              */
   REFRESH = 64,   /* sweeps from one product to the next                     */
   PATIENCE = 400  /* sweeps without a lower residual before a cure           */

