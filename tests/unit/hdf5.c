@@ -5,17 +5,21 @@
 #include <hdf5.h>
 
 #include "base/memory.h"
-#include "output/writers.h"
+#include "output/hdf5.h"
 #include "support/made_up.h"
 #include "support/unit.h"
 
 #include <dirent.h>
+#include <fcntl.h>
+#include <linux/sched.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -377,6 +381,14 @@ END_TEST
 
 /* ---- disks ------------------------------------------------------------ */
 
+static int open_files(void) {
+  int n = 0;
+  DIR *d = opendir("/proc/self/fd");
+  while (d != NULL && readdir(d) != NULL) ++n;
+  if (d != NULL) closedir(d);
+  return n;
+}
+
 /* In a child: the status of a run in a folder with files of at most "most"
  * bytes. */
 static int run_with_limit(const char *dir, rlim_t most) {
@@ -387,7 +399,9 @@ static int run_with_limit(const char *dir, rlim_t most) {
     signal(SIGXFSZ, SIG_IGN);
     made_up *made = made_up_new(2, 4, 3);
     if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(99);
+    int files = open_files();
     status st = write_file(made, dir, 20, 1);
+    if (open_files() != files) _exit(97);
     int named = strstr(status_message(), "block.h5") != NULL &&
                 strstr(status_message(), "unknown") == NULL;
     _exit(st == ERR_FILE && !named ? 98 : (int)st);
@@ -430,6 +444,108 @@ START_TEST(disk_full_at_any_size_is_told_and_loses_nothing) {
 }
 END_TEST
 
+static int put_text(const char *path, const char *text) {
+  FILE *f = fopen(path, "w");
+  if (f == NULL) return -1;
+  fputs(text, f);
+  return fclose(f);
+}
+
+/* A file system of its own with so many pages below dir, for this process and
+ * its children; -1: not allowed on this machine. */
+static int small_file_system(const char *dir, int pages) {
+  char user[40], group[40], size[40];
+  snprintf(user, sizeof user, "0 %d 1", (int)getuid());
+  snprintf(group, sizeof group, "0 %d 1", (int)getgid());
+  if (syscall(SYS_unshare, CLONE_NEWUSER | CLONE_NEWNS) != 0) return -1;
+  if (put_text("/proc/self/uid_map", user) != 0) return -1;
+  if (put_text("/proc/self/setgroups", "deny") != 0) return -1;
+  if (put_text("/proc/self/gid_map", group) != 0) return -1;
+  snprintf(size, sizeof size, "size=%dk", 4 * pages);
+  return mount("none", dir, "tmpfs", 0, size);
+}
+
+enum { NOT_ALLOWED = 90, NOT_TOLD, LEFT_OPEN, LEFT_ASIDE, LOST };
+
+/* In the child: what went wrong, or the status of the run. */
+static int run_on_small_disk(made_up *made, const char *dir, int pages) {
+  int dims[2];
+  if (small_file_system(dir, pages) != 0) return NOT_ALLOWED;
+  int files = open_files();
+  status st = write_file(made, dir, 20, 1);
+  if (st == ERR_FILE && strstr(status_message(), "No space left") == NULL)
+    return NOT_TOLD;
+  if (open_files() != files) return LEFT_OPEN;
+  if (size_of(dir, "block.h5.tmp") != -1) return LEFT_ASIDE;
+  double *t = dataset(dir, "/history/time", dims);
+  int n = t == NULL ? 0 : count_reached(dir);
+  free(t);
+  if (t != NULL && n < 3) return LOST; /* what was foreseen has its room     */
+  if (st == OK && n != 20) return LOST;
+  for (int i = 1; i <= n; ++i) increment_is(made, dir, i);
+  return (int)st;
+}
+
+START_TEST(full_file_system_of_any_size_is_told) {
+  made_up *made = made_up_new(2, 16, 3); /* a field fills pages of its own */
+  int code = 0, failures = 0, pages = 0;
+  for (; pages < 1500 && code != NOT_ALLOWED; pages += 1 + pages / 8) {
+    char dir[64];
+    folder_new(dir);
+    fflush(NULL);
+    pid_t pid = fork();
+    if (pid == 0) _exit(run_on_small_disk(made, dir, pages + 1));
+    waitpid(pid, &code, 0);
+    ck_assert_msg(WIFEXITED(code), "signal %d", WTERMSIG(code));
+    code = WEXITSTATUS(code);
+    ck_assert_msg(code == OK || code == ERR_FILE || code == NOT_ALLOWED,
+                  "%d pages: %d", pages + 1, code);
+    if (code == ERR_FILE) ++failures;
+    folder_remove(dir);
+  }
+  if (code == NOT_ALLOWED)
+    fprintf(stderr, "no file system of its own on this machine\n");
+  else
+    ck_assert(failures > 15 && code == OK);
+  made_up_free(made);
+}
+END_TEST
+
+/* A file that takes nothing, or gives nothing back when it has to grow. */
+START_TEST(failed_writes_and_copies_are_told) {
+  char dir[64];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 2);
+  output_options o = plain;
+  o.dir = dir;
+  const char *const devices[] = {"/dev/full", "/dev/null"};
+  const char *const wanted[] = {"No space left", "read back"};
+  for (int k = 0; k < 2; ++k) {
+    hdf5_file *h = NULL;
+    int files = open_files();
+    ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, &made->surface, &h),
+                     OK);
+    for (int i = 1; i <= 2 * k; ++i) {
+      made_up_advance(made, i);
+      ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
+    }
+    int device = open(devices[k], O_RDWR);
+    dup2(device, h->fd);
+    close(device);
+    made_up_advance(made, 2 * k + 1);
+    ck_assert_int_eq(hdf5_increment(h, &made->s), ERR_FILE);
+    ck_assert_ptr_nonnull(strstr(status_message(), wanted[k]));
+    ck_assert_ptr_nonnull(strstr(status_message(), "block.h5"));
+    hdf5_close(h, 0);
+    ck_assert_int_eq(open_files(), files);
+    ck_assert_int_eq(size_of(dir, "block.h5.tmp"), -1);
+    ck_assert_int_eq(count_reached(dir), 2 * k);
+  }
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
 START_TEST(missing_folder_is_told) {
   made_up *made = made_up_new(2, 1, 1);
   ck_assert_int_eq(write_file(made, "/no/such/folder", 1, 1), ERR_FILE);
@@ -440,14 +556,6 @@ START_TEST(missing_folder_is_told) {
 END_TEST
 
 /* ---- memory ----------------------------------------------------------- */
-
-static int open_files(void) {
-  int n = 0;
-  DIR *d = opendir("/proc/self/fd");
-  while (d != NULL && readdir(d) != NULL) ++n;
-  if (d != NULL) closedir(d);
-  return n;
-}
 
 START_TEST(every_refused_request_is_told_and_leaves_nothing) {
   char dir[64];
@@ -482,5 +590,6 @@ UNIT_MAIN("hdf5", fields_read_back_exactly, mesh_and_surface_stand_in_the_file,
           group_names_with_slashes_and_twins_are_kept,
           killed_at_any_moment_keeps_every_acknowledged_increment,
           disk_full_at_any_size_is_told_and_loses_nothing,
-          missing_folder_is_told,
+          full_file_system_of_any_size_is_told,
+          failed_writes_and_copies_are_told, missing_folder_is_told,
           every_refused_request_is_told_and_leaves_nothing)
