@@ -24,10 +24,10 @@
 
 /* All relative to the largest number of the same kind. */
 static const double TIE = 0x1p-42;     /* values that count as zero           */
-static const double SMALL = 0x1p-40;   /* no pivot below                      */
+static const double SMALL = 0x1p-38;   /* no pivot below                      */
 static const double UNEQUAL = 0x1p-26; /* pivots of tied rows not considered  */
-static const double DRIFT = 0x1p-40;   /* defect that calls for a correction  */
-static const double SPOILT = 0x1p-34;  /* and for a new inverse               */
+static const double DRIFT = 0x1p-48;   /* defect that calls for a correction  */
+static const double SPOILT = 0x1p-38;  /* and for a new inverse               */
 enum { REFRESH = 16 /* pivots from one new start of the values to the next */ };
 
 struct lcp_work {
@@ -185,11 +185,11 @@ static int invert(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
   return 1;
 }
 
-/* Direction of all basic variables for the entering one; returns the relative
- * defect of its rows after one correction. */
+/* Direction of all basic variables for the entering one, corrected once if the
+ * inverse has drifted; returns the relative defect before. */
 static double direction(lcp_work *w, const lcp_problem *p) {
   int s = w->s, k = w->entering, enters_z = k >= 0;
-  double defect = 0.0, size = 1.0, one = 1.0;
+  double defect = 0.0, first = 0.0, size = 1.0, one = 1.0;
   if (enters_z) {
     p->product(p->ctx, 1, &k, &one, w->column);
     for (int b = 0; b < s; ++b) w->gather[b] = -w->column[w->row[b]];
@@ -208,12 +208,13 @@ static double direction(lcp_work *w, const lcp_problem *p) {
       w->gather[b] = w->dw[w->row[b]];
       if (!(fabs(w->gather[b]) <= defect)) defect = fabs(w->gather[b]);
     }
+    if (pass == 0) first = defect / size;
     if (pass == 1 || defect <= DRIFT * size) break;
     apply_inverse(w, w->gather, w->line);
     for (int a = 0; a < s; ++a) w->dz[a] -= w->line[a];
   }
   for (int b = 0; b < s; ++b) w->dw[w->row[b]] = 0.0;
-  return defect / size;
+  return first;
 }
 
 /* ---- who leaves ---------------------------------------------------------- */
@@ -472,14 +473,13 @@ static outcome finish(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
   return CONVERGED;
 }
 
-/* One pivot; RUNNING: go on. *fresh: pivots since the last new inverse. */
+/* One pivot; RUNNING: go on. *age: pivots since the last new inverse. */
 static outcome advance(lcp_work *w, const lcp_problem *p, lcp_report *rep,
                        int *age) {
   double step, defect = direction(w, p);
   if (isnan(defect)) return STOPPED_NAN;
-  int c = defect <= SPOILT ? leaving(w, p, &step) : -1;
-  if (c < 0 && *age == 0)
-    return defect <= SPOILT ? STOPPED_RAY : STOPPED_SINGULAR;
+  int c = *age == 0 || defect <= SPOILT ? leaving(w, p, &step) : -1;
+  if (c < 0 && *age == 0) return STOPPED_RAY;
   if (c < 0) {
     if (!invert(w, p, rep)) return STOPPED_SINGULAR;
     refresh_values(w, p);
