@@ -135,7 +135,8 @@ status apply_contact(reading *r) {
   c->group = p->group == NULL ? "" : p->group;
   c->obstacle_name = p->obstacle == NULL ? "" : p->obstacle;
   c->at = r->card->at;
-  c->obstacle_normal = p->normal;
+  c->obstacle_normal =
+      card_parameter(r->card, "NORMAL") == NULL ? -1 : p->normal;
   c->obstacle_id = -1;
   c->group_id = -1;
 done:

@@ -56,9 +56,9 @@ static const option contact_options[] = {
   OPTION_NAME(contact_param, group, "GROUP", NULL, "faces of Gamma_3"),
   OPTION_NAME(contact_param, obstacle, "OBSTACLE", NULL,
               "name of an *OBSTACLE"),
-  OPTION_CHOICE(contact_param, normal, "NORMAL", "BODY|OBSTACLE", "BODY",
-                "which normal counts: of Gamma_3, or of plane, cylinder, "
-                "sphere"),
+  OPTION_CHOICE(contact_param, normal, "NORMAL", "BODY|OBSTACLE",
+                OPTION_ABSENT, "whose normal counts; absent: that of a PLANE, "
+                "else that of the body"),
   OPTION_END};
 static const option friction_options[] = {
   OPTION_NAME(friction_param, contact, "CONTACT", NULL, "name of a *CONTACT"),

@@ -42,7 +42,7 @@ typedef struct contact {
   const char *name, *group, *obstacle_name;
   place at;
   int obstacle_id, group_id;
-  int obstacle_normal;     /* 1: NORMAL=OBSTACLE                                */
+  int obstacle_normal;     /* 1: NORMAL=OBSTACLE; resolved from -1: not said */
   const friction_ops *law; /* NULL: frictionless                              */
   friction_card friction;  /* its value and options (owned)                   */
   value_table position;    /* TABLE= of the friction value; arrays owned      */

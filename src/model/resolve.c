@@ -64,6 +64,9 @@ static void resolve_contacts(model *m) {
     if (c->obstacle_name[0] != '\0')
       c->obstacle_id =
           find_name(m, c->obstacle_name, "OBSTACLE", obstacle_at, &c->at);
+    if (c->obstacle_normal < 0)
+      c->obstacle_normal = c->obstacle_id >= 0 &&
+                           m->obstacles[c->obstacle_id].shape == OBSTACLE_PLANE;
     /* The array of contacts has reached its place: point into it now. */
     if (c->friction.value.factor != NULL)
       c->friction.value.factor = &c->position;

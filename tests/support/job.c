@@ -73,18 +73,13 @@ static const char *program(void) {
   return p == NULL ? "build/release/protis" : p;
 }
 
-int job_run(job *j, const char *words) {
-  char command[4 * PATH], path[PATH], cwd[PATH];
-  const char *p = program();
-  if (p[0] != '/') {
-    ck_assert_ptr_nonnull(getcwd(cwd, sizeof cwd));
-    snprintf(path, sizeof path, "%.250s/%.250s", cwd, p);
-    p = path;
-  }
-  snprintf(command, sizeof command,
-           "cd '%s' && '%s' %s %s > stdout.txt 2> stderr.txt", j->dir, p,
-           j->name, words);
-  int code = system(command);
+/* Run a command of the shell in "dir" and keep what it printed. */
+static int run_command(job *j, const char *dir, const char *command) {
+  char line[6 * PATH], path[PATH];
+  snprintf(line, sizeof line,
+           "cd '%s' && %s > '%s/stdout.txt' 2> '%s/stderr.txt'", dir, command,
+           j->dir, j->dir);
+  int code = system(line);
   snprintf(path, sizeof path, "%s/stderr.txt", j->dir);
   free(j->errors);
   j->errors = read_all(path);
@@ -92,6 +87,35 @@ int job_run(job *j, const char *words) {
   free(j->text);
   j->text = read_all(path);
   return WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code);
+}
+
+/* The program with its full path. */
+static void find_program(char *path) {
+  char cwd[PATH];
+  const char *p = program();
+  if (p[0] == '/') {
+    snprintf(path, PATH, "%s", p);
+    return;
+  }
+  ck_assert_ptr_nonnull(getcwd(cwd, sizeof cwd));
+  snprintf(path, PATH, "%.250s/%.250s", cwd, p);
+}
+
+int job_run(job *j, const char *words) {
+  char path[PATH], command[4 * PATH];
+  find_program(path);
+  snprintf(command, sizeof command, "'%s' %s %s", path, j->name, words);
+  return run_command(j, j->dir, command);
+}
+
+int job_run_deck(job *j, const char *deck, const char *words) {
+  char path[PATH], command[4 * PATH];
+  const char *slash = strrchr(deck, '/');
+  snprintf(j->name, sizeof j->name, "%s", slash == NULL ? deck : slash + 1);
+  find_program(path);
+  snprintf(command, sizeof command, "'%s' '%s' -o '%s' %s", path, deck, j->dir,
+           words);
+  return run_command(j, ".", command);
 }
 
 static double read_cell(const char *cell) {

@@ -35,6 +35,9 @@ void job_copy(const job *j, const char *path);
 /* Run protis NAME with further words ("" or "-D N=4 --check"); exit code,
  * or 1000 + signal. */
 int job_run(job *j, const char *words);
+/* Run a deck of the sources (no .inp) with the results in the folder; JOB is
+ * then its name. */
+int job_run_deck(job *j, const char *deck, const char *words);
 /* All of a file of the folder as text (caller frees), or NULL. */
 char *job_file(const job *j, const char *suffix);
 /* Block number k (from 0; -1 the last) of a table (CONTACT, ...) of JOB.dat;
