@@ -113,6 +113,7 @@ function scan(text,    token) {
 }
 
 function open_brace() {
+  if (collecting) body_token("=")
   sub(/^(END_TEST )+/, "", declaration)
   if (depth++ > 0) return
   in_function = declaration ~ /\)$/ && declaration !~ /=/
