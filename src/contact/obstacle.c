@@ -63,22 +63,24 @@ static double round_gap(const obstacle *o, int dim, const double *y,
                     (distance - o->radius) * (distance + o->radius), o->inside);
 }
 
-int obstacle_normal(const obstacle *o, int dim, const double *x, double *n) {
-  int round = o->shape == OBSTACLE_CYLINDER || o->shape == OBSTACLE_SPHERE;
-  double axis = 0, sign = o->inside ? 1 : -1;
-  if (!round && o->shape != OBSTACLE_PLANE) return 0;
-  for (int c = 0; c < dim; ++c)
-    n[c] = round ? sign * (x[c] - o->point[c]) : -o->direction[c];
-  if (o->shape == OBSTACLE_CYLINDER && dim == 3)
-    axis = dot(3, n, o->direction);
-  for (int c = 0; c < dim; ++c) n[c] -= axis * o->direction[c];
-  double length = sqrt(dot(dim, n, n));
-  for (int c = 0; c < dim; ++c) n[c] /= length;
-  return length > 0;
-}
-
 void obstacle_motion(const obstacle *o, double t, double *d) {
   for (int c = 0; c < 3; ++c) d[c] = quantity_value(&o->motion[c], o->point, t);
+}
+
+int obstacle_normal(const obstacle *o, int dim, const double *x, double *n) {
+  int round = o->shape == OBSTACLE_CYLINDER || o->shape == OBSTACLE_SPHERE;
+  double axis = 0, length = 0, d[3], v[3] = {0, 0, 0};
+  if (!round && o->shape != OBSTACLE_PLANE) return 0;
+  obstacle_motion(o, 0, d);
+  for (int c = 0; c < dim; ++c)
+    v[c] = round ? x[c] - d[c] - o->point[c] : -o->direction[c];
+  if (o->shape == OBSTACLE_CYLINDER && dim == 3) axis = dot(3, v, o->direction);
+  for (int c = 0; c < dim; ++c) v[c] -= axis * o->direction[c];
+  length = sqrt(dot(dim, v, v));
+  if (!(length > 0)) return 0;
+  if (round && !o->inside) length = -length;
+  for (int c = 0; c < dim; ++c) n[c] = v[c] / length;
+  return 1;
 }
 
 int obstacle_moves(const obstacle *o) {

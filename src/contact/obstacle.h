@@ -38,8 +38,8 @@ typedef struct obstacle {
 double obstacle_gap(const obstacle *o, int dim, const double *x,
                     const double *n, double t);
 /* Direction n[dim] from x straight to a plane, cylinder or sphere at time 0
- * (the outward normal of a body that touches it there); 0 for the other shapes,
- * which have no normal of their own, and at a centre. */
+ * (the outward normal of a body that touches it there); 0, and n as it was, for
+ * the other shapes, which have no normal of their own, and at a centre. */
 int obstacle_normal(const obstacle *o, int dim, const double *x, double *n);
 /* Shift d[3] of the obstacle at time t, m. */
 void obstacle_motion(const obstacle *o, double t, double *d);

@@ -49,7 +49,8 @@ typedef struct surface_input {
 
 /*
  * Build it. The normal of a node is the sum of the normals of its faces in the
- * group weighted with its share of their area (the gradient of the volume),
+ * group weighted with its share of their area (the gradient of the volume), or
+ * that of the obstacle beside it (obstacle_normal, where the shape has one),
  * taken orthogonal to the components that are fixed there; those become
  * tangents, flagged in held.
  *

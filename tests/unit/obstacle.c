@@ -155,6 +155,46 @@ START_TEST(lengths_times_a_power_of_two_scale_every_bit) {
 }
 END_TEST
 
+/* Straight to the obstacle the gap is the distance, and the shortest. */
+START_TEST(normal_of_the_obstacle_is_the_shortest_way_to_it) {
+  for (int k = 0; k < 600; ++k) {
+    int dim = 2 + k % 2;
+    obstacle o = {.shape = OBSTACLE_PLANE + k % 3, .radius = 1};
+    double n[3] = {0, 0, 0}, x[3], other[3];
+    o.inside = k / 6 % 2;
+    random_unit(dim, o.direction);
+    random_unit(dim, x);
+    for (int c = 0; c < 3; ++c) {
+      o.point[c] = c < dim ? random_part() : 0;
+      o.motion[c].number = c < dim ? random_part() : 0;
+      x[c] = o.point[c] + o.motion[c].number + (o.inside ? 0.7 : 4.2) * x[c];
+    }
+    ck_assert_int_eq(obstacle_normal(&o, dim, x, n), 1);
+    ck_assert_double_eq_tol(dot(n, n), 1, 1e-14);
+    double distance = obstacle_gap(&o, dim, x, n, 0);
+    ck_assert(fabs(distance) < 10);
+    if (distance < 0) continue;
+    for (int j = 0; j < 20; ++j) {
+      random_unit(dim, other);
+      ck_assert(fabs(obstacle_gap(&o, dim, x, other, 0)) > distance - 1e-12);
+    }
+  }
+}
+END_TEST
+
+START_TEST(shapes_without_a_normal_leave_it_alone) {
+  obstacle o = {.shape = OBSTACLE_CONFORMING};
+  double x[3] = {0, 0, 0}, n[3] = {0.6, 0.8, 0};
+  ck_assert_int_eq(obstacle_normal(&o, 2, x, n), 0);
+  o.shape = OBSTACLE_GAP;
+  ck_assert_int_eq(obstacle_normal(&o, 2, x, n), 0);
+  o.shape = OBSTACLE_SPHERE;
+  o.radius = 1;
+  ck_assert_int_eq(obstacle_normal(&o, 2, x, n), 0);
+  ck_assert(n[0] == 0.6 && n[1] == 0.8);
+}
+END_TEST
+
 static void compile(quantity *q, const char *text) {
   expression *e = NULL;
   int column;
@@ -211,5 +251,6 @@ UNIT_MAIN("obstacle", plane_is_met_where_it_was_left,
           line_along_the_axis_misses_the_cylinder,
           flat_sphere_keeps_the_digits_of_the_gap,
           lengths_times_a_power_of_two_scale_every_bit,
-          obstacle_shifts_with_time,
+          normal_of_the_obstacle_is_the_shortest_way_to_it,
+          shapes_without_a_normal_leave_it_alone, obstacle_shifts_with_time,
           given_gap_is_that_of_the_point_now_opposite)

@@ -568,6 +568,28 @@ START_TEST(moving_plane_changes_gap_and_place_of_stick) {
 }
 END_TEST
 
+/* A slope on a level plane: along the normal of the body, and straight down. */
+START_TEST(normal_is_that_of_the_obstacle_if_asked_for) {
+  for (int of_obstacle = 0; of_obstacle < 2; ++of_obstacle) {
+    scene c;
+    scene_init(&c, 2);
+    add_node(&c, 0, 1, 0);
+    add_node(&c, 4, 4, 0);
+    add_face(&c, 0, 1, 0);
+    add_contact(&c, "SLOPE", 0, 1);
+    c.support[0].shape = OBSTACLE_PLANE;
+    c.support[0].direction[1] = 1;
+    c.pair[0].obstacle_normal = of_obstacle;
+    ck_assert_int_eq(build(&c), OK);
+    double down = of_obstacle ? 1 : 0.8;
+    ck_assert_double_eq_tol(c.s->frame[1], -down, 1e-15);
+    ck_assert_double_eq_tol(c.s->gap0[1], 4 / down, 1e-14);
+    ck_assert_double_eq(c.s->area[0], 2.5);
+    scene_free(&c);
+  }
+}
+END_TEST
+
 /* At a corner each row moves with its own obstacle. */
 START_TEST(corner_moves_with_both_obstacles) {
   scene c;
@@ -731,6 +753,7 @@ UNIT_MAIN("surface", areas_of_a_polyline_are_half_sums_times_thickness,
           gap_that_is_no_number_names_the_node,
           gap_that_ends_to_be_a_number_stops_the_run,
           moving_plane_changes_gap_and_place_of_stick,
+          normal_is_that_of_the_obstacle_if_asked_for,
           corner_moves_with_both_obstacles,
           nodes_that_a_moving_obstacle_may_reach_stay,
           groups_that_are_no_boundary_are_refused,
