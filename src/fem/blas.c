@@ -21,18 +21,19 @@ const char *blas_kernel(void) { return openblas_get_corename(); }
 
 int blas_kernel_changed(void) { return getenv(guard) != NULL; }
 
-/* Instruction set a kernel needs: 0 SSE, 1 AVX, 2 AVX2, 3 AVX-512. */
+/* Instruction set a kernel uses: 0 SSE, 1 AVX, 2 AVX2, 3 AVX-512 or one that
+ * is not known here, which is left alone. */
 static int kernel_level(const char *name) {
-  static const struct {
-    const char *name;
-    int level;
-  } known[] = {{"Sandybridge", 1},   {"Bulldozer", 1}, {"Piledriver", 1},
-               {"Steamroller", 1},   {"Haswell", 2},   {"Zen", 2},
-               {"Excavator", 2},     {"SkylakeX", 3},  {"Cooperlake", 3},
-               {"SapphireRapids", 3}};
-  for (size_t i = 0; i < sizeof known / sizeof *known; ++i)
-    if (strcmp(name, known[i].name) == 0) return known[i].level;
-  return 0;
+  static const char *const known[3][16] = {
+      {"Prescott", "Core2", "Penryn", "Dunnington", "Nehalem", "Atom", "Katmai",
+       "Coppermine", "Northwood", "Banias", "Opteron", "Opteron_SSE3",
+       "Barcelona", "Bobcat", "Nano", "Athlon"},
+      {"Sandybridge", "Bulldozer", "Piledriver", "Steamroller"},
+      {"Haswell", "Zen", "Excavator"}};
+  for (int level = 0; level < 3; ++level)
+    for (int i = 0; i < 16 && known[level][i] != NULL; ++i)
+      if (strcmp(name, known[level][i]) == 0) return level;
+  return 3;
 }
 
 /* The best kernel this processor can run, or NULL. */

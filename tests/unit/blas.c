@@ -1,0 +1,69 @@
+/* src/fem/blas.c: a lesser kernel is replaced once, the user's choice stays. */
+#include "fem/fem.h"
+#include "support/unit.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* This program runs itself in one of the roles below and reads what it says:
+ * "forget": the library was loaded with the kernel of the environment, which
+ * is then forgotten as if the library had chosen it; "keep": it stays set. */
+static int play(const char *role, char **argv) {
+  if (strcmp(role, "forget") == 0 && !blas_kernel_changed())
+    unsetenv("OPENBLAS_CORETYPE");
+  blas_choose_kernel(argv);
+  printf("%s %d %s\n", blas_kernel(), blas_kernel_changed(), argv[1]);
+  return 0;
+}
+
+static void run_self(const char *role, char *answer, int size) {
+  char path[1024], command[1200];
+  const ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
+  ck_assert_int_gt((int)n, 0);
+  path[n] = '\0';
+  snprintf(command, sizeof command, "OPENBLAS_CORETYPE=Prescott '%s' %s", path,
+           role);
+  FILE *pipe = popen(command, "r");
+  ck_assert_ptr_nonnull(pipe);
+  ck_assert_ptr_nonnull(fgets(answer, size, pipe));
+  ck_assert_int_eq(pclose(pipe), 0);
+}
+
+static const char *best(void) {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
+    return "SkylakeX 1 forget\n";
+  if (__builtin_cpu_supports("avx2")) return "Haswell 1 forget\n";
+#endif
+  return "Prescott 0 forget\n";
+}
+
+START_TEST(lesser_kernel_is_replaced_by_the_best_the_processor_runs) {
+  char answer[100];
+  run_self("forget", answer, sizeof answer);
+  ck_assert_str_eq(answer, best());
+}
+END_TEST
+
+START_TEST(kernel_the_user_asked_for_stays) {
+  char answer[100];
+  run_self("keep", answer, sizeof answer);
+  ck_assert_str_eq(answer, "Prescott 0 keep\n");
+}
+END_TEST
+
+int main(int argc, char **argv) {
+  if (argc == 2) return play(argv[1], argv);
+  Suite *suite = suite_create("blas");
+  TCase *tests = tcase_create("blas");
+  tcase_add_test(tests,
+                 lesser_kernel_is_replaced_by_the_best_the_processor_runs);
+  tcase_add_test(tests, kernel_the_user_asked_for_stays);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
