@@ -161,35 +161,41 @@ done:
   return st;
 }
 
-/* Turn the blocks of contact nodes, list the blocks that couple unknowns to
- * prescribed components. */
-static status finish_blocks(const domain *d, stiffness *k) {
-  status st = OK;
-  const int dim = k->dim, nb = dim * dim, all = (1 << dim) - 1;
-  const double *basis = d->surface != NULL ? d->surface->basis : NULL;
-  for (int pass = 0; pass < 2; ++pass) {
-    size_t n = 0;
-    for (int j = 0; j < k->n_node; ++j)
-      for (size_t p = k->start[j]; p < k->start[j + 1]; ++p) {
-        const int i = k->row[p], ci = k->contact[i], cj = k->contact[j];
-        if (pass == 0 && (ci >= 0 || cj >= 0))
-          turn_block(dim, ci >= 0 ? basis + nb * ci : NULL,
-                     cj >= 0 ? basis + nb * cj : NULL,
-                     k->block + (size_t)nb * p);
-        if (k->free[i] == all && k->free[j] == all) continue;
-        if (k->free[i] == 0 && k->free[j] == 0) continue;
-        if (pass == 1) {
-          k->coupling[n] = p;
-          k->coupling_column[n] = j;
-        }
-        ++n;
-      }
-    if (pass == 0) {
-      NEW(k->coupling, n);
-      NEW(k->coupling_column, n);
-      k->n_coupling = n;
+/* Contact nodes count in their frame. */
+static void turn_blocks(const domain *d, stiffness *k) {
+  const int nb = k->dim * k->dim;
+  if (d->surface == NULL || d->surface->n == 0) return;
+  for (int j = 0; j < k->n_node; ++j)
+    for (size_t p = k->start[j]; p < k->start[j + 1]; ++p) {
+      const int ci = k->contact[k->row[p]], cj = k->contact[j];
+      if (ci < 0 && cj < 0) continue;
+      turn_block(k->dim, ci >= 0 ? d->surface->basis + nb * ci : NULL,
+                 cj >= 0 ? d->surface->basis + nb * cj : NULL,
+                 k->block + (size_t)nb * p);
     }
-  }
+}
+
+/* Does the block couple an unknown with a prescribed component? */
+static int couples(const stiffness *k, int i, int j) {
+  const int all = (1 << k->dim) - 1;
+  return (k->free[i] != all || k->free[j] != all) &&
+         (k->free[i] != 0 || k->free[j] != 0);
+}
+
+static status list_coupling(stiffness *k) {
+  status st = OK;
+  size_t n = 0;
+  for (int j = 0; j < k->n_node; ++j)
+    for (size_t p = k->start[j]; p < k->start[j + 1]; ++p)
+      n += (size_t)couples(k, k->row[p], j);
+  NEW(k->coupling, n);
+  NEW(k->coupling_column, n);
+  for (int j = 0; j < k->n_node; ++j)
+    for (size_t p = k->start[j]; p < k->start[j + 1]; ++p)
+      if (couples(k, k->row[p], j)) {
+        k->coupling[k->n_coupling] = p;
+        k->coupling_column[k->n_coupling++] = j;
+      }
 done:
   return st;
 }
@@ -204,7 +210,8 @@ status stiffness_assemble(const domain *d, stiffness **out) {
   TRY(node_graph(d->mesh, k));
   TRY(add_elements(d, k));
   TRY(mark_unknowns(d, k));
-  TRY(finish_blocks(d, k));
+  turn_blocks(d, k);
+  TRY(list_coupling(k));
 done:
   timer_leave(STAGE_ASSEMBLY);
   if (st != OK) {

@@ -167,6 +167,18 @@ static void fill_held(condensed *c) {
   }
 }
 
+static status form_matrix(condensed *c) {
+  status st = OK;
+  timer_enter(STAGE_CONDENSE);
+  NEW(c->A, (size_t)c->m * (size_t)c->m);
+  for (int q = 0; q < c->n_body; ++q)
+    TRY(body_factor_condense(&c->body[q], c->m, c->A));
+  fill_held(c);
+done:
+  timer_leave(STAGE_CONDENSE);
+  return st;
+}
+
 status condense(const stiffness *k, const domain *d, condensed **out) {
   status st = OK;
   condensed *c = NULL;
@@ -186,14 +198,7 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   TRY(support_motions(d, &c->n_motion, &c->motion, floating));
   TRY(check_support(c));
   TRY(factor_bodies(c, floating));
-  timer_enter(STAGE_CONDENSE);
-  c->A = memory_new((size_t)c->m * (size_t)c->m, sizeof *c->A);
-  st = c->A != NULL ? OK : ERR_MEMORY;
-  for (int q = 0; st == OK && q < c->n_body; ++q)
-    st = body_factor_condense(&c->body[q], c->m, c->A);
-  if (st == OK) fill_held(c);
-  timer_leave(STAGE_CONDENSE);
-  TRY(st);
+  TRY(form_matrix(c));
 done:
   memory_free(floating);
   if (st != OK) {

@@ -35,9 +35,11 @@ double element_weight(const domain *d, int elem_id);
 typedef struct stiffness stiffness; /* sparse K of the free unknowns        */
 typedef struct condensed condensed; /* factor and condensed matrix          */
 
+/* The stiffness of the domain; *out is new (stiffness_free), NULL on failure.
+ * ERR_MESH: an element beyond the axis or without volume. ERR_MEMORY. */
 status stiffness_assemble(const domain *d, stiffness **out);
-void stiffness_free(stiffness *k);
-long stiffness_unknowns(const stiffness *k);
+void stiffness_free(stiffness *k); /* accepts NULL                         */
+long stiffness_unknowns(const stiffness *k); /* components not prescribed   */
 
 /* What can resist a rigid motion that *BOUNDARY leaves to a body. */
 typedef enum {
@@ -80,6 +82,7 @@ typedef struct condense_info {
   size_t bytes;
   const char *ordering;
 } condense_info;
+/* Sizes and work, for the listing. */
 condense_info condensed_info(const condensed *c);
 
 /*

@@ -17,7 +17,8 @@ typedef struct pieces {
   int *elem;       /* [start[n_node]]                                      */
 } pieces;
 
+/* Fill p; on failure it is empty. */
 status pieces_find(const mesh *m, pieces *p);
-void pieces_release(pieces *p);
+void pieces_release(pieces *p); /* accepts an all-zero object               */
 
 #endif

@@ -87,9 +87,6 @@ static double plain_run(const stiffness *k, const scene *s, order_method method,
     check(body_factor_back(&f, NULL, load, &cm));
   }
   *per_solve = (timer_cpu() - begin) / solves;
-  if (getenv("VERBOSE"))
-    printf("method %d flops %.3g lnz %.3g cpu %.2f\n", method, f.flops,
-           (double)f.L->xsize, cpu);
   cpu += *per_solve;
   graph_release(&g);
   body_factor_release(&f, &cm);
@@ -129,9 +126,6 @@ static void one_run(const scene *s, int columns, figures *r) {
   r->condense = timer_cpu() - begin;
   r->factor = timer_cost(STAGE_FACTOR).cpu - before;
   r->info = condensed_info(c);
-  if (getenv("VERBOSE"))
-    printf("cond flops %.3g lnz %.3g\n", r->info.flops,
-           (double)r->info.factor_entries);
   condensed_free(c);
   stiffness same = without_contact(k, 0);
   for (int q = 0; q < METHODS; ++q)

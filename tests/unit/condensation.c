@@ -247,10 +247,38 @@ static void local_prescribed(const scene *s, const double *ud, double *a) {
   }
 }
 
+/* Contact nodes of v (global) in their frame; forces turn by the basis. */
+static void to_local(const scene *s, int force, const double *v, double *a) {
+  const int dim = s->m->dim;
+  memcpy(a, v, (size_t)(dim * s->m->n_node) * sizeof *a);
+  for (int q = 0; q < s->surface.n; ++q) {
+    const int at = dim * s->surface.node_id[q];
+    const double *T = (force ? s->surface.basis : s->surface.frame) +
+                      dim * dim * q; /* columns of basis, rows of frame */
+    for (int i = 0; i < dim; ++i) {
+      a[at + i] = 0;
+      for (int j = 0; j < dim; ++j) a[at + i] += T[dim * i + j] * v[at + j];
+    }
+  }
+}
+
+/* Row of A u_c - f_c over the contact unknowns that are not held. */
+static double contact_force(const scene *s, const condensed *c, int row,
+                            const double *uc, const double *fc) {
+  const int m = s->m->dim * s->surface.n;
+  const double *A = condensed_matrix(c);
+  double sum = -fc[row];
+  for (int j = 0; j < m; ++j)
+    if (!s->surface.held[j])
+      sum += A[(size_t)row + (size_t)m * (size_t)j] * uc[j];
+  return sum;
+}
+
 /*
  * For a load, prescribed displacements and any contact displacement u_c, the
  * recovered interior must be in equilibrium (rows of the dense matrix) and
- * A u_c - f_c must be the force of the contact rows.
+ * A u_c - f_c must be the force of the contact rows; prescribed components
+ * keep their value.
  */
 START_TEST(load_and_recovery_agree_with_dense_equilibrium) {
   scene *s = scenes[_i]();
@@ -261,52 +289,34 @@ START_TEST(load_and_recovery_agree_with_dense_equilibrium) {
   const size_t N = (size_t)p.N, m = (size_t)p.m;
   unsigned seed = 5;
   double *F = get(N), *ud = get(N), *fc = get(m), *uc = get(m), *u = get(N);
-  double *a = get(N), *f = get(N), *r = get(N);
-  for (size_t i = 0; i < N; ++i) {
-    F[i] = scene_random(&seed);
-    ud[i] = scene_random(&seed);
-  }
-  solve(s, &k, &c);
+  double *a = get(N), *f = get(N), *given = get(N);
+  for (size_t i = 0; i < N; ++i) F[i] = scene_random(&seed);
+  for (size_t i = 0; i < N; ++i) ud[i] = scene_random(&seed);
   for (size_t i = 0; i < m; ++i) uc[i] = scene_random(&seed);
+  solve(s, &k, &c);
   ck_assert_int_eq(condense_load(c, F, ud, fc), OK);
   ck_assert_int_eq(condense_recover(c, uc, u), OK);
-  memcpy(a, u, N * sizeof *a);
-  memcpy(f, F, N * sizeof *f);
-  for (int q = 0; q < s->surface.n; ++q) {
-    const int at = dim * s->surface.node_id[q];
-    const double *T = s->surface.basis + dim * dim * q;
-    for (int i = 0; i < dim; ++i) {
-      a[at + i] = f[at + i] = 0;
-      for (int j = 0; j < dim; ++j) {
-        a[at + i] += s->surface.frame[dim * (dim * q + i) + j] * u[at + j];
-        f[at + i] += T[dim * i + j] * F[at + j];
-      }
-    }
-  }
-  double *given = get(N);
+  to_local(s, 0, u, a);
+  to_local(s, 1, F, f);
   local_prescribed(s, ud, given);
+  const double tol = 1e-12 * largest(N * N, p.K);
   for (size_t i = 0; i < N; ++i) {
     if (!p.unknown[i]) ck_assert_double_eq_tol(a[i], given[i], 1e-14);
-    r[i] = -f[i];
-    for (size_t j = 0; j < N; ++j) r[i] += p.K[i + N * j] * a[j];
+    f[i] = -f[i];
+    for (size_t j = 0; j < N; ++j) f[i] += p.K[i + N * j] * a[j];
   }
-  for (int q = 0; q < p.ni; ++q)
-    ck_assert_double_eq_tol(r[p.inner[q]], 0, 1e-12 * largest(N * N, p.K));
-  const double *A = condensed_matrix(c);
+  for (int q = 0; q < p.ni; ++q) ck_assert_double_eq_tol(f[p.inner[q]], 0, tol);
   for (int q = 0; q < p.nc; ++q) {
-    double sum = -fc[p.row[q]];
-    for (size_t j = 0; j < m; ++j)
-      sum += A[(size_t)p.row[q] + m * j] * (s->surface.held[j] ? 0 : uc[j]);
     ck_assert_double_eq_tol(a[p.contact[q]], uc[p.row[q]], 1e-14);
-    ck_assert_double_eq_tol(sum, r[p.contact[q]], 1e-12 * largest(N * N, p.K));
+    ck_assert_double_eq_tol(contact_force(s, c, p.row[q], uc, fc),
+                            f[p.contact[q]], tol);
   }
-  for (size_t i = 0; i < m; ++i)
+  for (int i = 0; i < p.m; ++i)
     if (s->surface.held[i])
-      ck_assert_double_eq_tol(fc[i] / A[i * (m + 1)],
-                              given[dim * s->surface.node_id[i / (size_t)dim] +
-                                    (int)(i % (size_t)dim)],
-                              1e-14);
-  double *all[] = {F, ud, fc, uc, u, a, f, r, given};
+      ck_assert_double_eq_tol(
+          fc[i] / condensed_matrix(c)[(size_t)i * (m + 1)],
+          given[dim * s->surface.node_id[i / dim] + i % dim], 1e-14);
+  double *all[] = {F, ud, fc, uc, u, a, f, given};
   for (size_t i = 0; i < sizeof all / sizeof *all; ++i) free(all[i]);
   release(&p);
   end(s, k, c);
@@ -430,6 +440,30 @@ START_TEST(every_refused_request_is_survived) {
 }
 END_TEST
 
+static void is_singular(scene *s, const char *part) {
+  stiffness *k;
+  condensed *c;
+  ck_assert_int_eq(stiffness_assemble(&s->d, &k), OK);
+  ck_assert_int_eq(condense(k, &s->d, &c), ERR_SINGULAR);
+  ck_assert_ptr_null(c);
+  ck_assert_msg(strstr(status_message(), part) != NULL, "%s", status_message());
+  stiffness_free(k);
+  scene_free(s);
+}
+
+START_TEST(stiffness_that_is_not_definite_is_refused_with_its_place) {
+  scene *s = no_contact();
+  s->E[15] = -s->E[15];
+  is_singular(s, "with node");
+  s = plain_2d();
+  s->E[0] = NAN;
+  is_singular(s, "not a number");
+  s = plain_2d();
+  for (int i = 0; i < 16; ++i) s->E[i] = 0;
+  is_singular(s, "zero");
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("condensation");
   TCase *tests = tcase_create("condensation");
@@ -439,6 +473,8 @@ int main(void) {
   tcase_add_loop_test(tests, load_and_recovery_agree_with_dense_equilibrium, 0,
                       SCENES);
   tcase_add_test(tests, floating_body_has_the_rigid_motions_as_null_space);
+  tcase_add_test(tests,
+                 stiffness_that_is_not_definite_is_refused_with_its_place);
   tcase_add_loop_test(tests, power_of_two_in_the_moduli_leaves_every_bit, 0,
                       SCENES);
   tcase_add_loop_test(tests, every_refused_request_is_survived, 0, SCENES);

@@ -179,6 +179,33 @@ START_TEST(lying_cube_has_three_motions_of_friction_and_three_of_contact) {
 }
 END_TEST
 
+/* Normals across the velocities of a screw leave just this motion. */
+START_TEST(thread_lets_the_body_screw) {
+  scene *s = cube();
+  scene_contact(s, "BODY", (double[]){1, 0, 0}, 0);
+  for (int q = 0; q < s->surface.n; ++q) {
+    const double *x = s->surface.x + 3 * q;
+    const double v[3] = {-(x[1] - 1), x[0] - 1, 0.2};
+    const double across = sqrt(v[1] * v[1] + v[2] * v[2]);
+    scene_frame(s, q,
+                (double[]){0, v[2] / across, -v[1] / across, 1, 0, 0, 0,
+                           v[1] / across, v[2] / across});
+  }
+  free_motion *list;
+  int n;
+  ck_assert_int_eq(domain_free_motions(&s->d, &n, &list), OK);
+  ck_assert_int_eq(n, 6);
+  int screws = 0;
+  for (int i = 0; i < n; ++i)
+    screws +=
+        list[i].held_by == HELD_BY_FRICTION &&
+        strcmp(list[i].text, "screw motion about z through (1, 1, 1)") == 0;
+  ck_assert_int_eq(screws, 1);
+  memory_free(list);
+  scene_free(s);
+}
+END_TEST
+
 START_TEST(units_of_length_change_nothing) {
   static const double unit[] = {1e-9, 1e9, 25.4};
   for (int q = 0; q < 3; ++q) {
@@ -269,5 +296,6 @@ UNIT_MAIN("support", free_square_has_three_motions,
           second_obstacle_counts_as_contact_not_friction,
           turned_body_moves_along_its_axis, cube_on_an_edge_turns_about_it,
           lying_cube_has_three_motions_of_friction_and_three_of_contact,
-          units_of_length_change_nothing, second_body_is_named,
-          piece_on_a_hinge_is_found, every_refused_request_is_survived)
+          thread_lets_the_body_screw, units_of_length_change_nothing,
+          second_body_is_named, piece_on_a_hinge_is_found,
+          every_refused_request_is_survived)
