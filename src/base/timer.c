@@ -7,6 +7,7 @@
 
 #include <assert.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 
 enum { DEPTH = 16 };
@@ -19,8 +20,12 @@ static size_t last_bytes;
 
 double timer_cpu(void) {
   struct timespec now;
+  struct rusage child = {0};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+  getrusage(RUSAGE_CHILDREN, &child);
+  return (double)(now.tv_sec + child.ru_utime.tv_sec + child.ru_stime.tv_sec) +
+         1e-9 * (double)now.tv_nsec +
+         1e-6 * (double)(child.ru_utime.tv_usec + child.ru_stime.tv_usec);
 }
 
 /* Charge what was spent since the last change to the innermost stage. */

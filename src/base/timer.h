@@ -45,7 +45,8 @@ void timer_enter(stage s);
 void timer_leave(stage s);       /* must match the last timer_enter         */
 stage_cost timer_cost(stage s);  /* so far, running stages included         */
 const char *timer_name(stage s); /* the text of STAGE_LIST                  */
-double timer_cpu(void);          /* CPU seconds of the process so far       */
+double timer_cpu(void);          /* CPU seconds of the process so far, and of
+                                    the children it has waited for          */
 void timer_reset(void);
 
 #endif

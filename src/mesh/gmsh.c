@@ -11,7 +11,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-enum { HEAD_SIZE = 4096 };
+enum { HEAD_SIZE = 4096, TAIL_SIZE = 256 };
 
 static int ends_in(const char *text, const char *end) {
   size_t n = strlen(text), k = strlen(end);
@@ -60,7 +60,7 @@ static void find_version(const char *head, char version[8]) {
   if (p == NULL || (p != head && p[-1] != '\n')) return;
   p += sizeof start - 1;
   p += strspn(p, " \t\r\n");
-  snprintf(version, 8, "%.*s", (int)strcspn(p, " \t\r\n"), p);
+  snprintf(version, 8, "%.*s", (int)strspn(p, "0123456789."), p);
 }
 
 static status check_format(const char *file, const char *head, const place *at,
@@ -82,6 +82,37 @@ done:
   return st;
 }
 
+/* gmsh takes half a number for a number: a .msh ends with $End..., or it was
+ * cut short. */
+static status check_tail(const char *file, const place *at, message_log *log) {
+  status st = OK;
+  char tail[TAIL_SIZE];
+  size_t n = 0;
+  FILE *in = fopen(file, "rb");
+  if (in == NULL) FAIL(ERR_FILE, "\"%s\": %s", file, strerror(errno));
+  if (fseek(in, -TAIL_SIZE, SEEK_END) != 0) rewind(in); /* it is shorter */
+  n = fread(tail, 1, TAIL_SIZE, in);
+  while (n > 0 && strchr(" \t\r\n", tail[n - 1]) != NULL) --n;
+  size_t line = n;
+  while (line > 0 && tail[line - 1] != '\n') --line;
+  if (n - line < 4 || strncmp(tail + line, "$End", 4) != 0) {
+    message_add(log, P3003, at,
+                "mesh file \"%s\" is cut short: it does not end with $End...",
+                file);
+    FAIL(ERR_MESH, "mesh file \"%s\" is cut short", file);
+  }
+done:
+  if (in != NULL) fclose(in);
+  return st;
+}
+
+/* gmsh calls a name given twice in one dimension an error of its own. */
+static message_id number_of(const char *text) {
+  return strstr(text, "Physical ") != NULL && strstr(text, "already exists")
+             ? P3012
+             : P3003;
+}
+
 status mesh_read_gmsh(const char *file, double scale, int n_number,
                       const mesh_number *numbers, const place *at,
                       message_log *log, mesh **out) {
@@ -91,10 +122,14 @@ status mesh_read_gmsh(const char *file, double scale, int n_number,
   raw_request request = {file, ends_in(file, ".geo"), n_number, numbers};
   *out = NULL;
   TRY(read_head(file, head, at, log));
-  if (!request.is_geo) TRY(check_format(file, head, at, log));
+  if (!request.is_geo) {
+    TRY(check_format(file, head, at, log));
+    TRY(check_tail(file, at, log));
+  }
   st = raw_read(&request, &raw);
   if (st == ERR_MESH)
-    message_add(log, P3003, at, "mesh file \"%s\": %s", file, status_message());
+    message_add(log, number_of(status_message()), at, "mesh file \"%s\": %s",
+                file, status_message());
   TRY(st);
   TRY(build_mesh(raw, scale, at, log, out));
 done:

@@ -181,8 +181,7 @@ static int tells_of_memory(const char *text) {
   return strstr(text, "bad_alloc") != NULL ||
          strstr(text, "Out of memory") != NULL ||
          strstr(text, "out of memory") != NULL ||
-         strstr(text, "annot allocate memory") != NULL ||
-         strstr(text, "length_error") != NULL;
+         strstr(text, "annot allocate memory") != NULL;
 }
 
 /* How the child ended, when it did not send a whole mesh. */
@@ -197,8 +196,9 @@ static status child_failure(int ended, int code, int error_fd) {
   const char *said = last[0] != '\0' ? "; it said: " : "";
   int killed = ended && WIFSIGNALED(code);
   if (tells_of_memory(text))
-    FAIL(ERR_MEMORY, "gmsh ran out of memory while reading the mesh%s%s", said,
-         last);
+    FAIL(ERR_MEMORY,
+         "gmsh ran out of memory while reading the mesh; a damaged file may "
+         "ask for too much");
   if (killed && WTERMSIG(code) == SIGKILL)
     FAIL(ERR_MEMORY,
          "gmsh was killed while reading the mesh: the system has not the "
@@ -207,8 +207,8 @@ static status child_failure(int ended, int code, int error_fd) {
   if (killed)
     FAIL(ERR_MESH, "gmsh died of signal %d (%s)%s%s", WTERMSIG(code),
          strsignal(WTERMSIG(code)), said, last);
-  FAIL(ERR_MESH, "gmsh left with code %d before the mesh was complete%s%s",
-       ended && WIFEXITED(code) ? WEXITSTATUS(code) : -1, said, last);
+  FAIL(ERR_MESH, "gmsh ended by itself before the mesh was complete%s%s", said,
+       last);
 done:
   memory_free(text);
   return st;
