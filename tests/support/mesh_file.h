@@ -1,0 +1,39 @@
+/*
+ * Mesh files for the tests: texts written to a folder of their own, read with
+ * mesh_read_gmsh, and the messages as one text.
+ */
+#ifndef PROTIS_TESTS_MESH_FILE_H
+#define PROTIS_TESTS_MESH_FILE_H
+
+#include "mesh/mesh.h"
+
+/* A .msh of version 2.2 in ASCII from the lines of its three parts. */
+#define MSH(names, nodes, elements)                                     \
+  "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n" names        \
+  "$EndPhysicalNames\n$Nodes\n" nodes "$EndNodes\n$Elements\n" elements \
+  "$EndElements\n"
+
+typedef struct mesh_file {
+  char folder[64];
+  char messages[4096]; /* of the last reading, without source lines       */
+  status answer;       /* of the last reading                              */
+  int n_error;         /* errors of the last reading                       */
+} mesh_file;
+
+void mesh_file_open(mesh_file *f);  /* new folder                           */
+void mesh_file_close(mesh_file *f); /* removed with all in it               */
+/* FOLDER/NAME; the same buffer at every call. */
+const char *mesh_file_path(const mesh_file *f, const char *name);
+void mesh_file_write(const mesh_file *f, const char *name, const void *data,
+                     size_t size);
+/* Read FOLDER/NAME with the numbers; the answer and messages go to f. */
+mesh *mesh_file_read(mesh_file *f, const char *name, double scale, int n_number,
+                     const mesh_number *numbers);
+/* Write the text as FOLDER/NAME, then read it. */
+mesh *mesh_file_text(mesh_file *f, const char *name, const char *text);
+/* 1 if both are the same in everything but the element numbers (version 2.2
+ * numbers them anew), coordinates to digits*size (ASCII files have 16 digits);
+ * "what" tells the first difference. */
+int mesh_same(const mesh *a, const mesh *b, double digits, const char **what);
+
+#endif

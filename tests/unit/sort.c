@@ -1,0 +1,93 @@
+/* src/mesh/sort.c */
+#include "base/memory.h"
+#include "mesh/sort.h"
+#include "support/unit.h"
+
+enum { N = 5000 };
+
+/* Numbers without pattern (Marsaglia, xorshift). */
+static uint64_t next(uint64_t *s) {
+  *s ^= *s << 13;
+  *s ^= *s >> 7;
+  return *s ^= *s << 17;
+}
+
+typedef struct pair {
+  uint64_t key;
+  int second, id;
+} pair;
+
+static int by_pair(const void *p, const void *q) {
+  const pair *a = p, *b = q;
+  if (a->key != b->key) return a->key < b->key ? -1 : 1;
+  if (a->second != b->second) return a->second < b->second ? -1 : 1;
+  return (a->id > b->id) - (a->id < b->id);
+}
+
+static int by_second(const void *ctx, int a, int b) {
+  const pair *p = ctx;
+  if (p[a].second != p[b].second) return p[a].second < p[b].second ? -1 : 1;
+  return (a > b) - (a < b);
+}
+
+/* Keys of few or all bits; the C library sorts the same pairs. */
+START_TEST(order_is_that_of_qsort) {
+  static pair p[N], q[N];
+  static uint64_t key[N];
+  static int id[N];
+  uint64_t s = 88172645463325252u;
+  for (int bits = 1; bits <= 64; bits += 7)
+    for (int n = 0; n <= N; n = n * 3 + 1) {
+      for (int i = 0; i < n; ++i) {
+        key[i] = next(&s) >> (64 - bits);
+        p[i] = (pair){key[i], (int)(next(&s) % 5), i};
+        q[i] = p[i];
+        id[i] = i;
+      }
+      ck_assert_int_eq(sort_by_key(n, key, id, by_second, p), OK);
+      qsort(q, (size_t)n, sizeof *q, by_pair);
+      for (int i = 0; i < n; ++i) {
+        ck_assert_int_eq(id[i], q[i].id);
+        ck_assert(key[i] == q[i].key);
+      }
+    }
+}
+END_TEST
+
+START_TEST(equal_keys_stay_in_order_without_compare) {
+  static uint64_t key[N];
+  static int id[N];
+  uint64_t s = 88172645463325252u;
+  for (int i = 0; i < N; ++i) {
+    key[i] = (next(&s) & 3) << 40;
+    id[i] = i;
+  }
+  ck_assert_int_eq(sort_by_key(N, key, id, NULL, NULL), OK);
+  for (int i = 1; i < N; ++i)
+    ck_assert(key[i - 1] < key[i] ||
+              (key[i - 1] == key[i] && id[i - 1] < id[i]));
+}
+END_TEST
+
+START_TEST(refused_memory_is_told_and_given_back) {
+  static int id[N];
+  size_t before = memory_in_use();
+  int refusals = 0;
+  for (int k = 1;; ++k) {
+    for (int i = 0; i < N; ++i) id[i] = N - i;
+    memory_refuse(k, 0);
+    status st = sort_ids(N, id);
+    memory_refuse(0, 0);
+    ck_assert_uint_eq(memory_in_use(), before);
+    if (st == OK) break;
+    ck_assert_int_eq(st, ERR_MEMORY);
+    ++refusals;
+  }
+  ck_assert_int_eq(refusals, 3);
+  for (int i = 0; i < N; ++i) ck_assert_int_eq(id[i], i + 1);
+}
+END_TEST
+
+UNIT_MAIN("sort", order_is_that_of_qsort,
+          equal_keys_stay_in_order_without_compare,
+          refused_memory_is_told_and_given_back)
