@@ -198,6 +198,9 @@
   X(3004, WARNING, "warning of gmsh",                                        \
     "gmsh read or meshed the file, but was not content. Open it with "       \
     "gmsh itself to see the place.")                                         \
+  X(3005, ERROR, "last line of the .geo does not end",                       \
+    "gmsh reads only the first statement of a last line without "            \
+    "newline. Add a newline at the end of the file.")                        \
   X(3010, ERROR, "mesh without physical groups",                             \
     "Name the parts in the .geo: Physical Surface(\"BODY\") = {1}; "         \
     "(3-D: Physical Volume) for what is solid, Physical "                    \

@@ -57,8 +57,8 @@ static void tell_warnings(const builder *b) {
     message_add(b->log, P3004, b->at, "gmsh warns: %s", raw->warning[i]);
   if (raw->n_loose > 0)
     message_add(b->log, P3014, b->at,
-                "%zu %s are in no physical group and are left out",
-                raw->n_loose, b->m->dim == 3 ? "volume elements" : "elements");
+                "%zu %s(s) in no physical group are left out", raw->n_loose,
+                b->m->dim == 3 ? "volume element" : "element");
 }
 
 status build_mesh(const raw_mesh *raw, double scale, const place *at,

@@ -82,16 +82,27 @@ done:
   return st;
 }
 
-/* gmsh takes half a number for a number: a .msh ends with $End..., or it was
- * cut short. */
-static status check_tail(const char *file, const place *at, message_log *log) {
+/* The last bytes of the file, *n of them, with a zero after. */
+static status read_tail(const char *file, char tail[TAIL_SIZE + 1], size_t *n) {
   status st = OK;
-  char tail[TAIL_SIZE];
-  size_t n = 0;
   FILE *in = fopen(file, "rb");
   if (in == NULL) FAIL(ERR_FILE, "\"%s\": %s", file, strerror(errno));
   if (fseek(in, -TAIL_SIZE, SEEK_END) != 0) rewind(in); /* it is shorter */
-  n = fread(tail, 1, TAIL_SIZE, in);
+  *n = fread(tail, 1, TAIL_SIZE, in);
+  tail[*n] = '\0';
+done:
+  if (in != NULL) fclose(in);
+  return st;
+}
+
+/* gmsh takes half a number for a number: a .msh ends with $End..., or it was
+ * cut short. */
+static status check_msh_tail(const char *file, const place *at,
+                             message_log *log) {
+  status st = OK;
+  char tail[TAIL_SIZE + 1];
+  size_t n = 0;
+  TRY(read_tail(file, tail, &n));
   while (n > 0 && strchr(" \t\r\n", tail[n - 1]) != NULL) --n;
   size_t line = n;
   while (line > 0 && tail[line - 1] != '\n') --line;
@@ -102,7 +113,25 @@ static status check_tail(const char *file, const place *at, message_log *log) {
     FAIL(ERR_MESH, "mesh file \"%s\" is cut short", file);
   }
 done:
-  if (in != NULL) fclose(in);
+  return st;
+}
+
+/* Of a last line without newline gmsh obeys the first statement only. */
+static status check_geo_tail(const char *file, const place *at,
+                             message_log *log) {
+  status st = OK;
+  char tail[TAIL_SIZE + 1];
+  size_t n = 0;
+  TRY(read_tail(file, tail, &n));
+  if (n > 0 && (tail[n - 1] == '\n' || tail[n - 1] == '\r')) return OK;
+  const char *line = strrchr(tail, '\n');
+  const char *first = strchr(line != NULL ? line : tail, ';');
+  if (first != NULL && strchr(first + 1, ';') != NULL) {
+    message_add(log, P3005, at,
+                "\"%s\" ends without a newline after several statements", file);
+    FAIL(ERR_MESH, "\"%s\" ends without a newline", file);
+  }
+done:
   return st;
 }
 
@@ -122,9 +151,11 @@ status mesh_read_gmsh(const char *file, double scale, int n_number,
   raw_request request = {file, ends_in(file, ".geo"), n_number, numbers};
   *out = NULL;
   TRY(read_head(file, head, at, log));
-  if (!request.is_geo) {
+  if (request.is_geo) {
+    TRY(check_geo_tail(file, at, log));
+  } else {
     TRY(check_format(file, head, at, log));
-    TRY(check_tail(file, at, log));
+    TRY(check_msh_tail(file, at, log));
   }
   st = raw_read(&request, &raw);
   if (st == ERR_MESH)
