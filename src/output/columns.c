@@ -80,6 +80,7 @@ VALUE(contact_f_n, -v->s->rc[at(SURFACE->dim, id, 0)])
 VALUE(contact_f_t, v->s->rc[at(SURFACE->dim, id, part + 1)])
 VALUE(contact_slip, v->s->slip[at(SURFACE->dim - 1, id, part)])
 VALUE(sliding_limit, v->s->limit[id])
+VALUE(contact_normal, SURFACE->frame[at(SURFACE->dim * SURFACE->dim, id, part)])
 VALUE(contact_area, SURFACE->area[id])
 VALUE(contact_state, v->s->contact[id])
 
@@ -274,8 +275,18 @@ const column column_table[] = {
  contact_x, NULL, "coordinate"},
 {"z", "length", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE, NULL, 2,
  contact_x, NULL, "coordinate"},
-{"area", "length^2", CON, 0, C, SUR, NULL, 0, contact_area, NULL,
+{"area", "length^2", CON, 0, C, SUR, "area", 0, contact_area, NULL,
  "tributary area"},
+{"n_x", "-", CON, 0, C, CART, NEEDS_SURFACE, "normal", 0, contact_normal, NULL,
+ "outward normal"},
+{"n_r", "-", CON, 0, C, SCENE_AXI, NEEDS_SURFACE, "normal", 0, contact_normal,
+ NULL, "outward normal"},
+{"n_y", "-", CON, 0, C, CART, NEEDS_SURFACE, "normal", 1, contact_normal, NULL,
+ "outward normal"},
+{"n_z", "-", CON, 0, C, SCENE_AXI, NEEDS_SURFACE, "normal", 1, contact_normal,
+ NULL, "outward normal"},
+{"n_z", "-", CON, 0, C, SCENE_SOLID, NEEDS_SURFACE, "normal", 2,
+ contact_normal, NULL, "outward normal"},
 {"u_n", "length", CON, PRINT_CONTACT, C, SUR, "u_n", 0, contact_u_n, NULL,
  "displacement along the outward normal"},
 {"u_t", "length", CON, PRINT_CONTACT, C, SCENE_FLAT, NEEDS_SURFACE, "u_t", 0,

@@ -2,7 +2,7 @@
  * JOB.h5: what stands in it, and writing while the job runs (see hdf5.h).
  *
  *   /mesh      nodes, elements (ids from 0), node_no, elem_no, groups
- *   /contact   points, normal, area, ... and one group per field of its nodes
+ *   /contact   points, faces, ... and one group per field of the contact nodes
  *   /fields    time, total; one group per field of nodes and elements with
  *              one dataset per record (an increment whose fields were asked)
  *   /history   one row per increment, one dataset per column
@@ -271,13 +271,20 @@ static double part_value(const hdf5_field *f, const view *v, int id, int k) {
   return value == 0 ? 0.0 : value;
 }
 
+/* A contact node that is not in the surface now has no value. */
+static double item_value(const hdf5_file *h, const hdf5_field *f, const view *v,
+                         int id, int k) {
+  if (f->of == PER_CONTACT_NODE) id = h->surface_id[id];
+  return id < 0 ? NAN : part_value(f, v, id, k);
+}
+
 static status put_field(hdf5_file *h, const hdf5_field *f, const view *v,
                         off_t offset) {
   status st = OK;
   double chunk[CHUNK];
   int n = 0, items = hdf5_items(h, f);
   for (int id = 0; id < items; ++id) {
-    for (int k = 0; k < f->n_part; ++k) chunk[n++] = part_value(f, v, id, k);
+    for (int k = 0; k < f->n_part; ++k) chunk[n++] = item_value(h, f, v, id, k);
     if (n + 3 < CHUNK && id + 1 < items) continue;
     size_t bytes = sizeof(double) * (size_t)n;
     TRY(put(h->fd, h->path, chunk, bytes, offset));
@@ -286,6 +293,16 @@ static status put_field(hdf5_file *h, const hdf5_field *f, const view *v,
   }
 done:
   return st;
+}
+
+/* Both lists ascend. */
+static void find_surface_ids(hdf5_file *h, const contact_surface *s) {
+  int k = 0;
+  for (int i = 0; i < h->n_contact_node; ++i) {
+    while (s != NULL && k < s->n && s->node_id[k] < h->contact_node[i]) ++k;
+    int there = s != NULL && k < s->n && s->node_id[k] == h->contact_node[i];
+    h->surface_id[i] = there ? k : -1;
+  }
 }
 
 static off_t slot(off_t offset, int i) {
@@ -299,6 +316,7 @@ static status put_real(hdf5_file *h, double value, off_t offset, int i) {
 static status put_record(hdf5_file *h, const view *v) {
   status st = OK;
   GROW(h->times, h->n_record, h->cap_time);
+  find_surface_ids(h, v->s->surface);
   for (int i = 0; i < h->n_field; ++i) {
     if (hdf5_is_history(&h->fields[i])) continue;
     size_t k = (size_t)i * (size_t)h->now.n_record + (size_t)h->n_record;
@@ -375,12 +393,12 @@ done:
   return st;
 }
 
-static status choose_fields(hdf5_file *h, const contact_surface *surface) {
+static status choose_fields(hdf5_file *h) {
   status st = OK;
   char name[100], group[120];
   for (const column *c = column_table; c->name != NULL; ++c) {
     if (c->field == NULL || !column_visible(c, h->m)) continue;
-    if ((c->needs & NEEDS_SURFACE) && surface == NULL) continue;
+    if (c->of == PER_CONTACT_NODE && h->n_contact_node == 0) continue;
     if (c->of != PER_CONTACT) {
       TRY(add_field(h, c, group_of(c), 0));
       continue;
@@ -413,15 +431,17 @@ done:
   return st;
 }
 
-/* Vectors of dim components (every "stride" doubles) with 3 components. */
-static status add_vectors(hdf5_file *h, const char *path, int n, int dim,
-                          int stride, const double *x) {
+/* Points of some nodes (NULL: all), with 3 components. */
+static status add_points(hdf5_file *h, const char *path, int n,
+                         const int *node_id) {
   status st = OK;
+  size_t dim = (size_t)h->msh->dim;
   double *own = NULL;
   NEW(own, 3 * (size_t)n);
   for (size_t i = 0; i < (size_t)n; ++i)
-    for (size_t k = 0; k < (size_t)dim; ++k)
-      own[3 * i + k] = x[(size_t)stride * i + k];
+    for (size_t k = 0; k < dim; ++k)
+      own[3 * i + k] =
+          h->msh->x[dim * (node_id != NULL ? (size_t)node_id[i] : i) + k];
   return add_fixed(h, path, DATA_REAL, n, 3, NULL, own);
 done:
   return st;
@@ -454,7 +474,7 @@ done:
 static status add_mesh(hdf5_file *h) {
   status st = OK;
   const mesh *s = h->msh;
-  TRY(add_vectors(h, "/mesh/nodes", s->n_node, s->dim, s->dim, s->x));
+  TRY(add_points(h, "/mesh/nodes", s->n_node, NULL));
   TRY(add_fixed(h, "/mesh/elements", DATA_INT, s->n_elem, s->dim + 1, s->elem,
                 NULL));
   TRY(add_fixed(h, "/mesh/node_no", DATA_NUMBER, s->n_node, 1, s->node_no,
@@ -467,70 +487,89 @@ done:
   return st;
 }
 
-/* Faces of the contact groups all of whose nodes are contact nodes, as contact
- * ids; index_of[n_node] is the contact id + 1. */
-static void list_faces(hdf5_file *h, const int *index_of, int *faces) {
-  const mesh *s = h->msh;
-  size_t dim = (size_t)s->dim, n = 0;
-  for (int c = 0; c < h->m->n_contact; ++c) {
-    const mesh_group *g = &s->group[h->m->contacts[c].group_id];
-    if (g->dim != s->dim - 1 || g->item_id == NULL) continue;
-    for (int i = 0; i < g->n_item; ++i) {
-      const int *node = s->face + dim * (size_t)g->item_id[i];
-      size_t inside = 0;
-      while (inside < dim && index_of[node[inside]] > 0) ++inside;
-      if (inside < dim) continue;
-      for (size_t k = 0; k < dim; ++k)
-        faces[dim * n + k] = index_of[node[k]] - 1;
-      ++n;
-    }
-  }
-  h->n_contact_face = (int)n;
+static const mesh_group *contact_group(const hdf5_file *h, int contact_id) {
+  return &h->msh->group[h->m->contacts[contact_id].group_id];
 }
 
-static status add_faces(hdf5_file *h, const contact_surface *surface) {
+/* The faces of the contact groups, as places in contact_node. */
+static status add_faces(hdf5_file *h, const int *place_of) {
   status st = OK;
-  int *index_of = NULL, *faces = NULL;
-  size_t most = 0;
+  const mesh *s = h->msh;
+  size_t dim = (size_t)s->dim, n = 0, most = 0;
+  int *faces = NULL;
   for (int c = 0; c < h->m->n_contact; ++c)
-    most += (size_t)h->msh->group[h->m->contacts[c].group_id].n_item;
-  NEW(index_of, h->msh->n_node);
-  NEW(faces, most * (size_t)h->msh->dim);
-  for (int i = 0; i < surface->n; ++i) index_of[surface->node_id[i]] = i + 1;
-  list_faces(h, index_of, faces);
-  st = add_fixed(h, "/contact/faces", DATA_INT, h->n_contact_face, h->msh->dim,
-                 NULL, faces);
-  faces = NULL;
-  TRY(st);
+    most += (size_t)contact_group(h, c)->n_item;
+  NEW(faces, dim * most);
+  for (int c = 0; c < h->m->n_contact; ++c) {
+    const mesh_group *g = contact_group(h, c);
+    if (g->dim != s->dim - 1 || g->item_id == NULL) continue;
+    for (int i = 0; i < g->n_item; ++i)
+      for (size_t k = 0; k < dim; ++k)
+        faces[n++] = place_of[s->face[dim * (size_t)g->item_id[i] + k]];
+  }
+  h->n_contact_face = (int)(n / dim);
+  return add_fixed(h, "/contact/faces", DATA_INT, h->n_contact_face, s->dim,
+                   NULL, faces);
 done:
-  memory_free(index_of);
-  memory_free(faces);
   return st;
 }
 
-static status add_surface(hdf5_file *h, const contact_surface *s) {
+/* place_of[n_node]: place in contact_node; contact_of[n_node]: the first
+ * contact of a node, from 1; 0: none. */
+static status list_contact_nodes(hdf5_file *h, int *place_of, int *contact_of) {
+  status st = OK;
+  int n = 0;
+  for (int c = h->m->n_contact - 1; c >= 0; --c)
+    for (int i = 0; i < contact_group(h, c)->n_node; ++i)
+      contact_of[contact_group(h, c)->node_id[i]] = c + 1;
+  for (int i = 0; i < h->msh->n_node; ++i) n += contact_of[i] > 0;
+  NEW(h->contact_node, n);
+  NEW(h->surface_id, n);
+  h->n_contact_node = n;
+  n = 0;
+  for (int i = 0; i < h->msh->n_node; ++i) {
+    if (contact_of[i] == 0) continue;
+    place_of[i] = n;
+    h->contact_node[n++] = i;
+  }
+done:
+  return st;
+}
+
+/* Number of the node and of its contact, and the place itself (points of a
+ * viewer that draws no faces). */
+static status add_contact_numbers(hdf5_file *h, const int *contact_of) {
   status st = OK;
   size_t *no = NULL;
-  int *index = NULL, n = s->n;
+  int *numbers = NULL, n = h->n_contact_node;
   NEW(no, n);
-  for (int i = 0; i < n; ++i) no[i] = h->msh->node_no[s->node_id[i]];
-  st = add_fixed(h, "/contact/node_no", DATA_NUMBER, n, 1, NULL, no);
-  no = NULL;
-  TRY(st);
-  NEW(index, n);
-  for (int i = 0; i < n; ++i) index[i] = i;
-  st = add_fixed(h, "/contact/index", DATA_INT, n, 1, NULL, index);
-  index = NULL;
-  TRY(st);
-  TRY(add_vectors(h, "/contact/points", n, s->dim, s->dim, s->x));
-  TRY(add_vectors(h, "/contact/normal", n, s->dim, s->dim * s->dim, s->frame));
-  TRY(add_fixed(h, "/contact/area", DATA_REAL, n, 1, s->area, NULL));
-  TRY(add_fixed(h, "/contact/node", DATA_INT, n, 1, s->node_id, NULL));
-  TRY(add_fixed(h, "/contact/contact_id", DATA_INT, n, 1, s->contact_id, NULL));
-  TRY(add_faces(h, s));
+  for (int i = 0; i < n; ++i) no[i] = h->msh->node_no[h->contact_node[i]];
+  TRY(add_fixed(h, "/contact/node_no", DATA_NUMBER, n, 1, NULL, no));
+  NEW(numbers, n);
+  for (int i = 0; i < n; ++i) numbers[i] = contact_of[h->contact_node[i]];
+  TRY(add_fixed(h, "/contact/contact_no", DATA_INT, n, 1, NULL, numbers));
+  NEW(numbers, n);
+  for (int i = 0; i < n; ++i) numbers[i] = i;
+  TRY(add_fixed(h, "/contact/index", DATA_INT, n, 1, NULL, numbers));
 done:
-  memory_free(no);
-  memory_free(index);
+  return st;
+}
+
+static status add_contact(hdf5_file *h) {
+  status st = OK;
+  int *place_of = NULL, *contact_of = NULL;
+  NEW(place_of, h->msh->n_node);
+  NEW(contact_of, h->msh->n_node);
+  TRY(list_contact_nodes(h, place_of, contact_of));
+  if (h->n_contact_node == 0) goto done;
+  TRY(add_points(h, "/contact/points", h->n_contact_node, h->contact_node));
+  TRY(add_fixed(h, "/contact/node", DATA_INT, h->n_contact_node, 1,
+                h->contact_node, NULL));
+  TRY(add_contact_numbers(h, contact_of));
+  TRY(add_faces(h, place_of));
+done:
+  memory_free(place_of);
+  memory_free(contact_of);
   return st;
 }
 
@@ -559,6 +598,8 @@ static void release(hdf5_file *h) {
   hdf5_layout_free(&h->now);
   memory_free(h->fields);
   memory_free(h->fixed);
+  memory_free(h->contact_node);
+  memory_free(h->surface_id);
   memory_free(h->times);
   memory_free(h->path);
   memory_free(h->aside);
@@ -574,14 +615,13 @@ static void drop_copies(hdf5_file *h) {
   }
 }
 
-static status first_file(hdf5_file *h, const contact_surface *surface) {
+static status first_file(hdf5_file *h) {
   status st = OK;
   int rows, records;
-  h->n_contact_node = surface != NULL ? surface->n : 0;
-  TRY(choose_fields(h, surface));
   TRY(add_mesh(h));
-  if (surface != NULL && surface->n > 0) TRY(add_surface(h, surface));
+  if (h->m->effects & EFFECT_CONTACT) TRY(add_contact(h));
   TRY(add_deck(h));
+  TRY(choose_fields(h));
   forecast(h->m, 0, 0, &rows, &records);
   TRY(renew(h, rows, records));
   drop_copies(h);
@@ -596,7 +636,7 @@ static int fields_asked(const model *m) {
 }
 
 status hdf5_open(const model *m, const mesh *msh, const output_options *o,
-                 const contact_surface *surface, hdf5_file **out) {
+                 hdf5_file **out) {
   status st = OK;
   hdf5_file *h = NULL;
   *out = NULL;
@@ -610,7 +650,7 @@ status hdf5_open(const model *m, const mesh *msh, const output_options *o,
   h->path = text_path(o->dir, m->job, "h5");
   if (h->path != NULL) h->aside = text_path("", h->path, "tmp");
   if (h->aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of JOB.h5");
-  TRY(first_file(h, surface));
+  TRY(first_file(h));
   *out = h;
 done:
   if (st != OK && h != NULL) release(h);

@@ -44,7 +44,9 @@ struct hdf5_file {
   hdf5_field *fields;
   fixed_data *fixed;
   int n_contact_node, n_contact_face;
-  char *deck; /* text of the deck echo                                       */
+  int *contact_node; /* [n_contact_node] ids of the nodes of all contact groups,
+                        ascending: they stay when the surface changes         */
+  int *surface_id;   /* [n_contact_node] place in the surface, or -1          */
   hdf5_layout now;
   int n_row, n_record, cap_time; /* written                                  */
   double *times;                 /* [n_record]                               */

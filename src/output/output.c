@@ -66,22 +66,17 @@ done:
 
 /* ---- what the loop tells ---------------------------------------------- */
 
+/* Told again when a step has other supports. */
 static status sink_ready(void *ctx, const setup_facts *facts,
                          const contact_surface *surface) {
-  status st = OK;
   output *o = ctx;
   job j = job_of(o);
+  (void)surface;
   o->run.facts = *facts;
   o->run.facts_known = 1;
   timer_enter(STAGE_TABLES);
-  st = listing_ready(&j, &o->lst);
+  status st = listing_ready(&j, &o->lst);
   timer_leave(STAGE_TABLES);
-  TRY(st);
-  timer_enter(STAGE_HDF5);
-  st = hdf5_open(o->m, o->msh, &o->o, surface, &o->h5);
-  timer_leave(STAGE_HDF5);
-  TRY(st);
-done:
   return st;
 }
 
@@ -218,6 +213,10 @@ static status open_all(output *o) {
   cvg_header(&o->cvg);
   TRY(text_check(&o->cvg));
   TRY(listing_open(&j, &o->lst));
+  timer_enter(STAGE_HDF5);
+  st = hdf5_open(o->m, o->msh, &o->o, &o->h5);
+  timer_leave(STAGE_HDF5);
+  TRY(st);
 done:
   return st;
 }

@@ -86,10 +86,10 @@ typedef struct output_options {
 
 typedef struct output output;
 
-/* Open the text files of the job (they are flushed line by line) and remove
- * JOB.h5, JOB.xdmf and JOB.json of an earlier run; JOB.h5 is made when the
- * contact nodes are known. ERR_FILE names the file. The options are copied,
- * their strings borrowed. */
+/* Open all files of the job: the text files, flushed line by line, and JOB.h5
+ * with room for all increments foreseen. JOB.xdmf and JOB.json of an earlier
+ * run are removed. ERR_FILE names the file. The options are copied, their
+ * strings borrowed. */
 status output_open(const model *m, const mesh *msh, const output_options *o,
                    output **out);
 history_sink output_sink(output *o);

@@ -108,7 +108,7 @@ typedef struct hdf5_field {
 
 /* NULL in *out if no step asks for fields. */
 status hdf5_open(const model *m, const mesh *msh, const output_options *o,
-                 const contact_surface *surface, hdf5_file **out);
+                 hdf5_file **out);
 /* The increment is in the file when this returns OK. */
 status hdf5_increment(hdf5_file *h, const state *s);
 /* Cut what was not used if "finished"; frees h; accepts NULL. */

@@ -72,7 +72,7 @@ static status write_file(made_up *made, const char *dir, int told,
   output_options o = plain;
   hdf5_file *h = NULL;
   o.dir = dir;
-  status st = hdf5_open(&made->m, made->msh, &o, &made->surface, &h);
+  status st = hdf5_open(&made->m, made->msh, &o, &h);
   for (int i = 1; i <= told && st == OK; ++i) {
     made_up_advance(made, i);
     st = hdf5_increment(h, &made->s);
@@ -183,7 +183,7 @@ START_TEST(mesh_and_surface_stand_in_the_file) {
   x = dataset(dir, "/mesh/groups/TOP/nodes", dims);
   ck_assert_int_eq(dims[0], 9);
   free(x);
-  x = dataset(dir, "/contact/normal", dims);
+  x = dataset(dir, "/contact/normal/00001", dims);
   ck_assert(x[0] == 0 && x[1] == -1 && x[2] == 0);
   free(x);
   double *faces = dataset(dir, "/contact/faces", dims);
@@ -246,7 +246,7 @@ START_TEST(frequency_chooses_the_records) {
   rows_are(dir, 5);
   made->steps[0].output_frequency = -1;
   hdf5_file *h = NULL;
-  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &plain, NULL, &h), OK);
+  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &plain, &h), OK);
   ck_assert_ptr_null(h);
   made_up_free(made);
   folder_remove(dir);
@@ -279,7 +279,7 @@ START_TEST(scene_without_contact_has_no_surface) {
   made->m.effects = 0;
   made->m.n_contact = 0;
   made->s.surface = NULL;
-  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, NULL, &h), OK);
+  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, &h), OK);
   made_up_advance(made, 1);
   ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
   ck_assert_int_eq(hdf5_close(h, 1), OK);
@@ -287,6 +287,42 @@ START_TEST(scene_without_contact_has_no_surface) {
   double *u = dataset(dir, "/fields/u/00001", dims);
   ck_assert_ptr_nonnull(u);
   free(u);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
+/* Supports that change from step to step change the contact surface. */
+START_TEST(node_that_leaves_the_surface_has_no_value) {
+  char dir[64];
+  int dims[2];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 3, 2);
+  hdf5_file *h = NULL;
+  output_options o = plain;
+  o.dir = dir;
+  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, &h), OK);
+  made_up_advance(made, 1);
+  ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
+  for (int i = 1; i < 3; ++i) /* node 1 of 4 goes                            */
+    made->surface.node_id[i] = made->surface.node_id[i + 1];
+  made->surface.n = 3;
+  made_up_advance(made, 2);
+  ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
+  ck_assert_int_eq(hdf5_close(h, 1), OK);
+  double *first = dataset(dir, "/contact/gap/00001", dims);
+  double *second = dataset(dir, "/contact/gap/00002", dims);
+  ck_assert_int_eq(dims[0], 4);
+  const int item[] = {0, -1, 1, 2};
+  for (int i = 0; i < 4; ++i) {
+    ck_assert(first[i] == made_up_value(MADE_GAP, i, 1));
+    if (item[i] < 0)
+      ck_assert(isnan(second[i]));
+    else
+      ck_assert(second[i] == made_up_value(MADE_GAP, item[i], 2));
+  }
+  free(first);
+  free(second);
   made_up_free(made);
   folder_remove(dir);
 }
@@ -322,7 +358,7 @@ static void child_run(const char *dir, int pipe_end, int foreseen) {
   output_options o = plain;
   hdf5_file *h = NULL;
   o.dir = dir;
-  if (hdf5_open(&made->m, made->msh, &o, &made->surface, &h) != OK) _exit(1);
+  if (hdf5_open(&made->m, made->msh, &o, &h) != OK) _exit(1);
   for (int i = 1; i <= 1000; ++i) {
     made_up_advance(made, i);
     if (hdf5_increment(h, &made->s) != OK) _exit(1);
@@ -523,8 +559,7 @@ START_TEST(failed_writes_and_copies_are_told) {
   for (int k = 0; k < 2; ++k) {
     hdf5_file *h = NULL;
     int files = open_files();
-    ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, &made->surface, &h),
-                     OK);
+    ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, &h), OK);
     for (int i = 1; i <= 2 * k; ++i) {
       made_up_advance(made, i);
       ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
@@ -587,6 +622,7 @@ UNIT_MAIN("hdf5", fields_read_back_exactly, mesh_and_surface_stand_in_the_file,
           more_increments_than_foreseen_are_kept,
           room_not_used_is_cut_at_the_end, frequency_chooses_the_records,
           missing_arrays_are_not_zero, scene_without_contact_has_no_surface,
+          node_that_leaves_the_surface_has_no_value,
           group_names_with_slashes_and_twins_are_kept,
           killed_at_any_moment_keeps_every_acknowledged_increment,
           disk_full_at_any_size_is_told_and_loses_nothing,
