@@ -11,8 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define PROTIS_VERSION "0.1"
-
 extern char *openblas_get_config(void);
 
 void inform_version(void) {

@@ -6,6 +6,8 @@
 
 #include "base/status.h"
 
+#define PROTIS_VERSION "0.1"
+
 struct mesh;
 struct model;
 

@@ -53,12 +53,15 @@ static status solve(const command *c, model *m, const mesh *msh,
   const output_options options = {
       .dir = c->dir,
       .no_timing = c->no_timing,
+      .version = PROTIS_VERSION,
+      .kernel = blas_kernel(),
+      .threads = c->threads > 0 ? c->threads : 1,
       .progress = !c->quiet && isatty(STDERR_FILENO)};
   TRY(output_open(m, msh, &options, &out));
   history_sink sink = output_sink(out);
   st = history_run(m, msh, &sink, unsettled);
   status closed = output_close(out, st, *unsettled);
-  if (st == OK) st = closed;
+  if (st == OK && closed != ERR_UNSETTLED) st = closed;
 done:
   return st;
 }
