@@ -1,0 +1,88 @@
+/*
+ * Every deck of input/ against the table of its folder, reference.txt: values
+ * of closed forms, of statics, of publications and of finer meshes.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <glob.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX = 64 };
+
+typedef struct line {
+  char deck[32], table[16], row[32], column[32];
+  double value, tolerance;
+} line;
+
+static int read_lines(const char *path, line *lines) {
+  char text[256];
+  int n = 0;
+  FILE *file = fopen(path, "r");
+  ck_assert_msg(file != NULL, "%s cannot be read", path);
+  while (fgets(text, sizeof text, file) != NULL) {
+    line *l = &lines[n];
+    if (text[0] == '#') continue;
+    ck_assert_int_lt(n, MAX);
+    int found = sscanf(text, "%31s %15s %31s %31s %lf %lf", l->deck, l->table,
+                       l->row, l->column, &l->value, &l->tolerance);
+    ck_assert_msg(found == 6, "%s: '%s'", path, text);
+    ++n;
+  }
+  fclose(file);
+  return n;
+}
+
+/* "first", or "x=1.25": the nearest. */
+static int find_row(const dat *d, const char *row) {
+  char name[32];
+  double at;
+  if (strcmp(row, "first") == 0) return 0;
+  ck_assert_int_eq(sscanf(row, "%31[a-z]=%lf", name, &at), 2);
+  return dat_row_near(d, name, at);
+}
+
+static void compare(const job *j, const line *l) {
+  dat d = job_table(j, l->table, -1);
+  double found = dat_at(&d, find_row(&d, l->row), l->column);
+  ck_assert_msg(fabs(found - l->value) <= l->tolerance * fabs(l->value),
+                "%s %s %s %s: %.9g, expected %.9g to %g", l->deck, l->table,
+                l->row, l->column, found, l->value, l->tolerance);
+  dat_free(&d);
+}
+
+/* Run one deck (path without .inp) and compare its lines. */
+static void run_deck(const char *path, int n, const line *lines) {
+  const char *name = strrchr(path, '/') + 1;
+  int compared = 0;
+  job j = job_begin(name);
+  int code = job_run_deck(&j, path, "");
+  ck_assert_msg(code == 0, "%s: exit %d: %s", path, code, j.errors);
+  for (int k = 0; k < n; ++k) {
+    if (strcmp(lines[k].deck, name) != 0) continue;
+    compare(&j, &lines[k]);
+    ++compared;
+  }
+  ck_assert_msg(compared > 0, "no line for %s in reference.txt", path);
+  job_end(&j);
+}
+
+START_TEST(every_example_gives_the_values_of_its_table) {
+  glob_t decks;
+  ck_assert_int_eq(glob("input/*/*.inp", 0, NULL, &decks), 0);
+  for (size_t i = 0; i < decks.gl_pathc; ++i) {
+    line lines[MAX];
+    char deck[256], table[256];
+    snprintf(deck, sizeof deck, "%s", decks.gl_pathv[i]);
+    *strrchr(deck, '.') = '\0';
+    int folder = (int)(strrchr(deck, '/') - deck);
+    snprintf(table, sizeof table, "%.*s/reference.txt", folder, deck);
+    run_deck(deck, read_lines(table, lines), lines);
+  }
+  globfree(&decks);
+}
+END_TEST
+
+UNIT_MAIN("examples", every_example_gives_the_values_of_its_table)
