@@ -66,7 +66,7 @@ static double stick_position(const contact_problem *cp, int node_id, int k) {
   return cp->ut0 == NULL ? 0.0 : cp->ut0[node_id * (cp->dim - 1) + k];
 }
 
-/* ---- steps of the natural map ------------------------------------------- */
+/* ---- steps of the natural map ------------------------------------------ */
 
 static double diagonal(const contact_problem *cp, int dof) {
   const double *M = cp->A != NULL ? cp->A : cp->W;
@@ -101,7 +101,7 @@ static node_step step_of(const contact_problem *cp, int node_id,
   return (node_step){1.0 / normal, 1.0 / tangential, normal, tangential};
 }
 
-/* ---- scale --------------------------------------------------------------- */
+/* ---- scale ------------------------------------------------------------- */
 
 /* Displacement of reference of one unknown, m: see contact_scale. */
 static double reference_position(const contact_problem *cp, int dof,
@@ -179,7 +179,7 @@ double contact_scale(const contact_problem *cp) {
   return closed < scale || isnan(closed) ? closed : scale;
 }
 
-/* ---- residual ------------------------------------------------------------ */
+/* ---- residual ---------------------------------------------------------- */
 
 /* Part of a node in the tangent plane that friction acts in, in N:
  * |r_t - P_g(r_t - c (u_t - ut0))|. */
@@ -263,7 +263,7 @@ double contact_residual(const contact_problem *cp, const double *u,
   return worst > 0.0 ? HUGE_VAL : 0.0;
 }
 
-/* ---- status -------------------------------------------------------------- */
+/* ---- status ------------------------------------------------------------ */
 
 /* |r_t - c (u_t - ut0)| in the directions friction acts in, N. */
 static double trial_friction(const contact_problem *cp, const double *u,

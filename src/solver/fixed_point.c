@@ -6,7 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { DEPTH = 4, PASSES = 200 };
+enum {
+  DEPTH = 4,    /* differences mixed                                         */
+  PASSES = 200, /* default limit                                             */
+  PATIENCE = 30 /* passes without a lower residual                           */
+};
+static const double PROGRESS = 0.9; /* -, a lower residual                  */
+static const double MIXING_RATE = 0.2;     /* -, slower: mix     */
 static const double RATE_MARGIN = 0x1p-24; /* -, of |g|: shorter differences
                                               are rounding                  */
 static const double SHORTEST_STEP = 1.0 / 32.0; /* -, of G(g) - g             */
@@ -14,7 +20,7 @@ static const double SHORTEST_STEP = 1.0 / 32.0; /* -, of G(g) - g             */
 struct fixed_point {
   int n, kept;             /* nodes; differences now kept                   */
   double *g, *image;       /* [n] limit of the pass and G(g), N             */
-  double *best_g, *best_G; /* [n] pass with the lowest residual             */
+  double *last_g, *last_G; /* [n] pass accepted last             */
   double *dg, *dG;         /* [n*DEPTH] differences of passes, newest first */
 };
 
@@ -25,8 +31,8 @@ status fixed_point_new(int n, fixed_point **out) {
   fp->n = n;
   NEW(fp->g, n);
   NEW(fp->image, n);
-  NEW(fp->best_g, n);
-  NEW(fp->best_G, n);
+  NEW(fp->last_g, n);
+  NEW(fp->last_G, n);
   NEW(fp->dg, n * DEPTH);
   NEW(fp->dG, n * DEPTH);
   *out = fp;
@@ -40,8 +46,8 @@ void fixed_point_free(fixed_point *fp) {
   if (fp == NULL) return;
   memory_free(fp->g);
   memory_free(fp->image);
-  memory_free(fp->best_g);
-  memory_free(fp->best_G);
+  memory_free(fp->last_g);
+  memory_free(fp->last_G);
   memory_free(fp->dg);
   memory_free(fp->dG);
   memory_free(fp);
@@ -162,38 +168,56 @@ static void tell(const solver_control *control, const solver_report *rep,
   l->step(l->ctx, &s);
 }
 
-/* How the passes go on: length of the step, and the lowest residual so far. */
+/* How the passes go on. */
 typedef struct course {
-  double step, best;
-  int mixed, failures;
+  double step;      /* share of G(g) - g taken                               */
+  double defect;    /* |G(g) - g| of the last accepted pass, N               */
+  double rate;      /* last one measured                                     */
+  double lowest;    /* residual at the last progress                         */
+  int mixed;        /* the pass just made came from a mixed step             */
+  int grown, since; /* passes with a growing defect; since the last progress */
 } course;
+
+/* Take the pass just made as the point to go on from. */
+static void accept(fixed_point *fp, course *c, double defect, int first) {
+  size_t bytes = (size_t)fp->n * sizeof *fp->g;
+  double seen = first ? 0.0 : keep_difference(fp, fp->last_g, fp->last_G);
+  if (seen > 0.0) c->rate = seen;
+  c->defect = defect;
+  memcpy(fp->last_g, fp->g, bytes);
+  memcpy(fp->last_G, fp->image, bytes);
+}
 
 /* Judge the pass just made; choose the limit of the next one into fp->g.
  * 0: no way on. */
-static int advance(fixed_point *fp, course *c, double residual, double *rate) {
-  size_t bytes = (size_t)fp->n * sizeof *fp->g;
-  if (residual < c->best || c->best == HUGE_VAL) {
-    double seen = 0.0;
-    if (c->best < HUGE_VAL) seen = keep_difference(fp, fp->best_g, fp->best_G);
-    if (seen > 0.0) *rate = seen;
-    c->best = residual;
-    memcpy(fp->best_g, fp->g, bytes);
-    memcpy(fp->best_G, fp->image, bytes);
-    c->mixed = 1;
-    c->failures = 0;
-  } else {
-    double seen = keep_difference(fp, fp->best_g, fp->best_G);
-    if (seen > 0.0) *rate = seen;
-    memcpy(fp->g, fp->best_g, bytes);
-    memcpy(fp->image, fp->best_G, bytes);
-    if (c->failures >= 1) {
-      c->step *= 0.5;
-      fp->kept = 0;
-    }
-    c->mixed = c->failures++ == 0 && fp->kept > 1;
+static int advance(fixed_point *fp, course *c, double residual, int first) {
+  double defect = 0.0;
+  for (int i = 0; i < fp->n; ++i)
+    defect += (fp->image[i] - fp->g[i]) * (fp->image[i] - fp->g[i]);
+  defect = sqrt(defect);
+  ++c->since;
+  if (residual < PROGRESS * c->lowest) {
+    c->lowest = residual;
+    c->since = 0;
   }
-  if (c->step < SHORTEST_STEP) return 0;
-  next_limit(fp, c->step, c->mixed && fp->kept > 0, fp->g);
+  if (c->since > PATIENCE) return 0;
+  int grew = !first && !(defect < c->defect);
+  if (c->mixed && grew) {
+    size_t bytes = (size_t)fp->n * sizeof *fp->g;
+    memcpy(fp->g, fp->last_g, bytes);
+    memcpy(fp->image, fp->last_G, bytes);
+    fp->kept = 0;
+    c->mixed = 0;
+  } else {
+    accept(fp, c, defect, first);
+    c->grown = grew ? c->grown + 1 : 0;
+    if (c->grown >= 3) {
+      c->grown = 0;
+      c->step = fmax(0.5 * c->step, SHORTEST_STEP);
+    }
+    c->mixed = fp->kept > 0 && !grew && c->rate > MIXING_RATE;
+  }
+  next_limit(fp, c->step, c->mixed, fp->g);
   return 1;
 }
 
@@ -203,7 +227,7 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
                          solver_report *rep) {
   status st = OK;
   pass p = {inner, par, work, *control};
-  course c = {1.0, HUGE_VAL, 0, 0};
+  course c = {.step = 1.0, .lowest = HUGE_VAL};
   int passes = control->limit_max_iter > 0 ? control->limit_max_iter : PASSES;
   double change = 1.0;
   fp->kept = 0;
@@ -224,9 +248,112 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
     rep->outcome = CONVERGED;
     if (rep->residual <= control->tol) goto done;
     rep->outcome = inner_outcome < 0 ? inner_outcome : STOPPED_STAGNATION;
-    if (!advance(fp, &c, rep->residual, &rep->rate)) goto done;
+    int on = advance(fp, &c, rep->residual, k == 1);
+    rep->rate = c.rate;
+    if (!on) goto done;
   }
   if (rep->outcome == STOPPED_STAGNATION) rep->outcome = STOPPED_ITERATIONS;
+done:
+  return st;
+}
+
+/* ---- friction path ----------------------------------------------------- */
+
+enum { STAGES = 200 };
+static const double FIRST_MU = 0.25; /* -, largest mu of the first share  */
+static const double GROWTH = 2.0;    /* -, of the share per stage         */
+static const double LEAST_GROWTH = 1.004; /* -                                */
+
+struct friction_path {
+  double *g0, *val;        /* [n], [entries of B] with the share              */
+  double *good_u, *good_r; /* [m] of the last share solved */
+};
+
+status friction_path_new(const contact_problem *cp, friction_path **out) {
+  status st = OK;
+  friction_path *path = NULL;
+  NEW(path, 1);
+  NEW(path->g0, cp->n);
+  NEW(path->val, cp->B != NULL ? cp->B->start[cp->n] : 0);
+  NEW(path->good_u, cp->m);
+  NEW(path->good_r, cp->m);
+  *out = path;
+  path = NULL;
+done:
+  friction_path_free(path);
+  return st;
+}
+
+void friction_path_free(friction_path *path) {
+  if (path == NULL) return;
+  memory_free(path->g0);
+  memory_free(path->val);
+  memory_free(path->good_u);
+  memory_free(path->good_r);
+  memory_free(path);
+}
+
+/* Largest sum of a row of B, -. */
+static double largest_mu(const contact_problem *cp) {
+  double mu = 0.0;
+  for (int i = 0; i < cp->n; ++i) {
+    double sum = 0.0;
+    for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
+      sum += cp->B->val[k];
+    if (sum > mu) mu = sum;
+  }
+  return mu;
+}
+
+/* One stage: the problem with that share of the limit. */
+static status solve_share(friction_path *path, const pass *p,
+                          const contact_problem *cp, double share, double *u,
+                          double *r, solver_report *rep) {
+  contact_problem less = *cp;
+  sparse_rows B = *cp->B;
+  solver_report stage = {.outcome = RUNNING};
+  for (int i = 0; i < cp->n; ++i) path->g0[i] = share * cp->g0[i];
+  for (int k = 0; k < B.start[cp->n]; ++k) path->val[k] = share * cp->B->val[k];
+  B.val = path->val;
+  less.g0 = path->g0;
+  less.B = &B;
+  status st = p->inner->solve(share < 1.0 ? &less : cp, p->par, p->work,
+                              &p->control, u, r, &stage);
+  rep->iterations += stage.iterations;
+  rep->residual = stage.residual;
+  rep->outcome = stage.outcome;
+  return st;
+}
+
+status friction_path_solve(friction_path *path, const contact_problem *cp,
+                           const solver_ops *ops, const void *par, void *work,
+                           const solver_control *control, double *u, double *r,
+                           solver_report *rep) {
+  status st = OK;
+  pass p = {ops, par, work, *control};
+  size_t bytes = (size_t)cp->m * sizeof *u;
+  double mu = largest_mu(cp), growth = GROWTH, good = 0.0;
+  double share = mu > FIRST_MU ? FIRST_MU / mu : 1.0;
+  *rep = (solver_report){.outcome = STOPPED_ITERATIONS};
+  for (int k = 1; k <= STAGES; ++k) {
+    p.control.no_restart = good > 0.0;
+    p.control.limit_update = k;
+    TRY(solve_share(path, &p, cp, share, u, r, rep));
+    if (rep->outcome == CONVERGED) {
+      if (share == 1.0) goto done;
+      memcpy(path->good_u, u, bytes);
+      memcpy(path->good_r, r, bytes);
+      good = share;
+      growth = fmin(GROWTH, growth * growth);
+    } else {
+      if (good == 0.0) goto done;
+      growth = sqrt(growth);
+      memcpy(u, path->good_u, bytes);
+      memcpy(r, path->good_r, bytes);
+      if (growth < LEAST_GROWTH) goto done;
+    }
+    share = fmin(1.0, good * growth);
+  }
 done:
   return st;
 }

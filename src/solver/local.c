@@ -58,8 +58,7 @@ static void solve_free(const local_problem *lp, unsigned free_set, double *x) {
   }
 }
 
-/* ---- friction in the plane ------------------------------------------------
- */
+/* ---- friction in the plane --------------------------------------------- */
 
 /* S s = c + t, |t| <= g, t = -g s/|s| on slip, g = max(0, ga + gb . s): one or
  * two tangents. */
@@ -141,8 +140,7 @@ static int disc_solve(const disc_problem *dp, double *s, double *t) {
   return 1;
 }
 
-/* ---- states
- * ----------------------------------------------------------------*/
+/* ---- states ------------------------------------------------------------ */
 
 /* r_n = 0: the normal unknown eliminated, friction only by g0. */
 static void try_open(const local_problem *lp, candidate *c) {

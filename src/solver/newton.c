@@ -41,7 +41,14 @@ static const option newton_options[] = {
 };
 /* clang-format on */
 
-enum { HISTORY = 64, FULL_STEPS = 40 };
+enum {
+  HISTORY = 64,    /* patterns remembered                                   */
+  FULL_STEPS = 40, /* of an attempt                                         */
+  PATIENCE = 25,   /* steps without a lower residual                        */
+  SMALL = 400,     /* unknowns: a step costs next to nothing                */
+  MANY_STEPS = 100 /* of an attempt that makes part of the changes          */
+};
+static const uint64_t DICE_START = 88172645463325252u;
 static const double STATE_MARGIN = 0x1p-46; /* -, of the scale: no change of
                                                state below the rounding      */
 static const double WARM_SLIP = 0x1p-20; /* -, of g: counts as slipping at the
@@ -57,7 +64,7 @@ typedef struct newton_work {
   double *K;    /* [m*m] matrix of the step, times power               */
   double *rhs;  /* [m]                                               */
   double *raw;  /* [m] A u - f, N                                      */
-  double *best_u, *best_r; /* [m]                                            */
+  double *best_u, *best_r; /* [m] lowest residual                             */
   double *c;         /* [n] mean tangential diagonal, N/m                   */
   double *kappa, *g; /* [n] N/m, N                                          */
   double *e;         /* [n*(dim-1)] direction of the friction force         */
@@ -145,8 +152,7 @@ done:
   return st;
 }
 
-/* ---- a run -----------------------------------------------------------------
- */
+/* ---- a run ------------------------------------------------------------- */
 
 typedef struct run {
   const contact_problem *cp;
@@ -156,7 +162,8 @@ typedef struct run {
   double scale, best; /* N; lowest residual, -                               */
   int n_free, steps;  /* of the linear system; made so far                   */
   int singular;       /* the last system needed springs                      */
-  int careful;        /* one state changed at a time                         */
+  int careful;        /* one state changed at a time, the least index first  */
+  uint64_t dice;      /* not 0: each change is made or put off at random     */
 } run;
 
 static int held(const contact_problem *cp, int dof) {
@@ -190,8 +197,7 @@ static void slip_of(const run *s, int node_id, double *slip) {
   }
 }
 
-/* ---- the linear system -----------------------------------------------------
- */
+/* ---- the linear system ------------------------------------------------- */
 
 /* Put the known unknowns in place and list the free ones. */
 static void set_known(run *s) {
@@ -361,6 +367,28 @@ static void linear_step(run *s) {
   contact_reaction(s->cp, s->u, w->raw);
 }
 
+/* |r_t| = g at a slipping node: the force along e is set to the limit, or,
+ * where a small error of the pressure makes a large one of the limit (mu > 1),
+ * the pressure to the force. */
+static void clean_slip(const run *s, int node_id) {
+  const contact_problem *cp = s->cp;
+  double *r = s->r + node_id * cp->dim, size = 0.0, mu = 0.0;
+  for (int k = 1; k < cp->dim; ++k)
+    if (!held(cp, node_id * cp->dim + k)) size += r[k] * r[k];
+  size = sqrt(size);
+  double g = contact_node_limit(cp, s->r, node_id);
+  for (int k = cp->B != NULL ? cp->B->start[node_id] : 0;
+       cp->B != NULL && k < cp->B->start[node_id + 1]; ++k)
+    if (cp->B->col[k] == node_id) mu = cp->B->val[k];
+  if (mu > 1.0 && s->w->closed[node_id * cp->dim] && r[0] < 0.0) {
+    double p = -r[0] + (size - g) / mu;
+    if (p > 0.0) r[0] = -p;
+    return;
+  }
+  for (int k = 1; k < cp->dim && size > 0.0; ++k)
+    if (!held(cp, node_id * cp->dim + k)) r[k] *= g / size;
+}
+
 /* r from raw with what the state fixes put in exactly: no force where open,
  * |r_t| = g where slipping. Returns the largest change made, N: the defect of
  * the linear solution. */
@@ -374,14 +402,8 @@ static double clean_reaction(run *s) {
     int none = !w->closed[dof] && (k == 0 || w->mode[dof / cp->dim] == FREE);
     if (none || held(cp, dof)) s->r[dof] = 0.0;
   }
-  for (int node_id = 0; node_id < cp->n; ++node_id) {
-    double *t = s->r + node_id * cp->dim + 1, size = 0.0;
-    if (w->mode[node_id] != SLIP) continue;
-    double g = contact_node_limit(cp, s->r, node_id);
-    for (int k = 0; k < cp->dim - 1; ++k) size += t[k] * t[k];
-    size = sqrt(size);
-    for (int k = 0; k < cp->dim - 1 && size > 0.0; ++k) t[k] *= g / size;
-  }
+  for (int node_id = 0; node_id < cp->n; ++node_id)
+    if (w->mode[node_id] == SLIP) clean_slip(s, node_id);
   for (int dof = 0; dof < cp->m; ++dof) {
     double d = fabs(s->r[dof] - w->raw[dof]);
     if (!(d <= worst)) worst = d;
@@ -389,8 +411,7 @@ static double clean_reaction(run *s) {
   return worst;
 }
 
-/* ---- states
- * ----------------------------------------------------------------*/
+/* ---- states ------------------------------------------------------------ */
 
 /* A node slips: direction and turning stiffness from z. */
 static void set_slip(newton_work *w, int node_id, const double *z, double size,
@@ -402,8 +423,8 @@ static void set_slip(newton_work *w, int node_id, const double *z, double size,
   w->kappa[node_id] = size - g > 0x1p-20 * g ? c * g / (size - g) : 0x1p20 * c;
 }
 
-/* State of friction from z = r_t - c slip; "before" decides the ties. */
-static tangent friction_state(run *s, int node_id, int fresh) {
+/* State of friction from z = r_t - c slip; the state before decides ties. */
+static void friction_state(run *s, int node_id, int fresh) {
   newton_work *w = s->w;
   int tangents = w->dim - 1, first = node_id * w->dim + 1;
   tangent before = fresh ? FREE : (tangent)w->mode[node_id];
@@ -418,13 +439,16 @@ static tangent friction_state(run *s, int node_id, int fresh) {
     along += w->e[node_id * tangents + k] * slip[k];
   }
   size = sqrt(size);
-  if (!(g > 0.0)) return FREE;
-  if (before == SLIP && along * w->c[node_id] > margin) return STICK;
-  if (before == SLIP && tangents == 1) return SLIP;
-  if (fresh ? size < g * (1.0 - WARM_SLIP) : size <= g + margin) return STICK;
-  if (size == 0.0) return STICK;
-  set_slip(w, node_id, z, size, g);
-  return SLIP;
+  if (!(g > 0.0)) {
+    w->mode[node_id] = FREE;
+    return;
+  }
+  if (before == SLIP && tangents == 1 && along * w->c[node_id] <= margin)
+    return;
+  w->mode[node_id] = STICK;
+  if (before == SLIP && along * w->c[node_id] > margin) return;
+  if (fresh ? size < g * (1.0 - WARM_SLIP) : size <= g + margin) return;
+  if (size > 0.0) set_slip(w, node_id, z, size, g);
 }
 
 /* Normal or side unknown: 1 closed. */
@@ -437,7 +461,39 @@ static int closed_state(run *s, int dof, int fresh) {
   return over > margin;
 }
 
-/* Read the next guess off (u, r); returns the number of states changed. */
+/* Friction of a node under the guess, to take a change back. */
+typedef struct node_friction {
+  unsigned char mode;
+  double e[2], kappa;
+} node_friction;
+
+static node_friction friction_of(const newton_work *w, int node_id) {
+  node_friction f = {.mode = w->mode[node_id], .kappa = w->kappa[node_id]};
+  for (int k = 0; k < w->dim - 1; ++k)
+    f.e[k] = w->e[node_id * (w->dim - 1) + k];
+  return f;
+}
+
+static void restore_friction(newton_work *w, int node_id,
+                             const node_friction *f) {
+  w->mode[node_id] = f->mode;
+  w->kappa[node_id] = f->kappa;
+  for (int k = 0; k < w->dim - 1; ++k)
+    w->e[node_id * (w->dim - 1) + k] = f->e[k];
+}
+
+/* 1: put this change off. Reproducible: the dice start at the same number. */
+static int put_off(run *s, int changes) {
+  if (s->careful) return changes > 0;
+  if (s->dice == 0) return 0;
+  s->dice ^= s->dice << 13;
+  s->dice ^= s->dice >> 7;
+  s->dice ^= s->dice << 17;
+  return (int)(s->dice >> 60 & 1u);
+}
+
+/* Read the next guess off (u, r); returns the number of states that would
+ * change; some may be put off. */
 static int next_states(run *s, int fresh) {
   const contact_problem *cp = s->cp;
   newton_work *w = s->w;
@@ -448,15 +504,14 @@ static int next_states(run *s, int fresh) {
       int dof = node_id * cp->dim + k;
       if (k > 0 && !(bound_of(cp, dof) < HUGE_VAL)) continue;
       unsigned char now = (unsigned char)closed_state(s, dof, fresh);
-      changes += now != w->closed[dof];
-      w->closed[dof] = now;
-      if (s->careful && changes > 0) return changes;
+      if (now == w->closed[dof]) continue;
+      if (!put_off(s, changes++)) w->closed[dof] = now;
     }
     if (cp->g0 == NULL || sided) continue;
-    unsigned char before = w->mode[node_id];
-    w->mode[node_id] = (unsigned char)friction_state(s, node_id, fresh);
-    changes += w->mode[node_id] != before;
-    if (s->careful && changes > 0) return changes;
+    node_friction before = friction_of(w, node_id);
+    friction_state(s, node_id, fresh);
+    if (w->mode[node_id] == before.mode) continue;
+    if (put_off(s, changes++)) restore_friction(w, node_id, &before);
   }
   return changes;
 }
@@ -483,8 +538,7 @@ static uint64_t pattern_hash(const run *s) {
   return h;
 }
 
-/* ---- attempts
- * --------------------------------------------------------------*/
+/* ---- attempts ---------------------------------------------------------- */
 
 static void tell(const run *s, double residual, int changes, int cycle) {
   const solver_listener *l = s->control->listener;
@@ -515,16 +569,22 @@ static void keep_best(run *s, double residual) {
   memcpy(s->w->best_r, s->r, (size_t)s->cp->m * sizeof *s->r);
 }
 
+/* 1: the pattern has been met in this attempt. */
+static int met_before(run *s, int step) {
+  uint64_t h = pattern_hash(s);
+  int met = 0;
+  for (int j = 0; j < step && j < HISTORY; ++j) met = met || s->w->seen[j] == h;
+  s->w->seen[step % HISTORY] = h;
+  return met;
+}
+
 /* Steps from the present guess until solved, settled, cycling or "limit". */
 static outcome attempt(run *s, int limit) {
-  newton_work *w = s->w;
-  int best_at = 0, settled = 0;
+  int best_at = 0, settled = 0, full = !s->careful && s->dice == 0;
   double lowest = HUGE_VAL;
-  for (int k = 0; k < limit; ++k) {
-    uint64_t h = pattern_hash(s);
-    int cycle = 0;
-    for (int j = 0; j < k && j < HISTORY; ++j) cycle = cycle || w->seen[j] == h;
-    w->seen[k % HISTORY] = h;
+  int allowed = s->control->max_iter;
+  for (int k = 0; k < limit && (allowed <= 0 || s->steps < allowed); ++k) {
+    int cycle = met_before(s, k);
     linear_step(s);
     ++s->steps;
     double residual = residual_of(s);
@@ -532,7 +592,7 @@ static outcome attempt(run *s, int limit) {
     keep_best(s, residual);
     int changes = next_states(s, 0);
     tell(s, residual, changes, cycle);
-    if (residual <= s->control->tol && !s->singular &&
+    if (residual <= s->control->tol &&
         (changes == 0 || residual <= 0x1p-43 || settled))
       return CONVERGED;
     settled = residual <= s->control->tol;
@@ -542,29 +602,47 @@ static outcome attempt(run *s, int limit) {
     }
     if (s->cp->dim == 2 && changes == 0)
       return s->singular ? STOPPED_RAY : STOPPED_STAGNATION;
-    if (s->cp->dim == 2 && cycle) return STOPPED_CYCLE;
-    if (k - best_at > 25 && !s->careful)
+    if (s->cp->dim == 2 && cycle && s->dice == 0) return STOPPED_CYCLE;
+    if (full && k - best_at > PATIENCE)
       return s->singular && changes == 0 ? STOPPED_RAY : STOPPED_STAGNATION;
   }
   return STOPPED_ITERATIONS;
 }
 
+/* Go on from the state with the lowest residual. */
+static void return_to_best(run *s) {
+  if (!(s->best < HUGE_VAL)) return;
+  memcpy(s->u, s->w->best_u, (size_t)s->cp->m * sizeof *s->u);
+  memcpy(s->r, s->w->best_r, (size_t)s->cp->m * sizeof *s->r);
+  next_states(s, 1);
+}
+
+/* 1: nothing to add. Without B the problem is convex: a ray is a proof. */
+static int final(const run *s, outcome o) {
+  return o == CONVERGED || o == STOPPED_NAN ||
+         (o == STOPPED_RAY && s->cp->B == NULL);
+}
+
+/* Attempts one after the other; a verdict of an attempt with all changes made
+ * (no equilibrium, cycle) counts more than one of those after it. */
 static outcome newton_run(run *s, const newton *p) {
   int limit = p->steps > 0 ? p->steps : FULL_STEPS;
-  size_t bytes = (size_t)s->cp->m * sizeof *s->u;
+  int many = s->cp->m <= SMALL ? MANY_STEPS : limit;
   next_states(s, 1);
-  outcome o = attempt(s, limit);
-  if (o == CONVERGED || o == STOPPED_NAN) return o;
+  outcome o = attempt(s, limit), first = o;
+  if (s->control->no_restart || final(s, o)) return o;
   all_stick(s);
-  outcome second = attempt(s, limit);
-  if (second == CONVERGED || second == STOPPED_NAN) return second;
+  o = first = attempt(s, limit);
+  if (o == STOPPED_RAY || final(s, o)) return o;
+  return_to_best(s);
+  s->dice = DICE_START;
+  o = attempt(s, many);
+  s->dice = 0;
+  if (final(s, o)) return o;
+  return_to_best(s);
   s->careful = 1;
-  memcpy(s->u, s->w->best_u, bytes);
-  memcpy(s->r, s->w->best_r, bytes);
-  next_states(s, 1);
-  outcome third = attempt(s, s->cp->m <= 400 ? 2 * s->cp->m : 40);
-  if (third == CONVERGED || third == STOPPED_NAN) return third;
-  return second;
+  o = attempt(s, many);
+  return final(s, o) ? o : first;
 }
 
 static status newton_solve(const contact_problem *cp, const void *par,

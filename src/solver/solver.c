@@ -21,8 +21,14 @@ const solver_ops *const solver_list[] = {SOLVER_LIST(SOLVER_ROW) NULL};
 enum { N_SOLVER = 0 SOLVER_LIST(SOLVER_COUNT_ONE), LOG_SIZE = 512 };
 static const double INVERSE_RCOND = 1e-13; /* -, below: no other form        */
 
-/* The order in which AUTO tries. */
-static const solver_ops *const auto_chain[] = {&newton_solver, &sor_solver};
+/* The order in which AUTO tries: solver, and how it is driven. */
+typedef enum { PLAIN, ALONG_PATH } drive;
+static const struct {
+  const solver_ops *ops;
+  drive how;
+} auto_chain[] = {{&newton_solver, PLAIN},
+                  {&newton_solver, ALONG_PATH},
+                  {&sor_solver, PLAIN}};
 
 const solver_ops *solver_find(const char *name) {
   for (int i = 0; solver_list[i] != NULL; ++i)
@@ -114,6 +120,8 @@ struct contact_solver {
   void *work[N_SOLVER]; /* of solver_list; NULL: not set up */
   void *param; /* zeros: the defaults of a chain member               */
   fixed_point *fixed;
+  friction_path *path;
+  int path_room;     /* entries of B it was made for                       */
   double *other;     /* [m*m] the form made from the one given, or NULL     */
   double *load;      /* [m] load in that form                             */
   int other_missing; /* 1: it does not exist                               */
@@ -144,7 +152,9 @@ void contact_solver_reset(contact_solver *s) {
     s->work[i] = NULL;
   }
   fixed_point_free(s->fixed);
+  friction_path_free(s->path);
   s->fixed = NULL;
+  s->path = NULL;
   memory_free(s->other);
   memory_free(s->load);
   memory_free(s->best_u);
@@ -181,8 +191,7 @@ done:
   return st;
 }
 
-/* ---- the other form
- * --------------------------------------------------------*/
+/* ---- the other form ---------------------------------------------------- */
 
 /* inv(M) into out[m*m]; 0: singular to rounding. pivot, iwork [m], work [4m] */
 static int invert(int m, const double *M, double *out, int *pivot,
@@ -246,8 +255,14 @@ done:
   return st;
 }
 
-/* ---- one solver
- * ------------------------------------------------------------*/
+/* ---- one solver -------------------------------------------------------- */
+
+/* A solver, its parameters, how it is driven. */
+typedef struct attempt {
+  const solver_ops *ops;
+  const void *param;
+  drive how;
+} attempt;
 
 static int row_of(const solver_ops *ops) {
   int row = 0;
@@ -255,30 +270,50 @@ static int row_of(const solver_ops *ops) {
   return row;
 }
 
+/* The loop around the solver that the problem and the drive ask for. */
+static status drive_one(contact_solver *s, const contact_problem *cp,
+                        const attempt *a, const solver_control *control,
+                        double *u, double *r, solver_report *rep) {
+  status st = OK;
+  void *work = s->work[row_of(a->ops)];
+  if (a->how == ALONG_PATH) {
+    int room = cp->B->start[cp->n];
+    if (s->path == NULL || s->path_room < room) {
+      friction_path_free(s->path);
+      s->path = NULL;
+      TRY(friction_path_new(cp, &s->path));
+      s->path_room = room;
+    }
+    TRY(friction_path_solve(s->path, cp, a->ops, a->param, work, control, u, r,
+                            rep));
+  } else if (cp->B != NULL && !(a->ops->handles & SOLVES_COULOMB)) {
+    if (s->fixed == NULL) TRY(fixed_point_new(cp->n, &s->fixed));
+    TRY(fixed_point_solve(s->fixed, cp, a->ops, a->param, work, control, u, r,
+                          rep));
+  } else {
+    TRY(a->ops->solve(cp, a->param, work, control, u, r, rep));
+  }
+done:
+  return st;
+}
+
 static status run_one(contact_solver *s, const contact_problem *cp,
-                      const solver_ops *ops, const solver_listener *listener,
+                      const attempt *a, const solver_listener *listener,
                       double *u, double *r, solver_report *rep) {
   status st = OK;
   contact_problem own;
-  int possible = 0, row = row_of(ops);
-  const void *par = s->choice.ops == ops ? s->choice.param : s->param;
+  int possible = 0, row = row_of(a->ops);
   solver_control control = {.tol = s->choice.tol,
                             .max_iter = s->choice.max_iter,
                             .limit_max_iter = s->choice.limit_max_iter,
                             .listener = listener};
   *rep = (solver_report){.outcome = STOPPED_SINGULAR};
-  TRY(suit(s, cp, ops, &own, &possible));
+  TRY(suit(s, cp, a->ops, &own, &possible));
   if (!possible) goto done;
-  if (s->work[row] == NULL) TRY(ops->setup(&own, par, &s->work[row]));
-  if (cp->B != NULL && !(ops->handles & SOLVES_COULOMB)) {
-    if (s->fixed == NULL) TRY(fixed_point_new(cp->n, &s->fixed));
-    TRY(fixed_point_solve(s->fixed, &own, ops, par, s->work[row], &control, u,
-                          r, rep));
-  } else {
-    TRY(ops->solve(&own, par, s->work[row], &control, u, r, rep));
-  }
+  if (s->work[row] == NULL) TRY(a->ops->setup(&own, a->param, &s->work[row]));
+  TRY(drive_one(s, &own, a, &control, u, r, rep));
 done:
-  rep->solver = ops->name;
+  rep->solver = a->ops->name;
   return st;
 }
 
@@ -311,13 +346,13 @@ static void cold_start(const contact_problem *cp, double *u, double *r) {
   contact_reaction(cp, u, r);
 }
 
-/* ---- AUTO
- * -------------------------------------------------------------------*/
+/* ---- AUTO -------------------------------------------------------------- */
 
-static void note(contact_solver *s, const solver_report *rep) {
+static void note(contact_solver *s, const solver_report *rep, drive how) {
   size_t used = strlen(s->log);
-  snprintf(s->log + used, LOG_SIZE - used, "%s%s: %s", used > 0 ? ", " : "",
-           rep->solver, outcome_text(rep->outcome));
+  snprintf(s->log + used, LOG_SIZE - used, "%s%s%s: %s", used > 0 ? ", " : "",
+           rep->solver, how == ALONG_PATH ? " along a friction path" : "",
+           outcome_text(rep->outcome));
 }
 
 /* Which of two failures says more: no equilibrium, then singular, then the
@@ -337,18 +372,22 @@ static status run_chain(contact_solver *s, const contact_problem *cp,
   int n = (int)(sizeof auto_chain / sizeof *auto_chain), iterations = 0;
   solver_report best = {.outcome = RUNNING};
   for (int i = 0; i < n; ++i) {
+    attempt a = {auto_chain[i].ops, s->param, auto_chain[i].how};
+    if (a.how == ALONG_PATH && cp->B == NULL) continue;
     if (i > 0) cold_start(cp, u, r);
-    TRY(run_one(s, cp, auto_chain[i], listener, u, r, rep));
+    TRY(run_one(s, cp, &a, listener, u, r, rep));
     iterations += rep->iterations;
     judge(cp, s->choice.tol, u, r, rep);
-    if (i > 0 || rep->outcome != CONVERGED) note(s, rep);
+    if (i > 0 || rep->outcome != CONVERGED) note(s, rep, a.how);
     if (best.outcome == RUNNING || rep->outcome == CONVERGED ||
         says_more(rep, &best)) {
       best = *rep;
       memcpy(s->best_u, u, bytes);
       memcpy(s->best_r, r, bytes);
     }
-    if (rep->outcome == CONVERGED || rep->outcome == STOPPED_NAN) break;
+    int proved = rep->outcome == STOPPED_RAY && cp->B == NULL;
+    if (proved || rep->outcome == CONVERGED || rep->outcome == STOPPED_NAN)
+      break;
   }
   memcpy(u, s->best_u, bytes);
   memcpy(r, s->best_r, bytes);
@@ -395,7 +434,8 @@ status contact_solve(contact_solver *s, const contact_problem *cp,
   if (s->choice.ops == NULL) {
     TRY(run_chain(s, cp, listener, u, r, rep));
   } else {
-    TRY(run_one(s, cp, s->choice.ops, listener, u, r, rep));
+    attempt a = {s->choice.ops, s->choice.param, PLAIN};
+    TRY(run_one(s, cp, &a, listener, u, r, rep));
     judge(cp, s->choice.tol, u, r, rep);
   }
 done:

@@ -75,8 +75,7 @@ done:
   return st;
 }
 
-/* ---- control
- * ---------------------------------------------------------------*/
+/* ---- control ----------------------------------------------------------- */
 
 /* How the sweeps go: factor, order, progress. */
 typedef struct course {
@@ -153,6 +152,24 @@ static double check(relaxation *s, course *c, double scale) {
   return residual;
 }
 
+/* 1: a body that contact alone holds drifts off: the way d from the best state
+ * to the last is a rigid motion (A d small) along which the load works. The
+ * last state is overwritten. */
+static int drifts(relaxation *s, const best_iterate *best) {
+  const contact_problem *cp = s->cp;
+  size_t m = (size_t)cp->m;
+  double *d = s->u, *Ad = s->r, work = 0.0, stiff = 0.0, left = 0.0;
+  if (!cp->floating || cp->A == NULL) return 0;
+  for (size_t i = 0; i < m; ++i) d[i] -= best->u[i];
+  contact_product(cp->m, cp->A, d, Ad);
+  for (size_t i = 0; i < m; ++i) {
+    work += cp->f[i] * d[i];
+    left = fmax(left, fabs(Ad[i]));
+    stiff = fmax(stiff, cp->A[i * m + i] * fabs(d[i]));
+  }
+  return work > 0.0 && left < 0x1p-5 * stiff;
+}
+
 static outcome sweeps(relaxation *s, course *c, const solver_control *control,
                       solver_report *rep) {
   int limit = control->max_iter > 0 ? control->max_iter : SWEEPS;
@@ -190,11 +207,13 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
               .kept = &w->best,
               .mark = HUGE_VAL,
               .order = p->sweep,
-              .chosen = !(p->omega > 0.0)};
+              .chosen = cp->A != NULL && !(p->omega > 0.0)};
   *rep = (solver_report){.outcome = RUNNING};
   relaxation_start(&s);
   rep->outcome = sweeps(&s, &c, control, rep);
   rep->residual = w->best.residual;
+  if (rep->outcome == STOPPED_STAGNATION && drifts(&s, &w->best))
+    rep->outcome = STOPPED_RAY;
   solver_take_best(&w->best, cp->m, u, r);
 done:
   return st;
@@ -213,7 +232,8 @@ const solver_ops sor_solver = {
     "problems are solved and the limit is updated around them (CPR98, 2.3),\n"
     "which contracts for small friction only. Without OMEGA the program\n"
     "chooses it from the observed rate and takes it back when the residual\n"
-    "stops falling: with friction in the sweep large factors do not converge.\n"
+    "stops falling: with friction in the sweep large factors do not converge,\n"
+    "and on the compliance form they do not pay (1 is taken).\n"
     "If a sweep order cycles, the order is changed, then the steps damped.\n"
     "Costs one product with the matrix a sweep, and many sweeps: choose it\n"
     "when the direct methods fail, when the compliance alone is known or is\n"

@@ -57,6 +57,7 @@ void case_free(contact_case *c) {
   free(c->ut0);
   free(c->g0);
   free(c->side_gap);
+  free(c->held);
   free(c->u);
   free(c->r);
   free(c->B->start);
@@ -120,8 +121,17 @@ contact_case case_any(int dim, int n, double mu, int kind,
   return c;
 }
 
-/* ---- block
- * -----------------------------------------------------------------*/
+/* ---- block ------------------------------------------------------------- */
+
+int case_inverse(int m, const double *A, double *W) {
+  size_t n = (size_t)m;
+  memcpy(W, A, n * n * sizeof *W);
+  if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', m, W, m) != 0) return 0;
+  if (LAPACKE_dpotri(LAPACK_COL_MAJOR, 'L', m, W, m) != 0) return 0;
+  for (size_t j = 0; j < n; ++j)
+    for (size_t i = 0; i < j; ++i) W[i + n * j] = W[j + n * i];
+  return 1;
+}
 
 /* Stiffness of a triangle with corners x[3][2], plane strain, E = 1. */
 static void triangle(double nu, double x[3][2], double K[6][6]) {
@@ -172,50 +182,95 @@ static void row_stiffness(int columns, double nu, double *K) {
     }
 }
 
-contact_case case_block(int columns, int layers, double nu, double mu,
-                        int floating) {
-  int n = columns + 1, s = 2 * n, size = 4 * n;
-  contact_case c = case_new(2, n, mu);
-  double *K = zeros(size * size), *S = zeros(s * s), *X = zeros(s * s);
-  row_stiffness(columns, nu, K);
-  for (int layer = 0; layer < layers; ++layer) {
-    /* S: stiffness of what lies above the upper line, seen from it */
+/* Unknowns along x of the last column: decoupled, with a stiffness of 1. */
+static void hold_column(int n, int lines, double *K) {
+  int size = 2 * n * lines;
+  for (int line = 0; line < lines; ++line) {
+    int dof = 2 * (line * n + n - 1);
+    for (int i = 0; i < size; ++i) K[dof + size * i] = K[i + size * dof] = 0.0;
+    K[dof + size * dof] = 1.0;
+  }
+}
+
+/* Add constant tractions on the faces of one row of squares: f of the upper
+ * line [2n] and of the lower line [2n]. */
+static void row_load(const case_block_data *d, int is_top, double *upper,
+                     double *lower) {
+  int n = d->columns + 1, last = 2 * d->columns;
+  for (int k = 0; k < 2; ++k) {
+    upper[k] += 0.5 * d->left[k];
+    lower[k] += 0.5 * d->left[k];
+    upper[last + k] += 0.5 * d->right[k];
+    lower[last + k] += 0.5 * d->right[k];
+    for (int i = 0; is_top && i < n; ++i)
+      upper[2 * i + k] += (i == 0 || i == n - 1 ? 0.5 : 1.0) * d->top[k];
+  }
+  if (d->symmetric) upper[last] = lower[last] = 0.0;
+}
+
+/* Global x, y of the lowest line to the contact frame: normal -y, tangent x. */
+static void to_frame(contact_case *c, const double *S, const double *f) {
+  int s = c->cp.m;
+  for (int j = 0; j < s; ++j) {
+    int b = j % 2 == 0 ? j + 1 : j - 1;
+    c->f[b] = j % 2 == 1 ? -f[j] : f[j];
+    for (int i = 0; i < s; ++i) {
+      int a = i % 2 == 0 ? i + 1 : i - 1;
+      double v = 0.5 * (S[i + s * j] + S[j + s * i]);
+      c->A[a + s * b] = i % 2 != j % 2 ? -v : v;
+    }
+  }
+}
+
+contact_case case_block(const case_block_data *d) {
+  int n = d->columns + 1, s = 2 * n, size = 4 * n;
+  contact_case c = case_new(2, n, d->mu);
+  double *K = zeros(size * size), *S = zeros(s * s), *X = zeros(s * (s + 1));
+  double *upper = zeros(s), *lower = zeros(s);
+  row_stiffness(d->columns, d->nu, K);
+  if (d->symmetric) hold_column(n, 2, K);
+  for (int layer = 0; layer < d->layers; ++layer) {
+    int clamped = layer == 0 && d->clamped;
+    memcpy(upper, lower, (size_t)s * sizeof *upper);
+    memset(lower, 0, (size_t)s * sizeof *lower);
+    row_load(d, layer == 0, upper, lower);
+    /* S is the stiffness of what lies above the upper line, seen from it */
     for (int j = 0; j < s; ++j)
       for (int i = 0; i < s; ++i) {
         S[i + s * j] += K[s + i + size * (s + j)];
         X[i + s * j] = K[s + i + size * j];
       }
-    int clamped = layer == 0 && !floating;
-    if (!clamped) {
-      LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', s, S, s);
-      LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', s, s, S, s, X, s);
-    }
-    for (int j = 0; j < s; ++j)
+    memcpy(X + s * s, upper, (size_t)s * sizeof *X);
+    if (clamped)
+      memset(X, 0, (size_t)(s * (s + 1)) * sizeof *X);
+    else
+      LAPACKE_dposv(LAPACK_COL_MAJOR, 'L', s, s + 1, S, s, X, s);
+    for (int j = 0; j <= s; ++j)
       for (int i = 0; i < s; ++i) {
-        double sum = K[i + size * j];
-        for (int k = 0; !clamped && k < s; ++k)
-          sum -= K[i + size * (s + k)] * X[k + s * j];
-        c.A[i + s * j] = sum;
+        double sum = j < s ? K[i + size * j] : lower[i];
+        for (int k = 0; k < s; ++k) sum -= K[i + size * (s + k)] * X[k + s * j];
+        if (j < s)
+          S[i + s * j] = sum;
+        else
+          lower[i] = sum;
       }
-    memcpy(S, c.A, (size_t)(s * s) * sizeof *S);
   }
-  /* contact frame: outward normal -y, tangent x; symmetric to the last bit */
-  for (int j = 0; j < s; ++j)
-    for (int i = 0; i < s; ++i) {
-      double v = 0.5 * (S[i + s * j] + S[j + s * i]);
-      int a = i % 2 == 0 ? i + 1 : i - 1, b = j % 2 == 0 ? j + 1 : j - 1;
-      double sign = (i % 2 == 1) != (j % 2 == 1) ? -1.0 : 1.0;
-      c.A[a + s * b] = sign * v;
-    }
+  to_frame(&c, S, lower);
+  c.cp.floating = !d->clamped;
+  if (d->symmetric) {
+    c.held = calloc((size_t)s, 1);
+    c.held[s - 1] = 1;
+    c.cp.held = c.held;
+  }
   free(K);
   free(S);
   free(X);
-  c.cp.floating = floating;
+  free(upper);
+  free(lower);
   return c;
 }
 
-/* ---- independent check
- * -----------------------------------------------------*/
+/* ---- independent check ------------------------------------------------- */
 
 static double worse(double a, double b) { return !(b <= a) ? b : a; }
 
@@ -235,6 +290,10 @@ static double node_violation(const contact_case *c, const double *u,
   }
   double t = 0.0, s = 0.0, dot = 0.0, cross = 0.0;
   for (int a = 1; a < d; ++a) {
+    if (cp->held != NULL && cp->held[first + a]) {
+      bad = worse(bad, fabs(r[first + a]));
+      continue;
+    }
     double slip = u[first + a] - (cp->ut0 ? cp->ut0[i * (d - 1) + a - 1] : 0.0);
     t += r[first + a] * r[first + a];
     s += slip * slip;

@@ -12,6 +12,7 @@
 typedef struct contact_case {
   contact_problem cp; /* points to the arrays below                          */
   double *A, *f, *gap, *ut0, *g0, *side_gap;
+  unsigned char *held;
   sparse_rows *B; /* [n*n] diagonal                                         */
   double *u, *r; /* [m] start and answer, zero at first                       */
 } contact_case;
@@ -25,13 +26,19 @@ void case_free(contact_case *c);
  * tangential motion coupled. Loads, gaps and stick positions random. */
 contact_case case_any(int dim, int n, double mu, int kind,
                       unsigned long long seed);
-/*
- * Block of columns x layers squares of size h (each two triangles, plane
- * strain, E = 1, nu given), on a floor with columns + 1 nodes, condensed layer
- * by layer. Clamped at its top unless "floating".
- */
-contact_case case_block(int columns, int layers, double nu, double mu,
-                        int floating);
+/* A block of columns x layers unit squares (two triangles each), plane strain,
+ * E = 1, on a floor with columns + 1 nodes. */
+typedef struct case_block_data {
+  int columns, layers;
+  int clamped;   /* 1: the top line is fixed; 0: only contact holds the body  */
+  int symmetric; /* 1: u_x = 0 on the right face (its contact node is held)   */
+  double nu, mu;
+  double top[2], left[2], right[2]; /* tractions x, y                         */
+} case_block_data;
+/* The block condensed layer by layer. Contact frame: normal -y, tangent x. */
+contact_case case_block(const case_block_data *d);
+/* W = inv(A) of a positive definite A[m*m]; 0: it is not. */
+int case_inverse(int m, const double *A, double *W);
 /*
  * Largest violation of the conditions of contact.h by (u, r), relative to the
  * largest of |r|, |f|, diag(A) |u|: equation, signs, complementarity, friction
