@@ -28,12 +28,15 @@ static const double SMALL = 0x1p-38;   /* no pivot below                      */
 static const double UNEQUAL = 0x1p-26; /* pivots of tied rows not considered  */
 static const double DRIFT = 0x1p-48;   /* defect that calls for a correction  */
 static const double SPOILT = 0x1p-38;  /* and for a new inverse               */
+static const double ROUNDING = 0x1p-53; /* error of a product, with K: noise  */
+static const double MOST_NOISE = 0x1p-28; /* no more is taken for noise       */
+static const double NEAR_END = 0x1p-30; /* z0 for which it is made exact     */
 enum { REFRESH = 16 /* pivots from one new start of the values to the next */ };
 
 struct lcp_work {
-  int n, cap, s;
-  double *K; /* [cap*cap]                                                 */
-  double *P; /* [cap*cap] for a new inverse                               */
+  int n, cap, s; /* n, cap: of the run, of the blocks */
+  double *K;     /* [cap*cap]                                                 */
+  double *P;     /* [cap*cap] for a new inverse                               */
   double *lapack; /* [cap]                                                    */
   int *swap; /* [cap]                                                     */
   int *var, *row; /* [cap] columns and rows of P                              */
@@ -47,8 +50,9 @@ struct lcp_work {
   int *tie;              /* [n+cap] candidates: a < cap: z; cap + i: w_i      */
   double *key;           /* [n+cap]                                           */
   double power;          /* of two: q of the problem = power q                */
-  double z0_start;       /* z0 after the first pivot                          */
-  int entering;          /* k: z_k; -1-k: w_k                                 */
+  double size_K;   /* estimate of the largest |K|                         */
+  double z0_start; /* z0 after the first pivot                          */
+  int entering;    /* k: z_k; -1-k: w_k                                 */
 };
 
 void lcp_free(lcp_work *w) {
@@ -140,6 +144,13 @@ static double largest(int n, const double *x) {
   return n > 0 ? fabs(x[cblas_idamax(n, x, 1)]) : 0.0;
 }
 
+static void measure_inverse(lcp_work *w) {
+  w->size_K = 0.0;
+  for (int b = 0; b < w->s; ++b)
+    w->size_K =
+        fmax(w->size_K, largest(w->s, w->K + (size_t)b * (size_t)w->cap));
+}
+
 /* ---- values -------------------------------------------------------------- */
 
 /* z = -K q_row, w = q + M z, and the defect of the rows put right once.
@@ -162,6 +173,7 @@ static double refresh_values(lcp_work *w, const lcp_problem *p) {
   }
   cblas_daxpy(w->n, 1.0, w->q, 1, w->w, 1);
   for (int b = 0; b < w->s; ++b) w->w[w->row[b]] = 0.0;
+  measure_inverse(w);
   return defect / size;
 }
 
@@ -219,7 +231,7 @@ static double direction(lcp_work *w, const lcp_problem *p) {
 
 /* ---- who leaves ---------------------------------------------------------- */
 
-/* Largest value and largest change of each kind: z0, z, w. */
+/* What counts as zero, of each kind (z0, z, w): values, changes. */
 typedef struct sizes {
   double value[3], change[3];
 } sizes;
@@ -238,16 +250,26 @@ static double change_of(const lcp_work *w, int candidate) {
   return candidate < w->cap ? w->dz[candidate] : w->dw[candidate - w->cap];
 }
 
+static double zero_of(double share, double size, double noise) {
+  return fmax(share * size, fmin(noise, MOST_NOISE * size));
+}
+
 static sizes measure(const lcp_work *w) {
-  sizes k = {{w->z0_start, 0.0, 1.0}, {0.0, 0.0, 0.0}};
+  double value[3] = {w->z0_start, 0.0, 1.0}, change[3];
+  sizes k;
   for (int a = 0; a < w->s; ++a) {
     int kind = kind_of(w, a);
-    k.value[kind] = fmax(k.value[kind], fabs(w->z[a]));
+    value[kind] = fmax(value[kind], fabs(w->z[a]));
   }
-  k.value[2] = fmax(k.value[2], largest(w->n, w->w));
+  value[2] = fmax(value[2], largest(w->n, w->w));
   double moved = fmax(largest(w->s, w->dz), w->entering >= 0 ? 1.0 : 0.0);
-  k.change[0] = k.change[1] = moved;
-  k.change[2] = fmax(largest(w->n, w->dw), moved);
+  change[0] = change[1] = moved;
+  change[2] = fmax(largest(w->n, w->dw), moved);
+  double noise = ROUNDING * w->size_K;
+  for (int i = 0; i < 3; ++i) {
+    k.value[i] = zero_of(TIE, value[i], noise * fmax(1.0, value[1]));
+    k.change[i] = zero_of(SMALL, change[i], noise * moved);
+  }
   return k;
 }
 
@@ -259,14 +281,14 @@ static int first_to_vanish(lcp_work *w, const sizes *k, double *step) {
   for (int c = 0; c < w->cap + w->n; ++c) {
     if (c < w->cap ? c >= w->s : w->at_w[c - w->cap] >= 0) continue;
     double change = change_of(w, c);
-    if (!(change < -SMALL * k->change[kind_of(w, c)])) continue;
+    if (!(change < -k->change[kind_of(w, c)])) continue;
     w->tie[n_candidate++] = c;
     *step = fmin(*step, value_of(w, c) / -change);
   }
   for (int i = 0; i < n_candidate; ++i) {
     int c = w->tie[i], kind = kind_of(w, c);
     double left = value_of(w, c) + change_of(w, c) * *step;
-    if (left > TIE * k->value[kind]) continue;
+    if (left > k->value[kind]) continue;
     pivot[kind] = fmax(pivot[kind], -change_of(w, c));
     w->tie[n_tie++] = c;
   }
@@ -332,6 +354,8 @@ static void row_times_inverse(lcp_work *w, const lcp_problem *p, int i) {
 
 static void rank_one(lcp_work *w, double factor, const double *x,
                      const double *y) {
+  double change = fabs(factor) * largest(w->s, x) * largest(w->s, y);
+  w->size_K = fmax(w->size_K, change);
   cblas_dger(CblasColMajor, w->s, w->s, factor, x, 1, y, 1, w->K, w->cap);
 }
 
@@ -347,6 +371,8 @@ static void border(lcp_work *w, const lcp_problem *p, int k, int j) {
     w->K[last + a * ld] = -w->gather[a] / pivot;
   }
   w->K[last + last * ld] = 1.0 / pivot;
+  double edge = fmax(1.0, fmax(largest(s, w->dz), largest(s, w->gather)));
+  w->size_K = fmax(w->size_K, edge / fabs(pivot));
   w->var[s] = k;
   w->row[s] = j;
   w->at_z[k] = w->at_w[j] = s;
@@ -437,6 +463,7 @@ static void pivot(lcp_work *w, const lcp_problem *p, int c, double step) {
 
 /* Nothing basic but w. The lexicographic first row: the last of the least. */
 static int start(lcp_work *w, const lcp_problem *p) {
+  w->n = p->n;
   double size = largest(w->n, p->q), least = 0.0;
   int exponent = 0, row = -1;
   if (size > 0.0) frexp(size, &exponent);
@@ -459,18 +486,21 @@ static void bring_in_z0(lcp_work *w, const lcp_problem *p, int row) {
   w->var[0] = w->n;
   w->row[0] = row;
   w->at_z[w->n] = w->at_w[row] = 0;
-  w->K[0] = 1.0 / p->d[row];
+  w->K[0] = w->size_K = 1.0 / p->d[row];
   w->z[0] = w->z0_start = z0;
   cblas_daxpy(w->n, z0, p->d, 1, w->w, 1);
   w->w[row] = 0.0;
   w->entering = row;
 }
 
-/* The last word on the values: a new inverse of the final basis. */
-static outcome finish(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
+/* A new inverse and values from it; RUNNING, or CONVERGED if they show that
+ * z0 is zero (a degenerate end: z0 stays basic). */
+static outcome renew(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
   if (!invert(w, p, rep)) return STOPPED_SINGULAR;
   refresh_values(w, p);
-  return CONVERGED;
+  double noise = ROUNDING * w->size_K * fmax(1.0, largest(w->s, w->z));
+  double zero = zero_of(TIE, w->z0_start, noise);
+  return w->at_z[w->n] >= 0 && w->z[0] > zero ? RUNNING : CONVERGED;
 }
 
 /* One pivot; RUNNING: go on. *age: pivots since the last new inverse. */
@@ -481,18 +511,19 @@ static outcome advance(lcp_work *w, const lcp_problem *p, lcp_report *rep,
   int c = *age == 0 || defect <= SPOILT ? leaving(w, p, &step) : -1;
   if (c < 0 && *age == 0) return STOPPED_RAY;
   if (c < 0) {
-    if (!invert(w, p, rep)) return STOPPED_SINGULAR;
-    refresh_values(w, p);
     *age = 0;
-    return RUNNING;
+    return renew(w, p, rep);
   }
-  int done = kind_of(w, c) == 0;
   pivot(w, p, c, step);
   ++rep->pivots;
   ++*age;
+  int done = w->at_z[w->n] < 0;
   if (p->each != NULL)
     p->each(p->ctx, rep->pivots, done ? 0.0 : w->z[0] * w->power);
-  if (done) return finish(w, p, rep);
+  if (done || w->z[0] <= NEAR_END * w->z0_start) {
+    *age = 0;
+    return renew(w, p, rep);
+  }
   if (*age % REFRESH == 0) refresh_values(w, p);
   return RUNNING;
 }

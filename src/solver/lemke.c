@@ -41,7 +41,7 @@ static const option lemke_options[] = {
 };
 /* clang-format on */
 
-static const double SINGULAR_RCOND = 1e-13; /* -, of the free unknowns        */
+static const double SINGULAR = 1e-13; /* -, of the largest eigenvalue         */
 static const double RAY_DEFECT = 1e-8; /* -, forces a free motion may cause   */
 static const double RAY_WORK = 0x1p-30; /* -, margin of the work of the load  */
 enum { POLISH = 3, N_CORRECTOR = 2 };
@@ -57,7 +57,7 @@ typedef struct variable {
 typedef enum { IS_BOUND, IS_FRICTION, IS_FREE, IS_HELD } dof_kind;
 
 typedef struct lemke_work {
-  int m, n, dim, facets;
+  int m, facets;
   int n_kept, n_free, n_var; /* reduced unknowns, eliminated ones, z          */
   double unit;               /* of two: S = unit D A D has diagonal <= 1      */
   lcp_work *lcp;
@@ -66,12 +66,13 @@ typedef struct lemke_work {
                     times A_FK                                                */
   double *spare; /* [m*m] or NULL: for the pseudo-inverse                     */
   double *D;     /* [n] scale of a node, power of two                         */
+  double *tame;  /* [n] factor of the rows with the limit, power of two      */
   double *base;  /* [m] u (r) at z = 0                                        */
   double *raw;   /* [m] A u - f (W r + q)                                     */
   double *v, *t; /* [m]                                                       */
   double *ray;   /* [m] motion of the last ray                                */
   double *best_u, *best_r, *work; /* [m], [m], [4m]                           */
-  int has_ray;
+  int has_ray, has_facets;
   int *kept, *free_id, *pivot, *kind; /* [m]                                  */
   int *normal, *slide, *n_slide;      /* [n] variable of u_n; first SLIDE     */
   variable *var;          /* [n_var]                                         */
@@ -88,18 +89,14 @@ static void lemke_release(void *work) {
     memory_free(w->corrector_param[i]);
   }
   lcp_free(w->lcp);
-  void *const blocks[] = {w->S,      w->inner,  w->spare, w->D,       w->base,
-                          w->raw,    w->v,      w->t,     w->ray,     w->work,
-                          w->best_u, w->best_r, w->kept,  w->free_id, w->pivot,
-                          w->kind,   w->normal, w->slide, w->n_slide, w->var,
-                          w->q,      w->d,      w->z,     w->dz};
+  void *const blocks[] = {w->S,     w->inner,  w->spare,  w->D,     w->tame,
+                          w->base,  w->raw,    w->v,      w->t,     w->ray,
+                          w->work,  w->best_u, w->best_r, w->kept,  w->free_id,
+                          w->pivot, w->kind,   w->normal, w->slide, w->n_slide,
+                          w->var,   w->q,      w->d,      w->z,     w->dz};
   for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
     memory_free(blocks[i]);
   memory_free(w);
-}
-
-static int max_variables(const contact_problem *cp, int facets) {
-  return cp->n * (cp->dim == 2 ? 4 : facets + 2);
 }
 
 static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
@@ -127,34 +124,26 @@ static status lemke_setup(const contact_problem *cp, const void *par,
   size_t m = (size_t)cp->m;
   NEW(w, 1);
   w->m = cp->m;
-  w->n = cp->n;
-  w->dim = cp->dim;
   w->facets = p->facets >= 4 ? p->facets + p->facets % 2 : 8;
-  int n_var = max_variables(cp, w->facets);
+  int n_var = cp->n * (cp->dim == 2 ? 4 : w->facets + 2);
+  double **by_unknown[] = {&w->base, &w->raw,    &w->v,     &w->t,
+                           &w->ray,  &w->best_u, &w->best_r};
+  double **by_variable[] = {&w->q, &w->d, &w->z, &w->dz};
+  int **by_place[] = {&w->kept,   &w->free_id, &w->pivot,  &w->kind,
+                      &w->normal, &w->slide,   &w->n_slide};
+  for (size_t i = 0; i < sizeof by_unknown / sizeof *by_unknown; ++i)
+    NEW(*by_unknown[i], m);
+  for (size_t i = 0; i < sizeof by_variable / sizeof *by_variable; ++i)
+    NEW(*by_variable[i], n_var);
+  for (size_t i = 0; i < sizeof by_place / sizeof *by_place; ++i)
+    NEW(*by_place[i], 2 * m);
   NEW(w->S, m * m);
   NEW(w->inner, m * m);
   if (cp->floating) NEW(w->spare, m * m);
-  NEW(w->D, cp->n);
-  NEW(w->base, m);
-  NEW(w->raw, m);
-  NEW(w->v, m);
-  NEW(w->t, m);
-  NEW(w->ray, m);
-  NEW(w->best_u, m);
-  NEW(w->best_r, m);
   NEW(w->work, 4 * m + 4);
-  NEW(w->kept, m);
-  NEW(w->free_id, m);
-  NEW(w->pivot, 2 * m);
-  NEW(w->kind, m);
-  NEW(w->normal, cp->n);
-  NEW(w->slide, cp->n);
-  NEW(w->n_slide, cp->n);
+  NEW(w->D, cp->n);
+  NEW(w->tame, cp->n);
   NEW(w->var, n_var);
-  NEW(w->q, n_var);
-  NEW(w->d, n_var);
-  NEW(w->z, n_var);
-  NEW(w->dz, n_var);
   TRY(lcp_new(n_var, cp->A != NULL ? cp->m : cp->m + 2 * cp->n, &w->lcp));
   TRY(set_up_correctors(cp, w));
   *work = w;
@@ -217,14 +206,13 @@ static void sort_unknowns(run *s) {
   }
 }
 
-static void add_variable(lemke_work *w, variable v) { w->var[w->n_var++] = v; }
-
 /* The directions of slip of a node whose first tangent is "dof". */
 static void add_directions(lemke_work *w, int node_id, int dof, int tangents) {
   int count = tangents == 1 ? 2 : w->facets;
   const double full = 2.0 * acos(-1.0);
   w->slide[node_id] = w->n_var;
   w->n_slide[node_id] = count;
+  if (tangents == 2) w->has_facets = 1;
   for (int j = 0; j < count; ++j) {
     int half = j % (count / 2);
     double sign = j < count / 2 ? 1.0 : -1.0, angle = full * half / count;
@@ -233,25 +221,25 @@ static void add_directions(lemke_work *w, int node_id, int dof, int tangents) {
       v.e[0] = sign * cos(angle);
       v.e[1] = sign * sin(angle);
     }
-    add_variable(w, v);
+    w->var[w->n_var++] = v;
   }
 }
 
 static void list_variables(run *s) {
   lemke_work *w = s->w;
   int dim = s->cp->dim;
-  w->n_var = 0;
+  w->n_var = w->has_facets = 0;
   for (int i = 0; i < s->cp->n; ++i) w->n_slide[i] = 0;
   for (int i = 0; i < w->n_kept; ++i) {
     int dof = w->kept[i], node_id = dof / dim;
     if (w->kind[dof] == IS_BOUND) {
       if (dof % dim == 0) w->normal[node_id] = w->n_var;
-      add_variable(w, (variable){BOUND, node_id, i, {-1.0, 0.0}});
+      w->var[w->n_var++] = (variable){BOUND, node_id, i, {-1.0, 0.0}};
     } else if (w->n_slide[node_id] == 0) {
       int two = i + 1 < w->n_kept && w->kept[i + 1] / dim == node_id;
       add_directions(w, node_id, i, two ? 2 : 1);
       if (!stiffness_form(s))
-        add_variable(w, (variable){LIMIT, node_id, i, {0.0, 0.0}});
+        w->var[w->n_var++] = (variable){LIMIT, node_id, i, {0.0, 0.0}};
     }
   }
 }
@@ -267,22 +255,14 @@ static void gather(const run *s, int n_row, const int *row, int n_col,
   }
 }
 
-/* inner = inv(A_FF); 0: singular to rounding. */
+/* inner = inv(A_FF); 0: singular. */
 static int invert_free(run *s) {
   lemke_work *w = s->w;
-  int n = w->n_free, *iwork = w->pivot + n;
-  double rcond = 0.0;
+  int n = w->n_free;
   gather(s, n, w->free_id, n, w->free_id, w->inner);
-  double norm =
-      LAPACKE_dlange_work(LAPACK_COL_MAJOR, '1', n, n, w->inner, n, w->work);
-  if (LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, w->inner, n, w->pivot) != 0)
-    return 0;
-  if (s->cp->floating) {
-    LAPACKE_dgecon_work(LAPACK_COL_MAJOR, '1', n, w->inner, n, norm, &rcond,
-                        w->work, iwork);
-    if (!(rcond > SINGULAR_RCOND)) return 0;
-  }
-  return LAPACKE_dgetri_work(LAPACK_COL_MAJOR, n, w->inner, n, w->pivot,
+  return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, w->inner, n, w->pivot) ==
+             0 &&
+         LAPACKE_dgetri_work(LAPACK_COL_MAJOR, n, w->inner, n, w->pivot,
                              w->work, 4 * w->m) == 0;
 }
 
@@ -291,17 +271,15 @@ static int pseudo_invert_free(run *s) {
   lemke_work *w = s->w;
   int n = w->n_free;
   size_t ld = (size_t)n;
-  if (w->spare == NULL) return 0;
   gather(s, n, w->free_id, n, w->free_id, w->spare);
   if (LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'L', n, w->spare, n, w->t,
                          w->work, 4 * w->m + 4) != 0)
     return 0;
   memset(w->inner, 0, ld * ld * sizeof *w->inner);
-  for (size_t k = 0; k < ld; ++k) {
-    if (!(w->t[k] > SINGULAR_RCOND * w->t[n - 1])) continue;
-    cblas_dger(CblasColMajor, n, n, 1.0 / w->t[k], w->spare + k * ld, 1,
-               w->spare + k * ld, 1, w->inner, n);
-  }
+  for (size_t k = 0; k < ld; ++k)
+    if (w->t[k] > SINGULAR * w->t[n - 1])
+      cblas_dger(CblasColMajor, n, n, 1.0 / w->t[k], w->spare + k * ld, 1,
+                 w->spare + k * ld, 1, w->inner, n);
   return 1;
 }
 
@@ -312,17 +290,15 @@ static int reduce(run *s) {
   gather(s, nk, w->kept, nk, w->kept, w->S);
   if (!stiffness_form(s)) w->n_free = nf = 0;
   if (nf == 0) return 1;
-  if (!invert_free(s) && !pseudo_invert_free(s)) return 0;
+  if (!(s->cp->floating ? pseudo_invert_free(s) : invert_free(s))) return 0;
   double *X = w->inner + (size_t)nf * (size_t)nf;
-  double one = 1.0;
   for (int j = 0; j < nk; ++j) {
     gather(s, nf, w->free_id, 1, &w->kept[j], w->t);
-    cblas_dgemv(CblasColMajor, CblasNoTrans, nf, nf, one, w->inner, nf, w->t, 1,
-                0.0, X + (size_t)j * (size_t)nf, 1);
+    contact_product(nf, w->inner, w->t, X + (size_t)j * (size_t)nf);
   }
   for (int k = 0; k < nf; ++k) {
     gather(s, nk, w->kept, 1, &w->free_id[k], w->t);
-    cblas_dger(CblasColMajor, nk, nk, -one, w->t, 1, X + k, nf, w->S, nk);
+    cblas_dger(CblasColMajor, nk, nk, -1.0, w->t, 1, X + k, nf, w->S, nk);
   }
   return 1;
 }
@@ -354,6 +330,13 @@ static void scale(run *s) {
 
 /* ---- the matrix of the complementarity problem --------------------------- */
 
+/* Entries of a row of B: from *first to *last - 1. */
+static void limit_range(const run *s, int node_id, int *first, int *last) {
+  const sparse_rows *B = s->cp->B;
+  *first = B == NULL ? 0 : B->start[node_id];
+  *last = B == NULL ? 0 : B->start[node_id + 1];
+}
+
 /* Entry of B between the scaled limits and pressures of two nodes. */
 static double limit_entry(const run *s, int node_id, int k) {
   const lemke_work *w = s->w;
@@ -363,12 +346,47 @@ static double limit_entry(const run *s, int node_id, int k) {
 
 /* sum of B_ik p_k of one node; p: values by variable. */
 static double limit_sum(const run *s, int node_id, const double *p) {
-  const sparse_rows *B = s->cp->B;
+  int first, last;
   double sum = 0.0;
-  if (B == NULL) return 0.0;
-  for (int k = B->start[node_id]; k < B->start[node_id + 1]; ++k)
-    sum += limit_entry(s, node_id, k) * p[s->w->normal[B->col[k]]];
+  limit_range(s, node_id, &first, &last);
+  for (int k = first; k < last; ++k)
+    sum += limit_entry(s, node_id, k) * p[s->w->normal[s->cp->B->col[k]]];
   return sum;
+}
+
+/* The rows with the limit grow with mu: a factor for each. */
+static void tame_limits(run *s) {
+  for (int i = 0; i < s->cp->n; ++i) {
+    int first, last, exponent;
+    double sum = 1.0;
+    limit_range(s, i, &first, &last);
+    for (int k = first; k < last; ++k) sum += limit_entry(s, i, k);
+    frexp(sum, &exponent);
+    s->w->tame[i] = ldexp(1.0, 1 - exponent);
+  }
+}
+
+/* 1: the row of this variable holds the limit. */
+static int has_limit(const run *s, const variable *v) {
+  return v->type == (stiffness_form(s) ? SLIDE : LIMIT);
+}
+
+/* What friction adds to the rows y of V' S V z: with z (and y before) in the
+ * compliance form, the pressures in y else. */
+static void add_limits(const run *s, const double *z, double *y) {
+  const lemke_work *w = s->w;
+  int stiff = stiffness_form(s);
+  for (int a = 0; a < w->n_var; ++a) {
+    const variable *v = w->var + a;
+    if (!has_limit(s, v)) continue;
+    int first = w->slide[v->node_id], last = first + w->n_slide[v->node_id];
+    y[a] += limit_sum(s, v->node_id, stiff ? y : z);
+    for (int j = first; j < last && !stiff; ++j) {
+      y[a] -= z[j];
+      y[j] += z[a];
+    }
+    y[a] *= w->tame[v->node_id];
+  }
 }
 
 /* v[n_kept] = sum of x V(:, id) */
@@ -411,40 +429,26 @@ static void product(const void *ctx, int n_id, const int *id, const double *x,
   multiply(s, w->v, w->t);
   for (int a = 0; a < w->n_var; ++a)
     y[a] = w->var[a].type == LIMIT ? 0.0 : along(&w->var[a], w->t);
-  if (stiffness_form(s)) {
-    for (int a = 0; a < w->n_var; ++a)
-      if (w->var[a].type == SLIDE) y[a] += limit_sum(s, w->var[a].node_id, y);
-    return;
-  }
-  double *p = w->dz;
-  memset(p, 0, (size_t)w->n_var * sizeof *p);
-  for (int k = 0; k < n_id; ++k) p[id[k]] = x[k];
-  for (int a = 0; a < w->n_var; ++a) {
-    if (w->var[a].type != LIMIT) continue;
-    int i = w->var[a].node_id, first = w->slide[i];
-    y[a] = limit_sum(s, i, p);
-    for (int j = first; j < first + w->n_slide[i]; ++j) {
-      y[a] -= p[j];
-      y[j] += p[a];
-    }
-  }
+  for (int a = 0; a < w->n_var && !stiffness_form(s); ++a) w->dz[a] = 0.0;
+  for (int k = 0; k < n_id && !stiffness_form(s); ++k) w->dz[id[k]] = x[k];
+  add_limits(s, w->dz, y);
 }
 
-/* t += factor (row of S) */
-static void add_row(const lemke_work *w, int dof, double factor, double *t) {
-  cblas_daxpy(w->n_kept, factor, w->S + dof, w->n_kept, t, 1);
-}
-
-/* Row of the limit in the compliance form. */
-static void limit_row(const run *s, const variable *v, int n_id, const int *id,
-                      double *to) {
-  const sparse_rows *B = s->cp->B;
+/* What friction adds to a row at the columns id (compliance form). */
+static void add_limit_row(const run *s, const variable *v, int n_id,
+                          const int *id, double *to) {
+  const lemke_work *w = s->w;
+  int first, last;
+  limit_range(s, v->node_id, &first, &last);
   for (int k = 0; k < n_id; ++k) {
-    const variable *a = s->w->var + id[k];
-    to[k] = a->type == SLIDE && a->node_id == v->node_id ? -1.0 : 0.0;
-    if (B == NULL || s->w->normal[a->node_id] != id[k]) continue;
-    for (int e = B->start[v->node_id]; e < B->start[v->node_id + 1]; ++e)
-      if (B->col[e] == a->node_id) to[k] += limit_entry(s, v->node_id, e);
+    const variable *a = w->var + id[k];
+    int same = a->node_id == v->node_id;
+    if (v->type == SLIDE && a->type == LIMIT && same) to[k] += 1.0;
+    if (v->type != LIMIT) continue;
+    if (a->type == SLIDE && same) to[k] -= 1.0;
+    for (int e = first; e < last; ++e)
+      if (w->normal[s->cp->B->col[e]] == id[k])
+        to[k] += limit_entry(s, v->node_id, e);
   }
 }
 
@@ -452,47 +456,39 @@ static void row(const void *ctx, int i, int n_id, const int *id, double *to) {
   const run *s = ctx;
   const lemke_work *w = s->w;
   const variable *v = w->var + i;
-  const sparse_rows *B = s->cp->B;
-  if (v->type == LIMIT) {
-    limit_row(s, v, n_id, id, to);
-    return;
-  }
+  int first, last, n = w->n_kept, stiff = stiffness_form(s);
+  limit_range(s, v->node_id, &first, &last);
   memset(w->t, 0, (size_t)w->n_kept * sizeof *w->t);
-  add_row(w, v->dof, v->e[0], w->t);
-  if (v->e[1] != 0.0) add_row(w, v->dof + 1, v->e[1], w->t);
-  for (int k = B == NULL ? 0 : B->start[v->node_id];
-       B != NULL && v->type == SLIDE && stiffness_form(s) &&
-       k < B->start[v->node_id + 1];
-       ++k)
-    add_row(w, w->var[w->normal[B->col[k]]].dof, -limit_entry(s, v->node_id, k),
-            w->t);
-  for (int k = 0; k < n_id; ++k) {
-    const variable *a = w->var + id[k];
-    to[k] = a->type == LIMIT ? 0.0 : along(a, w->t);
-    if (a->type == LIMIT && v->type == SLIDE && a->node_id == v->node_id)
-      to[k] = 1.0;
-  }
+  for (int k = 0; k < 2; ++k)
+    if (v->e[k] != 0.0) cblas_daxpy(n, v->e[k], w->S + v->dof + k, n, w->t, 1);
+  for (int k = first; k < last && stiff && v->type == SLIDE; ++k)
+    cblas_daxpy(n, -limit_entry(s, v->node_id, k),
+                w->S + w->var[w->normal[s->cp->B->col[k]]].dof, n, w->t, 1);
+  for (int k = 0; k < n_id; ++k)
+    to[k] = w->var[id[k]].type == LIMIT ? 0.0 : along(w->var + id[k], w->t);
+  if (!stiff) add_limit_row(s, v, n_id, id, to);
+  if (has_limit(s, v)) cblas_dscal(n_id, w->tame[v->node_id], to, 1);
 }
 
 /* ---- vectors ------------------------------------------------------------- */
 
-/* raw = A u - f, or W r + q. */
-static void respond(const run *s, const double *x, double *raw) {
-  const contact_problem *cp = s->cp;
-  contact_product(cp->m, s->M, x, raw);
+/* raw = A u - f, or W r + q; load 0: without f or q. */
+static void respond(const run *s, const double *x, int load, double *raw) {
   double sign = stiffness_form(s) ? -1.0 : 1.0;
-  cblas_daxpy(cp->m, sign, cp->f, 1, raw, 1);
+  contact_product(s->cp->m, s->M, x, raw);
+  if (load) cblas_daxpy(s->cp->m, sign, s->cp->f, 1, raw, 1);
 }
 
 /* The free unknowns in equilibrium with the others. */
-static void settle_free(const run *s, double *u) {
+static void settle_free(const run *s, int load, double *u) {
   const lemke_work *w = s->w;
   int n = w->n_free;
-  if (n == 0) return;
-  respond(s, u, w->raw);
-  for (int k = 0; k < n; ++k) w->v[k] = -w->raw[w->free_id[k]];
-  contact_product(n, w->inner, w->v, w->t);
-  for (int k = 0; k < n; ++k) u[w->free_id[k]] += w->t[k];
+  for (int pass = 0; pass < 2 && n > 0; ++pass) {
+    respond(s, u, load, w->raw);
+    for (int k = 0; k < n; ++k) w->v[k] = -w->raw[w->free_id[k]];
+    contact_product(n, w->inner, w->v, w->t);
+    for (int k = 0; k < n; ++k) u[w->free_id[k]] += w->t[k];
+  }
 }
 
 /* State at z = 0. */
@@ -507,12 +503,11 @@ static void set_base(run *s) {
     if (w->kind[dof] == IS_FRICTION) w->base[dof] = stick_of(cp, dof);
     if (w->kind[dof] == IS_HELD) w->base[dof] = cp->f[dof] / cp->A[at];
   }
-  settle_free(s, w->base);
-  settle_free(s, w->base);
+  settle_free(s, 1, w->base);
 }
 
-/* w of every variable from the unscaled state: x[m] = u (r) and raw of it,
- * scaled as the matrix is. z: for the compliance form. */
+/* w of every variable from raw, scaled as the matrix is; z: scaled, for the
+ * compliance form. */
 static void slacks(const run *s, const double *raw, const double *z,
                    double *to) {
   const contact_problem *cp = s->cp;
@@ -520,47 +515,37 @@ static void slacks(const run *s, const double *raw, const double *z,
   int stiff = stiffness_form(s);
   for (int a = 0; a < w->n_var; ++a) {
     const variable *v = w->var + a;
-    double D = w->D[v->node_id];
-    int dof = v->type == LIMIT ? 0 : w->kept[v->dof];
-    if (v->type == BOUND) {
-      to[a] = w->unit * D * (stiff ? -raw[dof] : bound_of(cp, dof) - raw[dof]);
-    } else if (v->type == SLIDE) {
-      double origin[2] = {0.0, 0.0}, sum = stiff ? cp->g0[v->node_id] : 0.0;
-      for (int k = 0; !stiff && k < (v->e[1] != 0.0 ? 2 : 1); ++k)
-        origin[k] = stick_of(cp, dof + k);
-      sum += v->e[0] * (raw[dof] - origin[0]);
-      if (v->e[1] != 0.0) sum += v->e[1] * (raw[dof + 1] - origin[1]);
-      to[a] = w->unit * D * sum;
-    } else {
-      to[a] = cp->g0[v->node_id] / D;
-    }
+    double unit = w->unit * w->D[v->node_id], g0 = 0.0;
+    int dof = w->kept[v->dof];
+    if (v->type == BOUND)
+      to[a] = unit * (stiff ? -raw[dof] : bound_of(cp, dof) - raw[dof]);
+    if (has_limit(s, v)) g0 = cp->g0[v->node_id];
+    if (v->type == LIMIT) to[a] = g0 / w->D[v->node_id];
+    if (v->type != SLIDE) continue;
+    double sum = g0 + v->e[0] * (raw[dof] - (stiff ? 0.0 : stick_of(cp, dof)));
+    if (v->e[1] != 0.0)
+      sum += v->e[1] * (raw[dof + 1] - (stiff ? 0.0 : stick_of(cp, dof + 1)));
+    to[a] = unit * sum;
   }
+  add_limits(s, z, to);
+}
+
+/* x += the motion (forces) of z on the unknowns kept, unscaled. */
+static void add_motion(const lemke_work *w, const double *z, double *x) {
   for (int a = 0; a < w->n_var; ++a) {
     const variable *v = w->var + a;
-    int first = w->slide[v->node_id];
-    if (v->type == SLIDE && stiff) to[a] += limit_sum(s, v->node_id, to);
-    if (v->type != LIMIT) continue;
-    to[a] += limit_sum(s, v->node_id, z);
-    for (int j = first; j < first + w->n_slide[v->node_id]; ++j) {
-      to[a] -= z[j];
-      to[j] += z[a];
-    }
+    double size = w->D[v->node_id] * z[a];
+    if (v->type == LIMIT || size == 0.0) continue;
+    x[w->kept[v->dof]] += v->e[0] * size;
+    if (v->e[1] != 0.0) x[w->kept[v->dof + 1]] += v->e[1] * size;
   }
 }
 
-/* x = base + the motion (forces) of z, unscaled. */
+/* x = the state at z. */
 static void state_of(const run *s, const double *z, double *x) {
-  const lemke_work *w = s->w;
-  memcpy(x, w->base, (size_t)s->cp->m * sizeof *x);
-  for (int a = 0; a < w->n_var; ++a) {
-    const variable *v = w->var + a;
-    double D = w->D[v->node_id];
-    if (v->type == LIMIT || z[a] == 0.0) continue;
-    x[w->kept[v->dof]] += D * v->e[0] * z[a];
-    if (v->e[1] != 0.0) x[w->kept[v->dof + 1]] += D * v->e[1] * z[a];
-  }
-  settle_free(s, x);
-  settle_free(s, x);
+  memcpy(x, s->w->base, (size_t)s->cp->m * sizeof *x);
+  add_motion(s->w, z, x);
+  settle_free(s, 1, x);
 }
 
 /* ---- solution ------------------------------------------------------------ */
@@ -568,14 +553,10 @@ static void state_of(const run *s, const double *z, double *x) {
 static void set_vectors(run *s) {
   lemke_work *w = s->w;
   memset(w->z, 0, (size_t)w->n_var * sizeof *w->z);
-  respond(s, w->base, w->raw);
+  respond(s, w->base, 1, w->raw);
   slacks(s, w->raw, w->z, w->q);
   for (int a = 0; a < w->n_var; ++a) w->d[a] = 1.0;
-  for (int a = 0; a < w->n_var && stiffness_form(s); ++a)
-    if (w->var[a].type == BOUND) w->z[a] = 1.0;
-  for (int a = 0; a < w->n_var && stiffness_form(s); ++a)
-    if (w->var[a].type == SLIDE)
-      w->d[a] += limit_sum(s, w->var[a].node_id, w->z);
+  if (stiffness_form(s)) add_limits(s, w->z, w->d);
 }
 
 /* Take what the rows of the final basis miss, measured with the given matrix,
@@ -585,13 +566,13 @@ static void polish(run *s, double *x) {
   lcp_values(w->lcp, w->z);
   state_of(s, w->z, x);
   for (int pass = 0; pass < POLISH; ++pass) {
-    respond(s, x, w->raw);
+    respond(s, x, 1, w->raw);
     slacks(s, w->raw, w->z, w->q);
     lcp_correction(w->lcp, w->q, w->dz);
     for (int a = 0; a < w->n_var; ++a) w->z[a] = fmax(0.0, w->z[a] + w->dz[a]);
     state_of(s, w->z, x);
   }
-  respond(s, x, w->raw);
+  respond(s, x, 1, w->raw);
 }
 
 /* Stiffness form: r from raw with what the basis says put in exactly. */
@@ -650,7 +631,7 @@ static int motion_is_free(run *s, double resistance) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;
   double force = 0.0, size = 0.0, work = 0.0;
-  contact_product(cp->m, cp->A, w->ray, w->raw);
+  respond(s, w->ray, 0, w->raw);
   for (int dof = 0; dof < cp->m; ++dof) {
     size_t at = (size_t)dof * (size_t)cp->m + (size_t)dof;
     force = fmax(force, fabs(w->raw[dof]));
@@ -659,27 +640,6 @@ static int motion_is_free(run *s, double resistance) {
   }
   return force <= RAY_DEFECT * size && work > 0.0 &&
          work > resistance * (1.0 - RAY_WORK);
-}
-
-/* The ray as a motion of the body. */
-static void motion_of_ray(const run *s, double *motion) {
-  lemke_work *w = s->w;
-  lcp_ray(w->lcp, w->z);
-  memset(motion, 0, (size_t)s->cp->m * sizeof *motion);
-  memset(w->v, 0, (size_t)w->n_kept * sizeof *w->v);
-  for (int a = 0; a < w->n_var; ++a) {
-    const variable *v = w->var + a;
-    double z = w->D[v->node_id] * w->z[a];
-    if (v->type == LIMIT || z == 0.0) continue;
-    w->v[v->dof] += v->e[0] * z;
-    if (v->e[1] != 0.0) w->v[v->dof + 1] += v->e[1] * z;
-  }
-  for (int i = 0; i < w->n_kept; ++i) motion[w->kept[i]] = w->v[i];
-  if (w->n_free == 0) return;
-  const double *X = w->inner + (size_t)w->n_free * (size_t)w->n_free;
-  cblas_dgemv(CblasColMajor, CblasNoTrans, w->n_free, w->n_kept, -1.0, X,
-              w->n_free, w->v, 1, 0.0, w->t, 1);
-  for (int k = 0; k < w->n_free; ++k) motion[w->free_id[k]] = w->t[k];
 }
 
 /* STOPPED_RAY if the ray is a free motion in fact, against the limits of the
@@ -691,10 +651,13 @@ static outcome judge_ray(run *s) {
   if (!stiffness_form(s)) return STOPPED_RAY;
   lcp_values(w->lcp, w->z);
   state_of(s, w->z, w->best_u);
-  respond(s, w->best_u, w->best_r);
+  respond(s, w->best_u, 1, w->best_r);
   for (int i = 0; i < cp->n; ++i)
     w->best_r[i * cp->dim] = fmin(w->best_r[i * cp->dim], 0.0);
-  motion_of_ray(s, w->ray);
+  lcp_ray(w->lcp, w->z);
+  memset(w->ray, 0, (size_t)cp->m * sizeof *w->ray);
+  add_motion(w, w->z, w->ray);
+  settle_free(s, 0, w->ray);
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) {
     const double *v = w->ray + i * cp->dim + 1;
     resistance += contact_node_limit(cp, w->best_r, i) *
@@ -709,7 +672,7 @@ static int free_load_is_held(run *s) {
   lemke_work *w = s->w;
   double worst = 0.0;
   if (w->n_free == 0 || !s->cp->floating) return 1;
-  respond(s, w->base, w->raw);
+  respond(s, w->base, 1, w->raw);
   memset(w->ray, 0, (size_t)s->cp->m * sizeof *w->ray);
   for (int k = 0; k < w->n_free; ++k) {
     int dof = w->free_id[k];
@@ -728,21 +691,16 @@ const double *lemke_ray(const void *work) {
 
 /* ---- 3-D ----------------------------------------------------------------- */
 
-static int has_facets(const lemke_work *w) {
-  for (int a = 0; a < w->n_var; ++a)
-    if (w->var[a].e[1] != 0.0) return 1;
-  return 0;
-}
-
-/* From the state of the polygon to that of the disc, by a solver that knows
- * it. */
+/* The verdict; from the state of the polygon to that of the disc by a solver
+ * that knows it. */
 static status correct(run *s, double *u, double *r, solver_report *rep) {
   status st = OK;
   lemke_work *w = s->w;
   size_t bytes = (size_t)s->cp->m * sizeof *u;
   rep->residual = contact_residual(s->cp, u, r);
-  if (!has_facets(w) || rep->residual <= s->control->tol) goto done;
+  if (rep->residual <= s->control->tol) goto done;
   rep->outcome = STOPPED_STAGNATION;
+  if (!w->has_facets) goto done;
   memcpy(w->best_u, u, bytes);
   memcpy(w->best_r, r, bytes);
   for (int i = 0; i < N_CORRECTOR && rep->outcome != CONVERGED; ++i) {
@@ -765,35 +723,32 @@ done:
 static void tell(const void *ctx, int pivot, double z0) {
   const run *s = ctx;
   const solver_listener *l = s->control->listener;
-  solver_step step = {.solver = "lemke",
-                      .iteration = pivot,
-                      .limit_update = s->control->limit_update,
-                      .residual = z0,
-                      .limit_change = NAN,
-                      .status_changes = 1};
-  if (l != NULL && l->step != NULL) l->step(l->ctx, &step);
+  if (l == NULL || l->step == NULL) return;
+  solver_step step = {"lemke", pivot, s->control->limit_update, z0, NAN, 1, 0};
+  l->step(l->ctx, &step);
 }
 
-static outcome pivots(run *s, int *count) {
-  lemke_work *w = s->w;
-  lcp_problem p = {.n = w->n_var,
-                   .q = w->q,
-                   .d = w->d,
-                   .product = product,
-                   .row = row,
-                   .each = tell,
-                   .ctx = s,
-                   .max_pivots = s->control->max_iter};
-  lcp_report rep;
+static int prepare(run *s) {
   sort_unknowns(s);
   list_variables(s);
-  if (!reduce(s)) return STOPPED_SINGULAR;
+  if (!reduce(s)) return 0;
   scale(s);
+  tame_limits(s);
   set_base(s);
-  if (!free_load_is_held(s)) return STOPPED_RAY;
+  return 1;
+}
+
+static outcome follow(run *s, int *count) {
+  lemke_work *w = s->w;
+  lcp_report rep;
   set_vectors(s);
+  lcp_problem p = {.n = w->n_var, .q = w->q, .d = w->d, .ctx = s};
+  p.max_pivots = s->control->max_iter;
+  p.product = product;
+  p.row = row;
+  p.each = tell;
   lcp_run(w->lcp, &p, &rep);
-  *count = rep.pivots;
+  *count += rep.pivots;
   return rep.outcome == STOPPED_RAY ? judge_ray(s) : rep.outcome;
 }
 
@@ -802,12 +757,14 @@ static status lemke_solve(const contact_problem *cp, const void *par,
                           double *r, solver_report *rep) {
   status st = OK;
   lemke_work *w = work;
-  run s = {
-      .cp = cp, .w = w, .control = control, .M = cp->A != NULL ? cp->A : cp->W};
+  run s = {cp, w, control, cp->A != NULL ? cp->A : cp->W};
   (void)par;
-  *rep = (solver_report){.outcome = RUNNING};
+  *rep = (solver_report){.outcome = STOPPED_SINGULAR};
   w->has_ray = 0;
-  rep->outcome = pivots(&s, &rep->iterations);
+  if (!prepare(&s)) goto done;
+  rep->outcome = STOPPED_RAY;
+  if (!free_load_is_held(&s)) goto done;
+  rep->outcome = follow(&s, &rep->iterations);
   if (rep->outcome != CONVERGED) goto done;
   set_solution(&s, u, r);
   TRY(correct(&s, u, r, rep));
@@ -820,17 +777,15 @@ const solver_ops lemke_solver = {
   .name = "lemke",
   .reference = "Lemke 1965; Cottle, Pang, Stone 1992; Klarbring 1986",
   .help =
-    "Complementary pivoting with the lexicographic rule. The frictionless and\n"
-    "the 2-D frictional problem are each one linear complementarity problem,\n"
-    "without a fixed point on the sliding limit; the path leads from a body\n"
-    "pressed into stick to the real load, one change of state a pivot. It\n"
-    "never cycles, finds a solution for every friction coefficient if the body\n"
-    "is supported, and for a body held by contact alone it ends either with\n"
-    "equilibrium or with a motion that proves there is none. In 3-D the\n"
-    "friction cone has FACETS facets; the state found is then corrected to the\n"
-    "exact cone by NEWTON or SOR. The answer has rounding accuracy. Work grows\n"
-    "with the number of states to be changed: for up to some hundred contact\n"
-    "nodes, large friction, and where other methods disagree or fail.",
+    "Complementary pivoting with the lexicographic rule. The frictionless\n"
+    "and the 2-D frictional problem are each one linear complementarity\n"
+    "problem, without a fixed point on the sliding limit: from a body pressed\n"
+    "into stick to the real load, one change of state a pivot. It never\n"
+    "cycles, has a solution for every friction coefficient if the body is\n"
+    "supported; a body held by contact alone ends in equilibrium or in a\n"
+    "motion that proves there is none. In 3-D the cone has FACETS facets; the\n"
+    "state is then corrected to the exact cone by NEWTON or SOR. For up to\n"
+    "some hundred contact nodes, and where other methods disagree or fail.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
   .param_size = sizeof(lemke),
   .options = lemke_options,

@@ -115,18 +115,25 @@ START_TEST(newton_cycle_matrix_takes_three_pivots) {
 }
 END_TEST
 
+/* k rows of numbers in [-2, 2], integers on request. */
+static int random_rows(int n, int whole, unsigned long long *seed,
+                       double G[MOST][MOST]) {
+  int k = 1 + (int)(case_random(seed) * n);
+  for (int i = 0; i < MOST; ++i)
+    for (int j = 0; j < MOST; ++j) {
+      G[i][j] = 4.0 * case_random(seed) - 2.0;
+      if (whole) G[i][j] = round(G[i][j]);
+    }
+  return k;
+}
+
 /* kind 0: M = G'G with G [k*n] of small integers (semidefinite, many ties);
  * 1: G'G + skew + I; 2: random P-matrix (strictly diagonally dominant);
  * 3: skew-symmetric integers plus a semidefinite part. */
 static void random_lcp(int kind, int n, unsigned long long *seed, double *M,
                        double *q) {
   double G[MOST][MOST];
-  int k = 1 + (int)(case_random(seed) * n);
-  for (int i = 0; i < MOST; ++i)
-    for (int j = 0; j < MOST; ++j) {
-      G[i][j] = 4.0 * case_random(seed) - 2.0;
-      if (kind != 1 && kind != 2) G[i][j] = round(G[i][j]);
-    }
+  int k = random_rows(n, kind != 1 && kind != 2, seed, G);
   for (int i = 0; i < n; ++i) {
     q[i] = 4.0 * case_random(seed) - 2.5;
     if (kind != 1) q[i] = round(q[i]);
@@ -202,8 +209,394 @@ START_TEST(large_random_problems_are_solved) {
 }
 END_TEST
 
+/* ---- contact ------------------------------------------------------------- */
+
+/* Solve by LEMKE alone, without the wrapper. */
+static solver_report solve_direct(const contact_case *c, int max_iter,
+                                  double *motion) {
+  double param[8] = {0.0};
+  solver_control control = {.tol = 1e-11, .max_iter = max_iter};
+  solver_report rep;
+  void *work = NULL;
+  ck_assert(lemke_solver.param_size <= sizeof param);
+  ck_assert_int_eq(lemke_solver.setup(&c->cp, param, &work), OK);
+  ck_assert_int_eq(
+      lemke_solver.solve(&c->cp, param, work, &control, c->u, c->r, &rep), OK);
+  const double *ray = lemke_ray(work);
+  ck_assert_int_eq(ray != NULL, rep.outcome == STOPPED_RAY);
+  if (ray != NULL && motion != NULL)
+    memcpy(motion, ray, (size_t)c->cp.m * sizeof *motion);
+  lemke_solver.release(work);
+  return rep;
+}
+
+static void must_solve(const contact_case *c, double tol, const char *what,
+                       int k) {
+  solver_report rep = solve_direct(c, 0, NULL);
+  ck_assert_msg(rep.outcome == CONVERGED, "%s %d: %s", what, k,
+                outcome_text(rep.outcome));
+  double bad = case_violation(c, c->u, c->r);
+  ck_assert_msg(bad <= tol, "%s %d: violation %g", what, k, bad);
+}
+
+START_TEST(plane_problems_are_exact_for_any_friction) {
+  static const double mus[] = {0.0, 0.1, 0.5, 1.0, 2.0, 20.0, 1e4};
+  for (int k = 0; k < 1050; ++k) {
+    contact_case c =
+        case_any(2, 1 + k % 30, mus[k % 7], k % 2, (unsigned long long)k + 77);
+    must_solve(&c, k % 7 == 6 ? 1e-10 : 1e-12, "problem", k);
+    case_free(&c);
+  }
+}
+END_TEST
+
+START_TEST(space_problems_are_corrected_to_the_exact_cone) {
+  static const double mus[] = {0.0, 0.1, 0.3, 0.5};
+  for (int k = 0; k < 100; ++k) {
+    contact_case c = case_any(3, 1 + k % 20, mus[k % 4], k / 4 % 2,
+                              (unsigned long long)k + 177);
+    must_solve(&c, 1e-9, "problem", k);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Given limits, limits that other nodes bring, and all at once. */
+START_TEST(given_and_shared_limits_are_solved) {
+  for (int k = 0; k < 300; ++k) {
+    unsigned long long seed = (unsigned long long)k + 5;
+    int n = 2 + k % 12;
+    contact_case c = case_any(2, n, 0.3, k % 2, seed);
+    for (int i = 0; i < n; ++i) c.g0[i] = case_random(&seed);
+    if (k % 3 == 0) c.cp.B = NULL;
+    if (k % 3 == 1)
+      for (int i = 0; i < n; ++i) c.B->col[i] = (i + 1) % n;
+    must_solve(&c, 1e-12, "problem", k);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Node i decoupled: its tangential unknown is prescribed. */
+static void hold(contact_case *c, unsigned char *held, int dof) {
+  int m = c->cp.m;
+  for (int j = 0; j < m; ++j)
+    if (j != dof) c->A[dof + m * j] = c->A[j + m * dof] = 0.0;
+  held[dof] = 1;
+  c->f[dof] = 0.3 * c->A[dof + m * dof];
+}
+
+START_TEST(held_sided_and_smooth_nodes_agree_with_newton) {
+  for (int k = 0; k < 200; ++k) {
+    int dim = 2 + k % 2, n = 4 + k % 9, m = dim * n;
+    contact_case c = case_any(dim, n, 0.2, k / 2 % 2, (unsigned long long)k);
+    unsigned char *held = calloc((size_t)m, 1);
+    double *u = calloc((size_t)m, sizeof *u), param[8] = {0.0};
+    c.side_gap = calloc((size_t)(m - n), sizeof *c.side_gap);
+    for (int i = 0; i < m - n; ++i) c.side_gap[i] = HUGE_VAL;
+    c.side_gap[dim - 1] = 0.05;                     /* node 1 touches a wall */
+    for (int i = 1; i <= 2; ++i) c.B->val[i] = 0.0; /* node 2 is smooth */
+    hold(&c, held, 3 * dim + 1);
+    c.cp.side_gap = c.side_gap;
+    c.cp.held = held;
+    ck_assert_int_eq(solve_direct(&c, 0, NULL).outcome, CONVERGED);
+    ck_assert(contact_residual(&c.cp, c.u, c.r) <= 1e-11);
+    ck_assert_double_eq_tol(c.u[3 * dim + 1], 0.3, 1e-15);
+    ck_assert(c.r[3 * dim + 1] == 0.0);
+    memcpy(u, c.u, (size_t)m * sizeof *u);
+    solver_choice choice = {
+        .ops = solver_find("newton"), .param = param, .tol = 1e-12};
+    contact_solver *s = NULL;
+    solver_report rep;
+    ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+    memset(c.u, 0, (size_t)m * sizeof *u);
+    memset(c.r, 0, (size_t)m * sizeof *u);
+    ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
+    contact_solver_free(s);
+    double apart = 0.0, size = 0.0;
+    for (int i = 0; i < m; ++i) {
+      apart = fmax(apart, fabs(u[i] - c.u[i]));
+      size = fmax(size, fabs(u[i]));
+    }
+    if (rep.outcome == CONVERGED)
+      ck_assert_msg(apart <= 1e-9 * size, "%d: apart by %g", k, apart / size);
+    free(held);
+    free(u);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* ---- one triangle -------------------------------------------------------- */
+
+/* Corner C of the clamped triangle A = (-1,1), B = (1,3), E = 1, nu = 0.3;
+ * F in the axes x (tangent), y (into the body). */
+static contact_case corner(double mu, double fx, double fy) {
+  contact_case c = case_new(2, 1, mu);
+  double diagonal = 45.0 / 52.0, coupling = -25.0 / 52.0;
+  c.A[0] = c.A[3] = diagonal;
+  c.A[1] = c.A[2] = -coupling; /* the outward normal is -y */
+  c.f[0] = -fy;
+  c.f[1] = fx;
+  return c;
+}
+
+START_TEST(corner_of_a_triangle_takes_a_listed_solution) {
+  static const struct {
+    double mu, fx, fy;
+    int n;
+    double found[3][3]; /* u_t, r_t, normal force                            */
+  } load[] = {
+      {1, 0, -1, 1, {{0, 0, 1}}},
+      {1, -1, .3, 1, {{-.9657142857, .1642857143, .1642857143}}},
+      {1, 1.9, -1, 1, {{2.2471428571, 0, 0}}},
+      {2, 1.9, -1, 3, {{2.2471428571, 0, 0}, {0, -1.9, 1}, {1.04, -1, .5}}},
+      {3,
+       1.9,
+       -1,
+       3,
+       {{2.2471428571, 0, 0}, {0, -1.9, 1}, {1.9066666667, -.25, .0833333333}}},
+      {1, 1, .01, 1, {{NAN, 0, 0}}},
+  };
+  for (size_t k = 0; k < sizeof load / sizeof *load; ++k) {
+    contact_case c = corner(load[k].mu, load[k].fx, load[k].fy);
+    must_solve(&c, 1e-14, "load", (int)k);
+    int hit = 0;
+    for (int i = 0; i < load[k].n; ++i) {
+      const double *x = load[k].found[i];
+      hit += (isnan(x[0]) || fabs(c.u[1] - x[0]) < 1e-9) &&
+             fabs(c.r[1] - x[1]) < 1e-9 && fabs(-c.r[0] - x[2]) < 1e-9;
+    }
+    ck_assert_msg(hit == 1, "load %zu: u_t %.10g r_t %.10g N %.10g", k, c.u[1],
+                  c.r[1], -c.r[0]);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* ---- blocks -------------------------------------------------------------- */
+
+START_TEST(pressed_block_of_equal_nodes_is_exact) {
+  for (int mu = 0; mu < 2; ++mu) {
+    case_block_data d = {
+        .columns = 40, .layers = 10, .clamped = 1, .mu = 0.3 * mu};
+    contact_case c = case_block(&d);
+    for (int i = 0; i < c.cp.n; ++i) {
+      c.f[2 * i] = i == 0 || i == 40 ? 0.5 : 1.0; /* pushed at the contact */
+      c.gap[i] = 0.0;
+    }
+    must_solve(&c, 1e-13, "closed", mu);
+    for (int i = 0; i < c.cp.n; ++i) ck_assert(c.u[2 * i] == 0.0);
+    /* pulled: all open at once */
+    for (int i = 0; i < c.cp.m; ++i) c.f[i] *= -1.0;
+    must_solve(&c, 1e-12, "open", mu);
+    for (int i = 0; i < c.cp.n; ++i) ck_assert(c.r[2 * i] == 0.0);
+    /* in equilibrium without force: nothing to decide, everything tied */
+    for (int i = 0; i < c.cp.n; ++i) c.gap[i] = 0.25;
+    for (int i = 0; i < c.cp.m; ++i) {
+      c.f[i] = 0.0;
+      for (int j = 0; j < c.cp.m; j += 2) c.f[i] += c.A[i + c.cp.m * j] * 0.25;
+    }
+    ck_assert_int_ge(solve_direct(&c, 0, NULL).outcome, CONVERGED);
+    for (int i = 0; i < c.cp.n; ++i)
+      ck_assert_double_eq_tol(c.u[2 * i], 0.25, 1e-13);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* A floating block: forces of the resultants given, on its lower nodes. */
+static contact_case loaded_block(double mu, double down, double right,
+                                 double at) {
+  case_block_data d = {.columns = 16, .layers = 8, .nu = 0.3, .mu = mu};
+  contact_case c = case_block(&d);
+  /* pressure a + b x of the resultant and the moment asked for */
+  double s0 = 0.0, s1 = 0.0, s2 = 0.0;
+  for (int i = 0; i <= 16; ++i) {
+    double x = i / 16.0 - 0.5;
+    s0 += 1.0;
+    s1 += x;
+    s2 += x * x;
+  }
+  double b = (at * down * s0 - s1 * down) / (s2 * s0 - s1 * s1);
+  double a = (down - b * s1) / s0;
+  for (int i = 0; i <= 16; ++i) {
+    double x = i / 16.0 - 0.5;
+    c.f[2 * i] = a + b * x;
+    c.f[2 * i + 1] = right / 17.0;
+  }
+  return c;
+}
+
+/* The motion that ends the search: no elastic force, no penetration, and the
+ * load does work on it. */
+static void check_motion(const contact_case *c, const double *v) {
+  double size = 0.0, force = 0.0, work = 0.0;
+  for (int i = 0; i < c->cp.m; ++i) size = fmax(size, fabs(v[i]));
+  ck_assert(size > 0.0);
+  for (int i = 0; i < c->cp.m; ++i) {
+    double sum = 0.0;
+    for (int j = 0; j < c->cp.m; ++j) sum += c->A[i + c->cp.m * j] * v[j];
+    force = fmax(force, fabs(sum));
+    work += c->f[i] * v[i];
+    if (i % 2 == 0) ck_assert(v[i] <= 1e-10 * size);
+  }
+  ck_assert_msg(force < 1e-9 * size, "force %g", force / size);
+  ck_assert_msg(work > 0.0, "work %g", work);
+}
+
+START_TEST(floating_block_rests_or_ends_in_a_motion) {
+  static const struct {
+    double mu, down, right, at;
+    int rests;
+  } load[] = {
+      {0.3, 1, 0, 0, 1},     {0.3, 1, 0.1, 0.2, 1}, {0.3, 1, 0.29, 0, 1},
+      {0.3, 1, 0.31, 0, 0},  {0.3, 1, 0, 0.49, 1},  {0.3, 1, 0, 0.51, 0},
+      {0.3, -1, 0, 0, 0},    {0.0, 1, 0, 0.2, 1},   {0.0, 1, 0.1, 0, 0},
+      {0.0, 1, 0, -0.52, 0}, {1.0, 1, -0.9, 0, 1},  {1.0, 1, -1.1, 0, 0},
+  };
+  for (size_t k = 0; k < sizeof load / sizeof *load; ++k) {
+    double v[34], push = 0.0;
+    contact_case c =
+        loaded_block(load[k].mu, load[k].down, load[k].right, load[k].at);
+    solver_report rep = solve_direct(&c, 0, v);
+    ck_assert_msg(rep.outcome == (load[k].rests ? CONVERGED : STOPPED_RAY),
+                  "load %zu: %s", k, outcome_text(rep.outcome));
+    if (load[k].rests) {
+      double bad = case_violation(&c, c.u, c.r);
+      ck_assert_msg(bad < 1e-11, "load %zu: %g", k, bad);
+      for (int i = 0; i < c.cp.n; ++i) push -= c.r[2 * i];
+      ck_assert_double_eq_tol(push, 1.0, 1e-10);
+    } else {
+      check_motion(&c, v);
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+START_TEST(limit_of_pivots_stops_the_solver) {
+  contact_case c = case_any(2, 30, 0.3, 0, 3);
+  solver_report rep = solve_direct(&c, 3, NULL);
+  ck_assert_int_eq(rep.outcome, STOPPED_ITERATIONS);
+  ck_assert_int_eq(rep.iterations, 3);
+  case_free(&c);
+}
+END_TEST
+
+/* Factors 2^k on forces and lengths: the same pivots, the same bits. */
+START_TEST(powers_of_two_change_no_bit) {
+  for (int k = 0; k < 60; ++k) {
+    int dim = 2 + k % 2, n = 3 + k % 11, e = k % 4 < 2 ? 41 : -37;
+    double F = k % 3 == 0 ? 1.0 : ldexp(1.0, e),
+           L = ldexp(1.0, 3 * (k % 5) - 7);
+    contact_case a = case_any(dim, n, 0.3 * (k % 3), k / 2 % 2, 9);
+    contact_case b = case_any(dim, n, 0.3 * (k % 3), k / 2 % 2, 9);
+    for (int i = 0; i < a.cp.m * a.cp.m; ++i) b.A[i] *= F / L;
+    for (int i = 0; i < a.cp.m; ++i) b.f[i] *= F;
+    for (int i = 0; i < n; ++i) b.gap[i] *= L;
+    for (int i = 0; i < n * (dim - 1); ++i) b.ut0[i] *= L;
+    solver_report ra = solve_direct(&a, 0, NULL),
+                  rb = solve_direct(&b, 0, NULL);
+    ck_assert_int_eq(ra.outcome, rb.outcome);
+    ck_assert_int_eq(ra.iterations, rb.iterations);
+    for (int i = 0; i < a.cp.m; ++i) {
+      ck_assert_msg(b.u[i] == a.u[i] * L, "%d: u[%d] %a %a", k, i, a.u[i],
+                    b.u[i] / L);
+      ck_assert(b.r[i] == a.r[i] * F);
+    }
+    case_free(&a);
+    case_free(&b);
+  }
+}
+END_TEST
+
+/* ---- compliance alone ---------------------------------------------------- */
+
+START_TEST(compliance_form_gives_the_same_answer) {
+  static const double mus[] = {0.0, 0.2, 0.6};
+  for (int k = 0; k < 120; ++k) {
+    int dim = 2 + k % 2, n = 1 + k % 10, m = dim * n;
+    contact_case c =
+        case_any(dim, n, mus[k % 3], k / 2 % 2, (unsigned long long)k + 31);
+    double *W = calloc((size_t)(m * m), sizeof *W), param[8] = {0.0};
+    double *q = calloc((size_t)m, sizeof *q), *u = calloc((size_t)m, sizeof *u);
+    double *r = calloc((size_t)m, sizeof *r), apart = 0.0, size = 0.0;
+    must_solve(&c, 1e-9, "stiffness", k);
+    ck_assert(case_inverse(m, c.A, W));
+    contact_product(m, W, c.f, q);
+    contact_problem soft = c.cp;
+    soft.A = NULL;
+    soft.W = W;
+    soft.f = q;
+    solver_choice choice = {.ops = &lemke_solver, .param = param, .tol = 1e-10};
+    contact_solver *s = NULL;
+    solver_report rep;
+    ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+    ck_assert_int_eq(contact_solve(s, &soft, NULL, u, r, &rep), OK);
+    contact_solver_free(s);
+    ck_assert_msg(rep.outcome == CONVERGED, "%d: %s, residual %g", k,
+                  outcome_text(rep.outcome), rep.residual);
+    for (int i = 0; i < m; ++i) {
+      apart = fmax(apart, fabs(u[i] - c.u[i]));
+      size = fmax(size, fabs(c.u[i]));
+    }
+    ck_assert_msg(apart <= 1e-8 * size, "%d: apart by %g", k, apart / size);
+    free(W);
+    free(q);
+    free(u);
+    free(r);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* ---- memory -------------------------------------------------------------- */
+
+START_TEST(every_refused_request_is_reported_without_loss) {
+  contact_case c = case_any(3, 4, 0.3, 0, 3);
+  double M[16] = {2, 1, 0, 0, 1, 2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, z[4];
+  double q[4] = {-1, -1, -1, -1}, param[8] = {0.0};
+  size_t before = memory_in_use();
+  lcp_report rep;
+  int refused = 0;
+  for (long k = 1;; ++k) {
+    void *work = NULL;
+    memory_refuse(k, 0);
+    status st = lemke_solver.setup(&c.cp, param, &work);
+    memory_refuse(0, 0);
+    lemke_solver.release(work);
+    ck_assert_uint_eq(memory_in_use(), before);
+    if (st == OK) break;
+    ck_assert_int_eq(st, ERR_MEMORY);
+    ck_assert_ptr_null(work);
+    ++refused;
+  }
+  ck_assert_int_gt(refused, 20);
+  for (long k = 1;; ++k) {
+    memory_refuse(k, 0);
+    status st = lcp_lemke(4, M, q, 0, z, &rep);
+    memory_refuse(0, 0);
+    ck_assert_uint_eq(memory_in_use(), before);
+    if (st == OK) break;
+    ck_assert_int_eq(st, ERR_MEMORY);
+  }
+  case_free(&c);
+}
+END_TEST
+
 UNIT_MAIN("lemke", murty_matrix_takes_four_pivots,
           exponential_example_takes_two_to_the_n_pivots,
           newton_cycle_matrix_takes_three_pivots,
           random_problems_agree_with_enumeration,
-          large_random_problems_are_solved)
+          large_random_problems_are_solved,
+          plane_problems_are_exact_for_any_friction,
+          space_problems_are_corrected_to_the_exact_cone,
+          given_and_shared_limits_are_solved,
+          held_sided_and_smooth_nodes_agree_with_newton,
+          corner_of_a_triangle_takes_a_listed_solution,
+          pressed_block_of_equal_nodes_is_exact,
+          floating_block_rests_or_ends_in_a_motion,
+          limit_of_pivots_stops_the_solver, powers_of_two_change_no_bit,
+          compliance_form_gives_the_same_answer,
+          every_refused_request_is_reported_without_loss)
