@@ -107,10 +107,10 @@ test-run: check
 check: unit regression layers style
 
 unit: $(unit)
-	$(Q)tools/run_tests $^
+	$(Q)JOBS=$(JOBS) tools/run_tests $^
 
 regression: $(program) $(regr)
-	$(Q)PROTIS=$(abspath $(program)) tools/run_tests $(regr)
+	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) tools/run_tests $(regr)
 
 layers:
 	$(Q)tools/check_layers src
