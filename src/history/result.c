@@ -4,8 +4,6 @@
  */
 #include "history/run.h"
 
-#include "base/timer.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -101,17 +99,13 @@ static void find_energies(run *r) {
 
 status result_evaluate(run *r, int due) {
   unsigned effects = r->m->effects;
-  timer_enter(STAGE_STRESS);
   if ((effects & EFFECT_REACTION) || ((effects & EFFECT_STRESS) && due)) {
     domain_stress(&r->d, r->now.u, r->strain, r->stress);
     if (effects & EFFECT_REACTION) find_reactions(r);
   }
   if (r->n > 0) find_contact(r);
   if (r->m->n_contact > 0) find_totals(r);
-  timer_leave(STAGE_STRESS);
-  timer_enter(STAGE_ENERGY);
   find_energies(r);
-  timer_leave(STAGE_ENERGY);
   return OK;
 }
 

@@ -29,6 +29,7 @@ typedef struct run {
   domain d;
   kinematics *kin; /* [n_section]                                        */
   double *thickness, *E; /* [n_section], [ns*ns*n_section]                    */
+  double *C;             /* [36*n_section]                                    */
   unsigned char *fixed; /* [dim*n_node]                                       */
 
   /* Contact surface and condensed stiffness: as long as "fixed" stays. */

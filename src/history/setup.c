@@ -34,10 +34,13 @@ static status new_sections(run *r) {
   NEW(r->kin, m->n_section);
   NEW(r->thickness, m->n_section);
   NEW(r->E, square * (size_t)m->n_section);
+  NEW(r->C, 36 * (size_t)m->n_section);
   for (int i = 0; i < m->n_section; ++i) {
     const section *s = &m->sections[i];
     r->kin[i] = (kinematics)s->kin;
     r->thickness[i] = s->thickness;
+    memcpy(r->C + 36 * (size_t)i, m->materials[s->material_id].C,
+           36 * sizeof *r->C);
     elastic_reduce(m->materials[s->material_id].C, r->kin[i],
                    r->E + square * (size_t)i);
   }
@@ -47,6 +50,7 @@ static status new_sections(run *r) {
   r->d.kin = r->kin;
   r->d.thickness = r->thickness;
   r->d.E = r->E;
+  r->d.C = r->C;
   NEW(r->fixed, r->n_dof);
   r->d.fixed = r->fixed;
 done:
@@ -128,6 +132,7 @@ void run_free(run *r) {
   memory_free(r->kin);
   memory_free(r->thickness);
   memory_free(r->E);
+  memory_free(r->C);
   memory_free(r->fixed);
   memory_free(r->pairs);
   memory_free(r->node_fixed);

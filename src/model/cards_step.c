@@ -86,7 +86,7 @@ status apply_quasistatic(reading *r) {
     message_add(r->m->log, P2020, &f[0].at,
                 "%.3g increments; at most 1e8 are possible", s->total / s->dt);
   s->dt = fmin(s->dt, dt_max);
-  s->dt_min = s->dt / 1024.0;
+  s->dt_min = s->dt / 16.0;
   if (line->n_field > 2 && f[2].text[0] != '\0' &&
       field_real(r, &f[2], DBL_MIN, s->dt, "dt_min", &s->dt_min) != 0)
     return OK;

@@ -117,7 +117,8 @@ struct contact_solver {
   /* What belongs to one matrix. */
   const double *A, *W; /* it came with, borrowed; as seen */
   int m, n;
-  void *work[N_SOLVER]; /* of solver_list; NULL: not set up */
+  void *work[N_SOLVER + 1]; /* of solver_list, last of a solver that is not in
+                               it; NULL: not set up */
   void *param; /* zeros: the defaults of a chain member               */
   fixed_point *fixed;
   friction_path *path;
@@ -147,8 +148,9 @@ done:
 }
 
 void contact_solver_reset(contact_solver *s) {
-  for (int i = 0; i < N_SOLVER; ++i) {
-    solver_list[i]->release(s->work[i]);
+  for (int i = 0; i <= N_SOLVER; ++i) {
+    const solver_ops *ops = i < N_SOLVER ? solver_list[i] : s->choice.ops;
+    if (s->work[i] != NULL) ops->release(s->work[i]);
     s->work[i] = NULL;
   }
   fixed_point_free(s->fixed);
@@ -266,7 +268,7 @@ typedef struct attempt {
 
 static int row_of(const solver_ops *ops) {
   int row = 0;
-  while (solver_list[row] != ops) ++row;
+  while (row < N_SOLVER && solver_list[row] != ops) ++row;
   return row;
 }
 

@@ -1,47 +1,12 @@
 /* src/model: decks to models, loads of the steps, the echo of a deck. */
 #include "base/memory.h"
 #include "model/keyword.h"
-#include "support/grid.h"
+#include "support/text_model.h"
 #include "support/unit.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
-
-/* A deck read from text and checked against a mesh. */
-typedef struct scene {
-  message_log *log;
-  deck *d;
-  model *m;
-  mesh *msh;
-  status st;
-} scene;
-
-static char deck_name[] = "/tmp/protis-model-XXXXXX";
-
-static void read_text(scene *s, const char *text, mesh *msh) {
-  memset(s, 0, sizeof *s);
-  s->msh = msh;
-  strcpy(deck_name, "/tmp/protis-model-XXXXXX");
-  int fd = mkstemp(deck_name);
-  ck_assert_int_ge(fd, 0);
-  ck_assert_int_eq(write(fd, text, strlen(text)), (ssize_t)strlen(text));
-  close(fd);
-  ck_assert_int_eq(message_log_new(&s->log), OK);
-  ck_assert_int_eq(deck_read(deck_name, 0, NULL, s->log, &s->d), OK);
-  s->st = model_from_deck(s->d, s->log, &s->m);
-  if (s->st == OK && msh != NULL) s->st = model_check(s->m, msh);
-  if (s->st != OK) message_print(s->log, stdout);
-  unlink(deck_name);
-}
-
-static void close_scene(scene *s) {
-  model_free(s->m);
-  deck_free(s->d);
-  message_log_free(s->log);
-  grid_free(s->msh);
-}
 
 static mesh *square(void) {
   const int n[] = {3, 2};
@@ -122,13 +87,13 @@ START_TEST(resultant_is_the_integral_of_the_load) {
   for (size_t k = 0; k < sizeof load_cases / sizeof *load_cases; ++k) {
     const load_case *c = &load_cases[k];
     char text[1024];
-    scene s;
+    text_model s;
     snprintf(text, sizeof text,
              HEAD
              "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s%s\n*STEP\n*STATIC\n"
              "%s*END STEP\n",
              c->section[0] ? ", " : "", c->section, c->cards);
-    read_text(&s, text, c->dim == 2 ? square() : box());
+    text_model_read(&s, text, c->dim == 2 ? square() : box());
     ck_assert_int_eq(s.st, OK);
     double *F = calloc((size_t)(c->dim * s.msh->n_node), sizeof *F);
     ck_assert_int_eq(load_forces(s.m, s.msh, &s.m->steps[0], 1.0, F), OK);
@@ -138,14 +103,14 @@ START_TEST(resultant_is_the_integral_of_the_load) {
     if (!isnan(c->moment))
       ck_assert_double_eq_tol(moment_z(s.msh, F), c->moment, 1e-10);
     free(F);
-    close_scene(&s);
+    text_model_close(&s);
   }
 }
 END_TEST
 
 /* Value of the first load of a step at time t at the origin, as the force on
  * the group of one corner... here: all nodes of LEFT carry the same force. */
-static double point_force(const scene *s, int step_id, double t) {
+static double point_force(const text_model *s, int step_id, double t) {
   double *F = calloc((size_t)(2 * s->msh->n_node), sizeof *F);
   ck_assert_int_eq(load_forces(s->m, s->msh, &s->m->steps[step_id], t, F), OK);
   double f = F[2 * s->msh->group[1].node_id[0]];
@@ -154,19 +119,20 @@ static double point_force(const scene *s, int step_id, double t) {
 }
 
 START_TEST(loads_ramp_stay_change_and_end) {
-  scene s;
-  read_text(&s,
-            HEAD
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*AMPLITUDE, NAME=UP\n0., 0., 1., 1., 3., 5.\n"
-            "*STEP\n*QUASISTATIC\n0.5, 2.\n*CLOAD\nLEFT, 1, 8.\n*END STEP\n"
-            "*STEP\n*QUASISTATIC\n1., 1.\n*END STEP\n"
-            "*STEP\n*QUASISTATIC\n1., 2.\n*CLOAD\nLEFT, 1, 2.\n*END STEP\n"
-            "*STEP\n*QUASISTATIC\n1., 2.\n*CLOAD\nLEFT, 1, 2., UP\n*END STEP\n"
-            "*STEP\n*QUASISTATIC\n1., 1.\n*END STEP\n"
-            "*STEP\n*QUASISTATIC\n1., 1.\n*CLOAD, OP=NEW\n*END STEP\n"
-            "*STEP\n*QUASISTATIC\n1., 1.\n*END STEP\n",
-            square());
+  text_model s;
+  text_model_read(
+      &s,
+      HEAD
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*AMPLITUDE, NAME=UP\n0., 0., 1., 1., 3., 5.\n"
+      "*STEP\n*QUASISTATIC\n0.5, 2.\n*CLOAD\nLEFT, 1, 8.\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n1., 1.\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n1., 2.\n*CLOAD\nLEFT, 1, 2.\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n1., 2.\n*CLOAD\nLEFT, 1, 2., UP\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n1., 1.\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n1., 1.\n*CLOAD, OP=NEW\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n1., 1.\n*END STEP\n",
+      square());
   ck_assert_int_eq(s.st, OK);
   ck_assert_str_eq(s.msh->group[1].name, "LEFT");
   ck_assert_double_eq(point_force(&s, 0, 0.5), 2.0); /* ramp 0 to 8 over 2 */
@@ -178,7 +144,7 @@ START_TEST(loads_ramp_stay_change_and_end) {
   ck_assert_double_eq(point_force(&s, 4, 7.5), 6.0); /* held at the end      */
   ck_assert_double_eq(point_force(&s, 5, 8.5), 3.0); /* OP=NEW: down to zero */
   ck_assert_int_eq(s.m->steps[6].loads.n, 0);
-  close_scene(&s);
+  text_model_close(&s);
 }
 END_TEST
 
@@ -194,14 +160,14 @@ START_TEST(echo_reads_back_to_the_same_echo) {
       "*SOLVER, METHOD=SOR, TOL=1.D-9\n*PRINT, CONTACT\n*END STEP\n";
   char *echo[2] = {NULL, NULL};
   for (int pass = 0; pass < 2; ++pass) {
-    scene s;
+    text_model s;
     size_t size;
-    read_text(&s, pass == 0 ? text : echo[0], square());
+    text_model_read(&s, pass == 0 ? text : echo[0], square());
     ck_assert_int_eq(s.st, OK);
     FILE *f = open_memstream(&echo[pass], &size);
     model_echo(s.m, f);
     fclose(f);
-    close_scene(&s);
+    text_model_close(&s);
   }
   ck_assert_str_eq(echo[0], echo[1]);
   ck_assert_ptr_nonnull(strstr(echo[0], "THICKNESS=0.1"));
@@ -213,19 +179,19 @@ START_TEST(echo_reads_back_to_the_same_echo) {
 END_TEST
 
 START_TEST(effects_are_what_the_deck_calls_for) {
-  scene s;
-  read_text(&s,
-            HEAD
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.\n"
-            "*STEP\n*STATIC\n*DSLOAD\nTOP, P, 1.\n*OUTPUT, HDF5=NO\n"
-            "*END STEP\n",
-            square());
+  text_model s;
+  text_model_read(&s,
+                  HEAD
+                  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+                  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+                  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+                  "*FRICTION, CONTACT=C, LAW=COULOMB\n0.\n"
+                  "*STEP\n*STATIC\n*DSLOAD\nTOP, P, 1.\n*OUTPUT, HDF5=NO\n"
+                  "*END STEP\n",
+                  square());
   ck_assert_int_eq(s.st, OK);
   ck_assert_uint_eq(s.m->effects, EFFECT_CONTACT);
-  close_scene(&s);
+  text_model_close(&s);
 }
 END_TEST
 
@@ -239,8 +205,8 @@ START_TEST(every_refused_request_is_reported) {
       "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n*DSLOAD\nRIGHT, P, 1., A\n"
       "*SOLVER, METHOD=SOR\n*PRINT, CONTACT, NODES\n*END STEP\n"
       "*STEP\n*STATIC\n*END STEP\n";
-  scene s;
-  read_text(&s, text, square());
+  text_model s;
+  text_model_read(&s, text, square());
   ck_assert_int_eq(s.st, OK);
   model_free(s.m);
   size_t before = memory_in_use();
@@ -259,7 +225,7 @@ START_TEST(every_refused_request_is_reported) {
   s.m = NULL;
   ck_assert_int_gt(refused, 10);
   ck_assert_uint_le(memory_in_use(), before + 64);
-  close_scene(&s);
+  text_model_close(&s);
 }
 END_TEST
 

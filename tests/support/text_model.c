@@ -1,0 +1,32 @@
+/*
+ * A model from the text of a deck, checked against a mesh made in memory.
+ */
+#include "support/text_model.h"
+
+#include <check.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+void text_model_read(text_model *s, const char *text, mesh *msh) {
+  char name[] = "/tmp/protis-model-XXXXXX";
+  memset(s, 0, sizeof *s);
+  s->msh = msh;
+  int fd = mkstemp(name);
+  ck_assert_int_ge(fd, 0);
+  ck_assert_int_eq(write(fd, text, strlen(text)), (ssize_t)strlen(text));
+  close(fd);
+  ck_assert_int_eq(message_log_new(&s->log), OK);
+  ck_assert_int_eq(deck_read(name, 0, NULL, s->log, &s->d), OK);
+  s->st = model_from_deck(s->d, s->log, &s->m);
+  if (s->st == OK && msh != NULL) s->st = model_check(s->m, msh);
+  if (s->st != OK) message_print(s->log, stdout);
+  unlink(name);
+}
+
+void text_model_close(text_model *s) {
+  model_free(s->m);
+  deck_free(s->d);
+  message_log_free(s->log);
+  grid_free(s->msh);
+}

@@ -1,0 +1,22 @@
+/*
+ * A model from the text of a deck, checked against a mesh made in memory.
+ */
+#ifndef PROTIS_TESTS_TEXT_MODEL_H
+#define PROTIS_TESTS_TEXT_MODEL_H
+
+#include "model/model.h"
+#include "support/grid.h"
+
+typedef struct text_model {
+  message_log *log;
+  deck *d;
+  model *m;
+  mesh *msh; /* owned                                                         */
+  status st; /* of model_from_deck and model_check                            */
+} text_model;
+
+/* Reads it; messages go to stdout if it fails. "msh" is then its own. */
+void text_model_read(text_model *s, const char *text, mesh *msh);
+void text_model_close(text_model *s);
+
+#endif

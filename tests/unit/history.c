@@ -1,0 +1,172 @@
+/* src/history: increments that are cut, rolled back, given up; energies. */
+#include "base/memory.h"
+#include "history/history.h"
+#include "support/text_model.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Pressed on a rough floor and pushed to and fro: path dependent. */
+#define DECK(dt)                                                    \
+  "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n" \
+  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"                        \
+  "*AMPLITUDE, NAME=FRO\n0., 0., 0.25, 1., 1., -2.\n"               \
+  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"                            \
+  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"                    \
+  "*FRICTION, CONTACT=C, LAW=COULOMB\n0.4\n"                        \
+  "*STEP\n*QUASISTATIC\n" #dt                                       \
+  ", 1.\n*DSLOAD\nTOP, P, 10.\nLEFT, TX, 0.6, FRO\n"                \
+  "RIGHT, TX, 0.6, FRO\n*OUTPUT, HDF5=NO\n*END STEP\n"
+
+static mesh *block(void) {
+  const int n[] = {6, 4};
+  const double length[] = {6.0, 4.0};
+  return make_grid_2d(n, length);
+}
+
+/* What the run left: accepted times, rejected attempts, last displacements. */
+typedef struct run_record {
+  int accepted, rejected, unsettled, n_dof;
+  double t[64], worst_defect;
+  double u[256];
+} run_record;
+
+static status keep(void *ctx, const state *s) {
+  run_record *r = ctx;
+  ck_assert_int_lt(r->accepted, 64);
+  r->t[r->accepted++] = s->t;
+  memcpy(r->u, s->u, (size_t)r->n_dof * sizeof *r->u);
+  double scale = fabs(s->energy.external) + fabs(s->energy.strain);
+  r->worst_defect = fmax(r->worst_defect, fabs(s->energy.defect) / scale);
+  if (s->settled) ck_assert_double_ge(s->energy.friction_end, 0.0);
+  return OK;
+}
+
+static status count(void *ctx, const state *s, const char *why) {
+  run_record *r = ctx;
+  (void)s;
+  ck_assert_ptr_nonnull(why);
+  ++r->rejected;
+  return OK;
+}
+
+/* A solver that gives up, leaving rubbish, when the load has grown by more
+ * than picky_step since its last answer; otherwise newton. */
+static double picky_step, picky_last;
+
+static double load_size(const contact_problem *cp) {
+  double sum = 0.0;
+  for (int i = 0; i < cp->n; ++i) sum += fabs(cp->f[cp->dim * i]);
+  return sum;
+}
+
+static status picky_solve(const contact_problem *cp, const void *par,
+                          void *work, const solver_control *control, double *u,
+                          double *r, solver_report *rep) {
+  double size = load_size(cp);
+  if (fabs(size - picky_last) > picky_step * (1 + 1e-9)) {
+    for (int i = 0; i < cp->m; ++i) u[i] = r[i] = 1e3 * (i + 1);
+    rep->outcome = STOPPED_ITERATIONS;
+    return OK;
+  }
+  picky_last = size;
+  return newton_solver.solve(cp, par, work, control, u, r, rep);
+}
+
+static run_record run_deck(const char *text, double picky) {
+  text_model s;
+  solver_ops ops = newton_solver;
+  run_record r = {0};
+  text_model_read(&s, text, block());
+  ck_assert_int_eq(s.st, OK);
+  ops.solve = picky_solve;
+  picky_step = picky;
+  picky_last = 0.0;
+  s.m->steps[0].solver.ops = picky > 0 ? &ops : &newton_solver;
+  void *param = calloc(1, newton_solver.param_size + 1);
+  if (newton_solver.options != NULL)
+    option_defaults(newton_solver.options, param);
+  s.m->steps[0].solver.param = param;
+  r.n_dof = 2 * s.msh->n_node;
+  ck_assert_int_le(r.n_dof, 256);
+  history_sink sink = {.ctx = &r, .increment = keep, .rejected = count};
+  ck_assert_int_eq(history_run(s.m, s.msh, &sink, &r.unsettled), OK);
+  free(param);
+  text_model_close(&s);
+  return r;
+}
+
+START_TEST(cut_increments_are_the_small_increments) {
+  /* The pressure grows by 60 in all: 7.5 an eighth of the step. */
+  run_record fine = run_deck(DECK(0.125), 0.0);
+  run_record cut = run_deck(DECK(0.5), 60.0 / 8);
+  ck_assert_int_eq(fine.accepted, 8);
+  ck_assert_int_eq(cut.accepted, 8);
+  ck_assert_int_gt(cut.rejected, 2);
+  ck_assert_int_eq(cut.unsettled, 0);
+  for (int i = 0; i < 8; ++i) ck_assert_double_eq(cut.t[i], fine.t[i]);
+  for (int i = 0; i < fine.n_dof; ++i)
+    ck_assert_double_eq_tol(cut.u[i], fine.u[i], 1e-15);
+  /* The path counts: one coarse increment ends elsewhere. */
+  run_record coarse = run_deck(DECK(0.5), 0.0);
+  double differ = 0.0;
+  for (int i = 0; i < fine.n_dof; ++i)
+    differ = fmax(differ, fabs(coarse.u[i] - fine.u[i]));
+  ck_assert_double_gt(differ, 1e-6);
+}
+END_TEST
+
+START_TEST(increment_that_cannot_be_cut_further_is_unsettled) {
+  run_record r = run_deck(DECK(0.5), 1e-3);
+  ck_assert_int_eq(r.unsettled, r.accepted);
+  ck_assert_int_gt(r.rejected, 0);
+  ck_assert_double_eq(r.t[r.accepted - 1], 1.0);
+}
+END_TEST
+
+START_TEST(energies_balance_at_every_increment) {
+  run_record r = run_deck(DECK(0.0625), 0.0);
+  ck_assert_int_eq(r.accepted, 16);
+  ck_assert_double_le(r.worst_defect, 1e-12);
+}
+END_TEST
+
+START_TEST(step_ends_at_the_time_asked_for) {
+  run_record r = run_deck(DECK(0.3), 0.0);
+  ck_assert_int_eq(r.accepted, 4);
+  ck_assert_double_eq(r.t[3], 1.0);
+  r = run_deck(DECK(0.1), 0.0);
+  ck_assert_int_eq(r.accepted, 10);
+  ck_assert_double_eq(r.t[9], 1.0);
+}
+END_TEST
+
+START_TEST(every_refused_request_is_reported) {
+  text_model s;
+  run_record r = {0};
+  text_model_read(&s, DECK(0.5), block());
+  r.n_dof = 2 * s.msh->n_node;
+  history_sink sink = {.ctx = &r, .increment = keep, .rejected = count};
+  size_t before = memory_in_use();
+  int refused = 0, done = 0;
+  for (long k = 1; !done; ++k) {
+    r.accepted = 0;
+    memory_refuse(k, 0);
+    status st = history_run(s.m, s.msh, &sink, &r.unsettled);
+    memory_refuse(0, 0);
+    ck_assert_msg(st == OK || st == ERR_MEMORY, "request %ld: %s", k,
+                  status_message());
+    ck_assert_uint_eq(memory_in_use(), before);
+    refused += st == ERR_MEMORY;
+    done = st == OK && k > 100;
+  }
+  ck_assert_int_gt(refused, 50);
+  text_model_close(&s);
+}
+END_TEST
+
+UNIT_MAIN("history", cut_increments_are_the_small_increments,
+          increment_that_cannot_be_cut_further_is_unsettled,
+          energies_balance_at_every_increment, step_ends_at_the_time_asked_for,
+          every_refused_request_is_reported)
