@@ -26,6 +26,7 @@
  * but for the ends of the face. Without A: the diagonal of W.
  */
 #include "base/memory.h"
+#include "solver/local.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
@@ -49,36 +50,28 @@ static const option pcg_options[] = {
 enum {
   STEPS = 20000,  /* default limit                                           */
   PATIENCE = 500, /* steps without a lower residual                          */
-  HALVINGS = 3,   /* of a projected step that does not descend               */
-  SHARPENINGS = 4 /* of the bound of the spectrum                            */
+  HALVINGS = 3    /* of a projected step that does not descend               */
 };
 static const double PROGRESS = 0.9; /* a lower residual is lower by this */
 static const double ON_THE_RIM = 0x1p-20; /* -, of g: counts as |r_t| = g     */
 static const double ROUNDING = 0x1p-48;   /* -, of the terms of J */
 static const double ENOUGH = 0.1; /* -, of phi: the circle has turned  */
 
-typedef enum { NONE, BOUND, DISC } part;
-
 typedef struct pcg_work {
-  int m, symmetric;
-  double step;         /* -, bound: descent along -step D x                 */
-  double *D;           /* [m] 1/W_ii, the mean in a tangent plane, N/m      */
-  double *x, *origin;  /* [m] m                                             */
-  double *phi, *beta;  /* [m] m                                             */
-  double *z, *p, *v;   /* [m]                                               */
-  double *r0, *x0;     /* [m] where the phase began                         */
-  double *e, *turn;    /* [m] unit radius of a rim, [n] |x.e|/g, m/N        */
-  unsigned char *part; /* [m]                                               */
-  unsigned char *rim;  /* [n] 1: |r_t| = g                                  */
+  force_set *set;
+  double *x;          /* [m] m                                             */
+  double *phi, *beta; /* [m] m                                             */
+  double *z, *p, *v;  /* [m]                                               */
+  double *r0, *x0;    /* [m] where the phase began                         */
+  double *e, *turn;   /* [m] unit radius of a rim, [n] |x.e|/g, m/N        */
   best_iterate best;
 } pcg_work;
 
 static void pcg_release(void *work) {
   pcg_work *w = work;
   if (w == NULL) return;
-  memory_free(w->D);
+  force_set_free(w->set);
   memory_free(w->x);
-  memory_free(w->origin);
   memory_free(w->phi);
   memory_free(w->beta);
   memory_free(w->z);
@@ -88,64 +81,8 @@ static void pcg_release(void *work) {
   memory_free(w->x0);
   memory_free(w->e);
   memory_free(w->turn);
-  memory_free(w->part);
-  memory_free(w->rim);
   best_iterate_free(&w->best);
   memory_free(w);
-}
-
-static int held(const contact_problem *cp, int dof) {
-  return cp->held != NULL && cp->held[dof];
-}
-
-/* D: 1/W_ii, equal in the tangents of a node so that discs stay discs. */
-static void scaling(const contact_problem *cp, double *D) {
-  int d = cp->dim;
-  double largest = 0.0;
-  for (size_t i = 0; i < (size_t)cp->m; ++i) {
-    D[i] = cp->W[i * (size_t)cp->m + i];
-    largest = fmax(largest, D[i]);
-  }
-  for (int i = 0; i < cp->n; ++i) {
-    double mean = 0.0;
-    for (int k = 1; k < d; ++k) mean += D[i * d + k] / (d - 1);
-    for (int k = 1; k < d; ++k)
-      if (!held(cp, i * d + k)) D[i * d + k] = mean;
-  }
-  for (int i = 0; i < cp->m; ++i)
-    D[i] = 1.0 / (D[i] > 0x1p-40 * largest ? D[i] : largest);
-}
-
-/* Upper bound of the spectrum of D W by steps of the power method on |D W|
- * (Collatz and Wielandt: the largest ratio bounds it). v, z [m]. */
-static double spectrum_bound(const contact_problem *cp, const double *D,
-                             double *v, double *z) {
-  size_t m = (size_t)cp->m;
-  double bound = HUGE_VAL;
-  for (size_t i = 0; i < m; ++i) v[i] = 1.0;
-  for (int k = 0; k < SHARPENINGS; ++k) {
-    double ratio = 0.0;
-    memset(z, 0, m * sizeof *z);
-    for (size_t j = 0; j < m; ++j)
-      for (size_t i = 0; i < m; ++i) z[i] += fabs(cp->W[i + m * j]) * v[j];
-    for (size_t i = 0; i < m; ++i) {
-      z[i] *= D[i];
-      ratio = fmax(ratio, z[i] / v[i]);
-    }
-    bound = fmin(bound, ratio);
-    for (size_t i = 0; i < m; ++i) v[i] = fmax(z[i] / ratio, 0x1p-20);
-  }
-  return bound;
-}
-
-static int is_symmetric(int m, const double *M) {
-  size_t n = (size_t)m;
-  for (size_t j = 0; j < n; ++j)
-    for (size_t i = 0; i < j; ++i)
-      if (!(fabs(M[i + n * j] - M[j + n * i]) <=
-            0x1p-36 * (fabs(M[i + n * i]) + fabs(M[j + n * j]))))
-        return 0;
-  return 1;
 }
 
 static status pcg_setup(const contact_problem *cp, const void *par,
@@ -155,10 +92,8 @@ static status pcg_setup(const contact_problem *cp, const void *par,
   int m = cp->m;
   (void)par;
   NEW(w, 1);
-  w->m = m;
-  NEW(w->D, m);
+  TRY(force_set_new(cp, &w->set));
   NEW(w->x, m);
-  NEW(w->origin, m);
   NEW(w->phi, m);
   NEW(w->beta, m);
   NEW(w->z, m);
@@ -168,12 +103,7 @@ static status pcg_setup(const contact_problem *cp, const void *par,
   NEW(w->x0, m);
   NEW(w->e, m);
   NEW(w->turn, cp->n);
-  NEW(w->part, m);
-  NEW(w->rim, cp->n);
   TRY(best_iterate_new(m, &w->best));
-  w->symmetric = is_symmetric(m, cp->W);
-  scaling(cp, w->D);
-  w->step = 1.0 / spectrum_bound(cp, w->D, w->v, w->z);
   *work = w;
   w = NULL;
 done:
@@ -195,65 +125,6 @@ typedef struct run {
   int refreshed; /* x was made anew: begin a new phase        */
 } run;
 
-static void product(const run *s, const double *M, int symmetric,
-                    const double *a, double *b) {
-  if (symmetric)
-    cblas_dsymv(CblasColMajor, CblasLower, s->cp->m, 1.0, M, s->cp->m, a, 1,
-                0.0, b, 1);
-  else
-    contact_product(s->cp->m, M, a, b);
-}
-
-/* Constraint and origin of every unknown. */
-static void parts(run *s) {
-  const contact_problem *cp = s->cp;
-  pcg_work *w = s->w;
-  for (int i = 0; i < cp->n; ++i) {
-    int first = i * cp->dim, t = i * (cp->dim - 1) - 1;
-    int disc = cp->g0 != NULL && cp->g0[i] > 0.0;
-    w->rim[i] = 0;
-    w->part[first] = BOUND;
-    w->origin[first] = cp->gap[i];
-    for (int k = 1; k < cp->dim; ++k) {
-      double side = cp->side_gap == NULL ? HUGE_VAL : cp->side_gap[t + k];
-      w->part[first + k] = NONE;
-      w->origin[first + k] = 0.0;
-      if (held(cp, first + k)) continue;
-      if (side < HUGE_VAL) {
-        w->part[first + k] = BOUND;
-        w->origin[first + k] = side;
-      } else if (disc) {
-        w->part[first + k] = DISC;
-        w->origin[first + k] = cp->ut0 == NULL ? 0.0 : cp->ut0[t + k];
-      }
-    }
-  }
-}
-
-/* Force into the tangent disc of a node; margin: relative depth at which a
- * force counts as lying on the rim. */
-static void project_disc(const run *s, int node_id, double margin, double *r) {
-  const contact_problem *cp = s->cp;
-  const unsigned char *kind = s->w->part + node_id * cp->dim;
-  double size = 0.0, g = cp->g0 == NULL ? 0.0 : cp->g0[node_id];
-  double *t = r + node_id * cp->dim;
-  for (int k = 1; k < cp->dim; ++k)
-    if (kind[k] == DISC) size += t[k] * t[k];
-  size = sqrt(size);
-  s->w->rim[node_id] = size > 0.0 && size >= g * (1.0 - margin);
-  if (!s->w->rim[node_id]) return;
-  for (int k = 1; k < cp->dim; ++k)
-    if (kind[k] == DISC) t[k] *= g / size;
-}
-
-static void project(const run *s, double margin, double *r) {
-  for (int dof = 0; dof < s->cp->m; ++dof) {
-    part kind = (part)s->w->part[dof];
-    if (kind == NONE || (kind == BOUND && r[dof] > 0.0)) r[dof] = 0.0;
-  }
-  for (int i = 0; i < s->cp->n; ++i) project_disc(s, i, margin, r);
-}
-
 /* Radii of the rims, and how strongly the circles bend J. */
 static void directions(run *s) {
   const contact_problem *cp = s->cp;
@@ -262,8 +133,8 @@ static void directions(run *s) {
   for (int i = 0; i < cp->n; ++i) {
     int first = i * cp->dim, tangents = 0;
     double g = cp->g0 == NULL ? 0.0 : cp->g0[i], along = 0.0;
-    for (int k = 1; k < cp->dim && w->rim[i]; ++k) {
-      if (w->part[first + k] != DISC) continue;
+    for (int k = 1; k < cp->dim && w->set->rim[i]; ++k) {
+      if (w->set->part[first + k] != IN_DISC) continue;
       w->e[first + k] = s->r[first + k] / g;
       along += w->e[first + k] * w->x[first + k];
       ++tangents;
@@ -278,7 +149,8 @@ static double along_rim(const run *s, int node_id, const double *a) {
   double sum = 0.0;
   int first = node_id * s->cp->dim;
   for (int k = 1; k < s->cp->dim; ++k)
-    if (s->w->part[first + k] == DISC) sum += a[first + k] * s->w->e[first + k];
+    if (s->w->set->part[first + k] == IN_DISC)
+      sum += a[first + k] * s->w->e[first + k];
   return sum;
 }
 
@@ -288,14 +160,15 @@ static void onto_face(const run *s, const double *a, double *b) {
   const pcg_work *w = s->w;
   for (int i = 0; i < cp->n; ++i) {
     int first = i * cp->dim;
-    double along = w->rim[i] ? along_rim(s, i, a) : 0.0;
+    double along = w->set->rim[i] ? along_rim(s, i, a) : 0.0;
     for (int k = 0; k < cp->dim; ++k) {
-      part kind = (part)w->part[first + k];
+      force_part kind = (force_part)w->set->part[first + k];
       b[first + k] = a[first + k];
-      if (kind == NONE || (kind == BOUND && !(s->r[first + k] < 0.0)))
+      if (kind == NO_FORCE || (kind == PUSH && !(s->r[first + k] < 0.0)))
         b[first + k] = 0.0;
-      if (kind == DISC && w->rim[i]) b[first + k] -= along * w->e[first + k];
-      if (kind == DISC && w->rim[i] && !s->bent) b[first + k] = 0.0;
+      if (kind == IN_DISC && w->set->rim[i])
+        b[first + k] -= along * w->e[first + k];
+      if (kind == IN_DISC && w->set->rim[i] && !s->bent) b[first + k] = 0.0;
     }
   }
 }
@@ -308,15 +181,16 @@ static void split(run *s) {
   s->phi2 = s->beta2 = 0.0;
   for (int i = 0; i < cp->n; ++i) {
     int first = i * cp->dim;
-    double inward = w->rim[i] ? fmax(along_rim(s, i, w->x), 0.0) : 0.0;
+    double inward = w->set->rim[i] ? fmax(along_rim(s, i, w->x), 0.0) : 0.0;
     for (int k = 0; k < cp->dim; ++k) {
       int dof = first + k;
       w->beta[dof] = 0.0;
-      if (w->part[dof] == BOUND && !(s->r[dof] < 0.0))
+      if (w->set->part[dof] == PUSH && !(s->r[dof] < 0.0))
         w->beta[dof] = fmax(w->x[dof], 0.0);
-      if (w->part[dof] == DISC && w->rim[i]) w->beta[dof] = inward * w->e[dof];
-      s->phi2 += w->D[dof] * w->phi[dof] * w->phi[dof];
-      s->beta2 += w->D[dof] * w->beta[dof] * w->beta[dof];
+      if (w->set->part[dof] == IN_DISC && w->set->rim[i])
+        w->beta[dof] = inward * w->e[dof];
+      s->phi2 += w->set->D[dof] * w->phi[dof] * w->phi[dof];
+      s->beta2 += w->set->D[dof] * w->beta[dof] * w->beta[dof];
     }
   }
 }
@@ -328,7 +202,7 @@ static double longest_in_disc(const run *s, int node_id, const double *p) {
   double pp = 0.0, rp = 0.0, rr = 0.0,
          g = cp->g0 == NULL ? 0.0 : cp->g0[node_id];
   for (int k = 1; k < cp->dim; ++k) {
-    if (s->w->part[first + k] != DISC) continue;
+    if (s->w->set->part[first + k] != IN_DISC) continue;
     pp += p[first + k] * p[first + k];
     rp += s->r[first + k] * p[first + k];
     rr += s->r[first + k] * s->r[first + k];
@@ -343,37 +217,26 @@ static double longest(const run *s, const double *p, int rims_too) {
   const contact_problem *cp = s->cp;
   double a = HUGE_VAL;
   for (int dof = 0; dof < cp->m; ++dof)
-    if (s->w->part[dof] == BOUND && p[dof] < 0.0)
+    if (s->w->set->part[dof] == PUSH && p[dof] < 0.0)
       a = fmin(a, s->r[dof] / p[dof]);
   for (int i = 0; i < cp->n; ++i)
-    if (rims_too || !s->w->rim[i]) a = fmin(a, longest_in_disc(s, i, p));
+    if (rims_too || !s->w->set->rim[i]) a = fmin(a, longest_in_disc(s, i, p));
   return a;
 }
 
 /* ---- steps --------------------------------------------------------------- */
 
-/* u and x anew from r: u = W (r + f), mended once by A, or u = W r + q. */
+/* u and x anew from r. */
 static void refresh(run *s) {
-  const contact_problem *cp = s->cp;
-  pcg_work *w = s->w;
-  if (cp->A == NULL) {
-    product(s, cp->W, w->symmetric, s->r, s->u);
-    cblas_daxpy(cp->m, 1.0, cp->f, 1, s->u, 1);
-  } else {
-    for (int i = 0; i < cp->m; ++i) w->z[i] = s->r[i] + cp->f[i];
-    product(s, cp->W, w->symmetric, w->z, s->u);
-    contact_product(cp->m, cp->A, s->u, w->v);
-    for (int i = 0; i < cp->m; ++i) w->v[i] = w->z[i] - w->v[i];
-    product(s, cp->W, w->symmetric, w->v, w->z);
-    cblas_daxpy(cp->m, 1.0, w->z, 1, s->u, 1);
-  }
-  for (int i = 0; i < cp->m; ++i) w->x[i] = s->u[i] - w->origin[i];
+  force_set_displacement(s->w->set, s->r, s->u);
+  for (int i = 0; i < s->cp->m; ++i)
+    s->w->x[i] = s->u[i] - s->w->set->origin[i];
 }
 
 /* Residual at (r, x), told and judged; RUNNING: go on. */
 static outcome judge(run *s) {
   const contact_problem *cp = s->cp;
-  for (int i = 0; i < cp->m; ++i) s->u[i] = s->w->x[i] + s->w->origin[i];
+  for (int i = 0; i < cp->m; ++i) s->u[i] = s->w->x[i] + s->w->set->origin[i];
   s->residual = solver_mismatch(cp, s->scale, s->u, s->r);
   if (s->residual <= s->control->tol) {
     refresh(s);
@@ -397,9 +260,10 @@ static void precondition(run *s) {
   const contact_problem *cp = s->cp;
   pcg_work *w = s->w;
   if (s->by_face)
-    product(s, cp->A, 1, w->phi, w->z);
+    cblas_dsymv(CblasColMajor, CblasLower, cp->m, 1.0, cp->A, cp->m, w->phi, 1,
+                0.0, w->z, 1);
   else
-    for (int i = 0; i < cp->m; ++i) w->z[i] = w->D[i] * w->phi[i];
+    for (int i = 0; i < cp->m; ++i) w->z[i] = w->set->D[i] * w->phi[i];
   onto_face(s, w->z, w->z);
 }
 
@@ -407,10 +271,10 @@ static void precondition(run *s) {
 static void curvature_product(run *s) {
   const contact_problem *cp = s->cp;
   pcg_work *w = s->w;
-  product(s, cp->W, w->symmetric, w->p, w->v);
+  force_set_product(w->set, w->p, w->v);
   ++s->steps;
   for (int i = 0; s->bent && i < cp->n; ++i)
-    for (int k = 1; w->rim[i] && k < cp->dim; ++k)
+    for (int k = 1; w->set->rim[i] && k < cp->dim; ++k)
       w->v[i * cp->dim + k] += w->turn[i] * w->p[i * cp->dim + k];
 }
 
@@ -421,9 +285,9 @@ static int arrive(run *s, double share, const double *aim) {
   int m = s->cp->m;
   double fall = 0.0, terms = 0.0;
   for (int i = 0; i < m; ++i) s->r[i] = w->r0[i] + share * (aim[i] - w->r0[i]);
-  project(s, 0.0, s->r);
+  force_set_project(w->set, 0.0, s->r);
   for (int i = 0; i < m; ++i) w->p[i] = s->r[i] - w->r0[i];
-  product(s, s->cp->W, w->symmetric, w->p, w->x);
+  force_set_product(w->set, w->p, w->x);
   ++s->steps;
   for (int i = 0; i < m; ++i) {
     fall -= w->p[i] * (w->x[i] + 2.0 * w->x0[i]);
@@ -437,7 +301,7 @@ static int arrive(run *s, double share, const double *aim) {
 static void gradient_step(run *s) {
   pcg_work *w = s->w;
   for (int i = 0; i < s->cp->m; ++i)
-    w->z[i] = w->r0[i] - w->step * w->D[i] * w->x0[i];
+    w->z[i] = w->r0[i] - w->set->step * w->set->D[i] * w->x0[i];
   arrive(s, 1.0, w->z);
 }
 
@@ -464,19 +328,19 @@ static void let_go(run *s) {
   pcg_work *w = s->w;
   double slope = 0.0;
   for (int i = 0; i < cp->m; ++i) {
-    w->p[i] = w->D[i] * w->beta[i];
+    w->p[i] = w->set->D[i] * w->beta[i];
     slope += w->p[i] * w->beta[i];
   }
-  product(s, cp->W, w->symmetric, w->p, w->v);
+  force_set_product(w->set, w->p, w->v);
   ++s->steps;
   double bend = cblas_ddot(cp->m, w->p, 1, w->v, 1);
-  double a = bend > 0.0 ? slope / bend : w->step;
+  double a = bend > 0.0 ? slope / bend : w->set->step;
   a = fmin(a, longest(s, w->p, 1));
   cblas_daxpy(cp->m, -a, w->p, 1, s->r, 1);
   cblas_daxpy(cp->m, -a, w->v, 1, w->x, 1);
   for (int i = 0; i < cp->n; ++i)
     for (int k = 1; k < cp->dim; ++k)
-      if (w->p[i * cp->dim + k] != 0.0) w->rim[i] = 0;
+      if (w->p[i * cp->dim + k] != 0.0) w->set->rim[i] = 0;
 }
 
 /* Conjugate gradients on the face until the set is left, the face is done, or
@@ -520,8 +384,8 @@ static outcome phase(run *s) {
 
 static outcome phases(run *s) {
   outcome o;
-  parts(s);
-  project(s, ON_THE_RIM, s->r);
+  force_set_fit(s->w->set, s->cp);
+  force_set_project(s->w->set, ON_THE_RIM, s->r);
   refresh(s);
   if ((o = judge(s)) != RUNNING) return o;
   remember(s);

@@ -28,7 +28,8 @@ static const double FREE_SIDE = 0.15; /* pressure that pushes over E */
 static const struct variant {
   const char *solver, *option, *value;
 } variants[] = {{"aitken", "ACCELERATION", "ANDERSON"},
-                {"pcg", "PRECONDITIONER", "DIAGONAL"}};
+                {"pcg", "PRECONDITIONER", "DIAGONAL"},
+                {"lagrange", "ACCELERATION", "NONE"}};
 
 typedef struct block {
   scene *s;

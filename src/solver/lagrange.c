@@ -1,0 +1,285 @@
+/*
+ * Lagrangian method for contact with a given sliding limit (CPR98, 3.3; Uzawa
+ * 1958; Glowinski, Lions, Tremolieres 1976): the forces of contact are the
+ * multipliers of the conditions on u, found by steps of gradient projection,
+ *
+ *   A u_k = f + y_k,
+ *   r_k+1 = P(y_k - rho D (u_k - o)),
+ *   y_k+1 = r_k+1 + theta_k (r_k+1 - r_k),
+ *
+ * P the projection on r_n <= 0, |r_t| <= g, o the gap and the stick position, D
+ * the inverse diagonal of W = inv(A). theta = 0 is Uzawa's method; with
+ * Nesterov's theta_k (1983), begun anew when a step turns against the gradient
+ * (O'Donoghue, Candes 2015), the number of steps grows with the square root of
+ * the condition of D W only. u is carried by the combination of r, so a step is
+ * one product with W.
+ *
+ * The step rho is 1/largest eigenvalue of D W. The power method gives it a
+ * little too large; every step checks what descent needs,
+ *
+ *   (r - y)'W (r - y) <= (r - y)'inv(D) (r - y)/rho,
+ *
+ * and shortens rho, never below the bound of Collatz and Wielandt.
+ */
+#include "base/memory.h"
+#include "solver/local.h"
+#include "solver/solver.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <string.h>
+
+typedef struct lagrange {
+  int acceleration; /* acceleration_way                                      */
+} lagrange;
+
+typedef enum { BY_NESTEROV, BY_NOTHING } acceleration_way;
+
+/* clang-format off */
+static const option lagrange_options[] = {
+  OPTION_CHOICE(lagrange, acceleration, "ACCELERATION", "NESTEROV|NONE",
+                "NESTEROV", "extrapolation of the forces between the steps"),
+  OPTION_END
+};
+/* clang-format on */
+
+enum {
+  STEPS = 100000,  /* default limit                                          */
+  PATIENCE = 2000, /* steps without a lower residual                         */
+  POWER_STEPS = 12
+};
+static const double PROGRESS = 0.9; /* a lower residual is lower by this      */
+static const double ROUNDING = 0x1p-30; /* -, of |r|^2: a shorter step shows
+                                          rounding only */
+static const double LONGER = 0.98; /* share of the eigenvalue seen           */
+
+typedef struct lagrange_work {
+  force_set *set;
+  double step;       /* -, rho of the next problem                       */
+  double *x, *old_x; /* [m] u - o at r, and at the r before              */
+  double *y, *y_x;   /* [m] N; u - o there. After the step y is r - y    */
+  double *c;         /* [m] x = W r + c, m                               */
+  double *old_r;     /* [m] N                                            */
+  best_iterate best;
+} lagrange_work;
+
+static void lagrange_release(void *work) {
+  lagrange_work *w = work;
+  if (w == NULL) return;
+  force_set_free(w->set);
+  memory_free(w->x);
+  memory_free(w->old_x);
+  memory_free(w->y);
+  memory_free(w->y_x);
+  memory_free(w->c);
+  memory_free(w->old_r);
+  best_iterate_free(&w->best);
+  memory_free(w);
+}
+
+/* 1/largest eigenvalue of D W, from below by the power method. */
+static double power_step(const lagrange_work *w, int m) {
+  double largest = 0.0;
+  unsigned seed = 1;
+  for (int i = 0; i < m; ++i) {
+    seed = seed * 1664525u + 1013904223u;
+    w->y[i] = w->set->D[i] * (1.0 + 0x1p-32 * seed);
+  }
+  for (int k = 0; k < POWER_STEPS; ++k) {
+    double top = 0.0, bottom = 0.0;
+    force_set_product(w->set, w->y, w->y_x);
+    for (int i = 0; i < m; ++i) {
+      top += w->y[i] * w->y_x[i];
+      bottom += w->y[i] * w->y[i] / w->set->D[i];
+    }
+    if (!(bottom > 0.0) || !(top > 0.0)) break;
+    largest = fmax(largest, top / bottom);
+    double scale = 1.0 / sqrt(bottom);
+    for (int i = 0; i < m; ++i) w->y[i] = scale * w->set->D[i] * w->y_x[i];
+  }
+  return largest > 0.0 ? 1.0 / largest : 0.0;
+}
+
+static status lagrange_setup(const contact_problem *cp, const void *par,
+                             void **work) {
+  status st = OK;
+  lagrange_work *w = NULL;
+  (void)par;
+  NEW(w, 1);
+  TRY(force_set_new(cp, &w->set));
+  NEW(w->x, cp->m);
+  NEW(w->old_x, cp->m);
+  NEW(w->y, cp->m);
+  NEW(w->y_x, cp->m);
+  NEW(w->c, cp->m);
+  NEW(w->old_r, cp->m);
+  TRY(best_iterate_new(cp->m, &w->best));
+  force_set_fit(w->set, cp);
+  w->step = fmax(w->set->step, LONGER * power_step(w, cp->m));
+  *work = w;
+  w = NULL;
+done:
+  lagrange_release(w);
+  return st;
+}
+
+typedef struct run {
+  const contact_problem *cp;
+  lagrange_work *w;
+  const solver_control *control;
+  double *u, *r;
+  double scale, mark; /* residual at the last progress                       */
+  double t;           /* of Nesterov's sequence, -                           */
+  int accelerated, since;
+} run;
+
+/* u and x anew from r, as exactly as A allows; c is what W r leaves over. */
+static void refresh(run *s) {
+  lagrange_work *w = s->w;
+  force_set_displacement(w->set, s->r, s->u);
+  force_set_product(w->set, s->r, w->c);
+  for (int i = 0; i < s->cp->m; ++i) {
+    w->x[i] = s->u[i] - w->set->origin[i];
+    w->c[i] = w->x[i] - w->c[i];
+  }
+}
+
+/* Residual at (r, x), told and judged; RUNNING: go on. */
+static outcome judge(run *s, int k) {
+  const contact_problem *cp = s->cp;
+  for (int i = 0; i < cp->m; ++i) s->u[i] = s->w->x[i] + s->w->set->origin[i];
+  double residual = solver_mismatch(cp, s->scale, s->u, s->r);
+  if (residual <= s->control->tol) {
+    refresh(s);
+    residual = solver_mismatch(cp, s->scale, s->u, s->r);
+  }
+  solver_keep_best(&s->w->best, cp->m, residual, s->u, s->r);
+  solver_tell(s->control, "lagrange", k, residual);
+  if (isnan(residual)) return STOPPED_NAN;
+  if (residual <= s->control->tol) return CONVERGED;
+  if (residual < PROGRESS * s->mark) {
+    s->mark = residual;
+    s->since = k;
+  }
+  return k - s->since > PATIENCE ? STOPPED_STAGNATION : RUNNING;
+}
+
+/* y and its displacement; theta = 0 begins anew. */
+static void extrapolate(run *s, double theta) {
+  lagrange_work *w = s->w;
+  for (int i = 0; i < s->cp->m; ++i) {
+    w->y[i] = s->r[i] + theta * (s->r[i] - w->old_r[i]);
+    w->y_x[i] = w->x[i] + theta * (w->x[i] - w->old_x[i]);
+  }
+}
+
+/* r and x after a step of gradient projection from y; 0: the step was too long
+ * and is now shorter. */
+static int project_step(run *s) {
+  lagrange_work *w = s->w;
+  const force_set *set = w->set;
+  int m = s->cp->m;
+  double energy = 0.0, metric = 0.0, size = 0.0;
+  for (int i = 0; i < m; ++i)
+    s->r[i] = w->y[i] - w->step * set->D[i] * w->y_x[i];
+  force_set_project(set, 0.0, s->r);
+  force_set_product(set, s->r, w->x);
+  for (int i = 0; i < m; ++i) {
+    w->x[i] += w->c[i];
+    w->y[i] = s->r[i] - w->y[i];
+    energy += w->y[i] * (w->x[i] - w->y_x[i]);
+    metric += w->y[i] * w->y[i] / set->D[i];
+    size += s->r[i] * s->r[i] / set->D[i];
+  }
+  if (w->step <= set->step || energy * w->step <= metric) return 1;
+  if (metric <= ROUNDING * size) return 1;
+  w->step = fmax(set->step, fmin(LONGER * metric / energy, 0.9 * w->step));
+  return 0;
+}
+
+/* 1: the step leads against the move from the r before. */
+static int turns(const run *s) {
+  const lagrange_work *w = s->w;
+  double sum = 0.0;
+  for (int i = 0; i < s->cp->m; ++i)
+    sum += w->y[i] * (s->r[i] - w->old_r[i]) / w->set->D[i];
+  return sum < 0.0;
+}
+
+static outcome steps(run *s, solver_report *rep) {
+  lagrange_work *w = s->w;
+  size_t bytes = (size_t)s->cp->m * sizeof *s->r;
+  int limit = s->control->max_iter > 0 ? s->control->max_iter : STEPS;
+  double theta = 0.0;
+  force_set_fit(w->set, s->cp);
+  force_set_project(w->set, 0.0, s->r);
+  refresh(s);
+  outcome o = judge(s, 0);
+  for (int k = 1; k <= limit && o == RUNNING; ++k) {
+    rep->iterations = k;
+    extrapolate(s, theta);
+    memcpy(w->old_r, s->r, bytes);
+    memcpy(w->old_x, w->x, bytes);
+    if (!project_step(s)) {
+      memcpy(s->r, w->old_r, bytes);
+      memcpy(w->x, w->old_x, bytes);
+      s->t = 1.0;
+      theta = 0.0;
+      continue;
+    }
+    o = judge(s, k);
+    if (turns(s) || !s->accelerated) s->t = 1.0;
+    double next = 0.5 * (1.0 + sqrt(1.0 + 4.0 * s->t * s->t));
+    theta = (s->t - 1.0) / next;
+    s->t = next;
+  }
+  return o == RUNNING ? STOPPED_ITERATIONS : o;
+}
+
+static status lagrange_solve(const contact_problem *cp, const void *par,
+                             void *work, const solver_control *control,
+                             double *u, double *r, solver_report *rep) {
+  const lagrange *p = par;
+  lagrange_work *w = work;
+  run s = {.cp = cp,
+           .w = w,
+           .control = control,
+           .u = u,
+           .r = r,
+           .scale = contact_scale(cp),
+           .mark = HUGE_VAL,
+           .t = 1.0,
+           .accelerated = p->acceleration == BY_NESTEROV};
+  *rep = (solver_report){.outcome = RUNNING};
+  w->best.residual = HUGE_VAL;
+  rep->outcome = steps(&s, rep);
+  rep->residual = w->best.residual;
+  solver_take_best(&w->best, cp->m, u, r);
+  return OK;
+}
+
+/* clang-format off */
+const solver_ops lagrange_solver = {
+  .name = "lagrange",
+  .reference = "CPR98, 3.3; Uzawa 1958; Nesterov 1983",
+  .help =
+    "Lagrangian method (Uzawa): the forces of contact are multipliers, moved by\n"
+    "r <- P(r - rho D (u - o)), A u = f + r, with o the gap and the stick\n"
+    "position, D the inverse diagonal of the compliance and P the projection on\n"
+    "r_n <= 0 and the disc |r_t| <= g. The step rho comes from the largest\n"
+    "eigenvalue of the compliance and is checked at every step, so there is\n"
+    "nothing to choose. ACCELERATION=NESTEROV extrapolates the forces and\n"
+    "begins anew when the step turns; NONE is Uzawa's method as it was written.\n"
+    "The sliding limit is updated around it (CPR98, 2.3). Needs the compliance\n"
+    "(an inverse, once per matrix), so not for a body that contact alone holds.\n"
+    "One product a step, many steps: it is here for comparison and as the\n"
+    "method that cannot fail on a Tresca problem; PCG solves the same problem\n"
+    "in far fewer products.",
+  .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
+  .param_size = sizeof(lagrange),
+  .options = lagrange_options,
+  .setup = lagrange_setup,
+  .solve = lagrange_solve,
+  .release = lagrange_release
+};
+/* clang-format on */
