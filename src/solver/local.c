@@ -584,28 +584,33 @@ void force_set_displacement(const force_set *s, const double *r, double *u) {
   cblas_daxpy(cp->m, 1.0, s->load, 1, u, 1);
 }
 
-void force_set_fit(force_set *w, const contact_problem *cp) {
-  w->cp = cp;
+void force_parts(const contact_problem *cp, unsigned char *part,
+                 double *origin) {
   for (int i = 0; i < cp->n; ++i) {
     int first = i * cp->dim, t = i * (cp->dim - 1) - 1;
-    int disc = cp->g0 != NULL && cp->g0[i] > 0.0;
-    w->rim[i] = 0;
-    w->part[first] = PUSH;
-    w->origin[first] = cp->gap[i];
+    int disc = cp->g0 != NULL && (cp->B != NULL || cp->g0[i] > 0.0);
+    part[first] = PUSH;
+    origin[first] = cp->gap[i];
     for (int k = 1; k < cp->dim; ++k) {
       double side = cp->side_gap == NULL ? HUGE_VAL : cp->side_gap[t + k];
-      w->part[first + k] = NO_FORCE;
-      w->origin[first + k] = 0.0;
+      part[first + k] = NO_FORCE;
+      origin[first + k] = 0.0;
       if (held(cp, first + k)) continue;
       if (side < HUGE_VAL) {
-        w->part[first + k] = PUSH;
-        w->origin[first + k] = side;
+        part[first + k] = PUSH;
+        origin[first + k] = side;
       } else if (disc) {
-        w->part[first + k] = IN_DISC;
-        w->origin[first + k] = cp->ut0 == NULL ? 0.0 : cp->ut0[t + k];
+        part[first + k] = IN_DISC;
+        origin[first + k] = cp->ut0 == NULL ? 0.0 : cp->ut0[t + k];
       }
     }
   }
+}
+
+void force_set_fit(force_set *s, const contact_problem *cp) {
+  s->cp = cp;
+  force_parts(cp, s->part, s->origin);
+  for (int i = 0; i < cp->n; ++i) s->rim[i] = 0;
 }
 
 /* Force into the tangent disc of a node; margin: relative depth at which a

@@ -66,6 +66,10 @@ void relaxation_sweep(relaxation *s, int backward);
  * the set in this metric is the plain one node by node.
  */
 typedef enum { NO_FORCE, PUSH, IN_DISC } force_part;
+/* Where a force can act, and the displacement it acts from, m: gap, stick
+ * position or second obstacle. part[m], origin[m]. */
+void force_parts(const contact_problem *cp, unsigned char *part,
+                 double *origin);
 typedef struct force_set {
   const contact_problem *cp; /* of the last fit                              */
   double *D;           /* [m] 1/W_ii, the mean in a tangent plane, N/m        */

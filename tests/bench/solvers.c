@@ -29,7 +29,8 @@ static const struct variant {
   const char *solver, *option, *value;
 } variants[] = {{"aitken", "ACCELERATION", "ANDERSON"},
                 {"pcg", "PRECONDITIONER", "DIAGONAL"},
-                {"lagrange", "ACCELERATION", "NONE"}};
+                {"lagrange", "ACCELERATION", "NONE"},
+                {"auglag", "VARIANT", "UZAWA"}};
 
 typedef struct block {
   scene *s;

@@ -1,0 +1,538 @@
+/*
+ * Augmented Lagrangian of Alart and Curnier (1991; CPR98, 3.3). With
+ * x = u - o the displacement from the gap and the stick position and
+ *
+ *   F(z) = (min(z_n, 0), P_g(z_t)),   z = lambda - rho x,
+ *
+ * P_g the projection on the disc |.| <= g, contact with friction is
+ *
+ *   A u - f - F = 0,   lambda = F,   g = g0 - B F_n.
+ *
+ * VARIANT=NEWTON: generalised Newton method for both equations at once. The
+ * first is linear, so lambda = A u - f is put into the second,
+ *
+ *   Phi(u) = A u - f - F(A u - f - rho x) = 0,
+ *   (A - F'(A - rho)) du = -Phi,
+ *
+ * F' with the limit following the pressure. Rows of closed and of sticking
+ * unknowns hold rho alone and are eliminated. The step is shortened until
+ * |Phi| falls. Should it stop, the other variant goes on.
+ *
+ * VARIANT=UZAWA: u minimises the augmented Lagrangian for fixed lambda and g,
+ *
+ *   A u - f - F(lambda - rho x) = 0,
+ *
+ * a convex function with a continuous gradient, by Newton's method with the
+ * matrix A + F' rho and a search along the step for a zero of the slope; then
+ * lambda <- F. The error falls by about lmax(A)/rho a multiplier step. The
+ * limit is updated around it (CPR98, 2.3).
+ *
+ * rho is a multiple of the diagonal of A, equal in the tangents of a node.
+ */
+#include "base/memory.h"
+#include "solver/fixed_point.h"
+#include "solver/local.h"
+#include "solver/solver.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+typedef struct auglag {
+  int variant; /* variant_way                                                */
+} auglag;
+
+typedef enum { BY_NEWTON, BY_UZAWA } variant_way;
+
+/* clang-format off */
+static const option auglag_options[] = {
+  OPTION_CHOICE(auglag, variant, "VARIANT", "NEWTON|UZAWA", "NEWTON",
+                "both equations at once, or multiplier after displacement"),
+  OPTION_END
+};
+/* clang-format on */
+
+enum {
+  NEWTON_STEPS = 60,  /* of the generalised Newton method                     */
+  UZAWA_STEPS = 1000, /* Newton steps of all multiplier steps, default        */
+  INNER_STEPS = 60,   /* Newton steps of one multiplier step                  */
+  SHORTENINGS = 10,
+  MEMORY = 4,   /* steps |Phi| is compared with                         */
+  PATIENCE = 20 /* multiplier steps without a lower residual            */
+};
+static const double PROGRESS = 0.9;
+static const double RHO_NEWTON = 0x1p-2, RHO_UZAWA = 0x1p10; /* -, of diag A  */
+static const double DESCENT = 1e-4; /* -, share of the slope                 */
+static const double FLATTER = 0.5;  /* -, slope that ends a search           */
+static const double SPRING = 0x1p-36; /* -, of the diagonal                   */
+
+typedef enum { OPEN, CLOSED } contact_state;
+typedef enum { FREE, STICK, SLIP } tangent;
+
+typedef struct auglag_work {
+  unsigned char *part;   /* [m] force_part                                   */
+  unsigned char *closed; /* [m] contact_state of the unknowns that push      */
+  unsigned char *mode;   /* [n] tangent                                      */
+  double *origin;        /* [m] m                                            */
+  double *diagonal;      /* [m] of A, the mean in a tangent plane, N/m       */
+  double *lambda, *z, *F, *y; /* [m] N; y = A u - f                          */
+  double *du, *dy;      /* [m] step, A du                                   */
+  double *e, *share;    /* [m] direction of slip, [n] g/|z|                 */
+  double *K;            /* [m*m]                                            */
+  int *pivot, *free_id; /* [m]                                              */
+  fixed_point *fixed;
+  best_iterate best;
+} auglag_work;
+
+static void auglag_release(void *work) {
+  auglag_work *w = work;
+  if (w == NULL) return;
+  memory_free(w->part);
+  memory_free(w->closed);
+  memory_free(w->mode);
+  memory_free(w->origin);
+  memory_free(w->diagonal);
+  memory_free(w->lambda);
+  memory_free(w->z);
+  memory_free(w->F);
+  memory_free(w->y);
+  memory_free(w->du);
+  memory_free(w->dy);
+  memory_free(w->e);
+  memory_free(w->share);
+  memory_free(w->K);
+  memory_free(w->pivot);
+  memory_free(w->free_id);
+  fixed_point_free(w->fixed);
+  best_iterate_free(&w->best);
+  memory_free(w);
+}
+
+static void take_diagonal(const contact_problem *cp, double *diagonal) {
+  size_t m = (size_t)cp->m;
+  int d = cp->dim;
+  for (size_t i = 0; i < m; ++i) diagonal[i] = cp->A[i * m + i];
+  for (int i = 0; i < cp->n; ++i) {
+    double mean = 0.0;
+    for (int k = 1; k < d; ++k) mean += diagonal[i * d + k] / (d - 1);
+    for (int k = 1; k < d; ++k) diagonal[i * d + k] = mean;
+  }
+}
+
+static status auglag_setup(const contact_problem *cp, const void *par,
+                           void **work) {
+  status st = OK;
+  auglag_work *w = NULL;
+  size_t m = (size_t)cp->m;
+  (void)par;
+  NEW(w, 1);
+  NEW(w->part, m);
+  NEW(w->closed, m);
+  NEW(w->mode, cp->n);
+  NEW(w->origin, m);
+  NEW(w->diagonal, m);
+  NEW(w->lambda, m);
+  NEW(w->z, m);
+  NEW(w->F, m);
+  NEW(w->y, m);
+  NEW(w->du, m);
+  NEW(w->dy, m);
+  NEW(w->e, m);
+  NEW(w->share, cp->n);
+  NEW(w->K, m * m);
+  NEW(w->pivot, m);
+  NEW(w->free_id, m);
+  TRY(fixed_point_new(cp->n, &w->fixed));
+  TRY(best_iterate_new(cp->m, &w->best));
+  take_diagonal(cp, w->diagonal);
+  *work = w;
+  w = NULL;
+done:
+  auglag_release(w);
+  return st;
+}
+
+/* ---- the augmented forces -------------------------------------------------
+ */
+
+typedef struct run {
+  const contact_problem *cp;
+  auglag_work *w;
+  const solver_control *control;
+  double *u, *r;
+  double scale, rho; /* N; -, of the diagonal                                */
+  int steps, limit;
+  int changes;  /* states changed by the last evaluation                      */
+  int bent;     /* 1: F' of a slipping node moves with z (3-D)                */
+  int factored; /* w->K is the factor for the present states                 */
+  int singular; /* the last matrix needed springs                            */
+} run;
+
+static double rho_of(const run *s, int dof) {
+  return s->rho * s->w->diagonal[dof];
+}
+
+/* F in the tangent plane of a node. */
+static void tangent_force(run *s, int node_id) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  double size = 0.0, g = contact_node_limit(cp, w->F, node_id);
+  tangent now = FREE;
+  for (int dof = node_id * cp->dim + 1; dof < (node_id + 1) * cp->dim; ++dof)
+    if (w->part[dof] == IN_DISC) size += w->z[dof] * w->z[dof];
+  size = sqrt(size);
+  if (g > 0.0) now = size > g ? SLIP : STICK;
+  w->share[node_id] = now == SLIP ? g / size : 1.0;
+  for (int dof = node_id * cp->dim + 1; dof < (node_id + 1) * cp->dim; ++dof) {
+    if (w->part[dof] != IN_DISC) continue;
+    double e = size > 0.0 ? w->z[dof] / size : 0.0;
+    w->F[dof] = now == FREE ? 0.0 : now == SLIP ? g * e : w->z[dof];
+    if (now == SLIP && e * w->e[dof] < 0.0) ++s->changes;
+    w->e[dof] = e;
+  }
+  s->changes += now != w->mode[node_id];
+  s->bent = s->bent || (now == SLIP && cp->dim == 3);
+  w->mode[node_id] = (unsigned char)now;
+}
+
+/* z, F and the states from base (lambda, or y) and u. */
+static void evaluate(run *s, const double *base) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  s->changes = s->bent = 0;
+  for (int dof = 0; dof < cp->m; ++dof) {
+    w->F[dof] = 0.0;
+    if (w->part[dof] == NO_FORCE) continue;
+    w->z[dof] = base[dof] - rho_of(s, dof) * (s->u[dof] - w->origin[dof]);
+    if (w->part[dof] != PUSH) continue;
+    contact_state now = w->z[dof] < 0.0 ? CLOSED : OPEN;
+    if (now == CLOSED) w->F[dof] = w->z[dof];
+    s->changes += now != w->closed[dof];
+    w->closed[dof] = (unsigned char)now;
+  }
+  for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) tangent_force(s, i);
+  if (s->changes > 0 || s->bent) s->factored = 0;
+}
+
+static int slips(const run *s, int dof) {
+  return s->w->part[dof] == IN_DISC && s->w->mode[dof / s->cp->dim] == SLIP;
+}
+
+/* 1: F of the unknown is z. */
+static int fixed_by_contact(const run *s, int dof) {
+  if (s->w->part[dof] == PUSH) return s->w->closed[dof] == CLOSED;
+  return s->w->part[dof] == IN_DISC && s->w->mode[dof / s->cp->dim] == STICK;
+}
+
+/* share (I - e e') of a slipping node, entry of two of its unknowns. */
+static double turning(const run *s, int a, int b) {
+  const auglag_work *w = s->w;
+  if (s->cp->dim == 2 || !slips(s, a) || !slips(s, b)) return 0.0;
+  return w->share[a / s->cp->dim] * ((a == b) - w->e[a] * w->e[b]);
+}
+
+/* Residual of (u, F), told and kept. */
+static double judge(run *s) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  double defect = 0.0, residual = solver_mismatch(cp, s->scale, s->u, w->F);
+  for (int i = 0; i < cp->m; ++i) {
+    double d = fabs(w->y[i] - w->F[i]);
+    if (!(d <= defect)) defect = d;
+  }
+  if (s->scale > 0.0) defect /= s->scale;
+  if (!(defect <= residual)) residual = defect;
+  solver_keep_best(&w->best, cp->m, residual, s->u, w->F);
+  solver_tell(s->control, "auglag", s->steps, residual);
+  return residual;
+}
+
+/* u += a du, y += a dy */
+static void move(run *s, double a) {
+  cblas_daxpy(s->cp->m, a, s->w->du, 1, s->u, 1);
+  cblas_daxpy(s->cp->m, a, s->w->dy, 1, s->w->y, 1);
+}
+
+/* ---- generalised Newton ---------------------------------------------------
+ */
+
+/* Entry of (A - F'(A - rho)) in the row of a free unknown, column [m] of A. */
+static double newton_entry(const run *s, int row, const double *column, int j) {
+  const contact_problem *cp = s->cp;
+  const auglag_work *w = s->w;
+  int node_id = row / cp->dim, first = node_id * cp->dim;
+  double value = column[row];
+  if (!slips(s, row)) return value;
+  for (int b = first + 1; b < first + cp->dim; ++b)
+    value -= turning(s, row, b) * (column[b] - (b == j ? rho_of(s, b) : 0.0));
+  if (cp->B == NULL) return value;
+  for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
+    int n = cp->B->col[k] * cp->dim;
+    if (w->closed[n] == CLOSED)
+      value += w->e[row] * cp->B->val[k] *
+               (column[n] - (n == j ? rho_of(s, n) : 0.0));
+  }
+  return value;
+}
+
+/* du of a Newton step; 0: the matrix is singular. */
+static int newton_direction(run *s) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  size_t m = (size_t)cp->m;
+  int n = 0;
+  for (int dof = 0; dof < cp->m; ++dof) {
+    w->du[dof] = w->F[dof] - w->y[dof];
+    if (fixed_by_contact(s, dof))
+      w->du[dof] /= rho_of(s, dof);
+    else
+      w->free_id[n++] = dof;
+  }
+  for (int i = 0; i < n; ++i) w->dy[i] = w->du[w->free_id[i]];
+  for (int j = 0, at = 0; j < cp->m; ++j) {
+    const double *column = cp->A + m * (size_t)j;
+    int is_free = at < n && w->free_id[at] == j;
+    double *to = w->K + (size_t)n * (size_t)at;
+    if (!is_free && w->du[j] == 0.0) continue;
+    for (int i = 0; i < n; ++i) {
+      double entry = newton_entry(s, w->free_id[i], column, j);
+      if (is_free)
+        to[i] = entry;
+      else
+        w->dy[i] -= entry * w->du[j];
+    }
+    at += is_free;
+  }
+  if (n > 0 && LAPACKE_dgesv_work(LAPACK_COL_MAJOR, n, 1, w->K, n, w->pivot,
+                                  w->dy, n) != 0)
+    return 0;
+  for (int i = 0; i < n; ++i) w->du[w->free_id[i]] = w->dy[i];
+  contact_product(cp->m, cp->A, w->du, w->dy);
+  return 1;
+}
+
+/* |Phi|^2 in the metric of the diagonal, N m. */
+static double merit(const run *s) {
+  const auglag_work *w = s->w;
+  double sum = 0.0;
+  for (int i = 0; i < s->cp->m; ++i) {
+    double d = w->y[i] - w->F[i];
+    if (d != 0.0) sum += d * d / w->diagonal[i];
+  }
+  return sum;
+}
+
+/* Shorten the step until |Phi| is below the largest of the last ones. */
+static double shorten(run *s, double reference) {
+  double a = 1.0, now;
+  move(s, 1.0);
+  evaluate(s, s->w->y);
+  now = merit(s);
+  for (int k = 0; k < SHORTENINGS; ++k) {
+    if (now <= (1.0 - DESCENT * a) * reference) break;
+    move(s, -0.5 * a);
+    a *= 0.5;
+    evaluate(s, s->w->y);
+    now = merit(s);
+  }
+  return now;
+}
+
+static outcome newton_steps(run *s) {
+  auglag_work *w = s->w;
+  double past[MEMORY], residual;
+  s->rho = RHO_NEWTON;
+  contact_reaction(s->cp, s->u, w->y);
+  evaluate(s, w->y);
+  for (int k = 0; k < MEMORY; ++k) past[k] = merit(s);
+  for (int k = 0;; ++k) {
+    residual = judge(s);
+    if (isnan(residual)) return STOPPED_NAN;
+    if (residual <= s->control->tol) return CONVERGED;
+    if (k == NEWTON_STEPS || s->steps >= s->limit) return STOPPED_ITERATIONS;
+    ++s->steps;
+    if (!newton_direction(s)) return STOPPED_SINGULAR;
+    double reference = past[0];
+    for (int i = 1; i < MEMORY; ++i) reference = fmax(reference, past[i]);
+    past[k % MEMORY] = shorten(s, reference);
+    contact_reaction(s->cp, s->u, w->y);
+    evaluate(s, w->y);
+  }
+}
+
+/* ---- Uzawa ----------------------------------------------------------------
+ */
+
+/* Cholesky factor of A + F' rho; springs where nothing holds the body. */
+static int uzawa_factor(run *s) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  size_t m = (size_t)cp->m;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    memcpy(w->K, cp->A, m * m * sizeof *w->K);
+    for (int dof = 0; dof < cp->m; ++dof) {
+      double *column = w->K + m * (size_t)dof;
+      if (fixed_by_contact(s, dof)) column[dof] += rho_of(s, dof);
+      if (attempt > 0) column[dof] += SPRING * w->diagonal[dof];
+      int end = (dof / cp->dim + 1) * cp->dim;
+      for (int b = dof; slips(s, dof) && b < end; ++b)
+        column[b] += rho_of(s, dof) * turning(s, dof, b);
+    }
+    s->singular = attempt;
+    if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', cp->m, w->K, cp->m) == 0) {
+      s->factored = 1;
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* Slope of the augmented Lagrangian along du at the present u, N m. */
+static double slope(run *s) {
+  double sum = 0.0;
+  evaluate(s, s->w->lambda);
+  for (int i = 0; i < s->cp->m; ++i)
+    sum += s->w->du[i] * (s->w->y[i] - s->w->F[i]);
+  return sum;
+}
+
+/* Move along du to where the slope is small: the whole step, or less. */
+static void search(run *s) {
+  double low = 0.0, high = 1.0, at = 1.0, first = slope(s);
+  move(s, 1.0);
+  double now = slope(s), low_slope = first, high_slope = now;
+  for (int k = 0; k < SHORTENINGS && now > FLATTER * fabs(first); ++k) {
+    double next = low + (high - low) * low_slope / (low_slope - high_slope);
+    next = fmax(next, low + 0.1 * (high - low));
+    next = fmin(next, high - 0.1 * (high - low));
+    move(s, next - at);
+    at = next;
+    now = slope(s);
+    if (now > 0.0) {
+      high = at;
+      high_slope = now;
+    } else {
+      low = at;
+      low_slope = now;
+      if (now >= -FLATTER * fabs(first)) break;
+    }
+  }
+}
+
+/* |lambda - F| and |A u - f - F|, the largest, N. */
+static void defects(const run *s, double *multiplier, double *balance) {
+  const auglag_work *w = s->w;
+  *multiplier = *balance = 0.0;
+  for (int i = 0; i < s->cp->m; ++i) {
+    *multiplier = fmax(*multiplier, fabs(w->lambda[i] - w->F[i]));
+    *balance = fmax(*balance, fabs(w->y[i] - w->F[i]));
+  }
+}
+
+/* Minimise over u. */
+static outcome minimise(run *s) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  double multiplier, balance;
+  evaluate(s, w->lambda);
+  for (int k = 0;; ++k) {
+    double residual = judge(s);
+    if (isnan(residual)) return STOPPED_NAN;
+    if (residual <= s->control->tol) return CONVERGED;
+    if (s->steps >= s->limit) return STOPPED_ITERATIONS;
+    defects(s, &multiplier, &balance);
+    if (k > 0 && (balance <= 0.01 * multiplier || k >= INNER_STEPS ||
+                  balance <= 0.1 * s->control->tol * s->scale))
+      return RUNNING;
+    ++s->steps;
+    if (!s->factored && !uzawa_factor(s)) return STOPPED_SINGULAR;
+    for (int i = 0; i < cp->m; ++i) w->du[i] = w->F[i] - w->y[i];
+    LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', cp->m, 1, w->K, cp->m, w->du,
+                        cp->m);
+    contact_product(cp->m, cp->A, w->du, w->dy);
+    search(s);
+    contact_reaction(cp, s->u, w->y);
+    evaluate(s, w->lambda);
+  }
+}
+
+static outcome uzawa_steps(run *s) {
+  auglag_work *w = s->w;
+  size_t bytes = (size_t)s->cp->m * sizeof *s->u;
+  double mark = HUGE_VAL;
+  int since = 0;
+  outcome o;
+  s->rho = RHO_UZAWA;
+  s->factored = 0;
+  memcpy(w->lambda, s->r, bytes);
+  contact_reaction(s->cp, s->u, w->y);
+  while ((o = minimise(s)) == RUNNING) {
+    memcpy(w->lambda, w->F, bytes);
+    ++since;
+    if (w->best.residual < PROGRESS * mark) {
+      mark = w->best.residual;
+      since = 0;
+    }
+    if (since > PATIENCE) return s->singular ? STOPPED_RAY : STOPPED_STAGNATION;
+  }
+  return o;
+}
+
+static status auglag_solve(const contact_problem *cp, const void *par,
+                           void *work, const solver_control *control, double *u,
+                           double *r, solver_report *rep) {
+  static const auglag uzawa = {BY_UZAWA};
+  status st = OK;
+  const auglag *p = par;
+  auglag_work *w = work;
+  run s = {.cp = cp,
+           .w = w,
+           .control = control,
+           .u = u,
+           .r = r,
+           .scale = contact_scale(cp),
+           .limit = control->max_iter > 0 ? control->max_iter : UZAWA_STEPS};
+  *rep = (solver_report){.outcome = RUNNING};
+  w->best.residual = HUGE_VAL;
+  force_parts(cp, w->part, w->origin);
+  if (p->variant == BY_NEWTON) rep->outcome = newton_steps(&s);
+  int done_well = rep->outcome == CONVERGED || rep->outcome == STOPPED_NAN;
+  if (!done_well && cp->B == NULL) rep->outcome = uzawa_steps(&s);
+  rep->iterations = s.steps;
+  rep->residual = w->best.residual;
+  solver_take_best(&w->best, cp->m, u, r);
+  if (!done_well && cp->B != NULL) {
+    TRY(fixed_point_solve(w->fixed, cp, &auglag_solver, &uzawa, work, control,
+                          u, r, rep));
+    rep->iterations += s.steps;
+  }
+done:
+  return st;
+}
+
+/* clang-format off */
+const solver_ops auglag_solver = {
+  .name = "auglag",
+  .reference = "CPR98, 3.3; Alart, Curnier 1991",
+  .help =
+    "Augmented Lagrangian of Alart and Curnier: the forces of contact are\n"
+    "F = P(lambda - rho (u - o)), P the projection on r_n <= 0 and on the disc\n"
+    "|r_t| <= g. VARIANT=NEWTON solves A u = f + F and lambda = F by the\n"
+    "generalised Newton method, the limit following the pressure, the step\n"
+    "shortened until the equations are met better; should it stop, the other\n"
+    "variant goes on. VARIANT=UZAWA minimises over u for fixed multipliers, a\n"
+    "convex problem solved by Newton's method with a search along the step,\n"
+    "then sets lambda to F; the limit is updated around it (CPR98, 2.3). rho\n"
+    "is a multiple of the diagonal of A and never asked for. A step costs one\n"
+    "dense factorisation. Choose it where NEWTON cycles, and UZAWA for a body\n"
+    "that contact alone holds.",
+  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
+             SOLVES_FLOATING,
+  .param_size = sizeof(auglag),
+  .options = auglag_options,
+  .setup = auglag_setup,
+  .solve = auglag_solve,
+  .release = auglag_release
+};
+/* clang-format on */
