@@ -62,7 +62,7 @@ enum {
   PATIENCE = 20 /* multiplier steps without a lower residual            */
 };
 static const double PROGRESS = 0.9;
-static const double RHO_NEWTON = 0x1p-2, RHO_UZAWA = 0x1p10; /* -, of diag A  */
+static const double RHO_NEWTON = 0x1p-2, RHO_UZAWA = 0x1p4; /* -, of diag A  */
 static const double DESCENT = 1e-4; /* -, share of the slope                 */
 static const double FLATTER = 0.5;  /* -, slope that ends a search           */
 static const double SPRING = 0x1p-36; /* -, of the diagonal                   */
