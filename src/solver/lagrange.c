@@ -94,8 +94,8 @@ static double power_step(const lagrange_work *w, int m) {
     }
     if (!(bottom > 0.0) || !(top > 0.0)) break;
     largest = fmax(largest, top / bottom);
-    double scale = 1.0 / sqrt(bottom);
-    for (int i = 0; i < m; ++i) w->y[i] = scale * w->set->D[i] * w->y_x[i];
+    for (int i = 0; i < m; ++i)
+      w->y[i] = bottom / top * w->set->D[i] * w->y_x[i];
   }
   return largest > 0.0 ? 1.0 / largest : 0.0;
 }

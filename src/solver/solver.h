@@ -81,7 +81,8 @@ typedef struct solver_ops {
 } solver_ops;
 
 /* clang-format off */
-#define SOLVER_LIST(X) X(sor) X(newton) X(aitken) X(pcg) X(lemke) X(lagrange) X(auglag)
+#define SOLVER_LIST(X) \
+  X(sor) X(newton) X(aitken) X(pcg) X(lemke) X(lagrange) X(auglag)
 /* clang-format on */
 #define SOLVER_EXTERN(name) extern const solver_ops name##_solver;
 SOLVER_LIST(SOLVER_EXTERN)

@@ -367,7 +367,7 @@ START_TEST(corner_node_meets_both_obstacles) {
           for (int l = 0; l < c.cp.m; ++l) sum += c.A[j + c.cp.m * l] * c.u[l];
           defect = fmax(defect, fabs(sum));
         }
-        ck_assert_double_le_tol(first, c.gap[0], 1e-12);
+        ck_assert_double_le_tol(first, c.gap[0], 1e-11);
         ck_assert_double_lt(defect, 1e-10);
       }
       case_free(&c);
