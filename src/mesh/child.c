@@ -188,9 +188,10 @@ static void start(const child *c) {
   char *text = memory_new((size_t)n + 1, 40);
   if (argv == NULL || text == NULL)
     give_up(c, ERR_MEMORY, "memory exhausted: %d numbers for gmsh", n);
-  static char program[] = "protis", set_number[] = "-setnumber";
+  char *program = text + 40 * n, *set_number = program + 8;
   int argc = 0;
-  argv[argc++] = program;
+  argv[argc++] = strcpy(program, "protis");
+  strcpy(set_number, "-setnumber");
   for (int i = 0; i < n; ++i) {
     char *value = text + 40 * i;
     snprintf(value, 40, "%.17g", r->number[i].value);

@@ -55,6 +55,16 @@ done:
   return st;
 }
 
+/* Counts of fixed number are copied; the payload is not kept. */
+static status copy_items(const wire_head *head, uint64_t wanted, void *to,
+                         const void *data, size_t bytes) {
+  status st = OK;
+  if (head->n != wanted) FAIL(ERR_MESH, "the mesh reader sent a wrong count");
+  memcpy(to, data, bytes);
+done:
+  return st;
+}
+
 /* A new block, group or warning: the lists grow by doubling. */
 static void *list_item(void *list, int n, size_t size) {
   if (n > 0 && (n < 8 || (n & (n - 1)) != 0)) return list;
@@ -74,13 +84,9 @@ static status store(raw_mesh *raw, const wire_head *head, void **payload) {
   void *data = *payload;
   switch ((wire_kind)head->kind) {
     case WIRE_CENSUS:
-      if (head->n != 4) FAIL(ERR_MESH, "the mesh reader sent a wrong census");
-      memcpy(raw->n_entity, data, sizeof raw->n_entity);
-      return OK;
+      return copy_items(head, 4, raw->n_entity, data, sizeof raw->n_entity);
     case WIRE_LOOSE:
-      if (head->n != 1) FAIL(ERR_MESH, "the mesh reader sent a wrong count");
-      memcpy(&raw->n_loose, data, sizeof raw->n_loose);
-      return OK;
+      return copy_items(head, 1, &raw->n_loose, data, sizeof raw->n_loose);
     case WIRE_NODE_NO:
       if (raw->node_no != NULL)
         FAIL(ERR_MESH, "the mesh reader sent nodes twice");

@@ -42,11 +42,13 @@ static const bad_mesh errors[] = {
   {"b.geo", PLATE "Physical Curve(\"SIDE\")={1}; Physical Point(\"P\")={1};\n",
    "error P3011: the 2 physical group(s) name points or curves only; the mesh "
    "has 1 surface(s) and 0 volume(s)"},
-  {"c.geo", PLATE "Physical Curve(\"A\", 5)={1}; Physical Surface(\"A\", 9)={1};\n",
+  {"c.geo", PLATE
+   "Physical Curve(\"A\", 5)={1}; Physical Surface(\"A\", 9)={1};\n",
    "error P3012: \"A\" names the physical curve 5 and the physical surface 9"},
   {"d.geo", PLATE "Physical Curve(7)={1}; Physical Surface(7)={1};\n",
    "error P3012: \"7\" names the physical curve 7 and the physical surface 7"},
-  {"e.geo", PLATE "Physical Surface(\"A\")={1};\nPhysical Surface(\"A\")={1};\n",
+  {"e.geo", PLATE
+   "Physical Surface(\"A\")={1};\nPhysical Surface(\"A\")={1};\n",
    "error P3012: mesh file \"%s\": gmsh fails to read the file: Physical "
    "surface 1 already exists"},
   {"f.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n"
@@ -77,8 +79,11 @@ static const bad_mesh errors[] = {
    "error P3024: the surfaces lie in the plane y = 2, not in z = const"},
   {"n.msh", MSH(BODY, "4\n1 0 0 0\n2 1 0 0\n3 1 1 .5\n4 0 1 .5\n", "2\n" TWO),
    "error P3024: the surfaces are not plane: z runs from 0 to 0.5"},
-  {"o.geo", PLATE "Extrude{0,0,1}{ Surface{1}; } Physical Surface(\"S\")={1, 13, 17, 21, 25, 26};\n",
-   "error P3024: the surfaces are not plane: z runs from 0 to 1; the volumes of "
+  {"o.geo", PLATE
+   "Extrude{0,0,1}{ Surface{1}; } Physical Surface(\"S\")={1, 13, 17, 21, "
+   "25, 26};\n",
+   "error P3024: the surfaces are not plane: z runs from 0 to 1; the "
+   "volumes of "
    "the file are in no group"},
   {"p.msh", MSH(SIDE, SQUARE, "4\n" TWO "7 1 2 2 1 1 2\n8 1 2 2 1 2 4\n"),
    "error P3030: 1 face(s) bound no element: 8 at (0.5, 0.5)"},
@@ -87,7 +92,8 @@ static const bad_mesh errors[] = {
    "error P3030: 1 face(s) bound no element: 7 at (2, 1)"},
   {"r.msh", MSH(SIDE, "5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .1 .9 0\n",
                 "4\n" TWO "3 2 2 1 1 1 3 5\n7 1 2 2 1 1 3\n"),
-   "error P3032: 1 face(s) are sides of more than two elements: 7 at (0.5, 0.5)"},
+   "error P3032: 1 face(s) are sides of more than two elements: 7 at (0.5, "
+   "0.5)"},
   {"s.geo", PLATE "Point(9)={5,5,0}; Physical Point(\"P\")={9};"
    "Physical Surface(\"BODY\")={1};\n",
    "error P3033: physical point \"P\": 1 node(s) in no element of the mesh: 5"},
@@ -100,14 +106,16 @@ static const bad_mesh errors[] = {
   {"w.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0",
    "error P3003: mesh file \"%s\" is cut short: it does not end with $End..."},
   {"y.msh", MSH(BODY, SQUARE, "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 77\n"),
-   "error P3003: mesh file \"%s\": gmsh fails to read the file: Wrong node index "
+   "error P3003: mesh file \"%s\": gmsh fails to read the file: Wrong node "
+   "index "
    "77"},
   {"z.geo", "Point(1) = {0, 0;\n",
    "error P3003: mesh file \"%s\": gmsh fails to read the file: '%s', line 1: "
    "syntax error (;)"},
   {"half.geo", "Point(1) = {0, 0, 0};\nPoint(2) = {1, 0, 0}; Line(1) = {1, 2};",
    "error P3005: \"%s\" ends without a newline after several statements"},
-  {"empty.geo", "", "error P3001: mesh file \"%s\" cannot be read: it is empty"},
+  {"empty.geo", "", "error P3001: mesh file \"%s\" cannot be read: it is "
+   "empty"},
 };
 
 static const bad_mesh remarks[] = {
@@ -125,7 +133,8 @@ static const bad_mesh remarks[] = {
    "job.inp:4:1: note P3031: 1 face(s) are listed more than once"},
   {"d.msh", MSH(BODY, "5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 1 1 0\n",
                 "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 5 4\n"),
-   "warning P3041: 1 node(s) lie on another node of the same body: 5 at (1, 1)"},
+   "warning P3041: 1 node(s) lie on another node of the same body: 5 at (1, "
+   "1)"},
   {"e.msh", MSH(BODY, "6\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n"
                 "5 1.00000000000001 0 0\n6 0 1 0\n",
                 "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 4 5 6\n"),
