@@ -20,6 +20,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 #ifdef __linux__
@@ -52,6 +53,7 @@ typedef struct child {
 } child;
 
 enum { LEFT_BY_ITSELF = 71, MAX_WARNING = 5, TEXT_SIZE = 1024 };
+enum { PROBE = 64 << 20, CRASH_STACK = 64 << 10 }; /* bytes */
 
 static void put(const child *c, const void *data, size_t n) {
   while (n > 0) {
@@ -134,6 +136,26 @@ static void no_memory(void) {
   _exit(LEFT_BY_ITSELF);
 }
 
+/* Parts of gmsh in C do not look at what malloc answers. If not even a small
+ * mesh would find room now, want of memory is taken for the reason. */
+static void on_crash(int number) {
+  void *room = mmap(NULL, PROBE, PROT_READ | PROT_WRITE,
+                    MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (room == MAP_FAILED) no_memory();
+  signal(number, SIG_DFL);
+  raise(number);
+}
+
+/* On a stack of its own: the old one may be what could not grow. */
+static void watch_crashes(void) {
+  static const int crash[] = {SIGSEGV, SIGBUS, SIGABRT};
+  stack_t stack = {.ss_sp = memory_new(1, CRASH_STACK), .ss_size = CRASH_STACK};
+  if (stack.ss_sp == NULL || sigaltstack(&stack, NULL) != 0) return;
+  struct sigaction act = {.sa_handler = on_crash, .sa_flags = SA_ONSTACK};
+  for (size_t i = 0; i < sizeof crash / sizeof *crash; ++i)
+    sigaction(crash[i], &act, NULL);
+}
+
 /* std::set_new_handler of the library that gmsh itself is linked with. */
 static void watch_memory(void *library) {
   void (*(*set_handler)(void (*)(void)))(void) = NULL;
@@ -160,6 +182,7 @@ static void load(child *c) {
   } while (0);
   CALL_LIST(CALL_LOAD)
   watch_memory(library);
+  watch_crashes();
 }
 
 /* gmsh failed in what it was doing: its last error tells the rest. */

@@ -249,7 +249,6 @@ status raw_read(const raw_request *request, raw_mesh **out) {
   NEW(raw, 1);
   if (!open_pipe(data) || !open_pipe(error))
     FAIL(ERR_MESH, "no pipe for the mesh reader: %s", strerror(errno));
-  fflush(NULL); /* what is buffered must not be written by both */
   pid = fork();
   if (pid < 0)
     FAIL(errno == ENOMEM ? ERR_MEMORY : ERR_MESH,

@@ -332,6 +332,27 @@ START_TEST(order_does_not_depend_on_the_numbers_of_the_file) {
 }
 END_TEST
 
+/* Two nodes so close that they share a cell of the curve. */
+START_TEST(order_of_close_nodes_is_that_of_their_coordinates) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *a = mesh_file_text(
+      &f, "a.msh",
+      MSH("1\n2 1 \"B\"\n", "4\n1 0 0 0\n2 1e-8 0 0\n3 1 0 0\n4 0 1 0\n",
+          "2\n1 2 2 1 1 1 2 4\n2 2 2 1 1 2 3 4\n"));
+  mesh *b = mesh_file_text(
+      &f, "b.msh",
+      MSH("1\n2 1 \"B\"\n", "4\n1 1e-8 0 0\n2 0 0 0\n3 1 0 0\n4 0 1 0\n",
+          "2\n1 2 2 1 1 2 1 4\n2 2 2 1 1 1 3 4\n"));
+  ck_assert_msg(a != NULL && b != NULL, "%s", f.messages);
+  ck_assert_mem_eq(a->x, b->x, 8 * sizeof(double));
+  ck_assert_mem_eq(a->elem, b->elem, 6 * sizeof(int));
+  mesh_free(a);
+  mesh_free(b);
+  mesh_file_close(&f);
+}
+END_TEST
+
 /* Neighbours along the curve are near: the mean jump between elements that
  * follow each other is a few nodes, against some 100 row by row. */
 START_TEST(neighbours_are_close_in_memory) {
@@ -479,6 +500,7 @@ UNIT_MAIN("mesh", disc_in_frame_has_its_areas_normals_and_groups,
           meshing_twice_gives_the_same_bytes, numbers_reach_the_geometry,
           scale_by_a_power_of_two_changes_no_digit,
           order_does_not_depend_on_the_numbers_of_the_file,
+          order_of_close_nodes_is_that_of_their_coordinates,
           neighbours_are_close_in_memory, bodies_are_the_connected_parts,
           groups_are_found_by_name_and_the_nearest_is_offered,
           reader_gives_back_all_when_refused,

@@ -205,23 +205,32 @@ START_TEST(every_remark_has_its_text_and_a_mesh) {
 }
 END_TEST
 
-/* A sliver of aspect 1e4 is computed with in any unit, far from the origin
- * too; one that is flat to rounding is refused in any unit. */
+/* A sliver of aspect 1e4 is computed with in any unit, off the origin too;
+ * one that is flat to rounding, of its edges or of its coordinates (1.2e-10
+ * is the last bit of 1e6), is refused in any unit. */
 START_TEST(flatness_has_no_unit) {
+  static const struct {
+    double y, height;
+    int good;
+  } cases[] = {{0, 1e-4, 1}, {0, 6e-13, 0}, {1e6, 1e-4, 1}, {1e6, 1.2e-10, 0}};
   mesh_file f;
   mesh_file_open(&f);
-  for (int power = -40; power <= 40; power += 20)
-    for (int k = 0; k < 2; ++k) {
+  for (int power = -40; power <= 40; power += 40)
+    for (int k = 0; k < 4; ++k) {
       char text[1024];
       double unit =
           power < 0 ? 1.0 / (double)(1L << -power) : (double)(1L << power);
-      snprintf(text, sizeof text,
-               MSH(BODY, "3\n1 %.17g 0 0\n2 %.17g 0 0\n3 %.17g %.17g 0\n",
-                   "1\n1 2 2 1 1 1 2 3\n"),
-               100 * unit, 101 * unit, 100.5 * unit, (k ? 1e-15 : 1e-4) * unit);
+      double y = cases[k].y * unit, top = (cases[k].y + cases[k].height) * unit;
+      ck_assert(top > y);
+      snprintf(
+          text, sizeof text,
+          MSH(BODY, "3\n1 %.17g %.17g 0\n2 %.17g %.17g 0\n3 %.17g %.17g 0\n",
+              "1\n1 2 2 1 1 1 2 3\n"),
+          100 * unit, y, 101 * unit, y, 100.5 * unit, top);
       mesh *m = mesh_file_text(&f, "s.msh", text);
-      ck_assert_msg((m != NULL) == (k == 0), "2^%d: %s", power, f.messages);
-      if (k) ck_assert_ptr_nonnull(strstr(f.messages, "P3022"));
+      ck_assert_msg((m != NULL) == cases[k].good, "2^%d, case %d: %s", power, k,
+                    f.messages);
+      ck_assert((strstr(f.messages, "P3022") == NULL) == cases[k].good);
       mesh_free(m);
     }
   mesh_file_close(&f);
@@ -390,6 +399,54 @@ START_TEST(want_of_memory_in_gmsh_is_told) {
 }
 END_TEST
 
+/* n x n cells of the unit square as a .msh. */
+static void write_square(const mesh_file *f, const char *name, int n) {
+  FILE *out = fopen(mesh_file_path(f, name), "w");
+  ck_assert_ptr_nonnull(out);
+  fprintf(out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n",
+          (n + 1) * (n + 1));
+  for (int k = 0; k < (n + 1) * (n + 1); ++k)
+    fprintf(out, "%d %d %d 0\n", k + 1, k % (n + 1), k / (n + 1));
+  fprintf(out, "$EndNodes\n$Elements\n%d\n", 2 * n * n);
+  for (int k = 0; k < n * n; ++k) {
+    int a = k % n + (n + 1) * (k / n) + 1, d = a + n + 1;
+    fprintf(out, "%d 2 2 1 1 %d %d %d\n%d 2 2 1 1 %d %d %d\n", 2 * k + 1, a,
+            a + 1, d, 2 * k + 2, a + 1, d + 1, d);
+  }
+  fprintf(out, "$EndElements\n");
+  fclose(out);
+}
+
+/* Wherever the memory ends while a file is read, that is what is told: gmsh
+ * swallows some of its own failures. */
+START_TEST(want_of_memory_is_never_taken_for_a_bad_mesh) {
+#if defined(__SANITIZE_ADDRESS__)
+  return;
+#endif
+  mesh_file f;
+  mesh_file_open(&f);
+  write_square(&f, "large.msh", 400);
+  struct rlimit old;
+  getrlimit(RLIMIT_AS, &old);
+  int in_gmsh = 0;
+  status answer = ERR_MEMORY;
+  for (rlim_t mb = 80; answer == ERR_MEMORY && mb < 2000; mb += 25) {
+    struct rlimit less = {mb << 20, old.rlim_max};
+    ck_assert_int_eq(setrlimit(RLIMIT_AS, &less), 0);
+    mesh *m = mesh_file_read(&f, "large.msh", 1.0, 0, NULL);
+    setrlimit(RLIMIT_AS, &old);
+    answer = f.answer;
+    in_gmsh += strstr(status_message(), "gmsh ran out of memory") != NULL;
+    ck_assert_msg(answer == OK || answer == ERR_MEMORY, "%d MB: %s", (int)mb,
+                  f.messages);
+    mesh_free(m);
+  }
+  ck_assert_int_eq(answer, OK);
+  ck_assert_int_gt(in_gmsh, 0);
+  mesh_file_close(&f);
+}
+END_TEST
+
 /* What gmsh prints does not reach the user. */
 START_TEST(nothing_is_printed) {
   mesh_file f;
@@ -414,6 +471,25 @@ START_TEST(nothing_is_printed) {
   fclose(log);
   close(out);
   close(err);
+  mesh_file_close(&f);
+}
+END_TEST
+
+static char left_behind[192];
+
+static void leave_a_file(void) {
+  FILE *out = fopen(left_behind, "w");
+  if (out != NULL) fclose(out);
+}
+
+/* Handlers of the program belong to the program, also if gmsh calls exit. */
+START_TEST(exit_of_gmsh_runs_no_handler_of_the_program) {
+  mesh_file f;
+  mesh_file_open(&f);
+  snprintf(left_behind, sizeof left_behind, "%s", mesh_file_path(&f, "left"));
+  ck_assert_int_eq(atexit(leave_a_file), 0);
+  ck_assert_ptr_null(mesh_file_text(&f, "exit.geo", "Exit;\n"));
+  ck_assert_int_ne(access(left_behind, F_OK), 0);
   mesh_file_close(&f);
 }
 END_TEST
@@ -498,5 +574,6 @@ UNIT_MAIN("mesh_errors", every_error_has_its_text_and_no_mesh,
           files_that_cannot_be_read_are_told, good_file_is_read_after_bad_ones,
           cut_files_are_refused, reader_that_dies_is_told,
           signals_do_not_disturb, want_of_memory_in_gmsh_is_told,
-          nothing_is_printed, rubbish_from_the_reader_is_refused,
-          builder_trusts_nothing)
+          want_of_memory_is_never_taken_for_a_bad_mesh, nothing_is_printed,
+          exit_of_gmsh_runs_no_handler_of_the_program,
+          rubbish_from_the_reader_is_refused, builder_trusts_nothing)
