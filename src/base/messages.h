@@ -221,9 +221,8 @@
     "(2-D) or Physical Volume (3-D) if they belong to the body.")            \
   X(3020, ERROR, "elements that are no triangles or tetrahedra",             \
     "Linear triangles and tetrahedra are needed. In the .geo remove "        \
-    "Recombine, Mesh.RecombineAll and layers with Recombine; or split "      \
-    "what is there with gmsh name.msh -save -o new.msh after "               \
-    "Mesh.SubdivisionAlgorithm = 0 and a new meshing.")                      \
+    "Recombine, also inside of Extrude, and Mesh.RecombineAll; then mesh "   \
+    "again.")                                                                \
   X(3021, ERROR, "elements of higher order",                                 \
     "Linear elements are needed: Mesh.ElementOrder = 1; in the .geo, "       \
     "or gmsh -order 1, and mesh again.")                                     \
