@@ -21,8 +21,10 @@ typedef struct energies {
   double external; /* J, work of loads and prescribed displacements so far */
   double friction; /* J, dissipated so far, trapezoidal                   */
   double friction_end; /* J, dissipated so far, limit of the increment's end  */
-  double obstacle;     /* J, work of moving or initially penetrated obstacles */
-  double defect;       /* J, external + obstacle - friction - strain          */
+  double normal;       /* J, work of the normal contact forces so far: moving
+                          obstacles, and by the trapezoidal rule gaps that open
+                          or close within an increment                        */
+  double defect;       /* J, external + normal - friction - strain            */
 } energies;
 
 /* One accepted increment. Arrays are borrowed and live until the next one. */

@@ -91,9 +91,9 @@ static void find_energies(run *r) {
     }
   }
   e.friction += friction;
-  e.obstacle += work + friction;
+  e.normal += work + friction;
   e.strain = domain_strain_energy(&r->d, b->u);
-  e.defect = e.external + e.obstacle - e.friction - e.strain;
+  e.defect = e.external + e.normal - e.friction - e.strain;
   r->now.energy = e;
 }
 

@@ -39,12 +39,12 @@ VALUE(strain_energy, v->s->energy.strain)
 VALUE(external_work, v->s->energy.external)
 VALUE(friction_work, v->s->energy.friction)
 VALUE(friction_end, v->s->energy.friction_end)
-VALUE(obstacle_work, v->s->energy.obstacle)
+VALUE(normal_work, v->s->energy.normal)
 VALUE(energy_defect, v->s->energy.defect)
 
 double energy_defect_relative(const energies *e) {
   double scale = fmax(fabs(e->strain), fabs(e->external));
-  scale = fmax(scale, fmax(fabs(e->friction), fabs(e->obstacle)));
+  scale = fmax(scale, fmax(fabs(e->friction), fabs(e->normal)));
   return scale > 0 ? e->defect / scale : 0;
 }
 VALUE(defect_relative, energy_defect_relative(&v->s->energy))
@@ -177,10 +177,11 @@ const column column_table[] = {
  friction_work, NULL, "dissipated by friction so far, trapezoidal"},
 {"friction_work_end", J, INC, PRINT_ENERGY, F, ANY, "friction_work_end", 0,
  friction_end, NULL, "the same with the forces at the end of increments"},
-{"obstacle_work", J, INC, PRINT_ENERGY, C, ANY, "obstacle_work", 0,
- obstacle_work, NULL, "work of moving obstacles so far"},
+{"normal_work", J, INC, PRINT_ENERGY, C, ANY, "normal_work", 0,
+ normal_work, NULL, "work of the normal contact forces so far, trapezoidal: "
+ "moving obstacles, and gaps that open or close within an increment"},
 {"energy_defect", J, INC, PRINT_ENERGY, 0, ANY, "energy_defect", 0,
- energy_defect, NULL, "external + obstacle - friction - strain"},
+ energy_defect, NULL, "external + normal - friction - strain"},
 {"energy_defect_relative", "-", INC, PRINT_ENERGY, 0, ANY,
  "energy_defect_relative", 0, defect_relative, NULL,
  "the defect over the largest of the energies"},

@@ -92,10 +92,6 @@ status listing_open(const job *j, text_file *lst) {
   print_model(j, f);
   heading(f, "EFFECTS");
   print_effects(j->m, f);
-  if (j->m->log != NULL && message_count(j->m->log, WARNING) > 0) {
-    heading(f, "WARNINGS");
-    message_list(j->m->log, WARNING, f);
-  }
   return text_check(lst);
 }
 
@@ -122,19 +118,19 @@ static void print_totals(const job *j, const view *v, FILE *f) {
   for (int i = 0; i < j->m->n_contact; ++i) table_row(&t, v, i, f);
 }
 
+/* One line per energy; step, increment and time stand above already. */
 static void print_energies(const job *j, const view *v, FILE *f) {
+  char text[NUMBER_SIZE], unit[64];
   table t;
   table_choose(&t, PER_INCREMENT, PRINT_ENERGY, v, DIGITS);
-  int n = 0; /* step, increment and time stand in the first line already     */
-  for (int k = 0; k < t.n; ++k)
-    if (strstr(t.col[k]->unit, "force") != NULL ||
-        strstr(t.col[k]->name, "relative") != NULL) {
-      t.col[n] = t.col[k];
-      t.width[n++] = t.width[k];
-    }
-  t.n = n;
-  table_header(&t, j->m, " ", f);
-  table_row(&t, v, 0, f);
+  for (int k = 0; k < t.n; ++k) {
+    const column *c = t.col[k];
+    if (strstr(c->unit, "force") == NULL && strstr(c->name, "relative") == NULL)
+      continue;
+    column_unit(c->unit, j->m, unit, sizeof unit);
+    fprintf(f, "  %-24s %14s %s\n", c->name,
+            text_number(text, c->value(v, 0, c->part), DIGITS), unit);
+  }
 }
 
 static void print_solver(const job *j, const state *s, FILE *f) {
@@ -207,6 +203,10 @@ static void print_stages(const job *j, FILE *f) {
 
 status listing_verdict(const job *j, text_file *lst) {
   FILE *f = lst->f;
+  if (j->m->log != NULL && message_count(j->m->log, WARNING) > 0) {
+    heading(f, "WARNINGS");
+    message_list(j->m->log, WARNING, f);
+  }
   heading(f, "ACCURACY");
   print_accuracy(j, f);
   heading(f, "COST");
