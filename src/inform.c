@@ -121,6 +121,12 @@ done:
   return st;
 }
 
+void inform_check_problem(const model *m, const exchange_problem *p) {
+  printf("problem   %s: %d %s, %d unknowns, condensed to %d\n", p->form, p->n,
+         p->dim == 1 ? "rows" : "contacts", p->unknowns, p->m);
+  print_plan(m);
+}
+
 status inform_check(const model *m, const mesh *msh) {
   status st = OK;
   print_sizes(m, msh);

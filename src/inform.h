@@ -8,6 +8,7 @@
 
 #define PROTIS_VERSION "0.1"
 
+struct exchange_problem;
 struct mesh;
 struct model;
 
@@ -20,5 +21,8 @@ int inform_list(const char *kind);
 /* protis JOB --check: sizes, memory, effect plan, motions that nothing or only
  * contact holds; solves nothing. ERR_SINGULAR if a body is free. */
 status inform_check(const struct model *m, const struct mesh *msh);
+/* The same for a deck with *CONDENSED PROBLEM: sizes and effect plan. */
+void inform_check_problem(const struct model *m,
+                          const struct exchange_problem *p);
 
 #endif

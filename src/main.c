@@ -30,9 +30,21 @@ done:
   return st;
 }
 
+/* A problem from a file in the place of a mesh. */
+static status read_problem(model *m, exchange_problem **problem) {
+  status st = OK;
+  timer_enter(STAGE_PROBLEM);
+  st = exchange_read(m->problem_file, m->problem_type, &m->problem_at, m->log,
+                     problem);
+  timer_leave(STAGE_PROBLEM);
+  if (st == OK)
+    model_fit_problem(m, (*problem)->dim, (*problem)->cp.g0 != NULL);
+  return st;
+}
+
 /* Everything up to the first number that is solved for. */
 static status read_input(const command *c, deck **d, model **m, mesh **msh,
-                         message_log *log) {
+                         exchange_problem **problem, message_log *log) {
   status st = OK;
   timer_enter(STAGE_DECK);
   st = deck_read(c->deck_file, c->n_define, c->defines, log, d);
@@ -40,14 +52,19 @@ static status read_input(const command *c, deck **d, model **m, mesh **msh,
   timer_leave(STAGE_DECK);
   TRY(st);
   TRY(message_status(log, ERR_DECK));
-  TRY(read_mesh(*m, msh));
-  TRY(model_check(*m, *msh));
+  if ((*m)->has_problem) {
+    TRY(read_problem(*m, problem));
+  } else {
+    TRY(read_mesh(*m, msh));
+    TRY(model_check(*m, *msh));
+  }
 done:
   return st;
 }
 
 static status solve(const command *c, model *m, const mesh *msh,
-                    int *unsettled) {
+                    const exchange_problem *problem, int *unsettled) {
+  static const mesh no_mesh;
   status st = OK;
   output *out = NULL;
   const output_options options = {
@@ -57,9 +74,10 @@ static status solve(const command *c, model *m, const mesh *msh,
       .kernel = blas_kernel(),
       .threads = c->threads > 0 ? c->threads : 1,
       .progress = !c->quiet && isatty(STDERR_FILENO)};
-  TRY(output_open(m, msh, &options, &out));
+  TRY(output_open(m, problem == NULL ? msh : &no_mesh, &options, &out));
   history_sink sink = output_sink(out);
-  st = history_run(m, msh, &sink, unsettled);
+  st = problem == NULL ? history_run(m, msh, &sink, unsettled)
+                       : condensed_run(m, problem, &sink, unsettled);
   status closed = output_close(out, st, *unsettled);
   if (st == OK && closed != ERR_UNSETTLED) st = closed;
 done:
@@ -71,12 +89,16 @@ static status run_job(const command *c, message_log *log, int *unsettled) {
   deck *d = NULL;
   model *m = NULL;
   mesh *msh = NULL;
-  TRY(read_input(c, &d, &m, &msh, log));
-  if (c->check_only)
+  exchange_problem *problem = NULL;
+  TRY(read_input(c, &d, &m, &msh, &problem, log));
+  if (c->check_only && problem != NULL)
+    inform_check_problem(m, problem);
+  else if (c->check_only)
     TRY(inform_check(m, msh));
   else
-    TRY(solve(c, m, msh, unsettled));
+    TRY(solve(c, m, msh, problem, unsettled));
 done:
+  exchange_free(problem);
   mesh_free(msh);
   model_free(m);
   message_print(log, stderr);
@@ -87,7 +109,7 @@ done:
 /* Messages with a place have been printed; what is left is the record. */
 static int report(status st, const message_log *log, int unsettled) {
   int told = log != NULL && message_count(log, ERROR) > 0 &&
-             (st == ERR_DECK || st == ERR_MESH);
+             (st == ERR_DECK || st == ERR_MESH || st == ERR_FILE);
   if (st != OK && !told)
     fprintf(stderr, "protis: error: %s\n", status_message());
   if (st == ERR_INTERNAL || st == ERR_MEMORY)

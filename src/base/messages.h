@@ -10,7 +10,8 @@
   MESSAGE_LIST_DECK(X)                                                       \
   MESSAGE_LIST_MODEL(X)                                                      \
   MESSAGE_LIST_MESH(X)                                                       \
-  MESSAGE_LIST_CONTACT(X)
+  MESSAGE_LIST_CONTACT(X)                                                    \
+  MESSAGE_LIST_FILES(X)
 
 #define MESSAGE_LIST_DECK(X)                                                 \
   X(1001, ERROR, "file of the deck cannot be read",                          \
@@ -182,7 +183,11 @@
   X(2032, ERROR, "contact has two friction laws",                            \
     "One *FRICTION card for each contact.")                                  \
   X(2033, ERROR, "dependence not possible here",                             \
-    "The message says on what the value may depend.")
+    "The message says on what the value may depend.")                        \
+  X(2034, ERROR, "card has no place beside *CONDENSED PROBLEM",              \
+    "The file holds the whole problem. Beside it stand only *HEADING, "      \
+    "*UNITS, *PARAMETER, *INCLUDE and one step with *STATIC, *SOLVER, "      \
+    "*PRINT, CONTACT and *OUTPUT, CONDENSED=FCLIB.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \
@@ -301,6 +306,16 @@
     "The body cannot touch the obstacle: check the group, where the "        \
     "obstacle is, that the normal of a plane points towards the body, and "  \
     "whether the body is inside or outside of a cylinder or sphere.")
+
+#define MESSAGE_LIST_FILES(X)                                                \
+  X(5001, ERROR, "file of a condensed problem cannot be read",               \
+    "Check the name and the permissions. FILE= of *CONDENSED PROBLEM is "    \
+    "relative to the deck. A file cut short must be written again.")         \
+  X(5002, ERROR, "condensed problem not valid",                              \
+    "The message names the dataset. The layout is that of FCLIB: "           \
+    "/fclib_local with spacedim, W, vectors/q, vectors/mu, or "              \
+    "/fclib_global with spacedim, M, H, vectors/f, w, mu. As text: n, the "  \
+    "matrix by rows, q.")
 /* clang-format on */
 
 #endif

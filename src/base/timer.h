@@ -12,6 +12,7 @@
 #define STAGE_LIST(X)                                      \
   X(DECK,        "deck and model")                         \
   X(MESH,        "mesh")                                   \
+  X(PROBLEM,     "condensed problem from a file")          \
   X(SURFACE,     "contact surface")                        \
   X(ASSEMBLY,    "stiffness assembly")                     \
   X(ORDERING,    "ordering and symbolic factor")           \

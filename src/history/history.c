@@ -46,6 +46,7 @@ static state make_state(run *r, int attempt, int increment_no) {
              .strain = r->strain,
              .stress = r->stress,
              .reaction = e->reaction,
+             .problem = r->n > 0 ? &r->cp : NULL,
              .surface = r->surface,
              .uc = e->uc,
              .rc = e->rc,

@@ -4,6 +4,7 @@
 #ifndef PROTIS_HISTORY_HISTORY_H
 #define PROTIS_HISTORY_HISTORY_H
 
+#include "exchange/exchange.h"
 #include "fem/fem.h"
 #include "model/model.h"
 
@@ -37,7 +38,9 @@ typedef struct state {
   const double *u; /* [dim*n_node] m                                      */
   const double *strain, *stress; /* [ns*n_elem] -, Pa; NULL if no output asks */
   const double *reaction; /* [dim*n_node] N, of the supports; 0 where free    */
-  const contact_surface *surface; /* NULL: no contact                         */
+  const contact_problem *problem; /* what was solved; NULL: no contact, LCP   */
+  const contact_surface *surface; /* NULL: no contact. A problem from a file
+                                has numbers 1 to n and no geometry (x NULL) */
   const double *uc, *rc; /* [dim*n] contact frame, m, N                     */
   const double *gap;     /* [n] gap left open: gap0 - u_n, m                */
   const double *slip;    /* [(dim-1)*n] slip of the increment, m            */
@@ -78,6 +81,14 @@ typedef struct history_sink {
  */
 status history_run(const model *m, const mesh *msh, const history_sink *sink,
                    int *unsettled);
+
+/*
+ * The same for a problem from a file (*CONDENSED PROBLEM): one increment, no
+ * mesh, no stiffness. The state has the unknowns in the signs of contact.h, of
+ * a plain LCP w in uc and z in rc. Errors: as history_run.
+ */
+status condensed_run(const model *m, const exchange_problem *p,
+                     const history_sink *sink, int *unsettled);
 
 /* Rigid motions that the supports of the first step leave free, nothing solved:
  * *list is new (memory_free), NULL if there are none. */

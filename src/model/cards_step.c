@@ -28,7 +28,7 @@ done:
 
 status apply_end_step(reading *r) {
   const step *s = open_step(r);
-  if (s->kind == STEP_NONE)
+  if (s->kind == STEP_NONE && !r->m->has_problem)
     message_add(r->m->log, P2018, &s->at,
                 "this step has no procedure: *STATIC or *QUASISTATIC");
   r->in_step = 0;
@@ -351,5 +351,6 @@ status apply_output(reading *r) {
   step *s = open_step(r);
   s->has_output = 1;
   s->output_frequency = p->hdf5 ? p->frequency : -1;
+  s->condensed_frequency = p->condensed == 1 ? p->frequency : -1;
   return OK;
 }

@@ -75,6 +75,7 @@ static const load *moving_support(const model *m) {
 void model_find_effects(model *m) {
   place at;
   m->effects = 0;
+  m->effects |= EFFECT_MESH;
   if (m->n_contact > 0) m->effects |= EFFECT_CONTACT;
   if (first_friction(m) != NULL) m->effects |= EFFECT_FRICTION;
   if (first_friction(m) != NULL && has_history(m)) m->effects |= EFFECT_HISTORY;
@@ -84,6 +85,26 @@ void model_find_effects(model *m) {
   if (first_print(m, PRINT_REACTIONS, &at) != NULL || first_fields(m) != NULL ||
       moving_support(m) != NULL)
     m->effects |= EFFECT_REACTION;
+}
+
+void model_fit_problem(model *m, int dim, int friction) {
+  m->dim = dim;
+  m->problem_friction = friction;
+  m->effects = EFFECT_CONTACT | (friction ? EFFECT_FRICTION : 0u);
+}
+
+/* 1: a deck with *CONDENSED PROBLEM; the reason is in text. */
+static int reason_problem(const model *m, int bit, char *text, size_t size) {
+  int line_no = m->problem_at.line_no;
+  if (!m->has_problem) return 0;
+  if (bit == EFFECT_BIT_CONTACT || bit == EFFECT_BIT_MESH)
+    snprintf(text, size, "*CONDENSED PROBLEM, line %d", line_no);
+  else if (bit == EFFECT_BIT_FRICTION)
+    snprintf(text, size, "mu of *CONDENSED PROBLEM, line %d, is %s", line_no,
+             m->problem_friction ? "not zero" : "zero or not there");
+  else
+    snprintf(text, size, "not part of a condensed problem");
+  return 1;
 }
 
 static void reason_friction(const model *m, char *text, size_t size) {
@@ -119,7 +140,11 @@ static void reason_history(const model *m, char *text, size_t size) {
 const char *model_effect_reason(const model *m, int bit, char *text,
                                 size_t size) {
   const load *l;
+  if (reason_problem(m, bit, text, size)) return text;
   switch (bit) {
+    case EFFECT_BIT_MESH:
+      snprintf(text, size, "*MESH, line %d", m->mesh_at.line_no);
+      break;
     case EFFECT_BIT_CONTACT:
       if (m->n_contact > 0)
         snprintf(text, size, "*CONTACT, NAME=%s, line %d", m->contacts[0].name,

@@ -64,6 +64,10 @@ typedef struct mesh_param {
   const char *file;
   double scale;
 } mesh_param;
+typedef struct problem_param {
+  const char *file;
+  int type;
+} problem_param;
 typedef struct name_param {
   const char *name;
 } name_param;
@@ -109,13 +113,14 @@ typedef struct print_param {
   const char *group;
 } print_param;
 typedef struct output_param {
-  int hdf5, frequency;
+  int hdf5, frequency, condensed;
 } output_param;
 
 /* apply functions: cards_model.c */
 status apply_heading(reading *r);
 status apply_units(reading *r);
 status apply_mesh(reading *r);
+status apply_condensed_problem(reading *r);
 status apply_material(reading *r);
 status apply_elastic(reading *r);
 status apply_density(reading *r);
@@ -153,6 +158,10 @@ int field_quantity(const reading *r, const field *f, quantity *out);
 status read_pairs(reading *r, int first_line, int variable, value_table *out);
 /* Compare words without regard to case. */
 int same_word(const char *a, const char *b);
+
+/* cards_model.c: what a deck with *CONDENSED PROBLEM may hold; its one step
+ * and table if it has none. After model_resolve. */
+status model_finish_problem(reading *r);
 
 /* resolve.c: names to ids once all cards are read; loads carried from step to
  * step. Errors of names go to the log. */

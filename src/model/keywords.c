@@ -23,6 +23,12 @@ static const option mesh_options[] = {
   OPTION_REAL(mesh_param, scale, "SCALE", DBL_MIN, DBL_MAX, "1", "-",
               "factor on all coordinates"),
   OPTION_END};
+static const option problem_options[] = {
+  OPTION_NAME(problem_param, file, "FILE", NULL,
+              "FCLIB (HDF5) or a plain LCP (text), relative to the deck"),
+  OPTION_CHOICE(problem_param, type, "TYPE", "FCLIB|LCP", OPTION_ABSENT,
+                "absent: told by the file itself"),
+  OPTION_END};
 static const option name_options[] = {
   OPTION_NAME(name_param, name, "NAME", NULL, "name for other cards"),
   OPTION_END};
@@ -108,6 +114,10 @@ static const option output_options[] = {
   OPTION_FLAG(output_param, hdf5, "HDF5", "YES", "write JOB.h5 and JOB.xdmf"),
   OPTION_INT(output_param, frequency, "FREQUENCY", 0, 1000000000, "1", "-",
              "fields every n-th increment and the last; 0: the last only"),
+  OPTION_CHOICE(output_param, condensed, "CONDENSED", "NO|FCLIB", "NO",
+                "condensed contact problem and its solution, every n-th "
+                "increment, into JOB_condensed_NNNNN.h5 (increment counted "
+                "from the start)"),
   OPTION_END};
 
 #define OPTIONS(x) x##_options, sizeof(x##_param)
@@ -128,6 +138,9 @@ const keyword keyword_table[] = {
    "", "labels of the consistent set of units; changes no number"},
   {"MESH", IN_MODEL, OPTIONS(mesh), NULL, apply_mesh, 0, 0,
    "", "gmsh mesh or geometry; its physical groups are the names below"},
+  {"CONDENSED PROBLEM", IN_MODEL, OPTIONS(problem), NULL,
+   apply_condensed_problem, 0, 0,
+   "", "discrete contact problem or LCP from a file in the place of a mesh"},
   {"MATERIAL", IN_MODEL, OPTIONS(name), NULL, apply_material, 0, 0,
    "", "opens a material: *ELASTIC, *DENSITY below belong to it"},
   {"ELASTIC", IN_MATERIAL, OPTIONS(elastic), NULL, apply_elastic, 1, 3,
@@ -175,7 +188,7 @@ const keyword keyword_table[] = {
   {"PRINT", IN_STEP, OPTIONS(print), NULL, apply_print, 0, 0,
    "", "tables in JOB.dat"},
   {"OUTPUT", IN_STEP, OPTIONS(output), NULL, apply_output, 0, 0,
-   "", "fields in JOB.h5"},
+   "", "fields in JOB.h5; condensed problems for other programs"},
   {"END STEP", IN_STEP, NO_OPTIONS, NULL, apply_end_step, 0, 0,
    "", "closes the step"},
   RESERVED("EXPANSION", "thermal expansion"),
@@ -189,7 +202,6 @@ const keyword keyword_table[] = {
   RESERVED("ACCURACY", "error estimates and targets"),
   RESERVED("EFFECTS", "which effects are simulated"),
   RESERVED("RESTART", "restart file"),
-  RESERVED("CONDENSED PROBLEM", "contact problem from a file"),
   RESERVED("REFERENCE", "closed form to compare with"),
   {NULL, 0, NULL, 0, NULL, NULL, 0, 0, NULL, NULL}};
 /* clang-format on */

@@ -268,17 +268,26 @@ done:
 static void report_absent(const reading *r) {
   const model *m = r->m;
   place at = {.file = m->deck->file};
-  if (!m->has_mesh)
+  if (!m->has_mesh && !m->has_problem)
     message_add(m->log, P2015, &at, "the deck has no *MESH card");
-  if (m->n_section == 0)
+  if (m->n_section == 0 && !m->has_problem)
     message_add(m->log, P2016, &at,
                 "the deck has no *SOLID SECTION: nothing says what the "
                 "elements are made of");
-  if (m->n_step == 0)
+  if (m->n_step == 0 && !m->has_problem)
     message_add(m->log, P2017, &at, "the deck has no *STEP: nothing to solve");
   if (r->in_step)
     message_add(m->log, P2019, &m->steps[m->n_step - 1].at,
                 "this *STEP is not closed by *END STEP");
+}
+
+/* A problem from a file needs no *STEP. */
+static status default_step(model *m) {
+  status st = OK;
+  GROW(m->steps, m->n_step, m->cap_step);
+  m->steps[m->n_step++] = (step){.name = "", .at = m->problem_at};
+done:
+  return st;
 }
 
 status model_from_deck(deck *d, message_log *log, model **out) {
@@ -296,7 +305,9 @@ status model_from_deck(deck *d, message_log *log, model **out) {
     TRY(read_card(&r));
   }
   report_absent(&r);
+  if (m->has_problem && m->n_step == 0) TRY(default_step(m));
   TRY(model_resolve(m));
+  if (m->has_problem) TRY(model_finish_problem(&r));
   TRY(message_status(log, ERR_DECK));
 done:
   return st;

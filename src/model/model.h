@@ -120,6 +120,8 @@ typedef struct step {
   int output_frequency; /* HDF5 fields: every n-th increment; 0: last only;
                            -1: no HDF5                                        */
   int has_print, has_output;
+  int condensed_frequency; /* of the condensed problems; 0 the last only, -1
+                              none */
   solver_choice solver; /* its param is owned by the step it came with        */
   void *solver_param;   /* owned, or NULL                                     */
   place solver_at;
@@ -134,6 +136,11 @@ typedef struct model {
   double mesh_scale;
   place mesh_at;
   int has_mesh;
+  const char *problem_file; /* *CONDENSED PROBLEM, in the place of a mesh     */
+  int problem_type;         /* exchange_type                                  */
+  int problem_friction;     /* 1: some mu > 0; known when it is read          */
+  place problem_at;
+  int has_problem;
   const char *length_unit, *force_unit, *time_unit; /* labels or NULL         */
   int n_amplitude, n_material, n_section, n_obstacle, n_contact, n_step;
   int cap_amplitude, cap_material, cap_section, cap_obstacle, cap_contact,
@@ -167,7 +174,8 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
   X(BODY,      "body forces")                                                \
   X(STRESS,    "stresses")                                                   \
   X(REACTION,  "reactions")                                                  \
-  X(ESTIMATES, "error estimates")
+  X(ESTIMATES, "error estimates")                                            \
+  X(MESH,      "finite elements")
 /* clang-format on */
 #define EFFECT_BIT(name, text) EFFECT_BIT_##name,
 enum { EFFECT_LIST(EFFECT_BIT) EFFECT_COUNT };
@@ -187,6 +195,9 @@ status model_from_deck(deck *d, message_log *log, model **out);
 /* Compare with the mesh: groups, sections, dimensions; fill the _id fields and
  * the effects. Errors go to the log: ERR_DECK or ERR_MESH. */
 status model_check(model *m, const mesh *msh);
+/* In the place of model_check for a deck with *CONDENSED PROBLEM, once it is
+ * read: dimension (1: LCP), 1 if it has friction. */
+void model_fit_problem(model *m, int dim, int friction);
 void model_free(model *m);
 
 /* The deck with all defaults written out, includes and parameters resolved;

@@ -207,7 +207,10 @@ static const solver_choice default_solver = {
 static status carry_choices(const step *old, step *s) {
   status st = OK;
   if (s->solver_at.file == NULL) s->solver = old->solver;
-  if (!s->has_output) s->output_frequency = old->output_frequency;
+  if (!s->has_output) {
+    s->output_frequency = old->output_frequency;
+    s->condensed_frequency = old->condensed_frequency;
+  }
   for (int i = 0; i < old->n_print && !s->has_print; ++i) {
     GROW(s->prints, s->n_print, s->cap_print);
     s->prints[s->n_print++] = old->prints[i];
@@ -220,7 +223,9 @@ status model_resolve(model *m) {
   status st = OK;
   resolve_materials(m);
   resolve_contacts(m);
-  step before = {.solver = default_solver, .loads = m->supports};
+  step before = {.solver = default_solver,
+                 .loads = m->supports,
+                 .condensed_frequency = -1};
   for (int i = 0; i < before.loads.n; ++i)
     start_load(m, &before, &before.loads.item[i]);
   const step *old = &before;

@@ -71,7 +71,7 @@ static double mises(const view *v, int id, int part) {
 
 /* Contact nodes: unknowns node by node n, t1[, t2] */
 #define SURFACE (v->s->surface)
-VALUE(contact_node_no, v->msh->node_no[SURFACE->node_id[id]])
+VALUE(contact_node_no, SURFACE->node_no[id])
 VALUE(contact_x, SURFACE->x[at(SURFACE->dim, id, part)])
 VALUE(contact_u_n, v->s->uc[at(SURFACE->dim, id, 0)])
 VALUE(contact_u_t, v->s->uc[at(SURFACE->dim, id, part + 1)])
@@ -83,6 +83,10 @@ VALUE(sliding_limit, v->s->limit[id])
 VALUE(contact_normal, SURFACE->frame[at(SURFACE->dim * SURFACE->dim, id, part)])
 VALUE(contact_area, SURFACE->area[id])
 VALUE(contact_state, v->s->contact[id])
+
+/* A plain LCP: z stands for r, w for u. */
+VALUE(lcp_z, v->s->rc[id])
+VALUE(lcp_w, v->s->uc[id])
 
 /* Force over tributary area; a node without area carries none. */
 static double per_area(const view *v, int id, double force) {
@@ -138,6 +142,7 @@ static const char *contact_name(const view *v, int id) {
 #define CART (SCENE_PLANE | SCENE_SOLID)
 #define ANY SCENE_ALL, 0
 #define SUR SCENE_ALL, NEEDS_SURFACE
+#define PLACE SCENE_ALL, NEEDS_PLACE
 #define STRAIN(scenes) PRINT_ELEMENTS, EFFECT_STRESS, scenes, NEEDS_STRAIN
 #define STRESS(scenes) PRINT_ELEMENTS, EFFECT_STRESS, scenes, NEEDS_STRESS
 #define REACT(scenes) PRINT_REACTIONS, EFFECT_REACTION, scenes, NEEDS_REACTION
@@ -267,26 +272,26 @@ const column column_table[] = {
 {"node_no", "-", PER_CONTACT_NODE, AS_COUNT, PRINT_CONTACT, C, SUR, NULL, 0,
  contact_node_no, NULL, "number in the mesh"},
 {"x", "length", CON, PRINT_CONTACT, C, CART,
- NEEDS_SURFACE, NULL, 0, contact_x, NULL, "coordinate"},
-{"r", "length", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_SURFACE, NULL, 0,
+ NEEDS_PLACE, NULL, 0, contact_x, NULL, "coordinate"},
+{"r", "length", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_PLACE, NULL, 0,
  contact_x, NULL, "coordinate"},
 {"y", "length", CON, PRINT_CONTACT, C, CART,
- NEEDS_SURFACE, NULL, 1, contact_x, NULL, "coordinate"},
-{"z", "length", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_SURFACE, NULL, 1,
+ NEEDS_PLACE, NULL, 1, contact_x, NULL, "coordinate"},
+{"z", "length", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_PLACE, NULL, 1,
  contact_x, NULL, "coordinate"},
-{"z", "length", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE, NULL, 2,
+{"z", "length", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_PLACE, NULL, 2,
  contact_x, NULL, "coordinate"},
-{"area", "length^2", CON, 0, C, SUR, "area", 0, contact_area, NULL,
+{"area", "length^2", CON, 0, C, PLACE, "area", 0, contact_area, NULL,
  "tributary area"},
-{"n_x", "-", CON, 0, C, CART, NEEDS_SURFACE, "normal", 0, contact_normal, NULL,
+{"n_x", "-", CON, 0, C, CART, NEEDS_PLACE, "normal", 0, contact_normal, NULL,
  "outward normal"},
-{"n_r", "-", CON, 0, C, SCENE_AXI, NEEDS_SURFACE, "normal", 0, contact_normal,
+{"n_r", "-", CON, 0, C, SCENE_AXI, NEEDS_PLACE, "normal", 0, contact_normal,
  NULL, "outward normal"},
-{"n_y", "-", CON, 0, C, CART, NEEDS_SURFACE, "normal", 1, contact_normal, NULL,
+{"n_y", "-", CON, 0, C, CART, NEEDS_PLACE, "normal", 1, contact_normal, NULL,
  "outward normal"},
-{"n_z", "-", CON, 0, C, SCENE_AXI, NEEDS_SURFACE, "normal", 1, contact_normal,
+{"n_z", "-", CON, 0, C, SCENE_AXI, NEEDS_PLACE, "normal", 1, contact_normal,
  NULL, "outward normal"},
-{"n_z", "-", CON, 0, C, SCENE_SOLID, NEEDS_SURFACE, "normal", 2,
+{"n_z", "-", CON, 0, C, SCENE_SOLID, NEEDS_PLACE, "normal", 2,
  contact_normal, NULL, "outward normal"},
 {"u_n", "length", CON, PRINT_CONTACT, C, SUR, "u_n", 0, contact_u_n, NULL,
  "displacement along the outward normal"},
@@ -307,26 +312,26 @@ const column column_table[] = {
 {"f_t2", "force", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE, "f_t2",
  1, contact_f_t, NULL, "tangential force of the obstacle on the body"},
 {"f_x", "force", CON, PRINT_CONTACT, C, CART,
- NEEDS_SURFACE, "force", 0, contact_force, NULL,
+ NEEDS_PLACE, "force", 0, contact_force, NULL,
  "force of the obstacle on the body"},
-{"f_r", "force", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_SURFACE, "force", 0,
+{"f_r", "force", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_PLACE, "force", 0,
  contact_force, NULL, "force of the obstacle on the body"},
 {"f_y", "force", CON, PRINT_CONTACT, C, CART,
- NEEDS_SURFACE, "force", 1, contact_force, NULL,
+ NEEDS_PLACE, "force", 1, contact_force, NULL,
  "force of the obstacle on the body"},
-{"f_z", "force", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_SURFACE, "force", 1,
+{"f_z", "force", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_PLACE, "force", 1,
  contact_force, NULL, "force of the obstacle on the body"},
-{"f_z", "force", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE, "force",
+{"f_z", "force", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_PLACE, "force",
  2, contact_force, NULL, "force of the obstacle on the body"},
-{"pressure", PA, CON, PRINT_CONTACT, C, SUR, "pressure", 0, contact_pressure,
+{"pressure", PA, CON, PRINT_CONTACT, C, PLACE, "pressure", 0, contact_pressure,
  NULL, "normal force over tributary area, >= 0"},
-{"traction_t", PA, CON, PRINT_CONTACT, C, SCENE_FLAT, NEEDS_SURFACE,
+{"traction_t", PA, CON, PRINT_CONTACT, C, SCENE_FLAT, NEEDS_PLACE,
  "traction_t", 0, contact_traction, NULL,
  "tangential force over tributary area"},
-{"traction_t1", PA, CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE,
+{"traction_t1", PA, CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_PLACE,
  "traction_t1", 0, contact_traction, NULL,
  "tangential force over tributary area"},
-{"traction_t2", PA, CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_SURFACE,
+{"traction_t2", PA, CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_PLACE,
  "traction_t2", 1, contact_traction, NULL,
  "tangential force over tributary area"},
 {"slip", "length", CON, PRINT_CONTACT, F, SCENE_FLAT, NEEDS_SURFACE, "slip",
@@ -340,6 +345,13 @@ const column column_table[] = {
  "sliding limit"},
 {"status", "-", PER_CONTACT_NODE, AS_WORD, PRINT_CONTACT, C, SUR, "status", 0,
  contact_state, contact_word, "OPEN, SLIP, STICK; as number 0, 1, 2"},
+
+{"row_no", "-", PER_CONTACT_NODE, AS_COUNT, PRINT_CONTACT, C, SCENE_LCP,
+ NEEDS_SURFACE, NULL, 0, contact_node_no, NULL, "row of the matrix"},
+{"z", "-", CON, PRINT_CONTACT, C, SCENE_LCP, NEEDS_SURFACE, NULL, 0, lcp_z,
+ NULL, "unknown of w = q + M z"},
+{"w", "-", CON, PRINT_CONTACT, C, SCENE_LCP, NEEDS_SURFACE, NULL, 0, lcp_w,
+ NULL, "q + M z"},
 
 {"contact", "-", PER_CONTACT, AS_WORD, PRINT_TOTALS, C, SCENE_ALL,
  NEEDS_TOTALS, NULL, 0, contact_no, contact_name, "name of the *CONTACT"},
@@ -380,6 +392,7 @@ const column column_table[] = {
 
 unsigned scene_of(const model *m) {
   if (m->dim == 3) return SCENE_SOLID;
+  if (m->dim == 1) return SCENE_LCP;
   for (int i = 0; i < m->n_section; ++i)
     if (m->sections[i].kin % 4 == AXISYMMETRIC) return SCENE_AXI;
   return SCENE_PLANE;
@@ -395,6 +408,7 @@ int column_ready(const column *c, const state *s) {
   if (s->stress != NULL) have |= NEEDS_STRESS;
   if (s->reaction != NULL) have |= NEEDS_REACTION;
   if (s->surface != NULL) have |= NEEDS_SURFACE;
+  if (s->surface != NULL && s->surface->x != NULL) have |= NEEDS_PLACE;
   if (s->limit != NULL) have |= NEEDS_LIMIT;
   if (s->totals != NULL) have |= NEEDS_TOTALS;
   return (c->needs & ~have) == 0;

@@ -22,20 +22,23 @@ int job_sizes(const job *j, size_row rows[SIZE_ROWS]) {
   const condense_info *info = &j->run->facts.info;
   int n = 0;
   rows[n++] = (size_row){"dimension", j->m->dim};
-  rows[n++] = (size_row){"nodes", j->msh->n_node};
-  rows[n++] = (size_row){"elements", j->msh->n_elem};
-  rows[n++] = (size_row){"groups", j->msh->n_group};
-  rows[n++] = (size_row){"materials", j->m->n_material};
-  rows[n++] = (size_row){"sections", j->m->n_section};
-  rows[n++] = (size_row){"contacts", j->m->n_contact};
+  if (!j->m->has_problem) {
+    rows[n++] = (size_row){"nodes", j->msh->n_node};
+    rows[n++] = (size_row){"elements", j->msh->n_elem};
+    rows[n++] = (size_row){"groups", j->msh->n_group};
+    rows[n++] = (size_row){"materials", j->m->n_material};
+    rows[n++] = (size_row){"sections", j->m->n_section};
+    rows[n++] = (size_row){"contacts", j->m->n_contact};
+  }
   rows[n++] = (size_row){"steps", j->m->n_step};
   int model_rows = n;
   if (j->run->facts_known) {
-    rows[n++] = (size_row){"bodies", info->bodies};
+    if (!j->m->has_problem) rows[n++] = (size_row){"bodies", info->bodies};
     rows[n++] = (size_row){"unknowns", (double)info->unknowns};
     rows[n++] = (size_row){"contact nodes", j->run->facts.n_contact_node};
     rows[n++] = (size_row){"contact unknowns", (double)info->contact_unknowns};
-    rows[n++] = (size_row){"factor entries", (double)info->factor_entries};
+    if (!j->m->has_problem)
+      rows[n++] = (size_row){"factor entries", (double)info->factor_entries};
   }
   rows[n] = (size_row){NULL, 0};
   return model_rows;
@@ -102,8 +105,9 @@ status listing_ready(const job *j, text_file *lst) {
   print_sizes(j, 1, lst->f);
   if (facts->info.ordering != NULL)
     fprintf(lst->f, "  %-18s %14s\n", "ordering", facts->info.ordering);
-  fprintf(lst->f, "  %-18s %14s\n", "condition",
-          text_number(text, facts->condition, 1));
+  if (!isnan(facts->condition))
+    fprintf(lst->f, "  %-18s %14s\n", "condition",
+            text_number(text, facts->condition, 1));
   if (facts->floating)
     fprintf(lst->f, "  contact alone holds at least one body\n");
   heading(lst->f, "INCREMENTS");
@@ -136,8 +140,9 @@ static void print_energies(const job *j, const view *v, FILE *f) {
 static void print_solver(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE];
   const solver_report *r = &s->report;
-  fprintf(f, "  contact nodes: open %d, slip %d, stick %d\n", s->n_open,
-          s->n_slip, s->n_stick);
+  if (j->m->dim > 1)
+    fprintf(f, "  contact nodes: open %d, slip %d, stick %d\n", s->n_open,
+            s->n_slip, s->n_stick);
   fprintf(f, "  solver %s: %s, iterations %d, limit updates %d, residual %s",
           r->solver != NULL ? r->solver : "-", outcome_text(r->outcome),
           r->iterations, r->limit_updates, text_number(text, r->residual, 2));
@@ -163,7 +168,7 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
     print_solver(j, s, lst->f);
     print_totals(j, &v, lst->f);
   }
-  print_energies(j, &v, lst->f);
+  if (!j->m->has_problem) print_energies(j, &v, lst->f);
   return text_check(lst);
 }
 

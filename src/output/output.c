@@ -114,6 +114,30 @@ static status write_fields(output *o, const state *s) {
   return st;
 }
 
+/* The condensed problem, where asked for; of an attempt that failed without a
+ * solution, replaced when the increment is mended. */
+static status write_condensed(output *o, const state *s) {
+  status st = OK;
+  const step *now = &o->m->steps[s->step_no - 1];
+  char name[512], text[200];
+  char *path = NULL;
+  if (!output_due(now->condensed_frequency, s) || s->problem == NULL) return OK;
+  timer_enter(STAGE_HDF5);
+  snprintf(name, sizeof name, "%s_condensed_%05d", o->m->job,
+           o->run.n_increment + 1);
+  snprintf(text, sizeof text, "Protis %s: step %d, increment %d, time %.9g",
+           o->o.version != NULL ? o->o.version : "", s->step_no,
+           s->increment_no, s->t);
+  path = text_path(o->o.dir, name, "h5");
+  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  TRY(fclib_write(s->problem, s->settled ? s->uc : NULL, s->rc, o->m->title,
+                  text, path));
+done:
+  memory_free(path);
+  timer_leave(STAGE_HDF5);
+  return st;
+}
+
 static status write_tables(output *o, const state *s) {
   status st = OK;
   job j = job_of(o);
@@ -132,6 +156,7 @@ static status sink_increment(void *ctx, const state *s) {
   status st = OK;
   output *o = ctx;
   TRY(write_fields(o, s));
+  TRY(write_condensed(o, s));
   TRY(write_tables(o, s));
   o->attempt = 1;
   if (o->progress) progress_show(s);
@@ -153,6 +178,7 @@ static status sink_rejected(void *ctx, const state *s, const char *why) {
   TRY(text_check(&o->cvg));
   TRY(listing_rejected(s, why, &o->lst));
   TRY(sta_line(&o->o, s, why, &o->sta));
+  TRY(write_condensed(o, s));
 done:
   timer_leave(STAGE_TABLES);
   return st;

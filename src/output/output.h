@@ -23,6 +23,7 @@ enum {
   SCENE_PLANE = 1, /* x, y                                                  */
   SCENE_AXI = 2,   /* r, z                                                  */
   SCENE_SOLID = 4, /* x, y, z                                               */
+  SCENE_LCP = 8,   /* a plain LCP from a file: rows                         */
   SCENE_FLAT = SCENE_PLANE | SCENE_AXI,
   SCENE_ALL = SCENE_FLAT | SCENE_SOLID
 };
@@ -35,7 +36,8 @@ enum {
   NEEDS_REACTION = 4,
   NEEDS_SURFACE = 8,
   NEEDS_LIMIT = 16,
-  NEEDS_TOTALS = 32
+  NEEDS_TOTALS = 32,
+  NEEDS_PLACE = 64 /* a surface with coordinates, normals, areas            */
 };
 
 /* What a value function sees. */

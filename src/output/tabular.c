@@ -191,8 +191,7 @@ static status contact_rows(const table *columns, tabular *t, const view *v,
   int *order = NULL;
   if (surface == NULL) return OK;
   NEW(no, surface->n);
-  for (int i = 0; i < surface->n; ++i)
-    no[i] = t->msh->node_no[surface->node_id[i]];
+  for (int i = 0; i < surface->n; ++i) no[i] = surface->node_no[i];
   TRY(order_by_number(surface->n, no, &order));
   for (int i = 0; i < surface->n; ++i)
     if (g == NULL || in_group(g, surface->node_id[order[i]]))

@@ -125,6 +125,13 @@ void hdf5_shape_of(const hdf5_file *h, hdf5_shape *shape);
 /* Name of record i (from 0) below GROUP/NAME. */
 void hdf5_record_name(char *text, size_t size, int i);
 
+/* ---- fclib.c ---------------------------------------------------------- */
+/* The problem cp, and its solution u[m], r[m] unless NULL. Written aside and
+ * renamed. ERR_DECK: the layout has no place for such a problem. */
+status fclib_write(const contact_problem *cp, const double *u, const double *r,
+                   const char *title, const char *description,
+                   const char *path);
+
 /* ---- xdmf.c ----------------------------------------------------------- */
 /* Written aside and renamed. */
 status xdmf_write(const hdf5_shape *shape, const char *path);

@@ -33,12 +33,14 @@ static void make_surface(made_up *run) {
   s->dim = (int)dim;
   s->n = (int)n;
   s->node_id = need(memory_new(n, sizeof *s->node_id));
+  s->node_no = need(memory_new(n, sizeof *s->node_no));
   s->contact_id = need(memory_new(n, sizeof *s->contact_id));
   s->x = need(memory_new(dim * n, sizeof *s->x));
   s->area = need(memory_new(n, sizeof *s->area));
   s->frame = need(memory_new(dim * dim * n, sizeof *s->frame));
   for (size_t i = 0; i < n; ++i) {
     s->node_id[i] = g->node_id[i];
+    s->node_no[i] = run->msh->node_no[g->node_id[i]];
     s->area[i] = 0.25;
     for (size_t k = 0; k < dim; ++k)
       s->x[dim * i + k] = run->msh->x[dim * (size_t)g->node_id[i] + k];
@@ -154,6 +156,7 @@ void made_up_advance(made_up *run, int total_no) {
 void made_up_free(made_up *run) {
   grid_free(run->msh);
   memory_free(run->surface.node_id);
+  memory_free(run->surface.node_no);
   memory_free(run->surface.contact_id);
   memory_free(run->surface.x);
   memory_free(run->surface.area);

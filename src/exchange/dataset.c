@@ -1,0 +1,135 @@
+/*
+ * Datasets of an HDF5 file that others wrote: nothing of it is believed. The
+ * library's own error stack stays silent; what went wrong is told here with
+ * the names of file and dataset.
+ */
+#include "base/memory.h"
+#include "exchange/parts.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+static const long MOST_ITEMS = 1L << 30;
+
+/* Every group on the way must be there before the library is asked. */
+int source_has(const hdf5_source *s, const char *name) {
+  char part[256];
+  size_t length = strlen(name);
+  if (length >= sizeof part) return 0;
+  for (size_t k = 1; k <= length; ++k) {
+    if (name[k] != '/' && name[k] != '\0') continue;
+    memcpy(part, name, k);
+    part[k] = '\0';
+    if (H5Lexists(s->file, part, H5P_DEFAULT) <= 0 ||
+        H5Oexists_by_name(s->file, part, H5P_DEFAULT) <= 0)
+      return 0;
+  }
+  return 1;
+}
+
+/* The dataset opened, its kind and number of items checked; *set = -1 if it
+ * is not there and may be missing. */
+static status open_set(const hdf5_source *s, const char *name, int optional,
+                       int real, hid_t *set, long *n) {
+  status st = OK;
+  hid_t type = -1, space = -1;
+  *set = -1;
+  *n = 0;
+  if (!source_has(s, name)) {
+    if (optional) goto done;
+    FAIL(ERR_DECK, "%s: there is no dataset %s", s->path, name);
+  }
+  *set = H5Dopen2(s->file, name, H5P_DEFAULT);
+  if (*set < 0)
+    FAIL(ERR_DECK, "%s: %s is no dataset, or damaged", s->path, name);
+  type = H5Dget_type(*set);
+  H5T_class_t kind = H5Tget_class(type);
+  if (kind != H5T_INTEGER && !(real && kind == H5T_FLOAT))
+    FAIL(ERR_DECK, "%s: %s does not hold %s", s->path, name,
+         real ? "real numbers" : "integers");
+  space = H5Dget_space(*set);
+  hssize_t items = H5Sget_simple_extent_npoints(space);
+  if (items < 0 || items > MOST_ITEMS)
+    FAIL(ERR_DECK, "%s: %s has a size that cannot be used", s->path, name);
+  *n = (long)items;
+done:
+  if (type >= 0) H5Tclose(type);
+  if (space >= 0) H5Sclose(space);
+  if (st != OK && *set >= 0) {
+    H5Dclose(*set);
+    *set = -1;
+  }
+  return st;
+}
+
+static status read_set(const hdf5_source *s, const char *name, hid_t set,
+                       hid_t as, void *into) {
+  status st = OK;
+  if (H5Dread(set, as, H5S_ALL, H5S_ALL, H5P_DEFAULT, into) < 0)
+    FAIL(ERR_FILE, "%s: %s cannot be read; the file is damaged or cut short",
+         s->path, name);
+done:
+  return st;
+}
+
+status source_ints(const hdf5_source *s, const char *name, int optional,
+                   long *n, int **value) {
+  status st = OK;
+  hid_t set = -1;
+  long long *wide = NULL;
+  *value = NULL;
+  TRY(open_set(s, name, optional, 0, &set, n));
+  NEW(wide, *n);
+  NEW(*value, *n);
+  if (*n > 0) TRY(read_set(s, name, set, H5T_NATIVE_LLONG, wide));
+  for (long k = 0; k < *n; ++k) {
+    if (wide[k] < INT_MIN || wide[k] > INT_MAX)
+      FAIL(ERR_DECK, "%s: %s, item %ld = %lld is too large", s->path, name, k,
+           wide[k]);
+    (*value)[k] = (int)wide[k];
+  }
+done:
+  if (set >= 0) H5Dclose(set);
+  memory_free(wide);
+  if (st != OK) {
+    memory_free(*value);
+    *value = NULL;
+  }
+  return st;
+}
+
+status source_int(const hdf5_source *s, const char *name, int *value) {
+  status st = OK;
+  long n = 0;
+  int *all = NULL;
+  TRY(source_ints(s, name, 0, &n, &all));
+  if (n != 1)
+    FAIL(ERR_DECK, "%s: %s has %ld items, expected one integer", s->path, name,
+         n);
+  *value = all[0];
+done:
+  memory_free(all);
+  return st;
+}
+
+status source_reals(const hdf5_source *s, const char *name, int optional,
+                    long *n, double **value) {
+  status st = OK;
+  hid_t set = -1;
+  *value = NULL;
+  TRY(open_set(s, name, optional, 1, &set, n));
+  NEW(*value, *n);
+  if (*n > 0) TRY(read_set(s, name, set, H5T_NATIVE_DOUBLE, *value));
+  for (long k = 0; k < *n; ++k)
+    if (!isfinite((*value)[k]))
+      FAIL(ERR_DECK, "%s: %s, item %ld is not a finite number", s->path, name,
+           k);
+done:
+  if (set >= 0) H5Dclose(set);
+  if (st != OK) {
+    memory_free(*value);
+    *value = NULL;
+  }
+  return st;
+}

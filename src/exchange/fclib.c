@@ -1,0 +1,331 @@
+/*
+ * Contact problems in the layout of FCLIB: signs turned to those of contact.h
+ * (exchange.h), everything checked.
+ */
+#include "base/memory.h"
+#include "exchange/parts.h"
+
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+#define LOCAL "/fclib_local"
+#define GLOBAL "/fclib_global"
+
+/* ---- what both kinds have --------------------------------------------------
+ */
+
+static double sign_of(int dim, int dof) { return dof % dim == 0 ? -1.0 : 1.0; }
+
+static status new_arrays(exchange_problem *p) {
+  status st = OK;
+  size_t m = (size_t)p->m;
+  NEW(p->matrix, m * m);
+  NEW(p->load, m);
+  NEW(p->gap, p->n);
+  NEW(p->ut0, (size_t)p->n * (size_t)(p->dim - 1));
+  NEW(p->g0, p->n);
+  NEW(p->B.start, p->n + 1);
+  NEW(p->B.col, p->n);
+  NEW(p->B.val, p->n);
+done:
+  return st;
+}
+
+/* Dimension and unknowns are known: sizes of the problem. */
+static status set_size(const hdf5_source *s, const char *root, int m,
+                       exchange_problem *p) {
+  status st = OK;
+  char name[64];
+  snprintf(name, sizeof name, "%s/spacedim", root);
+  TRY(source_int(s, name, &p->dim));
+  if (p->dim != 2 && p->dim != 3)
+    FAIL(ERR_DECK, "%s: %s = %d; expected 2 or 3", s->path, name, p->dim);
+  if (m % p->dim != 0)
+    FAIL(ERR_DECK, "%s: %s has %d unknowns, no multiple of spacedim = %d",
+         s->path, root, m, p->dim);
+  if (m > MOST_UNKNOWNS)
+    FAIL(ERR_DECK, "%s: %s has %d unknowns; at most %d can be solved", s->path,
+         root, m, (int)MOST_UNKNOWNS);
+  p->m = m;
+  p->n = m / p->dim;
+done:
+  return st;
+}
+
+/* A vector of exactly n items. */
+static status read_vector(const hdf5_source *s, const char *name, int n,
+                          double **value) {
+  status st = OK;
+  long items = 0;
+  TRY(source_reals(s, name, n == 0, &items, value));
+  if (items != n)
+    FAIL(ERR_DECK, "%s: %s has %ld items, expected %d", s->path, name, items,
+         n);
+done:
+  return st;
+}
+
+static status read_friction(const hdf5_source *s, const char *name,
+                            exchange_problem *p) {
+  status st = OK;
+  double *mu = NULL;
+  int any = 0;
+  TRY(read_vector(s, name, p->n, &mu));
+  p->B.n = p->n;
+  for (int i = 0; i < p->n; ++i) {
+    if (mu[i] < 0.0)
+      FAIL(ERR_DECK, "%s: %s, item %d = %g is negative", s->path, name, i,
+           mu[i]);
+    any = any || mu[i] > 0.0;
+    p->B.start[i + 1] = i + 1;
+    p->B.col[i] = i;
+    p->B.val[i] = mu[i];
+  }
+  p->cp.g0 = any ? p->g0 : NULL;
+  p->cp.B = any ? &p->B : NULL;
+  p->cp.ut0 = any ? p->ut0 : NULL;
+done:
+  memory_free(mu);
+  return st;
+}
+
+static status refuse_group(const hdf5_source *s, const char *name,
+                           const char *what) {
+  status st = OK;
+  if (source_has(s, name))
+    FAIL(ERR_DECK, "%s: %s: %s are not available in this version", s->path,
+         name, what);
+done:
+  return st;
+}
+
+/* W, q of FCLIB into the signs of contact.h, in place. */
+static void turn_signs(const exchange_problem *p) {
+  for (int j = 0; j < p->m; ++j) {
+    p->load[j] *= sign_of(p->dim, j);
+    for (int i = 0; i < p->m; ++i)
+      p->matrix[(size_t)i + (size_t)p->m * (size_t)j] *=
+          sign_of(p->dim, i) * sign_of(p->dim, j);
+  }
+}
+
+static void set_problem(exchange_problem *p, int stiffness, int floating) {
+  p->cp.dim = p->dim;
+  p->cp.n = p->n;
+  p->cp.m = p->m;
+  p->cp.A = stiffness ? p->matrix : NULL;
+  p->cp.W = stiffness ? NULL : p->matrix;
+  p->cp.f = p->load;
+  p->cp.gap = p->gap;
+  p->cp.floating = floating;
+}
+
+/* ---- local ----------------------------------------------------------------
+ */
+
+static status read_local(const hdf5_source *s, exchange_problem *p) {
+  status st = OK;
+  triplets W = {0};
+  double *q = NULL;
+  p->form = "FCLIB, local";
+  TRY(refuse_group(s, LOCAL "/V", "equality constraints (V, R)"));
+  TRY(refuse_group(s, LOCAL "/R", "equality constraints (V, R)"));
+  TRY(triplets_read(s, LOCAL "/W", &W));
+  if (W.rows != W.columns)
+    FAIL(ERR_DECK, "%s: " LOCAL "/W is not square: %d rows, %d columns",
+         s->path, W.rows, W.columns);
+  TRY(set_size(s, LOCAL, W.rows, p));
+  TRY(new_arrays(p));
+  TRY(read_vector(s, LOCAL "/vectors/q", p->m, &q));
+  TRY(read_friction(s, LOCAL "/vectors/mu", p));
+  triplets_dense(&W, p->matrix);
+  memcpy(p->load, q, (size_t)p->m * sizeof *q);
+  turn_signs(p);
+  p->unknowns = p->m;
+  set_problem(p, 0, 0);
+done:
+  triplets_free(&W);
+  memory_free(q);
+  return st;
+}
+
+/* ---- global ---------------------------------------------------------------
+ */
+
+typedef struct global {
+  triplets M, H;
+  double *f, *w, *h; /* [M.rows], [H.columns]; h: diagonal of H, or NULL     */
+} global;
+
+static void global_release(global *g) {
+  triplets_free(&g->M);
+  triplets_free(&g->H);
+  memory_free(g->f);
+  memory_free(g->w);
+  memory_free(g->h);
+}
+
+static status read_matrices(const hdf5_source *s, global *g) {
+  status st = OK;
+  TRY(refuse_group(s, GLOBAL "/G", "equality constraints (G, b)"));
+  TRY(triplets_read(s, GLOBAL "/M", &g->M));
+  TRY(triplets_read(s, GLOBAL "/H", &g->H));
+  if (g->M.rows != g->M.columns)
+    FAIL(ERR_DECK, "%s: " GLOBAL "/M is not square: %d rows, %d columns",
+         s->path, g->M.rows, g->M.columns);
+  if (g->H.rows != g->M.rows)
+    FAIL(ERR_DECK, "%s: " GLOBAL "/H has %d rows, M has %d", s->path, g->H.rows,
+         g->M.rows);
+done:
+  return st;
+}
+
+/* H square and diagonal without a zero: g->h gets it. */
+static status find_diagonal(global *g) {
+  status st = OK;
+  if (g->H.rows != g->H.columns) goto done;
+  NEW(g->h, g->H.rows);
+  int diagonal = 1;
+  for (long k = 0; k < g->H.n; ++k)
+    if (g->H.row[k] == g->H.column[k])
+      g->h[g->H.row[k]] += g->H.value[k];
+    else
+      diagonal = diagonal && g->H.value[k] == 0.0;
+  for (int i = 0; i < g->H.rows; ++i) diagonal = diagonal && g->h[i] != 0.0;
+  if (diagonal) goto done;
+  memory_free(g->h);
+  g->h = NULL;
+done:
+  return st;
+}
+
+/* 1: M is symmetric as far as a stiffness must be. Dense a[m*m]. */
+static int is_symmetric(int m, const double *a) {
+  double largest = 0.0, skew = 0.0;
+  for (size_t j = 0; j < (size_t)m; ++j)
+    for (size_t i = 0; i <= j; ++i) {
+      double one = a[i + (size_t)m * j], other = a[j + (size_t)m * i];
+      largest = fmax(largest, fabs(one));
+      skew = fmax(skew, fabs(one - other));
+    }
+  return skew <= 1e-10 * largest;
+}
+
+/* With H = diag(h) the unknowns are v themselves: A = inv(H) M inv(H), which
+ * may be singular. *done = 0: not possible. */
+static void take_stiffness(exchange_problem *p, const global *g, int floating,
+                           int *done) {
+  size_t m = (size_t)p->m;
+  double *a = p->matrix;
+  memset(a, 0, m * m * sizeof *a);
+  triplets_dense(&g->M, a);
+  int upper = 0, lower = 0;
+  for (size_t j = 0; j < m; ++j)
+    for (size_t i = 0; i < j; ++i) {
+      upper |= a[i + m * j] != 0.0;
+      lower |= a[j + m * i] != 0.0;
+    }
+  for (size_t j = 0; j < m && upper != lower; ++j)
+    for (size_t i = 0; i < j; ++i)
+      a[i + m * j] = a[j + m * i] = a[i + m * j] + a[j + m * i];
+  *done = is_symmetric(p->m, a);
+  if (!*done) return;
+  for (size_t j = 0; j < m; ++j) {
+    p->load[j] = g->f[j] / g->h[j];
+    for (size_t i = 0; i < m; ++i) a[i + m * j] /= g->h[i] * g->h[j];
+  }
+  turn_signs(p);
+  for (int j = 0; j < p->m; ++j)
+    if (j % p->dim == 0)
+      p->gap[j / p->dim] = g->w[j];
+    else
+      p->ut0[j / p->dim * (p->dim - 1) + j % p->dim - 1] = -g->w[j];
+  set_problem(p, 1, floating);
+}
+
+/* A contact whose stick position is not zero needs it also without friction:
+ * nothing, its tangential force is zero. */
+static status condense_global(const hdf5_source *s, global *g,
+                              exchange_problem *p) {
+  status st = OK;
+  int singular = 0, taken = 0;
+  memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
+  TRY(reduce_global(s->path, &g->M, &g->H, g->f, p->matrix, p->load,
+                    &singular));
+  if (g->h != NULL) take_stiffness(p, g, singular, &taken);
+  if (taken) goto done;
+  if (singular)
+    FAIL(ERR_SINGULAR, "%s: " GLOBAL "/M is singular: v cannot be eliminated",
+         s->path);
+  turn_signs(p);
+  set_problem(p, 0, 0);
+done:
+  return st;
+}
+
+static status read_global(const hdf5_source *s, exchange_problem *p) {
+  status st = OK;
+  global g = {0};
+  p->form = "FCLIB, global";
+  TRY(read_matrices(s, &g));
+  TRY(set_size(s, GLOBAL, g.H.columns, p));
+  TRY(new_arrays(p));
+  TRY(read_vector(s, GLOBAL "/vectors/f", g.M.rows, &g.f));
+  TRY(read_vector(s, GLOBAL "/vectors/w", p->m, &g.w));
+  TRY(read_friction(s, GLOBAL "/vectors/mu", p));
+  TRY(find_diagonal(&g));
+  p->unknowns = g.M.rows;
+  TRY(condense_global(s, &g, p));
+done:
+  global_release(&g);
+  return st;
+}
+
+/* ---- file -----------------------------------------------------------------
+ */
+
+static status open_source(const char *path, hdf5_source *s) {
+  status st = OK;
+  s->path = path;
+  s->file = -1;
+  H5dont_atexit();
+  if (H5Fis_hdf5(path) <= 0)
+    FAIL(ERR_FILE, "%s is no HDF5 file, or cut short", path);
+  s->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (s->file < 0)
+    FAIL(ERR_FILE, "%s cannot be read: the HDF5 file is damaged or cut short",
+         path);
+done:
+  return st;
+}
+
+static status read_source(const hdf5_source *s, exchange_problem *p) {
+  status st = OK;
+  const char *rolling = "rolling friction and its moments";
+  TRY(refuse_group(s, "/fclib_global_rolling", rolling));
+  TRY(refuse_group(s, "/fclib_local_rolling", rolling));
+  if (source_has(s, LOCAL))
+    TRY(read_local(s, p));
+  else if (source_has(s, GLOBAL))
+    TRY(read_global(s, p));
+  else
+    FAIL(ERR_DECK, "%s has neither a group " LOCAL " nor " GLOBAL, s->path);
+done:
+  return st;
+}
+
+status fclib_read(const char *path, exchange_problem *p) {
+  status st = OK;
+  hdf5_source s = {path, -1};
+  H5E_auto2_t print;
+  void *print_data;
+  H5Eget_auto2(H5E_DEFAULT, &print, &print_data);
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  TRY(open_source(path, &s));
+  TRY(read_source(&s, p));
+done:
+  if (s.file >= 0) H5Fclose(s.file);
+  H5Eset_auto2(H5E_DEFAULT, print, print_data);
+  return st;
+}

@@ -1,0 +1,118 @@
+/*
+ * A linear complementarity problem as text: n, the matrix M by rows, q. Numbers
+ * are parted by blanks, commas, semicolons or line ends; # starts a comment
+ * that ends with its line.
+ */
+#include "base/memory.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "exchange/parts.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+enum { WORD = 80 };
+
+typedef struct words {
+  FILE *f;
+  const char *path;
+  int line_no;
+} words;
+
+static int is_gap(int c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == ',' ||
+         c == ';';
+}
+
+/* The next character that counts: comments are passed over. */
+static int next_char(words *w) {
+  int c = getc(w->f);
+  if (c == '#')
+    while (c != '\n' && c != EOF) c = getc(w->f);
+  if (c == '\n') ++w->line_no;
+  return c;
+}
+
+/* The next word; empty at the end of the file. */
+static status next_word(words *w, char word[WORD]) {
+  status st = OK;
+  int c, n = 0;
+  do c = next_char(w);
+  while (is_gap(c));
+  int line_no = w->line_no;
+  for (; c != EOF && !is_gap(c); c = next_char(w)) {
+    if (n + 1 == WORD)
+      FAIL(ERR_DECK,
+           "%s:%d: a word of more than %d characters; expected a "
+           "number",
+           w->path, line_no, WORD - 1);
+    word[n++] = (char)c;
+  }
+  word[n] = '\0';
+  if (ferror(w->f)) TRY(text_failed(w->path, "read", errno));
+done:
+  return st;
+}
+
+static status next_real(words *w, const char *what, int row, double *value) {
+  status st = OK;
+  char word[WORD];
+  TRY(next_word(w, word));
+  if (word[0] == '\0')
+    FAIL(ERR_DECK, "%s: the file ends in %s %d", w->path, what, row);
+  const char *wrong = number_real(word, value);
+  if (wrong != NULL)
+    FAIL(ERR_DECK, "%s:%d: %s %d: %s is %s", w->path, w->line_no, what, row,
+         word, wrong);
+done:
+  return st;
+}
+
+static status read_size(words *w, int *n) {
+  status st = OK;
+  char word[WORD];
+  TRY(next_word(w, word));
+  const char *wrong = number_int(word, n);
+  if (wrong != NULL || *n < 0 || *n > MOST_UNKNOWNS)
+    FAIL(ERR_DECK,
+         "%s: starts with '%s'; expected the number of unknowns, 0 to %d",
+         w->path, word, (int)MOST_UNKNOWNS);
+done:
+  return st;
+}
+
+static status read_numbers(words *w, exchange_problem *p) {
+  status st = OK;
+  char word[WORD];
+  TRY(read_size(w, &p->n));
+  p->dim = 1;
+  p->m = p->unknowns = p->n;
+  p->form = "linear complementarity problem";
+  size_t m = (size_t)p->m;
+  NEW(p->matrix, m * m);
+  NEW(p->load, m);
+  for (size_t i = 0; i < m; ++i)
+    for (size_t j = 0; j < m; ++j)
+      TRY(next_real(w, "row", (int)i + 1, &p->matrix[i + m * j]));
+  for (size_t i = 0; i < m; ++i)
+    TRY(next_real(w, "q, item", (int)i + 1, &p->load[i]));
+  TRY(next_word(w, word));
+  if (word[0] != '\0')
+    FAIL(ERR_DECK, "%s:%d: %s follows the last item of q; expected %d numbers",
+         w->path, w->line_no, word, p->n * (p->n + 1) + 1);
+done:
+  return st;
+}
+
+status lcp_text_read(const char *path, exchange_problem *p) {
+  status st = OK;
+  words w = {.path = path, .line_no = 1};
+  errno = 0;
+  w.f = fopen(path, "r");
+  if (w.f == NULL) TRY(text_failed(path, "open", errno));
+  TRY(read_numbers(&w, p));
+done:
+  if (w.f != NULL) fclose(w.f);
+  return st;
+}

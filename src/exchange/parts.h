@@ -1,0 +1,65 @@
+/*
+ * What the readers of this folder share. Private to src/exchange.
+ */
+#ifndef PROTIS_EXCHANGE_PARTS_H
+#define PROTIS_EXCHANGE_PARTS_H
+
+#include "exchange/exchange.h"
+
+#include <hdf5.h>
+
+/* Unknowns of a dense matrix that can be asked for. */
+enum { MOST_UNKNOWNS = 30000 };
+
+/* ---- dataset.c: datasets of an open file, each call checked ------------- */
+
+typedef struct hdf5_source {
+  const char *path; /* of the file, for messages                             */
+  hid_t file;
+} hdf5_source;
+
+/* 1 if there is a link of that absolute name that can be opened. */
+int source_has(const hdf5_source *s, const char *name);
+/* One integer. */
+status source_int(const hdf5_source *s, const char *name, int *value);
+/* All items of a dataset: *n of them, new. Absent: error, unless "optional";
+ * then *n = 0. Integers must fit an int, reals must be finite. */
+status source_ints(const hdf5_source *s, const char *name, int optional,
+                   long *n, int **value);
+status source_reals(const hdf5_source *s, const char *name, int optional,
+                    long *n, double **value);
+
+/* ---- matrix.c: the matrix group ------------------------------------------ */
+
+/* Entries in the order of the file; repeated ones add up. */
+typedef struct triplets {
+  int rows, columns;
+  long n;
+  int *row, *column; /* [n]                                                  */
+  double *value;     /* [n]                                                  */
+} triplets;
+
+/* GROUP/m, n, nz, p, i, x: triplet, by columns (CSC) or by rows (CSR). */
+status triplets_read(const hdf5_source *s, const char *group, triplets *t);
+void triplets_free(triplets *t);
+/* Dense, column major with leading dimension t->rows, into zeroed a. */
+void triplets_dense(const triplets *t, double *a);
+
+/* ---- fclib.c, lcp_text.c --------------------------------------------------
+ */
+
+status fclib_read(const char *path, exchange_problem *p);
+status lcp_text_read(const char *path, exchange_problem *p);
+
+/* ---- reduce.c --------------------------------------------------------------
+ */
+
+/*
+ * W[m*m] = H' inv(M) H (symmetric) and q[m] = H' inv(M) f + w, both given
+ * zeroed and with w; M symmetric or one triangle of it. "path" for messages.
+ * *singular: M is singular, nothing is done.
+ */
+status reduce_global(const char *path, const triplets *M, const triplets *H,
+                     const double *f, double *W, double *q, int *singular);
+
+#endif

@@ -1,0 +1,263 @@
+/*
+ * A problem from a file: one solve, told to the outputs as one increment. A
+ * plain LCP goes to complementary pivoting; where that ends on a ray although
+ * the matrix does not make the ray a proof, other covering vectors are tried.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "history/history.h"
+#include "solver/lcp.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+enum { COVERS = 12, LOG = 200 };
+
+/* One solve with all its arrays. */
+typedef struct discrete {
+  const model *m;
+  const step *step;
+  const exchange_problem *p;
+  contact_surface surface; /* numbers only                                   */
+  double *u, *r;           /* [m] start and answer; LCP: w, z                */
+  double *gap, *slip, *g;  /* [n], [n*(dim-1)], [n]                          */
+  contact_status *contact; /* [n]                                            */
+  solver_report report;
+  char log[LOG];
+} discrete;
+
+static status discrete_new(discrete *d) {
+  status st = OK;
+  const exchange_problem *p = d->p;
+  NEW(d->surface.node_no, p->n);
+  NEW(d->u, p->m);
+  NEW(d->r, p->m);
+  NEW(d->gap, p->n);
+  NEW(d->slip, (size_t)p->n * (size_t)(p->dim - 1));
+  NEW(d->g, p->n);
+  NEW(d->contact, p->n);
+  d->surface.dim = p->dim;
+  d->surface.n = p->n;
+  for (int i = 0; i < p->n; ++i) d->surface.node_no[i] = (size_t)i + 1;
+done:
+  return st;
+}
+
+static void discrete_free(discrete *d) {
+  memory_free(d->surface.node_no);
+  memory_free(d->u);
+  memory_free(d->r);
+  memory_free(d->gap);
+  memory_free(d->slip);
+  memory_free(d->g);
+  memory_free(d->contact);
+}
+
+/* ---- contact problems -----------------------------------------------------
+ */
+
+static status solve_contact(discrete *d, const history_sink *sink) {
+  status st = OK;
+  contact_solver *solver = NULL;
+  const contact_problem *cp = &d->p->cp;
+  const solver_listener listener = {sink->iteration, sink->ctx};
+  if (cp->A == NULL) memcpy(d->u, cp->f, (size_t)cp->m * sizeof *d->u);
+  TRY(contact_solver_new(&d->step->solver, &solver));
+  TRY(contact_solve(solver, cp, listener.step == NULL ? NULL : &listener, d->u,
+                    d->r, &d->report));
+  snprintf(d->log, sizeof d->log, "%s", contact_solver_log(solver));
+  contact_classify(cp, d->u, d->r, d->contact);
+  if (cp->g0 != NULL) contact_limit(cp, d->r, d->g);
+  for (int i = 0; i < cp->n; ++i) {
+    d->gap[i] = cp->gap[i] - d->u[cp->dim * i];
+    for (int k = 1; k < cp->dim; ++k) {
+      int s = i * (cp->dim - 1) + k - 1;
+      d->slip[s] = d->u[cp->dim * i + k] - (cp->ut0 == NULL ? 0.0 : cp->ut0[s]);
+    }
+  }
+done:
+  contact_solver_free(solver);
+  return st;
+}
+
+/* ---- linear complementarity problems --------------------------------------
+ */
+
+/*
+ * How far z is from a solution, -: largest of |min(z_i c, w_i)| over the rows,
+ * c the largest |M|, over the largest |q|. w[n] = q + M z.
+ */
+static double lcp_residual(const exchange_problem *p, const double *z,
+                           double *w) {
+  double c = 0.0, scale = 0.0, worst = 0.0;
+  size_t n = (size_t)p->n;
+  contact_product(p->n, p->matrix, z, w);
+  for (size_t k = 0; k < n * n; ++k) c = fmax(c, fabs(p->matrix[k]));
+  for (size_t i = 0; i < n; ++i) {
+    w[i] += p->load[i];
+    scale = fmax(scale, fabs(p->load[i]));
+    double miss = fabs(fmin(c * z[i], w[i]));
+    if (!(miss <= worst)) worst = miss;
+    if (isnan(w[i]) || isnan(z[i])) return NAN;
+  }
+  if (scale > 0.0) return worst / scale;
+  return worst > 0.0 ? HUGE_VAL : 0.0;
+}
+
+/* Positive numbers of a fixed series, [0.25, 4). */
+static double cover(unsigned *seed) {
+  *seed = *seed * 1664525u + 1013904223u;
+  return ldexp(1.0 + (double)(*seed >> 8) * 0x1p-24,
+               (int)(*seed >> 6 & 3u) - 2);
+}
+
+/* Lemke's method with the covering vector d: that of the rows over d with a
+ * vector of ones. Work: rows[n*n], q[n]. */
+static status solve_covered(const exchange_problem *p, const double *d,
+                            int max_iter, double *rows, double *q, double *z,
+                            lcp_report *rep) {
+  size_t n = (size_t)p->n;
+  for (size_t j = 0; j < n; ++j)
+    for (size_t i = 0; i < n; ++i)
+      rows[i + n * j] = p->matrix[i + n * j] / d[i];
+  for (size_t i = 0; i < n; ++i) q[i] = p->load[i] / d[i];
+  return lcp_lemke(p->n, rows, q, max_iter, z, rep);
+}
+
+static status try_covers(discrete *s) {
+  status st = OK;
+  const exchange_problem *p = s->p;
+  double *d = NULL, *rows = NULL, *q = NULL;
+  double tol = s->step->solver.tol;
+  lcp_report rep;
+  unsigned seed = 1;
+  NEW(d, p->n);
+  NEW(rows, (size_t)p->n * (size_t)p->n);
+  NEW(q, p->n);
+  for (int k = 0; k < COVERS; ++k) {
+    for (int i = 0; i < p->n; ++i) d[i] = k == 0 ? 1.0 : cover(&seed);
+    TRY(solve_covered(p, d, s->step->solver.max_iter, rows, q, s->r, &rep));
+    s->report.iterations += rep.pivots;
+    s->report.limit_updates = k;
+    s->report.residual = lcp_residual(p, s->r, s->u);
+    if (s->report.residual <= tol) {
+      s->report.outcome = CONVERGED;
+      break;
+    }
+    if (k == 0 || rep.outcome == STOPPED_RAY)
+      s->report.outcome =
+          rep.outcome == CONVERGED ? STOPPED_STAGNATION : rep.outcome;
+  }
+done:
+  memory_free(d);
+  memory_free(rows);
+  memory_free(q);
+  return st;
+}
+
+static status solve_lcp(discrete *d) {
+  status st = OK;
+  double start = timer_cpu();
+  const solver_ops *ops = d->step->solver.ops;
+  d->report = (solver_report){.outcome = CONVERGED, .solver = "lemke"};
+  if (ops != NULL && strcasecmp(ops->name, "lemke") != 0)
+    FAIL(ERR_DECK,
+         "deck line %d: METHOD=%s does not solve a plain linear "
+         "complementarity problem; use LEMKE or AUTO",
+         d->step->solver_at.line_no, ops->name);
+  d->report.residual = lcp_residual(d->p, d->r, d->u);
+  if (!(d->report.residual <= d->step->solver.tol)) TRY(try_covers(d));
+  for (int i = 0; i < d->p->n; ++i) {
+    d->contact[i] = d->r[i] > 0.0 ? CONTACT_SLIP : CONTACT_OPEN;
+    d->gap[i] = d->u[i];
+  }
+done:
+  d->report.cpu = timer_cpu() - start;
+  return st;
+}
+
+/* ---- what the outputs are told --------------------------------------------
+ */
+
+static state state_of(const discrete *d) {
+  const exchange_problem *p = d->p;
+  const contact_problem *cp = p->dim > 1 ? &p->cp : NULL;
+  state s = {.step_no = 1,
+             .increment_no = 1,
+             .total_no = 1,
+             .attempt = 1,
+             .t = d->step->total,
+             .dt = d->step->total,
+             .end_of_step = 1,
+             .problem = cp,
+             .surface = &d->surface,
+             .uc = d->u,
+             .rc = d->r,
+             .gap = d->gap,
+             .slip = d->slip,
+             .limit = cp != NULL && cp->g0 != NULL ? d->g : NULL,
+             .contact = d->contact,
+             .report = d->report,
+             .solver_log = d->log,
+             .settled = d->report.outcome > 0};
+  for (int i = 0; i < p->n; ++i) {
+    s.n_open += d->contact[i] == CONTACT_OPEN;
+    s.n_slip += d->contact[i] == CONTACT_SLIP;
+    s.n_stick += d->contact[i] == CONTACT_STICK;
+  }
+  return s;
+}
+
+static status tell_ready(const discrete *d, const history_sink *sink) {
+  const exchange_problem *p = d->p;
+  setup_facts facts = {
+      .info = {.unknowns = p->unknowns, .contact_unknowns = p->m},
+      .condition = NAN,
+      .floating = p->cp.floating,
+      .n_contact_node = p->n};
+  if (sink->ready == NULL) return OK;
+  return sink->ready(sink->ctx, &facts, &d->surface);
+}
+
+static int is_fatal(outcome o) {
+  return o == STOPPED_NAN || o == STOPPED_RAY || o == STOPPED_SINGULAR;
+}
+
+static status tell_answer(discrete *d, const history_sink *sink, double cpu,
+                          int *unsettled) {
+  status st = OK;
+  state s = state_of(d);
+  const char *why = outcome_text(d->report.outcome);
+  s.cpu = timer_cpu() - cpu;
+  *unsettled = !s.settled;
+  if (!is_fatal(d->report.outcome)) {
+    if (sink->increment != NULL) TRY(sink->increment(sink->ctx, &s));
+    goto done;
+  }
+  s.n_open = s.n_slip = s.n_stick = 0;
+  if (sink->rejected != NULL) TRY(sink->rejected(sink->ctx, &s, why));
+  FAIL(ERR_SINGULAR, "no solution found: %s%s%s%s", why,
+       d->log[0] == '\0' ? "" : " (", d->log, d->log[0] == '\0' ? "" : ")");
+done:
+  return st;
+}
+
+status condensed_run(const model *m, const exchange_problem *p,
+                     const history_sink *sink, int *unsettled) {
+  status st = OK;
+  discrete d = {.m = m, .step = &m->steps[0], .p = p};
+  double cpu = timer_cpu();
+  *unsettled = 0;
+  TRY(discrete_new(&d));
+  TRY(tell_ready(&d, sink));
+  timer_enter(STAGE_CONTACT);
+  st = p->dim == 1 ? solve_lcp(&d) : solve_contact(&d, sink);
+  timer_leave(STAGE_CONTACT);
+  TRY(st);
+  TRY(tell_answer(&d, sink, cpu, unsettled));
+done:
+  discrete_free(&d);
+  return st;
+}

@@ -1,0 +1,392 @@
+/*
+ * JOB_condensed_NNNNN.h5: the condensed problem of an increment in the layout
+ * of FCLIB (exchange.h), one problem a file, NNNNN the increments since the
+ * start.
+ *
+ *   /fclib_local    W = S inv(A) S, q = S inv(A) f + d;  S = diag(-1, 1[, 1])
+ *                   per node, d_N = gap, d_T = -ut0
+ *   /fclib_global   where A is singular (contact alone holds a body): M = A,
+ *                   H = S, f, w = d; v is the displacement
+ *   /solution       u, r [, v] if the increment reached its tolerance
+ *
+ * Only Coulomb friction of each node by itself has a place in this layout. A
+ * prescribed tangential unknown has no force and no motion: q_T = 0 there.
+ */
+#include "base/memory.h"
+#include "output/writers.h"
+
+#include <errno.h>
+#include <hdf5.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { TRIPLETS = 0, BY_ROW = -2 };
+
+/* What is written; arrays owned. */
+typedef struct written {
+  const contact_problem *cp;
+  const char *path;
+  hid_t file;
+  int local;
+  double *M;        /* [m*m] W or A, by rows, in the signs of FCLIB           */
+  double *q, *mu;   /* [m], [n]                                               */
+  int *start, *col; /* indices of the matrix                                  */
+  double *u, *r;    /* [m]                                                    */
+} written;
+
+static double sign_of(int dim, int dof) { return dof % dim == 0 ? -1.0 : 1.0; }
+
+/* ---- what the layout can hold ---------------------------------------------
+ */
+
+static status check_friction(const contact_problem *cp) {
+  status st = OK;
+  for (int i = 0; i < cp->n && cp->g0 != NULL; ++i)
+    if (cp->g0[i] != 0.0)
+      FAIL(ERR_DECK,
+           "*OUTPUT, CONDENSED=FCLIB: the layout holds Coulomb "
+           "friction only, no given sliding limit");
+  for (int i = 0; i < cp->n && cp->B != NULL; ++i)
+    for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
+      if (cp->B->col[k] != i && cp->B->val[k] != 0.0)
+        FAIL(ERR_DECK,
+             "*OUTPUT, CONDENSED=FCLIB: the layout holds friction of "
+             "each node by itself only, no average");
+  for (int k = 0; k < cp->n * (cp->dim - 1) && cp->side_gap != NULL; ++k)
+    if (cp->side_gap[k] < HUGE_VAL)
+      FAIL(ERR_DECK,
+           "*OUTPUT, CONDENSED=FCLIB: the layout has no place for "
+           "nodes that touch two obstacles");
+done:
+  return st;
+}
+
+/* ---- the numbers ----------------------------------------------------------
+ */
+
+/* gap for the normal, -ut0 for a tangential unknown. */
+static double offset_of(const contact_problem *cp, int dof) {
+  int i = dof / cp->dim, k = dof % cp->dim - 1;
+  if (k < 0) return cp->gap[i];
+  return cp->ut0 == NULL ? 0.0 : -cp->ut0[i * (cp->dim - 1) + k];
+}
+
+static int is_held(const contact_problem *cp, int dof) {
+  return cp->held != NULL && cp->held[dof];
+}
+
+/* inv(A) in place of the copy of A, both triangles; 0: A is singular. */
+static int invert(int m, double *a) {
+  double rcond = 0.0, norm = 0.0;
+  size_t n = (size_t)m;
+  if (m == 0) return 1;
+  for (size_t j = 0; j < n; ++j) {
+    double sum = 0.0;
+    for (size_t i = 0; i < n; ++i) sum += fabs(a[i + n * j]);
+    norm = fmax(norm, sum);
+  }
+  if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', m, a, m) != 0) return 0;
+  if (LAPACKE_dpocon(LAPACK_COL_MAJOR, 'U', m, a, m, norm, &rcond) != 0 ||
+      !(rcond > 1e-13))
+    return 0;
+  if (LAPACKE_dpotri(LAPACK_COL_MAJOR, 'U', m, a, m) != 0) return 0;
+  for (size_t j = 0; j < n; ++j)
+    for (size_t i = 0; i < j; ++i) a[j + n * i] = a[i + n * j];
+  return 1;
+}
+
+/* W or A by rows, signs turned. M holds it by columns. */
+static void turn_matrix(const contact_problem *cp, double *M) {
+  size_t m = (size_t)cp->m;
+  for (int j = 0; j < cp->m; ++j)
+    for (int i = 0; i <= j; ++i) {
+      size_t above = (size_t)i + m * (size_t)j,
+             below = (size_t)j + m * (size_t)i;
+      double s = sign_of(cp->dim, i) * sign_of(cp->dim, j), swap = M[above];
+      M[above] = s * M[below];
+      M[below] = s * swap;
+    }
+}
+
+static status make_matrix(written *f) {
+  status st = OK;
+  const contact_problem *cp = f->cp;
+  size_t size = (size_t)cp->m * (size_t)cp->m;
+  double *a = NULL;
+  NEW(a, size);
+  f->M = a;
+  f->local = 1;
+  if (cp->A == NULL) {
+    memcpy(a, cp->W, size * sizeof *a);
+    goto done;
+  }
+  memcpy(a, cp->A, size * sizeof *a);
+  if (!cp->floating && invert(cp->m, a)) goto done;
+  memcpy(a, cp->A, size * sizeof *a);
+  f->local = 0;
+done:
+  return st;
+}
+
+/* q of the local problem; w of the global one. M is still W by columns. */
+static status make_vectors(written *f) {
+  status st = OK;
+  const contact_problem *cp = f->cp;
+  NEW(f->q, cp->m);
+  NEW(f->mu, cp->n);
+  if (f->local && cp->A == NULL)
+    memcpy(f->q, cp->f, (size_t)cp->m * sizeof *f->q);
+  else if (f->local)
+    contact_product(cp->m, f->M, cp->f, f->q);
+  for (int k = 0; k < cp->m; ++k) {
+    f->q[k] = sign_of(cp->dim, k) * f->q[k] + offset_of(cp, k);
+    if (is_held(cp, k) && f->local) f->q[k] = 0.0;
+  }
+  for (int i = 0; i < cp->n && cp->B != NULL; ++i)
+    for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
+      if (cp->B->col[k] == i) f->mu[i] += cp->B->val[k];
+done:
+  return st;
+}
+
+static status make_solution(written *f, const double *u, const double *r) {
+  status st = OK;
+  const contact_problem *cp = f->cp;
+  if (u == NULL) goto done;
+  NEW(f->u, cp->m);
+  NEW(f->r, cp->m);
+  for (int k = 0; k < cp->m; ++k) {
+    f->u[k] = sign_of(cp->dim, k) * u[k] + offset_of(cp, k);
+    f->r[k] = sign_of(cp->dim, k) * r[k];
+  }
+done:
+  return st;
+}
+
+/* ---- datasets -------------------------------------------------------------
+ */
+
+static status failed(const written *f, const char *name) {
+  return status_fail(ERR_FILE, __func__, __LINE__, "%s: %s cannot be written",
+                     f->path, name);
+}
+
+static status put_group(const written *f, const char *name) {
+  hid_t group =
+      H5Gcreate2(f->file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  if (group < 0 || H5Gclose(group) < 0) return failed(f, name);
+  return OK;
+}
+
+static status put_data(const written *f, const char *name, hid_t type, size_t n,
+                       const void *data) {
+  status st = OK;
+  hsize_t size = n;
+  hid_t space = H5Screate_simple(1, &size, NULL), set = -1;
+  hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_obj_track_times(plan, 0);
+  if (space >= 0)
+    set =
+        H5Dcreate2(f->file, name, type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
+  hid_t as =
+      H5Tget_class(type) == H5T_INTEGER ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE;
+  int bad = set < 0 || (n > 0 && H5Dwrite(set, as, H5S_ALL, H5S_ALL,
+                                          H5P_DEFAULT, data) < 0);
+  if (set >= 0 && H5Dclose(set) < 0) bad = 1;
+  if (space >= 0) H5Sclose(space);
+  H5Pclose(plan);
+  if (bad) TRY(failed(f, name));
+done:
+  return st;
+}
+
+static status put_reals(const written *f, const char *name, size_t n,
+                        const double *x) {
+  return put_data(f, name, H5T_IEEE_F64LE, n, x);
+}
+
+static status put_int(const written *f, const char *group, const char *name,
+                      int value) {
+  char full[80];
+  snprintf(full, sizeof full, "%s/%s", group, name);
+  return put_data(f, full, H5T_STD_I32LE, 1, &value);
+}
+
+static status put_text(const written *f, const char *name, const char *text) {
+  status st = OK;
+  hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR), set = -1;
+  H5Tset_size(type, strlen(text) + 1);
+  H5Tset_strpad(type, H5T_STR_NULLTERM);
+  hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_obj_track_times(plan, 0);
+  set = H5Dcreate2(f->file, name, type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
+  int bad =
+      set < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0;
+  if (set >= 0 && H5Dclose(set) < 0) bad = 1;
+  H5Tclose(type);
+  H5Sclose(space);
+  H5Pclose(plan);
+  if (bad) TRY(failed(f, name));
+done:
+  return st;
+}
+
+static status put_matrix(const written *f, const char *group, int nz, size_t n,
+                         const double *x) {
+  status st = OK;
+  char name[80];
+  int m = f->cp->m;
+  size_t n_p = nz == BY_ROW ? (size_t)m + 1 : n;
+  TRY(put_group(f, group));
+  TRY(put_int(f, group, "nzmax", (int)n));
+  TRY(put_int(f, group, "m", m));
+  TRY(put_int(f, group, "n", m));
+  TRY(put_int(f, group, "nz", nz));
+  snprintf(name, sizeof name, "%s/p", group);
+  TRY(put_data(f, name, H5T_STD_I32LE, n_p, f->start));
+  snprintf(name, sizeof name, "%s/i", group);
+  TRY(put_data(f, name, H5T_STD_I32LE, n, f->col));
+  snprintf(name, sizeof name, "%s/x", group);
+  TRY(put_reals(f, name, n, x));
+done:
+  return st;
+}
+
+/* ---- the two kinds --------------------------------------------------------
+ */
+
+static status write_local(written *f) {
+  status st = OK;
+  size_t m = (size_t)f->cp->m;
+  NEW(f->start, m + 1);
+  NEW(f->col, m * m);
+  for (size_t i = 0; i <= m; ++i) f->start[i] = (int)(m * i);
+  for (size_t k = 0; k < m * m; ++k) f->col[k] = (int)(k % m);
+  TRY(put_group(f, "/fclib_local"));
+  TRY(put_int(f, "/fclib_local", "spacedim", f->cp->dim));
+  TRY(put_matrix(f, "/fclib_local/W", BY_ROW, m * m, f->M));
+  TRY(put_group(f, "/fclib_local/vectors"));
+  TRY(put_reals(f, "/fclib_local/vectors/q", m, f->q));
+  TRY(put_reals(f, "/fclib_local/vectors/mu", (size_t)f->cp->n, f->mu));
+done:
+  return st;
+}
+
+/* M and f keep the signs of contact.h: H turns them. */
+static status write_global(written *f) {
+  status st = OK;
+  const contact_problem *cp = f->cp;
+  size_t m = (size_t)cp->m;
+  double *h = NULL;
+  NEW(f->start, m * m);
+  NEW(f->col, m * m);
+  NEW(h, m);
+  TRY(put_group(f, "/fclib_global"));
+  TRY(put_int(f, "/fclib_global", "spacedim", cp->dim));
+  for (size_t k = 0; k < m * m; ++k) {
+    f->start[k] = (int)(k / m);
+    f->col[k] = (int)(k % m);
+  }
+  TRY(put_matrix(f, "/fclib_global/M", (int)(m * m), m * m, cp->A));
+  for (size_t k = 0; k < m; ++k) {
+    f->start[k] = f->col[k] = (int)k;
+    h[k] = sign_of(cp->dim, (int)k);
+  }
+  TRY(put_matrix(f, "/fclib_global/H", (int)m, m, h));
+  TRY(put_group(f, "/fclib_global/vectors"));
+  TRY(put_reals(f, "/fclib_global/vectors/f", m, cp->f));
+  TRY(put_reals(f, "/fclib_global/vectors/w", m, f->q));
+  TRY(put_reals(f, "/fclib_global/vectors/mu", (size_t)cp->n, f->mu));
+done:
+  memory_free(h);
+  return st;
+}
+
+static status write_solution(const written *f, const double *v) {
+  status st = OK;
+  size_t m = (size_t)f->cp->m;
+  if (f->u == NULL) goto done;
+  TRY(put_group(f, "/solution"));
+  TRY(put_reals(f, "/solution/u", m, f->u));
+  TRY(put_reals(f, "/solution/r", m, f->r));
+  if (!f->local) TRY(put_reals(f, "/solution/v", m, v));
+done:
+  return st;
+}
+
+static status write_info(const written *f, const char *title,
+                         const char *description) {
+  status st = OK;
+  char name[64];
+  const char *root = f->local ? "/fclib_local/info" : "/fclib_global/info";
+  TRY(put_group(f, root));
+  snprintf(name, sizeof name, "%s/title", root);
+  TRY(put_text(f, name, title));
+  snprintf(name, sizeof name, "%s/description", root);
+  TRY(put_text(f, name, description));
+  snprintf(name, sizeof name, "%s/math_info", root);
+  TRY(put_text(f, name,
+               "quasistatic increment: u_N is the gap, u_T the slip of the "
+               "increment, r nodal forces"));
+done:
+  return st;
+}
+
+static status write_all(written *f, const double *v, const char *title,
+                        const char *description) {
+  status st = OK;
+  if (f->local) turn_matrix(f->cp, f->M);
+  f->file = H5Fcreate(f->path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  if (f->file < 0) TRY(text_failed(f->path, "write", errno));
+  TRY(f->local ? write_local(f) : write_global(f));
+  TRY(write_info(f, title, description));
+  TRY(write_solution(f, v));
+  if (H5Fflush(f->file, H5F_SCOPE_LOCAL) < 0) TRY(failed(f, "the file"));
+done:
+  if (f->file >= 0 && H5Fclose(f->file) < 0 && st == OK)
+    st = failed(f, "the file");
+  return st;
+}
+
+static void written_free(written *f) {
+  memory_free(f->M);
+  memory_free(f->q);
+  memory_free(f->mu);
+  memory_free(f->start);
+  memory_free(f->col);
+  memory_free(f->u);
+  memory_free(f->r);
+}
+
+status fclib_write(const contact_problem *cp, const double *u, const double *r,
+                   const char *title, const char *description,
+                   const char *path) {
+  status st = OK;
+  written f = {.cp = cp, .file = -1};
+  H5E_auto2_t print;
+  void *print_data;
+  char *aside = text_path("", path, "tmp");
+  H5dont_atexit();
+  H5Eget_auto2(H5E_DEFAULT, &print, &print_data);
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  if (aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of %s", path);
+  f.path = aside;
+  if (cp->m > 46340)
+    FAIL(ERR_DECK, "%s: %d unknowns are too many for the layout of FCLIB", path,
+         cp->m);
+  TRY(check_friction(cp));
+  TRY(make_matrix(&f));
+  TRY(make_vectors(&f));
+  TRY(make_solution(&f, u, r));
+  errno = 0;
+  TRY(write_all(&f, u, title, description));
+  if (rename(aside, path) != 0) TRY(text_failed(path, "replace", errno));
+done:
+  if (st != OK && aside != NULL) unlink(aside);
+  H5Eset_auto2(H5E_DEFAULT, print, print_data);
+  written_free(&f);
+  memory_free(aside);
+  return st;
+}
