@@ -48,7 +48,9 @@ void triplets_dense(const triplets *t, double *a);
 /* ---- fclib.c, lcp_text.c --------------------------------------------------
  */
 
+/* p is all zero before; release it on failure too. */
 status fclib_read(const char *path, exchange_problem *p);
+/* The same for a text. */
 status lcp_text_read(const char *path, exchange_problem *p);
 
 /* ---- reduce.c --------------------------------------------------------------
