@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/timer.h"
 #include "fem/factor.h"
+#include "fem/rigid.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,6 +20,7 @@ struct condensed {
   double *A; /* [m*m]                                              */
   body_factor *body;
   free_motion *motion; /* those only contact holds                           */
+  rigid_set rigid;     /* the same as vectors                                */
   double *load;        /* [dim*n_node] in local components                   */
   double *prescribed;  /* [dim*n_node] local components, of the last load    */
   const char *ordering;
@@ -173,6 +175,8 @@ static status form_matrix(condensed *c) {
   NEW(c->A, (size_t)c->m * (size_t)c->m);
   for (int q = 0; q < c->n_body; ++q)
     TRY(body_factor_condense(&c->body[q], c->m, c->A));
+  TRY(rigid_orthonormalise(c->k, &c->d, &c->rigid));
+  TRY(rigid_project(&c->rigid, c->A));
   fill_held(c);
 done:
   timer_leave(STAGE_CONDENSE);
@@ -195,7 +199,7 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   NEW(floating, k->n_node);
   NEW(c->load, (size_t)k->dim * (size_t)k->n_node);
   NEW(c->prescribed, (size_t)k->dim * (size_t)k->n_node);
-  TRY(support_motions(d, &c->n_motion, &c->motion, floating));
+  TRY(support_motions(d, &c->n_motion, &c->motion, floating, &c->rigid));
   TRY(check_support(c));
   TRY(factor_bodies(c, floating));
   TRY(form_matrix(c));
@@ -218,6 +222,7 @@ void condensed_free(condensed *c) {
   memory_free(c->A);
   memory_free(c->body);
   memory_free(c->motion);
+  rigid_release(&c->rigid);
   memory_free(c->load);
   memory_free(c->prescribed);
   memory_free(c);
@@ -287,6 +292,7 @@ status condense_load(condensed *c, const double *F, const double *ud,
   const contact_surface *s = c->d.surface;
   timer_enter(STAGE_RECOVERY);
   set_load(c, F);
+  rigid_loads(c->k, &c->d, &c->rigid, c->load);
   if (set_prescribed(c, ud)) move_prescribed(c);
   for (int q = 0; q < c->m; ++q) {
     const size_t dim = (size_t)c->k->dim, row = (size_t)q;
@@ -296,6 +302,7 @@ status condense_load(condensed *c, const double *F, const double *ud,
   }
   for (int q = 0; q < c->n_body; ++q)
     TRY(body_factor_forward(&c->body[q], c->load, f_c, c->cm));
+  rigid_balance(&c->rigid, f_c);
 done:
   timer_leave(STAGE_RECOVERY);
   return st;

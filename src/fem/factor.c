@@ -290,8 +290,7 @@ static int covers(const body_factor *f, int m) {
   return 1;
 }
 
-/* Blocked copy of the upper triangle to the lower one. */
-static void mirror(size_t n, double *A) {
+void symmetric_fill(size_t n, double *A) {
   enum { TILE = 32 };
   for (size_t jb = 0; jb < n; jb += TILE)
     for (size_t ib = 0; ib <= jb; ib += TILE)
@@ -319,7 +318,7 @@ status body_factor_condense(const body_factor *f, int m, double *A) {
     S[j * (nc + 1)] -= f->spring;
     for (size_t i = 0; i <= j; ++i) S[i + nc * j] *= scale;
   }
-  mirror(nc, S);
+  symmetric_fill(nc, S);
   for (size_t j = 0; !in_place && j < nc; ++j) {
     double *to = A + stride * (size_t)f->contact_id[nc - 1 - j];
     for (size_t i = 0; i < nc; ++i)

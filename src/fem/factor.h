@@ -38,6 +38,8 @@ status body_factor_build(const stiffness *k, int floating, const long *number,
 void body_factor_release(body_factor *f, cholmod_common *cm);
 /* Put the body's part of the condensed stiffness into A[m*m] (zero there). */
 status body_factor_condense(const body_factor *f, int m, double *A);
+/* Copy the upper triangle of A[n*n] to the lower one. */
+void symmetric_fill(size_t n, double *A);
 /* y = L^-1 P load, kept; the body's rows of f_c[m]. load[dim*n_node]. */
 status body_factor_forward(body_factor *f, const double *load, double *f_c,
                            cholmod_common *cm);

@@ -21,9 +21,4 @@ struct stiffness {
 
 /* Elements round each node: elem[start[i] .. start[i+1]). Both are new. */
 status node_elements(const mesh *m, size_t **start, int **elem);
-/* domain_free_motions, and floating[n_node] (or NULL): 1 on the nodes of
- * bodies with such motions. */
-status support_motions(const domain *d, int *n, free_motion **list,
-                       unsigned char *floating);
-
 #endif

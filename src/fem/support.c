@@ -1,17 +1,15 @@
 /*
  * Rigid motions that the prescribed components leave to each body.
  *
- * A motion u(x) = t + w x p, p = (x - centre)/size, is a vector of rotations
- * and translations per rigid piece (2-D: w, tx, ty; axisymmetric: ty; 3-D:
- * wx, wy, wz, tx, ty, tz). Every prescribed component, every hinge between
- * pieces and, in turn, every contact normal and tangent is one linear
- * condition on it. The conditions are gathered by Givens rotations in a
- * triangle whose null space (singular values below rank_limit of the
- * largest) is what stays free.
+ * A motion is a vector of rotations and translations per rigid piece (rigid.h).
+ * Every prescribed component, every hinge between pieces and, in turn, every
+ * contact normal and tangent is one linear condition on it. The conditions are
+ * gathered by Givens rotations in a triangle whose null space (singular values
+ * below rank_limit of the largest) is what stays free.
  */
 #include "base/memory.h"
 #include "fem/pieces.h"
-#include "fem/stiffness.h"
+#include "fem/rigid.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -20,6 +18,8 @@
 
 /* Lever arms below this part of the body's size give no support. */
 static const double rank_limit = 1e-8;
+/* Motions below this part strain nothing: they are free to rounding. */
+static const double exact_limit = 1e-12;
 /* Bodies with more rigid pieces are taken as one rigid piece. */
 enum { MAX_PIECES = 16, MAX_COLUMNS = 6 * MAX_PIECES };
 
@@ -28,10 +28,10 @@ typedef struct body {
   const pieces *p;
   const int *contact; /* [n_node] contact node or -1                      */
   int id, first_piece, n_piece, joined; /* joined: pieces count as one        */
-  int modes, n; /* motions per piece; columns                       */
+  int n; /* columns: motions of all pieces                             */
   int n_node;
   const int *node; /* [n_node] of this body                            */
-  double centre[3], size;
+  rigid_modes at;
 } body;
 
 typedef struct triangle { /* upper, row major */
@@ -57,26 +57,12 @@ static void add_row(triangle *t, double *row) {
  * of one piece. */
 static void motion_row(const body *b, int node, const double *direction,
                        double *row) {
-  const int dim = b->d->mesh->dim;
-  const double *x = b->d->mesh->x + (size_t)dim * (size_t)node;
-  double p[3], *v = row;
-  for (int c = 0; c < dim; ++c) p[c] = (x[c] - b->centre[c]) / b->size;
-  if (b->modes == 1) {
-    row[0] = direction[1];
-  } else if (dim == 2) {
-    *v++ = p[0] * direction[1] - p[1] * direction[0];
-    memcpy(v, direction, 2 * sizeof *v);
-  } else {
-    for (int c = 0; c < 3; ++c) {
-      const int i = (c + 1) % 3, j = (c + 2) % 3;
-      *v++ = p[i] * direction[j] - p[j] * direction[i];
-    }
-    memcpy(v, direction, 3 * sizeof *v);
-  }
+  const mesh *m = b->d->mesh;
+  rigid_row(&b->at, m->x + (size_t)m->dim * (size_t)node, direction, row);
 }
 
 static int column_of(const body *b, int elem_id) {
-  return b->joined ? 0 : b->modes * (b->p->piece[elem_id] - b->first_piece);
+  return b->joined ? 0 : b->at.modes * (b->p->piece[elem_id] - b->first_piece);
 }
 
 static void add_condition(const body *b, int node, const double *direction,
@@ -100,7 +86,7 @@ static void add_hinges(const body *b, int node, triangle *t) {
       direction[c] = 1;
       motion_row(b, node, direction, row + first);
       motion_row(b, node, direction, row + other);
-      for (int k = 0; k < b->modes; ++k) row[other + k] = -row[other + k];
+      for (int k = 0; k < b->at.modes; ++k) row[other + k] = -row[other + k];
       add_row(t, row);
     }
   }
@@ -142,8 +128,10 @@ static void add_contact(const body *b, int normals, triangle *t) {
   }
 }
 
-/* Orthonormal null space of the triangle: rows of Z; its dimension. */
-static status null_space(const triangle *t, double *Z, int *rank) {
+/* Orthonormal null space of the triangle, singular values up to a part "limit"
+ * of the largest: rows of Z; its dimension. */
+static status null_space(const triangle *t, double limit, double *Z,
+                         int *rank) {
   status st = OK;
   const int n = t->n;
   double *a = NULL, *u = NULL, *work = NULL, s[MAX_COLUMNS], none;
@@ -157,7 +145,7 @@ static status null_space(const triangle *t, double *Z, int *rank) {
     FAIL(ERR_INTERNAL, "singular values of the supports not found");
   *rank = 0;
   for (int k = 0; k < n; ++k) {
-    if (s[0] > 0 && s[k] > rank_limit * s[0]) continue;
+    if (s[0] > 0 && s[k] > limit * s[0]) continue;
     memcpy(Z + (size_t)(*rank)++ * (size_t)n, u + (size_t)k * (size_t)n,
            (size_t)n * sizeof *Z);
   }
@@ -220,8 +208,8 @@ static void write_vector(int dim, const double *v, int direction, char *text,
 
 /* A coordinate of the body from one relative to its centre and size. */
 static double to_coordinate(const body *b, int c, double relative) {
-  const double x = b->centre[c] + b->size * relative;
-  return fabs(x) < 1e-9 * b->size ? 0 : x;
+  const double x = b->at.centre[c] + b->at.size * relative;
+  return fabs(x) < 1e-9 * b->at.size ? 0 : x;
 }
 
 static void write_rotation_3d(const body *b, const double *w, const double *t,
@@ -247,7 +235,7 @@ static void write_motion(const body *b, const double *v, char *text,
                          size_t size) {
   const int dim = b->d->mesh->dim;
   char vector[64];
-  if (b->modes == 1) {
+  if (b->at.modes == 1) {
     snprintf(text, size, "translation along y");
   } else if (dim == 2 && fabs(v[0]) > 1e-6 * hypot(v[1], v[2])) {
     const double point[2] = {to_coordinate(b, 0, -v[2] / v[0]),
@@ -269,8 +257,8 @@ static void describe(const body *b, const double *z, free_motion *f) {
   double largest = -1;
   for (int q = 0; q < (b->joined ? 1 : b->n_piece); ++q) {
     double norm = 0;
-    for (int k = 0; k < b->modes; ++k)
-      norm += z[b->modes * q + k] * z[b->modes * q + k];
+    for (int k = 0; k < b->at.modes; ++k)
+      norm += z[b->at.modes * q + k] * z[b->at.modes * q + k];
     if (norm > largest * (1 + 1e-6)) {
       largest = norm;
       most = q;
@@ -279,7 +267,7 @@ static void describe(const body *b, const double *z, free_motion *f) {
   const mesh *m = b->d->mesh;
   f->body_id = b->id;
   f->elem_no = m->elem_no[b->p->piece_elem[b->first_piece + most]];
-  write_motion(b, z + b->modes * most, f->text, sizeof f->text);
+  write_motion(b, z + b->at.modes * most, f->text, sizeof f->text);
 }
 
 typedef struct motion_list {
@@ -288,10 +276,10 @@ typedef struct motion_list {
 } motion_list;
 
 static int turns(const body *b, const double *z) {
-  const int rotations = b->modes == 6 ? 3 : b->modes == 3 ? 1 : 0;
+  const int rotations = b->at.modes == 6 ? 3 : b->at.modes == 3 ? 1 : 0;
   double most = 0;
   for (int k = 0; k < b->n; ++k)
-    if (k % b->modes < rotations) most = fmax(most, fabs(z[k]));
+    if (k % b->at.modes < rotations) most = fmax(most, fabs(z[k]));
   return most > 1e-6;
 }
 
@@ -332,7 +320,30 @@ done:
   return st;
 }
 
-static status body_motions(const body *b, motion_list *list) {
+/* Store what the supports in t leave free to rounding. */
+static status keep_motions(const body *b, const triangle *t, rigid_set *r) {
+  status st = OK;
+  int rank = 0;
+  double *Z = NULL;
+  NEW(Z, b->n * b->n);
+  TRY(null_space(t, exact_limit, Z, &rank));
+  if (rank == 0) goto done;
+  GROW(r->body, r->n_body, r->room);
+  rigid_body *to = &r->body[r->n_body++];
+  *to = (rigid_body){.at = b->at, .n = b->n, .k = rank, .n_node = b->n_node};
+  NEW(to->node, b->n_node);
+  NEW(to->column, b->n_node);
+  memcpy(to->node, b->node, (size_t)b->n_node * sizeof *to->node);
+  for (int i = 0; i < b->n_node; ++i)
+    to->column[i] = column_of(b, b->p->elem[b->p->start[b->node[i]]]);
+  to->Y = Z;
+  Z = NULL;
+done:
+  memory_free(Z);
+  return st;
+}
+
+static status body_motions(const body *b, motion_list *list, rigid_set *r) {
   status st = OK;
   triangle *t = NULL;
   double *Z[3] = {NULL, NULL, NULL}, *known = NULL;
@@ -341,9 +352,10 @@ static status body_motions(const body *b, motion_list *list) {
   NEW(known, b->n * b->n);
   t->n = b->n;
   add_supports(b, t);
+  if (r != NULL) TRY(keep_motions(b, t, r));
   for (int hold = HELD_BY_CONTACT; hold >= HELD_BY_NOTHING; --hold) {
     NEW(Z[hold], b->n * b->n);
-    TRY(null_space(t, Z[hold], &rank[hold]));
+    TRY(null_space(t, rank_limit, Z[hold], &rank[hold]));
     if (hold > HELD_BY_NOTHING) add_contact(b, hold == HELD_BY_CONTACT, t);
   }
   for (int hold = HELD_BY_NOTHING; hold <= HELD_BY_CONTACT; ++hold)
@@ -360,7 +372,6 @@ done:
 static void measure_body(body *b) {
   const mesh *m = b->d->mesh;
   double low[3], high[3];
-  b->size = 0;
   for (int i = 0; i < b->n_node; ++i) {
     const double *x = m->x + (size_t)m->dim * (size_t)b->node[i];
     for (int c = 0; c < m->dim; ++c) {
@@ -369,8 +380,8 @@ static void measure_body(body *b) {
     }
   }
   for (int c = 0; c < m->dim; ++c) {
-    b->centre[c] = 0.5 * (low[c] + high[c]);
-    b->size = fmax(b->size, high[c] - low[c]);
+    b->at.centre[c] = 0.5 * (low[c] + high[c]);
+    b->at.size = fmax(b->at.size, high[c] - low[c]);
   }
 }
 
@@ -399,7 +410,7 @@ done:
 }
 
 status support_motions(const domain *d, int *n, free_motion **list,
-                       unsigned char *floating) {
+                       unsigned char *floating, rigid_set *r) {
   status st = OK;
   const mesh *m = d->mesh;
   pieces p = {0};
@@ -419,12 +430,13 @@ status support_motions(const domain *d, int *n, free_motion **list,
     b.n_node = start[b.id + 1] - start[b.id];
     b.node = node + start[b.id];
     const int section = d->section_id[p.piece_elem[b.first_piece]];
-    b.modes = m->dim == 3 ? 6 : d->kin[section] == AXISYMMETRIC ? 1 : 3;
-    b.joined = b.n_piece > MAX_PIECES || b.modes == 1;
-    b.n = b.modes * (b.joined ? 1 : b.n_piece);
+    b.at.dim = m->dim;
+    b.at.modes = m->dim == 3 ? 6 : d->kin[section] == AXISYMMETRIC ? 1 : 3;
+    b.joined = b.n_piece > MAX_PIECES || b.at.modes == 1;
+    b.n = b.at.modes * (b.joined ? 1 : b.n_piece);
     measure_body(&b);
     const int before = found.n;
-    TRY(body_motions(&b, &found));
+    TRY(body_motions(&b, &found, r));
     for (int i = 0; floating != NULL && i < b.n_node; ++i)
       floating[b.node[i]] = found.n > before;
   }
@@ -443,5 +455,5 @@ done:
 }
 
 status domain_free_motions(const domain *d, int *n, free_motion **list) {
-  return support_motions(d, n, list, NULL);
+  return support_motions(d, n, list, NULL, NULL);
 }

@@ -45,6 +45,40 @@ START_TEST(resultants_are_those_of_statics) {
 }
 END_TEST
 
+/* Soft layer below, hard one above (nu = 0), unit pressure on the top: the
+ * floor carries 1, the top moves by 1/2 + 1/(2 contrast). Free along x too in
+ * the second round: the moment about the origin is then 1/2. */
+START_TEST(layers_of_any_contrast_weigh_the_same) {
+  static const double contrast[] = {1e6, 1e8};
+  for (int k = 0; k < 4; ++k) {
+    job j = job_begin("layers");
+    job_copy(&j, "tests/regression/mesh/layers.geo");
+    job_write(&j, "layers.inp",
+              "*PARAMETER\nN = 8\n*MESH, FILE=layers.geo\n"
+              "*MATERIAL, NAME=S\n*ELASTIC\n1., 0.\n"
+              "*MATERIAL, NAME=H\n*ELASTIC\n%g, 0.\n"
+              "*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n"
+              "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s*STEP\n*STATIC\n"
+              "%s*DSLOAD\nTOP, P, 1.\n*PRINT, TOTALS, NODES\n*END STEP\n",
+              contrast[k % 2],
+              k < 2 ? "" : "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n",
+              k < 2 ? "*BOUNDARY\nLEFT, 1\n" : "");
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    dat t = job_table(&j, "TOTALS", -1), u = job_table(&j, "NODES", -1);
+    ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), 1, 1e-14);
+    ck_assert_double_eq_tol(dat_at(&t, 0, "moment_z"), 0.5, 1e-13);
+    if (k % 2 == 0)
+      ck_assert_double_eq_tol(dat_max(&u, "u_y"), 0.5 + 0.5 / contrast[0],
+                              1e-8);
+    dat_free(&t);
+    dat_free(&u);
+    job_end(&j);
+  }
+}
+END_TEST
+
 START_TEST(no_equilibrium_is_a_verdict) {
   static const struct {
     double mu;
@@ -88,4 +122,5 @@ START_TEST(free_motions_are_named) {
 END_TEST
 
 UNIT_MAIN("floating", resultants_are_those_of_statics,
-          no_equilibrium_is_a_verdict, free_motions_are_named)
+          layers_of_any_contrast_weigh_the_same, no_equilibrium_is_a_verdict,
+          free_motions_are_named)

@@ -1,4 +1,4 @@
-/* src/fem/element.c, stress.c: patch tests, forces, energy. */
+/* src/fem/element.c: patch tests, forces, energy. */
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/unit.h"

@@ -1,0 +1,24 @@
+// Unit square of two layers, SOFT below, HARD above, N segments along a side.
+DefineConstant[ N = 8 ];
+Point(1) = {0, 0, 0, 1 / N};
+Point(2) = {1, 0, 0, 1 / N};
+Point(3) = {1, 0.5, 0, 1 / N};
+Point(4) = {0, 0.5, 0, 1 / N};
+Point(5) = {1, 1, 0, 1 / N};
+Point(6) = {0, 1, 0, 1 / N};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Line(5) = {3, 5};
+Line(6) = {5, 6};
+Line(7) = {6, 4};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Curve Loop(2) = {-3, 5, 6, 7};
+Plane Surface(2) = {2};
+Physical Curve("BOTTOM") = {1};
+Physical Curve("TOP") = {6};
+Physical Curve("LEFT") = {4, 7};
+Physical Surface("SOFT") = {1};
+Physical Surface("HARD") = {2};

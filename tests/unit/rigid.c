@@ -1,0 +1,337 @@
+/* src/fem/rigid.c: bodies that contact alone holds, with a contrast of moduli:
+ * no force for a rigid motion, the resultants of the loads kept. */
+#include "fem/fem.h"
+#include "support/scene.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A scene of two moduli and the rigid motions that its supports leave. */
+typedef struct layers {
+  scene *s;
+  double E[72], thickness[2];
+  kinematics kin[2];
+  int n_motion;
+  void (*motion)(const double *x, int k, double *u);
+} layers;
+
+static void plane_motion(const double *x, int k, double *u) {
+  u[0] = k == 0 ? 1 : k == 2 ? -x[1] : 0;
+  u[1] = k == 1 ? 1 : k == 2 ? x[0] : 0;
+}
+
+static void lift(const double *x, int k, double *u) {
+  (void)x;
+  (void)k;
+  u[0] = 0;
+  u[1] = 1;
+}
+
+/* Fourth: the upper square turns about the corner (1, 1). */
+static void hinged_motion(const double *x, int k, double *u) {
+  plane_motion(x, k, u);
+  if (k == 3 && x[0] >= 1 && x[1] >= 1) {
+    u[0] = -(x[1] - 1);
+    u[1] = x[0] - 1;
+  }
+}
+
+static void solid_motion(const double *x, int k, double *u) {
+  for (int c = 0; c < 3; ++c) u[c] = k == c;
+  if (k < 3) return;
+  const int i = (k + 1) % 3, j = (k + 2) % 3;
+  u[i] = -x[j];
+  u[j] = x[i];
+}
+
+/* Young's modulus "contrast" in the part on the far side of the plane. */
+static void two_moduli(layers *l, double contrast, const double *plane) {
+  scene *s = l->s;
+  const int dim = s->m->dim, ns = s->d.ns;
+  for (int e = 0; e < s->m->n_elem; ++e) {
+    double side = -plane[dim];
+    for (int a = 0; a <= dim; ++a)
+      for (int c = 0; c < dim; ++c)
+        side += plane[c] * s->m->x[dim * s->m->elem[(dim + 1) * e + a] + c] /
+                (dim + 1);
+    s->section_id[e] = side > 0;
+  }
+  for (int i = 0; i < ns * ns; ++i) {
+    l->E[i] = s->E[i];
+    l->E[ns * ns + i] = contrast * s->E[i];
+  }
+  for (int i = 0; i < 2; ++i) {
+    l->kin[i] = s->kin[0];
+    l->thickness[i] = 1;
+  }
+  s->d.E = l->E;
+  s->d.kin = l->kin;
+  s->d.thickness = l->thickness;
+}
+
+static void column(layers *l, double contrast) {
+  l->s =
+      scene_new(make_grid_2d((int[]){7, 8}, (double[]){1, 1}), PLANE_STRAIN, 1);
+  scene_fix(l->s, "LEFT", 0);
+  scene_contact(l->s, "BOTTOM", (double[]){0, -1}, 0);
+  l->s->surface.held[1] = 1;
+  l->n_motion = 1;
+  l->motion = lift;
+  two_moduli(l, contrast, (double[]){0, 1, 0.5});
+}
+
+static void block(layers *l, double contrast) {
+  l->s = scene_new(make_grid_2d((int[]){6, 5}, (double[]){1.3, 1}),
+                   PLANE_STRESS, 3);
+  scene_contact(l->s, "BOTTOM", (double[]){0.6, -0.8}, 0.3);
+  l->n_motion = 3;
+  l->motion = plane_motion;
+  two_moduli(l, contrast, (double[]){0.3, 1, 0.6});
+}
+
+static void stiff_foot(layers *l, double contrast) {
+  block(l, contrast);
+  two_moduli(l, contrast, (double[]){0.3, -1, -0.6});
+}
+
+static void disc(layers *l, double contrast) {
+  l->s =
+      scene_new(make_grid_2d((int[]){6, 6}, (double[]){1, 1}), AXISYMMETRIC, 1);
+  scene_fix(l->s, "LEFT", 0);
+  scene_contact(l->s, "BOTTOM", (double[]){0, -1}, 0);
+  l->s->surface.held[1] = 1;
+  scene_contact(l->s, "RIGHT", (double[]){0.8, -0.6}, 0);
+  l->n_motion = 1;
+  l->motion = lift;
+  two_moduli(l, contrast, (double[]){0, 1, 0.5});
+}
+
+static void hinged(layers *l, double contrast) {
+  mesh *a = make_grid_2d((int[]){3, 3}, (double[]){1, 1});
+  mesh *m = grid_join(a, a, (double[]){1, 1});
+  const int contact[] = {0, 1, 2, 3, 17, 18, 19}; /* feet of both */
+  for (int k = 3 * a->n_elem; k < 3 * m->n_elem; ++k)
+    if (m->elem[k] == 16) m->elem[k] = 15;
+  m->group[0].n_node = 7;
+  memcpy(m->group[0].node_id, contact, sizeof contact);
+  l->s = scene_new(m, PLANE_STRAIN, 1);
+  scene_contact(l->s, "BODY", (double[]){0, -1}, 0);
+  for (int c = 0; c < 2; ++c) scene_fix_node(l->s, 16, c); /* left over */
+  l->n_motion = 4;
+  l->motion = hinged_motion;
+  two_moduli(l, contrast, (double[]){1, 1, 1.5});
+  grid_free(a);
+}
+
+/* Two contact nodes close together and far from the origin. */
+static void small_foot(layers *l, double contrast) {
+  mesh *m = make_grid_2d((int[]){5, 5}, (double[]){1, 1});
+  for (int j = 0; j < 6; ++j) m->x[2 * (6 * j + 1)] = 1e-3;
+  for (int i = 0; i < m->n_node; ++i) m->x[2 * i] += 1;
+  m->group[0].n_node = 2;
+  l->s = scene_new(m, PLANE_STRAIN, 1);
+  scene_contact(l->s, "BODY", (double[]){0, -1}, 0);
+  l->n_motion = 3;
+  l->motion = plane_motion;
+  two_moduli(l, contrast, (double[]){0, 1, 0.5});
+}
+
+static void brick(layers *l, double contrast) {
+  l->s = scene_new(make_grid_3d((int[]){3, 4, 4}, (double[]){1, 1.2, 2}),
+                   SOLID_3D, 5);
+  scene_contact(l->s, "FRONT", (double[]){0, 0.6, -0.8}, 0.4);
+  l->n_motion = 6;
+  l->motion = solid_motion;
+  two_moduli(l, contrast, (double[]){0.2, 0, 1, 1});
+}
+
+static void (*const scenes[])(layers *, double) = {
+    column, block, stiff_foot, disc, hinged, small_foot, brick};
+static const double contrasts[] = {1, 1e6, 1e8};
+enum { SCENES = sizeof scenes / sizeof *scenes, CASES = 3 * SCENES };
+
+static void *get(size_t n) { return calloc(n + 1, sizeof(double)); }
+
+static void solve(const layers *l, stiffness **k, condensed **c) {
+  ck_assert_int_eq(stiffness_assemble(&l->s->d, k), OK);
+  ck_assert_msg(condense(*k, &l->s->d, c) == OK, "%s", status_message());
+}
+
+static void end(layers *l, stiffness *k, condensed *c) {
+  condensed_free(c);
+  stiffness_free(k);
+  scene_free(l->s);
+}
+
+/* Contact components of motion "mode", 0 where held. */
+static void contact_part(const layers *l, int mode, double *v) {
+  const contact_surface *s = &l->s->surface;
+  const int dim = l->s->m->dim;
+  for (int q = 0; q < s->n; ++q) {
+    double u[3];
+    l->motion(s->x + dim * q, mode, u);
+    for (int r = 0; r < dim; ++r) {
+      v[dim * q + r] = 0;
+      for (int c = 0; c < dim && !s->held[dim * q + r]; ++c)
+        v[dim * q + r] += s->frame[dim * (dim * q + r) + c] * u[c];
+    }
+  }
+}
+
+START_TEST(rigid_motion_needs_no_force) {
+  layers l;
+  stiffness *k;
+  condensed *c;
+  scenes[_i / 3](&l, contrasts[_i % 3]);
+  solve(&l, &k, &c);
+  const size_t m = (size_t)(l.s->m->dim * l.s->surface.n);
+  const double *A = condensed_matrix(c);
+  double *v = get(m);
+  for (int mode = 0; mode < l.n_motion; ++mode) {
+    double worst = 0, most = 0, arm = 0;
+    contact_part(&l, mode, v);
+    for (size_t i = 0; i < m; ++i) {
+      double sum = 0, size = 0;
+      for (size_t j = 0; j < m; ++j) {
+        ck_assert(A[i + m * j] == A[j + m * i]);
+        sum += A[i + m * j] * v[j];
+        size += fabs(A[i + m * j]);
+      }
+      worst = fmax(worst, fabs(sum));
+      most = fmax(most, size);
+      arm = fmax(arm, fabs(v[i]));
+    }
+    ck_assert_msg(worst <= 1e-15 * arm * most, "motion %d: %g", mode,
+                  worst / (arm * most));
+  }
+  free(v);
+  end(&l, k, c);
+}
+END_TEST
+
+/* Resultants and moments of loads at all nodes, with prescribed displacements
+ * that move nothing rigidly. */
+START_TEST(condensed_load_has_the_resultants_of_the_load) {
+  layers l;
+  stiffness *k;
+  condensed *c;
+  scenes[_i / 3](&l, contrasts[_i % 3]);
+  solve(&l, &k, &c);
+  const int dim = l.s->m->dim;
+  const size_t N = (size_t)(dim * l.s->m->n_node);
+  const size_t m = (size_t)(dim * l.s->surface.n);
+  double *F = get(N), *ud = get(N), *f = get(m), *v = get(m);
+  unsigned seed = 11;
+  for (size_t i = 0; i < N; ++i) F[i] = l.s->fixed[i] ? 0 : scene_random(&seed);
+  for (size_t i = 0; i < N; ++i) ud[i] = scene_random(&seed);
+  for (int held = 0; held < 2; ++held) {
+    ck_assert_int_eq(condense_load(c, F, held ? ud : NULL, f), OK);
+    for (int mode = 0; mode < l.n_motion; ++mode) {
+      double given = 0, kept = 0, forces = 0, arm = 0;
+      contact_part(&l, mode, v);
+      for (size_t i = 0; i < m; ++i) {
+        kept += v[i] * f[i];
+        forces += fabs(f[i]);
+        arm = fmax(arm, fabs(v[i]));
+      }
+      for (int i = 0; i < l.s->m->n_node; ++i) {
+        double u[3];
+        l.motion(l.s->m->x + dim * i, mode, u);
+        for (int r = 0; r < dim; ++r) given += u[r] * F[dim * i + r];
+      }
+      ck_assert_msg(fabs(kept - given) <= 1e-15 * arm * forces,
+                    "motion %d: %.17g for %.17g", mode, kept, given);
+    }
+  }
+  free(F);
+  free(ud);
+  free(f);
+  free(v);
+  end(&l, k, c);
+}
+END_TEST
+
+/* Diagonal of A and f for lengths times 2^power, stiffness per length kept. */
+static void scaled(void (*make)(layers *, double), int power, double *out) {
+  layers l;
+  stiffness *k;
+  condensed *c;
+  make(&l, 1e6);
+  const int dim = l.s->m->dim;
+  const size_t N = (size_t)(dim * l.s->m->n_node);
+  const size_t m = (size_t)(dim * l.s->surface.n);
+  const int axisymmetric = l.s->kin[0] == AXISYMMETRIC;
+  for (size_t i = 0; i < N; ++i) l.s->m->x[i] = ldexp(l.s->m->x[i], power);
+  solve(&l, &k, &c);
+  double *F = get(N);
+  unsigned seed = 2;
+  for (size_t i = 0; i < N; ++i) F[i] = scene_random(&seed);
+  ck_assert_int_eq(condense_load(c, F, NULL, out), OK);
+  for (size_t i = 0; i < m * m; ++i)
+    out[m + i] =
+        ldexp(condensed_matrix(c)[i], -power * (axisymmetric + dim - 2));
+  free(F);
+  end(&l, k, c);
+}
+
+START_TEST(power_of_two_in_the_lengths_leaves_every_bit) {
+  static const int power[] = {40, -13, 1};
+  enum { ROOM = 60 * 61 };
+  double *a = get(ROOM), *b = get(ROOM);
+  scaled(scenes[_i], 0, a);
+  for (int q = 0; q < 3; ++q) {
+    scaled(scenes[_i], power[q], b);
+    ck_assert(memcmp(a, b, ROOM * sizeof *a) == 0);
+  }
+  free(a);
+  free(b);
+}
+END_TEST
+
+/* A motion that a support resists, however little, stays a force. */
+START_TEST(supported_body_keeps_its_stiffness) {
+  layers l;
+  stiffness *k;
+  condensed *c;
+  block(&l, 1e6);
+  scene_fix_node(l.s, l.s->m->n_node - 1, 0);
+  solve(&l, &k, &c);
+  const size_t m = (size_t)(2 * l.s->surface.n);
+  const double *A = condensed_matrix(c);
+  double *v = get(m);
+  for (int mode = 0; mode < 3; ++mode) {
+    double work = 0, size = 0;
+    contact_part(&l, mode, v);
+    for (size_t i = 0; i < m; ++i)
+      for (size_t j = 0; j < m; ++j) {
+        work += v[i] * A[i + m * j] * v[j];
+        size += fabs(v[i] * A[i + m * j] * v[j]);
+      }
+    if (mode == 1)
+      ck_assert_double_le(fabs(work), 1e-15 * size);
+    else
+      ck_assert_double_ge(work, 1e-4 * size);
+  }
+  free(v);
+  end(&l, k, c);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("rigid");
+  TCase *tests = tcase_create("rigid");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, rigid_motion_needs_no_force, 0, CASES);
+  tcase_add_loop_test(tests, condensed_load_has_the_resultants_of_the_load, 0,
+                      CASES);
+  tcase_add_loop_test(tests, power_of_two_in_the_lengths_leaves_every_bit, 0,
+                      SCENES);
+  tcase_add_test(tests, supported_body_keeps_its_stiffness);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
