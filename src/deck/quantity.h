@@ -17,6 +17,7 @@ typedef struct value_table {
   const expression *formula; /* used if n == 0; NULL: 1                       */
 } value_table;
 
+/* Value of the table at a point and time. */
 double table_value(const value_table *p, const double x[3], double t);
 
 typedef struct quantity {

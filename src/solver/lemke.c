@@ -22,7 +22,8 @@
  * found is the start of a solver with the exact disc of friction.
  */
 #include "base/memory.h"
-#include "solver/lcp.h"
+#include "contact/lcp.h"
+#include "solver/solver.h"
 
 #include <cblas.h>
 #include <lapacke.h>

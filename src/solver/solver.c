@@ -36,28 +36,6 @@ const solver_ops *solver_find(const char *name) {
   return NULL;
 }
 
-const char *outcome_text(outcome o) {
-  switch (o) {
-    case CONVERGED:
-      return "converged";
-    case RUNNING:
-      return "running";
-    case STOPPED_ITERATIONS:
-      return "limit of iterations";
-    case STOPPED_STAGNATION:
-      return "no further progress";
-    case STOPPED_RAY:
-      return "no equilibrium";
-    case STOPPED_NAN:
-      return "not a number";
-    case STOPPED_CYCLE:
-      return "cycle of states";
-    case STOPPED_SINGULAR:
-      return "singular";
-  }
-  return "?";
-}
-
 /* ---- what the solvers share
  * ------------------------------------------------*/
 

@@ -8,19 +8,8 @@
 #define PROTIS_SOLVER_SOLVER_H
 
 #include "base/option.h"
+#include "base/outcome.h"
 #include "contact/contact.h"
-
-typedef enum {
-  CONVERGED = 1,
-  RUNNING = 0,
-  STOPPED_ITERATIONS = -1, /* limit of iterations                             */
-  STOPPED_STAGNATION = -2, /* no progress above the rounding level            */
-  STOPPED_RAY = -3,        /* no equilibrium: a secondary ray                 */
-  STOPPED_NAN = -4,
-  STOPPED_CYCLE = -5,   /* a status pattern came back                      */
-  STOPPED_SINGULAR = -6 /* a linear system of the method has no solution   */
-} outcome;
-const char *outcome_text(outcome o);
 
 typedef struct solver_report {
   outcome outcome;

@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* One input of the fuzzer; always 0. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 #endif

@@ -1,6 +1,7 @@
 /* src/solver/lcp.c, lemke.c: complementary pivoting. */
 #include "base/memory.h"
-#include "solver/lcp.h"
+#include "contact/lcp.h"
+#include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
 

@@ -13,7 +13,8 @@
 #ifndef PROTIS_SOLVER_LCP_H
 #define PROTIS_SOLVER_LCP_H
 
-#include "solver/solver.h"
+#include "base/outcome.h"
+#include "base/status.h"
 
 typedef struct lcp_report {
   outcome outcome; /* CONVERGED; STOPPED_RAY: a secondary ray;

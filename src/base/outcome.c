@@ -1,0 +1,26 @@
+/*
+ * Words for the ways an iteration can end.
+ */
+#include "base/outcome.h"
+
+const char *outcome_text(outcome o) {
+  switch (o) {
+    case CONVERGED:
+      return "converged";
+    case RUNNING:
+      return "running";
+    case STOPPED_ITERATIONS:
+      return "limit of iterations";
+    case STOPPED_STAGNATION:
+      return "no further progress";
+    case STOPPED_RAY:
+      return "no equilibrium";
+    case STOPPED_NAN:
+      return "not a number";
+    case STOPPED_CYCLE:
+      return "cycle of states";
+    case STOPPED_SINGULAR:
+      return "singular";
+  }
+  return "?";
+}

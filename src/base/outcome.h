@@ -1,0 +1,20 @@
+/*
+ * How an iteration ended: above zero the answer is usable, below zero why not.
+ */
+#ifndef PROTIS_BASE_OUTCOME_H
+#define PROTIS_BASE_OUTCOME_H
+
+typedef enum {
+  CONVERGED = 1,
+  RUNNING = 0,
+  STOPPED_ITERATIONS = -1, /* limit of iterations                             */
+  STOPPED_STAGNATION = -2, /* no progress above the rounding level            */
+  STOPPED_RAY = -3,        /* no equilibrium: a secondary ray                 */
+  STOPPED_NAN = -4,
+  STOPPED_CYCLE = -5,   /* a status pattern came back                      */
+  STOPPED_SINGULAR = -6 /* a linear system of the method has no solution   */
+} outcome;
+/* In a few words, for listings and messages. */
+const char *outcome_text(outcome o);
+
+#endif
