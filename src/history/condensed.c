@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/timer.h"
 #include "history/history.h"
-#include "solver/lcp.h"
+#include "contact/lcp.h"
 
 #include <math.h>
 #include <stdio.h>
