@@ -125,9 +125,7 @@ static void next_limit(const fixed_point *fp, double step, int mixed,
 
 /* One pass: the Tresca problem with limit g. */
 typedef struct pass {
-  const solver_ops *inner;
-  const void *par;
-  void *work;
+  const inner_solver *inner;
   solver_control control;
 } pass;
 
@@ -138,8 +136,8 @@ static status run_pass(const pass *p, const contact_problem *cp,
   solver_report inner = {.outcome = RUNNING};
   tresca.g0 = g;
   tresca.B = NULL;
-  status st =
-      p->inner->solve(&tresca, p->par, p->work, &p->control, u, r, &inner);
+  status st = p->inner->ops->solve(&tresca, p->inner->par, p->inner->work,
+                                   &p->control, u, r, &inner);
   rep->iterations += inner.iterations;
   rep->outcome = inner.outcome;
   return st;
@@ -222,11 +220,11 @@ static int advance(fixed_point *fp, course *c, double residual, int first) {
 }
 
 status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
-                         const solver_ops *inner, const void *par, void *work,
+                         const inner_solver *inner,
                          const solver_control *control, double *u, double *r,
                          solver_report *rep) {
   status st = OK;
-  pass p = {inner, par, work, *control};
+  pass p = {inner, *control};
   course c = {.step = 1.0, .lowest = HUGE_VAL};
   int passes = control->limit_max_iter > 0 ? control->limit_max_iter : PASSES;
   double change = 1.0;
@@ -317,8 +315,8 @@ static status solve_share(friction_path *path, const pass *p,
   B.val = path->val;
   less.g0 = path->g0;
   less.B = &B;
-  status st = p->inner->solve(share < 1.0 ? &less : cp, p->par, p->work,
-                              &p->control, u, r, &stage);
+  status st = p->inner->ops->solve(share < 1.0 ? &less : cp, p->inner->par,
+                                   p->inner->work, &p->control, u, r, &stage);
   rep->iterations += stage.iterations;
   rep->residual = stage.residual;
   rep->outcome = stage.outcome;
@@ -326,11 +324,11 @@ static status solve_share(friction_path *path, const pass *p,
 }
 
 status friction_path_solve(friction_path *path, const contact_problem *cp,
-                           const solver_ops *ops, const void *par, void *work,
+                           const inner_solver *inner,
                            const solver_control *control, double *u, double *r,
                            solver_report *rep) {
   status st = OK;
-  pass p = {ops, par, work, *control};
+  pass p = {inner, *control};
   size_t bytes = (size_t)cp->m * sizeof *u;
   double mu = largest_mu(cp), growth = GROWTH, good = 0.0;
   double share = mu > FIRST_MU ? FIRST_MU / mu : 1.0;

@@ -14,12 +14,19 @@
 
 #include "solver/solver.h"
 
+/* The solver inside a loop, set up for the matrix. */
+typedef struct inner_solver {
+  const solver_ops *ops;
+  const void *par;
+  void *work;
+} inner_solver;
+
 typedef struct fixed_point fixed_point;
 
 status fixed_point_new(int n, fixed_point **out); /* for n contact nodes     */
 void fixed_point_free(fixed_point *fp);           /* accepts NULL            */
 /*
- * Solve cp (with B) by passes of "inner" on problems without B. Passes:
+ * Solve cp (with B) by passes of inner on problems without B. Passes:
  * control->limit_max_iter, 200 if 0. rep: iterations of all passes, passes,
  * rate = |G(g_k) - G(g_k-1)| / |g_k - g_k-1| of the last two passes.
  * Where that is slow, Anderson mixing speeds it up; a mixed step that raises
@@ -27,7 +34,7 @@ void fixed_point_free(fixed_point *fp);           /* accepts NULL            */
  * again and again are shortened.
  */
 status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
-                         const solver_ops *inner, const void *par, void *work,
+                         const inner_solver *inner,
                          const solver_control *control, double *u, double *r,
                          solver_report *rep);
 
@@ -40,7 +47,7 @@ void friction_path_free(friction_path *path); /* accepts NULL                */
  * with u and r of the last share solved. cp: as in friction_path_new but for
  * the values. */
 status friction_path_solve(friction_path *path, const contact_problem *cp,
-                           const solver_ops *ops, const void *par, void *work,
+                           const inner_solver *inner,
                            const solver_control *control, double *u, double *r,
                            solver_report *rep);
 

@@ -408,31 +408,49 @@ static void relax_forces(const relaxation *s, const local_problem *lp,
   for (int k = 1; k < lp->dim && size > g; ++k) r[k] *= g / size;
 }
 
-static void visit(relaxation *s, int node_id) {
+/* Step of the node's displacement, along the way found, m. */
+static void displacement_step(const relaxation *s, int node_id,
+                              const local_problem *lp, const int *id,
+                              const double *way, double *step) {
   const contact_problem *cp = s->cp;
-  const double *M = cp->A != NULL ? cp->A : cp->W;
-  local_problem lp;
-  int id[3] = {0, 0, 0}, moved = 0;
   size_t first = (size_t)(node_id * cp->dim), m = (size_t)cp->m;
-  double old[3], x[3], r[3], step[3] = {0.0, 0.0, 0.0};
+  for (int k = 0; k < lp->dim; ++k) step[id[k]] = way[k];
+  for (int k = 1; k < cp->dim; ++k) {
+    size_t dof = first + (size_t)k;
+    if (held(cp, (int)dof)) step[k] = -s->r[dof] / cp->A[dof * m + dof];
+  }
+}
+
+/* Solve the node; step[dim]: change of its displacement (of its force in
+ * compliance form). */
+static void node_step(relaxation *s, int node_id, double *step) {
+  const contact_problem *cp = s->cp;
+  local_problem lp;
+  int id[3] = {0, 0, 0};
+  double old[3], x[3], r[3];
   local_of(s, node_id, &lp, id, old);
   local_state before = s->blocks->state[node_id];
   local_state now = local_solve(&lp, before, x, r);
   s->blocks->state[node_id] = now;
-  if (cp->A != NULL && now == before) relax(s, &lp, now, old, x);
-  if (cp->A == NULL) {
-    double force[3] = {0.0, 0.0, 0.0};
-    for (int k = 0; k < lp.dim; ++k) force[k] = s->r[first + (size_t)id[k]];
-    if (now == before) relax_forces(s, &lp, force, r);
-    for (int k = 0; k < lp.dim; ++k) step[id[k]] = r[k] - force[k];
-  } else {
-    for (int k = 0; k < lp.dim; ++k) step[id[k]] = x[k] - old[k];
-    for (int k = 1; k < cp->dim; ++k)
-      if (held(cp, node_id * cp->dim + k))
-        step[k] = -s->r[first + (size_t)k] /
-                  M[(first + (size_t)k) * m + first + (size_t)k];
+  if (cp->A != NULL) {
+    if (now == before) relax(s, &lp, now, old, x);
+    for (int k = 0; k < lp.dim; ++k) x[k] -= old[k];
+    displacement_step(s, node_id, &lp, id, x, step);
+    return;
   }
-  double *unknown = cp->A != NULL ? s->u : s->r;
+  double force[3] = {0.0, 0.0, 0.0};
+  for (int k = 0; k < lp.dim; ++k) force[k] = s->r[node_id * cp->dim + id[k]];
+  if (now == before) relax_forces(s, &lp, force, r);
+  for (int k = 0; k < lp.dim; ++k) step[id[k]] = r[k] - force[k];
+}
+
+static void visit(relaxation *s, int node_id) {
+  const contact_problem *cp = s->cp;
+  const double *M = cp->A != NULL ? cp->A : cp->W;
+  double *unknown = cp->A != NULL ? s->u : s->r, step[3] = {0.0, 0.0, 0.0};
+  size_t first = (size_t)(node_id * cp->dim), m = (size_t)cp->m;
+  int moved = 0;
+  node_step(s, node_id, step);
   for (int k = 0; k < cp->dim; ++k) {
     double weight = M[(first + (size_t)k) * m + first + (size_t)k];
     moved = moved || step[k] != 0.0;

@@ -578,33 +578,54 @@ static int met_before(run *s, int step) {
   return met;
 }
 
+/* How an attempt goes. */
+typedef struct course {
+  double lowest;      /* residual, -                                      */
+  int at, best_at;    /* this step, the one of the lowest residual        */
+  int changes, cycle; /* states that would change; pattern met before     */
+  int settled;        /* the step before was within the tolerance         */
+} course;
+
+/* 1: solved, and a further step would change nothing or little. */
+static int solved(const run *s, course *c, double residual) {
+  int within = residual <= s->control->tol;
+  int rests = c->changes == 0 || c->settled || residual <= 0x1p-43;
+  c->settled = within;
+  return within && rests;
+}
+
+/* RUNNING, or why the attempt ends without a solution. */
+static outcome verdict(const run *s, course *c, double residual) {
+  int full = !s->careful && s->dice == 0, plane = s->cp->dim == 2;
+  if (residual < 0.99 * c->lowest) {
+    c->lowest = residual;
+    c->best_at = c->at;
+  }
+  int stays =
+      c->changes == 0 && (plane || (full && c->at - c->best_at > PATIENCE));
+  if (stays) return s->singular ? STOPPED_RAY : STOPPED_STAGNATION;
+  if (plane && c->cycle && s->dice == 0) return STOPPED_CYCLE;
+  if (full && c->at - c->best_at > PATIENCE) return STOPPED_STAGNATION;
+  return RUNNING;
+}
+
 /* Steps from the present guess until solved, settled, cycling or "limit". */
 static outcome attempt(run *s, int limit) {
-  int best_at = 0, settled = 0, full = !s->careful && s->dice == 0;
-  double lowest = HUGE_VAL;
+  course c = {.lowest = HUGE_VAL};
   int allowed = s->control->max_iter;
-  for (int k = 0; k < limit && (allowed <= 0 || s->steps < allowed); ++k) {
-    int cycle = met_before(s, k);
+  for (c.at = 0; c.at < limit; ++c.at) {
+    if (allowed > 0 && s->steps >= allowed) break;
+    c.cycle = met_before(s, c.at);
     linear_step(s);
     ++s->steps;
     double residual = residual_of(s);
     if (isnan(residual)) return STOPPED_NAN;
     keep_best(s, residual);
-    int changes = next_states(s, 0);
-    tell(s, residual, changes, cycle);
-    if (residual <= s->control->tol &&
-        (changes == 0 || residual <= 0x1p-43 || settled))
-      return CONVERGED;
-    settled = residual <= s->control->tol;
-    if (residual < 0.99 * lowest) {
-      lowest = residual;
-      best_at = k;
-    }
-    if (s->cp->dim == 2 && changes == 0)
-      return s->singular ? STOPPED_RAY : STOPPED_STAGNATION;
-    if (s->cp->dim == 2 && cycle && s->dice == 0) return STOPPED_CYCLE;
-    if (full && k - best_at > PATIENCE)
-      return s->singular && changes == 0 ? STOPPED_RAY : STOPPED_STAGNATION;
+    c.changes = next_states(s, 0);
+    tell(s, residual, c.changes, c.cycle);
+    if (solved(s, &c, residual)) return CONVERGED;
+    outcome o = verdict(s, &c, residual);
+    if (o != RUNNING) return o;
   }
   return STOPPED_ITERATIONS;
 }

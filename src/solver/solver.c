@@ -255,7 +255,7 @@ static status drive_one(contact_solver *s, const contact_problem *cp,
                         const attempt *a, const solver_control *control,
                         double *u, double *r, solver_report *rep) {
   status st = OK;
-  void *work = s->work[row_of(a->ops)];
+  inner_solver inner = {a->ops, a->param, s->work[row_of(a->ops)]};
   if (a->how == ALONG_PATH) {
     int room = cp->B->start[cp->n];
     if (s->path == NULL || s->path_room < room) {
@@ -264,14 +264,12 @@ static status drive_one(contact_solver *s, const contact_problem *cp,
       TRY(friction_path_new(cp, &s->path));
       s->path_room = room;
     }
-    TRY(friction_path_solve(s->path, cp, a->ops, a->param, work, control, u, r,
-                            rep));
+    TRY(friction_path_solve(s->path, cp, &inner, control, u, r, rep));
   } else if (cp->B != NULL && !(a->ops->handles & SOLVES_COULOMB)) {
     if (s->fixed == NULL) TRY(fixed_point_new(cp->n, &s->fixed));
-    TRY(fixed_point_solve(s->fixed, cp, a->ops, a->param, work, control, u, r,
-                          rep));
+    TRY(fixed_point_solve(s->fixed, cp, &inner, control, u, r, rep));
   } else {
-    TRY(a->ops->solve(cp, a->param, work, control, u, r, rep));
+    TRY(a->ops->solve(cp, a->param, inner.work, control, u, r, rep));
   }
 done:
   return st;

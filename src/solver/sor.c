@@ -197,8 +197,8 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
   const sor *p = par;
   sor_work *w = work;
   if (cp->B != NULL && w->fixed != NULL) {
-    TRY(fixed_point_solve(w->fixed, cp, &sor_solver, par, work, control, u, r,
-                          rep));
+    inner_solver self = {&sor_solver, par, work};
+    TRY(fixed_point_solve(w->fixed, cp, &self, control, u, r, rep));
     goto done;
   }
   relaxation s = {cp, w->blocks, u, r, p->omega > 0.0 ? p->omega : 1.0, 0.0};

@@ -1,6 +1,7 @@
 /* Contact problems for the tests of the solvers. */
 #include "support/contact_case.h"
 
+#include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
@@ -118,6 +119,23 @@ contact_case case_any(int dim, int n, double mu, int kind,
     for (int k = 0; k < dim - 1; ++k)
       c.ut0[i * (dim - 1) + k] = moved * (case_random(&seed) - 0.5);
   }
+  return c;
+}
+
+/* K of C from the gradient g of its shape function:
+ * area ((lambda + G) g g' + G |g|^2 I); contact frame n = -y, t = x. */
+contact_case case_triangle(double nu, double mu, double fx, double fy) {
+  double A[2] = {-1, 1}, B[2] = {1, 3};
+  double lambda = nu / ((1 + nu) * (1 - 2 * nu)), G = 0.5 / (1 + nu);
+  double twice = fabs(A[0] * B[1] - A[1] * B[0]);
+  double gx = (A[1] - B[1]) / twice, gy = (B[0] - A[0]) / twice;
+  contact_case c = case_new(2, 1, mu);
+  double square = G * (gx * gx + gy * gy);
+  c.A[0] = 0.5 * twice * ((lambda + G) * gy * gy + square);
+  c.A[3] = 0.5 * twice * ((lambda + G) * gx * gx + square);
+  c.A[1] = c.A[2] = -0.5 * twice * (lambda + G) * gx * gy;
+  c.f[0] = -fy;
+  c.f[1] = fx;
   return c;
 }
 
@@ -245,15 +263,13 @@ contact_case case_block(const case_block_data *d) {
       memset(X, 0, (size_t)(s * (s + 1)) * sizeof *X);
     else
       LAPACKE_dposv(LAPACK_COL_MAJOR, 'L', s, s + 1, S, s, X, s);
-    for (int j = 0; j <= s; ++j)
-      for (int i = 0; i < s; ++i) {
-        double sum = j < s ? K[i + size * j] : lower[i];
-        for (int k = 0; k < s; ++k) sum -= K[i + size * (s + k)] * X[k + s * j];
-        if (j < s)
-          S[i + s * j] = sum;
-        else
-          lower[i] = sum;
-      }
+    /* S = K_ll - K_lu X, lower -= K_lu x */
+    for (int j = 0; j < s; ++j)
+      memcpy(S + s * j, K + size * j, (size_t)s * sizeof *S);
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, s, s, s, -1.0,
+                K + size * s, size, X, s, 1.0, S, s);
+    cblas_dgemv(CblasColMajor, CblasNoTrans, s, s, -1.0, K + size * s, size,
+                X + s * s, 1, 1.0, lower, 1);
   }
   to_frame(&c, S, lower);
   c.cp.floating = !d->clamped;
@@ -268,6 +284,17 @@ contact_case case_block(const case_block_data *d) {
   free(upper);
   free(lower);
   return c;
+}
+
+contact_case case_published(int columns, double mu) {
+  case_block_data d = {.columns = columns,
+                       .layers = columns,
+                       .symmetric = 1,
+                       .nu = 0.2,
+                       .mu = mu,
+                       .top = {0, -50.0 / 130e3},
+                       .left = {150.0 / 130e3, 0}};
+  return case_block(&d);
 }
 
 /* ---- independent check ------------------------------------------------- */

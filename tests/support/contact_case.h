@@ -37,6 +37,15 @@ typedef struct case_block_data {
 } case_block_data;
 /* The block condensed layer by layer. Contact frame: normal -y, tangent x. */
 contact_case case_block(const case_block_data *d);
+/*
+ * One triangle, E = 1, corners (-1, 1) and (1, 3) clamped, (0, 0) on a floor,
+ * pushed by (fx, fy); mu_crit = 1.8 for nu = 0.3.
+ */
+contact_case case_triangle(double nu, double mu, double fx, double fy);
+/* The published block: 40 mm, E = 130 GPa, 50 MPa on the top, 150 on the side;
+ * u_x at x = 0, 5, 11.25 mm is 28.60, 22.86, 15.41 um for mu = 1, and u_x(0) =
+ * 40.615 um without friction (P1, 32 squares: to 0.3 %). */
+contact_case case_published(int columns, double mu);
 /* W = inv(A) of a positive definite A[m*m]; 0: it is not. */
 int case_inverse(int m, const double *A, double *W);
 /*
