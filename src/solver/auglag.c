@@ -503,8 +503,8 @@ static status auglag_solve(const contact_problem *cp, const void *par,
   rep->residual = w->best.residual;
   solver_take_best(&w->best, cp->m, u, r);
   if (!done_well && cp->B != NULL) {
-    TRY(fixed_point_solve(w->fixed, cp, &auglag_solver, &uzawa, work, control,
-                          u, r, rep));
+    inner_solver self = {&auglag_solver, &uzawa, work};
+    TRY(fixed_point_solve(w->fixed, cp, &self, control, u, r, rep));
     rep->iterations += s.steps;
   }
 done:
