@@ -301,6 +301,15 @@ contact_case case_published(int columns, double mu) {
 
 static double worse(double a, double b) { return !(b <= a) ? b : a; }
 
+/* Sliding limit of a node from the normal forces, N. */
+static double node_limit(const contact_problem *cp, const double *r, int i) {
+  double g = cp->g0[i];
+  for (int e = 0; cp->B != NULL && e < cp->B->start[i + 1]; ++e)
+    if (e >= cp->B->start[i])
+      g += cp->B->val[e] * fmax(0.0, -r[cp->B->col[e] * cp->dim]);
+  return g;
+}
+
 static double node_violation(const contact_case *c, const double *u,
                              const double *r, int i) {
   const contact_problem *cp = &c->cp;
@@ -309,12 +318,7 @@ static double node_violation(const contact_case *c, const double *u,
   double open = cp->gap[i] - u[first], push = -r[first], g = 0.0;
   double bad = worse(worse(0.0, -push), -k * open);
   bad = worse(bad, fmin(fmax(push, 0.0), fmax(k * open, 0.0)));
-  if (cp->g0 != NULL) {
-    g = cp->g0[i];
-    for (int e = 0; cp->B != NULL && e < cp->B->n; ++e)
-      if (e >= cp->B->start[i] && e < cp->B->start[i + 1])
-        g += cp->B->val[e] * fmax(0.0, -r[cp->B->col[e] * d]);
-  }
+  if (cp->g0 != NULL) g = node_limit(cp, r, i);
   double t = 0.0, s = 0.0, dot = 0.0, cross = 0.0;
   for (int a = 1; a < d; ++a) {
     if (cp->held != NULL && cp->held[first + a]) {
