@@ -17,7 +17,8 @@ enum { WORD = 80 };
 typedef struct words {
   FILE *f;
   const char *path;
-  int line_no;
+  int line_no; /* of the next character                                      */
+  int word_line_no; /* of the last word                                      */
 } words;
 
 static int is_gap(int c) {
@@ -40,13 +41,13 @@ static status next_word(words *w, char word[WORD]) {
   int c, n = 0;
   do c = next_char(w);
   while (is_gap(c));
-  int line_no = w->line_no;
+  w->word_line_no = w->line_no;
   for (; c != EOF && !is_gap(c); c = next_char(w)) {
     if (n + 1 == WORD)
       FAIL(ERR_DECK,
            "%s:%d: a word of more than %d characters; expected a "
            "number",
-           w->path, line_no, WORD - 1);
+           w->path, w->word_line_no, WORD - 1);
     word[n++] = (char)c;
   }
   word[n] = '\0';
@@ -63,8 +64,8 @@ static status next_real(words *w, const char *what, int row, double *value) {
     FAIL(ERR_DECK, "%s: the file ends in %s %d", w->path, what, row);
   const char *wrong = number_real(word, value);
   if (wrong != NULL)
-    FAIL(ERR_DECK, "%s:%d: %s %d: %s is %s", w->path, w->line_no, what, row,
-         word, wrong);
+    FAIL(ERR_DECK, "%s:%d: %s %d: %s is %s", w->path, w->word_line_no, what,
+         row, word, wrong);
 done:
   return st;
 }
@@ -100,7 +101,7 @@ static status read_numbers(words *w, exchange_problem *p) {
   TRY(next_word(w, word));
   if (word[0] != '\0')
     FAIL(ERR_DECK, "%s:%d: %s follows the last item of q; expected %d numbers",
-         w->path, w->line_no, word, p->n * (p->n + 1) + 1);
+         w->path, w->word_line_no, word, p->n * (p->n + 1) + 1);
 done:
   return st;
 }

@@ -1,7 +1,8 @@
 /*
  * A problem from a file: one solve, told to the outputs as one increment. A
  * plain LCP goes to complementary pivoting; where that ends on a ray although
- * the matrix does not make the ray a proof, other covering vectors are tried.
+ * the matrix does not make the ray a proof, or after too many pivots, other
+ * units and covering vectors are tried.
  */
 #include "base/memory.h"
 #include "base/timer.h"
@@ -13,7 +14,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { COVERS = 12, LOG = 200 };
+enum { ATTEMPTS = 12, LOG = 512 };
 
 /* One solve with all its arrays. */
 typedef struct discrete {
@@ -113,47 +114,87 @@ static double cover(unsigned *seed) {
                (int)(*seed >> 6 & 3u) - 2);
 }
 
-/* Lemke's method with the covering vector d: that of the rows over d with a
- * vector of ones. Work: rows[n*n], q[n]. */
-static status solve_covered(const exchange_problem *p, const double *d,
-                            int max_iter, double *rows, double *q, double *z,
-                            lcp_report *rep) {
+/* Room for one attempt at an LCP; n as in the problem. */
+typedef struct attempt {
+  double *cover; /* [n] covering vector                                      */
+  double *size;  /* [n] unit of z_i (and 1/w_i)                              */
+  double *M, *q; /* [n*n], [n] in these units, rows over the cover           */
+} attempt;
+
+static status attempt_new(int n, attempt *a) {
+  status st = OK;
+  NEW(a->cover, n);
+  NEW(a->size, n);
+  NEW(a->M, (size_t)n * (size_t)n);
+  NEW(a->q, n);
+done:
+  return st;
+}
+
+static void attempt_free(attempt *a) {
+  memory_free(a->cover);
+  memory_free(a->size);
+  memory_free(a->M);
+  memory_free(a->q);
+}
+
+/* Units that bring the diagonal to one, or the largest of row and column. */
+static double natural_unit(const exchange_problem *p, size_t i) {
+  size_t n = (size_t)p->n;
+  double largest = fabs(p->matrix[i + n * i]);
+  for (size_t j = 0; j < n && largest == 0.0; ++j)
+    largest = fmax(
+        largest, fmax(fabs(p->matrix[i + n * j]), fabs(p->matrix[j + n * i])));
+  return largest > 0.0 ? 1.0 / sqrt(largest) : 1.0;
+}
+
+/* Attempt k: plain; in natural units; then with other covering vectors. */
+static void choose(const exchange_problem *p, int k, unsigned *seed,
+                   attempt *a) {
+  for (int i = 0; i < p->n; ++i) {
+    a->size[i] = k == 0 ? 1.0 : natural_unit(p, (size_t)i);
+    a->cover[i] = k < 2 ? 1.0 : cover(seed);
+  }
+}
+
+/* Lemke's method with a covering vector d is that of the rows over d with a
+ * vector of ones. */
+static status solve_attempt(const exchange_problem *p, const attempt *a,
+                            int max_iter, double *z, lcp_report *rep) {
+  status st = OK;
   size_t n = (size_t)p->n;
   for (size_t j = 0; j < n; ++j)
     for (size_t i = 0; i < n; ++i)
-      rows[i + n * j] = p->matrix[i + n * j] / d[i];
-  for (size_t i = 0; i < n; ++i) q[i] = p->load[i] / d[i];
-  return lcp_lemke(p->n, rows, q, max_iter, z, rep);
+      a->M[i + n * j] =
+          p->matrix[i + n * j] * a->size[i] * a->size[j] / a->cover[i];
+  for (size_t i = 0; i < n; ++i)
+    a->q[i] = p->load[i] * a->size[i] / a->cover[i];
+  TRY(lcp_lemke(p->n, a->M, a->q, max_iter, z, rep));
+  for (size_t i = 0; i < n; ++i) z[i] *= a->size[i];
+done:
+  return st;
 }
 
-static status try_covers(discrete *s) {
+static status try_lemke(discrete *d) {
   status st = OK;
-  const exchange_problem *p = s->p;
-  double *d = NULL, *rows = NULL, *q = NULL;
-  double tol = s->step->solver.tol;
+  const exchange_problem *p = d->p;
+  const solver_choice *choice = &d->step->solver;
+  attempt a = {0};
   lcp_report rep;
   unsigned seed = 1;
-  NEW(d, p->n);
-  NEW(rows, (size_t)p->n * (size_t)p->n);
-  NEW(q, p->n);
-  for (int k = 0; k < COVERS; ++k) {
-    for (int i = 0; i < p->n; ++i) d[i] = k == 0 ? 1.0 : cover(&seed);
-    TRY(solve_covered(p, d, s->step->solver.max_iter, rows, q, s->r, &rep));
-    s->report.iterations += rep.pivots;
-    s->report.limit_updates = k;
-    s->report.residual = lcp_residual(p, s->r, s->u);
-    if (s->report.residual <= tol) {
-      s->report.outcome = CONVERGED;
-      break;
-    }
-    if (k == 0 || rep.outcome == STOPPED_RAY)
-      s->report.outcome =
-          rep.outcome == CONVERGED ? STOPPED_STAGNATION : rep.outcome;
+  TRY(attempt_new(p->n, &a));
+  for (int k = 0; k < ATTEMPTS; ++k) {
+    choose(p, k, &seed, &a);
+    TRY(solve_attempt(p, &a, choice->max_iter, d->r, &rep));
+    d->report.iterations += rep.pivots;
+    d->report.residual = lcp_residual(p, d->r, d->u);
+    d->report.outcome = CONVERGED;
+    if (d->report.residual <= choice->tol) break;
+    d->report.outcome =
+        rep.outcome == CONVERGED ? STOPPED_STAGNATION : rep.outcome;
   }
 done:
-  memory_free(d);
-  memory_free(rows);
-  memory_free(q);
+  attempt_free(&a);
   return st;
 }
 
@@ -168,7 +209,7 @@ static status solve_lcp(discrete *d) {
          "complementarity problem; use LEMKE or AUTO",
          d->step->solver_at.line_no, ops->name);
   d->report.residual = lcp_residual(d->p, d->r, d->u);
-  if (!(d->report.residual <= d->step->solver.tol)) TRY(try_covers(d));
+  if (!(d->report.residual <= d->step->solver.tol)) TRY(try_lemke(d));
   for (int i = 0; i < d->p->n; ++i) {
     d->contact[i] = d->r[i] > 0.0 ? CONTACT_SLIP : CONTACT_OPEN;
     d->gap[i] = d->u[i];

@@ -1,0 +1,474 @@
+/* src/exchange: problems of every storage, files of every defect. */
+#include "base/memory.h"
+#include "exchange/exchange.h"
+#include "support/contact_case.h"
+#include "support/decks.h"
+#include "support/fclib_file.h"
+#include "support/made_up.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static char folder[64], path[128];
+
+static void enter(void) {
+  folder_new(folder);
+  snprintf(path, sizeof path, "%s/problem.h5", folder);
+}
+
+static void leave(void) { folder_remove(folder); }
+
+/* The file read; the message if it is refused. */
+typedef struct answer {
+  exchange_problem *p;
+  status st;
+  char text[1024];
+} answer;
+
+static answer read_as(exchange_type type) {
+  answer a = {0};
+  message_log *log = NULL;
+  const place at = {.file = "a.inp", .line_no = 1};
+  ck_assert_int_eq(message_log_new(&log), OK);
+  a.st = exchange_read(path, type, &at, log, &a.p);
+  ck_assert((a.st == OK) == (a.p != NULL));
+  if (a.st != OK) snprintf(a.text, sizeof a.text, "%s", status_message());
+  if (a.st == ERR_DECK || a.st == ERR_FILE)
+    ck_assert_int_eq(message_count(log, ERROR), 1);
+  message_log_free(log);
+  return a;
+}
+
+static void random_matrix(int n, double *a, unsigned long long *seed) {
+  for (int k = 0; k < n; ++k) a[k] = 2.0 * case_random(seed) - 1.0;
+}
+
+/* a = b b' + d I, n columns of b. */
+static void random_spd(int m, int n, double d, double *a,
+                       unsigned long long *seed) {
+  double *b = calloc((size_t)(m * n), sizeof *b);
+  random_matrix(m * n, b, seed);
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < m; ++j) {
+      double sum = i == j ? d : 0.0;
+      for (int k = 0; k < n; ++k) sum += b[i + m * k] * b[j + m * k];
+      a[i + m * j] = sum;
+    }
+  free(b);
+}
+
+/* The problem read, against W and q of FCLIB: normal signs turned. */
+static void check_local(const exchange_problem *p, int dim, int n,
+                        const double *W, const double *q, const double *mu,
+                        double tol) {
+  int m = dim * n;
+  ck_assert_int_eq(p->dim, dim);
+  ck_assert_int_eq(p->n, n);
+  ck_assert_ptr_null(p->cp.A);
+  for (int j = 0; j < m; ++j) {
+    double s = j % dim == 0 ? -1.0 : 1.0;
+    ck_assert_double_eq_tol(p->cp.f[j], s * q[j], tol);
+    for (int i = 0; i < m; ++i) {
+      double t = i % dim == 0 ? -s : s;
+      ck_assert_double_eq_tol(p->cp.W[i + m * j], t * W[i + m * j], tol);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    ck_assert_double_eq(p->cp.B->val[i], mu[i]);
+    ck_assert_double_eq(p->cp.gap[i], 0.0);
+  }
+}
+
+static const int stores[] = {STORE_TRIPLET, STORE_COLUMNS, STORE_ROWS};
+
+/* An unsymmetric matrix with zeros, so that rows and columns are told apart. */
+START_TEST(every_storage_gives_the_same_problem) {
+  enter();
+  for (int dim = 2; dim <= 3; ++dim)
+    for (int k = 0; k < 3; ++k) {
+      unsigned long long seed = 3;
+      double W[81], q[9], mu[3] = {0.5, 0.0, 1.5};
+      random_matrix(81, W, &seed);
+      random_matrix(9, q, &seed);
+      for (int i = 0; i < 81; i += 4) W[i] = 0.0;
+      fclib_local(path, stores[k], dim, 3, W, q, mu);
+      answer a = read_as(k == 0 ? EXCHANGE_BY_CONTENT : EXCHANGE_FCLIB);
+      ck_assert_msg(a.st == OK, "%s", a.text);
+      check_local(a.p, dim, 3, W, q, mu, 1e-15);
+      exchange_free(a.p);
+    }
+  leave();
+}
+END_TEST
+
+/* b = H' inv(M) [H f], by elimination without pivots; M is SPD. */
+static void condense_dense(int n, int m, const double *M_in, const double *H,
+                           const double *f, double *W, double *q) {
+  int c = m + 1;
+  double *M = malloc(sizeof *M * (size_t)(n * n));
+  double *B = malloc(sizeof *B * (size_t)(n * c));
+  memcpy(M, M_in, sizeof *M * (size_t)(n * n));
+  memcpy(B, H, sizeof *B * (size_t)(n * m));
+  memcpy(B + n * m, f, sizeof *B * (size_t)n);
+  for (int k = 0; k < n; ++k)
+    for (int i = 0; i < n; ++i) {
+      if (i == k) continue;
+      double ratio = M[i + n * k] / M[k + n * k];
+      for (int j = k; j < n; ++j) M[i + n * j] -= ratio * M[k + n * j];
+      for (int j = 0; j < c; ++j) B[i + n * j] -= ratio * B[k + n * j];
+    }
+  for (int j = 0; j < c; ++j)
+    for (int i = 0; i < m; ++i) {
+      double sum = 0.0;
+      for (int k = 0; k < n; ++k)
+        sum += H[k + n * i] * B[k + n * j] / M[k + n * k];
+      if (j < m)
+        W[i + m * j] = sum;
+      else
+        q[i] += sum;
+    }
+  free(M);
+  free(B);
+}
+
+enum { NV = 40, NC = 3 };
+typedef struct global_case {
+  double M[NV * NV], H[NV * 3 * NC], f[NV], w[3 * NC], mu[NC];
+  double W[9 * NC * NC], q[3 * NC]; /* condensed                             */
+  fclib_global_data data;
+} global_case;
+
+static void global_make(global_case *g, int dim) {
+  unsigned long long seed = 11;
+  int m = dim * NC;
+  random_spd(NV, NV, 0.5, g->M, &seed);
+  /* Units that differ by 1e6, as masses and moments of inertia do. */
+  for (int i = 0; i < NV; ++i)
+    for (int j = 0; j < NV; ++j)
+      g->M[i + NV * j] *= (i % 2 ? 1e-3 : 1.0) * (j % 2 ? 1e-3 : 1.0);
+  random_matrix(NV * m, g->H, &seed);
+  for (int k = 0; k < NV * m; k += 3) g->H[k] = 0.0;
+  for (int k = 1; k < NV * m; k += 2) g->H[k] *= 1e-3;
+  random_matrix(NV, g->f, &seed);
+  random_matrix(m, g->w, &seed);
+  for (int i = 0; i < NC; ++i) g->mu[i] = 0.3 * (i + 1);
+  memcpy(g->q, g->w, sizeof g->q);
+  condense_dense(NV, m, g->M, g->H, g->f, g->W, g->q);
+  g->data = (fclib_global_data){.dim = dim, .n = NC, .n_v = NV};
+  g->data.M = g->M;
+  g->data.H = g->H;
+  g->data.f = g->f;
+  g->data.w = g->w;
+  g->data.mu = g->mu;
+}
+
+/* keep: 0 all of M, 1 the upper, -1 the lower triangle only. */
+static void keep_triangle(double *M, int keep) {
+  for (int i = 0; i < NV; ++i)
+    for (int j = 0; j < NV; ++j)
+      if (keep * (j - i) < 0) M[i + NV * j] = 0.0;
+}
+
+START_TEST(global_problem_is_its_local_condensation) {
+  global_case *g = malloc(sizeof *g);
+  enter();
+  for (int dim = 2; dim <= 3; ++dim)
+    for (int k = 0; k < 3; ++k)
+      for (int keep = -1; keep <= 1; ++keep) {
+        global_make(g, dim);
+        keep_triangle(g->M, keep);
+        fclib_global(path, stores[k], &g->data);
+        answer a = read_as(EXCHANGE_FCLIB);
+        ck_assert_msg(a.st == OK, "%s", a.text);
+        ck_assert_int_eq(a.p->unknowns, NV);
+        check_local(a.p, dim, NC, g->W, g->q, g->mu, 1e-9);
+        exchange_free(a.p);
+      }
+  leave();
+  free(g);
+}
+END_TEST
+
+/* Neither symmetric nor positive definite, but regular: by elimination. */
+START_TEST(unsymmetric_mass_is_eliminated_too) {
+  global_case *g = malloc(sizeof *g);
+  enter();
+  global_make(g, 2);
+  for (int j = 0; j < NV; ++j)
+    for (int i = 0; i < j; ++i) g->M[i + NV * j] *= 1.01;
+  memcpy(g->q, g->w, sizeof g->q);
+  condense_dense(NV, 2 * NC, g->M, g->H, g->f, g->W, g->q);
+  fclib_global(path, STORE_TRIPLET, &g->data);
+  answer a = read_as(EXCHANGE_FCLIB);
+  ck_assert_msg(a.st == OK, "%s", a.text);
+  check_local(a.p, 2, NC, g->W, g->q, g->mu, 1e-8);
+  exchange_free(a.p);
+  leave();
+  free(g);
+}
+END_TEST
+
+START_TEST(singular_mass_is_refused) {
+  global_case *g = malloc(sizeof *g);
+  enter();
+  global_make(g, 3);
+  for (int i = 0; i < NV; ++i) g->M[i + NV * 5] = g->M[5 + NV * i] = 0.0;
+  fclib_global(path, STORE_TRIPLET, &g->data);
+  answer a = read_as(EXCHANGE_FCLIB);
+  ck_assert_int_eq(a.st, ERR_SINGULAR);
+  ck_assert_ptr_nonnull(strstr(a.text, "/fclib_global/M"));
+  leave();
+  free(g);
+}
+END_TEST
+
+START_TEST(no_contact_is_a_problem) {
+  const double M[] = {2.0, 0.0, 0.0, 1.0}, f[] = {1.0, 1.0};
+  const fclib_global_data g = {.dim = 2, .n_v = 2, .M = M, .f = f};
+  enter();
+  for (int k = 0; k < 6; ++k) {
+    if (k < 3)
+      fclib_local(path, stores[k], 3, 0, NULL, NULL, NULL);
+    else
+      fclib_global(path, stores[k - 3], &g);
+    answer a = read_as(EXCHANGE_FCLIB);
+    ck_assert_msg(a.st == OK, "%s", a.text);
+    ck_assert_int_eq(a.p->m, 0);
+    exchange_free(a.p);
+  }
+  leave();
+}
+END_TEST
+
+/* ---- defects ---- */
+
+static void replace(const char *name, int real, int n, double value) {
+  double x[16];
+  int i[16];
+  hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+  ck_assert(file >= 0);
+  ck_assert_msg(H5Ldelete(file, name, H5P_DEFAULT) >= 0, "%s", name);
+  for (int k = 0; k < 16; ++k) i[k] = (int)(x[k] = isfinite(value) ? value : 0);
+  if (!isfinite(value)) x[n - 1] = value;
+  if (n >= 0 && real) fclib_reals(file, name, n, x);
+  if (n >= 0 && !real) fclib_ints(file, name, n, i);
+  fclib_end(file);
+}
+
+/* n items "value" in the place of a dataset (the last one if it is not
+ * finite); n = -1: taken away. */
+static const struct defect {
+  const char *name;
+  int real, n;
+  double value;
+} defects[] = {{"spacedim", 0, -1, 0},
+               {"spacedim", 0, 1, 4},
+               {"spacedim", 0, 2, 2},
+               {"spacedim", 1, 1, 2},
+               {"W", 0, -1, 0},
+               {"W", 1, 3, 0},
+               {"W/m", 0, -1, 0},
+               {"W/m", 0, 1, 3},
+               {"W/m", 0, 1, -4},
+               {"W/n", 0, 1, 6},
+               {"W/n", 0, 1, 1000000000},
+               {"W/nz", 0, 1, -3},
+               {"W/nz", 0, 1, 100},
+               {"W/nz", 0, 0, 0},
+               {"W/p", 0, -1, 0},
+               {"W/p", 0, 4, 0},
+               {"W/p", 0, 5, 1},
+               {"W/p", 1, 5, 0},
+               {"W/i", 0, -1, 0},
+               {"W/i", 0, 3, 0},
+               {"W/i", 0, 16, 4},
+               {"W/i", 0, 16, -1},
+               {"W/x", 1, -1, 0},
+               {"W/x", 1, 3, 0},
+               {"W/x", 1, 16, NAN},
+               {"W/x", 1, 16, HUGE_VAL},
+               {"vectors/q", 1, -1, 0},
+               {"vectors/q", 1, 3, 0},
+               {"vectors/q", 1, 5, 0},
+               {"vectors/q", 1, 4, NAN},
+               {"vectors/q", 1, 4, -HUGE_VAL},
+               {"vectors/mu", 1, -1, 0},
+               {"vectors/mu", 1, 1, 0},
+               {"vectors/mu", 1, 2, NAN},
+               {"vectors/mu", 1, 2, -0.1},
+               {"vectors", 0, -1, 0}};
+
+START_TEST(defect_names_file_and_dataset) {
+  unsigned long long seed = 5;
+  double W[16], q[4] = {1, 2, 3, 4}, mu[2] = {0.1, 0.2};
+  random_matrix(16, W, &seed);
+  enter();
+  for (size_t k = 0; k < sizeof defects / sizeof *defects; ++k) {
+    const struct defect *d = &defects[k];
+    char name[80];
+    fclib_local(path, STORE_ROWS, 2, 2, W, q, mu);
+    snprintf(name, sizeof name, "/fclib_local/%s", d->name);
+    replace(name, d->real, d->n, d->value);
+    answer a = read_as(EXCHANGE_FCLIB);
+    ck_assert_msg(a.st == ERR_DECK, "%s, row %zu: %d", d->name, k, a.st);
+    char *slash = strrchr(name, '/');
+    if (strncmp(d->name, "W/", 2) == 0 || strcmp(d->name, "W") == 0) *slash = 0;
+    ck_assert_msg(strstr(a.text, "problem.h5") != NULL &&
+                      strstr(a.text, "/fclib_local") != NULL,
+                  "%s: %s", name, a.text);
+  }
+  leave();
+}
+END_TEST
+
+START_TEST(what_is_not_available_is_said) {
+  static const char *const names[] = {"/fclib_local/V/m", "/fclib_local/R/m",
+                                      "/fclib_local_rolling/spacedim",
+                                      "/fclib_global_rolling/spacedim"};
+  double W[4] = {1, 0, 0, 1}, q[2] = {1, 1}, mu[1] = {0.3};
+  enter();
+  for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
+    fclib_local(path, STORE_ROWS, 2, 1, W, q, mu);
+    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    fclib_int(file, names[k], 3);
+    fclib_end(file);
+    answer a = read_as(EXCHANGE_FCLIB);
+    ck_assert_int_eq(a.st, ERR_DECK);
+    ck_assert_ptr_nonnull(strstr(a.text, "not available"));
+  }
+  leave();
+}
+END_TEST
+
+/* Bytes of the problem file, as they stand. */
+static char *bytes_of_file(size_t *size) {
+  return folder_file(folder, "problem.h5", size);
+}
+
+static void write_bytes(const char *bytes, size_t n) {
+  FILE *f = fopen(path, "wb");
+  ck_assert_ptr_nonnull(f);
+  ck_assert_uint_eq(fwrite(bytes, 1, n, f), n);
+  fclose(f);
+}
+
+START_TEST(file_cut_short_is_refused) {
+  double W[4] = {1, 0, 0, 1}, q[2] = {1, 1}, mu[1] = {0.3};
+  size_t size = 0;
+  enter();
+  fclib_local(path, STORE_ROWS, 2, 1, W, q, mu);
+  char *bytes = bytes_of_file(&size);
+  for (size_t n = 0; n < size; n += 97) {
+    write_bytes(bytes, n);
+    answer a = read_as(EXCHANGE_FCLIB);
+    ck_assert_msg(a.st == ERR_FILE, "%zu of %zu bytes: %d", n, size, a.st);
+    ck_assert_ptr_nonnull(strstr(a.text, "problem.h5"));
+  }
+  free(bytes);
+  unlink(path);
+  answer a = read_as(EXCHANGE_BY_CONTENT);
+  ck_assert_int_eq(a.st, ERR_FILE);
+  leave();
+}
+END_TEST
+
+/* ---- text ---- */
+
+static answer read_text(const char *text) {
+  write_bytes(text, strlen(text));
+  return read_as(EXCHANGE_BY_CONTENT);
+}
+
+START_TEST(text_is_read_by_rows) {
+  enter();
+  answer a = read_text("# two unknowns\r\n2\n1, 2.5D0;-3 4e0 # M\n 5\n6");
+  ck_assert_msg(a.st == OK, "%s", a.text);
+  const double M[] = {1.0, -3.0, 2.5, 4.0};
+  ck_assert_int_eq(a.p->dim, 1);
+  ck_assert_mem_eq(a.p->matrix, M, sizeof M);
+  ck_assert_double_eq(a.p->load[0], 5.0);
+  ck_assert_double_eq(a.p->load[1], 6.0);
+  exchange_free(a.p);
+  a = read_text("0\n");
+  ck_assert_int_eq(a.st, OK);
+  exchange_free(a.p);
+  leave();
+}
+END_TEST
+
+START_TEST(defect_of_text_is_named) {
+  static const char *const wrong[][2] = {{"", "number of unknowns"},
+                                         {"x\n", "number of unknowns"},
+                                         {"-1\n", "number of unknowns"},
+                                         {"2.5\n", "number of unknowns"},
+                                         {"99999999\n", "number of unknowns"},
+                                         {"2\n1 2 3\n", "row 2"},
+                                         {"2\n1 2 3 4\n5\n", "q, item 2"},
+                                         {"1\n1 2 3\n", "follows"},
+                                         {"1\nnan 2\n", "row 1"},
+                                         {"1\n1\n\ninf\n", ":4: q, item 1"},
+                                         {"1\n1 1e999\n", "q, item 1"},
+                                         {"1\n1 2x\n", "q, item 1"}};
+  enter();
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+    answer a = read_text(wrong[k][0]);
+    ck_assert_int_eq(a.st, ERR_DECK);
+    ck_assert_msg(strstr(a.text, wrong[k][1]) != NULL, "%s", a.text);
+    ck_assert_ptr_nonnull(strstr(a.text, "problem.h5"));
+  }
+  leave();
+}
+END_TEST
+
+/* ---- memory ---- */
+
+static void refuse_all(void) {
+  const place at = {.file = "a.inp", .line_no = 1};
+  message_log *log = NULL;
+  ck_assert_int_eq(message_log_new(&log), OK);
+  for (long k = 1;; ++k) {
+    exchange_problem *p = NULL;
+    size_t before = memory_in_use();
+    memory_refuse(k, 0);
+    status st = exchange_read(path, EXCHANGE_BY_CONTENT, &at, log, &p);
+    memory_refuse(0, 0);
+    exchange_free(p);
+    ck_assert_uint_eq(memory_in_use(), before);
+    if (st == OK) {
+      ck_assert_int_gt(k, 3);
+      break;
+    }
+    ck_assert_int_eq(st, ERR_MEMORY);
+    ck_assert_ptr_null(p);
+  }
+  message_log_free(log);
+}
+
+START_TEST(every_refused_request_is_reported) {
+  global_case *g = malloc(sizeof *g);
+  enter();
+  global_make(g, 2);
+  fclib_local(path, STORE_TRIPLET, 2, NC, g->W, g->q, g->mu);
+  refuse_all();
+  fclib_global(path, STORE_COLUMNS, &g->data);
+  refuse_all();
+  g->M[1] *= 1.1; /* the dense way */
+  fclib_global(path, STORE_COLUMNS, &g->data);
+  refuse_all();
+  write_bytes("2 1 2 3 4 5 6", 13);
+  refuse_all();
+  leave();
+  free(g);
+}
+END_TEST
+
+UNIT_MAIN("exchange", every_storage_gives_the_same_problem,
+          global_problem_is_its_local_condensation,
+          unsymmetric_mass_is_eliminated_too, singular_mass_is_refused,
+          no_contact_is_a_problem, defect_names_file_and_dataset,
+          what_is_not_available_is_said, file_cut_short_is_refused,
+          text_is_read_by_rows, defect_of_text_is_named,
+          every_refused_request_is_reported)
