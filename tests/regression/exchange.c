@@ -1,0 +1,557 @@
+/*
+ * Discrete problems: written by one run and read by another, made here in the
+ * layout of FCLIB, plain LCPs; their verdicts.
+ */
+#include "solver/solver.h"
+#include "support/contact_case.h"
+#include "support/fclib_file.h"
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *in_folder(const job *j, const char *file) {
+  static char path[256];
+  snprintf(path, sizeof path, "%s/%s", j->dir, file);
+  return path;
+}
+
+static double *take(const job *j, const char *file, const char *name, int *n) {
+  double *x = fclib_take(in_folder(j, file), name, n);
+  ck_assert_msg(x != NULL, "%s: no %s", file, name);
+  return x;
+}
+
+static double largest(int n, const double *x) {
+  double most = 0.0;
+  for (int k = 0; k < n; ++k) most = fmax(most, fabs(x[k]));
+  return most;
+}
+
+/* ---- round trip ---- */
+
+static void compare(const job *j, const char *one, const char *other,
+                    const char *name) {
+  int n, n_other;
+  double *a = take(j, one, name, &n), *b = take(j, other, name, &n_other);
+  ck_assert_int_eq(n, n_other);
+  ck_assert_int_gt(n, 0);
+  double scale = largest(n, a);
+  ck_assert_msg(scale > 0.0, "%s: %s is zero", one, name);
+  for (int k = 0; k < n; ++k)
+    ck_assert_msg(fabs(a[k] - b[k]) <= 1e-10 * scale, "%s[%d]: %.15g, %.15g",
+                  name, k, a[k], b[k]);
+  free(a);
+  free(b);
+}
+
+/* The file by itself: its solution solves its problem. Rows of W are columns
+ * of the array, which the check transposes: W is symmetric. */
+static void check_file(const job *j, const char *file, int dim) {
+  int m, n, k;
+  double *W = take(j, file, "/fclib_local/W/x", &k);
+  double *q = take(j, file, "/fclib_local/vectors/q", &m);
+  double *mu = take(j, file, "/fclib_local/vectors/mu", &n);
+  double *u = take(j, file, "/solution/u", &k);
+  double *r = take(j, file, "/solution/r", &k);
+  ck_assert_int_eq(m, dim * n);
+  ck_assert_double_le(fclib_violation(dim, n, W, q, mu, u, r), 1e-9);
+  ck_assert_double_gt(largest(m, r), 0.0);
+  free(W), free(q), free(mu), free(u), free(r);
+}
+
+/* The second increment of a deck, solved again from its file. */
+static void round_trip(job *j, const char *solver) {
+  job_write(j, "back.inp",
+            "*CONDENSED PROBLEM, FILE=%s_condensed_00002.h5\n*STEP\n"
+            "*SOLVER, TOL=1e-13%s\n*OUTPUT, CONDENSED=FCLIB\n*END STEP\n",
+            j->name, solver);
+  char first[64], name[32];
+  snprintf(first, sizeof first, "%s_condensed_00002.h5", j->name);
+  strcpy(name, j->name);
+  strcpy(j->name, "back");
+  ck_assert_msg(job_run(j, "") == 0, "%s", j->errors);
+  strcpy(j->name, name);
+  compare(j, first, "back_condensed_00001.h5", "/solution/u");
+  compare(j, first, "back_condensed_00001.h5", "/solution/r");
+}
+
+/* Unit square on a floor, pressed and pushed; held at its top or by contact
+ * alone, then no compliance exists. */
+static job run_square(const char *support, const char *law) {
+  job j = job_begin("square");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "square.inp",
+            "*PARAMETER\nN = 6\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -0.0005\n0.001, 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n%s"
+            "*DSLOAD\nTOP, P, 10.\nLEFT, P, 4.\n"
+            "*SOLVER, TOL=1e-13\n"
+            "*OUTPUT, HDF5=NO, CONDENSED=FCLIB\n*END STEP\n",
+            law, support);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+#define COULOMB "*FRICTION, CONTACT=C, LAW=COULOMB\n0.02\n"
+
+START_TEST(problem_written_and_read_has_the_same_solution) {
+  job j = run_square("LEFT, 1, 1, 0.001\nTOP, 2, 2, -0.004\n", COULOMB);
+  check_file(&j, "square_condensed_00002.h5", 2);
+  round_trip(&j, "");
+  job_end(&j);
+  j = run_square("RIGHT, 1\n", COULOMB); /* its corner node is held          */
+  round_trip(&j, "");
+  job_end(&j);
+  j = run_square("RIGHT, 1\nRIGHT, 2\n", "");
+  check_file(&j, "square_condensed_00002.h5", 2);
+  round_trip(&j, ", METHOD=SOR");
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(problem_of_three_dimensions_comes_back) {
+  job j = job_begin("block");
+  job_copy(&j, "input/block_shear_3d/block_shear_3d.geo");
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block_shear_3d.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n" COULOMB
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n"
+            "TOP, 1, 1, 0.012\nTOP, 2, 2, 0.004\nTOP, 3, 3, -0.02\n"
+            "*SOLVER, TOL=1e-13\n"
+            "*OUTPUT, HDF5=NO, CONDENSED=FCLIB\n*END STEP\n");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  check_file(&j, "block_condensed_00002.h5", 3);
+  round_trip(&j, "");
+  job_end(&j);
+}
+END_TEST
+
+/* The layout has no place for a given sliding limit. */
+START_TEST(what_cannot_be_written_is_refused) {
+  job j = job_begin("square");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "square.inp",
+            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=TRESCA\n1.\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2, -0.001\n"
+            "*OUTPUT, CONDENSED=FCLIB\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 2);
+  ck_assert_ptr_nonnull(strstr(j.errors, "CONDENSED=FCLIB"));
+  job_end(&j);
+}
+END_TEST
+
+/* ---- a rigid block ---- */
+
+enum { FEET = 8, MASS = 6 };
+
+/* Block 2 x 1 x 1 on a floor; FEET contacts, two at each corner, so that W has
+ * rank 6 of 24. Velocities v at the centre, order x y z and rotations; one time
+ * step: M v = H r + f, f = weight and a push P along x at height "h". */
+typedef struct rigid {
+  double M[MASS * MASS], H[MASS * 3 * FEET], f[MASS], w[3 * FEET], mu[FEET];
+  double W[9 * FEET * FEET], q[3 * FEET];
+} rigid;
+
+static const double WEIGHT = 10.0;
+
+static void rigid_make(rigid *b, double push, double height, double mu) {
+  static const double inertia[MASS] = {2.0, 2.0, 2.0, 0.3, 0.8, 0.9};
+  memset(b, 0, sizeof *b);
+  for (int k = 0; k < MASS; ++k) b->M[k + MASS * k] = inertia[k];
+  b->f[0] = push;
+  b->f[2] = -WEIGHT;
+  b->f[4] = push * (height - 0.5); /* about y, from the centre                */
+  for (int i = 0; i < FEET; ++i) {
+    double x = i & 1 ? 1.0 : -1.0, y = i & 2 ? 0.5 : -0.5, z = -0.5;
+    /* v of the foot = v + omega x (x, y, z); N = z, T1 = x, T2 = y. */
+    double *N = b->H + MASS * 3 * i, *T1 = N + MASS, *T2 = T1 + MASS;
+    N[2] = 1.0, N[3] = y, N[4] = -x;
+    T1[0] = 1.0, T1[4] = z, T1[5] = -y;
+    T2[1] = 1.0, T2[3] = -z, T2[5] = x;
+    b->mu[i] = mu;
+  }
+  int m = 3 * FEET;
+  for (int i = 0; i < m; ++i)
+    for (int k = 0; k < MASS; ++k) {
+      b->q[i] += b->H[k + MASS * i] * b->f[k] / inertia[k];
+      for (int j = 0; j < m; ++j)
+        b->W[i + m * j] += b->H[k + MASS * i] * b->H[k + MASS * j] / inertia[k];
+    }
+}
+
+static int solve_file(job *j, const char *solver) {
+  job_write(j, "read.inp",
+            "*CONDENSED PROBLEM, FILE=problem.h5\n*STEP\n*SOLVER, TOL=1e-8%s\n"
+            "*OUTPUT, CONDENSED=FCLIB\n*END STEP\n",
+            solver);
+  return job_run(j, "");
+}
+
+/* Resultant of the feet in the directions of v. */
+static void resultant(const rigid *b, const double *r, double sum[MASS]) {
+  for (int k = 0; k < MASS; ++k) {
+    sum[k] = 0.0;
+    for (int i = 0; i < 3 * FEET; ++i) sum[k] += b->H[k + MASS * i] * r[i];
+  }
+}
+
+/* push below mu WEIGHT: the floor carries all of it. Above: it slips, and the
+ * floor carries mu WEIGHT; low enough not to tip. */
+static void check_rigid(job *j, const rigid *b, double push, double mu,
+                        double height) {
+  int m;
+  double sum[MASS];
+  double *r = take(j, "read_condensed_00001.h5", "/solution/r", &m);
+  double *u = take(j, "read_condensed_00001.h5", "/solution/u", &m);
+  ck_assert_double_le(fclib_violation(3, FEET, b->W, b->q, b->mu, u, r), 1e-7);
+  resultant(b, r, sum);
+  double held = fmin(push, mu * WEIGHT);
+  ck_assert_double_eq_tol(sum[0], -held, 1e-6);
+  ck_assert_double_eq_tol(sum[2], WEIGHT, 1e-6);
+  ck_assert_double_eq_tol(sum[4], -push * (height - 0.5), 1e-6);
+  for (int i = 0; i < FEET; ++i)
+    ck_assert_double_eq_tol(u[3 * i + 1], (push - held) / 2.0, 1e-6);
+  free(r);
+  free(u);
+}
+
+START_TEST(rigid_block_obeys_statics) {
+  static const double push[] = {2.0, 4.5, 0.0}, mu[] = {0.4, 0.3, 0.4};
+  const double height = 0.2;
+  rigid *b = malloc(sizeof *b);
+  for (int k = 0; k < 3; ++k)
+    for (int global = 0; global <= 1; ++global) {
+      job j = job_begin("read");
+      rigid_make(b, push[k], height, mu[k]);
+      const fclib_global_data g = {3,    FEET, MASS, b->M,
+                                   b->H, b->f, b->w, b->mu};
+      if (global)
+        fclib_global(in_folder(&j, "problem.h5"), STORE_TRIPLET, &g);
+      else
+        fclib_local(in_folder(&j, "problem.h5"), STORE_ROWS, 3, FEET, b->W,
+                    b->q, b->mu);
+      int code = solve_file(&j, "");
+      ck_assert_msg(code == 0, "push %g, mu %g: exit %d: %s", push[k], mu[k],
+                    code, j.errors);
+      check_rigid(&j, b, push[k], mu[k], height);
+      job_end(&j);
+    }
+  free(b);
+}
+END_TEST
+
+/* ---- random problems, every solver ---- */
+
+/* W = b b' + d I with an unsymmetric part of the size "skew". */
+static void random_local(int m, double d, double skew, double *W, double *q,
+                         unsigned long long *seed) {
+  double *b = malloc(sizeof *b * (size_t)(m * m));
+  for (int k = 0; k < m * m; ++k) b[k] = 2.0 * case_random(seed) - 1.0;
+  for (int i = 0; i < m; ++i) {
+    q[i] = 2.0 * case_random(seed) - 1.3;
+    for (int j = 0; j < m; ++j) {
+      double sum = i == j ? d : skew * (case_random(seed) - 0.5);
+      for (int k = 0; k < m; ++k) sum += b[i + m * k] * b[j + m * k] / m;
+      W[i + m * j] = sum;
+    }
+  }
+  free(b);
+}
+
+/* One problem by one solver: solved, or honestly not. Returns 1 if solved. */
+static int solve_random(int dim, int n, const char *solver, double skew,
+                        unsigned long long seed) {
+  int m = dim * n, k, solved = 0;
+  double *W = malloc(sizeof *W * (size_t)(m * m));
+  double *q = malloc(sizeof *q * (size_t)m),
+         *mu = malloc(sizeof *mu * (size_t)n);
+  random_local(m, 0.3, skew, W, q, &seed);
+  for (int i = 0; i < n; ++i) mu[i] = 0.8 * case_random(&seed);
+  job j = job_begin("read");
+  fclib_local(in_folder(&j, "problem.h5"), STORE_ROWS, dim, n, W, q, mu);
+  int code = solve_file(&j, solver);
+  ck_assert_msg(code == 0 || code == 1 || code == 6, "%s: exit %d: %s", solver,
+                code, j.errors);
+  if (code == 0) {
+    double *r = take(&j, "read_condensed_00001.h5", "/solution/r", &k);
+    double *u = take(&j, "read_condensed_00001.h5", "/solution/u", &k);
+    double miss = fclib_violation(dim, n, W, q, mu, u, r);
+    ck_assert_msg(miss <= 1e-7, "%s claims a violation of %g", solver, miss);
+    solved = 1;
+    free(r);
+    free(u);
+  }
+  job_end(&j);
+  free(W), free(q), free(mu);
+  return solved;
+}
+
+START_TEST(every_solver_is_honest_on_problems_from_files) {
+  char method[80];
+  for (int k = 0; solver_list[k] != NULL; ++k) {
+    int solved = 0;
+    snprintf(method, sizeof method, ", METHOD=%s", solver_list[k]->name);
+    for (int dim = 2; dim <= 3; ++dim)
+      solved += solve_random(dim, 10, method, 0.0, 21);
+    ck_assert_msg(solved > 0, "%s solves neither", solver_list[k]->name);
+  }
+}
+END_TEST
+
+START_TEST(auto_solves_unsymmetric_problems) {
+  for (int dim = 2; dim <= 3; ++dim)
+    for (unsigned long long seed = 1; seed <= 4; ++seed)
+      ck_assert_msg(solve_random(dim, 20, "", 1e-3, seed), "%d-D, seed %llu",
+                    dim, seed);
+}
+END_TEST
+
+/* ---- linear complementarity problems ---- */
+
+typedef struct lcp {
+  int n;
+  double *M, *q; /* by rows                                                   */
+} lcp;
+
+static lcp lcp_new_case(int n) {
+  return (lcp){n, calloc((size_t)(n * n), sizeof(double)),
+               calloc((size_t)n, sizeof(double))};
+}
+
+static int run_lcp(job *j, const lcp *p, const char *solver) {
+  size_t size = 64 + 30 * (size_t)(p->n * (p->n + 1)), used = 0;
+  char *text = malloc(size);
+  used += (size_t)sprintf(text, "%d\n", p->n);
+  for (int k = 0; k < p->n * p->n; ++k)
+    used += (size_t)sprintf(text + used, "%.17g%c", p->M[k],
+                            (k + 1) % p->n == 0 ? '\n' : ' ');
+  for (int k = 0; k < p->n; ++k)
+    used += (size_t)sprintf(text + used, "%.17g\n", p->q[k]);
+  job_write(j, "lcp.txt", "%s", text);
+  free(text);
+  job_write(j, "lcp.inp",
+            "*CONDENSED PROBLEM, FILE=lcp.txt, TYPE=LCP\n*STEP\n"
+            "*SOLVER, TOL=1e-8%s\n*END STEP\n",
+            solver);
+  return job_run(j, "");
+}
+
+/* Largest violation by the table of the run, in units of q. */
+static double lcp_violation(const job *j, const lcp *p) {
+  double worst = 0.0, scale = largest(p->n, p->q);
+  dat t = job_table(j, "CONTACT", 0);
+  ck_assert_int_eq(t.n_row, p->n);
+  for (int i = 0; i < p->n; ++i) {
+    double w = p->q[i], z = dat_at(&t, i, "z");
+    for (int k = 0; k < p->n; ++k) w += p->M[p->n * i + k] * dat_at(&t, k, "z");
+    worst = fmax(worst, fabs(w - dat_at(&t, i, "w")));
+    worst = fmax(worst, fabs(fmin(w, z)));
+  }
+  dat_free(&t);
+  return worst / scale;
+}
+
+static void check_lcp(lcp *p, const char *what) {
+  job j = job_begin("lcp");
+  int code = run_lcp(&j, p, "");
+  ck_assert_msg(code == 0, "%s: exit %d: %s", what, code, j.errors);
+  double miss = lcp_violation(&j, p);
+  ck_assert_msg(miss <= 1e-8, "%s: violation %g", what, miss);
+  job_end(&j);
+  free(p->M);
+  free(p->q);
+}
+
+/* Ties at every pivot; first-index rules cycle. The solution is 1/3 each. */
+START_TEST(tie_case_of_murty_is_solved) {
+  lcp p = lcp_new_case(3);
+  job j = job_begin("lcp");
+  for (int i = 0; i < 3; ++i) {
+    p.M[3 * i + i] = 1.0;
+    p.M[3 * i + (i + 1) % 3] = 2.0;
+    p.q[i] = -1.0;
+  }
+  for (int k = 0; k < 2; ++k) {
+    ck_assert_int_eq(run_lcp(&j, &p, k ? ", METHOD=LEMKE" : ""), 0);
+    dat t = job_table(&j, "CONTACT", 0);
+    for (int i = 0; i < 3; ++i)
+      ck_assert_double_eq_tol(dat_at(&t, i, "z"), 1.0 / 3.0, 1e-14);
+    dat_free(&t);
+  }
+  job_end(&j);
+  free(p.M);
+  free(p.q);
+}
+END_TEST
+
+/* Lower triangle of twos: the plain method takes 2^n pivots. */
+START_TEST(exponential_case_is_solved) {
+  static const int sizes[] = {4, 12, 60, 200};
+  for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k) {
+    lcp p = lcp_new_case(sizes[k]);
+    for (int i = 0; i < p.n; ++i) {
+      p.q[i] = -1.0;
+      for (int c = 0; c <= i; ++c) p.M[p.n * i + c] = c < i ? 2.0 : 1.0;
+    }
+    check_lcp(&p, "exponential");
+  }
+}
+END_TEST
+
+/* M = b b' of half the rank (and a skew part): semidefinite, with a solution by
+ * construction. Rows and columns scaled over twelve decades. */
+START_TEST(semidefinite_case_is_solved) {
+  for (unsigned long long seed = 1; seed <= 12; ++seed) {
+    unsigned long long s = seed;
+    int n = seed % 3 == 0 ? 100 : 20, half = n / 2;
+    lcp p = lcp_new_case(n);
+    double *b = malloc(sizeof *b * (size_t)(n * half)),
+           *d = malloc(sizeof *d * (size_t)n);
+    for (int k = 0; k < n * half; ++k) b[k] = 2.0 * case_random(&s) - 1.0;
+    for (int i = 0; i < n; ++i)
+      d[i] = seed % 4 == 0 ? pow(10.0, 4.0 * case_random(&s) - 2.0) : 1.0;
+    for (int i = 0; i < n; ++i)
+      for (int c = 0; c <= i; ++c) {
+        double sum = 0.0,
+               skew = seed % 2 && c < i ? case_random(&s) - 0.5 : 0.0;
+        for (int k = 0; k < half; ++k) sum += b[i * half + k] * b[c * half + k];
+        p.M[n * i + c] = d[i] * d[c] * (sum + skew);
+        p.M[n * c + i] = d[i] * d[c] * (sum - skew);
+      }
+    for (int i = 0; i < n; ++i) {
+      double z = fmax(case_random(&s) - 0.5, 0.0) / d[i];
+      p.q[i] += z > 0.0 ? 0.0 : d[i] * case_random(&s);
+      for (int r = 0; r < n; ++r) p.q[r] -= p.M[n * r + i] * z;
+    }
+    check_lcp(&p, "semidefinite");
+    free(b);
+    free(d);
+  }
+}
+END_TEST
+
+/* w_1 = -1 - z_2, w_2 = z_1 + 1: no z >= 0 makes w_1 >= 0. */
+START_TEST(case_without_solution_ends_with_six) {
+  lcp p = lcp_new_case(2);
+  p.M[1] = -1.0;
+  p.M[2] = 1.0;
+  p.q[0] = -1.0;
+  p.q[1] = 1.0;
+  job j = job_begin("lcp");
+  ck_assert_int_eq(run_lcp(&j, &p, ""), 6);
+  ck_assert_ptr_nonnull(strstr(j.errors, "no solution"));
+  ck_assert_int_eq(run_lcp(&j, &p, ", METHOD=SOR"), 2);
+  ck_assert_ptr_nonnull(strstr(j.errors, "METHOD=sor"));
+  job_end(&j);
+  free(p.M);
+  free(p.q);
+}
+END_TEST
+
+/* ---- verdicts and the deck ---- */
+
+/* A pull that contact cannot hold: u = q + W r with W = 0 and q_N < 0. */
+START_TEST(contact_without_solution_ends_with_six) {
+  const double W[4] = {0.0, 0.0, 0.0, 1.0}, q[2] = {-1.0, 0.0}, mu[1] = {0.2};
+  job j = job_begin("read");
+  fclib_local(in_folder(&j, "problem.h5"), STORE_ROWS, 2, 1, W, q, mu);
+  int code = solve_file(&j, "");
+  ck_assert_msg(code == 6 || code == 1, "exit %d: %s", code, j.errors);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(effect_plan_has_no_mesh) {
+  const double W[4] = {2.0, 0.0, 0.0, 1.0}, q[2] = {-1.0, 0.5}, mu[1] = {0.0};
+  job j = job_begin("read");
+  fclib_local(in_folder(&j, "problem.h5"), STORE_COLUMNS, 2, 1, W, q, mu);
+  ck_assert_msg(solve_file(&j, "") == 0, "%s", j.errors);
+  char *lst = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(strstr(lst, "finite elements      off"));
+  ck_assert_ptr_nonnull(strstr(lst, "friction             off"));
+  static const char *const stages[] = {"mesh  ", "stiffness assembly",
+                                       "factorisation", "condensed stiffness",
+                                       "sliding limit"};
+  for (size_t k = 0; k < sizeof stages / sizeof *stages; ++k) {
+    const char *at = strstr(strstr(lst, "COST\n"), stages[k]);
+    ck_assert_ptr_nonnull(at);
+    long calls = 1, bytes = 1;
+    double cpu;
+    ck_assert_int_eq(sscanf(at + 28, "%ld %lf %ld", &calls, &cpu, &bytes), 3);
+    ck_assert_int_eq(calls, 0);
+    ck_assert_int_eq(bytes, 0);
+  }
+  free(lst);
+  dat t = job_table(&j, "CONTACT", 0); /* without being asked                 */
+  ck_assert_double_eq_tol(dat_at(&t, 0, "f_n"), 0.5, 1e-12);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "u_t"), 0.5, 1e-12);
+  dat_free(&t);
+  ck_assert_int_eq(job_run(&j, "--check"), 0);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(no_contact_is_solved) {
+  job j = job_begin("read");
+  fclib_local(in_folder(&j, "problem.h5"), STORE_ROWS, 3, 0, NULL, NULL, NULL);
+  ck_assert_msg(solve_file(&j, "") == 0, "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(deck_errors_have_a_line) {
+  static const struct {
+    const char *text, *message;
+    int code;
+  } wrong[] = {
+      {"*CONDENSED PROBLEM, FILE=none.h5\n", "P5001", 4},
+      {"*CONDENSED PROBLEM, FILE=read.inp, TYPE=FCLIB\n", "P5001", 4},
+      {"*CONDENSED PROBLEM, FILE=read.inp\n", "P5002", 2},
+      {"*CONDENSED PROBLEM\n", "P2005", 2},
+      {"*CONDENSED PROBLEM, FILE=a, TYPE=X\n", "P2004", 2},
+      {"*CONDENSED PROBLEM, FILE=a\n*CONDENSED PROBLEM, FILE=a\n", "P2011", 2},
+      {"*CONDENSED PROBLEM, FILE=a\n*MESH, FILE=b.msh\n", "P2034", 2},
+      {"*CONDENSED PROBLEM, FILE=a\n*STEP\n*STATIC\n*DSLOAD\nA, P, 1.\n"
+       "*END STEP\n",
+       "P2034", 2},
+      {"*CONDENSED PROBLEM, FILE=a\n*STEP\n*PRINT, NODES\n*END STEP\n", "P2034",
+       2},
+      {"*CONDENSED PROBLEM, FILE=a\n*STEP\n*END STEP\n*STEP\n*END STEP\n",
+       "P2034", 2}};
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+    job j = job_begin("read");
+    job_write(&j, "read.inp", "%s", wrong[k].text);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == wrong[k].code, "%s: exit %d: %s", wrong[k].text, code,
+                  j.errors);
+    ck_assert_msg(strstr(j.errors, wrong[k].message) != NULL, "%s", j.errors);
+    ck_assert_ptr_nonnull(strstr(j.errors, "read.inp:"));
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("exchange", problem_written_and_read_has_the_same_solution,
+          problem_of_three_dimensions_comes_back,
+          what_cannot_be_written_is_refused, rigid_block_obeys_statics,
+          every_solver_is_honest_on_problems_from_files,
+          auto_solves_unsymmetric_problems, tie_case_of_murty_is_solved,
+          exponential_case_is_solved, semidefinite_case_is_solved,
+          case_without_solution_ends_with_six,
+          contact_without_solution_ends_with_six, effect_plan_has_no_mesh,
+          no_contact_is_solved, deck_errors_have_a_line)
