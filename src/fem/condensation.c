@@ -6,12 +6,18 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
+#include "fem/element.h"
 #include "fem/factor.h"
 #include "fem/rigid.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* From this condition number on the factor has lost enough digits for
+ * refinement to pay. */
+static const double refine_limit = 1e7;
 
 struct condensed {
   const stiffness *k; /* borrowed                                           */
@@ -23,6 +29,10 @@ struct condensed {
   rigid_set rigid;     /* the same as vectors                                */
   double *load;        /* [dim*n_node] in local components                   */
   double *prescribed;  /* [dim*n_node] local components, of the last load    */
+  double condition;    /* 0: not yet known                                   */
+  double *F;           /* [dim*n_node] the load last condensed; NULL unless
+                          solutions are refined                              */
+  double *rest;        /* [dim*n_node] its residual, likewise                */
   const char *ordering;
   cholmod_common *cm; /* owned                                              */
 };
@@ -225,6 +235,8 @@ void condensed_free(condensed *c) {
   rigid_release(&c->rigid);
   memory_free(c->load);
   memory_free(c->prescribed);
+  memory_free(c->F);
+  memory_free(c->rest);
   memory_free(c);
 }
 
@@ -286,14 +298,10 @@ static void move_prescribed(condensed *c) {
   }
 }
 
-status condense_load(condensed *c, const double *F, const double *ud,
-                     double *f_c) {
+/* f_c of the load in local components; the forward solve is kept. */
+static status forward(condensed *c, double *f_c) {
   status st = OK;
   const contact_surface *s = c->d.surface;
-  timer_enter(STAGE_RECOVERY);
-  set_load(c, F);
-  rigid_loads(c->k, &c->d, &c->rigid, c->load);
-  if (set_prescribed(c, ud)) move_prescribed(c);
   for (int q = 0; q < c->m; ++q) {
     const size_t dim = (size_t)c->k->dim, row = (size_t)q;
     if (s->held[q])
@@ -302,19 +310,13 @@ status condense_load(condensed *c, const double *F, const double *ud,
   }
   for (int q = 0; q < c->n_body; ++q)
     TRY(body_factor_forward(&c->body[q], c->load, f_c, c->cm));
-  rigid_balance(&c->rigid, f_c);
 done:
-  timer_leave(STAGE_RECOVERY);
   return st;
 }
 
-status condense_recover(condensed *c, const double *u_c, double *u) {
-  status st = OK;
+/* Contact nodes of a displacement from their frame to global components. */
+static void to_global(const condensed *c, double *u) {
   const int dim = c->k->dim;
-  timer_enter(STAGE_RECOVERY);
-  memcpy(u, c->prescribed, (size_t)dim * (size_t)c->k->n_node * sizeof *u);
-  for (int q = 0; q < c->n_body; ++q)
-    TRY(body_factor_back(&c->body[q], u_c, u, c->cm));
   for (int q = 0; q < c->m / dim; ++q) {
     double *v = u + (size_t)dim * (size_t)c->d.surface->node_id[q], a[3];
     const double *T = c->d.surface->basis + dim * dim * q;
@@ -324,6 +326,83 @@ status condense_recover(condensed *c, const double *u_c, double *u) {
       for (int s = 0; s < dim; ++s) v[r] += T[dim * s + r] * a[s];
     }
   }
+}
+
+/* Interior displacements from the kept forward solve. */
+static status back(const condensed *c, const double *u_c, double *u) {
+  status st = OK;
+  memcpy(u, c->prescribed,
+         (size_t)c->k->dim * (size_t)c->k->n_node * sizeof *u);
+  for (int q = 0; q < c->n_body; ++q)
+    TRY(body_factor_back(&c->body[q], u_c, u, c->cm));
+  to_global(c, u);
+done:
+  return st;
+}
+
+/* c->load: what is missing to equilibrium at u, in local components. */
+static void set_residual(condensed *c, const double *u) {
+  domain_residual(&c->d, u, c->F, c->rest);
+  set_load(c, c->rest);
+}
+
+/* Iterative refinement of the interior of u for the load last condensed. */
+static status refine(condensed *c, double *u) {
+  status st = OK;
+  enum { PASSES = 2 };
+  for (int pass = 0; pass < PASSES; ++pass) {
+    set_residual(c, u);
+    for (int q = 0; q < c->n_body; ++q)
+      TRY(body_factor_interior(&c->body[q], c->load, u, c->cm));
+  }
+done:
+  return st;
+}
+
+/* f_c anew: what holds the refined solution for u_c = 0, the sign turned. */
+static status refine_load(condensed *c, const double *F, double *f_c) {
+  status st = OK;
+  const contact_surface *s = c->d.surface;
+  const size_t dim = (size_t)c->k->dim, n = dim * (size_t)c->k->n_node;
+  double *u = NULL, *zero = NULL;
+  NEW(u, n);
+  NEW(zero, c->m);
+  if (c->rest == NULL) NEW(c->rest, n);
+  if (c->F == NULL) NEW(c->F, n);
+  memcpy(c->F, F, n * sizeof *F);
+  TRY(back(c, zero, u));
+  TRY(refine(c, u));
+  set_residual(c, u);
+  for (int q = 0; q < c->m; ++q)
+    if (!s->held[q])
+      f_c[q] =
+          c->load[dim * (size_t)s->node_id[(size_t)q / dim] + (size_t)q % dim];
+done:
+  memory_free(u);
+  memory_free(zero);
+  return st;
+}
+
+status condense_load(condensed *c, const double *F, const double *ud,
+                     double *f_c) {
+  status st = OK;
+  timer_enter(STAGE_RECOVERY);
+  set_load(c, F);
+  rigid_loads(c->k, &c->d, &c->rigid, c->load);
+  if (set_prescribed(c, ud)) move_prescribed(c);
+  TRY(forward(c, f_c));
+  if (condensed_condition(c) > refine_limit) TRY(refine_load(c, F, f_c));
+  rigid_balance(&c->rigid, f_c);
+done:
+  timer_leave(STAGE_RECOVERY);
+  return st;
+}
+
+status condense_recover(condensed *c, const double *u_c, double *u) {
+  status st = OK;
+  timer_enter(STAGE_RECOVERY);
+  TRY(back(c, u_c, u));
+  if (c->F != NULL) TRY(refine(c, u));
 done:
   timer_leave(STAGE_RECOVERY);
   return st;
@@ -338,13 +417,19 @@ int condensed_motions(const condensed *c, const free_motion **list) {
   return c->n_motion;
 }
 
-double condensed_condition(const condensed *c) {
-  double worst = 1;
+double condensed_condition(condensed *c) {
+  if (c->condition > 0) return c->condition;
+  c->condition = 1;
   timer_enter(STAGE_RECOVERY);
   for (int q = 0; q < c->n_body; ++q)
-    worst = fmax(worst, body_factor_condition(c->k, &c->body[q], c->cm));
+    c->condition =
+        fmax(c->condition, body_factor_condition(c->k, &c->body[q], c->cm));
   timer_leave(STAGE_RECOVERY);
-  return worst;
+  return c->condition;
+}
+
+double condensed_digits(condensed *c) {
+  return fmax(0, -log10(0.5 * DBL_EPSILON * condensed_condition(c)));
 }
 
 condense_info condensed_info(const condensed *c) {

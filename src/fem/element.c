@@ -194,29 +194,49 @@ void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
   timer_leave(STAGE_STRESS);
 }
 
-void domain_internal_force(const domain *d, const double *sigma, double *F) {
-  const int dim = d->mesh->dim, ns = d->ns;
-  timer_enter(STAGE_STRESS);
-  memset(F, 0, (size_t)dim * (size_t)d->mesh->n_node * sizeof *F);
-  for (int k = 0; k < d->mesh->n_elem; ++k) {
-    const int *v = d->mesh->elem + (size_t)(dim + 1) * (size_t)k;
-    const double *t = sigma + (size_t)ns * (size_t)k;
-    element_shape s;
-    element_shape_at(d, k, &s);
-    for (int a = 0; a <= dim; ++a) {
-      const double *g = s.grad + dim * a, w = s.weight;
-      double *f = F + (size_t)dim * (size_t)v[a];
-      if (dim == 2) {
-        f[0] += w * (g[0] * t[0] + s.hoop * t[2] + g[1] * t[3]);
-        f[1] += w * (g[1] * t[1] + g[0] * t[3]);
-      } else {
-        f[0] += w * (g[0] * t[0] + g[1] * t[3] + g[2] * t[5]);
-        f[1] += w * (g[1] * t[1] + g[0] * t[3] + g[2] * t[4]);
-        f[2] += w * (g[2] * t[2] + g[1] * t[4] + g[0] * t[5]);
-      }
+/* F += scale B' sigma w of one element; sigma[ns]. */
+static void add_force(const domain *d, int elem_id, const element_shape *s,
+                      const double *sigma, double scale, double *F) {
+  const int dim = d->mesh->dim;
+  const int *v = d->mesh->elem + (size_t)(dim + 1) * (size_t)elem_id;
+  const double *t = sigma, w = scale * s->weight;
+  for (int a = 0; a <= dim; ++a) {
+    const double *g = s->grad + dim * a;
+    double *f = F + (size_t)dim * (size_t)v[a];
+    if (dim == 2) {
+      f[0] += w * (g[0] * t[0] + s->hoop * t[2] + g[1] * t[3]);
+      f[1] += w * (g[1] * t[1] + g[0] * t[3]);
+    } else {
+      f[0] += w * (g[0] * t[0] + g[1] * t[3] + g[2] * t[5]);
+      f[1] += w * (g[1] * t[1] + g[0] * t[3] + g[2] * t[4]);
+      f[2] += w * (g[2] * t[2] + g[1] * t[4] + g[0] * t[5]);
     }
   }
+}
+
+void domain_internal_force(const domain *d, const double *sigma, double *F) {
+  timer_enter(STAGE_STRESS);
+  memset(F, 0, (size_t)d->mesh->dim * (size_t)d->mesh->n_node * sizeof *F);
+  for (int k = 0; k < d->mesh->n_elem; ++k) {
+    element_shape s;
+    element_shape_at(d, k, &s);
+    add_force(d, k, &s, sigma + (size_t)d->ns * (size_t)k, 1, F);
+  }
   timer_leave(STAGE_STRESS);
+}
+
+void domain_residual(const domain *d, const double *u, const double *F,
+                     double *rest) {
+  memcpy(rest, F,
+         (size_t)d->mesh->dim * (size_t)d->mesh->n_node * sizeof *rest);
+  for (int k = 0; k < d->mesh->n_elem; ++k) {
+    element_shape s;
+    double e[6], t[6];
+    element_shape_at(d, k, &s);
+    strain_at(d, k, u, &s, e);
+    stress_at(d, k, e, t);
+    add_force(d, k, &s, t, -1, rest);
+  }
 }
 
 double domain_strain_energy(const domain *d, const double *u) {

@@ -18,5 +18,10 @@ void element_shape_at(const domain *d, int elem_id, element_shape *s);
 /* Blocks K_ab = w B_a' E B_b [dim*dim], column major, of the vertex pairs
  * a >= b in the order (0,0), (1,0), (1,1), (2,0), ... N/m. */
 void element_stiffness(const domain *d, int elem_id, double *blocks);
+/* rest = F - sum B' E B u w, global components [dim*n_node]. The strains of
+ * each element are formed first: what K loses of a soft part beside a stiff one
+ * is kept. */
+void domain_residual(const domain *d, const double *u, const double *F,
+                     double *rest);
 
 #endif

@@ -372,3 +372,25 @@ done:
   memory_free(out);
   return st;
 }
+
+status body_factor_interior(const body_factor *f, const double *load, double *u,
+                            cholmod_common *cm) {
+  status st = OK;
+  const double scale = ldexp(1, -f->exponent);
+  cholmod_dense *z = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
+  if (z == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
+  double *x = z->x;
+  for (long p = 0; p < f->n; ++p) x[p] = scale * load[f->unknown[p]];
+  for (long q = 0; q < f->nc; ++q) x[f->contact_at[q]] = 0;
+  if (!cholmod_l_super_lsolve(f->L, z, f->work, cm))
+    FAIL(ERR_INTERNAL, "forward solve of %ld unknowns failed", f->n);
+  for (long q = 0; q < f->nc; ++q) x[f->contact_at[q]] = 0;
+  if (!cholmod_l_super_ltsolve(f->L, z, f->work, cm))
+    FAIL(ERR_INTERNAL, "back solve of %ld unknowns failed", f->n);
+  for (long q = 0; q < f->nc; ++q) x[f->contact_at[q]] = 0;
+  for (long p = 0; p < f->n; ++p) u[f->unknown[p]] += x[p];
+done:
+  cholmod_l_free_dense(&z, cm);
+  return st;
+}

@@ -46,8 +46,11 @@ status body_factor_forward(body_factor *f, const double *load, double *f_c,
 /* u[dim*n_node] at the body's unknowns from u_c[m] and the kept y. */
 status body_factor_back(const body_factor *f, const double *u_c, double *u,
                         cholmod_common *cm);
-/* Estimate of the condition number of the matrix factored: its largest row sum
- * times what inverse iteration finds for the inverse; 0 without memory. */
+/* u += inv(K_ii) load_i at the interior unknowns; load[dim*n_node]. */
+status body_factor_interior(const body_factor *f, const double *load, double *u,
+                            cholmod_common *cm);
+/* Estimate of the condition number of the matrix factored, scaled to a unit
+ * diagonal; 0 without memory. */
 double body_factor_condition(const stiffness *k, const body_factor *f,
                              cholmod_common *cm);
 

@@ -73,7 +73,11 @@ const double *condensed_matrix(const condensed *c); /* A [m*m]                */
 int condensed_floating(const condensed *c); /* 1: contact alone holds a body  */
 /* The motions contact alone holds; list borrowed from c. */
 int condensed_motions(const condensed *c, const free_motion **list);
-double condensed_condition(const condensed *c); /* estimate, -                */
+/* Estimate of the condition number of K with its unknowns scaled to a unit
+ * diagonal (that scaling costs no digits); found when first asked for. */
+double condensed_condition(condensed *c);
+/* Digits of A that it leaves: 16 less its power of ten, not below 0. */
+double condensed_digits(condensed *c);
 
 typedef struct condense_info {
   long unknowns, contact_unknowns, factor_entries;
@@ -88,7 +92,9 @@ condense_info condensed_info(const condensed *c);
 /*
  * Condense a load: F[dim*n_node] forces in global components, ud[dim*n_node]
  * prescribed displacements (read where fixed; NULL: all zero).
- * f_c[m]. The forward solve is kept for condense_recover.
+ * f_c[m]. The forward solve is kept for condense_recover. Where the condition
+ * number costs digits, f_c and u are refined with the forces of the elements
+ * (two more solves each), and then correct to rounding for given u_c.
  */
 status condense_load(condensed *c, const double *F, const double *ud,
                      double *f_c);

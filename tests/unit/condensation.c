@@ -360,6 +360,64 @@ START_TEST(floating_body_has_the_rigid_motions_as_null_space) {
 }
 END_TEST
 
+/* Smallest eigenvalue over the largest of the dense matrix of the unknowns,
+ * scaled to a unit diagonal; inverted. */
+static double dense_condition(const parts *p) {
+  const int n = p->ni + p->nc;
+  const size_t N = (size_t)p->N;
+  double *a = get((size_t)(n * n)), *w = get((size_t)n);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const size_t r =
+          (size_t)(i < p->ni ? p->inner[i] : p->contact[i - p->ni]);
+      const size_t c =
+          (size_t)(j < p->ni ? p->inner[j] : p->contact[j - p->ni]);
+      a[i + n * j] =
+          p->K[r + N * c] / sqrt(p->K[r * (N + 1)] * p->K[c * (N + 1)]);
+    }
+  ck_assert_int_eq(LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', n, a, n, w), 0);
+  const double condition = w[n - 1] / w[0];
+  free(a);
+  free(w);
+  return condition;
+}
+
+static scene *sliver(void) {
+  scene *s = no_contact();
+  for (int i = 0; i < s->m->n_node; ++i) s->m->x[2 * i] *= 100;
+  return s;
+}
+
+/* Two pins close together hold the whole body. */
+static scene *weakly_held(void) {
+  scene *s =
+      scene_new(make_grid_2d((int[]){6, 6}, (double[]){1, 1}), PLANE_STRAIN, 1);
+  for (int j = 0; j < 7; ++j) s->m->x[2 * (7 * j + 1)] = 1e-3;
+  scene_fix_node(s, 0, 0);
+  scene_fix_node(s, 0, 1);
+  scene_fix_node(s, 1, 1);
+  return s;
+}
+
+START_TEST(condition_is_near_that_of_the_scaled_dense_matrix) {
+  static scene *(*const make[])(void) = {plain_2d,   oblique_2d,     held_2d,
+                                         oblique_3d, cut_by_contact, no_contact,
+                                         sliver,     weakly_held};
+  for (size_t q = 0; q < sizeof make / sizeof *make; ++q) {
+    scene *s = make[q]();
+    stiffness *k;
+    condensed *c;
+    parts p = split(s);
+    solve(s, &k, &c);
+    const double exact = dense_condition(&p), found = condensed_condition(c);
+    ck_assert_msg(found > 0.3 * exact && found < 5 * exact,
+                  "scene %zu: %g for %g", q, found, exact);
+    release(&p);
+    end(s, k, c);
+  }
+}
+END_TEST
+
 /* u for moduli and loads times 2^power. */
 static double *scaled_solution(scene *(*make)(void), int power, double *A0) {
   scene *s = make();
@@ -473,6 +531,7 @@ int main(void) {
   tcase_add_loop_test(tests, load_and_recovery_agree_with_dense_equilibrium, 0,
                       SCENES);
   tcase_add_test(tests, floating_body_has_the_rigid_motions_as_null_space);
+  tcase_add_test(tests, condition_is_near_that_of_the_scaled_dense_matrix);
   tcase_add_test(tests,
                  stiffness_that_is_not_definite_is_refused_with_its_place);
   tcase_add_loop_test(tests, power_of_two_in_the_moduli_leaves_every_bit, 0,

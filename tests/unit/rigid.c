@@ -1,5 +1,7 @@
-/* src/fem/rigid.c: bodies that contact alone holds, with a contrast of moduli:
- * no force for a rigid motion, the resultants of the loads kept. */
+/* src/fem/rigid.c and the refinement of condensation.c: bodies with a contrast
+ * of moduli. Where contact alone holds them, no force for a rigid motion and
+ * the resultants of the loads kept; solutions to rounding everywhere. */
+#include "base/memory.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/unit.h"
@@ -318,6 +320,119 @@ START_TEST(supported_body_keeps_its_stiffness) {
 }
 END_TEST
 
+/* No lateral contraction: uniform stress has a closed form. */
+static scene *uniaxial(void) {
+  char why[160];
+  scene *s =
+      scene_new(make_grid_2d((int[]){7, 8}, (double[]){1, 1}), PLANE_STRAIN, 1);
+  elastic_matrix(ELASTIC_ISO, 2, (double[]){1, 0}, s->C, why, 160);
+  elastic_reduce(s->C, PLANE_STRAIN, s->E);
+  return s;
+}
+
+/* Weight of a node of a side cut in 7. */
+static double share(const scene *s, int i) {
+  const double x = s->m->x[2 * i];
+  return x == 0 || x == 1 ? 1.0 / 14 : 1.0 / 7;
+}
+
+/* Unit pressure on a hard layer over a soft one that stands on contact nodes:
+ * held at zero they carry it by their shares, u_y = -y below. */
+START_TEST(contrast_costs_no_digits_of_a_floating_column) {
+  layers l = {.s = uniaxial()};
+  stiffness *k;
+  condensed *c;
+  scene *s = l.s;
+  scene_fix(s, "LEFT", 0);
+  scene_contact(s, "BOTTOM", (double[]){0, -1}, 0);
+  s->surface.held[1] = 1;
+  two_moduli(&l, contrasts[_i], (double[]){0, 1, 0.5});
+  solve(&l, &k, &c);
+  const int m = 2 * s->surface.n, n = s->m->n_node;
+  double *F = get(2 * (size_t)n), *f = get((size_t)m), *u = get(2 * (size_t)n);
+  for (int i = n - 8; i < n; ++i) F[2 * i + 1] = -share(s, i);
+  ck_assert_int_eq(condense_load(c, F, NULL, f), OK);
+  for (int q = 0; q < m / 2; ++q)
+    ck_assert_double_eq_tol(f[2 * q], share(s, s->surface.node_id[q]), 1e-14);
+  memset(f, 0, (size_t)m * sizeof *f);
+  ck_assert_int_eq(condense_recover(c, f, u), OK);
+  for (int i = 0; i < n; ++i) {
+    const double y = s->m->x[2 * i + 1];
+    const double exact = y < 0.5 ? y : 0.5 + (y - 0.5) / contrasts[_i];
+    ck_assert_double_eq_tol(u[2 * i], 0, 1e-13);
+    ck_assert_double_eq_tol(u[2 * i + 1], -exact, 1e-13);
+  }
+  free(F);
+  free(f);
+  free(u);
+  end(&l, k, c);
+}
+END_TEST
+
+/* Condition for a contrast of 1e8; the upper or the lower half is hard. */
+static double condition_of(const char *support, int hard_above,
+                           double *digits) {
+  layers l = {.s = uniaxial()};
+  stiffness *k;
+  condensed *c;
+  for (int i = 0; i < 2; ++i) scene_fix(l.s, support, i);
+  two_moduli(&l, 1e8,
+             hard_above ? (double[]){0, 1, 0.5} : (double[]){0, -1, -0.5});
+  solve(&l, &k, &c);
+  const double condition = condensed_condition(c);
+  *digits = condensed_digits(c);
+  ck_assert(condensed_condition(c) == condition);
+  end(&l, k, c);
+  return condition;
+}
+
+/* A hard part on a soft one costs the digits of the contrast, a soft part on a
+ * hard one none. */
+START_TEST(condition_tells_where_contrast_costs_digits) {
+  double digits;
+  ck_assert_double_ge(condition_of("BOTTOM", 1, &digits), 1e9);
+  ck_assert_double_le(digits, 7);
+  ck_assert_double_ge(digits, 3);
+  ck_assert_double_le(condition_of("TOP", 1, &digits), 1e4);
+  ck_assert_double_ge(digits, 12);
+  ck_assert_double_le(condition_of("BOTTOM", 0, &digits), 1e4);
+}
+END_TEST
+
+static status whole_way(const scene *s, double *work) {
+  stiffness *k = NULL;
+  condensed *c = NULL;
+  const int N = s->m->dim * s->m->n_node;
+  status st = stiffness_assemble(&s->d, &k);
+  if (st == OK) st = condense(k, &s->d, &c);
+  if (st == OK) st = condense_load(c, work, NULL, work + N);
+  if (st == OK) st = condense_recover(c, work + N, work + 2 * N);
+  condensed_free(c);
+  stiffness_free(k);
+  return st;
+}
+
+START_TEST(every_refused_request_is_survived) {
+  layers l;
+  scenes[_i](&l, 1e8);
+  double *work = get(3 * (size_t)(l.s->m->dim * l.s->m->n_node));
+  const size_t before = memory_in_use();
+  for (long r = 1;; ++r) {
+    const long seen = memory_requests();
+    memory_refuse(r, (int)(r % 2));
+    const status st = whole_way(l.s, work);
+    memory_refuse(0, 0);
+    ck_assert_uint_eq(memory_in_use(), before);
+    ck_assert_msg(st == OK || st == ERR_MEMORY, "request %ld: %s", r,
+                  status_message());
+    ck_assert_int_lt((int)r, 5000);
+    if (memory_requests() - seen < r) break;
+  }
+  free(work);
+  scene_free(l.s);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("rigid");
   TCase *tests = tcase_create("rigid");
@@ -327,6 +442,10 @@ int main(void) {
                       CASES);
   tcase_add_loop_test(tests, power_of_two_in_the_lengths_leaves_every_bit, 0,
                       SCENES);
+  tcase_add_loop_test(tests, contrast_costs_no_digits_of_a_floating_column, 0,
+                      3);
+  tcase_add_test(tests, condition_tells_where_contrast_costs_digits);
+  tcase_add_loop_test(tests, every_refused_request_is_survived, 0, SCENES);
   tcase_add_test(tests, supported_body_keeps_its_stiffness);
   suite_add_tcase(suite, tests);
   SRunner *runner = srunner_create(suite);
