@@ -202,6 +202,7 @@ static int compare_messages(const void *x, const void *y) {
   if (a->rank != b->rank) return a->rank < b->rank ? -1 : 1;
   int order = compare_places(a->at, b->at);
   if (order != 0) return order;
+  if (a->level != b->level) return a->level > b->level ? -1 : 1;
   return a < b ? -1 : a > b; /* in the order of their coming                  */
 }
 

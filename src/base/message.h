@@ -46,7 +46,8 @@ int message_count(const message_log *log, severity s);
 /* 1 as long as one more message of that severity would be kept: who has to
  * search for advice (nearest_word) need not once they are only counted. */
 int message_wanted(const message_log *log, severity s);
-/* Print all of them, in the order of the files and lines, and the totals. */
+/* Print all of them, in the order of the files and lines (at one place the
+ * errors first), and the totals. */
 void message_print(const message_log *log, FILE *out);
 /* Print those of one severity without source line, for the listing. */
 void message_list(const message_log *log, severity s, FILE *out);

@@ -187,7 +187,28 @@
   X(2034, ERROR, "card has no place beside *CONDENSED PROBLEM",              \
     "The file holds the whole problem. Beside it stand only *HEADING, "      \
     "*UNITS, *PARAMETER, *INCLUDE and one step with *STATIC, *SOLVER, "      \
-    "*PRINT, CONTACT and *OUTPUT, CONDENSED=FCLIB.")
+    "*PRINT, CONTACT and *OUTPUT, CONDENSED=FCLIB.")                         \
+  X(2035, ERROR, "pressure inside a body",                                   \
+    "A pressure acts on the boundary: a face with elements on both sides "   \
+    "has no outside. TX, TY and TZ may act there.")                          \
+  X(2036, WARNING, "defined but never used",                                 \
+    "Nothing refers to the name. Is the reference missing, or is another "   \
+    "name meant there?")                                                     \
+  X(2037, WARNING, "without effect here",                                    \
+    "The parameter or value is read, but changes nothing. Remove it, or "    \
+    "check whether another one is meant.")                                   \
+  X(2038, WARNING, "two values for one displacement",                        \
+    "Two groups of *BOUNDARY share nodes and prescribe different values; "   \
+    "the later line counts. Make the values agree or part the groups.")      \
+  X(2039, ERROR, "negative radius",                                          \
+    "x is the radius of an axisymmetric model: the mesh must lie at "        \
+    "x >= 0, with the axis at x = 0.")                                       \
+  X(2040, WARNING, "said twice in one step",                                 \
+    "A later line of the same step gives the same load or support on the "   \
+    "same group another value; the later line counts.")                      \
+  X(2041, ERROR, "value at a node that is no number",                        \
+    "An expression divides by zero there, takes the root or logarithm of "   \
+    "a negative number, or overflows; or a friction value is negative.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \
@@ -305,7 +326,11 @@
   X(4010, ERROR, "contact without a node",                                   \
     "The body cannot touch the obstacle: check the group, where the "        \
     "obstacle is, that the normal of a plane points towards the body, and "  \
-    "whether the body is inside or outside of a cylinder or sphere.")
+    "whether the body is inside or outside of a cylinder or sphere.")        \
+  X(4011, ERROR, "body free to move",                                        \
+    "Neither *BOUNDARY nor contact holds the body against the motion named; "\
+    "a contact without friction does not hold it along the obstacle. Add "   \
+    "a support, or friction.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

@@ -94,9 +94,10 @@ static int starts_with(const char *word, const char *start, int n) {
   return 1;
 }
 
-/* A longer candidate that begins with the word, if none is near. */
+/* One of the two begins with the other, at least three letters of it. */
 static int is_beginning(const char *word, int n, const char *candidate, int m) {
-  return n >= 3 && m > n && starts_with(candidate, word, n);
+  int least = smaller(n, m);
+  return least >= 3 && m != n && starts_with(candidate, word, least);
 }
 
 const char *nearest_word(const char *word,
@@ -118,7 +119,7 @@ const char *nearest_word(const char *word,
       found = candidate;
     }
   }
-  return found != NULL ? found : longer;
+  return longer != NULL && best > 1 ? longer : found;
 }
 
 enum { CHOICE_TEXT = 1024, CHOICE_WORDS = 64 };
@@ -160,23 +161,28 @@ static int read_choice(const option *row, const char *text, int *rank,
   return -1;
 }
 
-/* "x outside [min, max]"; a limit no number can pass is not shown. */
+void range_text(double x, double min, double max, char *why, size_t why_size) {
+  int no_min = min <= -DBL_MAX, no_max = max >= DBL_MAX;
+  char value[NUMBER_TEXT_SIZE], low[NUMBER_TEXT_SIZE], high[NUMBER_TEXT_SIZE];
+  number_text(x, value);
+  number_text(min, low);
+  number_text(max, high);
+  if (x <= 0.0 && min == DBL_MIN)
+    snprintf(why, why_size, "%s is not positive", value);
+  else if (no_max)
+    snprintf(why, why_size, "%s below %s", value, low);
+  else if (no_min || min == DBL_MIN)
+    snprintf(why, why_size, "%s above %s", value, high);
+  else
+    snprintf(why, why_size, "%s outside [%s, %s]", value, low, high);
+}
+
 static int check_range(const option *row, double x, char *why,
                        size_t why_size) {
   if (x >= row->min && x <= row->max) return 0;
   int whole = row->type == OPT_INT;
-  int no_min = whole ? row->min <= INT_MIN : row->min <= -DBL_MAX;
-  int no_max = whole ? row->max >= INT_MAX : row->max >= DBL_MAX;
-  char value[NUMBER_TEXT_SIZE], min[NUMBER_TEXT_SIZE], max[NUMBER_TEXT_SIZE];
-  number_text(x, value);
-  number_text(row->min, min);
-  number_text(row->max, max);
-  if (no_max)
-    snprintf(why, why_size, "%s below %s", value, min);
-  else if (no_min)
-    snprintf(why, why_size, "%s above %s", value, max);
-  else
-    snprintf(why, why_size, "%s outside [%s, %s]", value, min, max);
+  range_text(x, whole && row->min <= INT_MIN ? -DBL_MAX : row->min,
+             whole && row->max >= INT_MAX ? DBL_MAX : row->max, why, why_size);
   return -1;
 }
 
@@ -221,7 +227,7 @@ int option_read(const option *row, const char *text, void *parameters,
   void *field = (char *)parameters + row->offset;
   if (row->type == OPT_FLAG) return read_flag(text, field, why, why_size);
   if (text == NULL || *text == '\0') {
-    snprintf(why, why_size, "%s needs a value", row->name);
+    snprintf(why, why_size, "a value is needed");
     return -1;
   }
   switch (row->type) {

@@ -72,6 +72,9 @@ int option_read(const option *row, const char *text, void *parameters,
 /* The value of a field as text that option_read takes back exactly. */
 void option_write(const option *row, const void *parameters, char *text,
                   size_t size);
+/* What is wrong with x outside [min, max]: "-1 is not positive", "2.5 outside
+ * [0, 2]"; a limit that no number can pass is not shown. */
+void range_text(double x, double min, double max, char *why, size_t why_size);
 /* Word of that rank in "A|B|C" into text; rank of a word, or -1. */
 void choice_word(const char *choices, int rank, char *text, size_t size);
 int choice_rank(const char *choices, const char *word);

@@ -113,7 +113,9 @@ static status read_parameters(reader *r, int next, int nested, card *c) {
       break;
     }
     parameter *new = &list[c->n_parameter];
+    int errors = message_count(r->log, ERROR);
     TRY(read_parameter(r, p, new, &ok));
+    c->damaged |= message_count(r->log, ERROR) > errors;
     if (ok && card_parameter(c, new->name) != NULL)
       message_add(r->log, P1005, &new->at, "%s is repeated", new->name);
     else

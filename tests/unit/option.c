@@ -56,8 +56,8 @@ START_TEST(wrong_values_are_refused_with_the_range_or_the_words) {
       {"OMEGA", "x", "not a number: 'x'"},
       {"OMEGA", "nan", "not a number: 'nan'"},
       {"OMEGA", "1.5m", "letters after the number: '1.5m'"},
-      {"OMEGA", NULL, "OMEGA needs a value"},
-      {"OMEGA", "", "OMEGA needs a value"},
+      {"OMEGA", NULL, "a value is needed"},
+      {"OMEGA", "", "a value is needed"},
       {"TOL", "0", "0 below 1e-16"},
       {"COUNT", "101", "101 outside [1, 100]"},
       {"COUNT", "2.0", "not an integer: '2.0'"},
@@ -66,9 +66,9 @@ START_TEST(wrong_values_are_refused_with_the_range_or_the_words) {
       {"KIND", "ORTO",
        "'ORTO' is none of ISO|ORTHO|INELASTIC STRAIN; did you mean ORTHO?"},
       {"KIND", "ZZZ", "'ZZZ' is none of ISO|ORTHO|INELASTIC STRAIN"},
-      {"KIND", NULL, "KIND needs a value"},
-      {"NAME", "", "NAME needs a value"},
-      {"NAME", NULL, "NAME needs a value"},
+      {"KIND", NULL, "a value is needed"},
+      {"NAME", "", "a value is needed"},
+      {"NAME", NULL, "a value is needed"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     sample s, before;
