@@ -207,6 +207,18 @@ static void merge_smooth(builder *b, int first, int end) {
     }
 }
 
+/* The normal of the obstacle instead of that of the body; 0 where the body
+ * turns its back to the obstacle. */
+static int take_obstacle_normal(const builder *b, candidate *c) {
+  const mesh *m = b->in->mesh;
+  double body[3];
+  memcpy(body, c->normal, sizeof body);
+  obstacle_normal(b->in->pairs[c->pair_id].support, b->dim,
+                  &m->x[(size_t)b->dim * (size_t)c->node_id], c->normal);
+  return dot(b->dim, body, c->normal) >=
+         -fixed_sine * sqrt(dot(b->dim, body, body));
+}
+
 /* Unit normal orthogonal to the fixed components, or left out. */
 static void orient(builder *b, candidate *c) {
   const contact_pair *p = &b->in->pairs[c->pair_id];
@@ -217,10 +229,11 @@ static void orient(builder *b, candidate *c) {
     c->left_out = 1;
     return;
   }
-  if (p->obstacle_normal)
-    obstacle_normal(p->support, b->dim,
-                    &b->in->mesh->x[(size_t)b->dim * (size_t)c->node_id],
-                    c->normal);
+  if (p->obstacle_normal && !take_obstacle_normal(b, c)) {
+    c->left_out = 1;
+    ++t->n_unreached;
+    return;
+  }
   unsigned fixed = b->in->fixed[c->node_id];
   if (frame_project(b->dim, fixed, c->normal) > fixed_sine) return;
   c->left_out = 1;
@@ -235,8 +248,9 @@ static void measure(builder *b, candidate *c) {
   const double *x = &m->x[(size_t)b->dim * (size_t)c->node_id];
   c->gap = obstacle_gap(p->support, b->dim, x, c->normal, 0);
   if (isnan(c->gap) || c->gap == -HUGE_VAL) {
-    message_add(b->log, P4007, &p->at, "*CONTACT %s: gap is %g at %s, time 0",
-                p->name, c->gap, describe(m, c->node_id).text);
+    message_add(b->log, P4007, &p->at, "*CONTACT %s: gap is %s at %s, time 0",
+                p->name, isnan(c->gap) ? "not a number" : "-inf",
+                describe(m, c->node_id).text);
     c->left_out = 1;
   } else if (c->gap == HUGE_VAL) {
     if (obstacle_moves(p->support)) {
@@ -267,9 +281,9 @@ static int gather(builder *b, int first, int end, const candidate **kept) {
   return n;
 }
 
-/* The frame of contact node i from its n_kept contacts. */
-static void set_frame(builder *b, contact_surface *s, int i, int n_kept,
-                      const candidate *const *kept) {
+/* The frame of contact node i from its n_kept contacts; 1 after an error. */
+static int set_frame(builder *b, contact_surface *s, int i, int n_kept,
+                     const candidate *const *kept) {
   int dim = b->dim, node_id = kept[0]->node_id, bad = n_kept > dim;
   double *frame = &s->frame[dim * dim * i];
   unsigned fixed = b->in->fixed[node_id] & ((1u << dim) - 1);
@@ -284,6 +298,7 @@ static void set_frame(builder *b, contact_surface *s, int i, int n_kept,
                 describe(b->in->mesh, node_id).text);
   }
   frame_invert(dim, n_kept == 1 || bad, frame, &s->basis[dim * dim * i]);
+  return bad;
 }
 
 /* A corner has no friction: noted for each of its contacts. */
@@ -310,8 +325,7 @@ static void set_node(builder *b, contact_surface *s, int n_kept,
     s->x[dim * i + k] = m->x[(size_t)dim * (size_t)c->node_id + (size_t)k];
   s->area[i] = c->area;
   s->gap0[i] = c->gap;
-  set_frame(b, s, i, n_kept, kept);
-  note_corner(b, n_kept, kept);
+  if (!set_frame(b, s, i, n_kept, kept)) note_corner(b, n_kept, kept);
 }
 
 static void say(const builder *b, int pair_id) {
@@ -324,7 +338,7 @@ static void say(const builder *b, int pair_id) {
                 "direction and left out of contact: %d, the first is %s",
                 p->name, p->group->name, t->n_fixed,
                 describe(m, t->fixed_node).text);
-  if (t->n_unreached > 0)
+  if (t->n_unreached > 0 && t->n_kept > 0)
     message_add(b->log, P4003, &p->at,
                 "*CONTACT %s: %d nodes cannot reach obstacle %s along their "
                 "normal and are left out",

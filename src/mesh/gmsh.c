@@ -82,6 +82,46 @@ done:
   return st;
 }
 
+/* One line 'dimension number "name"' of $PhysicalNames; the line after it, or
+ * NULL if this is none. */
+static const char *read_name(const char *line, int *dim, int *tag,
+                             const char **name, int *length) {
+  int n = 0;
+  if (sscanf(line, "%d %d \"%n", dim, tag, &n) != 2 || n == 0) return NULL;
+  *name = line + n;
+  *length = (int)strcspn(*name, "\"\n");
+  const char *end = strchr(*name, '\n');
+  return end == NULL ? NULL : end + 1;
+}
+
+/* A name that two groups of one dimension bear: gmsh drops the second without
+ * a word. Seen in the head of the file, where the names stand. */
+static status check_names(const char *head, const place *at, message_log *log) {
+  status st = OK;
+  static const char start[] = "$PhysicalNames";
+  static const char *const kind[] = {"point", "curve", "surface", "volume"};
+  const char *first = strstr(head, start), *a, *b;
+  int dim[2], tag[2], length[2], wrong = 0;
+  for (int i = 0; i < 2 && first != NULL; ++i)
+    if ((first = strchr(first, '\n')) != NULL) ++first;
+  for (const char *p = first, *q; p != NULL; p = q) {
+    if ((q = read_name(p, &dim[0], &tag[0], &a, &length[0])) == NULL) break;
+    for (const char *r = q; r != NULL;) {
+      r = read_name(r, &dim[1], &tag[1], &b, &length[1]);
+      if (r == NULL || dim[0] != dim[1] || length[0] != length[1] ||
+          strncmp(a, b, (size_t)length[0]) != 0 || dim[0] < 0 || dim[0] > 3)
+        continue;
+      message_add(log, P3012, at,
+                  "\"%.*s\" names the physical %s %d and the physical %s %d",
+                  length[0], a, kind[dim[0]], tag[0], kind[dim[0]], tag[1]);
+      wrong = 1;
+    }
+  }
+  if (wrong) FAIL(ERR_MESH, "names of groups are repeated");
+done:
+  return st;
+}
+
 /* The last bytes of the file, *n of them, with a zero after. */
 static status read_tail(const char *file, char tail[TAIL_SIZE + 1], size_t *n) {
   status st = OK;
@@ -155,6 +195,7 @@ status mesh_read_gmsh(const char *file, double scale, int n_number,
     TRY(check_geo_tail(file, at, log));
   } else {
     TRY(check_format(file, head, at, log));
+    TRY(check_names(head, at, log));
     TRY(check_msh_tail(file, at, log));
   }
   st = raw_read(&request, &raw);
