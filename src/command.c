@@ -107,9 +107,22 @@ static int read_threads(const char *text, command *c) {
   return 1;
 }
 
-/* Word for option "what"; -1: go on, else the exit code. */
-static int take_option(int what, const char *value, const char *next,
-                       command *c) {
+static const char *long_option(const void *ctx, int i) {
+  (void)ctx;
+  return words[i].name;
+}
+
+static int unknown_option(const char *given) {
+  const char *near = inform_nearest(given + strspn(given, "-"), long_option);
+  if (near == NULL) return wrong("there is no option ", given);
+  fprintf(stderr, "protis: error: there is no option %s; did you mean --%s?\n",
+          given, near);
+  return 2;
+}
+
+/* Option "what" as it was given; -1: go on, else the exit code. */
+static int take_option(int what, const char *value, const char *given,
+                       const char *next, command *c) {
   switch (what) {
     case 'o':
       memory_free(c->dir);
@@ -148,8 +161,10 @@ static int take_option(int what, const char *value, const char *next,
       return print_list(value);
     case ASK_EXPLAIN:
       return print_explain(next);
+    case ':':
+      return wrong("a value is missing after ", given);
     default:
-      return wrong("unknown option, or its value is missing", "");
+      return unknown_option(given);
   }
 }
 
@@ -184,7 +199,7 @@ static char *folder_of(const char *file) {
 
 /* The job itself; -1: run it. */
 static int take_job(int n, char **job, command *c) {
-  if (n == 0) return wrong("no job given", "");
+  if (n == 0 || job[0][0] == '\0') return wrong("no job given", "");
   if (n > 1) return wrong("one job at a time; not expected: ", job[1]);
   c->deck_file = find_deck(job[0]);
   if (c->deck_file == NULL) return 5;
@@ -195,12 +210,13 @@ static int take_job(int n, char **job, command *c) {
 int command_read(int argc, char **argv, command *c, int *exit_code) {
   int what, code = -1;
   memset(c, 0, sizeof *c);
+  opterr = 0; /* told here                                                   */
   c->defines = memory_new((size_t)argc, sizeof *c->defines);
   if (c->defines == NULL) code = 5;
   while (code < 0 &&
-         (what = getopt_long(argc, argv, "o:D:", words, NULL)) != -1) {
+         (what = getopt_long(argc, argv, ":o:D:", words, NULL)) != -1) {
     const char *next = optind < argc ? argv[optind] : NULL;
-    code = take_option(what, optarg, next, c);
+    code = take_option(what, optarg, argv[optind - 1], next, c);
   }
   if (code < 0) code = take_job(argc - optind, argv + optind, c);
   if (code < 0) return 1;

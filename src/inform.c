@@ -4,6 +4,7 @@
 #include "inform.h"
 
 #include "base/memory.h"
+#include "base/option.h"
 #include "history/history.h"
 
 #include <cholmod.h>
@@ -72,6 +73,11 @@ int inform_list(const char *kind) {
   else
     return 0;
   return 1;
+}
+
+const char *inform_nearest(const char *word,
+                           const char *(*next)(const void *ctx, int i)) {
+  return nearest_word(word, next, NULL);
 }
 
 static void print_sizes(const model *m, const mesh *msh) {

@@ -25,4 +25,8 @@ status inform_check(const struct model *m, const struct mesh *msh);
 void inform_check_problem(const struct model *m,
                           const struct exchange_problem *p);
 
+/* The nearest of the words next(NULL, i), NULL at their end; or NULL. */
+const char *inform_nearest(const char *word,
+                           const char *(*next)(const void *ctx, int i));
+
 #endif

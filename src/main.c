@@ -9,7 +9,10 @@
 #include "inform.h"
 #include "output/output.h"
 
+#include <errno.h>
 #include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* Numbers of the deck go to a .geo under their own names. */
@@ -74,6 +77,8 @@ static status solve(const command *c, model *m, const mesh *msh,
       .kernel = blas_kernel(),
       .threads = c->threads > 0 ? c->threads : 1,
       .progress = !c->quiet && isatty(STDERR_FILENO)};
+  if (mkdir(c->dir, 0777) != 0 && errno != EEXIST)
+    FAIL(ERR_FILE, "cannot make the folder %s: %s", c->dir, strerror(errno));
   TRY(output_open(m, problem == NULL ? msh : &no_mesh, &options, &out));
   history_sink sink = output_sink(out);
   st = problem == NULL ? history_run(m, msh, &sink, unsettled)
@@ -108,8 +113,8 @@ done:
 
 /* Messages with a place have been printed; what is left is the record. */
 static int report(status st, const message_log *log, int unsettled) {
-  int told = log != NULL && message_count(log, ERROR) > 0 &&
-             (st == ERR_DECK || st == ERR_MESH || st == ERR_FILE);
+  int told = log != NULL && message_count(log, ERROR) > 0 && st != ERR_MEMORY &&
+             st != ERR_INTERNAL;
   if (st != OK && !told)
     fprintf(stderr, "protis: error: %s\n", status_message());
   if (st == ERR_INTERNAL || st == ERR_MEMORY)

@@ -22,7 +22,10 @@ static status add_law(run *r, int contact_id, double t, int *node) {
   int n = 0;
   for (int i = 0; i < r->n; ++i)
     if (r->surface->contact_id[i] == contact_id) node[n++] = i;
-  return c->law->limit(&c->friction, r->surface, n, node, t, &r->limit);
+  status st = c->law->limit(&c->friction, r->surface, n, node, t, &r->limit);
+  if (st == ERR_DECK)
+    message_add(r->m->log, P2041, &c->value_at, "%s", status_message());
+  return st;
 }
 
 static status update_limit(run *r, double t) {

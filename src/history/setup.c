@@ -247,17 +247,22 @@ static int is_unheld(const run *r, const free_motion *f) {
 static status check_supports(const run *r) {
   status st = OK;
   free_motion *list = NULL;
-  int n = 0;
+  int n = 0, unheld = 0;
   TRY(domain_free_motions(&r->d, &n, &list));
   for (int i = 0; i < n; ++i)
-    if (is_unheld(r, &list[i]))
-      FAIL(ERR_SINGULAR,
-           "step %d: body %d (%s, element %zu) is free to move: %s; neither "
-           "*BOUNDARY nor %s holds it",
-           (int)(r->step - r->m->steps) + 1, list[i].body_id + 1,
-           body_name(r, list[i].elem_no), list[i].elem_no, list[i].text,
-           list[i].held_by == HELD_BY_FRICTION ? "frictionless contact"
-                                               : "contact");
+    if (is_unheld(r, &list[i])) {
+      message_add(r->m->log, P4011, &r->step->at,
+                  "step %d: body %d (%s, element %zu) is free to move: %s; "
+                  "neither *BOUNDARY nor %s holds it",
+                  (int)(r->step - r->m->steps) + 1, list[i].body_id + 1,
+                  body_name(r, list[i].elem_no), list[i].elem_no, list[i].text,
+                  list[i].held_by == HELD_BY_FRICTION ? "frictionless contact"
+                                                      : "contact");
+      ++unheld;
+    }
+  if (unheld > 0)
+    FAIL(ERR_SINGULAR, "step %d: a body is free to move",
+         (int)(r->step - r->m->steps) + 1);
 done:
   memory_free(list);
   return st;

@@ -83,15 +83,30 @@ static void read_shape(const reading *r, int n_line, obstacle *o) {
   }
 }
 
+/* What only a cylinder or a sphere has. */
+static void check_round(const reading *r, const obstacle_param *p) {
+  message_log *log = r->m->log;
+  const parameter *radius = card_parameter(r->card, "RADIUS");
+  int round = p->type == OBSTACLE_CYLINDER || p->type == OBSTACLE_SPHERE;
+  if (r->misread) return;
+  if (round && radius == NULL)
+    message_add(log, P2005, &r->card->at,
+                "*OBSTACLE: this type needs the parameter RADIUS=");
+  if (!round && radius != NULL)
+    message_add(log, P2004, &radius->at,
+                "*OBSTACLE: RADIUS= belongs to CYLINDER and SPHERE only");
+  if (!round && p->side)
+    message_add(log, P2004, value_place(r, "SIDE"),
+                "*OBSTACLE: SIDE=INSIDE belongs to CYLINDER and SPHERE only");
+}
+
 status apply_obstacle(reading *r) {
   status st = OK;
   const obstacle_param *p = r->param;
   model *m = r->m;
   const card *c = r->card;
   for (int i = 0; i < m->n_obstacle; ++i)
-    if (p->name != NULL && same_word(p->name, m->obstacles[i].name))
-      message_add(m->log, P2011, &c->at, "*OBSTACLE, NAME=%s is defined twice",
-                  p->name);
+    name_taken(r, p->name, m->obstacles[i].name);
   int n = m->n_obstacle, capacity = m->cap_obstacle;
   GROW(m->moves, n, capacity);
   GROW(m->obstacles, n, m->cap_obstacle);
@@ -102,15 +117,13 @@ status apply_obstacle(reading *r) {
   o->radius = p->radius;
   m->moves[n].amplitude_name = p->amplitude;
   m->moves[n].at = c->at;
-  int round = o->shape == OBSTACLE_CYLINDER || o->shape == OBSTACLE_SPHERE;
-  if (round && p->radius == 0.0)
-    message_add(m->log, P2005, &c->at,
-                "*OBSTACLE: this type needs the parameter RADIUS=");
-  if (!round && p->radius != 0.0)
-    message_add(m->log, P2004, &c->at,
-                "*OBSTACLE: RADIUS= belongs to CYLINDER and SPHERE only");
+  m->moves[n].move_at = c->at;
+  m->moves[n].amplitude_at = *value_place(r, "AMPLITUDE");
+  check_round(r, p);
+  if (r->misread && card_parameter(c, "TYPE") == NULL) goto done;
   int lines = c->n_record;
   if (lines > 0 && is_move(&c->records[lines - 1])) {
+    m->moves[n].move_at = c->records[lines - 1].at;
     if (read_move(r, &c->records[--lines], o) != 0) goto done;
   } else if (p->amplitude != NULL) {
     message_add(m->log, P2007, &c->at,
@@ -126,15 +139,15 @@ status apply_contact(reading *r) {
   const contact_param *p = r->param;
   model *m = r->m;
   for (int i = 0; i < m->n_contact; ++i)
-    if (p->name != NULL && same_word(p->name, m->contacts[i].name))
-      message_add(m->log, P2011, &r->card->at,
-                  "*CONTACT, NAME=%s is defined twice", p->name);
+    name_taken(r, p->name, m->contacts[i].name);
   GROW(m->contacts, m->n_contact, m->cap_contact);
   contact *c = &m->contacts[m->n_contact++];
   c->name = p->name == NULL ? "" : p->name;
   c->group = p->group == NULL ? "" : p->group;
   c->obstacle_name = p->obstacle == NULL ? "" : p->obstacle;
   c->at = r->card->at;
+  c->group_at = *value_place(r, "GROUP");
+  c->obstacle_at = *value_place(r, "OBSTACLE");
   c->obstacle_normal =
       card_parameter(r->card, "NORMAL") == NULL ? -1 : p->normal;
   c->obstacle_id = -1;
@@ -151,20 +164,23 @@ static const char *law_name(const void *ctx, int i) {
 plugin names_law(const reading *r) {
   const friction_param *p = r->param;
   const parameter *law = card_parameter(r->card, "LAW");
-  plugin none = {NULL, 0};
+  plugin none = {NULL, 0, "LAW", NULL};
   if (p->law == NULL || law == NULL) return none;
   const friction_ops *ops = friction_find(p->law);
-  if (ops != NULL) return (plugin){ops->options, ops->param_size};
-  const char *near = nearest_word(p->law, law_name, NULL);
+  if (ops != NULL)
+    return (plugin){ops->options, ops->param_size, "LAW", ops->name};
   if (same_word(p->law, "NONLOCAL"))
     message_add(r->m->log, P2002, &law->value.at,
                 "LAW=NONLOCAL is not available in this version");
   else
-    message_add(r->m->log, P2012, &law->value.at,
-                "*FRICTION: there is no LAW=%s%s%s%s", p->law,
-                near == NULL ? "" : "; did you mean ", near == NULL ? "" : near,
-                near == NULL ? "" : "?");
+    unknown_word(r->m->log, P2012, &law->value.at,
+                 "*FRICTION: there is no LAW=", p->law, law_name, NULL);
   return none;
+}
+
+static const char *contact_name(const void *ctx, int i) {
+  const model *m = ctx;
+  return i < m->n_contact ? m->contacts[i].name : NULL;
 }
 
 static contact *find_contact(const reading *r, const char *name) {
@@ -185,7 +201,7 @@ static status read_value(reading *r, const friction_ops *law, contact *c) {
     TRY(read_pairs(r, 0, p->table, &c->position));
     for (int i = 0; i < c->position.n; ++i)
       if (!(c->position.value[i] >= 0.0))
-        message_add(r->m->log, P2010, &line[0].at,
+        message_add(r->m->log, P2010, &pair_field(r->card, 0, i, 1)->at,
                     "*FRICTION: %s = %.15g in the table is negative",
                     law->value_name, c->position.value[i]);
     c->friction.value.number = 1.0;
@@ -193,7 +209,9 @@ static status read_value(reading *r, const friction_ops *law, contact *c) {
     goto done;
   }
   if (r->card->n_record != 1) {
-    message_add(r->m->log, r->card->n_record < 1 ? P2007 : P2008, &r->card->at,
+    int none = r->card->n_record < 1;
+    message_add(r->m->log, none ? P2007 : P2008,
+                none ? &r->card->at : &line[1].at,
                 "*FRICTION needs one line with %s", law->value_name);
     goto done;
   }
@@ -216,9 +234,9 @@ status apply_friction(reading *r) {
   if (law == NULL || p->contact == NULL) goto done;
   contact *c = find_contact(r, p->contact);
   if (c == NULL) {
-    message_add(r->m->log, P2012, &card_parameter(r->card, "CONTACT")->value.at,
-                "*FRICTION: there is no *CONTACT, NAME=%s before this card",
-                p->contact);
+    unknown_word(r->m->log, P2012, value_place(r, "CONTACT"),
+                 "*FRICTION: before this card there is no *CONTACT, NAME=",
+                 p->contact, contact_name, r->m);
     goto done;
   }
   if (c->law != NULL) {
@@ -230,6 +248,8 @@ status apply_friction(reading *r) {
   c->law = law;
   c->amplitude_name = p->amplitude;
   c->friction_at = r->card->at;
+  c->value_at = r->card->n_record > 0 ? r->card->records[0].at : r->card->at;
+  c->amplitude_at = *value_place(r, "AMPLITUDE");
   if (law->param_size > 0) {
     param = memory_new(1, law->param_size);
     if (param == NULL) FAIL(ERR_MEMORY, "memory exhausted: friction options");

@@ -8,15 +8,6 @@
 #include <float.h>
 #include <string.h>
 
-/* Report a name used twice; 1 if so. "old" is what has it, or NULL. */
-static int name_taken(const reading *r, const char *name, const char *old) {
-  if (name == NULL || old == NULL || !same_word(name, old)) return 0;
-  const parameter *p = card_parameter(r->card, "NAME");
-  message_add(r->m->log, P2011, p == NULL ? &r->card->at : &p->value.at,
-              "*%s, NAME=%s is defined twice", r->card->name, name);
-  return 1;
-}
-
 status apply_heading(reading *r) {
   const card *c = r->card;
   if (c->n_record > 0 && r->m->title[0] == '\0')
@@ -26,6 +17,8 @@ status apply_heading(reading *r) {
 
 status apply_units(reading *r) {
   const units_param *p = r->param;
+  if (r->m->has_units++)
+    message_add(r->m->log, P2011, &r->card->at, "a deck has one *UNITS card");
   r->m->length_unit = p->length;
   r->m->force_unit = p->force;
   r->m->time_unit = p->time;
@@ -41,7 +34,7 @@ status apply_mesh(reading *r) {
     goto done;
   }
   m->has_mesh = 1;
-  m->mesh_at = r->card->at;
+  m->mesh_at = *value_place(r, "FILE");
   m->mesh_scale = p->scale;
   const parameter *file = card_parameter(r->card, "FILE");
   if (file == NULL || !file->has_value) goto done;
@@ -133,7 +126,7 @@ status apply_material(reading *r) {
   GROW(m->materials, m->n_material, m->cap_material);
   r->material_id = m->n_material++;
   m->materials[r->material_id].name = p->name == NULL ? "" : p->name;
-  m->materials[r->material_id].at = r->card->at;
+  m->materials[r->material_id].at = *value_place(r, "NAME");
 done:
   return st;
 }
@@ -145,10 +138,10 @@ status apply_elastic(reading *r) {
   const elastic_param *p = r->param;
   const card *c = r->card;
   material *mat = &r->m->materials[r->material_id];
-  char text[200];
+  char text[256];
   double value[ELASTIC_MAX];
   int n = 0, wanted = constants_of[p->type];
-  if (mat->n_constant > 0)
+  if (mat->has_elastic++)
     message_add(r->m->log, P2011, &c->at, "material %s has *ELASTIC twice",
                 mat->name);
   for (int i = 0; i < c->n_record; ++i)
@@ -183,6 +176,9 @@ status apply_elastic(reading *r) {
 status apply_density(reading *r) {
   material *mat = &r->m->materials[r->material_id];
   const record *line = &r->card->records[0];
+  if (mat->has_density)
+    message_add(r->m->log, P2011, &r->card->at,
+                "material %s has *DENSITY twice", mat->name);
   if (record_fields(r, line, 1, 1, "rho") != 0) return OK;
   if (field_real(r, &line->fields[0], 0.0, DBL_MAX, "rho", &mat->density) == 0)
     mat->has_density = 1;
@@ -198,14 +194,22 @@ status apply_section(reading *r) {
   s->elset = p->elset == NULL ? "" : p->elset;
   s->material_name = p->material == NULL ? "" : p->material;
   s->at = r->card->at;
+  s->elset_at = *value_place(r, "ELSET");
+  s->material_at = *value_place(r, "MATERIAL");
   s->material_id = -1;
   s->group_id = -1;
   s->thickness = p->thickness;
   /* The words of Abaqus repeat the four kinematics. */
   s->kin = card_parameter(r->card, "TYPE") == NULL ? -1 : p->type % 4;
+  s->has_thickness =
+      r->card->n_record > 0 || card_parameter(r->card, "THICKNESS") != NULL;
   if (r->card->n_record > 0) {
     const record *line = &r->card->records[0];
-    if (record_fields(r, line, 1, 1, "thickness") == 0)
+    if (card_parameter(r->card, "THICKNESS") != NULL)
+      message_add(m->log, P2011, &line->at,
+                  "*SOLID SECTION: the thickness is given by THICKNESS= and by "
+                  "a data line");
+    else if (record_fields(r, line, 1, 1, "thickness") == 0)
       field_real(r, &line->fields[0], DBL_MIN, DBL_MAX, "thickness",
                  &s->thickness);
   }
@@ -223,6 +227,7 @@ status apply_amplitude(reading *r) {
   GROW(m->amplitudes, m->n_amplitude, m->cap_amplitude);
   amplitude *a = &m->amplitudes[m->n_amplitude++];
   a->name = p->name == NULL ? "" : p->name;
+  a->at = *value_place(r, "NAME");
   a->total_time = p->time;
   a->table.variable = TABLE_T;
   if (c->records[0].n_field == 1 && c->n_record == 1) {

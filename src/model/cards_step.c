@@ -28,7 +28,7 @@ done:
 
 status apply_end_step(reading *r) {
   const step *s = open_step(r);
-  if (s->kind == STEP_NONE && !r->m->has_problem)
+  if (s->kind == STEP_NONE && !r->m->has_problem && !r->lost)
     message_add(r->m->log, P2018, &s->at,
                 "this step has no procedure: *STATIC or *QUASISTATIC");
   r->in_step = 0;
@@ -58,6 +58,27 @@ status apply_static(reading *r) {
   return OK;
 }
 
+/* Increments that fit together and into the step; dt_min 0 if not given. */
+static void check_increments(const reading *r, const field *f, const step *s,
+                             double dt_max) {
+  message_log *log = r->m->log;
+  if (s->dt > s->total * (1.0 + 1e-12))
+    message_add(log, P2020, &f[0].at,
+                "the increment dt = %s is longer than the step, %s", f[0].text,
+                f[1].text);
+  else if (s->dt > dt_max)
+    message_add(log, P2020, &f[0].at,
+                "the increment dt = %s is longer than dt_max = %s", f[0].text,
+                f[3].text);
+  else if (s->dt < s->dt_min)
+    message_add(log, P2020, &f[0].at,
+                "the increment dt = %s is shorter than dt_min = %s", f[0].text,
+                f[2].text);
+  if (s->total / s->dt > 1e8)
+    message_add(log, P2020, &f[0].at,
+                "%.3g increments; at most 1e8 are possible", s->total / s->dt);
+}
+
 status apply_quasistatic(reading *r) {
   step *s = open_step(r);
   const quasistatic_param *p = r->param;
@@ -67,7 +88,7 @@ status apply_quasistatic(reading *r) {
   s->kind = STEP_QUASISTATIC;
   s->dt = s->total = s->dt_min = 1.0;
   if (p->form != 0)
-    message_add(r->m->log, P2002, &card_parameter(r->card, "FORM")->value.at,
+    message_add(r->m->log, P2002, value_place(r, "FORM"),
                 "FORM=VELOCITY is not available in this version");
   if (record_fields(r, line, 2, 4, "dt, total [, dt_min [, dt_max]]") != 0)
     return OK;
@@ -78,19 +99,19 @@ status apply_quasistatic(reading *r) {
   if (line->n_field > 3 &&
       field_real(r, &f[3], DBL_MIN, DBL_MAX, "dt_max", &dt_max) != 0)
     return OK;
-  if (s->dt > s->total * (1.0 + 1e-12))
-    message_add(r->m->log, P2020, &f[0].at,
-                "the increment dt = %s is longer than the step, %s", f[0].text,
-                f[1].text);
-  if (s->total / s->dt > 1e8)
-    message_add(r->m->log, P2020, &f[0].at,
-                "%.3g increments; at most 1e8 are possible", s->total / s->dt);
-  s->dt = fmin(s->dt, dt_max);
   s->dt_min = s->dt / 16.0;
   if (line->n_field > 2 && f[2].text[0] != '\0' &&
-      field_real(r, &f[2], DBL_MIN, s->dt, "dt_min", &s->dt_min) != 0)
+      field_real(r, &f[2], DBL_MIN, DBL_MAX, "dt_min", &s->dt_min) != 0)
     return OK;
+  check_increments(r, f, s, dt_max);
   return OK;
+}
+
+/* 0 as well for one that the card has been told about. */
+static int known_amplitude(const reading *r, const char *name) {
+  for (int i = 0; i < r->m->n_amplitude; ++i)
+    if (name != NULL && same_word(name, r->m->amplitudes[i].name)) return 1;
+  return 0;
 }
 
 /* A load of the step, or of the model part; NULL without memory. */
@@ -106,35 +127,51 @@ static load *new_load(reading *r, load_list *list, int kind,
   l->at = group->at;
   l->group_id = -1;
   l->amplitude_id = -1;
-  l->amplitude_name = p->amplitude;
+  if (!r->in_step || known_amplitude(r, p->amplitude))
+    l->amplitude_name = p->amplitude;
+  l->amplitude_at = *value_place(r, "AMPLITUDE");
+  if (group->text[0] == '\0')
+    message_add(r->m->log, P1037, &group->at,
+                "empty field, name of a group expected");
   if (p->op == 1 && r->in_step) open_step(r)->renewed |= 1u << kind;
 done:
   return st == OK ? &list->item[list->n - 1] : NULL;
 }
 
-/* OP=NEW also without data lines. */
-static void renew(const reading *r, unsigned kinds) {
+/* Without data lines the card says OP=NEW and no more. */
+static void renew(const reading *r, unsigned kinds, const char *expected) {
   const load_param *p = r->param;
   if (p->op == 1 && r->in_step) open_step(r)->renewed |= kinds;
+  /* Lines that name their own amplitude leave this one unread. */
+  if (p->amplitude != NULL && r->in_step)
+    find_amplitude(r->m, p->amplitude, value_place(r, "AMPLITUDE"));
+  if (p->op == 1 && !r->in_step)
+    message_add(r->m->log, P2004, value_place(r, "OP"),
+                "*%s: OP=NEW belongs in a step", r->card->name);
+  if (r->card->n_record == 0 && p->op != 1 && !r->misread)
+    message_add(r->m->log, P2007, &r->card->at, "*%s needs a data line: %s",
+                r->card->name, expected);
 }
 
 static void read_line_amplitude(const field *f, load *l) {
-  if (f->text[0] != '\0') l->amplitude_name = f->text;
+  if (f->text[0] == '\0') return;
+  l->amplitude_name = f->text;
+  l->amplitude_at = f->at;
 }
 
 status apply_boundary(reading *r) {
   status st = OK;
   const card *c = r->card;
   load_list *list = r->in_step ? &open_step(r)->loads : &r->m->supports;
-  renew(r, 1u << LOAD_FIXING);
+  static const char expected[] =
+      "group, first dof [, last dof [, value [, amplitude]]]";
+  renew(r, 1u << LOAD_FIXING, expected);
   for (int i = 0; i < c->n_record; ++i) {
     const record *line = &c->records[i];
     const field *f = line->fields;
     int first, last;
     quantity value = {0};
-    if (record_fields(r, line, 2, 5,
-                      "group, first dof [, last dof [, value [, amplitude]]]"))
-      continue;
+    if (record_fields(r, line, 2, 5, expected) != 0) continue;
     if (field_int(r, &f[1], 1, 3, "first dof", &first) != 0) continue;
     last = first;
     if (line->n_field > 2 && f[2].text[0] != '\0' &&
@@ -174,14 +211,13 @@ static int read_label(const reading *r, const field *f, const char *words) {
 status apply_dsload(reading *r) {
   status st = OK;
   const card *c = r->card;
-  renew(r, 1u << LOAD_PRESSURE | 1u << LOAD_TRACTION);
+  static const char expected[] = "group, P or TX TY TZ, value [, amplitude]";
+  renew(r, 1u << LOAD_PRESSURE | 1u << LOAD_TRACTION, expected);
   for (int i = 0; i < c->n_record; ++i) {
     const record *line = &c->records[i];
     const field *f = line->fields;
     quantity value;
-    if (record_fields(r, line, 3, 4,
-                      "group, P or TX TY TZ, value [, amplitude]") != 0)
-      continue;
+    if (record_fields(r, line, 3, 4, expected) != 0) continue;
     int label = read_label(r, &f[1], "P|TX|TY|TZ");
     if (label < 0 || field_quantity(r, &f[2], &value) != 0) continue;
     load *l = new_load(r, &open_step(r)->loads,
@@ -223,13 +259,14 @@ static int read_gravity(const reading *r, const record *line, quantity *value,
 status apply_dload(reading *r) {
   status st = OK;
   const card *c = r->card;
-  renew(r, 1u << LOAD_BODY | 1u << LOAD_GRAVITY);
+  static const char expected[] = "group, label, value ...";
+  renew(r, 1u << LOAD_BODY | 1u << LOAD_GRAVITY, expected);
   for (int i = 0; i < c->n_record; ++i) {
     const record *line = &c->records[i];
     const field *f = line->fields;
     quantity value = {0};
     double direction[3] = {0.0, 0.0, 0.0};
-    if (record_fields(r, line, 3, 7, "group, label, value ...") != 0) continue;
+    if (record_fields(r, line, 3, 7, expected) != 0) continue;
     int label = read_label(r, &f[1], "BX|BY|BZ|GRAV"), gravity = label == 3;
     if (label < 0) continue;
     if (gravity && read_gravity(r, line, &value, direction) != 0) continue;
@@ -253,14 +290,14 @@ done:
 status apply_cload(reading *r) {
   status st = OK;
   const card *c = r->card;
-  renew(r, 1u << LOAD_POINT);
+  static const char expected[] = "group, dof, value [, amplitude]";
+  renew(r, 1u << LOAD_POINT, expected);
   for (int i = 0; i < c->n_record; ++i) {
     const record *line = &c->records[i];
     const field *f = line->fields;
     int dof;
     quantity value;
-    if (record_fields(r, line, 3, 4, "group, dof, value [, amplitude]") != 0)
-      continue;
+    if (record_fields(r, line, 3, 4, expected) != 0) continue;
     if (field_int(r, &f[1], 1, 3, "dof", &dof) != 0 ||
         field_quantity(r, &f[2], &value) != 0)
       continue;
@@ -283,16 +320,16 @@ static const char *solver_name(const void *ctx, int i) {
 plugin names_solver(const reading *r) {
   const solver_param *p = r->param;
   const parameter *method = card_parameter(r->card, "METHOD");
-  plugin none = {NULL, 0};
-  if (method == NULL || same_word(p->method, "AUTO")) return none;
+  if (method == NULL || same_word(p->method, "AUTO"))
+    return (plugin){NULL, 0, "METHOD", "AUTO"};
   const solver_ops *ops = solver_find(p->method);
-  if (ops != NULL) return (plugin){ops->options, ops->param_size};
-  const char *near = nearest_word(p->method, solver_name, NULL);
-  message_add(r->m->log, P2012, &method->value.at,
-              "*SOLVER: there is no METHOD=%s in this version%s%s%s", p->method,
-              near == NULL ? "" : "; did you mean ", near == NULL ? "" : near,
-              near == NULL ? "" : "?");
-  return none;
+  if (ops != NULL)
+    return (plugin){ops->options, ops->param_size, "METHOD", ops->name};
+  if (method->has_value)
+    unknown_word(r->m->log, P2012, &method->value.at,
+                 "*SOLVER: this version has no METHOD=", p->method, solver_name,
+                 NULL);
+  return (plugin){NULL, 0, "METHOD", NULL};
 }
 
 status apply_solver(reading *r) {
@@ -336,9 +373,13 @@ status apply_print(reading *r) {
     q->group = p->group;
     q->group_id = -1;
     q->frequency = p->frequency;
-    q->at = r->card->at;
+    q->at = *value_place(r, "GROUP");
+    if (p->group != NULL &&
+        (q->table & (PRINT_CONTACT | PRINT_TOTALS | PRINT_ENERGY)) != 0)
+      message_add(r->m->log, P2037, &q->at,
+                  "GROUP= counts for NODES, ELEMENTS and REACTIONS only");
   }
-  if (!any)
+  if (!any && !r->misread)
     message_add(r->m->log, P2005, &r->card->at,
                 "*PRINT names no table: CONTACT, TOTALS, NODES, ELEMENTS, "
                 "ENERGY or REACTIONS");

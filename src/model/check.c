@@ -6,6 +6,7 @@
 #include "base/memory.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const char *const dim_words[] = {"points", "curves", "surfaces",
@@ -16,10 +17,20 @@ static int find_group(const model *m, const mesh *msh, const char *name,
                       const place *at) {
   const mesh_group *g = mesh_find_group(msh, name);
   if (g != NULL) return (int)(g - msh->group);
-  const char *near = mesh_nearest_group(msh, name);
-  message_add(m->log, P2021, at, "the mesh has no group %s%s%s%s", name,
-              near == NULL ? "" : "; did you mean ", near == NULL ? "" : near,
-              near == NULL ? "" : "?");
+  const char *near =
+      message_wanted(m->log, ERROR) ? mesh_nearest_group(msh, name) : NULL;
+  if (near != NULL) {
+    message_add(m->log, P2021, at, "the mesh has no group %s; did you mean %s?",
+                name, near);
+    return -1;
+  }
+  char all[400] = "";
+  size_t n = 0;
+  for (int i = 0; i < msh->n_group && n < sizeof all / 2; ++i)
+    n += (size_t)snprintf(all + n, sizeof all - n, "%s%.60s",
+                          i == 0 ? "" : ", ", msh->group[i].name);
+  message_add(m->log, P2021, at, "the mesh has no group %s; it has %s", name,
+              all);
   return -1;
 }
 
@@ -45,7 +56,27 @@ static void check_kinematics(model *m, const mesh *msh) {
     if ((s->kin == AXISYMMETRIC) != (m->sections[0].kin == AXISYMMETRIC))
       message_add(m->log, P2026, &s->at,
                   "axisymmetric and plane sections cannot stand in one model");
-    if (s->kin == AXISYMMETRIC || s->kin == SOLID_3D) s->thickness = 1.0;
+    if (s->kin != AXISYMMETRIC && s->kin != SOLID_3D) continue;
+    s->thickness = 1.0;
+    if (s->has_thickness)
+      message_add(
+          m->log, P2037, &s->at,
+          "*SOLID SECTION: a thickness counts in plane strain and plane "
+          "stress only");
+  }
+}
+
+/* The radius x of an axisymmetric model is not negative. */
+static void check_radius(const model *m, const mesh *msh) {
+  static const double rounding = 1e-9; /* of the size of the mesh            */
+  if (m->n_section == 0 || m->sections[0].kin != AXISYMMETRIC) return;
+  for (int i = 0; i < msh->n_node; ++i) {
+    const double *x = msh->x + (size_t)msh->dim * (size_t)i;
+    if (x[0] >= -rounding * msh->size) continue;
+    message_add(m->log, P2039, &m->sections[0].at,
+                "axisymmetric, but node %zu is at radius x = %g",
+                msh->node_no[i], x[0]);
+    return;
   }
 }
 
@@ -56,7 +87,7 @@ static status check_sections(model *m, const mesh *msh) {
   for (int e = 0; e < msh->n_elem; ++e) m->elem_section[e] = -1;
   for (int i = 0; i < m->n_section; ++i) {
     section *s = &m->sections[i];
-    s->group_id = find_group_of(m, msh, s->elset, msh->dim, &s->at);
+    s->group_id = find_group_of(m, msh, s->elset, msh->dim, &s->elset_at);
     if (s->group_id < 0) continue;
     const mesh_group *g = &msh->group[s->group_id];
     for (int k = 0; k < g->n_item; ++k) {
@@ -88,7 +119,7 @@ done:
 static void check_contacts(model *m, const mesh *msh) {
   for (int i = 0; i < m->n_contact; ++i) {
     contact *c = &m->contacts[i];
-    c->group_id = find_group_of(m, msh, c->group, msh->dim - 1, &c->at);
+    c->group_id = find_group_of(m, msh, c->group, msh->dim - 1, &c->group_at);
     if (c->obstacle_id < 0) continue;
     const obstacle *o = &m->obstacles[c->obstacle_id];
     int no_axis = o->direction[0] == 0.0 && o->direction[1] == 0.0 &&
@@ -119,6 +150,21 @@ static void check_density(const model *m, const mesh *msh, const load *l) {
   }
 }
 
+/* A pressure needs an outside. */
+static void check_outside(const model *m, const mesh *msh, const load *l) {
+  const mesh_group *g = &msh->group[l->group_id];
+  for (int k = 0; k < g->n_item; ++k) {
+    if (msh->face_other[g->item_id[k]] < 0) continue;
+    message_add(
+        m->log, P2035, &l->at,
+        "P on group %s: a face between elements %zu and %zu lies inside "
+        "the body",
+        l->group, msh->elem_no[msh->face_elem[g->item_id[k]]],
+        msh->elem_no[msh->face_other[g->item_id[k]]]);
+    return;
+  }
+}
+
 static void check_load(const model *m, const mesh *msh, load *l) {
   switch ((load_kind)l->kind) {
     case LOAD_PRESSURE:
@@ -134,6 +180,7 @@ static void check_load(const model *m, const mesh *msh, load *l) {
       l->group_id = find_group(m, msh, l->group, &l->at);
       break;
   }
+  if (l->kind == LOAD_PRESSURE && l->group_id >= 0) check_outside(m, msh, l);
   if (l->component >= msh->dim)
     message_add(m->log, P2025, &l->at,
                 "component %d on group %s, but the mesh is %d-D",
@@ -177,15 +224,118 @@ static void check_steps(model *m, const mesh *msh) {
   }
 }
 
+static double step_time(const step *s, int end) {
+  return end ? s->start + s->total : s->start;
+}
+
+/* Friction at the nodes of a contact at t; 0 after a message. */
+static int friction_finite(const model *m, const mesh *msh, const contact *c,
+                           double t) {
+  const mesh_group *g = &msh->group[c->group_id];
+  for (int k = 0; k < g->n_node; ++k) {
+    double x[3] = {0.0, 0.0, 0.0};
+    size_t node = (size_t)g->node_id[k], dim = (size_t)msh->dim;
+    memcpy(x, msh->x + dim * node, dim * sizeof *x);
+    double value = quantity_value(&c->friction.value, x, t);
+    if (isfinite(value) && value >= 0.0) continue;
+    message_add(m->log, P2041, &c->value_at,
+                "*FRICTION: %s is %s at node %zu (%g, %g, %g), time %g",
+                c->law->value_name,
+                isnan(value)  ? "not a number"
+                : value < 0.0 ? "negative"
+                              : "infinite",
+                msh->node_no[node], x[0], x[1], x[2], t);
+    return 0;
+  }
+  return 1;
+}
+
+static int motion_finite(const model *m, int obstacle_id, double t) {
+  double d[3];
+  obstacle_motion(&m->obstacles[obstacle_id], t, d);
+  for (int c = 0; c < 3; ++c)
+    if (!isfinite(d[c])) {
+      message_add(m->log, P2041, &m->moves[obstacle_id].move_at,
+                  "*OBSTACLE %s: component %d of MOVE is %s at time %g",
+                  m->obstacles[obstacle_id].name, c + 1,
+                  isnan(d[c]) ? "not a number" : "infinite", t);
+      return 0;
+    }
+  return 1;
+}
+
+/* Where each step begins and ends, what the expressions give is a number; in
+ * between it is seen when it is needed. */
+static void check_values(const model *m, const mesh *msh) {
+  int good = 1;
+  for (int i = 0; i < m->n_obstacle; ++i) {
+    good = motion_finite(m, i, 0.0);
+    for (int k = 0; k < m->n_step && good; ++k)
+      good = motion_finite(m, i, step_time(&m->steps[k], 1));
+  }
+  for (int i = 0; i < m->n_contact; ++i) {
+    if (m->contacts[i].law == NULL || m->contacts[i].law->value_name == NULL)
+      continue;
+    good = 1;
+    for (int k = 0; k < m->n_step && good; ++k)
+      good =
+          friction_finite(m, msh, &m->contacts[i], step_time(&m->steps[k], 1));
+  }
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k)
+      if (m->steps[i].loads.item[k].run != RUN_HELD)
+        load_finite(m, msh, &m->steps[i], &m->steps[i].loads.item[k],
+                    step_time(&m->steps[i], 1));
+}
+
+/* Two groups that share nodes prescribe the same displacement there. */
+static status check_agreement(const model *m, const mesh *msh, int step_id) {
+  status st = OK;
+  const step *s = &m->steps[step_id];
+  int *owner = NULL;
+  double *ud = NULL;
+  size_t n_dof = (size_t)msh->dim * (size_t)msh->n_node;
+  NEW(owner, n_dof);
+  NEW(ud, n_dof);
+  for (int i = 0; i < s->loads.n; ++i) {
+    const load *l = &s->loads.item[i];
+    const mesh_group *g = &msh->group[l->group_id];
+    int told = 0;
+    for (int k = 0; k < g->n_node && l->kind == LOAD_FIXING; ++k) {
+      size_t node = (size_t)g->node_id[k];
+      size_t dof = (size_t)msh->dim * node + (size_t)l->component;
+      double value = load_at_node(l, msh, s, (int)node, step_time(s, 1));
+      const load *first =
+          owner[dof] > 0 ? &s->loads.item[owner[dof] - 1] : NULL;
+      if (first != NULL && value != ud[dof] && !told++)
+        message_add(m->log, P2038, &l->at,
+                    "node %zu of group %s: component %d is %g here and %g on "
+                    "line %d, group %s",
+                    msh->node_no[node], l->group, l->component + 1, value,
+                    ud[dof], first->at.line_no, first->group);
+      owner[dof] = i + 1;
+      ud[dof] = value;
+    }
+  }
+done:
+  memory_free(owner);
+  memory_free(ud);
+  return st;
+}
+
 status model_check(model *m, const mesh *msh) {
   status st = OK;
   m->dim = msh->dim;
   m->ns = msh->dim == 3 ? 6 : 4;
   check_kinematics(m, msh);
+  check_radius(m, msh);
   TRY(check_sections(m, msh));
   check_contacts(m, msh);
   check_steps(m, msh);
   model_find_effects(m);
+  TRY(message_status(m->log, ERR_DECK));
+  check_values(m, msh);
+  for (int i = 0; i < m->n_step; ++i) TRY(check_agreement(m, msh, i));
   TRY(message_status(m->log, ERR_DECK));
 done:
   return st;

@@ -24,6 +24,9 @@ typedef struct reading {
   const void *plugin; /* options of the law or solver it names, or NULL     */
   size_t plugin_size;
   int material_id; /* open *MATERIAL, or -1                              */
+  int misread;     /* a parameter of the card was refused                */
+  int lost;        /* a card or its lines were refused: what seems to be
+                      missing may be that one and is not reported        */
   int in_step;     /* inside *STEP ... *END STEP                         */
 } reading;
 
@@ -31,6 +34,7 @@ typedef struct reading {
 typedef struct plugin {
   const option *options;
   size_t size;
+  const char *parameter, *name; /* METHOD, newton; NULL: not known            */
 } plugin;
 
 typedef struct keyword {
@@ -154,18 +158,32 @@ int field_real(const reading *r, const field *f, double min, double max,
 int field_int(const reading *r, const field *f, int min, int max,
               const char *what, int *out);
 int field_quantity(const reading *r, const field *f, quantity *out);
+/* Field of pair number i of the lines of a card: its first or second. */
+const field *pair_field(const card *c, int first_line, int i, int second);
 /* Pairs over all lines (any number per line) as a table; arrays are new. */
 status read_pairs(reading *r, int first_line, int variable, value_table *out);
 /* Compare words without regard to case. */
 int same_word(const char *a, const char *b);
+/* Place of a parameter's value, or of the card. */
+const place *value_place(const reading *r, const char *parameter);
+/* Report NAME= given twice; 1 if "old" has it. */
+int name_taken(const reading *r, const char *name, const char *old);
+/* Report a word that names nothing, with the nearest of those there are:
+ * "text" is what is said before, as "there is no *MATERIAL, NAME=". */
+void unknown_word(message_log *log, message_id id, const place *at,
+                  const char *text, const char *word,
+                  const char *(*next)(const void *ctx, int i), const void *ctx);
+/* Id of an amplitude, or -1 and an error. */
+int find_amplitude(const model *m, const char *name, const place *at);
 
 /* cards_model.c: what a deck with *CONDENSED PROBLEM may hold; its one step
  * and table if it has none. After model_resolve. */
 status model_finish_problem(reading *r);
 
 /* resolve.c: names to ids once all cards are read; loads carried from step to
- * step. Errors of names go to the log. */
-status model_resolve(model *m);
+ * step. Errors of names go to the log. "lost": a card was refused, what seems
+ * to be missing or unused is not reported. */
+status model_resolve(model *m, int lost);
 /* effects.c: which effects the deck calls for, into m->effects. */
 void model_find_effects(model *m);
 

@@ -32,20 +32,47 @@ static void node_position(const mesh *msh, int node, double x[3]) {
     x[c] = msh->x[(size_t)msh->dim * (size_t)node + (size_t)c];
 }
 
-/* Value at a node, or the error that it is not finite. */
-static status node_value(const mesh *msh, const load *l, const step *s,
-                         double t, int node, double *value) {
-  status st = OK;
+double load_at_node(const load *l, const mesh *msh, const step *s, int node,
+                    double t) {
   double x[3];
   node_position(msh, node, x);
-  *value = load_value(l, s, x, t);
-  if (!isfinite(*value))
-    FAIL(ERR_DECK,
-         "%s:%d: the value on group %s is %g at node %zu (%g, %g, %g), time %g",
-         l->at.file, l->at.line_no, l->group, *value, msh->node_no[node], x[0],
-         x[1], x[2], t);
+  return load_value(l, s, x, t);
+}
+
+/* Say where a value is not finite. */
+static void report_value(const model *m, const mesh *msh, const load *l,
+                         double t, int node, double value) {
+  double x[3];
+  node_position(msh, node, x);
+  message_add(m->log, P2041, &l->at,
+              "the value on group %s is %s at node %zu (%g, %g, %g), time %g",
+              l->group, isnan(value) ? "not a number" : "infinite",
+              msh->node_no[node], x[0], x[1], x[2], t);
+}
+
+/* Value at a node, or the error that it is not finite. */
+static status node_value(const model *m, const mesh *msh, const load *l,
+                         const step *s, double t, int node, double *value) {
+  status st = OK;
+  *value = load_at_node(l, msh, s, node, t);
+  if (isfinite(*value)) goto done;
+  report_value(m, msh, l, t, node, *value);
+  FAIL(ERR_DECK, "%s:%d: a value is not finite", l->at.file, l->at.line_no);
 done:
   return st;
+}
+
+int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
+                double t) {
+  const mesh_group *g = &msh->group[l->group_id];
+  if (!quantity_variables(&l->value) && isfinite(l->value.number)) return 1;
+  for (int k = 0; k < g->n_node; ++k) {
+    double value = load_at_node(l, msh, s, g->node_id[k], t);
+    if (isfinite(value)) continue;
+    report_value(m, msh, l, t, g->node_id[k], value);
+    return 0;
+  }
+  return 1;
 }
 
 /*
@@ -85,7 +112,7 @@ static status add_patch(const model *m, const mesh *msh, const load *l,
   double value[MAX_NODE], r[MAX_NODE], M[MAX_NODE * MAX_NODE];
   int axisymmetric = m->sections[0].kin == AXISYMMETRIC;
   for (int i = 0; i < p->n; ++i) {
-    TRY(node_value(msh, l, s, t, p->node[i], &value[i]));
+    TRY(node_value(m, msh, l, s, t, p->node[i], &value[i]));
     r[i] = 2.0 * M_PI * msh->x[(size_t)msh->dim * (size_t)p->node[i]];
   }
   simplex_mass(p->n, p->measure, axisymmetric ? r : NULL, M);
@@ -149,13 +176,13 @@ done:
   return st;
 }
 
-static status add_points(const mesh *msh, const load *l, const step *s,
-                         double t, double *F) {
+static status add_points(const model *m, const mesh *msh, const load *l,
+                         const step *s, double t, double *F) {
   status st = OK;
   const mesh_group *g = &msh->group[l->group_id];
   for (int k = 0; k < g->n_node; ++k) {
     double value;
-    TRY(node_value(msh, l, s, t, g->node_id[k], &value));
+    TRY(node_value(m, msh, l, s, t, g->node_id[k], &value));
     F[(size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component] += value;
   }
 done:
@@ -178,7 +205,7 @@ status load_forces(const model *m, const mesh *msh, const step *s, double t,
         TRY(add_elements(m, msh, l, s, t, F));
         break;
       case LOAD_POINT:
-        TRY(add_points(msh, l, s, t, F));
+        TRY(add_points(m, msh, l, s, t, F));
         break;
       case LOAD_FIXING:
         break;
@@ -191,7 +218,6 @@ done:
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        double *ud) {
   status st = OK;
-  (void)m;
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     if (l->kind != LOAD_FIXING) continue;
@@ -199,7 +225,7 @@ status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
     for (int k = 0; k < g->n_node; ++k) {
       size_t dof =
           (size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component;
-      TRY(node_value(msh, l, s, t, g->node_id[k], &ud[dof]));
+      TRY(node_value(m, msh, l, s, t, g->node_id[k], &ud[dof]));
     }
   }
 done:

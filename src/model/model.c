@@ -27,8 +27,10 @@ int field_real(const reading *r, const field *f, double min, double max,
                const char *what, double *out) {
   if (deck_real(f, r->m->log, out) != 0) return -1;
   if (*out >= min && *out <= max) return 0;
-  message_add(r->m->log, P2010, &f->at, "*%s: %s = %s outside [%g, %g]",
-              r->card->name, what, f->text, min, max);
+  char why[128];
+  range_text(*out, min, max, why, sizeof why);
+  message_add(r->m->log, P2010, &f->at, "*%s: %s = %s", r->card->name, what,
+              why);
   return -1;
 }
 
@@ -41,8 +43,38 @@ int field_int(const reading *r, const field *f, int min, int max,
   return -1;
 }
 
+const place *value_place(const reading *r, const char *name) {
+  const parameter *p = card_parameter(r->card, name);
+  return p == NULL ? &r->card->at : &p->value.at;
+}
+
+int name_taken(const reading *r, const char *name, const char *old) {
+  if (name == NULL || old == NULL || !same_word(name, old)) return 0;
+  message_add(r->m->log, P2011, value_place(r, "NAME"),
+              "*%s, NAME=%s is defined twice", r->card->name, name);
+  return 1;
+}
+
+void unknown_word(message_log *log, message_id id, const place *at,
+                  const char *text, const char *word,
+                  const char *(*next)(const void *ctx, int i),
+                  const void *ctx) {
+  const char *near =
+      message_wanted(log, ERROR) ? nearest_word(word, next, ctx) : NULL;
+  message_add(log, id, at, "%s%s%s%s%s", text, word,
+              near == NULL ? "" : "; did you mean ", near == NULL ? "" : near,
+              near == NULL ? "" : "?");
+}
+
 int field_quantity(const reading *r, const field *f, quantity *out) {
   return deck_quantity(r->m->deck, f, r->m->log, out);
+}
+
+/* Field of pair number i of the lines of a card, from first_line on. */
+const field *pair_field(const card *c, int first_line, int i, int second) {
+  const record *line = &c->records[first_line];
+  for (; i >= line->n_field / 2; ++line) i -= line->n_field / 2;
+  return &line->fields[2 * i + second];
 }
 
 /* 0 if the pairs ascend; else the log has it. */
@@ -50,7 +82,7 @@ static int pairs_ascend(const reading *r, int first_line,
                         const value_table *t) {
   for (int i = 1; i < t->n; ++i)
     if (!(t->at[i] > t->at[i - 1])) {
-      message_add(r->m->log, P2029, &r->card->records[first_line].at,
+      message_add(r->m->log, P2029, &pair_field(r->card, first_line, i, 0)->at,
                   "*%s: the table must ascend, but %.15g follows %.15g",
                   r->card->name, t->at[i], t->at[i - 1]);
       return -1;
@@ -110,16 +142,33 @@ static const char *either_name(const void *ctx, int i) {
 }
 
 /* Read one parameter into the struct its row belongs to. */
-static void read_parameter(const reading *r, const option *row,
-                           const parameter *p, void *into) {
+static void read_parameter(reading *r, const option *row, const parameter *p,
+                           void *into) {
   char why[256];
   if (option_read(row, p->has_value ? p->value.text : NULL, into, why,
-                  sizeof why) != 0)
-    message_add(r->m->log, P2004, p->has_value ? &p->value.at : &p->at,
-                "*%s, %s: %s", r->card->name, p->name, why);
+                  sizeof why) == 0)
+    return;
+  r->misread = 1;
+  message_add(r->m->log, P2004, p->has_value ? &p->value.at : &p->at,
+              "*%s, %s: %s", r->card->name, p->name, why);
 }
 
+/* A name that no row has: not reported after a law or method that is not
+ * known, whose option it may be. */
+static void unknown_parameter(reading *r, const parameter *p,
+                              const two_tables *all, const plugin *named) {
+  char text[256], of[128] = "";
+  r->misread = 1;
+  if (named->parameter != NULL && named->name == NULL) return;
+  if (named->parameter != NULL)
+    snprintf(of, sizeof of, ", %s=%.80s", named->parameter, named->name);
+  snprintf(text, sizeof text, "*%.80s%s has no parameter ", r->card->name, of);
+  unknown_word(r->m->log, P2003, &p->at, text, p->name, either_name, all);
+}
+
+/* Nothing is missing where something was not understood: it may be that. */
 static void report_missing(const reading *r, const option *table) {
+  if (r->misread) return;
   for (const option *o = table; o != NULL && o->name != NULL; ++o)
     if (o->initial == NULL && card_parameter(r->card, o->name) == NULL)
       message_add(r->m->log, P2005, &r->card->at,
@@ -135,39 +184,30 @@ void keyword_parameters(const keyword *row, reading *r, void *param,
   r->param = param;
   r->plugin = NULL;
   if (row->options != NULL) option_defaults(row->options, param);
+  r->misread = c->damaged;
   for (int i = 0; i < c->n_parameter; ++i) {
-    const option *o = row->options == NULL
-                          ? NULL
-                          : option_find(row->options, c->parameters[i].name);
+    const option *o = option_find(row->options, c->parameters[i].name);
     if (o != NULL) read_parameter(r, o, &c->parameters[i], param);
   }
-  report_missing(r, row->options);
-  two_tables all = {row->options, NULL};
+  plugin named = {NULL, 0, NULL, NULL};
   if (row->names != NULL) {
-    plugin p = row->names(r);
-    all.second = p.options;
-    r->plugin_size = p.size;
-    if (p.options != NULL) option_defaults(p.options, plugin_param);
-    if (p.size > 0) r->plugin = plugin_param;
+    named = row->names(r);
+    r->plugin_size = named.size;
+    if (named.options != NULL) option_defaults(named.options, plugin_param);
+    if (named.size > 0) r->plugin = plugin_param;
   }
+  two_tables all = {row->options, named.options};
   for (int i = 0; i < c->n_parameter; ++i) {
     const parameter *p = &c->parameters[i];
-    if (row->options != NULL && option_find(row->options, p->name) != NULL)
-      continue;
-    const option *o =
-        all.second == NULL ? NULL : option_find(all.second, p->name);
-    const char *near = nearest_word(p->name, either_name, &all);
+    if (option_find(row->options, p->name) != NULL) continue;
+    const option *o = option_find(named.options, p->name);
     if (o != NULL)
       read_parameter(r, o, p, plugin_param);
-    else if (near != NULL)
-      message_add(r->m->log, P2003, &p->at,
-                  "*%s has no parameter %s; did you mean %s?", c->name, p->name,
-                  near);
     else
-      message_add(r->m->log, P2003, &p->at, "*%s has no parameter %s", c->name,
-                  p->name);
+      unknown_parameter(r, p, &all, &named);
   }
-  report_missing(r, all.second);
+  report_missing(r, row->options);
+  report_missing(r, named.options);
 }
 
 /* 1 if the card may stand here; opens and closes the blocks. */
@@ -221,32 +261,34 @@ static int right_lines(const reading *r, const keyword *row) {
 
 static void unknown_card(const reading *r) {
   const card *c = r->card;
-  const char *near = nearest_word(c->name, keyword_name, NULL);
-  if (near != NULL)
-    message_add(r->m->log, P1003, &c->at, "unknown card *%s; did you mean *%s?",
-                c->name, near);
-  else
-    message_add(r->m->log, P1003, &c->at, "unknown card *%s", c->name);
+  const char *near = message_wanted(r->m->log, ERROR)
+                         ? nearest_word(c->name, keyword_name, NULL)
+                         : NULL;
+  message_add(r->m->log, P1003, &c->at, "unknown card *%s%s%s%s", c->name,
+              near == NULL ? "" : "; did you mean *", near == NULL ? "" : near,
+              near == NULL ? "" : "?");
 }
 
 static status read_card(reading *r) {
   status st = OK;
   _Alignas(16) char param[PARAM_SIZE], plugin_param[PARAM_SIZE];
   const keyword *row = keyword_find(r->card->name);
-  if (row == NULL) {
-    unknown_card(r);
-    goto done;
-  }
-  if (row->where & LANGUAGE) goto done;
-  if (row->where & LATER) {
+  if (row == NULL) unknown_card(r);
+  if (row != NULL && row->where & LANGUAGE) goto done;
+  if (row != NULL && row->where & LATER)
     message_add(r->m->log, P2001, &r->card->at,
                 "*%s is not available in this version", r->card->name);
+  if (row == NULL || row->where & LATER || !right_place(r, row)) {
+    r->lost = 1;
     goto done;
   }
-  if (!right_place(r, row)) goto done;
   keyword_parameters(row, r, param, plugin_param);
-  if (!right_lines(r, row)) goto done;
-  TRY(row->apply(r));
+  r->lost |= r->misread;
+  /* A card that has no lines means the same with some. */
+  if (right_lines(r, row) || row->max_line == 0)
+    TRY(row->apply(r));
+  else
+    r->lost = 1;
 done:
   return st;
 }
@@ -265,9 +307,13 @@ done:
   return st;
 }
 
+/* What the deck lacks, at its end; not after a card was lost, which may be
+ * the one. */
 static void report_absent(const reading *r) {
   const model *m = r->m;
   place at = {.file = m->deck->file};
+  if (r->lost) return;
+  if (m->deck->n_card > 0) at = m->deck->cards[m->deck->n_card - 1].at;
   if (!m->has_mesh && !m->has_problem)
     message_add(m->log, P2015, &at, "the deck has no *MESH card");
   if (m->n_section == 0 && !m->has_problem)
@@ -299,14 +345,15 @@ status model_from_deck(deck *d, message_log *log, model **out) {
   m->log = log;
   m->title = "";
   TRY(name_job(m));
-  reading r = {.m = m, .material_id = -1};
+  reading r = {
+      .m = m, .material_id = -1, .lost = message_count(log, ERROR) > 0};
   for (int i = 0; i < d->n_card; ++i) {
     r.card = &d->cards[i];
     TRY(read_card(&r));
   }
   report_absent(&r);
   if (m->has_problem && m->n_step == 0) TRY(default_step(m));
-  TRY(model_resolve(m));
+  TRY(model_resolve(m, r.lost));
   if (m->has_problem) TRY(model_finish_problem(&r));
   TRY(message_status(log, ERR_DECK));
 done:

@@ -15,6 +15,8 @@
 
 typedef struct amplitude {
   const char *name;
+  place at;
+  int used;       /* something refers to it                                  */
   int total_time; /* its times are total (1) or step time (0)                */
   value_table table; /* s, -; arrays owned */
 } amplitude;
@@ -22,8 +24,10 @@ typedef struct amplitude {
 typedef struct material {
   const char *name;
   place at;
+  int used; /* a section refers to it                                         */
   elastic_type type;
-  int n_constant;               /* 0: no *ELASTIC                             */
+  int has_elastic;              /* its *ELASTIC was seen, valid or not        */
+  int n_constant;               /* 0: no valid *ELASTIC                       */
   double constant[ELASTIC_MAX]; /* Pa, -                                      */
   double C[36];                 /* Pa                                         */
   double density;               /* kg/m3                                      */
@@ -32,22 +36,23 @@ typedef struct material {
 
 typedef struct section {
   const char *elset, *material_name;
-  place at;
+  place at, elset_at, material_at;
   int kin;          /* kinematics; -1: not given                              */
   double thickness; /* m                                                      */
+  int has_thickness; /* given, not the default                                */
   int material_id, group_id;
 } section;
 
 typedef struct contact {
   const char *name, *group, *obstacle_name;
-  place at;
+  place at, group_at, obstacle_at;
   int obstacle_id, group_id;
   int obstacle_normal;     /* 1: NORMAL=OBSTACLE; resolved from -1: not said */
   const friction_ops *law; /* NULL: frictionless                              */
   friction_card friction;  /* its value and options (owned)                   */
   value_table position;    /* TABLE= of the friction value; arrays owned      */
   const char *amplitude_name;
-  place friction_at;
+  place friction_at, value_at, amplitude_at;
 } contact;
 
 typedef enum {
@@ -80,6 +85,7 @@ typedef struct load {
   const char *amplitude_name;
   int amplitude_id; /* -1: none                                               */
   int removed;      /* ends: by OP=NEW; dropped after its ramp to zero        */
+  place amplitude_at;
   place at;
 } load;
 
@@ -135,7 +141,7 @@ typedef struct model {
   const char *mesh_file;
   double mesh_scale;
   place mesh_at;
-  int has_mesh;
+  int has_mesh, has_units;
   const char *problem_file; /* *CONDENSED PROBLEM, in the place of a mesh     */
   int problem_type;         /* exchange_type                                  */
   int problem_friction;     /* 1: some mu > 0; known when it is read          */
@@ -160,7 +166,8 @@ typedef struct model {
 
 typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
   const char *amplitude_name;
-  place at;
+  int used; /* a contact refers to it                                         */
+  place at, amplitude_at, move_at; /* of the card, the name, the line MOVE    */
 } move;
 
 /* clang-format off */
@@ -213,6 +220,14 @@ int keywords_print(const char *name, FILE *out);
  * ERR_DECK if a value is not finite (the record names card, node and time). */
 status load_forces(const model *m, const mesh *msh, const step *s, double t,
                    double *F);
+/* Value of a load at a node and total time t of the step. */
+double load_at_node(const load *l, const mesh *msh, const step *s, int node,
+                    double t);
+/* 1 if that is finite at the nodes of its group; else the log has the first
+ * node where it is not. */
+int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
+                double t);
+
 /* Prescribed displacements ud[dim*n_node] at t, written where fixed; errors
  * as load_forces. */
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,

@@ -6,13 +6,8 @@
 
 #include "base/memory.h"
 
+#include <stdio.h>
 #include <string.h>
-
-/* A list of names for the search and for "did you mean". */
-typedef struct names {
-  const model *m;
-  const char *(*next)(const void *m, int i);
-} names;
 
 static const char *amplitude_at(const void *ctx, int i) {
   const model *m = ctx;
@@ -33,60 +28,95 @@ static const char *obstacle_at(const void *ctx, int i) {
 static int find_name(const model *m, const char *name, const char *title,
                      const char *(*next)(const void *, int), const place *at) {
   const char *candidate;
+  char text[80];
   for (int i = 0; (candidate = next(m, i)) != NULL; ++i)
     if (same_word(candidate, name)) return i;
-  const char *near = nearest_word(name, next, m);
-  if (near != NULL)
-    message_add(m->log, P2012, at, "there is no *%s, NAME=%s; did you mean %s?",
-                title, name, near);
-  else
-    message_add(m->log, P2012, at, "there is no *%s, NAME=%s", title, name);
+  snprintf(text, sizeof text, "there is no *%s, NAME=", title);
+  unknown_word(m->log, P2012, at, text, name, next, m);
   return -1;
 }
 
-static void resolve_materials(model *m) {
+int find_amplitude(const model *m, const char *name, const place *at) {
+  int i = find_name(m, name, "AMPLITUDE", amplitude_at, at);
+  if (i >= 0) m->amplitudes[i].used = 1;
+  return i;
+}
+
+static void resolve_materials(model *m, int lost) {
   for (int i = 0; i < m->n_section; ++i) {
     section *s = &m->sections[i];
     if (s->material_name[0] == '\0') continue;
-    s->material_id =
-        find_name(m, s->material_name, "MATERIAL", material_at, &s->at);
+    s->material_id = find_name(m, s->material_name, "MATERIAL", material_at,
+                               &s->material_at);
+    if (s->material_id >= 0) m->materials[s->material_id].used = 1;
   }
   for (int i = 0; i < m->n_material; ++i)
-    if (m->materials[i].n_constant == 0)
+    if (!m->materials[i].has_elastic && !lost)
       message_add(m->log, P2014, &m->materials[i].at,
-                  "material %s has no *ELASTIC card, or one with errors",
-                  m->materials[i].name);
+                  "material %s has no *ELASTIC card", m->materials[i].name);
+}
+
+static void resolve_friction(model *m, contact *c) {
+  /* The array of contacts has reached its place: point into it now. */
+  if (c->friction.value.factor != NULL) c->friction.value.factor = &c->position;
+  if (c->amplitude_name == NULL) return;
+  int a = find_amplitude(m, c->amplitude_name, &c->amplitude_at);
+  if (a < 0) return;
+  if (c->friction.value.factor != NULL)
+    message_add(m->log, P2033, &c->amplitude_at,
+                "*FRICTION: TABLE= and AMPLITUDE= exclude each other");
+  if (c->law->value_name == NULL)
+    message_add(m->log, P2037, &c->amplitude_at,
+                "*FRICTION, LAW=%s has no value for AMPLITUDE=", c->law->name);
+  c->friction.value.factor = &m->amplitudes[a].table;
 }
 
 static void resolve_contacts(model *m) {
   for (int i = 0; i < m->n_contact; ++i) {
     contact *c = &m->contacts[i];
-    if (c->obstacle_name[0] != '\0')
-      c->obstacle_id =
-          find_name(m, c->obstacle_name, "OBSTACLE", obstacle_at, &c->at);
-    if (c->obstacle_normal < 0)
-      c->obstacle_normal = c->obstacle_id >= 0 &&
-                           m->obstacles[c->obstacle_id].shape == OBSTACLE_PLANE;
-    /* The array of contacts has reached its place: point into it now. */
-    if (c->friction.value.factor != NULL)
-      c->friction.value.factor = &c->position;
-    if (c->amplitude_name == NULL) continue;
-    int a = find_name(m, c->amplitude_name, "AMPLITUDE", amplitude_at,
-                      &c->friction_at);
-    if (a < 0) continue;
-    if (c->friction.value.factor != NULL)
-      message_add(m->log, P2033, &c->friction_at,
-                  "*FRICTION: TABLE= and AMPLITUDE= exclude each other");
-    c->friction.value.factor = &m->amplitudes[a].table;
+    resolve_friction(m, c);
+    if (c->obstacle_name[0] == '\0') continue;
+    c->obstacle_id = find_name(m, c->obstacle_name, "OBSTACLE", obstacle_at,
+                               &c->obstacle_at);
+    if (c->obstacle_id < 0) continue;
+    m->moves[c->obstacle_id].used = 1;
+    int shape = m->obstacles[c->obstacle_id].shape;
+    if (c->obstacle_normal < 0) c->obstacle_normal = shape == OBSTACLE_PLANE;
+    if (c->obstacle_normal &&
+        (shape == OBSTACLE_CONFORMING || shape == OBSTACLE_GAP))
+      message_add(m->log, P2004, &c->at,
+                  "*CONTACT, NORMAL=OBSTACLE: obstacle %s has no normal of its "
+                  "own; a plane, cylinder or sphere has",
+                  c->obstacle_name);
   }
+}
+
+static void resolve_moves(model *m) {
   for (int i = 0; i < m->n_obstacle; ++i) {
     if (m->moves[i].amplitude_name == NULL) continue;
-    int a = find_name(m, m->moves[i].amplitude_name, "AMPLITUDE", amplitude_at,
-                      &m->moves[i].at);
+    int a = find_amplitude(m, m->moves[i].amplitude_name,
+                           &m->moves[i].amplitude_at);
     if (a < 0) continue;
     for (int k = 0; k < 3; ++k)
       m->obstacles[i].motion[k].factor = &m->amplitudes[a].table;
   }
+}
+
+/* A name that nothing refers to is often a misspelled reference. */
+static void warn_unused(const model *m) {
+  static const char text[] = "*%s, NAME=%s is never used";
+  for (int i = 0; i < m->n_amplitude; ++i)
+    if (!m->amplitudes[i].used)
+      message_add(m->log, P2036, &m->amplitudes[i].at, text, "AMPLITUDE",
+                  m->amplitudes[i].name);
+  for (int i = 0; i < m->n_material; ++i)
+    if (!m->materials[i].used)
+      message_add(m->log, P2036, &m->materials[i].at, text, "MATERIAL",
+                  m->materials[i].name);
+  for (int i = 0; i < m->n_obstacle; ++i)
+    if (!m->moves[i].used)
+      message_add(m->log, P2036, &m->moves[i].at, text, "OBSTACLE",
+                  m->obstacles[i].name);
 }
 
 static double step_end(const step *s) { return s->start + s->total; }
@@ -101,8 +131,7 @@ static int same_load(const load *a, const load *b) {
 static void start_load(const model *m, const step *s, load *l) {
   l->run = RUN_RAMP;
   if (l->amplitude_name != NULL) {
-    l->amplitude_id =
-        find_name(m, l->amplitude_name, "AMPLITUDE", amplitude_at, &l->at);
+    l->amplitude_id = find_amplitude(m, l->amplitude_name, &l->amplitude_at);
     if (l->amplitude_id < 0) return;
     const amplitude *a = &m->amplitudes[l->amplitude_id];
     l->value.factor = &a->table;
@@ -173,14 +202,25 @@ done:
   return st;
 }
 
+static int same_value(const load *a, const load *b) {
+  return a->value.formula == NULL && b->value.formula == NULL &&
+         a->value.number == b->value.number &&
+         a->amplitude_name == b->amplitude_name;
+}
+
 /* Within one step the last card that says the same thing counts. */
-static void drop_repeated(load_list *own) {
+static void drop_repeated(const model *m, load_list *own) {
   int n = 0;
   for (int i = 0; i < own->n; ++i) {
     int later = 0;
-    for (int k = i + 1; k < own->n; ++k)
-      later |= same_load(&own->item[i], &own->item[k]);
-    if (!later) own->item[n++] = own->item[i];
+    for (int k = i + 1; k < own->n && later == 0; ++k)
+      if (same_load(&own->item[i], &own->item[k])) later = k;
+    if (later > 0 && !same_value(&own->item[i], &own->item[later]))
+      message_add(m->log, P2040, &own->item[i].at,
+                  "line %d of the same step gives group %s another value, "
+                  "which counts",
+                  own->item[later].at.line_no, own->item[i].group);
+    if (later == 0) own->item[n++] = own->item[i];
   }
   own->n = n;
 }
@@ -188,7 +228,7 @@ static void drop_repeated(load_list *own) {
 static status resolve_loads(model *m, const step *old, step *s) {
   status st = OK;
   load_list all = {0};
-  drop_repeated(&s->loads);
+  drop_repeated(m, &s->loads);
   for (int i = 0; i < s->loads.n; ++i) start_load(m, s, &s->loads.item[i]);
   TRY(carry_loads(m, old, s, &all));
   TRY(append_loads(&all, &s->loads));
@@ -219,10 +259,11 @@ done:
   return st;
 }
 
-status model_resolve(model *m) {
+status model_resolve(model *m, int lost) {
   status st = OK;
-  resolve_materials(m);
+  resolve_materials(m, lost);
   resolve_contacts(m);
+  resolve_moves(m);
   step before = {.solver = default_solver,
                  .loads = m->supports,
                  .condensed_frequency = -1};
@@ -236,6 +277,7 @@ status model_resolve(model *m) {
     TRY(carry_choices(old, s));
     old = s;
   }
+  if (!lost && message_count(m->log, ERROR) == 0) warn_unused(m);
 done:
   return st;
 }
