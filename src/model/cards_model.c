@@ -54,7 +54,7 @@ status apply_condensed_problem(reading *r) {
     goto done;
   }
   m->has_problem = 1;
-  m->problem_at = r->card->at;
+  m->problem_at = *value_place(r, "FILE");
   m->problem_type = card_parameter(r->card, "TYPE") == NULL ? -1 : p->type;
   const parameter *file = card_parameter(r->card, "FILE");
   if (file == NULL || !file->has_value) goto done;
