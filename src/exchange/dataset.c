@@ -11,6 +11,7 @@
 #include <string.h>
 
 static const long MOST_ITEMS = 1L << 30;
+enum { MOST_BYTES = 16 }; /* of one number                                    */
 
 /* Every group on the way must be there before the library is asked. */
 int source_has(const hdf5_source *s, const char *name) {
@@ -48,6 +49,10 @@ static status open_set(const hdf5_source *s, const char *name, int optional,
   if (kind != H5T_INTEGER && !(real && kind == H5T_FLOAT))
     FAIL(ERR_DECK, "%s: %s does not hold %s", s->path, name,
          real ? "real numbers" : "integers");
+  /* The library makes buffers of the size that a damaged type claims. */
+  if (H5Tget_size(type) > MOST_BYTES)
+    FAIL(ERR_DECK, "%s: %s has numbers of %zu bytes", s->path, name,
+         H5Tget_size(type));
   space = H5Dget_space(*set);
   hssize_t items = H5Sget_simple_extent_npoints(space);
   if (items < 0 || items > MOST_ITEMS)

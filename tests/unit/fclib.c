@@ -1,0 +1,155 @@
+/* src/output/fclib.c: what stands in the file, what is refused. */
+#include "base/memory.h"
+#include "exchange/exchange.h"
+#include "output/writers.h"
+#include "support/contact_case.h"
+#include "support/fclib_file.h"
+#include "support/made_up.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static char folder[64], path[128];
+
+static void enter(void) {
+  folder_new(folder);
+  snprintf(path, sizeof path, "%s/out.h5", folder);
+}
+
+static void leave(void) { folder_remove(folder); }
+
+/* One node: A = diag(4, 2), W = diag(1/4, 1/2). */
+static contact_case one_node(void) {
+  contact_case c = case_new(2, 1, 0.3);
+  c.A[0] = 4.0;
+  c.A[3] = 2.0;
+  c.f[0] = 8.0;
+  c.f[1] = 3.0;
+  c.gap[0] = 0.5;
+  c.ut0[0] = 0.25;
+  c.u[0] = 0.5;
+  c.u[1] = 0.75;
+  c.r[0] = -6.0;
+  c.r[1] = -1.5;
+  return c;
+}
+
+static void expect(const char *name, int n, const double *value) {
+  int items;
+  double *x = fclib_take(path, name, &items);
+  ck_assert_msg(x != NULL, "%s is missing", name);
+  ck_assert_int_eq(items, n);
+  for (int k = 0; k < n; ++k)
+    ck_assert_msg(fabs(x[k] - value[k]) <= 1e-15, "%s[%d] = %g", name, k, x[k]);
+  free(x);
+}
+
+#define EXPECT(name, ...)                                             \
+  expect(name, (int)(sizeof(double[]){__VA_ARGS__} / sizeof(double)), \
+         (double[]){__VA_ARGS__})
+
+/* u_n = W_n (8 + r_n): gap left 0.5 - 2 = -1.5 without force. */
+START_TEST(signs_are_those_of_the_layout) {
+  enter();
+  contact_case c = one_node();
+  ck_assert_int_eq(fclib_write(&c.cp, c.u, c.r, "title", "about", path), OK);
+  EXPECT("/fclib_local/spacedim", 2);
+  EXPECT("/fclib_local/W/nz", -2);
+  EXPECT("/fclib_local/W/m", 2);
+  EXPECT("/fclib_local/W/p", 0, 2, 4);
+  EXPECT("/fclib_local/W/i", 0, 1, 0, 1);
+  EXPECT("/fclib_local/W/x", 0.25, 0, 0, 0.5);
+  EXPECT("/fclib_local/vectors/q", -1.5, 1.25);
+  EXPECT("/fclib_local/vectors/mu", 0.3);
+  EXPECT("/solution/u", 0, 0.5);
+  EXPECT("/solution/r", 6, -1.5);
+  case_free(&c);
+  leave();
+}
+END_TEST
+
+/* Nothing but contact holds the normal direction: no inverse. */
+START_TEST(singular_stiffness_is_written_as_global) {
+  enter();
+  contact_case c = one_node();
+  c.A[0] = 0.0;
+  c.cp.floating = 1;
+  ck_assert_int_eq(fclib_write(&c.cp, NULL, NULL, "", "", path), OK);
+  EXPECT("/fclib_global/M/nz", 4);
+  EXPECT("/fclib_global/M/x", 0, 0, 0, 2);
+  EXPECT("/fclib_global/H/p", 0, 1);
+  EXPECT("/fclib_global/H/x", -1, 1);
+  EXPECT("/fclib_global/vectors/f", 8, 3);
+  EXPECT("/fclib_global/vectors/w", 0.5, -0.25);
+  int n;
+  ck_assert_ptr_null(fclib_take(path, "/solution/u", &n));
+  message_log *log;
+  exchange_problem *p;
+  const place at = {.file = "a.inp", .line_no = 1};
+  ck_assert_int_eq(message_log_new(&log), OK);
+  ck_assert_int_eq(exchange_read(path, EXCHANGE_FCLIB, &at, log, &p), OK);
+  ck_assert_int_eq(p->cp.floating, 1);
+  ck_assert_mem_eq(p->cp.A, c.A, 4 * sizeof *c.A);
+  ck_assert_mem_eq(p->cp.f, c.f, 2 * sizeof *c.f);
+  ck_assert_double_eq(p->cp.gap[0], 0.5);
+  ck_assert_double_eq(p->cp.ut0[0], 0.25);
+  exchange_free(p);
+  message_log_free(log);
+  case_free(&c);
+  leave();
+}
+END_TEST
+
+/* No file is left, not even the one aside. */
+START_TEST(problems_without_a_place_are_refused) {
+  enter();
+  for (int k = 0; k < 3; ++k) {
+    contact_case c = case_new(2, 2, 0.3);
+    for (int i = 0; i < 4; ++i) c.A[5 * i] = 1.0;
+    if (k == 0) c.g0[1] = 1.0;
+    if (k == 1) c.B->col[0] = 1;
+    double side[2] = {HUGE_VAL, 1.0};
+    if (k == 2) c.cp.side_gap = side;
+    ck_assert_int_eq(fclib_write(&c.cp, NULL, NULL, "", "", path), ERR_DECK);
+    ck_assert_ptr_nonnull(strstr(status_message(), "CONDENSED=FCLIB"));
+    ck_assert_ptr_null(folder_file(folder, "out.h5.tmp", &(size_t){0}));
+    case_free(&c);
+  }
+  contact_case c = one_node();
+  ck_assert_int_eq(fclib_write(&c.cp, NULL, NULL, "", "", "/nowhere/at/all.h5"),
+                   ERR_FILE);
+  ck_assert_ptr_nonnull(strstr(status_message(), "/nowhere/at/all.h5"));
+  case_free(&c);
+  leave();
+}
+END_TEST
+
+START_TEST(every_refused_request_is_reported) {
+  enter();
+  for (int floating = 0; floating <= 1; ++floating) {
+    contact_case c = one_node();
+    c.cp.floating = floating;
+    for (long k = 1;; ++k) {
+      size_t before = memory_in_use();
+      memory_refuse(k, 0);
+      status st = fclib_write(&c.cp, c.u, c.r, "", "", path);
+      memory_refuse(0, 0);
+      ck_assert_uint_eq(memory_in_use(), before);
+      if (st == OK) {
+        ck_assert_int_gt(k, 4);
+        break;
+      }
+      ck_assert_int_eq(st, ERR_MEMORY);
+    }
+    case_free(&c);
+  }
+  leave();
+}
+END_TEST
+
+UNIT_MAIN("fclib", signs_are_those_of_the_layout,
+          singular_stiffness_is_written_as_global,
+          problems_without_a_place_are_refused,
+          every_refused_request_is_reported)
