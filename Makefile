@@ -8,7 +8,7 @@ out   := build/$(BUILD)
 Q     := $(if $(filter 1,$(V)),,@)
 
 packages := gcc make pkg-config libsuitesparse-dev libopenblas-dev \
-            liblapacke-dev libhdf5-dev libgmsh-dev check numdiff gnuplot-nox
+            liblapacke-dev libhdf5-dev libgmsh-dev check gnuplot-nox
 pc       := hdf5-serial check
 
 # Packages first: the variables below ask pkg-config.
