@@ -120,6 +120,31 @@ static int unknown_option(const char *given) {
   return 2;
 }
 
+/* What is asked without a job: the exit code. */
+static int answer(int what, const char *value, const char *given,
+                  const char *next) {
+  switch (what) {
+    case ASK_HELP:
+      print_help();
+      return 0;
+    case ASK_VERSION:
+      inform_version();
+      return 0;
+    case ASK_KEYWORDS:
+      return print_keywords(next);
+    case ASK_LIST:
+      return print_list(value);
+    case ASK_EXPLAIN:
+      return print_explain(next);
+    case ASK_RESTART:
+      return wrong("--restart is not available in this version", "");
+    case ':':
+      return wrong("a value is missing after ", given);
+    default:
+      return unknown_option(given);
+  }
+}
+
 /* Option "what" as it was given; -1: go on, else the exit code. */
 static int take_option(int what, const char *value, const char *given,
                        const char *next, command *c) {
@@ -137,34 +162,16 @@ static int take_option(int what, const char *value, const char *given,
       c->check_only = 1;
       return -1;
     case ASK_THREADS:
-      return read_threads(value, c)
-                 ? -1
-                 : wrong("--threads needs a number from 1 to 1024, not ",
-                         value);
-    case ASK_RESTART:
-      return wrong("--restart is not available in this version", "");
+      if (read_threads(value, c)) return -1;
+      return wrong("--threads needs a number from 1 to 1024, not ", value);
     case ASK_QUIET:
       c->quiet = 1;
       return -1;
     case ASK_NO_TIMING:
       c->no_timing = 1;
       return -1;
-    case ASK_HELP:
-      print_help();
-      return 0;
-    case ASK_VERSION:
-      inform_version();
-      return 0;
-    case ASK_KEYWORDS:
-      return print_keywords(next);
-    case ASK_LIST:
-      return print_list(value);
-    case ASK_EXPLAIN:
-      return print_explain(next);
-    case ':':
-      return wrong("a value is missing after ", given);
     default:
-      return unknown_option(given);
+      return answer(what, value, given, next);
   }
 }
 

@@ -159,33 +159,40 @@ static void read_line_amplitude(const field *f, load *l) {
   l->amplitude_at = f->at;
 }
 
+static const char boundary_line[] =
+    "group, first dof [, last dof [, value [, amplitude]]]";
+
+/* The numbers of one line of *BOUNDARY; 0 if fine. */
+static int read_fixing(const reading *r, const record *line, int *first,
+                       int *last, quantity *value) {
+  const field *f = line->fields;
+  if (record_fields(r, line, 2, 5, boundary_line) != 0) return -1;
+  if (field_int(r, &f[1], 1, 3, "first dof", first) != 0) return -1;
+  *last = *first;
+  if (line->n_field > 2 && f[2].text[0] != '\0' &&
+      field_int(r, &f[2], *first, 3, "last dof", last) != 0)
+    return -1;
+  if (line->n_field > 3 && f[3].text[0] != '\0' &&
+      field_quantity(r, &f[3], value) != 0)
+    return -1;
+  if (r->in_step || (value->formula == NULL && value->number == 0.0)) return 0;
+  message_add(r->m->log, P2010, &f[3].at,
+              "*BOUNDARY before the first step holds at zero; prescribe a "
+              "displacement in a step");
+  return -1;
+}
+
 status apply_boundary(reading *r) {
   status st = OK;
   const card *c = r->card;
   load_list *list = r->in_step ? &open_step(r)->loads : &r->m->supports;
-  static const char expected[] =
-      "group, first dof [, last dof [, value [, amplitude]]]";
-  renew(r, 1u << LOAD_FIXING, expected);
+  renew(r, 1u << LOAD_FIXING, boundary_line);
   for (int i = 0; i < c->n_record; ++i) {
     const record *line = &c->records[i];
     const field *f = line->fields;
     int first, last;
     quantity value = {0};
-    if (record_fields(r, line, 2, 5, expected) != 0) continue;
-    if (field_int(r, &f[1], 1, 3, "first dof", &first) != 0) continue;
-    last = first;
-    if (line->n_field > 2 && f[2].text[0] != '\0' &&
-        field_int(r, &f[2], first, 3, "last dof", &last) != 0)
-      continue;
-    if (line->n_field > 3 && f[3].text[0] != '\0' &&
-        field_quantity(r, &f[3], &value) != 0)
-      continue;
-    if (!r->in_step && (value.formula != NULL || value.number != 0.0)) {
-      message_add(r->m->log, P2010, &f[3].at,
-                  "*BOUNDARY before the first step holds at zero; prescribe "
-                  "a displacement in a step");
-      continue;
-    }
+    if (read_fixing(r, line, &first, &last, &value) != 0) continue;
     for (int k = first; k <= last; ++k) {
       load *l = new_load(r, list, LOAD_FIXING, &f[0]);
       if (l == NULL) FAIL(ERR_MEMORY, "memory exhausted: *BOUNDARY");

@@ -165,21 +165,24 @@ static void check_outside(const model *m, const mesh *msh, const load *l) {
   }
 }
 
-static void check_load(const model *m, const mesh *msh, load *l) {
+/* Id of the group a load acts on, or -1 and the error. */
+static int load_group(const model *m, const mesh *msh, const load *l) {
   switch ((load_kind)l->kind) {
     case LOAD_PRESSURE:
     case LOAD_TRACTION:
-      l->group_id = find_group_of(m, msh, l->group, msh->dim - 1, &l->at);
-      break;
+      return find_group_of(m, msh, l->group, msh->dim - 1, &l->at);
     case LOAD_BODY:
     case LOAD_GRAVITY:
-      l->group_id = find_group_of(m, msh, l->group, msh->dim, &l->at);
-      break;
+      return find_group_of(m, msh, l->group, msh->dim, &l->at);
     case LOAD_POINT:
     case LOAD_FIXING:
-      l->group_id = find_group(m, msh, l->group, &l->at);
       break;
   }
+  return find_group(m, msh, l->group, &l->at);
+}
+
+static void check_load(const model *m, const mesh *msh, load *l) {
+  l->group_id = load_group(m, msh, l);
   if (l->kind == LOAD_PRESSURE && l->group_id >= 0) check_outside(m, msh, l);
   if (l->component >= msh->dim)
     message_add(m->log, P2025, &l->at,

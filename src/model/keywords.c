@@ -103,7 +103,7 @@ static const option print_options[] = {
   OPTION_FLAG(print_param, totals, "TOTALS", "NO", "resultants per contact"),
   OPTION_FLAG(print_param, nodes, "NODES", "NO", "nodal displacements"),
   OPTION_FLAG(print_param, elements, "ELEMENTS", "NO", "strains and stresses"),
-  OPTION_FLAG(print_param, energy, "ENERGY", "NO", "energies and their balance"),
+  OPTION_FLAG(print_param, energy, "ENERGY", "NO", "energies, their balance"),
   OPTION_FLAG(print_param, reactions, "REACTIONS", "NO", "forces of supports"),
   OPTION_INT(print_param, frequency, "FREQUENCY", 0, 1000000000, "1", "-",
              "every n-th increment and the last; 0: the last only"),
