@@ -288,20 +288,21 @@ const solver_ops aitken_solver = {
   .name = "aitken",
   .reference = "CPR98, 3.3; Irons, Tuck 1969; Walker, Ni 2011",
   .help =
-    "Gauss-Seidel sweeps with Aitken's acceleration. The nodes are visited one\n"
-    "after the other, each solved exactly with the others held (closed form in\n"
-    "2-D, the true friction disc in 3-D, the sliding limit following the\n"
-    "pressure in the sweep). ACCELERATION=AITKEN extrapolates every sixth\n"
-    "sweep by the vector form of Irons and Tuck,\n"
-    "x+ = G - F (F.dF)/(dF.dF), F the change made by a sweep, dF its\n"
-    "difference from the one before, in the metric of the diagonal of A.\n"
-    "ACCELERATION=ANDERSON combines the last twelve sweeps after every sweep so\n"
-    "that the linearised change is least. A step after which the sweep moves\n"
-    "farther is taken back, so the safety of Gauss-Seidel is kept; there is no\n"
-    "factor to choose. Where plain sweeps cycle they are made forward and\n"
-    "backward in turn, then shortened. Costs one product with the matrix a\n"
-    "sweep. Choose it when the compliance alone is known or is singular, when\n"
-    "the direct methods fail, or for a few digits of a very large problem.",
+    "Gauss-Seidel sweeps with Aitken's acceleration. The nodes are visited\n"
+    "one after the other, each solved exactly with the others held (closed\n"
+    "form in 2-D, the true friction disc in 3-D, the sliding limit\n"
+    "following the pressure in the sweep). ACCELERATION=AITKEN extrapolates\n"
+    "every sixth sweep by the vector form of Irons and Tuck, x+ = G - F\n"
+    "(F.dF)/(dF.dF), F the change made by a sweep, dF its difference from\n"
+    "the one before, in the metric of the diagonal of A.\n"
+    "ACCELERATION=ANDERSON combines the last twelve sweeps after every\n"
+    "sweep so that the linearised change is least. A step after which the\n"
+    "sweep moves farther is taken back, so the safety of Gauss-Seidel is\n"
+    "kept; there is no factor to choose. Where plain sweeps cycle they are\n"
+    "made forward and backward in turn, then shortened. Costs one product\n"
+    "with the matrix a sweep. Choose it when the compliance alone is known\n"
+    "or is singular, when the direct methods fail, or for a few digits of a\n"
+    "very large problem.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
   .param_size = sizeof(aitken),
   .options = aitken_options,

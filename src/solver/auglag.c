@@ -63,6 +63,7 @@ enum {
 };
 static const double PROGRESS = 0.9;
 static const double RHO_NEWTON = 0x1p-2, RHO_UZAWA = 0x1p4; /* -, of diag A  */
+static const double START_TOL = 1e-3; /* -, of pressures for a first limit  */
 static const double DESCENT = 1e-4; /* -, share of the slope                 */
 static const double FLATTER = 0.5;  /* -, slope that ends a search           */
 static const double SPRING = 0x1p-36; /* -, of the diagonal                   */
@@ -78,8 +79,10 @@ typedef struct auglag_work {
   double *diagonal;      /* [m] of A, the mean in a tangent plane, N/m       */
   double *lambda, *z, *F, *y; /* [m] N; y = A u - f                          */
   double *du, *dy;      /* [m] step, A du                                   */
+  double *bonded;       /* [n] no limit                                     */
   double *e, *share;    /* [m] direction of slip, [n] g/|z|                 */
   double *K;            /* [m*m]                                            */
+  double power;         /* of two: power*A has a diagonal of order 1         */
   int *pivot, *free_id; /* [m]                                              */
   fixed_point *fixed;
   best_iterate best;
@@ -101,6 +104,7 @@ static void auglag_release(void *work) {
   memory_free(w->dy);
   memory_free(w->e);
   memory_free(w->share);
+  memory_free(w->bonded);
   memory_free(w->K);
   memory_free(w->pivot);
   memory_free(w->free_id);
@@ -140,12 +144,18 @@ static status auglag_setup(const contact_problem *cp, const void *par,
   NEW(w->dy, m);
   NEW(w->e, m);
   NEW(w->share, cp->n);
+  NEW(w->bonded, cp->n);
   NEW(w->K, m * m);
   NEW(w->pivot, m);
   NEW(w->free_id, m);
   TRY(fixed_point_new(cp->n, &w->fixed));
   TRY(best_iterate_new(cp->m, &w->best));
   take_diagonal(cp, w->diagonal);
+  double largest = 0.0;
+  int exponent = 0;
+  for (size_t i = 0; i < m; ++i) largest = fmax(largest, w->diagonal[i]);
+  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
+  w->power = ldexp(1.0, -exponent);
   *work = w;
   w = NULL;
 done:
@@ -183,11 +193,11 @@ static void tangent_force(run *s, int node_id) {
     if (w->part[dof] == IN_DISC) size += w->z[dof] * w->z[dof];
   size = sqrt(size);
   if (g > 0.0) now = size > g ? SLIP : STICK;
-  w->share[node_id] = now == SLIP ? g / size : 1.0;
+  w->share[node_id] = now == FREE ? 0.0 : now == SLIP ? g / size : 1.0;
   for (int dof = node_id * cp->dim + 1; dof < (node_id + 1) * cp->dim; ++dof) {
     if (w->part[dof] != IN_DISC) continue;
     double e = size > 0.0 ? w->z[dof] / size : 0.0;
-    w->F[dof] = now == FREE ? 0.0 : now == SLIP ? g * e : w->z[dof];
+    w->F[dof] = w->share[node_id] * w->z[dof];
     if (now == SLIP && e * w->e[dof] < 0.0) ++s->changes;
     w->e[dof] = e;
   }
@@ -364,7 +374,8 @@ static outcome newton_steps(run *s) {
 /* ---- Uzawa ----------------------------------------------------------------
  */
 
-/* Cholesky factor of A + F' rho; springs where nothing holds the body. */
+/* Cholesky factor of power (A + F' rho); springs where nothing holds the body.
+ */
 static int uzawa_factor(run *s) {
   const contact_problem *cp = s->cp;
   auglag_work *w = s->w;
@@ -379,6 +390,7 @@ static int uzawa_factor(run *s) {
       for (int b = dof; slips(s, dof) && b < end; ++b)
         column[b] += rho_of(s, dof) * turning(s, dof, b);
     }
+    for (size_t i = 0; i < m * m; ++i) w->K[i] *= w->power;
     s->singular = attempt;
     if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', cp->m, w->K, cp->m) == 0) {
       s->factored = 1;
@@ -442,12 +454,13 @@ static outcome minimise(run *s) {
     if (residual <= s->control->tol) return CONVERGED;
     if (s->steps >= s->limit) return STOPPED_ITERATIONS;
     defects(s, &multiplier, &balance);
-    if (k > 0 && (balance <= 0.01 * multiplier || k >= INNER_STEPS ||
+    if (k > 0 && (balance <= 0.01 * multiplier ||
                   balance <= 0.1 * s->control->tol * s->scale))
       return RUNNING;
+    if (k >= INNER_STEPS) return s->singular ? STOPPED_RAY : RUNNING;
     ++s->steps;
     if (!s->factored && !uzawa_factor(s)) return STOPPED_SINGULAR;
-    for (int i = 0; i < cp->m; ++i) w->du[i] = w->F[i] - w->y[i];
+    for (int i = 0; i < cp->m; ++i) w->du[i] = w->power * (w->F[i] - w->y[i]);
     LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', cp->m, 1, w->K, cp->m, w->du,
                         cp->m);
     contact_product(cp->m, cp->A, w->du, w->dy);
@@ -479,6 +492,27 @@ static outcome uzawa_steps(run *s) {
   return o;
 }
 
+/* u and r of the problem without slip: pressures for the first limit. */
+static void start_bonded(run *s) {
+  const contact_problem *cp = s->cp;
+  contact_problem bonded = *cp;
+  for (int i = 0; i < cp->n; ++i) {
+    if (contact_node_limit(cp, s->r, i) > 0.0) return;
+    s->w->bonded[i] = HUGE_VAL;
+  }
+  bonded.B = NULL;
+  bonded.g0 = s->w->bonded;
+  run start = *s;
+  solver_control coarse = *s->control;
+  coarse.tol = fmax(coarse.tol, START_TOL);
+  start.cp = &bonded;
+  start.control = &coarse;
+  s->w->best.residual = HUGE_VAL;
+  uzawa_steps(&start);
+  s->steps = start.steps;
+  solver_take_best(&s->w->best, cp->m, s->u, s->r);
+}
+
 static status auglag_solve(const contact_problem *cp, const void *par,
                            void *work, const solver_control *control, double *u,
                            double *r, solver_report *rep) {
@@ -503,6 +537,7 @@ static status auglag_solve(const contact_problem *cp, const void *par,
   rep->residual = w->best.residual;
   solver_take_best(&w->best, cp->m, u, r);
   if (!done_well && cp->B != NULL) {
+    start_bonded(&s);
     inner_solver self = {&auglag_solver, &uzawa, work};
     TRY(fixed_point_solve(w->fixed, cp, &self, control, u, r, rep));
     rep->iterations += s.steps;
@@ -516,17 +551,17 @@ const solver_ops auglag_solver = {
   .name = "auglag",
   .reference = "CPR98, 3.3; Alart, Curnier 1991",
   .help =
-    "Augmented Lagrangian of Alart and Curnier: the forces of contact are\n"
-    "F = P(lambda - rho (u - o)), P the projection on r_n <= 0 and on the disc\n"
-    "|r_t| <= g. VARIANT=NEWTON solves A u = f + F and lambda = F by the\n"
-    "generalised Newton method, the limit following the pressure, the step\n"
-    "shortened until the equations are met better; should it stop, the other\n"
-    "variant goes on. VARIANT=UZAWA minimises over u for fixed multipliers, a\n"
-    "convex problem solved by Newton's method with a search along the step,\n"
-    "then sets lambda to F; the limit is updated around it (CPR98, 2.3). rho\n"
-    "is a multiple of the diagonal of A and never asked for. A step costs one\n"
-    "dense factorisation. Choose it where NEWTON cycles, and UZAWA for a body\n"
-    "that contact alone holds.",
+    "Augmented Lagrangian of Alart and Curnier: the forces of contact are F\n"
+    "= P(lambda - rho (u - o)), P the projection on r_n <= 0 and on the\n"
+    "disc |r_t| <= g. VARIANT=NEWTON solves A u = f + F and lambda = F by\n"
+    "the generalised Newton method, the limit following the pressure, the\n"
+    "step shortened until the equations are met better; should it stop, the\n"
+    "other variant goes on. VARIANT=UZAWA minimises over u for fixed\n"
+    "multipliers, a convex problem solved by Newton's method with a search\n"
+    "along the step, then sets lambda to F; the limit is updated around it\n"
+    "(CPR98, 2.3). rho is a multiple of the diagonal of A and never asked\n"
+    "for. A step costs one dense factorisation. Choose it where NEWTON\n"
+    "cycles, and UZAWA for a body that contact alone holds.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              SOLVES_FLOATING,
   .param_size = sizeof(auglag),

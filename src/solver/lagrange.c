@@ -263,18 +263,18 @@ const solver_ops lagrange_solver = {
   .name = "lagrange",
   .reference = "CPR98, 3.3; Uzawa 1958; Nesterov 1983",
   .help =
-    "Lagrangian method (Uzawa): the forces of contact are multipliers, moved by\n"
-    "r <- P(r - rho D (u - o)), A u = f + r, with o the gap and the stick\n"
-    "position, D the inverse diagonal of the compliance and P the projection on\n"
-    "r_n <= 0 and the disc |r_t| <= g. The step rho comes from the largest\n"
-    "eigenvalue of the compliance and is checked at every step, so there is\n"
-    "nothing to choose. ACCELERATION=NESTEROV extrapolates the forces and\n"
-    "begins anew when the step turns; NONE is Uzawa's method as it was written.\n"
-    "The sliding limit is updated around it (CPR98, 2.3). Needs the compliance\n"
-    "(an inverse, once per matrix), so not for a body that contact alone holds.\n"
-    "One product a step, many steps: it is here for comparison and as the\n"
-    "method that cannot fail on a Tresca problem; PCG solves the same problem\n"
-    "in far fewer products.",
+    "Lagrangian method (Uzawa): the forces of contact are multipliers,\n"
+    "moved by r <- P(r - rho D (u - o)), A u = f + r, with o the gap and\n"
+    "the stick position, D the inverse diagonal of the compliance and P the\n"
+    "projection on r_n <= 0 and the disc |r_t| <= g. The step rho comes\n"
+    "from the largest eigenvalue of the compliance and is checked at every\n"
+    "step, so there is nothing to choose. ACCELERATION=NESTEROV\n"
+    "extrapolates the forces and begins anew when the step turns; NONE is\n"
+    "Uzawa's method as it was written. The sliding limit is updated around\n"
+    "it (CPR98, 2.3). Needs the compliance (an inverse, once per matrix),\n"
+    "so not for a body that contact alone holds. One product a step, many\n"
+    "steps: it is here for comparison and as the method that cannot fail on\n"
+    "a Tresca problem; PCG solves the same problem in far fewer products.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
   .param_size = sizeof(lagrange),
   .options = lagrange_options,

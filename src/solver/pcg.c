@@ -54,8 +54,8 @@ enum {
 };
 static const double PROGRESS = 0.9; /* a lower residual is lower by this */
 static const double ON_THE_RIM = 0x1p-20; /* -, of g: counts as |r_t| = g     */
-static const double ROUNDING = 0x1p-48;   /* -, of the terms of J */
-static const double ENOUGH = 0.1; /* -, of phi: the circle has turned  */
+static const double ROUNDING = 0x1p-48;   /* -, of the terms of J             */
+static const double ENOUGH = 0.1; /* -, of phi: the circle has turned         */
 
 typedef struct pcg_work {
   force_set *set;
@@ -343,6 +343,26 @@ static void let_go(run *s) {
       if (w->p[i * cp->dim + k] != 0.0) w->set->rim[i] = 0;
 }
 
+/* r and x to the minimum along -p, rho = phi.z. LEFT_SET: that lies outside;
+ * FLAT: there is no minimum. */
+typedef enum { INSIDE, LEFT_SET, FLAT } arrival;
+static arrival line_step(run *s, double rho) {
+  pcg_work *w = s->w;
+  int m = s->cp->m;
+  double bend = cblas_ddot(m, w->p, 1, w->v, 1), reach = longest(s, w->p, 0);
+  double a = bend > 0.0 ? rho / bend : 2.0 * reach;
+  if (!(a < HUGE_VAL)) return FLAT;
+  cblas_daxpy(m, -a, w->p, 1, s->r, 1);
+  cblas_daxpy(m, -a, w->v, 1, w->x, 1);
+  return a > reach ? LEFT_SET : INSIDE;
+}
+
+/* 1: nothing more to gain on this face, or (on circles) in this plane. */
+static int face_is_done(const run *s, double before) {
+  if (s->beta2 > s->phi2 || s->refreshed || s->steps >= s->limit) return 1;
+  return s->bent && s->phi2 <= ENOUGH * ENOUGH * before;
+}
+
 /* Conjugate gradients on the face until the set is left, the face is done, or
  * (on circles) the linearisation is used up. */
 static outcome phase(run *s) {
@@ -350,6 +370,7 @@ static outcome phase(run *s) {
   int m = s->cp->m;
   double before = s->phi2;
   outcome o = RUNNING;
+  arrival where;
   s->refreshed = 0;
   remember(s);
   precondition(s);
@@ -357,28 +378,18 @@ static outcome phase(run *s) {
   double rho = cblas_ddot(m, w->phi, 1, w->z, 1);
   for (;;) {
     curvature_product(s);
-    double bend = cblas_ddot(m, w->p, 1, w->v, 1), reach = longest(s, w->p, 0);
-    double a = bend > 0.0 ? rho / bend : HUGE_VAL;
-    if (isnan(bend) || isnan(rho)) return STOPPED_NAN;
-    if (!(a < HUGE_VAL) && !(reach < HUGE_VAL)) return STOPPED_SINGULAR;
-    if (!(a < HUGE_VAL)) a = 2.0 * reach;
-    cblas_daxpy(m, -a, w->p, 1, s->r, 1);
-    cblas_daxpy(m, -a, w->v, 1, w->x, 1);
-    if (a > reach) {
-      come_back(s);
-      return RUNNING;
-    }
+    where = line_step(s, rho);
+    if (where == FLAT) return isnan(rho) ? STOPPED_NAN : STOPPED_SINGULAR;
+    if (where == LEFT_SET) break;
     split(s);
     if (!s->bent && (o = judge(s)) != RUNNING) return o;
-    if (s->beta2 > s->phi2 || s->refreshed || s->steps >= s->limit ||
-        (s->bent && s->phi2 <= ENOUGH * ENOUGH * before))
-      break;
+    if (face_is_done(s, before)) break;
     precondition(s);
     double next = cblas_ddot(m, w->phi, 1, w->z, 1);
     for (int i = 0; i < m; ++i) w->p[i] = w->z[i] + next / rho * w->p[i];
     rho = next;
   }
-  if (s->bent) come_back(s);
+  if (s->bent || where == LEFT_SET) come_back(s);
   return RUNNING;
 }
 
@@ -393,11 +404,16 @@ static outcome phases(run *s) {
   while ((o = judge(s)) == RUNNING) {
     directions(s);
     split(s);
-    if (s->beta2 > s->phi2) {
+    if (!(s->phi2 > 0.0) && !(s->beta2 > 0.0)) {
+      if (s->refreshed) return STOPPED_STAGNATION;
+      refresh(s);
+      s->refreshed = 1;
+    } else if (s->beta2 > s->phi2) {
+      s->refreshed = 0;
       let_go(s);
-      continue;
+    } else if ((o = phase(s)) != RUNNING) {
+      return o;
     }
-    if ((o = phase(s)) != RUNNING) return o;
   }
   return o;
 }
@@ -430,18 +446,19 @@ const solver_ops pcg_solver = {
   .name = "pcg",
   .reference = "CPR98, 3.3; Dostal 2009 (MPRGP); Kucera 2008",
   .help =
-    "Projected conjugate gradients, preconditioned, on the forces of contact\n"
-    "(compliance form): minimise 1/2 r'Wr + (q - o)'r over r_n <= 0 and\n"
-    "|r_t| <= g, o the gap and the stick position. Conjugate gradients run on\n"
-    "the face of the active constraints; a step that leaves the set is\n"
-    "projected back, and when the gradient off the face outweighs the one\n"
-    "along it the constraints are let go (proportioning). In 3-D the true disc\n"
-    "is used and a slipping node turns along its rim. PRECONDITIONER=FACE\n"
-    "takes the block of the stiffness that belongs to the face, DIAGONAL the\n"
-    "diagonal. The sliding limit is updated around it (CPR98, 2.3). Needs the\n"
-    "compliance (an inverse, once per matrix), so not for a body that contact\n"
-    "alone holds. A step costs two products. Choose it for large problems with\n"
-    "many increments on one matrix and small friction.",
+    "Projected conjugate gradients, preconditioned, on the forces of\n"
+    "contact (compliance form): minimise 1/2 r'Wr + (q - o)'r over r_n <= 0\n"
+    "and |r_t| <= g, o the gap and the stick position. Conjugate gradients\n"
+    "run on the face of the active constraints; a step that leaves the set\n"
+    "is projected back, and when the gradient off the face outweighs the\n"
+    "one along it the constraints are let go (proportioning). In 3-D the\n"
+    "true disc is used and a slipping node turns along its rim.\n"
+    "PRECONDITIONER=FACE takes the block of the stiffness that belongs to\n"
+    "the face, DIAGONAL the diagonal. The sliding limit is updated around\n"
+    "it (CPR98, 2.3). Needs the compliance (an inverse, once per matrix),\n"
+    "so not for a body that contact alone holds. A step costs two products.\n"
+    "Choose it for large problems with many increments on one matrix and\n"
+    "small friction.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
   .param_size = sizeof(pcg),
   .options = pcg_options,

@@ -29,7 +29,6 @@ static const struct variant {
   const char *solver, *option, *value;
 } variants[] = {{"aitken", "ACCELERATION", "ANDERSON"},
                 {"pcg", "PRECONDITIONER", "DIAGONAL"},
-                {"lagrange", "ACCELERATION", "NONE"},
                 {"auglag", "VARIANT", "UZAWA"}};
 
 typedef struct block {
@@ -193,7 +192,7 @@ static void line(block *b, const solver_ops *ops, const struct variant *v,
     exit(EXIT_FAILURE);
   must(contact_solver_new(&choice, &s));
   solver_report first = run(b, s);
-  solver_report rep = run(b, s);
+  solver_report rep = first.cpu < 0.2 ? run(b, s) : first;
   printf("%-16s %dD %5d %4.1f %7.0e %7d %6d %9.4f %9.4f %9.1e %9.1e  %s\n",
          name, b->cp.dim, b->cp.m, mu, tol, rep.iterations, rep.limit_updates,
          first.cpu, rep.cpu, rep.residual, error_of(b),

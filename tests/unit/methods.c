@@ -1,0 +1,259 @@
+/* src/solver: the options of the rows. What every row must do with its
+ * defaults is tested in solver.c. */
+#include "base/memory.h"
+#include "solver/solver.h"
+#include "support/contact_case.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { PARAM_SIZE = 512 };
+
+typedef struct variant {
+  const char *solver, *option, *value;
+} variant;
+static const variant variants[] = {{"aitken", "ACCELERATION", "ANDERSON"},
+                                   {"aitken", "ACCELERATION", "NONE"},
+                                   {"pcg", "PRECONDITIONER", "DIAGONAL"},
+                                   {"lagrange", "ACCELERATION", "NONE"},
+                                   {"auglag", "VARIANT", "UZAWA"}};
+enum { VARIANTS = sizeof variants / sizeof *variants };
+
+static void set_param(const variant *v, double *param) {
+  const solver_ops *ops = solver_find(v->solver);
+  char why[160];
+  ck_assert_ptr_nonnull(ops);
+  ck_assert(ops->param_size <= PARAM_SIZE);
+  option_defaults(ops->options, param);
+  if (v->option == NULL) return;
+  const option *row = option_find(ops->options, v->option);
+  ck_assert_ptr_nonnull(row);
+  ck_assert_int_eq(option_read(row, v->value, param, why, sizeof why), 0);
+}
+
+/* Solve from zero. */
+static solver_report solve_by(const variant *v, contact_case *c, double tol) {
+  double param[PARAM_SIZE / sizeof(double)] = {0.0};
+  contact_solver *s = NULL;
+  solver_report rep;
+  set_param(v, param);
+  solver_choice choice = {
+      .ops = solver_find(v->solver), .param = param, .tol = tol};
+  memset(c->u, 0, (size_t)c->cp.m * sizeof *c->u);
+  memset(c->r, 0, (size_t)c->cp.m * sizeof *c->r);
+  ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+  ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
+  contact_solver_free(s);
+  return rep;
+}
+
+static const variant newton = {"newton", NULL, NULL};
+
+/* Every variant against Newton; returns how many problems were solved. */
+static void must_agree(contact_case *c, int k, int conditions) {
+  size_t m = (size_t)c->cp.m;
+  double *u = calloc(m, sizeof *u), size = 0.0;
+  ck_assert_int_eq(solve_by(&newton, c, 1e-12).outcome, CONVERGED);
+  memcpy(u, c->u, m * sizeof *u);
+  for (size_t j = 0; j < m; ++j) size = fmax(size, fabs(u[j]));
+  for (int i = 0; i < VARIANTS; ++i) {
+    const variant *v = &variants[i];
+    if (c->cp.floating && !(solver_find(v->solver)->handles & SOLVES_FLOATING))
+      continue;
+    solver_report rep = solve_by(v, c, 1e-11);
+    ck_assert_msg(rep.outcome == CONVERGED, "%s %s: problem %d: %s", v->solver,
+                  v->value, k, outcome_text(rep.outcome));
+    for (size_t j = 0; j < m; ++j)
+      ck_assert_msg(fabs(c->u[j] - u[j]) <= 1e-8 * size,
+                    "%s %s: problem %d: apart by %g", v->solver, v->value, k,
+                    fabs(c->u[j] - u[j]) / size);
+    if (conditions) ck_assert_double_lt(case_violation(c, c->u, c->r), 1e-9);
+  }
+  free(u);
+}
+
+START_TEST(variants_agree_on_random_problems) {
+  static const double mus[] = {0.0, 0.1, 0.3, 0.5};
+  for (int k = 0; k < 120; ++k) {
+    contact_case c = case_any(2 + k % 2, 1 + k % 17, mus[k / 2 % 4], k / 8 % 2,
+                              (unsigned long long)(900 + k));
+    must_agree(&c, k, 1);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Tresca friction, also where nothing pushes. */
+START_TEST(variants_agree_with_a_given_limit) {
+  for (int k = 0; k < 40; ++k) {
+    contact_case c = case_any(2 + k % 2, 1 + k % 11, 0.5, k / 2 % 2,
+                              (unsigned long long)(1300 + k));
+    for (int i = 0; i < c.cp.n; ++i) c.g0[i] = 0.1 * (i % 4);
+    c.cp.B = NULL;
+    must_agree(&c, k, 1);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* One tangent prescribed, one node in a corner. */
+START_TEST(variants_agree_on_held_and_cornered_nodes) {
+  for (int k = 0; k < 24; ++k) {
+    int dim = 2 + k % 2, n = 4 + k % 5, m = dim * n;
+    contact_case c = case_any(dim, n, 0.4, 0, (unsigned long long)(1500 + k));
+    unsigned char held[64] = {0};
+    double side[64];
+    int dof = dim + 1, corner = 2 * (dim - 1);
+    held[dof] = 1;
+    for (int j = 0; j < m; ++j)
+      if (j != dof) c.A[dof + m * j] = c.A[j + m * dof] = 0.0;
+    for (int j = 0; j < n * (dim - 1); ++j) side[j] = HUGE_VAL;
+    side[corner] = 0.02;
+    c.f[2 * dim + 1] = k % 4 < 2 ? 3.0 : -3.0;
+    c.g0[2] = c.B->val[2] = 0.0;
+    c.cp.held = held;
+    c.cp.side_gap = side;
+    must_agree(&c, k, 0);
+    ck_assert_double_eq_tol(c.u[dof], c.f[dof] / c.A[dof + m * dof], 1e-9);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Only the floor holds the block: the pressures add up to the load on it. */
+START_TEST(floating_block_is_held_by_its_floor) {
+  case_block_data d = {
+      .columns = 10, .layers = 6, .nu = 0.3, .mu = 0.5, .top = {0.02, -0.2}};
+  contact_case c = case_block(&d);
+  ck_assert(c.cp.floating);
+  must_agree(&c, 0, 1);
+  double push = 0.0;
+  for (int i = 0; i < c.cp.n; ++i) push -= c.r[2 * i];
+  ck_assert_double_eq_tol(push, 0.2 * d.columns, 1e-9);
+  case_free(&c);
+}
+END_TEST
+
+/* The compliance alone is known. */
+START_TEST(compliance_form_gives_the_same_forces) {
+  for (int k = 0; k < 12; ++k) {
+    contact_case c =
+        case_any(2 + k % 2, 8, 0.3, 0, (unsigned long long)(1700 + k));
+    size_t m = (size_t)c.cp.m;
+    double *W = calloc(m * m, sizeof *W), *q = calloc(m, sizeof *q),
+           *r = calloc(m, sizeof *r);
+    ck_assert(case_inverse(c.cp.m, c.A, W));
+    ck_assert_int_eq(solve_by(&newton, &c, 1e-12).outcome, CONVERGED);
+    memcpy(r, c.r, m * sizeof *r);
+    contact_product(c.cp.m, W, c.f, q);
+    c.cp.W = W;
+    c.cp.A = NULL;
+    c.cp.f = q;
+    for (int i = 0; i < VARIANTS; ++i) {
+      ck_assert_int_eq(solve_by(&variants[i], &c, 1e-11).outcome, CONVERGED);
+      for (size_t j = 0; j < m; ++j)
+        ck_assert_double_eq_tol(c.r[j], r[j], 1e-8);
+    }
+    free(W);
+    free(q);
+    free(r);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* What each acceleration is for. */
+START_TEST(accelerations_save_steps) {
+  static const variant pairs[][2] = {
+      {{"aitken", "ACCELERATION", "AITKEN"},
+       {"aitken", "ACCELERATION", "NONE"}},
+      {{"aitken", "ACCELERATION", "ANDERSON"},
+       {"aitken", "ACCELERATION", "AITKEN"}},
+      {{"pcg", "PRECONDITIONER", "FACE"},
+       {"pcg", "PRECONDITIONER", "DIAGONAL"}},
+      {{"lagrange", "ACCELERATION", "NESTEROV"},
+       {"lagrange", "ACCELERATION", "NONE"}},
+      {{"auglag", "VARIANT", "NEWTON"}, {"auglag", "VARIANT", "UZAWA"}}};
+  case_block_data d = {.columns = 64,
+                       .layers = 64,
+                       .clamped = 1,
+                       .nu = 0.3,
+                       .mu = 0.3,
+                       .top = {0.0, -0.1},
+                       .left = {0.05, -0.1}};
+  contact_case c = case_block(&d);
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i) {
+    solver_report fast = solve_by(&pairs[i][0], &c, 1e-8);
+    ck_assert_int_eq(fast.outcome, CONVERGED);
+    solver_report slow = solve_by(&pairs[i][1], &c, 1e-8);
+    ck_assert_int_eq(slow.outcome, CONVERGED);
+    ck_assert_msg(2 * fast.iterations <= slow.iterations, "%s %s: %d, %s: %d",
+                  pairs[i][0].solver, pairs[i][0].value, fast.iterations,
+                  pairs[i][1].value, slow.iterations);
+  }
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(variants_keep_their_bits_under_factors_of_two) {
+  static const int powers[][2] = {{41, 0}, {-33, 3}, {0, 13}, {7, -21}};
+  for (int k = 0; k < 16; ++k)
+    for (int i = 0; i < VARIANTS; ++i) {
+      contact_case c = case_any(2 + k % 2, 2 + k, k % 3 ? 0.4 : 0.0, k / 2 % 2,
+                                (unsigned long long)(1900 + k));
+      contact_case d = case_any(2 + k % 2, 2 + k, k % 3 ? 0.4 : 0.0, k / 2 % 2,
+                                (unsigned long long)(1900 + k));
+      int m = c.cp.m, n = c.cp.n, a = powers[k % 4][0], b = powers[k % 4][1];
+      for (int j = 0; j < m * m; ++j) d.A[j] = ldexp(c.A[j], a);
+      for (int j = 0; j < m; ++j) d.f[j] = ldexp(c.f[j], a + b);
+      for (int j = 0; j < n; ++j) d.gap[j] = ldexp(c.gap[j], b);
+      for (int j = 0; j < m - n; ++j) d.ut0[j] = ldexp(c.ut0[j], b);
+      solver_report one = solve_by(&variants[i], &c, 1e-9);
+      solver_report two = solve_by(&variants[i], &d, 1e-9);
+      ck_assert_int_eq(one.iterations, two.iterations);
+      for (int j = 0; j < m; ++j)
+        ck_assert_msg(d.u[j] == ldexp(c.u[j], b), "%s %s: problem %d",
+                      variants[i].solver, variants[i].value, k);
+      case_free(&c);
+      case_free(&d);
+    }
+}
+END_TEST
+
+START_TEST(refused_memory_is_given_back) {
+  for (int i = 0; i < VARIANTS; ++i)
+    for (int dim = 2; dim <= 3; ++dim) {
+      contact_case c = case_any(dim, 6, 0.3, 0, 2100);
+      double param[PARAM_SIZE / sizeof(double)] = {0.0};
+      set_param(&variants[i], param);
+      solver_choice choice = {
+          .ops = solver_find(variants[i].solver), .param = param, .tol = 1e-9};
+      size_t before = memory_in_use();
+      status st = ERR_MEMORY;
+      int k = 0;
+      for (k = 1; st == ERR_MEMORY && k < 1000; ++k) {
+        contact_solver *s = NULL;
+        solver_report rep;
+        memory_refuse(k, 0);
+        st = contact_solver_new(&choice, &s);
+        if (st == OK) st = contact_solve(s, &c.cp, NULL, c.u, c.r, &rep);
+        memory_refuse(0, 0);
+        contact_solver_free(s);
+        ck_assert(st == OK || st == ERR_MEMORY);
+        ck_assert_uint_eq(memory_in_use(), before);
+      }
+      ck_assert_int_eq(st, OK);
+      ck_assert_int_gt(k, 8);
+      case_free(&c);
+    }
+}
+END_TEST
+
+UNIT_MAIN("methods", variants_agree_on_random_problems,
+          variants_agree_with_a_given_limit,
+          variants_agree_on_held_and_cornered_nodes,
+          floating_block_is_held_by_its_floor,
+          compliance_form_gives_the_same_forces, accelerations_save_steps,
+          variants_keep_their_bits_under_factors_of_two,
+          refused_memory_is_given_back)
