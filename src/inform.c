@@ -113,9 +113,8 @@ static status print_motions(const model *m, const mesh *msh) {
   for (int i = 0; i < n; ++i) {
     printf("free      body %d, %s: %s\n", list[i].body_id + 1, list[i].text,
            held[list[i].held_by]);
-    int friction = (m->effects & EFFECT_FRICTION) != 0;
-    int free = list[i].held_by == HELD_BY_NOTHING ||
-               (list[i].held_by == HELD_BY_FRICTION && !friction);
+    int free;
+    TRY(history_unheld(m, msh, &list[i], &free));
     if (free && unheld < 0) unheld = i;
   }
   if (n == 0) puts("supports  hold every body");

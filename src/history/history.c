@@ -69,7 +69,7 @@ static state make_state(run *r, int attempt, int increment_no) {
   return s;
 }
 
-/* Outcomes that no smaller increment and no more iterations can mend. */
+/* Outcomes without an answer to go on with, once cutting has not helped. */
 static int is_fatal(outcome o) {
   return o == STOPPED_NAN || o == STOPPED_RAY || o == STOPPED_SINGULAR;
 }
@@ -132,7 +132,7 @@ static status run_increment(run *r, long n, long i, int *increment_no) {
     TRY(increment_solve(r, t));
     int settled = r->report.outcome > 0;
     int finer = s->kind == STEP_QUASISTATIC && level < DEEPEST_CUT &&
-                0.5 * (t - r->old.t) >= s->dt_min &&
+                ldexp(s->dt, -(level + 1)) >= s->dt_min &&
                 r->report.outcome != STOPPED_STAGNATION;
     if (!settled && finer) {
       TRY(reject(r, attempt, *increment_no + 1,

@@ -95,4 +95,8 @@ status condensed_run(const model *m, const exchange_problem *p,
 status history_motions(const model *m, const mesh *msh, int *n,
                        free_motion **list);
 
+/* 1 if neither supports nor contact nor friction on that body resist it. */
+status history_unheld(const model *m, const mesh *msh, const free_motion *f,
+                      int *unheld);
+
 #endif

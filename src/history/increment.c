@@ -55,6 +55,16 @@ static double held_value(const run *r, int i, int a) {
   return u;
 }
 
+/* 1 if the sliding limit of a node can be above zero. */
+static int can_stick(const run *r, int i) {
+  const sparse_rows *B = &r->limit.B;
+  if (r->limit.g0[i] > 0.0) return 1;
+  for (int e = B->start == NULL ? 0 : B->start[i];
+       B->start != NULL && e < B->start[i + 1]; ++e)
+    if (B->val[e] > 0.0) return 1;
+  return 0;
+}
+
 /*
  * Friction along t2 where t1 is made to move: the slip direction would depend
  * on the prescribed motion, which the condensed problem does not hold.
@@ -63,7 +73,7 @@ static status check_held(const run *r, int i, int a, double from, double to) {
   status st = OK;
   const contact_surface *s = r->surface;
   int other = s->dim == 3 ? 3 - a : a;
-  if (s->dim == 3 && from != to && !s->held[3 * i + other])
+  if (s->dim == 3 && from != to && !s->held[3 * i + other] && can_stick(r, i))
     FAIL(ERR_DECK,
          "contact node %zu: *BOUNDARY moves it in one tangential direction "
          "while friction acts in the other; prescribe both, or none",
@@ -130,7 +140,7 @@ static status load_at(run *r, double t) {
   status st = OK;
   timer_enter(STAGE_LOAD);
   st = load_forces(r->m, r->msh, r->step, t, r->now.F);
-  if (st == OK) st = load_prescribed(r->m, r->msh, r->step, t, r->ud);
+  if (st == OK) st = load_prescribed(r->m, r->msh, r->step, t, r->start, r->ud);
   timer_leave(STAGE_LOAD);
   return st;
 }

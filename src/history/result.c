@@ -38,22 +38,46 @@ static void find_contact(run *r) {
   contact_classify(&r->cp, r->now.uc, r->now.rc, r->contact);
 }
 
-static void add_node_to_total(const run *r, int i, contact_total *t) {
+/* The *CONTACT whose force row a of a node is: at a corner the side rows are
+ * the normal forces of other obstacles. */
+static int row_contact(const contact_surface *s, int i, int a) {
+  int side = a == 0 ? -1 : s->side_id[(s->dim - 1) * i + a - 1];
+  return side >= 0 ? side : s->contact_id[i];
+}
+
+/* Force and moment of one row of a contact node. */
+static void add_row(const run *r, int i, int a, contact_total *t) {
   const contact_surface *s = r->surface;
   int dim = s->dim;
   double force[3] = {0.0, 0.0, 0.0}, x[3] = {0.0, 0.0, 0.0};
   for (int c = 0; c < dim; ++c) {
     x[c] = s->x[dim * i + c];
-    for (int a = 0; a < dim; ++a)
-      force[c] +=
-          s->frame[dim * dim * i + dim * a + c] * r->now.rc[dim * i + a];
+    force[c] = s->frame[dim * dim * i + dim * a + c] * r->now.rc[dim * i + a];
     t->force[c] += force[c];
   }
   t->moment[0] += x[1] * force[2] - x[2] * force[1];
   t->moment[1] += x[2] * force[0] - x[0] * force[2];
   t->moment[2] += x[0] * force[1] - x[1] * force[0];
-  t->normal += r->now.rc[dim * i];
-  for (int a = 1; a < dim; ++a) t->tangential[a - 1] += r->now.rc[dim * i + a];
+}
+
+static void add_node(const run *r, int i) {
+  const contact_surface *s = r->surface;
+  int dim = s->dim;
+  for (int a = 0; a < dim; ++a) {
+    contact_total *t = &r->totals[row_contact(s, i, a)];
+    double rc = r->now.rc[dim * i + a];
+    int side = a > 0 && s->side_id[(dim - 1) * i + a - 1] >= 0;
+    add_row(r, i, a, t);
+    if (a == 0 || side)
+      t->normal += rc;
+    else
+      t->tangential[a - 1] += rc;
+    if (side) {
+      t->n_open += rc == 0.0;
+      t->n_slip += rc != 0.0;
+    }
+  }
+  contact_total *t = &r->totals[s->contact_id[i]];
   t->n_open += r->contact[i] == CONTACT_OPEN;
   t->n_slip += r->contact[i] == CONTACT_SLIP;
   t->n_stick += r->contact[i] == CONTACT_STICK;
@@ -62,8 +86,7 @@ static void add_node_to_total(const run *r, int i, contact_total *t) {
 
 static void find_totals(run *r) {
   memset(r->totals, 0, (size_t)r->m->n_contact * sizeof *r->totals);
-  for (int i = 0; i < r->n; ++i)
-    add_node_to_total(r, i, &r->totals[r->surface->contact_id[i]]);
+  for (int i = 0; i < r->n; ++i) add_node(r, i);
 }
 
 /*

@@ -49,7 +49,8 @@ typedef struct run {
   contact_problem cp;
 
   equilibrium old, now;
-  double *ud; /* [dim*n_node] prescribed displacements, m           */
+  double *start; /* [dim*n_node] displacements at the start of the step, m    */
+  double *ud;    /* [dim*n_node] prescribed displacements, m           */
   double *strain, *stress; /* [ns*n_elem] or NULL                             */
   double *open_gap, *slip, *g; /* [n], [n*(dim-1)], [n]                       */
   contact_status *contact; /* [n]                                            */

@@ -94,6 +94,7 @@ status run_new(run *r) {
   TRY(new_equilibrium(r, &r->old));
   TRY(new_equilibrium(r, &r->now));
   NEW(r->ud, r->n_dof);
+  NEW(r->start, r->n_dof);
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
   if (r->m->effects & (EFFECT_STRESS | EFFECT_REACTION))
     NEW(r->stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
@@ -139,6 +140,7 @@ void run_free(run *r) {
   memory_free(r->face_weight);
   memory_free(r->totals);
   memory_free(r->ud);
+  memory_free(r->start);
   memory_free(r->strain);
   memory_free(r->stress);
 }
@@ -206,6 +208,14 @@ static void forces_to_global(const run *r, double *force) {
             s->frame[dim * dim * i + dim * a + c] * r->old.rc[dim * i + a];
 }
 
+/* A node that supports take out of the contact leaves its force to them. */
+static void leave_forces(run *r, double *force) {
+  int dim = r->msh->dim;
+  for (int i = 0; i < r->n; ++i)
+    for (int c = 0; c < dim; ++c) force[dim * r->surface->node_id[i] + c] = 0.0;
+  for (size_t k = 0; k < r->n_dof; ++k) r->old.reaction[k] += force[k];
+}
+
 static status build_surface(run *r) {
   status st = OK;
   double *force = NULL;
@@ -221,6 +231,7 @@ static status build_surface(run *r) {
   r->n_c = r->msh->dim * r->n;
   TRY(new_contact_arrays(r));
   old_state_to_frames(r, force);
+  leave_forces(r, force);
   TRY(surface_gap(r->surface, &r->input, r->old.t, r->gap, r->side_gap,
                   r->old.motion));
 done:
@@ -236,11 +247,38 @@ static const char *body_name(const run *r, size_t elem_no) {
   return "?";
 }
 
-/* Nothing resists: no contact there, or tangential contact without friction. */
-static int is_unheld(const run *r, const free_motion *f) {
-  int friction = (r->m->effects & EFFECT_FRICTION) != 0;
-  return f->held_by == HELD_BY_NOTHING ||
-         (f->held_by == HELD_BY_FRICTION && !friction);
+/* 1 if a contact with friction acts on the body of an element. */
+static status has_body_friction(const model *m, const mesh *msh, int elem_id,
+                                int *answer) {
+  status st = OK;
+  int *body = NULL, n = 0;
+  *answer = 0;
+  NEW(body, msh->n_elem);
+  TRY(mesh_bodies(msh, &n, body));
+  for (int i = 0; i < m->n_contact; ++i) {
+    const contact *c = &m->contacts[i];
+    const mesh_group *g = &msh->group[c->group_id];
+    if (!contact_has_friction(c)) continue;
+    for (int k = 0; k < g->n_item; ++k)
+      *answer |= body[msh->face_elem[g->item_id[k]]] == body[elem_id];
+  }
+done:
+  memory_free(body);
+  return st;
+}
+
+status history_unheld(const model *m, const mesh *msh, const free_motion *f,
+                      int *unheld) {
+  status st = OK;
+  int friction = 0;
+  *unheld = f->held_by == HELD_BY_NOTHING;
+  if (f->held_by != HELD_BY_FRICTION) goto done;
+  for (int e = 0; e < msh->n_elem; ++e)
+    if (msh->elem_no[e] == f->elem_no)
+      TRY(has_body_friction(m, msh, e, &friction));
+  *unheld = !friction;
+done:
+  return st;
 }
 
 /* Bodies without enough supports are refused before anything is solved. */
@@ -249,8 +287,10 @@ static status check_supports(const run *r) {
   free_motion *list = NULL;
   int n = 0, unheld = 0;
   TRY(domain_free_motions(&r->d, &n, &list));
-  for (int i = 0; i < n; ++i)
-    if (is_unheld(r, &list[i])) {
+  for (int i = 0; i < n; ++i) {
+    int free;
+    TRY(history_unheld(r->m, r->msh, &list[i], &free));
+    if (free) {
       message_add(r->m->log, P4011, &r->step->at,
                   "step %d: body %d (%s, element %zu) is free to move: %s; "
                   "neither *BOUNDARY nor %s holds it",
@@ -260,6 +300,7 @@ static status check_supports(const run *r) {
                                                       : "contact");
       ++unheld;
     }
+  }
   if (unheld > 0)
     FAIL(ERR_SINGULAR, "step %d: a body is free to move",
          (int)(r->step - r->m->steps) + 1);
@@ -282,6 +323,7 @@ status run_prepare(run *r) {
   unsigned char *fixed = NULL;
   NEW(fixed, r->n_dof);
   load_fixed(r->m, r->msh, r->step, fixed);
+  memcpy(r->start, r->old.u, r->n_dof * sizeof *r->start);
   r->limit_known = 0;
   if (r->c == NULL || memcmp(fixed, r->fixed, r->n_dof) != 0) {
     memcpy(r->fixed, fixed, r->n_dof);

@@ -116,10 +116,24 @@ done:
   return st;
 }
 
+/* A group meets an obstacle once: twice would count its areas twice. */
+static void check_twice(const model *m, int contact_id) {
+  const contact *c = &m->contacts[contact_id];
+  for (int i = 0; i < contact_id; ++i)
+    if (c->group_id >= 0 && m->contacts[i].group_id == c->group_id &&
+        m->contacts[i].obstacle_id == c->obstacle_id) {
+      message_add(m->log, P2011, &c->group_at,
+                  "contact %s has the group and the obstacle of contact %s",
+                  c->name, m->contacts[i].name);
+      return;
+    }
+}
+
 static void check_contacts(model *m, const mesh *msh) {
   for (int i = 0; i < m->n_contact; ++i) {
     contact *c = &m->contacts[i];
     c->group_id = find_group_of(m, msh, c->group, msh->dim - 1, &c->group_at);
+    check_twice(m, i);
     if (c->obstacle_id < 0) continue;
     const obstacle *o = &m->obstacles[c->obstacle_id];
     int no_axis = o->direction[0] == 0.0 && o->direction[1] == 0.0 &&

@@ -12,8 +12,7 @@ const char *effect_name(int bit) {
   return names[bit];
 }
 
-/* A friction value that is zero everywhere and always is no friction. */
-static int has_friction(const contact *c) {
+int contact_has_friction(const contact *c) {
   if (c->law == NULL || c->law->value_name == NULL) return 0;
   const quantity *q = &c->friction.value;
   return q->formula != NULL || q->number != 0.0;
@@ -21,7 +20,7 @@ static int has_friction(const contact *c) {
 
 static const contact *first_friction(const model *m) {
   for (int i = 0; i < m->n_contact; ++i)
-    if (has_friction(&m->contacts[i])) return &m->contacts[i];
+    if (contact_has_friction(&m->contacts[i])) return &m->contacts[i];
   return NULL;
 }
 
@@ -56,6 +55,18 @@ static int has_history(const model *m) {
   return m->n_step == 1 && m->steps[0].dt < m->steps[0].total;
 }
 
+/* 1 if the step before holds the same component of the same group. */
+static int held_before(const model *m, int step_id, const load *l) {
+  if (step_id == 0) return 1;
+  const load_list *old = &m->steps[step_id - 1].loads;
+  for (int k = 0; k < old->n; ++k)
+    if (old->item[k].kind == LOAD_FIXING &&
+        old->item[k].component == l->component &&
+        old->item[k].group_id == l->group_id)
+      return 1;
+  return 0;
+}
+
 /* Reactions are computed when printed, or where a support does work: it moves,
  * or is taken away under load. */
 static const load *moving_support(const model *m) {
@@ -66,7 +77,7 @@ static const load *moving_support(const model *m) {
       int let_go = i + 1 < m->n_step &&
                    (m->steps[i + 1].renewed >> LOAD_FIXING & 1u) != 0;
       if (l->value.formula != NULL || l->value.number != 0.0 || l->has_before ||
-          let_go)
+          let_go || !held_before(m, i, l))
         return l;
     }
   return NULL;

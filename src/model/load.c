@@ -215,8 +215,14 @@ done:
   return st;
 }
 
+/* Share of the start that is left of a ramp without a value before. */
+static double start_share(const load *l, const step *s, double t) {
+  if (l->run != RUN_RAMP || l->has_before || t >= s->start + s->total) return 0;
+  return 1.0 - (t - s->start) / s->total;
+}
+
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
-                       double *ud) {
+                       const double *start, double *ud) {
   status st = OK;
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
@@ -226,6 +232,7 @@ status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
       size_t dof =
           (size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component;
       TRY(node_value(m, msh, l, s, t, g->node_id[k], &ud[dof]));
+      ud[dof] += start_share(l, s, t) * start[dof];
     }
   }
 done:

@@ -189,6 +189,8 @@ enum { EFFECT_LIST(EFFECT_BIT) EFFECT_COUNT };
 #define EFFECT_MASK(name, text) EFFECT_##name = 1 << EFFECT_BIT_##name,
 enum { EFFECT_LIST(EFFECT_MASK) EFFECT_ALL = (1 << EFFECT_COUNT) - 1 };
 const char *effect_name(int bit);
+/* A friction value that is zero everywhere and always is no friction. */
+int contact_has_friction(const contact *c);
 /* Which card or fact switched it on or off, into text; returns text. */
 const char *model_effect_reason(const model *m, int bit, char *text,
                                 size_t size);
@@ -229,9 +231,10 @@ int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
                 double t);
 
 /* Prescribed displacements ud[dim*n_node] at t, written where fixed; errors
- * as load_forces. */
+ * as load_forces. start[dim*n_node]: displacements at the start of the step,
+ * from where a component that is fixed anew is led to its value. */
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
-                       double *ud);
+                       const double *start, double *ud);
 /* fixed[dim*n_node] = 1 where a *BOUNDARY of the step holds the component. */
 void load_fixed(const model *m, const mesh *msh, const step *s,
                 unsigned char *fixed);

@@ -121,10 +121,16 @@ static void warn_unused(const model *m) {
 
 static double step_end(const step *s) { return s->start + s->total; }
 
-/* Same thing said again: the new value replaces the old. */
-static int same_load(const load *a, const load *b) {
+/* Loads of one place and kind: gravity may have another direction. */
+static int same_place(const load *a, const load *b) {
   return a->kind == b->kind && a->component == b->component &&
          strcmp(a->group, b->group) == 0;
+}
+
+/* Same thing said again: the new value replaces the old. */
+static int same_load(const load *a, const load *b) {
+  return same_place(a, b) &&
+         memcmp(a->direction, b->direction, sizeof a->direction) == 0;
 }
 
 /* How a load of the card runs in its step. */
@@ -178,12 +184,14 @@ static status carry_loads(const model *m, const step *old, step *s,
     const load *l = &old->loads.item[i];
     int again = 0, renewed = (s->renewed >> l->kind & 1u) != 0;
     if (l->removed) continue;
-    for (int k = 0; k < s->loads.n; ++k)
-      if (same_load(l, &s->loads.item[k])) {
-        again = 1;
-        if (s->loads.item[k].run == RUN_RAMP)
-          set_before(&s->loads.item[k], old, l);
-      }
+    for (int k = 0; k < s->loads.n; ++k) {
+      load *own = &s->loads.item[k];
+      int same = same_load(l, own);
+      again |= same;
+      /* Gravity in another direction takes the place of the old, which ends. */
+      renewed |= !same && same_place(l, own);
+      if (same && own->run == RUN_RAMP) set_before(own, old, l);
+    }
     if (again || (renewed && l->kind == LOAD_FIXING)) continue;
     GROW(all->item, all->n, all->cap);
     all->item[all->n++] = renewed ? ended_load(old, l) : kept_load(m, old, l);

@@ -1,0 +1,122 @@
+/*
+ * What changes from step to step: supports set anew, gravity that turns, force
+ * left to a support, a contact whose body has no friction of its own.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Unit square, nu = 0, E = 1000, density 1; the cards after the material. */
+static job run_cards(const char *cards, int expected) {
+  job j = job_begin("steps");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "steps.inp",
+            "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.\n*DENSITY\n1.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n%s",
+            cards);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == expected, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Stretched by 20 to u_x = 0.02, then led back to 0 in two increments. */
+START_TEST(component_fixed_anew_starts_where_it_is) {
+  job j = run_cards(
+      "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nLEFT, 1, 2\n"
+      "*DSLOAD\nRIGHT, TX, 20.\n*PRINT, NODES, ENERGY\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nRIGHT, 1, 1, 0.\n*END STEP\n",
+      0);
+  static const double expected[] = {0.02, 0.01, 0.0};
+  for (int k = 0; k < 3; ++k) {
+    dat u = job_table(&j, "NODES", k), e = job_table(&j, "ENERGY", k);
+    ck_assert_double_eq_tol(dat_at(&u, dat_row_near(&u, "x", 1.0), "u_x"),
+                            expected[k], 1e-12);
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect")), 1e-13);
+    dat_free(&u);
+    dat_free(&e);
+  }
+  job_end(&j);
+}
+END_TEST
+
+/* Weight 8 down, then 8 to the right: half way the one has half gone. */
+START_TEST(gravity_turns_from_one_direction_to_the_other) {
+  job j = run_cards(
+      "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nLEFT, 1, 2\n"
+      "*DLOAD\nBODY, GRAV, 8., 0., -1.\n*PRINT, REACTIONS\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*DLOAD\nBODY, GRAV, 8., 1., 0.\n"
+      "*END STEP\n",
+      0);
+  static const double expected[][2] = {{0, 8}, {-4, 4}, {-8, 0}};
+  for (int k = 0; k < 3; ++k) {
+    dat r = job_table(&j, "REACTIONS", k);
+    ck_assert_double_eq_tol(dat_sum(&r, "reaction_x"), expected[k][0], 1e-10);
+    ck_assert_double_eq_tol(dat_sum(&r, "reaction_y"), expected[k][1], 1e-10);
+    dat_free(&r);
+  }
+  job_end(&j);
+}
+END_TEST
+
+/* Floor with friction and a smooth wall: at the corner node each contact has
+ * its own force, and no more friction than mu times its pressure. */
+START_TEST(corner_forces_belong_to_their_contacts) {
+  job j = run_cards(
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*CONTACT, NAME=W, GROUP=LEFT, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=F, LAW=COULOMB\n0.4\n"
+      "*STEP\n*STATIC\n*DSLOAD\nTOP, P, 10.\nRIGHT, P, 20.\n"
+      "*PRINT, TOTALS\n*END STEP\n",
+      0);
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), 10.0, 1e-9);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "force_x") + dat_at(&t, 1, "force_x"),
+                          20.0, 1e-9);
+  ck_assert_double_le(fabs(dat_at(&t, 0, "tangential")), 4.0 * (1 + 1e-9));
+  ck_assert_double_eq_tol(dat_at(&t, 1, "normal"), dat_at(&t, 1, "force_x"),
+                          1e-9);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* Pressed on a floor, then the foot is fixed where it is: what the floor bore
+ * is left to the support, and the energies still balance. */
+START_TEST(support_takes_over_from_contact) {
+  job j = run_cards(
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n"
+      "*PRINT, ENERGY\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nRIGHT, 1, 2, 0.\n*END STEP\n",
+      0);
+  for (int k = 0; k < 3; ++k) {
+    dat e = job_table(&j, "ENERGY", k);
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
+    dat_free(&e);
+  }
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(same_contact_twice_is_refused) {
+  job j = run_cards(
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*CONTACT, NAME=G, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*END STEP\n",
+      2);
+  ck_assert_ptr_nonnull(strstr(j.errors, "P2011"));
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
+          gravity_turns_from_one_direction_to_the_other,
+          corner_forces_belong_to_their_contacts,
+          support_takes_over_from_contact, same_contact_twice_is_refused)
