@@ -77,7 +77,7 @@ typedef struct auglag_work {
   unsigned char *mode;   /* [n] tangent                                      */
   double *origin;        /* [m] m                                            */
   double *diagonal;      /* [m] of A, the mean in a tangent plane, N/m       */
-  double *lambda, *z, *F, *y; /* [m] N; y = A u - f                          */
+  double *lambda, *z, *F, *y; /* [m] N; y = A u - f. Newton: work, work    */
   double *du, *dy;      /* [m] step, A du                                   */
   double *bonded;       /* [n] no limit                                     */
   double *e, *share;    /* [m] direction of slip, [n] g/|z|                 */
@@ -267,57 +267,85 @@ static void move(run *s, double a) {
 /* ---- generalised Newton ---------------------------------------------------
  */
 
-/* Entry of (A - F'(A - rho)) in the row of a free unknown, column [m] of A. */
-static double newton_entry(const run *s, int row, const double *column, int j) {
+/* Row of (A - F'(A - rho)) d of a free unknown; v = A d, d[m]. */
+static double newton_row(const run *s, int row, const double *v,
+                         const double *d) {
   const contact_problem *cp = s->cp;
   const auglag_work *w = s->w;
   int node_id = row / cp->dim, first = node_id * cp->dim;
-  double value = column[row];
+  double value = v[row];
   if (!slips(s, row)) return value;
   for (int b = first + 1; b < first + cp->dim; ++b)
-    value -= turning(s, row, b) * (column[b] - (b == j ? rho_of(s, b) : 0.0));
+    value -= turning(s, row, b) * (v[b] - rho_of(s, b) * d[b]);
   if (cp->B == NULL) return value;
   for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
     int n = cp->B->col[k] * cp->dim;
     if (w->closed[n] == CLOSED)
-      value += w->e[row] * cp->B->val[k] *
-               (column[n] - (n == j ? rho_of(s, n) : 0.0));
+      value += w->e[row] * cp->B->val[k] * (v[n] - rho_of(s, n) * d[n]);
   }
   return value;
+}
+
+/* What the states fix goes into du, the rest is listed; returns how many. */
+static int known_steps(run *s) {
+  auglag_work *w = s->w;
+  int n = 0;
+  for (int dof = 0; dof < s->cp->m; ++dof) {
+    w->du[dof] = 0.0;
+    if (fixed_by_contact(s, dof))
+      w->du[dof] = (w->F[dof] - w->y[dof]) / rho_of(s, dof);
+    else
+      w->free_id[n++] = dof;
+  }
+  return n;
+}
+
+/* Rows and columns of the n free unknowns, times power; returns the number of
+ * rows that slip. */
+static int newton_matrix(run *s, int n) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  double *unit = w->z;
+  int slipping = 0;
+  memset(unit, 0, (size_t)cp->m * sizeof *unit);
+  for (int j = 0; j < n; ++j) {
+    const double *column = cp->A + (size_t)cp->m * (size_t)w->free_id[j];
+    double *to = w->K + (size_t)n * (size_t)j;
+    for (int i = 0; i < n; ++i) to[i] = w->power * column[w->free_id[i]];
+    slipping += slips(s, w->free_id[j]);
+  }
+  for (int j = 0; j < n && slipping > 0; ++j) {
+    int dof = w->free_id[j];
+    const double *column = cp->A + (size_t)cp->m * (size_t)dof;
+    unit[dof] = 1.0;
+    for (int i = 0; i < n; ++i)
+      if (slips(s, w->free_id[i]))
+        w->K[(size_t)i + (size_t)n * (size_t)j] =
+            w->power * newton_row(s, w->free_id[i], column, unit);
+    unit[dof] = 0.0;
+  }
+  return slipping;
 }
 
 /* du of a Newton step; 0: the matrix is singular. */
 static int newton_direction(run *s) {
   const contact_problem *cp = s->cp;
   auglag_work *w = s->w;
-  size_t m = (size_t)cp->m;
-  int n = 0;
-  for (int dof = 0; dof < cp->m; ++dof) {
-    w->du[dof] = w->F[dof] - w->y[dof];
-    if (fixed_by_contact(s, dof))
-      w->du[dof] /= rho_of(s, dof);
-    else
-      w->free_id[n++] = dof;
+  int n = known_steps(s), info = 0;
+  contact_product(cp->m, cp->A, w->du, w->dy);
+  for (int i = 0; i < n; ++i) {
+    int dof = w->free_id[i];
+    w->lambda[i] =
+        w->power * (w->F[dof] - w->y[dof] - newton_row(s, dof, w->dy, w->du));
   }
-  for (int i = 0; i < n; ++i) w->dy[i] = w->du[w->free_id[i]];
-  for (int j = 0, at = 0; j < cp->m; ++j) {
-    const double *column = cp->A + m * (size_t)j;
-    int is_free = at < n && w->free_id[at] == j;
-    double *to = w->K + (size_t)n * (size_t)at;
-    if (!is_free && w->du[j] == 0.0) continue;
-    for (int i = 0; i < n; ++i) {
-      double entry = newton_entry(s, w->free_id[i], column, j);
-      if (is_free)
-        to[i] = entry;
-      else
-        w->dy[i] -= entry * w->du[j];
-    }
-    at += is_free;
-  }
-  if (n > 0 && LAPACKE_dgesv_work(LAPACK_COL_MAJOR, n, 1, w->K, n, w->pivot,
-                                  w->dy, n) != 0)
-    return 0;
-  for (int i = 0; i < n; ++i) w->du[w->free_id[i]] = w->dy[i];
+  if (n > 0 && newton_matrix(s, n) > 0)
+    info = LAPACKE_dgesv_work(LAPACK_COL_MAJOR, n, 1, w->K, n, w->pivot,
+                              w->lambda, n);
+  else if (n > 0)
+    info =
+        LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'L', n, 1, w->K, n, w->lambda, n);
+  if (info != 0) return 0;
+  for (int i = 0; i < n; ++i) w->du[w->free_id[i]] = w->lambda[i];
   contact_product(cp->m, cp->A, w->du, w->dy);
   return 1;
 }
