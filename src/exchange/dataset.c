@@ -29,12 +29,29 @@ int source_has(const hdf5_source *s, const char *name) {
   return 1;
 }
 
+/* The library makes buffers of the size that a damaged type claims. */
+static status check_type(const hdf5_source *s, const char *name, int real,
+                         hid_t set) {
+  status st = OK;
+  hid_t type = H5Dget_type(set);
+  H5T_class_t kind = H5Tget_class(type);
+  if (kind != H5T_INTEGER && !(real && kind == H5T_FLOAT))
+    FAIL(ERR_DECK, "%s: %s does not hold %s", s->path, name,
+         real ? "real numbers" : "integers");
+  if (H5Tget_size(type) > MOST_BYTES)
+    FAIL(ERR_DECK, "%s: %s has numbers of %zu bytes", s->path, name,
+         H5Tget_size(type));
+done:
+  if (type >= 0) H5Tclose(type);
+  return st;
+}
+
 /* The dataset opened, its kind and number of items checked; *set = -1 if it
  * is not there and may be missing. */
 static status open_set(const hdf5_source *s, const char *name, int optional,
                        int real, hid_t *set, long *n) {
   status st = OK;
-  hid_t type = -1, space = -1;
+  hid_t space = -1;
   *set = -1;
   *n = 0;
   if (!source_has(s, name)) {
@@ -44,22 +61,13 @@ static status open_set(const hdf5_source *s, const char *name, int optional,
   *set = H5Dopen2(s->file, name, H5P_DEFAULT);
   if (*set < 0)
     FAIL(ERR_DECK, "%s: %s is no dataset, or damaged", s->path, name);
-  type = H5Dget_type(*set);
-  H5T_class_t kind = H5Tget_class(type);
-  if (kind != H5T_INTEGER && !(real && kind == H5T_FLOAT))
-    FAIL(ERR_DECK, "%s: %s does not hold %s", s->path, name,
-         real ? "real numbers" : "integers");
-  /* The library makes buffers of the size that a damaged type claims. */
-  if (H5Tget_size(type) > MOST_BYTES)
-    FAIL(ERR_DECK, "%s: %s has numbers of %zu bytes", s->path, name,
-         H5Tget_size(type));
+  TRY(check_type(s, name, real, *set));
   space = H5Dget_space(*set);
   hssize_t items = H5Sget_simple_extent_npoints(space);
   if (items < 0 || items > MOST_ITEMS)
     FAIL(ERR_DECK, "%s: %s has a size that cannot be used", s->path, name);
   *n = (long)items;
 done:
-  if (type >= 0) H5Tclose(type);
   if (space >= 0) H5Sclose(space);
   if (st != OK && *set >= 0) {
     H5Dclose(*set);

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 #include <time.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { XDMF_PAUSE = 1 };
@@ -114,6 +115,22 @@ static status write_fields(output *o, const state *s) {
   return st;
 }
 
+/* The file of a condensed problem is no result: it must stay. */
+static status spare_input(const output *o, const char *path) {
+  status st = OK;
+  struct stat input, result;
+  if (o->m->problem_file == NULL) goto done;
+  if (stat(o->m->problem_file, &input) != 0 || stat(path, &result) != 0)
+    goto done;
+  if (input.st_dev == result.st_dev && input.st_ino == result.st_ino)
+    FAIL(ERR_DECK,
+         "deck line %d: *CONDENSED PROBLEM: the results would overwrite its "
+         "file %s; name the deck or the file otherwise, or use -o",
+         o->m->problem_at.line_no, o->m->problem_file);
+done:
+  return st;
+}
+
 /* The condensed problem, where asked for; of an attempt that failed without a
  * solution, replaced when the increment is mended. */
 static status write_condensed(output *o, const state *s) {
@@ -130,6 +147,7 @@ static status write_condensed(output *o, const state *s) {
            s->increment_no, s->t);
   path = text_path(o->o.dir, name, "h5");
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  TRY(spare_input(o, path));
   TRY(fclib_write(s->problem, s->settled ? s->uc : NULL, s->rc, o->m->title,
                   text, path));
 done:
@@ -210,6 +228,16 @@ done:
   return st;
 }
 
+static status spare_suffix(const output *o, const char *suffix) {
+  status st = OK;
+  char *path = text_path(o->o.dir, o->m->job, suffix);
+  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  TRY(spare_input(o, path));
+done:
+  memory_free(path);
+  return st;
+}
+
 static status open_text(const output *o, const char *suffix, text_file *t) {
   status st = OK;
   char *path = text_path(o->o.dir, o->m->job, suffix);
@@ -223,6 +251,10 @@ done:
 static status open_all(output *o) {
   status st = OK;
   job j = job_of(o);
+  static const char *const results[] = {"lst", "sta",  "cvg",  "dat",
+                                        "h5",  "xdmf", "json", "tmp"};
+  for (size_t k = 0; k < sizeof results / sizeof *results; ++k)
+    TRY(spare_suffix(o, results[k]));
   o->json = text_path(o->o.dir, o->m->job, "json");
   o->xdmf = text_path(o->o.dir, o->m->job, "xdmf");
   if (o->json == NULL || o->xdmf == NULL)

@@ -26,9 +26,10 @@ typedef enum { PLAIN, ALONG_PATH } drive;
 static const struct {
   const solver_ops *ops;
   drive how;
-} auto_chain[] = {{&newton_solver, PLAIN},
-                  {&newton_solver, ALONG_PATH},
-                  {&sor_solver, PLAIN}};
+  int compliance; /* 1: only where no stiffness is given                     */
+} auto_chain[] = {{&newton_solver, PLAIN, 0}, {&newton_solver, ALONG_PATH, 0},
+                  {&pcg_solver, PLAIN, 1},    {&lagrange_solver, PLAIN, 1},
+                  {&sor_solver, PLAIN, 0},    {&lemke_solver, PLAIN, 1}};
 
 const solver_ops *solver_find(const char *name) {
   for (int i = 0; solver_list[i] != NULL; ++i)
@@ -97,7 +98,8 @@ struct contact_solver {
   int m, n;
   void *work[N_SOLVER + 1]; /* of solver_list, last of a solver that is not in
                                it; NULL: not set up */
-  void *param; /* zeros: the defaults of a chain member               */
+  void *param; /* defaults of the chain member at work                     */
+  size_t param_size;
   fixed_point *fixed;
   friction_path *path;
   int path_room;     /* entries of B it was made for                       */
@@ -116,6 +118,7 @@ status contact_solver_new(const solver_choice *choice, contact_solver **out) {
   for (int i = 0; solver_list[i] != NULL; ++i)
     if (solver_list[i]->param_size > size) size = solver_list[i]->param_size;
   s->param = memory_new(1, size);
+  s->param_size = size;
   if (s->param == NULL)
     FAIL(ERR_MEMORY, "memory exhausted: %zu bytes for solver options", size);
   *out = s;
@@ -333,11 +336,17 @@ static void note(contact_solver *s, const solver_report *rep, drive how) {
            outcome_text(rep->outcome));
 }
 
+/* How much a failure says; a singular compliance says nothing. */
+static int weight(const contact_problem *cp, outcome o) {
+  if (o == STOPPED_RAY) return 2;
+  return o == STOPPED_SINGULAR && cp->A != NULL;
+}
+
 /* Which of two failures says more: no equilibrium, then singular, then the
  * lower residual. */
-static int says_more(const solver_report *a, const solver_report *b) {
-  int ra = a->outcome == STOPPED_RAY ? 2 : a->outcome == STOPPED_SINGULAR;
-  int rb = b->outcome == STOPPED_RAY ? 2 : b->outcome == STOPPED_SINGULAR;
+static int says_more(const contact_problem *cp, const solver_report *a,
+                     const solver_report *b) {
+  int ra = weight(cp, a->outcome), rb = weight(cp, b->outcome);
   if (ra != rb) return ra > rb;
   return !(a->residual >= b->residual);
 }
@@ -352,13 +361,16 @@ static status run_chain(contact_solver *s, const contact_problem *cp,
   for (int i = 0; i < n; ++i) {
     attempt a = {auto_chain[i].ops, s->param, auto_chain[i].how};
     if (a.how == ALONG_PATH && cp->B == NULL) continue;
+    if (auto_chain[i].compliance && cp->A != NULL) continue;
+    memset(s->param, 0, s->param_size);
+    option_defaults(a.ops->options, s->param);
     if (i > 0) cold_start(cp, u, r);
     TRY(run_one(s, cp, &a, listener, u, r, rep));
     iterations += rep->iterations;
     judge(cp, s->choice.tol, u, r, rep);
     if (i > 0 || rep->outcome != CONVERGED) note(s, rep, a.how);
     if (best.outcome == RUNNING || rep->outcome == CONVERGED ||
-        says_more(rep, &best)) {
+        says_more(cp, rep, &best)) {
       best = *rep;
       memcpy(s->best_u, u, bytes);
       memcpy(s->best_r, r, bytes);

@@ -255,6 +255,56 @@ START_TEST(rigid_block_obeys_statics) {
 }
 END_TEST
 
+enum { STOREYS = 20, JOINTS = 4 * STOREYS, FREE = 6 * STOREYS };
+
+/* A tower of unit cubes, four contacts between two of them, pushed at the top:
+ * W of rank 120 of 240. It sticks: the floor carries the whole weight. */
+START_TEST(tower_of_blocks_stands) {
+  static const double inertia[6] = {1.0, 1.0, 1.0, 0.17, 0.17, 0.17};
+  const double weight = 0.01, push = 0.0005;
+  int m = 3 * JOINTS, n;
+  double *M = calloc(FREE * FREE, sizeof *M);
+  double *H = calloc((size_t)(FREE * m), sizeof *H);
+  double *W = calloc((size_t)(m * m), sizeof *W), f[FREE] = {0};
+  double w[3 * JOINTS] = {0}, q[3 * JOINTS] = {0}, mu[JOINTS];
+  for (int k = 0; k < FREE; ++k) M[k + FREE * k] = inertia[k % 6];
+  for (int b = 0; b < STOREYS; ++b) f[6 * b + 2] = -weight;
+  f[6 * (STOREYS - 1)] = push;
+  for (int i = 0; i < JOINTS; ++i) {
+    mu[i] = 0.5;
+    for (int below = 0; below <= (i >= 4); ++below) {
+      double x = i & 1 ? 0.5 : -0.5, y = i & 2 ? 0.5 : -0.5;
+      double s = below ? -1.0 : 1.0, z = below ? 0.5 : -0.5;
+      double *N = H + FREE * 3 * i + 6 * (i / 4 - below);
+      double *T1 = N + FREE, *T2 = T1 + FREE;
+      N[2] = s, N[3] = s * y, N[4] = -s * x;
+      T1[0] = s, T1[4] = s * z, T1[5] = -s * y;
+      T2[1] = s, T2[3] = -s * z, T2[5] = s * x;
+    }
+  }
+  for (int i = 0; i < m; ++i)
+    for (int k = 0; k < FREE; ++k) {
+      double h = H[k + FREE * i] / inertia[k % 6];
+      q[i] += h * f[k];
+      for (int c = 0; c < m && h != 0.0; ++c)
+        W[i + m * c] += h * H[k + FREE * c];
+    }
+  const fclib_global_data g = {3, JOINTS, FREE, M, H, f, w, mu};
+  job j = job_begin("read");
+  fclib_global(in_folder(&j, "problem.h5"), STORE_COLUMNS, &g);
+  ck_assert_msg(solve_file(&j, "") == 0, "%s", j.errors);
+  double *r = take(&j, "read_condensed_00001.h5", "/solution/r", &n);
+  double *u = take(&j, "read_condensed_00001.h5", "/solution/u", &n);
+  ck_assert_double_le(fclib_violation(3, JOINTS, W, q, mu, u, r), 1e-7);
+  double sum = 0.0, side = 0.0;
+  for (int i = 0; i < 4; ++i) sum += r[3 * i], side += r[3 * i + 1];
+  ck_assert_double_eq_tol(sum, STOREYS * weight, 1e-7);
+  ck_assert_double_eq_tol(side, -push, 1e-7);
+  free(r), free(u), free(M), free(H), free(W);
+  job_end(&j);
+}
+END_TEST
+
 /* ---- random problems, every solver ---- */
 
 /* W = b b' + d I with an unsymmetric part of the size "skew". */
@@ -546,12 +596,36 @@ START_TEST(deck_errors_have_a_line) {
 }
 END_TEST
 
+/* Names that the run gives to its results. */
+START_TEST(file_of_the_problem_is_not_overwritten) {
+  static const char *const names[] = {"read.dat", "read.h5", "read.json",
+                                      "read_condensed_00001.h5"};
+  const double W[4] = {2.0, 0.0, 0.0, 1.0}, q[2] = {-1.0, 0.5}, mu[1] = {0.0};
+  for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
+    int n;
+    job j = job_begin("read");
+    fclib_local(in_folder(&j, names[k]), STORE_ROWS, 2, 1, W, q, mu);
+    job_write(&j, "read.inp",
+              "*CONDENSED PROBLEM, FILE=%s\n*STEP\n"
+              "*OUTPUT, CONDENSED=FCLIB\n*END STEP\n",
+              names[k]);
+    ck_assert_int_eq(job_run(&j, ""), 2);
+    ck_assert_ptr_nonnull(strstr(j.errors, names[k]));
+    double *x = fclib_take(in_folder(&j, names[k]), "/fclib_local/W/x", &n);
+    ck_assert_ptr_nonnull(x);
+    free(x);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("exchange", problem_written_and_read_has_the_same_solution,
           problem_of_three_dimensions_comes_back,
           what_cannot_be_written_is_refused, rigid_block_obeys_statics,
-          every_solver_is_honest_on_problems_from_files,
+          tower_of_blocks_stands, every_solver_is_honest_on_problems_from_files,
           auto_solves_unsymmetric_problems, tie_case_of_murty_is_solved,
           exponential_case_is_solved, semidefinite_case_is_solved,
           case_without_solution_ends_with_six,
           contact_without_solution_ends_with_six, effect_plan_has_no_mesh,
-          no_contact_is_solved, deck_errors_have_a_line)
+          no_contact_is_solved, deck_errors_have_a_line,
+          file_of_the_problem_is_not_overwritten)
