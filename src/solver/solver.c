@@ -351,6 +351,19 @@ static int says_more(const contact_problem *cp, const solver_report *a,
   return !(a->residual >= b->residual);
 }
 
+/* 1 if a link of the chain does not apply: a friction path without Coulomb
+ * friction, a method for problems of which only the compliance is known. */
+static int is_skipped(const contact_problem *cp, int i) {
+  if (auto_chain[i].how == ALONG_PATH && cp->B == NULL) return 1;
+  return auto_chain[i].compliance && cp->A != NULL;
+}
+
+/* 1 if no other link is needed: an answer, a proof, or numbers beyond help. */
+static int is_final(const contact_problem *cp, outcome o) {
+  int proved = o == STOPPED_RAY && cp->B == NULL;
+  return proved || o == CONVERGED || o == STOPPED_NAN;
+}
+
 static status run_chain(contact_solver *s, const contact_problem *cp,
                         const solver_listener *listener, double *u, double *r,
                         solver_report *rep) {
@@ -360,8 +373,7 @@ static status run_chain(contact_solver *s, const contact_problem *cp,
   solver_report best = {.outcome = RUNNING};
   for (int i = 0; i < n; ++i) {
     attempt a = {auto_chain[i].ops, s->param, auto_chain[i].how};
-    if (a.how == ALONG_PATH && cp->B == NULL) continue;
-    if (auto_chain[i].compliance && cp->A != NULL) continue;
+    if (is_skipped(cp, i)) continue;
     memset(s->param, 0, s->param_size);
     option_defaults(a.ops->options, s->param);
     if (i > 0) cold_start(cp, u, r);
@@ -375,9 +387,7 @@ static status run_chain(contact_solver *s, const contact_problem *cp,
       memcpy(s->best_u, u, bytes);
       memcpy(s->best_r, r, bytes);
     }
-    int proved = rep->outcome == STOPPED_RAY && cp->B == NULL;
-    if (proved || rep->outcome == CONVERGED || rep->outcome == STOPPED_NAN)
-      break;
+    if (is_final(cp, rep->outcome)) break;
   }
   memcpy(u, s->best_u, bytes);
   memcpy(r, s->best_r, bytes);
