@@ -15,9 +15,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* From this condition number on the factor has lost enough digits for
- * refinement to pay. */
-static const double refine_limit = 1e7;
+/* The condition number of a plain mesh is a few times to 200 times its number
+ * of unknowns. Beyond this multiple, contrast, slivers or weak supports have
+ * cost digits that refinement brings back. */
+static const double refine_excess = 1e4;
 
 struct condensed {
   const stiffness *k; /* borrowed                                           */
@@ -383,6 +384,12 @@ done:
   return st;
 }
 
+static int costs_digits(condensed *c) {
+  long n = 0;
+  for (int q = 0; q < c->n_body; ++q) n += c->body[q].n;
+  return condensed_condition(c) > refine_excess * (double)n;
+}
+
 status condense_load(condensed *c, const double *F, const double *ud,
                      double *f_c) {
   status st = OK;
@@ -391,7 +398,7 @@ status condense_load(condensed *c, const double *F, const double *ud,
   rigid_loads(c->k, &c->d, &c->rigid, c->load);
   if (set_prescribed(c, ud)) move_prescribed(c);
   TRY(forward(c, f_c));
-  if (condensed_condition(c) > refine_limit) TRY(refine_load(c, F, f_c));
+  if (costs_digits(c)) TRY(refine_load(c, F, f_c));
   rigid_balance(&c->rigid, f_c);
 done:
   timer_leave(STAGE_RECOVERY);

@@ -93,8 +93,9 @@ condense_info condensed_info(const condensed *c);
  * Condense a load: F[dim*n_node] forces in global components, ud[dim*n_node]
  * prescribed displacements (read where fixed; NULL: all zero).
  * f_c[m]. The forward solve is kept for condense_recover. Where the condition
- * number costs digits, f_c and u are refined with the forces of the elements
- * (two more solves each), and then correct to rounding for given u_c.
+ * number is far above that of a plain mesh, f_c and u are refined with the
+ * forces of the elements (two more solves each; f_c also one back solve), and
+ * are then correct to rounding for given u_c.
  */
 status condense_load(condensed *c, const double *F, const double *ud,
                      double *f_c);
