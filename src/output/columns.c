@@ -77,10 +77,15 @@ VALUE(contact_u_n, v->s->uc[at(SURFACE->dim, id, 0)])
 VALUE(contact_u_t, v->s->uc[at(SURFACE->dim, id, part + 1)])
 VALUE(contact_gap, v->s->gap[id])
 VALUE(contact_f_n, -v->s->rc[at(SURFACE->dim, id, 0)])
-/* The side row of a corner node is a normal force of another obstacle. */
-VALUE(contact_f_t, SURFACE->side_id[at(SURFACE->dim - 1, id, part)] >= 0
-                       ? 0
-                       : v->s->rc[at(SURFACE->dim, id, part + 1)])
+/* The side row of a corner node is a normal force of another obstacle. A
+ * problem from a file has no corners. */
+static int is_side(const view *v, int id, int part) {
+  const int *side = SURFACE->side_id;
+  return side != NULL && side[at(SURFACE->dim - 1, id, part)] >= 0;
+}
+
+VALUE(contact_f_t,
+      is_side(v, id, part) ? 0 : v->s->rc[at(SURFACE->dim, id, part + 1)])
 VALUE(contact_slip, v->s->slip[at(SURFACE->dim - 1, id, part)])
 VALUE(sliding_limit, v->s->limit[id])
 VALUE(contact_normal, SURFACE->frame[at(SURFACE->dim * SURFACE->dim, id, part)])
