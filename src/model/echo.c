@@ -9,34 +9,60 @@
 
 enum { WIDTH = 78, TEXT = 512 };
 
-/* One parameter; a value with a comma or a blank end would need quotes, and
- * such names are refused by the deck reader. */
-static void echo_option(const option *o, const void *param, int *column,
-                        FILE *out) {
-  char value[TEXT], item[TEXT + 80];
+/* 1 if a text that is no expression must stand in quotes to be read back. */
+static int needs_quotes(const char *text) {
+  size_t n = strlen(text);
+  return strpbrk(text, ",=") != NULL || strstr(text, "**") != NULL ||
+         (n > 0 && (text[0] == ' ' || text[n - 1] == ' '));
+}
+
+/* Folder of the file a value stands in, from that of the deck on: the echo
+ * has no includes, and names of files are relative to where they stand. */
+static int folder_beyond(const model *m, const field *value,
+                         const char **from) {
+  const char *deck_end = strrchr(m->deck->file, '/');
+  const char *end =
+      value->at.file == NULL ? NULL : strrchr(value->at.file, '/');
+  size_t skip = deck_end == NULL ? 0 : (size_t)(deck_end - m->deck->file) + 1;
+  *from = "";
+  if (end == NULL || value->text[0] == '/') return 0;
+  if (strncmp(value->at.file, m->deck->file, skip) != 0) skip = 0;
+  *from = value->at.file + skip;
+  return end + 1 > *from ? (int)(end + 1 - *from) : 0;
+}
+
+/* One parameter with its comma, on a line of its own if it is long. */
+static void echo_option(const model *m, const card *c, const option *o,
+                        const void *param, int *column, FILE *out) {
+  char value[TEXT];
+  const char *text = value, *folder = "", *quote = "";
+  const parameter *given = card_parameter(c, o->name);
+  int n = 0;
   option_write(o, param, value, sizeof value);
-  if (value[0] == '\0') return;
-  int length = snprintf(item, sizeof item, "%s=%s", o->name, value);
-  if (*column + 2 + length > WIDTH) {
-    fputs(",\n    ", out);
-    *column = 4;
-  } else {
-    fputs(", ", out);
-    *column += 2;
+  if (o->type == OPT_NAME) { /* of any length                                 */
+    text = *(const char *const *)((const char *)param + o->offset);
+    if (text == NULL || text[0] == '\0') return;
+    if (given != NULL && strcmp(o->name, "FILE") == 0)
+      n = folder_beyond(m, &given->value, &folder);
+    if (needs_quotes(text)) quote = "\"";
   }
-  fputs(item, out);
-  *column += length;
+  int length =
+      (int)(strlen(o->name) + strlen(text) + 2 * strlen(quote)) + n + 1;
+  int breaks = *column + 2 + length > WIDTH;
+  fputs(breaks ? ",\n    " : ", ", out);
+  *column = (breaks ? 4 : *column + 2) + length;
+  fprintf(out, "%s=%s%.*s%s%s", o->name, quote, n, folder, text, quote);
 }
 
 /* Options that are absent and have no value are left out. */
-static void echo_options(const card *c, const option *table, const void *param,
-                         int *column, FILE *out) {
+static void echo_options(const model *m, const card *c, const option *table,
+                         const void *param, int *column, FILE *out) {
   for (const option *o = table; o != NULL && o->name != NULL; ++o) {
     int absent = card_parameter(c, o->name) == NULL;
     if (absent &&
         (o->initial == NULL || strcmp(o->initial, OPTION_ABSENT) == 0))
       continue;
-    echo_option(o, param, column, out);
+    echo_option(m, c, o, param, column, out);
   }
 }
 
@@ -55,7 +81,8 @@ static void echo_record(const card *c, const record *line, FILE *out) {
     } else if (k > 0) {
       fputs(", ", out);
     }
-    fprintf(out, f->quoted ? "\"%s\"" : "%s", f->text);
+    int quoted = f->quoted || needs_quotes(f->text);
+    fprintf(out, quoted ? "\"%s\"" : "%s", f->text);
     column += length;
   }
   fputc('\n', out);
@@ -68,9 +95,9 @@ static void echo_card(const model *m, const card *c, FILE *out) {
   reading r = {.m = (model *)m, .card = c, .material_id = -1};
   keyword_parameters(row, &r, param, plugin_param);
   int column = fprintf(out, "*%s", c->name);
-  echo_options(c, row->options, param, &column, out);
+  echo_options(m, c, row->options, param, &column, out);
   if (row->names != NULL)
-    echo_options(c, row->names(&r).options, plugin_param, &column, out);
+    echo_options(m, c, row->names(&r).options, plugin_param, &column, out);
   fputc('\n', out);
   for (int i = 0; i < c->n_record; ++i) echo_record(c, &c->records[i], out);
 }
