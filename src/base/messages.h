@@ -208,7 +208,10 @@
     "same group another value; the later line counts.")                      \
   X(2041, ERROR, "value at a node that is no number",                        \
     "An expression divides by zero there, takes the root or logarithm of "   \
-    "a negative number, or overflows; or a friction value is negative.")
+    "a negative number, or overflows; or a friction value is negative.")     \
+  X(2042, WARNING, "-D that the deck does not know",                         \
+    "-D NAME=VALUE replaces the value of a *PARAMETER. A name of its own "   \
+    "serves a .geo only; check the spelling.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

@@ -90,13 +90,10 @@ status history_run(const model *m, const mesh *msh, const history_sink *sink,
 status condensed_run(const model *m, const exchange_problem *p,
                      const history_sink *sink, int *unsettled);
 
-/* Rigid motions that the supports of the first step leave free, nothing solved:
- * *list is new (memory_free), NULL if there are none. */
-status history_motions(const model *m, const mesh *msh, int *n,
+/* Rigid motions that the supports of a step leave free, nothing solved: *list
+ * is new (memory_free), NULL if there are none. ERR_SINGULAR with the list if
+ * nothing at all resists one; the log tells which. */
+status history_motions(const model *m, const mesh *msh, int step_id, int *n,
                        free_motion **list);
-
-/* 1 if neither supports nor contact nor friction on that body resist it. */
-status history_unheld(const model *m, const mesh *msh, const free_motion *f,
-                      int *unheld);
 
 #endif

@@ -267,8 +267,10 @@ done:
   return st;
 }
 
-status history_unheld(const model *m, const mesh *msh, const free_motion *f,
-                      int *unheld) {
+/* 1 if nothing resists: no contact there, or tangential contact of a body
+ * without friction. */
+static status is_unheld(const model *m, const mesh *msh, const free_motion *f,
+                        int *unheld) {
   status st = OK;
   int friction = 0;
   *unheld = f->held_by == HELD_BY_NOTHING;
@@ -281,29 +283,36 @@ done:
   return st;
 }
 
+/* Motions that nothing resists go to the log and are ERR_SINGULAR. */
+static status refuse_unheld(const run *r, int n, const free_motion *list) {
+  status st = OK;
+  int unheld = 0, step_no = (int)(r->step - r->m->steps) + 1;
+  for (int i = 0; i < n; ++i) {
+    int free;
+    TRY(is_unheld(r->m, r->msh, &list[i], &free));
+    if (!free) continue;
+    ++unheld;
+    message_add(r->m->log, P4011, &r->step->at,
+                "step %d: body %d (%s, element %zu) is free to move: %s; "
+                "neither *BOUNDARY nor %s holds it",
+                step_no, list[i].body_id + 1, body_name(r, list[i].elem_no),
+                list[i].elem_no, list[i].text,
+                list[i].held_by == HELD_BY_FRICTION ? "frictionless contact"
+                                                    : "contact");
+  }
+  if (unheld > 0)
+    FAIL(ERR_SINGULAR, "step %d: a body is free to move", step_no);
+done:
+  return st;
+}
+
 /* Bodies without enough supports are refused before anything is solved. */
 static status check_supports(const run *r) {
   status st = OK;
   free_motion *list = NULL;
-  int n = 0, unheld = 0;
+  int n = 0;
   TRY(domain_free_motions(&r->d, &n, &list));
-  for (int i = 0; i < n; ++i) {
-    int free;
-    TRY(history_unheld(r->m, r->msh, &list[i], &free));
-    if (free) {
-      message_add(r->m->log, P4011, &r->step->at,
-                  "step %d: body %d (%s, element %zu) is free to move: %s; "
-                  "neither *BOUNDARY nor %s holds it",
-                  (int)(r->step - r->m->steps) + 1, list[i].body_id + 1,
-                  body_name(r, list[i].elem_no), list[i].elem_no, list[i].text,
-                  list[i].held_by == HELD_BY_FRICTION ? "frictionless contact"
-                                                      : "contact");
-      ++unheld;
-    }
-  }
-  if (unheld > 0)
-    FAIL(ERR_SINGULAR, "step %d: a body is free to move",
-         (int)(r->step - r->m->steps) + 1);
+  TRY(refuse_unheld(r, n, list));
 done:
   memory_free(list);
   return st;
@@ -345,16 +354,17 @@ done:
   return st;
 }
 
-status history_motions(const model *m, const mesh *msh, int *n,
+status history_motions(const model *m, const mesh *msh, int step_id, int *n,
                        free_motion **list) {
   status st = OK;
   static const history_sink nobody;
-  run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[0]};
+  run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[step_id]};
   TRY(run_new(&r));
   load_fixed(m, msh, r.step, r.fixed);
   if (m->effects & EFFECT_CONTACT) TRY(build_surface(&r));
   r.d.surface = r.surface;
   TRY(domain_free_motions(&r.d, n, list));
+  TRY(refuse_unheld(&r, *n, *list));
 done:
   run_free(&r);
   return st;
