@@ -151,7 +151,7 @@ static status check_deck(const char *path, message_log *log, mesh *msh) {
   if (st == OK || st == ERR_DECK) st = model_from_deck(d, log, &m);
   if (st == OK && m->problem_file == NULL) st = model_check(m, msh);
   if (st == OK && m->problem_file == NULL) {
-    st = history_motions(m, msh, &n, &list);
+    st = history_motions(m, msh, 0, &n, &list);
     echo_nowhere(m);
   }
   memory_free(list);
@@ -173,7 +173,7 @@ static int judge(const char *path, int dim) {
   int errors = message_count(log, ERROR) > 0;
   if (st == ERR_INTERNAL || st == ERR_MEMORY) return 2;
   if (st == OK && errors) return 3;
-  if ((st == ERR_DECK || st == ERR_MESH) && !errors) return 4;
+  if (st != OK && !errors) return 4;
   message_log_free(log);
   grid_free(msh);
   return st == OK ? ACCEPTED : 0;
