@@ -24,3 +24,7 @@ const char *outcome_text(outcome o) {
   }
   return "?";
 }
+
+int outcome_is_fatal(outcome o) {
+  return o == STOPPED_NAN || o == STOPPED_RAY || o == STOPPED_SINGULAR;
+}

@@ -16,5 +16,7 @@ typedef enum {
 } outcome;
 /* In a few words, for listings and messages. */
 const char *outcome_text(outcome o);
+/* 1 if there is no answer to go on with: a ray, singular, not a number. */
+int outcome_is_fatal(outcome o);
 
 #endif

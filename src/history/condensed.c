@@ -262,10 +262,6 @@ static status tell_ready(const discrete *d, const history_sink *sink) {
   return sink->ready(sink->ctx, &facts, &d->surface);
 }
 
-static int is_fatal(outcome o) {
-  return o == STOPPED_NAN || o == STOPPED_RAY || o == STOPPED_SINGULAR;
-}
-
 static status tell_answer(discrete *d, const history_sink *sink, double cpu,
                           int *unsettled) {
   status st = OK;
@@ -273,7 +269,7 @@ static status tell_answer(discrete *d, const history_sink *sink, double cpu,
   const char *why = outcome_text(d->report.outcome);
   s.cpu = timer_cpu() - cpu;
   *unsettled = !s.settled;
-  if (!is_fatal(d->report.outcome)) {
+  if (!outcome_is_fatal(d->report.outcome)) {
     if (sink->increment != NULL) TRY(sink->increment(sink->ctx, &s));
     goto done;
   }

@@ -69,11 +69,6 @@ static state make_state(run *r, int attempt, int increment_no) {
   return s;
 }
 
-/* Outcomes without an answer to go on with, once cutting has not helped. */
-static int is_fatal(outcome o) {
-  return o == STOPPED_NAN || o == STOPPED_RAY || o == STOPPED_SINGULAR;
-}
-
 /* 1 if some output wants the stresses of this increment. */
 static int stress_is_due(const step *s, int increment_no, int last) {
   int f = s->output_frequency;
@@ -142,7 +137,7 @@ static status run_increment(run *r, long n, long i, int *increment_no) {
       ++attempt;
       continue;
     }
-    if (!settled && is_fatal(r->report.outcome)) {
+    if (!settled && outcome_is_fatal(r->report.outcome)) {
       TRY(reject(r, attempt, *increment_no + 1,
                  outcome_text(r->report.outcome)));
       TRY(no_equilibrium(r));
