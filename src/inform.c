@@ -8,6 +8,7 @@
 #include "history/history.h"
 
 #include <cholmod.h>
+#include <ctype.h>
 #include <hdf5.h>
 #include <math.h>
 #include <stdio.h>
@@ -28,10 +29,18 @@ void inform_version(void) {
   printf("HDF5 %u.%u.%u\n", major, minor, release);
 }
 
-static void list_options(const option *table) {
-  for (const option *o = table; o != NULL && o->name != NULL; ++o)
-    printf("    %-16s default %s; %s\n", o->name,
-           o->initial == NULL ? "none" : o->initial, o->help);
+/* Name in capitals, source, manual text and options of a plug-in. */
+static void list_plugin(const char *name, const char *reference,
+                        const char *help, const option *options) {
+  for (const char *p = name; *p != '\0'; ++p)
+    putchar(toupper((unsigned char)*p));
+  printf("  (%s)\n  ", reference);
+  for (const char *p = help; *p != '\0'; ++p) {
+    putchar(*p);
+    if (*p == '\n') fputs("  ", stdout);
+  }
+  putchar('\n');
+  option_print(options, stdout);
 }
 
 static void list_solvers(void) {
@@ -41,18 +50,18 @@ static void list_solvers(void) {
       "answered.");
   for (int i = 0; solver_list[i] != NULL; ++i) {
     const solver_ops *s = solver_list[i];
-    printf("%s  (%s)\n  %s\n", s->name, s->reference, s->help);
-    list_options(s->options);
+    putchar('\n');
+    list_plugin(s->name, s->reference, s->help, s->options);
   }
 }
 
 static void list_friction(void) {
   for (int i = 0; friction_list[i] != NULL; ++i) {
     const friction_ops *f = friction_list[i];
-    printf("%s  (%s)\n  %s\n", f->name, f->reference, f->help);
+    if (i > 0) putchar('\n');
+    list_plugin(f->name, f->reference, f->help, f->options);
     if (f->value_name != NULL)
       printf("  data line: %s, unit %s\n", f->value_name, f->value_unit);
-    list_options(f->options);
   }
 }
 

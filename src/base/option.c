@@ -280,3 +280,22 @@ void option_write(const option *row, const void *parameters, char *text,
     }
   }
 }
+
+static void print_row(const option *o, FILE *out) {
+  static const char *const type[] = {"integer", "real", "YES or NO", "text",
+                                     "word"};
+  fprintf(out, "  %-15s %s", o->name,
+          o->type == OPT_CHOICE ? o->choices : type[o->type]);
+  if (o->type == OPT_REAL || o->type == OPT_INT)
+    fprintf(out, " in [%g, %g], unit %s", o->min, o->max, o->unit);
+  if (o->initial == NULL)
+    fprintf(out, "; must be given");
+  else if (strcmp(o->initial, OPTION_ABSENT) != 0)
+    fprintf(out, "; default %s", o->initial);
+  fprintf(out, "\n  %-15s   %s\n", "", o->help);
+}
+
+void option_print(const option *table, FILE *out) {
+  for (const option *o = table; o != NULL && o->name != NULL; ++o)
+    print_row(o, out);
+}

@@ -10,6 +10,7 @@
 #define PROTIS_BASE_OPTION_H
 
 #include <stddef.h>
+#include <stdio.h>
 
 typedef enum { OPT_INT, OPT_REAL, OPT_FLAG, OPT_NAME, OPT_CHOICE } option_type;
 
@@ -72,6 +73,8 @@ int option_read(const option *row, const char *text, void *parameters,
 /* The value of a field as text that option_read takes back exactly. */
 void option_write(const option *row, const void *parameters, char *text,
                   size_t size);
+/* The rows for a manual: kind, range, unit, default and help. Accepts NULL. */
+void option_print(const option *table, FILE *out);
 /* What is wrong with x outside [min, max]: "-1 is not positive", "2.5 outside
  * [0, 2]"; a limit that no number can pass is not shown. */
 void range_text(double x, double min, double max, char *why, size_t why_size);

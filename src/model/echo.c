@@ -119,24 +119,9 @@ static const char *where_text(unsigned where) {
   return where & IN_STEP ? "in a step" : "before the first *STEP";
 }
 
-static void print_option(const option *o, FILE *out) {
-  static const char *const type[] = {"integer", "real", "YES or NO", "text",
-                                     "word"};
-  fprintf(out, "  %-15s %s", o->name,
-          o->type == OPT_CHOICE ? o->choices : type[o->type]);
-  if (o->type == OPT_REAL || o->type == OPT_INT)
-    fprintf(out, " in [%g, %g], unit %s", o->min, o->max, o->unit);
-  if (o->initial == NULL)
-    fprintf(out, "; must be given");
-  else if (strcmp(o->initial, OPTION_ABSENT) != 0)
-    fprintf(out, "; default %s", o->initial);
-  fprintf(out, "\n  %-15s   %s\n", "", o->help);
-}
-
 static void print_keyword(const keyword *k, FILE *out) {
   fprintf(out, "*%s  (%s)\n  %s\n", k->name, where_text(k->where), k->help);
-  for (const option *o = k->options; o != NULL && o->name != NULL; ++o)
-    print_option(o, out);
+  option_print(k->options, out);
   if (k->names != NULL)
     fputs("  and the options of what it names: protis --list\n", out);
   if (k->data[0] != '\0') fprintf(out, "  data lines: %s\n", k->data);
