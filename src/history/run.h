@@ -17,6 +17,8 @@ typedef struct equilibrium {
   energies energy;
 } equilibrium;
 
+typedef struct velocity velocity; /* velocity.c                               */
+
 typedef struct run {
   const model *m;
   const mesh *msh;
@@ -47,6 +49,7 @@ typedef struct run {
   /* Contact problem of the increment. */
   double *f, *gap, *side_gap, *ut0; /* [m], [n], [n*(dim-1)] twice            */
   contact_problem cp;
+  velocity *velocity; /* NULL until an increment is solved in that form */
 
   equilibrium old, now;
   double *start; /* [dim*n_node] displacements at the start of the step, m    */
@@ -67,6 +70,13 @@ void run_free(run *r);
 
 /* increment.c: the equilibrium at time t into r->now; read r->report. */
 status increment_solve(run *r, double t);
+
+/* velocity.c: r->cp as a problem in the displacement *du[m] of the increment
+ * (zero at first), borrowed from r until the next one. */
+status velocity_problem(run *r, contact_problem *cp, double **du);
+/* The solution du added to r->old.uc, into r->now.uc. */
+void velocity_apply(run *r);
+void velocity_free(velocity *v); /* accepts NULL                              */
 
 /* result.c: stresses, reactions, totals, energies of r->now as far as the
  * effects call for them and "due" says. */

@@ -124,6 +124,8 @@ static void free_surface(run *r) {
   memory_free(r->contact);
   r->contact = NULL;
   friction_limit_free(&r->limit);
+  velocity_free(r->velocity);
+  r->velocity = NULL;
 }
 
 void run_free(run *r) {

@@ -87,9 +87,7 @@ status apply_quasistatic(reading *r) {
   if (second_procedure(r)) return OK;
   s->kind = STEP_QUASISTATIC;
   s->dt = s->total = s->dt_min = 1.0;
-  if (p->form != 0)
-    message_add(r->m->log, P2002, value_place(r, "FORM"),
-                "FORM=VELOCITY is not available in this version");
+  s->form = p->form;
   if (record_fields(r, line, 2, 4, "dt, total [, dt_min [, dt_max]]") != 0)
     return OK;
   const field *f = line->fields;

@@ -80,8 +80,8 @@ static const option amplitude_options[] = {
                 "STEP TIME", "which time the table counts"),
   OPTION_END};
 static const option quasistatic_options[] = {
-  OPTION_CHOICE(quasistatic_param, form, "FORM", "DISPLACEMENT|VELOCITY",
-                "DISPLACEMENT", "N2 or N3 of CPR98"),
+  OPTION_CHOICE(quasistatic_param, form, "FORM", STEP_FORMS, "DISPLACEMENT",
+                "unknown of an increment: N2 or N3 of CPR98, one answer"),
   OPTION_END};
 static const option load_options[] = {
   OPTION_NAME(load_param, amplitude, "AMPLITUDE", OPTION_ABSENT,

@@ -95,6 +95,9 @@ typedef struct load_list {
 } load_list;
 
 typedef enum { STEP_NONE, STEP_STATIC, STEP_QUASISTATIC } step_kind;
+/* Unknown of an increment: the displacement (CPR98, N2) or its change (N3). */
+typedef enum { FORM_DISPLACEMENT, FORM_VELOCITY } step_form;
+#define STEP_FORMS "DISPLACEMENT|VELOCITY"
 
 enum {
   PRINT_CONTACT = 1,
@@ -117,6 +120,7 @@ typedef struct step {
   const char *name;
   place at;
   int kind;                 /* step_kind                             */
+  int form;                 /* step_form                             */
   double start;             /* total time, s                         */
   double dt, total, dt_min; /* s                                     */
   load_list loads;  /* all in force, those kept from before included        */

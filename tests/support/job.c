@@ -200,6 +200,12 @@ int dat_column(const dat *d, const char *name) {
   return -1;
 }
 
+int dat_has(const dat *d, const char *name) {
+  for (int c = 0; c < d->n_col; ++c)
+    if (strcmp(d->name[c], name) == 0) return 1;
+  return 0;
+}
+
 double dat_at(const dat *d, int row, const char *name) {
   ck_assert(row >= 0 && row < d->n_row);
   return d->value[row * d->n_col + dat_column(d, name)];

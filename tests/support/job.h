@@ -45,6 +45,7 @@ char *job_file(const job *j, const char *suffix);
 dat job_table(const job *j, const char *kind, int k);
 void dat_free(dat *d);
 int dat_column(const dat *d, const char *name); /* check fails if absent      */
+int dat_has(const dat *d, const char *name); /* 1: the column is there        */
 double dat_at(const dat *d, int row, const char *name);
 /* Row whose "name" is nearest to value. */
 int dat_row_near(const dat *d, const char *name, double value);

@@ -1,0 +1,196 @@
+/*
+ * The forms of one quasistatic problem (CPR98): increments in the displacement
+ * (N2) and in its change (N3), and one static problem (P2). Where theory says
+ * that they have one answer, they must give it.
+ */
+#include "solver/solver.h"
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <glob.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINE = 512 };
+
+/* Copy of a deck in the folder of the job: each *QUASISTATIC in the form asked
+ * for, the displacements printed in each step. The number of such steps. */
+static int write_in_form(const job *j, const char *path, const char *form) {
+  char line[LINE], copy[LINE];
+  int found = 0;
+  snprintf(copy, sizeof copy, "%s/%s.inp", j->dir, j->name);
+  FILE *from = fopen(path, "r"), *to = fopen(copy, "w");
+  ck_assert_ptr_nonnull(from);
+  ck_assert_ptr_nonnull(to);
+  while (fgets(line, sizeof line, from) != NULL) {
+    int here = strncmp(line, "*QUASISTATIC", 12) == 0;
+    found += here;
+    if (strncmp(line, "*END STEP", 9) == 0) fputs("*PRINT, NODES\n", to);
+    if (here)
+      fprintf(to, "*QUASISTATIC, FORM=%s\n", form);
+    else
+      fputs(line, to);
+  }
+  fclose(from);
+  ck_assert_int_eq(fclose(to), 0);
+  return found;
+}
+
+/* The displacements of two runs at every increment, over their largest. */
+static void compare_nodes(const job *a, const job *b, int n, double tol) {
+  static const char *const names[] = {"u_x", "u_y", "u_z"};
+  for (int k = 0; k < n; ++k) {
+    dat p = job_table(a, "NODES", k), q = job_table(b, "NODES", k);
+    double scale = fmax(dat_max(&p, "u_x"), dat_max(&p, "u_y"));
+    ck_assert_int_eq(p.n_row, q.n_row);
+    ck_assert_int_eq(p.n_col, q.n_col);
+    for (int c = 0; c < 3 && dat_has(&p, names[c]); ++c)
+      for (int i = 0; i < p.n_row; ++i) {
+        double miss = dat_at(&p, i, names[c]) - dat_at(&q, i, names[c]);
+        ck_assert_msg(fabs(miss) <= tol * scale,
+                      "%s, block %d, row %d: %s differs by %.3g of the largest",
+                      a->name, k, i, names[c], miss / scale);
+      }
+    dat_free(&p);
+    dat_free(&q);
+  }
+}
+
+/* Blocks of the displacements in JOB.dat. */
+static int count_blocks(const job *j) {
+  int n = 0;
+  char *text = job_file(j, "dat"), *at = text;
+  ck_assert_ptr_nonnull(text);
+  while ((at = strstr(at, " table NODES")) != NULL) {
+    ++n;
+    ++at;
+  }
+  free(text);
+  return n;
+}
+
+/* Calls of a stage in the closing table of the listing. */
+static long stage_calls(const job *j, const char *stage) {
+  char *text = job_file(j, "lst");
+  ck_assert_ptr_nonnull(text);
+  char *at = strstr(text, stage);
+  ck_assert_msg(at != NULL, "no stage '%s'", stage);
+  long calls = strtol(at + strlen(stage), NULL, 10);
+  free(text);
+  return calls;
+}
+
+/* Copy what matches into the folder of the job. */
+static void copy_all(const job *j, int length, const char *folder,
+                     const char *pattern) {
+  char all[2 * LINE];
+  glob_t files;
+  snprintf(all, sizeof all, "%.*s%s", length, folder, pattern);
+  if (glob(all, 0, NULL, &files) == 0)
+    for (size_t i = 0; i < files.gl_pathc; ++i) job_copy(j, files.gl_pathv[i]);
+  globfree(&files);
+}
+
+/* One deck in a folder with its mesh. */
+static job run_in_form(const char *path, const char *form, int *steps) {
+  const char *name = strrchr(path, '/') + 1;
+  job j = job_begin("");
+  snprintf(j.name, sizeof j.name, "%.*s", (int)(strlen(name) - 4), name);
+  copy_all(&j, (int)(name - path), path, "*.geo");
+  copy_all(&j, (int)(name - path), path, "*.msh");
+  *steps = write_in_form(&j, path, form);
+  if (*steps == 0) return j;
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "%s, %s: exit %d: %s", path, form, code, j.errors);
+  return j;
+}
+
+/* Also those that come later: every deck of input/ with a quasistatic step. */
+START_TEST(both_forms_agree_on_every_example) {
+  glob_t decks;
+  int compared = 0;
+  ck_assert_int_eq(glob("input/*/*.inp", 0, NULL, &decks), 0);
+  for (size_t i = 0; i < decks.gl_pathc; ++i) {
+    int steps = 0;
+    job a = run_in_form(decks.gl_pathv[i], "DISPLACEMENT", &steps);
+    if (steps > 0) {
+      job b = run_in_form(decks.gl_pathv[i], "VELOCITY", &steps);
+      ck_assert_int_eq(stage_calls(&a, "velocity form"), 0);
+      ck_assert_int_gt(stage_calls(&b, "velocity form"), 0);
+      compare_nodes(&a, &b, count_blocks(&a), 1e-8);
+      job_end(&b);
+      ++compared;
+    }
+    job_end(&a);
+  }
+  globfree(&decks);
+  ck_assert_int_ge(compared, 5);
+}
+END_TEST
+
+/* Unit square pushed from the side, held on the right; the obstacle moves. */
+static job run_square(const char *solver, const char *procedure,
+                      const char *move, const char *loads) {
+  job j = job_begin("square");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "square.inp",
+            "*PARAMETER\nN = 6\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.6\n"
+            "*STEP\n%s*BOUNDARY\nRIGHT, 1, 2\n%s*SOLVER, METHOD=%s\n"
+            "*PRINT, NODES\n*END STEP\n",
+            move, procedure, loads, solver);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "%s: exit %d: %s", solver, code, j.errors);
+  return j;
+}
+
+/* Push, then let go half of it: part of the slip stays. Every method. */
+START_TEST(both_forms_agree_with_every_method) {
+  static const char loads[] =
+      "*DSLOAD\nTOP, P, \"5*min(1, 2*t)\"\nLEFT, P, \"15*(1-abs(2*t-1))\"\n";
+  static const char move[] = "MOVE, \"2e-3*t^2\", \"1e-3*t\"\n";
+  for (int k = 0; solver_list[k] != NULL; ++k) {
+    const char *name = solver_list[k]->name;
+    job a = run_square(name, "*QUASISTATIC\n0.25, 1.\n", move, loads);
+    job b = run_square(name, "*QUASISTATIC, FORM=VELOCITY\n0.25, 1.\n", move,
+                       loads);
+    compare_nodes(&a, &b, 4, 1e-8);
+    job_end(&a);
+    job_end(&b);
+  }
+}
+END_TEST
+
+/* A load that grows in proportion: one static problem, or increments. */
+START_TEST(proportional_load_needs_no_path) {
+  static const char loads[] = "*DSLOAD\nTOP, P, 5.\nLEFT, P, 15.\n";
+  static const char *const procedures[] = {
+      "*QUASISTATIC\n0.1, 1.\n", "*QUASISTATIC, FORM=VELOCITY\n0.1, 1.\n"};
+  job one = run_square("AUTO", "*STATIC\n", "", loads);
+  dat p = job_table(&one, "NODES", -1);
+  double scale = dat_max(&p, "u_x");
+  for (int k = 0; k < 2; ++k) {
+    job j = run_square("AUTO", procedures[k], "", loads);
+    dat q = job_table(&j, "NODES", -1);
+    for (int i = 0; i < p.n_row; ++i) {
+      ck_assert_double_eq_tol(dat_at(&p, i, "u_x"), dat_at(&q, i, "u_x"),
+                              1e-8 * scale);
+      ck_assert_double_eq_tol(dat_at(&p, i, "u_y"), dat_at(&q, i, "u_y"),
+                              1e-8 * scale);
+    }
+    dat_free(&q);
+    job_end(&j);
+  }
+  dat_free(&p);
+  job_end(&one);
+}
+END_TEST
+
+UNIT_MAIN("forms", both_forms_agree_on_every_example,
+          both_forms_agree_with_every_method, proportional_load_needs_no_path)
