@@ -1,0 +1,378 @@
+/*
+ * Every inelastic law, by its row: what any law must satisfy. The states come
+ * from random histories of stress, so that alpha is one that can be reached.
+ */
+#include "support/law_case.h"
+#include "support/unit.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+static const double young = 1e5, nu = 0.3, stress = 150;
+
+/* In ]-1, 1[ (Knuth's linear congruential generator). */
+static double random_number(unsigned long long *seed) {
+  *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
+  return (double)(*seed >> 11) / 4503599627370496.0 - 1;
+}
+
+/* v = R v R': stress (shear 1) or strain (shear 2) in Voigt components. */
+static void rotate(int ns, const double R[9], double shear, double *v) {
+  static const int row[6] = {0, 1, 2, 0, 1, 2}, col[6] = {0, 1, 2, 1, 2, 0};
+  double A[9] = {0}, B[9] = {0};
+  for (int i = 0; i < ns; ++i)
+    A[row[i] + 3 * col[i]] = A[col[i] + 3 * row[i]] =
+        i < 3 ? v[i] : v[i] / shear;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < 3; ++l)
+          B[i + 3 * j] += R[i + 3 * k] * A[k + 3 * l] * R[j + 3 * l];
+  for (int i = 0; i < ns; ++i)
+    v[i] = (i < 3 ? 1 : shear) * B[row[i] + 3 * col[i]];
+}
+
+/* About z, and in 3-D then about x. */
+static void rotation(int ns, double R[9]) {
+  const double c = cos(0.7), s = sin(0.7), C = cos(1.9), S = sin(1.9);
+  const double plane[9] = {c, s, 0, -s, c, 0, 0, 0, 1};
+  const double solid[9] = {c, s * C, s * S, -s, c * C, c * S, 0, -S, C};
+  memcpy(R, ns == 4 ? plane : solid, 9 * sizeof *R);
+}
+
+/* A history of random stresses, each rotated by R; the last stays. Explicit
+ * steps well below the limit of stability. */
+static void random_history(law_case *c, int n_in_plane, const double *R,
+                           unsigned long long seed) {
+  double ei_rate[6];
+  static double alpha_rate[LAW_ALPHA_MAX];
+  for (int k = 0; k < 12; ++k) {
+    double limit;
+    memset(c->sigma, 0, sizeof c->sigma);
+    for (int i = 0; i < 6; ++i) {
+      const double x = stress * random_number(&seed);
+      if (i < n_in_plane) c->sigma[i] = x;
+    }
+    if (c->elastic.plane_stress) c->sigma[2] = 0;
+    if (R != NULL) rotate(c->ns, R, 1, c->sigma);
+    law_point p = law_case_point(c);
+    ck_assert_int_eq(law_fastest_rate(&p, &limit), OK);
+    if (k == 11) break;
+    c->dt = 0.1 / (1 + limit);
+    p.dt = c->dt;
+    law_rate(&p, ei_rate, alpha_rate);
+    c->t += c->dt;
+    for (int i = 0; i < c->ns; ++i) c->ei[i] += c->dt * ei_rate[i];
+    for (int i = 0; i < c->n_alpha; ++i) c->alpha[i] += c->dt * alpha_rate[i];
+  }
+}
+
+typedef void check_fn(law_case *c);
+
+/* Call for every law, word and kinematics, over some histories. */
+static void for_all_of(const law_ops *ops, int n_history, check_fn *check) {
+  static const kinematics kin[] = {PLANE_STRAIN, PLANE_STRESS, AXISYMMETRIC,
+                                   SOLID_3D};
+  static law_case c;
+  for (int w = 0; law_case_new(ops, w, NULL, young, nu, PLANE_STRAIN, &c);
+       ++w) {
+    law_case_free(&c);
+    for (int k = 0; k < 4; ++k)
+      for (int h = 0; h < n_history; ++h) {
+        law_case_new(ops, w, NULL, young, nu, kin[k], &c);
+        random_history(&c, c.ns, NULL, 1u + (unsigned)h);
+        check(&c);
+        law_case_free(&c);
+      }
+  }
+}
+
+static void for_all(int n_history, check_fn *check) {
+  for (int k = 0; law_list[k] != NULL; ++k)
+    for_all_of(law_list[k], n_history, check);
+}
+
+static double largest(const double *x, int n) {
+  double m = 0;
+  for (int i = 0; i < n; ++i) m = fmax(m, fabs(x[i]));
+  return m;
+}
+
+static void same(const law_case *c, const double *a, const double *b, int n,
+                 double tol, const char *what) {
+  const double scale = fmax(largest(a, n), largest(b, n));
+  for (int i = 0; i < n; ++i)
+    ck_assert_msg(fabs(a[i] - b[i]) <= tol * scale,
+                  "%s, ns %d: %s, component %d: %.12g and %.12g",
+                  c->card.ops->name, c->ns, what, i, a[i], b[i]);
+}
+
+/* Rates of (e^i, alpha) in one vector. */
+static void rates(law_case *c, double *out) {
+  law_point p = law_case_point(c);
+  law_rate(&p, out, out + c->ns);
+}
+
+static void check_rest(law_case *c) {
+  double out[6 + LAW_ALPHA_MAX], limit;
+  memset(c->sigma, 0, sizeof c->sigma);
+  memset(c->ei, 0, sizeof c->ei);
+  memset(c->alpha, 0, sizeof c->alpha);
+  rates(c, out);
+  for (int i = 0; i < c->ns + c->n_alpha; ++i)
+    ck_assert_msg(out[i] == 0, "%s: rate %d at rest", c->card.ops->name, i);
+  law_point p = law_case_point(c);
+  ck_assert(law_dissipation(&p) == 0);
+  ck_assert(law_stored(&p) == 0);
+  ck_assert_int_eq(law_fastest_rate(&p, &limit), OK);
+  ck_assert(isfinite(limit));
+}
+
+START_TEST(nothing_happens_at_rest) { for_all(1, check_rest); }
+END_TEST
+
+static void check_dissipation(law_case *c) {
+  double out[6 + LAW_ALPHA_MAX];
+  law_point p = law_case_point(c);
+  const double lost = law_dissipation(&p);
+  rates(c, out);
+  double scale = 0;
+  for (int i = 0; i < c->ns; ++i) scale += fabs(c->sigma[i] * out[i]);
+  ck_assert_msg(lost >= -1e-13 * scale, "%s: dissipation %g", c->card.ops->name,
+                lost);
+  if (law_flows(&p)) ck_assert(lost > 0 && isfinite(lost));
+}
+
+START_TEST(dissipation_is_not_negative) { for_all(20, check_dissipation); }
+END_TEST
+
+/* State moved along its rates by h: the energy kept. */
+static double stored_at(law_case *c, const double *out, double h) {
+  static law_case moved;
+  moved = *c;
+  for (int i = 0; i < c->ns; ++i) moved.ei[i] += h * out[i];
+  for (int i = 0; i < c->n_alpha; ++i) moved.alpha[i] += h * out[c->ns + i];
+  law_point p = law_case_point(&moved);
+  return law_stored(&p);
+}
+
+static void check_power(law_case *c) {
+  double out[6 + LAW_ALPHA_MAX], power = 0, scale = 0;
+  rates(c, out);
+  for (int i = 0; i < c->ns; ++i) power += c->sigma[i] * out[i];
+  law_point p = law_case_point(c);
+  const double lost = law_dissipation(&p), fast = largest(out, c->ns);
+  if (!(fast > 0)) return;
+  const double h = 1e-2 * largest(c->ei, c->ns) / fast;
+  const double kept = (8 * (stored_at(c, out, h) - stored_at(c, out, -h)) -
+                       stored_at(c, out, 2 * h) + stored_at(c, out, -2 * h)) /
+                      (12 * h);
+  scale = fmax(fabs(power), fmax(fabs(lost), law_stored(&p) / h));
+  ck_assert_msg(fabs(power - lost - kept) <= 1e-8 * scale,
+                "%s: power %.12g, lost %.12g, kept %.12g", c->card.ops->name,
+                power, lost, kept);
+}
+
+START_TEST(power_is_lost_or_kept) { for_all(10, check_power); }
+END_TEST
+
+/* Column of d(rates)/d(*x) by central differences of order 4. */
+static void difference(law_case *c, double *x, double h, double *column) {
+  static double far[2][6 + LAW_ALPHA_MAX], near[2][6 + LAW_ALPHA_MAX];
+  const double keep = *x;
+  *x = keep + h;
+  rates(c, near[0]);
+  *x = keep - h;
+  rates(c, near[1]);
+  *x = keep + 2 * h;
+  rates(c, far[0]);
+  *x = keep - 2 * h;
+  rates(c, far[1]);
+  *x = keep;
+  for (int i = 0; i < c->ns + c->n_alpha; ++i)
+    column[i] =
+        (8 * (near[0][i] - near[1][i]) - (far[0][i] - far[1][i])) / (12 * h);
+}
+
+enum { ROOM = (6 + LAW_ALPHA_MAX) * (6 + LAW_ALPHA_MAX) };
+
+/* Step for a number of alpha: a part of the largest. */
+static double alpha_step(const law_case *c, int i) {
+  const double h = 1e-4 * fabs(c->alpha[i]);
+  return h > 0 ? h : 1e-4 * fmax(largest(c->alpha, c->n_alpha), 1e-6);
+}
+
+/* Block J[rows * columns] against D[n * ...] from its place on. */
+static void same_block(const law_case *c, const double *J, int rows,
+                       int columns, const double *D, const char *what) {
+  static double by[ROOM];
+  for (int j = 0; j < columns; ++j)
+    for (int i = 0; i < rows; ++i)
+      by[i + rows * j] = D[i + (c->ns + c->n_alpha) * j];
+  same(c, J, by, rows * columns, 1e-7, what);
+}
+
+static void check_jacobian(law_case *c) {
+  static double room[5][ROOM], D[2 * ROOM];
+  law_jacobian j = {room[0], room[1], room[2], room[3], room[4]};
+  const int ns = c->ns, na = c->n_alpha, n = ns + na;
+  law_point p = law_case_point(c);
+  law_jacobian_at(&p, &j);
+  for (int k = 0; k < ns; ++k) {
+    difference(c, &c->sigma[k], 1e-4 * stress, D + n * k);
+    difference(c, &c->ei[k], 1e-6, D + n * (ns + k));
+  }
+  for (int k = 0; k < na; ++k)
+    difference(c, &c->alpha[k], alpha_step(c, k), D + n * (2 * ns + k));
+  same_block(c, j.ei_sigma, ns, ns, D, "d(e^i')/d(sigma)");
+  same_block(c, j.ei_ei, ns, ns, D + n * ns, "d(e^i')/d(e^i)");
+  same_block(c, j.ei_alpha, ns, na, D + n * 2 * ns, "d(e^i')/d(alpha)");
+  same_block(c, j.alpha_sigma, na, ns, D + ns, "d(alpha')/d(sigma)");
+  same_block(c, j.alpha_alpha, na, na, D + n * 2 * ns + ns,
+             "d(alpha')/d(alpha)");
+  if (!c->card.ops->uses_ei) ck_assert(largest(j.ei_ei, ns * ns) == 0);
+}
+
+START_TEST(jacobian_agrees_with_differences) { for_all(5, check_jacobian); }
+END_TEST
+
+/* The coupled matrix from differences of the rates under held strain. */
+static void check_fastest(law_case *c) {
+  static double M[ROOM], column[6 + LAW_ALPHA_MAX], re[2][6 + LAW_ALPHA_MAX];
+  const int ns = c->ns, na = c->n_alpha, n = ns + na;
+  double limit, radius = 0;
+  memset(M, 0, sizeof M);
+  for (int k = 0; k < ns; ++k) { /* sigma = E (e - e^i)                       */
+    difference(c, &c->sigma[k], 1e-4 * stress, column);
+    for (int j = 0; j < ns; ++j)
+      for (int i = 0; i < n; ++i)
+        M[i + n * j] -= column[i] * c->elastic.E[k + ns * j];
+    difference(c, &c->ei[k], 1e-6, column);
+    for (int i = 0; i < n; ++i) M[i + n * k] += column[i];
+  }
+  for (int k = 0; k < na; ++k)
+    difference(c, &c->alpha[k], alpha_step(c, k), M + n * (ns + k));
+  ck_assert_int_eq(LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, M, n, re[0],
+                                 re[1], NULL, 1, NULL, 1),
+                   0);
+  for (int i = 0; i < n; ++i) radius = fmax(radius, hypot(re[0][i], re[1][i]));
+  law_point p = law_case_point(c);
+  ck_assert_int_eq(law_fastest_rate(&p, &limit), OK);
+  same(c, &limit, &radius, 1, 1e-6, "fastest rate");
+}
+
+START_TEST(fastest_rate_is_the_largest_eigenvalue) {
+  for_all(5, check_fastest);
+}
+END_TEST
+
+/* The same history seen from a turned frame gives turned rates. */
+static void check_frame(law_case *c) {
+  static law_case turned;
+  double R[9], one[6 + LAW_ALPHA_MAX], two[6 + LAW_ALPHA_MAX];
+  if (c->elastic.plane_stress && c->ns == 6) return;
+  rotation(c->ns, R);
+  rates(c, one);
+  turned = *c;
+  memset(turned.ei, 0, sizeof turned.ei);
+  memset(turned.alpha, 0, sizeof turned.alpha);
+  turned.t = 0;
+  turned.dt = 0.1;
+  random_history(&turned, c->ns, R, 1);
+  rates(&turned, two);
+  rotate(c->ns, R, 2, one);
+  same(c, one, two, c->ns, 1e-11, "rate in a turned frame");
+}
+
+START_TEST(a_turned_stress_gives_turned_rates) { for_all(1, check_frame); }
+END_TEST
+
+/* Plane strain and axisymmetric components are those of 3-D. */
+static void check_plane(law_case *c) {
+  static law_case solid;
+  double one[6 + LAW_ALPHA_MAX], two[6 + LAW_ALPHA_MAX];
+  if (c->ns == 6 || c->elastic.plane_stress) return;
+  rates(c, one);
+  solid = *c;
+  double C6[36];
+  char text[100];
+  elastic_matrix(ELASTIC_ISO, 2, (double[]){young, nu}, C6, text, sizeof text);
+  law_elastic_set(C6, ELASTIC_ISO, SOLID_3D, &solid.elastic);
+  solid.ns = 6;
+  solid.n_alpha = law_n_alpha(&solid.card, 6);
+  memset(solid.ei, 0, sizeof solid.ei);
+  memset(solid.alpha, 0, sizeof solid.alpha);
+  solid.t = 0;
+  solid.dt = 0.1;
+  random_history(&solid, 4, NULL, 1);
+  rates(&solid, two);
+  same(c, one, two, 4, 1e-11, "plane and 3-D");
+  ck_assert(two[4] == 0 && two[5] == 0);
+}
+
+START_TEST(plane_rates_are_those_of_3d) { for_all(1, check_plane); }
+END_TEST
+
+/* Uniaxial stress along x: y and z flow alike, so zz is carried. */
+static void check_lateral(law_case *c) {
+  double out[6 + LAW_ALPHA_MAX];
+  memset(c->sigma, 0, sizeof c->sigma);
+  memset(c->ei, 0, sizeof c->ei);
+  memset(c->alpha, 0, sizeof c->alpha);
+  c->sigma[0] = 2 * stress;
+  rates(c, out);
+  ck_assert_msg(out[0] > 0 && out[2] < 0, "%s", c->card.ops->name);
+  ck_assert_double_eq_tol(out[1], out[2], 1e-14 * out[0]);
+}
+
+START_TEST(lateral_directions_flow_alike) { for_all(1, check_lateral); }
+END_TEST
+
+/* Linear rows: rates are the Jacobian times the state. */
+static void check_linear(law_case *c) {
+  static double room[5][ROOM];
+  double out[6 + LAW_ALPHA_MAX], sum[6 + LAW_ALPHA_MAX] = {0};
+  law_jacobian j = {room[0], room[1], room[2], room[3], room[4]};
+  const int ns = c->ns, na = c->n_alpha;
+  if (!c->card.ops->linear) return;
+  law_point p = law_case_point(c);
+  law_jacobian_at(&p, &j);
+  rates(c, out);
+  for (int i = 0; i < ns; ++i) {
+    for (int k = 0; k < ns; ++k)
+      sum[i] +=
+          j.ei_sigma[i + ns * k] * c->sigma[k] + j.ei_ei[i + ns * k] * c->ei[k];
+    for (int k = 0; k < na; ++k) sum[i] += j.ei_alpha[i + ns * k] * c->alpha[k];
+  }
+  for (int i = 0; i < na; ++i) {
+    for (int k = 0; k < ns; ++k)
+      sum[ns + i] += j.alpha_sigma[i + na * k] * c->sigma[k];
+    for (int k = 0; k < na; ++k)
+      sum[ns + i] += j.alpha_alpha[i + na * k] * c->alpha[k];
+  }
+  same(c, out, sum, ns + na, 1e-12, "linear law");
+}
+
+START_TEST(a_linear_law_is_its_jacobian) { for_all(5, check_linear); }
+END_TEST
+
+static void check_flows(law_case *c) {
+  double out[6 + LAW_ALPHA_MAX];
+  for (int k = 0; k < 40; ++k) {
+    for (int i = 0; i < c->ns; ++i) c->sigma[i] *= 0.8;
+    law_point p = law_case_point(c);
+    rates(c, out);
+    ck_assert_int_eq(law_flows(&p), largest(out, c->ns + c->n_alpha) > 0);
+  }
+}
+
+START_TEST(a_law_flows_where_a_rate_is_not_zero) { for_all(5, check_flows); }
+END_TEST
+
+UNIT_MAIN("law", nothing_happens_at_rest, dissipation_is_not_negative,
+          power_is_lost_or_kept, jacobian_agrees_with_differences,
+          fastest_rate_is_the_largest_eigenvalue,
+          a_turned_stress_gives_turned_rates, plane_rates_are_those_of_3d,
+          lateral_directions_flow_alike, a_linear_law_is_its_jacobian,
+          a_law_flows_where_a_rate_is_not_zero)
