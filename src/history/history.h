@@ -21,11 +21,14 @@ typedef struct energies {
   double strain;   /* J, now                                              */
   double external; /* J, work of loads and prescribed displacements so far */
   double friction; /* J, dissipated so far, trapezoidal                   */
-  double friction_end; /* J, dissipated so far, limit of the increment's end  */
+  double friction_end; /* J, dissipated so far, limit of the increment's end;
+                          a static problem starts it anew, from the origin  */
   double normal;       /* J, work of the normal contact forces so far: moving
                           obstacles, and by the trapezoidal rule gaps that open
                           or close within an increment                        */
   double defect;       /* J, external + normal - friction - strain            */
+  double largest;      /* J, largest magnitude of the four so far: the scale
+                          of the defect, also once all is unloaded            */
 } energies;
 
 /* One accepted increment. Arrays are borrowed and live until the next one. */
@@ -43,7 +46,8 @@ typedef struct state {
                                 has numbers 1 to n and no geometry (x NULL) */
   const double *uc, *rc; /* [dim*n] contact frame, m, N                     */
   const double *gap;     /* [n] gap left open: gap0 - u_n, m                */
-  const double *slip;    /* [(dim-1)*n] slip of the increment, m            */
+  const double *slip;    /* [(dim-1)*n] slip of the increment, of a static
+                            problem from the origin, m                      */
   const double *limit;   /* [n] sliding limit g, N; NULL: frictionless      */
   const contact_status *contact; /* [n]                                       */
   const contact_total *totals; /* [n_contact]                                 */

@@ -23,16 +23,25 @@ static void find_reactions(run *r) {
     }
 }
 
-/* Slip of the increment against the obstacle, gap left, status. */
+/* Motion of a contact unknown against the obstacle in the increment, m. */
+static double motion_over(const run *r, int k) {
+  return (r->now.uc[k] - r->old.uc[k]) - (r->now.motion[k] - r->old.motion[k]);
+}
+
+/* What friction acts against: in a static problem the motion from the origin
+ * (CPR98, P2), else that of the increment. */
+static double slip_of(const run *r, int k) {
+  if (r->step->kind == STEP_STATIC) return r->now.uc[k] - r->now.motion[k];
+  return motion_over(r, k);
+}
+
+/* Slip against the obstacle, gap left, status. */
 static void find_contact(run *r) {
   int dim = r->msh->dim;
   for (int i = 0; i < r->n; ++i) {
     r->open_gap[i] = r->gap[i] - r->now.uc[dim * i];
-    for (int a = 1; a < dim; ++a) {
-      int k = dim * i + a;
-      r->slip[(dim - 1) * i + a - 1] =
-          (r->now.uc[k] - r->old.uc[k]) - (r->now.motion[k] - r->old.motion[k]);
-    }
+    for (int a = 1; a < dim; ++a)
+      r->slip[(dim - 1) * i + a - 1] = slip_of(r, dim * i + a);
   }
   if (r->g != NULL) contact_limit(&r->cp, r->now.rc, r->g);
   contact_classify(&r->cp, r->now.uc, r->now.rc, r->contact);
@@ -102,21 +111,23 @@ static void find_energies(run *r) {
     e.external += 0.5 * (a->F[i] + b->F[i] + a->reaction[i] + b->reaction[i]) *
                   (b->u[i] - a->u[i]);
   double work = 0.0, friction = 0.0;
+  if (r->step->kind == STEP_STATIC) e.friction_end = 0.0;
   for (int i = 0; i < r->n; ++i) {
     for (int c = 0; c < dim; ++c) {
       int k = dim * i + c;
       work += 0.5 * (a->rc[k] + b->rc[k]) * (b->uc[k] - a->uc[k]);
       /* The side of a corner is a second obstacle, no friction. */
       if (c == 0 || r->surface->side_id[(dim - 1) * i + c - 1] >= 0) continue;
-      double slip = r->slip[(dim - 1) * i + c - 1];
-      friction -= 0.5 * (a->rc[k] + b->rc[k]) * slip;
-      e.friction_end -= b->rc[k] * slip;
+      friction -= 0.5 * (a->rc[k] + b->rc[k]) * motion_over(r, k);
+      e.friction_end -= b->rc[k] * slip_of(r, k);
     }
   }
   e.friction += friction;
   e.normal += work + friction;
   e.strain = domain_strain_energy(&r->d, b->u);
   e.defect = e.external + e.normal - e.friction - e.strain;
+  const double part[] = {e.external, e.normal, e.friction, e.strain};
+  for (int k = 0; k < 4; ++k) e.largest = fmax(e.largest, fabs(part[k]));
   r->now.energy = e;
 }
 

@@ -43,9 +43,7 @@ VALUE(normal_work, v->s->energy.normal)
 VALUE(energy_defect, v->s->energy.defect)
 
 double energy_defect_relative(const energies *e) {
-  double scale = fmax(fabs(e->strain), fabs(e->external));
-  scale = fmax(scale, fmax(fabs(e->friction), fabs(e->normal)));
-  return scale > 0 ? e->defect / scale : 0;
+  return e->largest > 0 ? e->defect / e->largest : 0;
 }
 VALUE(defect_relative, energy_defect_relative(&v->s->energy))
 
@@ -197,7 +195,7 @@ const column column_table[] = {
  energy_defect, NULL, "external + normal - friction - strain"},
 {"energy_defect_relative", "-", INC, PRINT_ENERGY, 0, ANY,
  "energy_defect_relative", 0, defect_relative, NULL,
- "the defect over the largest of the energies"},
+ "the defect over the largest of the energies so far"},
 
 {"node_no", "-", PER_NODE, AS_COUNT, NODES, 0, ANY, NULL, 0, node_no, NULL,
  "number in the mesh"},
@@ -343,11 +341,14 @@ const column column_table[] = {
  "traction_t2", 1, contact_traction, NULL,
  "tangential force over tributary area"},
 {"slip", "length", CON, PRINT_CONTACT, F, SCENE_FLAT, NEEDS_SURFACE, "slip",
- 0, contact_slip, NULL, "slip of the increment"},
+ 0, contact_slip, NULL,
+ "slip of the increment; *STATIC: from the origin"},
 {"slip_1", "length", CON, PRINT_CONTACT, F, SCENE_SOLID, NEEDS_SURFACE,
- "slip_1", 0, contact_slip, NULL, "slip of the increment"},
+ "slip_1", 0, contact_slip, NULL,
+ "slip of the increment; *STATIC: from the origin"},
 {"slip_2", "length", CON, PRINT_CONTACT, F, SCENE_SOLID, NEEDS_SURFACE,
- "slip_2", 1, contact_slip, NULL, "slip of the increment"},
+ "slip_2", 1, contact_slip, NULL,
+ "slip of the increment; *STATIC: from the origin"},
 {"limit", "force", CON, PRINT_CONTACT, F, SCENE_ALL,
  NEEDS_SURFACE | NEEDS_LIMIT, "limit", 0, sliding_limit, NULL,
  "sliding limit"},

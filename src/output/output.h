@@ -72,7 +72,8 @@ int column_visible(const column *c, const model *m);
 int column_ready(const column *c, const state *s);
 /* Number of items of an entity. */
 int column_items(entity of, const view *v);
-/* The defect over the largest of the energies; 0 if nothing moved yet. */
+/* The defect over the largest of the energies so far; 0 if nothing moved yet.
+ */
 double energy_defect_relative(const energies *e);
 /* Unit with the labels of *UNITS: "force/length^2" -> "N/mm^2". */
 void column_unit(const char *unit, const model *m, char *text, size_t size);

@@ -8,6 +8,7 @@
 #include <glob.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MAX = 64 };
@@ -53,6 +54,16 @@ static void compare(const job *j, const line *l) {
   dat_free(&d);
 }
 
+/* Energies balance at every increment, in parts of the largest so far. */
+static void check_balance(const job *j, const char *path) {
+  static const char key[] = "\"energy_defect_worst\":";
+  char *text = job_file(j, "json"), *at = strstr(text, key);
+  ck_assert_msg(at != NULL, "%s: no %s", path, key);
+  double worst = strtod(at + strlen(key), NULL);
+  ck_assert_msg(worst <= 1e-10, "%s: energy defect %.3g", path, worst);
+  free(text);
+}
+
 /* Run one deck (path without .inp) and compare its lines. */
 static void run_deck(const char *path, int n, const line *lines) {
   const char *name = strrchr(path, '/') + 1;
@@ -60,6 +71,7 @@ static void run_deck(const char *path, int n, const line *lines) {
   job j = job_begin(name);
   int code = job_run_deck(&j, path, "");
   ck_assert_msg(code == 0, "%s: exit %d: %s", path, code, j.errors);
+  check_balance(&j, path);
   for (int k = 0; k < n; ++k) {
     if (strcmp(lines[k].deck, name) != 0) continue;
     compare(&j, &lines[k]);

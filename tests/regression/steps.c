@@ -104,6 +104,59 @@ START_TEST(support_takes_over_from_contact) {
 }
 END_TEST
 
+/* Pressed without friction, then unloaded: nothing is left but rounding, which
+ * is small against what was there. */
+START_TEST(balance_is_that_of_the_largest_work) {
+  job j = run_cards(
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*STEP\n*QUASISTATIC\n0.3, 1.\n*BOUNDARY\nLEFT, 1\n"
+      "*DSLOAD\nTOP, P, \"1+7*x^2\"\n*PRINT, ENERGY\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n0.3, 1.\n*DSLOAD\nTOP, P, 0.\n*END STEP\n",
+      0);
+  for (int k = 0; k < 8; ++k) {
+    dat e = job_table(&j, "ENERGY", k);
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-12);
+    dat_free(&e);
+  }
+  job_end(&j);
+}
+END_TEST
+
+/* Sheared to slip one way; then a static problem with half the motion. Stick
+ * and slip of it are from the origin: sigma_xy = mu p = 4, G = 500, so that the
+ * foot has slipped 0.01 - 4/500 = 0.002 from the origin, and friction_work_end
+ * is 4 * 0.002; the quasistatic step before ends at 0.02 - 0.008 = 0.012. */
+START_TEST(static_problem_slips_from_the_origin) {
+  job j = run_cards(
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=F, LAW=COULOMB\n0.4\n"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 2, 2, -0.01\n"
+      "TOP, 1, 1, 0.02\n*DSLOAD\nRIGHT, TY, \"4*min(1, t)\"\n"
+      "LEFT, TY, \"-4*min(1, t)\"\n*PRINT, CONTACT, ENERGY\n*END STEP\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 1, 0.01\n*END STEP\n",
+      0);
+  static const double slip[] = {0.012, 0.002};
+  for (int k = 0; k < 2; ++k) {
+    dat c = job_table(&j, "CONTACT", k + 1), e = job_table(&j, "ENERGY", k + 1);
+    for (int i = 0; i < c.n_row; ++i) {
+      ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), 10, 1e-9);
+      ck_assert_double_eq_tol(dat_at(&c, i, "u_t"), slip[k], 1e-10);
+      if (k == 1)
+        ck_assert_double_eq_tol(dat_at(&c, i, "slip"), slip[k], 1e-10);
+    }
+    if (k == 1)
+      ck_assert_double_eq_tol(dat_at(&e, 0, "friction_work_end"), 4 * slip[k],
+                              1e-10);
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
+    dat_free(&c);
+    dat_free(&e);
+  }
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(same_contact_twice_is_refused) {
   job j = run_cards(
       "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
@@ -119,4 +172,5 @@ END_TEST
 UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
           gravity_turns_from_one_direction_to_the_other,
           corner_forces_belong_to_their_contacts,
-          support_takes_over_from_contact, same_contact_twice_is_refused)
+          support_takes_over_from_contact, balance_is_that_of_the_largest_work,
+          static_problem_slips_from_the_origin, same_contact_twice_is_refused)

@@ -146,7 +146,8 @@ void made_up_advance(made_up *run, int total_no) {
                               .iterations = 7,
                               .residual = 1e-12 * total_no,
                               .solver = "newton"};
-  s->energy = (energies){.strain = 2, .external = 5, .friction = 3 - 1e-9};
+  s->energy = (energies){
+      .strain = 2, .external = 5, .friction = 3 - 1e-9, .largest = 5};
   s->energy.defect = 1e-9;
   run->totals[0] = (contact_total){
       .force = {1.5, 2.5, -3.5}, .normal = -2.5 * total_no, .area = 0.75};
