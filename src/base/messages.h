@@ -211,7 +211,10 @@
     "a negative number, or overflows; or a friction value is negative.")     \
   X(2042, WARNING, "-D that the deck does not know",                         \
     "-D NAME=VALUE replaces the value of a *PARAMETER. A name of its own "   \
-    "serves a .geo only; check the spelling.")
+    "serves a .geo only; check the spelling.")                               \
+  X(2043, ERROR, "obstacle cannot turn this way",                            \
+    "In plane models ROTATE, x, y, angle turns about the point (x, y); "     \
+    "torsion about an axis of symmetry needs a model in three dimensions.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

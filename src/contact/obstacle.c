@@ -1,5 +1,6 @@
 /*
- * Distance from a point to a rigid obstacle along a line.
+ * Distance from a point to a rigid obstacle along a line, after point and line
+ * are turned and shifted back to where the obstacle started.
  *
  *   PLANE             (x + s n - p).N = 0
  *   CYLINDER, SPHERE  |y + s m|^2 = R^2, with y = x - p and m = n, in 3-D for a
@@ -67,18 +68,57 @@ void obstacle_motion(const obstacle *o, double t, double *d) {
   for (int c = 0; c < 3; ++c) d[c] = quantity_value(&o->motion[c], o->point, t);
 }
 
-int obstacle_normal(const obstacle *o, int dim, const double *x, double *n) {
-  int round = o->shape == OBSTACLE_CYLINDER || o->shape == OBSTACLE_SPHERE;
-  double axis = 0, length = 0, d[3], v[3] = {0, 0, 0};
-  if (!round && o->shape != OBSTACLE_PLANE) return 0;
-  obstacle_motion(o, 0, d);
-  for (int c = 0; c < dim; ++c)
-    v[c] = round ? x[c] - d[c] - o->point[c] : -o->direction[c];
+double obstacle_angle(const obstacle *o, double t) {
+  return o->turns ? quantity_value(&o->angle, o->point, t) : 0;
+}
+
+static void cross(const double *a, const double *b, double *c) {
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* v = R(a, angle) v (Rodrigues). */
+static void turn(const double *a, double angle, double *v) {
+  double across[3], sine = sin(angle), half = sin(angle / 2);
+  double along = dot(3, a, v) * 2 * half * half;
+  cross(a, v, across);
+  for (int c = 0; c < 3; ++c)
+    v[c] = cos(angle) * v[c] + sine * across[c] + along * a[c];
+}
+
+/* Displacement D[3] at time t of the point of the obstacle that is then at x,
+ * and n[3] turned back with it to where it started. */
+static void turn_back(const obstacle *o, const double *x, double t, double *D,
+                      double *n) {
+  double angle = obstacle_angle(o, t), arm[3], start[3];
+  for (int c = 0; c < 3; ++c) arm[c] = start[c] = x[c] - D[c] - o->pivot[c];
+  turn(o->axis, -angle, start);
+  turn(o->axis, -angle, n);
+  for (int c = 0; c < 3; ++c) D[c] += arm[c] - start[c];
+}
+
+/* Direction v[3] from y = x - point to a shape where it started; its length. */
+static double way_to_shape(const obstacle *o, int dim, const double *y,
+                           double *v) {
+  int round = o->shape != OBSTACLE_PLANE;
+  double axis = 0, sign = round && !o->inside ? -1 : 1;
+  for (int c = 0; c < dim; ++c) v[c] = round ? y[c] : -o->direction[c];
   if (o->shape == OBSTACLE_CYLINDER && dim == 3) axis = dot(3, v, o->direction);
-  for (int c = 0; c < dim; ++c) v[c] -= axis * o->direction[c];
-  length = sqrt(dot(dim, v, v));
+  for (int c = 0; c < dim; ++c) v[c] = sign * (v[c] - axis * o->direction[c]);
+  return sqrt(dot(dim, v, v));
+}
+
+int obstacle_normal(const obstacle *o, int dim, const double *x, double *n) {
+  double d[3], y[3] = {0, 0, 0}, v[3] = {0, 0, 0}, unused[3] = {0, 0, 0};
+  if (o->shape == OBSTACLE_CONFORMING || o->shape == OBSTACLE_GAP) return 0;
+  for (int c = 0; c < dim; ++c) y[c] = x[c];
+  obstacle_motion(o, 0, d);
+  if (o->turns) turn_back(o, y, 0, d, unused);
+  for (int c = 0; c < dim; ++c) y[c] = x[c] - d[c] - o->point[c];
+  double length = way_to_shape(o, dim, y, v);
   if (!(length > 0)) return 0;
-  if (round && !o->inside) length = -length;
+  if (o->turns) turn(o->axis, obstacle_angle(o, 0), v);
   for (int c = 0; c < dim; ++c) n[c] = v[c] / length;
   return 1;
 }
@@ -86,29 +126,56 @@ int obstacle_normal(const obstacle *o, int dim, const double *x, double *n) {
 int obstacle_moves(const obstacle *o) {
   unsigned variables = 0;
   for (int c = 0; c < 3; ++c) variables |= quantity_variables(&o->motion[c]);
+  if (o->turns) variables |= quantity_variables(&o->angle);
   if (o->shape == OBSTACLE_GAP) variables |= quantity_variables(&o->gap);
   return (variables & TIME_VARIABLE) != 0;
 }
 
 double obstacle_gap(const obstacle *o, int dim, const double *x,
                     const double *n, double t) {
-  double d[3], y[3] = {0, 0, 0}, beside[3] = {0, 0, 0};
+  double d[3], y[3], beside[3] = {0, 0, 0};
+  double at[3] = {0, 0, 0}, m[3] = {0, 0, 0};
+  for (int c = 0; c < dim; ++c) at[c] = x[c], m[c] = n[c];
   obstacle_motion(o, t, d);
+  if (o->turns) turn_back(o, at, t, d, m);
   double along = dot(dim, n, d);
-  for (int c = 0; c < dim; ++c) {
-    y[c] = x[c] - d[c] - o->point[c];
-    beside[c] = x[c] - (d[c] - along * n[c]);
-  }
+  for (int c = 0; c < 3; ++c) y[c] = at[c] - d[c] - o->point[c];
+  for (int c = 0; c < dim; ++c) beside[c] = x[c] - (d[c] - along * n[c]);
   switch ((obstacle_shape)o->shape) {
     case OBSTACLE_CONFORMING:
       return along;
     case OBSTACLE_PLANE:
-      return plane_gap(o, dim, y, n);
+      return plane_gap(o, dim, y, m);
     case OBSTACLE_CYLINDER:
     case OBSTACLE_SPHERE:
-      return round_gap(o, dim, y, n);
+      return round_gap(o, dim, y, m);
     case OBSTACLE_GAP:
       return quantity_value(&o->gap, beside, t) + along;
   }
   return NAN;
+}
+
+/* arm[3] from the axis to the point where x meets the obstacle at time t. */
+static void find_arm(const obstacle *o, int dim, const double *x,
+                     const double *n, double t, double *arm) {
+  double d[3], gap = obstacle_gap(o, dim, x, n, t);
+  if (!isfinite(gap)) gap = 0;
+  obstacle_motion(o, t, d);
+  for (int c = 0; c < 3; ++c) arm[c] = -d[c] - o->pivot[c];
+  for (int c = 0; c < dim; ++c) arm[c] += x[c] + gap * n[c];
+}
+
+void obstacle_drift(const obstacle *o, int dim, const double *x,
+                    const double *n, double t0, double t, double *d) {
+  double start[3], arm[3], end[3], way[3];
+  obstacle_motion(o, t0, start);
+  obstacle_motion(o, t, d);
+  for (int c = 0; c < 3; ++c) d[c] -= start[c];
+  double angle = obstacle_angle(o, t) - obstacle_angle(o, t0);
+  if (angle == 0) return;
+  find_arm(o, dim, x, n, t0, arm);
+  find_arm(o, dim, x, n, t, end);
+  for (int c = 0; c < 3; ++c) arm[c] = 0.5 * (arm[c] + end[c]);
+  cross(o->axis, arm, way);
+  for (int c = 0; c < 3; ++c) d[c] += angle * way[c];
 }

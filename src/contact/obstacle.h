@@ -1,6 +1,16 @@
 /*
  * Rigid obstacles: conforming (gap 0 everywhere), plane, cylinder, sphere, or a
  * gap given as an expression; each may move by an amplitude.
+ *
+ * The point X of the obstacle is at time t at
+ *   x = c + R(a, angle(t)) (X - c) + d(t),
+ * R the finite rotation by "angle" about the axis a through the pivot c, d the
+ * shift: the axis is carried along by d. Displacements of the body are small:
+ * normals and tangents stay those of the body (or of the obstacle) at time 0,
+ * the gap is measured along them to the obstacle as it lies at t, and what
+ * passes a node tangentially is the surface of the obstacle, velocity
+ *   v = d' + angle' a x (y - c - d)
+ * at the point y where the normal of the node meets it.
  */
 #ifndef PROTIS_CONTACT_OBSTACLE_H
 #define PROTIS_CONTACT_OBSTACLE_H
@@ -22,7 +32,10 @@ typedef struct obstacle {
   int inside; /* 1: the body is inside the cylinder or sphere        */
   double point[3], direction[3], radius; /* m; direction of unit length       */
   quantity gap;       /* OBSTACLE_GAP                                        */
-  quantity motion[3]; /* displacement of the obstacle at time t, m           */
+  quantity motion[3]; /* d: shift of the obstacle at time t, m               */
+  int turns;          /* 1: it has a rotation                                */
+  double pivot[3], axis[3]; /* c, m; a of unit length, in 2-D (0, 0, +-1)     */
+  quantity angle;           /* at time t, rad                                */
 } obstacle;
 
 /*
@@ -32,8 +45,10 @@ typedef struct obstacle {
  * is.  dim 2: a cylinder or sphere is a circle in the plane of the model, also
  * in an axisymmetric one (a sphere about the axis, else a ring).
  *
- * An obstacle only shifts, by d(t): CONFORMING gives n.d, GAP the expression
- * at the point that d has brought beside x, x - d + (n.d) n, plus n.d.
+ * With D the displacement of the point of the obstacle that is at x at time t,
+ * CONFORMING gives n.D, GAP the expression at the point that D has brought
+ * beside x, x - D + (n.D) n, plus n.D: exact for a shift and for a rotation
+ * about n, of first order in an angle that tilts the obstacle.
  */
 double obstacle_gap(const obstacle *o, int dim, const double *x,
                     const double *n, double t);
@@ -43,6 +58,16 @@ double obstacle_gap(const obstacle *o, int dim, const double *x,
 int obstacle_normal(const obstacle *o, int dim, const double *x, double *n);
 /* Shift d[3] of the obstacle at time t, m. */
 void obstacle_motion(const obstacle *o, double t, double *d);
+/* Its angle at time t, rad; 0 without a rotation. */
+double obstacle_angle(const obstacle *o, double t);
+/*
+ * Way d[3] of the surface of the obstacle past the point where the line from x
+ * along n meets it (x itself if it does not), from time t0 to t, m: v over the
+ * interval by the trapezoidal rule in the arm y - c - d, exact if the arm
+ * changes linearly with the angle.
+ */
+void obstacle_drift(const obstacle *o, int dim, const double *x,
+                    const double *n, double t0, double t, double *d);
 /* 1 if the gap can change with time. */
 int obstacle_moves(const obstacle *o);
 

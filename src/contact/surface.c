@@ -428,23 +428,8 @@ done:
   return st;
 }
 
-/* Shift of the obstacles since time 0 along the rows of the frame of node i. */
-static void row_motion(const contact_surface *s, const contact_pair *pairs,
-                       int i, double t, double *motion) {
-  int dim = s->dim;
-  for (int k = 0; k < dim; ++k) {
-    int side = k > 0 ? s->side_id[i * (dim - 1) + k - 1] : -1;
-    const obstacle *o = pairs[side >= 0 ? side : s->contact_id[i]].support;
-    double now[3], start[3];
-    obstacle_motion(o, t, now);
-    obstacle_motion(o, 0, start);
-    for (int c = 0; c < dim; ++c) now[c] -= start[c];
-    motion[k] = dot(dim, &s->frame[dim * dim * i + dim * k], now);
-  }
-}
-
 status surface_gap(const contact_surface *s, const surface_input *in, double t,
-                   double *gap, double *side_gap, double *motion) {
+                   double *gap, double *side_gap) {
   status st = OK;
   const contact_pair *pairs = in->pairs;
   for (int i = 0; i < s->n; ++i) {
@@ -455,10 +440,31 @@ status surface_gap(const contact_surface *s, const surface_input *in, double t,
       if (side < 0) continue;
       TRY(row_gap(s, &pairs[side], i, k, t, HUGE_VAL, &side_gap[at]));
     }
-    if (motion != NULL) row_motion(s, pairs, i, t, &motion[s->dim * i]);
   }
 done:
   return st;
+}
+
+/* Row k of the frame of node i meets the obstacle of its own contact. */
+static void row_drift(const contact_surface *s, const contact_pair *pairs,
+                      int i, int k, const double times[2], double *motion) {
+  int dim = s->dim;
+  int side = k > 0 ? s->side_id[i * (dim - 1) + k - 1] : -1;
+  const obstacle *o = pairs[side >= 0 ? side : s->contact_id[i]].support;
+  const double *frame = &s->frame[dim * dim * i], *row = frame + dim * k;
+  double way[3];
+  if (!obstacle_moves(o)) return;
+  obstacle_drift(o, dim, &s->x[dim * i], side >= 0 ? row : frame, times[0],
+                 times[1], way);
+  *motion += dot(dim, row, way);
+}
+
+void surface_drift(const contact_surface *s, const surface_input *in, double t0,
+                   double t, double *motion) {
+  const double times[2] = {t0, t};
+  for (int i = 0; i < s->n; ++i)
+    for (int k = 0; k < s->dim; ++k)
+      row_drift(s, in->pairs, i, k, times, &motion[s->dim * i + k]);
 }
 
 void surface_free(contact_surface *s) {

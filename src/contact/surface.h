@@ -67,11 +67,14 @@ status surface_build(const surface_input *in, message_log *log,
 /*
  * gap[n] at time t, m: the size of the mesh where the obstacle is out of
  * reach at that time.  side_gap[n*(dim-1)] (or NULL): HUGE_VAL without a second
- * obstacle.  motion[dim*n] (or NULL): displacement of the obstacle at the node
- * since time 0 in the contact frame, m.  ERR_DECK if a gap is not a number.
+ * obstacle.  ERR_DECK if a gap is not a number.
  */
 status surface_gap(const contact_surface *s, const surface_input *in, double t,
-                   double *gap, double *side_gap, double *motion);
+                   double *gap, double *side_gap);
+/* Adds to motion[dim*n] the way of the obstacle past each node from time t0 to
+ * t (obstacle_drift) in the contact frame, m. */
+void surface_drift(const contact_surface *s, const surface_input *in, double t0,
+                   double t, double *motion);
 /* 1 if node i touches a second obstacle: it has no friction. */
 int surface_is_corner(const contact_surface *s, int i);
 void surface_free(contact_surface *s); /* accepts NULL */

@@ -168,8 +168,9 @@ done:
 static status solve_contact(run *r, double t) {
   status st = OK;
   timer_enter(STAGE_SURFACE);
-  st =
-      surface_gap(r->surface, &r->input, t, r->gap, r->side_gap, r->now.motion);
+  st = surface_gap(r->surface, &r->input, t, r->gap, r->side_gap);
+  memcpy(r->now.motion, r->old.motion, (size_t)r->n_c * sizeof *r->now.motion);
+  surface_drift(r->surface, &r->input, r->old.t, t, r->now.motion);
   timer_leave(STAGE_SURFACE);
   TRY(st);
   TRY(update_limit(r, t));

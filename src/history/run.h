@@ -13,7 +13,8 @@ typedef struct equilibrium {
   double *F;        /* [dim*n_node] loads, N                                  */
   double *reaction; /* [dim*n_node] forces of the supports, N                 */
   double *uc, *rc;  /* [m] contact frame, m, N                                */
-  double *motion;   /* [m] of the obstacles since time 0, contact frame, m    */
+  double *motion;   /* [m] way of the obstacles past the nodes since time 0,
+                       added up over the increments, contact frame, m         */
   energies energy;
 } equilibrium;
 

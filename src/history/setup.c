@@ -234,8 +234,8 @@ static status build_surface(run *r) {
   TRY(new_contact_arrays(r));
   old_state_to_frames(r, force);
   leave_forces(r, force);
-  TRY(surface_gap(r->surface, &r->input, r->old.t, r->gap, r->side_gap,
-                  r->old.motion));
+  TRY(surface_gap(r->surface, &r->input, r->old.t, r->gap, r->side_gap));
+  surface_drift(r->surface, &r->input, 0.0, r->old.t, r->old.motion);
 done:
   memory_free(force);
   return st;

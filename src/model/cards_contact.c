@@ -17,14 +17,13 @@ static int read_point(const reading *r, const record *line, const char *what,
   return 0;
 }
 
-/* A direction of any length, made a unit vector. */
-static int read_direction(const reading *r, const record *line,
-                          const char *what, double d[3]) {
-  if (read_point(r, line, what, d) != 0) return -1;
+/* Make a direction of any length, read from "line", a unit vector. */
+static int normalise(const reading *r, const record *line, const char *what,
+                     double d[3]) {
   double largest = fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2])));
   if (largest == 0.0) {
-    message_add(r->m->log, P2027, &line->at, "*%s: the direction is zero",
-                r->card->name);
+    message_add(r->m->log, P2027, &line->at, "*%s: the %s is zero",
+                r->card->name, what);
     return -1;
   }
   for (int c = 0; c < 3; ++c) d[c] /= largest;
@@ -33,26 +32,82 @@ static int read_direction(const reading *r, const record *line,
   return 0;
 }
 
+static int read_direction(const reading *r, const record *line,
+                          const char *what, double d[3]) {
+  if (read_point(r, line, what, d) != 0) return -1;
+  return normalise(r, line, "direction", d);
+}
+
+/* A component of MOVE or the angle of ROTATE. */
+static int read_course(const reading *r, const record *line, int k,
+                       quantity *q) {
+  const field *f = &line->fields[k];
+  if (field_quantity(r, f, q) != 0) return -1;
+  if ((quantity_variables(q) & 7u) == 0) return 0;
+  message_add(r->m->log, P2033, &f->at,
+              "%s may depend on t only: the obstacle is rigid",
+              same_word(line->fields[0].text, "MOVE") ? "MOVE" : "ROTATE");
+  return -1;
+}
+
 /* MOVE, dx, dy[, dz] */
 static int read_move(const reading *r, const record *line, obstacle *o) {
   if (record_fields(r, line, 3, 4, "MOVE, dx, dy [, dz]") != 0) return -1;
-  for (int c = 1; c < line->n_field; ++c) {
-    quantity *q = &o->motion[c - 1];
-    if (field_quantity(r, &line->fields[c], q) != 0) return -1;
-    if (quantity_variables(q) & 7u) {
-      message_add(r->m->log, P2033, &line->fields[c].at,
-                  "MOVE may depend on t only: the obstacle is rigid");
-      return -1;
-    }
-  }
+  for (int c = 1; c < line->n_field; ++c)
+    if (read_course(r, line, c, &o->motion[c - 1]) != 0) return -1;
   return 0;
 }
 
-static int is_move(const record *line) {
-  return line->n_field > 0 && same_word(line->fields[0].text, "MOVE");
+/* ROTATE, x, y, angle: about an axis along z; ROTATE, x, y, z, ax, ay, az,
+ * angle: point and direction of the axis. */
+static int read_rotate(const reading *r, const record *line, obstacle *o) {
+  int n = line->n_field, solid = n == 8;
+  if (n != 4 && n != 8) {
+    message_add(r->m->log, P2009, &line->at,
+                "%d fields on this line of *OBSTACLE; expected: ROTATE, x, y, "
+                "angle or ROTATE, x, y, z, ax, ay, az, angle",
+                n);
+    return -1;
+  }
+  for (int c = 0; c < (solid ? 3 : 2); ++c) {
+    const field *f = &line->fields[1 + c];
+    if (deck_real(f, r->m->log, &o->pivot[c]) != 0) return -1;
+    if (solid && deck_real(f + 3, r->m->log, &o->axis[c]) != 0) return -1;
+  }
+  if (!solid) o->axis[2] = 1.0;
+  if (normalise(r, line, "direction of the axis of ROTATE", o->axis) != 0)
+    return -1;
+  o->turns = 1;
+  return read_course(r, line, n - 1, &o->angle);
 }
 
-/* The lines before MOVE, as the shape wants them. */
+static int starts_with(const record *line, const char *word) {
+  return line->n_field > 0 && same_word(line->fields[0].text, word);
+}
+
+/* MOVE and ROTATE close the lines of the obstacle in any order. Returns the
+ * number of lines before them, -1 after an error. */
+static int read_course_lines(const reading *r, struct move *m, obstacle *o) {
+  const card *c = r->card;
+  int n = c->n_record, moves = 0;
+  for (; n > 0; --n) {
+    const record *line = &c->records[n - 1];
+    int shifts = starts_with(line, "MOVE");
+    if (!shifts && !starts_with(line, "ROTATE")) break;
+    if (shifts ? moves++ > 0 : o->turns) {
+      message_add(r->m->log, P2008, &line->at, "*OBSTACLE has two lines %s",
+                  shifts ? "MOVE" : "ROTATE");
+      return -1;
+    }
+    if (shifts) m->move_at = line->at;
+    if (!shifts) m->rotate_at = line->at;
+    if ((shifts ? read_move(r, line, o) : read_rotate(r, line, o)) != 0)
+      return -1;
+  }
+  return n;
+}
+
+/* The lines before MOVE and ROTATE, as the shape wants them. */
 static void read_shape(const reading *r, int n_line, obstacle *o) {
   const record *line = r->card->records;
   static const char *const wanted[] = {
@@ -118,17 +173,16 @@ status apply_obstacle(reading *r) {
   m->moves[n].amplitude_name = p->amplitude;
   m->moves[n].at = c->at;
   m->moves[n].move_at = c->at;
+  m->moves[n].rotate_at = c->at;
   m->moves[n].amplitude_at = *value_place(r, "AMPLITUDE");
   check_round(r, p);
   if (r->misread && card_parameter(c, "TYPE") == NULL) goto done;
-  int lines = c->n_record;
-  if (lines > 0 && is_move(&c->records[lines - 1])) {
-    m->moves[n].move_at = c->records[lines - 1].at;
-    if (read_move(r, &c->records[--lines], o) != 0) goto done;
-  } else if (p->amplitude != NULL) {
+  int lines = read_course_lines(r, &m->moves[n], o);
+  if (lines < 0) goto done;
+  if (lines == c->n_record && p->amplitude != NULL)
     message_add(m->log, P2007, &c->at,
-                "*OBSTACLE: AMPLITUDE= needs a line MOVE, dx, dy [, dz]");
-  }
+                "*OBSTACLE: AMPLITUDE= needs a line MOVE, dx, dy [, dz] or "
+                "ROTATE");
   read_shape(r, lines, o);
 done:
   return st;

@@ -129,6 +129,23 @@ static void check_twice(const model *m, int contact_id) {
     }
 }
 
+/* In the plane an obstacle turns in the plane, and not about r = 0. */
+static void check_turn(const model *m, int dim, int obstacle_id) {
+  const obstacle *o = &m->obstacles[obstacle_id];
+  const place *at = &m->moves[obstacle_id].rotate_at;
+  if (!o->turns || dim == 3) return;
+  if (m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC)
+    message_add(m->log, P2043, at,
+                "*OBSTACLE %s: an axisymmetric model has no displacement "
+                "around its axis that could follow ROTATE",
+                o->name);
+  else if (o->axis[0] != 0.0 || o->axis[1] != 0.0)
+    message_add(m->log, P2043, at,
+                "*OBSTACLE %s: the axis of ROTATE is (%g, %g, %g); in a plane "
+                "model it is along z",
+                o->name, o->axis[0], o->axis[1], o->axis[2]);
+}
+
 static void check_contacts(model *m, const mesh *msh) {
   for (int i = 0; i < m->n_contact; ++i) {
     contact *c = &m->contacts[i];
@@ -146,6 +163,7 @@ static void check_contacts(model *m, const mesh *msh) {
         o->direction[1] == 0.0)
       message_add(m->log, P2027, &m->moves[c->obstacle_id].at,
                   "*OBSTACLE: the normal has no part in the plane of the mesh");
+    check_turn(m, msh->dim, c->obstacle_id);
   }
 }
 
@@ -278,7 +296,13 @@ static int motion_finite(const model *m, int obstacle_id, double t) {
                   isnan(d[c]) ? "not a number" : "infinite", t);
       return 0;
     }
-  return 1;
+  double angle = obstacle_angle(&m->obstacles[obstacle_id], t);
+  if (isfinite(angle)) return 1;
+  message_add(m->log, P2041, &m->moves[obstacle_id].rotate_at,
+              "*OBSTACLE %s: the angle of ROTATE is %s at time %g",
+              m->obstacles[obstacle_id].name,
+              isnan(angle) ? "not a number" : "infinite", t);
+  return 0;
 }
 
 /* Where each step begins and ends, what the expressions give is a number; in

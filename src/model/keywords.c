@@ -55,7 +55,7 @@ static const option obstacle_options[] = {
   OPTION_CHOICE(obstacle_param, side, "SIDE", "OUTSIDE|INSIDE", "OUTSIDE",
                 "where the body is"),
   OPTION_NAME(obstacle_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
-              "factor on MOVE, in total time"),
+              "factor on MOVE and ROTATE, in total time"),
   OPTION_END};
 static const option contact_options[] = {
   OPTION_NAME(contact_param, name, "NAME", NULL, "name for *FRICTION"),
@@ -154,10 +154,11 @@ const keyword keyword_table[] = {
   {"AMPLITUDE", IN_MODEL, OPTIONS(amplitude), NULL, apply_amplitude, 1, ANY,
    "t, a pairs, any number a line; or one expression of t",
    "course of a load, a motion or a friction value in time"},
-  {"OBSTACLE", IN_MODEL, OPTIONS(obstacle), NULL, apply_obstacle, 0, 3,
+  {"OBSTACLE", IN_MODEL, OPTIONS(obstacle), NULL, apply_obstacle, 0, 4,
    "PLANE point; normal towards the body. CYLINDER point of the axis; "
-   "direction (3-D). SPHERE centre. GAP value. Then MOVE, dx, dy, dz",
-   "rigid obstacle, may move"},
+   "direction (3-D). SPHERE centre. GAP value. Then MOVE, dx, dy, dz; "
+   "ROTATE, x, y, angle (rad, about z) or ROTATE, x, y, z, ax, ay, az, angle",
+   "rigid obstacle, may shift and turn"},
   {"CONTACT", IN_MODEL, OPTIONS(contact), NULL, apply_contact, 0, 0,
    "", "unilateral contact of Gamma_3 with an obstacle"},
   {"FRICTION", IN_MODEL, OPTIONS(friction), names_law, apply_friction, 0, ANY,

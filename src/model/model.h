@@ -171,7 +171,8 @@ typedef struct model {
 typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
   const char *amplitude_name;
   int used; /* a contact refers to it                                         */
-  place at, amplitude_at, move_at; /* of the card, the name, the line MOVE    */
+  place at, amplitude_at; /* of the card, the name                            */
+  place move_at, rotate_at; /* of the lines MOVE, ROTATE */
 } move;
 
 /* clang-format off */

@@ -99,6 +99,7 @@ static void resolve_moves(model *m) {
     if (a < 0) continue;
     for (int k = 0; k < 3; ++k)
       m->obstacles[i].motion[k].factor = &m->amplitudes[a].table;
+    m->obstacles[i].angle.factor = &m->amplitudes[a].table;
   }
 }
 

@@ -221,6 +221,117 @@ START_TEST(obstacle_shifts_with_time) {
 }
 END_TEST
 
+/* v = R(a, angle) v by the matrix cos I + sin [a] + (1 - cos) a a'. */
+static void rotate(const double *a, double angle, double *v) {
+  double w[3], along = dot(a, v), k = 1 - cos(angle);
+  for (int c = 0; c < 3; ++c) {
+    int d = (c + 1) % 3, e = (c + 2) % 3;
+    w[c] = cos(angle) * v[c] + sin(angle) * (a[d] * v[e] - a[e] * v[d]) +
+           k * along * a[c];
+  }
+  for (int c = 0; c < 3; ++c) v[c] = w[c];
+}
+
+static void any_turn(int dim, obstacle *o) {
+  static const double up[3] = {0, 0, 1};
+  o->turns = 1;
+  o->angle.number = 7 * random_part();
+  for (int c = 0; c < dim; ++c) {
+    o->pivot[c] = random_part();
+    o->motion[c].number = random_part();
+  }
+  for (int c = 0; c < 3; ++c) o->axis[c] = up[c];
+  if (dim == 3) random_unit(3, o->axis);
+}
+
+/* The same obstacle, made where the rotation and the shift bring it. */
+static obstacle brought(int dim, const obstacle *o) {
+  obstacle b = *o;
+  double arm[3];
+  b.turns = 0;
+  for (int c = 0; c < 3; ++c) arm[c] = o->point[c] - o->pivot[c];
+  rotate(o->axis, o->angle.number, arm);
+  rotate(o->axis, o->angle.number, b.direction);
+  for (int c = 0; c < dim; ++c) b.point[c] = o->pivot[c] + arm[c];
+  return b;
+}
+
+START_TEST(turned_obstacle_is_the_one_made_there) {
+  for (int k = 0; k < 600; ++k) {
+    int dim = 2 + k % 2;
+    obstacle o = {.shape = OBSTACLE_PLANE + k % 3, .radius = 2};
+    double n[3], x[3], normal[3] = {0, 0, 0}, expected[3] = {0, 0, 0};
+    any_turn(dim, &o);
+    random_unit(dim, o.direction);
+    random_unit(dim, n);
+    for (int c = 0; c < 3; ++c) {
+      o.point[c] = c < dim ? random_part() : 0;
+      x[c] = c < dim ? 4 * random_part() : 0;
+    }
+    obstacle b = brought(dim, &o);
+    double gap = obstacle_gap(&b, dim, x, n, 0);
+    if (gap < 40)
+      ck_assert_double_eq_tol(obstacle_gap(&o, dim, x, n, 0), gap, 1e-10);
+    ck_assert_int_eq(obstacle_normal(&o, dim, x, normal), 1);
+    ck_assert_int_eq(obstacle_normal(&b, dim, x, expected), 1);
+    for (int c = 0; c < dim; ++c)
+      ck_assert_double_eq_tol(normal[c], expected[c], 1e-10);
+  }
+}
+END_TEST
+
+/* Turned about the normal by a quarter, x y becomes that of the point (y, -x);
+ * tilted by a small angle, the conforming obstacle rises by angle times arm. */
+START_TEST(given_gap_turns_about_the_normal_and_tilts_a_little) {
+  obstacle o = {.shape = OBSTACLE_GAP, .turns = 1, .pivot = {1, 2, 0}};
+  double down[3] = {0, 0, -1}, x[3] = {4, 7, 0};
+  o.axis[2] = 1;
+  o.angle.number = acos(-1.0) / 2;
+  expression *e = NULL;
+  int column;
+  ck_assert_int_eq(expression_compile("x + 10*y", NULL, NULL, &e, &column), OK);
+  o.gap.formula = e;
+  /* From the pivot (3, 5), a quarter back: (5, -3), so the point (6, -1). */
+  ck_assert_double_eq_tol(obstacle_gap(&o, 3, x, down, 0), 6 - 10, 1e-13);
+  expression_free(e);
+  obstacle c = {.shape = OBSTACLE_CONFORMING, .turns = 1, .axis = {0, 1, 0}};
+  c.angle.number = 1e-6;
+  ck_assert_double_eq_tol(obstacle_gap(&c, 3, x, down, 0), 4e-6, 1e-11);
+}
+END_TEST
+
+/* A roller about its own axis passes by radius times angle, however far and in
+ * however many parts it turns; a plane that turns passes in circles. */
+START_TEST(surface_passes_by_angle_times_arm) {
+  obstacle o = {.shape = OBSTACLE_CYLINDER,
+                .radius = 5,
+                .point = {1, -5, 0},
+                .pivot = {1, -5, 0},
+                .axis = {0, 0, 1},
+                .turns = 1};
+  double down[3] = {0, -1, 0}, x[3] = {1, 0.25, 0}, d[3];
+  o.angle.number = 1;
+  obstacle_drift(&o, 2, x, down, 0, 9, d);
+  ck_assert(d[0] == 0 && d[1] == 0 && d[2] == 0);
+  compile(&o.angle, "-3*t");
+  compile(&o.motion[1], "t/100");
+  ck_assert_int_eq(obstacle_moves(&o), 1);
+  obstacle_drift(&o, 2, x, down, 2, 7, d);
+  ck_assert_double_eq_tol(d[0], 3 * 5 * 5, 1e-12);
+  ck_assert_double_eq_tol(d[1], 0.05, 1e-14);
+  obstacle p = {.shape = OBSTACLE_PLANE, .direction = {0, 0, 1}, .turns = 1};
+  double low[3] = {0, 0, -1}, y[3] = {3, 4, 1};
+  p.axis[2] = 1;
+  p.angle.formula = o.angle.formula;
+  obstacle_drift(&p, 3, y, low, 0, 2, d);
+  ck_assert_double_eq_tol(d[0], 4 * 6, 1e-12);
+  ck_assert_double_eq_tol(d[1], -3 * 6, 1e-12);
+  ck_assert_double_eq(d[2], 0);
+  release(&o.angle);
+  release(&o.motion[1]);
+}
+END_TEST
+
 /* A parabola that moves sideways is the parabola beside its new apex. */
 START_TEST(given_gap_is_that_of_the_point_now_opposite) {
   obstacle o = {.shape = OBSTACLE_GAP};
@@ -253,4 +364,7 @@ UNIT_MAIN("obstacle", plane_is_met_where_it_was_left,
           lengths_times_a_power_of_two_scale_every_bit,
           normal_of_the_obstacle_is_the_shortest_way_to_it,
           shapes_without_a_normal_leave_it_alone, obstacle_shifts_with_time,
+          turned_obstacle_is_the_one_made_there,
+          given_gap_turns_about_the_normal_and_tilts_a_little,
+          surface_passes_by_angle_times_arm,
           given_gap_is_that_of_the_point_now_opposite)

@@ -1,0 +1,323 @@
+/*
+ * Obstacles that shift and turn: the loops of one node on a spring in closed
+ * form, a node on a turntable, whole scenes turned in space, and the round cone
+ * of friction for every direction of slip.
+ */
+#include "support/grid.h"
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- one node ----------------------------------------------------------- */
+
+/* The free vertex at the origin of a triangle (area 1) or tetrahedron (volume
+ * sqrt(3)/4) that is clamped at the height 1: tangential stiffness G times
+ * area or volume, not coupled with the normal one. */
+static const char triangle[] =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n"
+    "0 1 \"CLAMPED\"\n0 2 \"TIP\"\n1 3 \"FOOT\"\n2 4 \"BODY\"\n"
+    "$EndPhysicalNames\n$Nodes\n3\n1 -1 1 0\n2 1 1 0\n3 0 0 0\n$EndNodes\n"
+    "$Elements\n5\n1 15 2 1 1 1\n2 15 2 1 2 2\n3 15 2 2 3 3\n"
+    "4 1 2 3 1 1 3\n5 2 2 4 1 3 2 1\n$EndElements\n";
+static const char tetrahedron[] =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n"
+    "0 1 \"CLAMPED\"\n0 2 \"TIP\"\n2 3 \"FOOT\"\n3 4 \"BODY\"\n"
+    "$EndPhysicalNames\n$Nodes\n4\n1 1 0 1\n2 -.5 .86602540378443865 1\n"
+    "3 -.5 -.86602540378443865 1\n4 0 0 0\n$EndNodes\n"
+    "$Elements\n6\n1 15 2 1 1 1\n2 15 2 1 2 2\n3 15 2 1 3 3\n4 15 2 2 4 4\n"
+    "5 2 2 3 1 1 2 4\n6 4 2 4 1 1 2 3 4\n$EndElements\n";
+
+typedef struct spring {
+  int dim;
+  double k, N, mu; /* N/m, N, -                                              */
+} spring;
+
+/* One node on an obstacle given by its card, then what follows "*CLOAD". */
+static job run_node(const spring *s, const char *obstacle, const char *load,
+                    const char *steps) {
+  job j = job_begin("node");
+  double G = s->k / (s->dim == 3 ? sqrt(3.0) / 4 : 1.0);
+  job_write(&j, "node.msh", "%s", s->dim == 3 ? tetrahedron : triangle);
+  job_write(&j, "node.inp",
+            "*MESH, FILE=node.msh\n*MATERIAL, NAME=M\n*ELASTIC\n%.17g, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*AMPLITUDE, NAME=CYCLE, TIME=TOTAL TIME\n"
+            "0., 0., 1., 1., 3., -1., 5., 1., 7., -1.\n*OBSTACLE, NAME=O, %s\n"
+            "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n%.17g\n"
+            "*STEP\n*STATIC\n1E-9\n*BOUNDARY\nCLAMPED, 1, %d\n"
+            "*CLOAD\nTIP, %d, %.17g\n*SOLVER, TOL=1E-13\n*END STEP\n"
+            "*STEP\n%s%s*PRINT, CONTACT, ENERGY\n*END STEP\n",
+            2.6 * G, obstacle, s->mu, s->dim, s->dim, -s->N, steps, load);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Dissipation between the ends of increments a and b (from 1) of step 2. */
+static double dissipated(const job *j, int a, int b) {
+  dat p = job_table(j, "ENERGY", a - 1), q = job_table(j, "ENERGY", b - 1);
+  double work =
+      dat_at(&q, 0, "friction_work_end") - dat_at(&p, 0, "friction_work_end");
+  ck_assert_double_le(fabs(dat_at(&q, 0, "energy_defect_relative")), 1e-10);
+  dat_free(&p);
+  dat_free(&q);
+  return work;
+}
+
+static const spring springs[] = {
+    {2, 1000, 10, 0.3}, {2, 730, 4, 0.45}, {3, 1000, 10, 0.3}};
+
+/* W = 4 mu N (F0 - mu N) / K, whatever the increments between reversals. */
+START_TEST(loop_of_a_force) {
+  static const int n[] = {1, 3, 10};
+  for (int c = 0; c < 9; ++c) {
+    const spring *s = &springs[c % 3];
+    char load[200], steps[80];
+    double F0 = 5;
+    snprintf(load, sizeof load, "*CLOAD\nTIP, 1, %.17g, CYCLE\n", F0);
+    snprintf(steps, sizeof steps, "*QUASISTATIC\n%.17g, 5.\n", 1.0 / n[c / 3]);
+    job j = run_node(s,
+                     s->dim == 3 ? "TYPE=PLANE\n0., 0., 0.\n0., 0., 1."
+                                 : "TYPE=PLANE\n0., 0.\n0., 1.",
+                     load, steps);
+    double W = 4 * s->mu * s->N * (F0 - s->mu * s->N) / s->k;
+    ck_assert_double_eq_tol(dissipated(&j, n[c / 3], 5 * n[c / 3]), W,
+                            1e-6 * W);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* The obstacle alone moves, by U to and fro: a plane shifted, a roller turned,
+ * a plane far from its axis, W = 4 mu N (U - mu N / k). */
+START_TEST(loop_of_an_obstacle) {
+  static const char *const shape[] = {
+      "TYPE=PLANE, AMPLITUDE=CYCLE\n0., 0.\n0., 1.\nMOVE, %.17g, 0.",
+      "TYPE=CYLINDER, RADIUS=2, AMPLITUDE=CYCLE\n0., -2.\n"
+      "ROTATE, 0., -2., \"-%.17g/2\"",
+      "TYPE=PLANE, AMPLITUDE=CYCLE\n0., 0., 0.\n0., 0., 1.\n"
+      "ROTATE, 0., -3., \"-%.17g/3\""};
+  for (int c = 0; c < 9; ++c) {
+    spring s = {c % 3 == 2 ? 3 : 2, 500, 10, c < 3 ? 0.3 : 0.55};
+    double U = c < 6 ? 0.02 : 0.05;
+    char card[200], steps[80];
+    snprintf(card, sizeof card, shape[c % 3], U);
+    snprintf(steps, sizeof steps, "*QUASISTATIC\n%.17g, 5.\n", 1.0 / (1 + c));
+    job j = run_node(&s, card, "", steps);
+    double W = 4 * s.mu * s.N * (U - s.mu * s.N / s.k);
+    ck_assert_double_eq_tol(dissipated(&j, 1 + c, 5 * (1 + c)), W, 1e-6 * W);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* A turntable whose axis is rho from the node passes below it by rho times the
+ * angle: after two turns the node is drawn along by mu N / k across the arm,
+ * and mu N (rho angle - mu N / k) has become heat. */
+START_TEST(node_on_a_turntable) {
+  const spring s = {3, 400, 7, 0.6};
+  const double rho = 1.5, limit = s.mu * s.N, turns = 4 * acos(-1.0);
+  for (int k = 0; k < 4; ++k) {
+    double beta = 0.9 * k - 0.4;
+    char card[200], steps[80];
+    snprintf(card, sizeof card,
+             "TYPE=PLANE\n0., 0., 0.\n0., 0., 1.\n"
+             "ROTATE, %.17g, %.17g, 0., 0., 0., 2., \"4*pi*t\"",
+             -rho * cos(beta), -rho * sin(beta));
+    snprintf(steps, sizeof steps, "*QUASISTATIC\n%.17g, 1.\n", 1.0 / (5 + k));
+    job j = run_node(&s, card, "", steps);
+    dat c = job_table(&j, "CONTACT", -1), e = job_table(&j, "ENERGY", -1);
+    ck_assert_int_eq(c.n_row, 1);
+    ck_assert_double_eq_tol(dat_at(&c, 0, "f_x"), -limit * sin(beta), 1e-9);
+    ck_assert_double_eq_tol(dat_at(&c, 0, "f_y"), limit * cos(beta), 1e-9);
+    ck_assert_double_eq_tol(dat_at(&e, 0, "friction_work_end"),
+                            limit * (rho * turns - limit / s.k), 1e-6);
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
+    dat_free(&c);
+    dat_free(&e);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* ---- scenes turned as a whole -------------------------------------------- */
+
+/* v = R v for the axis a (unit) and the angle. */
+static void rotate(const double a[3], double angle, double v[3]) {
+  double w[3], along = a[0] * v[0] + a[1] * v[1] + a[2] * v[2];
+  for (int c = 0; c < 3; ++c) {
+    int d = (c + 1) % 3, e = (c + 2) % 3;
+    w[c] = cos(angle) * v[c] + sin(angle) * (a[d] * v[e] - a[e] * v[d]) +
+           (1 - cos(angle)) * along * a[c];
+  }
+  memcpy(v, w, sizeof w);
+}
+
+typedef struct turn {
+  double axis[3], angle;
+} turn;
+
+static void write_items(FILE *f, int type, int tag, int corners, int n,
+                        const int *node, int *no) {
+  for (int i = 0; i < n; ++i) {
+    fprintf(f, "%d %d 2 %d %d", ++*no, type, tag, tag);
+    for (int k = 0; k < corners; ++k)
+      fprintf(f, " %d", node[corners * i + k] + 1);
+    fputc('\n', f);
+  }
+}
+
+/* A grid with its groups BODY, FOOT and HEAD, turned, as JOB.msh. */
+static void write_mesh(const job *j, const mesh *m, const turn *t) {
+  char path[128];
+  int no = 0, dim = m->dim;
+  const mesh_group *foot = mesh_find_group(m, dim == 3 ? "FRONT" : "BOTTOM");
+  const mesh_group *head = mesh_find_group(m, dim == 3 ? "BACK" : "TOP");
+  snprintf(path, sizeof path, "%s/turned.msh", j->dir);
+  FILE *f = fopen(path, "w");
+  ck_assert_ptr_nonnull(f);
+  fprintf(f,
+          "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n"
+          "%d 1 \"FOOT\"\n%d 2 \"HEAD\"\n%d 3 \"BODY\"\n$EndPhysicalNames\n"
+          "$Nodes\n%d\n",
+          dim - 1, dim - 1, dim, m->n_node);
+  for (int i = 0; i < m->n_node; ++i) {
+    double x[3] = {0, 0, 0};
+    memcpy(x, m->x + dim * i, (size_t)dim * sizeof *x);
+    rotate(t->axis, t->angle, x);
+    fprintf(f, "%d %.17g %.17g %.17g\n", i + 1, x[0], x[1], x[2]);
+  }
+  fprintf(f, "$EndNodes\n$Elements\n%d\n",
+          foot->n_item + head->n_item + m->n_elem);
+  for (int k = 0; k < foot->n_item; ++k)
+    write_items(f, dim - 1, 1, dim, 1, m->face + dim * foot->item_id[k], &no);
+  for (int k = 0; k < head->n_item; ++k)
+    write_items(f, dim - 1, 2, dim, 1, m->face + dim * head->item_id[k], &no);
+  write_items(f, dim == 3 ? 4 : 2, 3, dim + 1, m->n_elem, m->elem, &no);
+  fprintf(f, "$EndElements\n");
+  ck_assert_int_eq(fclose(f), 0);
+}
+
+/* The obstacle below: rises by 0.01, then runs once round a circle (2-D: to and
+ * fro) and turns by 0.5 about its normal (2-D: tilts by 0.001). */
+static void write_deck(const job *j, int dim, const turn *t) {
+  double n[3] = {0, dim == 2, dim == 3}, e1[3] = {1, 0, 0};
+  double e2[3] = {0, dim == 3, 0}, pivot[3] = {0.4, dim == 3 ? 0.7 : 0, 0};
+  double axis[3] = {0, 0, 1};
+  rotate(t->axis, t->angle, n);
+  rotate(t->axis, t->angle, e1);
+  rotate(t->axis, t->angle, e2);
+  rotate(t->axis, t->angle, pivot);
+  rotate(t->axis, t->angle, axis);
+  char shift[3][200];
+  for (int c = 0; c < 3; ++c)
+    snprintf(shift[c], sizeof shift[c],
+             "\"0.01*min(t,1)*(%.17g) + 0.03*sin(2*pi*max(t-1,0))*(%.17g) + "
+             "0.03*(1-cos(2*pi*max(t-1,0)))*(%.17g)\"",
+             n[c], e1[c], e2[c]);
+  job_write(j, "turned.inp",
+            "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n%.17g, %.17g, %.17g\n"
+            "MOVE, %s,\n%s,\n%s\n"
+            "ROTATE, %.17g, %.17g, %.17g, %.17g, %.17g, %.17g,\n"
+            "\"%g*max(t-1,0)\"\n"
+            "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.4\n"
+            "*STEP\n*QUASISTATIC\n0.125, 2.\n*BOUNDARY\nHEAD, 1, %d\n"
+            "*SOLVER, TOL=1E-13\n*PRINT, CONTACT, ENERGY\n*END STEP\n",
+            n[0], n[1], n[2], shift[0], shift[1], shift[2], pivot[0], pivot[1],
+            pivot[2], axis[0], axis[1], axis[2], dim == 3 ? 0.5 : 1e-3, dim);
+}
+
+static job run_turned(int dim, const turn *t) {
+  const int n2[] = {8, 4}, n3[] = {4, 4, 2};
+  const double length2[] = {2, 1}, length3[] = {2, 1.5, 1};
+  job j = job_begin("turned");
+  mesh *m = dim == 3 ? make_grid_3d(n3, length3) : make_grid_2d(n2, length2);
+  ck_assert_ptr_nonnull(m);
+  write_mesh(&j, m, t);
+  grid_free(m);
+  write_deck(&j, dim, t);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+static void force(const dat *c, int row, int dim, double f[3]) {
+  f[0] = dat_at(c, row, "f_x");
+  f[1] = dat_at(c, row, "f_y");
+  f[2] = dim == 3 ? dat_at(c, row, "f_z") : 0.0;
+}
+
+static void same_forces(const job *a, const job *b, int dim, const turn *t,
+                        int block) {
+  dat p = job_table(a, "CONTACT", block), q = job_table(b, "CONTACT", block);
+  double scale = dat_max(&p, "f_n");
+  ck_assert_int_eq(p.n_row, q.n_row);
+  for (int i = 0; i < p.n_row; ++i) {
+    double f[3], g[3];
+    force(&p, i, dim, f);
+    force(&q, i, dim, g);
+    rotate(t->axis, t->angle, f);
+    for (int c = 0; c < 3; ++c)
+      ck_assert_double_eq_tol(g[c], f[c], 1e-9 * scale);
+    ck_assert_double_eq(dat_at(&p, i, "status"), dat_at(&q, i, "status"));
+  }
+  dat_free(&p);
+  dat_free(&q);
+}
+
+START_TEST(scene_turned_as_a_whole_gives_the_answer_turned) {
+  static const turn turns[] = {{{0, 0, 1}, 0.0},
+                               {{0, 0, 1}, 2.0},
+                               {{0.48, 0.6, 0.64}, 1.1},
+                               {{0, 0.8, -0.6}, -2.7}};
+  for (int dim = 2; dim <= 3; ++dim) {
+    job plain = run_turned(dim, &turns[0]);
+    for (int k = 1; k < (dim == 3 ? 4 : 2); ++k) {
+      job other = run_turned(dim, &turns[k]);
+      for (int block = 0; block < 16; ++block)
+        same_forces(&plain, &other, dim, &turns[k], block);
+      job_end(&other);
+    }
+    job_end(&plain);
+  }
+}
+END_TEST
+
+/* At every slipping node of every increment |r_t| = mu r_n and r_t points
+ * against the slip, for a slip that turns once round and with the turntable. */
+START_TEST(cone_is_round_for_every_direction_of_slip) {
+  const turn t = {{0.48, 0.6, 0.64}, 1.1};
+  int slipping = 0;
+  job j = run_turned(3, &t);
+  for (int block = 0; block < 16; ++block) {
+    dat c = job_table(&j, "CONTACT", block), e = job_table(&j, "ENERGY", block);
+    double scale = dat_max(&c, "f_n");
+    for (int i = 0; i < c.n_row; ++i) {
+      double n = dat_at(&c, i, "f_n"), s1 = dat_at(&c, i, "slip_1");
+      double s2 = dat_at(&c, i, "slip_2"), s = hypot(s1, s2);
+      double t1 = dat_at(&c, i, "f_t1"), t2 = dat_at(&c, i, "f_t2");
+      if (dat_at(&c, i, "status") != 1.0) continue;
+      ++slipping;
+      ck_assert_double_eq_tol(hypot(t1, t2), 0.4 * n, 1e-10 * scale);
+      ck_assert_double_eq_tol(t1, -0.4 * n * s1 / s, 1e-10 * scale);
+      ck_assert_double_eq_tol(t2, -0.4 * n * s2 / s, 1e-10 * scale);
+    }
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
+    dat_free(&c);
+    dat_free(&e);
+  }
+  ck_assert_int_gt(slipping, 100);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("motion", loop_of_a_force, loop_of_an_obstacle, node_on_a_turntable,
+          scene_turned_as_a_whole_gives_the_answer_turned,
+          cone_is_round_for_every_direction_of_slip)
