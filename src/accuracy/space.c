@@ -1,0 +1,306 @@
+/*
+ * Stress recovery: round each node a linear polynomial is fitted to the
+ * stresses at the centroids of the elements of one material; inside a body to
+ * those that meet at the node, at its boundary to those of the next ring too,
+ * for what lies on one side only must be extrapolated. With d the recovered
+ * less the element's stress at the vertices,
+ *
+ *   eta^2 = integral of d' inv(E) d = w / ((dim+1)(dim+2))
+ *           (sum_a d_a' S d_a + (sum_a d_a)' S (sum_a d_a)),   S = inv(E).
+ */
+#include "accuracy/space.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+enum { MAX_BASIS = 4, MAX_NS = 6 };
+static const double FLAT = 1e-6; /* -, pivot of a fit without enough points   */
+
+struct space_recovery {
+  const domain *d;
+  int n_region;
+  int *region;        /* [n_section] sections of one material have one        */
+  double *compliance; /* [ns*ns*n_section] 1/Pa, inv(E)                       */
+  int *start, *elem;  /* [n_node+1], elements round each node                 */
+  int *patch, *stamp; /* [n_elem] elements of a patch; mark of the last patch */
+  int *seen;          /* [n_node] mark of the last patch                      */
+  int last;           /* mark                                                 */
+  double *recovered;  /* [ns*n_node] of the region at work, Pa                */
+};
+
+/* ---- set-up -------------------------------------------------------------- */
+
+/* 1 if the stress of a solution may be continuous across two sections. */
+static int same_material(const domain *d, int a, int b) {
+  size_t size = (size_t)(d->ns * d->ns);
+  return d->kin[a] == d->kin[b] && d->thickness[a] == d->thickness[b] &&
+         memcmp(d->E + size * (size_t)a, d->E + size * (size_t)b,
+                size * sizeof *d->E) == 0;
+}
+
+static void find_regions(space_recovery *s, int n_section) {
+  for (int i = 0; i < n_section; ++i) {
+    int first = 0;
+    while (first < i && !same_material(s->d, first, i)) ++first;
+    s->region[i] = first < i ? s->region[first] : s->n_region++;
+  }
+}
+
+/* inv(E) over the components that carry stress; plane stress leaves zz out. */
+static status invert_elasticity(const domain *d, int section, double *S) {
+  status st = OK;
+  int ns = d->ns, n = 0, active[MAX_NS];
+  const double *E = d->E + (size_t)(ns * ns) * (size_t)section;
+  double M[MAX_NS * MAX_NS];
+  for (int i = 0; i < ns; ++i)
+    if (i != 2 || d->kin[section] != PLANE_STRESS) active[n++] = i;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) M[i + n * j] = E[active[i] + ns * active[j]];
+  if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', n, M, n) != 0 ||
+      LAPACKE_dpotri_work(LAPACK_COL_MAJOR, 'L', n, M, n) != 0)
+    FAIL(ERR_INTERNAL, "elasticity of section %d is not positive definite",
+         section + 1);
+  for (int j = 0; j < n; ++j)
+    for (int i = j; i < n; ++i) {
+      S[active[i] + ns * active[j]] = M[i + n * j];
+      S[active[j] + ns * active[i]] = M[i + n * j];
+    }
+done:
+  return st;
+}
+
+static void list_neighbours(space_recovery *s) {
+  const mesh *m = s->d->mesh;
+  int vertices = m->dim + 1;
+  for (int k = 0; k < vertices * m->n_elem; ++k) ++s->start[m->elem[k] + 1];
+  for (int i = 0; i < m->n_node; ++i) s->start[i + 1] += s->start[i];
+  for (int k = 0; k < vertices * m->n_elem; ++k)
+    s->elem[s->start[m->elem[k]]++] = k / vertices;
+  for (int i = m->n_node; i > 0; --i) s->start[i] = s->start[i - 1];
+  s->start[0] = 0;
+}
+
+status space_recovery_new(const domain *d, space_recovery **out) {
+  status st = OK;
+  space_recovery *s = NULL;
+  const mesh *m = d->mesh;
+  int n_section = 0, square = d->ns * d->ns;
+  timer_enter(STAGE_ESTIMATE);
+  for (int k = 0; k < m->n_elem; ++k)
+    if (d->section_id[k] >= n_section) n_section = d->section_id[k] + 1;
+  NEW(s, 1);
+  s->d = d;
+  NEW(s->region, n_section);
+  NEW(s->compliance, square * n_section);
+  NEW(s->start, m->n_node + 1);
+  NEW(s->elem, (size_t)(m->dim + 1) * (size_t)m->n_elem);
+  NEW(s->patch, m->n_elem);
+  NEW(s->stamp, m->n_elem);
+  NEW(s->seen, m->n_node);
+  NEW(s->recovered, (size_t)d->ns * (size_t)m->n_node);
+  find_regions(s, n_section);
+  for (int i = 0; i < n_section; ++i)
+    TRY(invert_elasticity(d, i, s->compliance + square * i));
+  list_neighbours(s);
+  *out = s;
+  s = NULL;
+done:
+  space_recovery_free(s);
+  timer_leave(STAGE_ESTIMATE);
+  return st;
+}
+
+void space_recovery_free(space_recovery *s) {
+  if (s == NULL) return;
+  memory_free(s->region);
+  memory_free(s->compliance);
+  memory_free(s->start);
+  memory_free(s->elem);
+  memory_free(s->patch);
+  memory_free(s->stamp);
+  memory_free(s->seen);
+  memory_free(s->recovered);
+  memory_free(s);
+}
+
+/* ---- patches ------------------------------------------------------------- */
+
+/* Add the elements of a region round a node to the patch of n; new size. */
+static int add_ring(space_recovery *s, int node, int region, int n) {
+  for (int k = s->start[node]; k < s->start[node + 1]; ++k) {
+    int e = s->elem[k];
+    if (s->stamp[e] == s->last || s->region[s->d->section_id[e]] != region)
+      continue;
+    s->stamp[e] = s->last;
+    s->patch[n++] = e;
+  }
+  return n;
+}
+
+/*
+ * 1 if the n elements of the patch close round their common node. By Euler's
+ * formula for the surface they form: V neighbours and n elements are V = n in
+ * the plane, 2 (V - 2) = n in space, and fewer elements where it is open.
+ */
+static int is_closed(space_recovery *s, int node, int n) {
+  const mesh *m = s->d->mesh;
+  int neighbours = 0, vertices = m->dim + 1;
+  s->seen[node] = s->last;
+  for (int k = 0; k < n; ++k)
+    for (int a = 0; a < vertices; ++a) {
+      int v = m->elem[vertices * s->patch[k] + a];
+      if (s->seen[v] == s->last) continue;
+      s->seen[v] = s->last;
+      ++neighbours;
+    }
+  return m->dim == 2 ? neighbours == n : 2 * (neighbours - 2) == n;
+}
+
+/* The patch of a node; its size, 0 if the node has no element in the region. */
+static int gather(space_recovery *s, int node, int region) {
+  const mesh *m = s->d->mesh;
+  ++s->last;
+  int n = add_ring(s, node, region, 0), inner = n;
+  if (n == 0 || is_closed(s, node, n)) return n;
+  for (int k = 0; k < inner; ++k)
+    for (int a = 0; a <= m->dim; ++a)
+      n = add_ring(s, m->elem[(m->dim + 1) * s->patch[k] + a], region, n);
+  return n;
+}
+
+/* ---- the fit ------------------------------------------------------------- */
+
+static void centroid(const mesh *m, int elem_id, double *x) {
+  for (int c = 0; c < m->dim; ++c) {
+    x[c] = 0.0;
+    for (int a = 0; a <= m->dim; ++a)
+      x[c] += m->x[m->dim * m->elem[(m->dim + 1) * elem_id + a] + c];
+    x[c] /= m->dim + 1;
+  }
+}
+
+/* Half the extent of the patch round the node, length. */
+static double patch_size(const space_recovery *s, int node, int n) {
+  const mesh *m = s->d->mesh;
+  double size = 0.0, x[3];
+  for (int k = 0; k < n; ++k) {
+    centroid(m, s->patch[k], x);
+    for (int c = 0; c < m->dim; ++c)
+      size = fmax(size, fabs(x[c] - m->x[m->dim * node + c]));
+  }
+  return size;
+}
+
+/* Normal equations of the fit; the first coefficient is the value at the node.
+ * G[p*p], rhs[p*ns] column major. */
+static void normal_equations(const space_recovery *s, int node, int n,
+                             const double *sigma, double *G, double *rhs) {
+  const mesh *m = s->d->mesh;
+  int p = m->dim + 1, ns = s->d->ns;
+  double size = patch_size(s, node, n), basis[MAX_BASIS] = {1.0}, x[3];
+  memset(G, 0, (size_t)(p * p) * sizeof *G);
+  memset(rhs, 0, (size_t)(p * ns) * sizeof *rhs);
+  for (int k = 0; k < n; ++k) {
+    const double *t = sigma + (size_t)ns * (size_t)s->patch[k];
+    centroid(m, s->patch[k], x);
+    for (int c = 0; c < m->dim; ++c)
+      basis[c + 1] = (x[c] - m->x[m->dim * node + c]) / size;
+    for (int j = 0; j < p; ++j) {
+      for (int i = j; i < p; ++i) G[i + p * j] += basis[i] * basis[j];
+      for (int i = 0; i < ns; ++i) rhs[j + p * i] += basis[j] * t[i];
+    }
+  }
+}
+
+/* 1 if the points of the fit span the space. */
+static int is_determined(int p, const double *G, const double *L) {
+  for (int i = 0; i < p; ++i)
+    if (!(L[i + p * i] * L[i + p * i] > FLAT * G[i + p * i])) return 0;
+  return 1;
+}
+
+/* Stress at the node from its patch of n elements; the mean if the fit is not
+ * determined. value[ns]. */
+static void fit(const space_recovery *s, int node, int n, const double *sigma,
+                double *value) {
+  int p = s->d->mesh->dim + 1, ns = s->d->ns;
+  double G[MAX_BASIS * MAX_BASIS], L[MAX_BASIS * MAX_BASIS];
+  double rhs[MAX_BASIS * MAX_NS];
+  normal_equations(s, node, n, sigma, G, rhs);
+  memcpy(L, G, sizeof L);
+  for (int i = 0; i < ns; ++i) value[i] = rhs[p * i] / n;
+  if (n <= p || LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', p, L, p) != 0 ||
+      !is_determined(p, G, L))
+    return;
+  LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', p, ns, L, p, rhs, p);
+  for (int i = 0; i < ns; ++i) value[i] = rhs[p * i];
+}
+
+/* ---- the estimate -------------------------------------------------------- */
+
+static double energy_product(int ns, const double *S, const double *t) {
+  double sum = 0.0;
+  for (int j = 0; j < ns; ++j)
+    for (int i = 0; i < ns; ++i) sum += t[i] * S[i + ns * j] * t[j];
+  return sum;
+}
+
+/* eta^2 of one element, J. */
+static double element_error(const space_recovery *s, int elem_id,
+                            const double *sigma) {
+  const mesh *m = s->d->mesh;
+  int ns = s->d->ns, vertices = m->dim + 1;
+  const double *S =
+      s->compliance + (size_t)(ns * ns) * (size_t)s->d->section_id[elem_id];
+  double total[MAX_NS] = {0.0}, d[MAX_NS], sum = 0.0;
+  for (int a = 0; a < vertices; ++a) {
+    const double *r =
+        s->recovered + (size_t)ns * (size_t)m->elem[vertices * elem_id + a];
+    for (int i = 0; i < ns; ++i) {
+      d[i] = r[i] - sigma[i];
+      total[i] += d[i];
+    }
+    sum += energy_product(ns, S, d);
+  }
+  sum += energy_product(ns, S, total);
+  return element_weight(s->d, elem_id) / (vertices * (vertices + 1)) * sum;
+}
+
+/* Squares of error and norm of one region added to out; eta as asked for. */
+static void add_region(space_recovery *s, int region, const double *sigma,
+                       double *eta, space_error *out) {
+  const domain *d = s->d;
+  size_t ns = (size_t)d->ns;
+  for (int i = 0; i < d->mesh->n_node; ++i) {
+    int n = gather(s, i, region);
+    if (n > 0) fit(s, i, n, sigma, s->recovered + ns * (size_t)i);
+  }
+  for (int e = 0; e < d->mesh->n_elem; ++e) {
+    const double *t = sigma + ns * (size_t)e;
+    if (s->region[d->section_id[e]] != region) continue;
+    double square = element_error(s, e, t);
+    out->error += square;
+    out->norm +=
+        element_weight(d, e) *
+        energy_product(d->ns,
+                       s->compliance + ns * ns * (size_t)d->section_id[e], t);
+    if (eta != NULL) eta[e] = sqrt(fmax(square, 0.0));
+  }
+}
+
+void space_estimate(space_recovery *s, const double *sigma, double *eta,
+                    space_error *out) {
+  *out = (space_error){0.0, 0.0, 0.0};
+  timer_enter(STAGE_ESTIMATE);
+  for (int region = 0; region < s->n_region; ++region)
+    add_region(s, region, sigma, eta, out);
+  double total = out->error + out->norm;
+  out->relative = total > 0.0 ? sqrt(out->error / total) : 0.0;
+  out->error = sqrt(out->error);
+  out->norm = sqrt(out->norm);
+  timer_leave(STAGE_ESTIMATE);
+}

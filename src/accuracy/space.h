@@ -1,0 +1,34 @@
+/*
+ * Error of the mesh, estimated from recovered stresses: the stress of P1
+ * elements jumps from element to element, a polynomial fitted to it round each
+ * node does not; what separates the two measures the error of the elements in
+ * the energy norm (Zienkiewicz, Zhu 1992, Int. J. Num. Meth. Eng. 33, 1331-1364
+ * and 1365-1382). Fits stay on one side of an interface between materials,
+ * where the stress of the solution jumps itself.
+ */
+#ifndef PROTIS_ACCURACY_SPACE_H
+#define PROTIS_ACCURACY_SPACE_H
+
+#include "fem/fem.h"
+
+typedef struct space_recovery space_recovery; /* what belongs to the mesh   */
+
+/* Energy norms, sqrt(J): |v|^2 = integral of sigma' inv(E) sigma. */
+typedef struct space_error {
+  double error;    /* estimated |u - u_h|, sqrt(J)                            */
+  double norm;     /* |u_h|, sqrt(J)                                          */
+  double relative; /* error / sqrt(norm^2 + error^2), -; 0 without stress     */
+} space_error;
+
+/* Patches of elements for the domain (borrowed); *out is new. ERR_MEMORY. */
+status space_recovery_new(const domain *d, space_recovery **out);
+void space_recovery_free(space_recovery *s); /* accepts NULL                */
+
+/*
+ * Estimate for the stresses sigma[ns*n_elem] (domain_stress), Pa. eta[n_elem]
+ * or NULL: contribution of each element to |u - u_h|, sqrt(J).
+ */
+void space_estimate(space_recovery *s, const double *sigma, double *eta,
+                    space_error *out);
+
+#endif

@@ -1,0 +1,342 @@
+/*
+ * src/accuracy/space.c: the estimate against the true error in the energy norm
+ * for displacements that solve Navier's equation without body force: gradients
+ * of harmonic functions, and bending of two layers. Prescribed all round, the
+ * nodes inside moved at random.
+ */
+#include "accuracy/space.h"
+#include "support/scene.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Displacement and its gradient at a point: u[dim], G[3*3] row major. In
+ * axisymmetry x = r, y = z and G[8] = u_r / r. */
+typedef void field(const double *x, double *u, double *G);
+
+/* grad of Re (x + i y)^3 / 3 */
+static void plane_cubic(const double *x, double *u, double *G) {
+  u[0] = x[0] * x[0] - x[1] * x[1];
+  u[1] = -2 * x[0] * x[1];
+  G[0] = 2 * x[0];
+  G[1] = G[3] = -2 * x[1];
+  G[4] = -2 * x[0];
+}
+
+/* grad of log r, away from the centre (Lame's cylinder) */
+static void plane_log(const double *x, double *u, double *G) {
+  const double a = x[0] + 0.3, b = x[1] + 0.4, q = a * a + b * b;
+  u[0] = a / q;
+  u[1] = b / q;
+  G[0] = (b * b - a * a) / (q * q);
+  G[1] = G[3] = -2 * a * b / (q * q);
+  G[4] = -G[0];
+}
+
+/* grad of Re z^(3/2), a stress like r^(-1/2) at the corner */
+static void plane_root(const double *x, double *u, double *G) {
+  const double r = hypot(x[0], x[1]), t = atan2(x[1], x[0]);
+  u[0] = 1.5 * sqrt(r) * cos(t / 2);
+  u[1] = -1.5 * sqrt(r) * sin(t / 2);
+  G[0] = 0.75 / sqrt(r) * cos(t / 2);
+  G[1] = G[3] = 0.75 / sqrt(r) * sin(t / 2);
+  G[4] = -G[0];
+}
+
+/* grad of z^3 - 3/2 z r^2 */
+static void turned_cubic(const double *x, double *u, double *G) {
+  u[0] = -3 * x[0] * x[1];
+  u[1] = 3 * x[1] * x[1] - 1.5 * x[0] * x[0];
+  G[0] = -3 * x[1];
+  G[1] = G[3] = -3 * x[0];
+  G[4] = 6 * x[1];
+  G[8] = -3 * x[1];
+}
+
+/* grad of x^3 - 3 x y^2 + 2 x y z + z^3 - 3 z y^2 */
+static void solid_cubic(const double *x, double *u, double *G) {
+  u[0] = 3 * x[0] * x[0] - 3 * x[1] * x[1] + 2 * x[1] * x[2];
+  u[1] = -6 * x[0] * x[1] + 2 * x[0] * x[2] - 6 * x[2] * x[1];
+  u[2] = 2 * x[0] * x[1] + 3 * x[2] * x[2] - 3 * x[1] * x[1];
+  G[0] = 6 * x[0];
+  G[1] = G[3] = -6 * x[1] + 2 * x[2];
+  G[2] = G[6] = 2 * x[1];
+  G[4] = -6 * x[0] - 6 * x[2];
+  G[5] = G[7] = 2 * x[0] - 6 * x[1];
+  G[8] = 6 * x[2];
+}
+
+/* grad of 1/R from a point outside */
+static void solid_pole(const double *x, double *u, double *G) {
+  const double p[3] = {x[0] + 0.6, x[1] + 0.5, x[2] + 0.7};
+  const double q = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+  for (int i = 0; i < 3; ++i) {
+    u[i] = -p[i] / (q * sqrt(q));
+    for (int j = 0; j < 3; ++j)
+      G[3 * i + j] = (3 * p[i] * p[j] / q - (i == j ? 1 : 0)) / (q * sqrt(q));
+  }
+}
+
+/* Bending of layers of any stiffness with nu = 0: s_xx = E x y alone. */
+static void bending(const double *x, double *u, double *G) {
+  const double y = x[1] - 0.5;
+  u[0] = x[0] * y;
+  u[1] = -0.5 * x[0] * x[0];
+  G[0] = y;
+  G[1] = x[0];
+  G[3] = -x[0];
+  G[4] = 0;
+}
+
+static void uniform(const double *x, double *u, double *G) {
+  u[0] = 0.2 * x[0] + 0.1 * x[1];
+  u[1] = 0.3 * x[0] - 0.4 * x[1];
+  G[0] = 0.2;
+  G[1] = 0.1;
+  G[3] = 0.3;
+  G[4] = -0.4;
+}
+
+typedef struct problem {
+  const char *name;
+  kinematics kin;
+  field *exact;
+  int layers; /* 1: the upper half 100 times stiffer, nu = 0                  */
+  double low, high; /* of estimate over true error                           */
+} problem;
+
+/* clang-format off */
+static const problem problems[] = {
+  {"cubic, plane strain",  PLANE_STRAIN, plane_cubic,  0, 0.9, 1.1},
+  {"cubic, plane stress",  PLANE_STRESS, plane_cubic,  0, 0.9, 1.1},
+  {"Lame cylinder",        PLANE_STRAIN, plane_log,    0, 0.9, 1.1},
+  {"corner r^(-1/2)",      PLANE_STRAIN, plane_root,   0, 0.7, 1.5},
+  {"axisymmetric cubic",   AXISYMMETRIC, turned_cubic, 0, 0.8, 1.2},
+  {"solid cubic",          SOLID_3D,     solid_cubic,  0, 0.8, 1.2},
+  {"solid pole",           SOLID_3D,     solid_pole,   0, 0.7, 1.3},
+  {"two layers in bending", PLANE_STRESS, bending,     1, 0.9, 1.1},
+};
+/* clang-format on */
+enum { N_PROBLEM = sizeof problems / sizeof *problems };
+
+static int inside(const mesh *m, int node, const double *length) {
+  for (int c = 0; c < m->dim; ++c) {
+    const double x = m->x[m->dim * node + c];
+    if (x == 0 || x == length[c]) return 0;
+  }
+  return 1;
+}
+
+/* A box of n cells a side, its nodes inside moved; all round prescribed. */
+static scene *box(kinematics kin, int n, int layers) {
+  static const double length[] = {1, 1, 1};
+  unsigned seed = 3;
+  mesh *m = kin == SOLID_3D ? make_grid_3d((int[]){n, n, n}, length)
+                            : make_grid_2d((int[]){n, n}, length);
+  scene *s = scene_new(m, kin, 3);
+  for (int i = 0; i < m->n_node; ++i)
+    for (int c = 0; c < m->dim; ++c)
+      if (!inside(m, i, length))
+        scene_fix_node(s, i, c);
+      else if (!layers)
+        m->x[m->dim * i + c] += 0.15 / n * scene_random(&seed);
+  return s;
+}
+
+/* Two sections with nu = 0, the upper half 100 times stiffer. */
+static void make_layers(scene *s, double *E, double *C, kinematics *kin,
+                        double *thickness) {
+  char why[160];
+  const mesh *m = s->m;
+  for (int k = 0; k < 2; ++k) {
+    ck_assert_ptr_null(elastic_matrix(
+        ELASTIC_ISO, 2, (double[]){k == 0 ? 3 : 300, 0}, C + 36 * k, why, 160));
+    elastic_reduce(C + 36 * k, s->kin[0], E + 16 * k);
+    kin[k] = s->kin[0];
+    thickness[k] = 1;
+  }
+  for (int e = 0; e < m->n_elem; ++e) {
+    double y = 0;
+    for (int a = 0; a < 3; ++a) y += m->x[2 * m->elem[3 * e + a] + 1] / 3;
+    s->section_id[e] = y > 0.5;
+  }
+  s->d.E = E;
+  s->d.C = C;
+  s->d.kin = kin;
+  s->d.thickness = thickness;
+}
+
+/* Exact stress at x: sigma[ns]; material by Hooke's law written out. */
+static void exact_stress(const problem *p, const double *x, double *sigma) {
+  double u[3], G[9] = {0};
+  p->exact(x, u, G);
+  const double E = p->layers && x[1] > 0.5 ? 300 : 3, nu = p->layers ? 0 : 0.3;
+  const double mu = E / (2 * (1 + nu));
+  double lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
+  if (p->kin == PLANE_STRESS) lambda = 2 * lambda * mu / (lambda + 2 * mu);
+  const double zz = p->kin == SOLID_3D || p->kin == AXISYMMETRIC ? G[8] : 0;
+  const double trace = G[0] + G[4] + zz;
+  sigma[0] = lambda * trace + 2 * mu * G[0];
+  sigma[1] = lambda * trace + 2 * mu * G[4];
+  sigma[2] = p->kin == PLANE_STRESS ? 0 : lambda * trace + 2 * mu * zz;
+  sigma[3] = mu * (G[1] + G[3]);
+  if (p->kin != SOLID_3D) return;
+  sigma[4] = mu * (G[5] + G[7]);
+  sigma[5] = mu * (G[2] + G[6]);
+}
+
+/* 2 x the density of elastic energy of a stress, Hooke's law inverted. */
+static double density(const problem *p, double E, const double *t) {
+  const double nu = p->layers ? 0 : 0.3;
+  double sum = 0, shear = 0;
+  for (int i = 0; i < 3; ++i) sum += t[i] * t[i];
+  shear = t[3] * t[3];
+  if (p->kin == SOLID_3D) shear += t[4] * t[4] + t[5] * t[5];
+  const double mixed = t[0] * t[1] + t[1] * t[2] + t[2] * t[0];
+  return (sum - 2 * nu * mixed + 2 * (1 + nu) * shear) / E;
+}
+
+/* Square of the true error, J, by four (3-D) or three points an element. */
+static double true_error(const problem *p, const scene *s,
+                         const double *sigma) {
+  const mesh *m = s->m;
+  const int v = m->dim + 1;
+  const double b = m->dim == 2 ? 1.0 / 6 : (5 - sqrt(5)) / 20;
+  double total = 0;
+  for (int e = 0; e < m->n_elem; ++e)
+    for (int q = 0; q < v; ++q) {
+      double x[3] = {0}, t[6];
+      for (int a = 0; a < v; ++a)
+        for (int c = 0; c < m->dim; ++c)
+          x[c] += (a == q ? 1 - m->dim * b : b) *
+                  m->x[m->dim * m->elem[v * e + a] + c];
+      exact_stress(p, x, t);
+      for (int i = 0; i < s->d.ns; ++i) t[i] -= sigma[s->d.ns * e + i];
+      total += element_weight(&s->d, e) / v *
+               density(p, p->layers && x[1] > 0.5 ? 300 : 3, t);
+    }
+  return total;
+}
+
+/* Solve and estimate; effectivity, and what the caller wants to see. */
+static double effectivity(const problem *p, int n, space_error *found) {
+  double E[32], C[72], thickness[2];
+  kinematics kin[2];
+  scene *s = box(p->kin, n, p->layers);
+  const mesh *m = s->m;
+  const size_t N = (size_t)(m->dim * m->n_node);
+  stiffness *k;
+  condensed *c;
+  space_recovery *recovery;
+  double *F = calloc(N, sizeof *F), *u = calloc(N, sizeof *u), G[9] = {0};
+  double *exact = calloc(N, sizeof *exact), sum = 0;
+  double *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
+  double *eta = calloc((size_t)m->n_elem, sizeof *eta);
+  if (p->layers) make_layers(s, E, C, kin, thickness);
+  for (int i = 0; i < m->n_node; ++i)
+    p->exact(m->x + m->dim * i, exact + m->dim * i, G);
+  ck_assert_int_eq(stiffness_assemble(&s->d, &k), OK);
+  ck_assert_int_eq(condense(k, &s->d, &c), OK);
+  ck_assert_int_eq(condense_load(c, F, exact, NULL), OK);
+  ck_assert_int_eq(condense_recover(c, NULL, u), OK);
+  domain_stress(&s->d, u, NULL, sigma);
+  ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
+  space_estimate(recovery, sigma, eta, found);
+  for (int e = 0; e < m->n_elem; ++e) sum += eta[e] * eta[e];
+  ck_assert_double_eq_tol(sqrt(sum), found->error, 1e-12 * found->error);
+  ck_assert_double_eq_tol(found->norm, sqrt(2 * domain_strain_energy(&s->d, u)),
+                          1e-10 * found->norm);
+  const double truth = sqrt(true_error(p, s, sigma));
+  space_recovery_free(recovery);
+  condensed_free(c);
+  stiffness_free(k);
+  scene_free(s);
+  free(F);
+  free(u);
+  free(exact);
+  free(sigma);
+  free(eta);
+  return found->error / truth;
+}
+
+START_TEST(estimate_is_near_the_true_error) {
+  const problem *p = &problems[_i];
+  space_error coarse, fine;
+  const int n = p->kin == SOLID_3D ? 5 : 10;
+  const double a = effectivity(p, n, &coarse);
+  const double b = effectivity(p, 2 * n, &fine);
+  printf("%-24s effectivity %.3f, %.3f; error %.2f %%, %.2f %%\n", p->name, a,
+         b, 100 * coarse.relative, 100 * fine.relative);
+  ck_assert_double_ge(b, p->low);
+  ck_assert_double_le(b, p->high);
+  ck_assert_double_ge(a, 0.7);
+  ck_assert_double_le(a, 1.5);
+}
+END_TEST
+
+START_TEST(uniform_stress_has_no_error) {
+  const problem p = {
+      "uniform", _i == 0 ? PLANE_STRAIN : PLANE_STRESS, uniform, 0, 0, 0};
+  space_error found;
+  effectivity(&p, 6, &found);
+  ck_assert_double_le(found.relative, 1e-12);
+}
+END_TEST
+
+START_TEST(one_layer_of_elements_has_an_estimate) {
+  static const double length[] = {4, 1};
+  scene *s = scene_new(make_grid_2d((int[]){1, 1}, length), PLANE_STRAIN, 3);
+  space_recovery *recovery;
+  space_error found;
+  const double sigma[8] = {1, 0, 0.3, 0, 3, 0, 0.9, 0};
+  ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
+  space_estimate(recovery, sigma, NULL, &found);
+  /* Two triangles, mean (2, 0, .6, 0): d = (+-1, 0, +-.3, 0) everywhere. */
+  const double square = 4 * (1 + 0.09 - 2 * 0.3 * 0.3) / 3;
+  ck_assert_double_eq_tol(found.error, sqrt(square), 1e-12);
+  space_recovery_free(recovery);
+  scene_free(s);
+}
+END_TEST
+
+START_TEST(an_estimate_has_no_unit) {
+  static const double length[] = {1, 1};
+  scene *s = scene_new(make_grid_2d((int[]){4, 4}, length), PLANE_STRAIN, 3);
+  const size_t T = (size_t)(4 * s->m->n_elem);
+  double *sigma = calloc(T, sizeof *sigma);
+  unsigned seed = 5;
+  space_recovery *recovery;
+  space_error a, b;
+  for (size_t i = 0; i < T; ++i) sigma[i] = scene_random(&seed);
+  ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
+  space_estimate(recovery, sigma, NULL, &a);
+  space_recovery_free(recovery);
+  for (int i = 0; i < 2 * s->m->n_node; ++i) s->m->x[i] = ldexp(s->m->x[i], 30);
+  for (int i = 0; i < 16; ++i) s->E[i] = ldexp(s->E[i], 40);
+  for (size_t i = 0; i < T; ++i) sigma[i] = ldexp(sigma[i], -20);
+  ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
+  space_estimate(recovery, sigma, NULL, &b);
+  ck_assert_double_eq(a.relative, b.relative);
+  ck_assert_double_gt(a.relative, 0);
+  space_recovery_free(recovery);
+  free(sigma);
+  scene_free(s);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("space");
+  TCase *tests = tcase_create("space");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, estimate_is_near_the_true_error, 0, N_PROBLEM);
+  tcase_add_loop_test(tests, uniform_stress_has_no_error, 0, 2);
+  tcase_add_test(tests, one_layer_of_elements_has_an_estimate);
+  tcase_add_test(tests, an_estimate_has_no_unit);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
