@@ -25,7 +25,10 @@ static status read_mesh(const model *m, mesh **msh) {
     numbers[i].value = m->deck->symbols[i].value;
   }
   timer_enter(STAGE_MESH);
-  st = mesh_read_gmsh(m->mesh_file, m->mesh_scale, m->deck->n_symbol, numbers,
+  st = mesh_read_gmsh(&(mesh_source){.file = m->mesh_file,
+                                     .scale = m->mesh_scale,
+                                     .n_number = m->deck->n_symbol,
+                                     .numbers = numbers},
                       &m->mesh_at, m->log, msh);
   timer_leave(STAGE_MESH);
 done:

@@ -38,7 +38,9 @@
   X(LoggerGetLastError) X(ModelGetEntities) X(ModelGetPhysicalGroups)        \
   X(ModelGetPhysicalName) X(ModelGetPhysicalGroupsForEntity)                 \
   X(ModelMeshGenerate) X(ModelMeshGetNodes) X(ModelMeshGetElements)          \
-  X(ModelMeshGetElementProperties) X(Free)
+  X(ModelMeshGetElementProperties) X(ModelMeshFieldAdd)                      \
+  X(ModelMeshFieldSetNumber) X(ModelMeshFieldSetAsBackgroundMesh)            \
+  X(ViewAdd) X(ViewAddListData) X(Free)
 /* clang-format on */
 
 #define CALL_FIELD(name) __typeof__(&gmsh##name) name;
@@ -205,8 +207,8 @@ static void set(const child *c, const char *option, double value) {
 /* Numbers for the .geo go in as on the command line of gmsh: they win over
  * what DefineConstant says, before the file is read. */
 static void start(const child *c) {
-  const raw_request *r = c->request;
-  int n = r->is_geo ? r->n_number : 0, error;
+  const mesh_source *r = c->request->source;
+  int n = c->request->is_geo ? r->n_number : 0, error;
   char **argv = memory_new(3 * (size_t)n + 2, sizeof *argv);
   char *text = memory_new((size_t)n + 1, 40);
   if (argv == NULL || text == NULL)
@@ -217,9 +219,9 @@ static void start(const child *c) {
   strcpy(set_number, "-setnumber");
   for (int i = 0; i < n; ++i) {
     char *value = text + 40 * i;
-    snprintf(value, 40, "%.17g", r->number[i].value);
+    snprintf(value, 40, "%.17g", r->numbers[i].value);
     argv[argc++] = set_number;
-    argv[argc] = memory_text(r->number[i].name);
+    argv[argc] = memory_text(r->numbers[i].name);
     if (argv[argc++] == NULL)
       give_up(c, ERR_MEMORY, "memory exhausted: numbers for gmsh");
     argv[argc++] = value;
@@ -237,6 +239,50 @@ static void fix_options(const child *c) {
   set(c, "Mesh.MaxNumThreads2D", 1);
   set(c, "Mesh.MaxNumThreads3D", 1);
   set(c, "Mesh.ElementOrder", 1);
+}
+
+/* The earlier mesh as a view of gmsh: per element the coordinates x of all
+ * vertices, then y, then z, then the sizes there, in units of the .geo. */
+static double *view_of_sizes(const child *c, size_t *n) {
+  const mesh_source *r = c->request->source;
+  const mesh *m = r->old;
+  size_t vertices = (size_t)m->dim + 1, k = 0;
+  *n = 4 * vertices * (size_t)m->n_elem;
+  double *data = memory_new(*n, sizeof *data);
+  if (data == NULL) give_up(c, ERR_MEMORY, "memory exhausted: sizes for gmsh");
+  for (int e = 0; e < m->n_elem; ++e) {
+    const int *node = m->elem + vertices * (size_t)e;
+    for (int i = 0; i < 3; ++i)
+      for (size_t a = 0; a < vertices; ++a)
+        data[k++] = (i < m->dim ? m->x[m->dim * node[a] + i] : m->z) / r->scale;
+    for (size_t a = 0; a < vertices; ++a)
+      data[k++] = r->size[node[a]] / r->scale;
+  }
+  return data;
+}
+
+/* Sizes wanted at the nodes of an earlier mesh in place of those of the .geo.
+ */
+static void set_sizes(const child *c) {
+  size_t n;
+  int error;
+  double *data = view_of_sizes(c, &n);
+  const mesh *m = c->request->source->old;
+  int view = c->gmsh.ViewAdd("sizes", -1, &error);
+  check(c, error, "take the sizes");
+  c->gmsh.ViewAddListData(view, m->dim == 2 ? "ST" : "SS", m->n_elem, data, n,
+                          &error);
+  check(c, error, "take the sizes");
+  int field = c->gmsh.ModelMeshFieldAdd("PostView", -1, &error);
+  check(c, error, "take the sizes");
+  c->gmsh.ModelMeshFieldSetNumber(field, "ViewTag", view, &error);
+  check(c, error, "take the sizes");
+  c->gmsh.ModelMeshFieldSetAsBackgroundMesh(field, &error);
+  check(c, error, "take the sizes");
+  set(c, "Mesh.MeshSizeExtendFromBoundary", 0);
+  set(c, "Mesh.MeshSizeFromPoints", 0);
+  set(c, "Mesh.MeshSizeFromCurvature", 0);
+  memory_free(data);
 }
 
 /* Highest dimension of the physical groups: 3, or 2, or less; -1 if none. */
@@ -380,13 +426,14 @@ void child_run(const raw_request *request, pid_t parent, int fd, int error_fd) {
   detach(parent, fd, error_fd);
   load(c);
   start(c);
-  c->gmsh.Open(request->file, &error);
+  c->gmsh.Open(request->source->file, &error);
   check(c, error, "read the file");
   int dim = send_groups(c);
   const char *doing = "read the file";
   if (request->is_geo && dim >= 2 && !has_elements(c, dim)) {
     doing = "mesh the geometry";
     fix_options(c);
+    if (request->source->size != NULL) set_sizes(c);
     c->gmsh.ModelMeshGenerate(dim, &error);
     check(c, error, doing);
   }

@@ -182,13 +182,13 @@ static message_id number_of(const char *text) {
              : P3003;
 }
 
-status mesh_read_gmsh(const char *file, double scale, int n_number,
-                      const mesh_number *numbers, const place *at,
+status mesh_read_gmsh(const mesh_source *source, const place *at,
                       message_log *log, mesh **out) {
   status st = OK;
+  const char *file = source->file;
   char head[HEAD_SIZE + 1];
   raw_mesh *raw = NULL;
-  raw_request request = {file, ends_in(file, ".geo"), n_number, numbers};
+  raw_request request = {source, ends_in(file, ".geo")};
   *out = NULL;
   TRY(read_head(file, head, at, log));
   if (request.is_geo) {
@@ -203,7 +203,7 @@ status mesh_read_gmsh(const char *file, double scale, int n_number,
     message_add(log, number_of(status_message()), at, "mesh file \"%s\": %s",
                 file, status_message());
   TRY(st);
-  TRY(build_mesh(raw, scale, at, log, out));
+  TRY(build_mesh(raw, source->scale, at, log, out));
 done:
   raw_free(raw);
   return st;

@@ -35,6 +35,7 @@ typedef struct mesh {
   int *face_elem;    /* [n_face] the element the face bounds                  */
   int *face_other;   /* [n_face] the element behind it, -1 on the boundary    */
   mesh_group *group; /* [n_group]                                            */
+  double z;          /* of the plane of a 2-D mesh, length                    */
   double size;       /* largest extent of the bounding box, length            */
 } mesh;
 
@@ -43,12 +44,22 @@ typedef struct mesh_number { /* a number handed to a .geo file               */
   double value;
 } mesh_number;
 
-/* Read .msh (2.2, 4.1, ASCII, binary) or mesh a .geo with the numbers given.
- * Coordinates are multiplied by scale. What is wrong with the mesh goes to
- * the log with "at" (the *MESH card) as place and the answer is ERR_MESH;
- * ERR_FILE if the file is missing, ERR_MEMORY. */
-status mesh_read_gmsh(const char *file, double scale, int n_number,
-                      const mesh_number *numbers, const place *at,
+/* Where a mesh comes from. */
+typedef struct mesh_source {
+  const char *file; /* .msh, or .geo to be meshed                            */
+  double scale;     /* coordinates are multiplied by it, -                    */
+  int n_number;
+  const mesh_number *numbers; /* [n_number] for a .geo                        */
+  /* A .geo meshed anew: the lengths its elements shall have, at the nodes of
+   * an earlier mesh of it, length; both NULL: the sizes of the .geo. */
+  const mesh *old;
+  const double *size; /* [old->n_node]                                        */
+} mesh_source;
+
+/* Read .msh (2.2, 4.1, ASCII, binary) or mesh a .geo. What is wrong with the
+ * mesh goes to the log with "at" (the *MESH card) as place and the answer is
+ * ERR_MESH; ERR_FILE if the file is missing, ERR_MEMORY. */
+status mesh_read_gmsh(const mesh_source *source, const place *at,
                       message_log *log, mesh **out);
 void mesh_free(mesh *m);
 

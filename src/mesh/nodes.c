@@ -162,6 +162,7 @@ static status store_nodes(builder *b, const int *raw_id) {
     size_t r = (size_t)raw_id[i];
     for (size_t k = 0; k < dim; ++k)
       m->x[dim * (size_t)i + k] = b->raw->xyz[3 * r + k] * b->scale;
+    if (dim == 2) m->z = b->raw->xyz[3 * r + 2] * b->scale;
     m->node_no[i] = b->raw->node_no[r];
     b->node_id[r] = i;
   }

@@ -72,10 +72,8 @@ typedef struct wire_head {
 enum { WIRE_MAGIC = 0x50524d31 }; /* "PRM1" */
 
 typedef struct raw_request {
-  const char *file;
-  int is_geo; /* mesh the geometry, else read the mesh           */
-  int n_number;
-  const mesh_number *number; /* [n_number] for the .geo, borrowed */
+  const mesh_source *source;
+  int is_geo; /* mesh the geometry, else read the mesh                       */
 } raw_request;
 
 /* Let a child process read the file. What fails is told in the record:

@@ -35,13 +35,20 @@ void mesh_file_write(const mesh_file *f, const char *name, const void *data,
 
 mesh *mesh_file_read(mesh_file *f, const char *name, double scale, int n_number,
                      const mesh_number *numbers) {
+  const mesh_source source = {.file = mesh_file_path(f, name),
+                              .scale = scale,
+                              .n_number = n_number,
+                              .numbers = numbers};
+  return mesh_file_from(f, &source);
+}
+
+mesh *mesh_file_from(mesh_file *f, const mesh_source *source) {
   message_log *log;
   mesh *m = NULL;
   const place at = {"job.inp", 4, 1, NULL, NULL};
   memset(f->messages, 0, sizeof f->messages);
   must(message_log_new(&log) == OK, "log");
-  f->answer = mesh_read_gmsh(mesh_file_path(f, name), scale, n_number, numbers,
-                             &at, log, &m);
+  f->answer = mesh_read_gmsh(source, &at, log, &m);
   f->n_error = message_count(log, ERROR);
   FILE *out = fmemopen(f->messages, sizeof f->messages - 1, "w");
   must(out != NULL, "text");

@@ -29,6 +29,8 @@ void mesh_file_write(const mesh_file *f, const char *name, const void *data,
 /* Read FOLDER/NAME with the numbers; the answer and messages go to f. */
 mesh *mesh_file_read(mesh_file *f, const char *name, double scale, int n_number,
                      const mesh_number *numbers);
+/* The same from a source that names its file itself. */
+mesh *mesh_file_from(mesh_file *f, const mesh_source *source);
 /* Write the text as FOLDER/NAME, then read it. */
 mesh *mesh_file_text(mesh_file *f, const char *name, const char *text);
 /* 1 if both are the same in everything but the element numbers (version 2.2

@@ -266,6 +266,48 @@ START_TEST(numbers_reach_the_geometry) {
 }
 END_TEST
 
+/* Sizes 0.05 in the quarter x, y < 0, 0.5 elsewhere, lengths scaled by 10. */
+START_TEST(sizes_reach_the_geometry) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh_file_write(&f, "d.geo", disc_geo, strlen(disc_geo));
+  mesh *old = mesh_file_read(&f, "d.geo", 10.0, 0, NULL);
+  ck_assert_msg(old != NULL, "%s", f.messages);
+  double *size = calloc((size_t)old->n_node, sizeof *size), area[2] = {0, 0};
+  for (int i = 0; i < old->n_node; ++i)
+    size[i] = old->x[2 * i] < 0 && old->x[2 * i + 1] < 0 ? 0.5 : 5;
+  const mesh_source source = {.file = mesh_file_path(&f, "d.geo"),
+                              .scale = 10,
+                              .old = old,
+                              .size = size};
+  mesh *m = mesh_file_from(&f, &source);
+  ck_assert_msg(m != NULL, "%s", f.messages);
+  int n[2] = {0, 0};
+  for (int e = 0; e < m->n_elem; ++e) {
+    double x = 0, y = 0;
+    for (int a = 0; a < 3; ++a) {
+      x += m->x[2 * m->elem[3 * e + a]] / 3;
+      y += m->x[2 * m->elem[3 * e + a] + 1] / 3;
+    }
+    /* Well inside either part. */
+    int part = x < -4 && y < -4 ? 0 : x > 7 || y > 7 ? 1 : -1;
+    if (part < 0) continue;
+    ++n[part];
+    area[part] += mesh_elem_measure(m, e);
+  }
+  for (int part = 0; part < 2; ++part) {
+    const double h = sqrt(area[part] / n[part] * 4 / sqrt(3));
+    ck_assert_double_gt(h, (part == 0 ? 0.5 : 5) * 0.6);
+    ck_assert_double_lt(h, (part == 0 ? 0.5 : 5) * 1.3);
+  }
+  ck_assert_int_eq(m->n_group, old->n_group);
+  free(size);
+  mesh_free(old);
+  mesh_free(m);
+  mesh_file_close(&f);
+}
+END_TEST
+
 START_TEST(scale_by_a_power_of_two_changes_no_digit) {
   mesh_file f;
   mesh_file_open(&f);
@@ -428,7 +470,8 @@ START_TEST(reader_gives_back_all_when_refused) {
   mesh_file f;
   mesh_file_open(&f);
   mesh_file_write(&f, "m.msh", small_msh, sizeof small_msh - 1);
-  const raw_request request = {mesh_file_path(&f, "m.msh"), 0, 0, NULL};
+  const mesh_source source = {.file = mesh_file_path(&f, "m.msh"), .scale = 1};
+  const raw_request request = {&source, 0};
   size_t before = memory_in_use();
   int k = 1;
   for (;; ++k) {
@@ -450,7 +493,8 @@ START_TEST(builder_gives_back_all_when_refused) {
   mesh_file f;
   mesh_file_open(&f);
   mesh_file_write(&f, "m.msh", small_msh, sizeof small_msh - 1);
-  const raw_request request = {mesh_file_path(&f, "m.msh"), 0, 0, NULL};
+  const mesh_source source = {.file = mesh_file_path(&f, "m.msh"), .scale = 1};
+  const raw_request request = {&source, 0};
   raw_mesh *raw;
   ck_assert_int_eq(raw_read(&request, &raw), OK);
   long first = memory_requests(), n = 0;
@@ -498,7 +542,7 @@ UNIT_MAIN("mesh", disc_in_frame_has_its_areas_normals_and_groups,
           cubes_have_their_volumes_normals_and_groups,
           all_formats_give_the_same_mesh_2d, all_formats_give_the_same_mesh_3d,
           meshing_twice_gives_the_same_bytes, numbers_reach_the_geometry,
-          scale_by_a_power_of_two_changes_no_digit,
+          sizes_reach_the_geometry, scale_by_a_power_of_two_changes_no_digit,
           order_does_not_depend_on_the_numbers_of_the_file,
           order_of_close_nodes_is_that_of_their_coordinates,
           neighbours_are_close_in_memory, bodies_are_the_connected_parts,
