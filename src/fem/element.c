@@ -177,21 +177,56 @@ static void stress_at(const domain *d, int elem_id, const double *e,
   }
 }
 
+/* e0 of an element, or NULL; *next runs along with ascending elem_id. */
+static const double *eigen_at(const domain *d, int elem_id, int *next) {
+  const eigenstrain *x = d->eigen;
+  if (x == NULL || *next >= x->n || x->elem_id[*next] != elem_id) return NULL;
+  return x->e0 + (size_t)d->ns * (size_t)(*next)++;
+}
+
+/* e[ns] becomes the elastic strain; e0 may be NULL. */
+static void take_eigen(const domain *d, const double *e0, double *e) {
+  for (int i = 0; e0 != NULL && i < d->ns; ++i) e[i] -= e0[i];
+}
+
+/* Plane stress: the elastic strain e gets its zz, then e0 is put back. */
+static void total_strain(const domain *d, int section, const double *e0,
+                         double *e) {
+  if (d->kin[section] == PLANE_STRESS && d->C != NULL)
+    elastic_zz_strain(d->C + (size_t)36 * (size_t)section, e);
+  for (int i = 0; e0 != NULL && i < d->ns; ++i) e[i] += e0[i];
+}
+
 void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
   const size_t ns = (size_t)d->ns;
+  int next = 0;
   timer_enter(STAGE_STRESS);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
-    const int section = d->section_id[k];
+    const double *e0 = eigen_at(d, k, &next);
     element_shape s;
     double strain[6];
     element_shape_at(d, k, &s);
     strain_at(d, k, u, &s, strain);
+    take_eigen(d, e0, strain);
     if (sigma != NULL) stress_at(d, k, strain, sigma + ns * (size_t)k);
-    if (d->kin[section] == PLANE_STRESS && d->C != NULL)
-      elastic_zz_strain(d->C + (size_t)36 * (size_t)section, strain);
-    if (e != NULL) memcpy(e + ns * (size_t)k, strain, ns * sizeof *e);
+    if (e == NULL) continue;
+    total_strain(d, d->section_id[k], e0, strain);
+    memcpy(e + ns * (size_t)k, strain, ns * sizeof *e);
   }
   timer_leave(STAGE_STRESS);
+}
+
+void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
+                  double *sigma) {
+  const size_t ns = (size_t)d->ns;
+  for (int k = 0; k < x->n; ++k) {
+    element_shape s;
+    double strain[6];
+    element_shape_at(d, x->elem_id[k], &s);
+    strain_at(d, x->elem_id[k], u, &s, strain);
+    take_eigen(d, x->e0 + ns * (size_t)k, strain);
+    stress_at(d, x->elem_id[k], strain, sigma + ns * (size_t)k);
+  }
 }
 
 /* F += scale B' sigma w of one element; sigma[ns]. */
@@ -225,6 +260,16 @@ void domain_internal_force(const domain *d, const double *sigma, double *F) {
   timer_leave(STAGE_STRESS);
 }
 
+void eigen_force(const domain *d, const eigenstrain *x, double *F) {
+  for (int k = 0; k < x->n; ++k) {
+    element_shape s;
+    double t[6];
+    element_shape_at(d, x->elem_id[k], &s);
+    stress_at(d, x->elem_id[k], x->e0 + (size_t)d->ns * (size_t)k, t);
+    add_force(d, x->elem_id[k], &s, t, 1, F);
+  }
+}
+
 void domain_residual(const domain *d, const double *u, const double *F,
                      double *rest) {
   memcpy(rest, F,
@@ -241,12 +286,14 @@ void domain_residual(const domain *d, const double *u, const double *F,
 
 double domain_strain_energy(const domain *d, const double *u) {
   double sum = 0;
+  int next = 0;
   timer_enter(STAGE_ENERGY);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     element_shape s;
     double e[6], t[6], density = 0;
     element_shape_at(d, k, &s);
     strain_at(d, k, u, &s, e);
+    take_eigen(d, eigen_at(d, k, &next), e);
     stress_at(d, k, e, t);
     for (int i = 0; i < d->ns; ++i) density += e[i] * t[i];
     sum += 0.5 * s.weight * density;

@@ -13,6 +13,14 @@
 #include "material/material.h"
 #include "mesh/mesh.h"
 
+/* Strains without stress (thermal, inelastic) of some elements:
+ * sigma = E (e - e0). The others have none. */
+typedef struct eigenstrain {
+  int n;
+  const int *elem_id; /* [n] ascending                                      */
+  const double *e0;   /* [ns*n] -                                           */
+} eigenstrain;
+
 /* What the elements are made of. */
 typedef struct domain {
   const mesh *mesh;
@@ -25,6 +33,8 @@ typedef struct domain {
   const double *C; /* [36*n_section] Pa, for e_zz of plane stress; NULL: 0   */
   const unsigned char *fixed; /* [dim*n_node] 1: prescribed (global
                                  components)                                 */
+  const eigenstrain *eigen;   /* NULL: none. Counts in stresses and energy;
+                                 condense_load has it from F (eigen_force)   */
 } domain;
 
 /* B of one element: e = B u_e, B[ns*(dim+1)*dim] column major; returns the
@@ -108,6 +118,12 @@ void domain_stress(const domain *d, const double *u, double *e, double *sigma);
 /* Internal forces F = sum B' sigma w, global components [dim*n_node]. */
 void domain_internal_force(const domain *d, const double *sigma, double *F);
 double domain_strain_energy(const domain *d, const double *u); /* J           */
+/* F += sum B' E e0 w: the forces that hold the strains of x back, global
+ * components [dim*n_node], N. */
+void eigen_force(const domain *d, const eigenstrain *x, double *F);
+/* Stresses of the elements of x alone: sigma[ns*n], Pa. */
+void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
+                  double *sigma);
 
 /* BLAS kernel: see blas.c. Called first in main; may replace the process. */
 void blas_choose_kernel(char **argv);

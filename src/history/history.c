@@ -45,6 +45,7 @@ static state make_state(run *r, int attempt, int increment_no) {
              .u = e->u,
              .strain = r->strain,
              .stress = r->stress,
+             .temperature = e->temperature,
              .reaction = e->reaction,
              .problem = r->n > 0 ? &r->cp : NULL,
              .surface = r->surface,

@@ -26,9 +26,10 @@ typedef struct energies {
   double normal;       /* J, work of the normal contact forces so far: moving
                           obstacles, and by the trapezoidal rule gaps that open
                           or close within an increment                        */
-  double defect;       /* J, external + normal - friction - strain            */
-  double largest;      /* J, largest magnitude of the four so far: the scale
-                          of the defect, also once all is unloaded            */
+  double thermal;      /* J, work of the stresses on thermal strain so far    */
+  double defect;  /* J, external + normal - friction - thermal - strain       */
+  double largest; /* J, largest magnitude of the five so far: the scale of
+                     the defect, also once all is unloaded                    */
 } energies;
 
 /* One accepted increment. Arrays are borrowed and live until the next one. */
@@ -40,6 +41,7 @@ typedef struct state {
   int end_of_step;
   const double *u; /* [dim*n_node] m                                      */
   const double *strain, *stress; /* [ns*n_elem] -, Pa; NULL if no output asks */
+  const double *temperature; /* [n_elem] or NULL: no thermal strain           */
   const double *reaction; /* [dim*n_node] N, of the supports; 0 where free    */
   const contact_problem *problem; /* what was solved; NULL: no contact, LCP   */
   const contact_surface *surface; /* NULL: no contact. A problem from a file

@@ -186,7 +186,8 @@ status increment_solve(run *r, double t) {
   r->now.t = t;
   r->report = (solver_report){.outcome = CONVERGED, .solver = "linear"};
   TRY(load_at(r, t));
-  TRY(condense_load(r->c, r->now.F, r->ud, r->f));
+  TRY(thermal_update(r));
+  TRY(condense_load(r->c, thermal_load(r), r->ud, r->f));
   if (r->n > 0) TRY(solve_contact(r, t));
   TRY(condense_recover(r->c, r->now.uc, r->now.u));
 done:

@@ -101,7 +101,8 @@ static void find_totals(run *r) {
 /*
  * Energies of the increment. The trapezoidal works balance to rounding for a
  * linear elastic body, whatever the increment: with K symmetric
- *   E - E_old = 1/2 (Ku + Ku_old)'(u - u_old).
+ *   E - E_old = 1/2 (Ku + Ku_old)'(u - u_old),
+ * and with strains e0 that carry no stress 1/2 (s + s_old)'(e0 - e0_old) less.
  */
 static void find_energies(run *r) {
   const equilibrium *a = &r->old, *b = &r->now;
@@ -124,10 +125,11 @@ static void find_energies(run *r) {
   }
   e.friction += friction;
   e.normal += work + friction;
+  e.thermal += thermal_work(r);
   e.strain = domain_strain_energy(&r->d, b->u);
-  e.defect = e.external + e.normal - e.friction - e.strain;
-  const double part[] = {e.external, e.normal, e.friction, e.strain};
-  for (int k = 0; k < 4; ++k) e.largest = fmax(e.largest, fabs(part[k]));
+  e.defect = e.external + e.normal - e.friction - e.thermal - e.strain;
+  const double part[] = {e.external, e.normal, e.friction, e.thermal, e.strain};
+  for (int k = 0; k < 5; ++k) e.largest = fmax(e.largest, fabs(part[k]));
   r->now.energy = e;
 }
 

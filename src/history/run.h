@@ -15,6 +15,9 @@ typedef struct equilibrium {
   double *uc, *rc;  /* [m] contact frame, m, N                                */
   double *motion;   /* [m] way of the obstacles past the nodes since time 0,
                        added up over the increments, contact frame, m         */
+  double *temperature; /* [n_elem] or NULL: no thermal strain                 */
+  double *thermal;     /* [ns*n] thermal strains of the elements of r->eigen  */
+  double *e0, *sigma;  /* [ns*n] all their strains without stress; Pa         */
   energies energy;
 } equilibrium;
 
@@ -34,6 +37,12 @@ typedef struct run {
   double *thickness, *E; /* [n_section], [ns*ns*n_section]                    */
   double *C;             /* [36*n_section]                                    */
   unsigned char *fixed; /* [dim*n_node]                                       */
+
+  /* Elements with strains that have no stress. */
+  eigenstrain eigen;    /* e0 is that of the equilibrium at hand             */
+  int *eigen_elem;      /* [n]                                               */
+  double *temperature0; /* [n_elem] before the first step                    */
+  double *eigen_load;   /* [dim*n_node] F with the forces of r->eigen, N     */
 
   /* Contact surface and condensed stiffness: as long as "fixed" stays. */
   surface_input input;
@@ -68,6 +77,18 @@ status run_new(run *r);
 /* Surface, stiffness, condensed matrix and solver for r->step. */
 status run_prepare(run *r);
 void run_free(run *r);
+
+/* thermal.c: strains that carry no stress. */
+status thermal_new(run *r);
+void thermal_free(run *r);
+/* Temperatures and strains of r->now at its time t. */
+status thermal_update(run *r);
+/* The loads with the forces that the strains of r->now call for: r->now.F
+ * itself if there are none. */
+const double *thermal_load(run *r);
+/* Stresses of these elements, and the work on their thermal strains since
+ * r->old, J. */
+double thermal_work(run *r);
 
 /* increment.c: the equilibrium at time t into r->now; read r->report. */
 status increment_solve(run *r, double t);

@@ -25,6 +25,10 @@ static void free_equilibrium(equilibrium *e) {
   memory_free(e->uc);
   memory_free(e->rc);
   memory_free(e->motion);
+  memory_free(e->temperature);
+  memory_free(e->thermal);
+  memory_free(e->e0);
+  memory_free(e->sigma);
 }
 
 static status new_sections(run *r) {
@@ -95,6 +99,7 @@ status run_new(run *r) {
   TRY(new_equilibrium(r, &r->now));
   NEW(r->ud, r->n_dof);
   NEW(r->start, r->n_dof);
+  if (r->m->effects & EFFECT_THERMAL) TRY(thermal_new(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
   if (r->m->effects & (EFFECT_STRESS | EFFECT_REACTION))
     NEW(r->stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
@@ -132,6 +137,7 @@ void run_free(run *r) {
   free_surface(r);
   free_equilibrium(&r->old);
   free_equilibrium(&r->now);
+  thermal_free(r);
   memory_free(r->kin);
   memory_free(r->thickness);
   memory_free(r->E);

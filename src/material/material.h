@@ -10,6 +10,7 @@
 #define PROTIS_MATERIAL_MATERIAL_H
 
 #include "base/status.h"
+#include "deck/quantity.h"
 
 typedef enum { PLANE_STRAIN, PLANE_STRESS, AXISYMMETRIC, SOLID_3D } kinematics;
 #define KINEMATICS_WORDS \
@@ -34,5 +35,18 @@ const char *elastic_matrix(elastic_type type, int n, const double *constants,
 void elastic_reduce(const double C[36], kinematics kin, double *E);
 /* Strain zz of plane stress from the in-plane strains: e[4] in and out. */
 void elastic_zz_strain(const double C[36], double e[4]);
+
+/* Thermal expansion along the axes xx, yy, zz (rr, zz, theta). */
+typedef enum { EXPANSION_ISO, EXPANSION_ORTHO } expansion_type;
+#define EXPANSION_WORDS "ISO|ORTHO"
+typedef struct expansion {
+  int given;            /* 0: the material does not expand                   */
+  int type;             /* expansion_type                                    */
+  double zero;          /* temperature at which the secants start            */
+  value_table alpha[3]; /* 1/temperature over the temperature, which stands
+                           for t; ISO: the first only; arrays owned          */
+} expansion;
+/* Strain e[3] (no shear) at temperature T of what has none at T0, -. */
+void expansion_strain(const expansion *x, double T, double T0, double e[3]);
 
 #endif

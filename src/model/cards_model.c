@@ -185,6 +185,80 @@ status apply_density(reading *r) {
   return OK;
 }
 
+/* One line of *EXPANSION into place i of the tables; 0 if fine. */
+static int read_expansion(const reading *r, const record *line, int i,
+                          expansion *x) {
+  static const char *const expected[] = {
+      "alpha [, temperature]", "alpha1, alpha2, alpha3 [, temperature]"};
+  int n = x->type == EXPANSION_ORTHO ? 3 : 1, several = r->card->n_record > 1;
+  double T = 0.0;
+  if (record_fields(r, line, n + several, n + 1, expected[x->type]) != 0)
+    return -1;
+  if (line->n_field > n && field_real(r, &line->fields[n], -DBL_MAX, DBL_MAX,
+                                      "temperature", &T) != 0)
+    return -1;
+  for (int c = 0; c < n; ++c) {
+    if (deck_real(&line->fields[c], r->m->log, &x->alpha[c].value[i]) != 0)
+      return -1;
+    x->alpha[c].at[i] = T;
+  }
+  if (i == 0 || T > x->alpha[0].at[i - 1]) return 0;
+  message_add(r->m->log, P2029, &line->fields[n].at,
+              "*EXPANSION: the table must ascend, but %.15g follows %.15g", T,
+              x->alpha[0].at[i - 1]);
+  return -1;
+}
+
+status apply_expansion(reading *r) {
+  status st = OK;
+  const expansion_param *p = r->param;
+  expansion *x = &r->m->materials[r->material_id].expand;
+  int n = r->card->n_record, lines = 0;
+  if (x->given++) {
+    message_add(r->m->log, P2011, &r->card->at,
+                "material %s has *EXPANSION twice",
+                r->m->materials[r->material_id].name);
+    goto done;
+  }
+  x->type = p->type;
+  x->zero = p->zero;
+  for (int c = 0; c < 3; ++c) {
+    x->alpha[c].variable = TABLE_T;
+    NEW(x->alpha[c].at, n);
+    NEW(x->alpha[c].value, n);
+  }
+  while (lines < n &&
+         read_expansion(r, &r->card->records[lines], lines, x) == 0)
+    ++lines;
+  for (int c = 0; c < 3; ++c) x->alpha[c].n = lines;
+done:
+  return st;
+}
+
+status apply_initial(reading *r) {
+  status st = OK;
+  const initial_param *p = r->param;
+  model *m = r->m;
+  for (int i = 0; i < r->card->n_record && !r->misread; ++i) {
+    const record *line = &r->card->records[i];
+    quantity value;
+    if (record_fields(r, line, 2, 2, "group of elements, value") != 0 ||
+        field_quantity(r, &line->fields[1], &value) != 0)
+      continue;
+    if (quantity_variables(&value) & 8u)
+      message_add(m->log, P2033, &line->fields[1].at,
+                  "*INITIAL CONDITIONS: the expression must not depend on t");
+    GROW(m->initials, m->n_initial, m->cap_initial);
+    m->initials[m->n_initial++] = (initial){.type = p->type,
+                                            .group = line->fields[0].text,
+                                            .group_id = -1,
+                                            .value = value,
+                                            .at = line->fields[0].at};
+  }
+done:
+  return st;
+}
+
 status apply_section(reading *r) {
   status st = OK;
   const section_param *p = r->param;

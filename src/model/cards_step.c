@@ -316,6 +316,27 @@ done:
   return st;
 }
 
+status apply_temperature(reading *r) {
+  status st = OK;
+  const card *c = r->card;
+  static const char expected[] = "group of elements, value [, amplitude]";
+  renew(r, 1u << LOAD_TEMPERATURE, expected);
+  for (int i = 0; i < c->n_record; ++i) {
+    const record *line = &c->records[i];
+    const field *f = line->fields;
+    quantity value;
+    if (record_fields(r, line, 2, 3, expected) != 0 ||
+        field_quantity(r, &f[1], &value) != 0)
+      continue;
+    load *l = new_load(r, &open_step(r)->loads, LOAD_TEMPERATURE, &f[0]);
+    if (l == NULL) FAIL(ERR_MEMORY, "memory exhausted: *TEMPERATURE");
+    l->value = value;
+    if (line->n_field > 2) read_line_amplitude(&f[2], l);
+  }
+done:
+  return st;
+}
+
 static const char *solver_name(const void *ctx, int i) {
   (void)ctx;
   if (i == 0) return "AUTO";

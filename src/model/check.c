@@ -205,6 +205,7 @@ static int load_group(const model *m, const mesh *msh, const load *l) {
       return find_group_of(m, msh, l->group, msh->dim - 1, &l->at);
     case LOAD_BODY:
     case LOAD_GRAVITY:
+    case LOAD_TEMPERATURE:
       return find_group_of(m, msh, l->group, msh->dim, &l->at);
     case LOAD_POINT:
     case LOAD_FIXING:
@@ -223,6 +224,12 @@ static void check_load(const model *m, const mesh *msh, load *l) {
   if (l->kind == LOAD_GRAVITY && msh->dim == 2 && l->direction[2] != 0.0)
     message_add(m->log, P2025, &l->at, "GRAV along z, but the mesh is 2-D");
   if (l->kind == LOAD_GRAVITY && l->group_id >= 0) check_density(m, msh, l);
+}
+
+static void check_initials(model *m, const mesh *msh) {
+  for (int i = 0; i < m->n_initial; ++i)
+    m->initials[i].group_id = find_group_of(m, msh, m->initials[i].group,
+                                            msh->dim, &m->initials[i].at);
 }
 
 static void check_prints(const model *m, const mesh *msh, step *s) {
@@ -372,6 +379,7 @@ status model_check(model *m, const mesh *msh) {
   check_radius(m, msh);
   TRY(check_sections(m, msh));
   check_contacts(m, msh);
+  check_initials(m, msh);
   check_steps(m, msh);
   model_find_effects(m);
   TRY(message_status(m->log, ERR_DECK));

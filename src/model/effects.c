@@ -33,6 +33,20 @@ static const load *first_body_load(const model *m) {
   return NULL;
 }
 
+static const load *first_temperature(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k)
+      if (m->steps[i].loads.item[k].kind == LOAD_TEMPERATURE)
+        return &m->steps[i].loads.item[k];
+  return NULL;
+}
+
+static int has_expansion(const model *m) {
+  for (int i = 0; i < m->n_material; ++i)
+    if (m->materials[i].used && m->materials[i].expand.given) return 1;
+  return 0;
+}
+
 static const step *first_print(const model *m, int table, place *at) {
   for (int i = 0; i < m->n_step; ++i)
     for (int k = 0; k < m->steps[i].n_print; ++k)
@@ -91,6 +105,8 @@ void model_find_effects(model *m) {
   if (first_friction(m) != NULL) m->effects |= EFFECT_FRICTION;
   if (first_friction(m) != NULL && has_history(m)) m->effects |= EFFECT_HISTORY;
   if (first_body_load(m) != NULL) m->effects |= EFFECT_BODY;
+  if (first_temperature(m) != NULL && has_expansion(m))
+    m->effects |= EFFECT_THERMAL;
   if (first_print(m, PRINT_ELEMENTS, &at) != NULL || first_fields(m) != NULL)
     m->effects |= EFFECT_STRESS;
   if (first_print(m, PRINT_REACTIONS, &at) != NULL || first_fields(m) != NULL ||
@@ -148,6 +164,17 @@ static void reason_history(const model *m, char *text, size_t size) {
     snprintf(text, size, "no friction");
 }
 
+static void reason_thermal(const model *m, char *text, size_t size) {
+  const load *l = first_temperature(m);
+  if (l == NULL)
+    snprintf(text, size, "no *TEMPERATURE card");
+  else if (!has_expansion(m))
+    snprintf(text, size, "no material in use has *EXPANSION");
+  else
+    snprintf(text, size, "*TEMPERATURE on group %s, line %d", l->group,
+             l->at.line_no);
+}
+
 const char *model_effect_reason(const model *m, int bit, char *text,
                                 size_t size) {
   const load *l;
@@ -176,6 +203,9 @@ const char *model_effect_reason(const model *m, int bit, char *text,
                  l->at.line_no);
       else
         snprintf(text, size, "no *DLOAD card");
+      break;
+    case EFFECT_BIT_THERMAL:
+      reason_thermal(m, text, size);
       break;
     case EFFECT_BIT_STRESS:
       reason_output(m, PRINT_ELEMENTS, text, size);

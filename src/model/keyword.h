@@ -78,6 +78,13 @@ typedef struct name_param {
 typedef struct elastic_param {
   int type;
 } elastic_param;
+typedef struct expansion_param {
+  int type;
+  double zero;
+} expansion_param;
+typedef struct initial_param {
+  int type;
+} initial_param;
 typedef struct section_param {
   const char *elset, *material;
   int type;
@@ -128,6 +135,8 @@ status apply_condensed_problem(reading *r);
 status apply_material(reading *r);
 status apply_elastic(reading *r);
 status apply_density(reading *r);
+status apply_expansion(reading *r);
+status apply_initial(reading *r);
 status apply_section(reading *r);
 status apply_amplitude(reading *r);
 /* cards_contact.c */
@@ -144,6 +153,7 @@ status apply_boundary(reading *r);
 status apply_dsload(reading *r);
 status apply_dload(reading *r);
 status apply_cload(reading *r);
+status apply_temperature(reading *r);
 status apply_solver(reading *r);
 plugin names_solver(const reading *r);
 status apply_print(reading *r);

@@ -207,6 +207,7 @@ status load_forces(const model *m, const mesh *msh, const step *s, double t,
       case LOAD_POINT:
         TRY(add_points(m, msh, l, s, t, F));
         break;
+      case LOAD_TEMPERATURE:
       case LOAD_FIXING:
         break;
     }
@@ -233,6 +234,77 @@ status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
           (size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component;
       TRY(node_value(m, msh, l, s, t, g->node_id[k], &ud[dof]));
       ud[dof] += start_share(l, s, t) * start[dof];
+    }
+  }
+done:
+  return st;
+}
+
+/* Mean of a quantity at the nodes of an element; it is P1 like the rest. */
+static double elem_mean(const quantity *q, const mesh *msh, int elem_id,
+                        double t) {
+  int n = msh->dim + 1;
+  double sum = 0.0;
+  for (int a = 0; a < n; ++a) {
+    double x[3];
+    node_position(msh, msh->elem[(size_t)n * (size_t)elem_id + (size_t)a], x);
+    sum += quantity_value(q, x, t);
+  }
+  return sum / n;
+}
+
+static status refuse_temperature(const model *m, const mesh *msh,
+                                 const place *at, int elem_id) {
+  status st = OK;
+  message_add(m->log, P2041, at,
+              "the temperature of element %zu is not a finite number",
+              msh->elem_no[elem_id]);
+  FAIL(ERR_DECK, "%s:%d: a temperature is not finite", at->file, at->line_no);
+done:
+  return st;
+}
+
+status load_temperature_initial(const model *m, const mesh *msh, double *T) {
+  status st = OK;
+  memset(T, 0, (size_t)msh->n_elem * sizeof *T);
+  for (int i = 0; i < m->n_initial; ++i) {
+    const initial *c = &m->initials[i];
+    if (c->type != INITIAL_TEMPERATURE) continue;
+    const mesh_group *g = &msh->group[c->group_id];
+    for (int k = 0; k < g->n_item; ++k) {
+      int e = g->item_id[k];
+      T[e] = elem_mean(&c->value, msh, e, 0.0);
+      if (!isfinite(T[e])) TRY(refuse_temperature(m, msh, &c->at, e));
+    }
+  }
+done:
+  return st;
+}
+
+/* A temperature starts from the initial one, and OP=NEW leads back to it. */
+static double temperature_of(const load *l, const mesh *msh, const step *s,
+                             double t, int elem_id, double T0) {
+  double now = elem_mean(&l->value, msh, elem_id, value_time(l, t));
+  if (l->removed) now = T0;
+  if (l->run != RUN_RAMP || t >= s->start + s->total) return now;
+  double w = (t - s->start) / s->total;
+  double from =
+      l->has_before ? elem_mean(&l->before, msh, elem_id, l->before_t) : T0;
+  return (1.0 - w) * from + w * now;
+}
+
+status load_temperature(const model *m, const mesh *msh, const step *s,
+                        double t, const double *T0, double *T) {
+  status st = OK;
+  memcpy(T, T0, (size_t)msh->n_elem * sizeof *T);
+  for (int i = 0; i < s->loads.n; ++i) {
+    const load *l = &s->loads.item[i];
+    if (l->kind != LOAD_TEMPERATURE) continue;
+    const mesh_group *g = &msh->group[l->group_id];
+    for (int k = 0; k < g->n_item; ++k) {
+      int e = g->item_id[k];
+      T[e] = temperature_of(l, msh, s, t, e, T0[e]);
+      if (!isfinite(T[e])) TRY(refuse_temperature(m, msh, &l->at, e));
     }
   }
 done:

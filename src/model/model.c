@@ -373,12 +373,15 @@ void model_free(model *m) {
     table_release(&m->contacts[i].position);
     memory_free((void *)m->contacts[i].friction.param);
   }
+  for (int i = 0; i < m->n_material; ++i)
+    for (int k = 0; k < 3; ++k) table_release(&m->materials[i].expand.alpha[k]);
   for (int i = 0; i < m->n_step; ++i) {
     memory_free(m->steps[i].loads.item);
     memory_free(m->steps[i].prints);
     memory_free(m->steps[i].solver_param);
   }
   memory_free(m->supports.item);
+  memory_free(m->initials);
   memory_free(m->amplitudes);
   memory_free(m->materials);
   memory_free(m->sections);

@@ -32,6 +32,7 @@ typedef struct material {
   double C[36];                 /* Pa                                         */
   double density;               /* kg/m3                                      */
   int has_density;
+  expansion expand;
 } material;
 
 typedef struct section {
@@ -61,7 +62,8 @@ typedef enum {
   LOAD_BODY,     /* BX BY BZ: force/length^3                                  */
   LOAD_GRAVITY,  /* GRAV: acceleration along direction[3]                     */
   LOAD_POINT,    /* *CLOAD: force on each node of the group                   */
-  LOAD_FIXING    /* *BOUNDARY: prescribed displacement, length                */
+  LOAD_TEMPERATURE, /* *TEMPERATURE of a group of elements                    */
+  LOAD_FIXING /* *BOUNDARY: prescribed displacement, length                */
 } load_kind;
 
 /* How the value of a load runs over a step. */
@@ -107,6 +109,17 @@ enum {
   PRINT_ENERGY = 16,
   PRINT_REACTIONS = 32
 };
+
+/* One line of *INITIAL CONDITIONS. */
+typedef struct initial {
+  int type; /* initial_type                                                  */
+  const char *group;
+  int group_id;
+  quantity value;
+  place at;
+} initial;
+typedef enum { INITIAL_TEMPERATURE } initial_type;
+#define INITIAL_WORDS "TEMPERATURE"
 
 typedef struct print_request { /* one table of *PRINT                         */
   int table;                   /* one bit of PRINT_*                          */
@@ -162,6 +175,8 @@ typedef struct model {
   struct move *moves; /* [n_obstacle] amplitude names of the obstacles */
   contact *contacts;
   load_list supports; /* *BOUNDARY before the first step                      */
+  int n_initial, cap_initial;
+  initial *initials; /* [n_initial] in the order of the deck                 */
   step *steps;
   unsigned effects;  /* bits EFFECT_*, set by model_check                    */
   int dim, ns;       /* from the mesh                                        */
@@ -240,6 +255,12 @@ int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
  * from where a component that is fixed anew is led to its value. */
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        const double *start, double *ud);
+/* Temperatures T[n_elem] before the first step, mean of the nodes. ERR_DECK if
+ * one is not finite. */
+status load_temperature_initial(const model *m, const mesh *msh, double *T);
+/* Temperatures T[n_elem] at t from those at the start, T0; errors as above. */
+status load_temperature(const model *m, const mesh *msh, const step *s,
+                        double t, const double *T0, double *T);
 /* fixed[dim*n_node] = 1 where a *BOUNDARY of the step holds the component. */
 void load_fixed(const model *m, const mesh *msh, const step *s,
                 unsigned char *fixed);

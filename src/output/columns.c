@@ -40,6 +40,7 @@ VALUE(external_work, v->s->energy.external)
 VALUE(friction_work, v->s->energy.friction)
 VALUE(friction_end, v->s->energy.friction_end)
 VALUE(normal_work, v->s->energy.normal)
+VALUE(thermal_work, v->s->energy.thermal)
 VALUE(energy_defect, v->s->energy.defect)
 
 double energy_defect_relative(const energies *e) {
@@ -55,6 +56,7 @@ VALUE(reaction, v->s->reaction[at(v->msh->dim, id, part)])
 
 /* Elements */
 VALUE(elem_no, v->msh->elem_no[id])
+VALUE(temperature, v->s->temperature[id])
 VALUE(strain, v->s->strain[at(v->m->ns, id, part)])
 VALUE(stress, v->s->stress[at(v->m->ns, id, part)])
 
@@ -191,8 +193,10 @@ const column column_table[] = {
 {"normal_work", J, INC, PRINT_ENERGY, C, ANY, "normal_work", 0,
  normal_work, NULL, "work of the normal contact forces so far, trapezoidal: "
  "moving obstacles, and gaps that open or close within an increment"},
+{"thermal_work", J, INC, PRINT_ENERGY, EFFECT_THERMAL, ANY, "thermal_work", 0,
+ thermal_work, NULL, "work of the stresses on thermal strains so far"},
 {"energy_defect", J, INC, PRINT_ENERGY, 0, ANY, "energy_defect", 0,
- energy_defect, NULL, "external + normal - friction - strain"},
+ energy_defect, NULL, "external + normal - friction - thermal - strain"},
 {"energy_defect_relative", "-", INC, PRINT_ENERGY, 0, ANY,
  "energy_defect_relative", 0, defect_relative, NULL,
  "the defect over the largest of the energies so far"},
@@ -232,6 +236,9 @@ const column column_table[] = {
 
 {"elem_no", "-", PER_ELEMENT, AS_COUNT, PRINT_ELEMENTS, 0, ANY, NULL, 0,
  elem_no, NULL, "number in the mesh"},
+{"temperature", "temperature", ELEM, PRINT_ELEMENTS,
+ EFFECT_STRESS | EFFECT_THERMAL, ANY, "temperature", 0, temperature, NULL,
+ "mean of the element"},
 {"strain_xx", "-", ELEM, STRAIN(CART), "strain_xx", 0,
  strain, NULL, "strain"},
 {"strain_yy", "-", ELEM, STRAIN(CART), "strain_yy", 1,

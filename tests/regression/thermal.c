@@ -1,0 +1,320 @@
+/*
+ * Thermal strain: bars and blocks held between contacts (exact on every mesh),
+ * a turned cylinder and a strip against their closed forms, gaps that close by
+ * heat alone, temperatures that run through steps.
+ *
+ * E = 2e5, alpha = 1.2e-5, nu = 0.3 unless said otherwise: E alpha = 2.4.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct scene {
+  const char *geo, *numbers; /* mesh and lines for *PARAMETER                */
+  double nu;
+  const char *expansion, *section; /* card with its line; TYPE=               */
+  const char *model, *steps;       /* cards of the model, and from *STEP on   */
+} scene;
+
+static job run_scene(const scene *s) {
+  job j = job_begin("thermal");
+  char path[128];
+  snprintf(path, sizeof path, "tests/regression/mesh/%s", s->geo);
+  job_copy(&j, path);
+  job_write(&j, "thermal.inp",
+            "*PARAMETER\n%s\n*MESH, FILE=%s\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n2.E5, %.17g\n%s"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n%s%s",
+            s->numbers, s->geo, s->nu, s->expansion, s->section, s->model,
+            s->steps);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+#define ALPHA "*EXPANSION\n1.2E-5\n"
+#define FLOOR                            \
+  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n" \
+  "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+#define CEILING "*CONTACT, NAME=G, GROUP=TOP, OBSTACLE=O\n"
+#define HEAT(dT) "*TEMPERATURE\nBODY, " #dT "\n"
+#define STEP(cards)                           \
+  "*STEP\n*STATIC\n" cards                    \
+  "*PRINT, ELEMENTS, NODES, ENERGY, TOTALS\n" \
+  "*END STEP\n"
+
+/* Every element of the last table has that value, to 1e-10 of the scale. */
+static void all_equal(const job *j, const char *column, double expected,
+                      double scale) {
+  dat d = job_table(j, "ELEMENTS", -1);
+  for (int i = 0; i < d.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&d, i, column), expected, 1e-10 * scale);
+  dat_free(&d);
+}
+
+static void balanced(const job *j) {
+  dat e = job_table(j, "ENERGY", -1);
+  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
+  dat_free(&e);
+}
+
+/* A bar between contacts carries -E alpha dT; the force is its height. */
+START_TEST(bar_between_contacts) {
+  scene s = {"square.geo",
+             "N = 4",
+             0.3,
+             ALPHA,
+             "CPS3",
+             FLOOR CEILING,
+             STEP("*BOUNDARY\nLEFT, 1\n" HEAT(100.))};
+  job j = run_scene(&s);
+  all_equal(&j, "stress_yy", -240.0, 240.0);
+  all_equal(&j, "stress_xx", 0.0, 240.0);
+  /* e_xx = alpha dT (1 + nu); e_zz the same. */
+  all_equal(&j, "strain_xx", 1.56e-3, 1e-3);
+  all_equal(&j, "strain_zz", 1.56e-3, 1e-3);
+  dat t = job_table(&j, "TOTALS", -1);
+  for (int i = 0; i < 2; ++i)
+    ck_assert_double_eq_tol(dat_at(&t, i, "normal"), 240.0, 1e-8);
+  dat_free(&t);
+  balanced(&j);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(held_on_all_sides) {
+  scene s = {"square.geo",
+             "N = 4",
+             0.3,
+             ALPHA,
+             "CPS3",
+             FLOOR CEILING,
+             STEP("*BOUNDARY\nLEFT, 1\nRIGHT, 1\n" HEAT(100.))};
+  job biaxial = run_scene(&s);
+  all_equal(&biaxial, "stress_xx", -240.0 / 0.7, 240.0);
+  all_equal(&biaxial, "stress_yy", -240.0 / 0.7, 240.0);
+  balanced(&biaxial);
+  job_end(&biaxial);
+  s.section = "CPE3";
+  job confined = run_scene(&s);
+  all_equal(&confined, "stress_xx", -600.0, 600.0);
+  all_equal(&confined, "stress_yy", -600.0, 600.0);
+  all_equal(&confined, "stress_zz", -600.0, 600.0);
+  balanced(&confined);
+  job_end(&confined);
+}
+END_TEST
+
+/* Nothing holds it back: strain without stress, also with one coefficient for
+ * each axis and in a turned body. */
+START_TEST(free_expansion_has_no_stress) {
+  scene s = {"square.geo",
+             "N = 4",
+             0.3,
+             "*EXPANSION, TYPE=ORTHO\n"
+             "1.E-5, 2.E-5, 3.E-5\n",
+             "CPS3",
+             "",
+             STEP("*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n" HEAT(100.))};
+  job j = run_scene(&s);
+  static const char *const strain[] = {"strain_xx", "strain_yy", "strain_zz"};
+  for (int c = 0; c < 3; ++c) {
+    all_equal(&j, strain[c], 1e-3 * (c + 1), 1e-3);
+    all_equal(&j, c == 0 ? "stress_xx" : "stress_yy", 0.0, 200.0);
+  }
+  job_end(&j);
+  s.expansion = ALPHA;
+  s.section = "CAX3";
+  s.steps = STEP("*BOUNDARY\nBOTTOM, 2\n" HEAT(100.));
+  job axi = run_scene(&s);
+  all_equal(&axi, "strain_tt", 1.2e-3, 1e-3);
+  all_equal(&axi, "stress_tt", 0.0, 240.0);
+  job_end(&axi);
+}
+END_TEST
+
+/* The secants are counted from ZERO; the body has no strain at its initial
+ * temperature: 2e-5 (120 - 20) - 1.5e-5 (70 - 20). */
+START_TEST(secants_over_the_temperature) {
+  scene s = {"square.geo",
+             "N = 2",
+             0.0,
+             "*EXPANSION, ZERO=20.\n1.E-5, 20.\n"
+             "2.E-5, 120.\n",
+             "CPS3",
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, 70.\n",
+             "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n"
+             "*TEMPERATURE\nBODY, 120.\n*PRINT, ELEMENTS\n*END STEP\n"
+             "*STEP\n*STATIC\n*TEMPERATURE, OP=NEW\n*END STEP\n"};
+  job j = run_scene(&s);
+  dat hot = job_table(&j, "ELEMENTS", 0), back = job_table(&j, "ELEMENTS", 1);
+  ck_assert_double_eq_tol(dat_at(&hot, 0, "strain_yy"), 1.25e-3, 1e-15);
+  ck_assert_double_eq_tol(dat_at(&hot, 0, "temperature"), 120.0, 1e-12);
+  ck_assert_double_eq_tol(dat_at(&back, 0, "strain_yy"), 0.0, 1e-15);
+  ck_assert_double_eq_tol(dat_at(&back, 0, "temperature"), 70.0, 1e-12);
+  dat_free(&hot);
+  dat_free(&back);
+  job_end(&j);
+}
+END_TEST
+
+/* From 10 to 30 in a step of 1 by default, then with an amplitude to 60 and
+ * back, kept in the step that says nothing. */
+START_TEST(temperatures_run_through_the_steps) {
+  scene s = {"square.geo",
+             "N = 2",
+             0.0,
+             ALPHA,
+             "CPS3",
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, \"10 + 0*x\"\n"
+             "*AMPLITUDE, NAME=A\n0., 0.5, 1., 1.\n",
+             "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n"
+             "*TEMPERATURE\nBODY, 30.\n*PRINT, ELEMENTS, ENERGY\n*END STEP\n"
+             "*STEP\n*QUASISTATIC\n0.5, 1.\n*TEMPERATURE, AMPLITUDE=A\n"
+             "BODY, 60.\n*END STEP\n"
+             "*STEP\n*STATIC\n*END STEP\n"
+             "*STEP\n*QUASISTATIC\n0.5, 1.\n*TEMPERATURE\nBODY, 20.\n"
+             "*END STEP\n"};
+  static const double expected[] = {20, 30, 45, 60, 60, 40, 20};
+  job j = run_scene(&s);
+  for (int k = 0; k < 7; ++k) {
+    dat d = job_table(&j, "ELEMENTS", k);
+    ck_assert_double_eq_tol(dat_at(&d, 0, "temperature"), expected[k], 1e-11);
+    ck_assert_double_eq_tol(dat_at(&d, 0, "strain_xx"),
+                            1.2e-5 * (expected[k] - 10.0), 1e-14);
+    dat_free(&d);
+  }
+  job_end(&j);
+}
+END_TEST
+
+/* Mean of a column over the last table of the elements of a group: the tables
+ * of the groups follow each other, "back" of them from the end. */
+static double group_mean(const job *j, const char *column, int back) {
+  dat d = job_table(j, "ELEMENTS", 2 - back);
+  double mean = dat_sum(&d, column) / d.n_row;
+  dat_free(&d);
+  return mean;
+}
+
+#define THREE_PLACES                                                \
+  "*PRINT, ELEMENTS, GROUP=FIRST\n*PRINT, ELEMENTS, GROUP=MIDDLE\n" \
+  "*PRINT, ELEMENTS, GROUP=LAST\n*END STEP\n"
+
+/* Radii 1 and 2, 100 degrees inside, none outside, plane strain (Timoshenko,
+ * Goodier 1970, article 151). */
+START_TEST(cylinder_with_a_logarithmic_profile) {
+  scene s = {"strips.geo",
+             "N = 201\nX0 = 1\nLY = 1/201",
+             0.3,
+             ALPHA,
+             "CAX3",
+             "",
+             "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nTOP, 2\n"
+             "*TEMPERATURE\nBODY, \"100*log(2/x)/log(2)\"\n" THREE_PLACES};
+  job j = run_scene(&s);
+  const double scale = 209.82370728;
+  ck_assert_double_eq_tol(group_mean(&j, "stress_tt", 2), -209.82370728,
+                          0.01 * scale);
+  ck_assert_double_eq_tol(group_mean(&j, "stress_tt", 1), 17.43970555,
+                          0.01 * scale);
+  ck_assert_double_eq_tol(group_mean(&j, "stress_rr", 1), -26.70484115,
+                          0.002 * scale);
+  ck_assert_double_eq_tol(group_mean(&j, "stress_tt", 0), 133.03343558,
+                          0.01 * scale);
+  job_end(&j);
+}
+END_TEST
+
+/* Half of a free strip of height 2, temperature 100 (1 - x^2) across: the
+ * stress along it is 240 (x^2 - 1/3), tension at the cold surface: +160, -80.
+ * Its far end is free: five heights away. */
+START_TEST(strip_with_a_parabolic_profile) {
+  scene s = {"strips.geo",
+             "N = 101\nM = 60\nLY = 5",
+             0.3,
+             ALPHA,
+             "CPS3",
+             "",
+             "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n"
+             "*TEMPERATURE\nBODY, \"100*(1 - x^2)\"\n"
+             "*PRINT, ELEMENTS, GROUP=FIRST\n*PRINT, ELEMENTS, GROUP=LAST\n"
+             "*END STEP\n"};
+  job j = run_scene(&s);
+  dat centre = job_table(&j, "ELEMENTS", 0), top = job_table(&j, "ELEMENTS", 1);
+  double at_centre = 0.0, at_surface = 0.0;
+  for (int i = 0; i < centre.n_row; ++i)
+    at_centre = fmin(at_centre, dat_at(&centre, i, "stress_yy"));
+  for (int i = 0; i < top.n_row; ++i)
+    at_surface = fmax(at_surface, dat_at(&top, i, "stress_yy"));
+  ck_assert_double_eq_tol(at_centre, -80.0, 0.02 * 160.0);
+  ck_assert_double_eq_tol(at_surface, 160.0, 0.02 * 160.0);
+  dat_free(&centre);
+  dat_free(&top);
+  job_end(&j);
+}
+END_TEST
+
+/* Block of height 1 under a fixed top, "gap" above the floor, heated by dT:
+ * -E (alpha dT - gap) where that is positive. */
+static void closing(double gap, const char *heat, double expected) {
+  char model[256], steps[256];
+  snprintf(model, sizeof model,
+           "*OBSTACLE, NAME=O, TYPE=PLANE\n0., %.17g\n0., 1.\n"
+           "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n",
+           -gap);
+  snprintf(steps, sizeof steps,
+           "*STEP\n*STATIC\n*BOUNDARY\nTOP, 2\nLEFT, 1\n%s"
+           "*PRINT, ELEMENTS, CONTACT, ENERGY\n*END STEP\n",
+           heat);
+  scene s = {"square.geo", "N = 4", 0.0, ALPHA, "CPE3", model, steps};
+  job j = run_scene(&s);
+  /* Held by the plane strain too, zz does not matter: nu = 0. */
+  all_equal(&j, "stress_yy", expected, 240.0);
+  dat c = job_table(&j, "CONTACT", -1);
+  ck_assert_double_eq_tol(dat_sum(&c, "f_n"), -expected, 1e-7);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&c, i, "gap"), 0.0, 1e-13);
+  dat_free(&c);
+  job_end(&j);
+}
+
+START_TEST(heat_closes_the_gap) {
+  closing(1e-3, HEAT(100.), -40.0);
+  closing(1e-3, "*TEMPERATURE\nBODY, \"1e-3/1.2e-5\"\n", 0.0);
+}
+END_TEST
+
+START_TEST(penetration_at_the_start) { closing(-1e-4, "", -20.0); }
+END_TEST
+
+/* Without *TEMPERATURE nothing of it is done or held. */
+START_TEST(costs_nothing_when_not_called) {
+  scene s = {"square.geo",
+             "N = 2",
+             0.3,
+             ALPHA,
+             "CPE3",
+             "",
+             STEP("*BOUNDARY\nLEFT, 1, 2\n*DSLOAD\nRIGHT, TX, 1.\n")};
+  job j = run_scene(&s);
+  char *lst = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(strstr(lst, "thermal strain"));
+  ck_assert_ptr_nonnull(strstr(lst, "no *TEMPERATURE card"));
+  const char *stage = strstr(lst, "\n  thermal strains ");
+  ck_assert_ptr_nonnull(stage);
+  ck_assert_int_eq(atoi(stage + 19), 0);
+  free(lst);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("thermal", bar_between_contacts, held_on_all_sides,
+          free_expansion_has_no_stress, secants_over_the_temperature,
+          temperatures_run_through_the_steps,
+          cylinder_with_a_logarithmic_profile, strip_with_a_parabolic_profile,
+          heat_closes_the_gap, penetration_at_the_start,
+          costs_nothing_when_not_called)
