@@ -92,7 +92,6 @@ typedef struct law_ops {
   int linear;  /* rates linear in (sigma, e^i, alpha): one Jacobian for all
                   points with the same values                                 */
   int uses_ei; /* e^i itself enters its rate                                  */
-  int isotropic; /* needs isotropic elasticity                                */
   int needs_formula;
   const char *example; /* data lines for moduli of 1e5, stresses of 100, times
                           of 1: shown in the help, used by the tests          */
@@ -108,13 +107,16 @@ typedef struct law_ops {
    * sigma . d(e^i)/dt = dissipation + d(stored)/dt. */
   double (*dissipation)(const law_point *p);
   double (*stored)(const law_point *p);
-  /* What is wrong with values that are in range each, into text; or NULL. */
-  const char *(*check)(const law_card *law, const double *value, char *text,
-                       size_t size);
+  /* What is wrong with values that are in range each, or with the elasticity
+   * they stand beside, into text; or NULL. */
+  const char *(*check)(const law_card *law, elastic_type type,
+                       const double *value, char *text, size_t size);
 } law_ops;
 
 /* clang-format off */
-#define LAW_LIST(X) X(maxwell) X(norton)
+#define LAW_LIST(X) \
+  X(maxwell) X(zener) X(kelvin) X(burgers) X(prony) X(norton) X(perzyna) \
+  X(bingham) X(chaboche)
 /* clang-format on */
 #define LAW_EXTERN(name) extern const law_ops name##_law;
 LAW_LIST(LAW_EXTERN)

@@ -79,8 +79,9 @@ static double dissipation(const law_point *p) {
   return tensor_dot(p->elastic->ns, p->sigma, ei_rate);
 }
 
-static const char *check(const law_card *law, const double *value, char *text,
-                         size_t size) {
+static const char *check(const law_card *law, elastic_type type,
+                         const double *value, char *text, size_t size) {
+  (void)type;
   if (is_deviatoric(law) || !(value[1] > 0)) return NULL;
   snprintf(text, size, "tau_bulk needs TYPE=DEVIATORIC");
   return text;
