@@ -214,7 +214,11 @@
     "serves a .geo only; check the spelling.")                               \
   X(2043, ERROR, "obstacle cannot turn this way",                            \
     "In plane models ROTATE, x, y, angle turns about the point (x, y); "     \
-    "torsion about an axis of symmetry needs a model in three dimensions.")
+    "torsion about an axis of symmetry needs a model in three dimensions.")  \
+  X(2044, WARNING, "amplitude counts total time",                            \
+    "Values of the model - friction, given contact forces, motions of "      \
+    "obstacles - run in total time. Write TIME=TOTAL TIME on the "           \
+    "*AMPLITUDE to say so.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

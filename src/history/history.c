@@ -36,7 +36,7 @@ static long increments_of(const step *s) {
 /* What the outputs see of an increment. */
 static state make_state(run *r, int attempt, int increment_no) {
   const equilibrium *e = &r->now;
-  state s = {.step_no = (int)(r->step - r->m->steps) + 1,
+  state s = {.step_no = run_step_id(r) + 1,
              .increment_no = increment_no,
              .total_no = r->total_no,
              .attempt = attempt,
@@ -58,6 +58,7 @@ static state make_state(run *r, int attempt, int increment_no) {
              .totals = r->totals,
              .energy = e->energy,
              .report = r->report,
+             .note = r->note,
              .solver_log = contact_solver_log(r->solver),
              .settled = r->report.outcome > 0};
   if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
@@ -108,8 +109,7 @@ static status no_equilibrium(const run *r) {
   FAIL(ERR_SINGULAR,
        "step %d, time %g: no equilibrium found: %s%s%s%s; the last state "
        "written is that of time %g",
-       (int)(r->step - r->m->steps) + 1, r->now.t,
-       outcome_text(r->report.outcome),
+       run_step_id(r) + 1, r->now.t, outcome_text(r->report.outcome),
        contact_solver_log(r->solver)[0] == '\0' ? "" : " (",
        contact_solver_log(r->solver),
        contact_solver_log(r->solver)[0] == '\0' ? "" : ")", r->old.t);

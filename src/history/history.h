@@ -57,8 +57,9 @@ typedef struct state {
   energies energy;
   solver_report report;
   const char *solver_log;
-  double cpu;  /* of this increment, s                                */
-  int settled; /* 1: reached its tolerance                            */
+  const char *note; /* whole lines about what jumps, "" or NULL: nothing      */
+  double cpu;       /* of this increment, s                                */
+  int settled;      /* 1: reached its tolerance                            */
 } state;
 
 /* Facts of the run before the first increment, for the listing. */

@@ -9,42 +9,6 @@
 
 #include <string.h>
 
-/* 1 if a friction value of the model changes in time. */
-static int limit_varies(const model *m) {
-  for (int i = 0; i < m->n_contact; ++i)
-    if (quantity_variables(&m->contacts[i].friction.value) & 8u) return 1;
-  return 0;
-}
-
-/* The law of one contact on its nodes. */
-static status add_law(run *r, int contact_id, double t, int *node) {
-  const contact *c = &r->m->contacts[contact_id];
-  int n = 0;
-  for (int i = 0; i < r->n; ++i)
-    if (r->surface->contact_id[i] == contact_id) node[n++] = i;
-  status st = c->law->limit(&c->friction, r->surface, n, node, t, &r->limit);
-  if (st == ERR_DECK)
-    message_add(r->m->log, P2041, &c->value_at, "%s", status_message());
-  return st;
-}
-
-static status update_limit(run *r, double t) {
-  status st = OK;
-  int *node = NULL;
-  if (!(r->m->effects & EFFECT_FRICTION) || r->limit_known) return OK;
-  timer_enter(STAGE_LIMIT);
-  friction_limit_free(&r->limit);
-  TRY(friction_limit_new(r->n, &r->limit));
-  NEW(node, r->n);
-  for (int i = 0; i < r->m->n_contact; ++i)
-    if (r->m->contacts[i].law != NULL) TRY(add_law(r, i, t, node));
-  r->limit_known = !limit_varies(r->m);
-done:
-  memory_free(node);
-  timer_leave(STAGE_LIMIT);
-  return st;
-}
-
 /* A contact unknown that *BOUNDARY prescribes: its value now, m. */
 static double held_value(const run *r, int i, int a) {
   const contact_surface *s = r->surface;
@@ -173,7 +137,7 @@ static status solve_contact(run *r, double t) {
   surface_drift(r->surface, &r->input, r->old.t, t, r->now.motion);
   timer_leave(STAGE_SURFACE);
   TRY(st);
-  TRY(update_limit(r, t));
+  TRY(limit_update(r, t));
   TRY(set_stick_position(r));
   set_problem(r);
   TRY(call_solver(r));

@@ -55,6 +55,7 @@ typedef struct run {
   contact_solver *solver;
   friction_limit limit;
   int limit_known; /* limit holds for all times of the step              */
+  char note[512];  /* what changed abruptly in the increment, "" or lines    */
 
   /* Contact problem of the increment. */
   double *f, *gap, *side_gap, *ut0; /* [m], [n], [n*(dim-1)] twice            */
@@ -77,6 +78,7 @@ status run_new(run *r);
 /* Surface, stiffness, condensed matrix and solver for r->step. */
 status run_prepare(run *r);
 void run_free(run *r);
+int run_step_id(const run *r);
 
 /* thermal.c: strains that carry no stress. */
 status thermal_new(run *r);
@@ -92,6 +94,9 @@ double thermal_work(run *r);
 
 /* increment.c: the equilibrium at time t into r->now; read r->report. */
 status increment_solve(run *r, double t);
+
+/* limit.c: the sliding limit at time t into r->limit, jumps into r->note. */
+status limit_update(run *r, double t);
 
 /* velocity.c: r->cp as a problem in the displacement *du[m] of the increment
  * (zero at first), borrowed from r until the next one. */

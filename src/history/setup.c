@@ -74,7 +74,10 @@ static status new_pairs(run *r) {
     r->pairs[i].name = c->name;
     r->pairs[i].group = &msh->group[c->group_id];
     r->pairs[i].support = &m->obstacles[c->obstacle_id];
-    r->pairs[i].friction = c->law != NULL && c->law->value_name != NULL;
+    for (int k = 0; k < m->n_step; ++k) {
+      const friction_ops *law = friction_in_force(m, k, i)->law;
+      r->pairs[i].friction |= law != NULL && law->value_name != NULL;
+    }
     r->pairs[i].obstacle_normal = c->obstacle_normal;
     r->pairs[i].at = c->at;
   }
@@ -90,6 +93,8 @@ static status new_pairs(run *r) {
 done:
   return st;
 }
+
+int run_step_id(const run *r) { return (int)(r->step - r->m->steps); }
 
 status run_new(run *r) {
   status st = OK;
@@ -256,9 +261,10 @@ static const char *body_name(const run *r, size_t elem_no) {
 }
 
 /* 1 if a contact with friction acts on the body of an element. */
-static status has_body_friction(const model *m, const mesh *msh, int elem_id,
-                                int *answer) {
+static status has_body_friction(const run *r, int elem_id, int *answer) {
   status st = OK;
+  const model *m = r->m;
+  const mesh *msh = r->msh;
   int *body = NULL, n = 0;
   *answer = 0;
   NEW(body, msh->n_elem);
@@ -266,7 +272,7 @@ static status has_body_friction(const model *m, const mesh *msh, int elem_id,
   for (int i = 0; i < m->n_contact; ++i) {
     const contact *c = &m->contacts[i];
     const mesh_group *g = &msh->group[c->group_id];
-    if (!contact_has_friction(c)) continue;
+    if (!rule_has_friction(friction_in_force(m, run_step_id(r), i))) continue;
     for (int k = 0; k < g->n_item; ++k)
       *answer |= body[msh->face_elem[g->item_id[k]]] == body[elem_id];
   }
@@ -277,15 +283,14 @@ done:
 
 /* 1 if nothing resists: no contact there, or tangential contact of a body
  * without friction. */
-static status is_unheld(const model *m, const mesh *msh, const free_motion *f,
-                        int *unheld) {
+static status is_unheld(const run *r, const free_motion *f, int *unheld) {
   status st = OK;
   int friction = 0;
   *unheld = f->held_by == HELD_BY_NOTHING;
   if (f->held_by != HELD_BY_FRICTION) goto done;
-  for (int e = 0; e < msh->n_elem; ++e)
-    if (msh->elem_no[e] == f->elem_no)
-      TRY(has_body_friction(m, msh, e, &friction));
+  for (int e = 0; e < r->msh->n_elem; ++e)
+    if (r->msh->elem_no[e] == f->elem_no)
+      TRY(has_body_friction(r, e, &friction));
   *unheld = !friction;
 done:
   return st;
@@ -294,10 +299,10 @@ done:
 /* Motions that nothing resists go to the log and are ERR_SINGULAR. */
 static status refuse_unheld(const run *r, int n, const free_motion *list) {
   status st = OK;
-  int unheld = 0, step_no = (int)(r->step - r->m->steps) + 1;
+  int unheld = 0, step_no = run_step_id(r) + 1;
   for (int i = 0; i < n; ++i) {
     int free;
-    TRY(is_unheld(r->m, r->msh, &list[i], &free));
+    TRY(is_unheld(r, &list[i], &free));
     if (!free) continue;
     ++unheld;
     message_add(r->m->log, P4011, &r->step->at,

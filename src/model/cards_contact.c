@@ -7,6 +7,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static int read_point(const reading *r, const record *line, const char *what,
@@ -237,45 +238,94 @@ static const char *contact_name(const void *ctx, int i) {
   return i < m->n_contact ? m->contacts[i].name : NULL;
 }
 
-static contact *find_contact(const reading *r, const char *name) {
+/* Id of a contact, or -1 and the error that this card names none. */
+static int find_contact(const reading *r, const char *name) {
+  char text[80];
   for (int i = 0; i < r->m->n_contact; ++i)
-    if (same_word(name, r->m->contacts[i].name)) return &r->m->contacts[i];
-  return NULL;
+    if (same_word(name, r->m->contacts[i].name)) return i;
+  snprintf(text, sizeof text,
+           "*%s: before this card there is no *CONTACT, NAME=", r->card->name);
+  unknown_word(r->m->log, P2012, value_place(r, "CONTACT"), text, name,
+               contact_name, r->m);
+  return -1;
 }
 
-/* The value lines: one quantity, or pairs with TABLE=. */
-static status read_value(reading *r, const friction_ops *law, contact *c) {
+/* Values of a table that must not be negative. */
+static void check_table(const reading *r, const char *what,
+                        const value_table *t) {
+  for (int i = 0; i < t->n; ++i)
+    if (!(t->value[i] >= 0.0))
+      message_add(r->m->log, P2010, &pair_field(r->card, 0, i, 1)->at,
+                  "*%s: %s = %.15g in the table is negative", r->card->name,
+                  what, t->value[i]);
+}
+
+/* The value lines: one quantity, or pairs with TABLE=. Not negative. */
+static status read_value(reading *r, const char *what, int variable,
+                         quantity *q, value_table *pairs) {
   status st = OK;
-  const friction_param *p = r->param;
-  const record *line = r->card->records;
-  if (card_parameter(r->card, "TABLE") != NULL) {
-    if (r->card->n_record == 0)
-      message_add(r->m->log, P2007, &r->card->at,
-                  "*FRICTION, TABLE= needs lines of pairs");
-    TRY(read_pairs(r, 0, p->table, &c->position));
-    for (int i = 0; i < c->position.n; ++i)
-      if (!(c->position.value[i] >= 0.0))
-        message_add(r->m->log, P2010, &pair_field(r->card, 0, i, 1)->at,
-                    "*FRICTION: %s = %.15g in the table is negative",
-                    law->value_name, c->position.value[i]);
-    c->friction.value.number = 1.0;
-    c->friction.value.factor = &c->position; /* set anew by model_resolve */
+  const card *c = r->card;
+  const record *line = c->records;
+  if (card_parameter(c, "TABLE") != NULL) {
+    if (c->n_record == 0)
+      message_add(r->m->log, P2007, &c->at, "*%s, TABLE= needs lines of pairs",
+                  c->name);
+    TRY(read_pairs(r, 0, variable, pairs));
+    check_table(r, what, pairs);
+    q->number = 1.0;
+    q->factor = pairs; /* set anew by model_resolve                           */
     goto done;
   }
-  if (r->card->n_record != 1) {
-    int none = r->card->n_record < 1;
-    message_add(r->m->log, none ? P2007 : P2008,
-                none ? &r->card->at : &line[1].at,
-                "*FRICTION needs one line with %s", law->value_name);
+  if (c->n_record != 1) {
+    int none = c->n_record < 1;
+    message_add(r->m->log, none ? P2007 : P2008, none ? &c->at : &line[1].at,
+                "*%s needs one line with %s", c->name, what);
     goto done;
   }
-  if (record_fields(r, line, 1, 1, law->value_name) != 0) goto done;
-  quantity *q = &c->friction.value;
+  if (record_fields(r, line, 1, 1, what) != 0) goto done;
   if (field_quantity(r, &line->fields[0], q) != 0) goto done;
   if (q->formula == NULL && !(q->number >= 0.0))
     message_add(r->m->log, P2010, &line->fields[0].at,
-                "*FRICTION: %s = %s is negative", law->value_name,
+                "*%s: %s = %s is negative", c->name, what,
                 line->fields[0].text);
+done:
+  return st;
+}
+
+/* The rule a *FRICTION card fills: of the contact, or of the step for it; NULL
+ * without memory, or *told after a message. */
+static friction_rule *new_rule(const reading *r, int contact_id, int *told) {
+  status st = OK;
+  contact *c = &r->m->contacts[contact_id];
+  friction_rule *rule = &c->friction;
+  const friction_rule *old = rule->law == NULL ? NULL : rule;
+  if (r->in_step) {
+    step *s = &r->m->steps[r->m->n_step - 1];
+    old = NULL;
+    for (int k = 0; k < s->n_change; ++k)
+      if (s->changes[k].contact_id == contact_id) old = &s->changes[k].rule;
+    GROW(s->changes, s->n_change, s->cap_change);
+    rule = &s->changes[s->n_change].rule;
+    s->changes[s->n_change].contact_id = contact_id;
+    s->n_change += old == NULL;
+  }
+  *told = old != NULL;
+  if (old != NULL)
+    message_add(r->m->log, P2032, &r->card->at,
+                "contact %s has its *FRICTION already, at line %d", c->name,
+                old->at.line_no);
+done:
+  return st != OK || *told ? NULL : rule;
+}
+
+static status copy_options(const reading *r, const friction_ops *law,
+                           const void **out) {
+  status st = OK;
+  if (law->param_size == 0) goto done;
+  void *param = memory_new(1, law->param_size);
+  if (param == NULL) FAIL(ERR_MEMORY, "memory exhausted: friction options");
+  memcpy(param, r->plugin, law->param_size);
+  *out = param;
 done:
   return st;
 }
@@ -283,40 +333,26 @@ done:
 status apply_friction(reading *r) {
   status st = OK;
   const friction_param *p = r->param;
+  const card *c = r->card;
   const friction_ops *law = p->law == NULL ? NULL : friction_find(p->law);
-  void *param = NULL;
   if (law == NULL || p->contact == NULL) goto done;
-  contact *c = find_contact(r, p->contact);
-  if (c == NULL) {
-    unknown_word(r->m->log, P2012, value_place(r, "CONTACT"),
-                 "*FRICTION: before this card there is no *CONTACT, NAME=",
-                 p->contact, contact_name, r->m);
-    goto done;
-  }
-  if (c->law != NULL) {
-    message_add(r->m->log, P2032, &r->card->at,
-                "contact %s has its *FRICTION already, at line %d", c->name,
-                c->friction_at.line_no);
-    goto done;
-  }
-  c->law = law;
-  c->amplitude_name = p->amplitude;
-  c->friction_at = r->card->at;
-  c->value_at = r->card->n_record > 0 ? r->card->records[0].at : r->card->at;
-  c->amplitude_at = *value_place(r, "AMPLITUDE");
-  if (law->param_size > 0) {
-    param = memory_new(1, law->param_size);
-    if (param == NULL) FAIL(ERR_MEMORY, "memory exhausted: friction options");
-    memcpy(param, r->plugin, law->param_size);
-    c->friction.param = param;
-  }
-  if (law->value_name == NULL) {
-    if (r->card->n_record > 0)
-      message_add(r->m->log, P2008, &r->card->records[0].at,
-                  "*FRICTION, LAW=%s has no data lines", p->law);
-    goto done;
-  }
-  TRY(read_value(r, law, c));
+  int told = 0, id = find_contact(r, p->contact);
+  if (id < 0) goto done;
+  friction_rule *rule = new_rule(r, id, &told);
+  if (rule == NULL && !told) FAIL(ERR_MEMORY, "memory exhausted: *FRICTION");
+  if (rule == NULL) goto done;
+  rule->law = law;
+  rule->amplitude_name = p->amplitude;
+  rule->at = c->at;
+  rule->value_at = c->n_record > 0 ? c->records[0].at : c->at;
+  rule->amplitude_at = *value_place(r, "AMPLITUDE");
+  TRY(copy_options(r, law, &rule->card.param));
+  if (law->value_name != NULL)
+    TRY(read_value(r, law->value_name, p->table, &rule->card.value,
+                   &rule->position));
+  else if (c->n_record > 0)
+    message_add(r->m->log, P2008, &c->records[0].at,
+                "*FRICTION, LAW=%s has no data lines", p->law);
 done:
   return st;
 }

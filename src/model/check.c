@@ -272,17 +272,18 @@ static double step_time(const step *s, int end) {
 
 /* Friction at the nodes of a contact at t; 0 after a message. */
 static int friction_finite(const model *m, const mesh *msh, const contact *c,
-                           double t) {
+                           const friction_rule *rule, double t) {
   const mesh_group *g = &msh->group[c->group_id];
+  if (rule->law == NULL || rule->law->value_name == NULL) return 1;
   for (int k = 0; k < g->n_node; ++k) {
     double x[3] = {0.0, 0.0, 0.0};
     size_t node = (size_t)g->node_id[k], dim = (size_t)msh->dim;
     memcpy(x, msh->x + dim * node, dim * sizeof *x);
-    double value = quantity_value(&c->friction.value, x, t);
+    double value = quantity_value(&rule->card.value, x, t);
     if (isfinite(value) && value >= 0.0) continue;
-    message_add(m->log, P2041, &c->value_at,
+    message_add(m->log, P2041, &rule->value_at,
                 "*FRICTION: %s is %s at node %zu (%g, %g, %g), time %g",
-                c->law->value_name,
+                rule->law->value_name,
                 isnan(value)  ? "not a number"
                 : value < 0.0 ? "negative"
                               : "infinite",
@@ -322,12 +323,11 @@ static void check_values(const model *m, const mesh *msh) {
       good = motion_finite(m, i, step_time(&m->steps[k], 1));
   }
   for (int i = 0; i < m->n_contact; ++i) {
-    if (m->contacts[i].law == NULL || m->contacts[i].law->value_name == NULL)
-      continue;
     good = 1;
     for (int k = 0; k < m->n_step && good; ++k)
       good =
-          friction_finite(m, msh, &m->contacts[i], step_time(&m->steps[k], 1));
+          friction_finite(m, msh, &m->contacts[i], friction_in_force(m, k, i),
+                          step_time(&m->steps[k], 1));
   }
   for (int i = 0; i < m->n_step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k)

@@ -12,16 +12,35 @@ const char *effect_name(int bit) {
   return names[bit];
 }
 
-int contact_has_friction(const contact *c) {
-  if (c->law == NULL || c->law->value_name == NULL) return 0;
-  const quantity *q = &c->friction.value;
+const friction_rule *friction_in_force(const model *m, int step_id,
+                                       int contact_id) {
+  for (int i = step_id; i >= 0; --i)
+    for (int k = 0; k < m->steps[i].n_change; ++k)
+      if (m->steps[i].changes[k].contact_id == contact_id)
+        return &m->steps[i].changes[k].rule;
+  return &m->contacts[contact_id].friction;
+}
+
+int rule_has_friction(const friction_rule *rule) {
+  if (rule->law == NULL || rule->law->value_name == NULL) return 0;
+  const quantity *q = &rule->card.value;
   return q->formula != NULL || q->number != 0.0;
 }
 
-static const contact *first_friction(const model *m) {
+/* The first rule with friction in any step, and its contact; or NULL. */
+static const friction_rule *first_friction(const model *m, const contact **of) {
   for (int i = 0; i < m->n_contact; ++i)
-    if (contact_has_friction(&m->contacts[i])) return &m->contacts[i];
+    for (int k = 0; k < m->n_step; ++k) {
+      const friction_rule *rule = friction_in_force(m, k, i);
+      *of = &m->contacts[i];
+      if (rule_has_friction(rule)) return rule;
+    }
   return NULL;
+}
+
+static int has_friction(const model *m) {
+  const contact *of;
+  return first_friction(m, &of) != NULL;
 }
 
 static const load *first_body_load(const model *m) {
@@ -102,8 +121,8 @@ void model_find_effects(model *m) {
   m->effects = 0;
   m->effects |= EFFECT_MESH;
   if (m->n_contact > 0) m->effects |= EFFECT_CONTACT;
-  if (first_friction(m) != NULL) m->effects |= EFFECT_FRICTION;
-  if (first_friction(m) != NULL && has_history(m)) m->effects |= EFFECT_HISTORY;
+  if (has_friction(m)) m->effects |= EFFECT_FRICTION;
+  if (has_friction(m) && has_history(m)) m->effects |= EFFECT_HISTORY;
   if (first_body_load(m) != NULL) m->effects |= EFFECT_BODY;
   if (first_temperature(m) != NULL && has_expansion(m))
     m->effects |= EFFECT_THERMAL;
@@ -135,10 +154,11 @@ static int reason_problem(const model *m, int bit, char *text, size_t size) {
 }
 
 static void reason_friction(const model *m, char *text, size_t size) {
-  const contact *c = first_friction(m);
-  if (c != NULL)
+  const contact *c = NULL;
+  const friction_rule *rule = first_friction(m, &c);
+  if (rule != NULL)
     snprintf(text, size, "*FRICTION, LAW=%s on contact %s, line %d",
-             c->law->name, c->name, c->friction_at.line_no);
+             rule->law->name, c->name, rule->at.line_no);
   else if (m->n_contact == 0)
     snprintf(text, size, "no *CONTACT card");
   else

@@ -65,7 +65,7 @@ static const option obstacle_options[] = {
   OPTION_CHOICE(obstacle_param, side, "SIDE", "OUTSIDE|INSIDE", "OUTSIDE",
                 "where the body is"),
   OPTION_NAME(obstacle_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
-              "factor on MOVE and ROTATE, in total time"),
+              "factor on MOVE and ROTATE in total time, whatever its TIME="),
   OPTION_END};
 static const option contact_options[] = {
   OPTION_NAME(contact_param, name, "NAME", NULL, "name for *FRICTION"),
@@ -80,7 +80,7 @@ static const option friction_options[] = {
   OPTION_NAME(friction_param, contact, "CONTACT", NULL, "name of a *CONTACT"),
   OPTION_NAME(friction_param, law, "LAW", NULL, "protis --list friction"),
   OPTION_NAME(friction_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
-              "factor in total time"),
+              "factor in total time, whatever the TIME= of the amplitude"),
   OPTION_CHOICE(friction_param, table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
                 "data lines are pairs coordinate (or total time), value"),
   OPTION_END};
@@ -174,9 +174,11 @@ const keyword keyword_table[] = {
    "rigid obstacle, may shift and turn"},
   {"CONTACT", IN_MODEL, OPTIONS(contact), NULL, apply_contact, 0, 0,
    "", "unilateral contact of Gamma_3 with an obstacle"},
-  {"FRICTION", IN_MODEL, OPTIONS(friction), names_law, apply_friction, 0, ANY,
+  {"FRICTION", IN_MODEL | IN_STEP, OPTIONS(friction), names_law,
+   apply_friction, 0, ANY,
    "mu or g: number, expression of x y z t, or pairs with TABLE=",
-   "friction law of a contact; without it the contact is frictionless"},
+   "friction law of a contact; without it the contact is frictionless. In a "
+   "step it takes the place of the old one from there on, at once"},
   {"INITIAL CONDITIONS", IN_MODEL, OPTIONS(initial), NULL, apply_initial, 1,
    ANY, "TEMPERATURE group of elements, value",
    "state before the first step; what no line gives is zero"},

@@ -365,19 +365,24 @@ static void table_release(value_table *t) {
   memory_free(t->value);
 }
 
+static void rule_release(friction_rule *rule) {
+  table_release(&rule->position);
+  memory_free((void *)rule->card.param);
+}
+
 void model_free(model *m) {
   if (m == NULL) return;
   for (int i = 0; i < m->n_amplitude; ++i)
     table_release(&m->amplitudes[i].table);
-  for (int i = 0; i < m->n_contact; ++i) {
-    table_release(&m->contacts[i].position);
-    memory_free((void *)m->contacts[i].friction.param);
-  }
+  for (int i = 0; i < m->n_contact; ++i) rule_release(&m->contacts[i].friction);
   for (int i = 0; i < m->n_material; ++i)
     for (int k = 0; k < 3; ++k) table_release(&m->materials[i].expand.alpha[k]);
   for (int i = 0; i < m->n_step; ++i) {
     memory_free(m->steps[i].loads.item);
     memory_free(m->steps[i].prints);
+    for (int k = 0; k < m->steps[i].n_change; ++k)
+      rule_release(&m->steps[i].changes[k].rule);
+    memory_free(m->steps[i].changes);
     memory_free(m->steps[i].solver_param);
   }
   memory_free(m->supports.item);

@@ -44,16 +44,21 @@ typedef struct section {
   int material_id, group_id;
 } section;
 
+/* One *FRICTION card: the law of a contact, until another takes its place. */
+typedef struct friction_rule {
+  const friction_ops *law; /* NULL: frictionless                              */
+  friction_card card;      /* its value and options (owned)                   */
+  value_table position;    /* TABLE= of the value; arrays owned               */
+  const char *amplitude_name;
+  place at, value_at, amplitude_at;
+} friction_rule;
+
 typedef struct contact {
   const char *name, *group, *obstacle_name;
   place at, group_at, obstacle_at;
   int obstacle_id, group_id;
-  int obstacle_normal;     /* 1: NORMAL=OBSTACLE; resolved from -1: not said */
-  const friction_ops *law; /* NULL: frictionless                              */
-  friction_card friction;  /* its value and options (owned)                   */
-  value_table position;    /* TABLE= of the friction value; arrays owned      */
-  const char *amplitude_name;
-  place friction_at, value_at, amplitude_at;
+  int obstacle_normal;    /* 1: NORMAL=OBSTACLE; resolved from -1: not said */
+  friction_rule friction; /* from the first step on                          */
 } contact;
 
 typedef enum {
@@ -129,6 +134,11 @@ typedef struct print_request { /* one table of *PRINT                         */
   place at;
 } print_request;
 
+typedef struct friction_change { /* *FRICTION in a step                       */
+  int contact_id;
+  friction_rule rule; /* from the start of the step on                      */
+} friction_change;
+
 typedef struct step {
   const char *name;
   place at;
@@ -138,6 +148,8 @@ typedef struct step {
   double dt, total, dt_min; /* s                                     */
   load_list loads;  /* all in force, those kept from before included        */
   unsigned renewed; /* bit of each load_kind that OP=NEW ends               */
+  int n_change, cap_change;
+  friction_change *changes; /* [n_change] owned                               */
   int n_print, cap_print;
   print_request *prints;
   int output_frequency; /* HDF5 fields: every n-th increment; 0: last only;
@@ -209,8 +221,11 @@ enum { EFFECT_LIST(EFFECT_BIT) EFFECT_COUNT };
 #define EFFECT_MASK(name, text) EFFECT_##name = 1 << EFFECT_BIT_##name,
 enum { EFFECT_LIST(EFFECT_MASK) EFFECT_ALL = (1 << EFFECT_COUNT) - 1 };
 const char *effect_name(int bit);
+/* The rule of a contact in force during a step. */
+const friction_rule *friction_in_force(const model *m, int step_id,
+                                       int contact_id);
 /* A friction value that is zero everywhere and always is no friction. */
-int contact_has_friction(const contact *c);
+int rule_has_friction(const friction_rule *rule);
 /* Which card or fact switched it on or off, into text; returns text. */
 const char *model_effect_reason(const model *m, int bit, char *text,
                                 size_t size);

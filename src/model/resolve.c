@@ -56,25 +56,40 @@ static void resolve_materials(model *m, int lost) {
                   "material %s has no *ELASTIC card", m->materials[i].name);
 }
 
-static void resolve_friction(model *m, contact *c) {
-  /* The array of contacts has reached its place: point into it now. */
-  if (c->friction.value.factor != NULL) c->friction.value.factor = &c->position;
-  if (c->amplitude_name == NULL) return;
-  int a = find_amplitude(m, c->amplitude_name, &c->amplitude_at);
-  if (a < 0) return;
-  if (c->friction.value.factor != NULL)
-    message_add(m->log, P2033, &c->amplitude_at,
+/* An amplitude that multiplies a value of the model: it counts total time. */
+static const value_table *total_amplitude(const model *m, const char *name,
+                                          const place *at) {
+  int a = find_amplitude(m, name, at);
+  if (a < 0) return NULL;
+  if (m->n_step > 1 && !m->amplitudes[a].total_time)
+    message_add(
+        m->log, P2044, at,
+        "amplitude %s counts the total time here, whatever its TIME=", name);
+  return &m->amplitudes[a].table;
+}
+
+static void resolve_friction(const model *m, friction_rule *rule) {
+  quantity *value = &rule->card.value;
+  /* The rules have reached their place: point into them now. */
+  if (value->factor != NULL) value->factor = &rule->position;
+  if (rule->amplitude_name == NULL) return;
+  const value_table *t =
+      total_amplitude(m, rule->amplitude_name, &rule->amplitude_at);
+  if (t == NULL) return;
+  if (value->factor != NULL)
+    message_add(m->log, P2033, &rule->amplitude_at,
                 "*FRICTION: TABLE= and AMPLITUDE= exclude each other");
-  if (c->law->value_name == NULL)
-    message_add(m->log, P2037, &c->amplitude_at,
-                "*FRICTION, LAW=%s has no value for AMPLITUDE=", c->law->name);
-  c->friction.value.factor = &m->amplitudes[a].table;
+  if (rule->law->value_name == NULL)
+    message_add(
+        m->log, P2037, &rule->amplitude_at,
+        "*FRICTION, LAW=%s has no value for AMPLITUDE=", rule->law->name);
+  value->factor = t;
 }
 
 static void resolve_contacts(model *m) {
   for (int i = 0; i < m->n_contact; ++i) {
     contact *c = &m->contacts[i];
-    resolve_friction(m, c);
+    resolve_friction(m, &c->friction);
     if (c->obstacle_name[0] == '\0') continue;
     c->obstacle_id = find_name(m, c->obstacle_name, "OBSTACLE", obstacle_at,
                                &c->obstacle_at);
@@ -94,12 +109,11 @@ static void resolve_contacts(model *m) {
 static void resolve_moves(model *m) {
   for (int i = 0; i < m->n_obstacle; ++i) {
     if (m->moves[i].amplitude_name == NULL) continue;
-    int a = find_amplitude(m, m->moves[i].amplitude_name,
-                           &m->moves[i].amplitude_at);
-    if (a < 0) continue;
-    for (int k = 0; k < 3; ++k)
-      m->obstacles[i].motion[k].factor = &m->amplitudes[a].table;
-    m->obstacles[i].angle.factor = &m->amplitudes[a].table;
+    const value_table *t = total_amplitude(m, m->moves[i].amplitude_name,
+                                           &m->moves[i].amplitude_at);
+    if (t == NULL) continue;
+    for (int k = 0; k < 3; ++k) m->obstacles[i].motion[k].factor = t;
+    m->obstacles[i].angle.factor = t;
   }
 }
 
@@ -305,6 +319,8 @@ status model_resolve(model *m, int lost) {
   for (int i = 0; i < m->n_step; ++i) {
     step *s = &m->steps[i];
     s->start = step_end(old);
+    for (int k = 0; k < s->n_change; ++k)
+      resolve_friction(m, &s->changes[k].rule);
     TRY(resolve_loads(m, old, s));
     TRY(carry_choices(old, s));
     old = s;

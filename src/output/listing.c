@@ -58,6 +58,10 @@ static const char *kinematics_text(int kin) {
   return kin >= 0 ? words[kin % 4] : "?";
 }
 
+static const char *law_text(const friction_rule *rule) {
+  return rule->law != NULL ? rule->law->name : "none";
+}
+
 static void print_model(const job *j, FILE *f) {
   const model *m = j->m;
   for (int i = 0; i < j->msh->n_group; ++i) {
@@ -71,8 +75,15 @@ static void print_model(const job *j, FILE *f) {
   for (int i = 0; i < m->n_contact; ++i) {
     const contact *c = &m->contacts[i];
     fprintf(f, "  contact  %-20s group %s, obstacle %s, friction %s\n", c->name,
-            c->group, c->obstacle_name, c->law != NULL ? c->law->name : "none");
+            c->group, c->obstacle_name, law_text(&c->friction));
   }
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].n_change; ++k) {
+      const friction_change *change = &m->steps[i].changes[k];
+      fprintf(f, "  contact  %-20s from step %d on friction %s\n",
+              m->contacts[change->contact_id].name, i + 1,
+              law_text(&change->rule));
+    }
 }
 
 static void print_effects(const model *m, FILE *f) {
@@ -165,6 +176,7 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
   print_when(s, lst->f);
   fputc('\n', lst->f);
   if (s->surface != NULL) {
+    if (s->note != NULL) fputs(s->note, lst->f);
     print_solver(j, s, lst->f);
     print_totals(j, &v, lst->f);
   }

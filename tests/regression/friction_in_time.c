@@ -1,0 +1,173 @@
+/*
+ * Friction that varies: in time by table, amplitude and expression, by another
+ * *FRICTION card in a step, in space, by group; jumps are told.
+ *
+ * Unit square, nu = 0, E = 1000, G = 500, pressed by 10 and dragged along by
+ * u_x = U at the top while its foot slips: sigma_xy = mu p everywhere (the side
+ * faces carry it), the foot is at U - mu p / G.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PRESS                                                             \
+  "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 2, 2, -0.01\nTOP, 1, 1\n" \
+  "*PRINT, CONTACT, TOTALS\n*END STEP\n"
+
+/* friction: the card before the steps; tau: side traction in the second step,
+ * t from 1 to 2, U = 0.1 (t - 1); then the rest of the deck. */
+static job run_drag(const char *friction, const char *tau, const char *rest) {
+  job j = job_begin("drag");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "drag.inp",
+            "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n%s" PRESS
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\n"
+            "TOP, 1, 1, \"0.1*(t-1)\"\n*DSLOAD\nRIGHT, TY, \"%s\"\n"
+            "LEFT, TY, \"-(%s)\"\n%s",
+            friction, tau, tau, rest);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Increment k slips with coefficient mu at time t. */
+static void check_slip(const job *j, int k, double t, double mu) {
+  dat c = job_table(j, "CONTACT", k);
+  for (int i = 0; i < c.n_row; ++i) {
+    ck_assert_double_eq(dat_at(&c, i, "status"), 1.0);
+    ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), 10.0, 1e-8);
+    ck_assert_double_eq_tol(dat_at(&c, i, "traction_t"), -10 * mu, 1e-8);
+    ck_assert_double_eq_tol(dat_at(&c, i, "u_t"), 0.1 * (t - 1) - 10 * mu / 500,
+                            1e-10);
+  }
+  dat_free(&c);
+}
+
+static int listing_has(const job *j, const char *text) {
+  char *lst = job_file(j, "lst");
+  ck_assert_ptr_nonnull(lst);
+  int found = strstr(lst, text) != NULL;
+  free(lst);
+  return found;
+}
+
+/* mu from 0.2 at t = 1 to 0.4 at t = 2, said in four ways. */
+START_TEST(mu_of_time_in_every_way) {
+  static const char *const cards[] = {
+      "*FRICTION, CONTACT=F, LAW=COULOMB, TABLE=T\n0., 0.2, 1., 0.2\n2., 0.4\n",
+      "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n0., 1., 1., 1., 2., 2.\n"
+      "*FRICTION, CONTACT=F, LAW=COULOMB, AMPLITUDE=A\n0.2\n",
+      "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n\"max(1, t)\"\n"
+      "*FRICTION, CONTACT=F, LAW=COULOMB, AMPLITUDE=A\n0.2\n",
+      "*FRICTION, CONTACT=F, LAW=COULOMB\n\"0.2*max(1, t)\"\n",
+      "*FRICTION, CONTACT=F, LAW=TRESCA\n\"2*max(1, t)\"\n",
+      "*FRICTION, CONTACT=F, LAW=TRESCA, TABLE=T\n1., 2., 2., 4.\n"};
+  for (size_t k = 0; k < sizeof cards / sizeof *cards; ++k) {
+    job j = run_drag(cards[k], "2*t", "*END STEP\n");
+    for (int i = 1; i <= 4; ++i) {
+      double t = 1 + 0.25 * i;
+      check_slip(&j, i, t, 0.2 * t);
+    }
+    ck_assert(!listing_has(&j, "jumps"));
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* The jump of the expression at t = 1.6 is found between two increments. */
+START_TEST(jump_of_an_expression_is_told) {
+  job j =
+      run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n\"if(t < 1.6, 0.2, 0.3)\"\n",
+               "if(t < 1.6, 2, 3)", "*END STEP\n");
+  for (int i = 1; i <= 4; ++i)
+    check_slip(&j, i, 1 + 0.25 * i, i < 3 ? 0.2 : 0.3);
+  ck_assert(listing_has(
+      &j, "  mu of contact F jumps at t = 1.6 from 0.2 to 0.3, node 1\n"));
+  job_end(&j);
+}
+END_TEST
+
+/* Another card in a step counts from there on, in later steps too. */
+START_TEST(friction_card_in_a_step_takes_over) {
+  job j = run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n0.8\n", "2+0*t",
+                   "*FRICTION, CONTACT=F, LAW=COULOMB\n0.2\n*END STEP\n"
+                   "*STEP\n*QUASISTATIC\n0.5, 1.\n*END STEP\n"
+                   "*STEP\n*QUASISTATIC\n0.5, 1.\n"
+                   "*FRICTION, CONTACT=F, LAW=TRESCA\n3.\n"
+                   "*DSLOAD\nRIGHT, TY, \"3+0*t\"\nLEFT, TY, \"-3-0*t\"\n"
+                   "*BOUNDARY\nTOP, 1, 1, \"0.1*(t-1)\"\n*END STEP\n");
+  for (int i = 1; i <= 6; ++i)
+    check_slip(&j, i, i < 5 ? 1 + 0.25 * i : 2 + 0.5 * (i - 4), 0.2);
+  ck_assert(listing_has(
+      &j, "  mu of contact F jumps at t = 1 from 0.8 to 0.2, node 1\n"));
+  check_slip(&j, 7, 3.5, 0.3);
+  check_slip(&j, 8, 4, 0.3);
+  ck_assert(listing_has(
+      &j, "  friction of contact F changes at t = 3 from COULOMB to TRESCA\n"));
+  job_end(&j);
+}
+END_TEST
+
+/* No friction on the left half: each node has its own limit. */
+START_TEST(mu_is_zero_in_places) {
+  job j = run_drag(
+      "*FRICTION, CONTACT=F, LAW=COULOMB\n"
+      "\"if(x < 0.4, 0, 0.3)\"\n",
+      "3*x*x", "*END STEP\n");
+  dat c = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < c.n_row; ++i) {
+    double mu = dat_at(&c, i, "x") < 0.4 ? 0.0 : 0.3;
+    ck_assert_double_eq(dat_at(&c, i, "status"), 1.0);
+    ck_assert_double_gt(dat_at(&c, i, "f_n"), 0.0);
+    ck_assert_double_eq_tol(dat_at(&c, i, "f_t"), -mu * dat_at(&c, i, "f_n"),
+                            1e-9);
+  }
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+/* Two groups on one floor, each with its own mu: both slip, the resultants
+ * tell. */
+START_TEST(mu_by_group) {
+  job j = job_begin("groups");
+  job_write(&j, "groups.geo",
+            "h = 0.25;\nPoint(1)={0,0,0,h};Point(2)={.5,0,0,h};"
+            "Point(3)={1,0,0,h};Point(4)={1,1,0,h};Point(5)={0,1,0,h};"
+            "Line(1)={1,2};Line(2)={2,3};Line(3)={3,4};Line(4)={4,5};"
+            "Line(5)={5,1};\nCurve Loop(1)={1:5};Plane Surface(1)={1};"
+            "Physical Surface(\"BODY\")={1};Physical Curve(\"ICE\")={1};"
+            "Physical Curve(\"RUBBER\")={2};Physical Curve(\"TOP\")={4};\n");
+  job_write(&j, "groups.inp",
+            "*MESH, FILE=groups.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=A, GROUP=ICE, OBSTACLE=O\n"
+            "*CONTACT, NAME=B, GROUP=RUBBER, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=A, LAW=COULOMB\n0.05\n"
+            "*FRICTION, CONTACT=B, LAW=COULOMB\n0.7\n*STEP\n*QUASISTATIC\n"
+            "0.5, 1.\n*BOUNDARY\nTOP, 2, 2, -0.01\nTOP, 1, 1, 0.1\n"
+            "*PRINT, TOTALS\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  dat t = job_table(&j, "TOTALS", -1);
+  for (int k = 0; k < 2; ++k) {
+    ck_assert_double_gt(dat_at(&t, k, "normal"), 1.0);
+    ck_assert_double_eq_tol(dat_at(&t, k, "tangential"),
+                            -(k == 0 ? 0.05 : 0.7) * dat_at(&t, k, "normal"),
+                            1e-9);
+  }
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("friction in time", mu_of_time_in_every_way,
+          jump_of_an_expression_is_told, friction_card_in_a_step_takes_over,
+          mu_is_zero_in_places, mu_by_group)
