@@ -112,6 +112,10 @@ status condense_load(condensed *c, const double *F, const double *ud,
 /* u[dim*n_node] (global components) from u_c[m] for the load last condensed. */
 status condense_recover(condensed *c, const double *u_c, double *u);
 
+/* *square = d' inv(A) d of forces d[m], J, by the same factor; HUGE_VAL where
+ * contact alone holds a body (A is singular). */
+status condensed_force_energy(condensed *c, const double *d, double *square);
+
 /* Strains and stresses of the elements: e[ns*n_elem], sigma[ns*n_elem]; either
  * may be NULL. Plane stress fills e_zz. */
 void domain_stress(const domain *d, const double *u, double *e, double *sigma);

@@ -6,7 +6,7 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
-#include "history/history.h"
+#include "history/run.h"
 #include "contact/lcp.h"
 
 #include <math.h>
@@ -26,6 +26,7 @@ typedef struct discrete {
   double *gap, *slip, *g;  /* [n], [n*(dim-1)], [n]                          */
   contact_status *contact; /* [n]                                            */
   solver_report report;
+  error_bound error;
   char log[LOG];
 } discrete;
 
@@ -241,6 +242,7 @@ static state state_of(const discrete *d) {
              .limit = cp != NULL && cp->g0 != NULL ? d->g : NULL,
              .contact = d->contact,
              .report = d->report,
+             .error = d->error,
              .solver_log = d->log,
              .settled = d->report.outcome > 0};
   for (int i = 0; i < p->n; ++i) {
@@ -293,6 +295,8 @@ status condensed_run(const model *m, const exchange_problem *p,
   st = p->dim == 1 ? solve_lcp(&d) : solve_contact(&d, sink);
   timer_leave(STAGE_CONTACT);
   TRY(st);
+  if (p->dim > 1 && !outcome_is_fatal(d.report.outcome))
+    TRY(estimate_problem(d.step, &p->cp, d.u, d.r, &d.error));
   TRY(tell_answer(&d, sink, cpu, unsettled));
 done:
   discrete_free(&d);

@@ -59,6 +59,7 @@ static state make_state(run *r, int attempt, int increment_no) {
              .energy = e->energy,
              .report = r->report,
              .note = r->note,
+             .error = r->error,
              .solver_log = contact_solver_log(r->solver),
              .settled = r->report.outcome > 0};
   if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
@@ -88,6 +89,7 @@ static status accept(run *r, int attempt, int increment_no, int last,
   ++r->total_no;
   if (r->report.outcome <= 0) ++r->unsettled;
   TRY(result_evaluate(r, stress_is_due(r->step, increment_no, last)));
+  TRY(estimate_increment(r));
   state s = make_state(r, attempt, increment_no);
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
@@ -98,6 +100,7 @@ done:
 }
 
 static status reject(run *r, int attempt, int increment_no, const char *why) {
+  r->error = (error_bound){0};
   state s = make_state(r, attempt, increment_no);
   s.n_open = s.n_slip = s.n_stick = 0;
   if (r->sink->rejected == NULL) return OK;

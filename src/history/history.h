@@ -32,6 +32,15 @@ typedef struct energies {
                      the defect, also once all is unloaded                    */
 } energies;
 
+/* How far the contact solver may be from the solution. */
+typedef struct error_bound {
+  int asked;
+  double energy;   /* J, energy of the error at most; NAN: no bound           */
+  double relative; /* -, of the energy norm of the solution                   */
+  double rate;     /* contraction of the sliding limit, -; 0: none            */
+  const char *why; /* there is no bound; or NULL                              */
+} error_bound;
+
 /* One accepted increment. Arrays are borrowed and live until the next one. */
 typedef struct state {
   int step_no, increment_no; /* from 1, increments counted within the step    */
@@ -56,6 +65,7 @@ typedef struct state {
   int n_open, n_slip, n_stick;
   energies energy;
   solver_report report;
+  error_bound error;
   const char *solver_log;
   const char *note; /* whole lines about what jumps, "" or NULL: nothing      */
   double cpu;       /* of this increment, s                                */

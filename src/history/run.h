@@ -4,6 +4,7 @@
 #ifndef PROTIS_HISTORY_RUN_H
 #define PROTIS_HISTORY_RUN_H
 
+#include "accuracy/accuracy.h"
 #include "history/history.h"
 
 /* One equilibrium: displacements, contact forces, loads, and its time. */
@@ -70,6 +71,10 @@ typedef struct run {
   contact_status *contact; /* [n]                                            */
   contact_total *totals;   /* [n_contact]                                    */
   solver_report report;
+  error_bound error;
+  dense_inverse *dense; /* of A where contact alone holds a body       */
+  int dense_known;      /* 1: made, or A has none                      */
+  known_rate rate;
   int total_no, unsettled;
 } run;
 
@@ -108,6 +113,12 @@ void velocity_free(velocity *v); /* accepts NULL                              */
 /* result.c: stresses, reactions, totals, energies of r->now as far as the
  * effects call for them and "due" says. */
 status result_evaluate(run *r, int due);
+
+/* estimate.c: error of the solver at r->now into r->error, if asked for. */
+status estimate_increment(run *r);
+/* The same for a problem from a file. */
+status estimate_problem(const step *s, const contact_problem *cp,
+                        const double *u, const double *r, error_bound *e);
 /* r->now becomes r->old. */
 void result_accept(run *r);
 

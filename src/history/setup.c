@@ -116,6 +116,10 @@ done:
 
 static void free_surface(run *r) {
   contact_solver_free(r->solver);
+  dense_inverse_free(r->dense);
+  r->dense = NULL;
+  r->dense_known = 0;
+  known_rate_forget(&r->rate);
   condensed_free(r->c);
   stiffness_free(r->k);
   surface_free(r->surface);

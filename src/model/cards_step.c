@@ -382,6 +382,17 @@ done:
   return st;
 }
 
+status apply_accuracy(reading *r) {
+  const accuracy_param *p = r->param;
+  step *s = open_step(r);
+  if (s->has_accuracy)
+    message_add(r->m->log, P2011, &r->card->at,
+                "a step has one *ACCURACY card, this is its second");
+  s->has_accuracy = 1;
+  s->no_solver_error = !p->solver;
+  return OK;
+}
+
 status apply_print(reading *r) {
   status st = OK;
   const print_param *p = r->param;

@@ -82,6 +82,12 @@ static const step *first_fields(const model *m) {
   return NULL;
 }
 
+static int has_estimates(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    if (!m->steps[i].no_solver_error) return m->n_contact > 0 || m->has_problem;
+  return 0;
+}
+
 /* More than one increment: slip and load have a history. */
 static int has_history(const model *m) {
   if (m->n_step > 1) return 1;
@@ -126,6 +132,7 @@ void model_find_effects(model *m) {
   if (first_body_load(m) != NULL) m->effects |= EFFECT_BODY;
   if (first_temperature(m) != NULL && has_expansion(m))
     m->effects |= EFFECT_THERMAL;
+  if (has_estimates(m)) m->effects |= EFFECT_ESTIMATES;
   if (first_print(m, PRINT_ELEMENTS, &at) != NULL || first_fields(m) != NULL)
     m->effects |= EFFECT_STRESS;
   if (first_print(m, PRINT_REACTIONS, &at) != NULL || first_fields(m) != NULL ||
@@ -137,6 +144,16 @@ void model_fit_problem(model *m, int dim, int friction) {
   m->dim = dim;
   m->problem_friction = friction;
   m->effects = EFFECT_CONTACT | (friction ? EFFECT_FRICTION : 0u);
+  if (dim > 1 && has_estimates(m)) m->effects |= EFFECT_ESTIMATES;
+}
+
+static void reason_estimates(const model *m, char *text, size_t size) {
+  if (m->effects & EFFECT_ESTIMATES)
+    snprintf(text, size, "error of the contact solver");
+  else if (m->n_contact == 0 && !m->has_problem)
+    snprintf(text, size, "no *CONTACT card");
+  else
+    snprintf(text, size, "*ACCURACY, SOLVER=NO");
 }
 
 /* 1: a deck with *CONDENSED PROBLEM; the reason is in text. */
@@ -148,6 +165,8 @@ static int reason_problem(const model *m, int bit, char *text, size_t size) {
   else if (bit == EFFECT_BIT_FRICTION)
     snprintf(text, size, "mu of *CONDENSED PROBLEM, line %d, is %s", line_no,
              m->problem_friction ? "not zero" : "zero or not there");
+  else if (bit == EFFECT_BIT_ESTIMATES && m->dim > 1)
+    reason_estimates(m, text, size);
   else
     snprintf(text, size, "not part of a condensed problem");
   return 1;
@@ -226,6 +245,9 @@ const char *model_effect_reason(const model *m, int bit, char *text,
       break;
     case EFFECT_BIT_THERMAL:
       reason_thermal(m, text, size);
+      break;
+    case EFFECT_BIT_ESTIMATES:
+      reason_estimates(m, text, size);
       break;
     case EFFECT_BIT_STRESS:
       reason_output(m, PRINT_ELEMENTS, text, size);

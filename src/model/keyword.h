@@ -119,6 +119,9 @@ typedef struct solver_param {
   double tol;
   int max_iter, limit_max_iter;
 } solver_param;
+typedef struct accuracy_param {
+  int solver;
+} accuracy_param;
 typedef struct print_param {
   int contact, totals, nodes, elements, energy, reactions, frequency;
   const char *group;
@@ -156,6 +159,7 @@ status apply_cload(reading *r);
 status apply_temperature(reading *r);
 status apply_solver(reading *r);
 plugin names_solver(const reading *r);
+status apply_accuracy(reading *r);
 status apply_print(reading *r);
 status apply_output(reading *r);
 

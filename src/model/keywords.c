@@ -108,6 +108,10 @@ static const option solver_options[] = {
   OPTION_INT(solver_param, limit_max_iter, "LIMIT_MAX_ITER", 1, 1000000, "1000",
              "-", "passes of the fixed point on the sliding limit"),
   OPTION_END};
+static const option accuracy_options[] = {
+  OPTION_FLAG(accuracy_param, solver, "SOLVER", "YES",
+              "bound of the error of the contact solver in the energy norm"),
+  OPTION_END};
 static const option print_options[] = {
   OPTION_FLAG(print_param, contact, "CONTACT", "NO", "contact nodes"),
   OPTION_FLAG(print_param, totals, "TOTALS", "NO", "resultants per contact"),
@@ -207,6 +211,8 @@ const keyword keyword_table[] = {
    "temperatures; from the initial ones, linear over the step"},
   {"SOLVER", IN_STEP, OPTIONS(solver), names_solver, apply_solver, 0, 0,
    "", "method for the contact problem and its options"},
+  {"ACCURACY", IN_STEP, OPTIONS(accuracy), NULL, apply_accuracy, 0, 0,
+   "", "error estimates"},
   {"PRINT", IN_STEP, OPTIONS(print), NULL, apply_print, 0, 0,
    "", "tables in JOB.dat"},
   {"OUTPUT", IN_STEP, OPTIONS(output), NULL, apply_output, 0, 0,
@@ -218,7 +224,6 @@ const keyword keyword_table[] = {
   RESERVED("VISCOELASTIC", "viscoelastic law"),
   RESERVED("CONTACT FORCE", "given normal force (CPR98 3.19)"),
   RESERVED("VISCO", "increments with inelastic strains"),
-  RESERVED("ACCURACY", "error estimates and targets"),
   RESERVED("EFFECTS", "which effects are simulated"),
   RESERVED("RESTART", "restart file"),
   RESERVED("REFERENCE", "closed form to compare with"),

@@ -157,6 +157,8 @@ typedef struct step {
   int has_print, has_output;
   int condensed_frequency; /* of the condensed problems; 0 the last only, -1
                               none */
+  int has_accuracy;
+  int no_solver_error;  /* 1: the error of the solver is not asked for        */
   solver_choice solver; /* its param is owned by the step it came with        */
   void *solver_param;   /* owned, or NULL                                     */
   place solver_at;

@@ -35,6 +35,9 @@ VALUE(n_stick, v->s->n_stick)
 VALUE(iterations, v->s->report.iterations)
 VALUE(limit_updates, v->s->report.limit_updates)
 VALUE(residual, v->s->report.residual)
+VALUE(solver_error, 100 * v->s->error.relative)
+VALUE(solver_error_energy, v->s->error.energy)
+VALUE(contraction, v->s->error.rate)
 VALUE(strain_energy, v->s->energy.strain)
 VALUE(external_work, v->s->energy.external)
 VALUE(friction_work, v->s->energy.friction)
@@ -182,6 +185,14 @@ const column column_table[] = {
  NULL, "passes of the fixed point on the sliding limit"},
 {"residual", "-", INC, 0, C, ANY, "residual", 0, residual, NULL,
  "residual of the contact problem"},
+{"solver_error", "%", INC, 0, C | EFFECT_ESTIMATES, ANY, "solver_error", 0,
+ solver_error, NULL, "bound of the error of the contact solver in the energy "
+ "norm, of that of the solution; NaN: no bound"},
+{"solver_error_energy", J, INC, 0, C | EFFECT_ESTIMATES, ANY,
+ "solver_error_energy", 0, solver_error_energy, NULL,
+ "bound of the energy of that error"},
+{"contraction", "-", INC, 0, F | EFFECT_ESTIMATES, ANY, "contraction", 0,
+ contraction, NULL, "rate of the fixed point on the sliding limit"},
 {"strain_energy", J, INC, PRINT_ENERGY, 0, ANY, "strain_energy", 0,
  strain_energy, NULL, "elastic energy stored"},
 {"external_work", J, INC, PRINT_ENERGY, 0, ANY, "external_work", 0,

@@ -146,6 +146,8 @@ static void write_accuracy(json *w, const run_summary *run) {
   json_count(w, "attempts_cut", run->n_rejected);
   json_count(w, "tolerance_missed", run->n_unsettled);
   json_real(w, "residual_worst", run->residual_worst);
+  if (run->error_known)
+    json_real(w, "solver_error_worst_percent", run->error_worst);
   json_real(w, "energy_defect_worst", run->defect_worst);
   if (run->facts_known) json_real(w, "condition", run->facts.condition);
   json_close(w, '}');
@@ -181,6 +183,13 @@ static void write_increment(json *w, const increment_summary *s) {
   json_count(w, "stick", s->n_stick);
   json_count(w, "iterations", s->iterations);
   json_real(w, "residual", s->residual);
+  if (s->error.asked) {
+    json_real(w, "solver_error_percent", 100 * s->error.relative);
+    json_real(w, "solver_error_energy", s->error.energy);
+    json_real(w, "contraction", s->error.rate);
+    if (s->error.why != NULL)
+      json_string(w, "solver_error_missing", s->error.why);
+  }
   json_real(w, "energy_defect", s->defect);
   json_flag(w, "settled", s->settled);
   json_close(w, '}');

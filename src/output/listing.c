@@ -148,6 +148,24 @@ static void print_energies(const job *j, const view *v, FILE *f) {
   }
 }
 
+static void print_error(const job *j, const state *s, FILE *f) {
+  char text[NUMBER_SIZE], unit[64];
+  const error_bound *e = &s->error;
+  if (!e->asked) return;
+  fprintf(f, "  error of the solver: ");
+  if (e->why != NULL) {
+    fprintf(f, "no bound, %s", e->why);
+  } else {
+    column_unit("force*length", j->m, unit, sizeof unit);
+    fprintf(f, "at most %s %% of the energy norm,",
+            text_number(text, 100 * e->relative, 1));
+    fprintf(f, " %s %s", text_number(text, e->energy, 1), unit);
+  }
+  if (e->rate > 0)
+    fprintf(f, "; contraction %s", text_number(text, e->rate, 2));
+  fputc('\n', f);
+}
+
 static void print_solver(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE];
   const solver_report *r = &s->report;
@@ -159,6 +177,7 @@ static void print_solver(const job *j, const state *s, FILE *f) {
           r->iterations, r->limit_updates, text_number(text, r->residual, 2));
   if (!j->o->no_timing) fprintf(f, ", cpu %.3f s", r->cpu);
   fputc('\n', f);
+  print_error(j, s, f);
   if (s->solver_log != NULL && s->solver_log[0] != '\0')
     fprintf(f, "  tried: %s\n", s->solver_log);
   if (!s->settled) fprintf(f, "  THE TOLERANCE WAS NOT REACHED\n");
@@ -198,6 +217,9 @@ static void print_accuracy(const job *j, FILE *f) {
   fprintf(f, "  %-26s %12d\n", "tolerance missed", run->n_unsettled);
   fprintf(f, "  %-26s %12s\n", "largest residual",
           text_number(text, run->residual_worst, 2));
+  if (run->error_known)
+    fprintf(f, "  %-26s %12s\n", "largest solver error [%]",
+            text_number(text, run->error_worst, 2));
   fprintf(f, "  %-26s %12s\n", "largest energy defect",
           text_number(text, run->defect_worst, 2));
 }

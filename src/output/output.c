@@ -56,10 +56,17 @@ static status remember(output *o, const state *s) {
                            .iterations = s->report.iterations,
                            .settled = s->settled,
                            .residual = s->report.residual,
+                           .error = s->error,
                            .defect = energy_defect_relative(&s->energy)};
   if (s->surface != NULL)
     run->residual_worst = worse(run->residual_worst, s->report.residual);
   run->defect_worst = worse(run->defect_worst, fabs(i->defect));
+  if (s->error.asked) {
+    double error = 100 * s->error.relative;
+    run->error_worst =
+        run->error_known ? worse(run->error_worst, error) : error;
+    run->error_known = 1;
+  }
   if (!s->settled) ++run->n_unsettled;
 done:
   return st;

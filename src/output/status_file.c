@@ -8,9 +8,9 @@
 #include <math.h>
 
 status sta_header(const output_options *o, text_file *sta) {
-  fprintf(sta->f, "#%5s %5s %3s %11s %11s %7s %7s %7s %-9s %7s %10s %8s",
+  fprintf(sta->f, "#%5s %5s %3s %11s %11s %7s %7s %7s %-9s %7s %10s %9s",
           "step", "inc", "att", "time", "dt", "open", "slip", "stick", "solver",
-          "iter", "residual", "error");
+          "iter", "residual", "error[%]");
   if (!o->no_timing) fprintf(sta->f, " %9s", "cpu[s]");
   fprintf(sta->f, " reason\n");
   return text_check(sta);
@@ -22,16 +22,22 @@ static const char *reason(const state *s, const char *why) {
   return s->settled ? "OK" : "UNSETTLED";
 }
 
-/* The estimates of mesh and step have no value yet: "-". */
+/* Error of the solver in %, "-": not asked for, or no bound. */
+static const char *error_text(const state *s, char text[NUMBER_SIZE]) {
+  if (!s->error.asked || isnan(s->error.relative)) return "-";
+  return text_number(text, 100 * s->error.relative, 1);
+}
+
 status sta_line(const output_options *o, const state *s, const char *why,
                 text_file *sta) {
   char t[NUMBER_SIZE], dt[NUMBER_SIZE], residual[NUMBER_SIZE];
+  char error[NUMBER_SIZE];
   const solver_report *r = &s->report;
-  fprintf(sta->f, "%6d %5d %3d %s %s %7d %7d %7d %-9s %7d %s %8s", s->step_no,
+  fprintf(sta->f, "%6d %5d %3d %s %s %7d %7d %7d %-9s %7d %s %9s", s->step_no,
           s->increment_no, s->attempt, text_number(t, s->t, 4),
           text_number(dt, s->dt, 4), s->n_open, s->n_slip, s->n_stick,
           r->solver != NULL ? r->solver : "-", r->iterations,
-          text_number(residual, r->residual, 3), "-");
+          text_number(residual, r->residual, 3), error_text(s, error));
   if (!o->no_timing) fprintf(sta->f, " %9.3f", s->cpu);
   fprintf(sta->f, " %s%s\n", reason(s, why), why != NULL ? why : "");
   return text_check(sta);

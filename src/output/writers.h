@@ -42,6 +42,7 @@ typedef struct increment_summary {
   double t, dt;
   int n_open, n_slip, n_stick, iterations, settled, outcome;
   double residual, defect;
+  error_bound error;
 } increment_summary;
 
 typedef struct run_summary {
@@ -50,6 +51,8 @@ typedef struct run_summary {
   int n_increment, capacity, n_rejected, n_unsettled;
   increment_summary *increments; /* [n_increment]                          */
   double residual_worst, defect_worst; /* - ; the defect relative           */
+  double error_worst; /* %, of the solver; NAN: an increment without bound    */
+  int error_known;
   status verdict;
   const char *message; /* of a failed run, or ""                            */
 } run_summary;

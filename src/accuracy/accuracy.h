@@ -1,0 +1,96 @@
+/*
+ * How far an answer of the contact solver is from the solution of its problem,
+ * and whether it is the only one.
+ */
+#ifndef PROTIS_ACCURACY_ACCURACY_H
+#define PROTIS_ACCURACY_ACCURACY_H
+
+#include "contact/contact.h"
+
+/* The matrix M of a problem (A, or W if A is NULL) seen from its inverse. */
+typedef struct inverse_energy {
+  void *ctx;
+  /* *square = d' inv(M) d, d[m] */
+  status (*square)(void *ctx, const double *d, double *square);
+  double condition; /* of M scaled to a unit diagonal, -; for the rounding    */
+  int n_kernel;     /* motions without energy: M is semidefinite              */
+  const double *kernel; /* [m*n_kernel], borrowed                             */
+} inverse_energy;
+
+typedef struct solver_error {
+  double norm; /* bound of |u - u*|_A (|r - r*|_W if A is NULL), square root
+                  of an energy; NAN: there is none                            */
+  double rate; /* contraction of the sliding limit, -; 0: no Coulomb friction */
+  const char *why; /* NULL, or why there is no bound                          */
+} solver_error;
+
+/* A rate that has been measured, and for which states of the unknowns: it is
+ * not measured again while they stay. All zero: none. */
+typedef struct known_rate {
+  int m;
+  signed char *state; /* [m] owned                                            */
+  double rate;
+} known_rate;
+/* A or B have changed: forget it. Accepts NULL. */
+void known_rate_forget(known_rate *k);
+
+/*
+ * Bound of the distance of (u, r) from the solution (u*, r*) in the energy
+ * norm (algebra.c). Given limit: guaranteed. Coulomb friction: by the
+ * contraction rate measured at (u, r); none where the rate is 1 or more, or
+ * where only the compliance is known. Errors: ERR_MEMORY, those of inverse.
+ * "known" (or NULL) is read and kept up to date.
+ */
+status solver_error_bound(const contact_problem *cp,
+                          const inverse_energy *inverse, const double *u,
+                          const double *r, known_rate *known,
+                          solver_error *error);
+
+/*
+ * Contraction of the fixed point on the sliding limit (CPR98, 2.3) linearised
+ * at (u, r), measured in the energy norm; 0 where nothing slides, HUGE_VAL if
+ * the sliding body is held by nothing. Stiffness form; known or NULL as above.
+ * Errors: ERR_MEMORY.
+ */
+status contraction_rate(const contact_problem *cp, const double *u,
+                        const double *r, known_rate *known, double *rate);
+
+/* inverse_energy of a dense matrix M[m*m] by its Cholesky factor, for problems
+ * of which nothing else is known. *out is new (dense_inverse_free), NULL if M
+ * is not symmetric and positive semidefinite. */
+typedef struct dense_inverse dense_inverse;
+status dense_inverse_new(int m, const double *M, dense_inverse **out);
+void dense_inverse_free(dense_inverse *d); /* accepts NULL                    */
+inverse_energy dense_inverse_energy(dense_inverse *d);
+
+/* ---- for the files of this folder --------------------------------------- */
+
+/* Displacement v and force q of the contact that are partners by its laws. */
+typedef struct pair {
+  double *v, *q; /* [m] m, N                                                  */
+  double *d, *t; /* [m] what misses in the equation; room                     */
+  unsigned char *slides; /* [n] |q_t| = g                                     */
+} pair;
+
+/*
+ * Where the stiffness is singular: change q, on the nodes that are closed or
+ * stick and with the limit that follows on those that slide, until d is
+ * balanced against the motions without energy. *done = 0: not possible with
+ * admissible forces. Errors: ERR_MEMORY.
+ */
+status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
+                    pair *p, int *done);
+
+/* Stiffness of node i along its normal and in
+ * its tangent plane, N/m. */
+typedef struct node_stiffness {
+  double n, t;
+} node_stiffness;
+node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id);
+/* 1: friction can act on the unknown: tangential, not held, no side bound. */
+int accuracy_rubs(const contact_problem *cp, int dof);
+/* Bound of a unilateral unknown (normal, or at a second obstacle), m; HUGE_VAL:
+ * not one. */
+double accuracy_bound(const contact_problem *cp, int dof);
+
+#endif

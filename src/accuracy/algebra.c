@@ -1,0 +1,232 @@
+/*
+ * Error of the solver in the energy norm, from the duality gap.
+ *
+ * For a given limit g the solution minimises J over the displacements without
+ * penetration, and for every admissible pair, v_n <= gap, q_n <= 0,
+ * |q_t| <= g, with d = A v - f - q and D the dual functional,
+ *
+ *   J(v) - D(q) = C(v, q) + 1/2 d' inv(A) d,
+ *   C = sum q_n (v_n - gap) + g |v_t - ut0| + q_t (v_t - ut0) >= 0.
+ *
+ * The pair is made from the answer (u, r) by one step of the natural map,
+ *   q = P(r - c (u - reference)),   v = u + (q - r)/c,
+ * whose parts are exact partners: C = 0, nothing cancels, and
+ *
+ *   |v - u*|_A <= |d|_inv(A),   |q - r*|_inv(A) <= |d|_inv(A)
+ *
+ * as q - r* and v - u* have a product that is not positive. So
+ *   |u - u*|_A <= |u - v|_A + |d|_inv(A) + rounding:
+ * two products with A and one solve. For Coulomb friction g is frozen at q.
+ * The limit then is off by at most |B (q - r*)|, and a contraction with rate k
+ * makes of it |v - u*|_A <= |d|_inv(A)/(1 - k).
+ *
+ * Where contact alone holds a body, A is singular: the forces q are first
+ * brought into balance with the load (balance.c), so that d has an energy; the
+ * bound is that of the deformation, without the rigid motion.
+ *
+ * Compliance form: W, r in the place of A, u; d = v - W q - load.
+ */
+#include "accuracy/accuracy.h"
+
+#include "base/memory.h"
+
+#include <cblas.h>
+#include <float.h>
+#include <math.h>
+
+static const double *matrix_of(const contact_problem *cp) {
+  return cp->A != NULL ? cp->A : cp->W;
+}
+
+static double diagonal(const contact_problem *cp, int dof) {
+  return matrix_of(cp)[(size_t)dof * (size_t)(cp->m + 1)];
+}
+
+static int held(const contact_problem *cp, int dof) {
+  return cp->held != NULL && cp->held[dof];
+}
+
+double accuracy_bound(const contact_problem *cp, int dof) {
+  int node_id = dof / cp->dim, k = dof % cp->dim - 1;
+  if (k < 0) return cp->gap[node_id];
+  if (cp->side_gap == NULL || held(cp, dof)) return HUGE_VAL;
+  return cp->side_gap[node_id * (cp->dim - 1) + k];
+}
+
+int accuracy_rubs(const contact_problem *cp, int dof) {
+  int node_id = dof / cp->dim;
+  if (cp->g0 == NULL || dof % cp->dim == 0 || held(cp, dof)) return 0;
+  for (int k = 1; k < cp->dim; ++k)
+    if (accuracy_bound(cp, node_id * cp->dim + k) < HUGE_VAL) return 0;
+  return 1;
+}
+
+node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id) {
+  int first = node_id * cp->dim, counted = 0;
+  double n = diagonal(cp, first), t = 0.0;
+  for (int k = 1; k < cp->dim; ++k)
+    if (!held(cp, first + k)) {
+      t += diagonal(cp, first + k);
+      ++counted;
+    }
+  t = counted > 0 ? t / counted : n;
+  if (cp->A != NULL) return (node_stiffness){n, t};
+  return (node_stiffness){1.0 / n, 1.0 / t};
+}
+
+/* ---- the admissible pair ------------------------------------------------ */
+
+static status pair_new(int n, int m, pair *p) {
+  status st = OK;
+  NEW(p->v, m);
+  NEW(p->q, m);
+  NEW(p->d, m);
+  NEW(p->t, m);
+  NEW(p->slides, n);
+done:
+  return st;
+}
+
+static void pair_free(pair *p) {
+  memory_free(p->v);
+  memory_free(p->q);
+  memory_free(p->d);
+  memory_free(p->t);
+  memory_free(p->slides);
+}
+
+/* Unilateral unknowns, and those without any force. */
+static void pair_normal(const contact_problem *cp, const double *u,
+                        const double *r, pair *p) {
+  for (int dof = 0; dof < cp->m; ++dof) {
+    double bound = accuracy_bound(cp, dof);
+    node_stiffness c = accuracy_stiffness(cp, dof / cp->dim);
+    double step = dof % cp->dim == 0 ? c.n : c.t, z = 0.0;
+    if (bound < HUGE_VAL) z = r[dof] - step * (u[dof] - bound);
+    p->q[dof] = fmin(z, 0.0);
+    p->v[dof] = z < 0.0 ? bound : fmin(u[dof] - r[dof] / step, bound);
+  }
+}
+
+/* Friction: disc of the limit that q_n brings. */
+static void pair_friction(const contact_problem *cp, const double *u,
+                          const double *r, pair *p) {
+  for (int i = 0; i < cp->n; ++i) {
+    double z[3] = {0.0}, size = 0.0, g = contact_node_limit(cp, p->q, i);
+    double c = accuracy_stiffness(cp, i).t;
+    for (int k = 1; k < cp->dim; ++k) {
+      int dof = i * cp->dim + k;
+      if (!accuracy_rubs(cp, dof)) continue;
+      z[k] = r[dof] - c * (u[dof] - cp->ut0[i * (cp->dim - 1) + k - 1]);
+      size = hypot(size, z[k]);
+    }
+    p->slides[i] = size > g;
+    for (int k = 1; k < cp->dim; ++k) {
+      int dof = i * cp->dim + k;
+      if (!accuracy_rubs(cp, dof)) continue;
+      p->q[dof] = size <= g ? z[k] : z[k] * (g / size);
+      p->v[dof] = size <= g ? cp->ut0[i * (cp->dim - 1) + k - 1]
+                            : u[dof] + (p->q[dof] - r[dof]) / c;
+    }
+  }
+}
+
+/* d = M x - load - y, x the unknown that M is multiplied with. */
+static void pair_defect(const contact_problem *cp, pair *p) {
+  const double *x = cp->A != NULL ? p->v : p->q;
+  contact_product(cp->m, matrix_of(cp), x, p->d);
+  for (int i = 0; i < cp->m; ++i)
+    p->d[i] = cp->A != NULL ? p->d[i] - cp->f[i] - p->q[i]
+                            : p->v[i] - p->d[i] - cp->f[i];
+}
+
+/* |u - v|_A or |r - q|_W. */
+static double pair_distance(const contact_problem *cp, const double *u,
+                            const double *r, pair *p, double *move) {
+  const double *from = cp->A != NULL ? u : r;
+  const double *to = cp->A != NULL ? p->v : p->q;
+  int moved = 0;
+  for (int i = 0; i < cp->m; ++i) {
+    move[i] = from[i] - to[i];
+    moved = moved || move[i] != 0.0;
+  }
+  if (!moved) return 0.0;
+  contact_product(cp->m, matrix_of(cp), move, p->t);
+  return sqrt(fmax(0.0, cblas_ddot(cp->m, move, 1, p->t, 1)));
+}
+
+/*
+ * Largest |e|_inv(M) of what rounding can have put into d: its rows are sums
+ * of m products. x' inv(M) x <= condition * sum x_i^2/M_ii.
+ */
+static double pair_rounding(const contact_problem *cp, double condition,
+                            pair *p) {
+  const double *M = matrix_of(cp), *x = cp->A != NULL ? p->v : p->q;
+  double sum = 0.0, unit = 0.5 * DBL_EPSILON * (2.0 + sqrt(cp->m));
+  for (int i = 0; i < cp->m; ++i)
+    p->t[i] = fabs(cp->f[i]) + fabs(cp->A != NULL ? p->q[i] : p->v[i]);
+  for (int j = 0; j < cp->m; ++j) {
+    const double *column = M + (size_t)j * (size_t)cp->m;
+    double size = fabs(x[j]);
+    for (int i = 0; size > 0.0 && i < cp->m; ++i)
+      p->t[i] += size * fabs(column[i]);
+  }
+  for (int i = 0; i < cp->m; ++i)
+    sum += unit * p->t[i] * (unit * p->t[i] / diagonal(cp, i));
+  return sqrt(condition * sum);
+}
+
+/* ---- the bound ---------------------------------------------------------- */
+
+static void no_bound(solver_error *e, const char *why) {
+  e->norm = NAN;
+  e->why = why;
+}
+
+/* Rate of the sliding limit; 0: there is no bound. */
+static status find_rate(const contact_problem *cp, const double *u,
+                        const double *r, known_rate *known, solver_error *e) {
+  status st = OK;
+  if (cp->B == NULL) goto done;
+  if (cp->A == NULL) {
+    no_bound(e, "Coulomb friction, and only the compliance is known");
+    goto done;
+  }
+  TRY(contraction_rate(cp, u, r, known, &e->rate));
+  if (!(e->rate < 1.0)) no_bound(e, "the sliding limit does not contract here");
+done:
+  return st;
+}
+
+status solver_error_bound(const contact_problem *cp,
+                          const inverse_energy *inverse, const double *u,
+                          const double *r, known_rate *known,
+                          solver_error *error) {
+  status st = OK;
+  pair p = {0};
+  double square = 0.0;
+  int balanced = 1;
+  *error = (solver_error){0};
+  if (cp->m == 0) goto done;
+  TRY(find_rate(cp, u, r, known, error));
+  if (error->why != NULL) goto done;
+  TRY(pair_new(cp->n, cp->m, &p));
+  pair_normal(cp, u, r, &p);
+  pair_friction(cp, u, r, &p);
+  pair_defect(cp, &p);
+  if (inverse->n_kernel > 0) {
+    TRY(pair_balance(cp, inverse, &p, &balanced));
+    if (!balanced) {
+      no_bound(error, "the contact forces do not balance the load");
+      goto done;
+    }
+  }
+  TRY(inverse->square(inverse->ctx, p.d, &square));
+  error->norm = sqrt(square) + pair_rounding(cp, inverse->condition, &p);
+  error->norm /= 1.0 - error->rate;
+  error->norm += pair_distance(cp, u, r, &p, p.d);
+  if (!(error->norm < HUGE_VAL)) no_bound(error, "the answer is not a number");
+done:
+  pair_free(&p);
+  return st;
+}

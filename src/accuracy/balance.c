@@ -1,0 +1,91 @@
+/*
+ * Balance of a body that contact alone holds: its stiffness has motions R
+ * without energy, and the energy of d is finite only if R' d = 0. The forces
+ * change by dq = Z y, Z = W R with the forces themselves as weights (so that
+ * they keep their sign), on sliding nodes by the limit of the new pressure;
+ * R' Z y = R' d.
+ */
+#include "accuracy/accuracy.h"
+
+#include "base/memory.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+/* How far the force of an unknown can change, N; 0: it is given. */
+static double slack(const contact_problem *cp, const pair *p, int dof) {
+  int i = dof / cp->dim;
+  if (accuracy_bound(cp, dof) < HUGE_VAL) return -p->q[dof];
+  if (!accuracy_rubs(cp, dof) || p->slides[i]) return 0.0;
+  double g = contact_node_limit(cp, p->q, i), size = 0.0;
+  for (int k = 1; k < cp->dim; ++k) size = hypot(size, p->q[i * cp->dim + k]);
+  return fmax(g - size, 0.0);
+}
+
+/* Change of q_t on sliding nodes with the limit, in one column z[m]. */
+static void follow_limit(const contact_problem *cp, const pair *p, double *z) {
+  for (int i = 0; i < cp->n && cp->B != NULL; ++i) {
+    double change = 0.0, g = contact_node_limit(cp, p->q, i);
+    if (!p->slides[i] || !(g > 0.0)) continue;
+    for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
+      change -= cp->B->val[k] * z[cp->B->col[k] * cp->dim];
+    for (int k = 1; k < cp->dim; ++k) {
+      int dof = i * cp->dim + k;
+      if (accuracy_rubs(cp, dof)) z[dof] = change * (p->q[dof] / g);
+    }
+  }
+}
+
+/* 1: the changed forces are admissible. */
+static int admissible(const contact_problem *cp, const pair *p) {
+  for (int i = 0; i < cp->n; ++i) {
+    double size = 0.0, g = contact_node_limit(cp, p->q, i);
+    for (int k = 0; k < cp->dim; ++k) {
+      int dof = i * cp->dim + k;
+      if (accuracy_bound(cp, dof) < HUGE_VAL && !(p->q[dof] <= 0.0)) return 0;
+      if (accuracy_rubs(cp, dof)) size = hypot(size, p->q[dof]);
+    }
+    if (!p->slides[i] && size > g) return 0;
+  }
+  return 1;
+}
+
+status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
+                    pair *p, int *done) {
+  status st = OK;
+  int m = cp->m, k = inverse->n_kernel;
+  double *Z = NULL, *G = NULL, *y = NULL;
+  int *pivot = NULL;
+  *done = 0;
+  NEW(Z, (size_t)m * (size_t)k);
+  NEW(G, (size_t)k * (size_t)k);
+  NEW(y, k);
+  NEW(pivot, k);
+  for (int c = 0; c < k; ++c) {
+    double *z = Z + (size_t)m * (size_t)c;
+    for (int dof = 0; dof < m; ++dof)
+      z[dof] = slack(cp, p, dof) *
+               inverse->kernel[(size_t)m * (size_t)c + (size_t)dof];
+    follow_limit(cp, p, z);
+  }
+  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, k, k, m, 1.0,
+              inverse->kernel, m, Z, m, 0.0, G, k);
+  cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, inverse->kernel, m, p->d, 1,
+              0.0, y, 1);
+  if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, k, 1, G, k, pivot, y, k) != 0)
+    goto done;
+  cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, Z, m, y, 1, 0.0, p->t, 1);
+  for (int dof = 0; dof < m; ++dof) {
+    p->q[dof] += p->t[dof];
+    p->d[dof] -= p->t[dof];
+  }
+  *done = admissible(cp, p);
+done:
+  memory_free(Z);
+  memory_free(G);
+  memory_free(y);
+  memory_free(pivot);
+  return st;
+}

@@ -1,0 +1,248 @@
+/*
+ * Rate of the fixed point g -> g0 + B p(g) on the sliding limit, linearised at
+ * a state: the limit of the sliding nodes changes by dg, the free unknowns by
+ *   K du = e dg,   K = A_FF + kappa (I - e e') on slip (3-D),
+ * the forces of the closed nodes by A du, and the limit by -B (A du)_n. The
+ * map is applied a few times; the rate is the largest ratio of two energy
+ * norms du' K du that follow each other.
+ */
+#include "accuracy/accuracy.h"
+
+#include "base/memory.h"
+
+#include <lapacke.h>
+#include <math.h>
+
+enum { PASSES = 12 };
+
+typedef struct linear_map {
+  const contact_problem *cp;
+  int n_free, n_slip;
+  int *free_id, *place; /* [m] free unknowns; their place or -1               */
+  unsigned char *closed, *slip; /* [n]                                        */
+  double *e;     /* [m] direction of the friction force on slip               */
+  double *kappa; /* [n] N/m                                                   */
+  double *K;     /* [n_free^2] factor                                         */
+  double *x;     /* [m] change of the free unknowns                           */
+  double *dg;    /* [n] N                                                     */
+} linear_map;
+
+static status map_new(const contact_problem *cp, linear_map *s) {
+  status st = OK;
+  s->cp = cp;
+  NEW(s->free_id, cp->m);
+  NEW(s->place, cp->m);
+  NEW(s->closed, cp->n);
+  NEW(s->slip, cp->n);
+  NEW(s->e, cp->m);
+  NEW(s->kappa, cp->n);
+  NEW(s->x, cp->m);
+  NEW(s->dg, cp->n);
+done:
+  return st;
+}
+
+static void map_free(linear_map *s) {
+  memory_free(s->free_id);
+  memory_free(s->place);
+  memory_free(s->closed);
+  memory_free(s->slip);
+  memory_free(s->e);
+  memory_free(s->kappa);
+  memory_free(s->K);
+  memory_free(s->x);
+  memory_free(s->dg);
+}
+
+/* Direction and turning stiffness of a node that friction acts on. */
+static void set_friction(linear_map *s, const double *u, const double *r,
+                         int i) {
+  const contact_problem *cp = s->cp;
+  double size = 0.0, g = contact_node_limit(cp, r, i);
+  double c = accuracy_stiffness(cp, i).t;
+  int first = i * cp->dim;
+  for (int k = 1; k < cp->dim; ++k) {
+    int dof = first + k;
+    if (!accuracy_rubs(cp, dof)) continue;
+    double stick = cp->ut0[i * (cp->dim - 1) + k - 1];
+    s->e[dof] = r[dof] - c * (u[dof] - stick);
+    size = hypot(size, s->e[dof]);
+  }
+  s->slip[i] = size > g && g > 0.0;
+  for (int k = 1; k < cp->dim && size > 0.0; ++k) s->e[first + k] /= size;
+  if (s->slip[i]) s->kappa[i] = c * g / (size - g);
+  s->n_slip += s->slip[i];
+}
+
+/* 1: the unknown can move. */
+static int is_free(const linear_map *s, const double *u, const double *r,
+                   int dof) {
+  const contact_problem *cp = s->cp;
+  int i = dof / cp->dim;
+  node_stiffness c = accuracy_stiffness(cp, i);
+  double bound = accuracy_bound(cp, dof);
+  if (bound < HUGE_VAL) {
+    double step = dof % cp->dim == 0 ? c.n : c.t;
+    return !(r[dof] - step * (u[dof] - bound) < 0.0);
+  }
+  if (!accuracy_rubs(cp, dof)) return cp->held == NULL || !cp->held[dof];
+  return s->slip[i] || contact_node_limit(cp, r, i) == 0.0;
+}
+
+static void set_state(linear_map *s, const double *u, const double *r) {
+  const contact_problem *cp = s->cp;
+  for (int i = 0; i < cp->n; ++i) set_friction(s, u, r, i);
+  for (int dof = 0; dof < cp->m; ++dof) {
+    int moves = is_free(s, u, r, dof);
+    s->place[dof] = moves ? s->n_free : -1;
+    if (moves) s->free_id[s->n_free++] = dof;
+    if (dof % cp->dim == 0) s->closed[dof / cp->dim] = !moves;
+  }
+}
+
+/* kappa (I - e e') of the sliding nodes. */
+static void add_turning(linear_map *s) {
+  const contact_problem *cp = s->cp;
+  size_t ld = (size_t)s->n_free;
+  for (int i = 0; i < cp->n; ++i)
+    for (int a = 1; s->slip[i] && a < cp->dim; ++a)
+      for (int b = 1; b < cp->dim; ++b) {
+        int ia = i * cp->dim + a, ib = i * cp->dim + b;
+        if (s->place[ia] < 0 || s->place[ib] < 0) continue;
+        s->K[(size_t)s->place[ia] + ld * (size_t)s->place[ib]] +=
+            s->kappa[i] * ((a == b ? 1.0 : 0.0) - s->e[ia] * s->e[ib]);
+      }
+}
+
+/* 0: not positive definite. */
+static int factor(linear_map *s) {
+  size_t ld = (size_t)s->n_free, m = (size_t)s->cp->m;
+  for (size_t j = 0; j < ld; ++j) {
+    const double *column = s->cp->A + m * (size_t)s->free_id[j];
+    for (size_t i = j; i < ld; ++i) s->K[i + ld * j] = column[s->free_id[i]];
+  }
+  if (s->cp->dim == 3) add_turning(s);
+  return LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', s->n_free, s->K,
+                             s->n_free) == 0;
+}
+
+/* x = inv(K) e dg; the energy x' K x. */
+static double move(linear_map *s) {
+  const contact_problem *cp = s->cp;
+  double energy = 0.0;
+  for (int a = 0; a < s->n_free; ++a) {
+    int dof = s->free_id[a], i = dof / cp->dim;
+    int rubs = dof % cp->dim > 0 && s->slip[i];
+    s->x[a] = rubs ? s->e[dof] * s->dg[i] : 0.0;
+  }
+  LAPACKE_dtrtrs_work(LAPACK_COL_MAJOR, 'L', 'N', 'N', s->n_free, 1, s->K,
+                      s->n_free, s->x, s->n_free);
+  for (int a = 0; a < s->n_free; ++a) energy += s->x[a] * s->x[a];
+  LAPACKE_dtrtrs_work(LAPACK_COL_MAJOR, 'L', 'T', 'N', s->n_free, 1, s->K,
+                      s->n_free, s->x, s->n_free);
+  return energy;
+}
+
+/* Change of the normal force of a closed node, N. */
+static double push(const linear_map *s, int i) {
+  const double *column = s->cp->A + (size_t)(i * s->cp->dim) * (size_t)s->cp->m;
+  double sum = 0.0;
+  for (int a = 0; a < s->n_free; ++a) sum += column[s->free_id[a]] * s->x[a];
+  return sum;
+}
+
+/* dg = -B (A x)_n on the sliding nodes; dn[n] room. */
+static void change_limit(linear_map *s, double *dn) {
+  const contact_problem *cp = s->cp;
+  const sparse_rows *B = cp->B;
+  for (int i = 0; i < cp->n; ++i) dn[i] = s->closed[i] ? push(s, i) : 0.0;
+  for (int i = 0; i < cp->n; ++i) {
+    s->dg[i] = 0.0;
+    for (int k = B->start[i]; s->slip[i] && k < B->start[i + 1]; ++k)
+      s->dg[i] -= B->val[k] * dn[B->col[k]];
+  }
+}
+
+/* The first change: the limit itself, neighbours not alike. */
+static void first_change(linear_map *s, const double *r) {
+  for (int i = 0; i < s->cp->n; ++i)
+    s->dg[i] = s->slip[i] ? contact_node_limit(s->cp, r, i) *
+                                (1.0 + 0.5 * sin(1.0 + 2.0 * i))
+                          : 0.0;
+}
+
+static status measure(linear_map *s, const double *r, double *rate) {
+  status st = OK;
+  double *dn = NULL, last;
+  *rate = 0.0;
+  if (s->n_slip == 0) goto done;
+  NEW(dn, s->cp->n);
+  NEW(s->K, (size_t)s->n_free * (size_t)s->n_free);
+  *rate = HUGE_VAL;
+  if (!factor(s)) goto done;
+  *rate = 0.0;
+  first_change(s, r);
+  last = move(s);
+  for (int k = 1; k <= PASSES && last > 0.0; ++k) {
+    change_limit(s, dn);
+    double energy = move(s);
+    if (k > 1 || s->cp->n == 1) *rate = fmax(*rate, sqrt(energy / last));
+    last = energy;
+  }
+done:
+  memory_free(dn);
+  return st;
+}
+
+/* ---- a rate that is known ----------------------------------------------- */
+
+void known_rate_forget(known_rate *k) {
+  if (k == NULL) return;
+  memory_free(k->state);
+  *k = (known_rate){0};
+}
+
+/* 0 known, 1 free, 2 and 3 sliding one way and the other. */
+static signed char state_of(const linear_map *s, int dof) {
+  int moves = s->place[dof] >= 0, i = dof / s->cp->dim;
+  if (!moves || dof % s->cp->dim == 0 || !s->slip[i]) return (signed char)moves;
+  return s->e[dof] > 0.0 ? 3 : 2;
+}
+
+/* 1: the states are those of the known rate; else it now has them. */
+static status compare(const linear_map *s, known_rate *k, int *same) {
+  status st = OK;
+  int m = s->cp->m;
+  *same = k->state != NULL && k->m == m;
+  if (!*same) {
+    known_rate_forget(k);
+    NEW(k->state, m);
+    k->m = m;
+  }
+  for (int dof = 0; dof < m; ++dof) {
+    signed char now = state_of(s, dof);
+    *same = *same && k->state[dof] == now;
+    k->state[dof] = now;
+  }
+done:
+  return st;
+}
+
+status contraction_rate(const contact_problem *cp, const double *u,
+                        const double *r, known_rate *known, double *rate) {
+  status st = OK;
+  linear_map s = {0};
+  int same = 0;
+  TRY(map_new(cp, &s));
+  set_state(&s, u, r);
+  if (known != NULL) TRY(compare(&s, known, &same));
+  if (same)
+    *rate = known->rate;
+  else
+    TRY(measure(&s, r, rate));
+  if (known != NULL) known->rate = *rate;
+done:
+  if (st != OK) known_rate_forget(known);
+  map_free(&s);
+  return st;
+}

@@ -1,0 +1,130 @@
+/*
+ * Inverse of a dense symmetric matrix by Cholesky with pivoting: the matrix is
+ * scaled to a unit diagonal; of a semidefinite one the pivots left at the end
+ * are the unknowns that, held, take the motions without energy away.
+ */
+#include "accuracy/accuracy.h"
+
+#include "base/memory.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+static const double SYMMETRY = 0x1p-40; /* -, of the diagonal                 */
+static const double RANK = 0x1p-38;     /* -, smaller pivots are zero         */
+
+struct dense_inverse {
+  int m, rank;
+  double condition;
+  double *L, *unit; /* [m*m] factor of the scaled matrix; [m] its scale       */
+  int *pivot;       /* [m] unknown of each place, from 1                      */
+  double *y;        /* [m]                                                    */
+  double *kernel;   /* [m*(m-rank)] motions without energy                    */
+};
+
+/* L = D M D with a unit diagonal; 0: not symmetric or no positive diagonal. */
+static int scale(const double *M, dense_inverse *d) {
+  size_t m = (size_t)d->m;
+  for (size_t i = 0; i < m; ++i) {
+    if (!(M[i * (m + 1)] > 0.0)) return 0;
+    d->unit[i] = 1.0 / sqrt(M[i * (m + 1)]);
+  }
+  for (size_t j = 0; j < m; ++j)
+    for (size_t i = 0; i < m; ++i) {
+      double both = d->unit[i] * d->unit[j];
+      d->L[i + m * j] = both * M[i + m * j];
+      if (fabs(both * (M[i + m * j] - M[j + m * i])) > SYMMETRY) return 0;
+    }
+  return 1;
+}
+
+/* 1-norm of |inv(L')| |inv(L)| estimated: condition of the regular part. */
+static int factor(dense_inverse *d, double *work, int *iwork) {
+  int m = d->m;
+  double rcond = 0.0;
+  double norm =
+      LAPACKE_dlansy_work(LAPACK_COL_MAJOR, '1', 'L', m, d->L, m, work);
+  int info = LAPACKE_dpstrf_work(LAPACK_COL_MAJOR, 'L', m, d->L, m, d->pivot,
+                                 &d->rank, RANK, work);
+  if (info < 0 || d->rank == 0) return 0;
+  LAPACKE_dpocon_work(LAPACK_COL_MAJOR, 'L', d->rank, d->L, m, norm, &rcond,
+                      work, iwork);
+  d->condition = 1.0 / rcond;
+  return d->condition < 1.0 / 0x1p-50;
+}
+
+/* Column k: unknown of place rank + k moves by one, the others follow without
+ * force: y = -inv(L') l, l its row of the factor. */
+static status find_kernel(dense_inverse *d) {
+  status st = OK;
+  size_t m = (size_t)d->m, rank = (size_t)d->rank;
+  NEW(d->kernel, m * (m - rank));
+  for (size_t k = 0; k < m - rank; ++k) {
+    double *to = d->kernel + m * k;
+    for (size_t j = 0; j < rank; ++j) d->y[j] = -d->L[rank + k + m * j];
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, d->rank,
+                d->L, d->m, d->y, 1);
+    for (size_t j = 0; j < rank; ++j) {
+      int dof = d->pivot[j] - 1;
+      to[dof] = d->unit[dof] * d->y[j];
+    }
+    int dof = d->pivot[rank + k] - 1;
+    to[dof] = d->unit[dof];
+  }
+done:
+  return st;
+}
+
+status dense_inverse_new(int m, const double *M, dense_inverse **out) {
+  status st = OK;
+  dense_inverse *d = NULL;
+  double *work = NULL;
+  int *iwork = NULL;
+  *out = NULL;
+  NEW(d, 1);
+  d->m = m;
+  NEW(d->L, (size_t)m * (size_t)m);
+  NEW(d->unit, m);
+  NEW(d->pivot, m);
+  NEW(d->y, m);
+  NEW(work, 3 * m);
+  NEW(iwork, m);
+  if (!scale(M, d) || !factor(d, work, iwork)) goto done;
+  TRY(find_kernel(d));
+  *out = d;
+  d = NULL;
+done:
+  memory_free(work);
+  memory_free(iwork);
+  dense_inverse_free(d);
+  return st;
+}
+
+void dense_inverse_free(dense_inverse *d) {
+  if (d == NULL) return;
+  memory_free(d->L);
+  memory_free(d->unit);
+  memory_free(d->pivot);
+  memory_free(d->y);
+  memory_free(d->kernel);
+  memory_free(d);
+}
+
+static status dense_square(void *ctx, const double *x, double *square) {
+  dense_inverse *d = ctx;
+  for (int j = 0; j < d->rank; ++j) {
+    int dof = d->pivot[j] - 1;
+    d->y[j] = d->unit[dof] * x[dof];
+  }
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, d->rank,
+              d->L, d->m, d->y, 1);
+  *square = cblas_ddot(d->rank, d->y, 1, d->y, 1);
+  return OK;
+}
+
+inverse_energy dense_inverse_energy(dense_inverse *d) {
+  return (inverse_energy){d, dense_square, d->condition, d->m - d->rank,
+                          d->kernel};
+}

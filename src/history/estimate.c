@@ -1,0 +1,104 @@
+/*
+ * Error of the contact solver at an accepted increment: bound of accuracy.h,
+ * in energy units and relative to the energy norm of the body. The interior
+ * follows the contact nodes exactly, so that the error of the whole body has
+ * the energy of that of the condensed problem.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "history/run.h"
+
+#include <math.h>
+
+static const char *const indefinite =
+    "the matrix is not symmetric and positive semidefinite";
+
+/* "energy" of the solution, J. */
+static void set_bound(const solver_error *found, double energy,
+                      error_bound *e) {
+  *e = (error_bound){.asked = 1,
+                     .energy = 0.5 * found->norm * found->norm,
+                     .relative = 0.0,
+                     .rate = found->rate,
+                     .why = found->why};
+  if (found->why != NULL || found->norm > 0.0)
+    e->relative = found->norm / sqrt(2.0 * energy);
+}
+
+static status force_energy(void *ctx, const double *d, double *square) {
+  return condensed_force_energy(ctx, d, square);
+}
+
+/* The factor of the body, or of A where contact alone holds a body. *out->ctx
+ * NULL: A has none. */
+static status choose_inverse(run *r, inverse_energy *out) {
+  status st = OK;
+  *out =
+      (inverse_energy){r->c, force_energy, condensed_condition(r->c), 0, NULL};
+  if (!r->cp.floating) goto done;
+  out->ctx = NULL;
+  if (!r->dense_known) TRY(dense_inverse_new(r->cp.m, r->cp.A, &r->dense));
+  r->dense_known = 1;
+  if (r->dense != NULL) *out = dense_inverse_energy(r->dense);
+done:
+  return st;
+}
+
+status estimate_increment(run *r) {
+  status st = OK;
+  solver_error found = {.norm = NAN, .why = indefinite};
+  inverse_energy inverse;
+  r->error = (error_bound){0};
+  if (r->n == 0 || r->step->no_solver_error) return OK;
+  timer_enter(STAGE_ESTIMATE);
+  TRY(choose_inverse(r, &inverse));
+  if (!r->limit_known) known_rate_forget(&r->rate);
+  if (inverse.ctx != NULL)
+    TRY(solver_error_bound(&r->cp, &inverse, r->now.uc, r->now.rc, &r->rate,
+                           &found));
+  set_bound(&found, r->now.energy.strain, &r->error);
+done:
+  timer_leave(STAGE_ESTIMATE);
+  return st;
+}
+
+/* Energy x' M x/2 of the condensed solution. */
+static status condensed_energy(const contact_problem *cp, const double *u,
+                               const double *r, double *energy) {
+  status st = OK;
+  double *y = NULL;
+  const double *x = cp->A != NULL ? u : r;
+  NEW(y, cp->m);
+  contact_product(cp->m, cp->A != NULL ? cp->A : cp->W, x, y);
+  *energy = 0.0;
+  for (int i = 0; i < cp->m; ++i) *energy += 0.5 * x[i] * y[i];
+done:
+  memory_free(y);
+  return st;
+}
+
+status estimate_problem(const step *s, const contact_problem *cp,
+                        const double *u, const double *r, error_bound *e) {
+  status st = OK;
+  solver_error found = {.norm = NAN, .why = indefinite};
+  dense_inverse *dense = NULL;
+  double energy = 0.0;
+  *e = (error_bound){0};
+  if (cp->m == 0 || s->no_solver_error) return OK;
+  timer_enter(STAGE_ESTIMATE);
+  TRY(condensed_energy(cp, u, r, &energy));
+  if (cp->A == NULL && cp->B != NULL) {
+    found.why = "Coulomb friction, and only the compliance is known";
+  } else {
+    TRY(dense_inverse_new(cp->m, cp->A != NULL ? cp->A : cp->W, &dense));
+    if (dense != NULL) {
+      inverse_energy inverse = dense_inverse_energy(dense);
+      TRY(solver_error_bound(cp, &inverse, u, r, NULL, &found));
+    }
+  }
+  set_bound(&found, energy, e);
+done:
+  dense_inverse_free(dense);
+  timer_leave(STAGE_ESTIMATE);
+  return st;
+}

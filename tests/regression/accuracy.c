@@ -1,0 +1,116 @@
+/*
+ * The error of the solver in the results of a run. A state (u, r) that a coarse
+ * tolerance leaves is compared with one solved to rounding: both satisfy
+ * A u = f + r, so that the energy of the error is (u - u*)'(r - r*)/2, from
+ * the tables.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static job run_block(const char *law, const char *cards, const char *solver) {
+  job j = job_begin("block");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "block.inp",
+            "*PARAMETER\nN = 12\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n%s"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=%s\n"
+            "*STEP\n*STATIC\n*DSLOAD\nTOP, P, 10.\nLEFT, P, \"4*y\"\n"
+            "*SOLVER, %s\n*PRINT, CONTACT, ENERGY\n*END STEP\n",
+            cards, law, solver);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Column "error[%]" of the only line, NAN for "-". */
+static double told_error(const job *j) {
+  char *sta = job_file(j, "sta"), word[32] = "";
+  ck_assert_ptr_nonnull(strstr(sta, " error[%] "));
+  int found = sscanf(strchr(sta, '\n') + 1,
+                     "%*d %*d %*d %*s %*s %*d %*d %*d %*s %*d %*s %31s", word);
+  ck_assert_int_eq(found, 1);
+  free(sta);
+  return strcmp(word, "-") == 0 ? NAN : atof(word);
+}
+
+/* sqrt((u - u*)'(r - r*)) over the energy norm of the body, in %. */
+static double true_error(const job *a, const job *b) {
+  dat x = job_table(a, "CONTACT", -1), y = job_table(b, "CONTACT", -1);
+  dat e = job_table(b, "ENERGY", -1);
+  double sum = 0.0;
+  ck_assert_int_eq(x.n_row, y.n_row);
+  for (int i = 0; i < x.n_row; ++i) {
+    sum -= (dat_at(&x, i, "u_n") - dat_at(&y, i, "u_n")) *
+           (dat_at(&x, i, "f_n") - dat_at(&y, i, "f_n"));
+    sum += (dat_at(&x, i, "u_t") - dat_at(&y, i, "u_t")) *
+           (dat_at(&x, i, "f_t") - dat_at(&y, i, "f_t"));
+  }
+  double size = 2.0 * dat_at(&e, 0, "strain_energy");
+  dat_free(&x);
+  dat_free(&y);
+  dat_free(&e);
+  return 100.0 * sqrt(fabs(sum) / size);
+}
+
+/* Held on the left, or by the contact alone. */
+static const char *const supports[] = {"*BOUNDARY\nRIGHT, 1, 2\n", ""};
+
+START_TEST(told_error_bounds_the_true_one) {
+  static const char *const law[] = {"TRESCA\n\"4-3.5*x\"", "COULOMB\n0.3"};
+  static const char *const coarse[] = {
+      "METHOD=SOR, TOL=1E-2", "METHOD=SOR, TOL=1E-4", "METHOD=SOR, TOL=1E-6"};
+  for (int k = 0; k < 12; ++k) {
+    int held = k % 2, level = k / 2 % 3;
+    job exact =
+        run_block(law[k / 6], supports[held], "METHOD=NEWTON, TOL=1E-12");
+    job j = run_block(law[k / 6], supports[held], coarse[level]);
+    double bound = told_error(&j), error = true_error(&j, &exact);
+    ck_assert_double_lt(told_error(&exact), 1e-8);
+    ck_assert_msg(error > 0.0 && bound >= error && bound <= 50 * error,
+                  "case %d: told %g %%, is %g %%", k, bound, error);
+    job_end(&j);
+    job_end(&exact);
+  }
+}
+END_TEST
+
+static void must_say(const job *j, const char *suffix, const char *text) {
+  char *all = job_file(j, suffix);
+  ck_assert_msg(strstr(all, text) != NULL, "no '%s' in .%s", text, suffix);
+  free(all);
+}
+
+START_TEST(error_stands_in_every_result) {
+  job j = run_block("COULOMB\n0.3", supports[0], "METHOD=NEWTON");
+  must_say(&j, "lst", "  error of the solver: at most ");
+  must_say(&j, "lst", "; contraction ");
+  must_say(&j, "lst", "largest solver error [%]");
+  must_say(&j, "json", "\"solver_error_percent\": ");
+  must_say(&j, "json", "\"solver_error_worst_percent\": ");
+  job_end(&j);
+}
+END_TEST
+
+/* Switched off, nothing of it is entered or shown. */
+START_TEST(not_asked_for_not_computed) {
+  job j = run_block("COULOMB\n0.3", supports[0],
+                    "METHOD=NEWTON\n*ACCURACY, SOLVER=NO");
+  char *lst = job_file(&j, "lst"), line[64];
+  ck_assert_ptr_null(strstr(lst, "error of the solver"));
+  snprintf(line, sizeof line, "  %-30s %8d", "error estimates", 0);
+  ck_assert_ptr_nonnull(strstr(lst, line));
+  ck_assert(isnan(told_error(&j)));
+  free(lst);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("accuracy", told_error_bounds_the_true_one,
+          error_stands_in_every_result, not_asked_for_not_computed)

@@ -1,0 +1,280 @@
+/*
+ * src/accuracy: bounds of the error of the solver against solutions that
+ * another method has brought to rounding, at every level of error.
+ */
+#include "accuracy/accuracy.h"
+#include "solver/solver.h"
+#include "support/contact_case.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PARAM_SIZE = 512 };
+
+static solver_report solve(contact_case *c, const char *name, double tol) {
+  double param[PARAM_SIZE / sizeof(double)] = {0.0};
+  const solver_ops *ops = solver_find(name);
+  contact_solver *s = NULL;
+  solver_report rep;
+  option_defaults(ops->options, param);
+  solver_choice choice = {.ops = ops, .param = param, .tol = tol};
+  ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+  ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
+  contact_solver_free(s);
+  return rep;
+}
+
+static double energy_norm(int m, const double *M, const double *a,
+                          const double *b) {
+  double sum = 0.0;
+  for (int j = 0; j < m; ++j)
+    for (int i = 0; i < m; ++i)
+      sum += (a[i] - b[i]) * M[i + m * j] * (a[j] - b[j]);
+  return sqrt(fmax(sum, 0.0));
+}
+
+static solver_error bound_of(const contact_problem *cp, const double *u,
+                             const double *r) {
+  dense_inverse *inverse = NULL;
+  solver_error e;
+  ck_assert_int_eq(
+      dense_inverse_new(cp->m, cp->A != NULL ? cp->A : cp->W, &inverse), OK);
+  ck_assert_ptr_nonnull(inverse);
+  inverse_energy energy = dense_inverse_energy(inverse);
+  ck_assert_int_eq(solver_error_bound(cp, &energy, u, r, NULL, &e), OK);
+  dense_inverse_free(inverse);
+  return e;
+}
+
+static void make_tresca(contact_case *c) {
+  for (int i = 0; i < c->cp.n; ++i) c->g0[i] = 0.15 * (i % 4);
+  c->cp.B = NULL;
+}
+
+/* How good the bounds were. */
+typedef struct quality {
+  int n, loose;
+} quality;
+
+/* Errors of all sizes: solved to 10^-level, or disturbed at random. */
+static void try_levels(contact_case *c, double *exact, quality *q, int k) {
+  int m = c->cp.m;
+  size_t bytes = (size_t)m * sizeof *exact;
+  double *zero = calloc((size_t)m, sizeof *zero);
+  unsigned long long seed = 77 + (unsigned long long)k;
+  double size = energy_norm(m, c->A, exact, zero);
+  for (int level = 1; level <= 11; ++level) {
+    double tol = pow(10, -level);
+    if (k % 3 < 2) {
+      memset(c->u, 0, bytes);
+      memset(c->r, 0, bytes);
+      solve(c, k % 3 == 0 ? "sor" : "pcg", tol);
+    } else {
+      for (int i = 0; i < m; ++i)
+        c->u[i] = exact[i] + tol * (case_random(&seed) - 0.5);
+      contact_reaction(&c->cp, c->u, c->r);
+    }
+    double error = energy_norm(m, c->A, c->u, exact);
+    solver_error e = bound_of(&c->cp, c->u, c->r);
+    if (e.why != NULL) continue;
+    ck_assert_msg(e.norm >= error * (1 - 1e-6) - 1e-14 * size,
+                  "problem %d, level %d: bound %g of the error %g", k, level,
+                  e.norm, error);
+    ++q->n;
+    q->loose += e.norm > 10 * error && e.norm > 1e-11 * size;
+  }
+  free(zero);
+}
+
+static quality try_problems(int count, double mu, int tresca) {
+  quality q = {0, 0};
+  for (int k = 0; k < count; ++k) {
+    contact_case c = case_any(2 + k % 2, 1 + k % 13, mu, k / 2 % 2,
+                              (unsigned long long)(4000 + k));
+    if (tresca) make_tresca(&c);
+    ck_assert_int_eq(solve(&c, "newton", 1e-14).outcome > 0 ||
+                         contact_residual(&c.cp, c.u, c.r) < 1e-12,
+                     1);
+    double *exact = malloc((size_t)c.cp.m * sizeof *exact);
+    memcpy(exact, c.u, (size_t)c.cp.m * sizeof *exact);
+    try_levels(&c, exact, &q, k);
+    free(exact);
+    case_free(&c);
+  }
+  return q;
+}
+
+START_TEST(bound_holds_for_a_given_limit_and_is_not_absurd) {
+  quality q = try_problems(200, 0.5, 1);
+  ck_assert_int_eq(q.n, 200 * 11);
+  ck_assert_msg(q.loose * 20 < q.n, "%d of %d beyond ten times the error",
+                q.loose, q.n);
+}
+END_TEST
+
+START_TEST(bound_holds_without_friction) {
+  quality q = try_problems(60, 0.0, 0);
+  ck_assert_int_eq(q.n, 60 * 11);
+  ck_assert_int_lt(q.loose * 20, q.n);
+}
+END_TEST
+
+/* Small friction: the fixed point contracts, the solution is unique. */
+START_TEST(bound_holds_with_coulomb_friction) {
+  quality q = try_problems(120, 0.15, 0);
+  ck_assert_int_gt(q.n, 1000);
+  ck_assert_int_lt(q.loose * 20, q.n);
+}
+END_TEST
+
+/* One triangle that slides: the contraction is mu/mu_crit, mu_crit = 1.8 for
+ * nu = 0.3. The force of an error grows with the slip, so an error of the
+ * limit is made larger by the whole 1/(1 - mu/mu_crit). */
+START_TEST(rate_of_the_triangle_is_known) {
+  static const double mu[] = {0.3, 0.9, 1.7, 1.75};
+  for (int k = 0; k < 4; ++k) {
+    contact_case c = case_triangle(0.3, mu[k], mu[k] + 0.02, -1.0);
+    ck_assert_int_eq(solve(&c, "lemke", 1e-12).outcome, CONVERGED);
+    double rate, exact[2] = {c.u[0], c.u[1]};
+    ck_assert_double_gt(exact[1], 0.01);
+    ck_assert_int_eq(contraction_rate(&c.cp, c.u, c.r, NULL, &rate), OK);
+    ck_assert_double_eq_tol(rate, mu[k] / 1.8, 1e-12);
+    for (int level = 3; level < 9; ++level) {
+      c.u[1] = exact[1] * (1.0 + pow(10, -level));
+      c.r[0] = c.A[2] * c.u[1] - c.f[0];
+      c.r[1] = mu[k] * c.r[0];
+      solver_error e = bound_of(&c.cp, c.u, c.r);
+      double error = energy_norm(2, c.A, c.u, exact);
+      ck_assert_double_ge(e.norm, error * (1.0 - 1e-6));
+      ck_assert_double_le(e.norm, 3.0 * error);
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Slip to the right by 1.04 at mu = 2 is beyond the critical friction. */
+START_TEST(no_bound_beyond_the_critical_friction) {
+  contact_case c = case_triangle(0.3, 2.0, 1.9, -1.0);
+  c.u[1] = 1.04;
+  contact_reaction(&c.cp, c.u, c.r);
+  ck_assert_double_lt(contact_residual(&c.cp, c.u, c.r), 1e-12);
+  solver_error e = bound_of(&c.cp, c.u, c.r);
+  ck_assert_double_eq_tol(e.rate, 2.0 / 1.8, 1e-12);
+  ck_assert(isnan(e.norm));
+  ck_assert_ptr_nonnull(e.why);
+  case_free(&c);
+}
+END_TEST
+
+/* One tangent prescribed, one node between two obstacles. */
+START_TEST(bound_holds_at_held_and_cornered_nodes) {
+  for (int k = 0; k < 30; ++k) {
+    int dim = 2 + k % 2, n = 4 + k % 5, m = dim * n, dof = dim + 1;
+    contact_case c = case_any(dim, n, 0.4, 0, (unsigned long long)(1500 + k));
+    unsigned char held[64] = {0};
+    double side[64], exact[64];
+    unsigned long long seed = 5 + (unsigned long long)k;
+    held[dof] = 1;
+    for (int j = 0; j < m; ++j)
+      if (j != dof) c.A[dof + m * j] = c.A[j + m * dof] = 0.0;
+    for (int j = 0; j < n * (dim - 1); ++j) side[j] = HUGE_VAL;
+    side[2 * (dim - 1)] = 0.02;
+    c.f[2 * dim + 1] = k % 4 < 2 ? 3.0 : -3.0;
+    make_tresca(&c);
+    c.g0[2] = 0.0;
+    c.cp.held = held;
+    c.cp.side_gap = side;
+    ck_assert_int_eq(solve(&c, "newton", 1e-13).outcome, CONVERGED);
+    memcpy(exact, c.u, (size_t)m * sizeof *exact);
+    for (int level = 0; level < 10; ++level) {
+      for (int i = 0; i < m; ++i)
+        c.u[i] = exact[i] + pow(10, -level) * (case_random(&seed) - 0.5);
+      contact_reaction(&c.cp, c.u, c.r);
+      solver_error e = bound_of(&c.cp, c.u, c.r);
+      double error = energy_norm(m, c.A, c.u, exact);
+      ck_assert_double_ge(e.norm, error);
+      ck_assert_double_le(e.norm, 100.0 * error);
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Only the compliance is known: the forces in the norm of W. */
+START_TEST(bound_holds_in_the_compliance_form) {
+  for (int k = 0; k < 30; ++k) {
+    contact_case c =
+        case_any(2 + k % 2, 6, 0.4, k / 2 % 2, (unsigned long long)(1700 + k));
+    int m = c.cp.m;
+    double W[18 * 18], q[18], exact[18];
+    unsigned long long seed = 9 + (unsigned long long)k;
+    make_tresca(&c);
+    ck_assert_int_eq(solve(&c, "newton", 1e-13).outcome, CONVERGED);
+    memcpy(exact, c.r, (size_t)m * sizeof *exact);
+    ck_assert(case_inverse(m, c.A, W));
+    contact_product(m, W, c.f, q);
+    c.cp.W = W;
+    c.cp.A = NULL;
+    c.cp.f = q;
+    for (int level = 0; level < 10; ++level) {
+      for (int i = 0; i < m; ++i)
+        c.r[i] = exact[i] + pow(10, -level) * (case_random(&seed) - 0.5);
+      contact_product(m, W, c.r, c.u);
+      for (int i = 0; i < m; ++i) c.u[i] += q[i];
+      solver_error e = bound_of(&c.cp, c.u, c.r);
+      double error = energy_norm(m, W, c.r, exact);
+      ck_assert_double_ge(e.norm, error);
+      ck_assert_double_le(e.norm, 100.0 * error);
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Other units by powers of two: sqrt(N m) and nothing else changes. */
+START_TEST(bound_changes_with_the_units_only) {
+  for (int k = 0; k < 20; ++k) {
+    contact_case c[2];
+    double norm[2];
+    for (int b = 0; b < 2; ++b) {
+      int force = b ? 18 : 0, length = b ? -8 : 0;
+      c[b] = case_any(2 + k % 2, 7, 0.2, k / 2 % 2, 2100ull + (unsigned)k);
+      for (int j = 0; j < c[b].cp.m * c[b].cp.m; ++j)
+        c[b].A[j] = ldexp(c[b].A[j], force - length);
+      for (int j = 0; j < c[b].cp.m; ++j) c[b].f[j] = ldexp(c[b].f[j], force);
+      for (int j = 0; j < c[b].cp.n; ++j)
+        c[b].gap[j] = ldexp(c[b].gap[j], length);
+      for (int j = 0; j < c[b].cp.m - c[b].cp.n; ++j)
+        c[b].ut0[j] = ldexp(c[b].ut0[j], length);
+      solve(&c[b], "sor", 1e-5);
+      norm[b] = bound_of(&c[b].cp, c[b].u, c[b].r).norm;
+      case_free(&c[b]);
+    }
+    ck_assert_double_eq_tol(norm[1], ldexp(norm[0], 5), 1e-13 * norm[1]);
+  }
+}
+END_TEST
+
+/* Nothing is missing in the equation, but its sums are rounded. */
+START_TEST(rounding_is_part_of_the_bound) {
+  contact_case c = case_new(2, 1, 0.0);
+  c.A[0] = c.A[3] = 2.0;
+  c.f[0] = c.f[1] = 1.0;
+  c.u[0] = c.u[1] = 0.5;
+  c.gap[0] = 1.0;
+  solver_error e = bound_of(&c.cp, c.u, c.r);
+  ck_assert_double_gt(e.norm, 0.5e-16);
+  ck_assert_double_lt(e.norm, 1e-14);
+  case_free(&c);
+}
+END_TEST
+
+UNIT_MAIN("accuracy", bound_holds_for_a_given_limit_and_is_not_absurd,
+          bound_holds_without_friction, bound_holds_with_coulomb_friction,
+          rate_of_the_triangle_is_known, no_bound_beyond_the_critical_friction,
+          bound_holds_at_held_and_cornered_nodes,
+          bound_holds_in_the_compliance_form, bound_changes_with_the_units_only,
+          rounding_is_part_of_the_bound)
