@@ -1,20 +1,18 @@
 /*
  * A problem from a file: one solve, told to the outputs as one increment. A
- * plain LCP goes to complementary pivoting; where that ends on a ray although
- * the matrix does not make the ray a proof, or after too many pivots, other
- * units and covering vectors are tried.
+ * plain LCP goes to lcp_solve.
  */
 #include "base/memory.h"
 #include "base/timer.h"
+#include "exchange/lcp_solve.h"
 #include "history/run.h"
-#include "contact/lcp.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
-enum { ATTEMPTS = 12, LOG = 512 };
+enum { LOG = 512 };
 
 /* One solve with all its arrays. */
 typedef struct discrete {
@@ -87,131 +85,26 @@ done:
 /* ---- linear complementarity problems --------------------------------------
  */
 
-/*
- * How far z is from a solution, -: largest of |min(z_i c, w_i)| over the rows,
- * c the largest |M|, over the largest |q|. w[n] = q + M z.
- */
-static double lcp_residual(const exchange_problem *p, const double *z,
-                           double *w) {
-  double c = 0.0, scale = 0.0, worst = 0.0;
-  size_t n = (size_t)p->n;
-  contact_product(p->n, p->matrix, z, w);
-  for (size_t k = 0; k < n * n; ++k) c = fmax(c, fabs(p->matrix[k]));
-  for (size_t i = 0; i < n; ++i) {
-    w[i] += p->load[i];
-    scale = fmax(scale, fabs(p->load[i]));
-    double miss = fabs(fmin(c * z[i], w[i]));
-    if (!(miss <= worst)) worst = miss;
-    if (isnan(w[i]) || isnan(z[i])) return NAN;
-  }
-  if (scale > 0.0) return worst / scale;
-  return worst > 0.0 ? HUGE_VAL : 0.0;
-}
-
-/* Positive numbers of a fixed series, [0.25, 4). */
-static double cover(unsigned *seed) {
-  *seed = *seed * 1664525u + 1013904223u;
-  return ldexp(1.0 + (double)(*seed >> 8) * 0x1p-24,
-               (int)(*seed >> 6 & 3u) - 2);
-}
-
-/* Room for one attempt at an LCP; n as in the problem. */
-typedef struct attempt {
-  double *cover; /* [n] covering vector                                      */
-  double *size;  /* [n] unit of z_i (and 1/w_i)                              */
-  double *M, *q; /* [n*n], [n] in these units, rows over the cover           */
-} attempt;
-
-static status attempt_new(int n, attempt *a) {
-  status st = OK;
-  NEW(a->cover, n);
-  NEW(a->size, n);
-  NEW(a->M, (size_t)n * (size_t)n);
-  NEW(a->q, n);
-done:
-  return st;
-}
-
-static void attempt_free(attempt *a) {
-  memory_free(a->cover);
-  memory_free(a->size);
-  memory_free(a->M);
-  memory_free(a->q);
-}
-
-/* Units that bring the diagonal to one, or the largest of row and column. */
-static double natural_unit(const exchange_problem *p, size_t i) {
-  size_t n = (size_t)p->n;
-  double largest = fabs(p->matrix[i + n * i]);
-  for (size_t j = 0; j < n && largest == 0.0; ++j)
-    largest = fmax(
-        largest, fmax(fabs(p->matrix[i + n * j]), fabs(p->matrix[j + n * i])));
-  return largest > 0.0 ? 1.0 / sqrt(largest) : 1.0;
-}
-
-/* Attempt k: plain; in natural units; then with other covering vectors. */
-static void choose(const exchange_problem *p, int k, unsigned *seed,
-                   attempt *a) {
-  for (int i = 0; i < p->n; ++i) {
-    a->size[i] = k == 0 ? 1.0 : natural_unit(p, (size_t)i);
-    a->cover[i] = k < 2 ? 1.0 : cover(seed);
-  }
-}
-
-/* Lemke's method with a covering vector d is that of the rows over d with a
- * vector of ones. */
-static status solve_attempt(const exchange_problem *p, const attempt *a,
-                            int max_iter, double *z, lcp_report *rep) {
-  status st = OK;
-  size_t n = (size_t)p->n;
-  for (size_t j = 0; j < n; ++j)
-    for (size_t i = 0; i < n; ++i)
-      a->M[i + n * j] =
-          p->matrix[i + n * j] * a->size[i] * a->size[j] / a->cover[i];
-  for (size_t i = 0; i < n; ++i)
-    a->q[i] = p->load[i] * a->size[i] / a->cover[i];
-  TRY(lcp_lemke(p->n, a->M, a->q, max_iter, z, rep));
-  for (size_t i = 0; i < n; ++i) z[i] *= a->size[i];
-done:
-  return st;
-}
-
-static status try_lemke(discrete *d) {
-  status st = OK;
-  const exchange_problem *p = d->p;
-  const solver_choice *choice = &d->step->solver;
-  attempt a = {0};
-  lcp_report rep;
-  unsigned seed = 1;
-  TRY(attempt_new(p->n, &a));
-  for (int k = 0; k < ATTEMPTS; ++k) {
-    choose(p, k, &seed, &a);
-    TRY(solve_attempt(p, &a, choice->max_iter, d->r, &rep));
-    d->report.iterations += rep.pivots;
-    d->report.residual = lcp_residual(p, d->r, d->u);
-    d->report.outcome = CONVERGED;
-    if (d->report.residual <= choice->tol) break;
-    d->report.outcome =
-        rep.outcome == CONVERGED ? STOPPED_STAGNATION : rep.outcome;
-  }
-done:
-  attempt_free(&a);
-  return st;
-}
-
 static status solve_lcp(discrete *d) {
   status st = OK;
   double start = timer_cpu();
-  const solver_ops *ops = d->step->solver.ops;
-  d->report = (solver_report){.outcome = CONVERGED, .solver = "lemke"};
+  const solver_choice *choice = &d->step->solver;
+  const solver_ops *ops = choice->ops;
+  lcp_data p = {d->p->n, d->p->matrix, d->p->load};
+  lcp_control control = {choice->tol, choice->max_iter, ops != NULL};
+  lcp_verdict v;
   if (ops != NULL && strcasecmp(ops->name, "lemke") != 0)
     FAIL(ERR_DECK,
          "deck line %d: METHOD=%s does not solve a plain linear "
          "complementarity problem; use LEMKE or AUTO",
          d->step->solver_at.line_no, ops->name);
-  d->report.residual = lcp_residual(d->p, d->r, d->u);
-  if (!(d->report.residual <= d->step->solver.tol)) TRY(try_lemke(d));
-  for (int i = 0; i < d->p->n; ++i) {
+  TRY(lcp_solve(&p, &control, d->r, d->u, &v));
+  d->report = (solver_report){.outcome = v.outcome,
+                              .iterations = v.iterations,
+                              .residual = v.residual,
+                              .solver = v.method};
+  snprintf(d->log, sizeof d->log, "%s", v.log);
+  for (int i = 0; i < p.n; ++i) {
     d->contact[i] = d->r[i] > 0.0 ? CONTACT_SLIP : CONTACT_OPEN;
     d->gap[i] = d->u[i];
   }

@@ -5,6 +5,8 @@
 #ifndef PROTIS_TESTS_UNIT_H
 #define PROTIS_TESTS_UNIT_H
 
+#include "fem/fem.h"
+
 #include <check.h>
 #include <stdlib.h>
 
@@ -14,6 +16,7 @@ enum { UNIT_SECONDS = 600 };
 #define UNIT_MAIN(name, ...)                                       \
   int main(void) {                                                 \
     const TTest *const tests_[] = {__VA_ARGS__};                   \
+    blas_set_threads(1); /* as the program does */                 \
     Suite *suite_ = suite_create(name);                            \
     TCase *case_ = tcase_create(name);                             \
     tcase_set_timeout(case_, UNIT_SECONDS);                        \
