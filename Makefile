@@ -48,7 +48,7 @@ bench    := $(bench_c:%.c=$(out)/%)
 support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c))
 
 .PHONY: all help deps demo test check unit regression layers style format \
-        bench bench-solvers clean
+        bench bench-solvers bench-auto clean
 .DEFAULT_GOAL := all
 .SECONDARY:
 
@@ -63,6 +63,7 @@ help:
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
 	@echo "make bench-solvers  what each digit costs, for every solver"
+	@echo "make bench-auto   METHOD=AUTO against the best of the others"
 	@echo "make format       clang-format on all sources"
 	@echo "make clean        remove build/"
 
@@ -120,9 +121,12 @@ style:
 	$(Q)tools/check_style src tests
 
 bench-run: $(program) $(bench)
-	$(Q)for b in $(bench); do $$b || exit 1; done
+	$(Q)for b in $(filter-out %/auto,$(bench)); do $$b || exit 1; done
 
 bench-solvers: $(out)/tests/bench/solvers
+	$(Q)$<
+
+bench-auto: $(out)/tests/bench/auto
 	$(Q)$<
 
 format:

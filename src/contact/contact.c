@@ -52,18 +52,20 @@ void contact_limit(const contact_problem *cp, const double *r, double *g) {
   for (int i = 0; i < cp->n; ++i) g[i] = contact_node_limit(cp, r, i);
 }
 
-static int held(const contact_problem *cp, int dof) {
+int contact_held(const contact_problem *cp, int dof) {
   return cp->held != NULL && cp->held[dof];
 }
 
-/* Bound of a tangential unknown by a second obstacle, m. */
-static double side_bound(const contact_problem *cp, int node_id, int k) {
+double contact_bound(const contact_problem *cp, int dof) {
+  int node_id = dof / cp->dim, k = dof % cp->dim;
+  if (k == 0) return cp->gap[node_id];
   if (cp->side_gap == NULL) return HUGE_VAL;
-  return cp->side_gap[node_id * (cp->dim - 1) + k];
+  return cp->side_gap[node_id * (cp->dim - 1) + k - 1];
 }
 
-static double stick_position(const contact_problem *cp, int node_id, int k) {
-  return cp->ut0 == NULL ? 0.0 : cp->ut0[node_id * (cp->dim - 1) + k];
+double contact_stick(const contact_problem *cp, int dof) {
+  int node_id = dof / cp->dim, k = dof % cp->dim;
+  return cp->ut0 == NULL ? 0.0 : cp->ut0[node_id * (cp->dim - 1) + k - 1];
 }
 
 /* ---- steps of the natural map ------------------------------------------ */
@@ -90,7 +92,7 @@ static node_step step_of(const contact_problem *cp, int node_id,
   int first = node_id * cp->dim, counted = 0;
   double normal = diagonal(cp, first), tangential = 0.0;
   for (int k = 1; k < cp->dim; ++k)
-    if (!held(cp, first + k)) {
+    if (!contact_held(cp, first + k)) {
       tangential += diagonal(cp, first + k);
       ++counted;
     }
@@ -106,10 +108,9 @@ static node_step step_of(const contact_problem *cp, int node_id,
 /* Displacement of reference of one unknown, m: see contact_scale. */
 static double reference_position(const contact_problem *cp, int dof,
                                  int closed) {
-  int node_id = dof / cp->dim, k = dof % cp->dim - 1;
-  if (held(cp, dof)) return cp->f[dof] / diagonal(cp, dof);
-  double bound = k < 0 ? cp->gap[node_id] : side_bound(cp, node_id, k);
-  if (k >= 0 && !(bound < HUGE_VAL)) return stick_position(cp, node_id, k);
+  if (contact_held(cp, dof)) return cp->f[dof] / diagonal(cp, dof);
+  double bound = contact_bound(cp, dof);
+  if (dof % cp->dim > 0 && !(bound < HUGE_VAL)) return contact_stick(cp, dof);
   return closed ? bound : fmin(bound, 0.0);
 }
 
@@ -130,7 +131,7 @@ static double load_of_rows(const contact_problem *cp, int first, int rows,
                 cp->A + first + m * (size_t)j0, cp->m, d, 1, 1.0, y, 1);
   }
   for (int i = 0; i < rows; ++i)
-    if (!held(cp, first + i)) worst = larger(worst, fabs(y[i]));
+    if (!contact_held(cp, first + i)) worst = larger(worst, fabs(y[i]));
   return worst;
 }
 
@@ -138,7 +139,7 @@ static double force_scale(const contact_problem *cp, int closed) {
   double load = 0.0, terms = 0.0;
   for (int i = 0; i < cp->m; ++i) {
     double d = reference_position(cp, i, closed);
-    if (!held(cp, i))
+    if (!contact_held(cp, i))
       terms = larger(terms, fabs(cp->f[i]) + fabs(diagonal(cp, i) * d));
   }
   if (!(terms < HUGE_VAL)) return terms;
@@ -158,15 +159,12 @@ static int any_gap(const contact_problem *cp) {
 static double displacement_scale(const contact_problem *cp) {
   double scale = 0.0;
   for (int i = 0; i < cp->m; ++i) {
-    int node_id = i / cp->dim, k = i % cp->dim - 1;
     double q = cp->f[i];
     scale = larger(scale, ROUNDING_FLOOR * fabs(q));
-    if (k < 0)
-      scale = larger(scale, q - cp->gap[node_id]);
-    else if (cp->g0 != NULL)
-      scale = larger(scale, fabs(q - stick_position(cp, node_id, k)));
-    else if (side_bound(cp, node_id, k) < HUGE_VAL)
-      scale = larger(scale, q - side_bound(cp, node_id, k));
+    if (i % cp->dim > 0 && cp->g0 != NULL)
+      scale = larger(scale, fabs(q - contact_stick(cp, i)));
+    else if (contact_bound(cp, i) < HUGE_VAL)
+      scale = larger(scale, q - contact_bound(cp, i));
   }
   return scale;
 }
@@ -188,9 +186,9 @@ static double friction_mismatch(const contact_problem *cp, const double *u,
   double z[2], e[2], g = contact_node_limit(cp, r, node_id);
   int first = node_id * cp->dim, n = 0;
   for (int k = 1; k < cp->dim; ++k) {
-    if (held(cp, first + k)) continue;
+    if (contact_held(cp, first + k)) continue;
     e[n] = r[first + k];
-    z[n] = e[n] - c * (u[first + k] - stick_position(cp, node_id, k - 1));
+    z[n] = e[n] - c * (u[first + k] - contact_stick(cp, first + k));
     ++n;
   }
   double size = length(n, z), shrink = size <= g ? 1.0 : g / size;
@@ -198,9 +196,9 @@ static double friction_mismatch(const contact_problem *cp, const double *u,
   return length(n, e);
 }
 
-static int has_side(const contact_problem *cp, int node_id) {
-  for (int k = 0; k < cp->dim - 1; ++k)
-    if (side_bound(cp, node_id, k) < HUGE_VAL) return 1;
+int contact_has_side(const contact_problem *cp, int node_id) {
+  for (int k = 1; k < cp->dim; ++k)
+    if (contact_bound(cp, node_id * cp->dim + k) < HUGE_VAL) return 1;
   return 0;
 }
 
@@ -211,7 +209,7 @@ static double side_mismatch(const contact_problem *cp, const double *u,
   double worst = 0.0;
   for (int k = 1; k < cp->dim; ++k) {
     int dof = node_id * cp->dim + k;
-    double bound = side_bound(cp, node_id, k - 1);
+    double bound = contact_bound(cp, dof);
     double part = fabs(r[dof]);
     if (bound < HUGE_VAL) part = fabs(larger(r[dof], c * (u[dof] - bound)));
     worst = larger(worst, part);
@@ -227,11 +225,12 @@ double contact_mismatch(const contact_problem *cp, const double *u,
     node_step s = step_of(cp, i, reference);
     double normal = larger(r[first], s.c_n * (u[first] - cp->gap[i]));
     worst = larger(worst, s.unit_n * fabs(normal));
-    double tangential = has_side(cp, i) ? side_mismatch(cp, u, r, i, s.c_t)
-                                        : friction_mismatch(cp, u, r, i, s.c_t);
+    double tangential = contact_has_side(cp, i)
+                            ? side_mismatch(cp, u, r, i, s.c_t)
+                            : friction_mismatch(cp, u, r, i, s.c_t);
     worst = larger(worst, s.unit_t * tangential);
     for (int k = 1; k < cp->dim; ++k)
-      if (held(cp, first + k))
+      if (contact_held(cp, first + k))
         worst = larger(worst, s.unit_t * fabs(r[first + k]));
   }
   return worst;
@@ -271,9 +270,9 @@ static double trial_friction(const contact_problem *cp, const double *u,
   double z[2] = {0.0, 0.0};
   int first = node_id * cp->dim;
   for (int k = 1; k < cp->dim; ++k)
-    if (!held(cp, first + k))
-      z[k - 1] = r[first + k] -
-                 c * (u[first + k] - stick_position(cp, node_id, k - 1));
+    if (!contact_held(cp, first + k))
+      z[k - 1] =
+          r[first + k] - c * (u[first + k] - contact_stick(cp, first + k));
   return length(2, z);
 }
 

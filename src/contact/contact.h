@@ -93,6 +93,13 @@ double contact_mismatch(const contact_problem *cp, const double *u,
  */
 double contact_residual(const contact_problem *cp, const double *u,
                         const double *r);
+/* Single unknowns: 1 if prescribed; the bound from above (gap, or side_gap;
+ * HUGE_VAL: none), m; the position of stick, m, of a tangential unknown. */
+int contact_held(const contact_problem *cp, int dof);
+double contact_bound(const contact_problem *cp, int dof);
+double contact_stick(const contact_problem *cp, int dof);
+/* 1: the node touches a second obstacle. */
+int contact_has_side(const contact_problem *cp, int node_id);
 /* y = M x, M[m*m] column major. */
 void contact_product(int m, const double *M, const double *x, double *y);
 /* Sliding limit of one node, N. */

@@ -13,7 +13,7 @@
 #include "base/timer.h"
 #include "fem/fem.h"
 #include "solver/solver.h"
-#include "support/scene.h"
+#include "support/pressed_block.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -22,7 +22,8 @@
 #include <string.h>
 
 enum { PARAM_SIZE = 512 };
-static const double FREE_SIDE = 0.15; /* pressure that pushes over E */
+static const double FREE_SIDE = 0.15; /* pressure that pushes over E          */
+static const double PRESSED = 0.1;    /* top moved down over the height       */
 
 /* A row with an option other than its default. */
 static const struct variant {
@@ -32,12 +33,8 @@ static const struct variant {
                 {"auglag", "VARIANT", "UZAWA"}};
 
 typedef struct block {
-  scene *s;
-  stiffness *k;
-  condensed *c;
-  double *F, *ud, *f, *zero, *u, *r, *exact;
-  sparse_rows B;
-  contact_problem cp;
+  pressed_block body;
+  double *u, *r, *exact;
 } block;
 
 static void must(status st) {
@@ -48,89 +45,26 @@ static void must(status st) {
 
 static double *numbers(int n) { return calloc((size_t)n + 1, sizeof(double)); }
 
-/* Pressure on LEFT along x, and the top moved down, both about E/1000. */
-static void load(block *b) {
-  const mesh *m = b->s->m;
-  for (int g = 0; g < m->n_group; ++g) {
-    const mesh_group *group = &m->group[g];
-    for (int i = 0; i < group->n_item && !strcmp(group->name, "LEFT"); ++i) {
-      int face_id = group->item_id[i];
-      double share = 1.0 / group->n_item / m->dim; /* the side measures 1 */
-      for (int k = 0; k < m->dim; ++k)
-        b->F[m->dim * m->face[m->dim * face_id + k]] += FREE_SIDE * share;
-    }
-    int down = m->dim - 1;
-    const char *top = m->dim == 2 ? "TOP" : "BACK";
-    for (int i = 0; i < group->n_node && !strcmp(group->name, top); ++i)
-      b->ud[m->dim * group->node_id[i] + down] = -0.1;
-  }
-}
-
 static void block_new(block *b, int dim, int nodes) {
-  memset(b, 0, sizeof *b);
-  if (dim == 2) {
-    int cells[2] = {nodes - 1, nodes - 1};
-    b->s = scene_new(make_grid_2d(cells, (double[]){1, 1}), PLANE_STRAIN, 1);
-    scene_contact(b->s, "BOTTOM", (double[]){0, -1}, 0);
-  } else {
-    int side = (int)lround(sqrt(nodes)) - 1, cells[3] = {side, side, side};
-    b->s = scene_new(make_grid_3d(cells, (double[]){1, 1, 1}), SOLID_3D, 1);
-    scene_contact(b->s, "FRONT", (double[]){0, 0, -1}, 0);
-  }
-  for (int i = 0; i < dim; ++i) scene_fix(b->s, dim == 2 ? "TOP" : "BACK", i);
-  must(stiffness_assemble(&b->s->d, &b->k));
-  must(condense(b->k, &b->s->d, &b->c));
-  int n = b->s->surface.n, m = dim * n, all = dim * b->s->m->n_node;
-  b->F = numbers(all);
-  b->ud = numbers(all);
-  b->f = numbers(m);
-  b->zero = numbers(m);
-  b->u = numbers(m);
-  b->r = numbers(m);
-  b->exact = numbers(m);
-  load(b);
-  must(condense_load(b->c, b->F, b->ud, b->f));
-  b->B = (sparse_rows){n, calloc((size_t)n + 1, sizeof(int)),
-                       calloc((size_t)n, sizeof(int)), numbers(n)};
-  for (int i = 0; i < n; ++i) {
-    b->B.start[i + 1] = i + 1;
-    b->B.col[i] = i;
-  }
-  b->cp = (contact_problem){.dim = dim,
-                            .n = n,
-                            .m = m,
-                            .A = condensed_matrix(b->c),
-                            .f = b->f,
-                            .gap = b->zero};
-}
-
-static void block_friction(block *b, double mu) {
-  for (int i = 0; i < b->cp.n; ++i) b->B.val[i] = mu;
-  b->cp.ut0 = b->cp.g0 = mu > 0.0 ? b->zero : NULL;
-  b->cp.B = mu > 0.0 ? &b->B : NULL;
+  pressed_block_new(&b->body, dim, nodes, nodes);
+  pressed_block_load(&b->body, FREE_SIDE, PRESSED);
+  b->u = numbers(b->body.cp.m);
+  b->r = numbers(b->body.cp.m);
+  b->exact = numbers(b->body.cp.m);
 }
 
 static void block_free(block *b) {
-  condensed_free(b->c);
-  stiffness_free(b->k);
-  scene_free(b->s);
-  free(b->F);
-  free(b->ud);
-  free(b->f);
-  free(b->zero);
+  pressed_block_free(&b->body);
   free(b->u);
   free(b->r);
   free(b->exact);
-  free(b->B.start);
-  free(b->B.col);
-  free(b->B.val);
 }
 
 /* Condition of A in the 1-norm. */
 static double condition_of(const block *b) {
-  int m = b->cp.m;
+  int m = b->body.cp.m;
   double *L = numbers(m * m), rcond = 0.0;
-  memcpy(L, b->cp.A, (size_t)m * (size_t)m * sizeof *L);
+  memcpy(L, b->body.cp.A, (size_t)m * (size_t)m * sizeof *L);
   double norm = LAPACKE_dlansy(LAPACK_COL_MAJOR, '1', 'L', m, L, m);
   if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', m, L, m) == 0)
     LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', m, L, m, norm, &rcond);
@@ -140,7 +74,7 @@ static double condition_of(const block *b) {
 
 static double error_of(const block *b) {
   double size = 0.0, apart = 0.0;
-  for (int i = 0; i < b->cp.m; ++i) {
+  for (int i = 0; i < b->body.cp.m; ++i) {
     size = fmax(size, fabs(b->exact[i]));
     apart = fmax(apart, fabs(b->u[i] - b->exact[i]));
   }
@@ -149,17 +83,17 @@ static double error_of(const block *b) {
 
 static solver_report run(block *b, contact_solver *s) {
   solver_report rep;
-  memset(b->u, 0, (size_t)b->cp.m * sizeof *b->u);
-  memset(b->r, 0, (size_t)b->cp.m * sizeof *b->r);
-  must(contact_solve(s, &b->cp, NULL, b->u, b->r, &rep));
+  memset(b->u, 0, (size_t)b->body.cp.m * sizeof *b->u);
+  memset(b->r, 0, (size_t)b->body.cp.m * sizeof *b->r);
+  must(contact_solve(s, &b->body.cp, NULL, b->u, b->r, &rep));
   return rep;
 }
 
 static void print_states(const block *b) {
-  contact_status *state = calloc((size_t)b->cp.n, sizeof *state);
+  contact_status *state = calloc((size_t)b->body.cp.n, sizeof *state);
   int count[3] = {0, 0, 0};
-  contact_classify(&b->cp, b->exact, b->r, state);
-  for (int i = 0; i < b->cp.n; ++i) ++count[state[i]];
+  contact_classify(&b->body.cp, b->exact, b->r, state);
+  for (int i = 0; i < b->body.cp.n; ++i) ++count[state[i]];
   printf("# open %d, slip %d, stick %d nodes\n", count[CONTACT_OPEN],
          count[CONTACT_SLIP], count[CONTACT_STICK]);
   free(state);
@@ -170,7 +104,7 @@ static void reference(block *b) {
   contact_solver *s = NULL;
   must(contact_solver_new(&choice, &s));
   solver_report rep = run(b, s);
-  memcpy(b->exact, b->u, (size_t)b->cp.m * sizeof *b->u);
+  memcpy(b->exact, b->u, (size_t)b->body.cp.m * sizeof *b->u);
   print_states(b);
   if (rep.outcome != CONVERGED)
     printf("# reference: residual %.1e only\n", rep.residual);
@@ -194,8 +128,8 @@ static void line(block *b, const solver_ops *ops, const struct variant *v,
   solver_report first = run(b, s);
   solver_report rep = first.cpu < 0.2 ? run(b, s) : first;
   printf("%-16s %dD %5d %4.1f %7.0e %7d %6d %9.4f %9.4f %9.1e %9.1e  %s\n",
-         name, b->cp.dim, b->cp.m, mu, tol, rep.iterations, rep.limit_updates,
-         first.cpu, rep.cpu, rep.residual, error_of(b),
+         name, b->body.cp.dim, b->body.cp.m, mu, tol, rep.iterations,
+         rep.limit_updates, first.cpu, rep.cpu, rep.residual, error_of(b),
          outcome_text(rep.outcome));
   fflush(stdout);
   contact_solver_free(s);
@@ -204,7 +138,7 @@ static void line(block *b, const solver_ops *ops, const struct variant *v,
 static void lines(block *b, double mu, double tol) {
   for (int i = 0;; ++i) {
     const solver_ops *ops = solver_list[i];
-    if (ops == NULL || b->cp.dim == 2 || (ops->handles & SOLVES_3D))
+    if (ops == NULL || b->body.cp.dim == 2 || (ops->handles & SOLVES_3D))
       line(b, ops, NULL, mu, tol);
     if (ops == NULL) return;
     for (size_t k = 0; k < sizeof variants / sizeof *variants; ++k)
@@ -218,8 +152,8 @@ static void size(int dim, int m) {
   block b;
   block_new(&b, dim, m / dim);
   for (int i = 0; i < 3; ++i) {
-    block_friction(&b, mus[i]);
-    printf("\n# %dD, m = %d, mu = %g, condition of A %.1e\n", dim, b.cp.m,
+    pressed_block_friction(&b.body, mus[i]);
+    printf("\n# %dD, m = %d, mu = %g, condition of A %.1e\n", dim, b.body.cp.m,
            mus[i], condition_of(&b));
     reference(&b);
     for (int k = 0; k < 3; ++k) lines(&b, mus[i], tols[k]);
