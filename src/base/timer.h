@@ -28,6 +28,7 @@
   X(ENERGY,      "energies")                               \
   X(INELASTIC,   "inelastic strains")                      \
   X(THERMAL,     "thermal strains")                        \
+  X(ZONES,       "zones of stick and slip")                \
   X(ESTIMATE,    "error estimates")                        \
   X(TABLES,      "tables")                                 \
   X(HDF5,        "HDF5 output")                            \

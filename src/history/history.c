@@ -56,6 +56,11 @@ static state make_state(run *r, int attempt, int increment_no) {
              .limit = r->g,
              .contact = r->contact,
              .totals = r->totals,
+             .distance = r->distance,
+             .torque = r->torque,
+             .loops = r->loops,
+             .n_zone = r->n_zone,
+             .zones = r->zones,
              .energy = e->energy,
              .report = r->report,
              .note = r->note,
@@ -72,15 +77,24 @@ static state make_state(run *r, int attempt, int increment_no) {
   return s;
 }
 
+static int is_due(int frequency, int increment_no, int last) {
+  return last || (frequency > 0 && increment_no % frequency == 0);
+}
+
+/* 1 if one of these tables (bits PRINT_*) shows this increment. */
+static int table_is_due(const step *s, int tables, int increment_no, int last) {
+  for (int i = 0; i < s->n_print; ++i)
+    if ((s->prints[i].table & tables) &&
+        is_due(s->prints[i].frequency, increment_no, last))
+      return 1;
+  return 0;
+}
+
 /* 1 if some output wants the stresses of this increment. */
 static int stress_is_due(const step *s, int increment_no, int last) {
   int f = s->output_frequency;
-  if (f >= 0 && (last || (f > 0 && increment_no % f == 0))) return 1;
-  for (int i = 0; i < s->n_print; ++i) {
-    f = s->prints[i].frequency;
-    if (last || (f > 0 && increment_no % f == 0)) return 1;
-  }
-  return 0;
+  if (f >= 0 && is_due(f, increment_no, last)) return 1;
+  return table_is_due(s, ~0, increment_no, last);
 }
 
 static status accept(run *r, int attempt, int increment_no, int last,
@@ -90,6 +104,9 @@ static status accept(run *r, int attempt, int increment_no, int last,
   if (r->report.outcome <= 0) ++r->unsettled;
   TRY(result_evaluate(r, stress_is_due(r->step, increment_no, last)));
   TRY(estimate_increment(r));
+  r->n_zone = 0;
+  if (table_is_due(r->step, PRINT_ZONES, increment_no, last))
+    TRY(zones_find(r));
   state s = make_state(r, attempt, increment_no);
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;

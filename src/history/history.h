@@ -17,6 +17,26 @@ typedef struct contact_total {
   int n_open, n_slip, n_stick;
 } contact_total;
 
+/* A zone of one kind of one contact: in the plane and in axisymmetry a piece of
+ * the contact line in the order of the tangent t, in 3-D all of that kind. */
+typedef struct contact_zone {
+  int contact_id;
+  int kind;      /* contact_status                                           */
+  int direction; /* sign of the slip along t; 0: none, no friction, 3-D      */
+  double from[2], to[2], length; /* ends between the nodes, m; 3-D: 0        */
+  double area; /* m2; times thickness, or around the axis                    */
+} contact_zone;
+
+/* One contact as a loop of friction: force (in the totals) against motion. */
+typedef struct contact_loop {
+  double way[2];       /* mean way of the obstacle since time 0, tangents, m  */
+  double mean_u_t[2];  /* mean tangential displacement of the nodes, m        */
+  double angle;        /* of the obstacle, rad                                */
+  double friction;     /* J, dissipated so far, trapezoidal                  */
+  double friction_end; /* J, the same with the limits at the increments' end */
+  double start_end;    /* J, friction_end at the start of the step           */
+} contact_loop;
+
 typedef struct energies {
   double strain;   /* J, now                                              */
   double external; /* J, work of loads and prescribed displacements so far */
@@ -62,6 +82,11 @@ typedef struct state {
   const double *limit;   /* [n] sliding limit g, N; NULL: frictionless      */
   const contact_status *contact; /* [n]                                       */
   const contact_total *totals; /* [n_contact]                                 */
+  const double *distance; /* [n] all slip so far, m; NULL: frictionless       */
+  const double *torque;   /* [n_contact] about its axis, N m; NULL: no axis   */
+  const contact_loop *loops; /* [n_contact]; NULL: no table asks             */
+  int n_zone;
+  const contact_zone *zones; /* [n_zone]; NULL: no table asks now            */
   int n_open, n_slip, n_stick;
   energies energy;
   solver_report report;

@@ -47,6 +47,16 @@ static void find_contact(run *r) {
   contact_classify(&r->cp, r->now.uc, r->now.rc, r->contact);
 }
 
+/* Slip adds up while a node is closed. */
+static void add_distance(run *r) {
+  int dim = r->msh->dim;
+  for (int i = 0; i < r->n && r->distance != NULL; ++i) {
+    double s[2] = {motion_over(r, dim * i + 1), 0.0};
+    if (dim == 3) s[1] = motion_over(r, dim * i + 2);
+    if (r->contact[i] == CONTACT_SLIP) r->distance[i] += hypot(s[0], s[1]);
+  }
+}
+
 /* The *CONTACT whose force row a of a node is: at a corner the side rows are
  * the normal forces of other obstacles. */
 static int row_contact(const contact_surface *s, int i, int a) {
@@ -98,6 +108,49 @@ static void find_totals(run *r) {
   for (int i = 0; i < r->n; ++i) add_node(r, i);
 }
 
+/* Torque of the contacts about their axes; one taken from an obstacle is where
+ * MOVE has brought it. */
+static void find_torques(run *r) {
+  for (int i = 0; i < r->m->n_contact && r->torque != NULL; ++i) {
+    const contact *c = &r->m->contacts[i];
+    const contact_total *t = &r->totals[i];
+    const double *f = t->force;
+    double x[3], d[3] = {0.0, 0.0, 0.0};
+    if (c->axis_of_obstacle) obstacle_motion(r->pairs[i].support, r->now.t, d);
+    for (int k = 0; k < 3; ++k) x[k] = c->axis_point[k] + d[k];
+    r->torque[i] = c->axis[0] * (t->moment[0] - x[1] * f[2] + x[2] * f[1]) +
+                   c->axis[1] * (t->moment[1] - x[2] * f[0] + x[0] * f[2]) +
+                   c->axis[2] * (t->moment[2] - x[0] * f[1] + x[1] * f[0]);
+  }
+}
+
+/* Motions of the contacts, and what friction dissipates in each. */
+static void find_loops(run *r) {
+  const contact_surface *s = r->surface;
+  int dim = r->msh->dim;
+  if (r->loops == NULL) return;
+  for (int i = 0; i < r->m->n_contact; ++i) {
+    contact_loop *l = &r->loops[i];
+    double weight = 0.0;
+    memset(l->way, 0, sizeof l->way);
+    memset(l->mean_u_t, 0, sizeof l->mean_u_t);
+    l->angle = obstacle_angle(r->pairs[i].support, r->now.t);
+    for (int k = 0; k < r->n; ++k) {
+      if (s->contact_id[k] != i) continue;
+      weight += s->area[k];
+      for (int a = 0; a < dim - 1; ++a) {
+        int c = dim * k + a + 1;
+        l->way[a] += s->area[k] * (r->now.motion[c] - l->way[a]) / weight;
+        l->mean_u_t[a] += s->area[k] * (r->now.uc[c] - l->mean_u_t[a]) / weight;
+        if (s->side_id[(dim - 1) * k + a] >= 0) continue;
+        double mean = 0.5 * (r->old.rc[c] + r->now.rc[c]);
+        l->friction -= mean * motion_over(r, c);
+        l->friction_end -= r->now.rc[c] * motion_over(r, c);
+      }
+    }
+  }
+}
+
 /*
  * Energies of the increment. The trapezoidal works balance to rounding for a
  * linear elastic body, whatever the increment: with K symmetric
@@ -140,7 +193,10 @@ status result_evaluate(run *r, int due) {
     if (effects & EFFECT_REACTION) find_reactions(r);
   }
   if (r->n > 0) find_contact(r);
+  add_distance(r);
   if (r->m->n_contact > 0) find_totals(r);
+  find_torques(r);
+  find_loops(r);
   find_energies(r);
   return OK;
 }

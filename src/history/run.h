@@ -70,6 +70,11 @@ typedef struct run {
   double *open_gap, *slip, *g; /* [n], [n*(dim-1)], [n]                       */
   contact_status *contact; /* [n]                                            */
   contact_total *totals;   /* [n_contact]                                    */
+  double *distance;        /* [n] as in state; NULL: frictionless            */
+  double *torque;          /* [n_contact] as in state, or NULL               */
+  contact_loop *loops;     /* [n_contact] as in state, or NULL               */
+  int n_zone, cap_zone;
+  contact_zone *zones; /* [n_zone]                                          */
   solver_report report;
   error_bound error;
   dense_inverse *dense; /* of A where contact alone holds a body       */
@@ -109,6 +114,9 @@ status velocity_problem(run *r, contact_problem *cp, double **du);
 /* The solution du added to r->old.uc, into r->now.uc. */
 void velocity_apply(run *r);
 void velocity_free(velocity *v); /* accepts NULL                              */
+
+/* zones.c: the zones of r->now into r->zones. ERR_MEMORY. */
+status zones_find(run *r);
 
 /* result.c: stresses, reactions, totals, energies of r->now as far as the
  * effects call for them and "due" says. */

@@ -69,6 +69,8 @@ static status new_pairs(run *r) {
   NEW(r->node_fixed, msh->n_node);
   NEW(r->face_weight, msh->n_face);
   NEW(r->totals, m->n_contact);
+  if (model_has_axis(m)) NEW(r->torque, m->n_contact);
+  if (model_prints(m, PRINT_LOOP)) NEW(r->loops, m->n_contact);
   for (int i = 0; i < m->n_contact; ++i) {
     const contact *c = &m->contacts[i];
     r->pairs[i].name = c->name;
@@ -127,10 +129,10 @@ static void free_surface(run *r) {
   r->c = NULL;
   r->k = NULL;
   r->surface = NULL;
-  double **owned[] = {&r->f,         &r->gap,    &r->side_gap, &r->ut0,
-                      &r->open_gap,  &r->slip,   &r->g,        &r->old.uc,
-                      &r->old.rc,    &r->now.uc, &r->now.rc,   &r->old.motion,
-                      &r->now.motion};
+  double **owned[] = {&r->f,          &r->gap,     &r->side_gap, &r->ut0,
+                      &r->open_gap,   &r->slip,    &r->g,        &r->old.uc,
+                      &r->old.rc,     &r->now.uc,  &r->now.rc,   &r->old.motion,
+                      &r->now.motion, &r->distance};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) {
     memory_free(*owned[i]);
     *owned[i] = NULL;
@@ -156,6 +158,9 @@ void run_free(run *r) {
   memory_free(r->node_fixed);
   memory_free(r->face_weight);
   memory_free(r->totals);
+  memory_free(r->torque);
+  memory_free(r->loops);
+  memory_free(r->zones);
   memory_free(r->ud);
   memory_free(r->start);
   memory_free(r->strain);
@@ -190,6 +195,7 @@ static status new_contact_arrays(run *r) {
   if (r->m->effects & EFFECT_FRICTION) {
     NEW(r->ut0, tangents);
     NEW(r->g, r->n);
+    NEW(r->distance, r->n);
   }
 done:
   return st;
@@ -225,6 +231,18 @@ static void forces_to_global(const run *r, double *force) {
             s->frame[dim * dim * i + dim * a + c] * r->old.rc[dim * i + a];
 }
 
+/* Slip so far of the nodes that stay in contact, [n_node]: to_nodes 1 from
+ * r->distance, 0 back. */
+static void carry_distance(run *r, int to_nodes, double *at_node) {
+  for (int i = 0; i < r->n && r->distance != NULL; ++i) {
+    double *node = &at_node[r->surface->node_id[i]];
+    if (to_nodes)
+      *node = r->distance[i];
+    else
+      r->distance[i] = *node;
+  }
+}
+
 /* A node that supports take out of the contact leaves its force to them. */
 static void leave_forces(run *r, double *force) {
   int dim = r->msh->dim;
@@ -235,9 +253,11 @@ static void leave_forces(run *r, double *force) {
 
 static status build_surface(run *r) {
   status st = OK;
-  double *force = NULL;
+  double *force = NULL, *distance = NULL;
   NEW(force, r->n_dof);
+  NEW(distance, r->msh->n_node);
   forces_to_global(r, force);
+  carry_distance(r, 1, distance);
   free_surface(r);
   timer_enter(STAGE_SURFACE);
   node_bits(r);
@@ -249,10 +269,12 @@ static status build_surface(run *r) {
   TRY(new_contact_arrays(r));
   old_state_to_frames(r, force);
   leave_forces(r, force);
+  carry_distance(r, 0, distance);
   TRY(surface_gap(r->surface, &r->input, r->old.t, r->gap, r->side_gap));
   surface_drift(r->surface, &r->input, 0.0, r->old.t, r->old.motion);
 done:
   memory_free(force);
+  memory_free(distance);
   return st;
 }
 
@@ -351,6 +373,8 @@ status run_prepare(run *r) {
   load_fixed(r->m, r->msh, r->step, fixed);
   memcpy(r->start, r->old.u, r->n_dof * sizeof *r->start);
   r->limit_known = 0;
+  for (int i = 0; i < r->m->n_contact && r->loops != NULL; ++i)
+    r->loops[i].start_end = r->loops[i].friction_end;
   if (r->c == NULL || memcmp(fixed, r->fixed, r->n_dof) != 0) {
     memcpy(r->fixed, fixed, r->n_dof);
     if (r->m->effects & EFFECT_CONTACT)

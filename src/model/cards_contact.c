@@ -59,6 +59,22 @@ static int read_move(const reading *r, const record *line, obstacle *o) {
   return 0;
 }
 
+/* Point and direction from the second field on: x, y (along z) or x, y, z, ax,
+ * ay, az. */
+static int read_axis(const reading *r, const record *line, int solid,
+                     double *point, double *axis) {
+  char what[80];
+  snprintf(what, sizeof what, "direction of the axis of %s",
+           same_word(line->fields[0].text, "AXIS") ? "the torque" : "ROTATE");
+  for (int c = 0; c < (solid ? 3 : 2); ++c) {
+    const field *f = &line->fields[1 + c];
+    if (deck_real(f, r->m->log, &point[c]) != 0) return -1;
+    if (solid && deck_real(f + 3, r->m->log, &axis[c]) != 0) return -1;
+  }
+  if (!solid) axis[2] = 1.0;
+  return normalise(r, line, what, axis);
+}
+
 /* ROTATE, x, y, angle: about an axis along z; ROTATE, x, y, z, ax, ay, az,
  * angle: point and direction of the axis. */
 static int read_rotate(const reading *r, const record *line, obstacle *o) {
@@ -70,14 +86,7 @@ static int read_rotate(const reading *r, const record *line, obstacle *o) {
                 n);
     return -1;
   }
-  for (int c = 0; c < (solid ? 3 : 2); ++c) {
-    const field *f = &line->fields[1 + c];
-    if (deck_real(f, r->m->log, &o->pivot[c]) != 0) return -1;
-    if (solid && deck_real(f + 3, r->m->log, &o->axis[c]) != 0) return -1;
-  }
-  if (!solid) o->axis[2] = 1.0;
-  if (normalise(r, line, "direction of the axis of ROTATE", o->axis) != 0)
-    return -1;
+  if (read_axis(r, line, solid, o->pivot, o->axis) != 0) return -1;
   o->turns = 1;
   return read_course(r, line, n - 1, &o->angle);
 }
@@ -189,6 +198,20 @@ done:
   return st;
 }
 
+/* AXIS, x, y or AXIS, x, y, z, ax, ay, az */
+static void read_torque_axis(const reading *r, contact *c) {
+  const record *line = r->card->records;
+  int n = line->n_field;
+  if (!starts_with(line, "AXIS") || (n != 3 && n != 7)) {
+    message_add(r->m->log, P2009, &line->at,
+                "this line of *CONTACT is not: AXIS, x, y or AXIS, x, y, z, "
+                "ax, ay, az");
+    return;
+  }
+  c->axis_at = line->at;
+  c->has_axis = read_axis(r, line, n == 7, c->axis_point, c->axis) == 0;
+}
+
 status apply_contact(reading *r) {
   status st = OK;
   const contact_param *p = r->param;
@@ -207,6 +230,7 @@ status apply_contact(reading *r) {
       card_parameter(r->card, "NORMAL") == NULL ? -1 : p->normal;
   c->obstacle_id = -1;
   c->group_id = -1;
+  if (r->card->n_record > 0) read_torque_axis(r, c);
 done:
   return st;
 }

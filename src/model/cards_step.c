@@ -397,11 +397,11 @@ status apply_print(reading *r) {
   status st = OK;
   const print_param *p = r->param;
   step *s = open_step(r);
-  const int asked[] = {p->contact,  p->totals, p->nodes,
-                       p->elements, p->energy, p->reactions};
+  const int asked[] = {p->contact, p->totals,    p->nodes, p->elements,
+                       p->energy,  p->reactions, p->zones, p->loop};
   int any = 0;
   s->has_print = 1;
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 8; ++i) {
     if (!asked[i]) continue;
     any = 1;
     GROW(s->prints, s->n_print, s->cap_print);
@@ -412,14 +412,14 @@ status apply_print(reading *r) {
     q->frequency = p->frequency;
     q->at = *value_place(r, "GROUP");
     if (p->group != NULL &&
-        (q->table & (PRINT_CONTACT | PRINT_TOTALS | PRINT_ENERGY)) != 0)
+        (q->table & (PRINT_NODES | PRINT_ELEMENTS | PRINT_REACTIONS)) == 0)
       message_add(r->m->log, P2037, &q->at,
                   "GROUP= counts for NODES, ELEMENTS and REACTIONS only");
   }
   if (!any && !r->misread)
     message_add(r->m->log, P2005, &r->card->at,
                 "*PRINT names no table: CONTACT, TOTALS, NODES, ELEMENTS, "
-                "ENERGY or REACTIONS");
+                "ENERGY, REACTIONS, ZONES or LOOP");
 done:
   return st;
 }

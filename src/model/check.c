@@ -146,6 +146,18 @@ static void check_turn(const model *m, int dim, int obstacle_id) {
                 o->name, o->axis[0], o->axis[1], o->axis[2]);
 }
 
+static void check_torque_axis(const model *m, int dim, const contact *c) {
+  if (!c->has_axis || c->axis_of_obstacle || dim == 3) return;
+  if (m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC)
+    message_add(m->log, P2037, &c->axis_at,
+                "*CONTACT %s: AXIS counts for plane models and in 3-D only",
+                c->name);
+  else if (c->axis[0] != 0.0 || c->axis[1] != 0.0)
+    message_add(m->log, P2037, &c->axis_at,
+                "*CONTACT %s: forces in the plane have a torque about z only",
+                c->name);
+}
+
 static void check_contacts(model *m, const mesh *msh) {
   for (int i = 0; i < m->n_contact; ++i) {
     contact *c = &m->contacts[i];
@@ -164,6 +176,7 @@ static void check_contacts(model *m, const mesh *msh) {
       message_add(m->log, P2027, &m->moves[c->obstacle_id].at,
                   "*OBSTACLE: the normal has no part in the plane of the mesh");
     check_turn(m, msh->dim, c->obstacle_id);
+    check_torque_axis(m, msh->dim, c);
   }
 }
 

@@ -76,6 +76,17 @@ static const step *first_print(const model *m, int table, place *at) {
   return NULL;
 }
 
+int model_prints(const model *m, int tables) {
+  place at;
+  return first_print(m, tables, &at) != NULL;
+}
+
+int model_has_axis(const model *m) {
+  int any = 0;
+  for (int i = 0; i < m->n_contact; ++i) any |= m->contacts[i].has_axis;
+  return any;
+}
+
 static const step *first_fields(const model *m) {
   for (int i = 0; i < m->n_step; ++i)
     if (m->steps[i].output_frequency >= 0) return &m->steps[i];

@@ -123,7 +123,8 @@ typedef struct accuracy_param {
   int solver;
 } accuracy_param;
 typedef struct print_param {
-  int contact, totals, nodes, elements, energy, reactions, frequency;
+  int contact, totals, nodes, elements, energy, reactions, zones, loop;
+  int frequency;
   const char *group;
 } print_param;
 typedef struct output_param {

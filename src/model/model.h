@@ -57,7 +57,11 @@ typedef struct contact {
   const char *name, *group, *obstacle_name;
   place at, group_at, obstacle_at;
   int obstacle_id, group_id;
-  int obstacle_normal;    /* 1: NORMAL=OBSTACLE; resolved from -1: not said */
+  int obstacle_normal;  /* 1: NORMAL=OBSTACLE; resolved from -1: not said */
+  int has_axis;         /* line AXIS, or that of ROTATE of the obstacle    */
+  int axis_of_obstacle; /* 1: of the obstacle, shifted with it             */
+  double axis_point[3], axis[3]; /* m, of unit length; for the torque        */
+  place axis_at;
   friction_rule friction; /* from the first step on                          */
 } contact;
 
@@ -112,7 +116,9 @@ enum {
   PRINT_NODES = 4,
   PRINT_ELEMENTS = 8,
   PRINT_ENERGY = 16,
-  PRINT_REACTIONS = 32
+  PRINT_REACTIONS = 32,
+  PRINT_ZONES = 64,
+  PRINT_LOOP = 128
 };
 
 /* One line of *INITIAL CONDITIONS. */
@@ -228,6 +234,10 @@ const friction_rule *friction_in_force(const model *m, int step_id,
                                        int contact_id);
 /* A friction value that is zero everywhere and always is no friction. */
 int rule_has_friction(const friction_rule *rule);
+/* 1 if some *PRINT asks for one of these tables (bits PRINT_*). */
+int model_prints(const model *m, int tables);
+/* 1 if some contact has an axis for its torque. */
+int model_has_axis(const model *m);
 /* Which card or fact switched it on or off, into text; returns text. */
 const char *model_effect_reason(const model *m, int bit, char *text,
                                 size_t size);

@@ -86,6 +86,15 @@ static void resolve_friction(const model *m, friction_rule *rule) {
   value->factor = t;
 }
 
+/* A contact without an axis of its own has that of its obstacle. */
+static void resolve_axis(const model *m, contact *c) {
+  const obstacle *o = &m->obstacles[c->obstacle_id];
+  if (c->has_axis || !o->turns) return;
+  c->has_axis = c->axis_of_obstacle = 1;
+  memcpy(c->axis_point, o->pivot, sizeof c->axis_point);
+  memcpy(c->axis, o->axis, sizeof c->axis);
+}
+
 static void resolve_contacts(model *m) {
   for (int i = 0; i < m->n_contact; ++i) {
     contact *c = &m->contacts[i];
@@ -95,6 +104,7 @@ static void resolve_contacts(model *m) {
                                &c->obstacle_at);
     if (c->obstacle_id < 0) continue;
     m->moves[c->obstacle_id].used = 1;
+    resolve_axis(m, c);
     int shape = m->obstacles[c->obstacle_id].shape;
     if (c->obstacle_normal < 0) c->obstacle_normal = shape == OBSTACLE_PLANE;
     if (c->obstacle_normal &&

@@ -118,13 +118,48 @@ static double contact_force(const view *v, int id, int part) {
   return sum;
 }
 
-static const char *contact_word(const view *v, int id) {
+static const char *status_word(unsigned k) {
   static const char *const words[] = {"OPEN", "SLIP", "STICK"};
-  unsigned k = v->s->contact[id];
   return k < 3 ? words[k] : "?";
 }
 
+static const char *contact_word(const view *v, int id) {
+  return status_word(v->s->contact[id]);
+}
+
+VALUE(slip_distance, v->s->distance[id])
+
+/* Unit vector of the slip, global components; 0 where the node does not slip */
+static double slip_direction(const view *v, int id, int part) {
+  int dim = SURFACE->dim;
+  const double *frame = SURFACE->frame + at(dim * dim, id, 0);
+  const double *slip = v->s->slip + at(dim - 1, id, 0);
+  double sum = frame[dim + part] * slip[0], length = fabs(slip[0]);
+  if (dim == 3) {
+    sum += frame[2 * dim + part] * slip[1];
+    length = hypot(slip[0], slip[1]);
+  }
+  if (v->s->contact[id] != CONTACT_SLIP || !(length > 0)) return 0;
+  return sum / length;
+}
+
+/* Zones */
+VALUE(zone_kind, v->s->zones[id].kind)
+VALUE(zone_contact_no, v->s->zones[id].contact_id + 1)
+VALUE(zone_direction, v->s->zones[id].direction)
+VALUE(zone_from, v->s->zones[id].from[part])
+VALUE(zone_to, v->s->zones[id].to[part])
+VALUE(zone_length, v->s->zones[id].length)
+VALUE(zone_area, v->s->zones[id].area)
+
 /* Contacts */
+VALUE(total_torque, v->s->torque[id])
+VALUE(loop_way, v->s->loops[id].way[part])
+VALUE(loop_u_t, v->s->loops[id].mean_u_t[part])
+VALUE(loop_angle, v->s->loops[id].angle)
+VALUE(loop_friction, v->s->loops[id].friction)
+VALUE(loop_friction_end, v->s->loops[id].friction_end)
+VALUE(loop_area, v->s->loops[id].friction_end - v->s->loops[id].start_end)
 VALUE(contact_no, id + 1)
 VALUE(total_force, v->s->totals[id].force[part])
 VALUE(total_moment, v->s->totals[id].moment[part])
@@ -137,6 +172,14 @@ VALUE(total_stick, v->s->totals[id].n_stick)
 
 static const char *contact_name(const view *v, int id) {
   return v->m->contacts[id].name;
+}
+
+static const char *zone_word(const view *v, int id) {
+  return status_word((unsigned)v->s->zones[id].kind);
+}
+
+static const char *zone_contact_name(const view *v, int id) {
+  return contact_name(v, v->s->zones[id].contact_id);
 }
 
 /* clang-format off */
@@ -158,6 +201,10 @@ static const char *contact_name(const view *v, int id) {
 #define STRESS(scenes) PRINT_ELEMENTS, EFFECT_STRESS, scenes, NEEDS_STRESS
 #define REACT(scenes) PRINT_REACTIONS, EFFECT_REACTION, scenes, NEEDS_REACTION
 #define TOTAL(scenes) PRINT_TOTALS, C, scenes, NEEDS_TOTALS
+#define ZONE PER_ZONE, AS_REAL, PRINT_ZONES, C
+#define LOOP PER_CONTACT, AS_REAL, PRINT_LOOP, C
+#define SLIDES(scenes) PRINT_CONTACT, F, scenes, NEEDS_PLACE
+#define FORCE(scenes) PRINT_TOTALS | PRINT_LOOP, C, scenes, NEEDS_TOTALS
 #define PA "force/length^2"
 #define J "force*length"
 const column column_table[] = {
@@ -367,6 +414,18 @@ const column column_table[] = {
 {"slip_2", "length", CON, PRINT_CONTACT, F, SCENE_SOLID, NEEDS_SURFACE,
  "slip_2", 1, contact_slip, NULL,
  "slip of the increment; *STATIC: from the origin"},
+{"slip_distance", "length", CON, PRINT_CONTACT, F, SCENE_ALL, NEEDS_DISTANCE,
+ "slip_distance", 0, slip_distance, NULL, "length of all slip so far"},
+{"slip_dir_x", "-", CON, SLIDES(CART), NULL, 0, slip_direction, NULL,
+ "direction of the slip, 0 where there is none"},
+{"slip_dir_r", "-", CON, SLIDES(SCENE_AXI), NULL, 0, slip_direction, NULL,
+ "direction of the slip, 0 where there is none"},
+{"slip_dir_y", "-", CON, SLIDES(CART), NULL, 1, slip_direction, NULL,
+ "direction of the slip, 0 where there is none"},
+{"slip_dir_z", "-", CON, SLIDES(SCENE_AXI), NULL, 1, slip_direction, NULL,
+ "direction of the slip, 0 where there is none"},
+{"slip_dir_z", "-", CON, SLIDES(SCENE_SOLID), NULL, 2, slip_direction, NULL,
+ "direction of the slip, 0 where there is none"},
 {"limit", "force", CON, PRINT_CONTACT, F, SCENE_ALL,
  NEEDS_SURFACE | NEEDS_LIMIT, "limit", 0, sliding_limit, NULL,
  "sliding limit"},
@@ -380,7 +439,34 @@ const column column_table[] = {
 {"w", "-", CON, PRINT_CONTACT, C, SCENE_LCP, NEEDS_SURFACE, NULL, 0, lcp_w,
  NULL, "q + M z"},
 
-{"contact", "-", PER_CONTACT, AS_WORD, PRINT_TOTALS, C, SCENE_ALL,
+{"contact", "-", PER_ZONE, AS_WORD, PRINT_ZONES, C, SCENE_ALL, NEEDS_ZONES,
+ NULL, 0, zone_contact_no, zone_contact_name, "name of the *CONTACT"},
+{"zone", "-", PER_ZONE, AS_WORD, PRINT_ZONES, C, SCENE_ALL, NEEDS_ZONES, NULL,
+ 0, zone_kind, zone_word, "OPEN, SLIP, STICK; as number 0, 1, 2"},
+{"direction", "-", PER_ZONE, AS_COUNT, PRINT_ZONES, F, SCENE_FLAT, NEEDS_ZONES,
+ NULL, 0, zone_direction, NULL, "sign of the slip along the tangent"},
+{"x_from", "length", ZONE, SCENE_PLANE, NEEDS_ZONES, NULL, 0, zone_from, NULL,
+ "where the zone begins"},
+{"y_from", "length", ZONE, SCENE_PLANE, NEEDS_ZONES, NULL, 1, zone_from, NULL,
+ "where the zone begins"},
+{"x_to", "length", ZONE, SCENE_PLANE, NEEDS_ZONES, NULL, 0, zone_to, NULL,
+ "where the zone ends"},
+{"y_to", "length", ZONE, SCENE_PLANE, NEEDS_ZONES, NULL, 1, zone_to, NULL,
+ "where the zone ends"},
+{"r_from", "length", ZONE, SCENE_AXI, NEEDS_ZONES, NULL, 0, zone_from, NULL,
+ "where the zone begins"},
+{"z_from", "length", ZONE, SCENE_AXI, NEEDS_ZONES, NULL, 1, zone_from, NULL,
+ "where the zone begins"},
+{"r_to", "length", ZONE, SCENE_AXI, NEEDS_ZONES, NULL, 0, zone_to, NULL,
+ "where the zone ends"},
+{"z_to", "length", ZONE, SCENE_AXI, NEEDS_ZONES, NULL, 1, zone_to, NULL,
+ "where the zone ends"},
+{"extent", "length", ZONE, SCENE_FLAT, NEEDS_ZONES, NULL, 0, zone_length, NULL,
+ "length along the contact line"},
+{"area", "length^2", ZONE, SCENE_ALL, NEEDS_ZONES, NULL, 0, zone_area, NULL,
+ "area of the zone, of the whole turn in axisymmetry"},
+
+{"contact", "-", PER_CONTACT, AS_WORD, PRINT_TOTALS | PRINT_LOOP, C, SCENE_ALL,
  NEEDS_TOTALS, NULL, 0, contact_no, contact_name, "name of the *CONTACT"},
 {"force_x", "force", TOT, TOTAL(CART), "force_x", 0,
  total_force, NULL, "force of the obstacle on the body"},
@@ -398,14 +484,39 @@ const column column_table[] = {
  "moment of the obstacle on the body about the origin"},
 {"moment_z", J, TOT, TOTAL(CART), "moment_z", 2,
  total_moment, NULL, "moment of the obstacle on the body about the origin"},
-{"normal", "force", TOT, TOTAL(SCENE_ALL), "normal", 0, total_normal, NULL,
+{"normal", "force", TOT, FORCE(SCENE_ALL), "normal", 0, total_normal, NULL,
  "sum of the normal forces, positive when pressed"},
-{"tangential", "force", TOT, TOTAL(SCENE_FLAT), "tangential", 0,
+{"tangential", "force", TOT, FORCE(SCENE_FLAT), "tangential", 0,
  total_tangential, NULL, "sum of the tangential forces"},
-{"tangential_1", "force", TOT, TOTAL(SCENE_SOLID), "tangential_1", 0,
+{"tangential_1", "force", TOT, FORCE(SCENE_SOLID), "tangential_1", 0,
  total_tangential, NULL, "sum of the tangential forces"},
-{"tangential_2", "force", TOT, TOTAL(SCENE_SOLID), "tangential_2", 1,
+{"tangential_2", "force", TOT, FORCE(SCENE_SOLID), "tangential_2", 1,
  total_tangential, NULL, "sum of the tangential forces"},
+{"torque", J, PER_CONTACT, AS_REAL, PRINT_TOTALS | PRINT_LOOP, C, CART,
+ NEEDS_TORQUE, "torque", 0, total_torque, NULL,
+ "torque of the obstacle on the body about the axis of the contact"},
+{"time", "time", LOOP, SCENE_ALL, NEEDS_LOOP, NULL, 0, time_now, NULL,
+ "end of the increment"},
+{"way", "length", LOOP, SCENE_FLAT, NEEDS_LOOP, NULL, 0, loop_way, NULL,
+ "mean way of the obstacle past the nodes"},
+{"way_1", "length", LOOP, SCENE_SOLID, NEEDS_LOOP, NULL, 0, loop_way, NULL,
+ "mean way of the obstacle past the nodes"},
+{"way_2", "length", LOOP, SCENE_SOLID, NEEDS_LOOP, NULL, 1, loop_way, NULL,
+ "mean way of the obstacle past the nodes"},
+{"angle", "rad", LOOP, CART, NEEDS_LOOP | NEEDS_TORQUE, NULL, 0, loop_angle,
+ NULL, "angle of the obstacle"},
+{"mean_u_t", "length", LOOP, SCENE_FLAT, NEEDS_LOOP, NULL, 0, loop_u_t, NULL,
+ "mean tangential displacement of the contact nodes"},
+{"mean_u_t1", "length", LOOP, SCENE_SOLID, NEEDS_LOOP, NULL, 0, loop_u_t, NULL,
+ "mean tangential displacement of the contact nodes"},
+{"mean_u_t2", "length", LOOP, SCENE_SOLID, NEEDS_LOOP, NULL, 1, loop_u_t, NULL,
+ "mean tangential displacement of the contact nodes"},
+{"friction_work", J, LOOP, SCENE_ALL, NEEDS_LOOP, NULL, 0, loop_friction, NULL,
+ "dissipated by friction so far, trapezoidal"},
+{"friction_work_end", J, LOOP, SCENE_ALL, NEEDS_LOOP, NULL, 0,
+ loop_friction_end, NULL, "the same with the forces at the end of increments"},
+{"loop_area", J, LOOP, SCENE_ALL, NEEDS_LOOP, NULL, 0, loop_area, NULL,
+ "friction_work_end since the step began: the area of a loop that closes"},
 {"closed_area", "length^2", TOT, TOTAL(SCENE_ALL), "closed_area", 0,
  total_area, NULL, "tributary area of the closed nodes"},
 {"open", "-", TOT_N, TOTAL(SCENE_ALL), "open", 0, total_open, NULL,
@@ -425,8 +536,17 @@ unsigned scene_of(const model *m) {
   return SCENE_PLANE;
 }
 
+/* 1 unless its tables are ones that only *PRINT brings about. */
+static int is_asked(const column *c, const model *m) {
+  const unsigned extra = PRINT_ZONES | PRINT_LOOP;
+  if ((c->needs & NEEDS_TORQUE) != 0 && !model_has_axis(m)) return 0;
+  if (c->tables == 0 || (c->tables & ~extra) != 0) return 1;
+  return model_prints(m, (int)c->tables);
+}
+
 int column_visible(const column *c, const model *m) {
-  return (c->effects & ~m->effects) == 0 && (c->scenes & scene_of(m)) != 0;
+  return is_asked(c, m) && (c->effects & ~m->effects) == 0 &&
+         (c->scenes & scene_of(m)) != 0;
 }
 
 int column_ready(const column *c, const state *s) {
@@ -438,6 +558,10 @@ int column_ready(const column *c, const state *s) {
   if (s->surface != NULL && s->surface->x != NULL) have |= NEEDS_PLACE;
   if (s->limit != NULL) have |= NEEDS_LIMIT;
   if (s->totals != NULL) have |= NEEDS_TOTALS;
+  if (s->distance != NULL) have |= NEEDS_DISTANCE;
+  if (s->torque != NULL) have |= NEEDS_TORQUE;
+  if (s->loops != NULL) have |= NEEDS_LOOP;
+  if (s->zones != NULL) have |= NEEDS_ZONES;
   return (c->needs & ~have) == 0;
 }
 
@@ -451,6 +575,8 @@ int column_items(entity of, const view *v) {
       return v->s->surface != NULL ? v->s->surface->n : 0;
     case PER_CONTACT:
       return v->m->n_contact;
+    case PER_ZONE:
+      return v->s->n_zone;
     default:
       return 1;
   }

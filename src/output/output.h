@@ -15,7 +15,8 @@ typedef enum {
   PER_CONTACT_NODE,
   PER_CONTACT,
   PER_NODE,
-  PER_ELEMENT
+  PER_ELEMENT,
+  PER_ZONE
 } entity;
 
 /* Scenes differ in dimension and in the names of the components. */
@@ -37,7 +38,11 @@ enum {
   NEEDS_SURFACE = 8,
   NEEDS_LIMIT = 16,
   NEEDS_TOTALS = 32,
-  NEEDS_PLACE = 64 /* a surface with coordinates, normals, areas            */
+  NEEDS_PLACE = 64, /* a surface with coordinates, normals, areas           */
+  NEEDS_DISTANCE = 128,
+  NEEDS_TORQUE = 256, /* some contact has an axis                           */
+  NEEDS_LOOP = 512,
+  NEEDS_ZONES = 1024
 };
 
 /* What a value function sees. */

@@ -35,6 +35,8 @@ static const struct { int bit; entity of; const char *name; } kinds[] = {
   {PRINT_ELEMENTS,  PER_ELEMENT,      "ELEMENTS"},
   {PRINT_ENERGY,    PER_INCREMENT,    "ENERGY"},
   {PRINT_REACTIONS, PER_NODE,         "REACTIONS"},
+  {PRINT_ZONES,     PER_ZONE,         "ZONES"},
+  {PRINT_LOOP,      PER_CONTACT,      "LOOP"},
 };
 /* clang-format on */
 
@@ -58,6 +60,7 @@ static int cell_width(const column *c, const model *m, int digits) {
 void table_choose(table *t, entity of, unsigned print_bit, const view *v,
                   int digits) {
   t->n = 0;
+  t->of = of;
   t->digits = digits;
   for (const column *c = column_table; c->name != NULL; ++c) {
     if (c->of != of || (c->tables & print_bit) == 0) continue;
@@ -217,12 +220,9 @@ static status table_rows(const table *columns, tabular *t, const view *v,
       choose_elements(t, p);
       ordered_rows(columns, t, v, t->msh->n_elem, t->elem_order);
       return OK;
-    case PRINT_TOTALS:
-      for (int i = 0; i < t->m->n_contact; ++i)
-        table_row(columns, v, i, t->dat.f);
-      return OK;
     default:
-      table_row(columns, v, 0, t->dat.f);
+      for (int i = 0; i < column_items(columns->of, v); ++i)
+        table_row(columns, v, i, t->dat.f);
       return OK;
   }
 }

@@ -15,6 +15,7 @@
 /* Columns of a table that the model and the state have. */
 typedef struct table {
   int n;
+  entity of;
   const column *col[64];
   int width[64];
   int digits; /* after the point                                            */

@@ -57,7 +57,7 @@ static void make_arrays(made_up *run) {
   count[MADE_U] = count[MADE_REACTION] = dim * run->msh->n_node;
   count[MADE_STRAIN] = count[MADE_STRESS] = run->m.ns * run->msh->n_elem;
   count[MADE_UC] = count[MADE_RC] = dim * n;
-  count[MADE_GAP] = count[MADE_LIMIT] = n;
+  count[MADE_GAP] = count[MADE_LIMIT] = count[MADE_DISTANCE] = n;
   count[MADE_SLIP] = (dim - 1) * n;
   for (int a = 0; a < MADE_ARRAYS; ++a)
     run->array[a] = need(memory_new((size_t)count[a], sizeof(double)));
@@ -71,6 +71,11 @@ static void make_arrays(made_up *run) {
   run->s.gap = run->array[MADE_GAP];
   run->s.slip = run->array[MADE_SLIP];
   run->s.limit = run->array[MADE_LIMIT];
+  run->s.distance = run->array[MADE_DISTANCE];
+  run->s.torque = run->torque;
+  run->s.loops = run->loops;
+  run->s.zones = run->zones;
+  run->s.n_zone = 2;
   run->s.contact = run->status;
   run->s.totals = run->totals;
   run->s.surface = &run->surface;
@@ -80,13 +85,13 @@ static void make_step(made_up *run, int n_increment) {
   step *s = run->steps;
   run->support = (load){.kind = LOAD_FIXING, .group = "TOP"};
   run->support.group_id = group_id(run->msh, "TOP");
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < 8; ++i)
     run->prints[i] =
         (print_request){.table = 1 << i, .group_id = -1, .frequency = 1};
   *s = (step){.kind = STEP_QUASISTATIC, .dt = 0.5, .total = 0.5 * n_increment};
   s->loads.n = 1;
   s->loads.item = &run->support;
-  s->n_print = 6;
+  s->n_print = 8;
   s->prints = run->prints;
   s->output_frequency = 1;
 }
@@ -96,6 +101,7 @@ static void make_model(made_up *run, int n_increment) {
   run->foot = (contact){.name = "FOOT",
                         .group = "BOTTOM",
                         .obstacle_name = "FLOOR",
+                        .has_axis = 1,
                         .group_id = group_id(run->msh, "BOTTOM")};
   run->body = (section){.elset = "BODY", .material_name = "STEEL"};
   run->body.kin = m->dim == 3 ? SOLID_3D : PLANE_STRAIN;
@@ -151,6 +157,21 @@ void made_up_advance(made_up *run, int total_no) {
   s->energy.defect = 1e-9;
   run->totals[0] = (contact_total){
       .force = {1.5, 2.5, -3.5}, .normal = -2.5 * total_no, .area = 0.75};
+  run->torque[0] = 0.125 * total_no;
+  run->loops[0] = (contact_loop){.way = {0.5, -0.25},
+                                 .mean_u_t = {1e-3, 2e-3},
+                                 .angle = 0.75,
+                                 .friction = 2.5,
+                                 .friction_end = 3.5,
+                                 .start_end = 1.25};
+  run->zones[0] = (contact_zone){
+      .kind = CONTACT_STICK, .to = {0.5, 0}, .length = 0.5, .area = 0.5};
+  run->zones[1] = (contact_zone){.kind = CONTACT_SLIP,
+                                 .direction = -1,
+                                 .from = {0.5, 0},
+                                 .to = {0.75, 0},
+                                 .length = 0.25,
+                                 .area = 0.25};
   s->n_open = s->n_slip = s->n_stick = total_no;
 }
 

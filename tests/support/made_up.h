@@ -19,6 +19,7 @@ enum {
   MADE_GAP,
   MADE_SLIP,
   MADE_LIMIT,
+  MADE_DISTANCE,
   MADE_ARRAYS
 };
 
@@ -29,10 +30,14 @@ typedef struct made_up {
   section body;
   step steps[1];
   load support;
-  print_request prints[6]; /* CONTACT TOTALS NODES ELEMENTS ENERGY REACTIONS */
+  print_request prints[8]; /* CONTACT TOTALS NODES ELEMENTS ENERGY REACTIONS
+                              ZONES LOOP                                     */
   contact_surface surface;
   setup_facts facts;
   contact_total totals[1];
+  contact_loop loops[1];
+  double torque[1];
+  contact_zone zones[2];
   double *array[MADE_ARRAYS];
   int count[MADE_ARRAYS]; /* items of each array                          */
   contact_status *status;

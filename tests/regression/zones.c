@@ -1,0 +1,151 @@
+/*
+ * Reading the result: zones with their ends between the nodes, slip distance
+ * and direction, torque about an axis, loops of friction per contact.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static job run_deck(const char *deck, const char *words) {
+  job j = job_begin("deck");
+  int code = job_run_deck(&j, deck, words);
+  ck_assert_msg(code == 0, "%s %s: exit %d: %s", deck, words, code, j.errors);
+  return j;
+}
+
+/* Row of a kind of zone (0 OPEN, 1 SLIP, 2 STICK). */
+static int zone_row(const dat *z, int kind) {
+  int row = 0;
+  while (row < z->n_row && dat_at(z, row, "zone") != kind) ++row;
+  ck_assert_int_lt(row, z->n_row);
+  return row;
+}
+
+/* a = sqrt(4 P R / (pi E*)) of the line, cbrt(3 P R / (4 E*)) of the sphere. */
+START_TEST(radius_of_hertz_is_found_between_the_nodes) {
+  const double pi = acos(-1.0), Es = 210e3 / 0.91;
+  const double line = sqrt(4 * 1000.0 * 10 / (pi * Es));
+  const double ball = cbrt(3 * 1000.0 * 10 / (4 * Es));
+  /* Meshes whose nodes lie elsewhere against the edge of the contact. */
+  static const double part[] = {1.0, 1.013, 1.03, 1.045};
+  for (int k = 0; k < 4; ++k) {
+    char words[80];
+    snprintf(words, sizeof words, "-D NC=24 -D A=%.17g", line * part[k]);
+    job j = run_deck("input/hertz_line/hertz_block", words);
+    dat z = job_table(&j, "ZONES", -1);
+    ck_assert_int_eq(z.n_row, 2);
+    int closed = zone_row(&z, 1);
+    ck_assert_double_eq_tol(dat_at(&z, closed, "x_from"), 0.0, 1e-12);
+    ck_assert_double_eq_tol(dat_at(&z, closed, "x_to"), line, 0.2 * line / 24);
+    ck_assert_double_eq_tol(dat_at(&z, closed, "extent"),
+                            dat_at(&z, closed, "area"), 1e-12);
+    dat_free(&z);
+    job_end(&j);
+  }
+  job j = run_deck("input/hertz_sphere/hertz_sphere", "-D NC=24");
+  dat z = job_table(&j, "ZONES", -1);
+  double r = dat_at(&z, zone_row(&z, 1), "r_to");
+  ck_assert_double_eq_tol(r, ball, 0.3 * ball / 24);
+  ck_assert_double_eq_tol(dat_at(&z, zone_row(&z, 1), "area"), pi * r * r,
+                          3e-3 * r * r);
+  dat_free(&z);
+  job_end(&j);
+  j = run_deck("input/hertz_sphere/hertz_sphere_3d", "");
+  z = job_table(&j, "ZONES", -1);
+  ck_assert_int_eq(z.n_row, 3);
+  double area = pi * ball * ball / 4;
+  ck_assert_double_eq_tol(dat_at(&z, zone_row(&z, 1), "area"), area,
+                          0.03 * area);
+  ck_assert_double_eq(dat_at(&z, zone_row(&z, 2), "area"), 0.0);
+  dat_free(&z);
+  job_end(&j);
+}
+END_TEST
+
+/* Square of the side 1 with the foot on a plane that moves by "way" along x,
+ * pressed by p = 1, glued to its head; and what follows *STEP. */
+static job run_square(const char *obstacle, const char *contact, double mu,
+                      const char *step) {
+  job j = job_begin("square");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "square.inp",
+            "*PARAMETER\nN = 6\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
+            "THICKNESS=2\n*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n%.17g\n"
+            "*STEP\n*STATIC\n1E-9\n*BOUNDARY\nTOP, 1, 1\nTOP, 2, 2, -0.001\n"
+            "*END STEP\n*STEP\n%s*PRINT, CONTACT, TOTALS, ZONES, LOOP\n"
+            "*END STEP\n",
+            obstacle, contact, mu, step);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Nothing slips: one zone over the whole foot, twice as large as long for the
+ * thickness 2. */
+START_TEST(one_zone_reaches_from_end_to_end) {
+  job j = run_square("", "", 1.0, "*QUASISTATIC\n1., 1.\n");
+  dat z = job_table(&j, "ZONES", -1);
+  ck_assert_int_eq(z.n_row, 1);
+  ck_assert_double_eq(dat_at(&z, 0, "zone"), 2.0);
+  ck_assert_double_eq_tol(dat_at(&z, 0, "x_from"), 0.0, 1e-14);
+  ck_assert_double_eq_tol(dat_at(&z, 0, "x_to"), 1.0, 1e-14);
+  ck_assert_double_eq_tol(dat_at(&z, 0, "extent"), 1.0, 1e-14);
+  ck_assert_double_eq_tol(dat_at(&z, 0, "area"), 2.0, 1e-14);
+  dat_free(&z);
+  job_end(&j);
+}
+END_TEST
+
+/*
+ * A belt runs to 0.5, back to -0.5, and again: every node slips along with
+ * it, mu p = 0.1, once the block has sheared by at most 0.01. Slip distance is
+ * the way less the shearing; heat is force times slip.
+ */
+START_TEST(belt_gives_slip_distance_direction_torque_and_loop) {
+  job j = run_square("MOVE, \"0.5*(t<1)*t + 0.5*(t>=1)*(2-t)\", 0.\n",
+                     "AXIS, 0., 2.\n", 0.1, "*QUASISTATIC\n0.05, 3.\n");
+  const double N = 2.0, T = 0.2;
+  dat c = job_table(&j, "CONTACT", 19), l = job_table(&j, "LOOP", 19);
+  dat t = job_table(&j, "TOTALS", 19);
+  double mean = 0.0;
+  for (int i = 0; i < c.n_row; ++i) {
+    double u = dat_at(&c, i, "u_t");
+    ck_assert_double_eq(dat_at(&c, i, "status"), 1.0);
+    ck_assert_double_eq_tol(dat_at(&c, i, "slip_distance"), 0.5 - u, 1e-8);
+    ck_assert_double_eq(dat_at(&c, i, "slip_dir_x"), -1.0);
+    ck_assert_double_eq(dat_at(&c, i, "slip_dir_y"), 0.0);
+    mean += u * dat_at(&c, i, "f_n") / N;
+  }
+  double torque = 0.0;
+  for (int i = 0; i < c.n_row; ++i)
+    torque +=
+        2.0 * dat_at(&c, i, "f_x") + dat_at(&c, i, "x") * dat_at(&c, i, "f_y");
+  ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), N, 1e-8);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "torque"), torque, 1e-9);
+  ck_assert_double_eq_tol(dat_at(&l, 0, "tangential"), T, 1e-9);
+  ck_assert_double_eq_tol(dat_at(&l, 0, "way"), 0.5, 1e-9);
+  ck_assert_double_eq_tol(dat_at(&l, 0, "loop_area"), T * (0.5 - mean), 1e-6);
+  dat_free(&c);
+  dat_free(&l);
+  dat_free(&t);
+  /* Back: the force has turned; all the way has become heat but for the
+   * shearing to and fro. */
+  l = job_table(&j, "LOOP", -1);
+  ck_assert_double_eq_tol(dat_at(&l, 0, "tangential"), -T, 1e-9);
+  ck_assert_double_eq_tol(dat_at(&l, 0, "way"), -0.5, 1e-9);
+  ck_assert_double_eq_tol(dat_at(&l, 0, "loop_area"), T * (1.5 - 3 * mean),
+                          1e-6);
+  dat_free(&l);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("zones", radius_of_hertz_is_found_between_the_nodes,
+          one_zone_reaches_from_end_to_end,
+          belt_gives_slip_distance_direction_torque_and_loop)
