@@ -36,7 +36,7 @@ typedef struct spring {
 } spring;
 
 /* One node on an obstacle given by its card, then what follows "*CLOAD". */
-static job run_node(const spring *s, const char *obstacle, const char *load,
+static job run_node(const spring *s, const char *shape, const char *force_card,
                     const char *steps) {
   job j = job_begin("node");
   double G = s->k / (s->dim == 3 ? sqrt(3.0) / 4 : 1.0);
@@ -51,7 +51,7 @@ static job run_node(const spring *s, const char *obstacle, const char *load,
             "*STEP\n*STATIC\n1E-9\n*BOUNDARY\nCLAMPED, 1, %d\n"
             "*CLOAD\nTIP, %d, %.17g\n*SOLVER, TOL=1E-13\n*END STEP\n"
             "*STEP\n%s%s*PRINT, CONTACT, ENERGY\n*END STEP\n",
-            2.6 * G, obstacle, s->mu, s->dim, s->dim, -s->N, steps, load);
+            2.6 * G, shape, s->mu, s->dim, s->dim, -s->N, steps, force_card);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;

@@ -67,7 +67,7 @@ END_TEST
 
 /* Square of the side 1 with the foot on a plane that moves by "way" along x,
  * pressed by p = 1, glued to its head; and what follows *STEP. */
-static job run_square(const char *obstacle, const char *contact, double mu,
+static job run_square(const char *shape, const char *pair, double mu,
                       const char *step) {
   job j = job_begin("square");
   job_copy(&j, "tests/regression/mesh/square.geo");
@@ -80,7 +80,7 @@ static job run_square(const char *obstacle, const char *contact, double mu,
             "*STEP\n*STATIC\n1E-9\n*BOUNDARY\nTOP, 1, 1\nTOP, 2, 2, -0.001\n"
             "*END STEP\n*STEP\n%s*PRINT, CONTACT, TOTALS, ZONES, LOOP\n"
             "*END STEP\n",
-            obstacle, contact, mu, step);
+            shape, pair, mu, step);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;
