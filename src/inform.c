@@ -65,6 +65,42 @@ static void list_friction(void) {
   }
 }
 
+/* Rows of a data line of a law: name, unit, what it is if absent, help. */
+static void list_fields(const option *table, const char *title) {
+  char text[200];
+  if (table == NULL) return;
+  printf("  %s: %s\n", title, law_line_text(table, text, sizeof text));
+  for (const option *o = table; o->name != NULL; ++o) {
+    printf("    %-10s %s", o->name, o->help);
+    if (strcmp(o->unit, "-") != 0) printf(", unit %s", o->unit);
+    if (o->initial != NULL && strcmp(o->initial, OPTION_ABSENT) != 0)
+      printf("; %s if absent", o->initial);
+    putchar('\n');
+  }
+}
+
+static void list_materials(void) {
+  puts(
+      "elastic  (CPR98 2.2)\n  *ELASTIC, TYPE=ISO, ORTHO or ANISO: linear "
+      "elasticity, any symmetric and\n  positive definite a_ijkl\n\n"
+      "With *INELASTIC, LAW=:");
+  for (int i = 0; law_list[i] != NULL; ++i) {
+    const law_ops *law = law_list[i];
+    putchar('\n');
+    list_plugin(law->name, law->reference, law->help, law->options);
+    list_fields(law->fields,
+                law->terms == NULL ? "data line" : "first data line");
+    list_fields(law->terms,
+                law->fields == NULL ? "data lines" : "then, a term a line");
+    for (const char *p = law->example; *p != '\0';) {
+      const int n = (int)strcspn(p, "\n");
+      printf("  %s %.*s\n", p == law->example ? "for example" : "           ",
+             n, p);
+      p += n + (p[n] != '\0');
+    }
+  }
+}
+
 int inform_keywords(const char *name) { return keywords_print(name, stdout); }
 
 int inform_list(const char *kind) {
@@ -73,9 +109,7 @@ int inform_list(const char *kind) {
   else if (strcmp(kind, "friction") == 0)
     list_friction();
   else if (strcmp(kind, "materials") == 0)
-    puts(
-        "elastic  (CPR98 2.2)\n  *ELASTIC, TYPE=ISO, ORTHO or ANISO: linear "
-        "elasticity, any symmetric and\n  positive definite a_ijkl");
+    list_materials();
   else if (strcmp(kind, "integrators") == 0)
     puts(
         "none: all materials of this version are elastic, no inelastic strain "

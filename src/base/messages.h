@@ -218,7 +218,17 @@
   X(2044, WARNING, "amplitude counts total time",                            \
     "Values of the model - friction, given contact forces, motions of "      \
     "obstacles - run in total time. Write TIME=TOTAL TIME on the "           \
-    "*AMPLITUDE to say so.")
+    "*AMPLITUDE to say so.")                                                 \
+  X(2046, ERROR, "inelastic law not valid",                                  \
+    "The coefficients do not fit each other or *ELASTIC. protis --list "     \
+    "materials shows every law with its fields.")                            \
+  X(2047, NOTE, "long-term moduli",                                          \
+    "Beside *VISCOELASTIC the constants of *ELASTIC are those after all "    \
+    "terms have relaxed, as in Abaqus. *ELASTIC, MODULI=INSTANTANEOUS "      \
+    "makes them those at once.")                                             \
+  X(2048, WARNING, "inelastic law that never flows",                         \
+    "Inelastic strain grows in *VISCO steps only; the other steps, as in "   \
+    "Abaqus, take the material as elastic. Use *VISCO, or remove the law.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

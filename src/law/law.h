@@ -13,7 +13,7 @@
 #define PROTIS_LAW_LAW_H
 
 #include "base/option.h"
-#include "deck/quantity.h"
+#include "deck/deck.h"
 #include "material/material.h"
 
 /* Elasticity of a section, made once by law_elastic_set. */
@@ -53,6 +53,7 @@ typedef struct law_card {
   quantity *value; /* [n_set * law_n_value()] fields, then terms, owned       */
   const expression *formula; /* rate of the law USER, borrowed; else NULL     */
   law_shift shift;
+  place at; /* of the card                                                    */
 } law_card;
 
 /* Where a law is evaluated. */
@@ -124,6 +125,15 @@ extern const law_ops *const law_list[]; /* NULL at the end                    */
 const law_ops *law_find(const char *name); /* case ignored; or NULL           */
 
 /* Values: coefficient.c. */
+/* The data lines of a card into a law whose ops are set: per temperature the
+ * line of the fields, if the row has any, then a line for each term; a last
+ * number on every line is the temperature, ascending. Errors go to the log
+ * (and leave n_set = 0); ERR_MEMORY. */
+status law_card_read(deck *d, const card *c, message_log *log, law_card *law);
+/* Values at t = 0 against each other and the elasticity; errors to the log. */
+void law_card_check(const law_card *law, elastic_type type, message_log *log);
+/* What a data line holds: "A, n [, m] [, temperature]"; returns text. */
+const char *law_line_text(const option *table, char *text, size_t size);
 int law_n_field(const option *table); /* rows of fields or terms; NULL: 0     */
 int law_n_value(const law_card *law);
 /* Coefficients at a time and temperature, value[law_n_value()]: ERR_DECK with

@@ -133,22 +133,29 @@ static const load *moving_support(const model *m) {
   return NULL;
 }
 
-void model_find_effects(model *m) {
-  place at;
-  m->effects = 0;
-  m->effects |= EFFECT_MESH;
-  if (m->n_contact > 0) m->effects |= EFFECT_CONTACT;
-  if (has_friction(m)) m->effects |= EFFECT_FRICTION;
-  if (has_friction(m) && has_history(m)) m->effects |= EFFECT_HISTORY;
-  if (first_body_load(m) != NULL) m->effects |= EFFECT_BODY;
-  if (first_temperature(m) != NULL && has_expansion(m))
-    m->effects |= EFFECT_THERMAL;
-  if (has_estimates(m)) m->effects |= EFFECT_ESTIMATES;
-  if (first_print(m, PRINT_ELEMENTS, &at) != NULL || first_fields(m) != NULL)
-    m->effects |= EFFECT_STRESS;
-  if (first_print(m, PRINT_REACTIONS, &at) != NULL || first_fields(m) != NULL ||
-      moving_support(m) != NULL)
-    m->effects |= EFFECT_REACTION;
+/* First section whose material has an inelastic law, or NULL. */
+static const section *first_inelastic(const model *m) {
+  for (int i = 0; i < m->n_section; ++i) {
+    const int id = m->sections[i].material_id;
+    if (id >= 0 && m->materials[id].law.ops != NULL) return &m->sections[i];
+  }
+  return NULL;
+}
+
+static int has_inelastic(const model *m) {
+  return first_inelastic(m) != NULL && has_card(m, "VISCO");
+}
+
+static void reason_inelastic(const model *m, char *text, size_t size) {
+  const section *s = first_inelastic(m);
+  if (s == NULL) {
+    snprintf(text, size, "no material has *INELASTIC");
+    return;
+  }
+  const law_card *law = &m->materials[s->material_id].law;
+  snprintf(text, size, "%s of group %s, line %d%s", law->ops->name, s->elset,
+           law->at.line_no,
+           has_card(m, "VISCO") ? "" : ", but no step is *VISCO");
 }
 
 void model_fit_problem(model *m, int dim, int friction) {
@@ -225,55 +232,88 @@ static void reason_thermal(const model *m, char *text, size_t size) {
              l->at.line_no);
 }
 
+static void reason_mesh(const model *m, char *text, size_t size) {
+  snprintf(text, size, "*MESH, line %d", m->mesh_at.line_no);
+}
+
+static void reason_contact(const model *m, char *text, size_t size) {
+  if (m->n_contact > 0)
+    snprintf(text, size, "*CONTACT, NAME=%s, line %d", m->contacts[0].name,
+             m->contacts[0].at.line_no);
+  else
+    snprintf(text, size, "no *CONTACT card");
+}
+
+static void reason_body(const model *m, char *text, size_t size) {
+  const load *l = first_body_load(m);
+  if (l != NULL)
+    snprintf(text, size, "*DLOAD on group %s, line %d", l->group,
+             l->at.line_no);
+  else
+    snprintf(text, size, "no *DLOAD card");
+}
+
+static void reason_stress(const model *m, char *text, size_t size) {
+  reason_output(m, PRINT_ELEMENTS, text, size);
+}
+
+static void reason_reaction(const model *m, char *text, size_t size) {
+  const load *l = moving_support(m);
+  if (l != NULL)
+    snprintf(text, size,
+             "work of the support %s, line %d, that moves or is let go",
+             l->group, l->at.line_no);
+  else
+    reason_output(m, PRINT_REACTIONS, text, size);
+}
+
+static int has_mesh(const model *m) { return !m->has_problem; }
+static int has_contact(const model *m) { return m->n_contact > 0; }
+static int has_slip_history(const model *m) {
+  return has_friction(m) && has_history(m);
+}
+static int has_body(const model *m) { return first_body_load(m) != NULL; }
+static int has_thermal(const model *m) {
+  return first_temperature(m) != NULL && has_expansion(m);
+}
+static int has_stress(const model *m) {
+  place at;
+  return first_print(m, PRINT_ELEMENTS, &at) != NULL || first_fields(m) != NULL;
+}
+static int has_reaction(const model *m) {
+  place at;
+  return first_print(m, PRINT_REACTIONS, &at) != NULL ||
+         first_fields(m) != NULL || moving_support(m) != NULL;
+}
+
+/* When an effect is on, and what its line in the plan says. */
+static const struct {
+  int (*is_on)(const model *m);
+  void (*reason)(const model *m, char *text, size_t size);
+} rows[EFFECT_COUNT] = {
+    [EFFECT_BIT_MESH] = {has_mesh, reason_mesh},
+    [EFFECT_BIT_CONTACT] = {has_contact, reason_contact},
+    [EFFECT_BIT_FRICTION] = {has_friction, reason_friction},
+    [EFFECT_BIT_HISTORY] = {has_slip_history, reason_history},
+    [EFFECT_BIT_INELASTIC] = {has_inelastic, reason_inelastic},
+    [EFFECT_BIT_THERMAL] = {has_thermal, reason_thermal},
+    [EFFECT_BIT_BODY] = {has_body, reason_body},
+    [EFFECT_BIT_STRESS] = {has_stress, reason_stress},
+    [EFFECT_BIT_REACTION] = {has_reaction, reason_reaction},
+    [EFFECT_BIT_ESTIMATES] = {has_estimates, reason_estimates}};
+
+void model_find_effects(model *m) {
+  m->effects = 0;
+  for (int bit = 0; bit < EFFECT_COUNT; ++bit)
+    if (rows[bit].is_on != NULL && rows[bit].is_on(m)) m->effects |= 1u << bit;
+}
+
 const char *model_effect_reason(const model *m, int bit, char *text,
                                 size_t size) {
-  const load *l;
   if (reason_problem(m, bit, text, size)) return text;
-  switch (bit) {
-    case EFFECT_BIT_MESH:
-      snprintf(text, size, "*MESH, line %d", m->mesh_at.line_no);
-      break;
-    case EFFECT_BIT_CONTACT:
-      if (m->n_contact > 0)
-        snprintf(text, size, "*CONTACT, NAME=%s, line %d", m->contacts[0].name,
-                 m->contacts[0].at.line_no);
-      else
-        snprintf(text, size, "no *CONTACT card");
-      break;
-    case EFFECT_BIT_FRICTION:
-      reason_friction(m, text, size);
-      break;
-    case EFFECT_BIT_HISTORY:
-      reason_history(m, text, size);
-      break;
-    case EFFECT_BIT_BODY:
-      l = first_body_load(m);
-      if (l != NULL)
-        snprintf(text, size, "*DLOAD on group %s, line %d", l->group,
-                 l->at.line_no);
-      else
-        snprintf(text, size, "no *DLOAD card");
-      break;
-    case EFFECT_BIT_THERMAL:
-      reason_thermal(m, text, size);
-      break;
-    case EFFECT_BIT_ESTIMATES:
-      reason_estimates(m, text, size);
-      break;
-    case EFFECT_BIT_STRESS:
-      reason_output(m, PRINT_ELEMENTS, text, size);
-      break;
-    case EFFECT_BIT_REACTION:
-      l = moving_support(m);
-      if (l != NULL)
-        snprintf(text, size,
-                 "work of the support %s, line %d, that moves or is let go",
-                 l->group, l->at.line_no);
-      else
-        reason_output(m, PRINT_REACTIONS, text, size);
-      break;
-    default:
-      snprintf(text, size, "no card calls for it");
-  }
+  if (rows[bit].reason != NULL)
+    rows[bit].reason(m, text, size);
+  else
+    snprintf(text, size, "no card calls for it");
   return text;
 }

@@ -76,8 +76,20 @@ typedef struct name_param {
   const char *name;
 } name_param;
 typedef struct elastic_param {
-  int type;
+  int type, moduli;
 } elastic_param;
+typedef struct inelastic_param {
+  const char *law;
+  law_shift shift;
+} inelastic_param;
+typedef struct creep_param {
+  int law;
+  law_shift shift;
+} creep_param;
+typedef struct viscoelastic_param {
+  int time;
+  law_shift shift;
+} viscoelastic_param;
 typedef struct expansion_param {
   int type;
   double zero;
@@ -143,6 +155,12 @@ status apply_expansion(reading *r);
 status apply_initial(reading *r);
 status apply_section(reading *r);
 status apply_amplitude(reading *r);
+status apply_inelastic(reading *r);
+plugin names_inelastic(const reading *r);
+status apply_creep(reading *r);
+status apply_viscoelastic(reading *r);
+/* Once all cards are read: the law of a material beside its elasticity. */
+void material_resolve_law(const model *m, material *mat);
 /* cards_contact.c */
 status apply_obstacle(reading *r);
 status apply_contact(reading *r);
@@ -199,6 +217,8 @@ status model_finish_problem(reading *r);
  * step. Errors of names go to the log. "lost": a card was refused, what seems
  * to be missing or unused is not reported. */
 status model_resolve(model *m, int lost);
+/* 1 if the deck has such a card.                                            */
+int has_card(const model *m, const char *name);
 /* effects.c: which effects the deck calls for, into m->effects. */
 void model_find_effects(model *m);
 

@@ -38,6 +38,39 @@ static const option step_options[] = {
 static const option elastic_options[] = {
   OPTION_CHOICE(elastic_param, type, "TYPE", ELASTIC_WORDS, "ISO",
                 "symmetry of the material"),
+  OPTION_CHOICE(elastic_param, moduli, "MODULI", "LONG TERM|INSTANTANEOUS",
+                OPTION_ABSENT, "beside a Prony series: after all terms have "
+                "relaxed, or at once; absent: LONG TERM with *VISCOELASTIC, "
+                "INSTANTANEOUS with *INELASTIC"),
+  OPTION_END};
+#define SHIFT_ROWS(struct_)                                                   \
+  OPTION_CHOICE(struct_, shift.kind, "SHIFT", SHIFT_WORDS, "NONE",            \
+                "how temperature T runs the clock: the rates are divided "    \
+                "by a"),                                                      \
+  OPTION_REAL(struct_, shift.reference, "T_REF", -DBL_MAX, DBL_MAX,           \
+              OPTION_ABSENT, "temperature", "where a = 1"),                   \
+  OPTION_REAL(struct_, shift.c1, "C1", 0, DBL_MAX, OPTION_ABSENT, "-",        \
+              "WLF: log10 a = -C1 (T - T_REF)/(C2 + T - T_REF)"),             \
+  OPTION_REAL(struct_, shift.c2, "C2", DBL_MIN, DBL_MAX, OPTION_ABSENT,       \
+              "temperature", "no flow below T_REF - C2"),                     \
+  OPTION_REAL(struct_, shift.activation, "ACTIVATION", 0, DBL_MAX,            \
+              OPTION_ABSENT, "temperature", "ARRHENIUS: Q/R in log a = Q/R "  \
+              "(1/(T - T_ZERO) - 1/(T_REF - T_ZERO))"),                       \
+  OPTION_REAL(struct_, shift.zero, "T_ZERO", -DBL_MAX, DBL_MAX, "0",          \
+              "temperature", "absolute zero, -273.15 in Celsius")
+static const option inelastic_options[] = {
+  OPTION_NAME(inelastic_param, law, "LAW", NULL, "protis --list materials"),
+  SHIFT_ROWS(inelastic_param),
+  OPTION_END};
+static const option creep_options[] = {
+  OPTION_CHOICE(creep_param, law, "LAW", "STRAIN|TIME|NORTON", "STRAIN",
+                "strain hardening, time hardening, or m = 0"),
+  SHIFT_ROWS(creep_param),
+  OPTION_END};
+static const option viscoelastic_options[] = {
+  OPTION_CHOICE(viscoelastic_param, time, "TIME", "PRONY", NULL,
+                "terms of a Prony series"),
+  SHIFT_ROWS(viscoelastic_param),
   OPTION_END};
 static const option expansion_options[] = {
   OPTION_CHOICE(expansion_param, type, "TYPE", EXPANSION_WORDS, "ISO",
@@ -160,11 +193,23 @@ const keyword keyword_table[] = {
    apply_condensed_problem, 0, 0,
    "", "discrete contact problem or LCP from a file in the place of a mesh"},
   {"MATERIAL", IN_MODEL, OPTIONS(name), NULL, apply_material, 0, 0,
-   "", "opens a material: *ELASTIC, *DENSITY below belong to it"},
+   "", "opens a material: *ELASTIC, *INELASTIC, *DENSITY below belong to it"},
   {"ELASTIC", IN_MATERIAL, OPTIONS(elastic), NULL, apply_elastic, 1, 3,
    "ISO E, nu; ORTHO E1, E2, E3, nu12, nu13, nu23, G12, G13, G23; "
    "ANISO 21 constants",
    "elasticity a_ijkl (CPR98 2.2): symmetric and positive definite"},
+  {"INELASTIC", IN_MATERIAL, OPTIONS(inelastic), names_inelastic,
+   apply_inelastic, 1, ANY,
+   "coefficients of the law (protis --list materials) [, temperature]; each a "
+   "number, or an expression of t in quotes",
+   "inelastic law of CPR98 (3.14-3.16), flows in *VISCO steps"},
+  {"CREEP", IN_MATERIAL, OPTIONS(creep), NULL, apply_creep, 1, ANY,
+   "A, n [, m] [, temperature]",
+   "power law creep, the same as *INELASTIC, LAW=NORTON"},
+  {"VISCOELASTIC", IN_MATERIAL, OPTIONS(viscoelastic), NULL,
+   apply_viscoelastic, 1, ANY,
+   "g_i, k_i, tau_i",
+   "Prony series, the same as *INELASTIC, LAW=PRONY"},
   {"DENSITY", IN_MATERIAL, NO_OPTIONS, NULL, apply_density, 1, 1,
    "rho", "mass per volume, for GRAV"},
   {"EXPANSION", IN_MATERIAL, OPTIONS(expansion), NULL, apply_expansion, 1, ANY,
@@ -224,9 +269,6 @@ const keyword keyword_table[] = {
    "", "fields in JOB.h5; condensed problems for other programs"},
   {"END STEP", IN_STEP, NO_OPTIONS, NULL, apply_end_step, 0, 0,
    "", "closes the step"},
-  RESERVED("INELASTIC", "inelastic law"),
-  RESERVED("CREEP", "creep law"),
-  RESERVED("VISCOELASTIC", "viscoelastic law"),
   RESERVED("CONTACT FORCE", "given normal force (CPR98 3.19)"),
   RESERVED("VISCO", "increments with inelastic strains"),
   RESERVED("EFFECTS", "which effects are simulated"),

@@ -387,6 +387,7 @@ void model_free(model *m) {
   }
   memory_free(m->supports.item);
   memory_free(m->initials);
+  for (int i = 0; i < m->n_material; ++i) law_card_free(&m->materials[i].law);
   memory_free(m->amplitudes);
   memory_free(m->materials);
   memory_free(m->sections);

@@ -9,6 +9,7 @@
 #include "contact/surface.h"
 #include "deck/deck.h"
 #include "deck/quantity.h"
+#include "law/law.h"
 #include "material/material.h"
 #include "mesh/mesh.h"
 #include "solver/solver.h"
@@ -33,7 +34,11 @@ typedef struct material {
   double density;               /* kg/m3                                      */
   int has_density;
   expansion expand;
+  int moduli;   /* of *ELASTIC: MODULI_..., -1: not said                      */
+  law_card law; /* ops NULL: elastic; owned                                   */
+  int is_abaqus_prony; /* *VISCOELASTIC: long-term moduli if it is not said   */
 } material;
+enum { MODULI_LONG_TERM, MODULI_INSTANTANEOUS };
 
 typedef struct section {
   const char *elset, *material_name;

@@ -42,6 +42,25 @@ int find_amplitude(const model *m, const char *name, const place *at) {
   return i;
 }
 
+int has_card(const model *m, const char *name) {
+  for (int i = 0; i < m->deck->n_card; ++i)
+    if (strcmp(m->deck->cards[i].name, name) == 0) return 1;
+  return 0;
+}
+
+static void resolve_laws(model *m, int lost) {
+  for (int i = 0; i < m->n_material; ++i)
+    material_resolve_law(m, &m->materials[i]);
+  if (lost || m->n_step == 0 || has_card(m, "VISCO") ||
+      message_count(m->log, ERROR) > 0)
+    return;
+  for (int i = 0; i < m->n_material; ++i)
+    if (m->materials[i].law.ops != NULL && m->materials[i].used)
+      message_add(m->log, P2048, &m->steps[0].at,
+                  "material %s has the law %s, but no step is *VISCO",
+                  m->materials[i].name, m->materials[i].law.ops->name);
+}
+
 static void resolve_materials(model *m, int lost) {
   for (int i = 0; i < m->n_section; ++i) {
     section *s = &m->sections[i];
@@ -54,6 +73,7 @@ static void resolve_materials(model *m, int lost) {
     if (!m->materials[i].has_elastic && !lost)
       message_add(m->log, P2014, &m->materials[i].at,
                   "material %s has no *ELASTIC card", m->materials[i].name);
+  resolve_laws(m, lost);
 }
 
 /* An amplitude that multiplies a value of the model: it counts total time. */

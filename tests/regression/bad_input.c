@@ -242,9 +242,9 @@ static void check_tags(const bad_cases *all) {
   }
 }
 
-static const char *const error_files[] = {"language.cases", "model.cases",
-                                          "contact.cases",  "step.cases",
-                                          "mesh.cases",     "command.cases"};
+static const char *const error_files[] = {
+    "language.cases", "law.cases",  "model.cases",  "contact.cases",
+    "step.cases",     "mesh.cases", "command.cases"};
 
 static void read_error_files(bad_cases *all) {
   for (size_t i = 0; i < sizeof error_files / sizeof *error_files; ++i)

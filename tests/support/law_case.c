@@ -44,22 +44,22 @@ static void read_line(const option *table, const char *line, size_t length,
   ck_assert_msg(rest == NULL, "too many numbers: %s", line);
 }
 
-static void read_data(law_card *card, const char *data) {
-  const law_ops *ops = card->ops;
+static void read_data(law_card *law, const char *data) {
+  const law_ops *ops = law->ops;
   int n_line = 1, n_field = law_n_field(ops->fields);
   for (const char *p = data; *p != '\0'; ++p) n_line += *p == '\n';
-  card->n_term = n_line - (ops->fields != NULL);
-  ck_assert_int_ge(card->n_term, ops->min_term);
-  card->n_set = 1;
-  card->temperature = memory_new(1, sizeof(double));
-  card->value = memory_new((size_t)law_n_value(card), sizeof(quantity));
+  law->n_term = n_line - (ops->fields != NULL);
+  ck_assert_int_ge(law->n_term, ops->min_term);
+  law->n_set = 1;
+  law->temperature = memory_new(1, sizeof(double));
+  law->value = memory_new((size_t)law_n_value(law), sizeof(quantity));
   for (int i = 0; i < n_line; ++i) {
     const size_t length = strcspn(data, "\n");
     const int is_term = i > 0 || ops->fields == NULL;
     const int term = i - (ops->fields != NULL);
     read_line(
         is_term ? ops->terms : ops->fields, data, length,
-        card->value + (is_term ? n_field + term * law_n_field(ops->terms) : 0));
+        law->value + (is_term ? n_field + term * law_n_field(ops->terms) : 0));
     data += length + 1;
   }
 }
