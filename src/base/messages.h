@@ -350,7 +350,10 @@
   X(4011, ERROR, "body free to move",                                        \
     "Neither *BOUNDARY nor contact holds the body against the motion named; "\
     "a contact without friction does not hold it along the obstacle. Add "   \
-    "a support, or friction.")
+    "a support, or friction.")                                               \
+  X(4012, ERROR, "given force at a corner of two contacts",                  \
+    "*CONTACT FORCE knows one normal at a node. Part the groups, or give "   \
+    "both contacts the same obstacle and a smooth surface.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

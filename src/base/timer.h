@@ -21,6 +21,7 @@
   X(LOAD,        "loads")                                  \
   X(LIMIT,       "sliding limit")                          \
   X(NONLOCAL,    "nonlocal average")                       \
+  X(GIVEN,       "given contact forces")                   \
   X(VELOCITY,    "velocity form")                          \
   X(CONTACT,     "contact solver")                         \
   X(RECOVERY,    "interior solves")                        \

@@ -109,26 +109,6 @@ static status load_at(run *r, double t) {
   return st;
 }
 
-/* The contact solver on r->cp, or on its velocity form, from the old state. */
-static status call_solver(run *r) {
-  status st = OK;
-  const solver_listener listener = {r->sink->iteration, r->sink->ctx};
-  int in_du = r->step->form == FORM_VELOCITY;
-  contact_problem cp = r->cp;
-  double *u = r->now.uc;
-  memcpy(r->now.uc, r->old.uc, (size_t)r->n_c * sizeof *r->now.uc);
-  memcpy(r->now.rc, r->old.rc, (size_t)r->n_c * sizeof *r->now.rc);
-  if (in_du) TRY(velocity_problem(r, &cp, &u));
-  timer_enter(STAGE_CONTACT);
-  st = contact_solve(r->solver, &cp, listener.step == NULL ? NULL : &listener,
-                     u, r->now.rc, &r->report);
-  timer_leave(STAGE_CONTACT);
-  TRY(st);
-  if (in_du) velocity_apply(r);
-done:
-  return st;
-}
-
 static status solve_contact(run *r, double t) {
   status st = OK;
   timer_enter(STAGE_SURFACE);
@@ -140,7 +120,7 @@ static status solve_contact(run *r, double t) {
   TRY(limit_update(r, t));
   TRY(set_stick_position(r));
   set_problem(r);
-  TRY(call_solver(r));
+  TRY(forms_solve(r));
 done:
   return st;
 }

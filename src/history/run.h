@@ -22,7 +22,7 @@ typedef struct equilibrium {
   energies energy;
 } equilibrium;
 
-typedef struct velocity velocity; /* velocity.c                               */
+typedef struct forms forms; /* form.c                                         */
 
 typedef struct run {
   const model *m;
@@ -61,7 +61,7 @@ typedef struct run {
   /* Contact problem of the increment. */
   double *f, *gap, *side_gap, *ut0; /* [m], [n], [n*(dim-1)] twice            */
   contact_problem cp;
-  velocity *velocity; /* NULL until an increment is solved in that form */
+  forms *forms; /* what rewrites it                                           */
 
   equilibrium old, now;
   double *start; /* [dim*n_node] displacements at the start of the step, m    */
@@ -108,12 +108,11 @@ status increment_solve(run *r, double t);
 /* limit.c: the sliding limit at time t into r->limit, jumps into r->note. */
 status limit_update(run *r, double t);
 
-/* velocity.c: r->cp as a problem in the displacement *du[m] of the increment
- * (zero at first), borrowed from r until the next one. */
-status velocity_problem(run *r, contact_problem *cp, double **du);
-/* The solution du added to r->old.uc, into r->now.uc. */
-void velocity_apply(run *r);
-void velocity_free(velocity *v); /* accepts NULL                              */
+/* form.c: for a new surface; nodes of *CONTACT FORCE. */
+status forms_new(run *r);
+/* r->cp solved in the form asked for, from r->old into r->now. */
+status forms_solve(run *r);
+void forms_free(forms *f); /* accepts NULL                                    */
 
 /* zones.c: the zones of r->now into r->zones. ERR_MEMORY. */
 status zones_find(run *r);

@@ -140,8 +140,8 @@ static void free_surface(run *r) {
   memory_free(r->contact);
   r->contact = NULL;
   friction_limit_free(&r->limit);
-  velocity_free(r->velocity);
-  r->velocity = NULL;
+  forms_free(r->forms);
+  r->forms = NULL;
 }
 
 void run_free(run *r) {
@@ -267,6 +267,7 @@ static status build_surface(run *r) {
   r->n = r->surface->n;
   r->n_c = r->msh->dim * r->n;
   TRY(new_contact_arrays(r));
+  TRY(forms_new(r));
   old_state_to_frames(r, force);
   leave_forces(r, force);
   carry_distance(r, 0, distance);

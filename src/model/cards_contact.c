@@ -380,3 +380,27 @@ status apply_friction(reading *r) {
 done:
   return st;
 }
+
+status apply_contact_force(reading *r) {
+  status st = OK;
+  const force_param *p = r->param;
+  const card *c = r->card;
+  if (p->contact == NULL) goto done;
+  int id = find_contact(r, p->contact);
+  if (id < 0) goto done;
+  given_force *f = &r->m->contacts[id].force;
+  if (f->given) {
+    message_add(r->m->log, P2011, &c->at,
+                "contact %s has its *CONTACT FORCE already, at line %d",
+                p->contact, f->at.line_no);
+    goto done;
+  }
+  f->given = 1;
+  f->amplitude_name = p->amplitude;
+  f->at = c->at;
+  f->value_at = c->n_record > 0 ? c->records[0].at : c->at;
+  f->amplitude_at = *value_place(r, "AMPLITUDE");
+  TRY(read_value(r, "p", p->table, &f->value, &f->position));
+done:
+  return st;
+}

@@ -283,20 +283,26 @@ static double step_time(const step *s, int end) {
   return end ? s->start + s->total : s->start;
 }
 
-/* Friction at the nodes of a contact at t; 0 after a message. */
-static int friction_finite(const model *m, const mesh *msh, const contact *c,
-                           const friction_rule *rule, double t) {
+/* A value of a contact that must be at least zero, as the cards say it. */
+typedef struct contact_value {
+  const char *card, *name; /* "FRICTION", "mu"; NULL: there is none           */
+  const quantity *value;
+  const place *at;
+} contact_value;
+
+/* That value at the nodes of the contact at t; 0 after a message. */
+static int contact_finite(const model *m, const mesh *msh, const contact *c,
+                          contact_value v, double t) {
   const mesh_group *g = &msh->group[c->group_id];
-  if (rule->law == NULL || rule->law->value_name == NULL) return 1;
-  for (int k = 0; k < g->n_node; ++k) {
+  for (int k = 0; k < g->n_node && v.name != NULL; ++k) {
     double x[3] = {0.0, 0.0, 0.0};
     size_t node = (size_t)g->node_id[k], dim = (size_t)msh->dim;
     memcpy(x, msh->x + dim * node, dim * sizeof *x);
-    double value = quantity_value(&rule->card.value, x, t);
+    double value = quantity_value(v.value, x, t);
     if (isfinite(value) && value >= 0.0) continue;
-    message_add(m->log, P2041, &rule->value_at,
-                "*FRICTION: %s is %s at node %zu (%g, %g, %g), time %g",
-                rule->law->value_name,
+    message_add(m->log, P2041, v.at,
+                "*%s: %s is %s at node %zu (%g, %g, %g), time %g", v.card,
+                v.name,
                 isnan(value)  ? "not a number"
                 : value < 0.0 ? "negative"
                               : "infinite",
@@ -304,6 +310,22 @@ static int friction_finite(const model *m, const mesh *msh, const contact *c,
     return 0;
   }
   return 1;
+}
+
+static void check_contact_values(const model *m, const mesh *msh, int id) {
+  const contact *c = &m->contacts[id];
+  int good = 1, fine = 1;
+  for (int k = 0; k < m->n_step; ++k) {
+    double t = step_time(&m->steps[k], 1);
+    const friction_rule *rule = friction_in_force(m, k, id);
+    contact_value friction = {"FRICTION",
+                              rule->law == NULL ? NULL : rule->law->value_name,
+                              &rule->card.value, &rule->value_at};
+    contact_value force = {"CONTACT FORCE", c->force.given ? "p" : NULL,
+                           &c->force.value, &c->force.value_at};
+    good = good && contact_finite(m, msh, c, friction, t);
+    fine = fine && contact_finite(m, msh, c, force, t);
+  }
 }
 
 static int motion_finite(const model *m, int obstacle_id, double t) {
@@ -335,13 +357,7 @@ static void check_values(const model *m, const mesh *msh) {
     for (int k = 0; k < m->n_step && good; ++k)
       good = motion_finite(m, i, step_time(&m->steps[k], 1));
   }
-  for (int i = 0; i < m->n_contact; ++i) {
-    good = 1;
-    for (int k = 0; k < m->n_step && good; ++k)
-      good =
-          friction_finite(m, msh, &m->contacts[i], friction_in_force(m, k, i),
-                          step_time(&m->steps[k], 1));
-  }
+  for (int i = 0; i < m->n_contact; ++i) check_contact_values(m, msh, i);
   for (int i = 0; i < m->n_step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k)
       if (m->steps[i].loads.item[k].run != RUN_HELD)

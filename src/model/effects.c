@@ -43,6 +43,12 @@ static int has_friction(const model *m) {
   return first_friction(m, &of) != NULL;
 }
 
+static const contact *first_given(const model *m) {
+  for (int i = 0; i < m->n_contact; ++i)
+    if (m->contacts[i].force.given) return &m->contacts[i];
+  return NULL;
+}
+
 static const load *first_body_load(const model *m) {
   for (int i = 0; i < m->n_step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k) {
@@ -202,6 +208,17 @@ static void reason_friction(const model *m, char *text, size_t size) {
     snprintf(text, size, "no *FRICTION card with a value above zero");
 }
 
+static int has_given(const model *m) { return first_given(m) != NULL; }
+
+static void reason_given(const model *m, char *text, size_t size) {
+  const contact *c = first_given(m);
+  if (c != NULL)
+    snprintf(text, size, "*CONTACT FORCE on contact %s, line %d", c->name,
+             c->force.at.line_no);
+  else
+    snprintf(text, size, "no *CONTACT FORCE card");
+}
+
 static void reason_output(const model *m, int table, char *text, size_t size) {
   place at;
   if (first_print(m, table, &at) != NULL)
@@ -294,6 +311,7 @@ static const struct {
     [EFFECT_BIT_MESH] = {has_mesh, reason_mesh},
     [EFFECT_BIT_CONTACT] = {has_contact, reason_contact},
     [EFFECT_BIT_FRICTION] = {has_friction, reason_friction},
+    [EFFECT_BIT_GIVEN] = {has_given, reason_given},
     [EFFECT_BIT_HISTORY] = {has_slip_history, reason_history},
     [EFFECT_BIT_INELASTIC] = {has_inelastic, reason_inelastic},
     [EFFECT_BIT_THERMAL] = {has_thermal, reason_thermal},

@@ -115,6 +115,10 @@ typedef struct friction_param {
   const char *contact, *law, *amplitude;
   int table;
 } friction_param;
+typedef struct force_param {
+  const char *contact, *amplitude;
+  int table;
+} force_param;
 typedef struct amplitude_param {
   const char *name;
   int time;
@@ -165,6 +169,7 @@ void material_resolve_law(const model *m, material *mat);
 status apply_obstacle(reading *r);
 status apply_contact(reading *r);
 status apply_friction(reading *r);
+status apply_contact_force(reading *r);
 plugin names_law(const reading *r);
 /* cards_step.c */
 status apply_step(reading *r);

@@ -117,6 +117,13 @@ static const option friction_options[] = {
   OPTION_CHOICE(friction_param, table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
                 "data lines are pairs coordinate (or total time), value"),
   OPTION_END};
+static const option force_options[] = {
+  OPTION_NAME(force_param, contact, "CONTACT", NULL, "name of a *CONTACT"),
+  OPTION_NAME(force_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
+              "factor in total time, whatever the TIME= of the amplitude"),
+  OPTION_CHOICE(force_param, table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
+                "data lines are pairs coordinate (or total time), value"),
+  OPTION_END};
 static const option amplitude_options[] = {
   OPTION_NAME(amplitude_param, name, "NAME", NULL, "name for AMPLITUDE="),
   OPTION_CHOICE(amplitude_param, time, "TIME", "STEP TIME|TOTAL TIME",
@@ -236,6 +243,11 @@ const keyword keyword_table[] = {
   {"INITIAL CONDITIONS", IN_MODEL, OPTIONS(initial), NULL, apply_initial, 1,
    ANY, "TEMPERATURE group of elements, value",
    "state before the first step; what no line gives is zero"},
+  {"CONTACT FORCE", IN_MODEL, OPTIONS(force), NULL, apply_contact_force, 0,
+   ANY, "p >= 0, force/length^2: number, expression of x y z t, or pairs with "
+   "TABLE=",
+   "given normal force in the place of the unilateral condition (CPR98 3.19): "
+   "p times the area of the node; the node may leave or enter the obstacle"},
   {"STEP", IN_MODEL, step_options, sizeof(name_param), NULL, apply_step, 0, 0,
    "", "opens a step; loads stay from step to step until changed"},
   {"STATIC", IN_STEP, NO_OPTIONS, NULL, apply_static, 0, 1,
@@ -269,7 +281,6 @@ const keyword keyword_table[] = {
    "", "fields in JOB.h5; condensed problems for other programs"},
   {"END STEP", IN_STEP, NO_OPTIONS, NULL, apply_end_step, 0, 0,
    "", "closes the step"},
-  RESERVED("CONTACT FORCE", "given normal force (CPR98 3.19)"),
   RESERVED("VISCO", "increments with inelastic strains"),
   RESERVED("EFFECTS", "which effects are simulated"),
   RESERVED("RESTART", "restart file"),

@@ -374,7 +374,10 @@ void model_free(model *m) {
   if (m == NULL) return;
   for (int i = 0; i < m->n_amplitude; ++i)
     table_release(&m->amplitudes[i].table);
-  for (int i = 0; i < m->n_contact; ++i) rule_release(&m->contacts[i].friction);
+  for (int i = 0; i < m->n_contact; ++i) {
+    rule_release(&m->contacts[i].friction);
+    table_release(&m->contacts[i].force.position);
+  }
   for (int i = 0; i < m->n_material; ++i)
     for (int k = 0; k < 3; ++k) table_release(&m->materials[i].expand.alpha[k]);
   for (int i = 0; i < m->n_step; ++i) {

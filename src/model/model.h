@@ -58,6 +58,16 @@ typedef struct friction_rule {
   place at, value_at, amplitude_at;
 } friction_rule;
 
+/* *CONTACT FORCE: pressure p >= 0 of the obstacle, force/length^2, in the place
+ * of the unilateral condition. */
+typedef struct given_force {
+  int given;
+  quantity value;
+  value_table position; /* TABLE= of the value; arrays owned                  */
+  const char *amplitude_name;
+  place at, value_at, amplitude_at;
+} given_force;
+
 typedef struct contact {
   const char *name, *group, *obstacle_name;
   place at, group_at, obstacle_at;
@@ -68,6 +78,7 @@ typedef struct contact {
   double axis_point[3], axis[3]; /* m, of unit length; for the torque        */
   place axis_at;
   friction_rule friction; /* from the first step on                          */
+  given_force force;
 } contact;
 
 typedef enum {
@@ -220,6 +231,7 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
   X(CONTACT,   "unilateral contact")                                         \
   X(FRICTION,  "friction")                                                   \
   X(NONLOCAL,  "nonlocal average")                                           \
+  X(GIVEN,     "given contact forces")                                       \
   X(HISTORY,   "history of slip")                                            \
   X(INELASTIC, "inelastic strain")                                           \
   X(THERMAL,   "thermal strain")                                             \

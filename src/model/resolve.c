@@ -88,22 +88,36 @@ static const value_table *total_amplitude(const model *m, const char *name,
   return &m->amplitudes[a].table;
 }
 
-static void resolve_friction(const model *m, friction_rule *rule) {
-  quantity *value = &rule->card.value;
-  /* The rules have reached their place: point into them now. */
-  if (value->factor != NULL) value->factor = &rule->position;
-  if (rule->amplitude_name == NULL) return;
-  const value_table *t =
-      total_amplitude(m, rule->amplitude_name, &rule->amplitude_at);
+/* The value of a card, its TABLE= or AMPLITUDE=. */
+static void resolve_value(const model *m, const char *card_name,
+                          quantity *value, const value_table *position,
+                          const char *amplitude_name, const place *at) {
+  /* What holds them has reached its place: point into it now. */
+  if (value->factor != NULL) value->factor = position;
+  if (amplitude_name == NULL) return;
+  const value_table *t = total_amplitude(m, amplitude_name, at);
   if (t == NULL) return;
   if (value->factor != NULL)
-    message_add(m->log, P2033, &rule->amplitude_at,
-                "*FRICTION: TABLE= and AMPLITUDE= exclude each other");
-  if (rule->law->value_name == NULL)
+    message_add(m->log, P2033, at,
+                "*%s: TABLE= and AMPLITUDE= exclude each "
+                "other",
+                card_name);
+  value->factor = t;
+}
+
+static void resolve_friction(const model *m, friction_rule *rule) {
+  resolve_value(m, "FRICTION", &rule->card.value, &rule->position,
+                rule->amplitude_name, &rule->amplitude_at);
+  if (rule->law != NULL && rule->law->value_name == NULL &&
+      rule->amplitude_name != NULL)
     message_add(
         m->log, P2037, &rule->amplitude_at,
         "*FRICTION, LAW=%s has no value for AMPLITUDE=", rule->law->name);
-  value->factor = t;
+}
+
+static void resolve_force(const model *m, given_force *f) {
+  resolve_value(m, "CONTACT FORCE", &f->value, &f->position, f->amplitude_name,
+                &f->amplitude_at);
 }
 
 /* A contact without an axis of its own has that of its obstacle. */
@@ -119,6 +133,7 @@ static void resolve_contacts(model *m) {
   for (int i = 0; i < m->n_contact; ++i) {
     contact *c = &m->contacts[i];
     resolve_friction(m, &c->friction);
+    resolve_force(m, &c->force);
     if (c->obstacle_name[0] == '\0') continue;
     c->obstacle_id = find_name(m, c->obstacle_name, "OBSTACLE", obstacle_at,
                                &c->obstacle_at);

@@ -1,0 +1,54 @@
+/*
+ * The contact problem rewritten: in the displacement of an increment (CPR98,
+ * problem N3) and with given normal forces (problem D3). Each form is again a
+ * contact problem that every solver takes; its answer is brought back.
+ */
+#ifndef PROTIS_FORM_FORM_H
+#define PROTIS_FORM_FORM_H
+
+#include "contact/contact.h"
+
+typedef struct velocity_form velocity_form;
+/* Room for problems of the size of cp. */
+status velocity_form_new(const contact_problem *cp, velocity_form **out);
+/*
+ * cp in the unknown du = u - u_old. u_old[m] m; from[m], to[m]: motion of the
+ * obstacle at the old and the new time in the contact frame, m. *out borrows
+ * from v and cp; *du[m] is zero, its start value.
+ */
+void velocity_form_set(velocity_form *v, const contact_problem *cp,
+                       const double *u_old, const double *from,
+                       const double *to, contact_problem *out, double **du);
+/* u = u_old + du in u[m], which holds u_old; cp as given to velocity_form_set.
+ */
+void velocity_form_apply(const velocity_form *v, const contact_problem *cp,
+                         double *u);
+void velocity_form_free(velocity_form *v); /* accepts NULL                    */
+
+typedef struct given_form given_form;
+/*
+ * The normal unknowns of node[0..n) condensed out of cp->A. ERR_SINGULAR if
+ * nothing but these forces holds the body along them; ERR_MEMORY. The nodes are
+ * copied, cp->A is borrowed.
+ */
+status given_form_new(const contact_problem *cp, int n, const int *node,
+                      given_form **out);
+/*
+ * cp with the forces force[n] >= 0 (N, pushing into the body) in the place of
+ * the unilateral conditions: in *out the normal unknowns of the nodes stand
+ * apart from all others, at 0 below a gap of "reach" > 0, m, and the sliding
+ * limit knows their pressure. u, r [m]: start values, made to fit. *out borrows
+ * from g and cp. ERR_MEMORY.
+ */
+status given_form_set(given_form *g, const contact_problem *cp,
+                      const double *force, double reach, double *u, double *r,
+                      contact_problem *out);
+/*
+ * From the answer u, r of that problem to the one of cp: the normal
+ * displacements of the nodes, and -force. cp->gap then points to gaps (borrowed
+ * from g) that are closed at these nodes, so that (u, r) solves cp itself.
+ */
+void given_form_apply(given_form *g, contact_problem *cp, double *u, double *r);
+void given_form_free(given_form *g); /* accepts NULL                          */
+
+#endif

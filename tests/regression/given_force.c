@@ -1,0 +1,270 @@
+/*
+ * Given normal forces (*CONTACT FORCE; CPR98, problem D3) by every method, in
+ * both forms, against closed forms and against unilateral contact.
+ *
+ * Block of unit height, nu = 0, E = 1000, G = 500, held at the top at u_y = 0
+ * and u_x = U; p pushes from below: u_y = p (1 - y) / E, and the foot is at
+ * U - mu p / G where it slips (the sides carry mu p), at 0 where it sticks.
+ */
+#include "solver/solver.h"
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static job run_block(const char *cards, const char *step, const char *method) {
+  job j = job_begin("block");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "block.inp",
+            "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s*STEP\n%s"
+            "*SOLVER, METHOD=%s\n*PRINT, CONTACT, NODES, ENERGY\n*END STEP\n",
+            cards, step, method);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "%s: exit %d: %s", method, code, j.errors);
+  return j;
+}
+
+/* Each node of block k: pressure p, shear traction and place of the foot. */
+static void check_foot(const job *j, int k, double p, double shear, double u_t,
+                       const char *what) {
+  dat c = job_table(j, "CONTACT", k), e = job_table(j, "ENERGY", k);
+  for (int i = 0; i < c.n_row; ++i) {
+    double miss[] = {dat_at(&c, i, "pressure") - p,
+                     dat_at(&c, i, "traction_t") + shear,
+                     1000 * (dat_at(&c, i, "u_n") + p / 1000),
+                     1000 * (dat_at(&c, i, "gap") - p / 1000),
+                     1000 * (dat_at(&c, i, "u_t") - u_t)};
+    for (int a = 0; a < 5; ++a)
+      ck_assert_msg(fabs(miss[a]) < 1e-6,
+                    "%s, block %d, row %d: value %d off "
+                    "by %g",
+                    what, k, i, a, miss[a]);
+  }
+  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
+  dat_free(&c);
+  dat_free(&e);
+}
+
+#define DRAG(u, tau)                                                    \
+  "*BOUNDARY\nTOP, 2\nTOP, 1, 1, \"" u "\"\n*DSLOAD\nRIGHT, TY, \"" tau \
+  "\"\nLEFT, TY, \"-(" tau ")\"\n"
+
+/* p(t) = 10 t by expression, amplitude, table. Static at t = 1 and in
+ * increments, both forms. Coulomb with mu = 0.3, Tresca with g = 3 t: slip. */
+START_TEST(slip_under_a_given_force_by_every_method) {
+  static const char *const cards[] = {
+      "*CONTACT FORCE, CONTACT=C\n\"10*t\"\n"
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n",
+      "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n"
+      "*CONTACT FORCE, CONTACT=C, AMPLITUDE=A\n10.\n"
+      "*FRICTION, CONTACT=C, LAW=TRESCA\n\"3*t\"\n",
+      "*CONTACT FORCE, CONTACT=C, TABLE=T\n0., 0., 1., 10.\n"
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"};
+  static const char *const procedures[] = {
+      "*STATIC\n" DRAG("0.01*t", "3*t"),
+      "*QUASISTATIC\n0.5, 1.\n" DRAG("0.01*t", "3*t"),
+      "*QUASISTATIC, FORM=VELOCITY\n0.5, 1.\n" DRAG("0.01*t", "3*t")};
+  for (int k = 0; solver_list[k] != NULL; ++k) {
+    const char *method = solver_list[k]->name;
+    job j = run_block(cards[k % 3], procedures[(k + k / 3) % 3], method);
+    check_foot(&j, -1, 10, 3, 0.01 - 0.006, method);
+    job_end(&j);
+  }
+  for (int k = 0; k < 9; ++k) {
+    job j = run_block(cards[k / 3], procedures[k % 3], "AUTO");
+    check_foot(&j, -1, 10, 3, 0.01 - 0.006, "AUTO");
+    if (k % 3 > 0) check_foot(&j, 0, 5, 1.5, 0.005 - 0.003, "AUTO");
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* The same push is below mu p: the foot stays where it is. */
+START_TEST(stick_under_a_given_force) {
+  for (int k = 0; solver_list[k] != NULL; ++k) {
+    const char *method = solver_list[k]->name;
+    job j = run_block(
+        "*CONTACT FORCE, CONTACT=C\n10.\n"
+        "*FRICTION, CONTACT=C, LAW=COULOMB\n0.6\n",
+        "*QUASISTATIC\n1., 1.\n" DRAG("0.01*t", "5*t"), method);
+    check_foot(&j, -1, 10, 5, 0, method);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* No friction: the force alone, the foot follows the top. */
+START_TEST(given_force_without_friction) {
+  job j = run_block("*CONTACT FORCE, CONTACT=C\n10.\n",
+                    "*STATIC\n" DRAG("0.01*t", "0"), "AUTO");
+  check_foot(&j, -1, 10, 0, 0.01, "frictionless");
+  job_end(&j);
+}
+END_TEST
+
+/*
+ * Pressures of a unilateral problem with friction, all nodes closed, put back
+ * as given forces give the same displacements: D3 with F_N = R_N of N2, for a
+ * material that couples both directions.
+ */
+START_TEST(pressures_of_contact_given_back) {
+  static const char deck[] =
+      "*PARAMETER\nN = 8\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+      "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n%s"
+      "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 1, 2.E-3\n"
+      "TOP, 2, 2, -0.01\n*PRINT, CONTACT, NODES\n*END STEP\n";
+  char cards[4000] = "*CONTACT FORCE, CONTACT=C, TABLE=X\n";
+  job a = job_begin("free"), b = job_begin("given");
+  job_copy(&a, "tests/regression/mesh/square.geo");
+  job_copy(&b, "tests/regression/mesh/square.geo");
+  job_write(&a, "free.inp", deck, "");
+  ck_assert_int_eq(job_run(&a, ""), 0);
+  dat c = job_table(&a, "CONTACT", -1);
+  double last = -1.0;
+  for (int n = 0; n < c.n_row; ++n) { /* in the order of x                    */
+    int next = -1;
+    for (int i = 0; i < c.n_row; ++i)
+      if (dat_at(&c, i, "x") > last &&
+          (next < 0 || dat_at(&c, i, "x") < dat_at(&c, next, "x")))
+        next = i;
+    last = dat_at(&c, next, "x");
+    ck_assert_double_gt(dat_at(&c, next, "pressure"), 0.0);
+    snprintf(cards + strlen(cards), sizeof cards - strlen(cards),
+             "%.17g, %.17g\n", last, dat_at(&c, next, "pressure"));
+  }
+  job_write(&b, "given.inp", deck, cards);
+  ck_assert_int_eq(job_run(&b, ""), 0);
+  dat u = job_table(&a, "NODES", -1), v = job_table(&b, "NODES", -1);
+  dat d = job_table(&b, "CONTACT", -1);
+  for (int i = 0; i < u.n_row; ++i) {
+    ck_assert_double_eq_tol(dat_at(&u, i, "u_x"), dat_at(&v, i, "u_x"), 1e-10);
+    ck_assert_double_eq_tol(dat_at(&u, i, "u_y"), dat_at(&v, i, "u_y"), 1e-10);
+  }
+  for (int i = 0; i < c.n_row; ++i) {
+    ck_assert_double_eq(dat_at(&c, i, "status"), dat_at(&d, i, "status"));
+    ck_assert_double_eq_tol(dat_at(&c, i, "f_t"), dat_at(&d, i, "f_t"), 1e-8);
+  }
+  dat_free(&c);
+  dat_free(&d);
+  dat_free(&u);
+  dat_free(&v);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
+/* In space: the drag at 30 degrees, the friction opposite to it; each method
+ * that knows three dimensions. */
+START_TEST(slip_in_space_is_opposite_to_the_drag) {
+  const double c = cos(acos(-1.0) / 6), s = 0.5;
+  for (int k = 0; solver_list[k] != NULL; ++k) {
+    if (!(solver_list[k]->handles & SOLVES_3D)) continue;
+    job j = job_begin("cube");
+    job_copy(&j, "tests/regression/mesh/cube.geo");
+    job_write(&j, "cube.inp",
+              "*PARAMETER\nN = 2\n*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n"
+              "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*CONTACT FORCE, CONTACT=C\n10.\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+              "0.5, 1.\n*BOUNDARY\nTOP, 3\nTOP, 1, 1, %.17g\n"
+              "TOP, 2, 2, %.17g\n*DSLOAD\nRIGHT, TZ, \"%.17g+0*t\"\n"
+              "LEFT, TZ, \"-%.17g+0*t\"\nBACK, TZ, \"1.5+0*t\"\n"
+              "FRONT, TZ, \"-1.5+0*t\"\n*SOLVER, METHOD=%s\n"
+              "*PRINT, CONTACT\n*END STEP\n",
+              0.1 * c, 0.1 * s, 3 * c, 3 * c, solver_list[k]->name);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "%s: exit %d: %s", solver_list[k]->name, code,
+                  j.errors);
+    dat d = job_table(&j, "CONTACT", -1);
+    for (int i = 0; i < d.n_row; ++i) {
+      double a = dat_at(&d, i, "u_t1"), b = dat_at(&d, i, "u_t2");
+      double f1 = dat_at(&d, i, "f_t1"), f2 = dat_at(&d, i, "f_t2");
+      ck_assert_double_eq_tol(hypot(a, b), 0.1 - 0.006, 1e-10);
+      ck_assert_double_eq_tol(hypot(f1, f2), 0.3 * dat_at(&d, i, "f_n"), 1e-8);
+      ck_assert_double_eq_tol(f1 * b - f2 * a, 0.0, 1e-10);
+      ck_assert_double_eq_tol(dat_at(&d, i, "pressure"), 10, 1e-8);
+    }
+    dat_free(&d);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* Given on the left half of the foot, unilateral with friction on the right:
+ * each keeps its own condition. */
+START_TEST(given_beside_unilateral) {
+  job j = job_begin("halves");
+  job_write(&j, "halves.geo",
+            "h = 0.125;\nPoint(1)={0,0,0,h};Point(2)={.5,0,0,h};"
+            "Point(3)={1,0,0,h};Point(4)={1,1,0,h};Point(5)={0,1,0,h};"
+            "Line(1)={1,2};Line(2)={2,3};Line(3)={3,4};Line(4)={4,5};"
+            "Line(5)={5,1};\nCurve Loop(1)={1:5};Plane Surface(1)={1};"
+            "Physical Surface(\"BODY\")={1};Physical Curve(\"JET\")={1};"
+            "Physical Curve(\"FOOT\")={2};Physical Curve(\"TOP\")={4};\n");
+  job_write(&j, "halves.inp",
+            "*MESH, FILE=halves.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=A, GROUP=JET, OBSTACLE=O\n"
+            "*CONTACT, NAME=B, GROUP=FOOT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=A, LAW=COULOMB\n0.4\n"
+            "*FRICTION, CONTACT=B, LAW=COULOMB\n0.2\n"
+            "*CONTACT FORCE, CONTACT=A\n\"3+x\"\n*STEP\n*QUASISTATIC\n"
+            "0.25, 1.\n*BOUNDARY\nTOP, 2, 2, -0.01\nTOP, 1, 1, 0.02\n"
+            "*PRINT, CONTACT, ENERGY\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  dat c = job_table(&j, "CONTACT", -1), e = job_table(&j, "ENERGY", -1);
+  int given = 0;
+  for (int i = 0; i < c.n_row; ++i) {
+    double x = dat_at(&c, i, "x"), mu = x > 0.51 ? 0.2 : 0.4;
+    double n = dat_at(&c, i, "f_n"), gap = dat_at(&c, i, "gap");
+    if (x < 0.51) {
+      ++given;
+      ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), 3 + x, 1e-10);
+    } else {
+      ck_assert_double_ge(n, 0.0);
+      ck_assert_double_ge(gap, -1e-12);
+      ck_assert_double_le(n * gap, 1e-10);
+    }
+    ck_assert_double_le(fabs(dat_at(&c, i, "f_t")), mu * n + 1e-9);
+  }
+  ck_assert_int_gt(given, 3);
+  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
+  dat_free(&c);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
+/* Nothing but the given force and the load: the block would fly. */
+START_TEST(unheld_body_is_refused) {
+  job j = job_begin("fly");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "fly.inp",
+            "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*CONTACT FORCE, CONTACT=C\n10.\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 9.\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 6);
+  ck_assert_ptr_nonnull(strstr(j.errors, "*CONTACT FORCE"));
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("given force", slip_under_a_given_force_by_every_method,
+          stick_under_a_given_force, given_force_without_friction,
+          pressures_of_contact_given_back,
+          slip_in_space_is_opposite_to_the_drag, given_beside_unilateral,
+          unheld_body_is_refused)
