@@ -43,12 +43,14 @@ unit_c   := $(wildcard tests/unit/*.c)
 unit     := $(unit_c:%.c=$(out)/%)
 regr_c   := $(wildcard tests/regression/*.c)
 regr     := $(regr_c:%.c=$(out)/%)
+stab_c   := $(wildcard tests/stability/*.c)
+stab     := $(stab_c:%.c=$(out)/%)
 bench_c  := $(wildcard tests/bench/*.c)
 bench    := $(bench_c:%.c=$(out)/%)
 support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c))
 
-.PHONY: all help deps demo test check unit regression layers style format \
-        bench bench-solvers bench-auto clean
+.PHONY: all help deps demo test check unit regression stability layers style \
+        format bench bench-solvers bench-auto clean
 .DEFAULT_GOAL := all
 .SECONDARY:
 
@@ -60,6 +62,7 @@ help:
 	@echo "make demo         install what is missing, build, run the examples"
 	@echo "make test         install what is missing, build, run every test"
 	@echo "make unit         unit tests alone;   make regression: decks alone"
+	@echo "make stability    hard cases and 10000 random problems: minutes"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
 	@echo "make bench-solvers  what each digit costs, for every solver"
@@ -112,6 +115,13 @@ unit: $(unit)
 
 regression: $(program) $(regr)
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) tools/run_tests $(regr)
+
+# Hard cases: every program of tests/stability, and the long run of the
+# conformance test.
+PROBLEMS ?= 10000
+stability: $(program) $(stab) $(out)/tests/unit/conformance
+	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) PROTIS_PROBLEMS=$(PROBLEMS) \
+	  tools/run_tests $(filter-out $(program),$^)
 
 layers:
 	$(Q)tools/check_layers src

@@ -540,6 +540,7 @@ void lcp_run(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
   bring_in_z0(w, p, row);
   rep->outcome = RUNNING;
   rep->pivots = 1;
+  if (p->each != NULL) p->each(p->ctx, 1, w->z[0] * w->power);
   while (rep->outcome == RUNNING) {
     if (rep->pivots >= limit)
       rep->outcome = STOPPED_ITERATIONS;

@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FIRST = 2, ATTEMPTS = 32 };
+enum { FIRST = 2, ATTEMPTS = 100 };
 static const double PROOF = 0x1p-26; /* -, least work of a certificate      */
 static const double ROUNDING = 0x1p-44; /* -, of the terms of M'y */
 
@@ -124,7 +124,8 @@ static void choose(run *s, int k) {
   for (size_t i = 0; i < n; ++i) s->q[i] = s->p->q[i] * s->size[i];
   memset(s->turned, 0, n);
   if (k >= FIRST && k % 4 != 0)
-    lcp_turn(s->p->n, 1 + k / 4, &s->seed, s->M, s->q, s->turned, s->room);
+    lcp_turn(s->p->n, k % 2 ? 1 : 1 + k / 8, &s->seed, s->M, s->q, s->turned,
+             s->room);
 }
 
 /* Lemke's method with a covering vector d is that of the rows over d with a

@@ -29,7 +29,7 @@ static const struct {
   int compliance; /* 1: only where no stiffness is given                     */
 } auto_chain[] = {{&newton_solver, PLAIN, 0}, {&newton_solver, ALONG_PATH, 0},
                   {&pcg_solver, PLAIN, 1},    {&lagrange_solver, PLAIN, 1},
-                  {&sor_solver, PLAIN, 0},    {&lemke_solver, PLAIN, 1}};
+                  {&sor_solver, PLAIN, 0},    {&lemke_solver, PLAIN, 0}};
 
 const solver_ops *solver_find(const char *name) {
   for (int i = 0; solver_list[i] != NULL; ++i)

@@ -15,8 +15,6 @@ int solver_row(int i, const solver_ops **ops);
 const char *row_name(const solver_ops *ops);
 /* 1: the row takes problems of this kind. */
 int row_handles(const solver_ops *ops, const contact_problem *cp);
-/* Rows that solve every problem of the tests but those said to be hard. */
-int row_must_solve(const solver_ops *ops);
 /* Solve by one row with its default options, from u, r. */
 solver_report solve_by(const solver_ops *ops, const contact_case *c, double tol,
                        double *u, double *r);
@@ -25,9 +23,8 @@ void set_option(const solver_ops *ops, void *param, const char *name,
                 const char *text);
 /* Start values zero. */
 void case_cold(contact_case *c);
-/* Every row on one problem from a cold start; each that claims convergence
- * must satisfy the conditions to "bad". SOR, NEWTON and AUTO must claim it;
- * the answer of AUTO is left in c. */
+/* Every row that takes the problem, from a cold start, must solve it and
+ * satisfy the conditions to "bad"; the answer of AUTO is left in c. */
 void all_rows_solve(contact_case *c, const char *what, double bad);
 
 #endif

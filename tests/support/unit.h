@@ -1,6 +1,7 @@
 /*
  * One test program per file: UNIT_MAIN(name, test, ...) runs the tests named,
- * each START_TEST of check, and ends with check's closing line.
+ * each START_TEST of check, and ends with check's closing line; UNIT_LOOP(name,
+ * test, times) runs one test for _i = 0, 1, ...
  */
 #ifndef PROTIS_TESTS_UNIT_H
 #define PROTIS_TESTS_UNIT_H
@@ -13,21 +14,35 @@
 /* A case may take this long under the sanitisers on a loaded machine. */
 enum { UNIT_SECONDS = 600 };
 
+/* Run the suite of one case; exit code of the program. */
+static inline int unit_run(const char *name, TCase *tests) {
+  Suite *suite = suite_create(name);
+  suite_add_tcase(suite, tests);
+  blas_set_threads(1); /* as the program does */
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
 #define UNIT_MAIN(name, ...)                                       \
   int main(void) {                                                 \
     const TTest *const tests_[] = {__VA_ARGS__};                   \
-    blas_set_threads(1); /* as the program does */                 \
-    Suite *suite_ = suite_create(name);                            \
     TCase *case_ = tcase_create(name);                             \
     tcase_set_timeout(case_, UNIT_SECONDS);                        \
     for (size_t i_ = 0; i_ < sizeof tests_ / sizeof *tests_; ++i_) \
       tcase_add_test(case_, tests_[i_]);                           \
-    suite_add_tcase(suite_, case_);                                \
-    SRunner *runner_ = srunner_create(suite_);                     \
-    srunner_run_all(runner_, CK_NORMAL);                           \
-    int failed_ = srunner_ntests_failed(runner_);                  \
-    srunner_free(runner_);                                         \
-    return failed_ == 0 ? EXIT_SUCCESS : EXIT_FAILURE;             \
+    return unit_run(name, case_);                                  \
+  }
+
+/* One test run for _i = 0 .. times - 1, each a check of its own. */
+#define UNIT_LOOP(name, test, times)              \
+  int main(void) {                                \
+    TCase *case_ = tcase_create(name);            \
+    tcase_set_timeout(case_, 10 * UNIT_SECONDS);  \
+    tcase_add_loop_test(case_, test, 0, (times)); \
+    return unit_run(name, case_);                 \
   }
 
 #endif
