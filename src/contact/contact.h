@@ -14,14 +14,8 @@
 #ifndef PROTIS_CONTACT_CONTACT_H
 #define PROTIS_CONTACT_CONTACT_H
 
+#include "base/sparse.h"
 #include "base/status.h"
-
-typedef struct sparse_rows {
-  int n;       /* rows                                                       */
-  int *start;  /* [n+1]                                                      */
-  int *col;    /* [start[n]] ascending in a row                              */
-  double *val; /* [start[n]]                                                 */
-} sparse_rows;
 
 typedef struct contact_problem {
   int dim, n, m;     /* 2 or 3; contact nodes; m = dim*n unknowns           */

@@ -27,16 +27,10 @@ done:
   return st;
 }
 
-static void free_rows(sparse_rows *rows) {
-  memory_free(rows->start);
-  memory_free(rows->col);
-  memory_free(rows->val);
-}
-
 void friction_limit_free(friction_limit *limit) {
   if (limit == NULL) return;
   memory_free(limit->g0);
-  free_rows(&limit->B);
+  sparse_free(&limit->B);
   memset(limit, 0, sizeof *limit);
 }
 
@@ -94,11 +88,11 @@ status friction_add_rows(friction_limit *out, int n, const int *node,
     else if (old->start != NULL)
       copy_row(old, i, &all, i);
   }
-  free_rows(&out->B);
+  sparse_free(&out->B);
   out->B = all;
   memset(&all, 0, sizeof all);
 done:
-  free_rows(&all);
+  sparse_free(&all);
   memory_free(row_of);
   return st;
 }

@@ -1,0 +1,23 @@
+/*
+ * Where the distances of an average are measured: the patch itself, or its
+ * lines laid out straight. Inside src/average only.
+ */
+#ifndef PROTIS_AVERAGE_LAYOUT_H
+#define PROTIS_AVERAGE_LAYOUT_H
+
+#include "average/average.h"
+
+typedef struct layout {
+  int dim, n_face, n_rim;
+  double *x;      /* [dim*n_node] place from where a node looks, m            */
+  double *corner; /* [dim*dim*n_face] corners of the faces, m                 */
+  double *loop;   /* [n_node] length of the closed line of a node laid out
+                     straight, 0: none; or NULL                               */
+  double *rim;    /* [dim*(dim-1)*n_rim] end points (edges) of the patch, m   */
+} layout;
+
+status layout_new(const average_patch *patch, const average_rule *rule,
+                  layout *out);
+void layout_free(layout *l); /* accepts all-zero */
+
+#endif
