@@ -13,6 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of the radius: lengths that differ by less are equal. */
+static const double ROUNDING = 1e-9;
+
 typedef struct builder {
   const average_patch *p;
   const average_rule *rule;
@@ -73,9 +76,6 @@ static double distance(int dim, const double *a, const double *b) {
 }
 
 /* ---- the patch --------------------------------------------------------- */
-
-/* An edge longer than radius/4 by less than this is not. */
-static const double ROUNDING = 1e-9;
 
 static double triangle_area(const double *x) {
   double a[3], b[3], n[3];
@@ -191,7 +191,7 @@ static int meets_rim(builder *b, int i) {
   for (int k = 0; k < n; ++k) {
     const double *a = b->at.rim + (size_t)(dim * corners) * (size_t)b->found[k];
     double d = corners == 1 ? distance(dim, a, x) : segment_distance(dim, a, x);
-    if (d < b->rule->radius) return 1;
+    if (d < b->rule->radius * (1.0 - ROUNDING)) return 1;
   }
   return 0;
 }

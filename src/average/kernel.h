@@ -20,6 +20,9 @@ typedef enum { KERNEL_LIST(KERNEL_ENUM) KERNEL_COUNT } kernel;
 #define KERNEL_WORD(name, function, help) "|" #name
 /* The names joined by |, for an option. */
 #define KERNEL_WORDS (("" KERNEL_LIST(KERNEL_WORD)) + 1)
+#define KERNEL_TEXT(name, function, help) "; " #name " " help
+/* "; NAME formula" of each, for its help. */
+#define KERNEL_HELP KERNEL_LIST(KERNEL_TEXT)
 
 typedef struct mollifier {
   double (*profile)(double s2); /* k as a function of (r/rho)^2 < 1          */

@@ -116,8 +116,6 @@
 #define MESSAGE_LIST_MODEL(X)                                                \
   X(2001, ERROR, "card not available in this version",                       \
     "The card is reserved; a later version will read it. Remove it.")        \
-  X(2002, ERROR, "value not available in this version",                      \
-    "The word is reserved; choose another one.")                             \
   X(2003, ERROR, "unknown parameter",                                        \
     "protis --keywords CARD lists the parameters of a card. Names match "    \
     "in full.")                                                              \
@@ -219,6 +217,9 @@
     "Values of the model - friction, given contact forces, motions of "      \
     "obstacles - run in total time. Write TIME=TOTAL TIME on the "           \
     "*AMPLITUDE to say so.")                                                 \
+  X(2045, ERROR, "friction law that does not fit the model",                 \
+    "The message names the option. protis --list friction tells what each "  \
+    "is for.")                                                               \
   X(2046, ERROR, "inelastic law not valid",                                  \
     "The coefficients do not fit each other or *ELASTIC. protis --list "     \
     "materials shows every law with its fields.")                            \
@@ -353,7 +354,11 @@
     "a support, or friction.")                                               \
   X(4012, ERROR, "given force at a corner of two contacts",                  \
     "*CONTACT FORCE knows one normal at a node. Part the groups, or give "   \
-    "both contacts the same obstacle and a smooth surface.")
+    "both contacts the same obstacle and a smooth surface.")                 \
+  X(4013, WARNING, "mesh too coarse for the nonlocal average",               \
+    "LAW=NONLOCAL is accurate to 1 % where the edges of the contact are at " \
+    "most RADIUS/4 long; nodes farther than RADIUS from all others have "    \
+    "local friction. Refine the contact, or raise RADIUS.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

@@ -30,6 +30,7 @@ done:
 void friction_limit_free(friction_limit *limit) {
   if (limit == NULL) return;
   memory_free(limit->g0);
+  memory_free(limit->in_zone);
   sparse_free(&limit->B);
   memset(limit, 0, sizeof *limit);
 }
@@ -94,5 +95,49 @@ status friction_add_rows(friction_limit *out, int n, const int *node,
 done:
   sparse_free(&all);
   memory_free(row_of);
+  return st;
+}
+
+/* Entries of the average at node i, 1 without one. */
+static int average_size(const sparse_rows *average, int i) {
+  return average == NULL ? 1 : average->start[i + 1] - average->start[i];
+}
+
+/* mu times the average at node i, to place n of rows. */
+static void add_average(const sparse_rows *average, int i, double mu,
+                        sparse_rows *rows, int n) {
+  if (average == NULL) {
+    rows->col[n] = i;
+    rows->val[n] = mu;
+    return;
+  }
+  for (int e = average->start[i]; e < average->start[i + 1]; ++e, ++n) {
+    rows->col[n] = average->col[e];
+    rows->val[n] = mu * average->val[e];
+  }
+}
+
+status friction_pressure_limit(const friction_card *card,
+                               const contact_surface *s, int n_node,
+                               const int *node, double t, friction_limit *out) {
+  status st = OK;
+  sparse_rows rows = {.n = n_node};
+  NEW(rows.start, n_node + 1);
+  for (int k = 0; k < n_node; ++k)
+    rows.start[k + 1] =
+        rows.start[k] + (surface_is_corner(s, node[k])
+                             ? 0
+                             : average_size(card->average, node[k]));
+  NEW(rows.col, rows.start[n_node]);
+  NEW(rows.val, rows.start[n_node]);
+  for (int k = 0; k < n_node; ++k) {
+    double mu;
+    if (surface_is_corner(s, node[k])) continue;
+    TRY(friction_value(card, s, node[k], t, &mu));
+    add_average(card->average, node[k], mu, &rows, rows.start[k]);
+  }
+  TRY(friction_add_rows(out, s->n, node, &rows));
+done:
+  sparse_free(&rows);
   return st;
 }

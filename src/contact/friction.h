@@ -13,6 +13,7 @@
 typedef struct friction_limit {
   double *g0;    /* [n] N                                                     */
   sparse_rows B; /* [n*n] -; start == NULL if the law needs none              */
+  unsigned char *in_zone; /* [n] or NULL; 1: no friction where r_n = 0 */
 } friction_limit;
 
 /* One *FRICTION card: the law on the nodes of one *CONTACT. */
@@ -20,6 +21,7 @@ typedef struct friction_card {
   quantity value;    /* mu, -, or the limit g, force/length^2 (dim 3) or
                         force/length^2 times thickness: a traction        */
   const void *param; /* [law->param_size] its options                      */
+  const sparse_rows *average; /* [n*n] of law->average; NULL: local friction */
 } friction_card;
 
 typedef struct friction_ops {
@@ -28,6 +30,15 @@ typedef struct friction_ops {
   const char *value_name, *value_unit; /* the data line: "mu", "-"            */
   size_t param_size;
   const option *options;
+  /* Why the options do not fit a model of that kind; NULL: they do. NULL
+   * pointer: always. */
+  const char *(*misfit)(const void *param, int dim, int axisymmetric);
+  /* Limit per mu from the normal forces, -: rows of the nodes of the contact,
+   * columns of the whole surface. Made once per surface; out all zero before.
+   * Warnings go to the log with "at". NULL: the force of the node itself. */
+  status (*average)(const friction_card *card, const contact_surface *s,
+                    const surface_input *in, int contact_id, const place *at,
+                    message_log *log, sparse_rows *out);
   /* Add the law's part for contact nodes node[0..n_node) to out (rows of the
    * whole surface, all zero before); none where surface_is_corner. ERR_DECK if
    * the value is negative or not a number at a node (message names node and
@@ -37,7 +48,7 @@ typedef struct friction_ops {
 } friction_ops;
 
 /* clang-format off */
-#define FRICTION_LIST(X) X(none) X(tresca) X(coulomb)
+#define FRICTION_LIST(X) X(none) X(tresca) X(coulomb) X(nonlocal)
 /* clang-format on */
 #define FRICTION_EXTERN(name) extern const friction_ops name##_friction;
 FRICTION_LIST(FRICTION_EXTERN)
@@ -55,6 +66,10 @@ extern const option friction_no_options[]; /* a law without options           */
 /* Value of the card at contact node i, not negative; ERR_DECK otherwise. */
 status friction_value(const friction_card *card, const contact_surface *s,
                       int i, double t, double *value);
+/* g = mu(x, t) times the normal force, or its average (card->average). */
+status friction_pressure_limit(const friction_card *card,
+                               const contact_surface *s, int n_node,
+                               const int *node, double t, friction_limit *out);
 /* Put row k of part (columns: contact nodes) into row node[k] of B, which was
  * empty. */
 status friction_add_rows(friction_limit *out, int n, const int *node,

@@ -94,7 +94,7 @@ static void set_problem(run *r) {
       .gap = r->gap,
       .ut0 = r->ut0,
       .g0 = friction ? r->limit.g0 : NULL,
-      .B = friction && r->limit.B.start != NULL ? &r->limit.B : NULL,
+      .B = friction ? limit_matrix(r) : NULL,
       .side_gap = has_side_gap(r->surface) ? r->side_gap : NULL,
       .held = has_held(r->surface) ? r->surface->held : NULL,
       .floating = condensed_floating(r->c)};
@@ -111,6 +111,7 @@ static status load_at(run *r, double t) {
 
 static status solve_contact(run *r, double t) {
   status st = OK;
+  int iterations = 0;
   timer_enter(STAGE_SURFACE);
   st = surface_gap(r->surface, &r->input, t, r->gap, r->side_gap);
   memcpy(r->now.motion, r->old.motion, (size_t)r->n_c * sizeof *r->now.motion);
@@ -120,7 +121,11 @@ static status solve_contact(run *r, double t) {
   TRY(limit_update(r, t));
   TRY(set_stick_position(r));
   set_problem(r);
-  TRY(forms_solve(r));
+  do {
+    TRY(forms_solve(r));
+    iterations += r->report.iterations;
+  } while (limit_follow_zone(r));
+  r->report.iterations = iterations;
 done:
   return st;
 }

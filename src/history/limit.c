@@ -1,7 +1,9 @@
 /*
  * The sliding limit of an increment: the friction law in force on each contact,
  * and where its value jumps in time. Existence theory asks for mu continuous in
- * time (CPR98, 3.2); a jump is allowed and told.
+ * time (CPR98, 3.2); a jump is allowed and told. Averages of nonlocal laws are
+ * kept as long as surface and options stay; a law may be confined to the zone
+ * that touches.
  */
 #include "history/run.h"
 
@@ -24,26 +26,6 @@ static int limit_varies(const run *r) {
   for (int i = 0; i < r->m->n_contact; ++i)
     if (quantity_variables(&rule_of(r, i)->card.value) & T_BIT) return 1;
   return 0;
-}
-
-/* The law of one contact on its nodes. */
-static status add_law(run *r, int contact_id, double t, int *node) {
-  status st = OK;
-  const friction_rule *rule = rule_of(r, contact_id);
-  int n = 0;
-  if (rule->law == NULL) goto done;
-  for (int i = 0; i < r->n; ++i)
-    if (r->surface->contact_id[i] == contact_id) node[n++] = i;
-  st = rule->law->limit(&rule->card, r->surface, n, node, t, &r->limit);
-  if (st == ERR_DECK) {
-    char why[256];
-    snprintf(why, sizeof why, "%s", status_message());
-    message_add(r->m->log, P2041, &rule->value_at, "%s", why);
-    FAIL(ERR_DECK, "%s:%d: %s", rule->value_at.file, rule->value_at.line_no,
-         why);
-  }
-done:
-  return st;
 }
 
 /* ---- jumps in time ------------------------------------------------------ */
@@ -160,22 +142,194 @@ static void note_jumps(run *r, double t) {
   }
 }
 
+/* ---- averages ---------------------------------------------------------- */
+
+/* The average of one contact and the rule it was made for. */
+struct friction_average {
+  const friction_rule *rule; /* NULL: none                                   */
+  sparse_rows rows;          /* [n*n] -                                      */
+};
+
+static int has_same_average(const friction_rule *a, const friction_rule *b) {
+  if (a == NULL || a->law != b->law) return 0;
+  return memcmp(a->card.param, b->card.param, a->law->param_size) == 0;
+}
+
+static status make_average(run *r, int contact_id, const friction_rule *rule) {
+  status st = OK;
+  friction_average *a = &r->average[contact_id];
+  if (has_same_average(a->rule, rule)) goto done;
+  a->rule = NULL;
+  sparse_free(&a->rows);
+  TRY(rule->law->average(&rule->card, r->surface, &r->input, contact_id,
+                         &rule->at, r->m->log, &a->rows));
+  a->rule = rule;
+done:
+  return st;
+}
+
+status limit_average(run *r) {
+  status st = OK;
+  int n = r->m->n_contact;
+  if (!(r->m->effects & EFFECT_NONLOCAL)) return OK;
+  timer_enter(STAGE_NONLOCAL);
+  if (r->average == NULL) NEW(r->average, n);
+  for (int i = 0; i < n; ++i) {
+    const friction_rule *rule = friction_in_force(r->m, run_step_id(r), i);
+    if (rule_has_average(rule)) TRY(make_average(r, i, rule));
+  }
+done:
+  timer_leave(STAGE_NONLOCAL);
+  return st;
+}
+
+static void free_averages(run *r) {
+  for (int i = 0; r->average != NULL && i < r->m->n_contact; ++i)
+    sparse_free(&r->average[i].rows);
+  memory_free(r->average);
+  r->average = NULL;
+}
+
+/* ---- the zone ---------------------------------------------------------- */
+
+/* Rows of the limit that are switched off where the body does not touch. */
+struct friction_zone {
+  unsigned char *off;      /* [n] no friction now                            */
+  unsigned char *returned; /* [n] put on again in this increment: once only  */
+  sparse_rows B;           /* start, col borrowed from the limit             */
+  int room;                /* entries of B.val                               */
+};
+
+static void zone_free(friction_zone *z) {
+  if (z == NULL) return;
+  memory_free(z->off);
+  memory_free(z->returned);
+  memory_free(z->B.val);
+  memory_free(z);
+}
+
+static void zone_apply(run *r) {
+  const sparse_rows *B = &r->limit.B;
+  const friction_zone *z = r->zone;
+  for (int i = 0; i < B->n; ++i)
+    for (int e = B->start[i]; e < B->start[i + 1]; ++e)
+      z->B.val[e] = z->off[i] ? 0.0 : B->val[e];
+}
+
+static status zone_fit(run *r) {
+  status st = OK;
+  const sparse_rows *B = &r->limit.B;
+  if (r->zone == NULL) {
+    NEW(r->zone, 1);
+    NEW(r->zone->off, r->n);
+    NEW(r->zone->returned, r->n);
+  }
+  friction_zone *z = r->zone;
+  if (z->B.val == NULL || z->room < B->start[B->n]) {
+    memory_free(z->B.val);
+    NEW(z->B.val, B->start[B->n]);
+    z->room = B->start[B->n];
+  }
+  z->B = (sparse_rows){B->n, B->start, B->col, z->B.val};
+done:
+  return st;
+}
+
+static status zone_start(run *r) {
+  status st = OK;
+  int dim = r->msh->dim, touched = 0;
+  if (r->limit.in_zone == NULL) {
+    zone_free(r->zone);
+    r->zone = NULL;
+    goto done;
+  }
+  TRY(zone_fit(r));
+  for (int i = 0; i < r->n; ++i) touched |= r->old.rc[dim * i] < 0.0;
+  for (int i = 0; i < r->n; ++i) {
+    int open = !(r->old.rc[dim * i] < 0.0);
+    r->zone->off[i] = r->limit.in_zone[i] && touched && open;
+    r->zone->returned[i] = 0;
+  }
+  zone_apply(r);
+done:
+  return st;
+}
+
+const sparse_rows *limit_matrix(const run *r) {
+  if (r->limit.B.start == NULL) return NULL;
+  return r->zone != NULL ? &r->zone->B : &r->limit.B;
+}
+
+/* 1 if a node does not touch; one with a given force touches by that. */
+static int is_open(const run *r, int i) {
+  const contact *c = &r->m->contacts[r->surface->contact_id[i]];
+  if (c->force.given) return !(r->now.rc[r->msh->dim * i] < 0.0);
+  return r->contact[i] == CONTACT_OPEN;
+}
+
+int limit_follow_zone(run *r) {
+  friction_zone *z = r->zone;
+  int changes = 0;
+  if (z == NULL || r->report.outcome <= 0) return 0;
+  contact_classify(&r->cp, r->now.uc, r->now.rc, r->contact);
+  for (int i = 0; i < r->n; ++i) {
+    int open = is_open(r, i);
+    if (!r->limit.in_zone[i] || open == z->off[i] || (!open && z->returned[i]))
+      continue;
+    z->returned[i] = !open;
+    z->off[i] = (unsigned char)open;
+    ++changes;
+  }
+  if (changes > 0) zone_apply(r);
+  return changes > 0;
+}
+
 /* ---- the limit ---------------------------------------------------------- */
+
+/* The law of one contact on its nodes. */
+static status add_law(run *r, int contact_id, double t, int *node) {
+  status st = OK;
+  const friction_rule *rule = rule_of(r, contact_id);
+  int n = 0;
+  if (rule->law == NULL) goto done;
+  for (int i = 0; i < r->n; ++i)
+    if (r->surface->contact_id[i] == contact_id) node[n++] = i;
+  friction_card of = rule->card;
+  if (rule_has_average(rule)) of.average = &r->average[contact_id].rows;
+  st = rule->law->limit(&of, r->surface, n, node, t, &r->limit);
+  if (st == ERR_DECK) {
+    char why[256];
+    snprintf(why, sizeof why, "%s", status_message());
+    message_add(r->m->log, P2041, &rule->value_at, "%s", why);
+    FAIL(ERR_DECK, "%s:%d: %s", rule->value_at.file, rule->value_at.line_no,
+         why);
+  }
+done:
+  return st;
+}
 
 status limit_update(run *r, double t) {
   status st = OK;
   int *node = NULL;
   if (!(r->m->effects & EFFECT_FRICTION)) return OK;
   note_jumps(r, t);
-  if (r->limit_known) return OK;
+  if (r->limit_known) return zone_start(r);
   timer_enter(STAGE_LIMIT);
   friction_limit_free(&r->limit);
   TRY(friction_limit_new(r->n, &r->limit));
   NEW(node, r->n);
   for (int i = 0; i < r->m->n_contact; ++i) TRY(add_law(r, i, t, node));
   r->limit_known = !limit_varies(r);
+  TRY(zone_start(r));
 done:
   memory_free(node);
   timer_leave(STAGE_LIMIT);
   return st;
+}
+
+void limit_free(run *r) {
+  friction_limit_free(&r->limit);
+  free_averages(r);
+  zone_free(r->zone);
+  r->zone = NULL;
 }

@@ -23,6 +23,8 @@ typedef struct equilibrium {
 } equilibrium;
 
 typedef struct forms forms; /* form.c                                         */
+typedef struct friction_average friction_average; /* limit.c                 */
+typedef struct friction_zone friction_zone;       /* limit.c                 */
 
 typedef struct run {
   const model *m;
@@ -56,7 +58,9 @@ typedef struct run {
   contact_solver *solver;
   friction_limit limit;
   int limit_known; /* limit holds for all times of the step              */
-  char note[512];  /* what changed abruptly in the increment, "" or lines    */
+  friction_average *average; /* [n_contact], or NULL: no law has one         */
+  friction_zone *zone; /* NULL: no law is confined to the touching nodes     */
+  char note[512]; /* what changed abruptly in the increment, "" or lines    */
 
   /* Contact problem of the increment. */
   double *f, *gap, *side_gap, *ut0; /* [m], [n], [n*(dim-1)] twice            */
@@ -107,6 +111,14 @@ status increment_solve(run *r, double t);
 
 /* limit.c: the sliding limit at time t into r->limit, jumps into r->note. */
 status limit_update(run *r, double t);
+/* Averages of the rules in force, as far as they are not there. */
+status limit_average(run *r);
+/* Laws confined to the touching nodes (at the start of an increment those that
+ * touched, all if none did): after a solution of r->cp, 1 if the zone, and
+ * r->cp with it, has changed and is to be solved again. */
+int limit_follow_zone(run *r);
+const sparse_rows *limit_matrix(const run *r); /* B of r->cp, or NULL         */
+void limit_free(run *r);
 
 /* form.c: for a new surface; nodes of *CONTACT FORCE. */
 status forms_new(run *r);

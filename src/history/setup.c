@@ -139,7 +139,7 @@ static void free_surface(run *r) {
   }
   memory_free(r->contact);
   r->contact = NULL;
-  friction_limit_free(&r->limit);
+  limit_free(r);
   forms_free(r->forms);
   r->forms = NULL;
 }
@@ -388,6 +388,7 @@ status run_prepare(run *r) {
     TRY(condense(r->k, &r->d, &r->c));
     TRY(report_ready(r));
   }
+  TRY(limit_average(r));
   contact_solver_free(r->solver);
   r->solver = NULL;
   TRY(contact_solver_new(&r->step->solver, &r->solver));
@@ -407,6 +408,7 @@ status history_motions(const model *m, const mesh *msh, int step_id, int *n,
   r.d.surface = r.surface;
   TRY(domain_free_motions(&r.d, n, list));
   TRY(refuse_unheld(&r, *n, *list));
+  TRY(limit_average(&r));
 done:
   run_free(&r);
   return st;

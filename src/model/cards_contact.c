@@ -248,12 +248,8 @@ plugin names_law(const reading *r) {
   const friction_ops *ops = friction_find(p->law);
   if (ops != NULL)
     return (plugin){ops->options, ops->param_size, "LAW", ops->name};
-  if (same_word(p->law, "NONLOCAL"))
-    message_add(r->m->log, P2002, &law->value.at,
-                "LAW=NONLOCAL is not available in this version");
-  else
-    unknown_word(r->m->log, P2012, &law->value.at,
-                 "*FRICTION: there is no LAW=", p->law, law_name, NULL);
+  unknown_word(r->m->log, P2012, &law->value.at,
+               "*FRICTION: there is no LAW=", p->law, law_name, NULL);
   return none;
 }
 

@@ -158,6 +158,27 @@ static void check_torque_axis(const model *m, int dim, const contact *c) {
                 c->name);
 }
 
+/* Options of a friction law that are not for every model. */
+static void check_law(const model *m, const char *contact_name,
+                      const friction_rule *rule) {
+  int axisymmetric = m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC;
+  if (rule->law == NULL || rule->law->misfit == NULL) return;
+  const char *why = rule->law->misfit(rule->card.param, m->dim, axisymmetric);
+  if (why != NULL)
+    message_add(m->log, P2045, &rule->at, "*FRICTION, LAW=%s on contact %s: %s",
+                rule->law->name, contact_name, why);
+}
+
+static void check_laws(const model *m) {
+  for (int i = 0; i < m->n_contact; ++i)
+    check_law(m, m->contacts[i].name, &m->contacts[i].friction);
+  for (int k = 0; k < m->n_step; ++k)
+    for (int i = 0; i < m->steps[k].n_change; ++i) {
+      const friction_change *f = &m->steps[k].changes[i];
+      check_law(m, m->contacts[f->contact_id].name, &f->rule);
+    }
+}
+
 static void check_contacts(model *m, const mesh *msh) {
   for (int i = 0; i < m->n_contact; ++i) {
     contact *c = &m->contacts[i];
@@ -408,6 +429,7 @@ status model_check(model *m, const mesh *msh) {
   check_radius(m, msh);
   TRY(check_sections(m, msh));
   check_contacts(m, msh);
+  check_laws(m);
   check_initials(m, msh);
   check_steps(m, msh);
   model_find_effects(m);

@@ -27,20 +27,31 @@ int rule_has_friction(const friction_rule *rule) {
   return q->formula != NULL || q->number != 0.0;
 }
 
-/* The first rule with friction in any step, and its contact; or NULL. */
-static const friction_rule *first_friction(const model *m, const contact **of) {
+int rule_has_average(const friction_rule *rule) {
+  return rule_has_friction(rule) && rule->law->average != NULL;
+}
+
+/* The first rule in any step that is like that, and its contact; or NULL. */
+static const friction_rule *first_rule(const model *m,
+                                       int (*is)(const friction_rule *rule),
+                                       const contact **of) {
   for (int i = 0; i < m->n_contact; ++i)
     for (int k = 0; k < m->n_step; ++k) {
       const friction_rule *rule = friction_in_force(m, k, i);
       *of = &m->contacts[i];
-      if (rule_has_friction(rule)) return rule;
+      if (is(rule)) return rule;
     }
   return NULL;
 }
 
 static int has_friction(const model *m) {
   const contact *of;
-  return first_friction(m, &of) != NULL;
+  return first_rule(m, rule_has_friction, &of) != NULL;
+}
+
+static int has_average(const model *m) {
+  const contact *of;
+  return first_rule(m, rule_has_average, &of) != NULL;
 }
 
 static const contact *first_given(const model *m) {
@@ -198,7 +209,7 @@ static int reason_problem(const model *m, int bit, char *text, size_t size) {
 
 static void reason_friction(const model *m, char *text, size_t size) {
   const contact *c = NULL;
-  const friction_rule *rule = first_friction(m, &c);
+  const friction_rule *rule = first_rule(m, rule_has_friction, &c);
   if (rule != NULL)
     snprintf(text, size, "*FRICTION, LAW=%s on contact %s, line %d",
              rule->law->name, c->name, rule->at.line_no);
@@ -217,6 +228,16 @@ static void reason_given(const model *m, char *text, size_t size) {
              c->force.at.line_no);
   else
     snprintf(text, size, "no *CONTACT FORCE card");
+}
+
+static void reason_nonlocal(const model *m, char *text, size_t size) {
+  const contact *c;
+  const friction_rule *rule = first_rule(m, rule_has_average, &c);
+  if (rule != NULL)
+    snprintf(text, size, "*FRICTION, LAW=%s on contact %s, line %d",
+             rule->law->name, c->name, rule->at.line_no);
+  else
+    snprintf(text, size, "no friction law with an average");
 }
 
 static void reason_output(const model *m, int table, char *text, size_t size) {
@@ -312,6 +333,7 @@ static const struct {
     [EFFECT_BIT_CONTACT] = {has_contact, reason_contact},
     [EFFECT_BIT_FRICTION] = {has_friction, reason_friction},
     [EFFECT_BIT_GIVEN] = {has_given, reason_given},
+    [EFFECT_BIT_NONLOCAL] = {has_average, reason_nonlocal},
     [EFFECT_BIT_HISTORY] = {has_slip_history, reason_history},
     [EFFECT_BIT_INELASTIC] = {has_inelastic, reason_inelastic},
     [EFFECT_BIT_THERMAL] = {has_thermal, reason_thermal},

@@ -255,6 +255,8 @@ int rule_has_friction(const friction_rule *rule);
 int model_prints(const model *m, int tables);
 /* 1 if some contact has an axis for its torque. */
 int model_has_axis(const model *m);
+/* 1: its limit is an average over the surface. */
+int rule_has_average(const friction_rule *rule);
 /* Which card or fact switched it on or off, into text; returns text. */
 const char *model_effect_reason(const model *m, int bit, char *text,
                                 size_t size);

@@ -1,0 +1,378 @@
+/*
+ * Decks with LAW=NONLOCAL: closed forms of the uniform pressure, the average of
+ * the printed pressures summed up anew, the local limit, the zone, contacts
+ * apart, mu(t), and that other laws pay nothing.
+ */
+#include "solver/solver.h"
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Block [0, 1] x [0, height] with n segments along its base, TYPE as given. */
+typedef struct block {
+  int n;
+  double height, nu;
+  const char *type, *friction; /* rest of *FRICTION with the value line      */
+  const char *steps;
+} block;
+
+static job run_block_as(const block *b, const char *name) {
+  job j = job_begin(name);
+  char file[40];
+  snprintf(file, sizeof file, "%s.inp", name);
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, file,
+            "*PARAMETER\nN = %d\nLY = %g\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., %g\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, %s\n%s"
+            "*PRINT, CONTACT, TOTALS, ENERGY\n*END STEP\n",
+            b->n, b->height, b->nu, b->type, b->friction, b->steps);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+static job run_block(const block *b) { return run_block_as(b, "block"); }
+
+/* Pressed by 10; the base is held, so that the pressure is uniform and the
+ * limit is all that friction has to say. */
+#define PRESSED \
+  "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1\nTOP, 1\n*DSLOAD\nTOP, P, 10.\n"
+/* Pressed and pushed from the left: open, slipping and sticking nodes. */
+#define PUSHED                                          \
+  "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nRIGHT, 1\n" \
+  "*DSLOAD\nTOP, P, 5.\nLEFT, P, 15.\n"
+
+/* The top is moved down and aside: no method minds a body that is held. */
+#define HELD                                                    \
+  "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1, 1, 0.006\n" \
+  "TOP, 2, 2, -0.01\n*DSLOAD\nLEFT, P, 20.\n"
+
+/* ---- uniform pressure -------------------------------------------------- */
+
+/* m1 of the bump is 0.33445: T/(mu p L) = 1 - m1 rho/L, and the course of the
+ * limit from the edge inwards. */
+START_TEST(uniform_pressure_has_its_closed_form) {
+  static const double radius[] = {0.2, 0.1, 0.05},
+                      expected[] = {0.933109200, 0.966554600, 0.983277300},
+                      course[] = {0.5, 0.7027446459, 0.8770327167, 0.9839947499,
+                                  1.0};
+  for (int q = 0; q < 3; ++q) {
+    char friction[80];
+    snprintf(friction, sizeof friction, "LAW=NONLOCAL, RADIUS=%g\n0.3\n",
+             radius[q]);
+    block b = {160, 0.05, 0, "CPE3", friction, PRESSED};
+    job j = run_block(&b);
+    dat d = job_table(&j, "CONTACT", -1);
+    double total = dat_sum(&d, "limit") / (0.3 * 10.0);
+    double h = 1.0 / b.n, error = 0.15 * h * h / radius[q];
+    ck_assert_double_eq_tol(total, expected[q], error);
+    for (int k = 0; k < 10; ++k) {
+      double x = k < 5 ? k : 4 * (1 / radius[q]) + 5 - k;
+      int row = dat_row_near(&d, "x", 0.25 * radius[q] * x);
+      double limit = dat_at(&d, row, "limit"), f = dat_at(&d, row, "f_n");
+      ck_assert_double_eq_tol(limit / (0.3 * f), course[k < 5 ? k : k - 5],
+                              1e-6);
+    }
+    dat_free(&d);
+    job_end(&j);
+  }
+}
+END_TEST
+
+START_TEST(normalized_edges_keep_a_uniform_pressure) {
+  static const char *const types[] = {"CPE3", "CAX3"};
+  for (int k = 0; k < 2; ++k) {
+    block b = {20,
+               0.2,
+               0,
+               types[k],
+               "LAW=NONLOCAL, RADIUS=0.3, EDGE=NORMALIZED\n0.3\n",
+               PRESSED};
+    job j = run_block(&b);
+    dat d = job_table(&j, "CONTACT", -1);
+    for (int i = 0; i < d.n_row; ++i)
+      ck_assert_double_eq_tol(dat_at(&d, i, "limit"),
+                              0.3 * dat_at(&d, i, "f_n"), 1e-9);
+    dat_free(&d);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* ---- the average of the printed pressures ------------------------------ */
+
+static double bump(double s) {
+  return fabs(s) < 1.0 ? exp(1.0 / (s * s - 1.0)) / 0.44399381616808 : 0.0;
+}
+
+static double cone(double s) { return fmax(0.0, 1.0 - fabs(s)); }
+
+/* Integral of the kernel times the pressure linear between the nodes: nodes
+ * n equal parts of [0, 1] in order of x. */
+static double average_at(const double *p, int n, double x, double radius,
+                         double (*kernel)(double)) {
+  enum { PARTS = 40 };
+  double sum = 0.0;
+  for (int k = 0; k < n * PARTS; ++k) {
+    double y = (k + 0.5) / (n * PARTS), s = (k % PARTS + 0.5) / PARTS;
+    double value = (1 - s) * p[k / PARTS] + s * p[k / PARTS + 1];
+    sum += value * kernel((x - y) / radius) / radius;
+  }
+  return sum / (n * PARTS);
+}
+
+/* Any pressure: the nodes slip at, or stick within, mu times that integral;
+ * open ones too. The symmetric matrix differs by O(h^2) from the integral. */
+static void expect_average(const char *friction, double radius,
+                           double (*kernel)(double), double tolerance) {
+  enum { N = 64 };
+  block b = {N, 1, 0.2, "CPE3", friction, PUSHED};
+  double p[N + 1], limit[N + 1], t[N + 1], top = 0.0;
+  int n_open = 0;
+  job j = run_block(&b);
+  dat d = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i <= N; ++i) {
+    int row = dat_row_near(&d, "x", (double)i / N);
+    double length = (i == 0 || i == N ? 0.5 : 1.0) / N;
+    p[i] = dat_at(&d, row, "f_n") / length;
+    limit[i] = dat_at(&d, row, "limit") / length;
+    t[i] = dat_at(&d, row, "f_t") / length;
+    n_open += dat_at(&d, row, "status") == 0;
+    if (p[i] > top) top = p[i];
+  }
+  ck_assert_int_gt(n_open, 2);
+  for (int i = 0; i <= N; ++i) {
+    double expected = average_at(p, N, (double)i / N, radius, kernel);
+    ck_assert_msg(fabs(limit[i] - expected) <= tolerance * top,
+                  "%s node %d: %g, expected %g", friction, i, limit[i],
+                  expected);
+    ck_assert_double_le(fabs(t[i]), limit[i] + 1e-8 * top);
+  }
+  dat_free(&d);
+  job_end(&j);
+}
+
+START_TEST(limit_is_the_average_of_the_pressures) {
+  expect_average("LAW=NONLOCAL, RADIUS=0.125\n1.\n", 0.125, bump, 6e-3);
+  expect_average("LAW=NONLOCAL, RADIUS=0.25\n1.\n", 0.25, bump, 3e-3);
+  expect_average("LAW=NONLOCAL, RADIUS=0.25, DISTANCE=GEODESIC\n1.\n", 0.25,
+                 bump, 3e-3);
+  expect_average("LAW=NONLOCAL, RADIUS=0.2, KERNEL=CONE\n1.\n", 0.2, cone,
+                 3e-3);
+}
+END_TEST
+
+/* Beyond the pressed zone friction acts on separated points; with ZONE=CONTACT
+ * it does not, and the other nodes have the average as before. */
+START_TEST(zone_confines_friction_to_the_contact) {
+  block b = {64, 1, 0.2, "CPE3", "LAW=NONLOCAL, RADIUS=0.2\n1.\n", PUSHED};
+  job free_zone = run_block(&b);
+  b.friction = "LAW=NONLOCAL, RADIUS=0.2, ZONE=CONTACT\n1.\n";
+  job closed_zone = run_block_as(&b, "zone");
+  dat f = job_table(&free_zone, "CONTACT", -1);
+  dat c = job_table(&closed_zone, "CONTACT", -1);
+  double separated = 0.0;
+  int touching = 0;
+  for (int i = 0; i < f.n_row; ++i) {
+    if (dat_at(&f, i, "status") == 0) separated += fabs(dat_at(&f, i, "f_t"));
+    if (dat_at(&c, i, "status") == 0) {
+      ck_assert_double_eq(dat_at(&c, i, "f_t"), 0.0);
+      ck_assert_double_eq(dat_at(&c, i, "limit"), 0.0);
+    } else {
+      ck_assert_double_gt(dat_at(&c, i, "limit"), 0.0);
+      ++touching;
+    }
+  }
+  ck_assert_double_gt(separated, 0.01);
+  ck_assert_int_gt(touching, 30);
+  ck_assert_int_lt(touching, 65);
+  dat_free(&f);
+  dat_free(&c);
+  job_end(&free_zone);
+  job_end(&closed_zone);
+}
+END_TEST
+
+/* ---- local limit, other laws ------------------------------------------- */
+
+static void expect_same(const job *a, const job *b, double tolerance) {
+  static const char *const names[] = {"u_n", "u_t", "f_n", "f_t", "limit"};
+  for (int k = 0; k < 2; ++k) {
+    dat p = job_table(a, "CONTACT", k), q = job_table(b, "CONTACT", k);
+    ck_assert_int_eq(p.n_row, q.n_row);
+    for (size_t c = 0; c < sizeof names / sizeof *names; ++c) {
+      if (!dat_has(&p, names[c])) continue;
+      double scale = dat_max(&p, names[c]);
+      if (c == 0) scale = fmax(scale, dat_max(&p, "u_t"));
+      for (int i = 0; i < p.n_row; ++i)
+        ck_assert_msg(fabs(dat_at(&p, i, names[c]) - dat_at(&q, i, names[c])) <=
+                          tolerance * scale,
+                      "block %d, row %d, %s: %.17g, %.17g", k, i, names[c],
+                      dat_at(&p, i, names[c]), dat_at(&q, i, names[c]));
+    }
+    dat_free(&p);
+    dat_free(&q);
+  }
+}
+
+START_TEST(small_radius_is_local_friction) {
+  static const char *const types[] = {"CPE3", "CPS3", "CAX3"};
+  static const char *const small[] = {"1E-9", "1E-3", "0.06"};
+  for (int k = 0; k < 3; ++k) {
+    char friction[80];
+    block b = {16, 1, 0.2, types[k], "LAW=COULOMB\n1.\n", PUSHED};
+    if (k == 2)
+      b.steps =
+          "*STEP\n*QUASISTATIC\n0.5, 1.\n*DSLOAD\nTOP, P, 5.\n"
+          "RIGHT, P, 4.\n";
+    job local = run_block(&b);
+    snprintf(friction, sizeof friction, "LAW=NONLOCAL, RADIUS=%s\n1.\n",
+             small[k]);
+    b.friction = friction;
+    job other = run_block_as(&b, "small");
+    expect_same(&local, &other, 1e-13);
+    job_end(&local);
+    job_end(&other);
+  }
+}
+END_TEST
+
+static void stage_cost_of(const job *j, const char *stage, long *calls,
+                          long *bytes) {
+  char *list = job_file(j, "lst");
+  const char *at = list;
+  double cpu;
+  while ((at = strstr(at, stage)) != NULL &&
+         sscanf(at + strlen(stage), " %ld %lf %ld", calls, &cpu, bytes) != 3)
+    ++at;
+  ck_assert_ptr_nonnull(at);
+  free(list);
+}
+
+/* The whole run without --no-timing, for the cost table. */
+static void cost_with(const char *friction, long *calls, long *bytes) {
+  job j = job_begin("cost");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "cost.inp",
+            "*PARAMETER\nN = 8\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, %s\n" PUSHED "*END STEP\n",
+            friction);
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  stage_cost_of(&j, "nonlocal average", calls, bytes);
+  job_end(&j);
+}
+
+START_TEST(only_the_nonlocal_law_pays) {
+  static const char *const free_of_it[] = {"LAW=COULOMB\n0.3\n",
+                                           "LAW=TRESCA\n1.\n", "LAW=NONE\n",
+                                           "LAW=NONLOCAL, RADIUS=0.5\n0.\n"};
+  long calls = -1, bytes = -1;
+  for (int k = 0; k < 4; ++k) {
+    cost_with(free_of_it[k], &calls, &bytes);
+    ck_assert_int_eq(calls, 0);
+    ck_assert_int_eq(bytes, 0);
+  }
+  cost_with("LAW=NONLOCAL, RADIUS=0.5\n0.3\n", &calls, &bytes);
+  ck_assert_int_eq(calls, 1);
+  ck_assert_int_gt(bytes, 1000);
+  /* mu changes in every increment, the average is kept. */
+  cost_with("LAW=NONLOCAL, RADIUS=0.5\n\"0.3*t\"\n", &calls, &bytes);
+  ck_assert_int_eq(calls, 1);
+}
+END_TEST
+
+/* mu(t) that is 0.4 at the end of both increments, and mu(x) = 0.4. */
+START_TEST(mu_multiplies_the_average) {
+  block b = {20, 1, 0.2, "CPE3", "LAW=NONLOCAL, RADIUS=0.3\n0.4\n", PUSHED};
+  job constant = run_block(&b);
+  b.friction =
+      "LAW=NONLOCAL, RADIUS=0.3\n\"0.4 + 8*(t - 0.5)*(t - 1) + 0*x\"\n";
+  job course = run_block_as(&b, "course");
+  expect_same(&constant, &course, 1e-13);
+  job_end(&constant);
+  job_end(&course);
+}
+END_TEST
+
+/* ---- solvers ----------------------------------------------------------- */
+
+START_TEST(every_method_gives_the_same_answer) {
+  char steps[400];
+  block b = {24, 1, 0.2, "CPE3", "LAW=NONLOCAL, RADIUS=0.25\n0.6\n", HELD};
+  job first = run_block(&b);
+  for (int k = 0; solver_list[k] != NULL; ++k) {
+    snprintf(steps, sizeof steps, "%s*SOLVER, METHOD=%s, TOL=1E-11\n", HELD,
+             solver_list[k]->name);
+    b.steps = steps;
+    job other = run_block_as(&b, "other");
+    expect_same(&first, &other, 1e-7);
+    job_end(&other);
+  }
+  job_end(&first);
+}
+END_TEST
+
+/* ---- contacts apart ---------------------------------------------------- */
+
+/* The left and the right half of a base as two contacts: each average ends
+ * where its contact ends. */
+START_TEST(contacts_do_not_see_each_other) {
+  job j = job_begin("pair");
+  job_write(
+      &j, "pair.geo",
+      "DefineConstant[ N = 20 ];\n"
+      "Point(1) = {0, 0, 0, 1/N}; Point(2) = {1, 0, 0, 1/N};\n"
+      "Point(3) = {2, 0, 0, 1/N}; Point(4) = {2, 0.2, 0, 1/N};\n"
+      "Point(5) = {0, 0.2, 0, 1/N};\n"
+      "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4};\n"
+      "Line(4) = {4, 5}; Line(5) = {5, 1};\n"
+      "Curve Loop(1) = {1 ... 5}; Plane Surface(1) = {1};\n"
+      "Transfinite Curve{1, 2} = N + 1;\n"
+      "Physical Curve(\"A\") = {1}; Physical Curve(\"B\") = {2};\n"
+      "Physical Curve(\"TOP\") = {4}; Physical Surface(\"BODY\") = {1};\n");
+  job_write(&j, "pair.inp",
+            "*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=A, GROUP=A, OBSTACLE=O\n"
+            "*CONTACT, NAME=B, GROUP=B, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=A, LAW=NONLOCAL, RADIUS=0.4\n0.5\n"
+            "*FRICTION, CONTACT=B, LAW=NONLOCAL, RADIUS=0.2\n0.1\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nA, 1\nB, 1\nTOP, 1\n"
+            "*DSLOAD\nTOP, P, 1.\n*PRINT, CONTACT\n*END STEP\n");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "%s", j.errors);
+  dat d = job_table(&j, "CONTACT", -1);
+  static const double course[] = {0.5, 0.7027446459, 0.8770327167, 0.9839947499,
+                                  1.0};
+  for (int k = 1; k <= 4; ++k) {
+    int a = dat_row_near(&d, "x", 1.0 - 0.1 * k);
+    int b = dat_row_near(&d, "x", 1.0 + 0.05 * k);
+    ck_assert_double_eq_tol(
+        dat_at(&d, a, "limit") / (0.5 * dat_at(&d, a, "f_n")), course[k], 1e-6);
+    ck_assert_double_eq_tol(
+        dat_at(&d, b, "limit") / (0.1 * dat_at(&d, b, "f_n")), course[k], 1e-6);
+  }
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
+          normalized_edges_keep_a_uniform_pressure,
+          limit_is_the_average_of_the_pressures,
+          zone_confines_friction_to_the_contact, small_radius_is_local_friction,
+          only_the_nonlocal_law_pays, mu_multiplies_the_average,
+          every_method_gives_the_same_answer, contacts_do_not_see_each_other)

@@ -1,0 +1,610 @@
+/* src/average: kernels, search, rows of the nonlocal average. Expected values:
+ * closed forms, and sums over dense regular points that share nothing with the
+ * quadrature of the program. */
+#include "average/average.h"
+#include "average/box_tree.h"
+#include "average/face.h"
+#include "base/memory.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A patch that owns its arrays. */
+typedef struct owned {
+  average_patch p;
+  double *x;
+  int *face;
+  unsigned char *active;
+} owned;
+
+static owned owned_new(int dim, int n_node, int n_face) {
+  owned o = {.x = calloc((size_t)(dim * n_node), sizeof *o.x),
+             .face = calloc((size_t)(dim * n_face), sizeof *o.face),
+             .active = malloc((size_t)n_node)};
+  memset(o.active, 1, (size_t)n_node);
+  o.p = (average_patch){.dim = dim,
+                        .n_node = n_node,
+                        .n_face = n_face,
+                        .x = o.x,
+                        .face = o.face,
+                        .active = o.active};
+  return o;
+}
+
+static void owned_free(owned *o) {
+  free(o->x);
+  free(o->face);
+  free(o->active);
+}
+
+/* n segments over [x0, x0 + length], the inner nodes moved by up to jitter/2 of
+ * a segment. */
+static owned line(int n, double x0, double length, double jitter) {
+  owned o = owned_new(2, n + 1, n);
+  unsigned seed = 7;
+  for (int i = 0; i <= n; ++i) {
+    seed = seed * 1103515245u + 12345u;
+    double r = i > 0 && i < n ? (seed >> 16 & 1023) / 1023.0 - 0.5 : 0.0;
+    o.x[2 * i] = x0 + length * (i + jitter * r) / n;
+  }
+  for (int i = 0; i < n; ++i) {
+    o.face[2 * i] = i;
+    o.face[2 * i + 1] = i + 1;
+  }
+  return o;
+}
+
+/* The unit square z = 0 in 2 n^2 triangles. */
+static owned square(int n, double jitter) {
+  owned o = owned_new(3, (n + 1) * (n + 1), 2 * n * n);
+  unsigned seed = 11;
+  int f = 0;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      double *x = o.x + 3 * (i + (n + 1) * j);
+      int inside = i > 0 && i < n && j > 0 && j < n;
+      for (int c = 0; c < 2; ++c) {
+        seed = seed * 1103515245u + 12345u;
+        double r = inside ? (seed >> 16 & 1023) / 1023.0 - 0.5 : 0.0;
+        x[c] = ((c == 0 ? i : j) + jitter * r) / n;
+      }
+    }
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      int a = i + (n + 1) * j, b = a + n + 1;
+      const int corner[6] = {a, a + 1, b + 1, a, b + 1, b};
+      for (int k = 0; k < 6; ++k) o.face[f++] = corner[k];
+    }
+  return o;
+}
+
+static sparse_rows build(const owned *o, kernel k, double radius,
+                         int normalized, int geodesic, average_facts *facts) {
+  const average_rule rule = {k, radius, normalized, geodesic};
+  average_facts other;
+  sparse_rows G;
+  ck_assert_int_eq(
+      average_build(&o->p, &rule, &G, facts == NULL ? &other : facts), OK);
+  return G;
+}
+
+static double row_sum(const sparse_rows *G, int i) {
+  double sum = 0.0;
+  for (int k = G->start[i]; k < G->start[i + 1]; ++k) sum += G->val[k];
+  return sum;
+}
+
+static double entry(const sparse_rows *G, int i, int j) {
+  for (int k = G->start[i]; k < G->start[i + 1]; ++k)
+    if (G->col[k] == j) return G->val[k];
+  return 0.0;
+}
+
+/* ---- kernels ----------------------------------------------------------- */
+
+/* Sum of |z|^power w over a fine grid of the line: the trapezoidal rule, of
+ * any order for the bump. */
+static double line_moment(const mollifier *m, int power) {
+  enum { STEPS = 200000 };
+  double sum = 0.0;
+  for (int i = -STEPS; i <= STEPS; ++i) {
+    double z = m->radius * i / STEPS;
+    sum += pow(fabs(z / m->radius), power) * mollifier_value(m, z * z);
+  }
+  return sum * m->radius / STEPS;
+}
+
+START_TEST(bump_has_the_constants_of_the_literature) {
+  mollifier m = mollifier_make(KERNEL_BUMP, 2.5, 1);
+  ck_assert_double_eq_tol(1.0 / (m.scale * 2.5), 0.44399381616808, 1e-13);
+  ck_assert_double_eq_tol(line_moment(&m, 0), 1.0, 1e-12);
+  ck_assert_double_eq_tol(line_moment(&m, 1), 0.33445399770998, 1e-10);
+  ck_assert_double_eq_tol(line_moment(&m, 2), 0.15811363626380, 1e-12);
+  m = mollifier_make(KERNEL_BUMP, 2.5, 2);
+  ck_assert_double_eq_tol(1.0 / (m.scale * 2.5 * 2.5), 0.46651239317833, 1e-13);
+}
+END_TEST
+
+/* c of the polynomial kernels: 1/c = integral of k. */
+START_TEST(kernels_have_mass_one) {
+  static const double line[] = {0, 1, 4.0 / 3, 2.0 / 3, 2},
+                      disc[] = {0, 1.0 / 3, 0.5, 1.0 / 7, 1};
+  for (int k = KERNEL_CONE; k < KERNEL_COUNT; ++k) {
+    mollifier m = mollifier_make((kernel)k, 0.5, 1);
+    ck_assert_double_eq_tol(m.scale * 0.5 * line[k], 1.0, 1e-13);
+    m = mollifier_make((kernel)k, 0.5, 2);
+    ck_assert_double_eq_tol(m.scale * 0.25 * acos(-1.0) * disc[k], 1.0, 1e-13);
+  }
+  for (int k = 0; k < KERNEL_COUNT; ++k) {
+    mollifier m = mollifier_make((kernel)k, 0.5, 2);
+    ck_assert_double_eq(mollifier_value(&m, 0.25), 0.0);
+    ck_assert_double_eq(mollifier_value(&m, 7.0), 0.0);
+    ck_assert(mollifier_value(&m, 0.2) > 0.0);
+  }
+}
+END_TEST
+
+/* ---- integrals over faces ---------------------------------------------- */
+
+/* The same by a product of midpoint rules. */
+static void triangle_by_sums(const mollifier *m, const double *a,
+                             const double *x, double w[3]) {
+  enum { STEPS = 600 };
+  double n[3], area = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    int d = (c + 1) % 3, e = (c + 2) % 3;
+    n[c] = (a[3 + d] - a[d]) * (a[6 + e] - a[e]) -
+           (a[3 + e] - a[e]) * (a[6 + d] - a[d]);
+    area += 0.25 * n[c] * n[c];
+  }
+  area = sqrt(area) / (STEPS * STEPS);
+  memset(w, 0, 3 * sizeof *w);
+  for (int i = 0; i < STEPS; ++i)
+    for (int j = 0; j < 2 * (STEPS - i) - 1; ++j) {
+      double s[3], r2 = 0.0, third = j % 2 ? 2.0 / 3 : 1.0 / 3;
+      s[1] = (i + third) / STEPS;
+      s[2] = (j / 2 + third) / STEPS;
+      s[0] = 1.0 - s[1] - s[2];
+      for (int c = 0; c < 3; ++c) {
+        double y = s[0] * a[c] + s[1] * a[3 + c] + s[2] * a[6 + c];
+        r2 += (y - x[c]) * (y - x[c]);
+      }
+      for (int k = 0; k < 3; ++k) w[k] += area * s[k] * mollifier_value(m, r2);
+    }
+}
+
+START_TEST(triangle_is_integrated_wherever_the_point_is) {
+  static const double corner[9] = {0.1, 0.2, 0.3, 0.9, 0.1, 0.5, 0.4, 0.8, 0.1},
+                      at[][3] = {{0.1, 0.2, 0.3}, {0.5, 0.4, 0.3},
+                                 {0.5, 0.4, 0.6}, {0.0, 0.0, 0.0},
+                                 {1.3, 0.0, 0.4}, {0.5, 0.15, 0.4},
+                                 {0.2, 0.9, 0.2}, {9.0, 0.0, 0.0}};
+  static const double radius[] = {0.2, 0.5, 3.0};
+  for (int k = 0; k < KERNEL_COUNT; ++k)
+    for (size_t q = 0; q < sizeof at / sizeof *at; ++q)
+      for (int r = 0; r < 3; ++r) {
+        mollifier m = mollifier_make((kernel)k, radius[r], 2);
+        double w[3], v[3];
+        face_triangle(&m, corner, at[q], w);
+        triangle_by_sums(&m, corner, at[q], v);
+        for (int c = 0; c < 3; ++c)
+          ck_assert_msg(
+              fabs(w[c] - v[c]) < (k == KERNEL_CONSTANT ? 1e-3 : 3e-5),
+              "kernel %d, point %zu, radius %g: %.9g, %.9g", k, q, radius[r],
+              w[c], v[c]);
+      }
+}
+END_TEST
+
+/* A ring against the triangles of the same annulus. */
+START_TEST(ring_is_the_surface_of_revolution) {
+  static const double meridian[4] = {0.6, 0.1, 0.9, 0.4};
+  static const double at[][2] = {
+      {0.6, 0.1}, {0.75, 0.2}, {0.0, 0.1}, {1.2, 0.5}};
+  enum { SECTORS = 720, LAYERS = 8 };
+  for (int k = 0; k < KERNEL_COUNT; ++k)
+    for (int q = 0; q < 4; ++q) {
+      mollifier m = mollifier_make((kernel)k, q == 2 ? 1.0 : 0.5, 2);
+      double w[2], whole = 0.0, first = 0.0, part[3];
+      const double x[3] = {at[q][0], 0.0, at[q][1]};
+      face_ring(&m, m.radius, meridian, at[q], w);
+      for (int s = 0; s < SECTORS * LAYERS; ++s)
+        for (int half = 0; half < 2; ++half) {
+          double corner[9], share[3];
+          for (int c = 0; c < 3; ++c) {
+            int l = s % LAYERS + (c == 2 - half), t = s / LAYERS + (c > 0) * 1;
+            if (half == 1 && c == 2) l = s % LAYERS + 1, t = s / LAYERS;
+            if (half == 1 && c == 1) l = s % LAYERS + 1, t = s / LAYERS + 1;
+            double u = (double)l / LAYERS, a = 2 * acos(-1.0) * t / SECTORS;
+            double r = (1 - u) * meridian[0] + u * meridian[2];
+            corner[3 * c] = r * cos(a);
+            corner[3 * c + 1] = r * sin(a);
+            corner[3 * c + 2] = (1 - u) * meridian[1] + u * meridian[3];
+            share[c] = 1 - u;
+          }
+          face_triangle(&m, corner, x, part);
+          for (int c = 0; c < 3; ++c) {
+            whole += part[c];
+            first += share[c] * part[c];
+          }
+        }
+      double tolerance = k == KERNEL_CONSTANT ? 3e-3 : 1e-4;
+      ck_assert_msg(fabs(w[0] + w[1] - whole) < tolerance &&
+                        fabs(w[0] - first) < tolerance,
+                    "kernel %d, point %d: %.9g %.9g, %.9g %.9g", k, q,
+                    w[0] + w[1], whole, w[0], first);
+    }
+}
+END_TEST
+
+/* ---- rows -------------------------------------------------------------- */
+
+/* Part of the mass of the line kernel within [0, infinity[ of a point at x >= 0
+ * from the edge. */
+static double half_line(int k, double s) {
+  if (s >= 1.0) return 1.0;
+  switch (k) {
+    case KERNEL_CONE:
+      return 0.5 + s - 0.5 * s * s;
+    case KERNEL_PARABOLA:
+      return 0.5 + 0.75 * s - 0.25 * s * s * s;
+    case KERNEL_WENDLAND:
+      return 0.5 +
+             1.5 * (s + s * s * s *
+                            (-10.0 / 3 + s * (5 + s * (-3 + s * (2.0 / 3)))));
+    default:
+      return 0.5 + 0.5 * s;
+  }
+}
+
+START_TEST(uniform_pressure_falls_to_one_half_at_an_edge) {
+  static const double bump[] = {0.5, 0.7027446459, 0.8770327167, 0.9839947499,
+                                1.0};
+  for (int fine = 1; fine <= 8; fine *= 2)
+    for (int k = 0; k < KERNEL_COUNT; ++k) {
+      owned o = line(40 * fine, 0.0, 1.0, 0.0);
+      sparse_rows G = build(&o, (kernel)k, 0.1, 0, 0, NULL);
+      for (int q = 0; q <= 4; ++q) {
+        double expected = k == KERNEL_BUMP ? bump[q] : half_line(k, q / 4.0);
+        ck_assert_double_eq_tol(row_sum(&G, q * fine), expected, 4e-7);
+        ck_assert_double_eq_tol(row_sum(&G, (40 - q) * fine), expected, 4e-7);
+      }
+      for (int i = 4 * fine; i <= 36 * fine; ++i)
+        ck_assert_double_eq_tol(row_sum(&G, i), 1.0, 1e-13);
+      sparse_free(&G);
+      owned_free(&o);
+    }
+}
+END_TEST
+
+/* T/(mu p L) = 1 - m1 rho/L; the trapezoidal sum over the nodes errs by
+ * 0.14 (h/rho)^2 rho/L. */
+START_TEST(edges_lose_the_first_moment) {
+  static const double ratio[] = {0.01, 0.05, 0.1, 0.2},
+                      expected[] = {0.996655460, 0.983277300, 0.966554600,
+                                    0.933109200};
+  for (int q = 0; q < 4; ++q)
+    for (int fine = 4; fine <= 16; fine *= 2) {
+      int n = (int)(fine / ratio[q] + 0.5);
+      owned o = line(n, 0.0, 3.0, 0.0);
+      sparse_rows G = build(&o, KERNEL_BUMP, 3.0 * ratio[q], 0, 0, NULL);
+      double total = 0.0;
+      for (int i = 0; i <= n; ++i)
+        total += row_sum(&G, i) * (i == 0 || i == n ? 0.5 : 1.0) / n;
+      double error = 0.14 * ratio[q] / (fine * fine);
+      ck_assert_double_eq_tol(total, expected[q], error + 1e-8);
+      sparse_free(&G);
+      owned_free(&o);
+    }
+}
+END_TEST
+
+/* Any mesh, any kernel: what the header promises. */
+static void expect_sound(const owned *o, const double *share, int k,
+                         double radius) {
+  for (int normalized = 0; normalized < 2; ++normalized) {
+    sparse_rows G = build(o, (kernel)k, radius, normalized, 0, NULL);
+    for (int i = 0; i < G.n; ++i) {
+      double sum = row_sum(&G, i);
+      if (normalized) ck_assert_double_eq_tol(sum, 1.0, 1e-13);
+      ck_assert(sum > 0.0 && sum < 1.0 + 1e-13);
+      for (int e = G.start[i]; e < G.start[i + 1]; ++e) {
+        int j = G.col[e];
+        ck_assert(G.val[e] >= 0.0);
+        ck_assert(e == G.start[i] || G.col[e - 1] < j);
+        if (!normalized)
+          ck_assert_double_eq_tol(share[i] * G.val[e],
+                                  share[j] * entry(&G, j, i),
+                                  1e-13 * (share[i] + share[j]));
+      }
+    }
+    sparse_free(&G);
+  }
+}
+
+START_TEST(rows_are_symmetric_by_mass_and_keep_constants) {
+  for (int k = 0; k < KERNEL_COUNT; ++k) {
+    owned o = line(60, 0.0, 1.0, 0.9), s = square(9, 0.7);
+    double share[100] = {0.0};
+    for (int f = 0; f < 60; ++f)
+      for (int c = 0; c < 2; ++c)
+        share[f + c] += 0.5 * (o.x[2 * f + 2] - o.x[2 * f]);
+    for (double radius = 0.01; radius < 2.0; radius *= 1.7)
+      expect_sound(&o, share, k, radius);
+    owned_free(&o);
+    memset(share, 0, sizeof share);
+    for (int f = 0; f < s.p.n_face; ++f) {
+      const int *v = s.face + 3 * f;
+      double *a = s.x + 3 * v[0], *b = s.x + 3 * v[1], *c = s.x + 3 * v[2];
+      double area =
+          0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+      for (int q = 0; q < 3; ++q) share[v[q]] += area / 3;
+    }
+    for (double radius = 0.05; radius < 1.0; radius *= 2.1)
+      expect_sound(&s, share, k, radius);
+    owned_free(&s);
+  }
+}
+END_TEST
+
+/* The second moment of a row inside, the curvature that friction sees: that of
+ * the kernel and 1/6 h^2 of the P1 function. */
+START_TEST(rows_have_the_second_moment_of_the_kernel) {
+  static const double m2[] = {0.15811363626380, 1.0 / 6, 0.2, 1.0 / 14,
+                              1.0 / 3};
+  for (int k = 0; k < KERNEL_COUNT; ++k) {
+    owned o = line(200, 0.0, 1.0, 0.0);
+    sparse_rows G = build(&o, (kernel)k, 0.1, 0, 0, NULL);
+    double sum = 0.0, mean = 0.0;
+    for (int e = G.start[100]; e < G.start[101]; ++e) {
+      double z = o.x[2 * G.col[e]] - o.x[200];
+      mean += z * G.val[e];
+      sum += z * z * G.val[e];
+    }
+    ck_assert_double_eq_tol(mean, 0.0, 1e-14);
+    ck_assert_double_eq_tol(sum, m2[k] * 0.01 + 0.005 * 0.005 / 6, 1e-9);
+    sparse_free(&G);
+    owned_free(&o);
+  }
+}
+END_TEST
+
+/* In the plane the edge of a half plane sees the kernel of the disc, whose
+ * part beyond a line at distance s is a one-dimensional integral. */
+static double half_plane(const mollifier *m, double s) {
+  enum { STEPS = 1000 };
+  double sum = 0.0, h = 2.0 * m->radius / STEPS;
+  for (int i = 0; i < STEPS; ++i)
+    for (int j = 0; j < STEPS; ++j) {
+      double x = -m->radius + (i + 0.5) * h, y = -m->radius + (j + 0.5) * h;
+      if (x > -s) sum += mollifier_value(m, x * x + y * y) * h * h;
+    }
+  return sum;
+}
+
+START_TEST(surface_loses_mass_at_its_edges) {
+  owned o = square(24, 0.0);
+  for (int k = 0; k < KERNEL_COUNT; ++k) {
+    mollifier m = mollifier_make((kernel)k, 0.25, 2);
+    sparse_rows G = build(&o, (kernel)k, 0.25, 0, 0, NULL);
+    for (int i = 0; i < 6; i += 2)
+      ck_assert_double_eq_tol(row_sum(&G, i + 25 * 12),
+                              half_plane(&m, i / 24.0), 2e-3);
+    ck_assert_double_eq_tol(row_sum(&G, 25 * 12), 0.5, 1e-6);
+    ck_assert_double_eq_tol(row_sum(&G, 0), 0.25, 1e-6);
+    ck_assert_double_eq_tol(row_sum(&G, 6 + 25 * 12), 1.0, 1e-13);
+    ck_assert_double_eq_tol(row_sum(&G, 12 + 25 * 12), 1.0, 1e-13);
+    sparse_free(&G);
+  }
+  owned_free(&o);
+}
+END_TEST
+
+/* A disc of radius 1 turned around its axis; far from the axis a ring is a
+ * straight strip of the plane. */
+START_TEST(axisymmetric_rows) {
+  owned o = line(40, 0.0, 1.0, 0.0);
+  o.p.axisymmetric = 1;
+  sparse_rows G = build(&o, KERNEL_BUMP, 0.2, 0, 0, NULL);
+  for (int i = 0; i <= 32; ++i)
+    ck_assert_double_eq_tol(row_sum(&G, i), 1.0, 1e-13);
+  for (int i = 33; i <= 40; ++i) ck_assert(row_sum(&G, i) < 1.0);
+  ck_assert(row_sum(&G, 40) < 0.5);
+  /* A pressure r^2 grows by the second moment in the plane: sum of y^2. */
+  double moment = 0.0;
+  for (int e = G.start[0]; e < G.start[1]; ++e)
+    moment += G.val[e] * o.x[2 * G.col[e]] * o.x[2 * G.col[e]];
+  ck_assert_double_eq_tol(moment, 2 * 0.1307 * 0.04, 0.02 * 0.04);
+  sparse_free(&G);
+  owned_free(&o);
+  owned ring = line(20, 1e4, 1.0, 0.0), strip = square(20, 0.0);
+  ring.p.axisymmetric = 1;
+  sparse_rows R = build(&ring, KERNEL_BUMP, 0.3, 0, 0, NULL);
+  sparse_rows S = build(&strip, KERNEL_BUMP, 0.3, 0, 0, NULL);
+  for (int i = 0; i <= 20; ++i)
+    ck_assert_double_eq_tol(row_sum(&R, i), row_sum(&S, i + 21 * 10), 1e-4);
+  sparse_free(&R);
+  sparse_free(&S);
+  owned_free(&ring);
+  owned_free(&strip);
+}
+END_TEST
+
+/* ---- local limit ------------------------------------------------------- */
+
+START_TEST(radius_below_the_mesh_is_local) {
+  owned a = line(30, 0.0, 1.0, 0.5), b = square(8, 0.5),
+        c = line(9, 0.0, 1.0, 0);
+  c.p.axisymmetric = 1;
+  const owned *all[] = {&a, &b, &c};
+  static const double radius[] = {1e-300, 1e-12, 1e-3, 0.01};
+  for (int q = 0; q < 3; ++q)
+    for (int r = 0; r < 4; ++r) {
+      average_facts facts;
+      sparse_rows G = build(all[q], KERNEL_BUMP, radius[r], 0, 0, &facts);
+      ck_assert_int_eq(G.start[G.n], G.n);
+      for (int i = 0; i < G.n; ++i) {
+        ck_assert_int_eq(G.col[i], i);
+        ck_assert_double_eq(G.val[i], 1.0);
+      }
+      ck_assert_int_eq(facts.n_local, G.n);
+      ck_assert_int_eq(facts.n_coarse, G.n);
+      sparse_free(&G);
+    }
+  owned_free(&a);
+  owned_free(&b);
+  owned_free(&c);
+}
+END_TEST
+
+START_TEST(coarse_nodes_are_counted) {
+  owned o = line(10, 0.0, 1.0, 0.0);
+  average_facts facts;
+  o.x[2 * 10] = 1.05; /* the last segment is 0.15 long */
+  sparse_rows G = build(&o, KERNEL_BUMP, 0.4, 0, 0, &facts);
+  ck_assert_double_eq_tol(facts.longest, 0.15, 1e-12);
+  ck_assert_int_eq(facts.n_active, 11);
+  ck_assert_int_eq(facts.n_coarse, 2);
+  ck_assert_int_eq(facts.n_local, 0);
+  sparse_free(&G);
+  G = build(&o, KERNEL_BUMP, 0.12, 0, 0, &facts);
+  ck_assert_int_eq(facts.n_coarse, 11);
+  ck_assert_int_eq(facts.n_local, 1);
+  ck_assert_double_eq(entry(&G, 10, 10), 1.0);
+  ck_assert_double_eq(entry(&G, 9, 10), 0.0);
+  sparse_free(&G);
+  owned_free(&o);
+}
+END_TEST
+
+/* ---- distances --------------------------------------------------------- */
+
+/* A right angle: straight, the two sides see each other across the corner;
+ * along the line it is as if there were no corner. A node left out is an edge.
+ */
+START_TEST(geodesic_distance_unbends_the_line) {
+  owned flat = line(40, 0.0, 2.0, 0.0), bent = line(40, 0.0, 2.0, 0.0);
+  for (int i = 21; i <= 40; ++i) {
+    bent.x[2 * i + 1] = bent.x[2 * i] - 1.0;
+    bent.x[2 * i] = 1.0;
+  }
+  for (int k = 0; k < KERNEL_COUNT; ++k) {
+    sparse_rows F = build(&flat, (kernel)k, 0.3, 0, 0, NULL);
+    sparse_rows G = build(&bent, (kernel)k, 0.3, 0, 1, NULL);
+    sparse_rows S = build(&bent, (kernel)k, 0.3, 0, 0, NULL);
+    ck_assert_int_eq(F.start[41], G.start[41]);
+    for (int e = 0; e < F.start[41]; ++e)
+      ck_assert_double_eq_tol(F.val[e], G.val[e], 1e-12);
+    ck_assert(entry(&S, 17, 23) > entry(&G, 17, 23));
+    ck_assert_double_eq_tol(row_sum(&S, 20), 1.0, 1e-13);
+    sparse_free(&F);
+    sparse_free(&G);
+    sparse_free(&S);
+  }
+  bent.active[8] = 0;
+  sparse_rows G = build(&bent, KERNEL_BUMP, 0.3, 0, 1, NULL);
+  ck_assert_int_eq(G.start[9], G.start[8]);
+  ck_assert_double_eq(entry(&G, 7, 8), 0.0);
+  ck_assert(row_sum(&G, 7) < 0.95);
+  ck_assert_double_eq_tol(row_sum(&G, 20), 1.0, 1e-13);
+  sparse_free(&G);
+  owned_free(&flat);
+  owned_free(&bent);
+}
+END_TEST
+
+/* Around a circle every row is the first one turned. */
+START_TEST(closed_line_has_no_edge) {
+  enum { N = 48 };
+  owned o = owned_new(2, N, N);
+  for (int i = 0; i < N; ++i) {
+    o.x[2 * i] = cos(2 * acos(-1.0) * i / N);
+    o.x[2 * i + 1] = sin(2 * acos(-1.0) * i / N);
+    o.face[2 * i] = i;
+    o.face[2 * i + 1] = (i + 1) % N;
+  }
+  static const double radius[] = {0.5, 1.9, 50.0};
+  for (int geodesic = 0; geodesic < 2; ++geodesic)
+    for (int r = 0; r < 3; ++r) {
+      sparse_rows G = build(&o, KERNEL_BUMP, radius[r], 0, geodesic, NULL);
+      for (int i = 0; i < N; ++i) {
+        ck_assert_double_eq_tol(row_sum(&G, i), 1.0, 1e-13);
+        for (int j = 0; j < N; ++j)
+          ck_assert_double_eq_tol(entry(&G, i, j),
+                                  entry(&G, 0, (j + N - i) % N), 1e-9);
+      }
+      if (radius[r] > 10.0)
+        ck_assert_double_eq_tol(entry(&G, 3, 20), 1.0 / N, 1e-3);
+      sparse_free(&G);
+    }
+  owned_free(&o);
+}
+END_TEST
+
+/* ---- search, memory ---------------------------------------------------- */
+
+START_TEST(search_finds_what_is_near) {
+  enum { N = 300 };
+  double x[6 * N];
+  int found[N];
+  unsigned seed = 3;
+  for (int i = 0; i < 6 * N; ++i) {
+    seed = seed * 1103515245u + 12345u;
+    x[i] = (seed >> 16) / 65536.0 + (i / 6 % 7 == 0 ? i % 3 : 0);
+  }
+  for (int n = 0; n <= N; n += n < 12 ? 1 : 48) {
+    box_tree t;
+    ck_assert_int_eq(box_tree_new(3, n, 2, x, &t), OK);
+    for (int q = 0; q < 50; ++q) {
+      const double *p = x + 6 * (q * 5 % N);
+      double r = 0.02 * q;
+      int count = box_tree_near(&t, p, r, found), expected = 0;
+      for (int i = 0; i < n; ++i) {
+        double sum = 0.0;
+        for (int c = 0; c < 3; ++c) {
+          double a = fmin(x[6 * i + c], x[6 * i + 3 + c]);
+          double b = fmax(x[6 * i + c], x[6 * i + 3 + c]);
+          double d = fmax(fmax(a - p[c], p[c] - b), 0.0);
+          sum += d * d;
+        }
+        expected += sum < r * r;
+      }
+      ck_assert_int_eq(count, expected);
+    }
+    box_tree_free(&t);
+  }
+}
+END_TEST
+
+START_TEST(refused_memory_is_given_back) {
+  owned o = line(20, 0.0, 1.0, 0.0);
+  const average_rule rule = {KERNEL_BUMP, 0.2, 0, 1};
+  size_t before = memory_in_use();
+  status st = ERR_MEMORY;
+  for (long k = 1; st == ERR_MEMORY; ++k) {
+    sparse_rows G;
+    average_facts facts;
+    memory_refuse(k, 0);
+    st = average_build(&o.p, &rule, &G, &facts);
+    memory_refuse(0, 0);
+    ck_assert_msg(st == OK || st == ERR_MEMORY, "request %ld", k);
+    if (st == OK) ck_assert_int_gt(k, 20);
+    sparse_free(&G);
+    ck_assert_uint_eq(memory_in_use(), before);
+  }
+  owned_free(&o);
+}
+END_TEST
+
+UNIT_MAIN("average", bump_has_the_constants_of_the_literature,
+          kernels_have_mass_one, triangle_is_integrated_wherever_the_point_is,
+          ring_is_the_surface_of_revolution,
+          uniform_pressure_falls_to_one_half_at_an_edge,
+          edges_lose_the_first_moment,
+          rows_are_symmetric_by_mass_and_keep_constants,
+          rows_have_the_second_moment_of_the_kernel,
+          surface_loses_mass_at_its_edges, axisymmetric_rows,
+          radius_below_the_mesh_is_local, coarse_nodes_are_counted,
+          geodesic_distance_unbends_the_line, closed_line_has_no_edge,
+          search_finds_what_is_near, refused_memory_is_given_back)
