@@ -25,6 +25,7 @@ typedef struct discrete {
   contact_status *contact; /* [n]                                            */
   solver_report report;
   error_bound error;
+  solution_set solutions;
   char log[LOG];
 } discrete;
 
@@ -53,6 +54,7 @@ static void discrete_free(discrete *d) {
   memory_free(d->slip);
   memory_free(d->g);
   memory_free(d->contact);
+  solution_set_free(&d->solutions);
 }
 
 /* ---- contact problems -----------------------------------------------------
@@ -136,6 +138,7 @@ static state state_of(const discrete *d) {
              .contact = d->contact,
              .report = d->report,
              .error = d->error,
+             .solutions = d->step->check != CHECK_NONE ? &d->solutions : NULL,
              .solver_log = d->log,
              .settled = d->report.outcome > 0};
   for (int i = 0; i < p->n; ++i) {
@@ -190,6 +193,8 @@ status condensed_run(const model *m, const exchange_problem *p,
   TRY(st);
   if (p->dim > 1 && !outcome_is_fatal(d.report.outcome))
     TRY(estimate_problem(d.step, &p->cp, d.u, d.r, &d.error));
+  if (p->dim > 1 && !outcome_is_fatal(d.report.outcome))
+    TRY(check_problem(d.step, &p->cp, &d.report, d.u, d.r, &d.solutions));
   TRY(tell_answer(&d, sink, cpu, unsettled));
 done:
   discrete_free(&d);

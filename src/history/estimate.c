@@ -1,5 +1,9 @@
 /*
- * Error of the contact solver at an accepted increment: bound of accuracy.h,
+ * What is asked about the answer of the contact solver at an accepted
+ * increment: how far it is from the solution, and whether it is the only one
+ * (for large friction uniqueness is not known).
+ *
+ * The error is the bound of accuracy.h,
  * in energy units and relative to the energy norm of the body. The interior
  * follows the contact nodes exactly, so that the error of the whole body has
  * the energy of that of the condensed problem.
@@ -9,6 +13,7 @@
 #include "history/run.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const char *const indefinite =
     "the matrix is not symmetric and positive semidefinite";
@@ -101,4 +106,35 @@ done:
   dense_inverse_free(dense);
   timer_leave(STAGE_ESTIMATE);
   return st;
+}
+
+/* ---- other solutions ---------------------------------------------------- */
+
+status check_problem(const step *s, const contact_problem *cp,
+                     const solver_report *report, const double *u,
+                     const double *r, solution_set *out) {
+  status st = OK;
+  solution_set_free(out);
+  if (s->check == CHECK_NONE || cp->m == 0) return OK;
+  timer_enter(STAGE_CHECK);
+  if (s->check == CHECK_SOLVERS) {
+    TRY(solutions_by_solvers(cp, s->solver.tol, report, u, r, out));
+    goto done;
+  }
+  st = solutions_by_statuses(cp, s->solver.tol, u, r, out);
+  if (st == ERR_DECK) {
+    char why[256];
+    snprintf(why, sizeof why, "%s", status_message());
+    FAIL(ERR_DECK, "deck line %d: *SOLVER, CHECK=ALL: %s; use CHECK=YES",
+         s->solver_at.line_no, why);
+  }
+  TRY(st);
+done:
+  timer_leave(STAGE_CHECK);
+  return st;
+}
+
+status check_increment(run *r) {
+  return check_problem(r->step, &r->cp, &r->report, r->now.uc, r->now.rc,
+                       &r->solutions);
 }

@@ -65,6 +65,7 @@ static state make_state(run *r, int attempt, int increment_no) {
              .report = r->report,
              .note = r->note,
              .error = r->error,
+             .solutions = r->step->check != CHECK_NONE ? &r->solutions : NULL,
              .solver_log = contact_solver_log(r->solver),
              .settled = r->report.outcome > 0};
   if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
@@ -107,6 +108,7 @@ static status accept(run *r, int attempt, int increment_no, int last,
   r->n_zone = 0;
   if (table_is_due(r->step, PRINT_ZONES, increment_no, last))
     TRY(zones_find(r));
+  TRY(check_increment(r));
   state s = make_state(r, attempt, increment_no);
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;

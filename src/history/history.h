@@ -4,6 +4,7 @@
 #ifndef PROTIS_HISTORY_HISTORY_H
 #define PROTIS_HISTORY_HISTORY_H
 
+#include "accuracy/solutions.h"
 #include "exchange/exchange.h"
 #include "fem/fem.h"
 #include "model/model.h"
@@ -91,6 +92,7 @@ typedef struct state {
   energies energy;
   solver_report report;
   error_bound error;
+  const solution_set *solutions; /* of CHECK=; NULL: not asked for            */
   const char *solver_log;
   const char *note; /* whole lines about what jumps, "" or NULL: nothing      */
   double cpu;       /* of this increment, s                                */

@@ -84,6 +84,7 @@ typedef struct run {
   dense_inverse *dense; /* of A where contact alone holds a body       */
   int dense_known;      /* 1: made, or A has none                      */
   known_rate rate;
+  solution_set solutions; /* found by CHECK= in the increment                 */
   int total_no, unsettled;
 } run;
 
@@ -138,6 +139,14 @@ status estimate_increment(run *r);
 /* The same for a problem from a file. */
 status estimate_problem(const step *s, const contact_problem *cp,
                         const double *u, const double *r, error_bound *e);
+
+/* Other solutions than that of r->now into r->solutions, if asked
+ * for. ERR_DECK: CHECK=ALL is not possible. */
+status check_increment(run *r);
+/* The same for a problem from a file. */
+status check_problem(const step *s, const contact_problem *cp,
+                     const solver_report *report, const double *u,
+                     const double *r, solution_set *out);
 /* r->now becomes r->old. */
 void result_accept(run *r);
 

@@ -122,6 +122,7 @@ static void free_surface(run *r) {
   r->dense = NULL;
   r->dense_known = 0;
   known_rate_forget(&r->rate);
+  solution_set_free(&r->solutions);
   condensed_free(r->c);
   stiffness_free(r->k);
   surface_free(r->surface);

@@ -372,6 +372,7 @@ status apply_solver(reading *r) {
   s->solver.tol = p->tol;
   s->solver.max_iter = p->max_iter;
   s->solver.limit_max_iter = p->limit_max_iter;
+  s->check = p->check;
   if (r->plugin == NULL) goto done;
   s->solver_param = memory_new(1, r->plugin_size);
   if (s->solver_param == NULL)

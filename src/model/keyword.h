@@ -133,7 +133,7 @@ typedef struct load_param {
 typedef struct solver_param {
   const char *method;
   double tol;
-  int max_iter, limit_max_iter;
+  int max_iter, limit_max_iter, check;
 } solver_param;
 typedef struct accuracy_param {
   int solver;

@@ -147,6 +147,10 @@ static const option solver_options[] = {
              "of the method; 0: its own limit"),
   OPTION_INT(solver_param, limit_max_iter, "LIMIT_MAX_ITER", 1, 1000000, "1000",
              "-", "passes of the fixed point on the sliding limit"),
+  OPTION_CHOICE(solver_param, check, "CHECK", "NO|YES|ALL", "NO",
+                "look for second solutions: YES with solvers of all families "
+                "from several starts; ALL by all combinations of statuses, up "
+                "to 10 contact nodes in 2-D"),
   OPTION_END};
 static const option accuracy_options[] = {
   OPTION_FLAG(accuracy_param, solver, "SOLVER", "YES",

@@ -161,6 +161,9 @@ typedef struct friction_change { /* *FRICTION in a step                       */
   friction_rule rule; /* from the start of the step on                      */
 } friction_change;
 
+/* CHECK= of *SOLVER */
+typedef enum { CHECK_NONE, CHECK_SOLVERS, CHECK_ALL } solution_check;
+
 typedef struct step {
   const char *name;
   place at;
@@ -179,6 +182,7 @@ typedef struct step {
   int has_print, has_output;
   int condensed_frequency; /* of the condensed problems; 0 the last only, -1
                               none */
+  int check; /* solution_check, comes with *SOLVER                            */
   int has_accuracy;
   int no_solver_error;  /* 1: the error of the solver is not asked for        */
   solver_choice solver; /* its param is owned by the step it came with        */

@@ -337,7 +337,10 @@ static const solver_choice default_solver = {
 /* Solver, tables and fields stay until changed. */
 static status carry_choices(const step *old, step *s) {
   status st = OK;
-  if (s->solver_at.file == NULL) s->solver = old->solver;
+  if (s->solver_at.file == NULL) {
+    s->solver = old->solver;
+    s->check = old->check;
+  }
   if (!s->has_accuracy) s->no_solver_error = old->no_solver_error;
   if (!s->has_output) {
     s->output_frequency = old->output_frequency;

@@ -171,6 +171,28 @@ static void write_cost(json *w, const output_options *o) {
   json_close(w, '}');
 }
 
+static void write_solutions(json *w, const increment_summary *s) {
+  if (!s->checked) return;
+  json_open(w, "solutions", '[');
+  for (int i = 0; i < s->n_solution; ++i) {
+    const solution_facts *a = &s->solutions[i];
+    json_open(w, NULL, '{');
+    json_real(w, "residual", a->residual);
+    json_real(w, "distance_percent", 100 * a->distance);
+    json_count(w, "open", a->n_open);
+    json_count(w, "slip", a->n_slip);
+    json_count(w, "stick", a->n_stick);
+    json_real(w, "u_n_lowest", a->lowest[0]);
+    json_real(w, "u_n_highest", a->highest[0]);
+    json_real(w, "u_t_lowest", a->lowest[1]);
+    json_real(w, "u_t_highest", a->highest[1]);
+    json_count(w, "found_times", a->patterns);
+    json_count(w, "continuum_with", a->joined);
+    json_close(w, '}');
+  }
+  json_close(w, ']');
+}
+
 static void write_increment(json *w, const increment_summary *s) {
   json_open(w, NULL, '{');
   json_count(w, "step", s->step_no);
@@ -192,6 +214,7 @@ static void write_increment(json *w, const increment_summary *s) {
   }
   json_real(w, "energy_defect", s->defect);
   json_flag(w, "settled", s->settled);
+  write_solutions(w, s);
   json_close(w, '}');
 }
 

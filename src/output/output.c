@@ -39,6 +39,19 @@ static job job_of(const output *o) {
 /* The larger; NaN wins, so that it is seen. */
 static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
 
+/* The facts of what CHECK= found. */
+static status remember_solutions(const solution_set *set,
+                                 increment_summary *i) {
+  status st = OK;
+  if (set == NULL) goto done;
+  NEW(i->solutions, set->n_found);
+  i->n_solution = set->n_found;
+  i->checked = 1;
+  for (int k = 0; k < set->n_found; ++k) i->solutions[k] = set->found[k].facts;
+done:
+  return st;
+}
+
 static status remember(output *o, const state *s) {
   status st = OK;
   run_summary *run = &o->run;
@@ -61,6 +74,7 @@ static status remember(output *o, const state *s) {
   if (s->surface != NULL)
     run->residual_worst = worse(run->residual_worst, s->report.residual);
   run->defect_worst = worse(run->defect_worst, fabs(i->defect));
+  TRY(remember_solutions(s->solutions, i));
   if (s->error.asked) {
     double error = 100 * s->error.relative;
     run->error_worst =
@@ -219,6 +233,8 @@ history_sink output_sink(output *o) {
 static void release(output *o) {
   memory_free(o->json);
   memory_free(o->xdmf);
+  for (int i = 0; i < o->run.n_increment; ++i)
+    memory_free(o->run.increments[i].solutions);
   memory_free(o->run.increments);
   memory_free(o);
 }

@@ -22,6 +22,17 @@ static const char *reason(const state *s, const char *why) {
   return s->settled ? "OK" : "UNSETTLED";
 }
 
+/* What CHECK= found, after the reason. */
+static const char *check_text(const state *s, char text[32]) {
+  text[0] = '\0';
+  if (s->solutions == NULL) return text;
+  if (s->solutions->n_found > 1)
+    snprintf(text, 32, " SOLUTIONS=%d", s->solutions->n_found);
+  else if (!solution_set_confirmed(s->solutions))
+    snprintf(text, 32, " UNCONFIRMED");
+  return text;
+}
+
 /* Error of the solver in %, "-": not asked for, or no bound. */
 static const char *error_text(const state *s, char text[NUMBER_SIZE]) {
   if (!s->error.asked || isnan(s->error.relative)) return "-";
@@ -31,7 +42,7 @@ static const char *error_text(const state *s, char text[NUMBER_SIZE]) {
 status sta_line(const output_options *o, const state *s, const char *why,
                 text_file *sta) {
   char t[NUMBER_SIZE], dt[NUMBER_SIZE], residual[NUMBER_SIZE];
-  char error[NUMBER_SIZE];
+  char error[NUMBER_SIZE], check[32];
   const solver_report *r = &s->report;
   fprintf(sta->f, "%6d %5d %3d %s %s %7d %7d %7d %-9s %7d %s %9s", s->step_no,
           s->increment_no, s->attempt, text_number(t, s->t, 4),
@@ -39,7 +50,8 @@ status sta_line(const output_options *o, const state *s, const char *why,
           r->solver != NULL ? r->solver : "-", r->iterations,
           text_number(residual, r->residual, 3), error_text(s, error));
   if (!o->no_timing) fprintf(sta->f, " %9.3f", s->cpu);
-  fprintf(sta->f, " %s%s\n", reason(s, why), why != NULL ? why : "");
+  fprintf(sta->f, " %s%s%s\n", reason(s, why), why != NULL ? why : "",
+          why != NULL ? "" : check_text(s, check));
   return text_check(sta);
 }
 

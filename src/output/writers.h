@@ -44,6 +44,8 @@ typedef struct increment_summary {
   int n_open, n_slip, n_stick, iterations, settled, outcome;
   double residual, defect;
   error_bound error;
+  int checked, n_solution;   /* by CHECK= of *SOLVER                          */
+  solution_facts *solutions; /* [n_solution] owned                            */
 } increment_summary;
 
 typedef struct run_summary {

@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char mesh_text[] =
@@ -18,8 +19,8 @@ static const char mesh_text[] =
     "$Elements\n5\n1 15 2 1 1 1\n2 15 2 1 2 2\n3 15 2 2 3 3\n"
     "4 1 2 3 1 1 3\n5 2 2 4 1 3 2 1\n$EndElements\n";
 
-static job run_triangle(double mu, double fx, double fy, const char *method,
-                        int *code) {
+static job run_checked(double mu, double fx, double fy, const char *method,
+                       const char *check, int *code) {
   job j = job_begin("triangle");
   job_write(&j, "triangle.msh", "%s", mesh_text);
   job_write(&j, "triangle.inp",
@@ -29,15 +30,20 @@ static job run_triangle(double mu, double fx, double fy, const char *method,
             "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O, NORMAL=OBSTACLE\n"
             "*FRICTION, CONTACT=C, LAW=COULOMB\n%.17g\n*STEP\n*STATIC\n"
             "*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\nTIP, 1, %.17g\nTIP, 2, %.17g\n"
-            "*SOLVER, METHOD=%s\n*PRINT, CONTACT, NODES\n*END STEP\n",
-            mu, fx, fy, method);
+            "*SOLVER, METHOD=%s%s\n*PRINT, CONTACT, NODES\n*END STEP\n",
+            mu, fx, fy, method, check);
   *code = job_run(&j, "");
   return j;
 }
 
+static job run_triangle(double mu, double fx, double fy, const char *method,
+                        int *code) {
+  return run_checked(mu, fx, fy, method, "", code);
+}
+
 /* K of the free vertex (0,0) with the others at (-1,1), (1,3): area 2,
  * g = (2, -2) / 4 ... from the closed form of the gradient. */
-static void stiffness(double K[2][2]) {
+static void stiffness_of(double K[2][2]) {
   double area = 2.0,
          g[2] = {(1.0 - 3.0) / (2 * area), (1.0 - -1.0) / (2 * area)};
   double G = 1 / 2.6, lambda = 0.3 / (1.3 * 0.4),
@@ -53,7 +59,7 @@ static void stiffness(double K[2][2]) {
 static int solution(double mu, const double F[2], int which, double u[2],
                     double r[2]) {
   double K[2][2], det;
-  stiffness(K);
+  stiffness_of(K);
   u[0] = u[1] = r[0] = r[1] = 0.0;
   if (which == 0) {
     det = K[0][0] * K[1][1] - K[0][1] * K[1][0];
@@ -97,7 +103,7 @@ static const char *const methods[] = {"AUTO", "NEWTON", "SOR"};
 
 START_TEST(closed_form_agrees_with_the_published_numbers) {
   double K[2][2], u[2], r[2];
-  stiffness(K);
+  stiffness_of(K);
   ck_assert_double_eq_tol(K[0][0], 0.8653846154, 1e-10);
   ck_assert_double_eq_tol(K[0][1], -0.4807692308, 1e-10);
   ck_assert(solution(1.0, (double[]){-1, 0.3}, 3, u, r));
@@ -141,5 +147,51 @@ START_TEST(one_of_several_solutions_is_found) {
 }
 END_TEST
 
+/* Numbers u_t_lowest of the solutions in JOB.json, and their count. */
+static int listed_solutions(const job *j, double *u_t, double *u_n) {
+  char *json = job_file(j, "json");
+  const char *at = strstr(json, "\"solutions\": [");
+  int n = 0;
+  ck_assert_ptr_nonnull(at);
+  while ((at = strstr(at, "\"u_n_lowest\": ")) != NULL) {
+    u_n[n] = atof(at + strlen("\"u_n_lowest\": "));
+    at = strstr(at, "\"u_t_lowest\": ");
+    u_t[n++] = atof(at + strlen("\"u_t_lowest\": "));
+  }
+  free(json);
+  return n;
+}
+
+/* All three solutions, or the only one, by both ways of looking for them. With
+ * NORMAL=OBSTACLE u_n = -u_y, u_t = u_x up to the sign of the tangent. */
+START_TEST(all_solutions_are_listed) {
+  static const double mu[] = {1.0, 1.7, 2.0, 3.0}, F[] = {1.9, -1.0};
+  static const char *const checks[] = {", CHECK=ALL", ", CHECK=YES"};
+  for (size_t m = 0; m < 4; ++m)
+    for (size_t c = 0; c < 2; ++c) {
+      double u_t[8], u_n[8], u[2], r[2];
+      int code, expected = 0, found = 0;
+      job j = run_checked(mu[m], F[0], F[1], "AUTO", checks[c], &code);
+      ck_assert_int_eq(code, 0);
+      int n = listed_solutions(&j, u_t, u_n);
+      for (int k = 0; k < 4; ++k) {
+        if (!solution(mu[m], F, k, u, r)) continue;
+        ++expected;
+        for (int i = 0; i < n; ++i)
+          found += fabs(fabs(u_t[i]) - fabs(u[0])) + fabs(u_n[i] + u[1]) < 1e-9;
+      }
+      ck_assert_int_eq(expected, mu[m] > 1.8 ? 3 : 1);
+      ck_assert_int_eq(n, expected);
+      ck_assert_int_eq(found, expected);
+      char *sta = job_file(&j, "sta");
+      ck_assert_int_eq(strstr(sta, "OK SOLUTIONS=3\n") != NULL, expected == 3);
+      ck_assert_ptr_null(strstr(sta, "UNCONFIRMED"));
+      free(sta);
+      job_end(&j);
+    }
+}
+END_TEST
+
 UNIT_MAIN("triangle", closed_form_agrees_with_the_published_numbers,
-          unique_solution_is_found, one_of_several_solutions_is_found)
+          unique_solution_is_found, one_of_several_solutions_is_found,
+          all_solutions_are_listed)

@@ -1,0 +1,131 @@
+/*
+ * Solutions by several solvers: one of each family, from starts that lie apart:
+ * sticking, all open, and sliding one way and the other. Where friction leaves
+ * room for several states, methods and starts differ in the one they reach.
+ */
+#include "accuracy/solutions.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { PARAM_SIZE = 512 };
+static const double FAR = 16.0; /* -, of the displacement that the scale of the
+                                   forces makes: distance of a start          */
+
+typedef enum { STICKING, OPEN_START, SLIDING, SLIDING_BACK, N_START } start;
+static const char *const start_text[] = {
+    "sticking", "all open", "sliding along t", "sliding against t"};
+
+/* One of each family; the first of a family that can. */
+static const char *const solvers[] = {"newton", "lemke", "sor", "pcg",
+                                      "auglag"};
+enum { N_SOLVER = sizeof solvers / sizeof *solvers };
+
+/* Displacement of the size that the forces of the problem can make, m. */
+static double reach(const contact_problem *cp) {
+  double least = HUGE_VAL, scale = contact_scale(cp);
+  if (cp->A == NULL) return FAR * scale;
+  for (int i = 0; i < cp->m; ++i)
+    least = fmin(least, cp->A[(size_t)i * (size_t)(cp->m + 1)]);
+  return least > 0.0 ? FAR * scale / least : 0.0;
+}
+
+/* +1, -1, 0: how a start slides along t1. */
+static double way_of(start kind) {
+  return kind == SLIDING ? 1.0 : kind == SLIDING_BACK ? -1.0 : 0.0;
+}
+
+static void set_start(const contact_problem *cp, start kind, double *u,
+                      double *r) {
+  double far = reach(cp), force = cp->A == NULL ? 0.0 : contact_scale(cp);
+  int open = kind == OPEN_START;
+  for (int i = 0; i < cp->n; ++i) {
+    int first = i * cp->dim;
+    u[first] = cp->gap[i] - (open ? far : 0.0);
+    r[first] = open ? 0.0 : -force;
+    for (int k = 0; k < cp->dim - 1; ++k) {
+      u[first + 1 + k] = cp->ut0 == NULL ? 0.0 : cp->ut0[i * (cp->dim - 1) + k];
+      r[first + 1 + k] = 0.0;
+    }
+    if (cp->dim > 1) u[first + 1] += way_of(kind) * far;
+  }
+  for (int i = 0; i < cp->n && cp->dim > 1; ++i)
+    r[i * cp->dim + 1] = -way_of(kind) * contact_node_limit(cp, r, i);
+}
+
+/* Room for one start and its answer. */
+typedef struct trial {
+  double *u, *r; /* [m]                                                       */
+} trial;
+
+static status attempt(const contact_problem *cp, double tol,
+                      contact_solver *solver, const char *name, start kind,
+                      const trial *x, solution_set *s) {
+  status st = OK;
+  double *u = x->u, *r = x->r;
+  solver_report rep;
+  int no = 0;
+  set_start(cp, kind, u, r);
+  TRY(contact_solve(solver, cp, NULL, u, r, &rep));
+  if (rep.outcome > 0) TRY(solution_set_add(cp, tol, u, r, s, &no));
+  GROW(s->attempts, s->n_attempt, s->cap_attempt);
+  s->attempts[s->n_attempt++] =
+      (solution_attempt){.solver = name,
+                         .family = solver_family(name),
+                         .start = start_text[kind],
+                         .outcome = rep.outcome,
+                         .residual = rep.residual,
+                         .solution_no = no};
+done:
+  return st;
+}
+
+static int can_solve(const contact_problem *cp, const solver_ops *ops) {
+  if (cp->dim == 3 && !(ops->handles & SOLVES_3D)) return 0;
+  return !cp->floating || (ops->handles & SOLVES_FLOATING);
+}
+
+static status try_solver(const contact_problem *cp, double tol,
+                         const char *name, const trial *x, solution_set *s) {
+  status st = OK;
+  _Alignas(16) char param[PARAM_SIZE] = {0};
+  const solver_ops *ops = solver_find(name);
+  contact_solver *solver = NULL;
+  if (ops == NULL || !can_solve(cp, ops) || ops->param_size > PARAM_SIZE)
+    goto done;
+  option_defaults(ops->options, param);
+  solver_choice choice = {.ops = ops, .param = param, .tol = tol};
+  TRY(contact_solver_new(&choice, &solver));
+  for (int k = 0; k < N_START; ++k)
+    TRY(attempt(cp, tol, solver, ops->name, (start)k, x, s));
+done:
+  contact_solver_free(solver);
+  return st;
+}
+
+status solutions_by_solvers(const contact_problem *cp, double tol,
+                            const solver_report *report, const double *u,
+                            const double *r, solution_set *out) {
+  status st = OK;
+  trial x = {0};
+  int no = 0;
+  NEW(x.u, cp->m);
+  NEW(x.r, cp->m);
+  TRY(solution_set_add(cp, tol, u, r, out, &no));
+  GROW(out->attempts, out->n_attempt, out->cap_attempt);
+  out->attempts[out->n_attempt++] =
+      (solution_attempt){.solver = report->solver,
+                         .family = solver_family(report->solver),
+                         .start = "last increment",
+                         .outcome = report->outcome,
+                         .residual = report->residual,
+                         .solution_no = no};
+  for (int i = 0; i < N_SOLVER; ++i)
+    TRY(try_solver(cp, tol, solvers[i], &x, out));
+done:
+  memory_free(x.u);
+  memory_free(x.r);
+  return st;
+}
