@@ -21,10 +21,13 @@ const char *outcome_text(outcome o) {
       return "cycle of states";
     case STOPPED_SINGULAR:
       return "singular";
+    case STOPPED_UNFIT:
+      return "method does not fit the problem";
   }
   return "?";
 }
 
 int outcome_is_fatal(outcome o) {
-  return o == STOPPED_NAN || o == STOPPED_RAY || o == STOPPED_SINGULAR;
+  return o == STOPPED_NAN || o == STOPPED_RAY || o == STOPPED_SINGULAR ||
+         o == STOPPED_UNFIT;
 }

@@ -12,11 +12,13 @@ typedef enum {
   STOPPED_RAY = -3,        /* no equilibrium: a secondary ray                 */
   STOPPED_NAN = -4,
   STOPPED_CYCLE = -5,   /* a status pattern came back                      */
-  STOPPED_SINGULAR = -6 /* a linear system of the method has no solution   */
+  STOPPED_SINGULAR = -6, /* a linear system of the method has no solution  */
+  STOPPED_UNFIT = -7     /* the method cannot treat the problem at all      */
 } outcome;
 /* In a few words, for listings and messages. */
 const char *outcome_text(outcome o);
-/* 1 if there is no answer to go on with: a ray, singular, not a number. */
+/* 1 if there is no answer to go on with: a ray, singular, not a number, a
+ * method that does not fit. */
 int outcome_is_fatal(outcome o);
 
 #endif

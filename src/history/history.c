@@ -128,6 +128,11 @@ static status reject(run *r, int attempt, int increment_no, const char *why) {
 
 static status no_equilibrium(const run *r) {
   status st = OK;
+  if (r->report.outcome == STOPPED_UNFIT)
+    FAIL(ERR_SINGULAR,
+         "step %d, time %g: the method cannot treat this problem: %s; use "
+         "METHOD=AUTO, NEWTON, AUGLAG or SOR",
+         run_step_id(r) + 1, r->now.t, contact_solver_log(r->solver));
   FAIL(ERR_SINGULAR,
        "step %d, time %g: no equilibrium found: %s%s%s%s; the last state "
        "written is that of time %g",
@@ -151,7 +156,8 @@ static status run_increment(run *r, long n, long i, int *increment_no) {
     int settled = r->report.outcome > 0;
     int finer = s->kind == STEP_QUASISTATIC && level < DEEPEST_CUT &&
                 ldexp(s->dt, -(level + 1)) >= s->dt_min &&
-                r->report.outcome != STOPPED_STAGNATION;
+                r->report.outcome != STOPPED_STAGNATION &&
+                r->report.outcome != STOPPED_UNFIT;
     if (!settled && finer) {
       TRY(reject(r, attempt, *increment_no + 1,
                  outcome_text(r->report.outcome)));

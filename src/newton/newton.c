@@ -149,7 +149,7 @@ static int stuck(course *c, double residual) {
  * that comes back is a cycle; in 3-D directions turn while the states stay. */
 static outcome verdict(const run *s, course *c, double residual) {
   int all = s->st->dice == 0, full = all && !s->st->careful;
-  int still = stuck(c, residual), plane = s->cp->dim == 2;
+  int still = stuck(c, residual), plane = s->cp->dim < 3;
   if (c->changes == 0 && (plane || (full && still))) {
     if (newton_system_refresh(s->w->system)) return RUNNING;
     return s->singular ? STOPPED_RAY : STOPPED_STAGNATION;

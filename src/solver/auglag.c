@@ -541,10 +541,28 @@ static void start_bonded(run *s) {
   solver_take_best(&s->w->best, cp->m, s->u, s->r);
 }
 
+/* The other variant, the limit updated around it. */
+static status follow_limit(run *s, solver_report *rep) {
+  static const auglag uzawa = {BY_UZAWA};
+  status st = OK;
+  inner_solver self = {&auglag_solver, &uzawa, s->w};
+  solver_control rest = *s->control;
+  int bounded = s->control->max_iter > 0;
+  if (!bounded || s->steps < s->limit) start_bonded(s);
+  rest.max_iter = bounded ? s->limit - s->steps : 0;
+  int before = s->steps;
+  rep->outcome = STOPPED_ITERATIONS;
+  rep->iterations = before;
+  if (bounded && rest.max_iter == 0) goto done;
+  TRY(fixed_point_solve(s->w->fixed, s->cp, &self, &rest, s->u, s->r, rep));
+  rep->iterations += before;
+done:
+  return st;
+}
+
 static status auglag_solve(const contact_problem *cp, const void *par,
                            void *work, const solver_control *control, double *u,
                            double *r, solver_report *rep) {
-  static const auglag uzawa = {BY_UZAWA};
   status st = OK;
   const auglag *p = par;
   auglag_work *w = work;
@@ -564,12 +582,7 @@ static status auglag_solve(const contact_problem *cp, const void *par,
   rep->iterations = s.steps;
   rep->residual = w->best.residual;
   solver_take_best(&w->best, cp->m, u, r);
-  if (!done_well && cp->B != NULL) {
-    start_bonded(&s);
-    inner_solver self = {&auglag_solver, &uzawa, work};
-    TRY(fixed_point_solve(w->fixed, cp, &self, control, u, r, rep));
-    rep->iterations += s.steps;
-  }
+  if (!done_well && cp->B != NULL) TRY(follow_limit(&s, rep));
 done:
   return st;
 }

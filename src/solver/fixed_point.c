@@ -123,6 +123,16 @@ static void next_limit(const fixed_point *fp, double step, int mixed,
   }
 }
 
+/* The iterations left to the next pass of those allowed in all; 0: no bound.
+ * Returns 0 if none is left. */
+static int iterations_left(const solver_control *control,
+                           const solver_report *rep, int *left) {
+  *left = 0;
+  if (control->max_iter <= 0) return 1;
+  *left = control->max_iter - rep->iterations;
+  return *left > 0;
+}
+
 /* One pass: the Tresca problem with limit g. */
 typedef struct pass {
   const inner_solver *inner;
@@ -232,6 +242,10 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
   *rep = (solver_report){.outcome = STOPPED_ITERATIONS};
   contact_limit(cp, r, fp->g);
   for (int k = 1; k <= passes; ++k) {
+    if (!iterations_left(control, rep, &p.control.max_iter)) {
+      rep->outcome = STOPPED_ITERATIONS;
+      goto done;
+    }
     rep->limit_updates = p.control.limit_update = k;
     p.control.tol = fmax(0.1 * control->tol, fmin(1e-3, 1e-2 * change));
     TRY(run_pass(&p, cp, fp->g, u, r, rep));
@@ -334,6 +348,10 @@ status friction_path_solve(friction_path *path, const contact_problem *cp,
   double share = mu > FIRST_MU ? FIRST_MU / mu : 1.0;
   *rep = (solver_report){.outcome = STOPPED_ITERATIONS};
   for (int k = 1; k <= STAGES; ++k) {
+    if (!iterations_left(control, rep, &p.control.max_iter)) {
+      rep->outcome = STOPPED_ITERATIONS;
+      goto done;
+    }
     p.control.no_restart = good > 0.0;
     p.control.limit_update = k;
     TRY(solve_share(path, &p, cp, share, u, r, rep));

@@ -27,7 +27,8 @@ status fixed_point_new(int n, fixed_point **out); /* for n contact nodes     */
 void fixed_point_free(fixed_point *fp);           /* accepts NULL            */
 /*
  * Solve cp (with B) by passes of inner on problems without B. Passes:
- * control->limit_max_iter, 200 if 0. rep: iterations of all passes, passes,
+ * control->limit_max_iter, 200 if 0; iterations of all passes: at most
+ * control->max_iter. rep: iterations of all passes, passes,
  * rate = |G(g_k) - G(g_k-1)| / |g_k - g_k-1| of the last two passes.
  * Where that is slow, Anderson mixing speeds it up; a mixed step that raises
  * |G(g) - g| is taken back and a plain one made, and plain steps that raise it
@@ -45,7 +46,7 @@ void friction_path_free(friction_path *path); /* accepts NULL                */
 /* u[m], r[m]: start of the first problem, then the solution. If a share cannot
  * be reached from the last one even by short steps, its outcome is returned,
  * with u and r of the last share solved. cp: as in friction_path_new but for
- * the values. */
+ * the values. control->max_iter bounds the iterations of all shares. */
 status friction_path_solve(friction_path *path, const contact_problem *cp,
                            const inner_solver *inner,
                            const solver_control *control, double *u, double *r,

@@ -1,7 +1,9 @@
 /*
  * AUTO against every row of the solver table on condensed blocks.
  *
- *   auto [-t TOL] [-r REPEATS] [dim nodes]...      default: 2-D and 3-D blocks
+ *   auto [-t TOL] [-r REPEATS] [-x ROW]... [dim nodes]...
+ *
+ * Default: blocks in 2-D and 3-D; -x leaves a row out.
  *
  * For each block, friction coefficient and load (most of the floor open, mixed,
  * most of it stuck) three ways of solving:
@@ -197,6 +199,12 @@ static void head(void) {
   printf("  best     AUTO/best\n");
 }
 
+static void leave_out(const char *name) {
+  for (int i = 0; solver_list[i] != NULL; ++i)
+    if (solver_list[i] == solver_find(name))
+      bench.out[2][i] = bench.out[3][i] = 1;
+}
+
 int main(int argc, char **argv) {
   static const int sizes[][2] = {{2, 64}, {2, 256}, {2, 1000}, {2, 2000},
                                  {3, 64}, {3, 256}, {3, 1024}};
@@ -206,6 +214,7 @@ int main(int argc, char **argv) {
   bench.repeats = 5;
   for (; at + 1 < argc && argv[at][0] == '-'; at += 2) {
     if (argv[at][1] == 't') bench.tol = atof(argv[at + 1]);
+    if (argv[at][1] == 'x') leave_out(argv[at + 1]);
     if (argv[at][1] == 'r') bench.repeats = atoi(argv[at + 1]);
   }
   if (bench.repeats < 1 || bench.repeats > MAX_REPEATS)

@@ -1,0 +1,166 @@
+/*
+ * METHOD=AUTO. The facts the choice depends on have no unit: whether there is
+ * friction, which form is given, whether it can be inverted, and the number of
+ * unknowns m.
+ *
+ *   no friction     the tangential unknowns are eliminated, NEWTON on the
+ * normal ones; the full problem only where that fails. stiffness       NEWTON:
+ * its steps do not grow in number with m and with the condition of A, and it
+ * keeps its factor from step to step and problem to problem; then NEWTON along
+ * a friction path, for large mu; then SOR, which needs no factor. compliance
+ * the same where it has an inverse; PCG, LAGRANGE, SOR and LEMKE work on a
+ * singular one.
+ *
+ * Each link starts cold after the first, on the same problem, and is given a
+ * number of iterations that bounds its cost (allowance).
+ */
+#include "choice/choice.h"
+
+#include "base/option.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum {
+  FULL_SIZE = 1000,    /* m: up to here a link has all its iterations         */
+  LEAST_FACTORS = 80,  /* iterations with a factorisation, on large problems  */
+  MOST_FACTORS = 4000, /*                                   on small ones    */
+  LEAST_SWEEPS = 1000, /* iterations with a product                           */
+  MOST_SWEEPS = 20000
+};
+
+/* The order of trial, how each is driven, and where it applies. */
+static const struct {
+  const solver_ops *ops;
+  drive how;
+  int compliance; /* 1: only where no stiffness is given                      */
+  int factors;    /* 1: an iteration costs a factorisation, else a product    */
+} auto_chain[] = {
+    {&newton_solver, PLAIN, 0, 1}, {&newton_solver, ALONG_PATH, 0, 1},
+    {&pcg_solver, PLAIN, 1, 0},    {&lagrange_solver, PLAIN, 1, 0},
+    {&sor_solver, PLAIN, 0, 0},    {&lemke_solver, PLAIN, 0, 0}};
+
+/* Iterations a link may make: such that its cost stays that of its most on a
+ * problem with FULL_SIZE unknowns, but at least LEAST. */
+static int allowance(const contact_solver *s, const contact_problem *cp,
+                     int i) {
+  double size = fmax(1.0, (double)cp->m / FULL_SIZE);
+  int factors = auto_chain[i].factors;
+  double most = factors ? MOST_FACTORS / (size * size * size)
+                        : MOST_SWEEPS / (size * size);
+  int own = (int)fmax(most, factors ? LEAST_FACTORS : LEAST_SWEEPS);
+  int asked = s->choice.max_iter;
+  return asked > 0 && asked < own ? asked : own;
+}
+
+/* Append to the log how an attempt ended. */
+static void note(contact_solver *s, const solver_report *rep,
+                 const attempt *a) {
+  size_t used = strlen(s->log);
+  int cut = rep->outcome == STOPPED_ITERATIONS && a->max_iter > 0;
+  if (rep->outcome == STOPPED_UNFIT) return; /* attempt_run did */
+  snprintf(s->log + used, LOG_SIZE - used, "%s%s%s: %s", used > 0 ? ", " : "",
+           rep->solver, a->how == ALONG_PATH ? " along a friction path" : "",
+           outcome_text(rep->outcome));
+  used = strlen(s->log);
+  if (cut)
+    snprintf(s->log + used, LOG_SIZE - used, " (%d of %d allowed)",
+             rep->iterations, a->max_iter);
+}
+
+/* How much a failure says; a singular compliance says nothing, a method that
+ * does not fit less. */
+static int weight(const contact_problem *cp, outcome o) {
+  if (o == STOPPED_UNFIT) return -1;
+  if (o == STOPPED_RAY) return 2;
+  return o == STOPPED_SINGULAR && cp->A != NULL;
+}
+
+/* Which of two failures says more: no equilibrium, then singular, then the
+ * lower residual. */
+static int says_more(const contact_problem *cp, const solver_report *a,
+                     const solver_report *b) {
+  int ra = weight(cp, a->outcome), rb = weight(cp, b->outcome);
+  if (ra != rb) return ra > rb;
+  return !(a->residual >= b->residual);
+}
+
+/* 1 if a link of the chain does not apply: a friction path without Coulomb
+ * friction, a method for problems of which only the compliance is known. */
+static int is_skipped(const contact_problem *cp, int i) {
+  if (auto_chain[i].how == ALONG_PATH && cp->B == NULL) return 1;
+  return auto_chain[i].compliance && cp->A != NULL;
+}
+
+/* 1 if no other link is needed: an answer, a proof, or numbers beyond help. */
+static int is_final(const contact_problem *cp, outcome o) {
+  int proved = o == STOPPED_RAY && cp->B == NULL;
+  return proved || o == CONVERGED || o == STOPPED_NAN;
+}
+
+/* Without friction: in the normal unknowns. *done = 1: solved. */
+static status solve_normal(contact_solver *s, const contact_problem *cp,
+                           const solver_listener *listener, double *u,
+                           double *r, solver_report *rep, int *done_well) {
+  status st = OK;
+  solver_control control = {.tol = s->choice.tol,
+                            .max_iter = allowance(s, cp, 0),
+                            .listener = listener};
+  *done_well = 0;
+  if (!normal_form_applies(cp)) goto done;
+  TRY(normal_form_solve(&s->normal, cp, &control, u, r, rep));
+  if (rep->outcome != CONVERGED) goto done;
+  attempt_judge(cp, s->choice.tol, u, r, rep);
+  *done_well = rep->outcome == CONVERGED;
+done:
+  return st;
+}
+
+/* One link; its verdict in rep. */
+static status run_link(contact_solver *s, const contact_problem *cp, int i,
+                       const solver_listener *listener, double *u, double *r,
+                       solver_report *rep) {
+  status st = OK;
+  attempt a = {auto_chain[i].ops, s->param, auto_chain[i].how,
+               allowance(s, cp, i)};
+  memset(s->param, 0, s->param_size);
+  option_defaults(a.ops->options, s->param);
+  if (i > 0) cold_start(cp, u, r);
+  TRY(attempt_run(s, cp, &a, listener, u, r, rep));
+  if (rep->outcome != STOPPED_UNFIT)
+    attempt_judge(cp, s->choice.tol, u, r, rep);
+  if (i > 0 || rep->outcome != CONVERGED) note(s, rep, &a);
+done:
+  return st;
+}
+
+status auto_solve(contact_solver *s, const contact_problem *cp,
+                  const solver_listener *listener, double *u, double *r,
+                  solver_report *rep) {
+  status st = OK;
+  size_t bytes = (size_t)cp->m * sizeof *u;
+  int n = (int)(sizeof auto_chain / sizeof *auto_chain), iterations = 0;
+  int solved = 0;
+  solver_report best = {.outcome = RUNNING};
+  TRY(solve_normal(s, cp, listener, u, r, rep, &solved));
+  for (int i = 0; i < n && !solved; ++i) {
+    if (is_skipped(cp, i)) continue;
+    TRY(run_link(s, cp, i, listener, u, r, rep));
+    iterations += rep->iterations;
+    if (best.outcome == RUNNING || rep->outcome == CONVERGED ||
+        says_more(cp, rep, &best)) {
+      best = *rep;
+      memcpy(s->best_u, u, bytes);
+      memcpy(s->best_r, r, bytes);
+    }
+    if (is_final(cp, rep->outcome)) break;
+  }
+  if (solved) goto done;
+  memcpy(u, s->best_u, bytes);
+  memcpy(r, s->best_r, bytes);
+  *rep = best;
+  rep->iterations = iterations;
+done:
+  return st;
+}

@@ -1,0 +1,246 @@
+/*
+ * contact_solve: one solver or AUTO on a problem, in a form that suits, with
+ * what the matrix allows kept (solver/solver.h).
+ */
+#include "choice/choice.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+status contact_solver_new(const solver_choice *choice, contact_solver **out) {
+  status st = OK;
+  contact_solver *s = NULL;
+  size_t size = 1;
+  NEW(s, 1);
+  s->choice = *choice;
+  for (int i = 0; solver_list[i] != NULL; ++i)
+    if (solver_list[i]->param_size > size) size = solver_list[i]->param_size;
+  s->param = memory_new(1, size);
+  s->param_size = size;
+  if (s->param == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: %zu bytes for solver options", size);
+  *out = s;
+  s = NULL;
+done:
+  contact_solver_free(s);
+  return st;
+}
+
+void contact_solver_reset(contact_solver *s) {
+  for (int i = 0; i <= N_SOLVER; ++i) {
+    const solver_ops *ops = i < N_SOLVER ? solver_list[i] : s->choice.ops;
+    if (s->work[i] != NULL) ops->release(s->work[i]);
+    s->work[i] = NULL;
+  }
+  fixed_point_free(s->fixed);
+  friction_path_free(s->path);
+  s->fixed = NULL;
+  s->path = NULL;
+  other_form_free(&s->other);
+  normal_form_free(&s->normal);
+  memory_free(s->best_u);
+  memory_free(s->best_r);
+  s->best_u = s->best_r = NULL;
+  s->A = s->W = NULL;
+  s->m = s->n = -1;
+}
+
+void contact_solver_free(contact_solver *s) {
+  if (s == NULL) return;
+  contact_solver_reset(s);
+  memory_free(s->param);
+  memory_free(s);
+}
+
+const char *contact_solver_log(const contact_solver *s) { return s->log; }
+
+static status fit(contact_solver *s, const contact_problem *cp) {
+  status st = OK;
+  if (s->A == cp->A && s->W == cp->W && s->m == cp->m && s->n == cp->n &&
+      s->best_u != NULL)
+    goto done;
+  contact_solver_reset(s);
+  NEW(s->best_u, cp->m);
+  NEW(s->best_r, cp->m);
+  s->A = cp->A;
+  s->W = cp->W;
+  s->m = cp->m;
+  s->n = cp->n;
+done:
+  return st;
+}
+
+/* ---- one attempt --------------------------------------------------------- */
+
+/* The problem in a form the solver can use; NULL, or why there is none. */
+static status suit(contact_solver *s, const contact_problem *cp,
+                   const solver_ops *ops, contact_problem *out,
+                   const char **why) {
+  status st = OK;
+  *out = *cp;
+  *why = NULL;
+  int stiffness = (ops->handles & NEEDS_STIFFNESS) && cp->A == NULL;
+  int compliance = (ops->handles & NEEDS_COMPLIANCE) && cp->W == NULL;
+  if (cp->dim == 3 && !(ops->handles & SOLVES_3D)) {
+    *why = "solves problems in the plane only";
+    goto done;
+  }
+  if (cp->floating && !(ops->handles & SOLVES_FLOATING)) {
+    *why = "needs a body held by supports, here contact alone holds it";
+    goto done;
+  }
+  if (!stiffness && !compliance) goto done;
+  TRY(other_form_make(cp, &s->other));
+  if (s->other.matrix == NULL) {
+    *why = stiffness ? "needs the stiffness, but the compliance is singular"
+                     : "needs the compliance, but the stiffness is singular";
+  } else if (stiffness) {
+    contact_product(cp->m, s->other.matrix, cp->f, s->other.load);
+    out->A = s->other.matrix;
+    out->f = s->other.load;
+  } else {
+    out->W = s->other.matrix;
+  }
+done:
+  return st;
+}
+
+static int row_of(const solver_ops *ops) {
+  int row = 0;
+  while (row < N_SOLVER && solver_list[row] != ops) ++row;
+  return row;
+}
+
+/* The loop around the solver that the problem and the drive ask for. */
+static status drive_one(contact_solver *s, const contact_problem *cp,
+                        const attempt *a, const solver_control *control,
+                        double *u, double *r, solver_report *rep) {
+  status st = OK;
+  inner_solver inner = {a->ops, a->param, s->work[row_of(a->ops)]};
+  if (a->how == ALONG_PATH) {
+    int room = cp->B->start[cp->n];
+    if (s->path == NULL || s->path_room < room) {
+      friction_path_free(s->path);
+      s->path = NULL;
+      TRY(friction_path_new(cp, &s->path));
+      s->path_room = room;
+    }
+    TRY(friction_path_solve(s->path, cp, &inner, control, u, r, rep));
+  } else if (cp->B != NULL && !(a->ops->handles & SOLVES_COULOMB)) {
+    if (s->fixed == NULL) TRY(fixed_point_new(cp->n, &s->fixed));
+    TRY(fixed_point_solve(s->fixed, cp, &inner, control, u, r, rep));
+  } else {
+    TRY(a->ops->solve(cp, a->param, inner.work, control, u, r, rep));
+  }
+done:
+  return st;
+}
+
+/* Append to the log. */
+static void log_unfit(contact_solver *s, const char *name, const char *why) {
+  size_t used = strlen(s->log);
+  snprintf(s->log + used, LOG_SIZE - used, "%s%s: %s", used > 0 ? ", " : "",
+           name, why);
+}
+
+status attempt_run(contact_solver *s, const contact_problem *cp,
+                   const attempt *a, const solver_listener *listener, double *u,
+                   double *r, solver_report *rep) {
+  status st = OK;
+  contact_problem own;
+  const char *why = NULL;
+  int row = row_of(a->ops);
+  solver_control control = {.tol = s->choice.tol,
+                            .max_iter = a->max_iter,
+                            .limit_max_iter = s->choice.limit_max_iter,
+                            .listener = listener};
+  *rep = (solver_report){.outcome = STOPPED_UNFIT};
+  TRY(suit(s, cp, a->ops, &own, &why));
+  if (why != NULL) {
+    log_unfit(s, a->ops->name, why);
+    goto done;
+  }
+  if (s->work[row] == NULL) TRY(a->ops->setup(&own, a->param, &s->work[row]));
+  TRY(drive_one(s, &own, a, &control, u, r, rep));
+done:
+  rep->solver = a->ops->name;
+  return st;
+}
+
+void attempt_judge(const contact_problem *cp, double tol, const double *u,
+                   const double *r, solver_report *rep) {
+  rep->residual = contact_residual(cp, u, r);
+  if (isnan(rep->residual))
+    rep->outcome = STOPPED_NAN;
+  else if (rep->residual <= tol)
+    rep->outcome = CONVERGED;
+  else if (rep->outcome >= 0)
+    rep->outcome = STOPPED_STAGNATION;
+}
+
+/* Start without any knowledge: stick, no penetration; r = A u - f. */
+void cold_start(const contact_problem *cp, double *u, double *r) {
+  if (cp->A == NULL) {
+    memset(r, 0, (size_t)cp->m * sizeof *r);
+    memcpy(u, cp->f, (size_t)cp->m * sizeof *u);
+    return;
+  }
+  for (int dof = 0; dof < cp->m; ++dof) {
+    int node_id = dof / cp->dim, k = dof % cp->dim - 1;
+    if (k < 0)
+      u[dof] = fmin(cp->gap[node_id], 0.0);
+    else
+      u[dof] = cp->ut0 == NULL ? 0.0 : cp->ut0[node_id * (cp->dim - 1) + k];
+  }
+  contact_reaction(cp, u, r);
+}
+
+/* 1: the answer is known without a solver: no node, no load, start solves. */
+static int known_answer(const contact_problem *cp, double tol, double *u,
+                        double *r, solver_report *rep) {
+  *rep = (solver_report){.outcome = CONVERGED, .solver = "none"};
+  if (cp->m == 0) return 1;
+  rep->residual = contact_residual(cp, u, r);
+  if (rep->residual <= tol) return 1;
+  double scale = contact_scale(cp);
+  if (scale == 0.0) {
+    memset(u, 0, (size_t)cp->m * sizeof *u);
+    memset(r, 0, (size_t)cp->m * sizeof *r);
+    rep->residual = contact_residual(cp, u, r);
+    return rep->residual <= tol;
+  }
+  if (isnan(rep->residual)) {
+    cold_start(cp, u, r);
+    rep->residual = contact_residual(cp, u, r);
+  }
+  if (isnan(rep->residual) || !(scale < HUGE_VAL)) {
+    rep->outcome = STOPPED_NAN;
+    return 1;
+  }
+  return 0;
+}
+
+status contact_solve(contact_solver *s, const contact_problem *cp,
+                     const solver_listener *listener, double *u, double *r,
+                     solver_report *rep) {
+  status st = OK;
+  double start = timer_cpu();
+  s->log[0] = '\0';
+  *rep = (solver_report){.outcome = RUNNING};
+  if (known_answer(cp, s->choice.tol, u, r, rep)) goto done;
+  TRY(fit(s, cp));
+  if (s->choice.ops == NULL) {
+    TRY(auto_solve(s, cp, listener, u, r, rep));
+  } else {
+    attempt a = {s->choice.ops, s->choice.param, PLAIN, s->choice.max_iter};
+    TRY(attempt_run(s, cp, &a, listener, u, r, rep));
+    attempt_judge(cp, s->choice.tol, u, r, rep);
+  }
+done:
+  rep->cpu = timer_cpu() - start;
+  return st;
+}

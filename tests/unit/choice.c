@@ -1,0 +1,138 @@
+/* METHOD=AUTO, forms of a problem, what is kept from problem to problem. */
+#include "solver/solver.h"
+#include "support/contact_case.h"
+#include "support/solver_rows.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A frictionless problem in stiffness form (form 0) or compliance form. */
+static solver_report solve_form(contact_case *c, int form) {
+  if (form == 0) return solve_by(NULL, c, 1e-12, c->u, c->r);
+  size_t m = (size_t)c->cp.m;
+  contact_problem given = c->cp;
+  double *W = calloc(m * m, sizeof *W), *q = calloc(m, sizeof *q);
+  ck_assert(case_inverse(c->cp.m, c->A, W));
+  contact_product(c->cp.m, W, c->f, q);
+  c->cp.A = NULL;
+  c->cp.W = W;
+  c->cp.f = q;
+  solver_report rep = solve_by(NULL, c, 1e-12, c->u, c->r);
+  c->cp = given;
+  free(W);
+  free(q);
+  return rep;
+}
+
+START_TEST(frictionless_problems_are_solved_in_both_forms) {
+  for (int k = 0; k < 40; ++k) {
+    contact_case c =
+        case_any(2 + k % 2, 3 + k, 0.0, k / 2 % 2, (unsigned long long)k);
+    for (int form = 0; form < 2; ++form) {
+      case_cold(&c);
+      solver_report rep = solve_form(&c, form);
+      ck_assert_msg(rep.outcome == CONVERGED, "%d, form %d: %s", k, form,
+                    outcome_text(rep.outcome));
+      double v = case_violation(&c, c.u, c.r);
+      ck_assert_msg(v < 1e-9, "%d, form %d: violation %g", k, form, v);
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Loads, stick positions, friction and Tresca limits change, A stays: the
+ * answers are those of solvers that know nothing of the problems before. */
+START_TEST(what_is_kept_changes_no_answer) {
+  unsigned long long seed = 12345;
+  for (int k = 0; k < 12; ++k) {
+    int dim = 2 + k % 2;
+    contact_case c = case_any(dim, 12, 0.3, k / 2 % 2, 100u + (unsigned)k);
+    solver_choice choice = {.tol = 1e-12};
+    contact_solver *s = NULL;
+    double *u = calloc((size_t)c.cp.m, sizeof *u),
+           *r = calloc((size_t)c.cp.m, sizeof *r);
+    ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+    for (int step = 0; step < 8; ++step) {
+      solver_report rep;
+      for (int i = 0; i < c.cp.m; ++i)
+        c.f[i] += 0.3 * (case_random(&seed) - 0.5);
+      for (int i = 0; i < c.cp.n; ++i) {
+        c.B->val[i] = step < 3 ? 0.3 : 0.2;
+        c.g0[i] = step == 5 ? 0.1 : 0.0;
+      }
+      c.cp.B = step == 5 ? NULL : c.B;
+      ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
+      ck_assert_int_eq(rep.outcome, CONVERGED);
+      ck_assert_double_lt(case_violation(&c, c.u, c.r), 1e-9);
+      memset(u, 0, (size_t)c.cp.m * sizeof *u);
+      memset(r, 0, (size_t)c.cp.m * sizeof *r);
+      ck_assert_int_eq(solve_by(NULL, &c, 1e-12, u, r).outcome, CONVERGED);
+      for (int i = 0; i < c.cp.m; ++i)
+        ck_assert_double_eq_tol(c.r[i], r[i], 1e-8);
+    }
+    contact_solver_free(s);
+    free(u);
+    free(r);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* A method that cannot treat a problem says so at once, and why. */
+START_TEST(unfit_method_is_named_with_the_reason) {
+  case_block_data d = {
+      .columns = 6, .layers = 3, .nu = 0.3, .mu = 0.5, .top = {0.02, -0.2}};
+  contact_case c = case_block(&d);
+  const solver_ops *ops;
+  int unfit = 0;
+  for (int i = 0; solver_row(i, &ops); ++i) {
+    double param[PARAM_SIZE / sizeof(double)] = {0.0};
+    solver_choice choice = {.ops = ops, .param = param, .tol = 1e-10};
+    contact_solver *s = NULL;
+    solver_report rep;
+    if (row_handles(ops, &c.cp)) continue;
+    option_defaults(ops->options, param);
+    ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+    case_cold(&c);
+    ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
+    ck_assert_int_eq(rep.outcome, STOPPED_UNFIT);
+    ck_assert_int_eq(rep.iterations, 0);
+    const char *said = strstr(contact_solver_log(s), ops->name);
+    ck_assert_ptr_nonnull(said);
+    ck_assert_ptr_nonnull(strstr(said, "contact alone holds it"));
+    contact_solver_free(s);
+    ++unfit;
+  }
+  ck_assert_int_ge(unfit, 2);
+  case_free(&c);
+}
+END_TEST
+
+/* MAX_ITER bounds all that a method does: restarts and shares of friction. */
+START_TEST(limit_holds_for_all_attempts_together) {
+  const solver_ops *const rows[] = {&newton_solver, &auglag_solver,
+                                    &sor_solver};
+  for (int i = 0; i < 3; ++i)
+    for (int limit = 1; limit <= 61; limit += 20) {
+      contact_case c = case_published(64, 20.0);
+      double param[PARAM_SIZE / sizeof(double)] = {0.0};
+      solver_choice choice = {
+          .ops = rows[i], .param = param, .tol = 1e-14, .max_iter = limit};
+      contact_solver *s = NULL;
+      solver_report rep;
+      option_defaults(rows[i]->options, param);
+      ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+      ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
+      ck_assert_msg(rep.iterations <= limit, "%s: %d of %d", rows[i]->name,
+                    rep.iterations, limit);
+      contact_solver_free(s);
+      case_free(&c);
+    }
+}
+END_TEST
+
+UNIT_MAIN("choice", frictionless_problems_are_solved_in_both_forms,
+          what_is_kept_changes_no_answer, unfit_method_is_named_with_the_reason,
+          limit_holds_for_all_attempts_together)
