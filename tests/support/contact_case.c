@@ -67,6 +67,23 @@ void case_free(contact_case *c) {
   free(c->B);
 }
 
+void case_average(contact_case *c, int reach, double mu) {
+  int n = c->cp.n, full = (reach + 1) * (reach + 1), e = 0;
+  sparse_rows *B = c->B;
+  free(B->col);
+  free(B->val);
+  B->col = calloc((size_t)(n * (2 * reach + 1)), sizeof *B->col);
+  B->val = zeros(n * (2 * reach + 1));
+  for (int i = 0; i < n; ++i) {
+    for (int j = i - reach; j <= i + reach; ++j) {
+      if (j < 0 || j >= n) continue;
+      B->col[e] = j;
+      B->val[e++] = mu * (reach + 1 - abs(i - j)) / full;
+    }
+    B->start[i + 1] = e;
+  }
+}
+
 static void fill_spd(contact_case *c, unsigned long long *seed) {
   int m = c->cp.m;
   double *G = zeros(m * m);

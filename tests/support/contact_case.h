@@ -13,7 +13,7 @@ typedef struct contact_case {
   contact_problem cp; /* points to the arrays below                          */
   double *A, *f, *gap, *ut0, *g0, *side_gap;
   unsigned char *held;
-  sparse_rows *B; /* [n*n] diagonal                                         */
+  sparse_rows *B; /* [n*n] diagonal, or as case_average makes it             */
   double *u, *r; /* [m] start and answer, zero at first                       */
 } contact_case;
 
@@ -26,6 +26,9 @@ void case_free(contact_case *c);
  * tangential motion coupled. Loads, gaps and stick positions random. */
 contact_case case_any(int dim, int n, double mu, int kind,
                       unsigned long long seed);
+/* B becomes mu times an average over the nodes up to "reach" numbers away, the
+ * nearer the more; it loses what lies beyond the ends. */
+void case_average(contact_case *c, int reach, double mu);
 /* A block of columns x layers unit squares (two triangles each), plane strain,
  * E = 1, on a floor with columns + 1 nodes. */
 typedef struct case_block_data {
