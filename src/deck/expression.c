@@ -117,6 +117,7 @@ typedef struct waiting {
 
 typedef struct compiler {
   const char *text, *p;
+  const char *const *names; /* [4] of the variables                           */
   symbol_value_fn *symbol;
   const void *ctx;
   expression *e;
@@ -256,18 +257,17 @@ done:
   return st;
 }
 
-static int find_variable(const char *name) {
-  const char *all = "XYZT", *p;
-  if (name[0] == '\0' || name[1] != '\0') return -1;
-  p = strchr(all, name[0]);
-  return p != NULL ? (int)(p - all) : -1;
+static int find_variable(const compiler *c, const char *name) {
+  for (int i = 0; i < 4; ++i)
+    if (strcmp(c->names[i], name) == 0) return i;
+  return -1;
 }
 
 /* Variable, constant or name of the caller. */
 static status read_named_value(compiler *c, const char *name) {
   status st = OK;
   item value = {.kind = NUMBER};
-  int variable = find_variable(name);
+  int variable = find_variable(c, name);
   if (variable >= 0) {
     value.kind = VARIABLE;
     value.variable = variable;
@@ -457,8 +457,16 @@ done:
 
 status expression_compile(const char *text, symbol_value_fn *symbol,
                           const void *ctx, expression **out, int *column) {
+  static const char *const names[] = {"X", "Y", "Z", "T"};
+  return expression_compile_in(text, names, symbol, ctx, out, column);
+}
+
+status expression_compile_in(const char *text, const char *const names[4],
+                             symbol_value_fn *symbol, const void *ctx,
+                             expression **out, int *column) {
   status st = OK;
-  compiler c = {.text = text, .p = text, .symbol = symbol, .ctx = ctx};
+  compiler c = {
+      .text = text, .p = text, .names = names, .symbol = symbol, .ctx = ctx};
   *out = NULL;
   *column = 0;
   NEW(c.e, 1);

@@ -21,6 +21,10 @@ typedef int symbol_value_fn(const void *ctx, const char *name, double *value);
  * status record says what is wrong there. ERR_MEMORY. */
 status expression_compile(const char *text, symbol_value_fn *symbol,
                           const void *ctx, expression **out, int *column);
+/* The same with other names, upper case, in the place of X, Y, Z and T. */
+status expression_compile_in(const char *text, const char *const names[4],
+                             symbol_value_fn *symbol, const void *ctx,
+                             expression **out, int *column);
 /* x[3] coordinates, length; t time. The result can be NaN or infinite (log of
  * a negative number): the caller tests it where it knows what is computed. */
 double expression_value(const expression *e, const double x[3], double t);

@@ -36,14 +36,14 @@ int deck_int(const field *f, message_log *log, int *out) {
 }
 
 /* Compile; the deck owns the expression. */
-static status compile(deck *d, const char *text, const expression **out,
-                      int *column) {
+static status compile(deck *d, const char *text, const char *const names[4],
+                      const expression **out, int *column) {
   status st = OK;
   struct deck_text *own = d->own;
   expression *e = NULL;
   *column = -1;
   GROW(own->expressions, own->n_expression, own->expression_capacity);
-  TRY(expression_compile(text, deck_symbol, d, &e, column));
+  TRY(expression_compile_in(text, names, deck_symbol, d, &e, column));
   own->expressions[own->n_expression++] = e;
   *out = e;
 done:
@@ -59,22 +59,27 @@ static int text_start(const field *f) {
   return i;
 }
 
-int deck_quantity(deck *d, const field *f, message_log *log, quantity *out) {
+int deck_formula(deck *d, const field *f, const char *const names[4],
+                 message_log *log, const expression **out) {
   int column;
+  *out = NULL;
+  if (*f->text == '\0')
+    return report_number(f, log, P1024, "a number or an expression", "empty");
+  status st = compile(d, f->text, names, out, &column);
+  if (st == OK) return 0;
+  if (st == ERR_MEMORY)
+    message_memory(log);
+  else
+    report_expression(d, log, &f->at, f->text, text_start(f), column);
+  return -1;
+}
+
+int deck_quantity(deck *d, const field *f, message_log *log, quantity *out) {
+  static const char *const names[] = {"X", "Y", "Z", "T"};
   const double origin[3] = {0, 0, 0};
   *out = (quantity){.number = 0};
   if (!f->quoted) return deck_real(f, log, &out->number);
-  if (*f->text == '\0')
-    return report_number(f, log, P1024, "a number or an expression", "empty");
-  status st = compile(d, f->text, &out->formula, &column);
-  if (st == ERR_MEMORY) {
-    message_memory(log);
-    return -1;
-  }
-  if (st != OK) {
-    report_expression(d, log, &f->at, f->text, text_start(f), column);
-    return -1;
-  }
+  if (deck_formula(d, f, names, log, &out->formula) != 0) return -1;
   if (expression_variables(out->formula) != 0) return 0;
   out->number = expression_value(out->formula, origin, 0);
   out->formula = NULL;

@@ -208,9 +208,40 @@ done:
   return st;
 }
 
+/* The one line of a law that is a formula. */
+static void read_formula(const lines *r) {
+  const card *c = r->c;
+  const record *line = &c->records[0];
+  if (c->n_record > 1)
+    message_add(r->log, P2008, &c->records[1].at,
+                "*%s, LAW=%s has one line: a formula", c->name,
+                r->law->ops->name);
+  if (line->n_field != 1) {
+    message_add(r->log, P2009, &line->at,
+                "%d fields on this line of *%s; expected: one formula of q, p, "
+                "temp and t in quotes",
+                line->n_field, c->name);
+    return;
+  }
+  if (deck_formula(r->d, &line->fields[0], law_formula_names, r->log,
+                   &r->law->formula) != 0)
+    return;
+  if ((expression_variables(r->law->formula) & 1u) == 0)
+    message_add(r->log, P2033, &line->at,
+                "*%s: the rate of creep does not depend on q (a *PARAMETER "
+                "named q, p or temp hides the variable)",
+                c->name);
+}
+
 status law_card_read(deck *d, const card *c, message_log *log, law_card *law) {
   status st = OK;
   lines r = {.d = d, .c = c, .log = log, .law = law};
+  if (law->ops->needs_formula) {
+    NEW(law->temperature, 1);
+    law->n_set = 1;
+    read_formula(&r);
+    goto done;
+  }
   for (int i = 0; i < c->n_record && !r.wrong; ++i)
     TRY(add_line(&r, &c->records[i]));
   if (c->n_record > 0) close_set(&r, &c->records[c->n_record - 1].at);
@@ -306,7 +337,10 @@ unsigned law_varies(const law_card *law) {
   const int n = law->n_set * law_n_value(law);
   for (int i = 0; i < n; ++i)
     if (quantity_variables(&law->value[i]) != 0) bits |= LAW_VARIES_TIME;
-  if (law->n_set > 1 || law->shift.kind != SHIFT_NONE)
+  if (law->formula != NULL && expression_variables(law->formula) & 8u)
+    bits |= LAW_VARIES_TIME;
+  if (law->n_set > 1 || law->shift.kind != SHIFT_NONE ||
+      (law->formula != NULL && expression_variables(law->formula) & 4u))
     bits |= LAW_VARIES_TEMPERATURE;
   return bits;
 }

@@ -93,7 +93,7 @@ typedef struct law_ops {
   int linear;  /* rates linear in (sigma, e^i, alpha): one Jacobian for all
                   points with the same values                                 */
   int uses_ei; /* e^i itself enters its rate                                  */
-  int needs_formula;
+  int needs_formula; /* one data line with a formula of law_formula_names     */
   const char *example; /* data lines for moduli of 1e5, stresses of 100, times
                           of 1: shown in the help, used by the tests          */
   int (*n_alpha)(const law_card *law, int ns); /* NULL: none                  */
@@ -117,8 +117,10 @@ typedef struct law_ops {
 /* clang-format off */
 #define LAW_LIST(X) \
   X(maxwell) X(zener) X(kelvin) X(burgers) X(prony) X(norton) X(perzyna) \
-  X(bingham) X(chaboche)
+  X(bingham) X(chaboche) X(user)
 /* clang-format on */
+/* Variables of a formula: equivalent stress, creep strain, temperature, time */
+extern const char *const law_formula_names[4];
 #define LAW_EXTERN(name) extern const law_ops name##_law;
 LAW_LIST(LAW_EXTERN)
 extern const law_ops *const law_list[]; /* NULL at the end                    */

@@ -44,6 +44,22 @@ static void read_line(const option *table, const char *line, size_t length,
   ck_assert_msg(rest == NULL, "too many numbers: %s", line);
 }
 
+/* The text between the quotes. */
+static void read_formula(law_card *law, const char *data, expression **own) {
+  char text[400];
+  int column;
+  const size_t length = strlen(data);
+  ck_assert(length > 2 && length < sizeof text);
+  memcpy(text, data + 1, length - 2);
+  text[length - 2] = '\0';
+  ck_assert_int_eq(
+      expression_compile_in(text, law_formula_names, NULL, NULL, own, &column),
+      OK);
+  law->formula = *own;
+  law->n_set = 1;
+  law->temperature = memory_new(1, sizeof(double));
+}
+
 static void read_data(law_card *law, const char *data) {
   const law_ops *ops = law->ops;
   int n_line = 1, n_field = law_n_field(ops->fields);
@@ -81,7 +97,11 @@ int law_case_new(const law_ops *ops, int words, const char *data, double young,
   } else if (words > 0) {
     return 0;
   }
-  read_data(&c->card, data == NULL ? ops->example : data);
+  if (data == NULL) data = ops->example;
+  if (ops->needs_formula)
+    read_formula(&c->card, data, &c->formula);
+  else
+    read_data(&c->card, data);
   ck_assert_ptr_null(elastic_matrix(ELASTIC_ISO, 2, (double[]){young, nu}, C6,
                                     text, sizeof text));
   law_elastic_set(C6, ELASTIC_ISO, kin, &c->elastic);
@@ -93,7 +113,11 @@ int law_case_new(const law_ops *ops, int words, const char *data, double young,
   return 1;
 }
 
-void law_case_free(law_case *c) { law_card_free(&c->card); }
+void law_case_free(law_case *c) {
+  law_card_free(&c->card);
+  expression_free(c->formula);
+  c->formula = NULL;
+}
 
 law_point law_case_point(law_case *c) {
   ck_assert_int_eq(law_values(&c->card, c->t, c->temperature, c->value), OK);

@@ -11,6 +11,7 @@ enum { LAW_ALPHA_MAX = 256, LAW_VALUE_MAX = 64 };
 
 typedef struct law_case {
   law_card card;
+  expression *formula; /* of the card, owned                                  */
   law_elastic elastic;
   double value[LAW_VALUE_MAX];
   int ns, n_alpha;

@@ -370,9 +370,86 @@ static void check_flows(law_case *c) {
 START_TEST(a_law_flows_where_a_rate_is_not_zero) { for_all(5, check_flows); }
 END_TEST
 
+/*
+ * A law that is not in the table: a dashpot of cubic viscosity with a recovery
+ * of its own, d(e^i)/dt = A (1 + J^2/S^2) 3/2 s, d(w)/dt = J(e^i') - w/tau.
+ */
+typedef struct trial_value {
+  double A, S, tau;
+} trial_value;
+
+static const option trial_fields[] = {
+    OPTION_REAL(trial_value, A, "A", 0, 1e9, NULL, "1/(stress time)", "factor"),
+    OPTION_REAL(trial_value, S, "S", 1e-9, 1e9, NULL, "stress", "scale"),
+    OPTION_REAL(trial_value, tau, "tau", 1e-9, 1e9, "5", "time", "recovery"),
+    OPTION_END};
+
+static int trial_n_alpha(const law_card *law, int ns) {
+  (void)law;
+  (void)ns;
+  return 1;
+}
+
+/* J and dp/dt = A (J + J^3/S^2), with its slope. */
+static double trial_flow(const law_point *p, double *n, double *q,
+                         double *slope) {
+  const trial_value *v = (const void *)p->value;
+  double s[6];
+  tensor_deviator(p->elastic->ns, p->sigma, s);
+  *q = tensor_mises(p->elastic->ns, s);
+  for (int i = 0; i < p->elastic->ns; ++i) n[i] = 0;
+  if (*q > 0) tensor_direction(p->elastic->ns, s, *q, n);
+  const double x = *q / v->S;
+  *slope = v->A * (1 + 3 * x * x);
+  return v->A * (1 + x * x) * *q;
+}
+
+static void trial_rate(const law_point *p, double *ei_rate,
+                       double *alpha_rate) {
+  double n[6], q, slope;
+  const double rate = trial_flow(p, n, &q, &slope);
+  for (int i = 0; i < p->elastic->ns; ++i) ei_rate[i] = rate * n[i];
+  alpha_rate[0] = rate - p->alpha[0] / ((const double *)p->value)[2];
+}
+
+static void trial_jacobian(const law_point *p, law_jacobian *j) {
+  const int ns = p->elastic->ns;
+  double n[6], q, slope;
+  const double rate = trial_flow(p, n, &q, &slope);
+  tensor_add_flow(ns, n, q > 0 ? rate / q : slope, slope, j->ei_sigma, ns);
+  for (int i = 0; i < ns; ++i) j->alpha_sigma[i] = slope * n[i];
+  j->alpha_alpha[0] = -1 / ((const double *)p->value)[2];
+}
+
+static double trial_dissipation(const law_point *p) {
+  double n[6], q, slope;
+  const double rate = trial_flow(p, n, &q, &slope);
+  return rate * q;
+}
+
+static const law_ops trial_law = {.name = "TRIAL",
+                                  .reference = "none",
+                                  .help = "for this test",
+                                  .fields = trial_fields,
+                                  .example = "1E-6, 80.",
+                                  .n_alpha = trial_n_alpha,
+                                  .rate = trial_rate,
+                                  .jacobian = trial_jacobian,
+                                  .dissipation = trial_dissipation};
+
+START_TEST(a_trial_law_passes) {
+  static check_fn *const checks[] = {
+      check_rest,  check_dissipation, check_power,   check_jacobian,
+      check_frame, check_fastest,     check_lateral, check_linear,
+      check_plane, check_flows};
+  for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i)
+    for_all_of(&trial_law, 1, checks[i]);
+}
+END_TEST
+
 UNIT_MAIN("law", nothing_happens_at_rest, dissipation_is_not_negative,
           power_is_lost_or_kept, jacobian_agrees_with_differences,
           fastest_rate_is_the_largest_eigenvalue,
           a_turned_stress_gives_turned_rates, plane_rates_are_those_of_3d,
           lateral_directions_flow_alike, a_linear_law_is_its_jacobian,
-          a_law_flows_where_a_rate_is_not_zero)
+          a_law_flows_where_a_rate_is_not_zero, a_trial_law_passes)

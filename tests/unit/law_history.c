@@ -7,6 +7,7 @@
 #include "support/unit.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static law_case c;
@@ -253,6 +254,98 @@ START_TEST(hardening_slows_norton_down) {
 }
 END_TEST
 
+/* The same by a formula; with strain hardening ((1 + m) p)^(m/(1 + m)). */
+START_TEST(formulas_relax_and_harden) {
+  static const double t[] = {0, 1, 10, 100};
+  start("USER", 0, "\"1E-15*q^5\"", 1e5, .3, SOLID_3D);
+  stretch(1e-3);
+  follow(&hold_x, &c.sigma[0], 4, t,
+         (double[]){100, 99.024273574257, 91.932271522492, 66.874030497642},
+         400);
+  law_case_free(&c);
+  start("USER", 0, "\"(1E-15*q^5)^2/(0.5*p)\"", 1e5, .3, SOLID_3D);
+  load(100);
+  c.t = 1;
+  c.ei[0] = c.alpha[0] = 2e-5;
+  law_case_run(&c, &hold_none, 8, 800);
+  near(c.ei[0], 2e-5 * 3, 1e-9);
+  law_case_free(&c);
+  start("USER", 0, "\"1E-9*q*t*temp\"", 1e5, .3, SOLID_3D);
+  load(100);
+  c.temperature = 50;
+  law_case_run(&c, &hold_none, 2, 10);
+  near(c.ei[0], 1e-7 * 50 * 2, 1e-12);
+  law_case_free(&c);
+}
+END_TEST
+
+/* Terms over 30 decades of relaxation time: each is where it must be. */
+START_TEST(thirty_decades_of_relaxation_times) {
+  char data[1000];
+  size_t n = 0;
+  double limit;
+  for (int k = 0; k < 20; ++k)
+    n += (size_t)snprintf(data + n, sizeof data - n, "%s0.04, 0.02, 1E%d",
+                          k == 0 ? "" : "\n", -15 + 30 * k / 19);
+  start("PRONY", 0, data, 1000, .3, SOLID_3D);
+  law_drive d = {.held = {1, 1, 1, 1, 1, 1}, .e_rate = {0, 0, 0, 1}};
+  law_case_jump(&c, &d);
+  law_point p = law_case_point(&c);
+  ck_assert_int_eq(law_fastest_rate(&p, &limit), OK);
+  near(limit, 1e15, 1e-12);
+  c.elastic.isotropic = 0; /* by LAPACK                                       */
+  ck_assert_int_eq(law_fastest_rate(&p, &limit), OK);
+  near(limit, 1e15, 1e-9);
+  /* The terms below 1e-3 s are at rest, the rest has not moved. */
+  double left = 1;
+  for (int k = 0; k < 20; ++k)
+    if (-15 + 30 * k / 19 <= -3) {
+      c.alpha[6 * k + 3] = c.e[3];
+      left -= .04;
+    }
+  for (int k = 0; k < 20; ++k) c.ei[3] += .04 * c.alpha[6 * k + 3];
+  law_drive hold = {.held = {1, 1, 1, 1, 1, 1}};
+  law_case_jump(&c, &hold);
+  near(c.sigma[3], 1000 / 2.6 * left, 1e-12);
+  double ei_rate[6], alpha_rate[LAW_ALPHA_MAX];
+  p = law_case_point(&c);
+  law_rate(&p, ei_rate, alpha_rate);
+  ck_assert(isfinite(ei_rate[3]));
+  law_case_free(&c);
+}
+END_TEST
+
+/* Temperature 30 above the reference: WLF 10^(17.44*30/81.6), Arrhenius. */
+START_TEST(shifts_run_the_clock) {
+  start("MAXWELL", 0, "2.", 1000, .3, SOLID_3D);
+  c.card.shift = (law_shift){SHIFT_WLF, 20, 0, 17.44, 51.6, 0};
+  near(law_speed(&c.card, 50), pow(10, 17.44 * 30 / 81.6), 1e-13);
+  ck_assert(law_speed(&c.card, 20) == 1);
+  ck_assert(law_speed(&c.card, -40) == 0); /* below the glass                 */
+  ck_assert_uint_eq(law_varies(&c.card), LAW_VARIES_TEMPERATURE);
+  c.card.shift = (law_shift){SHIFT_ARRHENIUS, 20, -273.15, 0, 0, 1e4};
+  const double speed = exp(-1e4 * (1 / 323.15 - 1 / 293.15));
+  near(law_speed(&c.card, 50), speed, 1e-12);
+  c.temperature = 50;
+  stretch(1e-3);
+  law_case_run(&c, &hold_x, 2 / speed, 400);
+  near(c.sigma[0], exp(-1.), 1e-9);
+  law_case_free(&c);
+}
+END_TEST
+
+/* Hundreds of stress units: A q^n in range though q^n alone is not. */
+START_TEST(large_powers_do_not_overflow) {
+  double ei_rate[6], alpha_rate[1];
+  start("NORTON", 0, "1E-300, 40.", 1e5, .3, SOLID_3D);
+  c.sigma[0] = 1e8;
+  law_point p = law_case_point(&c);
+  law_rate(&p, ei_rate, alpha_rate);
+  near(ei_rate[0], 1e20, 1e-10);
+  law_case_free(&c);
+}
+END_TEST
+
 static const law_drive *pull(double rate) {
   static law_drive d;
   d = hold_x;
@@ -351,5 +444,7 @@ UNIT_MAIN("law_history", maxwell_relaxes,
           burgers_creeps_as_the_sum_of_its_parts, burgers_relaxes_to_zero,
           prony_moduli_are_the_series, prony_of_one_full_term_is_maxwell,
           norton_relaxes, hardening_slows_norton_down,
+          formulas_relax_and_harden, thirty_decades_of_relaxation_times,
+          shifts_run_the_clock, large_powers_do_not_overflow,
           perzyna_is_pulled_and_relaxes, bingham_flows_with_its_overstress,
           armstrong_frederick_back_stress, chaboche_cycles)

@@ -1,0 +1,240 @@
+/*
+ * Data of inelastic laws from the deck: every law's example, every field of
+ * every law wrong in turn, tables over temperature, expressions of time, the
+ * spellings of Abaqus, moduli after all terms have relaxed.
+ */
+#include "support/law_case.h"
+#include "support/text_model.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { TEXT = 4000, VALUES = 64 };
+
+/* Deck with a material of E = 1000, nu = 0.3 and the cards given. */
+static void read_deck(text_model *s, const char *elastic, const char *cards) {
+  char text[2 * TEXT];
+  snprintf(text, sizeof text,
+           "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC%s\n1000., 0.3\n"
+           "%s\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
+           "*END STEP\n",
+           elastic, cards);
+  text_model_read(s, text, NULL);
+}
+
+static const law_card *law_of(const text_model *s) {
+  return &s->m->materials[0].law;
+}
+
+static void values_at(const text_model *s, double t, double T, double *value) {
+  ck_assert_int_le(law_n_value(law_of(s)), VALUES);
+  ck_assert_int_eq(law_values(law_of(s), t, T, value), OK);
+}
+
+static void near(double a, double b) {
+  ck_assert_msg(fabs(a - b) <= 1e-13 * fabs(b), "%.16g, expected %.16g", a, b);
+}
+
+START_TEST(every_example_reads_as_it_is) {
+  for (int i = 0; law_list[i] != NULL; ++i) {
+    static law_case c;
+    char cards[TEXT];
+    double value[VALUES];
+    text_model s;
+    snprintf(cards, sizeof cards, "*INELASTIC, LAW=%s\n%s", law_list[i]->name,
+             law_list[i]->example);
+    read_deck(&s, "", cards);
+    ck_assert_msg(s.st == OK, "%s", cards);
+    ck_assert_int_eq(law_case_new(law_list[i], 0, NULL, 1000, .3, SOLID_3D, &c),
+                     1);
+    ck_assert(law_of(&s)->ops == law_list[i]);
+    ck_assert_int_eq(law_of(&s)->n_term, c.card.n_term);
+    ck_assert_uint_eq(law_varies(law_of(&s)), 0);
+    ck_assert_int_eq(law_of(&s)->formula != NULL, c.card.formula != NULL);
+    values_at(&s, 0, 0, value);
+    (void)law_case_point(&c);
+    for (int k = 0; k < law_n_value(law_of(&s)); ++k)
+      ck_assert(value[k] == c.value[k]);
+    law_case_free(&c);
+    text_model_close(&s);
+  }
+}
+END_TEST
+
+/* Word number k of a line, "" behind its end. */
+static const char *word_of(const char *line, int k, int *length) {
+  const char *end = line + strcspn(line, "\n");
+  for (; k > 0; --k) {
+    line += strcspn(line, ",\n");
+    if (line < end) ++line;
+  }
+  *length = (int)strcspn(line, ",\n");
+  return line;
+}
+
+/* The example with field "at" of line "row" (n fields) replaced. */
+static void replace_field(const char *example, int row, int n, int at,
+                          const char *with, char *out, size_t size) {
+  size_t used = 0;
+  const char *line = example;
+  for (int i = 0; *line != '\0'; ++i) {
+    const int whole = (int)strcspn(line, "\n");
+    int length;
+    for (int k = 0; k < n && i == row; ++k) {
+      const char *word = word_of(line, k, &length);
+      used += (size_t)snprintf(
+          out + used, size - used, "%s%.*s", k == 0 ? "" : ",",
+          k == at ? (int)strlen(with) : length, k == at ? with : word);
+    }
+    if (i != row)
+      used += (size_t)snprintf(out + used, size - used, "%.*s", whole, line);
+    used += (size_t)snprintf(out + used, size - used, "\n");
+    line += whole + (line[whole] == '\n');
+  }
+  ck_assert_uint_lt(used, size);
+}
+
+/* The deck with that data must give the message. */
+static void refused(const law_ops *ops, const char *data, const char *number,
+                    const char *words) {
+  char cards[TEXT + 80];
+  char *told = NULL;
+  size_t size;
+  text_model s;
+  snprintf(cards, sizeof cards, "*INELASTIC, LAW=%s\n%s", ops->name, data);
+  read_deck(&s, "", cards);
+  FILE *out = open_memstream(&told, &size);
+  message_print(s.log, out);
+  fclose(out);
+  ck_assert_msg(s.st == ERR_DECK, "%s", cards);
+  ck_assert_msg(strstr(told, number) != NULL && strstr(told, words) != NULL,
+                "%s\n%s %s expected, told\n%s", cards, number, words, told);
+  free(told);
+  text_model_close(&s);
+}
+
+static void check_line(const law_ops *ops, const option *table, int row) {
+  char data[TEXT];
+  const int n = law_n_field(table);
+  for (int k = 0; table[k].name != NULL; ++k) {
+    replace_field(ops->example, row, n, k, " much", data, sizeof data);
+    refused(ops, data, "P1024", "much");
+    if (table[k].min > -1e300) {
+      replace_field(ops->example, row, n, k, " -1E300", data, sizeof data);
+      refused(ops, data, "P2010", table[k].name);
+    }
+    if (table[k].initial != NULL) continue;
+    replace_field(ops->example, row, n, k, " \"\"", data, sizeof data);
+    refused(ops, data, "P1037", "empty");
+  }
+}
+
+START_TEST(every_field_is_checked) {
+  for (int i = 0; law_list[i] != NULL; ++i) {
+    const law_ops *ops = law_list[i];
+    int row = 0;
+    if (ops->fields != NULL) check_line(ops, ops->fields, row++);
+    if (ops->terms != NULL) check_line(ops, ops->terms, row);
+  }
+}
+END_TEST
+
+START_TEST(tables_are_linear_in_temperature) {
+  double value[VALUES];
+  text_model s;
+  read_deck(&s, "",
+            "*INELASTIC, LAW=CHABOCHE\n60., 150., 3., , , 20.\n2E4, 100., 20.\n"
+            "40., 100., 4., , , 60.\n1E4, 200., 60.");
+  ck_assert_int_eq(s.st, OK);
+  ck_assert_uint_eq(law_varies(law_of(&s)), LAW_VARIES_TEMPERATURE);
+  ck_assert_int_eq(law_of(&s)->n_term, 1);
+  values_at(&s, 0, 30, value);
+  near(value[0], 55);
+  near(value[2], 3.25);
+  near(value[5], 1.75e4);
+  near(value[6], 125);
+  values_at(&s, 0, -1000, value);
+  near(value[1], 150);
+  values_at(&s, 0, 1000, value);
+  near(value[6], 200);
+  text_model_close(&s);
+}
+END_TEST
+
+START_TEST(coefficients_may_vary_in_time) {
+  double value[VALUES];
+  text_model s;
+  read_deck(&s, "", "*INELASTIC, LAW=MAXWELL\n\"2 + sin(t)\"");
+  ck_assert_int_eq(s.st, OK);
+  ck_assert_uint_eq(law_varies(law_of(&s)), LAW_VARIES_TIME);
+  values_at(&s, 1.5, 0, value);
+  near(value[0], 2 + sin(1.5));
+  text_model_close(&s);
+  read_deck(&s, "", "*INELASTIC, LAW=MAXWELL\n\"2 - t\"");
+  ck_assert_int_eq(s.st, OK);
+  ck_assert_int_eq(law_values(law_of(&s), 3, 0, value), ERR_DECK);
+  ck_assert_ptr_nonnull(strstr(status_message(), "tau = -1 is not positive"));
+  text_model_close(&s);
+}
+END_TEST
+
+/* Rate of e^i along x at t = 4 under 100 along x. */
+static double creep_rate(const char *cards) {
+  static law_case c;
+  double ei_rate[6], alpha_rate[LAW_ALPHA_MAX], value[VALUES];
+  text_model s;
+  read_deck(&s, "", cards);
+  ck_assert_int_eq(s.st, OK);
+  law_case_new(&norton_law, 0, NULL, 1000, .3, SOLID_3D, &c);
+  law_point p = law_case_point(&c);
+  values_at(&s, 4, 0, value);
+  p.law = law_of(&s);
+  p.value = value;
+  p.t = 4;
+  c.sigma[0] = 100;
+  c.alpha[0] = 0.25;
+  law_rate(&p, ei_rate, alpha_rate);
+  law_case_free(&c);
+  text_model_close(&s);
+  return ei_rate[0];
+}
+
+/* The factor is 1E-9, 100 cubed 1e6; time hardening with 4^(-1/2) = 1/2. Strain
+ * hardening keeps p squared, here 1/4: (1e-3)^2 over half of p = 1/2. */
+START_TEST(creep_cards_of_abaqus) {
+  near(creep_rate("*CREEP, LAW=TIME\n1E-9, 3., -0.5"), 5e-4);
+  near(creep_rate("*CREEP, LAW=NORTON\n1E-9, 3."), 1e-3);
+  near(creep_rate("*CREEP\n1E-9, 3., -0.5"), 1e-6 / 0.25);
+  near(creep_rate("*INELASTIC, LAW=NORTON, HARDENING=STRAIN\n1E-9, 3., -0.5"),
+       1e-6 / 0.25);
+}
+END_TEST
+
+/* C_xy,xy and the bulk modulus of the matrix the elements get. */
+static void check_moduli(const char *elastic, const char *cards, double shear,
+                         double bulk) {
+  text_model s;
+  read_deck(&s, elastic, cards);
+  ck_assert_int_eq(s.st, OK);
+  const double *C = s.m->materials[0].C;
+  near(C[21], shear);
+  near((C[0] + 2 * C[6]) / 3, bulk);
+  text_model_close(&s);
+}
+
+START_TEST(moduli_after_all_terms_have_relaxed) {
+  const double G = 1000 / 2.6, K = 1000 / 1.2;
+  const char *abaqus = "*VISCOELASTIC, TIME=PRONY\n.3, .1, 2.\n.2, .15, 9.";
+  const char *own = "*INELASTIC, LAW=PRONY\n.3, .1, 2.\n.2, .15, 9.";
+  check_moduli("", abaqus, G / .5, K / .75);
+  check_moduli(", MODULI=LONG TERM", own, G / .5, K / .75);
+  check_moduli(", MODULI=INSTANTANEOUS", abaqus, G, K);
+  check_moduli("", own, G, K);
+}
+END_TEST
+
+UNIT_MAIN("law_card", every_example_reads_as_it_is, every_field_is_checked,
+          tables_are_linear_in_temperature, coefficients_may_vary_in_time,
+          creep_cards_of_abaqus, moduli_after_all_terms_have_relaxed)
