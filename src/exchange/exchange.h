@@ -6,6 +6,8 @@
  *                 0 <= u_N, 0 <= r_N, u_N r_N = 0, Coulomb's law with mu r_N
  * FCLIB (global)  M v = H r + f,  u = H' v + w
  *                 condensed here: W = H' inv(M) H,  q = H' inv(M) f + w
+ * Equality constraints are eliminated: (local)  u = W r + V l + q,
+ * V'r + R l + s = 0;  (global)  M v = H r + G l + f,  G'v + b = 0.
  *
  * There u_N is the gap left open and r_N >= 0 pushes; here (contact.h) u_n runs
  * towards the obstacle and r_n <= 0 pushes: the normal components of u and r

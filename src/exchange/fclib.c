@@ -124,13 +124,49 @@ static void set_problem(exchange_problem *p, int stiffness, int floating) {
 /* ---- local ----------------------------------------------------------------
  */
 
+/* A matrix of given size, dense. */
+static status read_dense(const hdf5_source *s, const char *name, int rows,
+                         int columns, double **a) {
+  status st = OK;
+  triplets t = {0};
+  TRY(triplets_read(s, name, &t));
+  if (t.rows != rows || t.columns != columns)
+    FAIL(ERR_DECK, "%s: %s has %d rows and %d columns, expected %d and %d",
+         s->path, name, t.rows, t.columns, rows, columns);
+  NEW(*a, (size_t)rows * (size_t)columns);
+  triplets_dense(&t, *a);
+done:
+  triplets_free(&t);
+  return st;
+}
+
+/* V, R and s, both matrices or none. */
+static status read_constraints(const hdf5_source *s, int m, constraints *c) {
+  status st = OK;
+  int has_V = source_has(s, LOCAL "/V"), has_R = source_has(s, LOCAL "/R");
+  if (!has_V && !has_R) goto done;
+  if (!has_V || !has_R)
+    FAIL(ERR_DECK,
+         "%s: equality constraints need both " LOCAL "/V and " LOCAL
+         "/R; one is missing",
+         s->path);
+  TRY(source_int(s, LOCAL "/R/m", &c->p));
+  if (c->p < 0 || c->p > MOST_UNKNOWNS)
+    FAIL(ERR_DECK, "%s: " LOCAL "/R has %d rows; at most %d can be eliminated",
+         s->path, c->p, (int)MOST_UNKNOWNS);
+  TRY(read_dense(s, LOCAL "/V", m, c->p, &c->V));
+  TRY(read_dense(s, LOCAL "/R", c->p, c->p, &c->R));
+  TRY(read_vector(s, LOCAL "/vectors/s", c->p, &c->s));
+done:
+  return st;
+}
+
 static status read_local(const hdf5_source *s, exchange_problem *p) {
   status st = OK;
   triplets W = {0};
+  constraints c = {0};
   double *q = NULL;
   p->form = "FCLIB, local";
-  TRY(refuse_group(s, LOCAL "/V", "equality constraints (V, R)"));
-  TRY(refuse_group(s, LOCAL "/R", "equality constraints (V, R)"));
   TRY(triplets_read(s, LOCAL "/W", &W));
   if (W.rows != W.columns)
     FAIL(ERR_DECK, "%s: " LOCAL "/W is not square: %d rows, %d columns",
@@ -141,11 +177,14 @@ static status read_local(const hdf5_source *s, exchange_problem *p) {
   TRY(read_friction(s, LOCAL "/vectors/mu", p));
   triplets_dense(&W, p->matrix);
   memcpy(p->load, q, (size_t)p->m * sizeof *q);
+  TRY(read_constraints(s, p->m, &c));
+  TRY(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
   turn_signs(p);
-  p->unknowns = p->m;
+  p->unknowns = p->m + c.p;
   set_problem(p, 0, 0);
 done:
   triplets_free(&W);
+  constraints_free(&c);
   memory_free(q);
   return st;
 }
@@ -154,23 +193,29 @@ done:
  */
 
 typedef struct global {
-  triplets M, H;
-  double *f, *w, *h; /* [M.rows], [H.columns]; h: diagonal of H, or NULL     */
+  triplets M, H, G;  /* G: equality constraints, or none                      */
+  double *f, *w, *b; /* [M.rows], [H.columns], [G.columns]                    */
+  double *h;         /* diagonal of H, or NULL                                */
 } global;
 
 static void global_release(global *g) {
   triplets_free(&g->M);
   triplets_free(&g->H);
+  triplets_free(&g->G);
   memory_free(g->f);
   memory_free(g->w);
+  memory_free(g->b);
   memory_free(g->h);
 }
 
 static status read_matrices(const hdf5_source *s, global *g) {
   status st = OK;
-  TRY(refuse_group(s, GLOBAL "/G", "equality constraints (G, b)"));
   TRY(triplets_read(s, GLOBAL "/M", &g->M));
   TRY(triplets_read(s, GLOBAL "/H", &g->H));
+  if (source_has(s, GLOBAL "/G")) TRY(triplets_read(s, GLOBAL "/G", &g->G));
+  if (g->G.columns > 0 && g->G.rows != g->M.rows)
+    FAIL(ERR_DECK, "%s: " GLOBAL "/G has %d rows, M has %d", s->path, g->G.rows,
+         g->M.rows);
   if (g->M.rows != g->M.columns)
     FAIL(ERR_DECK, "%s: " GLOBAL "/M is not square: %d rows, %d columns",
          s->path, g->M.rows, g->M.columns);
@@ -244,6 +289,85 @@ static void take_stiffness(exchange_problem *p, const global *g, int floating,
   set_problem(p, 1, floating);
 }
 
+/* (H, G) as one matrix. */
+static status join(const global *g, triplets *all) {
+  status st = OK;
+  all->rows = g->H.rows;
+  all->columns = g->H.columns + g->G.columns;
+  all->n = g->H.n + g->G.n;
+  NEW(all->row, all->n);
+  NEW(all->column, all->n);
+  NEW(all->value, all->n);
+  for (long k = 0; k < all->n; ++k) {
+    const triplets *from = k < g->H.n ? &g->H : &g->G;
+    long at = k < g->H.n ? k : k - g->H.n;
+    all->row[k] = from->row[at];
+    all->column[k] = from->column[at] + (k < g->H.n ? 0 : g->H.columns);
+    all->value[k] = from->value[at];
+  }
+done:
+  return st;
+}
+
+/* The condensed matrix of (H, G) [size*size] and its vector, in their parts. */
+static status part(const double *all, const double *vector, int size, int m,
+                   exchange_problem *p, constraints *c) {
+  status st = OK;
+  size_t ld = (size_t)size, rows = (size_t)m, n = (size_t)(size - m);
+  c->p = size - m;
+  NEW(c->V, rows * n);
+  NEW(c->R, n * n);
+  NEW(c->s, n);
+  for (size_t j = 0; j < rows; ++j) {
+    p->load[j] = vector[j];
+    memcpy(p->matrix + rows * j, all + ld * j, rows * sizeof *all);
+  }
+  for (size_t k = 0; k < n; ++k) {
+    const double *column = all + ld * (rows + k);
+    memcpy(c->V + rows * k, column, rows * sizeof *column);
+    memcpy(c->R + n * k, column + rows, n * sizeof *column);
+    c->s[k] = vector[rows + k];
+  }
+done:
+  return st;
+}
+
+/* M v = H r + G l + f, G'v + b = 0: v is eliminated with (H, G) in the place of
+ * H, which leaves constraints on r and l. */
+static status condense_constrained(const hdf5_source *s, const global *g,
+                                   exchange_problem *p) {
+  status st = OK;
+  triplets joined = {0};
+  constraints c = {0};
+  double *all = NULL, *vector = NULL;
+  int size = p->m + g->G.columns, singular = 0;
+  if (size > MOST_UNKNOWNS)
+    FAIL(ERR_DECK,
+         "%s: " GLOBAL
+         " has %d unknowns and constraints; at most %d "
+         "can be solved",
+         s->path, size, (int)MOST_UNKNOWNS);
+  TRY(join(g, &joined));
+  NEW(all, (size_t)size * (size_t)size);
+  NEW(vector, size);
+  memcpy(vector, g->w, (size_t)p->m * sizeof *vector);
+  memcpy(vector + p->m, g->b, (size_t)g->G.columns * sizeof *vector);
+  TRY(reduce_global(s->path, &g->M, &joined, g->f, all, vector, &singular));
+  if (singular)
+    FAIL(ERR_SINGULAR, "%s: " GLOBAL "/M is singular: v cannot be eliminated",
+         s->path);
+  TRY(part(all, vector, size, p->m, p, &c));
+  TRY(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
+  turn_signs(p);
+  set_problem(p, 0, 0);
+done:
+  triplets_free(&joined);
+  constraints_free(&c);
+  memory_free(all);
+  memory_free(vector);
+  return st;
+}
+
 /* A contact whose stick position is not zero needs it also without friction:
  * nothing, its tangential force is zero. */
 static status condense_global(const hdf5_source *s, global *g,
@@ -274,8 +398,13 @@ static status read_global(const hdf5_source *s, exchange_problem *p) {
   TRY(read_vector(s, GLOBAL "/vectors/f", g.M.rows, &g.f));
   TRY(read_vector(s, GLOBAL "/vectors/w", p->m, &g.w));
   TRY(read_friction(s, GLOBAL "/vectors/mu", p));
+  p->unknowns = g.M.rows + g.G.columns;
+  if (g.G.columns > 0) {
+    TRY(read_vector(s, GLOBAL "/vectors/b", g.G.columns, &g.b));
+    TRY(condense_constrained(s, &g, p));
+    goto done;
+  }
   TRY(find_diagonal(&g));
-  p->unknowns = g.M.rows;
   TRY(condense_global(s, &g, p));
 done:
   global_release(&g);

@@ -53,6 +53,21 @@ status fclib_read(const char *path, exchange_problem *p);
 /* The same for a text. */
 status lcp_text_read(const char *path, exchange_problem *p);
 
+/* ---- constraints.c ----------------------------------------------------------
+ */
+
+/* V'r + R l + s = 0 beside u = W r + V l + q. */
+typedef struct constraints {
+  int p;     /* how many                                                     */
+  double *V; /* [m*p] column major                                           */
+  double *R; /* [p*p]                                                        */
+  double *s; /* [p]                                                          */
+} constraints;
+/* W[m*m], q[m] without l. ERR_SINGULAR: they contradict one another. */
+status constraints_eliminate(const char *path, int m, const constraints *c,
+                             double *W, double *q);
+void constraints_free(constraints *c); /* accepts all-zero                    */
+
 /* ---- reduce.c --------------------------------------------------------------
  */
 

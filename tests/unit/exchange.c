@@ -325,8 +325,7 @@ START_TEST(defect_names_file_and_dataset) {
 END_TEST
 
 START_TEST(what_is_not_available_is_said) {
-  static const char *const names[] = {"/fclib_local/V/m", "/fclib_local/R/m",
-                                      "/fclib_local_rolling/spacedim",
+  static const char *const names[] = {"/fclib_local_rolling/spacedim",
                                       "/fclib_global_rolling/spacedim"};
   double W[4] = {1, 0, 0, 1}, q[2] = {1, 1}, mu[1] = {0.3};
   enter();
@@ -338,6 +337,144 @@ START_TEST(what_is_not_available_is_said) {
     answer a = read_as(EXCHANGE_FCLIB);
     ck_assert_int_eq(a.st, ERR_DECK);
     ck_assert_ptr_nonnull(strstr(a.text, "not available"));
+  }
+  leave();
+}
+END_TEST
+
+/* ---- equality constraints ---- */
+
+enum { LINKS = 3 };
+
+static hid_t reopen(void) { return H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT); }
+
+/* u = W r + V l + q with the l that meets the constraints, for a given r, is
+ * what the problem read says. */
+static void check_links(const exchange_problem *p, int m, const double *W,
+                        const double *q, const double *V, const double *l,
+                        const double *r) {
+  for (int i = 0; i < m; ++i) {
+    double turn = i % p->dim == 0 ? -1.0 : 1.0;
+    double want = q[i], got = p->cp.f[i];
+    for (int j = 0; j < m; ++j) {
+      want += W[i + m * j] * r[j];
+      got += p->cp.W[i + m * j] * (j % p->dim == 0 ? -r[j] : r[j]);
+    }
+    for (int k = 0; k < LINKS; ++k) want += V[i + m * k] * l[k];
+    ck_assert_double_eq_tol(turn * got, want, 1e-9);
+  }
+}
+
+/* s from r and l. twice: the last constraint repeats the first. */
+START_TEST(local_constraints_are_eliminated) {
+  enter();
+  for (int dim = 2; dim <= 3; ++dim)
+    for (int twice = 0; twice <= 1; ++twice) {
+      unsigned long long seed = 17;
+      int n = 2, m = dim * n;
+      double W[36], V[6 * LINKS], R[LINKS * LINKS], q[6], s[LINKS] = {0.0};
+      double l[LINKS], r[6], mu[2] = {0.3, 0.4};
+      random_spd(m, m, 1.0, W, &seed);
+      random_spd(LINKS, LINKS, 1.0, R, &seed);
+      random_matrix(m * LINKS, V, &seed);
+      random_matrix(m, q, &seed);
+      random_matrix(m, r, &seed);
+      random_matrix(LINKS, l, &seed);
+      R[1] += 0.25; /* not symmetric                                          */
+      for (int k = 0; k < LINKS && twice; ++k) R[k + 2 * LINKS] = R[k];
+      for (int k = 0; k < LINKS && twice; ++k) R[2 + LINKS * k] = R[LINKS * k];
+      for (int i = 0; i < m && twice; ++i) V[i + 2 * m] = V[i];
+      for (int k = 0; k < LINKS; ++k) {
+        for (int i = 0; i < m; ++i) s[k] -= V[i + m * k] * r[i];
+        for (int j = 0; j < LINKS; ++j) s[k] -= R[k + LINKS * j] * l[j];
+      }
+      fclib_local(path, stores[dim - 1], dim, n, W, q, mu);
+      hid_t file = reopen();
+      fclib_matrix(file, "/fclib_local/V", stores[dim - 2], m, LINKS, V);
+      fclib_matrix(file, "/fclib_local/R", STORE_COLUMNS, LINKS, LINKS, R);
+      fclib_reals(file, "/fclib_local/vectors/s", LINKS, s);
+      fclib_end(file);
+      answer a = read_as(EXCHANGE_FCLIB);
+      ck_assert_msg(a.st == OK, "%s", a.text);
+      ck_assert_int_eq(a.p->unknowns, m + LINKS);
+      check_links(a.p, m, W, q, V, l, r);
+      exchange_free(a.p);
+      if (!twice) continue;
+      s[2] += 1.0;
+      file = reopen();
+      hid_t set = H5Dopen2(file, "/fclib_local/vectors/s", H5P_DEFAULT);
+      H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, s);
+      H5Dclose(set);
+      fclib_end(file);
+      a = read_as(EXCHANGE_FCLIB);
+      ck_assert_int_eq(a.st, ERR_SINGULAR);
+      ck_assert_ptr_nonnull(strstr(a.text, "contradict"));
+    }
+  leave();
+}
+END_TEST
+
+/* v from M v = H r + G l + f, b from v: u = H'v + w by hand. */
+START_TEST(global_constraints_are_eliminated) {
+  global_case *g = malloc(sizeof *g);
+  enter();
+  for (int dim = 2; dim <= 3; ++dim) {
+    unsigned long long seed = 23;
+    int m = dim * NC;
+    double G[NV * LINKS], l[LINKS], r[3 * NC], b[LINKS] = {0.0}, one[NV];
+    double none[1] = {0.0}, v[NV] = {0.0}, force[NV], ignored[1];
+    global_make(g, dim);
+    random_matrix(NV * LINKS, G, &seed);
+    random_matrix(m, r, &seed);
+    random_matrix(LINKS, l, &seed);
+    memcpy(force, g->f, sizeof force);
+    for (int i = 0; i < NV; ++i) {
+      for (int j = 0; j < m; ++j) force[i] += g->H[i + NV * j] * r[j];
+      for (int k = 0; k < LINKS; ++k) force[i] += G[i + NV * k] * l[k];
+    }
+    for (int i = 0; i < NV; ++i) { /* row i of inv(M) times force             */
+      memset(one, 0, sizeof one);
+      one[i] = 1.0;
+      none[0] = 0.0;
+      condense_dense(NV, 1, g->M, one, force, ignored, none);
+      v[i] = none[0];
+    }
+    for (int k = 0; k < LINKS; ++k)
+      for (int i = 0; i < NV; ++i) b[k] -= G[i + NV * k] * v[i];
+    fclib_global(path, stores[dim - 1], &g->data);
+    hid_t file = reopen();
+    fclib_matrix(file, "/fclib_global/G", STORE_TRIPLET, NV, LINKS, G);
+    fclib_reals(file, "/fclib_global/vectors/b", LINKS, b);
+    fclib_end(file);
+    answer a = read_as(EXCHANGE_FCLIB);
+    ck_assert_msg(a.st == OK, "%s", a.text);
+    ck_assert_int_eq(a.p->unknowns, NV + LINKS);
+    for (int i = 0; i < m; ++i) {
+      double want = g->w[i], got = a.p->cp.f[i];
+      for (int j = 0; j < NV; ++j) want += g->H[j + NV * i] * v[j];
+      for (int j = 0; j < m; ++j)
+        got += a.p->cp.W[i + m * j] * (j % dim == 0 ? -r[j] : r[j]);
+      ck_assert_double_eq_tol(i % dim == 0 ? -got : got, want, 1e-8);
+    }
+    exchange_free(a.p);
+  }
+  leave();
+  free(g);
+}
+END_TEST
+
+START_TEST(half_of_the_constraints_is_refused) {
+  static const char *const names[] = {"/fclib_local/V/m", "/fclib_local/R/m"};
+  double W[4] = {1, 0, 0, 1}, q[2] = {1, 1}, mu[1] = {0.3};
+  enter();
+  for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
+    fclib_local(path, STORE_ROWS, 2, 1, W, q, mu);
+    hid_t file = reopen();
+    fclib_int(file, names[k], 3);
+    fclib_end(file);
+    answer a = read_as(EXCHANGE_FCLIB);
+    ck_assert_int_eq(a.st, ERR_DECK);
+    ck_assert_ptr_nonnull(strstr(a.text, "one is missing"));
   }
   leave();
 }
@@ -469,6 +606,7 @@ UNIT_MAIN("exchange", every_storage_gives_the_same_problem,
           global_problem_is_its_local_condensation,
           unsymmetric_mass_is_eliminated_too, singular_mass_is_refused,
           no_contact_is_a_problem, defect_names_file_and_dataset,
-          what_is_not_available_is_said, file_cut_short_is_refused,
-          text_is_read_by_rows, defect_of_text_is_named,
-          every_refused_request_is_reported)
+          what_is_not_available_is_said, local_constraints_are_eliminated,
+          global_constraints_are_eliminated, half_of_the_constraints_is_refused,
+          file_cut_short_is_refused, text_is_read_by_rows,
+          defect_of_text_is_named, every_refused_request_is_reported)
