@@ -1,15 +1,20 @@
 /*
  * METHOD=AUTO. The facts the choice depends on have no unit: whether there is
- * friction, which form is given, whether it can be inverted, and the number of
- * unknowns m.
+ * friction, which form is given, whether it can be inverted, the dimension and
+ * the number of unknowns m.
  *
- *   no friction     the tangential unknowns are eliminated, NEWTON on the
- * normal ones; the full problem only where that fails. stiffness       NEWTON:
- * its steps do not grow in number with m and with the condition of A, and it
- * keeps its factor from step to step and problem to problem; then NEWTON along
- * a friction path, for large mu; then SOR, which needs no factor. compliance
- * the same where it has an inverse; PCG, LAGRANGE, SOR and LEMKE work on a
- * singular one.
+ * No friction: the tangential unknowns are eliminated and NEWTON solves in the
+ * normal ones. The full problem is taken for the first steps on a matrix, which
+ * often suffice, and where the normal form fails.
+ *
+ * Stiffness given: NEWTON. Its steps do not grow in number with m or with the
+ * condition of A, and it keeps its factor from step to step and from problem to
+ * problem. Then NEWTON along a friction path, for large mu; then SOR, which
+ * needs no factor; LEMKE last.
+ *
+ * Compliance given: in 3-D first sweeps of SOR, as long as their rate promises
+ * the solution for less than the inverse would cost. Then the same where there
+ * is an inverse; PCG, LAGRANGE, SOR and LEMKE work on a singular one.
  *
  * Each link starts cold after the first, on the same problem, and is given a
  * number of iterations that bounds its cost (allowance).
@@ -23,6 +28,9 @@
 #include <string.h>
 
 enum {
+  WARM_STEPS = 3,      /* of NEWTON before the normal form is made; cold: 1   */
+  ROUND = 10,          /* sweeps from one look at their rate to the next      */
+  SWEEP_SHARE = 4,     /* m over it: sweeps that cost less than an inverse    */
   FULL_SIZE = 1000,    /* m: up to here a link has all its iterations         */
   LEAST_FACTORS = 80,  /* iterations with a factorisation, on large problems  */
   MOST_FACTORS = 4000, /*                                   on small ones    */
@@ -99,17 +107,81 @@ static int is_final(const contact_problem *cp, outcome o) {
   return proved || o == CONVERGED || o == STOPPED_NAN;
 }
 
-/* Without friction: in the normal unknowns. *done = 1: solved. */
+/* Where an attempt starts and ends: u[m], r[m], and what it reports. */
+typedef struct answer {
+  double *u, *r;
+  solver_report *rep;
+} answer;
+
+/* A try of few iterations, which need not succeed. */
+static status short_try(contact_solver *s, const contact_problem *cp,
+                        const solver_ops *ops, int iterations,
+                        const solver_listener *listener, const answer *to) {
+  status st = OK;
+  int asked = s->choice.max_iter;
+  attempt a = {ops, s->param, PLAIN,
+               asked > 0 && asked < iterations ? asked : iterations};
+  memset(s->param, 0, s->param_size);
+  option_defaults(ops->options, s->param);
+  TRY(attempt_run(s, cp, &a, listener, to->u, to->r, to->rep));
+  attempt_judge(cp, s->choice.tol, to->u, to->r, to->rep);
+done:
+  return st;
+}
+
+/* Sweeps of SOR on a compliance, as long as the rate of the last round promises
+ * the solution within m/SWEEP_SHARE of them. rep->outcome CONVERGED: solved. */
+static status promising_sweeps(contact_solver *s, const contact_problem *cp,
+                               const solver_listener *listener, double *u,
+                               double *r, solver_report *rep) {
+  status st = OK;
+  int most = cp->m / SWEEP_SHARE, made = 0;
+  double before = HUGE_VAL;
+  const answer to = {u, r, rep};
+  *rep = (solver_report){.outcome = RUNNING};
+  if (cp->A != NULL || cp->dim != 3 || cp->B == NULL) goto done;
+  while (made + ROUND <= most) {
+    TRY(short_try(s, cp, &sor_solver, ROUND, listener, &to));
+    made += rep->iterations;
+    double rate = rep->residual / before, left = s->choice.tol / rep->residual;
+    rep->iterations = made;
+    if (rep->outcome != STOPPED_ITERATIONS) break;
+    int known = before < HUGE_VAL;
+    if (known && !(rate < 1.0 && made + ROUND * log(left) / log(rate) <= most))
+      break;
+    before = rep->residual;
+  }
+done:
+  return st;
+}
+
+static int is_cold(const contact_problem *cp, const double *r) {
+  for (int i = 0; i < cp->m; ++i)
+    if (r[i] != 0.0) return 0;
+  return 1;
+}
+
+/* Without friction: in the normal unknowns. *done_well = 1: solved. */
 static status solve_normal(contact_solver *s, const contact_problem *cp,
                            const solver_listener *listener, double *u,
                            double *r, solver_report *rep, int *done_well) {
   status st = OK;
+  int before = 0;
   solver_control control = {.tol = s->choice.tol,
                             .max_iter = allowance(s, cp, 0),
                             .listener = listener};
   *done_well = 0;
   if (!normal_form_applies(cp)) goto done;
+  if (cp->A != NULL && s->normal.wanted++ == 0) {
+    const answer to = {u, r, rep};
+    int steps = is_cold(cp, r) ? 1 : WARM_STEPS;
+    TRY(short_try(s, cp, &newton_solver, steps, listener, &to));
+    *done_well = rep->outcome == CONVERGED;
+    if (*done_well) goto done;
+    before = rep->iterations;
+  }
   TRY(normal_form_solve(&s->normal, cp, &control, u, r, rep));
+  rep->iterations += before;
   if (rep->outcome != CONVERGED) goto done;
   attempt_judge(cp, s->choice.tol, u, r, rep);
   *done_well = rep->outcome == CONVERGED;
@@ -144,6 +216,10 @@ status auto_solve(contact_solver *s, const contact_problem *cp,
   int solved = 0;
   solver_report best = {.outcome = RUNNING};
   TRY(solve_normal(s, cp, listener, u, r, rep, &solved));
+  if (!solved) {
+    TRY(promising_sweeps(s, cp, listener, u, r, rep));
+    solved = rep->outcome == CONVERGED;
+  }
   for (int i = 0; i < n && !solved; ++i) {
     if (is_skipped(cp, i)) continue;
     TRY(run_link(s, cp, i, listener, u, r, rep));

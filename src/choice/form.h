@@ -25,6 +25,7 @@ void other_form_free(other_form *o); /* all zero afterwards                   */
 
 typedef struct normal_form {
   int missing;             /* 1: it does not exist                            */
+  int wanted;              /* problems met that would have used it            */
   double power;            /* of two: power A has a diagonal of order 1       */
   double *L;               /* [nt*nt] Cholesky factor of power A_tt           */
   double *Y;               /* [nt*n] inv(L) power A_tn                        */

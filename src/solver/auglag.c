@@ -37,6 +37,7 @@
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 typedef struct auglag {
@@ -78,11 +79,12 @@ typedef struct auglag_work {
   double *origin;        /* [m] m                                            */
   double *diagonal;      /* [m] of A, the mean in a tangent plane, N/m       */
   double *lambda, *z, *F, *y; /* [m] N; y = A u - f. Newton: work, work    */
-  double *du, *dy;      /* [m] step, A du                                   */
-  double *bonded;       /* [n] no limit                                     */
-  double *e, *share;    /* [m] direction of slip, [n] g/|z|                 */
-  double *K;            /* [m*m]                                            */
-  double power;         /* of two: power*A has a diagonal of order 1         */
+  double *du, *dy;   /* [m] step, A du                                   */
+  double *bonded;    /* [n] no limit                                     */
+  double *e, *share; /* [m] direction of slip, [n] g/|z|                 */
+  double *K;         /* [m*m]                                            */
+  double power;      /* of two: power*A has a diagonal of order 1         */
+  uint64_t seen[NEWTON_STEPS + 1]; /* hashes of the states of the steps     */
   int *pivot, *free_id; /* [m]                                              */
   fixed_point *fixed;
   best_iterate best;
@@ -177,6 +179,7 @@ typedef struct run {
   int bent;     /* 1: F' of a slipping node moves with z (3-D)                */
   int factored; /* w->K is the factor for the present states                 */
   int singular; /* the last matrix needed springs                            */
+  int cycle;    /* the states were met before in these Newton steps          */
 } run;
 
 static double rho_of(const run *s, int dof) {
@@ -242,6 +245,19 @@ static double turning(const run *s, int a, int b) {
   return w->share[a / s->cp->dim] * ((a == b) - w->e[a] * w->e[b]);
 }
 
+static void tell(const run *s, double residual) {
+  const solver_listener *l = s->control->listener;
+  if (l == NULL || l->step == NULL) return;
+  solver_step step = {.solver = "auglag",
+                      .iteration = s->steps,
+                      .limit_update = s->control->limit_update,
+                      .residual = residual,
+                      .limit_change = NAN,
+                      .status_changes = s->changes,
+                      .cycle = s->cycle};
+  l->step(l->ctx, &step);
+}
+
 /* Residual of (u, F), told and kept. */
 static double judge(run *s) {
   const contact_problem *cp = s->cp;
@@ -254,7 +270,7 @@ static double judge(run *s) {
   if (s->scale > 0.0) defect /= s->scale;
   if (!(defect <= residual)) residual = defect;
   solver_keep_best(&w->best, cp->m, residual, s->u, w->F);
-  solver_tell(s->control, "auglag", s->steps, residual);
+  tell(s, residual);
   return residual;
 }
 
@@ -377,18 +393,38 @@ static double shorten(run *s, double reference) {
   return now;
 }
 
+/* 1: the states after step k are those of a step before. FNV-1a. */
+static int met_before(const run *s, int k) {
+  auglag_work *w = s->w;
+  uint64_t h = 1469598103934665603u;
+  int met = 0;
+  for (int i = 0; i < s->cp->m; ++i) {
+    uint64_t sign = slips(s, i) && w->e[i] > 0.0 ? 4u : 0u;
+    h = (h ^ (w->closed[i] | sign)) * 1099511628211u;
+  }
+  for (int i = 0; i < s->cp->n; ++i) h = (h ^ w->mode[i]) * 1099511628211u;
+  for (int j = 0; j + 1 < k; ++j) met = met || w->seen[j] == h;
+  w->seen[k] = h;
+  return met;
+}
+
 static outcome newton_steps(run *s) {
   auglag_work *w = s->w;
+  int met = 0;
   double past[MEMORY], residual;
   s->rho = RHO_NEWTON;
   contact_reaction(s->cp, s->u, w->y);
   evaluate(s, w->y);
   for (int k = 0; k < MEMORY; ++k) past[k] = merit(s);
   for (int k = 0;; ++k) {
+    s->cycle = met_before(s, k);
+    met += s->cycle && s->changes > 0;
     residual = judge(s);
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= s->control->tol) return CONVERGED;
-    if (k == NEWTON_STEPS || s->steps >= s->limit) return STOPPED_ITERATIONS;
+    if (s->steps >= s->limit) return STOPPED_ITERATIONS;
+    if (k == NEWTON_STEPS)
+      return 2 * met > k ? STOPPED_CYCLE : STOPPED_ITERATIONS;
     ++s->steps;
     if (!newton_direction(s)) return STOPPED_SINGULAR;
     double reference = past[0];
@@ -505,6 +541,7 @@ static outcome uzawa_steps(run *s) {
   int since = 0;
   outcome o;
   s->rho = RHO_UZAWA;
+  s->cycle = 0;
   s->factored = 0;
   memcpy(w->lambda, s->r, bytes);
   contact_reaction(s->cp, s->u, w->y);

@@ -165,22 +165,9 @@ typedef struct run {
 
 static int stiffness_form(const run *s) { return s->cp->A != NULL; }
 
-static double bound_of(const contact_problem *cp, int dof) {
-  int node_id = dof / cp->dim, k = dof % cp->dim;
-  if (k == 0) return cp->gap[node_id];
-  if (cp->side_gap == NULL) return HUGE_VAL;
-  return cp->side_gap[node_id * (cp->dim - 1) + k - 1];
-}
-
-static double stick_of(const contact_problem *cp, int dof) {
-  int node_id = dof / cp->dim, k = dof % cp->dim;
-  return cp->ut0 == NULL ? 0.0 : cp->ut0[node_id * (cp->dim - 1) + k - 1];
-}
-
 static int has_friction(const contact_problem *cp, int node_id) {
   if (cp->g0 == NULL) return 0;
-  for (int k = 1; k < cp->dim; ++k)
-    if (bound_of(cp, node_id * cp->dim + k) < HUGE_VAL) return 0;
+  if (contact_has_side(cp, node_id)) return 0;
   if (cp->g0[node_id] != 0.0) return 1;
   for (int k = cp->B == NULL ? 0 : cp->B->start[node_id];
        cp->B != NULL && k < cp->B->start[node_id + 1]; ++k)
@@ -195,9 +182,9 @@ static void sort_unknowns(run *s) {
   w->n_kept = w->n_free = 0;
   for (int dof = 0; dof < cp->m; ++dof) {
     dof_kind kind = IS_FREE;
-    if (cp->held != NULL && cp->held[dof])
+    if (contact_held(cp, dof))
       kind = IS_HELD;
-    else if (bound_of(cp, dof) < HUGE_VAL)
+    else if (contact_bound(cp, dof) < HUGE_VAL)
       kind = IS_BOUND;
     else if (has_friction(cp, dof / cp->dim))
       kind = IS_FRICTION;
@@ -500,8 +487,8 @@ static void set_base(run *s) {
   if (!stiffness_form(s)) return;
   for (int dof = 0; dof < cp->m; ++dof) {
     size_t at = (size_t)dof * (size_t)cp->m + (size_t)dof;
-    if (w->kind[dof] == IS_BOUND) w->base[dof] = bound_of(cp, dof);
-    if (w->kind[dof] == IS_FRICTION) w->base[dof] = stick_of(cp, dof);
+    if (w->kind[dof] == IS_BOUND) w->base[dof] = contact_bound(cp, dof);
+    if (w->kind[dof] == IS_FRICTION) w->base[dof] = contact_stick(cp, dof);
     if (w->kind[dof] == IS_HELD) w->base[dof] = cp->f[dof] / cp->A[at];
   }
   settle_free(s, 1, w->base);
@@ -519,13 +506,15 @@ static void slacks(const run *s, const double *raw, const double *z,
     double unit = w->unit * w->D[v->node_id], g0 = 0.0;
     int dof = w->kept[v->dof];
     if (v->type == BOUND)
-      to[a] = unit * (stiff ? -raw[dof] : bound_of(cp, dof) - raw[dof]);
+      to[a] = unit * (stiff ? -raw[dof] : contact_bound(cp, dof) - raw[dof]);
     if (has_limit(s, v)) g0 = cp->g0[v->node_id];
     if (v->type == LIMIT) to[a] = g0 / w->D[v->node_id];
     if (v->type != SLIDE) continue;
-    double sum = g0 + v->e[0] * (raw[dof] - (stiff ? 0.0 : stick_of(cp, dof)));
+    double sum =
+        g0 + v->e[0] * (raw[dof] - (stiff ? 0.0 : contact_stick(cp, dof)));
     if (v->e[1] != 0.0)
-      sum += v->e[1] * (raw[dof + 1] - (stiff ? 0.0 : stick_of(cp, dof + 1)));
+      sum +=
+          v->e[1] * (raw[dof + 1] - (stiff ? 0.0 : contact_stick(cp, dof + 1)));
     to[a] = unit * sum;
   }
   add_limits(s, z, to);
@@ -606,11 +595,11 @@ static void clean_motion(const run *s, double *u) {
     const variable *v = w->var + a;
     int dof = w->kept[v->dof], closed = w->z[w->normal[v->node_id]] > 0.0;
     if (v->type == BOUND)
-      u[dof] =
-          w->z[a] > 0.0 ? bound_of(cp, dof) : fmin(u[dof], bound_of(cp, dof));
+      u[dof] = w->z[a] > 0.0 ? contact_bound(cp, dof)
+                             : fmin(u[dof], contact_bound(cp, dof));
     if (v->type != LIMIT || w->z[a] > 0.0 || !closed) continue;
-    u[dof] = stick_of(cp, dof);
-    if (w->var[a - 1].e[1] != 0.0) u[dof + 1] = stick_of(cp, dof + 1);
+    u[dof] = contact_stick(cp, dof);
+    if (w->var[a - 1].e[1] != 0.0) u[dof + 1] = contact_stick(cp, dof + 1);
   }
 }
 

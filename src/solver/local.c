@@ -327,14 +327,10 @@ done:
   return st;
 }
 
-static int held(const contact_problem *cp, int dof) {
-  return cp->held != NULL && cp->held[dof];
-}
-
 /* Where x = 0 of a node is: gap and stick position, m. */
 static double origin(const contact_problem *cp, int node_id, int k) {
   if (k == 0) return cp->gap[node_id];
-  return cp->ut0 == NULL ? 0.0 : cp->ut0[node_id * (cp->dim - 1) + k - 1];
+  return contact_stick(cp, node_id * cp->dim + k);
 }
 
 /* The problem of a node: unknowns not held, listed in id[]; x[] now. */
@@ -345,7 +341,7 @@ static void local_of(const relaxation *s, int node_id, local_problem *lp,
   int first = node_id * cp->dim;
   lp->dim = lp->bounded = 0;
   for (int k = 0; k < cp->dim; ++k) {
-    if (held(cp, first + k)) continue;
+    if (contact_held(cp, first + k)) continue;
     double bound = HUGE_VAL;
     if (k > 0 && cp->side_gap != NULL)
       bound = cp->side_gap[node_id * (cp->dim - 1) + k - 1];
@@ -417,7 +413,7 @@ static void displacement_step(const relaxation *s, int node_id,
   for (int k = 0; k < lp->dim; ++k) step[id[k]] = way[k];
   for (int k = 1; k < cp->dim; ++k) {
     size_t dof = first + (size_t)k;
-    if (held(cp, (int)dof)) step[k] = -s->r[dof] / cp->A[dof * m + dof];
+    if (contact_held(cp, (int)dof)) step[k] = -s->r[dof] / cp->A[dof * m + dof];
   }
 }
 
@@ -517,7 +513,7 @@ static void scaling(const contact_problem *cp, double *D) {
     double mean = 0.0;
     for (int k = 1; k < d; ++k) mean += D[i * d + k] / (d - 1);
     for (int k = 1; k < d; ++k)
-      if (!held(cp, i * d + k)) D[i * d + k] = mean;
+      if (!contact_held(cp, i * d + k)) D[i * d + k] = mean;
   }
   for (int i = 0; i < cp->m; ++i)
     D[i] = 1.0 / (D[i] > 0x1p-40 * largest ? D[i] : largest);
@@ -613,7 +609,7 @@ void force_parts(const contact_problem *cp, unsigned char *part,
       double side = cp->side_gap == NULL ? HUGE_VAL : cp->side_gap[t + k];
       part[first + k] = NO_FORCE;
       origin[first + k] = 0.0;
-      if (held(cp, first + k)) continue;
+      if (contact_held(cp, first + k)) continue;
       if (side < HUGE_VAL) {
         part[first + k] = PUSH;
         origin[first + k] = side;
