@@ -49,10 +49,29 @@ done:
   return st;
 }
 
-status estimate_increment(run *r) {
+/* Error of the mesh and the share of each element, from r->stress. */
+static status estimate_mesh(run *r) {
+  status st = OK;
+  double cpu = timer_cpu();
+  space_error found;
+  r->mesh_error.asked = r->step->mesh_error;
+  if (!r->step->mesh_error) return OK;
+  if (r->recovery == NULL) TRY(space_recovery_new(&r->d, &r->recovery));
+  space_estimate(r->recovery, r->stress, r->elem_error, &found);
+  r->mesh_error.relative = found.relative;
+  double whole = hypot(found.norm, found.error);
+  for (int e = 0; e < r->msh->n_elem; ++e)
+    r->elem_error[e] = whole > 0.0 ? r->elem_error[e] / whole : 0.0;
+  r->mesh_error.cpu += timer_cpu() - cpu;
+done:
+  return st;
+}
+
+static status estimate_solver(run *r) {
   status st = OK;
   solver_error found = {.norm = NAN, .why = indefinite};
   inverse_energy inverse;
+  double cpu = timer_cpu();
   r->error = (error_bound){0};
   if (r->n == 0 || r->step->no_solver_error) return OK;
   timer_enter(STAGE_ESTIMATE);
@@ -62,8 +81,17 @@ status estimate_increment(run *r) {
     TRY(solver_error_bound(&r->cp, &inverse, r->now.uc, r->now.rc, &r->rate,
                            &found));
   set_bound(&found, r->now.energy.strain, &r->error);
+  r->error.cpu = r->bound_cpu += timer_cpu() - cpu;
 done:
   timer_leave(STAGE_ESTIMATE);
+  return st;
+}
+
+status estimate_increment(run *r) {
+  status st = OK;
+  TRY(estimate_solver(r));
+  TRY(estimate_mesh(r));
+done:
   return st;
 }
 

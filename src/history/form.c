@@ -131,7 +131,8 @@ done:
 status forms_solve(run *r) {
   status st = OK;
   const solver_listener listener = {r->sink->iteration, r->sink->ctx};
-  const solver_listener *told = listener.step == NULL ? NULL : &listener;
+  const solver_listener *told =
+      listener.step == NULL || r->beside ? NULL : &listener;
   int given = r->forms->n > 0, in_du = r->step->form == FORM_VELOCITY;
   contact_problem whole = r->cp, cp;
   double *u = r->now.uc;

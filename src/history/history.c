@@ -66,6 +66,9 @@ static state make_state(run *r, int attempt, int increment_no) {
              .note = r->note,
              .error = r->error,
              .solutions = r->step->check != CHECK_NONE ? &r->solutions : NULL,
+             .mesh_error = r->mesh_error,
+             .time_error = r->time_error,
+             .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
              .solver_log = contact_solver_log(r->solver),
              .settled = r->report.outcome > 0};
   if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
@@ -109,6 +112,7 @@ static status accept(run *r, int attempt, int increment_no, int last,
   if (table_is_due(r->step, PRINT_ZONES, increment_no, last))
     TRY(zones_find(r));
   TRY(check_increment(r));
+  path_compare(r);
   state s = make_state(r, attempt, increment_no);
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
@@ -120,6 +124,7 @@ done:
 
 static status reject(run *r, int attempt, int increment_no, const char *why) {
   r->error = (error_bound){0};
+  r->mesh_error.asked = r->time_error.asked = 0;
   state s = make_state(r, attempt, increment_no);
   s.n_open = s.n_slip = s.n_stick = 0;
   if (r->sink->rejected == NULL) return OK;
@@ -152,6 +157,7 @@ static status run_increment(run *r, long n, long i, int *increment_no) {
   int level = 0, attempt = 1;
   while (part < (1L << level)) {
     double cpu = timer_cpu(), t = piece_end(s, n, i, part + 1, level);
+    TRY(path_try(r, t));
     TRY(increment_solve(r, t));
     int settled = r->report.outcome > 0;
     int finer = s->kind == STEP_QUASISTATIC && level < DEEPEST_CUT &&

@@ -58,9 +58,18 @@ typedef struct error_bound {
   int asked;
   double energy;   /* J, energy of the error at most; NAN: no bound           */
   double relative; /* -, of the energy norm of the solution                   */
+  double cpu;      /* s, spent so far on finding it                           */
   double rate;     /* contraction of the sliding limit, -; 0: none            */
   const char *why; /* there is no bound; or NULL                              */
 } error_bound;
+
+/* An estimate of an error at the end of an increment. */
+typedef struct error_share {
+  int asked;
+  double relative; /* -, of the energy norm of the solution; NAN: unknown     */
+  double cpu;      /* s, spent so far on estimating                           */
+  const char *why; /* why it is zero or unknown; or NULL                      */
+} error_share;
 
 /* One accepted increment. Arrays are borrowed and live until the next one. */
 typedef struct state {
@@ -91,7 +100,10 @@ typedef struct state {
   int n_open, n_slip, n_stick;
   energies energy;
   solver_report report;
-  error_bound error;
+  error_bound error;                  /* of the contact solver                */
+  error_share mesh_error, time_error; /* of the mesh, of the increments       */
+  const double *elem_error; /* [n_elem] share of each element in the error of
+                               the mesh, -, relative as that; or NULL         */
   const solution_set *solutions; /* of CHECK=; NULL: not asked for            */
   const char *solver_log;
   const char *note; /* whole lines about what jumps, "" or NULL: nothing      */

@@ -188,7 +188,8 @@ static void find_energies(run *r) {
 
 status result_evaluate(run *r, int due) {
   unsigned effects = r->m->effects;
-  if ((effects & EFFECT_REACTION) || ((effects & EFFECT_STRESS) && due)) {
+  if ((effects & EFFECT_REACTION) || ((effects & EFFECT_STRESS) && due) ||
+      r->step->mesh_error) {
     domain_stress(&r->d, r->now.u, r->strain, r->stress);
     if (effects & EFFECT_REACTION) find_reactions(r);
   }

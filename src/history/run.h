@@ -5,6 +5,7 @@
 #define PROTIS_HISTORY_RUN_H
 
 #include "accuracy/accuracy.h"
+#include "accuracy/space.h"
 #include "history/history.h"
 
 /* One equilibrium: displacements, contact forces, loads, and its time. */
@@ -25,6 +26,7 @@ typedef struct equilibrium {
 typedef struct forms forms; /* form.c                                         */
 typedef struct friction_average friction_average; /* limit.c                 */
 typedef struct friction_zone friction_zone;       /* limit.c                 */
+typedef struct finer_path finer_path; /* path.c                               */
 
 typedef struct run {
   const model *m;
@@ -81,6 +83,13 @@ typedef struct run {
   contact_zone *zones; /* [n_zone]                                          */
   solver_report report;
   error_bound error;
+  error_share mesh_error, time_error;
+  space_recovery *recovery; /* NULL until the error of the mesh is estimated  */
+  double *elem_error;       /* [n_elem] or NULL                              */
+  finer_path *path;         /* NULL until the error of the steps is estimated */
+  double path_before, path_error; /* sqrt(J), of finished paths; of this one */
+  int beside; /* 1: an increment of that path is solved, no step of the run  */
+  double bound_cpu; /* s, spent so far on the error of the solver            */
   dense_inverse *dense; /* of A where contact alone holds a body       */
   int dense_known;      /* 1: made, or A has none                      */
   known_rate rate;
@@ -134,7 +143,18 @@ status zones_find(run *r);
  * effects call for them and "due" says. */
 status result_evaluate(run *r, int due);
 
-/* estimate.c: error of the solver at r->now into r->error, if asked for. */
+/*
+ * path.c: the finer path beside the run, if asked for. Tried before the
+ * increment that ends at t (r->now is overwritten), compared with the
+ * accepted one in r->now.
+ */
+status path_try(run *r, double t);
+void path_compare(run *r);
+/* The next increment starts from what is in r->old. */
+void path_restart(run *r);
+void path_free(finer_path *p); /* accepts NULL                               */
+
+/* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
 status estimate_increment(run *r);
 /* The same for a problem from a file. */
 status estimate_problem(const step *s, const contact_problem *cp,

@@ -108,7 +108,8 @@ status run_new(run *r) {
   NEW(r->start, r->n_dof);
   if (r->m->effects & EFFECT_THERMAL) TRY(thermal_new(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
-  if (r->m->effects & (EFFECT_STRESS | EFFECT_REACTION))
+  if (r->m->effects & EFFECT_MESH_ERROR) NEW(r->elem_error, r->msh->n_elem);
+  if (r->m->effects & (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR))
     NEW(r->stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   if (r->m->effects & EFFECT_STRESS)
     NEW(r->strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);
@@ -143,10 +144,13 @@ static void free_surface(run *r) {
   limit_free(r);
   forms_free(r->forms);
   r->forms = NULL;
+  path_restart(r);
 }
 
 void run_free(run *r) {
   free_surface(r);
+  space_recovery_free(r->recovery);
+  memory_free(r->elem_error);
   free_equilibrium(&r->old);
   free_equilibrium(&r->now);
   thermal_free(r);

@@ -391,6 +391,8 @@ status apply_accuracy(reading *r) {
                 "a step has one *ACCURACY card, this is its second");
   s->has_accuracy = 1;
   s->no_solver_error = !p->solver;
+  s->mesh_error = p->mesh;
+  s->time_error = p->time;
   return OK;
 }
 

@@ -324,6 +324,23 @@ static int has_reaction(const model *m) {
          first_fields(m) != NULL || moving_support(m) != NULL;
 }
 
+static int has_mesh_error(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    if (m->steps[i].mesh_error) return 1;
+  return 0;
+}
+static void reason_mesh_error(const model *m, char *text, size_t size) {
+  snprintf(text, size, "%s*ACCURACY, MESH=YES", has_mesh_error(m) ? "" : "no ");
+}
+static int has_time_error(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    if (m->steps[i].time_error) return 1;
+  return 0;
+}
+static void reason_time_error(const model *m, char *text, size_t size) {
+  snprintf(text, size, "%s*ACCURACY, TIME=YES", has_time_error(m) ? "" : "no ");
+}
+
 /* When an effect is on, and what its line in the plan says. */
 static const struct {
   int (*is_on)(const model *m);
@@ -340,6 +357,8 @@ static const struct {
     [EFFECT_BIT_BODY] = {has_body, reason_body},
     [EFFECT_BIT_STRESS] = {has_stress, reason_stress},
     [EFFECT_BIT_REACTION] = {has_reaction, reason_reaction},
+    [EFFECT_BIT_MESH_ERROR] = {has_mesh_error, reason_mesh_error},
+    [EFFECT_BIT_TIME_ERROR] = {has_time_error, reason_time_error},
     [EFFECT_BIT_ESTIMATES] = {has_estimates, reason_estimates}};
 
 void model_find_effects(model *m) {

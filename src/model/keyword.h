@@ -136,6 +136,7 @@ typedef struct solver_param {
   int max_iter, limit_max_iter, check;
 } solver_param;
 typedef struct accuracy_param {
+  int mesh, time;
   int solver;
 } accuracy_param;
 typedef struct print_param {

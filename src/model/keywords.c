@@ -153,6 +153,10 @@ static const option solver_options[] = {
                 "to 10 contact nodes in 2-D"),
   OPTION_END};
 static const option accuracy_options[] = {
+  OPTION_FLAG(accuracy_param, mesh, "MESH", "NO",
+              "estimate of the error of the mesh, from recovered stresses"),
+  OPTION_FLAG(accuracy_param, time, "TIME", "NO",
+              "estimate of the error of the increments, from half of them"),
   OPTION_FLAG(accuracy_param, solver, "SOLVER", "YES",
               "bound of the error of the contact solver in the energy norm"),
   OPTION_END};

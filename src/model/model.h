@@ -184,7 +184,8 @@ typedef struct step {
                               none */
   int check; /* solution_check, comes with *SOLVER                            */
   int has_accuracy;
-  int no_solver_error;  /* 1: the error of the solver is not asked for        */
+  int no_solver_error; /* 1: the error of the solver is not asked for        */
+  int mesh_error, time_error; /* 1: asked for                                 */
   solver_choice solver; /* its param is owned by the step it came with        */
   void *solver_param;   /* owned, or NULL                                     */
   place solver_at;
@@ -242,7 +243,9 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
   X(BODY,      "body forces")                                                \
   X(STRESS,    "stresses")                                                   \
   X(REACTION,  "reactions")                                                  \
-  X(ESTIMATES, "error estimates")                                            \
+  X(MESH_ERROR, "error of mesh")                                             \
+  X(TIME_ERROR, "error of steps")                                            \
+  X(ESTIMATES, "error of solver")                                            \
   X(MESH,      "finite elements")
 /* clang-format on */
 #define EFFECT_BIT(name, text) EFFECT_BIT_##name,

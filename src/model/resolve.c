@@ -341,7 +341,11 @@ static status carry_choices(const step *old, step *s) {
     s->solver = old->solver;
     s->check = old->check;
   }
-  if (!s->has_accuracy) s->no_solver_error = old->no_solver_error;
+  if (!s->has_accuracy) {
+    s->no_solver_error = old->no_solver_error;
+    s->mesh_error = old->mesh_error;
+    s->time_error = old->time_error;
+  }
   if (!s->has_output) {
     s->output_frequency = old->output_frequency;
     s->condensed_frequency = old->condensed_frequency;

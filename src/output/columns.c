@@ -35,6 +35,11 @@ VALUE(n_stick, v->s->n_stick)
 VALUE(iterations, v->s->report.iterations)
 VALUE(limit_updates, v->s->report.limit_updates)
 VALUE(residual, v->s->report.residual)
+VALUE(mesh_error,
+      v->s->mesh_error.asked ? 100 * v->s->mesh_error.relative : NAN)
+VALUE(time_error,
+      v->s->time_error.asked ? 100 * v->s->time_error.relative : NAN)
+VALUE(elem_error, 100 * v->s->elem_error[id])
 VALUE(solver_error, 100 * v->s->error.relative)
 VALUE(solver_error_energy, v->s->error.energy)
 VALUE(contraction, v->s->error.rate)
@@ -232,6 +237,12 @@ const column column_table[] = {
  NULL, "passes of the fixed point on the sliding limit"},
 {"residual", "-", INC, 0, C, ANY, "residual", 0, residual, NULL,
  "residual of the contact problem"},
+{"mesh_error", "%", INC, 0, EFFECT_MESH_ERROR, ANY, "mesh_error", 0, mesh_error,
+ NULL, "estimate of the error of the mesh in the energy norm, of that of the "
+ "solution; NaN: not asked for"},
+{"time_error", "%", INC, 0, EFFECT_TIME_ERROR, ANY, "time_error", 0, time_error,
+ NULL, "estimate of the error of the increments in that norm; NaN: not asked "
+ "for, or unknown"},
 {"solver_error", "%", INC, 0, C | EFFECT_ESTIMATES, ANY, "solver_error", 0,
  solver_error, NULL, "bound of the error of the contact solver in the energy "
  "norm, of that of the solution; NaN: no bound"},
@@ -297,6 +308,9 @@ const column column_table[] = {
 {"temperature", "temperature", ELEM, PRINT_ELEMENTS,
  EFFECT_STRESS | EFFECT_THERMAL, ANY, "temperature", 0, temperature, NULL,
  "mean of the element"},
+{"mesh_error", "%", ELEM, PRINT_ELEMENTS, EFFECT_MESH_ERROR, SCENE_ALL,
+ NEEDS_ELEM_ERROR, "mesh_error", 0, elem_error, NULL, "share of the element in "
+ "the error of the mesh, whose square is the sum of their squares"},
 {"strain_xx", "-", ELEM, STRAIN(CART), "strain_xx", 0,
  strain, NULL, "strain"},
 {"strain_yy", "-", ELEM, STRAIN(CART), "strain_yy", 1,
@@ -562,6 +576,7 @@ int column_ready(const column *c, const state *s) {
   if (s->torque != NULL) have |= NEEDS_TORQUE;
   if (s->loops != NULL) have |= NEEDS_LOOP;
   if (s->zones != NULL) have |= NEEDS_ZONES;
+  if (s->elem_error != NULL) have |= NEEDS_ELEM_ERROR;
   return (c->needs & ~have) == 0;
 }
 

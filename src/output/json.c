@@ -140,14 +140,31 @@ static void write_sizes(json *w, const job *j) {
   json_close(w, '}');
 }
 
-static void write_accuracy(json *w, const run_summary *run) {
+static void write_budget(json *w, const job *j) {
+  budget_row rows[BUDGET_ROWS];
+  char name[48];
+  int n = job_budget(j, rows);
+  for (int i = 0; i < n; ++i) {
+    snprintf(name, sizeof name, "%s_error_percent", rows[i].json);
+    json_real(w, name, rows[i].last);
+    snprintf(name, sizeof name, "%s_error_worst_percent", rows[i].json);
+    json_real(w, name, rows[i].worst);
+    if (j->o->no_timing) continue;
+    snprintf(name, sizeof name, "%s_error_reached_cpu", rows[i].json);
+    json_real(w, name, rows[i].reached);
+    snprintf(name, sizeof name, "%s_error_estimate_cpu", rows[i].json);
+    json_real(w, name, rows[i].estimated);
+  }
+}
+
+static void write_accuracy(json *w, const job *j) {
+  const run_summary *run = j->run;
   json_open(w, "accuracy", '{');
   json_count(w, "increments", run->n_increment);
   json_count(w, "attempts_cut", run->n_rejected);
   json_count(w, "tolerance_missed", run->n_unsettled);
   json_real(w, "residual_worst", run->residual_worst);
-  if (run->error_known)
-    json_real(w, "solver_error_worst_percent", run->error_worst);
+  write_budget(w, j);
   json_real(w, "energy_defect_worst", run->defect_worst);
   if (run->facts_known) json_real(w, "condition", run->facts.condition);
   json_close(w, '}');
@@ -205,6 +222,10 @@ static void write_increment(json *w, const increment_summary *s) {
   json_count(w, "stick", s->n_stick);
   json_count(w, "iterations", s->iterations);
   json_real(w, "residual", s->residual);
+  if (s->mesh_error.asked)
+    json_real(w, "mesh_error_percent", 100 * s->mesh_error.relative);
+  if (s->time_error.asked)
+    json_real(w, "time_error_percent", 100 * s->time_error.relative);
   if (s->error.asked) {
     json_real(w, "solver_error_percent", 100 * s->error.relative);
     json_real(w, "solver_error_energy", s->error.energy);
@@ -229,7 +250,7 @@ static void write_all(json *w, const job *j) {
   write_exit(w, j->run);
   write_effects(w, j->m);
   write_sizes(w, j);
-  write_accuracy(w, j->run);
+  write_accuracy(w, j);
   write_cost(w, j->o);
   json_open(w, "increments", '[');
   for (int i = 0; i < j->run->n_increment; ++i)

@@ -166,6 +166,20 @@ static void print_error(const job *j, const state *s, FILE *f) {
   fputc('\n', f);
 }
 
+/* One estimate: "about 1.2E+000 %", or why it is zero or unknown. */
+static void print_share(const char *of, const error_share *e, FILE *f) {
+  char text[NUMBER_SIZE];
+  if (!e->asked) return;
+  fprintf(f, "  error of the %s: ", of);
+  if (isnan(e->relative))
+    fputs("unknown", f);
+  else
+    fprintf(f, "about %s %% of the energy norm",
+            text_number(text, 100 * e->relative, 1));
+  fprintf(f, "%s%s\n", e->why != NULL ? ", " : "",
+          e->why != NULL ? e->why : "");
+}
+
 static void print_solver(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE];
   const solver_report *r = &s->report;
@@ -289,6 +303,8 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
     print_check(s, lst->f);
     print_totals(j, &v, lst->f);
   }
+  print_share("mesh", &s->mesh_error, lst->f);
+  print_share("steps", &s->time_error, lst->f);
   if (!j->m->has_problem) print_energies(j, &v, lst->f);
   return text_check(lst);
 }
@@ -307,11 +323,26 @@ static void print_accuracy(const job *j, FILE *f) {
   fprintf(f, "  %-26s %12d\n", "tolerance missed", run->n_unsettled);
   fprintf(f, "  %-26s %12s\n", "largest residual",
           text_number(text, run->residual_worst, 2));
-  if (run->error_known)
-    fprintf(f, "  %-26s %12s\n", "largest solver error [%]",
-            text_number(text, run->error_worst, 2));
   fprintf(f, "  %-26s %12s\n", "largest energy defect",
           text_number(text, run->defect_worst, 2));
+}
+
+/* What was reached, what it cost, and what it cost to know it. */
+static void print_budget(const job *j, FILE *f) {
+  char last[NUMBER_SIZE], worst[NUMBER_SIZE];
+  budget_row rows[BUDGET_ROWS];
+  int n = job_budget(j, rows), cost = !j->o->no_timing;
+  if (n == 0) return;
+  fprintf(f, "\n  %-26s %12s %12s", "error in the energy norm", "last[%]",
+          "largest[%]");
+  fprintf(f, cost ? " %13s %15s\n" : "\n", "work cpu[s]", "estimate cpu[s]");
+  for (int i = 0; i < n; ++i) {
+    fprintf(f, "  %-26s %12s %12s", rows[i].name,
+            text_number(last, rows[i].last, 2),
+            text_number(worst, rows[i].worst, 2));
+    if (cost) fprintf(f, " %13.3f %15.3f", rows[i].reached, rows[i].estimated);
+    fputc('\n', f);
+  }
 }
 
 /* Stages that were never entered are shown too: 0 calls, 0 bytes. */
@@ -338,6 +369,7 @@ status listing_verdict(const job *j, text_file *lst) {
   }
   heading(f, "ACCURACY");
   print_accuracy(j, f);
+  print_budget(j, f);
   heading(f, "COST");
   print_stages(j, f);
   heading(f, "END");

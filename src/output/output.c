@@ -70,17 +70,13 @@ static status remember(output *o, const state *s) {
                            .settled = s->settled,
                            .residual = s->report.residual,
                            .error = s->error,
+                           .mesh_error = s->mesh_error,
+                           .time_error = s->time_error,
                            .defect = energy_defect_relative(&s->energy)};
   if (s->surface != NULL)
     run->residual_worst = worse(run->residual_worst, s->report.residual);
   run->defect_worst = worse(run->defect_worst, fabs(i->defect));
   TRY(remember_solutions(s->solutions, i));
-  if (s->error.asked) {
-    double error = 100 * s->error.relative;
-    run->error_worst =
-        run->error_known ? worse(run->error_worst, error) : error;
-    run->error_known = 1;
-  }
   if (!s->settled) ++run->n_unsettled;
 done:
   return st;

@@ -42,7 +42,8 @@ enum {
   NEEDS_DISTANCE = 128,
   NEEDS_TORQUE = 256, /* some contact has an axis                           */
   NEEDS_LOOP = 512,
-  NEEDS_ZONES = 1024
+  NEEDS_ZONES = 1024,
+  NEEDS_ELEM_ERROR = 2048
 };
 
 /* What a value function sees. */

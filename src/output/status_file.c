@@ -8,9 +8,10 @@
 #include <math.h>
 
 status sta_header(const output_options *o, text_file *sta) {
-  fprintf(sta->f, "#%5s %5s %3s %11s %11s %7s %7s %7s %-9s %7s %10s %9s",
+  fprintf(sta->f,
+          "#%5s %5s %3s %11s %11s %7s %7s %7s %-9s %7s %10s %9s %9s %9s",
           "step", "inc", "att", "time", "dt", "open", "slip", "stick", "solver",
-          "iter", "residual", "error[%]");
+          "iter", "residual", "mesh[%]", "steps[%]", "error[%]");
   if (!o->no_timing) fprintf(sta->f, " %9s", "cpu[s]");
   fprintf(sta->f, " reason\n");
   return text_check(sta);
@@ -39,16 +40,25 @@ static const char *error_text(const state *s, char text[NUMBER_SIZE]) {
   return text_number(text, 100 * s->error.relative, 1);
 }
 
+/* An estimate in %, "-": not asked for, or unknown. */
+static const char *share_text(const error_share *e, char text[NUMBER_SIZE]) {
+  if (!e->asked || isnan(e->relative)) return "-";
+  return text_number(text, 100 * e->relative, 1);
+}
+
 status sta_line(const output_options *o, const state *s, const char *why,
                 text_file *sta) {
   char t[NUMBER_SIZE], dt[NUMBER_SIZE], residual[NUMBER_SIZE];
-  char error[NUMBER_SIZE], check[32];
+  char error[NUMBER_SIZE], in_mesh[NUMBER_SIZE], in_steps[NUMBER_SIZE];
+  char check[32];
   const solver_report *r = &s->report;
-  fprintf(sta->f, "%6d %5d %3d %s %s %7d %7d %7d %-9s %7d %s %9s", s->step_no,
-          s->increment_no, s->attempt, text_number(t, s->t, 4),
+  fprintf(sta->f, "%6d %5d %3d %s %s %7d %7d %7d %-9s %7d %s %9s %9s %9s",
+          s->step_no, s->increment_no, s->attempt, text_number(t, s->t, 4),
           text_number(dt, s->dt, 4), s->n_open, s->n_slip, s->n_stick,
           r->solver != NULL ? r->solver : "-", r->iterations,
-          text_number(residual, r->residual, 3), error_text(s, error));
+          text_number(residual, r->residual, 3),
+          share_text(&s->mesh_error, in_mesh),
+          share_text(&s->time_error, in_steps), error_text(s, error));
   if (!o->no_timing) fprintf(sta->f, " %9.3f", s->cpu);
   fprintf(sta->f, " %s%s%s\n", reason(s, why), why != NULL ? why : "",
           why != NULL ? "" : check_text(s, check));

@@ -46,6 +46,7 @@ typedef struct increment_summary {
   error_bound error;
   int checked, n_solution;   /* by CHECK= of *SOLVER                          */
   solution_facts *solutions; /* [n_solution] owned                            */
+  error_share mesh_error, time_error;
 } increment_summary;
 
 typedef struct run_summary {
@@ -54,11 +55,18 @@ typedef struct run_summary {
   int n_increment, capacity, n_rejected, n_unsettled;
   increment_summary *increments; /* [n_increment]                          */
   double residual_worst, defect_worst; /* - ; the defect relative           */
-  double error_worst; /* %, of the solver; NAN: an increment without bound    */
-  int error_known;
   status verdict;
   const char *message; /* of a failed run, or ""                            */
 } run_summary;
+
+/* One line of the error budget: what, its last and largest estimate, CPU
+ * seconds of the stages whose work decides it, and of estimating it. */
+typedef struct budget_row {
+  const char *name, *json;
+  double last, worst; /* %, of the energy norm; NAN: unknown                  */
+  double reached, estimated; /* s                                             */
+} budget_row;
+enum { BUDGET_ROWS = 3 };
 
 typedef struct job {
   const model *m;
@@ -66,6 +74,9 @@ typedef struct job {
   const output_options *o;
   const run_summary *run;
 } job;
+
+/* The estimates asked for; how many rows. */
+int job_budget(const job *j, budget_row rows[BUDGET_ROWS]);
 
 /* Sizes of model and equations for listing and JSON, NULL ends; the answer
  * counts those of the model, which come first. */

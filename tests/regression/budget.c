@@ -1,0 +1,175 @@
+/*
+ * The error budget of a run against the true errors: of the increments against
+ * a path of many, of the mesh against a fine one by the potential energy.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A column of the last line of JOB.sta, counted from 0; NAN for "-". */
+static double last_of(const job *j, int column) {
+  char *sta = job_file(j, "sta"), *line = sta, *word;
+  for (char *p = sta; (p = strchr(p, '\n')) != NULL && p[1] != '\0';)
+    line = ++p;
+  word = strtok(line, " \n");
+  for (int k = 0; k < column; ++k) word = strtok(NULL, " \n");
+  ck_assert_ptr_nonnull(word);
+  double value = strcmp(word, "-") == 0 ? NAN : atof(word);
+  free(sta);
+  return value;
+}
+enum { MESH_COLUMN = 11, TIME_COLUMN, SOLVER_COLUMN };
+
+/* The cylinder of hertz_line with friction in n increments. */
+static job roll(int n, const char *accuracy) {
+  job j = job_begin("cylinder");
+  job_copy(&j, "input/hertz_line/hertz_line.geo");
+  job_write(&j, "cylinder.inp",
+            "*PARAMETER\nR = 10.\nE = 210.D3\nNU = 0.3\n"
+            "A = 0.2348908547\nNC = 12\n"
+            "*MESH, FILE=hertz_line.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+            "<E>, <NU>\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+            "%.17g, 1.\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\nTOP, P, 50.\n"
+            "%s*PRINT, CONTACT, ENERGY, FREQUENCY=0\n*END STEP\n",
+            1.0 / n, accuracy);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Energy norm of the difference of two runs over that of the second, in %:
+ * the loads are the same, so that its square is (u_a - u_b)'(r_a - r_b). */
+static double difference(const job *a, const job *b) {
+  dat x = job_table(a, "CONTACT", -1), y = job_table(b, "CONTACT", -1);
+  dat e = job_table(b, "ENERGY", -1);
+  double sum = 0.0;
+  for (int i = 0; i < x.n_row; ++i) {
+    sum += (dat_at(&x, i, "gap") - dat_at(&y, i, "gap")) *
+           (dat_at(&x, i, "f_n") - dat_at(&y, i, "f_n"));
+    sum += (dat_at(&x, i, "u_t") - dat_at(&y, i, "u_t")) *
+           (dat_at(&x, i, "f_t") - dat_at(&y, i, "f_t"));
+  }
+  double energy = dat_at(&e, 0, "strain_energy");
+  dat_free(&x);
+  dat_free(&y);
+  dat_free(&e);
+  return 100.0 * sqrt(fabs(sum) / (2.0 * energy));
+}
+
+START_TEST(error_of_the_steps_is_near_the_true_one) {
+  job fine = roll(160, "");
+  ck_assert(isnan(last_of(&fine, TIME_COLUMN)));
+  for (int n = 1; n <= 10; n = 2 * n + n / 2) { /* 1, 2, 5 */
+    job j = roll(n, "*ACCURACY, TIME=YES\n");
+    double told = last_of(&j, TIME_COLUMN), is = difference(&j, &fine);
+    ck_assert_msg(told > 0.7 * is && told < 1.5 * is, "%d: told %g, is %g", n,
+                  told, is);
+    ck_assert(isnan(last_of(&j, MESH_COLUMN)));
+    job_end(&j);
+  }
+  job_end(&fine);
+}
+END_TEST
+
+/* The path of a proportional load is straight: no error, any increments. */
+START_TEST(proportional_load_has_no_error_of_steps) {
+  job j = job_begin("greco");
+  job_copy(&j, "input/greco/greco.geo");
+  job_write(&j, "greco.inp",
+            "*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n*STEP\n*QUASISTATIC\n"
+            "0.5, 1.0\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\n"
+            "LEFT, P, 150.\n*ACCURACY, TIME=YES\n*END STEP\n"
+            "*STEP\n*STATIC\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  char *lst = job_file(&j, "lst"), *sta = job_file(&j, "sta");
+  double told = NAN;
+  sscanf(strstr(sta, "\n") + 1,
+         "%*d %*d %*d %*s %*s %*d %*d %*d %*s %*d %*s %*s %lf", &told);
+  ck_assert_double_le(told, 1e-9);
+  ck_assert_ptr_nonnull(strstr(lst, "one static problem, no path"));
+  ck_assert_double_eq(last_of(&j, TIME_COLUMN), 0.0);
+  free(lst);
+  free(sta);
+  job_end(&j);
+}
+END_TEST
+
+/* Block of Hertz without friction, NC segments on the half contact and a mesh
+ * that is as much finer everywhere. */
+static job press(int nc, const char *accuracy) {
+  job j = job_begin("block");
+  job_copy(&j, "input/hertz_line/hertz_block.geo");
+  job_write(&j, "block.inp",
+            "*PARAMETER\nA = 0.2348908547\nNC = %d\nGROWTH = %g\n"
+            "*MESH, FILE=hertz_block.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+            "210.D3, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"x^2/20\"\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, \"500/(100*A)\"\n"
+            "%s*PRINT, ENERGY, FREQUENCY=0\n*END STEP\n",
+            nc, 0.96 / nc, accuracy);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Potential energy of one increment from rest: E - F'u, F'u twice the
+ * trapezoidal work. */
+static double potential(const job *j, double *strain) {
+  dat e = job_table(j, "ENERGY", -1);
+  *strain = dat_at(&e, 0, "strain_energy");
+  double answer = *strain - 2.0 * dat_at(&e, 0, "external_work");
+  dat_free(&e);
+  return answer;
+}
+
+START_TEST(error_of_the_mesh_is_near_the_true_one) {
+  double strain, fine_strain;
+  job fine = press(32, "");
+  double least = potential(&fine, &fine_strain);
+  for (int nc = 8; nc <= 16; nc *= 2) {
+    job j = press(nc, "*ACCURACY, MESH=YES, SOLVER=NO\n");
+    double told = last_of(&j, MESH_COLUMN);
+    double is = 100 * sqrt(2 * (potential(&j, &strain) - least)) /
+                sqrt(2 * fine_strain);
+    ck_assert_msg(told > 0.7 * is && told < 1.5 * is, "%d: told %g, is %g", nc,
+                  told, is);
+    ck_assert(isnan(last_of(&j, SOLVER_COLUMN)));
+    job_end(&j);
+  }
+  job_end(&fine);
+}
+END_TEST
+
+START_TEST(budget_stands_in_every_result) {
+  job j = roll(2, "*ACCURACY, MESH=YES, TIME=YES\n*PRINT, ELEMENTS\n");
+  char *lst = job_file(&j, "lst"), *json = job_file(&j, "json");
+  ck_assert_ptr_nonnull(strstr(lst, "  error of the mesh: about "));
+  ck_assert_ptr_nonnull(strstr(lst, "  error of the steps: about "));
+  ck_assert_ptr_nonnull(strstr(json, "\"mesh_error_worst_percent\": "));
+  ck_assert_ptr_nonnull(strstr(json, "\"time_error_estimate_cpu\": "));
+  /* The shares of the elements make up the error. */
+  dat e = job_table(&j, "ELEMENTS", -1);
+  double sum = 0;
+  for (int i = 0; i < e.n_row; ++i) sum += pow(dat_at(&e, i, "mesh_error"), 2);
+  ck_assert_double_eq_tol(sqrt(sum) / last_of(&j, MESH_COLUMN), 1, 0.05);
+  dat_free(&e);
+  free(lst);
+  free(json);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("budget", error_of_the_steps_is_near_the_true_one,
+          proportional_load_has_no_error_of_steps,
+          error_of_the_mesh_is_near_the_true_one, budget_stands_in_every_result)
