@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/option.h"
+#include "exchange/exchange.h"
 #include "history/history.h"
 
 #include <cholmod.h>

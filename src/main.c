@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/timer.h"
 #include "command.h"
+#include "discrete/discrete.h"
 #include "fem/fem.h"
 #include "inform.h"
 #include "output/output.h"

@@ -15,12 +15,10 @@
 #include <math.h>
 #include <stdio.h>
 
-static const char *const indefinite =
+const char *const error_bound_indefinite =
     "the matrix is not symmetric and positive semidefinite";
 
-/* "energy" of the solution, J. */
-static void set_bound(const solver_error *found, double energy,
-                      error_bound *e) {
+void error_bound_set(const solver_error *found, double energy, error_bound *e) {
   *e = (error_bound){.asked = 1,
                      .energy = 0.5 * found->norm * found->norm,
                      .relative = 0.0,
@@ -69,7 +67,7 @@ done:
 
 static status estimate_solver(run *r) {
   status st = OK;
-  solver_error found = {.norm = NAN, .why = indefinite};
+  solver_error found = {.norm = NAN, .why = error_bound_indefinite};
   inverse_energy inverse;
   double cpu = timer_cpu();
   r->error = (error_bound){0};
@@ -80,7 +78,7 @@ static status estimate_solver(run *r) {
   if (inverse.ctx != NULL)
     TRY(solver_error_bound(&r->cp, &inverse, r->now.uc, r->now.rc, &r->rate,
                            &found));
-  set_bound(&found, r->now.energy.strain, &r->error);
+  error_bound_set(&found, r->now.energy.strain, &r->error);
   r->error.cpu = r->bound_cpu += timer_cpu() - cpu;
 done:
   timer_leave(STAGE_ESTIMATE);
@@ -92,47 +90,6 @@ status estimate_increment(run *r) {
   TRY(estimate_solver(r));
   TRY(estimate_mesh(r));
 done:
-  return st;
-}
-
-/* Energy x' M x/2 of the condensed solution. */
-static status condensed_energy(const contact_problem *cp, const double *u,
-                               const double *r, double *energy) {
-  status st = OK;
-  double *y = NULL;
-  const double *x = cp->A != NULL ? u : r;
-  NEW(y, cp->m);
-  contact_product(cp->m, cp->A != NULL ? cp->A : cp->W, x, y);
-  *energy = 0.0;
-  for (int i = 0; i < cp->m; ++i) *energy += 0.5 * x[i] * y[i];
-done:
-  memory_free(y);
-  return st;
-}
-
-status estimate_problem(const step *s, const contact_problem *cp,
-                        const double *u, const double *r, error_bound *e) {
-  status st = OK;
-  solver_error found = {.norm = NAN, .why = indefinite};
-  dense_inverse *dense = NULL;
-  double energy = 0.0;
-  *e = (error_bound){0};
-  if (cp->m == 0 || s->no_solver_error) return OK;
-  timer_enter(STAGE_ESTIMATE);
-  TRY(condensed_energy(cp, u, r, &energy));
-  if (cp->A == NULL && cp->B != NULL) {
-    found.why = "Coulomb friction, and only the compliance is known";
-  } else {
-    TRY(dense_inverse_new(cp->m, cp->A != NULL ? cp->A : cp->W, &dense));
-    if (dense != NULL) {
-      inverse_energy inverse = dense_inverse_energy(dense);
-      TRY(solver_error_bound(cp, &inverse, u, r, NULL, &found));
-    }
-  }
-  set_bound(&found, energy, e);
-done:
-  dense_inverse_free(dense);
-  timer_leave(STAGE_ESTIMATE);
   return st;
 }
 

@@ -4,8 +4,8 @@
 #ifndef PROTIS_HISTORY_HISTORY_H
 #define PROTIS_HISTORY_HISTORY_H
 
+#include "accuracy/accuracy.h"
 #include "accuracy/solutions.h"
-#include "exchange/exchange.h"
 #include "fem/fem.h"
 #include "model/model.h"
 
@@ -138,13 +138,16 @@ typedef struct history_sink {
 status history_run(const model *m, const mesh *msh, const history_sink *sink,
                    int *unsettled);
 
-/*
- * The same for a problem from a file (*CONDENSED PROBLEM): one increment, no
- * mesh, no stiffness. The state has the unknowns in the signs of contact.h, of
- * a plain LCP w in uc and z in rc. Errors: as history_run.
- */
-status condensed_run(const model *m, const exchange_problem *p,
-                     const history_sink *sink, int *unsettled);
+/* The bound that is told, for a solution of that energy, J. */
+void error_bound_set(const solver_error *found, double energy, error_bound *e);
+/* Why there is none where the matrix has no inverse. */
+extern const char *const error_bound_indefinite;
+
+/* Other solutions than (u, r), which a solver reports so, into *out, if the
+ * step asks for them. ERR_DECK: CHECK=ALL is not possible. */
+status check_problem(const step *s, const contact_problem *cp,
+                     const solver_report *report, const double *u,
+                     const double *r, solution_set *out);
 
 /* Rigid motions that the supports of a step leave free, nothing solved: *list
  * is new (memory_free), NULL if there are none. ERR_SINGULAR with the list if

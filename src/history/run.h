@@ -156,17 +156,10 @@ void path_free(finer_path *p); /* accepts NULL                               */
 
 /* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
 status estimate_increment(run *r);
-/* The same for a problem from a file. */
-status estimate_problem(const step *s, const contact_problem *cp,
-                        const double *u, const double *r, error_bound *e);
 
 /* Other solutions than that of r->now into r->solutions, if asked
  * for. ERR_DECK: CHECK=ALL is not possible. */
 status check_increment(run *r);
-/* The same for a problem from a file. */
-status check_problem(const step *s, const contact_problem *cp,
-                     const solver_report *report, const double *u,
-                     const double *r, solution_set *out);
 /* r->now becomes r->old. */
 void result_accept(run *r);
 

@@ -40,7 +40,7 @@ VALUE(mesh_error,
 VALUE(time_error,
       v->s->time_error.asked ? 100 * v->s->time_error.relative : NAN)
 VALUE(elem_error, 100 * v->s->elem_error[id])
-VALUE(solver_error, 100 * v->s->error.relative)
+VALUE(bound_error, 100 * v->s->error.relative)
 VALUE(solver_error_energy, v->s->error.energy)
 VALUE(contraction, v->s->error.rate)
 VALUE(strain_energy, v->s->energy.strain)
@@ -244,7 +244,7 @@ const column column_table[] = {
  NULL, "estimate of the error of the increments in that norm; NaN: not asked "
  "for, or unknown"},
 {"solver_error", "%", INC, 0, C | EFFECT_ESTIMATES, ANY, "solver_error", 0,
- solver_error, NULL, "bound of the error of the contact solver in the energy "
+ bound_error, NULL, "bound of the error of the contact solver in the energy "
  "norm, of that of the solution; NaN: no bound"},
 {"solver_error_energy", J, INC, 0, C | EFFECT_ESTIMATES, ANY,
  "solver_error_energy", 0, solver_error_energy, NULL,
