@@ -154,7 +154,8 @@ static const load *moving_support(const model *m) {
 static const section *first_inelastic(const model *m) {
   for (int i = 0; i < m->n_section; ++i) {
     const int id = m->sections[i].material_id;
-    if (id >= 0 && m->materials[id].law.ops != NULL) return &m->sections[i];
+    if (id >= 0 && id < m->n_material && m->materials[id].law.ops != NULL)
+      return &m->sections[i];
   }
   return NULL;
 }
