@@ -216,6 +216,11 @@ static status tell_answer(discrete *d, const history_sink *sink, double cpu,
   }
   s.n_open = s.n_slip = s.n_stick = 0;
   if (sink->rejected != NULL) TRY(sink->rejected(sink->ctx, &s, why));
+  if (d->report.outcome == STOPPED_UNFIT)
+    FAIL(ERR_SINGULAR,
+         "the method cannot treat this problem: %s; use METHOD=AUTO, SOR or "
+         "LEMKE",
+         d->log);
   FAIL(ERR_SINGULAR, "no solution found: %s%s%s%s", why,
        d->log[0] == '\0' ? "" : " (", d->log, d->log[0] == '\0' ? "" : ")");
 done:

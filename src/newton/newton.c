@@ -262,9 +262,12 @@ const solver_ops newton_solver = {
     "that are free under the guess, and corrects the guess. Friction follows\n"
     "the pressure inside the step; in 3-D the slip turns with the exact\n"
     "derivative of the friction disc. Typically 5 to 15 steps from a cold and\n"
-    "2 to 4 from a warm start, to full accuracy, whatever the size. If a\n"
-    "pattern of states comes back the method starts anew from another guess.\n"
-    "The first choice for all but very large problems and large friction.",
+    "2 to 4 from a warm start, to full accuracy, whatever the size. The\n"
+    "factor is kept as long as exchanging the rows that change costs less\n"
+    "than a new one, from increment to increment too. If a pattern of states\n"
+    "comes back the method starts anew from another guess. Needs the\n"
+    "stiffness, or a compliance that has an inverse. The first choice for\n"
+    "all but very large problems and large friction.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              SOLVES_FLOATING,
   .param_size = sizeof(newton),

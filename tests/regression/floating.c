@@ -120,6 +120,24 @@ START_TEST(free_motions_are_named) {
 }
 END_TEST
 
-UNIT_MAIN("floating", resultants_are_those_of_statics,
+/* A method that needs the compliance ends the run at its first attempt, with
+ * the method, the reason and a remedy; no increment is cut. */
+START_TEST(method_that_does_not_fit_is_named_at_once) {
+  job j = run_free(
+      0.5, "", "*SOLVER, METHOD=PCG\n*DSLOAD\nTOP, P, 10.\nLEFT, P, 2.\n", 6);
+  char *sta = job_file(&j, "sta");
+  ck_assert_ptr_nonnull(sta);
+  ck_assert_ptr_nonnull(strstr(j.errors, "pcg: needs a body held by supports"));
+  ck_assert_ptr_nonnull(strstr(j.errors, "METHOD=AUTO"));
+  const char *cut = strstr(sta, "CUT");
+  ck_assert_ptr_nonnull(cut);
+  ck_assert_ptr_null(strstr(cut + 1, "CUT"));
+  free(sta);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("floating", method_that_does_not_fit_is_named_at_once,
+          resultants_are_those_of_statics,
           layers_of_any_contrast_weigh_the_same, no_equilibrium_is_a_verdict,
           free_motions_are_named)
