@@ -72,6 +72,12 @@ typedef struct pair {
   unsigned char *slides; /* [n] |q_t| = g                                     */
 } pair;
 
+status pair_new(int n, int m, pair *p);
+void pair_free(pair *p);
+/* v and q from an answer (u, r) by one step of the natural map. */
+void pair_set(const contact_problem *cp, const double *u, const double *r,
+              pair *p);
+
 /*
  * Where the stiffness is singular: change q, on the nodes that are closed or
  * stick and with the limit that follows on those that slide, until d is
@@ -89,8 +95,5 @@ typedef struct node_stiffness {
 node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id);
 /* 1: friction can act on the unknown: tangential, not held, no side bound. */
 int accuracy_rubs(const contact_problem *cp, int dof);
-/* Bound of a unilateral unknown (normal, or at a second obstacle), m; HUGE_VAL:
- * not one. */
-double accuracy_bound(const contact_problem *cp, int dof);
 
 #endif

@@ -42,30 +42,17 @@ static double diagonal(const contact_problem *cp, int dof) {
   return matrix_of(cp)[(size_t)dof * (size_t)(cp->m + 1)];
 }
 
-static int held(const contact_problem *cp, int dof) {
-  return cp->held != NULL && cp->held[dof];
-}
-
-double accuracy_bound(const contact_problem *cp, int dof) {
-  int node_id = dof / cp->dim, k = dof % cp->dim - 1;
-  if (k < 0) return cp->gap[node_id];
-  if (cp->side_gap == NULL || held(cp, dof)) return HUGE_VAL;
-  return cp->side_gap[node_id * (cp->dim - 1) + k];
-}
-
 int accuracy_rubs(const contact_problem *cp, int dof) {
   int node_id = dof / cp->dim;
-  if (cp->g0 == NULL || dof % cp->dim == 0 || held(cp, dof)) return 0;
-  for (int k = 1; k < cp->dim; ++k)
-    if (accuracy_bound(cp, node_id * cp->dim + k) < HUGE_VAL) return 0;
-  return 1;
+  if (cp->g0 == NULL || dof % cp->dim == 0 || contact_held(cp, dof)) return 0;
+  return !contact_has_side(cp, node_id);
 }
 
 node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id) {
   int first = node_id * cp->dim, counted = 0;
   double n = diagonal(cp, first), t = 0.0;
   for (int k = 1; k < cp->dim; ++k)
-    if (!held(cp, first + k)) {
+    if (!contact_held(cp, first + k)) {
       t += diagonal(cp, first + k);
       ++counted;
     }
@@ -76,7 +63,7 @@ node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id) {
 
 /* ---- the admissible pair ------------------------------------------------ */
 
-static status pair_new(int n, int m, pair *p) {
+status pair_new(int n, int m, pair *p) {
   status st = OK;
   NEW(p->v, m);
   NEW(p->q, m);
@@ -87,7 +74,7 @@ done:
   return st;
 }
 
-static void pair_free(pair *p) {
+void pair_free(pair *p) {
   memory_free(p->v);
   memory_free(p->q);
   memory_free(p->d);
@@ -99,7 +86,7 @@ static void pair_free(pair *p) {
 static void pair_normal(const contact_problem *cp, const double *u,
                         const double *r, pair *p) {
   for (int dof = 0; dof < cp->m; ++dof) {
-    double bound = accuracy_bound(cp, dof);
+    double bound = contact_bound(cp, dof);
     node_stiffness c = accuracy_stiffness(cp, dof / cp->dim);
     double step = dof % cp->dim == 0 ? c.n : c.t, z = 0.0;
     if (bound < HUGE_VAL) z = r[dof] - step * (u[dof] - bound);
@@ -117,7 +104,7 @@ static void pair_friction(const contact_problem *cp, const double *u,
     for (int k = 1; k < cp->dim; ++k) {
       int dof = i * cp->dim + k;
       if (!accuracy_rubs(cp, dof)) continue;
-      z[k] = r[dof] - c * (u[dof] - cp->ut0[i * (cp->dim - 1) + k - 1]);
+      z[k] = r[dof] - c * (u[dof] - contact_stick(cp, dof));
       size = hypot(size, z[k]);
     }
     p->slides[i] = size > g;
@@ -125,10 +112,16 @@ static void pair_friction(const contact_problem *cp, const double *u,
       int dof = i * cp->dim + k;
       if (!accuracy_rubs(cp, dof)) continue;
       p->q[dof] = size <= g ? z[k] : z[k] * (g / size);
-      p->v[dof] = size <= g ? cp->ut0[i * (cp->dim - 1) + k - 1]
+      p->v[dof] = size <= g ? contact_stick(cp, dof)
                             : u[dof] + (p->q[dof] - r[dof]) / c;
     }
   }
+}
+
+void pair_set(const contact_problem *cp, const double *u, const double *r,
+              pair *p) {
+  pair_normal(cp, u, r, p);
+  pair_friction(cp, u, r, p);
 }
 
 /* d = M x - load - y, x the unknown that M is multiplied with. */
@@ -211,8 +204,7 @@ status solver_error_bound(const contact_problem *cp,
   TRY(find_rate(cp, u, r, known, error));
   if (error->why != NULL) goto done;
   TRY(pair_new(cp->n, cp->m, &p));
-  pair_normal(cp, u, r, &p);
-  pair_friction(cp, u, r, &p);
+  pair_set(cp, u, r, &p);
   pair_defect(cp, &p);
   if (inverse->n_kernel > 0) {
     TRY(pair_balance(cp, inverse, &p, &balanced));

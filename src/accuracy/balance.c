@@ -17,7 +17,7 @@
 /* How far the force of an unknown can change, N; 0: it is given. */
 static double slack(const contact_problem *cp, const pair *p, int dof) {
   int i = dof / cp->dim;
-  if (accuracy_bound(cp, dof) < HUGE_VAL) return -p->q[dof];
+  if (contact_bound(cp, dof) < HUGE_VAL) return -p->q[dof];
   if (!accuracy_rubs(cp, dof) || p->slides[i]) return 0.0;
   double g = contact_node_limit(cp, p->q, i), size = 0.0;
   for (int k = 1; k < cp->dim; ++k) size = hypot(size, p->q[i * cp->dim + k]);
@@ -44,7 +44,7 @@ static int admissible(const contact_problem *cp, const pair *p) {
     double size = 0.0, g = contact_node_limit(cp, p->q, i);
     for (int k = 0; k < cp->dim; ++k) {
       int dof = i * cp->dim + k;
-      if (accuracy_bound(cp, dof) < HUGE_VAL && !(p->q[dof] <= 0.0)) return 0;
+      if (contact_bound(cp, dof) < HUGE_VAL && !(p->q[dof] <= 0.0)) return 0;
       if (accuracy_rubs(cp, dof)) size = hypot(size, p->q[dof]);
     }
     if (!p->slides[i] && size > g) return 0;

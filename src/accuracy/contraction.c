@@ -64,8 +64,7 @@ static void set_friction(linear_map *s, const double *u, const double *r,
   for (int k = 1; k < cp->dim; ++k) {
     int dof = first + k;
     if (!accuracy_rubs(cp, dof)) continue;
-    double stick = cp->ut0[i * (cp->dim - 1) + k - 1];
-    s->e[dof] = r[dof] - c * (u[dof] - stick);
+    s->e[dof] = r[dof] - c * (u[dof] - contact_stick(cp, dof));
     size = hypot(size, s->e[dof]);
   }
   s->slip[i] = size > g && g > 0.0;
@@ -80,12 +79,12 @@ static int is_free(const linear_map *s, const double *u, const double *r,
   const contact_problem *cp = s->cp;
   int i = dof / cp->dim;
   node_stiffness c = accuracy_stiffness(cp, i);
-  double bound = accuracy_bound(cp, dof);
+  double bound = contact_bound(cp, dof);
   if (bound < HUGE_VAL) {
     double step = dof % cp->dim == 0 ? c.n : c.t;
     return !(r[dof] - step * (u[dof] - bound) < 0.0);
   }
-  if (!accuracy_rubs(cp, dof)) return cp->held == NULL || !cp->held[dof];
+  if (!accuracy_rubs(cp, dof)) return !contact_held(cp, dof);
   return s->slip[i] || contact_node_limit(cp, r, i) == 0.0;
 }
 

@@ -66,10 +66,6 @@ static double largest_stiffness(const search *s) {
   return most;
 }
 
-static int is_held(const search *s, int dof) {
-  return s->cp->held != NULL && s->cp->held[dof];
-}
-
 /* ---- one linear system -------------------------------------------------- */
 
 /* The equation of unknown dof under the label of its node: y[m+1]. */
@@ -95,7 +91,7 @@ static void equation(const search *s, int dof, double *y) {
 static int moves(const search *s, int dof) {
   label l = s->now[dof / 2];
   if (dof % 2 == 0) return l.open;
-  return l.t != STICK && !is_held(s, dof);
+  return l.t != STICK && !contact_held(s->cp, dof);
 }
 
 /* Free unknowns of the whole pattern. */
@@ -388,7 +384,7 @@ static status check_size(const contact_problem *cp) {
          "needs no pressure here, and the statuses of open nodes count too",
          patterns);
   for (int dof = 0; dof < cp->m; ++dof)
-    if (dof % 2 > 0 && accuracy_bound(cp, dof) < HUGE_VAL)
+    if (dof % 2 > 0 && contact_bound(cp, dof) < HUGE_VAL)
       FAIL(ERR_DECK,
            "all statuses cannot be tried where a contact node "
            "touches two obstacles");
@@ -411,7 +407,8 @@ status solutions_by_statuses(const contact_problem *cp, double tol,
   for (int dof = 0; dof < cp->m; ++dof) {
     double stick = cp->ut0 != NULL ? cp->ut0[dof / 2] : 0.0;
     s->base[dof] = dof % 2 == 0 ? cp->gap[dof / 2] : stick;
-    if (is_held(s, dof)) s->base[dof] = cp->f[dof] / stiffness(s, dof, dof);
+    if (contact_held(s->cp, dof))
+      s->base[dof] = cp->f[dof] / stiffness(s, dof, dof);
   }
   contact_reaction(cp, s->base, s->rho0);
   TRY(solution_set_add(cp, tol, u, r, out, &no));

@@ -31,7 +31,7 @@
   X(THERMAL,     "thermal strains")                        \
   X(ZONES,       "zones of stick and slip")                \
   X(ESTIMATE,    "error estimates")                        \
-  X(CHECK,       "second solutions")                       \
+  X(CHECK,       "second solutions, jumps")                \
   X(TABLES,      "tables")                                 \
   X(HDF5,        "HDF5 output")                            \
   X(RESTART,     "restart")

@@ -1,7 +1,7 @@
 /*
  * What is asked about the answer of the contact solver at an accepted
- * increment: how far it is from the solution, and whether it is the only one
- * (for large friction uniqueness is not known).
+ * increment: how far it is from the solution, whether it is the only one, and
+ * whether a path leads to it (for large friction both are not known).
  *
  * The error is the bound of accuracy.h,
  * in energy units and relative to the energy norm of the body. The interior
@@ -14,6 +14,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 const char *const error_bound_indefinite =
     "the matrix is not symmetric and positive semidefinite";
@@ -25,7 +26,7 @@ void error_bound_set(const solver_error *found, double energy, error_bound *e) {
                      .rate = found->rate,
                      .why = found->why};
   if (found->why != NULL || found->norm > 0.0)
-    e->relative = found->norm / sqrt(2.0 * energy);
+    e->relative = energy > 0.0 ? found->norm / sqrt(2.0 * energy) : NAN;
 }
 
 static status force_energy(void *ctx, const double *d, double *square) {
@@ -122,4 +123,104 @@ done:
 status check_increment(run *r) {
   return check_problem(r->step, &r->cp, &r->report, r->now.uc, r->now.rc,
                        &r->solutions);
+}
+
+/* ---- jumps --------------------------------------------------------------
+ *
+ * Where the fixed point on the sliding limit contracts with rate k, the motion
+ * of an increment is at most 1/(1 - k) times the change of its load, both in
+ * the energy norm. An increment that moves by more is halved again and again
+ * in the half that moves most: the motion of a branch of solutions then falls
+ * with the load, that of a jump does not.
+ */
+
+enum { HALVINGS = 16 };
+static const double SUSPECT = 2.0; /* -, motion over load                     */
+static const double LEFT = 0.25;   /* -, of the motion, in 2^-16 of the load  */
+
+/* |a - b|_A of contact displacements; room[2m]. */
+static double distance(const run *r, const double *a, const double *b,
+                       double *room) {
+  double sum = 0.0;
+  for (int i = 0; i < r->n_c; ++i) room[i] = a[i] - b[i];
+  contact_product(r->n_c, r->cp.A, room, room + r->n_c);
+  for (int i = 0; i < r->n_c; ++i) sum += room[i] * room[r->n_c + i];
+  return sqrt(fmax(sum, 0.0));
+}
+
+/* What the load and the obstacles can move, in the energy norm; room[2m]. */
+static status load_change(run *r, double *room, double *size) {
+  status st = OK;
+  double square = 0.0;
+  *size = distance(r, r->now.motion, r->old.motion, room);
+  for (int i = 0; i < r->n_c; ++i) room[i] = r->f[i] - r->f_before[i];
+  TRY(condensed_force_energy(r->c, room, &square));
+  *size += sqrt(square);
+done:
+  return st;
+}
+
+/* One end of the part of the increment that moves most. */
+typedef struct path_end {
+  double t;  /* s                                                             */
+  double *u; /* [m]                                                           */
+} path_end;
+
+/* Halve the increment to the end: *share of the motion that stays. */
+static status follow_motion(run *r, path_end *from, path_end *to, double *room,
+                            double *share) {
+  status st = OK;
+  size_t bytes = (size_t)r->n_c * sizeof *from->u;
+  double all = distance(r, to->u, from->u, room);
+  *share = 1.0;
+  for (int k = 0; k<HALVINGS && * share> LEFT; ++k) {
+    double middle = 0.5 * (from->t + to->t);
+    TRY(increment_solve(r, middle));
+    if (r->report.outcome <= 0) break;
+    double before = distance(r, r->now.uc, from->u, room);
+    double after = distance(r, to->u, r->now.uc, room);
+    path_end *end = before >= after ? to : from;
+    end->t = middle;
+    memcpy(end->u, r->now.uc, bytes);
+    *share = fmax(before, after) / all;
+  }
+done:
+  return st;
+}
+
+static void note_jump(run *r, double t, double share) {
+  size_t used = strlen(r->note);
+  r->jumps = 1;
+  r->jump_t = t;
+  snprintf(r->note + used, sizeof r->note - used,
+           "  JUMP: no path of equilibria leads here: at time %.6g, within "
+           "%.0e of the load of the\n  increment, the state changes by %.0f %% "
+           "of its motion; the run goes on with another branch\n",
+           t, ldexp(1.0, -HALVINGS), 100 * share);
+}
+
+status jump_check(run *r, double t) {
+  status st = OK;
+  double change = HUGE_VAL, share = 0.0, *room = NULL;
+  path_end from = {r->old.t, NULL}, to = {t, NULL};
+  size_t bytes = (size_t)r->n_c * sizeof *room;
+  if (r->n == 0 || r->cp.B == NULL || r->cp.floating) return OK;
+  if (r->step->kind != STEP_QUASISTATIC) return OK;
+  timer_enter(STAGE_CHECK);
+  NEW(room, 2 * r->n_c);
+  TRY(load_change(r, room, &change));
+  if (!(distance(r, r->now.uc, r->old.uc, room) > SUSPECT * change)) goto done;
+  NEW(from.u, r->n_c);
+  NEW(to.u, r->n_c);
+  memcpy(from.u, r->old.uc, bytes);
+  memcpy(to.u, r->now.uc, bytes);
+  TRY(follow_motion(r, &from, &to, room, &share));
+  TRY(increment_solve(r, t));
+  if (share > LEFT) note_jump(r, to.t, share);
+done:
+  memory_free(room);
+  memory_free(from.u);
+  memory_free(to.u);
+  timer_leave(STAGE_CHECK);
+  return st;
 }

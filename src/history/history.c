@@ -2,6 +2,7 @@
  * The loop over steps and increments: time grid, step cutting with exact
  * rollback, verdict of each increment, hand-over to the outputs.
  */
+#include "accuracy/verdict.h"
 #include "history/run.h"
 
 #include "base/memory.h"
@@ -65,6 +66,8 @@ static state make_state(run *r, int attempt, int increment_no) {
              .report = r->report,
              .note = r->note,
              .error = r->error,
+             .jumps = r->jumps,
+             .jump_t = r->jump_t,
              .solutions = r->step->check != CHECK_NONE ? &r->solutions : NULL,
              .mesh_error = r->mesh_error,
              .time_error = r->time_error,
@@ -125,26 +128,32 @@ done:
 static status reject(run *r, int attempt, int increment_no, const char *why) {
   r->error = (error_bound){0};
   r->mesh_error.asked = r->time_error.asked = 0;
+  r->jumps = 0;
   state s = make_state(r, attempt, increment_no);
   s.n_open = s.n_slip = s.n_stick = 0;
   if (r->sink->rejected == NULL) return OK;
   return r->sink->rejected(r->sink->ctx, &s, why);
 }
 
-static status no_equilibrium(const run *r) {
+static status no_equilibrium(run *r) {
   status st = OK;
+  char why[1024] = "";
+  const char *tried = contact_solver_log(r->solver);
+  int bracket = tried[0] != '\0';
+  verdict_scene scene = {r->m,   r->msh,    r->step,   r->now.t, r->surface,
+                         &r->cp, r->now.uc, r->now.rc, r->c};
   if (r->report.outcome == STOPPED_UNFIT)
     FAIL(ERR_SINGULAR,
          "step %d, time %g: the method cannot treat this problem: %s; use "
          "METHOD=AUTO, NEWTON, AUGLAG or SOR",
          run_step_id(r) + 1, r->now.t, contact_solver_log(r->solver));
+  TRY(verdict_text(&scene, why, sizeof why));
   FAIL(ERR_SINGULAR,
-       "step %d, time %g: no equilibrium found: %s%s%s%s; the last state "
+       "step %d, time %g: no equilibrium found: %s%s%s%s%s%s; the last state "
        "written is that of time %g",
        run_step_id(r) + 1, r->now.t, outcome_text(r->report.outcome),
-       contact_solver_log(r->solver)[0] == '\0' ? "" : " (",
-       contact_solver_log(r->solver),
-       contact_solver_log(r->solver)[0] == '\0' ? "" : ")", r->old.t);
+       bracket ? " (" : "", tried, bracket ? ")" : "",
+       why[0] == '\0' ? "" : "; ", why, r->old.t);
 done:
   return st;
 }
@@ -177,6 +186,8 @@ static status run_increment(run *r, long n, long i, int *increment_no) {
                  outcome_text(r->report.outcome)));
       TRY(no_equilibrium(r));
     }
+    r->jumps = 0;
+    if (settled) TRY(jump_check(r, t));
     ++part;
     ++*increment_no;
     TRY(accept(r, attempt, *increment_no, i == n - 1 && part == 1L << level,

@@ -57,7 +57,8 @@ typedef struct energies {
 typedef struct error_bound {
   int asked;
   double energy;   /* J, energy of the error at most; NAN: no bound           */
-  double relative; /* -, of the energy norm of the solution                   */
+  double relative; /* -, of the energy norm of the solution; NAN: no bound, or
+                      a solution without deformation                         */
   double cpu;      /* s, spent so far on finding it                           */
   double rate;     /* contraction of the sliding limit, -; 0: none            */
   const char *why; /* there is no bound; or NULL                              */
@@ -104,6 +105,8 @@ typedef struct state {
   error_share mesh_error, time_error; /* of the mesh, of the increments       */
   const double *elem_error; /* [n_elem] share of each element in the error of
                                the mesh, -, relative as that; or NULL         */
+  int jumps;     /* 1: no path of equilibria leads to this one                */
+  double jump_t; /* s, where the equilibrium jumps then                       */
   const solution_set *solutions; /* of CHECK=; NULL: not asked for            */
   const char *solver_log;
   const char *note; /* whole lines about what jumps, "" or NULL: nothing      */

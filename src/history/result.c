@@ -203,6 +203,7 @@ status result_evaluate(run *r, int due) {
 }
 
 void result_accept(run *r) {
+  if (r->n > 0) memcpy(r->f_before, r->f, (size_t)r->n_c * sizeof *r->f);
   equilibrium e = r->old;
   r->old = r->now;
   r->now = e;

@@ -93,6 +93,9 @@ typedef struct run {
   dense_inverse *dense; /* of A where contact alone holds a body       */
   int dense_known;      /* 1: made, or A has none                      */
   known_rate rate;
+  double *f_before; /* [m] condensed load of r->old, N                        */
+  int jumps;     /* 1: the equilibrium jumps in the increment               */
+  double jump_t; /* s, there                                               */
   solution_set solutions; /* found by CHECK= in the increment                 */
   int total_no, unsettled;
 } run;
@@ -157,6 +160,9 @@ void path_free(finer_path *p); /* accepts NULL                               */
 /* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
 status estimate_increment(run *r);
 
+/* Whether the equilibrium jumps between r->old and r->now, at time t, into
+ * r->jumps, r->jump_t, r->note. r->now is solved again if it was looked for. */
+status jump_check(run *r, double t);
 /* Other solutions than that of r->now into r->solutions, if asked
  * for. ERR_DECK: CHECK=ALL is not possible. */
 status check_increment(run *r);

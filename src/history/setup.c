@@ -131,10 +131,10 @@ static void free_surface(run *r) {
   r->c = NULL;
   r->k = NULL;
   r->surface = NULL;
-  double **owned[] = {&r->f,          &r->gap,     &r->side_gap, &r->ut0,
-                      &r->open_gap,   &r->slip,    &r->g,        &r->old.uc,
-                      &r->old.rc,     &r->now.uc,  &r->now.rc,   &r->old.motion,
-                      &r->now.motion, &r->distance};
+  double **owned[] = {&r->f,          &r->f_before,   &r->gap,     &r->side_gap,
+                      &r->ut0,        &r->open_gap,   &r->slip,    &r->g,
+                      &r->old.uc,     &r->old.rc,     &r->now.uc,  &r->now.rc,
+                      &r->old.motion, &r->now.motion, &r->distance};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) {
     memory_free(*owned[i]);
     *owned[i] = NULL;
@@ -186,6 +186,7 @@ static status new_contact_arrays(run *r) {
   status st = OK;
   int tangents = r->n * (r->msh->dim - 1);
   NEW(r->f, r->n_c);
+  NEW(r->f_before, r->n_c);
   NEW(r->gap, r->n);
   NEW(r->old.uc, r->n_c);
   NEW(r->now.uc, r->n_c);

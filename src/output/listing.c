@@ -157,9 +157,11 @@ static void print_error(const job *j, const state *s, FILE *f) {
     fprintf(f, "no bound, %s", e->why);
   } else {
     column_unit("force*length", j->m, unit, sizeof unit);
-    fprintf(f, "at most %s %% of the energy norm,",
-            text_number(text, 100 * e->relative, 1));
-    fprintf(f, " %s %s", text_number(text, e->energy, 1), unit);
+    fprintf(f, "at most ");
+    if (!isnan(e->relative))
+      fprintf(f, "%s %% of the energy norm, ",
+              text_number(text, 100 * e->relative, 1));
+    fprintf(f, "%s %s", text_number(text, e->energy, 1), unit);
   }
   if (e->rate > 0)
     fprintf(f, "; contraction %s", text_number(text, e->rate, 2));

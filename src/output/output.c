@@ -72,6 +72,8 @@ static status remember(output *o, const state *s) {
                            .error = s->error,
                            .mesh_error = s->mesh_error,
                            .time_error = s->time_error,
+                           .jumps = s->jumps,
+                           .jump_t = s->jump_t,
                            .defect = energy_defect_relative(&s->energy)};
   if (s->surface != NULL)
     run->residual_worst = worse(run->residual_worst, s->report.residual);

@@ -20,6 +20,7 @@ status sta_header(const output_options *o, text_file *sta) {
 /* OK, UNSETTLED: taken although it missed its tolerance, or CUT and why. */
 static const char *reason(const state *s, const char *why) {
   if (why != NULL) return "CUT ";
+  if (s->jumps) return "OK JUMP";
   return s->settled ? "OK" : "UNSETTLED";
 }
 

@@ -44,6 +44,8 @@ typedef struct increment_summary {
   int n_open, n_slip, n_stick, iterations, settled, outcome;
   double residual, defect;
   error_bound error;
+  int jumps; /* 1: the equilibrium jumps, at jump_t, s                     */
+  double jump_t;
   int checked, n_solution;   /* by CHECK= of *SOLVER                          */
   solution_facts *solutions; /* [n_solution] owned                            */
   error_share mesh_error, time_error;

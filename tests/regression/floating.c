@@ -78,18 +78,34 @@ START_TEST(layers_of_any_contrast_weigh_the_same) {
 }
 END_TEST
 
+/* Exit 6 says which nodes move, which load drives them, what it sums up to at
+ * the time reached (1/32 of the step) and which state was the last. */
 START_TEST(no_equilibrium_is_a_verdict) {
   static const struct {
     double mu;
-    const char *loads;
+    const char *loads, *nodes, *motion, *load, *sum;
   } scene[] = {
-      {0.5, "*DSLOAD\nTOP, P, -10.\n"},              /* lifted            */
-      {0.5, "*DSLOAD\nTOP, P, 10.\nLEFT, P, 6.\n"},  /* pushed too hard   */
-      {9.0, "*DSLOAD\nTOP, P, 10.\nLEFT, P, 12.\n"}, /* tips over         */
-      {0.5, "*DSLOAD\nTOP, P, \"120*x-50\"\n"}};     /* resultant outside */
+      {0.5, "*DSLOAD\nTOP, P, -10.\n", "contact nodes ", " leave the obstacle",
+       "driven by *DSLOAD on TOP (line ", "all loads (0, 0.3125)"}, /* lifted */
+      {0.5, "*DSLOAD\nTOP, P, 10.\nLEFT, P, 6.\n", " nodes 1 at (0, 0), ",
+       " slide", "driven by *DSLOAD on LEFT (line ",
+       "all loads (0.1875, -0.3125)"}, /* pushed too hard                     */
+      {9.0, "*DSLOAD\nTOP, P, 10.\nLEFT, P, 12.\n",
+       "contact nodes 1 at (0, 0), 5 at (0.2, 0), ",
+       "8 at (0.8, 0) leave the obstacle", "driven by *DSLOAD on LEFT (line ",
+       "all loads (0.375, -0.3125)"}, /* tips over                            */
+      {0.5, "*DSLOAD\nTOP, P, \"120*x-50\"\n",
+       "contact nodes 1 at (0, 0), 5 at (0.2, 0), ",
+       "8 at (0.8, 0) leave the obstacle", "driven by *DSLOAD on TOP (line ",
+       "all loads (0, -0.3125)"}}; /* resultant outside                       */
   for (size_t k = 0; k < sizeof scene / sizeof *scene; ++k) {
     job j = run_free(scene[k].mu, "", scene[k].loads, 6);
-    ck_assert_ptr_nonnull(strstr(j.errors, "no equilibrium"));
+    const char *const words[] = {"no equilibrium", scene[k].nodes,
+                                 scene[k].motion,  scene[k].load,
+                                 scene[k].sum,     "written is that of time 0"};
+    for (size_t w = 0; w < sizeof words / sizeof *words; ++w)
+      ck_assert_msg(strstr(j.errors, words[w]) != NULL, "no '%s' in %s",
+                    words[w], j.errors);
     job_end(&j);
   }
 }

@@ -192,6 +192,44 @@ START_TEST(all_solutions_are_listed) {
 }
 END_TEST
 
+/* Pressed by 1, then pushed: with mu = 2 the vertex sticks until the push is 2
+ * and finds no other state near then; with mu = 1.7 it slides and opens. */
+START_TEST(jump_of_the_equilibrium_is_told) {
+  static const double mu[] = {1.0, 1.7, 2.0, 3.0};
+  for (int k = 0; k < 4; ++k) {
+    int jumps = mu[k] > 1.8;
+    job j = job_begin("triangle");
+    job_write(&j, "triangle.msh", "%s", mesh_text);
+    job_write(&j, "triangle.inp",
+              "*MESH, FILE=triangle.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+              "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n"
+              "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
+              "*CLOAD\nTIP, 2, -1.\n*END STEP\n"
+              "*STEP\n*QUASISTATIC\n0.05, 1.\n*CLOAD\nTIP, 1, 3.3\n"
+              "*END STEP\n",
+              mu[k]);
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    char *sta = job_file(&j, "sta"), *lst = job_file(&j, "lst"),
+         *json = job_file(&j, "json");
+    ck_assert_int_eq(strstr(sta, "OK JUMP\n") != NULL, jumps);
+    ck_assert_int_eq(strstr(lst, "  JUMP: no path of equilibria") != NULL,
+                     jumps);
+    const char *at = strstr(json, "\"jump_time\": ");
+    ck_assert_int_eq(at != NULL, jumps);
+    if (jumps)
+      ck_assert_double_eq_tol(atof(at + strlen("\"jump_time\": ")),
+                              1.0 + mu[k] / 3.3, 1e-4);
+    free(sta);
+    free(lst);
+    free(json);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("triangle", closed_form_agrees_with_the_published_numbers,
           unique_solution_is_found, one_of_several_solutions_is_found,
-          all_solutions_are_listed)
+          all_solutions_are_listed, jump_of_the_equilibrium_is_told)

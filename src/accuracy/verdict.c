@@ -1,0 +1,265 @@
+/* Reasons for a missing equilibrium (verdict.h). */
+#include "accuracy/verdict.h"
+
+#include "accuracy/accuracy.h"
+#include "base/memory.h"
+#include "contact/lcp.h"
+#include "solver/solver.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { LISTED = 5, LARGEST = 2000, PARAM_SIZE = 512 };
+static const double PART = 0.01; /* -, of the largest: does not count        */
+static const double TIE = 1e-6;  /* -, values that count as equal            */
+static const double MISFIT = 1e-9; /* -, of the force scale: none             */
+
+/* A text that is added to. */
+typedef struct words {
+  char *text;
+  size_t size;
+} words;
+
+static void add(const words *w, const char *format, ...) {
+  size_t used = strlen(w->text);
+  va_list args;
+  va_start(args, format);
+  vsnprintf(w->text + used, w->size - used, format, args);
+  va_end(args);
+}
+
+static void add_node(const words *w, const contact_surface *s, int i) {
+  if (s->x == NULL) {
+    add(w, "%zu", s->node_no[i]);
+    return;
+  }
+  add(w, "%zu at (", s->node_no[i]);
+  for (int k = 0; k < s->dim; ++k)
+    add(w, "%s%.6g", k > 0 ? ", " : "", s->x[s->dim * i + k]);
+  add(w, ")");
+}
+
+/* The nodes with the largest value[n] above PART of the largest, up to LISTED,
+ * the larger first; value is destroyed. Their number, all counted. */
+static int add_nodes(const words *w, const contact_surface *s, double *value) {
+  double most = 0.0;
+  int counted = 0, listed = 0;
+  for (int i = 0; i < s->n; ++i) most = fmax(most, value[i]);
+  for (int i = 0; i < s->n; ++i)
+    counted += most > 0.0 && value[i] >= PART * most;
+  for (; listed < LISTED && listed < counted; ++listed) {
+    int next = 0;
+    for (int i = 1; i < s->n; ++i)
+      if (value[i] > (1.0 + TIE) * value[next]) next = i;
+    add(w, listed > 0 ? ", " : counted == 1 ? " node " : " nodes ");
+    add_node(w, s, next);
+    value[next] = -1.0;
+  }
+  if (counted > listed) add(w, " and %d more", counted - listed);
+  return counted;
+}
+
+/* ---- misfit ------------------------------------------------------------- */
+
+status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
+                      const double *u, const double *r, char *text,
+                      size_t size) {
+  status st = OK;
+  words w = {text, size};
+  pair p = {0};
+  double *value = NULL, scale = contact_scale(cp), most = 0.0;
+  text[0] = '\0';
+  NEW(value, cp->n);
+  TRY(pair_new(cp->n, cp->m, &p));
+  pair_set(cp, u, r, &p);
+  for (int dof = 0; dof < cp->m; ++dof) {
+    double miss = fabs(p.q[dof] - r[dof]);
+    value[dof / cp->dim] = fmax(value[dof / cp->dim], miss);
+    if (isnan(miss)) goto done;
+    most = fmax(most, miss);
+  }
+  if (!(most > MISFIT * scale)) goto done;
+  add(&w, "the contact conditions are missed most at");
+  add_nodes(&w, surface, value);
+done:
+  pair_free(&p);
+  memory_free(value);
+  return st;
+}
+
+/* ---- motion that nothing resists ---------------------------------------- */
+
+/* v[m]: the motion; *outcome of complementary pivoting. */
+static status find_motion(const contact_problem *cp, double *v, outcome *end) {
+  status st = OK;
+  _Alignas(16) char param[PARAM_SIZE] = {0};
+  const solver_ops *lemke = solver_find("lemke");
+  const solver_control control = {.tol = 1e-8};
+  solver_report rep = {.outcome = RUNNING};
+  void *work = NULL;
+  double *u = NULL, *r = NULL;
+  *end = RUNNING;
+  if (lemke == NULL || cp->A == NULL || cp->n > LARGEST) goto done;
+  NEW(u, cp->m);
+  NEW(r, cp->m);
+  option_defaults(lemke->options, param);
+  TRY(lemke->setup(cp, param, &work));
+  TRY(lemke->solve(cp, param, work, &control, u, r, &rep));
+  *end = rep.outcome;
+  const double *ray = lemke_ray(work);
+  if (rep.outcome == STOPPED_RAY && ray != NULL)
+    memcpy(v, ray, (size_t)cp->m * sizeof *v);
+  else if (rep.outcome == STOPPED_RAY)
+    *end = STOPPED_STAGNATION;
+done:
+  if (work != NULL) lemke->release(work);
+  memory_free(u);
+  memory_free(r);
+  return st;
+}
+
+/* Nodes that open, and those that only slide. */
+static status add_moving(const words *w, const verdict_scene *s,
+                         const double *v) {
+  status st = OK;
+  int dim = s->cp->dim, opening = 0;
+  double *open = NULL, *slide = NULL, most = 0.0;
+  NEW(open, s->cp->n);
+  NEW(slide, s->cp->n);
+  for (int dof = 0; dof < s->cp->m; ++dof) most = fmax(most, fabs(v[dof]));
+  for (int i = 0; i < s->cp->n; ++i) {
+    open[i] = fmax(0.0, -v[dim * i]);
+    for (int k = 1; k < dim; ++k) slide[i] = hypot(slide[i], v[dim * i + k]);
+    if (open[i] >= PART * most)
+      slide[i] = 0.0;
+    else
+      open[i] = 0.0;
+    if (slide[i] < PART * most) slide[i] = 0.0;
+    opening += open[i] > 0.0;
+  }
+  add(w, "nothing stops a motion in which contact");
+  if (opening > 0) {
+    add_nodes(w, s->surface, open);
+    add(w, opening == 1 ? " leaves the obstacle" : " leave the obstacle");
+  }
+  int before = opening;
+  for (int i = 0; i < s->cp->n; ++i)
+    if (slide[i] > 0.0) {
+      if (before > 0) add(w, " and contact");
+      int n = add_nodes(w, s->surface, slide);
+      add(w, n == 1 ? " slides" : " slide");
+      break;
+    }
+done:
+  memory_free(open);
+  memory_free(slide);
+  return st;
+}
+
+static const char *card_of(const load *l) {
+  switch ((load_kind)l->kind) {
+    case LOAD_PRESSURE:
+    case LOAD_TRACTION:
+      return "*DSLOAD";
+    case LOAD_POINT:
+      return "*CLOAD";
+    default:
+      return "*DLOAD";
+  }
+}
+
+static double dot(size_t n, const double *a, const double *b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < n; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/* Forces of load k alone, F[n_dof]. */
+static status forces_of(const verdict_scene *s, int k, double *F) {
+  step one = *s->step;
+  one.loads.n = 1;
+  one.loads.item = &s->step->loads.item[k];
+  return load_forces(s->m, s->msh, &one, s->t, F);
+}
+
+/* The loads that do work on the motion u[n_dof] of the body. */
+static status add_loads(const words *w, const verdict_scene *s, const double *u,
+                        double *F) {
+  status st = OK;
+  size_t n = (size_t)s->msh->dim * (size_t)s->msh->n_node;
+  int listed = 0;
+  double sum[3] = {0.0};
+  TRY(load_forces(s->m, s->msh, s->step, s->t, F));
+  double work = dot(n, F, u);
+  for (size_t i = 0; i < n; ++i) sum[i % (size_t)s->msh->dim] += F[i];
+  for (int k = 0; k < s->step->loads.n && listed < LISTED; ++k) {
+    const load *l = &s->step->loads.item[k];
+    TRY(forces_of(s, k, F));
+    if (!(dot(n, F, u) > PART * fabs(work))) continue;
+    add(w, listed++ == 0 ? ", driven by " : ", ");
+    add(w, "%s on %s (line %d)", card_of(l), l->group, l->at.line_no);
+  }
+  add(w, "; resultant of all loads (");
+  for (int k = 0; k < s->msh->dim; ++k)
+    add(w, "%s%.6g", k > 0 ? ", " : "", sum[k]);
+  add(w, ")");
+done:
+  return st;
+}
+
+/* The whole body follows the contact nodes without load. */
+static status add_drive(const words *w, const verdict_scene *s,
+                        const double *v) {
+  status st = OK;
+  size_t n = (size_t)s->msh->dim * (size_t)s->msh->n_node;
+  double *F = NULL, *u = NULL, *f_c = NULL;
+  NEW(F, n);
+  NEW(u, n);
+  NEW(f_c, s->cp->m);
+  TRY(condense_load(s->c, F, NULL, f_c));
+  TRY(condense_recover(s->c, v, u));
+  TRY(add_loads(w, s, u, F));
+done:
+  memory_free(F);
+  memory_free(u);
+  memory_free(f_c);
+  return st;
+}
+
+/* A load or gap that is no number: which node. */
+static int add_bad_number(const words *w, const verdict_scene *s) {
+  for (int dof = 0; dof < s->cp->m; ++dof) {
+    int i = dof / s->cp->dim;
+    int bad_load = !isfinite(s->cp->f[dof]);
+    if (!bad_load && isfinite(s->cp->gap[i])) continue;
+    add(w, "the %s of contact node ", bad_load ? "load" : "gap");
+    add_node(w, s->surface, i);
+    add(w, " is not a finite number");
+    return 1;
+  }
+  return 0;
+}
+
+status verdict_text(const verdict_scene *s, char *text, size_t size) {
+  status st = OK;
+  words w = {text, size};
+  outcome end = RUNNING;
+  double *v = NULL;
+  text[0] = '\0';
+  if (add_bad_number(&w, s)) goto done;
+  NEW(v, s->cp->m);
+  TRY(find_motion(s->cp, v, &end));
+  if (end == STOPPED_RAY) {
+    TRY(add_moving(&w, s, v));
+    TRY(add_drive(&w, s, v));
+  } else if (end == CONVERGED) {
+    add(&w, "METHOD=LEMKE of *SOLVER finds an equilibrium");
+  } else {
+    TRY(verdict_misfit(s->cp, s->surface, s->u, s->r, text, size));
+  }
+done:
+  memory_free(v);
+  return st;
+}

@@ -1,0 +1,36 @@
+/*
+ * Why there is no equilibrium, in words: the contact nodes that move away and
+ * the loads that drive them, or the nodes where the contact conditions are
+ * missed most.
+ */
+#ifndef PROTIS_ACCURACY_VERDICT_H
+#define PROTIS_ACCURACY_VERDICT_H
+
+#include "contact/surface.h"
+#include "fem/fem.h"
+#include "model/model.h"
+
+typedef struct verdict_scene {
+  const model *m;
+  const mesh *msh;
+  const step *step;
+  double t; /* s                                                              */
+  const contact_surface *surface;
+  const contact_problem *cp; /* with A                                        */
+  const double *u, *r;       /* [m] what the solver left                      */
+  condensed *c; /* the load condensed last is lost                            */
+} verdict_scene;
+
+/*
+ * A clause about the problem that has not been solved, "" if nothing is known.
+ * A motion that nothing resists is looked for by complementary pivoting, up to
+ * 2000 contact nodes. Errors: ERR_MEMORY.
+ */
+status verdict_text(const verdict_scene *s, char *text, size_t size);
+/* The nodes where the conditions are missed most, as such a clause; "" if the
+ * numbers do not tell. */
+status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
+                      const double *u, const double *r, char *text,
+                      size_t size);
+
+#endif
