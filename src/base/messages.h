@@ -358,7 +358,13 @@
   X(4013, WARNING, "mesh too coarse for the nonlocal average",               \
     "LAW=NONLOCAL is accurate to 1 % where the edges of the contact are at " \
     "most RADIUS/4 long; nodes farther than RADIUS from all others have "    \
-    "local friction. Refine the contact, or raise RADIUS.")
+    "local friction. Refine the contact, or raise RADIUS.")                  \
+  X(4014, ERROR, "initial displacements are not compatible",                 \
+    "They must be in equilibrium with the loads at time 0, under the "       \
+    "unilateral and the friction condition (CPR98 3.3). Loads without "      \
+    "AMPLITUDE= start from zero: one that is there at once has an amplitude "\
+    "or an expression of t. INCOMPATIBLE=RELAX takes the equilibrium of "    \
+    "time 0 that is next to them.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \
@@ -368,7 +374,11 @@
     "The message names the dataset. The layout is that of FCLIB: "           \
     "/fclib_local with spacedim, W, vectors/q, vectors/mu, or "              \
     "/fclib_global with spacedim, M, H, vectors/f, w, mu. As text: n, the "  \
-    "matrix by rows, q.")
+    "matrix by rows, q.")                                                    \
+  X(5003, ERROR, "end of another run cannot be the start",                   \
+    "FILE= of *INITIAL CONDITIONS is the JOB.h5 of a run that ended, on the "\
+    "same mesh; the name is relative to the deck. Write the results of this "\
+    "run elsewhere if both have one name.")
 /* clang-format on */
 
 #endif

@@ -18,6 +18,7 @@
   X(ORDERING,    "ordering and symbolic factor")           \
   X(FACTOR,      "factorisation")                          \
   X(CONDENSE,    "condensed stiffness")                    \
+  X(START,       "initial state")                          \
   X(LOAD,        "loads")                                  \
   X(LIMIT,       "sliding limit")                          \
   X(NONLOCAL,    "nonlocal average")                       \

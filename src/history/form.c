@@ -98,6 +98,16 @@ done:
   return st;
 }
 
+status forms_given(run *r, double t, double *given) {
+  status st = OK;
+  const forms *f = r->forms;
+  for (int i = 0; i < r->n; ++i) given[i] = -1.0;
+  TRY(set_forces(r, t));
+  for (int k = 0; k < f->n; ++k) given[f->node[k]] = f->force[k];
+done:
+  return st;
+}
+
 /* *cp with the given normal forces in the place of the unilateral condition;
  * r->now holds the start values. */
 static status take_given(run *r, contact_problem *cp) {

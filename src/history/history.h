@@ -8,6 +8,7 @@
 #include "accuracy/solutions.h"
 #include "fem/fem.h"
 #include "model/model.h"
+#include "start/start.h"
 
 /* Forces and moments of one contact: of the obstacle on the body. */
 typedef struct contact_total {
@@ -48,7 +49,9 @@ typedef struct energies {
                           obstacles, and by the trapezoidal rule gaps that open
                           or close within an increment                        */
   double thermal;      /* J, work of the stresses on thermal strain so far    */
-  double defect;  /* J, external + normal - friction - thermal - strain       */
+  double start;   /* J, strain energy the run starts with                     */
+  double defect;  /* J, external + normal - friction - thermal - (strain -
+                     start)                                                   */
   double largest; /* J, largest magnitude of the five so far: the scale of
                      the defect, also once all is unloaded                    */
 } energies;
@@ -127,6 +130,8 @@ typedef struct history_sink {
   void *ctx;
   status (*ready)(void *ctx, const setup_facts *facts,
                   const contact_surface *surface);
+  /* *INITIAL CONDITIONS, TYPE=DISPLACEMENT: u_0 and its defect. */
+  status (*start)(void *ctx, const start_report *report);
   status (*increment)(void *ctx, const state *s);
   void (*iteration)(void *ctx, const solver_step *s); /* for .cvg             */
   /* An attempt that failed and is cut or given up. */

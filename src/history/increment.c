@@ -53,7 +53,8 @@ done:
  */
 static status set_stick_position(run *r) {
   status st = OK;
-  int dim = r->msh->dim, fresh = r->step->kind == STEP_STATIC;
+  int dim = r->msh->dim;
+  int fresh = r->step->kind == STEP_STATIC && !r->relaxing;
   if (r->ut0 == NULL) goto done;
   for (int i = 0; i < r->n; ++i)
     for (int a = 1; a < dim; ++a) {
@@ -109,9 +110,8 @@ static status load_at(run *r, double t) {
   return st;
 }
 
-static status solve_contact(run *r, double t) {
+static status pose_contact(run *r, double t) {
   status st = OK;
-  int iterations = 0;
   timer_enter(STAGE_SURFACE);
   st = surface_gap(r->surface, &r->input, t, r->gap, r->side_gap);
   memcpy(r->now.motion, r->old.motion, (size_t)r->n_c * sizeof *r->now.motion);
@@ -121,23 +121,32 @@ static status solve_contact(run *r, double t) {
   TRY(limit_update(r, t));
   TRY(set_stick_position(r));
   set_problem(r);
-  do {
-    TRY(forms_solve(r));
-    iterations += r->report.iterations;
-  } while (limit_follow_zone(r));
-  r->report.iterations = iterations;
 done:
   return st;
 }
 
-status increment_solve(run *r, double t) {
+status increment_pose(run *r, double t) {
   status st = OK;
   r->now.t = t;
   r->report = (solver_report){.outcome = CONVERGED, .solver = "linear"};
   TRY(load_at(r, t));
   TRY(thermal_update(r));
   TRY(condense_load(r->c, thermal_load(r), r->ud, r->f));
-  if (r->n > 0) TRY(solve_contact(r, t));
+  if (r->n > 0) TRY(pose_contact(r, t));
+done:
+  return st;
+}
+
+status increment_solve(run *r, double t) {
+  status st = OK;
+  int iterations = 0;
+  TRY(increment_pose(r, t));
+  while (r->n > 0) {
+    TRY(forms_solve(r));
+    iterations += r->report.iterations;
+    r->report.iterations = iterations;
+    if (!limit_follow_zone(r)) break;
+  }
   TRY(condense_recover(r->c, r->now.uc, r->now.u));
 done:
   return st;

@@ -31,7 +31,8 @@ static double motion_over(const run *r, int k) {
 /* What friction acts against: in a static problem the motion from the origin
  * (CPR98, P2), else that of the increment. */
 static double slip_of(const run *r, int k) {
-  if (r->step->kind == STEP_STATIC) return r->now.uc[k] - r->now.motion[k];
+  if (r->step->kind == STEP_STATIC && !r->relaxing)
+    return r->now.uc[k] - r->now.motion[k];
   return motion_over(r, k);
 }
 
@@ -180,7 +181,8 @@ static void find_energies(run *r) {
   e.normal += work + friction;
   e.thermal += thermal_work(r);
   e.strain = domain_strain_energy(&r->d, b->u);
-  e.defect = e.external + e.normal - e.friction - e.thermal - e.strain;
+  e.defect =
+      e.external + e.normal - e.friction - e.thermal - (e.strain - e.start);
   const double part[] = {e.external, e.normal, e.friction, e.thermal, e.strain};
   for (int k = 0; k < 5; ++k) e.largest = fmax(e.largest, fabs(part[k]));
   r->now.energy = e;
@@ -198,8 +200,16 @@ status result_evaluate(run *r, int due) {
   if (r->m->n_contact > 0) find_totals(r);
   find_torques(r);
   find_loops(r);
-  find_energies(r);
+  if (r->relaxing)
+    result_start(r, &r->now);
+  else
+    find_energies(r);
   return OK;
+}
+
+void result_start(const run *r, equilibrium *e) {
+  double strain = domain_strain_energy(&r->d, e->u);
+  e->energy = (energies){.strain = strain, .start = strain, .largest = strain};
 }
 
 void result_accept(run *r) {

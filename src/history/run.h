@@ -81,6 +81,8 @@ typedef struct run {
   contact_loop *loops;     /* [n_contact] as in state, or NULL               */
   int n_zone, cap_zone;
   contact_zone *zones; /* [n_zone]                                          */
+  start_report first;  /* of *INITIAL CONDITIONS, TYPE=DISPLACEMENT  */
+  int relaxing; /* the increment at hand leads the start to equilibrium */
   solver_report report;
   error_bound error;
   error_share mesh_error, time_error;
@@ -121,6 +123,8 @@ double thermal_work(run *r);
 
 /* increment.c: the equilibrium at time t into r->now; read r->report. */
 status increment_solve(run *r, double t);
+/* Loads and contact problem of time t without solving. */
+status increment_pose(run *r, double t);
 
 /* limit.c: the sliding limit at time t into r->limit, jumps into r->note. */
 status limit_update(run *r, double t);
@@ -137,6 +141,9 @@ void limit_free(run *r);
 status forms_new(run *r);
 /* r->cp solved in the form asked for, from r->old into r->now. */
 status forms_solve(run *r);
+/* Given normal forces of the contact nodes at t, N, negative where there is
+ * none: given[n]. */
+status forms_given(run *r, double t, double *given);
 void forms_free(forms *f); /* accepts NULL                                    */
 
 /* zones.c: the zones of r->now into r->zones. ERR_MEMORY. */
@@ -166,6 +173,8 @@ status jump_check(run *r, double t);
 /* Other solutions than that of r->now into r->solutions, if asked
  * for. ERR_DECK: CHECK=ALL is not possible. */
 status check_increment(run *r);
+/* Energies of e as those the run starts with. */
+void result_start(const run *r, equilibrium *e);
 /* r->now becomes r->old. */
 void result_accept(run *r);
 

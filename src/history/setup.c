@@ -148,6 +148,7 @@ static void free_surface(run *r) {
 }
 
 void run_free(run *r) {
+  start_report_free(&r->first);
   free_surface(r);
   space_recovery_free(r->recovery);
   memory_free(r->elem_error);

@@ -261,9 +261,16 @@ static void check_load(const model *m, const mesh *msh, load *l) {
 }
 
 static void check_initials(model *m, const mesh *msh) {
-  for (int i = 0; i < m->n_initial; ++i)
-    m->initials[i].group_id = find_group_of(m, msh, m->initials[i].group,
-                                            msh->dim, &m->initials[i].at);
+  for (int i = 0; i < m->n_initial; ++i) {
+    initial *c = &m->initials[i];
+    int nodal = c->type == INITIAL_DISPLACEMENT;
+    c->group_id = nodal ? find_group(m, msh, c->group, &c->at)
+                        : find_group_of(m, msh, c->group, msh->dim, &c->at);
+    if (c->component >= msh->dim)
+      message_add(m->log, P2025, &c->at,
+                  "component %d on group %s, but the mesh is %d-D",
+                  c->component + 1, c->group, msh->dim);
+  }
 }
 
 static void check_prints(const model *m, const mesh *msh, step *s) {

@@ -241,6 +241,16 @@ static void reason_nonlocal(const model *m, char *text, size_t size) {
     snprintf(text, size, "no friction law with an average");
 }
 
+static int has_start(const model *m) { return m->start.given; }
+
+static void reason_start(const model *m, char *text, size_t size) {
+  if (m->start.given)
+    snprintf(text, size, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, line %d",
+             m->start.at.line_no);
+  else
+    snprintf(text, size, "no *INITIAL CONDITIONS, TYPE=DISPLACEMENT");
+}
+
 static void reason_output(const model *m, int table, char *text, size_t size) {
   place at;
   if (first_print(m, table, &at) != NULL)
@@ -352,6 +362,7 @@ static const struct {
     [EFFECT_BIT_FRICTION] = {has_friction, reason_friction},
     [EFFECT_BIT_GIVEN] = {has_given, reason_given},
     [EFFECT_BIT_NONLOCAL] = {has_average, reason_nonlocal},
+    [EFFECT_BIT_START] = {has_start, reason_start},
     [EFFECT_BIT_HISTORY] = {has_slip_history, reason_history},
     [EFFECT_BIT_INELASTIC] = {has_inelastic, reason_inelastic},
     [EFFECT_BIT_THERMAL] = {has_thermal, reason_thermal},

@@ -95,7 +95,8 @@ typedef struct expansion_param {
   double zero;
 } expansion_param;
 typedef struct initial_param {
-  int type;
+  int type, incompatible;
+  const char *file;
 } initial_param;
 typedef struct section_param {
   const char *elset, *material;

@@ -81,6 +81,12 @@ static const option expansion_options[] = {
 static const option initial_options[] = {
   OPTION_CHOICE(initial_param, type, "TYPE", INITIAL_WORDS, NULL,
                 "what the lines give"),
+  OPTION_NAME(initial_param, file, "FILE", OPTION_ABSENT,
+              "of displacements: JOB.h5 of a run on the same mesh; its end is "
+              "the start, lines win over it"),
+  OPTION_CHOICE(initial_param, incompatible, "INCOMPATIBLE", "REFUSE|RELAX",
+                "REFUSE", "displacements out of equilibrium at time 0 (CPR98 "
+                "3.3): an error, or led to it as increment 0"),
   OPTION_END};
 static const option section_options[] = {
   OPTION_NAME(section_param, elset, "ELSET", NULL, "group of elements"),
@@ -248,8 +254,8 @@ const keyword keyword_table[] = {
    "mu or g: number, expression of x y z t, or pairs with TABLE=",
    "friction law of a contact; without it the contact is frictionless. In a "
    "step it takes the place of the old one from there on, at once"},
-  {"INITIAL CONDITIONS", IN_MODEL, OPTIONS(initial), NULL, apply_initial, 1,
-   ANY, "TEMPERATURE group of elements, value",
+  {"INITIAL CONDITIONS", IN_MODEL, OPTIONS(initial), NULL, apply_initial, 0,
+   ANY, "TEMPERATURE group of elements, value. DISPLACEMENT group, dof, value",
    "state before the first step; what no line gives is zero"},
   {"CONTACT FORCE", IN_MODEL, OPTIONS(force), NULL, apply_contact_force, 0,
    ANY, "p >= 0, force/length^2: number, expression of x y z t, or pairs with "

@@ -142,11 +142,21 @@ typedef struct initial {
   int type; /* initial_type                                                  */
   const char *group;
   int group_id;
+  int component; /* of a displacement, from 0                                 */
   quantity value;
   place at;
 } initial;
-typedef enum { INITIAL_TEMPERATURE } initial_type;
-#define INITIAL_WORDS "TEMPERATURE"
+typedef enum { INITIAL_TEMPERATURE, INITIAL_DISPLACEMENT } initial_type;
+#define INITIAL_WORDS "TEMPERATURE|DISPLACEMENT"
+
+/* *INITIAL CONDITIONS, TYPE=DISPLACEMENT: u_0, tested for compatibility. */
+typedef struct start_card {
+  int given;
+  int relax;             /* 1: an incompatible start is relaxed, 0: refused   */
+  const char *file;      /* JOB.h5 of another run, or NULL                    */
+  const char *file_name; /* as the deck has it                                */
+  place at, file_at;
+} start_card;
 
 typedef struct print_request { /* one table of *PRINT                         */
   int table;                   /* one bit of PRINT_*                          */
@@ -218,6 +228,7 @@ typedef struct model {
   load_list supports; /* *BOUNDARY before the first step                      */
   int n_initial, cap_initial;
   initial *initials; /* [n_initial] in the order of the deck                 */
+  start_card start;
   step *steps;
   unsigned effects;  /* bits EFFECT_*, set by model_check                    */
   int dim, ns;       /* from the mesh                                        */
@@ -238,6 +249,7 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
   X(NONLOCAL,  "nonlocal average")                                           \
   X(GIVEN,     "given contact forces")                                       \
   X(HISTORY,   "history of slip")                                            \
+  X(START,     "initial state")                                              \
   X(INELASTIC, "inelastic strain")                                           \
   X(THERMAL,   "thermal strain")                                             \
   X(BODY,      "body forces")                                                \

@@ -100,6 +100,12 @@ static status sink_ready(void *ctx, const setup_facts *facts,
   return st;
 }
 
+static status sink_start(void *ctx, const start_report *report) {
+  output *o = ctx;
+  job j = job_of(o);
+  return listing_start(&j, report, &o->lst);
+}
+
 /* Wall clock, s; only its differences count. */
 static double clock_now(void) {
   struct timespec now;
@@ -134,18 +140,25 @@ static status write_fields(output *o, const state *s) {
   return st;
 }
 
-/* The file of a condensed problem is no result: it must stay. */
+static int same_file(const char *a, const char *b) {
+  struct stat one, other;
+  if (a == NULL || stat(a, &one) != 0 || stat(b, &other) != 0) return 0;
+  return one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+}
+
+/* A file the deck reads is no result: it must stay. */
 static status spare_input(const output *o, const char *path) {
   status st = OK;
-  struct stat input, result;
-  if (o->m->problem_file == NULL) goto done;
-  if (stat(o->m->problem_file, &input) != 0 || stat(path, &result) != 0)
-    goto done;
-  if (input.st_dev == result.st_dev && input.st_ino == result.st_ino)
-    FAIL(ERR_DECK,
-         "deck line %d: *CONDENSED PROBLEM: the results would overwrite its "
-         "file %s; name the deck or the file otherwise, or use -o",
-         o->m->problem_at.line_no, o->m->problem_file);
+  const model *m = o->m;
+  static const char advice[] =
+      "the results would overwrite its file; name the deck or the file "
+      "otherwise, or use -o";
+  if (same_file(m->problem_file, path))
+    FAIL(ERR_DECK, "deck line %d: *CONDENSED PROBLEM, FILE=%s: %s",
+         m->problem_at.line_no, m->problem_file, advice);
+  if (same_file(m->start.file, path))
+    FAIL(ERR_DECK, "deck line %d: *INITIAL CONDITIONS, FILE=%s: %s",
+         m->start.file_at.line_no, m->start.file, advice);
 done:
   return st;
 }
@@ -222,8 +235,8 @@ done:
 }
 
 history_sink output_sink(output *o) {
-  return (history_sink){o, sink_ready, sink_increment, sink_iteration,
-                        sink_rejected};
+  return (history_sink){
+      o, sink_ready, sink_start, sink_increment, sink_iteration, sink_rejected};
 }
 
 /* ---- open and close --------------------------------------------------- */

@@ -103,7 +103,8 @@ static void make_model(made_up *run, int n_increment) {
                         .obstacle_name = "FLOOR",
                         .has_axis = 1,
                         .group_id = group_id(run->msh, "BOTTOM")};
-  run->body = (section){.elset = "BODY", .material_name = "STEEL"};
+  run->body =
+      (section){.elset = "BODY", .material_name = "STEEL", .material_id = -1};
   run->body.kin = m->dim == 3 ? SOLID_3D : PLANE_STRAIN;
   m->job = (char *)"block";
   m->title = "a made-up <block> & \"more\"";

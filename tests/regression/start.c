@@ -1,0 +1,247 @@
+/*
+ * Initial displacements: a compatible start goes on as if the load had led to
+ * it, an incompatible one is refused with its defect in N or relaxed; the end
+ * of another run is a start on the same mesh.
+ *
+ * Unit square, nu = 0, E = 1000, G = 500, pressed by 10 on a floor with
+ * mu = 0.4: u_y = -0.01 y.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Cards before the steps, the steps; the exit code. */
+static int write_and_run(job *j, int n, const char *before, const char *steps) {
+  job_copy(j, "tests/regression/mesh/square.geo");
+  char deck[64];
+  snprintf(deck, sizeof deck, "%s.inp", j->name);
+  job_write(j, deck,
+            "*PARAMETER\nN = %d\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=F, LAW=COULOMB\n0.4\n%s%s",
+            n, before, steps);
+  return job_run(j, "--no-timing");
+}
+
+static int listing_has(const job *j, const char *text) {
+  char *lst = job_file(j, "lst");
+  ck_assert_ptr_nonnull(lst);
+  int found = strstr(lst, text) != NULL;
+  free(lst);
+  return found;
+}
+
+#define PRINT "*PRINT, NODES, CONTACT, ENERGY\n*END STEP\n"
+/* The load is there at time 0 and stays; then the top is sheared by it. */
+#define HOLD                                                    \
+  "*STEP\n*QUASISTATIC\n0.5, 1.\n*DSLOAD\nTOP, P, \"10+0*t\"\n" \
+  "TOP, TX, 2.\nRIGHT, TY, 2.\nLEFT, TY, -2.\n" PRINT
+
+#define PRESSED                              \
+  "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n" \
+  "BODY, 2, \"-0.01*y\"\n"
+
+/* Sheared by 2 < mu p: stick, u_x = 2 y / 500. The strain energy starts with
+ * 1/2 p^2 / E = 0.05, and the balance counts from there. */
+START_TEST(compatible_start_goes_on) {
+  job j = job_begin("start");
+  ck_assert_int_eq(write_and_run(&j, 4, PRESSED, HOLD), 0);
+  ck_assert(listing_has(&j, "\n  compatible\n"));
+  for (int k = 0; k < 2; ++k) {
+    dat u = job_table(&j, "NODES", k), e = job_table(&j, "ENERGY", k);
+    for (int i = 0; i < u.n_row; ++i) {
+      double y = dat_at(&u, i, "y");
+      ck_assert_double_eq_tol(dat_at(&u, i, "u_y"), -0.01 * y, 1e-12);
+      ck_assert_double_eq_tol(dat_at(&u, i, "u_x"), (k + 1) * y / 500, 1e-12);
+    }
+    double tau = k + 1;
+    ck_assert_double_eq_tol(dat_at(&e, 0, "strain_energy"),
+                            0.05 + tau * tau / 1000, 1e-12);
+    ck_assert_double_eq_tol(dat_at(&e, 0, "external_work"), tau * tau / 1000,
+                            1e-12);
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
+    dat_free(&u);
+    dat_free(&e);
+  }
+  job_end(&j);
+}
+END_TEST
+
+/* Where the foot was dragged to before: it sticks there, which the friction of
+ * a start at the origin would not know. */
+START_TEST(start_remembers_where_the_foot_is) {
+  job j = job_begin("start");
+  ck_assert_int_eq(
+      write_and_run(&j, 4, PRESSED "BODY, 1, \"0.003 + 1*y/500\"\n",
+                    "*STEP\n*QUASISTATIC\n1., 1.\n*DSLOAD\n"
+                    "TOP, P, \"10+0*t\"\nTOP, TX, \"1+0*t\"\n"
+                    "RIGHT, TY, \"1+0*t\"\nLEFT, TY, \"-1+0*t\"\n" PRINT),
+      0);
+  dat c = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < c.n_row; ++i) {
+    ck_assert_double_eq_tol(dat_at(&c, i, "u_t"), 0.003, 1e-12);
+    ck_assert_double_eq_tol(dat_at(&c, i, "slip"), 0, 1e-12);
+    ck_assert_double_eq_tol(dat_at(&c, i, "traction_t"), -1, 1e-8);
+  }
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+#define STEP(loads) "*STEP\n*QUASISTATIC\n0.5, 1.\n" loads PRINT
+
+/* Each condition broken alone; forces of uniform stress on nodes 1/4 apart. */
+START_TEST(incompatible_start_is_refused_with_its_defect) {
+  static const struct {
+    const char *lines, *steps, *kind;
+    double worst; /* N, 0: depends on the mesh                                */
+  } cases[] = {   /* The pressure of 10 is not there yet. */
+               {"BODY, 2, \"-0.01*y\"\n",
+                STEP("*BOUNDARY\nTOP, 1\n*DSLOAD\nTOP, P, 10.\n"),
+                "not in balance with the loads", 2.5},
+               /* Stretched by 10 towards the top: the floor would pull. */
+               {"BODY, 2, \"0.01*y\"\n",
+                STEP("*BOUNDARY\nTOP, 1\n*DSLOAD\nTOP, P, \"-10+0*t\"\n"),
+                "unilateral condition not met", 2.5},
+               /* Sheared by 5, mu p = 4. */
+               {"BODY, 2, \"-0.01*y\"\nBODY, 1, \"5*y/500\"\n",
+                STEP("*DSLOAD\nTOP, P, \"10+0*t\"\nTOP, TX, \"5+0*t\"\n"
+                     "RIGHT, TY, \"5+0*t\"\nLEFT, TY, \"-5+0*t\"\n"),
+                "tangential force above the sliding limit", 0.25},
+               {"", STEP("*BOUNDARY\nTOP, 1, 1, \"0.002+0*t\"\nTOP, 2\n"),
+                "not at the place of its support", 0},
+               {"BODY, 2, -0.001\n", STEP("*BOUNDARY\nTOP, 1\n"),
+                "unilateral condition not met", 0}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char lines[300];
+    job j = job_begin("start");
+    snprintf(lines, sizeof lines, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n%s",
+             cases[k].lines);
+    int code = write_and_run(&j, 4, lines, cases[k].steps);
+    ck_assert_msg(code == 2, "case %zu: exit %d: %s", k, code, j.errors);
+    ck_assert_ptr_nonnull(strstr(j.errors, "P4014"));
+    ck_assert_msg(strstr(j.errors, cases[k].kind) != NULL, "%s", j.errors);
+    ck_assert(listing_has(&j, "\n  REFUSED\n"));
+    if (cases[k].worst > 0)
+      ck_assert_double_eq_tol(strtod(strstr(j.errors, "defect ") + 7, NULL),
+                              cases[k].worst, 6e-3);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* Sheared too far: relaxed, the foot slips until sigma_xy = mu p = 4, that is
+ * to 0.01 - 4/500, and stays. */
+START_TEST(incompatible_start_is_relaxed) {
+  static const char *const procedures[] = {"*QUASISTATIC\n0.5, 1.\n",
+                                           "*STATIC\n"};
+  for (int p = 0; p < 2; ++p) {
+    char steps[400];
+    job j = job_begin("start");
+    snprintf(steps, sizeof steps,
+             "*STEP\n%s*BOUNDARY\nTOP, 1, 1, \"0.01+0*t\"\n*DSLOAD\n"
+             "TOP, P, \"10+0*t\"\nRIGHT, TY, \"4+0*t\"\n"
+             "LEFT, TY, \"-4+0*t\"\n" PRINT,
+             procedures[p]);
+    ck_assert_int_eq(write_and_run(&j, 4,
+                                   "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, "
+                                   "INCOMPATIBLE=RELAX\nBODY, 2, \"-0.01*y\"\n"
+                                   "BODY, 1, \"0.01*y\"\n",
+                                   steps),
+                     0);
+    ck_assert(listing_has(&j, "step 1  increment 0  time 0.0"));
+    for (int k = 0; k < 2; ++k) {
+      dat c = job_table(&j, "CONTACT", k), e = job_table(&j, "ENERGY", k);
+      for (int i = 0; i < c.n_row; ++i) {
+        ck_assert_double_eq_tol(dat_at(&c, i, "u_t"), 0.002, 1e-10);
+        ck_assert_double_eq_tol(dat_at(&c, i, "traction_t"), -4, 1e-8);
+      }
+      ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
+      ck_assert_double_eq_tol(dat_at(&e, 0, "strain_energy"),
+                              0.05 + 16.0 / 1000, 1e-10);
+      ck_assert_double_eq_tol(dat_at(&e, 0, "external_work"), 0, 1e-12);
+      dat_free(&c);
+      dat_free(&e);
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
+#define DRAG(u) "*BOUNDARY\nTOP, 1, 1, " u "\n"
+
+/* Dragged one way and back: in one run of two steps, and in two runs, the
+ * second from the end of the first. */
+START_TEST(end_of_a_run_is_a_start) {
+  job one = job_begin("one"), two = job_begin("two");
+  const char *first =
+      "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, \"10*min(1, t)\"\n" DRAG(
+          "0.01") PRINT;
+  const char *back = "*STEP\n*QUASISTATIC\n0.25, 1.\n" DRAG("-0.01") PRINT;
+  char both[1000];
+  snprintf(both, sizeof both, "%s%s", first, back);
+  ck_assert_int_eq(write_and_run(&one, 6, "", both), 0);
+  ck_assert_int_eq(write_and_run(&two, 6, "", first), 0);
+  snprintf(two.name, sizeof two.name, "back");
+  int code = write_and_run(
+      &two, 6, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, FILE=two.h5\n",
+      "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, \"10+0*t\"\n" DRAG(
+          "-0.01") PRINT);
+  ck_assert_msg(code == 0, "exit %d: %s", code, two.errors);
+  ck_assert(listing_has(&two, "initial state: end of two.h5, time 1.0"));
+  for (int k = 0; k < 4; ++k) {
+    dat a = job_table(&one, "NODES", 4 + k), b = job_table(&two, "NODES", k);
+    dat e = job_table(&two, "ENERGY", k);
+    for (int i = 0; i < a.n_row; ++i) {
+      ck_assert_double_eq_tol(dat_at(&a, i, "u_x"), dat_at(&b, i, "u_x"),
+                              1e-10);
+      ck_assert_double_eq_tol(dat_at(&a, i, "u_y"), dat_at(&b, i, "u_y"),
+                              1e-10);
+    }
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-8);
+    dat_free(&a);
+    dat_free(&b);
+    dat_free(&e);
+  }
+  job_end(&one);
+  job_end(&two);
+}
+END_TEST
+
+/* Another mesh, no such file, the file of the run itself. */
+START_TEST(wrong_files_are_refused) {
+  static const struct {
+    const char *name, *file, *says;
+    int n, code;
+  } cases[] = {{"other", "first.h5", "has another mesh", 5, 2},
+               {"other", "nothing.h5", "is not there or no HDF5 file", 4, 4},
+               {"other", "other.geo", "is not there or no HDF5 file", 4, 4},
+               {"first", "first.h5", "would overwrite", 4, 2}};
+  job j = job_begin("first");
+  ck_assert_int_eq(write_and_run(&j, 4, "", STEP("*DSLOAD\nTOP, P, 10.\n")), 0);
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char lines[200];
+    snprintf(lines, sizeof lines,
+             "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, FILE=%s\n",
+             cases[k].file);
+    snprintf(j.name, sizeof j.name, "%s", cases[k].name);
+    int code = write_and_run(&j, cases[k].n, lines,
+                             STEP("*DSLOAD\nTOP, P, \"10+0*t\"\n"));
+    ck_assert_msg(code == cases[k].code, "case %zu: exit %d: %s", k, code,
+                  j.errors);
+    ck_assert_msg(strstr(j.errors, cases[k].says) != NULL, "%s", j.errors);
+  }
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("start", compatible_start_goes_on, start_remembers_where_the_foot_is,
+          incompatible_start_is_refused_with_its_defect,
+          incompatible_start_is_relaxed, end_of_a_run_is_a_start,
+          wrong_files_are_refused)
