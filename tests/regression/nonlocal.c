@@ -370,9 +370,207 @@ START_TEST(contacts_do_not_see_each_other) {
 }
 END_TEST
 
+/* ---- three dimensions, rings ------------------------------------------- */
+
+/* Box on its base, nu = 0, held tangentially: the limit is mu p W times the
+ * area, by cubature of the bump over the square base. */
+static double square_mass(double x, double y, double radius) {
+  enum { STEPS = 120 };
+  double sum = 0.0, h = 1.0 / STEPS;
+  for (int i = 0; i < STEPS; ++i)
+    for (int j = 0; j < STEPS; ++j) {
+      double a = x - (i + 0.5) * h, b = y - (j + 0.5) * h;
+      double s = (a * a + b * b) / (radius * radius);
+      if (s < 1.0) sum += exp(1.0 / (s - 1.0));
+    }
+  return sum * h * h / (0.46651239317833 * radius * radius);
+}
+
+static job run_box(const char *friction, const char *steps) {
+  job j = job_begin("box");
+  job_copy(&j, "tests/regression/mesh/cube.geo");
+  job_write(&j, "box.inp",
+            "*PARAMETER\nN = 7\nLZ = 0.3\n*MESH, FILE=cube.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n0., 0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, %s\n%s*PRINT, CONTACT, TOTALS\n*END STEP\n",
+            friction, steps);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+START_TEST(square_base_has_the_mass_of_the_kernel) {
+  job j = run_box("LAW=NONLOCAL, RADIUS=0.35\n0.3\n",
+                  "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\n*DSLOAD\n"
+                  "TOP, P, 10.\n");
+  dat d = job_table(&j, "CONTACT", -1);
+  int inside = 0, corner = 0;
+  for (int i = 0; i < d.n_row; ++i) {
+    double x = dat_at(&d, i, "x"), y = dat_at(&d, i, "y");
+    double W = dat_at(&d, i, "limit") / (0.3 * dat_at(&d, i, "f_n"));
+    double miss = W - square_mass(x, y, 0.35);
+    ck_assert_msg(fabs(miss) < 1e-3, "%g %g: %g", x, y, miss);
+    if (fabs(x - 0.5) < 0.14 && fabs(y - 0.5) < 0.14) {
+      ck_assert_double_eq_tol(W, 1.0, 1e-10);
+      ++inside;
+    }
+    corner += fabs(W - 0.25) < 1e-5;
+  }
+  ck_assert_int_gt(inside, 0);
+  ck_assert_int_eq(corner, 4);
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
+/* Every slipping node is on its cone and slips against its force. */
+START_TEST(cone_is_exact_at_any_angle) {
+  static const double angle[] = {0.3, 1.9, 4.4};
+  for (int k = 0; k < 3; ++k) {
+    char steps[300];
+    int slipping = 0;
+    snprintf(steps, sizeof steps,
+             "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 1, %.17g\nTOP, 2, 2, %.17g\n"
+             "TOP, 3, 3, -0.003\n*SOLVER, TOL=1E-12\n",
+             0.004 * cos(angle[k]), 0.004 * sin(angle[k]));
+    job j = run_box("LAW=NONLOCAL, RADIUS=0.4\n0.3\n", steps);
+    dat d = job_table(&j, "CONTACT", -1);
+    double scale = dat_max(&d, "limit");
+    for (int i = 0; i < d.n_row; ++i) {
+      double t1 = dat_at(&d, i, "f_t1"), t2 = dat_at(&d, i, "f_t2");
+      double s1 = dat_at(&d, i, "u_t1"), s2 = dat_at(&d, i, "u_t2");
+      double limit = dat_at(&d, i, "limit"), slip = hypot(s1, s2);
+      if (dat_at(&d, i, "status") != 1) continue;
+      ++slipping;
+      ck_assert_double_eq_tol(hypot(t1, t2), limit, 1e-10 * scale);
+      ck_assert_double_eq_tol(t1 * s1 + t2 * s2, -limit * slip,
+                              1e-9 * scale * slip);
+    }
+    ck_assert_int_gt(slipping, 10);
+    dat_free(&d);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* A disc of radius 1 under uniform pressure: W at the radius r is the mass of
+ * the bump in the plane within the disc. */
+START_TEST(round_base_has_the_mass_of_the_kernel) {
+  enum { STEPS = 400 };
+  block b = {40,
+             0.1,
+             0,
+             "CAX3",
+             "LAW=NONLOCAL, RADIUS=0.3\n0.3\n",
+             "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1\nTOP, 1\n*DSLOAD\n"
+             "TOP, P, 10.\n"};
+  job j = run_block(&b);
+  dat d = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < d.n_row; ++i) {
+    double r = dat_at(&d, i, "r"), sum = 0.0, h = 0.6 / STEPS;
+    double W = dat_at(&d, i, "limit") / (0.3 * dat_at(&d, i, "f_n"));
+    for (int p = 0; p < STEPS; ++p)
+      for (int q = 0; q < STEPS; ++q) {
+        double x = -0.3 + (p + 0.5) * h, y = -0.3 + (q + 0.5) * h;
+        double s = (x * x + y * y) / 0.09;
+        if (s < 1.0 && (r + x) * (r + x) + y * y < 1.0)
+          sum += exp(1.0 / (s - 1.0)) * h * h;
+      }
+    ck_assert_double_eq_tol(W, sum / (0.46651239317833 * 0.09), 2e-3);
+  }
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
+/* ---- together with other cards ----------------------------------------- */
+
+/* Given normal forces: the limit is the average of what is given. */
+START_TEST(given_forces_are_averaged) {
+  enum { N = 64 };
+  double p[N + 1];
+  job j = job_begin("given");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "given.inp",
+            "*PARAMETER\nN = %d\nLY = 0.2\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*CONTACT FORCE, CONTACT=C\n\"1 + x*x\"\n"
+            "*FRICTION, CONTACT=C, LAW=NONLOCAL, RADIUS=0.15\n0.5\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 1, 0.01\nTOP, 2, 2\n"
+            "*PRINT, CONTACT\n*END STEP\n",
+            N);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat d = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i <= N; ++i) p[i] = 1 + (double)i * i / (N * N);
+  for (int i = 0; i <= N; ++i) {
+    int row = dat_row_near(&d, "x", (double)i / N);
+    double length = (i == 0 || i == N ? 0.5 : 1.0) / N;
+    double expected = 0.5 * average_at(p, N, (double)i / N, 0.15, bump);
+    ck_assert_double_eq_tol(dat_at(&d, row, "limit") / length, expected, 2e-3);
+    ck_assert_double_eq_tol(fabs(dat_at(&d, row, "f_t")),
+                            dat_at(&d, row, "limit"), 1e-10);
+  }
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
+/* Both forms of an increment, with friction confined to the contact. */
+START_TEST(velocity_form_has_the_same_zone) {
+  static const char velocity[] =
+      "*STEP\n*QUASISTATIC, FORM=VELOCITY\n0.5, 1.\n*BOUNDARY\nRIGHT, 1\n"
+      "*DSLOAD\nTOP, P, 5.\nLEFT, P, 15.\n";
+  block b = {
+      24,    1, 0.2, "CPE3", "LAW=NONLOCAL, RADIUS=0.3, ZONE=CONTACT\n1.\n",
+      PUSHED};
+  job one = run_block(&b);
+  b.steps = velocity;
+  job two = run_block_as(&b, "velocity");
+  expect_same(&one, &two, 1e-8);
+  job_end(&one);
+  job_end(&two);
+}
+END_TEST
+
+/* Another *FRICTION in a later step: another radius, then local. */
+START_TEST(law_may_change_from_step_to_step) {
+  block b = {16,
+             1,
+             0,
+             "CPE3",
+             "LAW=NONLOCAL, RADIUS=0.5\n0.3\n",
+             PRESSED
+             "*PRINT, CONTACT\n*END STEP\n*STEP\n*STATIC\n"
+             "*FRICTION, CONTACT=C, LAW=NONLOCAL, RADIUS=0.25\n0.3\n"
+             "*PRINT, CONTACT\n*END STEP\n*STEP\n*STATIC\n"
+             "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"};
+  job j = run_block(&b);
+  for (int k = 0; k < 3; ++k) {
+    dat d = job_table(&j, "CONTACT", k);
+    static const double expected[] = {0.7027446459, 0.8770327167, 1.0};
+    int row = dat_row_near(&d, "x", 0.125);
+    ck_assert_double_eq_tol(
+        dat_at(&d, row, "limit") / (0.3 * dat_at(&d, row, "f_n")), expected[k],
+        1e-6);
+    dat_free(&d);
+  }
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
           normalized_edges_keep_a_uniform_pressure,
           limit_is_the_average_of_the_pressures,
           zone_confines_friction_to_the_contact, small_radius_is_local_friction,
           only_the_nonlocal_law_pays, mu_multiplies_the_average,
-          every_method_gives_the_same_answer, contacts_do_not_see_each_other)
+          every_method_gives_the_same_answer, contacts_do_not_see_each_other,
+          square_base_has_the_mass_of_the_kernel, cone_is_exact_at_any_angle,
+          round_base_has_the_mass_of_the_kernel, given_forces_are_averaged,
+          velocity_form_has_the_same_zone, law_may_change_from_step_to_step)
