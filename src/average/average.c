@@ -323,7 +323,7 @@ static status symmetrise(builder *b, sparse_rows *out) {
     int first = out->start[i], n = out->start[i + 1] - first;
     double by = b->share[i];
     if (n == 0) continue;
-    if (b->rule->normalized) by *= b->mass[i];
+    if (b->rule->normalized && b->mass[i] > 0.0) by *= b->mass[i];
     merge_row(b, i, out->col + first, out->val + first, &left);
     for (int k = first; k < first + n; ++k) out->val[k] /= by;
   }

@@ -542,6 +542,33 @@ START_TEST(closed_line_has_no_edge) {
 }
 END_TEST
 
+/* ---- units ------------------------------------------------------------- */
+
+START_TEST(factors_of_two_change_no_bit) {
+  static const int powers[] = {40, -33, 3};
+  for (int k = 0; k < KERNEL_COUNT; ++k)
+    for (int q = 0; q < 3; ++q) {
+      owned a = q == 1 ? square(7, 0.6) : line(30, 0.0, 1.0, 0.6);
+      owned b = q == 1 ? square(7, 0.6) : line(30, 0.0, 1.0, 0.6);
+      a.p.axisymmetric = b.p.axisymmetric = q == 2;
+      for (int i = 0; i < b.p.dim * b.p.n_node; ++i)
+        b.x[i] = ldexp(b.x[i], powers[q]);
+      sparse_rows G = build(&a, (kernel)k, 0.3, 0, q == 0, NULL);
+      sparse_rows H =
+          build(&b, (kernel)k, ldexp(0.3, powers[q]), 0, q == 0, NULL);
+      ck_assert_int_eq(G.start[G.n], H.start[H.n]);
+      for (int e = 0; e < G.start[G.n]; ++e) {
+        ck_assert_int_eq(G.col[e], H.col[e]);
+        ck_assert_double_eq(G.val[e], H.val[e]);
+      }
+      sparse_free(&G);
+      sparse_free(&H);
+      owned_free(&a);
+      owned_free(&b);
+    }
+}
+END_TEST
+
 /* ---- search, memory ---------------------------------------------------- */
 
 START_TEST(search_finds_what_is_near) {
@@ -607,4 +634,5 @@ UNIT_MAIN("average", bump_has_the_constants_of_the_literature,
           surface_loses_mass_at_its_edges, axisymmetric_rows,
           radius_below_the_mesh_is_local, coarse_nodes_are_counted,
           geodesic_distance_unbends_the_line, closed_line_has_no_edge,
-          search_finds_what_is_near, refused_memory_is_given_back)
+          factors_of_two_change_no_bit, search_finds_what_is_near,
+          refused_memory_is_given_back)
