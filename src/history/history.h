@@ -123,6 +123,7 @@ typedef struct setup_facts {
   double condition; /* -                                                   */
   int floating;     /* contact alone holds a body                          */
   int n_contact_node;
+  double average_entries; /* of the nonlocal averages                         */
 } setup_facts;
 
 /* Who is told what. Any function may be NULL. */

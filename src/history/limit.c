@@ -183,6 +183,13 @@ done:
   return st;
 }
 
+double limit_average_entries(const run *r) {
+  double n = 0.0;
+  for (int i = 0; r->average != NULL && i < r->m->n_contact; ++i)
+    if (r->average[i].rule != NULL) n += r->average[i].rows.start[r->n];
+  return n;
+}
+
 static void free_averages(run *r) {
   for (int i = 0; r->average != NULL && i < r->m->n_contact; ++i)
     sparse_free(&r->average[i].rows);

@@ -130,6 +130,7 @@ status increment_pose(run *r, double t);
 status limit_update(run *r, double t);
 /* Averages of the rules in force, as far as they are not there. */
 status limit_average(run *r);
+double limit_average_entries(const run *r);
 /* Laws confined to the touching nodes (at the start of an increment those that
  * touched, all if none did): after a solution of r->cp, 1 if the zone, and
  * r->cp with it, has changed and is to be solved again. */

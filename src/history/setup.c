@@ -370,12 +370,14 @@ static status report_ready(run *r) {
   setup_facts facts = {.info = condensed_info(r->c),
                        .condition = condensed_condition(r->c),
                        .floating = condensed_floating(r->c),
-                       .n_contact_node = r->n};
+                       .n_contact_node = r->n,
+                       .average_entries = limit_average_entries(r)};
   return r->sink->ready(r->sink->ctx, &facts, r->surface);
 }
 
 status run_prepare(run *r) {
   status st = OK;
+  int fresh = 0;
   unsigned char *fixed = NULL;
   NEW(fixed, r->n_dof);
   load_fixed(r->m, r->msh, r->step, fixed);
@@ -393,9 +395,10 @@ status run_prepare(run *r) {
     TRY(check_supports(r));
     TRY(stiffness_assemble(&r->d, &r->k));
     TRY(condense(r->k, &r->d, &r->c));
-    TRY(report_ready(r));
+    fresh = 1;
   }
   TRY(limit_average(r));
+  if (fresh) TRY(report_ready(r));
   contact_solver_free(r->solver);
   r->solver = NULL;
   TRY(contact_solver_new(&r->step->solver, &r->solver));

@@ -39,6 +39,8 @@ int job_sizes(const job *j, size_row rows[SIZE_ROWS]) {
     rows[n++] = (size_row){"contact unknowns", (double)info->contact_unknowns};
     if (!j->m->has_problem)
       rows[n++] = (size_row){"factor entries", (double)info->factor_entries};
+    if (j->m->effects & EFFECT_NONLOCAL)
+      rows[n++] = (size_row){"average entries", j->run->facts.average_entries};
   }
   rows[n] = (size_row){NULL, 0};
   return model_rows;
