@@ -251,26 +251,26 @@ done:
   return st;
 }
 
-void law_card_check(const law_card *law, elastic_type type, message_log *log) {
+status law_card_check(const law_card *law, elastic_type type,
+                      message_log *log) {
+  status st = OK;
   char text[256];
   double *value = NULL;
-  if (law->ops->check == NULL || law->n_set == 0) return;
-  value = memory_new((size_t)law_n_value(law), sizeof *value);
-  if (value == NULL) {
-    message_memory(log);
-    return;
-  }
+  if (law->ops->check == NULL) goto done;
+  NEW(value, law_n_value(law));
   for (int i = 0; i < law->n_set; ++i) {
-    if (law_values(law, 0, law->temperature[i], value) != OK) {
-      message_add(log, P2046, &law->at, "%s", status_message());
-      break;
-    }
-    const char *wrong = law->ops->check(law, type, value, text, sizeof text);
+    const char *wrong = NULL;
+    if (law_values(law, 0, law->temperature[i], value) != OK)
+      wrong = status_message();
+    else
+      wrong = law->ops->check(law, type, value, text, sizeof text);
     if (wrong == NULL) continue;
     message_add(log, P2046, &law->at, "law %s: %s", law->ops->name, wrong);
     break;
   }
+done:
   memory_free(value);
+  return st;
 }
 
 /* Row of value number i, and the term it belongs to (from 1; 0: none). */
@@ -312,8 +312,8 @@ status law_values(const law_card *law, double t, double temperature,
     if (value[i] >= row->min && value[i] <= row->max) continue;
     char why[128];
     range_text(value[i], row->min, row->max, why, sizeof why);
-    FAIL(ERR_DECK, "law %s: %s = %s at time %g (its data line %d)",
-         law->ops->name, row->name, why, t, term + (law->ops->fields != NULL));
+    FAIL(ERR_DECK, "%s = %s at time %g (data line %d of the law)", row->name,
+         why, t, term + (law->ops->fields != NULL));
   }
 done:
   return st;

@@ -175,10 +175,11 @@ status law_fastest_rate(const law_point *p, double *rate) {
   double *M = NULL;
   *rate = 0;
   if (!law_flows(p)) goto done;
-  if (ops->fastest_rate != NULL && el->isotropic && !el->plane_stress) {
+  if (ops->fastest_rate != NULL && el->isotropic && !el->plane_stress)
     *rate = p->speed * ops->fastest_rate(p);
-    goto done;
-  }
+  else
+    *rate = -1;
+  if (!(*rate < 0)) goto done;
   const int na = law_n_alpha(p->law, el->ns), n = el->ns + na;
   NEW(M, n * n);
   TRY(coupled_matrix(p, na, M));

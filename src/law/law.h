@@ -100,7 +100,8 @@ typedef struct law_ops {
   void (*rate)(const law_point *p, double *ei_rate, double *alpha_rate);
   void (*jacobian)(const law_point *p, law_jacobian *j);
   /* Largest magnitude of the eigenvalues of d(e^i, alpha)/dt under held strain
-   * with isotropic elasticity, not plane stress, 1/s; NULL: from LAPACK. */
+   * with isotropic elasticity, not plane stress, 1/s; NULL, or an answer < 0:
+   * of the whole matrix, by LAPACK. */
   double (*fastest_rate)(const law_point *p);
   /* 0 if every rate is exactly zero at the point; NULL: the law always flows */
   int (*flows)(const law_point *p);
@@ -132,8 +133,9 @@ const law_ops *law_find(const char *name); /* case ignored; or NULL           */
  * number on every line is the temperature, ascending. Errors go to the log
  * (and leave n_set = 0); ERR_MEMORY. */
 status law_card_read(deck *d, const card *c, message_log *log, law_card *law);
-/* Values at t = 0 against each other and the elasticity; errors to the log. */
-void law_card_check(const law_card *law, elastic_type type, message_log *log);
+/* Values at t = 0 against each other and the elasticity: errors to the log;
+ * ERR_MEMORY. */
+status law_card_check(const law_card *law, elastic_type type, message_log *log);
 /* What a data line holds: "A, n [, m] [, temperature]"; returns text. */
 const char *law_line_text(const option *table, char *text, size_t size);
 int law_n_field(const option *table); /* rows of fields or terms; NULL: 0     */

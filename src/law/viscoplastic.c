@@ -11,6 +11,7 @@
 #include "law/law.h"
 
 #include <float.h>
+#include <lapacke.h>
 #include <math.h>
 
 /* Fields in the order of the line; those a law lacks are zero. */
@@ -195,13 +196,58 @@ static void jacobian(const law_point *p, law_jacobian *j) {
   add_back_columns(&f, j->alpha_sigma, na, na, j->alpha_alpha, na);
 }
 
-/* Held strain, no X: along n, 3 G + dR/dp times the slope; across 3 G rate/q.
+enum { BACK_MAX = 15 }; /* back stresses of the closed form               */
+
+/* The largest magnitude of an eigenvalue of M[n*n], which is destroyed. */
+static double radius(double *M, int n) {
+  double re[BACK_MAX + 1], im[BACK_MAX + 1], largest = 0;
+  for (int i = 0; i < n * n; ++i)
+    if (!isfinite(M[i])) return M[i];
+  if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, M, n, re, im, NULL, 1, NULL,
+                    1) != 0)
+    return -1;
+  for (int i = 0; i < n; ++i) largest = fmax(largest, hypot(re[i], im[i]));
+  return largest;
+}
+
+/* n . a_k of tensors, from components with doubled shears. */
+static double along_direction(const flow *f, int k) {
+  double sum = 0;
+  for (int i = 0; i < f->ns; ++i)
+    sum += (i < 3 ? 1 : 0.5) * f->n[i] * f->a[f->ns * k + i];
+  return sum;
+}
+
+/*
+ * Held strain: a change of (e^i, a_k) along n and one across n run apart. Each
+ * is x' = -c (A x + sum_k C_k y_k), y_k' = r_k x' - gamma_k rate y_k with
+ *   along   c = slope,   A = 3 G + dR/dp,  r_k = 1 - gamma_k (2/3) n . a_k
+ *   across  c = rate/q,  A = 3 G,          r_k = 1.
  */
+static double coupled_rate(const flow *f, double c, double A, int along) {
+  double M[(BACK_MAX + 1) * (BACK_MAX + 1)];
+  const int n = f->n_back + 1;
+  for (int i = 0; i < n; ++i) {
+    const back_stress *b = &f->back[i - 1];
+    double r = 1;
+    if (i > 0 && along) r -= b->gamma * 2 / 3 * along_direction(f, i - 1);
+    M[i] = -c * A * r;
+    for (int k = 1; k < n; ++k) {
+      M[i + n * k] = -c * f->back[k - 1].C * r;
+      if (i == k) M[i + n * k] -= b->gamma * f->rate;
+    }
+  }
+  return radius(M, n);
+}
+
 static double fastest_rate(const law_point *p) {
   const flow f = flow_of(p);
   const double shear = 3 * p->elastic->shear;
   if (!(f.rate > 0)) return 0;
-  return fmax(f.slope * fabs(shear + f.hardening), shear * f.rate / f.q);
+  if (f.n_back > BACK_MAX) return -1;
+  const double along = coupled_rate(&f, f.slope, shear + f.hardening, 1);
+  const double across = coupled_rate(&f, f.rate / f.q, shear, 0);
+  return along < 0 || across < 0 ? -1 : fmax(along, across);
 }
 
 static int flows(const law_point *p) { return flow_of(p).rate > 0; }
@@ -265,4 +311,5 @@ const law_ops chaboche_law = {
     .fields = chaboche_fields,
     .terms = chaboche_terms,
     .example = "60., 150., 3., 20., 50.\n2E4, 100.\n5E3, 20.",
+    .fastest_rate = fastest_rate,
     YIELD_COMMON};

@@ -446,11 +446,12 @@ static void stiffen(const model *m, material *mat) {
   (void)elastic_matrix(ELASTIC_ISO, 2, at_once, mat->C, text, sizeof text);
 }
 
-void material_resolve_law(const model *m, material *mat) {
+status material_resolve_law(const model *m, material *mat) {
+  status st = OK;
   const law_card *law = &mat->law;
-  if (law->ops == NULL || law->n_set == 0 || mat->n_constant == 0) return;
+  if (law->ops == NULL || law->n_set == 0 || mat->n_constant == 0) goto done;
   const int errors = message_count(m->log, ERROR);
-  law_card_check(law, mat->type, m->log);
+  TRY(law_card_check(law, mat->type, m->log));
   if (mat->moduli < 0) {
     mat->moduli =
         mat->is_abaqus_prony ? MODULI_LONG_TERM : MODULI_INSTANTANEOUS;
@@ -466,6 +467,8 @@ void material_resolve_law(const model *m, material *mat) {
   if (law->ops == &prony_law && mat->moduli == MODULI_LONG_TERM &&
       message_count(m->log, ERROR) == errors)
     stiffen(m, mat);
+done:
+  return st;
 }
 
 status apply_section(reading *r) {

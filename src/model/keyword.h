@@ -165,8 +165,9 @@ status apply_inelastic(reading *r);
 plugin names_inelastic(const reading *r);
 status apply_creep(reading *r);
 status apply_viscoelastic(reading *r);
-/* Once all cards are read: the law of a material beside its elasticity. */
-void material_resolve_law(const model *m, material *mat);
+/* Once all cards are read: the law of a material beside its elasticity; only
+ * ERR_MEMORY. */
+status material_resolve_law(const model *m, material *mat);
 /* cards_contact.c */
 status apply_obstacle(reading *r);
 status apply_contact(reading *r);

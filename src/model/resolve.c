@@ -48,17 +48,20 @@ int has_card(const model *m, const char *name) {
   return 0;
 }
 
-static void resolve_laws(model *m, int lost) {
+static status resolve_laws(model *m, int lost) {
+  status st = OK;
   for (int i = 0; i < m->n_material; ++i)
-    material_resolve_law(m, &m->materials[i]);
+    TRY(material_resolve_law(m, &m->materials[i]));
   if (lost || m->n_step == 0 || has_card(m, "VISCO") ||
       message_count(m->log, ERROR) > 0)
-    return;
+    goto done;
   for (int i = 0; i < m->n_material; ++i)
     if (m->materials[i].law.ops != NULL && m->materials[i].used)
       message_add(m->log, P2048, &m->steps[0].at,
                   "material %s has the law %s, but no step is *VISCO",
                   m->materials[i].name, m->materials[i].law.ops->name);
+done:
+  return st;
 }
 
 static void resolve_materials(model *m, int lost) {
@@ -73,7 +76,6 @@ static void resolve_materials(model *m, int lost) {
     if (!m->materials[i].has_elastic && !lost)
       message_add(m->log, P2014, &m->materials[i].at,
                   "material %s has no *ELASTIC card", m->materials[i].name);
-  resolve_laws(m, lost);
 }
 
 /* An amplitude that multiplies a value of the model: it counts total time. */
@@ -361,6 +363,7 @@ done:
 status model_resolve(model *m, int lost) {
   status st = OK;
   resolve_materials(m, lost);
+  TRY(resolve_laws(m, lost));
   resolve_contacts(m);
   resolve_moves(m);
   step before = {.solver = default_solver,

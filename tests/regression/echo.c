@@ -76,6 +76,13 @@ START_TEST(echo_of_odd_spellings_reads_back) {
             "*include, input=sub/mesh.inc\n"
             "*material, name=\"Steel, mild = soft ** x\"\n*elastic\n1.5+03,\n"
             "0.3\n*density\n\"2*pi\"\n"
+            "*material, name=Glass\n*elastic, moduli=long   term\n1e5, .2\n"
+            "*inelastic, law=prony, shift=wlf, t_ref=20, c1=17.4, c2=51.6\n"
+            ".3, 0., \"2 + t\"\n.2, .1,\n3e4\n"
+            "*material, name=Ice\n*elastic\n9e9, .3\n*creep, law=time\n"
+            "1e-20, 3, , -10\n3e-20, 3, , -5\n"
+            "*material, name=Wax\n*elastic\n9e3, .3\n*inelastic, law=user\n"
+            "\"<Long>*(q/100)^3*exp(-50/temp)\"\n"
             "*solid section, elset=\"My body\", type=plane   strain,\n"
             "material=\"Steel, mild = soft ** x\"\n"
             "*amplitude, name=A B\n\"1 - <H>*t\"\n"
@@ -96,6 +103,8 @@ START_TEST(echo_of_odd_spellings_reads_back) {
   ck_assert_ptr_nonnull(strstr(echo, "One, two = \"three\", <H> <Q>"));
   ck_assert_ptr_nonnull(strstr(echo, "NAME=\"Steel, mild = soft ** x\""));
   ck_assert_ptr_nonnull(strstr(echo, "\"A,B=C\", 1, 2.5"));
+  ck_assert_ptr_nonnull(strstr(echo, "*CREEP, LAW=TIME, SHIFT=NONE"));
+  ck_assert_ptr_nonnull(strstr(echo, "SHIFT=WLF, T_REF=20, C1=17.4"));
   reads_back(&j, "odd", echo);
   free(echo);
   job_end(&j);

@@ -3,6 +3,7 @@
  * every law wrong in turn, tables over temperature, expressions of time, the
  * spellings of Abaqus, moduli after all terms have relaxed.
  */
+#include "base/memory.h"
 #include "support/law_case.h"
 #include "support/text_model.h"
 #include "support/unit.h"
@@ -235,6 +236,35 @@ START_TEST(moduli_after_all_terms_have_relaxed) {
 }
 END_TEST
 
+/* The k-th request of memory fails, for all k: told, and nothing is lost. */
+START_TEST(every_refused_request_is_reported) {
+  static const char *const cards[] = {
+      "*INELASTIC, LAW=PRONY\n.3, .1, 2., 20.\n.2, .1, \"3 + t\", 60.",
+      "*INELASTIC, LAW=USER\n\"1E-9*q^3\""};
+  for (int i = 0; i < 2; ++i) {
+    int refused = 0;
+    for (long k = 1;; ++k) {
+      const size_t before = memory_in_use();
+      text_model s;
+      read_deck(&s, "", cards[i]);
+      model_free(s.m);
+      s.m = NULL;
+      memory_refuse(k, 0);
+      s.st = model_from_deck(s.d, s.log, &s.m);
+      memory_refuse(0, 0);
+      ck_assert(s.st == OK || s.st == ERR_MEMORY);
+      const int done = s.st == OK;
+      refused += !done;
+      text_model_close(&s);
+      ck_assert_uint_eq(memory_in_use(), before);
+      if (done) break;
+    }
+    ck_assert_int_gt(refused, 5);
+  }
+}
+END_TEST
+
 UNIT_MAIN("law_card", every_example_reads_as_it_is, every_field_is_checked,
           tables_are_linear_in_temperature, coefficients_may_vary_in_time,
-          creep_cards_of_abaqus, moduli_after_all_terms_have_relaxed)
+          creep_cards_of_abaqus, moduli_after_all_terms_have_relaxed,
+          every_refused_request_is_reported)

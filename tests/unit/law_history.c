@@ -436,7 +436,28 @@ START_TEST(chaboche_cycles) {
 }
 END_TEST
 
-UNIT_MAIN("law_history", maxwell_relaxes,
+/* Uniaxial stress in plane stress, axisymmetry and 3-D is that of a bar. */
+START_TEST(a_bar_is_a_bar_in_every_kinematics) {
+  static const kinematics kin[] = {SOLID_3D, PLANE_STRESS, AXISYMMETRIC};
+  for (int k = 0; law_list[k] != NULL; ++k) {
+    double e[3][4];
+    for (int i = 0; i < 3; ++i) {
+      ck_assert_int_eq(law_case_new(law_list[k], 0, NULL, 1e5, .3, kin[i], &c),
+                       1);
+      c.t = 1;
+      load(150);
+      law_case_run(&c, &hold_none, .01, 20);
+      memcpy(e[i], c.e, sizeof e[i]);
+      law_case_free(&c);
+      near(e[i][0], e[0][0], 1e-13);
+      near(e[i][1], e[0][1], 1e-13);
+      near(e[i][2], e[0][1], 1e-13);
+    }
+  }
+}
+END_TEST
+
+UNIT_MAIN("law_history", a_bar_is_a_bar_in_every_kinematics, maxwell_relaxes,
           confined_maxwell_keeps_the_mean_stress,
           confined_maxwell_creeps_to_the_bulk, plane_strain_maxwell_carries_zz,
           maxwell_stress_at_constant_rate_levels_off,
