@@ -46,7 +46,8 @@ enum {
   DEPTH = 12,     /* differences of Anderson's mixing                        */
   PLAIN = 6,      /* sweeps from one step of Aitken to the next              */
   REFRESH = 64,   /* sweeps from one product to the next                     */
-  PATIENCE = 400  /* sweeps without a lower residual before a cure           */
+  PATIENCE = 400, /* sweeps without a lower residual before a cure           */
+  OFTEN = 20      /* one old pattern in so many sweeps is a cycle            */
 };
 static const double PROGRESS = 0.9; /* a lower residual is lower by this    */
 static const double FARTHER = 4.0;  /* -, growth of |F|^2 that is borne     */
@@ -117,7 +118,9 @@ typedef struct run {
   double moved;     /* |F|^2 of the sweep before                            */
   double mark;      /* residual at the last progress                        */
   int since, cures; /* sweeps since; cures tried                            */
-  int symmetric;    /* every other sweep backward                           */
+  int circling;     /* of these sweeps those that left an old pattern       */
+  state_watch watch;
+  int symmetric; /* every other sweep backward                           */
 } run;
 
 /* ---- combination ----------------------------------------------------------
@@ -222,7 +225,7 @@ static void accelerate(run *s, int k) {
 static int cure(run *s) {
   static const double shorter[] = {1.0, 0.6, 0.3};
   forget(s);
-  s->since = 0;
+  s->since = s->circling = 0;
   s->mark = HUGE_VAL;
   s->symmetric = 1;
   if (s->cures == (int)(sizeof shorter / sizeof *shorter)) return 0;
@@ -246,15 +249,19 @@ static outcome sweeps(run *s, const solver_control *control,
       residual = solver_mismatch(z->cp, scale, z->u, z->r);
     }
     solver_keep_best(&s->w->best, s->m, residual, z->u, z->r);
-    solver_tell(control, "aitken", k, residual);
+    int cycle = state_watch_returns(&s->watch, z);
+    solver_tell_states(control, "aitken", k, residual, z->turned, cycle);
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= control->tol) return CONVERGED;
     ++s->since;
+    s->circling += cycle;
     if (residual < PROGRESS * s->mark) {
       s->mark = residual;
-      s->since = 0;
+      s->since = s->circling = 0;
     }
-    if (s->since > PATIENCE && !cure(s)) return STOPPED_STAGNATION;
+    int circles = OFTEN * s->circling > s->since;
+    if (s->since > PATIENCE && !cure(s))
+      return circles ? STOPPED_CYCLE : STOPPED_STAGNATION;
     if (s->depth > 0) accelerate(s, k);
   }
   return STOPPED_ITERATIONS;
@@ -266,14 +273,15 @@ static status aitken_solve(const contact_problem *cp, const void *par,
   const aitken *p = par;
   aitken_work *w = work;
   int by_anderson = p->acceleration == BY_ANDERSON;
-  run s = {.sweep = {cp, w->blocks, u, r, 1.0, 0.0},
-           .w = w,
-           .x = cp->A != NULL ? u : r,
-           .y = cp->A != NULL ? r : u,
-           .m = cp->m,
-           .depth = by_anderson ? DEPTH : p->acceleration == BY_AITKEN,
-           .period = by_anderson ? 1 : PLAIN,
-           .mark = HUGE_VAL};
+  run s = {
+      .sweep = {.cp = cp, .blocks = w->blocks, .u = u, .r = r, .omega = 1.0},
+      .w = w,
+      .x = cp->A != NULL ? u : r,
+      .y = cp->A != NULL ? r : u,
+      .m = cp->m,
+      .depth = by_anderson ? DEPTH : p->acceleration == BY_AITKEN,
+      .period = by_anderson ? 1 : PLAIN,
+      .mark = HUGE_VAL};
   *rep = (solver_report){.outcome = RUNNING};
   w->best.residual = HUGE_VAL;
   relaxation_start(&s.sweep);

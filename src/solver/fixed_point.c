@@ -229,6 +229,20 @@ static int advance(fixed_point *fp, course *c, double residual, int first) {
   return 1;
 }
 
+/* Limits of the first pass: those of the start. A body that contact alone holds
+ * may be free without friction: if nothing pushes yet, more than any load can
+ * overcome, so that the first pass finds the pressures of the body at stick. */
+static void first_limit(const contact_problem *cp, const double *r, double *g) {
+  double load = 0.0, most = 0.0;
+  contact_limit(cp, r, g);
+  for (int i = 0; i < cp->n; ++i) most = fmax(most, g[i]);
+  if (!cp->floating || most > 0.0) return;
+  for (int i = 0; i < cp->m; ++i) load += fabs(cp->f[i]);
+  for (int i = 0; i < cp->n; ++i)
+    for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
+      g[i] += cp->B->val[k] > 0.0 ? load : 0.0;
+}
+
 status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
                          const inner_solver *inner,
                          const solver_control *control, double *u, double *r,
@@ -240,14 +254,16 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
   double change = 1.0;
   fp->kept = 0;
   *rep = (solver_report){.outcome = STOPPED_ITERATIONS};
-  contact_limit(cp, r, fp->g);
+  first_limit(cp, r, fp->g);
   for (int k = 1; k <= passes; ++k) {
     if (!iterations_left(control, rep, &p.control.max_iter)) {
       rep->outcome = STOPPED_ITERATIONS;
       goto done;
     }
     rep->limit_updates = p.control.limit_update = k;
-    p.control.tol = fmax(0.1 * control->tol, fmin(1e-3, 1e-2 * change));
+    /* no finer than the limit is known, but below what is left to gain */
+    double wanted = fmin(1e-2 * change, 0.1 * c.lowest);
+    p.control.tol = fmax(0.1 * control->tol, fmin(1e-3, wanted));
     TRY(run_pass(&p, cp, fp->g, u, r, rep));
     if (rep->outcome == STOPPED_NAN || rep->outcome == STOPPED_RAY ||
         rep->outcome == STOPPED_SINGULAR)

@@ -428,6 +428,7 @@ static void node_step(relaxation *s, int node_id, double *step) {
   local_state before = s->blocks->state[node_id];
   local_state now = local_solve(&lp, before, x, r);
   s->blocks->state[node_id] = now;
+  s->turned += now != before;
   if (cp->A != NULL) {
     if (now == before) relax(s, &lp, now, old, x);
     for (int k = 0; k < lp.dim; ++k) x[k] -= old[k];
@@ -460,7 +461,19 @@ static void visit(relaxation *s, int node_id) {
 
 void relaxation_sweep(relaxation *s, int backward) {
   s->change = 0.0;
+  s->turned = 0;
   for (int i = 0; i < s->cp->n; ++i) visit(s, backward ? s->cp->n - 1 - i : i);
+}
+
+int state_watch_returns(state_watch *w, const relaxation *s) {
+  uint64_t hash = 14695981039346656037u; /* FNV-1a                            */
+  int met = 0, kept = w->n < PATTERNS ? w->n : PATTERNS;
+  for (int i = 0; i < s->cp->n; ++i)
+    hash = (hash ^ (uint64_t)s->blocks->state[i]) * 1099511628211u;
+  if (w->n > 0 && w->seen[(w->n - 1) % PATTERNS] == hash) return 0;
+  for (int k = 0; k < kept; ++k) met = met || w->seen[k] == hash;
+  w->seen[w->n++ % PATTERNS] = hash;
+  return met;
 }
 
 void relaxation_refresh(const relaxation *s) {

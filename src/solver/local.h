@@ -11,6 +11,8 @@
 
 #include "contact/contact.h"
 
+#include <stdint.h>
+
 typedef struct local_problem {
   int dim;       /* 1, 2 or 3: unknowns, the normal one first                */
   double K[9];   /* [dim*dim] N/m                                          */
@@ -50,7 +52,17 @@ typedef struct relaxation {
   double *u, *r; /* [m] the iterate                                          */
   double omega;  /* factor by which a visit goes past the solution, -        */
   double change; /* sum of K (du)^2 of the sweep, N m                        */
+  int turned;    /* nodes whose state changed in the sweep                   */
 } relaxation;
+
+/* The patterns of states that the last sweeps left behind. */
+enum { PATTERNS = 64 };
+typedef struct state_watch {
+  uint64_t seen[PATTERNS]; /* a ring                                         */
+  int n;                   /* patterns seen                                  */
+} state_watch;
+/* Take note of the pattern. 1: it has been there, with another one since. */
+int state_watch_returns(state_watch *w, const relaxation *s);
 
 /* State of each node at the start, from u and r. */
 void relaxation_start(const relaxation *s);

@@ -24,8 +24,9 @@ double solver_mismatch(const contact_problem *cp, double scale, const double *u,
   return worst > 0.0 ? HUGE_VAL : 0.0;
 }
 
-void solver_tell(const solver_control *control, const char *solver,
-                 int iteration, double residual) {
+void solver_tell_states(const solver_control *control, const char *solver,
+                        int iteration, double residual, int changes,
+                        int cycle) {
   const solver_listener *l = control->listener;
   if (l == NULL || l->step == NULL) return;
   solver_step step = {.solver = solver,
@@ -33,8 +34,14 @@ void solver_tell(const solver_control *control, const char *solver,
                       .limit_update = control->limit_update,
                       .residual = residual,
                       .limit_change = NAN,
-                      .status_changes = -1};
+                      .status_changes = changes,
+                      .cycle = cycle};
   l->step(l->ctx, &step);
+}
+
+void solver_tell(const solver_control *control, const char *solver,
+                 int iteration, double residual) {
+  solver_tell_states(control, solver, iteration, residual, -1, 0);
 }
 
 status best_iterate_new(int m, best_iterate *best) {

@@ -86,6 +86,10 @@ double solver_mismatch(const contact_problem *cp, double scale, const double *u,
                        const double *r);
 void solver_tell(const solver_control *control, const char *solver,
                  int iteration, double residual);
+/* The same with the nodes that changed their state, and whether a pattern of
+ * states came back. */
+void solver_tell_states(const solver_control *control, const char *solver,
+                        int iteration, double residual, int changes, int cycle);
 /* The iterate with the lowest residual. */
 typedef struct best_iterate {
   double residual; /* -; HUGE_VAL: none yet                                   */

@@ -86,6 +86,10 @@ typedef struct course {
   int since;          /* checks since the last progress                     */
   int cures;          /* cures tried                                        */
   int order, chosen;  /* sweep_order; 1: omega by the program               */
+  state_watch watch;
+  int turned, returns; /* since the last check: nodes that changed their state,
+                          patterns that came back                            */
+  int circling;        /* checks since the last progress with such patterns  */
 } course;
 
 /* Largest factor that friction updated in the sweep was seen to bear. */
@@ -118,7 +122,7 @@ static void choose_omega(relaxation *s, course *c) {
 /* No progress for long: less relaxation, then another order, then damping.
  * 0: nothing left. */
 static int cure(relaxation *s, course *c) {
-  c->since = 0;
+  c->since = c->circling = 0;
   c->mark = HUGE_VAL;
   c->last_change = 0.0;
   ++c->cures;
@@ -145,9 +149,10 @@ static double check(relaxation *s, course *c, double scale) {
   solver_keep_best(c->kept, s->cp->m, residual, s->u, s->r);
   if (residual < PROGRESS * c->mark) {
     c->mark = residual;
-    c->since = 0;
+    c->since = c->circling = 0;
   } else {
     ++c->since;
+    c->circling += c->returns > 0;
   }
   return residual;
 }
@@ -170,6 +175,11 @@ static int drifts(relaxation *s, const best_iterate *best) {
   return work > 0.0 && left < 0x1p-5 * stiff;
 }
 
+/* Every CHECK sweeps, and after 1, 2, 4 and 8. */
+static int is_checked(int k) {
+  return k % CHECK == 0 || (k <= 8 && (k & (k - 1)) == 0);
+}
+
 static outcome sweeps(relaxation *s, course *c, const solver_control *control,
                       solver_report *rep) {
   int limit = control->max_iter > 0 ? control->max_iter : SWEEPS;
@@ -179,13 +189,18 @@ static outcome sweeps(relaxation *s, course *c, const solver_control *control,
     rep->iterations = k;
     relaxation_sweep(s, c->order == SWEEP_BACKWARD ||
                             (c->order == SWEEP_SYMMETRIC && k % 2 == 0));
-    if (k % CHECK != 0 && k != limit && (k > 8 || (k & (k - 1)) != 0)) continue;
+    c->turned += s->turned;
+    c->returns += state_watch_returns(&c->watch, s);
+    if (!is_checked(k) && k != limit) continue;
     double residual = check(s, c, scale);
-    solver_tell(control, "sor", k, residual);
+    solver_tell_states(control, "sor", k, residual, c->turned, c->returns > 0);
+    c->turned = c->returns = 0;
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= control->tol) return CONVERGED;
     if (k % CHECK == 0) choose_omega(s, c);
-    if (c->since > PATIENCE && !cure(s, c)) return STOPPED_STAGNATION;
+    if (c->since <= PATIENCE) continue;
+    int circles = 2 * c->circling > c->since;
+    if (!cure(s, c)) return circles ? STOPPED_CYCLE : STOPPED_STAGNATION;
   }
   return STOPPED_ITERATIONS;
 }
@@ -201,7 +216,11 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
     TRY(fixed_point_solve(w->fixed, cp, &self, control, u, r, rep));
     goto done;
   }
-  relaxation s = {cp, w->blocks, u, r, p->omega > 0.0 ? p->omega : 1.0, 0.0};
+  relaxation s = {.cp = cp,
+                  .blocks = w->blocks,
+                  .u = u,
+                  .r = r,
+                  .omega = p->omega > 0.0 ? p->omega : 1.0};
   w->best.residual = HUGE_VAL;
   course c = {.omega_cap = omega_limit(cp),
               .kept = &w->best,
@@ -212,8 +231,9 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
   relaxation_start(&s);
   rep->outcome = sweeps(&s, &c, control, rep);
   rep->residual = w->best.residual;
-  if (rep->outcome == STOPPED_STAGNATION && drifts(&s, &w->best))
-    rep->outcome = STOPPED_RAY;
+  int gave_up =
+      rep->outcome == STOPPED_STAGNATION || rep->outcome == STOPPED_CYCLE;
+  if (gave_up && drifts(&s, &w->best)) rep->outcome = STOPPED_RAY;
   solver_take_best(&w->best, cp->m, u, r);
 done:
   return st;
@@ -234,7 +254,8 @@ const solver_ops sor_solver = {
     "chooses it from the observed rate and takes it back when the residual\n"
     "stops falling: with friction in the sweep large factors do not converge,\n"
     "and on the compliance form they do not pay (1 is taken).\n"
-    "If a sweep order cycles, the order is changed, then the steps damped.\n"
+    "If a sweep order cycles, the order is changed, then the steps damped; if\n"
+    "patterns of states still come back, it stops with a cycle.\n"
     "Costs one product with the matrix a sweep, and many sweeps: choose it\n"
     "when the direct methods fail, when the compliance alone is known or is\n"
     "singular, or for a few digits of a large problem.",

@@ -13,7 +13,12 @@ enum { PARAM_SIZE = 512 };
 typedef struct variant {
   const char *solver, *option, *value;
 } variant;
-static const variant variants[] = {{"aitken", "ACCELERATION", "ANDERSON"},
+static const variant variants[] = {{"sor", "SWEEP", "BACKWARD"},
+                                   {"sor", "SWEEP", "SYMMETRIC"},
+                                   {"sor", "FRICTION", "FIXED_POINT"},
+                                   {"sor", "OMEGA", "1.2"},
+                                   {"lemke", "FACETS", "16"},
+                                   {"aitken", "ACCELERATION", "ANDERSON"},
                                    {"aitken", "ACCELERATION", "NONE"},
                                    {"pcg", "PRECONDITIONER", "DIAGONAL"},
                                    {"lagrange", "ACCELERATION", "NONE"},
@@ -196,6 +201,116 @@ START_TEST(accelerations_save_steps) {
 }
 END_TEST
 
+/* Each option of the sweeps does what its name says. */
+START_TEST(options_of_sor_have_an_effect) {
+  static const variant ways[] = {
+      {"sor", NULL, NULL},           {"sor", "SWEEP", "BACKWARD"},
+      {"sor", "SWEEP", "SYMMETRIC"}, {"sor", "OMEGA", "1"},
+      {"sor", "OMEGA", "1.4"},       {"sor", "FRICTION", "FIXED_POINT"}};
+  enum { WAYS = sizeof ways / sizeof *ways };
+  case_block_data d = {.columns = 60,
+                       .layers = 20,
+                       .clamped = 1,
+                       .nu = 0.3,
+                       .mu = 0.3,
+                       .left = {0.1, 0.0}};
+  contact_case c = case_block(&d);
+  solver_report rep[WAYS];
+  for (int i = 0; i < c.cp.n; ++i) c.f[2 * i] += 0.05;
+  for (int i = 0; i < WAYS; ++i) {
+    rep[i] = solve_by(&ways[i], &c, 1e-9);
+    ck_assert_msg(rep[i].outcome == CONVERGED, "%d", i);
+    for (int j = 0; j < i && i < WAYS - 1; ++j)
+      ck_assert_msg(rep[i].iterations != rep[j].iterations, "%d and %d", i, j);
+    ck_assert_int_eq(rep[i].limit_updates > 1, i == WAYS - 1);
+  }
+  ck_assert_int_lt(rep[4].iterations, rep[3].iterations); /* omega pays       */
+  case_free(&c);
+}
+END_TEST
+
+/* 200 nodes numbered along the slip or against it: sweeps that follow the
+ * numbers were seen to go in circles. */
+START_TEST(long_row_of_slipping_nodes_is_solved) {
+  for (int against = 0; against <= 1; ++against) {
+    case_block_data d = {.columns = 199, .layers = 40, .symmetric = 1};
+    d.nu = 0.3;
+    d.mu = 0.3;
+    d.top[1] = -0.002;
+    d.left[0] = 0.006;
+    contact_case c = case_block(&d);
+    if (against) { /* mirrored: the same problem from the other end           */
+      int m = c.cp.m;
+      double *A = malloc(sizeof *A * (size_t)(m * m)), f[400];
+      unsigned char held[400];
+      for (int i = 0; i < m; ++i) {
+        int a = m - 2 - i + 2 * (i % 2);
+        f[i] = c.f[a] * (i % 2 ? -1.0 : 1.0);
+        held[i] = c.held[a];
+        for (int j = 0; j < m; ++j) {
+          int b = m - 2 - j + 2 * (j % 2);
+          A[i + m * j] = c.A[a + m * b] * (i % 2 == j % 2 ? 1.0 : -1.0);
+        }
+      }
+      memcpy(c.A, A, sizeof *A * (size_t)(m * m));
+      memcpy(c.f, f, sizeof f);
+      memcpy(c.held, held, sizeof held);
+      free(A);
+    }
+    static const variant ways[] = {{"sor", NULL, NULL},
+                                   {"sor", "SWEEP", "BACKWARD"},
+                                   {"aitken", NULL, NULL}};
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; ++i) {
+      ck_assert_int_eq(solve_by(&ways[i], &c, 1e-8).outcome, CONVERGED);
+      ck_assert_double_lt(case_violation(&c, c.u, c.r), 1e-8);
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+static void hear_cycle(void *ctx, const solver_step *s) {
+  ck_assert_int_ge(s->status_changes, 0);
+  *(int *)ctx += s->cycle;
+}
+
+/* Steep friction: a few problems send the sweeps round in circles; a tolerance
+ * below the rounding only stops them. */
+START_TEST(cycle_is_told_from_stagnation) {
+  static const char *const names[] = {"sor", "aitken"};
+  for (int a = 0; a < 2; ++a) {
+    const solver_ops *ops = solver_find(names[a]);
+    int cycles = 0, others = 0;
+    double param[PARAM_SIZE / sizeof(double)] = {0.0};
+    option_defaults(ops->options, param);
+    for (int k = 0; k < 200; ++k)
+      for (int rounding = 0; rounding <= (k < 8); ++rounding) {
+        contact_case c =
+            case_any(2 + k % 2, 2 + k % 6, rounding ? 0.2 : 4.0 + k % 5 * 4,
+                     k / 2 % 2, (unsigned long long)(7000 + k));
+        int heard = 0;
+        solver_listener listener = {hear_cycle, &heard};
+        solver_control control = {.tol = rounding ? 1e-25 : 1e-10,
+                                  .listener = &listener};
+        solver_report rep;
+        void *work = NULL;
+        ck_assert_int_eq(ops->setup(&c.cp, param, &work), OK);
+        ck_assert_int_eq(
+            ops->solve(&c.cp, param, work, &control, c.u, c.r, &rep), OK);
+        ops->release(work);
+        if (rounding && rep.outcome != CONVERGED)
+          ck_assert_int_eq(rep.outcome, STOPPED_STAGNATION);
+        if (rep.outcome == STOPPED_CYCLE) ck_assert_int_gt(heard, 10);
+        cycles += rep.outcome == STOPPED_CYCLE;
+        others += rounding && rep.outcome != CONVERGED;
+        case_free(&c);
+      }
+    ck_assert_msg(cycles > 0 && others > 0, "%s: %d, %d", names[a], cycles,
+                  others);
+  }
+}
+END_TEST
+
 START_TEST(variants_keep_their_bits_under_factors_of_two) {
   static const int powers[][2] = {{41, 0}, {-33, 3}, {0, 13}, {7, -21}};
   for (int k = 0; k < 16; ++k)
@@ -255,5 +370,7 @@ UNIT_MAIN("methods", variants_agree_on_random_problems,
           variants_agree_on_held_and_cornered_nodes,
           floating_block_is_held_by_its_floor,
           compliance_form_gives_the_same_forces, accelerations_save_steps,
+          options_of_sor_have_an_effect, long_row_of_slipping_nodes_is_solved,
+          cycle_is_told_from_stagnation,
           variants_keep_their_bits_under_factors_of_two,
           refused_memory_is_given_back)
