@@ -27,6 +27,30 @@ const char *outcome_text(outcome o) {
   return "?";
 }
 
+const char *outcome_code(outcome o) {
+  switch (o) {
+    case CONVERGED:
+      return "CONVERGED";
+    case RUNNING:
+      return "RUNNING";
+    case STOPPED_ITERATIONS:
+      return "ITERATIONS";
+    case STOPPED_STAGNATION:
+      return "STAGNATION";
+    case STOPPED_RAY:
+      return "RAY";
+    case STOPPED_NAN:
+      return "NAN";
+    case STOPPED_CYCLE:
+      return "CYCLE";
+    case STOPPED_SINGULAR:
+      return "SINGULAR";
+    case STOPPED_UNFIT:
+      return "UNFIT";
+  }
+  return "?";
+}
+
 int outcome_is_fatal(outcome o) {
   return o == STOPPED_NAN || o == STOPPED_RAY || o == STOPPED_SINGULAR ||
          o == STOPPED_UNFIT;

@@ -17,6 +17,9 @@ typedef enum {
 } outcome;
 /* In a few words, for listings and messages. */
 const char *outcome_text(outcome o);
+/* In a word, for programs: CONVERGED, ITERATIONS, STAGNATION, RAY, NAN, CYCLE,
+ * SINGULAR, UNFIT. */
+const char *outcome_code(outcome o);
 /* 1 if there is no answer to go on with: a ray, singular, not a number, a
  * method that does not fit. */
 int outcome_is_fatal(outcome o);

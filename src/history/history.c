@@ -105,6 +105,20 @@ static int stress_is_due(const step *s, int increment_no, int last) {
   return table_is_due(s, ~0, increment_no, last);
 }
 
+/* Where an increment that is taken missed its tolerance. */
+static status note_misfit(run *r) {
+  status st = OK;
+  char text[400];
+  size_t used = strlen(r->note);
+  if (r->n == 0 || r->report.outcome > 0) goto done;
+  TRY(verdict_misfit(&r->cp, r->surface, r->now.uc, r->now.rc, text,
+                     sizeof text));
+  if (text[0] != '\0')
+    snprintf(r->note + used, sizeof r->note - used, "  %s\n", text);
+done:
+  return st;
+}
+
 static status accept(run *r, int attempt, int increment_no, int last,
                      double cpu) {
   status st = OK;
@@ -116,6 +130,7 @@ static status accept(run *r, int attempt, int increment_no, int last,
   if (table_is_due(r->step, PRINT_ZONES, increment_no, last))
     TRY(zones_find(r));
   TRY(check_increment(r));
+  TRY(note_misfit(r));
   path_compare(r);
   state s = make_state(r, attempt, increment_no);
   s.end_of_step = last;

@@ -235,6 +235,7 @@ static void write_increment(json *w, const increment_summary *s) {
   }
   json_real(w, "energy_defect", s->defect);
   json_flag(w, "settled", s->settled);
+  json_string(w, "outcome", outcome_code((outcome)s->outcome));
   if (s->jumps) json_real(w, "jump_time", s->jump_t);
   write_solutions(w, s);
   json_close(w, '}');

@@ -68,6 +68,7 @@ static status remember(output *o, const state *s) {
                            .n_stick = s->n_stick,
                            .iterations = s->report.iterations,
                            .settled = s->settled,
+                           .outcome = s->report.outcome,
                            .residual = s->report.residual,
                            .error = s->error,
                            .mesh_error = s->mesh_error,
@@ -194,6 +195,7 @@ static status write_tables(output *o, const state *s) {
   timer_enter(STAGE_TABLES);
   TRY(tabular_increment(o->dat, s));
   TRY(listing_increment(&j, s, &o->lst));
+  cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
   TRY(text_check(&o->cvg));
   TRY(remember(o, s));
   TRY(sta_line(&o->o, s, NULL, &o->sta));
@@ -222,6 +224,7 @@ static void sink_iteration(void *ctx, const solver_step *s) {
 static status sink_rejected(void *ctx, const state *s, const char *why) {
   status st = OK;
   output *o = ctx;
+  cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
   ++o->run.n_rejected;
   ++o->attempt;
   timer_enter(STAGE_TABLES);

@@ -17,13 +17,6 @@ status sta_header(const output_options *o, text_file *sta) {
   return text_check(sta);
 }
 
-/* OK, UNSETTLED: taken although it missed its tolerance, or CUT and why. */
-static const char *reason(const state *s, const char *why) {
-  if (why != NULL) return "CUT ";
-  if (s->jumps) return "OK JUMP";
-  return s->settled ? "OK" : "UNSETTLED";
-}
-
 /* What CHECK= found, after the reason. */
 static const char *check_text(const state *s, char text[32]) {
   text[0] = '\0';
@@ -33,6 +26,23 @@ static const char *check_text(const state *s, char text[32]) {
   else if (!solution_set_confirmed(s->solutions))
     snprintf(text, 32, " UNCONFIRMED");
   return text;
+}
+
+/*
+ * OK, OK JUMP, UNSETTLED (taken although it missed its tolerance) or CUT, then
+ * the code of what stopped the contact solver, then words.
+ */
+static void print_reason(const state *s, const char *why, FILE *f) {
+  char check[32];
+  outcome o = s->report.outcome;
+  const char *code = o < 0 ? outcome_code(o) : "";
+  const char *blank = o < 0 ? " " : "";
+  if (why != NULL)
+    fprintf(f, " CUT%s%s %s\n", blank, code, why);
+  else if (!s->settled)
+    fprintf(f, " UNSETTLED%s%s%s\n", blank, code, check_text(s, check));
+  else
+    fprintf(f, " OK%s%s\n", s->jumps ? " JUMP" : "", check_text(s, check));
 }
 
 /* Error of the solver in %, "-": not asked for, or no bound. */
@@ -51,7 +61,6 @@ status sta_line(const output_options *o, const state *s, const char *why,
                 text_file *sta) {
   char t[NUMBER_SIZE], dt[NUMBER_SIZE], residual[NUMBER_SIZE];
   char error[NUMBER_SIZE], in_mesh[NUMBER_SIZE], in_steps[NUMBER_SIZE];
-  char check[32];
   const solver_report *r = &s->report;
   fprintf(sta->f, "%6d %5d %3d %s %s %7d %7d %7d %-9s %7d %s %9s %9s %9s",
           s->step_no, s->increment_no, s->attempt, text_number(t, s->t, 4),
@@ -61,8 +70,7 @@ status sta_line(const output_options *o, const state *s, const char *why,
           share_text(&s->mesh_error, in_mesh),
           share_text(&s->time_error, in_steps), error_text(s, error));
   if (!o->no_timing) fprintf(sta->f, " %9.3f", s->cpu);
-  fprintf(sta->f, " %s%s%s\n", reason(s, why), why != NULL ? why : "",
-          why != NULL ? "" : check_text(s, check));
+  print_reason(s, why, sta->f);
   return text_check(sta);
 }
 
@@ -83,6 +91,15 @@ void cvg_line(int total_no, int attempt, const solver_step *s, text_file *cvg) {
   fprintf(cvg->f, "%7d %3d %-9s %6d %6d %10s %8s %12s %5s\n", total_no, attempt,
           s->solver != NULL ? s->solver : "-", s->iteration, s->limit_update,
           residual, changes, change, s->cycle ? "YES" : "no");
+}
+
+void cvg_end(int total_no, int attempt, const state *s, text_file *cvg) {
+  char residual[NUMBER_SIZE];
+  if (s->surface == NULL) return;
+  fprintf(cvg->f, "# total %d att %d ended: %s %s (%s), residual %s\n",
+          total_no, attempt, s->report.solver != NULL ? s->report.solver : "-",
+          outcome_code(s->report.outcome), outcome_text(s->report.outcome),
+          text_number(residual, s->report.residual, 3));
 }
 
 void progress_line(const char *text) {

@@ -104,6 +104,8 @@ status sta_line(const output_options *o, const state *s, const char *why,
                 text_file *sta);
 void cvg_header(text_file *cvg);
 void cvg_line(int total_no, int attempt, const solver_step *s, text_file *cvg);
+/* How the iterations of an attempt ended: a comment line. */
+void cvg_end(int total_no, int attempt, const state *s, text_file *cvg);
 /* One line on the terminal, rewritten; "" clears it. */
 void progress_line(const char *text);
 void progress_show(const state *s);

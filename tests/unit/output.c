@@ -438,9 +438,61 @@ START_TEST(no_progress_line_where_there_is_no_terminal) {
 }
 END_TEST
 
+/* Each way a solver can stop has a code of its own in .sta, .cvg and JSON, for
+ * an increment that is taken and for one that is cut. */
+START_TEST(reasons_of_stopping_are_told_apart) {
+  static const struct {
+    outcome o;
+    const char *code;
+  } ends[] = {{STOPPED_ITERATIONS, "ITERATIONS"},
+              {STOPPED_NAN, "NAN"},
+              {STOPPED_STAGNATION, "STAGNATION"},
+              {STOPPED_RAY, "RAY"},
+              {STOPPED_CYCLE, "CYCLE"},
+              {STOPPED_SINGULAR, "SINGULAR"},
+              {STOPPED_UNFIT, "UNFIT"}};
+  enum { ENDS = sizeof ends / sizeof *ends };
+  char dir[64], line[64];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, ENDS);
+  output_options o = quiet(dir);
+  output *out = NULL;
+  ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
+  history_sink sink = output_sink(out);
+  ck_assert_int_eq(sink.ready(sink.ctx, &made->facts, &made->surface), OK);
+  for (int k = 0; k < ENDS; ++k) {
+    made_up_advance(made, k + 1);
+    made->s.settled = 0;
+    made->s.report.outcome = ends[k].o;
+    ck_assert_int_eq(sink.rejected(sink.ctx, &made->s, "in words"), OK);
+    ck_assert_int_eq(sink.increment(sink.ctx, &made->s), OK);
+  }
+  ck_assert_int_eq(output_close(out, OK, ENDS), ERR_UNSETTLED);
+  for (int k = 0; k < ENDS; ++k) {
+    static const char *const forms[][2] = {
+        {"block.sta", " UNSETTLED %s\n"},
+        {"block.sta", " CUT %s in words\n"},
+        {"block.cvg", " ended: newton %s ("},
+        {"block.json", "\"outcome\": \"%s\""}};
+    for (size_t f = 0; f < sizeof forms / sizeof *forms; ++f) {
+      char *text = folder_file(dir, forms[f][0], NULL);
+      const char *mark = strstr(forms[f][1], "%s");
+      snprintf(line, sizeof line, "%.*s%s%s", (int)(mark - forms[f][1]),
+               forms[f][1], ends[k].code, mark + 2);
+      ck_assert_msg(strstr(text, line) != NULL, "no '%s' in %s", line,
+                    forms[f][0]);
+      free(text);
+    }
+  }
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
 UNIT_MAIN("output", two_runs_give_the_same_bytes,
           status_file_has_a_line_per_attempt,
           unsettled_increment_is_seen_everywhere,
+          reasons_of_stopping_are_told_apart,
           json_is_valid_whatever_the_texts_and_numbers,
           cost_is_shown_unless_left_out,
           xdmf_names_every_record_of_the_file_beside_it,
