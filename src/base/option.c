@@ -281,18 +281,48 @@ void option_write(const option *row, const void *parameters, char *text,
   }
 }
 
+enum { MANUAL_INDENT = 20, MANUAL_WIDTH = 78 };
+
+/* " in [0, 2]", or one side alone where no number passes the other. */
+static void print_range(const option *o, FILE *out) {
+  if (o->max < DBL_MAX)
+    fprintf(out, " in [%g, %g]", o->min, o->max);
+  else if (o->min == DBL_MIN)
+    fputs(" > 0", out);
+  else if (o->min > -DBL_MAX)
+    fprintf(out, " >= %g", o->min);
+}
+
+/* Words in lines of their own, indented. */
+static void print_help(const char *text, FILE *out) {
+  int column = 0;
+  while (*text != '\0') {
+    int length = (int)strcspn(text, " ");
+    if (column > 0 && column + 1 + length > MANUAL_WIDTH) column = 0;
+    if (column == 0)
+      column = fprintf(out, "\n%*s%.*s", MANUAL_INDENT, "", length, text) - 1;
+    else
+      column += fprintf(out, " %.*s", length, text);
+    text += length;
+    text += strspn(text, " ");
+  }
+  fputc('\n', out);
+}
+
 static void print_row(const option *o, FILE *out) {
   static const char *const type[] = {"integer", "real", "YES or NO", "text",
                                      "word"};
   fprintf(out, "  %-15s %s", o->name,
           o->type == OPT_CHOICE ? o->choices : type[o->type]);
-  if (o->type == OPT_REAL || o->type == OPT_INT)
-    fprintf(out, " in [%g, %g], unit %s", o->min, o->max, o->unit);
+  if (o->type == OPT_REAL || o->type == OPT_INT) {
+    print_range(o, out);
+    fprintf(out, ", unit %s", o->unit);
+  }
   if (o->initial == NULL)
     fprintf(out, "; must be given");
   else if (strcmp(o->initial, OPTION_ABSENT) != 0)
     fprintf(out, "; default %s", o->initial);
-  fprintf(out, "\n  %-15s   %s\n", "", o->help);
+  print_help(o->help, out);
 }
 
 void option_print(const option *table, FILE *out) {
