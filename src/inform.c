@@ -102,6 +102,12 @@ static void list_materials(void) {
   }
 }
 
+static void list_integrators(void) {
+  for (int i = 0; scheme_list[i] != NULL; ++i)
+    printf("%s  (%s)\n  %s\n", scheme_list[i]->name, scheme_list[i]->reference,
+           scheme_list[i]->help);
+}
+
 int inform_keywords(const char *name) { return keywords_print(name, stdout); }
 
 int inform_list(const char *kind) {
@@ -112,9 +118,7 @@ int inform_list(const char *kind) {
   else if (strcmp(kind, "materials") == 0)
     list_materials();
   else if (strcmp(kind, "integrators") == 0)
-    puts(
-        "none: all materials of this version are elastic, no inelastic strain "
-        "is integrated");
+    list_integrators();
   else
     return 0;
   return 1;
@@ -126,6 +130,7 @@ const char *inform_nearest(const char *word,
 }
 
 static void print_sizes(const model *m, const mesh *msh) {
+  static const char *const kinds[] = {"none", "static", "quasistatic", "visco"};
   printf("mesh      %d nodes, %d elements, %d-D\n", msh->n_node, msh->n_elem,
          msh->dim);
   for (int i = 0; i < msh->n_group; ++i)
@@ -133,9 +138,8 @@ static void print_sizes(const model *m, const mesh *msh) {
            msh->group[i].dim, msh->group[i].n_node);
   for (int i = 0; i < m->n_step; ++i)
     printf("step      %d %s: %s, time %g to %g, %.0f increments\n", i + 1,
-           m->steps[i].name,
-           m->steps[i].kind == STEP_STATIC ? "static" : "quasistatic",
-           m->steps[i].start, m->steps[i].start + m->steps[i].total,
+           m->steps[i].name, kinds[m->steps[i].kind], m->steps[i].start,
+           m->steps[i].start + m->steps[i].total,
            m->steps[i].total / m->steps[i].dt);
 }
 

@@ -229,7 +229,15 @@
     "makes them those at once.")                                             \
   X(2048, WARNING, "inelastic law that never flows",                         \
     "Inelastic strain grows in *VISCO steps only; the other steps, as in "   \
-    "Abaqus, take the material as elastic. Use *VISCO, or remove the law.")
+    "Abaqus, take the material as elastic. Use *VISCO, or remove the law.")  \
+  X(2050, ERROR, "increment not stable",                                     \
+    "An explicit integrator must not step over about two of the shortest "   \
+    "relaxation times of the laws, or its errors grow. Take a smaller dt, "  \
+    "SUBSTEPS=AUTO, or an implicit integrator: MIDPOINT, BACKWARD.")         \
+  X(2051, WARNING, "stresses that ring",                                     \
+    "With THETA < 1 parts that relax much faster than dt change sign from "  \
+    "increment to increment and die out slowly. Take a smaller dt, or "      \
+    "INTEGRATOR=BACKWARD, which damps them at once.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

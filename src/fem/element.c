@@ -217,7 +217,7 @@ void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
 }
 
 void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
-                  double *sigma) {
+                  double *e, double *sigma) {
   const size_t ns = (size_t)d->ns;
   for (int k = 0; k < x->n; ++k) {
     element_shape s;
@@ -225,7 +225,9 @@ void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
     element_shape_at(d, x->elem_id[k], &s);
     strain_at(d, x->elem_id[k], u, &s, strain);
     take_eigen(d, x->e0 + ns * (size_t)k, strain);
-    stress_at(d, x->elem_id[k], strain, sigma + ns * (size_t)k);
+    if (e != NULL) memcpy(e + ns * (size_t)k, strain, ns * sizeof *e);
+    if (sigma != NULL)
+      stress_at(d, x->elem_id[k], strain, sigma + ns * (size_t)k);
   }
 }
 
@@ -267,6 +269,15 @@ void eigen_force(const domain *d, const eigenstrain *x, double *F) {
     element_shape_at(d, x->elem_id[k], &s);
     stress_at(d, x->elem_id[k], x->e0 + (size_t)d->ns * (size_t)k, t);
     add_force(d, x->elem_id[k], &s, t, 1, F);
+  }
+}
+
+void eigen_add_force(const domain *d, int n, const int *elem_id,
+                     const double *sigma, double *F) {
+  for (int k = 0; k < n; ++k) {
+    element_shape s;
+    element_shape_at(d, elem_id[k], &s);
+    add_force(d, elem_id[k], &s, sigma + (size_t)d->ns * (size_t)k, 1, F);
   }
 }
 

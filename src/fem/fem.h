@@ -125,9 +125,13 @@ double domain_strain_energy(const domain *d, const double *u); /* J           */
 /* F += sum B' E e0 w: the forces that hold the strains of x back, global
  * components [dim*n_node], N. */
 void eigen_force(const domain *d, const eigenstrain *x, double *F);
-/* Stresses of the elements of x alone: sigma[ns*n], Pa. */
+/* Strains less e0 and stresses of the elements of x alone: e[ns*n] (zz of
+ * plane stress not filled), sigma[ns*n], Pa; either may be NULL. */
 void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
-                  double *sigma);
+                  double *e, double *sigma);
+/* F += sum B' sigma w of n elements: sigma[ns*n], Pa. */
+void eigen_add_force(const domain *d, int n, const int *elem_id,
+                     const double *sigma, double *F);
 
 /* BLAS kernel: see blas.c. Called first in main; may replace the process. */
 void blas_choose_kernel(char **argv);

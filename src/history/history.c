@@ -75,6 +75,7 @@ static state make_state(run *r, int attempt, int increment_no) {
              .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
              .solver_log = contact_solver_log(r->solver),
              .settled = r->report.outcome > 0};
+  if (r->visco != NULL) visco_show(r, &s);
   if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
   if (!(r->m->effects & EFFECT_REACTION)) s.reaction = NULL;
   for (int i = 0; i < r->n; ++i) {
@@ -182,10 +183,17 @@ static status run_increment(run *r, long n, long i, int *increment_no) {
   int level = 0, attempt = 1;
   while (part < (1L << level)) {
     double cpu = timer_cpu(), t = piece_end(s, n, i, part + 1, level);
+    int deeper;
+    TRY(visco_level(r, t - r->old.t, &deeper));
+    if (deeper > 0) {
+      part <<= deeper;
+      level += deeper;
+      continue;
+    }
     TRY(path_try(r, t));
-    TRY(increment_solve(r, t));
+    TRY(s->kind == STEP_VISCO ? visco_advance(r, t) : increment_solve(r, t));
     int settled = r->report.outcome > 0;
-    int finer = s->kind == STEP_QUASISTATIC && level < DEEPEST_CUT &&
+    int finer = s->kind != STEP_STATIC && level < DEEPEST_CUT &&
                 ldexp(s->dt, -(level + 1)) >= s->dt_min &&
                 r->report.outcome != STOPPED_STAGNATION &&
                 r->report.outcome != STOPPED_UNFIT;
@@ -322,6 +330,47 @@ done:
   return st;
 }
 
+/* 1 if a is b to rounding. */
+static int same_vector(size_t n, const double *a, const double *b) {
+  double largest = 0.0, worst = 0.0;
+  for (size_t i = 0; i < n; ++i) {
+    largest = fmax(largest, fmax(fabs(a[i]), fabs(b[i])));
+    worst = fmax(worst, fabs(a[i] - b[i]));
+  }
+  return worst <= 1e-12 * largest;
+}
+
+/* 1 if nothing acts at the start of the step that did not act before. */
+static int starts_smoothly(const run *r) {
+  if (r->total_no == 0 && r->n > 0) return 0;
+  for (size_t i = 0; i < r->n_dof; ++i)
+    if (r->fixed[i] && fabs(r->ud[i] - r->old.u[i]) > 1e-12 * fabs(r->ud[i]))
+      return 0;
+  return same_vector(r->n_dof, r->now.F, r->old.F) &&
+         same_vector((size_t)r->m->ns * (size_t)r->eigen.n, r->now.e0,
+                     r->old.e0);
+}
+
+/*
+ * The body answers at once to what is applied suddenly at the start of a *VISCO
+ * step: an increment without length of its own.
+ */
+static status start_visco(run *r, int *increment_no) {
+  status st = OK;
+  double cpu = timer_cpu();
+  if (r->step->kind != STEP_VISCO || r->visco == NULL) return OK;
+  TRY(increment_begin(r, r->step->start));
+  if (!starts_smoothly(r)) {
+    TRY(increment_solve(r, r->step->start));
+    if (outcome_is_fatal(r->report.outcome)) TRY(no_equilibrium(r));
+    if (!same_vector(r->n_dof, r->now.u, r->old.u))
+      TRY(accept(r, 1, ++*increment_no, 0, cpu));
+  }
+  TRY(visco_begin_step(r));
+done:
+  return st;
+}
+
 static status run_step(run *r) {
   status st = OK;
   long n = increments_of(r->step);
@@ -331,6 +380,7 @@ static status run_step(run *r) {
     TRY(test_start(r));
     TRY(judge_start(r));
   }
+  TRY(start_visco(r, &increment_no));
   for (long i = 0; i < n; ++i) TRY(run_increment(r, n, i, &increment_no));
 done:
   return st;

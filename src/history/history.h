@@ -8,6 +8,7 @@
 #include "accuracy/solutions.h"
 #include "fem/fem.h"
 #include "model/model.h"
+#include "scheme/scheme.h"
 #include "start/start.h"
 
 /* Forces and moments of one contact: of the obstacle on the body. */
@@ -49,10 +50,15 @@ typedef struct energies {
                           obstacles, and by the trapezoidal rule gaps that open
                           or close within an increment                        */
   double thermal;      /* J, work of the stresses on thermal strain so far    */
+  double inelastic;    /* J, work of the stresses on inelastic strain so far,
+                          trapezoidal                                         */
+  double dissipated;   /* J, of that lost so far by the law, in the quadrature
+                          of the integrator                                   */
+  double stored;       /* J, of that kept by internal variables, now          */
   double start;   /* J, strain energy the run starts with                     */
-  double defect;  /* J, external + normal - friction - thermal - (strain -
-                     start)                                                   */
-  double largest; /* J, largest magnitude of the five so far: the scale of
+  double defect;  /* J, external + normal - friction - thermal - inelastic -
+                     (strain - start)                                         */
+  double largest; /* J, largest magnitude of the six so far: the scale of
                      the defect, also once all is unloaded                    */
 } energies;
 
@@ -85,6 +91,9 @@ typedef struct state {
   const double *u; /* [dim*n_node] m                                      */
   const double *strain, *stress; /* [ns*n_elem] -, Pa; NULL if no output asks */
   const double *temperature; /* [n_elem] or NULL: no thermal strain           */
+  const flow *flow;          /* elements whose law flows; NULL: none          */
+  const int *flow_elem;      /* [flow->n] ascending                           */
+  const flow_state *inelastic; /* their strains and internal variables        */
   const double *reaction; /* [dim*n_node] N, of the supports; 0 where free    */
   const contact_problem *problem; /* what was solved; NULL: no contact, LCP   */
   const contact_surface *surface; /* NULL: no contact. A problem from a file

@@ -125,22 +125,37 @@ done:
   return st;
 }
 
-status increment_pose(run *r, double t) {
+/* Condensed load and contact problem under the forces F. */
+static status pose(run *r, const double *F) {
   status st = OK;
-  r->now.t = t;
   r->report = (solver_report){.outcome = CONVERGED, .solver = "linear"};
-  TRY(load_at(r, t));
-  TRY(thermal_update(r));
-  TRY(condense_load(r->c, thermal_load(r), r->ud, r->f));
-  if (r->n > 0) TRY(pose_contact(r, t));
+  TRY(condense_load(r->c, F, r->ud, r->f));
+  if (r->n > 0) TRY(pose_contact(r, r->now.t));
 done:
   return st;
 }
 
-status increment_solve(run *r, double t) {
+status increment_begin(run *r, double t) {
+  status st = OK;
+  r->now.t = t;
+  TRY(load_at(r, t));
+  TRY(strains_update(r));
+done:
+  return st;
+}
+
+status increment_pose(run *r, double t) {
+  status st = OK;
+  TRY(increment_begin(r, t));
+  TRY(pose(r, strains_load(r)));
+done:
+  return st;
+}
+
+status increment_equilibrium(run *r, const double *F) {
   status st = OK;
   int iterations = 0;
-  TRY(increment_pose(r, t));
+  TRY(pose(r, F));
   while (r->n > 0) {
     TRY(forms_solve(r));
     iterations += r->report.iterations;
@@ -148,6 +163,14 @@ status increment_solve(run *r, double t) {
     if (!limit_follow_zone(r)) break;
   }
   TRY(condense_recover(r->c, r->now.uc, r->now.u));
+done:
+  return st;
+}
+
+status increment_solve(run *r, double t) {
+  status st = OK;
+  TRY(increment_begin(r, t));
+  TRY(increment_equilibrium(r, strains_load(r)));
 done:
   return st;
 }

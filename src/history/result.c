@@ -158,7 +158,8 @@ static void find_loops(run *r) {
  *   E - E_old = 1/2 (Ku + Ku_old)'(u - u_old),
  * and with strains e0 that carry no stress 1/2 (s + s_old)'(e0 - e0_old) less.
  */
-static void find_energies(run *r) {
+static status find_energies(run *r) {
+  status st = OK;
   const equilibrium *a = &r->old, *b = &r->now;
   energies e = a->energy;
   int dim = r->msh->dim;
@@ -179,16 +180,21 @@ static void find_energies(run *r) {
   }
   e.friction += friction;
   e.normal += work + friction;
-  e.thermal += thermal_work(r);
+  strains_work(r, &e);
+  if (r->visco != NULL) TRY(visco_energies(r, &e));
   e.strain = domain_strain_energy(&r->d, b->u);
-  e.defect =
-      e.external + e.normal - e.friction - e.thermal - (e.strain - e.start);
-  const double part[] = {e.external, e.normal, e.friction, e.thermal, e.strain};
-  for (int k = 0; k < 5; ++k) e.largest = fmax(e.largest, fabs(part[k]));
+  e.defect = e.external + e.normal - e.friction - e.thermal - e.inelastic -
+             (e.strain - e.start);
+  const double part[] = {e.external, e.normal,    e.friction,
+                         e.thermal,  e.inelastic, e.strain};
+  for (int k = 0; k < 6; ++k) e.largest = fmax(e.largest, fabs(part[k]));
   r->now.energy = e;
+done:
+  return st;
 }
 
 status result_evaluate(run *r, int due) {
+  status st = OK;
   unsigned effects = r->m->effects;
   if ((effects & EFFECT_REACTION) || ((effects & EFFECT_STRESS) && due) ||
       r->step->mesh_error) {
@@ -203,8 +209,9 @@ status result_evaluate(run *r, int due) {
   if (r->relaxing)
     result_start(r, &r->now);
   else
-    find_energies(r);
-  return OK;
+    TRY(find_energies(r));
+done:
+  return st;
 }
 
 void result_start(const run *r, equilibrium *e) {
@@ -217,4 +224,5 @@ void result_accept(run *r) {
   equilibrium e = r->old;
   r->old = r->now;
   r->now = e;
+  if (r->visco != NULL) visco_accept(r);
 }

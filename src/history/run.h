@@ -7,6 +7,7 @@
 #include "accuracy/accuracy.h"
 #include "accuracy/space.h"
 #include "history/history.h"
+#include "scheme/scheme.h"
 
 /* One equilibrium: displacements, contact forces, loads, and its time. */
 typedef struct equilibrium {
@@ -27,6 +28,16 @@ typedef struct forms forms; /* form.c                                         */
 typedef struct friction_average friction_average; /* limit.c                 */
 typedef struct friction_zone friction_zone;       /* limit.c                 */
 typedef struct finer_path finer_path; /* path.c                               */
+typedef struct visco visco; /* strains.c                                      */
+
+/* A stiffness, condensed, and the contact solver that knows it. */
+typedef struct matrices {
+  double key; /* of the tangent (scheme.h); 0: none                          */
+  long used;  /* when it was last used                                       */
+  stiffness *k;
+  condensed *c;
+  contact_solver *solver; /* NULL until asked for                            */
+} matrices;
 
 typedef struct run {
   const model *m;
@@ -44,6 +55,7 @@ typedef struct run {
   unsigned char *fixed; /* [dim*n_node]                                       */
 
   /* Elements with strains that have no stress. */
+  visco *visco;         /* NULL: no law flows                                */
   eigenstrain eigen;    /* e0 is that of the equilibrium at hand             */
   int *eigen_elem;      /* [n]                                               */
   double *temperature0; /* [n_elem] before the first step                    */
@@ -55,9 +67,9 @@ typedef struct run {
   double *face_weight;       /* [n_face]                                     */
   unsigned char *node_fixed; /* [n_node] bits                                */
   contact_surface *surface;
-  stiffness *k;
-  condensed *c;
-  contact_solver *solver;
+  matrices elastic;
+  condensed *c;           /* in use, borrowed from elastic or visco          */
+  contact_solver *solver; /* the same                                        */
   friction_limit limit;
   int limit_known; /* limit holds for all times of the step              */
   friction_average *average; /* [n_contact], or NULL: no law has one         */
@@ -109,22 +121,46 @@ status run_prepare(run *r);
 void run_free(run *r);
 int run_step_id(const run *r);
 
-/* thermal.c: strains that carry no stress. */
-status thermal_new(run *r);
-void thermal_free(run *r);
+/* Use m for the next equilibria; its solver is made if there is none. */
+status run_use(run *r, matrices *m);
+void matrices_free(matrices *m);
+
+/* strains.c: strains that carry no stress. */
+status strains_new(run *r);
+void strains_free(run *r);
+const material *run_material(const run *r, int elem_id);
 /* Temperatures and strains of r->now at its time t. */
-status thermal_update(run *r);
+status strains_update(run *r);
+/* r->now.e0 from the strains at hand. */
+void strains_collect(run *r);
 /* The loads with the forces that the strains of r->now call for: r->now.F
  * itself if there are none. */
-const double *thermal_load(run *r);
-/* Stresses of these elements, and the work on their thermal strains since
- * r->old, J. */
-double thermal_work(run *r);
+const double *strains_load(run *r);
+/* Stresses of these elements, and the work on their strains since r->old, J. */
+void strains_work(run *r, energies *e);
+
+/* Inelastic strains of the elements whose law flows, the same file. */
+void visco_forget(run *r); /* matrices are made anew                          */
+/* At the start of a *VISCO step: stresses of r->old. */
+status visco_begin_step(run *r);
+/* From r->old to r->now at time t by the integrator of the step; read
+ * r->report. */
+status visco_advance(run *r, double t);
+/* Increments of 2^level pieces that an explicit integrator needs: the level
+ * for a step dt from r->old; ERR_DECK if the deck forbids to cut it. */
+status visco_level(run *r, double dt, int *level);
+status visco_energies(run *r, energies *e);
+void visco_accept(run *r);
+void visco_show(const run *r, state *s); /* what the outputs see          */
 
 /* increment.c: the equilibrium at time t into r->now; read r->report. */
 status increment_solve(run *r, double t);
 /* Loads and contact problem of time t without solving. */
 status increment_pose(run *r, double t);
+/* Its parts: loads and strains at t; then the equilibrium with the matrix in
+ * use under the forces F[dim*n_node]. */
+status increment_begin(run *r, double t);
+status increment_equilibrium(run *r, const double *F);
 
 /* limit.c: the sliding limit at time t into r->limit, jumps into r->note. */
 status limit_update(run *r, double t);

@@ -106,7 +106,7 @@ status run_new(run *r) {
   TRY(new_equilibrium(r, &r->now));
   NEW(r->ud, r->n_dof);
   NEW(r->start, r->n_dof);
-  if (r->m->effects & EFFECT_THERMAL) TRY(thermal_new(r));
+  TRY(strains_new(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
   if (r->m->effects & EFFECT_MESH_ERROR) NEW(r->elem_error, r->msh->n_elem);
   if (r->m->effects & (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR))
@@ -117,19 +117,42 @@ done:
   return st;
 }
 
-static void free_surface(run *r) {
-  contact_solver_free(r->solver);
+void matrices_free(matrices *m) {
+  contact_solver_free(m->solver);
+  condensed_free(m->c);
+  stiffness_free(m->k);
+  *m = (matrices){0};
+}
+
+/* What the estimates know of the matrix in use. */
+static void forget_estimates(run *r) {
   dense_inverse_free(r->dense);
   r->dense = NULL;
   r->dense_known = 0;
   known_rate_forget(&r->rate);
   solution_set_free(&r->solutions);
-  condensed_free(r->c);
-  stiffness_free(r->k);
+}
+
+status run_use(run *r, matrices *m) {
+  status st = OK;
+  if (m->solver == NULL) TRY(contact_solver_new(&r->step->solver, &m->solver));
+  if (r->c != m->c) {
+    forget_estimates(r);
+    if (r->forms != NULL) TRY(forms_new(r));
+  }
+  r->c = m->c;
+  r->solver = m->solver;
+done:
+  return st;
+}
+
+static void free_surface(run *r) {
+  forget_estimates(r);
+  matrices_free(&r->elastic);
+  visco_forget(r);
   surface_free(r->surface);
   r->solver = NULL;
   r->c = NULL;
-  r->k = NULL;
   r->surface = NULL;
   double **owned[] = {&r->f,          &r->f_before,   &r->gap,     &r->side_gap,
                       &r->ut0,        &r->open_gap,   &r->slip,    &r->g,
@@ -154,7 +177,7 @@ void run_free(run *r) {
   memory_free(r->elem_error);
   free_equilibrium(&r->old);
   free_equilibrium(&r->now);
-  thermal_free(r);
+  strains_free(r);
   memory_free(r->kin);
   memory_free(r->thickness);
   memory_free(r->E);
@@ -385,7 +408,7 @@ status run_prepare(run *r) {
   r->limit_known = 0;
   for (int i = 0; i < r->m->n_contact && r->loops != NULL; ++i)
     r->loops[i].start_end = r->loops[i].friction_end;
-  if (r->c == NULL || memcmp(fixed, r->fixed, r->n_dof) != 0) {
+  if (r->elastic.c == NULL || memcmp(fixed, r->fixed, r->n_dof) != 0) {
     memcpy(r->fixed, fixed, r->n_dof);
     if (r->m->effects & EFFECT_CONTACT)
       TRY(build_surface(r));
@@ -393,15 +416,17 @@ status run_prepare(run *r) {
       free_surface(r);
     r->d.surface = r->surface;
     TRY(check_supports(r));
-    TRY(stiffness_assemble(&r->d, &r->k));
-    TRY(condense(r->k, &r->d, &r->c));
+    TRY(stiffness_assemble(&r->d, &r->elastic.k));
+    TRY(condense(r->elastic.k, &r->d, &r->elastic.c));
+    r->c = r->elastic.c;
     fresh = 1;
   }
   TRY(limit_average(r));
   if (fresh) TRY(report_ready(r));
-  contact_solver_free(r->solver);
-  r->solver = NULL;
-  TRY(contact_solver_new(&r->step->solver, &r->solver));
+  contact_solver_free(r->elastic.solver);
+  r->elastic.solver = NULL;
+  visco_forget(r);
+  TRY(run_use(r, &r->elastic));
 done:
   memory_free(fixed);
   return st;

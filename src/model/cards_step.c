@@ -30,7 +30,7 @@ status apply_end_step(reading *r) {
   const step *s = open_step(r);
   if (s->kind == STEP_NONE && !r->m->has_problem && !r->lost)
     message_add(r->m->log, P2018, &s->at,
-                "this step has no procedure: *STATIC or *QUASISTATIC");
+                "this step has no procedure: *STATIC, *QUASISTATIC or *VISCO");
   r->in_step = 0;
   return OK;
 }
@@ -79,29 +79,70 @@ static void check_increments(const reading *r, const field *f, const step *s,
                 "%.3g increments; at most 1e8 are possible", s->total / s->dt);
 }
 
-status apply_quasistatic(reading *r) {
-  step *s = open_step(r);
-  const quasistatic_param *p = r->param;
+/* dt, total [, dt_min [, dt_max]] of a step. */
+static void read_increments(const reading *r, step *s) {
   const record *line = &r->card->records[0];
   double dt_max = HUGE_VAL;
-  if (second_procedure(r)) return OK;
-  s->kind = STEP_QUASISTATIC;
   s->dt = s->total = s->dt_min = 1.0;
-  s->form = p->form;
   if (record_fields(r, line, 2, 4, "dt, total [, dt_min [, dt_max]]") != 0)
-    return OK;
+    return;
   const field *f = line->fields;
   if (field_real(r, &f[0], DBL_MIN, DBL_MAX, "dt", &s->dt) != 0 ||
       field_real(r, &f[1], DBL_MIN, DBL_MAX, "total", &s->total) != 0)
-    return OK;
+    return;
   if (line->n_field > 3 &&
       field_real(r, &f[3], DBL_MIN, DBL_MAX, "dt_max", &dt_max) != 0)
-    return OK;
+    return;
   s->dt_min = s->dt / 16.0;
   if (line->n_field > 2 && f[2].text[0] != '\0' &&
       field_real(r, &f[2], DBL_MIN, DBL_MAX, "dt_min", &s->dt_min) != 0)
-    return OK;
+    return;
   check_increments(r, f, s, dt_max);
+}
+
+status apply_quasistatic(reading *r) {
+  step *s = open_step(r);
+  const quasistatic_param *p = r->param;
+  if (second_procedure(r)) return OK;
+  s->kind = STEP_QUASISTATIC;
+  s->form = p->form;
+  read_increments(r, s);
+  return OK;
+}
+
+static const char *scheme_name(const void *ctx, int i) {
+  (void)ctx;
+  return scheme_list[i] == NULL ? NULL : scheme_list[i]->name;
+}
+
+/* THETA= and ITERATION= where they mean nothing. */
+static void check_visco(const reading *r, const scheme *s) {
+  if (!s->has_theta && card_parameter(r->card, "THETA") != NULL)
+    message_add(r->m->log, P2037, value_place(r, "THETA"),
+                "*VISCO: THETA= counts for INTEGRATOR=THETA only");
+  if (s->limit > 0.0 && card_parameter(r->card, "ITERATION") != NULL)
+    message_add(r->m->log, P2037, value_place(r, "ITERATION"),
+                "*VISCO: INTEGRATOR=%s does not iterate", s->name);
+}
+
+status apply_visco(reading *r) {
+  step *s = open_step(r);
+  const visco_param *p = r->param;
+  if (second_procedure(r)) return OK;
+  s->kind = STEP_VISCO;
+  read_increments(r, s);
+  s->integrator = p->integrator == NULL ? NULL : scheme_find(p->integrator);
+  if (s->integrator == NULL) {
+    if (p->integrator != NULL)
+      unknown_word(r->m->log, P2012, value_place(r, "INTEGRATOR"),
+                   "*VISCO: this version has no INTEGRATOR=", p->integrator,
+                   scheme_name, NULL);
+    return OK;
+  }
+  check_visco(r, s->integrator);
+  s->theta = s->integrator->has_theta ? p->theta : s->integrator->theta;
+  s->initial = p->iteration == 1;
+  s->substeps = p->substeps == 1;
   return OK;
 }
 

@@ -428,6 +428,84 @@ done:
   return st;
 }
 
+int step_has_limit(const step *s) {
+  return !s->integrator->linear_only && s->theta < 1.0;
+}
+
+/* THETA < 1 turns the sign of what is much faster than dt at each step. */
+static void tell_ringing(const model *m, const step *s, double t, double dt,
+                         double rate) {
+  double theta = s->theta, z = rate * dt;
+  if (s->integrator->limit > 0.0 || (1.0 - theta) * z <= 1.0) return;
+  message_add(m->log, P2051, &s->at,
+              "step %d, time %g: dt = %.6g is %.4g times the shortest "
+              "relaxation time: THETA = %g multiplies what relaxes so fast by "
+              "%.4f at each increment",
+              (int)(s - m->steps) + 1, t, dt, z, theta,
+              (1.0 - (1.0 - theta) * z) / (1.0 + theta * z));
+}
+
+int step_level(const model *m, const step *s, double t, double dt, double rate,
+               int tell) {
+  enum { DEEPEST = 30 };
+  int level = 0;
+  double limit = scheme_limit(s->integrator, s->theta) / rate;
+  /* Ends of increments are sums: dt is known to the rounding of the time. */
+  double rounding = 4e-16 * (fabs(t) + dt);
+  if (tell) tell_ringing(m, s, t, dt, rate);
+  while (ldexp(dt, -level) > limit + rounding && level < DEEPEST) ++level;
+  if (level == 0 || (s->substeps && level < DEEPEST)) return level;
+  message_add(m->log, P2050, &s->at,
+              "step %d, time %g: %s is stable up to dt = %.9g (fastest rate "
+              "%.9g), not with dt = %.9g; give a smaller dt, SUBSTEPS=AUTO, or "
+              "INTEGRATOR=BACKWARD",
+              (int)(s - m->steps) + 1, t, s->integrator->name, limit, rate, dt);
+  return -1;
+}
+
+/* The fastest rate of the laws whose Jacobian is the same for ever, 1/s. */
+static status constant_rate(const model *m, double *fastest) {
+  status st = OK;
+  static const double zero[FLOW_VALUE_MAX];
+  flow_kind kind = {0};
+  *fastest = 0.0;
+  for (int i = 0; i < m->n_section; ++i) {
+    const material *mat = &m->materials[m->sections[i].material_id];
+    law_elastic elastic;
+    law_point p;
+    double rate;
+    if (mat->law.ops == NULL || !mat->law.ops->linear ||
+        law_varies(&mat->law) != 0)
+      continue;
+    law_elastic_set(mat->C, mat->type, (kinematics)m->sections[i].kin,
+                    &elastic);
+    TRY(flow_new_kind(&kind, &mat->law, &elastic));
+    TRY(flow_coefficients(&kind, 0.0, 0.0, NULL, &p));
+    p.sigma = p.ei = p.alpha = zero;
+    TRY(law_fastest_rate(&p, &rate));
+    *fastest = fmax(*fastest, rate);
+    flow_kind_free(&kind);
+  }
+done:
+  flow_kind_free(&kind);
+  return st;
+}
+
+/* Increments of *VISCO steps against the laws that do not change. */
+static status check_visco(const model *m) {
+  status st = OK;
+  double rate;
+  if (!(m->effects & EFFECT_INELASTIC)) return OK;
+  TRY(constant_rate(m, &rate));
+  for (int i = 0; i < m->n_step; ++i) {
+    const step *s = &m->steps[i];
+    if (s->kind == STEP_VISCO && step_has_limit(s) && rate > 0.0)
+      step_level(m, s, s->start, s->dt, rate, 1);
+  }
+done:
+  return st;
+}
+
 status model_check(model *m, const mesh *msh) {
   status st = OK;
   m->dim = msh->dim;
@@ -443,6 +521,7 @@ status model_check(model *m, const mesh *msh) {
   TRY(message_status(m->log, ERR_DECK));
   check_values(m, msh);
   for (int i = 0; i < m->n_step; ++i) TRY(check_agreement(m, msh, i));
+  TRY(check_visco(m));
   TRY(message_status(m->log, ERR_DECK));
 done:
   return st;

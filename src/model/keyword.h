@@ -127,6 +127,11 @@ typedef struct amplitude_param {
 typedef struct quasistatic_param {
   int form;
 } quasistatic_param;
+typedef struct visco_param {
+  const char *integrator;
+  double theta;
+  int iteration, substeps;
+} visco_param;
 typedef struct load_param {
   const char *amplitude;
   int op;
@@ -179,6 +184,7 @@ status apply_step(reading *r);
 status apply_end_step(reading *r);
 status apply_static(reading *r);
 status apply_quasistatic(reading *r);
+status apply_visco(reading *r);
 status apply_boundary(reading *r);
 status apply_dsload(reading *r);
 status apply_dload(reading *r);

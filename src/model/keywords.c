@@ -139,6 +139,18 @@ static const option quasistatic_options[] = {
   OPTION_CHOICE(quasistatic_param, form, "FORM", STEP_FORMS, "DISPLACEMENT",
                 "unknown of an increment: N2 or N3 of CPR98, one answer"),
   OPTION_END};
+static const option visco_options[] = {
+  OPTION_NAME(visco_param, integrator, "INTEGRATOR", NULL,
+              "protis --list integrators"),
+  OPTION_REAL(visco_param, theta, "THETA", DBL_MIN, 1, "0.5", "-",
+              "of INTEGRATOR=THETA: where in the step the rates are taken"),
+  OPTION_CHOICE(visco_param, iteration, "ITERATION", "TANGENT|INITIAL",
+                "TANGENT", "implicit steps of nonlinear laws: consistent "
+                "tangent, or initial stress, which never factors again"),
+  OPTION_CHOICE(visco_param, substeps, "SUBSTEPS", "NO|AUTO", "NO",
+                "AUTO cuts increments beyond the stability of an explicit "
+                "integrator into 2, 4, 8, ..."),
+  OPTION_END};
 static const option load_options[] = {
   OPTION_NAME(load_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
               "course in time; absent: linear over the step"),
@@ -270,6 +282,9 @@ const keyword keyword_table[] = {
   {"QUASISTATIC", IN_STEP, OPTIONS(quasistatic), NULL, apply_quasistatic, 1, 1,
    "dt, total [, dt_min [, dt_max]]",
    "increments S_i^n: friction against the displacement of each (N2)"},
+  {"VISCO", IN_STEP, OPTIONS(visco), NULL, apply_visco, 1, 1,
+   "dt, total [, dt_min [, dt_max]]",
+   "quasistatic increments in which inelastic strains flow"},
   {"BOUNDARY", IN_STEP | IN_MODEL, OPTIONS(load), NULL, apply_boundary, 0, ANY,
    "group, first dof [, last dof [, value [, amplitude]]]",
    "supports and prescribed displacements"},
@@ -295,7 +310,6 @@ const keyword keyword_table[] = {
    "", "fields in JOB.h5; condensed problems for other programs"},
   {"END STEP", IN_STEP, NO_OPTIONS, NULL, apply_end_step, 0, 0,
    "", "closes the step"},
-  RESERVED("VISCO", "increments with inelastic strains"),
   RESERVED("EFFECTS", "which effects are simulated"),
   RESERVED("RESTART", "restart file"),
   RESERVED("REFERENCE", "closed form to compare with"),

@@ -12,6 +12,7 @@
 #include "law/law.h"
 #include "material/material.h"
 #include "mesh/mesh.h"
+#include "scheme/scheme.h"
 #include "solver/solver.h"
 
 typedef struct amplitude {
@@ -121,7 +122,7 @@ typedef struct load_list {
   load *item; /* [n] owned                                                    */
 } load_list;
 
-typedef enum { STEP_NONE, STEP_STATIC, STEP_QUASISTATIC } step_kind;
+typedef enum { STEP_NONE, STEP_STATIC, STEP_QUASISTATIC, STEP_VISCO } step_kind;
 /* Unknown of an increment: the displacement (CPR98, N2) or its change (N3). */
 typedef enum { FORM_DISPLACEMENT, FORM_VELOCITY } step_form;
 #define STEP_FORMS "DISPLACEMENT|VELOCITY"
@@ -179,6 +180,10 @@ typedef struct step {
   place at;
   int kind;                 /* step_kind                             */
   int form;                 /* step_form                             */
+  const scheme *integrator; /* of *VISCO, else NULL                  */
+  double theta;             /* of the integrator, -                  */
+  int initial;              /* ITERATION=INITIAL                     */
+  int substeps;             /* explicit increments are cut as needed */
   double start;             /* total time, s                         */
   double dt, total, dt_min; /* s                                     */
   load_list loads;  /* all in force, those kept from before included        */
@@ -300,6 +305,17 @@ void model_echo(const model *m, FILE *out);
 /* Help from the keyword table: all cards in short, or one in full; 0 if there
  * is no card of that name. */
 int keywords_print(const char *name, FILE *out);
+
+/* 1 if the integrator of a *VISCO step can be unstable or ring. */
+int step_has_limit(const step *s);
+/*
+ * What the fastest rate of the laws means for an increment dt of a *VISCO step
+ * from t on: the level of 2^level pieces that keep it stable, > 0 with
+ * SUBSTEPS=AUTO only; -1 after a message that it is not. "tell": say if parts
+ * of the stress will ring.
+ */
+int step_level(const model *m, const step *s, double t, double dt, double rate,
+               int tell);
 
 /* load.c */
 /* Nodal forces F[dim*n_node] (global components, N) of a step at total time t:

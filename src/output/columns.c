@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A value is one expression of the view v, the item id and the component. */
@@ -49,6 +50,9 @@ VALUE(friction_work, v->s->energy.friction)
 VALUE(friction_end, v->s->energy.friction_end)
 VALUE(normal_work, v->s->energy.normal)
 VALUE(thermal_work, v->s->energy.thermal)
+VALUE(inelastic_work, v->s->energy.inelastic)
+VALUE(dissipated, v->s->energy.dissipated)
+VALUE(inelastic_stored, v->s->energy.stored)
 VALUE(energy_defect, v->s->energy.defect)
 
 double energy_defect_relative(const energies *e) {
@@ -67,6 +71,32 @@ VALUE(elem_no, v->msh->elem_no[id])
 VALUE(temperature, v->s->temperature[id])
 VALUE(strain, v->s->strain[at(v->m->ns, id, part)])
 VALUE(stress, v->s->stress[at(v->m->ns, id, part)])
+
+static int compare_id(const void *a, const void *b) {
+  const int x = *(const int *)a, y = *(const int *)b;
+  return (x > y) - (x < y);
+}
+
+/* Point of an element whose law flows, or -1. */
+static int point_of(const view *v, int elem_id) {
+  const int *found = bsearch(&elem_id, v->s->flow_elem, (size_t)v->s->flow->n,
+                             sizeof elem_id, compare_id);
+  return found == NULL ? -1 : (int)(found - v->s->flow_elem);
+}
+
+/* Inelastic strain; 0 where no law flows. */
+static double inelastic(const view *v, int id, int part) {
+  int k = point_of(v, id);
+  return k < 0 ? 0 : v->s->inelastic->ei[at(v->m->ns, k, part)];
+}
+
+/* Internal variable; 0 where the law has fewer. */
+static double internal(const view *v, int id, int part) {
+  int k = point_of(v, id);
+  const size_t *start = v->s->flow->alpha_at;
+  if (k < 0 || start[k] + (size_t)part >= start[k + 1]) return 0;
+  return v->s->inelastic->alpha[start[k] + (size_t)part];
+}
 
 static double mises(const view *v, int id, int part) {
   const double *s = v->s->stress + at(v->m->ns, id, 0);
@@ -204,6 +234,11 @@ static const char *zone_contact_name(const view *v, int id) {
 #define PLACE SCENE_ALL, NEEDS_PLACE
 #define STRAIN(scenes) PRINT_ELEMENTS, EFFECT_STRESS, scenes, NEEDS_STRAIN
 #define STRESS(scenes) PRINT_ELEMENTS, EFFECT_STRESS, scenes, NEEDS_STRESS
+#define FLOW(scenes) \
+  PRINT_ELEMENTS, EFFECT_STRESS | EFFECT_INELASTIC, scenes, NEEDS_FLOW
+#define ALPHA \
+  PRINT_ELEMENTS, EFFECT_STRESS | EFFECT_INELASTIC, SCENE_ALL, \
+  NEEDS_FLOW | NEEDS_ALPHA
 #define REACT(scenes) PRINT_REACTIONS, EFFECT_REACTION, scenes, NEEDS_REACTION
 #define TOTAL(scenes) PRINT_TOTALS, C, scenes, NEEDS_TOTALS
 #define ZONE PER_ZONE, AS_REAL, PRINT_ZONES, C
@@ -264,8 +299,18 @@ const column column_table[] = {
  "moving obstacles, and gaps that open or close within an increment"},
 {"thermal_work", J, INC, PRINT_ENERGY, EFFECT_THERMAL, ANY, "thermal_work", 0,
  thermal_work, NULL, "work of the stresses on thermal strains so far"},
+{"inelastic_work", J, INC, PRINT_ENERGY, EFFECT_INELASTIC, ANY,
+ "inelastic_work", 0, inelastic_work, NULL,
+ "work of the stresses on inelastic strains so far, trapezoidal"},
+{"viscous_dissipation", J, INC, PRINT_ENERGY, EFFECT_INELASTIC, ANY,
+ "viscous_dissipation", 0, dissipated, NULL,
+ "lost of it by the laws so far, in the quadrature of the integrator"},
+{"inelastic_stored", J, INC, PRINT_ENERGY, EFFECT_INELASTIC, ANY,
+ "inelastic_stored", 0, inelastic_stored, NULL,
+ "kept of it by the internal variables"},
 {"energy_defect", J, INC, PRINT_ENERGY, 0, ANY, "energy_defect", 0,
- energy_defect, NULL, "external + normal - friction - thermal - strain"},
+ energy_defect, NULL,
+ "external + normal - friction - thermal - inelastic work - strain"},
 {"energy_defect_relative", "-", INC, PRINT_ENERGY, 0, ANY,
  "energy_defect_relative", 0, defect_relative, NULL,
  "the defect over the largest of the energies so far"},
@@ -353,6 +398,50 @@ const column column_table[] = {
  "shear stress"},
 {"mises", PA, ELEM, STRESS(SCENE_ALL), "mises", 0, mises, NULL,
  "von Mises stress"},
+{"ei_xx", "-", ELEM, FLOW(CART), "ei_xx", 0, inelastic, NULL,
+ "inelastic strain"},
+{"ei_yy", "-", ELEM, FLOW(CART), "ei_yy", 1, inelastic, NULL,
+ "inelastic strain"},
+{"ei_zz", "-", ELEM, FLOW(CART), "ei_zz", 2, inelastic, NULL,
+ "inelastic strain"},
+{"ei_xy", "-", ELEM, FLOW(CART), "ei_xy", 3, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"ei_yz", "-", ELEM, FLOW(SCENE_SOLID), "ei_yz", 4, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"ei_zx", "-", ELEM, FLOW(SCENE_SOLID), "ei_zx", 5, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"ei_rr", "-", ELEM, FLOW(SCENE_AXI), "ei_rr", 0, inelastic, NULL,
+ "inelastic strain"},
+{"ei_zz", "-", ELEM, FLOW(SCENE_AXI), "ei_zz", 1, inelastic, NULL,
+ "inelastic strain"},
+{"ei_tt", "-", ELEM, FLOW(SCENE_AXI), "ei_tt", 2, inelastic, NULL,
+ "inelastic strain"},
+{"ei_rz", "-", ELEM, FLOW(SCENE_AXI), "ei_rz", 3, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"alpha_1", "-", ELEM, ALPHA, "alpha_1", 0, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_2", "-", ELEM, ALPHA, "alpha_2", 1, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_3", "-", ELEM, ALPHA, "alpha_3", 2, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_4", "-", ELEM, ALPHA, "alpha_4", 3, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_5", "-", ELEM, ALPHA, "alpha_5", 4, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_6", "-", ELEM, ALPHA, "alpha_6", 5, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_7", "-", ELEM, ALPHA, "alpha_7", 6, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_8", "-", ELEM, ALPHA, "alpha_8", 7, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_9", "-", ELEM, ALPHA, "alpha_9", 8, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_10", "-", ELEM, ALPHA, "alpha_10", 9, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_11", "-", ELEM, ALPHA, "alpha_11", 10, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_12", "-", ELEM, ALPHA, "alpha_12", 11, internal, NULL,
+ "internal variable of the law, in its unit"},
 
 {"node_no", "-", PER_CONTACT_NODE, AS_COUNT, PRINT_CONTACT, C, SUR, NULL, 0,
  contact_node_no, NULL, "number in the mesh"},
@@ -550,10 +639,23 @@ unsigned scene_of(const model *m) {
   return SCENE_PLANE;
 }
 
+/* The most internal variables that a law of the model has. */
+static int most_internal(const model *m) {
+  int most = 0;
+  for (int i = 0; i < m->n_material; ++i) {
+    const law_card *law = &m->materials[i].law;
+    if (!m->materials[i].used || law->ops == NULL) continue;
+    int n = law_n_alpha(law, m->ns);
+    if (n > most) most = n;
+  }
+  return most;
+}
+
 /* 1 unless its tables are ones that only *PRINT brings about. */
 static int is_asked(const column *c, const model *m) {
   const unsigned extra = PRINT_ZONES | PRINT_LOOP;
   if ((c->needs & NEEDS_TORQUE) != 0 && !model_has_axis(m)) return 0;
+  if ((c->needs & NEEDS_ALPHA) != 0 && c->part >= most_internal(m)) return 0;
   if (c->tables == 0 || (c->tables & ~extra) != 0) return 1;
   return model_prints(m, (int)c->tables);
 }
@@ -563,20 +665,25 @@ int column_visible(const column *c, const model *m) {
          (c->scenes & scene_of(m)) != 0;
 }
 
+static unsigned if_there(const void *p, unsigned bits) {
+  return p != NULL ? bits : 0;
+}
+
 int column_ready(const column *c, const state *s) {
   unsigned have = 0;
-  if (s->strain != NULL) have |= NEEDS_STRAIN;
-  if (s->stress != NULL) have |= NEEDS_STRESS;
-  if (s->reaction != NULL) have |= NEEDS_REACTION;
-  if (s->surface != NULL) have |= NEEDS_SURFACE;
+  have |= if_there(s->strain, NEEDS_STRAIN);
+  have |= if_there(s->stress, NEEDS_STRESS);
+  have |= if_there(s->reaction, NEEDS_REACTION);
+  have |= if_there(s->surface, NEEDS_SURFACE);
   if (s->surface != NULL && s->surface->x != NULL) have |= NEEDS_PLACE;
-  if (s->limit != NULL) have |= NEEDS_LIMIT;
-  if (s->totals != NULL) have |= NEEDS_TOTALS;
-  if (s->distance != NULL) have |= NEEDS_DISTANCE;
-  if (s->torque != NULL) have |= NEEDS_TORQUE;
-  if (s->loops != NULL) have |= NEEDS_LOOP;
-  if (s->zones != NULL) have |= NEEDS_ZONES;
-  if (s->elem_error != NULL) have |= NEEDS_ELEM_ERROR;
+  have |= if_there(s->limit, NEEDS_LIMIT);
+  have |= if_there(s->totals, NEEDS_TOTALS);
+  have |= if_there(s->distance, NEEDS_DISTANCE);
+  have |= if_there(s->torque, NEEDS_TORQUE);
+  have |= if_there(s->loops, NEEDS_LOOP);
+  have |= if_there(s->zones, NEEDS_ZONES);
+  have |= if_there(s->elem_error, NEEDS_ELEM_ERROR);
+  have |= if_there(s->flow, NEEDS_FLOW | NEEDS_ALPHA);
   return (c->needs & ~have) == 0;
 }
 

@@ -43,7 +43,9 @@ enum {
   NEEDS_TORQUE = 256, /* some contact has an axis                           */
   NEEDS_LOOP = 512,
   NEEDS_ZONES = 1024,
-  NEEDS_ELEM_ERROR = 2048
+  NEEDS_ELEM_ERROR = 2048,
+  NEEDS_FLOW = 4096, /* elements whose law flows                            */
+  NEEDS_ALPHA = 8192 /* that many internal variables                        */
 };
 
 /* What a value function sees. */

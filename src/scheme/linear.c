@@ -1,0 +1,302 @@
+/*
+ * Implicit steps of linear laws with constant coefficients. With y = (e^i,
+ * alpha) and the strain e (less the thermal one) of a point,
+ *   y' = L y + G e,   sigma = E (e - e^i),
+ * a step is y_new = P y_old + Q0 e_old + Q1 e_new with matrices that depend on
+ * the law and dt alone, so that the body sees the constant elasticity
+ * D = E (I - Q1_ei) and needs one equilibrium:
+ *   THETA        y_new = y_old + dt (L y_th + G e_th), x_th = (1-theta) x_old +
+ *                theta x_new
+ *   EXPONENTIAL  the exact solution for e linear in time over the step:
+ *                exp(dt L), dt phi_1(dt L) G, dt phi_2(dt L) G
+ */
+#include "scheme/work.h"
+
+#include "base/memory.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+/* C[n*m] += a A[n*k] B[k*m], column major */
+static void multiply(int n, int k, int m, double a, const double *A,
+                     const double *B, double *C) {
+  for (int j = 0; j < m; ++j)
+    for (int q = 0; q < k; ++q) {
+      double factor = a * B[q + k * j];
+      for (int i = 0; i < n && factor != 0.0; ++i)
+        C[i + n * j] += factor * A[i + n * q];
+    }
+}
+
+static void put_block(int rows, int columns, const double *A, double *M,
+                      int ld) {
+  for (int j = 0; j < columns; ++j)
+    for (int i = 0; i < rows; ++i) M[i + ld * j] += A[i + rows * j];
+}
+
+/* Blocks of the Jacobian of the point p in one array, new. */
+static status new_jacobian(const law_point *p, int na, law_jacobian *j) {
+  status st = OK;
+  int ns = p->elastic->ns;
+  NEW(j->ei_sigma, 2 * ns * ns + 2 * ns * na + na * na);
+  j->ei_ei = j->ei_sigma + ns * ns;
+  j->ei_alpha = j->ei_ei + ns * ns;
+  j->alpha_sigma = j->ei_alpha + ns * na;
+  j->alpha_alpha = j->alpha_sigma + na * ns;
+  law_jacobian_at(p, j);
+done:
+  return st;
+}
+
+status linear_law(const flow_kind *k, double *L, double *G) {
+  status st = OK;
+  const law_elastic *el = &k->elastic;
+  const int ns = el->ns, na = k->n_alpha, n = ns + na;
+  law_jacobian j = {0};
+  double *zero = NULL, *top = NULL;
+  NEW(zero, n);
+  NEW(top, n * ns);
+  law_point p = {.law = k->law,
+                 .elastic = el,
+                 .value = k->value,
+                 .speed = k->speed,
+                 .sigma = zero,
+                 .ei = zero,
+                 .alpha = zero};
+  TRY(new_jacobian(&p, na, &j));
+  put_block(ns, ns, j.ei_sigma, top, n);
+  put_block(na, ns, j.alpha_sigma, top + ns, n);
+  multiply(n, ns, ns, 1.0, top, el->E, G);
+  for (int i = 0; i < n * ns; ++i) L[i] = -G[i];
+  put_block(ns, ns, j.ei_ei, L, n);
+  put_block(ns, na, j.ei_alpha, L + n * ns, n);
+  put_block(na, na, j.alpha_alpha, L + n * ns + ns, n);
+done:
+  memory_free(j.ei_sigma);
+  memory_free(zero);
+  memory_free(top);
+  return st;
+}
+
+/* X[n*m] := inv(M) X; M is destroyed. */
+static status solve(int n, int m, double *M, double *X) {
+  status st = OK;
+  int *pivot = NULL;
+  NEW(pivot, n);
+  if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, m, M, n, pivot, X, n) != 0)
+    FAIL(ERR_SINGULAR, "the step of an inelastic law has no solution");
+done:
+  memory_free(pivot);
+  return st;
+}
+
+status theta_map(const flow_kind *k, const scheme_step *p, const double *L,
+                 const double *G, linear_map *m) {
+  status st = OK;
+  const int n = m->n, ns = k->elastic.ns, columns = n + 2 * ns;
+  const double in = p->theta * p->dt, out = (1.0 - p->theta) * p->dt;
+  double *M = NULL, *X = NULL;
+  NEW(M, n * n);
+  NEW(X, n * columns);
+  for (int i = 0; i < n * n; ++i) {
+    double one = i % (n + 1) == 0;
+    M[i] = one - in * L[i];
+    X[i] = one + out * L[i];
+  }
+  for (int i = 0; i < n * ns; ++i) {
+    X[n * n + i] = out * G[i];
+    X[n * (n + ns) + i] = in * G[i];
+  }
+  TRY(solve(n, columns, M, X));
+  memcpy(m->P, X, (size_t)(n * n) * sizeof *X);
+  memcpy(m->Q0, X + n * n, (size_t)(n * ns) * sizeof *X);
+  memcpy(m->Q1, X + n * (n + ns), (size_t)(n * ns) * sizeof *X);
+done:
+  memory_free(M);
+  memory_free(X);
+  return st;
+}
+
+/* X = exp(A) - I for A[n*n] of any size: Taylor below 2^-6, then squaring in
+ * the form X <- 2 X + X X, which keeps slow parts beside fast ones. */
+static status exponential_less_one(int n, const double *A, double *X) {
+  status st = OK;
+  enum { TERMS = 12 };
+  double *power = NULL, *next = NULL, largest = 0.0;
+  size_t square = (size_t)n * (size_t)n;
+  int halvings = 0;
+  NEW(power, square);
+  NEW(next, square);
+  for (int i = 0; i < n; ++i) {
+    double row = 0.0;
+    for (int j = 0; j < n; ++j) row += fabs(A[i + n * j]);
+    largest = fmax(largest, row);
+  }
+  if (largest > 0.0) frexp(largest * 64.0, &halvings);
+  if (halvings < 0) halvings = 0;
+  for (size_t i = 0; i < square; ++i) X[i] = power[i] = ldexp(A[i], -halvings);
+  for (int k = 2; k <= TERMS; ++k) {
+    memset(next, 0, square * sizeof *next);
+    multiply(n, n, n, ldexp(1.0 / k, -halvings), A, power, next);
+    for (size_t i = 0; i < square; ++i) X[i] += power[i] = next[i];
+  }
+  for (; halvings > 0; --halvings) {
+    for (size_t i = 0; i < square; ++i) next[i] = 2.0 * X[i];
+    multiply(n, n, n, 1.0, X, X, next);
+    memcpy(X, next, square * sizeof *X);
+  }
+done:
+  memory_free(power);
+  memory_free(next);
+  return st;
+}
+
+/* exp of [dt L, dt G, 0; 0, 0, I; 0, 0, 0]: its first row is exp(dt L),
+ * dt phi_1 G, dt phi_2 G. */
+status exponential_map(const flow_kind *k, const scheme_step *p,
+                       const double *L, const double *G, linear_map *m) {
+  status st = OK;
+  const int n = m->n, ns = k->elastic.ns, N = n + 2 * ns;
+  double *A = NULL, *X = NULL;
+  NEW(A, N * N);
+  NEW(X, N * N);
+  put_block(n, n, L, A, N);
+  put_block(n, ns, G, A + N * n, N);
+  for (int i = 0; i < N * N; ++i) A[i] *= p->dt;
+  for (int i = 0; i < ns; ++i) A[n + i + N * (n + ns + i)] = 1.0;
+  TRY(exponential_less_one(N, A, X));
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) m->P[i + n * j] = X[i + N * j] + (i == j);
+  for (int j = 0; j < ns; ++j)
+    for (int i = 0; i < n; ++i) {
+      m->Q1[i + n * j] = X[i + N * (n + ns + j)];
+      m->Q0[i + n * j] = X[i + N * (n + j)] - m->Q1[i + n * j];
+    }
+done:
+  memory_free(A);
+  memory_free(X);
+  return st;
+}
+
+static status make_map(const flow_kind *k, const scheme_step *p,
+                       linear_map_fn *make, linear_map *m, double *D) {
+  status st = OK;
+  const int ns = k->elastic.ns, n = ns + k->n_alpha;
+  const size_t square = (size_t)(ns * ns);
+  double *L = NULL, *G = NULL, *top = NULL;
+  m->n = n;
+  NEW(L, n * n);
+  NEW(G, n * ns);
+  NEW(top, square);
+  TRY(need(&m->P, (size_t)(n * n)));
+  TRY(need(&m->Q0, (size_t)(n * ns)));
+  TRY(need(&m->Q1, (size_t)(n * ns)));
+  TRY(linear_law(k, L, G));
+  TRY(make(k, p, L, G, m));
+  for (int j = 0; j < ns; ++j)
+    for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + n * j];
+  memcpy(D, k->elastic.E, square * sizeof *D);
+  multiply(ns, ns, ns, -1.0, k->elastic.E, top, D);
+done:
+  memory_free(L);
+  memory_free(G);
+  memory_free(top);
+  return st;
+}
+
+static status make_maps(const flow *x, const scheme_step *p, double key,
+                        linear_map_fn *make, scheme_work *w) {
+  status st = OK;
+  size_t square = (size_t)(x->ns * x->ns);
+  if (w->key == key) return OK;
+  w->key = 0.0;
+  if (w->map == NULL) NEW(w->map, x->n_kind);
+  w->n_kind = x->n_kind;
+  TRY(need(&w->D_kind, square * (size_t)x->n_kind));
+  for (int i = 0; i < x->n_kind; ++i)
+    TRY(make_map(&x->kind[i], p, make, &w->map[i],
+                 w->D_kind + square * (size_t)i));
+  w->key = key;
+done:
+  return st;
+}
+
+/* y = A v */
+static void add_product(int n, int m, const double *A, const double *v,
+                        double *y) {
+  for (int j = 0; j < m; ++j)
+    for (int i = 0; i < n; ++i) y[i] += A[i + n * j] * v[j];
+}
+
+/* The state of point k from the old one for now->e. */
+static void apply_map(const flow *x, const linear_map *m, int k,
+                      const flow_state *old, flow_state *now) {
+  const int ns = x->ns, na = m->n - ns;
+  const law_elastic *el = &x->kind[x->kind_id[k]].elastic;
+  size_t at = (size_t)ns * (size_t)k, a = x->alpha_at[k];
+  double y[FLOW_VALUE_MAX] = {0}, elastic[6];
+  add_product(m->n, ns, m->P, old->ei + at, y);
+  add_product(m->n, na, m->P + m->n * ns, old->alpha + a, y);
+  add_product(m->n, ns, m->Q0, old->e + at, y);
+  add_product(m->n, ns, m->Q1, now->e + at, y);
+  memcpy(now->ei + at, y, (size_t)ns * sizeof *y);
+  memcpy(now->alpha + a, y + ns, (size_t)na * sizeof *y);
+  for (int i = 0; i < ns; ++i) elastic[i] = now->e[at + (size_t)i] - y[i];
+  tensor_product(ns, el->E, elastic, now->sigma + at);
+}
+
+static void apply_maps(const flow *x, const scheme_work *w,
+                       const flow_state *old, flow_state *now) {
+  for (int k = 0; k < x->n; ++k)
+    apply_map(x, &w->map[x->kind_id[k]], k, old, now);
+}
+
+static void mean(size_t n, double th, const double *a, const double *b,
+                 double *y) {
+  for (size_t i = 0; i < n; ++i) y[i] = (1.0 - th) * a[i] + th * b[i];
+}
+
+/* What the power at the theta-point dissipates over the step. */
+static status middle_power(const scheme_call *a) {
+  status st = OK;
+  const flow *x = a->x;
+  const flow_state *old = a->old, *now = a->now;
+  scheme_work *w = a->w;
+  flow_state *m = &w->middle;
+  double power, th = a->p->theta;
+  size_t n = (size_t)x->ns * (size_t)x->n, na = x->alpha_at[x->n];
+  if (m->e == NULL) TRY(flow_state_new(x, m));
+  TRY(need(&w->ei_rate[0], n));
+  TRY(need(&w->alpha_rate[0], na));
+  m->t = old->t + th * a->p->dt;
+  mean(n, th, old->sigma, now->sigma, m->sigma);
+  mean(n, th, old->ei, now->ei, m->ei);
+  mean(na, th, old->alpha, now->alpha, m->alpha);
+  TRY(flow_rates(x, m, a->p->dt, w->ei_rate[0], w->alpha_rate[0], &power));
+  a->out->dissipated += a->p->dt * power;
+done:
+  return st;
+}
+
+status linear_advance(const scheme_call *a, double key, linear_map_fn *make) {
+  status st = OK;
+  const flow *x = a->x;
+  scheme_work *w = a->w;
+  size_t n = (size_t)x->ns * (size_t)x->n;
+  TRY(make_maps(x, a->p, key, make, w));
+  TRY(need(&w->sigma_k, n));
+  a->now->t = a->old->t + a->p->dt;
+  TRY(a->b->begin(a->b->ctx, a->now));
+  memcpy(a->now->e, a->old->e, n * sizeof *a->now->e);
+  apply_maps(x, w, a->old, a->now);
+  memcpy(w->sigma_k, a->now->sigma, n * sizeof *w->sigma_k);
+  flow_tangent law = {
+      .key = key, .D = w->D_kind, .sigma = w->sigma_k, .e = a->old->e};
+  TRY(a->b->linear(a->b->ctx, &law, a->now, &a->out->settled));
+  apply_maps(x, w, a->old, a->now);
+  a->out->iterations = 1;
+  TRY(middle_power(a));
+done:
+  return st;
+}

@@ -1,0 +1,51 @@
+/*
+ * Room of the integrators and what their files share. Private to src/scheme.
+ */
+#ifndef PROTIS_SCHEME_WORK_H
+#define PROTIS_SCHEME_WORK_H
+
+#include "scheme/scheme.h"
+
+enum { STAGES = 4 };
+
+/* Step of a linear law with constant coefficients, y = (e^i, alpha):
+ * y_new = P y_old + Q0 e_old + Q1 e_new. */
+typedef struct linear_map {
+  int n;           /* ns + n_alpha                                           */
+  double *P;       /* [n*n]                                                  */
+  double *Q0, *Q1; /* [n*ns]                                                 */
+} linear_map;
+
+struct scheme_work {
+  double *ei_rate[STAGES], *alpha_rate[STAGES]; /* [ns*n], [alpha_at[n]]     */
+  double *sigma_k, *e_k, *linear; /* [ns*n] when first needed                */
+  double *D;                      /* [ns*ns*n] the same                      */
+  double key;        /* for which map[] and D_kind were made; 0: none */
+  linear_map *map;   /* [n_kind]                                     */
+  flow_state middle; /* the theta-point                              */
+  double *D_kind;    /* [ns*ns*n_kind] Pa                            */
+  int n_kind;
+};
+
+/* y = x + a v over n components */
+void add_scaled(size_t n, const double *x, double a, const double *v,
+                double *y);
+status need(double **array, size_t n); /* allocate if NULL                   */
+
+/* linear.c: y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
+status linear_law(const flow_kind *k, double *L, double *G);
+typedef status linear_map_fn(const flow_kind *k, const scheme_step *p,
+                             const double *L, const double *G, linear_map *m);
+status linear_advance(const scheme_call *a, double key, linear_map_fn *make);
+status theta_map(const flow_kind *k, const scheme_step *p, const double *L,
+                 const double *G, linear_map *m);
+status exponential_map(const flow_kind *k, const scheme_step *p,
+                       const double *L, const double *G, linear_map *m);
+/* newton.c */
+status newton_advance(const scheme_call *a);
+/* explicit.c */
+status euler_advance(const scheme_call *a);
+status heun_advance(const scheme_call *a);
+status rk4_advance(const scheme_call *a);
+
+#endif

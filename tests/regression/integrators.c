@@ -1,0 +1,225 @@
+/*
+ * The integrators of inelastic strains: what each makes of a held stress in a
+ * step, how far the explicit ones are stable, and their order of convergence
+ * for a block that creeps on a floor with friction. E = 1000, nu = 0.3,
+ * relaxation time 2.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct scene {
+  const char *elastic, *law; /* line of *ELASTIC; *INELASTIC with its lines  */
+  const char *section, *model; /* TYPE=; cards before the first step */
+  const char *load;  /* cards of the first step, *STATIC             */
+  const char *visco; /* from *VISCO on, its line and cards           */
+} scene;
+
+#define TABLES "*PRINT, ELEMENTS, ENERGY, NODES\n"
+
+static job run_scene(const scene *s, int expected) {
+  job j = job_begin("visco");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "visco.inp",
+            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n%s\n%s*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
+            "%s*STEP\n*STATIC\n%s" TABLES "*END STEP\n*STEP\n%s*END STEP\n",
+            s->elastic, s->law, s->section, s->model, s->load, s->visco);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == expected, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Table number k of the elements: all have that value. */
+static void all_have(const job *j, int k, const char *column, double expected,
+                     double tolerance) {
+  dat d = job_table(j, "ELEMENTS", k);
+  for (int i = 0; i < d.n_row; ++i) {
+    double found = dat_at(&d, i, column);
+    ck_assert_msg(fabs(found - expected) <= tolerance,
+                  "%s of table %d: %.12g, expected %.12g to %g", column, k,
+                  found, expected, tolerance);
+  }
+  dat_free(&d);
+}
+
+#define STEEL "1000., 0.3"
+#define PROPORTIONAL "*INELASTIC, LAW=MAXWELL\n2.\n"
+#define DEVIATORIC "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n2.\n"
+#define SYMMETRY "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n"
+#define HELD SYMMETRY "TOP, 2, 2, 1.E-3\n"
+
+typedef struct scheme_row {
+  const char *integrator;
+  double (*factor)(double z); /* stress after a step z = dt/tau, held strain  */
+  int order;
+} scheme_row;
+
+static double by_euler(double z) { return 1 - z; }
+static double by_heun(double z) { return 1 - z + z * z / 2; }
+static double by_rk4(double z) {
+  return 1 - z + z * z / 2 - z * z * z / 6 + z * z * z * z / 24;
+}
+static double by_theta(double z) { return (1 - 0.25 * z) / (1 + 0.75 * z); }
+static double by_midpoint(double z) { return (1 - 0.5 * z) / (1 + 0.5 * z); }
+static double by_backward(double z) { return 1 / (1 + z); }
+static double by_exponential(double z) { return exp(-z); }
+
+static const scheme_row schemes[] = {
+    {"EULER", by_euler, 1},
+    {"HEUN", by_heun, 2},
+    {"RK4", by_rk4, 4},
+    {"THETA, THETA=0.75", by_theta, 1},
+    {"MIDPOINT", by_midpoint, 2},
+    {"BACKWARD", by_backward, 1},
+    {"BACKWARD, ITERATION=INITIAL", by_backward, 1},
+    {"EXPONENTIAL", by_exponential, 2}};
+enum { N_SCHEME = sizeof schemes / sizeof *schemes };
+
+START_TEST(held_stress_is_multiplied_by_the_factor_of_the_scheme) {
+  const scheme_row *r = &schemes[_i];
+  static const double dt[] = {0.2, 1.0, 3.0};
+  for (int k = 0; k < 3; ++k) {
+    char visco[128];
+    snprintf(visco, sizeof visco, "*VISCO, INTEGRATOR=%s\n%g, %g\n",
+             r->integrator, dt[k], 5 * dt[k]);
+    scene s = {STEEL, PROPORTIONAL, "CPE3", "", HELD, visco};
+    job j = run_scene(&s, 0);
+    double stress = 1.0 / (1 - 0.09);
+    for (int i = 0; i < 6; ++i) {
+      all_have(&j, i, "stress_yy", stress, 1e-9);
+      stress *= r->factor(dt[k] / 2.0);
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
+#define FLOOR(mu)                                \
+  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"         \
+  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n" \
+  "*FRICTION, CONTACT=C, LAW=COULOMB\n" #mu "\n"
+
+/* Explicit integrators are stable up to twice the relaxation time, whatever
+ * the mesh, the supports and the contact: there the stress changes its sign. */
+START_TEST(limit_is_twice_the_relaxation_time) {
+  scene s = {STEEL,
+             PROPORTIONAL,
+             "CPE3",
+             FLOOR(0.5),
+             "*BOUNDARY\nLEFT, 1\nTOP, 1, 1, 1.E-4\nTOP, 2, 2, -1.E-3\n",
+             "*VISCO, INTEGRATOR=EULER\n4., 40.\n"};
+  job j = run_scene(&s, 0);
+  dat a = job_table(&j, "ELEMENTS", 1), b = job_table(&j, "ELEMENTS", 10);
+  for (int i = 0; i < a.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&a, i, "stress_yy"),
+                            -dat_at(&b, i, "stress_yy"), 1e-8);
+  dat_free(&a);
+  dat_free(&b);
+  job_end(&j);
+  s.visco = "*VISCO, INTEGRATOR=HEUN\n4.001, 40.01\n";
+  j = run_scene(&s, 2);
+  ck_assert_ptr_nonnull(strstr(j.errors, "P2050"));
+  ck_assert_ptr_nonnull(strstr(j.errors, "stable up to dt = 4 "));
+  ck_assert_ptr_nonnull(strstr(j.errors, "SUBSTEPS=AUTO"));
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(substeps_keep_an_explicit_scheme_stable) {
+  scene s = {STEEL,  PROPORTIONAL,
+             "CPS3", "",
+             HELD,   "*VISCO, INTEGRATOR=HEUN, SUBSTEPS=AUTO\n10., 20.\n"};
+  job j = run_scene(&s, 0);
+  /* Pieces of 2.5: four to an increment. */
+  for (int i = 0; i <= 8; ++i)
+    all_have(&j, i, "stress_yy", pow(by_heun(1.25), i), 1e-9);
+  job_end(&j);
+}
+END_TEST
+
+/* dt ten times the relaxation time: MIDPOINT says so, BACKWARD is quiet. */
+START_TEST(ringing_is_told) {
+  scene s = {STEEL, PROPORTIONAL, "CPS3",
+             "",    HELD,         "*VISCO, INTEGRATOR=MIDPOINT\n20., 100.\n"};
+  job j = run_scene(&s, 0);
+  all_have(&j, 2, "stress_yy", 4.0 / 9.0, 1e-9);
+  ck_assert_ptr_nonnull(strstr(j.errors, "P2051"));
+  ck_assert_ptr_nonnull(strstr(j.errors, "-0.6667"));
+  job_end(&j);
+  s.visco = "*VISCO, INTEGRATOR=BACKWARD\n20., 100.\n";
+  j = run_scene(&s, 0);
+  all_have(&j, 1, "stress_yy", 1.0 / 11.0, 1e-9);
+  ck_assert_ptr_null(strstr(j.errors, "P2051"));
+  job_end(&j);
+}
+END_TEST
+
+/* Displacements at t = 2 of a block that creeps on a floor it slides on. */
+static dat slide(const char *integrator, int n) {
+  char visco[160];
+  snprintf(visco, sizeof visco,
+           "*VISCO, INTEGRATOR=%s\n%.17g, 2.\n"
+           "*SOLVER, METHOD=NEWTON, TOL=1E-14\n*PRINT, NODES, CONTACT\n",
+           integrator, 2.0 / n);
+  scene s = {STEEL,
+             DEVIATORIC,
+             "CPE3",
+             FLOOR(0.1),
+             "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n",
+             visco};
+  job j = run_scene(&s, 0);
+  dat c = job_table(&j, "CONTACT", -1);
+  int slips = 0;
+  for (int i = 0; i < c.n_row; ++i) slips += dat_at(&c, i, "status") == 1;
+  ck_assert_int_eq(slips, c.n_row - 1);
+  dat_free(&c);
+  dat u = job_table(&j, "NODES", -1);
+  job_end(&j);
+  return u;
+}
+
+static double distance(const dat *a, const dat *b) {
+  double sum = 0;
+  for (int i = 0; i < a->n_row; ++i) {
+    sum += pow(dat_at(a, i, "u_x") - dat_at(b, i, "u_x"), 2);
+    sum += pow(dat_at(a, i, "u_y") - dat_at(b, i, "u_y"), 2);
+  }
+  return sqrt(sum);
+}
+
+START_TEST(order_of_convergence_with_contact_and_friction) {
+  const scheme_row *r = &schemes[_i];
+  /* Order 1 takes longer to show. */
+  const int n = r->order == 1 ? 32 : 8;
+  dat u[3];
+  for (int k = 0; k < 3; ++k) u[k] = slide(r->integrator, n << k);
+  double found = log2(distance(&u[0], &u[1]) / distance(&u[1], &u[2]));
+  printf("%-28s order %.3f\n", r->integrator, found);
+  ck_assert_double_eq_tol(found, r->order, 0.1);
+  for (int k = 0; k < 3; ++k) dat_free(&u[k]);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("integrators");
+  TCase *tests = tcase_create("integrators");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests,
+                      held_stress_is_multiplied_by_the_factor_of_the_scheme, 0,
+                      N_SCHEME);
+  tcase_add_test(tests, limit_is_twice_the_relaxation_time);
+  tcase_add_test(tests, substeps_keep_an_explicit_scheme_stable);
+  tcase_add_test(tests, ringing_is_told);
+  tcase_add_loop_test(tests, order_of_convergence_with_contact_and_friction, 0,
+                      N_SCHEME);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,254 @@
+/*
+ * Inelastic strains: homogeneous bodies, exact in space, against closed forms
+ * (E = 1000, nu = 0.3, relaxation time 2 unless said otherwise), energies, and
+ * what elastic groups cost.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct scene {
+  const char *elastic, *law; /* line of *ELASTIC; *INELASTIC with its lines  */
+  const char *section, *model; /* TYPE=; cards before the first step */
+  const char *load;  /* cards of the first step, *STATIC             */
+  const char *visco; /* from *VISCO on, its line and cards           */
+} scene;
+
+#define TABLES "*PRINT, ELEMENTS, ENERGY, NODES\n"
+
+static job run_scene(const scene *s, int expected) {
+  job j = job_begin("visco");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "visco.inp",
+            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n%s\n%s*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
+            "%s*STEP\n*STATIC\n%s" TABLES "*END STEP\n*STEP\n%s*END STEP\n",
+            s->elastic, s->law, s->section, s->model, s->load, s->visco);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == expected, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Table number k of the elements: all have that value. */
+static void all_have(const job *j, int k, const char *column, double expected,
+                     double tolerance) {
+  dat d = job_table(j, "ELEMENTS", k);
+  for (int i = 0; i < d.n_row; ++i) {
+    double found = dat_at(&d, i, column);
+    ck_assert_msg(fabs(found - expected) <= tolerance,
+                  "%s of table %d: %.12g, expected %.12g to %g", column, k,
+                  found, expected, tolerance);
+  }
+  dat_free(&d);
+}
+
+static double energy(const job *j, int k, const char *column) {
+  dat d = job_table(j, "ENERGY", k);
+  double value = dat_at(&d, 0, column);
+  dat_free(&d);
+  return value;
+}
+
+#define STEEL "1000., 0.3"
+#define PROPORTIONAL "*INELASTIC, LAW=MAXWELL\n2.\n"
+#define DEVIATORIC "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n2.\n"
+#define SYMMETRY "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n"
+#define HELD SYMMETRY "TOP, 2, 2, 1.E-3\n"
+#define WALLS SYMMETRY "RIGHT, 1\n"
+#define PULL(t) "*DSLOAD\nTOP, TY, " #t "\n"
+
+/* Values of a column at table numbers k, of scale "scale". */
+typedef struct closed_form {
+  scene s;
+  const char *column;
+  int n, k[4];
+  double value[4], tolerance;
+} closed_form;
+
+/* clang-format off */
+static const closed_form forms[] = {
+  /* held strain, the whole stress relaxes */
+  {{STEEL, PROPORTIONAL, "CPS3", "", HELD,
+    "*VISCO, INTEGRATOR=EXPONENTIAL\n0.5, 10.\n"}, "stress_yy",
+   4, {0, 2, 4, 20}, {1, .6065306597, .3678794412, .0067379470}, 1e-9},
+  /* its deviator, the sides free */
+  {{STEEL, DEVIATORIC, "CPS3", "", HELD,
+    "*VISCO, INTEGRATOR=RK4\n0.1, 10.\n"}, "stress_yy",
+   4, {0, 10, 20, 100}, {1, .6483443410, .4203503845, .0131237287}, 1e-7},
+  /* confined */
+  {{STEEL, DEVIATORIC, "CPE3", "", WALLS "TOP, 2, 2, 1.E-3\n",
+    "*VISCO, INTEGRATOR=EXPONENTIAL\n0.5, 10.\n"}, "stress_yy",
+   4, {0, 2, 4, 20}, {1.3461538462, 1.1443746973, 1.0219894570, .8367886908},
+   1e-9},
+  {{STEEL, DEVIATORIC, "CPE3", "", WALLS "TOP, 2, 2, 1.E-3\n",
+    "*VISCO, INTEGRATOR=EXPONENTIAL\n0.5, 10.\n"}, "stress_xx",
+   4, {0, 2, 4, 20}, {.5769230769, .6778126514, .7390052715, .8316056547},
+   1e-9},
+  /* creep: the rate is constant, Euler exact */
+  {{STEEL, DEVIATORIC, "CPS3", "", SYMMETRY PULL(1.),
+    "*VISCO, INTEGRATOR=EULER\n1., 10.\n"}, "strain_yy",
+   4, {0, 1, 2, 10}, {.001, .0014333333333, .0018666666667, .0053333333333},
+   1e-12},
+  /* creep, confined */
+  {{STEEL, DEVIATORIC, "CPE3", "", WALLS PULL(1.),
+    "*VISCO, INTEGRATOR=RK4\n0.1, 10.\n"}, "strain_yy",
+   4, {0, 10, 20, 100},
+   {7.428571e-4, 8.645502629e-4, 9.538482242e-4, 1.179307779e-3}, 1e-9},
+  /* creep in plane strain */
+  {{STEEL, DEVIATORIC, "CPE3", "", SYMMETRY PULL(1.),
+    "*VISCO, INTEGRATOR=RK4\n0.1, 10.\n"}, "stress_zz",
+   4, {0, 10, 20, 100}, {.3, .3703311318, .4159299231, .4973752543}, 1e-6},
+  {{STEEL, DEVIATORIC, "CPE3", "", SYMMETRY PULL(1.),
+    "*VISCO, INTEGRATOR=RK4\n0.1, 10.\n"}, "strain_yy",
+   4, {0, 10, 20, 100}, {9.1e-4, 1.249066226e-3, 1.583185985e-3,
+   4.199475051e-3}, 1e-9},
+  /* strain of constant rate 1e-3 */
+  {{STEEL, PROPORTIONAL, "CPS3", "", SYMMETRY "TOP, 2\n",
+    "*VISCO, INTEGRATOR=EXPONENTIAL\n0.5, 10.\n*BOUNDARY\nTOP, 2, 2, 1.E-2\n"},
+   "stress_yy", 3, {2, 4, 20}, {.7869386806, 1.2642411177, 1.9865241060},
+   1e-8},
+  /* Zener: E1 = 500, eta1 = 3000 */
+  {{STEEL, "*INELASTIC, LAW=ZENER\n500., 3000.\n", "CPS3", "",
+    SYMMETRY PULL(1.), "*VISCO, INTEGRATOR=RK4\n0.25, 30.\n"}, "strain_yy",
+   4, {0, 4, 24, 120}, {.001, .00130703655, .00226424112, .00298652411}, 1e-9},
+  {{STEEL, "*INELASTIC, LAW=ZENER\n500., 3000.\n", "CPS3", "", HELD,
+    "*VISCO, INTEGRATOR=EXPONENTIAL\n0.25, 30.\n"}, "stress_yy",
+   4, {0, 4, 24, 120}, {1, .7376871065, .3665247122, .3333335373}, 1e-9},
+  /* power law: E = 1e5, A = 1e-15, n = 5, from 100 */
+  {{"1.E5, 0.3", "*INELASTIC, LAW=NORTON\n1.E-15, 5.\n", "CPS3", "", HELD,
+    "*VISCO, INTEGRATOR=RK4\n1., 100.\n"}, "stress_yy",
+   4, {0, 1, 10, 100},
+   {100, 99.024273574257, 91.932271522492, 66.874030497642}, 1e-5},
+  {{"1.E5, 0.3", "*INELASTIC, LAW=NORTON\n1.E-15, 5.\n", "CPS3", "", HELD,
+    "*VISCO, INTEGRATOR=MIDPOINT\n1., 100.\n"}, "stress_yy",
+   4, {0, 1, 10, 100},
+   {100, 99.024273574257, 91.932271522492, 66.874030497642}, 1e-3},
+  {{"1.E5, 0.3", "*INELASTIC, LAW=NORTON\n1.E-15, 5.\n", "CPS3", "",
+    SYMMETRY PULL(100.), "*VISCO, INTEGRATOR=BACKWARD\n25., 100.\n"},
+   "strain_yy", 2, {0, 4}, {1e-3, 2e-3}, 1e-11},
+};
+/* clang-format on */
+
+START_TEST(closed_forms) {
+  const closed_form *f = &forms[_i];
+  job j = run_scene(&f->s, 0);
+  for (int i = 0; i < f->n; ++i)
+    all_have(&j, f->k[i], f->column, f->value[i], f->tolerance);
+  for (int k = 0; k < 3; ++k)
+    ck_assert_double_le(fabs(energy(&j, k, "energy_defect_relative")), 1e-10);
+  job_end(&j);
+}
+END_TEST
+
+/* Bingham, E = 1e5, threshold 100, hardening and viscosity 1e4, strained at
+ * 1e-2: elastic up to t = 0.1. */
+START_TEST(viscoplastic_pull) {
+  scene s = {"1.E5, 0.3",
+             "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n",
+             "CPS3",
+             "",
+             SYMMETRY "TOP, 2\n",
+             "*VISCO, INTEGRATOR=RK4\n0.005, 1.\n"
+             "*BOUNDARY\nTOP, 2, 2, 1.E-2\n"};
+  job j = run_scene(&s, 0);
+  all_have(&j, 10, "stress_yy", 50.0, 1e-9);
+  all_have(&j, 30, "stress_yy", 139.5082801338, 1e-5);
+  all_have(&j, 40, "stress_yy", 164.2255302729, 1e-5);
+  all_have(&j, 100, "stress_yy", 217.9936082725, 1e-5);
+  all_have(&j, 200, "stress_yy", 264.4586632494, 1e-5);
+  job_end(&j);
+}
+END_TEST
+
+#define FLOOR(mu)                                \
+  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"         \
+  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n" \
+  "*FRICTION, CONTACT=C, LAW=COULOMB\n" #mu "\n"
+
+/* The laws lose energy in each increment, and what they lose is the work on
+ * inelastic strains to the order of the integrator. */
+START_TEST(energies_of_a_creeping_block) {
+  double gap[2];
+  for (int k = 0; k < 2; ++k) {
+    char visco[128];
+    snprintf(visco, sizeof visco, "*VISCO, INTEGRATOR=EULER\n%g, 2.\n",
+             0.25 / (1 << k));
+    scene s = {STEEL,
+               DEVIATORIC,
+               "CPE3",
+               FLOOR(0.1),
+               "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n",
+               visco};
+    job j = run_scene(&s, 0);
+    double before = 0;
+    for (int i = 1; i <= 8 << k; ++i) {
+      double now = energy(&j, i, "viscous_dissipation");
+      ck_assert_double_gt(now, before);
+      ck_assert_double_le(fabs(energy(&j, i, "energy_defect_relative")), 1e-10);
+      before = now;
+    }
+    gap[k] = fabs(energy(&j, -1, "inelastic_work") - before) / before;
+    job_end(&j);
+  }
+  ck_assert_double_le(gap[0], 0.1);
+  ck_assert_double_eq_tol(log2(gap[0] / gap[1]), 1.0, 0.1);
+}
+END_TEST
+
+/* A group without a law: the answer is that of elasticity, and its elements
+ * are neither integrated nor stored. */
+START_TEST(elastic_groups_cost_nothing) {
+  long bytes[2] = {0, 0};
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("visco");
+    job_copy(&j, "tests/regression/mesh/layers.geo");
+    job_write(&j, "visco.inp",
+              "*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n*ELASTIC\n" STEEL
+              "\n" DEVIATORIC "*MATERIAL, NAME=E\n*ELASTIC\n" STEEL
+              "\n"
+              "*SOLID SECTION, ELSET=SOFT, MATERIAL=M\n"
+              "*SOLID SECTION, ELSET=HARD, MATERIAL=%s\n"
+              "*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n0.5, 1.\n"
+              "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2, 2, 1.E-3\n"
+              "*OUTPUT, HDF5=NO\n*PRINT, ELEMENTS, GROUP=HARD\n*END STEP\n",
+              k == 0 ? "M" : "E");
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat d = job_table(&j, "ELEMENTS", -1);
+    if (k == 1) ck_assert_double_eq(dat_max(&d, "ei_yy"), 0.0);
+    if (k == 0) ck_assert_double_gt(dat_max(&d, "ei_yy"), 1e-5);
+    dat_free(&d);
+    char *lst = job_file(&j, "lst"),
+         *at = strstr(lst, "\n  inelastic strains ");
+    long calls;
+    double cpu;
+    ck_assert_ptr_nonnull(at);
+    ck_assert_int_eq(sscanf(at + 21, "%ld %lf %ld", &calls, &cpu, &bytes[k]),
+                     3);
+    free(lst);
+    job_end(&j);
+  }
+  ck_assert_int_le(bytes[1], bytes[0] * 6 / 10);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("visco");
+  TCase *tests = tcase_create("visco");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, closed_forms, 0,
+                      (int)(sizeof forms / sizeof *forms));
+  tcase_add_test(tests, viscoplastic_pull);
+  tcase_add_test(tests, energies_of_a_creeping_block);
+  tcase_add_test(tests, elastic_groups_cost_nothing);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
