@@ -372,7 +372,10 @@
     "unilateral and the friction condition (CPR98 3.3). Loads without "      \
     "AMPLITUDE= start from zero: one that is there at once has an amplitude "\
     "or an expression of t. INCOMPATIBLE=RELAX takes the equilibrium of "    \
-    "time 0 that is next to them.")
+    "time 0 that is next to them.")                                       \
+  X(4015, ERROR, "led against friction along one tangent",                   \
+    "In 3-D the direction of slip depends on both tangential motions. "      \
+    "Prescribe both, or none, at the nodes of a contact with friction.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

@@ -36,6 +36,7 @@ typedef struct candidate {
 typedef struct tally {
   int n_fixed, n_unreached, n_corner, n_kept; /* nodes                      */
   int fixed_node, corner_node;                /* the first of them          */
+  int n_dependent, dependent_node, dependent_on; /* first node and pair      */
   int deep_node;
   double depth; /* deepest penetration, m                                   */
 } tally;
@@ -290,12 +291,10 @@ static int set_frame(builder *b, contact_surface *s, int i, int n_kept,
   for (int k = 0; k < n_kept && k < dim; ++k)
     memcpy(frame + dim * k, kept[k]->normal, (size_t)dim * sizeof *frame);
   bad = bad || frame_complete(dim, n_kept, fixed, frame, &s->held[dim * i]) < 0;
-  if (bad) {
-    const contact_pair *p = &b->in->pairs[kept[1]->pair_id];
-    message_add(b->log, P4006, &p->at,
-                "*CONTACT %s: its normal depends on that of *CONTACT %s at %s",
-                p->name, b->in->pairs[kept[0]->pair_id].name,
-                describe(b->in->mesh, node_id).text);
+  tally *t = &b->tallies[kept[bad ? 1 : 0]->pair_id];
+  if (bad && t->n_dependent++ == 0) {
+    t->dependent_node = node_id;
+    t->dependent_on = kept[0]->pair_id;
   }
   frame_invert(dim, n_kept == 1 || bad, frame, &s->basis[dim * dim * i]);
   return bad;
@@ -354,6 +353,13 @@ static void say(const builder *b, int pair_id) {
                 "*CONTACT %s: %d nodes touch a second obstacle and have no "
                 "friction, the first is %s",
                 p->name, t->n_corner, describe(m, t->corner_node).text);
+  if (t->n_dependent > 0)
+    message_add(b->log, P4006, &p->at,
+                "*CONTACT %s: its normal depends on that of *CONTACT %s at %d "
+                "node%s, the first is %s",
+                p->name, b->in->pairs[t->dependent_on].name, t->n_dependent,
+                t->n_dependent == 1 ? "" : "s",
+                describe(m, t->dependent_node).text);
   if (t->n_kept == 0)
     message_add(b->log, P4010, &p->at,
                 "*CONTACT %s: no node of group %s can touch obstacle %s",

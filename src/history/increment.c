@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/timer.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A contact unknown that *BOUNDARY prescribes: its value now, m. */
@@ -29,6 +30,28 @@ static int can_stick(const run *r, int i) {
   return 0;
 }
 
+static int in_group(const mesh_group *g, int node_id) {
+  for (int k = 0; k < g->n_node; ++k)
+    if (g->node_id[k] == node_id) return 1;
+  return 0;
+}
+
+/* The *BOUNDARY that holds contact node i most along its axis a, or NULL. */
+static const load *holder(const run *r, int i, int a) {
+  const contact_surface *s = r->surface;
+  const double *axis = &s->frame[s->dim * s->dim * i + s->dim * a];
+  const load *best = NULL;
+  for (int k = 0; k < r->step->loads.n; ++k) {
+    const load *l = &r->step->loads.item[k];
+    if (l->kind != LOAD_FIXING ||
+        !in_group(&r->msh->group[l->group_id], s->node_id[i]))
+      continue;
+    if (best == NULL || fabs(axis[l->component]) > fabs(axis[best->component]))
+      best = l;
+  }
+  return best;
+}
+
 /*
  * Friction along t2 where t1 is made to move: the slip direction would depend
  * on the prescribed motion, which the condensed problem does not hold.
@@ -37,11 +60,15 @@ static status check_held(const run *r, int i, int a, double from, double to) {
   status st = OK;
   const contact_surface *s = r->surface;
   int other = s->dim == 3 ? 3 - a : a;
-  if (s->dim == 3 && from != to && !s->held[3 * i + other] && can_stick(r, i))
-    FAIL(ERR_DECK,
-         "contact node %zu: *BOUNDARY moves it in one tangential direction "
-         "while friction acts in the other; prescribe both, or none",
-         s->node_no[i]);
+  if (s->dim < 3 || from == to || s->held[3 * i + other] || !can_stick(r, i))
+    goto done;
+  const load *l = holder(r, i, a);
+  message_add(r->m->log, P4015, l == NULL ? &r->step->at : &l->at,
+              "contact node %zu is led in one tangential direction while "
+              "friction acts in the other",
+              s->node_no[i]);
+  FAIL(ERR_DECK, "*BOUNDARY leads contact node %zu against friction",
+       s->node_no[i]);
 done:
   return st;
 }

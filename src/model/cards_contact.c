@@ -117,6 +117,15 @@ static int read_course_lines(const reading *r, struct move *m, obstacle *o) {
   return n;
 }
 
+/* A point or direction of two numbers: not enough in 3-D. */
+static void note_short(const reading *r, int n_line, const obstacle *o) {
+  move *of = &r->m->moves[o - r->m->obstacles];
+  const record *line = r->card->records;
+  for (int i = 0; i < n_line && o->shape != OBSTACLE_GAP; ++i)
+    if (line[i].n_field == 2 && of->short_at.file == NULL)
+      of->short_at = line[i].at;
+}
+
 /* The lines before MOVE and ROTATE, as the shape wants them. */
 static void read_shape(const reading *r, int n_line, obstacle *o) {
   const record *line = r->card->records;
@@ -193,6 +202,7 @@ status apply_obstacle(reading *r) {
     message_add(m->log, P2007, &c->at,
                 "*OBSTACLE: AMPLITUDE= needs a line MOVE, dx, dy [, dz] or "
                 "ROTATE");
+  note_short(r, lines, o);
   read_shape(r, lines, o);
 done:
   return st;

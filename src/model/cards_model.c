@@ -503,6 +503,17 @@ done:
   return st;
 }
 
+/* One pair: the same at all times. */
+static status constant_table(double value, value_table *t) {
+  status st = OK;
+  NEW(t->at, 1);
+  NEW(t->value, 1);
+  t->value[0] = value;
+  t->n = 1;
+done:
+  return st;
+}
+
 status apply_amplitude(reading *r) {
   status st = OK;
   const amplitude_param *p = r->param;
@@ -520,9 +531,11 @@ status apply_amplitude(reading *r) {
     quantity q = {0};
     if (field_quantity(r, &c->records[0].fields[0], &q) != 0) goto done;
     a->table.formula = q.formula;
-    if (q.formula == NULL)
+    if (q.formula == NULL && !c->records[0].fields[0].quoted)
       message_add(m->log, P2009, &c->records[0].at,
                   "*AMPLITUDE needs pairs t, a or one expression in quotes");
+    else if (q.formula == NULL)
+      TRY(constant_table(q.number, &a->table));
     else if (expression_variables(q.formula) & 7u)
       message_add(m->log, P2033, &c->records[0].at,
                   "*AMPLITUDE: the expression may depend on t only");

@@ -179,6 +179,22 @@ static void check_laws(const model *m) {
     }
 }
 
+/* Points and directions of an obstacle in 3-D have three numbers; a sphere of
+ * an axisymmetric model stays on the axis. */
+static void check_obstacle_fields(const model *m, const mesh *msh, int id) {
+  const obstacle *o = &m->obstacles[id];
+  const quantity *radial = &o->motion[0];
+  if (msh->dim == 3 && m->moves[id].short_at.file != NULL)
+    message_add(m->log, P2009, &m->moves[id].short_at,
+                "2 numbers on this line of *OBSTACLE; a mesh in 3-D needs 3");
+  if (m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC &&
+      o->shape == OBSTACLE_SPHERE &&
+      (radial->formula != NULL || radial->number != 0.0))
+    message_add(m->log, P4009, &m->moves[id].move_at,
+                "*OBSTACLE %s: MOVE leads the sphere off the axis of symmetry",
+                o->name);
+}
+
 static void check_contacts(model *m, const mesh *msh) {
   for (int i = 0; i < m->n_contact; ++i) {
     contact *c = &m->contacts[i];
@@ -188,6 +204,7 @@ static void check_contacts(model *m, const mesh *msh) {
     const obstacle *o = &m->obstacles[c->obstacle_id];
     int no_axis = o->direction[0] == 0.0 && o->direction[1] == 0.0 &&
                   o->direction[2] == 0.0;
+    check_obstacle_fields(m, msh, c->obstacle_id);
     if (msh->dim == 3 && o->shape == OBSTACLE_CYLINDER && no_axis)
       message_add(m->log, P2007, &m->moves[c->obstacle_id].at,
                   "*OBSTACLE: a cylinder in 3-D needs a line with the "

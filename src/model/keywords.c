@@ -257,7 +257,8 @@ const keyword keyword_table[] = {
    "PLANE point; normal towards the body. CYLINDER point of the axis; "
    "direction (3-D). SPHERE centre. GAP value. Then MOVE, dx, dy, dz; "
    "ROTATE, x, y, angle (rad, about z) or ROTATE, x, y, z, ax, ay, az, angle",
-   "rigid obstacle, may shift and turn"},
+   "rigid obstacle, may shift and turn; a number without AMPLITUDE= is reached "
+   "at the end of the first step"},
   {"CONTACT", IN_MODEL, OPTIONS(contact), NULL, apply_contact, 0, 1,
    "[AXIS, x, y (along z) or AXIS, x, y, z, ax, ay, az: of the torque]",
    "unilateral contact of Gamma_3 with an obstacle"},

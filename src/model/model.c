@@ -372,6 +372,7 @@ static void rule_release(friction_rule *rule) {
 
 void model_free(model *m) {
   if (m == NULL) return;
+  table_release(&m->first_step);
   for (int i = 0; i < m->n_amplitude; ++i)
     table_release(&m->amplitudes[i].table);
   for (int i = 0; i < m->n_contact; ++i) {

@@ -234,6 +234,7 @@ typedef struct model {
   int n_initial, cap_initial;
   initial *initials; /* [n_initial] in the order of the deck                 */
   start_card start;
+  value_table first_step; /* 0 to 1 over the first step; arrays owned         */
   step *steps;
   unsigned effects;  /* bits EFFECT_*, set by model_check                    */
   int dim, ns;       /* from the mesh                                        */
@@ -244,6 +245,7 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
   const char *amplitude_name;
   int used; /* a contact refers to it                                         */
   place at, amplitude_at; /* of the card, the name                            */
+  place short_at; /* first geometry line with two numbers; file NULL: none    */
   place move_at, rotate_at; /* of the lines MOVE, ROTATE */
 } move;
 

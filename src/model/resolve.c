@@ -153,15 +153,43 @@ static void resolve_contacts(model *m) {
   }
 }
 
-static void resolve_moves(model *m) {
+/* The ramp of motions that nothing else leads. */
+static status make_first_step(model *m) {
+  status st = OK;
+  value_table *t = &m->first_step;
+  if (m->n_step == 0 || m->n_obstacle == 0) goto done;
+  NEW(t->at, 2);
+  NEW(t->value, 2);
+  t->variable = TABLE_T;
+  t->n = 2;
+  t->at[1] = m->steps[0].total;
+  t->value[1] = 1.0;
+done:
+  return st;
+}
+
+/* A number without amplitude is reached at the end of the first step, as loads
+ * are. */
+static void lead(const model *m, const value_table *t, quantity *q) {
+  if (t != NULL)
+    q->factor = t;
+  else if (m->first_step.n > 0 && q->formula == NULL && q->number != 0.0)
+    q->factor = &m->first_step;
+}
+
+static status resolve_moves(model *m) {
+  status st = OK;
+  TRY(make_first_step(m));
   for (int i = 0; i < m->n_obstacle; ++i) {
-    if (m->moves[i].amplitude_name == NULL) continue;
-    const value_table *t = total_amplitude(m, m->moves[i].amplitude_name,
-                                           &m->moves[i].amplitude_at);
-    if (t == NULL) continue;
-    for (int k = 0; k < 3; ++k) m->obstacles[i].motion[k].factor = t;
-    m->obstacles[i].angle.factor = t;
+    const move *of = &m->moves[i];
+    const value_table *t = NULL;
+    if (of->amplitude_name != NULL)
+      t = total_amplitude(m, of->amplitude_name, &of->amplitude_at);
+    for (int k = 0; k < 3; ++k) lead(m, t, &m->obstacles[i].motion[k]);
+    lead(m, t, &m->obstacles[i].angle);
   }
+done:
+  return st;
 }
 
 /* Names of *PARAMETER; those of -D alone are passed over. */
@@ -365,7 +393,7 @@ status model_resolve(model *m, int lost) {
   resolve_materials(m, lost);
   TRY(resolve_laws(m, lost));
   resolve_contacts(m);
-  resolve_moves(m);
+  TRY(resolve_moves(m));
   step before = {.solver = default_solver,
                  .loads = m->supports,
                  .condensed_frequency = -1};
