@@ -47,6 +47,8 @@ stab_c   := $(wildcard tests/stability/*.c)
 stab     := $(stab_c:%.c=$(out)/%)
 bench_c  := $(wildcard tests/bench/*.c)
 bench    := $(bench_c:%.c=$(out)/%)
+verify_c := $(wildcard tests/verify/*.c)
+verify   := $(verify_c:%.c=$(out)/%)
 support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c))
 
 .PHONY: all help deps demo test check unit regression stability layers style \
@@ -63,6 +65,7 @@ help:
 	@echo "make test         install what is missing, build, run every test"
 	@echo "make unit         unit tests alone;   make regression: decks alone"
 	@echo "make stability    hard cases and 10000 random problems: minutes"
+	@echo "make verify       orders of convergence, observed and expected"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
 	@echo "make bench-solvers  what each digit costs, for every solver"
@@ -132,6 +135,11 @@ style:
 
 bench-run: $(program) $(bench)
 	$(Q)for b in $(filter-out %/auto,$(bench)); do $$b || exit 1; done
+
+# Programs of tests/verify print tables: found and expected.
+.PHONY: verify
+verify: $(program) $(verify)
+	$(Q)for v in $(verify); do PROTIS=$(abspath $(program)) $$v || exit 1; done
 
 bench-solvers: $(out)/tests/bench/solvers
 	$(Q)$<
