@@ -24,12 +24,21 @@ int law_n_value(const law_card *law) {
          law->n_term * law_n_field(law->ops->terms);
 }
 
+/* Number of rows that must be given. */
+static int needed(const option *table) {
+  int n = 0;
+  for (int i = 0; table[i].name != NULL; ++i)
+    if (table[i].initial == NULL) n = i + 1;
+  return n;
+}
+
 const char *law_line_text(const option *table, char *text, size_t size) {
   size_t used = 0;
-  for (const option *o = table; o->name != NULL && used < size; ++o)
-    used += (size_t)snprintf(text + used, size - used,
-                             o->initial == NULL ? "%s%s" : " [%s%s]",
-                             o == table ? "" : ", ", o->name);
+  const int n = needed(table);
+  for (int i = 0; table[i].name != NULL && used < size; ++i)
+    used +=
+        (size_t)snprintf(text + used, size - used, i < n ? "%s%s" : " [%s%s]",
+                         i == 0 ? "" : ", ", table[i].name);
   if (used < size) snprintf(text + used, size - used, " [, temperature]");
   return text;
 }
@@ -65,14 +74,6 @@ static int read_value(const lines *r, const field *f, const option *row,
   message_add(r->log, P2010, &f->at, "*%s: %s = %s", r->c->name, row->name,
               why);
   return -1;
-}
-
-/* Number of rows that must be given. */
-static int needed(const option *table) {
-  int n = 0;
-  for (int i = 0; table[i].name != NULL; ++i)
-    if (table[i].initial == NULL) n = i + 1;
-  return n;
 }
 
 static void wrong_count(const lines *r, const record *line,

@@ -202,7 +202,8 @@ enum { BACK_MAX = 15 }; /* back stresses of the closed form               */
 static double radius(double *M, int n) {
   double re[BACK_MAX + 1], im[BACK_MAX + 1], largest = 0;
   for (int i = 0; i < n * n; ++i)
-    if (!isfinite(M[i])) return M[i];
+    if (!isfinite(M[i])) return fabs(M[i]);
+  if (n == 1) return fabs(M[0]);
   if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, M, n, re, im, NULL, 1, NULL,
                     1) != 0)
     return -1;

@@ -56,8 +56,8 @@ static const option elastic_options[] = {
   OPTION_REAL(struct_, shift.activation, "ACTIVATION", 0, DBL_MAX,            \
               OPTION_ABSENT, "temperature", "ARRHENIUS: Q/R in log a = Q/R "  \
               "(1/(T - T_ZERO) - 1/(T_REF - T_ZERO))"),                       \
-  OPTION_REAL(struct_, shift.zero, "T_ZERO", -DBL_MAX, DBL_MAX, "0",          \
-              "temperature", "absolute zero, -273.15 in Celsius")
+  OPTION_REAL(struct_, shift.zero, "T_ZERO", -DBL_MAX, DBL_MAX, OPTION_ABSENT,\
+              "temperature", "absolute zero, -273.15 in Celsius; absent: 0")
 static const option inelastic_options[] = {
   OPTION_NAME(inelastic_param, law, "LAW", NULL, "protis --list materials"),
   SHIFT_ROWS(inelastic_param),

@@ -103,7 +103,7 @@ START_TEST(echo_of_odd_spellings_reads_back) {
   ck_assert_ptr_nonnull(strstr(echo, "One, two = \"three\", <H> <Q>"));
   ck_assert_ptr_nonnull(strstr(echo, "NAME=\"Steel, mild = soft ** x\""));
   ck_assert_ptr_nonnull(strstr(echo, "\"A,B=C\", 1, 2.5"));
-  ck_assert_ptr_nonnull(strstr(echo, "*CREEP, LAW=TIME, SHIFT=NONE"));
+  ck_assert_ptr_nonnull(strstr(echo, "*CREEP, LAW=TIME, SHIFT=NONE\n"));
   ck_assert_ptr_nonnull(strstr(echo, "SHIFT=WLF, T_REF=20, C1=17.4"));
   reads_back(&j, "odd", echo);
   free(echo);

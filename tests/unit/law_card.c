@@ -228,8 +228,10 @@ static void check_moduli(const char *elastic, const char *cards, double shear,
 START_TEST(moduli_after_all_terms_have_relaxed) {
   const double G = 1000 / 2.6, K = 1000 / 1.2;
   const char *abaqus = "*VISCOELASTIC, TIME=PRONY\n.3, .1, 2.\n.2, .15, 9.";
+  const char *shear = "*VISCOELASTIC, TIME=PRONY\n.3, , 2.\n.2, , 9.";
   const char *own = "*INELASTIC, LAW=PRONY\n.3, .1, 2.\n.2, .15, 9.";
   check_moduli("", abaqus, G / .5, K / .75);
+  check_moduli("", shear, G / .5, K);
   check_moduli(", MODULI=LONG TERM", own, G / .5, K / .75);
   check_moduli(", MODULI=INSTANTANEOUS", abaqus, G, K);
   check_moduli("", own, G, K);
