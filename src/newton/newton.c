@@ -40,7 +40,8 @@ static const option newton_options[] = {
 
 enum {
   HISTORY = 64,    /* patterns remembered                                   */
-  FULL_STEPS = 40, /* of an attempt                                         */
+  FULL_STEPS = 40, /* of an attempt; more while the residual falls          */
+  MOST_STEPS = 1000,
   PATIENCE = 25,   /* steps without a lower residual                        */
   SMALL = 400,     /* unknowns: a step costs next to nothing                */
   MANY_STEPS = 100 /* of an attempt that makes part of the changes          */
@@ -163,11 +164,19 @@ static int used_up(const run *s) {
   return s->control->max_iter > 0 && s->steps >= s->control->max_iter;
 }
 
+/* 1: the attempt may go on: within its steps, or the residual still falls (a
+ * front of few states that moves on; such steps cost little). */
+static int goes_on(const run *s, const course *c, int limit) {
+  if (used_up(s)) return 0;
+  return c->at < limit ||
+         (limit == FULL_STEPS && c->at < MOST_STEPS && c->at - c->best_at <= 2);
+}
+
 /* Steps from the present guess until solved, settled, cycling or "limit". */
 static outcome attempt(run *s, int limit) {
   course c = {.lowest = HUGE_VAL};
   int m = s->cp->m;
-  for (c.at = 0; c.at < limit && !used_up(s); ++c.at) {
+  for (c.at = 0; goes_on(s, &c, limit); ++c.at) {
     c.cycle = met_before(s, c.at);
     s->singular =
         newton_system_step(s->w->system, &s->st->guess, s->u, s->st->raw);
@@ -203,10 +212,11 @@ static outcome newton_run(run *s, const newton *p) {
   int limit = p->steps > 0 ? p->steps : FULL_STEPS;
   int many = s->cp->m <= SMALL ? MANY_STEPS : limit;
   states_next(s->st, 1);
+  uint64_t begun = states_hash(s->st);
   outcome o = attempt(s, limit), first = o;
   if (s->control->no_restart || final(s, o)) return o;
   states_all_stick(s->st);
-  o = first = attempt(s, limit);
+  if (states_hash(s->st) != begun) o = first = attempt(s, limit);
   if (o == STOPPED_RAY || final(s, o)) return o;
   return_to_best(s);
   s->st->dice = DICE_START;
