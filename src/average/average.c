@@ -156,6 +156,21 @@ static void look_from(builder *b, int i, const double *x, double reach) {
   for (int k = 0; k < n; ++k) add_face(b, i, b->found[k], x, reach);
 }
 
+/* The images of a place in the mirrors, and in two or three one after the
+ * other. */
+static void look_from_images(builder *b, int i, const double *x, double reach) {
+  for (int mask = 1; mask < 1 << b->p->dim; ++mask) {
+    double image[3];
+    int there = 1;
+    for (int c = 0; c < b->p->dim; ++c) {
+      int turned = mask >> c & 1;
+      image[c] = turned ? 2.0 * b->at.mirror[c] - x[c] : x[c];
+      there = there && (!turned || b->at.has_mirror[c]);
+    }
+    if (there) look_from(b, i, image, reach);
+  }
+}
+
 static void look_around(builder *b, int i) {
   const double *x = b->at.x + (size_t)b->p->dim * (size_t)i;
   double length = b->at.loop == NULL ? 0.0 : b->at.loop[i];
@@ -169,6 +184,7 @@ static void look_around(builder *b, int i) {
     look_from(b, i, after, reach);
   }
   look_from(b, i, x, reach);
+  look_from_images(b, i, x, reach);
 }
 
 static double segment_distance(int dim, const double *a, const double *x) {

@@ -34,11 +34,16 @@ typedef struct average_patch {
   const unsigned char *active; /* [n_node] 0: no contact node, p = 0 there    */
 } average_patch;
 
+/* A plane x[axis] = least or largest of the patch behind which the surface
+ * goes on as its mirror image. */
+typedef enum { MIRROR_NONE, MIRROR_MIN, MIRROR_MAX } average_mirror;
+
 typedef struct average_rule {
   kernel kernel;
   double radius;  /* rho, m                                                   */
   int normalized; /* 1: G_ij / W_i: a constant pressure is kept at edges too  */
   int geodesic;   /* 1: distance along the lines (plane only), else straight  */
+  average_mirror mirror[3]; /* by axis; not with geodesic, nor of the radius  */
 } average_rule;
 
 /* What was found, for messages. */

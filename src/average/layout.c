@@ -11,6 +11,7 @@
 
 /* A node this near to the axis, over the largest radius, is on it. */
 static const double ON_AXIS = 1e-9;
+static const double ON_MIRROR = 1e-9; /* over the radius of the average       */
 
 /* Faces around the nodes of a patch. */
 typedef struct fans {
@@ -69,11 +70,44 @@ void layout_free(layout *l) {
   memset(l, 0, sizeof *l);
 }
 
+/* 1 if all corners lie on one mirror. */
+static int on_mirror(const layout *l, int corners,
+                     const double *const *corner) {
+  for (int c = 0; c < l->dim; ++c) {
+    int n = 0;
+    for (int k = 0; k < corners && l->has_mirror[c]; ++k)
+      n += fabs(corner[k][c] - l->mirror[c]) <= l->near;
+    if (n == corners) return 1;
+  }
+  return 0;
+}
+
 static void add_rim(layout *l, int corners, const double *const *corner) {
   size_t dim = (size_t)l->dim;
+  if (on_mirror(l, corners, corner)) return;
   double *to = l->rim + (dim - 1) * dim * (size_t)l->n_rim++;
   for (int k = 0; k < corners; ++k)
     memcpy(to + dim * (size_t)k, corner[k], dim * sizeof *to);
+}
+
+/* Least or largest coordinate of the patch. */
+static double mirror_place(const average_patch *p, int axis,
+                           average_mirror which) {
+  double place = node_at(p, 0)[axis];
+  for (int i = 1; i < p->n_node; ++i) {
+    double x = node_at(p, i)[axis];
+    place = which == MIRROR_MIN ? fmin(place, x) : fmax(place, x);
+  }
+  return place;
+}
+
+static void set_mirrors(const average_patch *p, const average_rule *rule,
+                        layout *l) {
+  l->near = ON_MIRROR * rule->radius;
+  for (int c = 0; c < p->dim && p->n_node > 0; ++c) {
+    l->has_mirror[c] = rule->mirror[c] != MIRROR_NONE;
+    if (l->has_mirror[c]) l->mirror[c] = mirror_place(p, c, rule->mirror[c]);
+  }
 }
 
 /* ---- straight ---------------------------------------------------------- */
@@ -201,6 +235,7 @@ status layout_new(const average_patch *patch, const average_rule *rule,
   memset(out, 0, sizeof *out);
   TRY(fans_new(patch, &f));
   TRY(new_arrays(patch, out));
+  set_mirrors(patch, rule, out);
   if (rule->geodesic)
     TRY(lay_straight(patch, &f, 4.0 * rule->radius, out));
   else

@@ -13,7 +13,11 @@ typedef struct layout {
   double *corner; /* [dim*dim*n_face] corners of the faces, m                 */
   double *loop;   /* [n_node] length of the closed line of a node laid out
                      straight, 0: none; or NULL                               */
-  double *rim;    /* [dim*(dim-1)*n_rim] end points (edges) of the patch, m   */
+  double *rim;    /* [dim*(dim-1)*n_rim] end points (edges) of the patch that
+                     lie on no mirror, m                                      */
+  int has_mirror[3];
+  double mirror[3]; /* place of the mirrors by axis, m                        */
+  double near;      /* nearer to a mirror is on it, m                         */
 } layout;
 
 status layout_new(const average_patch *patch, const average_rule *rule,

@@ -16,6 +16,7 @@
 typedef struct nonlocal {
   double radius;                    /* rho, m                                */
   int kernel, edge, zone, distance; /* ranks of the words below              */
+  int mirror_x, mirror_y, mirror_z; /* average_mirror                        */
 } nonlocal;
 
 /* clang-format off */
@@ -32,6 +33,13 @@ static const option nonlocal_options[] = {
                 "the pressed zone; CONTACT: at touching points only"),
   OPTION_CHOICE(nonlocal, distance, "DISTANCE", "STRAIGHT|GEODESIC",
                 "STRAIGHT", "r in space, or along the contact line (plane)"),
+  OPTION_CHOICE(nonlocal, mirror_x, "MIRROR_X", "NONE|MIN|MAX", "NONE",
+                "plane of symmetry at the least or largest x of the contact: "
+                "the pressure goes on behind it as its mirror image"),
+  OPTION_CHOICE(nonlocal, mirror_y, "MIRROR_Y", "NONE|MIN|MAX", "NONE",
+                "the same for y (z of an axisymmetric model)"),
+  OPTION_CHOICE(nonlocal, mirror_z, "MIRROR_Z", "NONE|MIN|MAX", "NONE",
+                "the same for z in 3-D"),
   OPTION_END
 };
 /* clang-format on */
@@ -148,10 +156,13 @@ static status nonlocal_average(const friction_card *card,
                                sparse_rows *out) {
   status st = OK;
   const nonlocal *own = card->param;
-  const average_rule rule = {.kernel = (kernel)own->kernel,
-                             .radius = own->radius,
-                             .normalized = own->edge,
-                             .geodesic = own->distance};
+  const average_rule rule = {
+      .kernel = (kernel)own->kernel,
+      .radius = own->radius,
+      .normalized = own->edge,
+      .geodesic = own->distance,
+      .mirror = {(average_mirror)own->mirror_x, (average_mirror)own->mirror_y,
+                 (average_mirror)own->mirror_z}};
   patch a = {.x = NULL};
   sparse_rows G = {.n = 0};
   average_facts facts;
@@ -168,8 +179,15 @@ done:
 static const char *nonlocal_misfit(const void *param, int dim,
                                    int axisymmetric) {
   const nonlocal *own = param;
-  if (!own->distance || (dim == 2 && !axisymmetric)) return NULL;
-  return "DISTANCE=GEODESIC is for plane models; use STRAIGHT";
+  int mirrors = own->mirror_x || own->mirror_y || own->mirror_z;
+  if (own->distance && (dim == 3 || axisymmetric))
+    return "DISTANCE=GEODESIC is for plane models; use STRAIGHT";
+  if (own->distance && mirrors)
+    return "MIRROR_X, MIRROR_Y need DISTANCE=STRAIGHT";
+  if (own->mirror_x && axisymmetric)
+    return "MIRROR_X would mirror the radius; the axis needs no mirror";
+  if (own->mirror_z && dim == 2) return "MIRROR_Z is for 3-D";
+  return NULL;
 }
 
 static status nonlocal_limit(const friction_card *card,

@@ -87,6 +87,25 @@ START_TEST(uniform_pressure_has_its_closed_form) {
 }
 END_TEST
 
+/* Half of the body: no edge at x = 0, the other edge as before. */
+START_TEST(mirror_takes_the_edge_away) {
+  block b = {
+      40,     0.1, 0, "CPE3", "LAW=NONLOCAL, RADIUS=0.2, MIRROR_X=MIN\n0.3\n",
+      PRESSED};
+  job j = run_block(&b);
+  dat d = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < d.n_row; ++i) {
+    double x = dat_at(&d, i, "x");
+    double W = dat_at(&d, i, "limit") / (0.3 * dat_at(&d, i, "f_n"));
+    if (x < 0.79) ck_assert_double_eq_tol(W, 1.0, 1e-10);
+    if (x > 0.81) ck_assert_double_lt(W, 0.9999);
+    if (x == 1.0) ck_assert_double_eq_tol(W, 0.5, 1e-6);
+  }
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(normalized_edges_keep_a_uniform_pressure) {
   static const char *const types[] = {"CPE3", "CAX3"};
   for (int k = 0; k < 2; ++k) {
@@ -574,7 +593,7 @@ START_TEST(law_may_change_from_step_to_step) {
 END_TEST
 
 UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
-          normalized_edges_keep_a_uniform_pressure,
+          mirror_takes_the_edge_away, normalized_edges_keep_a_uniform_pressure,
           limit_is_the_average_of_the_pressures,
           zone_confines_friction_to_the_contact, small_radius_is_local_friction,
           only_the_nonlocal_law_pays, mu_multiplies_the_average,

@@ -81,7 +81,10 @@ static owned square(int n, double jitter) {
 
 static sparse_rows build(const owned *o, kernel k, double radius,
                          int normalized, int geodesic, average_facts *facts) {
-  const average_rule rule = {k, radius, normalized, geodesic};
+  const average_rule rule = {.kernel = k,
+                             .radius = radius,
+                             .normalized = normalized,
+                             .geodesic = geodesic};
   average_facts other;
   sparse_rows G;
   ck_assert_int_eq(
@@ -542,6 +545,60 @@ START_TEST(closed_line_has_no_edge) {
 }
 END_TEST
 
+/* ---- mirrors ----------------------------------------------------------- */
+
+/* Half of a symmetric line or a quarter of a square with mirrors has the rows
+ * of the whole, with the columns of the images added up. */
+START_TEST(mirrors_stand_for_the_other_half) {
+  enum { N = 12 };
+  for (int k = 0; k < KERNEL_COUNT; ++k)
+    for (int max = 0; max < 2; ++max) {
+      owned whole = line(2 * N, -1.0, 2.0, 0.0);
+      owned half = line(N, max ? -1.0 : 0.0, 1.0, 0.0);
+      average_facts facts;
+      sparse_rows W = build(&whole, (kernel)k, 0.4, 0, 0, NULL), H;
+      const average_rule rule = {.kernel = (kernel)k,
+                                 .radius = 0.4,
+                                 .mirror = {max ? MIRROR_MAX : MIRROR_MIN}};
+      ck_assert_int_eq(average_build(&half.p, &rule, &H, &facts), OK);
+      int first = max ? 0 : N;
+      for (int i = 0; i <= N; ++i)
+        for (int j = 0; j <= N; ++j) {
+          int a = first + i, b = first + j, image = 2 * N - b;
+          double sum = entry(&W, a, b) + (b != image ? entry(&W, a, image) : 0);
+          ck_assert_double_eq_tol(entry(&H, i, j), sum, 1e-9);
+        }
+      sparse_free(&W);
+      sparse_free(&H);
+      owned_free(&whole);
+      owned_free(&half);
+    }
+}
+END_TEST
+
+START_TEST(quarter_of_a_square_has_no_edge_at_its_mirrors) {
+  owned o = square(10, 0.4);
+  average_facts facts;
+  sparse_rows G;
+  const average_rule rule = {.kernel = KERNEL_BUMP,
+                             .radius = 0.35,
+                             .mirror = {MIRROR_MIN, MIRROR_MAX}};
+  ck_assert_int_eq(average_build(&o.p, &rule, &G, &facts), OK);
+  for (int i = 0; i < G.n; ++i) {
+    double x = o.x[3 * i], y = o.x[3 * i + 1], sum = row_sum(&G, i);
+    if (x <= 0.65 && y >= 0.35)
+      ck_assert_double_eq_tol(sum, 1.0, 1e-13);
+    else
+      ck_assert(sum < 1.0);
+  }
+  ck_assert_double_eq_tol(row_sum(&G, 10), 0.25, 1e-5);
+  ck_assert_double_eq_tol(row_sum(&G, 0), 0.5, 1e-5);
+  ck_assert_double_eq_tol(row_sum(&G, 120), 0.5, 1e-5);
+  sparse_free(&G);
+  owned_free(&o);
+}
+END_TEST
+
 /* ---- units ------------------------------------------------------------- */
 
 START_TEST(factors_of_two_change_no_bit) {
@@ -606,7 +663,8 @@ END_TEST
 
 START_TEST(refused_memory_is_given_back) {
   owned o = line(20, 0.0, 1.0, 0.0);
-  const average_rule rule = {KERNEL_BUMP, 0.2, 0, 1};
+  const average_rule rule = {
+      .kernel = KERNEL_BUMP, .radius = 0.2, .geodesic = 1};
   size_t before = memory_in_use();
   status st = ERR_MEMORY;
   for (long k = 1; st == ERR_MEMORY; ++k) {
@@ -634,5 +692,7 @@ UNIT_MAIN("average", bump_has_the_constants_of_the_literature,
           surface_loses_mass_at_its_edges, axisymmetric_rows,
           radius_below_the_mesh_is_local, coarse_nodes_are_counted,
           geodesic_distance_unbends_the_line, closed_line_has_no_edge,
+          mirrors_stand_for_the_other_half,
+          quarter_of_a_square_has_no_edge_at_its_mirrors,
           factors_of_two_change_no_bit, search_finds_what_is_near,
           refused_memory_is_given_back)
