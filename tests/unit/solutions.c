@@ -136,6 +136,26 @@ START_TEST(larger_problems_are_refused) {
 }
 END_TEST
 
+/* The answer of one solver is confirmed by another family only. */
+START_TEST(one_family_alone_confirms_nothing) {
+  contact_case c = case_any(2, 4, 0.2, 0, 11);
+  solver_report rep = solve(&c);
+  solution_set some = {0};
+  ck_assert_int_eq(solutions_by_solvers(&c.cp, 1e-10, &rep, c.u, c.r, &some),
+                   OK);
+  ck_assert_int_eq(some.n_found, 1);
+  ck_assert(solution_set_confirmed(&some));
+  for (int k = 0; k < some.n_attempt; ++k)
+    if (strcmp(some.attempts[k].family, some.attempts[0].family) != 0)
+      some.attempts[k].solution_no = 0;
+  ck_assert(!solution_set_confirmed(&some));
+  solution_set_free(&some);
+  ck_assert(!solution_set_confirmed(&some));
+  case_free(&c);
+}
+END_TEST
+
 UNIT_MAIN("solutions", triangle_has_the_three_solutions,
-          small_friction_has_one_solution, enumeration_finds_what_solvers_find,
-          ten_nodes_are_enumerated, larger_problems_are_refused)
+          one_family_alone_confirms_nothing, small_friction_has_one_solution,
+          enumeration_finds_what_solvers_find, ten_nodes_are_enumerated,
+          larger_problems_are_refused)
