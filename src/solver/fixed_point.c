@@ -7,9 +7,10 @@
 #include <string.h>
 
 enum {
-  DEPTH = 4,    /* differences mixed                                         */
-  PASSES = 200, /* default limit                                             */
-  PATIENCE = 30 /* passes without a lower residual                           */
+  DEPTH = 4,     /* differences mixed                                         */
+  PASSES = 200,  /* default limit                                             */
+  PATIENCE = 30, /* passes without a lower residual                          */
+  IDLE = 2       /* iterations of a pass that did nothing                     */
 };
 static const double PROGRESS = 0.9; /* -, a lower residual                  */
 static const double MIXING_RATE = 0.2;     /* -, slower: mix     */
@@ -252,6 +253,7 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
   course c = {.step = 1.0, .lowest = HUGE_VAL};
   int passes = control->limit_max_iter > 0 ? control->limit_max_iter : PASSES;
   double change = 1.0;
+  int before = 0;
   fp->kept = 0;
   *rep = (solver_report){.outcome = STOPPED_ITERATIONS};
   first_limit(cp, r, fp->g);
@@ -261,8 +263,10 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
       goto done;
     }
     rep->limit_updates = p.control.limit_update = k;
-    /* no finer than the limit is known, but below what is left to gain */
-    double wanted = fmin(1e-2 * change, 0.1 * c.lowest);
+    /* no finer than the limit is known; finer if the last pass did nothing */
+    int idle = rep->iterations - before <= IDLE;
+    double wanted = fmin(1e-2 * change, idle ? 0.1 * c.lowest : HUGE_VAL);
+    before = rep->iterations;
     p.control.tol = fmax(0.1 * control->tol, fmin(1e-3, wanted));
     TRY(run_pass(&p, cp, fp->g, u, r, rep));
     if (rep->outcome == STOPPED_NAN || rep->outcome == STOPPED_RAY ||
