@@ -457,7 +457,29 @@ START_TEST(a_bar_is_a_bar_in_every_kinematics) {
 }
 END_TEST
 
-UNIT_MAIN("law_history", a_bar_is_a_bar_in_every_kinematics, maxwell_relaxes,
+/* Tension with shear xy, then compression with shear yz (scipy, 3x3 tensors):
+ * stresses xx, yy, zz, xy, yz and p. */
+START_TEST(chaboche_turns_with_the_path) {
+  start("CHABOCHE", 0, "60., 150., 3., 20., 50.\n2E4, 100.\n5E3, 20.", 1e5, .3,
+        SOLID_3D);
+  const law_drive first = {.held = {1, 1, 1, 1, 1, 1},
+                           .e_rate = {1e-2, 0, 0, 2e-2}};
+  const law_drive then = {.held = {1, 1, 1, 1, 1, 1},
+                          .e_rate = {-1e-2, 0, 0, 0, 1e-2}};
+  law_case_run(&c, &first, .5, 4000);
+  law_case_run(&c, &then, .5, 4000);
+  near(c.sigma[0], -48.178260941, 1e-8);
+  near(c.sigma[1], 24.08913047, 1e-8);
+  near(c.sigma[2], 24.08913047, 1e-8);
+  near(c.sigma[3], 51.972608625, 1e-8);
+  near(c.sigma[4], 62.120000018, 1e-8);
+  near(c.alpha[0], 0.0079002112365, 1e-8);
+  law_case_free(&c);
+}
+END_TEST
+
+UNIT_MAIN("law_history", chaboche_turns_with_the_path,
+          a_bar_is_a_bar_in_every_kinematics, maxwell_relaxes,
           confined_maxwell_keeps_the_mean_stress,
           confined_maxwell_creeps_to_the_bulk, plane_strain_maxwell_carries_zz,
           maxwell_stress_at_constant_rate_levels_off,
