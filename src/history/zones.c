@@ -318,22 +318,35 @@ static contact_zone zone_at(const finder *z, int contact_id, int i) {
                         .direction = slip_sign(z, i)};
 }
 
+/* The zone that begins with node j: half a piece before it, where the line is
+ * a ring and another zone ends on the way from i, -1 at the end of a line. */
+static contact_zone first_zone(const finder *z, int contact_id, int i, int j) {
+  contact_zone zone = zone_at(z, contact_id, j);
+  if (i < 0 || same_zone(z, i, j)) {
+    set_point(z, j, 0.0, zone.from);
+    return zone;
+  }
+  double begin = zone_end(z, i, j);
+  set_point(z, i, begin, zone.from);
+  add_piece(z, i, begin, 1.0, &zone);
+  return zone;
+}
+
 static status walk(const finder *z, int contact_id, int start) {
   status st = OK;
   int i = start;
-  contact_zone zone = zone_at(z, contact_id, start);
-  set_point(z, start, 0.0, zone.from);
+  contact_zone zone = first_zone(z, contact_id, z->before[start], start);
   for (int j; (j = z->next[i]) >= 0; i = j) {
-    double end = 1.0;
-    if (!same_zone(z, i, j)) {
-      end = zone_end(z, i, j);
+    if (same_zone(z, i, j)) {
+      add_piece(z, i, 0.0, 1.0, &zone);
+    } else {
+      double end = zone_end(z, i, j);
       add_piece(z, i, 0.0, end, &zone);
       set_point(z, i, end, zone.to);
       TRY(add_zone(z->r, &zone));
-      zone = zone_at(z, contact_id, j);
-      set_point(z, i, end, zone.from);
+      if (j == start) goto done;
+      zone = first_zone(z, contact_id, i, j);
     }
-    add_piece(z, i, same_zone(z, i, j) ? 0.0 : end, 1.0, &zone);
     if (j == start) break;
   }
   set_point(z, z->next[i] == start ? start : i, 0.0, zone.to);

@@ -1,6 +1,7 @@
 /*
- * Flat punches on a half space: pressure and stiffness without friction and
- * bonded (friction that always sticks), plane and axisymmetric, in closed form.
+ * Indentation of a half space: flat punches, pressure and stiffness without
+ * friction and bonded (friction that always sticks), plane and axisymmetric, in
+ * closed form; a ball with friction (Spence).
  */
 #include "support/job.h"
 #include "support/unit.h"
@@ -120,5 +121,38 @@ START_TEST(circular_punch_has_its_stiffness) {
 }
 END_TEST
 
-UNIT_MAIN("punch", plane_punch_has_its_tractions,
+/* Half space and ball, the load grows in proportion to the approach: stick up
+ * to c/a for nu, mu (Spence, axisymmetric, full coupling, to 3e-4). */
+START_TEST(ball_sticks_in_the_middle) {
+  static const double cases[][3] = {{0.3, 0.2, 0.698}, {0.0, 0.3, 0.5031}};
+  for (int i = 0; i < 2; ++i) {
+    job j = job_begin("ball");
+    job_copy(&j, "input/spence/spence.geo");
+    job_write(&j, "ball.inp",
+              "*PARAMETER\nA = 0.25\nNC = 30\nSIZE = 40\n"
+              "*MESH, FILE=spence.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+              "%g, %g\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
+              "*OBSTACLE, NAME=O, TYPE=GAP\n\"x^2/20\"\n"
+              "MOVE, 0., \"t*A^2/10\"\n"
+              "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n"
+              "*QUASISTATIC\n0.05, 1.\n*BOUNDARY\nSYMMETRY, 1\nFAR, 1, 2\n"
+              "*PRINT, ZONES, FREQUENCY=0\n*END STEP\n",
+              young, cases[i][0], cases[i][1]);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat z = job_table(&j, "ZONES", -1);
+    ck_assert_double_eq(dat_at(&z, 0, "zone"), 2.0);
+    ck_assert_double_eq(dat_at(&z, 1, "zone"), 1.0);
+    double c = dat_at(&z, 0, "r_to"), a = dat_at(&z, 1, "r_to");
+    ck_assert_double_eq_tol(c / a, cases[i][2], 0.015);
+    ck_assert_double_eq_tol(dat_at(&z, 0, "area"), acos(-1.0) * c * c,
+                            1e-9 * c * c);
+    dat_free(&z);
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("punch", ball_sticks_in_the_middle, plane_punch_has_its_tractions,
           circular_punch_has_its_stiffness)
