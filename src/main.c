@@ -2,116 +2,28 @@
  * protis: reads the command line, runs the stages in order, prints what went
  * wrong and chooses the exit code.
  */
-#include "base/memory.h"
-#include "base/timer.h"
-#include "command.h"
-#include "discrete/discrete.h"
 #include "fem/fem.h"
 #include "inform.h"
-#include "output/output.h"
+#include "job.h"
+#include "target.h"
 
-#include <errno.h>
 #include <stdio.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-/* Numbers of the deck go to a .geo under their own names. */
-static status read_mesh(const model *m, mesh **msh) {
-  status st = OK;
-  mesh_number *numbers = NULL;
-  NEW(numbers, m->deck->n_symbol);
-  for (int i = 0; i < m->deck->n_symbol; ++i) {
-    numbers[i].name = m->deck->symbols[i].name;
-    numbers[i].value = m->deck->symbols[i].value;
-  }
-  timer_enter(STAGE_MESH);
-  st = mesh_read_gmsh(&(mesh_source){.file = m->mesh_file,
-                                     .scale = m->mesh_scale,
-                                     .n_number = m->deck->n_symbol,
-                                     .numbers = numbers},
-                      &m->mesh_at, m->log, msh);
-  timer_leave(STAGE_MESH);
-done:
-  memory_free(numbers);
-  return st;
-}
-
-/* A problem from a file in the place of a mesh. */
-static status read_problem(model *m, exchange_problem **problem) {
-  status st = OK;
-  timer_enter(STAGE_PROBLEM);
-  st = exchange_read(m->problem_file, m->problem_type, &m->problem_at, m->log,
-                     problem);
-  timer_leave(STAGE_PROBLEM);
-  if (st == OK)
-    model_fit_problem(m, (*problem)->dim, (*problem)->cp.g0 != NULL);
-  return st;
-}
-
-/* Everything up to the first number that is solved for. */
-static status read_input(const command *c, deck **d, model **m, mesh **msh,
-                         exchange_problem **problem, message_log *log) {
-  status st = OK;
-  timer_enter(STAGE_DECK);
-  st = deck_read(c->deck_file, c->n_define, c->defines, log, d);
-  if (st == OK || st == ERR_DECK) st = model_from_deck(*d, log, m);
-  timer_leave(STAGE_DECK);
-  TRY(st);
-  TRY(message_status(log, ERR_DECK));
-  if ((*m)->has_problem) {
-    TRY(read_problem(*m, problem));
-  } else {
-    TRY(read_mesh(*m, msh));
-    TRY(model_check(*m, *msh));
-  }
-done:
-  return st;
-}
-
-static status solve(const command *c, model *m, const mesh *msh,
-                    const exchange_problem *problem, int *unsettled) {
-  static const mesh no_mesh;
-  status st = OK;
-  output *out = NULL;
-  const output_options options = {
-      .dir = c->dir,
-      .no_timing = c->no_timing,
-      .version = PROTIS_VERSION,
-      .kernel = blas_kernel(),
-      .threads = c->threads > 0 ? c->threads : 1,
-      .progress = !c->quiet && isatty(STDERR_FILENO)};
-  if (mkdir(c->dir, 0777) != 0 && errno != EEXIST)
-    FAIL(ERR_FILE, "cannot make the folder %s: %s", c->dir, strerror(errno));
-  TRY(output_open(m, problem == NULL ? msh : &no_mesh, &options, &out));
-  history_sink sink = output_sink(out);
-  st = problem == NULL ? history_run(m, msh, &sink, unsettled)
-                       : condensed_run(m, problem, &sink, unsettled);
-  status closed = output_close(out, st, *unsettled);
-  if (st == OK && closed != ERR_UNSETTLED) st = closed;
-done:
-  return st;
-}
 
 static status run_job(const command *c, message_log *log, int *unsettled) {
   status st = OK;
-  deck *d = NULL;
-  model *m = NULL;
-  mesh *msh = NULL;
-  exchange_problem *problem = NULL;
-  TRY(read_input(c, &d, &m, &msh, &problem, log));
-  if (c->check_only && problem != NULL)
-    inform_check_problem(m, problem);
+  job_input in = {0};
+  TRY(job_read(c, NULL, log, &in));
+  if (c->check_only && in.problem != NULL)
+    inform_check_problem(in.m, in.problem);
   else if (c->check_only)
-    TRY(inform_check(m, msh));
+    TRY(inform_check(in.m, in.msh));
+  else if (in.m->target.percent > 0.0 && in.problem == NULL)
+    TRY(target_reach(c, &in, unsettled));
   else
-    TRY(solve(c, m, msh, problem, unsettled));
+    TRY(job_solve(c, &in, NULL, unsettled));
 done:
-  exchange_free(problem);
-  mesh_free(msh);
-  model_free(m);
   message_print(log, stderr);
-  deck_free(d);
+  job_input_free(&in);
   return st;
 }
 

@@ -199,10 +199,23 @@ static int read_int(const option *row, const char *text, int *out, char *why,
   return 0;
 }
 
+/* A number whose unit is % may bear the sign: text without it, into digits. */
+static const char *without_percent(const option *row, const char *text,
+                                   char *digits, size_t size) {
+  size_t n = strlen(text);
+  if (strcmp(row->unit, "%") != 0 || text[n - 1] != '%' || n > size)
+    return text;
+  for (--n; n > 0 && text[n - 1] == ' ';) --n;
+  snprintf(digits, size, "%.*s", (int)n, text);
+  return digits;
+}
+
 static int read_real(const option *row, const char *text, double *out,
                      char *why, size_t why_size) {
   double x = 0;
-  const char *wrong = number_real(text, &x);
+  char digits[NUMBER_TEXT_SIZE];
+  const char *wrong =
+      number_real(without_percent(row, text, digits, sizeof digits), &x);
   if (wrong != NULL) {
     snprintf(why, why_size, "%s: '%s'", wrong, text);
     return -1;

@@ -432,8 +432,11 @@ status apply_accuracy(reading *r) {
                 "a step has one *ACCURACY card, this is its second");
   s->has_accuracy = 1;
   s->no_solver_error = !p->solver;
-  s->mesh_error = p->mesh;
-  s->time_error = p->time;
+  s->mesh_error = p->mesh || p->target > 0.0;
+  s->time_error = p->time || p->target > 0.0;
+  if (p->target > 0.0)
+    r->m->target =
+        (accuracy_target){p->target, p->max_cpu, p->max_memory, p->max_passes};
   return OK;
 }
 

@@ -142,7 +142,8 @@ typedef struct solver_param {
   int max_iter, limit_max_iter, check;
 } solver_param;
 typedef struct accuracy_param {
-  int mesh, time;
+  int mesh, time, max_passes;
+  double target, max_cpu, max_memory;
   int solver;
 } accuracy_param;
 typedef struct print_param {

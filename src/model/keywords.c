@@ -177,6 +177,14 @@ static const option accuracy_options[] = {
               "estimate of the error of the increments, from half of them"),
   OPTION_FLAG(accuracy_param, solver, "SOLVER", "YES",
               "bound of the error of the contact solver in the energy norm"),
+  OPTION_REAL(accuracy_param, target, "TARGET", 0, 100, "0", "%",
+              "error to reach by finer meshes and increments; 0: none"),
+  OPTION_REAL(accuracy_param, max_cpu, "MAX_CPU", 0, 1e12, "0", "s",
+              "CPU time for that; 0: no limit"),
+  OPTION_REAL(accuracy_param, max_memory, "MAX_MEMORY", 0, 1e12, "0", "MB",
+              "memory for that; 0: no limit"),
+  OPTION_INT(accuracy_param, max_passes, "MAX_PASSES", 1, 20, "8", "-",
+             "passes for that"),
   OPTION_END};
 static const option print_options[] = {
   OPTION_FLAG(print_param, contact, "CONTACT", "NO", "contact nodes"),

@@ -206,6 +206,12 @@ typedef struct step {
   place solver_at;
 } step;
 
+typedef struct accuracy_target { /* *ACCURACY, TARGET=                       */
+  double percent;             /* of the energy norm; 0: none                  */
+  double max_cpu, max_memory; /* s, MB; 0: no limit                           */
+  int max_passes;
+} accuracy_target;
+
 typedef struct model {
   deck *deck;
   message_log *log;
@@ -236,6 +242,7 @@ typedef struct model {
   start_card start;
   value_table first_step; /* 0 to 1 over the first step; arrays owned         */
   step *steps;
+  accuracy_target target;
   unsigned effects;  /* bits EFFECT_*, set by model_check                    */
   int dim, ns;       /* from the mesh                                        */
   int *elem_section; /* [n_elem] section of each element                     */

@@ -170,6 +170,30 @@ static void write_accuracy(json *w, const job *j) {
   json_close(w, '}');
 }
 
+static void write_pass(json *w, const output_options *o, const pass_row *r) {
+  json_open(w, NULL, '{');
+  json_count(w, "unknowns", r->unknowns);
+  json_real(w, "mesh_error_percent", r->mesh);
+  json_real(w, "time_error_percent", r->time);
+  json_real(w, "solver_error_percent", r->solver);
+  json_real(w, "total_error_percent", r->total);
+  if (!o->no_timing) json_real(w, "cpu", r->cpu);
+  json_string(w, "changed_next", r->change);
+  json_close(w, '}');
+}
+
+static void write_passes(json *w, const job *j) {
+  const pass_table *t = &j->run->passes;
+  if (t->n == 0) return;
+  json_open(w, "target", '{');
+  json_real(w, "percent", t->target);
+  json_flag(w, "reached", t->why[0] == '\0');
+  json_open(w, "passes", '[');
+  for (int i = 0; i < t->n; ++i) write_pass(w, j->o, &t->rows[i]);
+  json_close(w, ']');
+  json_close(w, '}');
+}
+
 static void write_cost(json *w, const output_options *o) {
   json_open(w, "cost", '{');
   json_open(w, "stages", '[');
@@ -253,6 +277,7 @@ static void write_all(json *w, const job *j) {
   write_effects(w, j->m);
   write_sizes(w, j);
   write_accuracy(w, j);
+  write_passes(w, j);
   write_cost(w, j->o);
   json_open(w, "increments", '[');
   for (int i = 0; i < j->run->n_increment; ++i)

@@ -464,6 +464,38 @@ static void print_budget(const job *j, FILE *f) {
   }
 }
 
+static void print_pass(const job *j, int no, const pass_row *r, FILE *f) {
+  char number[4][NUMBER_SIZE];
+  if (no > 0)
+    fprintf(f, "  %-10d", no);
+  else
+    fprintf(f, "  %-10s", "next digit");
+  fprintf(f, " %10.0f", r->unknowns);
+  if (no > 0)
+    fprintf(f, " %10s %10s %10s", text_number(number[0], r->mesh, 2),
+            text_number(number[1], r->time, 2),
+            text_number(number[2], r->solver, 2));
+  else
+    fprintf(f, " %10s %10s %10s", "", "", "");
+  fprintf(f, " %10s", text_number(number[3], r->total, 2));
+  if (!j->o->no_timing) fprintf(f, " %9.3g", r->cpu);
+  fprintf(f, "  %s\n", no > 0 ? r->change : "forecast");
+}
+
+/* The passes towards the target, and what a digit more would cost. */
+static void print_passes(const job *j, FILE *f) {
+  const pass_table *t = &j->run->passes;
+  if (t->n == 0) return;
+  fprintf(f, "\n  target %g %% of the energy norm: %s\n", t->target,
+          t->why[0] == '\0' ? "reached" : "missed");
+  fprintf(f, "  %-10s %10s %10s %10s %10s %10s", "pass", "unknowns", "mesh[%]",
+          "steps[%]", "solver[%]", "total[%]");
+  if (!j->o->no_timing) fprintf(f, " %9s", "cpu[s]");
+  fprintf(f, "  changed next\n");
+  for (int i = 0; i < t->n; ++i) print_pass(j, i + 1, &t->rows[i], f);
+  if (t->forecast != NULL) print_pass(j, 0, t->forecast, f);
+}
+
 /* Stages that were never entered are shown too: 0 calls, 0 bytes. */
 static void print_stages(const job *j, FILE *f) {
   int cost = !j->o->no_timing;
@@ -489,6 +521,7 @@ status listing_verdict(const job *j, text_file *lst) {
   heading(f, "ACCURACY");
   print_accuracy(j, f);
   print_budget(j, f);
+  print_passes(j, f);
   heading(f, "COST");
   print_stages(j, f);
   heading(f, "END");

@@ -352,6 +352,11 @@ static status verdict_of(status run, int unsettled) {
   return run == OK && unsettled > 0 ? ERR_UNSETTLED : run;
 }
 
+void output_passes(output *o, double target, int n, const pass_row *rows,
+                   const pass_row *forecast, const char *why) {
+  o->run.passes = (pass_table){target, n, rows, forecast, why};
+}
+
 status output_close(output *o, status run, int unsettled) {
   char message[2048] = "";
   status kept = OK;

@@ -104,6 +104,18 @@ typedef struct output output;
 status output_open(const model *m, const mesh *msh, const output_options *o,
                    output **out);
 history_sink output_sink(output *o);
+/* A pass towards *ACCURACY, TARGET=. */
+enum { MAX_PASS_ROWS = 20 };
+typedef struct pass_row {
+  double unknowns;
+  double mesh, time, solver, total; /* %, estimated errors                    */
+  double cpu;                       /* s, of the pass                         */
+  char change[80];                  /* what the next pass has changed, ""     */
+} pass_row;
+/* The passes so far, for listing and JSON; forecast of a tenth of the error;
+ * why the target is missed, or "". All borrowed until output_close. */
+void output_passes(output *o, double target, int n, const pass_row *rows,
+                   const pass_row *forecast, const char *why);
 /*
  * Close with the verdict of the run; writes the closing tables and JOB.json,
  * frees o (NULL: nothing to do). The answer is the verdict of the whole: run

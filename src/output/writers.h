@@ -51,7 +51,15 @@ typedef struct increment_summary {
   error_share mesh_error, time_error;
 } increment_summary;
 
+typedef struct pass_table {
+  double target; /* %                                                         */
+  int n;         /* 0: no target                                              */
+  const pass_row *rows, *forecast;
+  const char *why;
+} pass_table;
+
 typedef struct run_summary {
+  pass_table passes;
   int facts_known;
   setup_facts facts;
   int n_increment, capacity, n_rejected, n_unsettled;

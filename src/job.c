@@ -1,0 +1,152 @@
+/*
+ * One pass: the stages in their order.
+ */
+#include "job.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+#include "fem/fem.h"
+#include "inform.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Numbers of the deck go to a .geo under their own names. */
+static status read_mesh(const model *m, const job_mesh *other, mesh **msh) {
+  status st = OK;
+  mesh_number *numbers = NULL;
+  NEW(numbers, m->deck->n_symbol);
+  for (int i = 0; i < m->deck->n_symbol; ++i) {
+    numbers[i].name = m->deck->symbols[i].name;
+    numbers[i].value = m->deck->symbols[i].value;
+  }
+  timer_enter(STAGE_MESH);
+  st =
+      mesh_read_gmsh(&(mesh_source){.file = m->mesh_file,
+                                    .scale = m->mesh_scale,
+                                    .n_number = m->deck->n_symbol,
+                                    .numbers = numbers,
+                                    .old = other != NULL ? other->old : NULL,
+                                    .size = other != NULL ? other->size : NULL},
+                     &m->mesh_at, m->log, msh);
+  timer_leave(STAGE_MESH);
+done:
+  memory_free(numbers);
+  return st;
+}
+
+/* A problem from a file in the place of a mesh. */
+static status read_problem(model *m, exchange_problem **problem) {
+  status st = OK;
+  timer_enter(STAGE_PROBLEM);
+  st = exchange_read(m->problem_file, m->problem_type, &m->problem_at, m->log,
+                     problem);
+  timer_leave(STAGE_PROBLEM);
+  if (st == OK)
+    model_fit_problem(m, (*problem)->dim, (*problem)->cp.g0 != NULL);
+  return st;
+}
+
+status job_read(const command *c, const job_mesh *other, message_log *log,
+                job_input *in) {
+  status st = OK;
+  timer_enter(STAGE_DECK);
+  st = deck_read(c->deck_file, c->n_define, c->defines, log, &in->d);
+  if (st == OK || st == ERR_DECK) st = model_from_deck(in->d, log, &in->m);
+  timer_leave(STAGE_DECK);
+  TRY(st);
+  TRY(message_status(log, ERR_DECK));
+  if (in->m->has_problem) {
+    TRY(read_problem(in->m, &in->problem));
+  } else {
+    if (other != NULL && other->same != NULL)
+      in->msh = other->same;
+    else
+      TRY(read_mesh(in->m, other, &in->msh));
+    TRY(model_check(in->m, in->msh));
+  }
+done:
+  return st;
+}
+
+void job_input_free(job_input *in) {
+  exchange_free(in->problem);
+  mesh_free(in->msh);
+  model_free(in->m);
+  deck_free(in->d);
+  deck_free(in->first);
+  message_log_free(in->log);
+  *in = (job_input){0};
+}
+
+/* ---- the outputs, and who watches ---------------------------------------- */
+
+typedef struct relay {
+  history_sink to; /* the outputs */
+  const job_watch *watch;
+} relay;
+
+static status relay_ready(void *ctx, const setup_facts *facts,
+                          const contact_surface *surface) {
+  relay *r = ctx;
+  if (r->watch->ready != NULL) r->watch->ready(r->watch->ctx, facts);
+  return r->to.ready(r->to.ctx, facts, surface);
+}
+
+static status relay_start(void *ctx, const start_report *s) {
+  relay *r = ctx;
+  return r->to.start(r->to.ctx, s);
+}
+
+static status relay_increment(void *ctx, const state *s) {
+  relay *r = ctx;
+  if (r->watch->increment != NULL) r->watch->increment(r->watch->ctx, s);
+  return r->to.increment(r->to.ctx, s);
+}
+
+static void relay_iteration(void *ctx, const solver_step *s) {
+  relay *r = ctx;
+  r->to.iteration(r->to.ctx, s);
+}
+
+static status relay_rejected(void *ctx, const state *s, const char *why) {
+  relay *r = ctx;
+  return r->to.rejected(r->to.ctx, s, why);
+}
+
+status job_solve(const command *c, job_input *in, const job_watch *watch,
+                 int *unsettled) {
+  static const mesh no_mesh;
+  status st = OK;
+  output *out = NULL;
+  const output_options options = {
+      .dir = c->dir,
+      .no_timing = c->no_timing,
+      .version = PROTIS_VERSION,
+      .kernel = blas_kernel(),
+      .threads = c->threads > 0 ? c->threads : 1,
+      .progress = !c->quiet && isatty(STDERR_FILENO)};
+  if (mkdir(c->dir, 0777) != 0 && errno != EEXIST)
+    FAIL(ERR_FILE, "cannot make the folder %s: %s", c->dir, strerror(errno));
+  TRY(output_open(in->m, in->problem == NULL ? in->msh : &no_mesh, &options,
+                  &out));
+  relay r = {output_sink(out), watch};
+  history_sink sink = {.ctx = &r,
+                       .ready = relay_ready,
+                       .start = relay_start,
+                       .increment = relay_increment,
+                       .iteration = relay_iteration,
+                       .rejected = relay_rejected};
+  if (watch == NULL) sink = r.to;
+  st = in->problem == NULL
+           ? history_run(in->m, in->msh, &sink, unsettled)
+           : condensed_run(in->m, in->problem, &sink, unsettled);
+  if (watch != NULL && watch->finished != NULL)
+    st = watch->finished(watch->ctx, st, out);
+  status closed = output_close(out, st, *unsettled);
+  if (st == OK && closed != ERR_UNSETTLED) st = closed;
+done:
+  return st;
+}

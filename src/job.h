@@ -1,0 +1,49 @@
+/*
+ * One pass through the stages: deck, model, mesh, history, outputs.
+ */
+#ifndef PROTIS_JOB_H
+#define PROTIS_JOB_H
+
+#include "command.h"
+#include "discrete/discrete.h"
+#include "output/output.h"
+
+typedef struct job_input {
+  deck *d;
+  model *m;
+  mesh *msh;                 /* NULL: a problem from a file                   */
+  exchange_problem *problem; /* or NULL                                       */
+  /* Of another pass than the first: the deck of that, to which the messages
+   * refer, and the messages of its own. */
+  deck *first;
+  message_log *log;
+} job_input;
+
+/* The mesh of another pass. */
+typedef struct job_mesh {
+  const mesh *old; /* a .geo is meshed anew with sizes as in mesh_source      */
+  const double *size;
+  mesh *same; /* or NULL: this mesh, taken over                              */
+} job_mesh;
+
+/* Everything up to the first number that is solved for; NULL: the mesh of the
+ * deck. What is there is freed by job_input_free, also after a failure. */
+status job_read(const command *c, const job_mesh *other, message_log *log,
+                job_input *in);
+void job_input_free(job_input *in);
+
+/* Who watches a pass. Any function may be NULL. */
+typedef struct job_watch {
+  void *ctx;
+  void (*increment)(void *ctx, const state *s);
+  void (*ready)(void *ctx, const setup_facts *facts);
+  /* After the last increment, before the files are closed: what else to say
+   * there; the answer is the status of the run. */
+  status (*finished)(void *ctx, status run, output *out);
+} job_watch;
+
+/* Solve and write the results; watch may be NULL. *unsettled as history_run. */
+status job_solve(const command *c, job_input *in, const job_watch *watch,
+                 int *unsettled);
+
+#endif

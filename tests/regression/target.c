@@ -1,0 +1,154 @@
+/*
+ * *ACCURACY, TARGET=: the error reached against a fine mesh, what stops the
+ * passes, and what they tell.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Hertz's block, frictionless, of NC segments on the half contact. */
+static int press(job *j, int nc, const char *accuracy, const char *words) {
+  *j = job_begin("block");
+  job_write(
+      j, "block.geo",
+      "DefineConstant[ A = 1, NC = 1, GROWTH = 1 ];\nL = 100 * A;\n"
+      "Point(1) = {0, 0, 0}; Point(2) = {3 * A, 0, 0};\n"
+      "Point(3) = {L, 0, 0}; Point(4) = {L, L, 0}; Point(5) = {0, L, 0};\n"
+      "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4};\n"
+      "Line(4) = {4, 5}; Line(5) = {5, 1}; Curve Loop(1) = {1:5};\n"
+      "Plane Surface(1) = {1};\nField[1] = MathEval;\n"
+      "Field[1].F = Sprintf(\"%%g + %%g * Sqrt(x^2 + y^2)\", A / NC, "
+      "GROWTH);\nBackground Field = 1;\n"
+      "Mesh.MeshSizeExtendFromBoundary = 0; Mesh.MeshSizeFromPoints = 0;\n"
+      "Physical Surface(\"BODY\") = {1};\n"
+      "Physical Curve(\"CONTACT\") = {1}; Physical Curve(\"TOP\") = {4};\n"
+      "Physical Curve(\"SYMMETRY\") = {5};\n");
+  job_write(j, "block.inp",
+            "*PARAMETER\nA = 0.2348908547\nNC = %d\nGROWTH = %g\n"
+            "*MESH, FILE=block.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+            "210.D3, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"x^2/20\"\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, \"500/(100*A)\"\n"
+            "%s*PRINT, ENERGY, FREQUENCY=0\n*END STEP\n",
+            nc, 0.96 / nc, accuracy);
+  return job_run(j, words);
+}
+
+/* Potential energy of one increment from rest: E - F'u, F'u twice the
+ * trapezoidal work. */
+static double potential(const job *j, double *strain) {
+  dat e = job_table(j, "ENERGY", -1);
+  *strain = dat_at(&e, 0, "strain_energy");
+  double answer = *strain - 2.0 * dat_at(&e, 0, "external_work");
+  dat_free(&e);
+  return answer;
+}
+
+static int count(const char *text, const char *word) {
+  int n = 0;
+  for (const char *p = text; (p = strstr(p, word)) != NULL; ++p) ++n;
+  return n;
+}
+
+START_TEST(target_is_reached_in_truth) {
+  job coarse, fine, j;
+  double strain, fine_strain;
+  ck_assert_int_eq(press(&coarse, 16, "", ""), 0);
+  ck_assert_int_eq(press(&fine, 32, "", ""), 0);
+  /* The potential falls with the square of the size: its limit. */
+  double least = potential(&fine, &fine_strain);
+  least -= (potential(&coarse, &strain) - least) / 3;
+  int code = press(&j, 4, "*ACCURACY, TARGET=2 %\n", "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  double energy = potential(&j, &strain) - least;
+  double is = 100 * sqrt(fmax(energy, 0) / fine_strain);
+  ck_assert_msg(is > 0.3 && is < 2.0, "error %g %%", is);
+  char *lst = job_file(&j, "lst"), *json = job_file(&j, "json");
+  ck_assert_ptr_nonnull(strstr(lst, "target 2 % of the energy norm: reached"));
+  ck_assert_ptr_nonnull(strstr(lst, "next digit"));
+  ck_assert_ptr_nonnull(strstr(json, "\"reached\": true"));
+  ck_assert_int_ge(count(json, "\"changed_next\""), 2);
+  ck_assert_int_le(count(json, "\"changed_next\""), 4);
+  free(lst);
+  free(json);
+  job_end(&coarse);
+  job_end(&fine);
+  job_end(&j);
+}
+END_TEST
+
+/* Exit 1, why, and the files of the last pass. */
+static void must_miss(int nc, const char *accuracy, const char *why) {
+  job j;
+  double strain;
+  int code = press(&j, nc, accuracy, "");
+  ck_assert_msg(code == 1, "%s: exit %d: %s", accuracy, code, j.errors);
+  ck_assert_msg(strstr(j.errors, why) != NULL, "%s: %s", accuracy, j.errors);
+  ck_assert_double_lt(potential(&j, &strain), 0);
+  char *lst = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(strstr(lst, "missed"));
+  ck_assert_ptr_nonnull(strstr(lst, "exit 1"));
+  free(lst);
+  job_end(&j);
+}
+
+START_TEST(limits_stop_with_the_best_there_is) {
+  must_miss(4, "*ACCURACY, TARGET=0.5, MAX_PASSES=1\n",
+            "MAX_PASSES is reached");
+  must_miss(4, "*ACCURACY, TARGET=0.1, MAX_CPU=0.5\n", "MAX_CPU is 0.5");
+  must_miss(4, "*ACCURACY, TARGET=0.1, MAX_MEMORY=20\n", "MAX_MEMORY is 20");
+}
+END_TEST
+
+/* A mesh that cannot be made finer. */
+START_TEST(fixed_meshes_are_named) {
+  static const char geo[] =
+      "Point(1)={0,0,0};Point(2)={1,0,0};Point(3)={1,1,0};Point(4)={0,1,0};\n"
+      "Line(1)={1,2};Line(2)={2,3};Line(3)={3,4};Line(4)={4,1};\n"
+      "Curve Loop(1)={1:4};Plane Surface(1)={1};Transfinite Curve{1:4}=4;\n"
+      "Transfinite Surface{1};Physical Surface(\"BODY\")={1};\n"
+      "Physical Curve(\"BOTTOM\")={1};Physical Curve(\"TOP\")={3};\n";
+  job j = job_begin("square");
+  job_write(&j, "square.geo", "%s", geo);
+  job_write(&j, "square.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nBOTTOM, 1, 2\n*DSLOAD\nTOP, TX, 0.1\n"
+            "*ACCURACY, TARGET=1\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 1);
+  ck_assert_ptr_nonnull(strstr(j.errors, "Transfinite"));
+  job_end(&j);
+}
+END_TEST
+
+/* A rough cylinder in two increments: the increments must become shorter. */
+START_TEST(increments_are_made_shorter) {
+  job j = job_begin("cylinder");
+  job_copy(&j, "input/hertz_line/hertz_line.geo");
+  job_write(&j, "cylinder.inp",
+            "*PARAMETER\nR = 10.\nA = 0.2348908547\nNC = 12\n"
+            "*MESH, FILE=hertz_line.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+            "210.D3, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+            "0.5, 1.\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\nTOP, P, 50.\n"
+            "*ACCURACY, TARGET=3\n*PRINT, ENERGY\n*END STEP\n");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  char *json = job_file(&j, "json"), *sta = job_file(&j, "sta");
+  ck_assert_ptr_nonnull(strstr(json, "dt * "));
+  ck_assert_int_gt(count(sta, " OK"), 2);
+  free(json);
+  free(sta);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("target", target_is_reached_in_truth,
+          limits_stop_with_the_best_there_is, fixed_meshes_are_named,
+          increments_are_made_shorter)
