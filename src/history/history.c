@@ -74,7 +74,7 @@ static state make_state(run *r, int attempt, int increment_no) {
              .time_error = r->time_error,
              .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
              .solver_log = contact_solver_log(r->solver),
-             .settled = r->report.outcome > 0};
+             .settled = r->report.outcome > 0 && !r->missed};
   if (r->visco != NULL) visco_show(r, &s);
   if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
   if (!(r->m->effects & EFFECT_REACTION)) s.reaction = NULL;
@@ -124,7 +124,7 @@ static status accept(run *r, int attempt, int increment_no, int last,
                      double cpu) {
   status st = OK;
   ++r->total_no;
-  if (r->report.outcome <= 0) ++r->unsettled;
+  if (r->report.outcome <= 0 || r->missed) ++r->unsettled;
   TRY(result_evaluate(r, stress_is_due(r->step, increment_no, last)));
   TRY(estimate_increment(r));
   r->n_zone = 0;
@@ -371,6 +371,68 @@ done:
   return st;
 }
 
+/* The next increment after one of length dt with this error; implicit
+ * integrators keep to halves and doubles, which they have factored. */
+static double next_length(const step *s, double dt, double error) {
+  const scheme *of = s->integrator;
+  int order = of->estimates ? 1 : of->order;
+  double factor = 4.0;
+  if (s->theta == 0.5 && of->has_theta) order = 2;
+  if (error > 0.0) factor = 0.9 * pow(s->tolerance / error, 1.0 / (order + 1));
+  factor = fmin(4.0, fmax(0.2, factor));
+  if (of->limit == 0.0) factor = ldexp(1.0, (int)floor(log2(factor)));
+  return fmin(dt * factor, s->dt_max);
+}
+
+/* End of the next increment: not a sliver before the end of the step. */
+static double next_end(const run *r, double dt) {
+  double end = r->step->start + r->step->total, left = end - r->old.t;
+  if (dt >= left * (1.0 - 1e-9)) return end;
+  return r->old.t + (dt > 0.5 * left && r->step->integrator->limit > 0.0
+                         ? 0.5 * left
+                         : dt);
+}
+
+/* One increment of a step with a tolerance; *dt is the length tried, then that
+ * of the next. */
+static status run_adapted(run *r, double *dt, int *increment_no) {
+  status st = OK;
+  const step *s = r->step;
+  double end = s->start + s->total, error = 0.0;
+  for (int attempt = 1;; ++attempt) {
+    double cpu = timer_cpu(), t = next_end(r, *dt), tried;
+    int deeper;
+    TRY(visco_level(r, t - r->old.t, &deeper));
+    if (deeper > 0) t = next_end(r, ldexp(t - r->old.t, -deeper));
+    tried = t - r->old.t;
+    TRY(visco_try(r, t, &error));
+    int settled = r->report.outcome > 0;
+    r->missed = settled && error > s->tolerance;
+    if ((!settled || r->missed) && tried > s->dt_min) {
+      TRY(reject(r, attempt, *increment_no + 1,
+                 settled ? "strain error above TOLERANCE"
+                         : outcome_text(r->report.outcome)));
+      *dt = fmax(s->dt_min, fmin(0.5 * tried, next_length(s, tried, error)));
+      continue;
+    }
+    if (outcome_is_fatal(r->report.outcome)) TRY(no_equilibrium(r));
+    TRY(accept(r, attempt, ++*increment_no, t == end, cpu));
+    *dt = fmax(s->dt_min, next_length(s, tried, error));
+    break;
+  }
+done:
+  r->missed = 0;
+  return st;
+}
+
+static status run_adaptive(run *r, int *increment_no) {
+  status st = OK;
+  double dt = r->step->dt, end = r->step->start + r->step->total;
+  while (r->old.t < end) TRY(run_adapted(r, &dt, increment_no));
+done:
+  return st;
+}
+
 static status run_step(run *r) {
   status st = OK;
   long n = increments_of(r->step);
@@ -381,7 +443,10 @@ static status run_step(run *r) {
     TRY(judge_start(r));
   }
   TRY(start_visco(r, &increment_no));
-  for (long i = 0; i < n; ++i) TRY(run_increment(r, n, i, &increment_no));
+  if (r->step->tolerance > 0.0 && r->visco != NULL)
+    TRY(run_adaptive(r, &increment_no));
+  else
+    for (long i = 0; i < n; ++i) TRY(run_increment(r, n, i, &increment_no));
 done:
   return st;
 }

@@ -112,6 +112,7 @@ typedef struct run {
   double jump_t; /* s, there                                               */
   solution_set solutions; /* found by CHECK= in the increment                 */
   int total_no, unsettled;
+  int missed; /* 1: the increment misses the tolerance of its step            */
 } run;
 
 /* setup.c */
@@ -146,6 +147,10 @@ status visco_begin_step(run *r);
 /* From r->old to r->now at time t by the integrator of the step; read
  * r->report. */
 status visco_advance(run *r, double t);
+/* The same with an estimate of the error of its strains over the largest
+ * elastic strains so far: from the integrator, or from two steps of half the
+ * length, made beside. */
+status visco_try(run *r, double t, double *error);
 /* Increments of 2^level pieces that an explicit integrator needs: the level
  * for a step dt from r->old; ERR_DECK if the deck forbids to cut it. */
 status visco_level(run *r, double dt, int *level);

@@ -22,6 +22,8 @@ struct visco {
   int *place; /* [x.n] of a point in r->eigen                                */
   int *elem;  /* [x.n]                                                       */
   flow_state old, now;
+  flow_state middle; /* between two halves of a step                         */
+  double *fine;      /* [ns*x.n] e^i after them                              */
   scheme_work *work;
   scheme_result result;
   matrices slot[SLOTS]; /* constant tangents; the last used are kept         */
@@ -163,6 +165,8 @@ static void visco_free(visco *v) {
   matrices_free(&v->fresh);
   flow_state_free(&v->old);
   flow_state_free(&v->now);
+  flow_state_free(&v->middle);
+  memory_free(v->fine);
   scheme_work_free(v->work);
   flow_free(&v->x);
   memory_free(v->place);
@@ -513,6 +517,102 @@ status visco_advance(run *r, double t) {
   if (r->visco == NULL) return increment_solve(r, t);
   timer_enter(STAGE_INELASTIC);
   status st = advance(r, t);
+  timer_leave(STAGE_INELASTIC);
+  return st;
+}
+
+/* What an increment starts from, of the contact. */
+typedef struct start_point {
+  double *uc, *rc, *motion; /* [m] m, N, m                                   */
+} start_point;
+
+static status start_point_new(const run *r, start_point *p) {
+  status st = OK;
+  size_t bytes = (size_t)r->n_c * sizeof *p->uc;
+  NEW(p->uc, r->n_c);
+  NEW(p->rc, r->n_c);
+  NEW(p->motion, r->n_c);
+  if (r->n_c == 0) goto done;
+  memcpy(p->uc, r->now.uc, bytes);
+  memcpy(p->rc, r->now.rc, bytes);
+  memcpy(p->motion, r->now.motion, bytes);
+done:
+  return st;
+}
+
+/* From r->now, which becomes the accepted state for the while, to t. */
+static status second_half(run *r, double t) {
+  status st = OK;
+  visco *v = r->visco;
+  equilibrium keep = r->old;
+  start_point p = {0};
+  if (v->middle.e == NULL) TRY(flow_state_new(&v->x, &v->middle));
+  TRY(start_point_new(r, &p));
+  flow_state_copy(&v->x, &v->now, &v->middle);
+  flow_state first = v->old;
+  r->old.t = r->now.t;
+  r->old.uc = p.uc;
+  r->old.rc = p.rc;
+  r->old.motion = p.motion;
+  v->old = v->middle;
+  st = advance(r, t);
+  v->middle = v->old;
+  v->old = first;
+  r->old = keep;
+done:
+  memory_free(p.uc);
+  memory_free(p.rc);
+  memory_free(p.motion);
+  return st;
+}
+
+/* Two halves into v->fine[ns*n]; r->report tells if they were found. */
+static status two_halves(run *r, double t) {
+  status st = OK;
+  visco *v = r->visco;
+  size_t n = at(r, v->x.n);
+  if (v->fine == NULL) NEW(v->fine, n);
+  r->beside = 1;
+  TRY(advance(r, 0.5 * (r->old.t + t)));
+  if (r->report.outcome <= 0) goto done;
+  TRY(second_half(r, t));
+  memcpy(v->fine, v->now.ei, n * sizeof *v->fine);
+done:
+  r->beside = 0;
+  return st;
+}
+
+/* The difference to the halves, with Richardson's factor. */
+static double halves_error(const run *r) {
+  visco *v = r->visco;
+  double power =
+      ldexp(1.0, r->step->theta == 0.5 && r->step->integrator->has_theta
+                     ? 2
+                     : r->step->integrator->order);
+  size_t n = at(r, v->x.n);
+  for (size_t i = 0; i < n; ++i) v->fine[i] -= v->now.ei[i];
+  return power / (power - 1.0) * flow_norm(&v->x, v->fine);
+}
+
+static status try_step(run *r, double t, double *error) {
+  status st = OK;
+  visco *v = r->visco;
+  int estimates = r->step->integrator->estimates;
+  *error = HUGE_VAL;
+  if (!estimates) TRY(two_halves(r, t));
+  if (!estimates && r->report.outcome <= 0) goto done;
+  TRY(advance(r, t));
+  if (r->report.outcome <= 0) goto done;
+  *error = estimates ? v->result.error : halves_error(r);
+  double scale = fmax(v->largest, flow_elastic_norm(&v->x, &v->now));
+  if (*error > 0.0) *error /= scale;
+done:
+  return st;
+}
+
+status visco_try(run *r, double t, double *error) {
+  timer_enter(STAGE_INELASTIC);
+  status st = try_step(r, t, error);
   timer_leave(STAGE_INELASTIC);
   return st;
 }

@@ -59,14 +59,13 @@ status apply_static(reading *r) {
 }
 
 /* Increments that fit together and into the step; dt_min 0 if not given. */
-static void check_increments(const reading *r, const field *f, const step *s,
-                             double dt_max) {
+static void check_increments(const reading *r, const field *f, const step *s) {
   message_log *log = r->m->log;
   if (s->dt > s->total * (1.0 + 1e-12))
     message_add(log, P2020, &f[0].at,
                 "the increment dt = %s is longer than the step, %s", f[0].text,
                 f[1].text);
-  else if (s->dt > dt_max)
+  else if (s->dt > s->dt_max)
     message_add(log, P2020, &f[0].at,
                 "the increment dt = %s is longer than dt_max = %s", f[0].text,
                 f[3].text);
@@ -82,8 +81,8 @@ static void check_increments(const reading *r, const field *f, const step *s,
 /* dt, total [, dt_min [, dt_max]] of a step. */
 static void read_increments(const reading *r, step *s) {
   const record *line = &r->card->records[0];
-  double dt_max = HUGE_VAL;
   s->dt = s->total = s->dt_min = 1.0;
+  s->dt_max = HUGE_VAL;
   if (record_fields(r, line, 2, 4, "dt, total [, dt_min [, dt_max]]") != 0)
     return;
   const field *f = line->fields;
@@ -91,13 +90,13 @@ static void read_increments(const reading *r, step *s) {
       field_real(r, &f[1], DBL_MIN, DBL_MAX, "total", &s->total) != 0)
     return;
   if (line->n_field > 3 &&
-      field_real(r, &f[3], DBL_MIN, DBL_MAX, "dt_max", &dt_max) != 0)
+      field_real(r, &f[3], DBL_MIN, DBL_MAX, "dt_max", &s->dt_max) != 0)
     return;
   s->dt_min = s->dt / 16.0;
   if (line->n_field > 2 && f[2].text[0] != '\0' &&
       field_real(r, &f[2], DBL_MIN, DBL_MAX, "dt_min", &s->dt_min) != 0)
     return;
-  check_increments(r, f, s, dt_max);
+  check_increments(r, f, s);
 }
 
 status apply_quasistatic(reading *r) {
@@ -125,6 +124,11 @@ static void check_visco(const reading *r, const scheme *s) {
                 "*VISCO: INTEGRATOR=%s does not iterate", s->name);
 }
 
+static int gives_dt_min(const reading *r) {
+  const record *line = &r->card->records[0];
+  return line->n_field > 2 && line->fields[2].text[0] != '\0';
+}
+
 status apply_visco(reading *r) {
   step *s = open_step(r);
   const visco_param *p = r->param;
@@ -142,7 +146,9 @@ status apply_visco(reading *r) {
   check_visco(r, s->integrator);
   s->theta = s->integrator->has_theta ? p->theta : s->integrator->theta;
   s->initial = p->iteration == 1;
-  s->substeps = p->substeps == 1;
+  s->tolerance = p->tolerance;
+  s->substeps = p->substeps == 1 || p->tolerance > 0.0;
+  if (p->tolerance > 0.0 && !gives_dt_min(r)) s->dt_min = 1e-6 * s->dt;
   return OK;
 }
 

@@ -129,7 +129,7 @@ typedef struct quasistatic_param {
 } quasistatic_param;
 typedef struct visco_param {
   const char *integrator;
-  double theta;
+  double theta, tolerance;
   int iteration, substeps;
 } visco_param;
 typedef struct load_param {

@@ -144,6 +144,9 @@ static const option visco_options[] = {
               "protis --list integrators"),
   OPTION_REAL(visco_param, theta, "THETA", DBL_MIN, 1, "0.5", "-",
               "of INTEGRATOR=THETA: where in the step the rates are taken"),
+  OPTION_REAL(visco_param, tolerance, "TOLERANCE", 1e-12, 1, OPTION_ABSENT,
+              "-", "error of inelastic strain in an increment over the largest "
+              "elastic strain so far: increments are chosen by it; absent: dt"),
   OPTION_CHOICE(visco_param, iteration, "ITERATION", "TANGENT|INITIAL",
                 "TANGENT", "implicit steps of nonlinear laws: consistent "
                 "tangent, or initial stress, which never factors again"),

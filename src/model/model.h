@@ -184,8 +184,9 @@ typedef struct step {
   double theta;             /* of the integrator, -                  */
   int initial;              /* ITERATION=INITIAL                     */
   int substeps;             /* explicit increments are cut as needed */
+  double tolerance;         /* of strains over elastic ones; 0: dt stays */
   double start;             /* total time, s                         */
-  double dt, total, dt_min; /* s                                     */
+  double dt, total, dt_min, dt_max; /* s                                     */
   load_list loads;  /* all in force, those kept from before included        */
   unsigned renewed; /* bit of each load_kind that OP=NEW ends               */
   int n_change, cap_change;

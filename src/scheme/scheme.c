@@ -78,6 +78,7 @@ static const scheme heun = {
     .help = "explicit, order 2, with an estimate of its error: two equilibria",
     .order = 2,
     .limit = 2.0,
+    .estimates = 1,
     .advance = heun_advance};
 static const scheme rk4 = {.name = "RK4",
                            .reference = "Kutta 1901",

@@ -125,6 +125,7 @@ typedef struct scheme {
   double theta;    /* fixed by the row; 0: THETA=, or no such parameter       */
   double limit; /* |rate| dt up to which decay is stable; 0: none, or theta   */
   int has_theta;
+  int estimates; /* scheme_result.error is set                               */
   status (*advance)(const scheme_call *a);
 } scheme;
 
