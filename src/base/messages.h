@@ -237,7 +237,10 @@
   X(2051, WARNING, "stresses that ring",                                     \
     "With THETA < 1 parts that relax much faster than dt change sign from "  \
     "increment to increment and die out slowly. Take a smaller dt, or "      \
-    "INTEGRATOR=BACKWARD, which damps them at once.")
+    "INTEGRATOR=BACKWARD, which damps them at once.")                        \
+  X(2052, WARNING, "plane tilted far",                                       \
+    "Displacements are small: contact acts along the normals of time 0. "    \
+    "Start from the tilted plane, or turn it in its own plane.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

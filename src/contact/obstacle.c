@@ -87,6 +87,14 @@ static void turn(const double *a, double angle, double *v) {
     v[c] = cos(angle) * v[c] + sine * across[c] + along * a[c];
 }
 
+double obstacle_tilt(const obstacle *o, double t) {
+  double n[3] = {o->direction[0], o->direction[1], o->direction[2]}, c[3];
+  if (o->shape != OBSTACLE_PLANE || !o->turns) return 0;
+  turn(o->axis, obstacle_angle(o, t) - obstacle_angle(o, 0), n);
+  cross(n, o->direction, c);
+  return atan2(sqrt(dot(3, c, c)), dot(3, n, o->direction));
+}
+
 /* Displacement D[3] at time t of the point of the obstacle that is then at x,
  * and n[3] turned back with it to where it started. */
 static void turn_back(const obstacle *o, const double *x, double t, double *D,

@@ -60,6 +60,9 @@ int obstacle_normal(const obstacle *o, int dim, const double *x, double *n);
 void obstacle_motion(const obstacle *o, double t, double *d);
 /* Its angle at time t, rad; 0 without a rotation. */
 double obstacle_angle(const obstacle *o, double t);
+/* Angle between the normals of a PLANE at times 0 and t, rad; 0 for other
+ * shapes. */
+double obstacle_tilt(const obstacle *o, double t);
 /*
  * Way d[3] of the surface of the obstacle past the point where the line from x
  * along n meets it (x itself if it does not), from time t0 to t, m: v over the

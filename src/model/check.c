@@ -393,6 +393,21 @@ static int motion_finite(const model *m, int obstacle_id, double t) {
   return 0;
 }
 
+/* Contact acts along the normals of time 0: told at the first step end where a
+ * plane has left them by more than a tenth. */
+static void check_tilt(const model *m, int obstacle_id) {
+  const obstacle *o = &m->obstacles[obstacle_id];
+  for (int k = 0; k < m->n_step; ++k) {
+    double t = step_time(&m->steps[k], 1), tilt = obstacle_tilt(o, t);
+    if (!(tilt > 0.1)) continue;
+    message_add(m->log, P2052, &m->moves[obstacle_id].rotate_at,
+                "*OBSTACLE %s: ROTATE has tilted the plane by %.3g rad at time "
+                "%g; contact acts along the normals of time 0",
+                o->name, tilt, t);
+    return;
+  }
+}
+
 /* Where each step begins and ends, what the expressions give is a number; in
  * between it is seen when it is needed. */
 static void check_values(const model *m, const mesh *msh) {
@@ -401,6 +416,7 @@ static void check_values(const model *m, const mesh *msh) {
     good = motion_finite(m, i, 0.0);
     for (int k = 0; k < m->n_step && good; ++k)
       good = motion_finite(m, i, step_time(&m->steps[k], 1));
+    if (good) check_tilt(m, i);
   }
   for (int i = 0; i < m->n_contact; ++i) check_contact_values(m, msh, i);
   for (int i = 0; i < m->n_step; ++i)

@@ -320,9 +320,14 @@ START_TEST(surface_passes_by_angle_times_arm) {
   ck_assert_double_eq_tol(d[0], 3 * 5 * 5, 1e-12);
   ck_assert_double_eq_tol(d[1], 0.05, 1e-14);
   obstacle p = {.shape = OBSTACLE_PLANE, .direction = {0, 0, 1}, .turns = 1};
+  p.axis[0] = 1;
+  p.angle.formula = o.angle.formula;
+  ck_assert_double_eq_tol(obstacle_tilt(&p, 0.25), 0.75, 1e-14);
+  ck_assert_double_eq(obstacle_tilt(&o, 0.25), 0);
+  p.axis[0] = 0;
   double low[3] = {0, 0, -1}, y[3] = {3, 4, 1};
   p.axis[2] = 1;
-  p.angle.formula = o.angle.formula;
+  ck_assert_double_eq(obstacle_tilt(&p, 0.25), 0);
   obstacle_drift(&p, 3, y, low, 0, 2, d);
   ck_assert_double_eq_tol(d[0], 4 * 6, 1e-12);
   ck_assert_double_eq_tol(d[1], -3 * 6, 1e-12);
