@@ -318,8 +318,7 @@ done:
   return st;
 }
 
-/* u_0 into r->old, before the contact surface is built. */
-static status read_start(run *r) {
+status run_read_start(run *r) {
   status st = OK;
   if (!(r->m->effects & EFFECT_START)) goto done;
   timer_enter(STAGE_START);
@@ -457,7 +456,7 @@ status history_run(const model *m, const mesh *msh, const history_sink *sink,
   run r = {.m = m, .msh = msh, .sink = sink};
   *unsettled = 0;
   TRY(run_new(&r));
-  TRY(read_start(&r));
+  TRY(run_read_start(&r));
   for (int i = 0; i < m->n_step; ++i) {
     r.step = &m->steps[i];
     TRY(run_step(&r));

@@ -121,6 +121,8 @@ status run_new(run *r);
 status run_prepare(run *r);
 void run_free(run *r);
 int run_step_id(const run *r);
+/* history.c: u_0 into r->old, before the contact surface is built. */
+status run_read_start(run *r);
 
 /* Use m for the next equilibria; its solver is made if there is none. */
 status run_use(run *r, matrices *m);

@@ -438,6 +438,7 @@ status history_motions(const model *m, const mesh *msh, int step_id, int *n,
   static const history_sink nobody;
   run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[step_id]};
   TRY(run_new(&r));
+  if (step_id == 0) TRY(run_read_start(&r));
   load_fixed(m, msh, r.step, r.fixed);
   if (m->effects & EFFECT_CONTACT) TRY(build_surface(&r));
   r.d.surface = r.surface;
