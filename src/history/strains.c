@@ -29,6 +29,8 @@ struct visco {
   matrices slot[SLOTS]; /* constant tangents; the last used are kept         */
   matrices fresh;       /* a tangent of its own                              */
   long clock;
+  double length[SLOTS]; /* of the last different steps, s                     */
+  unsigned n_length;
   double *E;       /* [ns*ns*(n_section + x.n)] of a tangent                  */
   double *stress;  /* [ns*r->eigen.n] Pa                                      */
   int *section_id; /* [n_elem] sections of their own for the points     */
@@ -492,11 +494,23 @@ status visco_begin_step(run *r) {
   return OK;
 }
 
+/* Length of the step to t; one that differs by the rounding of the times only
+ * from one before is the same, and so are its matrices. */
+static double step_length(run *r, double t) {
+  visco *v = r->visco;
+  double dt = t - r->old.t, rounding = 4e-16 * (fabs(t) + fabs(r->old.t));
+  for (int i = 0; i < SLOTS; ++i)
+    if (fabs(v->length[i] - dt) <= rounding) return v->length[i];
+  v->length[v->n_length++ % SLOTS] = dt;
+  return dt;
+}
+
 static status advance(run *r, double t) {
   status st = OK;
   visco *v = r->visco;
   const flow_body body = {r, equilibrium_of, begin, linear};
-  scheme_step p = {.dt = t - r->old.t,
+  scheme_step p = {.t = t,
+                   .dt = step_length(r, t),
                    .theta = r->step->theta,
                    .initial = r->step->initial,
                    .tol = r->step->solver.tol};

@@ -21,7 +21,7 @@ static status stage(const scheme_call *a, double dt, const double *factor) {
     add_scaled(n, a->now->ei, factor[i], w->ei_rate[i], a->now->ei);
     add_scaled(na, a->now->alpha, factor[i], w->alpha_rate[i], a->now->alpha);
   }
-  a->now->t = a->old->t + dt;
+  a->now->t = dt == a->p->dt ? a->p->t : a->old->t + dt;
   TRY(a->b->equilibrium(a->b->ctx, a->now, &settled));
   if (!settled) a->out->settled = 0;
 done:

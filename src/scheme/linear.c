@@ -286,7 +286,7 @@ status linear_advance(const scheme_call *a, double key, linear_map_fn *make) {
   size_t n = (size_t)x->ns * (size_t)x->n;
   TRY(make_maps(x, a->p, key, make, w));
   TRY(need(&w->sigma_k, n));
-  a->now->t = a->old->t + a->p->dt;
+  a->now->t = a->p->t;
   TRY(a->b->begin(a->b->ctx, a->now));
   memcpy(a->now->e, a->old->e, n * sizeof *a->now->e);
   apply_maps(x, w, a->old, a->now);

@@ -294,7 +294,7 @@ status newton_advance(const scheme_call *a) {
   local l = {0};
   TRY(local_new(x, &l));
   TRY(need_room(x, p, w));
-  a->now->t = a->old->t + p->dt;
+  a->now->t = p->t;
   TRY(a->b->begin(a->b->ctx, a->now));
   memcpy(a->now->e, a->old->e, bytes);
   flow_tangent law = {

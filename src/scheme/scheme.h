@@ -92,6 +92,7 @@ typedef struct flow_body {
 } flow_body;
 
 typedef struct scheme_step {
+  double t;         /* end of the step: old->t + dt to rounding, s            */
   double dt, theta; /* s, -                                                   */
   int initial;      /* 1: iterate with the elastic matrix                     */
   double tol;       /* of the iteration on stresses, -                        */

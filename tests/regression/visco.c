@@ -199,6 +199,87 @@ START_TEST(energies_of_a_creeping_block) {
 }
 END_TEST
 
+/* Stress of the steady state at three radii: mean of two elements each. */
+static void steady_ring(int n, const char *law, const double *expected) {
+  static const char *const column[] = {"stress_tt", "stress_rr", "stress_tt"};
+  job j = job_begin("visco");
+  job_copy(&j, "tests/regression/mesh/strips.geo");
+  job_write(&j, "visco.inp",
+            "*PARAMETER\nN = 151\nX0 = 1\nLY = 1/151\n"
+            "*MESH, FILE=strips.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
+            "*INELASTIC, LAW=NORTON\n%s\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nTOP, 2\n"
+            "*DSLOAD\nLEFT, P, 100.\n*PRINT, ELEMENTS, GROUP=FIRST\n"
+            "*PRINT, ELEMENTS, GROUP=MIDDLE\n*PRINT, ELEMENTS, GROUP=LAST\n"
+            "*OUTPUT, HDF5=NO\n*END STEP\n"
+            "*STEP\n*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=0.01\n1., 3000.\n"
+            "*PRINT, ELEMENTS, GROUP=FIRST, FREQUENCY=0\n"
+            "*PRINT, ELEMENTS, GROUP=MIDDLE, FREQUENCY=0\n"
+            "*PRINT, ELEMENTS, GROUP=LAST, FREQUENCY=0\n*END STEP\n",
+            law);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "n = %d: exit %d: %s", n, code, j.errors);
+  for (int k = 0; k < 3; ++k) {
+    dat d = job_table(&j, "ELEMENTS", 3 + k);
+    ck_assert_double_eq_tol(dat_sum(&d, column[k]) / d.n_row, expected[k],
+                            0.01 * 100);
+    dat_free(&d);
+  }
+  job_end(&j);
+}
+
+/* Tube, radii 1 and 2, inner pressure 100: hoop stress inside, radial stress
+ * at 1.5, hoop stress outside. */
+START_TEST(steady_creep_of_a_tube) {
+  static const double third[] = {80.16095893, -35.99137724, 113.49429226};
+  static const double fifth[] = {65.19251841, -38.16967948, 125.19251841};
+  steady_ring(3, "1.E-11, 3.", third);
+  steady_ring(5, "1.E-15, 5.", fifth);
+}
+END_TEST
+
+/* Calls of a stage in the listing. */
+static int calls_of(const job *j, const char *stage) {
+  char key[64], *lst = job_file(j, "lst");
+  snprintf(key, sizeof key, "\n  %s ", stage);
+  char *found = strstr(lst, key);
+  ck_assert_ptr_nonnull(found);
+  int calls = atoi(found + strlen(key));
+  free(lst);
+  return calls;
+}
+
+/* One factor for the elastic body and one for the tangent of a linear law;
+ * three or four in an increment of a power law; none with initial stresses. */
+START_TEST(factors_are_kept) {
+  static const struct {
+    const char *law, *visco;
+    int least, most;
+  } cases[] = {
+      {DEVIATORIC, "*VISCO, INTEGRATOR=MIDPOINT\n0.1, 1.\n", 2, 2},
+      {DEVIATORIC, "*VISCO, INTEGRATOR=EXPONENTIAL\n0.1, 1.\n", 2, 2},
+      {DEVIATORIC, "*VISCO, INTEGRATOR=RK4\n0.1, 1.\n", 1, 1},
+      {"*INELASTIC, LAW=NORTON\n1., 5.\n",
+       "*VISCO, INTEGRATOR=BACKWARD\n0.1, 1.\n", 21, 61},
+      {"*INELASTIC, LAW=NORTON\n1., 5.\n",
+       "*VISCO, INTEGRATOR=BACKWARD, ITERATION=INITIAL\n0.1, 1.\n", 1, 1}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+    scene s = {STEEL,
+               cases[i].law,
+               "CPE3",
+               FLOOR(0.1),
+               "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n",
+               cases[i].visco};
+    job j = run_scene(&s, 0);
+    int calls = calls_of(&j, "factorisation");
+    ck_assert_msg(calls >= cases[i].least && calls <= cases[i].most,
+                  "case %zu: %d factors", i, calls);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* A group without a law: the answer is that of elasticity, and its elements
  * are neither integrated nor stored. */
 START_TEST(elastic_groups_cost_nothing) {
@@ -245,6 +326,8 @@ int main(void) {
   tcase_add_test(tests, viscoplastic_pull);
   tcase_add_test(tests, energies_of_a_creeping_block);
   tcase_add_test(tests, elastic_groups_cost_nothing);
+  tcase_add_test(tests, steady_creep_of_a_tube);
+  tcase_add_test(tests, factors_are_kept);
   suite_add_tcase(suite, tests);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_NORMAL);

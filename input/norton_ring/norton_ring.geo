@@ -1,0 +1,27 @@
+// A slice of a thick tube, radii 1 and 2, N cells across and one along.
+DefineConstant[ N = 40 ];
+h = 1 / N;
+Point(1) = {1, 0, 0};
+Point(2) = {2 - h, 0, 0};
+Point(3) = {2, 0, 0};
+Point(4) = {2, h, 0};
+Point(5) = {2 - h, h, 0};
+Point(6) = {1, h, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 5};
+Line(5) = {5, 6};
+Line(6) = {6, 1};
+Line(7) = {2, 5};
+Transfinite Curve{1, 5} = N;
+Transfinite Curve{2, 3, 4, 6, 7} = 2;
+Curve Loop(1) = {1, 7, 5, 6};
+Plane Surface(1) = {1};
+Curve Loop(2) = {2, 3, 4, -7};
+Plane Surface(2) = {2};
+Transfinite Surface{1, 2} Alternated;
+Physical Curve("INSIDE") = {6};
+Physical Curve("FACES") = {1, 2, 4, 5};
+Physical Surface("TUBE") = {1, 2};
+Physical Surface("OUTER") = {2};
