@@ -48,7 +48,9 @@ static const char *const exit_rows[][2] = {
   {"4", "a file cannot be opened, read or written"},
   {"5", "memory exhausted"},
   {"6", "no unique equilibrium: singular, not positive definite, NaN"},
-  {"7", "a defect of the program"}};
+  {"7", "a defect of the program"},
+  {"130", "interrupted by SIGINT or a file JOB.stop; the files are whole"},
+  {"143", "the same by SIGTERM"}};
 
 static const struct option words[] = {
   {"check", no_argument, NULL, ASK_CHECK},

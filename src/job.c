@@ -8,9 +8,6 @@
 #include "fem/fem.h"
 #include "inform.h"
 
-#include <errno.h>
-#include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* Numbers of the deck go to a .geo under their own names. */
@@ -128,8 +125,6 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
       .kernel = blas_kernel(),
       .threads = c->threads > 0 ? c->threads : 1,
       .progress = !c->quiet && isatty(STDERR_FILENO)};
-  if (mkdir(c->dir, 0777) != 0 && errno != EEXIST)
-    FAIL(ERR_FILE, "cannot make the folder %s: %s", c->dir, strerror(errno));
   TRY(output_open(in->m, in->problem == NULL ? in->msh : &no_mesh, &options,
                   &out));
   relay r = {output_sink(out), watch};

@@ -42,7 +42,8 @@ typedef struct job_watch {
   status (*finished)(void *ctx, status run, output *out);
 } job_watch;
 
-/* Solve and write the results; watch may be NULL. *unsettled as history_run. */
+/* Solve and write the results into the folder, which is there; watch may be
+ * NULL. *unsettled as history_run. */
 status job_solve(const command *c, job_input *in, const job_watch *watch,
                  int *unsettled);
 

@@ -2,12 +2,34 @@
  * protis: reads the command line, runs the stages in order, prints what went
  * wrong and chooses the exit code.
  */
+#include "base/interrupt.h"
+#include "base/memory.h"
+#include "base/text.h"
 #include "fem/fem.h"
 #include "inform.h"
 #include "job.h"
+#include "lock.h"
 #include "target.h"
 
 #include <stdio.h>
+
+static status solve(const command *c, job_input *in, int *unsettled) {
+  status st = OK;
+  job_lock lock = {0};
+  char *stop = text_path(c->dir, in->m->job, "stop");
+  if (stop == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  TRY(job_lock_take(c->dir, in->m->job, &lock));
+  interrupt_catch(stop);
+  if (in->m->target.percent > 0.0 && in->problem == NULL)
+    TRY(target_reach(c, in, unsettled));
+  else
+    TRY(job_solve(c, in, NULL, unsettled));
+done:
+  job_lock_release(&lock);
+  memory_free(stop);
+  return st;
+}
 
 static status run_job(const command *c, message_log *log, int *unsettled) {
   status st = OK;
@@ -17,10 +39,8 @@ static status run_job(const command *c, message_log *log, int *unsettled) {
     inform_check_problem(in.m, in.problem);
   else if (c->check_only)
     TRY(inform_check(in.m, in.msh));
-  else if (in.m->target.percent > 0.0 && in.problem == NULL)
-    TRY(target_reach(c, &in, unsettled));
   else
-    TRY(job_solve(c, &in, NULL, unsettled));
+    TRY(solve(c, &in, unsettled));
 done:
   message_print(log, stderr);
   job_input_free(&in);
@@ -31,8 +51,10 @@ done:
 static int report(status st, const message_log *log, int unsettled) {
   int told = log != NULL && message_count(log, ERROR) > 0 && st != ERR_MEMORY &&
              st != ERR_INTERNAL;
+  int stopped = st == ERR_INTERRUPTED || st == ERR_TERMINATED;
   if (st != OK && !told)
-    fprintf(stderr, "protis: error: %s\n", status_message());
+    fprintf(stderr, "protis: %s%s\n",
+            stopped ? "" : "error: ", status_message());
   if (st == ERR_INTERNAL || st == ERR_MEMORY)
     fprintf(stderr, "protis: in %s\n", status_path());
   if (st == OK && unsettled > 0) {
@@ -50,10 +72,14 @@ int main(int argc, char **argv) {
   message_log *log = NULL;
   int exit_code, unsettled = 0;
   blas_choose_kernel(argv);
-  if (!command_read(argc, argv, &c, &exit_code)) return exit_code;
-  if (c.threads > 0) blas_set_threads(c.threads);
+  interrupt_spare_writes();
+  if (!command_read(argc, argv, &c, &exit_code))
+    return exit_code;
+  if (c.threads > 0)
+    blas_set_threads(c.threads);
   status st = message_log_new(&log);
-  if (st == OK) st = run_job(&c, log, &unsettled);
+  if (st == OK)
+    st = run_job(&c, log, &unsettled);
   exit_code = report(st, log, unsettled);
   message_log_free(log);
   command_free(&c);

@@ -12,6 +12,7 @@
 #include "target.h"
 
 #include "accuracy/space.h"
+#include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/timer.h"
 
@@ -58,7 +59,8 @@ static double known(double relative) {
 
 static void see_increment(void *ctx, const state *s) {
   pass *p = ctx;
-  if (!s->mesh_error.asked || s->energy.strain < p->energy) return;
+  if (!s->mesh_error.asked || s->energy.strain < p->energy)
+    return;
   p->energy = s->energy.strain;
   p->mesh = s->mesh_error.relative;
   p->time = known(s->time_error.relative);
@@ -112,7 +114,8 @@ static void choose(pass *p, char *text, size_t size) {
   double goal = p->target->percent / 100.0;
   size_t used = 0;
   text[0] = '\0';
-  if (p->mesh > MESH_SHARE * goal) used += (size_t)snprintf(text, size, "mesh");
+  if (p->mesh > MESH_SHARE * goal)
+    used += (size_t)snprintf(text, size, "mesh");
   if (p->time > TIME_SHARE * goal && p->dt > SHORTEST * SHORTEST) {
     double factor = fmax(AIM * TIME_SHARE * goal / p->time, SHORTEST);
     p->dt *= factor;
@@ -133,7 +136,8 @@ static int refines(const pass_row *row) {
 
 /* 1 if the last pass gained nothing although the mesh was to change. */
 static int was_in_vain(const pass *p) {
-  if (p->n < 2 || !refines(&p->rows[p->n - 2])) return 0;
+  if (p->n < 2 || !refines(&p->rows[p->n - 2]))
+    return 0;
   return p->rows[p->n - 1].mesh > LEAST_GAIN * p->rows[p->n - 2].mesh;
 }
 
@@ -155,23 +159,23 @@ static void decide(pass *p) {
   if (row->change[0] == '\0')
     miss(p, "no error has more than its share, their sum is above the target");
   else if (finer && !is_geo(p->in->m))
-    miss(p,
-         "the mesh is too coarse and a .msh cannot be meshed anew: give the "
-         ".geo");
+    miss(p, "the mesh is too coarse and a .msh cannot be meshed anew: give the "
+            ".geo");
   else if (was_in_vain(p))
-    miss(p,
-         "a mesh asked to be finer has no smaller error: the .geo fixes "
-         "its sizes; take Transfinite or Layers out of it");
+    miss(p, "a mesh asked to be finer has no smaller error: the .geo fixes "
+            "its sizes; take Transfinite or Layers out of it");
   else
     check_limits(p, finer ? growth(p, AIM * MESH_SHARE * goal) : 1.0);
-  if (p->done) row->change[0] = '\0';
+  if (p->done)
+    row->change[0] = '\0';
 }
 
 /* ---- one pass ------------------------------------------------------------ */
 
 static void tell_pass(const pass *p) {
   const pass_row *r = &p->rows[p->n - 1];
-  if (p->c->quiet) return;
+  if (p->c->quiet)
+    return;
   if (p->n == 1)
     printf("%4s %10s %9s %9s %9s %9s %9s  %s\n", "pass", "unknowns", "mesh[%]",
            "steps[%]", "solver[%]", "total[%]", "cpu[s]", "next");
@@ -195,7 +199,8 @@ static pass_row next_digit(const pass *p) {
 
 static status see_finished(void *ctx, status st, output *out) {
   pass *p = ctx;
-  if (st != OK) return st;
+  if (st != OK)
+    return st;
   pass_row *row = &p->rows[p->n++];
   *row = (pass_row){.unknowns = p->unknowns,
                     .mesh = 100.0 * p->mesh,
@@ -260,13 +265,15 @@ static status read_next(pass *p) {
   }
   TRY(job_read(p->c, &other, next.log, &next));
   next.first = p->in->first != NULL ? p->in->first : p->in->d;
-  if (p->in->first == NULL) p->in->d = NULL;
+  if (p->in->first == NULL)
+    p->in->d = NULL;
   p->in->first = NULL;
   job_input_free(p->in);
   *p->in = next;
   next = (job_input){0};
 done:
-  if (st != OK && next.log != NULL) message_print(next.log, stderr);
+  if (st != OK && next.log != NULL)
+    message_print(next.log, stderr);
   job_input_free(&next);
   memory_free(size);
   return st;
@@ -278,7 +285,12 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
   pass p = {.c = c, .target = &target, .in = in, .dt = 1.0, .tol = 1.0};
   for (;;) {
     TRY(run_pass(&p, unsettled));
-    if (p.done) break;
+    if (p.done)
+      break;
+    status stop = interrupt_asked();
+    if (stop != OK)
+      FAIL(stop, "interrupted by %s: the files are those of pass %d",
+           interrupt_name(), p.n);
     TRY(read_next(&p));
   }
 done:

@@ -20,7 +20,9 @@
   X(ERR_MEMORY,    5, "memory exhausted")                                    \
   X(ERR_SINGULAR,  6, "no unique equilibrium: singular, not positive "       \
                       "definite or not a number")                            \
-  X(ERR_INTERNAL,  7, "defect of the program")
+  X(ERR_INTERNAL,  7, "defect of the program")                               \
+  X(ERR_INTERRUPTED, 130, "interrupted by SIGINT or JOB.stop")               \
+  X(ERR_TERMINATED,  143, "interrupted by SIGTERM")
 /* clang-format on */
 
 #define STATUS_ENUM(name, exit_code, text) name,

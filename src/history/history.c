@@ -5,6 +5,7 @@
 #include "accuracy/verdict.h"
 #include "history/run.h"
 
+#include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/timer.h"
 
@@ -20,8 +21,10 @@ enum { DEEPEST_CUT = 30 };
 static double piece_end(const step *s, long n, long i, long part, int level) {
   double pieces = ldexp(1.0, level);
   double done = (double)i + (double)part / pieces;
-  if (i == n - 1 && part == (long)pieces) return s->start + s->total;
-  if (i < n - 1) return s->start + done * s->dt;
+  if (i == n - 1 && part == (long)pieces)
+    return s->start + s->total;
+  if (i < n - 1)
+    return s->start + done * s->dt;
   /* The last increment is what is left of the step. */
   double left = s->total - (double)(n - 1) * s->dt;
   return s->start + (double)(n - 1) * s->dt + (double)part / pieces * left;
@@ -31,7 +34,8 @@ static long increments_of(const step *s) {
   double n = s->total / s->dt;
   long whole = (long)floor(n + 0.5);
   /* A step that is a multiple of dt up to rounding has no sliver at the end. */
-  if (whole >= 1 && fabs(n - (double)whole) <= 1e-9 * n) return whole;
+  if (whole >= 1 && fabs(n - (double)whole) <= 1e-9 * n)
+    return whole;
   return (long)ceil(n);
 }
 
@@ -75,9 +79,12 @@ static state make_state(run *r, int attempt, int increment_no) {
              .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
              .solver_log = contact_solver_log(r->solver),
              .settled = r->report.outcome > 0 && !r->missed};
-  if (r->visco != NULL) visco_show(r, &s);
-  if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
-  if (!(r->m->effects & EFFECT_REACTION)) s.reaction = NULL;
+  if (r->visco != NULL)
+    visco_show(r, &s);
+  if (!(r->m->effects & EFFECT_STRESS))
+    s.stress = NULL;
+  if (!(r->m->effects & EFFECT_REACTION))
+    s.reaction = NULL;
   for (int i = 0; i < r->n; ++i) {
     s.n_open += r->contact[i] == CONTACT_OPEN;
     s.n_slip += r->contact[i] == CONTACT_SLIP;
@@ -102,7 +109,8 @@ static int table_is_due(const step *s, int tables, int increment_no, int last) {
 /* 1 if some output wants the stresses of this increment. */
 static int stress_is_due(const step *s, int increment_no, int last) {
   int f = s->output_frequency;
-  if (f >= 0 && is_due(f, increment_no, last)) return 1;
+  if (f >= 0 && is_due(f, increment_no, last))
+    return 1;
   return table_is_due(s, ~0, increment_no, last);
 }
 
@@ -111,7 +119,8 @@ static status note_misfit(run *r) {
   status st = OK;
   char text[400];
   size_t used = strlen(r->note);
-  if (r->n == 0 || r->report.outcome > 0) goto done;
+  if (r->n == 0 || r->report.outcome > 0)
+    goto done;
   TRY(verdict_misfit(&r->cp, r->surface, r->now.uc, r->now.rc, text,
                      sizeof text));
   if (text[0] != '\0')
@@ -124,7 +133,8 @@ static status accept(run *r, int attempt, int increment_no, int last,
                      double cpu) {
   status st = OK;
   ++r->total_no;
-  if (r->report.outcome <= 0 || r->missed) ++r->unsettled;
+  if (r->report.outcome <= 0 || r->missed)
+    ++r->unsettled;
   TRY(result_evaluate(r, stress_is_due(r->step, increment_no, last)));
   TRY(estimate_increment(r));
   r->n_zone = 0;
@@ -136,7 +146,8 @@ static status accept(run *r, int attempt, int increment_no, int last,
   state s = make_state(r, attempt, increment_no);
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
-  if (r->sink->increment != NULL) TRY(r->sink->increment(r->sink->ctx, &s));
+  if (r->sink->increment != NULL)
+    TRY(r->sink->increment(r->sink->ctx, &s));
   result_accept(r);
 done:
   return st;
@@ -148,7 +159,8 @@ static status reject(run *r, int attempt, int increment_no, const char *why) {
   r->jumps = 0;
   state s = make_state(r, attempt, increment_no);
   s.n_open = s.n_slip = s.n_stick = 0;
-  if (r->sink->rejected == NULL) return OK;
+  if (r->sink->rejected == NULL)
+    return OK;
   return r->sink->rejected(r->sink->ctx, &s, why);
 }
 
@@ -175,6 +187,24 @@ done:
   return st;
 }
 
+/* Between two attempts: ends the run if that was asked for. */
+static status stop_if_asked(const run *r, int increment_no) {
+  status st = OK, stop = interrupt_asked();
+  int step_no = run_step_id(r) + 1;
+  if (stop == OK)
+    goto done;
+  if (r->total_no == 0)
+    FAIL(stop, "interrupted by %s before the first increment",
+         interrupt_name());
+  if (increment_no == 0)
+    FAIL(stop, "interrupted by %s before step %d, at time %g", interrupt_name(),
+         step_no, r->old.t);
+  FAIL(stop, "interrupted by %s after step %d, increment %d, time %g",
+       interrupt_name(), step_no, increment_no, r->old.t);
+done:
+  return st;
+}
+
 /* Increment number i of n, cut into halves as often as needed. */
 static status run_increment(run *r, long n, long i, int *increment_no) {
   status st = OK;
@@ -184,6 +214,7 @@ static status run_increment(run *r, long n, long i, int *increment_no) {
   while (part < (1L << level)) {
     double cpu = timer_cpu(), t = piece_end(s, n, i, part + 1, level);
     int deeper;
+    TRY(stop_if_asked(r, *increment_no));
     TRY(visco_level(r, t - r->old.t, &deeper));
     if (deeper > 0) {
       part <<= deeper;
@@ -211,7 +242,8 @@ static status run_increment(run *r, long n, long i, int *increment_no) {
       TRY(no_equilibrium(r));
     }
     r->jumps = 0;
-    if (settled) TRY(jump_check(r, t));
+    if (settled)
+      TRY(jump_check(r, t));
     ++part;
     ++*increment_no;
     TRY(accept(r, attempt, *increment_no, i == n - 1 && part == 1L << level,
@@ -269,7 +301,8 @@ static status judge_start(run *r) {
   const start_card *asked = &r->m->start;
   start_report *s = &r->first;
   s->relaxed = s->n_bad > 0 && asked->relax;
-  if (r->sink->start != NULL) TRY(r->sink->start(r->sink->ctx, s));
+  if (r->sink->start != NULL)
+    TRY(r->sink->start(r->sink->ctx, s));
   if (s->n_bad > 0 && !s->relaxed) {
     message_add(r->m->log, P4014, &asked->at,
                 "the start is not compatible: defect %.3g (%.2g of the largest "
@@ -297,7 +330,8 @@ static status test_start(run *r) {
   NEW(given, r->n);
   TRY(increment_pose(r, 0.0));
   TRY(start_forces(r, R, diagonal, &largest));
-  if (r->n > 0) TRY(forms_given(r, 0.0, given));
+  if (r->n > 0)
+    TRY(forms_given(r, 0.0, given));
   const start_input in = {.mesh = r->msh,
                           .fixed = r->fixed,
                           .u = r->old.u,
@@ -320,10 +354,12 @@ done:
 
 status run_read_start(run *r) {
   status st = OK;
-  if (!(r->m->effects & EFFECT_START)) goto done;
+  if (!(r->m->effects & EFFECT_START))
+    goto done;
   timer_enter(STAGE_START);
   st = start_report_new(r->msh, &r->first);
-  if (st == OK) st = start_displacements(r->m, r->msh, r->old.u, &r->first);
+  if (st == OK)
+    st = start_displacements(r->m, r->msh, r->old.u, &r->first);
   timer_leave(STAGE_START);
 done:
   return st;
@@ -341,7 +377,8 @@ static int same_vector(size_t n, const double *a, const double *b) {
 
 /* 1 if nothing acts at the start of the step that did not act before. */
 static int starts_smoothly(const run *r) {
-  if (r->total_no == 0 && r->n > 0) return 0;
+  if (r->total_no == 0 && r->n > 0)
+    return 0;
   for (size_t i = 0; i < r->n_dof; ++i)
     if (r->fixed[i] && fabs(r->ud[i] - r->old.u[i]) > 1e-12 * fabs(r->ud[i]))
       return 0;
@@ -357,11 +394,13 @@ static int starts_smoothly(const run *r) {
 static status start_visco(run *r, int *increment_no) {
   status st = OK;
   double cpu = timer_cpu();
-  if (r->step->kind != STEP_VISCO || r->visco == NULL) return OK;
+  if (r->step->kind != STEP_VISCO || r->visco == NULL)
+    return OK;
   TRY(increment_begin(r, r->step->start));
   if (!starts_smoothly(r)) {
     TRY(increment_solve(r, r->step->start));
-    if (outcome_is_fatal(r->report.outcome)) TRY(no_equilibrium(r));
+    if (outcome_is_fatal(r->report.outcome))
+      TRY(no_equilibrium(r));
     if (!same_vector(r->n_dof, r->now.u, r->old.u))
       TRY(accept(r, 1, ++*increment_no, 0, cpu));
   }
@@ -376,17 +415,21 @@ static double next_length(const step *s, double dt, double error) {
   const scheme *of = s->integrator;
   int order = of->estimates ? 1 : of->order;
   double factor = 4.0;
-  if (s->theta == 0.5 && of->has_theta) order = 2;
-  if (error > 0.0) factor = 0.9 * pow(s->tolerance / error, 1.0 / (order + 1));
+  if (s->theta == 0.5 && of->has_theta)
+    order = 2;
+  if (error > 0.0)
+    factor = 0.9 * pow(s->tolerance / error, 1.0 / (order + 1));
   factor = fmin(4.0, fmax(0.2, factor));
-  if (of->limit == 0.0) factor = ldexp(1.0, (int)floor(log2(factor)));
+  if (of->limit == 0.0)
+    factor = ldexp(1.0, (int)floor(log2(factor)));
   return fmin(dt * factor, s->dt_max);
 }
 
 /* End of the next increment: not a sliver before the end of the step. */
 static double next_end(const run *r, double dt) {
   double end = r->step->start + r->step->total, left = end - r->old.t;
-  if (dt >= left * (1.0 - 1e-9)) return end;
+  if (dt >= left * (1.0 - 1e-9))
+    return end;
   return r->old.t + (dt > 0.5 * left && r->step->integrator->limit > 0.0
                          ? 0.5 * left
                          : dt);
@@ -401,8 +444,10 @@ static status run_adapted(run *r, double *dt, int *increment_no) {
   for (int attempt = 1;; ++attempt) {
     double cpu = timer_cpu(), t = next_end(r, *dt), tried;
     int deeper;
+    TRY(stop_if_asked(r, *increment_no));
     TRY(visco_level(r, t - r->old.t, &deeper));
-    if (deeper > 0) t = next_end(r, ldexp(t - r->old.t, -deeper));
+    if (deeper > 0)
+      t = next_end(r, ldexp(t - r->old.t, -deeper));
     tried = t - r->old.t;
     TRY(visco_try(r, t, &error));
     int settled = r->report.outcome > 0;
@@ -414,7 +459,8 @@ static status run_adapted(run *r, double *dt, int *increment_no) {
       *dt = fmax(s->dt_min, fmin(0.5 * tried, next_length(s, tried, error)));
       continue;
     }
-    if (outcome_is_fatal(r->report.outcome)) TRY(no_equilibrium(r));
+    if (outcome_is_fatal(r->report.outcome))
+      TRY(no_equilibrium(r));
     TRY(accept(r, attempt, ++*increment_no, t == end, cpu));
     *dt = fmax(s->dt_min, next_length(s, tried, error));
     break;
@@ -427,7 +473,8 @@ done:
 static status run_adaptive(run *r, int *increment_no) {
   status st = OK;
   double dt = r->step->dt, end = r->step->start + r->step->total;
-  while (r->old.t < end) TRY(run_adapted(r, &dt, increment_no));
+  while (r->old.t < end)
+    TRY(run_adapted(r, &dt, increment_no));
 done:
   return st;
 }
@@ -445,7 +492,8 @@ static status run_step(run *r) {
   if (r->step->tolerance > 0.0 && r->visco != NULL)
     TRY(run_adaptive(r, &increment_no));
   else
-    for (long i = 0; i < n; ++i) TRY(run_increment(r, n, i, &increment_no));
+    for (long i = 0; i < n; ++i)
+      TRY(run_increment(r, n, i, &increment_no));
 done:
   return st;
 }

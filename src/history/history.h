@@ -151,7 +151,8 @@ typedef struct history_sink {
 /*
  * Run all steps. *unsettled counts the increments that missed their
  * tolerance at the smallest dt. Errors: ERR_SINGULAR (no equilibrium), those
- * of the sink, ERR_MEMORY.
+ * of interrupt_asked, which ends the run between two attempts, those of the
+ * sink, ERR_MEMORY.
  */
 status history_run(const model *m, const mesh *msh, const history_sink *sink,
                    int *unsettled);

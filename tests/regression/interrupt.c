@@ -1,0 +1,272 @@
+/*
+ * A run that is stopped: by signals, by JOB.stop, by a limit on the size of
+ * files; the files are whole up to the last line of JOB.sta. Two runs of one
+ * name. A run of many increments is watched through its JOB.sta, so that
+ * nothing depends on time.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <fcntl.h>
+#include <hdf5.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { MANY = 200000, SOME = 5 };
+
+/* A block under friction in so many increments. */
+static job block(int increments) {
+  job j = job_begin("block");
+  job_copy(&j, "input/greco/greco.geo");
+  job_write(&j, "block.inp",
+            "*PARAMETER\nN = 4\n*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n130.D3, 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n*STEP\n*QUASISTATIC\n"
+            "%.17g, 1.\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\n"
+            "LEFT, P, 150.\n*PRINT, TOTALS\n*OUTPUT, FREQUENCY=0\n*END STEP\n",
+            1.0 / increments);
+  return j;
+}
+
+static const char *program(void) {
+  const char *p = getenv("PROTIS");
+  return p == NULL ? "build/release/protis" : p;
+}
+
+static void into(const job *j, const char *file, int fd) {
+  char path[200];
+  snprintf(path, sizeof path, "%s/%s", j->dir, file);
+  int to = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (to < 0 || dup2(to, fd) < 0)
+    _exit(99);
+}
+
+/* Start the job; file_limit: bytes, 0 none. */
+static pid_t start(const job *j, rlim_t file_limit) {
+  char deck[200];
+  snprintf(deck, sizeof deck, "%s/%s", j->dir, j->name);
+  pid_t pid = fork();
+  ck_assert_int_ge(pid, 0);
+  if (pid > 0)
+    return pid;
+  into(j, "stdout.txt", STDOUT_FILENO);
+  into(j, "stderr.txt", STDERR_FILENO);
+  struct rlimit limit = {file_limit, file_limit};
+  if (file_limit > 0 && setrlimit(RLIMIT_FSIZE, &limit) != 0)
+    _exit(99);
+  execl(program(), program(), deck, "--no-timing", (char *)NULL);
+  _exit(99);
+}
+
+/* Exit code, or 1000 + signal. */
+static int finish(pid_t pid) {
+  int code;
+  ck_assert_int_eq(waitpid(pid, &code, 0), pid);
+  return WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code);
+}
+
+/* Increments in JOB.sta; *last is the number of the last one. */
+static int lines_of(const job *j, int *last) {
+  char *sta = job_file(j, "sta");
+  int n = 0;
+  *last = 0;
+  for (char *p = sta; p != NULL && (p = strchr(p, '\n')) != NULL && p[1];) {
+    ++p;
+    if (strchr(p, '\n') == NULL)
+      break;
+    ++n;
+    sscanf(p, "%*d %d", last);
+  }
+  free(sta);
+  return n;
+}
+
+static void wait_for(const job *j, pid_t pid, int lines) {
+  int last;
+  while (lines_of(j, &last) < lines) {
+    ck_assert_int_eq(waitpid(pid, NULL, WNOHANG), 0);
+    usleep(1000);
+  }
+}
+
+/* So that the next run is not taken for this one. */
+static void remove_sta(const job *j) {
+  char path[200];
+  snprintf(path, sizeof path, "%s/%s.sta", j->dir, j->name);
+  ck_assert_int_eq(unlink(path), 0);
+}
+
+static char *errors_of(const job *j) {
+  job e = *j;
+  snprintf(e.name, sizeof e.name, "stderr");
+  return job_file(&e, "txt");
+}
+
+/* Rows of /history/time that were reached. */
+static int rows_of(const job *j) {
+  char path[200];
+  int n = 0;
+  snprintf(path, sizeof path, "%s/%s.h5", j->dir, j->name);
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  ck_assert_int_ge(file, 0);
+  hid_t set = H5Dopen2(file, "/history/time", H5P_DEFAULT);
+  static double t[MANY];
+  ck_assert_int_ge(
+      H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, t), 0);
+  while (n < MANY && !isnan(t[n]))
+    ++n;
+  H5Dclose(set);
+  H5Fclose(file);
+  return n;
+}
+
+/* All files hold the increments of JOB.sta and end with a whole line. */
+static void check_files(const job *j) {
+  int last, n = lines_of(j, &last);
+  ck_assert_int_ge(n, SOME);
+  ck_assert_int_lt(n, MANY);
+  ck_assert_int_eq(rows_of(j), n);
+  static const char *const texts[] = {"lst", "sta", "cvg", "dat"};
+  for (size_t k = 0; k < sizeof texts / sizeof *texts; ++k) {
+    char *text = job_file(j, texts[k]);
+    ck_assert_ptr_nonnull(text);
+    ck_assert_int_eq(text[strlen(text) - 1], '\n');
+    free(text);
+  }
+  char *tables = job_file(j, "dat"), *at = strrchr(tables, '#'), block_of[60];
+  while (at > tables && strncmp(at, "# step", 6) != 0)
+    --at;
+  snprintf(block_of, sizeof block_of, "# step 1 increment %d ", last);
+  ck_assert_int_eq(strncmp(at, block_of, strlen(block_of)), 0);
+  free(tables);
+}
+
+static void check_told(const job *j, const char *by, int code) {
+  char wanted[120];
+  int last;
+  lines_of(j, &last);
+  char *errors = errors_of(j), *json = job_file(j, "json");
+  snprintf(wanted, sizeof wanted, "after step 1, increment %d, time", last);
+  ck_assert_msg(strstr(errors, by) != NULL && strstr(errors, wanted) != NULL,
+                "%s; wanted %s, %s", errors, by, wanted);
+  snprintf(wanted, sizeof wanted, "\"code\": %d", code);
+  ck_assert_msg(strstr(json, wanted) != NULL, "%s", json);
+  free(errors);
+  free(json);
+}
+
+static void signal_ends(int signal_no, const char *name, int code) {
+  job j = block(MANY);
+  pid_t pid = start(&j, 0);
+  wait_for(&j, pid, SOME);
+  kill(pid, signal_no);
+  ck_assert_int_eq(finish(pid), code);
+  check_told(&j, name, code);
+  check_files(&j);
+  job_end(&j);
+}
+
+START_TEST(signals_end_after_an_increment) {
+  signal_ends(SIGINT, "interrupted by SIGINT", 130);
+  signal_ends(SIGTERM, "interrupted by SIGTERM", 143);
+}
+END_TEST
+
+START_TEST(file_ends_after_an_increment) {
+  job j = block(MANY);
+  job_write(&j, "block.stop", "\n"); /* of a run before: does not count */
+  pid_t pid = start(&j, 0);
+  wait_for(&j, pid, SOME);
+  char *stop = job_file(&j, "stop");
+  ck_assert_ptr_null(stop);
+  job_write(&j, "block.stop", "\n");
+  ck_assert_int_eq(finish(pid), 130);
+  check_told(&j, "block.stop", 130);
+  check_files(&j);
+  stop = job_file(&j, "stop");
+  ck_assert_ptr_null(stop);
+  job_end(&j);
+}
+END_TEST
+
+/* Both signals reach the process at once: it ends without closing the files. */
+START_TEST(second_signal_ends_at_once) {
+  job j = block(MANY);
+  pid_t pid = start(&j, 0);
+  wait_for(&j, pid, SOME);
+  kill(pid, SIGSTOP);
+  kill(pid, SIGINT);
+  kill(pid, SIGTERM);
+  kill(pid, SIGCONT);
+  int code = finish(pid), last;
+  ck_assert_msg(code == 130 || code == 143, "exit %d", code);
+  char *json = job_file(&j, "json"), *errors = errors_of(&j);
+  ck_assert_ptr_null(json);
+  ck_assert_str_eq(errors, "");
+  ck_assert_int_ge(rows_of(&j), lines_of(&j, &last));
+  free(errors);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(file_size_limit_is_a_failed_write) {
+  job j = block(MANY);
+  pid_t pid = start(&j, 20000);
+  ck_assert_int_eq(finish(pid), 4);
+  char *errors = errors_of(&j);
+  ck_assert_msg(strstr(errors, "block.") != NULL, "%s", errors);
+  free(errors);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(second_job_of_the_name_is_refused) {
+  job j = block(MANY);
+  char owner[40];
+  pid_t pid = start(&j, 0);
+  wait_for(&j, pid, SOME);
+  ck_assert_int_eq(job_run(&j, ""), 4);
+  ck_assert_ptr_nonnull(strstr(j.errors, "block.lock"));
+  snprintf(owner, sizeof owner, "process %d", (int)pid);
+  ck_assert_ptr_nonnull(strstr(j.errors, owner));
+  ck_assert_int_eq(job_run(&j, "--check"), 0); /* writes nothing */
+  wait_for(&j, pid, SOME + 1);
+  kill(pid, SIGKILL);
+  ck_assert_int_eq(finish(pid), 1000 + SIGKILL);
+  char *lock = job_file(&j, "lock");
+  ck_assert_ptr_nonnull(lock); /* left behind, and no lock */
+  free(lock);
+  remove_sta(&j);
+  pid = start(&j, 0);
+  wait_for(&j, pid, SOME);
+  kill(pid, SIGTERM);
+  ck_assert_int_eq(finish(pid), 143);
+  lock = job_file(&j, "lock");
+  ck_assert_ptr_null(lock);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(other_file_of_that_name_stays) {
+  job j = block(2);
+  job_write(&j, "block.lock", "my notes\n");
+  ck_assert_int_eq(job_run(&j, ""), 4);
+  ck_assert_ptr_nonnull(strstr(j.errors, "block.lock is no lock"));
+  char *lock = job_file(&j, "lock");
+  ck_assert_str_eq(lock, "my notes\n");
+  free(lock);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("interrupt", signals_end_after_an_increment,
+          file_ends_after_an_increment, second_signal_ends_at_once,
+          file_size_limit_is_a_failed_write, second_job_of_the_name_is_refused,
+          other_file_of_that_name_stays)
