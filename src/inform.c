@@ -30,9 +30,9 @@ void inform_version(void) {
   printf("HDF5 %u.%u.%u\n", major, minor, release);
 }
 
-/* Name in capitals, source, manual text and options of a plug-in. */
-static void list_plugin(const char *name, const char *reference,
-                        const char *help, const option *options) {
+/* Name in capitals, source and manual text. */
+static void print_help(const char *name, const char *reference,
+                       const char *help) {
   for (const char *p = name; *p != '\0'; ++p)
     putchar(toupper((unsigned char)*p));
   printf("  (%s)\n  ", reference);
@@ -41,14 +41,17 @@ static void list_plugin(const char *name, const char *reference,
     if (*p == '\n') fputs("  ", stdout);
   }
   putchar('\n');
+}
+
+/* The same with the options of a plug-in. */
+static void list_plugin(const char *name, const char *reference,
+                        const char *help, const option *options) {
+  print_help(name, reference, help);
   option_print(options, stdout);
 }
 
 static void list_solvers(void) {
-  puts(
-      "AUTO\n  The default: newton first, then the others on the same "
-      "problem from a cold start.\n  The listing says who tried and who "
-      "answered.");
+  print_help("AUTO", "the default", auto_help);
   for (int i = 0; solver_list[i] != NULL; ++i) {
     const solver_ops *s = solver_list[i];
     putchar('\n');

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -17,11 +18,6 @@ static const double FAR = 16.0; /* -, of the displacement that the scale of the
 typedef enum { STICKING, OPEN_START, SLIDING, SLIDING_BACK, N_START } start;
 static const char *const start_text[] = {
     "sticking", "all open", "sliding along t", "sliding against t"};
-
-/* One of each family; the first of a family that can. */
-static const char *const solvers[] = {"newton", "lemke", "sor", "pcg",
-                                      "auglag"};
-enum { N_SOLVER = sizeof solvers / sizeof *solvers };
 
 /* Displacement of the size that the forces of the problem can make, m. */
 static double reach(const contact_problem *cp) {
@@ -87,14 +83,23 @@ static int can_solve(const contact_problem *cp, const solver_ops *ops) {
   return !cp->floating || (ops->handles & SOLVES_FLOATING);
 }
 
+/* 1: row i stands for its family: no row before it of the same kind can. */
+static int is_chosen(const contact_problem *cp, int i) {
+  const solver_ops *ops = solver_list[i];
+  for (int k = 0; k < i; ++k)
+    if (strcmp(solver_list[k]->family, ops->family) == 0 &&
+        can_solve(cp, solver_list[k]))
+      return 0;
+  return can_solve(cp, ops);
+}
+
 static status try_solver(const contact_problem *cp, double tol,
-                         const char *name, const trial *x, solution_set *s) {
+                         const solver_ops *ops, const trial *x,
+                         solution_set *s) {
   status st = OK;
   _Alignas(16) char param[PARAM_SIZE] = {0};
-  const solver_ops *ops = solver_find(name);
   contact_solver *solver = NULL;
-  if (ops == NULL || !can_solve(cp, ops) || ops->param_size > PARAM_SIZE)
-    goto done;
+  assert(ops->param_size <= PARAM_SIZE);
   option_defaults(ops->options, param);
   solver_choice choice = {.ops = ops, .param = param, .tol = tol};
   TRY(contact_solver_new(&choice, &solver));
@@ -122,8 +127,8 @@ status solutions_by_solvers(const contact_problem *cp, double tol,
                          .outcome = report->outcome,
                          .residual = report->residual,
                          .solution_no = no};
-  for (int i = 0; i < N_SOLVER; ++i)
-    TRY(try_solver(cp, tol, solvers[i], &x, out));
+  for (int i = 0; solver_list[i] != NULL; ++i)
+    if (is_chosen(cp, i)) TRY(try_solver(cp, tol, solver_list[i], &x, out));
 done:
   memory_free(x.u);
   memory_free(x.r);

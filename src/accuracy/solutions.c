@@ -11,18 +11,6 @@ static const double SAME = 1e-6; /* -, relative distance of one state         */
 static const double UNIT = 1e-3; /* -, of the energy of the scale: counts as
                                     the norm of a state without deformation   */
 
-const char *solver_family(const char *solver) {
-  static const char *const families[][2] = {
-      {"lemke", "pivoting"},    {"newton", "Newton"},
-      {"sor", "relaxation"},    {"aitken", "relaxation"},
-      {"pcg", "projection"},    {"lagrange", "multipliers"},
-      {"auglag", "multipliers"}};
-  for (size_t i = 0; i < sizeof families / sizeof *families; ++i)
-    if (solver != NULL && strcmp(solver, families[i][0]) == 0)
-      return families[i][1];
-  return "direct";
-}
-
 static void free_solution(solution *s) {
   memory_free(s->u);
   memory_free(s->r);

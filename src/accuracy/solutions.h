@@ -42,10 +42,6 @@ typedef struct solution_set {
   int n_undecided; /* singular ones with solutions of unknown extent          */
 } solution_set;
 
-/* What kind of method a solver is: "pivoting", "Newton", "relaxation",
- * "projection", "multipliers". */
-const char *solver_family(const char *solver);
-
 /* 1: what found the first solution is not all that did: a solver of another
  * family, or the enumeration. */
 int solution_set_confirmed(const solution_set *s);

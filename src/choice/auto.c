@@ -27,6 +27,24 @@
 #include <stdio.h>
 #include <string.h>
 
+/* clang-format off */
+const char auto_help[] =
+  "Chooses by the problem and falls back on the same problem. Without\n"
+  "friction the tangential unknowns are eliminated and NEWTON solves in the\n"
+  "normal ones. With friction, and the stiffness known (every deck with a\n"
+  "mesh), it is NEWTON, then NEWTON along a friction path (the coefficient\n"
+  "grows to its value, each answer the start of the next), then SOR, then\n"
+  "LEMKE. Of a problem that comes as a compliance (*CONDENSED PROBLEM) sweeps\n"
+  "of SOR go first in 3-D, as long as their rate promises the answer for\n"
+  "less than an inverse costs; then the same chain with PCG and LAGRANGE\n"
+  "before SOR, those that need an inverse only where there is one. The first\n"
+  "starts from the last increment, the others anew; each may make a number\n"
+  "of iterations that bounds its cost, or MAX_ITER if that is less. An answer\n"
+  "counts only by the residual of the given problem; the listing says who\n"
+  "tried, why it stopped and who answered. It has no options. Choose another\n"
+  "method to compare, or where one is known to be faster.";
+/* clang-format on */
+
 enum {
   WARM_STEPS = 3,      /* of NEWTON before the normal form is made; cold: 1   */
   ROUND = 10,          /* sweeps from one look at their rate to the next      */

@@ -165,7 +165,8 @@ static const option solver_options[] = {
   OPTION_REAL(solver_param, tol, "TOL", 1e-14, 0.1, "1E-10", "-",
               "residual to reach"),
   OPTION_INT(solver_param, max_iter, "MAX_ITER", 0, 100000000, "0", "-",
-             "of the method; 0: its own limit"),
+             "iterations of the method, restarts and passes together; with "
+             "AUTO of each method it tries; 0: its own limit"),
   OPTION_INT(solver_param, limit_max_iter, "LIMIT_MAX_ITER", 1, 1000000, "1000",
              "-", "passes of the fixed point on the sliding limit"),
   OPTION_CHOICE(solver_param, check, "CHECK", "NO|YES|ALL", "NO",

@@ -90,26 +90,12 @@ typedef struct run {
   int singular; /* the last system needed springs                            */
 } run;
 
-static void tell(const run *s, double residual, int changes, int cycle) {
-  const solver_listener *l = s->control->listener;
-  if (l == NULL || l->step == NULL) return;
-  solver_step step = {.solver = "newton",
-                      .iteration = s->steps,
-                      .limit_update = s->control->limit_update,
-                      .residual = residual,
-                      .limit_change = NAN,
-                      .status_changes = changes,
-                      .cycle = cycle};
-  l->step(l->ctx, &step);
-}
-
 static double residual_of(const run *s) {
   double defect = states_clean_reaction(s->st), scale = s->st->scale;
-  double worst = contact_mismatch(s->cp, s->u, s->r);
-  if (isnan(defect) || isnan(worst)) return NAN;
-  if (defect > worst) worst = defect;
-  if (scale > 0.0) return worst / scale;
-  return worst > 0.0 ? HUGE_VAL : 0.0;
+  double residual = solver_mismatch(s->cp, scale, s->u, s->r);
+  if (isnan(defect)) return NAN;
+  defect = scale > 0.0 ? defect / scale : defect > 0.0 ? HUGE_VAL : 0.0;
+  return defect > residual ? defect : residual;
 }
 
 /* 1: the pattern has been met in this attempt. */
@@ -185,7 +171,8 @@ static outcome attempt(run *s, int limit) {
     if (isnan(residual)) return STOPPED_NAN;
     solver_keep_best(&s->w->best, m, residual, s->u, s->r);
     c.changes = states_next(s->st, 0);
-    tell(s, residual, c.changes, c.cycle);
+    solver_tell_states(s->control, "newton", s->steps, residual, c.changes,
+                       c.cycle);
     if (solved(s, &c, residual)) return CONVERGED;
     outcome o = verdict(s, &c, residual);
     if (o != RUNNING) return o;
@@ -265,6 +252,7 @@ static status newton_solve(const contact_problem *cp, const void *par,
 const solver_ops newton_solver = {
   .name = "newton",
   .reference = "Alart, Curnier 1991; Hueber, Stadler, Wohlmuth 2008",
+  .family = "Newton",
   .help =
     "Semismooth Newton method on the natural map of contact and friction,\n"
     "written as a primal-dual active set. Each step guesses which nodes are\n"

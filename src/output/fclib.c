@@ -73,10 +73,6 @@ static double offset_of(const contact_problem *cp, int dof) {
   return cp->ut0 == NULL ? 0.0 : -cp->ut0[i * (cp->dim - 1) + k];
 }
 
-static int is_held(const contact_problem *cp, int dof) {
-  return cp->held != NULL && cp->held[dof];
-}
-
 /* inv(A) in place of the copy of A, both triangles; 0: A is singular. */
 static int invert(int m, double *a) {
   double rcond = 0.0, norm = 0.0;
@@ -142,7 +138,7 @@ static status make_vectors(written *f) {
     contact_product(cp->m, f->M, cp->f, f->q);
   for (int k = 0; k < cp->m; ++k) {
     f->q[k] = sign_of(cp->dim, k) * f->q[k] + offset_of(cp, k);
-    if (is_held(cp, k) && f->local) f->q[k] = 0.0;
+    if (contact_held(cp, k) && f->local) f->q[k] = 0.0;
   }
   for (int i = 0; i < cp->n && cp->B != NULL; ++i)
     for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)

@@ -295,6 +295,7 @@ static status aitken_solve(const contact_problem *cp, const void *par,
 const solver_ops aitken_solver = {
   .name = "aitken",
   .reference = "CPR98, 3.3; Irons, Tuck 1969; Walker, Ni 2011",
+  .family = "relaxation",
   .help =
     "Gauss-Seidel sweeps with Aitken's acceleration. The nodes are visited\n"
     "one after the other, each solved exactly with the others held (closed\n"

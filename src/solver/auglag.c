@@ -76,6 +76,7 @@ typedef struct auglag_work {
   unsigned char *part;   /* [m] force_part                                   */
   unsigned char *closed; /* [m] contact_state of the unknowns that push      */
   unsigned char *mode;   /* [n] tangent                                      */
+  unsigned char *state;  /* [m] of the step told last                        */
   double *origin;        /* [m] m                                            */
   double *diagonal;      /* [m] of A, the mean in a tangent plane, N/m       */
   double *lambda, *z, *F, *y; /* [m] N; y = A u - f. Newton: work, work    */
@@ -96,6 +97,7 @@ static void auglag_release(void *work) {
   memory_free(w->part);
   memory_free(w->closed);
   memory_free(w->mode);
+  memory_free(w->state);
   memory_free(w->origin);
   memory_free(w->diagonal);
   memory_free(w->lambda);
@@ -136,6 +138,7 @@ static status auglag_setup(const contact_problem *cp, const void *par,
   NEW(w->part, m);
   NEW(w->closed, m);
   NEW(w->mode, cp->n);
+  NEW(w->state, m);
   NEW(w->origin, m);
   NEW(w->diagonal, m);
   NEW(w->lambda, m);
@@ -176,6 +179,7 @@ typedef struct run {
   double scale, rho; /* N; -, of the diagonal                                */
   int steps, limit;
   int changes;  /* states changed by the last evaluation                      */
+  int turned;   /* nodes with another state than after the step before        */
   int bent;     /* 1: F' of a slipping node moves with z (3-D)                */
   int factored; /* w->K is the factor for the present states                 */
   int singular; /* the last matrix needed springs                            */
@@ -245,17 +249,23 @@ static double turning(const run *s, int a, int b) {
   return w->share[a / s->cp->dim] * ((a == b) - w->e[a] * w->e[b]);
 }
 
-static void tell(const run *s, double residual) {
-  const solver_listener *l = s->control->listener;
-  if (l == NULL || l->step == NULL) return;
-  solver_step step = {.solver = "auglag",
-                      .iteration = s->steps,
-                      .limit_update = s->control->limit_update,
-                      .residual = residual,
-                      .limit_change = NAN,
-                      .status_changes = s->changes,
-                      .cycle = s->cycle};
-  l->step(l->ctx, &step);
+/* The states after a step into w->state; counts the nodes that differ from the
+ * step before. */
+static void take_states(run *s) {
+  auglag_work *w = s->w;
+  int dim = s->cp->dim;
+  s->turned = 0;
+  for (int node_id = 0; node_id < s->cp->n; ++node_id) {
+    int differs = 0;
+    for (int dof = node_id * dim; dof < (node_id + 1) * dim; ++dof) {
+      int sign = slips(s, dof) && w->e[dof] > 0.0;
+      unsigned char now =
+          (unsigned char)(w->closed[dof] | w->mode[node_id] << 1 | sign << 3);
+      differs = differs || now != w->state[dof];
+      w->state[dof] = now;
+    }
+    s->turned += differs;
+  }
 }
 
 /* Residual of (u, F), told and kept. */
@@ -270,7 +280,8 @@ static double judge(run *s) {
   if (s->scale > 0.0) defect /= s->scale;
   if (!(defect <= residual)) residual = defect;
   solver_keep_best(&w->best, cp->m, residual, s->u, w->F);
-  tell(s, residual);
+  solver_tell_states(s->control, "auglag", s->steps, residual, s->turned,
+                     s->cycle);
   return residual;
 }
 
@@ -393,19 +404,16 @@ static double shorten(run *s, double reference) {
   return now;
 }
 
-/* 1: the states after step k are those of a step before. FNV-1a. */
+/* 1: the states after step k are others than before it, and were met. FNV-1a.
+ */
 static int met_before(const run *s, int k) {
   auglag_work *w = s->w;
   uint64_t h = 1469598103934665603u;
   int met = 0;
-  for (int i = 0; i < s->cp->m; ++i) {
-    uint64_t sign = slips(s, i) && w->e[i] > 0.0 ? 4u : 0u;
-    h = (h ^ (w->closed[i] | sign)) * 1099511628211u;
-  }
-  for (int i = 0; i < s->cp->n; ++i) h = (h ^ w->mode[i]) * 1099511628211u;
+  for (int i = 0; i < s->cp->m; ++i) h = (h ^ w->state[i]) * 1099511628211u;
   for (int j = 0; j + 1 < k; ++j) met = met || w->seen[j] == h;
   w->seen[k] = h;
-  return met;
+  return met && s->turned > 0;
 }
 
 static outcome newton_steps(run *s) {
@@ -417,8 +425,9 @@ static outcome newton_steps(run *s) {
   evaluate(s, w->y);
   for (int k = 0; k < MEMORY; ++k) past[k] = merit(s);
   for (int k = 0;; ++k) {
+    take_states(s);
     s->cycle = met_before(s, k);
-    met += s->cycle && s->changes > 0;
+    met += s->cycle;
     residual = judge(s);
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= s->control->tol) return CONVERGED;
@@ -513,6 +522,7 @@ static outcome minimise(run *s) {
   double multiplier, balance;
   evaluate(s, w->lambda);
   for (int k = 0;; ++k) {
+    take_states(s);
     double residual = judge(s);
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= s->control->tol) return CONVERGED;
@@ -597,6 +607,15 @@ done:
   return st;
 }
 
+/* 1: the other variant ended by itself, without progress: that the first one
+ * cycled says more. */
+static int made_no_way(const solver_control *control,
+                       const solver_report *rep) {
+  int bounded = control->max_iter > 0 && rep->iterations >= control->max_iter;
+  return rep->outcome == STOPPED_STAGNATION ||
+         (rep->outcome == STOPPED_ITERATIONS && !bounded);
+}
+
 static status auglag_solve(const contact_problem *cp, const void *par,
                            void *work, const solver_control *control, double *u,
                            double *r, solver_report *rep) {
@@ -615,11 +634,13 @@ static status auglag_solve(const contact_problem *cp, const void *par,
   force_parts(cp, w->part, w->origin);
   if (p->variant == BY_NEWTON) rep->outcome = newton_steps(&s);
   int done_well = rep->outcome == CONVERGED || rep->outcome == STOPPED_NAN;
+  int cycled = rep->outcome == STOPPED_CYCLE;
   if (!done_well && cp->B == NULL) rep->outcome = uzawa_steps(&s);
   rep->iterations = s.steps;
   rep->residual = w->best.residual;
   solver_take_best(&w->best, cp->m, u, r);
   if (!done_well && cp->B != NULL) TRY(follow_limit(&s, rep));
+  if (cycled && made_no_way(control, rep)) rep->outcome = STOPPED_CYCLE;
 done:
   return st;
 }
@@ -628,6 +649,7 @@ done:
 const solver_ops auglag_solver = {
   .name = "auglag",
   .reference = "CPR98, 3.3; Alart, Curnier 1991",
+  .family = "multipliers",
   .help =
     "Augmented Lagrangian of Alart and Curnier: the forces of contact are F\n"
     "= P(lambda - rho (u - o)), P the projection on r_n <= 0 and on the\n"

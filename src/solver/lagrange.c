@@ -262,6 +262,7 @@ static status lagrange_solve(const contact_problem *cp, const void *par,
 const solver_ops lagrange_solver = {
   .name = "lagrange",
   .reference = "CPR98, 3.3; Uzawa 1958; Nesterov 1983",
+  .family = "multipliers",
   .help =
     "Lagrangian method (Uzawa): the forces of contact are multipliers,\n"
     "moved by r <- P(r - rho D (u - o)), A u = f + r, with o the gap and\n"

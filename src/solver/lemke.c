@@ -712,10 +712,7 @@ done:
 
 static void tell(const void *ctx, int pivot, double z0) {
   const run *s = ctx;
-  const solver_listener *l = s->control->listener;
-  if (l == NULL || l->step == NULL) return;
-  solver_step step = {"lemke", pivot, s->control->limit_update, z0, NAN, 1, 0};
-  l->step(l->ctx, &step);
+  solver_tell_states(s->control, "lemke", pivot, z0, 1, 0);
 }
 
 static int prepare(run *s) {
@@ -766,6 +763,7 @@ done:
 const solver_ops lemke_solver = {
   .name = "lemke",
   .reference = "Lemke 1965; Cottle, Pang, Stone 1992; Klarbring 1986",
+  .family = "pivoting",
   .help =
     "Complementary pivoting with the lexicographic rule. The frictionless\n"
     "and the 2-D frictional problem are each one linear complementarity\n"

@@ -445,6 +445,7 @@ static status pcg_solve(const contact_problem *cp, const void *par, void *work,
 const solver_ops pcg_solver = {
   .name = "pcg",
   .reference = "CPR98, 3.3; Dostal 2009 (MPRGP); Kucera 2008",
+  .family = "projection",
   .help =
     "Projected conjugate gradients, preconditioned, on the forces of\n"
     "contact (compliance form): minimise 1/2 r'Wr + (q - o)'r over r_n <= 0\n"

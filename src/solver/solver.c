@@ -16,6 +16,11 @@ const solver_ops *solver_find(const char *name) {
   return NULL;
 }
 
+const char *solver_family(const char *name) {
+  const solver_ops *ops = name == NULL ? NULL : solver_find(name);
+  return ops == NULL ? "direct" : ops->family;
+}
+
 double solver_mismatch(const contact_problem *cp, double scale, const double *u,
                        const double *r) {
   double worst = contact_mismatch(cp, u, r);

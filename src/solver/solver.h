@@ -56,6 +56,8 @@ enum {
 
 typedef struct solver_ops {
   const char *name, *reference; /* METHOD= in lower case; source              */
+  const char *family;           /* kind of method: two of one family share
+                                   their weaknesses                           */
   const char *help;             /* manual text: method, when to choose it     */
   unsigned handles;             /* bits above                                 */
   size_t param_size;
@@ -69,14 +71,18 @@ typedef struct solver_ops {
   void (*release)(void *work); /* accepts NULL                                */
 } solver_ops;
 
+/* The first row of a family stands for it. */
 /* clang-format off */
 #define SOLVER_LIST(X) \
-  X(sor) X(newton) X(aitken) X(pcg) X(lemke) X(lagrange) X(auglag)
+  X(newton) X(lemke) X(sor) X(pcg) X(auglag) X(aitken) X(lagrange)
 /* clang-format on */
 #define SOLVER_EXTERN(name) extern const solver_ops name##_solver;
 SOLVER_LIST(SOLVER_EXTERN)
 extern const solver_ops *const solver_list[]; /* NULL at the end              */
 const solver_ops *solver_find(const char *name); /* case ignored; or NULL     */
+/* Family of the solver of that name; "direct" if none was needed (NULL too). */
+const char *solver_family(const char *name);
+extern const char auto_help[]; /* manual text of METHOD=AUTO                  */
 
 /* ---- what the solvers share ---- */
 

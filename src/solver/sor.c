@@ -243,6 +243,7 @@ done:
 const solver_ops sor_solver = {
   .name = "sor",
   .reference = "CPR98, 2.3 and 3.3; Jourdan, Alart, Jean 1998",
+  .family = "relaxation",
   .help =
     "Projected successive over-relaxation. The nodes are visited one after\n"
     "the other; each visit solves the contact problem of the node exactly\n"

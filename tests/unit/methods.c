@@ -311,6 +311,70 @@ START_TEST(cycle_is_told_from_stagnation) {
 }
 END_TEST
 
+/* What the listener hears of AUGLAG. */
+typedef struct heard {
+  int cycles, changes; /* patterns that came back; changes of states in all   */
+  int passes;          /* on the sliding limit: the other variant at work     */
+} heard;
+
+static void hear_states(void *ctx, const solver_step *s) {
+  heard *h = ctx;
+  if (s->limit_update > 0) ++h->passes;
+  if (s->limit_update > 0 || s->status_changes < 0) return;
+  h->changes += s->status_changes;
+  h->cycles += s->cycle;
+  if (s->cycle) ck_assert_int_gt(s->status_changes, 0);
+}
+
+static outcome run_auglag(contact_case *c, double tol, heard *h) {
+  double param[PARAM_SIZE / sizeof(double)] = {0.0};
+  solver_listener listener = {hear_states, h};
+  solver_control control = {.tol = tol, .listener = &listener};
+  solver_report rep;
+  void *work = NULL;
+  size_t bytes = (size_t)c->cp.m * sizeof *c->u;
+  *h = (heard){0};
+  memset(c->u, 0, bytes);
+  memset(c->r, 0, bytes);
+  option_defaults(auglag_solver.options, param);
+  ck_assert_int_eq(auglag_solver.setup(&c->cp, param, &work), OK);
+  ck_assert_int_eq(
+      auglag_solver.solve(&c->cp, param, work, &control, c->u, c->r, &rep), OK);
+  auglag_solver.release(work);
+  return rep.outcome;
+}
+
+/* Steep friction sends the Newton steps of AUGLAG round in circles on a few
+ * problems: told at the step, mended by the other variant, and the verdict
+ * where that cannot end either (a tolerance below the rounding). */
+START_TEST(auglag_tells_states_that_come_back) {
+  int cycling = 0, changes = 0;
+  for (int k = 0; k < 100; ++k) {
+    contact_case c = case_any(2 + k % 2, 2 + k % 6, 4.0 + k % 5 * 4, k / 2 % 2,
+                              (unsigned long long)(7000 + k));
+    heard h;
+    ck_assert_int_eq(run_auglag(&c, 1e-10, &h), CONVERGED);
+    if (h.passes > 0) {
+      ck_assert_int_gt(h.cycles, 20);
+      if (cycling++ < 2)
+        ck_assert_int_eq(run_auglag(&c, 1e-25, &h), STOPPED_CYCLE);
+    }
+    case_free(&c);
+  }
+  ck_assert_int_gt(cycling, 0);
+  for (int k = 0; k < 20; ++k) {
+    contact_case c = case_any(2, 10 + k, 0.2, 0, (unsigned long long)k);
+    heard h;
+    ck_assert_int_eq(run_auglag(&c, 1e-10, &h), CONVERGED);
+    ck_assert_int_eq(h.cycles + h.passes, 0);
+    changes += h.changes;
+    if (k < 4) ck_assert_int_ne(run_auglag(&c, 1e-25, &h), STOPPED_CYCLE);
+    case_free(&c);
+  }
+  ck_assert_int_gt(changes, 20);
+}
+END_TEST
+
 START_TEST(variants_keep_their_bits_under_factors_of_two) {
   static const int powers[][2] = {{41, 0}, {-33, 3}, {0, 13}, {7, -21}};
   for (int k = 0; k < 16; ++k)
@@ -371,6 +435,6 @@ UNIT_MAIN("methods", variants_agree_on_random_problems,
           floating_block_is_held_by_its_floor,
           compliance_form_gives_the_same_forces, accelerations_save_steps,
           options_of_sor_have_an_effect, long_row_of_slipping_nodes_is_solved,
-          cycle_is_told_from_stagnation,
+          cycle_is_told_from_stagnation, auglag_tells_states_that_come_back,
           variants_keep_their_bits_under_factors_of_two,
           refused_memory_is_given_back)

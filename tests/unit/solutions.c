@@ -155,7 +155,41 @@ START_TEST(one_family_alone_confirms_nothing) {
 }
 END_TEST
 
-UNIT_MAIN("solutions", triangle_has_the_three_solutions,
-          one_family_alone_confirms_nothing, small_friction_has_one_solution,
-          enumeration_finds_what_solvers_find, ten_nodes_are_enumerated,
-          larger_problems_are_refused)
+/* One solver of each family of the table, the first that takes the problem: not
+ * those that need an inverse for a body that contact alone holds. */
+START_TEST(every_family_that_can_is_tried_once) {
+  for (int floating = 0; floating < 2; ++floating) {
+    case_block_data d = {.columns = 4,
+                         .layers = 2,
+                         .clamped = !floating,
+                         .nu = 0.3,
+                         .mu = 0.2,
+                         .top = {0.01, -0.2}};
+    contact_case c = case_block(&d);
+    solver_report rep = solve(&c);
+    solution_set some = {0};
+    ck_assert_int_eq(solutions_by_solvers(&c.cp, 1e-10, &rep, c.u, c.r, &some),
+                     OK);
+    for (int i = 0; solver_list[i] != NULL; ++i) {
+      const solver_ops *ops = solver_list[i];
+      int can = !floating || (ops->handles & SOLVES_FLOATING), others = 0;
+      int own = 0;
+      for (int k = 1; k < some.n_attempt; ++k) {
+        const solution_attempt *a = &some.attempts[k];
+        own += strcmp(a->solver, ops->name) == 0;
+        others += strcmp(a->solver, ops->name) != 0 &&
+                  strcmp(a->family, ops->family) == 0;
+      }
+      ck_assert_msg(can ? own + others == 4 && own * others == 0 : own == 0,
+                    "%s: %d, %d", ops->name, own, others);
+    }
+    solution_set_free(&some);
+    case_free(&c);
+  }
+}
+END_TEST
+
+UNIT_MAIN("solutions", every_family_that_can_is_tried_once,
+          triangle_has_the_three_solutions, one_family_alone_confirms_nothing,
+          small_friction_has_one_solution, enumeration_finds_what_solvers_find,
+          ten_nodes_are_enumerated, larger_problems_are_refused)

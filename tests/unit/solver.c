@@ -12,11 +12,14 @@ START_TEST(table_is_complete) {
     const solver_ops *s = solver_list[i];
     ck_assert_ptr_eq(solver_find(s->name), s);
     ck_assert(strlen(s->reference) > 5 && strlen(s->help) > 200);
+    ck_assert_str_eq(solver_family(s->name), s->family);
     ck_assert(s->setup != NULL && s->solve != NULL && s->release != NULL);
     ck_assert(s->handles & SOLVES_TRESCA);
     s->release(NULL);
   }
   ck_assert_ptr_null(solver_find("nosuch"));
+  ck_assert_str_eq(solver_family(NULL), "direct");
+  ck_assert(strlen(auto_help) > 200);
 }
 END_TEST
 
