@@ -13,6 +13,7 @@
 #include "history/run.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { SLOTS = 4 };
@@ -134,6 +135,44 @@ done:
   return st;
 }
 
+static int compare_id(const void *a, const void *b) {
+  const int x = *(const int *)a, y = *(const int *)b;
+  return (x > y) - (x < y);
+}
+
+/* One line of *INITIAL CONDITIONS into both states. */
+static status take_initial(const run *r, visco *v, const initial *c) {
+  status st = OK;
+  const mesh_group *g = &r->msh->group[c->group_id];
+  size_t ns = (size_t)r->m->ns, part = (size_t)c->component;
+  for (int i = 0; i < g->n_item; ++i) {
+    double value;
+    const int *found = bsearch(&g->item_id[i], v->elem, (size_t)v->x.n,
+                               sizeof *v->elem, compare_id);
+    if (found == NULL) continue;
+    size_t k = (size_t)(found - v->elem);
+    TRY(load_initial(r->m, r->msh, c, *found, &value));
+    if (c->type == INITIAL_STRAIN)
+      v->old.ei[ns * k + part] = v->now.ei[ns * k + part] = value;
+    else
+      v->old.alpha[v->x.alpha_at[k] + part] =
+          v->now.alpha[v->x.alpha_at[k] + part] = value;
+  }
+done:
+  return st;
+}
+
+static status initial_state(const run *r, visco *v) {
+  status st = OK;
+  for (int i = 0; i < r->m->n_initial; ++i) {
+    const initial *c = &r->m->initials[i];
+    if (c->type == INITIAL_STRAIN || c->type == INITIAL_INTERNAL)
+      TRY(take_initial(r, v, c));
+  }
+done:
+  return st;
+}
+
 static status visco_new(run *r) {
   status st = OK;
   int *kind_of = NULL;
@@ -146,6 +185,7 @@ static status visco_new(run *r) {
   TRY(new_points(r, v, kind_of));
   TRY(flow_state_new(&v->x, &v->old));
   TRY(flow_state_new(&v->x, &v->now));
+  TRY(initial_state(r, v));
   TRY(scheme_work_new(&v->work));
   NEW(v->stress, (size_t)r->m->ns * (size_t)r->eigen.n);
 done:

@@ -256,6 +256,30 @@ static int read_displacement_line(const reading *r, const record *line,
   return field_quantity(r, &line->fields[2], &c->value);
 }
 
+static const char strain_line[] =
+    "group of elements, component (xx yy zz xy yz zx: 1 to 6), value";
+static const char internal_line[] =
+    "group of elements, number of the internal variable, value";
+
+static int read_numbered(const reading *r, const record *line, int most,
+                         const char *expected, initial *c) {
+  int number = 1;
+  if (record_fields(r, line, 3, 3, expected) != 0 ||
+      field_int(r, &line->fields[1], 1, most, "component", &number) != 0)
+    return -1;
+  c->component = number - 1;
+  return field_quantity(r, &line->fields[2], &c->value);
+}
+
+static int read_strain_line(const reading *r, const record *line, initial *c) {
+  return read_numbered(r, line, 6, strain_line, c);
+}
+
+static int read_internal_line(const reading *r, const record *line,
+                              initial *c) {
+  return read_numbered(r, line, FLOW_VALUE_MAX, internal_line, c);
+}
+
 /* By initial_type. */
 static const struct {
   const char *line; /* what a line holds                                      */
@@ -263,7 +287,9 @@ static const struct {
   int starts; /* 1: FILE= and INCOMPATIBLE= count, lines need not be there    */
 } initial_rows[] = {
     [INITIAL_TEMPERATURE] = {temperature_line, read_temperature_line, 0},
-    [INITIAL_DISPLACEMENT] = {displacement_line, read_displacement_line, 1}};
+    [INITIAL_DISPLACEMENT] = {displacement_line, read_displacement_line, 1},
+    [INITIAL_STRAIN] = {strain_line, read_strain_line, 0},
+    [INITIAL_INTERNAL] = {internal_line, read_internal_line, 0}};
 
 /* What stands on the card beside TYPE=. */
 static status open_initial(reading *r) {

@@ -277,16 +277,45 @@ static void check_load(const model *m, const mesh *msh, load *l) {
   if (l->kind == LOAD_GRAVITY && l->group_id >= 0) check_density(m, msh, l);
 }
 
+/* Strains and internal variables belong to elements whose law has them. */
+static void check_initial_law(const model *m, const mesh *msh,
+                              const initial *c) {
+  const mesh_group *g = &msh->group[c->group_id];
+  for (int k = 0; k < g->n_item; ++k) {
+    int s = m->elem_section[g->item_id[k]];
+    if (s < 0 || m->sections[s].material_id < 0) continue;
+    const material *mat = &m->materials[m->sections[s].material_id];
+    int n = m->ns;
+    if (mat->law.ops == NULL) {
+      message_add(m->log, P2014, &c->at,
+                  "*INITIAL CONDITIONS on group %s: material %s has no "
+                  "*INELASTIC",
+                  c->group, mat->name);
+      return;
+    }
+    if (c->type == INITIAL_INTERNAL) n = law_n_alpha(&mat->law, m->ns);
+    if (c->component < n) continue;
+    message_add(m->log, P2025, &c->at,
+                "*INITIAL CONDITIONS: component %d on group %s; law %s has %d "
+                "here",
+                c->component + 1, c->group, mat->law.ops->name, n);
+    return;
+  }
+}
+
 static void check_initials(model *m, const mesh *msh) {
   for (int i = 0; i < m->n_initial; ++i) {
     initial *c = &m->initials[i];
     int nodal = c->type == INITIAL_DISPLACEMENT;
     c->group_id = nodal ? find_group(m, msh, c->group, &c->at)
                         : find_group_of(m, msh, c->group, msh->dim, &c->at);
-    if (c->component >= msh->dim)
+    if (nodal && c->component >= msh->dim)
       message_add(m->log, P2025, &c->at,
                   "component %d on group %s, but the mesh is %d-D",
                   c->component + 1, c->group, msh->dim);
+    if (c->group_id >= 0 &&
+        (c->type == INITIAL_STRAIN || c->type == INITIAL_INTERNAL))
+      check_initial_law(m, msh, c);
   }
 }
 

@@ -160,8 +160,36 @@ static const section *first_inelastic(const model *m) {
   return NULL;
 }
 
+static const initial *first_initial(const model *m, int type) {
+  for (int i = 0; i < m->n_initial; ++i)
+    if (m->initials[i].type == type) return &m->initials[i];
+  return NULL;
+}
+
 static int has_inelastic(const model *m) {
-  return first_inelastic(m) != NULL && has_card(m, "VISCO");
+  return first_inelastic(m) != NULL &&
+         (has_card(m, "VISCO") || first_initial(m, INITIAL_STRAIN) != NULL);
+}
+
+/* A material whose law depends on temperature. */
+static const material *first_warm_law(const model *m) {
+  for (int i = 0; i < m->n_material; ++i) {
+    const material *mat = &m->materials[i];
+    if (mat->used && mat->law.ops != NULL &&
+        (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE))
+      return mat;
+  }
+  return NULL;
+}
+
+/* 1 if temperatures are given. */
+static int has_temperature(const model *m) {
+  return first_temperature(m) != NULL ||
+         first_initial(m, INITIAL_TEMPERATURE) != NULL;
+}
+
+static int has_warm_law(const model *m) {
+  return has_inelastic(m) && has_temperature(m) && first_warm_law(m) != NULL;
 }
 
 static void reason_inelastic(const model *m, char *text, size_t size) {
@@ -272,7 +300,10 @@ static void reason_history(const model *m, char *text, size_t size) {
 
 static void reason_thermal(const model *m, char *text, size_t size) {
   const load *l = first_temperature(m);
-  if (l == NULL)
+  if (has_warm_law(m))
+    snprintf(text, size, "law %s of material %s depends on temperature",
+             first_warm_law(m)->law.ops->name, first_warm_law(m)->name);
+  else if (l == NULL)
     snprintf(text, size, "no *TEMPERATURE card");
   else if (!has_expansion(m))
     snprintf(text, size, "no material in use has *EXPANSION");
@@ -323,7 +354,7 @@ static int has_slip_history(const model *m) {
 }
 static int has_body(const model *m) { return first_body_load(m) != NULL; }
 static int has_thermal(const model *m) {
-  return first_temperature(m) != NULL && has_expansion(m);
+  return (first_temperature(m) != NULL && has_expansion(m)) || has_warm_law(m);
 }
 static int has_stress(const model *m) {
   place at;

@@ -280,7 +280,8 @@ const keyword keyword_table[] = {
    "friction law of a contact; without it the contact is frictionless. In a "
    "step it takes the place of the old one from there on, at once"},
   {"INITIAL CONDITIONS", IN_MODEL, OPTIONS(initial), NULL, apply_initial, 0,
-   ANY, "TEMPERATURE group of elements, value. DISPLACEMENT group, dof, value",
+   ANY, "TEMPERATURE group of elements, value. DISPLACEMENT group, dof, value. "
+   "INELASTIC STRAIN group, component, value. INTERNAL group, number, value",
    "state before the first step; what no line gives is zero"},
   {"CONTACT FORCE", IN_MODEL, OPTIONS(force), NULL, apply_contact_force, 0,
    ANY, "p >= 0, force/length^2: number, expression of x y z t, or pairs with "

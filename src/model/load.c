@@ -253,6 +253,20 @@ static double elem_mean(const quantity *q, const mesh *msh, int elem_id,
   return sum / n;
 }
 
+status load_initial(const model *m, const mesh *msh, const initial *c,
+                    int elem_id, double *value) {
+  status st = OK;
+  *value = elem_mean(&c->value, msh, elem_id, 0.0);
+  if (isfinite(*value)) goto done;
+  message_add(m->log, P2041, &c->at,
+              "the initial value in element %zu is not a finite number",
+              msh->elem_no[elem_id]);
+  FAIL(ERR_DECK, "%s:%d: an initial value is not finite", c->at.file,
+       c->at.line_no);
+done:
+  return st;
+}
+
 static status refuse_temperature(const model *m, const mesh *msh,
                                  const place *at, int elem_id) {
   status st = OK;
@@ -273,8 +287,7 @@ status load_temperature_initial(const model *m, const mesh *msh, double *T) {
     const mesh_group *g = &msh->group[c->group_id];
     for (int k = 0; k < g->n_item; ++k) {
       int e = g->item_id[k];
-      T[e] = elem_mean(&c->value, msh, e, 0.0);
-      if (!isfinite(T[e])) TRY(refuse_temperature(m, msh, &c->at, e));
+      TRY(load_initial(m, msh, c, e, &T[e]));
     }
   }
 done:

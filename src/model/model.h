@@ -143,12 +143,17 @@ typedef struct initial {
   int type; /* initial_type                                                  */
   const char *group;
   int group_id;
-  int component; /* of a displacement, from 0                                 */
+  int component; /* of a displacement, strain or internal variable, from 0    */
   quantity value;
   place at;
 } initial;
-typedef enum { INITIAL_TEMPERATURE, INITIAL_DISPLACEMENT } initial_type;
-#define INITIAL_WORDS "TEMPERATURE|DISPLACEMENT"
+typedef enum {
+  INITIAL_TEMPERATURE,
+  INITIAL_DISPLACEMENT,
+  INITIAL_STRAIN,
+  INITIAL_INTERNAL
+} initial_type;
+#define INITIAL_WORDS "TEMPERATURE|DISPLACEMENT|INELASTIC STRAIN|INTERNAL"
 
 /* *INITIAL CONDITIONS, TYPE=DISPLACEMENT: u_0, tested for compatibility. */
 typedef struct start_card {
@@ -346,6 +351,10 @@ int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
  * from where a component that is fixed anew is led to its value. */
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        const double *start, double *ud);
+/* Value of an initial condition in an element, mean of its nodes; ERR_DECK if
+ * it is not finite. */
+status load_initial(const model *m, const mesh *msh, const initial *c,
+                    int elem_id, double *value);
 /* Temperatures T[n_elem] before the first step, mean of the nodes. ERR_DECK if
  * one is not finite. */
 status load_temperature_initial(const model *m, const mesh *msh, double *T);

@@ -280,6 +280,63 @@ START_TEST(factors_are_kept) {
 }
 END_TEST
 
+#define START_STRAIN \
+  "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\nBODY, 1, 1.E-3\n"
+
+/* Inelastic strain from before between two walls: a stress that is there at
+ * once and dies out; without a *VISCO step it stays. */
+START_TEST(initial_strain_is_a_stress_that_relaxes) {
+  scene s = {STEEL,  PROPORTIONAL,
+             "CPS3", START_STRAIN,
+             WALLS,  "*VISCO, INTEGRATOR=EXPONENTIAL\n1., 2.\n"};
+  job j = run_scene(&s, 0);
+  for (int k = 0; k < 3; ++k) {
+    all_have(&j, k, "stress_xx", -exp(-0.5 * k), 1e-9);
+    all_have(&j, k, "stress_yy", 0.0, 1e-9);
+    ck_assert_double_le(fabs(energy(&j, k, "energy_defect_relative")), 1e-10);
+  }
+  job_end(&j);
+  s.visco = "*STATIC\n";
+  j = run_scene(&s, 0);
+  all_have(&j, 1, "stress_xx", -1.0, 1e-9);
+  job_end(&j);
+}
+END_TEST
+
+/* A threshold of 100 that hardens by 1e4 p: with p = 0.01 from before 150 does
+ * not flow. */
+START_TEST(initial_hardening_counts) {
+  scene s = {"1.E5, 0.3",
+             "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n",
+             "CPS3",
+             "*INITIAL CONDITIONS, TYPE=INTERNAL\nBODY, 1, 0.01\n",
+             SYMMETRY "TOP, 2, 2, 1.5E-3\n",
+             "*VISCO, INTEGRATOR=BACKWARD\n10., 20.\n"};
+  job j = run_scene(&s, 0);
+  all_have(&j, 2, "stress_yy", 150.0, 1e-8);
+  all_have(&j, 2, "alpha_1", 0.01, 1e-15);
+  job_end(&j);
+  s.model = "";
+  j = run_scene(&s, 0);
+  dat d = job_table(&j, "ELEMENTS", 2);
+  ck_assert_double_lt(dat_at(&d, 0, "stress_yy"), 110.0);
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
+/* Relaxation time 4 at 0 degrees and 1 at 100: at 50 it is 2.5, without any
+ * thermal expansion. */
+START_TEST(temperature_sets_the_relaxation_time) {
+  scene s = {STEEL,  "*INELASTIC, LAW=MAXWELL\n4., , 0.\n1., , 100.\n",
+             "CPS3", "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, 50.\n",
+             HELD,   "*VISCO, INTEGRATOR=MIDPOINT\n0.01, 1.\n"};
+  job j = run_scene(&s, 0);
+  all_have(&j, 100, "stress_yy", exp(-1 / 2.5), 1e-5);
+  job_end(&j);
+}
+END_TEST
+
 /* A group without a law: the answer is that of elasticity, and its elements
  * are neither integrated nor stored. */
 START_TEST(elastic_groups_cost_nothing) {
@@ -326,6 +383,9 @@ int main(void) {
   tcase_add_test(tests, viscoplastic_pull);
   tcase_add_test(tests, energies_of_a_creeping_block);
   tcase_add_test(tests, elastic_groups_cost_nothing);
+  tcase_add_test(tests, initial_strain_is_a_stress_that_relaxes);
+  tcase_add_test(tests, initial_hardening_counts);
+  tcase_add_test(tests, temperature_sets_the_relaxation_time);
   tcase_add_test(tests, steady_creep_of_a_tube);
   tcase_add_test(tests, factors_are_kept);
   suite_add_tcase(suite, tests);
