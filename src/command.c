@@ -18,6 +18,7 @@ enum {
   ASK_THREADS,
   ASK_RESTART,
   ASK_QUIET,
+  ASK_ESTIMATE,
   ASK_NO_TIMING,
   ASK_HELP,
   ASK_VERSION,
@@ -31,6 +32,7 @@ static const char *const help_rows[][2] = {
   {"-o DIR", "folder of the results; default: where the deck is"},
   {"-D NAME=VALUE", "set a *PARAMETER, wins over the deck; may be repeated"},
   {"--check", "read and check everything, print sizes and plan, solve nothing"},
+  {"--estimate-cost", "what finer meshes and smaller errors would cost"},
   {"--threads N", "threads of the dense algebra, 1 if not said"},
   {"--no-timing", "no CPU seconds in the files: equal runs give equal bytes"},
   {"--quiet", "no progress line"},
@@ -54,6 +56,7 @@ static const char *const exit_rows[][2] = {
 
 static const struct option words[] = {
   {"check", no_argument, NULL, ASK_CHECK},
+  {"estimate-cost", no_argument, NULL, ASK_ESTIMATE},
   {"threads", required_argument, NULL, ASK_THREADS},
   {"restart", no_argument, NULL, ASK_RESTART},
   {"quiet", no_argument, NULL, ASK_QUIET},
@@ -166,6 +169,9 @@ static int take_option(int what, const char *value, const char *given,
     case ASK_THREADS:
       if (read_threads(value, c)) return -1;
       return wrong("--threads needs a number from 1 to 1024, not ", value);
+    case ASK_ESTIMATE:
+      c->estimate_cost = 1;
+      return -1;
     case ASK_QUIET:
       c->quiet = 1;
       return -1;

@@ -8,6 +8,7 @@
 #include "fem/fem.h"
 #include "inform.h"
 
+#include <string.h>
 #include <unistd.h>
 
 /* Numbers of the deck go to a .geo under their own names. */
@@ -66,6 +67,11 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
   }
 done:
   return st;
+}
+
+int job_is_geo(const model *m) {
+  size_t n = m->mesh_file != NULL ? strlen(m->mesh_file) : 0;
+  return n > 4 && strcmp(m->mesh_file + n - 4, ".geo") == 0;
 }
 
 void job_input_free(job_input *in) {

@@ -32,6 +32,8 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
                 job_input *in);
 void job_input_free(job_input *in);
 
+int job_is_geo(const model *m); /* 1: the mesh is made by gmsh                */
+
 /* Who watches a pass. Any function may be NULL. */
 typedef struct job_watch {
   void *ctx;

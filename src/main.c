@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "fem/fem.h"
+#include "forecast.h"
 #include "inform.h"
 #include "job.h"
 #include "lock.h"
@@ -17,8 +18,7 @@ static status solve(const command *c, job_input *in, int *unsettled) {
   status st = OK;
   job_lock lock = {0};
   char *stop = text_path(c->dir, in->m->job, "stop");
-  if (stop == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  if (stop == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
   TRY(job_lock_take(c->dir, in->m->job, &lock));
   interrupt_catch(stop);
   if (in->m->target.percent > 0.0 && in->problem == NULL)
@@ -39,6 +39,8 @@ static status run_job(const command *c, message_log *log, int *unsettled) {
     inform_check_problem(in.m, in.problem);
   else if (c->check_only)
     TRY(inform_check(in.m, in.msh));
+  else if (c->estimate_cost)
+    TRY(forecast_print(c, &in));
   else
     TRY(solve(c, &in, unsettled));
 done:
@@ -73,13 +75,10 @@ int main(int argc, char **argv) {
   int exit_code, unsettled = 0;
   blas_choose_kernel(argv);
   interrupt_spare_writes();
-  if (!command_read(argc, argv, &c, &exit_code))
-    return exit_code;
-  if (c.threads > 0)
-    blas_set_threads(c.threads);
+  if (!command_read(argc, argv, &c, &exit_code)) return exit_code;
+  if (c.threads > 0) blas_set_threads(c.threads);
   status st = message_log_new(&log);
-  if (st == OK)
-    st = run_job(&c, log, &unsettled);
+  if (st == OK) st = run_job(&c, log, &unsettled);
   exit_code = report(st, log, unsettled);
   message_log_free(log);
   command_free(&c);

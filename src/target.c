@@ -59,8 +59,7 @@ static double known(double relative) {
 
 static void see_increment(void *ctx, const state *s) {
   pass *p = ctx;
-  if (!s->mesh_error.asked || s->energy.strain < p->energy)
-    return;
+  if (!s->mesh_error.asked || s->energy.strain < p->energy) return;
   p->energy = s->energy.strain;
   p->mesh = s->mesh_error.relative;
   p->time = known(s->time_error.relative);
@@ -114,8 +113,7 @@ static void choose(pass *p, char *text, size_t size) {
   double goal = p->target->percent / 100.0;
   size_t used = 0;
   text[0] = '\0';
-  if (p->mesh > MESH_SHARE * goal)
-    used += (size_t)snprintf(text, size, "mesh");
+  if (p->mesh > MESH_SHARE * goal) used += (size_t)snprintf(text, size, "mesh");
   if (p->time > TIME_SHARE * goal && p->dt > SHORTEST * SHORTEST) {
     double factor = fmax(AIM * TIME_SHARE * goal / p->time, SHORTEST);
     p->dt *= factor;
@@ -136,14 +134,8 @@ static int refines(const pass_row *row) {
 
 /* 1 if the last pass gained nothing although the mesh was to change. */
 static int was_in_vain(const pass *p) {
-  if (p->n < 2 || !refines(&p->rows[p->n - 2]))
-    return 0;
+  if (p->n < 2 || !refines(&p->rows[p->n - 2])) return 0;
   return p->rows[p->n - 1].mesh > LEAST_GAIN * p->rows[p->n - 2].mesh;
-}
-
-static int is_geo(const model *m) {
-  size_t n = strlen(m->mesh_file);
-  return n > 4 && strcmp(m->mesh_file + n - 4, ".geo") == 0;
 }
 
 /* After the increments of a pass: is it the last? */
@@ -158,24 +150,22 @@ static void decide(pass *p) {
   int finer = refines(row);
   if (row->change[0] == '\0')
     miss(p, "no error has more than its share, their sum is above the target");
-  else if (finer && !is_geo(p->in->m))
-    miss(p, "the mesh is too coarse and a .msh cannot be meshed anew: give the "
-            ".geo");
+  else if (finer && !job_is_geo(p->in->m))
+    miss(p,
+         "the mesh is too coarse and a .msh cannot be meshed anew: give the "
+         ".geo");
   else if (was_in_vain(p))
-    miss(p, "a mesh asked to be finer has no smaller error: the .geo fixes "
-            "its sizes; take Transfinite or Layers out of it");
+    miss(p, "a mesh asked to be finer has no smaller error");
   else
     check_limits(p, finer ? growth(p, AIM * MESH_SHARE * goal) : 1.0);
-  if (p->done)
-    row->change[0] = '\0';
+  if (p->done) row->change[0] = '\0';
 }
 
 /* ---- one pass ------------------------------------------------------------ */
 
 static void tell_pass(const pass *p) {
   const pass_row *r = &p->rows[p->n - 1];
-  if (p->c->quiet)
-    return;
+  if (p->c->quiet) return;
   if (p->n == 1)
     printf("%4s %10s %9s %9s %9s %9s %9s  %s\n", "pass", "unknowns", "mesh[%]",
            "steps[%]", "solver[%]", "total[%]", "cpu[s]", "next");
@@ -199,8 +189,7 @@ static pass_row next_digit(const pass *p) {
 
 static status see_finished(void *ctx, status st, output *out) {
   pass *p = ctx;
-  if (st != OK)
-    return st;
+  if (st != OK) return st;
   pass_row *row = &p->rows[p->n++];
   *row = (pass_row){.unknowns = p->unknowns,
                     .mesh = 100.0 * p->mesh,
@@ -265,15 +254,13 @@ static status read_next(pass *p) {
   }
   TRY(job_read(p->c, &other, next.log, &next));
   next.first = p->in->first != NULL ? p->in->first : p->in->d;
-  if (p->in->first == NULL)
-    p->in->d = NULL;
+  if (p->in->first == NULL) p->in->d = NULL;
   p->in->first = NULL;
   job_input_free(p->in);
   *p->in = next;
   next = (job_input){0};
 done:
-  if (st != OK && next.log != NULL)
-    message_print(next.log, stderr);
+  if (st != OK && next.log != NULL) message_print(next.log, stderr);
   job_input_free(&next);
   memory_free(size);
   return st;
@@ -285,8 +272,7 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
   pass p = {.c = c, .target = &target, .in = in, .dt = 1.0, .tol = 1.0};
   for (;;) {
     TRY(run_pass(&p, unsettled));
-    if (p.done)
-      break;
+    if (p.done) break;
     status stop = interrupt_asked();
     if (stop != OK)
       FAIL(stop, "interrupted by %s: the files are those of pass %d",

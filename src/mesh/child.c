@@ -40,6 +40,7 @@
   X(ModelMeshGenerate) X(ModelMeshGetNodes) X(ModelMeshGetElements)          \
   X(ModelMeshGetElementProperties) X(ModelMeshFieldAdd)                      \
   X(ModelMeshFieldSetNumber) X(ModelMeshFieldSetAsBackgroundMesh)            \
+  X(ModelMeshRemoveConstraints) X(Clear) X(Write)                            \
   X(ViewAdd) X(ViewAddListData) X(Free)
 /* clang-format on */
 
@@ -261,6 +262,53 @@ static double *view_of_sizes(const child *c, size_t *n) {
   return data;
 }
 
+/* Copy the geometry without the lines that fix numbers of elements. */
+static void drop_counts(const child *c, const char *from, const char *to) {
+  static const char *const words[] = {"Transfinite ", "Recombine ", "Field[",
+                                      "Background Field"};
+  FILE *in = fopen(from, "r"), *out = fopen(to, "w");
+  char *line = NULL;
+  size_t room = 0;
+  if (in == NULL || out == NULL)
+    give_up(c, ERR_MESH, "cannot copy the geometry to %s", to);
+  while (getline(&line, &room, in) > 0) {
+    int kept = 1;
+    for (size_t i = 0; i < sizeof words / sizeof *words; ++i)
+      kept &= strncmp(line, words[i], strlen(words[i])) != 0;
+    if (kept) fputs(line, out);
+  }
+  free(line);
+  fclose(in);
+  if (fclose(out) != 0)
+    give_up(c, ERR_MESH, "cannot copy the geometry to %s", to);
+}
+
+/*
+ * Transfinite curves would keep their number of segments whatever the sizes.
+ * Those of the kernel of gmsh itself cannot be set free in a model: the
+ * geometry is written out plainly, read again without them.
+ */
+static void free_counts(const child *c) {
+  int error;
+  char folder[] = "/tmp/protis_XXXXXX", all[64], rest[64];
+  c->gmsh.ModelMeshRemoveConstraints(NULL, 0, &error);
+  if (c->request->is_solid) return;
+  if (mkdtemp(folder) == NULL)
+    give_up(c, ERR_MESH, "cannot make a folder in /tmp: %s", strerror(errno));
+  snprintf(all, sizeof all, "%s/all.geo_unrolled", folder);
+  snprintf(rest, sizeof rest, "%s/rest.geo", folder);
+  c->gmsh.Write(all, &error);
+  check(c, error, "write out the geometry");
+  drop_counts(c, all, rest);
+  c->gmsh.Clear(&error);
+  check(c, error, "read the geometry again");
+  c->gmsh.Open(rest, &error);
+  unlink(all);
+  unlink(rest);
+  rmdir(folder);
+  check(c, error, "read the geometry again");
+}
+
 /* Sizes wanted at the nodes of an earlier mesh in place of those of the .geo.
  */
 static void set_sizes(const child *c) {
@@ -428,6 +476,7 @@ void child_run(const raw_request *request, pid_t parent, int fd, int error_fd) {
   start(c);
   c->gmsh.Open(request->source->file, &error);
   check(c, error, "read the file");
+  if (request->is_geo && request->source->size != NULL) free_counts(c);
   int dim = send_groups(c);
   const char *doing = "read the file";
   if (request->is_geo && dim >= 2 && !has_elements(c, dim)) {

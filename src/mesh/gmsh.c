@@ -188,9 +188,10 @@ status mesh_read_gmsh(const mesh_source *source, const place *at,
   const char *file = source->file;
   char head[HEAD_SIZE + 1];
   raw_mesh *raw = NULL;
-  raw_request request = {source, ends_in(file, ".geo")};
+  raw_request request = {source, ends_in(file, ".geo"), 0};
   *out = NULL;
   TRY(read_head(file, head, at, log));
+  request.is_solid = strstr(head, "OpenCASCADE") != NULL;
   if (request.is_geo) {
     TRY(check_geo_tail(file, at, log));
   } else {

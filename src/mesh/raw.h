@@ -73,7 +73,8 @@ enum { WIRE_MAGIC = 0x50524d31 }; /* "PRM1" */
 
 typedef struct raw_request {
   const mesh_source *source;
-  int is_geo; /* mesh the geometry, else read the mesh                       */
+  int is_geo;   /* mesh the geometry, else read the mesh                     */
+  int is_solid; /* a .geo of the kernel OpenCASCADE                          */
 } raw_request;
 
 /* Let a child process read the file. What fails is told in the record:

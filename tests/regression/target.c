@@ -3,6 +3,7 @@
  * passes, and what they tell.
  */
 #include "support/job.h"
+#include "support/mesh_file.h"
 #include "support/unit.h"
 
 #include <math.h>
@@ -104,8 +105,14 @@ START_TEST(limits_stop_with_the_best_there_is) {
 }
 END_TEST
 
-/* A mesh that cannot be made finer. */
-START_TEST(fixed_meshes_are_named) {
+static const char square_deck[] =
+    "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+    "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
+    "*BOUNDARY\nBOTTOM, 1, 2\n*DSLOAD\nTOP, TX, 0.1\n"
+    "*ACCURACY, TARGET=8\n*END STEP\n";
+
+/* Transfinite curves and surfaces are set free. */
+START_TEST(structured_geometry_is_made_finer) {
   static const char geo[] =
       "Point(1)={0,0,0};Point(2)={1,0,0};Point(3)={1,1,0};Point(4)={0,1,0};\n"
       "Line(1)={1,2};Line(2)={2,3};Line(3)={3,4};Line(4)={4,1};\n"
@@ -114,13 +121,54 @@ START_TEST(fixed_meshes_are_named) {
       "Physical Curve(\"BOTTOM\")={1};Physical Curve(\"TOP\")={3};\n";
   job j = job_begin("square");
   job_write(&j, "square.geo", "%s", geo);
-  job_write(&j, "square.inp",
-            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
-            "*BOUNDARY\nBOTTOM, 1, 2\n*DSLOAD\nTOP, TX, 0.1\n"
-            "*ACCURACY, TARGET=1\n*END STEP\n");
+  job_write(&j, "square.inp", "*MESH, FILE=square.geo\n%s", square_deck);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(mesh_without_geometry_is_named) {
+  static const char msh[] =
+      MSH("3\n1 1 \"BOTTOM\"\n1 2 \"TOP\"\n2 3 \"BODY\"\n",
+          "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n",
+          "4\n1 1 2 1 1 1 2\n2 1 2 2 3 3 4\n3 2 2 3 1 1 2 3\n"
+          "4 2 2 3 1 1 3 4\n");
+  job j = job_begin("square");
+  job_write(&j, "square.msh", "%s", msh);
+  job_write(&j, "square.inp", "*MESH, FILE=square.msh\n%s", square_deck);
   ck_assert_int_eq(job_run(&j, ""), 1);
-  ck_assert_ptr_nonnull(strstr(j.errors, "Transfinite"));
+  ck_assert_ptr_nonnull(strstr(j.errors, "give the .geo"));
+  ck_assert_int_eq(job_run(&j, "--estimate-cost"), 2);
+  ck_assert_ptr_nonnull(strstr(j.errors, ".geo"));
+  job_end(&j);
+}
+END_TEST
+
+/* Unknowns and error of a row of --estimate-cost. */
+static void forecast_row(const job *j, const char *what, double *unknowns,
+                         double *error) {
+  const char *line = strstr(j->text, what);
+  ck_assert_ptr_nonnull(line);
+  ck_assert_int_eq(sscanf(line + strlen(what), "%lf %lf", unknowns, error), 2);
+}
+
+/* The forecast of the mesh four times finer against a run on it. */
+START_TEST(forecast_is_near_the_truth) {
+  job j;
+  double unknowns, error;
+  ck_assert_int_eq(press(&j, 8, "", "--estimate-cost"), 0);
+  forecast_row(&j, "4 times finer", &unknowns, &error);
+  job_end(&j);
+  ck_assert_int_eq(press(&j, 32, "*ACCURACY, MESH=YES\n", ""), 0);
+  char *json = job_file(&j, "json");
+  double found = atof(strstr(json, "\"mesh_error_percent\": ") + 22);
+  double has = atof(strstr(json, "\"unknowns\": ") + 12);
+  ck_assert_msg(error > found / 1.5 && error < found * 1.5, "%g %g", error,
+                found);
+  ck_assert_msg(unknowns > has / 1.5 && unknowns < has * 1.5, "%g %g", unknowns,
+                has);
+  free(json);
   job_end(&j);
 }
 END_TEST
@@ -150,5 +198,6 @@ START_TEST(increments_are_made_shorter) {
 END_TEST
 
 UNIT_MAIN("target", target_is_reached_in_truth,
-          limits_stop_with_the_best_there_is, fixed_meshes_are_named,
+          limits_stop_with_the_best_there_is, structured_geometry_is_made_finer,
+          mesh_without_geometry_is_named, forecast_is_near_the_truth,
           increments_are_made_shorter)
