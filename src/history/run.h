@@ -139,7 +139,8 @@ void strains_collect(run *r);
 /* The loads with the forces that the strains of r->now call for: r->now.F
  * itself if there are none. */
 const double *strains_load(run *r);
-/* Stresses of these elements, and the work on their strains since r->old, J. */
+/* Stresses of these elements, and the work on their strains since r->old, J;
+ * e->largest at least what the strains would store if they were held. */
 void strains_work(run *r, energies *e);
 
 /* Inelastic strains of the elements whose law flows, the same file. */

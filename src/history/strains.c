@@ -327,12 +327,13 @@ const double *strains_load(run *r) {
 void strains_work(run *r, energies *e) {
   const equilibrium *a = &r->old, *b = &r->now;
   size_t ns = (size_t)r->m->ns;
+  double scale = 0.0;
   if (r->eigen.n == 0) return;
   timer_enter(STAGE_ENERGY);
   eigen_stress(&r->d, &r->eigen, b->u, NULL, b->sigma);
   for (int k = 0; k < r->eigen.n; ++k) {
     double w = element_weight(&r->d, r->eigen_elem[k]);
-    double thermal = 0.0, all = 0.0;
+    double thermal = 0.0, all = 0.0, held[6];
     for (size_t i = ns * (size_t)k; i < ns * (size_t)(k + 1); ++i) {
       double sigma = 0.5 * (a->sigma[i] + b->sigma[i]);
       thermal += sigma * (b->thermal[i] - a->thermal[i]);
@@ -340,7 +341,12 @@ void strains_work(run *r, energies *e) {
     }
     e->thermal += w * thermal;
     e->inelastic += w * (all - thermal);
+    tensor_product(
+        r->m->ns, r->E + at(r, r->m->ns * r->m->elem_section[r->eigen_elem[k]]),
+        b->e0 + at(r, k), held);
+    scale += 0.5 * w * tensor_dot(r->m->ns, b->e0 + at(r, k), held);
   }
+  e->largest = fmax(e->largest, scale);
   timer_leave(STAGE_ENERGY);
 }
 
