@@ -1,0 +1,141 @@
+"""Decks and tables of protis for the tools: cards changed, JOB.dat read."""
+import re
+import sys
+
+CARDS = {"METHOD": ("SOLVER", "METHOD"), "TOL": ("SOLVER", "TOL"),
+         "FORM": ("QUASISTATIC", "FORM"),
+         "INTEGRATOR": ("VISCO", "INTEGRATOR"), "THETA": ("VISCO", "THETA")}
+FILES = ("MESH", "INCLUDE", "CONDENSED PROBLEM", "TEMPERATURE",
+         "INITIAL CONDITIONS")
+
+
+def fail(text):
+    """End with a message that begins with the name of the tool."""
+    sys.exit(f"{sys.argv[0].rsplit('/', 1)[-1]}: {text}")
+
+
+# ---- the deck --------------------------------------------------------------
+
+def card_name(line):
+    if not line.startswith("*") or line.startswith("**"):
+        return None
+    return line[1:].split(",")[0].strip().upper()
+
+
+def parameters(lines):
+    """Names that *PARAMETER defines."""
+    names, inside = set(), False
+    for line in lines:
+        name = card_name(line)
+        if name is not None:
+            inside = name == "PARAMETER"
+        elif inside and "=" in line and not line.startswith("**"):
+            names.add(line.split("=")[0].strip())
+    return names
+
+
+def set_parameter(line, name, value):
+    """A card line with NAME=value instead of what it had."""
+    pattern = re.compile(r",\s*" + name + r"\s*=\s*[^,\s]+", re.IGNORECASE)
+    return pattern.sub("", line.rstrip(",")) + f", {name}={value}"
+
+
+def set_card(lines, card, name, value):
+    """Set it on every such card; a missing *SOLVER is put into each step."""
+    out, found = [], False
+    for line in lines:
+        if card_name(line) == card:
+            line, found = set_parameter(line, name, value), True
+        elif card_name(line) == "END STEP" and card == "SOLVER" and not found:
+            out.append(f"*SOLVER, {name}={value}")
+        if card_name(line) == "END STEP":
+            found = False
+        out.append(line)
+    return out
+
+
+def set_dt(lines, value):
+    out, after = [], False
+    for line in lines:
+        if after and not line.startswith("*"):
+            line = ", ".join([value] + line.split(",")[1:])
+            after = False
+        if card_name(line) in ("QUASISTATIC", "VISCO"):
+            after = True
+        out.append(line)
+    return out
+
+
+def absolute_files(lines, folder):
+    """Files named by cards, found from anywhere."""
+    out = []
+    for line in lines:
+        if card_name(line) in FILES:
+            line = re.sub(r"((?:FILE|INPUT)\s*=\s*)([^,\s]+)",
+                          lambda m: m[1] + str((folder / m[2]).resolve()),
+                          line, flags=re.IGNORECASE)
+        out.append(line)
+    return out
+
+
+# ---- tables of JOB.dat -------------------------------------------------------
+
+def read_table(file, wanted):
+    """Columns of the last table of that name: {name: [values]}."""
+    columns, rows, inside = [], [], False
+    for line in open(file, encoding="utf-8"):
+        words = line.split()
+        if line.startswith("#") and "table" in words:
+            inside = words[-1] == wanted
+            if inside:
+                columns, rows = [], []
+        elif inside and line.startswith("#"):
+            columns = [w.split("[")[0] for w in words[1:]]
+        elif inside and words:
+            rows.append(words)
+    if not columns:
+        fail(f"{file} has no table {wanted}: ask for it with *PRINT")
+    return {c: [r[i] for r in rows] for i, c in enumerate(columns)}
+
+
+def column(file, table, name):
+    """(abscissa, values) of a column; abscissa None for one record."""
+    data = read_table(file, table)
+    if name not in data:
+        fail(f"table {table} of {file} has no column {name}; it has "
+             f"{', '.join(data)}")
+    values = [float(v) for v in data[name]]
+    if table != "CONTACT":
+        return None, values[-1:]
+    pairs = sorted(zip((float(v) for v in data["x"]), values))
+    return [p[0] for p in pairs], [p[1] for p in pairs]
+
+
+def drop_cards(lines, names):
+    """The deck without these cards and their data lines."""
+    out, dropped = [], False
+    for line in lines:
+        name = card_name(line)
+        if name is not None:
+            dropped = name in names
+        if not dropped or line.startswith("**"):
+            out.append(line)
+    return out
+
+
+def drop_parameter(lines, card, name):
+    """Every such card without NAME=."""
+    pattern = re.compile(r",\s*" + name + r"\s*(=\s*[^,\s]+)?(?=,|\s*$)",
+                         re.IGNORECASE)
+    return [pattern.sub("", line) if card_name(line) == card else line
+            for line in lines]
+
+
+def insert_in_steps(lines, text):
+    """A card at the end of every step."""
+    out = []
+    for line in lines:
+        if card_name(line) == "END STEP":
+            out.append(text)
+        out.append(line)
+    return out
