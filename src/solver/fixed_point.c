@@ -13,6 +13,8 @@ enum {
   IDLE = 2       /* iterations of a pass that did nothing                     */
 };
 static const double PROGRESS = 0.9; /* -, a lower residual                  */
+static const double FINEST = 0.1; /* -, of the tolerance: a pass asks no more */
+static const double COARSE = 0.9; /* -, of it: enough where passes stagnate   */
 static const double MIXING_RATE = 0.2;     /* -, slower: mix     */
 static const double RATE_MARGIN = 0x1p-24; /* -, of |g|: shorter differences
                                               are rounding                  */
@@ -151,6 +153,7 @@ static status run_pass(const pass *p, const contact_problem *cp,
                                    &p->control, u, r, &inner);
   rep->iterations += inner.iterations;
   rep->outcome = inner.outcome;
+  rep->residual = inner.residual;
   return st;
 }
 
@@ -252,7 +255,7 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
   pass p = {inner, *control};
   course c = {.step = 1.0, .lowest = HUGE_VAL};
   int passes = control->limit_max_iter > 0 ? control->limit_max_iter : PASSES;
-  double change = 1.0;
+  double change = 1.0, rounding = 0.0; /* what a pass could not go below      */
   int before = 0;
   fp->kept = 0;
   *rep = (solver_report){.outcome = STOPPED_ITERATIONS};
@@ -267,8 +270,11 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
     int idle = rep->iterations - before <= IDLE;
     double wanted = fmin(1e-2 * change, idle ? 0.1 * c.lowest : HUGE_VAL);
     before = rep->iterations;
-    p.control.tol = fmax(0.1 * control->tol, fmin(1e-3, wanted));
+    wanted = fmax(wanted, fmin(rounding, COARSE * control->tol));
+    p.control.tol = fmax(FINEST * control->tol, fmin(1e-3, wanted));
     TRY(run_pass(&p, cp, fp->g, u, r, rep));
+    if (rep->outcome == STOPPED_STAGNATION)
+      rounding = fmax(rounding, 2.0 * rep->residual);
     if (rep->outcome == STOPPED_NAN || rep->outcome == STOPPED_RAY ||
         rep->outcome == STOPPED_SINGULAR)
       goto done;

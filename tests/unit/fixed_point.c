@@ -1,4 +1,5 @@
 /* src/solver/fixed_point.c: the loops on the sliding limit. */
+#include "solver/fixed_point.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
@@ -56,5 +57,45 @@ START_TEST(fallback_is_logged) {
 }
 END_TEST
 
-UNIT_MAIN("fixed_point", fixed_point_contracts_by_mu_over_its_critical_value,
+/* A solver of Tresca problems that stops at a residual of 4e-11 after many
+ * iterations if more is asked; the answer is that of NEWTON. */
+static status rough_solve(const contact_problem *cp, const void *par,
+                          void *work, const solver_control *control, double *u,
+                          double *r, solver_report *rep) {
+  solver_control fine = *control;
+  fine.tol = 1e-13;
+  status st = newton_solver.solve(cp, par, work, &fine, u, r, rep);
+  if (control->tol >= 4e-11) return st;
+  rep->outcome = STOPPED_STAGNATION;
+  rep->iterations = 1000;
+  rep->residual = 4e-11;
+  return st;
+}
+
+START_TEST(rounding_of_the_inner_solver_is_met_once) {
+  solver_ops rough = newton_solver;
+  rough.solve = rough_solve;
+  contact_case c = case_any(2, 12, 0.5, 0, 12);
+  double param[PARAM_SIZE / sizeof(double)] = {0.0};
+  void *work = NULL;
+  fixed_point *fp = NULL;
+  solver_control control = {.tol = 1e-10};
+  solver_report rep;
+  option_defaults(newton_solver.options, param);
+  ck_assert_int_eq(newton_solver.setup(&c.cp, param, &work), OK);
+  ck_assert_int_eq(fixed_point_new(c.cp.n, &fp), OK);
+  inner_solver inner = {&rough, param, work};
+  ck_assert_int_eq(
+      fixed_point_solve(fp, &c.cp, &inner, &control, c.u, c.r, &rep), OK);
+  ck_assert_int_eq(rep.outcome, CONVERGED);
+  ck_assert_int_gt(rep.iterations, 1000);
+  ck_assert_int_lt(rep.iterations, 2000);
+  newton_solver.release(work);
+  fixed_point_free(fp);
+  case_free(&c);
+}
+END_TEST
+
+UNIT_MAIN("fixed_point", rounding_of_the_inner_solver_is_met_once,
+          fixed_point_contracts_by_mu_over_its_critical_value,
           auto_solves_the_block_for_any_friction, fallback_is_logged)
