@@ -1,0 +1,81 @@
+/* src/newton: the steps of Newton's method on the states. */
+#include "solver/solver.h"
+#include "support/contact_case.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NODES = 100, SLIPPING = 60 };
+
+/* A row of pressed nodes joined by springs of stiffness 1 along t1, the last
+ * one tied to a wall; the first is pulled by F and each can hold g. */
+static contact_case pulled_row(int dim, double F, double g) {
+  double mu = 0.25;
+  contact_case c = case_new(dim, NODES, mu);
+  int m = c.cp.m;
+  for (int i = 0; i < NODES; ++i) {
+    for (int k = 0; k < dim; ++k) {
+      int dof = i * dim + k;
+      c.A[dof + m * dof] = k == 1 ? (i == 0 ? 1.0 : 2.0) : 3.0;
+      if (k == 1 && i > 0)
+        c.A[dof + m * (dof - dim)] = c.A[dof - dim + m * dof] = -1.0;
+    }
+    c.f[i * dim] = g / mu;
+  }
+  c.f[1] = F;
+  return c;
+}
+
+static solver_report solve(contact_case *c) {
+  double param[8] = {0.0};
+  solver_control control = {.tol = 1e-12};
+  solver_report rep;
+  void *work = NULL;
+  ck_assert(newton_solver.param_size <= sizeof param);
+  option_defaults(newton_solver.options, param);
+  ck_assert_int_eq(newton_solver.setup(&c->cp, param, &work), OK);
+  ck_assert_int_eq(
+      newton_solver.solve(&c->cp, param, work, &control, c->u, c->r, &rep), OK);
+  newton_solver.release(work);
+  return rep;
+}
+
+/* The force that passes node i is F - (i + 1) g: a node more slips at each
+ * step, SLIPPING of them, more than an attempt has steps at first. */
+START_TEST(front_of_slip_is_followed_to_its_end) {
+  for (int dim = 2; dim <= 3; ++dim) {
+    double g = 0.5, F = (SLIPPING + 0.5) * g, u = 0.0;
+    contact_case c = pulled_row(dim, F, g);
+    solver_report rep = solve(&c);
+    ck_assert_int_eq(rep.outcome, CONVERGED);
+    ck_assert_int_gt(rep.iterations, 40);
+    ck_assert_int_le(rep.iterations, SLIPPING + 2);
+    for (int i = NODES - 1; i >= 0; --i) {
+      if (i < SLIPPING) u += F - (i + 1) * g;
+      double T = i < SLIPPING ? g : i == SLIPPING ? 0.5 * g : 0.0;
+      ck_assert_double_eq_tol(c.u[i * dim + 1], u, 1e-9 * F);
+      ck_assert_double_eq_tol(c.r[i * dim + 1], -T, 1e-10 * F);
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* The same state again: nothing to do; a larger pull: the front goes on. */
+START_TEST(front_goes_on_from_where_it_was) {
+  double g = 0.5;
+  contact_case c = pulled_row(2, 20.5 * g, g);
+  ck_assert_int_eq(solve(&c).outcome, CONVERGED);
+  c.f[1] = 23.5 * g;
+  solver_report rep = solve(&c);
+  ck_assert_int_eq(rep.outcome, CONVERGED);
+  ck_assert_int_le(rep.iterations, 5);
+  ck_assert_double_eq_tol(c.r[2 * 22 + 1], -g, 1e-12);
+  ck_assert_double_eq_tol(c.r[2 * 23 + 1], -0.5 * g, 1e-12);
+  case_free(&c);
+}
+END_TEST
+
+UNIT_MAIN("newton", front_of_slip_is_followed_to_its_end,
+          front_goes_on_from_where_it_was)
