@@ -240,7 +240,11 @@
     "INTEGRATOR=BACKWARD, which damps them at once.")                        \
   X(2052, WARNING, "plane tilted far",                                       \
     "Displacements are small: contact acts along the normals of time 0. "    \
-    "Start from the tilted plane, or turn it in its own plane.")
+    "Start from the tilted plane, or turn it in its own plane.")             \
+  X(2053, ERROR, "nodal field not valid",                                    \
+    "FILE= of *TEMPERATURE names a .msh with $NodeData of one component, or "\
+    "HDF5 with /node_no and /temperature, with a value for each node of the "\
+    "mesh by its number in the mesh file.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

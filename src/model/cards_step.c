@@ -363,22 +363,40 @@ done:
   return st;
 }
 
+/* One line of *TEMPERATURE: 0 if fine. */
+static int read_temperature(const reading *r, const record *line, int file,
+                            quantity *value) {
+  const field *f = line->fields;
+  *value = (quantity){.number = 1.0};
+  if (record_fields(r, line, file ? 1 : 2, 3,
+                    file ? "group of elements [, factor [, amplitude]]"
+                         : "group of elements, value [, amplitude]") != 0)
+    return -1;
+  if (line->n_field < 2 || (file && f[1].text[0] == '\0')) return 0;
+  return field_quantity(r, &f[1], value);
+}
+
 status apply_temperature(reading *r) {
   status st = OK;
   const card *c = r->card;
-  static const char expected[] = "group of elements, value [, amplitude]";
-  renew(r, 1u << LOAD_TEMPERATURE, expected);
+  const parameter *file = card_parameter(c, "FILE");
+  const char *path = NULL;
+  renew(r, 1u << LOAD_TEMPERATURE, "group of elements, value [, amplitude]");
+  if (file != NULL && file->has_value) {
+    path = deck_path(r->m->deck, &file->value);
+    if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: *TEMPERATURE");
+  }
   for (int i = 0; i < c->n_record; ++i) {
     const record *line = &c->records[i];
-    const field *f = line->fields;
     quantity value;
-    if (record_fields(r, line, 2, 3, expected) != 0 ||
-        field_quantity(r, &f[1], &value) != 0)
-      continue;
-    load *l = new_load(r, &open_step(r)->loads, LOAD_TEMPERATURE, &f[0]);
+    if (read_temperature(r, line, path != NULL, &value) != 0) continue;
+    load *l =
+        new_load(r, &open_step(r)->loads, LOAD_TEMPERATURE, &line->fields[0]);
     if (l == NULL) FAIL(ERR_MEMORY, "memory exhausted: *TEMPERATURE");
     l->value = value;
-    if (line->n_field > 2) read_line_amplitude(&f[2], l);
+    l->file = path;
+    l->file_at = *value_place(r, "FILE");
+    if (line->n_field > 2) read_line_amplitude(&line->fields[2], l);
   }
 done:
   return st;

@@ -4,6 +4,7 @@
 #include "model/keyword.h"
 
 #include "base/memory.h"
+#include "field/field.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -329,6 +330,43 @@ static void check_prints(const model *m, const mesh *msh, step *s) {
   }
 }
 
+/* The field of a file, read once; NULL after a message. */
+static status find_field(model *m, const mesh *msh, const char *file,
+                         const place *at, const double **out) {
+  status st = OK;
+  *out = NULL;
+  if (file == NULL) goto done;
+  for (int i = 0; i < m->n_field && *out == NULL; ++i)
+    if (strcmp(m->fields[i].file, file) == 0) *out = m->fields[i].value;
+  if (*out != NULL) goto done;
+  GROW(m->fields, m->n_field, m->cap_field);
+  nodal_field *f = &m->fields[m->n_field];
+  st = nodal_field_read(file, msh, &f->value);
+  if (st == ERR_FILE || st == ERR_DECK) {
+    message_add(m->log, P2053, at, "%s", status_message());
+    st = OK;
+    goto done;
+  }
+  TRY(st);
+  f->file = file;
+  *out = f->value;
+  ++m->n_field;
+done:
+  return st;
+}
+
+static status check_fields(model *m, const mesh *msh) {
+  status st = OK;
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k) {
+      load *l = &m->steps[i].loads.item[k];
+      TRY(find_field(m, msh, l->file, &l->file_at, &l->field));
+      TRY(find_field(m, msh, l->before_file, &l->file_at, &l->before_field));
+    }
+done:
+  return st;
+}
+
 /* 1 if an earlier step has this load from the same line: checked there. */
 static int checked_before(const model *m, int step_id, load *l) {
   for (int i = 0; i < step_id; ++i)
@@ -579,6 +617,7 @@ status model_check(model *m, const mesh *msh) {
   check_laws(m);
   check_initials(m, msh);
   check_steps(m, msh);
+  TRY(check_fields(m, msh));
   model_find_effects(m);
   TRY(message_status(m->log, ERR_DECK));
   check_values(m, msh);

@@ -136,6 +136,10 @@ typedef struct load_param {
   const char *amplitude;
   int op;
 } load_param;
+typedef struct temperature_param {
+  load_param load; /* first: what all loads have                             */
+  const char *file;
+} temperature_param;
 typedef struct solver_param {
   const char *method;
   double tol;

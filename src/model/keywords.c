@@ -160,6 +160,15 @@ static const option load_options[] = {
   OPTION_CHOICE(load_param, op, "OP", "MOD|NEW", "MOD",
                 "NEW ends what other steps left of this card"),
   OPTION_END};
+static const option temperature_options[] = {
+  OPTION_NAME(temperature_param, load.amplitude, "AMPLITUDE", OPTION_ABSENT,
+              "course in time; absent: linear over the step"),
+  OPTION_CHOICE(temperature_param, load.op, "OP", "MOD|NEW", "MOD",
+                "NEW ends what other steps left of this card"),
+  OPTION_NAME(temperature_param, file, "FILE", OPTION_ABSENT,
+              "nodal field: .msh with $NodeData, or HDF5 with /node_no and "
+              "/temperature; relative to the deck"),
+  OPTION_END};
 static const option solver_options[] = {
   OPTION_NAME(solver_param, method, "METHOD", "AUTO", "protis --list solvers"),
   OPTION_REAL(solver_param, tol, "TOL", 1e-14, 0.1, "1E-10", "-",
@@ -311,8 +320,9 @@ const keyword keyword_table[] = {
    "body force per volume, gravity"},
   {"CLOAD", IN_STEP, OPTIONS(load), NULL, apply_cload, 0, ANY,
    "group, dof, value [, amplitude]", "force on each node of a group"},
-  {"TEMPERATURE", IN_STEP, OPTIONS(load), NULL, apply_temperature, 0, ANY,
-   "group of elements, value [, amplitude]",
+  {"TEMPERATURE", IN_STEP, OPTIONS(temperature), NULL, apply_temperature, 0,
+   ANY, "group of elements, value [, amplitude]; with FILE= group "
+   "[, factor [, amplitude]]",
    "temperatures; from the initial ones, linear over the step"},
   {"SOLVER", IN_STEP, OPTIONS(solver), names_solver, apply_solver, 0, 0,
    "", "method for the contact problem and its options"},

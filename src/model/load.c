@@ -240,15 +240,17 @@ done:
   return st;
 }
 
-/* Mean of a quantity at the nodes of an element; it is P1 like the rest. */
-static double elem_mean(const quantity *q, const mesh *msh, int elem_id,
-                        double t) {
+/* Mean of a quantity at the nodes of an element, times a nodal field
+ * times[n_node] if it is not NULL; it is P1 like the rest. */
+static double elem_mean(const quantity *q, const double *times, const mesh *msh,
+                        int elem_id, double t) {
   int n = msh->dim + 1;
   double sum = 0.0;
   for (int a = 0; a < n; ++a) {
     double x[3];
-    node_position(msh, msh->elem[(size_t)n * (size_t)elem_id + (size_t)a], x);
-    sum += quantity_value(q, x, t);
+    int node = msh->elem[(size_t)n * (size_t)elem_id + (size_t)a];
+    node_position(msh, node, x);
+    sum += quantity_value(q, x, t) * (times != NULL ? times[node] : 1.0);
   }
   return sum / n;
 }
@@ -256,7 +258,7 @@ static double elem_mean(const quantity *q, const mesh *msh, int elem_id,
 status load_initial(const model *m, const mesh *msh, const initial *c,
                     int elem_id, double *value) {
   status st = OK;
-  *value = elem_mean(&c->value, msh, elem_id, 0.0);
+  *value = elem_mean(&c->value, NULL, msh, elem_id, 0.0);
   if (isfinite(*value)) goto done;
   message_add(m->log, P2041, &c->at,
               "the initial value in element %zu is not a finite number",
@@ -297,12 +299,13 @@ done:
 /* A temperature starts from the initial one, and OP=NEW leads back to it. */
 static double temperature_of(const load *l, const mesh *msh, const step *s,
                              double t, int elem_id, double T0) {
-  double now = elem_mean(&l->value, msh, elem_id, value_time(l, t));
+  double now = elem_mean(&l->value, l->field, msh, elem_id, value_time(l, t));
   if (l->removed) now = T0;
   if (l->run != RUN_RAMP || t >= s->start + s->total) return now;
   double w = (t - s->start) / s->total;
-  double from =
-      l->has_before ? elem_mean(&l->before, msh, elem_id, l->before_t) : T0;
+  double from = l->has_before ? elem_mean(&l->before, l->before_field, msh,
+                                          elem_id, l->before_t)
+                              : T0;
   return (1.0 - w) * from + w * now;
 }
 

@@ -391,6 +391,8 @@ void model_free(model *m) {
   }
   memory_free(m->supports.item);
   memory_free(m->initials);
+  for (int i = 0; i < m->n_field; ++i) memory_free(m->fields[i].value);
+  memory_free(m->fields);
   for (int i = 0; i < m->n_material; ++i) law_card_free(&m->materials[i].law);
   memory_free(m->amplitudes);
   memory_free(m->materials);

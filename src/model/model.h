@@ -110,12 +110,21 @@ typedef struct load {
   quantity value, before;
   int has_before;  /* RUN_RAMP: starts from "before" at before_t, else from 0 */
   double before_t; /* s, total time                                           */
+  const char *file, *before_file; /* *TEMPERATURE, FILE=: nodal field that the
+                                     value multiplies; NULL: 1                */
+  const double *field, *before_field; /* [n_node] borrowed from the model     */
+  place file_at;
   const char *amplitude_name;
   int amplitude_id; /* -1: none                                               */
   int removed;      /* ends: by OP=NEW; dropped after its ramp to zero        */
   place amplitude_at;
   place at;
 } load;
+
+typedef struct nodal_field { /* values read from a file                      */
+  const char *file;
+  double *value; /* [n_node] owned                                            */
+} nodal_field;
 
 typedef struct load_list {
   int n, cap;
@@ -243,6 +252,8 @@ typedef struct model {
   struct move *moves; /* [n_obstacle] amplitude names of the obstacles */
   contact *contacts;
   load_list supports; /* *BOUNDARY before the first step                      */
+  int n_field, cap_field;
+  nodal_field *fields; /* [n_field] of all FILE= of *TEMPERATURE             */
   int n_initial, cap_initial;
   initial *initials; /* [n_initial] in the order of the deck                 */
   start_card start;

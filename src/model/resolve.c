@@ -275,6 +275,7 @@ static load kept_load(const model *m, const step *old, const load *l) {
 /* Where a load that replaces "l" (or ends it) starts from. */
 static void set_before(load *now, const step *old, const load *l) {
   now->before = l->value;
+  now->before_file = l->file;
   now->has_before = 1;
   now->before_t = l->run == RUN_HELD ? l->before_t : step_end(old);
 }

@@ -8,6 +8,7 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+#include <hdf5.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -291,6 +292,95 @@ END_TEST
 START_TEST(penetration_at_the_start) { closing(-1e-4, "", -20.0); }
 END_TEST
 
+enum { N_NODE = 9 };
+
+/* 100 + 10 number of the node, as text, as gmsh writes binary, as HDF5. */
+static void write_text_field(const char *path) {
+  FILE *f = fopen(path, "w");
+  ck_assert_ptr_nonnull(f);
+  fputs(
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$NodeData\n1\n\"T\"\n1\n0.0\n"
+      "3\n0\n1\n9\n",
+      f);
+  for (int i = N_NODE; i > 0; --i) fprintf(f, "%d %d\n", i, 100 + 10 * i);
+  fputs("$EndNodeData\n", f);
+  fclose(f);
+}
+
+static void write_binary_field(const char *path) {
+  const int one = 1;
+  FILE *f = fopen(path, "wb");
+  ck_assert_ptr_nonnull(f);
+  fputs("$MeshFormat\n2.2 1 8\n", f);
+  fwrite(&one, sizeof one, 1, f);
+  fputs("\n$EndMeshFormat\n$NodeData\n1\n\"T\"\n1\n0.0\n3\n0\n1\n9\n", f);
+  for (int i = 1; i <= N_NODE; ++i) {
+    const double value = 100 + 10 * i;
+    fwrite(&i, sizeof i, 1, f);
+    fwrite(&value, sizeof value, 1, f);
+  }
+  fputs("\n$EndNodeData\n", f);
+  fclose(f);
+}
+
+static void write_hdf5_field(const char *path) {
+  int no[N_NODE];
+  double value[N_NODE];
+  const hsize_t n = N_NODE;
+  for (int i = 0; i < N_NODE; ++i) {
+    no[i] = i + 1;
+    value[i] = 110 + 10 * i;
+  }
+  hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t space = H5Screate_simple(1, &n, NULL);
+  hid_t a = H5Dcreate2(file, "node_no", H5T_NATIVE_INT, space, H5P_DEFAULT,
+                       H5P_DEFAULT, H5P_DEFAULT);
+  hid_t b = H5Dcreate2(file, "temperature", H5T_NATIVE_DOUBLE, space,
+                       H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  H5Dwrite(a, H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, no);
+  H5Dwrite(b, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, value);
+  H5Dclose(a);
+  H5Dclose(b);
+  H5Sclose(space);
+  H5Fclose(file);
+}
+
+/* Temperatures of a file, half of them in half the step; elements have the
+ * mean of their nodes: 1 2 5 make the first. */
+START_TEST(temperatures_from_a_file) {
+  static const char *const name[] = {"t.msh", "b.msh", "t.h5"};
+  static void (*const write[])(const char *) = {
+      write_text_field, write_binary_field, write_hdf5_field};
+  for (int k = 0; k < 3; ++k) {
+    char path[128];
+    job j = job_begin("field");
+    job_copy(&j, "tests/regression/bad/square.msh");
+    snprintf(path, sizeof path, "%s/%s", j.dir, name[k]);
+    write[k](path);
+    job_write(&j, "field.inp",
+              "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.\n"
+              "*EXPANSION\n1.E-5\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1, 2\n"
+              "*TEMPERATURE, FILE=%s\nBODY\n*PRINT, ELEMENTS\n*END STEP\n"
+              "*STEP\n*QUASISTATIC\n0.5, 1.\n*TEMPERATURE\nBODY, 0.\n"
+              "*END STEP\n"
+              "*STEP\n*STATIC\n*TEMPERATURE, FILE=%s\nBODY, 2.\n*END STEP\n",
+              name[k], name[k]);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "%s: exit %d: %s", name[k], code, j.errors);
+    const double mean = 100 + 10 * (1 + 2 + 5) / 3.0;
+    static const double part[] = {0.5, 1.0, 0.5, 0.0, 2.0};
+    for (int i = 0; i < 5; ++i) {
+      dat d = job_table(&j, "ELEMENTS", i);
+      double found = dat_at(&d, dat_row_near(&d, "elem_no", 12), "temperature");
+      ck_assert_double_eq_tol(found, part[i] * mean, 1e-11);
+      dat_free(&d);
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Without *TEMPERATURE nothing of it is done or held. */
 START_TEST(costs_nothing_when_not_called) {
   scene s = {"square.geo",
@@ -316,5 +406,5 @@ UNIT_MAIN("thermal", bar_between_contacts, held_on_all_sides,
           free_expansion_has_no_stress, secants_over_the_temperature,
           temperatures_run_through_the_steps,
           cylinder_with_a_logarithmic_profile, strip_with_a_parabolic_profile,
-          heat_closes_the_gap, penetration_at_the_start,
-          costs_nothing_when_not_called)
+          temperatures_from_a_file, heat_closes_the_gap,
+          penetration_at_the_start, costs_nothing_when_not_called)
