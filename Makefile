@@ -49,7 +49,8 @@ bench_c  := $(wildcard tests/bench/*.c)
 bench    := $(bench_c:%.c=$(out)/%)
 verify_c := $(wildcard tests/verify/*.c)
 verify   := $(verify_c:%.c=$(out)/%)
-support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c))
+support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c \
+              tests/scenes/*.c))
 
 .PHONY: all help deps demo test check unit regression stability layers style \
         format bench bench-solvers bench-auto clean
@@ -65,6 +66,7 @@ help:
 	@echo "make test         install what is missing, build, run every test"
 	@echo "make unit         unit tests alone;   make regression: decks alone"
 	@echo "make stability    hard cases and 10000 random problems: minutes"
+	@echo "make scenes       the matrix of hard scenes and methods alone"
 	@echo "make verify       orders of convergence, observed and expected"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
@@ -119,12 +121,17 @@ unit: $(unit)
 regression: $(program) $(regr)
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) tools/run_tests $(regr)
 
-# Hard cases: every program of tests/stability, and the long run of the
-# conformance test.
+# Hard cases: the matrix of scenes (SCENE=name: those alone), every other
+# program of tests/stability, and the long run of the conformance test.
 PROBLEMS ?= 10000
-stability: $(program) $(stab) $(out)/tests/unit/conformance
+scenes   := $(out)/tests/stability/scenes
+.PHONY: scenes
+scenes: $(program) $(scenes)
+	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) $(scenes)
+
+stability: $(program) $(stab) $(out)/tests/unit/conformance scenes
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) PROTIS_PROBLEMS=$(PROBLEMS) \
-	  tools/run_tests $(filter-out $(program),$^)
+	  tools/run_tests $(filter-out $(program) $(scenes) scenes,$^)
 
 layers:
 	$(Q)tools/check_layers src

@@ -1,0 +1,10 @@
+/*
+ * The quick ones of the hard scenes (tests/scenes): no run fails.
+ */
+#include "scenes/scenes.h"
+#include "support/unit.h"
+
+START_TEST(no_quick_scene_fails) { ck_assert_int_eq(scenes_run(1, stdout), 0); }
+END_TEST
+
+UNIT_MAIN("scenes", no_quick_scene_fails)
