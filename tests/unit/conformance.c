@@ -89,6 +89,7 @@ static void tie(problem *p) {
 static void weaken(problem *p, unsigned long long *seed) {
   contact_case *c = &p->c;
   int m = c->cp.m, rank = m / 2 + 1;
+  ck_assert_int_gt(m, 0);
   double *G = calloc((size_t)(m * rank), sizeof *G);
   for (int i = 0; i < m * rank; ++i) G[i] = case_random(seed) - 0.5;
   for (int i = 0; i < m; ++i)

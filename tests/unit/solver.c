@@ -271,6 +271,46 @@ START_TEST(one_node_is_solved_in_every_state) {
 }
 END_TEST
 
+/* All open, all stick, touching without force, one node (kind 0 to 3). */
+static contact_case special_case(int dim, int kind, unsigned long long seed) {
+  contact_case c =
+      case_any(dim, kind == 3 ? 1 : 7, kind == 1 ? 1e6 : 0.3, 0, seed);
+  int m = c.cp.m;
+  double *want = calloc((size_t)m + 1, sizeof *want);
+  if (kind < 2) choose_answer(&c, kind, want);
+  for (int j = 0; j < m; ++j) want[j] = j % dim ? 0.05 * j : c.gap[j / dim];
+  if (kind == 2) contact_product(m, c.A, want, c.f);
+  free(want);
+  return c;
+}
+
+START_TEST(special_cases_are_solved_from_the_compliance) {
+  for (int k = 0; k < 32; ++k) {
+    contact_case c = special_case(2 + k % 2, k / 2 % 4, 600u + (unsigned)k);
+    size_t m = (size_t)c.cp.m;
+    double *W = calloc(m * m, sizeof *W), *q = calloc(m, sizeof *q);
+    ck_assert(case_inverse(c.cp.m, c.A, W));
+    contact_product(c.cp.m, W, c.f, q);
+    contact_case given = c;
+    given.cp.A = NULL;
+    given.cp.W = W;
+    given.cp.f = q;
+    const solver_ops *ops;
+    for (int i = 0; solver_row(i, &ops); ++i) {
+      case_cold(&c);
+      solver_report rep = solve_by(ops, &given, 1e-11, c.u, c.r);
+      ck_assert_msg(rep.outcome == CONVERGED, "%s: case %d: %s", row_name(ops),
+                    k, outcome_text(rep.outcome));
+      ck_assert_msg(case_violation(&c, c.u, c.r) < 1e-8, "%s: case %d",
+                    row_name(ops), k);
+    }
+    free(W);
+    free(q);
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* W alone, of half the rank but for 1e-9 or (with u = 0 where it is flat)
  * nothing at all, and a q that it can take back. */
 START_TEST(nearly_singular_compliance_is_solved) {
@@ -586,6 +626,7 @@ UNIT_MAIN("solver", table_is_complete, one_triangle_slips_sticks_and_opens,
           corner_node_meets_both_obstacles,
           held_tangents_stay_where_they_are_put,
           touching_without_force_is_solved, one_node_is_solved_in_every_state,
+          special_cases_are_solved_from_the_compliance,
           nearly_singular_compliance_is_solved,
           auto_solves_the_cycling_p_matrix,
           rigid_body_is_solved_in_compliance_form,
