@@ -244,7 +244,10 @@
   X(2053, ERROR, "nodal field not valid",                                    \
     "FILE= of *TEMPERATURE names a .msh with $NodeData of one component, or "\
     "HDF5 with /node_no and /temperature, with a value for each node of the "\
-    "mesh by its number in the mesh file.")
+    "mesh by its number in the mesh file.")                                  \
+  X(2054, ERROR, "law without an exact step",                                \
+    "INTEGRATOR=EXPONENTIAL needs linear laws whose coefficients do not "    \
+    "depend on time or temperature. Take MIDPOINT or BACKWARD.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

@@ -563,6 +563,27 @@ int step_level(const model *m, const step *s, double t, double dt, double rate,
   return -1;
 }
 
+static int is_constant(const law_card *law) {
+  return law->ops->linear && law_varies(law) == 0;
+}
+
+/* Laws of the bodies under an integrator that is exact for constant ones. */
+static void check_exact(const model *m, int step_id) {
+  const step *s = &m->steps[step_id];
+  for (int i = 0; i < m->n_section; ++i) {
+    const material *mat = &m->materials[m->sections[i].material_id];
+    const law_card *law = &mat->law;
+    if (law->ops == NULL || is_constant(law)) continue;
+    message_add(m->log, P2054, &s->at,
+                "step %d: INTEGRATOR=%s, but %s of material %s %s",
+                step_id + 1, s->integrator->name, law->ops->name, mat->name,
+                !law->ops->linear ? "is not linear"
+                : law_varies(law) & LAW_VARIES_TIME
+                    ? "has coefficients that vary in time"
+                    : "depends on temperature");
+  }
+}
+
 /* The fastest rate of the laws whose Jacobian is the same for ever, 1/s. */
 static status constant_rate(const model *m, double *fastest) {
   status st = OK;
@@ -574,9 +595,7 @@ static status constant_rate(const model *m, double *fastest) {
     law_elastic elastic;
     law_point p;
     double rate;
-    if (mat->law.ops == NULL || !mat->law.ops->linear ||
-        law_varies(&mat->law) != 0)
-      continue;
+    if (mat->law.ops == NULL || !is_constant(&mat->law)) continue;
     law_elastic_set(mat->C, mat->type, (kinematics)m->sections[i].kin,
                     &elastic);
     TRY(flow_new_kind(&kind, &mat->law, &elastic));
@@ -599,7 +618,9 @@ static status check_visco(const model *m) {
   TRY(constant_rate(m, &rate));
   for (int i = 0; i < m->n_step; ++i) {
     const step *s = &m->steps[i];
-    if (s->kind == STEP_VISCO && step_has_limit(s) && rate > 0.0)
+    if (s->kind != STEP_VISCO) continue;
+    if (s->integrator->linear_only) check_exact(m, i);
+    if (step_has_limit(s) && rate > 0.0)
       step_level(m, s, s->start, s->dt, rate, 1);
   }
 done:

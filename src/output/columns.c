@@ -68,6 +68,14 @@ VALUE(reaction, v->s->reaction[at(v->msh->dim, id, part)])
 
 /* Elements */
 VALUE(elem_no, v->msh->elem_no[id])
+
+static double elem_x(const view *v, int id, int part) {
+  const int dim = v->msh->dim, *node = v->msh->elem + (dim + 1) * id;
+  double sum = 0;
+  for (int k = 0; k <= dim; ++k) sum += v->msh->x[at(dim, node[k], part)];
+  return sum / (dim + 1);
+}
+
 VALUE(temperature, v->s->temperature[id])
 VALUE(strain, v->s->strain[at(v->m->ns, id, part)])
 VALUE(stress, v->s->stress[at(v->m->ns, id, part)])
@@ -350,6 +358,16 @@ const column column_table[] = {
 
 {"elem_no", "-", PER_ELEMENT, AS_COUNT, PRINT_ELEMENTS, 0, ANY, NULL, 0,
  elem_no, NULL, "number in the mesh"},
+{"x", "length", ELEM, PRINT_ELEMENTS, 0, CART, 0, NULL, 0, elem_x, NULL,
+ "centre"},
+{"r", "length", ELEM, PRINT_ELEMENTS, 0, SCENE_AXI, 0, NULL, 0, elem_x, NULL,
+ "centre"},
+{"y", "length", ELEM, PRINT_ELEMENTS, 0, CART, 0, NULL, 1, elem_x, NULL,
+ "centre"},
+{"z", "length", ELEM, PRINT_ELEMENTS, 0, SCENE_AXI, 0, NULL, 1, elem_x, NULL,
+ "centre"},
+{"z", "length", ELEM, PRINT_ELEMENTS, 0, SCENE_SOLID, 0, NULL, 2, elem_x, NULL,
+ "centre"},
 {"temperature", "temperature", ELEM, PRINT_ELEMENTS,
  EFFECT_STRESS | EFFECT_THERMAL, ANY, "temperature", 0, temperature, NULL,
  "mean of the element"},
