@@ -24,4 +24,3 @@ Transfinite Surface{1, 2} Alternated;
 Physical Curve("INSIDE") = {6};
 Physical Curve("FACES") = {1, 2, 4, 5};
 Physical Surface("TUBE") = {1, 2};
-Physical Surface("OUTER") = {2};

@@ -1,7 +1,7 @@
 // Quarter of a strip of height 2 and length 2 L: x along it from the middle,
 // y from the plane in the middle of its height to the surface.
 //   N   cells across, NX along, smaller towards the free end
-DefineConstant[ N = 30, NX = 14, L = 4 ];
+DefineConstant[ N = 30, NX = 8, L = 4 ];
 w = L / NX;
 Point(1) = {0, 0, 0};
 Point(2) = {w, 0, 0};
@@ -17,8 +17,8 @@ Line(5) = {5, 6};
 Line(6) = {6, 1};
 Line(7) = {2, 5};
 Transfinite Curve{1, 5} = 2;
-Transfinite Curve{2} = NX Using Progression 0.92;
-Transfinite Curve{4} = NX Using Progression 1 / 0.92;
+Transfinite Curve{2} = NX Using Progression 0.8;
+Transfinite Curve{4} = NX Using Progression 1 / 0.8;
 Transfinite Curve{3, 6, 7} = N + 1;
 Curve Loop(1) = {1, 7, 5, 6};
 Plane Surface(1) = {1};

@@ -575,8 +575,8 @@ static void check_exact(const model *m, int step_id) {
     const law_card *law = &mat->law;
     if (law->ops == NULL || is_constant(law)) continue;
     message_add(m->log, P2054, &s->at,
-                "step %d: INTEGRATOR=%s, but %s of material %s %s",
-                step_id + 1, s->integrator->name, law->ops->name, mat->name,
+                "step %d: INTEGRATOR=%s, but %s of material %s %s", step_id + 1,
+                s->integrator->name, law->ops->name, mat->name,
                 !law->ops->linear ? "is not linear"
                 : law_varies(law) & LAW_VARIES_TIME
                     ? "has coefficients that vary in time"
