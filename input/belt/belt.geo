@@ -2,7 +2,7 @@
 // cut off at the radius SIZE half-widths.
 //   A        half-width of the contact that is expected
 //   SIZE     radius, in half-widths
-//   NC       segments per half-width, up to 1.2 half-widths on each side
+//   NC       segments per half-width, up to 1.4 half-widths on each side
 //   GROWTH   growth of the segments with the distance from there
 DefineConstant[ A = 0.2348908547, SIZE = 20, NC = 40, GROWTH = 0.1 ];
 
@@ -11,8 +11,8 @@ L = SIZE * A;
 
 Point(1) = {0, 0, 0};
 Point(2) = {-L, 0, 0};
-Point(3) = {-1.2 * A, 0, 0};
-Point(4) = {1.2 * A, 0, 0};
+Point(3) = {-1.4 * A, 0, 0};
+Point(4) = {1.4 * A, 0, 0};
 Point(5) = {L, 0, 0};
 Point(6) = {0, L, 0};
 Line(1) = {2, 3};
@@ -24,7 +24,7 @@ Circle(6) = {6, 1, 2};
 Curve Loop(1) = {1 ... 6};
 Plane Surface(1) = {1};
 
-Transfinite Curve{2, 3} = Ceil(1.2 * NC) + 1;
+Transfinite Curve{2, 3} = Ceil(1.4 * NC) + 1;
 Transfinite Curve{5, 6} = 41;
 Field[1] = Distance;
 Field[1].CurvesList = {2, 3};

@@ -74,10 +74,8 @@ static status finder_new(run *r, finder *z) {
   z->r = r;
   z->dim = s->dim;
   NEW(z->index, r->msh->n_node);
-  for (int i = 0; i < r->msh->n_node; ++i)
-    z->index[i] = -1;
-  for (int i = 0; i < s->n; ++i)
-    z->index[s->node_id[i]] = i;
+  for (int i = 0; i < r->msh->n_node; ++i) z->index[i] = -1;
+  for (int i = 0; i < s->n; ++i) z->index[s->node_id[i]] = i;
   TRY(level_new(z->dim, s->n, &z->closed));
   TRY(level_new(z->dim, s->n, &z->stick));
   NEW(z->next, s->n);
@@ -146,8 +144,7 @@ static double face_gradient(const finder *z, const int *node, const double *w,
   for (int k = 0; k < 3; ++k) {
     difference(z, node[(k + 1) % 3], node[(k + 2) % 3], a);
     cross(normal, a, part);
-    for (int c = 0; c < 3; ++c)
-      g[c] += part[c] / twice * w[node[k]] / 2;
+    for (int c = 0; c < 3; ++c) g[c] += part[c] / twice * w[node[k]] / 2;
   }
   return twice / 2;
 }
@@ -156,17 +153,13 @@ static void add_slopes(const finder *z, const mesh_group *group, level *l) {
   for (int f = 0; f < group->n_item; ++f) {
     int node[3] = {0}, inside = 1;
     double g[3];
-    if (!face_nodes(z, group->item_id[f], node))
-      continue;
-    for (int k = 0; k < z->dim; ++k)
-      inside &= l->in[node[k]];
-    if (!inside)
-      continue;
+    if (!face_nodes(z, group->item_id[f], node)) continue;
+    for (int k = 0; k < z->dim; ++k) inside &= l->in[node[k]];
+    if (!inside) continue;
     double measure = face_gradient(z, node, l->square, g);
     for (int k = 0; k < z->dim; ++k) {
       l->weight[node[k]] += measure;
-      for (int c = 0; c < z->dim; ++c)
-        l->slope[z->dim * node[k] + c] += g[c];
+      for (int c = 0; c < z->dim; ++c) l->slope[z->dim * node[k] + c] += g[c];
     }
   }
 }
@@ -174,8 +167,7 @@ static void add_slopes(const finder *z, const mesh_group *group, level *l) {
 /* Part of the way from node i of the set to node j outside. */
 static double face_reach(const finder *z, const level *l, int i, int j) {
   double way[3], fall = 0.0;
-  if (l->weight[i] <= 0.0)
-    return 0.5;
+  if (l->weight[i] <= 0.0) return 0.5;
   difference(z, i, j, way);
   for (int c = 0; c < z->dim; ++c)
     fall -= way[c] * l->slope[z->dim * i + c] / l->weight[i];
@@ -195,8 +187,7 @@ static int edge_nodes(const finder *z, const level *l, int i, int j,
   const int *inwards = z->next[i] == j ? z->before : z->next;
   int n = 0;
   for (int k = i; k >= 0 && l->in[k] && n < 2 * FIT_NODES; k = inwards[k]) {
-    if (n < FIT_NODES)
-      node[n] = k;
+    if (n < FIT_NODES) node[n] = k;
     ++n;
   }
   return n <= 6 ? (n < 3 ? n : 3) : n / 2;
@@ -210,8 +201,7 @@ static double extend(const finder *z, const level *l, int n, const int *node,
   double s[FIT_NODES] = {0}, y[FIT_NODES], ms = 0.0, my = 0.0;
   double ss = 0.0, sy = 0.0, yy = 0.0;
   for (int k = 0; k < n; ++k) {
-    if (k > 0)
-      s[k] = s[k - 1] + distance(z, node[k - 1], node[k]);
+    if (k > 0) s[k] = s[k - 1] + distance(z, node[k - 1], node[k]);
     y[k] = pow(l->square[node[k]], power);
     ms += s[k] / n;
     my += y[k] / n;
@@ -228,14 +218,12 @@ static double extend(const finder *z, const level *l, int n, const int *node,
 static double line_reach(const finder *z, const level *l, int i, int j) {
   int node[FIT_NODES], n = edge_nodes(z, l, i, j, node);
   double root_misfit, other_misfit, length = distance(z, i, j);
-  if (n < 2)
-    return 0.5;
+  if (n < 2) return 0.5;
   double end = extend(z, l, 2, node, 1.0, &root_misfit);
   if (n >= 3 && l == &z->stick) {
     double other = extend(z, l, n, node, 1.0 / 3, &other_misfit);
     extend(z, l, n, node, 1.0, &root_misfit);
-    if (other_misfit < root_misfit)
-      end = other;
+    if (other_misfit < root_misfit) end = other;
   }
   return end < HUGE_VAL ? fmin(1.0, end / length) : 0.5;
 }
@@ -258,16 +246,12 @@ static double reach(const finder *z, const level *l, int i, int j) {
 static double part_of_face(const finder *z, const level *l, const int *node) {
   double w[3], unused[3];
   int n = 0, odd = 0;
-  for (int k = 0; k < 3; ++k)
-    n += l->in[node[k]];
-  if (n == 0)
-    return 0.0;
+  for (int k = 0; k < 3; ++k) n += l->in[node[k]];
+  if (n == 0) return 0.0;
   double area = face_gradient(z, node, l->square, unused);
-  if (n == 3)
-    return area;
+  if (n == 3) return area;
   for (int k = 0; k < 3; ++k)
-    if (l->in[node[k]] == (n == 1))
-      odd = k;
+    if (l->in[node[k]] == (n == 1)) odd = k;
   for (int k = 1; k < 3; ++k) {
     int other = node[(odd + k) % 3];
     w[k] = n == 1 ? reach(z, l, node[odd], other)
@@ -292,8 +276,7 @@ static status find_areas(const finder *z, int contact_id) {
   for (int f = 0; f < group->n_item; ++f) {
     int node[3];
     double unused[3];
-    if (!face_nodes(z, group->item_id[f], node))
-      continue;
+    if (!face_nodes(z, group->item_id[f], node)) continue;
     whole += face_gradient(z, node, z->closed.square, unused);
     closed += part_of_face(z, &z->closed, node);
     stick += part_of_face(z, &z->stick, node);
@@ -313,8 +296,7 @@ done:
 
 /* Direction of the slip along t; 0 without friction or slip. */
 static int slip_sign(const finder *z, int i) {
-  if (z->r->contact[i] != CONTACT_SLIP)
-    return 0;
+  if (z->r->contact[i] != CONTACT_SLIP) return 0;
   double rt = z->r->now.rc[2 * i + 1];
   return (rt < 0.0) - (rt > 0.0);
 }
@@ -323,8 +305,7 @@ static int slip_sign(const finder *z, int i) {
 static double zone_end(const finder *z, int i, int j) {
   const contact_status *kind = z->r->contact;
   const level *l = &z->closed;
-  if (z->closed.in[i] && z->closed.in[j])
-    l = &z->stick;
+  if (z->closed.in[i] && z->closed.in[j]) l = &z->stick;
   if (kind[i] != kind[j])
     return l->in[i] ? reach(z, l, i, j) : 1.0 - reach(z, l, j, i);
   double a = fabs(z->r->slip[i]), b = fabs(z->r->slip[j]);
@@ -352,8 +333,7 @@ static void add_piece(const finder *z, int i, double a, double b,
 
 static void set_point(const finder *z, int i, double part, double *x) {
   double way[3] = {0.0, 0.0, 0.0};
-  if (part > 0.0)
-    difference(z, i, z->next[i], way);
+  if (part > 0.0) difference(z, i, z->next[i], way);
   for (int c = 0; c < 2; ++c)
     x[c] = z->r->surface->x[2 * i + c] + part * way[c];
 }
@@ -390,12 +370,10 @@ static status walk(const finder *z, int contact_id, int start) {
       add_piece(z, i, 0.0, end, &zone);
       set_point(z, i, end, zone.to);
       TRY(add_zone(z->r, &zone));
-      if (j == start)
-        goto done;
+      if (j == start) goto done;
       zone = first_zone(z, contact_id, i, j);
     }
-    if (j == start)
-      break;
+    if (j == start) break;
   }
   set_point(z, z->next[i] == start ? start : i, 0.0, zone.to);
   TRY(add_zone(z->r, &zone));
@@ -406,10 +384,8 @@ done:
 /* Where to cut a closed line: before a node that begins a zone. */
 static int cut_ring(const finder *z, int start) {
   for (int i = start;; i = z->next[i]) {
-    if (!same_zone(z, i, z->next[i]))
-      return z->next[i];
-    if (z->next[i] == start)
-      return start;
+    if (!same_zone(z, i, z->next[i])) return z->next[i];
+    if (z->next[i] == start) return start;
   }
 }
 
@@ -417,19 +393,16 @@ static status find_lines(finder *z, int contact_id) {
   status st = OK;
   const mesh_group *group = z->r->pairs[contact_id].group;
   int n = z->r->n, node[3];
-  for (int i = 0; i < n; ++i)
-    z->next[i] = z->before[i] = -1;
+  for (int i = 0; i < n; ++i) z->next[i] = z->before[i] = -1;
   for (int f = 0; f < group->n_item; ++f) {
-    if (!face_nodes(z, group->item_id[f], node))
-      continue;
+    if (!face_nodes(z, group->item_id[f], node)) continue;
     z->next[node[0]] = node[1];
     z->next_face[node[0]] = group->item_id[f];
     z->before[node[1]] = node[0];
   }
   for (int pass = 0; pass < 2; ++pass)
     for (int i = 0; i < n; ++i) {
-      if (z->next[i] < 0 || (pass == 0 && z->before[i] >= 0))
-        continue;
+      if (z->next[i] < 0 || (pass == 0 && z->before[i] >= 0)) continue;
       int start = pass == 0 ? i : cut_ring(z, i);
       TRY(walk(z, contact_id, start));
       for (int k = start, next; k >= 0; k = next) {
@@ -445,8 +418,7 @@ status zones_find(run *r) {
   status st = OK;
   finder z = {0};
   r->n_zone = 0;
-  if (r->n == 0)
-    return OK;
+  if (r->n == 0) return OK;
   timer_enter(STAGE_ZONES);
   TRY(finder_new(r, &z));
   set_levels(&z);

@@ -141,9 +141,9 @@ END_TEST
 /* tan(pi e) = mu (1 - 2 nu)/(2 - 2 nu); pressure of Johnson 8.3. The
  * elements next to the steep end, a/40 long, are left out. */
 START_TEST(sliding_contact_is_shifted_by_friction) {
-  static const double nu[] = {0.3, 0.3, 0.0}, mu[] = {0.5, 1.0, 0.4};
-  static const double known[] = {0.04516724, 0.08858553, 0.0};
-  for (int i = 0; i < 3; ++i) {
+  static const double nu[] = {0.3, 0.3, 0.0, 0.1}, mu[] = {0.5, 1.0, 0.4, 0.8};
+  static const double known[] = {0.04516724, 0.08858553, 0.0, 0.0};
+  for (int i = 0; i < 4; ++i) {
     char words[120];
     const double pi = acos(-1.0), Es = young / (1 - nu[i] * nu[i]);
     double e = atan(mu[i] * (1 - 2 * nu[i]) / (2 - 2 * nu[i])) / pi;
