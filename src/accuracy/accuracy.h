@@ -55,6 +55,13 @@ status solver_error_bound(const contact_problem *cp,
 status contraction_rate(const contact_problem *cp, const double *u,
                         const double *r, known_rate *known, double *rate);
 
+/*
+ * The same map as it contracts in the end, pass after pass, *rate: what a
+ * fixed point near (u, r) shows; not above contraction_rate, and no bound.
+ */
+status contraction_limit(const contact_problem *cp, const double *u,
+                         const double *r, double *rate);
+
 /* inverse_energy of a dense matrix M[m*m] by its Cholesky factor, for problems
  * of which nothing else is known. *out is new (dense_inverse_free), NULL if M
  * is not symmetric and positive semidefinite. */
@@ -62,6 +69,9 @@ typedef struct dense_inverse dense_inverse;
 status dense_inverse_new(int m, const double *M, dense_inverse **out);
 void dense_inverse_free(dense_inverse *d); /* accepts NULL                    */
 inverse_energy dense_inverse_energy(dense_inverse *d);
+/* v = inv(M) x; of a semidefinite M the v that leaves n_kernel unknowns at 0,
+ * whose force then is what balances x. v[m] may be x. */
+void dense_inverse_solve(dense_inverse *d, const double *x, double *v);
 
 /* ---- for the files of this folder --------------------------------------- */
 

@@ -13,7 +13,7 @@
 #include <lapacke.h>
 #include <math.h>
 
-enum { PASSES = 12 };
+enum { PASSES = 12, LONG_RUN = 90, AVERAGED = 30 };
 
 typedef struct linear_map {
   const contact_problem *cp;
@@ -224,6 +224,39 @@ static status compare(const linear_map *s, known_rate *k, int *same) {
     k->state[dof] = now;
   }
 done:
+  return st;
+}
+
+/* Mean factor of the last passes of many; what they start from is forgotten. */
+static status measure_limit(linear_map *s, const double *r, double *rate) {
+  status st = OK;
+  double *dn = NULL, last, grown = 0.0;
+  NEW(dn, s->cp->n);
+  first_change(s, r);
+  last = move(s);
+  for (int k = 1; k <= LONG_RUN && last > 0.0; ++k) {
+    for (int i = 0; i < s->cp->n; ++i) s->dg[i] /= sqrt(last);
+    for (int a = 0; a < s->n_free; ++a) s->x[a] /= sqrt(last);
+    change_limit(s, dn);
+    last = move(s);
+    if (k > LONG_RUN - AVERAGED) grown += 0.5 * log(last);
+  }
+  *rate = last > 0.0 ? exp(grown / AVERAGED) : 0.0;
+done:
+  memory_free(dn);
+  return st;
+}
+
+status contraction_limit(const contact_problem *cp, const double *u,
+                         const double *r, double *rate) {
+  status st = OK;
+  linear_map s = {0};
+  TRY(map_new(cp, &s));
+  set_state(&s, u, r);
+  TRY(measure(&s, r, rate));
+  if (*rate > 0.0 && *rate < HUGE_VAL) TRY(measure_limit(&s, r, rate));
+done:
+  map_free(&s);
   return st;
 }
 

@@ -112,14 +112,29 @@ void dense_inverse_free(dense_inverse *d) {
   memory_free(d);
 }
 
-static status dense_square(void *ctx, const double *x, double *square) {
-  dense_inverse *d = ctx;
+/* y = inv(L) x in the order of the pivots. */
+static void forward(dense_inverse *d, const double *x) {
   for (int j = 0; j < d->rank; ++j) {
     int dof = d->pivot[j] - 1;
     d->y[j] = d->unit[dof] * x[dof];
   }
   cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, d->rank,
               d->L, d->m, d->y, 1);
+}
+
+void dense_inverse_solve(dense_inverse *d, const double *x, double *v) {
+  forward(d, x);
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, d->rank,
+              d->L, d->m, d->y, 1);
+  for (int j = 0; j < d->m; ++j) {
+    int dof = d->pivot[j] - 1;
+    v[dof] = j < d->rank ? d->unit[dof] * d->y[j] : 0.0;
+  }
+}
+
+static status dense_square(void *ctx, const double *x, double *square) {
+  dense_inverse *d = ctx;
+  forward(d, x);
   *square = cblas_ddot(d->rank, d->y, 1, d->y, 1);
   return OK;
 }

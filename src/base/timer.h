@@ -33,6 +33,7 @@
   X(ZONES,       "zones of stick and slip")                \
   X(ESTIMATE,    "error estimates")                        \
   X(CHECK,       "second solutions, jumps")                \
+  X(THEORY,      "theorems")                               \
   X(TABLES,      "tables")                                 \
   X(HDF5,        "HDF5 output")                            \
   X(RESTART,     "restart")

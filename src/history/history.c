@@ -39,6 +39,11 @@ static long increments_of(const step *s) {
   return (long)ceil(n);
 }
 
+/* 1: reached its tolerance and violates no theorem. */
+static int is_settled(const run *r) {
+  return r->report.outcome > 0 && !r->missed && !r->theorems.violated;
+}
+
 /* What the outputs see of an increment. */
 static state make_state(run *r, int attempt, int increment_no) {
   const equilibrium *e = &r->now;
@@ -73,18 +78,16 @@ static state make_state(run *r, int attempt, int increment_no) {
              .error = r->error,
              .jumps = r->jumps,
              .jump_t = r->jump_t,
+             .theory = r->theorems,
              .solutions = r->step->check != CHECK_NONE ? &r->solutions : NULL,
              .mesh_error = r->mesh_error,
              .time_error = r->time_error,
              .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
              .solver_log = contact_solver_log(r->solver),
-             .settled = r->report.outcome > 0 && !r->missed};
-  if (r->visco != NULL)
-    visco_show(r, &s);
-  if (!(r->m->effects & EFFECT_STRESS))
-    s.stress = NULL;
-  if (!(r->m->effects & EFFECT_REACTION))
-    s.reaction = NULL;
+             .settled = is_settled(r)};
+  if (r->visco != NULL) visco_show(r, &s);
+  if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
+  if (!(r->m->effects & EFFECT_REACTION)) s.reaction = NULL;
   for (int i = 0; i < r->n; ++i) {
     s.n_open += r->contact[i] == CONTACT_OPEN;
     s.n_slip += r->contact[i] == CONTACT_SLIP;
@@ -133,8 +136,8 @@ static status accept(run *r, int attempt, int increment_no, int last,
                      double cpu) {
   status st = OK;
   ++r->total_no;
-  if (r->report.outcome <= 0 || r->missed)
-    ++r->unsettled;
+  TRY(theory_increment(r));
+  if (!is_settled(r)) ++r->unsettled;
   TRY(result_evaluate(r, stress_is_due(r->step, increment_no, last)));
   TRY(estimate_increment(r));
   r->n_zone = 0;
@@ -156,6 +159,7 @@ done:
 static status reject(run *r, int attempt, int increment_no, const char *why) {
   r->error = (error_bound){0};
   r->mesh_error.asked = r->time_error.asked = 0;
+  r->theorems = (theory_report){0};
   r->jumps = 0;
   state s = make_state(r, attempt, increment_no);
   s.n_open = s.n_slip = s.n_stick = 0;
@@ -344,6 +348,7 @@ static status test_start(run *r) {
                           .given = given,
                           .load = largest};
   start_test(&in, r->old.rc, r->old.reaction, &r->first);
+  TRY(theory_initial(r));
 done:
   timer_leave(STAGE_START);
   memory_free(R);

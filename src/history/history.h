@@ -10,6 +10,7 @@
 #include "model/model.h"
 #include "scheme/scheme.h"
 #include "start/start.h"
+#include "theory/theory.h"
 
 /* Forces and moments of one contact: of the obstacle on the body. */
 typedef struct contact_total {
@@ -119,6 +120,7 @@ typedef struct state {
                                the mesh, -, relative as that; or NULL         */
   int jumps;     /* 1: no path of equilibria leads to this one                */
   double jump_t; /* s, where the equilibrium jumps then                       */
+  theory_report theory; /* the theorems at work                              */
   const solution_set *solutions; /* of CHECK=; NULL: not asked for            */
   const char *solver_log;
   const char *note; /* whole lines about what jumps, "" or NULL: nothing      */

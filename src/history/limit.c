@@ -142,6 +142,17 @@ static void note_jumps(run *r, double t) {
   }
 }
 
+double limit_coefficient(const run *r, int contact_id, double t) {
+  const friction_rule *rule = rule_of(r, contact_id);
+  double largest = 0.0;
+  if (!rule_has_friction(rule) || strcmp(rule->law->value_unit, "-") != 0)
+    return 0.0;
+  for (int i = 0; i < r->n; ++i)
+    if (r->surface->contact_id[i] == contact_id)
+      largest = fmax(largest, value_at(r, rule, i, t));
+  return largest;
+}
+
 /* ---- averages ---------------------------------------------------------- */
 
 /* The average of one contact and the rule it was made for. */

@@ -108,8 +108,10 @@ typedef struct run {
   int dense_known;      /* 1: made, or A has none                      */
   known_rate rate;
   double *f_before; /* [m] condensed load of r->old, N                        */
-  int jumps;     /* 1: the equilibrium jumps in the increment               */
-  double jump_t; /* s, there                                               */
+  int jumps;      /* 1: the equilibrium jumps in the increment               */
+  double jump_t;  /* s, there                                               */
+  theory *theory; /* NULL until asked for                                    */
+  theory_report theorems;
   solution_set solutions; /* found by CHECK= in the increment                 */
   int total_no, unsettled;
   int missed; /* 1: the increment misses the tolerance of its step            */
@@ -180,6 +182,9 @@ double limit_average_entries(const run *r);
  * r->cp with it, has changed and is to be solved again. */
 int limit_follow_zone(run *r);
 const sparse_rows *limit_matrix(const run *r); /* B of r->cp, or NULL         */
+/* Largest friction coefficient of the nodes of a contact at t, -; 0 for laws
+ * without one. */
+double limit_coefficient(const run *r, int contact_id, double t);
 void limit_free(run *r);
 
 /* form.c: for a new surface; nodes of *CONTACT FORCE. */
@@ -211,6 +216,11 @@ void path_free(finer_path *p); /* accepts NULL                               */
 
 /* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
 status estimate_increment(run *r);
+
+/* The theorems at r->now into r->theorems, if asked for; at the initial state,
+ * which is posed in r->cp. */
+status theory_increment(run *r);
+status theory_initial(run *r);
 
 /* Whether the equilibrium jumps between r->old and r->now, at time t, into
  * r->jumps, r->jump_t, r->note. r->now is solved again if it was looked for. */

@@ -178,6 +178,7 @@ void run_free(run *r) {
   free_equilibrium(&r->old);
   free_equilibrium(&r->now);
   strains_free(r);
+  theory_free(r->theory);
   memory_free(r->kin);
   memory_free(r->thickness);
   memory_free(r->E);

@@ -458,6 +458,7 @@ status apply_accuracy(reading *r) {
   s->no_solver_error = !p->solver;
   s->mesh_error = p->mesh || p->target > 0.0;
   s->time_error = p->time || p->target > 0.0;
+  s->theory = p->theory;
   if (p->target > 0.0)
     r->m->target =
         (accuracy_target){p->target, p->max_cpu, p->max_memory, p->max_passes};

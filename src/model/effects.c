@@ -383,6 +383,23 @@ static void reason_time_error(const model *m, char *text, size_t size) {
   snprintf(text, size, "%s*ACCURACY, TIME=YES", has_time_error(m) ? "" : "no ");
 }
 
+static const step *first_theory(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    if (m->steps[i].theory) return &m->steps[i];
+  return NULL;
+}
+static int has_theory(const model *m) {
+  return first_theory(m) != NULL && m->n_contact > 0;
+}
+static void reason_theory(const model *m, char *text, size_t size) {
+  if (first_theory(m) == NULL)
+    snprintf(text, size, "no *ACCURACY, THEORY=YES");
+  else if (m->n_contact == 0)
+    snprintf(text, size, "no *CONTACT card");
+  else
+    snprintf(text, size, "*ACCURACY, THEORY=YES");
+}
+
 /* When an effect is on, and what its line in the plan says. */
 static const struct {
   int (*is_on)(const model *m);
@@ -402,7 +419,8 @@ static const struct {
     [EFFECT_BIT_REACTION] = {has_reaction, reason_reaction},
     [EFFECT_BIT_MESH_ERROR] = {has_mesh_error, reason_mesh_error},
     [EFFECT_BIT_TIME_ERROR] = {has_time_error, reason_time_error},
-    [EFFECT_BIT_ESTIMATES] = {has_estimates, reason_estimates}};
+    [EFFECT_BIT_ESTIMATES] = {has_estimates, reason_estimates},
+    [EFFECT_BIT_THEORY] = {has_theory, reason_theory}};
 
 void model_find_effects(model *m) {
   m->effects = 0;

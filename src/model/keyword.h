@@ -148,7 +148,7 @@ typedef struct solver_param {
 typedef struct accuracy_param {
   int mesh, time, max_passes;
   double target, max_cpu, max_memory;
-  int solver;
+  int solver, theory;
 } accuracy_param;
 typedef struct print_param {
   int contact, totals, nodes, elements, energy, reactions, zones, loop;

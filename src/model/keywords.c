@@ -190,6 +190,8 @@ static const option accuracy_options[] = {
               "estimate of the error of the increments, from half of them"),
   OPTION_FLAG(accuracy_param, solver, "SOLVER", "YES",
               "bound of the error of the contact solver in the energy norm"),
+  OPTION_FLAG(accuracy_param, theory, "THEORY", "NO",
+              "limits of mu, bounds (3.9), (3.10) and inequality of CPR98"),
   OPTION_REAL(accuracy_param, target, "TARGET", 0, 100, "0", "%",
               "error to reach by finer meshes and increments; 0: none"),
   OPTION_REAL(accuracy_param, max_cpu, "MAX_CPU", 0, 1e12, "0", "s",

@@ -216,6 +216,7 @@ typedef struct step {
   int has_accuracy;
   int no_solver_error; /* 1: the error of the solver is not asked for        */
   int mesh_error, time_error; /* 1: asked for                                 */
+  int theory; /* 1: the theorems of CPR98 are checked                         */
   solver_choice solver; /* its param is owned by the step it came with        */
   void *solver_param;   /* owned, or NULL                                     */
   place solver_at;
@@ -289,6 +290,7 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
   X(MESH_ERROR, "error of mesh")                                             \
   X(TIME_ERROR, "error of steps")                                            \
   X(ESTIMATES, "error of solver")                                            \
+  X(THEORY,    "theory checks")                                              \
   X(MESH,      "finite elements")
 /* clang-format on */
 #define EFFECT_BIT(name, text) EFFECT_BIT_##name,

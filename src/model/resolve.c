@@ -376,6 +376,7 @@ static status carry_choices(const step *old, step *s) {
     s->no_solver_error = old->no_solver_error;
     s->mesh_error = old->mesh_error;
     s->time_error = old->time_error;
+    s->theory = old->theory;
   }
   if (!s->has_output) {
     s->output_frequency = old->output_frequency;

@@ -234,7 +234,52 @@ static void write_solutions(json *w, const increment_summary *s) {
   json_close(w, ']');
 }
 
-static void write_increment(json *w, const increment_summary *s) {
+static void write_theory_contact(json *w, const model *m,
+                                 const theory_contact *c) {
+  json_open(w, NULL, '{');
+  json_string(w, "contact",
+              c->contact_id < 0 ? "" : m->contacts[c->contact_id].name);
+  json_real(w, "mu", c->mu);
+  json_real(w, "mu_unique", c->limit);
+  json_real(w, "factor", c->factor);
+  json_real(w, "contraction", c->rate);
+  json_real(w, "mu_contraction", c->suggested);
+  json_real(w, "normal_eigenvalue", c->normal);
+  json_real(w, "tangential_eigenvalue", c->tangent);
+  json_string(w, "mu_is", mu_regime_text(c->regime));
+  json_close(w, '}');
+}
+
+static void write_bound(json *w, const char *name, const theory_bound *b) {
+  json_open(w, name, '{');
+  if (b->why != NULL) {
+    json_string(w, "missing", b->why);
+  } else {
+    json_real(w, "left", b->left);
+    json_real(w, "right", b->right);
+    json_flag(w, "violated", b->violated);
+  }
+  json_close(w, '}');
+}
+
+static void write_theory(json *w, const model *m, const theory_report *t) {
+  if (!t->asked) return;
+  json_open(w, "theory", '{');
+  json_open(w, "contacts", '[');
+  for (int i = 0; i < t->n_contact; ++i)
+    write_theory_contact(w, m, &t->contacts[i]);
+  json_close(w, ']');
+  write_bound(w, "bound_3_9", &t->total);
+  write_bound(w, "bound_3_10", &t->change);
+  json_real(w, "inequality_least", t->inequality);
+  json_count(w, "inequality_fields", t->n_field);
+  if (t->has_start) json_real(w, "start_least", t->start);
+  json_flag(w, "violated", t->violated);
+  json_close(w, '}');
+}
+
+static void write_increment(json *w, const model *m,
+                            const increment_summary *s) {
   json_open(w, NULL, '{');
   json_count(w, "step", s->step_no);
   json_count(w, "increment", s->increment_no);
@@ -262,6 +307,7 @@ static void write_increment(json *w, const increment_summary *s) {
   json_string(w, "outcome", outcome_code((outcome)s->outcome));
   if (s->jumps) json_real(w, "jump_time", s->jump_t);
   write_solutions(w, s);
+  write_theory(w, m, &s->theory);
   json_close(w, '}');
 }
 
@@ -281,7 +327,7 @@ static void write_all(json *w, const job *j) {
   write_cost(w, j->o);
   json_open(w, "increments", '[');
   for (int i = 0; i < j->run->n_increment; ++i)
-    write_increment(w, &j->run->increments[i]);
+    write_increment(w, j->m, &j->run->increments[i]);
   json_close(w, ']');
   json_close(w, '}');
   fputc('\n', w->f);

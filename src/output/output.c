@@ -52,6 +52,19 @@ done:
   return st;
 }
 
+static status remember_theory(const theory_report *t, increment_summary *i) {
+  status st = OK;
+  theory_contact *own = NULL;
+  i->theory = *t;
+  i->theory.contacts = NULL;
+  if (t->n_contact == 0) goto done;
+  NEW(own, t->n_contact);
+  memcpy(own, t->contacts, (size_t)t->n_contact * sizeof *own);
+  i->theory.contacts = own;
+done:
+  return st;
+}
+
 static status remember(output *o, const state *s) {
   status st = OK;
   run_summary *run = &o->run;
@@ -80,6 +93,7 @@ static status remember(output *o, const state *s) {
     run->residual_worst = worse(run->residual_worst, s->report.residual);
   run->defect_worst = worse(run->defect_worst, fabs(i->defect));
   TRY(remember_solutions(s->solutions, i));
+  TRY(remember_theory(&s->theory, i));
   if (!s->settled) ++run->n_unsettled;
 done:
   return st;
@@ -247,8 +261,10 @@ history_sink output_sink(output *o) {
 static void release(output *o) {
   memory_free(o->json);
   memory_free(o->xdmf);
-  for (int i = 0; i < o->run.n_increment; ++i)
+  for (int i = 0; i < o->run.n_increment; ++i) {
     memory_free(o->run.increments[i].solutions);
+    memory_free((void *)o->run.increments[i].theory.contacts);
+  }
   memory_free(o->run.increments);
   memory_free(o);
 }

@@ -49,6 +49,7 @@ typedef struct increment_summary {
   int checked, n_solution;   /* by CHECK= of *SOLVER                          */
   solution_facts *solutions; /* [n_solution] owned                            */
   error_share mesh_error, time_error;
+  theory_report theory; /* its contacts are owned                             */
 } increment_summary;
 
 typedef struct pass_table {
