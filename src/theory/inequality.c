@@ -10,7 +10,16 @@
 #include <math.h>
 #include <string.h>
 
-enum { FIELDS_A_NODE = 8, FIELDS_OF_ALL = 32 };
+enum { FIELDS_OF_ALL = 32 };
+
+/* What a test field moves at a node. Where the friction or the pressure of a
+ * node adds much, a defect of the other shows only if that stays as it is. */
+typedef enum { ALONG_N, ONTO_BOUND, ALONG_T, TO_REST, ANYWHERE } move;
+static const move moves[] = {ONTO_BOUND, ALONG_N,  ALONG_N,  ALONG_N,
+                             ALONG_N,    TO_REST,  ALONG_T,  ALONG_T,
+                             ALONG_T,    ALONG_T,  ALONG_T,  ANYWHERE,
+                             ANYWHERE,   ANYWHERE, ANYWHERE, ANYWHERE};
+enum { PATTERNS = sizeof moves / sizeof *moves, FIELDS_A_NODE = 80 };
 
 typedef struct trial {
   const contact_problem *cp;
@@ -67,20 +76,24 @@ static double way(const contact_problem *cp, const double *v, int i) {
   return size;
 }
 
-/* A field in K at a node: some are on the bounds, at rest, or near u. */
-static void set_node(trial *s, int i) {
+/* A field in K at a node. Sizes spread over four powers of ten: along a disc of
+ * friction a small defect shows in small motions only. */
+static void set_node(trial *s, int i, move how) {
   const contact_problem *cp = s->cp;
   double size = s->size * exp(5.0 * (any(s) - 1.0));
-  int rests = cp->g0 != NULL && any(s) < -0.5;
   for (int k = 0; k < cp->dim; ++k) {
     int dof = cp->dim * i + k;
     double bound = contact_bound(cp, dof), w = s->u[dof] + size * any(s);
+    int tangential = k > 0 && !(bound < HUGE_VAL);
+    s->w[dof] = s->u[dof];
     if (contact_held(cp, dof)) continue;
-    if (bound < HUGE_VAL)
-      w = any(s) < -0.5 ? bound : fmin(bound, w);
-    else if (rests && k > 0)
-      w = contact_stick(cp, dof);
-    s->w[dof] = w;
+    if (tangential ? how < ALONG_T : how == ALONG_T || how == TO_REST) {
+      s->w[dof] = fmin(bound, s->u[dof]);
+      continue;
+    }
+    if (how == ONTO_BOUND && bound < HUGE_VAL) w = bound;
+    if (how == TO_REST && cp->g0 != NULL) w = contact_stick(cp, dof);
+    s->w[dof] = fmin(bound, w);
   }
 }
 
@@ -114,7 +127,7 @@ static void try_nodes(trial *s) {
   for (int i = 0; i < cp->n; ++i)
     for (int k = 0; k < FIELDS_A_NODE; ++k) {
       double square = 0.0;
-      set_node(s, i);
+      set_node(s, i, moves[k % PATTERNS]);
       double value = part(s, i, &square);
       count(s, value, square);
     }
@@ -124,7 +137,7 @@ static void try_all(trial *s) {
   for (int k = 0; k < FIELDS_OF_ALL; ++k) {
     double value = 0.0, square = 0.0;
     for (int i = 0; i < s->cp->n; ++i) {
-      set_node(s, i);
+      set_node(s, i, moves[(i + k) % PATTERNS]);
       value += part(s, i, &square);
     }
     count(s, value, square);

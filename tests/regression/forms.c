@@ -89,35 +89,12 @@ static int count_blocks(const job *j) {
   return n;
 }
 
-/* Calls of a stage in the closing table of the listing. */
-static long stage_calls(const job *j, const char *stage) {
-  char *text = job_file(j, "lst");
-  ck_assert_ptr_nonnull(text);
-  char *at = strstr(text, stage);
-  ck_assert_msg(at != NULL, "no stage '%s'", stage);
-  long calls = strtol(at + strlen(stage), NULL, 10);
-  free(text);
-  return calls;
-}
-
-/* Copy what matches into the folder of the job. */
-static void copy_all(const job *j, int length, const char *folder,
-                     const char *pattern) {
-  char all[2 * LINE];
-  glob_t files;
-  snprintf(all, sizeof all, "%.*s%s", length, folder, pattern);
-  if (glob(all, 0, NULL, &files) == 0)
-    for (size_t i = 0; i < files.gl_pathc; ++i) job_copy(j, files.gl_pathv[i]);
-  globfree(&files);
-}
-
 /* One deck in a folder with its mesh. */
 static job run_in_form(const char *path, const char *form, int *steps) {
   const char *name = strrchr(path, '/') + 1;
   job j = job_begin("");
   snprintf(j.name, sizeof j.name, "%.*s", (int)(strlen(name) - 4), name);
-  copy_all(&j, (int)(name - path), path, "*.geo");
-  copy_all(&j, (int)(name - path), path, "*.msh");
+  job_copy_meshes(&j, path);
   copied c = write_in_form(&j, path, form);
   *steps = c.steps;
   if (c.steps == 0) return j;
@@ -136,8 +113,8 @@ START_TEST(both_forms_agree_on_every_example) {
     job a = run_in_form(decks.gl_pathv[i], "DISPLACEMENT", &steps);
     if (steps > 0) {
       job b = run_in_form(decks.gl_pathv[i], "VELOCITY", &steps);
-      ck_assert_int_eq(stage_calls(&a, "velocity form"), 0);
-      ck_assert_int_gt(stage_calls(&b, "velocity form"), 0);
+      ck_assert_int_eq(job_stage(&a, "velocity form", NULL), 0);
+      ck_assert_int_gt(job_stage(&b, "velocity form", NULL), 0);
       compare_nodes(&a, &b, count_blocks(&a), 1e-8);
       job_end(&b);
       ++compared;

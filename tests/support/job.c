@@ -5,6 +5,7 @@
 
 #include <check.h>
 #include <ctype.h>
+#include <glob.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -49,6 +50,20 @@ void job_copy(const job *j, const char *path) {
   ck_assert_int_eq(system(command), 0);
 }
 
+void job_copy_meshes(const job *j, const char *deck) {
+  static const char *const patterns[] = {"*.geo", "*.msh"};
+  int length = (int)(strrchr(deck, '/') + 1 - deck);
+  for (int k = 0; k < 2; ++k) {
+    char all[PATH];
+    glob_t files;
+    snprintf(all, sizeof all, "%.*s%s", length, deck, patterns[k]);
+    if (glob(all, 0, NULL, &files) == 0)
+      for (size_t i = 0; i < files.gl_pathc; ++i)
+        job_copy(j, files.gl_pathv[i]);
+    globfree(&files);
+  }
+}
+
 static char *read_all(const char *path) {
   FILE *f = fopen(path, "rb");
   if (f == NULL) return NULL;
@@ -66,6 +81,19 @@ char *job_file(const job *j, const char *suffix) {
   char path[PATH];
   snprintf(path, sizeof path, "%s/%s.%s", j->dir, j->name, suffix);
   return read_all(path);
+}
+
+long job_stage(const job *j, const char *stage, long *bytes) {
+  char *text = job_file(j, "lst"), *end;
+  ck_assert_ptr_nonnull(text);
+  const char *at = strstr(text, "COST\n");
+  at = at == NULL ? NULL : strstr(at, stage);
+  ck_assert_msg(at != NULL, "no stage '%s'", stage);
+  long calls = strtol(at + strlen(stage), &end, 10);
+  strtod(end, &end);
+  if (bytes != NULL) *bytes = strtol(end, NULL, 10);
+  free(text);
+  return calls;
 }
 
 static const char *program(void) {

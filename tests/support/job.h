@@ -32,6 +32,8 @@ void job_write(const job *j, const char *file, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Copy a file of the sources into the folder under its own name. */
 void job_copy(const job *j, const char *path);
+/* Copy the .geo and .msh files beside a deck of the sources. */
+void job_copy_meshes(const job *j, const char *deck);
 /* Run protis NAME with further words ("" or "-D N=4 --check"); exit code,
  * or 1000 + signal. */
 int job_run(job *j, const char *words);
@@ -40,6 +42,9 @@ int job_run(job *j, const char *words);
 int job_run_deck(job *j, const char *deck, const char *words);
 /* All of a file of the folder as text (caller frees), or NULL. */
 char *job_file(const job *j, const char *suffix);
+/* Calls of a stage in the closing table of the listing; *bytes or NULL: what it
+ * asked for. Check fails if the stage is not there. */
+long job_stage(const job *j, const char *stage, long *bytes);
 /* Block number k (from 0; -1 the last) of a table (CONTACT, ...) of JOB.dat;
  * check fails if there is none. */
 dat job_table(const job *j, const char *kind, int k);

@@ -1,0 +1,376 @@
+/*
+ * *ACCURACY, THEORY=YES: limits of mu of the GRECO block on crossed squares and
+ * of the triangle, bounds of increments, the inequality on every example.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <glob.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINE = 512, MESH_BYTES = 400000 };
+
+/* ---- a block of crossed squares ----------------------------------------- */
+
+/* One line of n segments of a side: nodes from, from + step, ... */
+static char *add_side(char *to, int group, int n, int from, int step) {
+  for (int i = 0; i < n; ++i)
+    to += sprintf(to, "%d 1 2 %d %d %d %d\n", 1000 * group + i, group, group,
+                  from + i * step, from + (i + 1) * step);
+  return to;
+}
+
+/* Four triangles round the centre of each square. */
+static char *add_squares(char *to, int n) {
+  int corners = (n + 1) * (n + 1), no = 100000;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      int a = j * (n + 1) + i + 1, c = corners + j * n + i + 1;
+      int q[5] = {a, a + 1, a + n + 2, a + n + 1, a};
+      for (int k = 0; k < 4; ++k)
+        to += sprintf(to, "%d 2 2 5 5 %d %d %d\n", no++, q[k], q[k + 1], c);
+    }
+  return to;
+}
+
+/* 40 x 40, n x n crossed squares: CONTACT below, SYMMETRY right, TOP, LEFT. */
+static void write_crossed(const job *j, int n) {
+  char *text = malloc(MESH_BYTES), *to = text;
+  int corners = (n + 1) * (n + 1);
+  double h = 40.0 / n;
+  ck_assert_ptr_nonnull(text);
+  to += sprintf(to,
+                "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n"
+                "1 1 \"CONTACT\"\n1 2 \"SYMMETRY\"\n1 3 \"TOP\"\n"
+                "1 4 \"LEFT\"\n2 5 \"BODY\"\n$EndPhysicalNames\n$Nodes\n");
+  to += sprintf(to, "%d\n", corners + n * n);
+  for (int k = 0; k < corners; ++k)
+    to += sprintf(to, "%d %.17g %.17g 0\n", k + 1, k % (n + 1) * h,
+                  k / (n + 1) * h);
+  for (int k = 0; k < n * n; ++k)
+    to += sprintf(to, "%d %.17g %.17g 0\n", corners + k + 1, (k % n + 0.5) * h,
+                  (k / n + 0.5) * h);
+  to += sprintf(to, "$EndNodes\n$Elements\n%d\n", 4 * n + 4 * n * n);
+  to = add_side(to, 1, n, 1, 1);
+  to = add_side(to, 2, n, n + 1, n + 1);
+  to = add_side(to, 3, n, corners - n, 1);
+  to = add_side(to, 4, n, 1, n + 1);
+  to = add_squares(to, n);
+  to += sprintf(to, "$EndElements\n");
+  ck_assert_int_lt(to - text, MESH_BYTES);
+  job_write(j, "crossed.msh", "%s", text);
+  free(text);
+}
+
+static const char block_text[] =
+    "*MESH, FILE=crossed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+    "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+    "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+    "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=O\n";
+
+static job run_text(int n, const char *cards, const char *words) {
+  job j = job_begin("block");
+  write_crossed(&j, n);
+  job_write(&j, "block.inp", "%s%s", block_text, cards);
+  int code = job_run(&j, words);
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* ---- JOB.json ----------------------------------------------------------- */
+
+/* The value of a key, at its k-th place (from 0; -1 the last); NAN: not there
+ * or null. */
+static double json_value(const char *json, const char *key, int k) {
+  char quoted[64];
+  const char *found = NULL, *at = json;
+  snprintf(quoted, sizeof quoted, "\"%s\": ", key);
+  for (int i = 0; (at = strstr(at, quoted)) != NULL && (k < 0 || i <= k); ++i)
+    found = at += strlen(quoted);
+  if (found == NULL || strncmp(found, "null", 4) == 0) return NAN;
+  return strtod(found, NULL);
+}
+
+static double result(const job *j, const char *key, int k) {
+  char *json = job_file(j, "json");
+  ck_assert_ptr_nonnull(json);
+  double value = json_value(json, key, k);
+  free(json);
+  return value;
+}
+
+/* How often a text stands in JOB.suffix. */
+static int count(const job *j, const char *suffix, const char *text) {
+  int n = 0;
+  char *all = job_file(j, suffix);
+  ck_assert_ptr_nonnull(all);
+  for (const char *at = all; (at = strstr(at, text)) != NULL; ++at) ++n;
+  free(all);
+  return n;
+}
+
+/* ---- limits ------------------------------------------------------------- */
+
+static const char greco_cards[] =
+    "*PARAMETER\nMU = 1.\n*FRICTION, CONTACT=FOOT, LAW=COULOMB\n<MU>\n"
+    "*STEP\n*QUASISTATIC\n0.5, 1.0\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n"
+    "*DSLOAD\nTOP, P, 50.\nLEFT, P, 150.\n*ACCURACY, THEORY=YES\n*END STEP\n";
+
+START_TEST(greco_has_the_guaranteed_limits_of_the_table) {
+  static const int n[] = {8, 16, 32};
+  static const double limit[] = {0.2380, 0.1717, 0.1232};
+  for (int k = 0; k < 3; ++k) {
+    job j = run_text(n[k], greco_cards, "");
+    ck_assert_double_eq_tol(result(&j, "mu_unique", -1), limit[k],
+                            0.01 * limit[k]);
+    ck_assert_int_eq(count(&j, "lst", "largest eigenvalues"), 1);
+    ck_assert_int_eq(count(&j, "lst", "between: above 1/C_h"), 2);
+    ck_assert_int_eq(count(&j, "lst", "VIOLATED"), 0);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* Contraction per iteration of an independent program at n = 32; for small mu
+ * it was read after a few iterations. */
+START_TEST(greco_contracts_as_measured_elsewhere) {
+  static const double mu[] = {1.0, 1.5, 2.0}, rate[] = {0.341, 0.517, 0.666};
+  static const double tol[] = {0.05, 0.01, 0.01};
+  for (int k = 0; k < 3; ++k) {
+    char words[64];
+    snprintf(words, sizeof words, "-D MU=%g", mu[k]);
+    job j = run_text(32, greco_cards, words);
+    double found = 0.0;
+    char *json = job_file(&j, "json");
+    const char *at = strrchr(json, '['); /* contacts of the last increment */
+    found = json_value(at, "contraction", 0);
+    free(json);
+    ck_assert_double_eq_tol(found, rate[k], tol[k] * rate[k]);
+    ck_assert_double_eq_tol(result(&j, "mu_contraction", -1), mu[k] / found,
+                            1e-9);
+    job_end(&j);
+  }
+}
+END_TEST
+
+static const char triangle_mesh[] =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n"
+    "0 1 \"CLAMPED\"\n0 2 \"TIP\"\n1 3 \"FOOT\"\n2 4 \"BODY\"\n"
+    "$EndPhysicalNames\n$Nodes\n3\n1 -1 1 0\n2 1 3 0\n3 0 0 0\n$EndNodes\n"
+    "$Elements\n5\n1 15 2 1 1 1\n2 15 2 1 2 2\n3 15 2 2 3 3\n"
+    "4 1 2 3 1 1 3\n5 2 2 4 1 3 2 1\n$EndElements\n";
+
+START_TEST(triangle_gives_both_limits) {
+  static const double mu[] = {0.5, 1.0};
+  static const char *const words[] = {"unique: under 1/C_h", "between"};
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("triangle");
+    job_write(&j, "triangle.msh", "%s", triangle_mesh);
+    job_write(&j, "triangle.inp",
+              "*MESH, FILE=triangle.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+              "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\nTIP, 1, -1\nTIP, 2, 0.3\n"
+              "*ACCURACY, THEORY=YES\n*END STEP\n",
+              mu[k]);
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    double K = 0.8653846154, cross = -0.4807692308;
+    double limit = sqrt(K * K - cross * cross) / K;
+    ck_assert_double_eq_tol(result(&j, "mu_unique", -1), limit, 1e-9);
+    ck_assert_double_eq_tol(result(&j, "mu_contraction", -1), 1.8, 1e-8);
+    ck_assert_int_eq(count(&j, "lst", words[k]), 1);
+    ck_assert_int_eq(count(&j, "lst", "(3.9) |u|: no bound"), k);
+    ck_assert_int_eq(count(&j, "lst", "VIOLATED"), 0);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* ---- bounds ------------------------------------------------------------- */
+
+/* Clamped on top, pressed and sheared, then let go; mu under 1/C_h. */
+static const char led[] =
+    "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nTOP, 1, 1, 0.01\n"
+    "TOP, 2, 2, -0.02\n*ACCURACY, THEORY=YES\n*END STEP\n"
+    "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nTOP, 1, 1, -0.01\n"
+    "TOP, 2, 2, -0.01\n*END STEP\n";
+
+START_TEST(bounds_hold_at_every_increment) {
+  static const char *const laws[] = {
+      "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.1\n",
+      "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n\"0.1 - 0.04*t\"\n",
+      "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=12.\n0.1\n",
+      "*FRICTION, CONTACT=FOOT, LAW=TRESCA\n5.\n", ""};
+  for (size_t k = 0; k < sizeof laws / sizeof *laws; ++k) {
+    char cards[2 * LINE];
+    snprintf(cards, sizeof cards, "%s%s", laws[k], led);
+    job j = run_text(8, cards, "");
+    ck_assert_int_eq(count(&j, "lst", "(3.9) |u|: "), 8);
+    ck_assert_int_eq(count(&j, "lst", "(3.10) |du|: "), 8);
+    ck_assert_int_eq(count(&j, "lst", "no bound"), 0);
+    ck_assert_int_eq(count(&j, "lst", "VIOLATED"), 0);
+    ck_assert_int_eq(count(&j, "json", "\"violated\": true"), 0);
+    int idle = 0; /* increments in which all stick move nothing */
+    for (int i = 0; i < 16; ++i) {
+      double left = result(&j, "left", i), right = result(&j, "right", i);
+      ck_assert_double_le(left, right);
+      idle += !(left > 0.01 * right);
+    }
+    ck_assert_int_le(idle, 3);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* A wider average of the pressure lets friction do less. */
+START_TEST(average_raises_the_guaranteed_limit) {
+  double last = 0.0;
+  static const char *const laws[] = {"COULOMB", "NONLOCAL, RADIUS=8.",
+                                     "NONLOCAL, RADIUS=20."};
+  for (int k = 0; k < 3; ++k) {
+    char cards[2 * LINE];
+    snprintf(cards, sizeof cards, "*FRICTION, CONTACT=FOOT, LAW=%s\n0.1\n%s",
+             laws[k], led);
+    job j = run_text(8, cards, "");
+    double limit = result(&j, "mu_unique", -1);
+    ck_assert_double_gt(limit, 1.05 * last);
+    last = limit;
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* Two contacts: each on its own, and both together, which is not more. */
+START_TEST(two_contacts_have_rows_of_their_own) {
+  static const char cards[] =
+      "*CONTACT, NAME=WALL, GROUP=LEFT, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.1\n"
+      "*FRICTION, CONTACT=WALL, LAW=COULOMB\n0.05\n"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1, 1, -0.01\n"
+      "TOP, 2, 2, -0.02\n*ACCURACY, THEORY=YES\n*END STEP\n";
+  job j = run_text(8, cards, "");
+  double foot = result(&j, "factor", 0), wall = result(&j, "factor", 1);
+  double all = result(&j, "factor", 2);
+  ck_assert_int_eq(count(&j, "lst", "\n  FOOT  "), 2);
+  ck_assert_int_eq(count(&j, "lst", "\n  WALL  "), 2);
+  ck_assert_int_eq(count(&j, "lst", "\n  (all)  "), 2);
+  ck_assert_double_ge(all, 0.999999 * fmax(foot, wall));
+  ck_assert_double_gt(foot, wall);
+  job_end(&j);
+}
+END_TEST
+
+/* ---- start, given forces, what is not asked for ------------------------- */
+
+START_TEST(initial_state_is_tested_against_3_8) {
+  char cards[2 * LINE];
+  snprintf(cards, sizeof cards,
+           "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.1\n"
+           "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\nBODY, 1, 0.\n%s",
+           led);
+  job j = run_text(4, cards, "");
+  ck_assert_int_eq(count(&j, "lst", "(3.8) of the initial state"), 1);
+  ck_assert_double_ge(result(&j, "start_least", 0), 0.0);
+  ck_assert_int_eq(count(&j, "lst", "no bound"), 0);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(given_forces_are_loads) {
+  char cards[2 * LINE];
+  snprintf(cards, sizeof cards,
+           "*CONTACT FORCE, CONTACT=FOOT\n20.\n"
+           "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n%s",
+           led);
+  job j = run_text(6, cards, "");
+  ck_assert_int_eq(count(&j, "lst", "VIOLATED"), 0);
+  ck_assert_int_eq(count(&j, "lst", "no bound"), 0);
+  ck_assert_double_ge(result(&j, "inequality_least", -1), -1e-10);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(nothing_is_done_unless_asked_for) {
+  char cards[2 * LINE], *card;
+  long bytes;
+  snprintf(cards, sizeof cards, "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.1\n%s",
+           led);
+  job j = run_text(4, cards, "");
+  ck_assert_int_eq(job_stage(&j, "theorems", &bytes), 8);
+  ck_assert_int_gt(bytes, 0);
+  job_end(&j);
+  card = strstr(cards, "THEORY=YES");
+  memcpy(card, "THEORY=NO ", 10);
+  j = run_text(4, cards, "");
+  ck_assert_int_eq(job_stage(&j, "theorems", &bytes), 0);
+  ck_assert_int_eq(bytes, 0);
+  ck_assert_int_eq(count(&j, "lst", "  theory:"), 0);
+  ck_assert_int_eq(count(&j, "json", "\"theory\""), 0);
+  job_end(&j);
+}
+END_TEST
+
+/* ---- every example ------------------------------------------------------ */
+
+/* Copy of a deck with the card in each step. */
+static void write_with_theory(const job *j, const char *path) {
+  char line[LINE], copy[LINE];
+  snprintf(copy, sizeof copy, "%s/%s.inp", j->dir, j->name);
+  FILE *from = fopen(path, "r"), *to = fopen(copy, "w");
+  ck_assert_ptr_nonnull(from);
+  ck_assert_ptr_nonnull(to);
+  while (fgets(line, sizeof line, from) != NULL) {
+    if (strncmp(line, "*END STEP", 9) == 0)
+      fputs("*ACCURACY, THEORY=YES\n*OUTPUT, HDF5=NO\n", to);
+    if (strncmp(line, "*ACCURACY", 9) == 0) continue;
+    if (strncmp(line, "*OUTPUT", 7) == 0) continue;
+    fputs(line, to);
+  }
+  fclose(from);
+  ck_assert_int_eq(fclose(to), 0);
+}
+
+/* Words that make the large examples smaller. */
+static const char *coarser(const char *name) {
+  if (strcmp(name, "nonlocal_slider") == 0) return "-D N=80";
+  return strcmp(name, "torsion_sphere_3d") == 0 ? "-D NC=5" : "";
+}
+
+START_TEST(inequality_holds_on_every_example) {
+  glob_t decks;
+  ck_assert_int_eq(glob("input/*/*.inp", 0, NULL, &decks), 0);
+  for (size_t i = 0; i < decks.gl_pathc; ++i) {
+    const char *path = decks.gl_pathv[i], *name = strrchr(path, '/') + 1;
+    job j = job_begin("");
+    snprintf(j.name, sizeof j.name, "%.*s", (int)(strlen(name) - 4), name);
+    job_copy_meshes(&j, path);
+    write_with_theory(&j, path);
+    int code = job_run(&j, coarser(j.name));
+    ck_assert_msg(code == 0, "%s: exit %d: %s", path, code, j.errors);
+    ck_assert_msg(count(&j, "lst", "VIOLATED") == 0, "%s", path);
+    char *json = job_file(&j, "json");
+    int n = count(&j, "json", "\"inequality_least\"");
+    ck_assert_int_gt(n, 0);
+    for (int k = 0; k < n; ++k) {
+      double least = json_value(json, "inequality_least", k);
+      ck_assert_msg(least >= -1e-10, "%s: %g", path, least);
+    }
+    free(json);
+    job_end(&j);
+  }
+  ck_assert_uint_gt(decks.gl_pathc, 15);
+  globfree(&decks);
+}
+END_TEST
+
+UNIT_MAIN("theory, whole runs", greco_has_the_guaranteed_limits_of_the_table,
+          greco_contracts_as_measured_elsewhere, triangle_gives_both_limits,
+          bounds_hold_at_every_increment, average_raises_the_guaranteed_limit,
+          two_contacts_have_rows_of_their_own,
+          initial_state_is_tested_against_3_8, given_forces_are_loads,
+          nothing_is_done_unless_asked_for, inequality_holds_on_every_example)

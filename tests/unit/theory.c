@@ -1,0 +1,403 @@
+/*
+ * src/theory: eigenvalues against closed forms, the triangle whose constants
+ * are known, bounds and inequality on random problems, and wrong states, which
+ * must be told.
+ */
+#include "theory/theory.h"
+#include "base/memory.h"
+#include "solver/solver.h"
+#include "support/contact_case.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PARAM_SIZE = 512 };
+
+static void solve(contact_case *c) {
+  double param[PARAM_SIZE / sizeof(double)] = {0.0};
+  const solver_ops *ops = solver_find("newton");
+  contact_solver *s = NULL;
+  solver_report rep;
+  option_defaults(ops->options, param);
+  solver_choice choice = {
+      .ops = ops, .param = param, .tol = 1e-12, .limit_max_iter = 1000};
+  ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+  ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
+  ck_assert_int_gt(rep.outcome, 0);
+  contact_solver_free(s);
+}
+
+/* All nodes on one contact. */
+typedef struct looker {
+  theory *t;
+  int *id;
+  double mu;
+  theory_scene scene;
+  theory_report rep;
+} looker;
+
+static void look_at(looker *l, contact_case *c, double mu) {
+  *l = (looker){.mu = mu};
+  l->id = calloc((size_t)c->cp.n, sizeof *l->id);
+  ck_assert_int_eq(theory_new(&l->t), OK);
+  l->scene = (theory_scene){.cp = &c->cp,
+                            .u = c->u,
+                            .r = c->r,
+                            .n_contact = 1,
+                            .contact_id = l->id,
+                            .mu = &l->mu,
+                            .tol = 1e-10};
+}
+
+static const theory_report *look(looker *l) {
+  ck_assert_int_eq(theory_check(l->t, &l->scene, &l->rep), OK);
+  return &l->rep;
+}
+
+static void look_away(looker *l) {
+  theory_free(l->t);
+  free(l->id);
+}
+
+/* ---- eigenvalues -------------------------------------------------------- */
+
+/* The chain of n springs: 2 - 2 cos(k pi/(n + 1)). */
+static void chain(void *ctx, const double *x, double *y) {
+  int n = *(const int *)ctx;
+  for (int i = 0; i < n; ++i)
+    y[i] = 2.0 * x[i] - (i > 0 ? x[i - 1] : 0.0) - (i + 1 < n ? x[i + 1] : 0.0);
+}
+
+/* Eigenvalues 1, 1/2, 1/3, ... */
+static void harmonic(void *ctx, const double *x, double *y) {
+  int n = *(const int *)ctx;
+  for (int i = 0; i < n; ++i) y[i] = x[i] / (1.0 + i);
+}
+
+static void nothing(void *ctx, const double *x, double *y) {
+  int n = *(const int *)ctx;
+  for (int i = 0; i < n; ++i) y[i] = 0.0 * x[i];
+}
+
+START_TEST(largest_eigenvalues_are_those_of_closed_forms) {
+  static const int orders[] = {1, 2, 7, 50, DENSE_ORDER, DENSE_ORDER + 1, 700};
+  for (size_t k = 0; k < sizeof orders / sizeof *orders; ++k) {
+    int n = orders[k];
+    double exact = 2.0 - 2.0 * cos(n * acos(-1.0) / (n + 1)), found;
+    symmetric_map springs = {n, &n, chain}, row = {n, &n, harmonic};
+    symmetric_map zero = {n, &n, nothing};
+    ck_assert_int_eq(largest_eigenvalue(&springs, &found), OK);
+    ck_assert_double_eq_tol(found, exact, n > DENSE_ORDER ? 4e-3 : 1e-12);
+    ck_assert_double_ge(found, exact * (1.0 - 1e-13));
+    ck_assert_int_eq(lanczos_largest(&row, &found), OK);
+    ck_assert_double_eq_tol(found, 1.0, 1e-9);
+    ck_assert_double_ge(found, 1.0 - 1e-13);
+    ck_assert_int_eq(lanczos_largest(&springs, &found), OK);
+    ck_assert_double_ge(found, exact * (1.0 - 1e-13));
+    ck_assert_double_eq_tol(found, exact, n > 160 ? 4e-3 : 1e-12);
+    ck_assert_int_eq(largest_eigenvalue(&zero, &found), OK);
+    ck_assert_double_eq(found, 0.0);
+  }
+}
+END_TEST
+
+/* ---- the triangle ------------------------------------------------------- */
+
+START_TEST(triangle_has_its_constants) {
+  static const struct {
+    double mu, fx, fy;
+    mu_regime regime;
+    int slides;
+  } rows[] = {{0.5, -1.0, 0.3, MU_UNDER, 1},    {0.83, -1.0, 0.3, MU_UNDER, 1},
+              {0.84, -1.0, 0.3, MU_BETWEEN, 1}, {1.0, -1.0, 0.3, MU_BETWEEN, 1},
+              {1.0, 0.0, -1.0, MU_FREE, 0},     {0.5, 0.0, -1.0, MU_UNDER, 0}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+    contact_case c = case_triangle(0.3, rows[k].mu, rows[k].fx, rows[k].fy);
+    const double *K = c.A;
+    double exact = sqrt(K[0] * K[3] - K[1] * K[2]) / K[0];
+    looker l;
+    solve(&c);
+    look_at(&l, &c, rows[k].mu);
+    const theory_report *t = look(&l);
+    ck_assert_int_eq(t->n_contact, 1);
+    ck_assert_double_eq_tol(exact, 0.8315, 5e-5);
+    ck_assert_double_eq_tol(t->contacts[0].limit, exact, 1e-12);
+    ck_assert_double_eq_tol(t->contacts[0].factor, rows[k].mu / exact, 1e-12);
+    if (rows[k].slides) {
+      ck_assert_double_eq_tol(t->contacts[0].rate, rows[k].mu / 1.8, 1e-10);
+      ck_assert_double_eq_tol(t->contacts[0].suggested, 1.8, 1e-9);
+    } else {
+      ck_assert_double_eq(t->contacts[0].rate, 0.0);
+    }
+    ck_assert_int_eq(t->contacts[0].regime, rows[k].regime);
+    ck_assert_int_eq(t->total.why == NULL, rows[k].regime == MU_UNDER);
+    ck_assert_int_eq(t->violated, 0);
+    look_away(&l);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* mu = 3: slip u_t = 1.90666 r = (-1/4, 1/12) solves, and does not contract. */
+START_TEST(above_the_critical_mu_it_does_not_contract) {
+  contact_case c = case_triangle(0.3, 3.0, 1.9, -1.0);
+  looker l;
+  look_at(&l, &c, 3.0);
+  double s = c.f[1] > 0.0 ? 1.0 : -1.0; /* the tangent's sign along x */
+  c.u[0] = 0.0;
+  c.u[1] = s * 1.9066666666666667;
+  c.r[0] = -1.0 / 12.0;
+  c.r[1] = -s * 0.25;
+  const theory_report *t = look(&l);
+  ck_assert_int_eq(t->contacts[0].regime, MU_ABOVE);
+  ck_assert_double_eq_tol(t->contacts[0].rate, 3.0 / 1.8, 1e-9);
+  ck_assert_int_eq(t->inequality_violated, 0);
+  look_away(&l);
+  case_free(&c);
+}
+END_TEST
+
+/* ---- constants of any B ------------------------------------------------- */
+
+/* Largest of sum (B dp)_i |dv_t,i| over |dv| |dr|_* by climbing from random
+ * starts: never above q, and most of it. */
+START_TEST(factor_bounds_what_friction_can_do) {
+  for (int k = 0; k < 12; ++k) {
+    int dim = 2 + k % 2, n = 3 + k / 2, m = dim * n;
+    contact_case c = case_any(dim, n, 0.4, k / 2 % 2, 4100ull + (unsigned)k);
+    if (k % 4 > 1) case_average(&c, 2, 0.4);
+    solve(&c);
+    looker l;
+    look_at(&l, &c, 0.4);
+    double q = look(&l)->contacts[0].factor, worst = 0.0;
+    double W[30 * 30], x[30], y[30], z[30];
+    ck_assert(m <= 30 && case_inverse(m, c.A, W));
+    unsigned long long seed = 3 + (unsigned)k;
+    for (int trial = 0; trial < 4000; ++trial) {
+      double vv = 0.0, rr = 0.0, sum = 0.0;
+      for (int i = 0; i < m; ++i) {
+        y[i] = case_random(&seed) - 0.5;
+        z[i] = case_random(&seed) - 0.5;
+      }
+      contact_product(m, c.A, y, x);
+      for (int i = 0; i < m; ++i) vv += y[i] * x[i];
+      contact_product(m, W, z, x);
+      for (int i = 0; i < m; ++i) rr += z[i] * x[i];
+      for (int i = 0; i < n; ++i) {
+        double g = 0.0, t = 0.0;
+        for (int e = c.B->start[i]; e < c.B->start[i + 1]; ++e)
+          g += c.B->val[e] * z[dim * c.B->col[e]];
+        for (int a = 1; a < dim; ++a) t = hypot(t, y[dim * i + a]);
+        sum += fabs(g) * t;
+      }
+      worst = fmax(worst, sum / sqrt(vv * rr));
+    }
+    ck_assert_double_le(worst, q);
+    ck_assert_double_gt(worst, 0.05 * q);
+    look_away(&l);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* ---- bounds ------------------------------------------------------------- */
+
+static void scale_friction(contact_case *c, double factor) {
+  for (int e = 0; e < c->B->start[c->cp.n]; ++e) c->B->val[e] *= factor;
+}
+
+/* Increments under random loads, gaps that move and obstacles that drift. */
+START_TEST(bounds_hold_under_the_guaranteed_limit) {
+  int checked = 0;
+  for (int k = 0; k < 60; ++k) {
+    int dim = 2 + k % 2, n = 1 + k % 9;
+    double share = k % 3 == 0 ? 0.95 : 0.5;
+    contact_case c = case_any(dim, n, 0.3, k / 2 % 2, 5200ull + (unsigned)k);
+    unsigned long long seed = 91 + (unsigned)k;
+    looker l;
+    if (k % 5 == 4) case_average(&c, 2, 0.3);
+    look_at(&l, &c, 0.3);
+    l.mu *= share / look(&l)->contacts[0].factor;
+    scale_friction(&c, share / l.rep.contacts[0].factor);
+    look_away(&l);
+    look_at(&l, &c, l.mu);
+    for (int i = 0; i < c.cp.m; ++i) c.f[i] *= k % 4 == 3 ? 1e-3 : 1.0;
+    for (int step = 0; step < 6; ++step) {
+      solve(&c);
+      const theory_report *t = look(&l);
+      ck_assert_double_eq_tol(t->contacts[0].factor, share, 1e-9);
+      ck_assert_ptr_null(t->total.why);
+      ck_assert_ptr_null(t->change.why);
+      ck_assert_msg(!t->total.violated && !t->change.violated,
+                    "case %d step %d: %g <= %g, %g <= %g", k, step,
+                    t->total.left, t->total.right, t->change.left,
+                    t->change.right);
+      ck_assert_double_ge(t->inequality, -1e-10);
+      checked += t->change.left > 0.1 * t->change.right;
+      for (int i = 0; i < n; ++i)
+        for (int a = 1; a < dim; ++a)
+          c.ut0[(dim - 1) * i + a - 1] =
+              c.u[dim * i + a] + (step == 3 ? 0.1 : 0.0);
+      for (int i = 0; i < n && step == 4; ++i) c.gap[i] -= 0.05;
+      for (int i = 0; i < c.cp.m; ++i)
+        c.f[i] += 0.3 * (case_random(&seed) - 0.5);
+    }
+    look_away(&l);
+    case_free(&c);
+  }
+  ck_assert_int_gt(checked, 60); /* they are not idle */
+}
+END_TEST
+
+/* An answer that is too large, or moves too far, violates them. */
+START_TEST(wrong_answers_violate_the_bounds) {
+  contact_case c = case_any(2, 5, 0.05, 0, 61);
+  looker l;
+  look_at(&l, &c, 0.05);
+  solve(&c);
+  ck_assert_int_eq(look(&l)->violated, 0);
+  double far = 1.1 * l.rep.total.right / l.rep.total.left;
+  for (int i = 0; i < 5; ++i) c.ut0[i] = c.u[2 * i + 1];
+  ck_assert_int_eq(look(&l)->change.violated, 0); /* nothing has changed */
+  ck_assert_double_eq(l.rep.change.left, 0.0);
+  for (int i = 0; i < 10; ++i) c.u[i] *= 1.0 + 1e-4;
+  ck_assert_int_eq(look(&l)->change.violated, 1);
+  for (int i = 0; i < 10; ++i) c.u[i] *= far;
+  ck_assert_int_eq(look(&l)->total.violated, 1);
+  ck_assert_int_eq(l.rep.violated, 1);
+  look_away(&l);
+  case_free(&c);
+}
+END_TEST
+
+/* ---- the inequality ----------------------------------------------------- */
+
+START_TEST(inequality_tells_wrong_states) {
+  for (int k = 0; k < 20; ++k) {
+    int dim = 2 + k % 2, fields;
+    contact_case c =
+        case_any(dim, 1 + k % 7, 0.4, k / 2 % 2, 6300ull + (unsigned)k);
+    double least, size = 0.0;
+    solve(&c);
+    ck_assert_int_eq(inequality_least(&c.cp, c.u, &least, &fields), OK);
+    ck_assert_double_ge(least, -1e-11);
+    ck_assert_int_ge(fields, 32 + 80 * c.cp.n);
+    for (int i = 0; i < c.cp.m; ++i)
+      size =
+          fmax(size, fmax(fabs(c.u[i]), fabs(c.f[i]) / c.A[i * (c.cp.m + 1)]));
+    for (int i = 0; i < c.cp.m; ++i)
+      for (int way = -1; way < 2; way += 2) {
+        double before = c.u[i];
+        c.u[i] += way * 1e-4 * size;
+        ck_assert_int_eq(inequality_least(&c.cp, c.u, &least, &fields), OK);
+        c.u[i] = before;
+        ck_assert_msg(least < -1e-10, "case %d unknown %d %+d: %g", k, i, way,
+                      least);
+      }
+    case_free(&c);
+  }
+}
+END_TEST
+
+START_TEST(inequality_of_no_number_is_not_met) {
+  contact_case c = case_any(2, 3, 0.4, 0, 5);
+  double least;
+  int fields;
+  solve(&c);
+  c.u[2] = NAN;
+  ck_assert_int_eq(inequality_least(&c.cp, c.u, &least, &fields), OK);
+  ck_assert(!(least >= -1.0));
+  case_free(&c);
+}
+END_TEST
+
+/* ---- parts -------------------------------------------------------------- */
+
+/* A problem with its limit frozen has the same limit and the same solution. */
+START_TEST(frozen_problems_have_the_same_solution) {
+  for (int k = 0; k < 10; ++k) {
+    contact_case c = case_any(2 + k % 2, 6, 0.4, 0, 7400ull + (unsigned)k);
+    unsigned char keep[6] = {1, 0, 1, 1, 0, 0}, given[6] = {0, 1, 0, 1, 0, 0};
+    double least;
+    int fields;
+    frozen_problem p;
+    solve(&c);
+    for (int with = 0; with < 2; ++with) {
+      ck_assert_int_eq(frozen_new(&c.cp, c.r, keep, with ? given : NULL, &p),
+                       OK);
+      for (int i = 0; i < 6; ++i)
+        ck_assert_double_eq_tol(contact_node_limit(&p.cp, p.r, i),
+                                contact_node_limit(&c.cp, c.r, i), 1e-13);
+      ck_assert_double_eq(p.B.val[p.B.start[1]], 0.0);
+      ck_assert_int_eq(inequality_least(&p.cp, c.u, &least, &fields), OK);
+      ck_assert_double_ge(least, -1e-11);
+      frozen_free(&p);
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* A block on its floor: u_t has no energy-free part, loads have no norm. */
+START_TEST(block_held_by_contact_has_a_limit_and_no_bounds) {
+  case_block_data d = {.columns = 4,
+                       .layers = 4,
+                       .symmetric = 1,
+                       .nu = 0.2,
+                       .mu = 0.05,
+                       .top = {0, -1}};
+  contact_case c = case_block(&d);
+  looker l;
+  solve(&c);
+  look_at(&l, &c, 0.05);
+  const theory_report *t = look(&l);
+  ck_assert_int_eq(t->contacts[0].regime, MU_UNDER);
+  ck_assert_ptr_nonnull(t->total.why);
+  ck_assert_int_eq(t->violated, 0);
+  look_away(&l);
+  case_free(&c);
+  d.symmetric = 0; /* friction alone resists sliding */
+  c = case_block(&d);
+  solve(&c);
+  look_at(&l, &c, 0.05);
+  ck_assert(isinf(look(&l)->contacts[0].factor));
+  ck_assert_double_eq(l.rep.contacts[0].limit, 0.0);
+  look_away(&l);
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(refused_memory_is_told_and_returned) {
+  contact_case c = case_any(3, 4, 0.2, 0, 8);
+  solve(&c);
+  size_t before = memory_in_use();
+  for (int k = 1;; ++k) {
+    looker l;
+    look_at(&l, &c, 0.2);
+    memory_refuse(k, 0);
+    status st = theory_check(l.t, &l.scene, &l.rep);
+    memory_refuse(0, 0);
+    look_away(&l);
+    ck_assert_uint_eq(memory_in_use(), before);
+    if (st == OK) {
+      ck_assert_int_gt(k, 10);
+      break;
+    }
+    ck_assert_int_eq(st, ERR_MEMORY);
+  }
+  case_free(&c);
+}
+END_TEST
+
+UNIT_MAIN("theory", largest_eigenvalues_are_those_of_closed_forms,
+          triangle_has_its_constants,
+          above_the_critical_mu_it_does_not_contract,
+          factor_bounds_what_friction_can_do,
+          bounds_hold_under_the_guaranteed_limit,
+          wrong_answers_violate_the_bounds, inequality_tells_wrong_states,
+          inequality_of_no_number_is_not_met,
+          frozen_problems_have_the_same_solution,
+          block_held_by_contact_has_a_limit_and_no_bounds,
+          refused_memory_is_told_and_returned)
