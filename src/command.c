@@ -35,6 +35,7 @@ static const char *const help_rows[][2] = {
   {"--estimate-cost", "what finer meshes and smaller errors would cost"},
   {"--threads N", "threads of the dense algebra, 1 if not said"},
   {"--no-timing", "no CPU seconds in the files: equal runs give equal bytes"},
+  {"--restart", "go on with a run that was interrupted, from JOB.rst.h5"},
   {"--quiet", "no progress line"},
   {"--help", "this text"},
   {"--version", "version, libraries, BLAS kernel"},
@@ -141,8 +142,6 @@ static int answer(int what, const char *value, const char *given,
       return print_list(value);
     case ASK_EXPLAIN:
       return print_explain(next);
-    case ASK_RESTART:
-      return wrong("--restart is not available in this version", "");
     case ':':
       return wrong("a value is missing after ", given);
     default:
@@ -171,6 +170,9 @@ static int take_option(int what, const char *value, const char *given,
       return wrong("--threads needs a number from 1 to 1024, not ", value);
     case ASK_ESTIMATE:
       c->estimate_cost = 1;
+      return -1;
+    case ASK_RESTART:
+      c->restart = 1;
       return -1;
     case ASK_QUIET:
       c->quiet = 1;

@@ -9,7 +9,7 @@ typedef struct command {
   char *dir;       /* folder of the results; owned                       */
   int n_define;
   const char **defines; /* [n_define] NAME=VALUE; array owned                 */
-  int check_only, estimate_cost, quiet, no_timing;
+  int check_only, estimate_cost, quiet, no_timing, restart;
   int threads; /* of the dense algebra; 0: not said                  */
 } command;
 

@@ -7,6 +7,7 @@
 #include "base/timer.h"
 #include "fem/fem.h"
 #include "inform.h"
+#include "restart.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -87,14 +88,16 @@ void job_input_free(job_input *in) {
 /* ---- the outputs, and who watches ---------------------------------------- */
 
 typedef struct relay {
-  history_sink to; /* the outputs */
-  const job_watch *watch;
+  history_sink to;        /* the outputs */
+  const job_watch *watch; /* or NULL                                          */
+  restart_writer restart;
 } relay;
 
 static status relay_ready(void *ctx, const setup_facts *facts,
                           const contact_surface *surface) {
   relay *r = ctx;
-  if (r->watch->ready != NULL) r->watch->ready(r->watch->ctx, facts);
+  if (r->watch != NULL && r->watch->ready != NULL)
+    r->watch->ready(r->watch->ctx, facts);
   return r->to.ready(r->to.ctx, facts, surface);
 }
 
@@ -105,7 +108,8 @@ static status relay_start(void *ctx, const start_report *s) {
 
 static status relay_increment(void *ctx, const state *s) {
   relay *r = ctx;
-  if (r->watch->increment != NULL) r->watch->increment(r->watch->ctx, s);
+  if (r->watch != NULL && r->watch->increment != NULL)
+    r->watch->increment(r->watch->ctx, s);
   return r->to.increment(r->to.ctx, s);
 }
 
@@ -119,8 +123,13 @@ static status relay_rejected(void *ctx, const state *s, const char *why) {
   return r->to.rejected(r->to.ctx, s, why);
 }
 
+static status relay_checkpoint(void *ctx, const run_memory *memory) {
+  relay *r = ctx;
+  return restart_write(&r->restart, memory);
+}
+
 status job_solve(const command *c, job_input *in, const job_watch *watch,
-                 int *unsettled) {
+                 archive *from, int *unsettled) {
   static const mesh no_mesh;
   status st = OK;
   output *out = NULL;
@@ -130,19 +139,20 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
       .version = PROTIS_VERSION,
       .kernel = blas_kernel(),
       .threads = c->threads > 0 ? c->threads : 1,
+      .from = from,
       .progress = !c->quiet && isatty(STDERR_FILENO)};
   TRY(output_open(in->m, in->problem == NULL ? in->msh : &no_mesh, &options,
                   &out));
-  relay r = {output_sink(out), watch};
+  relay r = {output_sink(out), watch, {c, in, out}};
   history_sink sink = {.ctx = &r,
                        .ready = relay_ready,
                        .start = relay_start,
                        .increment = relay_increment,
                        .iteration = relay_iteration,
-                       .rejected = relay_rejected};
-  if (watch == NULL) sink = r.to;
+                       .rejected = relay_rejected,
+                       .checkpoint = watch == NULL ? relay_checkpoint : NULL};
   st = in->problem == NULL
-           ? history_run(in->m, in->msh, &sink, unsettled)
+           ? history_continue(in->m, in->msh, from, &sink, unsettled)
            : condensed_run(in->m, in->problem, &sink, unsettled);
   if (watch != NULL && watch->finished != NULL)
     st = watch->finished(watch->ctx, st, out);

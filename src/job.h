@@ -45,8 +45,9 @@ typedef struct job_watch {
 } job_watch;
 
 /* Solve and write the results into the folder, which is there; watch may be
- * NULL. *unsettled as history_run. */
+ * NULL. Only a pass that nobody watches writes restart files. from: the restart
+ * file of the run to go on with, or NULL. *unsettled as history_run. */
 status job_solve(const command *c, job_input *in, const job_watch *watch,
-                 int *unsettled);
+                 archive *from, int *unsettled);
 
 #endif

@@ -59,11 +59,9 @@ static status refuse(const char *path, int fd, const char *job) {
 static status hold(const char *path, const char *job, int *fd) {
   status st = OK;
   do {
-    if (*fd >= 0)
-      close(*fd);
+    if (*fd >= 0) close(*fd);
     *fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (*fd < 0)
-      TRY(text_failed(path, "open for writing", errno));
+    if (*fd < 0) TRY(text_failed(path, "open for writing", errno));
     TRY(check_content(path, *fd));
     if (flock(*fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       TRY(refuse(path, *fd, job));
@@ -76,8 +74,7 @@ status job_lock_take(const char *dir, const char *job, job_lock *l) {
   status st = OK;
   int fd = -1;
   char *path = text_path(dir, job, "lock");
-  if (path == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: name of the lock");
+  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of the lock");
   if (mkdir(dir, 0777) != 0 && errno != EEXIST)
     FAIL(ERR_FILE, "cannot make the folder %s: %s", dir, strerror(errno));
   TRY(hold(path, job, &fd));
@@ -86,16 +83,14 @@ status job_lock_take(const char *dir, const char *job, job_lock *l) {
   *l = (job_lock){path, fd};
 done:
   if (st != OK) {
-    if (fd >= 0)
-      close(fd);
+    if (fd >= 0) close(fd);
     memory_free(path);
   }
   return st;
 }
 
 void job_lock_release(job_lock *l) {
-  if (l->path == NULL)
-    return;
+  if (l->path == NULL) return;
   unlink(l->path);
   close(l->fd);
   memory_free(l->path);

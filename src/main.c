@@ -10,6 +10,7 @@
 #include "inform.h"
 #include "job.h"
 #include "lock.h"
+#include "restart.h"
 #include "target.h"
 
 #include <stdio.h>
@@ -17,15 +18,18 @@
 static status solve(const command *c, job_input *in, int *unsettled) {
   status st = OK;
   job_lock lock = {0};
+  archive *from = NULL;
   char *stop = text_path(c->dir, in->m->job, "stop");
   if (stop == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
   TRY(job_lock_take(c->dir, in->m->job, &lock));
   interrupt_catch(stop);
+  if (c->restart) TRY(restart_read(c, in, &from));
   if (in->m->target.percent > 0.0 && in->problem == NULL)
     TRY(target_reach(c, in, unsettled));
   else
-    TRY(job_solve(c, in, NULL, unsettled));
+    TRY(job_solve(c, in, NULL, from, unsettled));
 done:
+  archive_free(from);
   job_lock_release(&lock);
   memory_free(stop);
   return st;

@@ -229,7 +229,7 @@ static status run_pass(pass *p, int *unsettled) {
   NEW(p->eta, p->in->msh->n_elem);
   adjust(p, p->in->m);
   *unsettled = 0;
-  st = job_solve(p->c, p->in, &watch, unsettled);
+  st = job_solve(p->c, p->in, &watch, NULL, unsettled);
 done:
   return st;
 }

@@ -12,8 +12,7 @@ static const char *file;             /* borrowed                             */
 static int file_seen;
 
 static void note(int signal_no) {
-  if (caught != 0)
-    _exit(SIGNALLED + signal_no);
+  if (caught != 0) _exit(SIGNALLED + signal_no);
   caught = signal_no;
 }
 
@@ -28,26 +27,20 @@ void interrupt_catch(const char *stop_file) {
   caught = 0;
   file_seen = 0;
   file = stop_file;
-  if (file != NULL)
-    unlink(file);
+  if (file != NULL) unlink(file);
   sigaction(SIGINT, &act, NULL);
   sigaction(SIGTERM, &act, NULL);
 }
 
 status interrupt_asked(void) {
-  if (caught == SIGTERM)
-    return ERR_TERMINATED;
-  if (caught != 0)
-    return ERR_INTERRUPTED;
-  if (!file_seen && file != NULL)
-    file_seen = unlink(file) == 0;
+  if (caught == SIGTERM) return ERR_TERMINATED;
+  if (caught != 0) return ERR_INTERRUPTED;
+  if (!file_seen && file != NULL) file_seen = unlink(file) == 0;
   return file_seen ? ERR_INTERRUPTED : OK;
 }
 
 const char *interrupt_name(void) {
-  if (caught == SIGTERM)
-    return "SIGTERM";
-  if (caught != 0)
-    return "SIGINT";
+  if (caught == SIGTERM) return "SIGTERM";
+  if (caught != 0) return "SIGINT";
   return file_seen ? file : "";
 }

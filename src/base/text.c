@@ -43,6 +43,26 @@ done:
   return st;
 }
 
+status text_reopen(text_file *t, const char *path, int by_line, long length) {
+  status st = OK;
+  t->path = memory_text(path);
+  if (t->path == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: the name of %s", path);
+  errno = 0;
+  t->f = fopen(path, "r+");
+  if (t->f == NULL) TRY(text_failed(path, "open to go on with it", errno));
+  setvbuf(t->f, NULL, by_line ? _IOLBF : _IOFBF, BUFFER);
+  if (fseek(t->f, 0, SEEK_END) != 0) TRY(text_failed(path, "read", errno));
+  if (ftell(t->f) < length)
+    FAIL(ERR_FILE, "%s is shorter than when the restart file was written",
+         path);
+  if (ftruncate(fileno(t->f), length) != 0 ||
+      fseek(t->f, length, SEEK_SET) != 0)
+    TRY(text_failed(path, "cut", errno));
+done:
+  return st;
+}
+
 /* A write that failed inside fprintf has left no reason: ask for it again. */
 static int reason_again(FILE *f) {
   errno = 0;
@@ -60,6 +80,16 @@ status text_check(text_file *t) {
   if (!bad) return OK;
   if (error_no == 0) error_no = reason_again(t->f);
   return text_failed(t->path, "write", error_no);
+}
+
+status text_sync(text_file *t, long *length) {
+  status st = OK;
+  TRY(text_check(t));
+  *length = t->f == NULL ? -1 : ftell(t->f);
+  if (t->f != NULL && fsync(fileno(t->f)) != 0)
+    TRY(text_failed(t->path, "write", errno));
+done:
+  return st;
 }
 
 status text_close(text_file *t) {

@@ -18,6 +18,11 @@ typedef struct text_file {
 char *text_path(const char *dir, const char *name, const char *suffix);
 /* Open for writing; by_line: each line is handed over when it ends. */
 status text_open(text_file *t, const char *path, int by_line);
+/* Open to go on after "length" bytes; what stands beyond is cut. ERR_FILE also
+ * if the file is shorter. */
+status text_reopen(text_file *t, const char *path, int by_line, long length);
+/* Hand everything to the disk; bytes so far into *length. */
+status text_sync(text_file *t, long *length);
 /* Hand everything to the system; ERR_FILE names the file and the reason. */
 status text_check(text_file *t);
 status text_close(text_file *t); /* checked; accepts one never opened      */

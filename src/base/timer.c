@@ -70,3 +70,12 @@ void timer_reset(void) {
   memset(cost, 0, sizeof cost);
   depth = 0;
 }
+
+void timer_resume(const stage_cost before[STAGE_COUNT]) {
+  charge();
+  for (int i = 0; i < STAGE_COUNT; ++i) {
+    cost[i].calls = before[i].calls;
+    cost[i].cpu += before[i].cpu;
+    cost[i].bytes += before[i].bytes;
+  }
+}

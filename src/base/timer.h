@@ -55,5 +55,8 @@ const char *timer_name(stage s); /* the text of STAGE_LIST                  */
 double timer_cpu(void);          /* CPU seconds of the process so far, and of
                                     the children it has waited for          */
 void timer_reset(void);
+/* The process goes on with the run of another, which had spent this: its calls
+ * are those of the whole from here on, the rest adds up. */
+void timer_resume(const stage_cost before[STAGE_COUNT]);
 
 #endif

@@ -47,6 +47,7 @@ void contact_solver_reset(contact_solver *s) {
   s->best_u = s->best_r = NULL;
   s->A = s->W = NULL;
   s->m = s->n = -1;
+  s->from = NULL;
 }
 
 void contact_solver_free(contact_solver *s) {
@@ -63,7 +64,15 @@ static status fit(contact_solver *s, const contact_problem *cp) {
   if (s->A == cp->A && s->W == cp->W && s->m == cp->m && s->n == cp->n &&
       s->best_u != NULL)
     goto done;
+  archive *from = s->best_u == NULL ? s->from : NULL;
   contact_solver_reset(s);
+  s->from = from;
+  if (from != NULL) {
+    archive_go(from, s->group);
+    st = normal_form_keep(&s->normal, from);
+    archive_go(from, "");
+    TRY(st);
+  }
   NEW(s->best_u, cp->m);
   NEW(s->best_r, cp->m);
   s->A = cp->A;
@@ -71,6 +80,52 @@ static status fit(contact_solver *s, const contact_problem *cp) {
   s->m = cp->m;
   s->n = cp->n;
 done:
+  return st;
+}
+
+/* ---- what is remembered ------------------------------------------------- */
+
+static status keep_work(const contact_solver *s, int row, archive *a) {
+  status st = OK;
+  char name[20];
+  const solver_ops *ops = row < N_SOLVER ? solver_list[row] : s->choice.ops;
+  if (s->work[row] == NULL || ops->keep == NULL) return OK;
+  snprintf(name, sizeof name, "work%d", row);
+  archive_enter(a, name);
+  st = ops->keep(s->work[row], a);
+  archive_leave(a);
+  return st;
+}
+
+status contact_solver_keep(contact_solver *s, archive *a) {
+  status st = OK;
+  if (archive_reads(a)) {
+    contact_solver_reset(s);
+    s->from = a;
+    snprintf(s->group, sizeof s->group, "%s", archive_group(a));
+    goto done;
+  }
+  int there = 0;
+  for (int i = 0; i <= N_SOLVER; ++i) {
+    TRY(keep_work(s, i, a));
+    if (s->work[i] != NULL) there |= 1 << i;
+  }
+  TRY(archive_ints(a, "works", &there, 1));
+  TRY(normal_form_keep(&s->normal, a));
+done:
+  return st;
+}
+
+/* A work that is new takes over what it is to remember. */
+static status remember(contact_solver *s, int row) {
+  status st = OK;
+  int there = 0;
+  if (s->from == NULL) return OK;
+  archive_go(s->from, s->group);
+  TRY(archive_ints(s->from, "works", &there, 1));
+  if (there >> row & 1) TRY(keep_work(s, row, s->from));
+done:
+  archive_go(s->from, "");
   return st;
 }
 
@@ -164,7 +219,10 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
     log_unfit(s, a->ops->name, why);
     goto done;
   }
-  if (s->work[row] == NULL) TRY(a->ops->setup(&own, a->param, &s->work[row]));
+  if (s->work[row] == NULL) {
+    TRY(a->ops->setup(&own, a->param, &s->work[row]));
+    TRY(remember(s, row));
+  }
   TRY(drive_one(s, &own, a, &control, u, r, rep));
 done:
   rep->solver = a->ops->name;

@@ -28,6 +28,8 @@ struct contact_solver {
   other_form other;
   normal_form normal;
   double *best_u, *best_r; /* [m] of the attempt with the lowest residual     */
+  archive *from;  /* borrowed: what the works are to remember; or NULL        */
+  char group[80]; /* in it                                                    */
 };
 
 typedef enum { PLAIN, ALONG_PATH } drive;

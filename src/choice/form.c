@@ -6,6 +6,7 @@
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { TILE = 32 };
@@ -245,6 +246,36 @@ static void settle(const normal_form *nf, const contact_problem *cp, double *u,
   for (int i = 0; i < nt; ++i) u[tangent_dof(d, i)] = nf->y[i];
 }
 
+status normal_form_keep(normal_form *nf, archive *a) {
+  status st = OK;
+  archive_enter(a, "normal");
+  TRY(archive_ints(a, "wanted", &nf->wanted, 1));
+  if (archive_reads(a)) {
+    nf->from = a;
+    snprintf(nf->group, sizeof nf->group, "%s", archive_group(a));
+    goto done;
+  }
+  int there = nf->work != NULL;
+  TRY(archive_ints(a, "work", &there, 1));
+  if (there) TRY(newton_solver.keep(nf->work, a));
+done:
+  archive_leave(a);
+  return st;
+}
+
+/* A work that is new takes over what it is to remember. */
+static status remember(normal_form *nf) {
+  status st = OK;
+  int there = 0;
+  if (nf->from == NULL) return OK;
+  archive_go(nf->from, nf->group);
+  TRY(archive_ints(nf->from, "work", &there, 1));
+  if (there) TRY(newton_solver.keep(nf->work, nf->from));
+done:
+  archive_go(nf->from, "");
+  return st;
+}
+
 status normal_form_solve(normal_form *nf, const contact_problem *cp,
                          const solver_control *control, double *u, double *r,
                          solver_report *rep) {
@@ -263,7 +294,10 @@ status normal_form_solve(normal_form *nf, const contact_problem *cp,
     nf->r[i] = r[i * cp->dim];
   }
   option_defaults(newton_solver.options, param);
-  if (nf->work == NULL) TRY(newton_solver.setup(&own, param, &nf->work));
+  if (nf->work == NULL) {
+    TRY(newton_solver.setup(&own, param, &nf->work));
+    TRY(remember(nf));
+  }
   TRY(newton_solver.solve(&own, param, nf->work, &tighter, nf->u, nf->r, rep));
   rep->solver = "newton";
   if (rep->outcome == CONVERGED) settle(nf, cp, u, r);

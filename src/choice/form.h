@@ -33,7 +33,11 @@ typedef struct normal_form {
   double *f, *u, *r, *gap; /* [n] of the problem in S                         */
   double *y;               /* [m] work                                        */
   void *work;              /* of the solver                                   */
+  archive *from;  /* borrowed: what the work is to remember; or NULL          */
+  char group[80]; /* in it                                                    */
 } normal_form;
+/* What it remembers from problem to problem; as contact_solver_keep. */
+status normal_form_keep(normal_form *nf, archive *a);
 /* 1: no friction, no second obstacle, nothing held, matrix not singular. */
 int normal_form_applies(const contact_problem *cp);
 /* Solve by Newton's method from u[m], r[m]. rep as from a solver; RUNNING if

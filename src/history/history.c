@@ -21,10 +21,8 @@ enum { DEEPEST_CUT = 30 };
 static double piece_end(const step *s, long n, long i, long part, int level) {
   double pieces = ldexp(1.0, level);
   double done = (double)i + (double)part / pieces;
-  if (i == n - 1 && part == (long)pieces)
-    return s->start + s->total;
-  if (i < n - 1)
-    return s->start + done * s->dt;
+  if (i == n - 1 && part == (long)pieces) return s->start + s->total;
+  if (i < n - 1) return s->start + done * s->dt;
   /* The last increment is what is left of the step. */
   double left = s->total - (double)(n - 1) * s->dt;
   return s->start + (double)(n - 1) * s->dt + (double)part / pieces * left;
@@ -34,8 +32,7 @@ static long increments_of(const step *s) {
   double n = s->total / s->dt;
   long whole = (long)floor(n + 0.5);
   /* A step that is a multiple of dt up to rounding has no sliver at the end. */
-  if (whole >= 1 && fabs(n - (double)whole) <= 1e-9 * n)
-    return whole;
+  if (whole >= 1 && fabs(n - (double)whole) <= 1e-9 * n) return whole;
   return (long)ceil(n);
 }
 
@@ -112,8 +109,7 @@ static int table_is_due(const step *s, int tables, int increment_no, int last) {
 /* 1 if some output wants the stresses of this increment. */
 static int stress_is_due(const step *s, int increment_no, int last) {
   int f = s->output_frequency;
-  if (f >= 0 && is_due(f, increment_no, last))
-    return 1;
+  if (f >= 0 && is_due(f, increment_no, last)) return 1;
   return table_is_due(s, ~0, increment_no, last);
 }
 
@@ -122,8 +118,7 @@ static status note_misfit(run *r) {
   status st = OK;
   char text[400];
   size_t used = strlen(r->note);
-  if (r->n == 0 || r->report.outcome > 0)
-    goto done;
+  if (r->n == 0 || r->report.outcome > 0) goto done;
   TRY(verdict_misfit(&r->cp, r->surface, r->now.uc, r->now.rc, text,
                      sizeof text));
   if (text[0] != '\0')
@@ -149,8 +144,7 @@ static status accept(run *r, int attempt, int increment_no, int last,
   state s = make_state(r, attempt, increment_no);
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
-  if (r->sink->increment != NULL)
-    TRY(r->sink->increment(r->sink->ctx, &s));
+  if (r->sink->increment != NULL) TRY(r->sink->increment(r->sink->ctx, &s));
   result_accept(r);
 done:
   return st;
@@ -163,8 +157,7 @@ static status reject(run *r, int attempt, int increment_no, const char *why) {
   r->jumps = 0;
   state s = make_state(r, attempt, increment_no);
   s.n_open = s.n_slip = s.n_stick = 0;
-  if (r->sink->rejected == NULL)
-    return OK;
+  if (r->sink->rejected == NULL) return OK;
   return r->sink->rejected(r->sink->ctx, &s, why);
 }
 
@@ -191,68 +184,119 @@ done:
   return st;
 }
 
-/* Between two attempts: ends the run if that was asked for. */
-static status stop_if_asked(const run *r, int increment_no) {
-  status st = OK, stop = interrupt_asked();
-  int step_no = run_step_id(r) + 1;
-  if (stop == OK)
-    goto done;
+/* ---- between two attempts ------------------------------------------------ */
+
+static status keep_all(void *run_, archive *a) { return run_keep(run_, a); }
+
+static status checkpoint(run *r) {
+  status st = OK;
+  const run_memory memory = {r, keep_all, r->at.step_id + 1};
+  int planned = r->due; /* others are no stage of the run that goes on        */
+  r->due = 0;
+  if (r->sink->checkpoint == NULL) return OK;
+  if (planned) timer_enter(STAGE_RESTART);
+  st = r->sink->checkpoint(r->sink->ctx, &memory);
+  if (planned) timer_leave(STAGE_RESTART);
+  return st;
+}
+
+static status stop(run *r, status why) {
+  status st = OK;
+  const progress *p = &r->at;
+  const char *by = interrupt_name();
+  const char *on =
+      r->sink->checkpoint != NULL ? "; protis --restart goes on" : "";
   if (r->total_no == 0)
-    FAIL(stop, "interrupted by %s before the first increment",
-         interrupt_name());
-  if (increment_no == 0)
-    FAIL(stop, "interrupted by %s before step %d, at time %g", interrupt_name(),
-         step_no, r->old.t);
-  FAIL(stop, "interrupted by %s after step %d, increment %d, time %g",
-       interrupt_name(), step_no, increment_no, r->old.t);
+    FAIL(why, "interrupted by %s before the first increment", by);
+  if (!r->kept) TRY(checkpoint(r));
+  if (p->increment_no == 0)
+    FAIL(why, "interrupted by %s before step %d, at time %g%s", by,
+         p->step_id + 1, r->old.t, on);
+  FAIL(why, "interrupted by %s after step %d, increment %d, time %g%s", by,
+       p->step_id + 1, p->increment_no, r->old.t, on);
 done:
   return st;
 }
 
-/* Increment number i of n, cut into halves as often as needed. */
-static status run_increment(run *r, long n, long i, int *increment_no) {
+/* What is due where the run could go on from; ends it if that was asked for. */
+static status pause(run *r) {
+  status st = OK, why = interrupt_asked();
+  r->kept = r->due;
+  if (r->due) TRY(checkpoint(r));
+  if (why != OK) TRY(stop(r, why));
+done:
+  return st;
+}
+
+/* ---- increments ---------------------------------------------------------- */
+
+/* 1 if an attempt that found no equilibrium is made again in halves. */
+static int can_cut(const run *r) {
+  const step *s = r->step;
+  int level = r->at.level + 1;
+  return s->kind != STEP_STATIC && level <= DEEPEST_CUT &&
+         ldexp(s->dt, -level) >= s->dt_min &&
+         r->report.outcome != STOPPED_STAGNATION &&
+         r->report.outcome != STOPPED_UNFIT;
+}
+
+/* The next piece of n increments has been taken. */
+static status accept_piece(run *r, long n, double cpu) {
+  status st = OK;
+  progress *p = &r->at;
+  int attempt = p->attempt, end = p->part + 1 == 1L << p->level;
+  int last = p->i == n - 1 && end;
+  ++p->part;
+  ++p->increment_no;
+  p->attempt = 1;
+  if (end) {
+    ++p->i;
+    p->part = p->level = 0;
+  }
+  TRY(accept(r, attempt, p->increment_no, last, cpu));
+done:
+  return st;
+}
+
+/* One attempt at the next piece of n increments: taken, or cut into halves. */
+static status attempt_piece(run *r, long n) {
   status st = OK;
   const step *s = r->step;
-  long part = 0;
-  int level = 0, attempt = 1;
-  while (part < (1L << level)) {
-    double cpu = timer_cpu(), t = piece_end(s, n, i, part + 1, level);
-    int deeper;
-    TRY(stop_if_asked(r, *increment_no));
-    TRY(visco_level(r, t - r->old.t, &deeper));
-    if (deeper > 0) {
-      part <<= deeper;
-      level += deeper;
-      continue;
-    }
-    TRY(path_try(r, t));
-    TRY(s->kind == STEP_VISCO ? visco_advance(r, t) : increment_solve(r, t));
-    int settled = r->report.outcome > 0;
-    int finer = s->kind != STEP_STATIC && level < DEEPEST_CUT &&
-                ldexp(s->dt, -(level + 1)) >= s->dt_min &&
-                r->report.outcome != STOPPED_STAGNATION &&
-                r->report.outcome != STOPPED_UNFIT;
-    if (!settled && finer) {
-      TRY(reject(r, attempt, *increment_no + 1,
-                 outcome_text(r->report.outcome)));
-      part *= 2;
-      ++level;
-      ++attempt;
-      continue;
-    }
-    if (!settled && outcome_is_fatal(r->report.outcome)) {
-      TRY(reject(r, attempt, *increment_no + 1,
-                 outcome_text(r->report.outcome)));
-      TRY(no_equilibrium(r));
-    }
-    r->jumps = 0;
-    if (settled)
-      TRY(jump_check(r, t));
-    ++part;
-    ++*increment_no;
-    TRY(accept(r, attempt, *increment_no, i == n - 1 && part == 1L << level,
-               cpu));
-    attempt = 1;
+  progress *p = &r->at;
+  double cpu = timer_cpu(), t = piece_end(s, n, p->i, p->part + 1, p->level);
+  int deeper;
+  TRY(visco_level(r, t - r->old.t, &deeper));
+  if (deeper > 0) {
+    p->part <<= deeper;
+    p->level += deeper;
+    goto done;
+  }
+  TRY(path_try(r, t));
+  TRY(s->kind == STEP_VISCO ? visco_advance(r, t) : increment_solve(r, t));
+  int settled = r->report.outcome > 0, finer = !settled && can_cut(r);
+  if (finer || (!settled && outcome_is_fatal(r->report.outcome)))
+    TRY(reject(r, p->attempt, p->increment_no + 1,
+               outcome_text(r->report.outcome)));
+  if (finer) {
+    p->part *= 2;
+    ++p->level;
+    ++p->attempt;
+    goto done;
+  }
+  if (!settled && outcome_is_fatal(r->report.outcome)) TRY(no_equilibrium(r));
+  r->jumps = 0;
+  if (settled) TRY(jump_check(r, t));
+  TRY(accept_piece(r, n, cpu));
+done:
+  return st;
+}
+
+static status run_fixed(run *r) {
+  status st = OK;
+  long n = increments_of(r->step);
+  while (r->at.i < n) {
+    TRY(pause(r));
+    TRY(attempt_piece(r, n));
   }
 done:
   return st;
@@ -305,8 +349,7 @@ static status judge_start(run *r) {
   const start_card *asked = &r->m->start;
   start_report *s = &r->first;
   s->relaxed = s->n_bad > 0 && asked->relax;
-  if (r->sink->start != NULL)
-    TRY(r->sink->start(r->sink->ctx, s));
+  if (r->sink->start != NULL) TRY(r->sink->start(r->sink->ctx, s));
   if (s->n_bad > 0 && !s->relaxed) {
     message_add(r->m->log, P4014, &asked->at,
                 "the start is not compatible: defect %.3g (%.2g of the largest "
@@ -334,8 +377,7 @@ static status test_start(run *r) {
   NEW(given, r->n);
   TRY(increment_pose(r, 0.0));
   TRY(start_forces(r, R, diagonal, &largest));
-  if (r->n > 0)
-    TRY(forms_given(r, 0.0, given));
+  if (r->n > 0) TRY(forms_given(r, 0.0, given));
   const start_input in = {.mesh = r->msh,
                           .fixed = r->fixed,
                           .u = r->old.u,
@@ -359,12 +401,10 @@ done:
 
 status run_read_start(run *r) {
   status st = OK;
-  if (!(r->m->effects & EFFECT_START))
-    goto done;
+  if (!(r->m->effects & EFFECT_START)) goto done;
   timer_enter(STAGE_START);
   st = start_report_new(r->msh, &r->first);
-  if (st == OK)
-    st = start_displacements(r->m, r->msh, r->old.u, &r->first);
+  if (st == OK) st = start_displacements(r->m, r->msh, r->old.u, &r->first);
   timer_leave(STAGE_START);
 done:
   return st;
@@ -382,8 +422,7 @@ static int same_vector(size_t n, const double *a, const double *b) {
 
 /* 1 if nothing acts at the start of the step that did not act before. */
 static int starts_smoothly(const run *r) {
-  if (r->total_no == 0 && r->n > 0)
-    return 0;
+  if (r->total_no == 0 && r->n > 0) return 0;
   for (size_t i = 0; i < r->n_dof; ++i)
     if (r->fixed[i] && fabs(r->ud[i] - r->old.u[i]) > 1e-12 * fabs(r->ud[i]))
       return 0;
@@ -399,13 +438,11 @@ static int starts_smoothly(const run *r) {
 static status start_visco(run *r, int *increment_no) {
   status st = OK;
   double cpu = timer_cpu();
-  if (r->step->kind != STEP_VISCO || r->visco == NULL)
-    return OK;
+  if (r->step->kind != STEP_VISCO || r->visco == NULL) return OK;
   TRY(increment_begin(r, r->step->start));
   if (!starts_smoothly(r)) {
     TRY(increment_solve(r, r->step->start));
-    if (outcome_is_fatal(r->report.outcome))
-      TRY(no_equilibrium(r));
+    if (outcome_is_fatal(r->report.outcome)) TRY(no_equilibrium(r));
     if (!same_vector(r->n_dof, r->now.u, r->old.u))
       TRY(accept(r, 1, ++*increment_no, 0, cpu));
   }
@@ -420,97 +457,120 @@ static double next_length(const step *s, double dt, double error) {
   const scheme *of = s->integrator;
   int order = of->estimates ? 1 : of->order;
   double factor = 4.0;
-  if (s->theta == 0.5 && of->has_theta)
-    order = 2;
-  if (error > 0.0)
-    factor = 0.9 * pow(s->tolerance / error, 1.0 / (order + 1));
+  if (s->theta == 0.5 && of->has_theta) order = 2;
+  if (error > 0.0) factor = 0.9 * pow(s->tolerance / error, 1.0 / (order + 1));
   factor = fmin(4.0, fmax(0.2, factor));
-  if (of->limit == 0.0)
-    factor = ldexp(1.0, (int)floor(log2(factor)));
+  if (of->limit == 0.0) factor = ldexp(1.0, (int)floor(log2(factor)));
   return fmin(dt * factor, s->dt_max);
 }
 
 /* End of the next increment: not a sliver before the end of the step. */
 static double next_end(const run *r, double dt) {
   double end = r->step->start + r->step->total, left = end - r->old.t;
-  if (dt >= left * (1.0 - 1e-9))
-    return end;
+  if (dt >= left * (1.0 - 1e-9)) return end;
   return r->old.t + (dt > 0.5 * left && r->step->integrator->limit > 0.0
                          ? 0.5 * left
                          : dt);
 }
 
-/* One increment of a step with a tolerance; *dt is the length tried, then that
- * of the next. */
-static status run_adapted(run *r, double *dt, int *increment_no) {
+/* One attempt at an increment of a step with a tolerance. */
+static status attempt_adapted(run *r) {
   status st = OK;
   const step *s = r->step;
+  progress *p = &r->at;
   double end = s->start + s->total, error = 0.0;
-  for (int attempt = 1;; ++attempt) {
-    double cpu = timer_cpu(), t = next_end(r, *dt), tried;
-    int deeper;
-    TRY(stop_if_asked(r, *increment_no));
-    TRY(visco_level(r, t - r->old.t, &deeper));
-    if (deeper > 0)
-      t = next_end(r, ldexp(t - r->old.t, -deeper));
-    tried = t - r->old.t;
-    TRY(visco_try(r, t, &error));
-    int settled = r->report.outcome > 0;
-    r->missed = settled && error > s->tolerance;
-    if ((!settled || r->missed) && tried > s->dt_min) {
-      TRY(reject(r, attempt, *increment_no + 1,
-                 settled ? "strain error above TOLERANCE"
-                         : outcome_text(r->report.outcome)));
-      *dt = fmax(s->dt_min, fmin(0.5 * tried, next_length(s, tried, error)));
-      continue;
-    }
-    if (outcome_is_fatal(r->report.outcome))
-      TRY(no_equilibrium(r));
-    TRY(accept(r, attempt, ++*increment_no, t == end, cpu));
-    *dt = fmax(s->dt_min, next_length(s, tried, error));
-    break;
+  double cpu = timer_cpu(), t = next_end(r, p->dt), tried;
+  int deeper, attempt = p->attempt;
+  TRY(visco_level(r, t - r->old.t, &deeper));
+  if (deeper > 0) t = next_end(r, ldexp(t - r->old.t, -deeper));
+  tried = t - r->old.t;
+  TRY(visco_try(r, t, &error));
+  int settled = r->report.outcome > 0;
+  r->missed = settled && error > s->tolerance;
+  if ((!settled || r->missed) && tried > s->dt_min) {
+    TRY(reject(r, attempt, p->increment_no + 1,
+               settled ? "strain error above TOLERANCE"
+                       : outcome_text(r->report.outcome)));
+    p->dt = fmax(s->dt_min, fmin(0.5 * tried, next_length(s, tried, error)));
+    ++p->attempt;
+    goto done;
   }
+  if (outcome_is_fatal(r->report.outcome)) TRY(no_equilibrium(r));
+  p->attempt = 1;
+  ++p->increment_no;
+  TRY(accept(r, attempt, p->increment_no, t == end, cpu));
+  p->dt = fmax(s->dt_min, next_length(s, tried, error));
 done:
   r->missed = 0;
   return st;
 }
 
-static status run_adaptive(run *r, int *increment_no) {
+static status run_adaptive(run *r) {
   status st = OK;
-  double dt = r->step->dt, end = r->step->start + r->step->total;
-  while (r->old.t < end)
-    TRY(run_adapted(r, &dt, increment_no));
+  double end = r->step->start + r->step->total;
+  while (r->old.t < end) {
+    TRY(pause(r));
+    TRY(attempt_adapted(r));
+  }
+done:
+  return st;
+}
+
+/* What comes before the increments of a step. */
+static status begin_step(run *r) {
+  status st = OK;
+  if (run_step_id(r) == 0 && (r->m->effects & EFFECT_START)) {
+    TRY(test_start(r));
+    TRY(judge_start(r));
+  }
+  TRY(start_visco(r, &r->at.increment_no));
 done:
   return st;
 }
 
 static status run_step(run *r) {
   status st = OK;
-  long n = increments_of(r->step);
-  int increment_no = 0;
   TRY(run_prepare(r));
-  if (run_step_id(r) == 0 && (r->m->effects & EFFECT_START)) {
-    TRY(test_start(r));
-    TRY(judge_start(r));
+  if (r->from != NULL) {
+    TRY(run_keep(r, r->from));
+    r->from = NULL;
+  } else {
+    r->at =
+        (progress){.step_id = run_step_id(r), .attempt = 1, .dt = r->step->dt};
+    TRY(begin_step(r));
   }
-  TRY(start_visco(r, &increment_no));
   if (r->step->tolerance > 0.0 && r->visco != NULL)
-    TRY(run_adaptive(r, &increment_no));
+    TRY(run_adaptive(r));
   else
-    for (long i = 0; i < n; ++i)
-      TRY(run_increment(r, n, i, &increment_no));
+    TRY(run_fixed(r));
+  if (r->due) TRY(checkpoint(r));
 done:
   return st;
 }
 
-status history_run(const model *m, const mesh *msh, const history_sink *sink,
-                   int *unsettled) {
+/* The step in progress. */
+static status read_progress(run *r) {
   status st = OK;
-  run r = {.m = m, .msh = msh, .sink = sink};
+  if (r->from == NULL) goto done;
+  archive_enter(r->from, "run");
+  st = archive_bytes(r->from, "at", &r->at, sizeof r->at);
+  archive_leave(r->from);
+  TRY(st);
+  if (r->at.step_id < 0 || r->at.step_id >= r->m->n_step)
+    FAIL(ERR_FILE, "the restart file is of a deck with other steps");
+done:
+  return st;
+}
+
+status history_continue(const model *m, const mesh *msh, archive *from,
+                        const history_sink *sink, int *unsettled) {
+  status st = OK;
+  run r = {.m = m, .msh = msh, .sink = sink, .from = from};
   *unsettled = 0;
   TRY(run_new(&r));
-  TRY(run_read_start(&r));
-  for (int i = 0; i < m->n_step; ++i) {
+  TRY(read_progress(&r));
+  if (from == NULL) TRY(run_read_start(&r));
+  for (int i = r.at.step_id; i < m->n_step; ++i) {
     r.step = &m->steps[i];
     TRY(run_step(&r));
   }
@@ -518,4 +578,9 @@ done:
   *unsettled = r.unsettled;
   run_free(&r);
   return st;
+}
+
+status history_run(const model *m, const mesh *msh, const history_sink *sink,
+                   int *unsettled) {
+  return history_continue(m, msh, NULL, sink, unsettled);
 }

@@ -137,6 +137,13 @@ typedef struct setup_facts {
   double average_entries; /* of the nonlocal averages                         */
 } setup_facts;
 
+/* The state of a run, for an archive. */
+typedef struct run_memory {
+  void *run;
+  status (*keep)(void *run, archive *a);
+  int step_no; /* the one in progress, from 1                               */
+} run_memory;
+
 /* Who is told what. Any function may be NULL. */
 typedef struct history_sink {
   void *ctx;
@@ -148,6 +155,9 @@ typedef struct history_sink {
   void (*iteration)(void *ctx, const solver_step *s); /* for .cvg             */
   /* An attempt that failed and is cut or given up. */
   status (*rejected)(void *ctx, const state *s, const char *why);
+  /* What the run can go on from, between two attempts: where *RESTART asks for
+   * it, and at an interruption. memory.keep names all its arrays. */
+  status (*checkpoint)(void *ctx, const run_memory *memory);
 } history_sink;
 
 /*
@@ -158,6 +168,11 @@ typedef struct history_sink {
  */
 status history_run(const model *m, const mesh *msh, const history_sink *sink,
                    int *unsettled);
+/* The same from a checkpoint of an equal model on (from NULL: from the start):
+ * bit for bit the run that was not interrupted. Borrowed; ERR_FILE if it does
+ * not fit. */
+status history_continue(const model *m, const mesh *msh, archive *from,
+                        const history_sink *sink, int *unsettled);
 
 /* The bound that is told, for a solution of that energy, J. */
 void error_bound_set(const solver_error *found, double energy, error_bound *e);

@@ -165,6 +165,31 @@ void path_compare(run *r) {
   advance(r->path);
 }
 
+static status keep_waypoint(int m, waypoint *w, archive *a) {
+  status st = OK;
+  TRY(archive_reals(a, "path_t", &w->t, 1));
+  TRY(archive_reals(a, "path_uc", w->uc, (size_t)m));
+  TRY(archive_reals(a, "path_rc", w->rc, (size_t)m));
+  TRY(archive_reals(a, "path_motion", w->motion, (size_t)m));
+done:
+  return st;
+}
+
+status path_keep(run *r, archive *a) {
+  status st = OK;
+  int there = r->path != NULL;
+  TRY(archive_ints(a, "path", &there, 1));
+  if (archive_reads(a)) path_restart(r);
+  TRY(archive_reals(a, "path_before", &r->path_before, 1));
+  TRY(archive_reals(a, "path_error", &r->path_error, 1));
+  if (!there) goto done;
+  if (r->path == NULL) TRY(path_new(r, &r->path));
+  TRY(archive_ints(a, "path_lost", &r->path->lost, 1));
+  TRY(keep_waypoint(r->n_c, &r->path->at, a));
+done:
+  return st;
+}
+
 void path_restart(run *r) {
   path_free(r->path);
   r->path = NULL;

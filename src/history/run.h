@@ -6,6 +6,7 @@
 
 #include "accuracy/accuracy.h"
 #include "accuracy/space.h"
+#include "base/timer.h"
 #include "history/history.h"
 #include "scheme/scheme.h"
 
@@ -37,7 +38,21 @@ typedef struct matrices {
   stiffness *k;
   condensed *c;
   contact_solver *solver; /* NULL until asked for                            */
+  archive *from;  /* borrowed: what the solver is to remember, or NULL */
+  char group[40]; /* in it                                           */
 } matrices;
+
+/* In the place of a key: no rate has been read; one that belongs to a matrix
+ * that is no more. */
+#define RUN_NO_KEY (-1.0)
+#define RUN_OTHER_KEY (-2.0)
+
+/* How far the run is: the next attempt. */
+typedef struct progress {
+  int step_id, level, attempt, increment_no;
+  long i, part; /* increment of the step's grid, piece of 2^level of it       */
+  double dt;    /* of an adaptive step, to be tried, s                        */
+} progress;
 
 typedef struct run {
   const model *m;
@@ -113,6 +128,11 @@ typedef struct run {
   theory *theory; /* NULL until asked for                                    */
   theory_report theorems;
   solution_set solutions; /* found by CHECK= in the increment                 */
+  progress at;
+  archive *from; /* borrowed: what the step in progress starts from, or NULL  */
+  stage_cost costs[STAGE_COUNT]; /* at the checkpoint                         */
+  int due, kept; /* a checkpoint is due; has just been made                   */
+  double known_key; /* of the matrix that "rate" was read for, until in use   */
   int total_no, unsettled;
   int missed; /* 1: the increment misses the tolerance of its step            */
 } run;
@@ -126,9 +146,16 @@ int run_step_id(const run *r);
 /* history.c: u_0 into r->old, before the contact surface is built. */
 status run_read_start(run *r);
 
+/* All that an increment starts from and the matrices do not tell, named for an
+ * archive: kept, or, after run_prepare, filled. */
+status run_keep(run *r, archive *a);
+
 /* Use m for the next equilibria; its solver is made if there is none. */
 status run_use(run *r, matrices *m);
 void matrices_free(matrices *m);
+/* What the solver remembers, in a group of this name; reading: for the solver
+ * that is made next. */
+status matrices_keep(matrices *m, archive *a, const char *group);
 
 /* strains.c: strains that carry no stress. */
 status strains_new(run *r);
@@ -162,6 +189,7 @@ status visco_level(run *r, double dt, int *level);
 status visco_energies(run *r, energies *e);
 void visco_accept(run *r);
 void visco_show(const run *r, state *s); /* what the outputs see          */
+status visco_keep(run *r, archive *a);
 
 /* increment.c: the equilibrium at time t into r->now; read r->report. */
 status increment_solve(run *r, double t);
@@ -213,6 +241,7 @@ void path_compare(run *r);
 /* The next increment starts from what is in r->old. */
 void path_restart(run *r);
 void path_free(finer_path *p); /* accepts NULL                               */
+status path_keep(run *r, archive *a);
 
 /* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
 status estimate_increment(run *r);

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/timer.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static status new_equilibrium(const run *r, equilibrium *e) {
@@ -101,6 +102,7 @@ int run_step_id(const run *r) { return (int)(r->step - r->m->steps); }
 status run_new(run *r) {
   status st = OK;
   r->n_dof = (size_t)r->msh->dim * (size_t)r->msh->n_node;
+  r->known_key = RUN_NO_KEY;
   TRY(new_sections(r));
   TRY(new_equilibrium(r, &r->old));
   TRY(new_equilibrium(r, &r->now));
@@ -133,15 +135,43 @@ static void forget_estimates(run *r) {
   solution_set_free(&r->solutions);
 }
 
+static status new_solver(const run *r, matrices *m) {
+  status st = OK;
+  TRY(contact_solver_new(&r->step->solver, &m->solver));
+  if (m->from == NULL) goto done;
+  archive_go(m->from, m->group);
+  st = contact_solver_keep(m->solver, m->from);
+  archive_go(m->from, "");
+  m->from = NULL;
+done:
+  return st;
+}
+
+status matrices_keep(matrices *m, archive *a, const char *group) {
+  status st = OK;
+  int there = m->solver != NULL;
+  archive_enter(a, group);
+  TRY(archive_ints(a, "solver", &there, 1));
+  if (archive_reads(a) && there && m->solver == NULL) {
+    m->from = a;
+    snprintf(m->group, sizeof m->group, "%s", archive_group(a));
+  } else if (there) {
+    TRY(contact_solver_keep(m->solver, a));
+  }
+done:
+  archive_leave(a);
+  return st;
+}
+
 status run_use(run *r, matrices *m) {
   status st = OK;
-  if (m->solver == NULL) TRY(contact_solver_new(&r->step->solver, &m->solver));
-  if (r->c != m->c) {
-    forget_estimates(r);
-    if (r->forms != NULL) TRY(forms_new(r));
-  }
+  if (m->solver == NULL) TRY(new_solver(r, m));
+  int read = r->known_key != RUN_NO_KEY;
+  if (read ? r->known_key != m->key : r->c != m->c) forget_estimates(r);
+  if (r->c != m->c && r->forms != NULL) TRY(forms_new(r));
   r->c = m->c;
   r->solver = m->solver;
+  r->known_key = RUN_NO_KEY;
 done:
   return st;
 }
@@ -430,6 +460,104 @@ status run_prepare(run *r) {
   TRY(run_use(r, &r->elastic));
 done:
   memory_free(fixed);
+  return st;
+}
+
+/* ---- what a run goes on from -------------------------------------------- */
+
+static status keep_equilibrium(const run *r, equilibrium *e, archive *a) {
+  status st = OK;
+  size_t m = (size_t)r->n_c, strains = (size_t)(r->m->ns * r->eigen.n);
+  size_t elements = e->temperature == NULL ? 0 : (size_t)r->msh->n_elem;
+  TRY(archive_reals(a, "t", &e->t, 1));
+  TRY(archive_reals(a, "u", e->u, r->n_dof));
+  TRY(archive_reals(a, "F", e->F, r->n_dof));
+  TRY(archive_reals(a, "reaction", e->reaction, r->n_dof));
+  TRY(archive_reals(a, "uc", e->uc, m));
+  TRY(archive_reals(a, "rc", e->rc, m));
+  TRY(archive_reals(a, "motion", e->motion, m));
+  TRY(archive_reals(a, "temperature", e->temperature, elements));
+  TRY(archive_reals(a, "thermal", e->thermal, strains));
+  TRY(archive_reals(a, "e0", e->e0, strains));
+  TRY(archive_reals(a, "sigma", e->sigma, strains));
+  TRY(archive_bytes(a, "energy", &e->energy, sizeof e->energy));
+done:
+  return st;
+}
+
+/* The rate of contraction that is known belongs to the matrix in use. */
+static status keep_rate(run *r, archive *a) {
+  status st = OK;
+  known_rate *k = &r->rate;
+  int m = k->state == NULL ? 0 : k->m;
+  TRY(archive_ints(a, "rate_size", &m, 1));
+  if (archive_reads(a)) known_rate_forget(k);
+  if (m == 0) goto done;
+  if (archive_reads(a)) NEW(k->state, m);
+  k->m = m;
+  TRY(archive_bytes(a, "rate_states", k->state, (size_t)m));
+  TRY(archive_reals(a, "rate", &k->rate, 1));
+done:
+  return st;
+}
+
+static status keep_contact(run *r, archive *a) {
+  status st = OK;
+  size_t contacts = r->loops == NULL ? 0 : (size_t)r->m->n_contact;
+  TRY(archive_reals(a, "f_before", r->f_before, (size_t)r->n_c));
+  TRY(archive_reals(a, "distance", r->distance,
+                    r->distance == NULL ? 0 : (size_t)r->n));
+  TRY(archive_bytes(a, "loops", r->loops, contacts * sizeof *r->loops));
+  TRY(keep_rate(r, a));
+  TRY(matrices_keep(&r->elastic, a, "elastic"));
+done:
+  return st;
+}
+
+static status keep_counts(run *r, archive *a) {
+  status st = OK;
+  TRY(archive_bytes(a, "at", &r->at, sizeof r->at));
+  TRY(archive_ints(a, "total_no", &r->total_no, 1));
+  TRY(archive_ints(a, "unsettled", &r->unsettled, 1));
+  TRY(archive_ints(a, "jumps", &r->jumps, 1));
+  TRY(archive_reals(a, "jump_t", &r->jump_t, 1));
+  TRY(archive_reals(a, "start", r->start, r->n_dof));
+done:
+  return st;
+}
+
+/* A limit that holds for all times of the step is made now, so that what is
+ * counted from here on is what the other run counts. */
+static status keep_limit(run *r, archive *a) {
+  status st = OK;
+  int known = r->limit_known;
+  TRY(archive_ints(a, "limit_known", &known, 1));
+  if (archive_reads(a) && known) TRY(limit_update(r, r->old.t));
+done:
+  return st;
+}
+
+static status keep_costs(run *r, archive *a) {
+  status st = OK;
+  for (int i = 0; i < STAGE_COUNT; ++i) r->costs[i] = timer_cost((stage)i);
+  TRY(archive_bytes(a, "costs", r->costs, sizeof r->costs));
+  if (archive_reads(a)) timer_resume(r->costs);
+done:
+  return st;
+}
+
+status run_keep(run *r, archive *a) {
+  status st = OK;
+  archive_enter(a, "run");
+  TRY(keep_counts(r, a));
+  TRY(keep_equilibrium(r, &r->old, a));
+  if (r->n > 0) TRY(keep_contact(r, a));
+  TRY(path_keep(r, a));
+  if (r->visco != NULL) TRY(visco_keep(r, a));
+  TRY(keep_limit(r, a));
+  TRY(keep_costs(r, a));
+done:
+  archive_leave(a);
   return st;
 }
 

@@ -13,6 +13,7 @@
 #include "history/run.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -378,7 +379,12 @@ static status begin(void *ctx, flow_state *s) {
 
 static status factor(const domain *d, matrices *m) {
   status st = OK;
+  matrices keep = *m;
   matrices_free(m);
+  if (keep.c == NULL) { /* as it was before a restart                         */
+    m->from = keep.from;
+    memcpy(m->group, keep.group, sizeof m->group);
+  }
   TRY(stiffness_assemble(d, &m->k));
   TRY(condense(m->k, d, &m->c));
 done:
@@ -446,6 +452,16 @@ done:
   return st;
 }
 
+/* Those of before a restart anew, which are not counted again. */
+static status factor_again(const domain *d, matrices *m) {
+  stage_cost before[STAGE_COUNT] = {{0}};
+  for (int i = 0; i < STAGE_COUNT; ++i)
+    before[i].calls = timer_cost((stage)i).calls;
+  status st = factor(d, m);
+  timer_resume(before);
+  return st;
+}
+
 /* The matrices of a tangent: those of its key if they are still there. */
 static status find_matrices(run *r, const flow_tangent *law, matrices **out) {
   status st = OK;
@@ -464,10 +480,11 @@ static status find_matrices(run *r, const flow_tangent *law, matrices **out) {
     if (v->slot[i].key == law->key) m = &v->slot[i];
     if (m->key != law->key && v->slot[i].used < m->used) m = &v->slot[i];
   }
-  if (m->key != law->key) {
+  if (m->key != law->key) m->from = NULL;
+  if (m->key != law->key || m->c == NULL) {
     TRY(constant_domain(r, law, &d));
     if (r->c == m->c) r->c = NULL;
-    TRY(factor(&d, m));
+    TRY(m->key == law->key ? factor_again(&d, m) : factor(&d, m));
     m->key = law->key;
   }
   m->used = ++v->clock;
@@ -721,4 +738,62 @@ void visco_show(const run *r, state *s) {
   s->flow = &r->visco->x;
   s->flow_elem = r->visco->elem;
   s->inelastic = &r->visco->now;
+}
+
+/* ---- what a run goes on from -------------------------------------------- */
+
+static status keep_flow(const flow *x, flow_state *s, archive *a,
+                        const char *group) {
+  status st = OK;
+  size_t n = (size_t)x->ns * (size_t)x->n;
+  archive_enter(a, group);
+  TRY(archive_reals(a, "t", &s->t, 1));
+  TRY(archive_reals(a, "e", s->e, n));
+  TRY(archive_reals(a, "ei", s->ei, n));
+  TRY(archive_reals(a, "sigma", s->sigma, n));
+  TRY(archive_reals(a, "alpha", s->alpha, x->alpha_at[x->n]));
+  TRY(archive_reals(a, "temperature", s->temperature, (size_t)x->n));
+done:
+  archive_leave(a);
+  return st;
+}
+
+/* The keys of the constant tangents, which are made anew when they are used,
+ * and which of the matrices is in use. */
+static status keep_slots(run *r, archive *a) {
+  status st = OK;
+  visco *v = r->visco;
+  char name[20];
+  double known = r->c == r->elastic.c ? r->elastic.key : RUN_OTHER_KEY;
+  for (int i = 0; i < SLOTS; ++i) {
+    matrices *m = &v->slot[i];
+    if (m->c != NULL && m->c == r->c) known = m->key;
+    snprintf(name, sizeof name, "slot%d", i);
+    archive_enter(a, name);
+    TRY(archive_reals(a, "key", &m->key, 1));
+    TRY(archive_bytes(a, "used", &m->used, sizeof m->used));
+    TRY(matrices_keep(m, a, "solver"));
+    archive_leave(a);
+  }
+  TRY(archive_reals(a, "known_key", &known, 1));
+  if (archive_reads(a)) r->known_key = known;
+  TRY(archive_bytes(a, "clock", &v->clock, sizeof v->clock));
+done:
+  return st;
+}
+
+status visco_keep(run *r, archive *a) {
+  status st = OK;
+  visco *v = r->visco;
+  int told = v->told == r->step;
+  archive_enter(a, "visco");
+  TRY(keep_flow(&v->x, &v->old, a, "old"));
+  TRY(keep_flow(&v->x, &v->now, a, "now"));
+  TRY(archive_reals(a, "largest", &v->largest, 1));
+  TRY(archive_ints(a, "told", &told, 1));
+  v->told = told ? r->step : NULL;
+  TRY(keep_slots(r, a));
+done:
+  archive_leave(a);
+  return st;
 }

@@ -109,6 +109,7 @@ status model_finish_problem(reading *r) {
   if (!(s->total > 0.0)) s->total = 1.0;
   s->dt = s->dt_min = s->total;
   s->output_frequency = -1;
+  s->restart_frequency = -1;
   if (s->n_print > 0) goto done;
   GROW(s->prints, s->n_print, s->cap_print);
   s->prints[s->n_print++] = (print_request){

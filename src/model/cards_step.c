@@ -504,3 +504,11 @@ status apply_output(reading *r) {
   s->condensed_frequency = p->condensed == 1 ? p->frequency : -1;
   return OK;
 }
+
+status apply_restart(reading *r) {
+  const restart_param *p = r->param;
+  step *s = open_step(r);
+  s->has_restart = 1;
+  s->restart_frequency = p->frequency;
+  return OK;
+}

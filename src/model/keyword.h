@@ -158,6 +158,9 @@ typedef struct print_param {
 typedef struct output_param {
   int hdf5, frequency, condensed;
 } output_param;
+typedef struct restart_param {
+  int frequency;
+} restart_param;
 
 /* apply functions: cards_model.c */
 status apply_heading(reading *r);
@@ -200,6 +203,7 @@ plugin names_solver(const reading *r);
 status apply_accuracy(reading *r);
 status apply_print(reading *r);
 status apply_output(reading *r);
+status apply_restart(reading *r);
 
 /* Helpers for the data lines; all errors go to the log. */
 /* 0 if the line has min..max fields. */

@@ -226,6 +226,10 @@ static const option output_options[] = {
                 "increment, into JOB_condensed_NNNNN.h5 (increment counted "
                 "from the start)"),
   OPTION_END};
+static const option restart_options[] = {
+  OPTION_INT(restart_param, frequency, "FREQUENCY", 0, 1000000000, "1", "-",
+             "every n-th increment and the last; 0: the last only"),
+  OPTION_END};
 
 #define OPTIONS(x) x##_options, sizeof(x##_param)
 #define NO_OPTIONS NULL, 0
@@ -334,10 +338,12 @@ const keyword keyword_table[] = {
    "", "tables in JOB.dat"},
   {"OUTPUT", IN_STEP, OPTIONS(output), NULL, apply_output, 0, 0,
    "", "fields in JOB.h5; condensed problems for other programs"},
+  {"RESTART", IN_STEP, OPTIONS(restart), NULL, apply_restart, 0, 0,
+   "", "JOB.rst.h5 while the run goes on, for --restart; an interruption "
+   "writes it without the card"},
   {"END STEP", IN_STEP, NO_OPTIONS, NULL, apply_end_step, 0, 0,
    "", "closes the step"},
   RESERVED("EFFECTS", "which effects are simulated"),
-  RESERVED("RESTART", "restart file"),
   RESERVED("REFERENCE", "closed form to compare with"),
   {NULL, 0, NULL, 0, NULL, NULL, 0, 0, NULL, NULL}};
 /* clang-format on */

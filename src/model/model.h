@@ -210,6 +210,8 @@ typedef struct step {
   int output_frequency; /* HDF5 fields: every n-th increment; 0: last only;
                            -1: no HDF5                                        */
   int has_print, has_output;
+  int restart_frequency; /* of JOB.rst.h5, as above; -1: none               */
+  int has_restart;
   int condensed_frequency; /* of the condensed problems; 0 the last only, -1
                               none */
   int check; /* solution_check, comes with *SOLVER                            */

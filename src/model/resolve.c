@@ -382,6 +382,7 @@ static status carry_choices(const step *old, step *s) {
     s->output_frequency = old->output_frequency;
     s->condensed_frequency = old->condensed_frequency;
   }
+  if (!s->has_restart) s->restart_frequency = old->restart_frequency;
   for (int i = 0; i < old->n_print && !s->has_print; ++i) {
     GROW(s->prints, s->n_print, s->cap_print);
     s->prints[s->n_print++] = old->prints[i];

@@ -250,6 +250,10 @@ static status newton_solve(const contact_problem *cp, const void *par,
   return OK;
 }
 
+static status newton_keep(void *work, archive *a) {
+  return newton_system_keep(((newton_work *)work)->system, a);
+}
+
 /* clang-format off */
 const solver_ops newton_solver = {
   .name = "newton",
@@ -274,6 +278,7 @@ const solver_ops newton_solver = {
   .options = newton_options,
   .setup = newton_setup,
   .solve = newton_solve,
-  .release = newton_release
+  .release = newton_release,
+  .keep = newton_keep
 };
 /* clang-format on */

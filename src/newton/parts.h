@@ -17,6 +17,7 @@ enum {
 
 struct newton_system {
   const contact_problem *cp; /* of the last fit                              */
+  size_t n_node;
   int m, symmetric; /* symmetric: -1: not yet looked at                      */
   double power; /* of two: A*power has a diagonal of order 1                  */
   double *K;    /* [m*m] factor of the base                                   */

@@ -71,6 +71,7 @@ status newton_system_new(const contact_problem *cp, newton_system **out) {
   size_t m = (size_t)cp->m, room = m / SHARE + 1;
   NEW(s, 1);
   s->m = cp->m;
+  s->n_node = (size_t)cp->n;
   s->room = (int)room;
   NEW(s->K, m * m);
   TRY(pattern_new(cp->dim, cp->n, &s->base));
@@ -290,6 +291,44 @@ int newton_system_step(newton_system *s, pattern *p, double *u, double *raw) {
     if (s->updated) return 0;
   }
   return fresh_step(s, p, before, u, raw);
+}
+
+/* What the base was made for. */
+static status keep_base(newton_system *s, archive *a) {
+  status st = OK;
+  pattern *p = &s->base;
+  size_t m = (size_t)s->m, n = s->n_node, e = m - n;
+  TRY(archive_bytes(a, "closed", p->closed, m * sizeof *p->closed));
+  TRY(archive_bytes(a, "mode", p->mode, n * sizeof *p->mode));
+  TRY(archive_reals(a, "e", p->e, e));
+  TRY(archive_reals(a, "kappa", p->kappa, n));
+  TRY(archive_ints(a, "free_id", p->free_id, m));
+  TRY(archive_ints(a, "place", p->place, m));
+done:
+  return st;
+}
+
+status newton_system_keep(newton_system *s, archive *a) {
+  status st = OK;
+  pattern *p = &s->base;
+  size_t m = (size_t)s->m;
+  TRY(archive_ints(a, "has_base", &s->has_base, 1));
+  if (!s->has_base) goto done;
+  TRY(archive_ints(a, "full", &s->full, 1));
+  TRY(archive_ints(a, "n_column", &s->n_column, 1));
+  TRY(archive_ints(a, "n_free", &p->n_free, 1));
+  if (p->n_free < 0 || p->n_free > s->m || s->n_column < 0 ||
+      s->n_column > s->room)
+    FAIL(ERR_FILE, "the restart file is damaged: a factor has other sizes");
+  TRY(archive_bytes(a, "friction", &s->friction, sizeof s->friction));
+  TRY(archive_reals(a, "spent", &s->spent, 1));
+  TRY(keep_base(s, a));
+  TRY(archive_reals(a, "K", s->K, (size_t)p->n_free * (size_t)p->n_free));
+  TRY(archive_ints(a, "pivot", s->pivot, (size_t)p->n_free));
+  TRY(archive_ints(a, "column", s->column, m));
+  TRY(archive_reals(a, "X", s->X, m * (size_t)s->n_column));
+done:
+  return st;
 }
 
 int newton_system_refresh(newton_system *s) {

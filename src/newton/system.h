@@ -20,6 +20,7 @@
 #ifndef PROTIS_NEWTON_SYSTEM_H
 #define PROTIS_NEWTON_SYSTEM_H
 
+#include "archive/archive.h"
 #include "contact/contact.h"
 
 typedef enum { FREE, STICK, SLIP } tangent;
@@ -46,6 +47,8 @@ void newton_system_fit(newton_system *s, const contact_problem *cp);
  * which the free unknowns are listed; raw = A u - f. Returns 1 if the system is
  * singular (weak springs then held the body). */
 int newton_system_step(newton_system *s, pattern *p, double *u, double *raw);
+/* The kept factor and what was exchanged in it. */
+status newton_system_keep(newton_system *s, archive *a);
 /* 1: the last step came from a kept factor; forget it, so that the next does
  * not. */
 int newton_system_refresh(newton_system *s);

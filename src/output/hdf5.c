@@ -119,7 +119,7 @@ static status put_fixed(hdf5_file *h, int fd, const hdf5_layout *l) {
   for (int i = 0; i < h->n_fixed; ++i) {
     const fixed_data *d = &h->fixed[i];
     if (d->rows == 0) continue;
-    if (h->fd < 0)
+    if (d->data != NULL)
       TRY(put(fd, h->aside, d->data, fixed_bytes(d), l->fixed[i]));
     else
       TRY(copy(h, h->now.fixed[i], fd, l->fixed[i], fixed_bytes(d)));
@@ -615,7 +615,29 @@ static void drop_copies(hdf5_file *h) {
   }
 }
 
-static status first_file(hdf5_file *h) {
+/* The file of the run that is gone on with: what it holds beyond "before" is
+ * written again. */
+static status earlier_file(hdf5_file *h, const hdf5_count *before) {
+  status st = OK;
+  TRY(hdf5_layout_read(h, &h->now));
+  if (h->now.n_row < before->rows || h->now.n_record < before->records)
+    FAIL(ERR_FILE, "%s holds less than when the restart file was written",
+         h->path);
+  h->fd = open(h->path, O_RDWR | O_CLOEXEC);
+  if (h->fd < 0) TRY(text_failed(h->path, "open", errno));
+  h->n_row = before->rows;
+  h->n_record = h->cap_time = before->records;
+  size_t bytes = (size_t)h->n_record * sizeof *h->times;
+  NEW(h->times, h->n_record);
+  errno = 0;
+  if (bytes > 0 &&
+      pread(h->fd, h->times, bytes, h->now.record_time) != (ssize_t)bytes)
+    TRY(text_failed(h->path, "read back", errno));
+done:
+  return st;
+}
+
+static status first_file(hdf5_file *h, const hdf5_count *before) {
   status st = OK;
   int rows, records;
   TRY(add_mesh(h));
@@ -623,6 +645,11 @@ static status first_file(hdf5_file *h) {
   TRY(add_deck(h));
   TRY(choose_fields(h));
   forecast(h->m, 0, 0, &rows, &records);
+  if (before != NULL) {
+    TRY(earlier_file(h, before));
+    if (rows < before->rows) rows = before->rows;
+    if (records < before->records) records = before->records;
+  }
   TRY(renew(h, rows, records));
   drop_copies(h);
 done:
@@ -636,7 +663,7 @@ static int fields_asked(const model *m) {
 }
 
 status hdf5_open(const model *m, const mesh *msh, const output_options *o,
-                 hdf5_file **out) {
+                 const hdf5_count *before, hdf5_file **out) {
   status st = OK;
   hdf5_file *h = NULL;
   *out = NULL;
@@ -650,10 +677,20 @@ status hdf5_open(const model *m, const mesh *msh, const output_options *o,
   h->path = text_path(o->dir, m->job, "h5");
   if (h->path != NULL) h->aside = text_path("", h->path, "tmp");
   if (h->aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of JOB.h5");
-  TRY(first_file(h));
+  TRY(first_file(h, before));
   *out = h;
 done:
   if (st != OK && h != NULL) release(h);
+  return st;
+}
+
+status hdf5_sync(hdf5_file *h, hdf5_count *n) {
+  status st = OK;
+  *n = (hdf5_count){0, 0};
+  if (h == NULL) return OK;
+  *n = (hdf5_count){h->n_row, h->n_record};
+  if (fsync(h->fd) != 0) TRY(text_failed(h->path, "write", errno));
+done:
   return st;
 }
 

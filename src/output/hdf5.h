@@ -60,6 +60,8 @@ size_t fixed_bytes(const fixed_data *d);
 /* Make the file "aside" with room for rows and records; l gets the offsets. */
 status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
                         hdf5_layout *l);
+/* That of the file "path"; without the fixed data. */
+status hdf5_layout_read(const hdf5_file *h, hdf5_layout *l);
 void hdf5_layout_free(hdf5_layout *l);
 
 #endif

@@ -253,6 +253,79 @@ done:
   return st;
 }
 
+/* ---- a file that is there ------------------------------------------------ */
+
+/* Offset of a dataset of that many numbers; *n = 0: any, then as it is, 0 if
+ * there is no such dataset. */
+static status read_offset(const hdf5_file *h, hid_t file, const char *path,
+                          hsize_t *n, off_t *offset) {
+  status st = OK;
+  hsize_t wanted = *n;
+  hid_t set = H5Dopen2(file, path, H5P_DEFAULT);
+  haddr_t address = set >= 0 ? H5Dget_offset(set) : HADDR_UNDEF;
+  *n = 0;
+  if (set < 0 && wanted == 0) goto done;
+  if (set >= 0) *n = H5Dget_storage_size(set) / sizeof(double);
+  if (address == HADDR_UNDEF || (wanted > 0 && *n != wanted))
+    FAIL(ERR_FILE, "%s: %s is not that of the run to go on with", h->path,
+         path);
+  *offset = (off_t)address;
+done:
+  if (set >= 0) H5Dclose(set);
+  return st;
+}
+
+static status read_records(const hdf5_file *h, hid_t file, int field_id,
+                           hdf5_layout *l) {
+  status st = OK;
+  const hdf5_field *f = &h->fields[field_id];
+  char path[400], name[40];
+  for (int i = 0; i < l->n_record && hdf5_items(h, f) > 0; ++i) {
+    hsize_t n = (hsize_t)(hdf5_items(h, f) * f->n_part);
+    size_t slot = (size_t)field_id * (size_t)l->n_record + (size_t)i;
+    hdf5_record_name(name, sizeof name, i);
+    snprintf(path, sizeof path, "%s/%s/%s", f->group, f->name, name);
+    TRY(read_offset(h, file, path, &n, &l->record[slot]));
+  }
+done:
+  return st;
+}
+
+static status read_fields(const hdf5_file *h, hid_t file, hdf5_layout *l) {
+  status st = OK;
+  char path[400];
+  hsize_t rows = 0, records = 0;
+  off_t offset = 0;
+  TRY(read_offset(h, file, "/history/time", &rows, &offset));
+  TRY(read_offset(h, file, "/fields/time", &records, &offset));
+  TRY(alloc_layout(h, (int)rows, (int)records, l));
+  l->record_time = offset;
+  TRY(read_offset(h, file, "/fields/total", &records, &l->record_total));
+  for (int i = 0; i < h->n_field; ++i) {
+    const hdf5_field *f = &h->fields[i];
+    snprintf(path, sizeof path, "%s/%s", f->group, f->name);
+    if (!hdf5_is_history(f))
+      TRY(read_records(h, file, i, l));
+    else if (rows > 0)
+      TRY(read_offset(h, file, path, &rows, &l->history[i]));
+  }
+done:
+  return st;
+}
+
+status hdf5_layout_read(const hdf5_file *h, hdf5_layout *l) {
+  status st = OK;
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  errno = 0;
+  hid_t file = H5Fopen(h->path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) FAIL(ERR_FILE, "%s: cannot be read to go on with it", h->path);
+  TRY(read_fields(h, file, l));
+done:
+  if (file >= 0) H5Fclose(file);
+  if (st != OK) hdf5_layout_free(l);
+  return st;
+}
+
 void hdf5_layout_free(hdf5_layout *l) {
   memory_free(l->fixed);
   memory_free(l->history);

@@ -9,8 +9,8 @@
 #include <errno.h>
 #include <math.h>
 #include <string.h>
-#include <time.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { XDMF_PAUSE = 1 };
@@ -28,6 +28,10 @@ struct output {
   double xdmf_at; /* when, s                                                 */
   int attempt; /* of the increment now tried                                 */
   int progress;
+  int quiet; /* 1: the first facts stand in the listing already               */
+  increment_summary *kept; /* [n_increment] of output_keep                   */
+  solution_facts *facts;   /* all their solutions                            */
+  char *whys; /* lines: the reasons in increments, or of output_keep          */
 };
 
 static job job_of(const output *o) {
@@ -109,6 +113,10 @@ static status sink_ready(void *ctx, const setup_facts *facts,
   (void)surface;
   o->run.facts = *facts;
   o->run.facts_known = 1;
+  if (o->quiet) {
+    o->quiet = 0;
+    return OK;
+  }
   timer_enter(STAGE_TABLES);
   status st = listing_ready(&j, &o->lst);
   timer_leave(STAGE_TABLES);
@@ -252,11 +260,15 @@ done:
 }
 
 history_sink output_sink(output *o) {
-  return (history_sink){
-      o, sink_ready, sink_start, sink_increment, sink_iteration, sink_rejected};
+  return (history_sink){.ctx = o,
+                        .ready = sink_ready,
+                        .start = sink_start,
+                        .increment = sink_increment,
+                        .iteration = sink_iteration,
+                        .rejected = sink_rejected};
 }
 
-/* ---- open and close --------------------------------------------------- */
+/* ---- files of an earlier run ------------------------------------------- */
 
 static void release(output *o) {
   memory_free(o->json);
@@ -266,6 +278,9 @@ static void release(output *o) {
     memory_free((void *)o->run.increments[i].theory.contacts);
   }
   memory_free(o->run.increments);
+  memory_free(o->kept);
+  memory_free(o->facts);
+  memory_free(o->whys);
   memory_free(o);
 }
 
@@ -291,43 +306,242 @@ done:
   return st;
 }
 
-static status open_text(const output *o, const char *suffix, text_file *t) {
+/* length: of the file to go on with; -1: a new one. */
+static status open_text(const output *o, const char *suffix, long length,
+                        text_file *t) {
   status st = OK;
   char *path = text_path(o->o.dir, o->m->job, suffix);
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  TRY(text_open(t, path, 1));
+  if (length < 0)
+    TRY(text_open(t, path, 1));
+  else
+    TRY(text_reopen(t, path, 1, length));
 done:
   memory_free(path);
   return st;
 }
 
-static status open_all(output *o) {
+/* ---- what the files are gone on with from -------------------------------- */
+
+/* Lengths of the text files, bytes, -1: there is none; rows of JOB.h5. */
+typedef struct file_ends {
+  long lst, sta, cvg, dat;
+  int has_h5;
+  hdf5_count h5;
+} file_ends;
+
+/* Number of a reason among the lines of o->whys, from 1; a new one is added;
+ * 0: no reason. */
+static size_t why_no(output *o, size_t *used, const char *why) {
+  size_t no = 1, length = why == NULL ? 0 : strlen(why);
+  if (why == NULL) return 0;
+  for (char *line = o->whys; *line != '\0'; ++no) {
+    char *end = strchr(line, '\n');
+    if ((size_t)(end - line) == length && memcmp(line, why, length) == 0)
+      return no;
+    line = end + 1;
+  }
+  memcpy(o->whys + *used, why, length);
+  o->whys[*used + length] = '\n';
+  *used += length + 1;
+  return no;
+}
+
+static size_t room_for(const char *why) {
+  return why == NULL ? 0 : strlen(why) + 1;
+}
+
+/* A pointer in a file: the number of what it points to. */
+static const char *as_pointer(size_t no) { return (const char *)no; }
+
+/* The increments with numbers in the place of pointers. */
+static status copy_increments(output *o, size_t *used, int *n_fact) {
+  status st = OK;
+  const run_summary *run = &o->run;
+  size_t room = 1;
+  memory_free(o->kept);
+  memory_free(o->facts);
+  memory_free(o->whys);
+  o->kept = NULL;
+  o->facts = NULL;
+  o->whys = NULL;
+  for (int i = 0; i < run->n_increment; ++i) {
+    const increment_summary *s = &run->increments[i];
+    room += room_for(s->error.why) + room_for(s->mesh_error.why) +
+            room_for(s->time_error.why);
+    *n_fact += s->n_solution;
+  }
+  NEW(o->kept, run->n_increment);
+  NEW(o->facts, *n_fact);
+  NEW(o->whys, room);
+  *n_fact = 0;
+  for (int i = 0; i < run->n_increment; ++i) {
+    increment_summary *s = &o->kept[i];
+    *s = run->increments[i];
+    s->error.why = as_pointer(why_no(o, used, s->error.why));
+    s->mesh_error.why = as_pointer(why_no(o, used, s->mesh_error.why));
+    s->time_error.why = as_pointer(why_no(o, used, s->time_error.why));
+    for (int k = 0; k < s->n_solution; ++k)
+      o->facts[(*n_fact)++] = s->solutions[k];
+    s->solutions = NULL;
+  }
+done:
+  return st;
+}
+
+/* What both ways have in common. */
+static status keep_counts(output *o, archive *a, file_ends *ends) {
+  status st = OK;
+  run_summary *run = &o->run;
+  TRY(archive_bytes(a, "ends", ends, sizeof *ends));
+  TRY(archive_ints(a, "attempt", &o->attempt, 1));
+  TRY(archive_ints(a, "increments", &run->n_increment, 1));
+  TRY(archive_ints(a, "rejected", &run->n_rejected, 1));
+  TRY(archive_ints(a, "unsettled", &run->n_unsettled, 1));
+  TRY(archive_reals(a, "residual_worst", &run->residual_worst, 1));
+  TRY(archive_reals(a, "defect_worst", &run->defect_worst, 1));
+done:
+  return st;
+}
+
+static status keep_increments(output *o, archive *a) {
+  status st = OK;
+  size_t used = 0, n = (size_t)o->run.n_increment;
+  int n_fact = 0;
+  TRY(copy_increments(o, &used, &n_fact));
+  TRY(archive_bytes(a, "summary", o->kept, n * sizeof *o->kept));
+  TRY(archive_bytes(a, "whys", o->whys, used));
+  TRY(archive_bytes(a, "solutions", o->facts,
+                    (size_t)n_fact * sizeof *o->facts));
+done:
+  return st;
+}
+
+status output_keep(output *o, archive *a) {
+  status st = OK;
+  file_ends ends;
+  memset(&ends, 0, sizeof ends);
+  archive_enter(a, "output");
+  TRY(text_sync(&o->lst, &ends.lst));
+  TRY(text_sync(&o->sta, &ends.sta));
+  TRY(text_sync(&o->cvg, &ends.cvg));
+  TRY(tabular_sync(o->dat, &ends.dat));
+  ends.has_h5 = o->h5 != NULL;
+  TRY(hdf5_sync(o->h5, &ends.h5));
+  TRY(keep_counts(o, a, &ends));
+  TRY(keep_increments(o, a));
+done:
+  archive_leave(a);
+  return st;
+}
+
+/* The reason of a number; the lines are ended by NUL here. */
+static const char *why_of(const output *o, const char *as_number) {
+  size_t no = (size_t)as_number;
+  const char *line = o->whys;
+  if (no == 0 || line == NULL) return NULL;
+  for (; no > 1 && *line != '\0'; --no) line += strlen(line) + 1;
+  return line;
+}
+
+static status read_reasons(output *o, archive *a) {
+  status st = OK;
+  size_t n = archive_length(a, "whys");
+  if (n == 0) goto done;
+  NEW(o->whys, n + 1);
+  TRY(archive_bytes(a, "whys", o->whys, n));
+  for (size_t i = 0; i < n; ++i)
+    if (o->whys[i] == '\n') o->whys[i] = '\0';
+done:
+  return st;
+}
+
+static status read_increments(output *o, archive *a) {
+  status st = OK;
+  run_summary *run = &o->run;
+  size_t n = (size_t)run->n_increment, n_fact = 0, next = 0;
+  NEW(run->increments, n);
+  run->capacity = run->n_increment;
+  TRY(archive_bytes(a, "summary", run->increments,
+                    n * sizeof *run->increments));
+  TRY(read_reasons(o, a));
+  n_fact = archive_length(a, "solutions") / sizeof *o->facts;
+  NEW(o->facts, n_fact);
+  TRY(archive_bytes(a, "solutions", o->facts, n_fact * sizeof *o->facts));
+  for (size_t i = 0; i < n; ++i) {
+    increment_summary *s = &run->increments[i];
+    s->error.why = why_of(o, s->error.why);
+    s->mesh_error.why = why_of(o, s->mesh_error.why);
+    s->time_error.why = why_of(o, s->time_error.why);
+    if (s->n_solution <= 0) continue;
+    NEW(s->solutions, s->n_solution);
+    for (int k = 0; k < s->n_solution && next < n_fact; ++k)
+      s->solutions[k] = o->facts[next++];
+  }
+done:
+  return st;
+}
+
+/* ---- open and close --------------------------------------------------- */
+
+static status open_hdf5(output *o, const hdf5_count *before) {
+  timer_enter(STAGE_HDF5);
+  status st = hdf5_open(o->m, o->msh, &o->o, before, &o->h5);
+  timer_leave(STAGE_HDF5);
+  return st;
+}
+
+static status open_new(output *o) {
   status st = OK;
   job j = job_of(o);
-  static const char *const results[] = {"lst", "sta",  "cvg",  "dat",
-                                        "h5",  "xdmf", "json", "tmp"};
+  static const char *const old[] = {"h5", "xdmf", "json", "rst.h5",
+                                    "rst.old.h5"};
+  TRY(open_text(o, "lst", -1, &o->lst));
+  TRY(open_text(o, "sta", -1, &o->sta));
+  TRY(open_text(o, "cvg", -1, &o->cvg));
+  for (size_t k = 0; k < sizeof old / sizeof *old; ++k)
+    TRY(remove_old(o, old[k]));
+  TRY(tabular_open(o->m, o->msh, o->o.dir, -1, &o->dat));
+  if (o->dat == NULL) TRY(remove_old(o, "dat"));
+  TRY(sta_header(&o->o, &o->sta));
+  cvg_header(&o->cvg);
+  TRY(text_check(&o->cvg));
+  TRY(listing_open(&j, &o->lst));
+  TRY(open_hdf5(o, NULL));
+done:
+  return st;
+}
+
+static status open_earlier(output *o) {
+  status st = OK;
+  archive *a = o->o.from;
+  file_ends ends;
+  archive_enter(a, "output");
+  TRY(keep_counts(o, a, &ends));
+  TRY(read_increments(o, a));
+  o->quiet = 1;
+  TRY(open_text(o, "lst", ends.lst, &o->lst));
+  TRY(open_text(o, "sta", ends.sta, &o->sta));
+  TRY(open_text(o, "cvg", ends.cvg, &o->cvg));
+  TRY(tabular_open(o->m, o->msh, o->o.dir, ends.dat, &o->dat));
+  TRY(open_hdf5(o, ends.has_h5 ? &ends.h5 : NULL));
+done:
+  archive_leave(a);
+  return st;
+}
+
+static status open_all(output *o) {
+  status st = OK;
+  static const char *const results[] = {"lst",    "sta",        "cvg",    "dat",
+                                        "h5",     "xdmf",       "json",   "tmp",
+                                        "rst.h5", "rst.old.h5", "rst.tmp"};
   for (size_t k = 0; k < sizeof results / sizeof *results; ++k)
     TRY(spare_suffix(o, results[k]));
   o->json = text_path(o->o.dir, o->m->job, "json");
   o->xdmf = text_path(o->o.dir, o->m->job, "xdmf");
   if (o->json == NULL || o->xdmf == NULL)
     FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  TRY(open_text(o, "lst", &o->lst));
-  TRY(open_text(o, "sta", &o->sta));
-  TRY(open_text(o, "cvg", &o->cvg));
-  TRY(remove_old(o, "h5"));
-  TRY(remove_old(o, "xdmf"));
-  TRY(remove_old(o, "json"));
-  TRY(tabular_open(o->m, o->msh, o->o.dir, &o->dat));
-  if (o->dat == NULL) TRY(remove_old(o, "dat"));
-  TRY(sta_header(&o->o, &o->sta));
-  cvg_header(&o->cvg);
-  TRY(text_check(&o->cvg));
-  TRY(listing_open(&j, &o->lst));
-  timer_enter(STAGE_HDF5);
-  st = hdf5_open(o->m, o->msh, &o->o, &o->h5);
-  timer_leave(STAGE_HDF5);
-  TRY(st);
+  TRY(o->o.from == NULL ? open_new(o) : open_earlier(o));
 done:
   return st;
 }

@@ -93,17 +93,21 @@ typedef struct output_options {
   const char *version; /* of the program, for the results; NULL: ""          */
   const char *kernel;  /* BLAS kernel, for the results; NULL: ""             */
   int threads;         /* threads of the run, for the results                */
+  archive *from; /* go on with the files of an earlier run; NULL: new ones    */
 } output_options;
 
 typedef struct output output;
 
 /* Open all files of the job: the text files, flushed line by line, and JOB.h5
  * with room for all increments foreseen. JOB.xdmf and JOB.json of an earlier
- * run are removed. ERR_FILE names the file. The options are copied, their
- * strings borrowed. */
+ * run, and its restart files, are removed. ERR_FILE names the file. The options
+ * are copied, their strings borrowed. */
 status output_open(const model *m, const mesh *msh, const output_options *o,
                    output **out);
 history_sink output_sink(output *o);
+/* What the files are gone on with from, into an archive that is written before
+ * the next increment; all files are handed to the disk. */
+status output_keep(output *o, archive *a);
 /* A pass towards *ACCURACY, TARGET=. */
 enum { MAX_PASS_ROWS = 20 };
 typedef struct pass_row {

@@ -283,7 +283,7 @@ done:
 }
 
 status tabular_open(const model *m, const mesh *msh, const char *dir,
-                    tabular **out) {
+                    long length, tabular **out) {
   status st = OK;
   tabular *t = NULL;
   char *path = NULL;
@@ -296,12 +296,21 @@ status tabular_open(const model *m, const mesh *msh, const char *dir,
   t->m = m;
   t->msh = msh;
   TRY(make_orders(t, tables));
-  TRY(text_open(&t->dat, path, 0));
+  if (length < 0)
+    TRY(text_open(&t->dat, path, 0));
+  else
+    TRY(text_reopen(&t->dat, path, 0, length));
+  t->n_block = length > 0;
   *out = t;
 done:
   memory_free(path);
   if (st != OK) tabular_close(t);
   return st;
+}
+
+status tabular_sync(tabular *t, long *length) {
+  *length = -1;
+  return t == NULL ? OK : text_sync(&t->dat, length);
 }
 
 status tabular_close(tabular *t) {

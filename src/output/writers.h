@@ -27,9 +27,11 @@ void table_header(const table *t, const model *m, const char *lead, FILE *f);
 void table_row(const table *t, const view *v, int id, FILE *f);
 
 typedef struct tabular tabular;
-/* NULL in *out if no step asks for a table. */
+/* NULL in *out if no step asks for a table. length: of the file to go on with;
+ * -1: a new one. */
 status tabular_open(const model *m, const mesh *msh, const char *dir,
-                    tabular **out);
+                    long length, tabular **out);
+status tabular_sync(tabular *t, long *length); /* NULL: -1                    */
 status tabular_increment(tabular *t, const state *s);
 status tabular_close(tabular *t); /* frees t; accepts NULL                  */
 
@@ -137,9 +139,15 @@ typedef struct hdf5_field {
   const column *part[3]; /* NULL: zero                                      */
 } hdf5_field;
 
-/* NULL in *out if no step asks for fields. */
+typedef struct hdf5_count { /* what has been written                         */
+  int rows, records;
+} hdf5_count;
+/* NULL in *out if no step asks for fields. before: go on with the file after
+ * these; NULL: a new one. */
 status hdf5_open(const model *m, const mesh *msh, const output_options *o,
-                 hdf5_file **out);
+                 const hdf5_count *before, hdf5_file **out);
+/* Hand everything to the disk; h NULL: nothing. */
+status hdf5_sync(hdf5_file *h, hdf5_count *n);
 /* The increment is in the file when this returns OK. */
 status hdf5_increment(hdf5_file *h, const state *s);
 /* Cut what was not used if "finished"; frees h; accepts NULL. */

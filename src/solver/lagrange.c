@@ -258,6 +258,10 @@ static status lagrange_solve(const contact_problem *cp, const void *par,
   return OK;
 }
 
+static status lagrange_keep(void *work, archive *a) {
+  return archive_reals(a, "step", &((lagrange_work *)work)->step, 1);
+}
+
 /* clang-format off */
 const solver_ops lagrange_solver = {
   .name = "lagrange",
@@ -281,6 +285,7 @@ const solver_ops lagrange_solver = {
   .options = lagrange_options,
   .setup = lagrange_setup,
   .solve = lagrange_solve,
-  .release = lagrange_release
+  .release = lagrange_release,
+  .keep = lagrange_keep
 };
 /* clang-format on */

@@ -759,6 +759,18 @@ done:
   return st;
 }
 
+static status lemke_keep(void *work, archive *a) {
+  status st = OK;
+  lemke_work *w = work;
+  for (int i = 0; i < N_CORRECTOR && st == OK; ++i) {
+    if (w->corrector[i] == NULL || w->corrector[i]->keep == NULL) continue;
+    archive_enter(a, w->corrector[i]->name);
+    st = w->corrector[i]->keep(w->corrector_work[i], a);
+    archive_leave(a);
+  }
+  return st;
+}
+
 /* clang-format off */
 const solver_ops lemke_solver = {
   .name = "lemke",
@@ -779,6 +791,7 @@ const solver_ops lemke_solver = {
   .options = lemke_options,
   .setup = lemke_setup,
   .solve = lemke_solve,
-  .release = lemke_release
+  .release = lemke_release,
+  .keep = lemke_keep
 };
 /* clang-format on */

@@ -7,6 +7,7 @@
 #ifndef PROTIS_SOLVER_SOLVER_H
 #define PROTIS_SOLVER_SOLVER_H
 
+#include "archive/archive.h"
 #include "base/option.h"
 #include "base/outcome.h"
 #include "contact/contact.h"
@@ -69,6 +70,9 @@ typedef struct solver_ops {
                   const solver_control *control, double *u, double *r,
                   solver_report *rep);
   void (*release)(void *work); /* accepts NULL                                */
+  /* What the work remembers from one solve to the next and the matrix does not
+   * tell, kept or filled; NULL: nothing. */
+  status (*keep)(void *work, archive *a);
 } solver_ops;
 
 /* The first row of a family stands for it. */
@@ -131,6 +135,9 @@ void contact_solver_free(contact_solver *s);
 status contact_solve(contact_solver *s, const contact_problem *cp,
                      const solver_listener *listener, double *u, double *r,
                      solver_report *rep);
+/* What the solver remembers from solve to solve: kept, or read for the next
+ * solve; a is then borrowed, in its present group, until a reset. */
+status contact_solver_keep(contact_solver *s, archive *a);
 /* Who tried before the answer, "newton: cycle, sor: converged"; "" if one. */
 const char *contact_solver_log(const contact_solver *s);
 

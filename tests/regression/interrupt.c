@@ -44,8 +44,7 @@ static void into(const job *j, const char *file, int fd) {
   char path[200];
   snprintf(path, sizeof path, "%s/%s", j->dir, file);
   int to = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  if (to < 0 || dup2(to, fd) < 0)
-    _exit(99);
+  if (to < 0 || dup2(to, fd) < 0) _exit(99);
 }
 
 /* Start the job; file_limit: bytes, 0 none. */
@@ -54,13 +53,11 @@ static pid_t start(const job *j, rlim_t file_limit) {
   snprintf(deck, sizeof deck, "%s/%s", j->dir, j->name);
   pid_t pid = fork();
   ck_assert_int_ge(pid, 0);
-  if (pid > 0)
-    return pid;
+  if (pid > 0) return pid;
   into(j, "stdout.txt", STDOUT_FILENO);
   into(j, "stderr.txt", STDERR_FILENO);
   struct rlimit limit = {file_limit, file_limit};
-  if (file_limit > 0 && setrlimit(RLIMIT_FSIZE, &limit) != 0)
-    _exit(99);
+  if (file_limit > 0 && setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(99);
   execl(program(), program(), deck, "--no-timing", (char *)NULL);
   _exit(99);
 }
@@ -79,8 +76,7 @@ static int lines_of(const job *j, int *last) {
   *last = 0;
   for (char *p = sta; p != NULL && (p = strchr(p, '\n')) != NULL && p[1];) {
     ++p;
-    if (strchr(p, '\n') == NULL)
-      break;
+    if (strchr(p, '\n') == NULL) break;
     ++n;
     sscanf(p, "%*d %d", last);
   }
@@ -120,8 +116,7 @@ static int rows_of(const job *j) {
   static double t[MANY];
   ck_assert_int_ge(
       H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, t), 0);
-  while (n < MANY && !isnan(t[n]))
-    ++n;
+  while (n < MANY && !isnan(t[n])) ++n;
   H5Dclose(set);
   H5Fclose(file);
   return n;
@@ -141,8 +136,7 @@ static void check_files(const job *j) {
     free(text);
   }
   char *tables = job_file(j, "dat"), *at = strrchr(tables, '#'), block_of[60];
-  while (at > tables && strncmp(at, "# step", 6) != 0)
-    --at;
+  while (at > tables && strncmp(at, "# step", 6) != 0) --at;
   snprintf(block_of, sizeof block_of, "# step 1 increment %d ", last);
   ck_assert_int_eq(strncmp(at, block_of, strlen(block_of)), 0);
   free(tables);

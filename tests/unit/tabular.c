@@ -12,7 +12,7 @@ static char *write_tables(made_up *made, int told) {
   char dir[64];
   tabular *t = NULL;
   ck_assert_ptr_nonnull(folder_new(dir));
-  ck_assert_int_eq(tabular_open(&made->m, made->msh, dir, &t), OK);
+  ck_assert_int_eq(tabular_open(&made->m, made->msh, dir, -1, &t), OK);
   for (int i = 1; i <= told; ++i) {
     made_up_advance(made, i);
     ck_assert_int_eq(tabular_increment(t, &made->s), OK);
@@ -248,7 +248,7 @@ START_TEST(no_print_no_file) {
   made_up *made = made_up_new(2, 1, 1);
   tabular *t = NULL;
   made->steps[0].n_print = 0;
-  ck_assert_int_eq(tabular_open(&made->m, made->msh, "/nowhere", &t), OK);
+  ck_assert_int_eq(tabular_open(&made->m, made->msh, "/nowhere", -1, &t), OK);
   ck_assert_ptr_null(t);
   ck_assert_int_eq(tabular_increment(t, &made->s), OK);
   ck_assert_int_eq(tabular_close(t), OK);

@@ -1,0 +1,261 @@
+/* The restart file: who wrote it, and whether a deck may go on from it. */
+#include "restart.h"
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "fem/fem.h"
+#include "inform.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- who wrote it -------------------------------------------------------- */
+
+typedef struct identity {
+  char version[40], kernel[40];
+  int threads, no_timing, step_no;
+  unsigned effects;
+  uint64_t mesh;
+} identity;
+
+static uint64_t add_bytes(uint64_t h, const void *data, size_t n) {
+  const unsigned char *at = data;
+  for (size_t i = 0; i < n; ++i) h = (h ^ at[i]) * 1099511628211u;
+  return h;
+}
+
+/* Nodes, elements and groups in their order. */
+static uint64_t mesh_hash(const mesh *s) {
+  size_t dim = (size_t)s->dim;
+  uint64_t h = add_bytes(14695981039346656037u, s->x,
+                         dim * (size_t)s->n_node * sizeof *s->x);
+  h = add_bytes(h, s->elem, (dim + 1) * (size_t)s->n_elem * sizeof *s->elem);
+  for (int i = 0; i < s->n_group; ++i)
+    h = add_bytes(h, s->group[i].node_id,
+                  (size_t)s->group[i].n_node * sizeof *s->group[i].node_id);
+  return h;
+}
+
+static void identify(const command *c, const job_input *in, identity *id) {
+  memset(id, 0, sizeof *id);
+  snprintf(id->version, sizeof id->version, "%s", PROTIS_VERSION);
+  snprintf(id->kernel, sizeof id->kernel, "%s", blas_kernel());
+  id->threads = c->threads > 0 ? c->threads : 1;
+  id->no_timing = c->no_timing;
+  id->effects = in->m->effects;
+  id->mesh = mesh_hash(in->msh);
+}
+
+/* The deck with all its defaults; free it. */
+static status echo_of(const model *m, char **text) {
+  status st = OK;
+  size_t size = 0;
+  FILE *f = open_memstream(text, &size);
+  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
+  model_echo(m, f);
+  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
+done:
+  return st;
+}
+
+/* ---- writing ------------------------------------------------------------- */
+
+static status file_names(const command *c, const model *m, char **path,
+                         char **before) {
+  status st = OK;
+  *path = text_path(c->dir, m->job, "rst.h5");
+  *before = text_path(c->dir, m->job, "rst.old.h5");
+  if (*path == NULL || *before == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: name of the restart file");
+done:
+  return st;
+}
+
+status restart_write(void *ctx, const run_memory *memory) {
+  status st = OK;
+  const restart_writer *w = ctx;
+  archive *a = NULL;
+  identity id;
+  char *path = NULL, *before = NULL, *text = NULL;
+  TRY(file_names(w->c, w->in->m, &path, &before));
+  TRY(echo_of(w->in->m, &text));
+  identify(w->c, w->in, &id);
+  id.step_no = memory->step_no;
+  TRY(archive_new(&a));
+  TRY(archive_bytes(a, "identity", &id, sizeof id));
+  TRY(archive_bytes(a, "deck", text, strlen(text) + 1));
+  TRY(output_keep(w->out, a));
+  TRY(memory->keep(memory->run, a));
+  TRY(archive_write(a, path, before));
+done:
+  archive_free(a);
+  free(text);
+  memory_free(path);
+  memory_free(before);
+  return st;
+}
+
+/* ---- which cards may change ---------------------------------------------- */
+
+/* One card of an echo: "*NAME ... " up to the next one. */
+typedef struct echo_card {
+  const char *text;
+  size_t length; /* 0: the end                                               */
+  int step_no;   /* 0: before the first step                                 */
+} echo_card;
+
+/* Cards that start a line with a star; data lines never do. */
+static void next_card(echo_card *c) {
+  c->text += c->length;
+  c->length = strlen(c->text);
+  const char *end = strstr(c->text, "\n*");
+  if (end != NULL) c->length = (size_t)(end + 1 - c->text);
+  if (strncmp(c->text, "*STEP", 5) == 0) ++c->step_no;
+}
+
+static int is_named(const echo_card *c, const char *name) {
+  size_t n = strlen(name);
+  return strncmp(c->text + 1, name, n) == 0 &&
+         (c->text[n + 1] == ',' || c->text[n + 1] == '\n');
+}
+
+/* 1: the card may be another one, or not be there. */
+static int is_free(const echo_card *c, int step_no) {
+  static const char *const names[] = {"BOUNDARY", "DSLOAD",      "DLOAD",
+                                      "CLOAD",    "TEMPERATURE", "SOLVER",
+                                      "ACCURACY", "PRINT",       "OUTPUT"};
+  if (c->length == 0) return 0;
+  if (is_named(c, "RESTART")) return 1;
+  if (c->step_no <= step_no) return 0;
+  for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
+    if (is_named(c, names[k])) return 1;
+  return 0;
+}
+
+static void next_bound(echo_card *c, int step_no) {
+  do next_card(c);
+  while (is_free(c, step_no));
+}
+
+static int same_card(const echo_card *a, const echo_card *b) {
+  return a->length == b->length && memcmp(a->text, b->text, a->length) == 0;
+}
+
+/* The first line of a card. */
+static void first_line(const echo_card *c, char text[100]) {
+  size_t n = strcspn(c->text, "\n");
+  snprintf(text, 100, "%.*s", n < 90 ? (int)n : 90,
+           c->length > 0 ? c->text : "the end of the deck");
+}
+
+static status compare_decks(const char *was, const char *is, int step_no) {
+  status st = OK;
+  echo_card a = {was, 0, 0}, b = {is, 0, 0};
+  char before[100], now[100], where[40] = "";
+  do {
+    next_bound(&a, step_no);
+    next_bound(&b, step_no);
+    if (same_card(&a, &b)) continue;
+    first_line(&a, before);
+    first_line(&b, now);
+    if (a.step_no > 0) snprintf(where, sizeof where, "step %d, ", a.step_no);
+    FAIL(ERR_DECK,
+         "--restart: the deck has changed: %s%s%s%s; only loads, outputs and "
+         "the solver of the steps after step %d may change",
+         where, before,
+         strcmp(before, now) == 0 ? " has other data" : " is now ",
+         strcmp(before, now) == 0 ? "" : now, step_no);
+  } while (a.length > 0);
+done:
+  return st;
+}
+
+/* ---- reading ------------------------------------------------------------- */
+
+static status check_identity(const identity *was, const identity *is,
+                             const char *path) {
+  status st = OK;
+  if (strcmp(was->version, is->version) != 0)
+    FAIL(ERR_FILE, "%s was written by Protis %s, this is %s", path,
+         was->version, is->version);
+  if (was->mesh != is->mesh)
+    FAIL(ERR_FILE, "%s was written with another mesh", path);
+  if (was->no_timing != is->no_timing)
+    FAIL(ERR_DECK, "--restart: the run was started %s --no-timing",
+         was->no_timing ? "with" : "without");
+  if (was->effects != is->effects)
+    FAIL(ERR_DECK,
+         "--restart: the deck now calls for other effects (see --check) than "
+         "the run was started with");
+  if (was->threads != is->threads || strcmp(was->kernel, is->kernel) != 0)
+    fprintf(stderr,
+            "protis: warning: the run was started with %d thread%s and kernel "
+            "%s, this is %d and %s: last digits may differ\n",
+            was->threads, was->threads == 1 ? "" : "s", was->kernel,
+            is->threads, is->kernel);
+done:
+  return st;
+}
+
+static status check_job(const command *c, const job_input *in, archive *a,
+                        const char *path) {
+  status st = OK;
+  identity was, is;
+  char *text = NULL, *now = NULL;
+  size_t n = archive_length(a, "deck");
+  TRY(archive_bytes(a, "identity", &was, sizeof was));
+  NEW(text, n + 1);
+  TRY(archive_bytes(a, "deck", text, n));
+  TRY(echo_of(in->m, &now));
+  identify(c, in, &is);
+  TRY(compare_decks(text, now, was.step_no));
+  TRY(check_identity(&was, &is, path));
+done:
+  memory_free(text);
+  free(now);
+  return st;
+}
+
+/* JOB.rst.h5, or the one before it if that cannot be read. */
+static status read_either(const char *path, const char *before, archive **a) {
+  char why[512];
+  status st = archive_read(path, a);
+  if (st != ERR_FILE) return st;
+  snprintf(why, sizeof why, "%s", status_message());
+  if (archive_read(before, a) == OK) {
+    fprintf(stderr, "protis: warning: %s; the run goes on from %s\n", why,
+            before);
+    return OK;
+  }
+  return status_fail(st, __func__, __LINE__,
+                     "--restart: %s; a run writes it where *RESTART asks for "
+                     "it and when it is interrupted",
+                     why);
+}
+
+status restart_read(const command *c, const job_input *in, archive **out) {
+  status st = OK;
+  char *path = NULL, *before = NULL;
+  *out = NULL;
+  if (in->problem != NULL)
+    FAIL(ERR_DECK,
+         "--restart: *CONDENSED PROBLEM is one increment, there is "
+         "nothing to go on with");
+  if (in->m->target.percent > 0.0)
+    FAIL(ERR_DECK,
+         "--restart: *ACCURACY, TARGET= makes passes of the whole "
+         "run; such a job starts anew");
+  TRY(file_names(c, in->m, &path, &before));
+  TRY(read_either(path, before, out));
+  TRY(check_job(c, in, *out, path));
+done:
+  if (st != OK) {
+    archive_free(*out);
+    *out = NULL;
+  }
+  memory_free(path);
+  memory_free(before);
+  return st;
+}
