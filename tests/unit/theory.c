@@ -239,7 +239,7 @@ START_TEST(bounds_hold_under_the_guaranteed_limit) {
       for (int i = 0; i < n; ++i)
         for (int a = 1; a < dim; ++a)
           c.ut0[(dim - 1) * i + a - 1] =
-              c.u[dim * i + a] + (step == 3 ? 0.1 : 0.0);
+              c.u[dim * i + a] + (step == 3 ? 20.0 : 0.0);
       for (int i = 0; i < n && step == 4; ++i) c.gap[i] -= 0.05;
       for (int i = 0; i < c.cp.m; ++i)
         c.f[i] += 0.3 * (case_random(&seed) - 0.5);
