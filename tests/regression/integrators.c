@@ -4,6 +4,7 @@
  * for a block that creeps on a floor with friction. E = 1000, nu = 0.3,
  * relaxation time 2.
  */
+#include "support/creep_case.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -158,49 +159,13 @@ START_TEST(ringing_is_told) {
 }
 END_TEST
 
-/* Displacements at t = 2 of a block that creeps on a floor it slides on. */
-static dat slide(const char *integrator, int n) {
-  char visco[160];
-  snprintf(visco, sizeof visco,
-           "*VISCO, INTEGRATOR=%s\n%.17g, 2.\n"
-           "*SOLVER, METHOD=NEWTON, TOL=1E-14\n*PRINT, NODES, CONTACT\n",
-           integrator, 2.0 / n);
-  scene s = {STEEL,
-             DEVIATORIC,
-             "CPE3",
-             FLOOR(0.1),
-             "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n",
-             visco};
-  job j = run_scene(&s, 0);
-  dat c = job_table(&j, "CONTACT", -1);
-  int slips = 0;
-  for (int i = 0; i < c.n_row; ++i) slips += dat_at(&c, i, "status") == 1;
-  ck_assert_int_eq(slips, c.n_row - 1);
-  dat_free(&c);
-  dat u = job_table(&j, "NODES", -1);
-  job_end(&j);
-  return u;
-}
-
-static double distance(const dat *a, const dat *b) {
-  double sum = 0;
-  for (int i = 0; i < a->n_row; ++i) {
-    sum += pow(dat_at(a, i, "u_x") - dat_at(b, i, "u_x"), 2);
-    sum += pow(dat_at(a, i, "u_y") - dat_at(b, i, "u_y"), 2);
-  }
-  return sqrt(sum);
-}
-
 START_TEST(order_of_convergence_with_contact_and_friction) {
   const scheme_row *r = &schemes[_i];
   /* Order 1 takes longer to show. */
   const int n = r->order == 1 ? 32 : 8;
-  dat u[3];
-  for (int k = 0; k < 3; ++k) u[k] = slide(r->integrator, n << k);
-  double found = log2(distance(&u[0], &u[1]) / distance(&u[1], &u[2]));
+  double found = creep_case_order(DEVIATORIC, r->integrator, n);
   printf("%-28s order %.3f\n", r->integrator, found);
   ck_assert_double_eq_tol(found, r->order, 0.1);
-  for (int k = 0; k < 3; ++k) dat_free(&u[k]);
 }
 END_TEST
 
