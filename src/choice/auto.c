@@ -14,7 +14,9 @@
  *
  * Compliance given: in 3-D first sweeps of SOR, as long as their rate promises
  * the solution for less than the inverse would cost. Then the same where there
- * is an inverse; PCG, LAGRANGE, SOR and LEMKE work on a singular one.
+ * is an inverse; PCG, PROXIMAL, LAGRANGE, SOR and LEMKE work on a singular one.
+ * PROXIMAL is for what the others leave: an unsymmetric compliance that would
+ * be singular without its unsymmetric part, as of rigid bodies.
  *
  * Each link starts cold after the first, on the same problem, and is given a
  * number of iterations that bounds its cost (allowance).
@@ -36,13 +38,13 @@ const char auto_help[] =
   "grows to its value, each answer the start of the next), then SOR, then\n"
   "LEMKE. Of a problem that comes as a compliance (*CONDENSED PROBLEM) sweeps\n"
   "of SOR go first in 3-D, as long as their rate promises the answer for\n"
-  "less than an inverse costs; then the same chain with PCG and LAGRANGE\n"
-  "before SOR, those that need an inverse only where there is one. The first\n"
-  "starts from the last increment, the others anew; each may make a number\n"
-  "of iterations that bounds its cost, or MAX_ITER if that is less. An answer\n"
-  "counts only by the residual of the given problem; the listing says who\n"
-  "tried, why it stopped and who answered. It has no options. Choose another\n"
-  "method to compare, or where one is known to be faster.";
+  "less than an inverse costs; then the same chain with PCG, PROXIMAL and\n"
+  "LAGRANGE before SOR, those that need an inverse only where there is one.\n"
+  "The first starts from the last increment, the others anew; each may make\n"
+  "a number of iterations that bounds its cost, or MAX_ITER if that is less.\n"
+  "An answer counts only by the residual of the given problem; the listing\n"
+  "says who tried, why it stopped and who answered. It has no options. Choose\n"
+  "another method to compare, or where one is known to be faster.";
 /* clang-format on */
 
 enum {
@@ -63,9 +65,10 @@ static const struct {
   int compliance; /* 1: only where no stiffness is given                      */
   int factors;    /* 1: an iteration costs a factorisation, else a product    */
 } auto_chain[] = {
-    {&newton_solver, PLAIN, 0, 1}, {&newton_solver, ALONG_PATH, 0, 1},
-    {&pcg_solver, PLAIN, 1, 0},    {&lagrange_solver, PLAIN, 1, 0},
-    {&sor_solver, PLAIN, 0, 0},    {&lemke_solver, PLAIN, 0, 0}};
+    {&newton_solver, PLAIN, 0, 1},   {&newton_solver, ALONG_PATH, 0, 1},
+    {&pcg_solver, PLAIN, 1, 0},      {&proximal_solver, PLAIN, 1, 1},
+    {&lagrange_solver, PLAIN, 1, 0}, {&sor_solver, PLAIN, 0, 0},
+    {&lemke_solver, PLAIN, 0, 0}};
 
 /* Iterations a link may make: such that its cost stays that of its most on a
  * problem with FULL_SIZE unknowns, but at least LEAST. */

@@ -78,7 +78,8 @@ typedef struct solver_ops {
 /* The first row of a family stands for it. */
 /* clang-format off */
 #define SOLVER_LIST(X) \
-  X(newton) X(lemke) X(sor) X(pcg) X(auglag) X(aitken) X(lagrange)
+  X(newton) X(lemke) X(sor) X(pcg) X(auglag) X(aitken) X(lagrange) \
+  X(proximal)
 /* clang-format on */
 #define SOLVER_EXTERN(name) extern const solver_ops name##_solver;
 SOLVER_LIST(SOLVER_EXTERN)

@@ -1,6 +1,8 @@
 /* Rigid bodies in contact (rigid_scene.h). */
 #include "support/rigid_scene.h"
 
+#include "support/fclib_file.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -262,4 +264,23 @@ contact_case rigid_case(const rigid_scene *s) {
   c.cp.A = NULL;
   c.cp.W = c.A;
   return c;
+}
+
+void rigid_disturb(rigid_scene *s, double share, unsigned long long seed) {
+  seed += 77;
+  for (int k = 0; k < s->m * s->m; ++k)
+    s->W[k] *= 1.0 + share * (case_random(&seed) - 0.5);
+}
+
+double rigid_violation(const rigid_scene *s, const contact_case *c) {
+  double *u = zeros(s->m), *r = zeros(s->m);
+  for (int j = 0; j < s->m; ++j) {
+    double sign = j % s->dim == 0 ? -1.0 : 1.0;
+    u[j] = sign * c->u[j];
+    r[j] = sign * c->r[j];
+  }
+  double bad = fclib_violation(s->dim, s->n, s->W, s->q, s->mu, u, r);
+  free(u);
+  free(r);
+  return bad;
 }

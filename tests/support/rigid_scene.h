@@ -34,7 +34,13 @@ rigid_scene rigid_new(rigid_kind kind, int dim, int size, double mu,
                       unsigned long long seed);
 void rigid_free(rigid_scene *s);
 const char *rigid_name(rigid_kind kind);
+/* Every entry of W off by up to half the share of it, as in a file whose W is
+ * unsymmetric. */
+void rigid_disturb(rigid_scene *s, double share, unsigned long long seed);
 /* The same with the signs of contact.h, the compliance alone given. */
 contact_case rigid_case(const rigid_scene *s);
+/* How far u, r of that case miss the conditions in the signs of FCLIB
+ * (fclib_violation). */
+double rigid_violation(const rigid_scene *s, const contact_case *c);
 
 #endif

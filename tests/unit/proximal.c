@@ -1,0 +1,63 @@
+/*
+ * src/solver/proximal.c: contacts of rigid bodies whose compliance is
+ * semidefinite, also disturbed so that it is unsymmetric.
+ */
+#include "support/rigid_scene.h"
+#include "support/solver_rows.h"
+#include "support/unit.h"
+
+#include <string.h>
+
+static const double TOL = 1e-8;
+/* A slip u and the angle by which force and slip miss one another count as
+ * min(u, angle) in the violation, as their product in the residual. */
+static const double MISSES = 1e-4;
+
+static void must_solve(const solver_ops *ops, const rigid_scene *s) {
+  contact_case c = rigid_case(s);
+  memcpy(c.u, c.f, (size_t)s->m * sizeof *c.u);
+  solver_report rep = solve_by(ops, &c, TOL, c.u, c.r);
+  ck_assert_msg(rep.outcome == CONVERGED, "%s: %s, residual %g", row_name(ops),
+                outcome_text(rep.outcome), rep.residual);
+  ck_assert_double_le(rigid_violation(s, &c), MISSES);
+  case_free(&c);
+}
+
+/* Those that the other links of AUTO do not solve. */
+START_TEST(unsymmetric_compliance_is_solved) {
+  static const struct {
+    rigid_kind kind;
+    int size;
+    double mu;
+    unsigned long long seed;
+  } hard[] = {{RIGID_TOWER, 3, 1.0, 1},
+              {RIGID_TOWER, 10, 0.6, 6},
+              {RIGID_WALL, 10, 0.6, 6},
+              {RIGID_ARCH, 8, 1.0, 1},
+              {RIGID_BOX, 10, 1.5, 4}};
+  rigid_scene s =
+      rigid_new(hard[_i].kind, 3, hard[_i].size, hard[_i].mu, hard[_i].seed);
+  rigid_disturb(&s, 1e-3, hard[_i].seed);
+  must_solve(&proximal_solver, &s);
+  must_solve(NULL, &s);
+  rigid_free(&s);
+}
+END_TEST
+
+START_TEST(semidefinite_compliance_is_solved) {
+  for (int dim = 2; dim <= 3; ++dim)
+    for (unsigned long long seed = 1; seed <= 3; ++seed) {
+      rigid_scene s = rigid_new((rigid_kind)_i, dim, 6, 0.5, seed);
+      must_solve(&proximal_solver, &s);
+      rigid_free(&s);
+    }
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("proximal");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, unsymmetric_compliance_is_solved, 0, 5);
+  tcase_add_loop_test(tests, semidefinite_compliance_is_solved, 0, RIGID_KINDS);
+  return unit_run("proximal", tests);
+}
