@@ -38,7 +38,8 @@ typedef struct scene_row {
 } scene_row;
 
 /* A family ends with a row without a name. */
-extern const scene_row friction_scenes[];
+extern const scene_row friction_scenes[], contact_scenes[], body_scenes[],
+    number_scenes[], time_scenes[];
 
 /* Run all scenes, or those with the flag QUICK; print the matrix and what went
  * wrong. Number of fails. $SCENE: only scenes whose name has that in it;

@@ -1,0 +1,95 @@
+/*
+ * Materials and meshes: nearly incompressible, far apart in stiffness, thin,
+ * graded, of one element.
+ */
+#include "scenes/cards.h"
+#include "scenes/scenes.h"
+
+/* Frictionless, pressed by 10 in plane strain: uniform. */
+#define PRESSED(nu)                                             \
+  MATERIAL("1000.", nu) FLOOR("0.") STATIC                      \
+  "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n" END
+#define PRESSED_TO(nu, tol)                                     \
+  "NODES u_x = 0.01*" nu "*(1 + " nu ")*x ~ " tol ";"           \
+  "NODES u_y = -0.01*(1 - " nu "^2)*y ~ " tol
+#define WARNED ";errors has P2054"
+#define LAYERS(contrast, support)                                        \
+  "*MATERIAL, NAME=S\n*ELASTIC\n1., 0.\n*MATERIAL, NAME=H\n*ELASTIC\n"   \
+  contrast ", 0.\n*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n"              \
+  "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n" FLOOR("0.3") STATIC support \
+  "*DSLOAD\nTOP, P, 1.\n" END
+#define ORTHO(E1, E2)                                                    \
+  "*MATERIAL, NAME=M\n*ELASTIC, TYPE=ORTHO\n" E1 ", " E2                 \
+  ", 1000., 0., 0., 0., 500., 500., 500.\n"                              \
+  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n" FLOOR("0.3") STATIC         \
+  "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n" END
+
+/* clang-format off */
+const scene_row body_scenes[] = {
+  {.name = "nu=0.49", .hard = "nearly incompressible, uniform strain",
+   .mesh = "rect 6 6 1 1", .deck = PRESSED("0.49"),
+   .expect = PRESSED_TO("0.49", "1e-10")},
+  {.name = "nu=0.499", .hard = "nearly incompressible, uniform strain",
+   .mesh = "rect 6 6 1 1", .deck = PRESSED("0.499"), .flags = QUICK,
+   .expect = PRESSED_TO("0.499", "1e-9") WARNED},
+  {.name = "nu=0.4999", .hard = "nearly incompressible, uniform strain",
+   .mesh = "rect 6 6 1 1", .deck = PRESSED("0.4999"),
+   .expect = PRESSED_TO("0.4999", "1e-9") WARNED},
+  {.name = "nu=0.49999", .hard = "nearly incompressible, uniform strain",
+   .mesh = "rect 6 6 1 1 alternate", .deck = PRESSED("0.49999"),
+   .expect = PRESSED_TO("0.49999", "1e-8") WARNED},
+  {.name = "nu=-0.99", .hard = "nearly without shear energy",
+   .mesh = "rect 6 6 1 1", .deck = PRESSED("-0.99"),
+   .expect = PRESSED_TO("(-0.99)", "1e-9")},
+  {.name = "contrast 1e8", .hard = "digits of the soft part",
+   .mesh = "rect 4 4 1 1 layers", .flags = QUICK,
+   .deck = LAYERS("1.E8", "*BOUNDARY\nLEFT, 1\n"),
+   .expect = "TOTALS normal = 1 ~ 1e-9; NODES u_y @y=1 = -0.5 - 0.5e-8 ~ 1e-8"},
+  {.name = "contrast 1e-8", .hard = "digits of the hard part",
+   .mesh = "rect 4 4 1 1 layers",
+   .deck = LAYERS("1.E-8", "*BOUNDARY\nLEFT, 1\n"),
+   .expect = "TOTALS normal = 1 ~ 1e-8; NODES u_y @y=0.5 = -0.5 ~ 1e-6"},
+  {.name = "contrast 1e8, held by contact alone",
+   .hard = "singular, two scales", .mesh = "rect 4 4 1 1 layers", .deck = LAYERS("1.E8", ""),
+   .expect = "TOTALS normal = 1 ~ 1e-9; TOTALS moment_z = 0.5 ~ 1e-8"},
+  {.name = "orthotropic 1e4 along the floor", .hard = "stiff in one direction",
+   .mesh = "rect 4 4 1 1", .deck = ORTHO("1.E7", "1000."),
+   .expect = "NODES u_y = -0.01*y ~ 1e-9; NODES u_x = 0 ~ 1e-9"},
+  {.name = "orthotropic 1e4 upright", .hard = "stiff in one direction",
+   .mesh = "rect 4 4 1 1", .deck = ORTHO("1000.", "1.E7"),
+   .expect = "NODES u_y = -1e-6*y ~ 1e-12"},
+  {.name = "slivers, flat, aspect 1e4", .hard = "angles of 1e-4",
+   .mesh = "rect 6 6 1e4 1", .deck = PRESSED("0.3"), .flags = QUICK,
+   .expect = "NODES u_x = 3.9e-3*x ~ 1e-5; NODES u_y = -9.1e-3*y ~ 1e-7"},
+  {.name = "slivers, upright, aspect 1e4", .hard = "angles of 1e-4",
+   .mesh = "rect 6 6 1 1e4", .deck = PRESSED("0.3"),
+   .expect = "NODES u_x = 3.9e-3*x ~ 1e-5; NODES u_y = -9.1e-3*y ~ 1e-5"},
+  {.name = "one layer of slivers among good ones", .hard = "thin layer",
+   .mesh = "rect 6 6 1 1",
+   .change = {.map = {NULL, "if(y < 0.1, y, if(y < 0.2, 1e-5, y))"}},
+   .deck = PRESSED("0.3"), .expect = PRESSED_TO("0.3", "1e-8")},
+  {.name = "sizes from 1e-6 to 0.9 side by side", .hard = "graded to the edge",
+   .mesh = "rect 12 4 1 1",
+   .change = {.map = {"(10^(6*x) - 1)/(1e6 - 1)", NULL}},
+   .deck = PRESSED("0.3"), .expect = PRESSED_TO("0.3", "1e-8")},
+  {.name = "graded both ways to a corner", .hard = "sizes 1e-4 to 0.9",
+   .mesh = "rect 10 10 1 1",
+   .change = {.map = {"(10^(4*x) - 1)/9999", "(10^(4*y) - 1)/9999"}},
+   .deck = PRESSED("0.3"), .expect = PRESSED_TO("0.3", "1e-8")},
+  {.name = "two elements", .hard = "the least block", .mesh = "rect 1 1 1 1",
+   .deck = PRESSED("0.3"), .flags = QUICK,
+   .expect = PRESSED_TO("0.3", "1e-10")},
+  {.name = "six tetrahedra", .hard = "the least block in 3-D",
+   .mesh = "box 1 1 1 1 1 1", .deck = MATERIAL("1000.", "0.3")
+     PLANE("C", "BOTTOM", "0., 0., 0.", "0., 0., 1.") COULOMB("C", "0.")
+     STATIC "*BOUNDARY\nLEFT, 1\nFRONT, 2\n*DSLOAD\nTOP, P, 10.\n" END,
+   .expect = "NODES u_x = 3e-3*x ~ 1e-10; NODES u_y = 3e-3*y ~ 1e-10;"
+     "NODES u_z = -1e-2*z ~ 1e-10"},
+  {.name = "tetrahedra as thin as 1e4", .hard = "slivers in 3-D",
+   .mesh = "box 3 3 2 1e4 1 1", .deck = MATERIAL("1000.", "0.3")
+     PLANE("C", "BOTTOM", "0., 0., 0.", "0., 0., 1.") COULOMB("C", "0.")
+     STATIC "*BOUNDARY\nLEFT, 1\nFRONT, 2\n*DSLOAD\nTOP, P, 10.\n" END,
+   .expect = "NODES u_x = 3e-3*x ~ 1e-5; NODES u_z = -1e-2*z ~ 1e-7"},
+  {.name = NULL}
+};
+/* clang-format on */

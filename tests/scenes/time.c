@@ -1,0 +1,100 @@
+/*
+ * Increments without load, of no length, at the limit of stability, far below
+ * and above the relaxation time.
+ */
+#include "scenes/cards.h"
+#include "scenes/scenes.h"
+
+#define MAXWELL(tau)                                                    \
+  "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"                            \
+  "*INELASTIC, LAW=MAXWELL, TYPE=PROPORTIONAL\n" tau                    \
+  "\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+/* Pressed by 1: the strain grows by itself in each tau = 2. */
+#define CREEPS(words, dt, total)                                        \
+  MAXWELL("2.") FLOOR("0.3") STATIC                                     \
+  "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n" END                       \
+  VISCO(words, dt, total) LAST
+/* Strain held at 1e-3 from the first step on; a wall stands far away. */
+#define RELAXES(words, dt, total)                                       \
+  MAXWELL("2.") PLANE("C", "LEFT", "-1., 0.", "1., 0.")                 \
+  COULOMB("C", "0.3") STATIC "*BOUNDARY\nBOTTOM, 2\nCORNER, 1\n"        \
+  "TOP, 2, 2, -0.001\n" END VISCO(words, dt, total)                     \
+  "*PRINT, CONTACT, NODES, ENERGY, ELEMENTS, FREQUENCY=0\n*END STEP\n"
+#define STRESS(value, tol) "ELEMENTS stress_yy = -(" value ") ~ " tol
+
+/* clang-format off */
+const scene_row time_scenes[] = {
+  {.name = "increments without load", .hard = "nothing happens",
+   .flags = QUICK, .mesh = "rect 4 4 1 1", .deck = MATERIAL("1000.", "0.3")
+     FLOOR("0.5") QUASI("0.25", "1.") "*BOUNDARY\nLEFT, 1\n" END,
+   .expect = "NODES u_x = 0 ~ 0; NODES u_y = 0 ~ 0; CONTACT f_n = 0 ~ 0"},
+  {.name = "load repeated 100 times", .hard = "nothing changes",
+   .mesh = "rect 4 4 1 1", .deck = MATERIAL("1000.", "0.")
+     FLOOR("0.3") QUASI("1.", "1.") "*BOUNDARY\nTOP, 1, 1, 0.01\n"
+     "TOP, 2, 2, -0.01\n*DSLOAD\nRIGHT, TY, 3.\nLEFT, TY, -3.\n*END STEP\n"
+     QUASI("0.01", "1.") LAST,
+   .expect = "NODES u_x = 0.01 + 3*(y - 1)/500 ~ 1e-9;"
+     "CONTACT slip_distance = 0.004 ~ 1e-9"},
+  {.name = "increment of no length", .hard = "refused", .flags = QUICK,
+   .mesh = "rect 2 2 1 1", .verdict = 2,
+   .deck = MATERIAL("1000.", "0.3") FLOOR("0.5") QUASI("0.", "1.")
+     "*BOUNDARY\nLEFT, 1\n" END, .expect = "errors has P20"},
+  {.name = "step of no length", .hard = "refused",
+   .mesh = "rect 2 2 1 1", .verdict = 2,
+   .deck = MATERIAL("1000.", "0.3") FLOOR("0.5") QUASI("0.1", "0.")
+     "*BOUNDARY\nLEFT, 1\n" END, .expect = "errors has P20"},
+  {.name = "creep under constant load", .hard = "exact for all integrators",
+   .flags = QUICK, .mesh = "rect 3 3 1 1", .deck = CREEPS("@I", "0.5", "2."),
+   .expect = "NODES u_y = -0.002*y ~ 1e-10; TOTALS normal = 1 ~ 1e-8"},
+  {.name = "creep, 1000 increments", .hard = "drift of sums",
+   .mesh = "rect 2 2 1 1", .deck = CREEPS("@I", "0.01", "10."),
+   .expect = "NODES u_y = -0.006*y ~ 1e-9;"
+     "ENERGY energy_defect_relative = 0 ~ 1e-9"},
+  {.name = "Euler at 1.99 tau", .hard = "just stable",
+   .mesh = "rect 2 2 1 1",
+   .deck = RELAXES("INTEGRATOR=EULER", "3.98", "398."),
+   .expect = STRESS("0.99^100", "1e-8")},
+  {.name = "Euler at 2.01 tau", .hard = "just not stable", .flags = QUICK,
+   .mesh = "rect 2 2 1 1", .verdict = 2,
+   .deck = RELAXES("INTEGRATOR=EULER", "4.02", "402."),
+   .expect = "errors has P2050"},
+  {.name = "Heun at 1.99 tau", .hard = "just stable",
+   .mesh = "rect 2 2 1 1",
+   .deck = RELAXES("INTEGRATOR=HEUN", "3.98", "398."),
+   .expect = STRESS("(1 - 1.99 + 1.99^2/2)^100", "1e-8")},
+  {.name = "Heun at 2.01 tau", .hard = "just not stable",
+   .mesh = "rect 2 2 1 1", .verdict = 2,
+   .deck = RELAXES("INTEGRATOR=HEUN", "4.02", "402."),
+   .expect = "errors has P2050"},
+  {.name = "implicit Euler, dt = 1e-6 tau", .hard = "tiny increment",
+   .mesh = "rect 2 2 1 1",
+   .deck = RELAXES("INTEGRATOR=BACKWARD", "2.E-6", "2.E-5"),
+   .expect = STRESS("(1 + 1e-6)^(-10)", "1e-10")},
+  {.name = "implicit Euler, dt = tau", .hard = "large increment",
+   .mesh = "rect 2 2 1 1",
+   .deck = RELAXES("INTEGRATOR=BACKWARD", "2.", "20."),
+   .expect = STRESS("2^(-10)", "1e-10")},
+  {.name = "implicit Euler, dt = 1e6 tau", .hard = "huge increment",
+   .mesh = "rect 2 2 1 1", .flags = QUICK,
+   .deck = RELAXES("INTEGRATOR=BACKWARD", "2.E6", "2.E6"),
+   .expect = STRESS("1/(1 + 1e6)", "1e-10")},
+  {.name = "midpoint, dt = 1e-6 tau", .hard = "tiny increment",
+   .mesh = "rect 2 2 1 1",
+   .deck = RELAXES("INTEGRATOR=MIDPOINT", "2.E-6", "2.E-5"),
+   .expect = STRESS("((1 - 0.5e-6)/(1 + 0.5e-6))^10", "1e-10")},
+  {.name = "midpoint, dt = 10 tau", .hard = "stress rings",
+   .mesh = "rect 2 2 1 1",
+   .deck = RELAXES("INTEGRATOR=MIDPOINT", "20.", "60."),
+   .expect = STRESS("-(4/6)^3", "1e-9") ";errors has P2051"},
+  {.name = "midpoint, dt = 1e6 tau", .hard = "stress rings undamped",
+   .mesh = "rect 2 2 1 1",
+   .deck = RELAXES("INTEGRATOR=MIDPOINT", "2.E6", "4.E6"),
+   .expect = STRESS("((1 - 0.5e6)/(1 + 0.5e6))^2", "1e-8")
+     ";errors has P2051"},
+  {.name = "exponential, dt = 10 tau", .hard = "exact at any increment",
+   .mesh = "rect 2 2 1 1",
+   .deck = RELAXES("INTEGRATOR=EXPONENTIAL", "20.", "20."),
+   .expect = STRESS("exp(-10)", "1e-10")},
+  {.name = NULL}
+};
+/* clang-format on */
