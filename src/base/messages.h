@@ -247,7 +247,13 @@
     "mesh by its number in the mesh file.")                                  \
   X(2054, ERROR, "law without an exact step",                                \
     "INTEGRATOR=EXPONENTIAL needs linear laws whose coefficients do not "    \
-    "depend on time or temperature. Take MIDPOINT or BACKWARD.")
+    "depend on time or temperature. Take MIDPOINT or BACKWARD.")              \
+  X(2055, WARNING, "nearly incompressible",                                  \
+    "Linear triangles and tetrahedra are too stiff where nu is near 1/2. "   \
+    "The figures are those of a tube under pressure on a mesh of equal "     \
+    "diagonals. Use several mesh sizes and compare, or, in 2-D, a regular "  \
+    "mesh of alternating diagonals (Transfinite Surface{n} Alternated), "    \
+    "which does not lock there. Pressures suffer more than displacements.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

@@ -32,11 +32,11 @@
   "\n0., 1.\n"                                                               \
   "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O, NORMAL=OBSTACLE\n" COULOMB("C", \
                                                                         mu)
-#define TRIANGLE(mu, fx, fy)               \
-  TRIANGLE_ON("0.", mu)                    \
-  STATIC                                   \
-      "*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n" \
-      "TIP, 1, " fx "\nTIP, 2, " fy "\n" END
+#define TRIANGLE(mu, fx, fy)           \
+  TRIANGLE_ON("0.", mu)                \
+  STATIC                               \
+  "*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n" \
+  "TIP, 1, " fx "\nTIP, 2, " fy "\n" END
 #define TIP_AT(x) "NODES u_x @y=0 = " x " ~ 1e-8"
 
 /* The triangle of Hild with one element: uniform strain, all its base slides;

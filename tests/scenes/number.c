@@ -6,15 +6,18 @@
 #include "scenes/cards.h"
 #include "scenes/scenes.h"
 
-#define HELD(mu, top, side)                                             \
-  "*PARAMETER\nSTRESS = 1\n*MATERIAL, NAME=M\n*ELASTIC\n"               \
-  "\"1000*<STRESS>\", 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"    \
-  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"                                \
-  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n" COULOMB("C", mu)       \
-  QUASI("0.5", "1.") "*BOUNDARY\nRIGHT, 1, " top "\n*DSLOAD\n"          \
-  "TOP, P, \"5*t*<STRESS>\"\nLEFT, P, \"" side "*t*<STRESS>\"\n" END
+#define HELD(mu, top, side)                                           \
+  "*PARAMETER\nSTRESS = 1\n*MATERIAL, NAME=M\n*ELASTIC\n"             \
+  "\"1000*<STRESS>\", 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"  \
+  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"                              \
+  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n" COULOMB("C", mu)     \
+      QUASI("0.5", "1.") "*BOUNDARY\nRIGHT, 1, " top                  \
+                         "\n*DSLOAD\n"                                \
+                         "TOP, P, \"5*t*<STRESS>\"\nLEFT, P, \"" side \
+                         "*t*<STRESS>\"\n" END
 #define PLANE_BLOCK "rect 6 6 1 1 alternate"
-#define TWIN(...) &(const scene_twin){__VA_ARGS__}
+#define TWIN(...) \
+  &(const scene_twin) { __VA_ARGS__ }
 #define TWO_TO_40 "--no-timing -D STRESS=1099511627776"
 #define TWO_TO_MINUS_40 \
   "--no-timing -D STRESS=9.094947017729282379150390625E-13"

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -39,6 +40,8 @@ static int make_columns(column *c) {
 }
 
 static int applies(const column *c, const char *text) {
+  const char *only = getenv("METHOD");
+  if (only != NULL && strcasecmp(only, c->label) != 0) return 0;
   if (c->velocity) return strstr(text, "@V") != NULL;
   if (c->integrator[0] != '\0') return strstr(text, "@I") != NULL;
   return strcmp(c->solver, "AUTO") == 0 || strstr(text, "@S") != NULL;
@@ -257,9 +260,8 @@ static int chosen(const scene_row *s, int quick) {
 }
 
 static int list_rows(int quick, const scene_row **row) {
-  static const scene_row *const family[] = {friction_scenes, contact_scenes,
-                                            body_scenes, number_scenes,
-                                            time_scenes};
+  static const scene_row *const family[] = {
+      friction_scenes, contact_scenes, body_scenes, number_scenes, time_scenes};
   int n = 0;
   for (size_t f = 0; f < sizeof family / sizeof *family; ++f)
     for (const scene_row *s = family[f]; s->name != NULL; ++s)
@@ -289,6 +291,7 @@ int scenes_run(int quick, FILE *out) {
   fclose(notes);
   fprintf(out, "%d scenes: %d passed, %d refused, %d failed\n%s", n_row,
           count[0], count[1], count[2], text);
+  fflush(out);
   free(text);
   return count[2];
 }

@@ -43,7 +43,7 @@ extern const scene_row friction_scenes[], contact_scenes[], body_scenes[],
 
 /* Run all scenes, or those with the flag QUICK; print the matrix and what went
  * wrong. Number of fails. $SCENE: only scenes whose name has that in it;
- * $JOBS: that many at a time. */
+ * $METHOD: only the column of that label; $JOBS: that many rows at a time. */
 int scenes_run(int quick, FILE *out);
 
 #endif
