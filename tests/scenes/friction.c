@@ -67,7 +67,7 @@
 
 /* clang-format off */
 const scene_row friction_scenes[] = {
-  {.name = "shear mu=0", .hard = "no friction", .flags = QUICK,
+  {.name = "shear mu=0", .hard = "no friction",
    .mesh = "rect 4 4 1 1", .deck = SHEARED("0.", "0."),
    .expect = SHEARED_TO("0")},
   {.name = "shear mu=1e-8", .hard = "friction of the size of rounding",
@@ -101,7 +101,7 @@ const scene_row friction_scenes[] = {
    .expect = "NODES u_x = (0.004+0.006*z)*" COS17 " ~ 1e-9;"
      "NODES u_y = (0.004+0.006*z)*" SIN17 " ~ 1e-9;"
      "TOTALS force_z = 10 ~ 1e-6"},
-  {.name = "one triangle sticks", .hard = "one node", .flags = QUICK,
+  {.name = "one triangle sticks", .hard = "one node",
    .mesh = ONE_TRIANGLE, .deck = TRIANGLE("1.", "0.", "-1."),
    .expect = "NODES u_x = 0 ~ 1e-10; TOTALS force_y = 1 ~ 1e-9"},
   {.name = "one triangle slides back", .hard = "slip against a lifting force",
@@ -158,7 +158,7 @@ const scene_row friction_scenes[] = {
   {.name = "Hild mu=0.5", .hard = "slips all along", .mesh = HILD_MESH,
    .deck = HILD("0.5"), .expect = "NODES u_x @x=0 = -0.0904 ~ 1e-9"},
   {.name = "Hild mu=1", .hard = "slips all along", .mesh = HILD_MESH,
-   .flags = QUICK, .deck = HILD("1."),
+   .deck = HILD("1."),
    .expect = "NODES u_x @x=0 = -0.086 ~ 1e-9"},
   {.name = "Hild mu=2", .hard = "near the limit of uniqueness",
    .mesh = HILD_MESH, .deck = HILD("2."),
