@@ -247,6 +247,11 @@ status restart_read(const command *c, const job_input *in, archive **out) {
     FAIL(ERR_DECK,
          "--restart: *ACCURACY, TARGET= makes passes of the whole "
          "run; such a job starts anew");
+  for (int i = 0; i < in->m->n_step; ++i)
+    if (in->m->steps[i].theory)
+      FAIL(ERR_DECK,
+           "--restart: the theorems of *ACCURACY are checked over a "
+           "whole run; such a job starts anew");
   TRY(file_names(c, in->m, &path, &before));
   TRY(read_either(path, before, out));
   TRY(check_job(c, in, *out, path));

@@ -85,6 +85,7 @@ static int run_until(const job *j, const char *const *words, int at,
 }
 
 static const char *const nothing[] = {NULL, NULL};
+static const char *const again[] = {"--restart", NULL};
 
 /* ---- comparing ---------------------------------------------------------- */
 
@@ -92,8 +93,10 @@ static const char *const nothing[] = {NULL, NULL};
 static void same_files(const job *a, const job *b, const char *what) {
   static const char *const files[] = {"lst", "sta",  "cvg", "dat",
                                       "h5",  "xdmf", "json"};
+  int flows = strcmp(a->name, "creep") == 0; /* calls may differ */
   for (size_t k = 0; k < sizeof files / sizeof *files; ++k) {
     char command[300];
+    if (flows && (k == 0 || strcmp(files[k], "json") == 0)) continue;
     snprintf(command, sizeof command, "cmp %s/%s.%s %s/%s.%s 1>&2", a->dir,
              a->name, files[k], b->dir, b->name, files[k]);
     ck_assert_msg(system(command) == 0, "%s: .%s differs", what, files[k]);
@@ -157,7 +160,7 @@ static void interrupt_and_go_on(job (*make)(double, const char *, const char *),
   job whole = make(mu, "", method), cut = make(mu, "", method);
   snprintf(what, sizeof what, "%s mu %g", method, mu);
   int code = run_until(&whole, nothing, 0, 0, &all);
-  int stopped = run_until(&cut, nothing, all * 7 / 10, SIGINT, &changes);
+  int stopped = run_until(&cut, nothing, all * 6 / 10, SIGINT, &changes);
   ck_assert_msg(stopped == 130, "%s: exit %d", what, stopped);
   goes_on(&cut, code, what);
   same_files(&whole, &cut, what);
@@ -175,4 +178,136 @@ START_TEST(interrupted_run_goes_on_bit_for_bit) {
 }
 END_TEST
 
-UNIT_MAIN("restart", interrupted_run_goes_on_bit_for_bit)
+/* At changes of files spread over the run, those of the restart file too. */
+START_TEST(killed_run_goes_on_bit_for_bit) {
+  char what[40];
+  int changes, all;
+  job whole = flat_block(0.4, "*RESTART\n", "AUTO");
+  job cut = flat_block(0.4, "*RESTART\n", "AUTO");
+  int code = run_until(&whole, nothing, 0, 0, &all);
+  for (int k = 0; k < 6; ++k) {
+    int at = all / 2 + k * all / 13 + k;
+    snprintf(what, sizeof what, "killed at change %d of %d", at, all);
+    ck_assert_int_eq(run_until(&cut, nothing, at, SIGKILL, &changes), KILLED);
+    int part = changes / 3;
+    ck_assert_int_eq(run_until(&cut, again, part, SIGKILL, &changes), KILLED);
+    goes_on(&cut, code, what);
+    same_files(&whole, &cut, what);
+  }
+  job_end(&whole);
+  job_end(&cut);
+}
+END_TEST
+
+/* A Maxwell block: inelastic strains, constant tangents. */
+static job creep(double mu, const char *cards, const char *method) {
+  job j = job_begin("creep");
+  job_copy(&j, "input/creep_block/creep_block.geo");
+  job_write(&j, "creep.inp",
+            "*PARAMETER\nN = 8\n*MESH, FILE=creep_block.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+            "*INELASTIC, LAW=MAXWELL\n4.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*QUASISTATIC\n"
+            "0.5, 1.\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\n"
+            "LEFT, P, 150.\n*PRINT, CONTACT, ENERGY\n*OUTPUT\n%s*END STEP\n"
+            "*STEP\n*VISCO, %s\n0.5, 4.\n*END STEP\n",
+            mu, cards, method);
+  return j;
+}
+
+START_TEST(flowing_body_goes_on_bit_for_bit) {
+  interrupt_and_go_on(creep, 1.0, "INTEGRATOR=MIDPOINT");
+  interrupt_and_go_on(creep, 1.0, "INTEGRATOR=BACKWARD");
+  interrupt_and_go_on(creep, 1.0, "INTEGRATOR=HEUN");
+}
+END_TEST
+
+/* ---- refused ------------------------------------------------------------ */
+
+static void refused(job *j, int code, const char *why) {
+  int is = job_run(j, "--restart --no-timing");
+  ck_assert_msg(is == code && strstr(j->errors, why) != NULL,
+                "exit %d, not %d: %s; not: %s", is, code, j->errors, why);
+}
+
+/* The deck with one text in the place of another. */
+static void edit(const job *j, const char *from, const char *to) {
+  char *deck = job_file(j, "inp"), *at = strstr(deck, from), file[40];
+  ck_assert_ptr_nonnull(at);
+  *at = '\0';
+  snprintf(file, sizeof file, "%s.inp", j->name);
+  job_write(j, file, "%s%s%s", deck, to, at + strlen(from));
+  free(deck);
+}
+
+START_TEST(changed_decks_are_refused_by_card) {
+  int changes, all;
+  job j = flat_block(0.4, "", "AUTO");
+  refused(&j, 4, "cannot read");
+  run_until(&j, nothing, 0, 0, &all);
+  ck_assert_int_eq(run_until(&j, nothing, all * 4 / 10, SIGINT, &changes), 130);
+  edit(&j, "130.D3", "131.D3");
+  refused(&j, 2, "*ELASTIC");
+  edit(&j, "131.D3", "130.D3");
+  edit(&j, "TOP, 2, 2, -0.02", "TOP, 2, 2, -0.03");
+  refused(&j, 2, "step 1, *BOUNDARY");
+  edit(&j, "TOP, 2, 2, -0.03", "TOP, 2, 2, -0.02");
+  edit(&j, "*END STEP\n*STEP", "*END STEP\n*STEP\n*STATIC\n*END STEP\n*STEP");
+  refused(&j, 2, "*QUASISTATIC");
+  edit(&j, "*STATIC\n*END STEP\n*STEP\n", "");
+  edit(&j, "N = 8", "N = 9");
+  refused(&j, 2, "*PARAMETER");
+  edit(&j, "N = 9", "N = 8");
+  ck_assert_int_eq(job_run(&j, "--restart"), 2); /* --no-timing is missing */
+  ck_assert_ptr_nonnull(strstr(j.errors, "--no-timing"));
+  edit(&j, "TOP, 1, 1, -0.01", "TOP, 1, 1, -0.015"); /* of a later step */
+  goes_on(&j, 0, "later load");
+  job_end(&j);
+}
+END_TEST
+
+/* Flip a byte in the middle of a file of the folder. */
+static void damage(const job *j, const char *suffix) {
+  char path[200];
+  snprintf(path, sizeof path, "%s/%s.%s", j->dir, j->name, suffix);
+  FILE *f = fopen(path, "r+b");
+  ck_assert_ptr_nonnull(f);
+  fseek(f, 0, SEEK_END);
+  long middle = ftell(f) / 2;
+  for (int k = 0; k < 64; ++k) {
+    fseek(f, middle + k, SEEK_SET);
+    int c = fgetc(f);
+    fseek(f, middle + k, SEEK_SET);
+    fputc(c ^ 0x55, f);
+  }
+  fclose(f);
+}
+
+START_TEST(damaged_files_are_refused) {
+  int changes, all;
+  job whole = flat_block(0.4, "*RESTART\n", "AUTO");
+  job j = flat_block(0.4, "*RESTART\n", "AUTO");
+  run_until(&whole, nothing, 0, 0, &all);
+  ck_assert_int_eq(run_until(&j, nothing, all * 2 / 3, SIGKILL, &changes),
+                   KILLED);
+  damage(&j, "rst.h5");
+  goes_on(&j, 0, "from the file before");
+  ck_assert_ptr_nonnull(strstr(j.errors, "warning"));
+  ck_assert_ptr_nonnull(strstr(j.errors, "rst.old.h5"));
+  same_files(&whole, &j, "from the file before");
+  damage(&j, "rst.h5");
+  damage(&j, "rst.old.h5");
+  refused(&j, 4, "damaged");
+  job_write(&j, "block.rst.h5", "no HDF5\n");
+  refused(&j, 4, "no restart file of Protis");
+  job_end(&whole);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("restart", interrupted_run_goes_on_bit_for_bit,
+          killed_run_goes_on_bit_for_bit, flowing_body_goes_on_bit_for_bit,
+          changed_decks_are_refused_by_card, damaged_files_are_refused)
