@@ -102,7 +102,7 @@ const scene_row friction_scenes[] = {
      "NODES u_y = (0.004+0.006*z)*" SIN17 " ~ 1e-9;"
      "TOTALS force_z = 10 ~ 1e-6"},
   {.name = "one triangle sticks", .hard = "one node",
-   .mesh = ONE_TRIANGLE, .deck = TRIANGLE("1.", "0.", "-1."),
+   .flags = NO_LAWS, .mesh = ONE_TRIANGLE, .deck = TRIANGLE("1.", "0.", "-1."),
    .expect = "NODES u_x = 0 ~ 1e-10; TOTALS force_y = 1 ~ 1e-9"},
   {.name = "one triangle slides back", .hard = "slip against a lifting force",
    .flags = QUICK, .mesh = ONE_TRIANGLE, .deck = TRIANGLE("1.", "-1.", "0.3"),

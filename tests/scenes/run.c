@@ -116,7 +116,8 @@ static double size_of(const dat *d, int row, const char *name) {
   return hypot(dat_at(d, row, first), dat_at(d, row, second));
 }
 
-/* Sizes of forces and displacements of both runs agree node by node. */
+/* Sizes of forces and displacements of both runs agree node by node, over the
+ * largest force or displacement. */
 static int twins_agree(const finished *a, const finished *b,
                        const scene_twin *t, char *why) {
   static const struct {
@@ -130,8 +131,9 @@ static int twins_agree(const finished *a, const finished *b,
   int good = 1;
   for (size_t c = 0; c < sizeof col / sizeof *col && good; ++c) {
     double factor = col[c].force ? force : length, scale = 0.0;
-    for (int i = 0; i < p.n_row; ++i)
-      scale = fmax(scale, size_of(&p, i, col[c].name));
+    for (size_t k = 0; k < sizeof col / sizeof *col; ++k)
+      for (int i = 0; i < p.n_row && col[k].force == col[c].force; ++i)
+        scale = fmax(scale, size_of(&p, i, col[k].name));
     for (int i = 0; i < p.n_row && good; ++i) {
       int k = same_node(a, &p, i, b, &q);
       double x = factor * size_of(&p, i, col[c].name);
