@@ -72,7 +72,7 @@ static status write_file(made_up *made, const char *dir, int told,
   output_options o = plain;
   hdf5_file *h = NULL;
   o.dir = dir;
-  status st = hdf5_open(&made->m, made->msh, &o, &h);
+  status st = hdf5_open(&made->m, made->msh, &o, NULL, &h);
   for (int i = 1; i <= told && st == OK; ++i) {
     made_up_advance(made, i);
     st = hdf5_increment(h, &made->s);
@@ -246,7 +246,7 @@ START_TEST(frequency_chooses_the_records) {
   rows_are(dir, 5);
   made->steps[0].output_frequency = -1;
   hdf5_file *h = NULL;
-  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &plain, &h), OK);
+  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &plain, NULL, &h), OK);
   ck_assert_ptr_null(h);
   made_up_free(made);
   folder_remove(dir);
@@ -279,7 +279,7 @@ START_TEST(scene_without_contact_has_no_surface) {
   made->m.effects = 0;
   made->m.n_contact = 0;
   made->s.surface = NULL;
-  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, &h), OK);
+  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, NULL, &h), OK);
   made_up_advance(made, 1);
   ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
   ck_assert_int_eq(hdf5_close(h, 1), OK);
@@ -301,7 +301,7 @@ START_TEST(node_that_leaves_the_surface_has_no_value) {
   hdf5_file *h = NULL;
   output_options o = plain;
   o.dir = dir;
-  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, &h), OK);
+  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, NULL, &h), OK);
   made_up_advance(made, 1);
   ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
   for (int i = 1; i < 3; ++i) /* node 1 of 4 goes                            */
@@ -358,7 +358,7 @@ static void child_run(const char *dir, int pipe_end, int foreseen) {
   output_options o = plain;
   hdf5_file *h = NULL;
   o.dir = dir;
-  if (hdf5_open(&made->m, made->msh, &o, &h) != OK) _exit(1);
+  if (hdf5_open(&made->m, made->msh, &o, NULL, &h) != OK) _exit(1);
   for (int i = 1; i <= 1000; ++i) {
     made_up_advance(made, i);
     if (hdf5_increment(h, &made->s) != OK) _exit(1);
@@ -559,7 +559,7 @@ START_TEST(failed_writes_and_copies_are_told) {
   for (int k = 0; k < 2; ++k) {
     hdf5_file *h = NULL;
     int files = open_files();
-    ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, &h), OK);
+    ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, NULL, &h), OK);
     for (int i = 1; i <= 2 * k; ++i) {
       made_up_advance(made, i);
       ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
