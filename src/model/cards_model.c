@@ -299,7 +299,7 @@ static status open_initial(reading *r) {
   model *m = r->m;
   const parameter *file = card_parameter(r->card, "FILE");
   if (!initial_rows[p->type].starts) {
-    if (file != NULL || card_parameter(r->card, "INCOMPATIBLE") != NULL)
+    if (file != NULL || p->incompatible)
       message_add(m->log, P2004, &r->card->at,
                   "*INITIAL CONDITIONS: FILE= and INCOMPATIBLE= belong to "
                   "TYPE=DISPLACEMENT");

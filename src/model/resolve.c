@@ -399,7 +399,8 @@ status model_resolve(model *m, int lost) {
   TRY(resolve_moves(m));
   step before = {.solver = default_solver,
                  .loads = m->supports,
-                 .condensed_frequency = -1};
+                 .condensed_frequency = -1,
+                 .restart_frequency = -1};
   for (int i = 0; i < before.loads.n; ++i)
     start_load(m, &before, &before.loads.item[i]);
   const step *old = &before;
