@@ -46,7 +46,7 @@ static const double MOST_SHARE = 0x1p10;
  * gaps closed (start_closed; its stretch is 1). */
 static const struct {
   double stretch, share;
-} way[TRIALS] = {{4.0, 0x1p-7}, {1.0, 0x1p-7}, {4.0, 0x1p-10}, {1.0, 0x1p-20}};
+} way[TRIALS] = {{1.0, 0x1p-7}, {4.0, 0x1p-7}, {4.0, 0x1p-10}, {1.0, 0x1p-20}};
 
 typedef struct proximal_work {
   force_set *set;
