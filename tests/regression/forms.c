@@ -58,14 +58,17 @@ static copied write_in_form(const job *j, const char *path, const char *form) {
 
 /* The displacements printed by two runs, over their largest. */
 static void compare_nodes(const job *a, const job *b, int n, double tol) {
-  static const char *const names[] = {"u_x", "u_y", "u_z"};
+  static const char *const names[] = {"u_x", "u_y", "u_z", "u_r"};
   for (int k = 0; k < n; ++k) {
     dat p = job_table(a, "NODES", k), q = job_table(b, "NODES", k);
-    double scale = fmax(dat_max(&p, "u_x"), dat_max(&p, "u_y"));
+    double scale = 0.0;
+    for (int c = 0; c < 4; ++c)
+      if (dat_has(&p, names[c])) scale = fmax(scale, dat_max(&p, names[c]));
+    ck_assert_double_gt(scale, 0.0);
     ck_assert_int_eq(p.n_row, q.n_row);
     ck_assert_int_eq(p.n_col, q.n_col);
-    for (int c = 0; c < 3 && dat_has(&p, names[c]); ++c)
-      for (int i = 0; i < p.n_row; ++i) {
+    for (int c = 0; c < 4; ++c)
+      for (int i = 0; i < p.n_row && dat_has(&p, names[c]); ++i) {
         double miss = dat_at(&p, i, names[c]) - dat_at(&q, i, names[c]);
         ck_assert_msg(fabs(miss) <= tol * scale,
                       "%s, block %d, row %d: %s differs by %.3g of the largest",

@@ -6,11 +6,11 @@
 #include "scenes/scenes.h"
 
 /* nu = 0, E = 1000: the top of a block above a plane at -gap goes down. */
-#define LOWERED(gap, dt, down)                                                \
-  MATERIAL("1000.", "0.")                                                     \
-  PLANE("C", "BOTTOM", "0., -" gap, "0., 1.")                                 \
-  COULOMB("C", "0.3") QUASI(dt, "1.") "*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -" down \
-                                      "\n" END
+#define LOWERED(gap, dt, down)                \
+  MATERIAL("1000.", "0.")                     \
+  PLANE("C", "BOTTOM", "0., -" gap, "0., 1.") \
+  COULOMB("C", "0.3")                         \
+  QUASI(dt, "1.") "*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -" down "\n" END
 /* Pressed by 10 (and pushed from the left) without any support. */
 #define LYING(mu, loads) \
   MATERIAL("1000.", "0.") FLOOR(mu) QUASI("0.5", "1.") "*DSLOAD\n" loads END

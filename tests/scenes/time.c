@@ -10,10 +10,11 @@
   "*INELASTIC, LAW=MAXWELL, TYPE=PROPORTIONAL\n" tau \
   "\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
 /* Pressed by 1: the strain grows by itself in each tau = 2. */
-#define CREEPS(words, dt, total)                                             \
-  MAXWELL("2.")                                                              \
-  FLOOR("0.3") STATIC "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n" END VISCO( \
-      words, dt, total) LAST
+#define CREEPS(words, dt, total)                                          \
+  MAXWELL("2.")                                                           \
+  FLOOR("0.3")                                                            \
+  STATIC "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n" END VISCO(words, dt, \
+                                                               total) LAST
 /* Strain held at 1e-3 from the first step on; a wall stands far away. */
 #define RELAXES(words, dt, total) \
   MAXWELL("2.") PLANE("C", "LEFT", "-1., 0.", "1., 0.")                 \
