@@ -53,17 +53,13 @@ static void see_ready(void *ctx, const setup_facts *facts) {
   p->unknowns = (double)facts->info.unknowns;
 }
 
-static double known(double relative) {
-  return isnan(relative) ? 0.0 : relative;
-}
-
 static void see_increment(void *ctx, const state *s) {
   pass *p = ctx;
   if (!s->mesh_error.asked || s->energy.strain < p->energy) return;
   p->energy = s->energy.strain;
   p->mesh = s->mesh_error.relative;
-  p->time = known(s->time_error.relative);
-  p->solver = s->error.asked ? known(s->error.relative) : 0.0;
+  p->time = s->time_error.relative;
+  p->solver = s->error.asked ? s->error.relative : 0.0;
   memcpy(p->eta, s->elem_error, (size_t)p->in->msh->n_elem * sizeof *p->eta);
 }
 
@@ -144,6 +140,13 @@ static void decide(pass *p) {
   pass_row *row = &p->rows[p->n - 1];
   if (total(p) <= goal) {
     p->done = 1;
+    return;
+  }
+  if (isnan(total(p))) {
+    miss(p, isnan(p->time)
+                ? "the error of the steps is unknown, see the listing"
+                : "the solver has no bound of its error, see the "
+                  "listing");
     return;
   }
   choose(p, row->change, sizeof row->change);

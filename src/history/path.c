@@ -148,6 +148,11 @@ void path_compare(run *r) {
   e->relative = 0.0;
   e->why = NULL;
   if (!e->asked) return;
+  if (r->step->kind == STEP_VISCO) {
+    e->relative = NAN;
+    e->why = "not estimated in *VISCO steps, whose TOLERANCE= bounds it";
+    return;
+  }
   if (!has_path(r)) {
     e->why = r->step->kind == STEP_STATIC ? "one static problem, no path"
                                           : "no friction, no path";

@@ -173,6 +173,31 @@ START_TEST(forecast_is_near_the_truth) {
 }
 END_TEST
 
+/* The increments of *VISCO have no estimate: no target is called reached. */
+START_TEST(unknown_error_is_no_success) {
+  job j = job_begin("creep");
+  job_copy(&j, "input/creep_block/creep_block.geo");
+  job_write(&j, "creep.inp",
+            "*PARAMETER\nN = 8\n*MESH, FILE=creep_block.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+            "*INELASTIC, LAW=MAXWELL\n4.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n*STEP\n"
+            "*VISCO, INTEGRATOR=EULER\n1., 4.\n*BOUNDARY\nSYMMETRY, 1\n"
+            "*DSLOAD\nTOP, P, 50.\nLEFT, P, 150.\n"
+            "*ACCURACY, TARGET=50\n*END STEP\n");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 1, "exit %d: %s", code, j.errors);
+  ck_assert_ptr_nonnull(strstr(j.errors, "the error of the steps is unknown"));
+  char *lst = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(strstr(lst, "error of the steps: unknown, not "));
+  free(lst);
+  job_end(&j);
+}
+END_TEST
+
 /* A rough cylinder in two increments: the increments must become shorter. */
 START_TEST(increments_are_made_shorter) {
   job j = job_begin("cylinder");
@@ -200,4 +225,4 @@ END_TEST
 UNIT_MAIN("target", target_is_reached_in_truth,
           limits_stop_with_the_best_there_is, structured_geometry_is_made_finer,
           mesh_without_geometry_is_named, forecast_is_near_the_truth,
-          increments_are_made_shorter)
+          increments_are_made_shorter, unknown_error_is_no_success)
