@@ -10,7 +10,7 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
-#include "history/run.h"
+#include "history/loop.h"
 
 #include <math.h>
 #include <stdio.h>

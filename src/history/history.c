@@ -1,9 +1,9 @@
 /*
- * The loop over steps and increments: time grid, step cutting with exact
- * rollback, verdict of each increment, hand-over to the outputs.
+ * The loop over steps and increments: grid of a fixed increment, its cutting
+ * with exact rollback, verdict of each increment, hand-over to the outputs.
  */
 #include "accuracy/verdict.h"
-#include "history/run.h"
+#include "history/loop.h"
 
 #include "base/interrupt.h"
 #include "base/memory.h"
@@ -127,8 +127,8 @@ done:
   return st;
 }
 
-static status accept(run *r, int attempt, int increment_no, int last,
-                     double cpu) {
+status loop_accept(run *r, int attempt, int increment_no, int last,
+                   double cpu) {
   status st = OK;
   ++r->total_no;
   TRY(theory_increment(r));
@@ -152,7 +152,7 @@ done:
   return st;
 }
 
-static status reject(run *r, int attempt, int increment_no, const char *why) {
+status loop_reject(run *r, int attempt, int increment_no, const char *why) {
   r->error = (error_bound){0};
   r->mesh_error.asked = r->time_error.asked = 0;
   r->theorems = (theory_report){0};
@@ -163,7 +163,7 @@ static status reject(run *r, int attempt, int increment_no, const char *why) {
   return r->sink->rejected(r->sink->ctx, &s, why);
 }
 
-static status no_equilibrium(run *r) {
+status loop_no_equilibrium(run *r) {
   status st = OK;
   char why[1024] = "";
   const char *tried = contact_solver_log(r->solver);
@@ -221,7 +221,7 @@ done:
 }
 
 /* What is due where the run could go on from; ends it if that was asked for. */
-static status pause(run *r) {
+status loop_pause(run *r) {
   status st = OK, why = interrupt_asked();
   r->kept = r->due;
   if (r->due) TRY(checkpoint(r));
@@ -255,7 +255,7 @@ static status accept_piece(run *r, long n, double cpu) {
     ++p->i;
     p->part = p->level = 0;
   }
-  TRY(accept(r, attempt, p->increment_no, last, cpu));
+  TRY(loop_accept(r, attempt, p->increment_no, last, cpu));
 done:
   return st;
 }
@@ -277,15 +277,16 @@ static status attempt_piece(run *r, long n) {
   TRY(s->kind == STEP_VISCO ? visco_advance(r, t) : increment_solve(r, t));
   int settled = r->report.outcome > 0, finer = !settled && can_cut(r);
   if (finer || (!settled && outcome_is_fatal(r->report.outcome)))
-    TRY(reject(r, p->attempt, p->increment_no + 1,
-               outcome_text(r->report.outcome)));
+    TRY(loop_reject(r, p->attempt, p->increment_no + 1,
+                    outcome_text(r->report.outcome)));
   if (finer) {
     p->part *= 2;
     ++p->level;
     ++p->attempt;
     goto done;
   }
-  if (!settled && outcome_is_fatal(r->report.outcome)) TRY(no_equilibrium(r));
+  if (!settled && outcome_is_fatal(r->report.outcome))
+    TRY(loop_no_equilibrium(r));
   r->jumps = 0;
   if (settled) TRY(jump_check(r, t));
   TRY(accept_piece(r, n, cpu));
@@ -297,235 +298,9 @@ static status run_fixed(run *r) {
   status st = OK;
   long n = increments_of(r->step);
   while (r->at.i < n) {
-    TRY(pause(r));
+    TRY(loop_pause(r));
     TRY(attempt_piece(r, n));
   }
-done:
-  return st;
-}
-
-/* ---- initial state ------------------------------------------------------ */
-
-/* K u_0 - F into R, the largest of both into *largest; diagonal of K. */
-static status start_forces(run *r, double *R, double *diagonal,
-                           double *largest) {
-  status st = OK;
-  double *sigma = NULL;
-  NEW(sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
-  domain_stress(&r->d, r->old.u, NULL, sigma);
-  domain_internal_force(&r->d, sigma, R);
-  for (size_t k = 0; k < r->n_dof; ++k) {
-    *largest = fmax(*largest, fmax(fabs(R[k]), fabs(r->now.F[k])));
-    R[k] -= r->now.F[k];
-  }
-  start_stiffness(&r->d, diagonal);
-done:
-  memory_free(sigma);
-  return st;
-}
-
-/* The start is the old equilibrium of the first increment. */
-static void accept_start(run *r) {
-  memcpy(r->old.F, r->now.F, r->n_dof * sizeof *r->old.F);
-  result_start(r, &r->old);
-}
-
-static status relax_start(run *r) {
-  status st = OK;
-  double cpu = timer_cpu();
-  r->relaxing = 1;
-  TRY(increment_solve(r, 0.0));
-  if (r->report.outcome <= 0 && outcome_is_fatal(r->report.outcome)) {
-    TRY(reject(r, 1, 0, outcome_text(r->report.outcome)));
-    TRY(no_equilibrium(r));
-  }
-  TRY(accept(r, 1, 0, 0, cpu));
-  memcpy(r->start, r->old.u, r->n_dof * sizeof *r->start);
-done:
-  r->relaxing = 0;
-  return st;
-}
-
-static status judge_start(run *r) {
-  status st = OK;
-  const start_card *asked = &r->m->start;
-  start_report *s = &r->first;
-  s->relaxed = s->n_bad > 0 && asked->relax;
-  if (r->sink->start != NULL) TRY(r->sink->start(r->sink->ctx, s));
-  if (s->n_bad > 0 && !s->relaxed) {
-    message_add(r->m->log, P4014, &asked->at,
-                "the start is not compatible: defect %.3g (%.2g of the largest "
-                "force) at node %zu, %s; %d node%s above %.0e",
-                s->worst, s->ratio, r->msh->node_no[s->node_id],
-                defect_text(s->kind[s->node_id]), s->n_bad,
-                s->n_bad == 1 ? "" : "s", start_tolerance);
-    FAIL(ERR_DECK, "the initial displacements are not compatible");
-  }
-  if (s->relaxed)
-    TRY(relax_start(r));
-  else
-    accept_start(r);
-done:
-  return st;
-}
-
-/* Test the initial displacements against the loads of time 0. */
-static status test_start(run *r) {
-  status st = OK;
-  double *R = NULL, *diagonal = NULL, *given = NULL, largest = 0.0;
-  timer_enter(STAGE_START);
-  NEW(R, r->n_dof);
-  NEW(diagonal, r->n_dof);
-  NEW(given, r->n);
-  TRY(increment_pose(r, 0.0));
-  TRY(start_forces(r, R, diagonal, &largest));
-  if (r->n > 0) TRY(forms_given(r, 0.0, given));
-  const start_input in = {.mesh = r->msh,
-                          .fixed = r->fixed,
-                          .u = r->old.u,
-                          .ud = r->ud,
-                          .R = R,
-                          .stiffness = diagonal,
-                          .surface = r->n > 0 ? r->surface : NULL,
-                          .cp = &r->cp,
-                          .uc = r->old.uc,
-                          .given = given,
-                          .load = largest};
-  start_test(&in, r->old.rc, r->old.reaction, &r->first);
-  TRY(theory_initial(r));
-done:
-  timer_leave(STAGE_START);
-  memory_free(R);
-  memory_free(diagonal);
-  memory_free(given);
-  return st;
-}
-
-status run_read_start(run *r) {
-  status st = OK;
-  if (!(r->m->effects & EFFECT_START)) goto done;
-  timer_enter(STAGE_START);
-  st = start_report_new(r->msh, &r->first);
-  if (st == OK) st = start_displacements(r->m, r->msh, r->old.u, &r->first);
-  timer_leave(STAGE_START);
-done:
-  return st;
-}
-
-/* 1 if a is b to rounding. */
-static int same_vector(size_t n, const double *a, const double *b) {
-  double largest = 0.0, worst = 0.0;
-  for (size_t i = 0; i < n; ++i) {
-    largest = fmax(largest, fmax(fabs(a[i]), fabs(b[i])));
-    worst = fmax(worst, fabs(a[i] - b[i]));
-  }
-  return worst <= 1e-12 * largest;
-}
-
-/* 1 if nothing acts at the start of the step that did not act before. */
-static int starts_smoothly(const run *r) {
-  if (r->total_no == 0 && r->n > 0) return 0;
-  for (size_t i = 0; i < r->n_dof; ++i)
-    if (r->fixed[i] && fabs(r->ud[i] - r->old.u[i]) > 1e-12 * fabs(r->ud[i]))
-      return 0;
-  return same_vector(r->n_dof, r->now.F, r->old.F) &&
-         same_vector((size_t)r->m->ns * (size_t)r->eigen.n, r->now.e0,
-                     r->old.e0);
-}
-
-/*
- * The body answers at once to what is applied suddenly at the start of a *VISCO
- * step: an increment without length of its own.
- */
-static status start_visco(run *r, int *increment_no) {
-  status st = OK;
-  double cpu = timer_cpu();
-  if (r->step->kind != STEP_VISCO || r->visco == NULL) return OK;
-  TRY(increment_begin(r, r->step->start));
-  if (!starts_smoothly(r)) {
-    TRY(increment_solve(r, r->step->start));
-    if (outcome_is_fatal(r->report.outcome)) TRY(no_equilibrium(r));
-    if (!same_vector(r->n_dof, r->now.u, r->old.u))
-      TRY(accept(r, 1, ++*increment_no, 0, cpu));
-  }
-  TRY(visco_begin_step(r));
-done:
-  return st;
-}
-
-/* The next increment after one of length dt with this error; implicit
- * integrators keep to halves and doubles, which they have factored. */
-static double next_length(const step *s, double dt, double error) {
-  const scheme *of = s->integrator;
-  int order = of->estimates ? 1 : of->order;
-  double factor = 4.0;
-  if (s->theta == 0.5 && of->has_theta) order = 2;
-  if (error > 0.0) factor = 0.9 * pow(s->tolerance / error, 1.0 / (order + 1));
-  factor = fmin(4.0, fmax(0.2, factor));
-  if (of->limit == 0.0) factor = ldexp(1.0, (int)floor(log2(factor)));
-  return fmin(dt * factor, s->dt_max);
-}
-
-/* End of the next increment: not a sliver before the end of the step. */
-static double next_end(const run *r, double dt) {
-  double end = r->step->start + r->step->total, left = end - r->old.t;
-  if (dt >= left * (1.0 - 1e-9)) return end;
-  return r->old.t + (dt > 0.5 * left && r->step->integrator->limit > 0.0
-                         ? 0.5 * left
-                         : dt);
-}
-
-/* One attempt at an increment of a step with a tolerance. */
-static status attempt_adapted(run *r) {
-  status st = OK;
-  const step *s = r->step;
-  progress *p = &r->at;
-  double end = s->start + s->total, error = 0.0;
-  double cpu = timer_cpu(), t = next_end(r, p->dt), tried;
-  int deeper, attempt = p->attempt;
-  TRY(visco_level(r, t - r->old.t, &deeper));
-  if (deeper > 0) t = next_end(r, ldexp(t - r->old.t, -deeper));
-  tried = t - r->old.t;
-  TRY(visco_try(r, t, &error));
-  int settled = r->report.outcome > 0;
-  r->missed = settled && error > s->tolerance;
-  if ((!settled || r->missed) && tried > s->dt_min) {
-    TRY(reject(r, attempt, p->increment_no + 1,
-               settled ? "strain error above TOLERANCE"
-                       : outcome_text(r->report.outcome)));
-    p->dt = fmax(s->dt_min, fmin(0.5 * tried, next_length(s, tried, error)));
-    ++p->attempt;
-    goto done;
-  }
-  if (outcome_is_fatal(r->report.outcome)) TRY(no_equilibrium(r));
-  p->attempt = 1;
-  ++p->increment_no;
-  TRY(accept(r, attempt, p->increment_no, t == end, cpu));
-  p->dt = fmax(s->dt_min, next_length(s, tried, error));
-done:
-  r->missed = 0;
-  return st;
-}
-
-static status run_adaptive(run *r) {
-  status st = OK;
-  double end = r->step->start + r->step->total;
-  while (r->old.t < end) {
-    TRY(pause(r));
-    TRY(attempt_adapted(r));
-  }
-done:
-  return st;
-}
-
-/* What comes before the increments of a step. */
-static status begin_step(run *r) {
-  status st = OK;
-  if (run_step_id(r) == 0 && (r->m->effects & EFFECT_START)) {
-    TRY(test_start(r));
-    TRY(judge_start(r));
-  }
-  TRY(start_visco(r, &r->at.increment_no));
 done:
   return st;
 }
@@ -539,10 +314,10 @@ static status run_step(run *r) {
   } else {
     r->at =
         (progress){.step_id = run_step_id(r), .attempt = 1, .dt = r->step->dt};
-    TRY(begin_step(r));
+    TRY(start_step(r));
   }
   if (r->step->tolerance > 0.0 && r->visco != NULL)
-    TRY(run_adaptive(r));
+    TRY(adaptive_run(r));
   else
     TRY(run_fixed(r));
   if (r->due) TRY(checkpoint(r));
@@ -571,7 +346,7 @@ status history_continue(const model *m, const mesh *msh, archive *from,
   *unsettled = 0;
   TRY(run_new(&r));
   TRY(read_progress(&r));
-  if (from == NULL) TRY(run_read_start(&r));
+  if (from == NULL) TRY(start_read(&r));
   for (int i = r.at.step_id; i < m->n_step; ++i) {
     r.step = &m->steps[i];
     TRY(run_step(&r));
@@ -585,4 +360,17 @@ done:
 status history_run(const model *m, const mesh *msh, const history_sink *sink,
                    int *unsettled) {
   return history_continue(m, msh, NULL, sink, unsettled);
+}
+
+status history_motions(const model *m, const mesh *msh, int step_id, int *n,
+                       free_motion **list) {
+  status st = OK;
+  static const history_sink nobody;
+  run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[step_id]};
+  TRY(run_new(&r));
+  if (step_id == 0) TRY(start_read(&r));
+  TRY(run_motions(&r, n, list));
+done:
+  run_free(&r);
+  return st;
 }

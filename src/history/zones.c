@@ -13,7 +13,7 @@
  * inside, or with values that grow outwards, the end is put half way to the
  * next node.
  */
-#include "history/run.h"
+#include "history/loop.h"
 
 #include "base/memory.h"
 #include "base/timer.h"

@@ -2,7 +2,7 @@
  * What is derived from an equilibrium: stresses, reactions of the supports,
  * resultants of the contacts, energies and their balance.
  */
-#include "history/run.h"
+#include "run/run.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,13 +1,14 @@
 /*
- * The running state of history_run, shared by the files of this folder only.
+ * The running state of history_run, shared by the files of this folder and of
+ * src/history.
  */
-#ifndef PROTIS_HISTORY_RUN_H
-#define PROTIS_HISTORY_RUN_H
+#ifndef PROTIS_RUN_RUN_H
+#define PROTIS_RUN_RUN_H
 
 #include "accuracy/accuracy.h"
 #include "accuracy/space.h"
 #include "base/timer.h"
-#include "history/history.h"
+#include "run/state.h"
 #include "scheme/scheme.h"
 
 /* One equilibrium: displacements, contact forces, loads, and its time. */
@@ -29,7 +30,7 @@ typedef struct forms forms; /* form.c                                         */
 typedef struct friction_average friction_average; /* limit.c                 */
 typedef struct friction_zone friction_zone;       /* limit.c                 */
 typedef struct finer_path finer_path; /* path.c                               */
-typedef struct visco visco; /* strains.c                                      */
+typedef struct visco visco; /* visco.h                                        */
 
 /* A stiffness, condensed, and the contact solver that knows it. */
 typedef struct matrices {
@@ -139,13 +140,14 @@ typedef struct run {
 
 /* setup.c */
 status run_new(run *r);
+/* Rigid motions that the supports of r->step leave free, nothing solved: *list
+ * is new (memory_free), NULL if there are none. ERR_SINGULAR with the list if
+ * nothing at all resists one. */
+status run_motions(run *r, int *n, free_motion **list);
 /* Surface, stiffness, condensed matrix and solver for r->step. */
 status run_prepare(run *r);
 void run_free(run *r);
 int run_step_id(const run *r);
-/* history.c: u_0 into r->old, before the contact surface is built. */
-status run_read_start(run *r);
-
 /* All that an increment starts from and the matrices do not tell, named for an
  * archive: kept, or, after run_prepare, filled. */
 status run_keep(run *r, archive *a);
@@ -172,9 +174,15 @@ const double *strains_load(run *r);
  * e->largest at least what the strains would store if they were held. */
 void strains_work(run *r, energies *e);
 
-/* Inelastic strains of the elements whose law flows, the same file. */
+/* Inelastic strains. points.c: of the elements whose law flows. */
+int visco_flows(const run *r, int elem_id); /* strains.c                      */
+status visco_new(run *r);
+void visco_free(visco *v);                        /* accepts NULL          */
+void visco_add_strains(const run *r, double *e0); /* e0[ns*r->eigen.n]     */
+void visco_show(const run *r, state *s); /* what the outputs see              */
+/* tangent.c */
 void visco_forget(run *r); /* matrices are made anew                          */
-/* At the start of a *VISCO step: stresses of r->old. */
+/* visco.c, at the start of a *VISCO step: stresses of r->old. */
 status visco_begin_step(run *r);
 /* From r->old to r->now at time t by the integrator of the step; read
  * r->report. */
@@ -188,7 +196,6 @@ status visco_try(run *r, double t, double *error);
 status visco_level(run *r, double dt, int *level);
 status visco_energies(run *r, energies *e);
 void visco_accept(run *r);
-void visco_show(const run *r, state *s); /* what the outputs see          */
 status visco_keep(run *r, archive *a);
 
 /* increment.c: the equilibrium at time t into r->now; read r->report. */
@@ -224,9 +231,6 @@ status forms_solve(run *r);
 status forms_given(run *r, double t, double *given);
 void forms_free(forms *f); /* accepts NULL                                    */
 
-/* zones.c: the zones of r->now into r->zones. ERR_MEMORY. */
-status zones_find(run *r);
-
 /* result.c: stresses, reactions, totals, energies of r->now as far as the
  * effects call for them and "due" says. */
 status result_evaluate(run *r, int due);
@@ -243,20 +247,6 @@ void path_restart(run *r);
 void path_free(finer_path *p); /* accepts NULL                               */
 status path_keep(run *r, archive *a);
 
-/* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
-status estimate_increment(run *r);
-
-/* The theorems at r->now into r->theorems, if asked for; at the initial state,
- * which is posed in r->cp. */
-status theory_increment(run *r);
-status theory_initial(run *r);
-
-/* Whether the equilibrium jumps between r->old and r->now, at time t, into
- * r->jumps, r->jump_t, r->note. r->now is solved again if it was looked for. */
-status jump_check(run *r, double t);
-/* Other solutions than that of r->now into r->solutions, if asked
- * for. ERR_DECK: CHECK=ALL is not possible. */
-status check_increment(run *r);
 /* Energies of e as those the run starts with. */
 void result_start(const run *r, equilibrium *e);
 /* r->now becomes r->old. */

@@ -5,7 +5,7 @@
  * kept as long as surface and options stay; a law may be confined to the zone
  * that touches.
  */
-#include "history/run.h"
+#include "run/run.h"
 
 #include "base/memory.h"
 #include "base/timer.h"

@@ -2,7 +2,7 @@
  * One equilibrium: loads and obstacles at time t, condensed load, sliding
  * limit, contact solver, recovery of the interior (CPR98, problem S_i^n).
  */
-#include "history/run.h"
+#include "run/run.h"
 
 #include "base/memory.h"
 #include "base/timer.h"

@@ -3,7 +3,7 @@
  * for: with given normal forces taken out (*CONTACT FORCE), in the displacement
  * or in its change (*QUASISTATIC, FORM=).
  */
-#include "history/run.h"
+#include "run/run.h"
 
 #include "base/memory.h"
 #include "base/timer.h"

@@ -2,7 +2,7 @@
  * What a run keeps as long as the supports stay the same: elasticity of the
  * sections, contact surface, condensed stiffness, solver.
  */
-#include "history/run.h"
+#include "run/run.h"
 
 #include "base/memory.h"
 #include "base/timer.h"
@@ -561,20 +561,14 @@ done:
   return st;
 }
 
-status history_motions(const model *m, const mesh *msh, int step_id, int *n,
-                       free_motion **list) {
+status run_motions(run *r, int *n, free_motion **list) {
   status st = OK;
-  static const history_sink nobody;
-  run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[step_id]};
-  TRY(run_new(&r));
-  if (step_id == 0) TRY(run_read_start(&r));
-  load_fixed(m, msh, r.step, r.fixed);
-  if (m->effects & EFFECT_CONTACT) TRY(build_surface(&r));
-  r.d.surface = r.surface;
-  TRY(domain_free_motions(&r.d, n, list));
-  TRY(refuse_unheld(&r, *n, *list));
-  TRY(limit_average(&r));
+  load_fixed(r->m, r->msh, r->step, r->fixed);
+  if (r->m->effects & EFFECT_CONTACT) TRY(build_surface(r));
+  r->d.surface = r->surface;
+  TRY(domain_free_motions(&r->d, n, list));
+  TRY(refuse_unheld(r, *n, *list));
+  TRY(limit_average(r));
 done:
-  run_free(&r);
   return st;
 }

@@ -7,7 +7,7 @@
  * its square (Richardson); zones of stick and slip that grow lie between: 5/3
  * |d| is told.
  */
-#include "history/run.h"
+#include "run/run.h"
 
 #include "base/memory.h"
 #include "base/timer.h"

@@ -1,0 +1,49 @@
+/*
+ * The loop over increments, shared by the files of this folder only.
+ */
+#ifndef PROTIS_HISTORY_LOOP_H
+#define PROTIS_HISTORY_LOOP_H
+
+#include "history/history.h"
+#include "run/run.h"
+
+/* history.c: r->now is an increment of the run: judged, told, made r->old.
+ *   attempt       1: not cut
+ *   increment_no  within the step, from 1; 0: the start
+ *   last          1: it ends the step
+ *   cpu           of the process when it began, s                           */
+status loop_accept(run *r, int attempt, int increment_no, int last, double cpu);
+/* It is not: told with the reason. */
+status loop_reject(run *r, int attempt, int increment_no, const char *why);
+/* Why there is none: ERR_SINGULAR. */
+status loop_no_equilibrium(run *r);
+/* Between two attempts: the checkpoint that is due; ends the run if asked. */
+status loop_pause(run *r);
+
+/* start.c: u_0 into r->old, before the contact surface is built. */
+status start_read(run *r);
+/* What comes before the increments of a step. */
+status start_step(run *r);
+
+/* adaptive.c: increments of a step with a tolerance. */
+status adaptive_run(run *r);
+
+/* zones.c: the zones of r->now into r->zones. ERR_MEMORY. */
+status zones_find(run *r);
+
+/* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
+status estimate_increment(run *r);
+
+/* The theorems at r->now into r->theorems, if asked for; at the initial state,
+ * which is posed in r->cp. */
+status theory_increment(run *r);
+status theory_initial(run *r);
+
+/* Whether the equilibrium jumps between r->old and r->now, at time t, into
+ * r->jumps, r->jump_t, r->note. r->now is solved again if it was looked for. */
+status jump_check(run *r, double t);
+/* Other solutions than that of r->now into r->solutions, if asked
+ * for. ERR_DECK: CHECK=ALL is not possible. */
+status check_increment(run *r);
+
+#endif

@@ -1,0 +1,164 @@
+/*
+ * The elements whose law flows, as points of src/scheme: their laws, initial
+ * state, and what an equilibrium of the body means for them.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "run/visco.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* One kind for each section whose material has a law. */
+static status new_kinds(const run *r, flow *x, int *kind_of) {
+  status st = OK;
+  const model *m = r->m;
+  x->ns = m->ns;
+  NEW(x->kind, m->n_section);
+  for (int i = 0; i < m->n_section; ++i) {
+    const material *mat = &m->materials[m->sections[i].material_id];
+    law_elastic elastic;
+    kind_of[i] = -1;
+    if (mat->law.ops == NULL) continue;
+    law_elastic_set(mat->C, mat->type, (kinematics)m->sections[i].kin,
+                    &elastic);
+    kind_of[i] = x->n_kind++;
+    TRY(flow_new_kind(&x->kind[kind_of[i]], &mat->law, &elastic));
+  }
+done:
+  return st;
+}
+
+static status new_points(run *r, visco *v, const int *kind_of) {
+  status st = OK;
+  int n = 0, *kind_id = NULL;
+  NEW(kind_id, r->eigen.n);
+  NEW(v->place, r->eigen.n);
+  NEW(v->elem, r->eigen.n);
+  for (int k = 0; k < r->eigen.n; ++k) {
+    int kind = kind_of[r->m->elem_section[r->eigen_elem[k]]];
+    if (kind < 0) continue;
+    v->place[n] = k;
+    v->elem[n] = r->eigen_elem[k];
+    kind_id[n++] = kind;
+  }
+  TRY(flow_new_points(&v->x, n, kind_id));
+  for (int k = 0; k < n; ++k)
+    v->x.weight[k] = element_weight(&r->d, v->elem[k]);
+done:
+  memory_free(kind_id);
+  return st;
+}
+
+static int compare_id(const void *a, const void *b) {
+  const int x = *(const int *)a, y = *(const int *)b;
+  return (x > y) - (x < y);
+}
+
+/* One line of *INITIAL CONDITIONS into both states. */
+static status take_initial(const run *r, visco *v, const initial *c) {
+  status st = OK;
+  const mesh_group *g = &r->msh->group[c->group_id];
+  size_t ns = (size_t)r->m->ns, part = (size_t)c->component;
+  for (int i = 0; i < g->n_item; ++i) {
+    double value;
+    const int *found = bsearch(&g->item_id[i], v->elem, (size_t)v->x.n,
+                               sizeof *v->elem, compare_id);
+    if (found == NULL) continue;
+    size_t k = (size_t)(found - v->elem);
+    TRY(load_initial(r->m, r->msh, c, *found, &value));
+    if (c->type == INITIAL_STRAIN)
+      v->old.ei[ns * k + part] = v->now.ei[ns * k + part] = value;
+    else
+      v->old.alpha[v->x.alpha_at[k] + part] =
+          v->now.alpha[v->x.alpha_at[k] + part] = value;
+  }
+done:
+  return st;
+}
+
+static status initial_state(const run *r, visco *v) {
+  status st = OK;
+  for (int i = 0; i < r->m->n_initial; ++i) {
+    const initial *c = &r->m->initials[i];
+    if (c->type == INITIAL_STRAIN || c->type == INITIAL_INTERNAL)
+      TRY(take_initial(r, v, c));
+  }
+done:
+  return st;
+}
+
+status visco_new(run *r) {
+  status st = OK;
+  int *kind_of = NULL;
+  visco *v = NULL;
+  timer_enter(STAGE_INELASTIC);
+  NEW(v, 1);
+  r->visco = v;
+  NEW(kind_of, r->m->n_section);
+  TRY(new_kinds(r, &v->x, kind_of));
+  TRY(new_points(r, v, kind_of));
+  TRY(flow_state_new(&v->x, &v->old));
+  TRY(flow_state_new(&v->x, &v->now));
+  TRY(initial_state(r, v));
+  TRY(scheme_work_new(&v->work));
+  NEW(v->stress, (size_t)r->m->ns * (size_t)r->eigen.n);
+done:
+  timer_leave(STAGE_INELASTIC);
+  memory_free(kind_of);
+  return st;
+}
+
+void visco_free(visco *v) {
+  if (v == NULL) return;
+  for (int i = 0; i < SLOTS; ++i) matrices_free(&v->slot[i]);
+  matrices_free(&v->fresh);
+  flow_state_free(&v->old);
+  flow_state_free(&v->now);
+  flow_state_free(&v->middle);
+  memory_free(v->fine);
+  scheme_work_free(v->work);
+  flow_free(&v->x);
+  memory_free(v->place);
+  memory_free(v->elem);
+  memory_free(v->E);
+  memory_free(v->stress);
+  memory_free(v->section_id);
+  memory_free(v->kin);
+  memory_free(v->thickness);
+  memory_free(v);
+}
+
+void visco_add_strains(const run *r, double *e0) {
+  const visco *v = r->visco;
+  for (int k = 0; k < v->x.n; ++k)
+    for (size_t i = 0; i < (size_t)r->m->ns; ++i)
+      e0[visco_at(r, v->place[k]) + i] += v->now.ei[visco_at(r, k) + i];
+}
+
+void visco_temperatures(const run *r, const equilibrium *e, flow_state *s) {
+  const visco *v = r->visco;
+  for (int k = 0; k < v->x.n && e->temperature != NULL; ++k)
+    s->temperature[k] = e->temperature[v->elem[k]];
+}
+
+void visco_strains(run *r, const equilibrium *e, flow_state *s) {
+  visco *v = r->visco;
+  const eigenstrain thermal = {r->eigen.n, r->eigen_elem, e->thermal};
+  eigen_stress(&r->d, &thermal, e->u, v->stress, NULL);
+  for (int k = 0; k < v->x.n; ++k) {
+    const double *E = v->x.kind[v->x.kind_id[k]].elastic.E;
+    double elastic[6];
+    memcpy(s->e + visco_at(r, k), v->stress + visco_at(r, v->place[k]),
+           visco_at(r, 1) * sizeof *s->e);
+    for (size_t i = 0; i < visco_at(r, 1); ++i)
+      elastic[i] = s->e[visco_at(r, k) + i] - s->ei[visco_at(r, k) + i];
+    tensor_product(r->m->ns, E, elastic, s->sigma + visco_at(r, k));
+  }
+}
+
+void visco_show(const run *r, state *s) {
+  s->flow = &r->visco->x;
+  s->flow_elem = r->visco->elem;
+  s->inelastic = &r->visco->now;
+}

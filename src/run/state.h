@@ -1,0 +1,164 @@
+/*
+ * What the loop over increments hands to the outputs: an accepted increment,
+ * the facts before the first one, and who is told.
+ */
+#ifndef PROTIS_RUN_STATE_H
+#define PROTIS_RUN_STATE_H
+
+#include "accuracy/accuracy.h"
+#include "accuracy/solutions.h"
+#include "fem/fem.h"
+#include "model/model.h"
+#include "scheme/scheme.h"
+#include "start/start.h"
+#include "theory/theory.h"
+
+/* Forces and moments of one contact: of the obstacle on the body. */
+typedef struct contact_total {
+  double force[3];  /* N, global components                                */
+  double moment[3]; /* N m, about the origin (2-D: moment[2] only)         */
+  double normal, tangential[2]; /* sums in the contact frame, N               */
+  double area; /* closed area, m2                                     */
+  int n_open, n_slip, n_stick;
+} contact_total;
+
+/* A zone of one kind of one contact: in the plane and in axisymmetry a piece of
+ * the contact line in the order of the tangent t, in 3-D all of that kind. */
+typedef struct contact_zone {
+  int contact_id;
+  int kind;      /* contact_status                                           */
+  int direction; /* sign of the slip along t; 0: none, no friction, 3-D      */
+  double from[2], to[2], length; /* ends between the nodes, m; 3-D: 0        */
+  double area; /* m2; times thickness, or around the axis                    */
+} contact_zone;
+
+/* One contact as a loop of friction: force (in the totals) against motion. */
+typedef struct contact_loop {
+  double way[2];       /* mean way of the obstacle since time 0, tangents, m  */
+  double mean_u_t[2];  /* mean tangential displacement of the nodes, m        */
+  double angle;        /* of the obstacle, rad                                */
+  double friction;     /* J, dissipated so far, trapezoidal                  */
+  double friction_end; /* J, the same with the limits at the increments' end */
+  double start_end;    /* J, friction_end at the start of the step           */
+} contact_loop;
+
+typedef struct energies {
+  double strain;   /* J, now                                              */
+  double external; /* J, work of loads and prescribed displacements so far */
+  double friction; /* J, dissipated so far, trapezoidal                   */
+  double friction_end; /* J, dissipated so far, limit of the increment's end;
+                          a static problem starts it anew, from the origin  */
+  double normal;       /* J, work of the normal contact forces so far: moving
+                          obstacles, and by the trapezoidal rule gaps that open
+                          or close within an increment                        */
+  double thermal;      /* J, work of the stresses on thermal strain so far    */
+  double inelastic;    /* J, work of the stresses on inelastic strain so far,
+                          trapezoidal                                         */
+  double dissipated;   /* J, of that lost so far by the law, in the quadrature
+                          of the integrator                                   */
+  double stored;       /* J, of that kept by internal variables, now          */
+  double start;   /* J, strain energy the run starts with                     */
+  double defect;  /* J, external + normal - friction - thermal - inelastic -
+                     (strain - start)                                         */
+  double largest; /* J, largest magnitude of the six so far: the scale of
+                     the defect, also once all is unloaded                    */
+} energies;
+
+/* How far the contact solver may be from the solution. */
+typedef struct error_bound {
+  int asked;
+  double energy;   /* J, energy of the error at most; NAN: no bound           */
+  double relative; /* -, of the energy norm of the solution; NAN: no bound, or
+                      a solution without deformation                         */
+  double cpu;      /* s, spent so far on finding it                           */
+  double rate;     /* contraction of the sliding limit, -; 0: none            */
+  const char *why; /* there is no bound; or NULL                              */
+} error_bound;
+
+/* An estimate of an error at the end of an increment. */
+typedef struct error_share {
+  int asked;
+  double relative; /* -, of the energy norm of the solution; NAN: unknown     */
+  double cpu;      /* s, spent so far on estimating                           */
+  const char *why; /* why it is zero or unknown; or NULL                      */
+} error_share;
+
+/* One accepted increment. Arrays are borrowed and live until the next one. */
+typedef struct state {
+  int step_no, increment_no; /* from 1, increments counted within the step    */
+  int total_no; /* increments since the start, from 1                  */
+  int attempt;  /* 1: not cut                                          */
+  double t, dt; /* end of the increment, s                             */
+  int end_of_step;
+  const double *u; /* [dim*n_node] m                                      */
+  const double *strain, *stress; /* [ns*n_elem] -, Pa; NULL if no output asks */
+  const double *temperature; /* [n_elem] or NULL: no thermal strain           */
+  const flow *flow;          /* elements whose law flows; NULL: none          */
+  const int *flow_elem;      /* [flow->n] ascending                           */
+  const flow_state *inelastic; /* their strains and internal variables        */
+  const double *reaction; /* [dim*n_node] N, of the supports; 0 where free    */
+  const contact_problem *problem; /* what was solved; NULL: no contact, LCP   */
+  const contact_surface *surface; /* NULL: no contact. A problem from a file
+                                has numbers 1 to n and no geometry (x NULL) */
+  const double *uc, *rc; /* [dim*n] contact frame, m, N                     */
+  const double *gap;     /* [n] gap left open: gap0 - u_n, m                */
+  const double *slip;    /* [(dim-1)*n] slip of the increment, of a static
+                            problem from the origin, m                      */
+  const double *limit;   /* [n] sliding limit g, N; NULL: frictionless      */
+  const contact_status *contact; /* [n]                                       */
+  const contact_total *totals; /* [n_contact]                                 */
+  const double *distance; /* [n] all slip so far, m; NULL: frictionless       */
+  const double *torque;   /* [n_contact] about its axis, N m; NULL: no axis   */
+  const contact_loop *loops; /* [n_contact]; NULL: no table asks             */
+  int n_zone;
+  const contact_zone *zones; /* [n_zone]; NULL: no table asks now            */
+  int n_open, n_slip, n_stick;
+  energies energy;
+  solver_report report;
+  error_bound error;                  /* of the contact solver                */
+  error_share mesh_error, time_error; /* of the mesh, of the increments       */
+  const double *elem_error; /* [n_elem] share of each element in the error of
+                               the mesh, -, relative as that; or NULL         */
+  int jumps;     /* 1: no path of equilibria leads to this one                */
+  double jump_t; /* s, where the equilibrium jumps then                       */
+  theory_report theory; /* the theorems at work                              */
+  const solution_set *solutions; /* of CHECK=; NULL: not asked for            */
+  const char *solver_log;
+  const char *note; /* whole lines about what jumps, "" or NULL: nothing      */
+  double cpu;       /* of this increment, s                                */
+  int settled;      /* 1: reached its tolerance                            */
+} state;
+
+/* Facts of the run before the first increment, for the listing. */
+typedef struct setup_facts {
+  condense_info info;
+  double condition; /* -                                                   */
+  int floating;     /* contact alone holds a body                          */
+  int n_contact_node;
+  double average_entries; /* of the nonlocal averages                         */
+} setup_facts;
+
+/* The state of a run, for an archive. */
+typedef struct run_memory {
+  void *run;
+  status (*keep)(void *run, archive *a);
+  int step_no; /* the one in progress, from 1                               */
+} run_memory;
+
+/* Who is told what. Any function may be NULL. */
+typedef struct history_sink {
+  void *ctx;
+  status (*ready)(void *ctx, const setup_facts *facts,
+                  const contact_surface *surface);
+  /* *INITIAL CONDITIONS, TYPE=DISPLACEMENT: u_0 and its defect. */
+  status (*start)(void *ctx, const start_report *report);
+  status (*increment)(void *ctx, const state *s);
+  void (*iteration)(void *ctx, const solver_step *s); /* for .cvg             */
+  /* An attempt that failed and is cut or given up. */
+  status (*rejected)(void *ctx, const state *s, const char *why);
+  /* What the run can go on from, between two attempts: where *RESTART asks for
+   * it, and at an interruption. memory.keep names all its arrays. */
+  status (*checkpoint)(void *ctx, const run_memory *memory);
+} history_sink;
+
+#endif

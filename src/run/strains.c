@@ -1,0 +1,152 @@
+/*
+ * Strains that carry no stress, e0 = e_th of the temperature + e^i of the
+ * inelastic laws, sigma = E (e - e0): kept for the elements that can have any,
+ * and for them alone.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "run/run.h"
+
+#include <math.h>
+#include <string.h>
+
+static size_t at(const run *r, int k) { return (size_t)r->m->ns * (size_t)k; }
+
+const material *run_material(const run *r, int elem_id) {
+  const model *m = r->m;
+  return &m->materials[m->sections[m->elem_section[elem_id]].material_id];
+}
+
+int visco_flows(const run *r, int elem_id) {
+  return (r->m->effects & EFFECT_INELASTIC) &&
+         run_material(r, elem_id)->law.ops != NULL;
+}
+
+static int expands(const run *r, int elem_id) {
+  return (r->m->effects & EFFECT_THERMAL) &&
+         run_material(r, elem_id)->expand.given;
+}
+
+static int has_strains(const run *r, int elem_id) {
+  return expands(r, elem_id) || visco_flows(r, elem_id);
+}
+
+static status new_strains(const run *r, equilibrium *e) {
+  status st = OK;
+  size_t n = (size_t)r->m->ns * (size_t)r->eigen.n;
+  if (r->temperature0 != NULL) {
+    NEW(e->temperature, r->msh->n_elem);
+    memcpy(e->temperature, r->temperature0,
+           (size_t)r->msh->n_elem * sizeof *e->temperature);
+  }
+  NEW(e->thermal, n);
+  NEW(e->e0, n);
+  NEW(e->sigma, n);
+done:
+  return st;
+}
+
+static status list_elements(run *r) {
+  status st = OK;
+  int n = 0;
+  for (int e = 0; e < r->msh->n_elem; ++e) r->eigen.n += has_strains(r, e);
+  NEW(r->eigen_elem, r->eigen.n);
+  for (int e = 0; e < r->msh->n_elem; ++e)
+    if (has_strains(r, e)) r->eigen_elem[n++] = e;
+  r->eigen.elem_id = r->eigen_elem;
+  NEW(r->eigen_load, r->n_dof);
+done:
+  return st;
+}
+
+status strains_new(run *r) {
+  status st = OK;
+  if (!(r->m->effects & (EFFECT_THERMAL | EFFECT_INELASTIC))) return OK;
+  TRY(list_elements(r));
+  if (r->m->effects & EFFECT_THERMAL) {
+    NEW(r->temperature0, r->msh->n_elem);
+    TRY(load_temperature_initial(r->m, r->msh, r->temperature0));
+  }
+  TRY(new_strains(r, &r->old));
+  TRY(new_strains(r, &r->now));
+  if (r->m->effects & EFFECT_INELASTIC) TRY(visco_new(r));
+  r->d.eigen = &r->eigen;
+done:
+  return st;
+}
+
+void strains_free(run *r) {
+  visco_free(r->visco);
+  memory_free(r->eigen_elem);
+  memory_free(r->temperature0);
+  memory_free(r->eigen_load);
+}
+
+/* Temperatures and thermal strains of r->now. */
+static status heat(run *r) {
+  status st = OK;
+  equilibrium *now = &r->now;
+  size_t ns = (size_t)r->m->ns;
+  timer_enter(STAGE_THERMAL);
+  TRY(load_temperature(r->m, r->msh, r->step, now->t, r->temperature0,
+                       now->temperature));
+  for (int k = 0; k < r->eigen.n; ++k) {
+    int e = r->eigen_elem[k];
+    if (expands(r, e))
+      expansion_strain(&run_material(r, e)->expand, now->temperature[e],
+                       r->temperature0[e], now->thermal + ns * (size_t)k);
+  }
+done:
+  timer_leave(STAGE_THERMAL);
+  return st;
+}
+
+void strains_collect(run *r) {
+  equilibrium *now = &r->now;
+  memcpy(now->e0, now->thermal,
+         (size_t)r->m->ns * (size_t)r->eigen.n * sizeof *now->e0);
+  if (r->visco != NULL) visco_add_strains(r, now->e0);
+  r->eigen.e0 = now->e0;
+}
+
+status strains_update(run *r) {
+  status st = OK;
+  if (r->eigen.n == 0) return OK;
+  if (r->temperature0 != NULL) TRY(heat(r));
+  strains_collect(r);
+done:
+  return st;
+}
+
+const double *strains_load(run *r) {
+  if (r->eigen.n == 0) return r->now.F;
+  memcpy(r->eigen_load, r->now.F, r->n_dof * sizeof *r->eigen_load);
+  eigen_force(&r->d, &r->eigen, r->eigen_load);
+  return r->eigen_load;
+}
+
+void strains_work(run *r, energies *e) {
+  const equilibrium *a = &r->old, *b = &r->now;
+  size_t ns = (size_t)r->m->ns;
+  double scale = 0.0;
+  if (r->eigen.n == 0) return;
+  timer_enter(STAGE_ENERGY);
+  eigen_stress(&r->d, &r->eigen, b->u, NULL, b->sigma);
+  for (int k = 0; k < r->eigen.n; ++k) {
+    double w = element_weight(&r->d, r->eigen_elem[k]);
+    double thermal = 0.0, all = 0.0, held[6];
+    for (size_t i = ns * (size_t)k; i < ns * (size_t)(k + 1); ++i) {
+      double sigma = 0.5 * (a->sigma[i] + b->sigma[i]);
+      thermal += sigma * (b->thermal[i] - a->thermal[i]);
+      all += sigma * (b->e0[i] - a->e0[i]);
+    }
+    e->thermal += w * thermal;
+    e->inelastic += w * (all - thermal);
+    tensor_product(
+        r->m->ns, r->E + at(r, r->m->ns * r->m->elem_section[r->eigen_elem[k]]),
+        b->e0 + at(r, k), held);
+    scale += 0.5 * w * tensor_dot(r->m->ns, b->e0 + at(r, k), held);
+  }
+  e->largest = fmax(e->largest, scale);
+  timer_leave(STAGE_ENERGY);
+}

@@ -1,0 +1,196 @@
+/*
+ * Equilibria of the body with the linear laws that the implicit integrators
+ * ask for: their matrices, of which the constant ones are kept, and loads.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "run/visco.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void visco_forget(run *r) {
+  visco *v = r->visco;
+  if (v == NULL) return;
+  for (int i = 0; i < SLOTS; ++i) matrices_free(&v->slot[i]);
+  matrices_free(&v->fresh);
+}
+
+static status factor(const domain *d, matrices *m) {
+  status st = OK;
+  matrices keep = *m;
+  matrices_free(m);
+  if (keep.c == NULL) { /* as it was before a restart                         */
+    m->from = keep.from;
+    memcpy(m->group, keep.group, sizeof m->group);
+  }
+  TRY(stiffness_assemble(d, &m->k));
+  TRY(condense(m->k, d, &m->c));
+done:
+  return st;
+}
+
+/* Sections as they are, with the tangents of their kinds. */
+static status constant_domain(run *r, const flow_tangent *law, domain *d) {
+  status st = OK;
+  visco *v = r->visco;
+  size_t square = visco_at(r, r->m->ns);
+  int kind = 0;
+  if (v->E == NULL) NEW(v->E, square * (size_t)(r->m->n_section + v->x.n));
+  memcpy(v->E, r->E, square * (size_t)r->m->n_section * sizeof *v->E);
+  for (int i = 0; i < r->m->n_section; ++i) {
+    const material *mat = &r->m->materials[r->m->sections[i].material_id];
+    if (mat->law.ops == NULL) continue;
+    memcpy(v->E + square * (size_t)i, law->D + square * (size_t)kind++,
+           square * sizeof *v->E);
+  }
+  *d = r->d;
+  d->E = v->E;
+done:
+  return st;
+}
+
+/* Each point a section of its own. */
+static status new_sections(run *r) {
+  status st = OK;
+  visco *v = r->visco;
+  int n_section = r->m->n_section, n = n_section + v->x.n;
+  NEW(v->section_id, r->msh->n_elem);
+  NEW(v->kin, n);
+  NEW(v->thickness, n);
+  memcpy(v->section_id, r->m->elem_section,
+         (size_t)r->msh->n_elem * sizeof *v->section_id);
+  memcpy(v->kin, r->kin, (size_t)n_section * sizeof *v->kin);
+  memcpy(v->thickness, r->thickness, (size_t)n_section * sizeof *v->thickness);
+  for (int k = 0; k < v->x.n; ++k) {
+    int e = v->elem[k], own = n_section + k;
+    v->kin[own] = r->kin[v->section_id[e]];
+    v->thickness[own] = r->thickness[v->section_id[e]];
+    v->section_id[e] = own;
+  }
+done:
+  return st;
+}
+
+static status fresh_domain(run *r, const flow_tangent *law, domain *d) {
+  status st = OK;
+  visco *v = r->visco;
+  size_t square = visco_at(r, r->m->ns), n_section = (size_t)r->m->n_section;
+  if (v->section_id == NULL) TRY(new_sections(r));
+  if (v->E == NULL) NEW(v->E, square * (n_section + (size_t)v->x.n));
+  memcpy(v->E, r->E, square * n_section * sizeof *v->E);
+  memcpy(v->E + square * n_section, law->D,
+         square * (size_t)v->x.n * sizeof *v->E);
+  *d = r->d;
+  d->section_id = v->section_id;
+  d->kin = v->kin;
+  d->thickness = v->thickness;
+  d->E = v->E;
+  d->C = NULL;
+done:
+  return st;
+}
+
+/* Those of before a restart anew, which are not counted again. */
+static status factor_again(const domain *d, matrices *m) {
+  stage_cost before[STAGE_COUNT] = {{0}};
+  for (int i = 0; i < STAGE_COUNT; ++i)
+    before[i].calls = timer_cost((stage)i).calls;
+  status st = factor(d, m);
+  timer_resume(before);
+  return st;
+}
+
+/* The matrices of a tangent: those of its key if they are still there. */
+static status find_matrices(run *r, const flow_tangent *law, matrices **out) {
+  status st = OK;
+  visco *v = r->visco;
+  matrices *m = &v->slot[0];
+  domain d;
+  *out = law->elastic ? &r->elastic : &v->fresh;
+  if (law->elastic) goto done;
+  if (law->key == 0.0) {
+    TRY(fresh_domain(r, law, &d));
+    r->c = NULL;
+    TRY(factor(&d, &v->fresh));
+    goto done;
+  }
+  for (int i = 0; i < SLOTS; ++i) {
+    if (v->slot[i].key == law->key) m = &v->slot[i];
+    if (m->key != law->key && v->slot[i].used < m->used) m = &v->slot[i];
+  }
+  if (m->key != law->key) m->from = NULL;
+  if (m->key != law->key || m->c == NULL) {
+    TRY(constant_domain(r, law, &d));
+    if (r->c == m->c) r->c = NULL;
+    TRY(m->key == law->key ? factor_again(&d, m) : factor(&d, m));
+    m->key = law->key;
+  }
+  m->used = ++v->clock;
+  *out = m;
+done:
+  return st;
+}
+
+/* r->eigen_load: the loads with what sigma = sigma_k + D (e - e_k) and the
+ * thermal strains add to them. */
+static const double *tangent_load(run *r, const flow_tangent *law) {
+  visco *v = r->visco;
+  const double *thermal = r->now.thermal;
+  int ns = r->m->ns;
+  for (int k = 0, point = 0; k < r->eigen.n; ++k) {
+    int e = r->eigen_elem[k];
+    if (point == v->x.n || v->place[point] != k) {
+      tensor_product(ns, r->E + visco_at(r, ns * r->m->elem_section[e]),
+                     thermal + visco_at(r, k), v->stress + visco_at(r, k));
+      continue;
+    }
+    int kind = v->x.kind_id[point];
+    const double *D =
+        law->elastic
+            ? v->x.kind[kind].elastic.E
+            : law->D + visco_at(r, ns * (law->key > 0.0 ? kind : point));
+    double e_k[6];
+    for (size_t i = 0; i < visco_at(r, 1); ++i)
+      e_k[i] = law->e[visco_at(r, point) + i] + thermal[visco_at(r, k) + i];
+    tensor_product(ns, D, e_k, v->stress + visco_at(r, k));
+    for (size_t i = 0; i < visco_at(r, 1); ++i)
+      v->stress[visco_at(r, k) + i] -= law->sigma[visco_at(r, point) + i];
+    ++point;
+  }
+  memcpy(r->eigen_load, r->now.F, r->n_dof * sizeof *r->eigen_load);
+  eigen_add_force(&r->d, r->eigen.n, r->eigen_elem, v->stress, r->eigen_load);
+  return r->eigen_load;
+}
+
+status tangent_solve(run *r, const flow_tangent *law) {
+  status st = OK;
+  matrices *m = NULL;
+  TRY(find_matrices(r, law, &m));
+  TRY(run_use(r, m));
+  TRY(increment_equilibrium(r, tangent_load(r, law)));
+done:
+  return st;
+}
+
+status tangent_keep(run *r, archive *a) {
+  status st = OK;
+  visco *v = r->visco;
+  char name[20];
+  double known = r->c == r->elastic.c ? r->elastic.key : RUN_OTHER_KEY;
+  for (int i = 0; i < SLOTS; ++i) {
+    matrices *m = &v->slot[i];
+    if (m->c != NULL && m->c == r->c) known = m->key;
+    snprintf(name, sizeof name, "slot%d", i);
+    archive_enter(a, name);
+    TRY(archive_reals(a, "key", &m->key, 1));
+    TRY(archive_bytes(a, "used", &m->used, sizeof m->used));
+    TRY(matrices_keep(m, a, "solver"));
+    archive_leave(a);
+  }
+  TRY(archive_reals(a, "known_key", &known, 1));
+  if (archive_reads(a)) r->known_key = known;
+  TRY(archive_bytes(a, "clock", &v->clock, sizeof v->clock));
+done:
+  return st;
+}

@@ -1,0 +1,267 @@
+/*
+ * Inelastic strains over an increment: what the integrators of src/scheme ask
+ * of the body, their steps and what limits them (CPR98 3.14-3.20: each stress
+ * of a given e^i is one contact problem, with the slip counted from the last
+ * accepted increment).
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "run/visco.h"
+
+#include <math.h>
+#include <string.h>
+
+static status equilibrium_of(void *ctx, flow_state *s, int *settled) {
+  status st = OK;
+  run *r = ctx;
+  timer_leave(STAGE_INELASTIC);
+  st = run_use(r, &r->elastic);
+  if (st == OK) st = increment_solve(r, s->t);
+  timer_enter(STAGE_INELASTIC);
+  TRY(st);
+  visco_temperatures(r, &r->now, s);
+  visco_strains(r, &r->now, s);
+  *settled = r->report.outcome > 0;
+done:
+  return st;
+}
+
+static status begin(void *ctx, flow_state *s) {
+  run *r = ctx;
+  timer_leave(STAGE_INELASTIC);
+  status st = increment_begin(r, s->t);
+  timer_enter(STAGE_INELASTIC);
+  if (st == OK) visco_temperatures(r, &r->now, s);
+  return st;
+}
+
+static status linear(void *ctx, const flow_tangent *law, flow_state *s,
+                     int *settled) {
+  run *r = ctx;
+  timer_leave(STAGE_INELASTIC);
+  status st = tangent_solve(r, law);
+  timer_enter(STAGE_INELASTIC);
+  if (st == OK) visco_strains(r, &r->now, s);
+  *settled = r->report.outcome > 0;
+  return st;
+}
+
+status visco_begin_step(run *r) {
+  visco *v = r->visco;
+  if (v == NULL) return OK;
+  timer_enter(STAGE_INELASTIC);
+  visco_temperatures(r, &r->old, &v->old);
+  visco_strains(r, &r->old, &v->old);
+  v->old.t = r->old.t;
+  timer_leave(STAGE_INELASTIC);
+  return OK;
+}
+
+/* Length of the step to t; one that differs by the rounding of the times only
+ * from one before is the same, and so are its matrices. */
+static double step_length(run *r, double t) {
+  visco *v = r->visco;
+  double dt = t - r->old.t, rounding = 4e-16 * (fabs(t) + fabs(r->old.t));
+  for (int i = 0; i < SLOTS; ++i)
+    if (fabs(v->length[i] - dt) <= rounding) return v->length[i];
+  v->length[v->n_length++ % SLOTS] = dt;
+  return dt;
+}
+
+static status advance(run *r, double t) {
+  status st = OK;
+  visco *v = r->visco;
+  const flow_body body = {r, equilibrium_of, begin, linear};
+  scheme_step p = {.t = t,
+                   .dt = step_length(r, t),
+                   .theta = r->step->theta,
+                   .initial = r->step->initial,
+                   .tol = r->step->solver.tol};
+  v->result = (scheme_result){.settled = 1, .error = -1.0};
+  v->old.t = r->old.t;
+  const scheme_call call = {&v->x,   &p,      &body,     v->work,
+                            &v->old, &v->now, &v->result};
+  TRY(r->step->integrator->advance(&call));
+  v->now.t = t;
+  strains_collect(r);
+  if (!v->result.settled && r->report.outcome > 0)
+    r->report.outcome = STOPPED_ITERATIONS;
+done:
+  return st;
+}
+
+status visco_advance(run *r, double t) {
+  if (r->visco == NULL) return increment_solve(r, t);
+  timer_enter(STAGE_INELASTIC);
+  status st = advance(r, t);
+  timer_leave(STAGE_INELASTIC);
+  return st;
+}
+
+/* What an increment starts from, of the contact. */
+typedef struct start_point {
+  double *uc, *rc, *motion; /* [m] m, N, m                                   */
+} start_point;
+
+static status start_point_new(const run *r, start_point *p) {
+  status st = OK;
+  size_t bytes = (size_t)r->n_c * sizeof *p->uc;
+  NEW(p->uc, r->n_c);
+  NEW(p->rc, r->n_c);
+  NEW(p->motion, r->n_c);
+  if (r->n_c == 0) goto done;
+  memcpy(p->uc, r->now.uc, bytes);
+  memcpy(p->rc, r->now.rc, bytes);
+  memcpy(p->motion, r->now.motion, bytes);
+done:
+  return st;
+}
+
+/* From r->now, which becomes the accepted state for the while, to t. */
+static status second_half(run *r, double t) {
+  status st = OK;
+  visco *v = r->visco;
+  equilibrium keep = r->old;
+  start_point p = {0};
+  if (v->middle.e == NULL) TRY(flow_state_new(&v->x, &v->middle));
+  TRY(start_point_new(r, &p));
+  flow_state_copy(&v->x, &v->now, &v->middle);
+  flow_state first = v->old;
+  r->old.t = r->now.t;
+  r->old.uc = p.uc;
+  r->old.rc = p.rc;
+  r->old.motion = p.motion;
+  v->old = v->middle;
+  st = advance(r, t);
+  v->middle = v->old;
+  v->old = first;
+  r->old = keep;
+done:
+  memory_free(p.uc);
+  memory_free(p.rc);
+  memory_free(p.motion);
+  return st;
+}
+
+/* Two halves into v->fine[ns*n]; r->report tells if they were found. */
+static status two_halves(run *r, double t) {
+  status st = OK;
+  visco *v = r->visco;
+  size_t n = visco_at(r, v->x.n);
+  if (v->fine == NULL) NEW(v->fine, n);
+  r->beside = 1;
+  TRY(advance(r, 0.5 * (r->old.t + t)));
+  if (r->report.outcome <= 0) goto done;
+  TRY(second_half(r, t));
+  memcpy(v->fine, v->now.ei, n * sizeof *v->fine);
+done:
+  r->beside = 0;
+  return st;
+}
+
+/* The difference to the halves, with Richardson's factor. */
+static double halves_error(const run *r) {
+  visco *v = r->visco;
+  double power =
+      ldexp(1.0, r->step->theta == 0.5 && r->step->integrator->has_theta
+                     ? 2
+                     : r->step->integrator->order);
+  size_t n = visco_at(r, v->x.n);
+  for (size_t i = 0; i < n; ++i) v->fine[i] -= v->now.ei[i];
+  return power / (power - 1.0) * flow_norm(&v->x, v->fine);
+}
+
+static status try_step(run *r, double t, double *error) {
+  status st = OK;
+  visco *v = r->visco;
+  int estimates = r->step->integrator->estimates;
+  *error = HUGE_VAL;
+  if (!estimates) TRY(two_halves(r, t));
+  if (!estimates && r->report.outcome <= 0) goto done;
+  TRY(advance(r, t));
+  if (r->report.outcome <= 0) goto done;
+  *error = estimates ? v->result.error : halves_error(r);
+  double scale = fmax(v->largest, flow_elastic_norm(&v->x, &v->now));
+  if (*error > 0.0) *error /= scale;
+done:
+  return st;
+}
+
+status visco_try(run *r, double t, double *error) {
+  timer_enter(STAGE_INELASTIC);
+  status st = try_step(r, t, error);
+  timer_leave(STAGE_INELASTIC);
+  return st;
+}
+
+status visco_level(run *r, double dt, int *level) {
+  status st = OK;
+  visco *v = r->visco;
+  double rate;
+  *level = 0;
+  if (v == NULL || r->step->kind != STEP_VISCO || !step_has_limit(r->step))
+    return OK;
+  timer_enter(STAGE_INELASTIC);
+  TRY(flow_fastest(&v->x, &v->old, &rate));
+  *level = step_level(r->m, r->step, r->old.t, dt, rate,
+                      v->told != r->step && !flow_is_constant(&v->x));
+  v->told = r->step;
+  if (*level < 0)
+    FAIL(ERR_DECK, "step %d: the increment is not stable", run_step_id(r) + 1);
+done:
+  timer_leave(STAGE_INELASTIC);
+  return st;
+}
+
+status visco_energies(run *r, energies *e) {
+  status st = OK;
+  visco *v = r->visco;
+  timer_enter(STAGE_INELASTIC);
+  e->dissipated += v->result.dissipated;
+  TRY(flow_stored(&v->x, &v->now, &e->stored));
+done:
+  timer_leave(STAGE_INELASTIC);
+  return st;
+}
+
+void visco_accept(run *r) {
+  visco *v = r->visco;
+  if (r->step->kind != STEP_VISCO) return;
+  v->result.dissipated = 0.0;
+  timer_enter(STAGE_INELASTIC);
+  v->largest = fmax(v->largest, flow_elastic_norm(&v->x, &v->now));
+  flow_state_copy(&v->x, &v->now, &v->old);
+  timer_leave(STAGE_INELASTIC);
+}
+
+static status keep_flow(const flow *x, flow_state *s, archive *a,
+                        const char *group) {
+  status st = OK;
+  size_t n = (size_t)x->ns * (size_t)x->n;
+  archive_enter(a, group);
+  TRY(archive_reals(a, "t", &s->t, 1));
+  TRY(archive_reals(a, "e", s->e, n));
+  TRY(archive_reals(a, "ei", s->ei, n));
+  TRY(archive_reals(a, "sigma", s->sigma, n));
+  TRY(archive_reals(a, "alpha", s->alpha, x->alpha_at[x->n]));
+  TRY(archive_reals(a, "temperature", s->temperature, (size_t)x->n));
+done:
+  archive_leave(a);
+  return st;
+}
+
+status visco_keep(run *r, archive *a) {
+  status st = OK;
+  visco *v = r->visco;
+  int told = v->told == r->step;
+  archive_enter(a, "visco");
+  TRY(keep_flow(&v->x, &v->old, a, "old"));
+  TRY(keep_flow(&v->x, &v->now, a, "now"));
+  TRY(archive_reals(a, "largest", &v->largest, 1));
+  TRY(archive_ints(a, "told", &told, 1));
+  v->told = told ? r->step : NULL;
+  TRY(tangent_keep(r, a));
+done:
+  archive_leave(a);
+  return st;
+}

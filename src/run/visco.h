@@ -1,0 +1,52 @@
+/*
+ * Elements whose law flows, in the running state; shared by points.c,
+ * tangent.c and visco.c only.
+ */
+#ifndef PROTIS_RUN_VISCO_H
+#define PROTIS_RUN_VISCO_H
+
+#include "run/run.h"
+
+enum { SLOTS = 4 };
+
+struct visco {
+  flow x;
+  int *place; /* [x.n] of a point in r->eigen                                */
+  int *elem;  /* [x.n]                                                       */
+  flow_state old, now;
+  flow_state middle; /* between two halves of a step                         */
+  double *fine;      /* [ns*x.n] e^i after them                              */
+  scheme_work *work;
+  scheme_result result;
+  matrices slot[SLOTS]; /* constant tangents; the last used are kept         */
+  matrices fresh;       /* a tangent of its own                              */
+  long clock;
+  double length[SLOTS]; /* of the last different steps, s                     */
+  unsigned n_length;
+  double *E;       /* [ns*ns*(n_section + x.n)] of a tangent                  */
+  double *stress;  /* [ns*r->eigen.n] Pa                                      */
+  int *section_id; /* [n_elem] sections of their own for the points     */
+  kinematics *kin; /* [n_section + x.n]                                 */
+  double *thickness; /* the same                                          */
+  double largest;    /* largest norm of the elastic strains so far        */
+  const step *told;  /* step whose ringing has been told                  */
+};
+
+/* Where the components of item k start among [ns*n]. */
+static inline size_t visco_at(const run *r, int k) {
+  return (size_t)r->m->ns * (size_t)k;
+}
+
+/* points.c: temperatures of the points of an equilibrium into s. */
+void visco_temperatures(const run *r, const equilibrium *e, flow_state *s);
+/* Strains, less the thermal ones, of an equilibrium into s->e; stresses. */
+void visco_strains(run *r, const equilibrium *e, flow_state *s);
+
+/* tangent.c: equilibrium of r->now with the linear law of the points, with a
+ * matrix of that tangent; read r->report. */
+status tangent_solve(run *r, const flow_tangent *law);
+/* The keys of the constant tangents, which are made anew when they are used,
+ * and which of the matrices is in use. */
+status tangent_keep(run *r, archive *a);
+
+#endif
