@@ -124,6 +124,7 @@ regression: $(program) $(regr)
 # Hard cases: the matrix of scenes (SCENE=name: those alone), every other
 # program of tests/stability, and the long run of the conformance test.
 PROBLEMS ?= 10000
+SEED     ?= 0
 scenes   := $(out)/tests/stability/scenes
 .PHONY: scenes
 scenes: $(program) $(scenes)
@@ -131,7 +132,7 @@ scenes: $(program) $(scenes)
 
 stability: $(program) $(stab) $(out)/tests/unit/conformance scenes
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) PROTIS_PROBLEMS=$(PROBLEMS) \
-	  tools/run_tests $(filter-out $(program) $(scenes) scenes,$^)
+	  PROTIS_SEED=$(SEED) tools/run_tests $(filter-out $(program) $(scenes) scenes,$^)
 
 layers:
 	$(Q)tools/check_layers src

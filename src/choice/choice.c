@@ -6,7 +6,9 @@
 
 #include "base/memory.h"
 #include "base/timer.h"
+#include "choice/polish.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -282,6 +284,19 @@ static int known_answer(const contact_problem *cp, double tol, double *u,
   return 0;
 }
 
+/* The last touch, within the iterations allowed. */
+static status polish(const contact_solver *s, const contact_problem *cp,
+                     double *u, double *r, solver_report *rep) {
+  status st = OK;
+  int sweeps = 0, asked = s->choice.max_iter;
+  int most = asked > 0 ? asked - rep->iterations : INT_MAX;
+  TRY(polish_slip(cp, s->choice.tol, most, u, r, &sweeps));
+  rep->iterations += sweeps;
+  if (sweeps > 0) rep->residual = contact_residual(cp, u, r);
+done:
+  return st;
+}
+
 status contact_solve(contact_solver *s, const contact_problem *cp,
                      const solver_listener *listener, double *u, double *r,
                      solver_report *rep) {
@@ -298,6 +313,7 @@ status contact_solve(contact_solver *s, const contact_problem *cp,
     TRY(attempt_run(s, cp, &a, listener, u, r, rep));
     attempt_judge(cp, s->choice.tol, u, r, rep);
   }
+  if (rep->outcome == CONVERGED) TRY(polish(s, cp, u, r, rep));
 done:
   rep->cpu = timer_cpu() - start;
   return st;

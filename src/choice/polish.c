@@ -1,0 +1,85 @@
+/* Last touch of an answer in space (polish.h). */
+#include "choice/polish.h"
+
+#include "base/memory.h"
+#include "solver/local.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SWEEPS = 20 };
+
+/* Stiffness in the tangent plane, N/m, and what turns a force into the unit of
+ * the scale: 1, or m/N where the compliance is given. */
+static double tangent_stiffness(const contact_problem *cp, int node_id,
+                                double *unit) {
+  const double *M = cp->A != NULL ? cp->A : cp->W;
+  double sum = 0.0;
+  for (int k = 1; k < cp->dim; ++k) {
+    size_t dof = (size_t)(node_id * cp->dim + k);
+    sum += M[dof * (size_t)cp->m + dof] / (cp->dim - 1);
+  }
+  *unit = cp->A != NULL ? 1.0 : sum;
+  return cp->A != NULL ? sum : sum > 0.0 ? 1.0 / sum : 0.0;
+}
+
+/* Of one node, N. */
+static double misdirection(const contact_problem *cp, const double *u,
+                           const double *r, int node_id, double c) {
+  double s[2], slip = 0.0, force = 0.0, apart = 0.0;
+  int first = node_id * 3 + 1;
+  for (int k = 0; k < 2; ++k) {
+    if (contact_held(cp, first + k)) return 0.0;
+    s[k] = u[first + k] - contact_stick(cp, first + k);
+    slip = hypot(slip, s[k]);
+    force = hypot(force, r[first + k]);
+  }
+  if (!(slip > 0.0)) return 0.0;
+  for (int k = 0; k < 2; ++k)
+    apart = hypot(apart, r[first + k] + force * (s[k] / slip));
+  return fmin(c * slip, apart);
+}
+
+double slip_misdirection(const contact_problem *cp, const double *u,
+                         const double *r) {
+  double worst = 0.0;
+  if (cp->dim != 3 || cp->g0 == NULL) return 0.0;
+  for (int i = 0; i < cp->n; ++i) {
+    double unit, c = tangent_stiffness(cp, i, &unit);
+    worst = fmax(worst, unit * misdirection(cp, u, r, i, c));
+  }
+  double scale = worst > 0.0 ? contact_scale(cp) : 0.0;
+  return scale > 0.0 ? worst / scale : 0.0;
+}
+
+status polish_slip(const contact_problem *cp, double tol, int most, double *u,
+                   double *r, int *sweeps) {
+  status st = OK;
+  relaxation s = {.cp = cp, .omega = 1.0};
+  size_t bytes = (size_t)cp->m * sizeof *u;
+  double least = slip_misdirection(cp, u, r);
+  *sweeps = 0;
+  if (!(least > tol) || most <= 0) goto done;
+  NEW(s.u, cp->m);
+  NEW(s.r, cp->m);
+  TRY(node_blocks_new(cp, &s.blocks));
+  memcpy(s.u, u, bytes);
+  memcpy(s.r, r, bytes);
+  relaxation_start(&s);
+  relaxation_refresh(&s);
+  while (least > tol && *sweeps < SWEEPS && *sweeps < most) {
+    relaxation_sweep(&s, 0);
+    relaxation_refresh(&s);
+    ++*sweeps;
+    double now = slip_misdirection(cp, s.u, s.r);
+    if (!(now < least) || !(contact_residual(cp, s.u, s.r) <= tol)) continue;
+    least = now;
+    memcpy(u, s.u, bytes);
+    memcpy(r, s.r, bytes);
+  }
+done:
+  node_blocks_free(s.blocks);
+  memory_free(s.u);
+  memory_free(s.r);
+  return st;
+}

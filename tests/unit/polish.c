@@ -1,0 +1,102 @@
+/* The last touch of an answer: slip too short for the residual to see. */
+#include "choice/polish.h"
+
+#include "support/solver_rows.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double TOL = 1e-11;   /* residual of the answers             */
+static const double SHORT = 1e-8;  /* slip of the first node, of |u| ~ 1  */
+static const double ASIDE = 1e-13; /* of u, far below TOL                 */
+static const double ANGLE = 0.6;   /* angle of its slip, rad              */
+enum { NODES = 6, M = 3 * NODES };
+
+/* A random problem with an answer made up: all nodes touch with a pressure of
+ * 1, the first slips by SHORT under the angle ANGLE, the others stick. */
+static contact_case short_slip(double *u, double *r) {
+  contact_case c = case_any(3, NODES, 0.5, 0, 11);
+  for (int i = 0; i < M; ++i) {
+    int node_id = i / 3, k = i % 3;
+    double slips = node_id == 0 ? 1.0 : 0.2;
+    double e = k == 1 ? cos(ANGLE) : sin(ANGLE);
+    u[i] = k == 0 ? c.gap[node_id] : 0.0;
+    if (k > 0 && node_id == 0) u[i] = SHORT * e;
+    r[i] = k == 0 ? -1.0 : -0.5 * slips * e;
+    if (k > 0) c.ut0[2 * node_id + k - 1] = 0.0;
+  }
+  contact_product(M, c.A, u, c.f);
+  for (int i = 0; i < M; ++i) c.f[i] -= r[i];
+  return c;
+}
+
+static double angle_of(const double *a) { return atan2(a[2], a[1]); }
+
+/* The slip is off by ASIDE across its direction, SHORT/ASIDE of a radian, at a
+ * residual below the tolerance: the touch finds the direction. */
+START_TEST(short_slip_gets_its_direction) {
+  double u[M], r[M];
+  contact_case c = short_slip(u, r);
+  int sweeps = 0;
+  u[1] -= ASIDE * sin(ANGLE);
+  u[2] += ASIDE * cos(ANGLE);
+  contact_reaction(&c.cp, u, r);
+  ck_assert_double_le(contact_residual(&c.cp, u, r), 0.1 * TOL);
+  ck_assert_double_gt(fabs(angle_of(u) - ANGLE), 0.9 * ASIDE / SHORT);
+  ck_assert_double_gt(slip_misdirection(&c.cp, u, r), 10 * TOL);
+  ck_assert_int_eq(polish_slip(&c.cp, TOL, 0, u, r, &sweeps), OK);
+  ck_assert_int_eq(sweeps, 0);
+  ck_assert_int_eq(polish_slip(&c.cp, TOL, 20, u, r, &sweeps), OK);
+  ck_assert_int_ge(sweeps, 1);
+  ck_assert_double_le(slip_misdirection(&c.cp, u, r), TOL);
+  ck_assert_double_le(contact_residual(&c.cp, u, r), TOL);
+  double size = hypot(r[1], r[2]);
+  ck_assert_double_le(fabs(u[1] * r[2] - u[2] * r[1]), 1e-10 * SHORT * size);
+  case_free(&c);
+}
+END_TEST
+
+/* An exact answer is left as it is, in the plane any. */
+START_TEST(exact_answer_is_left_alone) {
+  double u[M], r[M], kept[M];
+  contact_case c = short_slip(u, r), plane = case_any(2, NODES, 0.5, 0, 3);
+  int sweeps = 1;
+  memcpy(kept, u, sizeof u);
+  ck_assert_double_le(slip_misdirection(&c.cp, u, r), TOL);
+  ck_assert_int_eq(polish_slip(&c.cp, TOL, 20, u, r, &sweeps), OK);
+  ck_assert_int_eq(sweeps, 0);
+  ck_assert_int_eq(memcmp(kept, u, sizeof u), 0);
+  ck_assert(slip_misdirection(&plane.cp, plane.u, plane.r) == 0.0);
+  case_free(&c);
+  case_free(&plane);
+}
+END_TEST
+
+/* What every row hands out, in both forms; the compliance form rounds u to
+ * 2^-52 of the largest and the direction to that over the slip. */
+START_TEST(rows_hand_out_the_direction) {
+  double u[M], r[M], W[M * M], q[M];
+  contact_case c = short_slip(u, r);
+  const solver_ops *ops;
+  ck_assert(case_inverse(M, c.A, W));
+  contact_product(M, W, c.f, q);
+  for (int form = 0; form < 2; ++form) {
+    c.cp.W = form == 0 ? NULL : W;
+    c.cp.A = form == 0 ? c.A : NULL;
+    c.cp.f = form == 0 ? c.f : q;
+    for (int i = 0; solver_row(i, &ops); ++i) {
+      case_cold(&c);
+      solver_report rep = solve_by(ops, &c, TOL, c.u, c.r);
+      ck_assert_msg(rep.outcome == CONVERGED, "%s", row_name(ops));
+      double bad = slip_misdirection(&c.cp, c.u, c.r);
+      ck_assert_msg(bad <= (form == 0 ? TOL : 4 * 0x1p-52 / SHORT), "%s: %g",
+                    row_name(ops), bad);
+    }
+  }
+  case_free(&c);
+}
+END_TEST
+
+UNIT_MAIN("polish", short_slip_gets_its_direction, exact_answer_is_left_alone,
+          rows_hand_out_the_direction)
