@@ -50,8 +50,7 @@ static void find_regions(space_recovery *s, int n_section) {
   }
 }
 
-/* inv(E) over the components that carry stress; plane stress leaves zz out. */
-static status invert_elasticity(const domain *d, int section, double *S) {
+status space_compliance(const domain *d, int section, double *S) {
   status st = OK;
   int ns = d->ns, n = 0, active[MAX_NS];
   const double *E = d->E + (size_t)(ns * ns) * (size_t)section;
@@ -104,7 +103,7 @@ status space_recovery_new(const domain *d, space_recovery **out) {
   NEW(s->recovered, (size_t)d->ns * (size_t)m->n_node);
   find_regions(s, n_section);
   for (int i = 0; i < n_section; ++i)
-    TRY(invert_elasticity(d, i, s->compliance + square * i));
+    TRY(space_compliance(d, i, s->compliance + square * i));
   list_neighbours(s);
   *out = s;
   s = NULL;

@@ -20,6 +20,10 @@ typedef struct space_error {
   double relative; /* error / sqrt(norm^2 + error^2), -; 0 without stress     */
 } space_error;
 
+/* S[ns*ns] = inv(E) of a section over the components that carry stress, 1/Pa,
+ * else zero: plane stress leaves zz out. */
+status space_compliance(const domain *d, int section, double *S);
+
 /* Patches of elements for the domain (borrowed); *out is new. ERR_MEMORY. */
 status space_recovery_new(const domain *d, space_recovery **out);
 void space_recovery_free(space_recovery *s); /* accepts NULL                */

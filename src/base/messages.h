@@ -253,7 +253,10 @@
     "The figures are those of a tube under pressure on a mesh of equal "     \
     "diagonals. Use several mesh sizes and compare, or, in 2-D, a regular "  \
     "mesh of alternating diagonals (Transfinite Surface{n} Alternated), "    \
-    "which does not lock there. Pressures suffer more than displacements.")
+    "which does not lock there. Pressures suffer more than displacements.")  \
+  X(2056, ERROR, "closed form not complete",                                 \
+    "*REFERENCE compares whole fields: give all components of the "          \
+    "displacement, or of the stress (0 where there is none), or neither.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

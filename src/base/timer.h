@@ -32,6 +32,7 @@
   X(THERMAL,     "thermal strains")                        \
   X(ZONES,       "zones of stick and slip")                \
   X(ESTIMATE,    "error estimates")                        \
+  X(REFERENCE,   "closed form")                            \
   X(CHECK,       "second solutions, jumps")                \
   X(THEORY,      "theorems")                               \
   X(TABLES,      "tables")                                 \

@@ -86,10 +86,23 @@ done:
   return st;
 }
 
+static status find_truth(run *r) {
+  status st = OK;
+  double cpu = timer_cpu();
+  const answer_fields a = {r->now.t, r->now.u, r->stress, r->now.rc};
+  r->truth.asked = (r->m->effects & EFFECT_REFERENCE) != 0;
+  if (!r->truth.asked) return OK;
+  TRY(truth_find(&r->m->ref, &r->d, &a, &r->truth));
+  r->truth.cpu += timer_cpu() - cpu;
+done:
+  return st;
+}
+
 status estimate_increment(run *r) {
   status st = OK;
   TRY(estimate_solver(r));
   TRY(estimate_mesh(r));
+  TRY(find_truth(r));
 done:
   return st;
 }

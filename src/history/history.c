@@ -79,6 +79,7 @@ static state make_state(run *r, int attempt, int increment_no) {
              .solutions = r->step->check != CHECK_NONE ? &r->solutions : NULL,
              .mesh_error = r->mesh_error,
              .time_error = r->time_error,
+             .truth = r->truth,
              .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
              .solver_log = contact_solver_log(r->solver),
              .settled = is_settled(r)};
@@ -154,7 +155,7 @@ done:
 
 status loop_reject(run *r, int attempt, int increment_no, const char *why) {
   r->error = (error_bound){0};
-  r->mesh_error.asked = r->time_error.asked = 0;
+  r->mesh_error.asked = r->time_error.asked = r->truth.asked = 0;
   r->theorems = (theory_report){0};
   r->jumps = 0;
   state s = make_state(r, attempt, increment_no);

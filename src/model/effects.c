@@ -400,6 +400,14 @@ static void reason_theory(const model *m, char *text, size_t size) {
     snprintf(text, size, "*ACCURACY, THEORY=YES");
 }
 
+static int has_reference(const model *m) { return m->ref.n > 0; }
+static void reason_reference(const model *m, char *text, size_t size) {
+  if (m->ref.n > 0)
+    snprintf(text, size, "*REFERENCE, line %d", m->ref.at.line_no);
+  else
+    snprintf(text, size, "no *REFERENCE card");
+}
+
 /* When an effect is on, and what its line in the plan says. */
 static const struct {
   int (*is_on)(const model *m);
@@ -420,6 +428,7 @@ static const struct {
     [EFFECT_BIT_MESH_ERROR] = {has_mesh_error, reason_mesh_error},
     [EFFECT_BIT_TIME_ERROR] = {has_time_error, reason_time_error},
     [EFFECT_BIT_ESTIMATES] = {has_estimates, reason_estimates},
+    [EFFECT_BIT_REFERENCE] = {has_reference, reason_reference},
     [EFFECT_BIT_THEORY] = {has_theory, reason_theory}};
 
 void model_find_effects(model *m) {

@@ -172,6 +172,7 @@ status apply_elastic(reading *r);
 status apply_density(reading *r);
 status apply_expansion(reading *r);
 status apply_initial(reading *r);
+status apply_reference(reading *r);
 status apply_section(reading *r);
 status apply_amplitude(reading *r);
 status apply_inelastic(reading *r);
@@ -242,6 +243,9 @@ status model_finish_problem(reading *r);
 status model_resolve(model *m, int lost);
 /* 1 if the deck has such a card.                                            */
 int has_card(const model *m, const char *name);
+/* Place of a component of *REFERENCE in "value", -1: there is none of that name
+ * in such a model. */
+int reference_place(const char *name, int dim, int axisymmetric);
 /* effects.c: which effects the deck calls for, into m->effects. */
 void model_find_effects(model *m);
 

@@ -303,6 +303,11 @@ const keyword keyword_table[] = {
    "TABLE=",
    "given normal force in the place of the unilateral condition (CPR98 3.19): "
    "p times the area of the node; the node may leave or enter the obstacle"},
+  {"REFERENCE", IN_MODEL, NO_OPTIONS, NULL, apply_reference, 1, ANY,
+   "u_x, u_y, u_z (all); stress_xx, _yy, _zz, _xy, _yz, _zx (all), in "
+   "axisymmetry u_r, u_z, stress_rr, _zz, _tt, _rz; pressure: name, number or "
+   "expression of x y z t",
+   "the solution in closed form: the true error stands beside the estimates"},
   {"STEP", IN_MODEL, step_options, sizeof(name_param), NULL, apply_step, 0, 0,
    "", "opens a step; loads stay from step to step until changed"},
   {"STATIC", IN_STEP, NO_OPTIONS, NULL, apply_static, 0, 1,
@@ -344,7 +349,6 @@ const keyword keyword_table[] = {
   {"END STEP", IN_STEP, NO_OPTIONS, NULL, apply_end_step, 0, 0,
    "", "closes the step"},
   RESERVED("EFFECTS", "which effects are simulated"),
-  RESERVED("REFERENCE", "closed form to compare with"),
   {NULL, 0, NULL, 0, NULL, NULL, 0, 0, NULL, NULL}};
 /* clang-format on */
 

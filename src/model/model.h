@@ -224,6 +224,28 @@ typedef struct step {
   place solver_at;
 } step;
 
+/* *REFERENCE: the solution in closed form. Parts of "value"; components as in
+ * u and in the stresses (axisymmetry: r, z; rr, zz, tt, rz). */
+enum {
+  REFERENCE_U,
+  REFERENCE_STRESS = 3,
+  REFERENCE_PRESSURE = 9,
+  REFERENCE_SIZE
+};
+typedef struct reference_line {
+  const char *name; /* u_x, stress_xx, pressure, ...                          */
+  quantity value;
+  place at;
+} reference_line;
+typedef struct closed_form {
+  int n; /* 0: none                                                           */
+  reference_line line[REFERENCE_SIZE];
+  place at;
+  /* Set by model_check. */
+  int has_u, has_stress, has_pressure;
+  quantity value[REFERENCE_SIZE];
+} closed_form;
+
 typedef struct accuracy_target { /* *ACCURACY, TARGET=                       */
   double percent;             /* of the energy norm; 0: none                  */
   double max_cpu, max_memory; /* s, MB; 0: no limit                           */
@@ -263,6 +285,7 @@ typedef struct model {
   value_table first_step; /* 0 to 1 over the first step; arrays owned         */
   step *steps;
   accuracy_target target;
+  closed_form ref;
   unsigned effects;  /* bits EFFECT_*, set by model_check                    */
   int dim, ns;       /* from the mesh                                        */
   int *elem_section; /* [n_elem] section of each element                     */
@@ -292,6 +315,7 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
   X(MESH_ERROR, "error of mesh")                                             \
   X(TIME_ERROR, "error of steps")                                            \
   X(ESTIMATES, "error of solver")                                            \
+  X(REFERENCE, "closed form")                                            \
   X(THEORY,    "theory checks")                                              \
   X(MESH,      "finite elements")
 /* clang-format on */

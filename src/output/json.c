@@ -165,6 +165,8 @@ static void write_accuracy(json *w, const job *j) {
   json_count(w, "tolerance_missed", run->n_unsettled);
   json_real(w, "residual_worst", run->residual_worst);
   write_budget(w, j);
+  if (j->m->effects & EFFECT_REFERENCE)
+    json_real(w, "effectivity", job_effectivity(j));
   json_real(w, "energy_defect_worst", run->defect_worst);
   if (run->facts_known) json_real(w, "condition", run->facts.condition);
   json_close(w, '}');
@@ -295,6 +297,13 @@ static void write_increment(json *w, const model *m,
     json_real(w, "mesh_error_percent", 100 * s->mesh_error.relative);
   if (s->time_error.asked)
     json_real(w, "time_error_percent", 100 * s->time_error.relative);
+  if (s->truth.asked) {
+    json_real(w, "true_error_percent", 100 * s->truth.energy);
+    json_real(w, "true_displacement_error_percent",
+              100 * s->truth.displacement);
+    json_real(w, "true_stress_error_percent", 100 * s->truth.stress);
+    json_real(w, "true_pressure_error_percent", 100 * s->truth.pressure);
+  }
   if (s->error.asked) {
     json_real(w, "solver_error_percent", 100 * s->error.relative);
     json_real(w, "solver_error_energy", s->error.energy);

@@ -184,6 +184,26 @@ static void print_share(const char *of, const error_share *e, FILE *f) {
           e->why != NULL ? e->why : "");
 }
 
+/* Against *REFERENCE, as far as it goes. */
+static void print_truth(const state *s, FILE *f) {
+  char text[NUMBER_SIZE];
+  const true_error *e = &s->truth;
+  const struct {
+    const char *text;
+    double value;
+  } part[] = {{"energy norm", e->energy},
+              {"displacement", e->displacement},
+              {"stress", e->stress},
+              {"contact pressure", e->pressure}};
+  int n = 0;
+  if (!e->asked) return;
+  for (size_t i = 0; i < sizeof part / sizeof *part; ++i)
+    if (!isnan(part[i].value))
+      fprintf(f, "%s%s %s %%", n++ > 0 ? ", " : "  true error: ", part[i].text,
+              text_number(text, 100 * part[i].value, 2));
+  fputs(n > 0 ? "\n" : "", f);
+}
+
 static void print_solver(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE];
   const solver_report *r = &s->report;
@@ -422,6 +442,7 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
   }
   print_share("mesh", &s->mesh_error, lst->f);
   print_share("steps", &s->time_error, lst->f);
+  print_truth(s, lst->f);
   if (!j->m->has_problem) print_energies(j, &v, lst->f);
   return text_check(lst);
 }
@@ -472,6 +493,10 @@ static error_share mesh_share(const increment_summary *i) {
 static error_share time_share(const increment_summary *i) {
   return i->time_error;
 }
+static error_share true_share(const increment_summary *i) {
+  int asked = i->truth.asked && !isnan(i->truth.energy);
+  return (error_share){asked, i->truth.energy, i->truth.cpu, NULL};
+}
 static error_share solver_share(const increment_summary *i) {
   const error_bound *e = &i->error;
   return (error_share){e->asked, e->relative, e->cpu, e->why};
@@ -499,7 +524,8 @@ static const struct {
 } budget_table[BUDGET_ROWS] = {
   {"mesh",   "mesh",   mesh_share,   STAGES(mesh_stages)},
   {"steps",  "time",   time_share,   STAGES(time_stages)},
-  {"solver", "solver", solver_share, STAGES(solver_stages)}};
+  {"solver", "solver", solver_share, STAGES(solver_stages)},
+  {"true, by *REFERENCE", "true", true_share, NULL, 0}};
 /* clang-format on */
 
 int job_budget(const job *j, budget_row rows[BUDGET_ROWS]) {
@@ -515,6 +541,17 @@ int job_budget(const job *j, budget_row rows[BUDGET_ROWS]) {
   return n;
 }
 
+double job_effectivity(const job *j) {
+  budget_row rows[BUDGET_ROWS];
+  int n = job_budget(j, rows);
+  double sum = 0;
+  if (n < 2 || strcmp(rows[0].json, "mesh") != 0 ||
+      strcmp(rows[n - 1].json, "true") != 0)
+    return NAN;
+  for (int i = 0; i < n - 1; ++i) sum += rows[i].last;
+  return rows[n - 1].last > 0 ? sum / rows[n - 1].last : NAN;
+}
+
 /* What was reached, what it cost, and what it cost to know it. */
 static void print_budget(const job *j, FILE *f) {
   char last[NUMBER_SIZE], worst[NUMBER_SIZE];
@@ -528,9 +565,16 @@ static void print_budget(const job *j, FILE *f) {
     fprintf(f, "  %-26s %12s %12s", rows[i].name,
             text_number(last, rows[i].last, 2),
             text_number(worst, rows[i].worst, 2));
-    if (cost) fprintf(f, " %13.3f %15.3f", rows[i].reached, rows[i].estimated);
+    if (cost && rows[i].reached > 0)
+      fprintf(f, " %13.3f", rows[i].reached);
+    else if (cost)
+      fprintf(f, " %13s", "");
+    if (cost) fprintf(f, " %15.3f", rows[i].estimated);
     fputc('\n', f);
   }
+  double effectivity = job_effectivity(j);
+  if (!isnan(effectivity))
+    fprintf(f, "  estimated over true error: %.2f\n", effectivity);
 }
 
 static void print_pass(const job *j, int no, const pass_row *r, FILE *f) {

@@ -51,6 +51,7 @@ typedef struct increment_summary {
   int checked, n_solution;   /* by CHECK= of *SOLVER                          */
   solution_facts *solutions; /* [n_solution] owned                            */
   error_share mesh_error, time_error;
+  true_error truth;
   theory_report theory; /* its contacts are owned                             */
 } increment_summary;
 
@@ -79,7 +80,7 @@ typedef struct budget_row {
   double last, worst; /* %, of the energy norm; NAN: unknown                  */
   double reached, estimated; /* s                                             */
 } budget_row;
-enum { BUDGET_ROWS = 3 };
+enum { BUDGET_ROWS = 4 };
 
 typedef struct job {
   const model *m;
@@ -90,6 +91,8 @@ typedef struct job {
 
 /* The estimates asked for; how many rows. */
 int job_budget(const job *j, budget_row rows[BUDGET_ROWS]);
+/* Sum of the estimates over the true error, last increment; NAN: unknown. */
+double job_effectivity(const job *j);
 
 /* Sizes of model and equations for listing and JSON, NULL ends; the answer
  * counts those of the model, which come first. */

@@ -197,7 +197,7 @@ status result_evaluate(run *r, int due) {
   status st = OK;
   unsigned effects = r->m->effects;
   if ((effects & EFFECT_REACTION) || ((effects & EFFECT_STRESS) && due) ||
-      r->step->mesh_error) {
+      r->step->mesh_error || r->m->ref.has_stress) {
     domain_stress(&r->d, r->now.u, r->strain, r->stress);
     if (effects & EFFECT_REACTION) find_reactions(r);
   }

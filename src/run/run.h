@@ -114,6 +114,7 @@ typedef struct run {
   solver_report report;
   error_bound error;
   error_share mesh_error, time_error;
+  true_error truth;
   space_recovery *recovery; /* NULL until the error of the mesh is estimated  */
   double *elem_error;       /* [n_elem] or NULL                              */
   finer_path *path;         /* NULL until the error of the steps is estimated */

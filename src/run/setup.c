@@ -111,7 +111,8 @@ status run_new(run *r) {
   TRY(strains_new(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
   if (r->m->effects & EFFECT_MESH_ERROR) NEW(r->elem_error, r->msh->n_elem);
-  if (r->m->effects & (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR))
+  if (r->m->effects &
+      (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR | EFFECT_REFERENCE))
     NEW(r->stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   if (r->m->effects & EFFECT_STRESS)
     NEW(r->strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);

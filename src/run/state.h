@@ -12,6 +12,7 @@
 #include "scheme/scheme.h"
 #include "start/start.h"
 #include "theory/theory.h"
+#include "truth/truth.h"
 
 /* Forces and moments of one contact: of the obstacle on the body. */
 typedef struct contact_total {
@@ -117,6 +118,7 @@ typedef struct state {
   solver_report report;
   error_bound error;                  /* of the contact solver                */
   error_share mesh_error, time_error; /* of the mesh, of the increments       */
+  true_error truth; /* against *REFERENCE                                     */
   const double *elem_error; /* [n_elem] share of each element in the error of
                                the mesh, -, relative as that; or NULL         */
   int jumps;     /* 1: no path of equilibria leads to this one                */

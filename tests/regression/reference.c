@@ -1,0 +1,163 @@
+/*
+ * *REFERENCE: the true error against closed forms. Uniform stress, which the
+ * elements have exactly: no error against itself, 1/5 in every norm against
+ * 5/4 of it. A block without lateral strain against a field of second order:
+ * integrals of polynomials, below. Hertz's half plane, whose stresses the
+ * example has in closed form: the estimate beside the true error.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The last figure of that name in JOB.json; NAN: null. */
+static double told(const job *j, const char *name) {
+  char wanted[80], *json = job_file(j, "json"), *at = json, *last = NULL;
+  double value = NAN;
+  snprintf(wanted, sizeof wanted, "\"%s\": ", name);
+  while ((at = strstr(at, wanted)) != NULL) last = at += strlen(wanted);
+  ck_assert_msg(last != NULL, "%s is not told", name);
+  sscanf(last, "%lf", &value);
+  free(json);
+  return value / 100;
+}
+
+typedef struct scene {
+  const char *geo, *section, *nu, *reference, *supports;
+} scene;
+
+static job run_scene(const scene *s, const char *factor) {
+  char path[80];
+  job j = job_begin("truth");
+  snprintf(path, sizeof path, "tests/regression/mesh/%s", s->geo);
+  job_copy(&j, path);
+  job_write(&j, "truth.inp",
+            "*PARAMETER\nF = %s\nN = 3\n*MESH, FILE=%s\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., %s\n*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*REFERENCE\n%s*STEP\n*STATIC\n*BOUNDARY\n%s"
+            "*DSLOAD\nTOP, P, 10.\n*ACCURACY, MESH=YES\n*END STEP\n",
+            factor, s->geo, s->nu, s->section, s->reference, s->supports);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* nu = 0.3, E = 1000, pressed by 10. */
+static const scene uniform[] = {
+    {"square.geo", "", "0.3",
+     "u_x, \"F*3.9E-3*x\"\nu_y, \"-F*9.1E-3*y\"\npressure, \"F*10\"\n"
+     "stress_xx, 0\nstress_yy, \"-F*10\"\nstress_zz, \"-F*3\"\nstress_xy, 0\n",
+     "LEFT, 1\n"},
+    {"square.geo", ", TYPE=CPS3", "0.3",
+     "u_x, \"F*3E-3*x\"\nu_y, \"-F*1E-2*y\"\npressure, \"F*10\"\n"
+     "stress_xx, 0\nstress_yy, \"-F*10\"\nstress_zz, 0\nstress_xy, 0\n",
+     "LEFT, 1\n"},
+    {"square.geo", ", TYPE=CAX3", "0.3",
+     "u_r, \"F*3E-3*x\"\nu_z, \"-F*1E-2*y\"\npressure, \"F*10\"\n"
+     "stress_rr, 0\nstress_zz, \"-F*10\"\nstress_tt, 0\nstress_rz, 0\n",
+     "LEFT, 1\n"},
+    {"cube.geo", "", "0.3",
+     "u_x, \"F*3E-3*x\"\nu_y, \"F*3E-3*y\"\nu_z, \"-F*1E-2*z\"\n"
+     "pressure, \"F*10\"\nstress_xx, 0\nstress_yy, 0\nstress_zz, \"-F*10\"\n"
+     "stress_xy, 0\nstress_yz, 0\nstress_zx, 0\n",
+     "LEFT, 1\nFRONT, 2\n"}};
+static const char *const norms[] = {
+    "true_error_percent", "true_displacement_error_percent",
+    "true_stress_error_percent", "true_pressure_error_percent"};
+
+START_TEST(uniform_stress_has_the_error_of_its_factor) {
+  for (size_t k = 0; k < sizeof uniform / sizeof *uniform; ++k) {
+    job exact = run_scene(&uniform[k], "1"),
+        other = run_scene(&uniform[k], "1.25");
+    for (int i = 0; i < 4; ++i) {
+      ck_assert_double_le(told(&exact, norms[i]), 1e-9);
+      ck_assert_double_eq_tol(told(&other, norms[i]), 0.2, 1e-9);
+    }
+    job_end(&exact);
+    job_end(&other);
+  }
+}
+END_TEST
+
+/*
+ * u_y = -0.01 y is found; 0.001 y^2 more is the closed form, over 0 < y < 1:
+ * energy: sqrt(4/3 0.001^2 / (0.01^2 - 2 0.01 0.001 + 4/3 0.001^2)), and the
+ * same of the stress; displacement: sqrt(0.001^2/5 / (0.01^2/3 - 0.01 0.001/2 +
+ * 0.001^2/5)).
+ */
+static void check_quadratic(const char *reference, double displacement,
+                            double stress) {
+  const scene s = {"square.geo", "", "0", reference, "LEFT, 1\n"};
+  const double a = 0.01, b = 0.001;
+  job j = run_scene(&s, "1");
+  double energy = sqrt(4 * b * b / 3 / (a * a - 2 * a * b + 4 * b * b / 3));
+  ck_assert_double_eq_tol(told(&j, norms[0]), energy, 1e-9);
+  if (displacement > 0)
+    ck_assert_double_eq_tol(
+        told(&j, norms[1]),
+        sqrt(b * b / 5 / (a * a / 3 - a * b / 2 + b * b / 5)), 1e-9);
+  else
+    ck_assert(isnan(told(&j, norms[1])));
+  if (stress > 0)
+    ck_assert_double_eq_tol(told(&j, norms[2]), energy, 1e-9);
+  else
+    ck_assert(isnan(told(&j, norms[2])));
+  ck_assert(isnan(told(&j, norms[3])));
+  job_end(&j);
+}
+
+START_TEST(integrals_of_a_quadratic_field) {
+  check_quadratic("u_x, 0\nu_y, \"-0.01*y + 0.001*y^2\"\n", 1, 0);
+  check_quadratic(
+      "stress_xx, 0\nstress_yy, \"-10 + 2*y\"\nstress_zz, 0\n"
+      "stress_xy, 0\n",
+      0, 1);
+}
+END_TEST
+
+START_TEST(estimate_beside_the_true_error_of_hertz) {
+  double before = 1;
+  for (int n = 4; n <= 8; n *= 2) {
+    char words[40];
+    job j = job_begin("hertz");
+    snprintf(words, sizeof words, "-D N=%d", n);
+    ck_assert_int_eq(job_run_deck(&j, "input/hertz_line/hertz_exact", words),
+                     0);
+    double effectivity = 100 * told(&j, "effectivity");
+    double error = told(&j, norms[0]),
+           estimate = told(&j, "mesh_error_percent");
+    ck_assert_double_eq_tol(effectivity, estimate / error, 1e-3);
+    ck_assert_msg(effectivity > 0.9 && effectivity < 1.1, "%g", effectivity);
+    ck_assert_double_lt(error, 0.6 * before);
+    before = error;
+    char *lst = job_file(&j, "lst");
+    ck_assert_ptr_nonnull(strstr(lst, "  true error: energy norm "));
+    ck_assert_ptr_nonnull(strstr(lst, "  estimated over true error: "));
+    free(lst);
+    job_end(&j);
+  }
+}
+END_TEST
+
+START_TEST(value_that_is_not_finite_is_an_error) {
+  job j = job_begin("truth");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "truth.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*REFERENCE\n"
+            "u_x, \"log(x - 0.5)\"\nu_y, 0\n*STEP\n*STATIC\n*BOUNDARY\n"
+            "BOTTOM, 1, 2\n*DSLOAD\nTOP, P, 1.\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 2);
+  ck_assert_ptr_nonnull(strstr(j.errors, "*REFERENCE: a value is not finite"));
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("reference", uniform_stress_has_the_error_of_its_factor,
+          integrals_of_a_quadratic_field,
+          estimate_beside_the_true_error_of_hertz,
+          value_that_is_not_finite_is_an_error)
