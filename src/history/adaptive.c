@@ -40,6 +40,7 @@ static status attempt_adapted(run *r) {
   TRY(visco_level(r, t - r->old.t, &deeper));
   if (deeper > 0) t = next_end(r, ldexp(t - r->old.t, -deeper));
   tried = t - r->old.t;
+  TRY(path_try(r, t));
   TRY(visco_try(r, t, &error));
   int settled = r->report.outcome > 0;
   r->missed = settled && error > s->tolerance;

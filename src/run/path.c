@@ -1,13 +1,20 @@
 /*
- * Error of the steps: the path of slip depends on the increments. Beside the
- * run goes a second one of half the increments, contact forces and slip its
- * own; the two meet at the end of each increment, where the loads are the same,
- * so that their difference d has the energy d' A d of the condensed stiffness.
- * The error of the run is 2 |d| if it falls with the increment, 4/3 |d| if with
- * its square (Richardson); zones of stick and slip that grow lie between: 5/3
- * |d| is told.
+ * Error of the steps: the path of slip and the inelastic strains depend on the
+ * increments. Beside the run goes a second one of half the increments, contact
+ * forces, slip and inelastic strains its own; the two meet at the end of each
+ * increment, where the loads are the same.
+ *
+ * Without inelastic strains their difference d has the energy d' A d of the
+ * condensed stiffness. With them the stresses differ by E (B du - de^i), whose
+ * energy counts against that of the stresses, and the strains by B du, against
+ * the strains: at constant stress a body creeps all the same. The larger of the
+ * two relative differences is told.
+ *
+ * The error of the run is that difference times 2^p/(2^p - 1) for an integrator
+ * of order p (Richardson), where nothing rubs; zones of stick and slip that
+ * grow lie between order 1 and 2: 5/3, or more for an integrator of order 1.
  */
-#include "run/run.h"
+#include "run/visco.h"
 
 #include "base/memory.h"
 #include "base/timer.h"
@@ -15,24 +22,31 @@
 #include <math.h>
 #include <string.h>
 
-static const double EXTRAPOLATION = 5.0 / 3.0; /* -                           */
+static const double EXTRAPOLATION = 5.0 / 3.0; /* -, of growing zones         */
+static const double STRAIGHT = 10.0; /* -, of the tolerance of the solver     */
 
 typedef struct waypoint { /* what an increment starts from, of one path       */
   double t;
   double *uc, *rc, *motion; /* [m] m, N, m                                   */
+  flow_state flow;          /* of the points whose law flows; empty: none     */
 } waypoint;
 
 struct finer_path {
-  int lost; /* 1: it found no equilibrium                      */
+  int lost;  /* 1: it found no equilibrium                                   */
+  int flows; /* 1: made in a *VISCO step                                     */
   waypoint at, middle, end; /* accepted; of the attempt now made */
   double *d, *Ad; /* [m] difference of the paths, m; N               */
+  double *u, *e0; /* [dim*n_node] m, [ns*eigen.n] at the end; NULL: no law
+                     flows */
 };
 
-static status waypoint_new(int m, waypoint *w) {
+static status waypoint_new(const run *r, waypoint *w) {
   status st = OK;
+  int m = r->n_c;
   NEW(w->uc, m);
   NEW(w->rc, m);
   NEW(w->motion, m);
+  if (r->visco != NULL) TRY(flow_state_new(&r->visco->x, &w->flow));
 done:
   return st;
 }
@@ -41,11 +55,15 @@ static void waypoint_free(waypoint *w) {
   memory_free(w->uc);
   memory_free(w->rc);
   memory_free(w->motion);
+  flow_state_free(&w->flow);
 }
 
-static void waypoint_copy(int m, const equilibrium *e, waypoint *w) {
-  size_t bytes = (size_t)m * sizeof *w->uc;
+static void waypoint_copy(const run *r, const equilibrium *e, waypoint *w) {
+  size_t bytes = (size_t)r->n_c * sizeof *w->uc;
   w->t = e->t;
+  if (e == &r->old && r->visco != NULL)
+    flow_state_copy(&r->visco->x, &r->visco->old, &w->flow);
+  if (r->n_c == 0) return;
   memcpy(w->uc, e->uc, bytes);
   memcpy(w->rc, e->rc, bytes);
   memcpy(w->motion, e->motion, bytes);
@@ -56,12 +74,17 @@ static status path_new(const run *r, finer_path **out) {
   finer_path *p = NULL;
   NEW(p, 1);
   *out = p;
-  TRY(waypoint_new(r->n_c, &p->at));
-  TRY(waypoint_new(r->n_c, &p->middle));
-  TRY(waypoint_new(r->n_c, &p->end));
+  p->flows = r->step->kind == STEP_VISCO;
+  TRY(waypoint_new(r, &p->at));
+  TRY(waypoint_new(r, &p->middle));
+  TRY(waypoint_new(r, &p->end));
   NEW(p->d, r->n_c);
   NEW(p->Ad, r->n_c);
-  waypoint_copy(r->n_c, &r->old, &p->at);
+  if (r->visco != NULL) {
+    NEW(p->u, r->n_dof);
+    NEW(p->e0, visco_at(r, r->eigen.n));
+  }
+  waypoint_copy(r, &r->old, &p->at);
 done:
   return st;
 }
@@ -73,28 +96,35 @@ void path_free(finer_path *p) {
   waypoint_free(&p->end);
   memory_free(p->d);
   memory_free(p->Ad);
+  memory_free(p->u);
+  memory_free(p->e0);
   memory_free(p);
 }
 
 /* The equilibrium at t from where "from" stands, into "to". */
-static status half(run *r, const waypoint *from, double t, waypoint *to) {
+static status half(run *r, waypoint *from, double t, waypoint *to) {
   status st = OK;
   equilibrium keep = r->old;
   r->old.t = from->t;
   r->old.uc = from->uc;
   r->old.rc = from->rc;
   r->old.motion = from->motion;
-  st = increment_solve(r, t);
+  if (r->step->kind == STEP_VISCO)
+    st = visco_advance_from(r, &from->flow, t, &to->flow);
+  else
+    st = increment_solve(r, t);
   r->old = keep;
   TRY(st);
-  waypoint_copy(r->n_c, &r->now, to);
+  waypoint_copy(r, &r->now, to);
 done:
   return st;
 }
 
-/* Only slip in increments remembers its path. */
+/* Only slip in increments and inelastic strains remember their path. */
 static int has_path(const run *r) {
-  return r->n > 0 && r->ut0 != NULL && r->step->kind == STEP_QUASISTATIC;
+  int kind = r->step->kind, slips = r->n > 0 && r->ut0 != NULL;
+  if (kind == STEP_VISCO) return slips || r->visco != NULL;
+  return slips && kind == STEP_QUASISTATIC;
 }
 
 /* Both halves of the increment that ends at t; lost where there is none. */
@@ -106,6 +136,9 @@ static status try_halves(run *r, finer_path *p, double t) {
   if (p->lost) return OK;
   TRY(half(r, &p->middle, t, &p->end));
   p->lost = r->report.outcome <= 0;
+  if (p->lost || p->u == NULL) return OK;
+  memcpy(p->u, r->now.u, r->n_dof * sizeof *p->u);
+  memcpy(p->e0, r->now.e0, visco_at(r, r->eigen.n) * sizeof *p->e0);
 done:
   return st;
 }
@@ -116,7 +149,9 @@ status path_try(run *r, double t) {
   if (!r->step->time_error || !has_path(r)) return OK;
   timer_enter(STAGE_ESTIMATE);
   r->beside = 1;
-  if (r->path != NULL && r->path->at.t != r->old.t) path_restart(r);
+  if (r->path != NULL && (r->path->at.t != r->old.t ||
+                          r->path->flows != (r->step->kind == STEP_VISCO)))
+    path_restart(r);
   if (r->path == NULL) TRY(path_new(r, &r->path));
   TRY(try_halves(r, r->path, t));
 done:
@@ -126,13 +161,45 @@ done:
   return st;
 }
 
-/* Energy norm of the error at the end of an accepted increment, sqrt(J). */
-static double error_norm(run *r, finer_path *p) {
+/* Energy norm of the difference of the paths without inelastic strains,
+ * sqrt(J). */
+static double condensed_difference(const run *r, finer_path *p) {
   double square = 0.0;
   for (int k = 0; k < r->n_c; ++k) p->d[k] = r->now.uc[k] - p->end.uc[k];
   contact_product(r->n_c, condensed_matrix(r->c), p->d, p->Ad);
   for (int k = 0; k < r->n_c; ++k) square += p->d[k] * p->Ad[k];
-  return EXTRAPOLATION * sqrt(fmax(square, 0.0));
+  return sqrt(fmax(square, 0.0));
+}
+
+/* sqrt(2 E) of displacements and strains without stress (NULL: none). */
+static double field_norm(const run *r, const double *u, const double *e0) {
+  domain d = r->d;
+  eigenstrain x = r->eigen;
+  x.e0 = e0;
+  d.eigen = e0 != NULL ? &x : NULL;
+  return sqrt(2.0 * fmax(domain_strain_energy(&d, u), 0.0));
+}
+
+/* The same with them: as large as the larger relative difference. p->u and
+ * p->e0 become differences. */
+static double field_difference(const run *r, finer_path *p) {
+  double stress = sqrt(2.0 * fmax(r->now.energy.strain, 0.0));
+  double strain = field_norm(r, r->now.u, NULL);
+  for (size_t k = 0; k < r->n_dof; ++k) p->u[k] -= r->now.u[k];
+  for (size_t k = 0; k < visco_at(r, r->eigen.n); ++k) p->e0[k] -= r->now.e0[k];
+  double of_stress = field_norm(r, p->u, p->e0);
+  double of_strain = field_norm(r, p->u, NULL);
+  return strain > 0.0 ? fmax(of_stress, of_strain * (stress / strain))
+                      : of_stress;
+}
+
+/* From the difference to half the increments to the error. */
+static double extrapolation(const run *r) {
+  const scheme *of = r->step->integrator;
+  if (r->step->kind != STEP_VISCO || r->visco == NULL) return EXTRAPOLATION;
+  int order = of->has_theta && r->step->theta == 0.5 ? 2 : of->order;
+  if (order < 2) return 2.0;
+  return r->ut0 != NULL ? EXTRAPOLATION : 4.0 / 3.0;
 }
 
 /* The attempt is accepted: the next one starts at its end. */
@@ -142,40 +209,52 @@ static void advance(finer_path *p) {
   p->end = w;
 }
 
+static const char *why_no_path(const run *r) {
+  if (r->step->kind == STEP_STATIC) return "one static problem, no path";
+  return r->step->kind == STEP_VISCO ? "no friction, no law flows: no path"
+                                     : "no friction, no path";
+}
+
 void path_compare(run *r) {
   error_share *e = &r->time_error;
+  finer_path *p = r->path;
   e->asked = r->step->time_error;
   e->relative = 0.0;
   e->why = NULL;
   if (!e->asked) return;
-  if (r->step->kind == STEP_VISCO) {
-    e->relative = NAN;
-    e->why = "not estimated in *VISCO steps, whose TOLERANCE= bounds it";
-    return;
-  }
   if (!has_path(r)) {
-    e->why = r->step->kind == STEP_STATIC ? "one static problem, no path"
-                                          : "no friction, no path";
+    e->why = why_no_path(r);
     return;
   }
-  double energy = r->now.energy.strain;
-  if (r->path->lost) {
+  if (p == NULL || (!p->lost && p->end.t != r->now.t)) {
+    e->why = "the body answers at once";
+    return;
+  }
+  if (p->lost) {
     e->relative = NAN;
     e->why = "no equilibrium in half an increment";
     return;
   }
-  r->path_error = error_norm(r, r->path);
+  double energy = r->now.energy.strain;
+  r->path_error =
+      extrapolation(r) *
+      (p->u != NULL ? field_difference(r, p) : condensed_difference(r, p));
   double norm = r->path_before + r->path_error;
   if (norm > 0.0) e->relative = norm / sqrt(norm * norm + 2.0 * energy);
-  advance(r->path);
+  if (e->relative <= STRAIGHT * r->step->solver.tol)
+    e->why = "the path is straight: half the increments give the same";
+  advance(p);
 }
 
-static status keep_waypoint(int m, waypoint *w, archive *a) {
+static status keep_waypoint(const run *r, waypoint *w, archive *a) {
   status st = OK;
+  size_t m = (size_t)r->n_c;
   TRY(archive_reals(a, "path_t", &w->t, 1));
-  TRY(archive_reals(a, "path_uc", w->uc, (size_t)m));
-  TRY(archive_reals(a, "path_rc", w->rc, (size_t)m));
-  TRY(archive_reals(a, "path_motion", w->motion, (size_t)m));
+  TRY(archive_reals(a, "path_uc", w->uc, m));
+  TRY(archive_reals(a, "path_rc", w->rc, m));
+  TRY(archive_reals(a, "path_motion", w->motion, m));
+  if (r->visco != NULL)
+    TRY(visco_keep_flow(&r->visco->x, &w->flow, a, "path_flow"));
 done:
   return st;
 }
@@ -190,7 +269,7 @@ status path_keep(run *r, archive *a) {
   if (!there) goto done;
   if (r->path == NULL) TRY(path_new(r, &r->path));
   TRY(archive_ints(a, "path_lost", &r->path->lost, 1));
-  TRY(keep_waypoint(r->n_c, &r->path->at, a));
+  TRY(keep_waypoint(r, &r->path->at, a));
 done:
   return st;
 }

@@ -54,6 +54,7 @@ status visco_begin_step(run *r) {
   visco_strains(r, &r->old, &v->old);
   v->old.t = r->old.t;
   timer_leave(STAGE_INELASTIC);
+  path_restart(r);
   return OK;
 }
 
@@ -98,6 +99,20 @@ status visco_advance(run *r, double t) {
   return st;
 }
 
+status visco_advance_from(run *r, flow_state *from, double t, flow_state *to) {
+  visco *v = r->visco;
+  if (v == NULL) return increment_solve(r, t);
+  timer_enter(STAGE_INELASTIC);
+  flow_state keep = v->old;
+  v->old = *from;
+  status st = advance(r, t);
+  *from = v->old;
+  v->old = keep;
+  if (st == OK) flow_state_copy(&v->x, &v->now, to);
+  timer_leave(STAGE_INELASTIC);
+  return st;
+}
+
 /* What an increment starts from, of the contact. */
 typedef struct start_point {
   double *uc, *rc, *motion; /* [m] m, N, m                                   */
@@ -126,11 +141,11 @@ static status second_half(run *r, double t) {
   if (v->middle.e == NULL) TRY(flow_state_new(&v->x, &v->middle));
   TRY(start_point_new(r, &p));
   flow_state_copy(&v->x, &v->now, &v->middle);
-  flow_state first = v->old;
   r->old.t = r->now.t;
   r->old.uc = p.uc;
   r->old.rc = p.rc;
   r->old.motion = p.motion;
+  flow_state first = v->old;
   v->old = v->middle;
   st = advance(r, t);
   v->middle = v->old;
@@ -234,8 +249,8 @@ void visco_accept(run *r) {
   timer_leave(STAGE_INELASTIC);
 }
 
-static status keep_flow(const flow *x, flow_state *s, archive *a,
-                        const char *group) {
+status visco_keep_flow(const flow *x, flow_state *s, archive *a,
+                       const char *group) {
   status st = OK;
   size_t n = (size_t)x->ns * (size_t)x->n;
   archive_enter(a, group);
@@ -255,8 +270,8 @@ status visco_keep(run *r, archive *a) {
   visco *v = r->visco;
   int told = v->told == r->step;
   archive_enter(a, "visco");
-  TRY(keep_flow(&v->x, &v->old, a, "old"));
-  TRY(keep_flow(&v->x, &v->now, a, "now"));
+  TRY(visco_keep_flow(&v->x, &v->old, a, "old"));
+  TRY(visco_keep_flow(&v->x, &v->now, a, "now"));
   TRY(archive_reals(a, "largest", &v->largest, 1));
   TRY(archive_ints(a, "told", &told, 1));
   v->told = told ? r->step : NULL;

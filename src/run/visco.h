@@ -1,6 +1,6 @@
 /*
  * Elements whose law flows, in the running state; shared by points.c,
- * tangent.c and visco.c only.
+ * tangent.c, visco.c and path.c only.
  */
 #ifndef PROTIS_RUN_VISCO_H
 #define PROTIS_RUN_VISCO_H
@@ -36,6 +36,12 @@ struct visco {
 static inline size_t visco_at(const run *r, int k) {
   return (size_t)r->m->ns * (size_t)k;
 }
+
+/* visco.c: by the integrator of the step from another state than that of the
+ * run (its t is not read: r->old.t counts) to t, into r->now and *to. */
+status visco_advance_from(run *r, flow_state *from, double t, flow_state *to);
+status visco_keep_flow(const flow *x, flow_state *s, archive *a,
+                       const char *group);
 
 /* points.c: temperatures of the points of an equilibrium into s. */
 void visco_temperatures(const run *r, const equilibrium *e, flow_state *s);

@@ -104,6 +104,74 @@ START_TEST(proportional_load_has_no_error_of_steps) {
 }
 END_TEST
 
+/* A square of one stress: the error is that of the steps alone. E = 1000, the
+ * first step, to t = 1, is elastic. */
+static job flow(const char *law, const char *reference, const char *load,
+                const char *visco) {
+  job j = job_begin("flow");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "flow.inp",
+            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.3\n%s*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
+            "TYPE=CPS3\n*REFERENCE\n%s*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+            "BOTTOM, 2\n%s*END STEP\n*STEP\n%s*ACCURACY, TIME=YES\n"
+            "*END STEP\n",
+            law, reference, load, visco);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Last figure of that name in JOB.json, %. */
+static double figure(const job *j, const char *name) {
+  char wanted[80], *json = job_file(j, "json"), *last = NULL;
+  double value = NAN;
+  snprintf(wanted, sizeof wanted, "\"%s\": ", name);
+  for (char *at = json; (at = strstr(at, wanted)) != NULL;)
+    last = at += strlen(wanted);
+  ck_assert_ptr_nonnull(last);
+  sscanf(last, "%lf", &value);
+  free(json);
+  return value;
+}
+
+/* Told over true error of the steps; half the steps, and it falls. */
+static void check_flow(const char *law, const char *reference, const char *load,
+                       const char *integrator) {
+  double before = HUGE_VAL;
+  for (int n = 4; n <= 8; n *= 2) {
+    char visco[120];
+    snprintf(visco, sizeof visco, "*VISCO, INTEGRATOR=%s\n%g, 2.\n", integrator,
+             2.0 / n);
+    job j = flow(law, reference, load, visco);
+    double told = figure(&j, "time_error_percent");
+    double is = figure(&j, "true_error_percent");
+    ck_assert_msg(told > 0.8 * is && told < 1.25 * is, "%s %d: told %g, is %g",
+                  integrator, n, told, is);
+    ck_assert_double_lt(told, 0.6 * before);
+    before = told;
+    job_end(&j);
+  }
+}
+
+/* Held strain, sigma = exp(-t/tau): the error of the stress. Constant stress,
+ * e = 1/E0 + (1 - exp(-t E1/eta))/E1: that of the strain. */
+START_TEST(error_of_the_steps_is_told_where_a_law_flows) {
+  static const char *const integrators[] = {"EULER", "HEUN",
+                                            "THETA, THETA=0.5"};
+  for (int i = 0; i < 3; ++i) {
+    check_flow("*INELASTIC, LAW=MAXWELL\n2.\n",
+               "stress_xx, 0\nstress_yy, \"exp(-max(0, t - 1)/2)\"\n"
+               "stress_zz, 0\nstress_xy, 0\n",
+               "TOP, 2, 2, 1.E-3\n", integrators[i]);
+    check_flow("*INELASTIC, LAW=ZENER\n500., 1000.\n",
+               "u_x, \"-0.3*x*(1E-3 + 2E-3*(1 - exp(-max(0, t - 1)/2)))\"\n"
+               "u_y, \"y*(1E-3 + 2E-3*(1 - exp(-max(0, t - 1)/2)))\"\n",
+               "*DSLOAD\nTOP, TY, 1.\n", integrators[i]);
+  }
+}
+END_TEST
+
 /* Block of Hertz without friction, NC segments on the half contact and a mesh
  * that is as much finer everywhere. */
 static job press(int nc, const char *accuracy) {
@@ -172,4 +240,5 @@ END_TEST
 
 UNIT_MAIN("budget", error_of_the_steps_is_near_the_true_one,
           proportional_load_has_no_error_of_steps,
+          error_of_the_steps_is_told_where_a_law_flows,
           error_of_the_mesh_is_near_the_true_one, budget_stands_in_every_result)

@@ -213,7 +213,7 @@ static job creep(double mu, const char *cards, const char *method) {
             "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*QUASISTATIC\n"
             "0.5, 1.\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\n"
             "LEFT, P, 150.\n*PRINT, CONTACT, ENERGY\n*OUTPUT\n%s*END STEP\n"
-            "*STEP\n*VISCO, %s\n0.5, 4.\n*END STEP\n",
+            "*STEP\n*VISCO, %s\n0.5, 4.\n*ACCURACY, TIME=YES\n*END STEP\n",
             mu, cards, method);
   return j;
 }
