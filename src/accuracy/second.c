@@ -79,8 +79,7 @@ done:
 }
 
 static int can_solve(const contact_problem *cp, const solver_ops *ops) {
-  if (cp->dim == 3 && !(ops->handles & SOLVES_3D)) return 0;
-  return !cp->floating || (ops->handles & SOLVES_FLOATING);
+  return cp->dim == 2 || (ops->handles & SOLVES_3D) != 0;
 }
 
 /* 1: row i stands for its family: no row before it of the same kind can. */

@@ -44,6 +44,7 @@ void contact_solver_reset(contact_solver *s) {
   s->path = NULL;
   other_form_free(&s->other);
   normal_form_free(&s->normal);
+  anchor_free(&s->held);
   memory_free(s->best_u);
   memory_free(s->best_r);
   s->best_u = s->best_r = NULL;
@@ -133,6 +134,19 @@ done:
 
 /* ---- one attempt --------------------------------------------------------- */
 
+/* The problem with springs on the motions of the whole body. */
+static status suit_by_springs(contact_solver *s, const contact_problem *cp,
+                              contact_problem *out, const char **why) {
+  status st = OK;
+  TRY(anchor_make(cp, &s->held));
+  out->A = s->held.A;
+  out->W = s->held.W;
+  if (s->held.missing)
+    *why = "needs the compliance, but the stiffness is nearly singular";
+done:
+  return st;
+}
+
 /* The problem in a form the solver can use; NULL, or why there is none. */
 static status suit(contact_solver *s, const contact_problem *cp,
                    const solver_ops *ops, contact_problem *out,
@@ -147,14 +161,15 @@ static status suit(contact_solver *s, const contact_problem *cp,
     goto done;
   }
   if (cp->floating && !(ops->handles & SOLVES_FLOATING)) {
-    *why = "needs a body held by supports, here contact alone holds it";
+    TRY(suit_by_springs(s, cp, out, why));
     goto done;
   }
   if (!stiffness && !compliance) goto done;
   TRY(other_form_make(cp, &s->other));
-  if (s->other.matrix == NULL) {
-    *why = stiffness ? "needs the stiffness, but the compliance is singular"
-                     : "needs the compliance, but the stiffness is singular";
+  if (s->other.matrix == NULL && stiffness) {
+    *why = "needs the stiffness, but the compliance is singular";
+  } else if (s->other.matrix == NULL) {
+    TRY(suit_by_springs(s, cp, out, why));
   } else if (stiffness) {
     contact_product(cp->m, s->other.matrix, cp->f, s->other.load);
     out->A = s->other.matrix;
@@ -204,6 +219,18 @@ static void log_unfit(contact_solver *s, const char *name, const char *why) {
            name, why);
 }
 
+typedef struct anchored_attempt {
+  contact_solver *s;
+  const attempt *a;
+} anchored_attempt;
+
+static status drive_anchored(void *ctx, const contact_problem *cp,
+                             const solver_control *control, double *u,
+                             double *r, solver_report *rep) {
+  const anchored_attempt *x = ctx;
+  return drive_one(x->s, cp, x->a, control, u, r, rep);
+}
+
 status attempt_run(contact_solver *s, const contact_problem *cp,
                    const attempt *a, const solver_listener *listener, double *u,
                    double *r, solver_report *rep) {
@@ -225,7 +252,12 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
     TRY(a->ops->setup(&own, a->param, &s->work[row]));
     TRY(remember(s, row));
   }
-  TRY(drive_one(s, &own, a, &control, u, r, rep));
+  anchored_attempt x = {s, a};
+  anchored_solver inner = {drive_anchored, &x};
+  if (own.A != NULL && own.A == s->held.A)
+    TRY(anchor_solve(&s->held, cp, &inner, &control, u, r, rep));
+  else
+    TRY(drive_one(s, &own, a, &control, u, r, rep));
 done:
   rep->solver = a->ops->name;
   return st;

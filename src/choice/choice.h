@@ -5,6 +5,7 @@
 #ifndef PROTIS_CHOICE_CHOICE_H
 #define PROTIS_CHOICE_CHOICE_H
 
+#include "choice/anchor.h"
 #include "choice/form.h"
 #include "solver/fixed_point.h"
 #include "solver/solver.h"
@@ -26,6 +27,7 @@ struct contact_solver {
   friction_path *path;
   int path_room; /* entries of B it was made for                         */
   other_form other;
+  anchor held; /* springs for a body that contact alone holds                 */
   normal_form normal;
   double *best_u, *best_r; /* [m] of the attempt with the lowest residual     */
   archive *from;  /* borrowed: what the works are to remember; or NULL        */

@@ -35,9 +35,7 @@ static int is_symmetric(size_t m, const double *M) {
   return apart <= SYMMETRIC * largest;
 }
 
-/* Power of two that brings the largest diagonal entry to order 1: roots then
- * keep their bits under a change of units by such powers. */
-static double power_of(size_t m, const double *M) {
+double form_power(size_t m, const double *M) {
   double largest = 0.0;
   int exponent = 0;
   for (size_t i = 0; i < m; ++i) largest = fmax(largest, M[i + m * i]);
@@ -63,11 +61,9 @@ static int is_singular(int m, const double *L, double norm, double *work,
   return !(rcond > INVERSE_RCOND);
 }
 
-/* inv(M) in place of a symmetric M, by Cholesky; 0: not positive definite, or
- * singular to rounding: M is lost. work [3m], iwork [m] */
-static int invert_definite(int m, double *M, double *work, int *iwork) {
+int form_invert(int m, double *M, double *work, int *iwork) {
   size_t size = (size_t)m * (size_t)m;
-  double power = power_of((size_t)m, M);
+  double power = form_power((size_t)m, M);
   multiply(size, power, M);
   double norm = LAPACKE_dlansy_work(LAPACK_COL_MAJOR, '1', 'L', m, M, m, work);
   if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', m, M, m) != 0) return 0;
@@ -106,7 +102,7 @@ status other_form_make(const contact_problem *cp, other_form *o) {
   NEW(o->matrix, size);
   memcpy(o->matrix, M, size * sizeof *M);
   o->missing = is_symmetric((size_t)m, M)
-                   ? !invert_definite(m, o->matrix, work, pivot)
+                   ? !form_invert(m, o->matrix, work, pivot)
                    : !invert_any(m, o->matrix, work, pivot, pivot + m);
   if (o->missing) {
     memory_free(o->matrix);
@@ -150,7 +146,7 @@ static int condense_stiffness(normal_form *nf, const contact_problem *cp) {
   int n = cp->n, nt = cp->m - n, d = cp->dim;
   size_t m = (size_t)cp->m;
   if (!is_symmetric(m, cp->A)) return 0;
-  nf->power = power_of(m, cp->A);
+  nf->power = form_power(m, cp->A);
   for (int j = 0; j < nt; ++j) {
     const double *column = cp->A + m * tangent_dof(d, j);
     for (int i = j; i < nt; ++i)
@@ -182,7 +178,7 @@ static int invert_compliance(normal_form *nf, const contact_problem *cp,
   for (size_t j = 0; j < n; ++j)
     for (size_t i = 0; i < n; ++i) nf->S[i + n * j] = cp->W[i * d + m * j * d];
   if (!is_symmetric(n, nf->S)) return 0;
-  return invert_definite(cp->n, nf->S, work, iwork);
+  return form_invert(cp->n, nf->S, work, iwork);
 }
 
 static status set_up(normal_form *nf, const contact_problem *cp) {

@@ -14,6 +14,13 @@
 
 #include "solver/solver.h"
 
+/* Power of two that brings the largest diagonal entry of M[m*m] to order 1:
+ * roots then keep their bits under a change of units by such powers. */
+double form_power(size_t m, const double *M);
+/* inv(M) in place of a symmetric M[m*m], by Cholesky; 0: not positive definite,
+ * or singular to rounding: M is lost. work [3m], iwork [m] */
+int form_invert(int m, double *M, double *work, int *iwork);
+
 typedef struct other_form {
   double *matrix; /* [m*m] inverse of the one given, or NULL                  */
   double *load;   /* [m] load in that form                                    */

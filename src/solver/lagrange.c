@@ -276,8 +276,9 @@ const solver_ops lagrange_solver = {
     "step, so there is nothing to choose. ACCELERATION=NESTEROV\n"
     "extrapolates the forces and begins anew when the step turns; NONE is\n"
     "Uzawa's method as it was written. The sliding limit is updated around\n"
-    "it (CPR98, 2.3). Needs the compliance (an inverse, once per matrix),\n"
-    "so not for a body that contact alone holds. One product a step, many\n"
+    "it (CPR98, 2.3). Needs the compliance (an inverse, once per matrix); a\n"
+    "body that contact alone holds is held by soft springs on its motions,\n"
+    "which follow it until they carry nothing. One product a step, many\n"
     "steps: it is here for comparison and as the method that cannot fail on\n"
     "a Tresca problem; PCG solves the same problem in far fewer products.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,

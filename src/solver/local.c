@@ -11,6 +11,7 @@
 #include <string.h>
 
 enum { ROOT_STEPS = 100 };
+static const double RIGID = 0x1p-5; /* -, of a drift: counts as no strain  */
 
 /* A state computed, and by how much it misses its inequalities, N. */
 typedef struct candidate {
@@ -496,6 +497,24 @@ void relaxation_start(const relaxation *s) {
                           : slip > 0.0             ? LOCAL_SLIP
                                                    : LOCAL_STICK;
   }
+}
+
+int relaxation_drifts(const relaxation *s, const double *from) {
+  const contact_problem *cp = s->cp;
+  size_t m = (size_t)cp->m;
+  double *d = s->u, *Ad = s->r, work = 0.0, stiff = 0.0, left = 0.0;
+  double most = 0.0, into = 0.0;
+  if (!cp->floating || cp->A == NULL) return 0;
+  for (size_t i = 0; i < m; ++i) d[i] -= from[i];
+  contact_product(cp->m, cp->A, d, Ad);
+  for (size_t i = 0; i < m; ++i) {
+    work += cp->f[i] * d[i];
+    left = fmax(left, fabs(Ad[i]));
+    stiff = fmax(stiff, cp->A[i * m + i] * fabs(d[i]));
+    most = fmax(most, fabs(d[i]));
+    if (contact_bound(cp, (int)i) < HUGE_VAL) into = fmax(into, d[i]);
+  }
+  return work > 0.0 && left < RIGID * stiff && into < RIGID * most;
 }
 
 /* ---- admissible forces

@@ -456,8 +456,9 @@ const solver_ops pcg_solver = {
     "true disc is used and a slipping node turns along its rim.\n"
     "PRECONDITIONER=FACE takes the block of the stiffness that belongs to\n"
     "the face, DIAGONAL the diagonal. The sliding limit is updated around\n"
-    "it (CPR98, 2.3). Needs the compliance (an inverse, once per matrix),\n"
-    "so not for a body that contact alone holds. A step costs two products.\n"
+    "it (CPR98, 2.3). Needs the compliance (an inverse, once per matrix); a\n"
+    "body that contact alone holds is held by soft springs on its motions,\n"
+    "which follow it until they carry nothing. A step costs two products.\n"
     "Choose it for large problems with many increments on one matrix and\n"
     "small friction.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,

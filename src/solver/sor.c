@@ -157,24 +157,6 @@ static double check(relaxation *s, course *c, double scale) {
   return residual;
 }
 
-/* 1: a body that contact alone holds drifts off: the way d from the best state
- * to the last is a rigid motion (A d small) along which the load works. The
- * last state is overwritten. */
-static int drifts(relaxation *s, const best_iterate *best) {
-  const contact_problem *cp = s->cp;
-  size_t m = (size_t)cp->m;
-  double *d = s->u, *Ad = s->r, work = 0.0, stiff = 0.0, left = 0.0;
-  if (!cp->floating || cp->A == NULL) return 0;
-  for (size_t i = 0; i < m; ++i) d[i] -= best->u[i];
-  contact_product(cp->m, cp->A, d, Ad);
-  for (size_t i = 0; i < m; ++i) {
-    work += cp->f[i] * d[i];
-    left = fmax(left, fabs(Ad[i]));
-    stiff = fmax(stiff, cp->A[i * m + i] * fabs(d[i]));
-  }
-  return work > 0.0 && left < 0x1p-5 * stiff;
-}
-
 /* Every CHECK sweeps, and after 1, 2, 4 and 8. */
 static int is_checked(int k) {
   return k % CHECK == 0 || (k <= 8 && (k & (k - 1)) == 0);
@@ -233,7 +215,7 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
   rep->residual = w->best.residual;
   int gave_up =
       rep->outcome == STOPPED_STAGNATION || rep->outcome == STOPPED_CYCLE;
-  if (gave_up && drifts(&s, &w->best)) rep->outcome = STOPPED_RAY;
+  if (gave_up && relaxation_drifts(&s, w->best.u)) rep->outcome = STOPPED_RAY;
   solver_take_best(&w->best, cp->m, u, r);
 done:
   return st;

@@ -18,7 +18,6 @@ const char *row_name(const solver_ops *ops) {
 
 int row_handles(const solver_ops *ops, const contact_problem *cp) {
   if (ops == NULL) return 1;
-  if (cp->floating && !(ops->handles & SOLVES_FLOATING)) return 0;
   return cp->dim == 2 || (ops->handles & SOLVES_3D) != 0;
 }
 

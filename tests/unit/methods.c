@@ -64,8 +64,6 @@ static void must_agree(contact_case *c, int k, int conditions) {
   for (size_t j = 0; j < m; ++j) size = fmax(size, fabs(u[j]));
   for (int i = 0; i < VARIANTS; ++i) {
     const variant *v = &variants[i];
-    if (c->cp.floating && !(solver_find(v->solver)->handles & SOLVES_FLOATING))
-      continue;
     solver_report rep = solve_by(v, c, 1e-11);
     ck_assert_msg(rep.outcome == CONVERGED, "%s %s: problem %d: %s", v->solver,
                   v->value, k, outcome_text(rep.outcome));

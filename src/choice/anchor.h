@@ -1,0 +1,47 @@
+/*
+ * A body that contact alone holds, for solvers that need the compliance.
+ *
+ * The null vectors R of its stiffness, orthonormal, are motions of the whole
+ * body. Springs of stiffness k on them make a problem any solver takes,
+ *
+ *   A_s = A + k R R',   f_s = f + k R a,
+ *
+ * and the place a they are fixed at follows the body, a <- R'u, until they
+ * carry nothing: R'(f + r) = k (R'u - a) = 0. These are the multipliers of the
+ * equilibrium of the whole body (augmented Lagrangian; Dostal 2009, SMALBE),
+ * and the proximal point iteration on its place (Rockafellar 1976): with a
+ * given sliding limit it converges if there is an equilibrium. If there is none
+ * the body drifts off for ever by the same way.
+ */
+#ifndef PROTIS_CHOICE_ANCHOR_H
+#define PROTIS_CHOICE_ANCHOR_H
+
+#include "solver/solver.h"
+
+typedef struct anchor {
+  int missing;   /* 1: the null vectors could not be found                    */
+  int n_mode;    /* of them, at most 6                                        */
+  double *R;     /* [m*n_mode] -                                              */
+  double spring; /* k, N/m                                                    */
+  double *A, *W; /* [m*m] A_s and its inverse                                 */
+  double *f;     /* [m] f_s, N                                                */
+} anchor;
+
+/* Make it for the matrix of cp, if that has not been tried. */
+status anchor_make(const contact_problem *cp, anchor *an);
+void anchor_free(anchor *an); /* all zero afterwards                         */
+
+/* Solves a problem with springs as it stands, from u, r. */
+typedef struct anchored_solver {
+  status (*solve)(void *ctx, const contact_problem *cp,
+                  const solver_control *control, double *u, double *r,
+                  solver_report *rep);
+  void *ctx;
+} anchored_solver;
+/* Solve cp by passes of "inner" on problems with springs. rep: iterations of
+ * all passes; STOPPED_RAY: the body drifts off. */
+status anchor_solve(const anchor *an, const contact_problem *cp,
+                    const anchored_solver *inner, const solver_control *control,
+                    double *u, double *r, solver_report *rep);
+
+#endif

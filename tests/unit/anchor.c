@@ -1,0 +1,221 @@
+/*
+ * Bodies that contact alone holds, by every row: solvers that need the
+ * compliance get the problem with springs on the motions of the body. What the
+ * obstacle carries follows from statics.
+ */
+#include "choice/anchor.h"
+
+#include "base/memory.h"
+#include "support/solver_rows.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NODES = 12, MODES = 6 };
+
+/* ---- a truss in space on a floor -----------------------------------------
+ */
+
+/* NODES joints near z = 0, every two joined by a bar: nothing resists the six
+ * motions of a rigid body. Unknowns (-z, x, y) of a joint. x[3*NODES] */
+static contact_case truss(double mu, double *x) {
+  contact_case c = case_new(3, NODES, mu);
+  unsigned long long seed = 99;
+  int m = c.cp.m;
+  for (int i = 0; i < NODES; ++i) {
+    x[3 * i] = i % 4 + 0.3 * case_random(&seed);
+    x[3 * i + 1] = i / 4 + 0.3 * case_random(&seed);
+    x[3 * i + 2] = 0.4 * case_random(&seed);
+  }
+  for (int i = 0; i < NODES; ++i)
+    for (int j = 0; j < i; ++j) {
+      double e[3], length = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        double d = x[3 * i + k] - x[3 * j + k];
+        e[k == 2 ? 0 : k + 1] = k == 2 ? -d : d;
+        length += d * d;
+      }
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) {
+          double s = e[a] * e[b] / length;
+          c.A[3 * i + a + m * (3 * i + b)] += s;
+          c.A[3 * j + a + m * (3 * j + b)] += s;
+          c.A[3 * i + a + m * (3 * j + b)] -= s;
+          c.A[3 * j + a + m * (3 * i + b)] -= s;
+        }
+    }
+  c.cp.floating = 1;
+  return c;
+}
+
+/* Force and moment about the origin of the forces a[3*NODES], (-z, x, y). */
+static void resultant(const double *x, const double *a, double sum[6]) {
+  memset(sum, 0, 6 * sizeof *sum);
+  for (int i = 0; i < NODES; ++i) {
+    const double *p = x + 3 * i;
+    double F[3] = {a[3 * i + 1], a[3 * i + 2], -a[3 * i]};
+    for (int k = 0; k < 3; ++k) {
+      int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+      sum[k] += F[k];
+      sum[3 + k] += p[k1] * F[k2] - p[k2] * F[k1];
+    }
+  }
+}
+
+/* Weight and a push of 0.2 of it along x + y, friction 0.5: the floor carries
+ * both, and their moments. */
+START_TEST(truss_stands_by_statics) {
+  double x[3 * NODES], load[6], floor_force[6];
+  contact_case c = truss(0.5, x);
+  const solver_ops *ops;
+  for (int i = 0; i < NODES; ++i) {
+    c.f[3 * i] = 1.0;
+    c.f[3 * i + 1] = c.f[3 * i + 2] = 0.2 / sqrt(2.0);
+    c.gap[i] = 0.01 * i;
+  }
+  resultant(x, c.f, load);
+  for (int i = 0; solver_row(i, &ops); ++i) {
+    case_cold(&c);
+    solver_report rep = solve_by(ops, &c, 1e-11, c.u, c.r);
+    ck_assert_msg(rep.outcome == CONVERGED, "%s: %s", row_name(ops),
+                  outcome_text(rep.outcome));
+    resultant(x, c.r, floor_force);
+    for (int k = 0; k < 6; ++k)
+      ck_assert_msg(fabs(load[k] + floor_force[k]) <= 1e-9 * NODES,
+                    "%s: %d: %g", row_name(ops), k, load[k] + floor_force[k]);
+    ck_assert_double_le(case_violation(&c, c.u, c.r), 1e-9);
+  }
+  case_free(&c);
+}
+END_TEST
+
+/* The null vectors are the six motions of a rigid body, and orthonormal. */
+START_TEST(modes_are_the_rigid_motions) {
+  double x[3 * NODES], y[3 * NODES];
+  contact_case c = truss(0.5, x);
+  anchor an = {0};
+  ck_assert_int_eq(anchor_make(&c.cp, &an), OK);
+  ck_assert_int_eq(an.missing, 0);
+  ck_assert_int_eq(an.n_mode, MODES);
+  for (int a = 0; a < MODES; ++a) {
+    const double *v = an.R + 3 * NODES * a;
+    contact_product(3 * NODES, c.A, v, y);
+    for (int i = 0; i < 3 * NODES; ++i) ck_assert_double_le(fabs(y[i]), 1e-13);
+    for (int b = 0; b < MODES; ++b) {
+      double sum = a == b ? -1.0 : 0.0;
+      for (int i = 0; i < 3 * NODES; ++i) sum += v[i] * an.R[3 * NODES * b + i];
+      ck_assert_double_le(fabs(sum), 1e-14);
+    }
+  }
+  anchor_free(&an);
+  case_free(&c);
+}
+END_TEST
+
+/* ---- a block on a floor --------------------------------------------------
+ */
+
+static contact_case block(double mu, double push, double shear) {
+  case_block_data d = {.columns = 16,
+                       .layers = 8,
+                       .nu = 0.2,
+                       .mu = mu,
+                       .top = {shear * 1e-3, -push * 1e-3}};
+  return case_block(&d);
+}
+
+/* The floor lies far below (30: four thousand times the compression) and is
+ * hollow, or is level and the block is pushed: the weight arrives there. */
+START_TEST(block_falls_to_its_floor) {
+  static const double far[] = {0.0, 1.0, 30.0};
+  const solver_ops *ops;
+  for (int k = 0; k < 6; ++k) {
+    contact_case c = block(0.4, 1.0, k < 3 ? 0.0 : 0.1);
+    for (int i = 0; i < c.cp.n; ++i)
+      c.gap[i] = far[k % 3] + (k < 3 ? 2e-5 * (i - 8) * (i - 8) : 0.0);
+    for (int i = 0; solver_row(i, &ops); ++i) {
+      case_cold(&c);
+      solver_report rep = solve_by(ops, &c, 1e-9, c.u, c.r);
+      if (ops != NULL && (ops->handles & SOLVES_FLOATING) &&
+          rep.outcome != CONVERGED)
+        continue; /* a start so far off is too much for some */
+      ck_assert_msg(rep.outcome == CONVERGED, "%s: gap %g: %s", row_name(ops),
+                    far[k % 3], outcome_text(rep.outcome));
+      double push = 0.0;
+      for (int j = 0; j < c.cp.n; ++j) push -= c.r[2 * j];
+      ck_assert_double_eq_tol(push, 0.016, 1e-7 * 0.016);
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Lifted, pushed too hard, tipped: a ray, after few passes. */
+START_TEST(drift_is_told_as_a_ray) {
+  static const struct {
+    double mu, push, shear;
+  } hopeless[] = {{0.3, -1, 0}, {0, 1, 0.1}, {0.3, 1, 0.4}, {3, 1, 1.2}};
+  const solver_ops *ops;
+  for (int k = 0; k < 4; ++k) {
+    contact_case c = block(hopeless[k].mu, hopeless[k].push, hopeless[k].shear);
+    for (int i = 0; solver_row(i, &ops); ++i) {
+      if (ops == NULL || (ops->handles & SOLVES_FLOATING)) continue;
+      case_cold(&c);
+      solver_report rep = solve_by(ops, &c, 1e-10, c.u, c.r);
+      ck_assert_msg(rep.outcome == STOPPED_RAY, "%s: %d: %s", ops->name, k,
+                    outcome_text(rep.outcome));
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+START_TEST(factors_of_two_change_no_bit) {
+  const solver_ops *ops;
+  for (int i = 0; solver_row(i, &ops); ++i) {
+    contact_case c = block(0.3, 1.0, 0.2), d = block(0.3, 1.0, 0.2);
+    if (ops == NULL || (ops->handles & SOLVES_FLOATING)) continue;
+    for (int j = 0; j < c.cp.m * c.cp.m; ++j) d.A[j] = ldexp(c.A[j], 41);
+    for (int j = 0; j < c.cp.m; ++j) d.f[j] = ldexp(c.f[j], 41 - 13);
+    case_cold(&c);
+    case_cold(&d);
+    solver_report one = solve_by(ops, &c, 1e-9, c.u, c.r);
+    solver_report two = solve_by(ops, &d, 1e-9, d.u, d.r);
+    ck_assert_int_eq(one.iterations, two.iterations);
+    for (int j = 0; j < c.cp.m; ++j)
+      ck_assert(d.u[j] == ldexp(c.u[j], -13) && d.r[j] == ldexp(c.r[j], 28));
+    case_free(&c);
+    case_free(&d);
+  }
+}
+END_TEST
+
+START_TEST(refused_memory_is_given_back) {
+  contact_case c = block(0.3, 1.0, 0.1);
+  double param[PARAM_SIZE / sizeof(double)] = {0.0};
+  solver_choice choice = {
+      .ops = solver_find("pcg"), .param = param, .tol = 1e-9};
+  size_t before = memory_in_use();
+  status st = ERR_MEMORY;
+  option_defaults(choice.ops->options, param);
+  for (int k = 1; st == ERR_MEMORY && k < 1000; ++k) {
+    contact_solver *s = NULL;
+    solver_report rep;
+    case_cold(&c);
+    memory_refuse(k, 0);
+    st = contact_solver_new(&choice, &s);
+    if (st == OK) st = contact_solve(s, &c.cp, NULL, c.u, c.r, &rep);
+    memory_refuse(0, 0);
+    contact_solver_free(s);
+    ck_assert(st == OK || st == ERR_MEMORY);
+    ck_assert_uint_eq(memory_in_use(), before);
+  }
+  ck_assert_int_eq(st, OK);
+  case_free(&c);
+}
+END_TEST
+
+UNIT_MAIN("anchor", truss_stands_by_statics, modes_are_the_rigid_motions,
+          block_falls_to_its_floor, drift_is_told_as_a_ray,
+          factors_of_two_change_no_bit, refused_memory_is_given_back)
