@@ -43,8 +43,13 @@ static int same_material(const domain *d, int a, int b) {
 }
 
 static void find_regions(space_recovery *s, int n_section) {
+  const int *origin = s->d->origin;
   for (int i = 0; i < n_section; ++i) {
     int first = 0;
+    if (origin != NULL && origin[i] < i) {
+      s->region[i] = s->region[origin[i]];
+      continue;
+    }
     while (first < i && !same_material(s->d, first, i)) ++first;
     s->region[i] = first < i ? s->region[first] : s->n_region++;
   }

@@ -230,6 +230,9 @@
   X(2048, WARNING, "inelastic law that never flows",                         \
     "Inelastic strain grows in *VISCO steps only; the other steps, as in "   \
     "Abaqus, take the material as elastic. Use *VISCO, or remove the law.")  \
+  X(2049, WARNING, "moduli without a temperature",                           \
+    "Constants of *ELASTIC depend on temperature, but no card gives one, "   \
+    "so those of 0 count. Give *INITIAL CONDITIONS, TYPE=TEMPERATURE.")      \
   X(2050, ERROR, "increment not stable",                                     \
     "An explicit integrator must not step over about two of the shortest "   \
     "relaxation times of the laws, or its errors grow. Take a smaller dt, "  \

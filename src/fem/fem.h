@@ -27,6 +27,8 @@ typedef struct domain {
   const contact_surface *surface; /* NULL: no contact                         */
   int ns;                  /* 4 or 6                                      */
   const int *section_id;   /* [n_elem]                                    */
+  const int *origin;       /* [n_section] one it is of one material with,
+                              itself or before it; NULL: not known        */
   const kinematics *kin;   /* [n_section]                                 */
   const double *thickness; /* [n_section] m; 1 in 3-D and axisymmetric    */
   const double *E;         /* [ns*ns*n_section] Pa                        */

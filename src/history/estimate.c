@@ -217,6 +217,11 @@ static status load_change(run *r, double *room, double *size) {
   double square = 0.0;
   *size = distance(r, r->now.motion, r->old.motion, room);
   for (int i = 0; i < r->n_c; ++i) room[i] = r->f[i] - r->f_before[i];
+  if (r->moduli.n_own > 0) { /* with the moduli of now                        */
+    contact_product(r->n_c, r->cp.A, r->old.uc, room + r->n_c);
+    for (int i = 0; i < r->n_c; ++i)
+      room[i] = r->f[i] + r->old.rc[i] - room[r->n_c + i];
+  }
   TRY(condensed_force_energy(r->c, room, &square));
   *size += sqrt(square);
 done:

@@ -146,7 +146,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
   if (r->sink->increment != NULL) TRY(r->sink->increment(r->sink->ctx, &s));
-  result_accept(r);
+  TRY(result_accept(r));
   r->due = r->step->restart_frequency >= 0 &&
            is_due(r->step->restart_frequency, increment_no, last);
 done:

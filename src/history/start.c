@@ -131,6 +131,10 @@ static int starts_smoothly(const run *r) {
   for (size_t i = 0; i < r->n_dof; ++i)
     if (r->fixed[i] && fabs(r->ud[i] - r->old.u[i]) > 1e-12 * fabs(r->ud[i]))
       return 0;
+  if (r->moduli.n_own > 0 &&
+      !same_vector((size_t)r->msh->n_elem, r->now.temperature,
+                   r->old.temperature))
+    return 0;
   return same_vector(r->n_dof, r->now.F, r->old.F) &&
          same_vector((size_t)r->m->ns * (size_t)r->eigen.n, r->now.e0,
                      r->old.e0);

@@ -48,6 +48,7 @@ void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
   const size_t bytes = (size_t)(ns * ns) * sizeof(double);
   memset(out, 0, sizeof *out);
   out->ns = ns;
+  out->kin = kin;
   out->isotropic = type == ELASTIC_ISO;
   out->plane_stress = kin == PLANE_STRESS;
   elastic_reduce(C6, kin, out->E);
@@ -66,6 +67,26 @@ void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
     memcpy(out->C, out->E, bytes);
   out->young = 1 / out->S[0];
   out->shear = out->C[3 + ns * 3];
+}
+
+status law_elastic_read(const elastic_table *table, double temperature,
+                        kinematics kin, law_elastic *out) {
+  status st = OK;
+  double C[36] = {0};
+  char text[256];
+  const char *wrong = elastic_at(table, temperature, C, text, sizeof text);
+  if (wrong != NULL)
+    FAIL(ERR_DECK, "*ELASTIC at the temperature %g: %s", temperature, wrong);
+  law_elastic_set(C, table->type, kin, out);
+  out->temperature = temperature;
+  if (table->n > 1) out->table = table;
+done:
+  return st;
+}
+
+status law_elastic_heat(law_elastic *el, double temperature) {
+  if (el->table == NULL || el->temperature == temperature) return OK;
+  return law_elastic_read(el->table, temperature, el->kin, el);
 }
 
 int law_n_alpha(const law_card *law, int ns) {

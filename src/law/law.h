@@ -14,7 +14,7 @@
 
 #include "base/option.h"
 #include "deck/deck.h"
-#include "material/material.h"
+#include "material/table.h"
 
 /* Elasticity of a section, made once by law_elastic_set. */
 typedef struct law_elastic {
@@ -24,10 +24,19 @@ typedef struct law_elastic {
   double S[36]; /* [ns*ns] all components of e^e of a stress, 1/Pa            */
   double C[36]; /* [ns*ns] inv(S), Pa; = E but for plane stress               */
   double young, shear; /* 1/S_xx and C_xy,xy: the moduli if isotropic, Pa     */
+  kinematics kin;
+  double temperature;         /* of what is above                             */
+  const elastic_table *table; /* borrowed; NULL: the same at all temperatures */
 } law_elastic;
-/* C6: elastic_matrix(). */
+/* C6: elastic_matrix(). No table. */
 void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
                      law_elastic *out);
+/* With the constants of a table at a temperature; if they depend on it, it is
+ * kept (borrowed). ERR_DECK: they are no elasticity there. */
+status law_elastic_read(const elastic_table *table, double temperature,
+                        kinematics kin, law_elastic *out);
+/* To another temperature; nothing to do without a table. ERR_DECK likewise. */
+status law_elastic_heat(law_elastic *el, double temperature);
 
 struct law_ops;
 

@@ -132,47 +132,24 @@ done:
   return st;
 }
 
-/* Number of constants of each elastic_type. */
-static const int constants_of[] = {2, 9, 21};
-
 status apply_elastic(reading *r) {
+  status st = OK;
   const elastic_param *p = r->param;
   const card *c = r->card;
   material *mat = &r->m->materials[r->material_id];
   char text[256];
-  double value[ELASTIC_MAX];
-  int n = 0, wanted = constants_of[p->type];
-  if (mat->has_elastic++)
+  if (mat->has_elastic++) {
     message_add(r->m->log, P2011, &c->at, "material %s has *ELASTIC twice",
                 mat->name);
-  for (int i = 0; i < c->n_record; ++i)
-    for (int k = 0; k < c->records[i].n_field; ++k, ++n) {
-      if (n == wanted) {
-        message_add(r->m->log, P2009, &c->records[i].fields[k].at,
-                    "*ELASTIC: %d constants expected, more found; constants "
-                    "that depend on temperature are not available in this "
-                    "version",
-                    wanted);
-        return OK;
-      }
-      if (deck_real(&c->records[i].fields[k], r->m->log, &value[n]) != 0)
-        return OK;
-    }
-  if (n < wanted) {
-    message_add(r->m->log, P2009, &c->at,
-                "*ELASTIC: %d constants expected, %d found", wanted, n);
-    return OK;
+    goto done;
   }
-  mat->type = (elastic_type)p->type;
   mat->moduli = card_parameter(c, "MODULI") == NULL ? -1 : p->moduli;
-  mat->n_constant = n;
-  memcpy(mat->constant, value, sizeof mat->constant);
-  const char *wrong =
-      elastic_matrix(mat->type, n, value, mat->C, text, (int)sizeof text);
-  if (wrong != NULL)
-    message_add(r->m->log, P2013, &c->records[0].at, "material %s: %s",
-                mat->name, wrong);
-  return OK;
+  TRY(elastic_table_read(c, (elastic_type)p->type, mat->name, r->m->log,
+                         &mat->elastic));
+  if (mat->elastic.n > 0)
+    (void)elastic_at(&mat->elastic, 0.0, mat->C, text, (int)sizeof text);
+done:
+  return st;
 }
 
 status apply_density(reading *r) {
@@ -465,20 +442,23 @@ static void stiffen(const model *m, material *mat) {
                 mat->name, sum[0], sum[1]);
     return;
   }
-  const double E = mat->constant[0], nu = mat->constant[1];
-  const double G = E / (2 * (1 + nu)) / (1 - sum[0]);
-  const double K = E / (3 * (1 - 2 * nu)) / (1 - sum[1]);
-  const double at_once[] = {9 * K * G / (3 * K + G),
-                            (3 * K - 2 * G) / (2 * (3 * K + G))};
-  (void)elastic_matrix(ELASTIC_ISO, 2, at_once, mat->C, text, sizeof text);
+  for (int i = 0; i < mat->elastic.n; ++i) {
+    double *constant = mat->elastic.set[i].constant;
+    const double E = constant[0], nu = constant[1];
+    const double G = E / (2 * (1 + nu)) / (1 - sum[0]);
+    const double K = E / (3 * (1 - 2 * nu)) / (1 - sum[1]);
+    constant[0] = 9 * K * G / (3 * K + G);
+    constant[1] = (3 * K - 2 * G) / (2 * (3 * K + G));
+  }
+  (void)elastic_at(&mat->elastic, 0.0, mat->C, text, (int)sizeof text);
 }
 
 status material_resolve_law(const model *m, material *mat) {
   status st = OK;
   const law_card *law = &mat->law;
-  if (law->ops == NULL || law->n_set == 0 || mat->n_constant == 0) goto done;
+  if (law->ops == NULL || law->n_set == 0 || mat->elastic.n == 0) goto done;
   const int errors = message_count(m->log, ERROR);
-  TRY(law_card_check(law, mat->type, m->log));
+  TRY(law_card_check(law, mat->elastic.type, m->log));
   if (mat->moduli < 0) {
     mat->moduli =
         mat->is_abaqus_prony ? MODULI_LONG_TERM : MODULI_INSTANTANEOUS;

@@ -85,9 +85,9 @@ static void check_locking(const model *m) {
     const material *mat = s->material_id < 0 || s->kin == PLANE_STRESS
                               ? NULL
                               : &m->materials[s->material_id];
-    if (mat == NULL || mat->n_constant == 0 || mat->type != ELASTIC_ISO)
+    if (mat == NULL || mat->elastic.n == 0 || mat->elastic.type != ELASTIC_ISO)
       continue;
-    double nu = mat->constant[1];
+    double nu = elastic_table_most(&mat->elastic, 1);
     if (nu <= 0.49) continue;
     message_add(m->log, P2055, &s->at,
                 "nu = %g of material %s: linear elements lock; expect "
@@ -593,8 +593,9 @@ int step_level(const model *m, const step *s, double t, double dt, double rate,
   return -1;
 }
 
-static int is_constant(const law_card *law) {
-  return law->ops->linear && law_varies(law) == 0;
+static int is_constant(const material *mat) {
+  return mat->law.ops->linear && law_varies(&mat->law) == 0 &&
+         mat->elastic.n == 1;
 }
 
 /* Laws of the bodies under an integrator that is exact for constant ones. */
@@ -603,14 +604,15 @@ static void check_exact(const model *m, int step_id) {
   for (int i = 0; i < m->n_section; ++i) {
     const material *mat = &m->materials[m->sections[i].material_id];
     const law_card *law = &mat->law;
-    if (law->ops == NULL || is_constant(law)) continue;
+    if (law->ops == NULL || is_constant(mat)) continue;
     message_add(m->log, P2054, &s->at,
                 "step %d: INTEGRATOR=%s, but %s of material %s %s", step_id + 1,
                 s->integrator->name, law->ops->name, mat->name,
                 !law->ops->linear ? "is not linear"
                 : law_varies(law) & LAW_VARIES_TIME
                     ? "has coefficients that vary in time"
-                    : "depends on temperature");
+                : law_varies(law) != 0 ? "depends on temperature"
+                                       : "has moduli that do");
   }
 }
 
@@ -625,9 +627,9 @@ static status constant_rate(const model *m, double *fastest) {
     law_elastic elastic;
     law_point p;
     double rate;
-    if (mat->law.ops == NULL || !is_constant(&mat->law)) continue;
-    law_elastic_set(mat->C, mat->type, (kinematics)m->sections[i].kin,
-                    &elastic);
+    if (mat->law.ops == NULL || !is_constant(mat)) continue;
+    TRY(law_elastic_read(&mat->elastic, 0.0, (kinematics)m->sections[i].kin,
+                         &elastic));
     TRY(flow_new_kind(&kind, &mat->law, &elastic));
     TRY(flow_coefficients(&kind, 0.0, 0.0, NULL, &p));
     p.sigma = p.ei = p.alpha = zero;
@@ -690,6 +692,19 @@ static void check_reference(model *m) {
   ref->has_stress = n_stress > 0;
 }
 
+/* Moduli over the temperature where there is none. */
+static void check_moduli(const model *m) {
+  for (int i = 0; i < m->n_material; ++i) {
+    const material *mat = &m->materials[i];
+    if (!mat->used || mat->elastic.n < 2 || (m->effects & EFFECT_THERMAL))
+      continue;
+    message_add(m->log, P2049, &mat->at,
+                "material %s: *ELASTIC depends on temperature, but no "
+                "temperature is given: its constants at 0 are taken",
+                mat->name);
+  }
+}
+
 status model_check(model *m, const mesh *msh) {
   status st = OK;
   m->dim = msh->dim;
@@ -705,6 +720,7 @@ status model_check(model *m, const mesh *msh) {
   TRY(check_fields(m, msh));
   check_reference(m);
   model_find_effects(m);
+  check_moduli(m);
   TRY(message_status(m->log, ERR_DECK));
   check_values(m, msh);
   for (int i = 0; i < m->n_step; ++i) TRY(check_agreement(m, msh, i));

@@ -188,6 +188,18 @@ static int has_temperature(const model *m) {
          first_initial(m, INITIAL_TEMPERATURE) != NULL;
 }
 
+/* A material whose moduli depend on temperature. */
+static const material *first_warm_moduli(const model *m) {
+  for (int i = 0; i < m->n_material; ++i)
+    if (m->materials[i].used && m->materials[i].elastic.n > 1)
+      return &m->materials[i];
+  return NULL;
+}
+
+static int has_warm_moduli(const model *m) {
+  return has_temperature(m) && first_warm_moduli(m) != NULL;
+}
+
 static int has_warm_law(const model *m) {
   return has_inelastic(m) && has_temperature(m) && first_warm_law(m) != NULL;
 }
@@ -303,6 +315,9 @@ static void reason_thermal(const model *m, char *text, size_t size) {
   if (has_warm_law(m))
     snprintf(text, size, "law %s of material %s depends on temperature",
              first_warm_law(m)->law.ops->name, first_warm_law(m)->name);
+  else if (has_warm_moduli(m))
+    snprintf(text, size, "*ELASTIC of material %s depends on temperature",
+             first_warm_moduli(m)->name);
   else if (l == NULL)
     snprintf(text, size, "no *TEMPERATURE card");
   else if (!has_expansion(m))
@@ -354,7 +369,8 @@ static int has_slip_history(const model *m) {
 }
 static int has_body(const model *m) { return first_body_load(m) != NULL; }
 static int has_thermal(const model *m) {
-  return (first_temperature(m) != NULL && has_expansion(m)) || has_warm_law(m);
+  return (first_temperature(m) != NULL && has_expansion(m)) ||
+         has_warm_law(m) || has_warm_moduli(m);
 }
 static int has_stress(const model *m) {
   place at;

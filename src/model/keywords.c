@@ -254,9 +254,9 @@ const keyword keyword_table[] = {
    "", "discrete contact problem or LCP from a file in the place of a mesh"},
   {"MATERIAL", IN_MODEL, OPTIONS(name), NULL, apply_material, 0, 0,
    "", "opens a material: *ELASTIC, *INELASTIC, *DENSITY below belong to it"},
-  {"ELASTIC", IN_MATERIAL, OPTIONS(elastic), NULL, apply_elastic, 1, 3,
+  {"ELASTIC", IN_MATERIAL, OPTIONS(elastic), NULL, apply_elastic, 1, ANY,
    "ISO E, nu; ORTHO E1, E2, E3, nu12, nu13, nu23, G12, G13, G23; "
-   "ANISO 21 constants",
+   "ANISO 21 constants; each [, temperature]: linear between, constant outside",
    "elasticity a_ijkl (CPR98 2.2): symmetric and positive definite"},
   {"INELASTIC", IN_MATERIAL, OPTIONS(inelastic), names_inelastic,
    apply_inelastic, 1, ANY,

@@ -393,7 +393,10 @@ void model_free(model *m) {
   memory_free(m->initials);
   for (int i = 0; i < m->n_field; ++i) memory_free(m->fields[i].value);
   memory_free(m->fields);
-  for (int i = 0; i < m->n_material; ++i) law_card_free(&m->materials[i].law);
+  for (int i = 0; i < m->n_material; ++i) {
+    law_card_free(&m->materials[i].law);
+    elastic_table_free(&m->materials[i].elastic);
+  }
   memory_free(m->amplitudes);
   memory_free(m->materials);
   memory_free(m->sections);

@@ -27,12 +27,10 @@ typedef struct material {
   const char *name;
   place at;
   int used; /* a section refers to it                                         */
-  elastic_type type;
-  int has_elastic;              /* its *ELASTIC was seen, valid or not        */
-  int n_constant;               /* 0: no valid *ELASTIC                       */
-  double constant[ELASTIC_MAX]; /* Pa, -                                      */
-  double C[36];                 /* Pa                                         */
-  double density;               /* kg/m3                                      */
+  int has_elastic;       /* its *ELASTIC was seen, valid or not               */
+  elastic_table elastic; /* n = 0: no valid *ELASTIC                          */
+  double C[36];          /* at the temperature 0, Pa                          */
+  double density;        /* kg/m3                                      */
   int has_density;
   expansion expand;
   int moduli;   /* of *ELASTIC: MODULI_..., -1: not said                      */

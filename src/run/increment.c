@@ -174,6 +174,7 @@ done:
 status increment_pose(run *r, double t) {
   status st = OK;
   TRY(increment_begin(r, t));
+  TRY(run_use(r, &r->elastic));
   TRY(pose(r, strains_load(r)));
 done:
   return st;
@@ -197,6 +198,7 @@ done:
 status increment_solve(run *r, double t) {
   status st = OK;
   TRY(increment_begin(r, t));
+  TRY(run_use(r, &r->elastic));
   TRY(increment_equilibrium(r, strains_load(r)));
 done:
   return st;

@@ -20,8 +20,8 @@ static status new_kinds(const run *r, flow *x, int *kind_of) {
     law_elastic elastic;
     kind_of[i] = -1;
     if (mat->law.ops == NULL) continue;
-    law_elastic_set(mat->C, mat->type, (kinematics)m->sections[i].kin,
-                    &elastic);
+    TRY(law_elastic_read(&mat->elastic, 0.0, (kinematics)m->sections[i].kin,
+                         &elastic));
     kind_of[i] = x->n_kind++;
     TRY(flow_new_kind(&x->kind[kind_of[i]], &mat->law, &elastic));
   }
@@ -147,7 +147,7 @@ void visco_strains(run *r, const equilibrium *e, flow_state *s) {
   const eigenstrain thermal = {r->eigen.n, r->eigen_elem, e->thermal};
   eigen_stress(&r->d, &thermal, e->u, v->stress, NULL);
   for (int k = 0; k < v->x.n; ++k) {
-    const double *E = v->x.kind[v->x.kind_id[k]].elastic.E;
+    const double *E = run_elasticity(r, v->elem[k]);
     double elastic[6];
     memcpy(s->e + visco_at(r, k), v->stress + visco_at(r, v->place[k]),
            visco_at(r, 1) * sizeof *s->e);

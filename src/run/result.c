@@ -219,10 +219,10 @@ void result_start(const run *r, equilibrium *e) {
   e->energy = (energies){.strain = strain, .start = strain, .largest = strain};
 }
 
-void result_accept(run *r) {
+status result_accept(run *r) {
   if (r->n > 0) memcpy(r->f_before, r->f, (size_t)r->n_c * sizeof *r->f);
   equilibrium e = r->old;
   r->old = r->now;
   r->now = e;
-  if (r->visco != NULL) visco_accept(r);
+  return r->visco == NULL ? OK : visco_accept(r);
 }

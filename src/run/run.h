@@ -8,6 +8,7 @@
 #include "accuracy/accuracy.h"
 #include "accuracy/space.h"
 #include "base/timer.h"
+#include "moduli/moduli.h"
 #include "run/state.h"
 #include "scheme/scheme.h"
 
@@ -23,6 +24,7 @@ typedef struct equilibrium {
   double *temperature; /* [n_elem] or NULL: no thermal strain                 */
   double *thermal;     /* [ns*n] thermal strains of the elements of r->eigen  */
   double *e0, *sigma;  /* [ns*n] all their strains without stress; Pa         */
+  double *elastic;     /* [ns*n] the rest; NULL: moduli stay                  */
   energies energy;
 } equilibrium;
 
@@ -65,9 +67,8 @@ typedef struct run {
 
   /* What the elements are made of. */
   domain d;
-  kinematics *kin; /* [n_section]                                        */
-  double *thickness, *E; /* [n_section], [ns*ns*n_section]                    */
-  double *C;             /* [36*n_section]                                    */
+  moduli moduli; /* at the temperatures of r->now                             */
+  int stale;     /* 1: r->elastic was made with others                        */
   unsigned char *fixed; /* [dim*n_node]                                       */
 
   /* Elements with strains that have no stress. */
@@ -153,17 +154,20 @@ int run_step_id(const run *r);
  * archive: kept, or, after run_prepare, filled. */
 status run_keep(run *r, archive *a);
 
-/* Use m for the next equilibria; its solver is made if there is none. */
+/* Use m for the next equilibria; its solver is made if there is none, and
+ * r->elastic anew if temperatures have changed the moduli. */
 status run_use(run *r, matrices *m);
 void matrices_free(matrices *m);
 /* What the solver remembers, in a group of this name; reading: for the solver
  * that is made next. */
 status matrices_keep(matrices *m, archive *a, const char *group);
 
-/* strains.c: strains that carry no stress. */
+/* strains.c: elasticity of the elements, strains that carry no stress. */
 status strains_new(run *r);
 void strains_free(run *r);
 const material *run_material(const run *r, int elem_id);
+/* E[ns*ns] of an element at the temperatures of r->now, Pa. */
+const double *run_elasticity(const run *r, int elem_id);
 /* Temperatures and strains of r->now at its time t. */
 status strains_update(run *r);
 /* r->now.e0 from the strains at hand. */
@@ -196,7 +200,7 @@ status visco_try(run *r, double t, double *error);
  * for a step dt from r->old; ERR_DECK if the deck forbids to cut it. */
 status visco_level(run *r, double dt, int *level);
 status visco_energies(run *r, energies *e);
-void visco_accept(run *r);
+status visco_accept(run *r);
 status visco_keep(run *r, archive *a);
 
 /* increment.c: the equilibrium at time t into r->now; read r->report. */
@@ -251,6 +255,6 @@ status path_keep(run *r, archive *a);
 /* Energies of e as those the run starts with. */
 void result_start(const run *r, equilibrium *e);
 /* r->now becomes r->old. */
-void result_accept(run *r);
+status result_accept(run *r);
 
 #endif

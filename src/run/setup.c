@@ -29,37 +29,8 @@ static void free_equilibrium(equilibrium *e) {
   memory_free(e->temperature);
   memory_free(e->thermal);
   memory_free(e->e0);
+  memory_free(e->elastic);
   memory_free(e->sigma);
-}
-
-static status new_sections(run *r) {
-  status st = OK;
-  const model *m = r->m;
-  size_t square = (size_t)(m->ns * m->ns);
-  NEW(r->kin, m->n_section);
-  NEW(r->thickness, m->n_section);
-  NEW(r->E, square * (size_t)m->n_section);
-  NEW(r->C, 36 * (size_t)m->n_section);
-  for (int i = 0; i < m->n_section; ++i) {
-    const section *s = &m->sections[i];
-    r->kin[i] = (kinematics)s->kin;
-    r->thickness[i] = s->thickness;
-    memcpy(r->C + 36 * (size_t)i, m->materials[s->material_id].C,
-           36 * sizeof *r->C);
-    elastic_reduce(m->materials[s->material_id].C, r->kin[i],
-                   r->E + square * (size_t)i);
-  }
-  r->d.mesh = r->msh;
-  r->d.ns = m->ns;
-  r->d.section_id = m->elem_section;
-  r->d.kin = r->kin;
-  r->d.thickness = r->thickness;
-  r->d.E = r->E;
-  r->d.C = r->C;
-  NEW(r->fixed, r->n_dof);
-  r->d.fixed = r->fixed;
-done:
-  return st;
 }
 
 static status new_pairs(run *r) {
@@ -103,7 +74,9 @@ status run_new(run *r) {
   status st = OK;
   r->n_dof = (size_t)r->msh->dim * (size_t)r->msh->n_node;
   r->known_key = RUN_NO_KEY;
-  TRY(new_sections(r));
+  r->d.mesh = r->msh;
+  NEW(r->fixed, r->n_dof);
+  r->d.fixed = r->fixed;
   TRY(new_equilibrium(r, &r->old));
   TRY(new_equilibrium(r, &r->now));
   NEW(r->ud, r->n_dof);
@@ -164,8 +137,23 @@ done:
   return st;
 }
 
+/* The elastic matrix of the moduli at hand. */
+static status renew_elastic(run *r) {
+  status st = OK;
+  r->stale = 0;
+  r->c = NULL;
+  space_recovery_free(r->recovery);
+  r->recovery = NULL;
+  matrices_free(&r->elastic);
+  TRY(stiffness_assemble(&r->d, &r->elastic.k));
+  TRY(condense(r->elastic.k, &r->d, &r->elastic.c));
+done:
+  return st;
+}
+
 status run_use(run *r, matrices *m) {
   status st = OK;
+  if (m == &r->elastic && r->stale) TRY(renew_elastic(r));
   if (m->solver == NULL) TRY(new_solver(r, m));
   int read = r->known_key != RUN_NO_KEY;
   if (read ? r->known_key != m->key : r->c != m->c) forget_estimates(r);
@@ -210,10 +198,7 @@ void run_free(run *r) {
   free_equilibrium(&r->now);
   strains_free(r);
   theory_free(r->theory);
-  memory_free(r->kin);
-  memory_free(r->thickness);
-  memory_free(r->E);
-  memory_free(r->C);
+  moduli_free(&r->moduli);
   memory_free(r->fixed);
   memory_free(r->pairs);
   memory_free(r->node_fixed);
@@ -448,8 +433,7 @@ status run_prepare(run *r) {
       free_surface(r);
     r->d.surface = r->surface;
     TRY(check_supports(r));
-    TRY(stiffness_assemble(&r->d, &r->elastic.k));
-    TRY(condense(r->elastic.k, &r->d, &r->elastic.c));
+    TRY(renew_elastic(r));
     r->c = r->elastic.c;
     fresh = 1;
   }
@@ -481,7 +465,27 @@ static status keep_equilibrium(const run *r, equilibrium *e, archive *a) {
   TRY(archive_reals(a, "thermal", e->thermal, strains));
   TRY(archive_reals(a, "e0", e->e0, strains));
   TRY(archive_reals(a, "sigma", e->sigma, strains));
+  TRY(archive_reals(a, "elastic_strain", e->elastic,
+                    e->elastic == NULL ? 0 : strains));
   TRY(archive_bytes(a, "energy", &e->energy, sizeof e->energy));
+done:
+  return st;
+}
+
+/* Temperatures of the moduli, and whether the elastic matrix is theirs. */
+static status keep_moduli(run *r, archive *a) {
+  status st = OK;
+  int stale = r->stale, changed = 0;
+  size_t n = r->moduli.n_own == 0 ? 0 : (size_t)r->msh->n_elem;
+  double *T = r->now.temperature;
+  for (int k = 0; k < r->moduli.n_own && !archive_reads(a); ++k)
+    T[r->moduli.elem_id[k]] = r->moduli.at[k];
+  TRY(archive_ints(a, "stale", &stale, 1));
+  TRY(archive_reals(a, "moduli_temperature", T, n));
+  if (!archive_reads(a) || n == 0) goto done;
+  TRY(moduli_heat(&r->moduli, r->m, T, &changed));
+  r->stale = stale || changed;
+  if (!stale) TRY(run_use(r, &r->elastic));
 done:
   return st;
 }
@@ -552,6 +556,7 @@ status run_keep(run *r, archive *a) {
   archive_enter(a, "run");
   TRY(keep_counts(r, a));
   TRY(keep_equilibrium(r, &r->old, a));
+  TRY(keep_moduli(r, a));
   if (r->n > 0) TRY(keep_contact(r, a));
   TRY(path_keep(r, a));
   if (r->visco != NULL) TRY(visco_keep(r, a));

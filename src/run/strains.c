@@ -17,6 +17,11 @@ const material *run_material(const run *r, int elem_id) {
   return &m->materials[m->sections[m->elem_section[elem_id]].material_id];
 }
 
+const double *run_elasticity(const run *r, int elem_id) {
+  return r->moduli.E +
+         at(r, r->m->ns * moduli_entry(&r->moduli, r->m, elem_id));
+}
+
 int visco_flows(const run *r, int elem_id) {
   return (r->m->effects & EFFECT_INELASTIC) &&
          run_material(r, elem_id)->law.ops != NULL;
@@ -28,7 +33,8 @@ static int expands(const run *r, int elem_id) {
 }
 
 static int has_strains(const run *r, int elem_id) {
-  return expands(r, elem_id) || visco_flows(r, elem_id);
+  return expands(r, elem_id) || visco_flows(r, elem_id) ||
+         moduli_follows(r->m, elem_id);
 }
 
 static status new_strains(const run *r, equilibrium *e) {
@@ -42,6 +48,7 @@ static status new_strains(const run *r, equilibrium *e) {
   NEW(e->thermal, n);
   NEW(e->e0, n);
   NEW(e->sigma, n);
+  if (r->moduli.n_own > 0) NEW(e->elastic, n);
 done:
   return st;
 }
@@ -61,12 +68,14 @@ done:
 
 status strains_new(run *r) {
   status st = OK;
-  if (!(r->m->effects & (EFFECT_THERMAL | EFFECT_INELASTIC))) return OK;
-  TRY(list_elements(r));
   if (r->m->effects & EFFECT_THERMAL) {
     NEW(r->temperature0, r->msh->n_elem);
     TRY(load_temperature_initial(r->m, r->msh, r->temperature0));
   }
+  TRY(moduli_new(r->m, r->msh, r->temperature0, &r->moduli));
+  moduli_domain(&r->moduli, r->m, &r->d);
+  if (!(r->m->effects & (EFFECT_THERMAL | EFFECT_INELASTIC))) goto done;
+  TRY(list_elements(r));
   TRY(new_strains(r, &r->old));
   TRY(new_strains(r, &r->now));
   if (r->m->effects & EFFECT_INELASTIC) TRY(visco_new(r));
@@ -82,14 +91,21 @@ void strains_free(run *r) {
   memory_free(r->eigen_load);
 }
 
-/* Temperatures and thermal strains of r->now. */
+/* Temperatures, moduli and thermal strains of r->now. */
 static status heat(run *r) {
   status st = OK;
   equilibrium *now = &r->now;
+  int changed = 0;
   size_t ns = (size_t)r->m->ns;
   timer_enter(STAGE_THERMAL);
   TRY(load_temperature(r->m, r->msh, r->step, now->t, r->temperature0,
                        now->temperature));
+  TRY(moduli_heat(&r->moduli, r->m, now->temperature, &changed));
+  if (changed) {
+    visco_forget(r);
+    r->stale = 1;
+    if (r->c != r->elastic.c) r->c = NULL;
+  }
   for (int k = 0; k < r->eigen.n; ++k) {
     int e = r->eigen_elem[k];
     if (expands(r, e))
@@ -125,13 +141,23 @@ const double *strains_load(run *r) {
   return r->eigen_load;
 }
 
+/* Item k of r->eigen: strain energy per volume that the change of the moduli
+ * has set free, exact as the trapezoidal works are: 1/2 e_old (E_old - E) e. */
+static double softened(const run *r, int k) {
+  const equilibrium *a = &r->old, *b = &r->now;
+  if (a->elastic == NULL) return 0.0;
+  return 0.5 *
+         (tensor_dot(r->m->ns, a->sigma + at(r, k), b->elastic + at(r, k)) -
+          tensor_dot(r->m->ns, b->sigma + at(r, k), a->elastic + at(r, k)));
+}
+
 void strains_work(run *r, energies *e) {
   const equilibrium *a = &r->old, *b = &r->now;
   size_t ns = (size_t)r->m->ns;
   double scale = 0.0;
   if (r->eigen.n == 0) return;
   timer_enter(STAGE_ENERGY);
-  eigen_stress(&r->d, &r->eigen, b->u, NULL, b->sigma);
+  eigen_stress(&r->d, &r->eigen, b->u, b->elastic, b->sigma);
   for (int k = 0; k < r->eigen.n; ++k) {
     double w = element_weight(&r->d, r->eigen_elem[k]);
     double thermal = 0.0, all = 0.0, held[6];
@@ -140,11 +166,10 @@ void strains_work(run *r, energies *e) {
       thermal += sigma * (b->thermal[i] - a->thermal[i]);
       all += sigma * (b->e0[i] - a->e0[i]);
     }
-    e->thermal += w * thermal;
+    e->thermal += w * (thermal + softened(r, k));
     e->inelastic += w * (all - thermal);
-    tensor_product(
-        r->m->ns, r->E + at(r, r->m->ns * r->m->elem_section[r->eigen_elem[k]]),
-        b->e0 + at(r, k), held);
+    tensor_product(r->m->ns, run_elasticity(r, r->eigen_elem[k]),
+                   b->e0 + at(r, k), held);
     scale += 0.5 * w * tensor_dot(r->m->ns, b->e0 + at(r, k), held);
   }
   e->largest = fmax(e->largest, scale);

@@ -36,8 +36,8 @@ static status constant_domain(run *r, const flow_tangent *law, domain *d) {
   visco *v = r->visco;
   size_t square = visco_at(r, r->m->ns);
   int kind = 0;
-  if (v->E == NULL) NEW(v->E, square * (size_t)(r->m->n_section + v->x.n));
-  memcpy(v->E, r->E, square * (size_t)r->m->n_section * sizeof *v->E);
+  if (v->E == NULL) NEW(v->E, square * (size_t)(r->moduli.n + v->x.n));
+  memcpy(v->E, r->moduli.E, square * (size_t)r->moduli.n * sizeof *v->E);
   for (int i = 0; i < r->m->n_section; ++i) {
     const material *mat = &r->m->materials[r->m->sections[i].material_id];
     if (mat->law.ops == NULL) continue;
@@ -54,19 +54,20 @@ done:
 static status new_sections(run *r) {
   status st = OK;
   visco *v = r->visco;
-  int n_section = r->m->n_section, n = n_section + v->x.n;
+  const moduli *own = &r->moduli;
+  int n = own->n + v->x.n;
   NEW(v->section_id, r->msh->n_elem);
   NEW(v->kin, n);
   NEW(v->thickness, n);
-  memcpy(v->section_id, r->m->elem_section,
+  memcpy(v->section_id, r->d.section_id,
          (size_t)r->msh->n_elem * sizeof *v->section_id);
-  memcpy(v->kin, r->kin, (size_t)n_section * sizeof *v->kin);
-  memcpy(v->thickness, r->thickness, (size_t)n_section * sizeof *v->thickness);
+  memcpy(v->kin, own->kin, (size_t)own->n * sizeof *v->kin);
+  memcpy(v->thickness, own->thickness, (size_t)own->n * sizeof *v->thickness);
   for (int k = 0; k < v->x.n; ++k) {
-    int e = v->elem[k], own = n_section + k;
-    v->kin[own] = r->kin[v->section_id[e]];
-    v->thickness[own] = r->thickness[v->section_id[e]];
-    v->section_id[e] = own;
+    int e = v->elem[k], entry = own->n + k;
+    v->kin[entry] = own->kin[v->section_id[e]];
+    v->thickness[entry] = own->thickness[v->section_id[e]];
+    v->section_id[e] = entry;
   }
 done:
   return st;
@@ -75,14 +76,14 @@ done:
 static status fresh_domain(run *r, const flow_tangent *law, domain *d) {
   status st = OK;
   visco *v = r->visco;
-  size_t square = visco_at(r, r->m->ns), n_section = (size_t)r->m->n_section;
+  size_t square = visco_at(r, r->m->ns), n = (size_t)r->moduli.n;
   if (v->section_id == NULL) TRY(new_sections(r));
-  if (v->E == NULL) NEW(v->E, square * (n_section + (size_t)v->x.n));
-  memcpy(v->E, r->E, square * n_section * sizeof *v->E);
-  memcpy(v->E + square * n_section, law->D,
-         square * (size_t)v->x.n * sizeof *v->E);
+  if (v->E == NULL) NEW(v->E, square * (n + (size_t)v->x.n));
+  memcpy(v->E, r->moduli.E, square * n * sizeof *v->E);
+  memcpy(v->E + square * n, law->D, square * (size_t)v->x.n * sizeof *v->E);
   *d = r->d;
   d->section_id = v->section_id;
+  d->origin = NULL;
   d->kin = v->kin;
   d->thickness = v->thickness;
   d->E = v->E;
@@ -141,14 +142,14 @@ static const double *tangent_load(run *r, const flow_tangent *law) {
   for (int k = 0, point = 0; k < r->eigen.n; ++k) {
     int e = r->eigen_elem[k];
     if (point == v->x.n || v->place[point] != k) {
-      tensor_product(ns, r->E + visco_at(r, ns * r->m->elem_section[e]),
-                     thermal + visco_at(r, k), v->stress + visco_at(r, k));
+      tensor_product(ns, run_elasticity(r, e), thermal + visco_at(r, k),
+                     v->stress + visco_at(r, k));
       continue;
     }
     int kind = v->x.kind_id[point];
     const double *D =
         law->elastic
-            ? v->x.kind[kind].elastic.E
+            ? run_elasticity(r, e)
             : law->D + visco_at(r, ns * (law->key > 0.0 ? kind : point));
     double e_k[6];
     for (size_t i = 0; i < visco_at(r, 1); ++i)

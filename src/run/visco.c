@@ -15,8 +15,7 @@ static status equilibrium_of(void *ctx, flow_state *s, int *settled) {
   status st = OK;
   run *r = ctx;
   timer_leave(STAGE_INELASTIC);
-  st = run_use(r, &r->elastic);
-  if (st == OK) st = increment_solve(r, s->t);
+  st = increment_solve(r, s->t);
   timer_enter(STAGE_INELASTIC);
   TRY(st);
   visco_temperatures(r, &r->now, s);
@@ -196,8 +195,9 @@ static status try_step(run *r, double t, double *error) {
   TRY(advance(r, t));
   if (r->report.outcome <= 0) goto done;
   *error = estimates ? v->result.error : halves_error(r);
-  double scale = fmax(v->largest, flow_elastic_norm(&v->x, &v->now));
-  if (*error > 0.0) *error /= scale;
+  double norm = 0.0;
+  TRY(flow_elastic_norm(&v->x, &v->now, &norm));
+  if (*error > 0.0) *error /= fmax(v->largest, norm);
 done:
   return st;
 }
@@ -239,14 +239,19 @@ done:
   return st;
 }
 
-void visco_accept(run *r) {
+status visco_accept(run *r) {
+  status st = OK;
   visco *v = r->visco;
-  if (r->step->kind != STEP_VISCO) return;
+  double norm = 0.0;
+  if (r->step->kind != STEP_VISCO) return OK;
   v->result.dissipated = 0.0;
   timer_enter(STAGE_INELASTIC);
-  v->largest = fmax(v->largest, flow_elastic_norm(&v->x, &v->now));
+  TRY(flow_elastic_norm(&v->x, &v->now, &norm));
+  v->largest = fmax(v->largest, norm);
   flow_state_copy(&v->x, &v->now, &v->old);
+done:
   timer_leave(STAGE_INELASTIC);
+  return st;
 }
 
 status visco_keep_flow(const flow *x, flow_state *s, archive *a,

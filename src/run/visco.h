@@ -23,10 +23,10 @@ struct visco {
   long clock;
   double length[SLOTS]; /* of the last different steps, s                     */
   unsigned n_length;
-  double *E;       /* [ns*ns*(n_section + x.n)] of a tangent                  */
+  double *E;       /* [ns*ns*(r->moduli.n + x.n)] of a tangent                */
   double *stress;  /* [ns*r->eigen.n] Pa                                      */
   int *section_id; /* [n_elem] sections of their own for the points     */
-  kinematics *kin; /* [n_section + x.n]                                 */
+  kinematics *kin; /* [r->moduli.n + x.n]                               */
   double *thickness; /* the same                                          */
   double largest;    /* largest norm of the elastic strains so far        */
   const step *told;  /* step whose ringing has been told                  */

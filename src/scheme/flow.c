@@ -15,6 +15,7 @@ status flow_new_kind(flow_kind *k, const law_card *law,
   k->elastic = *elastic;
   k->n_alpha = law_n_alpha(law, elastic->ns);
   k->varies = law_varies(law);
+  if (elastic->table != NULL) k->varies |= LAW_VARIES_TEMPERATURE;
   if (law_n_value(law) > FLOW_VALUE_MAX ||
       elastic->ns + k->n_alpha > FLOW_VALUE_MAX)
     FAIL(ERR_DECK, "law %s: more than %d coefficients or internal variables",
@@ -89,9 +90,14 @@ void flow_state_copy(const flow *x, const flow_state *from, flow_state *to) {
   memcpy(to->temperature, from->temperature, (size_t)x->n * sizeof(double));
 }
 
-status flow_coefficients(const flow_kind *kind, double t, double temperature,
+status flow_heat(flow_kind *kind, double temperature) {
+  return law_elastic_heat(&kind->elastic, temperature);
+}
+
+status flow_coefficients(flow_kind *kind, double t, double temperature,
                          double *value, law_point *p) {
   status st = OK;
+  TRY(flow_heat(kind, temperature));
   *p = (law_point){.law = kind->law,
                    .elastic = &kind->elastic,
                    .value = kind->value,
@@ -184,15 +190,20 @@ double flow_norm(const flow *x, const double *v) {
   return mean_root(x, sum);
 }
 
-double flow_elastic_norm(const flow *x, const flow_state *s) {
+status flow_elastic_norm(const flow *x, const flow_state *s, double *norm) {
+  status st = OK;
   double sum = 0.0;
   for (int k = 0; k < x->n; ++k) {
     double e[6];
-    tensor_product(x->ns, x->kind[x->kind_id[k]].elastic.S,
-                   s->sigma + (size_t)x->ns * (size_t)k, e);
+    flow_kind *kind = &x->kind[x->kind_id[k]];
+    TRY(flow_heat(kind, s->temperature[k]));
+    tensor_product(x->ns, kind->elastic.S, s->sigma + (size_t)x->ns * (size_t)k,
+                   e);
     sum += x->weight[k] * tensor_dot(x->ns, e, e);
   }
-  return mean_root(x, sum);
+  *norm = mean_root(x, sum);
+done:
+  return st;
 }
 
 int flow_is_constant(const flow *x) {

@@ -28,6 +28,7 @@ typedef struct local {
   double *y, *old, *f, *trial;  /* [n] e^i and alpha                         */
   double *M, *X;                /* [n*n], [n*ns]                             */
   int *pivot;                   /* [n]                                       */
+  double E[36]; /* [ns*ns] at the end of the step, Pa                         */
   law_jacobian j;
   double value[FLOW_VALUE_MAX];
   law_point p;
@@ -69,12 +70,14 @@ static status local_begin(const flow *x, const scheme_step *p, int k,
   status st = OK;
   const double th = p->theta;
   size_t at = (size_t)x->ns * (size_t)k;
+  flow_kind *kind = &x->kind[x->kind_id[k]];
   double T = (1 - th) * old->temperature[k] + th * now->temperature[k];
-  TRY(flow_coefficients(&x->kind[x->kind_id[k]], old->t + th * p->dt, T,
-                        l->value, &l->p));
+  TRY(flow_heat(kind, now->temperature[k]));
+  memcpy(l->E, kind->elastic.E, (size_t)(x->ns * x->ns) * sizeof *l->E);
+  TRY(flow_coefficients(kind, old->t + th * p->dt, T, l->value, &l->p));
   l->p.dt = p->dt;
   l->ns = x->ns;
-  l->na = x->kind[x->kind_id[k]].n_alpha;
+  l->na = kind->n_alpha;
   l->n = l->ns + l->na;
   l->p.sigma = l->sigma;
   l->p.ei = l->ei;
@@ -94,7 +97,7 @@ static void local_place(const scheme_step *p, const double *sigma_old,
   const double th = p->theta;
   double elastic[6], sigma[6];
   for (int i = 0; i < l->ns; ++i) elastic[i] = l->e[i] - y[i];
-  tensor_product(l->ns, l->p.elastic->E, elastic, sigma);
+  tensor_product(l->ns, l->E, elastic, sigma);
   for (int i = 0; i < l->ns; ++i) {
     l->sigma[i] = (1 - th) * sigma_old[i] + th * sigma[i];
     l->ei[i] = (1 - th) * l->old[i] + th * y[i];
@@ -120,7 +123,7 @@ static double local_residual(const scheme_step *p, const double *sigma_old,
 
 /* M[n*n] and X[n*ns] = theta dt (J_es; J_as) E at the point. */
 static void local_matrix(const scheme_step *p, local *l) {
-  const double h = p->theta * p->dt, *E = l->p.elastic->E;
+  const double h = p->theta * p->dt, *E = l->E;
   const int ns = l->ns, na = l->na, n = l->n;
   law_jacobian_at(&l->p, &l->j);
   memset(l->X, 0, (size_t)(n * ns) * sizeof *l->X);
@@ -193,7 +196,7 @@ static void local_solve(const scheme_step *p, const double *sigma_old, local *l,
 static status local_tangent(const scheme_step *p, local *l, double *D) {
   status st = OK;
   const int ns = l->ns, n = l->n;
-  const double *E = l->p.elastic->E;
+  const double *E = l->E;
   local_matrix(p, l);
   if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, ns, l->M, n, l->pivot, l->X, n) != 0)
     FAIL(ERR_SINGULAR, "the step of an inelastic law has no solution");
@@ -230,22 +233,26 @@ static status solve_points(const scheme_call *a, local *l) {
     memcpy(a->now->alpha + x->alpha_at[k], l->y + ns,
            (size_t)l->na * sizeof *l->y);
     for (size_t i = 0; i < ns; ++i) elastic[i] = l->e[i] - l->y[i];
-    tensor_product(x->ns, l->p.elastic->E, elastic, a->now->sigma + at);
+    tensor_product(x->ns, l->E, elastic, a->now->sigma + at);
     if (!a->p->initial) TRY(local_tangent(a->p, l, a->w->D + ns * at));
   }
 done:
   return st;
 }
 
-/* Stresses of the linear law at now->e: linear[ns*n]; returns the scale of
- * their misfit, from them and from the elastic stresses of the strains. */
-static double linear_stress(const flow *x, const flow_tangent *law,
-                            const flow_state *now, double *linear) {
+/* Stresses of the linear law at now->e: linear[ns*n]; the scale of their
+ * misfit, from them and from the elastic stresses of the strains. */
+static status linear_stress(const flow *x, const flow_tangent *law,
+                            const flow_state *now, double *linear,
+                            double *scale) {
+  status st = OK;
   const int ns = x->ns;
-  double scale = 0.0;
+  double sum = 0.0;
   for (int k = 0; k < x->n; ++k) {
     const size_t at = (size_t)ns * (size_t)k;
-    const double *E = x->kind[x->kind_id[k]].elastic.E;
+    flow_kind *kind = &x->kind[x->kind_id[k]];
+    TRY(flow_heat(kind, now->temperature[k]));
+    const double *E = kind->elastic.E;
     const double *D = law->elastic ? E : law->D + (size_t)ns * at;
     double step[6], change[6], whole[6];
     for (size_t i = 0; i < (size_t)ns; ++i)
@@ -253,10 +260,12 @@ static double linear_stress(const flow *x, const flow_tangent *law,
     tensor_product(ns, D, step, change);
     tensor_product(ns, E, now->e + at, whole);
     add_scaled((size_t)ns, law->sigma + at, 1.0, change, linear + at);
-    scale += x->weight[k] * (tensor_dot(ns, whole, whole) +
-                             tensor_dot(ns, linear + at, linear + at));
+    sum += x->weight[k] * (tensor_dot(ns, whole, whole) +
+                           tensor_dot(ns, linear + at, linear + at));
   }
-  return sqrt(scale);
+  *scale = sqrt(sum);
+done:
+  return st;
 }
 
 /* Misfit of the stresses and of those of the linear law, over the scale. */
@@ -306,7 +315,8 @@ status newton_advance(const scheme_call *a) {
     TRY(a->b->linear(a->b->ctx, &law, a->now, &out->settled));
     ++out->iterations;
     if (!out->settled) goto done;
-    double scale = linear_stress(x, &law, a->now, w->linear);
+    double scale = 0.0;
+    TRY(linear_stress(x, &law, a->now, w->linear, &scale));
     TRY(solve_points(a, &l));
     if (!out->settled || misfit(x, a->now, w->linear, scale) <= p->tol)
       goto done;

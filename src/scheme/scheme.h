@@ -16,9 +16,10 @@
 /* Points of one material and elasticity. */
 typedef struct flow_kind {
   const law_card *law; /* borrowed                                           */
-  law_elastic elastic;
+  law_elastic elastic; /* at the last temperature asked for: flow_heat() */
   int n_alpha;
-  unsigned varies; /* law_varies(): 0: value and speed hold for ever         */
+  unsigned varies; /* law_varies(), and whether the elasticity depends on
+                      temperature; 0: all of it holds for ever               */
   double *value;   /* [law_n_value()]                                        */
   double speed;
 } flow_kind;
@@ -50,9 +51,12 @@ void flow_free(flow *x);
 status flow_state_new(const flow *x, flow_state *s);
 void flow_state_free(flow_state *s);
 void flow_state_copy(const flow *x, const flow_state *from, flow_state *to);
+/* The elasticity of a kind at a temperature, into kind->elastic. ERR_DECK: the
+ * constants are none there. */
+status flow_heat(flow_kind *kind, double temperature);
 /* A law at a time and temperature, without the state; "value" has room for
  * FLOW_VALUE_MAX coefficients. */
-status flow_coefficients(const flow_kind *kind, double t, double temperature,
+status flow_coefficients(flow_kind *kind, double t, double temperature,
                          double *value, law_point *p);
 /* Point k of a state for the law. */
 status flow_point(const flow *x, int k, const flow_state *s, double dt,
@@ -68,7 +72,7 @@ status flow_stored(const flow *x, const flow_state *s, double *energy);
 /* Root mean square over the volume of [ns*n] values. */
 double flow_norm(const flow *x, const double *v);
 /* The same of the elastic strains, -. */
-double flow_elastic_norm(const flow *x, const flow_state *s);
+status flow_elastic_norm(const flow *x, const flow_state *s, double *norm);
 
 /* Law of the points for one linear solve: sigma = sigma_k + D (e - e_k). */
 typedef struct flow_tangent {
