@@ -85,21 +85,20 @@ done:
 /* A_s and its inverse. */
 static status hold(const contact_problem *cp, anchor *an) {
   status st = OK;
-  int *iwork = NULL, m = cp->m;
-  double *work = NULL;
+  dense d = {0};
+  int m = cp->m;
   size_t size = (size_t)m * (size_t)m;
-  NEW(iwork, m);
-  NEW(work, 3 * m);
+  TRY(dense_new(m, &d));
   memcpy(an->A, cp->A, size * sizeof *an->A);
   for (int k = 0; k < an->n_mode; ++k) {
     const double *v = an->R + (size_t)k * (size_t)m;
     cblas_dger(CblasColMajor, m, m, an->spring, v, 1, v, 1, an->A, m);
   }
-  memcpy(an->W, an->A, size * sizeof *an->W);
-  an->missing = !form_invert(m, an->W, work, iwork);
+  memcpy(d.a, an->A, size * sizeof *d.a);
+  an->missing = !form_invert(m, &d);
+  memcpy(an->W, d.a, size * sizeof *d.a);
 done:
-  memory_free(iwork);
-  memory_free(work);
+  dense_free(&d);
   return st;
 }
 
@@ -112,7 +111,7 @@ status anchor_make(const contact_problem *cp, anchor *an) {
   NEW(an->A, m * m);
   NEW(an->W, m * m);
   NEW(an->f, m);
-  TRY(find_modes(cp, form_power(m, cp->A), an->W, an));
+  TRY(find_modes(cp, dense_power(cp->m, cp->A), an->W, an));
   if (an->missing) goto done;
   for (size_t i = 0; i < m; ++i) an->spring += cp->A[i * (m + 1)] / (double)m;
   an->spring *= SOFT / cp->n;

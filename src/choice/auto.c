@@ -48,7 +48,7 @@ const char auto_help[] =
 /* clang-format on */
 
 enum {
-  WARM_STEPS = 3,      /* of NEWTON before the normal form is made; cold: 1   */
+  WARM_STEPS = 3,      /* of NEWTON before the normal form is made            */
   ROUND = 10,          /* sweeps from one look at their rate to the next      */
   SWEEP_SHARE = 4,     /* m over it: sweeps that cost less than an inverse    */
   FULL_SIZE = 1000,    /* m: up to here a link has all its iterations         */
@@ -182,6 +182,21 @@ static int is_cold(const contact_problem *cp, const double *r) {
   return 1;
 }
 
+/* The first problem on a matrix often needs no normal form: from a cold start
+ * every node may be closed, from a warm one few steps may do. */
+static status first_steps(contact_solver *s, const contact_problem *cp,
+                          const solver_listener *listener, const answer *to) {
+  status st = OK;
+  int closed = 0;
+  if (!is_cold(cp, to->r))
+    return short_try(s, cp, &newton_solver, WARM_STEPS, listener, to);
+  *to->rep = (solver_report){.iterations = 1, .solver = newton_solver.name};
+  TRY(normal_form_closed(&s->normal, cp, to->u, to->r, &closed));
+  if (closed) attempt_judge(cp, s->choice.tol, to->u, to->r, to->rep);
+done:
+  return st;
+}
+
 /* Without friction: in the normal unknowns. *done_well = 1: solved. */
 static status solve_normal(contact_solver *s, const contact_problem *cp,
                            const solver_listener *listener, double *u,
@@ -193,10 +208,8 @@ static status solve_normal(contact_solver *s, const contact_problem *cp,
                             .listener = listener};
   *done_well = 0;
   if (!normal_form_applies(cp)) goto done;
-  if (cp->A != NULL && s->normal.wanted++ == 0) {
-    const answer to = {u, r, rep};
-    int steps = is_cold(cp, r) ? 1 : WARM_STEPS;
-    TRY(short_try(s, cp, &newton_solver, steps, listener, &to));
+  if (s->normal.wanted++ == 0) {
+    TRY(first_steps(s, cp, listener, &(answer){u, r, rep}));
     *done_well = rep->outcome == CONVERGED;
     if (*done_well) goto done;
     before = rep->iterations;

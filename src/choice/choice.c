@@ -43,6 +43,7 @@ void contact_solver_reset(contact_solver *s) {
   s->fixed = NULL;
   s->path = NULL;
   other_form_free(&s->other);
+  s->inverse_wanted = 0;
   normal_form_free(&s->normal);
   anchor_free(&s->held);
   memory_free(s->best_u);
@@ -154,7 +155,8 @@ static status suit(contact_solver *s, const contact_problem *cp,
   status st = OK;
   *out = *cp;
   *why = NULL;
-  int stiffness = (ops->handles & NEEDS_STIFFNESS) && cp->A == NULL;
+  int stiffness = (ops->handles & NEEDS_STIFFNESS) && cp->A == NULL &&
+                  (!(ops->handles & REGULAR_COMPLIANCE) || s->inverse_wanted);
   int compliance = (ops->handles & NEEDS_COMPLIANCE) && cp->W == NULL;
   if (cp->dim == 3 && !(ops->handles & SOLVES_3D)) {
     *why = "solves problems in the plane only";
@@ -231,6 +233,20 @@ static status drive_anchored(void *ctx, const contact_problem *cp,
   return drive_one(x->s, cp, x->a, control, u, r, rep);
 }
 
+/* 1: a method found the compliance, or the part of it that a guess of the
+ * states takes, singular: only the inverse can tell which. */
+static int wants_inverse(contact_solver *s, const contact_problem *cp,
+                         const attempt *a, const solver_report *rep) {
+  int row = row_of(a->ops);
+  if (rep->outcome != STOPPED_SINGULAR || cp->A != NULL ||
+      !(a->ops->handles & REGULAR_COMPLIANCE) || s->inverse_wanted)
+    return 0;
+  a->ops->release(s->work[row]);
+  s->work[row] = NULL;
+  s->inverse_wanted = 1;
+  return a->max_iter == 0 || a->max_iter > rep->iterations;
+}
+
 status attempt_run(contact_solver *s, const contact_problem *cp,
                    const attempt *a, const solver_listener *listener, double *u,
                    double *r, solver_report *rep) {
@@ -258,6 +274,12 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
     TRY(anchor_solve(&s->held, cp, &inner, &control, u, r, rep));
   else
     TRY(drive_one(s, &own, a, &control, u, r, rep));
+  if (wants_inverse(s, cp, a, rep)) {
+    attempt again = *a;
+    if (a->max_iter > 0) again.max_iter -= rep->iterations;
+    cold_start(cp, u, r);
+    TRY(attempt_run(s, cp, &again, listener, u, r, rep));
+  }
 done:
   rep->solver = a->ops->name;
   return st;

@@ -27,6 +27,7 @@ struct contact_solver {
   friction_path *path;
   int path_room; /* entries of B it was made for                         */
   other_form other;
+  int inverse_wanted; /* 1: the compliance alone did not do                  */
   anchor held; /* springs for a body that contact alone holds                 */
   normal_form normal;
   double *best_u, *best_r; /* [m] of the attempt with the lowest residual     */

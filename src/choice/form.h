@@ -6,20 +6,17 @@
  *
  * The normal form of a problem without friction: the tangential unknowns, which
  * carry no force, are eliminated once per matrix,
- *   S = A_nn - A_nt inv(A_tt) A_tn   (compliance form: inv(W_nn)),
+ *   S = A_nn - A_nt inv(A_tt) A_tn,
  * and contact is solved in the n normal unknowns.
  */
 #ifndef PROTIS_CHOICE_FORM_H
 #define PROTIS_CHOICE_FORM_H
 
+#include "newton/dense.h"
 #include "solver/solver.h"
 
-/* Power of two that brings the largest diagonal entry of M[m*m] to order 1:
- * roots then keep their bits under a change of units by such powers. */
-double form_power(size_t m, const double *M);
-/* inv(M) in place of a symmetric M[m*m], by Cholesky; 0: not positive definite,
- * or singular to rounding: M is lost. work [3m], iwork [m] */
-int form_invert(int m, double *M, double *work, int *iwork);
+/* inv(M) in place of d->a = M[m*m]; 0: singular to rounding, M is lost. */
+int form_invert(int m, dense *d);
 
 typedef struct other_form {
   double *matrix; /* [m*m] inverse of the one given, or NULL                  */
@@ -31,22 +28,27 @@ status other_form_make(const contact_problem *cp, other_form *o);
 void other_form_free(other_form *o); /* all zero afterwards                   */
 
 typedef struct normal_form {
-  int missing;             /* 1: it does not exist                            */
-  int wanted;              /* problems met that would have used it            */
-  double power;            /* of two: power A has a diagonal of order 1       */
-  double *L;               /* [nt*nt] Cholesky factor of power A_tt           */
-  double *Y;               /* [nt*n] inv(L) power A_tn                        */
-  double *S;               /* [n*n]                                           */
-  double *f, *u, *r, *gap; /* [n] of the problem in S                         */
-  double *y;               /* [m] work                                        */
-  void *work;              /* of the solver                                   */
+  int missing;       /* 1: it does not exist                            */
+  int wanted;        /* problems met that would have used it            */
+  double power;      /* of two: power A has a diagonal of order 1       */
+  double *L;         /* [nt*nt] Cholesky factor of power A_tt           */
+  double *Y;         /* [nt*n] inv(L) power A_tn                        */
+  double *S;         /* [n*n]                                           */
+  double *f, *u, *r; /* [n] of the problem in S                         */
+  double *y;         /* [m] work                                        */
+  void *work;        /* of the solver                                   */
   archive *from;  /* borrowed: what the work is to remember; or NULL          */
   char group[80]; /* in it                                                    */
 } normal_form;
 /* What it remembers from problem to problem; as contact_solver_keep. */
 status normal_form_keep(normal_form *nf, archive *a);
-/* 1: no friction, no second obstacle, nothing held, matrix not singular. */
+/* 1: stiffness known, no friction, no second obstacle, nothing held, matrix
+ * not singular. */
 int normal_form_applies(const contact_problem *cp);
+/* u[m], r[m] with every node closed, by the factor alone; *closed = 1: no node
+ * pulls, it is the solution. */
+status normal_form_closed(normal_form *nf, const contact_problem *cp, double *u,
+                          double *r, int *closed);
 /* Solve by Newton's method from u[m], r[m]. rep as from a solver; RUNNING if
  * the form does not exist (u, r untouched). */
 status normal_form_solve(normal_form *nf, const contact_problem *cp,

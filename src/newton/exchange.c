@@ -73,7 +73,7 @@ static void make_columns(newton_system *s) {
     }
     const double *column = s->cp->A + m * (size_t)dof;
     for (int i = 0; i < p->n_free; ++i) x[i] = s->power * column[p->free_id[i]];
-    if (s->full) newton_limit_rows(s, p, column, x);
+    if (s->K.full) newton_limit_rows(s, p, column, x);
     for (int i = 0; i < p->n_free; ++i) x[i] = -x[i];
   }
   newton_back(s, s->n_column - first, s->X + m * (size_t)first);

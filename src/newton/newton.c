@@ -18,8 +18,12 @@
  * which ends for every P-matrix. A singular system (nothing holds the body
  * under the guess) is made regular by weak springs for the step; if the final
  * pattern is singular, that is the verdict.
+ *
+ * Where only the compliance is known a step solves for the forces the guess
+ * leaves open (compliance.h); a singular system is then the end.
  */
 #include "base/memory.h"
+#include "newton/compliance.h"
 #include "newton/states.h"
 #include "solver/solver.h"
 
@@ -50,7 +54,8 @@ static const uint64_t DICE_START = 88172645463325252u;
 
 typedef struct newton_work {
   states states;
-  newton_system *system;
+  newton_system *system;         /* NULL: only the compliance is known        */
+  compliance_system *compliance; /* or NULL                                   */
   best_iterate best;
   uint64_t seen[HISTORY]; /* hashes of the patterns of the attempt           */
 } newton_work;
@@ -60,6 +65,7 @@ static void newton_release(void *work) {
   if (w == NULL) return;
   states_free(&w->states);
   newton_system_free(w->system);
+  compliance_system_free(w->compliance);
   best_iterate_free(&w->best);
   memory_free(w);
 }
@@ -71,7 +77,10 @@ static status newton_setup(const contact_problem *cp, const void *par,
   (void)par;
   NEW(w, 1);
   TRY(states_new(cp, &w->states));
-  TRY(newton_system_new(cp, &w->system));
+  if (cp->A != NULL)
+    TRY(newton_system_new(cp, &w->system));
+  else
+    TRY(compliance_system_new(cp, &w->compliance));
   TRY(best_iterate_new(cp->m, &w->best));
   *work = w;
   w = NULL;
@@ -91,7 +100,7 @@ typedef struct run {
 } run;
 
 static double residual_of(const run *s) {
-  double defect = states_clean_reaction(s->st), scale = s->st->scale;
+  double defect = states_clean(s->st), scale = s->st->scale;
   double residual = solver_mismatch(s->cp, scale, s->u, s->r);
   if (isnan(defect)) return NAN;
   defect = scale > 0.0 ? defect / scale : defect > 0.0 ? HUGE_VAL : 0.0;
@@ -134,6 +143,24 @@ static int stuck(course *c, double residual) {
   return c->at - c->best_at > PATIENCE;
 }
 
+/* raw from u, or r. */
+static void set_raw(const run *s) {
+  const contact_problem *cp = s->cp;
+  if (cp->A != NULL)
+    contact_reaction(cp, s->u, s->st->raw);
+  else
+    compliance_displace(cp, s->r, s->st->raw);
+}
+
+/* A step under the guess; 1: the system is singular. */
+static int step(const run *s) {
+  states *st = s->st;
+  if (s->cp->A == NULL)
+    return compliance_system_step(s->w->compliance, s->cp, &st->guess, s->r,
+                                  st->raw);
+  return newton_system_step(s->w->system, &st->guess, s->u, st->raw);
+}
+
 /* RUNNING, or why the attempt ends without a solution. In the plane a pattern
  * that comes back is a cycle; in 3-D directions turn while the states stay. */
 static outcome verdict(const run *s, course *c, double residual) {
@@ -166,9 +193,9 @@ static outcome attempt(run *s, int limit) {
   int m = s->cp->m;
   for (c.at = 0; goes_on(s, &c, limit); ++c.at) {
     c.cycle = met_before(s, c.at);
-    s->singular =
-        newton_system_step(s->w->system, &s->st->guess, s->u, s->st->raw);
+    s->singular = step(s);
     ++s->steps;
+    if (s->singular && s->cp->A == NULL) return STOPPED_SINGULAR;
     double residual = residual_of(s);
     if (isnan(residual)) return STOPPED_NAN;
     solver_keep_best(&s->w->best, m, residual, s->u, s->r);
@@ -185,14 +212,14 @@ static outcome attempt(run *s, int limit) {
 /* Go on from the state with the lowest residual. */
 static void return_to_best(run *s) {
   solver_take_best(&s->w->best, s->cp->m, s->u, s->r);
-  contact_reaction(s->cp, s->u, s->st->raw);
+  set_raw(s);
   states_next(s->st, 1);
 }
 
 /* 1: nothing to add. Without B the problem is convex: a ray is a proof. */
 static int final(const run *s, outcome o) {
-  return o == CONVERGED || o == STOPPED_NAN || used_up(s) ||
-         (o == STOPPED_RAY && s->cp->B == NULL);
+  return o == CONVERGED || o == STOPPED_NAN || o == STOPPED_SINGULAR ||
+         used_up(s) || (o == STOPPED_RAY && s->cp->B == NULL);
 }
 
 /* Attempts one after the other; a verdict of an attempt with all changes made
@@ -228,8 +255,11 @@ static void begin(run *s) {
   s->st->dice = 0;
   memset(s->st->guess.closed, 0, (size_t)cp->m);
   memset(s->st->guess.mode, FREE, (size_t)cp->n);
-  contact_reaction(cp, s->u, s->st->raw);
-  newton_system_fit(s->w->system, cp);
+  set_raw(s);
+  if (cp->A != NULL)
+    newton_system_fit(s->w->system, cp);
+  else
+    memcpy(s->u, s->st->raw, (size_t)cp->m * sizeof *s->u);
   s->w->best.residual = HUGE_VAL;
 }
 
@@ -251,7 +281,8 @@ static status newton_solve(const contact_problem *cp, const void *par,
 }
 
 static status newton_keep(void *work, archive *a) {
-  return newton_system_keep(((newton_work *)work)->system, a);
+  newton_work *w = work;
+  return w->system == NULL ? OK : newton_system_keep(w->system, a);
 }
 
 /* clang-format off */
@@ -269,11 +300,12 @@ const solver_ops newton_solver = {
     "2 to 4 from a warm start, to full accuracy, whatever the size. The\n"
     "factor is kept as long as exchanging the rows that change costs less\n"
     "than a new one, from increment to increment too. If a pattern of states\n"
-    "comes back the method starts anew from another guess. Needs the\n"
-    "stiffness, or a compliance that has an inverse. The first choice for\n"
-    "all but very large problems and large friction.",
+    "comes back the method starts anew from another guess. Where only the\n"
+    "compliance is known the unknowns of a step are the forces of the closed\n"
+    "nodes; no inverse is made, but the compliance must have one. The first\n"
+    "choice for all but very large problems and large friction.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
-             SOLVES_FLOATING,
+             REGULAR_COMPLIANCE | SOLVES_FLOATING,
   .param_size = sizeof(newton),
   .options = newton_options,
   .setup = newton_setup,

@@ -6,6 +6,7 @@
 #ifndef PROTIS_NEWTON_PARTS_H
 #define PROTIS_NEWTON_PARTS_H
 
+#include "newton/dense.h"
 #include "newton/system.h"
 
 #include <stdint.h>
@@ -20,9 +21,9 @@ struct newton_system {
   size_t n_node;
   int m, symmetric; /* symmetric: -1: not yet looked at                      */
   double power; /* of two: A*power has a diagonal of order 1                  */
-  double *K;    /* [m*m] factor of the base                                   */
+  dense K;      /* factor of the base                                         */
   pattern base; /* what it was made for                                       */
-  int has_base, full; /* full: LU, else Cholesky                             */
+  int has_base;
   uint64_t friction;  /* hash of B in it                                     */
   double spent;       /* on updates of the base, operations                  */
   int updated;        /* the last step came from an update                   */
@@ -36,14 +37,11 @@ struct newton_system {
   int *changed;       /* [m]                                                 */
   double *b, *x, *du; /* [m]                                                 */
   double *z, *weight; /* [room], [room]                                      */
-  int *pivot, *small_pivot, *iwork; /* [m], [room], [m]                       */
-  double *work; /* [4m] for the condition                              */
+  int *small_pivot;   /* [room]                                            */
 };
 
 /* ---- matrix.c ---- */
 
-/* 1: A equals its transpose but for rounding. */
-int newton_is_symmetric(const newton_system *s);
 /* 1: the guess puts friction into the rows of the node. */
 int newton_bends(const newton_system *s, const pattern *p, int node_id);
 /* 1: M needs LU under the guess. */

@@ -11,18 +11,36 @@ static const double STATE_MARGIN = 0x1p-46; /* -, of the scale: no change of
 static const double WARM_SLIP = 0x1p-20; /* -, of g: counts as slipping at the
                                             start                            */
 
+/* Of each unknown alone, and the mean over a tangent plane. */
+static void set_stiffness(const contact_problem *cp, states *s) {
+  size_t m = (size_t)cp->m;
+  const double *M = cp->A != NULL ? cp->A : cp->W;
+  double largest = 0.0;
+  for (size_t i = 0; i < m; ++i) largest = fmax(largest, M[i * m + i]);
+  for (size_t i = 0; i < m; ++i) {
+    double d = M[i * m + i];
+    s->k[i] = cp->A != NULL ? d : 1.0 / (d > 0.0 ? d : largest);
+  }
+  for (int i = 0; i < cp->n; ++i) {
+    double sum = 0.0;
+    for (int k = 1; k < cp->dim; ++k) {
+      size_t dof = (size_t)(i * cp->dim + k);
+      sum += M[dof * m + dof];
+    }
+    sum /= cp->dim > 1 ? cp->dim - 1 : 1;
+    s->c[i] = cp->A != NULL ? sum : 1.0 / (sum > 0.0 ? sum : largest);
+  }
+}
+
 status states_new(const contact_problem *cp, states *s) {
   status st = OK;
   size_t m = (size_t)cp->m;
   TRY(pattern_new(cp->dim, cp->n, &s->guess));
   NEW(s->raw, m);
+  NEW(s->k, m);
   NEW(s->c, cp->n);
   NEW(s->g, cp->n);
-  for (int i = 0; i < cp->n; ++i)
-    for (int k = 1; k < cp->dim; ++k) {
-      size_t dof = (size_t)(i * cp->dim + k);
-      s->c[i] += cp->A[dof * m + dof] / (cp->dim - 1);
-    }
+  set_stiffness(cp, s);
 done:
   return st;
 }
@@ -30,6 +48,7 @@ done:
 void states_free(states *s) {
   pattern_free(&s->guess);
   memory_free(s->raw);
+  memory_free(s->k);
   memory_free(s->c);
   memory_free(s->g);
 }
@@ -58,12 +77,28 @@ static void clean_slip(const states *s, int node_id) {
     if (!contact_held(cp, node_id * cp->dim + k)) r[k] *= g / size;
 }
 
-/* r from raw with what the state fixes put in exactly: no force where open,
- * |r_t| = g where slipping. Returns the largest change made, N: the defect of
- * the linear solution. */
-double states_clean_reaction(const states *s) {
+/* u from raw, the compliance form; returns the largest change, m. */
+static double clean_displacement(const states *s) {
   const contact_problem *cp = s->cp;
   double worst = 0.0;
+  for (int dof = 0; dof < cp->m; ++dof) {
+    int stick = dof % cp->dim > 0 && s->guess.mode[dof / cp->dim] == STICK;
+    double to = s->raw[dof];
+    if (contact_held(cp, dof)) continue;
+    if (s->guess.closed[dof])
+      to = contact_bound(cp, dof);
+    else if (stick)
+      to = contact_stick(cp, dof);
+    s->u[dof] = to;
+    if (!(fabs(to - s->raw[dof]) <= worst)) worst = fabs(to - s->raw[dof]);
+  }
+  return worst;
+}
+
+double states_clean(const states *s) {
+  const contact_problem *cp = s->cp;
+  double worst = 0.0;
+  if (cp->A == NULL) return clean_displacement(s);
   memcpy(s->r, s->raw, (size_t)cp->m * sizeof *s->r);
   for (int dof = 0; dof < cp->m; ++dof) {
     int k = dof % cp->dim;
@@ -81,6 +116,12 @@ double states_clean_reaction(const states *s) {
 }
 
 /* ---- states ------------------------------------------------------------ */
+
+/* Forces below it do not count, N; at a node of that stiffness. */
+static double margin_of(const states *s, double stiffness) {
+  double margin = STATE_MARGIN * s->scale;
+  return s->cp->A != NULL ? margin : margin * stiffness;
+}
 
 /* A node slips: direction and turning stiffness from z. */
 static void set_slip(states *s, int node_id, const double *z, double size,
@@ -107,7 +148,7 @@ static void friction_state(states *s, int node_id, int fresh) {
   tangent before = fresh ? FREE : (tangent)s->guess.mode[node_id];
   double slip[2], z[2], size = 0.0, along = 0.0;
   double g = s->g[node_id] = contact_node_limit(s->cp, s->r, node_id);
-  double margin = STATE_MARGIN * s->scale;
+  double margin = margin_of(s, s->c[node_id]);
   newton_slip(s->cp, s->u, node_id, slip);
   for (int k = 0; k < tangents; ++k) {
     double force = contact_held(s->cp, first + k) ? 0.0 : s->r[first + k];
@@ -130,9 +171,8 @@ static void friction_state(states *s, int node_id, int fresh) {
 
 /* Normal or side unknown: 1 closed. */
 static int closed_state(states *s, int dof, int fresh) {
-  size_t at = (size_t)dof * (size_t)s->cp->m + (size_t)dof;
-  double over = s->cp->A[at] * (s->u[dof] - contact_bound(s->cp, dof));
-  double margin = STATE_MARGIN * s->scale;
+  double over = s->k[dof] * (s->u[dof] - contact_bound(s->cp, dof));
+  double margin = margin_of(s, s->k[dof]);
   if (fresh) return s->r[dof] <= over;
   if (s->guess.closed[dof]) return s->r[dof] <= margin;
   return over > margin;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 enum { SHARE = 4 }; /* rows exchanged: at most 1/SHARE of the unknowns */
+static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal        */
 static const double DEFECT = 0x1p-20;   /* -, of the right side: a good solve */
 static const double ROUNDING = 0x1p-44; /* -, of the forces                   */
 static const double CHORD = 0x1p-4; /* -, of it: what a 3-D update may leave  */
@@ -46,23 +47,14 @@ void pattern_copy(int dim, int n, const pattern *from, pattern *to) {
 
 void newton_system_free(newton_system *s) {
   if (s == NULL) return;
-  void *const blocks[] = {s->K,     s->column,      s->X,       s->C,
-                          s->rows,  s->product,     s->changed, s->b,
-                          s->x,     s->du,          s->z,       s->weight,
-                          s->pivot, s->small_pivot, s->iwork,   s->work};
+  void *const blocks[] = {s->column,  s->X,       s->C,      s->rows,
+                          s->product, s->changed, s->b,      s->x,
+                          s->du,      s->z,       s->weight, s->small_pivot};
   for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
     memory_free(blocks[i]);
+  dense_free(&s->K);
   pattern_free(&s->base);
   memory_free(s);
-}
-
-static double power_of(const contact_problem *cp) {
-  size_t m = (size_t)cp->m;
-  double largest = 0.0;
-  int exponent = 0;
-  for (size_t i = 0; i < m; ++i) largest = fmax(largest, cp->A[i * m + i]);
-  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
-  return ldexp(1.0, -exponent);
 }
 
 status newton_system_new(const contact_problem *cp, newton_system **out) {
@@ -73,7 +65,7 @@ status newton_system_new(const contact_problem *cp, newton_system **out) {
   s->m = cp->m;
   s->n_node = (size_t)cp->n;
   s->room = (int)room;
-  NEW(s->K, m * m);
+  TRY(dense_new(cp->m, &s->K));
   TRY(pattern_new(cp->dim, cp->n, &s->base));
   NEW(s->column, m);
   NEW(s->X, m * room);
@@ -86,11 +78,8 @@ status newton_system_new(const contact_problem *cp, newton_system **out) {
   NEW(s->du, m);
   NEW(s->z, room);
   NEW(s->weight, room);
-  NEW(s->pivot, m);
   NEW(s->small_pivot, room);
-  NEW(s->iwork, m);
-  NEW(s->work, 4 * m);
-  s->power = power_of(cp);
+  s->power = dense_power(cp->m, cp->A);
   s->symmetric = -1;
   *out = s;
   s = NULL;
@@ -117,7 +106,7 @@ static uint64_t friction_hash(const contact_problem *cp) {
 
 void newton_system_fit(newton_system *s, const contact_problem *cp) {
   uint64_t friction = friction_hash(cp);
-  if (s->full && friction != s->friction) s->has_base = 0;
+  if (s->K.full && friction != s->friction) s->has_base = 0;
   s->friction = friction;
   s->cp = cp;
 }
@@ -279,10 +268,12 @@ static int fresh_step(newton_system *s, const pattern *p, double before,
 }
 
 int newton_system_step(newton_system *s, pattern *p, double *u, double *raw) {
+  const contact_problem *cp = s->cp;
   set_known(s, p, u, raw);
   s->updated = 0;
   if (p->n_free == 0) return 0;
-  if (s->symmetric < 0) s->symmetric = newton_is_symmetric(s);
+  if (s->symmetric < 0)
+    s->symmetric = dense_is_symmetric(s->m, cp->A, SYMMETRIC / s->power);
   double before = load(s, p, u, raw);
   double cost = s->has_base ? newton_list_changes(s, p) : HUGE_VAL;
   if (s->spent + cost <= newton_cost(p->n_free, newton_needs_lu(s, p))) {
@@ -314,7 +305,7 @@ status newton_system_keep(newton_system *s, archive *a) {
   size_t m = (size_t)s->m;
   TRY(archive_ints(a, "has_base", &s->has_base, 1));
   if (!s->has_base) goto done;
-  TRY(archive_ints(a, "full", &s->full, 1));
+  TRY(archive_ints(a, "full", &s->K.full, 1));
   TRY(archive_ints(a, "n_column", &s->n_column, 1));
   TRY(archive_ints(a, "n_free", &p->n_free, 1));
   if (p->n_free < 0 || p->n_free > s->m || s->n_column < 0 ||
@@ -323,8 +314,9 @@ status newton_system_keep(newton_system *s, archive *a) {
   TRY(archive_bytes(a, "friction", &s->friction, sizeof s->friction));
   TRY(archive_reals(a, "spent", &s->spent, 1));
   TRY(keep_base(s, a));
-  TRY(archive_reals(a, "K", s->K, (size_t)p->n_free * (size_t)p->n_free));
-  TRY(archive_ints(a, "pivot", s->pivot, (size_t)p->n_free));
+  s->K.n = p->n_free;
+  TRY(archive_reals(a, "K", s->K.a, (size_t)p->n_free * (size_t)p->n_free));
+  TRY(archive_ints(a, "pivot", s->K.pivot, (size_t)p->n_free));
   TRY(archive_ints(a, "column", s->column, m));
   TRY(archive_reals(a, "X", s->X, m * (size_t)s->n_column));
 done:
@@ -332,7 +324,7 @@ done:
 }
 
 int newton_system_refresh(newton_system *s) {
-  int updated = s->updated;
+  int updated = s != NULL && s->updated;
   if (updated) s->has_base = 0;
   return updated;
 }

@@ -50,7 +50,7 @@ int newton_system_step(newton_system *s, pattern *p, double *u, double *raw);
 /* The kept factor and what was exchanged in it. */
 status newton_system_keep(newton_system *s, archive *a);
 /* 1: the last step came from a kept factor; forget it, so that the next does
- * not. */
+ * not. Accepts NULL. */
 int newton_system_refresh(newton_system *s);
 
 /* Slip of a node in the directions friction acts in, slip[2], m. */

@@ -52,7 +52,9 @@ enum {
   SOLVES_3D = 4,
   NEEDS_STIFFNESS = 8,
   NEEDS_COMPLIANCE = 16,
-  SOLVES_FLOATING = 32 /* copes with a semidefinite A                         */
+  SOLVES_FLOATING = 32,   /* copes with a semidefinite A                      */
+  REGULAR_COMPLIANCE = 64 /* instead of the stiffness one that has an inverse,
+                             which need not be made                           */
 };
 
 typedef struct solver_ops {

@@ -4,6 +4,7 @@
 #include "support/unit.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { NODES = 100, SLIPPING = 60 };
@@ -77,5 +78,42 @@ START_TEST(front_goes_on_from_where_it_was) {
 }
 END_TEST
 
+/* The same row by its compliance: node j moves node i through the springs
+ * between the farther one and the wall. */
+static void turn_to_compliance(contact_case *c, double *W, double *q) {
+  int m = c->cp.m, dim = c->cp.dim;
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < m; ++j) {
+      int a = i / dim, b = j / dim, along = i % dim == 1 && j % dim == 1;
+      W[i + m * j] = along ? NODES - (a > b ? a : b) : i == j ? 1.0 / 3.0 : 0.0;
+    }
+  contact_product(m, W, c->f, q);
+  c->cp.A = NULL;
+  c->cp.W = W;
+  c->cp.f = q;
+}
+
+START_TEST(front_of_slip_is_found_from_the_compliance) {
+  for (int dim = 2; dim <= 3; ++dim) {
+    double g = 0.5, F = (SLIPPING + 0.5) * g;
+    contact_case c = pulled_row(dim, F, g);
+    double *W = calloc((size_t)(c.cp.m * c.cp.m), sizeof *W),
+           *q = calloc((size_t)c.cp.m, sizeof *q);
+    turn_to_compliance(&c, W, q);
+    solver_report rep = solve(&c);
+    ck_assert_int_eq(rep.outcome, CONVERGED);
+    ck_assert_int_le(rep.iterations, SLIPPING + 2);
+    for (int i = 0; i < NODES; ++i) {
+      double T = i < SLIPPING ? g : i == SLIPPING ? 0.5 * g : 0.0;
+      ck_assert_double_eq_tol(c.r[i * dim + 1], -T, 1e-10 * F);
+    }
+    free(W);
+    free(q);
+    case_free(&c);
+  }
+}
+END_TEST
+
 UNIT_MAIN("newton", front_of_slip_is_followed_to_its_end,
-          front_goes_on_from_where_it_was)
+          front_goes_on_from_where_it_was,
+          front_of_slip_is_found_from_the_compliance)

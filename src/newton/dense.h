@@ -1,0 +1,30 @@
+/* A dense matrix and its factor in the same place: Cholesky, or LU. */
+#ifndef PROTIS_NEWTON_DENSE_H
+#define PROTIS_NEWTON_DENSE_H
+
+#include "base/status.h"
+
+typedef struct dense {
+  double *a;          /* [n*n] lower triangle or all, then the factor         */
+  int n, full;        /* unknowns; 1: LU, 0: Cholesky                         */
+  int *pivot, *iwork; /* [room]                                               */
+  double *work;       /* [4 room]                                             */
+} dense;
+
+status dense_new(int room, dense *d);
+void dense_free(dense *d);
+/* 1: M[m*m] equals its transpose but for "apart". */
+int dense_is_symmetric(int m, const double *M, double apart);
+/* The upper triangle of M[m*m] from the lower. */
+void dense_mirror(int m, double *M);
+/* Power of two that brings the largest diagonal entry of M[m*m] to order 1:
+ * roots then keep their bits under a change of units by such powers. */
+double dense_power(int m, const double *M);
+/* 0: singular to rounding, which is asked for only if "doubt". */
+int dense_factor(dense *d, int doubt);
+/* The inverse in place of the factor, all of it; 0: not possible. */
+int dense_invert(dense *d);
+/* x[n, n_rhs], distance ld, from the right sides. */
+void dense_solve(const dense *d, int n_rhs, double *x, int ld);
+
+#endif
