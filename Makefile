@@ -47,6 +47,8 @@ stab_c   := $(wildcard tests/stability/*.c)
 stab     := $(stab_c:%.c=$(out)/%)
 bench_c  := $(wildcard tests/bench/*.c)
 bench    := $(bench_c:%.c=$(out)/%)
+peers_c  := $(wildcard tests/peers/*.c)
+peers    := $(peers_c:%.c=$(out)/%)
 verify_c := $(wildcard tests/verify/*.c)
 verify   := $(verify_c:%.c=$(out)/%)
 support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c \
@@ -72,6 +74,7 @@ help:
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
 	@echo "make bench-solvers  what each digit costs, for every solver"
 	@echo "make bench-auto   METHOD=AUTO against the best of the others"
+	@echo "make bench-peers  AUTO against the kernels of Siconos, if installed"
 	@echo "make format       clang-format on all sources"
 	@echo "make clean        remove build/"
 
@@ -154,6 +157,18 @@ bench-solvers: $(out)/tests/bench/solvers
 
 bench-auto: $(out)/tests/bench/auto
 	$(Q)$<
+
+# Against another library, which nothing else needs.
+SICONOS ?= /usr/include/siconos
+.PHONY: bench-peers
+$(out)/tests/peers/%.o: CPPFLAGS += -isystem $(SICONOS) \
+                                    -isystem $(SICONOS)/numerics
+$(peers): LDLIBS += -lsiconos_numerics
+bench-peers:
+	@test -d $(SICONOS)/numerics || { echo "bench-peers: no folder" \
+	  "$(SICONOS)/numerics: install libsiconos-numerics-dev" >&2; exit 1; }
+	$(Q)$(MAKE) --no-print-directory $(peers)
+	$(Q)for p in $(peers); do $$p || exit 1; done
 
 format:
 	$(Q)clang-format-14 --style=file:tools/clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] tests/*/*.[ch])
