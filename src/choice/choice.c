@@ -148,6 +148,12 @@ done:
   return st;
 }
 
+static int lacks_stiffness(const contact_solver *s, const contact_problem *cp,
+                           const solver_ops *ops) {
+  int does = (ops->handles & REGULAR_COMPLIANCE) && !s->inverse_wanted;
+  return (ops->handles & NEEDS_STIFFNESS) && cp->A == NULL && !does;
+}
+
 /* The problem in a form the solver can use; NULL, or why there is none. */
 static status suit(contact_solver *s, const contact_problem *cp,
                    const solver_ops *ops, contact_problem *out,
@@ -155,8 +161,7 @@ static status suit(contact_solver *s, const contact_problem *cp,
   status st = OK;
   *out = *cp;
   *why = NULL;
-  int stiffness = (ops->handles & NEEDS_STIFFNESS) && cp->A == NULL &&
-                  (!(ops->handles & REGULAR_COMPLIANCE) || s->inverse_wanted);
+  int stiffness = lacks_stiffness(s, cp, ops);
   int compliance = (ops->handles & NEEDS_COMPLIANCE) && cp->W == NULL;
   if (cp->dim == 3 && !(ops->handles & SOLVES_3D)) {
     *why = "solves problems in the plane only";
