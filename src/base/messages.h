@@ -254,9 +254,8 @@
   X(2055, WARNING, "nearly incompressible",                                  \
     "Linear triangles and tetrahedra are too stiff where nu is near 1/2. "   \
     "The figures are those of a tube under pressure on a mesh of equal "     \
-    "diagonals. Use several mesh sizes and compare, or, in 2-D, a regular "  \
-    "mesh of alternating diagonals (Transfinite Surface{n} Alternated), "    \
-    "which does not lock there. Pressures suffer more than displacements.")  \
+    "diagonals; pressures suffer more than displacements. "                  \
+    "FORMULATION=AVERAGED of *SOLID SECTION does not lock.")                \
   X(2056, ERROR, "closed form not complete",                                 \
     "*REFERENCE compares whole fields: give all components of the "          \
     "displacement, or of the stress (0 where there is none), or neither.")

@@ -9,61 +9,63 @@
 
 #include <string.h>
 
-status node_elements(const mesh *m, size_t **start, int **elem) {
+/* The lower node graph, grown column by column. */
+typedef struct node_graph {
+  stiffness *k; /* gets start and row                                       */
+  size_t n, room;
+  int *seen; /* [n_node] last column that has the node, + 1             */
+} node_graph;
+
+/* Nodes of a list that come after j into column j. */
+static status add_rows(node_graph *g, int j, int n_more, const int *node) {
   status st = OK;
-  const size_t per = (size_t)m->dim + 1, n = per * (size_t)m->n_elem;
-  size_t *s = NULL;
-  int *e = NULL;
-  NEW(s, m->n_node + 2);
-  NEW(e, n);
-  for (size_t k = 0; k < n; ++k) ++s[m->elem[k] + 2];
-  for (int i = 0; i < m->n_node; ++i) s[i + 2] += s[i + 1];
-  for (size_t k = 0; k < n; ++k) e[s[m->elem[k] + 1]++] = (int)(k / per);
-done:
-  if (st != OK) {
-    memory_free(s);
-    memory_free(e);
-    s = NULL;
-    e = NULL;
+  const size_t most = (size_t)n_more;
+  if (g->n + most > g->room) {
+    const size_t more = g->room / 2 + most;
+    int *grown = memory_resize(g->k->row, g->n, g->room + more, sizeof *grown);
+    if (grown == NULL) FAIL(ERR_MEMORY, "memory exhausted: node graph");
+    g->k->row = grown;
+    g->room += more;
   }
-  *start = s;
-  *elem = e;
+  for (int a = 0; a < n_more; ++a) {
+    if (node[a] < j || g->seen[node[a]] == j + 1) continue;
+    g->seen[node[a]] = j + 1;
+    g->k->row[g->n++] = node[a];
+  }
+done:
   return st;
 }
 
-/* Columns of the lower node graph, grown as they are found. */
-static status node_graph(const mesh *m, stiffness *k) {
+/* Nodes of an element, or of the cluster it belongs to, couple. */
+static status add_element_rows(node_graph *g, const domain *d, int j, int e) {
+  const int per = d->mesh->dim + 1;
+  const cluster_set *c = d->cluster;
+  if (c == NULL || c->of[e] < 0)
+    return add_rows(g, j, per, d->mesh->elem + (size_t)per * (size_t)e);
+  const int q = c->of[e];
+  return add_rows(g, j, c->first[q + 1] - c->first[q], c->node + c->first[q]);
+}
+
+static status find_graph(const domain *d, stiffness *k) {
   status st = OK;
-  const int per = m->dim + 1;
-  size_t *from = NULL, n = 0, room = (size_t)m->n_node * (m->dim == 2 ? 5 : 9);
-  int *elem = NULL, *seen = NULL;
-  TRY(node_elements(m, &from, &elem));
-  NEW(seen, m->n_node);
+  const mesh *m = d->mesh;
+  node_graph g = {.k = k, .room = (size_t)m->n_node * (m->dim == 2 ? 5 : 9)};
+  size_t *from = NULL;
+  int *elem = NULL;
+  TRY(mesh_node_elements(m, &from, &elem));
+  NEW(g.seen, m->n_node);
   NEW(k->start, m->n_node + 1);
-  NEW(k->row, room);
+  NEW(k->row, g.room);
   for (int j = 0; j < m->n_node; ++j) {
-    const size_t most = (from[j + 1] - from[j]) * (size_t)m->dim + 1;
-    if (n + most > room) {
-      int *grown =
-          memory_resize(k->row, n, room + room / 2 + most, sizeof *grown);
-      if (grown == NULL) FAIL(ERR_MEMORY, "memory exhausted: node graph");
-      k->row = grown;
-      room += room / 2 + most;
-    }
-    k->row[n++] = j;
+    TRY(add_rows(&g, j, 1, &j)); /* the diagonal first */
     for (size_t q = from[j]; q < from[j + 1]; ++q)
-      for (int a = 0; a < per; ++a) {
-        const int i = m->elem[(size_t)per * (size_t)elem[q] + (size_t)a];
-        if (i <= j || seen[i] == j + 1) continue;
-        seen[i] = j + 1;
-        k->row[n++] = i;
-      }
-    k->start[j + 1] = n;
+      TRY(add_element_rows(&g, d, j, elem[q]));
+    k->start[j + 1] = g.n;
   }
 done:
   memory_free(from);
   memory_free(elem);
-  memory_free(seen);
+  memory_free(g.seen);
   return st;
 }
 
@@ -110,6 +112,74 @@ static status add_elements(const domain *d, stiffness *k) {
       for (int c = 0; c <= a; ++c, b += nb) add_block(k, v[a], v[c], b);
   }
 done:
+  return st;
+}
+
+/* Rows over the nodes of a cluster: t = <tr B>, r = sum w m'E R B. */
+typedef struct cluster_rows {
+  int *place;    /* [n_node] of a node in the rows                           */
+  double *t, *r; /* [dim * most nodes] 1/m; N/m                              */
+  double bulk;   /* sum w m'E m, N m                                         */
+} cluster_rows;
+
+/* Add one element; its volume is w, its part of the cluster "part". */
+static void add_to_rows(const domain *d, int e, cluster_rows *x) {
+  const int dim = d->mesh->dim, ns = d->ns;
+  const int *v = d->mesh->elem + (size_t)(dim + 1) * (size_t)e;
+  double E[36], m_E[6], B[72], bulk;
+  const double w = element_strain(d, e, B), part = d->cluster->weight[e];
+  element_rest(d, e, E, m_E, &bulk);
+  x->bulk += w * bulk;
+  for (int k = 0; k < dim * (dim + 1); ++k) {
+    const double *b = B + ns * k;
+    const int at = dim * x->place[v[k / dim]] + k % dim;
+    x->t[at] += part * (b[0] + b[1] + b[2]);
+    for (int i = 0; i < ns; ++i) x->r[at] += w * m_E[i] * b[i];
+  }
+}
+
+/* K += share/3 (r t' + t r') + (share/3)^2 bulk t t'. */
+static void add_cluster(const domain *d, int q, cluster_rows *x, stiffness *k) {
+  const cluster_set *c = d->cluster;
+  const int dim = k->dim, *node = c->node + c->first[q];
+  const int n = c->first[q + 1] - c->first[q];
+  const double part = c->share[q] / 3;
+  memset(x->t, 0, (size_t)(dim * n) * sizeof *x->t);
+  memset(x->r, 0, (size_t)(dim * n) * sizeof *x->r);
+  x->bulk = 0;
+  for (int a = 0; a < n; ++a) x->place[node[a]] = a;
+  for (int p = c->start[q]; p < c->start[q + 1]; ++p)
+    add_to_rows(d, c->elem[p], x);
+  for (int i = 0; i < dim * n; ++i)
+    x->r[i] = part * (x->r[i] + 0.5 * part * x->bulk * x->t[i]);
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b <= a; ++b) {
+      double block[9];
+      for (int s = 0; s < dim; ++s)
+        for (int r = 0; r < dim; ++r)
+          block[dim * s + r] = x->r[dim * a + r] * x->t[dim * b + s] +
+                               x->t[dim * a + r] * x->r[dim * b + s];
+      add_block(k, node[a], node[b], block);
+    }
+}
+
+static status add_clusters(const domain *d, stiffness *k) {
+  status st = OK;
+  const cluster_set *c = d->cluster;
+  cluster_rows x = {0};
+  int most = 0;
+  for (int q = 0; c != NULL && q < c->n; ++q)
+    if (c->first[q + 1] - c->first[q] > most)
+      most = c->first[q + 1] - c->first[q];
+  if (most == 0) goto done;
+  NEW(x.place, k->n_node);
+  NEW(x.t, k->dim * most);
+  NEW(x.r, k->dim * most);
+  for (int q = 0; q < c->n; ++q) add_cluster(d, q, &x, k);
+done:
+  memory_free(x.place);
+  memory_free(x.t);
+  memory_free(x.r);
   return st;
 }
 
@@ -207,8 +277,9 @@ status stiffness_assemble(const domain *d, stiffness **out) {
   NEW(k, 1);
   k->dim = d->mesh->dim;
   k->n_node = d->mesh->n_node;
-  TRY(node_graph(d->mesh, k));
+  TRY(find_graph(d, k));
   TRY(add_elements(d, k));
+  TRY(add_clusters(d, k));
   TRY(mark_unknowns(d, k));
   turn_blocks(d, k);
   TRY(list_coupling(k));

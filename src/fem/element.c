@@ -98,11 +98,28 @@ static void block_3d(const double *g, double w, const double *S, double *k) {
   }
 }
 
+void element_rest(const domain *d, int elem_id, double *E, double *m_E,
+                  double *bulk) {
+  const size_t ns = (size_t)d->ns;
+  const int k = d->cluster == NULL ? -1 : d->cluster->of[elem_id];
+  const double part = k < 0 ? 0 : d->cluster->share[k] / 3;
+  memcpy(E, d->E + ns * ns * (size_t)d->section_id[elem_id],
+         ns * ns * sizeof *E);
+  if (k < 0) return;
+  for (size_t i = 0; i < ns; ++i) m_E[i] = E[i] + E[ns + i] + E[2 * ns + i];
+  *bulk = m_E[0] + m_E[1] + m_E[2];
+  for (size_t j = 0; j < ns; ++j)
+    for (size_t i = 0; i < ns; ++i)
+      E[ns * j + i] -= part * ((j < 3) * m_E[i] + (i < 3) * m_E[j]) -
+                       (i < 3 && j < 3) * part * part * *bulk;
+  for (size_t i = 0; i < 3; ++i) m_E[i] -= part * *bulk;
+}
+
 void element_stiffness(const domain *d, int elem_id, double *blocks) {
-  const int dim = d->mesh->dim, ns = d->ns;
-  const double *E = d->E + (size_t)(ns * ns) * (size_t)d->section_id[elem_id];
+  const int dim = d->mesh->dim;
   element_shape s;
-  double S[18];
+  double E[36], S[18], m_E[6], bulk;
+  element_rest(d, elem_id, E, m_E, &bulk);
   element_shape_at(d, elem_id, &s);
   for (int b = 0; b <= dim; ++b) {
     const double *gb = s.grad + dim * b;
@@ -177,6 +194,29 @@ static void stress_at(const domain *d, int elem_id, const double *e,
   }
 }
 
+/* Means over the clusters of the strains of n elements (elem_id NULL: of the
+ * first n). */
+static void mean_strains(const domain *d, int n, const int *elem_id,
+                         const double *u) {
+  if (d->cluster == NULL) return;
+  cluster_begin(d->cluster, CLUSTER_STRAIN);
+  for (int k = 0; k < n; ++k) {
+    const int id = elem_id == NULL ? k : elem_id[k];
+    element_shape s;
+    double e[6];
+    element_shape_at(d, id, &s);
+    strain_at(d, id, u, &s, e);
+    cluster_add(d->cluster, CLUSTER_STRAIN, id, e);
+  }
+}
+
+/* Strain of one element after mean_strains. */
+static void averaged_strain(const domain *d, int elem_id, const double *u,
+                            const element_shape *s, double *e) {
+  strain_at(d, elem_id, u, s, e);
+  cluster_smooth(d->cluster, CLUSTER_STRAIN, elem_id, e);
+}
+
 /* e0 of an element, or NULL; *next runs along with ascending elem_id. */
 static const double *eigen_at(const domain *d, int elem_id, int *next) {
   const eigenstrain *x = d->eigen;
@@ -201,17 +241,25 @@ void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
   const size_t ns = (size_t)d->ns;
   int next = 0;
   timer_enter(STAGE_STRESS);
+  mean_strains(d, d->mesh->n_elem, NULL, u);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     const double *e0 = eigen_at(d, k, &next);
     element_shape s;
     double strain[6];
     element_shape_at(d, k, &s);
-    strain_at(d, k, u, &s, strain);
+    averaged_strain(d, k, u, &s, strain);
     take_eigen(d, e0, strain);
     if (sigma != NULL) stress_at(d, k, strain, sigma + ns * (size_t)k);
     if (e == NULL) continue;
     total_strain(d, d->section_id[k], e0, strain);
     memcpy(e + ns * (size_t)k, strain, ns * sizeof *e);
+  }
+  if (sigma != NULL && d->cluster != NULL) {
+    cluster_begin(d->cluster, CLUSTER_STRESS);
+    for (int k = 0; k < d->mesh->n_elem; ++k)
+      cluster_add(d->cluster, CLUSTER_STRESS, k, sigma + ns * (size_t)k);
+    for (int k = 0; k < d->mesh->n_elem; ++k)
+      cluster_smooth(d->cluster, CLUSTER_STRESS, k, sigma + ns * (size_t)k);
   }
   timer_leave(STAGE_STRESS);
 }
@@ -219,11 +267,12 @@ void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
 void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
                   double *e, double *sigma) {
   const size_t ns = (size_t)d->ns;
+  mean_strains(d, x->n, x->elem_id, u);
   for (int k = 0; k < x->n; ++k) {
     element_shape s;
     double strain[6];
     element_shape_at(d, x->elem_id[k], &s);
-    strain_at(d, x->elem_id[k], u, &s, strain);
+    averaged_strain(d, x->elem_id[k], u, &s, strain);
     take_eigen(d, x->e0 + ns * (size_t)k, strain);
     if (e != NULL) memcpy(e + ns * (size_t)k, strain, ns * sizeof *e);
     if (sigma != NULL)
@@ -263,34 +312,63 @@ void domain_internal_force(const domain *d, const double *sigma, double *F) {
 }
 
 void eigen_force(const domain *d, const eigenstrain *x, double *F) {
+  double t[6];
+  cluster_begin(d->cluster, CLUSTER_STRESS);
+  for (int k = 0; k < x->n && d->cluster != NULL; ++k) {
+    stress_at(d, x->elem_id[k], x->e0 + (size_t)d->ns * (size_t)k, t);
+    cluster_add(d->cluster, CLUSTER_STRESS, x->elem_id[k], t);
+  }
   for (int k = 0; k < x->n; ++k) {
     element_shape s;
-    double t[6];
     element_shape_at(d, x->elem_id[k], &s);
     stress_at(d, x->elem_id[k], x->e0 + (size_t)d->ns * (size_t)k, t);
+    cluster_smooth(d->cluster, CLUSTER_STRESS, x->elem_id[k], t);
     add_force(d, x->elem_id[k], &s, t, 1, F);
   }
 }
 
 void eigen_add_force(const domain *d, int n, const int *elem_id,
                      const double *sigma, double *F) {
+  const size_t ns = (size_t)d->ns;
+  cluster_begin(d->cluster, CLUSTER_STRESS);
+  for (int k = 0; k < n; ++k)
+    cluster_add(d->cluster, CLUSTER_STRESS, elem_id[k], sigma + ns * (size_t)k);
   for (int k = 0; k < n; ++k) {
     element_shape s;
+    double t[6];
+    memcpy(t, sigma + ns * (size_t)k, ns * sizeof *t);
     element_shape_at(d, elem_id[k], &s);
-    add_force(d, elem_id[k], &s, sigma + (size_t)d->ns * (size_t)k, 1, F);
+    cluster_smooth(d->cluster, CLUSTER_STRESS, elem_id[k], t);
+    add_force(d, elem_id[k], &s, t, 1, F);
   }
+}
+
+/* E A e of one element after mean_strains. */
+static void stress_of(const domain *d, int elem_id, const double *u,
+                      const element_shape *s, double *t) {
+  double e[6];
+  averaged_strain(d, elem_id, u, s, e);
+  stress_at(d, elem_id, e, t);
 }
 
 void domain_residual(const domain *d, const double *u, const double *F,
                      double *rest) {
+  const int n = d->mesh->n_elem;
+  element_shape s;
+  double t[6];
   memcpy(rest, F,
          (size_t)d->mesh->dim * (size_t)d->mesh->n_node * sizeof *rest);
-  for (int k = 0; k < d->mesh->n_elem; ++k) {
-    element_shape s;
-    double e[6], t[6];
+  mean_strains(d, n, NULL, u);
+  cluster_begin(d->cluster, CLUSTER_STRESS);
+  for (int k = 0; k < n && d->cluster != NULL; ++k) {
     element_shape_at(d, k, &s);
-    strain_at(d, k, u, &s, e);
-    stress_at(d, k, e, t);
+    stress_of(d, k, u, &s, t);
+    cluster_add(d->cluster, CLUSTER_STRESS, k, t);
+  }
+  for (int k = 0; k < n; ++k) {
+    element_shape_at(d, k, &s);
+    stress_of(d, k, u, &s, t);
+    cluster_smooth(d->cluster, CLUSTER_STRESS, k, t);
     add_force(d, k, &s, t, -1, rest);
   }
 }
@@ -299,11 +377,12 @@ double domain_strain_energy(const domain *d, const double *u) {
   double sum = 0;
   int next = 0;
   timer_enter(STAGE_ENERGY);
+  mean_strains(d, d->mesh->n_elem, NULL, u);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     element_shape s;
     double e[6], t[6], density = 0;
     element_shape_at(d, k, &s);
-    strain_at(d, k, u, &s, e);
+    averaged_strain(d, k, u, &s, e);
     take_eigen(d, eigen_at(d, k, &next), e);
     stress_at(d, k, e, t);
     for (int i = 0; i < d->ns; ++i) density += e[i] * t[i];

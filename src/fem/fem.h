@@ -9,6 +9,7 @@
 #ifndef PROTIS_FEM_FEM_H
 #define PROTIS_FEM_FEM_H
 
+#include "cluster/cluster.h"
 #include "contact/surface.h"
 #include "material/material.h"
 #include "mesh/mesh.h"
@@ -37,10 +38,13 @@ typedef struct domain {
                                  components)                                 */
   const eigenstrain *eigen;   /* NULL: none. Counts in stresses and energy;
                                  condense_load has it from F (eigen_force)   */
+  cluster_set *cluster; /* elements whose change of volume is averaged, as
+                           strains and stresses here always are; NULL: none.
+                           Its means are overwritten                         */
 } domain;
 
-/* B of one element: e = B u_e, B[ns*(dim+1)*dim] column major; returns the
- * weight (volume, thickness or 2 pi r included). */
+/* B of one element, nothing averaged: e = B u_e, B[ns*(dim+1)*dim] column
+ * major; returns the weight (volume, thickness or 2 pi r included). */
 double element_strain(const domain *d, int elem_id, double *B);
 double element_weight(const domain *d, int elem_id);
 
@@ -127,11 +131,13 @@ double domain_strain_energy(const domain *d, const double *u); /* J           */
 /* F += sum B' E e0 w: the forces that hold the strains of x back, global
  * components [dim*n_node], N. */
 void eigen_force(const domain *d, const eigenstrain *x, double *F);
-/* Strains less e0 and stresses of the elements of x alone: e[ns*n] (zz of
- * plane stress not filled), sigma[ns*n], Pa; either may be NULL. */
+/* Strains less e0 and the stresses E times them, of the elements of x alone,
+ * which hold whole clusters: e[ns*n] (zz of plane stress not filled),
+ * sigma[ns*n], Pa; either may be NULL. */
 void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
                   double *e, double *sigma);
-/* F += sum B' sigma w of n elements: sigma[ns*n], Pa. */
+/* F += sum B' A sigma w of n elements, which hold whole clusters: sigma[ns*n],
+ * Pa; A averages (cluster.h). */
 void eigen_add_force(const domain *d, int n, const int *elem_id,
                      const double *sigma, double *F);
 

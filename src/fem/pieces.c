@@ -4,7 +4,6 @@
 #include "fem/pieces.h"
 
 #include "base/memory.h"
-#include "fem/stiffness.h"
 
 static int root(int *up, int e) {
   while (up[e] != e) {
@@ -133,7 +132,7 @@ status pieces_find(const mesh *m, pieces *p) {
   status st = OK;
   int *up = NULL, *body = NULL;
   *p = (pieces){0};
-  TRY(node_elements(m, &p->start, &p->elem));
+  TRY(mesh_node_elements(m, &p->start, &p->elem));
   NEW(up, m->n_elem);
   NEW(body, m->n_elem);
   NEW(p->piece, m->n_elem);

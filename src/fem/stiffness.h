@@ -19,6 +19,4 @@ struct stiffness {
   size_t n_coupling;
 };
 
-/* Elements round each node: elem[start[i] .. start[i+1]). Both are new. */
-status node_elements(const mesh *m, size_t **start, int **elem);
 #endif

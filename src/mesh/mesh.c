@@ -122,3 +122,25 @@ done:
   memory_free(body_of);
   return st;
 }
+
+status mesh_node_elements(const mesh *m, size_t **start, int **elem) {
+  status st = OK;
+  const size_t per = (size_t)m->dim + 1, n = per * (size_t)m->n_elem;
+  size_t *s = NULL;
+  int *e = NULL;
+  NEW(s, m->n_node + 2);
+  NEW(e, n);
+  for (size_t k = 0; k < n; ++k) ++s[m->elem[k] + 2];
+  for (int i = 0; i < m->n_node; ++i) s[i + 2] += s[i + 1];
+  for (size_t k = 0; k < n; ++k) e[s[m->elem[k] + 1]++] = (int)(k / per);
+done:
+  if (st != OK) {
+    memory_free(s);
+    memory_free(e);
+    s = NULL;
+    e = NULL;
+  }
+  *start = s;
+  *elem = e;
+  return st;
+}

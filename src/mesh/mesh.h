@@ -74,5 +74,7 @@ double mesh_face_normal(const mesh *m, int face_id, double *normal);
 double mesh_elem_measure(const mesh *m, int elem_id);
 /* Bodies: connected sets of elements. body[n_elem] 0..n_body-1. */
 status mesh_bodies(const mesh *m, int *n_body, int *body);
+/* Elements round each node: elem[start[i] .. start[i+1]). Both are new. */
+status mesh_node_elements(const mesh *m, size_t **start, int **elem);
 
 #endif

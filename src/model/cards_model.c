@@ -557,6 +557,7 @@ status apply_section(reading *r) {
   s->thickness = p->thickness;
   /* The words of Abaqus repeat the four kinematics. */
   s->kin = card_parameter(r->card, "TYPE") == NULL ? -1 : p->type % 4;
+  s->averaged = p->formulation;
   s->has_thickness =
       r->card->n_record > 0 || card_parameter(r->card, "THICKNESS") != NULL;
   if (r->card->n_record > 0) {

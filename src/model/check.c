@@ -57,6 +57,10 @@ static void check_kinematics(model *m, const mesh *msh) {
     if ((s->kin == AXISYMMETRIC) != (m->sections[0].kin == AXISYMMETRIC))
       message_add(m->log, P2026, &s->at,
                   "axisymmetric and plane sections cannot stand in one model");
+    if (s->averaged && s->kin == PLANE_STRESS)
+      message_add(m->log, P2037, &s->at,
+                  "*SOLID SECTION: FORMULATION=AVERAGED does nothing in plane "
+                  "stress, which does not lock");
     if (s->kin != AXISYMMETRIC && s->kin != SOLID_3D) continue;
     s->thickness = 1.0;
     if (s->has_thickness)
@@ -67,7 +71,6 @@ static void check_kinematics(model *m, const mesh *msh) {
   }
 }
 
-/* The radius x of an axisymmetric model is not negative. */
 /*
  * P1 elements lock where nu comes near 1/2 in plane strain, axisymmetry and
  * 3-D. Lame's tube (radii 1 and 2, n elements through its wall, one diagonal):
@@ -82,9 +85,10 @@ static void check_locking(const model *m) {
   enum { COARSE = 16, FINE = 64 };
   for (int i = 0; i < m->n_section; ++i) {
     const section *s = &m->sections[i];
-    const material *mat = s->material_id < 0 || s->kin == PLANE_STRESS
-                              ? NULL
-                              : &m->materials[s->material_id];
+    const material *mat =
+        s->material_id < 0 || s->kin == PLANE_STRESS || s->averaged
+            ? NULL
+            : &m->materials[s->material_id];
     if (mat == NULL || mat->elastic.n == 0 || mat->elastic.type != ELASTIC_ISO)
       continue;
     double nu = elastic_table_most(&mat->elastic, 1);
@@ -98,6 +102,7 @@ static void check_locking(const model *m) {
   }
 }
 
+/* The radius x of an axisymmetric model is not negative. */
 static void check_radius(const model *m, const mesh *msh) {
   static const double rounding = 1e-9; /* of the size of the mesh            */
   if (m->n_section == 0 || m->sections[0].kin != AXISYMMETRIC) return;

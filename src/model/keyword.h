@@ -100,7 +100,7 @@ typedef struct initial_param {
 } initial_param;
 typedef struct section_param {
   const char *elset, *material;
-  int type;
+  int type, formulation;
   double thickness;
 } section_param;
 typedef struct obstacle_param {

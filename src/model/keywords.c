@@ -95,6 +95,10 @@ static const option section_options[] = {
                 "absent: plane strain in 2-D"),
   OPTION_REAL(section_param, thickness, "THICKNESS", DBL_MIN, DBL_MAX, "1",
               "length", "of plane strain and plane stress"),
+  OPTION_CHOICE(section_param, formulation, "FORMULATION", "STANDARD|AVERAGED",
+                "STANDARD", "AVERAGED: change of volume averaged over clusters "
+                "of elements, as far as nu exceeds 0.4, or all of it if the "
+                "material flows: no locking"),
   OPTION_END};
 static const option obstacle_options[] = {
   OPTION_NAME(obstacle_param, name, "NAME", NULL, "name for *CONTACT"),

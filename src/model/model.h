@@ -45,6 +45,7 @@ typedef struct section {
   int kin;          /* kinematics; -1: not given                              */
   double thickness; /* m                                                      */
   int has_thickness; /* given, not the default                                */
+  int averaged;      /* FORMULATION=AVERAGED                                  */
   int material_id, group_id;
 } section;
 

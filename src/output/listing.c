@@ -72,8 +72,9 @@ static void print_model(const job *j, FILE *f) {
             g->dim, g->n_item, g->n_node);
   }
   for (int i = 0; i < m->n_section; ++i)
-    fprintf(f, "  section  %-20s %s, material %s\n", m->sections[i].elset,
-            kinematics_text(m->sections[i].kin), m->sections[i].material_name);
+    fprintf(f, "  section  %-20s %s, material %s%s\n", m->sections[i].elset,
+            kinematics_text(m->sections[i].kin), m->sections[i].material_name,
+            m->sections[i].averaged ? ", volume averaged" : "");
   for (int i = 0; i < m->n_contact; ++i) {
     const contact *c = &m->contacts[i];
     fprintf(f, "  contact  %-20s group %s, obstacle %s, friction %s\n", c->name,

@@ -33,6 +33,34 @@ static void free_equilibrium(equilibrium *e) {
   memory_free(e->sigma);
 }
 
+/* Clusters of the sections with FORMULATION=AVERAGED. What may change its
+ * moduli is averaged as what flows. */
+static status new_clusters(run *r) {
+  status st = OK;
+  const model *m = r->m;
+  double *share = NULL;
+  int averaged = 0;
+  for (int i = 0; i < m->n_section; ++i) averaged |= m->sections[i].averaged;
+  if (!averaged) return OK;
+  timer_enter(STAGE_CLUSTER);
+  NEW(share, m->n_section);
+  for (int i = 0; i < m->n_section; ++i) {
+    const section *s = &m->sections[i];
+    const material *mat = &m->materials[s->material_id];
+    if (s->averaged && s->kin != PLANE_STRESS)
+      share[i] = cluster_share(
+          m->ns, r->moduli.E + (size_t)(m->ns * m->ns) * (size_t)i,
+          mat->law.ops != NULL || mat->elastic.n > 1);
+  }
+  const cluster_input in = {r->msh, m->sections[0].kin == AXISYMMETRIC,
+                            m->n_section, m->elem_section, share};
+  TRY(cluster_new(&in, &r->d.cluster));
+done:
+  timer_leave(STAGE_CLUSTER);
+  memory_free(share);
+  return st;
+}
+
 static status new_pairs(run *r) {
   status st = OK;
   const model *m = r->m;
@@ -82,6 +110,7 @@ status run_new(run *r) {
   NEW(r->ud, r->n_dof);
   NEW(r->start, r->n_dof);
   TRY(strains_new(r));
+  TRY(new_clusters(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
   if (r->m->effects & EFFECT_MESH_ERROR) NEW(r->elem_error, r->msh->n_elem);
   if (r->m->effects &
@@ -199,6 +228,7 @@ void run_free(run *r) {
   strains_free(r);
   theory_free(r->theory);
   moduli_free(&r->moduli);
+  cluster_free(r->d.cluster);
   memory_free(r->fixed);
   memory_free(r->pairs);
   memory_free(r->node_fixed);

@@ -91,6 +91,17 @@ void strains_free(run *r) {
   memory_free(r->eigen_load);
 }
 
+/* Thermal strains are averaged as the strains are that they are taken off. */
+static void average_thermal(run *r) {
+  cluster_set *c = r->d.cluster;
+  double *thermal = r->now.thermal;
+  cluster_begin(c, CLUSTER_STRAIN);
+  for (int k = 0; k < r->eigen.n; ++k)
+    cluster_add(c, CLUSTER_STRAIN, r->eigen_elem[k], thermal + at(r, k));
+  for (int k = 0; k < r->eigen.n; ++k)
+    cluster_smooth(c, CLUSTER_STRAIN, r->eigen_elem[k], thermal + at(r, k));
+}
+
 /* Temperatures, moduli and thermal strains of r->now. */
 static status heat(run *r) {
   status st = OK;
@@ -112,6 +123,7 @@ static status heat(run *r) {
       expansion_strain(&run_material(r, e)->expand, now->temperature[e],
                        r->temperature0[e], now->thermal + ns * (size_t)k);
   }
+  average_thermal(r);
 done:
   timer_leave(STAGE_THERMAL);
   return st;
