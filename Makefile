@@ -51,6 +51,9 @@ peers_c  := $(wildcard tests/peers/*.c)
 peers    := $(peers_c:%.c=$(out)/%)
 verify_c := $(wildcard tests/verify/*.c)
 verify   := $(verify_c:%.c=$(out)/%)
+tort_c   := $(wildcard tests/torture/*.c)
+tort     := $(tort_c:%.c=$(out)/%)
+preload  := $(out)/tests/preload/refuse.so
 support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c \
               tests/scenes/*.c))
 
@@ -69,6 +72,7 @@ help:
 	@echo "make unit         unit tests alone;   make regression: decks alone"
 	@echo "make stability    hard cases and 10000 random problems: minutes"
 	@echo "make scenes       the matrix of hard scenes and methods alone"
+	@echo "make torture      memory, files, kills, random input: a table, an hour"
 	@echo "make verify       orders of convergence, observed and expected"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
@@ -106,6 +110,12 @@ $(out)/tests/%: $(out)/tests/%.o $(support) $(library)
 
 $(out)/tests/%.o: CPPFLAGS += -Itests
 
+# Stands between a program under test and the C library.
+$(out)/tests/preload/%.so: tests/preload/%.c Makefile
+	@mkdir -p $(@D)
+	@echo "  LD   $@"
+	$(Q)$(CC) -std=gnu11 -O2 -Wall -Wextra -shared -fPIC $< -o $@ -ldl
+
 # A fresh machine has no pkg-config when make starts: install, then start anew.
 demo test bench: deps
 	$(Q)$(MAKE) --no-print-directory -j$(JOBS) $@-run
@@ -116,13 +126,27 @@ demo-run: $(program)
 
 test-run: check
 
-check: unit regression layers style
+check: unit regression torture-slice layers style
 
 unit: $(unit)
 	$(Q)JOBS=$(JOBS) tools/run_tests $^
 
 regression: $(program) $(regr)
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) tools/run_tests $(regr)
+
+# Memory refused, files that fail, kills: a slice of each in the tests. All of
+# it with random problems and decks in one table; POINTS: of each kind, by
+# and large.
+POINTS  ?= 20000
+torture := PROTIS=$(abspath $(program)) PROTIS_REFUSE=$(abspath $(preload))
+.PHONY: torture torture-slice
+torture-slice: $(program) $(preload) $(tort)
+	$(Q)$(torture) JOBS=$(JOBS) tools/run_tests $(tort)
+
+torture: $(program) $(preload) $(tort) $(out)/tests/unit/conformance \
+         $(out)/tests/stability/lcp $(out)/tests/regression/mutants
+	$(Q)$(torture) JOBS=$(JOBS) PROTIS_POINTS=$(POINTS) tools/torture \
+	  $(filter-out $(program) $(preload),$^)
 
 # Hard cases: the matrix of scenes (SCENE=name: those alone), every other
 # program of tests/stability, and the long run of the conformance test.

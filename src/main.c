@@ -77,14 +77,19 @@ int main(int argc, char **argv) {
   command c;
   message_log *log = NULL;
   int exit_code, unsettled = 0;
+  interrupt_crashes();
   blas_choose_kernel(argv);
   interrupt_spare_writes();
-  if (!command_read(argc, argv, &c, &exit_code)) return exit_code;
+  if (!command_read(argc, argv, &c, &exit_code)) {
+    interrupt_over();
+    return exit_code;
+  }
   if (c.threads > 0) blas_set_threads(c.threads);
   status st = message_log_new(&log);
   if (st == OK) st = run_job(&c, log, &unsettled);
   exit_code = report(st, log, unsettled);
   message_log_free(log);
   command_free(&c);
+  interrupt_over();
   return exit_code;
 }

@@ -19,4 +19,15 @@ status interrupt_asked(void);
 /* "SIGINT", "SIGTERM" or the name of the file; "" if nothing was asked. */
 const char *interrupt_name(void);
 
+/*
+ * Ends that nobody chose: a signal of the processor inside the program or a
+ * library, or a library that ends the process by itself, as HDF5 and OpenMP do
+ * when memory is refused. From here on such an end prints one clear line and
+ * leaves with exit code 7 (a signal) or 5 (a library); the result files are
+ * whole up to the last line of JOB.sta. Under a sanitizer signals stay its own.
+ */
+void interrupt_crashes(void);
+/* The program ends by itself now. */
+void interrupt_over(void);
+
 #endif

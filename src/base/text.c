@@ -25,8 +25,8 @@ char *text_path(const char *dir, const char *name, const char *suffix) {
 enum { BUFFER = 1 << 16 };
 
 status text_failed(const char *path, const char *doing, int error_no) {
-  return status_fail(ERR_FILE, __func__, __LINE__, "%s: cannot %s: %s", path,
-                     doing,
+  status st = error_no == ENOMEM ? ERR_MEMORY : ERR_FILE;
+  return status_fail(st, __func__, __LINE__, "%s: cannot %s: %s", path, doing,
                      error_no != 0 ? strerror(error_no) : "unknown reason");
 }
 

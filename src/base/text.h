@@ -26,7 +26,8 @@ status text_sync(text_file *t, long *length);
 /* Hand everything to the system; ERR_FILE names the file and the reason. */
 status text_check(text_file *t);
 status text_close(text_file *t); /* checked; accepts one never opened      */
-/* ERR_FILE with the path and the text of the error number; 0: none known. */
+/* ERR_FILE, of ENOMEM ERR_MEMORY, with the path and the text of the error
+ * number; 0: none known. */
 status text_failed(const char *path, const char *doing, int error_no);
 enum { NUMBER_SIZE = 40 };
 /* "1.5000E+000": digits after the point, three-digit exponent, no -0, NaN,

@@ -180,6 +180,13 @@ static void fill_held(condensed *c) {
   }
 }
 
+static void estimate_condition(condensed *c) {
+  c->condition = 1;
+  for (int q = 0; q < c->n_body; ++q)
+    c->condition =
+        fmax(c->condition, body_factor_condition(c->k, &c->body[q], c->cm));
+}
+
 static status form_matrix(condensed *c) {
   status st = OK;
   timer_enter(STAGE_CONDENSE);
@@ -189,6 +196,7 @@ static status form_matrix(condensed *c) {
   TRY(rigid_orthonormalise(c->k, &c->d, &c->rigid));
   TRY(rigid_project(&c->rigid, c->A));
   fill_held(c);
+  estimate_condition(c);
 done:
   timer_leave(STAGE_CONDENSE);
   return st;
@@ -384,7 +392,7 @@ done:
   return st;
 }
 
-static int costs_digits(condensed *c) {
+static int costs_digits(const condensed *c) {
   long n = 0;
   for (int q = 0; q < c->n_body; ++q) n += c->body[q].n;
   return condensed_condition(c) > refine_excess * (double)n;
@@ -437,18 +445,9 @@ int condensed_motions(const condensed *c, const free_motion **list) {
   return c->n_motion;
 }
 
-double condensed_condition(condensed *c) {
-  if (c->condition > 0) return c->condition;
-  c->condition = 1;
-  timer_enter(STAGE_RECOVERY);
-  for (int q = 0; q < c->n_body; ++q)
-    c->condition =
-        fmax(c->condition, body_factor_condition(c->k, &c->body[q], c->cm));
-  timer_leave(STAGE_RECOVERY);
-  return c->condition;
-}
+double condensed_condition(const condensed *c) { return c->condition; }
 
-double condensed_digits(condensed *c) {
+double condensed_digits(const condensed *c) {
   return fmax(0, -log10(0.5 * DBL_EPSILON * condensed_condition(c)));
 }
 

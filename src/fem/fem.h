@@ -90,10 +90,10 @@ int condensed_floating(const condensed *c); /* 1: contact alone holds a body  */
 /* The motions contact alone holds; list borrowed from c. */
 int condensed_motions(const condensed *c, const free_motion **list);
 /* Estimate of the condition number of K with its unknowns scaled to a unit
- * diagonal (that scaling costs no digits); found when first asked for. */
-double condensed_condition(condensed *c);
+ * diagonal (that scaling costs no digits). */
+double condensed_condition(const condensed *c);
 /* Digits of A that it leaves: 16 less its power of ten, not below 0. */
-double condensed_digits(condensed *c);
+double condensed_digits(const condensed *c);
 
 typedef struct condense_info {
   long unknowns, contact_unknowns, factor_entries;

@@ -3,143 +3,30 @@
  * that was not: all files equal, byte by byte. The points of interruption are
  * counted in writes (the run is traced), so that nothing depends on time.
  */
-#include "support/job.h"
+#include "support/small_job.h"
+#include "support/traced.h"
 #include "support/unit.h"
 
-#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/ptrace.h>
-#include <sys/syscall.h>
-#include <sys/user.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-enum { KILLED = 1000 + SIGKILL };
-
-/* ---- a run that is stopped at a write ----------------------------------- */
-
-static const char *program(void) {
-  const char *p = getenv("PROTIS");
-  return p == NULL ? "build/release/protis" : p;
-}
-
-/* The job with further words (at most two), traced. */
-static pid_t start(const job *j, const char *const *words) {
-  char deck[200];
-  snprintf(deck, sizeof deck, "%s/%s", j->dir, j->name);
-  pid_t pid = fork();
-  ck_assert_int_ge(pid, 0);
-  if (pid > 0) return pid;
-  char told[200];
-  snprintf(told, sizeof told, "%s/stderr.txt", j->dir);
-  int to = open(told, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  if (dup2(to, STDERR_FILENO) < 0 || dup2(to, STDOUT_FILENO) < 0) _exit(99);
-  if (ptrace(PTRACE_TRACEME, 0, NULL, NULL) != 0) _exit(98);
-  execl(program(), program(), deck, "--no-timing", words[0], words[1],
-        (char *)NULL);
-  _exit(99);
-}
-
-/* 1: a call that changes a file. */
-static int changes_file(pid_t pid) {
-  struct user_regs_struct regs;
-  ck_assert_int_eq(ptrace(PTRACE_GETREGS, pid, NULL, &regs), 0);
-  switch (regs.orig_rax) {
-    case SYS_write:
-    case SYS_pwrite64:
-    case SYS_fsync:
-    case SYS_rename:
-    case SYS_ftruncate:
-    case SYS_unlink:
-      return 1;
-    default:
-      return 0;
-  }
-}
-
-/* Give it the signal at change number "at"; *changes counts all. Exit code, or
- * 1000 + signal. */
-static int run_until(const job *j, const char *const *words, int at,
-                     int signal_no, int *changes) {
-  pid_t pid = start(j, words);
-  int code, enters = 0;
-  long send = 0;
-  *changes = 0;
-  ck_assert_int_eq(waitpid(pid, &code, 0), pid);
-  ck_assert_msg(WIFSTOPPED(code), "cannot be traced: %x", code);
-  ptrace(PTRACE_SETOPTIONS, pid, NULL, PTRACE_O_TRACESYSGOOD);
-  while (ptrace(PTRACE_SYSCALL, pid, NULL, send) == 0) {
-    ck_assert_int_eq(waitpid(pid, &code, 0), pid);
-    if (WIFEXITED(code)) return WEXITSTATUS(code);
-    if (WIFSIGNALED(code)) return 1000 + WTERMSIG(code);
-    int is_call = WSTOPSIG(code) == (SIGTRAP | 0x80);
-    send = is_call ? 0 : WSTOPSIG(code);
-    enters = is_call ? !enters : enters;
-    if (!is_call || !enters || !changes_file(pid)) continue;
-    if (++*changes == at) ck_assert_int_eq(kill(pid, signal_no), 0);
-  }
-  ck_assert_int_eq(waitpid(pid, &code, 0), pid);
-  return WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code);
-}
 
 static const char *const nothing[] = {NULL, NULL};
-static const char *const again[] = {"--restart", NULL};
 
-/* ---- comparing ---------------------------------------------------------- */
+/* The job is given the signal at that change of a file (0: never); *changes or
+ * NULL. Exit code. */
+static int run_until(job *j, const char *const *words, int at, int signal_no,
+                     int *changes) {
+  traced t = {.action = TRACE_SIGNAL, .at = at, .number = signal_no};
+  int code = traced_run(j, words, &t);
+  *changes = t.changes;
+  return code;
+}
 
 /* All files of the results are equal, byte by byte. */
 static void same_files(const job *a, const job *b, const char *what) {
-  static const char *const files[] = {"lst", "sta",  "cvg", "dat",
-                                      "h5",  "xdmf", "json"};
-  int flows = strcmp(a->name, "creep") == 0; /* calls may differ */
-  for (size_t k = 0; k < sizeof files / sizeof *files; ++k) {
-    char command[300];
-    if (flows && (k == 0 || strcmp(files[k], "json") == 0)) continue;
-    snprintf(command, sizeof command, "cmp %s/%s.%s %s/%s.%s 1>&2", a->dir,
-             a->name, files[k], b->dir, b->name, files[k]);
-    ck_assert_msg(system(command) == 0, "%s: .%s differs", what, files[k]);
-  }
-}
-
-/* ---- decks -------------------------------------------------------------- */
-
-/* A block in the plane, pressed and moved to and fro by its top. */
-static job flat_block(double mu, const char *cards, const char *method) {
-  job j = job_begin("block");
-  job_copy(&j, "input/greco/greco.geo");
-  job_write(&j, "block.inp",
-            "*PARAMETER\nN = 8\n*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n130.D3, 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*QUASISTATIC\n"
-            "0.25, 1.\n*BOUNDARY\nTOP, 2, 2, -0.02\nTOP, 1, 1, 0.02\n"
-            "*SOLVER, METHOD=%s\n*PRINT, CONTACT, LOOP\n*OUTPUT\n%s"
-            "*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n"
-            "*BOUNDARY\nTOP, 1, 1, -0.01\n*END STEP\n",
-            mu, method, cards);
-  return j;
-}
-
-/* A block in space, pressed, sheared and turned aside. */
-static job solid_block(double mu, const char *cards, const char *method) {
-  job j = job_begin("solid");
-  job_copy(&j, "input/block_shear_3d/block_shear_3d.geo");
-  job_write(&j, "solid.inp",
-            "*PARAMETER\nN = 4\nNZ = 2\n*MESH, FILE=block_shear_3d.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n210.D3, 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n0., 0., 1.\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*QUASISTATIC\n"
-            "0.5, 1.\n*BOUNDARY\nTOP, 1, 1, 0.03\nTOP, 2, 2, 0.\n"
-            "TOP, 3, 3, -0.02\n*SOLVER, METHOD=%s\n*PRINT, CONTACT\n*OUTPUT\n"
-            "%s*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\n"
-            "TOP, 2, 2, 0.05\n*END STEP\n",
-            mu, method, cards);
-  return j;
+  const char *file = traced_difference(a, b);
+  ck_assert_msg(file == NULL, "%s: .%s differs", what, file);
 }
 
 /* ---- tests -------------------------------------------------------------- */
@@ -170,58 +57,18 @@ static void interrupt_and_go_on(job (*make)(double, const char *, const char *),
 
 START_TEST(interrupted_run_goes_on_bit_for_bit) {
   for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k) {
-    interrupt_and_go_on(flat_block, 0.1, methods[k]);
-    interrupt_and_go_on(flat_block, 10.0, methods[k]);
-    interrupt_and_go_on(solid_block, 0.1, methods[k]);
-    interrupt_and_go_on(solid_block, 10.0, methods[k]);
+    interrupt_and_go_on(small_flat, 0.1, methods[k]);
+    interrupt_and_go_on(small_flat, 10.0, methods[k]);
+    interrupt_and_go_on(small_solid, 0.1, methods[k]);
+    interrupt_and_go_on(small_solid, 10.0, methods[k]);
   }
 }
 END_TEST
-
-/* At changes of files spread over the run, those of the restart file too. */
-START_TEST(killed_run_goes_on_bit_for_bit) {
-  char what[40];
-  int changes, all;
-  job whole = flat_block(0.4, "*RESTART\n", "AUTO");
-  job cut = flat_block(0.4, "*RESTART\n", "AUTO");
-  int code = run_until(&whole, nothing, 0, 0, &all);
-  for (int k = 0; k < 6; ++k) {
-    int at = all / 2 + k * all / 13 + k;
-    snprintf(what, sizeof what, "killed at change %d of %d", at, all);
-    ck_assert_int_eq(run_until(&cut, nothing, at, SIGKILL, &changes), KILLED);
-    int part = changes / 3;
-    ck_assert_int_eq(run_until(&cut, again, part, SIGKILL, &changes), KILLED);
-    goes_on(&cut, code, what);
-    same_files(&whole, &cut, what);
-  }
-  job_end(&whole);
-  job_end(&cut);
-}
-END_TEST
-
-/* A Maxwell block: inelastic strains, constant tangents. */
-static job creep(double mu, const char *cards, const char *method) {
-  job j = job_begin("creep");
-  job_copy(&j, "input/creep_block/creep_block.geo");
-  job_write(&j, "creep.inp",
-            "*PARAMETER\nN = 8\n*MESH, FILE=creep_block.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
-            "*INELASTIC, LAW=MAXWELL\n4.\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*QUASISTATIC\n"
-            "0.5, 1.\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\n"
-            "LEFT, P, 150.\n*PRINT, CONTACT, ENERGY\n*OUTPUT\n%s*END STEP\n"
-            "*STEP\n*VISCO, %s\n0.5, 4.\n*ACCURACY, TIME=YES\n*END STEP\n",
-            mu, cards, method);
-  return j;
-}
 
 START_TEST(flowing_body_goes_on_bit_for_bit) {
-  interrupt_and_go_on(creep, 1.0, "INTEGRATOR=MIDPOINT");
-  interrupt_and_go_on(creep, 1.0, "INTEGRATOR=BACKWARD");
-  interrupt_and_go_on(creep, 1.0, "INTEGRATOR=HEUN");
+  interrupt_and_go_on(small_creep, 1.0, "INTEGRATOR=MIDPOINT");
+  interrupt_and_go_on(small_creep, 1.0, "INTEGRATOR=BACKWARD");
+  interrupt_and_go_on(small_creep, 1.0, "INTEGRATOR=HEUN");
 }
 END_TEST
 
@@ -245,7 +92,7 @@ static void edit(const job *j, const char *from, const char *to) {
 
 START_TEST(changed_decks_are_refused_by_card) {
   int changes, all;
-  job j = flat_block(0.4, "", "AUTO");
+  job j = small_flat(0.4, "", "AUTO");
   refused(&j, 4, "cannot read");
   run_until(&j, nothing, 0, 0, &all);
   ck_assert_int_eq(run_until(&j, nothing, all * 4 / 10, SIGINT, &changes), 130);
@@ -288,8 +135,8 @@ static void damage(const job *j, const char *suffix) {
 
 START_TEST(damaged_files_are_refused) {
   int changes, all;
-  job whole = flat_block(0.4, "*RESTART\n", "AUTO");
-  job j = flat_block(0.4, "*RESTART\n", "AUTO");
+  job whole = small_flat(0.4, "*RESTART\n", "AUTO");
+  job j = small_flat(0.4, "*RESTART\n", "AUTO");
   run_until(&whole, nothing, 0, 0, &all);
   ck_assert_int_eq(run_until(&j, nothing, all * 2 / 3, SIGKILL, &changes),
                    KILLED);
@@ -309,5 +156,5 @@ START_TEST(damaged_files_are_refused) {
 END_TEST
 
 UNIT_MAIN("restart", interrupted_run_goes_on_bit_for_bit,
-          killed_run_goes_on_bit_for_bit, flowing_body_goes_on_bit_for_bit,
-          changed_decks_are_refused_by_card, damaged_files_are_refused)
+          flowing_body_goes_on_bit_for_bit, changed_decks_are_refused_by_card,
+          damaged_files_are_refused)

@@ -83,6 +83,19 @@ char *job_file(const job *j, const char *suffix) {
   return read_all(path);
 }
 
+int job_has(const job *j, const char *suffix) {
+  char path[PATH];
+  snprintf(path, sizeof path, "%s/%s.%s", j->dir, j->name, suffix);
+  return access(path, F_OK) == 0;
+}
+
+void job_clear(const job *j) {
+  char command[PATH];
+  snprintf(command, sizeof command, "cd '%s' && rm -f %s.[!ig]*", j->dir,
+           j->name);
+  ck_assert_int_eq(system(command), 0);
+}
+
 long job_stage(const job *j, const char *stage, long *bytes) {
   char *text = job_file(j, "lst"), *end;
   ck_assert_ptr_nonnull(text);

@@ -42,6 +42,10 @@ int job_run(job *j, const char *words);
 int job_run_deck(job *j, const char *deck, const char *words);
 /* All of a file of the folder as text (caller frees), or NULL. */
 char *job_file(const job *j, const char *suffix);
+/* 1: JOB.suffix is in the folder. */
+int job_has(const job *j, const char *suffix);
+/* Remove all results and restart files; deck and meshes stay. */
+void job_clear(const job *j);
 /* Calls of a stage in the closing table of the listing; *bytes or NULL: what it
  * asked for. Check fails if the stage is not there. */
 long job_stage(const job *j, const char *stage, long *bytes);

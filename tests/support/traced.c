@@ -1,0 +1,177 @@
+/*
+ * Runs of the program under ptrace.
+ */
+#include "support/traced.h"
+
+#include <check.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ptrace.h>
+#include <sys/syscall.h>
+#include <sys/user.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { PATH = 512 };
+
+static const char *program(void) {
+  const char *p = getenv("PROTIS");
+  return p == NULL ? "build/release/protis" : p;
+}
+
+static pid_t start(const job *j, const char *const *words) {
+  char deck[PATH], told[PATH];
+  snprintf(deck, sizeof deck, "%s/%s", j->dir, j->name);
+  snprintf(told, sizeof told, "%s/stderr.txt", j->dir);
+  pid_t pid = fork();
+  ck_assert_int_ge(pid, 0);
+  if (pid > 0) return pid;
+  int to = open(told, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (dup2(to, STDERR_FILENO) < 0 || dup2(to, STDOUT_FILENO) < 0) _exit(99);
+  if (ptrace(PTRACE_TRACEME, 0, NULL, NULL) != 0) _exit(98);
+  execl(program(), program(), deck, "--no-timing", words[0], words[1],
+        (char *)NULL);
+  _exit(99);
+}
+
+/* 1: the descriptor is a file of the folder, not one of the messages. */
+static int of_folder(const job *j, pid_t pid, unsigned long long fd) {
+  char link[64], path[PATH];
+  snprintf(link, sizeof link, "/proc/%d/fd/%llu", (int)pid, fd);
+  ssize_t n = readlink(link, path, sizeof path - 1);
+  if (n < 0) return 0;
+  path[n] = '\0';
+  return strncmp(path, j->dir, strlen(j->dir)) == 0 &&
+         strstr(path, "/stderr.txt") == NULL;
+}
+
+/* 1: the descriptor was opened for writing. */
+static int is_writable(pid_t pid, unsigned long long fd) {
+  char name[64], line[PATH];
+  unsigned flags = 0;
+  snprintf(name, sizeof name, "/proc/%d/fdinfo/%llu", (int)pid, fd);
+  FILE *f = fopen(name, "r");
+  if (f == NULL) return 0;
+  while (fgets(line, sizeof line, f) != NULL)
+    if (sscanf(line, "flags: %o", &flags) == 1) break;
+  fclose(f);
+  return (flags & O_ACCMODE) != O_RDONLY;
+}
+
+static int changes_file(const job *j, pid_t pid,
+                        const struct user_regs_struct *r) {
+  switch (r->orig_rax) {
+    case SYS_write:
+    case SYS_pwrite64:
+    case SYS_fsync:
+    case SYS_ftruncate:
+      return of_folder(j, pid, r->rdi);
+    case SYS_close:
+      return of_folder(j, pid, r->rdi) && is_writable(pid, r->rdi);
+    case SYS_openat:
+      return (r->rdx & O_ACCMODE) != O_RDONLY;
+    case SYS_rename:
+    case SYS_unlink:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
+/* The call is not made; its answer is set at its end. Of close it is. */
+static void spoil(pid_t pid, struct user_regs_struct *r, const traced *t) {
+  int writes = r->orig_rax == SYS_write || r->orig_rax == SYS_pwrite64;
+  if (t->action == TRACE_SHORT && writes)
+    r->rdx = (r->rdx + 1) / 2;
+  else if (t->action == TRACE_ERROR && r->orig_rax != SYS_close)
+    r->orig_rax = (unsigned long long)-1;
+  ck_assert_int_eq(ptrace(PTRACE_SETREGS, pid, NULL, r), 0);
+}
+
+static void answer(pid_t pid, int number) {
+  struct user_regs_struct r;
+  ck_assert_int_eq(ptrace(PTRACE_GETREGS, pid, NULL, &r), 0);
+  r.rax = (unsigned long long)-(long long)number;
+  ck_assert_int_eq(ptrace(PTRACE_SETREGS, pid, NULL, &r), 0);
+}
+
+/* At the entry of a call; 1: its answer is to be an error. */
+static int meet(const job *j, pid_t pid, traced *t) {
+  struct user_regs_struct r;
+  ck_assert_int_eq(ptrace(PTRACE_GETREGS, pid, NULL, &r), 0);
+  if (!changes_file(j, pid, &r)) return 0;
+  ++t->changes;
+  if (t->changes != t->at && !(t->always && t->changes > t->at)) return 0;
+  if (t->action == TRACE_SIGNAL)
+    ck_assert_int_eq(kill(pid, t->number), 0);
+  else if (t->action != TRACE_COUNT)
+    spoil(pid, &r, t);
+  return t->action == TRACE_ERROR;
+}
+
+static int follow(const job *j, pid_t pid, traced *t) {
+  int code, inside = 0, fails = 0;
+  long send = 0;
+  ck_assert_int_eq(waitpid(pid, &code, 0), pid);
+  ck_assert_msg(WIFSTOPPED(code), "cannot be traced: %x", code);
+  ptrace(PTRACE_SETOPTIONS, pid, NULL,
+         PTRACE_O_TRACESYSGOOD | PTRACE_O_EXITKILL);
+  while (ptrace(PTRACE_SYSCALL, pid, NULL, send) == 0) {
+    ck_assert_int_eq(waitpid(pid, &code, 0), pid);
+    if (WIFEXITED(code)) return WEXITSTATUS(code);
+    if (WIFSIGNALED(code)) return 1000 + WTERMSIG(code);
+    int is_call = WSTOPSIG(code) == (SIGTRAP | 0x80);
+    send = is_call || WSTOPSIG(code) == SIGTRAP ? 0 : WSTOPSIG(code);
+    if (!is_call) continue;
+    inside = !inside;
+    if (inside)
+      fails = meet(j, pid, t);
+    else if (fails)
+      answer(pid, t->number);
+  }
+  ck_assert_int_eq(waitpid(pid, &code, 0), pid);
+  return WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code);
+}
+
+int traced_run(job *j, const char *const *words, traced *t) {
+  job told = *j;
+  t->changes = 0;
+  int code = follow(j, start(j, words), t);
+  snprintf(told.name, sizeof told.name, "stderr");
+  free(j->errors);
+  j->errors = job_file(&told, "txt");
+  return code;
+}
+
+/* 1: both are there and equal, or none is. */
+static int same_file(const job *a, const job *b, const char *suffix) {
+  char one[PATH], other[PATH];
+  int c, d;
+  snprintf(one, sizeof one, "%s/%s.%s", a->dir, a->name, suffix);
+  snprintf(other, sizeof other, "%s/%s.%s", b->dir, b->name, suffix);
+  FILE *f = fopen(one, "rb"), *g = fopen(other, "rb");
+  if (f == NULL || g == NULL) {
+    if (f != NULL) fclose(f);
+    if (g != NULL) fclose(g);
+    return f == g;
+  }
+  do {
+    c = getc(f);
+    d = getc(g);
+  } while (c == d && c != EOF);
+  fclose(f);
+  fclose(g);
+  return c == d;
+}
+
+const char *traced_difference(const job *a, const job *b) {
+  static const char *const files[] = {"sta",  "cvg",  "dat", "h5",
+                                      "xdmf", "json", "lst"};
+  for (size_t k = 0; k < sizeof files / sizeof *files; ++k)
+    if (!same_file(a, b, files[k])) return files[k];
+  return NULL;
+}

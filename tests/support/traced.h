@@ -1,0 +1,38 @@
+/*
+ * Runs of the program under a tracer: something is done to it at a chosen
+ * change of a file of its folder, counted from 1, so that nothing depends on
+ * time. Changes are opening for writing, writing, syncing, closing what was
+ * written, renaming, cutting and removing; what goes to stderr does not count.
+ */
+#ifndef PROTIS_TESTS_TRACED_H
+#define PROTIS_TESTS_TRACED_H
+
+#include "support/job.h"
+
+enum { KILLED = 1000 + 9 /* exit code of a run that SIGKILL ended */ };
+
+typedef enum {
+  TRACE_COUNT,  /* nothing                                                 */
+  TRACE_SIGNAL, /* the signal, before the change                           */
+  TRACE_ERROR,  /* the call fails with the error number, nothing is done   */
+  TRACE_SHORT   /* half of it is written, and told so                      */
+} trace_action;
+
+typedef struct traced {
+  trace_action action;
+  int at;      /* the change it happens at                                  */
+  int always;  /* 1: and at every later one                                 */
+  int number;  /* signal or errno                                           */
+  int changes; /* out: changes of files in all                             */
+} traced;
+
+/* protis JOB --no-timing with further words (at most two, ended by NULL);
+ * messages go to stderr.txt of the folder and to j->errors. Exit code, or
+ * 1000 + signal. */
+int traced_run(job *j, const char *const *words, traced *t);
+
+/* All result files of a and b are equal, byte by byte; else the first that
+ * differs. NULL: all are. */
+const char *traced_difference(const job *a, const job *b);
+
+#endif

@@ -1,0 +1,116 @@
+/*
+ * kill -9 at changes of files: what JOB.sta tells stands in JOB.h5, and
+ * --restart, killed itself or not, ends with the files of a run that nobody
+ * disturbed, as soon as there was a restart file.
+ */
+#include "support/small_job.h"
+#include "support/points.h"
+#include "support/traced.h"
+#include "support/unit.h"
+
+#include <hdf5.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST = 1000 };
+
+static const char *const nothing[] = {NULL, NULL};
+static const char *const again[] = {"--restart", NULL};
+
+/* Increments told in JOB.sta: whole lines after the header; 0 without it. */
+static int told(const job *j) {
+  char *sta = job_file(j, "sta");
+  int n = -1;
+  for (char *p = sta; p != NULL && (p = strchr(p, '\n')) != NULL; ++p) ++n;
+  free(sta);
+  return n < 0 ? 0 : n;
+}
+
+/* Increments in JOB.h5; -1: it cannot be read. */
+static int kept(const job *j) {
+  static double t[MOST];
+  char path[200];
+  int n = 0;
+  snprintf(path, sizeof path, "%s/%s.h5", j->dir, j->name);
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  hid_t set = file < 0 ? -1 : H5Dopen2(file, "/history/time", H5P_DEFAULT);
+  int bad = set < 0 || H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL,
+                               H5P_DEFAULT, t) < 0;
+  if (set >= 0) H5Dclose(set);
+  if (file >= 0) H5Fclose(file);
+  while (!bad && n < MOST && !isnan(t[n])) ++n;
+  return bad ? -1 : n;
+}
+
+static int can_restart(const job *j) {
+  return job_has(j, "rst.h5") || job_has(j, "rst.old.h5");
+}
+
+static int run(job *j, const char *const *words, int at, int *changes) {
+  traced t = {.action = TRACE_SIGNAL, .at = at, .number = SIGKILL};
+  int code = traced_run(j, words, &t);
+  if (changes != NULL) *changes = t.changes;
+  return code;
+}
+
+/* To the end from what a killed run left; NULL or what is wrong. */
+static const char *go_on(const job *whole, job *j) {
+  int there = can_restart(j), code = run(j, again, 0, NULL);
+  if (!there && code == 4) return NULL;
+  if (code != 0) return "restart: exit code";
+  return traced_difference(whole, j) == NULL ? NULL : "wrong files";
+}
+
+static const char *after_kill(const job *j, int code) {
+  if (code != KILLED) return "not killed";
+  return told(j) > 0 && kept(j) < told(j) ? "increment of .sta lost" : NULL;
+}
+
+typedef job make_job(double mu, const char *cards, const char *method);
+
+/* n kills of a job, each followed by "again" kills of its restarts. */
+static void kill_often(points *t, points *twice, make_job *make,
+                       const char *method, double mu, long n) {
+  job whole = make(mu, "*RESTART\n", method);
+  job j = make(mu, "*RESTART\n", method);
+  int changes, rest;
+  ck_assert_int_eq(run(&whole, nothing, 0, &changes), 0);
+  for (long k = 0; k < n && k < changes; ++k) {
+    int at = (int)points_spread(k, n, changes);
+    job_clear(&j);
+    const char *wrong = after_kill(&j, run(&j, nothing, at, NULL));
+    points_try(t);
+    if (k % 8 == 3 && wrong == NULL && can_restart(&j)) {
+      int part = 1 + (int)(k * 7 % (changes / 2));
+      int code = run(&j, again, part, &rest);
+      points_try(twice);
+      if (code == KILLED) wrong = after_kill(&j, code);
+      if (wrong != NULL)
+        points_lose(twice, "%s: killed at change %d, its restart at %d: %s",
+                    j.name, at, part, wrong);
+    }
+    if (wrong == NULL) wrong = go_on(&whole, &j);
+    if (wrong != NULL)
+      points_lose(t, "%s: killed at change %d of %d: %s: %.200s", j.name, at,
+                  changes, wrong, j.errors);
+  }
+  job_end(&whole);
+  job_end(&j);
+}
+
+START_TEST(killed_run_goes_on) {
+  points t = {.kind = "killed runs"}, twice = {.kind = "killed restarts"};
+  long n = points_number(12, 0.12);
+  kill_often(&t, &twice, small_flat, "AUTO", 0.1, n);
+  kill_often(&t, &twice, small_flat, "NEWTON", 10.0, n);
+  kill_often(&t, &twice, small_solid, "SOR", 0.4, n);
+  kill_often(&t, &twice, small_creep, "INTEGRATOR=MIDPOINT", 1.0, n);
+  points_end(&t);
+  points_end(&twice);
+}
+END_TEST
+
+UNIT_LOOP("kills", killed_run_goes_on, 1)
