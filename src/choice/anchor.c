@@ -12,6 +12,7 @@
 enum {
   MODES = 6, /* of a body in space; 3 in the plane                        */
   PASSES = 200,
+  LATE = 3,     /* passes at the tolerance, for the resultant                 */
   DRIFT = 3,    /* passes with the same move                                  */
   PATIENCE = 20 /* passes without a lower residual                            */
 };
@@ -26,6 +27,8 @@ void anchor_free(anchor *an) {
   memory_free(an->A);
   memory_free(an->W);
   memory_free(an->f);
+  memory_free(an->a);
+  memory_free(an->step);
   *an = (anchor){0};
 }
 
@@ -64,7 +67,7 @@ static void null_vectors(int m, int n, const double *L, const int *pivot,
 static status find_modes(const contact_problem *cp, double power, double *L,
                          anchor *an) {
   status st = OK;
-  int *pivot = NULL, m = cp->m, rank = 0, most = cp->dim == 2 ? 3 : MODES;
+  int *pivot = NULL, m = cp->m, rank = 0;
   double *work = NULL;
   NEW(pivot, m);
   NEW(work, 2 * m);
@@ -72,9 +75,9 @@ static status find_modes(const contact_problem *cp, double power, double *L,
   LAPACKE_dpstrf_work(LAPACK_COL_MAJOR, 'L', m, L, m, pivot, &rank,
                       m * NULL_PIVOT, work);
   an->n_mode = m - rank;
-  an->missing = an->n_mode > most;
-  if (an->missing) goto done;
   NEW(an->R, m * an->n_mode);
+  NEW(an->a, an->n_mode);
+  NEW(an->step, an->n_mode);
   null_vectors(m, an->n_mode, L, pivot, work, an->R);
 done:
   memory_free(pivot);
@@ -112,7 +115,6 @@ status anchor_make(const contact_problem *cp, anchor *an) {
   NEW(an->W, m * m);
   NEW(an->f, m);
   TRY(find_modes(cp, dense_power(cp->m, cp->A), an->W, an));
-  if (an->missing) goto done;
   for (size_t i = 0; i < m; ++i) an->spring += cp->A[i * (m + 1)] / (double)m;
   an->spring *= SOFT / cp->n;
   TRY(hold(cp, an));
@@ -125,10 +127,11 @@ done:
 typedef struct passes {
   const anchor *an;
   const contact_problem *cp;
-  double a[MODES], step[MODES]; /* place of the springs, last move of it, m   */
-  double lowest;                /* residual at the last progress              */
-  int since, steady;            /* passes since; with the same move           */
-  int closed;                   /* 1: has been put onto its obstacles         */
+  double load;       /* largest |f|, N                                        */
+  double lowest;     /* residual at the last progress                         */
+  int since, steady; /* passes since; with the same move                      */
+  int closed;        /* 1: has been put onto its obstacles                    */
+  int late;          /* passes at the tolerance                               */
 } passes;
 
 /* The place of the body, R'u. */
@@ -141,7 +144,7 @@ static void place(const anchor *an, int m, const double *u, double *a) {
 static double move_of(const passes *p, int i) {
   double d = 0.0;
   for (int k = 0; k < p->an->n_mode; ++k)
-    d += p->step[k] * p->an->R[(size_t)i + (size_t)p->cp->m * (size_t)k];
+    d += p->an->step[k] * p->an->R[(size_t)i + (size_t)p->cp->m * (size_t)k];
   return d;
 }
 
@@ -165,7 +168,7 @@ static void close_gaps(passes *p) {
     double bound = contact_bound(p->cp, i);
     d[i] = bound < HUGE_VAL ? bound : contact_stick(p->cp, i);
   }
-  place(p->an, p->cp->m, d, p->a);
+  place(p->an, p->cp->m, d, p->an->a);
 }
 
 /* A body on its way to an obstacle is put onto it, the next time onto the first
@@ -175,23 +178,32 @@ static void fly(passes *p, const double *u) {
   if (!(moves > 1.0)) return;
   if (!p->closed) close_gaps(p);
   for (int k = 0; k < p->an->n_mode && p->closed; ++k)
-    p->a[k] += (moves - 1.0) * p->step[k];
+    p->an->a[k] += (moves - 1.0) * p->an->step[k];
   p->closed = 1;
 }
 
 /* The springs follow the body. */
 static void follow(passes *p, const double *u) {
   const anchor *an = p->an;
-  double at[MODES] = {0.0}, apart = 0.0, size = 0.0;
-  place(an, p->cp->m, u, at);
+  double apart = 0.0, size = 0.0;
   for (int k = 0; k < an->n_mode; ++k) {
-    double step = at[k] - p->a[k];
-    apart += (step - p->step[k]) * (step - p->step[k]);
+    double at =
+        cblas_ddot(p->cp->m, an->R + (size_t)k * (size_t)p->cp->m, 1, u, 1);
+    double step = at - an->a[k], turn = step - an->step[k];
+    apart += turn * turn;
     size += step * step;
-    p->step[k] = step;
+    an->step[k] = step;
+    an->a[k] = at;
   }
   p->steady = sqrt(apart) <= STEADY * sqrt(size) ? p->steady + 1 : 0;
-  memcpy(p->a, at, sizeof at);
+}
+
+/* Resultant the springs carried in the last pass, over the load. */
+static double carried(const passes *p) {
+  double sum = 0.0;
+  for (int k = 0; k < p->an->n_mode; ++k)
+    sum += p->an->step[k] * p->an->step[k];
+  return sum > 0.0 ? p->an->spring * sqrt(sum * p->cp->m) / p->load : 0.0;
 }
 
 /* Most that friction can do against the last move, N m. */
@@ -225,7 +237,8 @@ static int drifts(const passes *p, const double *r) {
 static outcome judge(passes *p, double tol, const double *r, solver_report *rep,
                      outcome inner) {
   if (isnan(rep->residual)) return STOPPED_NAN;
-  if (rep->residual <= tol) return CONVERGED;
+  if (rep->residual <= tol && (carried(p) <= tol || ++p->late > LATE))
+    return CONVERGED;
   ++p->since;
   if (rep->residual < PROGRESS * p->lowest) {
     p->lowest = rep->residual;
@@ -243,8 +256,8 @@ static contact_problem anchored(const passes *p) {
   contact_problem own = *p->cp;
   memcpy(an->f, p->cp->f, (size_t)own.m * sizeof *an->f);
   for (int k = 0; k < an->n_mode; ++k)
-    cblas_daxpy(own.m, an->spring * p->a[k], an->R + (size_t)k * (size_t)own.m,
-                1, an->f, 1);
+    cblas_daxpy(own.m, an->spring * p->an->a[k],
+                an->R + (size_t)k * (size_t)own.m, 1, an->f, 1);
   own.A = an->A;
   own.W = an->W;
   own.f = an->f;
@@ -259,7 +272,9 @@ status anchor_solve(const anchor *an, const contact_problem *cp,
   passes p = {.an = an, .cp = cp, .lowest = HUGE_VAL};
   solver_control own = *control;
   *rep = (solver_report){.outcome = RUNNING, .residual = 1.0};
-  place(an, cp->m, u, p.a);
+  place(an, cp->m, u, an->a);
+  memset(an->step, 0, (size_t)an->n_mode * sizeof *an->step);
+  for (int i = 0; i < cp->m; ++i) p.load = fmax(p.load, fabs(cp->f[i]));
   for (int k = 0; k < PASSES && rep->outcome == RUNNING; ++k) {
     solver_report pass;
     contact_problem held = anchored(&p);

@@ -20,11 +20,13 @@
 
 typedef struct anchor {
   int missing;   /* 1: the null vectors could not be found                    */
-  int n_mode;    /* of them, at most 6                                        */
+  int n_mode;    /* of them                                                   */
   double *R;     /* [m*n_mode] -                                              */
   double spring; /* k, N/m                                                    */
   double *A, *W; /* [m*m] A_s and its inverse                                 */
   double *f;     /* [m] f_s, N                                                */
+  double *a,
+      *step; /* [n_mode] place of the springs, last move of the body, m */
 } anchor;
 
 /* Make it for the matrix of cp, if that has not been tried. */

@@ -13,6 +13,9 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { TIGHTER = 3 };                /* tolerances tried on another form      */
+static const double OWN_SHARE = 0.5; /* of the tolerance, in that form        */
+
 status contact_solver_new(const solver_choice *choice, contact_solver **out) {
   status st = OK;
   contact_solver *s = NULL;
@@ -226,15 +229,17 @@ static void log_unfit(contact_solver *s, const char *name, const char *why) {
            name, why);
 }
 
-typedef struct anchored_attempt {
+/* An attempt on the problem given. */
+typedef struct drive_call {
   contact_solver *s;
   const attempt *a;
-} anchored_attempt;
+  const contact_problem *given;
+} drive_call;
 
 static status drive_anchored(void *ctx, const contact_problem *cp,
                              const solver_control *control, double *u,
                              double *r, solver_report *rep) {
-  const anchored_attempt *x = ctx;
+  const drive_call *x = ctx;
   return drive_one(x->s, cp, x->a, control, u, r, rep);
 }
 
@@ -250,6 +255,40 @@ static int wants_inverse(contact_solver *s, const contact_problem *cp,
   s->work[row] = NULL;
   s->inverse_wanted = 1;
   return a->max_iter == 0 || a->max_iter > rep->iterations;
+}
+
+/* The attempt on the problem in the form "own". */
+static status drive_form(drive_call *x, const contact_problem *own,
+                         const solver_control *control, double *u, double *r,
+                         solver_report *rep) {
+  anchored_solver inner = {drive_anchored, x};
+  if (own->A != NULL && own->A == x->s->held.A)
+    return anchor_solve(&x->s->held, x->given, &inner, control, u, r, rep);
+  return drive_one(x->s, own, x->a, control, u, r, rep);
+}
+
+/* The residual of the stiffness form can be met where that of the compliance
+ * given is missed by a little: the solver goes on with a tighter tolerance. */
+static status drive_until_met(drive_call *x, const contact_problem *own,
+                              solver_control control, double *u, double *r,
+                              solver_report *rep) {
+  status st = OK;
+  double tol = control.tol;
+  int made = 0;
+  for (int k = 0; k < TIGHTER; ++k) {
+    TRY(drive_form(x, own, &control, u, r, rep));
+    made += rep->iterations;
+    rep->iterations = made;
+    if (x->given->A != NULL || own->A == NULL || rep->outcome != CONVERGED)
+      break;
+    double residual = contact_residual(x->given, u, r);
+    if (!(residual > tol)) break;
+    control.tol *= OWN_SHARE * tol / residual;
+    if (control.max_iter > 0) control.max_iter = x->a->max_iter - made;
+    if (x->a->max_iter > 0 && control.max_iter <= 0) break;
+  }
+done:
+  return st;
 }
 
 status attempt_run(contact_solver *s, const contact_problem *cp,
@@ -273,12 +312,8 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
     TRY(a->ops->setup(&own, a->param, &s->work[row]));
     TRY(remember(s, row));
   }
-  anchored_attempt x = {s, a};
-  anchored_solver inner = {drive_anchored, &x};
-  if (own.A != NULL && own.A == s->held.A)
-    TRY(anchor_solve(&s->held, cp, &inner, &control, u, r, rep));
-  else
-    TRY(drive_one(s, &own, a, &control, u, r, rep));
+  drive_call x = {s, a, cp};
+  TRY(drive_until_met(&x, &own, control, u, r, rep));
   if (wants_inverse(s, cp, a, rep)) {
     attempt again = *a;
     if (a->max_iter > 0) again.max_iter -= rep->iterations;

@@ -289,7 +289,7 @@ static status aitken_solve(const contact_problem *cp, const void *par,
   int gave_up =
       rep->outcome == STOPPED_STAGNATION || rep->outcome == STOPPED_CYCLE;
   rep->residual = w->best.residual;
-  if (gave_up && relaxation_drifts(&s.sweep, w->best.u))
+  if (gave_up && relaxation_drifts(&s.sweep, w->before))
     rep->outcome = STOPPED_RAY;
   solver_take_best(&w->best, cp->m, u, r);
   return OK;

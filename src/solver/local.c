@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { ROOT_STEPS = 100 };
+enum { ROOT_STEPS = 100, DRIFT_SWEEPS = 20 };
 static const double RIGID = 0x1p-5; /* -, of a drift: counts as no strain  */
 
 /* A state computed, and by how much it misses its inequalities, N. */
@@ -499,12 +499,16 @@ void relaxation_start(const relaxation *s) {
   }
 }
 
-int relaxation_drifts(const relaxation *s, const double *from) {
+int relaxation_drifts(relaxation *s, double *from) {
   const contact_problem *cp = s->cp;
   size_t m = (size_t)cp->m;
   double *d = s->u, *Ad = s->r, work = 0.0, stiff = 0.0, left = 0.0;
-  double most = 0.0, into = 0.0;
+  double most = 0.0;
+  int falls = 0;
   if (!cp->floating || cp->A == NULL) return 0;
+  memcpy(from, s->u, m * sizeof *from);
+  s->omega = 1.0;
+  for (int k = 0; k < DRIFT_SWEEPS; ++k) relaxation_sweep(s, 0);
   for (size_t i = 0; i < m; ++i) d[i] -= from[i];
   contact_product(cp->m, cp->A, d, Ad);
   for (size_t i = 0; i < m; ++i) {
@@ -512,9 +516,13 @@ int relaxation_drifts(const relaxation *s, const double *from) {
     left = fmax(left, fabs(Ad[i]));
     stiff = fmax(stiff, cp->A[i * m + i] * fabs(d[i]));
     most = fmax(most, fabs(d[i]));
-    if (contact_bound(cp, (int)i) < HUGE_VAL) into = fmax(into, d[i]);
   }
-  return work > 0.0 && left < RIGID * stiff && into < RIGID * most;
+  for (size_t i = 0; i < m; ++i) {
+    double bound = contact_bound(cp, (int)i), room = bound - from[i] - d[i];
+    if (bound < HUGE_VAL && d[i] > RIGID * most && room > RIGID * most)
+      falls = 1;
+  }
+  return work > 0.0 && left < RIGID * stiff && !falls;
 }
 
 /* ---- admissible forces

@@ -69,10 +69,10 @@ void relaxation_start(const relaxation *s);
 /* Carry anew r = A u - f, or u = W r + q. */
 void relaxation_refresh(const relaxation *s);
 void relaxation_sweep(relaxation *s, int backward);
-/* 1: a body that contact alone holds drifts off: the way from "from" to the
- * iterate is a rigid motion along which the load works and that leads to no
- * obstacle. The iterate is overwritten. */
-int relaxation_drifts(const relaxation *s, const double *from);
+/* 1: a body that contact alone holds drifts off: what a few more sweeps make is
+ * a rigid motion along which the load works and that leads to no obstacle that
+ * is still open. The iterate is overwritten. from[m]: work. */
+int relaxation_drifts(relaxation *s, double *from);
 
 /*
  * Compliance form with a given limit g: the forces are sought in the convex set

@@ -46,6 +46,7 @@ static const double PROGRESS = 0.9; /* a lower residual is lower by this      */
 typedef struct sor_work {
   node_blocks *blocks;
   best_iterate best;
+  double *before;     /* [m] work                                            */
   fixed_point *fixed; /* for FRICTION_FIXED_POINT                            */
 } sor_work;
 
@@ -54,6 +55,7 @@ static void sor_release(void *work) {
   if (w == NULL) return;
   node_blocks_free(w->blocks);
   best_iterate_free(&w->best);
+  memory_free(w->before);
   fixed_point_free(w->fixed);
   memory_free(w);
 }
@@ -66,6 +68,7 @@ static status sor_setup(const contact_problem *cp, const void *par,
   NEW(w, 1);
   TRY(node_blocks_new(cp, &w->blocks));
   TRY(best_iterate_new(cp->m, &w->best));
+  NEW(w->before, cp->m);
   if (p->friction == FRICTION_FIXED_POINT)
     TRY(fixed_point_new(cp->n, &w->fixed));
   *work = w;
@@ -215,7 +218,7 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
   rep->residual = w->best.residual;
   int gave_up =
       rep->outcome == STOPPED_STAGNATION || rep->outcome == STOPPED_CYCLE;
-  if (gave_up && relaxation_drifts(&s, w->best.u)) rep->outcome = STOPPED_RAY;
+  if (gave_up && relaxation_drifts(&s, w->before)) rep->outcome = STOPPED_RAY;
   solver_take_best(&w->best, cp->m, u, r);
 done:
   return st;

@@ -125,6 +125,34 @@ static contact_case block(double mu, double push, double shear) {
   return case_block(&d);
 }
 
+/* Two blocks side by side, one pushed along the floor: six motions. */
+START_TEST(two_bodies_stand_apart) {
+  contact_case one = block(0.4, 1.0, 0.1), two = case_new(2, 34, 0.4);
+  const solver_ops *ops;
+  int m = one.cp.m;
+  for (int j = 0; j < 2 * m; ++j) {
+    two.f[j] = (j / m == 0 || j % 2 == 0) * one.f[j % m];
+    for (int i = 0; i < 2 * m; ++i)
+      if (i / m == j / m)
+        two.A[i + 2 * m * j] = one.A[i % m + m * (j % m)] * (1 + i / m);
+  }
+  two.cp.floating = 1;
+  for (int i = 0; solver_row(i, &ops); ++i) {
+    case_cold(&two);
+    solver_report rep = solve_by(ops, &two, 1e-10, two.u, two.r);
+    ck_assert_msg(rep.outcome == CONVERGED, "%s", row_name(ops));
+    for (int k = 0; k < 4; ++k) {
+      static const double force[] = {-0.016, -0.0016, -0.016, 0.0};
+      double sum = 0.0;
+      for (int j = 0; j < m; j += 2) sum += two.r[k / 2 * m + j + k % 2];
+      ck_assert_double_eq_tol(sum, force[k], 1e-11);
+    }
+  }
+  case_free(&one);
+  case_free(&two);
+}
+END_TEST
+
 /* The floor lies far below (30: four thousand times the compression) and is
  * hollow, or is level and the block is pushed: the weight arrives there. */
 START_TEST(block_falls_to_its_floor) {
@@ -137,6 +165,7 @@ START_TEST(block_falls_to_its_floor) {
     for (int i = 0; solver_row(i, &ops); ++i) {
       case_cold(&c);
       solver_report rep = solve_by(ops, &c, 1e-9, c.u, c.r);
+      ck_assert_int_ne(rep.outcome, STOPPED_RAY);
       if (ops != NULL && (ops->handles & SOLVES_FLOATING) &&
           rep.outcome != CONVERGED)
         continue; /* a start so far off is too much for some */
@@ -217,5 +246,6 @@ START_TEST(refused_memory_is_given_back) {
 END_TEST
 
 UNIT_MAIN("anchor", truss_stands_by_statics, modes_are_the_rigid_motions,
-          block_falls_to_its_floor, drift_is_told_as_a_ray,
-          factors_of_two_change_no_bit, refused_memory_is_given_back)
+          two_bodies_stand_apart, block_falls_to_its_floor,
+          drift_is_told_as_a_ray, factors_of_two_change_no_bit,
+          refused_memory_is_given_back)

@@ -114,6 +114,34 @@ START_TEST(unfit_method_is_named_with_the_reason) {
 }
 END_TEST
 
+/* A method that works on the stiffness is judged by the compliance given: it
+ * goes on until that residual is met too, for any tolerance. */
+START_TEST(tolerance_is_met_in_the_form_given) {
+  static const double tols[] = {1e-2, 1e-3, 1e-5, 1e-7, 1e-9};
+  const solver_ops *ops;
+  for (int k = 0; k < 100; ++k) {
+    contact_case c = case_any(3, 1 + k % 5, 0.3, 0, (unsigned long long)k);
+    int m = c.cp.m;
+    double *W = calloc((size_t)(m * m), sizeof *W), *q = calloc(30, sizeof *q);
+    ck_assert(case_inverse(m, c.A, W));
+    contact_product(m, W, c.f, q);
+    c.cp.A = NULL;
+    c.cp.W = W;
+    c.cp.f = q;
+    for (int i = 0; solver_row(i, &ops); ++i) {
+      if (ops == NULL || !(ops->handles & NEEDS_STIFFNESS)) continue;
+      case_cold(&c);
+      solver_report rep = solve_by(ops, &c, tols[k % 5], c.u, c.r);
+      ck_assert_msg(rep.outcome == CONVERGED, "%s: problem %d: %g", ops->name,
+                    k, rep.residual);
+    }
+    free(W);
+    free(q);
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* MAX_ITER bounds all that a method does: restarts and shares of friction. */
 START_TEST(limit_holds_for_all_attempts_together) {
   const solver_ops *const rows[] = {&newton_solver, &auglag_solver,
@@ -139,4 +167,5 @@ END_TEST
 
 UNIT_MAIN("choice", frictionless_problems_are_solved_in_both_forms,
           what_is_kept_changes_no_answer, unfit_method_is_named_with_the_reason,
+          tolerance_is_met_in_the_form_given,
           limit_holds_for_all_attempts_together)
