@@ -13,8 +13,9 @@
  * needs no factor; LEMKE last.
  *
  * Compliance given: in 3-D first sweeps of SOR, as long as their rate promises
- * the solution for less than the inverse would cost. Then the same where there
- * is an inverse; PCG, PROXIMAL, LAGRANGE, SOR and LEMKE work on a singular one.
+ * the solution for less than the steps of NEWTON would cost. Then the same,
+ * NEWTON solving for the forces, if the compliance is regular; sweeps again,
+ * PCG, PROXIMAL, LAGRANGE, SOR and LEMKE work on a singular one.
  * PROXIMAL is for what the others leave: an unsymmetric compliance that would
  * be singular without its unsymmetric part, as of rigid bodies.
  *
@@ -38,8 +39,8 @@ const char auto_help[] =
   "grows to its value, each answer the start of the next), then SOR, then\n"
   "LEMKE. Of a problem that comes as a compliance (*CONDENSED PROBLEM) sweeps\n"
   "of SOR go first in 3-D, as long as their rate promises the answer for\n"
-  "less than an inverse costs; then the same chain with PCG, PROXIMAL and\n"
-  "LAGRANGE before SOR, those that need an inverse only where there is one.\n"
+  "less than NEWTON costs; then the same chain with such sweeps, PCG,\n"
+  "PROXIMAL and LAGRANGE before SOR, for compliances that are singular.\n"
   "The first starts from the last increment, the others anew; each may make\n"
   "a number of iterations that bounds its cost, or MAX_ITER if that is less.\n"
   "An answer counts only by the residual of the given problem; the listing\n"
@@ -48,9 +49,12 @@ const char auto_help[] =
 /* clang-format on */
 
 enum {
-  WARM_STEPS = 3,      /* of NEWTON before the normal form is made            */
-  ROUND = 10,          /* sweeps from one look at their rate to the next      */
-  SWEEP_SHARE = 4,     /* m over it: sweeps that cost less than an inverse    */
+  WARM_STEPS = 3,   /* of NEWTON before the normal form is made            */
+  ROUND = 10,       /* sweeps from one look at their rate to the next      */
+  SWEEP_SHARE = 4,  /* m over it: sweeps worth while without an inverse    */
+  STEPS = 6,        /* of NEWTON that sweeps are compared with             */
+  LEAST_ROUNDS = 3, /* to be worth a try                                     */
+  READ = 8, /* solves whose arithmetic takes as long as reading the matrix    */
   FULL_SIZE = 1000,    /* m: up to here a link has all its iterations         */
   LEAST_FACTORS = 80,  /* iterations with a factorisation, on large problems  */
   MOST_FACTORS = 4000, /*                                   on small ones    */
@@ -65,10 +69,10 @@ static const struct {
   int compliance; /* 1: only where no stiffness is given                      */
   int factors;    /* 1: an iteration costs a factorisation, else a product    */
 } auto_chain[] = {
-    {&newton_solver, PLAIN, 0, 1},   {&newton_solver, ALONG_PATH, 0, 1},
-    {&pcg_solver, PLAIN, 1, 0},      {&proximal_solver, PLAIN, 1, 1},
-    {&lagrange_solver, PLAIN, 1, 0}, {&sor_solver, PLAIN, 0, 0},
-    {&lemke_solver, PLAIN, 0, 0}};
+    {&newton_solver, PLAIN, 0, 1},        {&newton_solver, ALONG_PATH, 0, 1},
+    {&sor_solver, WHILE_PROMISING, 1, 0}, {&pcg_solver, PLAIN, 1, 0},
+    {&proximal_solver, PLAIN, 1, 1},      {&lagrange_solver, PLAIN, 1, 0},
+    {&sor_solver, PLAIN, 0, 0},           {&lemke_solver, PLAIN, 0, 0}};
 
 /* Iterations a link may make: such that its cost stays that of its most on a
  * problem with FULL_SIZE unknowns, but at least LEAST. */
@@ -76,10 +80,12 @@ static int allowance(const contact_solver *s, const contact_problem *cp,
                      int i) {
   double size = fmax(1.0, (double)cp->m / FULL_SIZE);
   int factors = auto_chain[i].factors;
+  int promising = auto_chain[i].how == WHILE_PROMISING;
   double most = factors ? MOST_FACTORS / (size * size * size)
                         : MOST_SWEEPS / (size * size);
   int own = (int)fmax(most, factors ? LEAST_FACTORS : LEAST_SWEEPS);
   int asked = s->choice.max_iter;
+  if (promising) own = cp->m / SWEEP_SHARE;
   return asked > 0 && asked < own ? asked : own;
 }
 
@@ -115,10 +121,16 @@ static int says_more(const contact_problem *cp, const solver_report *a,
   return !(a->residual >= b->residual);
 }
 
+/* 1: sweeps may be quick. */
+static int sweeps_fit(const contact_problem *cp) {
+  return cp->A == NULL && cp->dim == 3 && cp->B != NULL;
+}
+
 /* 1 if a link of the chain does not apply: a friction path without Coulomb
  * friction, a method for problems of which only the compliance is known. */
 static int is_skipped(const contact_problem *cp, int i) {
   if (auto_chain[i].how == ALONG_PATH && cp->B == NULL) return 1;
+  if (auto_chain[i].how == WHILE_PROMISING && !sweeps_fit(cp)) return 1;
   return auto_chain[i].compliance && cp->A != NULL;
 }
 
@@ -150,19 +162,28 @@ done:
   return st;
 }
 
+/* Sweeps that take as long as NEWTON does to find the forces of the nodes that
+ * would penetrate without any, all slipping. */
+static int sweeps_of_newton(const contact_problem *cp) {
+  double n = 0.0, m = cp->m;
+  for (int i = 0; i < cp->n; ++i) n += cp->f[i * cp->dim] > cp->gap[i];
+  n *= cp->dim - 1;
+  double most = STEPS * 2.0 / 3.0 * n * n * n / (READ * 2.0 * m * m);
+  return most < LEAST_ROUNDS * ROUND ? 0 : (int)most;
+}
+
 /* Sweeps of SOR on a compliance, as long as the rate of the last round promises
- * the solution within m/SWEEP_SHARE of them. rep->outcome CONVERGED: solved. */
+ * the solution within "most". rep->outcome CONVERGED: solved. */
 static status promising_sweeps(contact_solver *s, const contact_problem *cp,
-                               const solver_listener *listener, double *u,
-                               double *r, solver_report *rep) {
+                               int most, const solver_listener *listener,
+                               const answer *to) {
   status st = OK;
-  int most = cp->m / SWEEP_SHARE, made = 0;
+  int made = 0;
   double before = HUGE_VAL;
-  const answer to = {u, r, rep};
-  *rep = (solver_report){.outcome = RUNNING};
-  if (cp->A != NULL || cp->dim != 3 || cp->B == NULL) goto done;
+  solver_report *rep = to->rep;
+  *rep = (solver_report){.outcome = STOPPED_UNFIT};
   while (made + ROUND <= most) {
-    TRY(short_try(s, cp, &sor_solver, ROUND, listener, &to));
+    TRY(short_try(s, cp, &sor_solver, ROUND, listener, to));
     made += rep->iterations;
     double rate = rep->residual / before, left = s->choice.tol / rep->residual;
     rep->iterations = made;
@@ -233,7 +254,10 @@ static status run_link(contact_solver *s, const contact_problem *cp, int i,
   memset(s->param, 0, s->param_size);
   option_defaults(a.ops->options, s->param);
   if (i > 0) cold_start(cp, u, r);
-  TRY(attempt_run(s, cp, &a, listener, u, r, rep));
+  if (a.how == WHILE_PROMISING)
+    TRY(promising_sweeps(s, cp, a.max_iter, listener, &(answer){u, r, rep}));
+  else
+    TRY(attempt_run(s, cp, &a, listener, u, r, rep));
   if (rep->outcome != STOPPED_UNFIT)
     attempt_judge(cp, s->choice.tol, u, r, rep);
   if (i > 0 || rep->outcome != CONVERGED) note(s, rep, &a);
@@ -250,8 +274,9 @@ status auto_solve(contact_solver *s, const contact_problem *cp,
   int solved = 0;
   solver_report best = {.outcome = RUNNING};
   TRY(solve_normal(s, cp, listener, u, r, rep, &solved));
-  if (!solved) {
-    TRY(promising_sweeps(s, cp, listener, u, r, rep));
+  if (!solved && sweeps_fit(cp)) {
+    TRY(promising_sweeps(s, cp, sweeps_of_newton(cp), listener,
+                         &(answer){u, r, rep}));
     solved = rep->outcome == CONVERGED;
   }
   for (int i = 0; i < n && !solved; ++i) {

@@ -35,7 +35,8 @@ struct contact_solver {
   char group[80]; /* in it                                                    */
 };
 
-typedef enum { PLAIN, ALONG_PATH } drive;
+/* WHILE_PROMISING: AUTO alone, sweeps whose rate is watched. */
+typedef enum { PLAIN, ALONG_PATH, WHILE_PROMISING } drive;
 
 /* A solver, its parameters, how it is driven. */
 typedef struct attempt {

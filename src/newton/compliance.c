@@ -1,35 +1,16 @@
 /* A step from the compliance (compliance.h). */
-#include "newton/compliance.h"
+#include "newton/forces.h"
 
 #include "base/memory.h"
-#include "newton/dense.h"
 
 #include <cblas.h>
 #include <math.h>
 #include <string.h>
 
-enum { REFINEMENTS = 3 };
-static const double ROUNDING = 0x1p-44;  /* -, of the displacements           */
+enum { REFINEMENTS = 3, SHARE = 4 };    /* 1/SHARE: most forces freed         */
+static const double ROUNDING = 0x1p-44; /* -, of the displacements           */
+static const double DEFECT = 0x1p-20;   /* -, of the right side: a good solve */
 static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal        */
-
-/* An unknown force: of one degree of freedom, or along d in the tangent plane
- * of a slipping node. */
-typedef struct unknown {
-  int dof;     /* of d: the first tangent                                     */
-  int turns;   /* 1: along d                                                  */
-  double d[2]; /* -; {1, 0} of a single one                                   */
-} unknown;
-
-struct compliance_system {
-  const contact_problem *cp; /* of this step                                  */
-  const pattern *p;          /* of this step                                  */
-  double power;              /* of two: W*power has a diagonal of order 1     */
-  unknown *list;             /* [m]                                           */
-  int *place;                /* [n] of the normal force in the list, or -1    */
-  int n;                     /* unknowns                                      */
-  dense K;                   /* their matrix, times power                     */
-  double *x, *y;             /* [m]                                           */
-};
 
 status compliance_system_new(const contact_problem *cp,
                              compliance_system **out) {
@@ -40,8 +21,18 @@ status compliance_system_new(const contact_problem *cp,
   NEW(s, 1);
   NEW(s->list, m);
   NEW(s->place, cp->n);
+  NEW(s->turn, cp->n);
   NEW(s->x, m);
   NEW(s->y, m);
+  NEW(s->base, m);
+  NEW(s->in_base, m);
+  NEW(s->column, m);
+  s->room = room / SHARE + 1;
+  NEW(s->X, room * s->room);
+  NEW(s->freed, s->room);
+  NEW(s->C, s->room * s->room);
+  NEW(s->z, s->room);
+  NEW(s->pivot, s->room);
   TRY(dense_new(room, &s->K));
   s->power = dense_power(cp->m, cp->W);
   *out = s;
@@ -53,10 +44,11 @@ done:
 
 void compliance_system_free(compliance_system *s) {
   if (s == NULL) return;
-  memory_free(s->list);
-  memory_free(s->place);
-  memory_free(s->x);
-  memory_free(s->y);
+  void *const blocks[] = {s->list, s->place,   s->turn,   s->x, s->y,
+                          s->base, s->in_base, s->column, s->X, s->freed,
+                          s->C,    s->z,       s->pivot};
+  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
+    memory_free(blocks[i]);
   dense_free(&s->K);
   memory_free(s);
 }
@@ -100,7 +92,8 @@ static void list_unknowns(compliance_system *s) {
       if (!contact_held(cp, dof) && (p->closed[dof] || stick))
         add_unknown(s, dof);
     }
-    if (!turns(s, i)) continue;
+    s->turn[i] = turns(s, i) ? s->n : -1;
+    if (s->turn[i] < 0) continue;
     s->list[s->n++] = (unknown){
         .dof = first + 1, .turns = 1, .d = {-p->e[2 * i + 1], p->e[2 * i]}};
   }
@@ -217,6 +210,43 @@ static double load(compliance_system *s, const double *r, const double *raw) {
   return largest;
 }
 
+/* ---- factor -------------------------------------------------------------- */
+
+/* The new factor becomes the base if there is no slip in it. */
+static void keep_base(compliance_system *s) {
+  s->spent = 0.0;
+  s->n_column = s->n_base = 0;
+  for (int i = 0; i < s->cp->n; ++i)
+    if (s->p->mode[i] == SLIP) return;
+  if (s->K.full) return;
+  for (int i = 0; i < s->cp->m; ++i) s->in_base[i] = -1;
+  for (; s->n_base < s->n; ++s->n_base) {
+    s->base[s->n_base] = s->list[s->n_base].dof;
+    s->in_base[s->base[s->n_base]] = s->n_base;
+    s->column[s->n_base] = -1;
+  }
+}
+
+/* 1: a new factor of n unknowns costs more than the kept one. */
+static int base_pays(compliance_system *s) {
+  double n = s->n, cost = freed_cost(s), fresh;
+  int slips = 0;
+  for (int i = 0; i < s->cp->n; ++i) slips = slips || s->p->mode[i] == SLIP;
+  fresh = (slips ? 2.0 : 1.0) / 3.0 * n * n * n;
+  if (s->spent + cost > fresh) return 0;
+  s->spent += cost;
+  return 1;
+}
+
+/* 0: singular. */
+static int new_factor(compliance_system *s) {
+  s->n_base = 0;
+  fill(s);
+  if (!dense_factor(&s->K, 1)) return 0;
+  keep_base(s);
+  return 1;
+}
+
 /* ---- step ---------------------------------------------------------------- */
 
 /* Add the solved x to the forces. */
@@ -251,6 +281,25 @@ static int project(const compliance_system *s, double *r) {
   return moved;
 }
 
+/* Forces of the guess by the kept factor (freed) or the new one; 0: not solved.
+ */
+static int solve(compliance_system *s, int by_base, double *r, double *raw) {
+  double left = load(s, r, raw), before = HUGE_VAL, first = left;
+  for (int k = 0; k < REFINEMENTS && left < 0.5 * before; ++k) {
+    if (!by_base)
+      dense_solve(&s->K, 1, s->x, s->n);
+    else if (!freed_solve(s))
+      return 0;
+    add_forces(s, r);
+    settle(s, r);
+    compliance_displace(s->cp, r, raw);
+    before = left;
+    left = load(s, r, raw);
+    if (left <= ROUNDING * size_of(s, r)) return 1;
+  }
+  return left <= DEFECT * first;
+}
+
 int compliance_system_step(compliance_system *s, const contact_problem *cp,
                            const pattern *p, double *r, double *raw) {
   s->cp = cp;
@@ -258,17 +307,9 @@ int compliance_system_step(compliance_system *s, const contact_problem *cp,
   list_unknowns(s);
   settle(s, r);
   compliance_displace(cp, r, raw);
-  fill(s);
-  if (!dense_factor(&s->K, 1)) return 1;
-  double left = load(s, r, raw), before = HUGE_VAL;
-  for (int k = 0; k < REFINEMENTS && left < 0.5 * before; ++k) {
-    dense_solve(&s->K, 1, s->x, s->n);
-    add_forces(s, r);
-    settle(s, r);
-    compliance_displace(cp, r, raw);
-    before = left;
-    left = load(s, r, raw);
-    if (left <= ROUNDING * size_of(s, r)) break;
+  if (!base_pays(s) || !solve(s, 1, r, raw)) {
+    if (!new_factor(s)) return 1;
+    solve(s, 0, r, raw);
   }
   if (project(s, r)) compliance_displace(cp, r, raw);
   return 0;

@@ -142,6 +142,14 @@ static int unloaded(const states *s) {
   return 1;
 }
 
+/* Forces that push each node back by its own stiffness, to compare its slip
+ * with: the cheapest guess of stick or slip. */
+static void presume_pressure(states *s) {
+  for (int dof = 0; dof < s->cp->m; dof += s->cp->dim)
+    s->r[dof] =
+        fmin(0.0, -s->k[dof] * (s->u[dof] - s->cp->gap[dof / s->cp->dim]));
+}
+
 /* State of friction from z = r_t - c slip; the state before decides ties. */
 static void friction_state(states *s, int node_id, int fresh) {
   int tangents = s->cp->dim - 1, first = node_id * s->cp->dim + 1;
@@ -225,6 +233,10 @@ static int next_bounds(states *s, int node_id, int fresh, int changes) {
 int states_next(states *s, int fresh) {
   const contact_problem *cp = s->cp;
   int changes = 0, bonded = fresh && unloaded(s);
+  if (bonded && cp->A == NULL) {
+    presume_pressure(s);
+    bonded = 0;
+  }
   for (int node_id = 0; node_id < cp->n; ++node_id) {
     changes += next_bounds(s, node_id, fresh, changes);
     if (cp->g0 == NULL || contact_has_side(cp, node_id)) continue;

@@ -102,7 +102,7 @@ START_TEST(front_of_slip_is_found_from_the_compliance) {
     turn_to_compliance(&c, W, q);
     solver_report rep = solve(&c);
     ck_assert_int_eq(rep.outcome, CONVERGED);
-    ck_assert_int_le(rep.iterations, SLIPPING + 2);
+    ck_assert_int_le(rep.iterations, NODES);
     for (int i = 0; i < NODES; ++i) {
       double T = i < SLIPPING ? g : i == SLIPPING ? 0.5 * g : 0.0;
       ck_assert_double_eq_tol(c.r[i * dim + 1], -T, 1e-10 * F);
