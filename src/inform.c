@@ -7,6 +7,7 @@
 #include "base/option.h"
 #include "exchange/exchange.h"
 #include "history/history.h"
+#include "plan/plan.h"
 
 #include <cholmod.h>
 #include <ctype.h>
@@ -146,12 +147,15 @@ static void print_sizes(const model *m, const mesh *msh) {
            m->steps[i].total / m->steps[i].dt);
 }
 
-static void print_plan(const model *m) {
-  char why[200];
-  for (int i = 0; i < EFFECT_COUNT; ++i)
-    printf("effect    %-20s %-4s %s\n", effect_name(i),
-           m->effects >> i & 1u ? "on" : "off",
-           model_effect_reason(m, i, why, sizeof why));
+static status print_plan(const model *m, const mesh *msh, int n) {
+  status st = OK;
+  effect_plan *p = NULL;
+  TRY(plan_new(m, msh, n, &p));
+  puts("effects");
+  plan_print(p, "  ", stdout);
+done:
+  plan_free(p);
+  return st;
 }
 
 /* Unknowns of the contact nodes; nodes of two contacts count twice. */
@@ -194,17 +198,17 @@ static status print_motions(const model *m, const mesh *msh, int step_id) {
   return st;
 }
 
-void inform_check_problem(const model *m, const exchange_problem *p) {
+status inform_check_problem(const model *m, const exchange_problem *p) {
   printf("problem   %s: %d %s, %d unknowns, condensed to %d\n", p->form, p->n,
          p->dim == 1 ? "rows" : "contacts", p->unknowns, p->m);
-  print_plan(m);
+  return print_plan(m, NULL, p->n);
 }
 
 status inform_check(const model *m, const mesh *msh) {
   status st = OK;
   print_sizes(m, msh);
   print_memory(m, msh);
-  print_plan(m);
+  TRY(print_plan(m, msh, 0));
   /* Supports are only lost where *BOUNDARY, OP=NEW ends some. */
   for (int i = 0; i < m->n_step; ++i)
     if (i == 0 || m->steps[i].renewed >> LOAD_FIXING & 1u)

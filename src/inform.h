@@ -22,8 +22,8 @@ int inform_list(const char *kind);
  * contact holds; solves nothing. ERR_SINGULAR if a body is free. */
 status inform_check(const struct model *m, const struct mesh *msh);
 /* The same for a deck with *CONDENSED PROBLEM: sizes and effect plan. */
-void inform_check_problem(const struct model *m,
-                          const struct exchange_problem *p);
+status inform_check_problem(const struct model *m,
+                            const struct exchange_problem *p);
 
 /* The nearest of the words next(NULL, i), NULL at their end; or NULL. */
 const char *inform_nearest(const char *word,

@@ -140,6 +140,7 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
       .kernel = blas_kernel(),
       .threads = c->threads > 0 ? c->threads : 1,
       .from = from,
+      .n_problem = in->problem != NULL ? in->problem->n : 0,
       .progress = !c->quiet && isatty(STDERR_FILENO)};
   TRY(output_open(in->m, in->problem == NULL ? in->msh : &no_mesh, &options,
                   &out));

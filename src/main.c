@@ -40,7 +40,7 @@ static status run_job(const command *c, message_log *log, int *unsettled) {
   job_input in = {0};
   TRY(job_read(c, NULL, log, &in));
   if (c->check_only && in.problem != NULL)
-    inform_check_problem(in.m, in.problem);
+    TRY(inform_check_problem(in.m, in.problem));
   else if (c->check_only)
     TRY(inform_check(in.m, in.msh));
   else if (c->estimate_cost)

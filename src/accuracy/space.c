@@ -93,7 +93,7 @@ status space_recovery_new(const domain *d, space_recovery **out) {
   space_recovery *s = NULL;
   const mesh *m = d->mesh;
   int n_section = 0, square = d->ns * d->ns;
-  timer_enter(STAGE_ESTIMATE);
+  timer_enter(STAGE_MESH_ERROR);
   for (int k = 0; k < m->n_elem; ++k)
     if (d->section_id[k] >= n_section) n_section = d->section_id[k] + 1;
   NEW(s, 1);
@@ -114,7 +114,7 @@ status space_recovery_new(const domain *d, space_recovery **out) {
   s = NULL;
 done:
   space_recovery_free(s);
-  timer_leave(STAGE_ESTIMATE);
+  timer_leave(STAGE_MESH_ERROR);
   return st;
 }
 
@@ -299,12 +299,12 @@ static void add_region(space_recovery *s, int region, const double *sigma,
 void space_estimate(space_recovery *s, const double *sigma, double *eta,
                     space_error *out) {
   *out = (space_error){0.0, 0.0, 0.0};
-  timer_enter(STAGE_ESTIMATE);
+  timer_enter(STAGE_MESH_ERROR);
   for (int region = 0; region < s->n_region; ++region)
     add_region(s, region, sigma, eta, out);
   double total = out->error + out->norm;
   out->relative = total > 0.0 ? sqrt(out->error / total) : 0.0;
   out->error = sqrt(out->error);
   out->norm = sqrt(out->norm);
-  timer_leave(STAGE_ESTIMATE);
+  timer_leave(STAGE_MESH_ERROR);
 }

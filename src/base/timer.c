@@ -15,6 +15,8 @@ enum { DEPTH = 16 };
 static stage_cost cost[STAGE_COUNT];
 static stage open_stage[DEPTH];
 static int depth;
+static int whole; /* depth of the stage that all others are part of; 0: none */
+static int inner; /* stages entered inside it                               */
 static double last_cpu;
 static size_t last_bytes;
 
@@ -42,14 +44,28 @@ static void charge(void) {
 }
 
 void timer_enter(stage s) {
+  if (whole > 0) {
+    ++inner;
+    return;
+  }
   assert(depth < DEPTH);
   charge();
   open_stage[depth++] = s;
   ++cost[s].calls;
 }
 
+void timer_enter_whole(stage s) {
+  timer_enter(s);
+  if (whole == 0) whole = depth;
+}
+
 void timer_leave(stage s) {
   (void)s;
+  if (inner > 0) {
+    --inner;
+    return;
+  }
+  whole = 0;
   assert(depth > 0 && open_stage[depth - 1] == s);
   charge();
   --depth;
@@ -68,7 +84,7 @@ const char *timer_name(stage s) {
 
 void timer_reset(void) {
   memset(cost, 0, sizeof cost);
-  depth = 0;
+  depth = whole = inner = 0;
 }
 
 void timer_resume(const stage_cost before[STAGE_COUNT]) {

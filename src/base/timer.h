@@ -21,23 +21,37 @@
   X(CONDENSE,    "condensed stiffness")                    \
   X(START,       "initial state")                          \
   X(LOAD,        "loads")                                  \
+  X(BODY,        "body forces")                            \
   X(LIMIT,       "sliding limit")                          \
+  X(HISTORY,     "history of slip")                        \
   X(NONLOCAL,    "nonlocal average")                       \
   X(GIVEN,       "given contact forces")                   \
   X(VELOCITY,    "velocity form")                          \
   X(CONTACT,     "contact solver")                         \
   X(RECOVERY,    "interior solves")                        \
-  X(STRESS,      "stresses and reactions")                 \
+  X(STRESS,      "stresses")                               \
+  X(REACTION,    "reactions")                              \
   X(ENERGY,      "energies")                               \
   X(INELASTIC,   "inelastic strains")                      \
   X(THERMAL,     "thermal strains")                        \
   X(ZONES,       "zones of stick and slip")                \
-  X(ESTIMATE,    "error estimates")                        \
+  X(MESH_ERROR,  "error of mesh")                          \
+  X(TIME_ERROR,  "error of steps")                         \
+  X(ESTIMATE,    "error of solver")                        \
   X(REFERENCE,   "closed form")                            \
   X(CHECK,       "second solutions, jumps")                \
   X(THEORY,      "theorems")                               \
-  X(TABLES,      "tables")                                 \
+  X(LISTING,     "listing, .sta, .cvg")                    \
+  X(TABLE_CONTACT,   "table of contact nodes")             \
+  X(TABLE_TOTALS,    "table of resultants")                \
+  X(TABLE_NODES,     "table of nodes")                     \
+  X(TABLE_ELEMENTS,  "table of elements")                  \
+  X(TABLE_ENERGY,    "table of energies")                  \
+  X(TABLE_REACTIONS, "table of reactions")                 \
+  X(TABLE_ZONES,     "table of zones")                     \
+  X(TABLE_LOOP,      "table of loops")                     \
   X(HDF5,        "HDF5 output")                            \
+  X(FCLIB,       "condensed problems to files")            \
   X(RESTART,     "restart")
 /* clang-format on */
 
@@ -51,6 +65,9 @@ typedef struct stage_cost {
 } stage_cost;
 
 void timer_enter(stage s);
+/* The same for work beside the run: stages entered before it is left are part
+ * of it, their own costs and calls are not counted. */
+void timer_enter_whole(stage s);
 void timer_leave(stage s);       /* must match the last timer_enter         */
 stage_cost timer_cost(stage s);  /* so far, running stages included         */
 const char *timer_name(stage s); /* the text of STAGE_LIST                  */

@@ -189,6 +189,7 @@ static void estimate_condition(condensed *c) {
 
 static status form_matrix(condensed *c) {
   status st = OK;
+  if (c->m == 0) return OK;
   timer_enter(STAGE_CONDENSE);
   NEW(c->A, (size_t)c->m * (size_t)c->m);
   for (int q = 0; q < c->n_body; ++q)

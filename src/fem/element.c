@@ -240,7 +240,6 @@ static void total_strain(const domain *d, int section, const double *e0,
 void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
   const size_t ns = (size_t)d->ns;
   int next = 0;
-  timer_enter(STAGE_STRESS);
   mean_strains(d, d->mesh->n_elem, NULL, u);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     const double *e0 = eigen_at(d, k, &next);
@@ -261,7 +260,6 @@ void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
     for (int k = 0; k < d->mesh->n_elem; ++k)
       cluster_smooth(d->cluster, CLUSTER_STRESS, k, sigma + ns * (size_t)k);
   }
-  timer_leave(STAGE_STRESS);
 }
 
 void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
@@ -301,14 +299,12 @@ static void add_force(const domain *d, int elem_id, const element_shape *s,
 }
 
 void domain_internal_force(const domain *d, const double *sigma, double *F) {
-  timer_enter(STAGE_STRESS);
   memset(F, 0, (size_t)d->mesh->dim * (size_t)d->mesh->n_node * sizeof *F);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     element_shape s;
     element_shape_at(d, k, &s);
     add_force(d, k, &s, sigma + (size_t)d->ns * (size_t)k, 1, F);
   }
-  timer_leave(STAGE_STRESS);
 }
 
 void eigen_force(const domain *d, const eigenstrain *x, double *F) {

@@ -274,7 +274,7 @@ status jump_check(run *r, double t) {
   size_t bytes = (size_t)r->n_c * sizeof *room;
   if (r->n == 0 || r->cp.B == NULL || r->cp.floating) return OK;
   if (r->step->kind != STEP_QUASISTATIC) return OK;
-  timer_enter(STAGE_CHECK);
+  timer_enter_whole(STAGE_CHECK);
   NEW(room, 2 * r->n_c);
   TRY(load_change(r, room, &change));
   if (!(distance(r, r->now.uc, r->old.uc, room) > SUSPECT * change)) goto done;

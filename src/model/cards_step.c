@@ -457,6 +457,7 @@ status apply_accuracy(reading *r) {
     message_add(r->m->log, P2011, &r->card->at,
                 "a step has one *ACCURACY card, this is its second");
   s->has_accuracy = 1;
+  s->accuracy_at = r->card->at;
   s->no_solver_error = !p->solver;
   s->mesh_error = p->mesh || p->target > 0.0;
   s->time_error = p->time || p->target > 0.0;
@@ -502,6 +503,7 @@ status apply_output(reading *r) {
   const output_param *p = r->param;
   step *s = open_step(r);
   s->has_output = 1;
+  s->output_at = r->card->at;
   s->output_frequency = p->hdf5 ? p->frequency : -1;
   s->condensed_frequency = p->condensed == 1 ? p->frequency : -1;
   return OK;
@@ -511,6 +513,7 @@ status apply_restart(reading *r) {
   const restart_param *p = r->param;
   step *s = open_step(r);
   s->has_restart = 1;
+  s->restart_at = r->card->at;
   s->restart_frequency = p->frequency;
   return OK;
 }

@@ -5,12 +5,22 @@
 #include "model/keyword.h"
 
 #include <stdio.h>
+#include <string.h>
 
 const char *effect_name(int bit) {
 #define EFFECT_TEXT(name, text) text,
   static const char *const names[] = {EFFECT_LIST(EFFECT_TEXT)};
   return names[bit];
 }
+
+const char *place_file(const place *at) {
+  const char *file = at->file != NULL ? at->file : "deck";
+  const char *slash = strrchr(file, '/');
+  return slash != NULL ? slash + 1 : file;
+}
+
+/* For "%s:%d": file without folder, line. */
+#define PLACE(at) place_file(&(at)), (at).line_no
 
 const friction_rule *friction_in_force(const model *m, int step_id,
                                        int contact_id) {
@@ -109,6 +119,8 @@ static const step *first_fields(const model *m) {
     if (m->steps[i].output_frequency >= 0) return &m->steps[i];
   return NULL;
 }
+
+int model_writes_fields(const model *m) { return first_fields(m) != NULL; }
 
 static int has_estimates(const model *m) {
   for (int i = 0; i < m->n_step; ++i)
@@ -211,8 +223,8 @@ static void reason_inelastic(const model *m, char *text, size_t size) {
     return;
   }
   const law_card *law = &m->materials[s->material_id].law;
-  snprintf(text, size, "%s of group %s, line %d%s", law->ops->name, s->elset,
-           law->at.line_no,
+  snprintf(text, size, "%s of group %s, %s:%d%s", law->ops->name, s->elset,
+           PLACE(law->at),
            has_card(m, "VISCO") ? "" : ", but no step is *VISCO");
 }
 
@@ -225,7 +237,7 @@ void model_fit_problem(model *m, int dim, int friction) {
 
 static void reason_estimates(const model *m, char *text, size_t size) {
   if (m->effects & EFFECT_ESTIMATES)
-    snprintf(text, size, "error of the contact solver");
+    snprintf(text, size, "default; *ACCURACY, SOLVER=NO leaves it out");
   else if (m->n_contact == 0 && !m->has_problem)
     snprintf(text, size, "no *CONTACT card");
   else
@@ -234,12 +246,12 @@ static void reason_estimates(const model *m, char *text, size_t size) {
 
 /* 1: a deck with *CONDENSED PROBLEM; the reason is in text. */
 static int reason_problem(const model *m, int bit, char *text, size_t size) {
-  int line_no = m->problem_at.line_no;
   if (!m->has_problem) return 0;
-  if (bit == EFFECT_BIT_CONTACT || bit == EFFECT_BIT_MESH)
-    snprintf(text, size, "*CONDENSED PROBLEM, line %d", line_no);
+  if (bit == EFFECT_BIT_CONTACT)
+    snprintf(text, size, "*CONDENSED PROBLEM, %s:%d", PLACE(m->problem_at));
   else if (bit == EFFECT_BIT_FRICTION)
-    snprintf(text, size, "mu of *CONDENSED PROBLEM, line %d, is %s", line_no,
+    snprintf(text, size, "mu of *CONDENSED PROBLEM, %s:%d, is %s",
+             PLACE(m->problem_at),
              m->problem_friction ? "not zero" : "zero or not there");
   else if (bit == EFFECT_BIT_ESTIMATES && m->dim > 1)
     reason_estimates(m, text, size);
@@ -252,8 +264,8 @@ static void reason_friction(const model *m, char *text, size_t size) {
   const contact *c = NULL;
   const friction_rule *rule = first_rule(m, rule_has_friction, &c);
   if (rule != NULL)
-    snprintf(text, size, "*FRICTION, LAW=%s on contact %s, line %d",
-             rule->law->name, c->name, rule->at.line_no);
+    snprintf(text, size, "*FRICTION, LAW=%s on contact %s, %s:%d",
+             rule->law->name, c->name, PLACE(rule->at));
   else if (m->n_contact == 0)
     snprintf(text, size, "no *CONTACT card");
   else
@@ -265,8 +277,8 @@ static int has_given(const model *m) { return first_given(m) != NULL; }
 static void reason_given(const model *m, char *text, size_t size) {
   const contact *c = first_given(m);
   if (c != NULL)
-    snprintf(text, size, "*CONTACT FORCE on contact %s, line %d", c->name,
-             c->force.at.line_no);
+    snprintf(text, size, "*CONTACT FORCE on contact %s, %s:%d", c->name,
+             PLACE(c->force.at));
   else
     snprintf(text, size, "no *CONTACT FORCE card");
 }
@@ -275,8 +287,8 @@ static void reason_nonlocal(const model *m, char *text, size_t size) {
   const contact *c;
   const friction_rule *rule = first_rule(m, rule_has_average, &c);
   if (rule != NULL)
-    snprintf(text, size, "*FRICTION, LAW=%s on contact %s, line %d",
-             rule->law->name, c->name, rule->at.line_no);
+    snprintf(text, size, "*FRICTION, LAW=%s on contact %s, %s:%d",
+             rule->law->name, c->name, PLACE(rule->at));
   else
     snprintf(text, size, "no friction law with an average");
 }
@@ -285,8 +297,8 @@ static int has_start(const model *m) { return m->start.given; }
 
 static void reason_start(const model *m, char *text, size_t size) {
   if (m->start.given)
-    snprintf(text, size, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, line %d",
-             m->start.at.line_no);
+    snprintf(text, size, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, %s:%d",
+             PLACE(m->start.at));
   else
     snprintf(text, size, "no *INITIAL CONDITIONS, TYPE=DISPLACEMENT");
 }
@@ -294,16 +306,17 @@ static void reason_start(const model *m, char *text, size_t size) {
 static void reason_output(const model *m, int table, char *text, size_t size) {
   place at;
   if (first_print(m, table, &at) != NULL)
-    snprintf(text, size, "*PRINT, line %d", at.line_no);
+    snprintf(text, size, "*PRINT, %s:%d", PLACE(at));
   else if (first_fields(m) != NULL)
-    snprintf(text, size, "fields in JOB.h5");
+    snprintf(text, size, "fields in JOB.h5, see below");
   else
     snprintf(text, size, "no output asks for them");
 }
 
 static void reason_history(const model *m, char *text, size_t size) {
   if (m->effects & EFFECT_HISTORY)
-    snprintf(text, size, "friction over more than one increment");
+    snprintf(text, size, "friction over more than one increment, %s:%d",
+             PLACE(m->steps[0].at));
   else if (m->effects & EFFECT_FRICTION)
     snprintf(text, size, "one increment only");
   else
@@ -323,18 +336,18 @@ static void reason_thermal(const model *m, char *text, size_t size) {
   else if (!has_expansion(m))
     snprintf(text, size, "no material in use has *EXPANSION");
   else
-    snprintf(text, size, "*TEMPERATURE on group %s, line %d", l->group,
-             l->at.line_no);
+    snprintf(text, size, "*TEMPERATURE on group %s, %s:%d", l->group,
+             PLACE(l->at));
 }
 
 static void reason_mesh(const model *m, char *text, size_t size) {
-  snprintf(text, size, "*MESH, line %d", m->mesh_at.line_no);
+  snprintf(text, size, "*MESH, %s:%d", PLACE(m->mesh_at));
 }
 
 static void reason_contact(const model *m, char *text, size_t size) {
   if (m->n_contact > 0)
-    snprintf(text, size, "*CONTACT, NAME=%s, line %d", m->contacts[0].name,
-             m->contacts[0].at.line_no);
+    snprintf(text, size, "*CONTACT, NAME=%s, %s:%d", m->contacts[0].name,
+             PLACE(m->contacts[0].at));
   else
     snprintf(text, size, "no *CONTACT card");
 }
@@ -342,8 +355,7 @@ static void reason_contact(const model *m, char *text, size_t size) {
 static void reason_body(const model *m, char *text, size_t size) {
   const load *l = first_body_load(m);
   if (l != NULL)
-    snprintf(text, size, "*DLOAD on group %s, line %d", l->group,
-             l->at.line_no);
+    snprintf(text, size, "*DLOAD on group %s, %s:%d", l->group, PLACE(l->at));
   else
     snprintf(text, size, "no *DLOAD card");
 }
@@ -356,10 +368,21 @@ static void reason_reaction(const model *m, char *text, size_t size) {
   const load *l = moving_support(m);
   if (l != NULL)
     snprintf(text, size,
-             "work of the support %s, line %d, that moves or is let go",
-             l->group, l->at.line_no);
+             "work of the support %s, %s:%d, that moves or is let go", l->group,
+             PLACE(l->at));
   else
     reason_output(m, PRINT_REACTIONS, text, size);
+}
+
+static int has_tangents(const model *m) { return m->n_contact > 0; }
+
+static void reason_tangents(const model *m, char *text, size_t size) {
+  if (m->n_contact == 0)
+    snprintf(text, size, "no *CONTACT card");
+  else if (m->effects & EFFECT_FRICTION)
+    reason_friction(m, text, size);
+  else
+    snprintf(text, size, "*CONTACT");
 }
 
 static int has_mesh(const model *m) { return !m->has_problem; }
@@ -382,44 +405,55 @@ static int has_reaction(const model *m) {
          first_fields(m) != NULL || moving_support(m) != NULL;
 }
 
-static int has_mesh_error(const model *m) {
+/* The first step that "is", or NULL. */
+static const step *first_step(const model *m, int (*is)(const step *s)) {
   for (int i = 0; i < m->n_step; ++i)
-    if (m->steps[i].mesh_error) return 1;
-  return 0;
-}
-static void reason_mesh_error(const model *m, char *text, size_t size) {
-  snprintf(text, size, "%s*ACCURACY, MESH=YES", has_mesh_error(m) ? "" : "no ");
-}
-static int has_time_error(const model *m) {
-  for (int i = 0; i < m->n_step; ++i)
-    if (m->steps[i].time_error) return 1;
-  return 0;
-}
-static void reason_time_error(const model *m, char *text, size_t size) {
-  snprintf(text, size, "%s*ACCURACY, TIME=YES", has_time_error(m) ? "" : "no ");
-}
-
-static const step *first_theory(const model *m) {
-  for (int i = 0; i < m->n_step; ++i)
-    if (m->steps[i].theory) return &m->steps[i];
+    if (is(&m->steps[i])) return &m->steps[i];
   return NULL;
 }
+static int asks_mesh_error(const step *s) { return s->mesh_error; }
+static int asks_time_error(const step *s) { return s->time_error; }
+static int asks_theory(const step *s) { return s->theory; }
+static int has_mesh_error(const model *m) {
+  return first_step(m, asks_mesh_error) != NULL;
+}
+/* The *ACCURACY card of the first step that "is", or that none asks for it. */
+static void reason_accuracy(const model *m, const char *word,
+                            int (*is)(const step *s), char *text, size_t size) {
+  const step *s = first_step(m, is);
+  if (s != NULL && m->target.percent > 0.0)
+    snprintf(text, size, "*ACCURACY, TARGET=, %s:%d", PLACE(s->accuracy_at));
+  else if (s != NULL)
+    snprintf(text, size, "*ACCURACY, %s=YES, %s:%d", word,
+             PLACE(s->accuracy_at));
+  else
+    snprintf(text, size, "no *ACCURACY, %s=YES", word);
+}
+
+static void reason_mesh_error(const model *m, char *text, size_t size) {
+  reason_accuracy(m, "MESH", asks_mesh_error, text, size);
+}
+static int has_time_error(const model *m) {
+  return first_step(m, asks_time_error) != NULL;
+}
+static void reason_time_error(const model *m, char *text, size_t size) {
+  reason_accuracy(m, "TIME", asks_time_error, text, size);
+}
+
 static int has_theory(const model *m) {
-  return first_theory(m) != NULL && m->n_contact > 0;
+  return first_step(m, asks_theory) != NULL && m->n_contact > 0;
 }
 static void reason_theory(const model *m, char *text, size_t size) {
-  if (first_theory(m) == NULL)
-    snprintf(text, size, "no *ACCURACY, THEORY=YES");
-  else if (m->n_contact == 0)
+  if (first_step(m, asks_theory) != NULL && m->n_contact == 0)
     snprintf(text, size, "no *CONTACT card");
   else
-    snprintf(text, size, "*ACCURACY, THEORY=YES");
+    reason_accuracy(m, "THEORY", asks_theory, text, size);
 }
 
 static int has_reference(const model *m) { return m->ref.n > 0; }
 static void reason_reference(const model *m, char *text, size_t size) {
   if (m->ref.n > 0)
-    snprintf(text, size, "*REFERENCE, line %d", m->ref.at.line_no);
+    snprintf(text, size, "*REFERENCE, %s:%d", PLACE(m->ref.at));
   else
     snprintf(text, size, "no *REFERENCE card");
 }
@@ -432,6 +466,7 @@ static const struct {
     [EFFECT_BIT_MESH] = {has_mesh, reason_mesh},
     [EFFECT_BIT_CONTACT] = {has_contact, reason_contact},
     [EFFECT_BIT_FRICTION] = {has_friction, reason_friction},
+    [EFFECT_BIT_TANGENTS] = {has_tangents, reason_tangents},
     [EFFECT_BIT_GIVEN] = {has_given, reason_given},
     [EFFECT_BIT_NONLOCAL] = {has_average, reason_nonlocal},
     [EFFECT_BIT_START] = {has_start, reason_start},

@@ -3,6 +3,7 @@
  * the exact integrals of data that is linear between the nodes (CPR98 2.5:
  * phi_1 in the body, phi_2 on Gamma_2).
  */
+#include "base/timer.h"
 #include "model/model.h"
 
 #include <math.h>
@@ -202,7 +203,10 @@ status load_forces(const model *m, const mesh *msh, const step *s, double t,
         break;
       case LOAD_BODY:
       case LOAD_GRAVITY:
-        TRY(add_elements(m, msh, l, s, t, F));
+        timer_enter(STAGE_BODY);
+        st = add_elements(m, msh, l, s, t, F);
+        timer_leave(STAGE_BODY);
+        TRY(st);
         break;
       case LOAD_POINT:
         TRY(add_points(m, msh, l, s, t, F));

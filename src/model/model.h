@@ -215,6 +215,7 @@ typedef struct step {
                               none */
   int check; /* solution_check, comes with *SOLVER                            */
   int has_accuracy;
+  place accuracy_at, output_at, restart_at; /* of the cards *ACCURACY, ...   */
   int no_solver_error; /* 1: the error of the solver is not asked for        */
   int mesh_error, time_error; /* 1: asked for                                 */
   int theory; /* 1: the theorems of CPR98 are checked                         */
@@ -303,6 +304,7 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
   X(CONTACT,   "unilateral contact")                                         \
   X(FRICTION,  "friction")                                                   \
   X(NONLOCAL,  "nonlocal average")                                           \
+  X(TANGENTS,  "tangential unknowns")                                        \
   X(GIVEN,     "given contact forces")                                       \
   X(HISTORY,   "history of slip")                                            \
   X(START,     "initial state")                                              \
@@ -323,6 +325,8 @@ enum { EFFECT_LIST(EFFECT_BIT) EFFECT_COUNT };
 #define EFFECT_MASK(name, text) EFFECT_##name = 1 << EFFECT_BIT_##name,
 enum { EFFECT_LIST(EFFECT_MASK) EFFECT_ALL = (1 << EFFECT_COUNT) - 1 };
 const char *effect_name(int bit);
+/* Name of the file of a place, without folder. */
+const char *place_file(const place *at);
 /* The rule of a contact in force during a step. */
 const friction_rule *friction_in_force(const model *m, int step_id,
                                        int contact_id);
@@ -330,6 +334,7 @@ const friction_rule *friction_in_force(const model *m, int step_id,
 int rule_has_friction(const friction_rule *rule);
 /* 1 if some *PRINT asks for one of these tables (bits PRINT_*). */
 int model_prints(const model *m, int tables);
+int model_writes_fields(const model *m); /* 1: JOB.h5 is written             */
 /* 1 if some contact has an axis for its torque. */
 int model_has_axis(const model *m);
 /* 1: its limit is an average over the surface. */

@@ -118,16 +118,37 @@ static void write_exit(json *w, const run_summary *run) {
   json_close(w, '}');
 }
 
-static void write_effects(json *w, const model *m) {
-  char why[256];
-  json_open(w, "effects", '[');
-  for (int bit = 0; bit < EFFECT_COUNT; ++bit) {
-    json_open(w, NULL, '{');
-    json_string(w, "effect", effect_name(bit));
-    json_flag(w, "on", (m->effects & (1u << bit)) != 0);
-    json_string(w, "why", model_effect_reason(m, bit, why, sizeof why));
-    json_close(w, '}');
+/* What is expected of an effect and what it took. */
+static void write_effect(json *w, const plan_row *r, double cpu,
+                         const output_options *o) {
+  stage_cost c = plan_cost(r);
+  json_open(w, NULL, '{');
+  json_string(w, "effect", r->name);
+  if (r->of[0] != '\0') json_string(w, "of", r->of);
+  json_flag(w, "on", r->on);
+  json_string(w, "why", r->why);
+  if (r->kind != NULL) json_named_count(w, r->kind, r->items);
+  json_real(w, "expected_cpu_percent", 100 * r->share);
+  if (r->on && r->calls >= 0 && r->n_stage > 0)
+    json_count(w, "expected_calls", r->calls);
+  if (r->n_stage == 0 && r->on) {
+    json_string(w, "part_of", r->within);
+  } else {
+    json_count(w, "calls", (double)c.calls);
+    if (!o->no_timing) {
+      json_real(w, "cpu_percent", cpu > 0.0 ? 100 * c.cpu / cpu : 0.0);
+      json_real(w, "cpu", c.cpu);
+      json_count(w, "bytes", (double)c.bytes);
+    }
   }
+  json_close(w, '}');
+}
+
+static void write_effects(json *w, const job *j) {
+  const effect_plan *p = j->plan;
+  double cpu = plan_cpu(p);
+  json_open(w, "effects", '[');
+  for (int i = 0; i < p->n; ++i) write_effect(w, &p->rows[i], cpu, j->o);
   json_close(w, ']');
 }
 
@@ -329,7 +350,7 @@ static void write_all(json *w, const job *j) {
   json_string(w, "blas_kernel", j->o->kernel);
   json_count(w, "threads", j->o->threads);
   write_exit(w, j->run);
-  write_effects(w, j->m);
+  write_effects(w, j);
   write_sizes(w, j);
   write_accuracy(w, j);
   write_passes(w, j);

@@ -89,14 +89,6 @@ static void print_model(const job *j, FILE *f) {
     }
 }
 
-static void print_effects(const model *m, FILE *f) {
-  char why[256];
-  for (int bit = 0; bit < EFFECT_COUNT; ++bit)
-    fprintf(f, "  %-20s %-3s  %s\n", effect_name(bit),
-            m->effects & (1u << bit) ? "on" : "off",
-            model_effect_reason(m, bit, why, sizeof why));
-}
-
 status listing_open(const job *j, text_file *lst) {
   FILE *f = lst->f;
   const char *version = j->o->version != NULL ? j->o->version : "";
@@ -108,7 +100,7 @@ status listing_open(const job *j, text_file *lst) {
   print_sizes(j, 0, f);
   print_model(j, f);
   heading(f, "EFFECTS");
-  print_effects(j->m, f);
+  plan_print(j->plan, "  ", f);
   return text_check(lst);
 }
 
@@ -638,6 +630,8 @@ status listing_verdict(const job *j, text_file *lst) {
   print_passes(j, f);
   heading(f, "COST");
   print_stages(j, f);
+  heading(f, "COST OF THE EFFECTS");
+  plan_print_cost(j->plan, !j->o->no_timing, f);
   heading(f, "END");
   fprintf(f, "  exit %d: %s\n", status_exit_code(j->run->verdict),
           status_text(j->run->verdict));

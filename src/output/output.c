@@ -24,6 +24,7 @@ struct output {
   tabular *dat;
   hdf5_file *h5;
   run_summary run;
+  effect_plan *plan;
   int n_xdmf; /* records named in JOB.xdmf                                  */
   double xdmf_at; /* when, s                                                 */
   int attempt; /* of the increment now tried                                 */
@@ -35,7 +36,7 @@ struct output {
 };
 
 static job job_of(const output *o) {
-  return (job){o->m, o->msh, &o->o, &o->run};
+  return (job){o->m, o->msh, &o->o, &o->run, o->plan};
 }
 
 /* ---- the summary of the run ------------------------------------------- */
@@ -118,9 +119,9 @@ static status sink_ready(void *ctx, const setup_facts *facts,
     o->quiet = 0;
     return OK;
   }
-  timer_enter(STAGE_TABLES);
+  timer_enter(STAGE_LISTING);
   status st = listing_ready(&j, &o->lst);
-  timer_leave(STAGE_TABLES);
+  timer_leave(STAGE_LISTING);
   return st;
 }
 
@@ -195,7 +196,7 @@ static status write_condensed(output *o, const state *s) {
   char name[512], text[200];
   char *path = NULL;
   if (!output_due(now->condensed_frequency, s) || s->problem == NULL) return OK;
-  timer_enter(STAGE_HDF5);
+  timer_enter(STAGE_FCLIB);
   snprintf(name, sizeof name, "%s_condensed_%05d", o->m->job,
            o->run.n_increment + 1);
   snprintf(text, sizeof text, "Protis %s: step %d, increment %d, time %.9g",
@@ -208,14 +209,14 @@ static status write_condensed(output *o, const state *s) {
                   text, path));
 done:
   memory_free(path);
-  timer_leave(STAGE_HDF5);
+  timer_leave(STAGE_FCLIB);
   return st;
 }
 
 static status write_tables(output *o, const state *s) {
   status st = OK;
   job j = job_of(o);
-  timer_enter(STAGE_TABLES);
+  timer_enter(STAGE_LISTING);
   TRY(tabular_increment(o->dat, s));
   TRY(listing_increment(&j, s, &o->lst));
   cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
@@ -223,7 +224,7 @@ static status write_tables(output *o, const state *s) {
   TRY(remember(o, s));
   TRY(sta_line(&o->o, s, NULL, &o->sta));
 done:
-  timer_leave(STAGE_TABLES);
+  timer_leave(STAGE_LISTING);
   return st;
 }
 
@@ -250,13 +251,13 @@ static status sink_rejected(void *ctx, const state *s, const char *why) {
   cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
   ++o->run.n_rejected;
   ++o->attempt;
-  timer_enter(STAGE_TABLES);
+  timer_enter(STAGE_LISTING);
   TRY(text_check(&o->cvg));
   TRY(listing_rejected(s, why, &o->lst));
   TRY(sta_line(&o->o, s, why, &o->sta));
   TRY(write_condensed(o, s));
 done:
-  timer_leave(STAGE_TABLES);
+  timer_leave(STAGE_LISTING);
   return st;
 }
 
@@ -272,6 +273,7 @@ history_sink output_sink(output *o) {
 /* ---- files of an earlier run ------------------------------------------- */
 
 static void release(output *o) {
+  plan_free(o->plan);
   memory_free(o->json);
   memory_free(o->xdmf);
   for (int i = 0; i < o->run.n_increment; ++i) {
@@ -486,6 +488,7 @@ done:
 /* ---- open and close --------------------------------------------------- */
 
 static status open_hdf5(output *o, const hdf5_count *before) {
+  if (!model_writes_fields(o->m)) return OK;
   timer_enter(STAGE_HDF5);
   status st = hdf5_open(o->m, o->msh, &o->o, before, &o->h5);
   timer_leave(STAGE_HDF5);
@@ -559,6 +562,7 @@ status output_open(const model *m, const mesh *msh, const output_options *opt,
   o->attempt = 1;
   o->run.message = "";
   o->progress = opt->progress && isatty(STDERR_FILENO);
+  TRY(plan_new(m, m->has_problem ? NULL : msh, opt->n_problem, &o->plan));
   TRY(open_all(o));
   *out = o;
 done:

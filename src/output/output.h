@@ -94,6 +94,7 @@ typedef struct output_options {
   const char *kernel;  /* BLAS kernel, for the results; NULL: ""             */
   int threads;         /* threads of the run, for the results                */
   archive *from; /* go on with the files of an earlier run; NULL: new ones    */
+  int n_problem; /* contacts of a *CONDENSED PROBLEM */
 } output_options;
 
 typedef struct output output;

@@ -10,6 +10,7 @@
  * order of the numbers a user sees. Seventeen digits read back exactly.
  */
 #include "base/memory.h"
+#include "base/timer.h"
 #include "output/writers.h"
 
 #include <stdlib.h>
@@ -244,6 +245,14 @@ done:
   return st;
 }
 
+static status write_timed(tabular *t, const view *v, const print_request *p) {
+  stage s = (stage)(STAGE_TABLE_CONTACT + kind_of(p->table));
+  timer_enter(s);
+  status st = write_table(t, v, p);
+  timer_leave(s);
+  return st;
+}
+
 status tabular_increment(tabular *t, const state *s) {
   status st = OK;
   if (t == NULL) return OK;
@@ -251,7 +260,7 @@ status tabular_increment(tabular *t, const state *s) {
   const step *now = &t->m->steps[s->step_no - 1];
   for (int i = 0; i < now->n_print; ++i)
     if (output_due(now->prints[i].frequency, s))
-      TRY(write_table(t, &v, &now->prints[i]));
+      TRY(write_timed(t, &v, &now->prints[i]));
 done:
   return st;
 }

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "output/output.h"
+#include "plan/plan.h"
 
 #include <stdio.h>
 
@@ -87,6 +88,7 @@ typedef struct job {
   const mesh *msh;
   const output_options *o;
   const run_summary *run;
+  const effect_plan *plan; /* of the effects */
 } job;
 
 /* The estimates asked for; how many rows. */

@@ -82,7 +82,9 @@ static status set_stick_position(run *r) {
   status st = OK;
   int dim = r->msh->dim;
   int fresh = r->step->kind == STEP_STATIC && !r->relaxing;
-  if (r->ut0 == NULL) goto done;
+  int history = (r->m->effects & EFFECT_HISTORY) != 0;
+  if (r->ut0 == NULL) return OK;
+  if (history) timer_enter(STAGE_HISTORY);
   for (int i = 0; i < r->n; ++i)
     for (int a = 1; a < dim; ++a) {
       int k = dim * i + a;
@@ -96,6 +98,7 @@ static status set_stick_position(run *r) {
       r->ut0[(dim - 1) * i + a - 1] = stick;
     }
 done:
+  if (history) timer_leave(STAGE_HISTORY);
   return st;
 }
 

@@ -147,7 +147,7 @@ status path_try(run *r, double t) {
   status st = OK;
   double cpu = timer_cpu();
   if (!r->step->time_error || !has_path(r)) return OK;
-  timer_enter(STAGE_ESTIMATE);
+  timer_enter_whole(STAGE_TIME_ERROR);
   r->beside = 1;
   if (r->path != NULL && (r->path->at.t != r->old.t ||
                           r->path->flows != (r->step->kind == STEP_VISCO)))
@@ -156,7 +156,7 @@ status path_try(run *r, double t) {
   TRY(try_halves(r, r->path, t));
 done:
   r->beside = 0;
-  timer_leave(STAGE_ESTIMATE);
+  timer_leave(STAGE_TIME_ERROR);
   r->time_error.cpu += timer_cpu() - cpu;
   return st;
 }

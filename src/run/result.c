@@ -2,14 +2,18 @@
  * What is derived from an equilibrium: stresses, reactions of the supports,
  * resultants of the contacts, energies and their balance.
  */
+#include "base/timer.h"
 #include "run/run.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Reactions: internal forces less loads less contact forces, where fixed. */
-static void find_reactions(run *r) {
+/* Reactions: internal forces less loads less contact forces, where fixed.
+ * known: r->stress is that of r->now already. */
+static void find_reactions(run *r, int known) {
   int dim = r->msh->dim;
+  timer_enter(STAGE_REACTION);
+  if (!known) domain_stress(&r->d, r->now.u, r->strain, r->stress);
   domain_internal_force(&r->d, r->stress, r->now.reaction);
   for (size_t i = 0; i < r->n_dof; ++i)
     r->now.reaction[i] = r->fixed[i] ? r->now.reaction[i] - r->now.F[i] : 0.0;
@@ -21,6 +25,16 @@ static void find_reactions(run *r) {
         r->now.reaction[dof] -= r->surface->frame[dim * dim * i + dim * a + c] *
                                 r->now.rc[dim * i + a];
     }
+  timer_leave(STAGE_REACTION);
+}
+
+/* Stresses that an output shows, or that only an error is told from. */
+static void find_stresses(run *r, int shown) {
+  stage s = r->step->mesh_error ? STAGE_MESH_ERROR : STAGE_REFERENCE;
+  if (shown) s = STAGE_STRESS;
+  timer_enter(s);
+  domain_stress(&r->d, r->now.u, r->strain, r->stress);
+  timer_leave(s);
 }
 
 /* Motion of a contact unknown against the obstacle in the increment, m. */
@@ -51,11 +65,15 @@ static void find_contact(run *r) {
 /* Slip adds up while a node is closed. */
 static void add_distance(run *r) {
   int dim = r->msh->dim;
-  for (int i = 0; i < r->n && r->distance != NULL; ++i) {
+  int history = (r->m->effects & EFFECT_HISTORY) != 0;
+  if (r->distance == NULL) return;
+  if (history) timer_enter(STAGE_HISTORY);
+  for (int i = 0; i < r->n; ++i) {
     double s[2] = {motion_over(r, dim * i + 1), 0.0};
     if (dim == 3) s[1] = motion_over(r, dim * i + 2);
     if (r->contact[i] == CONTACT_SLIP) r->distance[i] += hypot(s[0], s[1]);
   }
+  if (history) timer_leave(STAGE_HISTORY);
 }
 
 /* The *CONTACT whose force row a of a node is: at a corner the side rows are
@@ -196,11 +214,11 @@ done:
 status result_evaluate(run *r, int due) {
   status st = OK;
   unsigned effects = r->m->effects;
-  if ((effects & EFFECT_REACTION) || ((effects & EFFECT_STRESS) && due) ||
-      r->step->mesh_error || r->m->ref.has_stress) {
-    domain_stress(&r->d, r->now.u, r->strain, r->stress);
-    if (effects & EFFECT_REACTION) find_reactions(r);
-  }
+  int shown = (effects & EFFECT_STRESS) && due;
+  int needed = r->step->mesh_error || r->m->ref.has_stress;
+  if (shown || (needed && !(effects & EFFECT_REACTION)))
+    find_stresses(r, shown);
+  if (effects & EFFECT_REACTION) find_reactions(r, shown);
   if (r->n > 0) find_contact(r);
   add_distance(r);
   if (r->m->n_contact > 0) find_totals(r);

@@ -105,7 +105,7 @@ START_TEST(not_asked_for_not_computed) {
                     "METHOD=NEWTON\n*ACCURACY, SOLVER=NO");
   char *lst = job_file(&j, "lst"), line[64];
   ck_assert_ptr_null(strstr(lst, "error of the solver"));
-  snprintf(line, sizeof line, "  %-30s %8d", "error estimates", 0);
+  snprintf(line, sizeof line, "  %-30s %8d", "error of solver", 0);
   ck_assert_ptr_nonnull(strstr(lst, line));
   ck_assert(isnan(told_error(&j)));
   free(lst);

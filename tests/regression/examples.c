@@ -1,6 +1,7 @@
 /*
  * Every deck of input/ against the table of its folder, reference.txt: values
- * of closed forms, of statics, of publications and of finer meshes.
+ * of closed forms, of statics, of publications and of finer meshes. Its effect
+ * plan against plans/NAME.txt, the section EFFECTS of JOB.lst without heading.
  */
 #include "support/job.h"
 #include "support/unit.h"
@@ -64,6 +65,53 @@ static void check_balance(const job *j, const char *path) {
   free(text);
 }
 
+/* The section of the listing under a heading, up to the next blank line; the
+ * caller frees. */
+static char *section(const job *j, const char *heading) {
+  char key[64], *text = job_file(j, "lst");
+  snprintf(key, sizeof key, "\n%s\n", heading);
+  char *at = strstr(text, key);
+  ck_assert_msg(at != NULL, "no %s", heading);
+  at = strchr(at + strlen(key), '\n') + 1;
+  char *end = strstr(at, "\n\n");
+  ck_assert_ptr_nonnull(end);
+  memmove(text, at, (size_t)(end + 1 - at));
+  text[end + 1 - at] = '\0';
+  return text;
+}
+
+/* The effect plan, to the letter. */
+static void compare_plan(const job *j, const char *name) {
+  char path[256], expected[8192];
+  char *found = section(j, "EFFECTS");
+  snprintf(path, sizeof path, "tests/regression/plans/%s.txt", name);
+  FILE *file = fopen(path, "r");
+  ck_assert_msg(file != NULL, "%s cannot be read", path);
+  size_t n = fread(expected, 1, sizeof expected - 1, file);
+  fclose(file);
+  expected[n] = '\0';
+  ck_assert_msg(strcmp(found, expected) == 0, "%s: the plan is now\n%s", path,
+                found);
+  free(found);
+}
+
+/* What is off has neither run nor allocated. */
+static void check_off(const job *j, const char *name) {
+  char *text = section(j, "COST OF THE EFFECTS");
+  int n = 0;
+  for (char *at = strtok(text, "\n"); at != NULL; at = strtok(NULL, "\n")) {
+    double share = 1.0, cpu = 1.0;
+    long calls = 1, bytes = 1;
+    if (strncmp(at + 29, "off", 3) != 0) continue;
+    ck_assert_int_eq(
+        sscanf(at + 32, "%lf %ld %lf %ld", &share, &calls, &cpu, &bytes), 4);
+    ck_assert_msg(calls == 0 && bytes == 0 && share == 0.0, "%s: %s", name, at);
+    ++n;
+  }
+  ck_assert_int_gt(n, 5);
+  free(text);
+}
+
 /* Run one deck (path without .inp) and compare its lines. */
 static void run_deck(const char *path, int n, const line *lines) {
   const char *name = strrchr(path, '/') + 1;
@@ -72,6 +120,8 @@ static void run_deck(const char *path, int n, const line *lines) {
   int code = job_run_deck(&j, path, "");
   ck_assert_msg(code == 0, "%s: exit %d: %s", path, code, j.errors);
   check_balance(&j, path);
+  compare_plan(&j, name);
+  check_off(&j, name);
   for (int k = 0; k < n; ++k) {
     if (strcmp(lines[k].deck, name) != 0) continue;
     compare(&j, &lines[k]);

@@ -532,8 +532,8 @@ START_TEST(effect_plan_has_no_mesh) {
   fclib_local(in_folder(&j, "problem.h5"), STORE_COLUMNS, 2, 1, W, q, mu);
   ck_assert_msg(solve_file(&j, "") == 0, "%s", j.errors);
   char *lst = job_file(&j, "lst");
-  ck_assert_ptr_nonnull(strstr(lst, "finite elements      off"));
-  ck_assert_ptr_nonnull(strstr(lst, "friction             off"));
+  ck_assert_ptr_nonnull(strstr(lst, "finite elements            off"));
+  ck_assert_ptr_nonnull(strstr(lst, "friction                   off"));
   static const char *const stages[] = {"mesh  ", "stiffness assembly",
                                        "factorisation", "condensed stiffness",
                                        "sliding limit"};

@@ -1,0 +1,198 @@
+/*
+ * The effect plan: the same before a run and in its listing, in JSON, off where
+ * nothing calls for an effect, and what is foreseen against what is counted.
+ */
+#include "support/block_file.h"
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A block, pressed and pushed, with further cards in its model and step. */
+static job block(const char *model, const char *step, const char *words) {
+  job j = job_begin("block");
+  block_file_write(&j, (int[]){8, 8}, (double[]){40.0, 40.0}, 0);
+  job_write(&j, "block.inp",
+            "*PARAMETER\nMU = 0.5\nDT = 0.25\n*MESH, FILE=block.msh\n"
+            "*MATERIAL, NAME=STEEL\n*ELASTIC\n130.D3, 0.2\n%s"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL, TYPE=CPE3\n"
+            "*OBSTACLE, NAME=FLOOR, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=FLOOR\n"
+            "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n<MU>\n"
+            "*STEP\n*QUASISTATIC\n<DT>, 1.0\n*BOUNDARY\nSYMMETRY, 1, 1\n"
+            "*DSLOAD\nTOP, P, 50.\nLEFT, P, 20.\n%s*END STEP\n",
+            model, step);
+  int code = job_run(&j, words);
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+static const char bare[] = "*ACCURACY, SOLVER=NO\n*OUTPUT, HDF5=NO\n";
+
+/* The line of an effect below a heading of the listing; caller frees. */
+static char *effect_line(const job *j, const char *heading,
+                         const char *effect) {
+  char key[80], *text = job_file(j, "lst");
+  snprintf(key, sizeof key, "\n%s\n", heading);
+  char *at = strstr(text, key);
+  ck_assert_msg(at != NULL, "no %s", heading);
+  snprintf(key, sizeof key, "\n  %-26s ", effect);
+  at = strstr(at, key);
+  ck_assert_msg(at != NULL, "no effect '%s'", effect);
+  char *line = strndup(at + 1, strcspn(at + 1, "\n"));
+  free(text);
+  return line;
+}
+
+static int is_on(const job *j, const char *effect) {
+  char *line = effect_line(j, "EFFECTS", effect);
+  int on = strncmp(line + 29, "on ", 3) == 0;
+  ck_assert(on || strncmp(line + 29, "off", 3) == 0);
+  free(line);
+  return on;
+}
+
+START_TEST(check_prints_the_plan_of_the_listing) {
+  job a = block("", bare, ""), b = block("", bare, "--check");
+  char *listing = job_file(&a, "lst");
+  char *from = strstr(b.text, "effects\n"), *to;
+  ck_assert_ptr_nonnull(from);
+  from = strchr(from, '\n') + 1;
+  to = strstr(from, "listing, .sta");
+  ck_assert_ptr_nonnull(to);
+  to[strcspn(to, "\n") + 1] = '\0';
+  ck_assert_msg(strstr(listing, from) != NULL, "%s", from);
+  free(listing);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
+/* An effect is named with the card that called for it, file and line. */
+START_TEST(plan_names_file_and_line) {
+  job j = block("", bare, "--check");
+  ck_assert_ptr_nonnull(
+      strstr(j.text, "*FRICTION, LAW=COULOMB on contact FOOT, block.inp:11\n"));
+  ck_assert_ptr_nonnull(strstr(j.text, "*CONTACT, NAME=FOOT, block.inp:10\n"));
+  ck_assert_ptr_nonnull(strstr(j.text, " 9 nodes "));
+  job_end(&j);
+}
+END_TEST
+
+/* Calls and bytes of an effect in the closing table, whose lines end with
+ * calls, seconds, bytes; its line. */
+static char *cost_of(const job *j, const char *effect, long *calls,
+                     long *bytes) {
+  char *line = effect_line(j, "COST OF THE EFFECTS", effect);
+  const char *word[3] = {"", "", ""}, *at = line + 32;
+  while (*at != '\0') {
+    at += strspn(at, " ");
+    word[0] = word[1];
+    word[1] = word[2];
+    word[2] = at;
+    at += strcspn(at, " ");
+  }
+  *calls = strtol(word[0], NULL, 10);
+  *bytes = strtol(word[2], NULL, 10);
+  return line;
+}
+
+/* A deck that asks for nothing but friction: every other effect is off and has
+ * neither calls nor bytes; all are on, and called, once their cards are there.
+ */
+START_TEST(effects_are_paid_for_when_called) {
+  static const char *const effects[] = {"thermal strain",
+                                        "body forces",
+                                        "stresses",
+                                        "reactions",
+                                        "theory checks",
+                                        "error of mesh",
+                                        "error of steps",
+                                        "error of solver",
+                                        "table of contact nodes",
+                                        "table of resultants",
+                                        "table of nodes",
+                                        "table of elements",
+                                        "table of energies",
+                                        "table of reactions",
+                                        "table of zones",
+                                        "table of loops",
+                                        "condensed problems",
+                                        "fields in JOB.h5",
+                                        "restart"};
+  job none = block("", bare, "");
+  job all = block(
+      "*EXPANSION\n1.2D-5\n*DENSITY\n7.8D-9\n",
+      "*TEMPERATURE\nBODY, 10.\n*DLOAD\nBODY, GRAV, 9810., 0., -1.\n"
+      "*PRINT, CONTACT, TOTALS, NODES, ELEMENTS, ENERGY, REACTIONS, ZONES, LOOP"
+      "\n*ACCURACY, MESH=YES, TIME=YES, THEORY=YES\n*RESTART\n"
+      "*OUTPUT, CONDENSED=FCLIB\n",
+      "");
+  for (size_t k = 0; k < sizeof effects / sizeof *effects; ++k) {
+    long calls, bytes;
+    char *line = cost_of(&none, effects[k], &calls, &bytes);
+    ck_assert_msg(!is_on(&none, effects[k]), "%s", line);
+    ck_assert_msg(calls == 0 && bytes == 0, "%s", line);
+    free(line);
+    line = cost_of(&all, effects[k], &calls, &bytes);
+    ck_assert_msg(is_on(&all, effects[k]) && calls > 0, "%s", line);
+    free(line);
+  }
+  job_end(&none);
+  job_end(&all);
+}
+END_TEST
+
+/* JSON: calls foreseen and counted of the effects that tell both. */
+START_TEST(calls_are_as_foreseen) {
+  static const char *const files[] = {"", "*PRINT, CONTACT, TOTALS\n"};
+  for (size_t k = 0; k < 2; ++k) {
+    job j = block("", files[k], "");
+    char *text = job_file(&j, "json"), *at = text;
+    int compared = 0;
+    double sum = 0.0;
+    while ((at = strstr(at, "\"expected_cpu_percent\": ")) != NULL) {
+      double expected, counted;
+      char *end = strchr(at, '}'), *calls = strstr(at, "\"expected_calls\": ");
+      sum += strtod(strchr(at, ':') + 1, NULL);
+      at = end;
+      if (calls == NULL || calls > end) continue;
+      expected = strtod(strchr(calls, ':') + 1, NULL);
+      calls = strstr(calls, "\"calls\": ");
+      counted = strtod(strchr(calls, ':') + 1, NULL);
+      ck_assert_msg(expected == counted, "%.60s", calls - 60);
+      ++compared;
+    }
+    ck_assert_int_gt(compared, 5);
+    ck_assert_double_eq_tol(sum, 100.0, 1e-9);
+    free(text);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* Without the cost columns two runs give the same bytes. */
+START_TEST(no_timing_leaves_calls_alone) {
+  job a = block("", bare, "--no-timing"), b = block("", bare, "--no-timing");
+  char *line = effect_line(&a, "COST OF THE EFFECTS", "unilateral contact");
+  double share;
+  long foreseen, calls;
+  char rest;
+  ck_assert_int_eq(
+      sscanf(line + 32, "%lf %ld %ld %c", &share, &foreseen, &calls, &rest), 3);
+  ck_assert_int_eq(calls, 4);
+  char *one = job_file(&a, "lst"), *two = job_file(&b, "lst");
+  ck_assert_str_eq(one, two);
+  free(one);
+  free(two);
+  free(line);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
+UNIT_MAIN("effects", check_prints_the_plan_of_the_listing,
+          plan_names_file_and_line, effects_are_paid_for_when_called,
+          calls_are_as_foreseen, no_timing_leaves_calls_alone)
