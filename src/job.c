@@ -113,6 +113,11 @@ static status relay_increment(void *ctx, const state *s) {
   return r->to.increment(r->to.ctx, s);
 }
 
+static status relay_between(void *ctx, const state *s) {
+  relay *r = ctx;
+  return r->to.between(r->to.ctx, s);
+}
+
 static void relay_iteration(void *ctx, const solver_step *s) {
   relay *r = ctx;
   r->to.iteration(r->to.ctx, s);
@@ -149,6 +154,7 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
                        .ready = relay_ready,
                        .start = relay_start,
                        .increment = relay_increment,
+                       .between = relay_between,
                        .iteration = relay_iteration,
                        .rejected = relay_rejected,
                        .checkpoint = watch == NULL ? relay_checkpoint : NULL};

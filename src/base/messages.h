@@ -258,7 +258,10 @@
     "FORMULATION=AVERAGED of *SOLID SECTION does not lock.")                \
   X(2056, ERROR, "closed form not complete",                                 \
     "*REFERENCE compares whole fields: give all components of the "          \
-    "displacement, or of the stress (0 where there is none), or neither.")
+    "displacement, or of the stress (0 where there is none), or neither.")  \
+  X(2057, ERROR, "times of tables not valid",                                \
+    "*TIME POINTS lists times that ascend; with GENERATE each line has the "  \
+    "first time, the last one and an interval above zero.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

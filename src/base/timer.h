@@ -34,6 +34,7 @@
   X(ENERGY,      "energies")                               \
   X(INELASTIC,   "inelastic strains")                      \
   X(THERMAL,     "thermal strains")                        \
+  X(BETWEEN,     "states between increments")              \
   X(ZONES,       "zones of stick and slip")                \
   X(MESH_ERROR,  "error of mesh")                          \
   X(TIME_ERROR,  "error of steps")                         \

@@ -42,7 +42,7 @@ static int is_settled(const run *r) {
 }
 
 /* What the outputs see of an increment. */
-static state make_state(run *r, int attempt, int increment_no) {
+state loop_state(run *r, int attempt, int increment_no) {
   const equilibrium *e = &r->now;
   state s = {.step_no = run_step_id(r) + 1,
              .increment_no = increment_no,
@@ -98,20 +98,20 @@ static int is_due(int frequency, int increment_no, int last) {
   return last || (frequency > 0 && increment_no % frequency == 0);
 }
 
-/* 1 if one of these tables (bits PRINT_*) shows this increment. */
-static int table_is_due(const step *s, int tables, int increment_no, int last) {
+int table_is_due(const step *s, int tables, double t, int increment_no,
+                 int last) {
   for (int i = 0; i < s->n_print; ++i)
     if ((s->prints[i].table & tables) &&
-        is_due(s->prints[i].frequency, increment_no, last))
+        print_shows(&s->prints[i], s, t, increment_no, last))
       return 1;
   return 0;
 }
 
 /* 1 if some output wants the stresses of this increment. */
-static int stress_is_due(const step *s, int increment_no, int last) {
+static int stress_is_due(const step *s, double t, int increment_no, int last) {
   int f = s->output_frequency;
   if (f >= 0 && is_due(f, increment_no, last)) return 1;
-  return table_is_due(s, ~0, increment_no, last);
+  return table_is_due(s, ~0, t, increment_no, last);
 }
 
 /* Where an increment that is taken missed its tolerance. */
@@ -131,18 +131,19 @@ done:
 status loop_accept(run *r, int attempt, int increment_no, int last,
                    double cpu) {
   status st = OK;
+  TRY(dense_show(r, increment_no));
   ++r->total_no;
   TRY(theory_increment(r));
   if (!is_settled(r)) ++r->unsettled;
-  TRY(result_evaluate(r, stress_is_due(r->step, increment_no, last)));
+  TRY(result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
   TRY(estimate_increment(r));
   r->n_zone = 0;
-  if (table_is_due(r->step, PRINT_ZONES, increment_no, last))
+  if (table_is_due(r->step, PRINT_ZONES, r->now.t, increment_no, last))
     TRY(zones_find(r));
   TRY(check_increment(r));
   TRY(note_misfit(r));
   path_compare(r);
-  state s = make_state(r, attempt, increment_no);
+  state s = loop_state(r, attempt, increment_no);
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
   if (r->sink->increment != NULL) TRY(r->sink->increment(r->sink->ctx, &s));
@@ -158,7 +159,7 @@ status loop_reject(run *r, int attempt, int increment_no, const char *why) {
   r->mesh_error.asked = r->time_error.asked = r->truth.asked = 0;
   r->theorems = (theory_report){0};
   r->jumps = 0;
-  state s = make_state(r, attempt, increment_no);
+  state s = loop_state(r, attempt, increment_no);
   s.n_open = s.n_slip = s.n_stick = 0;
   if (r->sink->rejected == NULL) return OK;
   return r->sink->rejected(r->sink->ctx, &s, why);

@@ -15,6 +15,12 @@
 status loop_accept(run *r, int attempt, int increment_no, int last, double cpu);
 /* It is not: told with the reason. */
 status loop_reject(run *r, int attempt, int increment_no, const char *why);
+/* What the outputs see of r->now. */
+state loop_state(run *r, int attempt, int increment_no);
+/* 1 if one of these tables (bits PRINT_*) shows the increment that ends at t.
+ */
+int table_is_due(const step *s, int tables, double t, int increment_no,
+                 int last);
 /* Why there is none: ERR_SINGULAR. */
 status loop_no_equilibrium(run *r);
 /* Between two attempts: the checkpoint that is due; ends the run if asked. */
@@ -27,6 +33,9 @@ status start_step(run *r);
 
 /* adaptive.c: increments of a step with a tolerance. */
 status adaptive_run(run *r);
+
+/* dense.c: tables at time points within the increment r->old to r->now. */
+status dense_show(run *r, int increment_no);
 
 /* zones.c: the zones of r->now into r->zones. ERR_MEMORY. */
 status zones_find(run *r);

@@ -468,6 +468,81 @@ status apply_accuracy(reading *r) {
   return OK;
 }
 
+/* One more time, after the others; *right 0 if it is not. */
+static status add_time(reading *r, const record *line, double t, time_points *p,
+                       int *room, int *right) {
+  status st = OK;
+  *right = p->n == 0 || t > p->t[p->n - 1];
+  if (!*right) {
+    message_add(r->m->log, P2057, &line->at,
+                "*TIME POINTS: %g after %g; expected times that ascend", t,
+                p->t[p->n - 1]);
+    goto done;
+  }
+  GROW(p->t, p->n, *room);
+  p->t[p->n++] = t;
+done:
+  return st;
+}
+
+/* First, last, interval. */
+static status read_range(reading *r, const record *line, time_points *p,
+                         int *room) {
+  status st = OK;
+  enum { MOST = 1000000 };
+  double v[3];
+  int right = 1;
+  if (record_fields(r, line, 3, 3, "first, last, interval") != 0) goto done;
+  for (int i = 0; i < 3; ++i)
+    if (deck_real(&line->fields[i], r->m->log, &v[i]) != 0) goto done;
+  double n = floor((v[1] - v[0]) / v[2] * (1 + 1e-12) + 1e-9);
+  if (!(n >= 0.0 && n < MOST && v[2] > 0.0)) {
+    message_add(r->m->log, P2057, &line->at,
+                "*TIME POINTS: from %g to %g by %g; expected a last time that "
+                "is not before the first, and up to %d of them",
+                v[0], v[1], v[2], MOST);
+    goto done;
+  }
+  for (int i = 0; i <= (int)n && right; ++i)
+    TRY(add_time(r, line, v[0] + i * v[2], p, room, &right));
+done:
+  return st;
+}
+
+static status read_times(reading *r, const record *line, time_points *p,
+                         int *room) {
+  status st = OK;
+  int right = 1;
+  for (int i = 0; i < line->n_field && right; ++i) {
+    double t;
+    if (deck_real(&line->fields[i], r->m->log, &t) != 0) goto done;
+    TRY(add_time(r, line, t, p, room, &right));
+  }
+done:
+  return st;
+}
+
+status apply_time_points(reading *r) {
+  status st = OK;
+  const points_param *p = r->param;
+  model *m = r->m;
+  int room = 0;
+  for (int i = 0; i < m->n_points; ++i)
+    name_taken(r, p->name, m->points[i].name);
+  GROW(m->points, m->n_points, m->cap_points);
+  time_points *own = &m->points[m->n_points++];
+  *own = (time_points){.name = p->name == NULL ? "" : p->name,
+                       .total_time = p->time,
+                       .at = *value_place(r, "NAME")};
+  for (int i = 0; i < r->card->n_record; ++i) {
+    const record *line = &r->card->records[i];
+    TRY(p->generate ? read_range(r, line, own, &room)
+                    : read_times(r, line, own, &room));
+  }
+done:
+  return st;
+}
+
 status apply_print(reading *r) {
   status st = OK;
   const print_param *p = r->param;
@@ -485,6 +560,8 @@ status apply_print(reading *r) {
     q->group = p->group;
     q->group_id = -1;
     q->frequency = p->frequency;
+    q->points_name = p->points;
+    q->points_at = *value_place(r, "TIME POINTS");
     q->at = *value_place(r, "GROUP");
     if (p->group != NULL &&
         (q->table & (PRINT_NODES | PRINT_ELEMENTS | PRINT_REACTIONS)) == 0)

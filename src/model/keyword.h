@@ -124,6 +124,10 @@ typedef struct amplitude_param {
   const char *name;
   int time;
 } amplitude_param;
+typedef struct points_param {
+  const char *name;
+  int time, generate;
+} points_param;
 typedef struct quasistatic_param {
   int form;
 } quasistatic_param;
@@ -153,7 +157,7 @@ typedef struct accuracy_param {
 typedef struct print_param {
   int contact, totals, nodes, elements, energy, reactions, zones, loop;
   int frequency;
-  const char *group;
+  const char *group, *points;
 } print_param;
 typedef struct output_param {
   int hdf5, frequency, condensed;
@@ -189,6 +193,7 @@ status apply_friction(reading *r);
 status apply_contact_force(reading *r);
 plugin names_law(const reading *r);
 /* cards_step.c */
+status apply_time_points(reading *r);
 status apply_step(reading *r);
 status apply_end_step(reading *r);
 status apply_static(reading *r);
@@ -230,6 +235,8 @@ int name_taken(const reading *r, const char *name, const char *old);
 void unknown_word(message_log *log, message_id id, const place *at,
                   const char *text, const char *word,
                   const char *(*next)(const void *ctx, int i), const void *ctx);
+/* The points of a *PRINT that names some; an error if there are none. */
+void find_points(const model *m, print_request *p);
 /* Id of an amplitude, or -1 and an error. */
 int find_amplitude(const model *m, const char *name, const place *at);
 

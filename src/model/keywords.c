@@ -139,6 +139,13 @@ static const option amplitude_options[] = {
   OPTION_CHOICE(amplitude_param, time, "TIME", "STEP TIME|TOTAL TIME",
                 "STEP TIME", "which time the table counts"),
   OPTION_END};
+static const option points_options[] = {
+  OPTION_NAME(points_param, name, "NAME", NULL, "name for TIME POINTS="),
+  OPTION_CHOICE(points_param, time, "TIME", "STEP TIME|TOTAL TIME",
+                "STEP TIME", "which time the points count"),
+  OPTION_FLAG(points_param, generate, "GENERATE", "NO",
+              "lines are first time, last time, interval"),
+  OPTION_END};
 static const option quasistatic_options[] = {
   OPTION_CHOICE(quasistatic_param, form, "FORM", STEP_FORMS, "DISPLACEMENT",
                 "unknown of an increment: N2 or N3 of CPR98, one answer"),
@@ -220,6 +227,9 @@ static const option print_options[] = {
              "every n-th increment and the last; 0: the last only"),
   OPTION_NAME(print_param, group, "GROUP", OPTION_ABSENT,
               "nodes or elements of one group only"),
+  OPTION_NAME(print_param, points, "TIME POINTS", OPTION_ABSENT,
+              "at these times, within increments too, in the place of "
+              "FREQUENCY="),
   OPTION_END};
 static const option output_options[] = {
   OPTION_FLAG(output_param, hdf5, "HDF5", "YES", "write JOB.h5 and JOB.xdmf"),
@@ -284,6 +294,9 @@ const keyword keyword_table[] = {
   {"AMPLITUDE", IN_MODEL, OPTIONS(amplitude), NULL, apply_amplitude, 1, ANY,
    "t, a pairs, any number a line; or one expression of t",
    "course of a load, a motion or a friction value in time"},
+  {"TIME POINTS", IN_MODEL, OPTIONS(points), NULL, apply_time_points, 1, ANY,
+   "t, any number a line, ascending; with GENERATE first, last, interval",
+   "times for tables of *PRINT; increments need not end there"},
   {"OBSTACLE", IN_MODEL, OPTIONS(obstacle), NULL, apply_obstacle, 0, 4,
    "PLANE point; normal towards the body. CYLINDER point of the axis; "
    "direction (3-D). SPHERE centre. GAP value. Then MOVE, dx, dy, dz; "

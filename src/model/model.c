@@ -360,6 +360,34 @@ done:
   return st;
 }
 
+/* Ends of increments are sums: equal to rounding. */
+static int same_time(const step *s, double a, double b) {
+  return fabs(a - b) <= 1e-12 * (fabs(s->start) + s->total);
+}
+
+double print_next(const print_request *p, const step *s, double after,
+                  double before) {
+  const time_points *q = p->points;
+  for (int i = 0; q != NULL && i < q->n; ++i) {
+    double t = q->total_time ? q->t[i] : s->start + q->t[i];
+    if (t > after && t < before && !same_time(s, t, after) &&
+        !same_time(s, t, before))
+      return t;
+  }
+  return HUGE_VAL;
+}
+
+int print_shows(const print_request *p, const step *s, double t,
+                int increment_no, int last) {
+  const time_points *q = p->points;
+  if (q == NULL)
+    return last || (increment_no >= 0 && p->frequency > 0 &&
+                    increment_no % p->frequency == 0);
+  for (int i = 0; i < q->n; ++i)
+    if (same_time(s, q->total_time ? q->t[i] : s->start + q->t[i], t)) return 1;
+  return 0;
+}
+
 static void table_release(value_table *t) {
   memory_free(t->at);
   memory_free(t->value);
@@ -375,6 +403,7 @@ void model_free(model *m) {
   table_release(&m->first_step);
   for (int i = 0; i < m->n_amplitude; ++i)
     table_release(&m->amplitudes[i].table);
+  for (int i = 0; i < m->n_points; ++i) memory_free(m->points[i].t);
   for (int i = 0; i < m->n_contact; ++i) {
     rule_release(&m->contacts[i].friction);
     table_release(&m->contacts[i].force.position);
@@ -398,6 +427,7 @@ void model_free(model *m) {
     elastic_table_free(&m->materials[i].elastic);
   }
   memory_free(m->amplitudes);
+  memory_free(m->points);
   memory_free(m->materials);
   memory_free(m->sections);
   memory_free(m->obstacles);

@@ -172,12 +172,22 @@ typedef struct start_card {
   place at, file_at;
 } start_card;
 
+typedef struct time_points {
+  const char *name;
+  int total_time; /* 0: counted from the start of each step                   */
+  int n, used;
+  double *t; /* [n] ascending, s                                              */
+  place at;
+} time_points;
+
 typedef struct print_request { /* one table of *PRINT                         */
   int table;                   /* one bit of PRINT_*                          */
   const char *group; /* nodes or elements of a group only; NULL: all          */
   int group_id;      /* -1: all                                               */
   int frequency;     /* every n-th increment and the last; 0: last only       */
-  place at;
+  const char *points_name;   /* NULL: frequency counts                        */
+  const time_points *points; /* the same, borrowed                            */
+  place at, points_at;
 } print_request;
 
 typedef struct friction_change { /* *FRICTION in a step                       */
@@ -267,10 +277,12 @@ typedef struct model {
   place problem_at;
   int has_problem;
   const char *length_unit, *force_unit, *time_unit; /* labels or NULL         */
-  int n_amplitude, n_material, n_section, n_obstacle, n_contact, n_step;
+  int n_amplitude, n_material, n_section, n_obstacle, n_contact, n_step,
+      n_points;
   int cap_amplitude, cap_material, cap_section, cap_obstacle, cap_contact,
-      cap_step;
+      cap_step, cap_points;
   amplitude *amplitudes;
+  time_points *points; /* [n_points]                                         */
   material *materials;
   section *sections;
   obstacle *obstacles;
@@ -335,6 +347,15 @@ int rule_has_friction(const friction_rule *rule);
 /* 1 if some *PRINT asks for one of these tables (bits PRINT_*). */
 int model_prints(const model *m, int tables);
 int model_writes_fields(const model *m); /* 1: JOB.h5 is written             */
+/* 1 if a table shows the increment that ends at t: its number within the step,
+ * -1 if t is within one, 1 if it is the last; of time points the times alone
+ * count. */
+int print_shows(const print_request *p, const step *s, double t,
+                int increment_no, int last);
+/* Its first time point after one time and before another, neither to
+ * rounding; HUGE_VAL: none. */
+double print_next(const print_request *p, const step *s, double after,
+                  double before);
 /* 1 if some contact has an axis for its torque. */
 int model_has_axis(const model *m);
 /* 1: its limit is an average over the surface. */

@@ -42,6 +42,19 @@ int find_amplitude(const model *m, const char *name, const place *at) {
   return i;
 }
 
+static const char *points_at(const void *ctx, int i) {
+  const model *m = ctx;
+  return i < m->n_points ? m->points[i].name : NULL;
+}
+
+void find_points(const model *m, print_request *p) {
+  if (p->points_name == NULL) return;
+  int i = find_name(m, p->points_name, "TIME POINTS", points_at, &p->points_at);
+  if (i < 0) return;
+  m->points[i].used = 1;
+  p->points = &m->points[i];
+}
+
 int has_card(const model *m, const char *name) {
   for (int i = 0; i < m->deck->n_card; ++i)
     if (strcmp(m->deck->cards[i].name, name) == 0) return 1;
@@ -222,6 +235,10 @@ static void warn_unused(const model *m) {
     if (!m->amplitudes[i].used)
       message_add(m->log, P2036, &m->amplitudes[i].at, text, "AMPLITUDE",
                   m->amplitudes[i].name);
+  for (int i = 0; i < m->n_points; ++i)
+    if (!m->points[i].used)
+      message_add(m->log, P2036, &m->points[i].at, text, "TIME POINTS",
+                  m->points[i].name);
   for (int i = 0; i < m->n_material; ++i)
     if (!m->materials[i].used)
       message_add(m->log, P2036, &m->materials[i].at, text, "MATERIAL",
@@ -410,6 +427,7 @@ status model_resolve(model *m, int lost) {
     for (int k = 0; k < s->n_change; ++k)
       resolve_friction(m, &s->changes[k].rule);
     TRY(resolve_loads(m, old, s));
+    for (int k = 0; k < s->n_print; ++k) find_points(m, &s->prints[k]);
     TRY(carry_choices(old, s));
     old = s;
   }

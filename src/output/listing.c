@@ -440,6 +440,15 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
   return text_check(lst);
 }
 
+status listing_between(const state *s, text_file *lst) {
+  char t[NUMBER_SIZE];
+  fprintf(lst->f, "\nstep %d  within increment %d  time %s  tables%s%s\n",
+          s->step_no, s->increment_no, text_number(t, s->t, 9),
+          s->settled ? "" : ", tolerance missed: ",
+          s->settled ? "" : outcome_text(s->report.outcome));
+  return text_check(lst);
+}
+
 status listing_rejected(const state *s, const char *why, text_file *lst) {
   print_when(s, lst->f);
   fprintf(lst->f, "\n  cut: %s\n", why);

@@ -240,6 +240,17 @@ done:
   return st;
 }
 
+static status sink_between(void *ctx, const state *s) {
+  status st = OK;
+  output *o = ctx;
+  timer_enter(STAGE_LISTING);
+  TRY(tabular_increment(o->dat, s));
+  TRY(listing_between(s, &o->lst));
+done:
+  timer_leave(STAGE_LISTING);
+  return st;
+}
+
 static void sink_iteration(void *ctx, const solver_step *s) {
   output *o = ctx;
   cvg_line(o->run.n_increment + 1, o->attempt, s, &o->cvg);
@@ -266,6 +277,7 @@ history_sink output_sink(output *o) {
                         .ready = sink_ready,
                         .start = sink_start,
                         .increment = sink_increment,
+                        .between = sink_between,
                         .iteration = sink_iteration,
                         .rejected = sink_rejected};
 }

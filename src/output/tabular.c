@@ -259,7 +259,8 @@ status tabular_increment(tabular *t, const state *s) {
   view v = {t->m, t->msh, s};
   const step *now = &t->m->steps[s->step_no - 1];
   for (int i = 0; i < now->n_print; ++i)
-    if (output_due(now->prints[i].frequency, s))
+    if (print_shows(&now->prints[i], now, s->t,
+                    s->within ? -1 : s->increment_no, s->end_of_step))
       TRY(write_timed(t, &v, &now->prints[i]));
 done:
   return st;

@@ -110,6 +110,7 @@ status listing_open(const job *j, text_file *lst);
 status listing_ready(const job *j, text_file *lst);
 status listing_start(const job *j, const start_report *s, text_file *lst);
 status listing_increment(const job *j, const state *s, text_file *lst);
+status listing_between(const state *s, text_file *lst);
 status listing_rejected(const state *s, const char *why, text_file *lst);
 status listing_verdict(const job *j, text_file *lst);
 

@@ -345,9 +345,13 @@ done:
   return st;
 }
 
-void limit_free(run *r) {
+void limit_free_copy(run *r) {
   friction_limit_free(&r->limit);
-  free_averages(r);
   zone_free(r->zone);
   r->zone = NULL;
+}
+
+void limit_free(run *r) {
+  limit_free_copy(r);
+  free_averages(r);
 }

@@ -28,10 +28,11 @@ typedef struct equilibrium {
   energies energy;
 } equilibrium;
 
-typedef struct forms forms; /* form.c                                         */
+typedef struct forms forms; /* increment.c                       */
 typedef struct friction_average friction_average; /* limit.c                 */
 typedef struct friction_zone friction_zone;       /* limit.c                 */
 typedef struct finer_path finer_path; /* path.c                               */
+typedef struct beside beside; /* beside.c                                   */
 typedef struct visco visco; /* visco.h                                        */
 
 /* A stiffness, condensed, and the contact solver that knows it. */
@@ -180,7 +181,6 @@ const double *strains_load(run *r);
 void strains_work(run *r, energies *e);
 
 /* Inelastic strains. points.c: of the elements whose law flows. */
-int visco_flows(const run *r, int elem_id); /* strains.c                      */
 status visco_new(run *r);
 void visco_free(visco *v);                        /* accepts NULL          */
 void visco_add_strains(const run *r, double *e0); /* e0[ns*r->eigen.n]     */
@@ -200,6 +200,11 @@ status visco_try(run *r, double t, double *error);
  * for a step dt from r->old; ERR_DECK if the deck forbids to cut it. */
 status visco_level(run *r, double dt, int *level);
 status visco_energies(run *r, energies *e);
+/* Strains of the step just made at a time within it into s, and what the laws
+ * have dissipated from its start to there, J. */
+status visco_between(run *r, double t, flow_state *s, double *dissipated);
+/* Temperatures, strains and stresses of the points from r->now. */
+void visco_take(run *r);
 status visco_accept(run *r);
 status visco_keep(run *r, archive *a);
 
@@ -226,8 +231,9 @@ const sparse_rows *limit_matrix(const run *r); /* B of r->cp, or NULL         */
  * without one. */
 double limit_coefficient(const run *r, int contact_id, double t);
 void limit_free(run *r);
+void limit_free_copy(run *r); /* without the averages                         */
 
-/* form.c: for a new surface; nodes of *CONTACT FORCE. */
+/* The same file: for a new surface; nodes of *CONTACT FORCE. */
 status forms_new(run *r);
 /* r->cp solved in the form asked for, from r->old into r->now. */
 status forms_solve(run *r);
@@ -239,6 +245,12 @@ void forms_free(forms *f); /* accepts NULL                                    */
 /* result.c: stresses, reactions, totals, energies of r->now as far as the
  * effects call for them and "due" says. */
 status result_evaluate(run *r, int due);
+
+/* beside.c: the state at t within the increment made from r->old to r->now;
+ * *out is new. Read its report. */
+status beside_at(run *r, double t, beside **out);
+run *beside_run(beside *b);
+void beside_free(beside *b); /* accepts NULL                                 */
 
 /*
  * path.c: the finer path beside the run, if asked for. Tried before the

@@ -91,6 +91,7 @@ typedef struct state {
   int attempt;  /* 1: not cut                                          */
   double t, dt; /* end of the increment, s                             */
   int end_of_step;
+  int within; /* 1: t is a time point within the increment                    */
   const double *u; /* [dim*n_node] m                                      */
   const double *strain, *stress; /* [ns*n_elem] -, Pa; NULL if no output asks */
   const double *temperature; /* [n_elem] or NULL: no thermal strain           */
@@ -155,6 +156,8 @@ typedef struct history_sink {
   /* *INITIAL CONDITIONS, TYPE=DISPLACEMENT: u_0 and its defect. */
   status (*start)(void *ctx, const start_report *report);
   status (*increment)(void *ctx, const state *s);
+  /* A time of *TIME POINTS within the increment that is told next. */
+  status (*between)(void *ctx, const state *s);
   void (*iteration)(void *ctx, const solver_step *s); /* for .cvg             */
   /* An attempt that failed and is cut or given up. */
   status (*rejected)(void *ctx, const state *s, const char *why);

@@ -22,7 +22,7 @@ const double *run_elasticity(const run *r, int elem_id) {
          at(r, r->m->ns * moduli_entry(&r->moduli, r->m, elem_id));
 }
 
-int visco_flows(const run *r, int elem_id) {
+static int flows(const run *r, int elem_id) {
   return (r->m->effects & EFFECT_INELASTIC) &&
          run_material(r, elem_id)->law.ops != NULL;
 }
@@ -33,7 +33,7 @@ static int expands(const run *r, int elem_id) {
 }
 
 static int has_strains(const run *r, int elem_id) {
-  return expands(r, elem_id) || visco_flows(r, elem_id) ||
+  return expands(r, elem_id) || flows(r, elem_id) ||
          moduli_follows(r->m, elem_id);
 }
 

@@ -90,6 +90,29 @@ done:
   return st;
 }
 
+status visco_between(run *r, double t, flow_state *s, double *dissipated) {
+  status st = OK;
+  visco *v = r->visco;
+  const scheme_step p = {
+      .t = r->now.t, .dt = r->now.t - v->old.t, .theta = r->step->theta};
+  const scheme_call call = {&v->x,   &p,      NULL,      v->work,
+                            &v->old, &v->now, &v->result};
+  timer_enter(STAGE_INELASTIC);
+  s->t = t;
+  TRY(r->step->integrator->between(&call, s));
+  TRY(scheme_dissipated(&call, t, dissipated));
+done:
+  timer_leave(STAGE_INELASTIC);
+  return st;
+}
+
+void visco_take(run *r) {
+  visco *v = r->visco;
+  v->now.t = r->now.t;
+  visco_temperatures(r, &r->now, &v->now);
+  visco_strains(r, &r->now, &v->now);
+}
+
 status visco_advance(run *r, double t) {
   if (r->visco == NULL) return increment_solve(r, t);
   timer_enter(STAGE_INELASTIC);

@@ -205,23 +205,6 @@ done:
   return st;
 }
 
-static status make_maps(const flow *x, const scheme_step *p, double key,
-                        linear_map_fn *make, scheme_work *w) {
-  status st = OK;
-  size_t square = (size_t)(x->ns * x->ns);
-  if (w->key == key) return OK;
-  w->key = 0.0;
-  if (w->map == NULL) NEW(w->map, x->n_kind);
-  w->n_kind = x->n_kind;
-  TRY(need(&w->D_kind, square * (size_t)x->n_kind));
-  for (int i = 0; i < x->n_kind; ++i)
-    TRY(make_map(&x->kind[i], p, make, &w->map[i],
-                 w->D_kind + square * (size_t)i));
-  w->key = key;
-done:
-  return st;
-}
-
 /* y = A v */
 static void add_product(int n, int m, const double *A, const double *v,
                         double *y) {
@@ -246,15 +229,66 @@ static void apply_map(const flow *x, const linear_map *m, int k,
   tensor_product(ns, el->E, elastic, now->sigma + at);
 }
 
+static void mean(size_t n, double th, const double *a, const double *b,
+                 double *y) {
+  for (size_t i = 0; i < n; ++i) y[i] = (1.0 - th) * a[i] + th * b[i];
+}
+
+/* From old to mid with strains that are linear over the step. */
+static status map_between(const scheme_call *a, int kind, linear_map *m,
+                          double *D, flow_state *mid) {
+  status st = OK;
+  const flow *x = a->x;
+  const double whole = a->now->t - a->old->t;
+  scheme_step part = *a->p;
+  part.t = mid->t;
+  part.dt = mid->t - a->old->t;
+  TRY(make_map(&x->kind[kind], &part, exponential_map, m, D));
+  for (int k = 0; k < x->n; ++k) {
+    size_t at = (size_t)x->ns * (size_t)k;
+    if (x->kind_id[k] != kind) continue;
+    mean((size_t)x->ns, part.dt / whole, a->old->e + at, a->now->e + at,
+         mid->e + at);
+    apply_map(x, m, k, a->old, mid);
+  }
+done:
+  return st;
+}
+
+status exponential_between(const scheme_call *a, flow_state *mid) {
+  status st = OK;
+  double D[36];
+  for (int i = 0; i < a->x->n_kind; ++i) {
+    linear_map m = {0};
+    st = map_between(a, i, &m, D, mid);
+    linear_map_free(&m);
+    TRY(st);
+  }
+done:
+  return st;
+}
+
+static status make_maps(const flow *x, const scheme_step *p, double key,
+                        linear_map_fn *make, scheme_work *w) {
+  status st = OK;
+  size_t square = (size_t)(x->ns * x->ns);
+  if (w->key == key) return OK;
+  w->key = 0.0;
+  if (w->map == NULL) NEW(w->map, x->n_kind);
+  w->n_kind = x->n_kind;
+  TRY(need(&w->D_kind, square * (size_t)x->n_kind));
+  for (int i = 0; i < x->n_kind; ++i)
+    TRY(make_map(&x->kind[i], p, make, &w->map[i],
+                 w->D_kind + square * (size_t)i));
+  w->key = key;
+done:
+  return st;
+}
+
 static void apply_maps(const flow *x, const scheme_work *w,
                        const flow_state *old, flow_state *now) {
   for (int k = 0; k < x->n; ++k)
     apply_map(x, &w->map[x->kind_id[k]], k, old, now);
-}
-
-static void mean(size_t n, double th, const double *a, const double *b,
-                 double *y) {
-  for (size_t i = 0; i < n; ++i) y[i] = (1.0 - th) * a[i] + th * b[i];
 }
 
 /* What the power at the theta-point dissipates over the step. */

@@ -31,17 +31,20 @@ done:
   return st;
 }
 
+void linear_map_free(linear_map *m) {
+  memory_free(m->P);
+  memory_free(m->Q0);
+  memory_free(m->Q1);
+}
+
 void scheme_work_free(scheme_work *w) {
   if (w == NULL) return;
   for (int i = 0; i < STAGES; ++i) {
     memory_free(w->ei_rate[i]);
     memory_free(w->alpha_rate[i]);
   }
-  for (int i = 0; w->map != NULL && i < w->n_kind; ++i) {
-    memory_free(w->map[i].P);
-    memory_free(w->map[i].Q0);
-    memory_free(w->map[i].Q1);
-  }
+  for (int i = 0; w->map != NULL && i < w->n_kind; ++i)
+    linear_map_free(&w->map[i]);
   memory_free(w->map);
   memory_free(w->D_kind);
   memory_free(w->sigma_k);
@@ -71,7 +74,8 @@ static const scheme euler = {
     .help = "explicit, order 1: one equilibrium a step",
     .order = 1,
     .limit = 2.0,
-    .advance = euler_advance};
+    .advance = euler_advance,
+    .between = hermite_between};
 static const scheme heun = {
     .name = "HEUN",
     .reference = "Heun 1900",
@@ -79,34 +83,39 @@ static const scheme heun = {
     .order = 2,
     .limit = 2.0,
     .estimates = 1,
-    .advance = heun_advance};
+    .advance = heun_advance,
+    .between = hermite_between};
 static const scheme rk4 = {.name = "RK4",
                            .reference = "Kutta 1901",
                            .help = "explicit, order 4: four equilibria",
                            .order = 4,
                            .limit = rk4_limit,
-                           .advance = rk4_advance};
+                           .advance = rk4_advance,
+                           .between = hermite_between};
 static const scheme theta = {
     .name = "THETA",
     .reference = "Dahlquist 1975, one-leg methods",
     .help = "implicit, rates at (1 - THETA) old + THETA new; order 2 if 0.5",
     .order = 1,
     .has_theta = 1,
-    .advance = theta_advance};
+    .advance = theta_advance,
+    .between = hermite_between};
 static const scheme midpoint = {
     .name = "MIDPOINT",
     .reference = "Dahlquist 1975, one-leg methods",
     .help = "THETA with 0.5: order 2, no damping of what is fast",
     .order = 2,
     .theta = 0.5,
-    .advance = theta_advance};
+    .advance = theta_advance,
+    .between = hermite_between};
 static const scheme backward = {
     .name = "BACKWARD",
     .reference = "implicit Euler",
     .help = "THETA with 1: order 1, damps all that is fast",
     .order = 1,
     .theta = 1.0,
-    .advance = theta_advance};
+    .advance = theta_advance,
+    .between = hermite_between};
 static const scheme exponential = {
     .name = "EXPONENTIAL",
     .reference =
@@ -115,7 +124,8 @@ static const scheme exponential = {
     .order = 2,
     .linear_only = 1,
     .theta = 0.5,
-    .advance = exponential_advance};
+    .advance = exponential_advance,
+    .between = exponential_between};
 
 const scheme *const scheme_list[] = {&euler,    &heun,     &rk4,         &theta,
                                      &midpoint, &backward, &exponential, NULL};

@@ -132,12 +132,17 @@ typedef struct scheme {
   int has_theta;
   int estimates; /* scheme_result.error is set                               */
   status (*advance)(const scheme_call *a);
+  /* Within a step that has been made, old->t < mid->t < now->t: e^i and alpha
+   * of mid to the order of the scheme. */
+  status (*between)(const scheme_call *a, flow_state *mid);
 } scheme;
 
 extern const scheme *const scheme_list[]; /* NULL at the end                  */
 const scheme *scheme_find(const char *name); /* case ignored; or NULL         */
 status scheme_work_new(scheme_work **out);   /* filled as the schemes need it */
 void scheme_work_free(scheme_work *w);
+/* What the laws have dissipated in a step up to mid->t, J. */
+status scheme_dissipated(const scheme_call *a, double t, double *energy);
 /* Largest |rate| dt that the scheme damps; HUGE_VAL: no limit. */
 double scheme_limit(const scheme *s, double theta);
 /* 1 if all laws of the points are linear with constant coefficients. */

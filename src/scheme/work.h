@@ -30,6 +30,7 @@ struct scheme_work {
 /* y = x + a v over n components */
 void add_scaled(size_t n, const double *x, double a, const double *v,
                 double *y);
+void linear_map_free(linear_map *m);
 status need(double **array, size_t n); /* allocate if NULL                   */
 
 /* linear.c: y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
@@ -43,6 +44,9 @@ status exponential_map(const flow_kind *k, const scheme_step *p,
                        const double *L, const double *G, linear_map *m);
 /* newton.c */
 status newton_advance(const scheme_call *a);
+status exponential_between(const scheme_call *a, flow_state *mid);
+/* between.c */
+status hermite_between(const scheme_call *a, flow_state *mid);
 /* explicit.c */
 status euler_advance(const scheme_call *a);
 status heun_advance(const scheme_call *a);

@@ -3,7 +3,7 @@
  * each integrator, a rejected increment leaves nothing behind, a smallest
  * increment that is too long is told by the exit code.
  */
-#include "support/job.h"
+#include "support/square_case.h"
 #include "support/unit.h"
 
 #include <math.h>
@@ -11,21 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TABLES "*PRINT, ELEMENTS, CONTACT, ENERGY, NODES\n"
-
 static job run_deck(const char *contact, const char *load, const char *visco,
                     int expected) {
-  job j = job_begin("adaptive");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "adaptive.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.3\n*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n"
-            "2.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n%s"
-            "*STEP\n*STATIC\n%s" TABLES "*END STEP\n*STEP\n%s*END STEP\n",
-            contact, load, visco);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == expected, "exit %d: %s", code, j.errors);
-  return j;
+  const square_case s = {STEEL, DEVIATORIC, "CPS3", contact, load, visco};
+  return square_run(&s, expected);
 }
 
 typedef struct row {
@@ -45,8 +34,7 @@ START_TEST(error_follows_the_tolerance) {
     snprintf(visco, sizeof visco,
              "*VISCO, INTEGRATOR=%s, TOLERANCE=%g\n2., 2.\n",
              rows[_i].integrator, tolerance[k]);
-    job j = run_deck("", "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2, 2, 1.E-3\n",
-                     visco, 0);
+    job j = run_deck("", HELD, visco, 0);
     dat d = job_table(&j, "ELEMENTS", -1);
     double error = fabs(dat_at(&d, 0, "stress_yy") - .4203503845);
     /* An increment of length h errs by h^(order + 1), all of them together
@@ -58,12 +46,6 @@ START_TEST(error_follows_the_tolerance) {
   }
 }
 END_TEST
-
-#define FLOOR                                    \
-  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"         \
-  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n" \
-  "*FRICTION, CONTACT=C, LAW=COULOMB\n0.2\n"
-#define PRESS "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n"
 
 /* First attempt and length of the first accepted increment of step 2. */
 static double first_length(const job *j, int *attempt) {
@@ -89,7 +71,7 @@ static double first_length(const job *j, int *attempt) {
 START_TEST(rejected_increments_leave_nothing_behind) {
   char visco[160];
   int attempt = 1, again = 0;
-  job a = run_deck(FLOOR, PRESS,
+  job a = run_deck(FLOOR(0.2), PRESS(10.),
                    "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3\n1., 1.\n", 0);
   double dt = first_length(&a, &attempt);
   int halvings = (int)lround(-log2(dt));
@@ -98,7 +80,7 @@ START_TEST(rejected_increments_leave_nothing_behind) {
   snprintf(visco, sizeof visco,
            "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3\n%.17g, 1., %.17g\n",
            ldexp(1.0, -halvings), 1e-6);
-  job b = run_deck(FLOOR, PRESS, visco, 0);
+  job b = run_deck(FLOOR(0.2), PRESS(10.), visco, 0);
   first_length(&b, &again);
   ck_assert_int_eq(again, 1);
   char *first = job_file(&a, "dat"), *second = job_file(&b, "dat");
@@ -113,7 +95,7 @@ END_TEST
 
 START_TEST(missed_tolerance_is_told) {
   job j = run_deck(
-      FLOOR, PRESS,
+      FLOOR(0.2), PRESS(10.),
       "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-9\n0.5, 1., 0.25\n", 1);
   dat e = job_table(&j, "ENERGY", -1);
   ck_assert_double_eq_tol(dat_at(&e, 0, "time"), 2.0, 1e-12);
@@ -125,7 +107,7 @@ END_TEST
 /* Explicit integrators are kept below their limit, tau = 2, at any tolerance.
  */
 START_TEST(increments_stay_stable) {
-  job j = run_deck("", "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2, 2, 1.E-3\n",
+  job j = run_deck("", HELD,
                    "*VISCO, INTEGRATOR=HEUN, TOLERANCE=1.\n50., 100.\n", 0);
   dat d = job_table(&j, "ELEMENTS", -1);
   ck_assert_double_le(dat_max(&d, "stress_yy"), 1e-6);

@@ -5,53 +5,12 @@
  * relaxation time 2.
  */
 #include "support/creep_case.h"
-#include "support/job.h"
+#include "support/square_case.h"
 #include "support/unit.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-typedef struct scene {
-  const char *elastic, *law; /* line of *ELASTIC; *INELASTIC with its lines  */
-  const char *section, *model; /* TYPE=; cards before the first step */
-  const char *load;  /* cards of the first step, *STATIC             */
-  const char *visco; /* from *VISCO on, its line and cards           */
-} scene;
-
-#define TABLES "*PRINT, ELEMENTS, ENERGY, NODES\n"
-
-static job run_scene(const scene *s, int expected) {
-  job j = job_begin("visco");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "visco.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n%s\n%s*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
-            "%s*STEP\n*STATIC\n%s" TABLES "*END STEP\n*STEP\n%s*END STEP\n",
-            s->elastic, s->law, s->section, s->model, s->load, s->visco);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == expected, "exit %d: %s", code, j.errors);
-  return j;
-}
-
-/* Table number k of the elements: all have that value. */
-static void all_have(const job *j, int k, const char *column, double expected,
-                     double tolerance) {
-  dat d = job_table(j, "ELEMENTS", k);
-  for (int i = 0; i < d.n_row; ++i) {
-    double found = dat_at(&d, i, column);
-    ck_assert_msg(fabs(found - expected) <= tolerance,
-                  "%s of table %d: %.12g, expected %.12g to %g", column, k,
-                  found, expected, tolerance);
-  }
-  dat_free(&d);
-}
-
-#define STEEL "1000., 0.3"
-#define PROPORTIONAL "*INELASTIC, LAW=MAXWELL\n2.\n"
-#define DEVIATORIC "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n2.\n"
-#define SYMMETRY "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n"
-#define HELD SYMMETRY "TOP, 2, 2, 1.E-3\n"
 
 typedef struct scheme_row {
   const char *integrator;
@@ -87,11 +46,11 @@ START_TEST(held_stress_is_multiplied_by_the_factor_of_the_scheme) {
     char visco[128];
     snprintf(visco, sizeof visco, "*VISCO, INTEGRATOR=%s\n%g, %g\n",
              r->integrator, dt[k], 5 * dt[k]);
-    scene s = {STEEL, PROPORTIONAL, "CPE3", "", HELD, visco};
-    job j = run_scene(&s, 0);
+    square_case s = {STEEL, PROPORTIONAL, "CPE3", "", HELD, visco};
+    job j = square_run(&s, 0);
     double stress = 1.0 / (1 - 0.09);
     for (int i = 0; i < 6; ++i) {
-      all_have(&j, i, "stress_yy", stress, 1e-9);
+      square_all_have(&j, i, "stress_yy", stress, 1e-9);
       stress *= r->factor(dt[k] / 2.0);
     }
     job_end(&j);
@@ -99,21 +58,16 @@ START_TEST(held_stress_is_multiplied_by_the_factor_of_the_scheme) {
 }
 END_TEST
 
-#define FLOOR(mu)                                \
-  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"         \
-  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n" \
-  "*FRICTION, CONTACT=C, LAW=COULOMB\n" #mu "\n"
-
 /* Explicit integrators are stable up to twice the relaxation time, whatever
  * the mesh, the supports and the contact: there the stress changes its sign. */
 START_TEST(limit_is_twice_the_relaxation_time) {
-  scene s = {STEEL,
-             PROPORTIONAL,
-             "CPE3",
-             FLOOR(0.5),
-             "*BOUNDARY\nLEFT, 1\nTOP, 1, 1, 1.E-4\nTOP, 2, 2, -1.E-3\n",
-             "*VISCO, INTEGRATOR=EULER\n4., 40.\n"};
-  job j = run_scene(&s, 0);
+  square_case s = {STEEL,
+                   PROPORTIONAL,
+                   "CPE3",
+                   FLOOR(0.5),
+                   "*BOUNDARY\nLEFT, 1\nTOP, 1, 1, 1.E-4\nTOP, 2, 2, -1.E-3\n",
+                   "*VISCO, INTEGRATOR=EULER\n4., 40.\n"};
+  job j = square_run(&s, 0);
   dat a = job_table(&j, "ELEMENTS", 1), b = job_table(&j, "ELEMENTS", 10);
   for (int i = 0; i < a.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&a, i, "stress_yy"),
@@ -122,7 +76,7 @@ START_TEST(limit_is_twice_the_relaxation_time) {
   dat_free(&b);
   job_end(&j);
   s.visco = "*VISCO, INTEGRATOR=HEUN\n4.001, 40.01\n";
-  j = run_scene(&s, 2);
+  j = square_run(&s, 2);
   ck_assert_ptr_nonnull(strstr(j.errors, "P2050"));
   ck_assert_ptr_nonnull(strstr(j.errors, "stable up to dt = 4 "));
   ck_assert_ptr_nonnull(strstr(j.errors, "SUBSTEPS=AUTO"));
@@ -131,29 +85,31 @@ START_TEST(limit_is_twice_the_relaxation_time) {
 END_TEST
 
 START_TEST(substeps_keep_an_explicit_scheme_stable) {
-  scene s = {STEEL,  PROPORTIONAL,
-             "CPS3", "",
-             HELD,   "*VISCO, INTEGRATOR=HEUN, SUBSTEPS=AUTO\n10., 20.\n"};
-  job j = run_scene(&s, 0);
+  square_case s = {
+      STEEL,  PROPORTIONAL,
+      "CPS3", "",
+      HELD,   "*VISCO, INTEGRATOR=HEUN, SUBSTEPS=AUTO\n10., 20.\n"};
+  job j = square_run(&s, 0);
   /* Pieces of 2.5: four to an increment. */
   for (int i = 0; i <= 8; ++i)
-    all_have(&j, i, "stress_yy", pow(by_heun(1.25), i), 1e-9);
+    square_all_have(&j, i, "stress_yy", pow(by_heun(1.25), i), 1e-9);
   job_end(&j);
 }
 END_TEST
 
 /* dt ten times the relaxation time: MIDPOINT says so, BACKWARD is quiet. */
 START_TEST(ringing_is_told) {
-  scene s = {STEEL, PROPORTIONAL, "CPS3",
-             "",    HELD,         "*VISCO, INTEGRATOR=MIDPOINT\n20., 100.\n"};
-  job j = run_scene(&s, 0);
-  all_have(&j, 2, "stress_yy", 4.0 / 9.0, 1e-9);
+  square_case s = {STEEL,  PROPORTIONAL,
+                   "CPS3", "",
+                   HELD,   "*VISCO, INTEGRATOR=MIDPOINT\n20., 100.\n"};
+  job j = square_run(&s, 0);
+  square_all_have(&j, 2, "stress_yy", 4.0 / 9.0, 1e-9);
   ck_assert_ptr_nonnull(strstr(j.errors, "P2051"));
   ck_assert_ptr_nonnull(strstr(j.errors, "-0.6667"));
   job_end(&j);
   s.visco = "*VISCO, INTEGRATOR=BACKWARD\n20., 100.\n";
-  j = run_scene(&s, 0);
-  all_have(&j, 1, "stress_yy", 1.0 / 11.0, 1e-9);
+  j = square_run(&s, 0);
+  square_all_have(&j, 1, "stress_yy", 1.0 / 11.0, 1e-9);
   ck_assert_ptr_null(strstr(j.errors, "P2051"));
   job_end(&j);
 }

@@ -3,7 +3,7 @@
  * (E = 1000, nu = 0.3, relaxation time 2 unless said otherwise), energies, and
  * what elastic groups cost.
  */
-#include "support/job.h"
+#include "support/square_case.h"
 #include "support/unit.h"
 
 #include <math.h>
@@ -11,59 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct scene {
-  const char *elastic, *law; /* line of *ELASTIC; *INELASTIC with its lines  */
-  const char *section, *model; /* TYPE=; cards before the first step */
-  const char *load;  /* cards of the first step, *STATIC             */
-  const char *visco; /* from *VISCO on, its line and cards           */
-} scene;
-
-#define TABLES "*PRINT, ELEMENTS, ENERGY, NODES\n"
-
-static job run_scene(const scene *s, int expected) {
-  job j = job_begin("visco");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "visco.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n%s\n%s*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
-            "%s*STEP\n*STATIC\n%s" TABLES "*END STEP\n*STEP\n%s*END STEP\n",
-            s->elastic, s->law, s->section, s->model, s->load, s->visco);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == expected, "exit %d: %s", code, j.errors);
-  return j;
-}
-
-/* Table number k of the elements: all have that value. */
-static void all_have(const job *j, int k, const char *column, double expected,
-                     double tolerance) {
-  dat d = job_table(j, "ELEMENTS", k);
-  for (int i = 0; i < d.n_row; ++i) {
-    double found = dat_at(&d, i, column);
-    ck_assert_msg(fabs(found - expected) <= tolerance,
-                  "%s of table %d: %.12g, expected %.12g to %g", column, k,
-                  found, expected, tolerance);
-  }
-  dat_free(&d);
-}
-
-static double energy(const job *j, int k, const char *column) {
-  dat d = job_table(j, "ENERGY", k);
-  double value = dat_at(&d, 0, column);
-  dat_free(&d);
-  return value;
-}
-
-#define STEEL "1000., 0.3"
-#define PROPORTIONAL "*INELASTIC, LAW=MAXWELL\n2.\n"
-#define DEVIATORIC "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n2.\n"
-#define SYMMETRY "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n"
-#define HELD SYMMETRY "TOP, 2, 2, 1.E-3\n"
 #define WALLS SYMMETRY "RIGHT, 1\n"
 #define PULL(t) "*DSLOAD\nTOP, TY, " #t "\n"
 
 /* Values of a column at table numbers k, of scale "scale". */
 typedef struct closed_form {
-  scene s;
+  square_case s;
   const char *column;
   int n, k[4];
   double value[4], tolerance;
@@ -135,11 +88,12 @@ static const closed_form forms[] = {
 
 START_TEST(closed_forms) {
   const closed_form *f = &forms[_i];
-  job j = run_scene(&f->s, 0);
+  job j = square_run(&f->s, 0);
   for (int i = 0; i < f->n; ++i)
-    all_have(&j, f->k[i], f->column, f->value[i], f->tolerance);
+    square_all_have(&j, f->k[i], f->column, f->value[i], f->tolerance);
   for (int k = 0; k < 3; ++k)
-    ck_assert_double_le(fabs(energy(&j, k, "energy_defect_relative")), 1e-10);
+    ck_assert_double_le(fabs(square_energy(&j, k, "energy_defect_relative")),
+                        1e-10);
   job_end(&j);
 }
 END_TEST
@@ -147,27 +101,22 @@ END_TEST
 /* Bingham, E = 1e5, threshold 100, hardening and viscosity 1e4, strained at
  * 1e-2: elastic up to t = 0.1. */
 START_TEST(viscoplastic_pull) {
-  scene s = {"1.E5, 0.3",
-             "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n",
-             "CPS3",
-             "",
-             SYMMETRY "TOP, 2\n",
-             "*VISCO, INTEGRATOR=RK4\n0.005, 1.\n"
-             "*BOUNDARY\nTOP, 2, 2, 1.E-2\n"};
-  job j = run_scene(&s, 0);
-  all_have(&j, 10, "stress_yy", 50.0, 1e-9);
-  all_have(&j, 30, "stress_yy", 139.5082801338, 1e-5);
-  all_have(&j, 40, "stress_yy", 164.2255302729, 1e-5);
-  all_have(&j, 100, "stress_yy", 217.9936082725, 1e-5);
-  all_have(&j, 200, "stress_yy", 264.4586632494, 1e-5);
+  square_case s = {"1.E5, 0.3",
+                   "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n",
+                   "CPS3",
+                   "",
+                   SYMMETRY "TOP, 2\n",
+                   "*VISCO, INTEGRATOR=RK4\n0.005, 1.\n"
+                   "*BOUNDARY\nTOP, 2, 2, 1.E-2\n"};
+  job j = square_run(&s, 0);
+  square_all_have(&j, 10, "stress_yy", 50.0, 1e-9);
+  square_all_have(&j, 30, "stress_yy", 139.5082801338, 1e-5);
+  square_all_have(&j, 40, "stress_yy", 164.2255302729, 1e-5);
+  square_all_have(&j, 100, "stress_yy", 217.9936082725, 1e-5);
+  square_all_have(&j, 200, "stress_yy", 264.4586632494, 1e-5);
   job_end(&j);
 }
 END_TEST
-
-#define FLOOR(mu)                                \
-  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"         \
-  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n" \
-  "*FRICTION, CONTACT=C, LAW=COULOMB\n" #mu "\n"
 
 /* The laws lose energy in each increment, and what they lose is the work on
  * inelastic strains to the order of the integrator. */
@@ -177,21 +126,22 @@ START_TEST(energies_of_a_creeping_block) {
     char visco[128];
     snprintf(visco, sizeof visco, "*VISCO, INTEGRATOR=EULER\n%g, 2.\n",
              0.25 / (1 << k));
-    scene s = {STEEL,
-               DEVIATORIC,
-               "CPE3",
-               FLOOR(0.1),
-               "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n",
-               visco};
-    job j = run_scene(&s, 0);
+    square_case s = {STEEL,
+                     DEVIATORIC,
+                     "CPE3",
+                     FLOOR(0.1),
+                     "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n",
+                     visco};
+    job j = square_run(&s, 0);
     double before = 0;
     for (int i = 1; i <= 8 << k; ++i) {
-      double now = energy(&j, i, "viscous_dissipation");
+      double now = square_energy(&j, i, "viscous_dissipation");
       ck_assert_double_gt(now, before);
-      ck_assert_double_le(fabs(energy(&j, i, "energy_defect_relative")), 1e-10);
+      ck_assert_double_le(fabs(square_energy(&j, i, "energy_defect_relative")),
+                          1e-10);
       before = now;
     }
-    gap[k] = fabs(energy(&j, -1, "inelastic_work") - before) / before;
+    gap[k] = fabs(square_energy(&j, -1, "inelastic_work") - before) / before;
     job_end(&j);
   }
   ck_assert_double_le(gap[0], 0.1);
@@ -265,13 +215,13 @@ START_TEST(factors_are_kept) {
       {"*INELASTIC, LAW=NORTON\n1., 5.\n",
        "*VISCO, INTEGRATOR=BACKWARD, ITERATION=INITIAL\n0.1, 1.\n", 1, 1}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-    scene s = {STEEL,
-               cases[i].law,
-               "CPE3",
-               FLOOR(0.1),
-               "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n",
-               cases[i].visco};
-    job j = run_scene(&s, 0);
+    square_case s = {STEEL,
+                     cases[i].law,
+                     "CPE3",
+                     FLOOR(0.1),
+                     "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n",
+                     cases[i].visco};
+    job j = square_run(&s, 0);
     int calls = calls_of(&j, "factorisation");
     ck_assert_msg(calls >= cases[i].least && calls <= cases[i].most,
                   "case %zu: %d factors", i, calls);
@@ -286,19 +236,20 @@ END_TEST
 /* Inelastic strain from before between two walls: a stress that is there at
  * once and dies out; without a *VISCO step it stays. */
 START_TEST(initial_strain_is_a_stress_that_relaxes) {
-  scene s = {STEEL,  PROPORTIONAL,
-             "CPS3", START_STRAIN,
-             WALLS,  "*VISCO, INTEGRATOR=EXPONENTIAL\n1., 2.\n"};
-  job j = run_scene(&s, 0);
+  square_case s = {STEEL,  PROPORTIONAL,
+                   "CPS3", START_STRAIN,
+                   WALLS,  "*VISCO, INTEGRATOR=EXPONENTIAL\n1., 2.\n"};
+  job j = square_run(&s, 0);
   for (int k = 0; k < 3; ++k) {
-    all_have(&j, k, "stress_xx", -exp(-0.5 * k), 1e-9);
-    all_have(&j, k, "stress_yy", 0.0, 1e-9);
-    ck_assert_double_le(fabs(energy(&j, k, "energy_defect_relative")), 1e-10);
+    square_all_have(&j, k, "stress_xx", -exp(-0.5 * k), 1e-9);
+    square_all_have(&j, k, "stress_yy", 0.0, 1e-9);
+    ck_assert_double_le(fabs(square_energy(&j, k, "energy_defect_relative")),
+                        1e-10);
   }
   job_end(&j);
   s.visco = "*STATIC\n";
-  j = run_scene(&s, 0);
-  all_have(&j, 1, "stress_xx", -1.0, 1e-9);
+  j = square_run(&s, 0);
+  square_all_have(&j, 1, "stress_xx", -1.0, 1e-9);
   job_end(&j);
 }
 END_TEST
@@ -306,18 +257,18 @@ END_TEST
 /* A threshold of 100 that hardens by 1e4 p: with p = 0.01 from before 150 does
  * not flow. */
 START_TEST(initial_hardening_counts) {
-  scene s = {"1.E5, 0.3",
-             "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n",
-             "CPS3",
-             "*INITIAL CONDITIONS, TYPE=INTERNAL\nBODY, 1, 0.01\n",
-             SYMMETRY "TOP, 2, 2, 1.5E-3\n",
-             "*VISCO, INTEGRATOR=BACKWARD\n10., 20.\n"};
-  job j = run_scene(&s, 0);
-  all_have(&j, 2, "stress_yy", 150.0, 1e-8);
-  all_have(&j, 2, "alpha_1", 0.01, 1e-15);
+  square_case s = {"1.E5, 0.3",
+                   "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n",
+                   "CPS3",
+                   "*INITIAL CONDITIONS, TYPE=INTERNAL\nBODY, 1, 0.01\n",
+                   SYMMETRY "TOP, 2, 2, 1.5E-3\n",
+                   "*VISCO, INTEGRATOR=BACKWARD\n10., 20.\n"};
+  job j = square_run(&s, 0);
+  square_all_have(&j, 2, "stress_yy", 150.0, 1e-8);
+  square_all_have(&j, 2, "alpha_1", 0.01, 1e-15);
   job_end(&j);
   s.model = "";
-  j = run_scene(&s, 0);
+  j = square_run(&s, 0);
   dat d = job_table(&j, "ELEMENTS", 2);
   ck_assert_double_lt(dat_at(&d, 0, "stress_yy"), 110.0);
   dat_free(&d);
@@ -328,11 +279,11 @@ END_TEST
 /* Relaxation time 4 at 0 degrees and 1 at 100: at 50 it is 2.5, without any
  * thermal expansion. */
 START_TEST(temperature_sets_the_relaxation_time) {
-  scene s = {STEEL,  "*INELASTIC, LAW=MAXWELL\n4., , 0.\n1., , 100.\n",
-             "CPS3", "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, 50.\n",
-             HELD,   "*VISCO, INTEGRATOR=MIDPOINT\n0.01, 1.\n"};
-  job j = run_scene(&s, 0);
-  all_have(&j, 100, "stress_yy", exp(-1 / 2.5), 1e-5);
+  square_case s = {STEEL,  "*INELASTIC, LAW=MAXWELL\n4., , 0.\n1., , 100.\n",
+                   "CPS3", "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, 50.\n",
+                   HELD,   "*VISCO, INTEGRATOR=MIDPOINT\n0.01, 1.\n"};
+  job j = square_run(&s, 0);
+  square_all_have(&j, 100, "stress_yy", exp(-1 / 2.5), 1e-5);
   job_end(&j);
 }
 END_TEST

@@ -1,0 +1,181 @@
+/*
+ * A state within an increment that has been made: the inelastic strains there
+ * by the rule of the integrator, and the equilibrium they call for under the
+ * loads of that time, with the slip counted from where the increment started.
+ * A copy of the run with arrays of its own solves it, the increment stays as it
+ * is. What the copy shares is what result_evaluate finds anew.
+ */
+#include "base/memory.h"
+#include "run/visco.h"
+
+#include <string.h>
+
+struct beside {
+  run r;
+  visco v;
+};
+
+enum { OWN = 17 };
+
+typedef struct own_array {
+  double **at;
+  size_t n;
+} own_array;
+
+/* Arrays that the copy changes and the run still needs. */
+static void list_own(run *b, own_array list[OWN]) {
+  equilibrium *e = &b->now;
+  const size_t n = (size_t)b->n, n_c = (size_t)b->n_c, dofs = b->n_dof;
+  const size_t sides = n_c - n, elements = (size_t)b->msh->n_elem;
+  const size_t strains = (size_t)b->m->ns * (size_t)b->eigen.n;
+  const own_array all[OWN] = {{&e->u, dofs},
+                              {&e->F, dofs},
+                              {&e->reaction, dofs},
+                              {&e->uc, n_c},
+                              {&e->rc, n_c},
+                              {&e->motion, n_c},
+                              {&e->thermal, strains},
+                              {&e->e0, strains},
+                              {&e->sigma, strains},
+                              {&b->f, n_c},
+                              {&b->gap, n},
+                              {&b->side_gap, sides},
+                              {&b->ut0, sides},
+                              {&e->elastic, strains},
+                              {&b->distance, n},
+                              {&b->ud, dofs},
+                              {&e->temperature, elements}};
+  memcpy(list, all, sizeof all);
+}
+
+static status copy_arrays(run *b) {
+  status st = OK;
+  own_array list[OWN];
+  const double *from[OWN];
+  const contact_loop *loops = b->loops;
+  size_t contacts = (size_t)b->m->n_contact;
+  list_own(b, list);
+  b->loops = NULL;
+  for (int i = 0; i < OWN; ++i) {
+    from[i] = *list[i].at;
+    *list[i].at = NULL;
+  }
+  for (int i = 0; i < OWN; ++i) {
+    if (from[i] == NULL) continue;
+    NEW(*list[i].at, list[i].n);
+    memcpy(*list[i].at, from[i], list[i].n * sizeof **list[i].at);
+  }
+  if (loops == NULL) goto done;
+  NEW(b->loops, contacts);
+  memcpy(b->loops, loops, contacts * sizeof *loops);
+done:
+  return st;
+}
+
+void beside_free(beside *b) {
+  own_array list[OWN];
+  if (b == NULL) return;
+  list_own(&b->r, list);
+  for (int i = 0; i < OWN; ++i) memory_free(*list[i].at);
+  memory_free(b->r.loops);
+  limit_free_copy(&b->r);
+  if (b->r.moduli.n_own > 0) {
+    matrices_free(&b->r.elastic);
+    moduli_free(&b->r.moduli);
+  }
+  forms_free(b->r.forms);
+  flow_state_free(&b->v.now);
+  memory_free(b);
+}
+
+/* Moduli that follow the temperature, and their matrix, are the copy's own. */
+static status own_moduli(const run *r, run *b) {
+  status st = OK;
+  if (r->moduli.n_own == 0) return OK;
+  b->c = NULL;
+  b->stale = 1;
+  b->elastic = (matrices){0};
+  b->moduli = (moduli){0};
+  st = moduli_new(r->m, r->msh, r->now.temperature, &b->moduli);
+  b->moduli.n_own = r->moduli.n_own; /* owned also after a failure            */
+  TRY(st);
+  moduli_domain(&b->moduli, r->m, &b->d);
+done:
+  return st;
+}
+
+static status own_points(const run *r, beside *b) {
+  status st = OK;
+  visco *v = &b->v;
+  if (r->visco == NULL) return OK;
+  *v = *r->visco;
+  v->now = (flow_state){0};
+  for (int i = 0; i < SLOTS; ++i) v->slot[i] = (matrices){0};
+  v->fresh = (matrices){0};
+  b->r.visco = v;
+  TRY(flow_state_new(&v->x, &v->now));
+  flow_state_copy(&v->x, &r->visco->old, &v->now);
+done:
+  return st;
+}
+
+/* *out is valid (free it) also after a failure. */
+static status beside_new(const run *r, beside **out) {
+  status st = OK;
+  beside *b = NULL;
+  NEW(b, 1);
+  *out = b;
+  run *own = &b->r;
+  *own = *r;
+  own->beside = 1;
+  own->c = r->elastic.c;
+  own->solver = r->elastic.solver;
+  own->known_key = RUN_NO_KEY;
+  own->forms = NULL;
+  own->limit = (friction_limit){0};
+  own->limit_known = 0;
+  own->zone = NULL;
+  own->dense = NULL;
+  own->rate = (known_rate){0};
+  own->solutions = (solution_set){0};
+  own->recovery = NULL;
+  own->theorems = (theory_report){0};
+  own->jumps = 0;
+  own->note[0] = '\0';
+  if (r->d.eigen != NULL) own->d.eigen = &own->eigen;
+  own->moduli.n_own = 0; /* not owned yet                                    */
+  TRY(copy_arrays(own));
+  TRY(own_points(r, b));
+  TRY(own_moduli(r, own));
+  if (r->forms != NULL) TRY(forms_new(own));
+done:
+  return st;
+}
+
+static status solve(run *r, run *b, double t) {
+  status st = OK;
+  if (r->visco != NULL && r->step->kind == STEP_VISCO)
+    TRY(visco_between(r, t, &b->visco->now, &b->visco->result.dissipated));
+  TRY(increment_solve(b, t));
+  if (b->visco != NULL) visco_take(b);
+  TRY(result_evaluate(b, 1));
+done:
+  return st;
+}
+
+status beside_at(run *r, double t, beside **out) {
+  status st = OK;
+  *out = NULL;
+  timer_enter(STAGE_BETWEEN);
+  TRY(beside_new(r, out));
+  TRY(solve(r, &(*out)->r, t));
+done:
+  timer_leave(STAGE_BETWEEN);
+  if (st != OK) {
+    beside_free(*out);
+    *out = NULL;
+  }
+  return st;
+}
+
+run *beside_run(beside *b) { return &b->r; }

@@ -1,0 +1,205 @@
+/*
+ * Tables at *TIME POINTS, which increments need not end at: the order of each
+ * integrator, what contact and friction do there, stiff laws, and that the run
+ * itself stays as it is. E = 1000, nu = 0.3, relaxation time 2.
+ */
+#include "support/square_case.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+  const char *integrator;
+  int order;
+} rows[] = {{"EULER", 1},      {"HEUN", 2},
+            {"RK4", 4},        {"THETA, THETA=0.75", 1},
+            {"MIDPOINT", 2},   {"BACKWARD", 1},
+            {"EXPONENTIAL", 0}};
+enum { N_ROW = sizeof rows / sizeof *rows, N_POINT = 20 };
+
+/* Times 1.01 + 0.099 k of the points: none is the end of an increment. */
+#define POINTS \
+  "*TIME POINTS, NAME=T, GENERATE, TIME=TOTAL TIME\n1.01, 2.891, 0.099\n"
+
+/* Root mean square error of the stress that relaxes, n increments over 2. */
+static double error_of(const char *integrator, int n) {
+  char visco[160];
+  double sum = 0;
+  snprintf(visco, sizeof visco,
+           "*VISCO, INTEGRATOR=%s\n%.17g, 2.\n"
+           "*PRINT, ELEMENTS, ENERGY, TIME POINTS=T\n*OUTPUT, HDF5=NO\n",
+           integrator, 2.0 / n);
+  square_case s = {STEEL, PROPORTIONAL, "CPS3", POINTS, HELD, visco};
+  job j = square_run(&s, 0);
+  for (int k = 0; k < N_POINT; ++k) {
+    dat d = job_table(&j, "ELEMENTS", 1 + k);
+    double t = 1.01 + 0.099 * k;
+    ck_assert_double_eq_tol(square_energy(&j, 1 + k, "time"), t, 1e-12);
+    sum += pow(dat_at(&d, 0, "stress_yy") - exp(-(t - 1) / 2), 2);
+    dat_free(&d);
+  }
+  job_end(&j);
+  return sqrt(sum / N_POINT);
+}
+
+START_TEST(points_have_the_order_of_the_integrator) {
+  double coarse = error_of(rows[_i].integrator, 16);
+  double fine = error_of(rows[_i].integrator, 32);
+  if (rows[_i].order == 0) { /* held strains: exact                           */
+    ck_assert_double_le(coarse, 1e-14);
+    return;
+  }
+  ck_assert_double_eq_tol(log2(coarse / fine), rows[_i].order, 0.1);
+}
+END_TEST
+
+/* Energies at a point are those of an increment that ends there: the balance
+ * closes, and what is dissipated lies between the ends. */
+START_TEST(energies_balance_at_points) {
+  square_case s = {STEEL,
+                   DEVIATORIC,
+                   "CPE3",
+                   FLOOR(0.1) "*TIME POINTS, NAME=T\n0.1, 0.2, 0.4, 0.5, 0.7\n",
+                   PRESS(10.),
+                   "*VISCO, INTEGRATOR=MIDPOINT\n0.5, 1.\n"
+                   "*PRINT, ENERGY, TIME POINTS=T\n*PRINT, ENERGY\n"};
+  job j = square_run(&s, 0);
+  double lost = 0;
+  /* Step 1; three points, the first increment as a point and as such ... */
+  static const double time[] = {1, 1.1, 1.2, 1.4, 1.5, 1.5, 1.7, 2};
+  for (int k = 0; k < 8; ++k) {
+    ck_assert_double_eq_tol(square_energy(&j, k, "time"), time[k], 1e-12);
+    ck_assert_double_le(fabs(square_energy(&j, k, "energy_defect_relative")),
+                        1e-10);
+    double now = square_energy(&j, k, "viscous_dissipation");
+    if (k > 0 && k != 5) ck_assert_double_gt(now, lost);
+    if (k == 5) ck_assert_double_eq(now, lost);
+    lost = now;
+  }
+  job_end(&j);
+}
+END_TEST
+
+/* Increments of twenty relaxation times: the stress falls all the way. */
+START_TEST(stiff_points_lie_between_the_ends) {
+  square_case s = {STEEL,
+                   PROPORTIONAL,
+                   "CPS3",
+                   "*TIME POINTS, NAME=T, GENERATE\n2., 80., 2.\n",
+                   HELD,
+                   "*VISCO, INTEGRATOR=BACKWARD\n40., 80.\n"
+                   "*PRINT, ELEMENTS, TIME POINTS=T\n"};
+  job j = square_run(&s, 0);
+  double last = 1;
+  for (int k = 1; k <= 40; ++k) {
+    dat d = job_table(&j, "ELEMENTS", k);
+    double now = dat_at(&d, 0, "stress_yy");
+    ck_assert_double_lt(now, last);
+    ck_assert_double_gt(now, 0);
+    last = now;
+    dat_free(&d);
+  }
+  job_end(&j);
+}
+END_TEST
+
+#define SLIDES "*DSLOAD\nRIGHT, P, 6.\n"
+
+static char *contact_table(const job *j, int k) {
+  char *text = NULL;
+  dat d = job_table(j, "CONTACT", k);
+  size_t size;
+  FILE *f = open_memstream(&text, &size);
+  ck_assert_int_gt(d.n_row, 2);
+  for (int i = 0; i < d.n_row * d.n_col; ++i) fprintf(f, "%.12g ", d.value[i]);
+  fclose(f);
+  dat_free(&d);
+  return text;
+}
+
+/* Without flow the state at a point is that of an increment which ends there:
+ * the first of one run with half the length. */
+START_TEST(friction_at_a_point_is_that_of_a_shorter_increment) {
+  square_case s = {
+      STEEL,
+      "",
+      "CPE3",
+      FLOOR(0.2) "*TIME POINTS, NAME=T\n0.5\n",
+      PRESS(10.),
+      "*QUASISTATIC\n1., 1.\n" SLIDES "*PRINT, CONTACT, TIME POINTS=T\n"};
+  job whole = square_run(&s, 0);
+  s.visco = "*QUASISTATIC\n0.5, 1.\n" SLIDES "*PRINT, CONTACT, FREQUENCY=1\n";
+  s.model = FLOOR(0.2);
+  job half = square_run(&s, 0);
+  char *a = contact_table(&whole, 1), *b = contact_table(&half, 1);
+  ck_assert_str_eq(a, b);
+  free(a);
+  free(b);
+  job_end(&whole);
+  job_end(&half);
+}
+END_TEST
+
+/* Young's modulus falls with a temperature that rises over the increment. */
+START_TEST(moduli_at_a_point_are_those_of_its_time) {
+  square_case s = {"1000., 0.3, 0.\n500., 0.3, 100.",
+                   "",
+                   "CPS3",
+                   "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, 0.\n"
+                   "*TIME POINTS, NAME=T\n0.25, 0.75, 1.\n",
+                   HELD,
+                   "*QUASISTATIC\n1., 1.\n*TEMPERATURE\nBODY, 100.\n"
+                   "*PRINT, ELEMENTS, TIME POINTS=T\n"};
+  job j = square_run(&s, 0);
+  square_all_have(&j, 0, "stress_yy", 1.0, 1e-12);
+  square_all_have(&j, 1, "stress_yy", 0.875, 1e-12);
+  square_all_have(&j, 2, "stress_yy", 0.625, 1e-12);
+  square_all_have(&j, 3, "stress_yy", 0.5, 1e-12);
+  job_end(&j);
+}
+END_TEST
+
+/* Points, also within adaptive increments, change nothing else. */
+START_TEST(points_leave_the_run_alone) {
+  static const char *const choice[] = {"MIDPOINT, TOLERANCE=1E-3",
+                                       "HEUN, TOLERANCE=1E-3", "EXPONENTIAL",
+                                       "BACKWARD, ITERATION=INITIAL"};
+  for (int i = 0; i < 4; ++i) {
+    char *table[2];
+    for (int k = 0; k < 2; ++k) {
+      char visco[200];
+      snprintf(visco, sizeof visco, "*VISCO, INTEGRATOR=%s\n0.4, 1.\n%s%s",
+               choice[i], "*PRINT, CONTACT\n",
+               k == 0 ? "" : "*PRINT, ENERGY, TIME POINTS=T\n");
+      square_case s = {
+          STEEL,      DEVIATORIC,
+          "CPE3",     FLOOR(0.1) "*TIME POINTS, NAME=T\n0.13, 0.77\n",
+          PRESS(10.), visco};
+      job j = square_run(&s, 0);
+      table[k] = contact_table(&j, -1);
+      if (k == 1) {
+        ck_assert_double_eq_tol(square_energy(&j, 1, "time"), 1.13, 1e-12);
+        ck_assert_double_eq_tol(square_energy(&j, -1, "time"), 1.77, 1e-12);
+      }
+      job_end(&j);
+    }
+    ck_assert_str_eq(table[0], table[1]);
+    free(table[0]);
+    free(table[1]);
+  }
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("dense");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, points_have_the_order_of_the_integrator, 0, N_ROW);
+  tcase_add_test(tests, energies_balance_at_points);
+  tcase_add_test(tests, stiff_points_lie_between_the_ends);
+  tcase_add_test(tests, friction_at_a_point_is_that_of_a_shorter_increment);
+  tcase_add_test(tests, moduli_at_a_point_are_those_of_its_time);
+  tcase_add_test(tests, points_leave_the_run_alone);
+  return unit_run("dense", tests);
+}
