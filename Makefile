@@ -30,7 +30,7 @@ CPPFLAGS += -Isrc -D_POSIX_C_SOURCE=200809L -D_DEFAULT_SOURCE \
             -I/usr/include/suitesparse
 CFLAGS   += -std=c11 $(warnings) $(optimise)
 LDFLAGS  += $(filter -fsanitize% --coverage,$(optimise))
-LDLIBS   += -lcholmod -lcamd -lsuitesparseconfig -llapacke -lopenblas \
+LDLIBS   += -lumfpack -lcholmod -lcamd -lsuitesparseconfig -llapacke -lopenblas \
             $(shell pkg-config --libs hdf5-serial 2>/dev/null) -ldl -lm
 checklib := $(shell pkg-config --libs check 2>/dev/null)
 

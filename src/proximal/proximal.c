@@ -13,22 +13,23 @@
  * for what W lacks where forces are not unique or its unsymmetric part turns
  * them; it falls as long as passes are easy and rises where they are not. A
  * step may raise |F| above its last value but not above the largest of the last
- * ones. The stretch s > 0 changes none of the solutions, but the way to them.
+ * ones. Where passes creep, forces that balance one another drifting on and on,
+ * the centre is taken ahead along the last change of r (Guler 1992).
+ * The stretch s > 0 changes none of the solutions, but the way to them.
  */
 #include "base/memory.h"
-#include "solver/local.h"
+#include "proximal/matrix.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
-#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
 static const option proximal_options[] = {OPTION_END};
 
 enum {
-  STEPS = 5600,   /* Newton steps, all trials                                */
-  TRIAL = 1400,   /* of a trial                                              */
+  STEPS = 7200,   /* Newton steps, all trials                                */
+  TRIAL = 1800,   /* of a trial                                              */
   TRIALS = 4,     /* one after the other                                     */
   PASS = 40,      /* of a pass                                               */
   EASY = 5,       /* a pass with so few: the share falls                     */
@@ -39,6 +40,7 @@ enum {
 };
 static const double PASS_GAIN = 0x1p-7;    /* |F|^2 a pass shall leave, -     */
 static const double SLOPE = 0x1p-12;       /* of the descent asked for, -     */
+static const double CREEP = 0.75;          /* residual a pass shall leave, -  */
 static const double LEAST_SHARE = 0x1p-40; /* -                               */
 static const double MOST_SHARE = 0x1p10;
 
@@ -51,9 +53,11 @@ static const struct {
 typedef struct proximal_work {
   force_set *set;
   best_iterate best;
-  double *J;             /* [m*m]                                             */
+  step_matrix *J;
+  unsigned char *acts; /* [m] 1: the row of J is not that of the unit matrix */
   double *x, *F, *d, *z; /* [m]                                               */
   double *start, *centre; /* [m] force at the start; of the pass              */
+  double *before;         /* [m] end of the last pass                         */
   int *pivot; /* [m]                                               */
 } proximal_work;
 
@@ -62,8 +66,9 @@ static void proximal_release(void *work) {
   if (w == NULL) return;
   force_set_free(w->set);
   best_iterate_free(&w->best);
-  void *const blocks[] = {w->J, w->x,     w->F,      w->d,
-                          w->z, w->start, w->centre, w->pivot};
+  step_matrix_free(w->J);
+  void *const blocks[] = {w->x,     w->F,      w->d,      w->z,
+                          w->start, w->centre, w->before, w->acts};
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
     memory_free(blocks[k]);
   memory_free(w);
@@ -78,14 +83,15 @@ static status proximal_setup(const contact_problem *cp, const void *par,
   NEW(w, 1);
   TRY(force_set_new(cp, &w->set));
   TRY(best_iterate_new(cp->m, &w->best));
-  NEW(w->J, m * m);
+  TRY(step_matrix_new(cp, w->set, &w->J));
   NEW(w->x, m);
   NEW(w->F, m);
   NEW(w->d, m);
   NEW(w->z, m);
   NEW(w->start, m);
   NEW(w->centre, m);
-  NEW(w->pivot, m);
+  NEW(w->before, m);
+  NEW(w->acts, m);
   *work = w;
   w = NULL;
 done:
@@ -147,60 +153,79 @@ static double evaluate(run *s) {
   return sum;
 }
 
-/* Row i of J: the unit row less "share" times that of z_j. */
-static void add_row(const run *s, int i, int j, double share) {
-  const force_set *set = s->w->set;
-  int m = s->cp->m;
-  cblas_daxpy(m, share * s->stretch * set->D[j], s->cp->W + j, m, s->w->J + i,
-              m);
-  s->w->J[(size_t)i + (size_t)m * (size_t)j] -=
-      share * (1.0 - s->stretch * s->share);
+/* Into the row at hand: minus "share" times that of z_j. */
+static void add_row(const run *s, int j, double share) {
+  step_matrix_add_row(s->w->J, j, share * s->stretch * s->w->set->D[j]);
+  step_matrix_add(s->w->J, j, -share * (1.0 - s->stretch * s->share));
 }
 
-/* The rows of the tangents of a node that slips: g e turns with z and grows
- * with the pressures. */
-static void add_slip(const run *s, int node_id, double length) {
+/* Row of tangent a of a node that slips: g e turns with z and grows with the
+ * pressures. */
+static void add_slip(const run *s, int node_id, int a, double length) {
   const contact_problem *cp = s->cp;
   const proximal_work *w = s->w;
   double g = contact_node_limit(cp, s->r, node_id);
   int first = node_id * cp->dim;
-  for (int a = 1; a < cp->dim; ++a) {
-    if (w->set->part[first + a] != IN_DISC) continue;
-    double e_a = w->z[first + a] / length;
-    for (int b = 1; b < cp->dim; ++b) {
-      if (w->set->part[first + b] != IN_DISC) continue;
-      double e_b = w->z[first + b] / length;
-      add_row(s, first + a, first + b,
-              g / length * ((a == b ? 1.0 : 0.0) - e_a * e_b));
-    }
-    for (int k = cp->B == NULL ? 0 : cp->B->start[node_id];
-         cp->B != NULL && k < cp->B->start[node_id + 1]; ++k) {
-      size_t normal = (size_t)cp->B->col[k] * (size_t)cp->dim;
-      if (s->r[normal] < 0.0 || w->z[normal] < 0.0)
-        w->J[(size_t)(first + a) + (size_t)cp->m * normal] +=
-            cp->B->val[k] * e_a;
-    }
+  double e_a = w->z[first + a] / length;
+  for (int b = 1; b < cp->dim; ++b) {
+    if (w->set->part[first + b] != IN_DISC) continue;
+    double e_b = w->z[first + b] / length;
+    double turn = g / length * ((a == b ? 1.0 : 0.0) - e_a * e_b);
+    if (turn != 0.0) add_row(s, first + b, turn);
+  }
+  if (cp->B == NULL) return;
+  for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
+    int normal = cp->B->col[k] * cp->dim;
+    if (s->r[normal] < 0.0 || w->z[normal] < 0.0)
+      step_matrix_add(w->J, normal, cp->B->val[k] * e_a);
   }
 }
 
-static void fill_matrix(const run *s) {
+/* 1: an open node, whose tangents carry nothing and will not in this step. */
+static int is_idle(const run *s, int node_id) {
+  const sparse_rows *B = s->cp->B;
+  if (contact_node_limit(s->cp, s->r, node_id) > 0.0) return 0;
+  for (int k = B == NULL ? 0 : B->start[node_id];
+       B != NULL && k < B->start[node_id + 1]; ++k) {
+    int normal = B->col[k] * s->cp->dim;
+    if (s->r[normal] < 0.0 || s->w->z[normal] < 0.0) return 0;
+  }
+  return 1;
+}
+
+static void mark_rows(const run *s) {
   const contact_problem *cp = s->cp;
   const proximal_work *w = s->w;
-  size_t m = (size_t)cp->m;
+  for (int i = 0; i < cp->n; ++i)
+    for (int k = 0, idle = is_idle(s, i); k < cp->dim; ++k) {
+      int dof = i * cp->dim + k;
+      if (w->set->part[dof] == PUSH) w->acts[dof] = w->z[dof] < 0.0;
+      if (w->set->part[dof] == IN_DISC) w->acts[dof] = !idle;
+      if (w->set->part[dof] == NO_FORCE) w->acts[dof] = 0;
+    }
+}
+
+static status fill_matrix(const run *s) {
+  status st = OK;
+  const contact_problem *cp = s->cp;
+  const proximal_work *w = s->w;
   int count;
-  memset(w->J, 0, m * m * sizeof *w->J);
-  for (int i = 0; i < cp->m; ++i) {
-    w->J[(size_t)i * (m + 1)] = 1.0;
-    if (w->set->part[i] == PUSH && w->z[i] < 0.0) add_row(s, i, i, 1.0);
+  mark_rows(s);
+  step_matrix_begin(w->J, w->acts, w->d);
+  for (int dof = 0; dof < cp->m; ++dof) {
+    int node_id = dof / cp->dim;
+    if (!w->acts[dof]) continue;
+    double length = tangent_length(s, node_id, &count);
+    step_matrix_add(w->J, dof, 1.0);
+    if (w->set->part[dof] == PUSH ||
+        length <= contact_node_limit(cp, s->r, node_id))
+      add_row(s, dof, 1.0);
+    else
+      add_slip(s, node_id, dof % cp->dim, length);
+    TRY(step_matrix_put(w->J, dof));
   }
-  for (int i = 0; i < cp->n; ++i) {
-    double length = tangent_length(s, i, &count);
-    int sticks = length <= contact_node_limit(cp, s->r, i);
-    if (count > 0 && !sticks) add_slip(s, i, length);
-    for (int k = 1; k < cp->dim && sticks; ++k)
-      if (w->set->part[i * cp->dim + k] == IN_DISC)
-        add_row(s, i * cp->dim + k, i * cp->dim + k, 1.0);
-  }
+done:
+  return st;
 }
 
 /* ---- steps ----------------------------------------------------------------
@@ -218,33 +243,41 @@ static double search(run *s, double bound) {
   return value;
 }
 
-/* One step of Newton's method; NAN if there is none. */
-static double newton_step(run *s, double bound) {
+/* One step of Newton's method; *value NAN if there is none. */
+static status newton_step(run *s, double bound, double *value) {
+  status st = OK;
   proximal_work *w = s->w;
-  int m = s->cp->m;
-  fill_matrix(s);
-  for (int i = 0; i < m; ++i) w->d[i] = -w->F[i];
+  int singular = 0;
+  *value = NAN;
+  for (int i = 0; i < s->cp->m; ++i) w->d[i] = -w->F[i];
+  TRY(fill_matrix(s));
   ++s->steps;
-  if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, m, 1, w->J, m, w->pivot, w->d, m) !=
-      0)
-    return NAN;
-  return search(s, bound);
+  TRY(step_matrix_solve(w->J, w->d, &singular));
+  if (!singular) *value = search(s, bound);
+done:
+  return st;
 }
 
-/* From the centre, where |F|^2 = value, until PASS_GAIN of it is left. Returns
- * the steps; more than PASS: not found. */
-static int pass(run *s, double value) {
+/* From the centre, where |F|^2 = value, until PASS_GAIN of it is left. *steps:
+ * more than PASS: not found. */
+static status pass(run *s, double value, int *steps) {
+  status st = OK;
   double last[MEMORY], wanted = PASS_GAIN * value;
   for (int k = 0; k < MEMORY; ++k) last[k] = value;
+  *steps = PASS + 1;
   for (int k = 0; k < PASS; ++k) {
     double bound = 0.0;
     for (int i = 0; i < MEMORY; ++i) bound = fmax(bound, last[i]);
-    value = newton_step(s, bound);
+    TRY(newton_step(s, bound, &value));
     if (isnan(value)) break;
-    if (value <= wanted) return k + 1;
+    if (value <= wanted) {
+      *steps = k + 1;
+      break;
+    }
     last[k % MEMORY] = value;
   }
-  return PASS + 1;
+done:
+  return st;
 }
 
 /* The share for the next pass. */
@@ -258,55 +291,82 @@ static double next_share(double share, int steps) {
 
 /* The forces that close every gap and let nothing slip, for limits so large
  * that no step from zero leads there. */
-static void start_closed(run *s) {
+static status start_closed(run *s) {
+  status st = OK;
   proximal_work *w = s->w;
-  int m = s->cp->m;
+  int m = s->cp->m, singular = 0;
   memset(s->r, 0, (size_t)m * sizeof *s->r);
   memset(w->centre, 0, (size_t)m * sizeof *w->centre);
-  memset(w->J, 0, (size_t)m * (size_t)m * sizeof *w->J);
   evaluate(s);
   for (int i = 0; i < m; ++i) {
-    w->d[i] = w->set->part[i] == NO_FORCE ? 0.0 : -w->set->D[i] * w->x[i];
-    w->J[(size_t)i * (size_t)(m + 1)] = 1.0;
-    if (w->set->part[i] != NO_FORCE) add_row(s, i, i, 1.0);
+    w->acts[i] = w->set->part[i] != NO_FORCE;
+    w->d[i] = w->acts[i] ? -w->set->D[i] * w->x[i] : 0.0;
   }
-  if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, m, 1, w->J, m, w->pivot, w->d, m) ==
-      0)
-    memcpy(s->r, w->d, (size_t)m * sizeof *s->r);
+  step_matrix_begin(w->J, w->acts, w->d);
+  for (int i = 0; i < m; ++i) {
+    if (!w->acts[i]) continue;
+    step_matrix_add(w->J, i, 1.0);
+    add_row(s, i, 1.0);
+    TRY(step_matrix_put(w->J, i));
+  }
+  TRY(step_matrix_solve(w->J, w->d, &singular));
+  if (!singular) memcpy(s->r, w->d, (size_t)m * sizeof *s->r);
+done:
+  return st;
+}
+
+/* The centre of the next pass: r, or after passes that crept ahead of it. */
+static void set_centre(run *s, int creeps) {
+  proximal_work *w = s->w;
+  double ahead = creeps > 1 ? creeps / (creeps + 3.0) : 0.0;
+  for (int i = 0; i < s->cp->m; ++i) {
+    double now = s->r[i];
+    s->r[i] += ahead * (now - w->before[i]);
+    w->before[i] = now;
+    w->centre[i] = s->r[i];
+  }
 }
 
 /* Passes from the start forces. */
-static outcome trial(run *s, int limit, int closed) {
+static status trial(run *s, int limit, int closed, outcome *end) {
+  status st = OK;
   proximal_work *w = s->w;
   size_t bytes = (size_t)s->cp->m * sizeof *s->r;
-  double lowest = HUGE_VAL;
-  if (closed)
-    start_closed(s);
-  else
-    memcpy(s->r, w->start, bytes);
+  double lowest = HUGE_VAL, before = HUGE_VAL;
+  int steps = 0, creeps = 0;
+  memcpy(s->r, w->start, bytes);
+  if (closed) TRY(start_closed(s));
+  *end = STOPPED_STAGNATION;
   for (int idle = 0; idle < PATIENCE; ++idle) {
     memcpy(w->centre, s->r, bytes);
-    double value = evaluate(s);
+    evaluate(s);
     double residual = solver_mismatch(s->cp, s->scale, s->u, s->r);
     solver_keep_best(&w->best, s->cp->m, residual, s->u, s->r);
     solver_tell(s->control, "proximal", s->steps, residual);
-    if (isnan(residual)) return STOPPED_NAN;
-    if (residual <= s->control->tol) return CONVERGED;
+    *end = residual <= s->control->tol ? CONVERGED
+           : isnan(residual)           ? STOPPED_NAN
+           : s->steps >= limit         ? STOPPED_ITERATIONS
+                                       : STOPPED_STAGNATION;
+    if (*end != STOPPED_STAGNATION) break;
     if (residual < 0.9 * lowest) {
       lowest = residual;
       idle = 0;
     }
-    if (s->steps >= limit) return STOPPED_ITERATIONS;
-    int steps = pass(s, value);
+    creeps = residual > CREEP * before && steps <= HARD ? creeps + 1 : 0;
+    before = residual;
+    set_centre(s, creeps);
+    TRY(pass(s, evaluate(s), &steps));
     if (steps > PASS) memcpy(s->r, w->centre, bytes);
     s->share = next_share(s->share, steps);
   }
-  return STOPPED_STAGNATION;
+done:
+  return st;
 }
 
 static status proximal_solve(const contact_problem *cp, const void *par,
                              void *work, const solver_control *control,
                              double *u, double *r, solver_report *rep) {
+  status st = OK;
   proximal_work *w = work;
   run s = {.cp = cp, .w = w, .control = control, .u = u, .r = r};
   int limit = control->max_iter > 0 ? control->max_iter : STEPS;
@@ -321,7 +381,8 @@ static status proximal_solve(const contact_problem *cp, const void *par,
     int until = s.steps + TRIAL;
     s.stretch = way[k].stretch;
     s.share = way[k].share;
-    rep->outcome = trial(&s, until < limit ? until : limit, k == TRIALS - 1);
+    TRY(trial(&s, until < limit ? until : limit, k == TRIALS - 1,
+              &rep->outcome));
     if (rep->outcome == STOPPED_NAN) break;
   }
   if (rep->outcome == STOPPED_ITERATIONS && s.steps < limit)
@@ -329,14 +390,15 @@ static status proximal_solve(const contact_problem *cp, const void *par,
   rep->iterations = s.steps;
   rep->residual = w->best.residual;
   solver_take_best(&w->best, cp->m, u, r);
-  return OK;
+done:
+  return st;
 }
 
 /* clang-format off */
 const solver_ops proximal_solver = {
   .name = "proximal",
   .family = "Newton",
-  .reference = "Rockafellar 1976; Alart, Curnier 1991",
+  .reference = "Rockafellar 1976; Alart, Curnier 1991; Guler 1992",
   .help =
     "Proximal point iteration on the forces of contact, with the compliance:\n"
     "each pass solves the equations of Alart and Curnier, friction with the\n"
