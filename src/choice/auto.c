@@ -16,8 +16,8 @@
  * the solution for less than the steps of NEWTON would cost. Then the same,
  * NEWTON solving for the forces, if the compliance is regular; sweeps again,
  * PCG, PROXIMAL, LAGRANGE, SOR and LEMKE work on a singular one.
- * PROXIMAL is for what the others leave: an unsymmetric compliance that would
- * be singular without its unsymmetric part, as of rigid bodies.
+ * Of rigid bodies PCG solves many in some hundred iterations, the others hardly
+ * ever: then PROXIMAL, in some ten to a thousand steps, and PCG at length.
  *
  * Each link starts cold after the first, on the same problem, and is given a
  * number of iterations that bounds its cost (allowance).
@@ -40,7 +40,8 @@ const char auto_help[] =
   "LEMKE. Of a problem that comes as a compliance (*CONDENSED PROBLEM) sweeps\n"
   "of SOR go first in 3-D, as long as their rate promises the answer for\n"
   "less than NEWTON costs; then the same chain with such sweeps, PCG,\n"
-  "PROXIMAL and LAGRANGE before SOR, for compliances that are singular.\n"
+  "PROXIMAL, PCG at length and LAGRANGE before SOR, for compliances that are\n"
+  "singular.\n"
   "The first starts from the last increment, the others anew; each may make\n"
   "a number of iterations that bounds its cost, or MAX_ITER if that is less.\n"
   "An answer counts only by the residual of the given problem; the listing\n"
@@ -68,11 +69,16 @@ static const struct {
   drive how;
   int compliance; /* 1: only where no stiffness is given                      */
   int factors;    /* 1: an iteration costs a factorisation, else a product    */
-} auto_chain[] = {
-    {&newton_solver, PLAIN, 0, 1},        {&newton_solver, ALONG_PATH, 0, 1},
-    {&sor_solver, WHILE_PROMISING, 1, 0}, {&pcg_solver, PLAIN, 1, 0},
-    {&proximal_solver, PLAIN, 1, 1},      {&lagrange_solver, PLAIN, 1, 0},
-    {&sor_solver, PLAIN, 0, 0},           {&lemke_solver, PLAIN, 0, 0}};
+  int most;       /* iterations, 0: as many as the cost allows                */
+} auto_chain[] = {{&newton_solver, PLAIN, 0, 1, 0},
+                  {&newton_solver, ALONG_PATH, 0, 1, 0},
+                  {&sor_solver, WHILE_PROMISING, 1, 0, 0},
+                  {&pcg_solver, PLAIN, 1, 0, 1000},
+                  {&proximal_solver, PLAIN, 1, 1, 0},
+                  {&pcg_solver, PLAIN, 1, 0, 0},
+                  {&lagrange_solver, PLAIN, 1, 0, 0},
+                  {&sor_solver, PLAIN, 0, 0, 0},
+                  {&lemke_solver, PLAIN, 0, 0, 0}};
 
 /* Iterations a link may make: such that its cost stays that of its most on a
  * problem with FULL_SIZE unknowns, but at least LEAST. */
@@ -84,7 +90,8 @@ static int allowance(const contact_solver *s, const contact_problem *cp,
   double most = factors ? MOST_FACTORS / (size * size * size)
                         : MOST_SWEEPS / (size * size);
   int own = (int)fmax(most, factors ? LEAST_FACTORS : LEAST_SWEEPS);
-  int asked = s->choice.max_iter;
+  int asked = s->choice.max_iter, limit = auto_chain[i].most;
+  if (limit > 0 && limit < own) own = limit;
   if (promising) own = cp->m / SWEEP_SHARE;
   return asked > 0 && asked < own ? asked : own;
 }
