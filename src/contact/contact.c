@@ -242,12 +242,16 @@ static double equation_defect(const contact_problem *cp, const double *u,
   const double *M = cp->A != NULL ? cp->A : cp->W;
   const double *x = cp->A != NULL ? u : r, *y = cp->A != NULL ? r : u;
   double sign = cp->A != NULL ? 1.0 : -1.0, worst = 0.0;
+  int zero = cblas_dasum(cp->m, x, 1) == 0.0;
   for (int i0 = 0; i0 < cp->m; i0 += CHUNK) {
     int rows = cp->m - i0 < CHUNK ? cp->m - i0 : CHUNK;
     double d[CHUNK];
     for (int i = 0; i < rows; ++i) d[i] = y[i0 + i] + sign * cp->f[i0 + i];
-    cblas_dgemv(CblasColMajor, CblasNoTrans, rows, cp->m, 1.0, M + i0, cp->m, x,
-                1, -1.0, d, 1);
+    if (zero)
+      cblas_dscal(rows, -1.0, d, 1);
+    else
+      cblas_dgemv(CblasColMajor, CblasNoTrans, rows, cp->m, 1.0, M + i0, cp->m,
+                  x, 1, -1.0, d, 1);
     for (int i = 0; i < rows; ++i) worst = larger(worst, fabs(d[i]));
   }
   return worst;

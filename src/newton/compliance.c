@@ -22,6 +22,7 @@ status compliance_system_new(const contact_problem *cp,
   NEW(s->list, m);
   NEW(s->place, cp->n);
   NEW(s->turn, cp->n);
+  NEW(s->dof, m);
   NEW(s->x, m);
   NEW(s->y, m);
   NEW(s->base, m);
@@ -44,9 +45,9 @@ done:
 
 void compliance_system_free(compliance_system *s) {
   if (s == NULL) return;
-  void *const blocks[] = {s->list, s->place,   s->turn,   s->x, s->y,
-                          s->base, s->in_base, s->column, s->X, s->freed,
-                          s->C,    s->z,       s->pivot};
+  void *const blocks[] = {s->list,  s->dof,  s->place,   s->turn,   s->x,
+                          s->y,     s->base, s->in_base, s->column, s->X,
+                          s->freed, s->C,    s->z,       s->pivot};
   for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
     memory_free(blocks[i]);
   dense_free(&s->K);
@@ -77,13 +78,14 @@ static int turns(const compliance_system *s, int node_id) {
 }
 
 static void add_unknown(compliance_system *s, int dof) {
+  s->dof[s->n] = dof;
   s->list[s->n++] = (unknown){.dof = dof, .d = {1.0, 0.0}};
 }
 
 static void list_unknowns(compliance_system *s) {
   const contact_problem *cp = s->cp;
   const pattern *p = s->p;
-  s->n = 0;
+  s->n = s->n_turn = 0;
   for (int i = 0; i < cp->n; ++i) {
     int first = i * cp->dim;
     s->place[i] = p->closed[first] ? s->n : -1;
@@ -94,6 +96,8 @@ static void list_unknowns(compliance_system *s) {
     }
     s->turn[i] = turns(s, i) ? s->n : -1;
     if (s->turn[i] < 0) continue;
+    ++s->n_turn;
+    s->dof[s->n] = first + 1;
     s->list[s->n++] = (unknown){
         .dof = first + 1, .turns = 1, .d = {-p->e[2 * i + 1], p->e[2 * i]}};
   }
@@ -145,7 +149,9 @@ static void fill(compliance_system *s) {
     const unknown *a = &s->list[j];
     const double *column = s->cp->W + m * (size_t)a->dof;
     double *to = s->K.a + n * j, first = s->power * a->d[0];
-    for (size_t i = 0; i < n; ++i) to[i] = first * part(&s->list[i], column);
+    for (size_t i = 0; i < n; ++i) to[i] = first * column[s->dof[i]];
+    for (size_t i = 0; i < n && s->n_turn > 0; ++i)
+      if (s->list[i].turns) to[i] = first * part(&s->list[i], column);
     if (!a->turns) continue;
     add_column(s, a->dof + 1, a->d[1], to);
     to[j] += s->power / s->p->kappa[a->dof / 3];

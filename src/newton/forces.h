@@ -30,9 +30,10 @@ struct compliance_system {
   const pattern *p;          /* of this step                                  */
   double power;              /* of two: W*power has a diagonal of order 1     */
   unknown *list;             /* [m]                                           */
+  int *dof;                  /* [m] of each                                   */
   int *place;                /* [n] of the normal force in the list, or -1    */
   int *turn;                 /* [n] of the unknown along d, or -1             */
-  int n;                     /* unknowns                                      */
+  int n, n_turn;             /* unknowns; of them along d                     */
   dense K;                   /* their matrix, times power; factor of the base */
   double *x, *y;             /* [m]                                           */
   int n_base;                /* unknowns of the base, 0: none                 */

@@ -1,9 +1,10 @@
 /*
  * AUTO against every row of the solver table on condensed blocks.
  *
- *   auto [-t TOL] [-r REPEATS] [-x ROW]... [dim nodes]...
+ *   auto [-t TOL] [-r REPEATS] [-x ROW]... [-m MU] [-w WAY] [dim nodes]...
  *
- * Default: blocks in 2-D and 3-D; -x leaves a row out.
+ * Default: blocks in 2-D and 3-D; -x leaves a row out, -m and -w take one
+ * coefficient and one way alone.
  *
  * For each block, friction coefficient and load (most of the floor open, mixed,
  * most of it stuck) three ways of solving:
@@ -45,6 +46,8 @@ static struct bench {
   double fastest[MAX_ROWS];          /* of a row over AUTO, this block     */
   int slow[MAX_ROWS];                /* 1: left out for this load          */
   int out[4][MAX_ROWS];              /* by dim: left out                   */
+  double mu;                         /* -1: all                            */
+  const char *way;                   /* NULL: all                          */
 } bench;
 
 static void must(status st) {
@@ -151,7 +154,6 @@ static void line(double mu, const struct loading *l, way how) {
   for (int i = 0; solver_list[i] != NULL; ++i) {
     const solver_ops *ops = solver_list[i];
     double cpu = HUGE_VAL;
-    if (how == COLD) bench.slow[i] = 0;
     if (!bench.out[cp->dim][i] && !bench.slow[i] &&
         (cp->dim == 2 || (ops->handles & SOLVES_3D)))
       cpu = median(ops, how, l, fmin(best, first));
@@ -166,6 +168,16 @@ static void line(double mu, const struct loading *l, way how) {
   fflush(stdout);
 }
 
+static void load_case(double mu, const struct loading *l) {
+  pressed_block_friction(&bench.b, mu);
+  memset(bench.slow, 0, sizeof bench.slow);
+  for (way how = COLD; how < N_WAY; ++how) {
+    if (bench.way != NULL && strcmp(bench.way, way_name[how]) != 0) continue;
+    reference(l);
+    line(mu, l, how);
+  }
+}
+
 static void size(int dim, int nodes) {
   static const double mus[] = {0.0, 0.1, 0.3, 1.0};
   pressed_block *b = &bench.b;
@@ -176,13 +188,8 @@ static void size(int dim, int nodes) {
   for (int i = 0; i < 4; ++i) *arrays[i] = calloc(m, sizeof **arrays[i]);
   for (int i = 0; i < MAX_ROWS; ++i) bench.fastest[i] = HUGE_VAL;
   for (int i = 0; i < 4; ++i)
-    for (size_t k = 0; k < sizeof loadings / sizeof *loadings; ++k) {
-      pressed_block_friction(b, mus[i]);
-      for (way how = COLD; how < N_WAY; ++how) {
-        reference(&loadings[k]);
-        line(mus[i], &loadings[k], how);
-      }
-    }
+    for (size_t k = 0; k < sizeof loadings / sizeof *loadings; ++k)
+      if (bench.mu < 0.0 || bench.mu == mus[i]) load_case(mus[i], &loadings[k]);
   for (int i = 0; i < MAX_ROWS; ++i)
     bench.out[dim][i] = bench.out[dim][i] || bench.fastest[i] > HOPELESS;
   for (int i = 0; i < 4; ++i) free(*arrays[i]);
@@ -212,9 +219,12 @@ int main(int argc, char **argv) {
   blas_choose_kernel(argv);
   bench.tol = 1e-8;
   bench.repeats = 5;
+  bench.mu = -1.0;
   for (; at + 1 < argc && argv[at][0] == '-'; at += 2) {
     if (argv[at][1] == 't') bench.tol = atof(argv[at + 1]);
     if (argv[at][1] == 'x') leave_out(argv[at + 1]);
+    if (argv[at][1] == 'm') bench.mu = atof(argv[at + 1]);
+    if (argv[at][1] == 'w') bench.way = argv[at + 1];
     if (argv[at][1] == 'r') bench.repeats = atoi(argv[at + 1]);
   }
   if (bench.repeats < 1 || bench.repeats > MAX_REPEATS)
