@@ -214,6 +214,11 @@ static int read_real(const option *row, const char *text, double *out,
                      char *why, size_t why_size) {
   double x = 0;
   char digits[NUMBER_TEXT_SIZE];
+  int rank = row->choices == NULL ? -1 : choice_rank(row->choices, text);
+  if (rank >= 0) {
+    *out = OPTION_WORD(rank);
+    return 0;
+  }
   const char *wrong =
       number_real(without_percent(row, text, digits, sizeof digits), &x);
   if (wrong != NULL) {
@@ -239,6 +244,9 @@ int option_read(const option *row, const char *text, void *parameters,
                 char *why, size_t why_size) {
   void *field = (char *)parameters + row->offset;
   if (row->type == OPT_FLAG) return read_flag(text, field, why, why_size);
+  if (text == NULL && row->type == OPT_CHOICE &&
+      choice_rank(row->choices, "YES") > 0)
+    text = "YES";
   if (text == NULL || *text == '\0') {
     snprintf(why, why_size, "a value is needed");
     return -1;
@@ -276,10 +284,16 @@ void option_write(const option *row, const void *parameters, char *text,
     case OPT_INT:
       snprintf(text, size, "%d", *(const int *)field);
       return;
-    case OPT_REAL:
-      number_text(*(const double *)field, number);
+    case OPT_REAL: {
+      double x = *(const double *)field;
+      if (row->choices != NULL && x < 0.0) {
+        choice_word(row->choices, (int)(-1.0 - x), text, size);
+        return;
+      }
+      number_text(x, number);
       snprintf(text, size, "%s", number);
       return;
+    }
     case OPT_FLAG:
       snprintf(text, size, "%s", *(const int *)field ? "YES" : "NO");
       return;
@@ -330,6 +344,7 @@ static void print_row(const option *o, FILE *out) {
   if (o->type == OPT_REAL || o->type == OPT_INT) {
     print_range(o, out);
     fprintf(out, ", unit %s", o->unit);
+    if (o->choices != NULL) fprintf(out, "; or %s", o->choices);
   }
   if (o->initial == NULL)
     fprintf(out, "; must be given");

@@ -40,6 +40,14 @@ typedef struct option {
     name, OPT_REAL, OPTION_OFFSET(struct_, field, double), min, max, initial, \
         unit, NULL, help                                                      \
   }
+/* The same, or one of the words of "choices": then OPTION_WORD(rank). */
+#define OPTION_WORD(rank) (-1.0 - (rank))
+#define OPTION_REAL_WORD(struct_, field, name, min, max, initial, unit,       \
+                         choices, help)                                       \
+  {                                                                           \
+    name, OPT_REAL, OPTION_OFFSET(struct_, field, double), min, max, initial, \
+        unit, choices, help                                                   \
+  }
 /* YES or NO; the bare name means YES. Field: int 0 or 1. */
 #define OPTION_FLAG(struct_, field, name, initial, help)                    \
   {                                                                         \

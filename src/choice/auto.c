@@ -10,7 +10,8 @@
  * Stiffness given: NEWTON. Its steps do not grow in number with m or with the
  * condition of A, and it keeps its factor from step to step and from problem to
  * problem. Then NEWTON along a friction path, for large mu; then SOR, which
- * needs no factor; LEMKE last.
+ * needs no factor; LEMKE last. In 3-D with few digits wanted (TOL=BALANCED)
+ * sweeps of SOR first, as many as cost less than some steps of NEWTON.
  *
  * Compliance given: in 3-D first sweeps of SOR, as long as their rate promises
  * the solution for less than the steps of NEWTON would cost. Then the same,
@@ -37,11 +38,11 @@ const char auto_help[] =
   "normal ones. With friction, and the stiffness known (every deck with a\n"
   "mesh), it is NEWTON, then NEWTON along a friction path (the coefficient\n"
   "grows to its value, each answer the start of the next), then SOR, then\n"
-  "LEMKE. Of a problem that comes as a compliance (*CONDENSED PROBLEM) sweeps\n"
-  "of SOR go first in 3-D, as long as their rate promises the answer for\n"
-  "less than NEWTON costs; then the same chain with such sweeps, PCG,\n"
-  "PROXIMAL, PCG at length and LAGRANGE before SOR, for compliances that are\n"
-  "singular.\n"
+  "LEMKE; in 3-D with TOL above 1e-4 some sweeps of SOR go first. Of a\n"
+  "problem that comes as a compliance (*CONDENSED PROBLEM) sweeps of SOR\n"
+  "go first in 3-D, as long as their rate promises the answer for less than\n"
+  "NEWTON costs; then the same chain with such sweeps, PCG, PROXIMAL, PCG\n"
+  "at length and LAGRANGE before SOR, for compliances that are singular.\n"
   "The first starts from the last increment, the others anew; each may make\n"
   "a number of iterations that bounds its cost, or MAX_ITER if that is less.\n"
   "An answer counts only by the residual of the given problem; the listing\n"
@@ -62,6 +63,8 @@ enum {
   LEAST_SWEEPS = 1000, /* iterations with a product                           */
   MOST_SWEEPS = 20000
 };
+
+static const double FEW_DIGITS = 1e-4; /* -, tolerance                        */
 
 /* The order of trial, how each is driven, and where it applies. */
 static const struct {
@@ -272,6 +275,18 @@ done:
   return st;
 }
 
+/* Sweeps of SOR on a stiffness in 3-D where few digits are wanted. */
+static status coarse_sweeps(contact_solver *s, const contact_problem *cp,
+                            const solver_listener *listener, const answer *to) {
+  status st = OK;
+  to->rep->outcome = STOPPED_UNFIT;
+  if (cp->A != NULL && cp->dim == 3 && cp->B != NULL &&
+      s->choice.tol >= FEW_DIGITS)
+    TRY(short_try(s, cp, &sor_solver, cp->m / SWEEP_SHARE, listener, to));
+done:
+  return st;
+}
+
 status auto_solve(contact_solver *s, const contact_problem *cp,
                   const solver_listener *listener, double *u, double *r,
                   solver_report *rep) {
@@ -284,6 +299,10 @@ status auto_solve(contact_solver *s, const contact_problem *cp,
   if (!solved && sweeps_fit(cp)) {
     TRY(promising_sweeps(s, cp, sweeps_of_newton(cp), listener,
                          &(answer){u, r, rep}));
+    solved = rep->outcome == CONVERGED;
+  }
+  if (!solved) {
+    TRY(coarse_sweeps(s, cp, listener, &(answer){u, r, rep}));
     solved = rep->outcome == CONVERGED;
   }
   for (int i = 0; i < n && !solved; ++i) {

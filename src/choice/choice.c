@@ -64,6 +64,10 @@ void contact_solver_free(contact_solver *s) {
   memory_free(s);
 }
 
+void contact_solver_tolerance(contact_solver *s, double tol) {
+  s->choice.tol = tol;
+}
+
 const char *contact_solver_log(const contact_solver *s) { return s->log; }
 
 static status fit(contact_solver *s, const contact_problem *cp) {

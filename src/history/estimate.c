@@ -98,10 +98,24 @@ done:
   return st;
 }
 
-status estimate_increment(run *r) {
+status estimate_judge(run *r) {
   status st = OK;
+  r->now.energy.strain = domain_strain_energy(&r->d, r->now.u);
+  domain_stress(&r->d, r->now.u, NULL, r->stress);
   TRY(estimate_solver(r));
   TRY(estimate_mesh(r));
+  r->judged = 1;
+done:
+  return st;
+}
+
+status estimate_increment(run *r) {
+  status st = OK;
+  if (!r->judged) {
+    TRY(estimate_solver(r));
+    TRY(estimate_mesh(r));
+  }
+  r->judged = 0;
   TRY(find_truth(r));
 done:
   return st;
@@ -127,7 +141,7 @@ static status theory_scene_new(run *r, const equilibrium *e, theory_scene *s,
                       .mu = *mu,
                       .given = *given,
                       .alone = r->step->kind == STEP_STATIC || r->relaxing,
-                      .tol = r->step->solver.tol};
+                      .tol = r->tol};
   if (r->theory == NULL) TRY(theory_new(&r->theory));
 done:
   return st;

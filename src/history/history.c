@@ -80,6 +80,7 @@ state loop_state(run *r, int attempt, int increment_no) {
              .mesh_error = r->mesh_error,
              .time_error = r->time_error,
              .truth = r->truth,
+             .balance = r->balance.report,
              .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
              .solver_log = contact_solver_log(r->solver),
              .settled = is_settled(r)};
@@ -143,6 +144,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   TRY(check_increment(r));
   TRY(note_misfit(r));
   path_compare(r);
+  TRY(balance_learn(r));
   state s = loop_state(r, attempt, increment_no);
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
@@ -190,7 +192,14 @@ done:
 
 /* ---- between two attempts ------------------------------------------------ */
 
-static status keep_all(void *run_, archive *a) { return run_keep(run_, a); }
+static status keep_all(void *run_, archive *a) {
+  status st = OK;
+  run *r = run_;
+  TRY(run_keep(r, a));
+  if (r->balance.m > 0) TRY(balance_keep(r, a));
+done:
+  return st;
+}
 
 static status checkpoint(run *r) {
   status st = OK;
@@ -276,7 +285,7 @@ static status attempt_piece(run *r, long n) {
     goto done;
   }
   TRY(path_try(r, t));
-  TRY(s->kind == STEP_VISCO ? visco_advance(r, t) : increment_solve(r, t));
+  TRY(balance_advance(r, t));
   int settled = r->report.outcome > 0, finer = !settled && can_cut(r);
   if (finer || (!settled && outcome_is_fatal(r->report.outcome)))
     TRY(loop_reject(r, p->attempt, p->increment_no + 1,
@@ -310,8 +319,10 @@ done:
 static status run_step(run *r) {
   status st = OK;
   TRY(run_prepare(r));
+  TRY(balance_begin(r));
   if (r->from != NULL) {
     TRY(run_keep(r, r->from));
+    if (r->balance.m > 0) TRY(balance_keep(r, r->from));
     r->from = NULL;
   } else {
     r->at =
@@ -355,6 +366,7 @@ status history_continue(const model *m, const mesh *msh, archive *from,
   }
 done:
   *unsettled = r.unsettled;
+  balance_free(&r.balance);
   run_free(&r);
   return st;
 }

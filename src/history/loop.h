@@ -37,11 +37,22 @@ status adaptive_run(run *r);
 /* dense.c: tables at time points within the increment r->old to r->now. */
 status dense_show(run *r, int increment_no);
 
+/* balance.c: from r->old to r->now at t by the procedure of the step. With
+ * TOL=BALANCED the contact solver stops at a share of the other errors. */
+status balance_begin(run *r); /* of a step                                    */
+status balance_advance(run *r, double t);
+/* At an increment that is taken, its errors known. */
+status balance_learn(run *r);
+void balance_free(balance *b);
+status balance_keep(run *r, archive *a);
+
 /* zones.c: the zones of r->now into r->zones. ERR_MEMORY. */
 status zones_find(run *r);
 
 /* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
 status estimate_increment(run *r);
+/* Those of solver and mesh alone, from r->now.u; read r->judged. */
+status estimate_judge(run *r);
 
 /* The theorems at r->now into r->theorems, if asked for; at the initial state,
  * which is posed in r->cp. */

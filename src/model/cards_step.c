@@ -425,6 +425,9 @@ plugin names_solver(const reading *r) {
   return (plugin){NULL, 0, "METHOD", NULL};
 }
 
+/* Of a solver that is to be balanced with errors that are zero. */
+static const double TOL_DEFAULT = 1e-10;
+
 status apply_solver(reading *r) {
   status st = OK;
   const solver_param *p = r->param;
@@ -436,7 +439,9 @@ status apply_solver(reading *r) {
   }
   s->solver_at = r->card->at;
   s->solver.ops = solver_find(p->method);
-  s->solver.tol = p->tol;
+  s->balanced = p->tol < 0.0;
+  s->share = p->share;
+  s->solver.tol = s->balanced ? TOL_DEFAULT : p->tol;
   s->solver.max_iter = p->max_iter;
   s->solver.limit_max_iter = p->limit_max_iter;
   s->check = p->check;

@@ -423,6 +423,8 @@ static void reason_accuracy(const model *m, const char *word,
   const step *s = first_step(m, is);
   if (s != NULL && m->target.percent > 0.0)
     snprintf(text, size, "*ACCURACY, TARGET=, %s:%d", PLACE(s->accuracy_at));
+  else if (s != NULL && s->accuracy_at.file == NULL)
+    snprintf(text, size, "*SOLVER, TOL=BALANCED, %s:%d", PLACE(s->solver_at));
   else if (s != NULL)
     snprintf(text, size, "*ACCURACY, %s=YES, %s:%d", word,
              PLACE(s->accuracy_at));

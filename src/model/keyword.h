@@ -146,7 +146,7 @@ typedef struct temperature_param {
 } temperature_param;
 typedef struct solver_param {
   const char *method;
-  double tol;
+  double tol, share;
   int max_iter, limit_max_iter, check;
 } solver_param;
 typedef struct accuracy_param {

@@ -182,8 +182,12 @@ static const option temperature_options[] = {
   OPTION_END};
 static const option solver_options[] = {
   OPTION_NAME(solver_param, method, "METHOD", "AUTO", "protis --list solvers"),
-  OPTION_REAL(solver_param, tol, "TOL", 1e-14, 0.1, "1E-10", "-",
-              "residual to reach"),
+  OPTION_REAL_WORD(solver_param, tol, "TOL", 1e-14, 0.1, "1E-10", "-",
+                   "BALANCED",
+                   "residual to reach; BALANCED: stop when the error of the "
+                   "solver is SHARE of those of mesh and increments"),
+  OPTION_REAL(solver_param, share, "SHARE", 0.001, 1, "0.05", "-",
+              "of the other errors, with TOL=BALANCED"),
   OPTION_INT(solver_param, max_iter, "MAX_ITER", 0, 100000000, "0", "-",
              "iterations of the method, restarts and passes together; with "
              "AUTO of each method it tries; 0: its own limit"),

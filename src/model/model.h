@@ -229,6 +229,8 @@ typedef struct step {
   int no_solver_error; /* 1: the error of the solver is not asked for        */
   int mesh_error, time_error; /* 1: asked for                                 */
   int theory; /* 1: the theorems of CPR98 are checked                         */
+  int balanced; /* TOL=BALANCED                                              */
+  double share; /* -, of the errors it is balanced with                      */
   solver_choice solver; /* its param is owned by the step it came with        */
   void *solver_param;   /* owned, or NULL                                     */
   place solver_at;

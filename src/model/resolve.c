@@ -382,11 +382,23 @@ done:
 static const solver_choice default_solver = {
     .ops = NULL, .param = NULL, .tol = 1e-10, .limit_max_iter = 1000};
 
+/* TOL=BALANCED calls for the estimates it is balanced with. */
+static void call_estimates(const model *m, step *s) {
+  if (!s->balanced) return;
+  if (m->has_problem && s->solver_at.file != NULL)
+    message_add(m->log, P2037, &s->solver_at,
+                "*SOLVER, TOL=BALANCED needs a mesh, whose error counts");
+  s->mesh_error |= m->n_contact > 0;
+  s->no_solver_error = 0;
+}
+
 /* Solver, tables and fields stay until changed. */
 static status carry_choices(const step *old, step *s) {
   status st = OK;
   if (s->solver_at.file == NULL) {
     s->solver = old->solver;
+    s->balanced = old->balanced;
+    s->share = old->share;
     s->check = old->check;
   }
   if (!s->has_accuracy) {
@@ -429,6 +441,7 @@ status model_resolve(model *m, int lost) {
     TRY(resolve_loads(m, old, s));
     for (int k = 0; k < s->n_print; ++k) find_points(m, &s->prints[k]);
     TRY(carry_choices(old, s));
+    call_estimates(m, s);
     old = s;
   }
   if (!lost && message_count(m->log, ERROR) == 0) {

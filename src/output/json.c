@@ -178,6 +178,14 @@ static void write_budget(json *w, const job *j) {
   }
 }
 
+static void write_saved(json *w, const job *j) {
+  balance_sum sum = job_balance(j);
+  if (!sum.asked) return;
+  json_real(w, "balanced_iterations", sum.iterations);
+  json_real(w, "balanced_saved_iterations", sum.saved_iterations);
+  if (!j->o->no_timing) json_real(w, "balanced_saved_cpu", sum.saved_cpu);
+}
+
 static void write_accuracy(json *w, const job *j) {
   const run_summary *run = j->run;
   json_open(w, "accuracy", '{');
@@ -186,6 +194,7 @@ static void write_accuracy(json *w, const job *j) {
   json_count(w, "tolerance_missed", run->n_unsettled);
   json_real(w, "residual_worst", run->residual_worst);
   write_budget(w, j);
+  write_saved(w, j);
   if (j->m->effects & EFFECT_REFERENCE)
     json_real(w, "effectivity", job_effectivity(j));
   json_real(w, "energy_defect_worst", run->defect_worst);
@@ -318,6 +327,11 @@ static void write_increment(json *w, const model *m,
     json_real(w, "mesh_error_percent", 100 * s->mesh_error.relative);
   if (s->time_error.asked)
     json_real(w, "time_error_percent", 100 * s->time_error.relative);
+  if (s->balance.asked) {
+    json_real(w, "balanced_wanted_percent", 100 * s->balance.wanted);
+    json_real(w, "balanced_residual", s->balance.tol);
+    json_count(w, "balanced_passes", s->balance.passes);
+  }
   if (s->truth.asked) {
     json_real(w, "true_error_percent", 100 * s->truth.energy);
     json_real(w, "true_displacement_error_percent",

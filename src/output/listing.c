@@ -197,6 +197,26 @@ static void print_truth(const state *s, FILE *f) {
   fputs(n > 0 ? "\n" : "", f);
 }
 
+/* TOL=BALANCED: where the solver stopped. */
+static void print_balance(const job *j, const state *s, FILE *f) {
+  char text[2][NUMBER_SIZE];
+  const balance_report *b = &s->balance;
+  if (!b->asked) return;
+  if (isnan(b->wanted)) {
+    fprintf(f,
+            "  balanced: the error of the solver has no bound, solved to "
+            "the default\n");
+    return;
+  }
+  fprintf(f,
+          "  balanced: %s %% is enough, stopped below residual %s; saved "
+          "about %.0f iterations",
+          text_number(text[0], 100 * b->wanted, 1),
+          text_number(text[1], b->tol, 1), b->saved_iterations);
+  if (!j->o->no_timing) fprintf(f, ", %.3f s", b->saved_cpu);
+  fputc('\n', f);
+}
+
 static void print_solver(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE];
   const solver_report *r = &s->report;
@@ -209,6 +229,7 @@ static void print_solver(const job *j, const state *s, FILE *f) {
   if (!j->o->no_timing) fprintf(f, ", cpu %.3f s", r->cpu);
   fputc('\n', f);
   print_error(j, s, f);
+  print_balance(j, s, f);
   if (s->solver_log != NULL && s->solver_log[0] != '\0')
     fprintf(f, "  tried: %s\n", s->solver_log);
   if (!s->settled) fprintf(f, "  THE TOLERANCE WAS NOT REACHED\n");
@@ -554,6 +575,30 @@ double job_effectivity(const job *j) {
   return rows[n - 1].last > 0 ? sum / rows[n - 1].last : NAN;
 }
 
+balance_sum job_balance(const job *j) {
+  balance_sum sum = {0};
+  for (int i = 0; i < j->run->n_increment; ++i) {
+    const increment_summary *s = &j->run->increments[i];
+    if (!s->balance.asked) continue;
+    sum.asked = 1;
+    sum.iterations += s->iterations;
+    sum.saved_iterations += s->balance.saved_iterations;
+    sum.saved_cpu += s->balance.saved_cpu;
+  }
+  return sum;
+}
+
+static void print_saved(const job *j, FILE *f) {
+  balance_sum sum = job_balance(j);
+  if (!sum.asked) return;
+  fprintf(f,
+          "  stopping balanced with the other errors saved about %.0f of "
+          "%.0f iterations",
+          sum.saved_iterations, sum.iterations + sum.saved_iterations);
+  if (!j->o->no_timing) fprintf(f, ", %.3f s of CPU", sum.saved_cpu);
+  fputs(" (to residual 1E-10)\n", f);
+}
+
 /* What was reached, what it cost, and what it cost to know it. */
 static void print_budget(const job *j, FILE *f) {
   char last[NUMBER_SIZE], worst[NUMBER_SIZE];
@@ -577,6 +622,7 @@ static void print_budget(const job *j, FILE *f) {
   double effectivity = job_effectivity(j);
   if (!isnan(effectivity))
     fprintf(f, "  estimated over true error: %.2f\n", effectivity);
+  print_saved(j, f);
 }
 
 static void print_pass(const job *j, int no, const pass_row *r, FILE *f) {

@@ -92,6 +92,7 @@ static status remember(output *o, const state *s) {
                            .mesh_error = s->mesh_error,
                            .time_error = s->time_error,
                            .truth = s->truth,
+                           .balance = s->balance,
                            .jumps = s->jumps,
                            .jump_t = s->jump_t,
                            .defect = energy_defect_relative(&s->energy)};

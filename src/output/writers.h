@@ -53,6 +53,7 @@ typedef struct increment_summary {
   solution_facts *solutions; /* [n_solution] owned                            */
   error_share mesh_error, time_error;
   true_error truth;
+  balance_report balance;
   theory_report theory; /* its contacts are owned                             */
 } increment_summary;
 
@@ -93,6 +94,12 @@ typedef struct job {
 
 /* The estimates asked for; how many rows. */
 int job_budget(const job *j, budget_row rows[BUDGET_ROWS]);
+/* What TOL=BALANCED saved in all increments that were asked. */
+typedef struct balance_sum {
+  int asked;
+  double iterations, saved_iterations, saved_cpu; /* made; about; s           */
+} balance_sum;
+balance_sum job_balance(const job *j);
 /* Sum of the estimates over the true error, last increment; NAN: unknown. */
 double job_effectivity(const job *j);
 

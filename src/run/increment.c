@@ -140,6 +140,20 @@ done:
   return st;
 }
 
+/* Start values: the last equilibrium, or the guess if it is nearer. */
+static void take_start(run *r) {
+  size_t bytes = (size_t)r->n_c * sizeof *r->now.uc;
+  const double *u = r->old.uc, *rc = r->old.rc;
+  if (r->guess_u != NULL && !r->beside &&
+      contact_residual(&r->cp, r->guess_u, r->guess_r) <
+          contact_residual(&r->cp, u, rc)) {
+    u = r->guess_u;
+    rc = r->guess_r;
+  }
+  memcpy(r->now.uc, u, bytes);
+  memcpy(r->now.rc, rc, bytes);
+}
+
 status forms_solve(run *r) {
   status st = OK;
   const solver_listener listener = {r->sink->iteration, r->sink->ctx};
@@ -148,12 +162,12 @@ status forms_solve(run *r) {
   int given = r->forms->n > 0, in_du = r->step->form == FORM_VELOCITY;
   contact_problem whole = r->cp, cp;
   double *u = r->now.uc;
-  memcpy(r->now.uc, r->old.uc, (size_t)r->n_c * sizeof *r->now.uc);
-  memcpy(r->now.rc, r->old.rc, (size_t)r->n_c * sizeof *r->now.rc);
+  take_start(r);
   if (given) TRY(take_given(r, &whole));
   cp = whole;
   if (in_du) TRY(take_velocity(r, &cp, &u));
   timer_enter(STAGE_CONTACT);
+  contact_solver_tolerance(r->solver, r->tol);
   st = contact_solve(r->solver, &cp, told, u, r->now.rc, &r->report);
   timer_leave(STAGE_CONTACT);
   TRY(st);

@@ -241,7 +241,7 @@ void path_compare(run *r) {
       (p->u != NULL ? field_difference(r, p) : condensed_difference(r, p));
   double norm = r->path_before + r->path_error;
   if (norm > 0.0) e->relative = norm / sqrt(norm * norm + 2.0 * energy);
-  if (e->relative <= STRAIGHT * r->step->solver.tol)
+  if (e->relative <= STRAIGHT * r->tol)
     e->why = "the path is straight: half the increments give the same";
   advance(p);
 }

@@ -51,6 +51,18 @@ typedef struct matrices {
 #define RUN_NO_KEY (-1.0)
 #define RUN_OTHER_KEY (-2.0)
 
+/* What TOL=BALANCED has learnt (src/history/balance.c). */
+typedef struct balance {
+  double mesh, time;   /* -, errors at the last increment; mesh 0: unknown    */
+  double per_residual; /* -, error of the solver over the residual            */
+  double per_digit;    /* iterations for a digit of the residual              */
+  double iterations, cpu; /* all so far; s                                    */
+  double t;               /* s, of the equilibrium before r->old              */
+  double *u, *rc, *guess_u, *guess_r; /* [m] of that; room                    */
+  int m, known; /* 1: u, rc are there                               */
+  balance_report report;
+} balance;
+
 /* How far the run is: the next attempt. */
 typedef struct progress {
   int step_id, level, attempt, increment_no;
@@ -117,6 +129,11 @@ typedef struct run {
   error_bound error;
   error_share mesh_error, time_error;
   true_error truth;
+  double tol; /* of the contact solver, in force, -                          */
+  balance balance;
+  double *guess_u, *guess_r; /* [m] start values that may be nearer than those
+                                of r->old, borrowed; NULL: none               */
+  int judged; /* 1: the errors of mesh and solver are those of r->now         */
   space_recovery *recovery; /* NULL until the error of the mesh is estimated  */
   double *elem_error;       /* [n_elem] or NULL                              */
   finer_path *path;         /* NULL until the error of the steps is estimated */

@@ -472,6 +472,7 @@ status run_prepare(run *r) {
   contact_solver_free(r->elastic.solver);
   r->elastic.solver = NULL;
   visco_forget(r);
+  r->tol = r->step->solver.tol;
   TRY(run_use(r, &r->elastic));
 done:
   memory_free(fixed);

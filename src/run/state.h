@@ -84,6 +84,16 @@ typedef struct error_share {
   const char *why; /* why it is zero or unknown; or NULL                      */
 } error_share;
 
+/* *SOLVER, TOL=BALANCED: where the solver stopped, and what that saved against
+ * the tolerance of the default. */
+typedef struct balance_report {
+  int asked;
+  double wanted; /* -, error of the solver that is enough; NAN: unknown       */
+  double tol;    /* -, residual asked for                                     */
+  int passes;    /* solves with ever smaller tolerances                       */
+  double saved_iterations, saved_cpu; /* about; s                             */
+} balance_report;
+
 /* One accepted increment. Arrays are borrowed and live until the next one. */
 typedef struct state {
   int step_no, increment_no; /* from 1, increments counted within the step    */
@@ -119,6 +129,7 @@ typedef struct state {
   solver_report report;
   error_bound error;                  /* of the contact solver                */
   error_share mesh_error, time_error; /* of the mesh, of the increments       */
+  balance_report balance;
   true_error truth; /* against *REFERENCE                                     */
   const double *elem_error; /* [n_elem] share of each element in the error of
                                the mesh, -, relative as that; or NULL         */

@@ -76,7 +76,7 @@ static status advance(run *r, double t) {
                    .dt = step_length(r, t),
                    .theta = r->step->theta,
                    .initial = r->step->initial,
-                   .tol = r->step->solver.tol};
+                   .tol = r->tol};
   v->result = (scheme_result){.settled = 1, .error = -1.0};
   v->old.t = r->old.t;
   const scheme_call call = {&v->x,   &p,      &body,     v->work,

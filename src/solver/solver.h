@@ -130,6 +130,8 @@ status contact_solver_new(const solver_choice *choice, contact_solver **out);
 /* A (or W) has changed: forget factors. */
 void contact_solver_reset(contact_solver *s);
 void contact_solver_free(contact_solver *s);
+/* Another tolerance than that of the choice, from now on. */
+void contact_solver_tolerance(contact_solver *s, double tol);
 /*
  * Solve cp from the start values u[m], r[m]. rep->outcome > 0 only if
  * contact_residual, recomputed from the returned u and r, is at most tol.

@@ -1,0 +1,147 @@
+/*
+ * TOL=BALANCED: the contact solver stops at a share of the other errors. The
+ * error it leaves is measured against the answer to 1E-10 on the same mesh, in
+ * the energy norm; iterations are counted, never seconds.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The block of greco with N = 16 in increments of dt. */
+static job run_block(double dt, const char *solver, const char *more) {
+  job j = job_begin("balanced");
+  job_copy(&j, "input/greco/greco.geo");
+  job_write(&j, "balanced.inp",
+            "*PARAMETER\nN = 16\n*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n130.D3, 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n*AMPLITUDE, NAME=A\n"
+            "\"sin(2*t)\"\n*STEP\n*QUASISTATIC\n%g, 1.0\n*BOUNDARY\n"
+            "SYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\nLEFT, P, 150., A\n"
+            "*SOLVER, %s\n%s*PRINT, CONTACT, ENERGY\n*END STEP\n",
+            dt, solver, more);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "%s: exit %d: %s", solver, code, j.errors);
+  return j;
+}
+
+static double figure(const job *j, const char *name) {
+  char wanted[80], *json = job_file(j, "json");
+  double value = NAN;
+  snprintf(wanted, sizeof wanted, "\"%s\": ", name);
+  char *at = strstr(json, wanted);
+  ck_assert_msg(at != NULL, "%s is not told", name);
+  sscanf(at + strlen(wanted), "%lf", &value);
+  free(json);
+  return value;
+}
+
+static double iterations(const job *j) {
+  char *json = job_file(j, "json");
+  double sum = 0;
+  for (char *at = json; (at = strstr(at, "\"iterations\": ")) != NULL; ++at)
+    sum += atof(at + strlen("\"iterations\": "));
+  free(json);
+  return sum;
+}
+
+/* |u_a - u_b| over |u_b| at increment k, %: the loads are the same. */
+static double difference(const job *a, const job *b, int k) {
+  dat x = job_table(a, "CONTACT", k), y = job_table(b, "CONTACT", k);
+  dat e = job_table(b, "ENERGY", k);
+  double sum = 0.0;
+  for (int i = 0; i < x.n_row; ++i) {
+    sum += (dat_at(&x, i, "gap") - dat_at(&y, i, "gap")) *
+           (dat_at(&x, i, "f_n") - dat_at(&y, i, "f_n"));
+    sum += (dat_at(&x, i, "u_t") - dat_at(&y, i, "u_t")) *
+           (dat_at(&x, i, "f_t") - dat_at(&y, i, "f_t"));
+  }
+  double energy = dat_at(&e, 0, "strain_energy");
+  dat_free(&x);
+  dat_free(&y);
+  dat_free(&e);
+  return 100.0 * sqrt(fabs(sum) / (2.0 * energy));
+}
+
+static const char *const methods[] = {"METHOD=SOR", "METHOD=AITKEN",
+                                      "METHOD=AUTO"};
+
+/* The error left is at most the share of that of the mesh. Methods that relax
+ * make less than half the iterations, AUTO (Newton) not more. */
+START_TEST(error_left_is_the_share_of_the_mesh) {
+  for (int i = 0; i < 3; ++i) {
+    char words[80];
+    job exact = run_block(0.1, methods[i], "");
+    snprintf(words, sizeof words, "%s, TOL=BALANCED", methods[i]);
+    job j = run_block(0.1, words, "");
+    double others = figure(&j, "mesh_error_percent");
+    for (int k = 0; k < 10; ++k)
+      ck_assert_msg(difference(&j, &exact, k) < 0.07 * others,
+                    "%s %d: %g of %g %%", words, k, difference(&j, &exact, k),
+                    others);
+    double full = iterations(&exact), made = iterations(&j);
+    ck_assert_msg(made <= (i < 2 ? 0.5 : 1.0) * full, "%s: %g of %g", words,
+                  made, full);
+    job_end(&j);
+    job_end(&exact);
+  }
+}
+END_TEST
+
+/* What is said to be saved is what the other run makes more, to a half. */
+START_TEST(saved_iterations_are_those_of_the_default) {
+  job exact = run_block(0.1, methods[0], "");
+  job j = run_block(0.1, "METHOD=SOR, TOL=BALANCED", "");
+  double told = figure(&j, "balanced_saved_iterations");
+  double is = iterations(&exact) - iterations(&j);
+  ck_assert_msg(told > 0.5 * is && told < 1.5 * is, "told %g, is %g", told, is);
+  char *lst = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(strstr(lst, "stopping balanced with the other errors"));
+  ck_assert_ptr_nonnull(strstr(lst, "  balanced: "));
+  free(lst);
+  job_end(&j);
+  job_end(&exact);
+}
+END_TEST
+
+/* A smaller share: a smaller error; the error of increments counts too. */
+START_TEST(share_is_that_of_the_deck) {
+  job few = run_block(0.25, "METHOD=SOR, TOL=BALANCED, SHARE=0.5", "");
+  job many = run_block(0.25, "METHOD=SOR, TOL=BALANCED, SHARE=0.005",
+                       "*ACCURACY, TIME=YES\n");
+  double others = figure(&few, "mesh_error_percent");
+  ck_assert_double_le(figure(&few, "solver_error_worst_percent"), 0.5 * others);
+  ck_assert_double_le(
+      figure(&many, "solver_error_percent"),
+      0.005 * (others + 2 * figure(&many, "time_error_worst_percent")));
+  ck_assert_double_lt(iterations(&few), iterations(&many));
+  job_end(&few);
+  job_end(&many);
+}
+END_TEST
+
+/* A patch that the elements have exactly has no error to balance with. */
+START_TEST(without_other_errors_the_default_counts) {
+  job j = job_begin("patch");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "patch.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n"
+            "*SOLVER, METHOD=SOR, TOL=BALANCED\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  ck_assert_double_le(figure(&j, "residual_worst"), 1e-10);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("balanced", error_left_is_the_share_of_the_mesh,
+          saved_iterations_are_those_of_the_default, share_is_that_of_the_deck,
+          without_other_errors_the_default_counts)
