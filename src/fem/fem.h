@@ -38,9 +38,9 @@ typedef struct domain {
                                  components)                                 */
   const eigenstrain *eigen;   /* NULL: none. Counts in stresses and energy;
                                  condense_load has it from F (eigen_force)   */
-  cluster_set *cluster;       /* elements whose change of volume is averaged, as
-                                 strains and stresses here always are; NULL: none.
-                                 Its means are overwritten                         */
+  cluster_set *cluster; /* elements whose change of volume is averaged, as
+                           strains and stresses here always are; NULL: none.
+                           Its means are overwritten                         */
 } domain;
 
 /* B of one element, nothing averaged: e = B u_e, B[ns*(dim+1)*dim] column

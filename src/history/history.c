@@ -329,7 +329,9 @@ static status run_step(run *r) {
         (progress){.step_id = run_step_id(r), .attempt = 1, .dt = r->step->dt};
     TRY(start_step(r));
   }
-  if (r->step->tolerance > 0.0 && r->visco != NULL)
+  if (march_applies(r))
+    TRY(march_run(r));
+  else if (r->step->tolerance > 0.0 && r->visco != NULL)
     TRY(adaptive_run(r));
   else
     TRY(run_fixed(r));

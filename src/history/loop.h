@@ -31,6 +31,10 @@ status start_read(run *r);
 /* What comes before the increments of a step. */
 status start_step(run *r);
 
+/* march.c: increments of a step with TIME=BALANCED; 1: it applies. */
+int march_applies(const run *r);
+status march_run(run *r);
+
 /* adaptive.c: increments of a step with a tolerance. */
 status adaptive_run(run *r);
 

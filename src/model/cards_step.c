@@ -465,7 +465,10 @@ status apply_accuracy(reading *r) {
   s->accuracy_at = r->card->at;
   s->no_solver_error = !p->solver;
   s->mesh_error = p->mesh || p->target > 0.0;
-  s->time_error = p->time || p->target > 0.0;
+  s->time_error = p->time > 0 || p->target > 0.0;
+  s->time_balanced = p->time == TIME_BALANCED;
+  s->time_share = p->time_share;
+  s->mesh_error |= s->time_balanced;
   s->theory = p->theory;
   if (p->target > 0.0)
     r->m->target =

@@ -149,9 +149,10 @@ typedef struct solver_param {
   double tol, share;
   int max_iter, limit_max_iter, check;
 } solver_param;
+enum { TIME_NO, TIME_YES, TIME_BALANCED }; /* TIME= of *ACCURACY              */
 typedef struct accuracy_param {
   int mesh, time, max_passes;
-  double target, max_cpu, max_memory;
+  double target, max_cpu, max_memory, time_share;
   int solver, theory;
 } accuracy_param;
 typedef struct print_param {

@@ -201,8 +201,11 @@ static const option solver_options[] = {
 static const option accuracy_options[] = {
   OPTION_FLAG(accuracy_param, mesh, "MESH", "NO",
               "estimate of the error of the mesh, from recovered stresses"),
-  OPTION_FLAG(accuracy_param, time, "TIME", "NO",
-              "estimate of the error of the increments, from half of them"),
+  OPTION_CHOICE(accuracy_param, time, "TIME", "NO|YES|BALANCED", "NO",
+                "estimate of the error of the increments, from half of them; "
+                "BALANCED: increments whose error is a share of the mesh's"),
+  OPTION_REAL(accuracy_param, time_share, "TIME_SHARE", 0.001, 1, "0.1", "-",
+              "of the error of the mesh, with TIME=BALANCED"),
   OPTION_FLAG(accuracy_param, solver, "SOLVER", "YES",
               "bound of the error of the contact solver in the energy norm"),
   OPTION_FLAG(accuracy_param, theory, "THEORY", "NO",

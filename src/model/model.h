@@ -228,6 +228,8 @@ typedef struct step {
   place accuracy_at, output_at, restart_at; /* of the cards *ACCURACY, ...   */
   int no_solver_error; /* 1: the error of the solver is not asked for        */
   int mesh_error, time_error; /* 1: asked for                                 */
+  int time_balanced;          /* 1: TIME=BALANCED                             */
+  double time_share;          /* -, of the error of the mesh                  */
   int theory; /* 1: the theorems of CPR98 are checked                         */
   int balanced; /* TOL=BALANCED                                              */
   double share; /* -, of the errors it is balanced with                      */

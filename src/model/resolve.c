@@ -405,6 +405,8 @@ static status carry_choices(const step *old, step *s) {
     s->no_solver_error = old->no_solver_error;
     s->mesh_error = old->mesh_error;
     s->time_error = old->time_error;
+    s->time_balanced = old->time_balanced;
+    s->time_share = old->time_share;
     s->theory = old->theory;
   }
   if (!s->has_output) {

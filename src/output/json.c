@@ -180,6 +180,12 @@ static void write_budget(json *w, const job *j) {
 
 static void write_saved(json *w, const job *j) {
   balance_sum sum = job_balance(j);
+  int made;
+  double of_deck = job_increments_of_deck(j, &made);
+  if (of_deck > 0) {
+    json_count(w, "balanced_increments", made);
+    json_count(w, "balanced_increments_of_deck", of_deck);
+  }
   if (!sum.asked) return;
   json_real(w, "balanced_iterations", sum.iterations);
   json_real(w, "balanced_saved_iterations", sum.saved_iterations);

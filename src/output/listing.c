@@ -588,8 +588,27 @@ balance_sum job_balance(const job *j) {
   return sum;
 }
 
+double job_increments_of_deck(const job *j, int *made) {
+  double sum = 0;
+  *made = 0;
+  for (int i = 0; i < j->m->n_step; ++i) {
+    const step *s = &j->m->steps[i];
+    if (s->time_balanced) sum += ceil(s->total / s->dt - 1e-9);
+  }
+  for (int i = 0; i < j->run->n_increment; ++i)
+    *made += j->m->steps[j->run->increments[i].step_no - 1].time_balanced;
+  return sum;
+}
+
 static void print_saved(const job *j, FILE *f) {
   balance_sum sum = job_balance(j);
+  int made;
+  double of_deck = job_increments_of_deck(j, &made);
+  if (of_deck > 0)
+    fprintf(f,
+            "  increments balanced with the error of the mesh: %d in the "
+            "place of %.0f of the deck\n",
+            made, of_deck);
   if (!sum.asked) return;
   fprintf(f,
           "  stopping balanced with the other errors saved about %.0f of "

@@ -100,6 +100,9 @@ typedef struct balance_sum {
   double iterations, saved_iterations, saved_cpu; /* made; about; s           */
 } balance_sum;
 balance_sum job_balance(const job *j);
+/* Increments that dt of the deck would make in the steps with TIME=BALANCED; 0:
+ * there is none. Those made in them. */
+double job_increments_of_deck(const job *j, int *made);
 /* Sum of the estimates over the true error, last increment; NAN: unknown. */
 double job_effectivity(const job *j);
 

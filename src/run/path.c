@@ -32,7 +32,9 @@ typedef struct waypoint { /* what an increment starts from, of one path       */
 } waypoint;
 
 struct finer_path {
-  int lost;  /* 1: it found no equilibrium                                   */
+  int lost; /* 1: it found no equilibrium                                   */
+  int measured; /* 1: "error" is that of the attempt                          */
+  double error; /* sqrt(J)                                                    */
   int flows; /* 1: made in a *VISCO step                                     */
   waypoint at, middle, end; /* accepted; of the attempt now made */
   double *d, *Ad; /* [m] difference of the paths, m; N               */
@@ -121,7 +123,7 @@ done:
 }
 
 /* Only slip in increments and inelastic strains remember their path. */
-static int has_path(const run *r) {
+int path_exists(const run *r) {
   int kind = r->step->kind, slips = r->n > 0 && r->ut0 != NULL;
   if (kind == STEP_VISCO) return slips || r->visco != NULL;
   return slips && kind == STEP_QUASISTATIC;
@@ -130,6 +132,7 @@ static int has_path(const run *r) {
 /* Both halves of the increment that ends at t; lost where there is none. */
 static status try_halves(run *r, finer_path *p, double t) {
   status st = OK;
+  p->measured = 0;
   if (p->lost) return OK;
   TRY(half(r, &p->at, 0.5 * (p->at.t + t), &p->middle));
   p->lost = r->report.outcome <= 0;
@@ -146,7 +149,7 @@ done:
 status path_try(run *r, double t) {
   status st = OK;
   double cpu = timer_cpu();
-  if (!r->step->time_error || !has_path(r)) return OK;
+  if (!r->step->time_error || !path_exists(r)) return OK;
   timer_enter_whole(STAGE_TIME_ERROR);
   r->beside = 1;
   if (r->path != NULL && (r->path->at.t != r->old.t ||
@@ -215,6 +218,22 @@ static const char *why_no_path(const run *r) {
                                      : "no friction, no path";
 }
 
+double path_total(const run *r) { return r->path_before + r->path_error; }
+
+double path_measure(run *r) {
+  finer_path *p = r->path;
+  if (p == NULL || p->lost) return HUGE_VAL;
+  if (!p->measured)
+    p->error = extrapolation(r) * (p->u != NULL ? field_difference(r, p)
+                                                : condensed_difference(r, p));
+  p->measured = 1;
+  return r->path_before + p->error;
+}
+
+void path_keep_on(run *r) {
+  if (r->path != NULL) r->path->lost = 0;
+}
+
 void path_compare(run *r) {
   error_share *e = &r->time_error;
   finer_path *p = r->path;
@@ -222,7 +241,7 @@ void path_compare(run *r) {
   e->relative = 0.0;
   e->why = NULL;
   if (!e->asked) return;
-  if (!has_path(r)) {
+  if (!path_exists(r)) {
     e->why = why_no_path(r);
     return;
   }
@@ -236,10 +255,8 @@ void path_compare(run *r) {
     return;
   }
   double energy = r->now.energy.strain;
-  r->path_error =
-      extrapolation(r) *
-      (p->u != NULL ? field_difference(r, p) : condensed_difference(r, p));
-  double norm = r->path_before + r->path_error;
+  double norm = path_measure(r);
+  r->path_error = p->error;
   if (norm > 0.0) e->relative = norm / sqrt(norm * norm + 2.0 * energy);
   if (e->relative <= STRAIGHT * r->tol)
     e->why = "the path is straight: half the increments give the same";

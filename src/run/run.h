@@ -68,6 +68,7 @@ typedef struct progress {
   int step_id, level, attempt, increment_no;
   long i, part; /* increment of the step's grid, piece of 2^level of it       */
   double dt;    /* of an adaptive step, to be tried, s                        */
+  double error; /* of the increments before the step, sqrt(J)                 */
 } progress;
 
 typedef struct run {
@@ -276,6 +277,13 @@ void beside_free(beside *b); /* accepts NULL                                 */
  */
 status path_try(run *r, double t);
 void path_compare(run *r);
+int path_exists(const run *r); /* 1: the step has an error of that kind       */
+/* Error of the increments so far, sqrt(J); that with the attempt in r->now,
+ * whose energy is known. HUGE_VAL: the path is lost. */
+double path_total(const run *r);
+double path_measure(run *r);
+/* The attempt is not taken; a path that was lost in it goes on. */
+void path_keep_on(run *r);
 /* The next increment starts from what is in r->old. */
 void path_restart(run *r);
 void path_free(finer_path *p); /* accepts NULL                               */

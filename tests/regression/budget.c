@@ -77,6 +77,68 @@ START_TEST(error_of_the_steps_is_near_the_true_one) {
 }
 END_TEST
 
+/* Last figure of that name in JOB.json, %. */
+static double figure(const job *j, const char *name) {
+  char wanted[80], *json = job_file(j, "json"), *last = NULL;
+  double value = NAN;
+  snprintf(wanted, sizeof wanted, "\"%s\": ", name);
+  for (char *at = json; (at = strstr(at, wanted)) != NULL;)
+    last = at += strlen(wanted);
+  ck_assert_ptr_nonnull(last);
+  sscanf(last, "%lf", &value);
+  free(json);
+  return value;
+}
+
+/* Balanced with the error of the mesh: increments below what it asks for, fewer
+ * of them for a larger share, and the error told is the true one. */
+START_TEST(increments_are_balanced_with_the_mesh) {
+  job fine = roll(160, "");
+  double made[2];
+  const char *const cards[] = {"*ACCURACY, TIME=BALANCED, TIME_SHARE=0.05\n",
+                               "*ACCURACY, TIME=BALANCED, TIME_SHARE=0.005\n"};
+  for (int k = 0; k < 2; ++k) {
+    job j = roll(20, cards[k]);
+    double told = last_of(&j, TIME_COLUMN), is = difference(&j, &fine);
+    double others = last_of(&j, MESH_COLUMN);
+    ck_assert_msg(is < (k == 0 ? 0.05 : 0.005) * others, "%d: %g of %g", k, is,
+                  others);
+    ck_assert_msg(told > 0.4 * is && told < 2.5 * is, "%d: told %g, is %g", k,
+                  told, is);
+    made[k] = figure(&j, "balanced_increments");
+    ck_assert_double_eq(figure(&j, "balanced_increments_of_deck"), 20);
+    job_end(&j);
+  }
+  ck_assert_msg(made[0] < made[1] && made[0] < 20, "%g %g", made[0], made[1]);
+  job_end(&fine);
+}
+END_TEST
+
+/* A law that flows, from a first increment that is much too long: the error at
+ * the end is below its share of a mesh error that is known from TIME=YES. */
+START_TEST(increments_of_flow_are_balanced) {
+  job j = job_begin("held");
+  job_copy(&j, "input/creep_block/creep_block.geo");
+  job_write(&j, "held.inp",
+            "*PARAMETER\nN = 8\n*MESH, FILE=creep_block.geo\n*MATERIAL, "
+            "NAME=M\n*ELASTIC\n130.D3, 0.2\n*INELASTIC, LAW=MAXWELL, "
+            "TYPE=DEVIATORIC\n1.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n*CONTACT, NAME=C, "
+            "GROUP=CONTACT, OBSTACLE=O\n*FRICTION, CONTACT=C, LAW=COULOMB\n"
+            "1.0\n*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1., 4., 1.E-4\n"
+            "*BOUNDARY\nSYMMETRY, 1\nTOP, 2, 2, -0.02\n"
+            "*ACCURACY, TIME=BALANCED\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  double told = last_of(&j, TIME_COLUMN), others = last_of(&j, MESH_COLUMN);
+  ck_assert_msg(told > 0 && told < 0.11 * others, "%g of %g", told, others);
+  ck_assert_double_gt(figure(&j, "balanced_increments"), 4);
+  char *sta = job_file(&j, "sta");
+  ck_assert_ptr_nonnull(strstr(sta, "error of the steps above its share"));
+  free(sta);
+  job_end(&j);
+}
+END_TEST
+
 /* The path of a proportional load is straight: no error, any increments. */
 START_TEST(proportional_load_has_no_error_of_steps) {
   job j = job_begin("greco");
@@ -120,19 +182,6 @@ static job flow(const char *law, const char *reference, const char *load,
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;
-}
-
-/* Last figure of that name in JOB.json, %. */
-static double figure(const job *j, const char *name) {
-  char wanted[80], *json = job_file(j, "json"), *last = NULL;
-  double value = NAN;
-  snprintf(wanted, sizeof wanted, "\"%s\": ", name);
-  for (char *at = json; (at = strstr(at, wanted)) != NULL;)
-    last = at += strlen(wanted);
-  ck_assert_ptr_nonnull(last);
-  sscanf(last, "%lf", &value);
-  free(json);
-  return value;
 }
 
 /* Told over true error of the steps; half the steps, and it falls. */
@@ -241,4 +290,6 @@ END_TEST
 UNIT_MAIN("budget", error_of_the_steps_is_near_the_true_one,
           proportional_load_has_no_error_of_steps,
           error_of_the_steps_is_told_where_a_law_flows,
+          increments_are_balanced_with_the_mesh,
+          increments_of_flow_are_balanced,
           error_of_the_mesh_is_near_the_true_one, budget_stands_in_every_result)
