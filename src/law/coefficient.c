@@ -341,6 +341,7 @@ unsigned law_varies(const law_card *law) {
   if (law->formula != NULL && expression_variables(law->formula) & 8u)
     bits |= LAW_VARIES_TIME;
   if (law->n_set > 1 || law->shift.kind != SHIFT_NONE ||
+      (law->ops->is_warm != NULL && law->ops->is_warm(law)) ||
       (law->formula != NULL && expression_variables(law->formula) & 4u))
     bits |= LAW_VARIES_TEMPERATURE;
   return bits;

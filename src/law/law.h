@@ -102,6 +102,9 @@ typedef struct law_ops {
   int linear;  /* rates linear in (sigma, e^i, alpha): one Jacobian for all
                   points with the same values                                 */
   int uses_ei; /* e^i itself enters its rate                                  */
+  /* 1: the temperature itself enters the rates of this card; NULL: none do.
+   * T_ZERO= of the card is then known to the law. */
+  int (*is_warm)(const law_card *law);
   int needs_formula; /* one data line with a formula of law_formula_names     */
   const char *example; /* data lines for moduli of 1e5, stresses of 100, times
                           of 1: shown in the help, used by the tests          */
@@ -126,8 +129,8 @@ typedef struct law_ops {
 
 /* clang-format off */
 #define LAW_LIST(X) \
-  X(maxwell) X(zener) X(kelvin) X(burgers) X(prony) X(norton) X(perzyna) \
-  X(bingham) X(chaboche) X(user)
+  X(maxwell) X(zener) X(kelvin) X(burgers) X(prony) X(norton) \
+  X(hyperbolic) X(perzyna) X(bingham) X(chaboche) X(user)
 /* clang-format on */
 /* Variables of a formula: equivalent stress, creep strain, temperature, time */
 extern const char *const law_formula_names[4];
@@ -182,6 +185,9 @@ void tensor_product(int ns, const double *A, const double *x, double *y);
 /* Strain 3/2 s/q of a deviator s with q = tensor_mises > 0: the direction of
  * flow, its shears doubled. */
 void tensor_direction(int ns, const double *s, double q, double *n);
+/* Equivalent stress q of a stress and the direction of its flow, zero if q is:
+ * returns q. */
+double tensor_flow(int ns, const double *sigma, double *n);
 /* J += a (3/2 P - n n') + b n n', P: deviator to strain (shears doubled). */
 void tensor_add_flow(int ns, const double *n, double a, double b, double *J,
                      int ld);

@@ -97,23 +97,19 @@ static int n_alpha(const law_card *law, int ns) {
 
 static void rate(const law_point *p, double *ei_rate, double *alpha_rate) {
   const int ns = p->elastic->ns;
-  double s[6], n[6];
-  tensor_deviator(ns, p->sigma, s);
-  const double q = tensor_mises(ns, s);
+  double n[6];
+  const double q = tensor_flow(ns, p->sigma, n);
   if (!(q > 0)) return;
   const creep c = creep_of(p, q);
-  tensor_direction(ns, s, q, n);
   for (int i = 0; i < ns; ++i) ei_rate[i] = c.rate * n[i];
   if (hardening_of(p) == STRAIN) alpha_rate[0] = c.w_rate;
 }
 
 static void jacobian(const law_point *p, law_jacobian *j) {
   const int ns = p->elastic->ns;
-  double s[6], n[6] = {0};
-  tensor_deviator(ns, p->sigma, s);
-  const double q = tensor_mises(ns, s);
+  double n[6];
+  const double q = tensor_flow(ns, p->sigma, n);
   const creep c = creep_of(p, q), one = creep_of(p, 1);
-  if (q > 0) tensor_direction(ns, s, q, n);
   tensor_add_flow(ns, n, q > 0 ? c.rate / q : slope(0, 0, c.n, one.rate),
                   slope(c.rate, q, c.n, one.rate), j->ei_sigma, ns);
   if (hardening_of(p) != STRAIN || !(q > 0)) return;
@@ -129,11 +125,9 @@ static void jacobian(const law_point *p, law_jacobian *j) {
  * 3 G rate/q; with STRAIN the first is coupled with w by a 2x2 matrix.
  */
 static double fastest_rate(const law_point *p) {
-  const int ns = p->elastic->ns;
   const double shear = p->elastic->shear;
-  double s[6];
-  tensor_deviator(ns, p->sigma, s);
-  const double q = tensor_mises(ns, s);
+  double n[6];
+  const double q = tensor_flow(p->elastic->ns, p->sigma, n);
   const creep c = creep_of(p, q), one = creep_of(p, 1);
   const double radial = 3 * shear * slope(c.rate, q, c.n, one.rate);
   const double turning =
@@ -150,9 +144,8 @@ static double fastest_rate(const law_point *p) {
 }
 
 static double dissipation(const law_point *p) {
-  double s[6];
-  tensor_deviator(p->elastic->ns, p->sigma, s);
-  const double q = tensor_mises(p->elastic->ns, s);
+  double n[6];
+  const double q = tensor_flow(p->elastic->ns, p->sigma, n);
   return q > 0 ? q * creep_of(p, q).rate : 0;
 }
 

@@ -39,6 +39,15 @@ void tensor_direction(int ns, const double *s, double q, double *n) {
   for (int i = 0; i < ns; ++i) n[i] = (i < 3 ? 1.5 : 3.0) * (s[i] / q);
 }
 
+double tensor_flow(int ns, const double *sigma, double *n) {
+  double s[6];
+  tensor_deviator(ns, sigma, s);
+  const double q = tensor_mises(ns, s);
+  for (int i = 0; i < ns; ++i) n[i] = 0;
+  if (q > 0) tensor_direction(ns, s, q, n);
+  return q;
+}
+
 void tensor_add_flow(int ns, const double *n, double a, double b, double *J,
                      int ld) {
   for (int j = 0; j < ns; ++j) {

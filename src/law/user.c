@@ -49,12 +49,7 @@ static double slope_p(const law_point *p, double q) {
 
 /* Equivalent stress and direction of flow. */
 static double direction(const law_point *p, double *n) {
-  const int ns = p->elastic->ns;
-  double s[6];
-  tensor_deviator(ns, p->sigma, s);
-  const double q = tensor_mises(ns, s);
-  if (q > 0) tensor_direction(ns, s, q, n);
-  return q;
+  return tensor_flow(p->elastic->ns, p->sigma, n);
 }
 
 static void rate(const law_point *p, double *ei_rate, double *alpha_rate) {

@@ -103,7 +103,8 @@ status elastic_table_read(const card *c, elastic_type type,
   if (!r.wrong && r.n > 0) {
     char found[32];
     snprintf(found, sizeof found, "%d found", r.n);
-    count_error(&r, &c->at, found);
+    count_error(&r, table->n == 0 ? &c->at : &c->records[c->n_record - 1].at,
+                found);
   }
   if (r.wrong)
     elastic_table_free(table);

@@ -343,7 +343,8 @@ plugin names_inelastic(const reading *r) {
 }
 
 /* What the shift needs is there, and nothing that another one has. */
-static void check_shift(const reading *r, const law_shift *s) {
+static void check_shift(const reading *r, const law_ops *ops,
+                        const law_shift *s) {
   static const struct {
     const char *name;
     unsigned needed, known; /* bits 1 << shift_kind                           */
@@ -356,11 +357,12 @@ static void check_shift(const reading *r, const law_shift *s) {
   choice_word(SHIFT_WORDS, s->kind, word, sizeof word);
   for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
     const int given = card_parameter(r->card, rows[i].name) != NULL;
+    const int own = ops->is_warm != NULL && strcmp(rows[i].name, "T_ZERO") == 0;
     if (!given && rows[i].needed >> s->kind & 1u)
       message_add(r->m->log, P2005, &r->card->at,
                   "*%s, SHIFT=%s needs the parameter %s=", r->card->name, word,
                   rows[i].name);
-    if (given && !(rows[i].known >> s->kind & 1u))
+    if (given && !own && !(rows[i].known >> s->kind & 1u))
       message_add(r->m->log, P2037, value_place(r, rows[i].name),
                   "*%s: %s= with SHIFT=%s", r->card->name, rows[i].name, word);
   }
@@ -385,7 +387,7 @@ static status read_law(reading *r, const law_ops *ops, const void *words,
   mat->law.ops = ops;
   mat->law.at = r->card->at;
   mat->law.shift = *shift;
-  check_shift(r, shift);
+  check_shift(r, ops, shift);
   if (ops->param_size > 0) {
     param = memory_new(1, ops->param_size);
     if (param == NULL) FAIL(ERR_MEMORY, "memory exhausted: words of a law");
@@ -410,9 +412,11 @@ status apply_creep(reading *r) {
   _Alignas(16) char words[PARAM_SIZE] = {0};
   char why[64];
   const creep_param *p = r->param;
+  if (p->law == CREEP_HYPERBOLIC)
+    return read_law(r, &hyperbolic_law, NULL, &p->shift);
   const option *row = option_find(norton_law.options, "HARDENING");
   option_defaults(norton_law.options, words);
-  (void)option_read(row, p->law == 0 ? "STRAIN" : "TIME", words, why,
+  (void)option_read(row, p->law == CREEP_STRAIN ? "STRAIN" : "TIME", words, why,
                     sizeof why);
   return read_law(r, &norton_law, words, &p->shift);
 }
@@ -453,9 +457,42 @@ static void stiffen(const model *m, material *mat) {
   (void)elastic_at(&mat->elastic, 0.0, mat->C, text, (int)sizeof text);
 }
 
+status apply_trs(reading *r) {
+  const record *line = &r->card->records[0];
+  material *mat = &r->m->materials[r->material_id];
+  law_shift s = {.kind = SHIFT_WLF};
+  if (mat->clock.kind != SHIFT_NONE)
+    message_add(r->m->log, P2011, &r->card->at, "material %s has *TRS twice",
+                mat->name);
+  if (record_fields(r, line, 3, 3, "T_REF, C1, C2") != 0 ||
+      deck_real(&line->fields[0], r->m->log, &s.reference) != 0 ||
+      field_real(r, &line->fields[1], 0.0, DBL_MAX, "C1", &s.c1) != 0 ||
+      field_real(r, &line->fields[2], DBL_MIN, DBL_MAX, "C2", &s.c2) != 0)
+    return OK;
+  mat->clock = s;
+  mat->clock_at = r->card->at;
+  return OK;
+}
+
+/* The clock of *TRS into the law it belongs to. */
+static void set_clock(const model *m, material *mat) {
+  if (mat->clock.kind == SHIFT_NONE) return;
+  if (mat->law.ops == NULL)
+    message_add(m->log, P2014, &mat->clock_at,
+                "*TRS: material %s has no *VISCOELASTIC or *INELASTIC",
+                mat->name);
+  else if (mat->law.shift.kind != SHIFT_NONE)
+    message_add(m->log, P2011, &mat->clock_at,
+                "material %s has *TRS and SHIFT=, line %d", mat->name,
+                mat->law.at.line_no);
+  else
+    mat->law.shift = mat->clock;
+}
+
 status material_resolve_law(const model *m, material *mat) {
   status st = OK;
   const law_card *law = &mat->law;
+  set_clock(m, mat);
   if (law->ops == NULL || law->n_set == 0 || mat->elastic.n == 0) goto done;
   const int errors = message_count(m->log, ERROR);
   TRY(law_card_check(law, mat->elastic.type, m->log));

@@ -83,9 +83,14 @@ typedef struct inelastic_param {
   law_shift shift;
 } inelastic_param;
 typedef struct creep_param {
-  int law;
+  int law; /* CREEP_...                                                       */
   law_shift shift;
 } creep_param;
+enum { CREEP_STRAIN, CREEP_TIME, CREEP_NORTON, CREEP_HYPERBOLIC };
+#define CREEP_WORDS "STRAIN|TIME|NORTON|HYPERB"
+typedef struct trs_param {
+  int definition;
+} trs_param;
 typedef struct viscoelastic_param {
   int time;
   law_shift shift;
@@ -184,6 +189,7 @@ status apply_inelastic(reading *r);
 plugin names_inelastic(const reading *r);
 status apply_creep(reading *r);
 status apply_viscoelastic(reading *r);
+status apply_trs(reading *r);
 /* Once all cards are read: the law of a material beside its elasticity; only
  * ERR_MEMORY. */
 status material_resolve_law(const model *m, material *mat);

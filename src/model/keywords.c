@@ -63,14 +63,19 @@ static const option inelastic_options[] = {
   SHIFT_ROWS(inelastic_param),
   OPTION_END};
 static const option creep_options[] = {
-  OPTION_CHOICE(creep_param, law, "LAW", "STRAIN|TIME|NORTON", "STRAIN",
-                "strain hardening, time hardening, or m = 0"),
+  OPTION_CHOICE(creep_param, law, "LAW", CREEP_WORDS, "STRAIN",
+                "strain hardening, time hardening, m = 0, hyperbolic sine"),
   SHIFT_ROWS(creep_param),
   OPTION_END};
 static const option viscoelastic_options[] = {
   OPTION_CHOICE(viscoelastic_param, time, "TIME", "PRONY", NULL,
                 "terms of a Prony series"),
   SHIFT_ROWS(viscoelastic_param),
+  OPTION_END};
+static const option trs_options[] = {
+  OPTION_CHOICE(trs_param, definition, "DEFINITION", "WLF", "WLF",
+                "log10 a = -C1 (T - T_REF)/(C2 + T - T_REF); others: SHIFT= of "
+                "*INELASTIC, *VISCOELASTIC"),
   OPTION_END};
 static const option expansion_options[] = {
   OPTION_CHOICE(expansion_param, type, "TYPE", EXPANSION_WORDS, "ISO",
@@ -285,12 +290,15 @@ const keyword keyword_table[] = {
    "number, or an expression of t in quotes",
    "inelastic law of CPR98 (3.14-3.16), flows in *VISCO steps"},
   {"CREEP", IN_MATERIAL, OPTIONS(creep), NULL, apply_creep, 1, ANY,
-   "A, n [, m] [, temperature]",
-   "power law creep, the same as *INELASTIC, LAW=NORTON"},
+   "A, n [, m] [, temperature]; HYPERB A, B, n, dH, R [, temperature]",
+   "creep, the same as *INELASTIC, LAW=NORTON or LAW=HYPERBOLIC"},
   {"VISCOELASTIC", IN_MATERIAL, OPTIONS(viscoelastic), NULL,
    apply_viscoelastic, 1, ANY,
    "g_i, k_i, tau_i",
    "Prony series, the same as *INELASTIC, LAW=PRONY"},
+  {"TRS", IN_MATERIAL, OPTIONS(trs), NULL, apply_trs, 1, 1,
+   "T_REF, C1, C2",
+   "clock of the relaxation over the temperature, the same as SHIFT=WLF"},
   {"DENSITY", IN_MATERIAL, NO_OPTIONS, NULL, apply_density, 1, 1,
    "rho", "mass per volume, for GRAV"},
   {"EXPANSION", IN_MATERIAL, OPTIONS(expansion), NULL, apply_expansion, 1, ANY,

@@ -35,6 +35,8 @@ typedef struct material {
   expansion expand;
   int moduli;   /* of *ELASTIC: MODULI_..., -1: not said                      */
   law_card law; /* ops NULL: elastic; owned                                   */
+  law_shift clock; /* *TRS; kind SHIFT_NONE: not given                        */
+  place clock_at;
   int is_abaqus_prony; /* *VISCOELASTIC: long-term moduli if it is not said   */
 } material;
 enum { MODULI_LONG_TERM, MODULI_INSTANTANEOUS };

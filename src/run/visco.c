@@ -240,7 +240,7 @@ status visco_level(run *r, double dt, int *level) {
   if (v == NULL || r->step->kind != STEP_VISCO || !step_has_limit(r->step))
     return OK;
   timer_enter(STAGE_INELASTIC);
-  TRY(flow_fastest(&v->x, &v->old, &rate));
+  TRY(flow_fastest(&v->x, &v->old, dt, &rate));
   *level = step_level(r->m, r->step, r->old.t, dt, rate,
                       v->told != r->step && !flow_is_constant(&v->x));
   v->told = r->step;

@@ -146,14 +146,15 @@ done:
   return st;
 }
 
-status flow_fastest(const flow *x, const flow_state *s, double *rate) {
+status flow_fastest(const flow *x, const flow_state *s, double dt,
+                    double *rate) {
   status st = OK;
   double value[FLOW_VALUE_MAX];
   *rate = 0.0;
   for (int k = 0; k < x->n; ++k) {
     law_point p;
     double own;
-    TRY(flow_point(x, k, s, 0.0, value, &p));
+    TRY(flow_point(x, k, s, dt, value, &p));
     TRY(law_fastest_rate(&p, &own));
     *rate = fmax(*rate, own);
   }

@@ -66,8 +66,10 @@ enum { FLOW_VALUE_MAX = 512 };
  * dissipated, W. dt: step being made. */
 status flow_rates(const flow *x, const flow_state *s, double dt,
                   double *ei_rate, double *alpha_rate, double *power);
-/* The fastest rate of all points, 1/s; and energy kept by alpha and ei, J. */
-status flow_fastest(const flow *x, const flow_state *s, double *rate);
+/* The fastest rate of all points for a step dt, 1/s; and energy kept by alpha
+ * and ei, J. */
+status flow_fastest(const flow *x, const flow_state *s, double dt,
+                    double *rate);
 status flow_stored(const flow *x, const flow_state *s, double *energy);
 /* Root mean square over the volume of [ns*n] values. */
 double flow_norm(const flow *x, const double *v);
