@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "base/timer.h"
-#include "exchange/lcp_solve.h"
+#include "lcp/lcp_solve.h"
 #include "history/history.h"
 
 #include <math.h>

@@ -5,7 +5,8 @@
  * FCLIB (local)   u = W r + q,   per contact (N, T1[, T2])
  *                 0 <= u_N, 0 <= r_N, u_N r_N = 0, Coulomb's law with mu r_N
  * FCLIB (global)  M v = H r + f,  u = H' v + w
- *                 condensed here: W = H' inv(M) H,  q = H' inv(M) f + w
+ *                 condensed here: W = H' inv(M) H,  q = H' inv(M) f + w,
+ *                 or to a stiffness if M is singular (springs.c)
  * Equality constraints are eliminated: (local)  u = W r + V l + q,
  * V'r + R l + s = 0;  (global)  M v = H r + G l + f,  G'v + b = 0.
  *

@@ -259,6 +259,15 @@ static int is_symmetric(int m, const double *a) {
 
 /* With H = diag(h) the unknowns are v themselves: A = inv(H) M inv(H), which
  * may be singular. *done = 0: not possible. */
+/* The unknowns are H'v, counted from -w: gap and position of stick. */
+static void set_origin(exchange_problem *p, const double *w) {
+  for (int j = 0; j < p->m; ++j)
+    if (j % p->dim == 0)
+      p->gap[j / p->dim] = w[j];
+    else
+      p->ut0[j / p->dim * (p->dim - 1) + j % p->dim - 1] = -w[j];
+}
+
 static void take_stiffness(exchange_problem *p, const global *g, int floating,
                            int *done) {
   size_t m = (size_t)p->m;
@@ -281,11 +290,7 @@ static void take_stiffness(exchange_problem *p, const global *g, int floating,
     for (size_t i = 0; i < m; ++i) a[i + m * j] /= g->h[i] * g->h[j];
   }
   turn_signs(p);
-  for (int j = 0; j < p->m; ++j)
-    if (j % p->dim == 0)
-      p->gap[j / p->dim] = g->w[j];
-    else
-      p->ut0[j / p->dim * (p->dim - 1) + j % p->dim - 1] = -g->w[j];
+  set_origin(p, g->w);
   set_problem(p, 1, floating);
 }
 
@@ -332,6 +337,29 @@ done:
   return st;
 }
 
+/* With s G (G'v + b) = 0 added, which makes M definite where the constraints
+ * hold the bodies. */
+static status reduce_held(const hdf5_source *s, const global *g,
+                          const triplets *joined, double *all, double *vector) {
+  status st = OK;
+  int usable = 0;
+  triplets held = {0};
+  double *f = NULL, stiff = 0.0;
+  TRY(reduce_global(&g->M, joined, g->f, all, vector, &usable));
+  if (usable) goto done;
+  TRY(springs_add(&g->M, &g->G, &stiff, &held));
+  NEW(f, g->M.rows);
+  memcpy(f, g->f, (size_t)g->M.rows * sizeof *f);
+  for (long k = 0; k < g->G.n; ++k)
+    f[g->G.row[k]] -= stiff * g->G.value[k] * g->b[g->G.column[k]];
+  TRY(reduce_global(&held, joined, f, all, vector, &usable));
+  if (!usable) TRY(reduce_any(s->path, &g->M, joined, g->f, all, vector));
+done:
+  triplets_free(&held);
+  memory_free(f);
+  return st;
+}
+
 /* M v = H r + G l + f, G'v + b = 0: v is eliminated with (H, G) in the place of
  * H, which leaves constraints on r and l. */
 static status condense_constrained(const hdf5_source *s, const global *g,
@@ -340,7 +368,7 @@ static status condense_constrained(const hdf5_source *s, const global *g,
   triplets joined = {0};
   constraints c = {0};
   double *all = NULL, *vector = NULL;
-  int size = p->m + g->G.columns, singular = 0;
+  int size = p->m + g->G.columns;
   if (size > MOST_UNKNOWNS)
     FAIL(ERR_DECK,
          "%s: " GLOBAL
@@ -352,10 +380,7 @@ static status condense_constrained(const hdf5_source *s, const global *g,
   NEW(vector, size);
   memcpy(vector, g->w, (size_t)p->m * sizeof *vector);
   memcpy(vector + p->m, g->b, (size_t)g->G.columns * sizeof *vector);
-  TRY(reduce_global(s->path, &g->M, &joined, g->f, all, vector, &singular));
-  if (singular)
-    FAIL(ERR_SINGULAR, "%s: " GLOBAL "/M is singular: v cannot be eliminated",
-         s->path);
+  TRY(reduce_held(s, g, &joined, all, vector));
   TRY(part(all, vector, size, p->m, p, &c));
   TRY(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
   turn_signs(p);
@@ -368,22 +393,26 @@ done:
   return st;
 }
 
-/* A contact whose stick position is not zero needs it also without friction:
- * nothing, its tangential force is zero. */
+/* W and q, or, of a symmetric and singular M, A and f of the same size. */
 static status condense_global(const hdf5_source *s, global *g,
                               exchange_problem *p) {
   status st = OK;
-  int singular = 0, taken = 0;
+  int definite = 0, taken = 0;
+  size_t size = (size_t)p->m * (size_t)p->m;
   memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
-  TRY(reduce_global(s->path, &g->M, &g->H, g->f, p->matrix, p->load,
-                    &singular));
-  if (g->h != NULL) take_stiffness(p, g, singular, &taken);
+  TRY(reduce_global(&g->M, &g->H, g->f, p->matrix, p->load, &definite));
+  if (g->h != NULL) take_stiffness(p, g, !definite, &taken);
   if (taken) goto done;
-  if (singular)
-    FAIL(ERR_SINGULAR, "%s: " GLOBAL "/M is singular: v cannot be eliminated",
-         s->path);
+  if (!definite)
+    TRY(springs_condense(&g->M, &g->H, g->f, p->matrix, p->load, &taken));
+  if (!definite && !taken) {
+    memset(p->matrix, 0, size * sizeof *p->matrix);
+    memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
+    TRY(reduce_any(s->path, &g->M, &g->H, g->f, p->matrix, p->load));
+  }
   turn_signs(p);
-  set_problem(p, 0, 0);
+  if (taken) set_origin(p, g->w);
+  set_problem(p, taken, taken);
 done:
   return st;
 }

@@ -54,10 +54,24 @@ void constraints_free(constraints *c); /* accepts all-zero                    */
 
 /*
  * W[m*m] = H' inv(M) H (symmetric) and q[m] = H' inv(M) f + w, both given
- * zeroed and with w; M symmetric or one triangle of it. "path" for messages.
- * *singular: M is singular, nothing is done.
+ * zeroed and with w; M symmetric or one triangle of it. *usable = 0: M is not
+ * symmetric and positive definite, nothing is done.
  */
-status reduce_global(const char *path, const triplets *M, const triplets *H,
-                     const double *f, double *W, double *q, int *singular);
+status reduce_global(const triplets *M, const triplets *H, const double *f,
+                     double *W, double *q, int *usable);
+/* The same for any M of moderate size. "path" for messages. ERR_SINGULAR: M
+ * cannot be inverted, or is too large. */
+status reduce_any(const char *path, const triplets *M, const triplets *H,
+                  const double *f, double *W, double *q);
+
+/* ---- springs.c -------------------------------------------------------------
+ */
+
+/* M + s H H' into *held; s >= 0 from the diagonals. */
+status springs_add(const triplets *M, const triplets *H, double *s,
+                   triplets *held);
+/* A[m*m], load[m] of a singular M; *usable = 0: not possible. */
+status springs_condense(const triplets *M, const triplets *H, const double *f,
+                        double *A, double *load, int *usable);
 
 #endif

@@ -4,7 +4,7 @@
  *   W = H' inv(M) H,   q = H' inv(M) f + w.
  *
  * M is scaled to a unit diagonal and factored by CHOLMOD; what is not positive
- * definite or not symmetric goes to a dense LU factor, if it is small enough.
+ * definite or not symmetric can go to a dense LU factor, if it is small enough.
  */
 #include "base/memory.h"
 #include "exchange/parts.h"
@@ -17,6 +17,7 @@
 enum { BLOCK = 32, MOST_DENSE = 6000 };
 static const double ASYMMETRY = 1e-10; /* -, of the largest entry             */
 static const double RCOND = 1e-14;     /* -, below: singular                  */
+static const double DEFINITE = 1e-12;  /* -, below: not positive definite     */
 
 /* 1: only one triangle is stored (and there is something beside the
  * diagonal). */
@@ -116,7 +117,8 @@ static status factorise(reduction *s, const triplets *M, int *usable) {
   if (s->L == NULL) TRY(no_memory());
   cholmod_factorize(s->M, s->L, &s->cm);
   if (s->cm.status < 0) TRY(no_memory());
-  *usable = s->cm.status == CHOLMOD_OK && cholmod_rcond(s->L, &s->cm) > RCOND;
+  *usable =
+      s->cm.status == CHOLMOD_OK && cholmod_rcond(s->L, &s->cm) > DEFINITE;
 done:
   return st;
 }
@@ -252,35 +254,45 @@ done:
   return st;
 }
 
-status reduce_global(const char *path, const triplets *M, const triplets *H,
-                     const double *f, double *W, double *q, int *singular) {
+status reduce_global(const triplets *M, const triplets *H, const double *f,
+                     double *W, double *q, int *usable) {
   status st = OK;
   reduction s = {.n = M->rows};
   columns c = {0};
-  int usable = 0;
-  *singular = 0;
+  *usable = 1;
   cholmod_start(&s.cm);
   s.cm.print = 0;
   s.cm.final_ll = 1; /* LL' finds what is not positive definite       */
   s.cm.quick_return_if_not_posdef = 1;
-  TRY(columns_new(H, f, &c));
   if (M->rows == 0) goto done;
-  TRY(factorise(&s, M, &usable));
-  if (usable) {
-    TRY(reduce_sparse(&s, &c, W, q));
-    goto done;
-  }
-  if (M->rows > MOST_DENSE)
-    FAIL(ERR_SINGULAR,
-         "%s: /fclib_global/M is not symmetric and positive definite, and too "
-         "large (%d) for another way",
-         path, M->rows);
-  TRY(reduce_dense(M, &c, W, q, singular));
+  TRY(columns_new(H, f, &c));
+  TRY(factorise(&s, M, usable));
+  if (*usable) TRY(reduce_sparse(&s, &c, W, q));
 done:
   columns_free(&c);
   memory_free(s.scale);
   cholmod_free_sparse(&s.M, &s.cm);
   cholmod_free_factor(&s.L, &s.cm);
   cholmod_finish(&s.cm);
+  return st;
+}
+
+status reduce_any(const char *path, const triplets *M, const triplets *H,
+                  const double *f, double *W, double *q) {
+  status st = OK;
+  columns c = {0};
+  int singular = 0;
+  if (M->rows > MOST_DENSE)
+    FAIL(ERR_SINGULAR,
+         "%s: /fclib_global/M is not symmetric and positive definite, and too "
+         "large (%d) for another way",
+         path, M->rows);
+  TRY(columns_new(H, f, &c));
+  TRY(reduce_dense(M, &c, W, q, &singular));
+  if (singular)
+    FAIL(ERR_SINGULAR,
+         "%s: /fclib_global/M is singular: v cannot be eliminated", path);
+done:
+  columns_free(&c);
   return st;
 }

@@ -22,7 +22,7 @@
  * found is the start of a solver with the exact disc of friction.
  */
 #include "base/memory.h"
-#include "contact/lcp.h"
+#include "lcp/lcp.h"
 #include "solver/solver.h"
 
 #include <cblas.h>

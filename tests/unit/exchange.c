@@ -211,15 +211,95 @@ START_TEST(unsymmetric_mass_is_eliminated_too) {
 }
 END_TEST
 
-START_TEST(singular_mass_is_refused) {
-  global_case *g = malloc(sizeof *g);
-  enter();
+/* Unknown 5 has no mass, nor a row of H if it is not touched. */
+static void make_massless(global_case *g, int touched) {
   global_make(g, 3);
   for (int i = 0; i < NV; ++i) g->M[i + NV * 5] = g->M[5 + NV * i] = 0.0;
+  for (int k = 0; k < 3 * NC && !touched; ++k) g->H[5 + NV * k] = 0.0;
+}
+
+START_TEST(singular_mass_that_contact_does_not_hold_is_refused) {
+  global_case *g = malloc(sizeof *g);
+  enter();
+  make_massless(g, 0);
   fclib_global(path, STORE_TRIPLET, &g->data);
   answer a = read_as(EXCHANGE_FCLIB);
   ck_assert_int_eq(a.st, ERR_SINGULAR);
   ck_assert_ptr_nonnull(strstr(a.text, "/fclib_global/M"));
+  leave();
+  free(g);
+}
+END_TEST
+
+/* C = A B, all [m*m] column major. */
+static void multiply(int m, const double *A, const double *B, double *C) {
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < m; ++j) {
+      C[i + m * j] = 0.0;
+      for (int k = 0; k < m; ++k) C[i + m * j] += A[i + m * k] * B[k + m * j];
+    }
+}
+
+enum { MASSLESS = 3 * NC };
+/* y = W0 r + q0 + h v with h'r + f = 0 for the unknown v without mass, h its
+ * row of H: A y = r + F has A h = 0, A W0 A = A, trace(A W0) = m - 1, h'F = f,
+ * A W0 F = A q0. */
+static void check_massless(const exchange_problem *p, const double *W0,
+                           const double *q0, const double *h, double f) {
+  int m = MASSLESS;
+  double A[MASSLESS * MASSLESS], AW[MASSLESS * MASSLESS];
+  double AWA[MASSLESS * MASSLESS], trace = 0.0, along = 0.0, size = 0.0;
+  double F[MASSLESS];
+  for (int i = 0; i < m; ++i) {
+    F[i] = p->cp.f[i] * (i % 3 ? 1.0 : -1.0);
+    for (int j = 0; j < m; ++j)
+      A[i + m * j] =
+          p->cp.A[i + m * j] * (i % 3 ? 1.0 : -1.0) * (j % 3 ? 1.0 : -1.0);
+    for (int j = 0; j < m; ++j) size = fmax(size, fabs(A[i + m * j]));
+  }
+  multiply(m, A, W0, AW);
+  multiply(m, AW, A, AWA);
+  for (int i = 0; i < m; ++i) {
+    double null = 0.0, one = 0.0, other = 0.0;
+    for (int j = 0; j < m; ++j) {
+      ck_assert_double_le(fabs(AWA[i + m * j] - A[i + m * j]), 1e-8 * size);
+      null += A[i + m * j] * h[j];
+      one += AW[i + m * j] * F[j];
+      other += A[i + m * j] * q0[j];
+    }
+    ck_assert_double_le(fabs(null), 1e-8 * size);
+    ck_assert_double_le(fabs(one - other), 1e-8 * size);
+    trace += AW[i + m * i];
+    along += h[i] * F[i];
+  }
+  ck_assert_double_eq_tol(trace, m - 1, 1e-8);
+  ck_assert_double_eq_tol(along, f, 1e-8 * fabs(f));
+}
+
+START_TEST(singular_mass_that_contact_holds_is_a_stiffness) {
+  global_case *g = malloc(sizeof *g);
+  double h[MASSLESS], f, W0[MASSLESS * MASSLESS], q0[MASSLESS] = {0.0};
+  enter();
+  for (int keep = -1; keep <= 1; ++keep) {
+    make_massless(g, 1);
+    keep_triangle(g->M, keep);
+    fclib_global(path, STORE_TRIPLET, &g->data);
+    make_massless(g, 1);
+    f = g->f[5];
+    for (int k = 0; k < MASSLESS; ++k) h[k] = g->H[5 + NV * k];
+    for (int k = 0; k < MASSLESS; ++k) g->H[5 + NV * k] = 0.0;
+    g->f[5] = 0.0;
+    g->M[5 + NV * 5] = 1.0;
+    memset(q0, 0, sizeof q0);
+    condense_dense(NV, MASSLESS, g->M, g->H, g->f, W0, q0);
+    answer a = read_as(EXCHANGE_FCLIB);
+    ck_assert_msg(a.st == OK, "%s", a.text);
+    ck_assert(a.p->cp.floating);
+    check_massless(a.p, W0, q0, h, f);
+    for (int i = 0; i < NC; ++i)
+      ck_assert_double_eq(a.p->cp.gap[i], g->w[3 * i]);
+    exchange_free(a.p);
+  }
   leave();
   free(g);
 }
@@ -604,7 +684,9 @@ END_TEST
 
 UNIT_MAIN("exchange", every_storage_gives_the_same_problem,
           global_problem_is_its_local_condensation,
-          unsymmetric_mass_is_eliminated_too, singular_mass_is_refused,
+          unsymmetric_mass_is_eliminated_too,
+          singular_mass_that_contact_does_not_hold_is_refused,
+          singular_mass_that_contact_holds_is_a_stiffness,
           no_contact_is_a_problem, defect_names_file_and_dataset,
           what_is_not_available_is_said, local_constraints_are_eliminated,
           global_constraints_are_eliminated, half_of_the_constraints_is_refused,

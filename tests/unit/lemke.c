@@ -1,6 +1,6 @@
 /* src/solver/lcp.c, lemke.c: complementary pivoting. */
 #include "base/memory.h"
-#include "contact/lcp.h"
+#include "lcp/lcp.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"

@@ -3,7 +3,7 @@
  * and w_i change places for a set of unknowns that grows by single ones with a
  * good pivot on the diagonal, or by pairs with two beside it.
  */
-#include "exchange/lcp_solve.h"
+#include "lcp/lcp_solve.h"
 
 #include <cblas.h>
 #include <math.h>

@@ -3,7 +3,7 @@
  *
  *   w = q + M z,   w >= 0,  z >= 0,  w'z = 0.
  *
- * Complementary pivoting (contact/lcp.h) comes first. It ends on a ray, or
+ * Complementary pivoting (lcp/lcp.h) comes first. It ends on a ray, or
  * takes 2^n pivots, on problems that have a solution all the same; then the
  * question whether any z >= 0 has w >= 0 is put as a problem that pivoting
  * always decides,
@@ -15,8 +15,8 @@
  * for few unknowns all bases, and pivoting with other units, covering vectors
  * and from other vertices.
  */
-#ifndef PROTIS_EXCHANGE_LCP_SOLVE_H
-#define PROTIS_EXCHANGE_LCP_SOLVE_H
+#ifndef PROTIS_LCP_LCP_SOLVE_H
+#define PROTIS_LCP_LCP_SOLVE_H
 
 #include "base/outcome.h"
 #include "base/status.h"

@@ -2,11 +2,11 @@
  * Which method for a linear complementarity problem, and what is proved if
  * none finds a solution (lcp_solve.h).
  */
-#include "exchange/lcp_solve.h"
+#include "lcp/lcp_solve.h"
 
 #include "base/memory.h"
 #include "contact/contact.h"
-#include "contact/lcp.h"
+#include "lcp/lcp.h"
 
 #include <cblas.h>
 #include <math.h>

@@ -10,8 +10,8 @@
  * that differ from the start only (at most rank + 1) and updated: a pivot costs
  * two products with it, one rank-one change and one product with M.
  */
-#ifndef PROTIS_SOLVER_LCP_H
-#define PROTIS_SOLVER_LCP_H
+#ifndef PROTIS_LCP_LCP_H
+#define PROTIS_LCP_LCP_H
 
 #include "base/outcome.h"
 #include "base/status.h"

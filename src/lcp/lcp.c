@@ -13,7 +13,7 @@
  * with an infinitesimal e; only the columns of the inverse that are needed to
  * tell the tied rows apart are formed.
  */
-#include "contact/lcp.h"
+#include "lcp/lcp.h"
 
 #include "base/memory.h"
 

@@ -10,7 +10,7 @@
  * its solution is exact.
  */
 #include "base/memory.h"
-#include "exchange/lcp_solve.h"
+#include "lcp/lcp_solve.h"
 
 #include <cblas.h>
 #include <lapacke.h>
