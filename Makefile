@@ -197,27 +197,35 @@ bench-peers:
 format:
 	$(Q)clang-format-14 --style=file:tools/clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] tests/*/*.[ch])
 
-# Hostile input for the deck reader; needs clang-14, no part of the tests.
+# Hostile input for every reader; needs clang-14 and libclang-rt-14-dev, no part
+# of the tests. The corpora are kept in build/fuzz.
 FUZZ_SECONDS ?= 60
-fuzzers := $(patsubst tests/fuzz/%.c,build/fuzz/%,$(wildcard tests/fuzz/*.c))
+fuzzers    := $(patsubst tests/fuzz/%.c,build/fuzz/%,$(wildcard tests/fuzz/*.c))
+fuzz_flags := -std=c11 -g -O1 -fno-sanitize-recover=all
+fuzz_lib   := $(sources:%.c=build/fuzz/%.o) build/fuzz/tests/support/fuzz_file.o
 
 .PHONY: fuzz
 fuzz: $(fuzzers)
 	$(Q)for f in $(fuzzers); do mkdir -p $$f.corpus; \
-	  cp input/*/*.inp $$f.corpus 2>/dev/null; \
+	  case $$f in *deck) cp input/*/*.inp $$f.corpus;; esac; \
 	  $$f -max_total_time=$(FUZZ_SECONDS) -max_len=4096 -timeout=10 \
-	    -print_final_stats=1 $$f.corpus > $$f.log 2>&1 || \
+	    -rss_limit_mb=1000 -print_final_stats=1 $$f.corpus > $$f.log 2>&1 || \
 	    { tail -n 40 $$f.log; exit 1; }; \
 	  echo "$$f: $$(grep number_of_executed_units $$f.log)"; \
 	done
 
-build/fuzz/%: tests/fuzz/%.c $(wildcard src/base/*.[ch] src/deck/*.[ch])
+build/fuzz/%.o: %.c
 	@mkdir -p $(@D)
+	@echo "  CC   $<"
+	$(Q)clang-14 $(CPPFLAGS) -Itests $(fuzz_flags) -MMD -MP \
+	  -fsanitize=fuzzer-no-link,address,undefined -c $< -o $@
+
+build/fuzz/%: tests/fuzz/%.c $(fuzz_lib)
 	@echo "  FUZZ $<"
-	$(Q)clang-14 $(CPPFLAGS) -Itests -std=c11 -g -O1 -fno-sanitize-recover=all \
-	  -fsanitize=fuzzer,address,undefined $(filter %.c,$^) -lm -o $@
+	$(Q)clang-14 $(CPPFLAGS) -Itests $(fuzz_flags) \
+	  -fsanitize=fuzzer,address,undefined $^ $(LDLIBS) -o $@
 
 clean:
 	rm -rf build
 
--include $(shell find $(out) -name '*.d' 2>/dev/null)
+-include $(shell find $(out) build/fuzz -name '*.d' 2>/dev/null)

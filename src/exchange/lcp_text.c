@@ -13,6 +13,7 @@
 #include <string.h>
 
 enum { WORD = 80 };
+enum { FEW_UNKNOWNS = 300 }; /* of a file too short the place is told       */
 
 typedef struct words {
   FILE *f;
@@ -83,10 +84,29 @@ done:
   return st;
 }
 
+/* The file is long enough for n unknowns; before room is made for them. A pipe
+ * has no length and is read as far as it goes. */
+static status check_length(words *w, int n) {
+  status st = OK;
+  const long here = ftell(w->f);
+  if (here < 0 || fseek(w->f, 0, SEEK_END) != 0) goto done;
+  const long left = ftell(w->f) - here, m = n;
+  if (left < 2 * m * (m + 1) - 1)
+    FAIL(ERR_DECK,
+         "%s: %ld characters follow the number of unknowns %d; expected %ld "
+         "numbers",
+         w->path, left, n, m * (m + 1));
+  if (fseek(w->f, here, SEEK_SET) != 0)
+    TRY(text_failed(w->path, "read", errno));
+done:
+  return st;
+}
+
 static status read_numbers(words *w, exchange_problem *p) {
   status st = OK;
   char word[WORD];
   TRY(read_size(w, &p->n));
+  if (p->n > FEW_UNKNOWNS) TRY(check_length(w, p->n));
   p->dim = 1;
   p->m = p->unknowns = p->n;
   p->form = "linear complementarity problem";

@@ -6,9 +6,9 @@
 #include "base/memory.h"
 #include "deck/deck.h"
 #include "support/fuzz.h"
+#include "support/fuzz_file.h"
 
 #include <stdlib.h>
-#include <unistd.h>
 
 static void use_field(deck *d, const field *f, message_log *log) {
   const double x[3] = {1, 2, 3};
@@ -32,17 +32,6 @@ static void use_deck(deck *d, message_log *log) {
   }
 }
 
-/* The deck is a file in memory as far as the system has one. */
-static const char *write_deck(const uint8_t *data, size_t size) {
-  static char name[64];
-  if (name[0] == '\0')
-    snprintf(name, sizeof name, "/dev/shm/protis_fuzz_%d.inp", (int)getpid());
-  FILE *f = fopen(name, "wb");
-  if (f == NULL || fwrite(data, 1, size, f) != size) abort();
-  fclose(f);
-  return name;
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   static FILE *sink;
   static const char *const defines[] = {"Q=2*3", "H=0.5"};
@@ -50,7 +39,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   deck *d;
   if (sink == NULL) sink = fopen("/dev/null", "w");
   if (message_log_new(&log) != OK) abort();
-  if (deck_read(write_deck(data, size), 2, defines, log, &d) != OK) abort();
+  if (deck_read(fuzz_file("inp", data, size), 2, defines, log, &d) != OK)
+    abort();
   use_deck(d, log);
   message_print(log, sink);
   message_list(log, WARNING, sink);

@@ -10,5 +10,7 @@
 
 /* One input of the fuzzer; always 0. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+/* What HDF5 leaves behind on damaged files is not ours. */
+const char *__lsan_default_suppressions(void);
 
 #endif
