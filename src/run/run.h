@@ -38,6 +38,7 @@ typedef struct visco visco; /* visco.h                                        */
 /* A stiffness, condensed, and the contact solver that knows it. */
 typedef struct matrices {
   double key; /* of the tangent (scheme.h); 0: none                          */
+  int exact;  /* the same                                                    */
   long used;  /* when it was last used                                       */
   stiffness *k;
   condensed *c;
@@ -204,6 +205,7 @@ void visco_free(visco *v);                        /* accepts NULL          */
 void visco_add_strains(const run *r, double *e0); /* e0[ns*r->eigen.n]     */
 void visco_show(const run *r, state *s); /* what the outputs see              */
 /* tangent.c */
+void visco_new_solvers(run *r); /* for a step with the same supports       */
 void visco_forget(run *r); /* matrices are made anew                          */
 /* visco.c, at the start of a *VISCO step: stresses of r->old. */
 status visco_begin_step(run *r);

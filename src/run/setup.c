@@ -471,7 +471,7 @@ status run_prepare(run *r) {
   if (fresh) TRY(report_ready(r));
   contact_solver_free(r->elastic.solver);
   r->elastic.solver = NULL;
-  visco_forget(r);
+  visco_new_solvers(r);
   r->tol = r->step->solver.tol;
   TRY(run_use(r, &r->elastic));
 done:

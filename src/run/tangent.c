@@ -14,6 +14,20 @@ void visco_forget(run *r) {
   if (v == NULL) return;
   for (int i = 0; i < SLOTS; ++i) matrices_free(&v->slot[i]);
   matrices_free(&v->fresh);
+  v->E_is_fresh = 0;
+}
+
+static void forget_solver(matrices *m) {
+  contact_solver_free(m->solver);
+  m->solver = NULL;
+  m->from = NULL;
+}
+
+void visco_new_solvers(run *r) {
+  visco *v = r->visco;
+  if (v == NULL) return;
+  for (int i = 0; i < SLOTS; ++i) forget_solver(&v->slot[i]);
+  forget_solver(&v->fresh);
 }
 
 static status factor(const domain *d, matrices *m) {
@@ -37,6 +51,7 @@ static status constant_domain(run *r, const flow_tangent *law, domain *d) {
   size_t square = visco_at(r, r->m->ns);
   int kind = 0;
   if (v->E == NULL) NEW(v->E, square * (size_t)(r->moduli.n + v->x.n));
+  v->E_is_fresh = 0;
   memcpy(v->E, r->moduli.E, square * (size_t)r->moduli.n * sizeof *v->E);
   for (int i = 0; i < r->m->n_section; ++i) {
     const material *mat = &r->m->materials[r->m->sections[i].material_id];
@@ -81,6 +96,7 @@ static status fresh_domain(run *r, const flow_tangent *law, domain *d) {
   if (v->E == NULL) NEW(v->E, square * (n + (size_t)v->x.n));
   memcpy(v->E, r->moduli.E, square * n * sizeof *v->E);
   memcpy(v->E + square * n, law->D, square * (size_t)v->x.n * sizeof *v->E);
+  v->E_is_fresh = 1;
   *d = r->d;
   d->section_id = v->section_id;
   d->origin = NULL;
@@ -102,6 +118,28 @@ static status factor_again(const domain *d, matrices *m) {
   return st;
 }
 
+/* 1 if the tangents of the points are those of the last solve of its kind. */
+static int same_tangents(const run *r, const flow_tangent *law) {
+  const visco *v = r->visco;
+  const size_t square = visco_at(r, r->m->ns);
+  return v->E_is_fresh && memcmp(v->E + square * (size_t)r->moduli.n, law->D,
+                                 square * (size_t)v->x.n * sizeof *v->E) == 0;
+}
+
+/* Tangents of this solve alone: what has been factored for them is kept. */
+static status use_fresh(run *r, const flow_tangent *law) {
+  status st = OK;
+  visco *v = r->visco;
+  domain d;
+  int same = same_tangents(r, law);
+  if (same && v->fresh.c != NULL) goto done;
+  TRY(fresh_domain(r, law, &d));
+  r->c = NULL;
+  TRY(same ? factor_again(&d, &v->fresh) : factor(&d, &v->fresh));
+done:
+  return st;
+}
+
 /* The matrices of a tangent: those of its key if they are still there. */
 static status find_matrices(run *r, const flow_tangent *law, matrices **out) {
   status st = OK;
@@ -111,21 +149,22 @@ static status find_matrices(run *r, const flow_tangent *law, matrices **out) {
   *out = law->elastic ? &r->elastic : &v->fresh;
   if (law->elastic) goto done;
   if (law->key == 0.0) {
-    TRY(fresh_domain(r, law, &d));
-    r->c = NULL;
-    TRY(factor(&d, &v->fresh));
+    TRY(use_fresh(r, law));
     goto done;
   }
-  for (int i = 0; i < SLOTS; ++i) {
-    if (v->slot[i].key == law->key) m = &v->slot[i];
-    if (m->key != law->key && v->slot[i].used < m->used) m = &v->slot[i];
+  int there = 0;
+  for (int i = 0; i < SLOTS && !there; ++i) {
+    matrices *own = &v->slot[i];
+    there = own->key == law->key && own->exact == law->exact;
+    if (there || own->used < m->used) m = own;
   }
-  if (m->key != law->key) m->from = NULL;
-  if (m->key != law->key || m->c == NULL) {
+  if (!there) m->from = NULL;
+  if (!there || m->c == NULL) {
     TRY(constant_domain(r, law, &d));
     if (r->c == m->c) r->c = NULL;
-    TRY(m->key == law->key ? factor_again(&d, m) : factor(&d, m));
+    TRY(there ? factor_again(&d, m) : factor(&d, m));
     m->key = law->key;
+    m->exact = law->exact;
   }
   m->used = ++v->clock;
   *out = m;
@@ -174,6 +213,21 @@ done:
   return st;
 }
 
+/* The tangents that v->fresh is made of. */
+static status keep_fresh(run *r, archive *a) {
+  status st = OK;
+  visco *v = r->visco;
+  size_t square = visco_at(r, r->m->ns), n = (size_t)r->moduli.n;
+  int there = v->E_is_fresh && v->fresh.c != NULL;
+  TRY(archive_ints(a, "fresh", &there, 1));
+  if (archive_reads(a)) v->E_is_fresh = there;
+  if (!there) goto done;
+  if (v->E == NULL) NEW(v->E, square * (n + (size_t)v->x.n));
+  TRY(archive_reals(a, "tangents", v->E + square * n, square * (size_t)v->x.n));
+done:
+  return st;
+}
+
 status tangent_keep(run *r, archive *a) {
   status st = OK;
   visco *v = r->visco;
@@ -185,10 +239,12 @@ status tangent_keep(run *r, archive *a) {
     snprintf(name, sizeof name, "slot%d", i);
     archive_enter(a, name);
     TRY(archive_reals(a, "key", &m->key, 1));
+    TRY(archive_ints(a, "exact", &m->exact, 1));
     TRY(archive_bytes(a, "used", &m->used, sizeof m->used));
     TRY(matrices_keep(m, a, "solver"));
     archive_leave(a);
   }
+  TRY(keep_fresh(r, a));
   TRY(archive_reals(a, "known_key", &known, 1));
   if (archive_reads(a)) r->known_key = known;
   TRY(archive_bytes(a, "clock", &v->clock, sizeof v->clock));

@@ -25,6 +25,7 @@ struct visco {
   unsigned n_length;
   double *E;       /* [ns*ns*(r->moduli.n + x.n)] of a tangent                */
   double *stress;  /* [ns*r->eigen.n] Pa                                      */
+  int E_is_fresh;  /* that of "fresh"                                    */
   int *section_id; /* [n_elem] sections of their own for the points     */
   kinematics *kin; /* [r->moduli.n + x.n]                               */
   double *thickness; /* the same                                          */

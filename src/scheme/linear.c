@@ -91,8 +91,8 @@ done:
   return st;
 }
 
-status theta_map(const flow_kind *k, const scheme_step *p, const double *L,
-                 const double *G, linear_map *m) {
+static status theta_map(const flow_kind *k, const scheme_step *p,
+                        const double *L, const double *G, linear_map *m) {
   status st = OK;
   const int n = m->n, ns = k->elastic.ns, columns = n + 2 * ns;
   const double in = p->theta * p->dt, out = (1.0 - p->theta) * p->dt;
@@ -154,8 +154,8 @@ done:
 
 /* exp of [dt L, dt G, 0; 0, 0, I; 0, 0, 0]: its first row is exp(dt L),
  * dt phi_1 G, dt phi_2 G. */
-status exponential_map(const flow_kind *k, const scheme_step *p,
-                       const double *L, const double *G, linear_map *m) {
+static status exponential_map(const flow_kind *k, const scheme_step *p,
+                              const double *L, const double *G, linear_map *m) {
   status st = OK;
   const int n = m->n, ns = k->elastic.ns, N = n + 2 * ns;
   double *A = NULL, *X = NULL;
@@ -179,8 +179,8 @@ done:
   return st;
 }
 
-static status make_map(const flow_kind *k, const scheme_step *p,
-                       linear_map_fn *make, linear_map *m, double *D) {
+static status make_map(const flow_kind *k, const scheme_step *p, int exact,
+                       linear_map *m, double *D) {
   status st = OK;
   const int ns = k->elastic.ns, n = ns + k->n_alpha;
   const size_t square = (size_t)(ns * ns);
@@ -193,7 +193,7 @@ static status make_map(const flow_kind *k, const scheme_step *p,
   TRY(need(&m->Q0, (size_t)(n * ns)));
   TRY(need(&m->Q1, (size_t)(n * ns)));
   TRY(linear_law(k, L, G));
-  TRY(make(k, p, L, G, m));
+  TRY(exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m));
   for (int j = 0; j < ns; ++j)
     for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + n * j];
   memcpy(D, k->elastic.E, square * sizeof *D);
@@ -205,9 +205,12 @@ done:
   return st;
 }
 
-/* y = A v */
+/* y += A v, A[n*m]; four of each is a point in the plane. */
 static void add_product(int n, int m, const double *A, const double *v,
                         double *y) {
+  for (int j = 0; j < 4 && n == 4 && m == 4; ++j)
+    for (int i = 0; i < 4; ++i) y[i] += A[i + 4 * j] * v[j];
+  if (n == 4 && m == 4) return;
   for (int j = 0; j < m; ++j)
     for (int i = 0; i < n; ++i) y[i] += A[i + n * j] * v[j];
 }
@@ -218,7 +221,8 @@ static void apply_map(const flow *x, const linear_map *m, int k,
   const int ns = x->ns, na = m->n - ns;
   const law_elastic *el = &x->kind[x->kind_id[k]].elastic;
   size_t at = (size_t)ns * (size_t)k, a = x->alpha_at[k];
-  double y[FLOW_VALUE_MAX] = {0}, elastic[6];
+  double y[FLOW_VALUE_MAX], elastic[6];
+  memset(y, 0, (size_t)m->n * sizeof *y);
   add_product(m->n, ns, m->P, old->ei + at, y);
   add_product(m->n, na, m->P + m->n * ns, old->alpha + a, y);
   add_product(m->n, ns, m->Q0, old->e + at, y);
@@ -243,7 +247,7 @@ static status map_between(const scheme_call *a, int kind, linear_map *m,
   scheme_step part = *a->p;
   part.t = mid->t;
   part.dt = mid->t - a->old->t;
-  TRY(make_map(&x->kind[kind], &part, exponential_map, m, D));
+  TRY(make_map(&x->kind[kind], &part, 1, m, D));
   for (int k = 0; k < x->n; ++k) {
     size_t at = (size_t)x->ns * (size_t)k;
     if (x->kind_id[k] != kind) continue;
@@ -268,69 +272,99 @@ done:
   return st;
 }
 
-static status make_maps(const flow *x, const scheme_step *p, double key,
-                        linear_map_fn *make, scheme_work *w) {
+static status make_maps(const flow *x, const scheme_step *p, int exact,
+                        scheme_work *w) {
   status st = OK;
   size_t square = (size_t)(x->ns * x->ns);
-  if (w->key == key) return OK;
-  w->key = 0.0;
+  const linear_key key = {p->dt, p->theta, exact};
+  if (w->made.dt == key.dt && w->made.theta == key.theta &&
+      w->made.exact == exact)
+    return OK;
+  w->made.dt = 0.0;
   if (w->map == NULL) NEW(w->map, x->n_kind);
   w->n_kind = x->n_kind;
   TRY(need(&w->D_kind, square * (size_t)x->n_kind));
   for (int i = 0; i < x->n_kind; ++i)
-    TRY(make_map(&x->kind[i], p, make, &w->map[i],
+    TRY(make_map(&x->kind[i], p, exact, &w->map[i],
                  w->D_kind + square * (size_t)i));
-  w->key = key;
+  w->made = key;
 done:
   return st;
 }
 
-static void apply_maps(const flow *x, const scheme_work *w,
-                       const flow_state *old, flow_state *now) {
+/* y = P y_old + Q0 e_old + Q1 e for e = e_old: what a step makes of strains
+ * that stay. */
+static void predict(const flow *x, const scheme_work *w, const flow_state *old,
+                    flow_state *now) {
+  memcpy(now->e, old->e, (size_t)x->ns * (size_t)x->n * sizeof *now->e);
   for (int k = 0; k < x->n; ++k)
     apply_map(x, &w->map[x->kind_id[k]], k, old, now);
 }
 
-/* What the power at the theta-point dissipates over the step. */
-static status middle_power(const scheme_call *a) {
+/* The rest, Q1 (e - e_old) and D (e - e_old) more. */
+static void follow(const flow *x, const scheme_work *w, const flow_state *old,
+                   flow_state *now) {
+  const int ns = x->ns;
+  for (int k = 0; k < x->n; ++k) {
+    const linear_map *m = &w->map[x->kind_id[k]];
+    const double *D = w->D_kind + (size_t)(ns * ns * x->kind_id[k]);
+    const size_t at = (size_t)ns * (size_t)k, a = x->alpha_at[k];
+    double de[6], y[FLOW_VALUE_MAX];
+    for (int i = 0; i < ns; ++i)
+      de[i] = now->e[at + (size_t)i] - old->e[at + (size_t)i];
+    memset(y, 0, (size_t)m->n * sizeof *y);
+    add_product(m->n, ns, m->Q1, de, y);
+    add_product(ns, ns, D, de, now->sigma + at);
+    for (int i = 0; i < ns; ++i) now->ei[at + (size_t)i] += y[i];
+    for (int i = ns; i < m->n; ++i) now->alpha[a + (size_t)(i - ns)] += y[i];
+  }
+}
+
+/* Power of point k of a constant law in the middle between two states. */
+static status middle_power(const scheme_call *a, int k, double *power) {
   status st = OK;
   const flow *x = a->x;
   const flow_state *old = a->old, *now = a->now;
-  scheme_work *w = a->w;
-  flow_state *m = &w->middle;
-  double power, th = a->p->theta;
-  size_t n = (size_t)x->ns * (size_t)x->n, na = x->alpha_at[x->n];
-  if (m->e == NULL) TRY(flow_state_new(x, m));
-  TRY(need(&w->ei_rate[0], n));
-  TRY(need(&w->alpha_rate[0], na));
-  m->t = old->t + th * a->p->dt;
-  mean(n, th, old->sigma, now->sigma, m->sigma);
-  mean(n, th, old->ei, now->ei, m->ei);
-  mean(na, th, old->alpha, now->alpha, m->alpha);
-  TRY(flow_rates(x, m, a->p->dt, w->ei_rate[0], w->alpha_rate[0], &power));
-  a->out->dissipated += a->p->dt * power;
+  const double th = a->p->theta;
+  const size_t ns = (size_t)x->ns, at = ns * (size_t)k, al = x->alpha_at[k];
+  double sigma[6], ei[6], alpha[FLOW_VALUE_MAX];
+  law_point p;
+  TRY(flow_coefficients(&x->kind[x->kind_id[k]], 0.0, 0.0, NULL, &p));
+  mean(ns, th, old->sigma + at, now->sigma + at, sigma);
+  mean(ns, th, old->ei + at, now->ei + at, ei);
+  mean(x->alpha_at[k + 1] - al, th, old->alpha + al, now->alpha + al, alpha);
+  p.dt = a->p->dt;
+  p.sigma = sigma;
+  p.ei = ei;
+  p.alpha = alpha;
+  if (law_flows(&p)) *power += x->weight[k] * law_dissipation(&p);
 done:
   return st;
 }
 
-status linear_advance(const scheme_call *a, double key, linear_map_fn *make) {
+status linear_advance(const scheme_call *a, int exact) {
   status st = OK;
   const flow *x = a->x;
   scheme_work *w = a->w;
-  size_t n = (size_t)x->ns * (size_t)x->n;
-  TRY(make_maps(x, a->p, key, make, w));
+  const size_t n = (size_t)x->ns * (size_t)x->n;
+  double power = 0.0;
+  TRY(make_maps(x, a->p, exact, w));
   TRY(need(&w->sigma_k, n));
   a->now->t = a->p->t;
   TRY(a->b->begin(a->b->ctx, a->now));
-  memcpy(a->now->e, a->old->e, n * sizeof *a->now->e);
-  apply_maps(x, w, a->old, a->now);
+  predict(x, w, a->old, a->now);
   memcpy(w->sigma_k, a->now->sigma, n * sizeof *w->sigma_k);
-  flow_tangent law = {
-      .key = key, .D = w->D_kind, .sigma = w->sigma_k, .e = a->old->e};
+  flow_tangent law = {.key = (exact ? 1.0 : a->p->theta) * a->p->dt,
+                      .exact = exact,
+                      .D = w->D_kind,
+                      .sigma = w->sigma_k,
+                      .e = a->old->e};
   TRY(a->b->linear(a->b->ctx, &law, a->now, &a->out->settled));
-  apply_maps(x, w, a->old, a->now);
+  memcpy(a->now->sigma, w->sigma_k, n * sizeof *w->sigma_k);
+  follow(x, w, a->old, a->now);
   a->out->iterations = 1;
-  TRY(middle_power(a));
+  for (int k = 0; k < x->n; ++k) TRY(middle_power(a, k, &power));
+  a->out->dissipated += a->p->dt * power;
 done:
   return st;
 }

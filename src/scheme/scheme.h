@@ -78,7 +78,9 @@ status flow_elastic_norm(const flow *x, const flow_state *s, double *norm);
 
 /* Law of the points for one linear solve: sigma = sigma_k + D (e - e_k). */
 typedef struct flow_tangent {
-  double key; /* > 0: D is constant, and the same whenever the key is; 0: new */
+  double key; /* > 0: D is constant, and the same whenever key and exact are;
+                 0: of this solve alone                                       */
+  int exact;  /* D of EXPONENTIAL, else of THETA                              */
   int elastic;     /* D = E: the matrix of the elastic body                   */
   const double *D; /* key > 0: [ns*ns*n_kind], else [ns*ns*n]; Pa             */
   const double *sigma, *e; /* [ns*n] sigma_k, e_k                             */

@@ -16,14 +16,19 @@ typedef struct linear_map {
   double *Q0, *Q1; /* [n*ns]                                                 */
 } linear_map;
 
+/* What the maps of a step depend on beside the laws. */
+typedef struct linear_key {
+  double dt, theta; /* dt = 0: there are none                                 */
+  int exact;        /* 1: EXPONENTIAL, 0: THETA                               */
+} linear_key;
+
 struct scheme_work {
   double *ei_rate[STAGES], *alpha_rate[STAGES]; /* [ns*n], [alpha_at[n]]     */
   double *sigma_k, *e_k, *linear; /* [ns*n] when first needed                */
   double *D;                      /* [ns*ns*n] the same                      */
-  double key;        /* for which map[] and D_kind were made; 0: none */
-  linear_map *map;   /* [n_kind]                                     */
-  flow_state middle; /* the theta-point                              */
-  double *D_kind;    /* [ns*ns*n_kind] Pa                            */
+  linear_key made;                /* what map[] and D_kind are for         */
+  linear_map *map; /* [n_kind]                                     */
+  double *D_kind;  /* [ns*ns*n_kind] Pa                            */
   int n_kind;
 };
 
@@ -35,13 +40,7 @@ status need(double **array, size_t n); /* allocate if NULL                   */
 
 /* linear.c: y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
 status linear_law(const flow_kind *k, double *L, double *G);
-typedef status linear_map_fn(const flow_kind *k, const scheme_step *p,
-                             const double *L, const double *G, linear_map *m);
-status linear_advance(const scheme_call *a, double key, linear_map_fn *make);
-status theta_map(const flow_kind *k, const scheme_step *p, const double *L,
-                 const double *G, linear_map *m);
-status exponential_map(const flow_kind *k, const scheme_step *p,
-                       const double *L, const double *G, linear_map *m);
+status linear_advance(const scheme_call *a, int exact);
 /* newton.c */
 status newton_advance(const scheme_call *a);
 status exponential_between(const scheme_call *a, flow_state *mid);

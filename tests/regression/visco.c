@@ -189,19 +189,9 @@ START_TEST(steady_creep_of_a_tube) {
 }
 END_TEST
 
-/* Calls of a stage in the listing. */
-static int calls_of(const job *j, const char *stage) {
-  char key[64], *lst = job_file(j, "lst");
-  snprintf(key, sizeof key, "\n  %s ", stage);
-  char *found = strstr(lst, key);
-  ck_assert_ptr_nonnull(found);
-  int calls = atoi(found + strlen(key));
-  free(lst);
-  return calls;
-}
-
-/* One factor for the elastic body and one for the tangent of a linear law;
- * three or four in an increment of a power law; none with initial stresses. */
+/* One factor for the elastic body and one for the tangent of a linear law, as
+ * long as its coefficients stay; three or four in an increment of a power law;
+ * none with initial stresses. */
 START_TEST(factors_are_kept) {
   static const struct {
     const char *law, *visco;
@@ -213,7 +203,21 @@ START_TEST(factors_are_kept) {
       {"*INELASTIC, LAW=NORTON\n1., 5.\n",
        "*VISCO, INTEGRATOR=BACKWARD\n0.1, 1.\n", 21, 61},
       {"*INELASTIC, LAW=NORTON\n1., 5.\n",
-       "*VISCO, INTEGRATOR=BACKWARD, ITERATION=INITIAL\n0.1, 1.\n", 1, 1}};
+       "*VISCO, INTEGRATOR=BACKWARD, ITERATION=INITIAL\n0.1, 1.\n", 1, 1},
+      /* a coefficient that could vary in time: it stays, changes once (the
+       * first increments and the rest), or always */
+      {"*INELASTIC, LAW=MAXWELL\n\"2 + 0*t\"\n",
+       "*VISCO, INTEGRATOR=BACKWARD\n0.1, 1.\n", 2, 2},
+      {"*INELASTIC, LAW=MAXWELL\n\"2 + min(1, max(0, 1E9*(t - 1.55)))\"\n",
+       "*VISCO, INTEGRATOR=BACKWARD\n0.1, 1.\n", 3, 3},
+      {"*INELASTIC, LAW=MAXWELL\n\"2 + t\"\n",
+       "*VISCO, INTEGRATOR=BACKWARD\n0.1, 1.\n", 11, 11},
+      /* steps with the same THETA dt share a factor, EXPONENTIAL has its own */
+      {DEVIATORIC,
+       "*VISCO, INTEGRATOR=BACKWARD\n0.1, 1.\n*END STEP\n*STEP\n"
+       "*VISCO, INTEGRATOR=MIDPOINT\n0.2, 1.\n*END STEP\n*STEP\n"
+       "*VISCO, INTEGRATOR=EXPONENTIAL\n0.1, 1.\n",
+       3, 3}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     square_case s = {STEEL,
                      cases[i].law,
@@ -222,11 +226,34 @@ START_TEST(factors_are_kept) {
                      "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n",
                      cases[i].visco};
     job j = square_run(&s, 0);
-    int calls = calls_of(&j, "factorisation");
+    long calls = job_stage(&j, "factorisation", NULL);
     ck_assert_msg(calls >= cases[i].least && calls <= cases[i].most,
-                  "case %zu: %d factors", i, calls);
+                  "case %zu: %ld factors", i, calls);
     job_end(&j);
   }
+}
+END_TEST
+
+/* Steps of one THETA dt, which share their matrix but not what they do. */
+START_TEST(each_step_has_its_own_integrator) {
+  square_case s = {STEEL,
+                   PROPORTIONAL,
+                   "CPS3",
+                   "",
+                   HELD,
+                   "*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n*END STEP\n"
+                   "*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n2., 2.\n"
+                   "*END STEP\n*STEP\n*VISCO, INTEGRATOR=EXPONENTIAL\n"
+                   "1., 1.\n*END STEP\n*STEP\n"
+                   "*VISCO, INTEGRATOR=THETA, THETA=0.25\n4., 4.\n"};
+  job j = square_run(&s, 0);
+  const double factor[] = {1 / 1.5, 0.5 / 1.5, exp(-0.5), -0.5 / 1.5};
+  double stress = 1;
+  for (int k = 0; k < 4; ++k) {
+    stress *= factor[k];
+    square_all_have(&j, k + 1, "stress_yy", stress, 1e-12);
+  }
+  job_end(&j);
 }
 END_TEST
 
@@ -339,6 +366,7 @@ int main(void) {
   tcase_add_test(tests, temperature_sets_the_relaxation_time);
   tcase_add_test(tests, steady_creep_of_a_tube);
   tcase_add_test(tests, factors_are_kept);
+  tcase_add_test(tests, each_step_has_its_own_integrator);
   suite_add_tcase(suite, tests);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_NORMAL);
