@@ -3,9 +3,11 @@
  * friction, which form is given, whether it can be inverted, the dimension and
  * the number of unknowns m.
  *
- * No friction: the tangential unknowns are eliminated and NEWTON solves in the
- * normal ones. The full problem is taken for the first steps on a matrix, which
- * often suffice, and where the normal form fails.
+ * No friction: the tangential unknowns are eliminated and the normal ones are
+ * solved for by active sets, of the nodes that open alone (opened.h), and by
+ * NEWTON where these do not settle. The full problem is taken for the first
+ * steps from a warm start, which often suffice, and where the normal form
+ * fails.
  *
  * Stiffness given: NEWTON. Its steps do not grow in number with m or with the
  * condition of A, and it keeps its factor from step to step and from problem to
@@ -213,21 +215,6 @@ static int is_cold(const contact_problem *cp, const double *r) {
   return 1;
 }
 
-/* The first problem on a matrix often needs no normal form: from a cold start
- * every node may be closed, from a warm one few steps may do. */
-static status first_steps(contact_solver *s, const contact_problem *cp,
-                          const solver_listener *listener, const answer *to) {
-  status st = OK;
-  int closed = 0;
-  if (!is_cold(cp, to->r))
-    return short_try(s, cp, &newton_solver, WARM_STEPS, listener, to);
-  *to->rep = (solver_report){.iterations = 1, .solver = newton_solver.name};
-  TRY(normal_form_closed(&s->normal, cp, to->u, to->r, &closed));
-  if (closed) attempt_judge(cp, s->choice.tol, to->u, to->r, to->rep);
-done:
-  return st;
-}
-
 /* Without friction: in the normal unknowns. *done_well = 1: solved. */
 static status solve_normal(contact_solver *s, const contact_problem *cp,
                            const solver_listener *listener, double *u,
@@ -239,8 +226,17 @@ static status solve_normal(contact_solver *s, const contact_problem *cp,
                             .listener = listener};
   *done_well = 0;
   if (!normal_form_applies(cp)) goto done;
-  if (s->normal.wanted++ == 0) {
-    TRY(first_steps(s, cp, listener, &(answer){u, r, rep}));
+  TRY(normal_form_opened(&s->normal, cp, &control, u, r, rep));
+  before = rep->iterations;
+  if (rep->outcome == CONVERGED) {
+    attempt_judge(cp, s->choice.tol, u, r, rep);
+    *done_well = rep->outcome == CONVERGED;
+    if (*done_well) goto done;
+  }
+  if (s->normal.wanted++ == 0 && !is_cold(cp, r)) {
+    TRY(short_try(s, cp, &newton_solver, WARM_STEPS, listener,
+                  &(answer){u, r, rep}));
+    rep->iterations += before;
     *done_well = rep->outcome == CONVERGED;
     if (*done_well) goto done;
     before = rep->iterations;

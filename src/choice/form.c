@@ -63,6 +63,7 @@ int normal_form_applies(const contact_problem *cp) {
 
 void normal_form_free(normal_form *nf) {
   if (nf->work != NULL) newton_solver.release(nf->work);
+  opened_free(nf->opened);
   double *const arrays[] = {nf->L, nf->Y, nf->S, nf->f, nf->u, nf->r, nf->y};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
     memory_free(arrays[i]);
@@ -74,12 +75,12 @@ static size_t tangent_dof(int dim, int i) {
   return (size_t)(i / (dim - 1) * dim + 1 + i % (dim - 1));
 }
 
-/* L; 0: A is not symmetric, or A_tt not positive definite. */
+/* L of the lower triangle; 0: not positive definite. Where A is not symmetric
+ * the answer is none of the problem, and is judged so. */
 static int factor_tangents(normal_form *nf, const contact_problem *cp) {
   int nt = cp->m - cp->n, d = cp->dim;
   size_t m = (size_t)cp->m;
   nf->power = dense_power(cp->m, cp->A);
-  if (!dense_is_symmetric(cp->m, cp->A, SYMMETRIC / nf->power)) return 0;
   for (int j = 0; j < nt; ++j) {
     const double *column = cp->A + m * tangent_dof(d, j);
     for (int i = j; i < nt; ++i)
@@ -170,42 +171,42 @@ status normal_form_keep(normal_form *nf, archive *a) {
   int there = nf->work != NULL;
   TRY(archive_ints(a, "work", &there, 1));
   if (there) TRY(newton_solver.keep(nf->work, a));
+  there = nf->opened != NULL;
+  TRY(archive_ints(a, "opened", &there, 1));
+  if (there) TRY(opened_keep(nf->opened, a));
 done:
   archive_leave(a);
   return st;
 }
 
-/* A work that is new takes over what it is to remember. */
-static status remember(normal_form *nf) {
+/* Go to what is to be remembered; *there = 1: the named thing is. */
+static status remember(const normal_form *nf, const char *name, int *there) {
   status st = OK;
-  int there = 0;
+  *there = 0;
   if (nf->from == NULL) return OK;
   archive_go(nf->from, nf->group);
-  TRY(archive_ints(nf->from, "work", &there, 1));
-  if (there) TRY(newton_solver.keep(nf->work, nf->from));
+  TRY(archive_ints(nf->from, name, there, 1));
 done:
-  archive_go(nf->from, "");
   return st;
 }
 
-status normal_form_closed(normal_form *nf, const contact_problem *cp, double *u,
-                          double *r, int *closed) {
+status normal_form_opened(normal_form *nf, const contact_problem *cp,
+                          const solver_control *control, double *u, double *r,
+                          solver_report *rep) {
   status st = OK;
-  int n = cp->n, nt = cp->m - n, d = cp->dim;
-  *closed = 0;
+  int there = 0;
+  *rep = (solver_report){.outcome = STOPPED_UNFIT};
   if (!nf->missing) TRY(factor(nf, cp));
   if (nf->missing) goto done;
-  memset(u, 0, (size_t)cp->m * sizeof *u);
-  for (int i = 0; i < n; ++i) u[i * d] = cp->gap[i];
-  contact_reaction(cp, u, r);
-  for (int i = 0; i < nt; ++i) nf->y[i] = -nf->power * r[tangent_dof(d, i)];
-  LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', nt, 1, nf->L, nt, nf->y, nt);
-  for (int i = 0; i < nt; ++i) u[tangent_dof(d, i)] = nf->y[i];
-  contact_reaction(cp, u, r);
-  for (int i = 0; i < nt; ++i) r[tangent_dof(d, i)] = 0.0;
-  *closed = 1;
-  for (int i = 0; i < n && *closed; ++i) *closed = r[i * d] <= 0.0;
+  if (nf->opened == NULL) {
+    tangent_factor by = {nf->L, nf->power};
+    TRY(opened_new(cp, &by, &nf->opened));
+    TRY(remember(nf, "opened", &there));
+    if (there) TRY(opened_keep(nf->opened, nf->from));
+  }
+  opened_solve(nf->opened, cp, control, u, r, rep);
 done:
+  if (nf->from != NULL) archive_go(nf->from, "");
   return st;
 }
 
@@ -214,6 +215,7 @@ status normal_form_solve(normal_form *nf, const contact_problem *cp,
                          solver_report *rep) {
   status st = OK;
   double param[8] = {0.0};
+  int there = 0;
   *rep = (solver_report){.outcome = RUNNING, .solver = "newton"};
   if (!nf->missing) TRY(factor(nf, cp));
   if (nf->missing) goto done;
@@ -230,11 +232,13 @@ status normal_form_solve(normal_form *nf, const contact_problem *cp,
   option_defaults(newton_solver.options, param);
   if (nf->work == NULL) {
     TRY(newton_solver.setup(&own, param, &nf->work));
-    TRY(remember(nf));
+    TRY(remember(nf, "work", &there));
+    if (there) TRY(newton_solver.keep(nf->work, nf->from));
   }
   TRY(newton_solver.solve(&own, param, nf->work, &tighter, nf->u, nf->r, rep));
   rep->solver = "newton";
   if (rep->outcome == CONVERGED) settle(nf, cp, u, r);
 done:
+  if (nf->from != NULL) archive_go(nf->from, "");
   return st;
 }

@@ -12,6 +12,7 @@
 #ifndef PROTIS_CHOICE_FORM_H
 #define PROTIS_CHOICE_FORM_H
 
+#include "choice/opened.h"
 #include "newton/dense.h"
 #include "solver/solver.h"
 
@@ -35,8 +36,9 @@ typedef struct normal_form {
   double *Y;         /* [nt*n] inv(L) power A_tn                        */
   double *S;         /* [n*n]                                           */
   double *f, *u, *r; /* [n] of the problem in S                         */
-  double *y;         /* [m] work                                        */
-  void *work;        /* of the solver                                   */
+  opened *opened; /* without S                                                */
+  double *y;      /* [m] work                                        */
+  void *work;     /* of the solver                                   */
   archive *from;  /* borrowed: what the work is to remember; or NULL          */
   char group[80]; /* in it                                                    */
 } normal_form;
@@ -45,10 +47,10 @@ status normal_form_keep(normal_form *nf, archive *a);
 /* 1: stiffness known, no friction, no second obstacle, nothing held, matrix
  * not singular. */
 int normal_form_applies(const contact_problem *cp);
-/* u[m], r[m] with every node closed, by the factor alone; *closed = 1: no node
- * pulls, it is the solution. */
-status normal_form_closed(normal_form *nf, const contact_problem *cp, double *u,
-                          double *r, int *closed);
+/* Solve from the closed state by the factor of the tangents (opened.h). */
+status normal_form_opened(normal_form *nf, const contact_problem *cp,
+                          const solver_control *control, double *u, double *r,
+                          solver_report *rep);
 /* Solve by Newton's method from u[m], r[m]. rep as from a solver; RUNNING if
  * the form does not exist (u, r untouched). */
 status normal_form_solve(normal_form *nf, const contact_problem *cp,

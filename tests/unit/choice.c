@@ -80,6 +80,41 @@ START_TEST(what_is_kept_changes_no_answer) {
 }
 END_TEST
 
+/* Without friction: nodes open and close with the load, what was made for them
+ * stays; the answers are those of NEWTON, which starts anew. */
+START_TEST(opened_nodes_are_kept_and_change_no_answer) {
+  unsigned long long seed = 77;
+  for (int k = 0; k < 8; ++k) {
+    contact_case c = case_any(2 + k % 2, 20, 0.0, 0, 300u + (unsigned)k);
+    solver_choice choice = {.tol = 1e-12};
+    contact_solver *s = NULL;
+    double *u = calloc((size_t)c.cp.m, sizeof *u),
+           *r = calloc((size_t)c.cp.m, sizeof *r);
+    c.cp.g0 = c.cp.ut0 = NULL;
+    c.cp.B = NULL;
+    ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+    for (int step = 0; step < 6; ++step) {
+      solver_report rep;
+      for (int i = 0; i < c.cp.m; ++i) c.f[i] += case_random(&seed) - 0.5;
+      ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
+      ck_assert_int_eq(rep.outcome, CONVERGED);
+      memset(u, 0, (size_t)c.cp.m * sizeof *u);
+      memset(r, 0, (size_t)c.cp.m * sizeof *r);
+      rep = solve_by(&newton_solver, &c, 1e-12, u, r);
+      ck_assert_int_eq(rep.outcome, CONVERGED);
+      for (int i = 0; i < c.cp.m; ++i) {
+        ck_assert_double_eq_tol(c.r[i], r[i], 1e-9);
+        ck_assert_double_eq_tol(c.u[i], u[i], 1e-9);
+      }
+    }
+    contact_solver_free(s);
+    free(u);
+    free(r);
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* A method that cannot treat a problem says so at once, and why: the stiffness
  * of a compliance of rank 1. */
 START_TEST(unfit_method_is_named_with_the_reason) {
@@ -166,6 +201,8 @@ START_TEST(limit_holds_for_all_attempts_together) {
 END_TEST
 
 UNIT_MAIN("choice", frictionless_problems_are_solved_in_both_forms,
-          what_is_kept_changes_no_answer, unfit_method_is_named_with_the_reason,
+          what_is_kept_changes_no_answer,
+          opened_nodes_are_kept_and_change_no_answer,
+          unfit_method_is_named_with_the_reason,
           tolerance_is_met_in_the_form_given,
           limit_holds_for_all_attempts_together)
