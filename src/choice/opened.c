@@ -219,7 +219,8 @@ void opened_solve(opened *o, const contact_problem *cp,
       (solver_report){.outcome = STOPPED_UNFIT, .solver = newton_solver.name};
   begin(o, cp, u, r);
   close_all(o, cp);
-  int most = control->max_iter < STEPS ? control->max_iter : STEPS;
+  int asked = control->max_iter, most = STEPS;
+  if (asked > 0 && asked < most) most = asked;
   while (rep->iterations < most) {
     list_open(o);
     make_columns(o, cp);

@@ -127,7 +127,7 @@ static void line(block *b, const solver_ops *ops, const struct variant *v,
   must(contact_solver_new(&choice, &s));
   solver_report first = run(b, s);
   solver_report rep = first.cpu < 0.2 ? run(b, s) : first;
-  printf("%-16s %dD %5d %4.1f %7.0e %7d %6d %9.4f %9.4f %9.1e %9.1e  %s\n",
+  printf("%-16s %dD %5d %4.1f %7.0e %7d %6d %9.6f %9.6f %9.1e %9.1e  %s\n",
          name, b->body.cp.dim, b->body.cp.m, mu, tol, rep.iterations,
          rep.limit_updates, first.cpu, rep.cpu, rep.residual, error_of(b),
          outcome_text(rep.outcome));

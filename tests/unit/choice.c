@@ -1,4 +1,5 @@
 /* METHOD=AUTO, forms of a problem, what is kept from problem to problem. */
+#include "choice/form.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/solver_rows.h"
@@ -86,17 +87,17 @@ START_TEST(opened_nodes_are_kept_and_change_no_answer) {
   unsigned long long seed = 77;
   for (int k = 0; k < 8; ++k) {
     contact_case c = case_any(2 + k % 2, 20, 0.0, 0, 300u + (unsigned)k);
-    solver_choice choice = {.tol = 1e-12};
-    contact_solver *s = NULL;
+    solver_control control = {.tol = 1e-12};
+    normal_form nf = {0};
     double *u = calloc((size_t)c.cp.m, sizeof *u),
            *r = calloc((size_t)c.cp.m, sizeof *r);
     c.cp.g0 = c.cp.ut0 = NULL;
     c.cp.B = NULL;
-    ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
     for (int step = 0; step < 6; ++step) {
       solver_report rep;
       for (int i = 0; i < c.cp.m; ++i) c.f[i] += case_random(&seed) - 0.5;
-      ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
+      ck_assert_int_eq(normal_form_opened(&nf, &c.cp, &control, c.u, c.r, &rep),
+                       OK);
       ck_assert_int_eq(rep.outcome, CONVERGED);
       memset(u, 0, (size_t)c.cp.m * sizeof *u);
       memset(r, 0, (size_t)c.cp.m * sizeof *r);
@@ -107,7 +108,7 @@ START_TEST(opened_nodes_are_kept_and_change_no_answer) {
         ck_assert_double_eq_tol(c.u[i], u[i], 1e-9);
       }
     }
-    contact_solver_free(s);
+    normal_form_free(&nf);
     free(u);
     free(r);
     case_free(&c);
