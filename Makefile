@@ -28,6 +28,7 @@ $(if $(optimise),,$(error BUILD=$(BUILD): release, debug, asan or cover))
 CPPFLAGS += -Isrc -D_POSIX_C_SOURCE=200809L -D_DEFAULT_SOURCE \
             $(shell pkg-config --cflags hdf5-serial 2>/dev/null) \
             -I/usr/include/suitesparse
+CPPFLAGS += $(DEFINES)
 CFLAGS   += -std=c11 $(warnings) $(optimise)
 LDFLAGS  += $(filter -fsanitize% --coverage,$(optimise))
 LDLIBS   += -lumfpack -lcholmod -lcamd -lsuitesparseconfig -llapacke -lopenblas \
@@ -74,6 +75,7 @@ help:
 	@echo "make scenes       the matrix of hard scenes and methods alone"
 	@echo "make torture      memory, files, kills, random input: a table, an hour"
 	@echo "make verify       orders of convergence, observed and expected"
+	@echo "make effects-cost instructions of builds without an effect; needs valgrind"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
 	@echo "make bench-solvers  what each digit costs, for every solver"
@@ -175,6 +177,11 @@ bench-run: $(program) $(bench)
 .PHONY: verify
 verify: $(program) $(verify)
 	$(Q)for v in $(verify); do PROTIS=$(abspath $(program)) $$v || exit 1; done
+
+# What is off costs nothing: instructions counted by valgrind.
+.PHONY: effects-cost
+effects-cost: $(program)
+	$(Q)tools/effects_cost
 
 bench-solvers: $(out)/tests/bench/solvers
 	$(Q)$<

@@ -2,6 +2,7 @@
  * protis: reads the command line, runs the stages in order, prints what went
  * wrong and chooses the exit code.
  */
+#include "auto.h"
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/text.h"
@@ -26,6 +27,8 @@ static status solve(const command *c, job_input *in, int *unsettled) {
   if (c->restart) TRY(restart_read(c, in, &from));
   if (in->m->target.percent > 0.0 && in->problem == NULL)
     TRY(target_reach(c, in, unsettled));
+  else if (in->m->effects_auto && in->problem == NULL && from == NULL)
+    TRY(auto_solve_job(c, in, unsettled));
   else
     TRY(job_solve(c, in, NULL, from, unsettled));
 done:

@@ -147,7 +147,8 @@ static int starts_smoothly(const run *r) {
 static status start_visco(run *r, int *increment_no) {
   status st = OK;
   double cpu = timer_cpu();
-  if (r->step->kind != STEP_VISCO || r->visco == NULL) return OK;
+  if (r->step->kind != STEP_VISCO) return OK;
+  if (r->visco == NULL && r->m->n_neglected == 0) return OK;
   TRY(increment_begin(r, r->step->start));
   if (!starts_smoothly(r)) {
     TRY(increment_solve(r, r->step->start));

@@ -551,6 +551,18 @@ done:
   return st;
 }
 
+status apply_effects(reading *r) {
+  const effects_param *p = r->param;
+  if (r->m->has_effects)
+    message_add(r->m->log, P2011, &r->card->at,
+                "a deck has one *EFFECTS card, this is its second");
+  r->m->has_effects = 1;
+  r->m->effects_auto = p->mode;
+  r->m->effects_tol = p->tol;
+  r->m->effects_at = r->card->at;
+  return OK;
+}
+
 status apply_print(reading *r) {
   status st = OK;
   const print_param *p = r->param;

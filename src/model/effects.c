@@ -260,6 +260,19 @@ static int reason_problem(const model *m, int bit, char *text, size_t size) {
   return 1;
 }
 
+/* 1: the deck calls for it, *EFFECTS leaves it out. */
+static int reason_neglected(const model *m, int bit, char *text, size_t size) {
+  if (m->effects >> bit & 1u) return 0;
+  for (int i = 0; i < m->n_neglected; ++i) {
+    const neglected *row = &m->neglected[i];
+    if (row->bit != bit || row->back) continue;
+    snprintf(text, size, "left out by *EFFECTS, MODE=AUTO, %s:%d",
+             PLACE(m->effects_at));
+    return 1;
+  }
+  return 0;
+}
+
 static void reason_friction(const model *m, char *text, size_t size) {
   const contact *c = NULL;
   const friction_rule *rule = first_rule(m, rule_has_friction, &c);
@@ -488,11 +501,13 @@ void model_find_effects(model *m) {
   m->effects = 0;
   for (int bit = 0; bit < EFFECT_COUNT; ++bit)
     if (rows[bit].is_on != NULL && rows[bit].is_on(m)) m->effects |= 1u << bit;
+  m->effects &= ~(unsigned)(EFFECTS_WITHOUT);
 }
 
 const char *model_effect_reason(const model *m, int bit, char *text,
                                 size_t size) {
   if (reason_problem(m, bit, text, size)) return text;
+  if (reason_neglected(m, bit, text, size)) return text;
   if (rows[bit].reason != NULL)
     rows[bit].reason(m, text, size);
   else

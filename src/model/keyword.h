@@ -160,6 +160,10 @@ typedef struct accuracy_param {
   double target, max_cpu, max_memory, time_share;
   int solver, theory;
 } accuracy_param;
+typedef struct effects_param {
+  int mode;
+  double tol;
+} effects_param;
 typedef struct print_param {
   int contact, totals, nodes, elements, energy, reactions, zones, loop;
   int frequency;
@@ -214,6 +218,7 @@ status apply_temperature(reading *r);
 status apply_solver(reading *r);
 plugin names_solver(const reading *r);
 status apply_accuracy(reading *r);
+status apply_effects(reading *r);
 status apply_print(reading *r);
 status apply_output(reading *r);
 status apply_restart(reading *r);
@@ -260,7 +265,5 @@ int has_card(const model *m, const char *name);
 /* Place of a component of *REFERENCE in "value", -1: there is none of that name
  * in such a model. */
 int reference_place(const char *name, int dim, int axisymmetric);
-/* effects.c: which effects the deck calls for, into m->effects. */
-void model_find_effects(model *m);
 
 #endif

@@ -203,6 +203,13 @@ static const option solver_options[] = {
                 "from several starts; ALL by all combinations of statuses, up "
                 "to 10 contact nodes in 2-D"),
   OPTION_END};
+static const option effects_options[] = {
+  OPTION_CHOICE(effects_param, mode, "MODE", "CALLED|AUTO", "CALLED",
+                "CALLED: all that the deck calls for. AUTO: what is proved to "
+                "change the answer by less than TOL is left out"),
+  OPTION_REAL(effects_param, tol, "TOL", DBL_MIN, 0.1, "1e-3", "-",
+              "for AUTO: of the energy norm and of the largest stress"),
+  OPTION_END};
 static const option accuracy_options[] = {
   OPTION_FLAG(accuracy_param, mesh, "MESH", "NO",
               "estimate of the error of the mesh, from recovered stresses"),
@@ -371,6 +378,8 @@ const keyword keyword_table[] = {
    "", "method for the contact problem and its options"},
   {"ACCURACY", IN_STEP, OPTIONS(accuracy), NULL, apply_accuracy, 0, 0,
    "", "error estimates"},
+  {"EFFECTS", IN_MODEL | IN_STEP, OPTIONS(effects), NULL, apply_effects, 0, 0,
+   "", "which effects of the deck are simulated; for all steps"},
   {"PRINT", IN_STEP, OPTIONS(print), NULL, apply_print, 0, 0,
    "", "tables in JOB.dat"},
   {"OUTPUT", IN_STEP, OPTIONS(output), NULL, apply_output, 0, 0,
@@ -380,7 +389,6 @@ const keyword keyword_table[] = {
    "writes it without the card"},
   {"END STEP", IN_STEP, NO_OPTIONS, NULL, apply_end_step, 0, 0,
    "", "closes the step"},
-  RESERVED("EFFECTS", "which effects are simulated"),
   {NULL, 0, NULL, 0, NULL, NULL, 0, 0, NULL, NULL}};
 /* clang-format on */
 

@@ -37,6 +37,7 @@ typedef struct material {
   law_card law; /* ops NULL: elastic; owned                                   */
   law_shift clock; /* *TRS; kind SHIFT_NONE: not given                        */
   place clock_at;
+  const law_ops *law_aside; /* ops of the law while it is left out, or NULL   */
   int is_abaqus_prony; /* *VISCOELASTIC: long-term moduli if it is not said   */
 } material;
 enum { MODULI_LONG_TERM, MODULI_INSTANTANEOUS };
@@ -54,8 +55,9 @@ typedef struct section {
 /* One *FRICTION card: the law of a contact, until another takes its place. */
 typedef struct friction_rule {
   const friction_ops *law; /* NULL: frictionless                              */
-  friction_card card;      /* its value and options (owned)                   */
-  value_table position;    /* TABLE= of the value; arrays owned               */
+  const friction_ops *aside; /* the law while it is left out, or NULL         */
+  friction_card card;   /* its value and options (owned)                   */
+  value_table position; /* TABLE= of the value; arrays owned               */
   const char *amplitude_name;
   place at, value_at, amplitude_at;
 } friction_rule;
@@ -268,6 +270,17 @@ typedef struct accuracy_target { /* *ACCURACY, TARGET=                       */
   int max_passes;
 } accuracy_target;
 
+/* What *EFFECTS, MODE=AUTO leaves out, and what that would have changed. */
+typedef struct neglected {
+  int bit, id;   /* EFFECT_BIT_..., material of a law or -1                  */
+  char why[160]; /* what it was tried for                                    */
+  double bound;  /* -, of the energy norm of the solution, at most           */
+  double local;  /* -, stress in one element over the scale of stresses      */
+  long checked;  /* increments                                               */
+  int back;      /* 1: it matters, the run was made again with it            */
+} neglected;
+enum { NEGLECT_MAX = 16 };
+
 typedef struct model {
   deck *deck;
   message_log *log;
@@ -303,6 +316,11 @@ typedef struct model {
   value_table first_step; /* 0 to 1 over the first step; arrays owned         */
   step *steps;
   accuracy_target target;
+  int has_effects, effects_auto; /* *EFFECTS, MODE=AUTO                       */
+  double effects_tol;            /* -                                         */
+  place effects_at;
+  int n_neglected;
+  neglected neglected[NEGLECT_MAX]; /* [n_neglected]                          */
   closed_form ref;
   unsigned effects;  /* bits EFFECT_*, set by model_check                    */
   int dim, ns;       /* from the mesh                                        */
@@ -340,7 +358,13 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
 /* clang-format on */
 #define EFFECT_BIT(name, text) EFFECT_BIT_##name,
 enum { EFFECT_LIST(EFFECT_BIT) EFFECT_COUNT };
-#define EFFECT_MASK(name, text) EFFECT_##name = 1 << EFFECT_BIT_##name,
+/* Bits of effects that a build knows nothing of: tools/effects_cost proves with
+ * such builds that what is off costs nothing. */
+#ifndef EFFECTS_WITHOUT
+#define EFFECTS_WITHOUT 0
+#endif
+#define EFFECT_MASK(name, text) \
+  EFFECT_##name = (1 << EFFECT_BIT_##name) & ~(EFFECTS_WITHOUT),
 enum { EFFECT_LIST(EFFECT_MASK) EFFECT_ALL = (1 << EFFECT_COUNT) - 1 };
 const char *effect_name(int bit);
 /* Name of the file of a place, without folder. */
@@ -379,6 +403,8 @@ status model_from_deck(deck *d, message_log *log, model **out);
 /* Compare with the mesh: groups, sections, dimensions; fill the _id fields and
  * the effects. Errors go to the log: ERR_DECK or ERR_MESH. */
 status model_check(model *m, const mesh *msh);
+/* Which effects the deck calls for, into m->effects. */
+void model_find_effects(model *m);
 /* In the place of model_check for a deck with *CONDENSED PROBLEM, once it is
  * read: dimension (1: LCP), 1 if it has friction. */
 void model_fit_problem(model *m, int dim, int friction);

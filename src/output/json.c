@@ -152,6 +152,24 @@ static void write_effects(json *w, const job *j) {
   json_close(w, ']');
 }
 
+/* What *EFFECTS, MODE=AUTO left out or took back. */
+static void write_neglected(json *w, const model *m) {
+  if (!m->effects_auto) return;
+  json_open(w, "left_out", '[');
+  for (int i = 0; i < m->n_neglected; ++i) {
+    const neglected *n = &m->neglected[i];
+    json_open(w, NULL, '{');
+    json_string(w, "effect", effect_name(n->bit));
+    json_string(w, "why", n->why);
+    json_flag(w, "taken_back", n->back);
+    json_real(w, "bound", n->bound);
+    json_real(w, "stress", n->local);
+    json_count(w, "increments", (double)n->checked);
+    json_close(w, '}');
+  }
+  json_close(w, ']');
+}
+
 static void write_sizes(json *w, const job *j) {
   size_row rows[SIZE_ROWS];
   job_sizes(j, rows);
@@ -371,6 +389,7 @@ static void write_all(json *w, const job *j) {
   json_count(w, "threads", j->o->threads);
   write_exit(w, j->run);
   write_effects(w, j);
+  write_neglected(w, j->m);
   write_sizes(w, j);
   write_accuracy(w, j);
   write_passes(w, j);

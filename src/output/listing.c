@@ -89,6 +89,37 @@ static void print_model(const job *j, FILE *f) {
     }
 }
 
+/* What *EFFECTS, MODE=AUTO tries without, or had to take back. */
+static void print_left_out(const model *m, FILE *f) {
+  for (int i = 0; i < m->n_neglected; ++i) {
+    const neglected *n = &m->neglected[i];
+    fprintf(f, "  %s %s: %s\n",
+            n->back ? "not left out:" : "left out:", effect_name(n->bit),
+            n->why);
+    if (n->back && n->checked > 0)
+      fprintf(f,
+              "    without it: at most %.1e of the energy norm, %.1e of the "
+              "largest stress;\n    too much for TOL=%g, this is the run with "
+              "it\n",
+              n->bound, n->local, m->effects_tol);
+    else if (n->back)
+      fputs("    without it there was no answer, this is the run with it\n", f);
+  }
+}
+
+/* The proof at the end: what would have changed at most. */
+static void print_proof(const model *m, FILE *f) {
+  for (int i = 0; i < m->n_neglected; ++i) {
+    const neglected *n = &m->neglected[i];
+    if (n->back) continue;
+    fprintf(f,
+            "  without %s: changes the answer by at most %.1e of the energy "
+            "norm,\n    %.1e of the largest stress, at each of %ld "
+            "increments\n",
+            effect_name(n->bit), n->bound, n->local, n->checked);
+  }
+}
+
 status listing_open(const job *j, text_file *lst) {
   FILE *f = lst->f;
   const char *version = j->o->version != NULL ? j->o->version : "";
@@ -101,6 +132,7 @@ status listing_open(const job *j, text_file *lst) {
   print_model(j, f);
   heading(f, "EFFECTS");
   plan_print(j->plan, "  ", f);
+  print_left_out(j->m, f);
   return text_check(lst);
 }
 
@@ -706,6 +738,7 @@ status listing_verdict(const job *j, text_file *lst) {
   print_stages(j, f);
   heading(f, "COST OF THE EFFECTS");
   plan_print_cost(j->plan, !j->o->no_timing, f);
+  print_proof(j->m, f);
   heading(f, "END");
   fprintf(f, "  exit %d: %s\n", status_exit_code(j->run->verdict),
           status_text(j->run->verdict));

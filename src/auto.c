@@ -1,0 +1,68 @@
+/*
+ * The run without some effects, watched, and what follows from it.
+ */
+#include "auto.h"
+
+#include "neglect/neglect.h"
+
+typedef struct watcher {
+  model *m;
+  neglect *n;
+  status st; /* of measuring                                                  */
+} watcher;
+
+static void see_increment(void *ctx, const state *s) {
+  watcher *w = ctx;
+  if (w->st == OK) w->st = neglect_measure(w->n, s, w->m->neglected);
+}
+
+/* 1: the run gave no answer to measure. An interruption is none. */
+static int has_failed(const watcher *w, status run) {
+  return (run != OK && run != ERR_UNSETTLED) || w->st != OK;
+}
+
+static int is_final(status run) {
+  return run == ERR_INTERRUPTED || run == ERR_TERMINATED || run == ERR_MEMORY ||
+         run == ERR_FILE;
+}
+
+/* A run without the rows that are not back; *again: some are now. */
+static status try_without(watcher *w, const command *c, job_input *in,
+                          int *unsettled, int *again) {
+  status st = OK;
+  const job_watch watch = {.ctx = w, .increment = see_increment};
+  neglect_restore(in->m);
+  neglect_leave_out(in->m);
+  neglect_free(w->n);
+  w->n = NULL;
+  TRY(neglect_new(in->m, in->msh, &w->n));
+  w->st = OK;
+  st = job_solve(c, in, &watch, NULL, unsettled);
+  *again = !is_final(st) && neglect_take_back(in->m, has_failed(w, st)) > 0;
+done:
+  return st;
+}
+
+/* Rows that are left out. */
+static int left_out(const model *m) {
+  int n = 0;
+  for (int i = 0; i < m->n_neglected; ++i) n += !m->neglected[i].back;
+  return n;
+}
+
+status auto_solve_job(const command *c, job_input *in, int *unsettled) {
+  status st = OK;
+  watcher w = {.m = in->m};
+  int again = 1;
+  TRY(neglect_choose(in->m, in->msh));
+  while (again && left_out(in->m) > 0)
+    st = try_without(&w, c, in, unsettled, &again);
+  if (again) {
+    neglect_restore(in->m);
+    st = job_solve(c, in, NULL, NULL, unsettled);
+  }
+done:
+  neglect_free(w.n);
+  neglect_restore(in->m);
+  return st;
+}

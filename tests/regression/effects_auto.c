@@ -1,0 +1,224 @@
+/*
+ * *EFFECTS, MODE=AUTO: the answer is that of MODE=CALLED within TOL, with what
+ * was left out and what was taken back.
+ */
+#include "support/block_file.h"
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A block of one material, pressed with 50 MPa from above in a *VISCO step. */
+typedef struct scene {
+  const char *material; /* cards below *MATERIAL                              */
+  const char *law;      /* of friction, with its data line                    */
+  const char *loads;    /* cards of the step                                  */
+  const char *effects;  /* the card *EFFECTS                                  */
+  double nu;
+} scene;
+
+static job run_scene(const scene *s) {
+  job j = job_begin("block");
+  block_file_write(&j, (int[]){8, 6}, (double[]){40.0, 30.0}, 0);
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=STEEL\n*ELASTIC\n"
+            "130.D3, %.17g\n%s"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL, TYPE=CPE3\n"
+            "*OBSTACLE, NAME=FLOOR, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=FLOOR\n%s%s"
+            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.0\n"
+            "*BOUNDARY\nSYMMETRY, 1, 1\n*DSLOAD\nTOP, P, 50.\n%s"
+            "*PRINT, CONTACT, TOTALS, ENERGY, FREQUENCY=0\n"
+            "*OUTPUT, HDF5=NO\n*END STEP\n",
+            s->nu, s->material, s->law == NULL ? "" : s->law, s->effects,
+            s->loads);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* 1: left out, -1: taken back, 0: not tried. */
+static int fate(const job *j, const char *effect) {
+  char key[80], *text = job_file(j, "lst");
+  int answer = 0;
+  snprintf(key, sizeof key, "\n  left out: %s: ", effect);
+  if (strstr(text, key) != NULL) answer = 1;
+  snprintf(key, sizeof key, "\n  not left out: %s: ", effect);
+  if (strstr(text, key) != NULL) answer = -1;
+  free(text);
+  return answer;
+}
+
+static double total_of(const job *j, const char *column) {
+  dat d = job_table(j, "TOTALS", -1);
+  double value = dat_sum(&d, column);
+  dat_free(&d);
+  return value;
+}
+
+/* Pressures of the nodes, resultants and energy of both, in parts of their
+ * scales; the largest difference. */
+static double difference(const job *a, const job *b) {
+  dat p = job_table(a, "CONTACT", -1), q = job_table(b, "CONTACT", -1);
+  double scale = dat_max(&q, "pressure"), worst = 0.0;
+  ck_assert_int_eq(p.n_row, q.n_row);
+  for (int i = 0; i < p.n_row; ++i)
+    worst = fmax(
+        worst,
+        fabs(dat_at(&p, i, "pressure") - dat_at(&q, i, "pressure")) / scale);
+  dat_free(&p);
+  dat_free(&q);
+  double force = fabs(total_of(b, "normal"));
+  worst =
+      fmax(worst,
+           fabs(total_of(a, "tangential") - total_of(b, "tangential")) / force);
+  p = job_table(a, "ENERGY", -1);
+  q = job_table(b, "ENERGY", -1);
+  double energy = dat_at(&q, 0, "strain_energy");
+  worst = fmax(worst, fabs(dat_at(&p, 0, "strain_energy") - energy) / energy);
+  dat_free(&p);
+  dat_free(&q);
+  return worst;
+}
+
+/* Not even tried: the run is that of CALLED. */
+static void stays(const scene *s, const char *effect) {
+  scene automatic = *s;
+  automatic.effects = "*EFFECTS, MODE=AUTO\n";
+  job j = run_scene(&automatic);
+  ck_assert_int_eq(fate(&j, effect), 0);
+  job_end(&j);
+}
+
+/* Both modes; what became of the effect, and that the answers agree. */
+static void compare(const scene *s, const char *effect, int expected,
+                    double tol) {
+  scene called = *s, automatic = *s;
+  called.effects = "";
+  automatic.effects = "*EFFECTS, MODE=AUTO\n";
+  job a = run_scene(&automatic), b = run_scene(&called);
+  ck_assert_msg(fate(&a, effect) == expected, "%s, %s%s: %d", effect,
+                s->material, s->loads, fate(&a, effect));
+  ck_assert_int_eq(fate(&b, effect), 0);
+  double found = difference(&a, &b);
+  ck_assert_msg(found <= tol, "%s, %s%s: %g", effect, s->material, s->loads,
+                found);
+  job_end(&a);
+  job_end(&b);
+}
+
+static const char coulomb[] = "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n";
+
+/* The strain of 50 MPa is 3.8e-4: 1e-4 of it is 3.2e-3 K at 1.2e-5/K. */
+START_TEST(small_thermal_strain_is_left_out) {
+  const scene small = {"*EXPANSION\n1.2D-5\n", coulomb,
+                       "*TEMPERATURE\nBODY, 1.D-4\n", "", 0.2};
+  scene above = small, large = small;
+  above.loads = "*TEMPERATURE\nBODY, 2.5D-3\n";
+  large.loads = "*TEMPERATURE\nBODY, 1.D-2\n";
+  compare(&small, "thermal strain", 1, 1e-3);
+  compare(&above, "thermal strain", -1, 1e-12);
+  stays(&large, "thermal strain");
+}
+END_TEST
+
+START_TEST(slow_relaxation_is_left_out) {
+  const scene slow = {"*INELASTIC, LAW=MAXWELL\n1.D6\n", coulomb, "", "", 0.2};
+  scene fast = slow;
+  fast.material = "*INELASTIC, LAW=MAXWELL\n1.D2\n";
+  compare(&slow, "inelastic strain", 1, 1e-3);
+  stays(&fast, "inelastic strain");
+}
+END_TEST
+
+/* Sheared along its side, the block passes a threshold that the loads do not.
+ */
+START_TEST(law_below_its_threshold_is_left_out) {
+  const scene below = {"*INELASTIC, LAW=BINGHAM\n200., 1.D3\n", coulomb, "", "",
+                       0.2};
+  scene corner = below;
+  corner.material = "*INELASTIC, LAW=BINGHAM\n60., 1.D3\n";
+  corner.loads = "LEFT, TY, 49.\n";
+  compare(&below, "inelastic strain", 1, 1e-12);
+  compare(&corner, "inelastic strain", -1, 1e-12);
+}
+END_TEST
+
+/* Nodes are 5 apart. */
+START_TEST(average_within_an_element_is_local) {
+  const scene within = {
+      "", "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=4.9\n0.3\n",
+      "LEFT, P, 20.\n", "", 0.2};
+  scene beyond = within;
+  beyond.law = "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=5.1\n0.3\n";
+  compare(&within, "nonlocal average", 1, 1e-12);
+  stays(&beyond, "nonlocal average");
+}
+END_TEST
+
+/* Without lateral expansion nothing slips, unless it is pushed. */
+START_TEST(friction_without_slip_is_left_out) {
+  const scene still = {"", coulomb, "", "", 0.0};
+  scene pushed = still, expands = still;
+  pushed.loads = "LEFT, P, 20.\n";
+  expands.nu = 0.2;
+  compare(&still, "friction", 1, 1e-12);
+  compare(&pushed, "friction", -1, 1e-12);
+  stays(&expands, "friction");
+}
+END_TEST
+
+START_TEST(nothing_is_left_out_unless_asked) {
+  const scene s = {"*EXPANSION\n1.2D-5\n", coulomb,
+                   "*TEMPERATURE\nBODY, 1.D-6\n", "*EFFECTS, MODE=CALLED\n",
+                   0.2};
+  job j = run_scene(&s);
+  ck_assert_int_eq(fate(&j, "thermal strain"), 0);
+  job_end(&j);
+}
+END_TEST
+
+static double uniform(unsigned *seed) {
+  *seed = *seed * 1664525u + 1013904223u;
+  return (double)(*seed >> 8) / 16777216.0;
+}
+
+/* Whatever is left out, the answer is that of CALLED within TOL. */
+START_TEST(random_scenes_agree) {
+  unsigned seed = 7;
+  for (int k = 0; k < 3; ++k) {
+    char material[200], law[100], loads[100];
+    double nu = uniform(&seed) < 0.3 ? 0.0 : 0.4 * uniform(&seed);
+    snprintf(material, sizeof material,
+             "*EXPANSION\n1.2D-5\n*INELASTIC, LAW=%s\n",
+             uniform(&seed) < 0.5 ? "MAXWELL" : "NORTON");
+    size_t used = strlen(material);
+    double rate = pow(10.0, 3.0 + 5.0 * uniform(&seed));
+    if (strstr(material, "MAXWELL") != NULL)
+      snprintf(material + used, sizeof material - used, "%.6e\n", rate);
+    else
+      snprintf(material + used, sizeof material - used, "%.6e, 3.\n",
+               3.8e-4 / rate / 125e3);
+    snprintf(law, sizeof law, "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n%.6e\n",
+             pow(10.0, -8.0 + 8.0 * uniform(&seed)));
+    snprintf(loads, sizeof loads, "LEFT, P, %.6f\n*TEMPERATURE\nBODY, %.6e\n",
+             20.0 * uniform(&seed), pow(10.0, -6.0 + 5.0 * uniform(&seed)));
+    const scene s = {material, law, loads, "", nu};
+    scene automatic = s;
+    automatic.effects = "*EFFECTS, MODE=AUTO, TOL=1e-3\n";
+    job a = run_scene(&automatic), b = run_scene(&s);
+    double found = difference(&a, &b);
+    ck_assert_msg(found <= 1e-3, "scene %d: %g", k, found);
+    job_end(&a);
+    job_end(&b);
+  }
+}
+END_TEST
+
+UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
+          slow_relaxation_is_left_out, law_below_its_threshold_is_left_out,
+          average_within_an_element_is_local, friction_without_slip_is_left_out,
+          nothing_is_left_out_unless_asked, random_scenes_agree)
