@@ -112,6 +112,14 @@ $(out)/tests/%: $(out)/tests/%.o $(support) $(library)
 
 $(out)/tests/%.o: CPPFLAGS += -Itests
 
+# Floating-point traps for whole runs of the program.
+$(out)/tests/preload/traps.so: tests/preload/traps.c Makefile
+	@mkdir -p $(@D)
+	@echo "  LD   $@"
+	$(Q)$(CC) -std=c11 $(warnings) -shared -fPIC $< -o $@ -lm -lpthread
+
+$(out)/tests/regression/examples: | $(out)/tests/preload/traps.so
+
 # Stands between a program under test and the C library.
 $(out)/tests/preload/%.so: tests/preload/%.c Makefile
 	@mkdir -p $(@D)

@@ -253,8 +253,8 @@
     "depend on time or temperature. Take MIDPOINT or BACKWARD.")              \
   X(2055, WARNING, "nearly incompressible",                                  \
     "Linear triangles and tetrahedra are too stiff where nu is near 1/2. "   \
-    "The figures are those of a tube under pressure on a mesh of equal "     \
-    "diagonals; pressures suffer more than displacements. "                  \
+    "The figures are those of a tube under pressure on an unstructured "     \
+    "mesh; pressures suffer far more than displacements. "                   \
     "FORMULATION=AVERAGED of *SOLID SECTION does not lock.")                \
   X(2056, ERROR, "closed form not complete",                                 \
     "*REFERENCE compares whole fields: give all components of the "          \

@@ -2,6 +2,8 @@
  * Every deck of input/ against the table of its folder, reference.txt: values
  * of closed forms, of statics, of publications and of finer meshes. Its effect
  * plan against plans/NAME.txt, the section EFFECTS of JOB.lst without heading.
+ * The runs end at the first invalid operation, division by zero or overflow of
+ * floating point (tests/preload).
  */
 #include "support/job.h"
 #include "support/unit.h"
@@ -11,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { MAX = 64 };
 
@@ -131,8 +134,26 @@ static void run_deck(const char *path, int n, const line *lines) {
   job_end(&j);
 }
 
+/* The sanitisers must be the first that is loaded: no traps then. */
+static void set_traps(void) {
+#ifndef __SANITIZE_ADDRESS__
+  const char *program = getenv("PROTIS");
+  char path[512], *cwd = getcwd(NULL, 0);
+  if (program == NULL) program = "build/release/protis";
+  snprintf(path, sizeof path, "%s%s%.*stests/preload/traps.so",
+           program[0] == '/' ? "" : cwd, program[0] == '/' ? "" : "/",
+           (int)(strrchr(program, '/') + 1 - program), program);
+  free(cwd);
+  ck_assert_msg(access(path, R_OK) == 0, "%s is not there", path);
+  setenv("LD_PRELOAD", path, 1);
+  int code = system("awk 'BEGIN { print log(-1) }' > /dev/null 2>&1");
+  ck_assert_msg(code != 0, "traps are not set");
+#endif
+}
+
 START_TEST(every_example_gives_the_values_of_its_table) {
   glob_t decks;
+  set_traps();
   ck_assert_int_eq(glob("input/*/*.inp", 0, NULL, &decks), 0);
   for (size_t i = 0; i < decks.gl_pathc; ++i) {
     line lines[MAX];

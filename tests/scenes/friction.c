@@ -185,6 +185,12 @@ const scene_row friction_scenes[] = {
      "CONTACT slip_distance = 0.804 ~ 1e-7;"
      "ENERGY friction_work_end = 2.412 ~ 1e-6;"
      "ENERGY energy_defect_relative = 0 ~ 1e-9"},
+  {.name = "10005 increments of cycles", .hard = "drift over 500 cycles",
+   .mesh = "rect 2 2 1 1", .deck = CYCLES("2001."),
+   .expect = "NODES u_x = 0.01 + 3*(y - 1)/500 ~ 1e-9;"
+     "CONTACT slip_distance = 8.004 ~ 1e-6;"
+     "ENERGY friction_work_end = 24.012 ~ 1e-5;"
+     "ENERGY energy_defect_relative = 0 ~ 1e-9"},
   {.name = NULL}
 };
 /* clang-format on */

@@ -21,6 +21,18 @@
   COULOMB("C", "0.3") STATIC "*BOUNDARY\nBOTTOM, 2\nCORNER, 1\n"        \
   "TOP, 2, 2, -0.001\n" END VISCO(words, dt, total)                     \
   "*PRINT, CONTACT, NODES, ENERGY, ELEMENTS, FREQUENCY=0\n*END STEP\n"
+/* Two layers side by side under a strain of 1e-3, which relax in 1e-15 and
+ * 1e15; a floor far below. */
+#define DECADES(words) \
+  "*MATERIAL, NAME=S\n*ELASTIC\n1000., 0.\n*INELASTIC, LAW=MAXWELL\n1.E-15\n" \
+  "*MATERIAL, NAME=H\n*ELASTIC\n1000., 0.\n*INELASTIC, LAW=MAXWELL\n1.E15\n"  \
+  "*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n"                                 \
+  "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n"                                 \
+  PLANE("C", "BOTTOM", "0., -1.", "0., 1.") COULOMB("C", "0.3") STATIC       \
+  "*BOUNDARY\nLEFT, 1\nCORNER, 2\nRIGHT, 1, 1, -0.001\n" END                 \
+  VISCO(words, "1.", "10.") "*PRINT, CONTACT, NODES, ENERGY, ELEMENTS, "     \
+  "FREQUENCY=0\n*END STEP\n"
+#define LAYER_STRESS "ELEMENTS stress_xx = if(y < 0.5, 0, -1) ~ 1e-9"
 #define STRESS(value, tol) "ELEMENTS stress_yy = -(" value ") ~ " tol
 
 /* clang-format off */
@@ -51,6 +63,21 @@ const scene_row time_scenes[] = {
    .mesh = "rect 2 2 1 1", .deck = CREEPS("@I", "0.01", "10."),
    .expect = "NODES u_y = -0.006*y ~ 1e-9;"
      "ENERGY energy_defect_relative = 0 ~ 1e-9"},
+  {.name = "creep, 10000 increments", .hard = "drift of the balance",
+   .mesh = "rect 2 2 1 1",
+   .deck = CREEPS("INTEGRATOR=MIDPOINT", "0.001", "10."),
+   .expect = "NODES u_y = -0.006*y ~ 1e-8;"
+     "ENERGY energy_defect_relative = 0 ~ 1e-9"},
+  {.name = "30 decades of relaxation times", .hard = "1e-15 and 1e15 beside dt",
+   .flags = QUICK, .mesh = "rect 4 4 1 1 layers",
+   .deck = DECADES("INTEGRATOR=BACKWARD"), .expect = LAYER_STRESS},
+  {.name = "30 decades, exact steps", .hard = "1e-15 and 1e15 beside dt",
+   .mesh = "rect 4 4 1 1 layers", .deck = DECADES("INTEGRATOR=EXPONENTIAL"),
+   .expect = LAYER_STRESS},
+  {.name = "30 decades, explicit", .hard = "no increment is small enough",
+   .mesh = "rect 4 4 1 1 layers", .verdict = 2,
+   .deck = DECADES("INTEGRATOR=HEUN"),
+   .expect = "errors has P2050"},
   {.name = "Euler at 1.99 tau", .hard = "just stable",
    .mesh = "rect 2 2 1 1",
    .deck = RELAXES("INTEGRATOR=EULER", "3.98", "398."),
