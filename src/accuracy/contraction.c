@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 
+#include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
 
@@ -24,6 +25,8 @@ typedef struct linear_map {
   double *kappa; /* [n] N/m                                                   */
   double *K;     /* [n_free^2] factor                                         */
   double *x;     /* [m] change of the free unknowns                           */
+  int n_closed;  /* closed nodes                                              */
+  double *P;     /* [n_free*n_closed] columns of A of their normal unknowns   */
   double *dg;    /* [n] N                                                     */
 } linear_map;
 
@@ -51,6 +54,7 @@ static void map_free(linear_map *s) {
   memory_free(s->kappa);
   memory_free(s->K);
   memory_free(s->x);
+  memory_free(s->P);
   memory_free(s->dg);
 }
 
@@ -95,7 +99,9 @@ static void set_state(linear_map *s, const double *u, const double *r) {
     int moves = is_free(s, u, r, dof);
     s->place[dof] = moves ? s->n_free : -1;
     if (moves) s->free_id[s->n_free++] = dof;
-    if (dof % cp->dim == 0) s->closed[dof / cp->dim] = !moves;
+    if (dof % cp->dim > 0) continue;
+    s->closed[dof / cp->dim] = !moves;
+    s->n_closed += !moves;
   }
 }
 
@@ -142,19 +148,30 @@ static double move(linear_map *s) {
   return energy;
 }
 
-/* Change of the normal force of a closed node, N. */
-static double push(const linear_map *s, int i) {
-  const double *column = s->cp->A + (size_t)(i * s->cp->dim) * (size_t)s->cp->m;
-  double sum = 0.0;
-  for (int a = 0; a < s->n_free; ++a) sum += column[s->free_id[a]] * s->x[a];
-  return sum;
+static void gather_columns(linear_map *s) {
+  double *to = s->P;
+  for (int i = 0; i < s->cp->n; ++i) {
+    if (!s->closed[i]) continue;
+    const double *column =
+        s->cp->A + (size_t)(i * s->cp->dim) * (size_t)s->cp->m;
+    for (int a = 0; a < s->n_free; ++a) *to++ = column[s->free_id[a]];
+  }
+}
+
+/* Changes of the normal forces, N; dn[n], 0 at open nodes. */
+static void push(const linear_map *s, double *dn) {
+  int c = s->n_closed;
+  if (c > 0)
+    cblas_dgemv(CblasColMajor, CblasTrans, s->n_free, c, 1.0, s->P, s->n_free,
+                s->x, 1, 0.0, dn, 1);
+  for (int i = s->cp->n - 1; i >= 0; --i) dn[i] = s->closed[i] ? dn[--c] : 0.0;
 }
 
 /* dg = -B (A x)_n on the sliding nodes; dn[n] room. */
 static void change_limit(linear_map *s, double *dn) {
   const contact_problem *cp = s->cp;
   const sparse_rows *B = cp->B;
-  for (int i = 0; i < cp->n; ++i) dn[i] = s->closed[i] ? push(s, i) : 0.0;
+  push(s, dn);
   for (int i = 0; i < cp->n; ++i) {
     s->dg[i] = 0.0;
     for (int k = B->start[i]; s->slip[i] && k < B->start[i + 1]; ++k)
@@ -179,6 +196,8 @@ static status measure(linear_map *s, const double *r, double *rate) {
   NEW(s->K, (size_t)s->n_free * (size_t)s->n_free);
   *rate = HUGE_VAL;
   if (!factor(s)) goto done;
+  NEW(s->P, (size_t)s->n_free * (size_t)s->n_closed);
+  gather_columns(s);
   *rate = 0.0;
   first_change(s, r);
   last = move(s);

@@ -12,6 +12,7 @@
 #include <math.h>
 #include <string.h>
 
+enum { TILE = 32 };
 static const double SYMMETRY = 0x1p-40; /* -, of the diagonal                 */
 static const double RANK = 0x1p-38;     /* -, smaller pivots are zero         */
 
@@ -24,19 +25,22 @@ struct dense_inverse {
   double *kernel;   /* [m*(m-rank)] motions without energy                    */
 };
 
-/* L = D M D with a unit diagonal; 0: not symmetric or no positive diagonal. */
+/* Lower triangle of L = D M D with a unit diagonal; 0: not symmetric or no
+ * positive diagonal. */
 static int scale(const double *M, dense_inverse *d) {
   size_t m = (size_t)d->m;
   for (size_t i = 0; i < m; ++i) {
     if (!(M[i * (m + 1)] > 0.0)) return 0;
     d->unit[i] = 1.0 / sqrt(M[i * (m + 1)]);
   }
-  for (size_t j = 0; j < m; ++j)
-    for (size_t i = 0; i < m; ++i) {
-      double both = d->unit[i] * d->unit[j];
-      d->L[i + m * j] = both * M[i + m * j];
-      if (fabs(both * (M[i + m * j] - M[j + m * i])) > SYMMETRY) return 0;
-    }
+  for (size_t j0 = 0; j0 < m; j0 += TILE)
+    for (size_t i0 = j0; i0 < m; i0 += TILE)
+      for (size_t j = j0; j < m && j < j0 + TILE; ++j)
+        for (size_t i = i0 > j ? i0 : j; i < m && i < i0 + TILE; ++i) {
+          double both = d->unit[i] * d->unit[j];
+          d->L[i + m * j] = both * M[i + m * j];
+          if (fabs(both * (M[i + m * j] - M[j + m * i])) > SYMMETRY) return 0;
+        }
   return 1;
 }
 

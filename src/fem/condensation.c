@@ -429,7 +429,7 @@ status condensed_force_energy(condensed *c, const double *d, double *square) {
   *square = c->n_motion > 0 ? HUGE_VAL : 0;
   for (int q = 0; q < c->n_body && c->n_motion == 0; ++q)
     if (c->body[q].nc > 0)
-      TRY(body_factor_energy(&c->body[q], d, c->cm, square));
+      TRY(body_factor_energy(&c->body[q], d, square));
   for (int q = 0; q < c->m; ++q)
     if (c->d.surface->held[q])
       *square += d[q] * (d[q] / c->A[(size_t)q * (size_t)(c->m + 1)]);

@@ -396,19 +396,23 @@ done:
 }
 
 status body_factor_energy(const body_factor *f, const double *d,
-                          cholmod_common *cm, double *square) {
+                          double *square) {
   status st = OK;
-  cholmod_dense *z = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
-  if (z == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
-  double *x = z->x, sum = 0;
-  for (long q = 0; q < f->nc; ++q) x[f->contact_at[q]] = d[f->contact_id[q]];
-  if (!cholmod_l_super_lsolve(f->L, z, f->work, cm))
-    FAIL(ERR_INTERNAL, "forward solve of %ld unknowns failed", f->n);
-  for (long q = 0; q < f->nc; ++q)
-    sum += x[f->contact_at[q]] * x[f->contact_at[q]];
+  double *x = NULL, sum = 0;
+  long super = 0;
+  NEW(x, f->nc);
+  for (long q = 0; q < f->nc; ++q) x[q] = d[f->contact_id[q]];
+  for (long q = 0; q < f->nc; ++q) {
+    const factor_column c = column_at(f->L, f->contact_at[q], &super);
+    x[q] /= c.value[0];
+    for (long t = 1; t < c.n; ++t) {
+      const int r = f->rank[c.row[t] - f->contact_at[0]];
+      if (r >= 0) x[r] -= c.value[t] * x[q];
+    }
+    sum += x[q] * x[q];
+  }
   *square += ldexp(sum, -f->exponent);
 done:
-  cholmod_l_free_dense(&z, cm);
+  memory_free(x);
   return st;
 }

@@ -49,9 +49,10 @@ status body_factor_back(const body_factor *f, const double *u_c, double *u,
 /* u += inv(K_ii) load_i at the interior unknowns; load[dim*n_node]. */
 status body_factor_interior(const body_factor *f, const double *load, double *u,
                             cholmod_common *cm);
-/* *square += d' inv(K) d for forces d[m] on the contact unknowns. */
+/* *square += d' inv(K) d for forces d[m] on the contact unknowns, which come
+ * last in the factor: d' inv(A) d = |inv(L_cc) d|^2. */
 status body_factor_energy(const body_factor *f, const double *d,
-                          cholmod_common *cm, double *square);
+                          double *square);
 /* Estimate of the condition number of the matrix factored, scaled to a unit
  * diagonal; 0 without memory. */
 double body_factor_condition(const stiffness *k, const body_factor *f,

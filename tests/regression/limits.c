@@ -3,6 +3,7 @@
  * exactly at the end of an increment, friction from none to sticking, large
  * contrast of stiffness, paths against short cuts, turning shear.
  */
+#include "solver/solver.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -81,6 +82,35 @@ START_TEST(constant_load_keeps_everything) {
   ck_assert_int_eq(increments, 4);
   free(sta);
   dat_free(&a);
+  job_end(&j);
+}
+END_TEST
+
+/* The same under every method, each in a step of its own. */
+START_TEST(rest_costs_at_most_two_iterations_with_any_method) {
+  char steps[2000];
+  int used = snprintf(steps, sizeof steps,
+                      "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nRIGHT, 1\n"
+                      "*DSLOAD\nTOP, P, 5.\nLEFT, P, 15.\n" END);
+  for (int i = 0; solver_list[i] != NULL; ++i)
+    used += snprintf(steps + used, sizeof steps - (size_t)used,
+                     "*STEP\n*QUASISTATIC\n0.5, 1.\n*SOLVER, METHOD=%s\n"
+                     "*END STEP\n",
+                     solver_list[i]->name);
+  job j = run_square(0, 0.2, 1.0, steps, 0);
+  char *sta = job_file(&j, "sta"), *line = sta;
+  int increments = 0;
+  while ((line = strchr(line, '\n')) != NULL && *++line != '\0') {
+    int step, iterations;
+    char solver[32];
+    ck_assert_int_eq(sscanf(line, "%d %*s %*s %*s %*s %*s %*s %*s %31s %d",
+                            &step, solver, &iterations),
+                     3);
+    if (step > 1) ck_assert_msg(iterations <= 2, "%s: %d", solver, iterations);
+    ++increments;
+  }
+  ck_assert_int_ge(increments, 17);
+  free(sta);
   job_end(&j);
 }
 END_TEST
@@ -328,6 +358,7 @@ START_TEST(local_friction_pays_for_nothing_else) {
 END_TEST
 
 UNIT_MAIN("limits", no_load_no_motion, constant_load_keeps_everything,
+          rest_costs_at_most_two_iterations_with_any_method,
           all_open_is_linear_elasticity, first_touch_at_the_end_of_an_increment,
           friction_from_none_to_sticking, greco_without_friction,
           path_makes_the_zone_of_stick, layers_of_a_million_to_one,
