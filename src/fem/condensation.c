@@ -197,7 +197,6 @@ static status form_matrix(condensed *c) {
   TRY(rigid_orthonormalise(c->k, &c->d, &c->rigid));
   TRY(rigid_project(&c->rigid, c->A));
   fill_held(c);
-  estimate_condition(c);
 done:
   timer_leave(STAGE_CONDENSE);
   return st;
@@ -223,6 +222,7 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   TRY(check_support(c));
   TRY(factor_bodies(c, floating));
   TRY(form_matrix(c));
+  estimate_condition(c);
 done:
   memory_free(floating);
   if (st != OK) {
