@@ -393,7 +393,8 @@
     "local friction. Refine the contact, or raise RADIUS.")                  \
   X(4014, ERROR, "initial displacements are not compatible",                 \
     "They must be in equilibrium with the loads at time 0, under the "       \
-    "unilateral and the friction condition (CPR98 3.3). Loads without "      \
+    "unilateral and the friction condition (CPR98 3.3; 3.26 with e^i_0 or "  \
+    "given forces). Loads without "                                          \
     "AMPLITUDE= start from zero: one that is there at once has an amplitude "\
     "or an expression of t. INCOMPATIBLE=RELAX takes the equilibrium of "    \
     "time 0 that is next to them.")                                       \
