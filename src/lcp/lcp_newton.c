@@ -5,9 +5,10 @@
  *   phi_i = sqrt(z_i^2 + w_i^2) - z_i - w_i,   w = q + M z,
  *
  * phi = 0 says z, w >= 0, z_i w_i = 0. Newton's direction where it descends on
- * |phi|^2/2, the gradient where not; a step may raise it above the last values
- * but not above their largest. The basis z_i > w_i of an iterate is tried out:
- * its solution is exact.
+ * |phi|^2/2, that of Levenberg and Marquardt where not; a step may raise it
+ * above the last values but not above their largest. The basis z_i > w_i of an
+ * iterate is tried out: its solution is exact; of a singular basis, whose
+ * solutions are many, that next to the iterate. Then the iterate itself.
  */
 #include "base/memory.h"
 #include "lcp/lcp_solve.h"
@@ -17,13 +18,23 @@
 #include <math.h>
 #include <string.h>
 
-enum { STEPS = 100, STARTS = 24, MEMORY = 5, HALVINGS = 30, PERIOD = 5 };
+enum {
+  STEPS = 100, /* from a start                                             */
+  LEAST_STARTS = 24,
+  MOST_STARTS = 3000,
+  MEMORY = 5,    /* last values a step is compared with                      */
+  HALVINGS = 30, /* of a step                                                */
+  PERIOD = 5     /* steps from one basis that is tried to the next           */
+};
+static const double WORK = 1e10; /* operations of all starts                  */
+static const double RANK = 0x1p-40; /* -, of a singular basis                 */
 static const double DESCENT = 1e-9; /* -, of |g| |d|                          */
 static const double ENOUGH = 1e-4;  /* -, of the slope (Armijo)               */
 
 typedef struct run {
   const lcp_data *p;
   double tol;
+  int most;      /* steps, all starts; 0: no limit                       */
   double unit;   /* of z: largest |q| over largest |M|                    */
   double *size;  /* [n] units: M and q below have diagonal 1, |q| <= 1    */
   double *M, *q; /* [n*n], [n]                                            */
@@ -31,6 +42,9 @@ typedef struct run {
   double *phi, *a, *b, *d, *g; /* [n]                                         */
   double *J; /* [n*n]                                                 */
   int *pivot, *basis; /* [n]                                                  */
+  double *N;          /* [n*n] normal equations                               */
+  double *work;       /* [room] of LAPACK                                     */
+  int room;
   double *answer, *slack; /* [n] in the units of the problem                  */
 } run;
 
@@ -45,14 +59,17 @@ static status run_new(run *s) {
   NEW(s->J, n * n);
   NEW(s->pivot, n);
   NEW(s->basis, n);
+  NEW(s->N, n * n);
+  s->room = 64 * (s->p->n + 1);
+  NEW(s->work, s->room);
 done:
   return st;
 }
 
 static void run_free(run *s) {
-  void *const blocks[] = {s->size,  s->q, s->z, s->w,     s->phi,
-                          s->a,     s->b, s->d, s->g,     s->answer,
-                          s->slack, s->M, s->J, s->pivot, s->basis};
+  void *const blocks[] = {
+      s->size,   s->q,     s->z, s->w, s->phi,   s->a,     s->b, s->d,   s->g,
+      s->answer, s->slack, s->M, s->J, s->pivot, s->basis, s->N, s->work};
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
     memory_free(blocks[k]);
 }
@@ -79,32 +96,59 @@ static void scale(run *s) {
 
 /* ---- a basis ------------------------------------------------------------- */
 
-/* z of the basis in "basis" (1: z_i free): M_BB z_B = -q_B. 1: it solves the
- * problem; s->answer then is z. */
-static int basis_solves(run *s) {
-  int n = s->p->n, k = 0;
-  size_t ld = (size_t)n;
-  for (int i = 0; i < n; ++i)
-    if (s->basis[i]) s->d[k++] = -s->p->q[i];
-  for (int j = 0, col = 0; j < n; ++j) {
-    if (!s->basis[j]) continue;
-    for (int i = 0, row = 0; i < n; ++i)
-      if (s->basis[i])
-        s->J[(size_t)row++ + (size_t)k * (size_t)col] =
-            s->p->M[(size_t)i + ld * (size_t)j];
-    ++col;
+static int solves(run *s) {
+  return lcp_residual(s->p, s->answer, s->slack) <= s->tol;
+}
+
+/* M of the basis (1: z_i free) into s->J; its size. */
+static int gather_basis(run *s) {
+  size_t n = (size_t)s->p->n, to = 0;
+  int k = 0;
+  for (size_t j = 0; j < n; ++j) {
+    k += s->basis[j];
+    for (size_t i = 0; i < n && s->basis[j]; ++i)
+      if (s->basis[i]) s->J[to++] = s->p->M[i + n * j];
   }
+  return k;
+}
+
+/* z of the basis: M_BB z_B = -q_B. 1: it solves the problem; s->answer then is
+ * z. */
+static int basis_solves(run *s) {
+  int n = s->p->n, k = gather_basis(s);
+  for (int i = 0, row = 0; i < n; ++i)
+    if (s->basis[i]) s->d[row++] = -s->p->q[i];
   if (k > 0 && LAPACKE_dgesv_work(LAPACK_COL_MAJOR, k, 1, s->J, k, s->pivot,
                                   s->d, k) != 0)
     return 0;
   for (int i = 0, row = 0; i < n; ++i)
     s->answer[i] = s->basis[i] ? s->d[row++] : 0.0;
-  return lcp_residual(s->p, s->answer, s->slack) <= s->tol;
+  return solves(s);
+}
+
+/* The same by the least change of s->answer, for a singular M_BB. */
+static int nearest_solves(run *s) {
+  int n = s->p->n, k, rank;
+  for (int i = 0; i < n; ++i)
+    s->answer[i] =
+        s->basis[i] ? fmax(0.0, s->z[i] * s->size[i] * s->unit) : 0.0;
+  if (solves(s)) return 1;
+  k = gather_basis(s);
+  if (k == 0) return 0;
+  for (int i = 0, row = 0; i < n; ++i)
+    if (s->basis[i]) s->d[row++] = -s->slack[i];
+  memset(s->pivot, 0, (size_t)k * sizeof *s->pivot);
+  if (LAPACKE_dgelsy_work(LAPACK_COL_MAJOR, k, k, 1, s->J, k, s->d, k, s->pivot,
+                          RANK, &rank, s->work, s->room) != 0)
+    return 0;
+  for (int i = 0, row = 0; i < n; ++i)
+    if (s->basis[i]) s->answer[i] = fmax(0.0, s->answer[i] + s->d[row++]);
+  return solves(s);
 }
 
 static int basis_of_iterate_solves(run *s) {
   for (int i = 0; i < s->p->n; ++i) s->basis[i] = s->z[i] > s->w[i];
-  return basis_solves(s);
+  return basis_solves(s) || nearest_solves(s);
 }
 
 /* ---- Newton -------------------------------------------------------------- */
@@ -124,7 +168,19 @@ static double evaluate(run *s) {
   return 0.5 * cblas_ddot(n, s->phi, 1, s->phi, 1);
 }
 
-/* J = diag(a) + diag(b) M, g = J'phi, d = -inv(J) phi or -g. Returns g.d. */
+/* d = -inv(J'J + |phi| I) g, else -g. */
+static void regular_direction(run *s) {
+  int n = s->p->n;
+  double size = cblas_dnrm2(n, s->phi, 1);
+  for (int i = 0; i < n; ++i) s->d[i] = -s->g[i];
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, n, n, 1.0, s->J, n, 0.0,
+              s->N, n);
+  for (int i = 0; i < n; ++i) s->N[(size_t)i * (size_t)(n + 1)] += size;
+  LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'L', n, 1, s->N, n, s->d, n);
+}
+
+/* J = diag(a) + diag(b) M, g = J'phi, d = -inv(J) phi or as above. Returns
+ * g.d. */
 static double direction(run *s) {
   int n = s->p->n;
   size_t ld = (size_t)n;
@@ -141,13 +197,14 @@ static double direction(run *s) {
   }
   cblas_dgemv(CblasColMajor, CblasTrans, n, n, 1.0, s->J, n, s->phi, 1, 0.0,
               s->g, 1);
-  int fails = LAPACKE_dgesv_work(LAPACK_COL_MAJOR, n, 1, s->J, n, s->pivot,
+  memcpy(s->N, s->J, ld * ld * sizeof *s->N);
+  int fails = LAPACKE_dgesv_work(LAPACK_COL_MAJOR, n, 1, s->N, n, s->pivot,
                                  s->d, n) != 0;
   double slope = cblas_ddot(n, s->g, 1, s->d, 1);
   double sizes = cblas_dnrm2(n, s->g, 1) * cblas_dnrm2(n, s->d, 1);
   if (!fails && slope < -DESCENT * sizes) return slope;
-  for (int i = 0; i < n; ++i) s->d[i] = -s->g[i];
-  return -cblas_ddot(n, s->g, 1, s->g, 1);
+  regular_direction(s);
+  return cblas_ddot(n, s->g, 1, s->d, 1);
 }
 
 /* Along d; "bound": the largest of the last values. 0: no step descends. */
@@ -166,7 +223,7 @@ static int line_search(run *s, double bound, double slope, double *value) {
 static int descend(run *s, int *steps) {
   double last[MEMORY], value = evaluate(s);
   for (int k = 0; k < MEMORY; ++k) last[k] = value;
-  for (int k = 0; k < STEPS; ++k) {
+  for (int k = 0; k < STEPS && !(s->most > 0 && *steps >= s->most); ++k) {
     double bound = 0.0;
     if (k % PERIOD == 0 && basis_of_iterate_solves(s)) return 1;
     double slope = direction(s);
@@ -182,7 +239,7 @@ static int descend(run *s, int *steps) {
 /* Start k: zero, what q alone asks for, then a fixed series of sparse vectors
  * of growing size. */
 static void start(run *s, int k, unsigned *seed) {
-  double size = ldexp(1.0, (k / 3) - 2);
+  double size = ldexp(1.0, k / 3 % 10 - 2);
   for (int i = 0; i < s->p->n; ++i) {
     *seed = *seed * 1664525u + 1013904223u;
     double random = (double)(*seed >> 8) * 0x1p-24;
@@ -192,15 +249,18 @@ static void start(run *s, int k, unsigned *seed) {
   }
 }
 
-status lcp_newton(const lcp_data *p, double tol, double *z, int *steps,
-                  int *found) {
+status lcp_newton(const lcp_data *p, const lcp_control *control, double *z,
+                  int *steps, int *found) {
   status st = OK;
-  run s = {.p = p, .tol = tol};
+  run s = {.p = p, .tol = control->tol, .most = control->max_iter};
   unsigned seed = 7;
   *found = 0;
   TRY(run_new(&s));
   scale(&s);
-  for (int k = 0; k < STARTS && !*found; ++k) {
+  double n = p->n, most = WORK / (n * n * n * STEPS);
+  int starts = (int)fmin(MOST_STARTS, fmax(LEAST_STARTS, most));
+  for (int k = 0; k < starts && !*found; ++k) {
+    if (s.most > 0 && *steps >= s.most) break;
     start(&s, k, &seed);
     *found = descend(&s, steps);
   }

@@ -138,7 +138,9 @@ static status pivot_once(run *s, lcp_report *rep) {
     cblas_dscal((int)n, 1.0 / s->cover[i], s->M + i, (int)n);
     s->q[i] /= s->cover[i];
   }
-  TRY(lcp_lemke((int)n, s->M, s->q, s->control->max_pivots, s->try_z, rep));
+  int most = s->control->max_iter;
+  TRY(lcp_lemke((int)n, s->M, s->q, most > 0 ? most - s->v->iterations : 0,
+                s->try_z, rep));
   contact_product((int)n, s->M, s->try_z, slack);
   for (size_t i = 0; i < n; ++i) {
     if (s->turned[i])
@@ -150,11 +152,18 @@ done:
   return st;
 }
 
+/* 1: no more pivots and steps are allowed. */
+static int is_spent(const run *s) {
+  int most = s->control->max_iter;
+  return most > 0 && s->v->iterations >= most;
+}
+
 /* Attempts number first to last - 1; *o: how the last one ended. */
 static status pivot(run *s, int first, int last, outcome *o) {
   status st = OK;
   lcp_report rep = {.outcome = RUNNING};
-  for (int k = first; k < last; ++k) {
+  *o = STOPPED_ITERATIONS;
+  for (int k = first; k < last && !is_spent(s); ++k) {
     choose(s, k);
     TRY(pivot_once(s, &rep));
     s->v->iterations += rep.pivots;
@@ -223,10 +232,12 @@ static status other_ways(run *s, outcome *o) {
   status st = OK;
   int found = 0;
   double *z = s->try_z;
-  TRY(lcp_newton(s->p, s->control->tol, z, &s->v->iterations, &found));
-  *o = found && keep(s) ? CONVERGED : STOPPED_STAGNATION;
+  TRY(lcp_newton(s->p, s->control, z, &s->v->iterations, &found));
+  *o = found && keep(s) ? CONVERGED
+       : is_spent(s)    ? STOPPED_ITERATIONS
+                        : STOPPED_STAGNATION;
   note(s->v, "newton", *o);
-  if (*o == CONVERGED || s->p->n > LCP_MOST_BASES) goto done;
+  if (*o != STOPPED_STAGNATION || s->p->n > LCP_MOST_BASES) goto done;
   TRY(lcp_all_bases(s->p, s->control->tol, z, &found));
   *o = found && keep(s) ? CONVERGED : STOPPED_STAGNATION;
   note(s->v, "all bases", *o);
@@ -242,10 +253,10 @@ static status follow(run *s) {
   s->v->outcome = first;
   if (first == CONVERGED || first == STOPPED_NAN) goto done;
   note(s->v, "lemke", first);
-  if (first == STOPPED_RAY && !is_certificate(s->p, s->y))
+  if (first == STOPPED_RAY && !is_certificate(s->p, s->y) && !is_spent(s))
     TRY(look_for_proof(s, &proved));
   else
-    proved = first == STOPPED_RAY;
+    proved = first == STOPPED_RAY && is_certificate(s->p, s->y);
   if (proved) goto done;
   if (!s->control->pivoting_only) {
     TRY(other_ways(s, &o));
@@ -254,9 +265,10 @@ static status follow(run *s) {
   }
   TRY(pivot(s, FIRST, ATTEMPTS, &o));
   note(s->v, "lemke from other vertices", o);
-  s->v->outcome = o == CONVERGED                ? CONVERGED
-                  : first == STOPPED_ITERATIONS ? STOPPED_ITERATIONS
-                                                : STOPPED_STAGNATION;
+  s->v->outcome = o == CONVERGED ? CONVERGED
+                  : first == STOPPED_ITERATIONS || is_spent(s)
+                      ? STOPPED_ITERATIONS
+                      : STOPPED_STAGNATION;
 done:
   return st;
 }

@@ -27,17 +27,17 @@ typedef struct lcp_data {
 } lcp_data;
 
 typedef struct lcp_control {
-  double tol;     /* wanted lcp_residual, -                                 */
-  int max_pivots; /* of one attempt; 0: chosen by the program               */
+  double tol;   /* wanted lcp_residual, -                                 */
+  int max_iter; /* pivots and steps of all attempts; 0: each its own limit  */
   int pivoting_only; /* 1: no other method                                    */
 } lcp_control;
 
 enum { LCP_LOG = 256 };
 typedef struct lcp_verdict {
   outcome outcome;    /* CONVERGED; STOPPED_RAY: proved that no z >= 0 has
-                         w >= 0; STOPPED_ITERATIONS: attempts reached the limit
-                         of pivots; STOPPED_STAGNATION: nothing found, nothing
-                         proved; STOPPED_NAN                                  */
+                         w >= 0; STOPPED_ITERATIONS: a limit was reached;
+                         STOPPED_STAGNATION: nothing found, nothing    proved;
+                         STOPPED_NAN                                  */
   int iterations;     /* pivots and steps of all attempts                     */
   double residual;    /* lcp_residual of z                                    */
   const char *method; /* who answered last                                    */
@@ -57,10 +57,10 @@ status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,
 
 /* ---- lcp_newton.c: private to this folder -------------------------------- */
 
-/* Attempts by Newton's method from many starts, then (few unknowns) all bases.
+/* Attempts by Newton's method from many starts; (few unknowns) all bases.
  * 1 in *found: z is a solution to tol. *steps grows. */
-status lcp_newton(const lcp_data *p, double tol, double *z, int *steps,
-                  int *found);
+status lcp_newton(const lcp_data *p, const lcp_control *control, double *z,
+                  int *steps, int *found);
 status lcp_all_bases(const lcp_data *p, double tol, double *z, int *found);
 enum { LCP_MOST_BASES = 14 /* unknowns of which all bases are tried */ };
 

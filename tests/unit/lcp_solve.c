@@ -102,12 +102,19 @@ END_TEST
 
 /* The method that was asked for is the only one; its limit is told. */
 START_TEST(limit_of_pivots_is_told) {
-  const lcp_control few = {.tol = 1e-8, .max_pivots = 3, .pivoting_only = 1};
+  const lcp_control few = {.tol = 1e-8, .max_iter = 3, .pivoting_only = 1};
   lcp_case c = lcp_make(LCP_DEFINITE, 30, 1);
   lcp_verdict v = solve(&c, &few);
   ck_assert_int_eq(v.outcome, STOPPED_ITERATIONS);
   ck_assert(v.residual > 1e-8);
   ck_assert_ptr_nonnull(strstr(v.log, "limit of iterations"));
+  ck_assert_int_le(v.iterations, few.max_iter);
+  lcp_case_free(&c);
+  const lcp_control some = {.tol = 1e-8, .max_iter = 150};
+  c = lcp_make(LCP_INDEFINITE, 40, 1);
+  v = solve(&c, &some);
+  ck_assert_int_eq(v.outcome, STOPPED_ITERATIONS);
+  ck_assert_int_le(v.iterations, some.max_iter);
   lcp_case_free(&c);
   c = lcp_make(LCP_MURTY, 40, 1);
   v = solve(&c, &usual);
@@ -115,6 +122,30 @@ START_TEST(limit_of_pivots_is_told) {
   ck_assert_str_eq(v.method, "newton");
   ck_assert_ptr_nonnull(strstr(v.log, "lemke: limit of iterations"));
   lcp_case_free(&c);
+}
+END_TEST
+
+/* Strictly upper triangular: of every basis M_BB is singular, and solutions are
+ * a continuum; pivoting ends on rays. */
+START_TEST(singular_bases_are_solved) {
+  for (unsigned long long seed = 1; seed <= 8; ++seed) {
+    lcp_case c = lcp_make(LCP_TRIANGULAR, 8, seed);
+    for (int i = 0; i < c.n; ++i) {
+      c.q[i] = i % 2 ? 0.5 : 0.0; /* z = 1, 0, 1, 0 ...                       */
+      for (int j = 0; j < i; ++j) {
+        c.M[j + c.n * i] = c.M[i + c.n * j];
+        c.M[i + c.n * j] = 0.0;
+      }
+      c.M[i + c.n * i] = 0.0;
+    }
+    for (int j = 0; j < c.n; j += 2)
+      for (int i = 0; i < j; ++i) c.q[i] -= c.M[i + c.n * j];
+    lcp_verdict v = solve(&c, &usual);
+    ck_assert_msg(v.outcome == CONVERGED, "seed %llu: %s (%s)", seed,
+                  outcome_text(v.outcome), v.log);
+    check_claim(&c, &v);
+    lcp_case_free(&c);
+  }
 }
 END_TEST
 
@@ -190,5 +221,5 @@ UNIT_MAIN("lcp_solve", families_with_a_solution_are_solved,
           planted_solutions_of_small_problems_are_found,
           problems_without_solution_are_proved_to_have_none,
           ray_of_an_indefinite_problem_is_no_verdict, limit_of_pivots_is_told,
-          transform_is_its_own_inverse, not_a_number_is_told,
-          every_refused_request_is_reported)
+          singular_bases_are_solved, transform_is_its_own_inverse,
+          not_a_number_is_told, every_refused_request_is_reported)
