@@ -5,7 +5,8 @@ set grid linewidth 0.5 linecolor rgb '#c8c8c8'
 set border 3
 set tics nomirror
 set xlabel offset 0,0.6
-set key outside bottom center horizontal
+set key outside bottom center horizontal spacing 1.1
+set bmargin 6
 set style line 1 pt 7 ps 0.5 lc rgb '#1b4f9c'
 set style line 2 pt 7 ps 0.5 lc rgb '#b5432a'
 set style line 3 lw 1.5 lc rgb '#1b4f9c'
