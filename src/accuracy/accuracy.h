@@ -15,6 +15,9 @@ typedef struct inverse_energy {
   double condition; /* of M scaled to a unit diagonal, -; for the rounding    */
   int n_kernel;     /* motions without energy: M is semidefinite              */
   const double *kernel; /* [m*n_kernel], borrowed                             */
+  /* Compliance form: the same problem in stiffness form, borrowed, for the rate
+   * of Coulomb friction; NULL: not known                                     */
+  const contact_problem *stiffness;
 } inverse_energy;
 
 typedef struct solver_error {
@@ -38,7 +41,7 @@ void known_rate_forget(known_rate *k);
  * Bound of the distance of (u, r) from the solution (u*, r*) in the energy
  * norm (algebra.c). Given limit: guaranteed. Coulomb friction: by the
  * contraction rate measured at (u, r); none where the rate is 1 or more, or
- * where only the compliance is known. Errors: ERR_MEMORY, those of inverse.
+ * where the stiffness is not known. Errors: ERR_MEMORY, those of inverse.
  * "known" (or NULL) is read and kept up to date.
  */
 status solver_error_bound(const contact_problem *cp,
@@ -69,6 +72,8 @@ typedef struct dense_inverse dense_inverse;
 status dense_inverse_new(int m, const double *M, dense_inverse **out);
 void dense_inverse_free(dense_inverse *d); /* accepts NULL                    */
 inverse_energy dense_inverse_energy(dense_inverse *d);
+/* N[m*m] = inv(M); *done = 0: M is semidefinite. */
+void dense_inverse_fill(dense_inverse *d, double *N, int *done);
 /* v = inv(M) x; of a semidefinite M the v that leaves n_kernel unknowns at 0,
  * whose force then is what balances x. v[m] may be x. */
 void dense_inverse_solve(dense_inverse *d, const double *x, double *v);

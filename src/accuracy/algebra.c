@@ -24,7 +24,9 @@
  * brought into balance with the load (balance.c), so that d has an energy; the
  * bound is that of the deformation, without the rigid motion.
  *
- * Compliance form: W, r in the place of A, u; d = v - W q - load.
+ * Compliance form: W, r in the place of A, u; d = v - W q - load. Two answers
+ * that satisfy the equation are as far apart in r by W as in u by A, so that
+ * the rate is the same.
  */
 #include "accuracy/accuracy.h"
 
@@ -177,15 +179,17 @@ static void no_bound(solver_error *e, const char *why) {
 }
 
 /* Rate of the sliding limit; 0: there is no bound. */
-static status find_rate(const contact_problem *cp, const double *u,
+static status find_rate(const contact_problem *cp,
+                        const contact_problem *stiffness, const double *u,
                         const double *r, known_rate *known, solver_error *e) {
   status st = OK;
+  const contact_problem *of = cp->A != NULL ? cp : stiffness;
   if (cp->B == NULL) goto done;
-  if (cp->A == NULL) {
-    no_bound(e, "Coulomb friction, and only the compliance is known");
+  if (of == NULL) {
+    no_bound(e, "Coulomb friction, and the compliance is singular");
     goto done;
   }
-  TRY(contraction_rate(cp, u, r, known, &e->rate));
+  TRY(contraction_rate(of, u, r, known, &e->rate));
   if (!(e->rate < 1.0)) no_bound(e, "the sliding limit does not contract here");
 done:
   return st;
@@ -201,7 +205,7 @@ status solver_error_bound(const contact_problem *cp,
   int balanced = 1;
   *error = (solver_error){0};
   if (cp->m == 0) goto done;
-  TRY(find_rate(cp, u, r, known, error));
+  TRY(find_rate(cp, inverse->stiffness, u, r, known, error));
   if (error->why != NULL) goto done;
   TRY(pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);

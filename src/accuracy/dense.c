@@ -136,6 +136,16 @@ void dense_inverse_solve(dense_inverse *d, const double *x, double *v) {
   }
 }
 
+void dense_inverse_fill(dense_inverse *d, double *N, int *done) {
+  size_t m = (size_t)d->m;
+  *done = d->rank == d->m;
+  memset(N, 0, m * m * sizeof *N);
+  for (size_t j = 0; j < m && *done; ++j) {
+    N[j * (m + 1)] = 1.0;
+    dense_inverse_solve(d, N + m * j, N + m * j);
+  }
+}
+
 static status dense_square(void *ctx, const double *x, double *square) {
   dense_inverse *d = ctx;
   forward(d, x);
@@ -144,6 +154,9 @@ static status dense_square(void *ctx, const double *x, double *square) {
 }
 
 inverse_energy dense_inverse_energy(dense_inverse *d) {
-  return (inverse_energy){d, dense_square, d->condition, d->m - d->rank,
-                          d->kernel};
+  return (inverse_energy){.ctx = d,
+                          .square = dense_square,
+                          .condition = d->condition,
+                          .n_kernel = d->m - d->rank,
+                          .kernel = d->kernel};
 }

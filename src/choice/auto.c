@@ -12,7 +12,8 @@
  * Stiffness given: NEWTON. Its steps do not grow in number with m or with the
  * condition of A, and it keeps its factor from step to step and from problem to
  * problem. Then NEWTON along a friction path, for large mu; then SOR, which
- * needs no factor; LEMKE last. In 3-D with few digits wanted (TOL=BALANCED)
+ * needs no factor; LEMKE; PROXIMAL last, for a stiffness that is nearly
+ * singular under large mu. In 3-D with few digits wanted (TOL=BALANCED)
  * sweeps of SOR first, as many as cost less than some steps of NEWTON.
  *
  * Compliance given: in 3-D first sweeps of SOR, as long as their rate promises
@@ -40,8 +41,8 @@ const char auto_help[] =
   "normal ones. With friction, and the stiffness known (every deck with a\n"
   "mesh), it is NEWTON, then NEWTON along a friction path (the coefficient\n"
   "grows to its value, each answer the start of the next), then SOR, then\n"
-  "LEMKE; in 3-D with TOL above 1e-4 some sweeps of SOR go first. Of a\n"
-  "problem that comes as a compliance (*CONDENSED PROBLEM) sweeps of SOR\n"
+  "LEMKE, then PROXIMAL; in 3-D with TOL above 1e-4 sweeps of SOR go first.\n"
+  "Of a problem that comes as a compliance (*CONDENSED PROBLEM) such sweeps\n"
   "go first in 3-D, as long as their rate promises the answer for less than\n"
   "NEWTON costs; then the same chain with such sweeps, PCG, PROXIMAL, PCG\n"
   "at length and LAGRANGE before SOR, for compliances that are singular.\n"
@@ -72,7 +73,8 @@ static const double FEW_DIGITS = 1e-4; /* -, tolerance                        */
 static const struct {
   const solver_ops *ops;
   drive how;
-  int compliance; /* 1: only where no stiffness is given                      */
+  int compliance; /* 1: only where no stiffness is given, -1: only where one
+                     is, and it is definite: then there is a solution         */
   int factors;    /* 1: an iteration costs a factorisation, else a product    */
   int most;       /* iterations, 0: as many as the cost allows                */
 } auto_chain[] = {{&newton_solver, PLAIN, 0, 1, 0},
@@ -83,7 +85,8 @@ static const struct {
                   {&pcg_solver, PLAIN, 1, 0, 0},
                   {&lagrange_solver, PLAIN, 1, 0, 0},
                   {&sor_solver, PLAIN, 0, 0, 0},
-                  {&lemke_solver, PLAIN, 0, 0, 0}};
+                  {&lemke_solver, PLAIN, 0, 0, 0},
+                  {&proximal_solver, PLAIN, -1, 1, 0}};
 
 /* Iterations a link may make: such that its cost stays that of its most on a
  * problem with FULL_SIZE unknowns, but at least LEAST. */
@@ -143,6 +146,7 @@ static int sweeps_fit(const contact_problem *cp) {
 static int is_skipped(const contact_problem *cp, int i) {
   if (auto_chain[i].how == ALONG_PATH && cp->B == NULL) return 1;
   if (auto_chain[i].how == WHILE_PROMISING && !sweeps_fit(cp)) return 1;
+  if (auto_chain[i].compliance < 0) return cp->A == NULL || cp->floating;
   return auto_chain[i].compliance && cp->A != NULL;
 }
 

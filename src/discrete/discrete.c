@@ -74,6 +74,29 @@ done:
   return st;
 }
 
+/* The bound by the inverse of the matrix given; where that is a definite
+ * compliance with Coulomb friction, the stiffness A[m*m] is made for its rate.
+ */
+static status bound_error(const contact_problem *cp, dense_inverse *dense,
+                          const double *u, const double *r,
+                          solver_error *found) {
+  status st = OK;
+  inverse_energy inverse = dense_inverse_energy(dense);
+  contact_problem stiff = *cp;
+  double *A = NULL;
+  int made = 0;
+  if (cp->A == NULL && cp->B != NULL) {
+    NEW(A, (size_t)cp->m * (size_t)cp->m);
+    dense_inverse_fill(dense, A, &made);
+    stiff.A = A;
+    inverse.stiffness = made ? &stiff : NULL;
+  }
+  TRY(solver_error_bound(cp, &inverse, u, r, NULL, found));
+done:
+  memory_free(A);
+  return st;
+}
+
 static status find_error(const step *s, const contact_problem *cp,
                          const double *u, const double *r, error_bound *e) {
   status st = OK;
@@ -84,15 +107,8 @@ static status find_error(const step *s, const contact_problem *cp,
   if (cp->m == 0 || s->no_solver_error) return OK;
   timer_enter(STAGE_ESTIMATE);
   TRY(condensed_energy(cp, u, r, &energy));
-  if (cp->A == NULL && cp->B != NULL) {
-    found.why = "Coulomb friction, and only the compliance is known";
-  } else {
-    TRY(dense_inverse_new(cp->m, cp->A != NULL ? cp->A : cp->W, &dense));
-    if (dense != NULL) {
-      inverse_energy inverse = dense_inverse_energy(dense);
-      TRY(solver_error_bound(cp, &inverse, u, r, NULL, &found));
-    }
-  }
+  TRY(dense_inverse_new(cp->m, cp->A != NULL ? cp->A : cp->W, &dense));
+  if (dense != NULL) TRY(bound_error(cp, dense, u, r, &found));
   error_bound_set(&found, energy, e);
 done:
   dense_inverse_free(dense);

@@ -37,8 +37,9 @@ static status force_energy(void *ctx, const double *d, double *square) {
  * NULL: A has none. */
 static status choose_inverse(run *r, inverse_energy *out) {
   status st = OK;
-  *out =
-      (inverse_energy){r->c, force_energy, condensed_condition(r->c), 0, NULL};
+  *out = (inverse_energy){.ctx = r->c,
+                          .square = force_energy,
+                          .condition = condensed_condition(r->c)};
   if (!r->cp.floating) goto done;
   out->ctx = NULL;
   if (!r->dense_known) TRY(dense_inverse_new(r->cp.m, r->cp.A, &r->dense));

@@ -178,6 +178,40 @@ START_TEST(tolerance_is_met_in_the_form_given) {
 }
 END_TEST
 
+/* A = G G' of half the rank plus 1e-8, mu = 2, in space; the load moves the
+ * nodes by order one. */
+static contact_case weak_case(int n, unsigned long long seed) {
+  contact_case c = case_any(3, n, 2.0, 0, seed);
+  int m = c.cp.m, rank = m / 2 + 1;
+  unsigned long long state = 2685821657736338717u * (seed + 1u);
+  double *G = calloc((size_t)(m * rank), sizeof *G), u[18];
+  for (int i = 0; i < m * rank; ++i) G[i] = case_random(&state) - 0.5;
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < m; ++j) {
+      double sum = i == j ? 1e-8 : 0.0;
+      for (int k = 0; k < rank; ++k) sum += G[i + m * k] * G[j + m * k];
+      c.A[i + m * j] = sum;
+    }
+  for (int i = 0; i < m; ++i) u[i] = case_random(&state) - 0.3;
+  contact_product(m, c.A, u, c.f);
+  free(G);
+  return c;
+}
+
+/* Nearly singular, large friction: what the first methods leave. */
+START_TEST(last_method_solves_what_the_others_leave) {
+  static const int hard[] = {869, 946, 1672, 2253, 2644};
+  for (size_t k = 0; k < sizeof hard / sizeof *hard; ++k) {
+    contact_case c = weak_case(1 + hard[k] % 6, (unsigned long long)hard[k]);
+    solver_report rep = solve_by(NULL, &c, 1e-8, c.u, c.r);
+    ck_assert_msg(rep.outcome == CONVERGED, "%d: %s", hard[k],
+                  outcome_text(rep.outcome));
+    ck_assert_double_le(case_violation(&c, c.u, c.r), 1e-6);
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* MAX_ITER bounds all that a method does: restarts and shares of friction. */
 START_TEST(limit_holds_for_all_attempts_together) {
   const solver_ops *const rows[] = {&newton_solver, &auglag_solver,
@@ -206,4 +240,5 @@ UNIT_MAIN("choice", frictionless_problems_are_solved_in_both_forms,
           opened_nodes_are_kept_and_change_no_answer,
           unfit_method_is_named_with_the_reason,
           tolerance_is_met_in_the_form_given,
+          last_method_solves_what_the_others_leave,
           limit_holds_for_all_attempts_together)
