@@ -23,7 +23,7 @@
 /* Shares of the target, -: what the mesh, the increments and the solver may
  * leave; the next pass aims at AIM of that. */
 static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, SOLVER_SHARE = 0.05;
-static const double AIM = 0.9;
+static const double AIM = 0.93;
 /* -, of the error, or a pass was in vain. */
 static const double LEAST_GAIN = 0.95;
 static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU       */
@@ -72,6 +72,15 @@ static void miss(pass *p, const char *why) {
   snprintf(p->why, sizeof p->why, "%s", why);
 }
 
+/* What the mesh may leave: all that the others do not, if they have no more
+ * than their shares. */
+static double mesh_goal(const pass *p) {
+  double goal = p->target->percent / 100.0;
+  if (p->time > TIME_SHARE * goal || p->solver > SOLVER_SHARE * goal)
+    return MESH_SHARE * goal;
+  return goal - p->time - p->solver;
+}
+
 /* Factor by which the unknowns grow if the mesh error falls to "wanted". */
 static double growth(const pass *p, double wanted) {
   return p->mesh > wanted ? pow(p->mesh / wanted, p->in->m->dim) : 1.0;
@@ -109,7 +118,7 @@ static void choose(pass *p, char *text, size_t size) {
   double goal = p->target->percent / 100.0;
   size_t used = 0;
   text[0] = '\0';
-  if (p->mesh > MESH_SHARE * goal) used += (size_t)snprintf(text, size, "mesh");
+  if (p->mesh > mesh_goal(p)) used += (size_t)snprintf(text, size, "mesh");
   if (p->time > TIME_SHARE * goal && p->dt > SHORTEST * SHORTEST) {
     double factor = fmax(AIM * TIME_SHARE * goal / p->time, SHORTEST);
     p->dt *= factor;
@@ -160,7 +169,7 @@ static void decide(pass *p) {
   else if (was_in_vain(p))
     miss(p, "a mesh asked to be finer has no smaller error");
   else
-    check_limits(p, finer ? growth(p, AIM * MESH_SHARE * goal) : 1.0);
+    check_limits(p, finer ? growth(p, AIM * mesh_goal(p)) : 1.0);
   if (p->done) row->change[0] = '\0';
 }
 
@@ -241,7 +250,7 @@ done:
  * of the first pass, shown only if something is wrong. */
 static status read_next(pass *p) {
   status st = OK;
-  double *size = NULL, goal = p->target->percent / 100.0;
+  double *size = NULL;
   job_input next = {0};
   job_mesh other = {0};
   mesh *msh = p->in->msh;
@@ -249,7 +258,7 @@ static status read_next(pass *p) {
   NEW(size, msh->n_node);
   TRY(message_log_new(&next.log));
   if (refines(&p->rows[p->n - 1])) {
-    space_sizes(msh, p->eta, AIM * MESH_SHARE * goal, size);
+    space_sizes(msh, p->eta, AIM * mesh_goal(p), size);
     other = (job_mesh){.old = msh, .size = size};
   } else {
     other.same = msh;
