@@ -22,6 +22,7 @@ static status read_mesh(const model *m, const job_mesh *other, mesh **msh) {
     numbers[i].value = m->deck->symbols[i].value;
   }
   timer_enter(STAGE_MESH);
+  if (m->target.percent > 0.0 && job_is_geo(m)) mesh_gmsh_load();
   st =
       mesh_read_gmsh(&(mesh_source){.file = m->mesh_file,
                                     .scale = m->mesh_scale,

@@ -38,7 +38,8 @@ void space_estimate(space_recovery *s, const double *sigma, double *eta,
 /*
  * Lengths size[n_node] of the elements of the next mesh for which |u - u_h| is
  * to become "target" with the fewest elements, from eta[n_elem], both sqrt(J).
- * No length changes by more than a factor of 4 down or 2 up.
+ * No length changes by more than a factor of 4 down (10 if the error is
+ * within a factor of 8 of the target) or 2 up.
  */
 void space_sizes(const mesh *m, const double *eta, double target, double *size);
 

@@ -168,6 +168,8 @@ static void watch_memory(void *library) {
   set_handler(no_memory);
 }
 
+void mesh_gmsh_load(void) { (void)dlopen(LIBGMSH, RTLD_LAZY | RTLD_LOCAL); }
+
 static void load(child *c) {
   void *library = dlopen(LIBGMSH, RTLD_LAZY | RTLD_LOCAL);
   if (library == NULL) {

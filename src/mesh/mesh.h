@@ -61,6 +61,9 @@ typedef struct mesh_source {
  * ERR_MESH; ERR_FILE if the file is missing, ERR_MEMORY. */
 status mesh_read_gmsh(const mesh_source *source, const place *at,
                       message_log *log, mesh **out);
+/* The library of gmsh into this process, once: each mesh is made in a process
+ * of its own, which else loads it anew (0.2 s). Fails in silence. */
+void mesh_gmsh_load(void);
 void mesh_free(mesh *m);
 
 const mesh_group *mesh_find_group(const mesh *m,

@@ -165,8 +165,7 @@ int main(void) {
   TCase *t = tcase_create("effectivity");
   tcase_set_timeout(t, 300);
   tcase_add_test(t, head);
-  tcase_add_loop_test(t, manufactured, 0,
-                      sizeof problems / sizeof *problems);
+  tcase_add_loop_test(t, manufactured, 0, sizeof problems / sizeof *problems);
   tcase_add_test(t, interface);
   tcase_add_test(t, contact_edge);
   suite_add_tcase(s, t);
