@@ -230,21 +230,21 @@ static status solve_normal(contact_solver *s, const contact_problem *cp,
                             .listener = listener};
   *done_well = 0;
   if (!normal_form_applies(cp)) goto done;
+  if (s->normal.wanted++ == 0 && !is_cold(cp, r)) {
+    TRY(short_try(s, cp, &newton_solver, WARM_STEPS, listener,
+                  &(answer){u, r, rep}));
+    *done_well = rep->outcome == CONVERGED;
+    if (*done_well) goto done;
+    before = rep->iterations;
+  }
   TRY(normal_form_opened(&s->normal, cp, &control, u, r, rep));
-  before = rep->iterations;
+  rep->iterations += before;
   if (rep->outcome == CONVERGED) {
     attempt_judge(cp, s->choice.tol, u, r, rep);
     *done_well = rep->outcome == CONVERGED;
     if (*done_well) goto done;
   }
-  if (s->normal.wanted++ == 0 && !is_cold(cp, r)) {
-    TRY(short_try(s, cp, &newton_solver, WARM_STEPS, listener,
-                  &(answer){u, r, rep}));
-    rep->iterations += before;
-    *done_well = rep->outcome == CONVERGED;
-    if (*done_well) goto done;
-    before = rep->iterations;
-  }
+  before = rep->iterations;
   TRY(normal_form_solve(&s->normal, cp, &control, u, r, rep));
   rep->iterations += before;
   if (rep->outcome != CONVERGED) goto done;
