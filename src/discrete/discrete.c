@@ -234,8 +234,8 @@ static status tell_answer(discrete *d, const history_sink *sink, double cpu,
   if (sink->rejected != NULL) TRY(sink->rejected(sink->ctx, &s, why));
   if (d->report.outcome == STOPPED_UNFIT)
     FAIL(ERR_SINGULAR,
-         "the method cannot treat this problem: %s; use METHOD=AUTO, SOR or "
-         "LEMKE",
+         "the method cannot treat this problem: %s; use METHOD=AUTO or "
+         "PROXIMAL",
          d->log);
   FAIL(ERR_SINGULAR, "no solution found: %s%s%s%s", why,
        d->log[0] == '\0' ? "" : " (", d->log, d->log[0] == '\0' ? "" : ")");

@@ -54,10 +54,25 @@ START_TEST(semidefinite_compliance_is_solved) {
 }
 END_TEST
 
+/* Nine in ten entries of W are zero: products by rows, factors of UMFPACK. */
+START_TEST(sparse_compliance_is_solved) {
+  rigid_kind kind = _i == 0 ? RIGID_TOWER : RIGID_HEAP;
+  rigid_scene s = rigid_new(kind, 3, _i == 0 ? 45 : 60, 0.5, 2);
+  int filled = 0;
+  for (int k = 0; k < s.m * s.m; ++k) filled += s.W[k] != 0.0;
+  ck_assert_int_lt(10 * filled, s.m * s.m);
+  if (_i == 2) rigid_disturb(&s, 1e-3, 2);
+  must_solve(&proximal_solver, &s);
+  must_solve(NULL, &s);
+  rigid_free(&s);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("proximal");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, unsymmetric_compliance_is_solved, 0, 5);
   tcase_add_loop_test(tests, semidefinite_compliance_is_solved, 0, RIGID_KINDS);
+  tcase_add_loop_test(tests, sparse_compliance_is_solved, 0, 3);
   return unit_run("proximal", tests);
 }
