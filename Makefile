@@ -8,7 +8,8 @@ out   := build/$(BUILD)
 Q     := $(if $(filter 1,$(V)),,@)
 
 packages := gcc make pkg-config libsuitesparse-dev libopenblas-dev \
-            liblapacke-dev libhdf5-dev libgmsh-dev check gnuplot-nox
+            liblapacke-dev libhdf5-dev libgmsh-dev check gnuplot-nox \
+            libsundials-dev
 pc       := hdf5-serial check
 
 # Packages first: the variables below ask pkg-config.
@@ -119,6 +120,10 @@ $(out)/tests/preload/traps.so: tests/preload/traps.c Makefile
 	$(Q)$(CC) -std=c11 $(warnings) -shared -fPIC $< -o $@ -lm -lpthread
 
 $(out)/tests/regression/examples: | $(out)/tests/preload/traps.so
+
+# An independent integrator, of one test alone.
+$(out)/tests/unit/sundials: LDLIBS += -lsundials_cvode -lsundials_nvecserial \
+              -lsundials_sunlinsoldense -lsundials_sunmatrixdense
 
 # Stands between a program under test and the C library.
 $(out)/tests/preload/%.so: tests/preload/%.c Makefile

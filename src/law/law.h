@@ -115,6 +115,10 @@ typedef struct law_ops {
    * with isotropic elasticity, not plane stress, 1/s; NULL, or an answer < 0:
    * of the whole matrix, by LAPACK. */
   double (*fastest_rate)(const law_point *p);
+  /* Terms v_k, alpha = v_1, v_2, ..., that follow the strain each by itself:
+   * e^i = w + sum_k W_k v_k, d(v_k)/dt = rate_k (e - w - v_k); rate of term k,
+   * 1/s, and its W[ns*ns]. NULL: other laws. */
+  double (*relaxing)(const law_point *p, int k, double *W);
   /* 0 if every rate is exactly zero at the point; NULL: the law always flows */
   int (*flows)(const law_point *p);
   /* Power lost, >= 0, W/m3; energy kept by alpha and e^i, J/m3 (NULL: none):

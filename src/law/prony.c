@@ -110,6 +110,17 @@ static double fastest_rate(const law_point *p) {
   return rate_max;
 }
 
+static double relaxing(const law_point *p, int k, double *W) {
+  const int ns = p->elastic->ns;
+  for (int j = 0; j < ns; ++j) {
+    double unit[6] = {0};
+    unit[j] = 1;
+    for (int i = 0; i < ns; ++i) W[i + ns * j] = 0;
+    add_share(ns, &terms_of(p)[k], unit, W + ns * j);
+  }
+  return 1 / terms_of(p)[k].tau;
+}
+
 /* x . C (g dev + k vol) x */
 static double share_energy(const law_point *p, int k, const double *x) {
   const int ns = p->elastic->ns;
@@ -172,6 +183,7 @@ const law_ops prony_law = {
     .rate = rate,
     .jacobian = jacobian,
     .fastest_rate = fastest_rate,
+    .relaxing = relaxing,
     .dissipation = dissipation,
     .stored = stored,
     .check = check};

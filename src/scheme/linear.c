@@ -179,29 +179,38 @@ done:
   return st;
 }
 
+/* The general case: from L and G. */
+static status matrix_map(const flow_kind *k, const scheme_step *p, int exact,
+                         linear_map *m) {
+  status st = OK;
+  double *L = NULL, *G = NULL;
+  NEW(L, m->n * m->n);
+  NEW(G, m->n * k->elastic.ns);
+  TRY(linear_law(k, L, G));
+  TRY(exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m));
+done:
+  memory_free(L);
+  memory_free(G);
+  return st;
+}
+
 static status make_map(const flow_kind *k, const scheme_step *p, int exact,
                        linear_map *m, double *D) {
   status st = OK;
   const int ns = k->elastic.ns, n = ns + k->n_alpha;
   const size_t square = (size_t)(ns * ns);
-  double *L = NULL, *G = NULL, *top = NULL;
+  double top[36];
   m->n = n;
-  NEW(L, n * n);
-  NEW(G, n * ns);
-  NEW(top, square);
   TRY(need(&m->P, (size_t)(n * n)));
   TRY(need(&m->Q0, (size_t)(n * ns)));
   TRY(need(&m->Q1, (size_t)(n * ns)));
-  TRY(linear_law(k, L, G));
-  TRY(exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m));
+  TRY(k->law->ops->relaxing != NULL ? relaxing_map(k, p, exact, m)
+                                    : matrix_map(k, p, exact, m));
   for (int j = 0; j < ns; ++j)
     for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + n * j];
   memcpy(D, k->elastic.E, square * sizeof *D);
   multiply(ns, ns, ns, -1.0, k->elastic.E, top, D);
 done:
-  memory_free(L);
-  memory_free(G);
-  memory_free(top);
   return st;
 }
 

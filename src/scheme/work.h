@@ -44,6 +44,9 @@ status linear_advance(const scheme_call *a, int exact);
 /* newton.c */
 status newton_advance(const scheme_call *a);
 status exponential_between(const scheme_call *a, flow_state *mid);
+/* relaxing.c: for laws with "relaxing", m->P, Q0, Q1 are there. */
+status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
+                    linear_map *m);
 /* between.c */
 status hermite_between(const scheme_call *a, flow_state *mid);
 /* explicit.c */

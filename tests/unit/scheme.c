@@ -1,0 +1,222 @@
+/*
+ * Integrators of src/scheme on a material point: every row of scheme_list. What
+ * a step makes of a held strain, orders, the estimate of HEUN, the theta-method
+ * at 1/2 and 1, exact steps of linear laws, limits, states within a step, and
+ * that the state a step starts from stays. E = 1000, nu = 0.3.
+ */
+#include "support/point_body.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static point_body b;
+
+/* All strains held from the start on, or growing. */
+static const point_drive held = {.held = {1, 1, 1, 1, 1, 1},
+                                 .e = {1e-3, -4e-4, 2e-4, 5e-4, 1e-4, -3e-4}};
+static const point_drive growing = {
+    .held = {1, 1, 1, 1, 1, 1},
+    .e = {1e-3, -4e-4, 2e-4, 5e-4, 1e-4, -3e-4},
+    .e_rate = {5e-4, 1e-4, -2e-4, 0, 3e-4, 1e-4}};
+/* A bar that is pulled. */
+static const point_drive pulled = {.held = {1}, .e = {1e-3}, .e_rate = {2e-3}};
+
+static void start(const char *law, const char *data, const point_drive *d) {
+  const point_input in = {law, data, 0, 1000, 0.3, 0};
+  point_body_new(&in, d, &b);
+}
+
+static double theta_of(const scheme *s) {
+  return s->theta > 0 ? s->theta : 0.75;
+}
+
+/* Stress after a step of a held strain over that before, z = dt/tau. */
+static double factor_of(const scheme *s, double z) {
+  const double th = theta_of(s);
+  if (s->linear_only) return exp(-z);
+  if (s->limit == 0) return (1 - (1 - th) * z) / (1 + th * z);
+  double sum = 1, term = 1;
+  for (int k = 1; k <= s->order; ++k) sum += term *= -z / k;
+  return sum;
+}
+
+START_TEST(held_stress_has_the_factor_of_its_row) {
+  for (int i = 0; scheme_list[i] != NULL; ++i) {
+    const scheme *s = scheme_list[i];
+    start("MAXWELL", "2.", &held);
+    const double before = b.old.sigma[0], shear = b.old.sigma[3];
+    point_body_run(&b, s, theta_of(s), 1.5, 1, NULL);
+    const double factor = factor_of(s, 0.75);
+    ck_assert_double_eq_tol(b.now.sigma[0], factor * before, 1e-14);
+    ck_assert_double_eq_tol(b.now.sigma[3], factor * shear, 1e-14);
+    point_body_free(&b);
+  }
+}
+END_TEST
+
+/* At its limit a step leaves the magnitude as it is; there is none for rows
+ * that damp everything. */
+START_TEST(limits_are_where_the_factor_is_one) {
+  for (int i = 0; scheme_list[i] != NULL; ++i) {
+    const scheme *s = scheme_list[i];
+    const double limit = scheme_limit(s, theta_of(s));
+    if (isfinite(limit))
+      ck_assert_double_eq_tol(fabs(factor_of(s, limit)), 1, 1e-12);
+    else
+      ck_assert_double_le(fabs(factor_of(s, 1e6)), 1);
+  }
+  ck_assert_double_eq_tol(scheme_limit(scheme_find("THETA"), 0.25), 4, 1e-14);
+}
+END_TEST
+
+/* Stress that grows; strains are no linear function of time. */
+static const point_drive loaded = {.sigma = {1}, .sigma_rate = {1}};
+
+/* e^i after n steps, of a linear law for the row that wants one. */
+static double pulled_bar(const scheme *s, int n) {
+  if (s->linear_only)
+    start("ZENER", "500., 1500.", &loaded);
+  else
+    start("USER", "\"0.5E-3*q^2/(1 + 50*p)\"", &pulled);
+  point_body_run(&b, s, theta_of(s), 1, n, NULL);
+  const double ei = b.now.ei[0];
+  point_body_free(&b);
+  return ei;
+}
+
+START_TEST(rows_have_their_order) {
+  for (int i = 0; scheme_list[i] != NULL; ++i) {
+    const scheme *s = scheme_list[i];
+    const int n = s->order == 1 ? 100 : s->order == 2 ? 40 : 10;
+    double e[3];
+    for (int k = 0; k < 3; ++k) e[k] = pulled_bar(s, n << k);
+    const double order = log2((e[0] - e[1]) / (e[1] - e[2]));
+    ck_assert_msg(fabs(order - s->order) <= 0.1, "%s: order %.3f", s->name,
+                  order);
+  }
+}
+END_TEST
+
+/* The difference of both ends, root of the sum of squares. */
+START_TEST(heun_estimates_by_euler) {
+  double ei[2][6], estimate[1], sum = 0;
+  for (int k = 0; k < 2; ++k) {
+    const scheme *s = scheme_find(k == 0 ? "EULER" : "HEUN");
+    start("USER", "\"0.5E-3*q^2/(1 + 50*p)\"", &growing);
+    point_body_run(&b, s, 0, 0.2, 1, estimate);
+    memcpy(ei[k], b.now.ei, sizeof ei[k]);
+    ck_assert_int_eq(s->estimates, k);
+    point_body_free(&b);
+  }
+  for (int i = 0; i < 6; ++i) sum += pow(ei[0][i] - ei[1][i], 2);
+  ck_assert_double_gt(sum, 0);
+  ck_assert_double_eq_tol(estimate[0], sqrt(sum), 1e-12 * sqrt(sum));
+}
+END_TEST
+
+START_TEST(midpoint_and_backward_are_theta) {
+  static const char *const name[] = {"MIDPOINT", "BACKWARD"};
+  static const double theta[] = {0.5, 1};
+  static const char *const law[][2] = {{"BURGERS", "8000., 500., 3000."},
+                                       {"NORTON", "1E-3, 2."}};
+  for (int i = 0; i < 4; ++i) {
+    double ei[2];
+    for (int k = 0; k < 2; ++k) {
+      start(law[i / 2][0], law[i / 2][1], &growing);
+      point_body_run(&b, scheme_find(k == 0 ? name[i % 2] : "THETA"),
+                     theta[i % 2], 1, 3, NULL);
+      ei[k] = b.now.ei[0];
+      point_body_free(&b);
+    }
+    ck_assert_double_eq(ei[0], ei[1]);
+    ck_assert_double_ne(ei[0], 0);
+  }
+}
+END_TEST
+
+/* Under strains that are linear in time one step is as good as many, for all
+ * linear laws. */
+START_TEST(exponential_is_exact_for_linear_laws) {
+  const scheme *s = scheme_find("EXPONENTIAL");
+  int laws = 0;
+  for (int i = 0; law_list[i] != NULL; ++i) {
+    if (!law_list[i]->linear) continue;
+    double ei[2][6];
+    for (int k = 0; k < 2; ++k) {
+      start(law_list[i]->name, NULL, &growing);
+      point_body_run(&b, s, 0.5, 7, k == 0 ? 1 : 8, NULL);
+      memcpy(ei[k], b.now.ei, sizeof ei[k]);
+      ck_assert_int_eq(b.n_linear, k == 0 ? 1 : 8);
+      point_body_free(&b);
+    }
+    for (int c = 0; c < 6; ++c)
+      ck_assert_double_eq_tol(ei[0][c], ei[1][c], 1e-15);
+    ++laws;
+  }
+  ck_assert_int_ge(laws, 5);
+}
+END_TEST
+
+enum { TERMS = 20 };
+static int decade(int k) { return -15 + 30 * k / (TERMS - 1); }
+
+/* Relaxation times from 1e-15 to 1e15 under a held strain: every term keeps its
+ * exp(-t/tau), or with n steps of BACKWARD (1 + dt/tau)^-n. */
+START_TEST(thirty_decades_in_one_body) {
+  char data[1000];
+  size_t used = 0;
+  for (int k = 0; k < TERMS; ++k)
+    used += (size_t)snprintf(data + used, sizeof data - used,
+                             "%s0.04, 0., 1E%d", k == 0 ? "" : "\n", decade(k));
+  static const double time[] = {1e-14, 1e-6, 1, 1e7, 1e14};
+  for (int i = 0; i < 10; ++i) {
+    const int exact = i % 2, n = 3;
+    const double t = time[i / 2], G = 1000 / 2.6;
+    double modulus = 1 - TERMS * 0.04;
+    for (int k = 0; k < TERMS; ++k) {
+      const double z = t * pow(10, -decade(k));
+      modulus += 0.04 * (exact ? exp(-z) : pow(1 + z / n, -n));
+    }
+    start("PRONY", data, &held);
+    point_body_run(&b, scheme_find(exact ? "EXPONENTIAL" : "BACKWARD"), 1, t, n,
+                   NULL);
+    ck_assert_double_eq_tol(b.now.sigma[3], G * held.e[3] * modulus,
+                            1e-14 * G * held.e[3]);
+    point_body_free(&b);
+  }
+}
+END_TEST
+
+/* An attempt that is thrown away: the state it started from is as it was, and
+ * the next attempt gives the bytes of a first one. */
+START_TEST(a_rejected_step_leaves_nothing_behind) {
+  for (int i = 0; scheme_list[i] != NULL; ++i) {
+    const scheme *s = scheme_list[i];
+    const char *law = s->linear_only ? "ZENER" : "CHABOCHE";
+    double ei[2][6];
+    for (int k = 0; k < 2; ++k) {
+      start(law, NULL, &growing);
+      if (k == 1) {
+        flow_state keep = {0};
+        ck_assert_int_eq(flow_state_new(&b.x, &keep), OK);
+        flow_state_copy(&b.x, &b.old, &keep);
+        point_body_run(&b, s, theta_of(s), 0.4, 1, NULL);
+        flow_state_copy(&b.x, &keep, &b.old); /* thrown away                  */
+        flow_state_free(&keep);
+      }
+      point_body_run(&b, s, theta_of(s), 0.1, 1, NULL);
+      memcpy(ei[k], b.now.ei, sizeof ei[k]);
+      point_body_free(&b);
+    }
+    ck_assert_mem_eq(ei[0], ei[1], sizeof ei[0]);
+  }
+}
+END_TEST
+
+UNIT_MAIN("scheme", held_stress_has_the_factor_of_its_row,
+          limits_are_where_the_factor_is_one, rows_have_their_order,
+          heun_estimates_by_euler, midpoint_and_backward_are_theta,
+          exponential_is_exact_for_linear_laws, thirty_decades_in_one_body,
+          a_rejected_step_leaves_nothing_behind)
