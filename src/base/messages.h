@@ -400,7 +400,11 @@
     "time 0 that is next to them.")                                       \
   X(4015, ERROR, "led against friction along one tangent",                   \
     "In 3-D the direction of slip depends on both tangential motions. "      \
-    "Prescribe both, or none, at the nodes of a contact with friction.")
+    "Prescribe both, or none, at the nodes of a contact with friction.")     \
+  X(4016, WARNING, "made nearly incompressible by creep",                    \
+    "A body that creeps loses its shear stiffness and keeps its volume: "    \
+    "linear triangles and tetrahedra become too stiff as near nu = 1/2 "     \
+    "(P2055). FORMULATION=AVERAGED of *SOLID SECTION does not lock.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

@@ -78,7 +78,7 @@ static void check_kinematics(model *m, const mesh *msh) {
  * n^2), within a third of the errors observed for nu = 0.49 to 0.4999 and n = 8
  * to 64.
  */
-static double locking_error(double nu, int n) {
+double model_locking_error(double nu, int n) {
   return 0.55 / (1.0 + 5.0 * (1.0 - 2.0 * nu) * n * n);
 }
 
@@ -98,8 +98,8 @@ static void check_locking(const model *m) {
                 "nu = %g of material %s: linear elements lock; expect "
                 "displacements too small by some %.2g %% with %d elements "
                 "across a wall, %.2g %% with %d",
-                nu, mat->name, 100.0 * locking_error(nu, COARSE), COARSE,
-                100.0 * locking_error(nu, FINE), FINE);
+                nu, mat->name, 100.0 * model_locking_error(nu, COARSE), COARSE,
+                100.0 * model_locking_error(nu, FINE), FINE);
   }
 }
 

@@ -403,6 +403,9 @@ status model_from_deck(deck *d, message_log *log, model **out);
 /* Compare with the mesh: groups, sections, dimensions; fill the _id fields and
  * the effects. Errors go to the log: ERR_DECK or ERR_MESH. */
 status model_check(model *m, const mesh *msh);
+/* Relative error of displacements to expect of P1 elements that lock at nu, n
+ * of them across a wall. */
+double model_locking_error(double nu, int n);
 /* Which effects the deck calls for, into m->effects. */
 void model_find_effects(model *m);
 /* In the place of model_check for a deck with *CONDENSED PROBLEM, once it is

@@ -6,6 +6,7 @@
 #include "base/timer.h"
 #include "run/visco.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -155,6 +156,60 @@ void visco_strains(run *r, const equilibrium *e, flow_state *s) {
       elastic[i] = s->e[visco_at(r, k) + i] - s->ei[visco_at(r, k) + i];
     tensor_product(r->m->ns, E, elastic, s->sigma + visco_at(r, k));
   }
+}
+
+/* Square of the deviator of a stress, or of a strain whose shears are doubled:
+ * shear 2 or 1/2. */
+static double deviator_square(int ns, const double *t, double shear) {
+  double d[6], sum = 0.0;
+  tensor_deviator(ns, t, d);
+  for (int i = 0; i < ns; ++i) sum += i < 3 ? d[i] * d[i] : shear * t[i] * t[i];
+  return sum;
+}
+
+/*
+ * Apparent Poisson ratio of the points that are not averaged: bulk modulus K,
+ * shear modulus G from |s| = 2 G |dev e| over the volume, s and e those of now.
+ * -1 if there are none, or if they flow in volume too.
+ */
+static double apparent_ratio(const run *r) {
+  const visco *v = r->visco;
+  const cluster_set *c = r->d.cluster;
+  int ns = r->m->ns;
+  double stress = 0.0, strain = 0.0, bulk = 0.0, volume = 0.0,
+         flow_volume = 0.0;
+  for (int k = 0; k < v->x.n; ++k) {
+    const double *E = run_elasticity(r, v->elem[k]), w = v->x.weight[k];
+    const double *ei = v->now.ei + visco_at(r, k);
+    if (r->m->sections[r->m->elem_section[v->elem[k]]].kin == PLANE_STRESS ||
+        (c != NULL && c->of[v->elem[k]] >= 0))
+      continue;
+    stress += w * deviator_square(ns, v->now.sigma + visco_at(r, k), 2.0);
+    strain += w * deviator_square(ns, v->now.e + visco_at(r, k), 0.5);
+    flow_volume += w * pow(ei[0] + ei[1] + ei[2], 2);
+    for (int i = 0; i < 9; ++i) bulk += w * E[ns * (i / 3) + i % 3] / 9.0;
+    volume += w;
+  }
+  if (strain == 0.0 || flow_volume > 1e-6 * strain) return -1.0;
+  double K = bulk / volume, G = 0.5 * sqrt(stress / strain);
+  return (3.0 * K - 2.0 * G) / (2.0 * (3.0 * K + G));
+}
+
+void visco_warn_locking(run *r) {
+  enum { COARSE = 16, FINE = 64 };
+  visco *v = r->visco;
+  if (v->told_locking) return;
+  double nu = apparent_ratio(r);
+  if (nu <= 0.49) return;
+  v->told_locking = 1;
+  message_add(r->m->log, P4016, &r->step->at,
+              "step %d, time %g: creep has brought Poisson's ratio to an "
+              "apparent %.4g; linear elements lock: expect displacements too "
+              "small by some %.2g %% with %d elements across a wall, %.2g %% "
+              "with %d, and more from here on",
+              run_step_id(r) + 1, v->old.t, nu,
+              100.0 * model_locking_error(nu, COARSE), COARSE,
+              100.0 * model_locking_error(nu, FINE), FINE);
 }
 
 void visco_show(const run *r, state *s) {

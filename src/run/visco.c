@@ -272,6 +272,7 @@ status visco_accept(run *r) {
   TRY(flow_elastic_norm(&v->x, &v->now, &norm));
   v->largest = fmax(v->largest, norm);
   flow_state_copy(&v->x, &v->now, &v->old);
+  visco_warn_locking(r);
 done:
   timer_leave(STAGE_INELASTIC);
   return st;

@@ -31,6 +31,7 @@ struct visco {
   double *thickness; /* the same                                          */
   double largest;    /* largest norm of the elastic strains so far        */
   const step *told;  /* step whose ringing has been told                  */
+  int told_locking;  /* 1: P4016 has been told                            */
 };
 
 /* Where the components of item k start among [ns*n]. */
@@ -48,6 +49,8 @@ status visco_keep_flow(const flow *x, flow_state *s, archive *a,
 void visco_temperatures(const run *r, const equilibrium *e, flow_state *s);
 /* Strains, less the thermal ones, of an equilibrium into s->e; stresses. */
 void visco_strains(run *r, const equilibrium *e, flow_state *s);
+/* Warns, once, when v->now has crept until its elements lock. */
+void visco_warn_locking(run *r);
 
 /* tangent.c: equilibrium of r->now with the linear law of the points, with a
  * matrix of that tangent; read r->report. */
