@@ -161,3 +161,24 @@ void triplets_dense(const triplets *t, double *a) {
     a[(size_t)t->row[k] + (size_t)t->rows * (size_t)t->column[k]] +=
         t->value[k];
 }
+
+status triplets_by_column(const triplets *t, int **start, long **entry) {
+  status st = OK;
+  NEW(*start, t->columns + 2);
+  NEW(*entry, t->n);
+  for (long k = 0; k < t->n; ++k) ++(*start)[t->column[k] + 2];
+  for (int j = 0; j <= t->columns; ++j) (*start)[j + 1] += (*start)[j];
+  for (long k = 0; k < t->n; ++k) (*entry)[(*start)[t->column[k] + 1]++] = k;
+done:
+  return st;
+}
+
+int triplets_triangle(const triplets *t) {
+  int lower = 0, upper = 0;
+  for (long k = 0; k < t->n; ++k)
+    if (t->value[k] != 0.0) {
+      lower |= t->row[k] > t->column[k];
+      upper |= t->row[k] < t->column[k];
+    }
+  return upper - lower;
+}

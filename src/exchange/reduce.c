@@ -19,18 +19,6 @@ static const double ASYMMETRY = 1e-10; /* -, of the largest entry             */
 static const double RCOND = 1e-14;     /* -, below: singular                  */
 static const double DEFINITE = 1e-12;  /* -, below: not positive definite     */
 
-/* 1: only one triangle is stored (and there is something beside the
- * diagonal). */
-static int one_triangle(const triplets *t) {
-  long lower = 0, upper = 0;
-  for (long k = 0; k < t->n; ++k)
-    if (t->value[k] != 0.0) {
-      lower += t->row[k] > t->column[k];
-      upper += t->row[k] < t->column[k];
-    }
-  return (lower == 0) != (upper == 0);
-}
-
 /* ---- M as a sparse matrix, scaled -----------------------------------------
  */
 
@@ -84,7 +72,8 @@ static cholmod_sparse *assemble(reduction *s, const triplets *M, int mirror) {
 static status symmetric_part(reduction *s, const triplets *M, int *symmetric) {
   status st = OK;
   double half[2] = {0.5, 0.0}, minus[2] = {-0.5, 0.0};
-  cholmod_sparse *all = assemble(s, M, one_triangle(M)), *turned = NULL;
+  cholmod_sparse *all = assemble(s, M, triplets_triangle(M) != 0),
+                 *turned = NULL;
   cholmod_sparse *skew = NULL, *mean = NULL;
   if (all != NULL) turned = cholmod_transpose(all, 1, &s->cm);
   if (turned != NULL) {
@@ -139,11 +128,7 @@ static status columns_new(const triplets *H, const double *f, columns *c) {
   status st = OK;
   c->H = H;
   c->f = f;
-  NEW(c->start, H->columns + 2);
-  NEW(c->entry, H->n);
-  for (long k = 0; k < H->n; ++k) ++c->start[H->column[k] + 2];
-  for (int j = 0; j <= H->columns; ++j) c->start[j + 1] += c->start[j];
-  for (long k = 0; k < H->n; ++k) c->entry[c->start[H->column[k] + 1]++] = k;
+  TRY(triplets_by_column(H, &c->start, &c->entry));
 done:
   return st;
 }
@@ -231,7 +216,7 @@ static status reduce_dense(const triplets *M, const columns *c, double *W,
   NEW(pivot, 2 * (size_t)n);
   NEW(x, n);
   triplets_dense(M, a);
-  for (long k = 0; k < M->n && one_triangle(M); ++k)
+  for (long k = 0; k < M->n && triplets_triangle(M) != 0; ++k)
     if (M->row[k] != M->column[k])
       a[(size_t)M->column[k] + (size_t)n * (size_t)M->row[k]] += M->value[k];
   double norm = LAPACKE_dlange_work(LAPACK_COL_MAJOR, '1', n, n, a, n, work);

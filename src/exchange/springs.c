@@ -18,18 +18,6 @@
 
 static const double RCOND = 1e-13; /* -, of Ws, below: H is rank deficient   */
 
-/* Entries of H, column by column: start[columns + 1], entry[H->n]. */
-static status list_columns(const triplets *H, int **start, long **entry) {
-  status st = OK;
-  NEW(*start, H->columns + 2);
-  NEW(*entry, H->n);
-  for (long k = 0; k < H->n; ++k) ++(*start)[H->column[k] + 2];
-  for (int j = 0; j <= H->columns; ++j) (*start)[j + 1] += (*start)[j];
-  for (long k = 0; k < H->n; ++k) (*entry)[(*start)[H->column[k] + 1]++] = k;
-done:
-  return st;
-}
-
 /* Mean diagonal of M over that of H H', where both are not zero. */
 static double stiffness(const triplets *M, const triplets *H) {
   double sum = 0.0, squares = 0.0;
@@ -45,16 +33,12 @@ status springs_add(const triplets *M, const triplets *H, double *s,
                    triplets *held) {
   status st = OK;
   *s = stiffness(M, H);
-  int *start = NULL, lower = 0, upper = 0;
+  int *start = NULL, triangle = triplets_triangle(M);
   long *entry = NULL, count = M->n;
-  TRY(list_columns(H, &start, &entry));
+  TRY(triplets_by_column(H, &start, &entry));
   for (int j = 0; j < H->columns; ++j) {
     long n = start[j + 1] - start[j];
     count += n * n;
-  }
-  for (long k = 0; k < M->n; ++k) {
-    lower |= M->row[k] > M->column[k] && M->value[k] != 0.0;
-    upper |= M->row[k] < M->column[k] && M->value[k] != 0.0;
   }
   held->rows = held->columns = M->rows;
   NEW(held->row, count);
@@ -69,8 +53,7 @@ status springs_add(const triplets *M, const triplets *H, double *s,
     for (int a = start[j]; a < start[j + 1]; ++a)
       for (int b = start[j]; b < start[j + 1]; ++b) {
         int row = H->row[entry[a]], column = H->row[entry[b]];
-        if (lower != upper && (row < column) != upper && row != column)
-          continue;
+        if (triangle * (column - row) < 0) continue;
         held->row[held->n] = row;
         held->column[held->n] = column;
         held->value[held->n++] = *s * H->value[entry[a]] * H->value[entry[b]];
