@@ -648,12 +648,58 @@ done:
   return st;
 }
 
+/* 1: a mean stress alone makes nothing flow, as far as a shear does. */
+static status keeps_volume(const section *s, const material *mat, int *answer) {
+  status st = OK;
+  static const double zero[FLOW_VALUE_MAX];
+  double value[FLOW_VALUE_MAX], alpha_rate[FLOW_VALUE_MAX], ei_rate[6];
+  flow_kind kind = {0};
+  law_elastic elastic;
+  law_point p;
+  TRY(law_elastic_read(&mat->elastic, 0.0, (kinematics)s->kin, &elastic));
+  TRY(flow_new_kind(&kind, &mat->law, &elastic));
+  TRY(flow_coefficients(&kind, 0.0, 0.0, value, &p));
+  const double size = 1e-3 * elastic.young;
+  const double mean[6] = {size, size, size}, shear[6] = {0, 0, 0, size};
+  p.ei = p.alpha = zero;
+  p.speed = 1.0; /* whatever the temperature                                  */
+  p.sigma = mean;
+  law_rate(&p, ei_rate, alpha_rate);
+  double swelling = fabs(tensor_trace(ei_rate));
+  p.sigma = shear;
+  law_rate(&p, ei_rate, alpha_rate);
+  *answer = swelling <= 1e-9 * fabs(ei_rate[3]);
+done:
+  flow_kind_free(&kind);
+  return st;
+}
+
+/* Bodies that creep at constant volume become incompressible. */
+static status check_creep(const model *m) {
+  status st = OK;
+  for (int i = 0; i < m->n_section; ++i) {
+    const section *s = &m->sections[i];
+    const material *mat = &m->materials[s->material_id];
+    int locks = 0;
+    if (mat->law.ops == NULL || s->kin == PLANE_STRESS || s->averaged) continue;
+    TRY(keeps_volume(s, mat, &locks));
+    if (locks)
+      message_add(m->log, P2055, &s->at,
+                  "law %s of material %s creeps at constant volume: where its "
+                  "strains outgrow the elastic ones, linear elements lock",
+                  mat->law.ops->name, mat->name);
+  }
+done:
+  return st;
+}
+
 /* Increments of *VISCO steps against the laws that do not change. */
 static status check_visco(const model *m) {
   status st = OK;
   double rate;
   if (!(m->effects & EFFECT_INELASTIC)) return OK;
   TRY(constant_rate(m, &rate));
+  if (has_card(m, "VISCO")) TRY(check_creep(m));
   for (int i = 0; i < m->n_step; ++i) {
     const step *s = &m->steps[i];
     if (s->kind != STEP_VISCO) continue;

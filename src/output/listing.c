@@ -479,6 +479,10 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
   view v = {j->m, j->msh, s};
   print_when(s, lst->f);
   fputc('\n', lst->f);
+  if (s->flow != NULL && s->increment_no == 1 &&
+      j->m->steps[s->step_no - 1].kind != STEP_VISCO)
+    fputs("  no inelastic strain grows in this step: it is not *VISCO\n",
+          lst->f);
   if (s->surface != NULL) {
     if (s->note != NULL) fputs(s->note, lst->f);
     print_solver(j, s, lst->f);

@@ -301,6 +301,32 @@ START_TEST(explicit_limits) {
 }
 END_TEST
 
+/* Creep at constant volume locks linear elements, but not in plane stress; one
+ * that swells does not. A step that is not *VISCO says that nothing flows. */
+START_TEST(locking_creep_is_told) {
+  static const struct {
+    const char *law, *section;
+    int locks;
+  } rows[] = {{DEVIATORIC, "CPE3", 1},
+              {DEVIATORIC, "CPS3", 0},
+              {"*CREEP, LAW=NORTON\n1.E-15, 5.\n", "CAX3", 1},
+              {"*INELASTIC, LAW=MAXWELL\n2.\n", "CPE3", 0},
+              {"*INELASTIC, LAW=PRONY\n0.5, 0.5, 2.\n", "CPE3", 0}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+    scene s = {SOFT, rows[k].law, rows[k].section,
+               "",   HELD,        "*VISCO, INTEGRATOR=MIDPOINT\n0.5, 1.\n"};
+    job j = run_scene(&s, 0);
+    ck_assert_int_eq(strstr(j.errors, "P2055") != NULL, rows[k].locks);
+    char *lst = job_file(&j, "lst");
+    char *held = strstr(lst, "no inelastic strain grows in this step");
+    ck_assert_ptr_nonnull(held);
+    ck_assert_ptr_null(strstr(held + 1, "no inelastic strain grows"));
+    free(lst);
+    job_end(&j);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("laws");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -311,5 +337,6 @@ int main(void) {
   tcase_add_test(tests, armstrong_frederick_loop);
   tcase_add_test(tests, a_bar_ratchets);
   tcase_add_test(tests, explicit_limits);
+  tcase_add_test(tests, locking_creep_is_told);
   return unit_run("laws", tests);
 }
