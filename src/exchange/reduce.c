@@ -206,7 +206,7 @@ done:
 static status reduce_dense(const triplets *M, const columns *c, double *W,
                            double *q, int *singular) {
   status st = OK;
-  int n = M->rows;
+  int n = M->rows, mirror = triplets_triangle(M) != 0;
   size_t size = (size_t)n * (size_t)n;
   double *a = NULL, *work = NULL, *x = NULL, rcond = 0.0;
   int *pivot = NULL;
@@ -216,7 +216,7 @@ static status reduce_dense(const triplets *M, const columns *c, double *W,
   NEW(pivot, 2 * (size_t)n);
   NEW(x, n);
   triplets_dense(M, a);
-  for (long k = 0; k < M->n && triplets_triangle(M) != 0; ++k)
+  for (long k = 0; k < M->n && mirror; ++k)
     if (M->row[k] != M->column[k])
       a[(size_t)M->column[k] + (size_t)n * (size_t)M->row[k]] += M->value[k];
   double norm = LAPACKE_dlange_work(LAPACK_COL_MAJOR, '1', n, n, a, n, work);
