@@ -14,7 +14,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { COLUMNS = 32, DECK = 8000, NOTES = 16000, JOBS = 16, CPU_SECONDS = 300 };
+enum {
+  COLUMNS = 32,
+  DECK = 8000,
+  NOTES = 16000,
+  JOBS = 16,
+  CPU_SECONDS = 1800
+};
 
 typedef struct column {
   char label[4];
