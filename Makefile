@@ -77,6 +77,7 @@ help:
 	@echo "make torture      memory, files, kills, random input: a table, an hour"
 	@echo "make verify       orders of convergence, observed and expected"
 	@echo "make effects-cost instructions of builds without an effect; needs valgrind"
+	@echo "make study        error against CPU seconds: four pictures"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
 	@echo "make bench-solvers  what each digit costs, for every solver"
@@ -195,6 +196,25 @@ verify: $(program) $(verify)
 .PHONY: effects-cost
 effects-cost: $(program)
 	$(Q)tools/effects_cost
+
+# Error against CPU seconds: solvers, meshes, integrators, nonlocal radii.
+STUDY := PROTIS=$(abspath $(program)) tools/study -j $(JOBS)
+.PHONY: study
+study: $(program)
+	$(Q)$(STUDY) input/greco/greco.inp -o build/study/solvers \
+	  --vary TOL=1e-1,1e-2,1e-3,1e-4,1e-6,1e-8,1e-12 \
+	  --vary METHOD=AITKEN,SOR,NEWTON --vary N=128 --cost "contact solver" \
+	  --title "block, 128 segments: what a digit costs with three solvers"
+	$(Q)$(STUDY) input/hertz_line/hertz_exact.inp -o build/study/meshes \
+	  --vary N=2,4,8,16,32 --title "Hertz, segments per half-width N"
+	$(Q)$(STUDY) input/creep_block/held_block.inp -o build/study/integrators \
+	  --vary DT=1,0.5,0.25,0.125,0.0625,0.03125 \
+	  --vary INTEGRATOR=EULER,BACKWARD,HEUN,MIDPOINT \
+	  --title "relaxing block: four integrators, increments DT"
+	$(Q)$(STUDY) input/nonlocal_slider/nonlocal_hertz.inp \
+	  -o build/study/radii --vary NC=8,16,32,64,128 \
+	  --vary RHO=0.02,0.05,0.1 --error TOTALS.tangential \
+	  --title "sliding cylinder: nonlocal radii RHO, NC segments"
 
 bench-solvers: $(out)/tests/bench/solvers
 	$(Q)$<

@@ -1,0 +1,183 @@
+/*
+ * *ACCURACY, TARGET= against brute force: the true error of what it reaches is
+ * below the target, and its CPU time, all passes, beside that of the cheapest
+ * mesh of the deck (N segments more and more) whose true error is below it too.
+ * Then the forecast of --estimate-cost beside the passes that reach the levels.
+ *
+ * True errors: of Hertz's half plane by *REFERENCE; of the block of greco by
+ * its strain energy, sqrt(1 - E/108.2577), with the limit of E over meshes of
+ * 64 to 512 segments (N mm). CPU seconds depend on the machine: expected are
+ * their ratios, 1.5 at most beside brute force, 2 beside the forecast; small
+ * meshes, whose time is that of starting gmsh, are shown too.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double greco_energy = 108.2577;
+
+static double told(const job *j, const char *name) {
+  char wanted[80], *json = job_file(j, "json"), *last = NULL;
+  double value = NAN;
+  snprintf(wanted, sizeof wanted, "\"%s\": ", name);
+  for (char *at = json; (at = strstr(at, wanted)) != NULL;)
+    last = at += strlen(wanted);
+  ck_assert_msg(last != NULL, "%s is not told", name);
+  sscanf(last, "%lf", &value);
+  free(json);
+  return value;
+}
+
+/* CPU seconds of the run: the last "cpu" of the part "cost". */
+static double cpu_of(const job *j) {
+  char *json = job_file(j, "json"), *cost = strstr(json, "\"peak_bytes\"");
+  char *at = cost;
+  while (at > json && strncmp(at, "\"cpu\": ", 7) != 0) --at;
+  double value = atof(at + 7);
+  free(json);
+  return value;
+}
+
+typedef struct example {
+  const char *name, *folder;
+  int energy; /* 1: the true error by the strain energy                       */
+} example;
+
+static const example hertz = {"hertz_exact", "hertz_line", 0};
+static const example greco = {"greco", "greco", 1};
+static const example line = {"hertz_line", "hertz_line", 0};
+static const example creep = {"creep_block", "creep_block", 0};
+static const example shear = {"block_shear_3d", "block_shear_3d", 0};
+
+/* The deck with another *ACCURACY (NULL: as it is) in each step. */
+static int run(job *j, const example *e, const char *accuracy,
+               const char *words) {
+  char path[160], text[8192];
+  *j = job_begin(e->name);
+  snprintf(path, sizeof path, "input/%s/%s", e->folder, e->name);
+  job_copy_meshes(j, path);
+  strcat(path, ".inp");
+  FILE *from = fopen(path, "r"), *to;
+  ck_assert_ptr_nonnull(from);
+  snprintf(path, sizeof path, "%s/%s.inp", j->dir, j->name);
+  to = fopen(path, "w");
+  ck_assert_ptr_nonnull(to);
+  while (fgets(text, sizeof text, from) != NULL) {
+    int own = strncmp(text, "*ACCURACY", 9) == 0;
+    if (accuracy != NULL && strncmp(text, "*END STEP", 9) == 0)
+      fprintf(to, "%s\n", accuracy);
+    if (!own || accuracy == NULL) fputs(text, to);
+  }
+  fclose(from);
+  fclose(to);
+  return job_run(j, words);
+}
+
+/* %, of the energy norm. */
+static double true_error(const job *j, const example *e) {
+  if (!e->energy) return told(j, "true_error_percent");
+  dat d = job_table(j, "ENERGY", -1);
+  double energy = dat_at(&d, 0, "strain_energy");
+  dat_free(&d);
+  return 100 * sqrt(fabs(1 - energy / greco_energy));
+}
+
+/* CPU of the coarsest mesh of the deck below the target; steps of 1.1 in N. */
+static double brute_force(const example *e, double target, int from, int *n) {
+  for (*n = from;; *n = *n * 11 / 10 + 1) {
+    char words[40];
+    job j;
+    snprintf(words, sizeof words, "-D N=%d", *n);
+    ck_assert_int_eq(run(&j, e, "*ACCURACY, SOLVER=NO", words), 0);
+    double error = true_error(&j, e), cpu = cpu_of(&j);
+    job_end(&j);
+    if (error <= target) return cpu;
+    ck_assert_int_lt(*n, 2000);
+  }
+}
+
+static void check_target(const example *e, double target, int from) {
+  char card[60];
+  int n;
+  job j;
+  snprintf(card, sizeof card, "*ACCURACY, TARGET=%g", target);
+  ck_assert_int_eq(run(&j, e, card, ""), 0);
+  double error = true_error(&j, e), cpu = cpu_of(&j);
+  job_end(&j);
+  double uniform = brute_force(e, target, from, &n);
+  printf("%-16s %9g %9.3f %9.2f %9d %9.2f %9.2f\n", e->name, target, error, cpu,
+         n, uniform, cpu / uniform);
+  fflush(stdout);
+  ck_assert_msg(error <= target, "%s: true error %g", e->name, error);
+}
+
+START_TEST(targets) {
+  printf("%-16s %9s %9s %9s %9s %9s %9s\n", "TARGET=", "wanted[%]", "true[%]",
+         "cpu[s]", "uniform N", "cpu[s]", "ratio");
+  check_target(&greco, 1, 54);
+  check_target(&greco, 0.3, 180);
+  check_target(&hertz, 1, 42);
+}
+END_TEST
+
+/* Unknowns, CPU seconds and MB foreseen for an error in %; 0: no such row. */
+static int foreseen(const job *j, double level, double row[3]) {
+  double found, times;
+  for (const char *at = j->text; at != NULL; at = strchr(at, '\n')) {
+    at += *at == '\n';
+    if (sscanf(at, "%lf %lf %lf %lf %lf", &found, &row[0], &times, &row[1],
+               &row[2]) == 5 &&
+        found == level)
+      return 1;
+    if (*at == '\0') break;
+  }
+  return 0;
+}
+
+static void check_forecast(const example *e, const double *levels, int n) {
+  job plan;
+  ck_assert_int_eq(run(&plan, e, NULL, "--estimate-cost"), 0);
+  for (int i = 0; i < n; ++i) {
+    double row[3];
+    char card[60];
+    job j;
+    ck_assert(foreseen(&plan, levels[i], row));
+    snprintf(card, sizeof card, "*ACCURACY, TARGET=%g", levels[i]);
+    ck_assert_int_eq(run(&j, e, card, ""), 0);
+    double cpu = cpu_of(&j);
+    double bytes = told(&j, "peak_bytes") / 1048576;
+    printf("%-16s %9g %9.0f %9.2f %9.2f %9.2f %9.2f\n", e->name, levels[i],
+           row[0], row[1], row[2], cpu / row[1], bytes / row[2]);
+    fflush(stdout);
+    job_end(&j);
+  }
+  job_end(&plan);
+}
+
+START_TEST(forecasts) {
+  static const double fine[] = {1, 0.3, 0.1}, coarse[] = {3, 1}, solid[] = {10};
+  printf("%-16s %9s %9s %9s %9s %9s %9s\n", "--estimate-cost", "error[%]",
+         "unknowns", "cpu[s]", "mem[MB]", "real cpu/", "real mem/");
+  check_forecast(&greco, fine, 3);
+  check_forecast(&line, coarse, 2);
+  check_forecast(&creep, fine, 2);
+  check_forecast(&shear, solid, 1);
+}
+END_TEST
+
+int main(void) {
+  Suite *s = suite_create("target");
+  TCase *t = tcase_create("target");
+  tcase_set_timeout(t, 1800);
+  tcase_add_test(t, targets);
+  tcase_add_test(t, forecasts);
+  suite_add_tcase(s, t);
+  SRunner *r = srunner_create(s);
+  srunner_run_all(r, CK_NORMAL);
+  int failed = srunner_ntests_failed(r);
+  srunner_free(r);
+  return failed > 0;
+}
