@@ -114,8 +114,6 @@
     "A number is needed here. Fields are separated by commas.")
 
 #define MESSAGE_LIST_MODEL(X)                                                \
-  X(2001, ERROR, "card not available in this version",                       \
-    "The card is reserved; a later version will read it. Remove it.")        \
   X(2003, ERROR, "unknown parameter",                                        \
     "protis --keywords CARD lists the parameters of a card. Names match "    \
     "in full.")                                                              \

@@ -81,7 +81,7 @@ static void check_problem_cards(const reading *r) {
   for (int i = 0; i < m->deck->n_card; ++i) {
     const card *c = &m->deck->cards[i];
     const keyword *row = keyword_find(c->name);
-    if (row != NULL && !(row->where & LATER) && !goes_with_problem(c->name))
+    if (row != NULL && !goes_with_problem(c->name))
       message_add(m->log, P2034, &c->at,
                   "*%s has no place beside *CONDENSED PROBLEM, line %d",
                   c->name, m->problem_at.line_no);

@@ -91,7 +91,7 @@ static void echo_record(const card *c, const record *line, FILE *out) {
 static void echo_card(const model *m, const card *c, FILE *out) {
   _Alignas(16) char param[PARAM_SIZE], plugin_param[PARAM_SIZE];
   const keyword *row = keyword_find(c->name);
-  if (row == NULL || (row->where & (LANGUAGE | LATER))) return;
+  if (row == NULL || (row->where & LANGUAGE)) return;
   reading r = {.m = (model *)m, .card = c, .material_id = -1};
   keyword_parameters(row, &r, param, plugin_param);
   int column = fprintf(out, "*%s", c->name);
@@ -111,7 +111,6 @@ void model_echo(const model *m, FILE *out) {
 }
 
 static const char *where_text(unsigned where) {
-  if (where & LATER) return "not available in this version";
   if (where & LANGUAGE) return "anywhere";
   if (where & IN_MATERIAL) return "after *MATERIAL";
   if ((where & (IN_STEP | IN_MODEL)) == (IN_STEP | IN_MODEL))
@@ -131,8 +130,7 @@ int keywords_print(const char *name, FILE *out) {
   char upper[80];
   if (name == NULL) {
     for (const keyword *k = keyword_table; k->name != NULL; ++k)
-      fprintf(out, "*%-20s %s%s\n", k->name, k->help,
-              k->where & LATER ? " (not available in this version)" : "");
+      fprintf(out, "*%-20s %s\n", k->name, k->help);
     return 1;
   }
   if (name[0] == '*') ++name;

@@ -12,8 +12,7 @@ enum {
   IN_MODEL = 1,    /* before the first *STEP                                  */
   IN_MATERIAL = 2, /* after *MATERIAL, up to the next card of the model       */
   IN_STEP = 4,     /* between *STEP and *END STEP                             */
-  LANGUAGE = 8,    /* read by the deck reader; stands anywhere                */
-  LATER = 16       /* reserved: not available in this version                 */
+  LANGUAGE = 8     /* read by the deck reader; stands anywhere                */
 };
 
 /* State of reading a deck, card by card. */
@@ -39,7 +38,7 @@ typedef struct plugin {
 
 typedef struct keyword {
   const char *name;
-  unsigned where;        /* IN_..., LANGUAGE or LATER                        */
+  unsigned where;        /* IN_... or LANGUAGE                               */
   const option *options; /* of the struct of param_size bytes, or NULL       */
   size_t param_size;
   /* Options of what the card names; an unknown name goes to the log. */

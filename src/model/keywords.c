@@ -266,8 +266,6 @@ static const option restart_options[] = {
 
 #define OPTIONS(x) x##_options, sizeof(x##_param)
 #define NO_OPTIONS NULL, 0
-#define RESERVED(name, help) \
-  {name, LATER, NO_OPTIONS, NULL, NULL, 0, ANY, "", help}
 
 const keyword keyword_table[] = {
   {"HEADING", IN_MODEL, NO_OPTIONS, NULL, apply_heading, 0, ANY,

@@ -275,10 +275,7 @@ static status read_card(reading *r) {
   const keyword *row = keyword_find(r->card->name);
   if (row == NULL) unknown_card(r);
   if (row != NULL && row->where & LANGUAGE) goto done;
-  if (row != NULL && row->where & LATER)
-    message_add(r->m->log, P2001, &r->card->at,
-                "*%s is not available in this version", r->card->name);
-  if (row == NULL || row->where & LATER || !right_place(r, row)) {
+  if (row == NULL || !right_place(r, row)) {
     r->lost = 1;
     goto done;
   }
