@@ -264,6 +264,8 @@ static status run_link(contact_solver *s, const contact_problem *cp, int i,
   memset(s->param, 0, s->param_size);
   option_defaults(a.ops->options, s->param);
   if (i > 0) cold_start(cp, u, r);
+  /* The forces of a stiffness that is nearly singular lead it astray. */
+  if (a.ops == &proximal_solver) memset(r, 0, (size_t)cp->m * sizeof *r);
   if (a.how == WHILE_PROMISING)
     TRY(promising_sweeps(s, cp, a.max_iter, listener, &(answer){u, r, rep}));
   else
