@@ -49,24 +49,6 @@ static double iterations(const job *j) {
   return sum;
 }
 
-/* |u_a - u_b| over |u_b| at increment k, %: the loads are the same. */
-static double difference(const job *a, const job *b, int k) {
-  dat x = job_table(a, "CONTACT", k), y = job_table(b, "CONTACT", k);
-  dat e = job_table(b, "ENERGY", k);
-  double sum = 0.0;
-  for (int i = 0; i < x.n_row; ++i) {
-    sum += (dat_at(&x, i, "gap") - dat_at(&y, i, "gap")) *
-           (dat_at(&x, i, "f_n") - dat_at(&y, i, "f_n"));
-    sum += (dat_at(&x, i, "u_t") - dat_at(&y, i, "u_t")) *
-           (dat_at(&x, i, "f_t") - dat_at(&y, i, "f_t"));
-  }
-  double energy = dat_at(&e, 0, "strain_energy");
-  dat_free(&x);
-  dat_free(&y);
-  dat_free(&e);
-  return 100.0 * sqrt(fabs(sum) / (2.0 * energy));
-}
-
 static const char *const methods[] = {"METHOD=SOR", "METHOD=AITKEN",
                                       "METHOD=AUTO"};
 
@@ -80,9 +62,9 @@ START_TEST(error_left_is_the_share_of_the_mesh) {
     job j = run_block(0.1, words, "");
     double others = figure(&j, "mesh_error_percent");
     for (int k = 0; k < 10; ++k)
-      ck_assert_msg(difference(&j, &exact, k) < 0.07 * others,
-                    "%s %d: %g of %g %%", words, k, difference(&j, &exact, k),
-                    others);
+      ck_assert_msg(job_difference(&j, &exact, k) < 0.07 * others,
+                    "%s %d: %g of %g %%", words, k,
+                    job_difference(&j, &exact, k), others);
     double full = iterations(&exact), made = iterations(&j);
     ck_assert_msg(made <= (i < 2 ? 0.5 : 1.0) * full, "%s: %g of %g", words,
                   made, full);

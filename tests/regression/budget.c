@@ -43,31 +43,12 @@ static job roll(int n, const char *accuracy) {
   return j;
 }
 
-/* Energy norm of the difference of two runs over that of the second, in %:
- * the loads are the same, so that its square is (u_a - u_b)'(r_a - r_b). */
-static double difference(const job *a, const job *b) {
-  dat x = job_table(a, "CONTACT", -1), y = job_table(b, "CONTACT", -1);
-  dat e = job_table(b, "ENERGY", -1);
-  double sum = 0.0;
-  for (int i = 0; i < x.n_row; ++i) {
-    sum += (dat_at(&x, i, "gap") - dat_at(&y, i, "gap")) *
-           (dat_at(&x, i, "f_n") - dat_at(&y, i, "f_n"));
-    sum += (dat_at(&x, i, "u_t") - dat_at(&y, i, "u_t")) *
-           (dat_at(&x, i, "f_t") - dat_at(&y, i, "f_t"));
-  }
-  double energy = dat_at(&e, 0, "strain_energy");
-  dat_free(&x);
-  dat_free(&y);
-  dat_free(&e);
-  return 100.0 * sqrt(fabs(sum) / (2.0 * energy));
-}
-
 START_TEST(error_of_the_steps_is_near_the_true_one) {
   job fine = roll(160, "");
   ck_assert(isnan(last_of(&fine, TIME_COLUMN)));
   for (int n = 1; n <= 10; n = 2 * n + n / 2) { /* 1, 2, 5 */
     job j = roll(n, "*ACCURACY, TIME=YES\n");
-    double told = last_of(&j, TIME_COLUMN), is = difference(&j, &fine);
+    double told = last_of(&j, TIME_COLUMN), is = job_difference(&j, &fine, -1);
     ck_assert_msg(told > 0.7 * is && told < 1.5 * is, "%d: told %g, is %g", n,
                   told, is);
     ck_assert(isnan(last_of(&j, MESH_COLUMN)));
@@ -99,7 +80,7 @@ START_TEST(increments_are_balanced_with_the_mesh) {
                                "*ACCURACY, TIME=BALANCED, TIME_SHARE=0.005\n"};
   for (int k = 0; k < 2; ++k) {
     job j = roll(20, cards[k]);
-    double told = last_of(&j, TIME_COLUMN), is = difference(&j, &fine);
+    double told = last_of(&j, TIME_COLUMN), is = job_difference(&j, &fine, -1);
     double others = last_of(&j, MESH_COLUMN);
     ck_assert_msg(is < (k == 0 ? 0.05 : 0.005) * others, "%d: %g of %g", k, is,
                   others);

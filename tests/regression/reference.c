@@ -12,18 +12,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The last figure of that name in JOB.json; NAN: null. */
-static double told(const job *j, const char *name) {
-  char wanted[80], *json = job_file(j, "json"), *at = json, *last = NULL;
-  double value = NAN;
-  snprintf(wanted, sizeof wanted, "\"%s\": ", name);
-  while ((at = strstr(at, wanted)) != NULL) last = at += strlen(wanted);
-  ck_assert_msg(last != NULL, "%s is not told", name);
-  sscanf(last, "%lf", &value);
-  free(json);
-  return value / 100;
-}
-
 typedef struct scene {
   const char *geo, *section, *nu, *reference, *supports;
 } scene;
@@ -74,8 +62,8 @@ START_TEST(uniform_stress_has_the_error_of_its_factor) {
     job exact = run_scene(&uniform[k], "1"),
         other = run_scene(&uniform[k], "1.25");
     for (int i = 0; i < 4; ++i) {
-      ck_assert_double_le(told(&exact, norms[i]), 1e-9);
-      ck_assert_double_eq_tol(told(&other, norms[i]), 0.2, 1e-9);
+      ck_assert_double_le(0.01 * job_told(&exact, norms[i]), 1e-9);
+      ck_assert_double_eq_tol(0.01 * job_told(&other, norms[i]), 0.2, 1e-9);
     }
     job_end(&exact);
     job_end(&other);
@@ -95,18 +83,18 @@ static void check_quadratic(const char *reference, double displacement,
   const double a = 0.01, b = 0.001;
   job j = run_scene(&s, "1");
   double energy = sqrt(4 * b * b / 3 / (a * a - 2 * a * b + 4 * b * b / 3));
-  ck_assert_double_eq_tol(told(&j, norms[0]), energy, 1e-9);
+  ck_assert_double_eq_tol(0.01 * job_told(&j, norms[0]), energy, 1e-9);
   if (displacement > 0)
     ck_assert_double_eq_tol(
-        told(&j, norms[1]),
+        0.01 * job_told(&j, norms[1]),
         sqrt(b * b / 5 / (a * a / 3 - a * b / 2 + b * b / 5)), 1e-9);
   else
-    ck_assert(isnan(told(&j, norms[1])));
+    ck_assert(isnan(0.01 * job_told(&j, norms[1])));
   if (stress > 0)
-    ck_assert_double_eq_tol(told(&j, norms[2]), energy, 1e-9);
+    ck_assert_double_eq_tol(0.01 * job_told(&j, norms[2]), energy, 1e-9);
   else
-    ck_assert(isnan(told(&j, norms[2])));
-  ck_assert(isnan(told(&j, norms[3])));
+    ck_assert(isnan(0.01 * job_told(&j, norms[2])));
+  ck_assert(isnan(0.01 * job_told(&j, norms[3])));
   job_end(&j);
 }
 
@@ -127,9 +115,9 @@ START_TEST(estimate_beside_the_true_error_of_hertz) {
     snprintf(words, sizeof words, "-D N=%d", n);
     ck_assert_int_eq(job_run_deck(&j, "input/hertz_line/hertz_exact", words),
                      0);
-    double effectivity = 100 * told(&j, "effectivity");
-    double error = told(&j, norms[0]),
-           estimate = told(&j, "mesh_error_percent");
+    double effectivity = 100 * 0.01 * job_told(&j, "effectivity");
+    double error = 0.01 * job_told(&j, norms[0]),
+           estimate = 0.01 * job_told(&j, "mesh_error_percent");
     ck_assert_double_eq_tol(effectivity, estimate / error, 1e-3);
     ck_assert_msg(effectivity > 0.9 && effectivity < 1.1, "%g", effectivity);
     ck_assert_double_lt(error, 0.6 * before);

@@ -273,3 +273,32 @@ double dat_max(const dat *d, const char *name) {
     most = fmax(most, fabs(dat_at(d, i, name)));
   return most;
 }
+
+double job_told(const job *j, const char *name) {
+  char wanted[80], *json = job_file(j, "json"), *last = NULL;
+  double value = NAN;
+  snprintf(wanted, sizeof wanted, "\"%s\": ", name);
+  for (char *at = json; (at = strstr(at, wanted)) != NULL;)
+    last = at += strlen(wanted);
+  ck_assert_msg(last != NULL, "%s is not told", name);
+  sscanf(last, "%lf", &value);
+  free(json);
+  return value;
+}
+
+double job_difference(const job *a, const job *b, int k) {
+  dat x = job_table(a, "CONTACT", k), y = job_table(b, "CONTACT", k);
+  dat e = job_table(b, "ENERGY", k);
+  double sum = 0.0;
+  for (int i = 0; i < x.n_row; ++i) {
+    sum += (dat_at(&x, i, "gap") - dat_at(&y, i, "gap")) *
+           (dat_at(&x, i, "f_n") - dat_at(&y, i, "f_n"));
+    sum += (dat_at(&x, i, "u_t") - dat_at(&y, i, "u_t")) *
+           (dat_at(&x, i, "f_t") - dat_at(&y, i, "f_t"));
+  }
+  double energy = dat_at(&e, 0, "strain_energy");
+  dat_free(&x);
+  dat_free(&y);
+  dat_free(&e);
+  return 100.0 * sqrt(fabs(sum) / (2.0 * energy));
+}

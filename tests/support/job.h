@@ -49,6 +49,12 @@ void job_clear(const job *j);
 /* Calls of a stage in the closing table of the listing; *bytes or NULL: what it
  * asked for. Check fails if the stage is not there. */
 long job_stage(const job *j, const char *stage, long *bytes);
+/* The last number of that name in JOB.json; check fails if there is none. */
+double job_told(const job *j, const char *name);
+/* Energy norm of the difference of two runs under the same loads over that of
+ * the second, %: its square is (u_a - u_b)'(r_a - r_b) on the contact; block k
+ * of the tables CONTACT and ENERGY. */
+double job_difference(const job *a, const job *b, int k);
 /* Block number k (from 0; -1 the last) of a table (CONTACT, ...) of JOB.dat;
  * check fails if there is none. */
 dat job_table(const job *j, const char *kind, int k);

@@ -69,24 +69,12 @@ static const problem problems[] = {
    "BODY, BZ, \"3*E*" VZ "\"\n", {4, 8}}};
 /* clang-format on */
 
-static double told(const job *j, const char *name) {
-  char wanted[80], *json = job_file(j, "json"), *last = NULL;
-  double value = NAN;
-  snprintf(wanted, sizeof wanted, "\"%s\": ", name);
-  for (char *at = json; (at = strstr(at, wanted)) != NULL;)
-    last = at += strlen(wanted);
-  ck_assert_msg(last != NULL, "%s is not told", name);
-  sscanf(last, "%lf", &value);
-  free(json);
-  return value;
-}
-
 /* A line of the table. */
 static void report(const char *name, int n, const job *j) {
-  double estimate = told(j, "mesh_error_percent");
-  double is = told(j, "true_error_percent"), ratio = estimate / is;
+  double estimate = job_told(j, "mesh_error_percent");
+  double is = job_told(j, "true_error_percent"), ratio = estimate / is;
   printf("%-14s %4d %10.0f %12.3f %12.3f %12.2f\n", name, n,
-         told(j, "unknowns"), is, estimate, ratio);
+         job_told(j, "unknowns"), is, estimate, ratio);
   fflush(stdout);
   ck_assert_msg(ratio > 0.7 && ratio < 1.5, "%s: effectivity %g", name, ratio);
 }

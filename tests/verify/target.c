@@ -19,18 +19,6 @@
 
 static const double greco_energy = 108.2577;
 
-static double told(const job *j, const char *name) {
-  char wanted[80], *json = job_file(j, "json"), *last = NULL;
-  double value = NAN;
-  snprintf(wanted, sizeof wanted, "\"%s\": ", name);
-  for (char *at = json; (at = strstr(at, wanted)) != NULL;)
-    last = at += strlen(wanted);
-  ck_assert_msg(last != NULL, "%s is not told", name);
-  sscanf(last, "%lf", &value);
-  free(json);
-  return value;
-}
-
 /* CPU seconds of the run: the last "cpu" of the part "cost". */
 static double cpu_of(const job *j) {
   char *json = job_file(j, "json"), *cost = strstr(json, "\"peak_bytes\"");
@@ -78,7 +66,7 @@ static int run(job *j, const example *e, const char *accuracy,
 
 /* %, of the energy norm. */
 static double true_error(const job *j, const example *e) {
-  if (!e->energy) return told(j, "true_error_percent");
+  if (!e->energy) return job_told(j, "true_error_percent");
   dat d = job_table(j, "ENERGY", -1);
   double energy = dat_at(&d, 0, "strain_energy");
   dat_free(&d);
@@ -148,7 +136,7 @@ static void check_forecast(const example *e, const double *levels, int n) {
     snprintf(card, sizeof card, "*ACCURACY, TARGET=%g", levels[i]);
     ck_assert_int_eq(run(&j, e, card, ""), 0);
     double cpu = cpu_of(&j);
-    double bytes = told(&j, "peak_bytes") / 1048576;
+    double bytes = job_told(&j, "peak_bytes") / 1048576;
     printf("%-16s %9g %9.0f %9.2f %9.2f %9.2f %9.2f\n", e->name, levels[i],
            row[0], row[1], row[2], cpu / row[1], bytes / row[2]);
     fflush(stdout);
