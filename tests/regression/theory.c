@@ -165,7 +165,8 @@ static const char triangle_mesh[] =
 
 START_TEST(triangle_gives_both_limits) {
   static const double mu[] = {0.5, 1.0};
-  static const char *const words[] = {"unique: under 1/C_h", "between"};
+  static const char *const words[] = {"unique: under 1/C_h",
+                                      "between: above 1/C_h"};
   for (int k = 0; k < 2; ++k) {
     job j = job_begin("triangle");
     job_write(&j, "triangle.msh", "%s", triangle_mesh);
