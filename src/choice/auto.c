@@ -67,8 +67,6 @@ enum {
   MOST_SWEEPS = 20000
 };
 
-static const double FEW_DIGITS = 1e-4; /* -, tolerance                        */
-
 /* The order of trial, how each is driven, and where it applies. */
 static const struct {
   const solver_ops *ops;
@@ -283,7 +281,7 @@ static status coarse_sweeps(contact_solver *s, const contact_problem *cp,
   status st = OK;
   to->rep->outcome = STOPPED_UNFIT;
   if (cp->A != NULL && cp->dim == 3 && cp->B != NULL &&
-      s->choice.tol >= FEW_DIGITS)
+      solver_few_digits(s->choice.tol))
     TRY(short_try(s, cp, &sor_solver, cp->m / SWEEP_SHARE, listener, to));
 done:
   return st;

@@ -201,20 +201,21 @@ static void begin(opened *o, const contact_problem *cp, const double *u,
   }
 }
 
-/* What was found into u, r. */
+/* What was found into u, r; no force pulls. */
 static void finish(const opened *o, const contact_problem *cp, double *u,
                    double *r) {
   memset(r, 0, (size_t)cp->m * sizeof *r);
   for (int i = 0; i < cp->m; ++i) u[i] = o->u0[i] + o->du[i];
   for (int i = 0; i < cp->n; ++i)
     if (!o->is_open[i])
-      r[i * cp->dim] = o->r0[i * cp->dim] + o->dr[i * cp->dim];
+      r[i * cp->dim] = fmin(o->r0[i * cp->dim] + o->dr[i * cp->dim], 0.0);
 }
 
 void opened_solve(opened *o, const contact_problem *cp,
                   const solver_control *control, double *u, double *r,
                   solver_report *rep) {
   double scale = contact_scale(cp), worst = 0.0;
+  double margin = solver_few_digits(control->tol) ? 0.5 * control->tol : MARGIN;
   *rep =
       (solver_report){.outcome = STOPPED_UNFIT, .solver = newton_solver.name};
   begin(o, cp, u, r);
@@ -226,7 +227,7 @@ void opened_solve(opened *o, const contact_problem *cp,
     make_columns(o, cp);
     if (!open_up(o)) return;
     displace(o, cp);
-    int changes = next_states(o, cp, MARGIN * scale, &worst);
+    int changes = next_states(o, cp, margin * scale, &worst);
     ++rep->iterations;
     solver_tell_states(control, rep->solver, rep->iterations,
                        scale > 0.0 ? worst / scale : 0.0, changes, 0);

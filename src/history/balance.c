@@ -22,9 +22,9 @@
 #include <string.h>
 
 enum { PASSES = 8 };
-static const double FIRST_TOL = 1e-2; /* -, before an error is known          */
+static const double FIRST_TOL = 3e-2; /* -, before an error is known          */
 static const double MOST_TOL = 0.1;   /* -                                    */
-static const double SAFETY = 0.7;     /* -, of the share, for the residual    */
+static const double SAFETY = 0.7;     /* -, of the share, for another pass    */
 static const double SHARPEST = 1e-3;  /* -, change of the residual in a pass  */
 
 static int is_balanced(const run *r) { return r->step->balanced && r->n > 0; }
@@ -88,7 +88,7 @@ static double wanted_tolerance(const run *r) {
   const balance *b = &r->balance;
   double tol = FIRST_TOL;
   if (b->mesh > 0.0 && b->per_residual > 0.0)
-    tol = SAFETY * wanted_error(r) / b->per_residual;
+    tol = wanted_error(r) / b->per_residual;
   return fmin(fmax(tol, r->step->solver.tol), MOST_TOL);
 }
 

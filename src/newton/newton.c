@@ -124,11 +124,13 @@ typedef struct course {
   int settled;        /* the step before was within the tolerance         */
 } course;
 
-/* 1: solved, and a further step would change nothing or little. On the round
- * cone of three dimensions one within the tolerance is still quadratic: it
- * turns the forces of slipping nodes exactly against their slip. */
+/* 1: solved, and a further step would change nothing or little, or is more than
+ * was asked for. On the round cone of three dimensions one within the tolerance
+ * is still quadratic: it turns the forces of slipping nodes exactly against
+ * their slip. */
 static int solved(const run *s, course *c, double residual) {
   int within = residual <= s->control->tol, linear = s->cp->dim == 2;
+  if (solver_few_digits(s->control->tol)) return within;
   int rests = (linear && c->changes == 0) || c->settled || residual <= 0x1p-43;
   c->settled = within;
   return within && rests;

@@ -29,6 +29,10 @@ double solver_mismatch(const contact_problem *cp, double scale, const double *u,
   return worst > 0.0 ? HUGE_VAL : 0.0;
 }
 
+static const double FEW_DIGITS = 1e-4; /* -, tolerance                        */
+
+int solver_few_digits(double tol) { return tol >= FEW_DIGITS; }
+
 void solver_tell_states(const solver_control *control, const char *solver,
                         int iteration, double residual, int changes,
                         int cycle) {

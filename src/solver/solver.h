@@ -97,6 +97,9 @@ extern const char auto_help[]; /* manual text of METHOD=AUTO                  */
  */
 double solver_mismatch(const contact_problem *cp, double scale, const double *u,
                        const double *r);
+/* 1: so few digits are wanted (TOL=BALANCED) that an iterate within the
+ * tolerance is the answer, even where one more step would be exact. */
+int solver_few_digits(double tol);
 void solver_tell(const solver_control *control, const char *solver,
                  int iteration, double residual);
 /* The same with the nodes that changed their state, and whether a pattern of

@@ -74,6 +74,51 @@ START_TEST(error_left_is_the_share_of_the_mesh) {
 }
 END_TEST
 
+/* Examples with AUTO: the iterations made, over those of the default, and
+ * the growth of the total error, of mesh and solver. */
+static void check_example(const char *deck, const char *words, double most) {
+  job exact, j;
+  ck_assert_int_eq(job_run_with(&exact, deck, "", 0, words), 0);
+  ck_assert_int_eq(job_run_with(&j, deck, "*SOLVER, TOL=BALANCED\n", 0, words),
+                   0);
+  double others = figure(&j, "mesh_error_worst_percent");
+  double solver = figure(&j, "solver_error_worst_percent");
+  double full = iterations(&exact), made = iterations(&j);
+  ck_assert_msg(made <= most * full, "%s: %g of %g", deck, made, full);
+  ck_assert_msg(solver <= 0.05 * others, "%s: %g of %g %%", deck, solver,
+                others);
+  job_end(&j);
+  job_end(&exact);
+}
+
+START_TEST(examples_save_a_third_of_the_steps) {
+  check_example("input/hertz_line/hertz_line_friction", "", 0.7);
+  check_example("input/greco/greco", "-D N=16", 0.7);
+  check_example("input/creep_block/creep_block", "-D N=16", 0.7);
+}
+END_TEST
+
+/* Against the closed form: the true error of what relaxation leaves undone, and
+ * of Newton's method, is that of the mesh. */
+START_TEST(true_error_grows_by_less_than_a_tenth) {
+  static const char *const hertz = "input/hertz_line/hertz_exact";
+  for (int i = 0; i < 3; ++i) {
+    char full[60], words[60];
+    job exact, j;
+    snprintf(full, sizeof full, "*SOLVER, %s\n", methods[i]);
+    snprintf(words, sizeof words, "*SOLVER, %s, TOL=BALANCED\n", methods[i]);
+    ck_assert_int_eq(job_run_with(&exact, hertz, full, 0, "-D N=6"), 0);
+    ck_assert_int_eq(job_run_with(&j, hertz, words, 0, "-D N=6"), 0);
+    double before = figure(&exact, "true_error_percent");
+    double now = figure(&j, "true_error_percent");
+    ck_assert_msg(now <= 1.1 * before, "%s: %g %g", words, now, before);
+    ck_assert_double_le(iterations(&j), (i < 2 ? 0.7 : 1) * iterations(&exact));
+    job_end(&j);
+    job_end(&exact);
+  }
+}
+END_TEST
+
 /* What is said to be saved is what the other run makes more, to a half. */
 START_TEST(saved_iterations_are_those_of_the_default) {
   job exact = run_block(0.1, methods[0], "");
@@ -125,5 +170,7 @@ START_TEST(without_other_errors_the_default_counts) {
 END_TEST
 
 UNIT_MAIN("balanced", error_left_is_the_share_of_the_mesh,
+          examples_save_a_third_of_the_steps,
+          true_error_grows_by_less_than_a_tenth,
           saved_iterations_are_those_of_the_default, share_is_that_of_the_deck,
           without_other_errors_the_default_counts)

@@ -159,6 +159,27 @@ int job_run_deck(job *j, const char *deck, const char *words) {
   return run_command(j, ".", command);
 }
 
+int job_run_with(job *j, const char *deck, const char *cards, int without,
+                 const char *words) {
+  char path[PATH], text[LINE];
+  *j = job_begin(strrchr(deck, '/') + 1);
+  job_copy_meshes(j, deck);
+  snprintf(path, sizeof path, "%s.inp", deck);
+  FILE *from = fopen(path, "r");
+  ck_assert_msg(from != NULL, "%s: not there", path);
+  snprintf(path, sizeof path, "%s/%s.inp", j->dir, j->name);
+  FILE *to = fopen(path, "w");
+  ck_assert_ptr_nonnull(to);
+  while (fgets(text, sizeof text, from) != NULL) {
+    if (without && strncmp(text, "*ACCURACY", 9) == 0) continue;
+    if (strncmp(text, "*END STEP", 9) == 0) fputs(cards, to);
+    fputs(text, to);
+  }
+  fclose(from);
+  ck_assert_int_eq(fclose(to), 0);
+  return job_run(j, words);
+}
+
 static double read_cell(const char *cell) {
   static const char *const words[] = {"OPEN", "SLIP", "STICK"};
   for (int i = 0; i < 3; ++i)

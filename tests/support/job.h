@@ -40,6 +40,10 @@ int job_run(job *j, const char *words);
 /* Run a deck of the sources (no .inp) with the results in the folder; JOB is
  * then its name. */
 int job_run_deck(job *j, const char *deck, const char *words);
+/* Run a deck of the sources with "cards" at the end of each step, without its
+ * *ACCURACY if "without". A new folder, as job_begin. */
+int job_run_with(job *j, const char *deck, const char *cards, int without,
+                 const char *words);
 /* All of a file of the folder as text (caller frees), or NULL. */
 char *job_file(const job *j, const char *suffix);
 /* 1: JOB.suffix is in the folder. */

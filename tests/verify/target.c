@@ -43,25 +43,10 @@ static const example shear = {"block_shear_3d", "block_shear_3d", 0};
 /* The deck with another *ACCURACY (NULL: as it is) in each step. */
 static int run(job *j, const example *e, const char *accuracy,
                const char *words) {
-  char path[160], text[8192];
-  *j = job_begin(e->name);
+  char path[160], card[160] = "";
   snprintf(path, sizeof path, "input/%s/%s", e->folder, e->name);
-  job_copy_meshes(j, path);
-  strcat(path, ".inp");
-  FILE *from = fopen(path, "r"), *to;
-  ck_assert_ptr_nonnull(from);
-  snprintf(path, sizeof path, "%s/%s.inp", j->dir, j->name);
-  to = fopen(path, "w");
-  ck_assert_ptr_nonnull(to);
-  while (fgets(text, sizeof text, from) != NULL) {
-    int own = strncmp(text, "*ACCURACY", 9) == 0;
-    if (accuracy != NULL && strncmp(text, "*END STEP", 9) == 0)
-      fprintf(to, "%s\n", accuracy);
-    if (!own || accuracy == NULL) fputs(text, to);
-  }
-  fclose(from);
-  fclose(to);
-  return job_run(j, words);
+  if (accuracy != NULL) snprintf(card, sizeof card, "%s\n", accuracy);
+  return job_run_with(j, path, card, accuracy != NULL, words);
 }
 
 /* %, of the energy norm. */
