@@ -8,6 +8,10 @@
  *   THETA        q0 = (1 - theta) z/(1 + theta z),  q1 = theta z/(1 + theta z)
  *   EXPONENTIAL  a = 1 - exp(-z),  q1 = 1 - a/z     (e linear over the step)
  * are of the size of 1 for every rate.
+ *
+ * In plane stress the body knows e_zz no more than e^i: sigma_zz = 0 at both
+ * ends of the step gives it, so that EXPONENTIAL takes e_zz too as linear over
+ * the step.
  */
 #include "scheme/work.h"
 
@@ -75,6 +79,61 @@ static void add_rows(int ns, int k, const double *W_k, linear_map *m) {
     }
 }
 
+/* column[n] of a matrix times row[columns] over pivot goes to A[n*columns]. */
+static void add_outer(int n, int columns, const double *column,
+                      const double *row, double pivot, double *A) {
+  for (int j = 0; j < columns; ++j)
+    for (int i = 0; i < n; ++i) A[i + n * j] += column[i] * row[j] / pivot;
+}
+
+enum { ZZ = 2 };
+
+/* e_zz of the old state out of the map: c (e - e^i) = 0, c the row of C for
+ * sigma_zz. */
+static void eliminate_old(const law_elastic *el, linear_map *m) {
+  const int ns = el->ns, n = m->n;
+  double *column = m->Q0 + n * ZZ, of_e[6], of_ei[6];
+  for (int j = 0; j < ns; ++j) {
+    of_ei[j] = el->C[ZZ + ns * j];
+    of_e[j] = j == ZZ ? 0.0 : -of_ei[j];
+  }
+  add_outer(n, ns, column, of_ei, of_ei[ZZ], m->P);
+  add_outer(n, ns, column, of_e, of_ei[ZZ], m->Q0);
+  memset(column, 0, (size_t)n * sizeof *column);
+}
+
+/* row[columns] = c A for the rows of e^i of A[n*columns]. */
+static void stress_row(const law_elastic *el, const double *A, int n,
+                       int columns, double *row) {
+  for (int j = 0; j < columns; ++j) {
+    row[j] = 0.0;
+    for (int i = 0; i < el->ns; ++i)
+      row[j] += el->C[ZZ + el->ns * i] * A[i + n * j];
+  }
+}
+
+/* e_zz of the new state: c (e - P y - Q0 e_old - Q1 e) = 0 in the rows of e^i;
+ * row[n] is room. */
+static status eliminate_new(const law_elastic *el, linear_map *m, double *row) {
+  status st = OK;
+  const int ns = el->ns, n = m->n;
+  double *column = m->Q1 + n * ZZ, of_e[6];
+  stress_row(el, m->Q1, n, ns, of_e);
+  for (int j = 0; j < ns; ++j) of_e[j] -= el->C[ZZ + ns * j];
+  const double pivot = -of_e[ZZ];
+  if (!(pivot > 0.0))
+    FAIL(ERR_SINGULAR, "the step of an inelastic law has no solution");
+  stress_row(el, m->P, n, n, row);
+  add_outer(n, n, column, row, pivot, m->P);
+  stress_row(el, m->Q0, n, ns, row);
+  add_outer(n, ns, column, row, pivot, m->Q0);
+  of_e[ZZ] = 0.0;
+  add_outer(n, ns, column, of_e, pivot, m->Q1);
+  memset(column, 0, (size_t)n * sizeof *column);
+done:
+  return st;
+}
+
 status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
                     linear_map *m) {
   status st = OK;
@@ -83,7 +142,7 @@ status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
                            .elastic = &k->elastic,
                            .value = k->value,
                            .speed = k->speed};
-  double *W = NULL, *rate = NULL;
+  double *W = NULL, *rate = NULL, *row = NULL;
   NEW(W, ns * ns * terms);
   NEW(rate, terms);
   for (int i = 0; i < terms; ++i)
@@ -98,7 +157,12 @@ status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
     term_rows(ns, i, q0, q1, W, m);
   }
   for (int i = 0; i < terms; ++i) add_rows(ns, i, W + ns * ns * i, m);
+  if (!k->elastic.plane_stress) goto done;
+  NEW(row, n);
+  eliminate_old(&k->elastic, m);
+  TRY(eliminate_new(&k->elastic, m, row));
 done:
+  memory_free(row);
   memory_free(W);
   memory_free(rate);
   return st;

@@ -104,6 +104,21 @@ static const closed_form forms[] = {
     "CPE3", "", "*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1, 1, 1.E-3\nTOP, 2\nLEFT, 2\n"
     "RIGHT, 2\n", "*VISCO, INTEGRATOR=EXPONENTIAL\n0.5, 3.\n"}, "stress_xy",
    2, {0, 6}, {2, 2*(0.5 + .3*0.00247875217667 + .2*0.47236655274101)}, 1e-8},
+  /* plane stress: J/3 of the shear plus J/9 of the volume, which relax by
+   * other parts, so that the lateral strain does not keep its ratio */
+  {{SOFT, "*INELASTIC, LAW=PRONY\n0.5, 0.2, 2.\n", "CPS3", "", PULL(1.),
+    "*VISCO, INTEGRATOR=MIDPOINT\n0.1, 10.\n"}, "strain_yy",
+   4, {0, 10, 20, 100},
+   {1e-3, 1.2026953198e-3, 1.3593624628e-3, 1.8282491466e-3}, 1e-7},
+  {{SOFT, "*INELASTIC, LAW=PRONY\n0.5, 0.2, 2.\n", "CPS3", "", PULL(1.),
+    "*VISCO, INTEGRATOR=EXPONENTIAL\n0.1, 10.\n"}, "strain_yy",
+   4, {0, 10, 20, 100},
+   {1e-3, 1.2026953198e-3, 1.3593624628e-3, 1.8282491466e-3}, 1e-7},
+  /* and over thirty decades: 0.5 + 0.2 exp(-t) */
+  {{SOFT, "*INELASTIC, LAW=PRONY\n0.3, 0.3, 1E-15\n0.2, 0.2, 1.\n"
+    "0.1, 0.1, 1E15\n", "CPS3", "", HELD,
+    "*VISCO, INTEGRATOR=EXPONENTIAL\n0.5, 2.\n"}, "stress_yy",
+   2, {2, 4}, {.5735758882, .5270670566}, 1e-9},
   /* from 200 the overstress goes: s = 200 - (100/1.1)(1 - exp(-11 t)) */
   {{HARD, "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n", "CPS3", "",
     SYMMETRY "TOP, 2, 2, 2.E-3\n", "*VISCO, INTEGRATOR=RK4\n0.01, 2.\n"},
