@@ -8,17 +8,23 @@
 typedef struct watcher {
   model *m;
   neglect *n;
-  status st; /* of measuring                                                  */
+  int refuted; /* 1: the run was ended, a row does not hold                   */
 } watcher;
 
-static void see_increment(void *ctx, const state *s) {
+static status see_increment(void *ctx, const state *s) {
+  status st = OK;
   watcher *w = ctx;
-  if (w->st == OK) w->st = neglect_measure(w->n, s, w->m->neglected);
+  TRY(neglect_measure(w->n, s, w->m->neglected));
+  w->refuted = neglect_refuted(w->m);
+  if (w->refuted)
+    FAIL(ERR_UNSETTLED, "time %g: what was left out matters", s->t);
+done:
+  return st;
 }
 
-/* 1: the run gave no answer to measure. An interruption is none. */
+/* 1: the run gave no answer to measure. */
 static int has_failed(const watcher *w, status run) {
-  return (run != OK && run != ERR_UNSETTLED) || w->st != OK;
+  return run != OK && !w->refuted;
 }
 
 static int is_final(status run) {
@@ -36,7 +42,7 @@ static status try_without(watcher *w, const command *c, job_input *in,
   neglect_free(w->n);
   w->n = NULL;
   TRY(neglect_new(in->m, in->msh, &w->n));
-  w->st = OK;
+  w->refuted = 0;
   st = job_solve(c, in, &watch, NULL, unsettled);
   *again = !is_final(st) && neglect_take_back(in->m, has_failed(w, st)) > 0;
 done:

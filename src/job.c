@@ -108,10 +108,13 @@ static status relay_start(void *ctx, const start_report *s) {
 }
 
 static status relay_increment(void *ctx, const state *s) {
+  status st = OK;
   relay *r = ctx;
   if (r->watch != NULL && r->watch->increment != NULL)
-    r->watch->increment(r->watch->ctx, s);
-  return r->to.increment(r->to.ctx, s);
+    TRY(r->watch->increment(r->watch->ctx, s));
+  TRY(r->to.increment(r->to.ctx, s));
+done:
+  return st;
 }
 
 static status relay_between(void *ctx, const state *s) {

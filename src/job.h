@@ -37,7 +37,8 @@ int job_is_geo(const model *m); /* 1: the mesh is made by gmsh                */
 /* Who watches a pass. Any function may be NULL. */
 typedef struct job_watch {
   void *ctx;
-  void (*increment)(void *ctx, const state *s);
+  /* What is not OK ends the pass with that status.                          */
+  status (*increment)(void *ctx, const state *s);
   void (*ready)(void *ctx, const setup_facts *facts);
   /* After the last increment, before the files are closed: what else to say
    * there; the answer is the status of the run. */

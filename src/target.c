@@ -53,14 +53,15 @@ static void see_ready(void *ctx, const setup_facts *facts) {
   p->unknowns = (double)facts->info.unknowns;
 }
 
-static void see_increment(void *ctx, const state *s) {
+static status see_increment(void *ctx, const state *s) {
   pass *p = ctx;
-  if (!s->mesh_error.asked || s->energy.strain < p->energy) return;
+  if (!s->mesh_error.asked || s->energy.strain < p->energy) return OK;
   p->energy = s->energy.strain;
   p->mesh = s->mesh_error.relative;
   p->time = s->time_error.relative;
   p->solver = s->error.asked ? s->error.relative : 0.0;
   memcpy(p->eta, s->elem_error, (size_t)p->in->msh->n_elem * sizeof *p->eta);
+  return OK;
 }
 
 static double total(const pass *p) { return p->mesh + p->time + p->solver; }

@@ -83,7 +83,8 @@ state loop_state(run *r, int attempt, int increment_no) {
              .balance = r->balance.report,
              .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
              .solver_log = contact_solver_log(r->solver),
-             .settled = is_settled(r)};
+             .settled = is_settled(r),
+             .again = {r, beside_with}};
   if (r->visco != NULL) visco_show(r, &s);
   if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
   if (!(r->m->effects & EFFECT_REACTION)) s.reaction = NULL;

@@ -276,7 +276,10 @@ typedef struct neglected {
   char why[160]; /* what it was tried for                                    */
   double bound;  /* -, of the energy norm of the solution, at most           */
   double local;  /* -, stress in one element over the scale of stresses      */
+  double change; /* -, largest change of displacements and forces when an
+                    increment was solved again with it, over their largest    */
   long checked;  /* increments                                               */
+  long again;    /* of them solved again                                     */
   int back;      /* 1: it matters, the run was made again with it            */
 } neglected;
 enum { NEGLECT_MAX = 16 };

@@ -353,8 +353,8 @@ void neglect_leave_out(model *m) {
   for (int i = 0; i < m->n_neglected; ++i) {
     neglected *row = &m->neglected[i];
     if (row->back) continue;
-    row->bound = row->local = 0.0;
-    row->checked = 0;
+    row->bound = row->local = row->change = 0.0;
+    row->checked = row->again = 0;
     if (row->bit == EFFECT_BIT_NONLOCAL) each_rule(m, make_local);
     if (row->bit == EFFECT_BIT_FRICTION) each_rule(m, take_out);
     if (row->bit != EFFECT_BIT_INELASTIC) continue;

@@ -15,7 +15,7 @@
  * over |u| of the increment. "local" is the largest stress E e of an element
  * over the largest contact pressure, or stress where nothing touches.
  */
-#include "neglect/neglect.h"
+#include "neglect/parts.h"
 
 #include "base/memory.h"
 #include "fem/fem.h"
@@ -24,23 +24,6 @@
 #include <string.h>
 
 enum { SAFETY = 2 };
-
-struct neglect {
-  const model *m;
-  const mesh *msh;
-  domain d;
-  kinematics *kin;         /* [n_section] */
-  double *thickness, *E;   /* [n_section], [ns*ns*n_section] */
-  double *C;               /* [36*n_section] */
-  unsigned char *fixed;    /* [dim*n_node] zero */
-  double *sigma;           /* [ns*n_elem] Pa */
-  double *T0, *T;          /* [n_elem] */
-  double *heat;            /* [3*n_elem] thermal strain of the last increment */
-  double *stress;          /* [n_elem] Pa, of the inelastic strain so far */
-  double *rate;            /* [n_elem] Pa/s, of the last increment */
-  double sum[NEGLECT_MAX]; /* sqrt(J), of the row */
-  double last[NEGLECT_MAX]; /* sqrt(J)/s, rate of the last increment */
-};
 
 static status new_domain(neglect *n) {
   status st = OK;
@@ -74,15 +57,24 @@ done:
 status neglect_new(const model *m, const mesh *msh, neglect **out) {
   status st = OK;
   neglect *n = NULL;
+  const size_t strains = (size_t)m->ns * (size_t)msh->n_elem;
   *out = NULL;
   NEW(n, 1);
   n->m = m;
   n->msh = msh;
   TRY(new_domain(n));
-  NEW(n->sigma, (size_t)m->ns * (size_t)msh->n_elem);
+  NEW(n->sigma, strains);
   NEW(n->T0, msh->n_elem);
   NEW(n->T, msh->n_elem);
-  NEW(n->heat, 3 * (size_t)msh->n_elem);
+  NEW(n->heat, strains);
+  NEW(n->flown, strains);
+  NEW(n->flow_rate, strains);
+  NEW(n->strain, strains);
+  NEW(n->elem_id, msh->n_elem);
+  NEW(n->way, (msh->dim - 1) * msh->n_node);
+  NEW(n->force, msh->dim * msh->n_node);
+  NEW(n->u, msh->dim * msh->n_node);
+  for (int e = 0; e < msh->n_elem; ++e) n->elem_id[e] = e;
   NEW(n->stress, msh->n_elem);
   NEW(n->rate, msh->n_elem);
   TRY(load_temperature_initial(m, msh, n->T0));
@@ -95,11 +87,14 @@ done:
 
 void neglect_free(neglect *n) {
   if (n == NULL) return;
-  double *const arrays[] = {n->thickness, n->E,    n->C,      n->sigma, n->T0,
-                            n->T,         n->heat, n->stress, n->rate};
+  double *const arrays[] = {n->thickness, n->E,         n->C,      n->sigma,
+                            n->T0,        n->T,         n->heat,   n->stress,
+                            n->rate,      n->flown,     n->strain, n->way,
+                            n->force,     n->flow_rate, n->u};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
     memory_free(arrays[i]);
   memory_free(n->kin);
+  memory_free(n->elem_id);
   memory_free(n->fixed);
   memory_free(n);
 }
@@ -119,7 +114,7 @@ static double stress_scale(const neglect *n, const state *s) {
 }
 
 /* a / b; nothing is no part of anything. */
-static double part_of(double a, double b) {
+double neglect_part(double a, double b) {
   return a == 0.0 ? 0.0 : b > 0.0 ? a / b : HUGE_VAL;
 }
 
@@ -142,7 +137,7 @@ static double energy_of(const neglect *n, int elem_id, const double *e,
 
 /* ---- the effects -------------------------------------------------------- */
 
-static const material *material_at(const neglect *n, int elem_id) {
+const material *neglect_material(const neglect *n, int elem_id) {
   const model *m = n->m;
   return &m->materials[m->sections[m->elem_section[elem_id]].material_id];
 }
@@ -151,18 +146,19 @@ static status measure_thermal(neglect *n, const state *s, double *sum,
                               double *norm, double *stress) {
   status st = OK;
   double now = 0.0, change = 0.0;
+  int ns = n->m->ns;
   *stress = 0.0;
   TRY(load_temperature(n->m, n->msh, &n->m->steps[s->step_no - 1], s->t, n->T0,
                        n->T));
   for (int e = 0; e < n->msh->n_elem; ++e) {
     double strain[6] = {0.0}, moved[6] = {0.0}, own, none;
-    const material *mat = material_at(n, e);
+    const material *mat = neglect_material(n, e);
     if (!mat->expand.given) continue;
     double w = element_weight(&n->d, e);
     expansion_strain(&mat->expand, n->T[e], n->T0[e], strain);
     for (int i = 0; i < 3; ++i) {
-      moved[i] = strain[i] - n->heat[3 * e + i];
-      n->heat[3 * e + i] = strain[i];
+      moved[i] = strain[i] - n->heat[ns * e + i];
+      n->heat[ns * e + i] = strain[i];
     }
     now += w * energy_of(n, e, strain, &own);
     change += w * energy_of(n, e, moved, &none);
@@ -189,7 +185,7 @@ static status add_rates(neglect *n, const state *s, const neglected *row,
   for (int e = 0; e < n->msh->n_elem; ++e) {
     law_point p;
     double ei_rate[6] = {0.0}, stress;
-    if (material_at(n, e) != mat) continue;
+    if (neglect_material(n, e) != mat) continue;
     if (section_id != n->m->elem_section[e]) {
       law_elastic elastic;
       section_id = n->m->elem_section[e];
@@ -204,6 +200,11 @@ static status add_rates(neglect *n, const state *s, const neglected *row,
     sum += element_weight(&n->d, e) * energy_of(n, e, ei_rate, &stress);
     n->stress[e] += dt * fmax(stress, n->rate[e]);
     n->rate[e] = stress;
+    for (int i = 0; i < n->m->ns; ++i) {
+      double *before = &n->flow_rate[n->m->ns * e + i];
+      n->flown[n->m->ns * e + i] += 0.5 * dt * (*before + ei_rate[i]);
+      *before = ei_rate[i];
+    }
   }
   *norm = sqrt(sum);
 done:
@@ -223,14 +224,14 @@ static status measure_inelastic(neglect *n, const state *s, int k, double *norm,
   *norm = SAFETY * n->sum[k];
   *stress = 0.0;
   for (int e = 0; e < n->msh->n_elem; ++e)
-    if (material_at(n, e) == &n->m->materials[row->id])
+    if (neglect_material(n, e) == &n->m->materials[row->id])
       *stress = fmax(*stress, SAFETY * n->stress[e]);
 done:
   return st;
 }
 
 /* The rule that was taken out. */
-static double coefficient(const neglect *n, const state *s, int i) {
+double neglect_coefficient(const neglect *n, const state *s, int i) {
   const contact_surface *c = s->surface;
   const friction_rule *rule =
       friction_in_force(n->m, s->step_no - 1, c->contact_id[i]);
@@ -243,12 +244,14 @@ static double coefficient(const neglect *n, const state *s, int i) {
 static void measure_friction(neglect *n, const state *s, double *sum,
                              double *norm) {
   const contact_surface *c = s->surface;
+  const int sides = n->msh->dim - 1;
   double work = 0.0;
   for (int i = 0; c != NULL && i < c->n; ++i) {
     double slip = 0.0, p = -s->rc[c->dim * i];
-    for (int k = 0; k < c->dim - 1; ++k)
-      slip = hypot(slip, s->slip[(c->dim - 1) * i + k]);
-    work += coefficient(n, s, i) * fmax(p, 0.0) * slip;
+    for (int k = 0; k < sides; ++k) slip = hypot(slip, s->slip[sides * i + k]);
+    for (int k = 0; k < sides; ++k)
+      n->way[sides * c->node_id[i] + k] += s->slip[sides * i + k];
+    work += neglect_coefficient(n, s, i) * fmax(p, 0.0) * slip;
   }
   *sum += sqrt(work);
   *norm = SAFETY * *sum;
@@ -269,7 +272,9 @@ status neglect_measure(neglect *n, const state *s, neglected *rows) {
       TRY(measure_inelastic(n, s, k, &norm, &stress));
     if (row->bit == EFFECT_BIT_FRICTION)
       measure_friction(n, s, &n->sum[k], &norm);
-    double bound = part_of(norm, size), local = part_of(stress, scale);
+    double bound = neglect_part(norm, size),
+           local = neglect_part(stress, scale);
+    TRY(neglect_again(n, s, k, bound, row));
     if (!(bound <= row->bound)) row->bound = bound;
     if (!(local <= row->local)) row->local = local;
     ++row->checked;
@@ -278,14 +283,24 @@ done:
   return st;
 }
 
+static int neglect_holds(const model *m, const neglected *row) {
+  return row->checked > 0 && row->bound <= neglect_share * m->effects_tol &&
+         row->local <= m->effects_tol && row->change <= 0.5 * m->effects_tol;
+}
+
+int neglect_refuted(const model *m) {
+  for (int k = 0; k < m->n_neglected; ++k)
+    if (!m->neglected[k].back && m->neglected[k].checked > 0 &&
+        !neglect_holds(m, &m->neglected[k]))
+      return 1;
+  return 0;
+}
+
 int neglect_take_back(model *m, int all) {
   int n = 0;
   for (int k = 0; k < m->n_neglected; ++k) {
     neglected *row = &m->neglected[k];
-    int holds = row->checked > 0 &&
-                row->bound <= neglect_share * m->effects_tol &&
-                row->local <= m->effects_tol;
-    if (row->back || (holds && !all)) continue;
+    if (row->back || (neglect_holds(m, row) && !all)) continue;
     row->back = 1;
     ++n;
   }

@@ -33,6 +33,8 @@ status neglect_new(const model *m, const mesh *msh, neglect **out);
 void neglect_free(neglect *n); /* accepts NULL                                */
 /* An accepted increment into the rows[m->n_neglected] of m. */
 status neglect_measure(neglect *n, const state *s, neglected *rows);
+/* 1: a row is above the tolerance already; the run need not go on. */
+int neglect_refuted(const model *m);
 /* Take those back that are above the tolerance or never were measured; with
  * "all" all. How many. */
 int neglect_take_back(model *m, int all);

@@ -164,7 +164,9 @@ static void write_neglected(json *w, const model *m) {
     json_flag(w, "taken_back", n->back);
     json_real(w, "bound", n->bound);
     json_real(w, "stress", n->local);
+    json_real(w, "change", n->change);
     json_count(w, "increments", (double)n->checked);
+    json_count(w, "solved_again", (double)n->again);
     json_close(w, '}');
   }
   json_close(w, ']');

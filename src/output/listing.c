@@ -99,9 +99,10 @@ static void print_left_out(const model *m, FILE *f) {
     if (n->back && n->checked > 0)
       fprintf(f,
               "    without it: at most %.1e of the energy norm, %.1e of the "
-              "largest stress;\n    too much for TOL=%g, this is the run with "
-              "it\n",
-              n->bound, n->local, m->effects_tol);
+              "largest stress,\n    solved again with it: %.1e of the largest "
+              "displacement or force, after %ld\n    increments; too much for "
+              "TOL=%g, this is the run with it\n",
+              n->bound, n->local, n->change, n->checked, m->effects_tol);
     else if (n->back)
       fputs("    without it there was no answer, this is the run with it\n", f);
   }
@@ -117,6 +118,11 @@ static void print_proof(const model *m, FILE *f) {
             "norm,\n    %.1e of the largest stress, at each of %ld "
             "increments\n",
             effect_name(n->bit), n->bound, n->local, n->checked);
+    if (n->again > 0)
+      fprintf(f,
+              "    %ld of them solved again with it: %.1e of the largest "
+              "displacement or force\n",
+              n->again, n->change);
   }
 }
 

@@ -178,4 +178,33 @@ done:
   return st;
 }
 
+static status solve_with(run *r, run *b, const double *more) {
+  status st = OK;
+  if (b->visco != NULL)
+    flow_state_copy(&b->visco->x, &r->visco->now, &b->visco->now);
+  TRY(increment_begin(b, r->now.t));
+  for (size_t i = 0; i < b->n_dof; ++i) b->now.F[i] += more[i];
+  TRY(run_use(b, &b->elastic));
+  TRY(increment_equilibrium(b, strains_load(b)));
+done:
+  return st;
+}
+
+status beside_with(void *run_, const double *more, double *u, double *rc,
+                   int *solved) {
+  status st = OK;
+  run *r = run_;
+  beside *b = NULL;
+  timer_enter(STAGE_BETWEEN);
+  TRY(beside_new(r, &b));
+  TRY(solve_with(r, &b->r, more));
+  *solved = b->r.report.outcome > 0;
+  memcpy(u, b->r.now.u, r->n_dof * sizeof *u);
+  if (r->n_c > 0) memcpy(rc, b->r.now.rc, (size_t)r->n_c * sizeof *rc);
+done:
+  timer_leave(STAGE_BETWEEN);
+  beside_free(b);
+  return st;
+}
+
 run *beside_run(beside *b) { return &b->r; }

@@ -270,6 +270,9 @@ status result_evaluate(run *r, int due);
  * *out is new. Read its report. */
 status beside_at(run *r, double t, beside **out);
 run *beside_run(beside *b);
+/* what_if.solve of the increment in r->now. */
+status beside_with(void *run, const double *more, double *u, double *rc,
+                   int *solved);
 void beside_free(beside *b); /* accepts NULL                                 */
 
 /*

@@ -94,6 +94,15 @@ typedef struct balance_report {
   double saved_iterations, saved_cpu; /* about; s                             */
 } balance_report;
 
+/* The increment once more, with forces beside its loads. */
+typedef struct what_if {
+  void *run;
+  /* more[dim*n_node] N; u[dim*n_node] m, rc[dim*n] N of the contact frame;
+   * *solved 0: not to its tolerance. The run itself stays as it is. */
+  status (*solve)(void *run, const double *more, double *u, double *rc,
+                  int *solved);
+} what_if;
+
 /* One accepted increment. Arrays are borrowed and live until the next one. */
 typedef struct state {
   int step_no, increment_no; /* from 1, increments counted within the step    */
@@ -141,6 +150,7 @@ typedef struct state {
   const char *note; /* whole lines about what jumps, "" or NULL: nothing      */
   double cpu;       /* of this increment, s                                */
   int settled;      /* 1: reached its tolerance                            */
+  what_if again;    /* until the next one                                  */
 } state;
 
 /* Facts of the run before the first increment, for the listing. */

@@ -125,6 +125,16 @@ START_TEST(small_thermal_strain_is_left_out) {
 }
 END_TEST
 
+/* Without lateral contraction heat alone makes the block rub: little beside
+ * the pressure, all of the friction. */
+START_TEST(heat_that_makes_all_friction_stays) {
+  const scene s = {"*EXPANSION\n1.2D-5\n",
+                   "*FRICTION, CONTACT=FOOT, LAW=TRESCA\n15.\n",
+                   "*TEMPERATURE\nBODY, 1.D-4\n", "", 0.0};
+  compare(&s, "thermal strain", -1, 1e-12);
+}
+END_TEST
+
 START_TEST(slow_relaxation_is_left_out) {
   const scene slow = {"*INELASTIC, LAW=MAXWELL\n1.D6\n", coulomb, "", "", 0.2};
   scene fast = slow;
@@ -219,6 +229,7 @@ START_TEST(random_scenes_agree) {
 END_TEST
 
 UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
-          slow_relaxation_is_left_out, law_below_its_threshold_is_left_out,
+          heat_that_makes_all_friction_stays, slow_relaxation_is_left_out,
+          law_below_its_threshold_is_left_out,
           average_within_an_element_is_local, friction_without_slip_is_left_out,
           nothing_is_left_out_unless_asked, random_scenes_agree)

@@ -1,0 +1,46 @@
+/*
+ * What the bounds are summed up from, shared by the files of this folder only.
+ */
+#ifndef PROTIS_NEGLECT_PARTS_H
+#define PROTIS_NEGLECT_PARTS_H
+
+#include "neglect/neglect.h"
+
+struct neglect {
+  const model *m;
+  const mesh *msh;
+  domain d;
+  kinematics *kin;       /* [n_section] */
+  double *thickness, *E; /* [n_section], [ns*ns*n_section] */
+  double *C;             /* [36*n_section] */
+  unsigned char *fixed;  /* [dim*n_node] zero */
+  double *sigma;         /* [ns*n_elem] Pa */
+  double *T0, *T;        /* [n_elem] */
+  double *heat;          /* [ns*n_elem] thermal strain of the last increment */
+  double *flown;         /* [ns*n_elem] inelastic strain so far */
+  double *flow_rate;     /* [ns*n_elem] 1/s, of the last increment */
+  double *stress;        /* [n_elem] Pa, of the inelastic strain so far */
+  double *rate;          /* [n_elem] Pa/s, of the last increment */
+  double *way;           /* [(dim-1)*n_node] all slip so far, m*/
+  double sum[NEGLECT_MAX];  /* sqrt(J), of the row */
+  double last[NEGLECT_MAX]; /* sqrt(J)/s, rate of the last increment */
+  double seen[NEGLECT_MAX]; /* -, bound at the last increment solved again    */
+  double tangential;        /* N, largest tangential force so far             */
+  double total;             /* N, largest of their sums so far                */
+  int *elem_id;   /* [n_elem] all                                            */
+  double *strain; /* [ns*n_elem] room                                        */
+  double *force, *u; /* [dim*n_node] room                                     */
+};
+
+const material *neglect_material(const neglect *n, int elem_id);
+/* Coefficient of the friction left out at contact node i. */
+double neglect_coefficient(const neglect *n, const state *s, int i);
+/* a / b; nothing is no part of anything. */
+double neglect_part(double a, double b);
+
+/* again.c: the increment with the effect of row k in force, where the row's
+ * "bound" now has doubled since the last time or the step ends. */
+status neglect_again(neglect *n, const state *s, int k, double bound,
+                     neglected *row);
+
+#endif
