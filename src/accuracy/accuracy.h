@@ -65,6 +65,18 @@ status contraction_rate(const contact_problem *cp, const double *u,
 status contraction_limit(const contact_problem *cp, const double *u,
                          const double *r, double *rate);
 
+/*
+ * The contact linearised at (u, r), its limit being given (cp->B is not read):
+ * what is closed, sticks or slides goes on with that. cp is borrowed.
+ */
+typedef struct linear_contact linear_contact;
+/* *out is NULL if the free unknowns are held by nothing. ERR_MEMORY. */
+status linear_contact_new(const contact_problem *cp, const double *u,
+                          const double *r, linear_contact **out);
+void linear_contact_free(linear_contact *c); /* accepts NULL                  */
+/* du[m] of a change df[m] of the load, N. */
+void linear_contact_move(linear_contact *c, const double *df, double *du);
+
 /* inverse_energy of a dense matrix M[m*m] by its Cholesky factor, for problems
  * of which nothing else is known. *out is new (dense_inverse_free), NULL if M
  * is not symmetric and positive semidefinite. */

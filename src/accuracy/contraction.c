@@ -297,3 +297,43 @@ done:
   map_free(&s);
   return st;
 }
+
+/* ---- a change of the load ------------------------------------------------ */
+
+struct linear_contact {
+  linear_map map;
+};
+
+void linear_contact_free(linear_contact *c) {
+  if (c == NULL) return;
+  map_free(&c->map);
+  memory_free(c);
+}
+
+status linear_contact_new(const contact_problem *cp, const double *u,
+                          const double *r, linear_contact **out) {
+  status st = OK;
+  linear_contact *c = NULL;
+  *out = NULL;
+  NEW(c, 1);
+  linear_map *s = &c->map;
+  TRY(map_new(cp, s));
+  set_state(s, u, r);
+  NEW(s->K, (size_t)s->n_free * (size_t)s->n_free);
+  if (s->n_free > 0 && !factor(s)) goto done;
+  *out = c;
+  c = NULL;
+done:
+  linear_contact_free(c);
+  return st;
+}
+
+void linear_contact_move(linear_contact *c, const double *df, double *du) {
+  linear_map *s = &c->map;
+  for (int a = 0; a < s->n_free; ++a) s->x[a] = df[s->free_id[a]];
+  if (s->n_free > 0)
+    LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', s->n_free, 1, s->K, s->n_free,
+                        s->x, s->n_free);
+  for (int k = 0; k < s->cp->m; ++k)
+    du[k] = s->place[k] >= 0 ? s->x[s->place[k]] : 0.0;
+}

@@ -122,56 +122,6 @@ done:
   return st;
 }
 
-/* ---- theorems ----------------------------------------------------------- */
-
-/* The problem at hand with an answer; mu[n_contact], given[n] are new. */
-static status theory_scene_new(run *r, const equilibrium *e, theory_scene *s,
-                               double **mu, unsigned char **given) {
-  status st = OK;
-  NEW(*mu, r->m->n_contact);
-  NEW(*given, r->n);
-  for (int c = 0; c < r->m->n_contact; ++c)
-    (*mu)[c] = limit_coefficient(r, c, r->now.t);
-  for (int i = 0; i < r->n; ++i)
-    (*given)[i] = r->m->contacts[r->surface->contact_id[i]].force.given != 0;
-  *s = (theory_scene){.cp = &r->cp,
-                      .u = e->uc,
-                      .r = e->rc,
-                      .n_contact = r->m->n_contact,
-                      .contact_id = r->surface->contact_id,
-                      .mu = *mu,
-                      .given = *given,
-                      .alone = r->step->kind == STEP_STATIC || r->relaxing,
-                      .tol = r->tol};
-  if (r->theory == NULL) TRY(theory_new(&r->theory));
-done:
-  return st;
-}
-
-static status see_theory(run *r, int at_start) {
-  status st = OK;
-  theory_scene s;
-  double *mu = NULL;
-  unsigned char *given = NULL;
-  r->theorems = (theory_report){0};
-  if (r->n == 0 || !r->step->theory) return OK;
-  timer_enter(STAGE_THEORY);
-  TRY(theory_scene_new(r, at_start ? &r->old : &r->now, &s, &mu, &given));
-  if (at_start)
-    TRY(theory_start(r->theory, &s));
-  else
-    TRY(theory_check(r->theory, &s, &r->theorems));
-done:
-  memory_free(mu);
-  memory_free(given);
-  timer_leave(STAGE_THEORY);
-  return st;
-}
-
-status theory_increment(run *r) { return see_theory(r, 0); }
-
-status theory_initial(run *r) { return see_theory(r, 1); }
-
 /* ---- other solutions ---------------------------------------------------- */
 
 status check_problem(const step *s, const contact_problem *cp,

@@ -58,8 +58,8 @@ status estimate_increment(run *r);
 /* Those of solver and mesh alone, from r->now.u; read r->judged. */
 status estimate_judge(run *r);
 
-/* The theorems at r->now into r->theorems, if asked for; at the initial state,
- * which is posed in r->cp. */
+/* theorems.c: the theorems at r->now into r->theorems, if asked for; at the
+ * initial state, which is posed in r->cp. */
 status theory_increment(run *r);
 status theory_initial(run *r);
 

@@ -320,6 +320,22 @@ static void write_bound(json *w, const char *name, const theory_bound *b) {
   json_close(w, '}');
 }
 
+static void write_path(json *w, const theory_path *p) {
+  if (!p->asked) return;
+  json_open(w, "theorem_3_2", '{');
+  if (p->why != NULL)
+    json_string(w, "missing", p->why);
+  else
+    json_real(w, "stress_contraction", p->rate);
+  json_real(w, "stress_bound", p->bound);
+  json_real(w, "lipschitz", p->speed);
+  json_real(w, "dt_contraction", p->longest);
+  json_real(w, "step_time", p->span);
+  json_real(w, "maps_to_contract", p->passes);
+  json_flag(w, "violated", p->violated);
+  json_close(w, '}');
+}
+
 static void write_theory(json *w, const model *m, const theory_report *t) {
   if (!t->asked) return;
   json_open(w, "theory", '{');
@@ -329,6 +345,7 @@ static void write_theory(json *w, const model *m, const theory_report *t) {
   json_close(w, ']');
   write_bound(w, "bound_3_9", &t->total);
   write_bound(w, "bound_3_10", &t->change);
+  write_path(w, &t->path);
   json_real(w, "inequality_least", t->inequality);
   json_count(w, "inequality_fields", t->n_field);
   if (t->has_start) json_real(w, "start_least", t->start);

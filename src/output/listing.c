@@ -414,6 +414,30 @@ static void print_bound(const job *j, const char *what, const theory_bound *b,
           unit, b->violated ? "VIOLATED" : "ok");
 }
 
+/* Theorem 3.2: laws that flow under given friction. */
+static void print_path(const job *j, const theory_path *p, FILE *f) {
+  char text[2][NUMBER_SIZE], unit[64], time[64];
+  if (!p->asked) return;
+  column_unit("1/time", j->m, unit, sizeof unit);
+  column_unit("time", j->m, time, sizeof time);
+  if (p->why != NULL)
+    fprintf(f, "  theory: (3.2) stress: no rate, %s\n", p->why);
+  else
+    fprintf(f, "  theory: (3.2) stress: contraction %s <= %s  %s\n",
+            text_number(text[0], p->rate, 4), text_number(text[1], p->bound, 4),
+            p->violated      ? "VIOLATED"
+            : p->bound < 1.0 ? "ok"
+                             : "ok, but not below 1");
+  if (!(p->bound > 0.0)) return;
+  fprintf(f,
+          "  theory: (3.2) constant of the laws %s %s, below 1 for dt < %s %s",
+          text_number(text[0], p->speed, 4), unit,
+          text_number(text[1], p->longest, 4), time);
+  if (p->passes < 1e9)
+    fprintf(f, "; over the step after %.0f passes", p->passes);
+  fputc('\n', f);
+}
+
 static void print_theory(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE];
   const theory_report *t = &s->theory;
@@ -428,6 +452,7 @@ static void print_theory(const job *j, const state *s, FILE *f) {
   fprintf(f, "  theory: S_i^n over %d test fields: least %s  %s\n", t->n_field,
           text_number(text, t->inequality, 1),
           t->inequality_violated ? "VIOLATED" : "ok");
+  print_path(j, &t->path, f);
 }
 
 static void print_when(const state *s, FILE *f) {

@@ -149,6 +149,15 @@ void scheme_work_free(scheme_work *w);
 status scheme_dissipated(const scheme_call *a, double t, double *energy);
 /* Largest |rate| dt that the scheme damps; HUGE_VAL: no limit. */
 double scheme_limit(const scheme *s, double theta);
+/*
+ * Q[ns*ns*n] = d(e^i)/d(sigma) of the ends of a step from old to now by the
+ * rule of THETA, for given stresses, 1/Pa; *largest of the points, in the norms
+ * |e^i|^2 = e^i E e^i and |sigma|^2 = sigma inv(E) sigma, -. Both states have
+ * their stresses and temperatures. ERR_SINGULAR, ERR_MEMORY.
+ */
+status flow_compliance(const flow *x, const scheme_step *p,
+                       const flow_state *old, const flow_state *now, double *Q,
+                       double *largest);
 /* 1 if all laws of the points are linear with constant coefficients. */
 int flow_is_constant(const flow *x);
 

@@ -17,7 +17,10 @@ struct theory {
   theory_contact *contacts; /* [n_contact] the last one is all               */
   double start;
   int has_start;
+  double fastest; /* L of the step so far, 1/s                                */
 };
+
+static const double ROUNDING = 1e-8; /* -, of times and factors               */
 
 const char *mu_regime_text(mu_regime regime) {
   static const char *const text[] = {
@@ -267,4 +270,15 @@ status theory_check(theory *t, const theory_scene *s, theory_report *out) {
 done:
   frozen_free(&p);
   return st;
+}
+
+void theory_path_learn(theory *t, double theta, double dt, double span,
+                       theory_path *p) {
+  p->speed = p->bound / (theta * dt);
+  p->longest = p->speed > 0.0 ? 1.0 / (theta * p->speed) : HUGE_VAL;
+  p->span = span;
+  if (!(span > dt * (1.0 + ROUNDING))) t->fastest = 0.0;
+  t->fastest = fmax(t->fastest, p->speed);
+  p->passes = theory_passes(t->fastest * span);
+  p->violated = p->why == NULL && !(p->rate <= p->bound * (1.0 + ROUNDING));
 }

@@ -17,6 +17,14 @@
  * the positions of stick change. c = |dg| sqrt(lmax(inv(A)_tt)), dg what the
  * limit has or changes that no pressure explains (g0, a change of mu): 0 for
  * Coulomb friction with a constant mu.
+ *
+ * Theorem 3.2, inelastic laws with given friction (problem Q3): the stress s of
+ * a body whose inelastic strains follow from another stress s* is a
+ * contraction. With |e^i|^2 the energy of E e^i and |s|^2 that of s, on the
+ * whole body, |ds| <= |de^i| <= q |ds*|,   q = theta dt L for a step of the
+ * rule of THETA: the first because the equilibrium with a given limit is a
+ * projection, the second from the laws, whose constant is L. Over a time T the
+ * path of s contracts after k maps if (L T)^k/k! < 1.
  */
 #ifndef PROTIS_THEORY_THEORY_H
 #define PROTIS_THEORY_THEORY_H
@@ -59,6 +67,19 @@ typedef struct theory_bound {
   const char *why; /* NULL, or why there is none                              */
 } theory_bound;
 
+/* Theorem 3.2 over an increment. */
+typedef struct theory_path {
+  int asked;       /* 1: laws flow in the step                                */
+  const char *why; /* NULL, or why there is no rate                           */
+  double rate;  /* of the map linearised at the answer, pass after pass, -    */
+  double bound; /* q, -                                                       */
+  double speed; /* L, 1/s                                                     */
+  double longest; /* s, increments below it contract; HUGE_VAL: nothing flows */
+  double span;    /* T, since the start of the step, s                        */
+  double passes;  /* least k over T, with the largest L so far, -             */
+  int violated;   /* rate > bound                                           */
+} theory_path;
+
 typedef struct theory_report {
   int asked;
   int fresh;     /* 1: the matrix is new                                      */
@@ -71,7 +92,8 @@ typedef struct theory_report {
   int inequality_violated;
   int has_start; /* 1: start is that of the initial state, (3.8)        */
   double start;  /* least of (3.8) over the test fields, -              */
-  int violated;  /* any of them                                         */
+  theory_path path;
+  int violated; /* any of them                                          */
 } theory_report;
 
 typedef struct theory theory;
@@ -85,6 +107,21 @@ status theory_start(theory *t, const theory_scene *s);
  * measured rate that of contraction_rate for each contact. ERR_MEMORY.
  */
 status theory_check(theory *t, const theory_scene *s, theory_report *out);
+
+/* A map of stresses into themselves; |y| of the answer. ERR_* of its own. */
+typedef struct stress_map {
+  void *ctx;
+  status (*apply)(void *ctx, double *size);
+} stress_map;
+/* From where the context stands: the factor that passes end with, 0 if nothing
+ * is left. Each pass starts from the last answer over its size. */
+status theory_path_rate(const stress_map *map, double *rate);
+/* Constants from bound = q of a step dt by theta, after "span" since "start"
+ * of a step. */
+void theory_path_learn(theory *t, double theta, double dt, double span,
+                       theory_path *p);
+/* Least k with x^k/k! < 1. */
+double theory_passes(double x);
 
 /* ---- parts, for this folder and its tests ------------------------------- */
 

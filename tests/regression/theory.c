@@ -1,6 +1,7 @@
 /*
  * *ACCURACY, THEORY=YES: limits of mu of the GRECO block on crossed squares and
- * of the triangle, bounds of increments, the inequality on every example.
+ * of the triangle, bounds of increments, the rate of inelastic laws under given
+ * friction (Theorem 3.2), the inequality on every example.
  */
 #include "support/job.h"
 #include "support/unit.h"
@@ -266,6 +267,136 @@ START_TEST(two_contacts_have_rows_of_their_own) {
 }
 END_TEST
 
+/* ---- Theorem 3.2 -------------------------------------------------------- */
+
+/* The block of 4 x 4 squares pressed and pushed, then let creep. */
+static job run_law(const char *law, const char *contact, const char *visco,
+                   double dt) {
+  job j = job_begin("block");
+  write_crossed(&j, 4);
+  job_write(&j, "block.inp",
+            "*MESH, FILE=crossed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n"
+            "130.D3, 0.2\n*INELASTIC, LAW=%s\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=O\n%s"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nSYMMETRY, 1, 1\n"
+            "TOP, 2, 2, -0.02\n*DSLOAD\nLEFT, P, 50.\n"
+            "*ACCURACY, THEORY=YES\n*END STEP\n"
+            "*STEP\n*VISCO, %s\n%g, %g\n*PRINT, ELEMENTS\n*END STEP\n",
+            law, contact, visco, dt, 3.0 * dt);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "%s, %s: exit %d: %s", law, visco, code, j.errors);
+  ck_assert_int_eq(count(&j, "lst", "VIOLATED"), 0);
+  ck_assert_int_eq(count(&j, "json", "\"theorem_3_2\""), 3);
+  return j;
+}
+
+static const char rough[] = "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n";
+
+/* The largest eigenvalue of a proportional law is that of a bar, whatever the
+ * mesh and the contact: theta dt/tau of MAXWELL, z/(1 + z E1/E0) with z =
+ * theta dt E0/eta1 of ZENER. */
+START_TEST(stress_contracts_with_the_rate_of_a_bar) {
+  static const char given[] =
+      "*CONTACT FORCE, CONTACT=FOOT\n60.\n"
+      "*FRICTION, CONTACT=FOOT, LAW=TRESCA\n10.\n";
+  static const struct {
+    const char *law, *contact, *visco;
+    double dt, rate;
+  } row[] = {
+      {"MAXWELL\n4.", rough, "INTEGRATOR=BACKWARD", 1.0, 0.25},
+      {"MAXWELL\n4.", rough, "INTEGRATOR=MIDPOINT", 1.0, 0.125},
+      {"MAXWELL\n4.", rough, "INTEGRATOR=THETA, THETA=0.8", 2.0, 0.4},
+      {"MAXWELL\n4.", "", "INTEGRATOR=EULER", 2.0, 0.25},
+      {"MAXWELL\n4.", given, "INTEGRATOR=EXPONENTIAL", 2.0, 0.25},
+      {"MAXWELL\n4.", rough, "INTEGRATOR=BACKWARD", 12.0, 3.0},
+      {"MAXWELL\n\"4.+0*t\"", rough, "INTEGRATOR=BACKWARD", 1.0, 0.25},
+      {"ZENER\n65.D3, 390.D3", given, "INTEGRATOR=BACKWARD", 1.0, 2.0 / 7.0}};
+  for (size_t k = 0; k < sizeof row / sizeof *row; ++k) {
+    job j = run_law(row[k].law, row[k].contact, row[k].visco, row[k].dt);
+    for (int i = 0; i < 3; ++i) {
+      ck_assert_double_eq_tol(result(&j, "stress_bound", i), row[k].rate, 1e-9);
+      ck_assert_double_eq_tol(result(&j, "stress_contraction", i), row[k].rate,
+                              1e-6);
+    }
+    ck_assert_int_eq(count(&j, "lst", "not below 1"), row[k].rate > 1 ? 3 : 0);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* A triangle in plane stress with a determinate support: its stress does not
+ * depend on its strains, s does not move, until a contact closes; then there is
+ * one stress without load, with the rate of a bar. */
+static const char held_mesh[] =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n"
+    "0 1 \"CLAMPED\"\n0 2 \"GUIDED\"\n1 3 \"FOOT\"\n0 4 \"TIP\"\n"
+    "2 5 \"BODY\"\n$EndPhysicalNames\n$Nodes\n3\n1 -1 1 0\n2 1 3 0\n"
+    "3 0 0 0\n$EndNodes\n$Elements\n5\n1 15 2 1 1 1\n2 15 2 2 2 2\n"
+    "3 15 2 4 4 3\n4 1 2 3 1 1 3\n5 2 2 5 1 3 2 1\n$EndElements\n";
+
+START_TEST(closed_contact_makes_the_stress_depend_on_strains) {
+  static const char *const level[] = {"-1.", "0."};
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("triangle");
+    job_write(&j, "triangle.msh", "%s", held_mesh);
+    job_write(&j, "triangle.inp",
+              "*MESH, FILE=triangle.msh\n*MATERIAL, NAME=M\n*ELASTIC\n"
+              "1000., 0.3\n*INELASTIC, LAW=MAXWELL\n4.\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., %s\n0., 1.\n"
+              "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n*STEP\n"
+              "*VISCO, INTEGRATOR=BACKWARD\n1., 2.\n*BOUNDARY\n"
+              "CLAMPED, 1, 2\nGUIDED, 2\n*CLOAD\nTIP, 2, -1\n"
+              "*ACCURACY, THEORY=YES\n*END STEP\n",
+              level[k]);
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    ck_assert_double_eq_tol(result(&j, "stress_contraction", -1), 0.25 * k,
+                            1e-9);
+    ck_assert_double_eq_tol(result(&j, "stress_bound", -1), 0.25, 1e-9);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* Passes over a time T: the least k with (L T)^k/k! < 1. At L T = 1, 2, 3:
+ * 1, 1/2; 2, 2, 4/3, 2/3; ..., 3^6/6! = 1.01, 3^7/7! = 0.43. */
+START_TEST(longer_times_need_more_passes) {
+  static const double passes[] = {2.0, 4.0, 7.0};
+  job j = run_law("MAXWELL\n4.", rough, "INTEGRATOR=BACKWARD", 4.0);
+  for (int i = 0; i < 3; ++i) {
+    ck_assert_double_eq(result(&j, "maps_to_contract", i), passes[i]);
+    ck_assert_double_eq_tol(result(&j, "lipschitz", i), 0.25, 1e-9);
+    ck_assert_double_eq_tol(result(&j, "dt_contraction", i), 4.0, 1e-8);
+  }
+  job_end(&j);
+}
+END_TEST
+
+/* Largest equivalent stress of the elements of a block of JOB.dat. */
+static double largest_mises(const job *j, int block) {
+  dat d = job_table(j, "ELEMENTS", block);
+  double largest = dat_max(&d, "mises");
+  dat_free(&d);
+  return largest;
+}
+
+/* Only the deviator flows: 3 G d(dp/dt)/dq = 3 G n A q^(n-1) bounds it, reached
+ * where a field of strains of the mesh may be so. */
+START_TEST(power_law_is_bounded_at_its_largest_stress) {
+  const double G = 130e3 / 2.4, A = 1e-11, n = 3.0, dt = 1.0;
+  job j = run_law("NORTON\n1E-11, 3.", rough, "INTEGRATOR=BACKWARD", dt);
+  for (int i = 0; i < 3; ++i) {
+    double q = largest_mises(&j, i);
+    double bound = result(&j, "stress_bound", i);
+    ck_assert_double_eq_tol(bound / (dt * 3.0 * G * n * A * q * q), 1.0, 1e-6);
+    ck_assert_double_gt(result(&j, "stress_contraction", i), 0.3 * bound);
+  }
+  job_end(&j);
+}
+END_TEST
+
 /* ---- start, given forces, what is not asked for ------------------------- */
 
 START_TEST(initial_state_is_tested_against_3_8) {
@@ -373,5 +504,9 @@ UNIT_MAIN("theory, whole runs", greco_has_the_guaranteed_limits_of_the_table,
           greco_contracts_as_measured_elsewhere, triangle_gives_both_limits,
           bounds_hold_at_every_increment, average_raises_the_guaranteed_limit,
           two_contacts_have_rows_of_their_own,
+          stress_contracts_with_the_rate_of_a_bar,
+          closed_contact_makes_the_stress_depend_on_strains,
+          longer_times_need_more_passes,
+          power_law_is_bounded_at_its_largest_stress,
           initial_state_is_tested_against_3_8, given_forces_are_loads,
           nothing_is_done_unless_asked_for, inequality_holds_on_every_example)
