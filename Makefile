@@ -55,7 +55,7 @@ verify_c := $(wildcard tests/verify/*.c)
 verify   := $(verify_c:%.c=$(out)/%)
 tort_c   := $(wildcard tests/torture/*.c)
 tort     := $(tort_c:%.c=$(out)/%)
-preload  := $(out)/tests/preload/refuse.so
+preload  := $(out)/tests/preload/refuse.so $(out)/tests/preload/mesh.so
 support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c \
               tests/scenes/*.c))
 
@@ -154,7 +154,9 @@ regression: $(program) $(regr)
 # it with random problems and decks in one table; POINTS: of each kind, by
 # and large.
 POINTS  ?= 20000
-torture := PROTIS=$(abspath $(program)) PROTIS_REFUSE=$(abspath $(preload))
+torture := PROTIS=$(abspath $(program)) \
+           PROTIS_REFUSE=$(abspath $(firstword $(preload))) \
+           PROTIS_MESH=$(abspath $(lastword $(preload)))
 .PHONY: torture torture-slice
 torture-slice: $(program) $(preload) $(tort)
 	$(Q)$(torture) JOBS=$(JOBS) tools/run_tests $(tort)

@@ -17,7 +17,11 @@
 enum { PATH = 512, LINE = 8192 };
 
 job job_begin(const char *name) {
-  job j = {.dir = "/tmp/protis-test-XXXXXX"};
+  job j = {.dir = ""};
+  const char *room = getenv("TMPDIR");
+  int n = snprintf(j.dir, sizeof j.dir, "%s/protis-test-XXXXXX",
+                   room != NULL ? room : "/tmp");
+  ck_assert_int_lt(n, (int)sizeof j.dir);
   snprintf(j.name, sizeof j.name, "%s", name);
   ck_assert_ptr_nonnull(mkdtemp(j.dir));
   return j;

@@ -3,13 +3,19 @@
  */
 #include "support/traced.h"
 
+#include "support/kept_mesh.h"
+
 #include <check.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <signal.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/ptrace.h>
 #include <sys/syscall.h>
 #include <sys/user.h>
@@ -23,6 +29,27 @@ static const char *program(void) {
   return p == NULL ? "build/release/protis" : p;
 }
 
+/* Only calls that may change a file stop; looked at by changes_file. */
+static int stop_at_changes(void) {
+  static const unsigned calls[] = {SYS_write,  SYS_pwrite64,  SYS_fsync,
+                                   SYS_close,  SYS_ftruncate, SYS_openat,
+                                   SYS_rename, SYS_unlink};
+  enum { CALLS = sizeof calls / sizeof *calls };
+  struct sock_filter rule[CALLS + 3];
+  int n = 0;
+  rule[n++] = (struct sock_filter)BPF_STMT(BPF_LD | BPF_W | BPF_ABS,
+                                           offsetof(struct seccomp_data, nr));
+  for (int k = 0; k < CALLS; ++k)
+    rule[n++] = (struct sock_filter)BPF_JUMP(
+        BPF_JMP | BPF_JEQ | BPF_K, calls[k], (unsigned char)(CALLS - k), 0);
+  rule[n++] = (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
+  rule[n++] = (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRACE);
+  struct sock_fprog program = {(unsigned short)n, rule};
+  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER,
+                 SECCOMP_FILTER_FLAG_SPEC_ALLOW, &program) == 0;
+}
+
 static pid_t start(const job *j, const char *const *words) {
   char deck[PATH], told[PATH];
   snprintf(deck, sizeof deck, "%s/%s", j->dir, j->name);
@@ -33,6 +60,9 @@ static pid_t start(const job *j, const char *const *words) {
   int to = open(told, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (dup2(to, STDERR_FILENO) < 0 || dup2(to, STDOUT_FILENO) < 0) _exit(99);
   if (ptrace(PTRACE_TRACEME, 0, NULL, NULL) != 0) _exit(98);
+  kept_mesh_preload("");
+  raise(SIGSTOP); /* until the tracer is ready for the calls below           */
+  if (!stop_at_changes()) _exit(97);
   execl(program(), program(), deck, "--no-timing", words[0], words[1],
         (char *)NULL);
   _exit(99);
@@ -113,28 +143,46 @@ static int meet(const job *j, pid_t pid, traced *t) {
   return t->action == TRACE_ERROR;
 }
 
+/* Another process or thread of the run: goes on. */
+static void let_go(pid_t who, int code) {
+  int signal_no = WIFSTOPPED(code) ? WSTOPSIG(code) : 0;
+  if (signal_no == SIGSTOP || signal_no == SIGTRAP) signal_no = 0;
+  if (WIFSTOPPED(code)) ptrace(PTRACE_CONT, who, NULL, signal_no);
+}
+
+/* The run stops: at a call, at the end of one that is spoilt, for a signal.
+ * Whether the end of this call is to be seen. */
+static int attend(const job *j, pid_t pid, int code, int spoilt, traced *t) {
+  int signal_no = WSTOPSIG(code), fails = 0;
+  if (code >> 8 == (SIGTRAP | PTRACE_EVENT_SECCOMP << 8))
+    fails = meet(j, pid, t), signal_no = 0;
+  else if (signal_no == (SIGTRAP | 0x80) && spoilt)
+    answer(pid, t->number), signal_no = 0;
+  else if ((signal_no & 0x7f) == SIGTRAP)
+    signal_no = 0;
+  ptrace(fails ? PTRACE_SYSCALL : PTRACE_CONT, pid, NULL, signal_no);
+  return fails;
+}
+
 static int follow(const job *j, pid_t pid, traced *t) {
-  int code, inside = 0, fails = 0;
-  long send = 0;
+  int code, spoilt = 0;
   ck_assert_int_eq(waitpid(pid, &code, 0), pid);
   ck_assert_msg(WIFSTOPPED(code), "cannot be traced: %x", code);
   ptrace(PTRACE_SETOPTIONS, pid, NULL,
-         PTRACE_O_TRACESYSGOOD | PTRACE_O_EXITKILL);
-  while (ptrace(PTRACE_SYSCALL, pid, NULL, send) == 0) {
-    ck_assert_int_eq(waitpid(pid, &code, 0), pid);
+         PTRACE_O_TRACESYSGOOD | PTRACE_O_EXITKILL | PTRACE_O_TRACESECCOMP |
+             PTRACE_O_TRACEFORK | PTRACE_O_TRACEVFORK | PTRACE_O_TRACECLONE);
+  ptrace(PTRACE_CONT, pid, NULL, 0);
+  for (;;) {
+    pid_t who = waitpid(-1, &code, __WALL);
+    ck_assert_msg(who > 0 || errno == EINTR, "a traced run is lost");
+    if (who != pid) {
+      let_go(who, code);
+      continue;
+    }
     if (WIFEXITED(code)) return WEXITSTATUS(code);
     if (WIFSIGNALED(code)) return 1000 + WTERMSIG(code);
-    int is_call = WSTOPSIG(code) == (SIGTRAP | 0x80);
-    send = is_call || WSTOPSIG(code) == SIGTRAP ? 0 : WSTOPSIG(code);
-    if (!is_call) continue;
-    inside = !inside;
-    if (inside)
-      fails = meet(j, pid, t);
-    else if (fails)
-      answer(pid, t->number);
+    spoilt = attend(j, pid, code, spoilt, t);
   }
-  ck_assert_int_eq(waitpid(pid, &code, 0), pid);
-  return WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code);
 }
 
 int traced_run(job *j, const char *const *words, traced *t) {

@@ -7,8 +7,9 @@
  * library may do without (then all files are those of an undisturbed run) or
  * give up: 4, 5 or 7 with a message.
  */
-#include "support/small_job.h"
+#include "support/kept_mesh.h"
 #include "support/points.h"
+#include "support/small_job.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
@@ -54,8 +55,8 @@ static void become_job(const job *j, const refusal *r) {
   set_number("REFUSE_CHILD", r->in_child);
   set_number("REFUSE_OWN", r->own);
   setenv("REFUSE_TOLD", told, 1);
-  setenv("LD_PRELOAD",
-         setting("PROTIS_REFUSE", "build/release/tests/preload/refuse.so"), 1);
+  kept_mesh_preload(
+      setting("PROTIS_REFUSE", "build/release/tests/preload/refuse.so"));
   alarm(UNIT_SECONDS / 2);
   const char *program = setting("PROTIS", "build/release/protis");
   execl(program, program, deck, "--no-timing", (char *)NULL);
@@ -117,8 +118,10 @@ static const struct {
             {"flow, MIDPOINT", small_creep, "INTEGRATOR=MIDPOINT"}};
 
 static void starve(points *t, size_t which, refusal r, long n) {
-  job whole = jobs[which].make(0.4, "*RESTART\n", jobs[which].method);
-  job j = jobs[which].make(0.4, "*RESTART\n", jobs[which].method);
+  static const char once[] = "*RESTART, FREQUENCY=0\n";
+  job whole = jobs[which].make(0.4, once, jobs[which].method);
+  job j = jobs[which].make(0.4, once, jobs[which].method);
+  kept_mesh(&whole);
   r.at = 0;
   outcome_of_run usual = run(&whole, &r);
   ck_assert_int_eq(usual.code, 0);
@@ -134,6 +137,7 @@ static void starve(points *t, size_t which, refusal r, long n) {
                   jobs[which].kind, r.at, usual.requests, o.by, wrong, o.code,
                   j.errors);
   }
+  kept_mesh(NULL);
   job_end(&whole);
   job_end(&j);
 }

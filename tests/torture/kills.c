@@ -3,8 +3,9 @@
  * --restart, killed itself or not, ends with the files of a run that nobody
  * disturbed, as soon as there was a restart file.
  */
-#include "support/small_job.h"
+#include "support/kept_mesh.h"
 #include "support/points.h"
+#include "support/small_job.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
@@ -77,6 +78,7 @@ static void kill_often(points *t, points *twice, make_job *make,
   job whole = make(mu, "*RESTART\n", method);
   job j = make(mu, "*RESTART\n", method);
   int changes, rest;
+  kept_mesh(&whole);
   ck_assert_int_eq(run(&whole, nothing, 0, &changes), 0);
   for (long k = 0; k < n && k < changes; ++k) {
     int at = (int)points_spread(k, n, changes);
@@ -97,13 +99,14 @@ static void kill_often(points *t, points *twice, make_job *make,
       points_lose(t, "%s: killed at change %d of %d: %s: %.200s", j.name, at,
                   changes, wrong, j.errors);
   }
+  kept_mesh(NULL);
   job_end(&whole);
   job_end(&j);
 }
 
 START_TEST(killed_run_goes_on) {
   points t = {.kind = "killed runs"}, twice = {.kind = "killed restarts"};
-  long n = points_number(12, 0.12);
+  long n = points_number(12, 0.0375);
   kill_often(&t, &twice, small_flat, "AUTO", 0.1, n);
   kill_often(&t, &twice, small_flat, "NEWTON", 10.0, n);
   kill_often(&t, &twice, small_solid, "SOR", 0.4, n);
