@@ -70,7 +70,8 @@ typedef struct effect_work {
   double calls, operations;
 } effect_work;
 effect_work work_of(const char *row, const plan_sizes *s, double items);
-/* Multiplications and additions of the factor of the stiffness. */
+/* Of the factor of the stiffness: multiplications and additions; entries. */
 double work_factor_flops(const plan_sizes *s);
+double work_factor_entries(const plan_sizes *s);
 
 #endif

@@ -6,7 +6,7 @@
  * matrices, and the move of one double that is read in passing.
  *
  * Orders: nested dissection leaves 7 n log2 n entries and 60 n^1.5 operations
- * in the factor in the plane, 25 n^(4/3) and 45 n^2 in space; a solve goes
+ * in the factor in the plane, 25 n^(4/3) and 28 n^2 in space; a solve goes
  * through the entries twice; the condensed matrix is dense. Constants were
  * fitted to the examples; they are good to a factor of two or three, as is the
  * number of iterations that a contact problem needs.
@@ -28,10 +28,10 @@ static double contact_unknowns(const plan_sizes *s) {
 
 double work_factor_flops(const plan_sizes *s) {
   double n = s->unknowns;
-  return s->is_flat ? 60.0 * pow(n, 1.5) : 45.0 * n * n;
+  return s->is_flat ? 60.0 * pow(n, 1.5) : 28.0 * n * n;
 }
 
-static double factor_entries(const plan_sizes *s) {
+double work_factor_entries(const plan_sizes *s) {
   double n = fmax(2.0, s->unknowns);
   return s->is_flat ? 7.0 * n * log2(n) : 25.0 * n * cbrt(n);
 }
@@ -43,8 +43,8 @@ static double element_work(const plan_sizes *s) {
 static effect_work elements(const plan_sizes *s, double items) {
   double assembly = items * (s->is_flat ? 500.0 : 2500.0);
   double ordering = s->nodes * (s->is_flat ? 700.0 : 3000.0);
-  double factor = work_factor_flops(s) / SPARSE + factor_entries(s);
-  double solves = s->equilibria * 2.0 * factor_entries(s);
+  double factor = work_factor_flops(s) / SPARSE + work_factor_entries(s);
+  double solves = s->equilibria * 2.0 * work_factor_entries(s);
   double energy = s->increments * items * element_work(s);
   return (effect_work){s->factors, s->factors * (assembly + ordering + factor) +
                                        solves + energy};
@@ -143,12 +143,12 @@ static effect_work time_error(const plan_sizes *s, double items) {
   double m = contact_unknowns(s);
   (void)items;
   return (effect_work){s->increments, 2.0 * s->increments *
-                                          (4.0 * factor_entries(s) +
+                                          (4.0 * work_factor_entries(s) +
                                            CONTACT_STEPS * 2.0 * m * m)};
 }
 
 static effect_work solver_error(const plan_sizes *s, double items) {
-  double m = contact_unknowns(s), solve = 0.5 * factor_entries(s);
+  double m = contact_unknowns(s), solve = 0.5 * work_factor_entries(s);
   double factor = s->tangents > 0.0 ? 0.1 * m * m * m / 3.0 / DENSE : 0.0;
   (void)items;
   return (effect_work){s->increments,

@@ -294,7 +294,7 @@ int limit_follow_zone(run *r) {
     int open = is_open(r, i);
     if (!r->limit.in_zone[i] || open == z->off[i] || (!open && z->returned[i]))
       continue;
-    z->returned[i] = !open;
+    if (!open) z->returned[i] = 1;
     z->off[i] = (unsigned char)open;
     ++changes;
   }

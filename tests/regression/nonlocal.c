@@ -219,6 +219,22 @@ static void expect_zone(const char *steps) {
   job_end(&closed_zone);
 }
 
+/* A node at the edge that opens with friction and touches without ends without:
+ * the search for the zone ends, with a force on no open node. */
+START_TEST(node_that_comes_and_goes_has_no_friction) {
+  job j = job_begin("edge");
+  ck_assert_int_eq(job_run_deck(&j, "input/nonlocal_slider/nonlocal_hertz",
+                                "-D NC=16 -D RHO=0.05"),
+                   0);
+  dat c = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < c.n_row; ++i)
+    if (dat_at(&c, i, "status") == 0)
+      ck_assert_double_eq(dat_at(&c, i, "f_t"), 0.0);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
 /* Found in one increment, or from the zone of the one before. */
 START_TEST(zone_confines_friction_to_the_contact) {
   expect_zone(PUSHED);
@@ -595,9 +611,11 @@ END_TEST
 UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
           mirror_takes_the_edge_away, normalized_edges_keep_a_uniform_pressure,
           limit_is_the_average_of_the_pressures,
-          zone_confines_friction_to_the_contact, small_radius_is_local_friction,
-          only_the_nonlocal_law_pays, mu_multiplies_the_average,
-          every_method_gives_the_same_answer, contacts_do_not_see_each_other,
+          zone_confines_friction_to_the_contact,
+          node_that_comes_and_goes_has_no_friction,
+          small_radius_is_local_friction, only_the_nonlocal_law_pays,
+          mu_multiplies_the_average, every_method_gives_the_same_answer,
+          contacts_do_not_see_each_other,
           square_base_has_the_mass_of_the_kernel, cone_is_exact_at_any_angle,
           round_base_has_the_mass_of_the_kernel, given_forces_are_averaged,
           velocity_form_has_the_same_zone, law_may_change_from_step_to_step)
