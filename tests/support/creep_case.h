@@ -1,15 +1,41 @@
 /*
- * A block that creeps under pressure on a floor it slides on, for the orders of
- * integrators: unit square, E = 1000, nu = 0.3, symmetric about x = 0, friction
- * 0.1, from t = 1 to 3.
+ * A block that creeps under a pressure that grows, on a rough floor, for the
+ * orders of integrators: unit square, cylinder or cube, symmetric about x = 0,
+ * pressed at once at t = 1, then left to creep. The cube is held in y, so that
+ * its slip keeps its direction, unless it is said to be free. Run in memory.
  */
 #ifndef PROTIS_TESTS_CREEP_CASE_H
 #define PROTIS_TESTS_CREEP_CASE_H
 
-/* Order from the displacements at the end with n, 2 n, 4 n increments; check
- * fails if a node but the one on the symmetry line does not slip at the end.
- *   law         card *INELASTIC with its lines, times near 2, stresses of 10
- *   integrator  as in INTEGRATOR=, further words of *VISCO may follow        */
-double creep_case_order(const char *law, const char *integrator, int n);
+typedef struct creep_case {
+  const char *elastic;  /* line of *ELASTIC                                   */
+  const char *law;      /* cards of the law below it                          */
+  const char *model;    /* cards before the first step, or ""                 */
+  const char *step;     /* cards of the step of creep, or ""                  */
+  const char *section;  /* TYPE=                                              */
+  const char *friction; /* line of *FRICTION                                  */
+  double pressure;      /* at the start                                       */
+  double growth; /* of the pressure: 1 + growth sin(time/total)               */
+  double total;  /* time of the creep                                         */
+  int free;      /* of the cube: held on one side in y only                   */
+} creep_case;
+
+/* It sticks for x < 0.3 and slides beyond. */
+#define STICK_AND_SLIP "\"if(x < 0.3, 100, 0.1)\""
+
+typedef struct creep_end {
+  double u[256]; /* [n_dof] displacements                                     */
+  int n_dof, n_slip, n_stick;
+  int changes; /* increments that changed the status of a node                */
+} creep_end;
+
+/* integrator: as in INTEGRATOR=, further words of *VISCO may follow; n
+ * increments. Check fails if a contact problem misses its tolerance. */
+creep_end creep_case_run(const creep_case *c, const char *integrator, int n);
+/* |a - b| of the displacements. */
+double creep_distance(const creep_end *a, const creep_end *b);
+/* Order from the displacements with n, 2 n, 4 n increments; check fails where
+ * nodes do not stick and slip, all of them as they did at the start. */
+double creep_case_order(const creep_case *c, const char *integrator, int n);
 
 #endif
