@@ -206,6 +206,10 @@ static void turn_block(int dim, const double *Ti, const double *Tj, double *b) {
   }
 }
 
+int contact_row(const stiffness *k, int i, int c) {
+  return k->contact[i] >= 0 && c < k->rows ? k->rows * k->contact[i] + c : -1;
+}
+
 /* Which components are unknown; contact nodes from the surface. */
 static status mark_unknowns(const domain *d, stiffness *k) {
   status st = OK;
@@ -276,6 +280,7 @@ status stiffness_assemble(const domain *d, stiffness **out) {
   timer_enter(STAGE_ASSEMBLY);
   NEW(k, 1);
   k->dim = d->mesh->dim;
+  k->rows = d->rows > 0 ? d->rows : k->dim;
   k->n_node = d->mesh->n_node;
   TRY(find_graph(d, k));
   TRY(add_elements(d, k));

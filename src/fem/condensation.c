@@ -23,8 +23,8 @@ static const double refine_excess = 1e4;
 struct condensed {
   const stiffness *k; /* borrowed                                           */
   domain d;           /* arrays borrowed                                    */
-  int m, n_body, n_motion;
-  double *A; /* [m*m]                                              */
+  int n_contact, m, n_body, n_motion;
+  double *A; /* [m*m], m = rows of a node times n_contact          */
   body_factor *body;
   free_motion *motion; /* those only contact holds                           */
   rigid_set rigid;     /* the same as vectors                                */
@@ -84,21 +84,25 @@ static int count_bodies(const stiffness *k, const graph *g, unsigned char *seen,
   return n;
 }
 
-/* f->node: the interior ordered, then the contact nodes in descending order.
+/* f->node: the interior ordered, then the contact nodes in descending order,
+ * which have an interior too where their tangents are not condensed.
  * list[n] ascending in, destroyed. */
 static status order_body(condensed *c, const graph *g, int n, int *list,
                          body_factor *f) {
   status st = OK;
   const stiffness *k = c->k;
-  int interior = 0, last = n;
-  NEW(f->node, n);
-  f->n_node = n;
-  for (int q = 0; q < n; ++q)
-    if (k->contact[list[q]] >= 0)
-      f->node[--last] = list[q];
-    else
-      f->node[interior++] = list[q];
-  TRY(order_nodes(g, k->dim, c->d.mesh->x, interior, f->node, c->cm,
+  int twice = k->rows < k->dim, contact = 0, last;
+  for (int q = 0; q < n; ++q) contact += k->contact[list[q]] >= 0;
+  f->n_own = n;
+  f->n_inner = twice ? n : n - contact;
+  last = f->n_node = f->n_inner + contact;
+  NEW(f->node, f->n_node);
+  for (int q = 0, inner = 0; q < n; ++q) {
+    const int is_contact = k->contact[list[q]] >= 0;
+    if (is_contact) f->node[--last] = list[q];
+    if (!is_contact || twice) f->node[inner++] = list[q];
+  }
+  TRY(order_nodes(g, k->dim, c->d.mesh->x, f->n_inner, f->node, c->cm,
                   &c->ordering));
 done:
   return st;
@@ -162,20 +166,32 @@ done:
   return st;
 }
 
+/* Component of a row of A among those of all nodes. */
+static size_t component_of(const condensed *c, int row) {
+  const stiffness *k = c->k;
+  const int i = c->d.surface->node_id[row / k->rows];
+  return (size_t)k->dim * (size_t)i + (size_t)(row % k->rows);
+}
+
+static int is_held(const condensed *c, int row) {
+  const stiffness *k = c->k;
+  return c->d.surface->held[k->dim * (row / k->rows) + row % k->rows];
+}
+
 /* Rows of prescribed contact unknowns: the largest diagonal entry among the
  * unknowns of the node, or of A. */
 static void fill_held(condensed *c) {
-  const contact_surface *s = c->d.surface;
+  const int rows = c->k->rows;
   const size_t m = (size_t)c->m;
   double most = 0;
   for (size_t i = 0; i < m; ++i) most = fmax(most, c->A[i * (m + 1)]);
   if (most == 0) most = 1;
   for (int q = 0; q < c->m; ++q) {
-    const int node = q / c->k->dim;
+    const int node = q / rows;
     double own = 0;
-    if (!s->held[q]) continue;
-    for (int t = node * c->k->dim; t < (node + 1) * c->k->dim; ++t)
-      if (!s->held[t]) own = fmax(own, c->A[(size_t)t * (m + 1)]);
+    if (!is_held(c, q)) continue;
+    for (int t = node * rows; t < (node + 1) * rows; ++t)
+      if (!is_held(c, t)) own = fmax(own, c->A[(size_t)t * (m + 1)]);
     c->A[(size_t)q * (m + 1)] = own > 0 ? own : most;
   }
 }
@@ -213,7 +229,8 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   c->cm->print = 0;
   c->k = k;
   c->d = *d;
-  c->m = d->surface != NULL ? k->dim * d->surface->n : 0;
+  c->n_contact = d->surface != NULL ? d->surface->n : 0;
+  c->m = k->rows * c->n_contact;
   c->ordering = "natural";
   NEW(floating, k->n_node);
   NEW(c->load, (size_t)k->dim * (size_t)k->n_node);
@@ -280,7 +297,7 @@ static int set_prescribed(condensed *c, const double *ud) {
 static void set_load(condensed *c, const double *F) {
   const int dim = c->k->dim;
   memcpy(c->load, F, (size_t)dim * (size_t)c->k->n_node * sizeof *F);
-  for (int q = 0; q < c->m / dim; ++q) {
+  for (int q = 0; q < c->n_contact; ++q) {
     const size_t at = (size_t)dim * (size_t)c->d.surface->node_id[q];
     const double *T = c->d.surface->basis + dim * dim * q;
     for (int a = 0; a < dim; ++a) {
@@ -311,13 +328,10 @@ static void move_prescribed(condensed *c) {
 /* f_c of the load in local components; the forward solve is kept. */
 static status forward(condensed *c, double *f_c) {
   status st = OK;
-  const contact_surface *s = c->d.surface;
-  for (int q = 0; q < c->m; ++q) {
-    const size_t dim = (size_t)c->k->dim, row = (size_t)q;
-    if (s->held[q])
-      f_c[q] = c->A[row * (size_t)(c->m + 1)] *
-               c->prescribed[dim * (size_t)s->node_id[row / dim] + row % dim];
-  }
+  for (int q = 0; q < c->m; ++q)
+    if (is_held(c, q))
+      f_c[q] = c->A[(size_t)q * (size_t)(c->m + 1)] *
+               c->prescribed[component_of(c, q)];
   for (int q = 0; q < c->n_body; ++q)
     TRY(body_factor_forward(&c->body[q], c->load, f_c, c->cm));
 done:
@@ -327,7 +341,7 @@ done:
 /* Contact nodes of a displacement from their frame to global components. */
 static void to_global(const condensed *c, double *u) {
   const int dim = c->k->dim;
-  for (int q = 0; q < c->m / dim; ++q) {
+  for (int q = 0; q < c->n_contact; ++q) {
     double *v = u + (size_t)dim * (size_t)c->d.surface->node_id[q], a[3];
     const double *T = c->d.surface->basis + dim * dim * q;
     memcpy(a, v, (size_t)dim * sizeof *a);
@@ -372,8 +386,7 @@ done:
 /* f_c anew: what holds the refined solution for u_c = 0, the sign turned. */
 static status refine_load(condensed *c, const double *F, double *f_c) {
   status st = OK;
-  const contact_surface *s = c->d.surface;
-  const size_t dim = (size_t)c->k->dim, n = dim * (size_t)c->k->n_node;
+  const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
   double *u = NULL, *zero = NULL;
   NEW(u, n);
   NEW(zero, c->m);
@@ -384,9 +397,7 @@ static status refine_load(condensed *c, const double *F, double *f_c) {
   TRY(refine(c, u));
   set_residual(c, u);
   for (int q = 0; q < c->m; ++q)
-    if (!s->held[q])
-      f_c[q] =
-          c->load[dim * (size_t)s->node_id[(size_t)q / dim] + (size_t)q % dim];
+    if (!is_held(c, q)) f_c[q] = c->load[component_of(c, q)];
 done:
   memory_free(u);
   memory_free(zero);
@@ -428,10 +439,9 @@ status condensed_force_energy(condensed *c, const double *d, double *square) {
   status st = OK;
   *square = c->n_motion > 0 ? HUGE_VAL : 0;
   for (int q = 0; q < c->n_body && c->n_motion == 0; ++q)
-    if (c->body[q].nc > 0)
-      TRY(body_factor_energy(&c->body[q], d, square));
+    if (c->body[q].nc > 0) TRY(body_factor_energy(&c->body[q], d, square));
   for (int q = 0; q < c->m; ++q)
-    if (c->d.surface->held[q])
+    if (is_held(c, q))
       *square += d[q] * (d[q] / c->A[(size_t)q * (size_t)(c->m + 1)]);
 done:
   return st;

@@ -18,7 +18,7 @@ static void fill_roots(const stiffness *k, const body_factor *f, double *root) {
     const int i = f->node[q];
     const double *b = k->block + (size_t)(dim * dim) * k->start[i];
     for (int c = 0; c < dim; ++c) {
-      const double spring = k->contact[i] >= 0 ? f->spring : 0;
+      const double spring = contact_row(k, i, c) >= 0 ? f->spring : 0;
       root[(size_t)dim * (size_t)i + (size_t)c] =
           k->free[i] >> c & 1 ? sqrt(scale * b[c * (dim + 1)] + spring) : 1;
     }
@@ -48,7 +48,7 @@ static double largest_row_sum(const stiffness *k, const body_factor *f,
                               const double *root, double *sum) {
   const double scale = ldexp(1, -f->exponent);
   double most = 0;
-  for (int q = 0; q < f->n_node; ++q) {
+  for (int q = 0; q < f->n_own; ++q) {
     const int j = f->node[q];
     for (size_t p = k->start[j]; p < k->start[j + 1]; ++p)
       if (k->free[k->row[p]] != 0) add_magnitudes(k, p, j, root, sum);

@@ -22,12 +22,13 @@ void body_factor_number(const stiffness *k, body_factor *f, long *number) {
   long n = 0;
   f->nc = 0;
   for (int q = 0; q < f->n_node; ++q) {
-    const int i = f->node[q], contact = k->contact[i] >= 0;
+    const int i = f->node[q], last = q >= f->n_inner;
     for (int t = 0; t < k->dim; ++t) {
-      const int c = contact ? k->dim - 1 - t : t;
+      const int c = last ? k->dim - 1 - t : t;
       long *at = &number[(size_t)k->dim * (size_t)i + (size_t)c];
+      if ((contact_row(k, i, c) >= 0) != last) continue;
       *at = k->free[i] >> c & 1 ? n++ : -1;
-      if (contact && *at >= 0) ++f->nc;
+      if (last && *at >= 0) ++f->nc;
     }
   }
   f->n = n;
@@ -65,7 +66,7 @@ static void put_block(columns *w, size_t p, int i, int j) {
 }
 
 static void put_blocks(columns *w, const body_factor *f) {
-  for (int q = 0; q < f->n_node; ++q) {
+  for (int q = 0; q < f->n_own; ++q) {
     const int j = f->node[q];
     for (size_t p = w->k->start[j]; p < w->k->start[j + 1]; ++p)
       if (w->k->free[w->k->row[p]] != 0) put_block(w, p, w->k->row[p], j);
@@ -80,11 +81,11 @@ static double largest_diagonal(const stiffness *k, const body_factor *f,
   double most = 0;
   for (int q = 0; q < f->n_node; ++q) {
     const int i = f->node[q];
-    if (contact_only && k->contact[i] < 0) continue;
     for (int c = 0; c < dim; ++c) {
       const double v =
           k->block[(size_t)(dim * dim) * k->start[i] + (size_t)(c * (dim + 1))];
       if (!(k->free[i] >> c & 1)) continue;
+      if (contact_only && contact_row(k, i, c) < 0) continue;
       if (!(v <= most)) most = v;
     }
   }
@@ -137,8 +138,17 @@ done:
   return st;
 }
 
-static status factorise(const stiffness *k, cholmod_sparse *a,
-                        cholmod_common *cm, body_factor *f) {
+/* The node of an unknown by its number, for a message. */
+static int node_of(const stiffness *k, const body_factor *f, const long *number,
+                   long column) {
+  for (int q = 0; q < f->n_node; ++q)
+    for (int c = 0; c < k->dim; ++c)
+      if (number[k->dim * f->node[q] + c] == column) return f->node[q];
+  return f->node[0];
+}
+
+static status factorise(const stiffness *k, const long *number,
+                        cholmod_sparse *a, cholmod_common *cm, body_factor *f) {
   status st = OK;
   const int done_ok = cholmod_l_factorize(a, f->L, cm);
   if (!done_ok || cm->status < 0)
@@ -146,13 +156,7 @@ static status factorise(const stiffness *k, cholmod_sparse *a,
          f->n, cm->lnz * sizeof(double));
   if (f->L->minor < (size_t)f->n) {
     const SuiteSparse_long *perm = f->L->Perm;
-    long column = perm[f->L->minor], at = 0;
-    int q = 0;
-    for (; q < f->n_node; ++q) {
-      for (int c = 0; c < k->dim; ++c) at += k->free[f->node[q]] >> c & 1;
-      if (at > column) break;
-    }
-    f->bad_node = f->node[q];
+    f->bad_node = node_of(k, f, number, perm[f->L->minor]);
     FAIL(ERR_SINGULAR, "stiffness not positive definite");
   }
 done:
@@ -177,8 +181,8 @@ static status locate(const stiffness *k, const long *number, body_factor *f) {
   for (long p = 0; p < f->n; ++p) {
     if (perm[p] < f->n - f->nc) continue;
     f->contact_at[q] = p;
-    f->contact_id[q++] = k->dim * k->contact[f->unknown[p] / k->dim] +
-                         (int)(f->unknown[p] % k->dim);
+    f->contact_id[q++] = contact_row(k, (int)(f->unknown[p] / k->dim),
+                                     (int)(f->unknown[p] % k->dim));
   }
   if (f->nc > 0) {
     const long first = f->contact_at[0];
@@ -204,7 +208,7 @@ status body_factor_build(const stiffness *k, int floating, const long *number,
   TRY(body_matrix(k, f, number, cm, &a));
   TRY(analyse(a, cm, f));
   timer_enter(STAGE_FACTOR);
-  st = factorise(k, a, cm, f);
+  st = factorise(k, number, a, cm, f);
   timer_leave(STAGE_FACTOR);
   TRY(st);
   TRY(locate(k, number, f));

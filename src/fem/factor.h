@@ -12,8 +12,10 @@
 #include "fem/stiffness.h"
 
 typedef struct body_factor {
-  int n_node;
-  int *node;     /* [n_node] in elimination order, contact nodes last       */
+  int n_node, n_inner, n_own;
+  int *node;     /* [n_node] in elimination order: n_inner of the interior,
+                    then those with condensed unknowns; a node with both
+                    stands in both places, the first n_own once             */
   int bad_node;  /* where the factor broke down, for the message            */
   long n, nc;    /* unknowns; contact ones among them                       */
   long *unknown; /* [n] dim*node + component of position p in the factor    */
@@ -28,7 +30,7 @@ typedef struct body_factor {
   cholmod_dense *work; /* [L->maxesize]                                     */
 } body_factor;
 
-/* Number the unknowns of f->node[n_node] (set by the caller): sets n, nc and
+/* Number the unknowns of f->node (set by the caller): sets n, nc and
  * number[dim*n_node], -1 where prescribed. */
 void body_factor_number(const stiffness *k, body_factor *f, long *number);
 /* Build the matrix and factor it; "floating" adds springs on the contact

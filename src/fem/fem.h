@@ -41,6 +41,8 @@ typedef struct domain {
   cluster_set *cluster; /* elements whose change of volume is averaged, as
                            strains and stresses here always are; NULL: none.
                            Its means are overwritten                         */
+  int rows; /* contact unknowns of a node that are condensed, the normal first:
+               1 (its tangents count in the interior) or dim; 0: dim         */
 } domain;
 
 /* B of one element, nothing averaged: e = B u_e, B[ns*(dim+1)*dim] column
@@ -78,7 +80,7 @@ status domain_free_motions(const domain *d, int *n, free_motion **list);
 /*
  * Order (contact unknowns last), factor K (+ springs on the contact diagonal,
  * taken off again, where contact alone holds a body), and form
- *   A = K_cc - K_ci inv(K_ii) K_ic   [m*m].
+ *   A = K_cc - K_ci inv(K_ii) K_ic   [m*m], m = rows * contact nodes.
  * Bodies are factored apart. K is borrowed until condensed_free.
  * ERR_SINGULAR: a body that neither supports nor contact hold (the record names
  * body and motion), or K not positive definite. ERR_MEMORY.

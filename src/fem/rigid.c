@@ -118,9 +118,9 @@ static void contact_motions(const stiffness *k, const domain *d,
   for (int t = 0; t < b->n_node; ++t) {
     const int q = k->contact[b->node[t]];
     double row[6];
-    for (int c = 0; q >= 0 && c < k->dim; ++c) {
+    for (int c = 0; q >= 0 && c < k->rows; ++c) {
       if (!unknown_row(k, d, b, b->node[t], c, row)) continue;
-      double *to = r->Q + m * (size_t)b->first + (size_t)(k->dim * q + c);
+      double *to = r->Q + m * (size_t)b->first + (size_t)(k->rows * q + c);
       for (int j = 0; j < b->k; ++j) {
         const double *y = b->Y + n * (size_t)j + b->column[t];
         double sum = 0;
@@ -163,7 +163,7 @@ static void gram_schmidt(const rigid_set *r, rigid_body *b) {
 status rigid_orthonormalise(const stiffness *k, const domain *d, rigid_set *r) {
   status st = OK;
   enum { PASSES = 3 };
-  r->m = d->surface != NULL ? k->dim * d->surface->n : 0;
+  r->m = d->surface != NULL ? k->rows * d->surface->n : 0;
   for (int t = 0; t < r->n_body; ++t) {
     r->body[t].first = r->k;
     r->k += r->body[t].k;

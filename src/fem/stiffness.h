@@ -9,6 +9,7 @@
 
 struct stiffness {
   int dim, n_node;
+  int rows;      /* condensed unknowns of a contact node: 1 or dim         */
   size_t *start; /* [n_node+1] first block of column j                     */
   int *row;      /* [start[n_node]] node i >= j; the diagonal comes first  */
   double *block; /* [dim*dim*start[n_node]] K_ij, column major, N/m        */
@@ -18,5 +19,8 @@ struct stiffness {
   int *coupling_column; /* [n_coupling] their columns                         */
   size_t n_coupling;
 };
+
+/* Row of the condensed matrix of component c of node i, -1: of the interior. */
+int contact_row(const stiffness *k, int i, int c);
 
 #endif

@@ -78,8 +78,8 @@ static status estimate_solver(run *r) {
   TRY(choose_inverse(r, &inverse));
   if (!r->limit_known) known_rate_forget(&r->rate);
   if (inverse.ctx != NULL)
-    TRY(solver_error_bound(&r->cp, &inverse, r->now.uc, r->now.rc, &r->rate,
-                           &found));
+    TRY(solver_error_bound(&r->cp, &inverse, run_rows(r, 0, r->now.uc),
+                           run_rows(r, 1, r->now.rc), &r->rate, &found));
   error_bound_set(&found, r->now.energy.strain, &r->error);
   r->error.cpu = r->bound_cpu += timer_cpu() - cpu;
 done:

@@ -122,8 +122,8 @@ static status note_misfit(run *r) {
   char text[400];
   size_t used = strlen(r->note);
   if (r->n == 0 || r->report.outcome > 0) goto done;
-  TRY(verdict_misfit(&r->cp, r->surface, r->now.uc, r->now.rc, text,
-                     sizeof text));
+  TRY(verdict_misfit(&r->cp, r->surface, run_rows(r, 0, r->now.uc),
+                     run_rows(r, 1, r->now.rc), text, sizeof text));
   if (text[0] != '\0')
     snprintf(r->note + used, sizeof r->note - used, "  %s\n", text);
 done:
@@ -173,8 +173,15 @@ status loop_no_equilibrium(run *r) {
   char why[1024] = "";
   const char *tried = contact_solver_log(r->solver);
   int bracket = tried[0] != '\0';
-  verdict_scene scene = {r->m,   r->msh,    r->step,   r->now.t, r->surface,
-                         &r->cp, r->now.uc, r->now.rc, r->c};
+  verdict_scene scene = {.m = r->m,
+                         .msh = r->msh,
+                         .step = r->step,
+                         .t = r->now.t,
+                         .surface = r->surface,
+                         .cp = &r->cp,
+                         .u = run_rows(r, 0, r->now.uc),
+                         .r = run_rows(r, 1, r->now.rc),
+                         .c = r->c};
   if (r->report.outcome == STOPPED_UNFIT)
     FAIL(ERR_SINGULAR,
          "step %d, time %g: the method cannot treat this problem: %s; use "

@@ -771,6 +771,7 @@ status model_check(model *m, const mesh *msh) {
   check_steps(m, msh);
   TRY(check_fields(m, msh));
   check_reference(m);
+  TRY(model_find_corner(m, msh));
   model_find_effects(m);
   check_moduli(m);
   TRY(message_status(m->log, ERR_DECK));

@@ -2,6 +2,7 @@
  * Which effects a deck calls for. What is off is neither allocated nor
  * computed; the listing says for each effect why it is on or off.
  */
+#include "base/memory.h"
 #include "model/keyword.h"
 
 #include <stdio.h>
@@ -387,15 +388,71 @@ static void reason_reaction(const model *m, char *text, size_t size) {
     reason_output(m, PRINT_REACTIONS, text, size);
 }
 
-static int has_tangents(const model *m) { return m->n_contact > 0; }
+status model_find_corner(model *m, const mesh *msh) {
+  status st = OK;
+  int *of = NULL;
+  m->corner_id = -1;
+  NEW(of, msh->n_node);
+  for (int i = 0; i < m->n_contact; ++i) {
+    if (m->contacts[i].group_id < 0) continue;
+    const mesh_group *g = &msh->group[m->contacts[i].group_id];
+    for (int k = 0; k < g->n_node; ++k) {
+      int *owner = &of[g->node_id[k]];
+      if (*owner > 0 && *owner != i + 1) m->corner_id = i;
+      *owner = i + 1;
+    }
+  }
+done:
+  memory_free(of);
+  return st;
+}
+
+/* The first step that shows, tries or judges the whole condensed problem. */
+static const step *first_whole(const model *m) {
+  for (int i = 0; i < m->n_step; ++i) {
+    const step *s = &m->steps[i];
+    if (s->condensed_frequency >= 0 || s->check != CHECK_NONE || s->theory)
+      return s;
+  }
+  return NULL;
+}
+
+/* 1: *EFFECTS leaves friction out and asks what it would have changed. */
+static int neglects_friction(const model *m) {
+  int any = 0;
+  for (int i = 0; i < m->n_neglected; ++i)
+    any |= m->neglected[i].bit == EFFECT_BIT_FRICTION && !m->neglected[i].back;
+  return any;
+}
+
+/* The normals of a second obstacle are tangents of the first. */
+static int has_tangents(const model *m) {
+  return m->n_contact > 0 && (has_friction(m) || m->corner_id >= 0 ||
+                              first_whole(m) != NULL || neglects_friction(m));
+}
 
 static void reason_tangents(const model *m, char *text, size_t size) {
+  const step *s = first_whole(m);
   if (m->n_contact == 0)
     snprintf(text, size, "no *CONTACT card");
   else if (m->effects & EFFECT_FRICTION)
     reason_friction(m, text, size);
+  else if (m->corner_id >= 0)
+    snprintf(text, size, "contact %s meets another, %s:%d",
+             m->contacts[m->corner_id].name,
+             PLACE(m->contacts[m->corner_id].at));
+  else if (s != NULL && s->condensed_frequency >= 0)
+    snprintf(text, size, "*OUTPUT, CONDENSED=FCLIB, %s:%d",
+             PLACE(s->output_at));
+  else if (s != NULL && s->check != CHECK_NONE)
+    snprintf(text, size, "*SOLVER, CHECK=, %s:%d", PLACE(s->solver_at));
+  else if (s == NULL && neglects_friction(m))
+    snprintf(text, size, "friction left out is judged, %s:%d",
+             PLACE(m->effects_at));
+  else if (s != NULL)
+    snprintf(text, size, "*ACCURACY, THEORY=YES, %s:%d", PLACE(s->accuracy_at));
   else
-    snprintf(text, size, "*CONTACT");
+    snprintf(text, size, "mu = 0: only normals are condensed");
 }
 
 static int has_mesh(const model *m) { return !m->has_problem; }

@@ -325,8 +325,9 @@ typedef struct model {
   int n_neglected;
   neglected neglected[NEGLECT_MAX]; /* [n_neglected]                          */
   closed_form ref;
-  unsigned effects;  /* bits EFFECT_*, set by model_check                    */
-  int dim, ns;       /* from the mesh                                        */
+  unsigned effects; /* bits EFFECT_*, set by model_check                    */
+  int corner_id; /* a contact with nodes of another one before it, or -1      */
+  int dim, ns;   /* from the mesh                                        */
   int *elem_section; /* [n_elem] section of each element                     */
 } model;
 
@@ -411,6 +412,8 @@ status model_check(model *m, const mesh *msh);
 double model_locking_error(double nu, int n);
 /* Which effects the deck calls for, into m->effects. */
 void model_find_effects(model *m);
+/* m->corner_id. ERR_MEMORY. */
+status model_find_corner(model *m, const mesh *msh);
 /* In the place of model_check for a deck with *CONDENSED PROBLEM, once it is
  * read: dimension (1: LCP), 1 if it has friction. */
 void model_fit_problem(model *m, int dim, int friction);

@@ -37,7 +37,7 @@ static void list_own(run *b, own_array list[OWN]) {
                               {&e->thermal, strains},
                               {&e->e0, strains},
                               {&e->sigma, strains},
-                              {&b->f, n_c},
+                              {&b->f, (size_t)b->n_row},
                               {&b->gap, n},
                               {&b->side_gap, sides},
                               {&b->ut0, sides},

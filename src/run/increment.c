@@ -76,6 +76,39 @@ done:
   return st;
 }
 
+double *run_rows(const run *r, int k, double *v) {
+  if (r->n_row == r->n_c) return v;
+  for (int i = 0; i < r->n; ++i) r->row[k][i] = v[r->msh->dim * i];
+  return r->row[k];
+}
+
+/* The answer u, r of r->cp: friction and what follows the interior are zero as
+ * yet where only normals are unknowns. */
+static void put_rows(const run *r, const double *u, const double *force) {
+  int dim = r->msh->dim;
+  if (r->n_row == r->n_c) return;
+  memset(r->now.rc, 0, (size_t)r->n_c * sizeof *r->now.rc);
+  for (int i = 0; i < r->n; ++i) {
+    r->now.uc[dim * i] = u[i];
+    r->now.rc[dim * i] = force[i];
+  }
+}
+
+/* Tangential displacements of the contact nodes, with those of the interior. */
+static void take_tangents(const run *r) {
+  const contact_surface *s = r->surface;
+  int dim = r->msh->dim;
+  if (r->n_row == r->n_c) return;
+  for (int i = 0; i < r->n; ++i)
+    for (int a = 1; a < dim; ++a) {
+      double sum = 0.0;
+      for (int c = 0; c < dim; ++c)
+        sum += s->frame[dim * (dim * i + a) + c] *
+               r->now.u[dim * s->node_id[i] + c];
+      r->now.uc[dim * i + a] = sum;
+    }
+}
+
 /* The given pressures at time t times the areas of the nodes. */
 static status set_forces(run *r, double t) {
   status st = OK;
@@ -111,33 +144,36 @@ done:
 }
 
 /* *cp with the given normal forces in the place of the unilateral condition;
- * r->now holds the start values. */
-static status take_given(run *r, contact_problem *cp) {
+ * u, rc hold the start values. */
+static status take_given(run *r, double *u, double *rc, contact_problem *cp) {
   status st = OK;
   forms *f = r->forms;
   contact_problem own = *cp;
   timer_enter(STAGE_GIVEN);
   TRY(set_forces(r, r->now.t));
   if (f->given == NULL) TRY(given_form_new(cp, f->n, f->node, &f->given));
-  TRY(given_form_set(f->given, &own, f->force, r->msh->size, r->now.uc,
-                     r->now.rc, cp));
+  TRY(given_form_set(f->given, &own, f->force, r->msh->size, u, rc, cp));
 done:
   timer_leave(STAGE_GIVEN);
   return st;
 }
 
-/* *cp in the displacement *u of the increment. */
+/* *cp in the displacement of the increment; *u: the last one in, that out. */
 static status take_velocity(run *r, contact_problem *cp, double **u) {
   status st = OK;
   contact_problem own = *cp;
   timer_enter(STAGE_VELOCITY);
   if (r->forms->velocity == NULL)
     TRY(velocity_form_new(cp, &r->forms->velocity));
-  velocity_form_set(r->forms->velocity, &own, r->now.uc, r->old.motion,
-                    r->now.motion, cp, u);
+  velocity_form_set(r->forms->velocity, &own, *u, r->old.motion, r->now.motion,
+                    cp, u);
 done:
   timer_leave(STAGE_VELOCITY);
   return st;
+}
+
+static double residual_of(run *r, double *u, double *rc) {
+  return contact_residual(&r->cp, run_rows(r, 0, u), run_rows(r, 1, rc));
 }
 
 /* Start values: the last equilibrium, or the guess if it is nearer. */
@@ -145,8 +181,8 @@ static void take_start(run *r) {
   size_t bytes = (size_t)r->n_c * sizeof *r->now.uc;
   const double *u = r->old.uc, *rc = r->old.rc;
   if (r->guess_u != NULL && !r->beside &&
-      contact_residual(&r->cp, r->guess_u, r->guess_r) <
-          contact_residual(&r->cp, u, rc)) {
+      residual_of(r, r->guess_u, r->guess_r) <
+          residual_of(r, r->old.uc, r->old.rc)) {
     u = r->guess_u;
     rc = r->guess_r;
   }
@@ -161,18 +197,20 @@ status forms_solve(run *r) {
       listener.step == NULL || r->beside ? NULL : &listener;
   int given = r->forms->n > 0, in_du = r->step->form == FORM_VELOCITY;
   contact_problem whole = r->cp, cp;
-  double *u = r->now.uc;
   take_start(r);
-  if (given) TRY(take_given(r, &whole));
+  double *own_u = run_rows(r, 0, r->now.uc), *u = own_u;
+  double *rc = run_rows(r, 1, r->now.rc);
+  if (given) TRY(take_given(r, u, rc, &whole));
   cp = whole;
   if (in_du) TRY(take_velocity(r, &cp, &u));
   timer_enter(STAGE_CONTACT);
   contact_solver_tolerance(r->solver, r->tol);
-  st = contact_solve(r->solver, &cp, told, u, r->now.rc, &r->report);
+  st = contact_solve(r->solver, &cp, told, u, rc, &r->report);
   timer_leave(STAGE_CONTACT);
   TRY(st);
-  if (in_du) velocity_form_apply(r->forms->velocity, &whole, r->now.uc);
-  if (given) given_form_apply(r->forms->given, &r->cp, r->now.uc, r->now.rc);
+  if (in_du) velocity_form_apply(r->forms->velocity, &whole, own_u);
+  if (given) given_form_apply(r->forms->given, &r->cp, own_u, rc);
+  put_rows(r, own_u, rc);
 done:
   return st;
 }
@@ -284,19 +322,19 @@ static int has_side_gap(const contact_surface *s) {
 }
 
 static void set_problem(run *r) {
-  int friction = (r->m->effects & EFFECT_FRICTION) != 0;
+  int friction = (r->m->effects & EFFECT_FRICTION) != 0, all = r->rows > 1;
   r->cp = (contact_problem){
-      .dim = r->msh->dim,
+      .dim = r->rows,
       .n = r->n,
-      .m = r->n_c,
+      .m = r->n_row,
       .A = condensed_matrix(r->c),
       .f = r->f,
       .gap = r->gap,
       .ut0 = r->ut0,
       .g0 = friction ? r->limit.g0 : NULL,
       .B = friction ? limit_matrix(r) : NULL,
-      .side_gap = has_side_gap(r->surface) ? r->side_gap : NULL,
-      .held = has_held(r->surface) ? r->surface->held : NULL,
+      .side_gap = all && has_side_gap(r->surface) ? r->side_gap : NULL,
+      .held = all && has_held(r->surface) ? r->surface->held : NULL,
       .floating = condensed_floating(r->c)};
 }
 
@@ -362,7 +400,8 @@ status increment_equilibrium(run *r, const double *F) {
     r->report.iterations = iterations;
     if (!limit_follow_zone(r)) break;
   }
-  TRY(condense_recover(r->c, r->now.uc, r->now.u));
+  TRY(condense_recover(r->c, run_rows(r, 0, r->now.uc), r->now.u));
+  take_tangents(r);
 done:
   return st;
 }

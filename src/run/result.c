@@ -59,7 +59,8 @@ static void find_contact(run *r) {
       r->slip[(dim - 1) * i + a - 1] = slip_of(r, dim * i + a);
   }
   if (r->g != NULL) contact_limit(&r->cp, r->now.rc, r->g);
-  contact_classify(&r->cp, r->now.uc, r->now.rc, r->contact);
+  contact_classify(&r->cp, run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc),
+                   r->contact);
 }
 
 /* Slip adds up while a node is closed. */
@@ -238,7 +239,7 @@ void result_start(const run *r, equilibrium *e) {
 }
 
 status result_accept(run *r) {
-  if (r->n > 0) memcpy(r->f_before, r->f, (size_t)r->n_c * sizeof *r->f);
+  if (r->n > 0) memcpy(r->f_before, r->f, (size_t)r->n_row * sizeof *r->f);
   equilibrium e = r->old;
   r->old = r->now;
   r->now = e;

@@ -18,8 +18,8 @@ typedef struct equilibrium {
   double *u;        /* [dim*n_node] m                                         */
   double *F;        /* [dim*n_node] loads, N                                  */
   double *reaction; /* [dim*n_node] forces of the supports, N                 */
-  double *uc, *rc;  /* [m] contact frame, m, N                                */
-  double *motion;   /* [m] way of the obstacles past the nodes since time 0,
+  double *uc, *rc;  /* [dim*n] contact frame, m, N                            */
+  double *motion;   /* [dim*n] way of the obstacles past the nodes since 0 s,
                        added up over the increments, contact frame, m         */
   double *temperature; /* [n_elem] or NULL: no thermal strain                 */
   double *thermal;     /* [ns*n] thermal strains of the elements of r->eigen  */
@@ -78,7 +78,8 @@ typedef struct run {
   const history_sink *sink;
   const step *step;
   size_t n_dof; /* dim*n_node                                                 */
-  int n, n_c;   /* contact nodes; contact unknowns dim*n                      */
+  int n, n_c;   /* contact nodes; dim*n                                       */
+  int rows, n_row; /* unknowns of a node in r->cp: 1 or dim; rows*n           */
 
   /* What the elements are made of. */
   domain d;
@@ -109,7 +110,8 @@ typedef struct run {
   char note[512]; /* what changed abruptly in the increment, "" or lines    */
 
   /* Contact problem of the increment. */
-  double *f, *gap, *side_gap, *ut0; /* [m], [n], [n*(dim-1)] twice            */
+  double *f, *gap, *side_gap, *ut0; /* [n_row], [n], [n*(dim-1)] twice        */
+  double *row[2]; /* [n_row] room of run_rows; NULL where rows is dim         */
   contact_problem cp;
   forms *forms; /* what rewrites it                                           */
 
@@ -145,7 +147,7 @@ typedef struct run {
   dense_inverse *dense; /* of A where contact alone holds a body       */
   int dense_known;      /* 1: made, or A has none                      */
   known_rate rate;
-  double *f_before; /* [m] condensed load of r->old, N                        */
+  double *f_before; /* [n_row] condensed load of r->old, N                    */
   int jumps;      /* 1: the equilibrium jumps in the increment               */
   double jump_t;  /* s, there                                               */
   theory *theory; /* NULL until asked for                                    */
@@ -230,6 +232,9 @@ status visco_keep(run *r, archive *a);
 
 /* increment.c: the equilibrium at time t into r->now; read r->report. */
 status increment_solve(run *r, double t);
+/* v[dim*n] of the contact frames as a vector of r->cp: v itself, or in
+ * r->row[k], k = 0 or 1, where only normals are unknowns. */
+double *run_rows(const run *r, int k, double *v);
 /* Loads and contact problem of time t without solving. */
 status increment_pose(run *r, double t);
 /* Its parts: loads and strains at t; then the equilibrium with the matrix in

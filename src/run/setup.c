@@ -202,10 +202,11 @@ static void free_surface(run *r) {
   r->solver = NULL;
   r->c = NULL;
   r->surface = NULL;
-  double **owned[] = {&r->f,          &r->f_before,   &r->gap,     &r->side_gap,
-                      &r->ut0,        &r->open_gap,   &r->slip,    &r->g,
-                      &r->old.uc,     &r->old.rc,     &r->now.uc,  &r->now.rc,
-                      &r->old.motion, &r->now.motion, &r->distance};
+  double **owned[] = {
+      &r->f,        &r->f_before, &r->gap,        &r->side_gap,   &r->ut0,
+      &r->open_gap, &r->slip,     &r->g,          &r->old.uc,     &r->old.rc,
+      &r->now.uc,   &r->now.rc,   &r->old.motion, &r->now.motion, &r->distance,
+      &r->row[0],   &r->row[1]};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) {
     memory_free(*owned[i]);
     *owned[i] = NULL;
@@ -256,8 +257,9 @@ static void node_bits(run *r) {
 static status new_contact_arrays(run *r) {
   status st = OK;
   int tangents = r->n * (r->msh->dim - 1);
-  NEW(r->f, r->n_c);
-  NEW(r->f_before, r->n_c);
+  NEW(r->f, r->n_row);
+  NEW(r->f_before, r->n_row);
+  for (int k = 0; k < 2 && r->n_row < r->n_c; ++k) NEW(r->row[k], r->n_row);
   NEW(r->gap, r->n);
   NEW(r->old.uc, r->n_c);
   NEW(r->now.uc, r->n_c);
@@ -267,7 +269,7 @@ static status new_contact_arrays(run *r) {
   NEW(r->now.motion, r->n_c);
   NEW(r->open_gap, r->n);
   NEW(r->contact, r->n);
-  NEW(r->side_gap, tangents);
+  if (r->rows > 1) NEW(r->side_gap, tangents);
   NEW(r->slip, tangents);
   if (r->m->effects & EFFECT_FRICTION) {
     NEW(r->ut0, tangents);
@@ -343,6 +345,8 @@ static status build_surface(run *r) {
   TRY(st);
   r->n = r->surface->n;
   r->n_c = r->msh->dim * r->n;
+  r->d.rows = r->rows = r->m->effects & EFFECT_TANGENTS ? r->msh->dim : 1;
+  r->n_row = r->rows * r->n;
   TRY(new_contact_arrays(r));
   TRY(forms_new(r));
   old_state_to_frames(r, force);
@@ -540,7 +544,7 @@ done:
 static status keep_contact(run *r, archive *a) {
   status st = OK;
   size_t contacts = r->loops == NULL ? 0 : (size_t)r->m->n_contact;
-  TRY(archive_reals(a, "f_before", r->f_before, (size_t)r->n_c));
+  TRY(archive_reals(a, "f_before", r->f_before, (size_t)r->n_row));
   TRY(archive_reals(a, "distance", r->distance,
                     r->distance == NULL ? 0 : (size_t)r->n));
   TRY(archive_bytes(a, "loops", r->loops, contacts * sizeof *r->loops));

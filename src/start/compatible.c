@@ -84,8 +84,8 @@ static void test_balance(const start_input *in, const double *rc,
 /* max(r_n, c (u_n - gap)), or the distance to the given force. */
 static double normal_defect(const start_input *in, const double *rc, int i) {
   const contact_problem *cp = in->cp;
-  size_t k = (size_t)cp->dim * (size_t)i;
-  double c = cp->A[k * ((size_t)cp->m + 1)];
+  size_t k = (size_t)in->surface->dim * (size_t)i;
+  double c = cp->A[(size_t)cp->dim * (size_t)i * ((size_t)cp->m + 1)];
   if (in->given != NULL && in->given[i] >= 0.0)
     return fabs(rc[k] + in->given[i]);
   return fabs(fmax(rc[k], c * (in->uc[k] - cp->gap[i])));
@@ -106,11 +106,11 @@ static double side_defect(const contact_problem *cp, const double *uc,
 }
 
 /* |r_t| - g where it is positive. */
-static double sliding_defect(const contact_problem *cp, const double *rc,
-                             int i) {
+static double sliding_defect(const start_input *in, const double *rc, int i) {
+  int dim = in->surface->dim;
   double size = 0.0;
-  for (int a = 1; a < cp->dim; ++a) size = hypot(size, rc[cp->dim * i + a]);
-  return fmax(0.0, size - contact_node_limit(cp, rc, i));
+  for (int a = 1; a < dim; ++a) size = hypot(size, rc[dim * i + a]);
+  return fmax(0.0, size - contact_node_limit(in->cp, rc, i));
 }
 
 static void test_contact(const start_input *in, const double *rc,
@@ -124,7 +124,7 @@ static void test_contact(const start_input *in, const double *rc,
       add_defect(report, node_id, side_defect(cp, in->uc, rc, i),
                  DEFECT_NORMAL);
     else
-      add_defect(report, node_id, sliding_defect(cp, rc, i), DEFECT_SLIDING);
+      add_defect(report, node_id, sliding_defect(in, rc, i), DEFECT_SLIDING);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -145,6 +146,46 @@ START_TEST(effects_are_paid_for_when_called) {
 }
 END_TEST
 
+/* Largest difference of a column of the tables CONTACT of two runs over the
+ * largest entry of its kind (one kind: lengths, forces, pressures). */
+static double apart(const job *a, const job *b, const char *const *names) {
+  double most = 0.0, size = 0.0;
+  dat x = job_table(a, "CONTACT", -1), y = job_table(b, "CONTACT", -1);
+  ck_assert_int_eq(x.n_row, y.n_row);
+  for (; *names != NULL; ++names)
+    for (int k = 0; k < x.n_row; ++k) {
+      most = fmax(most, fabs(dat_at(&x, k, *names) - dat_at(&y, k, *names)));
+      size = fmax(size, fabs(dat_at(&x, k, *names)));
+    }
+  dat_free(&x);
+  dat_free(&y);
+  return most / size;
+}
+
+/* Without friction only normals are condensed; the same deck with its condensed
+ * problems written has all unknowns, and the same answer. */
+START_TEST(no_friction_no_tangential_unknown) {
+  static const char *const lengths[] = {"u_n", "u_t", "gap", NULL};
+  static const char *const forces[] = {"f_n", "f_t", NULL};
+  static const char *const steps[] = {"*PRINT, CONTACT\n",
+                                      "*PRINT, CONTACT\n"
+                                      "*OUTPUT, CONDENSED=FCLIB\n"};
+  job j[2];
+  for (int k = 0; k < 2; ++k) j[k] = block("", steps[k], "-D MU=0");
+  long calls, bytes;
+  char *line = cost_of(&j[0], "tangential unknowns", &calls, &bytes);
+  ck_assert_msg(!is_on(&j[0], "tangential unknowns"), "%s", line);
+  ck_assert_msg(calls == 0 && bytes == 0, "%s", line);
+  free(line);
+  ck_assert(is_on(&j[1], "tangential unknowns"));
+  ck_assert_double_eq(job_told(&j[0], "contact_unknowns"), 9.0);
+  ck_assert_double_eq(job_told(&j[1], "contact_unknowns"), 18.0);
+  ck_assert_double_le(apart(&j[0], &j[1], lengths), 1e-12);
+  ck_assert_double_le(apart(&j[0], &j[1], forces), 1e-12);
+  for (int k = 0; k < 2; ++k) job_end(&j[k]);
+}
+END_TEST
+
 /* JSON: calls foreseen and counted of the effects that tell both. */
 START_TEST(calls_are_as_foreseen) {
   static const char *const files[] = {"", "*PRINT, CONTACT, TOTALS\n"};
@@ -195,4 +236,5 @@ END_TEST
 
 UNIT_MAIN("effects", check_prints_the_plan_of_the_listing,
           plan_names_file_and_line, effects_are_paid_for_when_called,
-          calls_are_as_foreseen, no_timing_leaves_calls_alone)
+          no_friction_no_tangential_unknown, calls_are_as_foreseen,
+          no_timing_leaves_calls_alone)

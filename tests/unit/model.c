@@ -190,8 +190,7 @@ START_TEST(effects_are_what_the_deck_calls_for) {
                   "*ACCURACY, SOLVER=NO\n*END STEP\n",
                   square());
   ck_assert_int_eq(s.st, OK);
-  ck_assert_uint_eq(s.m->effects,
-                    EFFECT_CONTACT | EFFECT_TANGENTS | EFFECT_MESH);
+  ck_assert_uint_eq(s.m->effects, EFFECT_CONTACT | EFFECT_MESH);
   text_model_close(&s);
 }
 END_TEST
