@@ -159,6 +159,19 @@ static double fastest_rate(const law_point *p) {
   return high;
 }
 
+static double relaxed(const law_point *p, double *R) {
+  const chain c = chain_of(p);
+  double sum = 0, slowest = 0;
+  if (c.fluidity > 0) return -1;
+  for (int k = 0; k < c.n; ++k) {
+    if (!(c.k[k].modulus > 0)) return -1;
+    sum += 1 / c.k[k].modulus;
+    slowest = fmax(slowest, c.k[k].viscosity / c.k[k].modulus);
+  }
+  for (int i = 0; i < c.ns * c.ns; ++i) R[i] = sum * c.Q[i];
+  return slowest;
+}
+
 /* x . unit stiffness . y, J/m3 over Pa: isotropic, or the whole of it. */
 static double unit_energy(const law_point *p, const double *x,
                           const double *y) {
@@ -199,11 +212,11 @@ static const char *check(const law_card *law, elastic_type type,
   return text;
 }
 
-#define CHAIN_COMMON                                                          \
-  .param_size = sizeof(chain_param), .options = options, .linear = 1,         \
-  .n_alpha = n_alpha, .rate = rate, .jacobian = jacobian,                     \
-  .fastest_rate = fastest_rate, .dissipation = dissipation, .stored = stored, \
-  .check = check
+#define CHAIN_COMMON                                                  \
+  .param_size = sizeof(chain_param), .options = options, .linear = 1, \
+  .n_alpha = n_alpha, .rate = rate, .jacobian = jacobian,             \
+  .fastest_rate = fastest_rate, .relaxed = relaxed,                   \
+  .dissipation = dissipation, .stored = stored, .check = check
 
 const law_ops zener_law = {
     .name = "ZENER",

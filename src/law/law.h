@@ -119,6 +119,10 @@ typedef struct law_ops {
    * e^i = w + sum_k W_k v_k, d(v_k)/dt = rate_k (e - w - v_k); rate of term k,
    * 1/s, and its W[ns*ns]. NULL: other laws. */
   double (*relaxing)(const law_point *p, int k, double *W);
+  /* R[ns*ns] of the strain e^i = R sigma that it ends with under a held stress,
+   * 1/Pa; the longest time it may take as exp(-t/time), s, < 0: it never ends
+   * (R is not set). NULL: other laws. */
+  double (*relaxed)(const law_point *p, double *R);
   /* 0 if every rate is exactly zero at the point; NULL: the law always flows */
   int (*flows)(const law_point *p);
   /* Power lost, >= 0, W/m3; energy kept by alpha and e^i, J/m3 (NULL: none):

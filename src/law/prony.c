@@ -121,6 +121,29 @@ static double relaxing(const law_point *p, int k, double *W) {
   return 1 / terms_of(p)[k].tau;
 }
 
+/* All terms at the end: e = S sigma + (sum g dev + sum k vol) e. Under a held
+ * stress the rates are diag(1/tau) (1 - g'), whose least eigenvalue is at least
+ * (1 - sum g)/tau of the longest. */
+static double relaxed(const law_point *p, double *R) {
+  const int ns = p->elastic->ns;
+  const prony_term *term = terms_of(p);
+  prony_term all = {0};
+  double longest = 0;
+  for (int k = 0; k < p->law->n_term; ++k) {
+    all.g += term[k].g;
+    all.k += term[k].k;
+    longest = fmax(longest, term[k].tau);
+  }
+  const double left = 1 - fmax(all.g, all.k);
+  if (!(left > p->law->n_term * DBL_EPSILON)) return -1;
+  all.g /= 1 - all.g;
+  all.k /= 1 - all.k;
+  for (int i = 0; i < ns * ns; ++i) R[i] = 0;
+  for (int j = 0; j < ns; ++j)
+    add_share(ns, &all, p->elastic->S + ns * j, R + ns * j);
+  return longest / left;
+}
+
 /* x . C (g dev + k vol) x */
 static double share_energy(const law_point *p, int k, const double *x) {
   const int ns = p->elastic->ns;
@@ -184,6 +207,7 @@ const law_ops prony_law = {
     .jacobian = jacobian,
     .fastest_rate = fastest_rate,
     .relaxing = relaxing,
+    .relaxed = relaxed,
     .dissipation = dissipation,
     .stored = stored,
     .check = check};

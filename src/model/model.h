@@ -38,6 +38,10 @@ typedef struct material {
   law_shift clock; /* *TRS; kind SHIFT_NONE: not given                        */
   place clock_at;
   const law_ops *law_aside; /* ops of the law while it is left out, or NULL   */
+  elastic_constants elastic_aside; /* of *ELASTIC while others stand for what
+                                      the law ends with                       */
+  double relaxed[36]; /* [ns*ns] e^i over the stress then, 1/Pa               */
+  int is_relaxed;     /* 1: they do                                           */
   int is_abaqus_prony; /* *VISCOELASTIC: long-term moduli if it is not said   */
 } material;
 enum { MODULI_LONG_TERM, MODULI_INSTANTANEOUS };
@@ -280,6 +284,8 @@ typedef struct neglected {
                     increment was solved again with it, over their largest    */
   long checked;  /* increments                                               */
   long again;    /* of them solved again                                     */
+  double time;   /* s, > 0: the law is at its end, which it nears by
+                    exp(-t/time)                                              */
   int back;      /* 1: it matters, the run was made again with it            */
 } neglected;
 enum { NEGLECT_MAX = 16 };

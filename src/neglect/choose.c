@@ -10,7 +10,7 @@
  * threshold of the law friction           mu below TOL^2, or no lateral
  * expansion (nu = 0), where no motion of a body is held by friction
  */
-#include "neglect/neglect.h"
+#include "neglect/parts.h"
 
 #include "base/memory.h"
 #include "fem/fem.h"
@@ -27,7 +27,7 @@ const char *neglect_name(const neglected *row) { return effect_name(row->bit); }
 
 /* Largest stress that pressures and prescribed displacements speak of, Pa; 0:
  * not known (expressions, forces). */
-static double load_stress(const model *m, const mesh *msh, double young) {
+double neglect_load_stress(const model *m, const mesh *msh, double young) {
   double most = 0.0;
   for (int i = 0; i < m->n_step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k) {
@@ -43,32 +43,19 @@ static double load_stress(const model *m, const mesh *msh, double young) {
   return most;
 }
 
-static double young_of(const material *mat) {
+double neglect_young(const material *mat) {
   double C = 0.0;
   for (int i = 0; i < 3; ++i) C = fmax(C, mat->C[7 * i]);
   return C;
 }
 
-static double visco_time(const model *m) {
-  double t = 0.0;
-  for (int i = 0; i < m->n_step; ++i)
-    if (m->steps[i].kind == STEP_VISCO) t += m->steps[i].total;
-  return t;
-}
-
-static int has_tolerance(const model *m) {
-  for (int i = 0; i < m->n_step; ++i)
-    if (m->steps[i].tolerance > 0.0) return 1;
-  return 0;
-}
-
-static int has_initial(const model *m) {
+int neglect_has_initial(const model *m) {
   for (int i = 0; i < m->n_initial; ++i)
     if (m->initials[i].type != INITIAL_TEMPERATURE) return 1;
   return m->start.given;
 }
 
-static neglected *add_row(model *m, int bit, int id) {
+neglected *neglect_row(model *m, int bit, int id) {
   if (m->n_neglected == NEGLECT_MAX) return NULL;
   neglected *row = &m->neglected[m->n_neglected++];
   *row = (neglected){.bit = bit, .id = id};
@@ -103,91 +90,17 @@ static void try_thermal(model *m, const mesh *msh) {
         (mat->law.ops != NULL &&
          (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE)))
       return;
-    double strain = load_stress(m, msh, young_of(mat)) / young_of(mat);
+    double strain =
+        neglect_load_stress(m, msh, neglect_young(mat)) / neglect_young(mat);
     if (!mat->expand.given) continue;
     expansion_strain(&mat->expand, T, 0.0, e);
     for (int k = 0; k < 3; ++k) worst = fmax(worst, fabs(e[k]) / strain);
   }
   if (!(worst <= neglect_share * m->effects_tol)) return;
-  neglected *row = add_row(m, EFFECT_BIT_THERMAL, -1);
+  neglected *row = neglect_row(m, EFFECT_BIT_THERMAL, -1);
   if (row == NULL) return;
   snprintf(row->why, sizeof row->why,
            "at most %.1e of the strain the loads make", worst);
-}
-
-/* ---- inelastic strain --------------------------------------------------- */
-
-/* 1: the rate at the start tells nothing of later ones. */
-static int hardens(const law_point *p) {
-  enum { NORTON_M = 2 };
-  if (p->law->ops == &user_law) return 1;
-  return p->law->ops == &norton_law && p->value[NORTON_M] != 0.0;
-}
-
-/* Largest rate of the law under a uniaxial stress, 1/s. */
-static status uniaxial_rate(const material *mat, kinematics kin, double stress,
-                            double *rate) {
-  status st = OK;
-  flow_kind kind = {0};
-  law_elastic elastic;
-  law_point p;
-  double value[FLOW_VALUE_MAX], sigma[6] = {0.0, stress}, ei_rate[6] = {0.0};
-  static const double zero[FLOW_VALUE_MAX];
-  double alpha_rate[FLOW_VALUE_MAX];
-  *rate = 0.0;
-  TRY(law_elastic_read(&mat->elastic, 0.0, kin, &elastic));
-  TRY(flow_new_kind(&kind, &mat->law, &elastic));
-  TRY(flow_coefficients(&kind, 0.0, 0.0, value, &p));
-  p.sigma = sigma;
-  p.ei = p.alpha = zero;
-  law_rate(&p, ei_rate, alpha_rate);
-  for (int i = 0; i < elastic.ns; ++i) *rate = fmax(*rate, fabs(ei_rate[i]));
-  if (isnan(ei_rate[0] + ei_rate[1]) || hardens(&p)) *rate = HUGE_VAL;
-done:
-  flow_kind_free(&kind);
-  return st;
-}
-
-/* Kinematics of the first section of a material, or -1. */
-static int kinematics_of(const model *m, int material_id) {
-  for (int i = 0; i < m->n_section; ++i)
-    if (m->sections[i].material_id == material_id) return m->sections[i].kin;
-  return -1;
-}
-
-static status try_law(model *m, const mesh *msh, int id) {
-  status st = OK;
-  material *mat = &m->materials[id];
-  int kin = kinematics_of(m, id);
-  double rate, young = young_of(mat);
-  if (mat->law.ops == NULL || kin < 0 || mat->elastic.n > 1) goto done;
-  if (law_varies(&mat->law) != 0) goto done;
-  double stress = load_stress(m, msh, young);
-  if (!(stress > 0.0)) goto done;
-  TRY(uniaxial_rate(mat, (kinematics)kin, stress, &rate));
-  double share = rate * visco_time(m) * young / stress;
-  if (!(share <= neglect_share * m->effects_tol)) goto done;
-  neglected *row = add_row(m, EFFECT_BIT_INELASTIC, id);
-  if (row == NULL) goto done;
-  if (rate > 0.0)
-    snprintf(row->why, sizeof row->why,
-             "material %s: %.1e of the strain of the loads in all *VISCO steps",
-             mat->name, share);
-  else
-    snprintf(row->why, sizeof row->why,
-             "material %s: the loads are below the threshold of %s", mat->name,
-             mat->law.ops->name);
-done:
-  return st;
-}
-
-static status try_inelastic(model *m, const mesh *msh) {
-  status st = OK;
-  if (!(m->effects & EFFECT_INELASTIC) || has_tolerance(m) || has_initial(m))
-    goto done;
-  for (int i = 0; i < m->n_material; ++i) TRY(try_law(m, msh, i));
-done:
-  return st;
 }
 
 /* ---- nonlocal average --------------------------------------------------- */
@@ -247,7 +160,7 @@ static void try_average(model *m, const mesh *msh) {
       any = 1;
     }
   }
-  neglected *row = any ? add_row(m, EFFECT_BIT_NONLOCAL, -1) : NULL;
+  neglected *row = any ? neglect_row(m, EFFECT_BIT_NONLOCAL, -1) : NULL;
   if (row != NULL)
     snprintf(row->why, sizeof row->why,
              "RADIUS is below %.3g, the least distance of contact nodes: the "
@@ -275,7 +188,7 @@ static double largest_mu(const model *m) {
 static int has_no_coupling(const model *m) {
   for (int i = 0; i < m->n_material; ++i) {
     const material *mat = &m->materials[i];
-    double most = young_of(mat);
+    double most = neglect_young(mat);
     for (int k = 0; k < 9 && mat->used; ++k)
       if (k % 4 != 0 && fabs(mat->C[6 * (k / 3) + k % 3]) > 1e-12 * most)
         return 0;
@@ -305,12 +218,12 @@ static status try_friction(model *m, const mesh *msh) {
   double mu = largest_mu(m), tol = m->effects_tol;
   int holds = 0, small = mu <= tol * tol;
   if (!(m->effects & EFFECT_FRICTION) || (m->effects & EFFECT_GIVEN) ||
-      !(mu < HUGE_VAL) || has_initial(m))
+      !(mu < HUGE_VAL) || neglect_has_initial(m))
     goto done;
   if (!small && !has_no_coupling(m)) goto done;
   TRY(friction_holds(m, msh, &holds));
   if (holds) goto done;
-  neglected *row = add_row(m, EFFECT_BIT_FRICTION, -1);
+  neglected *row = neglect_row(m, EFFECT_BIT_FRICTION, -1);
   if (row == NULL) goto done;
   if (small)
     snprintf(row->why, sizeof row->why, "mu is at most %.1e", mu);
@@ -321,72 +234,19 @@ done:
   return st;
 }
 
-/* ---- leaving out -------------------------------------------------------- */
-
-/* Each friction rule of the model once. */
-static void each_rule(model *m, void (*change)(friction_rule *rule)) {
-  for (int i = 0; i < m->n_contact; ++i) change(&m->contacts[i].friction);
-  for (int i = 0; i < m->n_step; ++i)
-    for (int k = 0; k < m->steps[i].n_change; ++k)
-      change(&m->steps[i].changes[k].rule);
-}
-
-static void make_local(friction_rule *rule) {
-  if (rule->law == NULL || rule->law->average == NULL) return;
-  rule->aside = rule->law;
-  rule->law = &coulomb_friction;
-}
-
-static void take_out(friction_rule *rule) {
-  if (rule->law == NULL) return;
-  rule->aside = rule->law;
-  rule->law = NULL;
-}
-
-static void put_back(friction_rule *rule) {
-  if (rule->aside == NULL) return;
-  rule->law = rule->aside;
-  rule->aside = NULL;
-}
-
-void neglect_leave_out(model *m) {
-  for (int i = 0; i < m->n_neglected; ++i) {
-    neglected *row = &m->neglected[i];
-    if (row->back) continue;
-    row->bound = row->local = row->change = 0.0;
-    row->checked = row->again = 0;
-    if (row->bit == EFFECT_BIT_NONLOCAL) each_rule(m, make_local);
-    if (row->bit == EFFECT_BIT_FRICTION) each_rule(m, take_out);
-    if (row->bit != EFFECT_BIT_INELASTIC) continue;
-    m->materials[row->id].law_aside = m->materials[row->id].law.ops;
-    m->materials[row->id].law.ops = NULL;
-  }
-  model_find_effects(m);
-  for (int i = 0; i < m->n_neglected; ++i)
-    if (m->neglected[i].bit == EFFECT_BIT_THERMAL && !m->neglected[i].back)
-      m->effects &= ~(unsigned)EFFECT_THERMAL;
-}
-
-void neglect_restore(model *m) {
-  each_rule(m, put_back);
-  for (int i = 0; i < m->n_material; ++i) {
-    material *mat = &m->materials[i];
-    if (mat->law_aside != NULL) mat->law.ops = mat->law_aside;
-    mat->law_aside = NULL;
-  }
-  model_find_effects(m);
-}
+/* ---- all ---------------------------------------------------------------- */
 
 /* 1: what asks for the problem itself, not its answer, or moves on its own. */
 static int must_stay(const model *m) {
   for (int i = 0; i < m->n_step; ++i) {
     const step *s = &m->steps[i];
     if (s->check != CHECK_NONE || s->theory || s->condensed_frequency >= 0 ||
-        s->form == FORM_VELOCITY)
+        s->form == FORM_VELOCITY || s->restart_frequency >= 0)
       return 1;
   }
   for (int i = 0; i < m->n_section; ++i)
     if (m->sections[i].averaged) return 1;
+  if (m->n_points > 0) return 1;
   return m->target.percent > 0.0;
 }
 
@@ -396,7 +256,7 @@ status neglect_choose(model *m, const mesh *msh) {
   if (must_stay(m)) goto done;
   try_average(m, msh);
   try_thermal(m, msh);
-  TRY(try_inelastic(m, msh));
+  TRY(neglect_try_laws(m, msh));
   TRY(try_friction(m, msh));
 done:
   return st;

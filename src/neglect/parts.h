@@ -32,6 +32,17 @@ struct neglect {
   double *force, *u; /* [dim*n_node] room                                     */
 };
 
+/* choose.c: scales of the deck. */
+/* Largest stress that pressures and prescribed displacements speak of, Pa; 0:
+ * not known (expressions, forces). */
+double neglect_load_stress(const model *m, const mesh *msh, double young);
+double neglect_young(const material *mat); /* Pa                              */
+int neglect_has_initial(const model *m);   /* 1: of strains, displacements    */
+/* A new row; NULL: there is no room. */
+neglected *neglect_row(model *m, int bit, int id);
+/* laws.c: materials to try without their law. */
+status neglect_try_laws(model *m, const mesh *msh);
+
 const material *neglect_material(const neglect *n, int elem_id);
 /* Coefficient of the friction left out at contact node i. */
 double neglect_coefficient(const neglect *n, const state *s, int i);

@@ -2,6 +2,7 @@
  * What is derived from an equilibrium: stresses, reactions of the supports,
  * resultants of the contacts, energies and their balance.
  */
+#include "base/memory.h"
 #include "base/timer.h"
 #include "run/run.h"
 
@@ -171,6 +172,32 @@ static void find_loops(run *r) {
   }
 }
 
+/* What the springs of laws that elastic constants stand for hold, J: the part
+ * 1/2 sigma R sigma of their strain energy (model.h). */
+static status relaxed_energy(const run *r, double *kept) {
+  status st = OK;
+  double *sigma = NULL;
+  const int ns = r->m->ns;
+  int any = 0;
+  *kept = 0.0;
+  for (int i = 0; i < r->m->n_material; ++i)
+    any |= r->m->materials[i].is_relaxed;
+  if (!any) goto done;
+  NEW(sigma, (size_t)ns * (size_t)r->msh->n_elem);
+  domain_stress(&r->d, r->now.u, NULL, sigma);
+  for (int e = 0; e < r->msh->n_elem; ++e) {
+    const material *mat = run_material(r, e);
+    double strain[6];
+    const double *own = sigma + (size_t)ns * (size_t)e;
+    if (!mat->is_relaxed) continue;
+    tensor_product(ns, mat->relaxed, own, strain);
+    *kept += 0.5 * element_weight(&r->d, e) * tensor_dot(ns, own, strain);
+  }
+done:
+  memory_free(sigma);
+  return st;
+}
+
 /*
  * Energies of the increment. The trapezoidal works balance to rounding for a
  * linear elastic body, whatever the increment: with K symmetric
@@ -181,6 +208,7 @@ static status find_energies(run *r) {
   status st = OK;
   const equilibrium *a = &r->old, *b = &r->now;
   energies e = a->energy;
+  double kept;
   int dim = r->msh->dim;
   for (size_t i = 0; i < r->n_dof; ++i)
     e.external += 0.5 * (a->F[i] + b->F[i] + a->reaction[i] + b->reaction[i]) *
@@ -199,15 +227,20 @@ static status find_energies(run *r) {
   }
   e.friction += friction;
   e.normal += work + friction;
+  e.stored -= a->kept;
   strains_work(r, &e);
   if (r->visco != NULL) TRY(visco_energies(r, &e));
-  e.strain = domain_strain_energy(&r->d, b->u);
+  TRY(relaxed_energy(r, &kept));
+  e.strain = domain_strain_energy(&r->d, b->u) - kept;
+  e.inelastic += kept - a->kept;
+  e.stored += kept;
   e.defect = e.external + e.normal - e.friction - e.thermal - e.inelastic -
              (e.strain - e.start);
   const double part[] = {e.external, e.normal,    e.friction,
                          e.thermal,  e.inelastic, e.strain};
   for (int k = 0; k < 6; ++k) e.largest = fmax(e.largest, fabs(part[k]));
   r->now.energy = e;
+  r->now.kept = kept;
 done:
   return st;
 }

@@ -26,6 +26,7 @@ typedef struct equilibrium {
   double *e0, *sigma;  /* [ns*n] all their strains without stress; Pa         */
   double *elastic;     /* [ns*n] the rest; NULL: moduli stay                  */
   energies energy;
+  double kept; /* J, of what elastic constants stand for                     */
 } equilibrium;
 
 typedef struct forms forms; /* increment.c                       */

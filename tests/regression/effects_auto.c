@@ -27,6 +27,7 @@ static job run_scene(const scene *s) {
             "*MESH, FILE=block.msh\n*MATERIAL, NAME=STEEL\n*ELASTIC\n"
             "130.D3, %.17g\n%s"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL, TYPE=CPE3\n"
+            "*AMPLITUDE, NAME=ON\n0., 1., 1., 1.\n"
             "*OBSTACLE, NAME=FLOOR, TYPE=CONFORMING\n"
             "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=FLOOR\n%s%s"
             "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.0\n"
@@ -144,6 +145,26 @@ START_TEST(slow_relaxation_is_left_out) {
 }
 END_TEST
 
+/* A ramp of 1 s in four increments: strain lags behind by the creep of the
+ * last 0.1 ms of 0.25 s. In the place of the law E E1/(E + E1). */
+START_TEST(law_at_its_end_is_left_out) {
+  const scene fast = {"*INELASTIC, LAW=ZENER\n65.D3, 0.65\n", coulomb,
+                      "LEFT, P, 20.\n", "", 0.2};
+  scene series = fast, sudden = fast, slow = fast, fluid = fast;
+  series.material = "*INELASTIC, LAW=PRONY\n0.3, 0.2, 1.D-6\n0.4, 0., 1.D-9\n";
+  sudden.loads =
+      "LEFT, P, 20.\n*TEMPERATURE\nBODY, 0.\n*DSLOAD, AMPLITUDE=ON\n"
+      "LEFT, TY, -1.\n";
+  slow.material = "*INELASTIC, LAW=ZENER\n65.D3, 65.\n";
+  fluid.material = "*INELASTIC, LAW=MAXWELL\n1.D-6\n";
+  compare(&fast, "inelastic strain", 1, 1e-3);
+  compare(&series, "inelastic strain", 1, 1e-3);
+  compare(&sudden, "inelastic strain", -1, 1e-12);
+  stays(&slow, "inelastic strain");
+  stays(&fluid, "inelastic strain");
+}
+END_TEST
+
 /* Sheared along its side, the block passes a threshold that the loads do not.
  */
 START_TEST(law_below_its_threshold_is_left_out) {
@@ -230,6 +251,6 @@ END_TEST
 
 UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
           heat_that_makes_all_friction_stays, slow_relaxation_is_left_out,
-          law_below_its_threshold_is_left_out,
+          law_at_its_end_is_left_out, law_below_its_threshold_is_left_out,
           average_within_an_element_is_local, friction_without_slip_is_left_out,
           nothing_is_left_out_unless_asked, random_scenes_agree)
