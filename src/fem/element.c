@@ -7,6 +7,7 @@
 #include "fem/element.h"
 
 #include "base/timer.h"
+#include "material/voigt.h"
 
 #include <string.h>
 
@@ -162,36 +163,50 @@ double element_weight(const domain *d, int elem_id) {
   return s.weight;
 }
 
+static void strain_2d(const int *v, const double *u, const element_shape *s,
+                      double *e) {
+  double xx = 0, yy = 0, zz = 0, xy = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double *g = s->grad + 2 * a, *ua = u + 2 * (size_t)v[a];
+    xx += g[0] * ua[0];
+    yy += g[1] * ua[1];
+    zz += s->hoop * ua[0];
+    xy += g[1] * ua[0] + g[0] * ua[1];
+  }
+  e[0] = xx;
+  e[1] = yy;
+  e[2] = zz;
+  e[3] = xy;
+}
+
+static void strain_3d(const int *v, const double *u, const element_shape *s,
+                      double *e) {
+  for (int i = 0; i < 6; ++i) e[i] = 0;
+  for (int a = 0; a < 4; ++a) {
+    const double *g = s->grad + 3 * a, *ua = u + 3 * (size_t)v[a];
+    e[0] += g[0] * ua[0];
+    e[1] += g[1] * ua[1];
+    e[2] += g[2] * ua[2];
+    e[3] += g[1] * ua[0] + g[0] * ua[1];
+    e[4] += g[2] * ua[1] + g[1] * ua[2];
+    e[5] += g[2] * ua[0] + g[0] * ua[2];
+  }
+}
+
 /* Strain of one element: e[ns]. */
 static void strain_at(const domain *d, int elem_id, const double *u,
                       const element_shape *s, double *e) {
-  const int dim = d->mesh->dim;
-  const int *v = d->mesh->elem + (size_t)(dim + 1) * (size_t)elem_id;
-  memset(e, 0, (size_t)d->ns * sizeof *e);
-  for (int a = 0; a <= dim; ++a) {
-    const double *g = s->grad + dim * a;
-    const double *ua = u + (size_t)dim * (size_t)v[a];
-    e[0] += g[0] * ua[0];
-    e[1] += g[1] * ua[1];
-    e[3] += g[1] * ua[0] + g[0] * ua[1];
-    if (dim == 2) {
-      e[2] += s->hoop * ua[0];
-    } else {
-      e[2] += g[2] * ua[2];
-      e[4] += g[2] * ua[1] + g[1] * ua[2];
-      e[5] += g[2] * ua[0] + g[0] * ua[2];
-    }
-  }
+  if (d->mesh->dim == 2)
+    strain_2d(d->mesh->elem + 3 * (size_t)elem_id, u, s, e);
+  else
+    strain_3d(d->mesh->elem + 4 * (size_t)elem_id, u, s, e);
 }
 
 static void stress_at(const domain *d, int elem_id, const double *e,
                       double *sigma) {
-  const int ns = d->ns;
-  const double *E = d->E + (size_t)(ns * ns) * (size_t)d->section_id[elem_id];
-  for (int i = 0; i < ns; ++i) {
-    sigma[i] = 0;
-    for (int k = 0; k < ns; ++k) sigma[i] += E[ns * k + i] * e[k];
-  }
+  const size_t square = (size_t)(d->ns * d->ns);
+  voigt_product(d->ns, d->E + square * (size_t)d->section_id[elem_id], e,
+                sigma);
 }
 
 /* Means over the clusters of the strains of n elements (elem_id NULL: of the
@@ -214,7 +229,8 @@ static void mean_strains(const domain *d, int n, const int *elem_id,
 static void averaged_strain(const domain *d, int elem_id, const double *u,
                             const element_shape *s, double *e) {
   strain_at(d, elem_id, u, s, e);
-  cluster_smooth(d->cluster, CLUSTER_STRAIN, elem_id, e);
+  if (d->cluster != NULL)
+    cluster_smooth(d->cluster, CLUSTER_STRAIN, elem_id, e);
 }
 
 /* e0 of an element, or NULL; *next runs along with ascending elem_id. */
@@ -271,31 +287,43 @@ void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
     double strain[6];
     element_shape_at(d, x->elem_id[k], &s);
     averaged_strain(d, x->elem_id[k], u, &s, strain);
-    take_eigen(d, x->e0 + ns * (size_t)k, strain);
+    if (x->e0 != NULL) take_eigen(d, x->e0 + ns * (size_t)k, strain);
     if (e != NULL) memcpy(e + ns * (size_t)k, strain, ns * sizeof *e);
     if (sigma != NULL)
       stress_at(d, x->elem_id[k], strain, sigma + ns * (size_t)k);
   }
 }
 
+static void force_2d(const int *v, const element_shape *s, const double *t,
+                     double w, double *F) {
+  for (int a = 0; a < 3; ++a) {
+    const double *g = s->grad + 2 * a;
+    double *f = F + 2 * (size_t)v[a];
+    f[0] += w * (g[0] * t[0] + s->hoop * t[2] + g[1] * t[3]);
+    f[1] += w * (g[1] * t[1] + g[0] * t[3]);
+  }
+}
+
+static void force_3d(const int *v, const element_shape *s, const double *t,
+                     double w, double *F) {
+  for (int a = 0; a < 4; ++a) {
+    const double *g = s->grad + 3 * a;
+    double *f = F + 3 * (size_t)v[a];
+    f[0] += w * (g[0] * t[0] + g[1] * t[3] + g[2] * t[5]);
+    f[1] += w * (g[1] * t[1] + g[0] * t[3] + g[2] * t[4]);
+    f[2] += w * (g[2] * t[2] + g[1] * t[4] + g[0] * t[5]);
+  }
+}
+
 /* F += scale B' sigma w of one element; sigma[ns]. */
 static void add_force(const domain *d, int elem_id, const element_shape *s,
                       const double *sigma, double scale, double *F) {
-  const int dim = d->mesh->dim;
-  const int *v = d->mesh->elem + (size_t)(dim + 1) * (size_t)elem_id;
-  const double *t = sigma, w = scale * s->weight;
-  for (int a = 0; a <= dim; ++a) {
-    const double *g = s->grad + dim * a;
-    double *f = F + (size_t)dim * (size_t)v[a];
-    if (dim == 2) {
-      f[0] += w * (g[0] * t[0] + s->hoop * t[2] + g[1] * t[3]);
-      f[1] += w * (g[1] * t[1] + g[0] * t[3]);
-    } else {
-      f[0] += w * (g[0] * t[0] + g[1] * t[3] + g[2] * t[5]);
-      f[1] += w * (g[1] * t[1] + g[0] * t[3] + g[2] * t[4]);
-      f[2] += w * (g[2] * t[2] + g[1] * t[4] + g[0] * t[5]);
-    }
-  }
+  if (d->mesh->dim == 2)
+    force_2d(d->mesh->elem + 3 * (size_t)elem_id, s, sigma, scale * s->weight,
+             F);
+  else
+    force_3d(d->mesh->elem + 4 * (size_t)elem_id, s, sigma, scale * s->weight,
+             F);
 }
 
 void domain_internal_force(const domain *d, const double *sigma, double *F) {
@@ -369,21 +397,31 @@ void domain_residual(const domain *d, const double *u, const double *F,
   }
 }
 
-double domain_strain_energy(const domain *d, const double *u) {
+double domain_energy_beside(const domain *d, int n, const int *elem_id,
+                            const double *u) {
   double sum = 0;
-  int next = 0;
+  int next = 0, skip = 0;
+  if (n == d->mesh->n_elem) return 0;
   timer_enter(STAGE_ENERGY);
   mean_strains(d, d->mesh->n_elem, NULL, u);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
+    const double *e0 = eigen_at(d, k, &next);
     element_shape s;
-    double e[6], t[6], density = 0;
+    double e[6], t[6];
+    if (skip < n && elem_id[skip] == k) {
+      ++skip;
+      continue;
+    }
     element_shape_at(d, k, &s);
     averaged_strain(d, k, u, &s, e);
-    take_eigen(d, eigen_at(d, k, &next), e);
+    take_eigen(d, e0, e);
     stress_at(d, k, e, t);
-    for (int i = 0; i < d->ns; ++i) density += e[i] * t[i];
-    sum += 0.5 * s.weight * density;
+    sum += 0.5 * s.weight * voigt_dot(d->ns, e, t);
   }
   timer_leave(STAGE_ENERGY);
   return sum;
+}
+
+double domain_strain_energy(const domain *d, const double *u) {
+  return domain_energy_beside(d, 0, NULL, u);
 }

@@ -19,7 +19,7 @@
 typedef struct eigenstrain {
   int n;
   const int *elem_id; /* [n] ascending                                      */
-  const double *e0;   /* [ns*n] -                                           */
+  const double *e0;   /* [ns*n] -; NULL: 0 (eigen_stress)                   */
 } eigenstrain;
 
 /* What the elements are made of. */
@@ -130,6 +130,10 @@ void domain_stress(const domain *d, const double *u, double *e, double *sigma);
 /* Internal forces F = sum B' sigma w, global components [dim*n_node]. */
 void domain_internal_force(const domain *d, const double *sigma, double *F);
 double domain_strain_energy(const domain *d, const double *u); /* J           */
+/* The same of all elements but n of them, ascending, which hold whole
+ * clusters. */
+double domain_energy_beside(const domain *d, int n, const int *elem_id,
+                            const double *u);
 /* F += sum B' E e0 w: the forces that hold the strains of x back, global
  * components [dim*n_node], N. */
 void eigen_force(const domain *d, const eigenstrain *x, double *F);

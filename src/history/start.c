@@ -163,6 +163,7 @@ done:
 
 status start_step(run *r) {
   status st = OK;
+  visco_rest(r);
   if (run_step_id(r) == 0 && (r->m->effects & EFFECT_START)) {
     TRY(test_start(r));
     TRY(judge_start(r));

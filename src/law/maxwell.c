@@ -6,6 +6,7 @@
  * parts, decay as exp(-t/tau).
  */
 #include "law/law.h"
+#include "material/voigt.h"
 
 #include <float.h>
 #include <math.h>
@@ -73,10 +74,23 @@ static double fastest_rate(const law_point *p) {
   return fmax(shear, 1 / v->tau_bulk);
 }
 
+/* x' S x, Pa */
+static double square(const law_elastic *el, const double *x) {
+  double strain[6];
+  voigt_product(el->ns, el->S, x, strain);
+  return voigt_dot(el->ns, x, strain);
+}
+
 static double dissipation(const law_point *p) {
-  double ei_rate[6];
-  rate(p, ei_rate, NULL);
-  return tensor_dot(p->elastic->ns, p->sigma, ei_rate);
+  const law_elastic *el = p->elastic;
+  const maxwell_value *v = values(p);
+  double s[6], mean[6];
+  if (!is_deviatoric(p->law)) return square(el, p->sigma) / v->tau;
+  tensor_deviator(el->ns, p->sigma, s);
+  double power = square(el, s) / v->tau;
+  for (int i = 0; i < el->ns; ++i) mean[i] = p->sigma[i] - s[i];
+  if (v->tau_bulk > 0) power += square(el, mean) / v->tau_bulk;
+  return power;
 }
 
 static const char *check(const law_card *law, elastic_type type,

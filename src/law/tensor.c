@@ -2,6 +2,7 @@
  * Deviators, equivalent stress and flow directions in Voigt components.
  */
 #include "law/law.h"
+#include "material/voigt.h"
 
 #include <math.h>
 
@@ -30,14 +31,7 @@ double tensor_dot(int ns, const double *a, const double *b) {
 }
 
 void tensor_product(int ns, const double *A, const double *x, double *y) {
-  if (ns == 4) { /* in the plane: no loop                                    */
-    for (int i = 0; i < 4; ++i)
-      y[i] = A[i] * x[0] + A[i + 4] * x[1] + A[i + 8] * x[2] + A[i + 12] * x[3];
-    return;
-  }
-  for (int i = 0; i < ns; ++i) y[i] = 0;
-  for (int j = 0; j < ns; ++j)
-    for (int i = 0; i < ns; ++i) y[i] += A[i + ns * j] * x[j];
+  voigt_product(ns, A, x, y);
 }
 
 void tensor_direction(int ns, const double *s, double q, double *n) {

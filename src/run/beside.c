@@ -110,6 +110,7 @@ static status own_points(const run *r, beside *b) {
   if (r->visco == NULL) return OK;
   *v = *r->visco;
   v->now = (flow_state){0};
+  v->sums.known = 0;
   for (int i = 0; i < SLOTS; ++i) v->slot[i] = (matrices){0};
   v->fresh = (matrices){0};
   b->r.visco = v;

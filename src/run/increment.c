@@ -372,11 +372,19 @@ done:
   return st;
 }
 
-status increment_begin(run *r, double t) {
+status increment_load(run *r, double t) {
   status st = OK;
   r->now.t = t;
   TRY(load_at(r, t));
-  TRY(strains_update(r));
+  if (r->temperature0 != NULL && r->eigen.n > 0) TRY(strains_heat(r));
+done:
+  return st;
+}
+
+status increment_begin(run *r, double t) {
+  status st = OK;
+  TRY(increment_load(r, t));
+  strains_collect(r);
 done:
   return st;
 }

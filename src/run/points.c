@@ -4,6 +4,7 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
+#include "material/voigt.h"
 #include "run/visco.h"
 
 #include <math.h>
@@ -158,13 +159,84 @@ void visco_strains(run *r, const equilibrium *e, flow_state *s) {
   }
 }
 
+int visco_next_part(const run *r, visco_part *p) {
+  enum { PART = 64 };
+  const visco *v = r->visco;
+  const int most = r->d.cluster == NULL ? PART : r->eigen.n;
+  p->item += p->n_item;
+  p->point += p->n_point;
+  p->n_item = r->eigen.n - p->item < most ? r->eigen.n - p->item : most;
+  p->n_point = p->n_item;
+  if (v->x.n == r->eigen.n) return p->n_item > 0;
+  const int end = p->item + p->n_item;
+  p->n_point = 0;
+  while (p->point + p->n_point < v->x.n &&
+         v->place[p->point + p->n_point] < end)
+    ++p->n_point;
+  return p->n_item > 0;
+}
+
+/* Values of the items of a part, from[ns*n_item], to those of its points. */
+static void to_points(const run *r, const visco_part *p, const double *from,
+                      double *to) {
+  const int *item = r->visco->place;
+  for (int k = p->point; k < p->point + p->n_point; ++k)
+    memcpy(to + visco_at(r, k), from + visco_at(r, item[k] - p->item),
+           visco_at(r, 1) * sizeof *to);
+}
+
+void visco_part_strains(run *r, const visco_part *p) {
+  visco *v = r->visco;
+  const int all = p->n_point == p->n_item;
+  double *e = v->now.e + visco_at(r, p->point);
+  const double *thermal =
+      r->temperature0 == NULL ? NULL : r->now.thermal + visco_at(r, p->item);
+  const eigenstrain x = {p->n_item, r->eigen_elem + p->item, thermal};
+  eigen_stress(&r->d, &x, r->now.u, all ? e : v->stress, NULL);
+  if (!all) to_points(r, p, v->stress, v->now.e);
+}
+
 /* Square of the deviator of a stress, or of a strain whose shears are doubled:
  * shear 2 or 1/2. */
-static double deviator_square(int ns, const double *t, double shear) {
-  double d[6], sum = 0.0;
-  tensor_deviator(ns, t, d);
-  for (int i = 0; i < ns; ++i) sum += i < 3 ? d[i] * d[i] : shear * t[i] * t[i];
+static inline double deviator_square(int ns, const double *t, double shear) {
+  const double mean = (t[0] + t[1] + t[2]) / 3.0;
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i) sum += (t[i] - mean) * (t[i] - mean);
+  for (int i = 3; i < ns; ++i) sum += shear * t[i] * t[i];
   return sum;
+}
+
+static int can_lock(const run *r, int k) {
+  const visco *v = r->visco;
+  const cluster_set *c = r->d.cluster;
+  return !v->x.kind[v->x.kind_id[k]].elastic.plane_stress &&
+         (c == NULL || c->of[v->elem[k]] < 0);
+}
+
+/* Adds point k of v->now. */
+static inline void add_locking(int ns, const run *r, int k, locking_sums *sum) {
+  const visco *v = r->visco;
+  const double w = v->x.weight[k];
+  const double *ei = v->now.ei + visco_at(r, k);
+  const double growth = ei[0] + ei[1] + ei[2];
+  if (!can_lock(r, k)) return;
+  sum->stress += w * deviator_square(ns, v->now.sigma + visco_at(r, k), 2.0);
+  sum->strain += w * deviator_square(ns, v->now.e + visco_at(r, k), 0.5);
+  sum->growth += w * growth * growth;
+}
+
+/* Mean of the bulk moduli, Pa. */
+static double mean_bulk(const run *r) {
+  const visco *v = r->visco;
+  const int ns = r->m->ns;
+  double bulk = 0.0, volume = 0.0;
+  for (int k = 0; k < v->x.n; ++k) {
+    const double *E = run_elasticity(r, v->elem[k]), w = v->x.weight[k];
+    if (!can_lock(r, k)) continue;
+    for (int i = 0; i < 9; ++i) bulk += w * E[ns * (i / 3) + i % 3] / 9.0;
+    volume += w;
+  }
+  return bulk / volume;
 }
 
 /*
@@ -174,24 +246,12 @@ static double deviator_square(int ns, const double *t, double shear) {
  */
 static double apparent_ratio(const run *r) {
   const visco *v = r->visco;
-  const cluster_set *c = r->d.cluster;
-  int ns = r->m->ns;
-  double stress = 0.0, strain = 0.0, bulk = 0.0, volume = 0.0,
-         flow_volume = 0.0;
-  for (int k = 0; k < v->x.n; ++k) {
-    const double *E = run_elasticity(r, v->elem[k]), w = v->x.weight[k];
-    const double *ei = v->now.ei + visco_at(r, k);
-    if (r->m->sections[r->m->elem_section[v->elem[k]]].kin == PLANE_STRESS ||
-        (c != NULL && c->of[v->elem[k]] >= 0))
-      continue;
-    stress += w * deviator_square(ns, v->now.sigma + visco_at(r, k), 2.0);
-    strain += w * deviator_square(ns, v->now.e + visco_at(r, k), 0.5);
-    flow_volume += w * pow(ei[0] + ei[1] + ei[2], 2);
-    for (int i = 0; i < 9; ++i) bulk += w * E[ns * (i / 3) + i % 3] / 9.0;
-    volume += w;
-  }
-  if (strain == 0.0 || flow_volume > 1e-6 * strain) return -1.0;
-  double K = bulk / volume, G = 0.5 * sqrt(stress / strain);
+  locking_sums sum = {0};
+  if (v->sums.known) sum = v->sums.locking;
+  for (int k = 0; k < v->x.n && !v->sums.known; ++k)
+    add_locking(r->m->ns, r, k, &sum);
+  if (sum.strain == 0.0 || sum.growth > 1e-6 * sum.strain) return -1.0;
+  double K = mean_bulk(r), G = 0.5 * sqrt(sum.stress / sum.strain);
   return (3.0 * K - 2.0 * G) / (2.0 * (3.0 * K + G));
 }
 
@@ -210,6 +270,58 @@ void visco_warn_locking(run *r) {
               run_step_id(r) + 1, v->old.t, nu,
               100.0 * model_locking_error(nu, COARSE), COARSE,
               100.0 * model_locking_error(nu, FINE), FINE);
+}
+
+/* Works and energies of point k; e0 and sigma of r->now. */
+static inline void add_works(int ns, const run *r, int k, point_sums *sum) {
+  const visco *v = r->visco;
+  const size_t at = visco_at(r, k), item = visco_at(r, v->place[k]);
+  const double w = v->x.weight[k], *sigma = v->now.sigma + at;
+  const double *heat[] = {r->old.thermal + item, r->now.thermal + item};
+  const double *ei[] = {v->old.ei + at, v->now.ei + at};
+  double middle[6], creep[6], warm[6], elastic[6], held[6], e0[6];
+  for (int i = 0; i < ns; ++i) {
+    middle[i] = 0.5 * (v->old.sigma[at + (size_t)i] + sigma[i]);
+    creep[i] = ei[1][i] - ei[0][i];
+    elastic[i] = v->now.e[at + (size_t)i] - ei[1][i];
+    e0[i] = heat[1][i] + ei[1][i];
+    warm[i] = heat[1][i] - heat[0][i];
+  }
+  for (int i = 0; i < ns; ++i) r->now.e0[item + (size_t)i] = e0[i];
+  for (int i = 0; i < ns; ++i) r->now.sigma[item + (size_t)i] = sigma[i];
+  voigt_product(ns, v->x.kind[v->x.kind_id[k]].elastic.E, e0, held);
+  sum->inelastic += w * voigt_dot(ns, middle, creep);
+  sum->thermal += w * voigt_dot(ns, middle, warm);
+  sum->held += 0.5 * w * voigt_dot(ns, e0, held);
+  sum->strain += 0.5 * w * voigt_dot(ns, elastic, sigma);
+}
+
+static inline void add_points(int ns, const run *r, const visco_part *p,
+                              point_sums *sum) {
+  const int end = p->point + p->n_point;
+  for (int k = p->point; k < end; ++k) add_works(ns, r, k, sum);
+  if (r->visco->told_locking) return;
+  for (int k = p->point; k < end; ++k) add_locking(ns, r, k, &sum->locking);
+}
+
+status visco_part_sums(run *r, const visco_part *p) {
+  status st = OK;
+  visco *v = r->visco;
+  const int end = p->point + p->n_point;
+  point_sums sum = v->sums;
+  if (p->n_point < p->n_item)
+    memcpy(r->now.e0 + visco_at(r, p->item),
+           r->now.thermal + visco_at(r, p->item),
+           visco_at(r, p->n_item) * sizeof(double));
+  if (r->m->ns == 4)
+    add_points(4, r, p, &sum);
+  else
+    add_points(6, r, p, &sum);
+  TRY(flow_add_stored(&v->x, &v->now, p->point, end, &sum.stored));
+  TRY(flow_add_elastic(&v->x, &v->now, p->point, end, &sum.elastic));
+  v->sums = sum;
+done:
+  return st;
 }
 
 void visco_show(const run *r, state *s) {

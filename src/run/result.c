@@ -231,7 +231,7 @@ static status find_energies(run *r) {
   strains_work(r, &e);
   if (r->visco != NULL) TRY(visco_energies(r, &e));
   TRY(relaxed_energy(r, &kept));
-  e.strain = domain_strain_energy(&r->d, b->u) - kept;
+  e.strain = strains_energy(r) - kept;
   e.inelastic += kept - a->kept;
   e.stored += kept;
   e.defect = e.external + e.normal - e.friction - e.thermal - e.inelastic -

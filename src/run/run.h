@@ -191,8 +191,8 @@ void strains_free(run *r);
 const material *run_material(const run *r, int elem_id);
 /* E[ns*ns] of an element at the temperatures of r->now, Pa. */
 const double *run_elasticity(const run *r, int elem_id);
-/* Temperatures and strains of r->now at its time t. */
-status strains_update(run *r);
+/* Temperatures, moduli and thermal strains of r->now at its time t. */
+status strains_heat(run *r);
 /* r->now.e0 from the strains at hand. */
 void strains_collect(run *r);
 /* The loads with the forces that the strains of r->now call for: r->now.F
@@ -201,6 +201,7 @@ const double *strains_load(run *r);
 /* Stresses of these elements, and the work on their strains since r->old, J;
  * e->largest at least what the strains would store if they were held. */
 void strains_work(run *r, energies *e);
+double strains_energy(const run *r); /* of the stresses of r->now, J          */
 
 /* Inelastic strains. points.c: of the elements whose law flows. */
 status visco_new(run *r);
@@ -210,7 +211,10 @@ void visco_show(const run *r, state *s); /* what the outputs see              */
 /* tangent.c */
 void visco_new_solvers(run *r); /* for a step with the same supports       */
 void visco_forget(run *r); /* matrices are made anew                          */
-/* visco.c, at the start of a *VISCO step: stresses of r->old. */
+/* visco.c, at the start of any step: the strains of r->now are those of r->old.
+ */
+void visco_rest(run *r);
+/* At the start of a *VISCO step: stresses of r->old. */
 status visco_begin_step(run *r);
 /* From r->old to r->now at time t by the integrator of the step; read
  * r->report. */
@@ -238,8 +242,10 @@ status increment_solve(run *r, double t);
 double *run_rows(const run *r, int k, double *v);
 /* Loads and contact problem of time t without solving. */
 status increment_pose(run *r, double t);
-/* Its parts: loads and strains at t; then the equilibrium with the matrix in
- * use under the forces F[dim*n_node]. */
+/* Its parts: loads, temperatures and thermal strains at t; with all strains
+ * that carry no stress; then the equilibrium with the matrix in use under the
+ * forces F[dim*n_node]. */
+status increment_load(run *r, double t);
 status increment_begin(run *r, double t);
 status increment_equilibrium(run *r, const double *F);
 

@@ -5,7 +5,7 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
-#include "run/run.h"
+#include "run/visco.h"
 
 #include <math.h>
 #include <string.h>
@@ -102,8 +102,7 @@ static void average_thermal(run *r) {
     cluster_smooth(c, CLUSTER_STRAIN, r->eigen_elem[k], thermal + at(r, k));
 }
 
-/* Temperatures, moduli and thermal strains of r->now. */
-static status heat(run *r) {
+status strains_heat(run *r) {
   status st = OK;
   equilibrium *now = &r->now;
   int changed = 0;
@@ -131,19 +130,11 @@ done:
 
 void strains_collect(run *r) {
   equilibrium *now = &r->now;
+  if (r->eigen.n == 0) return;
   memcpy(now->e0, now->thermal,
          (size_t)r->m->ns * (size_t)r->eigen.n * sizeof *now->e0);
   if (r->visco != NULL) visco_add_strains(r, now->e0);
   r->eigen.e0 = now->e0;
-}
-
-status strains_update(run *r) {
-  status st = OK;
-  if (r->eigen.n == 0) return OK;
-  if (r->temperature0 != NULL) TRY(heat(r));
-  strains_collect(r);
-done:
-  return st;
 }
 
 const double *strains_load(run *r) {
@@ -163,27 +154,67 @@ static double softened(const run *r, int k) {
           tensor_dot(r->m->ns, b->sigma + at(r, k), a->elastic + at(r, k)));
 }
 
-void strains_work(run *r, energies *e) {
+/* Item k of r->eigen. */
+static void item_work(const run *r, int k, energies *e, double *held) {
   const equilibrium *a = &r->old, *b = &r->now;
-  size_t ns = (size_t)r->m->ns;
-  double scale = 0.0;
+  const int ns = r->m->ns;
+  double w = element_weight(&r->d, r->eigen_elem[k]);
+  double thermal = 0.0, all = 0.0, stress[6];
+  for (size_t i = at(r, k); i < at(r, k + 1); ++i) {
+    double sigma = 0.5 * (a->sigma[i] + b->sigma[i]);
+    thermal += sigma * (b->thermal[i] - a->thermal[i]);
+    all += sigma * (b->e0[i] - a->e0[i]);
+  }
+  e->thermal += w * (thermal + softened(r, k));
+  e->inelastic += w * (all - thermal);
+  tensor_product(ns, run_elasticity(r, r->eigen_elem[k]), b->e0 + at(r, k),
+                 stress);
+  *held += 0.5 * w * tensor_dot(ns, b->e0 + at(r, k), stress);
+}
+
+/* Items from, ..., to - 1, which hold whole clusters. */
+static void items_work(run *r, int from, int to, energies *e, double *held) {
+  const equilibrium *b = &r->now;
+  const eigenstrain x = {to - from, r->eigen_elem + from, b->e0 + at(r, from)};
+  eigen_stress(&r->d, &x, b->u,
+               b->elastic == NULL ? NULL : b->elastic + at(r, from),
+               b->sigma + at(r, from));
+  for (int k = from; k < to; ++k) item_work(r, k, e, held);
+}
+
+/* The items that are no points whose sums are known. */
+static void rest_work(run *r, energies *e, double *held) {
+  const visco *v = r->visco;
+  int from = 0;
+  for (int k = 0; k < v->x.n && v->x.n < r->eigen.n; ++k) {
+    if (v->place[k] > from) items_work(r, from, v->place[k], e, held);
+    from = v->place[k] + 1;
+  }
+  if (v->x.n < r->eigen.n && from < r->eigen.n)
+    items_work(r, from, r->eigen.n, e, held);
+}
+
+void strains_work(run *r, energies *e) {
+  const visco *v = r->visco;
+  const int known = v != NULL && v->sums.known;
+  double held = 0.0;
   if (r->eigen.n == 0) return;
   timer_enter(STAGE_ENERGY);
-  eigen_stress(&r->d, &r->eigen, b->u, b->elastic, b->sigma);
-  for (int k = 0; k < r->eigen.n; ++k) {
-    double w = element_weight(&r->d, r->eigen_elem[k]);
-    double thermal = 0.0, all = 0.0, held[6];
-    for (size_t i = ns * (size_t)k; i < ns * (size_t)(k + 1); ++i) {
-      double sigma = 0.5 * (a->sigma[i] + b->sigma[i]);
-      thermal += sigma * (b->thermal[i] - a->thermal[i]);
-      all += sigma * (b->e0[i] - a->e0[i]);
-    }
-    e->thermal += w * (thermal + softened(r, k));
-    e->inelastic += w * (all - thermal);
-    tensor_product(r->m->ns, run_elasticity(r, r->eigen_elem[k]),
-                   b->e0 + at(r, k), held);
-    scale += 0.5 * w * tensor_dot(r->m->ns, b->e0 + at(r, k), held);
+  if (known) {
+    e->thermal += v->sums.thermal;
+    e->inelastic += v->sums.inelastic;
+    held = v->sums.held;
+    rest_work(r, e, &held);
+  } else {
+    items_work(r, 0, r->eigen.n, e, &held);
   }
-  e->largest = fmax(e->largest, scale);
+  e->largest = fmax(e->largest, held);
   timer_leave(STAGE_ENERGY);
+}
+
+double strains_energy(const run *r) {
+  const visco *v = r->visco;
+  if (v == NULL || !v->sums.known) return domain_strain_energy(&r->d, r->now.u);
+  return v->sums.strain +
+         domain_energy_beside(&r->d, v->x.n, v->elem, r->now.u);
 }

@@ -4,6 +4,7 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
+#include "material/voigt.h"
 #include "run/visco.h"
 
 #include <stdio.h>
@@ -172,35 +173,70 @@ done:
   return st;
 }
 
-/* r->eigen_load: the loads with what sigma = sigma_k + D (e - e_k) and the
- * thermal strains add to them. */
-static const double *tangent_load(run *r, const flow_tangent *law) {
+/* v->stress from its start: of the items of a part, what sigma = sigma_k + D (e
+ * - e_k) and the thermal strains add to the loads; sigma[ns*x.n], e[ns*x.n]. */
+static void part_stress(run *r, const flow_tangent *law, const double *sigma,
+                        const double *e, const visco_part *p) {
   visco *v = r->visco;
-  const double *thermal = r->now.thermal;
-  int ns = r->m->ns;
-  for (int k = 0, point = 0; k < r->eigen.n; ++k) {
-    int e = r->eigen_elem[k];
-    if (point == v->x.n || v->place[point] != k) {
-      tensor_product(ns, run_elasticity(r, e), thermal + visco_at(r, k),
-                     v->stress + visco_at(r, k));
+  const int ns = r->m->ns, end = p->point + p->n_point;
+  for (int k = 0, point = p->point; k < p->n_item; ++k) {
+    const int item = p->item + k, elem_id = r->eigen_elem[item];
+    const double *thermal = r->now.thermal + visco_at(r, item);
+    double *stress = v->stress + visco_at(r, k), e_k[6];
+    if (point == end || v->place[point] != item) {
+      voigt_product(ns, run_elasticity(r, elem_id), thermal, stress);
       continue;
     }
-    int kind = v->x.kind_id[point];
+    const int kind = v->x.kind_id[point];
+    const size_t at = visco_at(r, point);
     const double *D =
         law->elastic
-            ? run_elasticity(r, e)
+            ? run_elasticity(r, elem_id)
             : law->D + visco_at(r, ns * (law->key > 0.0 ? kind : point));
-    double e_k[6];
-    for (size_t i = 0; i < visco_at(r, 1); ++i)
-      e_k[i] = law->e[visco_at(r, point) + i] + thermal[visco_at(r, k) + i];
-    tensor_product(ns, D, e_k, v->stress + visco_at(r, k));
-    for (size_t i = 0; i < visco_at(r, 1); ++i)
-      v->stress[visco_at(r, k) + i] -= law->sigma[visco_at(r, point) + i];
+    for (int i = 0; i < ns; ++i) e_k[i] = e[at + (size_t)i] + thermal[i];
+    voigt_product(ns, D, e_k, stress);
+    for (int i = 0; i < ns; ++i) stress[i] -= sigma[at + (size_t)i];
     ++point;
   }
+}
+
+/* r->eigen_load: the loads with what the linear law and the thermal strains
+ * add to them. */
+static const double *tangent_load(run *r, const flow_tangent *law) {
+  const visco_part all = {0, r->eigen.n, 0, r->visco->x.n};
+  part_stress(r, law, law->sigma, law->e, &all);
   memcpy(r->eigen_load, r->now.F, r->n_dof * sizeof *r->eigen_load);
-  eigen_add_force(&r->d, r->eigen.n, r->eigen_elem, v->stress, r->eigen_load);
+  eigen_add_force(&r->d, r->eigen.n, r->eigen_elem, r->visco->stress,
+                  r->eigen_load);
   return r->eigen_load;
+}
+
+/* The same for a step of constant laws, whose points are predicted. */
+static const double *step_load(run *r, const flow_tangent *law,
+                               const scheme_call *a) {
+  visco_part p = {0};
+  memcpy(r->eigen_load, r->now.F, r->n_dof * sizeof *r->eigen_load);
+  while (visco_next_part(r, &p)) {
+    linear_predict(a, p.point, p.point + p.n_point);
+    part_stress(r, law, a->now->sigma, a->old->e, &p);
+    eigen_add_force(&r->d, p.n_item, r->eigen_elem + p.item, r->visco->stress,
+                    r->eigen_load);
+  }
+  return r->eigen_load;
+}
+
+/* The points at the equilibrium of a step of constant laws. */
+static status step_follow(run *r, const scheme_call *a) {
+  status st = OK;
+  visco_part p = {0};
+  r->visco->sums = (point_sums){0};
+  while (visco_next_part(r, &p)) {
+    visco_part_strains(r, &p);
+    linear_follow(a, p.point, p.point + p.n_point);
+    TRY(visco_part_sums(r, &p));
+  }
+done:
+  return st;
 }
 
 status tangent_solve(run *r, const flow_tangent *law) {
@@ -209,6 +245,22 @@ status tangent_solve(run *r, const flow_tangent *law) {
   TRY(find_matrices(r, law, &m));
   TRY(run_use(r, m));
   TRY(increment_equilibrium(r, tangent_load(r, law)));
+done:
+  return st;
+}
+
+status tangent_step(run *r, const flow_tangent *law, const scheme_call *a) {
+  status st = OK;
+  matrices *m = NULL;
+  TRY(find_matrices(r, law, &m));
+  TRY(run_use(r, m));
+  timer_enter(STAGE_INELASTIC);
+  const double *forces = step_load(r, law, a);
+  timer_leave(STAGE_INELASTIC);
+  TRY(increment_equilibrium(r, forces));
+  timer_enter(STAGE_INELASTIC);
+  st = step_follow(r, a);
+  timer_leave(STAGE_INELASTIC);
 done:
   return st;
 }

@@ -4,9 +4,9 @@
  * of a given e^i is one contact problem, with the slip counted from the last
  * accepted increment).
  */
+#include "run/visco.h"
 #include "base/memory.h"
 #include "base/timer.h"
-#include "run/visco.h"
 
 #include <math.h>
 #include <string.h>
@@ -28,7 +28,7 @@ done:
 static status begin(void *ctx, flow_state *s) {
   run *r = ctx;
   timer_leave(STAGE_INELASTIC);
-  status st = increment_begin(r, s->t);
+  status st = increment_load(r, s->t);
   timer_enter(STAGE_INELASTIC);
   if (st == OK) visco_temperatures(r, &r->now, s);
   return st;
@@ -45,6 +45,25 @@ static status linear(void *ctx, const flow_tangent *law, flow_state *s,
   return st;
 }
 
+/* Sums are known where they hold all that an increment adds up. */
+static status constant(void *ctx, const flow_tangent *law, const scheme_call *a,
+                       int *settled) {
+  run *r = ctx;
+  visco *v = r->visco;
+  timer_leave(STAGE_INELASTIC);
+  status st = tangent_step(r, law, a);
+  timer_enter(STAGE_INELASTIC);
+  *settled = r->report.outcome > 0;
+  v->sums.known =
+      r->moduli.n_own == 0 && (r->d.cluster == NULL || v->x.n == r->eigen.n);
+  return st;
+}
+
+void visco_rest(run *r) {
+  visco *v = r->visco;
+  if (v != NULL) flow_state_copy(&v->x, &v->old, &v->now);
+}
+
 status visco_begin_step(run *r) {
   visco *v = r->visco;
   if (v == NULL) return OK;
@@ -52,6 +71,7 @@ status visco_begin_step(run *r) {
   visco_temperatures(r, &r->old, &v->old);
   visco_strains(r, &r->old, &v->old);
   v->old.t = r->old.t;
+  v->sums.known = 0;
   timer_leave(STAGE_INELASTIC);
   path_restart(r);
   return OK;
@@ -71,7 +91,7 @@ static double step_length(run *r, double t) {
 static status advance(run *r, double t) {
   status st = OK;
   visco *v = r->visco;
-  const flow_body body = {r, equilibrium_of, begin, linear};
+  const flow_body body = {r, equilibrium_of, begin, linear, constant};
   scheme_step p = {.t = t,
                    .dt = step_length(r, t),
                    .theta = r->step->theta,
@@ -79,11 +99,13 @@ static status advance(run *r, double t) {
                    .tol = r->tol};
   v->result = (scheme_result){.settled = 1, .error = -1.0};
   v->old.t = r->old.t;
+  v->sums.known = 0;
   const scheme_call call = {&v->x,   &p,      &body,     v->work,
                             &v->old, &v->now, &v->result};
   TRY(r->step->integrator->advance(&call));
   v->now.t = t;
-  strains_collect(r);
+  if (!v->sums.known) strains_collect(r);
+  r->eigen.e0 = r->now.e0;
   if (!v->result.settled && r->report.outcome > 0)
     r->report.outcome = STOPPED_ITERATIONS;
 done:
@@ -109,6 +131,7 @@ done:
 void visco_take(run *r) {
   visco *v = r->visco;
   v->now.t = r->now.t;
+  v->sums.known = 0;
   visco_temperatures(r, &r->now, &v->now);
   visco_strains(r, &r->now, &v->now);
 }
@@ -130,6 +153,7 @@ status visco_advance_from(run *r, flow_state *from, double t, flow_state *to) {
   status st = advance(r, t);
   *from = v->old;
   v->old = keep;
+  v->sums.known = 0;
   if (st == OK) flow_state_copy(&v->x, &v->now, to);
   timer_leave(STAGE_INELASTIC);
   return st;
@@ -172,6 +196,7 @@ static status second_half(run *r, double t) {
   st = advance(r, t);
   v->middle = v->old;
   v->old = first;
+  v->sums.known = 0;
   r->old = keep;
 done:
   memory_free(p.uc);
@@ -208,6 +233,19 @@ static double halves_error(const run *r) {
   return power / (power - 1.0) * flow_norm(&v->x, v->fine);
 }
 
+/* Root mean square of the elastic strains of v->now. */
+static status elastic_norm(const visco *v, double *norm) {
+  status st = OK;
+  double sum = v->sums.elastic;
+  if (!v->sums.known) {
+    sum = 0.0;
+    TRY(flow_add_elastic(&v->x, &v->now, 0, v->x.n, &sum));
+  }
+  *norm = flow_root(&v->x, sum);
+done:
+  return st;
+}
+
 static status try_step(run *r, double t, double *error) {
   status st = OK;
   visco *v = r->visco;
@@ -219,7 +257,7 @@ static status try_step(run *r, double t, double *error) {
   if (r->report.outcome <= 0) goto done;
   *error = estimates ? v->result.error : halves_error(r);
   double norm = 0.0;
-  TRY(flow_elastic_norm(&v->x, &v->now, &norm));
+  TRY(elastic_norm(v, &norm));
   if (*error > 0.0) *error /= fmax(v->largest, norm);
 done:
   return st;
@@ -256,7 +294,10 @@ status visco_energies(run *r, energies *e) {
   visco *v = r->visco;
   timer_enter(STAGE_INELASTIC);
   e->dissipated += v->result.dissipated;
-  TRY(flow_stored(&v->x, &v->now, &e->stored));
+  e->stored = v->sums.stored;
+  if (v->sums.known) goto done;
+  e->stored = 0.0;
+  TRY(flow_add_stored(&v->x, &v->now, 0, v->x.n, &e->stored));
 done:
   timer_leave(STAGE_INELASTIC);
   return st;
@@ -269,10 +310,13 @@ status visco_accept(run *r) {
   if (r->step->kind != STEP_VISCO) return OK;
   v->result.dissipated = 0.0;
   timer_enter(STAGE_INELASTIC);
-  TRY(flow_elastic_norm(&v->x, &v->now, &norm));
+  TRY(elastic_norm(v, &norm));
   v->largest = fmax(v->largest, norm);
-  flow_state_copy(&v->x, &v->now, &v->old);
   visco_warn_locking(r);
+  flow_state old = v->old;
+  v->old = v->now;
+  v->now = old;
+  v->sums.known = 0;
 done:
   timer_leave(STAGE_INELASTIC);
   return st;

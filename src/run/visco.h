@@ -9,6 +9,24 @@
 
 enum { SLOTS = 4 };
 
+/* Points that are not averaged, over their volume (points.c). */
+typedef struct locking_sums {
+  double stress, strain; /* square of the deviators, J Pa, m3                 */
+  double growth;         /* m3, square of the inelastic change of volume      */
+} locking_sums;
+
+/* What an increment and its end need of the points, found while a step of
+ * constant laws is made. */
+typedef struct point_sums {
+  int known; /* 1: those of r->visco->old and now, r->old and r->now          */
+  double thermal, inelastic; /* J, work of the middle stress on the strains   */
+  double held;    /* J, what the strains would store if they were held        */
+  double strain;  /* J, energy of the stresses                                */
+  double stored;  /* J, kept by the laws                                      */
+  double elastic; /* m3, square of the elastic strains                        */
+  locking_sums locking;
+} point_sums;
+
 struct visco {
   flow x;
   int *place; /* [x.n] of a point in r->eigen                                */
@@ -16,6 +34,7 @@ struct visco {
   flow_state old, now;
   flow_state middle; /* between two halves of a step                         */
   double *fine;      /* [ns*x.n] e^i after them                              */
+  point_sums sums;
   scheme_work *work;
   scheme_result result;
   matrices slot[SLOTS]; /* constant tangents; the last used are kept         */
@@ -49,12 +68,26 @@ status visco_keep_flow(const flow *x, flow_state *s, archive *a,
 void visco_temperatures(const run *r, const equilibrium *e, flow_state *s);
 /* Strains, less the thermal ones, of an equilibrium into s->e; stresses. */
 void visco_strains(run *r, const equilibrium *e, flow_state *s);
+/* Items item, ..., item + n_item - 1 of r->eigen and the points among them,
+ * which are points in turn from "point" on. */
+typedef struct visco_part {
+  int item, n_item, point, n_point;
+} visco_part;
+/* The next part of all items, from a part of zeros; 0 if there is none. Few
+ * enough for the nearest memory; all at once where clusters average. */
+int visco_next_part(const run *r, visco_part *p);
+/* v->now.e of the points from r->now.u: less the thermal strains. */
+void visco_part_strains(run *r, const visco_part *p);
+/* Of a part whose v->now is known: e0 and sigma of r->now, v->sums. */
+status visco_part_sums(run *r, const visco_part *p);
 /* Warns, once, when v->now has crept until its elements lock. */
 void visco_warn_locking(run *r);
 
 /* tangent.c: equilibrium of r->now with the linear law of the points, with a
  * matrix of that tangent; read r->report. */
 status tangent_solve(run *r, const flow_tangent *law);
+/* The same for a step of constant laws, with v->sums. */
+status tangent_step(run *r, const flow_tangent *law, const scheme_call *a);
 /* The keys of the constant tangents, which are made anew when they are used,
  * and which of the matrices is in use. */
 status tangent_keep(run *r, archive *a);

@@ -4,6 +4,7 @@
 #include "scheme/scheme.h"
 
 #include "base/memory.h"
+#include "material/voigt.h"
 
 #include <math.h>
 #include <string.h>
@@ -150,10 +151,13 @@ status flow_fastest(const flow *x, const flow_state *s, double dt,
                     double *rate) {
   status st = OK;
   double value[FLOW_VALUE_MAX];
+  const int constant = flow_is_constant(x);
   *rate = 0.0;
-  for (int k = 0; k < x->n; ++k) {
+  for (int k = 0, last = -1; k < x->n; ++k) {
     law_point p;
     double own;
+    if (constant && x->kind_id[k] == last) continue; /* the same rate         */
+    last = x->kind_id[k];
     TRY(flow_point(x, k, s, dt, value, &p));
     TRY(law_fastest_rate(&p, &own));
     *rate = fmax(*rate, own);
@@ -162,11 +166,11 @@ done:
   return st;
 }
 
-status flow_stored(const flow *x, const flow_state *s, double *energy) {
+status flow_add_stored(const flow *x, const flow_state *s, int from, int to,
+                       double *energy) {
   status st = OK;
   double value[FLOW_VALUE_MAX];
-  *energy = 0.0;
-  for (int k = 0; k < x->n; ++k) {
+  for (int k = from; k < to; ++k) {
     law_point p;
     if (x->kind[x->kind_id[k]].law->ops->stored == NULL) continue;
     TRY(flow_point(x, k, s, 0.0, value, &p));
@@ -176,7 +180,7 @@ done:
   return st;
 }
 
-static double mean_root(const flow *x, double sum) {
+double flow_root(const flow *x, double sum) {
   double volume = 0.0;
   for (int k = 0; k < x->n; ++k) volume += x->weight[k];
   return volume > 0.0 ? sqrt(sum / volume) : 0.0;
@@ -188,21 +192,24 @@ double flow_norm(const flow *x, const double *v) {
     const double *own = v + (size_t)x->ns * (size_t)k;
     sum += x->weight[k] * tensor_dot(x->ns, own, own);
   }
-  return mean_root(x, sum);
+  return flow_root(x, sum);
 }
 
-status flow_elastic_norm(const flow *x, const flow_state *s, double *norm) {
+status flow_add_elastic(const flow *x, const flow_state *s, int from, int to,
+                        double *sum) {
   status st = OK;
-  double sum = 0.0;
-  for (int k = 0; k < x->n; ++k) {
-    double e[6];
+  for (int k = from; k < to; ++k) {
     flow_kind *kind = &x->kind[x->kind_id[k]];
-    TRY(flow_heat(kind, s->temperature[k]));
-    tensor_product(x->ns, kind->elastic.S, s->sigma + (size_t)x->ns * (size_t)k,
-                   e);
-    sum += x->weight[k] * tensor_dot(x->ns, e, e);
+    const size_t at = (size_t)x->ns * (size_t)k;
+    double e[6] = {0};
+    for (int i = 0; i < x->ns; ++i)
+      e[i] = s->e[at + (size_t)i] - s->ei[at + (size_t)i];
+    if (kind->elastic.plane_stress) { /* zz: the stress alone tells           */
+      TRY(flow_heat(kind, s->temperature[k]));
+      voigt_product(x->ns, kind->elastic.S, s->sigma + at, e);
+    }
+    *sum += x->weight[k] * voigt_dot(x->ns, e, e);
   }
-  *norm = mean_root(x, sum);
 done:
   return st;
 }

@@ -1,12 +1,10 @@
 /*
- * Implicit steps of linear laws with constant coefficients. With y = (e^i,
- * alpha) and the strain e (less the thermal one) of a point,
- *   y' = L y + G e,   sigma = E (e - e^i),
- * a step is y_new = P y_old + Q0 e_old + Q1 e_new with matrices that depend on
- * the law and dt alone, so that the body sees the constant elasticity
- * D = E (I - Q1_ei) and needs one equilibrium:
- *   THETA        y_new = y_old + dt (L y_th + G e_th), x_th = (1-theta) x_old +
- *                theta x_new
+ * Maps of implicit steps of linear laws with constant coefficients. With y =
+ * (e^i, alpha) and the strain e (less the thermal one) of a point, y' = L y + G
+ * e,   sigma = E (e - e^i), a step is y_new = P y_old + Q0 e_old + Q1 e_new
+ * with matrices that depend on the law and dt alone, so that the body sees the
+ * constant elasticity D = E (I - Q1_ei) and needs one equilibrium: THETA y_new
+ * = y_old + dt (L y_th + G e_th), x_th = (1-theta) x_old + theta x_new
  *   EXPONENTIAL  the exact solution for e linear in time over the step:
  *                exp(dt L), dt phi_1(dt L) G, dt phi_2(dt L) G
  */
@@ -194,7 +192,7 @@ done:
   return st;
 }
 
-static status make_map(const flow_kind *k, const scheme_step *p, int exact,
+status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
                        linear_map *m, double *D) {
   status st = OK;
   const int ns = k->elastic.ns, n = ns + k->n_alpha;
@@ -204,8 +202,10 @@ static status make_map(const flow_kind *k, const scheme_step *p, int exact,
   TRY(need(&m->P, (size_t)(n * n)));
   TRY(need(&m->Q0, (size_t)(n * ns)));
   TRY(need(&m->Q1, (size_t)(n * ns)));
+  TRY(need(&m->Q, (size_t)(n * ns)));
   TRY(k->law->ops->relaxing != NULL ? relaxing_map(k, p, exact, m)
                                     : matrix_map(k, p, exact, m));
+  add_scaled((size_t)(n * ns), m->Q0, 1.0, m->Q1, m->Q);
   for (int j = 0; j < ns; ++j)
     for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + n * j];
   memcpy(D, k->elastic.E, square * sizeof *D);
@@ -214,75 +214,8 @@ done:
   return st;
 }
 
-/* y += A v, A[n*m]; four of each is a point in the plane. */
-static void add_product(int n, int m, const double *A, const double *v,
-                        double *y) {
-  for (int j = 0; j < 4 && n == 4 && m == 4; ++j)
-    for (int i = 0; i < 4; ++i) y[i] += A[i + 4 * j] * v[j];
-  if (n == 4 && m == 4) return;
-  for (int j = 0; j < m; ++j)
-    for (int i = 0; i < n; ++i) y[i] += A[i + n * j] * v[j];
-}
-
-/* The state of point k from the old one for now->e. */
-static void apply_map(const flow *x, const linear_map *m, int k,
-                      const flow_state *old, flow_state *now) {
-  const int ns = x->ns, na = m->n - ns;
-  const law_elastic *el = &x->kind[x->kind_id[k]].elastic;
-  size_t at = (size_t)ns * (size_t)k, a = x->alpha_at[k];
-  double y[FLOW_VALUE_MAX], elastic[6];
-  memset(y, 0, (size_t)m->n * sizeof *y);
-  add_product(m->n, ns, m->P, old->ei + at, y);
-  add_product(m->n, na, m->P + m->n * ns, old->alpha + a, y);
-  add_product(m->n, ns, m->Q0, old->e + at, y);
-  add_product(m->n, ns, m->Q1, now->e + at, y);
-  memcpy(now->ei + at, y, (size_t)ns * sizeof *y);
-  memcpy(now->alpha + a, y + ns, (size_t)na * sizeof *y);
-  for (int i = 0; i < ns; ++i) elastic[i] = now->e[at + (size_t)i] - y[i];
-  tensor_product(ns, el->E, elastic, now->sigma + at);
-}
-
-static void mean(size_t n, double th, const double *a, const double *b,
-                 double *y) {
-  for (size_t i = 0; i < n; ++i) y[i] = (1.0 - th) * a[i] + th * b[i];
-}
-
-/* From old to mid with strains that are linear over the step. */
-static status map_between(const scheme_call *a, int kind, linear_map *m,
-                          double *D, flow_state *mid) {
-  status st = OK;
-  const flow *x = a->x;
-  const double whole = a->now->t - a->old->t;
-  scheme_step part = *a->p;
-  part.t = mid->t;
-  part.dt = mid->t - a->old->t;
-  TRY(make_map(&x->kind[kind], &part, 1, m, D));
-  for (int k = 0; k < x->n; ++k) {
-    size_t at = (size_t)x->ns * (size_t)k;
-    if (x->kind_id[k] != kind) continue;
-    mean((size_t)x->ns, part.dt / whole, a->old->e + at, a->now->e + at,
-         mid->e + at);
-    apply_map(x, m, k, a->old, mid);
-  }
-done:
-  return st;
-}
-
-status exponential_between(const scheme_call *a, flow_state *mid) {
-  status st = OK;
-  double D[36];
-  for (int i = 0; i < a->x->n_kind; ++i) {
-    linear_map m = {0};
-    st = map_between(a, i, &m, D, mid);
-    linear_map_free(&m);
-    TRY(st);
-  }
-done:
-  return st;
-}
-
-static status make_maps(const flow *x, const scheme_step *p, int exact,
-                        scheme_work *w) {
+status linear_maps(const flow *x, const scheme_step *p, int exact,
+                   scheme_work *w) {
   status st = OK;
   size_t square = (size_t)(x->ns * x->ns);
   const linear_key key = {p->dt, p->theta, exact};
@@ -294,86 +227,9 @@ static status make_maps(const flow *x, const scheme_step *p, int exact,
   w->n_kind = x->n_kind;
   TRY(need(&w->D_kind, square * (size_t)x->n_kind));
   for (int i = 0; i < x->n_kind; ++i)
-    TRY(make_map(&x->kind[i], p, exact, &w->map[i],
-                 w->D_kind + square * (size_t)i));
+    TRY(linear_map_make(&x->kind[i], p, exact, &w->map[i],
+                        w->D_kind + square * (size_t)i));
   w->made = key;
-done:
-  return st;
-}
-
-/* y = P y_old + Q0 e_old + Q1 e for e = e_old: what a step makes of strains
- * that stay. */
-static void predict(const flow *x, const scheme_work *w, const flow_state *old,
-                    flow_state *now) {
-  memcpy(now->e, old->e, (size_t)x->ns * (size_t)x->n * sizeof *now->e);
-  for (int k = 0; k < x->n; ++k)
-    apply_map(x, &w->map[x->kind_id[k]], k, old, now);
-}
-
-/* The rest, Q1 (e - e_old) and D (e - e_old) more. */
-static void follow(const flow *x, const scheme_work *w, const flow_state *old,
-                   flow_state *now) {
-  const int ns = x->ns;
-  for (int k = 0; k < x->n; ++k) {
-    const linear_map *m = &w->map[x->kind_id[k]];
-    const double *D = w->D_kind + (size_t)(ns * ns * x->kind_id[k]);
-    const size_t at = (size_t)ns * (size_t)k, a = x->alpha_at[k];
-    double de[6], y[FLOW_VALUE_MAX];
-    for (int i = 0; i < ns; ++i)
-      de[i] = now->e[at + (size_t)i] - old->e[at + (size_t)i];
-    memset(y, 0, (size_t)m->n * sizeof *y);
-    add_product(m->n, ns, m->Q1, de, y);
-    add_product(ns, ns, D, de, now->sigma + at);
-    for (int i = 0; i < ns; ++i) now->ei[at + (size_t)i] += y[i];
-    for (int i = ns; i < m->n; ++i) now->alpha[a + (size_t)(i - ns)] += y[i];
-  }
-}
-
-/* Power of point k of a constant law in the middle between two states. */
-static status middle_power(const scheme_call *a, int k, double *power) {
-  status st = OK;
-  const flow *x = a->x;
-  const flow_state *old = a->old, *now = a->now;
-  const double th = a->p->theta;
-  const size_t ns = (size_t)x->ns, at = ns * (size_t)k, al = x->alpha_at[k];
-  double sigma[6], ei[6], alpha[FLOW_VALUE_MAX];
-  law_point p;
-  TRY(flow_coefficients(&x->kind[x->kind_id[k]], 0.0, 0.0, NULL, &p));
-  mean(ns, th, old->sigma + at, now->sigma + at, sigma);
-  mean(ns, th, old->ei + at, now->ei + at, ei);
-  mean(x->alpha_at[k + 1] - al, th, old->alpha + al, now->alpha + al, alpha);
-  p.dt = a->p->dt;
-  p.sigma = sigma;
-  p.ei = ei;
-  p.alpha = alpha;
-  if (law_flows(&p)) *power += x->weight[k] * law_dissipation(&p);
-done:
-  return st;
-}
-
-status linear_advance(const scheme_call *a, int exact) {
-  status st = OK;
-  const flow *x = a->x;
-  scheme_work *w = a->w;
-  const size_t n = (size_t)x->ns * (size_t)x->n;
-  double power = 0.0;
-  TRY(make_maps(x, a->p, exact, w));
-  TRY(need(&w->sigma_k, n));
-  a->now->t = a->p->t;
-  TRY(a->b->begin(a->b->ctx, a->now));
-  predict(x, w, a->old, a->now);
-  memcpy(w->sigma_k, a->now->sigma, n * sizeof *w->sigma_k);
-  flow_tangent law = {.key = (exact ? 1.0 : a->p->theta) * a->p->dt,
-                      .exact = exact,
-                      .D = w->D_kind,
-                      .sigma = w->sigma_k,
-                      .e = a->old->e};
-  TRY(a->b->linear(a->b->ctx, &law, a->now, &a->out->settled));
-  memcpy(a->now->sigma, w->sigma_k, n * sizeof *w->sigma_k);
-  follow(x, w, a->old, a->now);
-  a->out->iterations = 1;
-  for (int k = 0; k < x->n; ++k) TRY(middle_power(a, k, &power));
-  a->out->dissipated += a->p->dt * power;
 done:
   return st;
 }

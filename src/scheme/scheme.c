@@ -35,6 +35,7 @@ void linear_map_free(linear_map *m) {
   memory_free(m->P);
   memory_free(m->Q0);
   memory_free(m->Q1);
+  memory_free(m->Q);
 }
 
 void scheme_work_free(scheme_work *w) {

@@ -66,15 +66,19 @@ enum { FLOW_VALUE_MAX = 512 };
  * dissipated, W. dt: step being made. */
 status flow_rates(const flow *x, const flow_state *s, double dt,
                   double *ei_rate, double *alpha_rate, double *power);
-/* The fastest rate of all points for a step dt, 1/s; and energy kept by alpha
- * and ei, J. */
+/* The fastest rate of all points for a step dt, 1/s. */
 status flow_fastest(const flow *x, const flow_state *s, double dt,
                     double *rate);
-status flow_stored(const flow *x, const flow_state *s, double *energy);
 /* Root mean square over the volume of [ns*n] values. */
 double flow_norm(const flow *x, const double *v);
-/* The same of the elastic strains, -. */
-status flow_elastic_norm(const flow *x, const flow_state *s, double *norm);
+/* Of the points from, ..., to - 1: energy kept by alpha and ei, J; the square
+ * of the elastic strains over their volume, m3, for flow_root. */
+status flow_add_stored(const flow *x, const flow_state *s, int from, int to,
+                       double *energy);
+status flow_add_elastic(const flow *x, const flow_state *s, int from, int to,
+                        double *sum);
+/* Root of a sum over the volume of all points. */
+double flow_root(const flow *x, double sum);
 
 /* Law of the points for one linear solve: sigma = sigma_k + D (e - e_k). */
 typedef struct flow_tangent {
@@ -83,8 +87,11 @@ typedef struct flow_tangent {
   int exact;  /* D of EXPONENTIAL, else of THETA                              */
   int elastic;     /* D = E: the matrix of the elastic body                   */
   const double *D; /* key > 0: [ns*ns*n_kind], else [ns*ns*n]; Pa             */
-  const double *sigma, *e; /* [ns*n] sigma_k, e_k                             */
+  const double *sigma, *e; /* [ns*n] sigma_k, e_k; key > 0: those that
+                              linear_predict makes, and of scheme_call.old */
 } flow_tangent;
+
+struct scheme_call;
 
 /* What an integrator asks of the body. *settled: 0 if the contact problem was
  * not solved to its tolerance. */
@@ -97,6 +104,10 @@ typedef struct flow_body {
   /* Equilibrium with the linear law: e. */
   status (*linear)(void *ctx, const flow_tangent *law, flow_state *s,
                    int *settled);
+  /* One step of constant laws: linear_predict of all points, the equilibrium
+   * with the linear law, e of it, linear_follow. */
+  status (*step)(void *ctx, const flow_tangent *law,
+                 const struct scheme_call *a, int *settled);
 } flow_body;
 
 typedef struct scheme_step {
@@ -126,6 +137,12 @@ typedef struct scheme_call {
   flow_state *now;
   scheme_result *out;
 } scheme_call;
+
+/* Points from, ..., to - 1 in a step of constant laws: e^i, alpha, sigma of now
+ * as if e of old stayed; and what e of now adds to them, with the energy
+ * dissipated into a->out. */
+void linear_predict(const scheme_call *a, int from, int to);
+void linear_follow(const scheme_call *a, int from, int to);
 
 typedef struct scheme {
   const char *name, *reference, *help;

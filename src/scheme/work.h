@@ -14,6 +14,7 @@ typedef struct linear_map {
   int n;           /* ns + n_alpha                                           */
   double *P;       /* [n*n]                                                  */
   double *Q0, *Q1; /* [n*ns]                                                 */
+  double *Q;       /* [n*ns] Q0 + Q1: of strains that stay                   */
 } linear_map;
 
 /* What the maps of a step depend on beside the laws. */
@@ -40,10 +41,17 @@ status need(double **array, size_t n); /* allocate if NULL                   */
 
 /* linear.c: y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
 status linear_law(const flow_kind *k, double *L, double *G);
+/* The map of a kind and its D[ns*ns]; those of all kinds into w, if others are
+ * there. */
+status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
+                       linear_map *m, double *D);
+status linear_maps(const flow *x, const scheme_step *p, int exact,
+                   scheme_work *w);
+/* linear_step.c */
 status linear_advance(const scheme_call *a, int exact);
+status exponential_between(const scheme_call *a, flow_state *mid);
 /* newton.c */
 status newton_advance(const scheme_call *a);
-status exponential_between(const scheme_call *a, flow_state *mid);
 /* relaxing.c: for laws with "relaxing", m->P, Q0, Q1 are there. */
 status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
                     linear_map *m);

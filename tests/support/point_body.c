@@ -86,6 +86,17 @@ static status linear(void *ctx, const flow_tangent *law, flow_state *s,
   return OK;
 }
 
+static status step(void *ctx, const flow_tangent *law, const scheme_call *a,
+                   int *settled) {
+  point_body *b = ctx;
+  ++b->n_linear;
+  linear_predict(a, 0, a->x->n);
+  balance(&b->drive, a->now->t, law->D, a->now->sigma, a->old->e, a->now->e);
+  linear_follow(a, 0, a->x->n);
+  *settled = 1;
+  return OK;
+}
+
 static void all_right(status st) {
   ck_assert_msg(st == OK, "%s", status_message());
 }
@@ -125,7 +136,7 @@ void point_body_free(point_body *b) {
 
 void point_body_run(point_body *b, const scheme *s, double theta, double t,
                     int n, double *estimates) {
-  const flow_body body = {b, equilibrium, begin, linear};
+  const flow_body body = {b, equilibrium, begin, linear, step};
   const double start = b->old.t, dt = (t - start) / n;
   for (int k = 0; k < n; ++k) {
     const scheme_step p = {.t = k == n - 1 ? t : start + (k + 1) * dt,
