@@ -6,6 +6,7 @@
 #include "accuracy/accuracy.h"
 
 #include "base/memory.h"
+#include "newton/dense.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -59,24 +60,14 @@ static int factor(dense_inverse *d, double *work, int *iwork) {
   return d->condition < 1.0 / 0x1p-50;
 }
 
-/* Column k: unknown of place rank + k moves by one, the others follow without
- * force: y = -inv(L') l, l its row of the factor. */
+/* What L takes to zero, in the unknowns before the scaling. */
 static status find_kernel(dense_inverse *d) {
   status st = OK;
-  size_t m = (size_t)d->m, rank = (size_t)d->rank;
-  NEW(d->kernel, m * (m - rank));
-  for (size_t k = 0; k < m - rank; ++k) {
-    double *to = d->kernel + m * k;
-    for (size_t j = 0; j < rank; ++j) d->y[j] = -d->L[rank + k + m * j];
-    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, d->rank,
-                d->L, d->m, d->y, 1);
-    for (size_t j = 0; j < rank; ++j) {
-      int dof = d->pivot[j] - 1;
-      to[dof] = d->unit[dof] * d->y[j];
-    }
-    int dof = d->pivot[rank + k] - 1;
-    to[dof] = d->unit[dof];
-  }
+  size_t m = (size_t)d->m;
+  NEW(d->kernel, m * (size_t)(d->m - d->rank));
+  dense_null(d->m, d->rank, d->L, d->pivot, d->y, d->kernel);
+  for (size_t k = 0; k < m * (size_t)(d->m - d->rank); ++k)
+    d->kernel[k] *= d->unit[k % m];
 done:
   return st;
 }

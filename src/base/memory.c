@@ -3,6 +3,7 @@
  */
 #include "base/memory.h"
 
+#include <SuiteSparse_config.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,6 +63,19 @@ void memory_free(void *p) {
   if (p == NULL) return;
   in_use -= memory_size(p);
   free((char *)p - HEADER);
+}
+
+static void *malloc_counted(size_t bytes) { return memory_new(bytes, 1); }
+
+static void *realloc_counted(void *p, size_t bytes) {
+  return memory_resize(p, p == NULL ? 0 : memory_size(p), bytes, 1);
+}
+
+void memory_count_suitesparse(void) {
+  SuiteSparse_config.malloc_func = malloc_counted;
+  SuiteSparse_config.calloc_func = memory_new;
+  SuiteSparse_config.realloc_func = realloc_counted;
+  SuiteSparse_config.free_func = memory_free;
 }
 
 size_t memory_in_use(void) { return in_use; }

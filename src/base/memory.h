@@ -44,6 +44,10 @@ char *memory_text(const char *text); /* copy of a string; NULL if refused    */
 void memory_free(void *p);           /* accepts NULL                         */
 size_t memory_size(const void *p);   /* bytes asked for with this block      */
 
+/* From here on all blocks of SuiteSparse come from here too. Called before
+ * its first use; further calls change nothing. */
+void memory_count_suitesparse(void);
+
 size_t memory_in_use(void);    /* bytes now held                              */
 size_t memory_peak(void);      /* the most held at a time                     */
 size_t memory_allocated(void); /* bytes asked for since the start            */

@@ -46,23 +46,6 @@ static void orthonormalise(int m, int n, double *R) {
   }
 }
 
-/* R from P'AP = L L', L[m*m] of rank m - n, P the order "pivot" (from 1). */
-static void null_vectors(int m, int n, const double *L, const int *pivot,
-                         double *y, double *R) {
-  int rank = m - n;
-  for (int j = 0; j < n; ++j) {
-    double *v = R + (size_t)j * (size_t)m;
-    for (int i = 0; i < rank; ++i)
-      y[i] = -L[(size_t)(rank + j) + (size_t)m * (size_t)i];
-    if (rank > 0)
-      cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, rank, L,
-                  m, y, 1);
-    for (int i = 0; i < rank; ++i) v[pivot[i] - 1] = y[i];
-    v[pivot[rank + j] - 1] = 1.0;
-  }
-  orthonormalise(m, n, R);
-}
-
 /* L[m*m]: A scaled by "power"; lost. */
 static status find_modes(const contact_problem *cp, double power, double *L,
                          anchor *an) {
@@ -78,7 +61,8 @@ static status find_modes(const contact_problem *cp, double power, double *L,
   NEW(an->R, m * an->n_mode);
   NEW(an->a, an->n_mode);
   NEW(an->step, an->n_mode);
-  null_vectors(m, an->n_mode, L, pivot, work, an->R);
+  dense_null(m, rank, L, pivot, work, an->R);
+  orthonormalise(m, an->n_mode, an->R);
 done:
   memory_free(pivot);
   memory_free(work);

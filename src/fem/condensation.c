@@ -38,24 +38,6 @@ struct condensed {
   cholmod_common *cm; /* owned                                              */
 };
 
-static void *suitesparse_malloc(size_t bytes) { return memory_new(bytes, 1); }
-
-static void *suitesparse_calloc(size_t n, size_t size) {
-  return memory_new(n, size);
-}
-
-static void *suitesparse_realloc(void *p, size_t bytes) {
-  return memory_resize(p, p == NULL ? 0 : memory_size(p), bytes, 1);
-}
-
-/* All blocks of SuiteSparse are counted and can be refused. */
-static void route_memory(void) {
-  SuiteSparse_config.malloc_func = suitesparse_malloc;
-  SuiteSparse_config.calloc_func = suitesparse_calloc;
-  SuiteSparse_config.realloc_func = suitesparse_realloc;
-  SuiteSparse_config.free_func = memory_free;
-}
-
 /* The connected set of the graph that holds "first": list[0..) and its size;
  * its nodes are marked. */
 static int connected_set(const graph *g, int first, unsigned char *seen,
@@ -222,7 +204,7 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   status st = OK;
   condensed *c = NULL;
   unsigned char *floating = NULL;
-  route_memory();
+  memory_count_suitesparse();
   NEW(c, 1);
   NEW(c->cm, 1);
   cholmod_l_start(c->cm);

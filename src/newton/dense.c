@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 
+#include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
 
@@ -118,4 +119,18 @@ void dense_solve(const dense *d, int n_rhs, double *x, int ld) {
                         ld);
   else
     LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', n, n_rhs, d->a, n, x, ld);
+}
+
+void dense_null(int m, int rank, const double *L, const int *pivot, double *y,
+                double *N) {
+  size_t ld = (size_t)m, r = (size_t)rank;
+  for (size_t k = 0; k < ld - r; ++k) {
+    double *v = N + ld * k;
+    for (size_t i = 0; i < r; ++i) y[i] = -L[r + k + ld * i];
+    if (rank > 0)
+      cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, rank, L,
+                  m, y, 1);
+    for (size_t i = 0; i < r; ++i) v[pivot[i] - 1] = y[i];
+    v[pivot[r + k] - 1] = 1.0;
+  }
 }

@@ -20,6 +20,11 @@ void dense_mirror(int m, double *M);
 /* Power of two that brings the largest diagonal entry of M[m*m] to order 1:
  * roots then keep their bits under a change of units by such powers. */
 double dense_power(int m, const double *M);
+/* N[m*(m-rank)], zero before: vectors that L[m*m], factor of rank "rank" in the
+ * order "pivot" (from 1), takes to zero: the unknown of one place beyond the
+ * rank moves by 1, those before follow. y[rank]: room. */
+void dense_null(int m, int rank, const double *L, const int *pivot, double *y,
+                double *N);
 /* 0: singular to rounding, which is asked for only if "doubt". */
 int dense_factor(dense *d, int doubt);
 /* The inverse in place of the factor, all of it; 0: not possible. */

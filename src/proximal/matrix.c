@@ -49,6 +49,7 @@ status step_matrix_new(const contact_problem *cp, const force_set *set,
   NEW(s->line, m);
   NEW(s->rhs, m);
   NEW(s->x, m);
+  memory_count_suitesparse();
   umfpack_di_defaults(s->control);
   if (set->rows.start != NULL) {
     NEW(s->rows.start, m + 1);

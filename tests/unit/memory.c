@@ -3,6 +3,7 @@
 #include "base/timer.h"
 #include "support/unit.h"
 
+#include <SuiteSparse_config.h>
 #include <string.h>
 
 START_TEST(bytes_in_use_return_to_the_start) {
@@ -13,6 +14,24 @@ START_TEST(bytes_in_use_return_to_the_start) {
   for (int i = 0; i < 100; ++i) ck_assert(a[i] == 0.0);
   memory_free(a);
   memory_free(NULL);
+  ck_assert_uint_eq(memory_in_use(), before);
+}
+END_TEST
+
+/* Sparse factors count and can be refused like any other block. */
+START_TEST(blocks_of_suitesparse_are_counted) {
+  size_t before = memory_in_use();
+  int moved;
+  memory_count_suitesparse();
+  double *a = SuiteSparse_malloc(3, sizeof *a);
+  ck_assert_uint_eq(memory_in_use(), before + 3 * sizeof *a);
+  a[2] = 7.0;
+  a = SuiteSparse_realloc(5, 3, sizeof *a, a, &moved);
+  ck_assert(moved && a[2] == 7.0);
+  ck_assert_uint_eq(memory_in_use(), before + 5 * sizeof *a);
+  memory_refuse(1, 0);
+  ck_assert_ptr_null(SuiteSparse_calloc(1, 1));
+  SuiteSparse_free(a);
   ck_assert_uint_eq(memory_in_use(), before);
 }
 END_TEST
@@ -77,6 +96,6 @@ START_TEST(stage_is_charged_for_itself_only) {
 END_TEST
 
 UNIT_MAIN("memory", bytes_in_use_return_to_the_start,
-          overflowing_request_is_refused,
+          blocks_of_suitesparse_are_counted, overflowing_request_is_refused,
           kth_request_is_refused_once_or_for_good,
           failure_keeps_message_and_path, stage_is_charged_for_itself_only)
