@@ -184,6 +184,12 @@ static int has_inelastic(const model *m) {
          (has_card(m, "VISCO") || first_initial(m, INITIAL_STRAIN) != NULL);
 }
 
+int model_flows(const model *m, int elem_id) {
+  const section *s = &m->sections[m->elem_section[elem_id]];
+  const material *mat = &m->materials[s->material_id];
+  return mat->law.ops != NULL && !(mat->is_still && m->still[elem_id]);
+}
+
 /* A material whose law depends on temperature. */
 static const material *first_warm_law(const model *m) {
   for (int i = 0; i < m->n_material; ++i) {

@@ -431,6 +431,7 @@ void model_free(model *m) {
   memory_free(m->moves);
   memory_free(m->contacts);
   memory_free(m->steps);
+  memory_free(m->still);
   memory_free(m->elem_section);
   memory_free(m->job);
   memory_free(m);

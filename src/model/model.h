@@ -42,6 +42,7 @@ typedef struct material {
                                       the law ends with                       */
   double relaxed[36]; /* [ns*ns] e^i over the stress then, 1/Pa               */
   int is_relaxed;     /* 1: they do                                           */
+  int is_still;       /* 1: the law is left out where model.still says so     */
   int is_abaqus_prony; /* *VISCOELASTIC: long-term moduli if it is not said   */
 } material;
 enum { MODULI_LONG_TERM, MODULI_INSTANTANEOUS };
@@ -284,6 +285,7 @@ typedef struct neglected {
                     increment was solved again with it, over their largest    */
   long checked;  /* increments                                               */
   long again;    /* of them solved again                                     */
+  int some;      /* > 0: of the law at so many elements only, m->still       */
   double time;   /* s, > 0: the law is at its end, which it nears by
                     exp(-t/time)                                              */
   int back;      /* 1: it matters, the run was made again with it            */
@@ -330,6 +332,8 @@ typedef struct model {
   place effects_at;
   int n_neglected;
   neglected neglected[NEGLECT_MAX]; /* [n_neglected]                          */
+  unsigned char *still; /* [n_elem] as material.is_still says; NULL: nowhere,
+                           owned                                              */
   closed_form ref;
   unsigned effects; /* bits EFFECT_*, set by model_check                    */
   int corner_id; /* a contact with nodes of another one before it, or -1      */
@@ -398,6 +402,8 @@ double print_next(const print_request *p, const step *s, double after,
                   double before);
 /* 1 if some contact has an axis for its torque. */
 int model_has_axis(const model *m);
+/* 1: the law of an element counts. */
+int model_flows(const model *m, int elem_id);
 /* 1: its limit is an average over the surface. */
 int rule_has_average(const friction_rule *rule);
 /* Which card or fact switched it on or off, into text; returns text. */

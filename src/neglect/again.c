@@ -17,7 +17,7 @@ static void take_strains(neglect *n, const neglected *row) {
   const int ns = n->m->ns, heat = row->bit == EFFECT_BIT_THERMAL;
   const double *from = heat ? n->heat : n->flown;
   for (int e = 0; e < n->msh->n_elem; ++e) {
-    const int own = heat || neglect_material(n, e) == &n->m->materials[row->id];
+    const int own = heat || neglect_is_about(n, row, e);
     for (int i = 0; i < ns; ++i)
       n->strain[ns * e + i] = own ? from[ns * e + i] : 0.0;
   }

@@ -54,7 +54,7 @@ done:
 }
 
 /* Kinematics of the first section of a material, or -1. */
-static int kinematics_of(const model *m, int material_id) {
+int neglect_kinematics(const model *m, int material_id) {
   for (int i = 0; i < m->n_section; ++i)
     if (m->sections[i].material_id == material_id) return m->sections[i].kin;
   return -1;
@@ -70,7 +70,7 @@ static status try_small(model *m, const mesh *msh, int id, int *tried) {
   *tried = 0;
   double stress = neglect_load_stress(m, msh, young);
   if (!(stress > 0.0)) goto done;
-  TRY(uniaxial_rate(mat, (kinematics)kinematics_of(m, id), stress, &rate));
+  TRY(uniaxial_rate(mat, (kinematics)neglect_kinematics(m, id), stress, &rate));
   double share = rate * visco_time(m) * young / stress;
   if (!(share <= neglect_share * m->effects_tol)) goto done;
   neglected *row = neglect_row(m, EFFECT_BIT_INELASTIC, id);
@@ -144,7 +144,8 @@ static status try_relaxed(model *m, int id) {
   if (row == NULL) goto done;
   row->time = time;
   relaxed_constants(&mat->elastic.set[0], R, &mat->elastic_aside);
-  TRY(relaxed_law(mat, (kinematics)kinematics_of(m, id), mat->relaxed, &time));
+  TRY(relaxed_law(mat, (kinematics)neglect_kinematics(m, id), mat->relaxed,
+                  &time));
   snprintf(row->why, sizeof row->why,
            "material %s: %s ends within %.3g, %.1e of an increment; E = %.6g, "
            "nu = %.6g stand for it",
@@ -158,8 +159,8 @@ static status try_law(model *m, const mesh *msh, int id) {
   status st = OK;
   const material *mat = &m->materials[id];
   int tried;
-  if (mat->law.ops == NULL || kinematics_of(m, id) < 0 || mat->elastic.n != 1 ||
-      law_varies(&mat->law) != 0)
+  if (mat->law.ops == NULL || neglect_kinematics(m, id) < 0 ||
+      mat->elastic.n != 1 || law_varies(&mat->law) != 0)
     goto done;
   TRY(try_small(m, msh, id, &tried));
   if (!tried) TRY(try_relaxed(m, id));
@@ -173,6 +174,7 @@ status neglect_try_laws(model *m, const mesh *msh) {
       neglect_has_initial(m))
     goto done;
   for (int i = 0; i < m->n_material; ++i) TRY(try_law(m, msh, i));
+  TRY(neglect_try_threshold(m, msh));
 done:
   return st;
 }

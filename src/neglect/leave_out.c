@@ -49,6 +49,8 @@ void neglect_leave_out(model *m) {
     if (row->bit == EFFECT_BIT_NONLOCAL) each_rule(m, make_local);
     if (row->bit == EFFECT_BIT_FRICTION) each_rule(m, take_out);
     if (row->bit != EFFECT_BIT_INELASTIC) continue;
+    m->materials[row->id].is_still = row->some > 0;
+    if (row->some > 0) continue;
     m->materials[row->id].law_aside = m->materials[row->id].law.ops;
     m->materials[row->id].law.ops = NULL;
     if (row->time > 0.0) change_constants(&m->materials[row->id]);
@@ -65,6 +67,7 @@ void neglect_restore(model *m) {
     material *mat = &m->materials[i];
     if (mat->law_aside != NULL) mat->law.ops = mat->law_aside;
     mat->law_aside = NULL;
+    mat->is_still = 0;
     if (mat->is_relaxed) change_constants(mat);
   }
   model_find_effects(m);

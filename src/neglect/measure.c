@@ -106,6 +106,11 @@ const material *neglect_material(const neglect *n, int elem_id) {
   return &m->materials[m->sections[m->elem_section[elem_id]].material_id];
 }
 
+int neglect_is_about(const neglect *n, const neglected *row, int elem_id) {
+  return neglect_material(n, elem_id) == &n->m->materials[row->id] &&
+         (row->some == 0 || n->m->still[elem_id]);
+}
+
 /* ---- scales ------------------------------------------------------------- */
 
 /* Largest contact pressure, or stress of an element, Pa. */
@@ -144,7 +149,7 @@ static double energy_of(const neglect *n, int elem_id, const double *e,
 
 /* Stresses of the run into n->sigma: its thermal strains and those of the laws
  * in force carry none. */
-static status find_stress(neglect *n, const state *s) {
+status neglect_stress(neglect *n, const state *s) {
   status st = OK;
   const model *m = n->m;
   const int ns = m->ns, warm = (m->effects & EFFECT_THERMAL) != 0;
@@ -216,7 +221,7 @@ static void measure_relaxed(neglect *n, const neglected *row, double dt,
     double ended[6], own;
     double *before = n->flow_rate + (size_t)(ns * e);
     double *lag = n->flown + (size_t)(ns * e);
-    if (neglect_material(n, e) != mat) continue;
+    if (!neglect_is_about(n, row, e)) continue;
     tensor_product(ns, mat->relaxed, n->sigma + (size_t)(ns * e), ended);
     for (int i = 0; i < ns; ++i) {
       lag[i] = left * (lag[i] - (ended[i] - before[i]));
@@ -239,11 +244,11 @@ static status add_rates(neglect *n, const state *s, const neglected *row,
   double value[FLOW_VALUE_MAX], alpha_rate[FLOW_VALUE_MAX], sum = 0.0;
   static const double zero[FLOW_VALUE_MAX];
   int section_id = -1;
-  law.ops = mat->law_aside;
+  if (row->some == 0) law.ops = mat->law_aside;
   for (int e = 0; e < n->msh->n_elem; ++e) {
     law_point p;
     double ei_rate[6] = {0.0}, stress;
-    if (neglect_material(n, e) != mat) continue;
+    if (!neglect_is_about(n, row, e)) continue;
     if (section_id != n->m->elem_section[e]) {
       law_elastic elastic;
       section_id = n->m->elem_section[e];
@@ -286,7 +291,7 @@ static status measure_inelastic(neglect *n, const state *s, int k, double *norm,
   *norm = SAFETY * n->sum[k];
   *stress = 0.0;
   for (int e = 0; e < n->msh->n_elem; ++e)
-    if (neglect_material(n, e) == &n->m->materials[row->id])
+    if (neglect_is_about(n, row, e))
       *stress = fmax(*stress, SAFETY * n->stress[e]);
 done:
   return st;
@@ -322,7 +327,7 @@ static void measure_friction(neglect *n, const state *s, double *sum,
 status neglect_measure(neglect *n, const state *s, neglected *rows) {
   status st = OK;
   double size = sqrt(2.0 * fmax(s->energy.strain, 0.0));
-  TRY(find_stress(n, s));
+  TRY(neglect_stress(n, s));
   double scale = stress_scale(n, s);
   for (int k = 0; k < n->m->n_neglected; ++k) {
     double norm = 0.0, stress = 0.0;

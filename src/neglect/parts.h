@@ -43,7 +43,15 @@ neglected *neglect_row(model *m, int bit, int id);
 /* laws.c: materials to try without their law. */
 status neglect_try_laws(model *m, const mesh *msh);
 
+int neglect_kinematics(const model *m, int material_id);
+/* threshold.c: elements that stay below the threshold of their law. */
+status neglect_try_threshold(model *m, const mesh *msh);
+
 const material *neglect_material(const neglect *n, int elem_id);
+/* 1: the row leaves out the law of that element. */
+int neglect_is_about(const neglect *n, const neglected *row, int elem_id);
+/* Stresses of the run into n->sigma. */
+status neglect_stress(neglect *n, const state *s);
 /* Coefficient of the friction left out at contact node i. */
 double neglect_coefficient(const neglect *n, const state *s, int i);
 /* a / b; nothing is no part of anything. */

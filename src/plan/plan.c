@@ -519,6 +519,14 @@ done:
   return st;
 }
 
+/* Elements of a section whose law counts. */
+static double flowing_elements(const model *m, const mesh *msh, int id) {
+  int n = 0;
+  for (int e = 0; e < msh->n_elem; ++e)
+    n += m->elem_section[e] == id && model_flows(m, e);
+  return n;
+}
+
 /* One row for each group whose material has a law; the first has the stage. */
 static status add_laws(const model *m, const mesh *msh, effect_plan *p,
                        int *capacity, const plan_row *all) {
@@ -532,7 +540,7 @@ static status add_laws(const model *m, const mesh *msh, effect_plan *p,
     if (r.on)
       snprintf(r.why, sizeof r.why, "%s of material %s, %s:%d",
                mat->law.ops->name, mat->name, PLACE(mat->law.at));
-    r.items = section_elements(m, msh, i);
+    r.items = flowing_elements(m, msh, i);
     p->sizes.flowing += r.items;
     if (!first) {
       r.n_stage = 0;

@@ -39,7 +39,7 @@ static status new_points(run *r, visco *v, const int *kind_of) {
   NEW(v->elem, r->eigen.n);
   for (int k = 0; k < r->eigen.n; ++k) {
     int kind = kind_of[r->m->elem_section[r->eigen_elem[k]]];
-    if (kind < 0) continue;
+    if (kind < 0 || !model_flows(r->m, r->eigen_elem[k])) continue;
     v->place[n] = k;
     v->elem[n] = r->eigen_elem[k];
     kind_id[n++] = kind;

@@ -23,8 +23,7 @@ const double *run_elasticity(const run *r, int elem_id) {
 }
 
 static int flows(const run *r, int elem_id) {
-  return (r->m->effects & EFFECT_INELASTIC) &&
-         run_material(r, elem_id)->law.ops != NULL;
+  return (r->m->effects & EFFECT_INELASTIC) && model_flows(r->m, elem_id);
 }
 
 static int expands(const run *r, int elem_id) {

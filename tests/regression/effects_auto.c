@@ -18,6 +18,7 @@ typedef struct scene {
   const char *loads;    /* cards of the step                                  */
   const char *effects;  /* the card *EFFECTS                                  */
   double nu;
+  const char *dt; /* NULL: 0.25                                               */
 } scene;
 
 static job run_scene(const scene *s) {
@@ -30,12 +31,12 @@ static job run_scene(const scene *s) {
             "*AMPLITUDE, NAME=ON\n0., 1., 1., 1.\n"
             "*OBSTACLE, NAME=FLOOR, TYPE=CONFORMING\n"
             "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=FLOOR\n%s%s"
-            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.0\n"
+            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n%s, 1.0\n"
             "*BOUNDARY\nSYMMETRY, 1, 1\n*DSLOAD\nTOP, P, 50.\n%s"
             "*PRINT, CONTACT, TOTALS, ENERGY, FREQUENCY=0\n"
             "*OUTPUT, HDF5=NO\n*END STEP\n",
             s->nu, s->material, s->law == NULL ? "" : s->law, s->effects,
-            s->loads);
+            s->dt == NULL ? "0.25" : s->dt, s->loads);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;
@@ -115,8 +116,12 @@ static const char coulomb[] = "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n";
 
 /* The strain of 50 MPa is 3.8e-4: 1e-4 of it is 3.2e-3 K at 1.2e-5/K. */
 START_TEST(small_thermal_strain_is_left_out) {
-  const scene small = {"*EXPANSION\n1.2D-5\n", coulomb,
-                       "*TEMPERATURE\nBODY, 1.D-4\n", "", 0.2};
+  const scene small = {"*EXPANSION\n1.2D-5\n",
+                       coulomb,
+                       "*TEMPERATURE\nBODY, 1.D-4\n",
+                       "",
+                       0.2,
+                       NULL};
   scene above = small, large = small;
   above.loads = "*TEMPERATURE\nBODY, 2.5D-3\n";
   large.loads = "*TEMPERATURE\nBODY, 1.D-2\n";
@@ -131,13 +136,17 @@ END_TEST
 START_TEST(heat_that_makes_all_friction_stays) {
   const scene s = {"*EXPANSION\n1.2D-5\n",
                    "*FRICTION, CONTACT=FOOT, LAW=TRESCA\n15.\n",
-                   "*TEMPERATURE\nBODY, 1.D-4\n", "", 0.0};
+                   "*TEMPERATURE\nBODY, 1.D-4\n",
+                   "",
+                   0.0,
+                   NULL};
   compare(&s, "thermal strain", -1, 1e-12);
 }
 END_TEST
 
 START_TEST(slow_relaxation_is_left_out) {
-  const scene slow = {"*INELASTIC, LAW=MAXWELL\n1.D6\n", coulomb, "", "", 0.2};
+  const scene slow = {
+      "*INELASTIC, LAW=MAXWELL\n1.D6\n", coulomb, "", "", 0.2, NULL};
   scene fast = slow;
   fast.material = "*INELASTIC, LAW=MAXWELL\n1.D2\n";
   compare(&slow, "inelastic strain", 1, 1e-3);
@@ -148,8 +157,12 @@ END_TEST
 /* A ramp of 1 s in four increments: strain lags behind by the creep of the
  * last 0.1 ms of 0.25 s. In the place of the law E E1/(E + E1). */
 START_TEST(law_at_its_end_is_left_out) {
-  const scene fast = {"*INELASTIC, LAW=ZENER\n65.D3, 0.65\n", coulomb,
-                      "LEFT, P, 20.\n", "", 0.2};
+  const scene fast = {"*INELASTIC, LAW=ZENER\n65.D3, 0.65\n",
+                      coulomb,
+                      "LEFT, P, 20.\n",
+                      "",
+                      0.2,
+                      NULL};
   scene series = fast, sudden = fast, slow = fast, fluid = fast;
   series.material = "*INELASTIC, LAW=PRONY\n0.3, 0.2, 1.D-6\n0.4, 0., 1.D-9\n";
   sudden.loads =
@@ -168,8 +181,8 @@ END_TEST
 /* Sheared along its side, the block passes a threshold that the loads do not.
  */
 START_TEST(law_below_its_threshold_is_left_out) {
-  const scene below = {"*INELASTIC, LAW=BINGHAM\n200., 1.D3\n", coulomb, "", "",
-                       0.2};
+  const scene below = {
+      "*INELASTIC, LAW=BINGHAM\n200., 1.D3\n", coulomb, "", "", 0.2, NULL};
   scene corner = below;
   corner.material = "*INELASTIC, LAW=BINGHAM\n60., 1.D3\n";
   corner.loads = "LEFT, TY, 49.\n";
@@ -178,11 +191,31 @@ START_TEST(law_below_its_threshold_is_left_out) {
 }
 END_TEST
 
+/* Flow near a corner only: the law is left out elsewhere, and all is the same.
+ */
+START_TEST(elements_below_the_threshold_are_left_out) {
+  const scene corner = {"*INELASTIC, LAW=BINGHAM\n100., 1.D5\n",
+                        coulomb,
+                        "LEFT, TY, -120.\n",
+                        "",
+                        0.2,
+                        "0.02"};
+  scene everywhere = corner;
+  everywhere.material = "*INELASTIC, LAW=BINGHAM\n20., 1.D5\n";
+  compare(&corner, "inelastic strain", 1, 1e-8);
+  stays(&everywhere, "inelastic strain");
+}
+END_TEST
+
 /* Nodes are 5 apart. */
 START_TEST(average_within_an_element_is_local) {
   const scene within = {
-      "", "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=4.9\n0.3\n",
-      "LEFT, P, 20.\n", "", 0.2};
+      "",
+      "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=4.9\n0.3\n",
+      "LEFT, P, 20.\n",
+      "",
+      0.2,
+      NULL};
   scene beyond = within;
   beyond.law = "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=5.1\n0.3\n";
   compare(&within, "nonlocal average", 1, 1e-12);
@@ -192,7 +225,7 @@ END_TEST
 
 /* Without lateral expansion nothing slips, unless it is pushed. */
 START_TEST(friction_without_slip_is_left_out) {
-  const scene still = {"", coulomb, "", "", 0.0};
+  const scene still = {"", coulomb, "", "", 0.0, NULL};
   scene pushed = still, expands = still;
   pushed.loads = "LEFT, P, 20.\n";
   expands.nu = 0.2;
@@ -203,9 +236,9 @@ START_TEST(friction_without_slip_is_left_out) {
 END_TEST
 
 START_TEST(nothing_is_left_out_unless_asked) {
-  const scene s = {"*EXPANSION\n1.2D-5\n", coulomb,
-                   "*TEMPERATURE\nBODY, 1.D-6\n", "*EFFECTS, MODE=CALLED\n",
-                   0.2};
+  const scene s = {
+      "*EXPANSION\n1.2D-5\n",    coulomb, "*TEMPERATURE\nBODY, 1.D-6\n",
+      "*EFFECTS, MODE=CALLED\n", 0.2,     NULL};
   job j = run_scene(&s);
   ck_assert_int_eq(fate(&j, "thermal strain"), 0);
   job_end(&j);
@@ -237,7 +270,7 @@ START_TEST(random_scenes_agree) {
              pow(10.0, -8.0 + 8.0 * uniform(&seed)));
     snprintf(loads, sizeof loads, "LEFT, P, %.6f\n*TEMPERATURE\nBODY, %.6e\n",
              20.0 * uniform(&seed), pow(10.0, -6.0 + 5.0 * uniform(&seed)));
-    const scene s = {material, law, loads, "", nu};
+    const scene s = {material, law, loads, "", nu, NULL};
     scene automatic = s;
     automatic.effects = "*EFFECTS, MODE=AUTO, TOL=1e-3\n";
     job a = run_scene(&automatic), b = run_scene(&s);
@@ -251,6 +284,7 @@ END_TEST
 
 UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
           heat_that_makes_all_friction_stays, slow_relaxation_is_left_out,
-          law_at_its_end_is_left_out, law_below_its_threshold_is_left_out,
+          law_at_its_end_is_left_out, elements_below_the_threshold_are_left_out,
+          law_below_its_threshold_is_left_out,
           average_within_an_element_is_local, friction_without_slip_is_left_out,
           nothing_is_left_out_unless_asked, random_scenes_agree)
