@@ -213,6 +213,7 @@ static status tell_ready(const discrete *d, const history_sink *sink) {
   setup_facts facts = {
       .info = {.unknowns = p->unknowns, .contact_unknowns = p->m},
       .condition = NAN,
+      .digits = NAN,
       .floating = p->cp.floating,
       .n_contact_node = p->n};
   if (sink->ready == NULL) return OK;

@@ -19,6 +19,8 @@
  * of unknowns. Beyond this multiple, contrast, slivers or weak supports have
  * cost digits that refinement brings back. */
 static const double refine_excess = 1e4;
+/* Lever arms below this part of the size of the body hold it by so little. */
+static const double weak_arm = 1e-8;
 
 struct condensed {
   const stiffness *k; /* borrowed                                           */
@@ -28,12 +30,15 @@ struct condensed {
   body_factor *body;
   free_motion *motion; /* those only contact holds                           */
   rigid_set rigid;     /* the same as vectors                                */
-  double *load;        /* [dim*n_node] in local components                   */
-  double *prescribed;  /* [dim*n_node] local components, of the last load    */
-  double condition;    /* 0: not yet known                                   */
-  double *F;           /* [dim*n_node] the load last condensed; NULL unless
-                          solutions are refined                              */
-  double *rest;        /* [dim*n_node] its residual, likewise                */
+  unsigned char *pinned; /* [m] contact unknowns with a spring in the factor;
+                            NULL: no body needs one                          */
+  int just_held; /* 1: the springs hold those motions and nothing else      */
+  double *load;  /* [dim*n_node] in local components                   */
+  double *prescribed; /* [dim*n_node] local components, of the last load    */
+  double condition;   /* 0: not yet known                                   */
+  double *F;          /* [dim*n_node] the load last condensed; NULL unless
+                         solutions are refined                              */
+  double *rest;       /* [dim*n_node] its residual, likewise                */
   const char *ordering;
   cholmod_common *cm; /* owned                                              */
 };
@@ -115,7 +120,38 @@ done:
   return st;
 }
 
-static status factor_bodies(condensed *c, const unsigned char *floating) {
+/* Springs on the contact unknowns of bodies that contact alone holds: as many
+ * as the motions of the body, on all if they are not exactly known. */
+static status pin_bodies(condensed *c, const unsigned char *floating) {
+  status st = OK;
+  const stiffness *k = c->k;
+  const size_t rows = (size_t)k->rows;
+  int known = 0;
+  c->just_held = 1;
+  if (c->n_motion == 0) goto done;
+  TRY(rigid_orthonormalise(k, &c->d, &c->rigid));
+  NEW(c->pinned, c->m);
+  for (int i = 0; i < k->n_node; ++i)
+    if (floating[i] && k->contact[i] >= 0)
+      memset(c->pinned + rows * (size_t)k->contact[i], 1, rows);
+  for (int t = 0; t < c->rigid.n_body; ++t) {
+    const rigid_body *b = &c->rigid.body[t];
+    int motions = 0;
+    for (int j = 0; j < c->n_motion; ++j)
+      motions += c->motion[j].body_id == b->id;
+    if (motions != b->k) continue;
+    known += motions;
+    for (int j = 0; j < b->n_node; ++j)
+      if (k->contact[b->node[j]] >= 0)
+        memset(c->pinned + rows * (size_t)k->contact[b->node[j]], 0, rows);
+    TRY(rigid_pin(&c->rigid, b, c->pinned));
+  }
+  c->just_held = known == c->n_motion;
+done:
+  return st;
+}
+
+static status factor_bodies(condensed *c) {
   status st = OK;
   const stiffness *k = c->k;
   graph g = {0};
@@ -136,7 +172,8 @@ static status factor_bodies(condensed *c, const unsigned char *floating) {
     f->bad_node = i;
     TRY(order_body(c, &g, n, list, f));
     body_factor_number(k, f, number);
-    st = body_factor_build(k, floating[i] && f->nc > 0, number, c->cm, f);
+    f->pinned = c->pinned;
+    st = body_factor_build(k, number, c->cm, f);
     TRY(name_body(c, f, st));
   }
 done:
@@ -179,7 +216,7 @@ static void fill_held(condensed *c) {
 }
 
 static void estimate_condition(condensed *c) {
-  c->condition = 1;
+  c->condition = c->just_held ? 1 : 1 / (weak_arm * weak_arm);
   for (int q = 0; q < c->n_body; ++q)
     c->condition =
         fmax(c->condition, body_factor_condition(c->k, &c->body[q], c->cm));
@@ -191,8 +228,7 @@ static status form_matrix(condensed *c) {
   timer_enter(STAGE_CONDENSE);
   NEW(c->A, (size_t)c->m * (size_t)c->m);
   for (int q = 0; q < c->n_body; ++q)
-    TRY(body_factor_condense(&c->body[q], c->m, c->A));
-  TRY(rigid_orthonormalise(c->k, &c->d, &c->rigid));
+    TRY(body_factor_condense(c->k, &c->body[q], c->m, c->A));
   TRY(rigid_project(&c->rigid, c->A));
   fill_held(c);
 done:
@@ -219,7 +255,8 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   NEW(c->prescribed, (size_t)k->dim * (size_t)k->n_node);
   TRY(support_motions(d, &c->n_motion, &c->motion, floating, &c->rigid));
   TRY(check_support(c));
-  TRY(factor_bodies(c, floating));
+  TRY(pin_bodies(c, floating));
+  TRY(factor_bodies(c));
   TRY(form_matrix(c));
   estimate_condition(c);
 done:
@@ -242,6 +279,7 @@ void condensed_free(condensed *c) {
   memory_free(c->body);
   memory_free(c->motion);
   rigid_release(&c->rigid);
+  memory_free(c->pinned);
   memory_free(c->load);
   memory_free(c->prescribed);
   memory_free(c->F);
@@ -356,10 +394,15 @@ static void set_residual(condensed *c, const double *u) {
 static status refine(condensed *c, double *u) {
   status st = OK;
   enum { PASSES = 2 };
+  const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
+  double *more = c->rest; /* free once the residual is in c->load */
   for (int pass = 0; pass < PASSES; ++pass) {
     set_residual(c, u);
+    memset(more, 0, n * sizeof *more);
     for (int q = 0; q < c->n_body; ++q)
-      TRY(body_factor_interior(&c->body[q], c->load, u, c->cm));
+      TRY(body_factor_interior(&c->body[q], c->load, more, c->cm));
+    to_global(c, more);
+    for (size_t i = 0; i < n; ++i) u[i] += more[i];
   }
 done:
   return st;
@@ -386,7 +429,7 @@ done:
   return st;
 }
 
-static int costs_digits(const condensed *c) {
+int condensed_costs_digits(const condensed *c) {
   long n = 0;
   for (int q = 0; q < c->n_body; ++q) n += c->body[q].n;
   return condensed_condition(c) > refine_excess * (double)n;
@@ -400,7 +443,7 @@ status condense_load(condensed *c, const double *F, const double *ud,
   rigid_loads(c->k, &c->d, &c->rigid, c->load);
   if (set_prescribed(c, ud)) move_prescribed(c);
   TRY(forward(c, f_c));
-  if (costs_digits(c)) TRY(refine_load(c, F, f_c));
+  if (condensed_costs_digits(c)) TRY(refine_load(c, F, f_c));
   rigid_balance(&c->rigid, f_c);
 done:
   timer_leave(STAGE_RECOVERY);
@@ -419,8 +462,8 @@ done:
 
 status condensed_force_energy(condensed *c, const double *d, double *square) {
   status st = OK;
-  *square = c->n_motion > 0 ? HUGE_VAL : 0;
-  for (int q = 0; q < c->n_body && c->n_motion == 0; ++q)
+  *square = 0;
+  for (int q = 0; q < c->n_body; ++q)
     if (c->body[q].nc > 0) TRY(body_factor_energy(&c->body[q], d, square));
   for (int q = 0; q < c->m; ++q)
     if (is_held(c, q))
@@ -429,9 +472,29 @@ done:
   return st;
 }
 
+status condensed_misfit(condensed *c, const double *rest, const double *rc,
+                        double *w, double *square) {
+  status st = OK;
+  const stiffness *k = c->k;
+  *square = 0;
+  memset(w, 0, (size_t)k->dim * (size_t)k->n_node * sizeof *w);
+  set_load(c, rest);
+  for (int q = 0; q < c->m; ++q) c->load[component_of(c, q)] += rc[q];
+  for (int q = 0; q < c->n_body; ++q)
+    TRY(body_factor_solve(&c->body[q], c->load, w, square, c->cm));
+  to_global(c, w);
+done:
+  return st;
+}
+
 const double *condensed_matrix(const condensed *c) { return c->A; }
 
 int condensed_floating(const condensed *c) { return c->n_motion > 0; }
+
+int condensed_kernel(const condensed *c, const double **kernel) {
+  *kernel = c->rigid.Q;
+  return c->just_held ? c->rigid.k : -1;
+}
 
 int condensed_motions(const condensed *c, const free_motion **list) {
   *list = c->motion;

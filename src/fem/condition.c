@@ -18,7 +18,7 @@ static void fill_roots(const stiffness *k, const body_factor *f, double *root) {
     const int i = f->node[q];
     const double *b = k->block + (size_t)(dim * dim) * k->start[i];
     for (int c = 0; c < dim; ++c) {
-      const double spring = contact_row(k, i, c) >= 0 ? f->spring : 0;
+      const double spring = body_factor_spring(k, f, (long)dim * i + c);
       root[(size_t)dim * (size_t)i + (size_t)c] =
           k->free[i] >> c & 1 ? sqrt(scale * b[c * (dim + 1)] + spring) : 1;
     }

@@ -34,8 +34,37 @@ void body_factor_number(const stiffness *k, body_factor *f, long *number) {
   f->n = n;
 }
 
+static double diagonal(const stiffness *k, int node, int c) {
+  const size_t size = (size_t)(k->dim * k->dim);
+  return k->block[size * k->start[node] + (size_t)(c * (k->dim + 1))];
+}
+
+/* Largest diagonal entry of the unknowns of the body; NaN if one is not a
+ * number. */
+static double largest_diagonal(const stiffness *k, const body_factor *f) {
+  double most = 0;
+  for (int q = 0; q < f->n_node; ++q) {
+    const int i = f->node[q];
+    for (int c = 0; c < k->dim; ++c) {
+      const double v = diagonal(k, i, c);
+      if (!(k->free[i] >> c & 1)) continue;
+      if (!(v <= most)) most = v;
+    }
+  }
+  return most;
+}
+
+double body_factor_spring(const stiffness *k, const body_factor *f,
+                          long unknown) {
+  const int node = (int)(unknown / k->dim), c = (int)(unknown % k->dim);
+  const int row = contact_row(k, node, c);
+  if (f->pinned == NULL || row < 0 || !f->pinned[row]) return 0;
+  return ldexp(diagonal(k, node, c), -f->exponent);
+}
+
 typedef struct columns { /* lower triangle under construction             */
   const stiffness *k;
+  const body_factor *f;
   const long *number;
   double scale;
   SuiteSparse_long *start, *row;
@@ -61,35 +90,18 @@ static void put_block(columns *w, size_t p, int i, int j) {
       const SuiteSparse_long at = w->start[col]++;
       w->row[at] = ni[r] < nj[c] ? nj[c] : ni[r];
       w->value[at] = w->scale * b[dim * c + r];
+      if (i == j && r == c)
+        w->value[at] += body_factor_spring(w->k, w->f, (long)dim * i + c);
     }
   }
 }
 
-static void put_blocks(columns *w, const body_factor *f) {
-  for (int q = 0; q < f->n_own; ++q) {
-    const int j = f->node[q];
+static void put_blocks(columns *w) {
+  for (int q = 0; q < w->f->n_own; ++q) {
+    const int j = w->f->node[q];
     for (size_t p = w->k->start[j]; p < w->k->start[j + 1]; ++p)
       if (w->k->free[w->k->row[p]] != 0) put_block(w, p, w->k->row[p], j);
   }
-}
-
-/* Largest diagonal entry of the unknowns of the body; of contact ones alone
- * if asked. NaN if one is not a number. */
-static double largest_diagonal(const stiffness *k, const body_factor *f,
-                               int contact_only) {
-  const int dim = k->dim;
-  double most = 0;
-  for (int q = 0; q < f->n_node; ++q) {
-    const int i = f->node[q];
-    for (int c = 0; c < dim; ++c) {
-      const double v =
-          k->block[(size_t)(dim * dim) * k->start[i] + (size_t)(c * (dim + 1))];
-      if (!(k->free[i] >> c & 1)) continue;
-      if (contact_only && contact_row(k, i, c) < 0) continue;
-      if (!(v <= most)) most = v;
-    }
-  }
-  return most;
 }
 
 /* Scaled lower triangle of the body in elimination order, new. */
@@ -97,12 +109,13 @@ static status body_matrix(const stiffness *k, const body_factor *f,
                           const long *number, cholmod_common *cm,
                           cholmod_sparse **out) {
   status st = OK;
-  columns w = {.k = k, .number = number, .scale = ldexp(1, -f->exponent)};
+  columns w = {
+      .k = k, .f = f, .number = number, .scale = ldexp(1, -f->exponent)};
   SuiteSparse_long total = 0, *count = NULL;
   cholmod_sparse *a = NULL;
   NEW(count, f->n + 1);
   w.start = count;
-  put_blocks(&w, f);
+  put_blocks(&w);
   for (long c = 0; c < f->n; ++c) total += count[c];
   a = cholmod_l_allocate_sparse((size_t)f->n, (size_t)f->n, (size_t)total, 0, 1,
                                 -1, CHOLMOD_REAL, cm);
@@ -114,10 +127,7 @@ static status body_matrix(const stiffness *k, const body_factor *f,
   }
   w.row = a->i;
   w.value = a->x;
-  put_blocks(&w, f);
-  for (long c = f->n - f->nc; f->spring != 0 && c < f->n; ++c)
-    for (SuiteSparse_long p = start[c]; p < start[c + 1]; ++p)
-      if (w.row[p] == c) w.value[p] += f->spring;
+  put_blocks(&w);
 done:
   memory_free(count);
   *out = a;
@@ -157,7 +167,10 @@ static status factorise(const stiffness *k, const long *number,
   if (f->L->minor < (size_t)f->n) {
     const SuiteSparse_long *perm = f->L->Perm;
     f->bad_node = node_of(k, f, number, perm[f->L->minor]);
-    FAIL(ERR_SINGULAR, "stiffness not positive definite");
+    FAIL(ERR_SINGULAR,
+         "stiffness not positive definite: rounding leaves no digit of it; "
+         "contrasts of stiffness, slivers, nu near 1/2 and supports that "
+         "hardly hold cost digits");
   }
 done:
   return st;
@@ -195,16 +208,15 @@ done:
   return st;
 }
 
-status body_factor_build(const stiffness *k, int floating, const long *number,
+status body_factor_build(const stiffness *k, const long *number,
                          cholmod_common *cm, body_factor *f) {
   status st = OK;
   cholmod_sparse *a = NULL;
   timer_enter(STAGE_ORDERING);
-  const double most = largest_diagonal(k, f, 0);
+  const double most = largest_diagonal(k, f);
   if (!(most > 0 && isfinite(most)))
     FAIL(ERR_SINGULAR, "stiffness is zero or not a number");
   frexp(most, &f->exponent);
-  if (floating) f->spring = ldexp(largest_diagonal(k, f, 1), -f->exponent);
   TRY(body_matrix(k, f, number, cm, &a));
   TRY(analyse(a, cm, f));
   timer_enter(STAGE_FACTOR);
@@ -303,7 +315,8 @@ void symmetric_fill(size_t n, double *A) {
           A[j + n * i] = A[i + n * j];
 }
 
-status body_factor_condense(const body_factor *f, int m, double *A) {
+status body_factor_condense(const stiffness *k, const body_factor *f, int m,
+                            double *A) {
   status st = OK;
   const size_t nc = (size_t)f->nc, stride = (size_t)m;
   const int in_place = covers(f, m);
@@ -319,7 +332,8 @@ status body_factor_condense(const body_factor *f, int m, double *A) {
                           (lapack_int)nc) != 0)
     FAIL(ERR_INTERNAL, "condensed matrix of order %zu not formed", nc);
   for (size_t j = 0; j < nc; ++j) {
-    S[j * (nc + 1)] -= f->spring;
+    const long at = f->contact_at[nc - 1 - j];
+    S[j * (nc + 1)] -= body_factor_spring(k, f, f->unknown[at]);
     for (size_t i = 0; i <= j; ++i) S[i + nc * j] *= scale;
   }
   symmetric_fill(nc, S);
@@ -418,5 +432,28 @@ status body_factor_energy(const body_factor *f, const double *d,
   *square += ldexp(sum, -f->exponent);
 done:
   memory_free(x);
+  return st;
+}
+
+status body_factor_solve(const body_factor *f, const double *d, double *w,
+                         double *square, cholmod_common *cm) {
+  status st = OK;
+  const double scale = ldexp(1, -f->exponent);
+  double sum = 0;
+  cholmod_dense *z = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
+  if (z == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
+  double *x = z->x;
+  for (long p = 0; p < f->n; ++p) x[p] = scale * d[f->unknown[p]];
+  if (!cholmod_l_super_lsolve(f->L, z, f->work, cm) ||
+      !cholmod_l_super_ltsolve(f->L, z, f->work, cm))
+    FAIL(ERR_INTERNAL, "solve of %ld unknowns failed", f->n);
+  for (long p = 0; p < f->n; ++p) {
+    w[f->unknown[p]] = x[p];
+    sum += d[f->unknown[p]] * x[p];
+  }
+  *square += fmax(0, sum);
+done:
+  cholmod_l_free_dense(&z, cm);
   return st;
 }

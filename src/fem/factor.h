@@ -21,10 +21,11 @@ typedef struct body_factor {
   long *unknown; /* [n] dim*node + component of position p in the factor    */
   long *contact_at; /* [nc] positions of the contact unknowns, ascending    */
   int *contact_id;  /* [nc] their rows in A                                 */
-  int *rank;     /* [n - contact_at[0]] rank of a position among them or -1 */
-  int exponent;  /* see above                                               */
-  double flops;  /* of the factorisation                                    */
-  double spring; /* added to the scaled contact diagonal, 0: none           */
+  int *rank;    /* [n - contact_at[0]] rank of a position among them or -1 */
+  int exponent; /* see above                                               */
+  double flops; /* of the factorisation                                    */
+  const unsigned char *pinned; /* [m] contact unknowns whose diagonal entry is
+                                  doubled in the factor, borrowed; NULL: none */
   cholmod_factor *L;
   cholmod_dense *y;    /* [n] kept forward solve                            */
   cholmod_dense *work; /* [L->maxesize]                                     */
@@ -33,13 +34,18 @@ typedef struct body_factor {
 /* Number the unknowns of f->node (set by the caller): sets n, nc and
  * number[dim*n_node], -1 where prescribed. */
 void body_factor_number(const stiffness *k, body_factor *f, long *number);
-/* Build the matrix and factor it; "floating" adds springs on the contact
- * diagonal. ERR_SINGULAR, ERR_MEMORY. */
-status body_factor_build(const stiffness *k, int floating, const long *number,
+/* Build the matrix, f->pinned included, and factor it. ERR_SINGULAR,
+ * ERR_MEMORY. */
+status body_factor_build(const stiffness *k, const long *number,
                          cholmod_common *cm, body_factor *f);
+/* Spring of the unknown dim*node + component in the scaled matrix, 0: none. */
+double body_factor_spring(const stiffness *k, const body_factor *f,
+                          long unknown);
 void body_factor_release(body_factor *f, cholmod_common *cm);
-/* Put the body's part of the condensed stiffness into A[m*m] (zero there). */
-status body_factor_condense(const body_factor *f, int m, double *A);
+/* Put the body's part of the condensed stiffness, without the pins, into A[m*m]
+ * (zero there). */
+status body_factor_condense(const stiffness *k, const body_factor *f, int m,
+                            double *A);
 /* Copy the upper triangle of A[n*n] to the lower one. */
 void symmetric_fill(size_t n, double *A);
 /* y = L^-1 P load, kept; the body's rows of f_c[m]. load[dim*n_node]. */
@@ -52,9 +58,14 @@ status body_factor_back(const body_factor *f, const double *u_c, double *u,
 status body_factor_interior(const body_factor *f, const double *load, double *u,
                             cholmod_common *cm);
 /* *square += d' inv(K) d for forces d[m] on the contact unknowns, which come
- * last in the factor: d' inv(A) d = |inv(L_cc) d|^2. */
+ * last in the factor: d' inv(A) d = |inv(L_cc) d|^2. Pins that just hold a body
+ * carry nothing where d is in balance: then the same. */
 status body_factor_energy(const body_factor *f, const double *d,
                           double *square);
+/* w = inv(K) d at the unknowns of the body for forces d[dim*n_node] on them,
+ * and *square += d' w. */
+status body_factor_solve(const body_factor *f, const double *d, double *w,
+                         double *square, cholmod_common *cm);
 /* Estimate of the condition number of the matrix factored, scaled to a unit
  * diagonal; 0 without memory. */
 double body_factor_condition(const stiffness *k, const body_factor *f,

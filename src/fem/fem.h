@@ -78,8 +78,9 @@ typedef struct free_motion {
 status domain_free_motions(const domain *d, int *n, free_motion **list);
 
 /*
- * Order (contact unknowns last), factor K (+ springs on the contact diagonal,
- * taken off again, where contact alone holds a body), and form
+ * Order (contact unknowns last), factor K (where contact alone holds a body
+ * with springs on as many contact unknowns as it has motions, taken off again),
+ * and form
  *   A = K_cc - K_ci inv(K_ii) K_ic   [m*m], m = rows * contact nodes.
  * Bodies are factored apart. K is borrowed until condensed_free.
  * ERR_SINGULAR: a body that neither supports nor contact hold (the record names
@@ -94,7 +95,7 @@ int condensed_motions(const condensed *c, const free_motion **list);
 /* Estimate of the condition number of K with its unknowns scaled to a unit
  * diagonal (that scaling costs no digits). */
 double condensed_condition(const condensed *c);
-/* Digits of A that it leaves: 16 less its power of ten, not below 0. */
+/* Digits that it leaves at least: 16 less its power of ten, not below 0. */
 double condensed_digits(const condensed *c);
 
 typedef struct condense_info {
@@ -120,9 +121,26 @@ status condense_load(condensed *c, const double *F, const double *ud,
 /* u[dim*n_node] (global components) from u_c[m] for the load last condensed. */
 status condense_recover(condensed *c, const double *u_c, double *u);
 
-/* *square = d' inv(A) d of forces d[m], J, by the same factor; HUGE_VAL where
- * contact alone holds a body (A is singular). */
+/* *square = d' inv(A) d of forces d[m], J, by the same factor. Where contact
+ * alone holds a body, A is singular: d must be in balance, K'd = 0 with the
+ * kernel below. */
 status condensed_force_energy(condensed *c, const double *d, double *square);
+/*
+ * What rounding has left over of equilibrium: rest[dim*n_node] = loads less
+ * internal forces at the answer, global components; rc[m] the contact forces.
+ * With d what is missing at the unknowns: w[dim*n_node] = inv(K) d, the way to
+ * the exact answer, global components, and *square = d' inv(K) d, J, the square
+ * of its energy norm.
+ */
+status condensed_misfit(condensed *c, const double *rest, const double *rc,
+                        double *w, double *square);
+/* 1: the condition is so far above that of a plain mesh that this is worth
+ * looking at. */
+int condensed_costs_digits(const condensed *c);
+/* The motions of the contact unknowns without energy: kernel[m*n], orthonormal,
+ * borrowed; returns n, or -1: supports hold a body, but by next to nothing
+ * (lever arms below 1e-8 of its size). */
+int condensed_kernel(const condensed *c, const double **kernel);
 
 /* Strains and stresses of the elements: e[ns*n_elem], sigma[ns*n_elem]; either
  * may be NULL. Plane stress fills e_zz. */

@@ -17,6 +17,8 @@
 /* Motions that move the contact unknowns less than this part of what they
  * share with the motions before them are left out. */
 static const double least_part = 1e-10;
+/* Leverages that count as equal: the first unknown is taken. */
+static const double tie = 1e-6;
 
 void rigid_row(const rigid_modes *r, const double *x, const double *direction,
                double *row) {
@@ -186,6 +188,46 @@ status rigid_orthonormalise(const stiffness *k, const domain *d, rigid_set *r) {
     }
   }
 done:
+  return st;
+}
+
+/* The unknown that the motions left in the rows of room[m*k] move most. */
+static int most_moved(int m, int k, const double *room) {
+  double most = 0;
+  int at = 0;
+  for (int i = 0; i < m; ++i) {
+    const double moved = cblas_dnrm2(k, room + i, m);
+    if (moved <= most * (1 + tie)) continue;
+    most = moved;
+    at = i;
+  }
+  return at;
+}
+
+/* Gauss with pivots: the motion that a pin stops is taken out of the others. */
+status rigid_pin(const rigid_set *r, const rigid_body *b,
+                 unsigned char *pinned) {
+  status st = OK;
+  const int m = r->m, k = b->k;
+  double *room = NULL, *moved = NULL, *axis = NULL;
+  NEW(room, (size_t)m * (size_t)k);
+  NEW(moved, m);
+  NEW(axis, k);
+  memcpy(room, r->Q + (size_t)m * (size_t)b->first,
+         (size_t)m * (size_t)k * sizeof *room);
+  for (int j = 0; j < k; ++j) {
+    const int at = most_moved(m, k, room);
+    cblas_dcopy(k, room + at, m, axis, 1);
+    cblas_dscal(k, 1 / cblas_dnrm2(k, axis, 1), axis, 1);
+    cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1, room, m, axis, 1, 0,
+                moved, 1);
+    cblas_dger(CblasColMajor, m, k, -1, moved, 1, axis, 1, room, m);
+    pinned[at] = 1;
+  }
+done:
+  memory_free(room);
+  memory_free(moved);
+  memory_free(axis);
   return st;
 }
 

@@ -23,6 +23,7 @@ void rigid_row(const rigid_modes *r, const double *x, const double *direction,
                double *row);
 
 typedef struct rigid_body {
+  int id; /* as in free_motion                                   */
   rigid_modes at;
   int n, k;   /* coefficients (all pieces); free motions               */
   double *Y;  /* [n*k] the motions                                     */
@@ -48,6 +49,10 @@ status support_motions(const domain *d, int *n, free_motion **list,
 void rigid_release(rigid_set *r); /* accepts an all-zero object             */
 /* Choose the motions Y so that their R_c is orthonormal, and store it. */
 status rigid_orthonormalise(const stiffness *k, const domain *d, rigid_set *r);
+/* Contact unknowns to hold a body by, as many as its motions and as far apart
+ * as they go: pinned[m] set to 1. */
+status rigid_pin(const rigid_set *r, const rigid_body *b,
+                 unsigned char *pinned);
 /* A <- (I - Q Q') A (I - Q Q'), symmetric to the last bit; upper triangle
  * read. */
 status rigid_project(const rigid_set *r, double *A);

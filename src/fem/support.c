@@ -330,7 +330,8 @@ static status keep_motions(const body *b, const triangle *t, rigid_set *r) {
   if (rank == 0) goto done;
   GROW(r->body, r->n_body, r->room);
   rigid_body *to = &r->body[r->n_body++];
-  *to = (rigid_body){.at = b->at, .n = b->n, .k = rank, .n_node = b->n_node};
+  *to = (rigid_body){
+      .id = b->id, .at = b->at, .n = b->n, .k = rank, .n_node = b->n_node};
   NEW(to->node, b->n_node);
   NEW(to->column, b->n_node);
   memcpy(to->node, b->node, (size_t)b->n_node * sizeof *to->node);

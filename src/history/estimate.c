@@ -18,6 +18,8 @@
 
 const char *const error_bound_indefinite =
     "the matrix is not symmetric and positive semidefinite";
+static const char weakly_held[] =
+    "supports hold a body by lever arms of next to nothing";
 
 void error_bound_set(const solver_error *found, double energy, error_bound *e) {
   *e = (error_bound){.asked = 1,
@@ -33,20 +35,14 @@ static status force_energy(void *ctx, const double *d, double *square) {
   return condensed_force_energy(ctx, d, square);
 }
 
-/* The factor of the body, or of A where contact alone holds a body. *out->ctx
- * NULL: A has none. */
-static status choose_inverse(run *r, inverse_energy *out) {
-  status st = OK;
+/* The factor of the body; 0: the motions that contact alone holds are not
+ * known. */
+static int choose_inverse(run *r, inverse_energy *out) {
   *out = (inverse_energy){.ctx = r->c,
                           .square = force_energy,
                           .condition = condensed_condition(r->c)};
-  if (!r->cp.floating) goto done;
-  out->ctx = NULL;
-  if (!r->dense_known) TRY(dense_inverse_new(r->cp.m, r->cp.A, &r->dense));
-  r->dense_known = 1;
-  if (r->dense != NULL) *out = dense_inverse_energy(r->dense);
-done:
-  return st;
+  out->n_kernel = condensed_kernel(r->c, &out->kernel);
+  return out->n_kernel >= 0;
 }
 
 /* Error of the mesh and the share of each element, from r->stress. */
@@ -69,15 +65,14 @@ done:
 
 static status estimate_solver(run *r) {
   status st = OK;
-  solver_error found = {.norm = NAN, .why = error_bound_indefinite};
+  solver_error found = {.norm = NAN, .why = weakly_held};
   inverse_energy inverse;
   double cpu = timer_cpu();
   r->error = (error_bound){0};
   if (r->n == 0 || r->step->no_solver_error) return OK;
   timer_enter(STAGE_ESTIMATE);
-  TRY(choose_inverse(r, &inverse));
   if (!r->limit_known) known_rate_forget(&r->rate);
-  if (inverse.ctx != NULL)
+  if (choose_inverse(r, &inverse))
     TRY(solver_error_bound(&r->cp, &inverse, run_rows(r, 0, r->now.uc),
                            run_rows(r, 1, r->now.rc), &r->rate, &found));
   error_bound_set(&found, r->now.energy.strain, &r->error);
@@ -110,12 +105,24 @@ done:
   return st;
 }
 
+/* The bound counts from the discrete solution, which rounding has missed. */
+static void add_rounding(run *r) {
+  solver_error e = {.rate = r->error.rate, .why = r->error.why};
+  double cpu = r->error.cpu;
+  if (!r->rounding.found || !r->error.asked || e.why != NULL) return;
+  e.norm = sqrt(2.0 * r->error.energy) + r->rounding.norm;
+  error_bound_set(&e, r->now.energy.strain, &r->error);
+  r->error.cpu = cpu;
+}
+
 status estimate_increment(run *r) {
   status st = OK;
+  TRY(rounding_find(r));
   if (!r->judged) {
     TRY(estimate_solver(r));
     TRY(estimate_mesh(r));
   }
+  add_rounding(r);
   r->judged = 0;
   TRY(find_truth(r));
 done:
@@ -187,7 +194,10 @@ static status load_change(run *r, double *room, double *size) {
     for (int i = 0; i < r->n_c; ++i)
       room[i] = r->f[i] + r->old.rc[i] - room[r->n_c + i];
   }
-  TRY(condensed_force_energy(r->c, room, &square));
+  if (condensed_floating(r->c))
+    square = HUGE_VAL;
+  else
+    TRY(condensed_force_energy(r->c, room, &square));
   *size += sqrt(square);
 done:
   return st;

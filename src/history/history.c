@@ -73,6 +73,7 @@ state loop_state(run *r, int attempt, int increment_no) {
              .report = r->report,
              .note = r->note,
              .error = r->error,
+             .rounding = r->rounding,
              .jumps = r->jumps,
              .jump_t = r->jump_t,
              .theory = r->theorems,
@@ -159,6 +160,7 @@ done:
 
 status loop_reject(run *r, int attempt, int increment_no, const char *why) {
   r->error = (error_bound){0};
+  r->rounding = (rounding_loss){0};
   r->mesh_error.asked = r->time_error.asked = r->truth.asked = 0;
   r->theorems = (theory_report){0};
   r->jumps = 0;

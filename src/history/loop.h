@@ -53,6 +53,10 @@ status balance_keep(run *r, archive *a);
 /* zones.c: the zones of r->now into r->zones. ERR_MEMORY. */
 status zones_find(run *r);
 
+/* rounding.c: what rounding has taken of r->now, whose energies are known.
+ * ERR_SINGULAR: it leaves no digit. */
+status rounding_find(run *r);
+
 /* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
 status estimate_increment(run *r);
 /* Those of solver and mesh alone, from r->now.u; read r->judged. */

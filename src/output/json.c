@@ -225,6 +225,7 @@ static void write_accuracy(json *w, const job *j) {
     json_real(w, "effectivity", job_effectivity(j));
   json_real(w, "energy_defect_worst", run->defect_worst);
   if (run->facts_known) json_real(w, "condition", run->facts.condition);
+  if (run->facts_known) json_real(w, "digits_left", run->facts.digits);
   json_close(w, '}');
 }
 

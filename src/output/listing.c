@@ -152,6 +152,9 @@ status listing_ready(const job *j, text_file *lst) {
   if (!isnan(facts->condition))
     fprintf(lst->f, "  %-18s %14s\n", "condition",
             text_number(text, facts->condition, 1));
+  if (!isnan(facts->condition))
+    fprintf(lst->f, "  %-18s %14.1f of 16, at worst\n", "digits left",
+            facts->digits);
   if (facts->floating)
     fprintf(lst->f, "  contact alone holds at least one body\n");
   heading(lst->f, "INCREMENTS");
@@ -179,6 +182,16 @@ static void print_energies(const job *j, const view *v, FILE *f) {
     fprintf(f, "  %-24s %14s %s\n", c->name,
             text_number(text, c->value(v, 0, c->part), DIGITS), unit);
   }
+}
+
+/* Where the condition gives reason to look. */
+static void print_rounding(const state *s, FILE *f) {
+  char norm[NUMBER_SIZE], stress[NUMBER_SIZE];
+  if (!s->rounding.found) return;
+  fprintf(f,
+          "  rounding: %s %% of the energy norm, %s %% of the largest stress\n",
+          text_number(norm, 100 * s->rounding.energy, 1),
+          text_number(stress, 100 * s->rounding.stress, 1));
 }
 
 static void print_error(const job *j, const state *s, FILE *f) {
@@ -266,6 +279,7 @@ static void print_solver(const job *j, const state *s, FILE *f) {
           r->iterations, r->limit_updates, text_number(text, r->residual, 2));
   if (!j->o->no_timing) fprintf(f, ", cpu %.3f s", r->cpu);
   fputc('\n', f);
+  print_rounding(s, f);
   print_error(j, s, f);
   print_balance(j, s, f);
   if (s->solver_log != NULL && s->solver_log[0] != '\0')

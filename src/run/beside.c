@@ -136,7 +136,6 @@ static status beside_new(const run *r, beside **out) {
   own->limit = (friction_limit){0};
   own->limit_known = 0;
   own->zone = NULL;
-  own->dense = NULL;
   own->rate = (known_rate){0};
   own->solutions = (solution_set){0};
   own->recovery = NULL;

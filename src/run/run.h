@@ -132,6 +132,7 @@ typedef struct run {
   int relaxing; /* the increment at hand leads the start to equilibrium */
   solver_report report;
   error_bound error;
+  rounding_loss rounding;
   error_share mesh_error, time_error;
   true_error truth;
   double tol; /* of the contact solver, in force, -                          */
@@ -145,8 +146,6 @@ typedef struct run {
   double path_before, path_error; /* sqrt(J), of finished paths; of this one */
   int beside; /* 1: an increment of that path is solved, no step of the run  */
   double bound_cpu; /* s, spent so far on the error of the solver            */
-  dense_inverse *dense; /* of A where contact alone holds a body       */
-  int dense_known;      /* 1: made, or A has none                      */
   known_rate rate;
   double *f_before; /* [n_row] condensed load of r->old, N                    */
   int jumps;      /* 1: the equilibrium jumps in the increment               */

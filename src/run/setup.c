@@ -131,9 +131,6 @@ void matrices_free(matrices *m) {
 
 /* What the estimates know of the matrix in use. */
 static void forget_estimates(run *r) {
-  dense_inverse_free(r->dense);
-  r->dense = NULL;
-  r->dense_known = 0;
   known_rate_forget(&r->rate);
   solution_set_free(&r->solutions);
 }
@@ -443,6 +440,7 @@ static status report_ready(run *r) {
   if (r->sink->ready == NULL) return OK;
   setup_facts facts = {.info = condensed_info(r->c),
                        .condition = condensed_condition(r->c),
+                       .digits = condensed_digits(r->c),
                        .floating = condensed_floating(r->c),
                        .n_contact_node = r->n,
                        .average_entries = limit_average_entries(r)};

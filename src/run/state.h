@@ -76,6 +76,14 @@ typedef struct error_bound {
   const char *why; /* there is no bound; or NULL                              */
 } error_bound;
 
+/* What rounding has taken of an answer (history/rounding.c). */
+typedef struct rounding_loss {
+  int found;   /* 0: not looked at, the condition is that of a plain mesh     */
+  double norm; /* sqrt(J), error in the energy norm                           */
+  double energy; /* -, the same over the norm of the answer */
+  double stress; /* -, error of the stresses over the largest */
+} rounding_loss;
+
 /* An estimate of an error at the end of an increment. */
 typedef struct error_share {
   int asked;
@@ -136,7 +144,8 @@ typedef struct state {
   int n_open, n_slip, n_stick;
   energies energy;
   solver_report report;
-  error_bound error;                  /* of the contact solver                */
+  error_bound error; /* of the contact solver                */
+  rounding_loss rounding;
   error_share mesh_error, time_error; /* of the mesh, of the increments       */
   balance_report balance;
   true_error truth; /* against *REFERENCE                                     */
@@ -157,6 +166,7 @@ typedef struct state {
 typedef struct setup_facts {
   condense_info info;
   double condition; /* -                                                   */
+  double digits;    /* that it leaves                                      */
   int floating;     /* contact alone holds a body                          */
   int n_contact_node;
   double average_entries; /* of the nonlocal averages                         */

@@ -1,0 +1,183 @@
+/*
+ * What rounding takes of an answer, on bodies of uniform strain, for which the
+ * error of the stresses is known: contrasts of stiffness, nu near 1/2 and thin
+ * elements, held by supports or by contact alone, meshes of unequal triangles.
+ * What the listing tells is the error within a factor of ten; nothing is told
+ * where nothing is lost; without a digit the run ends with exit code 6.
+ */
+#include "scenes/mesh.h"
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char wavy_x[] = "x + 0.05*sin(3.14159265358979*x)*sin(9*y)";
+static const char wavy_y[] = "y + 0.05*sin(6.28318530717959*y)*cos(7*x)";
+
+static const mesh_change as_it_is;
+static const double NOISE = 1e-9; /* -, refined answers are better than that */
+
+/* A block of the mesh pressed by 1 onto the plane below it, which is rough
+ * where nothing else holds the block. */
+static int run_pressed(job *j, const char *grid, const mesh_change *change,
+                       const char *materials, const char *supports) {
+  char path[100];
+  int *number = NULL;
+  *j = job_begin("pressed");
+  snprintf(path, sizeof path, "%s/pressed.msh", j->dir);
+  FILE *f = fopen(path, "w");
+  ck_assert_ptr_nonnull(f);
+  ck_assert_int_eq(scene_mesh_write(f, grid, change, &number), 1);
+  fclose(f);
+  free(number);
+  job_write(j, "pressed.inp",
+            "*MESH, FILE=pressed.msh\n%s"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n%d\n*STEP\n*STATIC\n%s"
+            "*DSLOAD\nTOP, P, 1.\n"
+            "*PRINT, ELEMENTS, NODES, CONTACT\n*END STEP\n",
+            materials, supports[0] == '\0', supports);
+  return job_run(j, "--no-timing");
+}
+
+/* Loss of the stresses that the listing tells, -; 0: none. */
+static double told(const job *j) {
+  char *text = job_file(j, "lst");
+  const char *line = strstr(text, "\n  rounding: ");
+  double norm = 0.0, stress = 0.0;
+  if (line != NULL)
+    ck_assert_int_eq(
+        sscanf(line, " rounding: %lf %% of the energy norm, %lf %%", &norm,
+               &stress),
+        2);
+  free(text);
+  return 0.01 * stress;
+}
+
+/* Largest error of the stresses, which are those of uniform pressure. */
+static double stress_error(const job *j) {
+  dat e = job_table(j, "ELEMENTS", -1);
+  double worst = 0.0;
+  for (int i = 0; i < e.n_row; ++i) {
+    worst = fmax(worst, fabs(dat_at(&e, i, "stress_yy") + 1.0));
+    worst = fmax(worst, fabs(dat_at(&e, i, "stress_xx")));
+  }
+  dat_free(&e);
+  return worst;
+}
+
+static int run_layers(job *j, const char *contrast, const char *supports) {
+  char text[400];
+  const mesh_change wavy = {.map = {wavy_x, wavy_y}};
+  snprintf(text, sizeof text,
+           "*MATERIAL, NAME=S\n*ELASTIC\n1., 0.\n"
+           "*MATERIAL, NAME=H\n*ELASTIC\n%s, 0.\n"
+           "*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n"
+           "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n",
+           contrast);
+  return run_pressed(j, "rect 6 8 1 1 layers", &wavy, text, supports);
+}
+
+static int run_stiff(job *j, const char *nu, const char *formulation) {
+  char text[200];
+  const mesh_change wavy = {.map = {wavy_x, wavy_y}};
+  snprintf(text, sizeof text,
+           "*MATERIAL, NAME=M\n*ELASTIC\n1., %s\n"
+           "*SOLID SECTION, ELSET=BODY, MATERIAL=M, FORMULATION=%s\n",
+           nu, formulation);
+  return run_pressed(j, "rect 6 6 1 1", &wavy, text, "*BOUNDARY\nLEFT, 1\n");
+}
+
+static void ck_told(job *j, int code) {
+  ck_assert_msg(code == 0, "exit %d: %s", code, j->errors);
+  double error = stress_error(j), loss = told(j);
+  ck_assert_msg(loss >= 0.1 * error && loss <= 10.0 * error + NOISE,
+                "told %g, error %g", loss, error);
+  job_end(j);
+}
+
+static void ck_refused(job *j, int code) {
+  ck_assert_msg(code == 6, "exit %d: %s", code, j->errors);
+  ck_assert_msg(strstr(j->errors, "rounding leaves no digit") != NULL, "%s",
+                j->errors);
+  job_end(j);
+}
+
+START_TEST(loss_by_contrast_is_told) {
+  static const char *const supports[] = {"*BOUNDARY\nLEFT, 1\n", ""};
+  static const char *const contrasts[] = {"1.E8", "1.E10", "1.E12"};
+  job j;
+  int code = run_layers(&j, contrasts[_i % 3], supports[_i / 3]);
+  ck_told(&j, code);
+}
+END_TEST
+
+START_TEST(no_digit_is_left_of_too_much_contrast) {
+  job j;
+  int code = run_layers(&j, "1.E15", _i == 0 ? "*BOUNDARY\nLEFT, 1\n" : "");
+  ck_refused(&j, code);
+}
+END_TEST
+
+START_TEST(loss_near_incompressibility_is_told) {
+  static const char *const nus[] = {"0.49999999", "0.49999999999",
+                                    "0.4999999999999"};
+  job j;
+  int code = run_stiff(&j, nus[_i % 3], _i < 3 ? "STANDARD" : "AVERAGED");
+  ck_told(&j, code);
+}
+END_TEST
+
+START_TEST(loss_of_thin_elements_is_told) {
+  static const char *const meshes[] = {"rect 6 6 1e4 1", "rect 6 6 1 1e4",
+                                       "rect 6 6 1e6 1", "rect 6 6 1 1e7"};
+  job j;
+  int code = run_pressed(&j, meshes[_i], &as_it_is,
+                         "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+                         "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n",
+                         "*BOUNDARY\nLEFT, 1\n");
+  ck_told(&j, code);
+}
+END_TEST
+
+START_TEST(no_digit_is_left_of_needles) {
+  job j;
+  int code = run_pressed(&j, "rect 6 6 1 1e8", &as_it_is,
+                         "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+                         "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n",
+                         "*BOUNDARY\nLEFT, 1\n");
+  ck_refused(&j, code);
+}
+END_TEST
+
+START_TEST(nothing_is_told_of_plain_bodies) {
+  job j;
+  int code = run_layers(&j, "10.", _i == 0 ? "*BOUNDARY\nLEFT, 1\n" : "");
+  ck_assert_int_eq(code, 0);
+  ck_assert_double_eq(told(&j), 0.0);
+  ck_assert_double_gt(job_told(&j, "digits_left"), 11.0);
+  job_end(&j);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("rounding");
+  TCase *tests = tcase_create("rounding");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, loss_by_contrast_is_told, 0, 6);
+  tcase_add_loop_test(tests, no_digit_is_left_of_too_much_contrast, 0, 2);
+  tcase_add_loop_test(tests, loss_near_incompressibility_is_told, 0, 6);
+  tcase_add_loop_test(tests, loss_of_thin_elements_is_told, 0, 4);
+  tcase_add_test(tests, no_digit_is_left_of_needles);
+  tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
