@@ -60,6 +60,62 @@ done:
   return st;
 }
 
+/* ---- warnings told so far ------------------------------------------------ */
+
+/* A line each: number, line, column, text; file in a line before it. */
+static status list_warnings(const message_log *log, char **text) {
+  status st = OK;
+  size_t size = 0;
+  message_view w;
+  FILE *f = open_memstream(text, &size);
+  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: warnings so far");
+  for (int k = 0; message_get(log, k, &w); ++k)
+    if (w.level == WARNING)
+      fprintf(f, "%s\n%d %d %d %s\n",
+              w.at != NULL && w.at->file != NULL ? w.at->file : "", (int)w.id,
+              w.at != NULL ? w.at->line_no : 0,
+              w.at != NULL ? w.at->column_no : 0, w.text);
+  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: warnings so far");
+done:
+  return st;
+}
+
+/* That of a card, which knows its line and where it is included from. */
+static const place *place_in_deck(const deck *d, const place *at) {
+  for (int i = 0; i < d->n_card; ++i) {
+    const place *p = &d->cards[i].at;
+    if (p->line_no == at->line_no && p->column_no == at->column_no &&
+        p->file != NULL && strcmp(p->file, at->file) == 0)
+      return p;
+  }
+  return at;
+}
+
+/* What the run had told: what is told again is the same message. */
+static status tell_warnings(const job_input *in, archive *a) {
+  status st = OK;
+  size_t n = archive_length(a, "warnings");
+  char *text = NULL, *end;
+  NEW(text, n + 1);
+  TRY(archive_bytes(a, "warnings", text, n));
+  for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+    int id, used = 0;
+    *end = '\0';
+    place at = {.file = line};
+    line = end + 1;
+    if ((end = strchr(line, '\n')) == NULL) break;
+    *end = '\0';
+    if (sscanf(line, "%d %d %d%n", &id, &at.line_no, &at.column_no, &used) != 3)
+      break;
+    message_add(in->m->log, (message_id)id,
+                at.file[0] != '\0' ? place_in_deck(in->d, &at) : NULL, "%s",
+                line + used + 1);
+  }
+done:
+  memory_free(text);
+  return st;
+}
+
 /* ---- writing ------------------------------------------------------------- */
 
 static status file_names(const command *c, const model *m, char **path,
@@ -78,20 +134,23 @@ status restart_write(void *ctx, const run_memory *memory) {
   const restart_writer *w = ctx;
   archive *a = NULL;
   identity id;
-  char *path = NULL, *before = NULL, *text = NULL;
+  char *path = NULL, *before = NULL, *text = NULL, *told = NULL;
   TRY(file_names(w->c, w->in->m, &path, &before));
   TRY(echo_of(w->in->m, &text));
+  TRY(list_warnings(w->in->m->log, &told));
   identify(w->c, w->in, &id);
   id.step_no = memory->step_no;
   TRY(archive_new(&a));
   TRY(archive_bytes(a, "identity", &id, sizeof id));
   TRY(archive_bytes(a, "deck", text, strlen(text) + 1));
+  TRY(archive_bytes(a, "warnings", told, strlen(told)));
   TRY(output_keep(w->out, a));
   TRY(memory->keep(memory->run, a));
   TRY(archive_write(a, path, before));
 done:
   archive_free(a);
   free(text);
+  free(told);
   memory_free(path);
   memory_free(before);
   return st;
@@ -255,6 +314,7 @@ status restart_read(const command *c, const job_input *in, archive **out) {
   TRY(file_names(c, in->m, &path, &before));
   TRY(read_either(path, before, out));
   TRY(check_job(c, in, *out, path));
+  TRY(tell_warnings(in, *out));
 done:
   if (st != OK) {
     archive_free(*out);

@@ -1,11 +1,10 @@
 /*
- * The file of an archive:
- *   /protis_archive   text "1", the layout
+ * The file of an archive: the seal, then HDF5 behind it (its user block):
  *   /list             text, a line "kind length name" per array, in order
- *   /checksum         FNV-1a of the list and all bytes, 64 bits
  *   /data/NAME        the arrays
- * Written aside, handed to the disk and renamed, so that a kill at any moment
- * leaves a whole file under one of the two names.
+ * Written aside, sealed, handed to the disk and renamed, so that a kill at any
+ * moment leaves a whole file under one of the two names. HDF5 opens a file only
+ * if its seal is whole: damaged lengths inside can make it ask for any memory.
  */
 #include "archive/file.h"
 
@@ -13,34 +12,16 @@
 #include "base/text.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <hdf5.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-static const char layout[] = "1";
-static const char layout_name[] = "/protis_archive";
-
 static hid_t type_of(archive_kind kind) {
   return kind == ARCHIVE_REAL  ? H5T_NATIVE_DOUBLE
          : kind == ARCHIVE_INT ? H5T_NATIVE_INT
                                : H5T_NATIVE_UCHAR;
-}
-
-static uint64_t add_bytes(uint64_t h, const void *data, size_t n) {
-  const unsigned char *at = data;
-  for (size_t i = 0; i < n; ++i) h = (h ^ at[i]) * 1099511628211u;
-  return h;
-}
-
-static uint64_t checksum(const archive *a, const char *list) {
-  uint64_t h = add_bytes(14695981039346656037u, list, strlen(list));
-  for (int i = 0; i < a->n; ++i)
-    h = add_bytes(h, a->item[i].data, archive_item_bytes(&a->item[i]));
-  return h;
 }
 
 /* ---- writing ------------------------------------------------------------ */
@@ -87,10 +68,7 @@ static status put_items(const archive *a, hid_t file, const char *path) {
   status st = OK;
   char *list = NULL, name[ARCHIVE_NAME + 8];
   TRY(list_items(a, &list));
-  uint64_t sum = checksum(a, list);
-  TRY(put(file, path, layout_name, H5T_NATIVE_UCHAR, sizeof layout, layout));
   TRY(put(file, path, "/list", H5T_NATIVE_UCHAR, strlen(list) + 1, list));
-  TRY(put(file, path, "/checksum", H5T_NATIVE_UINT64, 1, &sum));
   for (int i = 0; i < a->n; ++i) {
     const archive_item *it = &a->item[i];
     snprintf(name, sizeof name, "/data/%s", it->name);
@@ -103,8 +81,10 @@ done:
 
 static status make_file(const archive *a, const char *path) {
   status st = OK;
+  hid_t file = -1, room = H5Pcreate(H5P_FILE_CREATE);
   errno = 0;
-  hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  if (room >= 0 && H5Pset_userblock(room, ARCHIVE_SEAL) >= 0)
+    file = H5Fcreate(path, H5F_ACC_TRUNC, room, H5P_DEFAULT);
   if (file < 0) TRY(text_failed(path, "open for writing", errno));
   TRY(put_items(a, file, path));
   errno = 0;
@@ -113,16 +93,7 @@ static status make_file(const archive *a, const char *path) {
 done:
   if (file >= 0 && H5Fclose(file) < 0 && st == OK)
     st = text_failed(path, "close", errno);
-  return st;
-}
-
-static status to_disk(const char *path) {
-  status st = OK;
-  int fd = open(path, O_RDWR | O_CLOEXEC);
-  if (fd < 0) TRY(text_failed(path, "open", errno));
-  if (fsync(fd) != 0) TRY(text_failed(path, "write", errno));
-done:
-  if (fd >= 0) close(fd);
+  if (room >= 0) H5Pclose(room);
   return st;
 }
 
@@ -133,7 +104,7 @@ status archive_write(archive *a, const char *path, const char *before) {
   H5dont_atexit(); /* the exit handler crashes after a failed write          */
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   TRY(make_file(a, aside));
-  TRY(to_disk(aside));
+  TRY(archive_seal(aside));
   if (rename(path, before) != 0 && errno != ENOENT)
     TRY(text_failed(before, "replace", errno));
   if (rename(aside, path) != 0) TRY(text_failed(path, "replace", errno));
@@ -195,38 +166,18 @@ done:
   return st;
 }
 
-static status check_layout(hid_t file, const char *path) {
-  status st = OK;
-  size_t n = 0;
-  void *text = NULL;
-  if (H5Lexists(file, layout_name, H5P_DEFAULT) <= 0)
-    TRY(damaged(path, "this is no restart file of Protis"));
-  TRY(get(file, path, layout_name, H5T_NATIVE_UCHAR, 1, &n, &text));
-  if (strcmp(text, layout) != 0)
-    TRY(damaged(path, "the restart file has the layout of another version"));
-done:
-  memory_free(text);
-  return st;
-}
-
 static status get_items(hid_t file, archive *a) {
   status st = OK;
-  size_t n = 0, one = 1;
-  void *list = NULL, *sum = NULL;
-  TRY(check_layout(file, a->path));
+  size_t n = 0;
+  void *list = NULL;
   TRY(get(file, a->path, "/list", H5T_NATIVE_UCHAR, 1, &n, &list));
-  TRY(get(file, a->path, "/checksum", H5T_NATIVE_UINT64, sizeof(uint64_t), &one,
-          &sum));
   for (const char *line = list; *line != '\0'; ++line) {
     TRY(get_item(file, a, line));
     line = strchr(line, '\n');
     if (line == NULL) break;
   }
-  if (checksum(a, list) != *(const uint64_t *)sum)
-    TRY(damaged(a->path, "the restart file is damaged: wrong checksum"));
 done:
   memory_free(list);
-  memory_free(sum);
   return st;
 }
 
@@ -237,7 +188,7 @@ status archive_read(const char *path, archive **out) {
   *out = NULL;
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  if (access(path, R_OK) != 0) TRY(text_failed(path, "read", errno));
+  TRY(archive_check_seal(path));
   NEW(a, 1);
   a->path = memory_text(path);
   if (a->path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");

@@ -27,4 +27,11 @@ status archive_add(archive *a, const char *name, archive_kind kind, size_t n,
                    archive_item **out);
 size_t archive_item_bytes(const archive_item *i);
 
+/* Bytes before those of HDF5. */
+enum { ARCHIVE_SEAL = 512 };
+/* Write the seal of a file that is whole, and hand it to the disk. ERR_FILE. */
+status archive_seal(const char *path);
+/* ERR_FILE: not there, without a seal, of another layout, not as sealed. */
+status archive_check_seal(const char *path);
+
 #endif

@@ -149,18 +149,39 @@ int message_wanted(const message_log *log, severity s) {
 
 void message_memory(message_log *log) { log->no_memory = 1; }
 
+static int same_place(const place *a, const place *b) {
+  if (a == NULL || b == NULL) return a == b;
+  if (a->line_no != b->line_no || a->column_no != b->column_no) return 0;
+  if (a->file == NULL || b->file == NULL) return a->file == b->file;
+  return strcmp(a->file, b->file) == 0;
+}
+
+static int is_there(const message_log *log, const message *m, const place *at,
+                    const char *text) {
+  for (int i = 0; i < log->n; ++i)
+    if (log->items[i].id == m->id && same_place(log->items[i].at, at) &&
+        strcmp(log->items[i].text, text) == 0)
+      return 1;
+  return 0;
+}
+
 void message_add(message_log *log, message_id id, const place *at,
                  const char *format, ...) {
   char text[TEXT_SIZE];
   const manual_entry *entry = find_entry((int)id);
   message m = {id, entry != NULL ? entry->level : ERROR, NULL, NULL, 0};
-  if (log->count[m.level]++ >= KEPT) return;
+  if (log->count[m.level] >= KEPT) {
+    ++log->count[m.level];
+    return;
+  }
   va_list args;
   va_start(args, format);
   int length = vsnprintf(text, sizeof text, format, args);
   va_end(args);
   if (length >= TEXT_SIZE) memcpy(text + TEXT_SIZE - 4, "...", 4);
   for (char *p = text; *p != '\0'; ++p) *p = shown_character(*p);
+  if (m.level == WARNING && is_there(log, &m, at, text)) return;
+  ++log->count[m.level];
   m.text = memory_text(text);
   if (at != NULL) m.at = place_copy(at);
   if (m.text == NULL || (at != NULL && m.at == NULL) || keep(log, &m) != OK) {
@@ -171,6 +192,13 @@ void message_add(message_log *log, message_id id, const place *at,
 }
 
 int message_count(const message_log *log, severity s) { return log->count[s]; }
+
+int message_get(const message_log *log, int k, message_view *out) {
+  if (k >= log->n) return 0;
+  const message *m = &log->items[k];
+  *out = (message_view){m->id, m->level, m->at, m->text};
+  return 1;
+}
 
 static int chain_length(const place *p) {
   int n = 0;

@@ -35,7 +35,8 @@ typedef enum { MESSAGE_LIST(MESSAGE_ENUM) P_END } message_id;
 
 status message_log_new(message_log **log);
 void message_log_free(message_log *log);
-/* Add one; the texts are copied. "at" may be NULL (no place). After 100
+/* Add one; the texts are copied. "at" may be NULL (no place). A warning that
+ * is there already, with its place and text, is not added again. After 100
  * of a severity the rest is counted only. Never fails: without memory the
  * message is counted, and message_status answers ERR_MEMORY. */
 void message_add(message_log *log, message_id id, const place *at,
@@ -43,6 +44,14 @@ void message_add(message_log *log, message_id id, const place *at,
 /* Memory ran out while the input was read: message_status tells. */
 void message_memory(message_log *log);
 int message_count(const message_log *log, severity s);
+/* Number k, from 0, of those kept, as they came; all borrowed. 0: no more. */
+typedef struct message_view {
+  message_id id;
+  severity level;
+  const place *at; /* or NULL                                               */
+  const char *text;
+} message_view;
+int message_get(const message_log *log, int k, message_view *out);
 /* 1 as long as one more message of that severity would be kept: who has to
  * search for advice (nearest_word) need not once they are only counted. */
 int message_wanted(const message_log *log, severity s);

@@ -575,6 +575,16 @@ done:
   return st;
 }
 
+/* As the limit: the nodal averages of the error of the mesh are made now. */
+static status keep_recovery(run *r, archive *a) {
+  status st = OK;
+  int made = r->recovery != NULL;
+  TRY(archive_ints(a, "recovery", &made, 1));
+  if (archive_reads(a) && made) TRY(space_recovery_new(&r->d, &r->recovery));
+done:
+  return st;
+}
+
 static status keep_costs(run *r, archive *a) {
   status st = OK;
   for (int i = 0; i < STAGE_COUNT; ++i) r->costs[i] = timer_cost((stage)i);
@@ -594,6 +604,7 @@ status run_keep(run *r, archive *a) {
   TRY(path_keep(r, a));
   if (r->visco != NULL) TRY(visco_keep(r, a));
   TRY(keep_limit(r, a));
+  TRY(keep_recovery(r, a));
   TRY(keep_costs(r, a));
 done:
   archive_leave(a);

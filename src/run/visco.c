@@ -348,6 +348,7 @@ status visco_keep(run *r, archive *a) {
   TRY(archive_reals(a, "largest", &v->largest, 1));
   TRY(archive_ints(a, "told", &told, 1));
   v->told = told ? r->step : NULL;
+  TRY(archive_ints(a, "told_locking", &v->told_locking, 1));
   TRY(tangent_keep(r, a));
 done:
   archive_leave(a);

@@ -74,6 +74,7 @@ typedef enum { OPEN, CLOSED } contact_state;
 typedef enum { FREE, STICK, SLIP } tangent;
 
 typedef struct auglag_work {
+  int m;                 /* unknowns                                        */
   unsigned char *part;   /* [m] force_part                                   */
   unsigned char *closed; /* [m] contact_state of the unknowns that push      */
   unsigned char *mode;   /* [n] tangent                                      */
@@ -136,6 +137,7 @@ static status auglag_setup(const contact_problem *cp, const void *par,
   size_t m = (size_t)cp->m;
   (void)par;
   NEW(w, 1);
+  w->m = cp->m;
   NEW(w->part, m);
   NEW(w->closed, m);
   NEW(w->mode, cp->n);
@@ -646,6 +648,12 @@ done:
   return st;
 }
 
+/* Changes of state are told against the step before. */
+static status auglag_keep(void *work, archive *a) {
+  auglag_work *w = work;
+  return archive_bytes(a, "state", w->state, (size_t)w->m);
+}
+
 /* clang-format off */
 const solver_ops auglag_solver = {
   .name = "auglag",
@@ -669,6 +677,7 @@ const solver_ops auglag_solver = {
   .options = auglag_options,
   .setup = auglag_setup,
   .solve = auglag_solve,
-  .release = auglag_release
+  .release = auglag_release,
+  .keep = auglag_keep
 };
 /* clang-format on */
