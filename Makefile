@@ -208,15 +208,17 @@ study: $(program)
 	  --vary METHOD=AITKEN,SOR,NEWTON --vary N=128 --cost "contact solver" \
 	  --title "block, 128 segments: what a digit costs with three solvers"
 	$(Q)$(STUDY) input/hertz_line/hertz_exact.inp -o build/study/meshes \
-	  --vary N=2,4,8,16,32 --title "Hertz, segments per half-width N"
+	  --vary N=2,4,8,16,32 --leave-out mesh \
+	  --title "Hertz against its closed form, N segments per half-width"
 	$(Q)$(STUDY) input/creep_block/held_block.inp -o build/study/integrators \
 	  --vary DT=1,0.5,0.25,0.125,0.0625,0.03125 \
 	  --vary INTEGRATOR=EULER,BACKWARD,HEUN,MIDPOINT \
 	  --title "relaxing block: four integrators, increments DT"
 	$(Q)$(STUDY) input/nonlocal_slider/nonlocal_hertz.inp \
 	  -o build/study/radii --vary NC=8,16,32,64,128 \
-	  --vary RHO=0.02,0.05,0.1 --error TOTALS.tangential \
-	  --title "sliding cylinder: nonlocal radii RHO, NC segments"
+	  --vary RHO=0.02,0.05,0.1 --error TOTALS.tangential --reference own \
+	  --leave-out mesh \
+	  --title "friction force of a sliding cylinder, nonlocal radius RHO"
 
 bench-solvers: $(out)/tests/bench/solvers
 	$(Q)$<
