@@ -216,9 +216,9 @@ study: $(program)
 	  --title "relaxing block: four integrators, increments DT"
 	$(Q)$(STUDY) input/nonlocal_slider/nonlocal_hertz.inp \
 	  -o build/study/radii --vary NC=8,16,32,64,128 \
-	  --vary RHO=0.02,0.05,0.1 --error TOTALS.tangential --reference own \
+	  --vary RHO=0.02,0.05,0.1 --error CONTACT.traction_t --reference own \
 	  --leave-out mesh \
-	  --title "friction force of a sliding cylinder, nonlocal radius RHO"
+	  --title "sliding cylinder, nonlocal friction of radius RHO"
 
 bench-solvers: $(out)/tests/bench/solvers
 	$(Q)$<
