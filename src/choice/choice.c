@@ -386,11 +386,12 @@ static int known_answer(const contact_problem *cp, double tol, double *u,
 static status polish(const contact_solver *s, const contact_problem *cp,
                      double *u, double *r, solver_report *rep) {
   status st = OK;
-  int sweeps = 0, asked = s->choice.max_iter;
+  int sweeps = 0, touched, asked = s->choice.max_iter;
   int most = asked > 0 ? asked - rep->iterations : INT_MAX;
+  TRY(polish_touch(cp, s->choice.tol, u, r, &touched));
   TRY(polish_slip(cp, s->choice.tol, most, u, r, &sweeps));
   rep->iterations += sweeps;
-  if (sweeps > 0) rep->residual = contact_residual(cp, u, r);
+  if (sweeps > 0 || touched) rep->residual = contact_residual(cp, u, r);
 done:
   return st;
 }

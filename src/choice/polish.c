@@ -52,6 +52,71 @@ double slip_misdirection(const contact_problem *cp, const double *u,
   return scale > 0.0 ? worst / scale : 0.0;
 }
 
+/* Way of an unknown to where the obstacle holds it, m; 0: it does not. */
+static double way_to_bound(const contact_problem *cp, const double *u,
+                           const double *r, int dof) {
+  const double *M = cp->A != NULL ? cp->A : cp->W;
+  double own = M[(size_t)dof * (size_t)(cp->m + 1)];
+  double c = cp->A != NULL ? own : 1.0 / own, bound = contact_bound(cp, dof);
+  if (bound == HUGE_VAL || !(own > 0.0)) return 0.0;
+  return r[dof] - c * (u[dof] - bound) < 0.0 ? bound - u[dof] : 0.0;
+}
+
+/* The same of a node that sticks, way[dim], normal left alone. */
+static void ways_to_stick(const contact_problem *cp, const double *u,
+                          const double *r, int node_id, double *way) {
+  double unit, c = tangent_stiffness(cp, node_id, &unit), size = 0.0;
+  int first = node_id * cp->dim;
+  if (cp->g0 == NULL || contact_has_side(cp, node_id)) return;
+  for (int k = 1; k < cp->dim; ++k) {
+    way[k] = contact_stick(cp, first + k) - u[first + k];
+    if (contact_held(cp, first + k)) way[k] = 0.0;
+    size = hypot(size, r[first + k] + c * way[k]);
+  }
+  if (size < contact_node_limit(cp, r, node_id)) return;
+  for (int k = 1; k < cp->dim; ++k) way[k] = 0.0;
+}
+
+/* v = u on the bounds, s = r with what that asks of the forces there. */
+static int touch(const contact_problem *cp, const double *u, const double *r,
+                 double *v, double *s, double *way) {
+  int changed = 0;
+  for (int i = 0; i < cp->n; ++i) {
+    double *own = way + i * cp->dim;
+    for (int k = 0; k < cp->dim; ++k)
+      own[k] = way_to_bound(cp, u, r, i * cp->dim + k);
+    ways_to_stick(cp, u, r, i, own);
+  }
+  for (int i = 0; i < cp->m; ++i) changed |= way[i] != 0.0;
+  if (!changed) return 0;
+  memcpy(s, r, (size_t)cp->m * sizeof *s);
+  if (cp->A != NULL) contact_product(cp->m, cp->A, way, v);
+  for (int i = 0; i < cp->m; ++i) {
+    if (cp->A != NULL && way[i] != 0.0) s[i] += v[i];
+    v[i] = u[i] + way[i];
+  }
+  return 1;
+}
+
+status polish_touch(const contact_problem *cp, double tol, double *u, double *r,
+                    int *changed) {
+  status st = OK;
+  size_t bytes = (size_t)cp->m * sizeof *u;
+  double *v = NULL, *s = NULL, *way = NULL;
+  NEW(v, cp->m);
+  NEW(s, cp->m);
+  NEW(way, cp->m);
+  *changed = touch(cp, u, r, v, s, way) && contact_residual(cp, v, s) <= tol;
+  if (!*changed) goto done;
+  memcpy(u, v, bytes);
+  memcpy(r, s, bytes);
+done:
+  memory_free(v);
+  memory_free(s);
+  memory_free(way);
+  return st;
+}
+
 status polish_slip(const contact_problem *cp, double tol, int most, double *u,
                    double *r, int *sweeps) {
   status st = OK;

@@ -1,5 +1,10 @@
 /*
- * Last touch of an answer in space: the direction of slip.
+ * Last touch of an answer: pressed nodes lie on the obstacle, and, in space,
+ * friction points against the slip.
+ *
+ * The residual is of forces: of a body that is soft to bending, as a strip of
+ * slivers, nodes may be far into the obstacle, measured by its displacements,
+ * at no force to speak of. Methods that approach the bounds leave them there.
  *
  * The residual bounds the errors of forces and displacements. Where a node has
  * slipped by little, s << |u|, an error d of u still turns the direction of its
@@ -26,5 +31,13 @@ double slip_misdirection(const contact_problem *cp, const double *u,
  */
 status polish_slip(const contact_problem *cp, double tol, int most, double *u,
                    double *r, int *sweeps);
+
+/*
+ * Put the nodes that are pressed or stick exactly where the obstacle has them,
+ * if the residual stays at tol; u[m], r[m] are else left as they are. *changed:
+ * 1 if they were not there.
+ */
+status polish_touch(const contact_problem *cp, double tol, double *u, double *r,
+                    int *changed);
 
 #endif

@@ -28,6 +28,14 @@
       "y + 0.05*sin(3.14159265358979*y)*cos(7*x)"  \
     }                                              \
   }
+/* The middle of the layers stays where it is. */
+#define WAVY_LAYERS                                \
+  {                                                \
+    .map = {                                       \
+      "x + 0.05*sin(3.14159265358979*x)*sin(9*y)", \
+      "y + 0.05*sin(6.28318530717959*y)*cos(7*x)"  \
+    }                                              \
+  }
 #define LAYERS(contrast, support)                                        \
   "*MATERIAL, NAME=S\n*ELASTIC\n1., 0.\n*MATERIAL, "                     \
   "NAME=H\n*ELASTIC\n" contrast                                          \
@@ -106,6 +114,40 @@ const scene_row body_scenes[] = {
    .hard = "singular, two scales", .mesh = "rect 4 4 1 1 layers",
    .deck = LAYERS("1.E8", ""),
    .expect = "TOTALS normal = 1 ~ 1e-9; TOTALS moment_z = 0.5 ~ 1e-8"},
+  {.name = "hard body on a soft base, 1e6", .hard = "unequal triangles",
+   .mesh = "rect 6 8 1 1 layers", .change = WAVY_LAYERS,
+   .deck = LAYERS("1.E6", "*BOUNDARY\nLEFT, 1\n"),
+   .expect = "TOTALS normal = 1 ~ 1e-10; NODES u_y @y=1 = -0.5 - 0.5e-6 "
+     "~ 1e-10; NODES u_x = 0 ~ 1e-10"},
+  {.name = "hard body on a soft base, lying", .hard = "held by contact",
+   .mesh = "rect 6 8 1 1 layers", .change = WAVY_LAYERS, .flags = QUICK,
+   .deck = LAYERS("1.E6", ""),
+   .expect = "TOTALS normal = 1 ~ 1e-9; TOTALS moment_z = 0.5 ~ 1e-9;"
+     "NODES u_y @y=1 = -0.5 - 0.5e-6 ~ 1e-8"},
+  {.name = "contrast 1e12, unequal triangles", .hard = "four digits left",
+   .mesh = "rect 6 8 1 1 layers", .change = WAVY_LAYERS,
+   .deck = LAYERS("1.E12", "*BOUNDARY\nLEFT, 1\n"),
+   .expect = "TOTALS normal = 1 ~ 1e-8; NODES u_y @y=1 = -0.5 ~ 1e-6;"
+     "lst has rounding:"},
+  {.name = "contrast 1e15", .hard = "no digit left", .verdict = 6,
+   .mesh = "rect 6 8 1 1 layers", .change = WAVY_LAYERS, .flags = QUICK,
+   .deck = LAYERS("1.E15", "*BOUNDARY\nLEFT, 1\n"),
+   .expect = "errors has rounding leaves no digit"},
+  {.name = "contrast 1e15, lying", .hard = "no digit left", .verdict = 6,
+   .mesh = "rect 6 8 1 1 layers", .change = WAVY_LAYERS,
+   .deck = LAYERS("1.E15", ""),
+   .expect = "errors has rounding leaves no digit"},
+  {.name = "averaged, contrast 1e15", .hard = "no digit left", .verdict = 6,
+   .mesh = "rect 4 4 1 1 layers",
+   .deck = "*MATERIAL, NAME=S\n*ELASTIC\n1., 0.\n*MATERIAL, NAME=H\n"
+     "*ELASTIC\n1.E15, 0.\n*SOLID SECTION, ELSET=SOFT, MATERIAL=S, "
+     "FORMULATION=AVERAGED\n*SOLID SECTION, ELSET=HARD, MATERIAL=H, "
+     "FORMULATION=AVERAGED\n" FLOOR("0.3") STATIC
+     "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n" END,
+   .expect = "errors has rounding leaves no digit"},
+  {.name = "needles of aspect 1e8", .hard = "no digit left", .verdict = 6,
+   .mesh = "rect 6 6 1 1e8", .deck = PRESSED("0.3"),
+   .expect = "errors has rounding leaves no digit"},
   {.name = "orthotropic 1e4 along the floor", .hard = "stiff in one direction",
    .mesh = "rect 4 4 1 1", .deck = ORTHO("1.E7", "1000."),
    .expect = "NODES u_y = -0.01*y ~ 1e-9; NODES u_x = 0 ~ 1e-9"},
@@ -114,10 +156,10 @@ const scene_row body_scenes[] = {
    .expect = "NODES u_y = -1e-6*y ~ 1e-12"},
   {.name = "slivers, flat, aspect 1e4", .hard = "angles of 1e-4",
    .mesh = "rect 6 6 1e4 1", .deck = PRESSED("0.3"), .flags = QUICK,
-   .expect = "NODES u_x = 3.9e-3*x ~ 3.9e-5; NODES u_y = -9.1e-3*y ~ 1e-6"},
+   .expect = "NODES u_x = 3.9e-3*x ~ 3.9e-5; NODES u_y = -9.1e-3*y ~ 9.1e-9"},
   {.name = "slivers, upright, aspect 1e4", .hard = "angles of 1e-4",
    .mesh = "rect 6 6 1 1e4", .deck = PRESSED("0.3"),
-   .expect = "NODES u_x = 3.9e-3*x ~ 1e-5; NODES u_y = -9.1e-3*y ~ 1e-5"},
+   .expect = "NODES u_x = 3.9e-3*x ~ 3.9e-9; NODES u_y = -9.1e-3*y ~ 9.1e-5"},
   {.name = "one layer of slivers among good ones", .hard = "thin layer",
    .mesh = "rect 6 6 1 1",
    .change = {.map = {NULL, "if(y < 0.1, y, if(y < 0.2, 1e-5, y))"}},
@@ -143,7 +185,8 @@ const scene_row body_scenes[] = {
    .mesh = "box 3 3 2 1e4 1 1", .deck = MATERIAL("1000.", "0.3")
      PLANE("C", "BOTTOM", "0., 0., 0.", "0., 0., 1.") COULOMB("C", "0.")
      STATIC "*BOUNDARY\nLEFT, 1\nFRONT, 2\n*DSLOAD\nTOP, P, 10.\n" END,
-   .expect = "NODES u_x = 3e-3*x ~ 1e-5; NODES u_z = -1e-2*z ~ 1e-7"},
+   .expect = "NODES u_x = 3e-3*x ~ 3e-5; NODES u_y = 3e-3*y ~ 3e-9;"
+     "NODES u_z = -1e-2*z ~ 1e-8"},
   {.name = NULL}
 };
 /* clang-format on */

@@ -20,6 +20,12 @@
   "\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n" PLANE(                  \
       "C", "BOTTOM", "0., " plane, "0., 1.") COULOMB("C", "0.") STATIC \
       "*BOUNDARY\nTOP, 2\nCORNER, 1\n*TEMPERATURE\nBODY, 1000.\n" END
+/* Pulled down by 5 towards a plane that it does not reach. */
+#define HANGING(step)                        \
+  MATERIAL("1000.", "0.")                    \
+  PLANE("C", "BOTTOM", "0., -0.1", "0., 1.") \
+  COULOMB("C", "0.4")                        \
+  step "*BOUNDARY\nTOP, 2\nLEFT, 1\n*DSLOAD\nBOTTOM, P, -5.\n" END
 #define ROUND(side, radius, height)                                 \
   "*OBSTACLE, NAME=O, TYPE=CYLINDER, RADIUS=" radius ", SIDE=" side \
   "\n0., " height "\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
@@ -50,11 +56,14 @@ const scene_row contact_scenes[] = {
    .deck = LOWERED("1000.", "0.5", "1000.001"),
    .expect = "TOTALS normal = 1 ~ 1e-5"},
   {.name = "all open", .hard = "contact that plays no part",
-   .mesh = "rect 4 4 1 1", .deck = MATERIAL("1000.", "0.")
-     PLANE("C", "BOTTOM", "0., -0.1", "0., 1.") COULOMB("C", "0.4") STATIC
-     "*BOUNDARY\nTOP, 2\nLEFT, 1\n*DSLOAD\nBOTTOM, P, -5.\n" END,
-   .expect = "NODES u_y = -0.005*(1 - y) ~ 1e-12; CONTACT ^f_n = 0 ~ 1e-9;"
-     "NODES u_x = 0 ~ 1e-12"},
+   .mesh = "rect 4 4 1 1", .deck = HANGING("*STEP\n*STATIC\n"),
+   .expect = "NODES u_y = -0.005*(1 - y) ~ 5e-15; CONTACT ^f_n = 0 ~ 5e-12;"
+     "NODES u_x = 0 ~ 5e-15"},
+  /* those that sweep stop at their tolerance, 1e-8 of the load of 5 */
+  {.name = "all open, every method", .hard = "contact that plays no part",
+   .mesh = "rect 4 4 1 1", .deck = HANGING(STATIC),
+   .expect = "NODES u_y = -0.005*(1 - y) ~ 5e-11; CONTACT ^f_n = 0 ~ 5e-8;"
+     "NODES u_x = 0 ~ 5e-11"},
   {.name = "all closed, 10000 contact nodes", .hard = "3.2 GB, ties",
    .mesh = "rect 9999 1 9999 1", .deck = MATERIAL("1000.", "0.")
      FLOOR("0.5") "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\n"

@@ -57,6 +57,34 @@ START_TEST(short_slip_gets_its_direction) {
 }
 END_TEST
 
+/* Sticking nodes entered the obstacle and slid by no more than the residual can
+ * see: they are put back, and only then; the one that slips stays. */
+START_TEST(held_nodes_lie_on_the_obstacle) {
+  double u[M], r[M];
+  contact_case c = short_slip(u, r);
+  int changed = 0;
+  ck_assert_int_eq(polish_touch(&c.cp, TOL, u, r, &changed), OK);
+  ck_assert_int_eq(changed, 0);
+  for (int i = 3; i < M; ++i) u[i] += 1e-3 * TOL * (i % 2 == 0 ? 1 : -1);
+  contact_reaction(&c.cp, u, r);
+  ck_assert_double_le(contact_residual(&c.cp, u, r), TOL);
+  ck_assert_int_eq(polish_touch(&c.cp, TOL, u, r, &changed), OK);
+  ck_assert_int_eq(changed, 1);
+  ck_assert_double_le(contact_residual(&c.cp, u, r), TOL);
+  for (int i = 0; i < NODES; ++i) {
+    ck_assert(u[3 * i] == c.gap[i]);
+    ck_assert(u[3 * i + 1] == (i == 0 ? SHORT * cos(ANGLE) : 0));
+  }
+  /* one that misses the tolerance itself is left alone */
+  double kept = u[1] += 1e6 * TOL;
+  u[3] += 1e-3 * TOL;
+  ck_assert_int_eq(polish_touch(&c.cp, TOL, u, r, &changed), OK);
+  ck_assert_int_eq(changed, 0);
+  ck_assert(u[1] == kept && u[3] != c.gap[1]);
+  case_free(&c);
+}
+END_TEST
+
 /* An exact answer is left as it is, in the plane any. */
 START_TEST(exact_answer_is_left_alone) {
   double u[M], r[M], kept[M];
@@ -98,5 +126,6 @@ START_TEST(rows_hand_out_the_direction) {
 }
 END_TEST
 
-UNIT_MAIN("polish", short_slip_gets_its_direction, exact_answer_is_left_alone,
+UNIT_MAIN("polish", short_slip_gets_its_direction,
+          held_nodes_lie_on_the_obstacle, exact_answer_is_left_alone,
           rows_hand_out_the_direction)
