@@ -205,10 +205,11 @@ STUDY := PROTIS=$(abspath $(program)) tools/study -j $(JOBS)
 study: $(program)
 	$(Q)$(STUDY) input/greco/greco.inp -o build/study/solvers \
 	  --vary TOL=1e-1,1e-2,1e-3,1e-4,1e-6,1e-8,1e-12 \
-	  --vary METHOD=AITKEN,SOR,NEWTON --vary N=128 --cost "contact solver" \
+	  --vary METHOD=AITKEN,SOR,NEWTON --vary N=128 --floor 1e-10 \
+	  --cost "contact solver" \
 	  --title "block, 128 segments: what a digit costs with three solvers"
 	$(Q)$(STUDY) input/hertz_line/hertz_exact.inp -o build/study/meshes \
-	  --vary N=2,4,8,16,32 --leave-out mesh \
+	  --vary N=2,4,8,16,32 \
 	  --title "Hertz against its closed form, N segments per half-width"
 	$(Q)$(STUDY) input/creep_block/held_block.inp -o build/study/integrators \
 	  --vary DT=1,0.5,0.25,0.125,0.0625,0.03125 \
@@ -217,7 +218,6 @@ study: $(program)
 	$(Q)$(STUDY) input/nonlocal_slider/nonlocal_hertz.inp \
 	  -o build/study/radii --vary NC=8,16,32,64,128 \
 	  --vary RHO=0.02,0.05,0.1 --error CONTACT.traction_t --reference own \
-	  --leave-out mesh \
 	  --title "sliding cylinder, nonlocal friction of radius RHO"
 
 bench-solvers: $(out)/tests/bench/solvers
