@@ -127,7 +127,7 @@ static flow flow_of(const law_point *p) {
   }
   tensor_deviator(ns, s, s);
   f.q = tensor_mises(ns, s);
-  const double faded = f.y.Q * exp(-f.y.b * f.p);
+  const double faded = f.y.Q != 0 ? f.y.Q * exp(-f.y.b * f.p) : 0;
   const double over =
       (f.q - f.y.sigma_y - f.y.H * f.p - (f.y.Q - faded)) / f.y.K;
   f.hardening = f.y.H + f.y.b * faded;

@@ -13,8 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_LOCAL = 60 };
-static const double point_tol = 1e-13;
+enum { MOST_LOCAL = 60, MOST_PARTS = 1000 };
+static const double point_tol = 1e-13, alpha_tol = 1e-10; /* -            */
 
 status point_step_new(const flow *x, point_step *l) {
   status st = OK;
@@ -22,13 +22,14 @@ status point_step_new(const flow *x, point_step *l) {
   memset(l, 0, sizeof *l);
   NEW(l->pivot, n);
   NEW(l->room,
-      na + 4 * n + n * n + n * ns + 2 * ns * ns + 2 * ns * na + na * na);
+      na + 5 * n + n * n + n * ns + 2 * ns * ns + 2 * ns * na + na * na);
   l->alpha = l->room;
   l->y = l->alpha + na;
   l->old = l->y + n;
   l->f = l->old + n;
   l->trial = l->f + n;
-  l->M = l->trial + n;
+  l->kept = l->trial + n;
+  l->M = l->kept + n;
   l->X = l->M + n * n;
   l->j.ei_sigma = l->X + n * ns;
   l->j.ei_ei = l->j.ei_sigma + ns * ns;
@@ -154,12 +155,23 @@ static double point_scale(const point_step *l) {
   return scale;
 }
 
-/* Newton iteration of one point; *solved = 0 if it fails. */
-void point_step_solve(const scheme_step *p, const double *sigma_old,
-                      point_step *l, int *solved) {
+/* Largest misfit of alpha in l->f over the largest alpha. */
+static double alpha_misfit(const point_step *l) {
+  double worst = 0.0, scale = 0.0;
+  for (int i = l->ns; i < l->n; ++i) {
+    worst = fmax(worst, fabs(l->f[i]));
+    scale = fmax(scale, fmax(fabs(l->y[i]), fabs(l->old[i])));
+  }
+  return worst > 0.0 ? worst / scale : 0.0;
+}
+
+/* Newton iteration of one point from l->y; 0 if it fails. */
+static int point_newton(const scheme_step *p, const double *sigma_old,
+                        point_step *l) {
   double residual = point_residual(p, sigma_old, l->y, l, l->f);
   const double enough = point_tol * point_scale(l);
-  for (int k = 0; k < MOST_LOCAL && residual > enough; ++k) {
+  for (int k = 0; k < MOST_LOCAL; ++k) {
+    if (residual <= enough && alpha_misfit(l) <= alpha_tol) return 1;
     double before = residual;
     point_matrix(p, l->E, l);
     memcpy(l->trial, l->f, (size_t)l->n * sizeof *l->f);
@@ -171,7 +183,41 @@ void point_step_solve(const scheme_step *p, const double *sigma_old,
     /* Rounding: no progress at a level that is as good as nothing. */
     if (residual >= before && residual <= 1e3 * enough) break;
   }
-  if (residual > 1e4 * enough) *solved = 0;
+  return residual <= 1e4 * enough && alpha_misfit(l) <= 1e4 * alpha_tol;
+}
+
+/*
+ * Rates that are high powers of the stress: Newton's method takes one power of
+ * e off the rate with each iteration, or fails. The same for steps dt, growing
+ * from one that changes little, each from the answer of the last.
+ */
+static int point_follow(const scheme_step *p, const double *sigma_old,
+                        point_step *l) {
+  const size_t bytes = (size_t)l->n * sizeof *l->y;
+  scheme_step part = *p;
+  double grow = 10.0, done = 0.0;
+  memcpy(l->y, l->old, bytes);
+  double first = point_residual(p, sigma_old, l->y, l, l->f);
+  if (!(first < HUGE_VAL)) return 0;
+  part.dt *= fmin(1.0, 0.01 * point_scale(l) / first);
+  for (int k = 0; k < MOST_PARTS && grow > 1.01; ++k) {
+    memcpy(l->kept, l->y, bytes);
+    if (point_newton(&part, sigma_old, l)) {
+      if (part.dt == p->dt) return 1;
+      done = part.dt;
+    } else {
+      memcpy(l->y, l->kept, bytes);
+      grow = sqrt(grow);
+    }
+    part.dt = done > 0.0 ? fmin(p->dt, grow * done) : part.dt / 10.0;
+  }
+  return 0;
+}
+
+void point_step_solve(const scheme_step *p, const double *sigma_old,
+                      point_step *l, int *solved) {
+  if (!point_newton(p, sigma_old, l) && !point_follow(p, sigma_old, l))
+    *solved = 0;
 }
 
 /* 1: no rate at the theta-point of the old e^i and alpha, which are then the

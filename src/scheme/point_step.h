@@ -12,9 +12,9 @@ typedef struct point_step {
   int ns, na, n;
   double e[6], sigma[6], ei[6]; /* at the theta-point; e of the end         */
   double *alpha;                /* [na] at the theta-point                   */
-  double *y, *old, *f, *trial;  /* [n] e^i and alpha                         */
-  double *M, *X;                /* [n*n], [n*ns]                             */
-  int *pivot;                   /* [n]                                       */
+  double *y, *old, *f, *trial, *kept; /* [n] e^i and alpha                  */
+  double *M, *X; /* [n*n], [n*ns]                             */
+  int *pivot;    /* [n]                                       */
   double E[36]; /* [ns*ns] at the end of the step, Pa                         */
   law_jacobian j;
   double value[FLOW_VALUE_MAX];

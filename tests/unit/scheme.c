@@ -189,6 +189,41 @@ START_TEST(thirty_decades_in_one_body) {
 }
 END_TEST
 
+/* Stress of a bar that one step of BACKWARD, dt = 0.1, strains by 0.02, where
+ * dp = e - stress/E: Q (1 - exp(-b dp)) + C dp/(1 + g dp) + K (dp/dt)^(1/n). */
+static double one_step(double K, double n, double Q, double C) {
+  double low = 0, high = 0.02 * 1e5;
+  for (int k = 0; k < 200; ++k) {
+    const double stress = 0.5 * (low + high), dp = 0.02 - stress / 1e5;
+    const double law = Q * (1 - exp(-50 * dp)) + C * dp / (1 + 100 * dp) +
+                       K * pow(dp / 0.1, 1 / n);
+    if (stress < law)
+      low = stress;
+    else
+      high = stress;
+  }
+  return low;
+}
+
+/* No threshold, and rates of up to 1E290 at the strain of the end. */
+START_TEST(high_powers_without_a_threshold_are_solved) {
+  static const double n[] = {1, 3, 10, 24, 80}, K[] = {150, 1, 0.5};
+  static const point_drive bar = {.held = {1}, .e_rate = {0.2}};
+  for (int i = 0; i < 30; ++i) {
+    const double Q = i % 2 * 20, C = i % 2 * 2e4;
+    char data[100];
+    snprintf(data, sizeof data, "0., %g, %g, %g, 50.\n%g, 100.", K[i / 2 % 3],
+             n[i / 6], Q, C);
+    const point_input in = {"CHABOCHE", data, 0, 1e5, 0.3, 0};
+    const double expected = one_step(K[i / 2 % 3], n[i / 6], Q, C);
+    point_body_new(&in, &bar, &b);
+    point_body_run(&b, scheme_find("BACKWARD"), 1, 0.1, 1, NULL);
+    ck_assert_double_eq_tol(b.now.sigma[0], expected, 1e-8 * 200);
+    point_body_free(&b);
+  }
+}
+END_TEST
+
 /* An attempt that is thrown away: the state it started from is as it was, and
  * the next attempt gives the bytes of a first one. */
 START_TEST(a_rejected_step_leaves_nothing_behind) {
@@ -219,4 +254,5 @@ UNIT_MAIN("scheme", held_stress_has_the_factor_of_its_row,
           limits_are_where_the_factor_is_one, rows_have_their_order,
           heun_estimates_by_euler, midpoint_and_backward_are_theta,
           exponential_is_exact_for_linear_laws, thirty_decades_in_one_body,
+          high_powers_without_a_threshold_are_solved,
           a_rejected_step_leaves_nothing_behind)
