@@ -5,6 +5,7 @@ JOBS  ?= $(shell nproc 2>/dev/null || echo 2)
 CC    ?= gcc
 
 out   := build/$(BUILD)
+comma := ,
 Q     := $(if $(filter 1,$(V)),,@)
 
 packages := gcc make pkg-config libsuitesparse-dev libopenblas-dev \
@@ -32,6 +33,10 @@ CPPFLAGS += -Isrc -D_POSIX_C_SOURCE=200809L -D_DEFAULT_SOURCE \
 CPPFLAGS += $(DEFINES)
 CFLAGS   += -std=c11 $(warnings) $(optimise)
 LDFLAGS  += $(filter -fsanitize% --coverage,$(optimise))
+# Of builds that count branches: what _exit would lose.
+leave_cover := $(out)/tests/preload/leave.o
+leave    := $(leave_$(BUILD))
+LDFLAGS  += $(if $(leave),-Wl$(comma)--wrap=_exit)
 LDLIBS   += -lumfpack -lcholmod -lcamd -lsuitesparseconfig -llapacke -lopenblas \
             $(shell pkg-config --libs hdf5-serial 2>/dev/null) -ldl -lm
 checklib := $(shell pkg-config --libs check 2>/dev/null)
@@ -75,6 +80,7 @@ help:
 	@echo "make stability    hard cases and 10000 random problems: minutes"
 	@echo "make scenes       the matrix of hard scenes and methods alone"
 	@echo "make torture      memory, files, kills, random input: a table, an hour"
+	@echo "make coverage     lines and branches of src the tests run; needs gcovr"
 	@echo "make verify       orders of convergence, observed and expected"
 	@echo "make effects-cost instructions of builds without an effect; needs valgrind"
 	@echo "make study        error against CPU seconds: four pictures"
@@ -104,11 +110,11 @@ $(library): $(objects)
 	@echo "  AR   $@"
 	$(Q)rm -f $@ && ar rcs $@ $^
 
-$(program): $(out)/src/main.o $(library)
+$(program): $(out)/src/main.o $(leave) $(library)
 	@echo "  LD   $@"
 	$(Q)$(CC) $(LDFLAGS) $^ $(LDLIBS) -o $@
 
-$(out)/tests/%: $(out)/tests/%.o $(support) $(library)
+$(out)/tests/%: $(out)/tests/%.o $(support) $(leave) $(library)
 	@echo "  LD   $@"
 	$(Q)$(CC) $(LDFLAGS) $^ $(checklib) $(LDLIBS) -o $@
 
@@ -165,6 +171,13 @@ torture: $(program) $(preload) $(tort) $(out)/tests/unit/conformance \
          $(out)/tests/stability/lcp $(out)/tests/regression/mutants
 	$(Q)$(torture) JOBS=$(JOBS) PROTIS_POINTS=$(POINTS) tools/torture \
 	  $(filter-out $(program) $(preload),$^)
+
+# What the tests run of src; needs gcovr, no part of the tests.
+.PHONY: coverage
+coverage:
+	$(Q)find build/cover -name '*.gcda' -delete 2>/dev/null || true
+	$(Q)$(MAKE) --no-print-directory BUILD=cover -k unit regression \
+	  torture-slice; tools/coverage build/cover
 
 # Hard cases: the matrix of scenes (SCENE=name: those alone), every other
 # program of tests/stability, and the long run of the conformance test.

@@ -152,6 +152,7 @@ static void check_told(const job *j, const char *by, int code) {
                 "%s; wanted %s, %s", errors, by, wanted);
   snprintf(wanted, sizeof wanted, "\"code\": %d", code);
   ck_assert_msg(strstr(json, wanted) != NULL, "%s", json);
+  ck_assert(job_has(j, "rst.h5"));
   free(errors);
   free(json);
 }

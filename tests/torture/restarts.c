@@ -1,8 +1,9 @@
 /*
- * Runs that are stopped by SIGINT and gone on with, against the run that was
- * not stopped: all files equal, byte by byte. Every method, every integrator,
- * every kind of effect that has a memory, at small and large friction. The
- * stops are counted in changes of files, so that nothing depends on time.
+ * Runs that are stopped by SIGINT or SIGTERM and gone on with, against the run
+ * that was not stopped: all files equal, byte by byte. Every method, every
+ * integrator, every kind of effect that has a memory, at small and large
+ * friction. The stops are counted in changes of files, so that nothing depends
+ * on time.
  */
 #include "scheme/scheme.h"
 #include "support/kept_mesh.h"
@@ -20,8 +21,9 @@
 static const char *const nothing[] = {NULL, NULL};
 static const char *const again[] = {"--restart", NULL};
 
-static int run(job *j, const char *const *words, int at, int *changes) {
-  traced t = {.action = TRACE_SIGNAL, .at = at, .number = SIGINT};
+static int run(job *j, const char *const *words, int at, int signal_no,
+               int *changes) {
+  traced t = {.action = TRACE_SIGNAL, .at = at, .number = signal_no};
   int code = traced_run(j, words, &t);
   if (changes != NULL) *changes = t.changes;
   return code;
@@ -29,9 +31,11 @@ static int run(job *j, const char *const *words, int at, int *changes) {
 
 /* NULL, or what is wrong with a run that was stopped and went on. A signal
  * during the last increment comes too late: the run ends as it would. */
-static const char *fault(const job *whole, job *j, int code, int stopped) {
-  if (stopped != 130) return stopped == code ? NULL : "stop: exit code";
-  if (run(j, again, 0, NULL) != code) return "restart: exit code";
+static const char *fault(const job *whole, job *j, int code, int signal_no,
+                         int stopped) {
+  if (stopped != 128 + signal_no)
+    return stopped == code ? NULL : "stop: exit code";
+  if (run(j, again, 0, 0, NULL) != code) return "restart: exit code";
   return traced_difference(whole, j) == NULL ? NULL : "restart: other files";
 }
 
@@ -42,12 +46,14 @@ static int stop_and_go_on(points *t, job *whole, job *j, const char *what,
   int changes;
   long n = points_number(1, 0.0003);
   kept_mesh(whole);
-  int code = run(whole, nothing, 0, &changes);
+  int code = run(whole, nothing, 0, 0, &changes);
   int taken = code == 0 || code == 1;
   for (long k = 0; taken && k < n; ++k) {
     int at = (int)points_spread(k, n, changes);
+    int signal_no = t->tried % 2 == 0 ? SIGINT : SIGTERM;
     job_clear(j);
-    const char *wrong = fault(whole, j, code, run(j, nothing, at, NULL));
+    const char *wrong =
+        fault(whole, j, code, signal_no, run(j, nothing, at, signal_no, NULL));
     points_try(t);
     if (wrong != NULL)
       points_lose(t, "%s, mu %g: stopped at change %d of %d: %s (%s): %.200s",
@@ -185,8 +191,7 @@ static job scene_job(int k, double mu) {
       "%s*END STEP\n",
       strncmp(material, "*ELASTIC", 8) == 0 ? "" : "*ELASTIC\n130.D3, 0.2\n",
       material, scenes[k].section, scenes[k].obstacle, scenes[k].law, mu,
-      scenes[k].more, scenes[k].held,
-      scenes[k].second);
+      scenes[k].more, scenes[k].held, scenes[k].second);
   return j;
 }
 

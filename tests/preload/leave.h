@@ -1,0 +1,12 @@
+/* What leave.c puts in the place of the C library's; names of the linker. */
+#ifndef PROTIS_TESTS_PRELOAD_LEAVE_H
+#define PROTIS_TESTS_PRELOAD_LEAVE_H
+
+/* Writes the counts; of the compiler. */
+void __gcov_dump(void);
+/* _exit of the C library. */
+void __real__exit(int code) __attribute__((noreturn));
+/* _exit, with the counts written first. */
+void __wrap__exit(int code) __attribute__((noreturn));
+
+#endif
