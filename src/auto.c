@@ -22,9 +22,9 @@ done:
   return st;
 }
 
-/* 1: the run gave no answer to measure. */
-static int has_failed(const watcher *w, status run) {
-  return run != OK && !w->refuted;
+/* 1: the run gave no answer to measure, or one that missed its tolerance. */
+static int has_failed(const watcher *w, status run, int unsettled) {
+  return !w->refuted && (run != OK || unsettled > 0);
 }
 
 static int is_final(status run) {
@@ -44,7 +44,8 @@ static status try_without(watcher *w, const command *c, job_input *in,
   TRY(neglect_new(in->m, in->msh, &w->n));
   w->refuted = 0;
   st = job_solve(c, in, &watch, NULL, unsettled);
-  *again = !is_final(st) && neglect_take_back(in->m, has_failed(w, st)) > 0;
+  *again = !is_final(st) &&
+           neglect_take_back(in->m, has_failed(w, st, *unsettled)) > 0;
 done:
   return st;
 }

@@ -140,6 +140,14 @@ static int starts_smoothly(const run *r) {
                      r->old.e0);
 }
 
+/* 1: a law flows, or would if *EFFECTS had not left it out. */
+static int has_law(const run *r) {
+  int any = r->visco != NULL;
+  for (int i = 0; i < r->m->n_material; ++i)
+    any |= r->m->materials[i].law_aside != NULL;
+  return any;
+}
+
 /*
  * The body answers at once to what is applied suddenly at the start of a *VISCO
  * step: an increment without length of its own.
@@ -148,7 +156,7 @@ static status start_visco(run *r, int *increment_no) {
   status st = OK;
   double cpu = timer_cpu();
   if (r->step->kind != STEP_VISCO) return OK;
-  if (r->visco == NULL && r->m->n_neglected == 0) return OK;
+  if (!has_law(r)) return OK;
   TRY(increment_begin(r, r->step->start));
   if (!starts_smoothly(r)) {
     TRY(increment_solve(r, r->step->start));

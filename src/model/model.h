@@ -289,6 +289,7 @@ typedef struct neglected {
   double time;   /* s, > 0: the law is at its end, which it nears by
                     exp(-t/time)                                              */
   int back;      /* 1: it matters, the run was made again with it            */
+  int lost;      /* 1: the run without it was not solved to its tolerance     */
 } neglected;
 enum { NEGLECT_MAX = 16 };
 

@@ -79,9 +79,36 @@ static double largest_temperature(const model *m) {
   return most;
 }
 
-static void try_thermal(model *m, const mesh *msh) {
+/* *jumps 1: a *VISCO step starts with other temperatures than were there
+ * before, to which a body that creeps answers at once, by an increment. */
+static status find_jump(const model *m, const mesh *msh, int *jumps) {
+  status st = OK;
+  double *T0 = NULL, *before = NULL, *T = NULL;
+  const size_t bytes = (size_t)msh->n_elem * sizeof *T;
+  *jumps = 0;
+  NEW(T0, msh->n_elem);
+  NEW(before, msh->n_elem);
+  NEW(T, msh->n_elem);
+  TRY(load_temperature_initial(m, msh, T0));
+  memcpy(before, T0, bytes);
+  for (int i = 0; i < m->n_step; ++i) {
+    const step *s = &m->steps[i];
+    TRY(load_temperature(m, msh, s, s->start, T0, T));
+    for (int e = 0; e < msh->n_elem && s->kind == STEP_VISCO; ++e)
+      *jumps |= fabs(T[e] - before[e]) > 1e-12 * fabs(T[e]);
+    TRY(load_temperature(m, msh, s, s->start + s->total, T0, before));
+  }
+done:
+  memory_free(T0);
+  memory_free(before);
+  memory_free(T);
+  return st;
+}
+
+/* The largest thermal strain over that of the loads; HUGE_VAL: not known. */
+static double thermal_part(const model *m, const mesh *msh) {
   double T = largest_temperature(m), worst = 0.0;
-  if (!(m->effects & EFFECT_THERMAL) || !(T < HUGE_VAL)) return;
+  if (!(T < HUGE_VAL)) return HUGE_VAL;
   for (int i = 0; i < m->n_material; ++i) {
     const material *mat = &m->materials[i];
     double e[3];
@@ -89,18 +116,32 @@ static void try_thermal(model *m, const mesh *msh) {
     if (mat->elastic.n > 1 ||
         (mat->law.ops != NULL &&
          (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE)))
-      return;
+      return HUGE_VAL;
     double strain =
         neglect_load_stress(m, msh, neglect_young(mat)) / neglect_young(mat);
     if (!mat->expand.given) continue;
     expansion_strain(&mat->expand, T, 0.0, e);
     for (int k = 0; k < 3; ++k) worst = fmax(worst, fabs(e[k]) / strain);
   }
-  if (!(worst <= neglect_share * m->effects_tol)) return;
+  return worst;
+}
+
+static status try_thermal(model *m, const mesh *msh) {
+  status st = OK;
+  int jumps;
+  if (!(m->effects & EFFECT_THERMAL)) goto done;
+  double worst = thermal_part(m, msh);
+  if (!(worst <= neglect_share * m->effects_tol)) goto done;
+  if (m->effects & EFFECT_INELASTIC) {
+    TRY(find_jump(m, msh, &jumps));
+    if (jumps) goto done;
+  }
   neglected *row = neglect_row(m, EFFECT_BIT_THERMAL, -1);
-  if (row == NULL) return;
+  if (row == NULL) goto done;
   snprintf(row->why, sizeof row->why,
            "at most %.1e of the strain the loads make", worst);
+done:
+  return st;
 }
 
 /* ---- nonlocal average --------------------------------------------------- */
@@ -255,7 +296,7 @@ status neglect_choose(model *m, const mesh *msh) {
   m->n_neglected = 0;
   if (must_stay(m)) goto done;
   try_average(m, msh);
-  try_thermal(m, msh);
+  TRY(try_thermal(m, msh));
   TRY(neglect_try_laws(m, msh));
   TRY(try_friction(m, msh));
 done:

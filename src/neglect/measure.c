@@ -369,6 +369,7 @@ int neglect_take_back(model *m, int all) {
     neglected *row = &m->neglected[k];
     if (row->back || (neglect_holds(m, row) && !all)) continue;
     row->back = 1;
+    row->lost = all;
     ++n;
   }
   return n;

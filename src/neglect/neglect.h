@@ -36,7 +36,7 @@ status neglect_measure(neglect *n, const state *s, neglected *rows);
 /* 1: a row is above the tolerance already; the run need not go on. */
 int neglect_refuted(const model *m);
 /* Take those back that are above the tolerance or never were measured; with
- * "all" all. How many. */
+ * "all" all, the run without them not being solved. How many. */
 int neglect_take_back(model *m, int all);
 
 #endif

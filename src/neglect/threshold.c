@@ -147,7 +147,7 @@ static void add_rows(model *m, const mesh *msh, const unsigned char *flows) {
     }
     neglected *row = n > 0 ? neglect_row(m, EFFECT_BIT_INELASTIC, i) : NULL;
     if (row == NULL) continue;
-    row->some = n;
+    row->some = n < all ? n : 0;
     snprintf(row->why, sizeof row->why,
              "material %s: %d of %d elements stay below the threshold of %s",
              m->materials[i].name, n, all, m->materials[i].law.ops->name);

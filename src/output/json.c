@@ -162,6 +162,7 @@ static void write_neglected(json *w, const model *m) {
     json_string(w, "effect", effect_name(n->bit));
     json_string(w, "why", n->why);
     json_flag(w, "taken_back", n->back);
+    json_flag(w, "not_solved", n->lost);
     json_real(w, "bound", n->bound);
     json_real(w, "stress", n->local);
     json_real(w, "change", n->change);

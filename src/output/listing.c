@@ -96,7 +96,7 @@ static void print_left_out(const model *m, FILE *f) {
     fprintf(f, "  %s %s: %s\n",
             n->back ? "not left out:" : "left out:", effect_name(n->bit),
             n->why);
-    if (n->back && n->checked > 0)
+    if (n->back && !n->lost)
       fprintf(f,
               "    without it: at most %.1e of the energy norm, %.1e of the "
               "largest stress,\n    solved again with it: %.1e of the largest "
@@ -104,7 +104,11 @@ static void print_left_out(const model *m, FILE *f) {
               "TOL=%g, this is the run with it\n",
               n->bound, n->local, n->change, n->checked, m->effects_tol);
     else if (n->back)
-      fputs("    without it there was no answer, this is the run with it\n", f);
+      fputs(
+          "    without it an increment was not solved to its tolerance, this "
+          "is "
+          "the run\n    with it\n",
+          f);
   }
 }
 
