@@ -1,37 +1,48 @@
 /*
  * Products of tensors in Voigt components, 4 of them in the plane and 6 in
- * space: no loop whose length is not known, for what is done once per element.
+ * space, for what is done once per element: two components at a time, and no
+ * loop whose length is not known. Sums of each component as in a plain loop.
  */
 #ifndef PROTIS_MATERIAL_VOIGT_H
 #define PROTIS_MATERIAL_VOIGT_H
 
-/* y = A x, A[ns*ns] column major; y is neither A nor x */
-static inline void voigt_product(int ns, const double *restrict A,
-                                 const double *restrict x, double *restrict y) {
-  if (ns == 4) {
-    for (int i = 0; i < 4; ++i)
-      y[i] = A[i] * x[0] + A[i + 4] * x[1] + A[i + 8] * x[2] + A[i + 12] * x[3];
-  } else {
-    for (int i = 0; i < 6; ++i)
-      y[i] = A[i] * x[0] + A[i + 6] * x[1] + A[i + 12] * x[2] +
-             A[i + 18] * x[3] + A[i + 24] * x[4] + A[i + 30] * x[5];
-  }
+/* Two components that stand beside each other in any array of double. */
+typedef double voigt_pair
+    __attribute__((vector_size(16), aligned(8), may_alias));
+
+/* Components 2 i and 2 i + 1 of A x, A[ns*ns] column major. */
+static inline voigt_pair voigt_rows(int ns, const double *A, const double *x,
+                                    int i) {
+  const voigt_pair *a = (const voigt_pair *)A + i;
+  if (ns == 4) return a[0] * x[0] + a[2] * x[1] + a[4] * x[2] + a[6] * x[3];
+  return a[0] * x[0] + a[3] * x[1] + a[6] * x[2] + a[9] * x[3] + a[12] * x[4] +
+         a[15] * x[5];
+}
+
+/* y = A x; y is not x */
+static inline void voigt_product(int ns, const double *A, const double *x,
+                                 double *y) {
+  voigt_pair *out = (voigt_pair *)y;
+  out[0] = voigt_rows(ns, A, x, 0);
+  out[1] = voigt_rows(ns, A, x, 1);
+  if (ns != 4) out[2] = voigt_rows(6, A, x, 2);
 }
 
 /* y += A x */
-static inline void voigt_add(int ns, const double *restrict A,
-                             const double *restrict x, double *restrict y) {
-  double more[6];
-  voigt_product(ns, A, x, more);
-  for (int i = 0; i < 4; ++i) y[i] += more[i];
-  for (int i = 4; i < ns; ++i) y[i] += more[i];
+static inline void voigt_add(int ns, const double *A, const double *x,
+                             double *y) {
+  voigt_pair *out = (voigt_pair *)y;
+  out[0] += voigt_rows(ns, A, x, 0);
+  out[1] += voigt_rows(ns, A, x, 1);
+  if (ns != 4) out[2] += voigt_rows(6, A, x, 2);
 }
 
 /* a' b */
 static inline double voigt_dot(int ns, const double *a, const double *b) {
-  double sum = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
-  if (ns == 6) sum += a[4] * b[4] + a[5] * b[5];
-  return sum;
+  const voigt_pair *p = (const voigt_pair *)a, *q = (const voigt_pair *)b;
+  voigt_pair sum = p[0] * q[0] + p[1] * q[1];
+  if (ns != 4) sum += p[2] * q[2];
+  return sum[0] + sum[1];
 }
 
 #endif

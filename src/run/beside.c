@@ -27,7 +27,7 @@ static void list_own(run *b, own_array list[OWN]) {
   equilibrium *e = &b->now;
   const size_t n = (size_t)b->n, n_c = (size_t)b->n_c, dofs = b->n_dof;
   const size_t sides = n_c - n, elements = (size_t)b->msh->n_elem;
-  const size_t strains = (size_t)b->m->ns * (size_t)b->eigen.n;
+  const size_t strains = strains_kept(b);
   const own_array all[OWN] = {{&e->u, dofs},
                               {&e->F, dofs},
                               {&e->reaction, dofs},

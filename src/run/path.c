@@ -141,7 +141,7 @@ static status try_halves(run *r, finer_path *p, double t) {
   p->lost = r->report.outcome <= 0;
   if (p->lost || p->u == NULL) return OK;
   memcpy(p->u, r->now.u, r->n_dof * sizeof *p->u);
-  memcpy(p->e0, r->now.e0, visco_at(r, r->eigen.n) * sizeof *p->e0);
+  memcpy(p->e0, r->eigen.e0, visco_at(r, r->eigen.n) * sizeof *p->e0);
 done:
   return st;
 }
@@ -189,7 +189,8 @@ static double field_difference(const run *r, finer_path *p) {
   double stress = sqrt(2.0 * fmax(r->now.energy.strain, 0.0));
   double strain = field_norm(r, r->now.u, NULL);
   for (size_t k = 0; k < r->n_dof; ++k) p->u[k] -= r->now.u[k];
-  for (size_t k = 0; k < visco_at(r, r->eigen.n); ++k) p->e0[k] -= r->now.e0[k];
+  for (size_t k = 0; k < visco_at(r, r->eigen.n); ++k)
+    p->e0[k] -= r->eigen.e0[k];
   double of_stress = field_norm(r, p->u, p->e0);
   double of_strain = field_norm(r, p->u, NULL);
   return strain > 0.0 ? fmax(of_stress, of_strain * (stress / strain))

@@ -189,8 +189,8 @@ void visco_part_strains(run *r, const visco_part *p) {
   visco *v = r->visco;
   const int all = p->n_point == p->n_item;
   double *e = v->now.e + visco_at(r, p->point);
-  const double *thermal =
-      r->temperature0 == NULL ? NULL : r->now.thermal + visco_at(r, p->item);
+  const double *thermal = r->now.thermal;
+  if (thermal != NULL) thermal += visco_at(r, p->item);
   const eigenstrain x = {p->n_item, r->eigen_elem + p->item, thermal};
   eigen_stress(&r->d, &x, r->now.u, all ? e : v->stress, NULL);
   if (!all) to_points(r, p, v->stress, v->now.e);
@@ -272,34 +272,51 @@ void visco_warn_locking(run *r) {
               100.0 * model_locking_error(nu, FINE), FINE);
 }
 
-/* Works and energies of point k; e0 and sigma of r->now. */
+/* Works and energies of point k. */
 static inline void add_works(int ns, const run *r, int k, point_sums *sum) {
   const visco *v = r->visco;
-  const size_t at = visco_at(r, k), item = visco_at(r, v->place[k]);
+  const size_t at = visco_at(r, k);
   const double w = v->x.weight[k], *sigma = v->now.sigma + at;
-  const double *heat[] = {r->old.thermal + item, r->now.thermal + item};
   const double *ei[] = {v->old.ei + at, v->now.ei + at};
-  double middle[6], creep[6], warm[6], elastic[6], held[6], e0[6];
+  double middle[6], creep[6], elastic[6], held[6];
   for (int i = 0; i < ns; ++i) {
     middle[i] = 0.5 * (v->old.sigma[at + (size_t)i] + sigma[i]);
     creep[i] = ei[1][i] - ei[0][i];
     elastic[i] = v->now.e[at + (size_t)i] - ei[1][i];
-    e0[i] = heat[1][i] + ei[1][i];
-    warm[i] = heat[1][i] - heat[0][i];
   }
-  for (int i = 0; i < ns; ++i) r->now.e0[item + (size_t)i] = e0[i];
-  for (int i = 0; i < ns; ++i) r->now.sigma[item + (size_t)i] = sigma[i];
-  voigt_product(ns, v->x.kind[v->x.kind_id[k]].elastic.E, e0, held);
+  voigt_product(ns, v->x.kind[v->x.kind_id[k]].elastic.E, ei[1], held);
   sum->inelastic += w * voigt_dot(ns, middle, creep);
-  sum->thermal += w * voigt_dot(ns, middle, warm);
-  sum->held += 0.5 * w * voigt_dot(ns, e0, held);
+  sum->held += 0.5 * w * voigt_dot(ns, ei[1], held);
   sum->strain += 0.5 * w * voigt_dot(ns, elastic, sigma);
+}
+
+/* What thermal strains add to them; e0 and sigma of r->now. */
+static void add_thermal(const run *r, int k, point_sums *sum) {
+  const visco *v = r->visco;
+  const int ns = r->m->ns;
+  const size_t at = visco_at(r, k), item = visco_at(r, v->place[k]);
+  const double *ei = v->now.ei + at, *sigma = v->now.sigma + at;
+  const double w = v->x.weight[k], *thermal = r->now.thermal + item;
+  double twice[6], stress[6], middle[6], warm[6];
+  for (int i = 0; i < ns; ++i) {
+    const size_t j = item + (size_t)i;
+    middle[i] = 0.5 * (v->old.sigma[at + (size_t)i] + sigma[i]);
+    warm[i] = thermal[i] - r->old.thermal[j];
+    twice[i] = thermal[i] + 2.0 * ei[i];
+    r->now.e0[j] = thermal[i] + ei[i];
+    r->now.sigma[j] = sigma[i];
+  }
+  voigt_product(ns, v->x.kind[v->x.kind_id[k]].elastic.E, twice, stress);
+  sum->thermal += w * voigt_dot(ns, middle, warm);
+  sum->held += 0.5 * w * voigt_dot(ns, thermal, stress);
 }
 
 static inline void add_points(int ns, const run *r, const visco_part *p,
                               point_sums *sum) {
   const int end = p->point + p->n_point;
   for (int k = p->point; k < end; ++k) add_works(ns, r, k, sum);
+  for (int k = p->point; k < end && r->now.thermal != NULL; ++k)
+    add_thermal(r, k, sum);
   if (r->visco->told_locking) return;
   for (int k = p->point; k < end; ++k) add_locking(ns, r, k, &sum->locking);
 }

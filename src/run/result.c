@@ -211,8 +211,9 @@ static status find_energies(run *r) {
   double kept;
   int dim = r->msh->dim;
   for (size_t i = 0; i < r->n_dof; ++i)
-    e.external += 0.5 * (a->F[i] + b->F[i] + a->reaction[i] + b->reaction[i]) *
-                  (b->u[i] - a->u[i]);
+    e.external += 0.5 * (a->F[i] + b->F[i]) * (b->u[i] - a->u[i]);
+  for (size_t i = 0; i < r->n_dof && (r->m->effects & EFFECT_REACTION); ++i)
+    e.external += 0.5 * (a->reaction[i] + b->reaction[i]) * (b->u[i] - a->u[i]);
   double work = 0.0, friction = 0.0;
   if (r->step->kind == STEP_STATIC) e.friction_end = 0.0;
   for (int i = 0; i < r->n; ++i) {

@@ -22,7 +22,9 @@ typedef struct equilibrium {
   double *motion;   /* [dim*n] way of the obstacles past the nodes since 0 s,
                        added up over the increments, contact frame, m         */
   double *temperature; /* [n_elem] or NULL: no thermal strain                 */
-  double *thermal;     /* [ns*n] thermal strains of the elements of r->eigen  */
+  double *thermal;     /* [ns*n] thermal strains of the elements of r->eigen;
+                          this and the next are empty where nothing but laws
+                          flows: the points have e^i and stress (visco.h)     */
   double *e0, *sigma;  /* [ns*n] all their strains without stress; Pa         */
   double *elastic;     /* [ns*n] the rest; NULL: moduli stay                  */
   energies energy;
@@ -192,7 +194,9 @@ const material *run_material(const run *r, int elem_id);
 const double *run_elasticity(const run *r, int elem_id);
 /* Temperatures, moduli and thermal strains of r->now at its time t. */
 status strains_heat(run *r);
-/* r->now.e0 from the strains at hand. */
+/* Components of them that an equilibrium has arrays for. */
+size_t strains_kept(const run *r);
+/* r->eigen.e0 from the strains at hand. */
 void strains_collect(run *r);
 /* The loads with the forces that the strains of r->now call for: r->now.F
  * itself if there are none. */

@@ -485,7 +485,7 @@ done:
 
 static status keep_equilibrium(const run *r, equilibrium *e, archive *a) {
   status st = OK;
-  size_t m = (size_t)r->n_c, strains = (size_t)(r->m->ns * r->eigen.n);
+  size_t m = (size_t)r->n_c, strains = strains_kept(r);
   size_t elements = e->temperature == NULL ? 0 : (size_t)r->msh->n_elem;
   TRY(archive_reals(a, "t", &e->t, 1));
   TRY(archive_reals(a, "u", e->u, r->n_dof));

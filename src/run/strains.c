@@ -36,14 +36,25 @@ static int has_strains(const run *r, int elem_id) {
          moduli_follows(r->m, elem_id);
 }
 
+size_t strains_kept(const run *r) {
+  int all = (r->m->effects & EFFECT_THERMAL) || r->moduli.n_own > 0;
+  return all ? at(r, r->eigen.n) : 0;
+}
+
+/* What is without stress is e^i alone, and the points have it. */
+static int is_flow(const run *r) {
+  return r->visco != NULL && strains_kept(r) == 0;
+}
+
 static status new_strains(const run *r, equilibrium *e) {
   status st = OK;
-  size_t n = (size_t)r->m->ns * (size_t)r->eigen.n;
+  size_t n = strains_kept(r);
   if (r->temperature0 != NULL) {
     NEW(e->temperature, r->msh->n_elem);
     memcpy(e->temperature, r->temperature0,
            (size_t)r->msh->n_elem * sizeof *e->temperature);
   }
+  if (n == 0) goto done;
   NEW(e->thermal, n);
   NEW(e->e0, n);
   NEW(e->sigma, n);
@@ -130,6 +141,10 @@ done:
 void strains_collect(run *r) {
   equilibrium *now = &r->now;
   if (r->eigen.n == 0) return;
+  if (is_flow(r)) {
+    r->eigen.e0 = r->visco->now.ei;
+    return;
+  }
   memcpy(now->e0, now->thermal,
          (size_t)r->m->ns * (size_t)r->eigen.n * sizeof *now->e0);
   if (r->visco != NULL) visco_add_strains(r, now->e0);
@@ -153,32 +168,51 @@ static double softened(const run *r, int k) {
           tensor_dot(r->m->ns, b->sigma + at(r, k), a->elastic + at(r, k)));
 }
 
-/* Item k of r->eigen. */
-static void item_work(const run *r, int k, energies *e, double *held) {
+/* Stresses of the items and their strains without stress, thermal ones apart
+ * (NULL: none), at both ends of the increment. */
+typedef struct item_ends {
+  double *sigma[2], *e0[2], *thermal[2];
+} item_ends;
+
+static item_ends ends_of(const run *r) {
   const equilibrium *a = &r->old, *b = &r->now;
+  const visco *v = r->visco;
+  if (is_flow(r))
+    return (item_ends){
+        {v->old.sigma, v->now.sigma}, {v->old.ei, v->now.ei}, {NULL, NULL}};
+  return (item_ends){
+      {a->sigma, b->sigma}, {a->e0, b->e0}, {a->thermal, b->thermal}};
+}
+
+/* Item k of r->eigen. */
+static void item_work(const run *r, const item_ends *x, int k, energies *e,
+                      double *held) {
   const int ns = r->m->ns;
   double w = element_weight(&r->d, r->eigen_elem[k]);
   double thermal = 0.0, all = 0.0, stress[6];
   for (size_t i = at(r, k); i < at(r, k + 1); ++i) {
-    double sigma = 0.5 * (a->sigma[i] + b->sigma[i]);
-    thermal += sigma * (b->thermal[i] - a->thermal[i]);
-    all += sigma * (b->e0[i] - a->e0[i]);
+    double sigma = 0.5 * (x->sigma[0][i] + x->sigma[1][i]);
+    if (x->thermal[0] != NULL)
+      thermal += sigma * (x->thermal[1][i] - x->thermal[0][i]);
+    all += sigma * (x->e0[1][i] - x->e0[0][i]);
   }
   e->thermal += w * (thermal + softened(r, k));
   e->inelastic += w * (all - thermal);
-  tensor_product(ns, run_elasticity(r, r->eigen_elem[k]), b->e0 + at(r, k),
+  tensor_product(ns, run_elasticity(r, r->eigen_elem[k]), x->e0[1] + at(r, k),
                  stress);
-  *held += 0.5 * w * tensor_dot(ns, b->e0 + at(r, k), stress);
+  *held += 0.5 * w * tensor_dot(ns, x->e0[1] + at(r, k), stress);
 }
 
 /* Items from, ..., to - 1, which hold whole clusters. */
 static void items_work(run *r, int from, int to, energies *e, double *held) {
-  const equilibrium *b = &r->now;
-  const eigenstrain x = {to - from, r->eigen_elem + from, b->e0 + at(r, from)};
-  eigen_stress(&r->d, &x, b->u,
-               b->elastic == NULL ? NULL : b->elastic + at(r, from),
-               b->sigma + at(r, from));
-  for (int k = from; k < to; ++k) item_work(r, k, e, held);
+  const item_ends ends = ends_of(r);
+  double *elastic = r->now.elastic;
+  const eigenstrain x = {to - from, r->eigen_elem + from,
+                         ends.e0[1] + at(r, from)};
+  eigen_stress(&r->d, &x, r->now.u,
+               elastic == NULL ? NULL : elastic + at(r, from),
+               ends.sigma[1] + at(r, from));
+  for (int k = from; k < to; ++k) item_work(r, &ends, k, e, held);
 }
 
 /* The items that are no points whose sums are known. */

@@ -181,10 +181,10 @@ static void part_stress(run *r, const flow_tangent *law, const double *sigma,
   const int ns = r->m->ns, end = p->point + p->n_point;
   for (int k = 0, point = p->point; k < p->n_item; ++k) {
     const int item = p->item + k, elem_id = r->eigen_elem[item];
-    const double *thermal = r->now.thermal + visco_at(r, item);
     double *stress = v->stress + visco_at(r, k), e_k[6];
     if (point == end || v->place[point] != item) {
-      voigt_product(ns, run_elasticity(r, elem_id), thermal, stress);
+      voigt_product(ns, run_elasticity(r, elem_id),
+                    r->now.thermal + visco_at(r, item), stress);
       continue;
     }
     const int kind = v->x.kind_id[point];
@@ -193,7 +193,9 @@ static void part_stress(run *r, const flow_tangent *law, const double *sigma,
         law->elastic
             ? run_elasticity(r, elem_id)
             : law->D + visco_at(r, ns * (law->key > 0.0 ? kind : point));
-    for (int i = 0; i < ns; ++i) e_k[i] = e[at + (size_t)i] + thermal[i];
+    for (int i = 0; i < ns; ++i) e_k[i] = e[at + (size_t)i];
+    for (int i = 0; i < ns && r->now.thermal != NULL; ++i)
+      e_k[i] += r->now.thermal[visco_at(r, item) + (size_t)i];
     voigt_product(ns, D, e_k, stress);
     for (int i = 0; i < ns; ++i) stress[i] -= sigma[at + (size_t)i];
     ++point;

@@ -104,8 +104,10 @@ static status advance(run *r, double t) {
                             &v->old, &v->now, &v->result};
   TRY(r->step->integrator->advance(&call));
   v->now.t = t;
-  if (!v->sums.known) strains_collect(r);
-  r->eigen.e0 = r->now.e0;
+  if (v->sums.known && r->now.e0 != NULL)
+    r->eigen.e0 = r->now.e0;
+  else
+    strains_collect(r);
   if (!v->result.settled && r->report.outcome > 0)
     r->report.outcome = STOPPED_ITERATIONS;
 done:
@@ -303,20 +305,28 @@ done:
   return st;
 }
 
+/* v->now becomes v->old; what becomes v->now is to be overwritten. */
+static void change_places(visco *v) {
+  flow_state old = v->old;
+  v->old = v->now;
+  v->now = old;
+  v->sums.known = 0;
+}
+
 status visco_accept(run *r) {
   status st = OK;
   visco *v = r->visco;
   double norm = 0.0;
-  if (r->step->kind != STEP_VISCO) return OK;
+  if (r->step->kind != STEP_VISCO) {
+    change_places(v);
+    return OK;
+  }
   v->result.dissipated = 0.0;
   timer_enter(STAGE_INELASTIC);
   TRY(elastic_norm(v, &norm));
   v->largest = fmax(v->largest, norm);
   visco_warn_locking(r);
-  flow_state old = v->old;
-  v->old = v->now;
-  v->now = old;
-  v->sums.known = 0;
+  change_places(v);
 done:
   timer_leave(STAGE_INELASTIC);
   return st;

@@ -311,6 +311,47 @@ START_TEST(factors_are_kept) {
 }
 END_TEST
 
+typedef struct counts {
+  long factors, solves, contacts;
+} counts;
+
+/* Calls of the stages in a run of steps with friction that slips. */
+static counts counts_of(const char *method, const char *visco) {
+  char cards[80];
+  snprintf(cards, sizeof cards,
+           "*SOLVER, METHOD=%s\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n",
+           method);
+  square_case s = {STEEL, PROPORTIONAL, "CPE3", FLOOR(0.1), cards, visco};
+  job j = square_run(&s, 0);
+  counts c = {job_stage(&j, "factorisation", NULL),
+              job_stage(&j, "interior solves", NULL),
+              job_stage(&j, "contact solver", NULL)};
+  job_end(&j);
+  return c;
+}
+
+#define MIDPOINT(dt, t) "*VISCO, INTEGRATOR=MIDPOINT\n" dt ", " t "\n"
+#define NEXT "*END STEP\n*STEP\n"
+
+/* The elastic body and each THETA dt are factored once, whatever solves the
+ * contact; an increment more is a forward and a back solve more. */
+START_TEST(increments_of_one_length_share_a_factor) {
+  static const char *const method[] = {"AUTO", "NEWTON", "AITKEN"};
+  for (int i = 0; i < 3; ++i) {
+    const counts few = counts_of(method[i], MIDPOINT("0.1", "1.")),
+                 many = counts_of(method[i], MIDPOINT("0.1", "2.")),
+                 other = counts_of(
+                     method[i], MIDPOINT("0.1", "0.2") NEXT MIDPOINT(
+                                    "0.05", "0.1") NEXT MIDPOINT("0.1", "0.2"));
+    ck_assert_int_eq(few.factors, 2);
+    ck_assert_int_eq(many.factors, 2);
+    ck_assert_int_eq(other.factors, 3);
+    ck_assert_int_eq(many.solves - few.solves, 2 * 10);
+    ck_assert_int_eq(many.contacts - few.contacts, 10);
+  }
+}
+END_TEST
+
 /* Steps of one THETA dt, which share their matrix but not what they do. */
 START_TEST(each_step_has_its_own_integrator) {
   square_case s = {STEEL,
@@ -445,6 +486,7 @@ int main(void) {
   tcase_add_test(tests, temperature_sets_the_relaxation_time);
   tcase_add_test(tests, steady_creep_of_a_tube);
   tcase_add_test(tests, factors_are_kept);
+  tcase_add_test(tests, increments_of_one_length_share_a_factor);
   tcase_add_test(tests, each_step_has_its_own_integrator);
   suite_add_tcase(suite, tests);
   SRunner *runner = srunner_create(suite);
