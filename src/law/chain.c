@@ -172,6 +172,20 @@ static double relaxed(const law_point *p, double *R) {
   return slowest;
 }
 
+static int series(const law_point *p, int part, int k, law_unit *u) {
+  const chain c = chain_of(p);
+  const double young = p->elastic->young;
+  const int first = p->law->ops == &zener_law ? 0 : 1;
+  if (part > 0) return LAW_NO_PART;
+  *u = (law_unit){.flow = k == 0 ? young * c.fluidity : 0};
+  if (k >= first) {
+    const struct unit *own = &c.k[k - first];
+    *u = (law_unit){young / own->viscosity, own->modulus / young};
+  }
+  return ((const chain_param *)p->law->param)->type == DEVIATORIC ? LAW_DEVIATOR
+                                                                  : LAW_WHOLE;
+}
+
 /* x . unit stiffness . y, J/m3 over Pa: isotropic, or the whole of it. */
 static double unit_energy(const law_point *p, const double *x,
                           const double *y) {
@@ -215,7 +229,7 @@ static const char *check(const law_card *law, elastic_type type,
 #define CHAIN_COMMON                                                  \
   .param_size = sizeof(chain_param), .options = options, .linear = 1, \
   .n_alpha = n_alpha, .rate = rate, .jacobian = jacobian,             \
-  .fastest_rate = fastest_rate, .relaxed = relaxed,                   \
+  .fastest_rate = fastest_rate, .relaxed = relaxed, .series = series, \
   .dissipation = dissipation, .stored = stored, .check = check
 
 const law_ops zener_law = {

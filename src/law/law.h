@@ -87,6 +87,13 @@ typedef struct law_jacobian {
   double *alpha_alpha; /* [n_alpha * n_alpha]                                 */
 } law_jacobian;
 
+/* Springs and dashpots in series: law_ops.series. */
+enum { LAW_WHOLE, LAW_DEVIATOR, LAW_MEAN, LAW_NO_PART };
+typedef struct law_unit {
+  double flow;   /* 1/s: modulus of *ELASTIC over the viscosity; 0: rests    */
+  double spring; /* the modulus beside the dashpot over that of *ELASTIC     */
+} law_unit;
+
 /*
  * A row. Functions get a point whose values are in range and whose speed they
  * ignore; they write into arrays of zeros and allocate nothing.
@@ -123,6 +130,12 @@ typedef struct law_ops {
    * 1/Pa; the longest time it may take as exp(-t/time), s, < 0: it never ends
    * (R is not set). NULL: other laws. */
   double (*relaxed)(const law_point *p, double *R);
+  /* Parts of the strain, each a series of units with strains v_k,
+   * e^i = v_0 + v_1 + ..., alpha = v_1, v_2, ...:
+   * d(v_k)/dt = flow_k (e - e^i - spring_k v_k); which part number "part" is
+   * (LAW_WHOLE, or LAW_DEVIATOR and LAW_MEAN in any order) and its unit k, or
+   * LAW_NO_PART. NULL: other laws. */
+  int (*series)(const law_point *p, int part, int k, law_unit *unit);
   /* 0 if every rate is exactly zero at the point; NULL: the law always flows */
   int (*flows)(const law_point *p);
   /* Power lost, >= 0, W/m3; energy kept by alpha and e^i, J/m3 (NULL: none):

@@ -81,6 +81,15 @@ static double square(const law_elastic *el, const double *x) {
   return voigt_dot(el->ns, x, strain);
 }
 
+static int series(const law_point *p, int part, int k, law_unit *unit) {
+  const maxwell_value *v = values(p);
+  (void)k;
+  unit->flow = 1 / (part == 0 ? v->tau : v->tau_bulk);
+  if (!is_deviatoric(p->law)) return part == 0 ? LAW_WHOLE : LAW_NO_PART;
+  if (part == 0) return LAW_DEVIATOR;
+  return part == 1 && v->tau_bulk > 0 ? LAW_MEAN : LAW_NO_PART;
+}
+
 static double dissipation(const law_point *p) {
   const law_elastic *el = p->elastic;
   const maxwell_value *v = values(p);
@@ -113,5 +122,6 @@ const law_ops maxwell_law = {
     .rate = rate,
     .jacobian = jacobian,
     .fastest_rate = fastest_rate,
+    .series = series,
     .dissipation = dissipation,
     .check = check};

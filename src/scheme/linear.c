@@ -118,7 +118,7 @@ done:
 
 /* X = exp(A) - I for A[n*n] of any size: Taylor below 2^-6, then squaring in
  * the form X <- 2 X + X X, which keeps slow parts beside fast ones. */
-static status exponential_less_one(int n, const double *A, double *X) {
+status exponential_less_one(int n, const double *A, double *X) {
   status st = OK;
   enum { TERMS = 12 };
   double *power = NULL, *next = NULL, largest = 0.0;
@@ -192,24 +192,47 @@ done:
   return st;
 }
 
+/* D = E (I - Q1) with the rows of e^i. */
+static void remains(const law_elastic *el, const linear_map *m, double *D) {
+  const int ns = el->ns;
+  double top[36];
+  for (int j = 0; j < ns; ++j)
+    for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + m->n * j];
+  memcpy(D, el->E, (size_t)(ns * ns) * sizeof *D);
+  multiply(ns, ns, ns, -1.0, el->E, top, D);
+}
+
+/* The deviator and the mean go by themselves if the elasticity lets them. */
+static int is_series(const flow_kind *k) {
+  law_unit unit;
+  const law_point p = {
+      .law = k->law, .elastic = &k->elastic, .value = k->value};
+  if (k->law->ops->series == NULL) return 0;
+  return k->elastic.isotropic ||
+         k->law->ops->series(&p, 0, 0, &unit) == LAW_WHOLE;
+}
+
 status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
                        linear_map *m, double *D) {
   status st = OK;
-  const int ns = k->elastic.ns, n = ns + k->n_alpha;
-  const size_t square = (size_t)(ns * ns);
-  double top[36];
+  const int ns = k->elastic.ns, n = ns + k->n_alpha, series = is_series(k);
+  const int general = !series && k->law->ops->relaxing == NULL;
   m->n = n;
   TRY(need(&m->P, (size_t)(n * n)));
   TRY(need(&m->Q0, (size_t)(n * ns)));
   TRY(need(&m->Q1, (size_t)(n * ns)));
   TRY(need(&m->Q, (size_t)(n * ns)));
-  TRY(k->law->ops->relaxing != NULL ? relaxing_map(k, p, exact, m)
-                                    : matrix_map(k, p, exact, m));
+  if (series)
+    TRY(series_map(k, p, exact, m, D));
+  else if (!general)
+    TRY(relaxing_map(k, p, exact, m, D));
+  else
+    TRY(matrix_map(k, p, exact, m));
+  if (general)
+    remains(&k->elastic, m, D);
+  else if (k->elastic.plane_stress)
+    TRY(plane_stress_map(&k->elastic, m, D));
   add_scaled((size_t)(n * ns), m->Q0, 1.0, m->Q1, m->Q);
-  for (int j = 0; j < ns; ++j)
-    for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + n * j];
-  memcpy(D, k->elastic.E, square * sizeof *D);
-  multiply(ns, ns, ns, -1.0, k->elastic.E, top, D);
 done:
   return st;
 }

@@ -44,6 +44,13 @@ static inline void map_strain(int ns, const linear_map *m, const double *Q,
     add_product(m->n, ns, Q, e, y);
 }
 
+void linear_at(const flow *x, const linear_map *m, int k, const flow_state *old,
+               const double *e, double *y) {
+  map_state(x->ns, x, m, k, old, y);
+  map_strain(x->ns, m, m->Q0, old->e + (size_t)x->ns * (size_t)k, y);
+  map_strain(x->ns, m, m->Q1, e, y);
+}
+
 /* Point k of a state: e^i, alpha and the stress at the strain e[ns]. */
 static inline void put_point(int ns, const flow *x, const linear_map *m, int k,
                              const double *y, const double *e, flow_state *s) {
@@ -70,9 +77,7 @@ static status map_between(const scheme_call *a, int kind, linear_map *m,
     double y[FLOW_VALUE_MAX];
     if (x->kind_id[k] != kind) continue;
     mean(x->ns, part.dt / whole, a->old->e + at, a->now->e + at, mid->e + at);
-    map_state(x->ns, x, m, k, a->old, y);
-    map_strain(x->ns, m, m->Q0, a->old->e + at, y);
-    map_strain(x->ns, m, m->Q1, mid->e + at, y);
+    linear_at(x, m, k, a->old, mid->e + at, y);
     put_point(x->ns, x, m, k, y, mid->e + at, mid);
   }
 done:

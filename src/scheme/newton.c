@@ -4,7 +4,9 @@
  * x = (sigma, e^i, alpha) and the time and temperature likewise. The points
  * follow their strains (point_step.c); the body is solved with their consistent
  * tangents until the stresses of the points are those of the linear law:
- * quadratic convergence; or with D = E, never factored again.
+ * quadratic convergence; or with D = E, never factored again. Points of linear
+ * laws whose coefficients vary have the map of the step instead (linear.c) with
+ * those of the theta-point, unless their elasticity varies too.
  */
 #include "scheme/point_step.h"
 #include "scheme/work.h"
@@ -16,32 +18,87 @@
 
 enum { MOST_TANGENT = 40, MOST_INITIAL = 2000 };
 
+/* Room for one point. */
+typedef struct room {
+  point_step l;
+  linear_map map; /* of a linear law, made when first needed                */
+  double D[36];   /* [ns*ns] that it leaves, Pa                              */
+} room;
+
+static void room_free(room *r) {
+  point_step_free(&r->l);
+  linear_map_free(&r->map);
+}
+
+static int has_map(const flow *x, int k) {
+  const flow_kind *kind = &x->kind[x->kind_id[k]];
+  return kind->law->ops->linear && kind->elastic.table == NULL;
+}
+
+/* Point k by the map: r->l.y and r->D. */
+static status follow_map(const scheme_call *a, int k, room *r) {
+  status st = OK;
+  const flow *x = a->x;
+  const size_t ns = (size_t)x->ns, n = ns + (size_t)x->most_alpha;
+  point_step *l = &r->l;
+  flow_kind now = x->kind[x->kind_id[k]];
+  if (now.varies != 0) {
+    now.value = l->value;
+    now.speed = l->p.speed;
+  }
+  TRY(need(&r->map.P, n * n));
+  TRY(need(&r->map.Q0, n * ns));
+  TRY(need(&r->map.Q1, n * ns));
+  TRY(need(&r->map.Q, n * ns));
+  TRY(linear_map_make(&now, a->p, 0, &r->map, r->D));
+  linear_at(x, &r->map, k, a->old, l->e, l->y);
+done:
+  return st;
+}
+
+/* Point k for now->e: r->l.y, and into D[ns*ns] unless it is NULL. */
+static status follow_point(const scheme_call *a, int k, room *r, double *D) {
+  status st = OK;
+  const size_t ns = (size_t)a->x->ns, bytes = ns * ns * sizeof *D;
+  const double *sigma_old = a->old->sigma + ns * (size_t)k;
+  point_step *l = &r->l;
+  TRY(point_step_begin(a->x, a->p, k, a->old, a->now, l));
+  const int maps = has_map(a->x, k);
+  const int rests = !maps && point_step_rests(a->p, sigma_old, l);
+  if (maps)
+    TRY(follow_map(a, k, r));
+  else if (!rests)
+    point_step_solve(a->p, sigma_old, l, &a->out->settled);
+  if (!a->out->settled) goto done;
+  point_step_place(a->p, sigma_old, l->y, l);
+  if (D == NULL) goto done;
+  if (maps || rests)
+    memcpy(D, maps ? r->D : l->E, bytes);
+  else
+    TRY(point_step_tangent(a->p, l, D));
+done:
+  return st;
+}
+
 /* All points for now->e: ei, alpha, sigma, the power of the step; w->D[ns*ns*n]
  * unless the iteration is that of initial stresses. */
-static status solve_points(const scheme_call *a, point_step *l) {
+static status solve_points(const scheme_call *a, room *r) {
   status st = OK;
   const flow *x = a->x;
   const size_t ns = (size_t)x->ns;
+  point_step *l = &r->l;
   a->out->dissipated = 0.0;
   for (int k = 0; k < x->n; ++k) {
     const size_t at = ns * (size_t)k;
     double elastic[6];
-    TRY(point_step_begin(x, a->p, k, a->old, a->now, l));
-    int rests = point_step_rests(a->p, a->old->sigma + at, l);
-    if (!rests) point_step_solve(a->p, a->old->sigma + at, l, &a->out->settled);
+    TRY(follow_point(a, k, r, a->p->initial ? NULL : a->w->D + ns * at));
     if (!a->out->settled) goto done;
-    point_step_place(a->p, a->old->sigma + at, l->y, l);
     a->out->dissipated += a->p->dt * x->weight[k] * law_dissipation(&l->p);
     memcpy(a->now->ei + at, l->y, ns * sizeof *l->y);
     memcpy(a->now->alpha + x->alpha_at[k], l->y + ns,
            (size_t)l->na * sizeof *l->y);
     for (size_t i = 0; i < ns; ++i) elastic[i] = l->e[i] - l->y[i];
     tensor_product(x->ns, l->E, elastic, a->now->sigma + at);
-    if (a->p->initial) continue;
-    if (rests)
-      memcpy(a->w->D + ns * at, l->E, ns * ns * sizeof *l->E);
-    else
-      TRY(point_step_tangent(a->p, l, a->w->D + ns * at));
   }
 done:
   return st;
@@ -107,15 +164,15 @@ status newton_advance(const scheme_call *a) {
   const int most = p->initial ? MOST_INITIAL : MOST_TANGENT;
   scheme_work *w = a->w;
   scheme_result *out = a->out;
-  point_step l = {0};
-  TRY(point_step_new(x, &l));
+  room r = {0};
+  TRY(point_step_new(x, &r.l));
   TRY(need_room(x, p, w));
   a->now->t = p->t;
   TRY(a->b->begin(a->b->ctx, a->now));
   memcpy(a->now->e, a->old->e, bytes);
   flow_tangent law = {
       .elastic = p->initial, .D = w->D, .sigma = w->sigma_k, .e = w->e_k};
-  TRY(solve_points(a, &l));
+  TRY(solve_points(a, &r));
   while (out->settled && out->iterations < most) {
     memcpy(w->sigma_k, a->now->sigma, bytes);
     memcpy(w->e_k, a->now->e, bytes);
@@ -124,12 +181,12 @@ status newton_advance(const scheme_call *a) {
     if (!out->settled) goto done;
     double scale = 0.0;
     TRY(linear_stress(x, &law, a->now, w->linear, &scale));
-    TRY(solve_points(a, &l));
+    TRY(solve_points(a, &r));
     if (!out->settled || misfit(x, a->now, w->linear, scale) <= p->tol)
       goto done;
   }
   out->settled = 0;
 done:
-  point_step_free(&l);
+  room_free(&r);
   return st;
 }

@@ -9,9 +9,9 @@
  *   EXPONENTIAL  a = 1 - exp(-z),  q1 = 1 - a/z     (e linear over the step)
  * are of the size of 1 for every rate.
  *
- * In plane stress the body knows e_zz no more than e^i: sigma_zz = 0 at both
- * ends of the step gives it, so that EXPONENTIAL takes e_zz too as linear over
- * the step.
+ * And the maps of linear laws in plane stress: the body knows e_zz no more than
+ * e^i; sigma_zz = 0 at both ends of the step takes it out, so that EXPONENTIAL
+ * takes e_zz too as linear over the step.
  */
 #include "scheme/work.h"
 
@@ -21,7 +21,7 @@
 #include <string.h>
 
 /* q1 of EXPONENTIAL: z/2 - z^2/6 + ... where 1 - a/z would cancel. */
-static double late_share(double z) {
+double relaxing_late_share(double z) {
   double sum = 0.0, term = z / 2;
   if (z > 0.1) return 1.0 + expm1(-z) / z;
   for (int k = 3; k < 12; ++k) {
@@ -35,7 +35,7 @@ static void shares(const scheme_step *p, int exact, double rate, double *q0,
                    double *q1) {
   const double z = rate * p->dt;
   if (exact) {
-    *q1 = late_share(z);
+    *q1 = relaxing_late_share(z);
     *q0 = -expm1(-z) - *q1;
     return;
   }
@@ -79,6 +79,46 @@ static void add_rows(int ns, int k, const double *W_k, linear_map *m) {
     }
 }
 
+/* D = C (I - Q1) with the rows of e^i. */
+static void remains(const law_elastic *el, const linear_map *m, double *D) {
+  const int ns = el->ns;
+  for (int j = 0; j < ns; ++j) {
+    double left[6];
+    for (int i = 0; i < ns; ++i) left[i] = (i == j) - m->Q1[i + m->n * j];
+    tensor_product(ns, el->C, left, D + ns * j);
+  }
+}
+
+status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
+                    linear_map *m, double *D) {
+  status st = OK;
+  const int ns = k->elastic.ns, n = m->n, terms = n / ns - 1;
+  const law_point point = {.law = k->law,
+                           .elastic = &k->elastic,
+                           .value = k->value,
+                           .speed = k->speed};
+  double *W = NULL, *rate = NULL;
+  NEW(W, ns * ns * terms);
+  NEW(rate, terms);
+  for (int i = 0; i < terms; ++i)
+    rate[i] = k->speed * k->law->ops->relaxing(&point, i, W + ns * ns * i);
+  memset(m->P, 0, (size_t)(n * n) * sizeof *m->P);
+  memset(m->Q0, 0, (size_t)(n * ns) * sizeof *m->Q0);
+  memset(m->Q1, 0, (size_t)(n * ns) * sizeof *m->Q1);
+  for (int i = 0; i < ns; ++i) m->P[i + n * i] = 1.0;
+  for (int i = 0; i < terms; ++i) {
+    double q0, q1;
+    shares(p, exact, rate[i], &q0, &q1);
+    term_rows(ns, i, q0, q1, W, m);
+  }
+  for (int i = 0; i < terms; ++i) add_rows(ns, i, W + ns * ns * i, m);
+  remains(&k->elastic, m, D);
+done:
+  memory_free(W);
+  memory_free(rate);
+  return st;
+}
+
 /* column[n] of a matrix times row[columns] over pivot goes to A[n*columns]. */
 static void add_outer(int n, int columns, const double *column,
                       const double *row, double pivot, double *A) {
@@ -112,58 +152,43 @@ static void stress_row(const law_elastic *el, const double *A, int n,
   }
 }
 
-/* e_zz of the new state: c (e - P y - Q0 e_old - Q1 e) = 0 in the rows of e^i;
- * row[n] is room. */
-static status eliminate_new(const law_elastic *el, linear_map *m, double *row) {
-  status st = OK;
+/* e_zz of the new state: d e - c (P y + Q0 e_old) = 0 in the rows of e^i, d the
+ * row of D; row[n] is room. */
+static void eliminate_new(const law_elastic *el, const double *D, linear_map *m,
+                          double *row) {
   const int ns = el->ns, n = m->n;
+  const double pivot = D[ZZ + ns * ZZ];
   double *column = m->Q1 + n * ZZ, of_e[6];
-  stress_row(el, m->Q1, n, ns, of_e);
-  for (int j = 0; j < ns; ++j) of_e[j] -= el->C[ZZ + ns * j];
-  const double pivot = -of_e[ZZ];
-  if (!(pivot > 0.0))
-    FAIL(ERR_SINGULAR, "the step of an inelastic law has no solution");
+  for (int j = 0; j < ns; ++j) of_e[j] = j == ZZ ? 0.0 : -D[ZZ + ns * j];
   stress_row(el, m->P, n, n, row);
   add_outer(n, n, column, row, pivot, m->P);
   stress_row(el, m->Q0, n, ns, row);
   add_outer(n, ns, column, row, pivot, m->Q0);
-  of_e[ZZ] = 0.0;
   add_outer(n, ns, column, of_e, pivot, m->Q1);
   memset(column, 0, (size_t)n * sizeof *column);
-done:
-  return st;
 }
 
-status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
-                    linear_map *m) {
-  status st = OK;
-  const int ns = k->elastic.ns, n = m->n, terms = n / ns - 1;
-  const law_point point = {.law = k->law,
-                           .elastic = &k->elastic,
-                           .value = k->value,
-                           .speed = k->speed};
-  double *W = NULL, *rate = NULL, *row = NULL;
-  NEW(W, ns * ns * terms);
-  NEW(rate, terms);
-  for (int i = 0; i < terms; ++i)
-    rate[i] = k->speed * k->law->ops->relaxing(&point, i, W + ns * ns * i);
-  memset(m->P, 0, (size_t)(n * n) * sizeof *m->P);
-  memset(m->Q0, 0, (size_t)(n * ns) * sizeof *m->Q0);
-  memset(m->Q1, 0, (size_t)(n * ns) * sizeof *m->Q1);
-  for (int i = 0; i < ns; ++i) m->P[i + n * i] = 1.0;
-  for (int i = 0; i < terms; ++i) {
-    double q0, q1;
-    shares(p, exact, rate[i], &q0, &q1);
-    term_rows(ns, i, q0, q1, W, m);
+/* D of the other components. */
+static void condense(int ns, double *D) {
+  double column[6] = {0}, row[6] = {0};
+  for (int i = 0; i < ns; ++i) {
+    column[i] = D[i + ns * ZZ];
+    row[i] = -D[ZZ + ns * i];
   }
-  for (int i = 0; i < terms; ++i) add_rows(ns, i, W + ns * ns * i, m);
-  if (!k->elastic.plane_stress) goto done;
-  NEW(row, n);
-  eliminate_old(&k->elastic, m);
-  TRY(eliminate_new(&k->elastic, m, row));
+  add_outer(ns, ns, column, row, column[ZZ], D);
+  for (int i = 0; i < ns; ++i) D[i + ns * ZZ] = D[ZZ + ns * i] = 0.0;
+}
+
+status plane_stress_map(const law_elastic *el, linear_map *m, double *D) {
+  status st = OK;
+  double *row = NULL;
+  if (!(D[ZZ + el->ns * ZZ] > 0.0))
+    FAIL(ERR_SINGULAR, "the step of an inelastic law has no solution");
+  NEW(row, m->n);
+  eliminate_old(el, m);
+  eliminate_new(el, D, m, row);
+  condense(el->ns, D);
 done:
   memory_free(row);
-  memory_free(W);
-  memory_free(rate);
   return st;
 }

@@ -41,20 +41,31 @@ status need(double **array, size_t n); /* allocate if NULL                   */
 
 /* linear.c: y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
 status linear_law(const flow_kind *k, double *L, double *G);
-/* The map of a kind and its D[ns*ns]; those of all kinds into w, if others are
- * there. */
+/* The map of a kind (arrays that are NULL are made) and its D[ns*ns]; those of
+ * all kinds into w, if others are there; X = exp(A) - I for A[n*n]. */
 status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
                        linear_map *m, double *D);
 status linear_maps(const flow *x, const scheme_step *p, int exact,
                    scheme_work *w);
-/* linear_step.c */
+status exponential_less_one(int n, const double *A, double *X);
+/* linear_step.c; y[m->n] of point k from the old state for the new strain e */
+void linear_at(const flow *x, const linear_map *m, int k, const flow_state *old,
+               const double *e, double *y);
 status linear_advance(const scheme_call *a, int exact);
 status exponential_between(const scheme_call *a, flow_state *mid);
 /* newton.c */
 status newton_advance(const scheme_call *a);
-/* relaxing.c: for laws with "relaxing", m->P, Q0, Q1 are there. */
+/* series.c, relaxing.c: for laws with "series", "relaxing"; m->P, Q0, Q1 are
+ * there, D as if e_zz of plane stress were given. */
+status series_map(const flow_kind *k, const scheme_step *p, int exact,
+                  linear_map *m, double *D);
 status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
-                    linear_map *m);
+                    linear_map *m, double *D);
+/* 1 - (1 - exp(-z))/z */
+double relaxing_late_share(double z);
+/* The map and D for the strains in the plane, sigma_zz = 0.
+ * ERR_SINGULAR: nothing resists e_zz. */
+status plane_stress_map(const law_elastic *el, linear_map *m, double *D);
 /* between.c */
 status hermite_between(const scheme_call *a, flow_state *mid);
 /* explicit.c */

@@ -119,6 +119,22 @@ static const closed_form forms[] = {
     "0.1, 0.1, 1E15\n", "CPS3", "", HELD,
     "*VISCO, INTEGRATOR=EXPONENTIAL\n0.5, 2.\n"}, "stress_yy",
    2, {2, 4}, {.5735758882, .5270670566}, 1e-9},
+  /* a fluid as thin as water beside the increment keeps its pressure, also
+   * where its time follows the temperature: K (e_xx + e_yy + e_zz) */
+  {{SOFT, "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n1E-10\n", "CPE3", "",
+    HELD "RIGHT, 1\n", "*VISCO, INTEGRATOR=EXPONENTIAL\n0.5, 2.\n"},
+   "stress_yy", 2, {2, 4}, {.8333333333, .8333333333}, 1e-9},
+  {{SOFT, "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC, SHIFT=WLF, T_REF=20.,"
+    " C1=17.44, C2=51.6\n2E-4\n", "CPE3", WARM, HELD "RIGHT, 1\n",
+    "*VISCO, INTEGRATOR=BACKWARD\n0.5, 2.\n*TEMPERATURE\nBODY, 50.1\n"},
+   "stress_yy", 2, {2, 4}, {.8333333333, .8333333333}, 1e-9},
+  /* units of 1E-15, 1 and 1E15 s, each a 1/500 (1 + 0.5/tau)^-n short */
+  {{SOFT, "*INELASTIC, LAW=KELVIN\n500., 5E-13\n500., 500.\n500., 5E17\n",
+    "CPS3", "", PULL(1.), "*VISCO, INTEGRATOR=BACKWARD\n0.5, 2.\n"},
+   "strain_yy", 2, {2, 4}, {4.1111111111e-3, 4.6049382716e-3}, 1e-12},
+  {{SOFT, "*INELASTIC, LAW=KELVIN\n500., 5E-13\n500., 500.\n500., 5E17\n",
+    "CPS3", "", PULL(1.), "*VISCO, INTEGRATOR=EXPONENTIAL\n0.5, 2.\n"},
+   "strain_yy", 2, {2, 4}, {4.2642411177e-3, 4.7293294335e-3}, 1e-12},
   /* from 200 the overstress goes: s = 200 - (100/1.1)(1 - exp(-11 t)) */
   {{HARD, "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n", "CPS3", "",
     SYMMETRY "TOP, 2, 2, 2.E-3\n", "*VISCO, INTEGRATOR=RK4\n0.01, 2.\n"},
