@@ -207,7 +207,7 @@ static void turn_block(int dim, const double *Ti, const double *Tj, double *b) {
 }
 
 int contact_row(const stiffness *k, int i, int c) {
-  return k->contact[i] >= 0 && c < k->rows ? k->rows * k->contact[i] + c : -1;
+  return k->first_row[i] >= 0 && c < k->rows ? k->first_row[i] + c : -1;
 }
 
 /* Which components are unknown; contact nodes from the surface. */
@@ -231,6 +231,12 @@ static status mark_unknowns(const domain *d, stiffness *k) {
     for (int c = 0; c < dim; ++c)
       if (s->held[dim * q + c]) k->free[i] &= (unsigned char)~(1 << c);
   }
+  NEW(k->first_row, k->n_node);
+  for (int i = 0; i < k->n_node; ++i) k->first_row[i] = -1;
+  const int n = s == NULL ? 0 : d->in != NULL ? d->n_in : s->n;
+  for (int q = 0; q < n; ++q)
+    k->first_row[s->node_id[d->in != NULL ? d->in[q] : q]] = k->rows * q;
+  k->n_row = k->rows * n;
 done:
   return st;
 }
@@ -305,6 +311,7 @@ void stiffness_free(stiffness *k) {
   memory_free(k->block);
   memory_free(k->free);
   memory_free(k->contact);
+  memory_free(k->first_row);
   memory_free(k->coupling);
   memory_free(k->coupling_column);
   memory_free(k);

@@ -26,7 +26,7 @@ struct condensed {
   const stiffness *k; /* borrowed                                           */
   domain d;           /* arrays borrowed                                    */
   int n_contact, m, n_body, n_motion;
-  double *A; /* [m*m], m = rows of a node times n_contact          */
+  double *A; /* [m*m]                                              */
   body_factor *body;
   free_motion *motion; /* those only contact holds                           */
   rigid_set rigid;     /* the same as vectors                                */
@@ -79,13 +79,13 @@ static status order_body(condensed *c, const graph *g, int n, int *list,
   status st = OK;
   const stiffness *k = c->k;
   int twice = k->rows < k->dim, contact = 0, last;
-  for (int q = 0; q < n; ++q) contact += k->contact[list[q]] >= 0;
+  for (int q = 0; q < n; ++q) contact += k->first_row[list[q]] >= 0;
   f->n_own = n;
   f->n_inner = twice ? n : n - contact;
   last = f->n_node = f->n_inner + contact;
   NEW(f->node, f->n_node);
   for (int q = 0, inner = 0; q < n; ++q) {
-    const int is_contact = k->contact[list[q]] >= 0;
+    const int is_contact = k->first_row[list[q]] >= 0;
     if (is_contact) f->node[--last] = list[q];
     if (!is_contact || twice) f->node[inner++] = list[q];
   }
@@ -132,8 +132,8 @@ static status pin_bodies(condensed *c, const unsigned char *floating) {
   TRY(rigid_orthonormalise(k, &c->d, &c->rigid));
   NEW(c->pinned, c->m);
   for (int i = 0; i < k->n_node; ++i)
-    if (floating[i] && k->contact[i] >= 0)
-      memset(c->pinned + rows * (size_t)k->contact[i], 1, rows);
+    if (floating[i] && k->first_row[i] >= 0)
+      memset(c->pinned + k->first_row[i], 1, rows);
   for (int t = 0; t < c->rigid.n_body; ++t) {
     const rigid_body *b = &c->rigid.body[t];
     int motions = 0;
@@ -142,8 +142,8 @@ static status pin_bodies(condensed *c, const unsigned char *floating) {
     if (motions != b->k) continue;
     known += motions;
     for (int j = 0; j < b->n_node; ++j)
-      if (k->contact[b->node[j]] >= 0)
-        memset(c->pinned + rows * (size_t)k->contact[b->node[j]], 0, rows);
+      if (k->first_row[b->node[j]] >= 0)
+        memset(c->pinned + k->first_row[b->node[j]], 0, rows);
     TRY(rigid_pin(&c->rigid, b, c->pinned));
   }
   c->just_held = known == c->n_motion;
@@ -185,16 +185,22 @@ done:
   return st;
 }
 
+/* The contact node of a row of A. */
+static int contact_of(const condensed *c, int row) {
+  const int q = row / c->k->rows;
+  return c->d.in != NULL ? c->d.in[q] : q;
+}
+
 /* Component of a row of A among those of all nodes. */
 static size_t component_of(const condensed *c, int row) {
   const stiffness *k = c->k;
-  const int i = c->d.surface->node_id[row / k->rows];
+  const int i = c->d.surface->node_id[contact_of(c, row)];
   return (size_t)k->dim * (size_t)i + (size_t)(row % k->rows);
 }
 
 static int is_held(const condensed *c, int row) {
   const stiffness *k = c->k;
-  return c->d.surface->held[k->dim * (row / k->rows) + row % k->rows];
+  return c->d.surface->held[k->dim * contact_of(c, row) + row % k->rows];
 }
 
 /* Rows of prescribed contact unknowns: the largest diagonal entry among the
@@ -248,7 +254,7 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   c->k = k;
   c->d = *d;
   c->n_contact = d->surface != NULL ? d->surface->n : 0;
-  c->m = k->rows * c->n_contact;
+  c->m = k->n_row;
   c->ordering = "natural";
   NEW(floating, k->n_node);
   NEW(c->load, (size_t)k->dim * (size_t)k->n_node);

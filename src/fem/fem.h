@@ -43,6 +43,8 @@ typedef struct domain {
                            Its means are overwritten                         */
   int rows; /* contact unknowns of a node that are condensed, the normal first:
                1 (its tangents count in the interior) or dim; 0: dim         */
+  int n_in; /* contact nodes that are condensed; the others are interior      */
+  const int *in; /* [n_in] ascending; NULL: all                              */
 } domain;
 
 /* B of one element, nothing averaged: e = B u_e, B[ns*(dim+1)*dim] column
@@ -81,7 +83,7 @@ status domain_free_motions(const domain *d, int *n, free_motion **list);
  * Order (contact unknowns last), factor K (where contact alone holds a body
  * with springs on as many contact unknowns as it has motions, taken off again),
  * and form
- *   A = K_cc - K_ci inv(K_ii) K_ic   [m*m], m = rows * contact nodes.
+ *   A = K_cc - K_ci inv(K_ii) K_ic   [m*m], m = rows * condensed nodes.
  * Bodies are factored apart. K is borrowed until condensed_free.
  * ERR_SINGULAR: a body that neither supports nor contact hold (the record names
  * body and motion), or K not positive definite. ERR_MEMORY.

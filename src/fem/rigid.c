@@ -118,11 +118,11 @@ static void contact_motions(const stiffness *k, const domain *d,
                             const rigid_set *r, const rigid_body *b) {
   const size_t m = (size_t)r->m, n = (size_t)b->n;
   for (int t = 0; t < b->n_node; ++t) {
-    const int q = k->contact[b->node[t]];
+    const int first = k->first_row[b->node[t]];
     double row[6];
-    for (int c = 0; q >= 0 && c < k->rows; ++c) {
+    for (int c = 0; first >= 0 && c < k->rows; ++c) {
       if (!unknown_row(k, d, b, b->node[t], c, row)) continue;
-      double *to = r->Q + m * (size_t)b->first + (size_t)(k->rows * q + c);
+      double *to = r->Q + m * (size_t)b->first + (size_t)(first + c);
       for (int j = 0; j < b->k; ++j) {
         const double *y = b->Y + n * (size_t)j + b->column[t];
         double sum = 0;
@@ -165,7 +165,7 @@ static void gram_schmidt(const rigid_set *r, rigid_body *b) {
 status rigid_orthonormalise(const stiffness *k, const domain *d, rigid_set *r) {
   status st = OK;
   enum { PASSES = 3 };
-  r->m = d->surface != NULL ? k->rows * d->surface->n : 0;
+  r->m = k->n_row;
   for (int t = 0; t < r->n_body; ++t) {
     r->body[t].first = r->k;
     r->k += r->body[t].k;

@@ -36,6 +36,8 @@ int job_sizes(const job *j, size_row rows[SIZE_ROWS]) {
     if (!j->m->has_problem) rows[n++] = (size_row){"bodies", info->bodies};
     rows[n++] = (size_row){"unknowns", (double)info->unknowns};
     rows[n++] = (size_row){"contact nodes", j->run->facts.n_contact_node};
+    if (j->run->facts.n_left_out > 0)
+      rows[n++] = (size_row){"  out of reach", j->run->facts.n_left_out};
     rows[n++] = (size_row){"contact unknowns", (double)info->contact_unknowns};
     if (!j->m->has_problem)
       rows[n++] = (size_row){"factor entries", (double)info->factor_entries};

@@ -76,37 +76,46 @@ done:
   return st;
 }
 
+/* The unknown of a row of r->cp among those of all contact nodes. */
+static int unknown_of(const run *r, int row) {
+  int i = row / r->rows;
+  return r->msh->dim * (r->reach.in != NULL ? r->reach.in[i] : i) +
+         row % r->rows;
+}
+
 double *run_rows(const run *r, int k, double *v) {
   if (r->n_row == r->n_c) return v;
-  for (int i = 0; i < r->n; ++i) r->row[k][i] = v[r->msh->dim * i];
+  for (int i = 0; i < r->n_row; ++i) r->row[k][i] = v[unknown_of(r, i)];
   return r->row[k];
 }
 
-/* The answer u, r of r->cp: friction and what follows the interior are zero as
- * yet where only normals are unknowns. */
+/* The answer u, r of r->cp: other forces are zero. */
 static void put_rows(const run *r, const double *u, const double *force) {
-  int dim = r->msh->dim;
   if (r->n_row == r->n_c) return;
   memset(r->now.rc, 0, (size_t)r->n_c * sizeof *r->now.rc);
-  for (int i = 0; i < r->n; ++i) {
-    r->now.uc[dim * i] = u[i];
-    r->now.rc[dim * i] = force[i];
+  for (int i = 0; i < r->n_row; ++i) {
+    r->now.uc[unknown_of(r, i)] = u[i];
+    r->now.rc[unknown_of(r, i)] = force[i];
   }
 }
 
-/* Tangential displacements of the contact nodes, with those of the interior. */
-static void take_tangents(const run *r) {
+/* Displacements of the contact nodes that were found with the interior. */
+static void take_interior(const run *r) {
   const contact_surface *s = r->surface;
-  int dim = r->msh->dim;
+  int dim = r->msh->dim, next = 0;
   if (r->n_row == r->n_c) return;
-  for (int i = 0; i < r->n; ++i)
-    for (int a = 1; a < dim; ++a) {
+  for (int i = 0; i < r->n; ++i) {
+    int is_in =
+        r->reach.in == NULL || (next < r->reach.n_in && r->reach.in[next] == i);
+    next += is_in;
+    for (int a = is_in ? r->rows : 0; a < dim; ++a) {
       double sum = 0.0;
       for (int c = 0; c < dim; ++c)
         sum += s->frame[dim * (dim * i + a) + c] *
                r->now.u[dim * s->node_id[i] + c];
       r->now.uc[dim * i + a] = sum;
     }
+  }
 }
 
 /* The given pressures at time t times the areas of the nodes. */
@@ -323,13 +332,15 @@ static int has_side_gap(const contact_surface *s) {
 
 static void set_problem(run *r) {
   int friction = (r->m->effects & EFFECT_FRICTION) != 0, all = r->rows > 1;
+  for (int i = 0; r->reach.in != NULL && i < r->reach.n_in; ++i)
+    r->gap_in[i] = r->gap[r->reach.in[i]];
   r->cp = (contact_problem){
       .dim = r->rows,
-      .n = r->n,
+      .n = reach_count(&r->reach, r->n),
       .m = r->n_row,
       .A = condensed_matrix(r->c),
       .f = r->f,
-      .gap = r->gap,
+      .gap = r->reach.in != NULL ? r->gap_in : r->gap,
       .ut0 = r->ut0,
       .g0 = friction ? r->limit.g0 : NULL,
       .B = friction ? limit_matrix(r) : NULL,
@@ -398,18 +409,30 @@ done:
   return st;
 }
 
-status increment_equilibrium(run *r, const double *F) {
+/* With the contact nodes at hand; *iterations so far. */
+static status solve_with_nodes(run *r, const double *F, int *iterations) {
   status st = OK;
-  int iterations = 0;
   TRY(pose(r, F));
   while (r->n > 0) {
     TRY(forms_solve(r));
-    iterations += r->report.iterations;
-    r->report.iterations = iterations;
+    *iterations += r->report.iterations;
+    r->report.iterations = *iterations;
     if (!limit_follow_zone(r)) break;
   }
   TRY(condense_recover(r->c, run_rows(r, 0, r->now.uc), r->now.u));
-  take_tangents(r);
+  take_interior(r);
+done:
+  return st;
+}
+
+status increment_equilibrium(run *r, const double *F) {
+  status st = OK;
+  int iterations = 0;
+  TRY(solve_with_nodes(r, F, &iterations));
+  while (run_misses_nodes(r)) {
+    TRY(run_add_nodes(r));
+    TRY(solve_with_nodes(r, F, &iterations));
+  }
 done:
   return st;
 }

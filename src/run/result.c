@@ -62,6 +62,10 @@ static void find_contact(run *r) {
   if (r->g != NULL) contact_limit(&r->cp, r->now.rc, r->g);
   contact_classify(&r->cp, run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc),
                    r->contact);
+  for (int i = r->n - 1, k = r->reach.n_in - 1; r->reach.in != NULL && i >= 0;
+       --i)
+    r->contact[i] =
+        k >= 0 && r->reach.in[k] == i ? r->contact[k--] : CONTACT_OPEN;
 }
 
 /* Slip adds up while a node is closed. */
@@ -275,6 +279,7 @@ void result_start(const run *r, equilibrium *e) {
 status result_accept(run *r) {
   if (r->n > 0) memcpy(r->f_before, r->f, (size_t)r->n_row * sizeof *r->f);
   equilibrium e = r->old;
+  r->note[0] = '\0';
   r->old = r->now;
   r->now = e;
   return r->visco == NULL ? OK : visco_accept(r);

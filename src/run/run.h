@@ -8,6 +8,7 @@
 #include "accuracy/accuracy.h"
 #include "accuracy/space.h"
 #include "base/timer.h"
+#include "contact/reach.h"
 #include "moduli/moduli.h"
 #include "run/state.h"
 #include "scheme/scheme.h"
@@ -82,7 +83,8 @@ typedef struct run {
   const step *step;
   size_t n_dof; /* dim*n_node                                                 */
   int n, n_c;   /* contact nodes; dim*n                                       */
-  int rows, n_row; /* unknowns of a node in r->cp: 1 or dim; rows*n           */
+  int rows, n_row; /* unknowns of a node in r->cp: 1 or dim; of all of them   */
+  contact_reach reach; /* the contact nodes of r->cp */
 
   /* What the elements are made of. */
   domain d;
@@ -114,7 +116,8 @@ typedef struct run {
 
   /* Contact problem of the increment. */
   double *f, *gap, *side_gap, *ut0; /* [n_row], [n], [n*(dim-1)] twice        */
-  double *row[2]; /* [n_row] room of run_rows; NULL where rows is dim         */
+  double *row[2], *gap_in; /* [rows*n] room of run_rows, NULL where rows is
+                              dim; [n] gaps of the nodes of r->cp, the same   */
   contact_problem cp;
   forms *forms; /* what rewrites it                                           */
 
@@ -177,6 +180,12 @@ int run_step_id(const run *r);
 /* All that an increment starts from and the matrices do not tell, named for an
  * archive: kept, or, after run_prepare, filled. */
 status run_keep(run *r, archive *a);
+
+/* 1: a contact node that was left out of r->cp is beyond its gap in r->now, or
+ * no equilibrium was found without those. */
+int run_misses_nodes(const run *r);
+/* Those and more nodes for r->cp, with a matrix and a solver of their own. */
+status run_add_nodes(run *r);
 
 /* Use m for the next equilibria; its solver is made if there is none, and
  * r->elastic anew if temperatures have changed the moduli. */
@@ -241,7 +250,7 @@ status visco_keep(run *r, archive *a);
 /* increment.c: the equilibrium at time t into r->now; read r->report. */
 status increment_solve(run *r, double t);
 /* v[dim*n] of the contact frames as a vector of r->cp: v itself, or in
- * r->row[k], k = 0 or 1, where only normals are unknowns. */
+ * r->row[k], k = 0 or 1, where it has not all unknowns. */
 double *run_rows(const run *r, int k, double *v);
 /* Loads and contact problem of time t without solving. */
 status increment_pose(run *r, double t);

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/timer.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -191,6 +192,13 @@ done:
   return st;
 }
 
+/* The contact nodes of r->cp are those of r->reach. */
+static void take_nodes(run *r) {
+  r->d.in = r->reach.in;
+  r->d.n_in = r->reach.n_in;
+  r->n_row = r->rows * reach_count(&r->reach, r->n);
+}
+
 static void free_surface(run *r) {
   forget_estimates(r);
   matrices_free(&r->elastic);
@@ -203,13 +211,15 @@ static void free_surface(run *r) {
       &r->f,        &r->f_before, &r->gap,        &r->side_gap,   &r->ut0,
       &r->open_gap, &r->slip,     &r->g,          &r->old.uc,     &r->old.rc,
       &r->now.uc,   &r->now.rc,   &r->old.motion, &r->now.motion, &r->distance,
-      &r->row[0],   &r->row[1]};
+      &r->row[0],   &r->row[1],   &r->gap_in};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) {
     memory_free(*owned[i]);
     *owned[i] = NULL;
   }
   memory_free(r->contact);
   r->contact = NULL;
+  reach_free(&r->reach);
+  take_nodes(r);
   limit_free(r);
   forms_free(r->forms);
   r->forms = NULL;
@@ -257,6 +267,7 @@ static status new_contact_arrays(run *r) {
   NEW(r->f, r->n_row);
   NEW(r->f_before, r->n_row);
   for (int k = 0; k < 2 && r->n_row < r->n_c; ++k) NEW(r->row[k], r->n_row);
+  if (r->n_row < r->n_c) NEW(r->gap_in, r->n);
   NEW(r->gap, r->n);
   NEW(r->old.uc, r->n_c);
   NEW(r->now.uc, r->n_c);
@@ -424,15 +435,147 @@ done:
   return st;
 }
 
-/* Bodies without enough supports are refused before anything is solved. */
-static status check_supports(const run *r) {
+/* Bodies without enough supports are refused before anything is solved;
+ * *n_motion: those that contact alone holds. */
+static status check_supports(const run *r, int *n_motion) {
   status st = OK;
   free_motion *list = NULL;
-  int n = 0;
-  TRY(domain_free_motions(&r->d, &n, &list));
-  TRY(refuse_unheld(r, n, list));
+  TRY(domain_free_motions(&r->d, n_motion, &list));
+  TRY(refuse_unheld(r, *n_motion, list));
 done:
   memory_free(list);
+  return st;
+}
+
+/* ---- nodes out of reach ------------------------------------------------- */
+
+/*
+ * Contact nodes whose gap is wider than what the step can close are left out of
+ * the condensed problem: they are free nodes of the interior, without force.
+ * After each solution none of them may be beyond its gap; where one is, or
+ * where no equilibrium was found, more nodes are taken and the problem is
+ * solved again. The answer is thus that of all nodes; only its price depends on
+ * the estimate of the reach.
+ */
+enum { FEWEST = 16 };               /* contact nodes                         */
+static const double GENEROUS = 4.0; /* -, of what loads move a compact body  */
+
+/* 1: no force on a node that does not touch, nothing but loads and supports
+ * moves the body, and the problem at hand is that of all increments. */
+static int may_leave_out(const run *r, int n_motion) {
+  const unsigned no = EFFECT_TANGENTS | EFFECT_GIVEN | EFFECT_START |
+                      EFFECT_INELASTIC | EFFECT_THERMAL | EFFECT_BODY;
+  return n_motion == 0 && r->n >= FEWEST && !(r->m->effects & no) &&
+         r->m->n_points == 0 && r->m->n_neglected == 0;
+}
+
+/* Least diagonal entry of the moduli, Pa, times the section's thickness or the
+ * size of the mesh: a body of that size gives way by force over this, N/m. */
+static double least_stiffness(const run *r) {
+  const domain *d = &r->d;
+  const int ns = d->ns, flat = d->mesh->dim == 2;
+  double least = HUGE_VAL;
+  for (int e = 0; e < d->mesh->n_elem; ++e) {
+    const int s = d->section_id[e];
+    const double *E = d->E + (size_t)(ns * ns) * (size_t)s;
+    double size =
+        flat && d->kin[s] != AXISYMMETRIC ? d->thickness[s] : d->mesh->size;
+    for (int c = 0; c < d->mesh->dim; ++c)
+      least = fmin(least, E[c * (ns + 1)] * size);
+  }
+  return least;
+}
+
+/* Way of the contact nodes in the step, generously, m. */
+static status find_reach(run *r) {
+  status st = OK;
+  double force = 0.0, way = 0.0, end = r->step->start + r->step->total;
+  TRY(load_forces(r->m, r->msh, r->step, end, r->now.F));
+  TRY(load_prescribed(r->m, r->msh, r->step, end, r->start, r->ud));
+  for (size_t k = 0; k < r->n_dof; ++k) {
+    force += fabs(r->now.F[k]);
+    way = fmax(way, fabs(r->old.u[k]));
+    if (r->fixed[k]) way = fmax(way, fabs(r->ud[k]));
+  }
+  r->reach.way = 2.0 * way + GENEROUS * force / least_stiffness(r);
+done:
+  return st;
+}
+
+/* The nodes within reach at the start or the end of the step. */
+static status choose_nodes(run *r, int n_motion) {
+  status st = OK;
+  double *gap = NULL;
+  r->reach.passes = 0;
+  if (!may_leave_out(r, n_motion)) return OK;
+  timer_enter(STAGE_SURFACE);
+  NEW(gap, r->n);
+  TRY(find_reach(r));
+  TRY(surface_gap(r->surface, &r->input, r->step->start + r->step->total, gap,
+                  NULL));
+  for (int i = 0; i < r->n; ++i) gap[i] = fmin(gap[i], r->gap[i]);
+  TRY(reach_choose(&r->reach, r->n, gap));
+  take_nodes(r);
+done:
+  timer_leave(STAGE_SURFACE);
+  memory_free(gap);
+  return st;
+}
+
+int run_misses_nodes(const run *r) {
+  if (r->reach.in == NULL) return 0;
+  return r->report.outcome <= 0 ||
+         reach_misses(&r->reach, r->n, r->gap, r->now.uc, r->msh->dim);
+}
+
+/* A matrix and a solver for the nodes that r->reach now has. */
+static status renew_nodes(run *r) {
+  status st = OK;
+  r->c = NULL;
+  matrices_free(&r->elastic);
+  take_nodes(r);
+  TRY(renew_elastic(r));
+  TRY(run_use(r, &r->elastic));
+done:
+  return st;
+}
+
+status run_add_nodes(run *r) {
+  status st = OK;
+  int before = r->reach.n_in;
+  size_t used = strlen(r->note);
+  TRY(reach_extend(&r->reach, r->n, r->gap, r->now.uc, r->msh->dim,
+                   r->report.outcome <= 0));
+  snprintf(r->note + used, sizeof r->note - used,
+           "  contact nodes thought out of reach touch: solved again with %d "
+           "nodes, not %d, of %d\n",
+           reach_count(&r->reach, r->n), before, r->n);
+  TRY(renew_nodes(r));
+done:
+  return st;
+}
+
+/* The nodes of a run that goes on. */
+static status keep_nodes(run *r, archive *a) {
+  status st = OK;
+  contact_reach x = r->reach;
+  x.in = NULL;
+  TRY(archive_reals(a, "reach", &x.way, 1));
+  TRY(archive_ints(a, "reach_passes", &x.passes, 1));
+  TRY(archive_ints(a, "nodes_in", &x.n_in, 1));
+  if (!archive_reads(a))
+    return archive_ints(a, "in", r->reach.in, (size_t)x.n_in);
+  if (x.n_in > 0) NEW(x.in, r->n);
+  TRY(archive_ints(a, "in", x.in, (size_t)x.n_in));
+  r->reach.way = x.way;
+  r->reach.passes = x.passes;
+  if (reach_is_same(&x, &r->reach)) goto done;
+  contact_reach old = r->reach;
+  r->reach = x;
+  x = old;
+  TRY(renew_nodes(r));
+done:
+  reach_free(&x);
   return st;
 }
 
@@ -443,13 +586,14 @@ static status report_ready(run *r) {
                        .digits = condensed_digits(r->c),
                        .floating = condensed_floating(r->c),
                        .n_contact_node = r->n,
+                       .n_left_out = r->n - reach_count(&r->reach, r->n),
                        .average_entries = limit_average_entries(r)};
   return r->sink->ready(r->sink->ctx, &facts, r->surface);
 }
 
 status run_prepare(run *r) {
   status st = OK;
-  int fresh = 0;
+  int fresh = 0, motions = 0;
   unsigned char *fixed = NULL;
   NEW(fixed, r->n_dof);
   load_fixed(r->m, r->msh, r->step, fixed);
@@ -464,7 +608,8 @@ status run_prepare(run *r) {
     else
       free_surface(r);
     r->d.surface = r->surface;
-    TRY(check_supports(r));
+    TRY(check_supports(r, &motions));
+    TRY(choose_nodes(r, motions));
     TRY(renew_elastic(r));
     r->c = r->elastic.c;
     fresh = 1;
@@ -542,6 +687,7 @@ done:
 static status keep_contact(run *r, archive *a) {
   status st = OK;
   size_t contacts = r->loops == NULL ? 0 : (size_t)r->m->n_contact;
+  TRY(keep_nodes(r, a));
   TRY(archive_reals(a, "f_before", r->f_before, (size_t)r->n_row));
   TRY(archive_reals(a, "distance", r->distance,
                     r->distance == NULL ? 0 : (size_t)r->n));

@@ -169,6 +169,7 @@ typedef struct setup_facts {
   double digits;    /* that it leaves                                      */
   int floating;     /* contact alone holds a body                          */
   int n_contact_node;
+  int n_left_out; /* of them, out of reach: no unknowns of the problem     */
   double average_entries; /* of the nonlocal averages                         */
 } setup_facts;
 

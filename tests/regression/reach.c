@@ -1,0 +1,187 @@
+/*
+ * Contact nodes that the step cannot bring to their obstacle are left out of
+ * the condensed problem; those that come to it all the same are taken in a
+ * second pass. The answer is that of the whole problem, which is what is solved
+ * where the condensed problem is written (*OUTPUT, CONDENSED=FCLIB).
+ */
+#include "support/block_file.h"
+#include "support/job.h"
+#include "support/traced.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char head[] =
+    "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+    "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n";
+static const char whole[] = "*OUTPUT, CONDENSED=FCLIB\n";
+
+/* A block, 4 long for 1 high, on a cylinder that touches it in its middle. */
+static job on_cylinder(const char *more) {
+  job j = job_begin("cylinder");
+  block_file_write(&j, (int[]){80, 10}, (double[]){80.0, 20.0}, 0);
+  job_write(&j, "cylinder.inp",
+            "%s*OBSTACLE, NAME=O, TYPE=CYLINDER, RADIUS=100.\n40., -100.\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.0\n*BOUNDARY\nLEFT, 1, 1\n"
+            "TOP, 2, 2, -0.1\n*PRINT, CONTACT\n%s*END STEP\n",
+            head, more);
+  return j;
+}
+
+/* A cantilever that bends down to a floor, first at its end. */
+static job cantilever(const char *more) {
+  job j = job_begin("cantilever");
+  block_file_write(&j, (int[]){48, 6}, (double[]){8.0, 1.0}, 0);
+  job_write(&j, "cantilever.inp",
+            "%s*OBSTACLE, NAME=O, TYPE=PLANE\n0., -0.02\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+            "*STEP\n*QUASISTATIC\n0.125, 1.0, 0.03125, 0.125\n*BOUNDARY\n"
+            "LEFT, 1, 2\n*DSLOAD\nTOP, P, 0.08\n*PRINT, CONTACT\n*RESTART\n"
+            "%s*END STEP\n",
+            head, more);
+  return j;
+}
+
+static void run(job *j, int expected) {
+  int code = job_run(j, "--no-timing");
+  ck_assert_msg(code == expected, "exit %d: %s", code, j->errors);
+}
+
+/* Largest difference of a column of the last table over its largest entry. */
+static double apart(const job *a, const job *b, const char *name) {
+  double most = 0.0, size = 0.0;
+  dat x = job_table(a, "CONTACT", -1), y = job_table(b, "CONTACT", -1);
+  ck_assert_int_eq(x.n_row, y.n_row);
+  for (int k = 0; k < x.n_row; ++k) {
+    most = fmax(most, fabs(dat_at(&x, k, name) - dat_at(&y, k, name)));
+    size = fmax(size, fabs(dat_at(&y, k, name)));
+    ck_assert_double_eq(dat_at(&x, k, "status"), dat_at(&y, k, "status"));
+  }
+  dat_free(&x);
+  dat_free(&y);
+  return most / size;
+}
+
+static void same_answer(const job *a, const job *b, double tol) {
+  static const char *const columns[] = {"u_n", "u_t", "gap", "f_n"};
+  for (size_t k = 0; k < sizeof columns / sizeof *columns; ++k) {
+    double found = apart(a, b, columns[k]);
+    ck_assert_msg(found <= tol, "%s: %.2g", columns[k], found);
+  }
+}
+
+static int notes(const job *j) {
+  char *text = job_file(j, "lst");
+  int n = 0;
+  for (char *at = text; (at = strstr(at, "thought out of reach")); ++at) ++n;
+  free(text);
+  return n;
+}
+
+/* 81 candidates, of which 7 lie within 0.2 of the cylinder. */
+START_TEST(long_surface_costs_its_nodes_within_reach) {
+  long few, all;
+  job a = on_cylinder(""), b = on_cylinder(whole);
+  ck_assert_int_eq(job_run(&a, ""), 0);
+  ck_assert_int_eq(job_run(&b, ""), 0);
+  ck_assert_double_eq(job_told(&a, "contact_nodes"), 81.0);
+  ck_assert_double_le(job_told(&a, "contact_unknowns"), 13.0);
+  ck_assert_double_eq(job_told(&b, "contact_unknowns"), 162.0);
+  ck_assert_int_eq(job_stage(&a, "condensed stiffness", &few), 1);
+  ck_assert_int_eq(job_stage(&b, "condensed stiffness", &all), 1);
+  ck_assert_int_lt(100 * few, all);
+  ck_assert_int_eq(notes(&a), 0);
+  same_answer(&a, &b, 1e-10);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
+/* Bending goes far beyond what loads over moduli promise. */
+START_TEST(nodes_that_reach_are_taken_in_a_second_pass) {
+  job a = cantilever(""), b = cantilever(whole);
+  run(&a, 0);
+  run(&b, 0);
+  ck_assert_double_le(job_told(&a, "contact_unknowns"), 24.0);
+  int passes = notes(&a);
+  ck_assert_int_ge(passes, 1);
+  ck_assert_int_eq(job_stage(&a, "condensed stiffness", NULL), 1 + passes);
+  same_answer(&a, &b, 1e-9);
+  dat d = job_table(&a, "CONTACT", -1);
+  int touches = 0;
+  for (int k = 0; k < d.n_row; ++k) {
+    ck_assert_double_ge(dat_at(&d, k, "gap"), 0.0);
+    touches += dat_at(&d, k, "f_n") > 0.0;
+  }
+  ck_assert_int_ge(touches, 2);
+  dat_free(&d);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
+/* The most attempts at an increment. */
+static int attempts(const job *j) {
+  char *text = job_file(j, "sta");
+  int most = 0;
+  for (char *line = strtok(text, "\n"); line != NULL;
+       line = strtok(NULL, "\n")) {
+    int step, increment, attempt;
+    if (sscanf(line, "%d %d %d", &step, &increment, &attempt) == 3 &&
+        attempt > most)
+      most = attempt;
+  }
+  free(text);
+  return most;
+}
+
+/* Sweeps too few for whole increments: they are cut, and all nodes taken. */
+START_TEST(increments_are_cut_with_all_nodes) {
+  job a = cantilever("*SOLVER, METHOD=SOR, MAX_ITER=300\n");
+  job b = cantilever(whole);
+  ck_assert_int_le(job_run(&a, "--no-timing"), 1);
+  run(&b, 0);
+  ck_assert_int_ge(attempts(&a), 2);
+  ck_assert_int_ge(job_stage(&a, "condensed stiffness", NULL), 2);
+  same_answer(&a, &b, 1e-5);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
+/* Interrupted before and after the second pass and gone on with: the same
+ * files, byte by byte. */
+START_TEST(run_goes_on_bit_for_bit) {
+  static const char *const nothing[] = {NULL, NULL};
+  static const char *const again[] = {"--restart", NULL};
+  job a = cantilever("");
+  traced count = {.action = TRACE_SIGNAL};
+  ck_assert_int_eq(traced_run(&a, nothing, &count), 0);
+  for (int part = 3; part < 10; part += 2) {
+    job b = cantilever("");
+    traced t = {.action = TRACE_SIGNAL,
+                .at = count.changes * part / 10,
+                .number = SIGINT};
+    int code = traced_run(&b, nothing, &t);
+    if (code != 130) {
+      job_end(&b);
+      continue;
+    }
+    traced on = {.action = TRACE_COUNT};
+    ck_assert_int_eq(traced_run(&b, again, &on), 0);
+    const char *file = traced_difference(&a, &b);
+    ck_assert_msg(file == NULL, "part %d: .%s differs", part, file);
+    job_end(&b);
+  }
+  job_end(&a);
+}
+END_TEST
+
+UNIT_MAIN("reach", long_surface_costs_its_nodes_within_reach,
+          nodes_that_reach_are_taken_in_a_second_pass,
+          increments_are_cut_with_all_nodes, run_goes_on_bit_for_bit)
