@@ -1,4 +1,5 @@
 """Decks and tables of protis for the tools: cards changed, JOB.dat read."""
+import pathlib
 import re
 import sys
 
@@ -76,6 +77,45 @@ def absolute_files(lines, folder):
                           line, flags=re.IGNORECASE)
         out.append(line)
     return out
+
+
+def joined(lines):
+    """A card that ends in a comma goes on in the next line."""
+    out = []
+    for line in lines:
+        if out and card_name(out[-1]) and out[-1].endswith(","):
+            out[-1] += " " + line.strip()
+        else:
+            out.append(line.strip())
+    return out
+
+
+def read_deck(path, within=()):
+    """Lines of a deck, what it includes in their place, files named from
+    anywhere."""
+    path = path.resolve()
+    if path in within or not path.is_file():
+        fail(f"{path}: " + ("includes itself" if path in within
+                            else "no such file"))
+    out = []
+    lines = joined(path.read_text(encoding="utf-8-sig").splitlines())
+    for line in absolute_files(lines, path.parent):
+        if card_name(line) == "INCLUDE":
+            name = re.search(r"INPUT\s*=\s*([^,\s]+)", line, re.IGNORECASE)
+            if name is None:
+                fail(f"{path}: {line}: no INPUT=")
+            out += read_deck(pathlib.Path(name[1]), within + (path,))
+        else:
+            out.append(line)
+    return out
+
+
+def deck_of(job):
+    """The deck of JOB or JOB.inp."""
+    deck = job if job.is_file() else job.parent / (job.name + ".inp")
+    if not deck.is_file():
+        fail(f"{job}: no such deck")
+    return deck
 
 
 # ---- tables of JOB.dat -------------------------------------------------------
