@@ -282,7 +282,8 @@ static int must_stay(const model *m) {
   for (int i = 0; i < m->n_step; ++i) {
     const step *s = &m->steps[i];
     if (s->check != CHECK_NONE || s->theory || s->condensed_frequency >= 0 ||
-        s->form == FORM_VELOCITY || s->restart_frequency >= 0)
+        s->form == FORM_VELOCITY || s->restart_frequency >= 0 ||
+        s->tolerance > 0.0 || s->time_balanced)
       return 1;
   }
   for (int i = 0; i < m->n_section; ++i)

@@ -14,12 +14,6 @@ static double visco_time(const model *m) {
   return t;
 }
 
-static int has_tolerance(const model *m) {
-  for (int i = 0; i < m->n_step; ++i)
-    if (m->steps[i].tolerance > 0.0) return 1;
-  return 0;
-}
-
 /* ---- inelastic strain --------------------------------------------------- */
 
 /* 1: the rate at the start tells nothing of later ones. */
@@ -170,8 +164,7 @@ done:
 
 status neglect_try_laws(model *m, const mesh *msh) {
   status st = OK;
-  if (!(m->effects & EFFECT_INELASTIC) || has_tolerance(m) ||
-      neglect_has_initial(m))
+  if (!(m->effects & EFFECT_INELASTIC) || neglect_has_initial(m))
     goto done;
   for (int i = 0; i < m->n_material; ++i) TRY(try_law(m, msh, i));
   TRY(neglect_try_threshold(m, msh));
