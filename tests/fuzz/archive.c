@@ -1,7 +1,8 @@
 /*
  * libFuzzer: restart files. Arrays of any names, kinds and lengths are written;
- * then, by the first byte, they come back as they were, or bytes of the file
- * are changed: it is refused, or all arrays are as they were.
+ * then, by the first byte, they come back as they were, bytes of the file are
+ * changed or its end is missing: it is refused, or all arrays are as they were;
+ * or other arrays are asked for: refused, or there.
  */
 #include "archive/archive.h"
 #include "base/memory.h"
@@ -11,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { ARRAYS = 6, MOST = 40 };
 
@@ -58,23 +60,41 @@ static void write_file(arrays *a, const char *path, const char *before) {
   archive_free(out);
 }
 
+/* 1: bytes are gone. */
+static int cut(const char *path, fuzz_bytes *b) {
+  FILE *f = fopen(path, "rb");
+  if (f == NULL) abort();
+  fseek(f, 0, SEEK_END);
+  long size = ftell(f), left = size * fuzz_below(b, 256) / 255;
+  fclose(f);
+  if (truncate(path, left) != 0) abort();
+  return left < size;
+}
+
+enum { AS_IS, DAMAGED, CUT, OTHER, WAYS };
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-  static arrays a, back;
+  static arrays a, back, other;
   char before[80], path[80];
   fuzz_bytes b = {data, size};
   archive *in = NULL;
-  int spoil = fuzz_byte(&b) % 2 == 1;
+  int way = fuzz_below(&b, WAYS), changed = 0;
   snprintf(before, sizeof before, "%s", fuzz_file("rst.old.h5", NULL, 0));
   snprintf(path, sizeof path, "%s", fuzz_file("rst.h5", NULL, 0));
   choose(&a, &b);
   write_file(&a, path, before);
-  int changed = spoil && fuzz_damage(path, &b);
+  if (way == DAMAGED) changed = fuzz_damage(path, &b);
+  if (way == CUT) changed = cut(path, &b);
   status st = archive_read(path, &in);
   if (!changed && st != OK) abort();
   back = a;
   if (st == OK) st = serve(in, &back);
   if (!changed && st != OK) abort();
   if (st == OK && memcmp(&a, &back, sizeof a) != 0) abort();
+  if (way == OTHER) {
+    choose(&other, &b);
+    if (serve(in, &other) != OK) status_clear();
+  }
   archive_free(in);
   status_clear();
   if (memory_in_use() != 0) abort();
