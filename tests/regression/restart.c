@@ -56,12 +56,19 @@ static void edit(const job *j, const char *from, const char *to) {
   free(deck);
 }
 
-START_TEST(changed_decks_are_refused_by_card) {
+/* A block whose run is stopped at so many tenths. */
+static job stopped_at(int tenths) {
   int changes, all;
   job j = small_flat(0.4, "", "AUTO");
   refused(&j, 4, "cannot read");
   run_until(&j, nothing, 0, 0, &all);
-  ck_assert_int_eq(run_until(&j, nothing, all * 4 / 10, SIGINT, &changes), 130);
+  ck_assert_int_eq(run_until(&j, nothing, all * tenths / 10, SIGINT, &changes),
+                   130);
+  return j;
+}
+
+START_TEST(changed_decks_are_refused_by_card) {
+  job j = stopped_at(4);
   edit(&j, "130.D3", "131.D3");
   refused(&j, 2, "*ELASTIC");
   edit(&j, "131.D3", "130.D3");
@@ -85,10 +92,7 @@ END_TEST
 /* Output and solver of a step to come, requests for restart files anywhere; of
  * the step in progress they may not change, nor may effects come or go. */
 START_TEST(later_steps_may_change) {
-  int changes, all;
-  job j = small_flat(0.4, "", "AUTO");
-  run_until(&j, nothing, 0, 0, &all);
-  ck_assert_int_eq(run_until(&j, nothing, all * 3 / 10, SIGINT, &changes), 130);
+  job j = stopped_at(3);
   edit(&j, "*PRINT, CONTACT, LOOP", "*PRINT, CONTACT");
   refused(&j, 2, "step 1, *PRINT");
   edit(&j, "*PRINT, CONTACT", "*PRINT, CONTACT, LOOP");
@@ -108,10 +112,7 @@ START_TEST(later_steps_may_change) {
 END_TEST
 
 START_TEST(some_jobs_start_anew) {
-  int changes, all;
-  job j = small_flat(0.4, "", "AUTO");
-  run_until(&j, nothing, 0, 0, &all);
-  ck_assert_int_eq(run_until(&j, nothing, all * 3 / 10, SIGINT, &changes), 130);
+  job j = stopped_at(3);
   edit(&j, "TOP, 1, 1, -0.01\n", "TOP, 1, 1, -0.01\n*ACCURACY, THEORY=YES\n");
   refused(&j, 2, "theorems");
   edit(&j, "*ACCURACY, THEORY=YES", "*ACCURACY, TARGET=5.");
