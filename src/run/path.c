@@ -26,9 +26,8 @@ static const double EXTRAPOLATION = 5.0 / 3.0; /* -, of growing zones         */
 static const double STRAIGHT = 10.0; /* -, of the tolerance of the solver     */
 
 typedef struct waypoint { /* what an increment starts from, of one path       */
-  double t;
-  double *uc, *rc, *motion; /* [m] m, N, m                                   */
-  flow_state flow;          /* of the points whose law flows; empty: none     */
+  start_point start;
+  flow_state flow; /* of the points whose law flows; empty: none              */
 } waypoint;
 
 struct finer_path {
@@ -44,31 +43,21 @@ struct finer_path {
 
 static status waypoint_new(const run *r, waypoint *w) {
   status st = OK;
-  int m = r->n_c;
-  NEW(w->uc, m);
-  NEW(w->rc, m);
-  NEW(w->motion, m);
+  TRY(start_point_new(r, &w->start));
   if (r->visco != NULL) TRY(flow_state_new(&r->visco->x, &w->flow));
 done:
   return st;
 }
 
 static void waypoint_free(waypoint *w) {
-  memory_free(w->uc);
-  memory_free(w->rc);
-  memory_free(w->motion);
+  start_point_free(&w->start);
   flow_state_free(&w->flow);
 }
 
 static void waypoint_copy(const run *r, const equilibrium *e, waypoint *w) {
-  size_t bytes = (size_t)r->n_c * sizeof *w->uc;
-  w->t = e->t;
   if (e == &r->old && r->visco != NULL)
     flow_state_copy(&r->visco->x, &r->visco->old, &w->flow);
-  if (r->n_c == 0) return;
-  memcpy(w->uc, e->uc, bytes);
-  memcpy(w->rc, e->rc, bytes);
-  memcpy(w->motion, e->motion, bytes);
+  start_point_copy(r, e, &w->start);
 }
 
 static status path_new(const run *r, finer_path **out) {
@@ -106,11 +95,7 @@ void path_free(finer_path *p) {
 /* The equilibrium at t from where "from" stands, into "to". */
 static status half(run *r, waypoint *from, double t, waypoint *to) {
   status st = OK;
-  equilibrium keep = r->old;
-  r->old.t = from->t;
-  r->old.uc = from->uc;
-  r->old.rc = from->rc;
-  r->old.motion = from->motion;
+  equilibrium keep = start_point_use(r, &from->start);
   if (r->step->kind == STEP_VISCO)
     st = visco_advance_from(r, &from->flow, t, &to->flow);
   else
@@ -134,7 +119,7 @@ static status try_halves(run *r, finer_path *p, double t) {
   status st = OK;
   p->measured = 0;
   if (p->lost) return OK;
-  TRY(half(r, &p->at, 0.5 * (p->at.t + t), &p->middle));
+  TRY(half(r, &p->at, 0.5 * (p->at.start.t + t), &p->middle));
   p->lost = r->report.outcome <= 0;
   if (p->lost) return OK;
   TRY(half(r, &p->middle, t, &p->end));
@@ -152,7 +137,7 @@ status path_try(run *r, double t) {
   if (!r->step->time_error || !path_exists(r)) return OK;
   timer_enter_whole(STAGE_TIME_ERROR);
   r->beside = 1;
-  if (r->path != NULL && (r->path->at.t != r->old.t ||
+  if (r->path != NULL && (r->path->at.start.t != r->old.t ||
                           r->path->flows != (r->step->kind == STEP_VISCO)))
     path_restart(r);
   if (r->path == NULL) TRY(path_new(r, &r->path));
@@ -168,7 +153,7 @@ done:
  * sqrt(J). */
 static double condensed_difference(const run *r, finer_path *p) {
   double square = 0.0;
-  for (int k = 0; k < r->n_c; ++k) p->d[k] = r->now.uc[k] - p->end.uc[k];
+  for (int k = 0; k < r->n_c; ++k) p->d[k] = r->now.uc[k] - p->end.start.uc[k];
   contact_product(r->n_c, condensed_matrix(r->c), p->d, p->Ad);
   for (int k = 0; k < r->n_c; ++k) square += p->d[k] * p->Ad[k];
   return sqrt(fmax(square, 0.0));
@@ -246,7 +231,7 @@ void path_compare(run *r) {
     e->why = why_no_path(r);
     return;
   }
-  if (p == NULL || (!p->lost && p->end.t != r->now.t)) {
+  if (p == NULL || (!p->lost && p->end.start.t != r->now.t)) {
     e->why = "the body answers at once";
     return;
   }
@@ -267,10 +252,10 @@ void path_compare(run *r) {
 static status keep_waypoint(const run *r, waypoint *w, archive *a) {
   status st = OK;
   size_t m = (size_t)r->n_c;
-  TRY(archive_reals(a, "path_t", &w->t, 1));
-  TRY(archive_reals(a, "path_uc", w->uc, m));
-  TRY(archive_reals(a, "path_rc", w->rc, m));
-  TRY(archive_reals(a, "path_motion", w->motion, m));
+  TRY(archive_reals(a, "path_t", &w->start.t, 1));
+  TRY(archive_reals(a, "path_uc", w->start.uc, m));
+  TRY(archive_reals(a, "path_rc", w->start.rc, m));
+  TRY(archive_reals(a, "path_motion", w->start.motion, m));
   if (r->visco != NULL)
     TRY(visco_keep_flow(&r->visco->x, &w->flow, a, "path_flow"));
 done:

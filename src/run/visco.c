@@ -146,64 +146,75 @@ status visco_advance(run *r, double t) {
   return st;
 }
 
-status visco_advance_from(run *r, flow_state *from, double t, flow_state *to) {
+/* From another state than that of the run, which stays. */
+static status advance_from(run *r, flow_state *from, double t) {
   visco *v = r->visco;
-  if (v == NULL) return increment_solve(r, t);
-  timer_enter(STAGE_INELASTIC);
   flow_state keep = v->old;
   v->old = *from;
   status st = advance(r, t);
   *from = v->old;
   v->old = keep;
   v->sums.known = 0;
+  return st;
+}
+
+status visco_advance_from(run *r, flow_state *from, double t, flow_state *to) {
+  visco *v = r->visco;
+  if (v == NULL) return increment_solve(r, t);
+  timer_enter(STAGE_INELASTIC);
+  status st = advance_from(r, from, t);
   if (st == OK) flow_state_copy(&v->x, &v->now, to);
   timer_leave(STAGE_INELASTIC);
   return st;
 }
 
-/* What an increment starts from, of the contact. */
-typedef struct start_point {
-  double *uc, *rc, *motion; /* [m] m, N, m                                   */
-} start_point;
-
-static status start_point_new(const run *r, start_point *p) {
+status start_point_new(const run *r, start_point *p) {
   status st = OK;
-  size_t bytes = (size_t)r->n_c * sizeof *p->uc;
   NEW(p->uc, r->n_c);
   NEW(p->rc, r->n_c);
   NEW(p->motion, r->n_c);
-  if (r->n_c == 0) goto done;
-  memcpy(p->uc, r->now.uc, bytes);
-  memcpy(p->rc, r->now.rc, bytes);
-  memcpy(p->motion, r->now.motion, bytes);
 done:
   return st;
+}
+
+void start_point_free(start_point *p) {
+  memory_free(p->uc);
+  memory_free(p->rc);
+  memory_free(p->motion);
+}
+
+void start_point_copy(const run *r, const equilibrium *e, start_point *p) {
+  size_t bytes = (size_t)r->n_c * sizeof *p->uc;
+  p->t = e->t;
+  if (r->n_c == 0) return;
+  memcpy(p->uc, e->uc, bytes);
+  memcpy(p->rc, e->rc, bytes);
+  memcpy(p->motion, e->motion, bytes);
+}
+
+equilibrium start_point_use(run *r, const start_point *p) {
+  equilibrium keep = r->old;
+  r->old.t = p->t;
+  r->old.uc = p->uc;
+  r->old.rc = p->rc;
+  r->old.motion = p->motion;
+  return keep;
 }
 
 /* From r->now, which becomes the accepted state for the while, to t. */
 static status second_half(run *r, double t) {
   status st = OK;
   visco *v = r->visco;
-  equilibrium keep = r->old;
   start_point p = {0};
   if (v->middle.e == NULL) TRY(flow_state_new(&v->x, &v->middle));
   TRY(start_point_new(r, &p));
+  start_point_copy(r, &r->now, &p);
   flow_state_copy(&v->x, &v->now, &v->middle);
-  r->old.t = r->now.t;
-  r->old.uc = p.uc;
-  r->old.rc = p.rc;
-  r->old.motion = p.motion;
-  flow_state first = v->old;
-  v->old = v->middle;
-  st = advance(r, t);
-  v->middle = v->old;
-  v->old = first;
-  v->sums.known = 0;
+  equilibrium keep = start_point_use(r, &p);
+  st = advance_from(r, &v->middle, t);
   r->old = keep;
 done:
-  memory_free(p.uc);
-  memory_free(p.rc);
-  memory_free(p.motion);
+  start_point_free(&p);
   return st;
 }
 

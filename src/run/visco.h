@@ -58,6 +58,19 @@ static inline size_t visco_at(const run *r, int k) {
   return (size_t)r->m->ns * (size_t)k;
 }
 
+/* What an increment starts from, of the contact. */
+typedef struct start_point {
+  double t;
+  double *uc, *rc, *motion; /* [m] m, N, m                                   */
+} start_point;
+
+/* visco.c. Room; that of an equilibrium; r->old is at the point until what is
+ * returned is put back. */
+status start_point_new(const run *r, start_point *p);
+void start_point_free(start_point *p);
+void start_point_copy(const run *r, const equilibrium *e, start_point *p);
+equilibrium start_point_use(run *r, const start_point *p);
+
 /* visco.c: by the integrator of the step from another state than that of the
  * run (its t is not read: r->old.t counts) to t, into r->now and *to. */
 status visco_advance_from(run *r, flow_state *from, double t, flow_state *to);
