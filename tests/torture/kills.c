@@ -85,7 +85,7 @@ static void kill_often(points *t, points *twice, make_job *make,
     job_clear(&j);
     const char *wrong = after_kill(&j, run(&j, nothing, at, NULL));
     points_try(t);
-    if (k % 8 == 3 && wrong == NULL && can_restart(&j)) {
+    if (k % 7 == 3 && wrong == NULL && can_restart(&j)) {
       int part = 1 + (int)(k * 7 % (changes / 2));
       int code = run(&j, again, part, &rest);
       points_try(twice);
