@@ -335,6 +335,10 @@
     "The points and curves of a group carry nodes of elements. Remove "      \
     "construction points from the group; a point inside a body needs "       \
     "Point{n} In Surface{m}; to be a node.")                                 \
+  X(3034, ERROR, "elements that overlap round a node",                       \
+    "Together they fill more than the full angle: a node was moved through " \
+    "the sides of its elements, or parts are merged that overlap. Remesh "   \
+    "there, or move the node back.")                                         \
   X(3040, NOTE, "nodes that no element uses",                                \
     "They are left out: centres of circles and other construction "          \
     "points, or parts of the mesh in no group.")                             \

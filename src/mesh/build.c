@@ -76,6 +76,7 @@ status build_mesh(const raw_mesh *raw, double scale, const place *at,
   TRY(elements_finish(&b));
   TRY(faces_finish(&b));
   TRY(groups_fill(&b));
+  TRY(elements_check_folds(&b));
   TRY(nodes_coincident(&b));
 done:
   release(&b);

@@ -13,6 +13,8 @@
 /* An element whose measure is below this part of (longest edge)^dim is flat:
  * far below any sliver that can be computed with, far above rounding. */
 static const double flat = 1e-12;
+/* What the angles round a node may be above the full one, -. */
+static const double rounding = 1e-6;
 
 int first_order_type(int dim) {
   static const int type[] = {15, 1, 2, 4};
@@ -256,5 +258,68 @@ done:
   memory_free(key);
   memory_free(id);
   memory_free(no);
+  return st;
+}
+
+/* ---- folds -------------------------------------------------------------- */
+
+/* Unit vector from corner i of the element to another one. */
+static void direction(const mesh *m, const int *v, int i, int to, double *d) {
+  double size = 0.0;
+  for (int k = 0; k < m->dim; ++k) {
+    d[k] =
+        m->x[(size_t)(m->dim * v[to] + k)] - m->x[(size_t)(m->dim * v[i] + k)];
+    size = hypot(size, d[k]);
+  }
+  for (int k = 0; k < m->dim; ++k) d[k] /= size;
+}
+
+static double dot(int n, const double *a, const double *b) {
+  double sum = 0.0;
+  for (int k = 0; k < n; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/* Angle of the element at its corner i over the full one; in space the solid
+ * angle (van Oosterom and Strackee 1983). */
+static double share_of_angle(const mesh *m, const int *v, int i) {
+  double d[3][3];
+  for (int k = 1; k <= m->dim; ++k)
+    direction(m, v, i, (i + k) % (m->dim + 1), d[k - 1]);
+  if (m->dim == 2) {
+    double across = d[0][0] * d[1][1] - d[0][1] * d[1][0];
+    return atan2(fabs(across), dot(2, d[0], d[1])) / (2.0 * acos(-1.0));
+  }
+  double triple = d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) -
+                  d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0]) +
+                  d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]);
+  double below =
+      1.0 + dot(3, d[0], d[1]) + dot(3, d[1], d[2]) + dot(3, d[2], d[0]);
+  return atan2(fabs(triple), below) / (2.0 * acos(-1.0));
+}
+
+/* A mesh folded over itself has nodes whose elements, all turned to positive
+ * orientation, fill more than the full angle. */
+status elements_check_folds(builder *b) {
+  status st = OK;
+  const mesh *m = b->m;
+  culprits bad = {0};
+  double *share = NULL;
+  int n = m->dim + 1;
+  NEW(share, m->n_node);
+  for (int e = 0; e < m->n_elem; ++e)
+    for (int i = 0; i < n; ++i) {
+      const int *v = m->elem + (size_t)n * (size_t)e;
+      share[v[i]] += share_of_angle(m, v, i);
+    }
+  for (int i = 0; i < m->n_node; ++i)
+    if (share[i] > 1.0 + rounding)
+      culprit_at(&bad, m->dim, m->node_no[i], m->x + (size_t)(m->dim * i));
+  if (bad.n > 0)
+    message_add(b->log, P3034, b->at,
+                "the elements round %d node(s) overlap: %s", bad.n, bad.text);
+  TRY(build_check(b));
+done:
+  memory_free(share);
   return st;
 }

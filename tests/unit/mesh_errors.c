@@ -72,6 +72,11 @@ static const bad_mesh errors[] = {
    "error P3022: 1 element(s) have no volume: 2 at (0.5, 0.5, 0)"},
   {"k.msh", MSH(BODY, SQUARE, "3\n" TWO "3 2 2 1 1 1 2 2\n"),
    "error P3022: 1 element(s) have no area: 3 at (0.666667, 0)"},
+  {"z.msh", MSH(BODY, "6\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .8 .5 0\n"
+                "6 .7 .5 0\n",
+                "6\n1 2 2 1 1 1 2 5\n2 2 2 1 1 2 6 5\n3 2 2 1 1 2 3 6\n"
+                "4 2 2 1 1 3 4 6\n5 2 2 1 1 4 5 6\n6 2 2 1 1 4 1 5\n"),
+   "error P3034: the elements round 1 node(s) overlap: 6 at (0.7, 0.5)"},
   {"l.msh", MSH(BODY, "4\n1 0 0 0\n2 nan 0 0\n3 1 inf 0\n4 0 1 0\n", "2\n" TWO),
    "error P3023: 2 node(s) without finite coordinates: 2 at (nan, 0, 0), 3 at "
    "(1, inf, 0)"},
