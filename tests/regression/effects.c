@@ -186,6 +186,32 @@ START_TEST(no_friction_no_tangential_unknown) {
 }
 END_TEST
 
+/* A block between smooth walls, pressed from above in two steps: by symmetry
+ * nothing rubs. One pass of the solver an increment, and one factor in all,
+ * whatever the method. */
+START_TEST(nothing_rubs_no_loop_one_factor) {
+  static const char *const methods[] = {"AUTO", "NEWTON", "SOR", "AUGLAG"};
+  for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k) {
+    char step[160];
+    snprintf(step, sizeof step,
+             "*BOUNDARY\nLEFT, 1, 1\n*SOLVER, METHOD=%s\n*END STEP\n*STEP\n"
+             "*QUASISTATIC\n<DT>, 1.0\n*DSLOAD\nTOP, P, 70.\n",
+             methods[k]);
+    job j = block("", step, "");
+    char *text = job_file(&j, "json"), *at = text;
+    int increments = 0;
+    for (; (at = strstr(at, "\"iterations\": ")) != NULL; ++at, ++increments)
+      ck_assert_msg(strtol(strchr(at, ':') + 1, NULL, 10) <= 1, "%s: %.20s",
+                    methods[k], at);
+    ck_assert_int_ge(increments, 8);
+    ck_assert_int_eq(job_stage(&j, "factorisation", NULL), 1);
+    ck_assert_int_eq(job_stage(&j, "condensed stiffness", NULL), 1);
+    free(text);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* JSON: calls foreseen and counted of the effects that tell both. */
 START_TEST(calls_are_as_foreseen) {
   static const char *const files[] = {"", "*PRINT, CONTACT, TOTALS\n"};
@@ -236,5 +262,5 @@ END_TEST
 
 UNIT_MAIN("effects", check_prints_the_plan_of_the_listing,
           plan_names_file_and_line, effects_are_paid_for_when_called,
-          no_friction_no_tangential_unknown, calls_are_as_foreseen,
-          no_timing_leaves_calls_alone)
+          no_friction_no_tangential_unknown, nothing_rubs_no_loop_one_factor,
+          calls_are_as_foreseen, no_timing_leaves_calls_alone)
