@@ -225,9 +225,10 @@ study: $(program)
 	  --vary N=2,4,8,16,32 \
 	  --title "Hertz against its closed form, N segments per half-width"
 	$(Q)$(STUDY) input/creep_block/held_block.inp -o build/study/integrators \
-	  --vary DT=1,0.5,0.25,0.125,0.0625,0.03125 \
-	  --vary INTEGRATOR=EULER,BACKWARD,HEUN,MIDPOINT \
-	  --title "relaxing block: four integrators, increments DT"
+	  --vary DT=1,0.5,0.25,0.125,0.0625,0.03125,0.015625 \
+	  --vary INTEGRATOR=EULER,BACKWARD,HEUN,MIDPOINT,RK4,EXPONENTIAL \
+	  --error TOTALS.force_y --reference 225.374497087 --floor 1e-8 \
+	  --title "relaxing block: six integrators, increments DT"
 	$(Q)$(STUDY) input/nonlocal_slider/nonlocal_hertz.inp \
 	  -o build/study/radii --vary NC=8,16,32,64,128 \
 	  --vary RHO=0.02,0.05,0.1 --error CONTACT.traction_t --reference own \
