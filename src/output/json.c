@@ -430,6 +430,12 @@ static void write_increment(json *w, const model *m,
   json_close(w, '}');
 }
 
+static void write_resting(json *w, const flow_tally *t) {
+  if (!(t->asked > 0.0)) return;
+  json_real(w, "threshold_evaluations", t->asked);
+  json_real(w, "threshold_resting", t->resting);
+}
+
 static void write_all(json *w, const job *j) {
   json_open(w, NULL, '{');
   json_string(w, "program", "protis");
@@ -445,6 +451,7 @@ static void write_all(json *w, const job *j) {
   write_accuracy(w, j);
   write_passes(w, j);
   write_cost(w, j->o);
+  write_resting(w, &j->run->tally);
   json_open(w, "increments", '[');
   for (int i = 0; i < j->run->n_increment; ++i)
     write_increment(w, j->m, &j->run->increments[i]);

@@ -406,26 +406,24 @@ static void print_bound(const job *j, const char *what, const theory_bound *b,
 
 /* Theorem 3.2: laws that flow under given friction. */
 static void print_path(const job *j, const theory_path *p, FILE *f) {
+  static const char *const word[] = {"ok", "ok, but not below 1", "VIOLATED"};
   char text[2][NUMBER_SIZE], unit[64], time[64];
   if (!p->asked) return;
   column_unit("1/time", j->m, unit, sizeof unit);
   column_unit("time", j->m, time, sizeof time);
+  fputs("  theory: (3.2) stress: ", f);
   if (p->why != NULL)
-    fprintf(f, "  theory: (3.2) stress: no rate, %s\n", p->why);
+    fprintf(f, "no rate, %s\n", p->why);
   else
-    fprintf(f, "  theory: (3.2) stress: contraction %s <= %s  %s\n",
-            text_number(text[0], p->rate, 4), text_number(text[1], p->bound, 4),
-            p->violated      ? "VIOLATED"
-            : p->bound < 1.0 ? "ok"
-                             : "ok, but not below 1");
-  if (!(p->bound > 0.0)) return;
-  fprintf(f,
-          "  theory: (3.2) constant of the laws %s %s, below 1 for dt < %s %s",
-          text_number(text[0], p->speed, 4), unit,
-          text_number(text[1], p->longest, 4), time);
-  if (p->passes < 1e9)
-    fprintf(f, "; over the step after %.0f passes", p->passes);
-  fputc('\n', f);
+    fprintf(f, "contraction %s <= %s  %s\n", text_number(text[0], p->rate, 4),
+            text_number(text[1], p->bound, 4),
+            word[p->violated ? 2 : p->bound >= 1.0]);
+  if (p->bound > 0.0)
+    fprintf(f,
+            "  theory: (3.2) constant of the laws %s %s, below 1 for dt < %s "
+            "%s; over the step after %.0f passes\n",
+            text_number(text[0], p->speed, 4), unit,
+            text_number(text[1], p->longest, 4), time, p->passes);
 }
 
 static void print_theory(const job *j, const state *s, FILE *f) {
@@ -737,6 +735,7 @@ static void print_passes(const job *j, FILE *f) {
 static void print_stages(const job *j, FILE *f) {
   int cost = !j->o->no_timing;
   double cpu = 0;
+  const flow_tally *t = &j->run->tally;
   fprintf(f, "  %-30s %8s", "stage", "calls");
   fprintf(f, cost ? " %12s %14s\n" : "\n", "cpu[s]", "bytes");
   for (int i = 0; i < STAGE_COUNT; ++i) {
@@ -747,6 +746,9 @@ static void print_stages(const job *j, FILE *f) {
     fputc('\n', f);
   }
   if (cost) fprintf(f, "  %-30s %8s %12.3f\n", "all stages", "", cpu);
+  if (t->asked > 0.0)
+    fprintf(f, "  %-30s %8.0f of %.0f looked at\n",
+            "points below their threshold", t->resting, t->asked);
 }
 
 status listing_verdict(const job *j, text_file *lst) {

@@ -99,6 +99,7 @@ static status remember(output *o, const state *s) {
   if (s->surface != NULL)
     run->residual_worst = worse(run->residual_worst, s->report.residual);
   run->defect_worst = worse(run->defect_worst, fabs(i->defect));
+  if (s->flow != NULL) run->tally = *s->flow->tally;
   TRY(remember_solutions(s->solutions, i));
   TRY(remember_theory(&s->theory, i));
   if (!s->settled) ++run->n_unsettled;

@@ -71,6 +71,7 @@ typedef struct run_summary {
   int n_increment, capacity, n_rejected, n_unsettled;
   increment_summary *increments; /* [n_increment]                          */
   double residual_worst, defect_worst; /* - ; the defect relative           */
+  flow_tally tally; /* points with a threshold                              */
   status verdict;
   const char *message; /* of a failed run, or ""                            */
 } run_summary;

@@ -367,6 +367,8 @@ status visco_keep(run *r, archive *a) {
   TRY(visco_keep_flow(&v->x, &v->old, a, "old"));
   TRY(visco_keep_flow(&v->x, &v->now, a, "now"));
   TRY(archive_reals(a, "largest", &v->largest, 1));
+  TRY(archive_reals(a, "asked", &v->x.tally->asked, 1));
+  TRY(archive_reals(a, "resting", &v->x.tally->resting, 1));
   TRY(archive_ints(a, "told", &told, 1));
   v->told = told ? r->step : NULL;
   TRY(archive_ints(a, "told_locking", &v->told_locking, 1));

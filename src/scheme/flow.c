@@ -34,6 +34,7 @@ status flow_new_points(flow *x, int n, const int *kind_id) {
   NEW(x->kind_id, n);
   NEW(x->alpha_at, n + 1);
   NEW(x->weight, n);
+  NEW(x->tally, 1);
   for (int k = 0; k < n; ++k) {
     int n_alpha = x->kind[kind_id[k]].n_alpha;
     x->kind_id[k] = kind_id[k];
@@ -56,6 +57,7 @@ void flow_free(flow *x) {
   memory_free(x->kind_id);
   memory_free(x->alpha_at);
   memory_free(x->weight);
+  memory_free(x->tally);
   memset(x, 0, sizeof *x);
 }
 
@@ -128,6 +130,14 @@ done:
   return st;
 }
 
+int flow_goes_on(const flow *x, const law_point *p) {
+  const int goes = law_flows(p);
+  if (p->law->ops->flows == NULL) return goes;
+  ++x->tally->asked;
+  if (!goes) ++x->tally->resting;
+  return goes;
+}
+
 status flow_rates(const flow *x, const flow_state *s, double dt,
                   double *ei_rate, double *alpha_rate, double *power) {
   status st = OK;
@@ -138,7 +148,7 @@ status flow_rates(const flow *x, const flow_state *s, double dt,
   for (int k = 0; k < x->n; ++k) {
     law_point p;
     TRY(flow_point(x, k, s, dt, value, &p));
-    if (!law_flows(&p)) continue;
+    if (!flow_goes_on(x, &p)) continue;
     law_rate(&p, ei_rate + (size_t)x->ns * (size_t)k,
              alpha_rate + x->alpha_at[k]);
     *power += x->weight[k] * law_dissipation(&p);

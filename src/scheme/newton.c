@@ -64,7 +64,7 @@ static status follow_point(const scheme_call *a, int k, room *r, double *D) {
   point_step *l = &r->l;
   TRY(point_step_begin(a->x, a->p, k, a->old, a->now, l));
   const int maps = has_map(a->x, k);
-  const int rests = !maps && point_step_rests(a->p, sigma_old, l);
+  const int rests = !maps && point_step_rests(a->x, a->p, sigma_old, l);
   if (maps)
     TRY(follow_map(a, k, r));
   else if (!rests)

@@ -225,10 +225,11 @@ void point_step_solve(const scheme_step *p, const double *sigma_old,
 
 /* 1: no rate at the theta-point of the old e^i and alpha, which are then the
  * new ones, and D = E: exactly what the iteration would end with. */
-int point_step_rests(const scheme_step *p, const double *sigma_old,
-                     point_step *l) {
+int point_step_rests(const flow *x, const scheme_step *p,
+                     const double *sigma_old, point_step *l) {
   point_step_place(p, sigma_old, l->old, l);
-  return isfinite(tensor_dot(l->ns, l->sigma, l->sigma)) && !law_flows(&l->p);
+  return isfinite(tensor_dot(l->ns, l->sigma, l->sigma)) &&
+         !flow_goes_on(x, &l->p);
 }
 
 /* D[ns*ns] at the solution. */

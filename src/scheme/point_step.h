@@ -37,8 +37,8 @@ void point_step_solve(const scheme_step *p, const double *sigma_old,
                       point_step *l, int *solved);
 /* 1: no rate at the theta-point of the old e^i and alpha, which are then the
  * new ones, and D = E: exactly what the iteration would end with. */
-int point_step_rests(const scheme_step *p, const double *sigma_old,
-                     point_step *l);
+int point_step_rests(const flow *x, const scheme_step *p,
+                     const double *sigma_old, point_step *l);
 /* D[ns*ns] at the solution. */
 status point_step_tangent(const scheme_step *p, point_step *l, double *D);
 /* Q[ns*ns] = d(e^i)/d(sigma) at the end of a step that has been made, for

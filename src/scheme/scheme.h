@@ -24,13 +24,20 @@ typedef struct flow_kind {
   double speed;
 } flow_kind;
 
+/* Work on points whose law has a threshold, "flows" in its row. */
+typedef struct flow_tally {
+  double asked;   /* times that one was to be evaluated                      */
+  double resting; /* of these, left out: exactly no rate                     */
+} flow_tally;
+
 typedef struct flow {
   int n, ns, n_kind;
   int most_alpha;  /* of a point                                              */
   flow_kind *kind; /* [n_kind]                                              */
   int *kind_id;    /* [n]                                                   */
-  size_t *alpha_at; /* [n+1] where alpha of a point starts                   */
-  double *weight;   /* [n] volume, m3                                        */
+  size_t *alpha_at;  /* [n+1] where alpha of a point starts                   */
+  double *weight;    /* [n] volume, m3                                        */
+  flow_tally *tally; /* so far, owned                                        */
 } flow;
 
 /* The state of the points at a time. e = total less thermal strain, so that
@@ -62,6 +69,8 @@ status flow_coefficients(flow_kind *kind, double t, double temperature,
 status flow_point(const flow *x, int k, const flow_state *s, double dt,
                   double *value, law_point *p);
 enum { FLOW_VALUE_MAX = 512 };
+/* A point is looked at: 1 if it flows, counted. */
+int flow_goes_on(const flow *x, const law_point *p);
 /* Rates at a state: ei_rate[ns*n], alpha_rate[alpha_at[n]]; *power gets what is
  * dissipated, W. dt: step being made. */
 status flow_rates(const flow *x, const flow_state *s, double dt,

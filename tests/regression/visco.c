@@ -470,6 +470,39 @@ START_TEST(elastic_groups_cost_nothing) {
 }
 END_TEST
 
+/* A pull that grows to 10 in four increments, whose rates are taken at 0, 2.5,
+ * 5 and 7.5: below the threshold of 4 in two of them. Elements of an elastic
+ * group are not looked at. */
+START_TEST(points_at_rest_are_counted) {
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("visco");
+    job_copy(&j, "tests/regression/mesh/layers.geo");
+    job_write(&j, "visco.inp",
+              "*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n*ELASTIC\n" STEEL
+              "\n*INELASTIC, LAW=PERZYNA\n4., 1.E4\n"
+              "*MATERIAL, NAME=E\n*ELASTIC\n" STEEL
+              "\n"
+              "*SOLID SECTION, ELSET=SOFT, MATERIAL=M, TYPE=CPS3\n"
+              "*SOLID SECTION, ELSET=HARD, MATERIAL=%s, TYPE=CPS3\n"
+              "*STEP\n*VISCO, INTEGRATOR=EULER\n0.25, 1.\n"
+              "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n*DSLOAD\nTOP, TY, 10.\n"
+              "*OUTPUT, HDF5=NO\n*PRINT, ELEMENTS, GROUP=SOFT\n"
+              "*PRINT, ELEMENTS, GROUP=HARD\n*END STEP\n",
+              k == 0 ? "M" : "E");
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    dat soft = job_table(&j, "ELEMENTS", 0),
+        hard = job_table(&j, "ELEMENTS", 1);
+    const int n = soft.n_row + (k == 0 ? hard.n_row : 0);
+    ck_assert_int_gt(hard.n_row, 0);
+    ck_assert_double_eq(job_told(&j, "threshold_evaluations"), 4 * n);
+    ck_assert_double_eq(job_told(&j, "threshold_resting"), 2 * n);
+    dat_free(&soft);
+    dat_free(&hard);
+    job_end(&j);
+  }
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("visco");
   TCase *tests = tcase_create("visco");
@@ -481,6 +514,7 @@ int main(void) {
                       N_BALANCE);
   tcase_add_loop_test(tests, laws_that_store_dissipate, 0, N_LAW);
   tcase_add_test(tests, elastic_groups_cost_nothing);
+  tcase_add_test(tests, points_at_rest_are_counted);
   tcase_add_test(tests, initial_strain_is_a_stress_that_relaxes);
   tcase_add_test(tests, initial_hardening_counts);
   tcase_add_test(tests, temperature_sets_the_relaxation_time);
