@@ -38,6 +38,8 @@ static int has_strains(const run *r, int elem_id) {
 
 size_t strains_kept(const run *r) {
   int all = (r->m->effects & EFFECT_THERMAL) || r->moduli.n_own > 0;
+  for (int i = 0; i < r->m->n_initial; ++i) /* the first work is from zero    */
+    all |= r->m->initials[i].type == INITIAL_STRAIN;
   return all ? at(r, r->eigen.n) : 0;
 }
 
