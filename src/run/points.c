@@ -267,7 +267,7 @@ void visco_warn_locking(run *r) {
               "apparent %.4g; linear elements lock: expect displacements too "
               "small by some %.2g %% with %d elements across a wall, %.2g %% "
               "with %d, and more from here on",
-              run_step_id(r) + 1, v->old.t, nu,
+              run_step_id(r) + 1, v->now.t, nu,
               100.0 * model_locking_error(nu, COARSE), COARSE,
               100.0 * model_locking_error(nu, FINE), FINE);
 }

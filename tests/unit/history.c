@@ -1,22 +1,24 @@
 /* src/history: increments that are cut, rolled back, given up; energies. */
-#include "base/memory.h"
 #include "history/history.h"
+#include "base/memory.h"
 #include "support/text_model.h"
 #include "support/unit.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Pressed on a rough floor and pushed to and fro: path dependent. */
-#define DECK(dt)                                                    \
-  "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n" \
-  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"                        \
-  "*AMPLITUDE, NAME=FRO\n0., 0., 0.25, 1., 1., -2.\n"               \
-  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"                            \
-  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"                    \
-  "*FRICTION, CONTACT=C, LAW=COULOMB\n0.4\n"                        \
-  "*STEP\n*QUASISTATIC\n" #dt                                       \
-  ", 1.\n*DSLOAD\nTOP, P, 10.\nLEFT, TX, 0.6, FRO\n"                \
+#define DECK(dt)                                                               \
+  "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"            \
+  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"                                   \
+  "*AMPLITUDE, NAME=FRO\n0., 0., 0.25, 1., 1., -2.\n"                          \
+  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"                                       \
+  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"                               \
+  "*FRICTION, CONTACT=C, LAW=COULOMB\n0.4\n"                                   \
+  "*STEP\n*QUASISTATIC\n" #dt                                                  \
+  ", 1.\n*DSLOAD\nTOP, P, 10.\nLEFT, TX, 0.6, FRO\n"                           \
   "RIGHT, TX, 0.6, FRO\n*OUTPUT, HDF5=NO\n*END STEP\n"
 
 static mesh *block(void) {
@@ -32,22 +34,28 @@ typedef struct run_record {
   double u[256];
 } run_record;
 
+/* If not 0, increments longer than this fail; the one at hand is try_dt. */
+static double picky_dt, try_dt;
+
 static status keep(void *ctx, const state *s) {
   run_record *r = ctx;
   ck_assert_int_lt(r->accepted, 64);
   r->t[r->accepted++] = s->t;
   memcpy(r->u, s->u, (size_t)r->n_dof * sizeof *r->u);
+  if (s->t == 0.5)
+    try_dt = 0.5;
   double scale = fabs(s->energy.external) + fabs(s->energy.strain);
   r->worst_defect = fmax(r->worst_defect, fabs(s->energy.defect) / scale);
-  if (s->settled) ck_assert_double_ge(s->energy.friction_end, 0.0);
+  if (s->settled)
+    ck_assert_double_ge(s->energy.friction_end, 0.0);
   return OK;
 }
 
 static status count(void *ctx, const state *s, const char *why) {
   run_record *r = ctx;
-  (void)s;
   ck_assert_ptr_nonnull(why);
   ++r->rejected;
+  try_dt = ldexp(0.5, -s->attempt);
   return OK;
 }
 
@@ -57,7 +65,8 @@ static double picky_step, picky_last;
 
 static double load_size(const contact_problem *cp) {
   double sum = 0.0;
-  for (int i = 0; i < cp->n; ++i) sum += fabs(cp->f[cp->dim * i]);
+  for (int i = 0; i < cp->n; ++i)
+    sum += fabs(cp->f[cp->dim * i]);
   return sum;
 }
 
@@ -65,8 +74,10 @@ static status picky_solve(const contact_problem *cp, const void *par,
                           void *work, const solver_control *control, double *u,
                           double *r, solver_report *rep) {
   double size = load_size(cp);
-  if (fabs(size - picky_last) > picky_step * (1 + 1e-9)) {
-    for (int i = 0; i < cp->m; ++i) u[i] = r[i] = 1e3 * (i + 1);
+  if (fabs(size - picky_last) > picky_step * (1 + 1e-9) ||
+      (picky_dt > 0.0 && try_dt > picky_dt)) {
+    for (int i = 0; i < cp->m; ++i)
+      u[i] = r[i] = 1e3 * (i + 1);
     rep->outcome = STOPPED_ITERATIONS;
     return OK;
   }
@@ -83,6 +94,7 @@ static run_record run_deck(const char *text, double picky) {
   ops.solve = picky_solve;
   picky_step = picky;
   picky_last = 0.0;
+  try_dt = 0.5;
   s.m->steps[0].solver.ops = picky > 0 ? &ops : &newton_solver;
   void *param = calloc(1, newton_solver.param_size + 1);
   if (newton_solver.options != NULL)
@@ -105,7 +117,8 @@ START_TEST(cut_increments_are_the_small_increments) {
   ck_assert_int_eq(cut.accepted, 8);
   ck_assert_int_gt(cut.rejected, 2);
   ck_assert_int_eq(cut.unsettled, 0);
-  for (int i = 0; i < 8; ++i) ck_assert_double_eq(cut.t[i], fine.t[i]);
+  for (int i = 0; i < 8; ++i)
+    ck_assert_double_eq(cut.t[i], fine.t[i]);
   for (int i = 0; i < fine.n_dof; ++i)
     ck_assert_double_eq_tol(cut.u[i], fine.u[i], 1e-15);
   /* The path counts: one coarse increment ends elsewhere. */
@@ -114,6 +127,61 @@ START_TEST(cut_increments_are_the_small_increments) {
   for (int i = 0; i < fine.n_dof; ++i)
     differ = fmax(differ, fabs(coarse.u[i] - fine.u[i]));
   ck_assert_double_gt(differ, 1e-6);
+}
+END_TEST
+
+/* The same for all that keeps a history: the deck from *MATERIAL on. */
+#define HISTORY(law, friction, more, move, procedure)                          \
+  "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n" law        \
+  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"                                   \
+  "*AMPLITUDE, NAME=FRO\n0., 0., 0.25, 1., 1., -2.\n" move                     \
+  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"                               \
+  "*FRICTION, CONTACT=C, " friction "\n0.4\n*STEP\n" procedure                 \
+  "\n%s, 1.\n*DSLOAD\nTOP, P, 10.\nLEFT, TX, 0.6, FRO\n"                       \
+  "RIGHT, TX, 0.6, FRO\n" more "*OUTPUT, HDF5=NO\n*END STEP\n"
+#define STILL "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+#define LOCAL "LAW=COULOMB"
+#define NORTON "*INELASTIC, LAW=NORTON\n1.E-6, 3.\n"
+#define MAXWELL "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n2.\n"
+
+/* clang-format off */
+static const char *const with_history[] = {
+  HISTORY("", LOCAL, "", STILL, "*QUASISTATIC"),
+  HISTORY("", LOCAL, "", STILL, "*QUASISTATIC, FORM=VELOCITY"),
+  HISTORY("", "LAW=NONLOCAL, RADIUS=2.", "", STILL, "*QUASISTATIC"),
+  HISTORY("", LOCAL, "", "*OBSTACLE, NAME=O, TYPE=CONFORMING\nMOVE, "
+          "\"0.01*t\", \"0.004*sin(5*t)\"\n", "*QUASISTATIC"),
+  HISTORY("*EXPANSION\n1.E-5\n", LOCAL, "*TEMPERATURE\nBODY, 300., FRO\n",
+          STILL, "*QUASISTATIC"),
+  HISTORY(MAXWELL, LOCAL, "", STILL, "*VISCO, INTEGRATOR=BACKWARD"),
+  HISTORY(MAXWELL, LOCAL, "", STILL, "*VISCO, INTEGRATOR=HEUN"),
+  HISTORY(MAXWELL, LOCAL, "", STILL, "*VISCO, INTEGRATOR=EXPONENTIAL"),
+  HISTORY(NORTON, LOCAL, "", STILL, "*VISCO, INTEGRATOR=MIDPOINT"),
+  HISTORY(NORTON, LOCAL, "", STILL, "*VISCO, INTEGRATOR=RK4"),
+};
+/* clang-format on */
+enum { HISTORIES = sizeof with_history / sizeof *with_history };
+
+/* _i: the deck */
+START_TEST(cut_increments_leave_no_trace) {
+  char small[2000], large[2000];
+  snprintf(small, sizeof small, with_history[_i], "0.125");
+  snprintf(large, sizeof large, with_history[_i], "0.5");
+  run_record fine = run_deck(small, 0.0), coarse = run_deck(large, 0.0);
+  picky_dt = 0.125;
+  run_record cut = run_deck(large, HUGE_VAL);
+  picky_dt = 0.0;
+  ck_assert_int_eq(cut.accepted, fine.accepted);
+  ck_assert_int_eq(cut.rejected, 4);
+  ck_assert_int_eq(cut.unsettled, 0);
+  double scale = 0.0, differ = 0.0, apart = 0.0;
+  for (int i = 0; i < fine.n_dof; ++i) {
+    scale = fmax(scale, fabs(fine.u[i]));
+    differ = fmax(differ, fabs(cut.u[i] - fine.u[i]));
+    apart = fmax(apart, fabs(coarse.u[i] - fine.u[i]));
+  }
+  ck_assert_msg(differ <= 1e-12 * scale, "%g of %g", differ, scale);
+  ck_assert_double_gt(apart, 1e-6 * scale);
 }
 END_TEST
 
@@ -166,7 +234,20 @@ START_TEST(every_refused_request_is_reported) {
 }
 END_TEST
 
-UNIT_MAIN("history", cut_increments_are_the_small_increments,
-          increment_that_cannot_be_cut_further_is_unsettled,
-          energies_balance_at_every_increment, step_ends_at_the_time_asked_for,
-          every_refused_request_is_reported)
+int main(void) {
+  Suite *suite = suite_create("history");
+  TCase *tests = tcase_create("history");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_test(tests, cut_increments_are_the_small_increments);
+  tcase_add_loop_test(tests, cut_increments_leave_no_trace, 0, HISTORIES);
+  tcase_add_test(tests, increment_that_cannot_be_cut_further_is_unsettled);
+  tcase_add_test(tests, energies_balance_at_every_increment);
+  tcase_add_test(tests, step_ends_at_the_time_asked_for);
+  tcase_add_test(tests, every_refused_request_is_reported);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
