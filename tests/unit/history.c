@@ -10,15 +10,15 @@
 #include <string.h>
 
 /* Pressed on a rough floor and pushed to and fro: path dependent. */
-#define DECK(dt)                                                               \
-  "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"            \
-  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"                                   \
-  "*AMPLITUDE, NAME=FRO\n0., 0., 0.25, 1., 1., -2.\n"                          \
-  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"                                       \
-  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"                               \
-  "*FRICTION, CONTACT=C, LAW=COULOMB\n0.4\n"                                   \
-  "*STEP\n*QUASISTATIC\n" #dt                                                  \
-  ", 1.\n*DSLOAD\nTOP, P, 10.\nLEFT, TX, 0.6, FRO\n"                           \
+#define DECK(dt)                                                    \
+  "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n" \
+  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"                        \
+  "*AMPLITUDE, NAME=FRO\n0., 0., 0.25, 1., 1., -2.\n"               \
+  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"                            \
+  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"                    \
+  "*FRICTION, CONTACT=C, LAW=COULOMB\n0.4\n"                        \
+  "*STEP\n*QUASISTATIC\n" #dt                                       \
+  ", 1.\n*DSLOAD\nTOP, P, 10.\nLEFT, TX, 0.6, FRO\n"                \
   "RIGHT, TX, 0.6, FRO\n*OUTPUT, HDF5=NO\n*END STEP\n"
 
 static mesh *block(void) {
@@ -42,12 +42,10 @@ static status keep(void *ctx, const state *s) {
   ck_assert_int_lt(r->accepted, 64);
   r->t[r->accepted++] = s->t;
   memcpy(r->u, s->u, (size_t)r->n_dof * sizeof *r->u);
-  if (s->t == 0.5)
-    try_dt = 0.5;
+  if (s->t == 0.5) try_dt = 0.5;
   double scale = fabs(s->energy.external) + fabs(s->energy.strain);
   r->worst_defect = fmax(r->worst_defect, fabs(s->energy.defect) / scale);
-  if (s->settled)
-    ck_assert_double_ge(s->energy.friction_end, 0.0);
+  if (s->settled) ck_assert_double_ge(s->energy.friction_end, 0.0);
   return OK;
 }
 
@@ -65,8 +63,7 @@ static double picky_step, picky_last;
 
 static double load_size(const contact_problem *cp) {
   double sum = 0.0;
-  for (int i = 0; i < cp->n; ++i)
-    sum += fabs(cp->f[cp->dim * i]);
+  for (int i = 0; i < cp->n; ++i) sum += fabs(cp->f[cp->dim * i]);
   return sum;
 }
 
@@ -76,8 +73,7 @@ static status picky_solve(const contact_problem *cp, const void *par,
   double size = load_size(cp);
   if (fabs(size - picky_last) > picky_step * (1 + 1e-9) ||
       (picky_dt > 0.0 && try_dt > picky_dt)) {
-    for (int i = 0; i < cp->m; ++i)
-      u[i] = r[i] = 1e3 * (i + 1);
+    for (int i = 0; i < cp->m; ++i) u[i] = r[i] = 1e3 * (i + 1);
     rep->outcome = STOPPED_ITERATIONS;
     return OK;
   }
@@ -117,8 +113,7 @@ START_TEST(cut_increments_are_the_small_increments) {
   ck_assert_int_eq(cut.accepted, 8);
   ck_assert_int_gt(cut.rejected, 2);
   ck_assert_int_eq(cut.unsettled, 0);
-  for (int i = 0; i < 8; ++i)
-    ck_assert_double_eq(cut.t[i], fine.t[i]);
+  for (int i = 0; i < 8; ++i) ck_assert_double_eq(cut.t[i], fine.t[i]);
   for (int i = 0; i < fine.n_dof; ++i)
     ck_assert_double_eq_tol(cut.u[i], fine.u[i], 1e-15);
   /* The path counts: one coarse increment ends elsewhere. */
@@ -131,13 +126,13 @@ START_TEST(cut_increments_are_the_small_increments) {
 END_TEST
 
 /* The same for all that keeps a history: the deck from *MATERIAL on. */
-#define HISTORY(law, friction, more, move, procedure)                          \
-  "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n" law        \
-  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"                                   \
-  "*AMPLITUDE, NAME=FRO\n0., 0., 0.25, 1., 1., -2.\n" move                     \
-  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"                               \
-  "*FRICTION, CONTACT=C, " friction "\n0.4\n*STEP\n" procedure                 \
-  "\n%s, 1.\n*DSLOAD\nTOP, P, 10.\nLEFT, TX, 0.6, FRO\n"                       \
+#define HISTORY(law, friction, more, move, procedure)                   \
+  "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n" law \
+  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"                            \
+  "*AMPLITUDE, NAME=FRO\n0., 0., 0.25, 1., 1., -2.\n" move              \
+  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"                        \
+  "*FRICTION, CONTACT=C, " friction "\n0.4\n*STEP\n" procedure          \
+  "\n%s, 1.\n*DSLOAD\nTOP, P, 10.\nLEFT, TX, 0.6, FRO\n"                \
   "RIGHT, TX, 0.6, FRO\n" more "*OUTPUT, HDF5=NO\n*END STEP\n"
 #define STILL "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
 #define LOCAL "LAW=COULOMB"
