@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+static const double ROUNDING = 0x1p-48; /* -, of the time                     */
+
 /* The next increment after one of length dt with this error; implicit
  * integrators keep to halves and doubles, which they have factored. */
 static double next_length(const step *s, double dt, double error) {
@@ -18,6 +20,11 @@ static double next_length(const step *s, double dt, double error) {
   factor = fmin(4.0, fmax(0.2, factor));
   if (of->limit == 0.0) factor = ldexp(1.0, (int)floor(log2(factor)));
   return fmin(dt * factor, s->dt_max);
+}
+
+/* The smallest increment: one that moves the time. */
+static double least_length(const run *r) {
+  return fmax(r->step->dt_min, ROUNDING * fabs(r->old.t));
 }
 
 /* End of the next increment: not a sliver before the end of the step. */
@@ -34,6 +41,7 @@ static status attempt_adapted(run *r) {
   status st = OK;
   const step *s = r->step;
   progress *p = &r->at;
+  const double least = least_length(r);
   double end = s->start + s->total, error = 0.0;
   double cpu = timer_cpu(), t = next_end(r, p->dt), tried;
   int deeper, attempt = p->attempt;
@@ -44,11 +52,11 @@ static status attempt_adapted(run *r) {
   TRY(visco_try(r, t, &error));
   int settled = r->report.outcome > 0;
   r->missed = settled && error > s->tolerance;
-  if ((!settled || r->missed) && tried > s->dt_min) {
+  if ((!settled || r->missed) && tried > least) {
     TRY(loop_reject(r, attempt, p->increment_no + 1,
                     settled ? "strain error above TOLERANCE"
                             : outcome_text(r->report.outcome)));
-    p->dt = fmax(s->dt_min, fmin(0.5 * tried, next_length(s, tried, error)));
+    p->dt = fmax(least, fmin(0.5 * tried, next_length(s, tried, error)));
     ++p->attempt;
     goto done;
   }
@@ -56,7 +64,7 @@ static status attempt_adapted(run *r) {
   p->attempt = 1;
   ++p->increment_no;
   TRY(loop_accept(r, attempt, p->increment_no, t == end, cpu));
-  p->dt = fmax(s->dt_min, next_length(s, tried, error));
+  p->dt = fmax(least_length(r), next_length(s, tried, error));
 done:
   r->missed = 0;
   return st;

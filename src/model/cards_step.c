@@ -58,7 +58,8 @@ status apply_static(reading *r) {
   return OK;
 }
 
-/* Increments that fit together and into the step; dt_min 0 if not given. */
+/* Increments that fit together and into the step; those of a TOLERANCE= may
+ * grow by any factor. */
 static void check_increments(const reading *r, const field *f, const step *s) {
   message_log *log = r->m->log;
   if (s->dt > s->total * (1.0 + 1e-12))
@@ -73,7 +74,7 @@ static void check_increments(const reading *r, const field *f, const step *s) {
     message_add(log, P2020, &f[0].at,
                 "the increment dt = %s is shorter than dt_min = %s", f[0].text,
                 f[2].text);
-  if (s->total / s->dt > 1e8)
+  if (s->tolerance == 0.0 && s->total / s->dt > 1e8)
     message_add(log, P2020, &f[0].at,
                 "%.3g increments; at most 1e8 are possible", s->total / s->dt);
 }
@@ -136,6 +137,7 @@ status apply_visco(reading *r) {
   const visco_param *p = r->param;
   if (second_procedure(r)) return OK;
   s->kind = STEP_VISCO;
+  s->tolerance = p->tolerance;
   read_increments(r, s);
   s->integrator = p->integrator == NULL ? NULL : scheme_find(p->integrator);
   if (s->integrator == NULL) {
@@ -148,7 +150,6 @@ status apply_visco(reading *r) {
   check_visco(r, s->integrator);
   s->theta = s->integrator->has_theta ? p->theta : s->integrator->theta;
   s->initial = p->iteration == 1;
-  s->tolerance = p->tolerance;
   s->substeps = p->substeps == 1 || p->tolerance > 0.0;
   if (p->tolerance > 0.0 && !gives_dt_min(r)) s->dt_min = 1e-6 * s->dt;
   return OK;

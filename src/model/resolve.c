@@ -6,8 +6,12 @@
 
 #include "base/memory.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+static const double CLOCK = 0x1p-42; /* -, least increment of the time        */
 
 static const char *amplitude_at(const void *ctx, int i) {
   const model *m = ctx;
@@ -422,6 +426,16 @@ done:
   return st;
 }
 
+/* Increments that the time of the step can tell apart. */
+static void check_clock(const model *m, const step *s) {
+  if (s->dt >= CLOCK * fabs(s->start)) return;
+  message_add(m->log, P2020, &s->at,
+              "increments of %g are lost in the time %g at which the step "
+              "starts, whose numbers are %.1g apart; let the steps before it "
+              "take less time",
+              s->dt, s->start, DBL_EPSILON * fabs(s->start));
+}
+
 status model_resolve(model *m, int lost) {
   status st = OK;
   resolve_materials(m, lost);
@@ -438,6 +452,7 @@ status model_resolve(model *m, int lost) {
   for (int i = 0; i < m->n_step; ++i) {
     step *s = &m->steps[i];
     s->start = step_end(old);
+    check_clock(m, s);
     for (int k = 0; k < s->n_change; ++k)
       resolve_friction(m, &s->changes[k].rule);
     TRY(resolve_loads(m, old, s));

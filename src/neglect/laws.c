@@ -164,8 +164,7 @@ done:
 
 status neglect_try_laws(model *m, const mesh *msh) {
   status st = OK;
-  if (!(m->effects & EFFECT_INELASTIC) || neglect_has_initial(m))
-    goto done;
+  if (!(m->effects & EFFECT_INELASTIC) || neglect_has_initial(m)) goto done;
   for (int i = 0; i < m->n_material; ++i) TRY(try_law(m, msh, i));
   TRY(neglect_try_threshold(m, msh));
 done:

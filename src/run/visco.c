@@ -45,7 +45,8 @@ static status linear(void *ctx, const flow_tangent *law, flow_state *s,
   return st;
 }
 
-/* Sums are known where they hold all that an increment adds up. */
+/* Sums are known where they hold all that an increment adds up: not what was
+ * there at the start, which counts from zero. */
 static status constant(void *ctx, const flow_tangent *law, const scheme_call *a,
                        int *settled) {
   run *r = ctx;
@@ -54,8 +55,9 @@ static status constant(void *ctx, const flow_tangent *law, const scheme_call *a,
   status st = tangent_step(r, law, a);
   timer_enter(STAGE_INELASTIC);
   *settled = r->report.outcome > 0;
-  v->sums.known =
-      r->moduli.n_own == 0 && (r->d.cluster == NULL || v->x.n == r->eigen.n);
+  v->sums.known = r->moduli.n_own == 0 &&
+                  (r->d.cluster == NULL || v->x.n == r->eigen.n) &&
+                  (r->total_no > 0 || strains_kept(r) == 0);
   return st;
 }
 

@@ -119,6 +119,38 @@ START_TEST(increments_stay_stable) {
 }
 END_TEST
 
+/*
+ * Relaxation times from 1e-11 to 1e19 s in one body, whose held stress falls as
+ * E e (1 - sum g (1 - exp(-t/tau))): increments grow with what is left to
+ * relax, from 1e-12 s to 1e20 s, by a factor of 4 at most.
+ */
+START_TEST(increments_grow_over_thirty_decades) {
+  static const char *const scheme[] = {"BACKWARD", "EXPONENTIAL"};
+  const double part = 0.03, end = 1e20, tol = 1e-3;
+  char law[2000] = "*INELASTIC, LAW=PRONY\n", visco[160];
+  double expected = 1.0;
+  for (int k = -11; k <= 19; ++k) {
+    char line[64];
+    snprintf(line, sizeof line, "%g, %g, 1e%d\n", part, part, k);
+    strcat(law, line);
+    expected += part * expm1(-end / pow(10, k));
+  }
+  snprintf(visco, sizeof visco,
+           "*VISCO, INTEGRATOR=%s, TOLERANCE=%g\n1e-12, %g\n", scheme[_i], tol,
+           end);
+  const square_case s = {STEEL, law, "CPS3", "", HELD, visco};
+  job j = square_run(&s, 0);
+  dat d = job_table(&j, "ELEMENTS", -1);
+  const double each = tol * sqrt(1 + 2 * 0.3 * 0.3);
+  const accepted all = accepted_of(&j);
+  ck_assert_int_ge(all.n, (int)(32 * log(10) / log(4)));
+  ck_assert_double_le(fabs(dat_at(&d, 0, "stress_yy") - expected),
+                      fmin(0.02, all.n * each));
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("adaptive");
   TCase *tests = tcase_create("adaptive");
@@ -128,6 +160,7 @@ int main(void) {
   tcase_add_test(tests, rejected_increments_leave_nothing_behind);
   tcase_add_test(tests, missed_tolerance_is_told);
   tcase_add_test(tests, increments_stay_stable);
+  tcase_add_loop_test(tests, increments_grow_over_thirty_decades, 0, 2);
   suite_add_tcase(suite, tests);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_NORMAL);
