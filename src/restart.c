@@ -62,19 +62,28 @@ done:
 
 /* ---- warnings told so far ------------------------------------------------ */
 
-/* A line each: number, line, column, text; file in a line before it. */
-static status list_warnings(const message_log *log, char **text) {
+/* Number of a file of the deck, which another name may lead to, or -1. */
+static int file_no(const deck *d, const char *file) {
+  for (int i = 0; i < d->n_file; ++i)
+    if (strcmp(d->files[i], file) == 0) return i;
+  return -1;
+}
+
+/* A line each: number, line, column, number of the file, text; the file in a
+ * line before it. */
+static status list_warnings(const job_input *in, char **text) {
   status st = OK;
   size_t size = 0;
   message_view w;
   FILE *f = open_memstream(text, &size);
   if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: warnings so far");
-  for (int k = 0; message_get(log, k, &w); ++k)
+  for (int k = 0; message_get(in->m->log, k, &w); ++k) {
+    const char *file = w.at != NULL && w.at->file != NULL ? w.at->file : "";
     if (w.level == WARNING)
-      fprintf(f, "%s\n%d %d %d %s\n",
-              w.at != NULL && w.at->file != NULL ? w.at->file : "", (int)w.id,
+      fprintf(f, "%s\n%d %d %d %d %s\n", file, (int)w.id,
               w.at != NULL ? w.at->line_no : 0,
-              w.at != NULL ? w.at->column_no : 0, w.text);
+              w.at != NULL ? w.at->column_no : 0, file_no(in->d, file), w.text);
+  }
   if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: warnings so far");
 done:
   return st;
@@ -99,14 +108,16 @@ static status tell_warnings(const job_input *in, archive *a) {
   NEW(text, n + 1);
   TRY(archive_bytes(a, "warnings", text, n));
   for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1) {
-    int id, used = 0;
+    int id, no, used = 0;
     *end = '\0';
     place at = {.file = line};
     line = end + 1;
     if ((end = strchr(line, '\n')) == NULL) break;
     *end = '\0';
-    if (sscanf(line, "%d %d %d%n", &id, &at.line_no, &at.column_no, &used) != 3)
+    if (sscanf(line, "%d %d %d %d%n", &id, &at.line_no, &at.column_no, &no,
+               &used) != 4)
       break;
+    if (no >= 0 && no < in->d->n_file) at.file = in->d->files[no];
     message_add(in->m->log, (message_id)id,
                 at.file[0] != '\0' ? place_in_deck(in->d, &at) : NULL, "%s",
                 line + used + 1);
@@ -137,7 +148,7 @@ status restart_write(void *ctx, const run_memory *memory) {
   char *path = NULL, *before = NULL, *text = NULL, *told = NULL;
   TRY(file_names(w->c, w->in->m, &path, &before));
   TRY(echo_of(w->in->m, &text));
-  TRY(list_warnings(w->in->m->log, &told));
+  TRY(list_warnings(w->in, &told));
   identify(w->c, w->in, &id);
   id.step_no = memory->step_no;
   TRY(archive_new(&a));

@@ -10,6 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
+static const double TRACE = 0x1p-40; /* -, of the elasticity                  */
+
 void visco_forget(run *r) {
   visco *v = r->visco;
   if (v == NULL) return;
@@ -45,6 +47,16 @@ done:
   return st;
 }
 
+/* Those of before a restart anew, which are not counted again. */
+static status factor_again(const domain *d, matrices *m) {
+  stage_cost before[STAGE_COUNT] = {{0}};
+  for (int i = 0; i < STAGE_COUNT; ++i)
+    before[i].calls = timer_cost((stage)i).calls;
+  status st = factor(d, m);
+  timer_resume(before);
+  return st;
+}
+
 /* Sections as they are, with the tangents of their kinds. */
 static status constant_domain(run *r, const flow_tangent *law, domain *d) {
   status st = OK;
@@ -64,6 +76,25 @@ static status constant_domain(run *r, const flow_tangent *law, domain *d) {
   d->E = v->E;
 done:
   return st;
+}
+
+/* The matrices of v->E. A group that has relaxed within the step may be so soft
+ * that the others rest on nothing, to rounding: it gets a trace of its
+ * elasticity in the matrix, not in its stresses. What that makes of an answer
+ * which depends on how soft it is, rounding_find sees as forces that are not in
+ * balance. */
+static status factor_constant(run *r, int again, const domain *d, matrices *m) {
+  visco *v = r->visco;
+  const size_t square = visco_at(r, r->m->ns);
+  status st = again ? factor_again(d, m) : factor(d, m);
+  if (st != ERR_SINGULAR) return st;
+  for (int i = 0; i < r->m->n_section; ++i) {
+    const size_t at = square * (size_t)i;
+    const material *mat = &r->m->materials[r->m->sections[i].material_id];
+    for (size_t k = at; k < at + square && mat->law.ops != NULL; ++k)
+      v->E[k] += TRACE * r->moduli.E[k];
+  }
+  return again ? factor_again(d, m) : factor(d, m);
 }
 
 /* Each point a section of its own. */
@@ -106,16 +137,6 @@ static status fresh_domain(run *r, const flow_tangent *law, domain *d) {
   d->E = v->E;
   d->C = NULL;
 done:
-  return st;
-}
-
-/* Those of before a restart anew, which are not counted again. */
-static status factor_again(const domain *d, matrices *m) {
-  stage_cost before[STAGE_COUNT] = {{0}};
-  for (int i = 0; i < STAGE_COUNT; ++i)
-    before[i].calls = timer_cost((stage)i).calls;
-  status st = factor(d, m);
-  timer_resume(before);
   return st;
 }
 
@@ -163,7 +184,7 @@ static status find_matrices(run *r, const flow_tangent *law, matrices **out) {
   if (!there || m->c == NULL) {
     TRY(constant_domain(r, law, &d));
     if (r->c == m->c) r->c = NULL;
-    TRY(there ? factor_again(&d, m) : factor(&d, m));
+    TRY(factor_constant(r, there, &d, m));
     m->key = law->key;
     m->exact = law->exact;
   }
