@@ -84,10 +84,11 @@ static double square(const law_elastic *el, const double *x) {
 static int series(const law_point *p, int part, int k, law_unit *unit) {
   const maxwell_value *v = values(p);
   (void)k;
-  unit->flow = 1 / (part == 0 ? v->tau : v->tau_bulk);
+  const double tau = part == 0 ? v->tau : v->tau_bulk;
+  if (part > 1 || !(tau > 0)) return LAW_NO_PART;
+  unit->flow = 1 / tau;
   if (!is_deviatoric(p->law)) return part == 0 ? LAW_WHOLE : LAW_NO_PART;
-  if (part == 0) return LAW_DEVIATOR;
-  return part == 1 && v->tau_bulk > 0 ? LAW_MEAN : LAW_NO_PART;
+  return part == 0 ? LAW_DEVIATOR : LAW_MEAN;
 }
 
 static double dissipation(const law_point *p) {
