@@ -77,8 +77,8 @@ status rounding_find(run *r) {
   status st = OK;
   r->rounding = (rounding_loss){0};
   if (!condensed_costs_digits(r->c) || r->report.outcome <= 0) return OK;
-  timer_enter(STAGE_ESTIMATE);
+  timer_enter(STAGE_RECOVERY);
   st = find(r);
-  timer_leave(STAGE_ESTIMATE);
+  timer_leave(STAGE_RECOVERY);
   return st;
 }
