@@ -69,14 +69,8 @@ START_TEST(examples_with_and_without) {
 END_TEST
 
 int main(void) {
-  Suite *s = suite_create("balanced");
   TCase *t = tcase_create("balanced");
   tcase_set_timeout(t, 1800);
   tcase_add_test(t, examples_with_and_without);
-  suite_add_tcase(s, t);
-  SRunner *r = srunner_create(s);
-  srunner_run_all(r, CK_NORMAL);
-  int failed = srunner_ntests_failed(r);
-  srunner_free(r);
-  return failed > 0;
+  return unit_run("balanced", t);
 }

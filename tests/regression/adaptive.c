@@ -152,7 +152,6 @@ START_TEST(increments_grow_over_thirty_decades) {
 END_TEST
 
 int main(void) {
-  Suite *suite = suite_create("adaptive");
   TCase *tests = tcase_create("adaptive");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, error_is_below_the_sum_of_what_is_allowed, 0,
@@ -161,10 +160,5 @@ int main(void) {
   tcase_add_test(tests, missed_tolerance_is_told);
   tcase_add_test(tests, increments_stay_stable);
   tcase_add_loop_test(tests, increments_grow_over_thirty_decades, 0, 2);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return unit_run("adaptive", tests);
 }

@@ -128,7 +128,6 @@ START_TEST(order_of_convergence_with_contact_and_friction) {
 END_TEST
 
 int main(void) {
-  Suite *suite = suite_create("integrators");
   TCase *tests = tcase_create("integrators");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests,
@@ -139,10 +138,5 @@ int main(void) {
   tcase_add_test(tests, ringing_is_told);
   tcase_add_loop_test(tests, order_of_convergence_with_contact_and_friction, 0,
                       N_SCHEME);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return unit_run("integrators", tests);
 }

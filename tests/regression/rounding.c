@@ -165,7 +165,6 @@ START_TEST(nothing_is_told_of_plain_bodies) {
 END_TEST
 
 int main(void) {
-  Suite *suite = suite_create("rounding");
   TCase *tests = tcase_create("rounding");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, loss_by_contrast_is_told, 0, 6);
@@ -174,10 +173,5 @@ int main(void) {
   tcase_add_loop_test(tests, loss_of_thin_elements_is_told, 0, 4);
   tcase_add_test(tests, no_digit_is_left_of_needles);
   tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return unit_run("rounding", tests);
 }

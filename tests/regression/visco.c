@@ -504,7 +504,6 @@ START_TEST(points_at_rest_are_counted) {
 END_TEST
 
 int main(void) {
-  Suite *suite = suite_create("visco");
   TCase *tests = tcase_create("visco");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, closed_forms, 0,
@@ -522,10 +521,5 @@ int main(void) {
   tcase_add_test(tests, factors_are_kept);
   tcase_add_test(tests, increments_of_one_length_share_a_factor);
   tcase_add_test(tests, each_step_has_its_own_integrator);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return unit_run("visco", tests);
 }

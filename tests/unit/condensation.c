@@ -553,7 +553,6 @@ START_TEST(stiffness_that_is_not_definite_is_refused_with_its_place) {
 END_TEST
 
 int main(void) {
-  Suite *suite = suite_create("condensation");
   TCase *tests = tcase_create("condensation");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, condensed_matrix_is_the_schur_complement, 0,
@@ -567,10 +566,5 @@ int main(void) {
   tcase_add_loop_test(tests, power_of_two_in_the_moduli_leaves_every_bit, 0,
                       SCENES);
   tcase_add_loop_test(tests, every_refused_request_is_survived, 0, SCENES);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return unit_run("condensation", tests);
 }

@@ -230,7 +230,6 @@ START_TEST(every_refused_request_is_reported) {
 END_TEST
 
 int main(void) {
-  Suite *suite = suite_create("history");
   TCase *tests = tcase_create("history");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_test(tests, cut_increments_are_the_small_increments);
@@ -239,10 +238,5 @@ int main(void) {
   tcase_add_test(tests, energies_balance_at_every_increment);
   tcase_add_test(tests, step_ends_at_the_time_asked_for);
   tcase_add_test(tests, every_refused_request_is_reported);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return unit_run("history", tests);
 }

@@ -434,7 +434,6 @@ START_TEST(every_refused_request_is_survived) {
 END_TEST
 
 int main(void) {
-  Suite *suite = suite_create("rigid");
   TCase *tests = tcase_create("rigid");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, rigid_motion_needs_no_force, 0, CASES);
@@ -447,10 +446,5 @@ int main(void) {
   tcase_add_test(tests, condition_tells_where_contrast_costs_digits);
   tcase_add_loop_test(tests, every_refused_request_is_survived, 0, SCENES);
   tcase_add_test(tests, supported_body_keeps_its_stiffness);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return unit_run("rigid", tests);
 }

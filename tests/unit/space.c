@@ -326,17 +326,11 @@ START_TEST(an_estimate_has_no_unit) {
 END_TEST
 
 int main(void) {
-  Suite *suite = suite_create("space");
   TCase *tests = tcase_create("space");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, estimate_is_near_the_true_error, 0, N_PROBLEM);
   tcase_add_loop_test(tests, uniform_stress_has_no_error, 0, 2);
   tcase_add_test(tests, one_layer_of_elements_has_an_estimate);
   tcase_add_test(tests, an_estimate_has_no_unit);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return unit_run("space", tests);
 }

@@ -186,7 +186,6 @@ START_TEST(element_beyond_the_axis_is_refused_by_number) {
 END_TEST
 
 int main(void) {
-  Suite *suite = suite_create("stress");
   TCase *tests = tcase_create("stress");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, patch_of_constant_strain_is_reproduced, 0, 4);
@@ -195,10 +194,5 @@ int main(void) {
                       4);
   tcase_add_test(tests, strain_matrix_of_one_turned_triangle);
   tcase_add_test(tests, element_beyond_the_axis_is_refused_by_number);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return unit_run("stress", tests);
 }

@@ -149,17 +149,11 @@ START_TEST(contact_edge) {
 END_TEST
 
 int main(void) {
-  Suite *s = suite_create("effectivity");
   TCase *t = tcase_create("effectivity");
   tcase_set_timeout(t, 300);
   tcase_add_test(t, head);
   tcase_add_loop_test(t, manufactured, 0, sizeof problems / sizeof *problems);
   tcase_add_test(t, interface);
   tcase_add_test(t, contact_edge);
-  suite_add_tcase(s, t);
-  SRunner *r = srunner_create(s);
-  srunner_run_all(r, CK_NORMAL);
-  int failed = srunner_ntests_failed(r);
-  srunner_free(r);
-  return failed > 0;
+  return unit_run("effectivity", t);
 }

@@ -191,15 +191,9 @@ START_TEST(forecasts) {
 END_TEST
 
 int main(void) {
-  Suite *s = suite_create("target");
   TCase *t = tcase_create("target");
   tcase_set_timeout(t, 1800);
   tcase_add_test(t, targets);
   tcase_add_test(t, forecasts);
-  suite_add_tcase(s, t);
-  SRunner *r = srunner_create(s);
-  srunner_run_all(r, CK_NORMAL);
-  int failed = srunner_ntests_failed(r);
-  srunner_free(r);
-  return failed > 0;
+  return unit_run("target", t);
 }
