@@ -65,11 +65,4 @@ int lcp_row_is_tight(const lcp_work *w, int i);
 /* dz[n]: change of the basic z that takes defect[n] out of the tight rows. */
 void lcp_correction(lcp_work *w, const double *defect, double *dz);
 
-/*
- * METHOD=LEMKE, work of its setup: the motion [m] that ended the last solve
- * with STOPPED_RAY: no elastic force, no penetration, and the load does more
- * work on it than friction. NULL: the last solve had no such end.
- */
-const double *lemke_ray(const void *work);
-
 #endif

@@ -1,0 +1,14 @@
+/*
+ * METHOD=LEMKE, what others than the solver's row ask of it.
+ */
+#ifndef PROTIS_PIVOTING_LEMKE_H
+#define PROTIS_PIVOTING_LEMKE_H
+
+/*
+ * work: of its setup. The motion [m] that ended the last solve with
+ * STOPPED_RAY: no elastic force, no penetration, and the load does more work on
+ * it than friction. NULL: the last solve had no such end.
+ */
+const double *lemke_ray(const void *work);
+
+#endif
