@@ -3,8 +3,8 @@
  */
 #include "command.h"
 
-#include "base/message.h"
 #include "base/memory.h"
+#include "base/message.h"
 #include "inform.h"
 
 #include <getopt.h>
@@ -89,6 +89,11 @@ static int wrong(const char *what, const char *word) {
   return 2;
 }
 
+static int no_memory(void) {
+  fputs("protis: error: memory exhausted: the command line\n", stderr);
+  return 5;
+}
+
 static int print_keywords(const char *card) {
   if (inform_keywords(card)) return 0;
   return wrong("there is no card ", card);
@@ -156,7 +161,7 @@ static int take_option(int what, const char *value, const char *given,
     case 'o':
       memory_free(c->dir);
       c->dir = memory_text(value);
-      return c->dir == NULL ? 5 : -1;
+      return c->dir == NULL ? no_memory() : -1;
     case 'D':
       if (strchr(value, '=') == NULL)
         return wrong("-D needs NAME=VALUE, not ", value);
@@ -219,9 +224,9 @@ static int take_job(int n, char **job, command *c) {
   if (n == 0 || job[0][0] == '\0') return wrong("no job given", "");
   if (n > 1) return wrong("one job at a time; not expected: ", job[1]);
   c->deck_file = find_deck(job[0]);
-  if (c->deck_file == NULL) return 5;
+  if (c->deck_file == NULL) return no_memory();
   if (c->dir == NULL) c->dir = folder_of(c->deck_file);
-  return c->dir == NULL ? 5 : -1;
+  return c->dir == NULL ? no_memory() : -1;
 }
 
 int command_read(int argc, char **argv, command *c, int *exit_code) {
@@ -229,7 +234,7 @@ int command_read(int argc, char **argv, command *c, int *exit_code) {
   memset(c, 0, sizeof *c);
   opterr = 0; /* told here                                                   */
   c->defines = memory_new((size_t)argc, sizeof *c->defines);
-  if (c->defines == NULL) code = 5;
+  if (c->defines == NULL) code = no_memory();
   while (code < 0 &&
          (what = getopt_long(argc, argv, ":o:D:", words, NULL)) != -1) {
     const char *next = optind < argc ? argv[optind] : NULL;

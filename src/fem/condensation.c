@@ -221,11 +221,16 @@ static void fill_held(condensed *c) {
   }
 }
 
-static void estimate_condition(condensed *c) {
+static status estimate_condition(condensed *c) {
+  status st = OK;
+  double condition = 0;
   c->condition = c->just_held ? 1 : 1 / (weak_arm * weak_arm);
-  for (int q = 0; q < c->n_body; ++q)
-    c->condition =
-        fmax(c->condition, body_factor_condition(c->k, &c->body[q], c->cm));
+  for (int q = 0; q < c->n_body; ++q) {
+    TRY(body_factor_condition(c->k, &c->body[q], c->cm, &condition));
+    c->condition = fmax(c->condition, condition);
+  }
+done:
+  return st;
 }
 
 static status form_matrix(condensed *c) {
@@ -264,7 +269,7 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   TRY(pin_bodies(c, floating));
   TRY(factor_bodies(c));
   TRY(form_matrix(c));
-  estimate_condition(c);
+  TRY(estimate_condition(c));
 done:
   memory_free(floating);
   if (st != OK) {

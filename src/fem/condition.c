@@ -63,13 +63,15 @@ static double norm(long n, const double *v) {
   return sqrt(sum);
 }
 
-/* |D inv(K) D| by inverse iteration from a vector of ones with a ripple. */
-static double inverse_norm(const body_factor *f, const double *root,
-                           cholmod_common *cm) {
+/* *growth = |D inv(K) D| by inverse iteration from a vector of ones with a
+ * ripple. */
+static status inverse_norm(const body_factor *f, const double *root,
+                           cholmod_common *cm, double *growth) {
   enum { PASSES = 2 };
-  double growth = 0;
+  status st = OK;
   cholmod_dense *v = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
-  if (v == NULL) return 0;
+  if (v == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: condition of %ld unknowns", f->n);
   double *x = v->x;
   for (long p = 0; p < f->n; ++p) x[p] = 1 + 0.25 * (double)(f->unknown[p] % 7);
   for (int pass = 0; pass < PASSES; ++pass) {
@@ -77,24 +79,27 @@ static double inverse_norm(const body_factor *f, const double *root,
     for (long p = 0; p < f->n; ++p) x[p] *= root[f->unknown[p]] / size;
     if (!cholmod_l_super_lsolve(f->L, v, f->work, cm) ||
         !cholmod_l_super_ltsolve(f->L, v, f->work, cm))
-      break;
+      FAIL(ERR_INTERNAL, "solve of %ld unknowns failed", f->n);
     for (long p = 0; p < f->n; ++p) x[p] *= root[f->unknown[p]];
-    growth = norm(f->n, x);
+    *growth = norm(f->n, x);
   }
+done:
   cholmod_l_free_dense(&v, cm);
-  return growth;
+  return st;
 }
 
-double body_factor_condition(const stiffness *k, const body_factor *f,
-                             cholmod_common *cm) {
+status body_factor_condition(const stiffness *k, const body_factor *f,
+                             cholmod_common *cm, double *condition) {
+  status st = OK;
   const size_t n = (size_t)k->dim * (size_t)k->n_node;
-  double *sum = memory_new(n, sizeof *sum), *root = memory_new(n, sizeof *root);
-  double estimate = 0;
-  if (sum != NULL && root != NULL) {
-    fill_roots(k, f, root);
-    estimate = largest_row_sum(k, f, root, sum) * inverse_norm(f, root, cm);
-  }
+  double *sum = NULL, *root = NULL, growth = 0;
+  NEW(sum, n);
+  NEW(root, n);
+  fill_roots(k, f, root);
+  TRY(inverse_norm(f, root, cm, &growth));
+  *condition = largest_row_sum(k, f, root, sum) * growth;
+done:
   memory_free(sum);
   memory_free(root);
-  return estimate;
+  return st;
 }

@@ -67,8 +67,8 @@ status body_factor_energy(const body_factor *f, const double *d,
 status body_factor_solve(const body_factor *f, const double *d, double *w,
                          double *square, cholmod_common *cm);
 /* Estimate of the condition number of the matrix factored, scaled to a unit
- * diagonal; 0 without memory. */
-double body_factor_condition(const stiffness *k, const body_factor *f,
-                             cholmod_common *cm);
+ * diagonal. ERR_MEMORY. */
+status body_factor_condition(const stiffness *k, const body_factor *f,
+                             cholmod_common *cm, double *condition);
 
 #endif

@@ -18,7 +18,8 @@ long points_number(long few, double share) {
 
 long points_spread(long k, long n, long all) {
   if (n >= all) return k % all + 1;
-  return 1 + (long)(((double)k + 0.5) * (double)all / (double)n);
+  if (n == 1) return (all + 1) / 2;
+  return 1 + (long)((double)k * (double)(all - 1) / (double)(n - 1));
 }
 
 void points_try(points *t) { ++t->tried; }

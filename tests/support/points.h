@@ -14,7 +14,8 @@ typedef struct points {
 /* PROTIS_POINTS times the share, at least 1; without it the few of the tests.
  */
 long points_number(long few, double share);
-/* Point number k (from 0) of n, spread over 1 .. all; n >= all: each once. */
+/* Point number k (from 0) of n, spread over 1 .. all, the first and the last
+ * among them; n = 1: in the middle; n >= all: each once. */
 long points_spread(long k, long n, long all);
 void points_try(points *t); /* one more is tried                             */
 /* One is lost; printf format tells which and how. */

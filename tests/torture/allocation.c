@@ -148,9 +148,9 @@ static const struct {
   long few;
   double share;
 } kinds[] = {{"memory, program, one request", {.own = 1}, 8, 0.15},
-             {"memory, program, from one on", {.own = 1, .always = 1}, 8, 0.09},
-             {"memory, libraries, one request", {.own = 0}, 4, 0.05},
-             {"memory, libraries, from one on", {.always = 1}, 4, 0.04}};
+             {"memory, program, from one on", {.own = 1, .always = 1}, 8, 0.15},
+             {"memory, libraries, one request", {.own = 0}, 4, 0.115},
+             {"memory, libraries, from one on", {.always = 1}, 4, 0.115}};
 
 START_TEST(requests_are_refused) {
   points t = {.kind = kinds[_i].kind};
