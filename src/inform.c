@@ -7,6 +7,7 @@
 #include "base/option.h"
 #include "exchange/exchange.h"
 #include "history/history.h"
+#include "keyword/keyword.h"
 #include "plan/plan.h"
 
 #include <cholmod.h>

@@ -5,8 +5,10 @@
 
 #include "base/memory.h"
 #include "base/timer.h"
+#include "check/check.h"
 #include "fem/fem.h"
 #include "inform.h"
+#include "keyword/keyword.h"
 #include "restart.h"
 
 #include <string.h>

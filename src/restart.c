@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "fem/fem.h"
 #include "inform.h"
+#include "keyword/keyword.h"
 
 #include <stdint.h>
 #include <stdio.h>

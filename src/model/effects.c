@@ -3,7 +3,7 @@
  * computed; the listing says for each effect why it is on or off.
  */
 #include "base/memory.h"
-#include "model/keyword.h"
+#include "model/model.h"
 
 #include <stdio.h>
 #include <string.h>

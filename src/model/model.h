@@ -389,6 +389,8 @@ const friction_rule *friction_in_force(const model *m, int step_id,
                                        int contact_id);
 /* A friction value that is zero everywhere and always is no friction. */
 int rule_has_friction(const friction_rule *rule);
+/* 1 if the deck has such a card. */
+int has_card(const model *m, const char *name);
 /* 1 if some *PRINT asks for one of these tables (bits PRINT_*). */
 int model_prints(const model *m, int tables);
 int model_writes_fields(const model *m); /* 1: JOB.h5 is written             */
@@ -411,18 +413,6 @@ int rule_has_average(const friction_rule *rule);
 const char *model_effect_reason(const model *m, int bit, char *text,
                                 size_t size);
 
-/*
- * Everything the deck says; names are compared with each other, not yet with
- * the mesh. Errors go to the log (ERR_DECK); *out is valid (free it) unless
- * ERR_MEMORY. The model borrows deck and log.
- */
-status model_from_deck(deck *d, message_log *log, model **out);
-/* Compare with the mesh: groups, sections, dimensions; fill the _id fields and
- * the effects. Errors go to the log: ERR_DECK or ERR_MESH. */
-status model_check(model *m, const mesh *msh);
-/* Relative error of displacements to expect of P1 elements that lock at nu, n
- * of them across a wall. */
-double model_locking_error(double nu, int n);
 /* Which effects the deck calls for, into m->effects. */
 void model_find_effects(model *m);
 /* m->corner_id. ERR_MEMORY. */
@@ -431,24 +421,6 @@ status model_find_corner(model *m, const mesh *msh);
  * read: dimension (1: LCP), 1 if it has friction. */
 void model_fit_problem(model *m, int dim, int friction);
 void model_free(model *m);
-
-/* The deck with all defaults written out, includes and parameters resolved;
- * reading it gives the same model. */
-void model_echo(const model *m, FILE *out);
-/* Help from the keyword table: all cards in short, or one in full; 0 if there
- * is no card of that name. */
-int keywords_print(const char *name, FILE *out);
-
-/* 1 if the integrator of a *VISCO step can be unstable or ring. */
-int step_has_limit(const step *s);
-/*
- * What the fastest rate of the laws means for an increment dt of a *VISCO step
- * from t on: the level of 2^level pieces that keep it stable, > 0 with
- * SUBSTEPS=AUTO only; -1 after a message that it is not. "tell": say if parts
- * of the stress will ring.
- */
-int step_level(const model *m, const step *s, double t, double dt, double rate,
-               int tell);
 
 /* load.c */
 /* Nodal forces F[dim*n_node] (global components, N) of a step at total time t:

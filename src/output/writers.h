@@ -6,6 +6,7 @@
 #define PROTIS_OUTPUT_WRITERS_H
 
 #include "base/text.h"
+#include "keyword/keyword.h"
 #include "output/output.h"
 #include "plan/plan.h"
 

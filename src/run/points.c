@@ -4,6 +4,7 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
+#include "check/check.h"
 #include "material/voigt.h"
 #include "run/visco.h"
 

@@ -7,6 +7,7 @@
 #include "run/visco.h"
 #include "base/memory.h"
 #include "base/timer.h"
+#include "check/check.h"
 
 #include <math.h>
 #include <string.h>

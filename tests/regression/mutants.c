@@ -8,7 +8,8 @@
  */
 #include "base/memory.h"
 #include "history/history.h"
-#include "model/model.h"
+#include "check/check.h"
+#include "keyword/keyword.h"
 #include "support/grid.h"
 #include "support/points.h"
 #include "support/unit.h"

@@ -1,6 +1,7 @@
 /* src/model: decks to models, loads of the steps, the echo of a deck. */
 #include "base/memory.h"
-#include "model/keyword.h"
+#include "check/check.h"
+#include "keyword/keyword.h"
 #include "support/text_model.h"
 #include "support/unit.h"
 

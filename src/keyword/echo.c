@@ -1,7 +1,7 @@
 /*
  * What the keyword table prints: the deck with all defaults, and the help.
  */
-#include "model/keyword.h"
+#include "keyword/keyword.h"
 
 #include <ctype.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /*
  * Cards of the contact: rigid obstacles, contact pairs, friction laws.
  */
-#include "model/keyword.h"
+#include "cards/cards.h"
 
 #include "base/memory.h"
 

@@ -1,19 +1,12 @@
 /*
- * The table of deck keywords and what its functions are told. A card is one
- * row of keyword_table; most rows need a function for their data lines.
+ * What the cards of a deck mean: a function for each that needs one, told by
+ * the keyword table (keyword/keyword.h) what stands on the card. Errors of the
+ * deck go to the log; a status is of memory.
  */
-#ifndef PROTIS_MODEL_KEYWORD_H
-#define PROTIS_MODEL_KEYWORD_H
+#ifndef PROTIS_CARDS_CARDS_H
+#define PROTIS_CARDS_CARDS_H
 
 #include "model/model.h"
-
-/* Where a card may stand. */
-enum {
-  IN_MODEL = 1,    /* before the first *STEP                                  */
-  IN_MATERIAL = 2, /* after *MATERIAL, up to the next card of the model       */
-  IN_STEP = 4,     /* between *STEP and *END STEP                             */
-  LANGUAGE = 8     /* read by the deck reader; stands anywhere                */
-};
 
 /* State of reading a deck, card by card. */
 typedef struct reading {
@@ -36,30 +29,10 @@ typedef struct plugin {
   const char *parameter, *name; /* METHOD, newton; NULL: not known            */
 } plugin;
 
-typedef struct keyword {
-  const char *name;
-  unsigned where;        /* IN_... or LANGUAGE                               */
-  const option *options; /* of the struct of param_size bytes, or NULL       */
-  size_t param_size;
-  /* Options of what the card names; an unknown name goes to the log. */
-  plugin (*names)(const reading *r);
-  status (*apply)(reading *r); /* ERR_MEMORY only: the rest goes to the log   */
-  int min_line, max_line; /* data lines; max -1: any number                   */
-  const char *data;       /* what the data lines hold                         */
-  const char *help;
-} keyword;
-
-extern const keyword keyword_table[]; /* name NULL at the end                 */
-const keyword *keyword_find(const char *name); /* or NULL                     */
-
 enum { PARAM_SIZE = 512 }; /* room for the options of any row or plug-in      */
 
-/* Read the parameters of r->card into param[row->param_size] and
- * plugin[PARAM_SIZE]; fills r->param and r->plugin. Errors go to the log. */
-void keyword_parameters(const keyword *row, reading *r, void *param,
-                        void *plugin_param);
+/* ---- options of the cards, for the rows of the keyword table ---- */
 
-/* Rows of options for the cards of the model and of the steps. */
 typedef struct units_param {
   const char *length, *force, *time;
 } units_param;
@@ -175,54 +148,63 @@ typedef struct restart_param {
   int frequency;
 } restart_param;
 
-/* apply functions: cards_model.c */
+/* ---- part.c: title, units, mesh, sections, amplitudes, times ---- */
 status apply_heading(reading *r);
 status apply_units(reading *r);
 status apply_mesh(reading *r);
 status apply_condensed_problem(reading *r);
+status apply_section(reading *r);
+status apply_amplitude(reading *r);
+status apply_time_points(reading *r);
+status apply_effects(reading *r);
+/* ---- material.c ---- */
 status apply_material(reading *r);
 status apply_elastic(reading *r);
 status apply_density(reading *r);
 status apply_expansion(reading *r);
-status apply_initial(reading *r);
-status apply_reference(reading *r);
-status apply_section(reading *r);
-status apply_amplitude(reading *r);
+/* ---- inelastic.c ---- */
 status apply_inelastic(reading *r);
 plugin names_inelastic(const reading *r);
 status apply_creep(reading *r);
 status apply_viscoelastic(reading *r);
 status apply_trs(reading *r);
-/* Once all cards are read: the law of a material beside its elasticity; only
- * ERR_MEMORY. */
+/* Once all cards are read: the law of a material beside its elasticity. */
 status material_resolve_law(const model *m, material *mat);
-/* cards_contact.c */
+/* ---- initial.c ---- */
+status apply_initial(reading *r);
+/* ---- reference.c ---- */
+status apply_reference(reading *r);
+/* Place of a component of *REFERENCE in "value", -1: there is none of that name
+ * in such a model. */
+int reference_place(const char *name, int dim, int axisymmetric);
+/* ---- contact.c ---- */
 status apply_obstacle(reading *r);
 status apply_contact(reading *r);
 status apply_friction(reading *r);
 status apply_contact_force(reading *r);
 plugin names_law(const reading *r);
-/* cards_step.c */
-status apply_time_points(reading *r);
+/* ---- procedure.c ---- */
 status apply_step(reading *r);
 status apply_end_step(reading *r);
 status apply_static(reading *r);
 status apply_quasistatic(reading *r);
 status apply_visco(reading *r);
+/* ---- load.c ---- */
 status apply_boundary(reading *r);
 status apply_dsload(reading *r);
 status apply_dload(reading *r);
 status apply_cload(reading *r);
 status apply_temperature(reading *r);
+/* ---- control.c: solver, accuracy, output ---- */
 status apply_solver(reading *r);
 plugin names_solver(const reading *r);
 status apply_accuracy(reading *r);
-status apply_effects(reading *r);
 status apply_print(reading *r);
 status apply_output(reading *r);
 status apply_restart(reading *r);
 
-/* Helpers for the data lines; all errors go to the log. */
+/* ---- fields.c: helpers for the data lines ---- */
+
 /* 0 if the line has min..max fields. */
 int record_fields(const reading *r, const record *line, int min, int max,
                   const char *expected);
@@ -231,6 +213,8 @@ int field_real(const reading *r, const field *f, double min, double max,
 int field_int(const reading *r, const field *f, int min, int max,
               const char *what, int *out);
 int field_quantity(const reading *r, const field *f, quantity *out);
+/* Path of the FILE= of the card from where the deck stands; NULL: not given. */
+status field_file(const reading *r, const char **path);
 /* Field of pair number i of the lines of a card: its first or second. */
 const field *pair_field(const card *c, int first_line, int i, int second);
 /* Pairs over all lines (any number per line) as a table; arrays are new. */
@@ -246,23 +230,13 @@ int name_taken(const reading *r, const char *name, const char *old);
 void unknown_word(message_log *log, message_id id, const place *at,
                   const char *text, const char *word,
                   const char *(*next)(const void *ctx, int i), const void *ctx);
-/* The points of a *PRINT that names some; an error if there are none. */
-void find_points(const model *m, print_request *p);
+/* Id of a name among those of "next", or -1 and an error that names the card to
+ * write. */
+int find_name(const model *m, const char *name, const char *title,
+              const char *(*next)(const void *, int), const place *at);
 /* Id of an amplitude, or -1 and an error. */
 int find_amplitude(const model *m, const char *name, const place *at);
-
-/* cards_model.c: what a deck with *CONDENSED PROBLEM may hold; its one step
- * and table if it has none. After model_resolve. */
-status model_finish_problem(reading *r);
-
-/* resolve.c: names to ids once all cards are read; loads carried from step to
- * step. Errors of names go to the log. "lost": a card was refused, what seems
- * to be missing or unused is not reported. */
-status model_resolve(model *m, int lost);
-/* 1 if the deck has such a card.                                            */
-int has_card(const model *m, const char *name);
-/* Place of a component of *REFERENCE in "value", -1: there is none of that name
- * in such a model. */
-int reference_place(const char *name, int dim, int axisymmetric);
+/* The step that is being read. */
+step *open_step(const reading *r);
 
 #endif

@@ -3,7 +3,7 @@
  * data lines. The parser, the range checks, --keywords, the echo of the deck
  * and the tests all run over it.
  */
-#include "model/keyword.h"
+#include "keyword/keyword.h"
 
 #include <float.h>
 #include <math.h>

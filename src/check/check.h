@@ -1,0 +1,28 @@
+/*
+ * The model against the mesh, after all cards are read.
+ */
+#ifndef PROTIS_CHECK_CHECK_H
+#define PROTIS_CHECK_CHECK_H
+
+#include "model/model.h"
+
+/* Compare with the mesh: groups, sections, dimensions; fill the _id fields and
+ * the effects. Errors go to the log: ERR_DECK or ERR_MESH. */
+status model_check(model *m, const mesh *msh);
+
+/* Relative error of displacements to expect of P1 elements that lock at nu, n
+ * of them across a wall. */
+double model_locking_error(double nu, int n);
+
+/* 1 if the integrator of a *VISCO step can be unstable or ring. */
+int step_has_limit(const step *s);
+/*
+ * What the fastest rate of the laws means for an increment dt of a *VISCO step
+ * from t on: the level of 2^level pieces that keep it stable, > 0 with
+ * SUBSTEPS=AUTO only; -1 after a message that it is not. "tell": say if parts
+ * of the stress will ring.
+ */
+int step_level(const model *m, const step *s, double t, double dt, double rate,
+               int tell);
+
+#endif

@@ -1,0 +1,26 @@
+/*
+ * The parts of model_from_deck after the cards are read. Errors of names go to
+ * the log; a status is of memory. Private to src/keyword.
+ */
+#ifndef PROTIS_KEYWORD_PARTS_H
+#define PROTIS_KEYWORD_PARTS_H
+
+#include "keyword/keyword.h"
+
+/* resolve.c: names to ids once all cards are read, then steps.c. "lost": a card
+ * was refused, what seems to be missing or unused is not reported. */
+status model_resolve(model *m, int lost);
+/* Amplitudes and tables of a rule. */
+void resolve_friction(const model *m, friction_rule *rule);
+/* The points of a *PRINT that names some; an error if there are none. */
+void find_points(const model *m, print_request *p);
+
+/* steps.c: start, loads, solver and tables of each step, with what stays from
+ * the one before. */
+status resolve_steps(model *m);
+
+/* problem.c: what a deck with *CONDENSED PROBLEM may hold; its one step and
+ * table if it has none. After model_resolve. */
+status model_finish_problem(reading *r);
+
+#endif
