@@ -230,8 +230,10 @@ static const char *zone_contact_name(const view *v, int id) {
 }
 
 /* clang-format off */
-#define C EFFECT_CONTACT
-#define F (EFFECT_CONTACT | EFFECT_FRICTION)
+/* Needs an effect, also in a build that knows nothing of it. */
+#define ON(effect) (1u << EFFECT_BIT_##effect)
+#define C ON(CONTACT)
+#define F (ON(CONTACT) | ON(FRICTION))
 #define INC   PER_INCREMENT, AS_REAL
 #define INC_N PER_INCREMENT, AS_COUNT
 #define NODE  PER_NODE, AS_REAL
@@ -244,14 +246,14 @@ static const char *zone_contact_name(const view *v, int id) {
 #define ANY SCENE_ALL, 0
 #define SUR SCENE_ALL, NEEDS_SURFACE
 #define PLACE SCENE_ALL, NEEDS_PLACE
-#define STRAIN(scenes) PRINT_ELEMENTS, EFFECT_STRESS, scenes, NEEDS_STRAIN
-#define STRESS(scenes) PRINT_ELEMENTS, EFFECT_STRESS, scenes, NEEDS_STRESS
+#define STRAIN(scenes) PRINT_ELEMENTS, ON(STRESS), scenes, NEEDS_STRAIN
+#define STRESS(scenes) PRINT_ELEMENTS, ON(STRESS), scenes, NEEDS_STRESS
 #define FLOW(scenes) \
-  PRINT_ELEMENTS, EFFECT_STRESS | EFFECT_INELASTIC, scenes, NEEDS_FLOW
+  PRINT_ELEMENTS, ON(STRESS) | ON(INELASTIC), scenes, NEEDS_FLOW
 #define ALPHA \
-  PRINT_ELEMENTS, EFFECT_STRESS | EFFECT_INELASTIC, SCENE_ALL, \
+  PRINT_ELEMENTS, ON(STRESS) | ON(INELASTIC), SCENE_ALL, \
   NEEDS_FLOW | NEEDS_ALPHA
-#define REACT(scenes) PRINT_REACTIONS, EFFECT_REACTION, scenes, NEEDS_REACTION
+#define REACT(scenes) PRINT_REACTIONS, ON(REACTION), scenes, NEEDS_REACTION
 #define TOTAL(scenes) PRINT_TOTALS, C, scenes, NEEDS_TOTALS
 #define ZONE PER_ZONE, AS_REAL, PRINT_ZONES, C
 #define LOOP PER_CONTACT, AS_REAL, PRINT_LOOP, C
@@ -284,30 +286,30 @@ const column column_table[] = {
  NULL, "passes of the fixed point on the sliding limit"},
 {"residual", "-", INC, 0, C, ANY, "residual", 0, residual, NULL,
  "residual of the contact problem"},
-{"mesh_error", "%", INC, 0, EFFECT_MESH_ERROR, ANY, "mesh_error", 0, mesh_error,
+{"mesh_error", "%", INC, 0, ON(MESH_ERROR), ANY, "mesh_error", 0, mesh_error,
  NULL, "estimate of the error of the mesh in the energy norm, of that of the "
  "solution; NaN: not asked for"},
-{"time_error", "%", INC, 0, EFFECT_TIME_ERROR, ANY, "time_error", 0, time_error,
+{"time_error", "%", INC, 0, ON(TIME_ERROR), ANY, "time_error", 0, time_error,
  NULL, "estimate of the error of the increments in that norm; NaN: not asked "
  "for, or unknown"},
-{"true_error", "%", INC, 0, EFFECT_REFERENCE, ANY, "true_error", 0, true_energy,
+{"true_error", "%", INC, 0, ON(REFERENCE), ANY, "true_error", 0, true_energy,
  NULL, "error against *REFERENCE in that norm; NaN: it has no displacement and "
  "no stress"},
-{"true_displacement_error", "%", INC, 0, EFFECT_REFERENCE, ANY,
+{"true_displacement_error", "%", INC, 0, ON(REFERENCE), ANY,
  "true_displacement_error", 0, true_displacement, NULL,
  "the same of the displacement in the L2 norm"},
-{"true_stress_error", "%", INC, 0, EFFECT_REFERENCE, ANY, "true_stress_error",
+{"true_stress_error", "%", INC, 0, ON(REFERENCE), ANY, "true_stress_error",
  0, true_stress, NULL, "the same of the stress in the L2 norm"},
-{"true_pressure_error", "%", INC, 0, EFFECT_REFERENCE, ANY,
+{"true_pressure_error", "%", INC, 0, ON(REFERENCE), ANY,
  "true_pressure_error", 0, true_pressure, NULL,
  "the same of the contact pressure in the L2 norm"},
-{"solver_error", "%", INC, 0, C | EFFECT_ESTIMATES, ANY, "solver_error", 0,
+{"solver_error", "%", INC, 0, C | ON(ESTIMATES), ANY, "solver_error", 0,
  bound_error, NULL, "bound of the error of the contact solver in the energy "
  "norm, of that of the solution; NaN: no bound"},
-{"solver_error_energy", J, INC, 0, C | EFFECT_ESTIMATES, ANY,
+{"solver_error_energy", J, INC, 0, C | ON(ESTIMATES), ANY,
  "solver_error_energy", 0, solver_error_energy, NULL,
  "bound of the energy of that error"},
-{"contraction", "-", INC, 0, F | EFFECT_ESTIMATES, ANY, "contraction", 0,
+{"contraction", "-", INC, 0, F | ON(ESTIMATES), ANY, "contraction", 0,
  contraction, NULL, "rate of the fixed point on the sliding limit"},
 {"strain_energy", J, INC, PRINT_ENERGY, 0, ANY, "strain_energy", 0,
  strain_energy, NULL, "elastic energy stored"},
@@ -320,15 +322,15 @@ const column column_table[] = {
 {"normal_work", J, INC, PRINT_ENERGY, C, ANY, "normal_work", 0,
  normal_work, NULL, "work of the normal contact forces so far, trapezoidal: "
  "moving obstacles, and gaps that open or close within an increment"},
-{"thermal_work", J, INC, PRINT_ENERGY, EFFECT_THERMAL, ANY, "thermal_work", 0,
+{"thermal_work", J, INC, PRINT_ENERGY, ON(THERMAL), ANY, "thermal_work", 0,
  thermal_work, NULL, "work of the stresses on thermal strains so far"},
-{"inelastic_work", J, INC, PRINT_ENERGY, EFFECT_INELASTIC, ANY,
+{"inelastic_work", J, INC, PRINT_ENERGY, ON(INELASTIC), ANY,
  "inelastic_work", 0, inelastic_work, NULL,
  "work of the stresses on inelastic strains so far, trapezoidal"},
-{"viscous_dissipation", J, INC, PRINT_ENERGY, EFFECT_INELASTIC, ANY,
+{"viscous_dissipation", J, INC, PRINT_ENERGY, ON(INELASTIC), ANY,
  "viscous_dissipation", 0, dissipated, NULL,
  "lost of it by the laws so far, in the quadrature of the integrator"},
-{"inelastic_stored", J, INC, PRINT_ENERGY, EFFECT_INELASTIC, ANY,
+{"inelastic_stored", J, INC, PRINT_ENERGY, ON(INELASTIC), ANY,
  "inelastic_stored", 0, inelastic_stored, NULL,
  "kept of it by the internal variables"},
 {"energy_defect", J, INC, PRINT_ENERGY, 0, ANY, "energy_defect", 0,
@@ -384,9 +386,9 @@ const column column_table[] = {
 {"z", "length", ELEM, PRINT_ELEMENTS, 0, SCENE_SOLID, 0, NULL, 2, elem_x, NULL,
  "centre"},
 {"temperature", "temperature", ELEM, PRINT_ELEMENTS,
- EFFECT_STRESS | EFFECT_THERMAL, ANY, "temperature", 0, temperature, NULL,
+ ON(STRESS) | ON(THERMAL), ANY, "temperature", 0, temperature, NULL,
  "mean of the element"},
-{"mesh_error", "%", ELEM, PRINT_ELEMENTS, EFFECT_MESH_ERROR, SCENE_ALL,
+{"mesh_error", "%", ELEM, PRINT_ELEMENTS, ON(MESH_ERROR), SCENE_ALL,
  NEEDS_ELEM_ERROR, "mesh_error", 0, elem_error, NULL, "share of the element in "
  "the error of the mesh, whose square is the sum of their squares"},
 {"strain_xx", "-", ELEM, STRAIN(CART), "strain_xx", 0,
