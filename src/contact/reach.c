@@ -81,3 +81,74 @@ done:
   memory_free(keep);
   return st;
 }
+
+/* ---- the problem of the nodes within reach ------------------------------ */
+
+void reach_part_free(reach_part *p) {
+  memory_free(p->gap);
+  memory_free(p->ut0);
+  memory_free(p->g0);
+  memory_free(p->held);
+  sparse_free(&p->B);
+  *p = (reach_part){0};
+}
+
+status reach_part_new(int n, int dim, reach_part *out) {
+  status st = OK;
+  *out = (reach_part){0};
+  NEW(out->gap, n);
+  if (dim == 1) goto done;
+  NEW(out->ut0, n * (dim - 1));
+  NEW(out->g0, n);
+  NEW(out->held, n * dim);
+  NEW(out->B.start, n + 1);
+  NEW(out->B.col, n);
+  NEW(out->B.val, n);
+done:
+  return st;
+}
+
+/* The diagonal of "from", a row a node at most one entry. */
+static void cut_limit(const contact_reach *x, const sparse_rows *from,
+                      const sparse_rows *to) {
+  int n = 0;
+  for (int k = 0; k < x->n_in; ++k) {
+    const int i = x->in[k];
+    to->start[k] = n;
+    for (int e = from->start[i]; e < from->start[i + 1]; ++e) {
+      if (from->col[e] != i) continue;
+      to->col[n] = k;
+      to->val[n++] = from->val[e];
+    }
+  }
+  to->start[x->n_in] = n;
+}
+
+/* Size values a node; NULL stays NULL. */
+static const double *cut_reals(const contact_reach *x, int size,
+                               const double *from, double *to) {
+  for (int k = 0; from != NULL && k < x->n_in; ++k)
+    memcpy(to + size * k, from + size * x->in[k], (size_t)size * sizeof *to);
+  return from != NULL ? to : NULL;
+}
+
+void reach_cut(const contact_reach *x, reach_part *room, contact_problem *cp) {
+  const int dim = cp->dim;
+  const unsigned char *held = cp->held;
+  cp->gap = cut_reals(x, 1, cp->gap, room->gap);
+  cp->ut0 = cut_reals(x, dim - 1, cp->ut0, room->ut0);
+  cp->g0 = cut_reals(x, 1, cp->g0, room->g0);
+  for (int k = 0; held != NULL && k < x->n_in; ++k)
+    memcpy(room->held + dim * k, held + dim * x->in[k], (size_t)dim);
+  if (held != NULL) cp->held = room->held;
+  if (cp->B == NULL) return;
+  room->B.n = x->n_in;
+  cut_limit(x, cp->B, &room->B);
+  cp->B = &room->B;
+}
+
+void reach_spread(const contact_reach *x, int n, double *a) {
+  int k = x->n_in - 1;
+  for (int i = n - 1; x->in != NULL && i >= 0; --i)
+    a[i] = k >= 0 && x->in[k] == i ? a[k--] : 0.0;
+}

@@ -173,26 +173,29 @@ enum { HALVINGS = 16 };
 static const double SUSPECT = 2.0; /* -, motion over load                     */
 static const double LEFT = 0.25;   /* -, of the motion, in 2^-16 of the load  */
 
-/* |a - b|_A of contact displacements; room[2m]. */
+/* |a - b|_A of contact displacements; room[2*n_c]. */
 static double distance(const run *r, const double *a, const double *b,
                        double *room) {
   double sum = 0.0;
   for (int i = 0; i < r->n_c; ++i) room[i] = a[i] - b[i];
-  contact_product(r->n_c, r->cp.A, room, room + r->n_c);
-  for (int i = 0; i < r->n_c; ++i) sum += room[i] * room[r->n_c + i];
+  const double *d = run_rows(r, 0, room);
+  contact_product(r->n_row, r->cp.A, d, room + r->n_c);
+  for (int i = 0; i < r->n_row; ++i) sum += d[i] * room[r->n_c + i];
   return sqrt(fmax(sum, 0.0));
 }
 
-/* What the load and the obstacles can move, in the energy norm; room[2m]. */
+/* What the load and the obstacles can move, in the energy norm; room[2*n_c]. */
 static status load_change(run *r, double *room, double *size) {
   status st = OK;
   double square = 0.0;
   *size = distance(r, r->now.motion, r->old.motion, room);
-  for (int i = 0; i < r->n_c; ++i) room[i] = r->f[i] - r->f_before[i];
-  if (r->moduli.n_own > 0) { /* with the moduli of now                        */
-    contact_product(r->n_c, r->cp.A, r->old.uc, room + r->n_c);
-    for (int i = 0; i < r->n_c; ++i)
-      room[i] = r->f[i] + r->old.rc[i] - room[r->n_c + i];
+  for (int i = 0; i < r->n_row; ++i) room[i] = r->f[i] - r->f_before[i];
+  if (r->moduli.n_own > 0 || r->n_before != r->n_row) { /* other matrix       */
+    const double *rc = run_rows(r, 1, r->old.rc);
+    contact_product(r->n_row, r->cp.A, run_rows(r, 0, r->old.uc),
+                    room + r->n_c);
+    for (int i = 0; i < r->n_row; ++i)
+      room[i] = r->f[i] + rc[i] - room[r->n_c + i];
   }
   if (condensed_floating(r->c))
     square = HUGE_VAL;

@@ -131,6 +131,18 @@ done:
   return st;
 }
 
+/* Where nodes were added in the increment. */
+static void note_nodes(run *r) {
+  const int now = reach_count(&r->reach, r->n);
+  size_t used = strlen(r->note);
+  if (r->n == 0 || now == r->n_told) return;
+  snprintf(r->note + used, sizeof r->note - used,
+           "  contact nodes thought out of reach touch: solved again with %d "
+           "nodes, not %d, of %d\n",
+           now, r->n_told, r->n);
+  r->n_told = now;
+}
+
 status loop_accept(run *r, int attempt, int increment_no, int last,
                    double cpu) {
   status st = OK;
@@ -144,6 +156,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   if (table_is_due(r->step, PRINT_ZONES, r->now.t, increment_no, last))
     TRY(zones_find(r));
   TRY(check_increment(r));
+  note_nodes(r);
   TRY(note_misfit(r));
   path_compare(r);
   TRY(balance_learn(r));

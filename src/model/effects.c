@@ -437,6 +437,19 @@ static int has_tangents(const model *m) {
                               first_whole(m) != NULL || neglects_friction(m));
 }
 
+int model_rubs_locally(const model *m) {
+  int local = m->corner_id < 0 && first_whole(m) == NULL;
+  for (int i = 0; i < m->n_step; ++i) {
+    local = local && m->steps[i].form == FORM_DISPLACEMENT;
+    for (int k = 0; k < m->n_contact; ++k) {
+      const friction_rule *rule = friction_in_force(m, i, k);
+      local =
+          local && (!rule_has_friction(rule) || rule->law == &coulomb_friction);
+    }
+  }
+  return local;
+}
+
 static void reason_tangents(const model *m, char *text, size_t size) {
   const step *s = first_whole(m);
   if (m->n_contact == 0)

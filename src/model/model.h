@@ -409,6 +409,9 @@ int model_has_axis(const model *m);
 int model_flows(const model *m, int elem_id);
 /* 1: its limit is an average over the surface. */
 int rule_has_average(const friction_rule *rule);
+/* 1: tangential unknowns are there for friction alone, which acts in all steps
+ * on nodes that touch and against their displacement. */
+int model_rubs_locally(const model *m);
 /* Which card or fact switched it on or off, into text; returns text. */
 const char *model_effect_reason(const model *m, int bit, char *text,
                                 size_t size);

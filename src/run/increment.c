@@ -332,21 +332,20 @@ static int has_side_gap(const contact_surface *s) {
 
 static void set_problem(run *r) {
   int friction = (r->m->effects & EFFECT_FRICTION) != 0, all = r->rows > 1;
-  for (int i = 0; r->reach.in != NULL && i < r->reach.n_in; ++i)
-    r->gap_in[i] = r->gap[r->reach.in[i]];
   r->cp = (contact_problem){
       .dim = r->rows,
       .n = reach_count(&r->reach, r->n),
       .m = r->n_row,
       .A = condensed_matrix(r->c),
       .f = r->f,
-      .gap = r->reach.in != NULL ? r->gap_in : r->gap,
+      .gap = r->gap,
       .ut0 = r->ut0,
       .g0 = friction ? r->limit.g0 : NULL,
       .B = friction ? limit_matrix(r) : NULL,
       .side_gap = all && has_side_gap(r->surface) ? r->side_gap : NULL,
       .held = all && has_held(r->surface) ? r->surface->held : NULL,
       .floating = condensed_floating(r->c)};
+  if (r->reach.in != NULL) reach_cut(&r->reach, &r->part, &r->cp);
 }
 
 static status load_at(run *r, double t) {

@@ -59,7 +59,10 @@ static void find_contact(run *r) {
     for (int a = 1; a < dim; ++a)
       r->slip[(dim - 1) * i + a - 1] = slip_of(r, dim * i + a);
   }
-  if (r->g != NULL) contact_limit(&r->cp, r->now.rc, r->g);
+  if (r->g != NULL) {
+    contact_limit(&r->cp, run_rows(r, 1, r->now.rc), r->g);
+    reach_spread(&r->reach, r->n, r->g);
+  }
   contact_classify(&r->cp, run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc),
                    r->contact);
   for (int i = r->n - 1, k = r->reach.n_in - 1; r->reach.in != NULL && i >= 0;
@@ -278,6 +281,7 @@ void result_start(const run *r, equilibrium *e) {
 
 status result_accept(run *r) {
   if (r->n > 0) memcpy(r->f_before, r->f, (size_t)r->n_row * sizeof *r->f);
+  r->n_before = r->n_row;
   equilibrium e = r->old;
   r->note[0] = '\0';
   r->old = r->now;

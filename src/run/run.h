@@ -85,6 +85,7 @@ typedef struct run {
   int n, n_c;   /* contact nodes; dim*n                                       */
   int rows, n_row; /* unknowns of a node in r->cp: 1 or dim; of all of them   */
   contact_reach reach; /* the contact nodes of r->cp */
+  int n_told;          /* how many the output knows of                        */
 
   /* What the elements are made of. */
   domain d;
@@ -116,8 +117,8 @@ typedef struct run {
 
   /* Contact problem of the increment. */
   double *f, *gap, *side_gap, *ut0; /* [n_row], [n], [n*(dim-1)] twice        */
-  double *row[2], *gap_in; /* [rows*n] room of run_rows, NULL where rows is
-                              dim; [n] gaps of the nodes of r->cp, the same   */
+  double *row[2]; /* [rows*n] room of run_rows, NULL where r->cp has all      */
+  reach_part part; /* what r->cp points to where it has not all nodes        */
   contact_problem cp;
   forms *forms; /* what rewrites it                                           */
 
@@ -153,6 +154,7 @@ typedef struct run {
   double bound_cpu; /* s, spent so far on the error of the solver            */
   known_rate rate;
   double *f_before; /* [n_row] condensed load of r->old, N                    */
+  int n_before;     /* its n_row                                              */
   int jumps;      /* 1: the equilibrium jumps in the increment               */
   double jump_t;  /* s, there                                               */
   theory *theory; /* NULL until asked for                                    */

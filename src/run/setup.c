@@ -199,6 +199,17 @@ static void take_nodes(run *r) {
   r->n_row = r->rows * reach_count(&r->reach, r->n);
 }
 
+/* Room for the part of them and of their unknowns. */
+static status room_for_part(run *r) {
+  status st = OK;
+  for (int k = 0; k < 2 && r->n_row < r->n_c && r->row[k] == NULL; ++k)
+    NEW(r->row[k], r->rows * r->n);
+  if (r->reach.in != NULL && r->part.gap == NULL)
+    TRY(reach_part_new(r->n, r->rows, &r->part));
+done:
+  return st;
+}
+
 static void free_surface(run *r) {
   forget_estimates(r);
   matrices_free(&r->elastic);
@@ -211,7 +222,7 @@ static void free_surface(run *r) {
       &r->f,        &r->f_before, &r->gap,        &r->side_gap,   &r->ut0,
       &r->open_gap, &r->slip,     &r->g,          &r->old.uc,     &r->old.rc,
       &r->now.uc,   &r->now.rc,   &r->old.motion, &r->now.motion, &r->distance,
-      &r->row[0],   &r->row[1],   &r->gap_in};
+      &r->row[0],   &r->row[1]};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) {
     memory_free(*owned[i]);
     *owned[i] = NULL;
@@ -219,6 +230,7 @@ static void free_surface(run *r) {
   memory_free(r->contact);
   r->contact = NULL;
   reach_free(&r->reach);
+  reach_part_free(&r->part);
   take_nodes(r);
   limit_free(r);
   forms_free(r->forms);
@@ -266,8 +278,6 @@ static status new_contact_arrays(run *r) {
   int tangents = r->n * (r->msh->dim - 1);
   NEW(r->f, r->n_row);
   NEW(r->f_before, r->n_row);
-  for (int k = 0; k < 2 && r->n_row < r->n_c; ++k) NEW(r->row[k], r->n_row);
-  if (r->n_row < r->n_c) NEW(r->gap_in, r->n);
   NEW(r->gap, r->n);
   NEW(r->old.uc, r->n_c);
   NEW(r->now.uc, r->n_c);
@@ -356,6 +366,7 @@ static status build_surface(run *r) {
   r->d.rows = r->rows = r->m->effects & EFFECT_TANGENTS ? r->msh->dim : 1;
   r->n_row = r->rows * r->n;
   TRY(new_contact_arrays(r));
+  TRY(room_for_part(r));
   TRY(forms_new(r));
   old_state_to_frames(r, force);
   leave_forces(r, force);
@@ -463,9 +474,13 @@ static const double GENEROUS = 4.0; /* -, of what loads move a compact body  */
 /* 1: no force on a node that does not touch, nothing but loads and supports
  * moves the body, and the problem at hand is that of all increments. */
 static int may_leave_out(const run *r, int n_motion) {
-  const unsigned no = EFFECT_TANGENTS | EFFECT_GIVEN | EFFECT_START |
-                      EFFECT_INELASTIC | EFFECT_THERMAL | EFFECT_BODY;
-  return n_motion == 0 && r->n >= FEWEST && !(r->m->effects & no) &&
+  const unsigned effects = r->m->effects;
+  const unsigned no = EFFECT_GIVEN | EFFECT_START | EFFECT_INELASTIC |
+                      EFFECT_THERMAL | EFFECT_BODY;
+  if ((effects & EFFECT_TANGENTS) &&
+      (!model_rubs_locally(r->m) || (effects & EFFECT_TIME_ERROR)))
+    return 0;
+  return n_motion == 0 && r->n >= FEWEST && !(effects & no) &&
          r->m->n_points == 0 && r->m->n_neglected == 0;
 }
 
@@ -516,6 +531,7 @@ static status choose_nodes(run *r, int n_motion) {
   for (int i = 0; i < r->n; ++i) gap[i] = fmin(gap[i], r->gap[i]);
   TRY(reach_choose(&r->reach, r->n, gap));
   take_nodes(r);
+  TRY(room_for_part(r));
 done:
   timer_leave(STAGE_SURFACE);
   memory_free(gap);
@@ -534,6 +550,7 @@ static status renew_nodes(run *r) {
   r->c = NULL;
   matrices_free(&r->elastic);
   take_nodes(r);
+  TRY(room_for_part(r));
   TRY(renew_elastic(r));
   TRY(run_use(r, &r->elastic));
 done:
@@ -542,14 +559,8 @@ done:
 
 status run_add_nodes(run *r) {
   status st = OK;
-  int before = r->reach.n_in;
-  size_t used = strlen(r->note);
   TRY(reach_extend(&r->reach, r->n, r->gap, r->now.uc, r->msh->dim,
                    r->report.outcome <= 0));
-  snprintf(r->note + used, sizeof r->note - used,
-           "  contact nodes thought out of reach touch: solved again with %d "
-           "nodes, not %d, of %d\n",
-           reach_count(&r->reach, r->n), before, r->n);
   TRY(renew_nodes(r));
 done:
   return st;
@@ -610,6 +621,8 @@ status run_prepare(run *r) {
     r->d.surface = r->surface;
     TRY(check_supports(r, &motions));
     TRY(choose_nodes(r, motions));
+    r->n_before = r->n_row;
+    r->n_told = reach_count(&r->reach, r->n);
     TRY(renew_elastic(r));
     r->c = r->elastic.c;
     fresh = 1;
@@ -689,6 +702,8 @@ static status keep_contact(run *r, archive *a) {
   size_t contacts = r->loops == NULL ? 0 : (size_t)r->m->n_contact;
   TRY(keep_nodes(r, a));
   TRY(archive_reals(a, "f_before", r->f_before, (size_t)r->n_row));
+  r->n_before = r->n_row;
+  r->n_told = reach_count(&r->reach, r->n);
   TRY(archive_reals(a, "distance", r->distance,
                     r->distance == NULL ? 0 : (size_t)r->n));
   TRY(archive_bytes(a, "loops", r->loops, contacts * sizeof *r->loops));
