@@ -15,8 +15,10 @@
 #include <unistd.h>
 
 /* Numbers of the deck go to a .geo under their own names. */
-static status read_mesh(const model *m, const job_mesh *other, mesh **msh) {
+static status read_mesh(const job_mesh *other, job_input *in) {
   status st = OK;
+  const model *m = in->m;
+  double cpu = timer_cpu();
   mesh_number *numbers = NULL;
   NEW(numbers, m->deck->n_symbol);
   for (int i = 0; i < m->deck->n_symbol; ++i) {
@@ -25,6 +27,7 @@ static status read_mesh(const model *m, const job_mesh *other, mesh **msh) {
   }
   timer_enter(STAGE_MESH);
   if (m->target.percent > 0.0 && job_is_geo(m)) mesh_gmsh_load();
+  in->library_cpu = timer_cpu() - cpu;
   st =
       mesh_read_gmsh(&(mesh_source){.file = m->mesh_file,
                                     .scale = m->mesh_scale,
@@ -32,7 +35,7 @@ static status read_mesh(const model *m, const job_mesh *other, mesh **msh) {
                                     .numbers = numbers,
                                     .old = other != NULL ? other->old : NULL,
                                     .size = other != NULL ? other->size : NULL},
-                     &m->mesh_at, m->log, msh);
+                     &m->mesh_at, m->log, &in->msh);
   timer_leave(STAGE_MESH);
 done:
   memory_free(numbers);
@@ -66,7 +69,7 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
     if (other != NULL && other->same != NULL)
       in->msh = other->same;
     else
-      TRY(read_mesh(in->m, other, &in->msh));
+      TRY(read_mesh(other, in));
     TRY(model_check(in->m, in->msh));
   }
 done:

@@ -12,6 +12,7 @@ typedef struct job_input {
   deck *d;
   model *m;
   mesh *msh;                 /* NULL: a problem from a file                   */
+  double library_cpu;        /* s, spent on loading what meshes               */
   exchange_problem *problem; /* or NULL                                       */
   /* Of another pass than the first: the deck of that, to which the messages
    * refer, and the messages of its own. */

@@ -59,6 +59,10 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
   double *Z = NULL, *G = NULL, *y = NULL;
   int *pivot = NULL;
   *done = 0;
+  if (cblas_dasum(m, p->d, 1) == 0.0) {
+    *done = 1;
+    goto done;
+  }
   NEW(Z, (size_t)m * (size_t)k);
   NEW(G, (size_t)k * (size_t)k);
   NEW(y, k);

@@ -18,6 +18,7 @@
 
 const char *const error_bound_indefinite =
     "the matrix is not symmetric and positive semidefinite";
+static const double UNLOADED = 0x1p-60; /* -, of the largest energy           */
 static const char weakly_held[] =
     "supports hold a body by lever arms of next to nothing";
 
@@ -80,6 +81,16 @@ static status estimate_solver(run *r) {
 done:
   timer_leave(STAGE_ESTIMATE);
   return st;
+}
+
+void estimate_unloaded(run *r) {
+  const energies *e = &r->now.energy;
+  if (!(e->strain < UNLOADED * e->largest)) return;
+  double share = sqrt(fmax(e->strain, 0.0) / e->largest);
+  r->mesh_error.relative *= share;
+  r->time_error.relative *= share;
+  if (r->error.asked && r->error.why == NULL)
+    r->error.relative = sqrt(r->error.energy / e->largest);
 }
 
 static status find_truth(run *r) {

@@ -159,6 +159,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   note_nodes(r);
   TRY(note_misfit(r));
   path_compare(r);
+  estimate_unloaded(r);
   TRY(balance_learn(r));
   state s = loop_state(r, attempt, increment_no);
   s.end_of_step = last;

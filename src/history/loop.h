@@ -62,6 +62,10 @@ status estimate_increment(run *r);
 /* Those of solver and mesh alone, from r->now.u; read r->judged. */
 status estimate_judge(run *r);
 
+/* All errors at r->now known: those of a body that has been unloaded, which is
+ * left with rounding alone, count beside the largest energy so far. */
+void estimate_unloaded(run *r);
+
 /* theorems.c: the theorems at r->now into r->theorems, if asked for; at the
  * initial state, which is posed in r->cp. */
 status theory_increment(run *r);

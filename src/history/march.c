@@ -18,6 +18,7 @@
 #include <math.h>
 
 static const double SAFETY = 0.8, LONGER = 2.0, SHORTER = 0.25; /* -          */
+static const double ROUNDING = 0x1p-40; /* -, of the largest energy norm      */
 
 /* End of the next increment: not a sliver before the end of the step. */
 static double next_end(const run *r) {
@@ -42,7 +43,9 @@ static double allowed_part(const run *r, double before) {
   const step *s = r->step;
   double share = share_at_end(r), dt = r->now.t - r->old.t;
   double sum = r->at.error + share * sqrt((r->now.t - s->start) / s->total);
-  return fmax(sum - before, share * dt / s->total);
+  double largest = fmax(r->old.energy.largest, r->now.energy.strain);
+  return fmax(fmax(sum - before, share * dt / s->total),
+              ROUNDING * sqrt(2.0 * largest));
 }
 
 /* Length of the next increment after one of dt; implicit integrators keep to

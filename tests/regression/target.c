@@ -232,7 +232,84 @@ START_TEST(increments_are_made_shorter) {
 }
 END_TEST
 
+/* The block of greco without friction or with it, under these cards. */
+static int block(job *j, double mu, const char *cards, const char *words) {
+  *j = job_begin("block");
+  job_copy(j, "input/greco/greco.geo");
+  job_write(j, "block.inp",
+            "*PARAMETER\nN = 8\n*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n130.D3, 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*QUASISTATIC\n"
+            "0.25, 1.\n*BOUNDARY\nSYMMETRY, 1\n%s*END STEP\n",
+            mu, cards);
+  return job_run(j, words);
+}
+
+/* Without a load, lifted off, pressed evenly: P1 has the solution. */
+START_TEST(exact_solution_costs_one_pass_and_no_forecast) {
+  static const struct {
+    double mu;
+    const char *cards;
+  } exact[] = {{0.5, ""},
+               {0.5, "TOP, 2, 2, 0.01\n*DSLOAD\nLEFT, P, 50.\n"},
+               {0.0, "*DSLOAD\nTOP, P, 50.\n"}};
+  for (int i = 0; i < 3; ++i) {
+    char cards[120];
+    job j;
+    snprintf(cards, sizeof cards, "%s*ACCURACY, TARGET=0.01\n", exact[i].cards);
+    int code = block(&j, exact[i].mu, cards, "");
+    ck_assert_msg(code == 0, "%d: exit %d: %s", i, code, j.errors);
+    char *lst = job_file(&j, "lst");
+    ck_assert_ptr_null(strstr(lst, "NaN"));
+    ck_assert_ptr_null(strstr(lst, "next digit"));
+    free(lst);
+    job_end(&j);
+    code = block(&j, exact[i].mu, exact[i].cards, "--estimate-cost");
+    ck_assert_msg(code == 0, "%d: exit %d: %s", i, code, j.errors);
+    ck_assert_int_eq(count(j.text, "the mesh of the deck does"), 5);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* Increments that follow rounding would have no end. */
+START_TEST(exact_solution_needs_no_shorter_increments) {
+  job j;
+  int code = block(&j, 0.5,
+                   "TOP, 2, 2, 0.01\n*DSLOAD\nLEFT, P, 50.\n"
+                   "*SOLVER, TOL=BALANCED\n*ACCURACY, TIME=BALANCED\n",
+                   "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  char *sta = job_file(&j, "sta");
+  ck_assert_int_eq(count(sta, "CUT"), 0);
+  ck_assert_int_le(count(sta, " OK"), 4);
+  free(sta);
+  job_end(&j);
+}
+END_TEST
+
+/* Loads that return to zero, to rounding, leave errors of that size. */
+START_TEST(unloaded_body_has_no_large_error) {
+  job j;
+  int code = block(&j, 0.5,
+                   "*DSLOAD\nTOP, P, \"50*sin(pi*t)\"\n"
+                   "LEFT, P, \"150*sin(pi*t)\"\n"
+                   "*ACCURACY, MESH=YES, TIME=YES\n",
+                   "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  ck_assert_double_lt(job_told(&j, "mesh_error_worst_percent"), 10);
+  ck_assert_double_lt(job_told(&j, "time_error_worst_percent"), 1);
+  ck_assert_double_lt(job_told(&j, "solver_error_worst_percent"), 1e-6);
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("target", target_is_reached_in_truth,
           limits_stop_with_the_best_there_is, structured_geometry_is_made_finer,
           mesh_without_geometry_is_named, forecast_is_near_the_truth,
-          increments_are_made_shorter, flow_has_its_share_of_the_target)
+          increments_are_made_shorter, flow_has_its_share_of_the_target,
+          exact_solution_costs_one_pass_and_no_forecast,
+          exact_solution_needs_no_shorter_increments,
+          unloaded_body_has_no_large_error)
