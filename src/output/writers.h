@@ -1,32 +1,17 @@
 /*
- * What the writers of this folder share: text files, number format, tables,
- * and the state of an open job. Private to src/output.
+ * The writers of this folder. Private to src/output.
  */
 #ifndef PROTIS_OUTPUT_WRITERS_H
 #define PROTIS_OUTPUT_WRITERS_H
 
 #include "base/text.h"
 #include "keyword/keyword.h"
+#include "listing/listing.h"
 #include "output/output.h"
-#include "plan/plan.h"
 
 #include <stdio.h>
 
-/* ---- tabular.c: JOB.dat and the tables of the listing ----------------- */
-
-/* Columns of a table that the model and the state have. */
-typedef struct table {
-  int n;
-  entity of;
-  const column *col[64];
-  int width[64];
-  int digits; /* after the point                                            */
-} table;
-void table_choose(table *t, entity of, unsigned print_bit, const view *v,
-                  int digits);
-/* The header with "lead" before it ("#", " "), and one record. */
-void table_header(const table *t, const model *m, const char *lead, FILE *f);
-void table_row(const table *t, const view *v, int id, FILE *f);
+/* ---- tabular.c: JOB.dat ----------------------------------------------- */
 
 typedef struct tabular tabular;
 /* NULL in *out if no step asks for a table. length: of the file to go on with;
@@ -41,90 +26,6 @@ status tabular_close(tabular *t); /* frees t; accepts NULL                  */
 int output_due(int frequency, const state *s);
 
 /* ---- what the listing and JOB.json tell of the run -------------------- */
-
-typedef struct increment_summary {
-  int step_no, increment_no, total_no, attempt;
-  double t, dt;
-  int n_open, n_slip, n_stick, iterations, settled, outcome;
-  double residual, defect;
-  error_bound error;
-  int jumps; /* 1: the equilibrium jumps, at jump_t, s                     */
-  double jump_t;
-  int checked, n_solution;   /* by CHECK= of *SOLVER                          */
-  solution_facts *solutions; /* [n_solution] owned                            */
-  error_share mesh_error, time_error;
-  true_error truth;
-  balance_report balance;
-  theory_report theory; /* its contacts are owned                             */
-} increment_summary;
-
-typedef struct pass_table {
-  double target; /* %                                                         */
-  int n;         /* 0: no target                                              */
-  const pass_row *rows, *forecast;
-  const char *why;
-} pass_table;
-
-typedef struct run_summary {
-  pass_table passes;
-  int facts_known;
-  setup_facts facts;
-  int n_increment, capacity, n_rejected, n_unsettled;
-  increment_summary *increments; /* [n_increment]                          */
-  double residual_worst, defect_worst; /* - ; the defect relative           */
-  flow_tally tally; /* points with a threshold                              */
-  status verdict;
-  const char *message; /* of a failed run, or ""                            */
-} run_summary;
-
-/* One line of the error budget: what, its last and largest estimate, CPU
- * seconds of the stages whose work decides it, and of estimating it. */
-typedef struct budget_row {
-  const char *name, *json;
-  double last, worst; /* %, of the energy norm; NAN: unknown                  */
-  double reached, estimated; /* s                                             */
-} budget_row;
-enum { BUDGET_ROWS = 4 };
-
-typedef struct job {
-  const model *m;
-  const mesh *msh;
-  const output_options *o;
-  const run_summary *run;
-  const effect_plan *plan; /* of the effects */
-} job;
-
-/* The estimates asked for; how many rows. */
-int job_budget(const job *j, budget_row rows[BUDGET_ROWS]);
-/* What TOL=BALANCED saved in all increments that were asked. */
-typedef struct balance_sum {
-  int asked;
-  double iterations, saved_iterations, saved_cpu; /* made; about; s           */
-} balance_sum;
-balance_sum job_balance(const job *j);
-/* Increments that dt of the deck would make in the steps with TIME=BALANCED; 0:
- * there is none. Those made in them. */
-double job_increments_of_deck(const job *j, int *made);
-/* Sum of the estimates over the true error, last increment; NAN: unknown. */
-double job_effectivity(const job *j);
-
-/* Sizes of model and equations for listing and JSON, NULL ends; the answer
- * counts those of the model, which come first. */
-typedef struct size_row {
-  const char *name;
-  double value;
-} size_row;
-enum { SIZE_ROWS = 20 };
-int job_sizes(const job *j, size_row rows[SIZE_ROWS]);
-
-/* ---- listing.c -------------------------------------------------------- */
-status listing_open(const job *j, text_file *lst);
-status listing_ready(const job *j, text_file *lst);
-status listing_start(const job *j, const start_report *s, text_file *lst);
-status listing_increment(const job *j, const state *s, text_file *lst);
-status listing_between(const state *s, text_file *lst);
-status listing_rejected(const state *s, const char *why, text_file *lst);
-status listing_verdict(const job *j, text_file *lst);
 
 /* ---- status_file.c ---------------------------------------------------- */
 status sta_header(const output_options *o, text_file *sta);

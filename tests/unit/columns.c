@@ -1,6 +1,6 @@
-/* src/output/columns.c: over the table, so that a new row is tested too. */
+/* src/columns/columns.c: over the table, so that a new row is tested too. */
 #include "base/memory.h"
-#include "output/output.h"
+#include "columns/columns.h"
 #include "support/made_up.h"
 #include "support/unit.h"
 

@@ -4,7 +4,7 @@
  * are those of the obstacle on the body, so f_n = -r_n >= 0 presses, and f_t
  * is opposite to the slip.
  */
-#include "output/output.h"
+#include "columns/columns.h"
 
 #include <math.h>
 #include <stdio.h>
