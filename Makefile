@@ -128,6 +128,18 @@ $(out)/tests/preload/traps.so: tests/preload/traps.c Makefile
 
 $(out)/tests/regression/examples: | $(out)/tests/preload/traps.so
 
+# Calls that fail: listed in a header, put in the place of the real ones.
+failing  := $(out)/tests/preload/failing.o $(out)/tests/preload/main.o
+wrapped  := open child_run \
+            $(shell sed -n '/^  X./{s/^  X.//;s/,.*//p}' \
+              tests/preload/failing.h)
+$(out)/tests/torture/calls: $(failing)
+$(out)/tests/torture/calls: LDFLAGS += $(wrapped:%=-Wl$(comma)--wrap=%)
+$(out)/tests/torture/calls: LDLIBS := $(library) $(LDLIBS)
+$(out)/tests/preload/main.o: $(out)/src/main.o
+	@mkdir -p $(@D)
+	$(Q)objcopy --redefine-sym main=protis_main $< $@
+
 # An independent integrator, of one test alone.
 $(out)/tests/unit/sundials: LDLIBS += -lsundials_cvode -lsundials_nvecserial \
               -lsundials_sunlinsoldense -lsundials_sunmatrixdense

@@ -174,6 +174,7 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
     st = watch->finished(watch->ctx, st, out);
   status closed = output_close(out, st, *unsettled);
   if (st == OK && closed != ERR_UNSETTLED) st = closed;
+  if (st == OK) TRY(message_status(in->m->log, ERR_INTERNAL));
 done:
   return st;
 }

@@ -72,17 +72,19 @@ done:
 
 status job_lock_take(const char *dir, const char *job, job_lock *l) {
   status st = OK;
-  int fd = -1;
+  int fd = -1, held = 0;
   char *path = text_path(dir, job, "lock");
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of the lock");
   if (mkdir(dir, 0777) != 0 && errno != EEXIST)
     FAIL(ERR_FILE, "cannot make the folder %s: %s", dir, strerror(errno));
   TRY(hold(path, job, &fd));
+  held = 1;
   if (ftruncate(fd, 0) != 0 || dprintf(fd, "%s%ld\n", head, (long)getpid()) < 0)
     TRY(text_failed(path, "write", errno));
   *l = (job_lock){path, fd};
 done:
   if (st != OK) {
+    if (held) unlink(path);
     if (fd >= 0) close(fd);
     memory_free(path);
   }

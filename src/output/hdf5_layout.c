@@ -48,13 +48,17 @@ static status close_maker(maker *k, int flush) {
   return bad ? maker_failed(k, "write") : OK;
 }
 
+/* *type is new (H5Tclose), -1 after a failure. */
 static status text_type(const maker *k, size_t size, hid_t *type) {
   status st = OK;
-  *type = H5Tcopy(H5T_C_S1);
-  if (*type < 0 || H5Tset_size(*type, size) < 0 ||
-      H5Tset_strpad(*type, H5T_STR_NULLPAD) < 0)
+  hid_t made = H5Tcopy(H5T_C_S1);
+  *type = -1;
+  if (made < 0 || H5Tset_size(made, size) < 0 ||
+      H5Tset_strpad(made, H5T_STR_NULLPAD) < 0)
     TRY(maker_failed(k, "set up"));
+  *type = made;
 done:
+  if (*type < 0 && made >= 0) H5Tclose(made);
   return st;
 }
 

@@ -62,10 +62,12 @@ static status remember_theory(const theory_report *t, increment_summary *i) {
   theory_contact *own = NULL;
   i->theory = *t;
   i->theory.contacts = NULL;
+  i->theory.n_contact = 0;
   if (t->n_contact == 0) goto done;
   NEW(own, t->n_contact);
   memcpy(own, t->contacts, (size_t)t->n_contact * sizeof *own);
   i->theory.contacts = own;
+  i->theory.n_contact = t->n_contact;
 done:
   return st;
 }
@@ -496,6 +498,7 @@ static status read_increments(output *o, archive *a) {
       s->solutions[k] = o->facts[next++];
   }
 done:
+  if (run->increments == NULL) run->n_increment = 0;
   return st;
 }
 

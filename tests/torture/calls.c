@@ -1,0 +1,213 @@
+/*
+ * Calls of the C library and of HDF5 that fail, in small runs of every kind:
+ * memory refused, files that cannot be opened, written, closed, renamed,
+ * objects of HDF5 that cannot be made. Each way on which a failure is handed up
+ * is gone once (preload/failing.h); the tests of every day try some of them.
+ *
+ * The run ends with the exit code of what failed (5 memory; 2, 3, 4 the deck,
+ * the mesh, another file) and a message, or it did without and its files are
+ * those of an undisturbed run. It holds no memory and no object of HDF5, leaves
+ * no file it made aside, no lock, and whole files of results.
+ */
+#include "preload/failing.h"
+#include "support/points.h"
+#include "support/small_job.h"
+#include "support/traced.h"
+#include "support/unit.h"
+
+#include <glob.h>
+#include <string.h>
+
+enum { PATH = 300, WORDS = 20 };
+
+/* ---- runs ---- */
+
+/* The program on the job with these words; what it says into j->errors. */
+static int run(job *j, const char *words, failing_end *end) {
+  char deck[PATH], told[PATH], meshes[PATH], text[PATH];
+  char *argv[WORDS] = {"protis", deck, "--no-timing"}, *save = NULL;
+  int argc = 3;
+  snprintf(deck, sizeof deck, "%s/%s.inp", j->dir, j->name);
+  snprintf(told, sizeof told, "%s/stderr.txt", j->dir);
+  snprintf(meshes, sizeof meshes, "%s/mesh.kept", j->dir);
+  snprintf(text, sizeof text, "%s", words);
+  for (char *w = strtok_r(text, " ", &save); w != NULL && argc < WORDS - 1;
+       w = strtok_r(NULL, " ", &save))
+    argv[argc++] = w;
+  int code = failing_run(argc, argv, told, meshes, end);
+  job said = *j;
+  snprintf(said.name, sizeof said.name, "stderr");
+  free(j->errors);
+  j->errors = job_file(&said, "txt");
+  return code;
+}
+
+static void command(const job *j, const char *what) {
+  char line[2 * PATH];
+  snprintf(line, sizeof line, "cd '%s' && %s", j->dir, what);
+  ck_assert_int_eq(system(line), 0);
+}
+
+/* ---- scenes ---- */
+
+static job flat(void) {
+  return small_flat(0.4, "*RESTART\n*ACCURACY, THEORY=YES\n",
+                    "AUTO, CHECK=YES");
+}
+
+static job solid(void) { return small_solid(0.4, "*RESTART\n", "SOR"); }
+
+static job creep(void) {
+  return small_creep(0.4, "*RESTART\n", "INTEGRATOR=MIDPOINT");
+}
+
+/* Stopped by a file that could not be written: what is there is kept. */
+static job stopped(job j) {
+  failing_end end;
+  failing_at(&(failing_point){FAILING_rename, 7});
+  ck_assert_int_eq(run(&j, "", &end), 4);
+  failing_at(NULL);
+  ck_assert_int_eq(end.reached, 1);
+  ck_assert(job_has(&j, "rst.h5"));
+  command(&j, "mkdir kept && cp -p *.* kept/");
+  return j;
+}
+
+static job stopped_flat(void) {
+  return stopped(small_flat(0.4, "*RESTART\n", "AUTO, CHECK=YES"));
+}
+
+static job stopped_creep(void) { return stopped(creep()); }
+
+/* A problem that another run has written. */
+static job discrete(void) {
+  job j = small_flat(0.4, "*OUTPUT, CONDENSED=FCLIB\n", "AUTO");
+  failing_end end;
+  ck_assert_msg(run(&j, "", &end) == 0, "%s", j.errors);
+  snprintf(j.name, sizeof j.name, "back");
+  job_write(&j, "back.inp",
+            "*CONDENSED PROBLEM, FILE=block_condensed_00002.h5\n*STEP\n"
+            "*SOLVER, TOL=1e-10\n*OUTPUT, CONDENSED=FCLIB\n*END STEP\n");
+  return j;
+}
+
+static job example(const char *deck) {
+  char path[PATH];
+  job j = job_begin(strrchr(deck, '/') + 1);
+  snprintf(path, sizeof path, "%s.inp", deck);
+  job_copy(&j, path);
+  job_copy_meshes(&j, deck);
+  return j;
+}
+
+static const struct {
+  const char *kind;  /* or the deck of an example                            */
+  job (*make)(void); /* NULL: the example                                    */
+  const char *words;
+} scenes[] = {
+    {"plane", flat, ""},
+    {"space", solid, ""},
+    {"flow", creep, ""},
+    {"restart", stopped_flat, "--restart"},
+    {"restart of a flow", stopped_creep, "--restart"},
+    {"problem", discrete, ""},
+    {"input/hild_triangle/hild_triangle", NULL, ""},
+    {"input/norton_ring/norton_ring", NULL, "-D N=6"},
+    {"input/spence/spence", NULL, "-D NC=4"},
+};
+
+/* ---- what is expected ---- */
+
+/* NULL, or what the run left behind. */
+static const char *litter(const job *j) {
+  static const char *const patterns[] = {"*.tmp", "*.lock"};
+  static const char *const suffixes[] = {"h5", "rst.h5", "rst.old.h5"};
+  char path[PATH];
+  for (size_t k = 0; k < sizeof patterns / sizeof *patterns; ++k) {
+    glob_t found;
+    snprintf(path, sizeof path, "%s/%s", j->dir, patterns[k]);
+    int there = glob(path, 0, NULL, &found) == 0;
+    globfree(&found);
+    if (there) return patterns[k];
+  }
+  for (size_t k = 0; k < sizeof suffixes / sizeof *suffixes; ++k) {
+    if (!job_has(j, suffixes[k])) continue;
+    snprintf(path, sizeof path, "%s/%s.%s", j->dir, j->name, suffixes[k]);
+    hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (file < 0) return suffixes[k];
+    H5Fclose(file);
+  }
+  return NULL;
+}
+
+static const char *fault(const job *whole, const job *j, const failing_point *p,
+                         int code, const failing_end *end) {
+  int memory = failing_of_memory(p->call);
+  if (!end->reached) return "not reached";
+  if (end->held > 0) return "memory is not released";
+  if (end->opened > 0) return "objects of HDF5 are not closed";
+  if (code == 0) {
+    const char *other = traced_difference(whole, j);
+    return other == NULL ? NULL : other;
+  }
+  if (memory ? code != 5 : code < 2 || code > 5) return "exit code";
+  if (strstr(j->errors, "error") == NULL) return "no message";
+  if (memory && strstr(j->errors, "emory") == NULL) return "memory not named";
+  if (code == 4 && strstr(j->errors, j->dir) == NULL) return "file not named";
+  return litter(j);
+}
+
+static void restore(const job *j) {
+  command(j, "if [ -d kept ]; then cp -p kept/* .; fi");
+}
+
+static void try_scene(points *t, int which) {
+  const char *words = scenes[which].words;
+  const failing_point *list;
+  failing_end end;
+  job j = scenes[which].make == NULL ? example(scenes[which].kind)
+                                     : scenes[which].make();
+  job whole = j;
+  ck_assert_msg(run(&j, words, &end) == 0, "%s", j.errors);
+  /* Its files aside, to compare with. */
+  snprintf(whole.dir, sizeof whole.dir, "%.55s/whole", j.dir);
+  command(&j, "mkdir whole && cp -p *.* whole/");
+  restore(&j);
+  failing_watch();
+  ck_assert_msg(run(&j, words, &end) == 0, "%s", j.errors);
+  int all = failing_points(&list);
+  long n = points_number(10, 0.02);
+  for (long k = 0; k < n && k < all; ++k) {
+    const failing_point *p = &list[points_spread(k, n, all) - 1];
+    job_clear(&j);
+    restore(&j);
+    failing_at(p);
+    int code = run(&j, words, &end);
+    failing_at(NULL);
+    const char *wrong = fault(&whole, &j, p, code, &end);
+    points_try(t);
+    if (wrong != NULL)
+      points_lose(t, "%s: %s number %ld: %s; exit %d: %.200s",
+                  scenes[which].kind, failing_name(p->call), p->number, wrong,
+                  code, j.errors);
+    if (wrong != NULL) printf("%s\n", j.errors);
+  }
+  failing_at(NULL);
+  job_end(&j);
+}
+
+START_TEST(call_fails) {
+  points t = {.kind = "calls"};
+  failing_setup();
+  for (int k = 0; k < (int)(sizeof scenes / sizeof *scenes); ++k)
+    try_scene(&t, k);
+  points_end(&t);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("calls");
+  tcase_set_timeout(tests, 100 * UNIT_SECONDS);
+  tcase_add_test(tests, call_fails);
+  return unit_run("calls", tests);
+}
