@@ -5,10 +5,14 @@
  *   nonlocal average   RADIUS below the shortest distance of two contact nodes:
  *                      each node then is its own average, the answer the same
  *   thermal strain     alpha |T - T_I| below SHARE * TOL times the strain of
- * the loads inelastic strain   of a material: its rate under the largest load,
- * over all *VISCO steps, below the same; zero where that load is below the
- * threshold of the law friction           mu below TOL^2, or no lateral
- * expansion (nu = 0), where no motion of a body is held by friction
+ *                      the loads
+ *   inelastic strain   of a material: its rate under the largest load, over all
+ *                      *VISCO steps, below the same; zero where that load is
+ *                      below the threshold of the law
+ *   friction           mu times the increments below (2 SHARE TOL)^2, which the
+ *                      bound may confirm if slip stores a tenth of the energy,
+ *                      or no lateral expansion (nu = 0), where no motion of a
+ *                      body is held by friction
  */
 #include "neglect/parts.h"
 
@@ -211,6 +215,13 @@ static void try_average(model *m, const mesh *msh) {
 
 /* ---- friction ----------------------------------------------------------- */
 
+static double all_increments(const model *m) {
+  double n = 0.0;
+  for (int i = 0; i < m->n_step; ++i)
+    n += neglect_increments(&m->steps[i], m->steps[i].dt);
+  return n;
+}
+
 /* The largest mu given as a number; HUGE_VAL: otherwise, or another law. */
 static double largest_mu(const model *m) {
   double most = 0.0;
@@ -256,8 +267,8 @@ done:
 
 static status try_friction(model *m, const mesh *msh) {
   status st = OK;
-  double mu = largest_mu(m), tol = m->effects_tol;
-  int holds = 0, small = mu <= tol * tol;
+  double mu = largest_mu(m), part = 2.0 * neglect_share * m->effects_tol;
+  int holds = 0, small = mu * all_increments(m) <= part * part;
   if (!(m->effects & EFFECT_FRICTION) || (m->effects & EFFECT_GIVEN) ||
       !(mu < HUGE_VAL) || neglect_has_initial(m))
     goto done;

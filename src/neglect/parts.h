@@ -44,6 +44,8 @@ neglected *neglect_row(model *m, int bit, int id);
 status neglect_try_laws(model *m, const mesh *msh);
 
 int neglect_kinematics(const model *m, int material_id);
+/* Increments of a step if each has dt. */
+double neglect_increments(const step *s, double dt);
 /* threshold.c: elements that stay below the threshold of their law. */
 status neglect_try_threshold(model *m, const mesh *msh);
 

@@ -40,7 +40,7 @@ static int has_threshold(const model *m, int id) {
          neglect_kinematics(m, id) >= 0 && !is_tried(m, id);
 }
 
-static double increments_of(const step *s, double dt) {
+double neglect_increments(const step *s, double dt) {
   return s->kind == STEP_STATIC ? 1.0 : ceil(s->total / dt);
 }
 
@@ -54,8 +54,8 @@ static int is_worth_it(const model *m) {
   int any = 0;
   for (int i = 0; i < m->n_material; ++i) any |= has_threshold(m, i);
   for (int i = 0; i < m->n_step; ++i) {
-    few += increments_of(&m->steps[i], short_step(&m->steps[i]));
-    all += increments_of(&m->steps[i], m->steps[i].dt);
+    few += neglect_increments(&m->steps[i], short_step(&m->steps[i]));
+    all += neglect_increments(&m->steps[i], m->steps[i].dt);
   }
   return any && all >= WORTH * few;
 }

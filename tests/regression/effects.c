@@ -100,49 +100,136 @@ static char *cost_of(const job *j, const char *effect, long *calls,
   return line;
 }
 
-/* A deck that asks for nothing but friction: every other effect is off and has
- * neither calls nor bytes; all are on, and called, once their cards are there.
- */
-START_TEST(effects_are_paid_for_when_called) {
-  static const char *const effects[] = {"thermal strain",
-                                        "body forces",
-                                        "stresses",
-                                        "reactions",
-                                        "theory checks",
-                                        "error of mesh",
-                                        "error of steps",
-                                        "error of solver",
-                                        "table of contact nodes",
-                                        "table of resultants",
-                                        "table of nodes",
-                                        "table of elements",
-                                        "table of energies",
-                                        "table of reactions",
-                                        "table of zones",
-                                        "table of loops",
-                                        "condensed problems",
-                                        "fields in JOB.h5",
-                                        "restart"};
-  job none = block("", bare, "");
-  job all = block(
-      "*EXPANSION\n1.2D-5\n*DENSITY\n7.8D-9\n",
-      "*TEMPERATURE\nBODY, 10.\n*DLOAD\nBODY, GRAV, 9810., 0., -1.\n"
-      "*PRINT, CONTACT, TOTALS, NODES, ELEMENTS, ENERGY, REACTIONS, ZONES, LOOP"
-      "\n*ACCURACY, MESH=YES, TIME=YES, THEORY=YES\n*RESTART\n"
-      "*OUTPUT, CONDENSED=FCLIB\n",
-      "");
-  for (size_t k = 0; k < sizeof effects / sizeof *effects; ++k) {
+/* ---- every row of the plan, every stage ---------------------------------- */
+
+/* The next line of a table of the listing at *at: its name, as padded to width;
+ * 0 at the end of the table. */
+static int next_row(const char **at, int width, char *name) {
+  const char *end = strchr(*at, '\n');
+  if (end == NULL || end == *at)
+    return 0;
+  ck_assert_int_gt(end - *at, 2 + width);
+  snprintf(name, 80, "%.*s", width, *at + 2);
+  for (int k = width; k > 0 && name[k - 1] == ' '; --k)
+    name[k - 1] = '\0';
+  *at = end + 1;
+  return 1;
+}
+
+/* The first row of a table, below its heading, the line under it and that of
+ * the columns. */
+static const char *first_row(const char *text, const char *heading) {
+  char key[80];
+  snprintf(key, sizeof key, "\n%s\n", heading);
+  const char *at = strstr(text, key);
+  ck_assert_msg(at != NULL, "no %s", heading);
+  for (int k = 0; k < 4; ++k)
+    at = strchr(at, '\n') + 1;
+  return at;
+}
+
+/* What is off has neither calls nor bytes; no stage runs but those named. */
+static void check_off(const job *j, const char *const *stages) {
+  char *text = job_file(j, "lst"), name[80];
+  int rows = 0;
+  for (const char *at = first_row(text, "COST OF THE EFFECTS");
+       next_row(&at, 26, name); ++rows) {
     long calls, bytes;
-    char *line = cost_of(&none, effects[k], &calls, &bytes);
-    ck_assert_msg(!is_on(&none, effects[k]), "%s", line);
-    ck_assert_msg(calls == 0 && bytes == 0, "%s", line);
-    free(line);
-    line = cost_of(&all, effects[k], &calls, &bytes);
-    ck_assert_msg(is_on(&all, effects[k]) && calls > 0, "%s", line);
+    char *line = cost_of(j, name, &calls, &bytes);
+    if (strncmp(line + 29, "off", 3) == 0)
+      ck_assert_msg(calls == 0 && bytes == 0, "%s", line);
     free(line);
   }
-  job_end(&none);
-  job_end(&all);
+  ck_assert_int_gt(rows, 30);
+  rows = 0;
+  for (const char *at = first_row(text, "COST"); next_row(&at, 28, name);
+       ++rows) {
+    long bytes;
+    int runs = strcmp(name, "all") == 0;
+    for (int k = 0; stages[k] != NULL; ++k)
+      runs |= strcmp(name, stages[k]) == 0;
+    ck_assert_msg(runs || (job_stage(j, name, &bytes) == 0 && bytes == 0),
+                  "stage '%s' runs", name);
+  }
+  ck_assert_int_gt(rows, 40);
+  free(text);
+}
+
+#define ALWAYS                                                                 \
+  "deck and model", "mesh", "stiffness assembly",                              \
+      "ordering and symbolic factor", "factorisation", "loads",                \
+      "interior solves", "energies", "listing, .sta, .cvg"
+#define TOUCHING "contact surface", "condensed stiffness", "contact solver"
+
+/* One increment of a smooth block, then a path of a rough one. */
+START_TEST(no_stage_runs_uncalled) {
+  static const char *const smooth[] = {ALWAYS, TOUCHING, NULL};
+  static const char *const rough[] = {ALWAYS,
+                                      TOUCHING,
+                                      "sliding limit",
+                                      "history of slip",
+                                      "second solutions, jumps",
+                                      NULL};
+  job j = block("", bare, "-D MU=0 -D DT=1");
+  check_off(&j, smooth);
+  job_end(&j);
+  j = block("", bare, "");
+  check_off(&j, rough);
+  job_end(&j);
+}
+END_TEST
+
+/* 1: a row of that name, a group behind it or not, is on and called. */
+static int is_called(const job *j, const char *effect) {
+  char *text = job_file(j, "lst"), name[80];
+  int called = 0;
+  for (const char *at = first_row(text, "COST OF THE EFFECTS");
+       next_row(&at, 26, name);) {
+    long calls, bytes;
+    if (strncmp(name, effect, strlen(effect)) != 0)
+      continue;
+    char *line = cost_of(j, name, &calls, &bytes);
+    called |= strncmp(line + 29, "on ", 3) == 0 &&
+              (calls > 0 || strstr(line, "part of") != NULL);
+    free(line);
+  }
+  free(text);
+  return called;
+}
+
+/* Each row of the plan is on in one of these decks, and called there. */
+START_TEST(every_effect_is_called_for) {
+  static const char *const decks[][2] = {
+      {"*EXPANSION\n1.2D-5\n*DENSITY\n7.8D-9\n",
+       "*TEMPERATURE\nBODY, 10.\n*DLOAD\nBODY, GRAV, 9810., 0., -1.\n"
+       "*PRINT, CONTACT, TOTALS, NODES, ELEMENTS, ENERGY, REACTIONS, ZONES, "
+       "LOOP\n*ACCURACY, MESH=YES, TIME=YES, THEORY=YES\n*RESTART\n"
+       "*OUTPUT, CONDENSED=FCLIB\n"},
+      {"*INELASTIC, LAW=MAXWELL\n4.\n"
+       "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\nBODY, 1, 0.\n",
+       "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=10.\n0.3\n"
+       "*SOLVER, CHECK=YES\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n"
+       "0.5, 1.\n*END STEP\n*STEP\n*QUASISTATIC, FORM=VELOCITY\n0.5, 1.\n"},
+      {"*REFERENCE\nu_x, 0.\nu_y, 0.\n"
+       "*OBSTACLE, NAME=LID, TYPE=CONFORMING\n"
+       "*CONTACT, NAME=TOP, GROUP=TOP, OBSTACLE=LID\n"
+       "*CONTACT FORCE, CONTACT=TOP\n50.\n",
+       ""}};
+  enum { DECKS = sizeof decks / sizeof *decks };
+  job j[DECKS];
+  for (int k = 0; k < DECKS; ++k)
+    j[k] = block(decks[k][0], decks[k][1], "");
+  char *text = job_file(&j[0], "lst"), name[80];
+  for (const char *at = first_row(text, "COST OF THE EFFECTS");
+       next_row(&at, 26, name);) {
+    int called = 0;
+    for (int k = 0; k < DECKS; ++k)
+      called |= is_called(&j[k], name);
+    ck_assert_msg(called, "'%s' is on in no deck", name);
+  }
+  free(text);
+  for (int k = 0; k < DECKS; ++k)
+    job_end(&j[k]);
 }
 END_TEST
 
@@ -171,7 +258,8 @@ START_TEST(no_friction_no_tangential_unknown) {
                                       "*PRINT, CONTACT\n"
                                       "*OUTPUT, CONDENSED=FCLIB\n"};
   job j[2];
-  for (int k = 0; k < 2; ++k) j[k] = block("", steps[k], "-D MU=0");
+  for (int k = 0; k < 2; ++k)
+    j[k] = block("", steps[k], "-D MU=0");
   long calls, bytes;
   char *line = cost_of(&j[0], "tangential unknowns", &calls, &bytes);
   ck_assert_msg(!is_on(&j[0], "tangential unknowns"), "%s", line);
@@ -182,7 +270,8 @@ START_TEST(no_friction_no_tangential_unknown) {
   ck_assert_double_eq(job_told(&j[1], "contact_unknowns"), 18.0);
   ck_assert_double_le(apart(&j[0], &j[1], lengths), 1e-12);
   ck_assert_double_le(apart(&j[0], &j[1], forces), 1e-12);
-  for (int k = 0; k < 2; ++k) job_end(&j[k]);
+  for (int k = 0; k < 2; ++k)
+    job_end(&j[k]);
 }
 END_TEST
 
@@ -225,7 +314,8 @@ START_TEST(calls_are_as_foreseen) {
       char *end = strchr(at, '}'), *calls = strstr(at, "\"expected_calls\": ");
       sum += strtod(strchr(at, ':') + 1, NULL);
       at = end;
-      if (calls == NULL || calls > end) continue;
+      if (calls == NULL || calls > end)
+        continue;
       expected = strtod(strchr(calls, ':') + 1, NULL);
       calls = strstr(calls, "\"calls\": ");
       counted = strtod(strchr(calls, ':') + 1, NULL);
@@ -261,6 +351,7 @@ START_TEST(no_timing_leaves_calls_alone) {
 END_TEST
 
 UNIT_MAIN("effects", check_prints_the_plan_of_the_listing,
-          plan_names_file_and_line, effects_are_paid_for_when_called,
-          no_friction_no_tangential_unknown, nothing_rubs_no_loop_one_factor,
-          calls_are_as_foreseen, no_timing_leaves_calls_alone)
+          plan_names_file_and_line, no_stage_runs_uncalled,
+          every_effect_is_called_for, no_friction_no_tangential_unknown,
+          nothing_rubs_no_loop_one_factor, calls_are_as_foreseen,
+          no_timing_leaves_calls_alone)
