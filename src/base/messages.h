@@ -406,7 +406,12 @@
   X(4016, WARNING, "made nearly incompressible by creep",                    \
     "A body that creeps loses its shear stiffness and keeps its volume: "    \
     "linear triangles and tetrahedra become too stiff as near nu = 1/2 "     \
-    "(P2055). FORMULATION=AVERAGED of *SOLID SECTION does not lock.")
+    "(P2055). FORMULATION=AVERAGED of *SOLID SECTION does not lock.")         \
+  X(4017, WARNING, "element without a state at the end of an increment",     \
+    "The rates of the law grow so fast with the stress that its equations "  \
+    "cannot be solved over this increment. Let dt_min of *VISCO be smaller, "\
+    "so that increments are cut further, or give the law a smaller exponent " \
+    "n or a larger K: what is left of (stress/K)^n must be a number.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

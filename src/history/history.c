@@ -4,6 +4,7 @@
  */
 #include "accuracy/verdict.h"
 #include "history/loop.h"
+#include "run/visco.h"
 
 #include "base/interrupt.h"
 #include "base/memory.h"
@@ -122,7 +123,9 @@ static status note_misfit(run *r) {
   status st = OK;
   char text[400];
   size_t used = strlen(r->note);
-  if (r->n == 0 || r->report.outcome > 0) goto done;
+  if (r->report.outcome > 0) goto done;
+  visco_warn_stuck(r);
+  if (r->n == 0) goto done;
   TRY(verdict_misfit(&r->cp, r->surface, run_rows(r, 0, r->now.uc),
                      run_rows(r, 1, r->now.rc), text, sizeof text));
   if (text[0] != '\0')

@@ -273,6 +273,22 @@ void visco_warn_locking(run *r) {
               100.0 * model_locking_error(nu, FINE), FINE);
 }
 
+void visco_warn_stuck(run *r) {
+  visco *v = r->visco;
+  if (v == NULL || v->result.stuck == 0 || v->told_stuck) return;
+  const int e = v->elem[v->result.stuck - 1];
+  const material *mat = run_material(r, e);
+  v->told_stuck = 1;
+  message_add(r->m->log, P4017, &r->step->at,
+              "step %d, time %g: law %s of material %s finds no state of "
+              "element %zu (group %s) at the end of an increment of %g: its "
+              "rates grow too fast with the stress; give a smaller dt_min, a "
+              "smaller exponent or a larger K; the increment is not settled",
+              run_step_id(r) + 1, r->now.t, mat->law.ops->name, mat->name,
+              r->msh->elem_no[e], r->m->sections[r->m->elem_section[e]].elset,
+              r->now.t - r->old.t);
+}
+
 /* Works and energies of point k. */
 static inline void add_works(int ns, const run *r, int k, point_sums *sum) {
   const visco *v = r->visco;

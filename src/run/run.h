@@ -29,6 +29,8 @@ typedef struct equilibrium {
   double *e0, *sigma;  /* [ns*n] all their strains without stress; Pa         */
   double *elastic;     /* [ns*n] the rest; NULL: moduli stay                  */
   energies energy;
+  double peak_energy, peak_stress; /* J, of the strains, Pa; largest so far,
+                                      the stress where rounding was looked at */
   double kept; /* J, of what elastic constants stand for                     */
 } equilibrium;
 

@@ -659,6 +659,8 @@ static status keep_equilibrium(const run *r, equilibrium *e, archive *a) {
   TRY(archive_reals(a, "elastic_strain", e->elastic,
                     e->elastic == NULL ? 0 : strains));
   TRY(archive_bytes(a, "energy", &e->energy, sizeof e->energy));
+  TRY(archive_reals(a, "peak_energy", &e->peak_energy, 1));
+  TRY(archive_reals(a, "peak_stress", &e->peak_stress, 1));
 done:
   return st;
 }

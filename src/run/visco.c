@@ -375,6 +375,7 @@ status visco_keep(run *r, archive *a) {
   TRY(archive_ints(a, "told", &told, 1));
   v->told = told ? r->step : NULL;
   TRY(archive_ints(a, "told_locking", &v->told_locking, 1));
+  TRY(archive_ints(a, "told_stuck", &v->told_stuck, 1));
   TRY(tangent_keep(r, a));
 done:
   archive_leave(a);

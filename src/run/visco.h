@@ -51,6 +51,7 @@ struct visco {
   double largest;    /* largest norm of the elastic strains so far        */
   const step *told;  /* step whose ringing has been told                  */
   int told_locking;  /* 1: P4016 has been told                            */
+  int told_stuck;    /* 1: P4017 has been told                            */
 };
 
 /* Where the components of item k start among [ns*n]. */
@@ -95,6 +96,9 @@ void visco_part_strains(run *r, const visco_part *p);
 status visco_part_sums(run *r, const visco_part *p);
 /* Warns, once, when v->now has crept until its elements lock. */
 void visco_warn_locking(run *r);
+/* points.c: the first increment that is taken though the law of an element has
+ * found no state is told. */
+void visco_warn_stuck(run *r);
 
 /* tangent.c: equilibrium of r->now with the linear law of the points, with a
  * matrix of that tangent; read r->report. */

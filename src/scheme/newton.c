@@ -69,6 +69,7 @@ static status follow_point(const scheme_call *a, int k, room *r, double *D) {
     TRY(follow_map(a, k, r));
   else if (!rests)
     point_step_solve(a->p, sigma_old, l, &a->out->settled);
+  a->out->stuck = a->out->settled ? 0 : k + 1;
   if (!a->out->settled) goto done;
   point_step_place(a->p, sigma_old, l->y, l);
   if (D == NULL) goto done;

@@ -128,6 +128,8 @@ typedef struct scheme_step {
 
 typedef struct scheme_result {
   int settled;       /* 0: no answer to go on with                            */
+  int stuck;         /* point without a state at the end of the step, from 1;
+                        0: it was not for a point                             */
   int iterations;    /* linear solves of an implicit step                     */
   double error;      /* estimate of the strain error, root mean square; < 0:
                         the scheme has none of its own                        */

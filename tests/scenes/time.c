@@ -32,6 +32,15 @@
   "*BOUNDARY\nLEFT, 1\nCORNER, 2\nRIGHT, 1, 1, -0.001\n" END                 \
   VISCO(words, "1.", "10.") "*PRINT, CONTACT, NODES, ENERGY, ELEMENTS, "     \
   "FREQUENCY=0\n*END STEP\n"
+/* One layer on the other under a pressure of 1; the lower relaxes in 1. */
+#define SINKS(dt) \
+  "*MATERIAL, NAME=S\n*ELASTIC\n1000., 0.\n*INELASTIC, LAW=MAXWELL, "       \
+  "TYPE=PROPORTIONAL\n1.\n*MATERIAL, NAME=H\n*ELASTIC\n1000., 0.\n"        \
+  "*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n"                                \
+  "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n" FLOOR("0.3") STATIC            \
+  "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n*END STEP\n"                   \
+  VISCO("INTEGRATOR=BACKWARD", dt, dt) "*PRINT, CONTACT, NODES, ENERGY, "    \
+  "ELEMENTS, FREQUENCY=0\n*END STEP\n"
 #define LAYER_STRESS "ELEMENTS stress_xx = if(y < 0.5, 0, -1) ~ 1e-9"
 #define STRESS(value, tol) "ELEMENTS stress_yy = -(" value ") ~ " tol
 
@@ -78,6 +87,15 @@ const scene_row time_scenes[] = {
    .mesh = "rect 4 4 1 1 layers", .verdict = 2,
    .deck = DECADES("INTEGRATOR=HEUN"),
    .expect = "errors has P2050"},
+  {.name = "sinks by 1e9 elastic strains", .hard = "seven digits left",
+   .mesh = "rect 6 8 1 1 layers", .deck = SINKS("1.E9"), .flags = QUICK,
+   .expect = "ELEMENTS stress_yy = -1 ~ 1e-5; lst has rounding:"},
+  {.name = "sinks by 1e13 elastic strains", .hard = "two digits left",
+   .mesh = "rect 6 8 1 1 layers", .deck = SINKS("1.E13"), .flags = NO_LAWS,
+   .expect = "ELEMENTS stress_yy = -1 ~ 0.03; lst has E-001 % of the largest"},
+  {.name = "sinks by 1e16 elastic strains", .hard = "no digit left",
+   .mesh = "rect 6 8 1 1 layers", .deck = SINKS("1.E16"), .flags = QUICK,
+   .verdict = 6, .expect = "errors has rounding leaves no digit"},
   {.name = "Euler at 1.99 tau", .hard = "just stable",
    .mesh = "rect 2 2 1 1",
    .deck = RELAXES("INTEGRATOR=EULER", "3.98", "398."),
