@@ -268,18 +268,24 @@ format:
 	$(Q)clang-format-14 --style=file:tools/clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] tests/*/*.[ch])
 
 # Hostile input for every reader; needs clang-14 and libclang-rt-14-dev, no part
-# of the tests. The corpora are kept in build/fuzz.
+# of the tests. Seeds stand in tests/fuzz/seeds, those of the deck are the
+# examples too; what is found on the way is kept in build/fuzz. FUZZ=: some.
 FUZZ_SECONDS ?= 60
-fuzzers    := $(patsubst tests/fuzz/%.c,build/fuzz/%,$(wildcard tests/fuzz/*.c))
-fuzz_flags := -std=c11 -g -O1 -fno-sanitize-recover=all
-fuzz_lib   := $(sources:%.c=build/fuzz/%.o) build/fuzz/tests/support/fuzz_file.o
+FUZZ       ?= $(patsubst tests/fuzz/%.c,%,$(wildcard tests/fuzz/*.c))
+fuzzers    := $(FUZZ:%=build/fuzz/%)
+fuzz_lib   := build/fuzz/libprotis.a
+fuzz_c     := $(CPPFLAGS) -Itests -std=c11 -g -O2 -fno-sanitize-recover=all
+fuzz_run   := -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=1000 \
+              -entropic=0 -print_final_stats=1
 
 .PHONY: fuzz
 fuzz: $(fuzzers)
-	$(Q)for f in $(fuzzers); do mkdir -p $$f.corpus; \
-	  case $$f in *deck) cp input/*/*.inp $$f.corpus;; esac; \
-	  $$f -max_total_time=$(FUZZ_SECONDS) -max_len=4096 -timeout=10 \
-	    -rss_limit_mb=1000 -print_final_stats=1 $$f.corpus > $$f.log 2>&1 || \
+	$(Q)for f in $(fuzzers); do mkdir -p $$f.corpus; length=4096; \
+	  case $$f in \
+	    *number) length=64;; *expression) length=96;; \
+	    *deck) cp input/*/*.inp $$f.corpus;; esac; \
+	  $$f $(fuzz_run) -max_len=$$length $$f.corpus \
+	    tests/fuzz/seeds/$${f##*/} > $$f.log 2>&1 || \
 	    { tail -n 40 $$f.log; exit 1; }; \
 	  echo "$$f: $$(grep number_of_executed_units $$f.log)"; \
 	done
@@ -287,13 +293,18 @@ fuzz: $(fuzzers)
 build/fuzz/%.o: %.c
 	@mkdir -p $(@D)
 	@echo "  CC   $<"
-	$(Q)clang-14 $(CPPFLAGS) -Itests $(fuzz_flags) -MMD -MP \
+	$(Q)clang-14 $(fuzz_c) -MMD -MP \
 	  -fsanitize=fuzzer-no-link,address,undefined -c $< -o $@
+
+# Counters of code that a fuzzer cannot reach would be looked at each time.
+$(fuzz_lib): $(sources:%.c=build/fuzz/%.o) build/fuzz/tests/support/fuzz_file.o
+	@echo "  AR   $@"
+	$(Q)rm -f $@ && ar rcs $@ $^
 
 build/fuzz/%: tests/fuzz/%.c $(fuzz_lib)
 	@echo "  FUZZ $<"
-	$(Q)clang-14 $(CPPFLAGS) -Itests $(fuzz_flags) \
-	  -fsanitize=fuzzer,address,undefined $^ $(LDLIBS) -o $@
+	$(Q)clang-14 $(fuzz_c) -fsanitize=fuzzer,address,undefined $^ $(LDLIBS) \
+	  -o $@
 
 clean:
 	rm -rf build

@@ -7,10 +7,12 @@
 #include "inform.h"
 #include "keyword/keyword.h"
 
+#include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* ---- who wrote it -------------------------------------------------------- */
 
@@ -300,10 +302,17 @@ static status read_either(const char *path, const char *before, archive **a) {
             before);
     return OK;
   }
-  return status_fail(st, __func__, __LINE__,
-                     "--restart: %s; a run writes it where *RESTART asks for "
-                     "it and when it is interrupted",
-                     why);
+  return status_fail(st, __func__, __LINE__, "--restart: %s", why);
+}
+
+/* A run that ended before its first increment leaves none. */
+static int is_none(const char *path, const char *before) {
+  if (access(path, F_OK) == 0 || errno != ENOENT) return 0;
+  if (access(before, F_OK) == 0 || errno != ENOENT) return 0;
+  fprintf(stderr,
+          "protis: warning: --restart: there is no %s; the run begins anew\n",
+          path);
+  return 1;
 }
 
 status restart_read(const command *c, const job_input *in, archive **out) {
@@ -324,6 +333,7 @@ status restart_read(const command *c, const job_input *in, archive **out) {
            "--restart: the theorems of *ACCURACY are checked over a "
            "whole run; such a job starts anew");
   TRY(file_names(c, in->m, &path, &before));
+  if (is_none(path, before)) goto done;
   TRY(read_either(path, before, out));
   TRY(check_job(c, in, *out, path));
   TRY(tell_warnings(in, *out));

@@ -60,7 +60,6 @@ static void edit(const job *j, const char *from, const char *to) {
 static job stopped_at(int tenths) {
   int changes, all;
   job j = small_flat(0.4, "", "AUTO");
-  refused(&j, 4, "cannot read");
   run_until(&j, nothing, 0, 0, &all);
   ck_assert_int_eq(run_until(&j, nothing, all * tenths / 10, SIGINT, &changes),
                    130);
@@ -107,6 +106,22 @@ START_TEST(later_steps_may_change) {
        "*RESTART\n");
   goes_on(&j, 0, "solver and output of a later step");
   ck_assert(job_has(&j, "rst.h5"));
+  job_end(&j);
+}
+END_TEST
+
+/* Stopped before any increment. */
+START_TEST(run_without_a_file_begins_anew) {
+  int changes;
+  job whole = small_flat(0.4, "*RESTART\n", "AUTO");
+  job j = small_flat(0.4, "*RESTART\n", "AUTO");
+  ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &changes), 0);
+  ck_assert_int_eq(run_until(&j, nothing, 9, SIGTERM, &changes), 143);
+  ck_assert(!job_has(&j, "rst.h5"));
+  goes_on(&j, 0, "from nothing");
+  ck_assert_ptr_nonnull(strstr(j.errors, "block.rst.h5; the run begins anew"));
+  same_files(&whole, &j, "from nothing");
+  job_end(&whole);
   job_end(&j);
 }
 END_TEST
@@ -161,4 +176,5 @@ START_TEST(damaged_files_are_refused) {
 END_TEST
 
 UNIT_MAIN("restart", changed_decks_are_refused_by_card, later_steps_may_change,
-          some_jobs_start_anew, damaged_files_are_refused)
+          run_without_a_file_begins_anew, some_jobs_start_anew,
+          damaged_files_are_refused)

@@ -5,8 +5,7 @@
  *
  * The run ends with a message that names a file and exit code 4 (or 5: no
  * memory), or it did without and all files are those of an undisturbed run.
- * After a failure --restart gives these files too, as soon as there was a
- * restart file.
+ * After a failure --restart gives these files too.
  */
 #include "support/kept_mesh.h"
 #include "support/points.h"
@@ -40,14 +39,8 @@ static const struct {
 /* NULL, or what is wrong after the restart of a run that failed. */
 static const char *restart_fault(const job *whole, job *j) {
   traced quiet = {.action = TRACE_COUNT};
-  int there = job_has(j, "rst.h5") || job_has(j, "rst.old.h5");
-  int code = traced_run(j, again, &quiet);
-  if (code == 0)
-    return traced_difference(whole, j) == NULL ? NULL : "restart: wrong files";
-  if (there) return "restart: exit code";
-  return code == 4 && strstr(j->errors, "cannot read") != NULL
-             ? NULL
-             : "restart without a file: exit code";
+  if (traced_run(j, again, &quiet) != 0) return "restart: exit code";
+  return traced_difference(whole, j) == NULL ? NULL : "restart: wrong files";
 }
 
 static const char *fault(const job *whole, job *j, int code) {

@@ -1,7 +1,7 @@
 /*
  * kill -9 at changes of files: what JOB.sta tells stands in JOB.h5, and
  * --restart, killed itself or not, ends with the files of a run that nobody
- * disturbed, as soon as there was a restart file.
+ * disturbed.
  */
 #include "support/kept_mesh.h"
 #include "support/points.h"
@@ -59,9 +59,7 @@ static int run(job *j, const char *const *words, int at, int *changes) {
 
 /* To the end from what a killed run left; NULL or what is wrong. */
 static const char *go_on(const job *whole, job *j) {
-  int there = can_restart(j), code = run(j, again, 0, NULL);
-  if (!there && code == 4) return NULL;
-  if (code != 0) return "restart: exit code";
+  if (run(j, again, 0, NULL) != 0) return "restart: exit code";
   return traced_difference(whole, j) == NULL ? NULL : "wrong files";
 }
 
