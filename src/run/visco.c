@@ -370,6 +370,8 @@ status visco_keep(run *r, archive *a) {
   TRY(visco_keep_flow(&v->x, &v->old, a, "old"));
   TRY(visco_keep_flow(&v->x, &v->now, a, "now"));
   TRY(archive_reals(a, "largest", &v->largest, 1));
+  TRY(archive_reals(a, "length", v->length, SLOTS));
+  TRY(archive_bytes(a, "n_length", &v->n_length, sizeof v->n_length));
   TRY(archive_reals(a, "asked", &v->x.tally->asked, 1));
   TRY(archive_reals(a, "resting", &v->x.tally->resting, 1));
   TRY(archive_ints(a, "told", &told, 1));

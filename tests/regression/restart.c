@@ -110,6 +110,26 @@ START_TEST(later_steps_may_change) {
 }
 END_TEST
 
+/* Adapted increments come back to lengths of before but for the rounding of the
+ * times; a run that goes on takes them for the same ones too. */
+START_TEST(adapted_increments_go_on) {
+  int changes, all;
+  const char *words = "INTEGRATOR=MIDPOINT, TOLERANCE=1E-4";
+  job both[2];
+  for (int k = 0; k < 2; ++k) {
+    both[k] = small_creep(0.1, "", words);
+    edit(&both[k], "MAXWELL\n4.\n", "NORTON\n1E-8, 3.\n");
+    edit(&both[k], "0.5, 4.\n*ACCURACY, TIME=YES\n", "0.1, 2.\n");
+  }
+  ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
+  ck_assert_int_eq(run_until(&both[1], nothing, all / 4, SIGINT, &changes),
+                   130);
+  goes_on(&both[1], 0, words);
+  same_files(&both[0], &both[1], words);
+  for (int k = 0; k < 2; ++k) job_end(&both[k]);
+}
+END_TEST
+
 /* Stopped before any increment. */
 START_TEST(run_without_a_file_begins_anew) {
   int changes;
@@ -176,5 +196,5 @@ START_TEST(damaged_files_are_refused) {
 END_TEST
 
 UNIT_MAIN("restart", changed_decks_are_refused_by_card, later_steps_may_change,
-          run_without_a_file_begins_anew, some_jobs_start_anew,
-          damaged_files_are_refused)
+          adapted_increments_go_on, run_without_a_file_begins_anew,
+          some_jobs_start_anew, damaged_files_are_refused)
