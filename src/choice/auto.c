@@ -171,7 +171,7 @@ static status short_try(contact_solver *s, const contact_problem *cp,
   memset(s->param, 0, s->param_size);
   option_defaults(ops->options, s->param);
   TRY(attempt_run(s, cp, &a, listener, to->u, to->r, to->rep));
-  attempt_judge(cp, s->choice.tol, to->u, to->r, to->rep);
+  attempt_judge(s, cp, to->u, to->r, to->rep);
 done:
   return st;
 }
@@ -238,7 +238,7 @@ static status solve_normal(contact_solver *s, const contact_problem *cp,
   TRY(normal_form_opened(&s->normal, cp, &control, u, r, rep));
   rep->iterations += before;
   if (rep->outcome == CONVERGED) {
-    attempt_judge(cp, s->choice.tol, u, r, rep);
+    attempt_judge(s, cp, u, r, rep);
     *done_well = rep->outcome == CONVERGED;
     if (*done_well) goto done;
   }
@@ -246,7 +246,7 @@ static status solve_normal(contact_solver *s, const contact_problem *cp,
   TRY(normal_form_solve(&s->normal, cp, &control, u, r, rep));
   rep->iterations += before;
   if (rep->outcome != CONVERGED) goto done;
-  attempt_judge(cp, s->choice.tol, u, r, rep);
+  attempt_judge(s, cp, u, r, rep);
   *done_well = rep->outcome == CONVERGED;
 done:
   return st;
@@ -268,8 +268,7 @@ static status run_link(contact_solver *s, const contact_problem *cp, int i,
     TRY(promising_sweeps(s, cp, a.max_iter, listener, &(answer){u, r, rep}));
   else
     TRY(attempt_run(s, cp, &a, listener, u, r, rep));
-  if (rep->outcome != STOPPED_UNFIT)
-    attempt_judge(cp, s->choice.tol, u, r, rep);
+  if (rep->outcome != STOPPED_UNFIT) attempt_judge(s, cp, u, r, rep);
   if (i > 0 || rep->outcome != CONVERGED) note(s, rep, &a);
 done:
   return st;

@@ -312,6 +312,7 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
     log_unfit(s, a->ops->name, why);
     goto done;
   }
+  if (own.A == cp->A && own.W == cp->W) control.scale = s->scale;
   if (s->work[row] == NULL) {
     TRY(a->ops->setup(&own, a->param, &s->work[row]));
     TRY(remember(s, row));
@@ -329,12 +330,12 @@ done:
   return st;
 }
 
-void attempt_judge(const contact_problem *cp, double tol, const double *u,
-                   const double *r, solver_report *rep) {
-  rep->residual = contact_residual(cp, u, r);
+void attempt_judge(const contact_solver *s, const contact_problem *cp,
+                   const double *u, const double *r, solver_report *rep) {
+  rep->residual = contact_residual_at(cp, s->scale, u, r);
   if (isnan(rep->residual))
     rep->outcome = STOPPED_NAN;
-  else if (rep->residual <= tol)
+  else if (rep->residual <= s->choice.tol)
     rep->outcome = CONVERGED;
   else if (rep->outcome >= 0)
     rep->outcome = STOPPED_STAGNATION;
@@ -358,22 +359,22 @@ void cold_start(const contact_problem *cp, double *u, double *r) {
 }
 
 /* 1: the answer is known without a solver: no node, no load, start solves. */
-static int known_answer(const contact_problem *cp, double tol, double *u,
-                        double *r, solver_report *rep) {
+static int known_answer(const contact_solver *s, const contact_problem *cp,
+                        double *u, double *r, solver_report *rep) {
+  double tol = s->choice.tol, scale = s->scale;
   *rep = (solver_report){.outcome = CONVERGED, .solver = "none"};
   if (cp->m == 0) return 1;
-  rep->residual = contact_residual(cp, u, r);
+  rep->residual = contact_residual_at(cp, scale, u, r);
   if (rep->residual <= tol) return 1;
-  double scale = contact_scale(cp);
   if (scale == 0.0) {
     memset(u, 0, (size_t)cp->m * sizeof *u);
     memset(r, 0, (size_t)cp->m * sizeof *r);
-    rep->residual = contact_residual(cp, u, r);
+    rep->residual = contact_residual_at(cp, scale, u, r);
     return rep->residual <= tol;
   }
   if (isnan(rep->residual)) {
     cold_start(cp, u, r);
-    rep->residual = contact_residual(cp, u, r);
+    rep->residual = contact_residual_at(cp, scale, u, r);
   }
   if (isnan(rep->residual) || !(scale < HUGE_VAL)) {
     rep->outcome = STOPPED_NAN;
@@ -386,12 +387,13 @@ static int known_answer(const contact_problem *cp, double tol, double *u,
 static status polish(const contact_solver *s, const contact_problem *cp,
                      double *u, double *r, solver_report *rep) {
   status st = OK;
-  int sweeps = 0, touched, asked = s->choice.max_iter;
+  double tol = s->choice.tol;
+  int sweeps = 0, asked = s->choice.max_iter;
   int most = asked > 0 ? asked - rep->iterations : INT_MAX;
-  TRY(polish_touch(cp, s->choice.tol, u, r, &touched));
-  TRY(polish_slip(cp, s->choice.tol, most, u, r, &sweeps));
+  TRY(polish_touch(cp, s->scale, tol, u, r, &rep->residual));
+  TRY(polish_slip(cp, tol, most, u, r, &sweeps));
   rep->iterations += sweeps;
-  if (sweeps > 0 || touched) rep->residual = contact_residual(cp, u, r);
+  if (sweeps > 0) rep->residual = contact_residual_at(cp, s->scale, u, r);
 done:
   return st;
 }
@@ -403,14 +405,15 @@ status contact_solve(contact_solver *s, const contact_problem *cp,
   double start = timer_cpu();
   s->log[0] = '\0';
   *rep = (solver_report){.outcome = RUNNING};
-  if (known_answer(cp, s->choice.tol, u, r, rep)) goto done;
+  s->scale = contact_scale(cp);
+  if (known_answer(s, cp, u, r, rep)) goto done;
   TRY(fit(s, cp));
   if (s->choice.ops == NULL) {
     TRY(auto_solve(s, cp, listener, u, r, rep));
   } else {
     attempt a = {s->choice.ops, s->choice.param, PLAIN, s->choice.max_iter};
     TRY(attempt_run(s, cp, &a, listener, u, r, rep));
-    attempt_judge(cp, s->choice.tol, u, r, rep);
+    attempt_judge(s, cp, u, r, rep);
   }
   if (rep->outcome == CONVERGED) TRY(polish(s, cp, u, r, rep));
 done:

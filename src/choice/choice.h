@@ -31,6 +31,7 @@ struct contact_solver {
   anchor held; /* springs for a body that contact alone holds                 */
   normal_form normal;
   double *best_u, *best_r; /* [m] of the attempt with the lowest residual     */
+  double scale;   /* contact_scale of the problem being solved               */
   archive *from;  /* borrowed: what the works are to remember; or NULL        */
   char group[80]; /* in it                                                    */
 };
@@ -52,8 +53,8 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
                    const attempt *a, const solver_listener *listener, double *u,
                    double *r, solver_report *rep);
 /* The verdict: only the residual of the given problem counts. */
-void attempt_judge(const contact_problem *cp, double tol, const double *u,
-                   const double *r, solver_report *rep);
+void attempt_judge(const contact_solver *s, const contact_problem *cp,
+                   const double *u, const double *r, solver_report *rep);
 /* Start without any knowledge: stick, no penetration; r = A u - f. */
 void cold_start(const contact_problem *cp, double *u, double *r);
 

@@ -98,16 +98,18 @@ static int touch(const contact_problem *cp, const double *u, const double *r,
   return 1;
 }
 
-status polish_touch(const contact_problem *cp, double tol, double *u, double *r,
-                    int *changed) {
+status polish_touch(const contact_problem *cp, double scale, double tol,
+                    double *u, double *r, double *residual) {
   status st = OK;
   size_t bytes = (size_t)cp->m * sizeof *u;
   double *v = NULL, *s = NULL, *way = NULL;
   NEW(v, cp->m);
   NEW(s, cp->m);
   NEW(way, cp->m);
-  *changed = touch(cp, u, r, v, s, way) && contact_residual(cp, v, s) <= tol;
-  if (!*changed) goto done;
+  if (!touch(cp, u, r, v, s, way)) goto done;
+  double reached = contact_residual_at(cp, scale, v, s);
+  if (!(reached <= tol)) goto done;
+  *residual = reached;
   memcpy(u, v, bytes);
   memcpy(r, s, bytes);
 done:

@@ -34,10 +34,10 @@ status polish_slip(const contact_problem *cp, double tol, int most, double *u,
 
 /*
  * Put the nodes that are pressed or stick exactly where the obstacle has them,
- * if the residual stays at tol; u[m], r[m] are else left as they are. *changed:
- * 1 if they were not there.
+ * if the residual stays at tol; u[m], r[m] are else left as they are. scale:
+ * contact_scale; *residual: becomes that of the answer if it is changed.
  */
-status polish_touch(const contact_problem *cp, double tol, double *u, double *r,
-                    int *changed);
+status polish_touch(const contact_problem *cp, double scale, double tol,
+                    double *u, double *r, double *residual);
 
 #endif

@@ -257,13 +257,18 @@ static double equation_defect(const contact_problem *cp, const double *u,
   return worst;
 }
 
-double contact_residual(const contact_problem *cp, const double *u,
-                        const double *r) {
-  double scale = contact_scale(cp), worst = contact_mismatch(cp, u, r);
+double contact_residual_at(const contact_problem *cp, double scale,
+                           const double *u, const double *r) {
+  double worst = contact_mismatch(cp, u, r);
   worst = larger(worst, equation_defect(cp, u, r));
   if (isnan(worst) || isnan(scale)) return NAN;
   if (scale > 0.0) return worst / scale;
   return worst > 0.0 ? HUGE_VAL : 0.0;
+}
+
+double contact_residual(const contact_problem *cp, const double *u,
+                        const double *r) {
+  return contact_residual_at(cp, contact_scale(cp), u, r);
 }
 
 /* ---- status ------------------------------------------------------------ */

@@ -87,6 +87,9 @@ double contact_mismatch(const contact_problem *cp, const double *u,
  */
 double contact_residual(const contact_problem *cp, const double *u,
                         const double *r);
+/* The same where contact_scale is known: it costs two products. */
+double contact_residual_at(const contact_problem *cp, double scale,
+                           const double *u, const double *r);
 /* Single unknowns: 1 if prescribed; the bound from above (gap, or side_gap;
  * HUGE_VAL: none), m; the position of stick, m, of a tangential unknown. */
 int contact_held(const contact_problem *cp, int dof);

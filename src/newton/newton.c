@@ -252,7 +252,8 @@ static void begin(run *s) {
   s->st->cp = cp;
   s->st->u = s->u;
   s->st->r = s->r;
-  s->st->scale = contact_scale(cp);
+  s->st->scale =
+      s->control->scale > 0.0 ? s->control->scale : contact_scale(cp);
   s->st->careful = 0;
   s->st->dice = 0;
   memset(s->st->guess.closed, 0, (size_t)cp->m);

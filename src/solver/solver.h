@@ -41,6 +41,7 @@ typedef struct solver_control {
   double tol;         /* wanted contact_residual, -                          */
   int max_iter;       /* 0: the solver's own limit                           */
   int limit_max_iter; /* passes of a fixed point on g; 0: 200           */
+  double scale;       /* contact_scale; 0: not known                         */
   int no_restart;     /* 1: give up rather than start anew from another guess */
   int limit_update;   /* pass now running, for the listener             */
   const solver_listener *listener; /* or NULL                                 */
