@@ -188,8 +188,8 @@ torture: $(program) $(preload) $(tort) $(out)/tests/unit/conformance \
 .PHONY: coverage
 coverage:
 	$(Q)find build/cover -name '*.gcda' -delete 2>/dev/null || true
-	$(Q)$(MAKE) --no-print-directory BUILD=cover -k unit regression \
-	  torture-slice; tools/coverage build/cover
+	$(Q)PROTIS_CALLS=all $(MAKE) --no-print-directory BUILD=cover -k unit \
+	  regression torture-slice; tools/coverage build/cover
 
 # Hard cases: the matrix of scenes (SCENE=name: those alone), every other
 # program of tests/stability, and the long run of the conformance test.

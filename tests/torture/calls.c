@@ -2,7 +2,8 @@
  * Calls of the C library and of HDF5 that fail, in small runs of every kind:
  * memory refused, files that cannot be opened, written, closed, renamed,
  * objects of HDF5 that cannot be made. Each way on which a failure is handed up
- * is gone once (preload/failing.h); the tests of every day try some of them.
+ * is gone once (preload/failing.h); the tests of every day try some of them,
+ * with PROTIS_CALLS in the environment all.
  *
  * The run ends with the exit code of what failed (5 memory; 2, 3, 4 the deck,
  * the mesh, another file) and a message, or it did without and its files are
@@ -176,7 +177,7 @@ static void try_scene(points *t, int which) {
   failing_watch();
   ck_assert_msg(run(&j, words, &end) == 0, "%s", j.errors);
   int all = failing_points(&list);
-  long n = points_number(10, 0.02);
+  long n = getenv("PROTIS_CALLS") != NULL ? all : points_number(10, 0.02);
   for (long k = 0; k < n && k < all; ++k) {
     const failing_point *p = &list[points_spread(k, n, all) - 1];
     job_clear(&j);
