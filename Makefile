@@ -130,8 +130,8 @@ $(out)/tests/regression/examples: | $(out)/tests/preload/traps.so
 
 # Calls that fail: listed in a header, put in the place of the real ones.
 failing  := $(out)/tests/preload/failing.o $(out)/tests/preload/main.o
-wrapped  := open child_run \
-            $(shell sed -n '/^  X./{s/^  X.//;s/,.*//p}' \
+wrapped  := child_run \
+            $(shell sed -n '/^  X./{s/^  X.//;s/[^A-Za-z0-9_].*//p}' \
               tests/preload/failing.h)
 $(out)/tests/torture/calls: $(failing)
 $(out)/tests/torture/calls: LDFLAGS += $(wrapped:%=-Wl$(comma)--wrap=%)

@@ -427,7 +427,8 @@ static status row_gap(const contact_surface *s, const contact_pair *p, int i,
   *gap = obstacle_gap(p->support, dim, &s->x[dim * i],
                       &s->frame[dim * dim * i + dim * k], t);
   if (isnan(*gap) || *gap == -HUGE_VAL)
-    FAIL(ERR_DECK, "*CONTACT %s: gap is %g at node %zu, time %g", p->name, *gap,
+    FAIL(ERR_DECK, "%s:%d: *CONTACT %s: gap is %g at node %zu, time %g",
+         p->at.file != NULL ? p->at.file : "", p->at.line_no, p->name, *gap,
          s->node_no[i], t);
   if (*gap == HUGE_VAL) *gap = reach;
 done:

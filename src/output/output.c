@@ -498,7 +498,6 @@ static status read_increments(output *o, archive *a) {
       s->solutions[k] = o->facts[next++];
   }
 done:
-  if (run->increments == NULL) run->n_increment = 0;
   return st;
 }
 
@@ -547,6 +546,7 @@ static status open_earlier(output *o) {
   TRY(tabular_open(o->m, o->msh, o->o.dir, ends.dat, &o->dat));
   TRY(open_hdf5(o, ends.has_h5 ? &ends.h5 : NULL));
 done:
+  if (o->run.increments == NULL) o->run.n_increment = 0;
   archive_leave(a);
   return st;
 }

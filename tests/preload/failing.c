@@ -3,12 +3,15 @@
  */
 #include "preload/failing.h"
 
+#include "base/interrupt.h"
 #include "base/memory.h"
 
 #include <check.h>
 #include <errno.h>
 #include <execinfo.h>
 #include <fcntl.h>
+#include <inttypes.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,15 +24,15 @@ typedef enum failing_mode { OFF, WATCHED, FAILING } failing_mode;
 
 static struct shared {
   failing_mode mode;
-  int n_mesh, n;
+  int n;
   failing_point at;
   failing_end end;
   long count[FAILING_CALLS];
   failing_point list[POINTS];
   void *seen[SEEN]; /* return addresses: a hash table                         */
 } * all;
-static const char *kept_meshes; /* of the run                                */
-static int in_run;              /* 1: this process is the program            */
+static char kept_meshes[200]; /* folder                                       */
+static int in_run;            /* 1: this process is the program              */
 
 /* 1 if the address is new. */
 static int take(void *address) {
@@ -63,7 +66,7 @@ static int fails(failing_call call) {
     return 0;
   all->end.reached = 1;
   if (getenv("FAILING_STACK") != NULL) tell_stack();
-  errno = failing_of_memory(call) ? ENOMEM : EIO;
+  errno = failing_kind_of(call) == FAILING_MEMORY ? ENOMEM : EIO;
   return 1;
 }
 
@@ -85,6 +88,32 @@ FAILING_LIST(CALL)
     return failed ? answer : real;                     \
   }
 FAILING_LATE_LIST(CALL_LATE)
+
+/* An archive that is read has not the array. */
+#define CALL_ARCHIVE(name, type)                                           \
+  status __real_##name(archive *, const char *, type *, size_t);           \
+  status __wrap_##name(archive *a, const char *array, type *v, size_t n) { \
+    if (!archive_reads(a) || n == 0 || !fails(FAILING_##name))             \
+      return __real_##name(a, array, v, n);                                \
+    return __real_##name(a, "that is not there", v, n);                    \
+  }
+CALL_ARCHIVE(archive_reals, double)
+CALL_ARCHIVE(archive_ints, int)
+CALL_ARCHIVE(archive_bytes, void)
+
+double __real_expression_value(const expression *e, const double x[3],
+                               double t);
+double __wrap_expression_value(const expression *e, const double x[3],
+                               double t) {
+  return fails(FAILING_expression_value) ? NAN
+                                         : __real_expression_value(e, x, t);
+}
+
+status __real_interrupt_asked(void);
+status __wrap_interrupt_asked(void) {
+  return fails(FAILING_interrupt_asked) ? ERR_INTERRUPTED
+                                        : __real_interrupt_asked();
+}
 
 int __real_open(const char *path, int flags, ...);
 int __wrap_open(const char *path, int flags, ...) {
@@ -109,13 +138,32 @@ static void copy(int from, int other, int to) {
 
 void __real_child_run(const raw_request *request, pid_t parent, int fd,
                       int error_fd);
+static uint64_t mix(uint64_t key, const void *data, size_t n) {
+  for (const unsigned char *p = data; n > 0; ++p, --n)
+    key = (key ^ *p) * 1099511628211u;
+  return key;
+}
+
+/* Of what makes the mesh, but not the folder of its file. */
+static uint64_t request_key(const raw_request *request) {
+  const mesh_source *s = request->source;
+  const char *slash = strrchr(s->file, '/'), *file = slash ? slash : s->file;
+  uint64_t key = mix(14695981039346656037u, file, strlen(file));
+  for (int i = 0; i < s->n_number; ++i)
+    key = mix(key, &s->numbers[i].value, sizeof s->numbers[i].value);
+  if (s->size != NULL)
+    key = mix(key, s->size, (size_t)s->old->n_node * sizeof *s->size);
+  return key;
+}
+
 void __wrap_child_run(const raw_request *request, pid_t parent, int fd,
                       int error_fd) {
   char path[300];
   int ends[2];
   (void)parent;
   in_run = 0;
-  snprintf(path, sizeof path, "%s.%d", kept_meshes, ++all->n_mesh);
+  snprintf(path, sizeof path, "%s/%016" PRIx64, kept_meshes,
+           request_key(request));
   int kept = __real_open(path, O_RDONLY);
   if (kept >= 0) {
     copy(kept, -1, fd);
@@ -135,11 +183,12 @@ void __wrap_child_run(const raw_request *request, pid_t parent, int fd,
 
 /* ---- runs ---------------------------------------------------------------- */
 
-void failing_setup(void) {
+void failing_setup(const char *meshes) {
   void *frame[1];
   all = mmap(NULL, sizeof *all, PROT_READ | PROT_WRITE,
              MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ck_assert_ptr_ne(all, MAP_FAILED);
+  snprintf(kept_meshes, sizeof kept_meshes, "%s", meshes);
   backtrace(frame, 1); /* loads what it needs                                */
   /* The program shall not start anew with another kernel. */
   setenv("OPENBLAS_CORETYPE", "Haswell", 0);
@@ -158,13 +207,10 @@ static void become(int argc, char **argv, const char *printed) {
   _exit(code);
 }
 
-int failing_run(int argc, char **argv, const char *printed, const char *meshes,
-                failing_end *end) {
+int failing_run(int argc, char **argv, const char *printed, failing_end *end) {
   int code;
-  all->n_mesh = 0;
   all->end = (failing_end){0};
   memset(all->count, 0, sizeof all->count);
-  kept_meshes = meshes;
   fflush(NULL);
   pid_t pid = fork();
   ck_assert_int_ge(pid, 0);
@@ -190,13 +236,17 @@ void failing_at(const failing_point *p) {
 }
 
 #define NAME(name, ...) [FAILING_##name] = #name,
+#define NAME_OWN(name) [FAILING_##name] = #name,
 
 const char *failing_name(failing_call c) {
   static const char *const names[] = {FAILING_LIST(NAME) FAILING_LATE_LIST(NAME)
-                                          NAME(open, )};
+                                          FAILING_OWN_LIST(NAME_OWN)};
   return names[c];
 }
 
-int failing_of_memory(failing_call c) {
-  return c == FAILING_calloc || c == FAILING_open_memstream;
+failing_kind failing_kind_of(failing_call c) {
+  if (c == FAILING_expression_value) return FAILING_VALUE;
+  if (c == FAILING_interrupt_asked) return FAILING_SIGNAL;
+  return c == FAILING_calloc || c == FAILING_open_memstream ? FAILING_MEMORY
+                                                            : FAILING_FILE;
 }

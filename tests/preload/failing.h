@@ -12,6 +12,8 @@
 #ifndef PROTIS_TESTS_PRELOAD_FAILING_H
 #define PROTIS_TESTS_PRELOAD_FAILING_H
 
+#include "archive/archive.h"
+#include "deck/expression.h"
 #include "mesh/raw.h"
 
 #include <hdf5.h>
@@ -83,13 +85,31 @@
   X(H5Dclose, -1, (hid_t d), (d))                                             \
   X(fclose, EOF, (FILE *f), (f))                                              \
   X(close, -1, (int f), (f))
+
+/* X(function): of the sources themselves, where something comes from outside:
+ * an array that a restart file has not, an expression that is NaN, a signal. */
+#define FAILING_OWN_LIST(X)                                                   \
+  X(archive_reals)                                                            \
+  X(archive_ints)                                                             \
+  X(archive_bytes)                                                            \
+  X(expression_value)                                                         \
+  X(interrupt_asked)                                                          \
+  X(open)
 /* clang-format on */
 
 #define FAILING_ENUM(name, ...) FAILING_##name,
+#define FAILING_ENUM_OWN(name) FAILING_##name,
 typedef enum failing_call {
-  FAILING_LIST(FAILING_ENUM) FAILING_LATE_LIST(FAILING_ENUM) FAILING_open,
-  FAILING_CALLS
+  FAILING_LIST(FAILING_ENUM) FAILING_LATE_LIST(FAILING_ENUM)
+      FAILING_OWN_LIST(FAILING_ENUM_OWN) FAILING_CALLS
 } failing_call;
+
+typedef enum failing_kind {
+  FAILING_MEMORY,
+  FAILING_FILE,
+  FAILING_VALUE,
+  FAILING_SIGNAL
+} failing_kind;
 
 typedef struct failing_point {
   failing_call call;
@@ -103,8 +123,14 @@ typedef struct failing_end {
   ssize_t opened; /* objects of HDF5 not closed                             */
 } failing_end;
 
-/* In the place of open and of the mesh reader; the others are made from the
- * lists. */
+/* In the place of the last list and of the mesh reader; the others are made
+ * from the lists. */
+status __wrap_archive_reals(archive *a, const char *name, double *v, size_t n);
+status __wrap_archive_ints(archive *a, const char *name, int *v, size_t n);
+status __wrap_archive_bytes(archive *a, const char *name, void *v, size_t n);
+double __wrap_expression_value(const expression *e, const double x[3],
+                               double t);
+status __wrap_interrupt_asked(void);
 int __wrap_open(const char *path, int flags, ...);
 void __wrap_child_run(const raw_request *request, pid_t parent, int fd,
                       int error_fd);
@@ -112,13 +138,12 @@ void __wrap_child_run(const raw_request *request, pid_t parent, int fd,
 /* The program, its main under another name. */
 int protis_main(int argc, char **argv);
 
-/* Before all else; check fails if there is no room. */
-void failing_setup(void);
+/* Before all else; check fails if there is no room. Meshes are read once: what
+ * the reader sends is kept in this folder. */
+void failing_setup(const char *meshes);
 /* Run the program in a child process and wait for its end: exit code, or 1000 +
- * signal. What it prints goes to a file. Its meshes are read once: what the
- * reader sends is kept in files of this name and a number. */
-int failing_run(int argc, char **argv, const char *printed, const char *meshes,
-                failing_end *end);
+ * signal. What it prints goes to a file. */
+int failing_run(int argc, char **argv, const char *printed, failing_end *end);
 /* The next runs are watched, one of them alone, for points not known so far:
  * the number of these. */
 void failing_watch(void);
@@ -126,7 +151,6 @@ int failing_points(const failing_point **list);
 /* The next runs fail there; NULL: nowhere. */
 void failing_at(const failing_point *p);
 const char *failing_name(failing_call c);
-/* 1: its failure is want of memory, else of a file. */
-int failing_of_memory(failing_call c);
+failing_kind failing_kind_of(failing_call c);
 
 #endif
