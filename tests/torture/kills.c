@@ -1,7 +1,7 @@
 /*
  * kill -9 at changes of files: what JOB.sta tells stands in JOB.h5, and
  * --restart, killed itself or not, ends with the files of a run that nobody
- * disturbed.
+ * disturbed. So it is after a second SIGINT, which ends a run at once.
  */
 #include "support/kept_mesh.h"
 #include "support/points.h"
@@ -114,4 +114,54 @@ START_TEST(killed_run_goes_on) {
 }
 END_TEST
 
-UNIT_LOOP("kills", killed_run_goes_on, 1)
+/* SIGINT at a change of a file and at the next one. */
+static const char *after_second(const job *j, int at, int *changes) {
+  traced t = {.action = TRACE_SIGNAL, .at = at, .number = SIGINT, .always = 1};
+  job left = *j;
+  left.errors = NULL;
+  int code = traced_run(&left, nothing, &t);
+  int early = code == 1000 + SIGINT && told(j) == 0; /* not yet caught */
+  *changes = t.changes;
+  free(left.errors);
+  if (code != 130 && !early) return "not ended";
+  if (t.changes > at + 1) return "not at once";
+  return told(j) > 0 && kept(j) < told(j) ? "increment of .sta lost" : NULL;
+}
+
+static void interrupt_twice(points *t, make_job *make, const char *method) {
+  job whole = make(0.4, "*RESTART\n", method);
+  job j = make(0.4, "*RESTART\n", method);
+  int changes, made;
+  long n = points_number(2, 0.005);
+  kept_mesh(&whole);
+  ck_assert_int_eq(run(&whole, nothing, 0, &changes), 0);
+  for (long k = 0; k < n; ++k) {
+    int at = (int)points_spread(k, n, changes - 1);
+    job_clear(&j);
+    const char *wrong = after_second(&j, at, &made);
+    if (wrong == NULL) wrong = go_on(&whole, &j);
+    points_try(t);
+    if (wrong != NULL)
+      points_lose(t, "%s: twice SIGINT at change %d of %d, ended at %d: %s",
+                  j.name, at, changes, made, wrong);
+  }
+  kept_mesh(NULL);
+  job_end(&whole);
+  job_end(&j);
+}
+
+START_TEST(second_signal_ends_at_once) {
+  points t = {.kind = "second SIGINT"};
+  interrupt_twice(&t, small_flat, "AUTO");
+  interrupt_twice(&t, small_creep, "INTEGRATOR=MIDPOINT");
+  points_end(&t);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("kills");
+  tcase_set_timeout(tests, 100 * UNIT_SECONDS);
+  tcase_add_test(tests, killed_run_goes_on);
+  tcase_add_test(tests, second_signal_ends_at_once);
+  return unit_run("kills", tests);
+}
