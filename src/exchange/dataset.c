@@ -11,7 +11,10 @@
 #include <string.h>
 
 static const long MOST_ITEMS = 1L << 30;
-enum { MOST_BYTES = 16 }; /* of one number                                    */
+enum {
+  MOST_BYTES = 16, /* of one number                                          */
+  MOST_PACKED = 1100 /* times its bytes in the file; deflate reaches 1032    */
+};
 
 /* Every group on the way must be there before the library is asked. */
 int source_has(const hdf5_source *s, const char *name) {
@@ -46,6 +49,23 @@ done:
   return st;
 }
 
+/* What a dataset claims to hold must come from the bytes of the file: one that
+ * was never written, or is damaged, would be any number of zeros. */
+static status check_extent(const hdf5_source *s, const char *name, hid_t set,
+                           hsize_t items) {
+  status st = OK;
+  hid_t type = H5Dget_type(set);
+  hsize_t size = 0, stored = H5Dget_storage_size(set);
+  hsize_t bytes = items * (hsize_t)H5Tget_size(type);
+  if (H5Fget_filesize(s->file, &size) < 0 || stored > size ||
+      bytes / MOST_PACKED > stored)
+    FAIL(ERR_DECK, "%s: %s has %llu items, and %llu bytes in the file", s->path,
+         name, (unsigned long long)items, (unsigned long long)stored);
+done:
+  if (type >= 0) H5Tclose(type);
+  return st;
+}
+
 /* The dataset opened, its kind and number of items checked; *set = -1 if it
  * is not there and may be missing. */
 static status open_set(const hdf5_source *s, const char *name, int optional,
@@ -66,6 +86,7 @@ static status open_set(const hdf5_source *s, const char *name, int optional,
   hssize_t items = H5Sget_simple_extent_npoints(space);
   if (items < 0 || items > MOST_ITEMS)
     FAIL(ERR_DECK, "%s: %s has a size that cannot be used", s->path, name);
+  TRY(check_extent(s, name, *set, (hsize_t)items));
   *n = (long)items;
 done:
   if (space >= 0) H5Sclose(space);

@@ -592,6 +592,31 @@ START_TEST(file_cut_short_is_refused) {
 }
 END_TEST
 
+/* A gigabyte of numbers that nobody wrote: zeros as far as HDF5 is asked. */
+START_TEST(numbers_that_are_not_in_the_file_are_refused) {
+  double W[4] = {1, 0, 0, 1}, q[2] = {1, 1}, mu[1] = {0.3};
+  const hsize_t n[1] = {(hsize_t)1 << 27};
+  enter();
+  fclib_local(path, STORE_ROWS, 2, 1, W, q, mu);
+  replace("/fclib_local/vectors/q", 1, -1, 0);
+  hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+  hid_t space = H5Screate_simple(1, n, NULL);
+  hid_t set = H5Dcreate2(file, "/fclib_local/vectors/q", H5T_NATIVE_DOUBLE,
+                         space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  ck_assert(set >= 0);
+  H5Dclose(set);
+  H5Sclose(space);
+  H5Fclose(file);
+  const size_t before = memory_allocated();
+  answer a = read_as(EXCHANGE_FCLIB);
+  ck_assert_int_eq(a.st, ERR_DECK);
+  ck_assert_msg(strstr(a.text, "q has 134217728 items, and 0 bytes") != NULL,
+                "%s", a.text);
+  ck_assert_uint_lt(memory_allocated() - before, 1 << 20);
+  leave();
+}
+END_TEST
+
 /* ---- text ---- */
 
 static answer read_text(const char *text) {
@@ -691,5 +716,6 @@ UNIT_MAIN("exchange", every_storage_gives_the_same_problem,
           no_contact_is_a_problem, defect_names_file_and_dataset,
           what_is_not_available_is_said, local_constraints_are_eliminated,
           global_constraints_are_eliminated, half_of_the_constraints_is_refused,
-          file_cut_short_is_refused, text_is_read_by_rows,
+          file_cut_short_is_refused,
+          numbers_that_are_not_in_the_file_are_refused, text_is_read_by_rows,
           defect_of_text_is_named, every_refused_request_is_reported)
