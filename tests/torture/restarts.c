@@ -30,10 +30,12 @@ static int run(job *j, const char *const *words, int at, int signal_no,
 }
 
 /* NULL, or what is wrong with a run that was stopped and went on. A signal
- * during the last increment comes too late: the run ends as it would. */
+ * during the last increment comes too late: the run ends as it would. While
+ * the lock is taken it is not yet caught. */
 static const char *fault(const job *whole, job *j, int code, int signal_no,
                          int stopped) {
-  if (stopped != 128 + signal_no)
+  int early = stopped == 1000 + signal_no && !job_has(j, "sta");
+  if (stopped != 128 + signal_no && !early)
     return stopped == code ? NULL : "stop: exit code";
   if (run(j, again, 0, 0, NULL) != code) return "restart: exit code";
   return traced_difference(whole, j) == NULL ? NULL : "restart: other files";
