@@ -96,7 +96,11 @@ static int no_memory(void) {
 
 static int print_keywords(const char *card) {
   if (inform_keywords(card)) return 0;
-  return wrong("there is no card ", card);
+  const char *near = inform_nearest_card(card);
+  if (near == NULL) return wrong("there is no card ", card);
+  fprintf(stderr, "protis: error: there is no card %s; did you mean %s?\n",
+          card, near);
+  return 2;
 }
 
 static int print_list(const char *kind) {

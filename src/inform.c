@@ -115,6 +115,15 @@ static void list_integrators(void) {
 
 int inform_keywords(const char *name) { return keywords_print(name, stdout); }
 
+static const char *card_name(const void *ctx, int i) {
+  (void)ctx;
+  return keyword_table[i].name;
+}
+
+const char *inform_nearest_card(const char *name) {
+  return inform_nearest(name + strspn(name, "*"), card_name);
+}
+
 int inform_list(const char *kind) {
   if (strcmp(kind, "solvers") == 0)
     list_solvers();

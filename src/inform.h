@@ -15,6 +15,8 @@ struct model;
 void inform_version(void);
 /* All cards, or one in full; 0 if there is no card of that name. */
 int inform_keywords(const char *name);
+/* The card whose name is nearest, or NULL. */
+const char *inform_nearest_card(const char *name);
 /* "solvers", "materials", "friction" or "integrators"; 0 if none of them. */
 int inform_list(const char *kind);
 

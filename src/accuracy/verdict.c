@@ -254,6 +254,7 @@ status verdict_text(const verdict_scene *s, char *text, size_t size) {
   if (end == STOPPED_RAY) {
     TRY(add_moving(&w, s, v));
     TRY(add_drive(&w, s, v));
+    add(&w, "; a *BOUNDARY or another load can hold it");
   } else if (end == CONVERGED) {
     add(&w, "METHOD=LEMKE of *SOLVER finds an equilibrium");
   } else {

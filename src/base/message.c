@@ -5,6 +5,7 @@
 #include "base/message.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
@@ -13,8 +14,7 @@
 enum {
   KEPT = 100,       /* messages kept of each severity                        */
   TEXT_SIZE = 1024, /* longest text of one message                           */
-  SHOWN = 120,      /* most characters of a source line                      */
-  WRAP = 74         /* columns of the manual                                 */
+  SHOWN = 120       /* most characters of a source line                      */
 };
 
 typedef struct message {
@@ -298,11 +298,21 @@ static void print_count(int n, const char *word, const char *before,
   if (n > KEPT) fprintf(out, " (%d shown)", KEPT);
 }
 
-static void print_totals(const message_log *log, FILE *out) {
+static const message *first_error(const message *const *sorted, int n) {
+  for (int i = 0; i < n; ++i)
+    if (sorted[i]->level == ERROR) return sorted[i];
+  return NULL;
+}
+
+/* first: the error whose manual entry is named, or NULL. */
+static void print_totals(const message_log *log, const message *first,
+                         FILE *out) {
   int errors = log->count[ERROR], warnings = log->count[WARNING];
   if (errors > 0) print_count(errors, "error", "", out);
   if (warnings > 0)
     print_count(warnings, "warning", errors > 0 ? ", " : "", out);
+  if (errors > 0 && first != NULL)
+    fprintf(out, "; protis --explain P%04d tells what to do", (int)first->id);
   if (errors + warnings > 0) fputc('\n', out);
 }
 
@@ -310,8 +320,8 @@ void message_print(const message_log *log, FILE *out) {
   const message **sorted = sorted_messages(log);
   for (int i = 0; i < log->n; ++i)
     print_message(sorted != NULL ? sorted[i] : &log->items[i], out);
+  print_totals(log, sorted != NULL ? first_error(sorted, log->n) : NULL, out);
   memory_free(sorted);
-  print_totals(log, out);
 }
 
 /* Name of a file without its folders. */
@@ -336,26 +346,10 @@ void message_list(const message_log *log, severity s, FILE *out) {
   memory_free(sorted);
 }
 
-/* Words of a paragraph in lines of at most WRAP columns, indented. */
-static void print_wrapped(const char *text, FILE *out) {
-  int column = 0;
-  while (*text != '\0') {
-    int length = (int)strcspn(text, " ");
-    if (column > 0 && column + 1 + length > WRAP) {
-      fputc('\n', out);
-      column = 0;
-    }
-    fprintf(out, "%s%.*s", column > 0 ? " " : "    ", length, text);
-    column += (column > 0 ? 1 : 4) + length;
-    text += length;
-    text += strspn(text, " ");
-  }
-  fputc('\n', out);
-}
-
 static void print_entry(const manual_entry *e, FILE *out) {
   fprintf(out, "P%04d %s: %s\n", e->number, severity_word(e->level), e->title);
-  print_wrapped(e->remedy, out);
+  fputs("    ", out);
+  text_wrap(out, e->remedy, 4);
 }
 
 /* Number of "P1003", "p1003" or "1003"; 0 if it is none. */

@@ -4,6 +4,7 @@
 #include "base/option.h"
 
 #include "base/number.h"
+#include "base/text.h"
 
 #include <float.h>
 #include <limits.h>
@@ -308,7 +309,7 @@ void option_write(const option *row, const void *parameters, char *text,
   }
 }
 
-enum { MANUAL_INDENT = 20, MANUAL_WIDTH = 78 };
+enum { MANUAL_INDENT = 20 };
 
 /* " in [0, 2]", or one side alone where no number passes the other. */
 static void print_range(const option *o, FILE *out) {
@@ -318,22 +319,6 @@ static void print_range(const option *o, FILE *out) {
     fputs(" > 0", out);
   else if (o->min > -DBL_MAX)
     fprintf(out, " >= %g", o->min);
-}
-
-/* Words in lines of their own, indented. */
-static void print_help(const char *text, FILE *out) {
-  int column = 0;
-  while (*text != '\0') {
-    int length = (int)strcspn(text, " ");
-    if (column > 0 && column + 1 + length > MANUAL_WIDTH) column = 0;
-    if (column == 0)
-      column = fprintf(out, "\n%*s%.*s", MANUAL_INDENT, "", length, text) - 1;
-    else
-      column += fprintf(out, " %.*s", length, text);
-    text += length;
-    text += strspn(text, " ");
-  }
-  fputc('\n', out);
 }
 
 static void print_row(const option *o, FILE *out) {
@@ -350,7 +335,8 @@ static void print_row(const option *o, FILE *out) {
     fprintf(out, "; must be given");
   else if (strcmp(o->initial, OPTION_ABSENT) != 0)
     fprintf(out, "; default %s", o->initial);
-  print_help(o->help, out);
+  fprintf(out, "\n%*s", MANUAL_INDENT, "");
+  text_wrap(out, o->help, MANUAL_INDENT);
 }
 
 void option_print(const option *table, FILE *out) {

@@ -122,6 +122,22 @@ void text_cell(FILE *f, const char *text, int width) {
   fprintf(f, " %*s", width - 1, text);
 }
 
+void text_wrap(FILE *f, const char *text, int indent) {
+  enum { WIDTH = 78 };
+  int column = indent;
+  while (*text != '\0') {
+    int length = (int)strcspn(text, " ");
+    if (column > indent && column + 1 + length > WIDTH) {
+      fprintf(f, "\n%*s", indent, "");
+      column = indent;
+    }
+    column += fprintf(f, "%s%.*s", column > indent ? " " : "", length, text);
+    text += length;
+    text += strspn(text, " ");
+  }
+  fputc('\n', f);
+}
+
 void text_word(char *word, size_t size, const char *text) {
   size_t i = 0;
   for (; text[i] != '\0' && i + 1 < size; ++i)

@@ -35,6 +35,9 @@ enum { NUMBER_SIZE = 40 };
 const char *text_number(char text[NUMBER_SIZE], double value, int digits);
 /* Right-aligned in a field of the width, at least one blank before it. */
 void text_cell(FILE *f, const char *text, int width);
+/* Words in lines of at most 78 columns, from column "indent" on, where the
+ * first line stands already; ends the line. */
+void text_wrap(FILE *f, const char *text, int indent);
 /* The text as one word: blanks become "_". */
 void text_word(char *word, size_t size, const char *text);
 

@@ -12,9 +12,12 @@ static void check_kinematics(model *m, const mesh *msh) {
     section *s = &m->sections[i];
     if (s->kin < 0) s->kin = msh->dim == 3 ? SOLID_3D : PLANE_STRAIN;
     if ((s->kin == SOLID_3D) != (msh->dim == 3))
-      message_add(m->log, P2024, &s->at,
-                  "*SOLID SECTION: this TYPE does not fit a mesh in %d-D",
-                  msh->dim);
+      message_add(
+          m->log, P2024, &s->at,
+          "*SOLID SECTION: this TYPE does not fit a mesh in %d-D; "
+          "expected %s",
+          msh->dim,
+          msh->dim == 3 ? "3D" : "PLANE STRAIN, PLANE STRESS or AXISYMMETRIC");
     if ((s->kin == AXISYMMETRIC) != (m->sections[0].kin == AXISYMMETRIC))
       message_add(m->log, P2026, &s->at,
                   "axisymmetric and plane sections cannot stand in one model");

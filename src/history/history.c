@@ -191,7 +191,6 @@ status loop_no_equilibrium(run *r) {
   status st = OK;
   char why[1024] = "";
   const char *tried = contact_solver_log(r->solver);
-  int bracket = tried[0] != '\0';
   verdict_scene scene = {.m = r->m,
                          .msh = r->msh,
                          .step = r->step,
@@ -208,11 +207,11 @@ status loop_no_equilibrium(run *r) {
          run_step_id(r) + 1, r->now.t, contact_solver_log(r->solver));
   TRY(verdict_text(&scene, why, sizeof why));
   FAIL(ERR_SINGULAR,
-       "step %d, time %g: no equilibrium found: %s%s%s%s%s%s; the last state "
+       "step %d, time %g: no equilibrium found: %s%s%s%s; the last state "
        "written is that of time %g",
-       run_step_id(r) + 1, r->now.t, outcome_text(r->report.outcome),
-       bracket ? " (" : "", tried, bracket ? ")" : "",
-       why[0] == '\0' ? "" : "; ", why, r->old.t);
+       run_step_id(r) + 1, r->now.t, why, why[0] == '\0' ? "" : "; ",
+       tried[0] == '\0' ? "" : "tried ",
+       tried[0] == '\0' ? outcome_text(r->report.outcome) : tried, r->old.t);
 done:
   return st;
 }

@@ -1,6 +1,7 @@
 /*
  * What the keyword table prints: the deck with all defaults, and the help.
  */
+#include "base/text.h"
 #include "keyword/keyword.h"
 
 #include <ctype.h>
@@ -119,18 +120,23 @@ static const char *where_text(unsigned where) {
 }
 
 static void print_keyword(const keyword *k, FILE *out) {
-  fprintf(out, "*%s  (%s)\n  %s\n", k->name, where_text(k->where), k->help);
+  fprintf(out, "*%s  (%s)\n  ", k->name, where_text(k->where));
+  text_wrap(out, k->help, 2);
   option_print(k->options, out);
   if (k->names != NULL)
     fputs("  and the options of what it names: protis --list\n", out);
-  if (k->data[0] != '\0') fprintf(out, "  data lines: %s\n", k->data);
+  if (k->data[0] == '\0') return;
+  fputs("  data lines: ", out);
+  text_wrap(out, k->data, 14);
 }
 
 int keywords_print(const char *name, FILE *out) {
   char upper[80];
   if (name == NULL) {
-    for (const keyword *k = keyword_table; k->name != NULL; ++k)
-      fprintf(out, "*%-20s %s\n", k->name, k->help);
+    for (const keyword *k = keyword_table; k->name != NULL; ++k) {
+      fprintf(out, "*%-20s ", k->name);
+      text_wrap(out, k->help, 22);
+    }
     return 1;
   }
   if (name[0] == '*') ++name;

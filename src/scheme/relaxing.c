@@ -31,8 +31,8 @@ double relaxing_late_share(double z) {
   return sum;
 }
 
-static void shares(const scheme_step *p, int exact, double rate, double *q0,
-                   double *q1) {
+static void relaxed_shares(const scheme_step *p, int exact, double rate,
+                           double *q0, double *q1) {
   const double z = rate * p->dt;
   if (exact) {
     *q1 = relaxing_late_share(z);
@@ -108,7 +108,7 @@ status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
   for (int i = 0; i < ns; ++i) m->P[i + n * i] = 1.0;
   for (int i = 0; i < terms; ++i) {
     double q0, q1;
-    shares(p, exact, rate[i], &q0, &q1);
+    relaxed_shares(p, exact, rate[i], &q0, &q1);
     term_rows(ns, i, q0, q1, W, m);
   }
   for (int i = 0; i < terms; ++i) add_rows(ns, i, W + ns * ns * i, m);

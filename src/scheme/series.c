@@ -113,7 +113,7 @@ done:
 }
 
 /* D v = -a v + b0 x_old + b1 x_new of a unit, x = e - e^i. */
-static void shares(double h, double m, double *a, double *b0, double *b1) {
+static void term_shares(double h, double m, double *a, double *b0, double *b1) {
   const double z = h * m;
   *a = -expm1(-z);
   *b0 = 0.0;
@@ -126,13 +126,13 @@ static void shares(double h, double m, double *a, double *b0, double *b1) {
 static void by_stress(series *s) {
   double sum0 = 0.0, sum1 = 0.0, a, b0, b1;
   for (int k = 0; k < s->n; ++k) {
-    shares(s->h[k], s->m[k], &a, &b0, &b1);
+    term_shares(s->h[k], s->m[k], &a, &b0, &b1);
     sum0 += b0;
     sum1 += b1;
   }
   s->kept = 1.0 / (1.0 + sum1);
   for (int k = 0; k < s->n; ++k) {
-    shares(s->h[k], s->m[k], &a, &b0, &b1);
+    term_shares(s->h[k], s->m[k], &a, &b0, &b1);
     s->u1[k] = b1 * s->kept;
     s->u0[k] = b0 - s->u1[k] * sum0;
     for (int j = 0; j < s->n; ++j)

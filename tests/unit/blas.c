@@ -55,15 +55,9 @@ END_TEST
 
 int main(int argc, char **argv) {
   if (argc == 2) return play(argv[1], argv);
-  Suite *suite = suite_create("blas");
   TCase *tests = tcase_create("blas");
   tcase_add_test(tests,
                  lesser_kernel_is_replaced_by_the_best_the_processor_runs);
   tcase_add_test(tests, kernel_the_user_asked_for_stays);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return unit_run("blas", tests);
 }

@@ -37,6 +37,27 @@ START_TEST(exponents_have_three_digits_and_zero_no_sign) {
 }
 END_TEST
 
+START_TEST(wrapped_words_keep_their_order_and_the_indent) {
+  char written[2000] = "", words[1000] = "", *line = written;
+  for (int i = 0; i < 60; ++i)
+    sprintf(words + strlen(words), "%.*s%d ", i % 9, "xxxxxxxxx", i);
+  FILE *f = fmemopen(written, sizeof written, "w");
+  fprintf(f, "%7s", "");
+  text_wrap(f, words, 7);
+  fclose(f);
+  int i = 0, lines = 0;
+  for (char *end; (end = strchr(line, '\n')) != NULL; line = end + 1, ++lines) {
+    ck_assert_int_le(end - line, 78);
+    ck_assert_int_eq((int)strspn(line, " "), 7);
+  }
+  ck_assert_int_ge(lines, 4);
+  for (char *word = strtok(written, " \n"); word != NULL;
+       word = strtok(NULL, " \n"), ++i)
+    ck_assert_int_eq(atoi(word + strspn(word, "x")), i);
+  ck_assert_int_eq(i, 60);
+}
+END_TEST
+
 START_TEST(a_word_has_no_blank) {
   char word[6];
   text_word(word, sizeof word, "a\tb c d");
@@ -99,5 +120,6 @@ END_TEST
 
 UNIT_MAIN("text", seventeen_digits_read_back_exactly,
           exponents_have_three_digits_and_zero_no_sign, a_word_has_no_blank,
-          paths_are_joined_once, full_disk_is_told_with_file_and_reason,
-          missing_folder_is_told, lines_are_handed_over_as_they_end)
+          wrapped_words_keep_their_order_and_the_indent, paths_are_joined_once,
+          full_disk_is_told_with_file_and_reason, missing_folder_is_told,
+          lines_are_handed_over_as_they_end)
