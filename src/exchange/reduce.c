@@ -57,7 +57,8 @@ static cholmod_sparse *assemble(reduction *s, const triplets *M, int mirror) {
   for (long k = 0; k < M->n; ++k) {
     int i = M->row[k], j = M->column[k];
     double value = M->value[k] * s->scale[i] * s->scale[j];
-    for (int turn = 0; turn <= (mirror && i != j); ++turn) {
+    const int times = mirror && i != j ? 2 : 1;
+    for (int turn = 0; turn < times; ++turn) {
       row[t->nnz] = turn ? j : i;
       column[t->nnz] = turn ? i : j;
       x[t->nnz++] = value;

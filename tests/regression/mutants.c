@@ -177,7 +177,7 @@ static int judge(const char *path, int dim) {
   if (st == OK && errors) return 3;
   if (st != OK && !errors) return 4;
   message_log_free(log);
-  grid_free(msh);
+  mesh_free(msh);
   return st == OK ? ACCEPTED : 0;
 }
 

@@ -11,21 +11,6 @@
 
 static const double young = 210e3, radius = 10;
 
-static job run_deck(const char *deck, const char *words) {
-  job j = job_begin("deck");
-  int code = job_run_deck(&j, deck, words);
-  ck_assert_msg(code == 0, "%s %s: exit %d: %s", deck, words, code, j.errors);
-  return j;
-}
-
-/* Row of the first zone of a kind (1 SLIP, 2 STICK). */
-static int zone_row(const dat *z, int kind) {
-  int row = 0;
-  while (row < z->n_row && dat_at(z, row, "zone") != kind) ++row;
-  ck_assert_int_lt(row, z->n_row);
-  return row;
-}
-
 /* Half-width of Hertz under P, plane. */
 static double hertz_line(double P, double nu) {
   return sqrt(4 * P * radius * (1 - nu * nu) / (acos(-1.0) * young));
@@ -43,11 +28,11 @@ START_TEST(stick_grows_with_the_indentation) {
     char words[120];
     snprintf(words, sizeof words, "-D NU=%g -D MU=%g", cases[i].nu,
              cases[i].mu);
-    job j = run_deck("input/spence/spence", words);
+    job j = job_deck("input/spence/spence", words);
     dat z = job_table(&j, "ZONES", -1), t = job_table(&j, "TOTALS", -1);
     double hertz = hertz_line(2 * dat_at(&t, 0, "force_y"), cases[i].nu);
     double a = hertz / sqrt(cases[i].load);
-    int stick = zone_row(&z, 2), slip = zone_row(&z, 1);
+    int stick = dat_zone(&z, 2), slip = dat_zone(&z, 1);
     ck_assert_double_eq_tol(dat_at(&z, stick, "x_to"), cases[i].k * a,
                             5e-3 * cases[i].k * a);
     ck_assert_double_eq_tol(dat_at(&z, slip, "x_to"), a, 5e-3 * a);
@@ -71,12 +56,12 @@ START_TEST(shear_cycle_gives_its_heat) {
     double nu = cases[i].nu, muP = 1000 * cases[i].mu;
     snprintf(words, sizeof words, "-D SHARE=%g -D NU=%g -D MU=%g -D DT=0.25",
              cases[i].share, nu, cases[i].mu);
-    job j = run_deck("input/mindlin_loop/mindlin_loop", words);
+    job j = job_deck("input/mindlin_loop/mindlin_loop", words);
     dat z = job_table(&j, "ZONES", -1), l = job_table(&j, "LOOP", -1);
     double a = hertz_line(1000, nu);
     double W = cases[i].W * muP * muP * (1 - nu * nu) / young;
     ck_assert_double_eq_tol(dat_at(&l, 0, "loop_area"), W, 0.02 * W);
-    ck_assert_double_eq_tol(dat_at(&z, zone_row(&z, 2), "extent") / 2,
+    ck_assert_double_eq_tol(dat_at(&z, dat_zone(&z, 2), "extent") / 2,
                             a * sqrt(1 - cases[i].share), 0.02 * a);
     dat_free(&z);
     dat_free(&l);
@@ -117,7 +102,7 @@ START_TEST(torsion_gives_its_torque) {
   char words[120];
   snprintf(words, sizeof words, "-D KE=%.12g -D MU=%g -D DT=0.2 -D NC=7",
            elliptic(stick), mu);
-  job j = run_deck("input/torsion_sphere_3d/torsion_sphere_3d", words);
+  job j = job_deck("input/torsion_sphere_3d/torsion_sphere_3d", words);
   dat t = job_table(&j, "TOTALS", -1), l = job_table(&j, "LOOP", -1);
   double P = dat_at(&t, 0, "normal"), Es = young / 0.91, G = young / 2.6;
   double a = cbrt(3 * P * radius / (4 * Es)), low = 1e-9, high = 1;
@@ -150,13 +135,13 @@ START_TEST(sliding_contact_is_shifted_by_friction) {
     snprintf(words, sizeof words, "-D NU=%g -D MU=0.2 -D DMU=%.17g", nu[i],
              mu[i] - 0.2);
     if (known[i] > 0) ck_assert_double_eq_tol(e, known[i], 1e-8);
-    job j = run_deck("input/belt/belt", words);
+    job j = job_deck("input/belt/belt", words);
     dat c = job_table(&j, "CONTACT", -1), z = job_table(&j, "ZONES", -1);
     dat t = job_table(&j, "TOTALS", -1);
     double N = dat_at(&t, 0, "normal");
     double l = hertz_line(N, nu[i]) / sqrt(1 - 4 * e * e);
     ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), mu[i] * N, 1e-8 * N);
-    int row = zone_row(&z, 1);
+    int row = dat_zone(&z, 1);
     double from = dat_at(&z, row, "x_from"), to = dat_at(&z, row, "x_to");
     ck_assert_double_eq_tol(0.5 * (to - from), l, 0.01 * l);
     ck_assert_double_eq_tol(0.5 * (to + from), -2 * e * l, 0.01 * l);

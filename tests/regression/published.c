@@ -8,13 +8,6 @@
 #include <math.h>
 #include <stdio.h>
 
-static job run_deck(const char *deck, const char *words) {
-  job j = job_begin("deck");
-  int code = job_run_deck(&j, deck, words);
-  ck_assert_msg(code == 0, "%s %s: exit %d: %s", deck, words, code, j.errors);
-  return j;
-}
-
 /* u_x at the base in mm; converged values of crossed meshes of 256 squares. */
 static const double greco_x[] = {0.0, 1.25, 5.0, 7.5, 11.25};
 static const double greco_u[] = {28.6031e-3, 27.2258e-3, 22.8680e-3, 19.8074e-3,
@@ -24,7 +17,7 @@ START_TEST(greco_block_moves_as_published) {
   static const char *const words[] = {"-D N=64", "-D N=64 -D STRUCTURED=1",
                                       "-D N=128"};
   for (int k = 0; k < 3; ++k) {
-    job j = run_deck("input/greco/greco", words[k]);
+    job j = job_deck("input/greco/greco", words[k]);
     dat c = job_table(&j, "CONTACT", -1), t = job_table(&j, "TOTALS", -1);
     for (int i = 0; i < 5; ++i) {
       int row = dat_row_near(&c, "x", greco_x[i]);
@@ -47,9 +40,9 @@ END_TEST
 
 /* Proportional loads: 1, 5 and 10 increments and the static problem agree. */
 START_TEST(greco_proportional_load_has_no_path) {
-  job ref = run_deck("input/greco/greco", "-D SIDE=100 -D DT=1.0");
-  job fine = run_deck("input/greco/greco", "-D SIDE=100 -D DT=0.1");
-  job still = run_deck("input/greco/greco_static", "");
+  job ref = job_deck("input/greco/greco", "-D SIDE=100 -D DT=1.0");
+  job fine = job_deck("input/greco/greco", "-D SIDE=100 -D DT=0.1");
+  job still = job_deck("input/greco/greco_static", "");
   dat a = job_table(&ref, "CONTACT", -1), b = job_table(&fine, "CONTACT", -1);
   dat c = job_table(&still, "CONTACT", -1);
   dat t = job_table(&still, "TOTALS", -1);
@@ -107,7 +100,7 @@ START_TEST(hertz_line_has_its_pressure) {
 
   static const double tol[] = {2e-3, 2e-3, 3e-3};
   for (int k = 0; k < 3; ++k) {
-    job j = run_deck(decks[k], words[k]);
+    job j = job_deck(decks[k], words[k]);
     dat c = job_table(&j, "CONTACT", -1), t = job_table(&j, "TOTALS", -1);
     /* The approach of the disc gives about P; Hertz holds for the force found,
      * of which a symmetric half is in the model of the first two. */
@@ -130,7 +123,7 @@ END_TEST
 START_TEST(hertz_sphere_has_its_pressure) {
   const double P = 1000, R = 10, pi = acos(-1.0), Es = 210e3 / 0.91;
   double a = cbrt(3 * P * R / (4 * Es)), p0 = 1.5 * P / (pi * a * a), a_h, p0_h;
-  job j = run_deck("input/hertz_sphere/hertz_sphere", "-D NC=32");
+  job j = job_deck("input/hertz_sphere/hertz_sphere", "-D NC=32");
   dat c = job_table(&j, "CONTACT", -1), t = job_table(&j, "TOTALS", -1);
   fit_pressure(&c, "r", 0.9, &p0_h, &a_h);
   ck_assert_double_eq_tol(a_h, a, 5e-3 * a);

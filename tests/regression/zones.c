@@ -9,21 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static job run_deck(const char *deck, const char *words) {
-  job j = job_begin("deck");
-  int code = job_run_deck(&j, deck, words);
-  ck_assert_msg(code == 0, "%s %s: exit %d: %s", deck, words, code, j.errors);
-  return j;
-}
-
-/* Row of a kind of zone (0 OPEN, 1 SLIP, 2 STICK). */
-static int zone_row(const dat *z, int kind) {
-  int row = 0;
-  while (row < z->n_row && dat_at(z, row, "zone") != kind) ++row;
-  ck_assert_int_lt(row, z->n_row);
-  return row;
-}
-
 /* a = sqrt(4 P R / (pi E*)) of the line, cbrt(3 P R / (4 E*)) of the sphere. */
 START_TEST(radius_of_hertz_is_found_between_the_nodes) {
   const double pi = acos(-1.0), Es = 210e3 / 0.91;
@@ -34,10 +19,10 @@ START_TEST(radius_of_hertz_is_found_between_the_nodes) {
   for (int k = 0; k < 4; ++k) {
     char words[80];
     snprintf(words, sizeof words, "-D NC=24 -D A=%.17g", line * part[k]);
-    job j = run_deck("input/hertz_line/hertz_block", words);
+    job j = job_deck("input/hertz_line/hertz_block", words);
     dat z = job_table(&j, "ZONES", -1);
     ck_assert_int_eq(z.n_row, 2);
-    int closed = zone_row(&z, 1);
+    int closed = dat_zone(&z, 1);
     ck_assert_double_eq_tol(dat_at(&z, closed, "x_from"), 0.0, 1e-12);
     ck_assert_double_eq_tol(dat_at(&z, closed, "x_to"), line, 0.2 * line / 24);
     ck_assert_double_eq_tol(dat_at(&z, closed, "extent"),
@@ -45,21 +30,21 @@ START_TEST(radius_of_hertz_is_found_between_the_nodes) {
     dat_free(&z);
     job_end(&j);
   }
-  job j = run_deck("input/hertz_sphere/hertz_sphere", "-D NC=24");
+  job j = job_deck("input/hertz_sphere/hertz_sphere", "-D NC=24");
   dat z = job_table(&j, "ZONES", -1);
-  double r = dat_at(&z, zone_row(&z, 1), "r_to");
+  double r = dat_at(&z, dat_zone(&z, 1), "r_to");
   ck_assert_double_eq_tol(r, ball, 0.3 * ball / 24);
-  ck_assert_double_eq_tol(dat_at(&z, zone_row(&z, 1), "area"), pi * r * r,
+  ck_assert_double_eq_tol(dat_at(&z, dat_zone(&z, 1), "area"), pi * r * r,
                           3e-3 * r * r);
   dat_free(&z);
   job_end(&j);
-  j = run_deck("input/hertz_sphere/hertz_sphere_3d", "");
+  j = job_deck("input/hertz_sphere/hertz_sphere_3d", "");
   z = job_table(&j, "ZONES", -1);
   ck_assert_int_eq(z.n_row, 3);
   double area = pi * ball * ball / 4;
-  ck_assert_double_eq_tol(dat_at(&z, zone_row(&z, 1), "area"), area,
+  ck_assert_double_eq_tol(dat_at(&z, dat_zone(&z, 1), "area"), area,
                           0.03 * area);
-  ck_assert_double_eq(dat_at(&z, zone_row(&z, 2), "area"), 0.0);
+  ck_assert_double_eq(dat_at(&z, dat_zone(&z, 2), "area"), 0.0);
   dat_free(&z);
   job_end(&j);
 }

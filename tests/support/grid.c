@@ -33,26 +33,8 @@ static mesh *new_mesh(int dim, int n_node, int n_elem, int n_face,
     for (int f = 0; f < n_face; ++f) m->face_other[f] = -1;
     return m;
   }
-  grid_free(m);
+  mesh_free(m);
   return NULL;
-}
-
-void grid_free(mesh *m) {
-  if (m == NULL) return;
-  for (int g = 0; m->group != NULL && g < m->n_group; ++g) {
-    memory_free((void *)m->group[g].name);
-    memory_free(m->group[g].item_id);
-    memory_free(m->group[g].node_id);
-  }
-  memory_free(m->x);
-  memory_free(m->node_no);
-  memory_free(m->elem);
-  memory_free(m->elem_no);
-  memory_free(m->face);
-  memory_free(m->face_elem);
-  memory_free(m->face_other);
-  memory_free(m->group);
-  memory_free(m);
 }
 
 static void set_size(mesh *m) {
@@ -131,7 +113,7 @@ static mesh *with_sides(mesh *m, const double *length) {
     done = set_group(m, side + 1, side_names[side], first, n_face - first);
   }
   if (done) return m;
-  grid_free(m);
+  mesh_free(m);
   return NULL;
 }
 
@@ -197,6 +179,6 @@ mesh *grid_join(const mesh *a, const mesh *b, const double *shift) {
     m->elem[per * a->n_elem + i] = b->elem[i] + a->n_node;
   set_size(m);
   if (set_group(m, 0, "BODY", 0, m->n_elem)) return m;
-  grid_free(m);
+  mesh_free(m);
   return NULL;
 }

@@ -163,6 +163,13 @@ int job_run_deck(job *j, const char *deck, const char *words) {
   return run_command(j, ".", command);
 }
 
+job job_deck(const char *deck, const char *words) {
+  job j = job_begin("deck");
+  int code = job_run_deck(&j, deck, words);
+  ck_assert_msg(code == 0, "%s %s: exit %d: %s", deck, words, code, j.errors);
+  return j;
+}
+
 int job_run_with(job *j, const char *deck, const char *cards, int without,
                  const char *words) {
   char path[PATH], text[LINE];
@@ -326,4 +333,11 @@ double job_difference(const job *a, const job *b, int k) {
   dat_free(&y);
   dat_free(&e);
   return 100.0 * sqrt(fabs(sum) / (2.0 * energy));
+}
+
+int dat_zone(const dat *z, int kind) {
+  int row = 0;
+  while (row < z->n_row && dat_at(z, row, "zone") != kind) ++row;
+  ck_assert_int_lt(row, z->n_row);
+  return row;
 }

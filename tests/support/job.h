@@ -40,10 +40,15 @@ int job_run(job *j, const char *words);
 /* Run a deck of the sources (no .inp) with the results in the folder; JOB is
  * then its name. */
 int job_run_deck(job *j, const char *deck, const char *words);
+/* The same in a new folder; check fails if the exit code is not 0. */
+job job_deck(const char *deck, const char *words);
 /* Run a deck of the sources with "cards" at the end of each step, without its
  * *ACCURACY if "without". A new folder, as job_begin. */
 int job_run_with(job *j, const char *deck, const char *cards, int without,
                  const char *words);
+/* Row of the first zone of a kind (0 OPEN, 1 SLIP, 2 STICK) in a table ZONES;
+ * check fails if there is none. */
+int dat_zone(const dat *z, int kind);
 /* All of a file of the folder as text (caller frees), or NULL. */
 char *job_file(const job *j, const char *suffix);
 /* 1: JOB.suffix is in the folder. */

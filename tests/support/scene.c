@@ -47,7 +47,7 @@ void scene_free(scene *s) {
   free(c->held);
   free(s->section_id);
   free(s->fixed);
-  grid_free(s->m);
+  mesh_free(s->m);
   free(s);
 }
 

@@ -28,5 +28,5 @@ void text_model_close(text_model *s) {
   model_free(s->m);
   deck_free(s->d);
   message_log_free(s->log);
-  grid_free(s->msh);
+  mesh_free(s->msh);
 }

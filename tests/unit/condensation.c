@@ -52,7 +52,7 @@ static scene *two_bodies(void) {
     scene_fix_node(s, 15, c);
   }
   scene_fix_node(s, 16, 0);
-  grid_free(a);
+  mesh_free(a);
   return s;
 }
 

@@ -200,7 +200,7 @@ static void scene_close(scene *c) {
   message_log_free(c->log);
   free(c->fixed);
   free(c->weight);
-  grid_free(c->m);
+  mesh_free(c->m);
 }
 
 static void *law_options(const char *radius) {

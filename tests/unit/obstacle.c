@@ -1,6 +1,7 @@
 /* src/contact/obstacle.c: the gap against points made on the obstacle. */
 #include "base/memory.h"
 #include "contact/obstacle.h"
+#include "support/formula.h"
 #include "support/unit.h"
 
 #include <math.h>
@@ -195,29 +196,17 @@ START_TEST(shapes_without_a_normal_leave_it_alone) {
 }
 END_TEST
 
-static void compile(quantity *q, const char *text) {
-  expression *e = NULL;
-  int column;
-  ck_assert_int_eq(expression_compile(text, NULL, NULL, &e, &column), OK);
-  q->formula = e;
-}
-
-static void release(quantity *q) {
-  expression_free((expression *)q->formula);
-  q->formula = NULL;
-}
-
 START_TEST(obstacle_shifts_with_time) {
   obstacle o = {.shape = OBSTACLE_PLANE, .direction = {0, 1, 0}};
   double down[3] = {0, -1, 0}, x[3] = {7, 2, 0};
   ck_assert_int_eq(obstacle_moves(&o), 0);
-  compile(&o.motion[1], "0.25*t");
+  formula_compile(&o.motion[1], "0.25*t");
   ck_assert_int_eq(obstacle_moves(&o), 1);
   ck_assert_double_eq(obstacle_gap(&o, 2, x, down, 4), 1);
   o.shape = OBSTACLE_CONFORMING;
   ck_assert_double_eq(obstacle_gap(&o, 2, x, down, 0), 0);
   ck_assert_double_eq(obstacle_gap(&o, 2, x, down, 4), -1);
-  release(&o.motion[1]);
+  formula_release(&o.motion[1]);
 }
 END_TEST
 
@@ -313,8 +302,8 @@ START_TEST(surface_passes_by_angle_times_arm) {
   o.angle.number = 1;
   obstacle_drift(&o, 2, x, down, 0, 9, d);
   ck_assert(d[0] == 0 && d[1] == 0 && d[2] == 0);
-  compile(&o.angle, "-3*t");
-  compile(&o.motion[1], "t/100");
+  formula_compile(&o.angle, "-3*t");
+  formula_compile(&o.motion[1], "t/100");
   ck_assert_int_eq(obstacle_moves(&o), 1);
   obstacle_drift(&o, 2, x, down, 2, 7, d);
   ck_assert_double_eq_tol(d[0], 3 * 5 * 5, 1e-12);
@@ -332,8 +321,8 @@ START_TEST(surface_passes_by_angle_times_arm) {
   ck_assert_double_eq_tol(d[0], 4 * 6, 1e-12);
   ck_assert_double_eq_tol(d[1], -3 * 6, 1e-12);
   ck_assert_double_eq(d[2], 0);
-  release(&o.angle);
-  release(&o.motion[1]);
+  formula_release(&o.angle);
+  formula_release(&o.motion[1]);
 }
 END_TEST
 
@@ -341,10 +330,10 @@ END_TEST
 START_TEST(given_gap_is_that_of_the_point_now_opposite) {
   obstacle o = {.shape = OBSTACLE_GAP};
   double down[3] = {0, -1, 0}, x[3] = {3, 0, 0};
-  compile(&o.gap, "x*x/20");
+  formula_compile(&o.gap, "x*x/20");
   ck_assert_int_eq(obstacle_moves(&o), 0);
   ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, down, 0), 0.45, 1e-15);
-  compile(&o.motion[0], "t");
+  formula_compile(&o.motion[0], "t");
   quantity sideways = o.motion[0];
   o.motion[1].number = -0.5;
   ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, down, 2), 0.55, 1e-15);
@@ -353,11 +342,11 @@ START_TEST(given_gap_is_that_of_the_point_now_opposite) {
   o.motion[0].number = 2 * 0.6;
   o.motion[1].number = 2 * -0.8;
   ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, slant, 0), 2.45, 1e-14);
-  release(&o.gap);
-  compile(&o.gap, "log(-1-x*x)");
+  formula_release(&o.gap);
+  formula_compile(&o.gap, "log(-1-x*x)");
   ck_assert(isnan(obstacle_gap(&o, 2, x, down, 0)));
-  release(&o.gap);
-  release(&sideways);
+  formula_release(&o.gap);
+  formula_release(&sideways);
 }
 END_TEST
 

@@ -123,7 +123,7 @@ static void hinged(layers *l, double contrast) {
   l->n_motion = 4;
   l->motion = hinged_motion;
   two_moduli(l, contrast, (double[]){1, 1, 1.5});
-  grid_free(a);
+  mesh_free(a);
 }
 
 /* Two contact nodes close together and far from the origin. */

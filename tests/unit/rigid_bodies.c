@@ -13,28 +13,13 @@ static const double TOL = 1e-8;
  */
 static const double FAIR = 1e-5;
 
-/* Violation by the answer of c, in the signs of the scene. */
-static double violation(const rigid_scene *s, const contact_case *c) {
-  double *u = calloc((size_t)s->m, sizeof *u),
-         *r = calloc((size_t)s->m, sizeof *r);
-  for (int j = 0; j < s->m; ++j) {
-    double sign = j % s->dim == 0 ? -1.0 : 1.0;
-    u[j] = sign * c->u[j];
-    r[j] = sign * c->r[j];
-  }
-  double bad = fclib_violation(s->dim, s->n, s->W, s->q, s->mu, u, r);
-  free(u);
-  free(r);
-  return bad;
-}
-
 /* 1: solved; a claim must hold. */
 static int solves(const solver_ops *ops, const rigid_scene *s, const char *what,
                   unsigned long long seed) {
   contact_case c = rigid_case(s);
   solver_report rep = solve_by(ops, &c, TOL, c.u, c.r);
   int solved = rep.outcome == CONVERGED;
-  double bad = solved ? violation(s, &c) : 0.0;
+  double bad = solved ? rigid_violation(s, &c) : 0.0;
   ck_assert_msg(bad <= FAIR,
                 "%s: %s, %d-D, seed %llu: claims a violation of %g",
                 row_name(ops), what, s->dim, seed, bad);

@@ -238,7 +238,7 @@ START_TEST(second_body_is_named) {
   ck_assert_uint_eq(list[0].elem_no, 9);
   ck_assert_str_eq(list[0].text, "rotation about (2, 0)");
   memory_free(list);
-  grid_free(a);
+  mesh_free(a);
   scene_free(s);
 }
 END_TEST
@@ -262,7 +262,7 @@ START_TEST(piece_on_a_hinge_is_found) {
   memory_free(list);
   scene_fix_node(s, 17, 0);
   motions_are(s, (expected[]){{NOTHING, NULL}});
-  grid_free(a);
+  mesh_free(a);
   scene_free(s);
 }
 END_TEST

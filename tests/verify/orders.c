@@ -49,7 +49,7 @@ static series run_series(const char *name, const char *deck, double nu,
              "%s -D SIZE=100 -D NU=%g -D A=%.17g -D NC=%d -D GROWTH=%.6g",
              words, nu, part * s.a * widths[k % WIDTHS], n, 5.0 / n);
     s.j[k] = job_begin("verify");
-    int code = job_run_deck(&s.j[k], deck, all);
+    int code = job_job_deck(&s.j[k], deck, all);
     ck_assert_msg(code == 0, "%s: exit %d: %s", deck, code, s.j[k].errors);
     s.contact[k] = job_table(&s.j[k], "CONTACT", -1);
     s.zones[k] = job_table(&s.j[k], "ZONES", -1);
@@ -143,20 +143,13 @@ static void field_changes(const series *s, const char *column, double a,
   mean_over_widths(WIDTHS, square, change);
 }
 
-static int zone_row(const dat *z, int kind) {
-  int row = 0;
-  while (row < z->n_row && dat_at(z, row, "zone") != kind) ++row;
-  ck_assert_int_lt(row, z->n_row);
-  return row;
-}
-
 /* End or extent of the zone of a kind (1 SLIP, 2 STICK), over a. */
 static void zone_errors(const series *s, int kind, const char *column,
                         double exact, double *error) {
   double square[RUNS];
   for (int k = 0; k < RUNS; ++k) {
     const dat *z = &s->zones[k];
-    double d = (dat_at(z, zone_row(z, kind), column) - exact) / s->a;
+    double d = (dat_at(z, dat_zone(z, kind), column) - exact) / s->a;
     square[k] = d * d;
   }
   mean_over_widths(0, square, error);

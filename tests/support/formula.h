@@ -1,0 +1,13 @@
+/*
+ * Quantities of expressions, without a deck.
+ */
+#ifndef PROTIS_TESTS_FORMULA_H
+#define PROTIS_TESTS_FORMULA_H
+
+#include "deck/quantity.h"
+
+/* q = the expression; check fails if it is none. */
+void formula_compile(quantity *q, const char *text);
+void formula_release(quantity *q);
+
+#endif
