@@ -18,7 +18,7 @@
 static const double LAST_DIGIT = 0.1; /* -, an error that leaves none         */
 /* -, the same where the condition leaves none to the factor that measures */
 static const double IN_DOUBT = 0.01;
-static const double FLOWN = 1e6; /* -, all energies over those of the strains */
+static const double FLOWN = 1e6; /* -, work of creep over the strain energy   */
 
 static double largest(size_t n, const double *v) {
   double most = 0.0;
@@ -60,6 +60,12 @@ done:
   return st;
 }
 
+/* A body led through the air without load: its stresses, of which nothing but
+ * rounding is there, are no loss. */
+static int moves_alone(const run *r) {
+  return r->rounding.u < 1e-10 && largest(r->n_dof, r->now.F) == 0.0;
+}
+
 static status find(run *r) {
   status st = OK;
   condensed *c = r->elastic.c != NULL ? r->elastic.c : r->c;
@@ -75,8 +81,9 @@ static status find(run *r) {
   if (square > 0.0)
     r->rounding.energy = sqrt(square / (2.0 * r->now.peak_energy));
   TRY(compare_stresses(r, w));
-  if (c == r->c && square > 0.0)
+  if (square > 0.0)
     r->rounding.u = largest(r->n_dof, w) / largest(r->n_dof, r->now.u);
+  if (moves_alone(r)) r->rounding = (rounding_loss){0};
   TRY(check(r, c));
 done:
   memory_free(rest);
@@ -86,7 +93,7 @@ done:
 
 static int is_doubtful(const run *r) {
   if (condensed_costs_digits(r->c)) return 1;
-  return r->visco != NULL && r->now.energy.largest > FLOWN * r->now.peak_energy;
+  return fabs(r->now.energy.inelastic) > FLOWN * r->now.peak_energy;
 }
 
 status rounding_find(run *r) {

@@ -82,7 +82,7 @@ typedef struct rounding_loss {
   double norm; /* sqrt(J), error in the energy norm                           */
   double energy; /* -, the same over the norm of the answer */
   double stress; /* -, error of the stresses over the largest */
-  double u; /* -, of the displacements over the largest, elastic increments   */
+  double u;      /* -, of the displacements over the largest */
 } rounding_loss;
 
 /* An estimate of an error at the end of an increment. */

@@ -96,6 +96,12 @@ const scene_row time_scenes[] = {
   {.name = "sinks by 1e16 elastic strains", .hard = "no digit left",
    .mesh = "rect 6 8 1 1 layers", .deck = SINKS("1.E16"), .flags = QUICK,
    .verdict = 6, .expect = "errors has rounding leaves no digit"},
+  {.name = "led to the touch by every integrator", .hard = "no stress at all",
+   .mesh = "rect 3 3 1 1", .flags = QUICK | NO_LAWS,
+   .deck = MAXWELL("2.") PLANE("C", "BOTTOM", "0., -0.125", "0., 1.")
+     COULOMB("C", "0.3") VISCO("@I", "0.25", "0.5") "*BOUNDARY\nLEFT, 1\n"
+     "TOP, 2, 2, -0.125\n" LAST,
+   .expect = "NODES u_y = -0.125 ~ 1e-12; CONTACT ^f_n = 0 ~ 1e-9"},
   {.name = "Euler at 1.99 tau", .hard = "just stable",
    .mesh = "rect 2 2 1 1",
    .deck = RELAXES("INTEGRATOR=EULER", "3.98", "398."),
