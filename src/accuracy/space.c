@@ -220,11 +220,30 @@ static void normal_equations(const space_recovery *s, int node, int n,
   }
 }
 
-/* 1 if the points of the fit span the space. */
-static int is_determined(int p, const double *G, const double *L) {
-  for (int i = 0; i < p; ++i)
-    if (!(L[i + p * i] * L[i + p * i] > FLAT * G[i + p * i])) return 0;
+/* L[p*p] = G = L L', p <= MAX_BASIS; 1 if the points of the fit span the space.
+ * So small a matrix costs a library more than its arithmetic. */
+static int factor(int p, const double *G, double *L) {
+  for (int j = 0; j < p; ++j)
+    for (int i = j; i < p; ++i) {
+      double sum = G[i + p * j];
+      for (int k = 0; k < j; ++k) sum -= L[i + p * k] * L[j + p * k];
+      if (i == j && !(sum > FLAT * G[i + p * i])) return 0;
+      L[i + p * j] = i == j ? sqrt(sum) : sum / L[j + p * j];
+    }
   return 1;
+}
+
+/* g[p], G g = (1, 0, ...): the value at the node is g'rhs. */
+static void value_weights(int p, const double *L, double *g) {
+  for (int i = 0; i < p; ++i) {
+    g[i] = i == 0 ? 1.0 : 0.0;
+    for (int k = 0; k < i; ++k) g[i] -= L[i + p * k] * g[k];
+    g[i] /= L[i + p * i];
+  }
+  for (int i = p; i-- > 0;) {
+    for (int k = i + 1; k < p; ++k) g[i] -= L[k + p * i] * g[k];
+    g[i] /= L[i + p * i];
+  }
 }
 
 /* Stress at the node from its patch of n elements; the mean if the fit is not
@@ -232,16 +251,16 @@ static int is_determined(int p, const double *G, const double *L) {
 static void fit(const space_recovery *s, int node, int n, const double *sigma,
                 double *value) {
   int p = s->d->mesh->dim + 1, ns = s->d->ns;
-  double G[MAX_BASIS * MAX_BASIS], L[MAX_BASIS * MAX_BASIS];
+  double G[MAX_BASIS * MAX_BASIS], L[MAX_BASIS * MAX_BASIS], g[MAX_BASIS];
   double rhs[MAX_BASIS * MAX_NS];
   normal_equations(s, node, n, sigma, G, rhs);
-  memcpy(L, G, sizeof L);
   for (int i = 0; i < ns; ++i) value[i] = rhs[p * i] / n;
-  if (n <= p || LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', p, L, p) != 0 ||
-      !is_determined(p, G, L))
-    return;
-  LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', p, ns, L, p, rhs, p);
-  for (int i = 0; i < ns; ++i) value[i] = rhs[p * i];
+  if (n <= p || !factor(p, G, L)) return;
+  value_weights(p, L, g);
+  for (int i = 0; i < ns; ++i) {
+    value[i] = 0.0;
+    for (int j = 0; j < p; ++j) value[i] += g[j] * rhs[j + p * i];
+  }
 }
 
 /* ---- the estimate -------------------------------------------------------- */
