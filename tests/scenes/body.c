@@ -65,6 +65,15 @@ const scene_row body_scenes[] = {
   {.name = "nu=0.4999 averaged", .hard = "clusters of unequal triangles",
    .mesh = "rect 6 6 1 1", .change = WAVY, .deck = AVERAGED("0.4999"),
    .flags = QUICK, .expect = PRESSED_TO("0.4999", "1e-9") NOT_WARNED},
+  {.name = "nu=0.4999 averaged, numbered at random", .hard = "other clusters?",
+   .mesh = "rect 12 8 2 1", .change = {.map = {"x - 1", NULL}},
+   .deck = AVERAGED_MATERIAL("0.4999", "")
+     "*OBSTACLE, NAME=O, TYPE=GAP\n\"0.02*x^2\"\n"
+     "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n" COULOMB("C", "0.3")
+     STATIC "*BOUNDARY\nTOP, 1, 1, 0.\n*DSLOAD\nTOP, P, 10.\n" END,
+   .expect = "TOTALS force_y = 20 ~ 1e-7",
+   .twin = &(const scene_twin){.change = {.map = {"x - 1", NULL},
+   .shuffle = 7}, .tol = 1e-9}},
   {.name = "nu=0.49999 averaged", .hard = "clusters of unequal triangles",
    .mesh = "rect 7 5 1 1", .change = WAVY, .deck = AVERAGED("0.49999"),
    .expect = PRESSED_TO("0.49999", "1e-8") NOT_WARNED},
