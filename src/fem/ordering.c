@@ -275,6 +275,16 @@ done:
   return st;
 }
 
+/* METIS that was refused memory leaves any numbers, and CHOLMOD takes them. */
+static int is_permutation(const SuiteSparse_long *perm, int n, int *seen) {
+  memset(seen, 0, (size_t)n * sizeof *seen);
+  for (int i = 0; i < n; ++i) {
+    if (perm[i] < 0 || perm[i] >= n || seen[perm[i]]) return 0;
+    seen[perm[i]] = 1;
+  }
+  return 1;
+}
+
 static status order_by_pattern(order_method method, const graph *g, int n,
                                int *node, cholmod_common *cm) {
   status st = OK;
@@ -284,8 +294,10 @@ static status order_by_pattern(order_method method, const graph *g, int n,
   TRY(graph_pattern(g, n, node, cm, &a));
   NEW(perm, n);
   NEW(old, n);
-  if (method == ORDER_METIS ? !cholmod_l_metis(a, NULL, 0, 0, perm, cm)
-                            : !cholmod_l_amd(a, NULL, 0, perm, cm))
+  const int ordered = method == ORDER_METIS
+                          ? cholmod_l_metis(a, NULL, 0, 0, perm, cm)
+                          : cholmod_l_amd(a, NULL, 0, perm, cm);
+  if (!ordered || !is_permutation(perm, n, old))
     FAIL(ERR_MEMORY, "memory exhausted: order of %d nodes", n);
   memcpy(old, node, (size_t)n * sizeof *node);
   for (int i = 0; i < n; ++i) node[i] = old[perm[i]];
