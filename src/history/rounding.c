@@ -60,10 +60,11 @@ done:
   return st;
 }
 
-/* A body led through the air without load: its stresses, of which nothing but
- * rounding is there, are no loss. */
+/* A body led through the air, without load and contact force: its stresses, of
+ * which nothing but rounding is there, are no loss. */
 static int moves_alone(const run *r) {
-  return r->rounding.u < 1e-10 && largest(r->n_dof, r->now.F) == 0.0;
+  return r->rounding.u < 1e-10 && largest(r->n_dof, r->now.F) == 0.0 &&
+         largest((size_t)r->n_c, r->now.rc) == 0.0;
 }
 
 static status find(run *r) {
