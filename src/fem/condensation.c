@@ -483,6 +483,24 @@ done:
   return st;
 }
 
+status condensed_untouched(condensed *c, const double *f, double *u) {
+  status st = OK;
+  const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
+  double *load = NULL, *w = NULL, square = 0;
+  NEW(load, n);
+  NEW(w, n);
+  for (int q = 0; q < c->m; ++q) load[component_of(c, q)] = f[q];
+  for (int q = 0; q < c->n_body; ++q)
+    TRY(body_factor_solve(&c->body[q], load, w, &square, c->cm));
+  for (int q = 0; q < c->m; ++q)
+    u[q] = is_held(c, q) ? f[q] / c->A[(size_t)q * (size_t)(c->m + 1)]
+                         : w[component_of(c, q)];
+done:
+  memory_free(load);
+  memory_free(w);
+  return st;
+}
+
 status condensed_misfit(condensed *c, const double *rest, const double *rc,
                         double *w, double *square) {
   status st = OK;

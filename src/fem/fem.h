@@ -127,6 +127,9 @@ status condense_recover(condensed *c, const double *u_c, double *u);
  * alone holds a body, A is singular: d must be in balance, K'd = 0 with the
  * kernel below. */
 status condensed_force_energy(condensed *c, const double *d, double *square);
+/* u[m] = inv(A) f of a load f[m], by the same factor: the contact unknowns
+ * without contact forces. Nothing floats. ERR_MEMORY. */
+status condensed_untouched(condensed *c, const double *f, double *u);
 /*
  * What rounding has left over of equilibrium: rest[dim*n_node] = loads less
  * internal forces at the answer, global components; rc[m] the contact forces.

@@ -85,6 +85,11 @@ done:
 
 void estimate_unloaded(run *r) {
   const energies *e = &r->now.energy;
+  if (rounding_is_all(r)) {
+    r->mesh_error.relative = r->time_error.relative = 0.0;
+    if (r->error.why == NULL) r->error.relative = 0.0;
+    return;
+  }
   if (!(e->strain < UNLOADED * e->largest)) return;
   double share = sqrt(fmax(e->strain, 0.0) / e->largest);
   r->mesh_error.relative *= share;

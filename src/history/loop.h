@@ -56,6 +56,9 @@ status zones_find(run *r);
 /* rounding.c: what rounding has taken of r->now, whose energies are known.
  * ERR_SINGULAR: it leaves no digit. */
 status rounding_find(run *r);
+/* 1: no load acts on the body, and its strains and contact forces are no more
+ * than the rounding of its motion. */
+int rounding_is_all(const run *r);
 
 /* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
 status estimate_increment(run *r);
@@ -63,7 +66,8 @@ status estimate_increment(run *r);
 status estimate_judge(run *r);
 
 /* All errors at r->now known: those of a body that has been unloaded, which is
- * left with rounding alone, count beside the largest energy so far. */
+ * left with rounding alone, count beside the largest energy so far; a body that
+ * is carried through the air has none. */
 void estimate_unloaded(run *r);
 
 /* theorems.c: the theorems at r->now into r->theorems, if asked for; at the

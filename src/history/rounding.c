@@ -1,7 +1,8 @@
 /*
  * What rounding has taken of an answer. Where the condition number is far above
- * that of a plain mesh, or inelastic strains far above the elastic ones, which
- * are the difference of two large numbers then, the forces of the elements at
+ * that of a plain mesh, or where elastic strains are the difference of large
+ * numbers, since inelastic strains or motions of the whole body are far above
+ * them, the forces of the elements at
  * the answer are compared with loads and contact forces. With d what is missing
  * to equilibrium, the exact answer is w = inv(K) d away: its energy norm and
  * its stresses are those of the error. Beside laws that flow K is that of the
@@ -10,21 +11,20 @@
  * answer without one correct digit ends the run.
  */
 #include "base/memory.h"
+#include "base/sparse.h"
 #include "base/timer.h"
 #include "history/loop.h"
 
+#include <float.h>
 #include <math.h>
 
 static const double LAST_DIGIT = 0.1; /* -, an error that leaves none         */
 /* -, the same where the condition leaves none to the factor that measures */
 static const double IN_DOUBT = 0.01;
-static const double FLOWN = 1e6; /* -, work of creep over the strain energy   */
-
-static double largest(size_t n, const double *v) {
-  double most = 0.0;
-  for (size_t i = 0; i < n; ++i) most = fmax(most, fabs(v[i]));
-  return most;
-}
+/* -, displacements and forces in u and A u, by rounding */
+static const double CARRIED = 4 * DBL_EPSILON;
+/* -, work of creep, or forces times motion, over the strain energy */
+static const double FAR = 1e6;
 
 static status check(const run *r, const condensed *c) {
   status st = OK;
@@ -35,8 +35,8 @@ static status check(const run *r, const condensed *c) {
        "step %d, time %g: rounding leaves no digit of the answer: the energy "
        "norm is wrong by about %.1g of itself, stresses by %.1g and "
        "displacements by %.1g of the largest (condition %.1e); contrasts of "
-       "stiffness, slivers, nu near 1/2, supports that hardly hold and creep "
-       "strains far above the elastic ones cost digits",
+       "stiffness, slivers, nu near 1/2, supports that hardly hold, creep "
+       "strains and motions far above the elastic ones cost digits",
        run_step_id(r) + 1, r->now.t, loss->energy, loss->stress, loss->u,
        condensed_condition(c));
 done:
@@ -52,19 +52,31 @@ static status compare_stresses(run *r, const double *w) {
   plain.eigen = NULL;
   NEW(stress, n);
   domain_stress(&plain, w, NULL, stress);
-  wrong = largest(n, stress);
-  r->now.peak_stress = fmax(r->now.peak_stress, largest(n, r->stress));
+  wrong = largest_entry(n, stress);
+  r->now.peak_stress = fmax(r->now.peak_stress, largest_entry(n, r->stress));
   if (wrong > 0.0) r->rounding.stress = wrong / r->now.peak_stress;
 done:
   memory_free(stress);
   return st;
 }
 
+int rounding_is_all(const run *r) {
+  const size_t m = (size_t)r->n_row;
+  const double *A = condensed_matrix(r->c);
+  const double u = CARRIED * largest_entry(r->n_dof, r->now.u);
+  double stiffest = 0.0;
+  if (largest_entry(r->n_dof, r->now.F) > 0.0) return 0;
+  for (size_t i = 0; i < m; ++i) stiffest = fmax(stiffest, A[i * (m + 1)]);
+  return largest_entry((size_t)r->n_c, r->now.rc) <= stiffest * u &&
+         r->now.energy.strain <= r->msh->n_node * stiffest * u * u;
+}
+
 /* A body led through the air, without load and contact force: its stresses, of
  * which nothing but rounding is there, are no loss. */
 static int moves_alone(const run *r) {
-  return r->rounding.u < 1e-10 && largest(r->n_dof, r->now.F) == 0.0 &&
-         largest((size_t)r->n_c, r->now.rc) == 0.0;
+  if (rounding_is_all(r)) return 1;
+  return r->rounding.u < 1e-10 && largest_entry(r->n_dof, r->now.F) == 0.0 &&
+         largest_entry((size_t)r->n_c, r->now.rc) == 0.0;
 }
 
 static status find(run *r) {
@@ -83,7 +95,8 @@ static status find(run *r) {
     r->rounding.energy = sqrt(square / (2.0 * r->now.peak_energy));
   TRY(compare_stresses(r, w));
   if (square > 0.0)
-    r->rounding.u = largest(r->n_dof, w) / largest(r->n_dof, r->now.u);
+    r->rounding.u =
+        largest_entry(r->n_dof, w) / largest_entry(r->n_dof, r->now.u);
   if (moves_alone(r)) r->rounding = (rounding_loss){0};
   TRY(check(r, c));
 done:
@@ -92,9 +105,35 @@ done:
   return st;
 }
 
+/* A body led far to where rounding hides whether it touches. */
+static status check_touch(const run *r) {
+  status st = OK;
+  const double u = largest_entry(r->n_dof, r->now.u);
+  if (u <= FAR * r->msh->size || !rounding_is_all(r)) goto done;
+  for (int i = 0; i < r->n; ++i) {
+    const double gap = r->gap[i] - r->now.uc[r->msh->dim * i];
+    if (fabs(gap) <= 16 * DBL_EPSILON * u)
+      FAIL(ERR_SINGULAR,
+           "step %d, time %g: rounding leaves no digit of the answer: after a "
+           "motion of %.1g a gap of %.1g may be open or closed; begin nearer "
+           "to the obstacle",
+           run_step_id(r) + 1, r->now.t, u, gap);
+  }
+done:
+  return st;
+}
+
+/* Largest force times largest motion, J: at most what one of them has done. */
+static double farthest_work(const run *r) {
+  return largest_entry(r->n_dof, r->now.u) *
+         fmax(largest_entry(r->n_dof, r->now.F),
+              largest_entry((size_t)r->n_c, r->now.rc));
+}
+
 static int is_doubtful(const run *r) {
+  const double far = FAR * r->now.peak_energy;
   if (condensed_costs_digits(r->c)) return 1;
-  return fabs(r->now.energy.inelastic) > FLOWN * r->now.peak_energy;
+  return fabs(r->now.energy.inelastic) > far || farthest_work(r) > far;
 }
 
 status rounding_find(run *r) {
@@ -102,9 +141,12 @@ status rounding_find(run *r) {
   r->rounding = (rounding_loss){0};
   r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
   r->now.peak_stress = r->old.peak_stress;
-  if (!is_doubtful(r) || r->report.outcome <= 0) return OK;
+  if (r->report.outcome <= 0) return OK;
+  TRY(check_touch(r));
+  if (!is_doubtful(r)) return OK;
   timer_enter(STAGE_RECOVERY);
   st = find(r);
   timer_leave(STAGE_RECOVERY);
+done:
   return st;
 }

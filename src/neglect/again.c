@@ -8,6 +8,7 @@
 #include "neglect/parts.h"
 
 #include "base/memory.h"
+#include "base/sparse.h"
 
 #include <math.h>
 #include <string.h>
@@ -66,13 +67,7 @@ static void take_forces(neglect *n, const state *s, const neglected *row) {
 
 /* ---- changes ------------------------------------------------------------ */
 
-/* Largest of a[n], and of a - b. */
-static double largest(size_t n, const double *a) {
-  double most = 0.0;
-  for (size_t i = 0; i < n; ++i) most = fmax(most, fabs(a[i]));
-  return most;
-}
-
+/* Largest of a - b. */
 static double distance(size_t n, const double *a, const double *b) {
   double most = 0.0;
   for (size_t i = 0; i < n; ++i) most = fmax(most, fabs(a[i] - b[i]));
@@ -135,9 +130,9 @@ status neglect_again(neglect *n, const state *s, int k, double bound,
   if (s->surface != NULL) NEW(rc, s->surface->dim * s->surface->n);
   take_forces(n, s, row);
   TRY(s->again.solve(s->again.run, n->force, n->u, rc, &solved));
-  double change =
-      solved ? neglect_part(distance(dofs, n->u, s->u), largest(dofs, s->u))
-             : HUGE_VAL;
+  double change = solved ? neglect_part(distance(dofs, n->u, s->u),
+                                        largest_entry(dofs, s->u))
+                         : HUGE_VAL;
   if (rc != NULL) change = fmax(change, force_change(n, s, rc));
   if (!(change <= row->change)) row->change = change;
   ++row->again;

@@ -8,6 +8,7 @@
 #include "run/run.h"
 
 #include "base/memory.h"
+#include "base/sparse.h"
 #include "base/timer.h"
 #include "form/form.h"
 
@@ -199,6 +200,32 @@ static void take_start(run *r) {
   memcpy(r->now.rc, rc, bytes);
 }
 
+static int was_open(const run *r) {
+  for (int i = 0; i < r->n; ++i)
+    if (!(r->gap[i] > r->old.uc[r->msh->dim * i])) return 0;
+  return largest_entry((size_t)r->n_c, r->old.rc) == 0.0;
+}
+
+/*
+ * A body in the air: the answer without contact forces, if it is one. The
+ * tolerance of a method, of forces in the scale of the motion (contact_scale),
+ * would leave forces that no contact carries.
+ */
+static status start_in_the_air(const run *r, double *u, double *rc) {
+  status st = OK;
+  double *q = NULL;
+  if (r->beside || r->forms->n > 0 || condensed_floating(r->c) || !was_open(r))
+    goto done;
+  NEW(q, r->n_row);
+  TRY(condensed_untouched(r->c, r->cp.f, q));
+  memset(rc, 0, (size_t)r->n_row * sizeof *rc);
+  if (contact_residual(&r->cp, q, rc) <= r->tol)
+    memcpy(u, q, (size_t)r->n_row * sizeof *u);
+done:
+  memory_free(q);
+  return st;
+}
+
 status forms_solve(run *r) {
   status st = OK;
   const solver_listener listener = {r->sink->iteration, r->sink->ctx};
@@ -209,6 +236,7 @@ status forms_solve(run *r) {
   take_start(r);
   double *own_u = run_rows(r, 0, r->now.uc), *u = own_u;
   double *rc = run_rows(r, 1, r->now.rc);
+  TRY(start_in_the_air(r, u, rc));
   if (given) TRY(take_given(r, u, rc, &whole));
   cp = whole;
   if (in_du) TRY(take_velocity(r, &cp, &u));

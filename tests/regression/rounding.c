@@ -1,7 +1,8 @@
 /*
  * What rounding takes of an answer, on bodies of uniform strain, for which the
  * error of the stresses is known: contrasts of stiffness, nu near 1/2 and thin
- * elements, held by supports or by contact alone, meshes of unequal triangles.
+ * elements, held by supports or by contact alone, meshes of unequal triangles;
+ * bodies that are led far before they touch.
  * What the listing tells is the error within a factor of ten; nothing is told
  * where nothing is lost; without a digit the run ends with exit code 6.
  */
@@ -20,10 +21,7 @@ static const char wavy_y[] = "y + 0.05*sin(6.28318530717959*y)*cos(7*x)";
 static const mesh_change as_it_is;
 static const double NOISE = 1e-9; /* -, refined answers are better than that */
 
-/* A block of the mesh pressed by 1 onto the plane below it, which is rough
- * where nothing else holds the block. */
-static int run_pressed(job *j, const char *grid, const mesh_change *change,
-                       const char *materials, const char *supports) {
+static void begin(job *j, const char *grid, const mesh_change *change) {
   char path[100];
   int *number = NULL;
   *j = job_begin("pressed");
@@ -33,6 +31,13 @@ static int run_pressed(job *j, const char *grid, const mesh_change *change,
   ck_assert_int_eq(scene_mesh_write(f, grid, change, &number), 1);
   fclose(f);
   free(number);
+}
+
+/* A block of the mesh pressed by 1 onto the plane below it, which is rough
+ * where nothing else holds the block. */
+static int run_pressed(job *j, const char *grid, const mesh_change *change,
+                       const char *materials, const char *supports) {
+  begin(j, grid, change);
   job_write(j, "pressed.inp",
             "*MESH, FILE=pressed.msh\n%s"
             "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
@@ -90,6 +95,23 @@ static int run_stiff(job *j, const char *nu, const char *formulation) {
            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, FORMULATION=%s\n",
            nu, formulation);
   return run_pressed(j, "rect 6 6 1 1", &wavy, text, "*BOUNDARY\nLEFT, 1\n");
+}
+
+/* A block that its top leads down by way + 1/1024, the plane way below it: the
+ * strain is 1/1024, the stress 1. */
+static int run_led(job *j, double way) {
+  const mesh_change wavy = {.map = {wavy_x, wavy_y}};
+  begin(j, "rect 6 6 1 1", &wavy);
+  job_write(j, "pressed.inp",
+            "*MESH, FILE=pressed.msh\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1024., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., %.17g\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nLEFT, 1\nTOP, 2, 2, %.17g\n"
+            "*PRINT, ELEMENTS, NODES, CONTACT\n*END STEP\n",
+            -way, -way - 1.0 / 1024);
+  return job_run(j, "--no-timing");
 }
 
 static void ck_told(job *j, int code) {
@@ -154,6 +176,20 @@ START_TEST(no_digit_is_left_of_needles) {
 }
 END_TEST
 
+START_TEST(loss_of_a_body_led_far_is_told) {
+  job j;
+  int code = run_led(&j, ldexp(1.0, 22 + 3 * _i));
+  ck_told(&j, code);
+}
+END_TEST
+
+START_TEST(no_digit_is_left_of_a_body_led_too_far) {
+  job j;
+  int code = run_led(&j, ldexp(1.0, 38 + 4 * _i));
+  ck_refused(&j, code);
+}
+END_TEST
+
 START_TEST(nothing_is_told_of_plain_bodies) {
   job j;
   int code = run_layers(&j, "10.", _i == 0 ? "*BOUNDARY\nLEFT, 1\n" : "");
@@ -172,6 +208,8 @@ int main(void) {
   tcase_add_loop_test(tests, loss_near_incompressibility_is_told, 0, 6);
   tcase_add_loop_test(tests, loss_of_thin_elements_is_told, 0, 4);
   tcase_add_test(tests, no_digit_is_left_of_needles);
+  tcase_add_loop_test(tests, loss_of_a_body_led_far_is_told, 0, 4);
+  tcase_add_loop_test(tests, no_digit_is_left_of_a_body_led_too_far, 0, 2);
   tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
   return unit_run("rounding", tests);
 }
