@@ -131,7 +131,7 @@ static effect_work theory(const plan_sizes *s, double items) {
 
 static effect_work mesh_error(const plan_sizes *s, double items) {
   return (effect_work){1.0 + s->increments,
-                       s->increments * items * 20.0 * element_work(s)};
+                       s->increments * items * 9.0 * element_work(s)};
 }
 
 /* Formulas at many points of each element. */
