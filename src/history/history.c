@@ -5,6 +5,7 @@
 #include "accuracy/verdict.h"
 #include "history/loop.h"
 #include "run/visco.h"
+#include "setup/setup.h"
 
 #include "base/interrupt.h"
 #include "base/memory.h"

@@ -1,6 +1,6 @@
 /*
- * The running state of history_run, shared by the files of this folder and of
- * src/history.
+ * The running state of history_run, shared by the files of this folder, of
+ * src/setup and of src/history.
  */
 #ifndef PROTIS_RUN_RUN_H
 #define PROTIS_RUN_RUN_H
@@ -171,33 +171,31 @@ typedef struct run {
   int missed; /* 1: the increment misses the tolerance of its step            */
 } run;
 
-/* setup.c */
-status run_new(run *r);
-/* Rigid motions that the supports of r->step leave free, nothing solved: *list
- * is new (memory_free), NULL if there are none. ERR_SINGULAR with the list if
- * nothing at all resists one. */
-status run_motions(run *r, int *n, free_motion **list);
-/* Surface, stiffness, condensed matrix and solver for r->step. */
-status run_prepare(run *r);
-void run_free(run *r);
-int run_step_id(const run *r);
-/* All that an increment starts from and the matrices do not tell, named for an
- * archive: kept, or, after run_prepare, filled. */
-status run_keep(run *r, archive *a);
+int run_step_id(const run *r); /* from 0 */
 
+/* matrices.c: use m for the next equilibria; its solver is made if there is
+ * none, and r->elastic anew if temperatures have changed the moduli. */
+status run_use(run *r, matrices *m);
+/* The elastic matrix of the moduli and of the nodes at hand. */
+status run_renew_elastic(run *r);
+/* What the estimates know of the matrix in use. */
+void run_forget_estimates(run *r);
+void matrices_free(matrices *m);
+/* What the solver remembers, in a group of this name; reading: for the solver
+ * that is made next. */
+status matrices_keep(matrices *m, archive *a, const char *group);
+
+/* The contact nodes of r->cp are those of r->reach; room for the part of them
+ * and of their unknowns. */
+void run_take_nodes(run *r);
+status run_room_for_part(run *r);
 /* 1: a contact node that was left out of r->cp is beyond its gap in r->now, or
  * no equilibrium was found without those. */
 int run_misses_nodes(const run *r);
 /* Those and more nodes for r->cp, with a matrix and a solver of their own. */
 status run_add_nodes(run *r);
-
-/* Use m for the next equilibria; its solver is made if there is none, and
- * r->elastic anew if temperatures have changed the moduli. */
-status run_use(run *r, matrices *m);
-void matrices_free(matrices *m);
-/* What the solver remembers, in a group of this name; reading: for the solver
- * that is made next. */
-status matrices_keep(matrices *m, archive *a, const char *group);
+/* A matrix and a solver for the nodes that r->reach now has. */
+status run_renew_nodes(run *r);
 
 /* strains.c: elasticity of the elements, strains that carry no stress. */
 status strains_new(run *r);

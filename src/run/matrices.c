@@ -1,0 +1,120 @@
+/*
+ * The matrix in use with its contact solver, and the contact nodes that it has.
+ */
+#include "run/run.h"
+
+#include "base/memory.h"
+
+#include <stdio.h>
+
+int run_step_id(const run *r) { return (int)(r->step - r->m->steps); }
+
+void matrices_free(matrices *m) {
+  contact_solver_free(m->solver);
+  condensed_free(m->c);
+  stiffness_free(m->k);
+  *m = (matrices){0};
+}
+
+void run_forget_estimates(run *r) {
+  known_rate_forget(&r->rate);
+  solution_set_free(&r->solutions);
+}
+
+static status new_solver(const run *r, matrices *m) {
+  status st = OK;
+  TRY(contact_solver_new(&r->step->solver, &m->solver));
+  if (m->from == NULL) goto done;
+  archive_go(m->from, m->group);
+  st = contact_solver_keep(m->solver, m->from);
+  archive_go(m->from, "");
+  m->from = NULL;
+done:
+  return st;
+}
+
+status matrices_keep(matrices *m, archive *a, const char *group) {
+  status st = OK;
+  int there = m->solver != NULL;
+  archive_enter(a, group);
+  TRY(archive_ints(a, "solver", &there, 1));
+  if (archive_reads(a) && there && m->solver == NULL) {
+    m->from = a;
+    snprintf(m->group, sizeof m->group, "%s", archive_group(a));
+  } else if (there) {
+    TRY(contact_solver_keep(m->solver, a));
+  }
+done:
+  archive_leave(a);
+  return st;
+}
+
+status run_renew_elastic(run *r) {
+  status st = OK;
+  r->stale = 0;
+  r->c = NULL;
+  space_recovery_free(r->recovery);
+  r->recovery = NULL;
+  matrices_free(&r->elastic);
+  TRY(stiffness_assemble(&r->d, &r->elastic.k));
+  TRY(condense(r->elastic.k, &r->d, &r->elastic.c));
+done:
+  return st;
+}
+
+status run_use(run *r, matrices *m) {
+  status st = OK;
+  if (m == &r->elastic && r->stale) TRY(run_renew_elastic(r));
+  if (m->solver == NULL) TRY(new_solver(r, m));
+  int read = r->known_key != RUN_NO_KEY;
+  if (read ? r->known_key != m->key : r->c != m->c) run_forget_estimates(r);
+  if (r->c != m->c && r->forms != NULL) TRY(forms_new(r));
+  r->c = m->c;
+  r->solver = m->solver;
+  r->known_key = RUN_NO_KEY;
+done:
+  return st;
+}
+
+void run_take_nodes(run *r) {
+  r->d.in = r->reach.in;
+  r->d.n_in = r->reach.n_in;
+  r->n_row = r->rows * reach_count(&r->reach, r->n);
+}
+
+status run_room_for_part(run *r) {
+  status st = OK;
+  for (int k = 0; k < 2 && r->n_row < r->n_c && r->row[k] == NULL; ++k)
+    NEW(r->row[k], r->rows * r->n);
+  if (r->reach.in != NULL && r->part.gap == NULL)
+    TRY(reach_part_new(r->n, r->rows, &r->part));
+done:
+  return st;
+}
+
+int run_misses_nodes(const run *r) {
+  if (r->reach.in == NULL) return 0;
+  return r->report.outcome <= 0 ||
+         reach_misses(&r->reach, r->n, r->gap, r->now.uc, r->msh->dim);
+}
+
+status run_renew_nodes(run *r) {
+  status st = OK;
+  r->c = NULL;
+  matrices_free(&r->elastic);
+  run_take_nodes(r);
+  TRY(run_room_for_part(r));
+  TRY(run_renew_elastic(r));
+  TRY(run_use(r, &r->elastic));
+done:
+  return st;
+}
+
+status run_add_nodes(run *r) {
+  status st = OK;
+  TRY(reach_extend(&r->reach, r->n, r->gap, r->now.uc, r->msh->dim,
+                   r->report.outcome <= 0));
+  TRY(run_renew_nodes(r));
+done:
+  return st;
+}
