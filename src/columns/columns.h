@@ -1,9 +1,10 @@
 /*
  * The columns of all tables and fields, and tables as text.
  *
- * Adding a column is one row of column_table: the tables of JOB.dat and of the
+ * Adding a column is one row in the table of its entity (increments.c,
+ * bodies.c, contact_nodes.c, contacts.c): the tables of JOB.dat and of the
  * listing, the fields and histories of JOB.h5 and JOB.xdmf, and the tests loop
- * over it.
+ * over them.
  */
 #ifndef PROTIS_COLUMNS_COLUMNS_H
 #define PROTIS_COLUMNS_COLUMNS_H
@@ -74,7 +75,9 @@ typedef struct column {
   const char *(*word)(const view *v, int id); /* AS_WORD; else NULL         */
   const char *help;
 } column;
-extern const column column_table[]; /* name NULL at the end                 */
+/* All columns, entity after entity: the first after NULL, NULL after the last.
+ */
+const column *column_next(const column *c);
 
 /* 1: the model shows the column at all. */
 int column_visible(const column *c, const model *m);

@@ -396,7 +396,7 @@ done:
 static status choose_fields(hdf5_file *h) {
   status st = OK;
   char name[100], group[120];
-  for (const column *c = column_table; c->name != NULL; ++c) {
+  for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
     if (c->field == NULL || !column_visible(c, h->m)) continue;
     if (c->of == PER_CONTACT_NODE && h->n_contact_node == 0) continue;
     if (c->of != PER_CONTACT) {

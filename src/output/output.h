@@ -1,6 +1,6 @@
 /*
  * The files of a run. Every writer is a sink of history_run; the columns of
- * all tables and fields stand once, in columns/columns.c.
+ * all tables and fields stand once, in src/columns.
  */
 #ifndef PROTIS_OUTPUT_OUTPUT_H
 #define PROTIS_OUTPUT_OUTPUT_H

@@ -1,4 +1,4 @@
-/* src/columns/columns.c: over the table, so that a new row is tested too. */
+/* src/columns/columns.c: over the tables, so that a new row is tested too. */
 #include "base/memory.h"
 #include "columns/columns.h"
 #include "support/made_up.h"
@@ -8,7 +8,7 @@
 #include <string.h>
 
 START_TEST(every_row_has_unit_help_scene_and_value) {
-  for (const column *c = column_table; c->name != NULL; ++c) {
+  for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
     ck_assert_msg(c->unit != NULL && c->unit[0] != '\0', "%s", c->name);
     ck_assert_msg(c->help != NULL && c->help[0] != '\0', "%s", c->name);
     ck_assert_msg((c->scenes & (SCENE_ALL | SCENE_LCP)) != 0, "%s", c->name);
@@ -20,8 +20,8 @@ START_TEST(every_row_has_unit_help_scene_and_value) {
 END_TEST
 
 START_TEST(names_are_unique_within_entity_and_scene) {
-  for (const column *a = column_table; a->name != NULL; ++a)
-    for (const column *b = a + 1; b->name != NULL; ++b)
+  for (const column *a = column_next(NULL); a != NULL; a = column_next(a))
+    for (const column *b = column_next(a); b != NULL; b = column_next(b))
       ck_assert_msg(a->of != b->of || (a->scenes & b->scenes) == 0 ||
                         strcmp(a->name, b->name) != 0,
                     "%s", a->name);
@@ -30,8 +30,8 @@ END_TEST
 
 /* Components of one field of HDF5 have places of their own. */
 START_TEST(fields_have_distinct_components) {
-  for (const column *a = column_table; a->name != NULL; ++a)
-    for (const column *b = a + 1; b->name != NULL; ++b) {
+  for (const column *a = column_next(NULL); a != NULL; a = column_next(a))
+    for (const column *b = column_next(a); b != NULL; b = column_next(b)) {
       if (a->of != b->of || (a->scenes & b->scenes) == 0) continue;
       if (a->field == NULL || b->field == NULL) continue;
       if (strcmp(a->field, b->field) == 0) ck_assert_int_ne(a->part, b->part);
@@ -42,7 +42,7 @@ END_TEST
 static int count_finite(const made_up *made) {
   int n = 0;
   view v = {&made->m, made->msh, &made->s};
-  for (const column *c = column_table; c->name != NULL; ++c) {
+  for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
     if (!column_visible(c, &made->m)) continue;
     ck_assert(column_ready(c, &made->s));
     for (int id = 0; id < column_items(c->of, &v); ++id) {
@@ -73,7 +73,7 @@ END_TEST
 START_TEST(columns_follow_the_effects) {
   made_up *made = made_up_new(2, 1, 1);
   made->m.effects = 0;
-  for (const column *c = column_table; c->name != NULL; ++c)
+  for (const column *c = column_next(NULL); c != NULL; c = column_next(c))
     if (column_visible(c, &made->m)) {
       ck_assert_int_ne(c->of, PER_CONTACT_NODE);
       ck_assert_int_ne(c->of, PER_CONTACT);
@@ -85,7 +85,7 @@ START_TEST(columns_follow_the_effects) {
 END_TEST
 
 static const column *named(const made_up *made, entity of, const char *name) {
-  for (const column *c = column_table; c->name != NULL; ++c)
+  for (const column *c = column_next(NULL); c != NULL; c = column_next(c))
     if (c->of == of && column_visible(c, &made->m) &&
         strcmp(c->name, name) == 0)
       return c;
