@@ -384,6 +384,8 @@ enum { EFFECT_LIST(EFFECT_MASK) EFFECT_ALL = (1 << EFFECT_COUNT) - 1 };
 const char *effect_name(int bit);
 /* Name of the file of a place, without folder. */
 const char *place_file(const place *at);
+/* For "%s:%d": file without folder, line. */
+#define PLACE(at) place_file(&(at)), (at).line_no
 /* The rule of a contact in force during a step. */
 const friction_rule *friction_in_force(const model *m, int step_id,
                                        int contact_id);

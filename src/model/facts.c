@@ -1,0 +1,248 @@
+/*
+ * Facts of the deck: the first card or step of a kind, and whether there is
+ * one.
+ */
+#include "model/facts.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+const char *place_file(const place *at) {
+  const char *file = at->file != NULL ? at->file : "deck";
+  const char *slash = strrchr(file, '/');
+  return slash != NULL ? slash + 1 : file;
+}
+
+const friction_rule *friction_in_force(const model *m, int step_id,
+                                       int contact_id) {
+  for (int i = step_id; i >= 0; --i)
+    for (int k = 0; k < m->steps[i].n_change; ++k)
+      if (m->steps[i].changes[k].contact_id == contact_id)
+        return &m->steps[i].changes[k].rule;
+  return &m->contacts[contact_id].friction;
+}
+
+int rule_has_friction(const friction_rule *rule) {
+  if (rule->law == NULL || rule->law->value_name == NULL) return 0;
+  const quantity *q = &rule->card.value;
+  return q->formula != NULL || q->number != 0.0;
+}
+
+int rule_has_average(const friction_rule *rule) {
+  return rule_has_friction(rule) && rule->law->average != NULL;
+}
+
+const friction_rule *facts_first_rule(const model *m,
+                                      int (*is)(const friction_rule *rule),
+                                      const contact **of) {
+  for (int i = 0; i < m->n_contact; ++i)
+    for (int k = 0; k < m->n_step; ++k) {
+      const friction_rule *rule = friction_in_force(m, k, i);
+      *of = &m->contacts[i];
+      if (is(rule)) return rule;
+    }
+  return NULL;
+}
+
+const contact *facts_first_given(const model *m) {
+  for (int i = 0; i < m->n_contact; ++i)
+    if (m->contacts[i].force.given) return &m->contacts[i];
+  return NULL;
+}
+
+const load *facts_first_body_load(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k) {
+      const load *l = &m->steps[i].loads.item[k];
+      if (l->kind == LOAD_BODY || l->kind == LOAD_GRAVITY) return l;
+    }
+  return NULL;
+}
+
+const load *facts_first_temperature(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k)
+      if (m->steps[i].loads.item[k].kind == LOAD_TEMPERATURE)
+        return &m->steps[i].loads.item[k];
+  return NULL;
+}
+
+const step *facts_first_print(const model *m, int table, place *at) {
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].n_print; ++k)
+      if (m->steps[i].prints[k].table & table) {
+        *at = m->steps[i].prints[k].at;
+        return &m->steps[i];
+      }
+  return NULL;
+}
+
+int model_prints(const model *m, int tables) {
+  place at;
+  return facts_first_print(m, tables, &at) != NULL;
+}
+
+int model_has_axis(const model *m) {
+  int any = 0;
+  for (int i = 0; i < m->n_contact; ++i) any |= m->contacts[i].has_axis;
+  return any;
+}
+
+const step *facts_first_fields(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    if (m->steps[i].output_frequency >= 0) return &m->steps[i];
+  return NULL;
+}
+
+int model_writes_fields(const model *m) {
+  return facts_first_fields(m) != NULL;
+}
+
+/* 1 if the step before holds the same component of the same group. */
+static int held_before(const model *m, int step_id, const load *l) {
+  if (step_id == 0) return 1;
+  const load_list *old = &m->steps[step_id - 1].loads;
+  for (int k = 0; k < old->n; ++k)
+    if (old->item[k].kind == LOAD_FIXING &&
+        old->item[k].component == l->component &&
+        old->item[k].group_id == l->group_id)
+      return 1;
+  return 0;
+}
+
+const load *facts_moving_support(const model *m) {
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k) {
+      const load *l = &m->steps[i].loads.item[k];
+      if (l->kind != LOAD_FIXING) continue;
+      int let_go = i + 1 < m->n_step &&
+                   (m->steps[i + 1].renewed >> LOAD_FIXING & 1u) != 0;
+      if (l->value.formula != NULL || l->value.number != 0.0 || l->has_before ||
+          let_go || !held_before(m, i, l))
+        return l;
+    }
+  return NULL;
+}
+
+const section *facts_first_inelastic(const model *m) {
+  for (int i = 0; i < m->n_section; ++i) {
+    const int id = m->sections[i].material_id;
+    if (id >= 0 && id < m->n_material && m->materials[id].law.ops != NULL)
+      return &m->sections[i];
+  }
+  return NULL;
+}
+
+static const initial *first_initial(const model *m, int type) {
+  for (int i = 0; i < m->n_initial; ++i)
+    if (m->initials[i].type == type) return &m->initials[i];
+  return NULL;
+}
+
+int facts_has_inelastic(const model *m) {
+  return facts_first_inelastic(m) != NULL &&
+         (has_card(m, "VISCO") || first_initial(m, INITIAL_STRAIN) != NULL);
+}
+
+int model_flows(const model *m, int elem_id) {
+  const section *s = &m->sections[m->elem_section[elem_id]];
+  const material *mat = &m->materials[s->material_id];
+  return mat->law.ops != NULL && !(mat->is_still && m->still[elem_id]);
+}
+
+const material *facts_first_warm_law(const model *m) {
+  for (int i = 0; i < m->n_material; ++i) {
+    const material *mat = &m->materials[i];
+    if (mat->used && mat->law.ops != NULL &&
+        (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE))
+      return mat;
+  }
+  return NULL;
+}
+
+/* 1 if temperatures are given. */
+static int has_temperature(const model *m) {
+  return facts_first_temperature(m) != NULL ||
+         first_initial(m, INITIAL_TEMPERATURE) != NULL;
+}
+
+const material *facts_first_warm_moduli(const model *m) {
+  for (int i = 0; i < m->n_material; ++i)
+    if (m->materials[i].used && m->materials[i].elastic.n > 1)
+      return &m->materials[i];
+  return NULL;
+}
+
+int facts_has_warm_moduli(const model *m) {
+  return has_temperature(m) && facts_first_warm_moduli(m) != NULL;
+}
+
+int facts_has_warm_law(const model *m) {
+  return facts_has_inelastic(m) && has_temperature(m) &&
+         facts_first_warm_law(m) != NULL;
+}
+
+int facts_has_expansion(const model *m) {
+  for (int i = 0; i < m->n_material; ++i)
+    if (m->materials[i].used && m->materials[i].expand.given) return 1;
+  return 0;
+}
+
+const step *facts_first_step(const model *m, int (*is)(const step *s)) {
+  for (int i = 0; i < m->n_step; ++i)
+    if (is(&m->steps[i])) return &m->steps[i];
+  return NULL;
+}
+
+int facts_asks_mesh_error(const step *s) { return s->mesh_error; }
+int facts_asks_time_error(const step *s) { return s->time_error; }
+int facts_asks_theory(const step *s) { return s->theory; }
+
+status model_find_corner(model *m, const mesh *msh) {
+  status st = OK;
+  int *of = NULL;
+  m->corner_id = -1;
+  NEW(of, msh->n_node);
+  for (int i = 0; i < m->n_contact; ++i) {
+    if (m->contacts[i].group_id < 0) continue;
+    const mesh_group *g = &msh->group[m->contacts[i].group_id];
+    for (int k = 0; k < g->n_node; ++k) {
+      int *owner = &of[g->node_id[k]];
+      if (*owner > 0 && *owner != i + 1) m->corner_id = i;
+      *owner = i + 1;
+    }
+  }
+done:
+  memory_free(of);
+  return st;
+}
+
+const step *facts_first_whole(const model *m) {
+  for (int i = 0; i < m->n_step; ++i) {
+    const step *s = &m->steps[i];
+    if (s->condensed_frequency >= 0 || s->check != CHECK_NONE || s->theory)
+      return s;
+  }
+  return NULL;
+}
+
+int facts_neglects_friction(const model *m) {
+  int any = 0;
+  for (int i = 0; i < m->n_neglected; ++i)
+    any |= m->neglected[i].bit == EFFECT_BIT_FRICTION && !m->neglected[i].back;
+  return any;
+}
+
+int model_rubs_locally(const model *m) {
+  int local = m->corner_id < 0 && facts_first_whole(m) == NULL;
+  for (int i = 0; i < m->n_step; ++i) {
+    local = local && m->steps[i].form == FORM_DISPLACEMENT;
+    for (int k = 0; k < m->n_contact; ++k) {
+      const friction_rule *rule = friction_in_force(m, i, k);
+      local =
+          local && (!rule_has_friction(rule) || rule->law == &coulomb_friction);
+    }
+  }
+  return local;
+}
