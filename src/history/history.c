@@ -99,10 +99,6 @@ state loop_state(run *r, int attempt, int increment_no) {
   return s;
 }
 
-static int is_due(int frequency, int increment_no, int last) {
-  return last || (frequency > 0 && increment_no % frequency == 0);
-}
-
 int table_is_due(const step *s, int tables, double t, int increment_no,
                  int last) {
   for (int i = 0; i < s->n_print; ++i)
@@ -115,7 +111,7 @@ int table_is_due(const step *s, int tables, double t, int increment_no,
 /* 1 if some output wants the stresses of this increment. */
 static int stress_is_due(const step *s, double t, int increment_no, int last) {
   int f = s->output_frequency;
-  if (f >= 0 && is_due(f, increment_no, last)) return 1;
+  if (frequency_shows(f, increment_no, last)) return 1;
   return table_is_due(s, ~0, t, increment_no, last);
 }
 
@@ -170,8 +166,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   s.cpu = timer_cpu() - cpu;
   if (r->sink->increment != NULL) TRY(r->sink->increment(r->sink->ctx, &s));
   TRY(result_accept(r));
-  r->due = r->step->restart_frequency >= 0 &&
-           is_due(r->step->restart_frequency, increment_no, last);
+  r->due = frequency_shows(r->step->restart_frequency, increment_no, last);
 done:
   return st;
 }

@@ -31,12 +31,16 @@ double print_next(const print_request *p, const step *s, double after,
   return HUGE_VAL;
 }
 
+int frequency_shows(int frequency, int increment_no, int last) {
+  if (frequency < 0) return 0;
+  return last ||
+         (frequency > 0 && increment_no >= 0 && increment_no % frequency == 0);
+}
+
 int print_shows(const print_request *p, const step *s, double t,
                 int increment_no, int last) {
   const time_points *q = p->points;
-  if (q == NULL)
-    return last || (increment_no >= 0 && p->frequency > 0 &&
-                    increment_no % p->frequency == 0);
+  if (q == NULL) return frequency_shows(p->frequency, increment_no, last);
   for (int i = 0; i < q->n; ++i)
     if (same_time(s, q->total_time ? q->t[i] : s->start + q->t[i], t)) return 1;
   return 0;

@@ -199,7 +199,9 @@ static status write_condensed(output *o, const state *s) {
   const step *now = &o->m->steps[s->step_no - 1];
   char name[512], text[200];
   char *path = NULL;
-  if (!output_due(now->condensed_frequency, s) || s->problem == NULL) return OK;
+  if (s->problem == NULL || !frequency_shows(now->condensed_frequency,
+                                             s->increment_no, s->end_of_step))
+    return OK;
   timer_enter(STAGE_FCLIB);
   snprintf(name, sizeof name, "%s_condensed_%05d", o->m->job,
            o->run.n_increment + 1);

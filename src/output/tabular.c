@@ -40,11 +40,6 @@ static const struct { int bit; entity of; const char *name; } kinds[] = {
 };
 /* clang-format on */
 
-int output_due(int frequency, const state *s) {
-  if (frequency < 0) return 0;
-  return s->end_of_step || (frequency > 0 && s->increment_no % frequency == 0);
-}
-
 static int kind_of(int table_bit) {
   int k = 0;
   while (kinds[k].bit != table_bit) ++k;

@@ -5,7 +5,8 @@
  * items are whole datasets (hyperslabs are not read everywhere).
  */
 #include "base/memory.h"
-#include "output/writers.h"
+#include "base/text.h"
+#include "hdf5/hdf5.h"
 
 #include <errno.h>
 #include <string.h>

@@ -1,6 +1,5 @@
 /*
- * JOB.h5 as two files of this folder see it: hdf5.c decides what stands in
- * it and writes while the job runs, hdf5_layout.c makes the empty file.
+ * JOB.h5 as the files of this folder see it.
  *
  * All groups and datasets are made before the first increment (contiguous,
  * allocated at once, no fill, no object times) and the space is reserved. From
@@ -9,12 +8,16 @@
  * after a kill at any moment. The time of a row or record is NaN until all of
  * it is written.
  */
-#ifndef PROTIS_OUTPUT_HDF5_H
-#define PROTIS_OUTPUT_HDF5_H
+#ifndef PROTIS_HDF5_FILE_H
+#define PROTIS_HDF5_FILE_H
 
-#include "output/writers.h"
+#include "base/text.h"
+#include "hdf5/hdf5.h"
 
 #include <sys/types.h>
+
+/* Values written at once; records and rows of a file.                        */
+enum { CHUNK = 4096, MOST_RECORDS = 99999, MOST_ROWS = 10000000 };
 
 typedef enum { DATA_REAL, DATA_INT, DATA_NUMBER, DATA_TEXT } data_type;
 
@@ -57,7 +60,23 @@ int hdf5_is_history(const hdf5_field *f);
 /* Items of a field in one record; 1 for histories. */
 int hdf5_items(const hdf5_file *h, const hdf5_field *f);
 size_t fixed_bytes(const fixed_data *d);
-/* Make the file "aside" with room for rows and records; l gets the offsets. */
+/* From step first_id on, plus "extra" increments of the step before it. */
+void hdf5_forecast(const model *m, int first_id, double extra, int *n_row,
+                   int *n_record);
+
+/* content.c: fixed data and fields, into h. */
+status hdf5_content(hdf5_file *h);
+
+/* renew.c: all of it at an offset of the file "path". */
+status hdf5_put(int fd, const char *path, const void *data, size_t bytes,
+                off_t offset);
+/* The field "/history/time". */
+int hdf5_time_field(const hdf5_file *h);
+/* The file with room for rows and records, and with what it held. */
+status hdf5_renew(hdf5_file *h, int n_row, int n_record);
+
+/* layout.c: make the file "aside" with room for rows and records; l gets the
+ * offsets. */
 status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
                         hdf5_layout *l);
 /* That of the file "path"; without the fixed data. */

@@ -2,8 +2,9 @@
  * The empty JOB.h5: groups, datasets, units; nothing but HDF5 calls. Each call
  * is checked: on a full disk H5Fflush fails and H5Fclose does not.
  */
+#include "hdf5/file.h"
+
 #include "base/memory.h"
-#include "output/hdf5.h"
 
 #include <errno.h>
 #include <hdf5.h>
