@@ -30,28 +30,27 @@ status text_failed(const char *path, const char *doing, int error_no) {
                      error_no != 0 ? strerror(error_no) : "unknown reason");
 }
 
-status text_open(text_file *t, const char *path, int by_line) {
+static status open_as(text_file *t, const char *path, const char *mode,
+                      const char *doing, int by_line) {
   status st = OK;
   t->path = memory_text(path);
   if (t->path == NULL)
     FAIL(ERR_MEMORY, "memory exhausted: the name of %s", path);
   errno = 0;
-  t->f = fopen(path, "w");
-  if (t->f == NULL) TRY(text_failed(path, "open for writing", errno));
+  t->f = fopen(path, mode);
+  if (t->f == NULL) TRY(text_failed(path, doing, errno));
   setvbuf(t->f, NULL, by_line ? _IOLBF : _IOFBF, BUFFER);
 done:
   return st;
 }
 
+status text_open(text_file *t, const char *path, int by_line) {
+  return open_as(t, path, "w", "open for writing", by_line);
+}
+
 status text_reopen(text_file *t, const char *path, int by_line, long length) {
   status st = OK;
-  t->path = memory_text(path);
-  if (t->path == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: the name of %s", path);
-  errno = 0;
-  t->f = fopen(path, "r+");
-  if (t->f == NULL) TRY(text_failed(path, "open to go on with it", errno));
-  setvbuf(t->f, NULL, by_line ? _IOLBF : _IOFBF, BUFFER);
+  TRY(open_as(t, path, "r+", "open to go on with it", by_line));
   if (fseek(t->f, 0, SEEK_END) != 0) TRY(text_failed(path, "read", errno));
   if (ftell(t->f) < length)
     FAIL(ERR_FILE, "%s is shorter than when the restart file was written",
@@ -103,6 +102,25 @@ status text_close(text_file *t) {
   }
   memory_free(t->path);
   t->path = NULL;
+  return st;
+}
+
+status text_replace(const char *path, const void *what,
+                    void (*write)(FILE *f, const void *what)) {
+  status st = OK;
+  text_file file = {0};
+  char *aside = text_path("", path, "tmp");
+  if (aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of %s", path);
+  TRY(text_open(&file, aside, 0));
+  write(file.f, what);
+  TRY(text_close(&file));
+  if (rename(aside, path) != 0) TRY(text_failed(path, "replace", errno));
+done:
+  if (st != OK) {
+    text_close(&file);
+    if (aside != NULL) unlink(aside);
+  }
+  memory_free(aside);
   return st;
 }
 

@@ -26,6 +26,10 @@ status text_sync(text_file *t, long *length);
 /* Hand everything to the system; ERR_FILE names the file and the reason. */
 status text_check(text_file *t);
 status text_close(text_file *t); /* checked; accepts one never opened      */
+/* The file as "write" fills it; written aside and renamed: a reader sees the
+ * whole or nothing. */
+status text_replace(const char *path, const void *what,
+                    void (*write)(FILE *f, const void *what));
 /* ERR_FILE, of ENOMEM ERR_MEMORY, with the path and the text of the error
  * number; 0: none known. */
 status text_failed(const char *path, const char *doing, int error_no);

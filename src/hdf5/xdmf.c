@@ -4,13 +4,10 @@
  * body; the body is the last one, as some readers take that one only. Data
  * items are whole datasets (hyperslabs are not read everywhere).
  */
-#include "base/memory.h"
 #include "base/text.h"
 #include "hdf5/hdf5.h"
 
-#include <errno.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct part {
   const char *name, *points, *cells, *topology;
@@ -119,7 +116,8 @@ static part surface_part(const hdf5_shape *s) {
   return p;
 }
 
-static void write_all(FILE *f, const hdf5_shape *s) {
+static void write_all(FILE *f, const void *what) {
+  const hdf5_shape *s = what;
   const char *slash = strrchr(s->path, '/');
   const char *file = slash != NULL ? slash + 1 : s->path;
   part body = {"body",           "/mesh/nodes",
@@ -137,19 +135,5 @@ static void write_all(FILE *f, const hdf5_shape *s) {
 }
 
 status xdmf_write(const hdf5_shape *shape, const char *path) {
-  status st = OK;
-  text_file file = {0};
-  char *aside = text_path("", path, "tmp");
-  if (aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of %s", path);
-  TRY(text_open(&file, aside, 0));
-  write_all(file.f, shape);
-  TRY(text_close(&file));
-  if (rename(aside, path) != 0) TRY(text_failed(path, "replace", errno));
-done:
-  if (st != OK) {
-    text_close(&file);
-    if (aside != NULL) unlink(aside);
-  }
-  memory_free(aside);
-  return st;
+  return text_replace(path, shape, write_all);
 }

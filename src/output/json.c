@@ -7,10 +7,8 @@
 #include "output/writers.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 /* The writer knows whether a comma is due: one flag per depth. */
 typedef struct json {
@@ -406,7 +404,9 @@ static void write_resting(json *w, const flow_tally *t) {
   json_real(w, "threshold_resting", t->resting);
 }
 
-static void write_all(json *w, const job *j) {
+static void write_all(FILE *f, const void *what) {
+  const job *j = what;
+  json all = {.f = f}, *w = &all;
   json_open(w, NULL, '{');
   json_string(w, "program", "protis");
   json_string(w, "version", j->o->version);
@@ -431,21 +431,5 @@ static void write_all(json *w, const job *j) {
 }
 
 status json_write(const job *j, const char *path) {
-  status st = OK;
-  text_file file = {0};
-  json w = {0};
-  char *aside = text_path("", path, "tmp");
-  if (aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of %s", path);
-  TRY(text_open(&file, aside, 0));
-  w.f = file.f;
-  write_all(&w, j);
-  TRY(text_close(&file));
-  if (rename(aside, path) != 0) TRY(text_failed(path, "replace", errno));
-done:
-  if (st != OK) {
-    text_close(&file);
-    if (aside != NULL) unlink(aside);
-  }
-  memory_free(aside);
-  return st;
+  return text_replace(path, j, write_all);
 }

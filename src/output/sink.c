@@ -1,0 +1,190 @@
+/*
+ * What history_run tells goes into the open files. JOB.sta is written last: an
+ * increment that stands there stands in all files.
+ */
+#include "output/open.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <stdio.h>
+#include <sys/stat.h>
+#include <time.h>
+
+enum { XDMF_PAUSE = 1 };
+
+/* Wall clock, s; only its differences count. */
+static double clock_now(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* The text is written anew each time, so not more than once in XDMF_PAUSE
+ * seconds: the cost stays small however long it grows. */
+status output_show_records(output *o, int all) {
+  status st = OK;
+  hdf5_shape shape;
+  if (o->h5 == NULL) return OK;
+  hdf5_shape_of(o->h5, &shape);
+  if (shape.n_record == o->n_xdmf) return OK;
+  double now = clock_now();
+  if (!all && o->n_xdmf > 0 && now < o->xdmf_at + XDMF_PAUSE) return OK;
+  TRY(xdmf_write(&shape, o->xdmf));
+  o->n_xdmf = shape.n_record;
+  o->xdmf_at = now;
+done:
+  return st;
+}
+
+/* Told again when a step has other supports. */
+static status sink_ready(void *ctx, const setup_facts *facts,
+                         const contact_surface *surface) {
+  output *o = ctx;
+  job j = job_of(o);
+  (void)surface;
+  o->run.facts = *facts;
+  o->run.facts_known = 1;
+  if (o->quiet) {
+    o->quiet = 0;
+    return OK;
+  }
+  timer_enter(STAGE_LISTING);
+  status st = listing_ready(&j, &o->lst);
+  timer_leave(STAGE_LISTING);
+  return st;
+}
+
+static status sink_start(void *ctx, const start_report *report) {
+  output *o = ctx;
+  job j = job_of(o);
+  return listing_start(&j, report, &o->lst);
+}
+
+static status write_fields(output *o, const state *s) {
+  status st = OK;
+  if (o->h5 == NULL) return OK;
+  timer_enter(STAGE_HDF5);
+  st = hdf5_increment(o->h5, s);
+  if (st == OK) st = output_show_records(o, 0);
+  timer_leave(STAGE_HDF5);
+  return st;
+}
+
+static int same_file(const char *a, const char *b) {
+  struct stat one, other;
+  if (a == NULL || stat(a, &one) != 0 || stat(b, &other) != 0) return 0;
+  return one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+}
+
+status output_spare_input(const output *o, const char *path) {
+  status st = OK;
+  const model *m = o->m;
+  static const char advice[] =
+      "the results would overwrite its file; name the deck or the file "
+      "otherwise, or use -o";
+  if (same_file(m->problem_file, path))
+    FAIL(ERR_DECK, "deck line %d: *CONDENSED PROBLEM, FILE=%s: %s",
+         m->problem_at.line_no, m->problem_file, advice);
+  if (same_file(m->start.file, path))
+    FAIL(ERR_DECK, "deck line %d: *INITIAL CONDITIONS, FILE=%s: %s",
+         m->start.file_at.line_no, m->start.file, advice);
+done:
+  return st;
+}
+
+/* The condensed problem, where asked for; of an attempt that failed without a
+ * solution, replaced when the increment is mended. */
+static status write_condensed(output *o, const state *s) {
+  status st = OK;
+  const step *now = &o->m->steps[s->step_no - 1];
+  char name[512], text[200];
+  char *path = NULL;
+  if (s->problem == NULL || !frequency_shows(now->condensed_frequency,
+                                             s->increment_no, s->end_of_step))
+    return OK;
+  timer_enter(STAGE_FCLIB);
+  snprintf(name, sizeof name, "%s_condensed_%05d", o->m->job,
+           o->run.n_increment + 1);
+  snprintf(text, sizeof text, "Protis %s: step %d, increment %d, time %.9g",
+           o->o.version != NULL ? o->o.version : "", s->step_no,
+           s->increment_no, s->t);
+  path = text_path(o->o.dir, name, "h5");
+  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  TRY(output_spare_input(o, path));
+  TRY(fclib_write(s->problem, s->settled ? s->uc : NULL, s->rc, o->m->title,
+                  text, path));
+done:
+  memory_free(path);
+  timer_leave(STAGE_FCLIB);
+  return st;
+}
+
+static status write_tables(output *o, const state *s) {
+  status st = OK;
+  job j = job_of(o);
+  timer_enter(STAGE_LISTING);
+  TRY(tabular_increment(o->dat, s));
+  TRY(listing_increment(&j, s, &o->lst));
+  cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
+  TRY(text_check(&o->cvg));
+  TRY(output_remember(o, s));
+  TRY(sta_line(&o->o, s, NULL, &o->sta));
+done:
+  timer_leave(STAGE_LISTING);
+  return st;
+}
+
+static status sink_increment(void *ctx, const state *s) {
+  status st = OK;
+  output *o = ctx;
+  TRY(write_fields(o, s));
+  TRY(write_condensed(o, s));
+  TRY(write_tables(o, s));
+  o->attempt = 1;
+  if (o->progress) progress_show(s);
+done:
+  return st;
+}
+
+static status sink_between(void *ctx, const state *s) {
+  status st = OK;
+  output *o = ctx;
+  timer_enter(STAGE_LISTING);
+  TRY(tabular_increment(o->dat, s));
+  TRY(listing_between(s, &o->lst));
+done:
+  timer_leave(STAGE_LISTING);
+  return st;
+}
+
+static void sink_iteration(void *ctx, const solver_step *s) {
+  output *o = ctx;
+  cvg_line(o->run.n_increment + 1, o->attempt, s, &o->cvg);
+}
+
+static status sink_rejected(void *ctx, const state *s, const char *why) {
+  status st = OK;
+  output *o = ctx;
+  cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
+  ++o->run.n_rejected;
+  ++o->attempt;
+  timer_enter(STAGE_LISTING);
+  TRY(text_check(&o->cvg));
+  TRY(listing_rejected(s, why, &o->lst));
+  TRY(sta_line(&o->o, s, why, &o->sta));
+  TRY(write_condensed(o, s));
+done:
+  timer_leave(STAGE_LISTING);
+  return st;
+}
+
+history_sink output_sink(output *o) {
+  return (history_sink){.ctx = o,
+                        .ready = sink_ready,
+                        .start = sink_start,
+                        .increment = sink_increment,
+                        .between = sink_between,
+                        .iteration = sink_iteration,
+                        .rejected = sink_rejected};
+}

@@ -1,0 +1,238 @@
+/*
+ * The summary of the run: what is remembered of each increment for the end of
+ * the listing and JOB.json, kept in an archive and read back.
+ */
+#include "output/open.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The larger; NaN wins, so that it is seen. */
+static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
+
+/* The facts of what CHECK= found. */
+static status remember_solutions(const solution_set *set,
+                                 increment_summary *i) {
+  status st = OK;
+  if (set == NULL) goto done;
+  NEW(i->solutions, set->n_found);
+  i->n_solution = set->n_found;
+  i->checked = 1;
+  for (int k = 0; k < set->n_found; ++k) i->solutions[k] = set->found[k].facts;
+done:
+  return st;
+}
+
+static status remember_theory(const theory_report *t, increment_summary *i) {
+  status st = OK;
+  theory_contact *own = NULL;
+  i->theory = *t;
+  i->theory.contacts = NULL;
+  i->theory.n_contact = 0;
+  if (t->n_contact == 0) goto done;
+  NEW(own, t->n_contact);
+  memcpy(own, t->contacts, (size_t)t->n_contact * sizeof *own);
+  i->theory.contacts = own;
+  i->theory.n_contact = t->n_contact;
+done:
+  return st;
+}
+
+status output_remember(output *o, const state *s) {
+  status st = OK;
+  run_summary *run = &o->run;
+  GROW(run->increments, run->n_increment, run->capacity);
+  increment_summary *i = &run->increments[run->n_increment++];
+  *i = (increment_summary){.step_no = s->step_no,
+                           .increment_no = s->increment_no,
+                           .total_no = s->total_no,
+                           .attempt = s->attempt,
+                           .t = s->t,
+                           .dt = s->dt,
+                           .n_open = s->n_open,
+                           .n_slip = s->n_slip,
+                           .n_stick = s->n_stick,
+                           .iterations = s->report.iterations,
+                           .settled = s->settled,
+                           .outcome = s->report.outcome,
+                           .residual = s->report.residual,
+                           .error = s->error,
+                           .mesh_error = s->mesh_error,
+                           .time_error = s->time_error,
+                           .truth = s->truth,
+                           .balance = s->balance,
+                           .jumps = s->jumps,
+                           .jump_t = s->jump_t,
+                           .defect = energy_defect_relative(&s->energy)};
+  if (s->surface != NULL)
+    run->residual_worst = worse(run->residual_worst, s->report.residual);
+  run->defect_worst = worse(run->defect_worst, fabs(i->defect));
+  if (s->flow != NULL) run->tally = *s->flow->tally;
+  TRY(remember_solutions(s->solutions, i));
+  TRY(remember_theory(&s->theory, i));
+  if (!s->settled) ++run->n_unsettled;
+done:
+  return st;
+}
+
+/* Number of a reason among the lines of o->whys, from 1; a new one is added;
+ * 0: no reason. */
+static size_t why_no(output *o, size_t *used, const char *why) {
+  size_t no = 1, length = why == NULL ? 0 : strlen(why);
+  if (why == NULL) return 0;
+  for (char *line = o->whys; *line != '\0'; ++no) {
+    char *end = strchr(line, '\n');
+    if ((size_t)(end - line) == length && memcmp(line, why, length) == 0)
+      return no;
+    line = end + 1;
+  }
+  memcpy(o->whys + *used, why, length);
+  o->whys[*used + length] = '\n';
+  *used += length + 1;
+  return no;
+}
+
+static size_t room_for(const char *why) {
+  return why == NULL ? 0 : strlen(why) + 1;
+}
+
+/* A pointer in a file: the number of what it points to. */
+static const char *as_pointer(size_t no) { return (const char *)no; }
+
+/* The increments with numbers in the place of pointers. */
+static status copy_increments(output *o, size_t *used, int *n_fact) {
+  status st = OK;
+  const run_summary *run = &o->run;
+  size_t room = 1;
+  memory_free(o->kept);
+  memory_free(o->facts);
+  memory_free(o->whys);
+  o->kept = NULL;
+  o->facts = NULL;
+  o->whys = NULL;
+  for (int i = 0; i < run->n_increment; ++i) {
+    const increment_summary *s = &run->increments[i];
+    room += room_for(s->error.why) + room_for(s->mesh_error.why) +
+            room_for(s->time_error.why);
+    *n_fact += s->n_solution;
+  }
+  NEW(o->kept, run->n_increment);
+  NEW(o->facts, *n_fact);
+  NEW(o->whys, room);
+  *n_fact = 0;
+  for (int i = 0; i < run->n_increment; ++i) {
+    increment_summary *s = &o->kept[i];
+    *s = run->increments[i];
+    s->error.why = as_pointer(why_no(o, used, s->error.why));
+    s->mesh_error.why = as_pointer(why_no(o, used, s->mesh_error.why));
+    s->time_error.why = as_pointer(why_no(o, used, s->time_error.why));
+    for (int k = 0; k < s->n_solution; ++k)
+      o->facts[(*n_fact)++] = s->solutions[k];
+    s->solutions = NULL;
+  }
+done:
+  return st;
+}
+
+/* What both ways have in common. */
+static status keep_counts(output *o, archive *a, file_ends *ends) {
+  status st = OK;
+  run_summary *run = &o->run;
+  TRY(archive_bytes(a, "ends", ends, sizeof *ends));
+  TRY(archive_ints(a, "attempt", &o->attempt, 1));
+  TRY(archive_ints(a, "increments", &run->n_increment, 1));
+  TRY(archive_ints(a, "rejected", &run->n_rejected, 1));
+  TRY(archive_ints(a, "unsettled", &run->n_unsettled, 1));
+  TRY(archive_reals(a, "residual_worst", &run->residual_worst, 1));
+  TRY(archive_reals(a, "defect_worst", &run->defect_worst, 1));
+done:
+  return st;
+}
+
+static status keep_increments(output *o, archive *a) {
+  status st = OK;
+  size_t used = 0, n = (size_t)o->run.n_increment;
+  int n_fact = 0;
+  TRY(copy_increments(o, &used, &n_fact));
+  TRY(archive_bytes(a, "summary", o->kept, n * sizeof *o->kept));
+  TRY(archive_bytes(a, "whys", o->whys, used));
+  TRY(archive_bytes(a, "solutions", o->facts,
+                    (size_t)n_fact * sizeof *o->facts));
+done:
+  return st;
+}
+
+status output_keep(output *o, archive *a) {
+  status st = OK;
+  file_ends ends;
+  memset(&ends, 0, sizeof ends);
+  archive_enter(a, "output");
+  TRY(text_sync(&o->lst, &ends.lst));
+  TRY(text_sync(&o->sta, &ends.sta));
+  TRY(text_sync(&o->cvg, &ends.cvg));
+  TRY(tabular_sync(o->dat, &ends.dat));
+  ends.has_h5 = o->h5 != NULL;
+  TRY(hdf5_sync(o->h5, &ends.h5));
+  TRY(keep_counts(o, a, &ends));
+  TRY(keep_increments(o, a));
+done:
+  archive_leave(a);
+  return st;
+}
+
+/* The reason of a number; the lines are ended by NUL here. */
+static const char *why_of(const output *o, const char *as_number) {
+  size_t no = (size_t)as_number;
+  const char *line = o->whys;
+  if (no == 0 || line == NULL) return NULL;
+  for (; no > 1 && *line != '\0'; --no) line += strlen(line) + 1;
+  return line;
+}
+
+static status read_reasons(output *o, archive *a) {
+  status st = OK;
+  size_t n = archive_length(a, "whys");
+  if (n == 0) goto done;
+  NEW(o->whys, n + 1);
+  TRY(archive_bytes(a, "whys", o->whys, n));
+  for (size_t i = 0; i < n; ++i)
+    if (o->whys[i] == '\n') o->whys[i] = '\0';
+done:
+  return st;
+}
+
+static status read_increments(output *o, archive *a) {
+  status st = OK;
+  run_summary *run = &o->run;
+  size_t n = (size_t)run->n_increment, n_fact = 0, next = 0;
+  NEW(run->increments, n);
+  run->capacity = run->n_increment;
+  TRY(archive_bytes(a, "summary", run->increments,
+                    n * sizeof *run->increments));
+  TRY(read_reasons(o, a));
+  n_fact = archive_length(a, "solutions") / sizeof *o->facts;
+  NEW(o->facts, n_fact);
+  TRY(archive_bytes(a, "solutions", o->facts, n_fact * sizeof *o->facts));
+  for (size_t i = 0; i < n; ++i) {
+    increment_summary *s = &run->increments[i];
+    s->error.why = why_of(o, s->error.why);
+    s->mesh_error.why = why_of(o, s->mesh_error.why);
+    s->time_error.why = why_of(o, s->time_error.why);
+    if (s->n_solution <= 0) continue;
+    NEW(s->solutions, s->n_solution);
+    for (int k = 0; k < s->n_solution && next < n_fact; ++k)
+      s->solutions[k] = o->facts[next++];
+  }
+done:
+  return st;
+}
+
+status output_read(output *o, archive *a, file_ends *ends) {
+  status st = OK;
+  TRY(keep_counts(o, a, ends));
+  TRY(read_increments(o, a));
+done:
+  return st;
+}
