@@ -11,6 +11,7 @@
 #include "fem/rigid.h"
 
 #include <float.h>
+#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -513,6 +514,63 @@ status condensed_misfit(condensed *c, const double *rest, const double *rc,
     TRY(body_factor_solve(&c->body[q], c->load, w, square, c->cm));
   to_global(c, w);
 done:
+  return st;
+}
+
+/* u[m] = inv(A_oo) f_o at the unknowns o that are not held, else 0; *good 0:
+ * A_oo is not positive definite. */
+static status solve_open(const condensed *c, const unsigned char *held,
+                         const double *f, double *u, int *good) {
+  status st = OK;
+  double *A = NULL, *x = NULL;
+  int *open = NULL, n = 0;
+  NEW(open, c->m);
+  for (int q = 0; q < c->m; ++q) {
+    u[q] = 0;
+    if (!held[q]) open[n++] = q;
+  }
+  NEW(A, (size_t)n * (size_t)n);
+  NEW(x, n);
+  for (int b = 0; b < n; ++b) {
+    x[b] = f[open[b]];
+    for (int a = 0; a < n; ++a)
+      A[(size_t)b * (size_t)n + (size_t)a] =
+          c->A[(size_t)open[b] * (size_t)c->m + (size_t)open[a]];
+  }
+  *good = n == 0 ||
+          LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'L', n, 1, A, n, x, n) == 0;
+  for (int b = 0; b < n && *good; ++b) u[open[b]] = x[b];
+done:
+  memory_free(A);
+  memory_free(x);
+  memory_free(open);
+  return st;
+}
+
+status condensed_misfit_held(condensed *c, const double *rest, const double *rc,
+                             const unsigned char *held, double *w,
+                             double *square) {
+  status st = OK;
+  const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
+  double *f_c = NULL, *u_c = NULL;
+  int good = 0;
+  NEW(f_c, c->m);
+  NEW(u_c, c->m);
+  *square = HUGE_VAL;
+  set_prescribed(c, NULL);
+  set_load(c, rest);
+  for (int q = 0; q < c->m; ++q) c->load[component_of(c, q)] += rc[q];
+  TRY(forward(c, f_c));
+  TRY(solve_open(c, held, f_c, u_c, &good));
+  if (!good) goto done;
+  TRY(back(c, u_c, w));
+  *square = 0;
+  for (size_t i = 0; i < n; ++i) *square += rest[i] * w[i];
+  for (int q = 0; q < c->m; ++q) *square += rc[q] * u_c[q];
+  *square = fmax(0, *square);
+done:
+  memory_free(f_c);
+  memory_free(u_c);
   return st;
 }
 

@@ -139,6 +139,12 @@ status condensed_untouched(condensed *c, const double *f, double *u);
  */
 status condensed_misfit(condensed *c, const double *rest, const double *rc,
                         double *w, double *square);
+/* The same where contact holds unknowns, held[m] 1: what is missing there is
+ * borne by the contact, and w = 0. *square is HUGE_VAL, w untouched, where the
+ * others are not held by that. Overwrites what condense_load keeps. */
+status condensed_misfit_held(condensed *c, const double *rest, const double *rc,
+                             const unsigned char *held, double *w,
+                             double *square);
 /* 1: the condition is so far above that of a plain mesh that this is worth
  * looking at. */
 int condensed_costs_digits(const condensed *c);

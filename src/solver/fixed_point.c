@@ -7,6 +7,7 @@
 #include <string.h>
 
 enum {
+  MOST = 200000, /* iterations of all passes, by default */
   DEPTH = 4,     /* differences mixed                                         */
   PASSES = 200,  /* default limit                                             */
   PATIENCE = 30, /* passes without a lower residual                          */
@@ -131,7 +132,7 @@ static void next_limit(const fixed_point *fp, double step, int mixed,
 static int iterations_left(const solver_control *control,
                            const solver_report *rep, int *left) {
   *left = 0;
-  if (control->max_iter <= 0) return 1;
+  if (control->max_iter <= 0) return rep->iterations < MOST;
   *left = control->max_iter - rep->iterations;
   return *left > 0;
 }

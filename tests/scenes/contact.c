@@ -77,6 +77,11 @@ const scene_row contact_scenes[] = {
      FLOOR("0.5") "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\n"
      "TOP, P, 10.\n" END,
    .expect = "NODES u_y = -0.01*y ~ 1e-9; TOTALS normal = 99990 ~ 1e-3"},
+  {.name = "all closed, 4e7 long and 1 high", .flags = QUICK,
+   .hard = "supports alone would not hold it", .mesh = "rect 40 1 4e7 1",
+   .deck = MATERIAL("1000.", "0.") FLOOR("0.5") "*STEP\n*STATIC\n"
+     "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n" END,
+   .expect = "NODES u_y = -0.01*y ~ 1e-9; TOTALS normal = 4e8 ~ 1"},
   {.name = "all closed, 10201 nodes", .hard = "ties at every node",
    .mesh = "rect 100 100 1 1 alternate", .deck = MATERIAL("1000.", "0.")
      FLOOR("0.5") STATIC "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n" END,
