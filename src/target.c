@@ -40,9 +40,9 @@ typedef struct pass {
   int n;         /* rows, this pass included                             */
   double energy; /* J, largest strain energy: the increment that counts   */
   double mesh, time, solver; /* -, errors there                              */
-  double *eta; /* [n_elem] shares of the elements there                 */
-  double unknowns, last_unknowns; /* of this pass, of the one before          */
-  double mesh_cpu, last_mesh_cpu; /* s, of meshing, likewise                  */
+  double *eta;     /* [n_elem] shares of the elements there                 */
+  double unknowns; /* of this pass                                          */
+  double mesh_cpu, last_mesh_cpu; /* s, of meshing; of the pass before        */
   double dt, tol; /* factors on the increments and tolerances of the deck  */
   double cpu;     /* s, of the process when the pass began                 */
   double meshed;  /* s, of that on meshes                                  */
@@ -94,8 +94,9 @@ static double growth(const pass *p, double wanted) {
 /* Foreseen CPU seconds of meshing that many times the unknowns: linear from
  * pass to pass, from the first on through zero. */
 static double price_of_mesh(const pass *p, double factor) {
-  double more = p->unknowns - p->last_unknowns, slope;
-  double later = p->mesh_cpu - p->last_mesh_cpu;
+  double last = p->n > 1 ? p->rows[p->n - 2].unknowns : 0.0;
+  double more = p->unknowns - last, later = p->mesh_cpu - p->last_mesh_cpu;
+  double slope;
   if (p->n > 1 && more > 0.0 && later >= 0.0)
     slope = later / more;
   else
@@ -276,7 +277,6 @@ static status read_next(pass *p) {
   mesh *msh = p->in->msh;
   p->cpu = timer_cpu();
   p->meshed = timer_cost(STAGE_MESH).cpu;
-  p->last_unknowns = p->unknowns;
   p->last_mesh_cpu = p->mesh_cpu;
   NEW(size, msh->n_node);
   TRY(message_log_new(&next.log));

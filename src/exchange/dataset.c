@@ -16,6 +16,26 @@ enum {
   MOST_PACKED = 1100 /* times its bytes in the file; deflate reaches 1032    */
 };
 
+status dataset_open(const char *path, const char *none, hdf5_source *s) {
+  status st = OK;
+  *s = (hdf5_source){.path = path, .file = -1};
+  H5Eget_auto2(H5E_DEFAULT, &s->print, &s->print_data);
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  H5dont_atexit();
+  if (H5Fis_hdf5(path) <= 0) FAIL(ERR_FILE, "%s is %s", path, none);
+  s->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (s->file < 0)
+    FAIL(ERR_FILE, "%s cannot be read: the HDF5 file is damaged or cut short",
+         path);
+done:
+  return st;
+}
+
+void dataset_close(hdf5_source *s) {
+  if (s->file >= 0) H5Fclose(s->file);
+  H5Eset_auto2(H5E_DEFAULT, s->print, s->print_data);
+}
+
 /* Every group on the way must be there before the library is asked. */
 int source_has(const hdf5_source *s, const char *name) {
   char part[256];

@@ -11,7 +11,14 @@
 typedef struct hdf5_source {
   const char *path; /* of the file, for messages                             */
   hid_t file;
+  H5E_auto2_t print; /* how the library told its errors before               */
+  void *print_data;
 } hdf5_source;
+
+/* Open for reading, the library silent until dataset_close, which is called in
+ * any case. "none" ends the message where there is no HDF5 file. */
+status dataset_open(const char *path, const char *none, hdf5_source *s);
+void dataset_close(hdf5_source *s);
 
 /* 1 if there is a link of that absolute name that can be opened. */
 int source_has(const hdf5_source *s, const char *name);

@@ -443,21 +443,6 @@ done:
 /* ---- file -----------------------------------------------------------------
  */
 
-static status open_source(const char *path, hdf5_source *s) {
-  status st = OK;
-  s->path = path;
-  s->file = -1;
-  H5dont_atexit();
-  if (H5Fis_hdf5(path) <= 0)
-    FAIL(ERR_FILE, "%s is no HDF5 file, or cut short", path);
-  s->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (s->file < 0)
-    FAIL(ERR_FILE, "%s cannot be read: the HDF5 file is damaged or cut short",
-         path);
-done:
-  return st;
-}
-
 static status read_source(const hdf5_source *s, exchange_problem *p) {
   status st = OK;
   const char *rolling = "rolling friction and its moments";
@@ -475,15 +460,10 @@ done:
 
 status fclib_read(const char *path, exchange_problem *p) {
   status st = OK;
-  hdf5_source s = {path, -1};
-  H5E_auto2_t print;
-  void *print_data;
-  H5Eget_auto2(H5E_DEFAULT, &print, &print_data);
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  TRY(open_source(path, &s));
+  hdf5_source s;
+  TRY(dataset_open(path, "no HDF5 file, or cut short", &s));
   TRY(read_source(&s, p));
 done:
-  if (s.file >= 0) H5Fclose(s.file);
-  H5Eset_auto2(H5E_DEFAULT, print, print_data);
+  dataset_close(&s);
   return st;
 }

@@ -116,12 +116,10 @@ done:
 
 static status read_hdf5(const char *path, pairs *p) {
   status st = OK;
-  hdf5_source s = {.path = path};
+  hdf5_source s;
   int *number = NULL;
   long n_value = 0;
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  s.file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (s.file < 0) FAIL(ERR_FILE, "%s: cannot be opened as HDF5", path);
+  TRY(dataset_open(path, "no HDF5 file, or cut short", &s));
   TRY(source_ints(&s, "/node_no", 0, &p->n, &number));
   TRY(source_reals(&s, "/temperature", 0, &n_value, &p->value));
   if (n_value != p->n)
@@ -131,7 +129,7 @@ static status read_hdf5(const char *path, pairs *p) {
   for (long i = 0; i < p->n; ++i) p->node_no[i] = number[i];
 done:
   memory_free(number);
-  if (s.file >= 0) H5Fclose(s.file);
+  dataset_close(&s);
   return st;
 }
 

@@ -49,11 +49,6 @@ size_t fixed_bytes(const fixed_data *d) {
   return size[d->type] * (size_t)d->rows * (size_t)d->columns;
 }
 
-static double step_increments(const step *s) {
-  if (s->kind == STEP_STATIC || !(s->dt > 0)) return 1;
-  return fmax(1, ceil(s->total / s->dt * (1 - 1e-9)));
-}
-
 static double shown(double increments, int frequency) {
   if (frequency < 0) return 0;
   return frequency == 0 ? 1 : ceil(increments / frequency);

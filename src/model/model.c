@@ -31,6 +31,11 @@ double print_next(const print_request *p, const step *s, double after,
   return HUGE_VAL;
 }
 
+double step_increments(const step *s) {
+  if (s->kind == STEP_STATIC || !(s->dt > 0.0)) return 1.0;
+  return fmax(1.0, ceil(s->total / s->dt * (1.0 - 1e-9)));
+}
+
 int frequency_shows(int frequency, int increment_no, int last) {
   if (frequency < 0) return 0;
   return last ||

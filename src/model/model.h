@@ -396,6 +396,8 @@ int has_card(const model *m, const char *name);
 /* 1 if some *PRINT asks for one of these tables (bits PRINT_*). */
 int model_prints(const model *m, int tables);
 int model_writes_fields(const model *m); /* 1: JOB.h5 is written             */
+/* Increments of a step as the deck has them, at least 1. */
+double step_increments(const step *s);
 /* 1: an increment, -1 within one, is shown by "every n-th and the last; 0: the
  * last"; negative: none. */
 int frequency_shows(int frequency, int increment_no, int last);

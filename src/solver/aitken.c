@@ -286,12 +286,7 @@ static status aitken_solve(const contact_problem *cp, const void *par,
   w->best.residual = HUGE_VAL;
   relaxation_start(&s.sweep);
   rep->outcome = sweeps(&s, control, rep);
-  int gave_up =
-      rep->outcome == STOPPED_STAGNATION || rep->outcome == STOPPED_CYCLE;
-  rep->residual = w->best.residual;
-  if (gave_up && relaxation_drifts(&s.sweep, w->before))
-    rep->outcome = STOPPED_RAY;
-  solver_take_best(&w->best, cp->m, u, r);
+  relaxation_end(&s.sweep, &w->best, w->before, rep);
   return OK;
 }
 

@@ -9,7 +9,7 @@
 #ifndef PROTIS_SOLVER_LOCAL_H
 #define PROTIS_SOLVER_LOCAL_H
 
-#include "contact/contact.h"
+#include "solver/solver.h"
 
 #include <stdint.h>
 
@@ -69,9 +69,10 @@ void relaxation_start(const relaxation *s);
 /* Carry anew r = A u - f, or u = W r + q. */
 void relaxation_refresh(const relaxation *s);
 void relaxation_sweep(relaxation *s, int backward);
-/* 1: a body that contact alone holds drifts off: what a few more sweeps make is
- * a rigid motion along which the load works and that leads to no obstacle that
- * is still open. The iterate is overwritten. from[m]: work. */
-int relaxation_drifts(relaxation *s, double *from);
+/* After the last sweep: the best iterate into u and r, its residual and the
+ * outcome, STOPPED_RAY where the sweeps gave up on a body that contact alone
+ * holds and that drifts off. room[m]: work. */
+void relaxation_end(relaxation *s, const best_iterate *best, double *room,
+                    solver_report *rep);
 
 #endif

@@ -215,11 +215,7 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
   *rep = (solver_report){.outcome = RUNNING};
   relaxation_start(&s);
   rep->outcome = sweeps(&s, &c, control, rep);
-  rep->residual = w->best.residual;
-  int gave_up =
-      rep->outcome == STOPPED_STAGNATION || rep->outcome == STOPPED_CYCLE;
-  if (gave_up && relaxation_drifts(&s, w->before)) rep->outcome = STOPPED_RAY;
-  solver_take_best(&w->best, cp->m, u, r);
+  relaxation_end(&s, &w->best, w->before, rep);
 done:
   return st;
 }

@@ -11,21 +11,6 @@
 
 static const double SAME_PLACE = 1e-9; /* -, of the size of the mesh          */
 
-static status open_file(const char *path, hdf5_source *s) {
-  status st = OK;
-  s->path = path;
-  s->file = -1;
-  H5dont_atexit();
-  if (H5Fis_hdf5(path) <= 0)
-    FAIL(ERR_FILE, "%s is not there or no HDF5 file", path);
-  s->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (s->file < 0)
-    FAIL(ERR_FILE, "%s cannot be read: the HDF5 file is damaged or cut short",
-         path);
-done:
-  return st;
-}
-
 /* Items of a node in a dataset of n numbers: at least dim of them. */
 static status width_of(const hdf5_source *s, const char *name, long n,
                        const mesh *msh, size_t *width) {
@@ -87,17 +72,12 @@ done:
 status end_state_read(const char *path, const mesh *msh, const place *at,
                       message_log *log, double *u, double *t) {
   status st = OK;
-  hdf5_source s = {.file = -1};
-  H5E_auto2_t print = NULL;
-  void *data = NULL;
-  H5Eget_auto2(H5E_DEFAULT, &print, &data);
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  TRY(open_file(path, &s));
+  hdf5_source s;
+  TRY(dataset_open(path, "not there or no HDF5 file", &s));
   TRY(check_mesh(&s, msh));
   TRY(read_last(&s, msh, u, t));
 done:
-  if (s.file >= 0) H5Fclose(s.file);
-  H5Eset_auto2(H5E_DEFAULT, print, data);
+  dataset_close(&s);
   if (st == ERR_FILE || st == ERR_DECK)
     message_add(log, P5003, at, "%s", status_message());
   return st;

@@ -1,0 +1,290 @@
+/*
+ * Relaxation: the nodes visited in turn, each solved with the others held
+ * (local.h).
+ */
+#include "solver/local.h"
+
+#include "base/memory.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <string.h>
+
+enum { DRIFT_SWEEPS = 20 };
+static const double RIGID = 0x1p-5; /* -, of a drift: counts as no strain  */
+
+struct node_blocks {
+  double *K;          /* [dim*dim*n] stiffness of each node, N/m              */
+  local_state *state; /* [n] state found at the last visit                    */
+};
+
+void node_blocks_free(node_blocks *b) {
+  if (b == NULL) return;
+  memory_free(b->K);
+  memory_free(b->state);
+  memory_free(b);
+}
+
+/* Inverse of a d*d block by elimination with complete symmetric pivoting left
+ * out: the block is positive definite, else a share of "lift" is added to its
+ * diagonal (the iteration then keeps its fixed point). */
+static void invert_block(int d, const double *block, double lift, double *K) {
+  double M[9];
+  memcpy(M, block, (size_t)(d * d) * sizeof *M);
+  for (int k = 0; k < d; ++k)
+    if (!(M[k + d * k] > 0x1p-30 * lift)) M[k + d * k] += 0x1p-20 * lift;
+  for (int k = 0; k < d; ++k) {
+    double pivot = M[k + d * k];
+    if (!(pivot > 0x1p-40 * lift)) pivot = 0x1p-20 * lift;
+    M[k + d * k] = 1.0;
+    for (int j = 0; j < d; ++j) M[k + d * j] /= pivot;
+    for (int i = 0; i < d; ++i) {
+      if (i == k) continue;
+      double l = M[i + d * k];
+      M[i + d * k] = 0.0;
+      for (int j = 0; j < d; ++j) M[i + d * j] -= l * M[k + d * j];
+    }
+  }
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j < d; ++j)
+      K[i + d * j] = 0.5 * (M[i + d * j] + M[j + d * i]);
+}
+
+status node_blocks_new(const contact_problem *cp, node_blocks **out) {
+  status st = OK;
+  node_blocks *b = NULL;
+  const double *M = cp->A != NULL ? cp->A : cp->W;
+  int d = cp->dim;
+  NEW(b, 1);
+  NEW(b->K, cp->n * d * d);
+  NEW(b->state, cp->n);
+  double lift = 0.0;
+  for (size_t i = 0; i < (size_t)cp->m; ++i)
+    lift = fmax(lift, M[i * (size_t)cp->m + i]);
+  for (int node_id = 0; node_id < cp->n; ++node_id) {
+    double block[9], *K = b->K + node_id * d * d;
+    size_t first = (size_t)(node_id * d);
+    for (int j = 0; j < d; ++j)
+      for (int i = 0; i < d; ++i)
+        block[i + d * j] =
+            M[first + (size_t)i + (first + (size_t)j) * (size_t)cp->m];
+    if (cp->A != NULL)
+      memcpy(K, block, (size_t)(d * d) * sizeof *K);
+    else
+      invert_block(d, block, lift, K);
+  }
+  *out = b;
+  b = NULL;
+done:
+  node_blocks_free(b);
+  return st;
+}
+
+/* Where x = 0 of a node is: gap and stick position, m. */
+static double origin(const contact_problem *cp, int node_id, int k) {
+  if (k == 0) return cp->gap[node_id];
+  return contact_stick(cp, node_id * cp->dim + k);
+}
+
+/* The problem of a node: unknowns not held, listed in id[]; x[] now. */
+static void local_of(const relaxation *s, int node_id, local_problem *lp,
+                     int *id, double *x) {
+  const contact_problem *cp = s->cp;
+  const double *K = s->blocks->K + node_id * cp->dim * cp->dim;
+  int first = node_id * cp->dim;
+  lp->dim = lp->bounded = 0;
+  for (int k = 0; k < cp->dim; ++k) {
+    if (contact_held(cp, first + k)) continue;
+    double bound = HUGE_VAL;
+    if (k > 0 && cp->side_gap != NULL)
+      bound = cp->side_gap[node_id * (cp->dim - 1) + k - 1];
+    id[lp->dim] = k;
+    x[lp->dim] = s->u[first + k] - origin(cp, node_id, k);
+    lp->bound[lp->dim] = k == 0 ? 0.0 : bound - origin(cp, node_id, k);
+    if (bound < HUGE_VAL) lp->bounded = 1;
+    ++lp->dim;
+  }
+  for (int i = 0; i < lp->dim; ++i) {
+    lp->b[i] = -s->r[first + id[i]];
+    for (int j = 0; j < lp->dim; ++j) {
+      lp->K[i + lp->dim * j] = K[id[i] + cp->dim * id[j]];
+      lp->b[i] += lp->K[i + lp->dim * j] * x[j];
+    }
+  }
+  lp->g0 = cp->g0 == NULL ? 0.0 : cp->g0[node_id];
+  lp->mu = 0.0;
+  if (cp->B == NULL) return;
+  for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
+    int j = cp->B->col[k];
+    double p = -s->r[(size_t)j * (size_t)cp->dim];
+    if (j == node_id)
+      lp->mu = cp->B->val[k];
+    else if (p > 0.0)
+      lp->g0 += cp->B->val[k] * p;
+  }
+}
+
+/* Go on past the solution x of the node by omega - 1 times the way from old,
+ * if the state stayed and the kink of friction is not crossed. */
+static void relax(const relaxation *s, const local_problem *lp, local_state now,
+                  const double *old, double *x) {
+  double further[3], dot = 0.0, more = s->omega - 1.0;
+  int first = now == LOCAL_OPEN ? 0 : 1;
+  if (lp->bounded || now == LOCAL_STICK) return;
+  for (int k = 1; k < lp->dim; ++k) {
+    further[k] = x[k] + more * (x[k] - old[k]);
+    dot += further[k] * x[k];
+  }
+  if (first == 0) x[0] = fmin(0.0, x[0] + more * (x[0] - old[0]));
+  if ((lp->g0 != 0.0 || lp->mu != 0.0) && !(dot > 0.0) &&
+      !(now == LOCAL_OPEN && lp->g0 == 0.0))
+    return;
+  for (int k = 1; k < lp->dim; ++k) x[k] = further[k];
+}
+
+/* The same for the forces, back onto their cone. */
+static void relax_forces(const relaxation *s, const local_problem *lp,
+                         const double *old, double *r) {
+  double size = 0.0, more = s->omega - 1.0;
+  if (lp->bounded) return;
+  r[0] = fmin(0.0, r[0] + more * (r[0] - old[0]));
+  double g = fmax(0.0, lp->g0 - lp->mu * r[0]);
+  for (int k = 1; k < lp->dim; ++k) {
+    r[k] += more * (r[k] - old[k]);
+    size += r[k] * r[k];
+  }
+  size = sqrt(size);
+  for (int k = 1; k < lp->dim && size > g; ++k) r[k] *= g / size;
+}
+
+/* Step of the node's displacement, along the way found, m. */
+static void displacement_step(const relaxation *s, int node_id,
+                              const local_problem *lp, const int *id,
+                              const double *way, double *step) {
+  const contact_problem *cp = s->cp;
+  size_t first = (size_t)(node_id * cp->dim), m = (size_t)cp->m;
+  for (int k = 0; k < lp->dim; ++k) step[id[k]] = way[k];
+  for (int k = 1; k < cp->dim; ++k) {
+    size_t dof = first + (size_t)k;
+    if (contact_held(cp, (int)dof)) step[k] = -s->r[dof] / cp->A[dof * m + dof];
+  }
+}
+
+/* Solve the node; step[dim]: change of its displacement (of its force in
+ * compliance form). */
+static void node_step(relaxation *s, int node_id, double *step) {
+  const contact_problem *cp = s->cp;
+  local_problem lp;
+  int id[3] = {0, 0, 0};
+  double old[3], x[3], r[3];
+  local_of(s, node_id, &lp, id, old);
+  local_state before = s->blocks->state[node_id];
+  local_state now = local_solve(&lp, before, x, r);
+  s->blocks->state[node_id] = now;
+  s->turned += now != before;
+  if (cp->A != NULL) {
+    if (now == before) relax(s, &lp, now, old, x);
+    for (int k = 0; k < lp.dim; ++k) x[k] -= old[k];
+    displacement_step(s, node_id, &lp, id, x, step);
+    return;
+  }
+  double force[3] = {0.0, 0.0, 0.0};
+  for (int k = 0; k < lp.dim; ++k) force[k] = s->r[node_id * cp->dim + id[k]];
+  if (now == before) relax_forces(s, &lp, force, r);
+  for (int k = 0; k < lp.dim; ++k) step[id[k]] = r[k] - force[k];
+}
+
+static void visit(relaxation *s, int node_id) {
+  const contact_problem *cp = s->cp;
+  const double *M = cp->A != NULL ? cp->A : cp->W;
+  double *unknown = cp->A != NULL ? s->u : s->r, step[3] = {0.0, 0.0, 0.0};
+  size_t first = (size_t)(node_id * cp->dim), m = (size_t)cp->m;
+  int moved = 0;
+  node_step(s, node_id, step);
+  for (int k = 0; k < cp->dim; ++k) {
+    double weight = M[(first + (size_t)k) * m + first + (size_t)k];
+    moved = moved || step[k] != 0.0;
+    unknown[first + (size_t)k] += step[k];
+    s->change += weight * step[k] * step[k];
+  }
+  if (moved)
+    cblas_dgemv(CblasColMajor, CblasNoTrans, cp->m, cp->dim, 1.0, M + first * m,
+                cp->m, step, 1, 1.0, cp->A != NULL ? s->r : s->u, 1);
+}
+
+void relaxation_sweep(relaxation *s, int backward) {
+  s->change = 0.0;
+  s->turned = 0;
+  for (int i = 0; i < s->cp->n; ++i) visit(s, backward ? s->cp->n - 1 - i : i);
+}
+
+int state_watch_returns(state_watch *w, const relaxation *s) {
+  uint64_t hash = 14695981039346656037u; /* FNV-1a                            */
+  int met = 0, kept = w->n < PATTERNS ? w->n : PATTERNS;
+  for (int i = 0; i < s->cp->n; ++i)
+    hash = (hash ^ (uint64_t)s->blocks->state[i]) * 1099511628211u;
+  if (w->n > 0 && w->seen[(w->n - 1) % PATTERNS] == hash) return 0;
+  for (int k = 0; k < kept; ++k) met = met || w->seen[k] == hash;
+  w->seen[w->n++ % PATTERNS] = hash;
+  return met;
+}
+
+void relaxation_refresh(const relaxation *s) {
+  if (s->cp->A != NULL) {
+    contact_reaction(s->cp, s->u, s->r);
+    return;
+  }
+  contact_product(s->cp->m, s->cp->W, s->r, s->u);
+  for (int i = 0; i < s->cp->m; ++i) s->u[i] += s->cp->f[i];
+}
+
+void relaxation_start(const relaxation *s) {
+  const contact_problem *cp = s->cp;
+  for (int i = 0; i < cp->n; ++i) {
+    int first = i * cp->dim;
+    double slip = 0.0;
+    for (int k = 1; k < cp->dim; ++k)
+      slip += fabs(s->u[first + k] - origin(cp, i, k));
+    s->blocks->state[i] = s->u[first] < cp->gap[i] ? LOCAL_OPEN
+                          : slip > 0.0             ? LOCAL_SLIP
+                                                   : LOCAL_STICK;
+  }
+}
+
+/* 1: a body that contact alone holds drifts off: what a few more sweeps make is
+ * a rigid motion along which the load works and that leads to no obstacle that
+ * is still open. The iterate is overwritten. from[m]: work. */
+static int drifts(relaxation *s, double *from) {
+  const contact_problem *cp = s->cp;
+  size_t m = (size_t)cp->m;
+  double *d = s->u, *Ad = s->r, work = 0.0, stiff = 0.0, left = 0.0;
+  double most = 0.0;
+  int falls = 0;
+  if (!cp->floating || cp->A == NULL) return 0;
+  memcpy(from, s->u, m * sizeof *from);
+  s->omega = 1.0;
+  for (int k = 0; k < DRIFT_SWEEPS; ++k) relaxation_sweep(s, 0);
+  for (size_t i = 0; i < m; ++i) d[i] -= from[i];
+  contact_product(cp->m, cp->A, d, Ad);
+  for (size_t i = 0; i < m; ++i) {
+    work += cp->f[i] * d[i];
+    left = fmax(left, fabs(Ad[i]));
+    stiff = fmax(stiff, cp->A[i * m + i] * fabs(d[i]));
+    most = fmax(most, fabs(d[i]));
+  }
+  for (size_t i = 0; i < m; ++i) {
+    double bound = contact_bound(cp, (int)i), room = bound - from[i] - d[i];
+    if (bound < HUGE_VAL && d[i] > RIGID * most && room > RIGID * most)
+      falls = 1;
+  }
+  return work > 0.0 && left < RIGID * stiff && !falls;
+}
+
+void relaxation_end(relaxation *s, const best_iterate *best, double *room,
+                    solver_report *rep) {
+  int gave_up =
+      rep->outcome == STOPPED_STAGNATION || rep->outcome == STOPPED_CYCLE;
+  rep->residual = best->residual;
+  if (gave_up && drifts(s, room)) rep->outcome = STOPPED_RAY;
+  solver_take_best(best, s->cp->m, s->u, s->r);
+}
