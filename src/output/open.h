@@ -23,7 +23,8 @@ struct output {
   int quiet; /* 1: the first facts stand in the listing already               */
   increment_summary *kept; /* [n_increment] of output_keep                   */
   solution_facts *facts;   /* all their solutions                            */
-  char *whys; /* lines: the reasons in increments, or of output_keep          */
+  char *whys;    /* lines: their reasons                                     */
+  char *reasons; /* of the restart file: some of run.increments point to them */
 };
 
 job job_of(const output *o); /* borrows from o                               */

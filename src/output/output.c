@@ -28,6 +28,7 @@ static void release(output *o) {
   memory_free(o->kept);
   memory_free(o->facts);
   memory_free(o->whys);
+  memory_free(o->reasons);
   memory_free(o);
 }
 

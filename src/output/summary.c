@@ -185,7 +185,7 @@ done:
 /* The reason of a number; the lines are ended by NUL here. */
 static const char *why_of(const output *o, const char *as_number) {
   size_t no = (size_t)as_number;
-  const char *line = o->whys;
+  const char *line = o->reasons;
   if (no == 0 || line == NULL) return NULL;
   for (; no > 1 && *line != '\0'; --no) line += strlen(line) + 1;
   return line;
@@ -195,10 +195,10 @@ static status read_reasons(output *o, archive *a) {
   status st = OK;
   size_t n = archive_length(a, "whys");
   if (n == 0) goto done;
-  NEW(o->whys, n + 1);
-  TRY(archive_bytes(a, "whys", o->whys, n));
+  NEW(o->reasons, n + 1);
+  TRY(archive_bytes(a, "whys", o->reasons, n));
   for (size_t i = 0; i < n; ++i)
-    if (o->whys[i] == '\n') o->whys[i] = '\0';
+    if (o->reasons[i] == '\n') o->reasons[i] = '\0';
 done:
   return st;
 }

@@ -130,6 +130,24 @@ START_TEST(adapted_increments_go_on) {
 }
 END_TEST
 
+/* Killed, gone on with and killed again: what the second restart file tells of
+ * increments was read from the first. */
+START_TEST(killed_twice_goes_on) {
+  int all, changes;
+  const char *words = "INTEGRATOR=MIDPOINT";
+  const char *const again[] = {"--restart", NULL};
+  job whole = small_creep(1.0, "*RESTART\n", words);
+  job j = small_creep(1.0, "*RESTART\n", words);
+  ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
+  run_until(&j, nothing, 12 * all / 25, SIGKILL, &changes);
+  run_until(&j, again, 3 * all / 8, SIGKILL, &changes);
+  goes_on(&j, 0, words);
+  same_files(&whole, &j, words);
+  job_end(&whole);
+  job_end(&j);
+}
+END_TEST
+
 /* Stopped before any increment. */
 START_TEST(run_without_a_file_begins_anew) {
   int changes;
@@ -196,5 +214,6 @@ START_TEST(damaged_files_are_refused) {
 END_TEST
 
 UNIT_MAIN("restart", changed_decks_are_refused_by_card, later_steps_may_change,
-          adapted_increments_go_on, run_without_a_file_begins_anew,
-          some_jobs_start_anew, damaged_files_are_refused)
+          adapted_increments_go_on, killed_twice_goes_on,
+          run_without_a_file_begins_anew, some_jobs_start_anew,
+          damaged_files_are_refused)
