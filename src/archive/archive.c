@@ -55,10 +55,6 @@ static archive_item *find(const archive *a, const char *name) {
   return NULL;
 }
 
-int archive_has(const archive *a, const char *name) {
-  return find(a, name) != NULL;
-}
-
 size_t archive_length(const archive *a, const char *name) {
   const archive_item *i = find(a, name);
   return i != NULL ? i->n : 0;
@@ -75,7 +71,7 @@ done:
   return st;
 }
 
-size_t archive_item_bytes(const archive_item *i) {
+static size_t item_bytes(const archive_item *i) {
   static const size_t size[] = {sizeof(double), sizeof(int), 1};
   return size[i->kind] * i->n;
 }
@@ -88,7 +84,7 @@ static status put(archive *a, const char *name, archive_kind kind, void *v,
   full_name(a, name, text);
   TRY(archive_add(a, text, kind, n, &i));
   i->data = v;
-  size_t bytes = archive_item_bytes(i);
+  size_t bytes = item_bytes(i);
   if (bytes > SHORT) goto done;
   i->own = memory_new(bytes, 1);
   if (i->own == NULL) FAIL(ERR_MEMORY, "memory exhausted: array %s", name);
@@ -105,7 +101,7 @@ static status take(const archive *a, const char *name, archive_kind kind,
   if (i == NULL || i->kind != kind || i->n != n)
     FAIL(ERR_FILE, "%s: no array %s%s of %zu values: it is of another model",
          a->path, a->group, name, n);
-  memcpy(v, i->data, archive_item_bytes(i));
+  memcpy(v, i->data, item_bytes(i));
 done:
   return st;
 }

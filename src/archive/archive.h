@@ -26,9 +26,8 @@ void archive_leave(archive *a);
 /* The whole group, to come back to: "" at first. */
 const char *archive_group(const archive *a);
 void archive_go(archive *a, const char *group);
-/* 1: an array of that name is there, in the present group. */
-int archive_has(const archive *a, const char *name);
-/* Its length in items of its kind; 0: it is not there. */
+/* Length of an array of the present group in items of its kind; 0: it is not
+ * there. */
 size_t archive_length(const archive *a, const char *name);
 
 /*

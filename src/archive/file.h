@@ -25,7 +25,6 @@ struct archive {
 /* A new item without data; its place may move with the next one. */
 status archive_add(archive *a, const char *name, archive_kind kind, size_t n,
                    archive_item **out);
-size_t archive_item_bytes(const archive_item *i);
 
 /* Bytes before those of HDF5. */
 enum { ARCHIVE_SEAL = 512 };

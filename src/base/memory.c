@@ -53,7 +53,8 @@ char *memory_text(const char *text) {
   return copy;
 }
 
-size_t memory_size(const void *p) {
+/* Bytes asked for with this block. */
+static size_t memory_size(const void *p) {
   size_t bytes;
   memcpy(&bytes, (const char *)p - HEADER, sizeof bytes);
   return bytes;

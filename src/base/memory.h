@@ -42,7 +42,6 @@ void *memory_new(size_t n, size_t size); /* zeroed; NULL if refused          */
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size);
 char *memory_text(const char *text); /* copy of a string; NULL if refused    */
 void memory_free(void *p);           /* accepts NULL                         */
-size_t memory_size(const void *p);   /* bytes asked for with this block      */
 
 /* From here on all blocks of SuiteSparse come from here too. Called before
  * its first use; further calls change nothing. */

@@ -35,7 +35,8 @@ done:
   return st;
 }
 
-void contact_solver_reset(contact_solver *s) {
+/* A (or W) has changed: forget factors. */
+static void forget_factors(contact_solver *s) {
   for (int i = 0; i <= N_SOLVER; ++i) {
     const solver_ops *ops = i < N_SOLVER ? solver_list[i] : s->choice.ops;
     if (s->work[i] != NULL) ops->release(s->work[i]);
@@ -59,7 +60,7 @@ void contact_solver_reset(contact_solver *s) {
 
 void contact_solver_free(contact_solver *s) {
   if (s == NULL) return;
-  contact_solver_reset(s);
+  forget_factors(s);
   memory_free(s->param);
   memory_free(s);
 }
@@ -76,7 +77,7 @@ static status fit(contact_solver *s, const contact_problem *cp) {
       s->best_u != NULL)
     goto done;
   archive *from = s->best_u == NULL ? s->from : NULL;
-  contact_solver_reset(s);
+  forget_factors(s);
   s->from = from;
   if (from != NULL) {
     archive_go(from, s->group);
@@ -111,7 +112,7 @@ static status keep_work(const contact_solver *s, int row, archive *a) {
 status contact_solver_keep(contact_solver *s, archive *a) {
   status st = OK;
   if (archive_reads(a)) {
-    contact_solver_reset(s);
+    forget_factors(s);
     s->from = a;
     snprintf(s->group, sizeof s->group, "%s", archive_group(a));
     goto done;

@@ -69,8 +69,10 @@ static void copy_row(const sparse_rows *from, int row, sparse_rows *to, int i) {
   }
 }
 
-status friction_add_rows(friction_limit *out, int n, const int *node,
-                         const sparse_rows *part) {
+/* Put row k of part (columns: contact nodes) into row node[k] of B, which was
+ * empty. */
+static status add_rows(friction_limit *out, int n, const int *node,
+                       const sparse_rows *part) {
   status st = OK;
   const sparse_rows *old = &out->B;
   sparse_rows all = {.n = n};
@@ -136,7 +138,7 @@ status friction_pressure_limit(const friction_card *card,
     TRY(friction_value(card, s, node[k], t, &mu));
     add_average(card->average, node[k], mu, &rows, rows.start[k]);
   }
-  TRY(friction_add_rows(out, s->n, node, &rows));
+  TRY(add_rows(out, s->n, node, &rows));
 done:
   sparse_free(&rows);
   return st;

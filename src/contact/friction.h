@@ -70,9 +70,5 @@ status friction_value(const friction_card *card, const contact_surface *s,
 status friction_pressure_limit(const friction_card *card,
                                const contact_surface *s, int n_node,
                                const int *node, double t, friction_limit *out);
-/* Put row k of part (columns: contact nodes) into row node[k] of B, which was
- * empty. */
-status friction_add_rows(friction_limit *out, int n, const int *node,
-                         const sparse_rows *part);
 
 #endif

@@ -32,7 +32,6 @@ struct expression {
   int n, capacity;
   item *code; /* [n] reverse Polish                                           */
   unsigned variables;
-  char *text;
 };
 
 static double negative(double a) { return -a; }
@@ -470,8 +469,6 @@ status expression_compile_in(const char *text, const char *const names[4],
   *out = NULL;
   *column = 0;
   NEW(c.e, 1);
-  c.e->text = memory_text(text);
-  if (c.e->text == NULL) FAIL(ERR_MEMORY, "memory exhausted: expression");
   TRY(compile(&c));
   *out = c.e;
   c.e = NULL;
@@ -501,11 +498,8 @@ double expression_value(const expression *e, const double x[3], double t) {
 
 unsigned expression_variables(const expression *e) { return e->variables; }
 
-const char *expression_text(const expression *e) { return e->text; }
-
 void expression_free(expression *e) {
   if (e == NULL) return;
   memory_free(e->code);
-  memory_free(e->text);
   memory_free(e);
 }

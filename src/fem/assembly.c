@@ -316,10 +316,3 @@ void stiffness_free(stiffness *k) {
   memory_free(k->coupling_column);
   memory_free(k);
 }
-
-long stiffness_unknowns(const stiffness *k) {
-  long n = 0;
-  for (int i = 0; i < k->n_node; ++i)
-    for (int c = 0; c < k->dim; ++c) n += k->free[i] >> c & 1;
-  return n;
-}

@@ -583,11 +583,6 @@ int condensed_kernel(const condensed *c, const double **kernel) {
   return c->just_held ? c->rigid.k : -1;
 }
 
-int condensed_motions(const condensed *c, const free_motion **list) {
-  *list = c->motion;
-  return c->n_motion;
-}
-
 double condensed_condition(const condensed *c) { return c->condition; }
 
 double condensed_digits(const condensed *c) {

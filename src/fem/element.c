@@ -11,6 +11,13 @@
 
 #include <string.h>
 
+typedef struct element_shape {
+  double grad[12]; /* [dim*(dim+1)] gradient of each shape function, 1/m      */
+  double hoop;     /* shape function over radius at the centroid, 1/m; 0
+                      unless axisymmetric                                     */
+  double weight;   /* volume, thickness or 2 pi r included, m3                */
+} element_shape;
+
 static const double two_pi = 6.283185307179586476925286766559;
 
 static void triangle_shape(const domain *d, int elem_id, element_shape *s) {
@@ -57,7 +64,7 @@ static void tetrahedron_shape(const domain *d, int elem_id, element_shape *s) {
   s->weight = six_volume / 6 * d->thickness[d->section_id[elem_id]];
 }
 
-void element_shape_at(const domain *d, int elem_id, element_shape *s) {
+static void shape_at(const domain *d, int elem_id, element_shape *s) {
   if (d->mesh->dim == 2)
     triangle_shape(d, elem_id, s);
   else
@@ -121,7 +128,7 @@ void element_stiffness(const domain *d, int elem_id, double *blocks) {
   element_shape s;
   double E[36], S[18], m_E[6], bulk;
   element_rest(d, elem_id, E, m_E, &bulk);
-  element_shape_at(d, elem_id, &s);
+  shape_at(d, elem_id, &s);
   for (int b = 0; b <= dim; ++b) {
     const double *gb = s.grad + dim * b;
     if (dim == 2)
@@ -142,7 +149,7 @@ double element_strain(const domain *d, int elem_id, double *B) {
   static const int shear[3][2] = {{0, 1}, {1, 2}, {2, 0}};
   const int dim = d->mesh->dim, ns = d->ns;
   element_shape s;
-  element_shape_at(d, elem_id, &s);
+  shape_at(d, elem_id, &s);
   memset(B, 0, (size_t)(ns * dim * (dim + 1)) * sizeof *B);
   for (int a = 0; a <= dim; ++a) {
     const double *g = s.grad + dim * a;
@@ -159,7 +166,7 @@ double element_strain(const domain *d, int elem_id, double *B) {
 
 double element_weight(const domain *d, int elem_id) {
   element_shape s;
-  element_shape_at(d, elem_id, &s);
+  shape_at(d, elem_id, &s);
   return s.weight;
 }
 
@@ -219,7 +226,7 @@ static void mean_strains(const domain *d, int n, const int *elem_id,
     const int id = elem_id == NULL ? k : elem_id[k];
     element_shape s;
     double e[6];
-    element_shape_at(d, id, &s);
+    shape_at(d, id, &s);
     strain_at(d, id, u, &s, e);
     cluster_add(d->cluster, CLUSTER_STRAIN, id, e);
   }
@@ -261,7 +268,7 @@ void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
     const double *e0 = eigen_at(d, k, &next);
     element_shape s;
     double strain[6];
-    element_shape_at(d, k, &s);
+    shape_at(d, k, &s);
     averaged_strain(d, k, u, &s, strain);
     take_eigen(d, e0, strain);
     if (sigma != NULL) stress_at(d, k, strain, sigma + ns * (size_t)k);
@@ -285,7 +292,7 @@ void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
   for (int k = 0; k < x->n; ++k) {
     element_shape s;
     double strain[6];
-    element_shape_at(d, x->elem_id[k], &s);
+    shape_at(d, x->elem_id[k], &s);
     averaged_strain(d, x->elem_id[k], u, &s, strain);
     if (x->e0 != NULL) take_eigen(d, x->e0 + ns * (size_t)k, strain);
     if (e != NULL) memcpy(e + ns * (size_t)k, strain, ns * sizeof *e);
@@ -330,7 +337,7 @@ void domain_internal_force(const domain *d, const double *sigma, double *F) {
   memset(F, 0, (size_t)d->mesh->dim * (size_t)d->mesh->n_node * sizeof *F);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     element_shape s;
-    element_shape_at(d, k, &s);
+    shape_at(d, k, &s);
     add_force(d, k, &s, sigma + (size_t)d->ns * (size_t)k, 1, F);
   }
 }
@@ -344,7 +351,7 @@ void eigen_force(const domain *d, const eigenstrain *x, double *F) {
   }
   for (int k = 0; k < x->n; ++k) {
     element_shape s;
-    element_shape_at(d, x->elem_id[k], &s);
+    shape_at(d, x->elem_id[k], &s);
     stress_at(d, x->elem_id[k], x->e0 + (size_t)d->ns * (size_t)k, t);
     cluster_smooth(d->cluster, CLUSTER_STRESS, x->elem_id[k], t);
     add_force(d, x->elem_id[k], &s, t, 1, F);
@@ -361,7 +368,7 @@ void eigen_add_force(const domain *d, int n, const int *elem_id,
     element_shape s;
     double t[6];
     memcpy(t, sigma + ns * (size_t)k, ns * sizeof *t);
-    element_shape_at(d, elem_id[k], &s);
+    shape_at(d, elem_id[k], &s);
     cluster_smooth(d->cluster, CLUSTER_STRESS, elem_id[k], t);
     add_force(d, elem_id[k], &s, t, 1, F);
   }
@@ -385,12 +392,12 @@ void domain_residual(const domain *d, const double *u, const double *F,
   mean_strains(d, n, NULL, u);
   cluster_begin(d->cluster, CLUSTER_STRESS);
   for (int k = 0; k < n && d->cluster != NULL; ++k) {
-    element_shape_at(d, k, &s);
+    shape_at(d, k, &s);
     stress_of(d, k, u, &s, t);
     cluster_add(d->cluster, CLUSTER_STRESS, k, t);
   }
   for (int k = 0; k < n; ++k) {
-    element_shape_at(d, k, &s);
+    shape_at(d, k, &s);
     stress_of(d, k, u, &s, t);
     cluster_smooth(d->cluster, CLUSTER_STRESS, k, t);
     add_force(d, k, &s, t, -1, rest);
@@ -412,7 +419,7 @@ double domain_energy_beside(const domain *d, int n, const int *elem_id,
       ++skip;
       continue;
     }
-    element_shape_at(d, k, &s);
+    shape_at(d, k, &s);
     averaged_strain(d, k, u, &s, e);
     take_eigen(d, e0, e);
     stress_at(d, k, e, t);

@@ -7,14 +7,6 @@
 
 #include "fem/fem.h"
 
-typedef struct element_shape {
-  double grad[12]; /* [dim*(dim+1)] gradient of each shape function, 1/m      */
-  double hoop;     /* shape function over radius at the centroid, 1/m; 0
-                      unless axisymmetric                                     */
-  double weight;   /* volume, thickness or 2 pi r included, m3                */
-} element_shape;
-
-void element_shape_at(const domain *d, int elem_id, element_shape *s);
 /* E of an element with what is averaged over its cluster taken out: R'E R,
  * R = I - share/3 m m', m the unit tensor; m_E[ns] = R'E m, *bulk = m'E m. */
 void element_rest(const domain *d, int elem_id, double *E, double *m_E,

@@ -59,7 +59,6 @@ typedef struct condensed condensed; /* factor and condensed matrix          */
  * ERR_MESH: an element beyond the axis or without volume. ERR_MEMORY. */
 status stiffness_assemble(const domain *d, stiffness **out);
 void stiffness_free(stiffness *k); /* accepts NULL                         */
-long stiffness_unknowns(const stiffness *k); /* components not prescribed   */
 
 /* What can resist a rigid motion that *BOUNDARY leaves to a body. */
 typedef enum {
@@ -92,8 +91,6 @@ status condense(const stiffness *k, const domain *d, condensed **out);
 void condensed_free(condensed *c);
 const double *condensed_matrix(const condensed *c); /* A [m*m]                */
 int condensed_floating(const condensed *c); /* 1: contact alone holds a body  */
-/* The motions contact alone holds; list borrowed from c. */
-int condensed_motions(const condensed *c, const free_motion **list);
 /* Estimate of the condition number of K with its unknowns scaled to a unit
  * diagonal (that scaling costs no digits). */
 double condensed_condition(const condensed *c);

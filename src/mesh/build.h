@@ -52,7 +52,5 @@ status elements_gather(builder *b); /* types; corners as raw nodes            */
 status elements_finish(builder *b); /* orientation, order, repeated ones      */
 status faces_finish(builder *b);    /* ids, elements on both sides            */
 status elements_check_folds(builder *b); /* round every node                  */
-/* Type of the one kind of element of a dimension that is read: P1. */
-int first_order_type(int dim);
 
 #endif

@@ -16,7 +16,8 @@ static const double flat = 1e-12;
 /* What the angles round a node may be above the full one, -. */
 static const double rounding = 1e-6;
 
-int first_order_type(int dim) {
+/* Type of the one kind of element of a dimension that is read: P1. */
+static int first_order_type(int dim) {
   static const int type[] = {15, 1, 2, 4};
   return type[dim];
 }

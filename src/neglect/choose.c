@@ -25,8 +25,6 @@
 
 const double neglect_share = 0.1;
 
-const char *neglect_name(const neglected *row) { return effect_name(row->bit); }
-
 /* ---- scales of the deck ------------------------------------------------- */
 
 /* Largest stress that pressures and prescribed displacements speak of, Pa; 0:

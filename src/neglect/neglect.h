@@ -25,8 +25,6 @@ status neglect_choose(model *m, const mesh *msh);
 void neglect_leave_out(model *m);
 /* Everything back in; m->neglected stays as the account of what was tried. */
 void neglect_restore(model *m);
-/* Name of the effect of a row, and of the group or contact it is about. */
-const char *neglect_name(const neglected *row);
 
 typedef struct neglect neglect; /* what the bounds are summed up from         */
 status neglect_new(const model *m, const mesh *msh, neglect **out);

@@ -226,7 +226,8 @@ done:
   return st;
 }
 
-status forms_solve(run *r) {
+/* r->cp solved in the form asked for, from r->old into r->now. */
+static status forms_solve(run *r) {
   status st = OK;
   const solver_listener listener = {r->sink->iteration, r->sink->ctx};
   const solver_listener *told =

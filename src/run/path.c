@@ -80,7 +80,7 @@ done:
   return st;
 }
 
-void path_free(finer_path *p) {
+static void path_free(finer_path *p) {
   if (p == NULL) return;
   waypoint_free(&p->at);
   waypoint_free(&p->middle);

@@ -281,8 +281,6 @@ void limit_free_copy(run *r); /* without the averages                         */
 
 /* The same file: for a new surface; nodes of *CONTACT FORCE. */
 status forms_new(run *r);
-/* r->cp solved in the form asked for, from r->old into r->now. */
-status forms_solve(run *r);
 /* Given normal forces of the contact nodes at t, N, negative where there is
  * none: given[n]. */
 status forms_given(run *r, double t, double *given);
@@ -317,7 +315,6 @@ double path_measure(run *r);
 void path_keep_on(run *r);
 /* The next increment starts from what is in r->old. */
 void path_restart(run *r);
-void path_free(finer_path *p); /* accepts NULL                               */
 status path_keep(run *r, archive *a);
 
 /* Energies of e as those the run starts with. */

@@ -116,8 +116,9 @@ done:
   return st;
 }
 
-status flow_point(const flow *x, int k, const flow_state *s, double dt,
-                  double *value, law_point *p) {
+/* Point k of a state for the law. */
+static status flow_point(const flow *x, int k, const flow_state *s, double dt,
+                         double *value, law_point *p) {
   status st = OK;
   size_t at = (size_t)x->ns * (size_t)k;
   TRY(flow_coefficients(&x->kind[x->kind_id[k]], s->t, s->temperature[k], value,

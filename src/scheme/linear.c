@@ -47,7 +47,8 @@ done:
   return st;
 }
 
-status linear_law(const flow_kind *k, double *L, double *G) {
+/* y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
+static status linear_law(const flow_kind *k, double *L, double *G) {
   status st = OK;
   const law_elastic *el = &k->elastic;
   const int ns = el->ns, na = k->n_alpha, n = ns + na;

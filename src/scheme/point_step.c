@@ -254,9 +254,12 @@ done:
   return st;
 }
 
-status point_step_compliance(const flow *x, const scheme_step *p, int k,
-                             const flow_state *old, const flow_state *now,
-                             point_step *l, double *Q) {
+/* Q[ns*ns] = d(e^i)/d(sigma) at the end of a step that has been made, for
+ * given stresses: with J at the theta-point (0 where nothing flows)
+ *   Q = [inv(I - theta dt J_yy) theta dt J_ys]_e.   ERR_SINGULAR */
+static status compliance_at(const flow *x, const scheme_step *p, int k,
+                            const flow_state *old, const flow_state *now,
+                            point_step *l, double *Q) {
   status st = OK;
   const size_t at = (size_t)x->ns * (size_t)k;
   TRY(point_step_begin(x, p, k, old, now, l));
@@ -314,7 +317,7 @@ status flow_compliance(const flow *x, const scheme_step *p,
   TRY(point_step_new(x, &l));
   for (int k = 0; k < x->n; ++k) {
     double size = 0.0, *own = Q + square * (size_t)k;
-    TRY(point_step_compliance(x, p, k, old, now, &l, own));
+    TRY(compliance_at(x, p, k, old, now, &l, own));
     TRY(energy_size(x->ns, l.E, own, &size));
     *largest = fmax(*largest, size);
   }

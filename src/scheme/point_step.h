@@ -41,11 +41,5 @@ int point_step_rests(const flow *x, const scheme_step *p,
                      const double *sigma_old, point_step *l);
 /* D[ns*ns] at the solution. */
 status point_step_tangent(const scheme_step *p, point_step *l, double *D);
-/* Q[ns*ns] = d(e^i)/d(sigma) at the end of a step that has been made, for
- * given stresses: with J at the theta-point (0 where nothing flows)
- *   Q = [inv(I - theta dt J_yy) theta dt J_ys]_e.   ERR_SINGULAR */
-status point_step_compliance(const flow *x, const scheme_step *p, int k,
-                             const flow_state *old, const flow_state *now,
-                             point_step *l, double *Q);
 
 #endif

@@ -65,9 +65,6 @@ status flow_heat(flow_kind *kind, double temperature);
  * FLOW_VALUE_MAX coefficients. */
 status flow_coefficients(flow_kind *kind, double t, double temperature,
                          double *value, law_point *p);
-/* Point k of a state for the law. */
-status flow_point(const flow *x, int k, const flow_state *s, double dt,
-                  double *value, law_point *p);
 enum { FLOW_VALUE_MAX = 512 };
 /* A point is looked at: 1 if it flows, counted. */
 int flow_goes_on(const flow *x, const law_point *p);

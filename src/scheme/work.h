@@ -39,10 +39,8 @@ void add_scaled(size_t n, const double *x, double a, const double *v,
 void linear_map_free(linear_map *m);
 status need(double **array, size_t n); /* allocate if NULL                   */
 
-/* linear.c: y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
-status linear_law(const flow_kind *k, double *L, double *G);
-/* The map of a kind (arrays that are NULL are made) and its D[ns*ns]; those of
- * all kinds into w, if others are there; X = exp(A) - I for A[n*n]. */
+/* linear.c: the map of a kind (arrays that are NULL are made) and its D[ns*ns];
+ * those of all kinds into w, if others are there; X = exp(A) - I for A[n*n]. */
 status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
                        linear_map *m, double *D);
 status linear_maps(const flow *x, const scheme_step *p, int exact,

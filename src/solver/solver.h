@@ -131,8 +131,6 @@ typedef struct solver_choice {
 /* Work that is kept as long as A stays the same. */
 typedef struct contact_solver contact_solver;
 status contact_solver_new(const solver_choice *choice, contact_solver **out);
-/* A (or W) has changed: forget factors. */
-void contact_solver_reset(contact_solver *s);
 void contact_solver_free(contact_solver *s);
 /* Another tolerance than that of the choice, from now on. */
 void contact_solver_tolerance(contact_solver *s, double tol);

@@ -253,7 +253,6 @@ START_TEST(condensed_matrix_is_the_schur_complement) {
       else
         ck_assert(B[i + m * j] > 0 && B[i + m * j] <= scale * (1 + 1e-12));
     }
-  ck_assert_int_eq((int)stiffness_unknowns(k), p.ni + p.nc);
   ck_assert_int_eq((int)condensed_info(c).unknowns, p.ni + p.nc);
   ck_assert_double_gt(condensed_condition(c), 1);
   free(A);
@@ -358,9 +357,7 @@ START_TEST(floating_body_has_the_rigid_motions_as_null_space) {
   stiffness *k;
   condensed *c;
   solve(s, &k, &c);
-  const free_motion *motion;
   ck_assert_int_eq(condensed_floating(c), 1);
-  ck_assert_int_eq(condensed_motions(c, &motion), 6);
   const int n = s->surface.n;
   const size_t m = (size_t)(3 * n);
   const double *A = condensed_matrix(c);

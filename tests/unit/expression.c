@@ -23,7 +23,6 @@ static double value_of(const char *text) {
   status st = expression_compile(text, symbol, NULL, &e, &column);
   ck_assert_msg(st == OK, "%s: %s", text, status_message());
   double v = expression_value(e, x, T);
-  ck_assert_str_eq(expression_text(e), text);
   expression_free(e);
   return v;
 }
