@@ -8,7 +8,10 @@
  * p is kept between the two. The passes of target.c are gone through with it:
  * each aims at what is left of the target, makes (error/aim)^dim times the
  * unknowns, or the share of that which the fine run had, and reaches the error
- * of that mesh.
+ * of that mesh. In space, where the first errors tell little of the edges,
+ * later passes also move unknowns to where they count: the same share holds for
+ * them, and the error falls from the one before by the order of the element
+ * size.
  *
  * CPU seconds of a pass: those of the stages of the fine run, each by its own
  * size. The factor and its solves go with N (1.2 and 1.05 in the plane, 1.75
@@ -197,10 +200,12 @@ static double bytes_at(const model_of_cost *c, double unknowns) {
 static void refine(const model_of_cost *c, double aim, course *at) {
   double least = at->error <= REACH * aim ? FINEST_LAST : FINEST;
   double length = within(least, aim / at->error, 1.0);
-  int first = at->unknowns <= c->deck.unknowns;
-  double more = pow(length, -c->dim) * (first ? c->share : 1.0);
+  int first = at->unknowns <= c->deck.unknowns, moves = c->dim == 3;
+  double more = pow(length, -c->dim) * (first || moves ? c->share : 1.0);
+  double moved = at->error * pow(length, c->order * c->dim);
   at->unknowns *= fmax(more, 1.0);
   double error = c->fine.error * pow(c->fine.unknowns / at->unknowns, c->order);
+  if (!first && moves) error = fmin(error, moved);
   at->error = fmin(error, at->error);
 }
 

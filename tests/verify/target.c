@@ -179,14 +179,14 @@ static void check_forecast(const example *e, const double *levels, int n) {
 
 START_TEST(forecasts) {
   static const double fine[] = {1, 0.3, 0.1}, coarse[] = {3, 1, 0.3},
-                      solid[] = {10};
+                      solid[] = {10, 7};
   printf("%-16s %8s %9s %9s %8s %8s %9s %9s %7s %7s\n", "--estimate-cost",
          "error[%]", "unknowns", "real", "cpu[s]", "real", "mem[MB]", "real",
          "cpu /", "mem /");
   check_forecast(&greco, fine, 3);
   check_forecast(&line, coarse, 3);
   check_forecast(&creep, fine, 3);
-  check_forecast(&shear, solid, 1);
+  check_forecast(&shear, solid, 2);
 }
 END_TEST
 
