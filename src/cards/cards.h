@@ -20,6 +20,10 @@ typedef struct reading {
   int lost;        /* a card or its lines were refused: what seems to be
                       missing may be that one and is not reported        */
   int in_step;     /* inside *STEP ... *END STEP                         */
+  int lost_material, lost_step; /* 1: a card that no keyword has the name of
+                                   seems to have opened one                  */
+  int (*is_lost)(const model *m, const char *name); /* 1: such a card has the
+                      name, its absence is not reported; NULL: there is none */
 } reading;
 
 /* Options of a law or solver that a card names; NULL: none. */

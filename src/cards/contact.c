@@ -273,6 +273,7 @@ static int find_contact(const reading *r, const char *name) {
   char text[80];
   for (int i = 0; i < r->m->n_contact; ++i)
     if (same_word(name, r->m->contacts[i].name)) return i;
+  if (r->is_lost != NULL && r->is_lost(r->m, name)) return -1;
   snprintf(text, sizeof text,
            "*%s: before this card there is no *CONTACT, NAME=", r->card->name);
   unknown_word(r->m->log, P2012, value_place(r, "CONTACT"), text, name,

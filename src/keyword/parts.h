@@ -10,6 +10,8 @@
 /* resolve.c: names to ids once all cards are read, then steps.c. "lost": a card
  * was refused, what seems to be missing or unused is not reported. */
 status model_resolve(model *m, int lost);
+/* 1: a card that no keyword has the name of has NAME= this. */
+int name_is_lost(const model *m, const char *name);
 /* Amplitudes and tables of a rule. */
 void resolve_friction(const model *m, friction_rule *rule);
 /* The points of a *PRINT that names some; an error if there are none. */

@@ -112,15 +112,21 @@ static int right_place(reading *r, const keyword *row) {
   }
   if (row->where & IN_MATERIAL) {
     if (r->material_id >= 0) return 1;
+    if (r->lost_material) return 0;
     message_add(log, P2006, &c->at, "*%s must follow its *MATERIAL card",
                 c->name);
     return 0;
   }
   r->material_id = -1;
+  r->lost_material = 0;
   if (row->where & IN_MODEL) {
     if (r->m->n_step == 0 || strcmp(row->name, "STEP") == 0) return 1;
     message_add(log, P2006, &c->at, "*%s must stand before the first *STEP",
                 c->name);
+    return 0;
+  }
+  if (r->lost_step) {
+    r->lost_step = strcmp(row->name, "END STEP") != 0;
     return 0;
   }
   message_add(log, P2006, &c->at, "*%s belongs between *STEP and *END STEP",
@@ -147,7 +153,7 @@ static int right_lines(const reading *r, const keyword *row) {
   return 0;
 }
 
-static void unknown_card(const reading *r) {
+static void unknown_card(reading *r) {
   const card *c = r->card;
   const char *near = message_wanted(r->m->log, ERROR)
                          ? nearest_word(c->name, keyword_name, NULL)
@@ -155,6 +161,12 @@ static void unknown_card(const reading *r) {
   message_add(r->m->log, P1003, &c->at, "unknown card *%s%s%s%s", c->name,
               near == NULL ? "" : "; did you mean *", near == NULL ? "" : near,
               near == NULL ? "" : "?");
+  if (near == NULL || r->in_step) return;
+  if (strcmp(near, "STEP") == 0) r->lost_step = 1;
+  if (strcmp(near, "MATERIAL") == 0) {
+    r->lost_material = 1;
+    r->material_id = -1;
+  }
 }
 
 static status read_card(reading *r) {
@@ -230,8 +242,10 @@ status model_from_deck(deck *d, message_log *log, model **out) {
   m->log = log;
   m->title = "";
   TRY(name_job(m));
-  reading r = {
-      .m = m, .material_id = -1, .lost = message_count(log, ERROR) > 0};
+  reading r = {.m = m,
+               .material_id = -1,
+               .is_lost = name_is_lost,
+               .lost = message_count(log, ERROR) > 0};
   for (int i = 0; i < d->n_card; ++i) {
     r.card = &d->cards[i];
     TRY(read_card(&r));

@@ -22,9 +22,30 @@ static const char *points_at(const void *ctx, int i) {
   return i < m->n_points ? m->points[i].name : NULL;
 }
 
+int name_is_lost(const model *m, const char *name) {
+  for (int i = 0; i < m->deck->n_card; ++i) {
+    const card *c = &m->deck->cards[i];
+    const parameter *p = card_parameter(c, "NAME");
+    if (p != NULL && p->has_value && same_word(p->value.text, name) &&
+        keyword_find(c->name) == NULL)
+      return 1;
+  }
+  return 0;
+}
+
+/* find_name, silent if the name is lost. */
+static int find_known(const model *m, const char *name, const char *title,
+                      const char *(*next)(const void *, int), const place *at) {
+  const char *word;
+  for (int i = 0; (word = next(m, i)) != NULL; ++i)
+    if (same_word(name, word)) return i;
+  return name_is_lost(m, name) ? -1 : find_name(m, name, title, next, at);
+}
+
 void find_points(const model *m, print_request *p) {
   if (p->points_name == NULL) return;
-  int i = find_name(m, p->points_name, "TIME POINTS", points_at, &p->points_at);
+  int i =
+      find_known(m, p->points_name, "TIME POINTS", points_at, &p->points_at);
   if (i < 0) return;
   m->points[i].used = 1;
   p->points = &m->points[i];
@@ -50,8 +71,8 @@ static void resolve_materials(model *m, int lost) {
   for (int i = 0; i < m->n_section; ++i) {
     section *s = &m->sections[i];
     if (s->material_name[0] == '\0') continue;
-    s->material_id = find_name(m, s->material_name, "MATERIAL", material_at,
-                               &s->material_at);
+    s->material_id = find_known(m, s->material_name, "MATERIAL", material_at,
+                                &s->material_at);
     if (s->material_id >= 0) m->materials[s->material_id].used = 1;
   }
   for (int i = 0; i < m->n_material; ++i)
@@ -119,8 +140,8 @@ static void resolve_contacts(model *m) {
     resolve_friction(m, &c->friction);
     resolve_force(m, &c->force);
     if (c->obstacle_name[0] == '\0') continue;
-    c->obstacle_id = find_name(m, c->obstacle_name, "OBSTACLE", obstacle_at,
-                               &c->obstacle_at);
+    c->obstacle_id = find_known(m, c->obstacle_name, "OBSTACLE", obstacle_at,
+                                &c->obstacle_at);
     if (c->obstacle_id < 0) continue;
     m->moves[c->obstacle_id].used = 1;
     resolve_axis(m, c);
