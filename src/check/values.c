@@ -94,9 +94,8 @@ static void check_tilt(const model *m, int obstacle_id) {
 }
 
 void check_values(const model *m, const mesh *msh) {
-  int good = 1;
   for (int i = 0; i < m->n_obstacle; ++i) {
-    good = motion_finite(m, i, 0.0);
+    int good = motion_finite(m, i, 0.0);
     for (int k = 0; k < m->n_step && good; ++k)
       good = motion_finite(m, i, step_time(&m->steps[k], 1));
     if (good) check_tilt(m, i);

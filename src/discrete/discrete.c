@@ -18,7 +18,6 @@ enum { LOG = 512 };
 
 /* One solve with all its arrays. */
 typedef struct discrete {
-  const model *m;
   const step *step;
   const exchange_problem *p;
   contact_surface surface; /* numbers only                                   */
@@ -247,7 +246,7 @@ done:
 status condensed_run(const model *m, const exchange_problem *p,
                      const history_sink *sink, int *unsettled) {
   status st = OK;
-  discrete d = {.m = m, .step = &m->steps[0], .p = p};
+  discrete d = {.step = &m->steps[0], .p = p};
   double cpu = timer_cpu();
   *unsettled = 0;
   TRY(discrete_new(&d));

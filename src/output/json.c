@@ -260,13 +260,17 @@ static void write_cost(json *w, const output_options *o) {
     json_open(w, NULL, '{');
     json_string(w, "stage", timer_name((stage)i));
     json_count(w, "calls", (double)c.calls);
-    if (!o->no_timing) json_real(w, "cpu", c.cpu);
-    if (!o->no_timing) json_count(w, "bytes", (double)c.bytes);
+    if (!o->no_timing) {
+      json_real(w, "cpu", c.cpu);
+      json_count(w, "bytes", (double)c.bytes);
+    }
     json_close(w, '}');
   }
   json_close(w, ']');
-  if (!o->no_timing) json_real(w, "cpu", timer_cpu());
-  if (!o->no_timing) json_count(w, "peak_bytes", (double)memory_peak());
+  if (!o->no_timing) {
+    json_real(w, "cpu", timer_cpu());
+    json_count(w, "peak_bytes", (double)memory_peak());
+  }
   json_close(w, '}');
 }
 

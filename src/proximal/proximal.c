@@ -58,7 +58,6 @@ typedef struct proximal_work {
   double *x, *F, *d, *z; /* [m]                                               */
   double *start, *centre; /* [m] force at the start; of the pass              */
   double *before;         /* [m] end of the last pass                         */
-  int *pivot; /* [m]                                               */
 } proximal_work;
 
 static void proximal_release(void *work) {

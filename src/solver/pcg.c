@@ -369,7 +369,7 @@ static outcome phase(run *s) {
   pcg_work *w = s->w;
   int m = s->cp->m;
   double before = s->phi2;
-  outcome o = RUNNING;
+  outcome o;
   arrival where;
   s->refreshed = 0;
   remember(s);
