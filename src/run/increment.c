@@ -209,12 +209,14 @@ static int was_open(const run *r) {
 /*
  * A body in the air: the answer without contact forces, if it is one. The
  * tolerance of a method, of forces in the scale of the motion (contact_scale),
- * would leave forces that no contact carries.
+ * would leave forces that no contact carries. The velocity form starts from the
+ * last equilibrium.
  */
 static status start_in_the_air(const run *r, double *u, double *rc) {
   status st = OK;
   double *q = NULL;
-  if (r->beside || r->forms->n > 0 || condensed_floating(r->c) || !was_open(r))
+  if (r->beside || r->forms->n > 0 || r->step->form == FORM_VELOCITY ||
+      condensed_floating(r->c) || !was_open(r))
     goto done;
   NEW(q, r->n_row);
   TRY(condensed_untouched(r->c, r->cp.f, q));

@@ -150,7 +150,7 @@ const scene_row friction_scenes[] = {
      QUASI("0.05", "1.") "*CLOAD\nTIP, 1, 3.3\n" LAST,
    .expect = TIP_AT("(45*3.3 - 25)*52/1400") ";sta has OK JUMP"},
   {.name = "no jump below critical, mu=1.7", .hard = "opens on a path",
-   .mesh = ONE_TRIANGLE,
+   .mesh = ONE_TRIANGLE, .flags = QUICK,
    .deck = TRIANGLE_ON("0.", "1.7") QUASI("1.", "1.")
      "*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\nTIP, 2, -1.\n*END STEP\n"
      QUASI("0.05", "1.") "*CLOAD\nTIP, 1, 3.3\n" LAST,
