@@ -200,12 +200,12 @@ status balance_keep(run *r, archive *a) {
   size_t m = (size_t)b->m;
   double *learnt[] = {&b->mesh,      &b->time,       &b->per_residual,
                       &b->per_digit, &b->iterations, &b->cpu,
-                      &b->t};
+                      &b->t,         &r->tol};
   archive_enter(a, "balance");
   TRY(archive_ints(a, "known", &b->known, 1));
-  for (int i = 0; i < 7; ++i) {
+  for (size_t i = 0; i < sizeof learnt / sizeof *learnt; ++i) {
     char name[20];
-    snprintf(name, sizeof name, "learnt%d", i);
+    snprintf(name, sizeof name, "learnt%zu", i);
     TRY(archive_reals(a, name, learnt[i], 1));
   }
   TRY(archive_reals(a, "u", b->u, m));

@@ -126,7 +126,33 @@ START_TEST(adapted_increments_go_on) {
                    130);
   goes_on(&both[1], 0, words);
   same_files(&both[0], &both[1], words);
-  for (int k = 0; k < 2; ++k) job_end(&both[k]);
+  for (int k = 0; k < 2; ++k)
+    job_end(&both[k]);
+}
+END_TEST
+
+/* A block that comes down through the air, with tolerances of its own. */
+static job falling(void) {
+  job j =
+      small_flat(0.4, "", "SOR, TOL=BALANCED\n*ACCURACY, MESH=YES, TIME=YES");
+  edit(&j, "TYPE=CONFORMING", "TYPE=PLANE\n0., -0.01\n0., 1.");
+  return j;
+}
+
+/* The path beside the run goes on with the tolerance that was chosen last. */
+START_TEST(chosen_tolerance_goes_on) {
+  int changes, all;
+  job whole = falling();
+  ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
+  for (int k = 1; k < 4; ++k) {
+    job j = falling();
+    ck_assert_int_eq(run_until(&j, nothing, all * k / 5, SIGINT, &changes),
+                     130);
+    goes_on(&j, 0, "falling");
+    same_files(&whole, &j, "falling");
+    job_end(&j);
+  }
+  job_end(&whole);
 }
 END_TEST
 
@@ -215,5 +241,5 @@ END_TEST
 
 UNIT_MAIN("restart", changed_decks_are_refused_by_card, later_steps_may_change,
           adapted_increments_go_on, killed_twice_goes_on,
-          run_without_a_file_begins_anew, some_jobs_start_anew,
-          damaged_files_are_refused)
+          chosen_tolerance_goes_on, run_without_a_file_begins_anew,
+          some_jobs_start_anew, damaged_files_are_refused)

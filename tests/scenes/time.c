@@ -102,6 +102,32 @@ const scene_row time_scenes[] = {
      COULOMB("C", "0.3") VISCO("@I", "0.25", "0.5") "*BOUNDARY\nLEFT, 1\n"
      "TOP, 2, 2, -0.125\n" LAST,
    .expect = "NODES u_y = -0.125 ~ 1e-12; CONTACT ^f_n = 0 ~ 1e-9"},
+  {.name = "led to the touch, TOLERANCE", .hard = "strains are rounding",
+   .mesh = "rect 3 3 1 1", .flags = QUICK | NO_LAWS,
+   .change = {.map = {"x + 0.1*x*(1 - x)*y", "y + 0.1*y*(1 - y)*x"}},
+   .deck = MAXWELL("2.") PLANE("C", "BOTTOM", "0., -0.7", "0., 1.")
+     COULOMB("C", "0.3") VISCO("@I, TOLERANCE=1.E-4", "0.25", "1.")
+     "*BOUNDARY\nTOP, 1, 1, 0.3\nTOP, 2, 2, -0.7\n" LAST,
+   .expect = "NODES u_y = -0.7 ~ 1e-12; CONTACT ^f_n = 0 ~ 1e-9"},
+  {.name = "led to the contact, TIME=BALANCED", .hard = "strains are rounding",
+   .mesh = "rect 3 3 1 1 alternate", .flags = QUICK,
+   .deck = MATERIAL("1000.", "0.") PLANE("C", "BOTTOM", "0., -0.7", "0., 1.")
+     COULOMB("C", "0.3") "*STEP\n*QUASISTATIC@V\n0.3, 1., 1.E-4\n@S"
+     "*ACCURACY, MESH=YES, TIME=BALANCED\n*BOUNDARY\nTOP, 1, 1, 0.\n"
+     "TOP, 2, 2, -0.75\n" LAST,
+   .expect = "NODES u_y = -0.7 - 0.05*y ~ 1e-9; TOTALS normal = 50 ~ 1e-5"},
+  {.name = "shortest increment, error above", .hard = "0.03 is not 0.33 - 0.3",
+   .mesh = "rect 3 3 1 1", .flags = QUICK, .verdict = 1,
+   .deck = MAXWELL("2.") FLOOR("0.3")
+     "*STEP\n*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1.E-9\n0.25, 1., 0.03\n"
+     "*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.01\n" LAST,
+   .expect = "errors has missed the tolerance; NODES u_y = -0.01*y ~ 1e-12"},
+  {.name = "shortest increment, balanced", .hard = "0.03 is not 0.33 - 0.3",
+   .mesh = "rect 6 4 1 1 alternate", .flags = QUICK,
+   .deck = MATERIAL("1000.", "0.3") FLOOR("0.3")
+     "*STEP\n*QUASISTATIC@V\n0.25, 1., 0.03\n@S"
+     "*ACCURACY, MESH=YES, TIME=BALANCED, TIME_SHARE=0.001\n*BOUNDARY\n"
+     "TOP, 1, 1, \"0.02*sin(9*t)\"\nTOP, 2, 2, -0.02\n" LAST},
   {.name = "Euler at 1.99 tau", .hard = "just stable",
    .mesh = "rect 2 2 1 1",
    .deck = RELAXES("INTEGRATOR=EULER", "3.98", "398."),
