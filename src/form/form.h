@@ -11,16 +11,15 @@
 typedef struct velocity_form velocity_form;
 /* Room for problems of the size of cp. */
 status velocity_form_new(const contact_problem *cp, velocity_form **out);
+/* [m] m: where u_old is put before velocity_form_set. */
+double *velocity_form_old(velocity_form *v);
 /*
- * cp in the unknown du = u - u_old. u_old[m] m; from[m], to[m]: motion of the
- * obstacle at the old and the new time in the contact frame, m. *out borrows
- * from v and cp; *du[m] is zero, its start value.
+ * cp in the unknown du = u - u_old. *u[m]: the start value of u in, that of du
+ * out. *out borrows from v and cp.
  */
 void velocity_form_set(velocity_form *v, const contact_problem *cp,
-                       const double *u_old, const double *from,
-                       const double *to, contact_problem *out, double **du);
-/* u = u_old + du in u[m], which holds u_old; cp as given to velocity_form_set.
- */
+                       contact_problem *out, double **u);
+/* u[m] = u_old + du; cp as given to velocity_form_set. */
 void velocity_form_apply(const velocity_form *v, const contact_problem *cp,
                          double *u);
 void velocity_form_free(velocity_form *v); /* accepts NULL                    */

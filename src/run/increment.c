@@ -168,15 +168,24 @@ done:
   return st;
 }
 
-/* *cp in the displacement of the increment; *u: the last one in, that out. */
+/* The last equilibrium, from which the increment and its slip are counted:
+ * start values may be others. Normals with a given force stand apart, at 0. */
+static void put_old(const run *r, double *u_old) {
+  const forms *f = r->forms;
+  for (int i = 0; i < r->n_row; ++i) u_old[i] = r->old.uc[unknown_of(r, i)];
+  for (int k = 0; k < f->n; ++k) u_old[r->rows * f->node[k]] = 0.0;
+}
+
+/* *cp in the displacement of the increment; *u: start values of the unknown
+ * before in, of that out. */
 static status take_velocity(run *r, contact_problem *cp, double **u) {
   status st = OK;
+  forms *f = r->forms;
   contact_problem own = *cp;
   timer_enter(STAGE_VELOCITY);
-  if (r->forms->velocity == NULL)
-    TRY(velocity_form_new(cp, &r->forms->velocity));
-  velocity_form_set(r->forms->velocity, &own, *u, r->old.motion, r->now.motion,
-                    cp, u);
+  if (f->velocity == NULL) TRY(velocity_form_new(cp, &f->velocity));
+  put_old(r, velocity_form_old(f->velocity));
+  velocity_form_set(f->velocity, &own, cp, u);
 done:
   timer_leave(STAGE_VELOCITY);
   return st;
@@ -209,14 +218,12 @@ static int was_open(const run *r) {
 /*
  * A body in the air: the answer without contact forces, if it is one. The
  * tolerance of a method, of forces in the scale of the motion (contact_scale),
- * would leave forces that no contact carries. The velocity form starts from the
- * last equilibrium.
+ * would leave forces that no contact carries.
  */
 static status start_in_the_air(const run *r, double *u, double *rc) {
   status st = OK;
   double *q = NULL;
-  if (r->beside || r->forms->n > 0 || r->step->form == FORM_VELOCITY ||
-      condensed_floating(r->c) || !was_open(r))
+  if (r->beside || r->forms->n > 0 || condensed_floating(r->c) || !was_open(r))
     goto done;
   NEW(q, r->n_row);
   TRY(condensed_untouched(r->c, r->cp.f, q));

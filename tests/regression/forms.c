@@ -166,6 +166,31 @@ START_TEST(both_forms_agree_with_every_method) {
 }
 END_TEST
 
+/* Starts that are not the last equilibrium: in the air the answer without
+ * contact, then a touch at the end of an increment; the line through the last
+ * two states. The slip counts from the equilibrium all the same. */
+START_TEST(both_forms_agree_from_other_starts) {
+  static const struct {
+    const char *solver, *move, *loads;
+  } row[] = {
+      {"AUTO", "MOVE, 0., \"0.02*(t-0.5)\"\n",
+       "*DSLOAD\nTOP, TX, \"5*t\"\nTOP, P, \"5*max(0, t-0.5)\"\n"},
+      {"AUTO", "", "RIGHT, 1, 1, -0.2\nRIGHT, 2, 2, \"max(0, 1-2*t)\"\n"},
+      {"AUTO, TOL=BALANCED\n*ACCURACY, MESH=YES, TIME=YES", "",
+       "RIGHT, 1, 1, -0.02\nRIGHT, 2, 2, \"-0.02*min(1, 3*t)\"\n"}};
+  for (size_t k = 0; k < sizeof row / sizeof *row; ++k) {
+    job a = run_square(row[k].solver, "*QUASISTATIC\n0.125, 1.\n", row[k].move,
+                       row[k].loads);
+    job b =
+        run_square(row[k].solver, "*QUASISTATIC, FORM=VELOCITY\n0.125, 1.\n",
+                   row[k].move, row[k].loads);
+    compare_nodes(&a, &b, 8, 1e-8);
+    job_end(&a);
+    job_end(&b);
+  }
+}
+END_TEST
+
 /* A load that grows in proportion: one static problem, or increments. */
 START_TEST(proportional_load_needs_no_path) {
   static const char loads[] = "*DSLOAD\nTOP, P, 5.\nLEFT, P, 15.\n";
@@ -192,4 +217,5 @@ START_TEST(proportional_load_needs_no_path) {
 END_TEST
 
 UNIT_MAIN("forms", both_forms_agree_on_every_example,
-          both_forms_agree_with_every_method, proportional_load_needs_no_path)
+          both_forms_agree_with_every_method,
+          both_forms_agree_from_other_starts, proportional_load_needs_no_path)
