@@ -75,11 +75,12 @@ static double plain_run(const stiffness *k, const scene *s, order_method method,
   f.node = memory_new(n, sizeof *f.node);
   for (int i = 0; i < k->n_node; ++i)
     if (k->free[i]) f.node[f.n_node++] = i;
+  f.n_inner = f.n_own = f.n_node;
   double begin = timer_cpu();
   check(graph_of_unknowns(k, &g));
   check(order_by(method, &g, k->dim, s->m->x, f.n_node, f.node, &cm));
   body_factor_number(k, &f, number);
-  check(body_factor_build(k, 0, number, &cm, &f));
+  check(body_factor_build(k, number, &cm, &f));
   double cpu = timer_cpu() - begin;
   begin = timer_cpu();
   for (int q = 0; q < solves; ++q) {
@@ -106,9 +107,10 @@ static stiffness without_contact(const stiffness *k, int drop) {
   stiffness same = *k;
   const size_t n = (size_t)k->n_node;
   same.contact = malloc(n * sizeof *same.contact);
+  same.first_row = malloc(n * sizeof *same.first_row);
   same.free = malloc(n);
   for (size_t i = 0; i < n; ++i) {
-    same.contact[i] = -1;
+    same.contact[i] = same.first_row[i] = -1;
     same.free[i] = drop && k->contact[i] >= 0 ? 0 : k->free[i];
   }
   return same;
@@ -133,6 +135,7 @@ static void one_run(const scene *s, int columns, figures *r) {
                       ? 0
                       : plain_run(&same, s, (order_method)q, 1, &solve);
   free(same.contact);
+  free(same.first_row);
   free(same.free);
   if (columns) {
     same = without_contact(k, 1);
@@ -140,6 +143,7 @@ static void one_run(const scene *s, int columns, figures *r) {
     r->column_wise = plain_run(&same, s, m, SAMPLE, &solve);
     r->column_wise += ((double)r->info.contact_unknowns - 1) * solve;
     free(same.contact);
+    free(same.first_row);
     free(same.free);
   }
   stiffness_free(k);

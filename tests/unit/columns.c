@@ -1,4 +1,4 @@
-/* src/columns/columns.c: over the tables, so that a new row is tested too. */
+/* src/columns: over the tables, so that a new row is tested too. */
 #include "base/memory.h"
 #include "columns/columns.h"
 #include "support/made_up.h"
