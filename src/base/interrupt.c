@@ -90,6 +90,13 @@ static void on_exit_of_library(void) {
   _exit(status_exit_code(ERR_MEMORY));
 }
 
+/* A sanitizer tells more of a crash. */
+#ifdef __SANITIZE_ADDRESS__
+enum { CATCHES_SIGNALS = 0 };
+#else
+enum { CATCHES_SIGNALS = 1 };
+#endif
+
 static void catch_signals(void) {
   static const int signals[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
   const stack_t other = {.ss_sp = stack, .ss_size = sizeof stack};
@@ -103,9 +110,7 @@ static void catch_signals(void) {
 void interrupt_crashes(void) {
   watching = 1;
   atexit(on_exit_of_library);
-#ifndef __SANITIZE_ADDRESS__
-  catch_signals();
-#endif
+  if (CATCHES_SIGNALS) catch_signals();
 }
 
 void interrupt_over(void) { watching = 0; }
