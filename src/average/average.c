@@ -31,6 +31,7 @@ typedef struct builder {
   int *touched, n_touched; /* [n_node] columns of the row at hand             */
   double *row;             /* [n_node] its values                             */
   int neighbours;          /* other active nodes within the radius            */
+  int cut; /* 1: a face with a node left out is within it      */
 } builder;
 
 static void builder_free(builder *b) {
@@ -126,12 +127,25 @@ static void find_facts(const builder *b, average_facts *facts,
 
 /* ---- rows of the kernel ------------------------------------------------ */
 
+/* 1 if a face with a node that carries no pressure lies within the disc. */
+static int cuts(const builder *b, int face, const double *x, double reach) {
+  const average_patch *p = b->p;
+  const double *corner =
+      b->at.corner + (size_t)(p->dim * p->dim) * (size_t)face;
+  int left_out = 0;
+  for (int k = 0; k < p->dim; ++k)
+    left_out |= !p->active[p->face[p->dim * face + k]];
+  return left_out &&
+         face_distance(p->dim, corner, x) < reach * (1.0 - ROUNDING);
+}
+
 static void add_face(builder *b, int i, int face, const double *x,
                      double reach) {
   const average_patch *p = b->p;
   const double *corner =
       b->at.corner + (size_t)(p->dim * p->dim) * (size_t)face;
   double weight[3];
+  b->cut |= cuts(b, face, x, reach);
   if (p->dim == 3)
     face_triangle(&b->m, corner, x, weight);
   else if (p->axisymmetric)
@@ -175,7 +189,7 @@ static void look_around(builder *b, int i) {
   const double *x = b->at.x + (size_t)b->p->dim * (size_t)i;
   double length = b->at.loop == NULL ? 0.0 : b->at.loop[i];
   double reach = b->rule->radius;
-  b->n_touched = b->neighbours = 0;
+  b->n_touched = b->neighbours = b->cut = 0;
   if (length > 0.0) {
     const double before[2] = {x[0] - length, x[1]};
     const double after[2] = {x[0] + length, x[1]};
@@ -187,18 +201,6 @@ static void look_around(builder *b, int i) {
   look_from_images(b, i, x, reach);
 }
 
-static double segment_distance(int dim, const double *a, const double *x) {
-  double along2 = 0.0, to = 0.0, s, y[3];
-  for (int c = 0; c < dim; ++c) {
-    double d = a[dim + c] - a[c];
-    along2 += d * d;
-    to += d * (x[c] - a[c]);
-  }
-  s = along2 > 0.0 ? fmin(fmax(to / along2, 0.0), 1.0) : 0.0;
-  for (int c = 0; c < dim; ++c) y[c] = a[c] + s * (a[dim + c] - a[c]);
-  return distance(dim, x, y);
-}
-
 /* 1 if the disc around node i reaches beyond the patch. */
 static int meets_rim(builder *b, int i) {
   int dim = b->p->dim, corners = dim - 1;
@@ -206,7 +208,8 @@ static int meets_rim(builder *b, int i) {
   int n = box_tree_near(&b->rim, x, b->rule->radius, b->found);
   for (int k = 0; k < n; ++k) {
     const double *a = b->at.rim + (size_t)(dim * corners) * (size_t)b->found[k];
-    double d = corners == 1 ? distance(dim, a, x) : segment_distance(dim, a, x);
+    double d = corners == 1 ? distance(dim, a, x)
+                            : face_segment_distance(dim, a, a + dim, x);
     if (d < b->rule->radius * (1.0 - ROUNDING)) return 1;
   }
   return 0;
@@ -232,17 +235,14 @@ static status keep_row(builder *b, int i, int cap[2]) {
   status st = OK;
   const average_patch *p = b->p;
   double seen = 0.0;
-  int n = b->raw.start[i], whole = 1;
+  int n = b->raw.start[i];
   qsort(b->touched, (size_t)b->n_touched, sizeof *b->touched, by_number);
   for (int k = 0; k < b->n_touched; ++k) {
     int j = b->touched[k];
-    if (p->active[j])
-      seen += b->row[j];
-    else
-      whole = 0;
+    if (p->active[j]) seen += b->row[j];
   }
   b->alone[i] = b->neighbours == 0;
-  whole = whole && !meets_rim(b, i);
+  int whole = !b->cut && !meets_rim(b, i);
   b->mass[i] = whole || b->alone[i] ? 1.0 : fmin(1.0, seen);
   for (int k = 0; k < b->n_touched; ++k) {
     int j = b->touched[k];

@@ -24,16 +24,65 @@ static rule rule_for(double length, double radius) {
   return (rule){gauss_fine, GAUSS_FINE, (int)ceil(length / (PIECE * radius))};
 }
 
-/* ---- lines ------------------------------------------------------------- */
-
-/* The kernel at a point y of a line: over the line, or around the axis. */
-typedef double density(const mollifier *m, const double *x, const double *y);
+/* ---- distances --------------------------------------------------------- */
 
 static double distance2(int dim, const double *x, const double *y) {
   double sum = 0.0;
   for (int c = 0; c < dim; ++c) sum += (x[c] - y[c]) * (x[c] - y[c]);
   return sum;
 }
+
+static void subtract(const double *a, const double *b, double *d) {
+  for (int c = 0; c < 3; ++c) d[c] = a[c] - b[c];
+}
+
+static double dot3(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double *a, const double *b, double *n) {
+  for (int c = 0; c < 3; ++c)
+    n[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+}
+
+double face_segment_distance(int dim, const double *a, const double *b,
+                             const double *x) {
+  double along2 = distance2(dim, a, b), to = 0.0, s, y[3];
+  for (int c = 0; c < dim; ++c) to += (b[c] - a[c]) * (x[c] - a[c]);
+  s = along2 > 0.0 ? fmin(fmax(to / along2, 0.0), 1.0) : 0.0;
+  for (int c = 0; c < dim; ++c) y[c] = a[c] + s * (b[c] - a[c]);
+  return sqrt(distance2(dim, x, y));
+}
+
+/* Distance of the foot of x in the plane of a triangle; HUGE_VAL if it is
+ * outside of the triangle. */
+static double height(const double *corner, const double *x) {
+  double n[3], a[3], b[3], side[3];
+  subtract(corner + 3, corner, a);
+  subtract(corner + 6, corner, b);
+  cross(a, b, n);
+  for (int k = 0; k < 3; ++k) {
+    subtract(corner + 3 * ((k + 1) % 3), corner + 3 * k, a);
+    subtract(x, corner + 3 * k, b);
+    cross(a, b, side);
+    if (!(dot3(side, n) > 0.0)) return HUGE_VAL;
+  }
+  return fabs(dot3(b, n)) / sqrt(dot3(n, n));
+}
+
+double face_distance(int dim, const double *corner, const double *x) {
+  double least = dim == 3 ? height(corner, x) : HUGE_VAL;
+  for (int k = 0; k < 2 * dim - 3; ++k)
+    least =
+        fmin(least, face_segment_distance(dim, corner + dim * k,
+                                          corner + dim * ((k + 1) % dim), x));
+  return least;
+}
+
+/* ---- lines ------------------------------------------------------------- */
+
+/* The kernel at a point y of a line: over the line, or around the axis. */
+typedef double density(const mollifier *m, const double *x, const double *y);
 
 static double line_density(const mollifier *m, const double *x,
                            const double *y) {
@@ -191,14 +240,6 @@ static void add_edge(flat *f, const double *a, const double *b) {
   add_outer(f, &e, in1, last);
 }
 
-static void subtract(const double *a, const double *b, double *d) {
-  for (int c = 0; c < 3; ++c) d[c] = a[c] - b[c];
-}
-
-static double dot3(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Values at the foot and gradients of the P1 functions turn the integrals of w
  * and w y into weights. */
 static void to_weights(const flat *f, double weight[3]) {
@@ -253,8 +294,7 @@ void face_triangle(const mollifier *m, const double *corner, const double *x,
   memset(weight, 0, 3 * sizeof *weight);
   subtract(corner + 3, corner, a);
   subtract(corner + 6, corner, b);
-  for (int c = 0; c < 3; ++c)
-    n[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+  cross(a, b, n);
   double twice = sqrt(dot3(n, n)), length = sqrt(dot3(a, a));
   if (!(twice > 0.0)) return;
   if (is_plain(m, corner, x)) {
@@ -265,8 +305,7 @@ void face_triangle(const mollifier *m, const double *corner, const double *x,
     n[c] /= twice;
     e0[c] = a[c] / length;
   }
-  for (int c = 0; c < 3; ++c)
-    e1[c] = n[(c + 1) % 3] * e0[(c + 2) % 3] - n[(c + 2) % 3] * e0[(c + 1) % 3];
+  cross(n, e0, e1);
   subtract(x, corner, to);
   double off = dot3(to, n);
   f.off2 = off * off;

@@ -20,5 +20,9 @@ void face_ring(const mollifier *m, double reach, const double *corner,
 /* Corners [9], x[3]. */
 void face_triangle(const mollifier *m, const double *corner, const double *x,
                    double weight[3]);
+/* Distance of x[dim] from the segment a, b, and from a face, m. */
+double face_segment_distance(int dim, const double *a, const double *b,
+                             const double *x);
+double face_distance(int dim, const double *corner, const double *x);
 
 #endif

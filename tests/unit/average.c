@@ -404,6 +404,66 @@ START_TEST(surface_loses_mass_at_its_edges) {
 }
 END_TEST
 
+/* Least distance of x from a face by dense regular points of it, m. */
+static double face_sampled(const owned *o, int face, const double *x) {
+  enum { STEPS = 20 };
+  double least = HUGE_VAL;
+  for (int i = 0; i <= STEPS; ++i)
+    for (int j = 0; i + j <= STEPS; ++j) {
+      const double s[3] = {(double)i / STEPS, (double)j / STEPS,
+                           (double)(STEPS - i - j) / STEPS};
+      double sum = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        double y = -x[c];
+        for (int k = 0; k < 3; ++k)
+          y += s[k] * o->x[3 * o->face[3 * face + k] + c];
+        sum += y * y;
+      }
+      least = fmin(least, sqrt(sum));
+    }
+  return least;
+}
+
+/* Least distance of node i from a face with a node that is left out, m. */
+static double left_out_sampled(const owned *o, int i) {
+  double least = HUGE_VAL;
+  for (int f = 0; f < o->p.n_face; ++f) {
+    const int *node = o->face + 3 * f;
+    if (o->active[node[0]] && o->active[node[1]] && o->active[node[2]])
+      continue;
+    least = fmin(least, face_sampled(o, f, o->x + 3 * i));
+  }
+  return least;
+}
+
+/* On a cap of a sphere whose outer part is left out, a disc that keeps clear of
+ * that part by 3 % of its radius is whole. */
+START_TEST(disc_clear_of_nodes_left_out_is_whole) {
+  enum { SIDE = 16, NODES = (SIDE + 1) * (SIDE + 1) };
+  owned o = square(SIDE, 0.3);
+  double clear[NODES];
+  int whole = 0;
+  for (int i = 0; i < o.p.n_node; ++i) {
+    double *x = o.x + 3 * i, a = x[0] - 0.5, b = x[1] - 0.5;
+    x[2] = 1.0 - sqrt(1.0 - a * a - b * b);
+    o.active[i] = a * a + b * b < 0.16;
+  }
+  for (int i = 0; i < NODES; ++i) clear[i] = left_out_sampled(&o, i);
+  for (int k = 0; k < KERNEL_COUNT; ++k)
+    for (double radius = 0.2; radius < 0.3; radius += 0.02) {
+      sparse_rows G = build(&o, (kernel)k, radius, 0, 0, NULL);
+      for (int i = 0; i < o.p.n_node; ++i) {
+        if (!o.active[i] || clear[i] < 1.03 * radius) continue;
+        ck_assert_double_eq_tol(row_sum(&G, i), 1.0, 1e-13);
+        ++whole;
+      }
+      sparse_free(&G);
+    }
+  ck_assert_int_gt(whole, 100);
+  owned_free(&o);
+}
+END_TEST
+
 /* A disc of radius 1 turned around its axis; far from the axis a ring is a
  * straight strip of the plane. */
 START_TEST(axisymmetric_rows) {
@@ -689,7 +749,8 @@ UNIT_MAIN("average", bump_has_the_constants_of_the_literature,
           edges_lose_the_first_moment,
           rows_are_symmetric_by_mass_and_keep_constants,
           rows_have_the_second_moment_of_the_kernel,
-          surface_loses_mass_at_its_edges, axisymmetric_rows,
+          surface_loses_mass_at_its_edges,
+          disc_clear_of_nodes_left_out_is_whole, axisymmetric_rows,
           radius_below_the_mesh_is_local, coarse_nodes_are_counted,
           geodesic_distance_unbends_the_line, closed_line_has_no_edge,
           mirrors_stand_for_the_other_half,
