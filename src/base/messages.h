@@ -411,7 +411,13 @@
     "The rates of the law grow so fast with the stress that its equations "  \
     "cannot be solved over this increment. Let dt_min of *VISCO be smaller, "\
     "so that increments are cut further, or give the law a smaller exponent " \
-    "n or a larger K: what is left of (stress/K)^n must be a number.")
+    "n or a larger K: what is left of (stress/K)^n must be a number.")       \
+  X(4018, NOTE, "normals of a curved body differ from those of the obstacle",\
+    "The faces around a node have their mean as normal, which differs from " \
+    "that of a cylinder or sphere they lie on where they differ in size or " \
+    "shape: normal forces then have a part along the obstacle, and a torque "\
+    "about its axis. Write NORMAL=OBSTACLE on *CONTACT, or refine the mesh "  \
+    "evenly. A flat body on a roller is better served by its own normals.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

@@ -21,8 +21,13 @@ static const double fixed_sine = 1e-3;
 /* Normals of two contacts on one obstacle nearer than this (45 degrees) are
  * one smooth surface. */
 static const double smooth_cosine = 0.70710678;
-/* Depth of penetration over the size of the mesh that is rounding. */
-static const double rounding_depth = 1e-9;
+/* Rounding: of a depth of penetration over the size of the mesh, of the sum of
+ * the normals of the faces around a node over their area. */
+static const double rounding = 1e-9;
+/* A node nearer to its obstacle at time 0 than this, over the size of the mesh,
+ * touches it; the sine of the angle between the normals of body and obstacle
+ * there that is worth a note. */
+static const double touching = 1e-6, told_sine = 1e-3;
 
 typedef struct candidate {
   int node_id, pair_id;
@@ -39,6 +44,8 @@ typedef struct tally {
   int n_dependent, dependent_node, dependent_on; /* first node and pair      */
   int deep_node;
   double depth; /* deepest penetration, m                                   */
+  int turned_node; /* where the normals of body and obstacle differ most    */
+  double sine;     /* of the angle between them                             */
 } tally;
 
 typedef struct builder {
@@ -224,7 +231,7 @@ static int take_obstacle_normal(const builder *b, candidate *c) {
 static void orient(builder *b, candidate *c) {
   const contact_pair *p = &b->in->pairs[c->pair_id];
   tally *t = &b->tallies[c->pair_id];
-  if (!(dot(b->dim, c->normal, c->normal) > 0)) {
+  if (!(sqrt(dot(b->dim, c->normal, c->normal)) > rounding * c->area)) {
     message_add(b->log, P4008, &p->at, "*CONTACT %s: no outward normal at %s",
                 p->name, describe(b->in->mesh, c->node_id).text);
     c->left_out = 1;
@@ -239,6 +246,26 @@ static void orient(builder *b, candidate *c) {
   if (frame_project(b->dim, fixed, c->normal) > fixed_sine) return;
   c->left_out = 1;
   if (t->n_fixed++ == 0) t->fixed_node = c->node_id;
+}
+
+/* The angle between the normals of body and obstacle where they touch. */
+static void compare_normals(const builder *b, const candidate *c) {
+  const contact_pair *p = &b->in->pairs[c->pair_id];
+  tally *t = &b->tallies[c->pair_id];
+  const double *x = &b->in->mesh->x[(size_t)b->dim * (size_t)c->node_id];
+  double n[3], square = 0;
+  if (fabs(c->gap) > touching * b->in->mesh->size ||
+      !obstacle_normal(p->support, b->dim, x, n))
+    return;
+  frame_project(b->dim, b->in->fixed[c->node_id], n);
+  double cosine = dot(b->dim, n, c->normal);
+  for (int k = 0; k < b->dim; ++k) {
+    double d = n[k] - cosine * c->normal[k];
+    square += d * d;
+  }
+  if (sqrt(square) <= t->sine) return;
+  t->sine = sqrt(square);
+  t->turned_node = c->node_id;
 }
 
 /* Gap at time 0, or left out. */
@@ -275,6 +302,7 @@ static int gather(builder *b, int first, int end, const candidate **kept) {
     if (!c->left_out) orient(b, c);
     if (!c->left_out) measure(b, c);
     if (c->left_out) continue;
+    compare_normals(b, c);
     ++b->tallies[c->pair_id].n_kept;
     if (n < b->dim) kept[n] = c;
     ++n;
@@ -342,12 +370,19 @@ static void say(const builder *b, int pair_id) {
                 "*CONTACT %s: %d nodes cannot reach obstacle %s along their "
                 "normal and are left out",
                 p->name, t->n_unreached, p->support->name);
-  if (t->depth > rounding_depth * m->size)
+  if (t->depth > rounding * m->size)
     message_add(b->log, P4004, &p->at,
                 "*CONTACT %s: deepest penetration of obstacle %s is %.4g, %.2g "
                 "of the size of the mesh, at %s",
                 p->name, p->support->name, t->depth, t->depth / m->size,
                 describe(m, t->deep_node).text);
+  if (t->sine > told_sine)
+    message_add(b->log, P4018, &p->at,
+                "*CONTACT %s: the normals of the body differ from those of "
+                "obstacle %s by up to %.2g rad, at %s: that share of the "
+                "contact forces acts along the obstacle",
+                p->name, p->support->name, asin(fmin(t->sine, 1)),
+                describe(m, t->turned_node).text);
   if (t->n_corner > 0)
     message_add(b->log, P4005, &p->at,
                 "*CONTACT %s: %d nodes touch a second obstacle and have no "

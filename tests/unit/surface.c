@@ -637,17 +637,59 @@ START_TEST(groups_that_are_no_boundary_are_refused) {
 }
 END_TEST
 
+/* The faces of both sides of a fin, cut in three and in six, cancel but for
+ * rounding at the node in their middle. */
 START_TEST(fin_without_thickness_has_no_normal) {
+  const double tilt[2][3] = {{0.6, 0.48, 0.64}, {-0.8, 0.36, 0.48}};
+  const double at[3][2] = {{1.1, 0.3}, {-0.7, 0.9}, {-0.2, -1.3}};
   scene c;
-  scene_init(&c, 2);
+  scene_init(&c, 3);
   add_node(&c, 0, 0, 0);
-  add_node(&c, 1, 0, 0);
-  add_face(&c, 0, 1, 0);
-  add_face(&c, 1, 0, 0);
-  add_contact(&c, "FIN", 0, 2);
+  for (int k = 0; k < 6; ++k) {
+    double x[3];
+    for (int d = 0; d < 3; ++d) {
+      x[d] = 0;
+      for (int e = 0; e < 2; ++e)
+        x[d] += 0.5 * tilt[e][d] * (at[k / 2][e] + at[(k + 1) / 2 % 3][e]);
+    }
+    add_node(&c, x[0], x[1], x[2]);
+  }
+  for (int k = 0; k < 6; k += 2) add_face(&c, 0, 1 + k, 1 + (k + 2) % 6);
+  for (int k = 0; k < 6; ++k) add_face(&c, 0, 1 + (k + 1) % 6, 1 + k);
+  add_contact(&c, "FIN", 0, 9);
   ck_assert_int_eq(build(&c), ERR_DECK);
-  ck_assert_int_eq(said(&c, "P4008"), 2);
+  ck_assert_int_eq(said(&c, "no outward normal at node 1000"), 1);
   scene_free(&c);
+}
+END_TEST
+
+/* A disc in a bush, its segments of angles 2a and 2b in turn: the mean normal
+ * of a node is orthogonal to the line through its neighbours, b - a off the
+ * radius. */
+START_TEST(turned_normals_of_a_disc_in_a_bush_are_told) {
+  enum { K = 24 };
+  const double pi = acos(-1);
+  for (int of_obstacle = 0; of_obstacle < 2; ++of_obstacle)
+    for (int uneven = 0; uneven < 2; ++uneven) {
+      scene c;
+      char text[32];
+      double off = uneven * 0.0625 * pi / K;
+      scene_init(&c, 2);
+      for (int i = 0; i < K; ++i) {
+        double angle = 2 * pi * i / K + off * (i % 2 ? 1 : -1);
+        add_node(&c, cos(angle), sin(angle), 0);
+      }
+      for (int i = 0; i < K; ++i) add_face(&c, i, (i + 1) % K, 0);
+      add_contact(&c, "DISC", 0, K);
+      c.support[0] = (obstacle){
+          .name = "BUSH", .shape = OBSTACLE_CYLINDER, .inside = 1, .radius = 1};
+      c.pair[0].obstacle_normal = of_obstacle;
+      ck_assert_int_eq(build(&c), OK);
+      snprintf(text, sizeof text, "up to %.2g rad", 2 * off);
+      ck_assert_int_eq(said(&c, text), uneven && !of_obstacle);
+      ck_assert_int_eq(said(&c, "P4018"), uneven && !of_obstacle);
+      scene_free(&c);
+    }
 }
 END_TEST
 
@@ -750,6 +792,8 @@ UNIT_MAIN("surface", areas_of_a_polyline_are_half_sums_times_thickness,
           corner_moves_with_both_obstacles,
           nodes_that_a_moving_obstacle_may_reach_stay,
           groups_that_are_no_boundary_are_refused,
-          fin_without_thickness_has_no_normal, sphere_off_the_axis_is_refused,
+          fin_without_thickness_has_no_normal,
+          turned_normals_of_a_disc_in_a_bush_are_told,
+          sphere_off_the_axis_is_refused,
           lengths_times_a_power_of_two_scale_every_bit,
           refused_memory_is_reported_and_given_back)
