@@ -14,12 +14,17 @@ packages := gcc make pkg-config libsuitesparse-dev libopenblas-dev \
 pc       := hdf5-serial check
 
 # Packages first: the variables below ask pkg-config.
-missing  := $(shell for p in $(packages); do \
+dpkg     := $(shell command -v dpkg-query 2>/dev/null)
+missing  := $(if $(dpkg),$(shell for p in $(packages); do \
               dpkg-query -W -f='$${Status}\n' $$p 2>/dev/null | \
-              grep -q 'ok installed' || echo $$p; done)
+              grep -q 'ok installed' || echo $$p; done))
+# Where there is no dpkg: what the compiler must find.
+headers  := cholmod.h umfpack.h lapacke.h cblas.h hdf5.h gmshc.h check.h
 
+march    := $(if $(filter x86_64-%,$(shell $(CC) -dumpmachine 2>/dev/null)),\
+              -march=x86-64-v2)
 warnings := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
-optimise_release := -O3 -march=x86-64-v2 -g1 -fno-math-errno
+optimise_release := -O3 $(march) -g1 -fno-math-errno
 optimise_debug   := -O0 -g3
 optimise_asan    := -O1 -g2 -fsanitize=address,undefined \
                     -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -99,6 +104,13 @@ ifneq ($(missing),)
 	  $$s apt-get update -qq && DEBIAN_FRONTEND=noninteractive \
 	  $$s apt-get install -y -qq --no-install-recommends $(missing) \
 	  > /dev/null || { echo "cannot install: $(missing)" >&2; exit 1; }
+endif
+ifeq ($(dpkg),)
+	@none=; for h in $(headers); do \
+	  echo "#include <$$h>" | $(CC) $(CPPFLAGS) -E - \
+	    > /dev/null 2>&1 || none="$$none $$h"; done; \
+	[ -z "$$none" ] || { echo "missing:$$none; install the libraries they" \
+	  "belong to (Debian: $(packages))" >&2; exit 1; }
 endif
 
 $(out)/%.o: %.c Makefile
