@@ -4,8 +4,11 @@
 #include "command.h"
 
 #include "base/memory.h"
-#include "base/message.h"
+#include "base/number.h"
+#include "fem/fem.h"
 #include "inform.h"
+#include "system/input.h"
+#include "system/limits.h"
 
 #include <getopt.h>
 #include <stdio.h>
@@ -16,6 +19,8 @@
 enum {
   ASK_CHECK = 256,
   ASK_THREADS,
+  ASK_MEMORY,
+  ASK_SAFE,
   ASK_RESTART,
   ASK_QUIET,
   ASK_ESTIMATE,
@@ -34,6 +39,8 @@ static const char *const help_rows[][2] = {
   {"--check", "read and check everything, print sizes and plan, solve nothing"},
   {"--estimate-cost", "what finer meshes and smaller errors would cost"},
   {"--threads N", "threads of the dense algebra, 1 if not said"},
+  {"--max-memory MB", "memory the run may take, in the place of what there is"},
+  {"--safe", "for decks of strangers: no .geo, only files below the deck"},
   {"--no-timing", "no CPU seconds in the files: equal runs give equal bytes"},
   {"--restart", "go on with a run that was interrupted, from JOB.rst.h5"},
   {"--quiet", "no progress line"},
@@ -59,6 +66,8 @@ static const struct option words[] = {
   {"check", no_argument, NULL, ASK_CHECK},
   {"estimate-cost", no_argument, NULL, ASK_ESTIMATE},
   {"threads", required_argument, NULL, ASK_THREADS},
+  {"max-memory", required_argument, NULL, ASK_MEMORY},
+  {"safe", no_argument, NULL, ASK_SAFE},
   {"restart", no_argument, NULL, ASK_RESTART},
   {"quiet", no_argument, NULL, ASK_QUIET},
   {"no-timing", no_argument, NULL, ASK_NO_TIMING},
@@ -122,6 +131,10 @@ static int read_threads(const char *text, command *c) {
   return 1;
 }
 
+static int read_memory(const char *text, command *c) {
+  return number_real(text, &c->max_memory) == NULL && c->max_memory > 0.0;
+}
+
 static const char *long_option(const void *ctx, int i) {
   (void)ctx;
   return words[i].name;
@@ -158,6 +171,26 @@ static int answer(int what, const char *value, const char *given,
   }
 }
 
+/* What an option without value sets to 1, or NULL. */
+static int *switch_of(int what, command *c) {
+  switch (what) {
+    case ASK_CHECK:
+      return &c->check_only;
+    case ASK_SAFE:
+      return &c->safe;
+    case ASK_ESTIMATE:
+      return &c->estimate_cost;
+    case ASK_RESTART:
+      return &c->restart;
+    case ASK_QUIET:
+      return &c->quiet;
+    case ASK_NO_TIMING:
+      return &c->no_timing;
+    default:
+      return NULL;
+  }
+}
+
 /* Option "what" as it was given; -1: go on, else the exit code. */
 static int take_option(int what, const char *value, const char *given,
                        const char *next, command *c) {
@@ -171,26 +204,16 @@ static int take_option(int what, const char *value, const char *given,
         return wrong("-D needs NAME=VALUE, not ", value);
       c->defines[c->n_define++] = value;
       return -1;
-    case ASK_CHECK:
-      c->check_only = 1;
-      return -1;
     case ASK_THREADS:
       if (read_threads(value, c)) return -1;
       return wrong("--threads needs a number from 1 to 1024, not ", value);
-    case ASK_ESTIMATE:
-      c->estimate_cost = 1;
-      return -1;
-    case ASK_RESTART:
-      c->restart = 1;
-      return -1;
-    case ASK_QUIET:
-      c->quiet = 1;
-      return -1;
-    case ASK_NO_TIMING:
-      c->no_timing = 1;
-      return -1;
+    case ASK_MEMORY:
+      if (read_memory(value, c)) return -1;
+      return wrong("--max-memory needs a number of MB above 0, not ", value);
     default:
-      return answer(what, value, given, next);
+      if (switch_of(what, c) == NULL) return answer(what, value, given, next);
+      *switch_of(what, c) = 1;
+      return -1;
   }
 }
 
@@ -249,6 +272,32 @@ int command_read(int argc, char **argv, command *c, int *exit_code) {
   *exit_code = code;
   command_free(c);
   return 0;
+}
+
+/* More threads than cores wait for each other. */
+static void set_threads(int cores, command *c, message_log *log) {
+  int asked = c->threads > 0 ? c->threads : 1;
+  c->threads = asked < cores ? asked : cores;
+  if (c->threads < asked)
+    message_add(log, P5020, NULL,
+                "--threads %d: more than the cores that this process may use",
+                asked);
+  blas_set_threads(c->threads);
+}
+
+status command_apply(command *c, message_log *log) {
+  status st = OK;
+  char *folder = NULL;
+  limits system;
+  limits_read("", &system);
+  set_threads(system.cores, c, log);
+  if (!c->safe) goto done;
+  folder = folder_of(c->deck_file);
+  if (folder == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a folder");
+  TRY(input_confine(folder));
+done:
+  memory_free(folder);
+  return st;
 }
 
 void command_free(command *c) {

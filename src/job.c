@@ -10,9 +10,31 @@
 #include "inform.h"
 #include "keyword/keyword.h"
 #include "restart.h"
+#include "system/input.h"
 
 #include <string.h>
 #include <unistd.h>
+
+static int ends_in(const char *file, const char *end) {
+  size_t n = file != NULL ? strlen(file) : 0, k = strlen(end);
+  return n > k && strcmp(file + n - k, end) == 0;
+}
+
+/* --safe: the mesh is a plain .msh below the deck. */
+static status check_safe_mesh(const model *m) {
+  const char *why = NULL;
+  if (!ends_in(m->mesh_file, ".msh")) {
+    message_add(m->log, P5021, &m->mesh_at,
+                "--safe: the mesh must be a .msh, not \"%s\"", m->mesh_file);
+    return message_status(m->log, ERR_DECK);
+  }
+  int fd = input_open(m->mesh_file, &why);
+  if (fd >= 0) close(fd);
+  if (fd < 0)
+    message_add(m->log, P3001, &m->mesh_at,
+                "mesh file \"%s\" cannot be read: %s", m->mesh_file, why);
+  return message_status(m->log, ERR_FILE);
+}
 
 /* Numbers of the deck go to a .geo under their own names. */
 static status read_mesh(const job_mesh *other, job_input *in) {
@@ -20,6 +42,7 @@ static status read_mesh(const job_mesh *other, job_input *in) {
   const model *m = in->m;
   double cpu = timer_cpu();
   mesh_number *numbers = NULL;
+  if (input_is_confined()) TRY(check_safe_mesh(m));
   NEW(numbers, m->deck->n_symbol);
   for (int i = 0; i < m->deck->n_symbol; ++i) {
     numbers[i].name = m->deck->symbols[i].name;
@@ -76,10 +99,7 @@ done:
   return st;
 }
 
-int job_is_geo(const model *m) {
-  size_t n = m->mesh_file != NULL ? strlen(m->mesh_file) : 0;
-  return n > 4 && strcmp(m->mesh_file + n - 4, ".geo") == 0;
-}
+int job_is_geo(const model *m) { return ends_in(m->mesh_file, ".geo"); }
 
 void job_input_free(job_input *in) {
   exchange_free(in->problem);
@@ -152,7 +172,7 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
       .no_timing = c->no_timing,
       .version = PROTIS_VERSION,
       .kernel = blas_kernel(),
-      .threads = c->threads > 0 ? c->threads : 1,
+      .threads = c->threads,
       .from = from,
       .n_problem = in->problem != NULL ? in->problem->n : 0,
       .progress = !c->quiet && isatty(STDERR_FILENO)};

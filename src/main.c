@@ -87,8 +87,8 @@ int main(int argc, char **argv) {
     interrupt_over();
     return exit_code;
   }
-  if (c.threads > 0) blas_set_threads(c.threads);
   status st = message_log_new(&log);
+  if (st == OK) st = command_apply(&c, log);
   if (st == OK) st = run_job(&c, log, &unsettled);
   exit_code = report(st, log, unsettled);
   message_log_free(log);

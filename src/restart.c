@@ -45,7 +45,7 @@ static void identify(const command *c, const job_input *in, identity *id) {
   memset(id, 0, sizeof *id);
   snprintf(id->version, sizeof id->version, "%s", PROTIS_VERSION);
   snprintf(id->kernel, sizeof id->kernel, "%s", blas_kernel());
-  id->threads = c->threads > 0 ? c->threads : 1;
+  id->threads = c->threads;
   id->no_timing = c->no_timing;
   id->effects = in->m->effects;
   id->mesh = mesh_hash(in->msh);

@@ -227,7 +227,7 @@ function end_block(    i) {
 function begin_file(    path) {
   file = FILENAME
   is_header = file ~ /\.h$/
-  is_base = file ~ /(^|\/)src\/base\//
+  is_base = file ~ /(^|\/)src\/(base|system)\//
   depth = in_comment = in_macro = in_function = guarded = 0
   block = block_comment = 0
   declaration = guard = last_directive = ""

@@ -431,7 +431,13 @@
   X(5003, ERROR, "end of another run cannot be the start",                   \
     "FILE= of *INITIAL CONDITIONS is the JOB.h5 of a run that ended, on the "\
     "same mesh; the name is relative to the deck. Write the results of this "\
-    "run elsewhere if both have one name.")
+    "run elsewhere if both have one name.")                                  \
+  X(5020, WARNING, "more threads than cores",                                \
+    "Threads beyond the cores that affinity and control group leave to the " \
+    "process wait for each other: as many as there are cores are used.")     \
+  X(5021, ERROR, "file that --safe does not read",                           \
+    "With --safe a mesh is a .msh: a .geo is a program and may do what it "  \
+    "likes. Mesh it before, where its author is trusted.")
 /* clang-format on */
 
 #endif

@@ -4,6 +4,7 @@
  */
 #include "base/memory.h"
 #include "deck/reader.h"
+#include "system/input.h"
 
 #include <errno.h>
 #include <string.h>
@@ -148,12 +149,8 @@ static int open_stream(source *s, message_log *log, const place *at) {
   struct stat info;
   place whole = {.file = s->file};
   const char *why = NULL;
-  s->stream = fopen(s->file, "rb");
-  if (s->stream == NULL || fstat(fileno(s->stream), &info) != 0)
-    why = strerror(errno);
-  else if (S_ISDIR(info.st_mode))
-    why = "it is a folder";
-  if (why != NULL) {
+  s->stream = input_stream(s->file, &why);
+  if (s->stream == NULL || fstat(fileno(s->stream), &info) != 0) {
     message_add(log, P1001, at != NULL ? at : &whole, "cannot read %s: %s",
                 s->file, why);
     return -1;

@@ -5,25 +5,35 @@
  */
 #include "base/memory.h"
 #include "exchange/parts.h"
+#include "system/input.h"
 
 #include <limits.h>
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
-static const long MOST_ITEMS = 1L << 30;
 enum {
   MOST_BYTES = 16, /* of one number                                          */
-  MOST_PACKED = 1100 /* times its bytes in the file; deflate reaches 1032    */
+  MOST_PACKED = 1100,  /* times its bytes in the file; deflate reaches 1032   */
+  LARGE_PART = 1 << 20 /* items                                              */
 };
 
-status dataset_open(const char *path, const char *none, hdf5_source *s) {
+/* By the descriptor: the name may have come to mean another file. */
+status dataset_open(const char *path, hdf5_source *s) {
   status st = OK;
+  const char *why = NULL;
+  char name[40];
   *s = (hdf5_source){.path = path, .file = -1};
   H5Eget_auto2(H5E_DEFAULT, &s->print, &s->print_data);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   H5dont_atexit();
-  if (H5Fis_hdf5(path) <= 0) FAIL(ERR_FILE, "%s is %s", path, none);
-  s->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  H5Lunregister(H5L_TYPE_EXTERNAL);
+  s->fd = input_open(path, &why);
+  if (s->fd < 0) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
+  snprintf(name, sizeof name, "/proc/self/fd/%d", s->fd);
+  if (H5Fis_hdf5(name) <= 0)
+    FAIL(ERR_FILE, "%s is no HDF5 file, or cut short", path);
+  s->file = H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (s->file < 0)
     FAIL(ERR_FILE, "%s cannot be read: the HDF5 file is damaged or cut short",
          path);
@@ -33,6 +43,7 @@ done:
 
 void dataset_close(hdf5_source *s) {
   if (s->file >= 0) H5Fclose(s->file);
+  if (s->fd >= 0) close(s->fd);
   H5Eset_auto2(H5E_DEFAULT, s->print, s->print_data);
 }
 
@@ -69,14 +80,56 @@ done:
   return st;
 }
 
+static int may_pack(H5Z_filter_t filter) {
+  return filter == H5Z_FILTER_DEFLATE ||
+         (!input_is_confined() &&
+          (filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_FLETCHER32));
+}
+
+/* Items of the parts that the library unpacks at once; 0: not in parts. */
+static hsize_t part_items(hid_t made) {
+  hsize_t size[H5S_MAX_RANK], items = 1;
+  if (H5Pget_layout(made) != H5D_CHUNKED) return 0;
+  int rank = H5Pget_chunk(made, H5S_MAX_RANK, size);
+  for (int k = 0; k < rank; ++k) items *= size[k];
+  return items;
+}
+
+/* Where the data stand, and what they went through. */
+static status check_storage(const hdf5_source *s, const char *name, hid_t set,
+                            hsize_t items) {
+  status st = OK;
+  hid_t made = H5Dget_create_plist(set);
+  if (made < 0) FAIL(ERR_DECK, "%s: %s is damaged", s->path, name);
+  if (H5Pget_layout(made) == H5D_VIRTUAL || H5Pget_external_count(made) != 0)
+    FAIL(ERR_DECK, "%s: the data of %s stand in other files", s->path, name);
+  hsize_t part = part_items(made);
+  if (part > items && part > LARGE_PART)
+    FAIL(ERR_DECK, "%s: %s has %llu items, but parts of %llu", s->path, name,
+         (unsigned long long)items, (unsigned long long)part);
+  for (int k = 0; k < H5Pget_nfilters(made); ++k) {
+    unsigned flags, info;
+    size_t n = 0;
+    H5Z_filter_t filter =
+        H5Pget_filter2(made, (unsigned)k, &flags, &n, NULL, 0, NULL, &info);
+    if (!may_pack(filter))
+      FAIL(ERR_DECK, "%s: %s is packed by filter %d; only deflate is read",
+           s->path, name, (int)filter);
+  }
+done:
+  if (made >= 0) H5Pclose(made);
+  return st;
+}
+
 /* What a dataset claims to hold must come from the bytes of the file: one that
  * was never written, or is damaged, would be any number of zeros. */
-static status check_extent(const hdf5_source *s, const char *name, hid_t set,
-                           hsize_t items) {
+status dataset_check(const hdf5_source *s, const char *name, hid_t set,
+                     hsize_t items) {
   status st = OK;
   hid_t type = H5Dget_type(set);
   hsize_t size = 0, stored = H5Dget_storage_size(set);
   hsize_t bytes = items * (hsize_t)H5Tget_size(type);
+  TRY(check_storage(s, name, set, items));
   if (H5Fget_filesize(s->file, &size) < 0 || stored > size ||
       bytes / MOST_PACKED > stored)
     FAIL(ERR_DECK, "%s: %s has %llu items, and %llu bytes in the file", s->path,
@@ -89,14 +142,14 @@ done:
 /* The dataset opened, its kind and number of items checked; *set = -1 if it
  * is not there and may be missing. */
 static status open_set(const hdf5_source *s, const char *name, int optional,
-                       int real, hid_t *set, long *n) {
+                       int real, long most, hid_t *set, long *n) {
   status st = OK;
   hid_t space = -1;
   *set = -1;
   *n = 0;
   if (!source_has(s, name)) {
     if (optional) goto done;
-    FAIL(ERR_DECK, "%s: there is no dataset %s", s->path, name);
+    FAIL(ERR_DECK, "%s: there is no dataset %s in this file", s->path, name);
   }
   *set = H5Dopen2(s->file, name, H5P_DEFAULT);
   if (*set < 0)
@@ -104,9 +157,12 @@ static status open_set(const hdf5_source *s, const char *name, int optional,
   TRY(check_type(s, name, real, *set));
   space = H5Dget_space(*set);
   hssize_t items = H5Sget_simple_extent_npoints(space);
-  if (items < 0 || items > MOST_ITEMS)
+  if (items < 0)
     FAIL(ERR_DECK, "%s: %s has a size that cannot be used", s->path, name);
-  TRY(check_extent(s, name, *set, (hsize_t)items));
+  if (items > most)
+    FAIL(ERR_DECK, "%s: %s has %lld items, expected at most %ld", s->path, name,
+         (long long)items, most);
+  TRY(dataset_check(s, name, *set, (hsize_t)items));
   *n = (long)items;
 done:
   if (space >= 0) H5Sclose(space);
@@ -128,12 +184,12 @@ done:
 }
 
 status source_ints(const hdf5_source *s, const char *name, int optional,
-                   long *n, int **value) {
+                   long most, long *n, int **value) {
   status st = OK;
   hid_t set = -1;
   long long *wide = NULL;
   *value = NULL;
-  TRY(open_set(s, name, optional, 0, &set, n));
+  TRY(open_set(s, name, optional, 0, most, &set, n));
   NEW(wide, *n);
   NEW(*value, *n);
   if (*n > 0) TRY(read_set(s, name, set, H5T_NATIVE_LLONG, wide));
@@ -157,7 +213,7 @@ status source_int(const hdf5_source *s, const char *name, int *value) {
   status st = OK;
   long n = 0;
   int *all = NULL;
-  TRY(source_ints(s, name, 0, &n, &all));
+  TRY(source_ints(s, name, 0, MOST_ITEMS, &n, &all));
   if (n != 1)
     FAIL(ERR_DECK, "%s: %s has %ld items, expected one integer", s->path, name,
          n);
@@ -168,11 +224,11 @@ done:
 }
 
 status source_reals(const hdf5_source *s, const char *name, int optional,
-                    long *n, double **value) {
+                    long most, long *n, double **value) {
   status st = OK;
   hid_t set = -1;
   *value = NULL;
-  TRY(open_set(s, name, optional, 1, &set, n));
+  TRY(open_set(s, name, optional, 1, most, &set, n));
   NEW(*value, *n);
   if (*n > 0) TRY(read_set(s, name, set, H5T_NATIVE_DOUBLE, *value));
   for (long k = 0; k < *n; ++k)

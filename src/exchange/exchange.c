@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "exchange/parts.h"
+#include "system/input.h"
 
 #include <errno.h>
 #include <string.h>
@@ -17,9 +18,10 @@ static const unsigned char SIGNATURE[8] = {0x89, 'H',  'D',  'F',
 static status type_of(const char *path, exchange_type *type) {
   status st = OK;
   unsigned char start[sizeof SIGNATURE];
+  const char *why = NULL;
+  FILE *f = input_stream(path, &why);
+  if (f == NULL) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
   errno = 0;
-  FILE *f = fopen(path, "rb");
-  if (f == NULL) TRY(text_failed(path, "open", errno));
   size_t n = fread(start, 1, sizeof start, f);
   if (ferror(f)) TRY(text_failed(path, "read", errno));
   if (*type == EXCHANGE_BY_CONTENT)

@@ -58,7 +58,7 @@ static status read_vector(const hdf5_source *s, const char *name, int n,
                           double **value) {
   status st = OK;
   long items = 0;
-  TRY(source_reals(s, name, n == 0, &items, value));
+  TRY(source_reals(s, name, n == 0, n, &items, value));
   if (items != n)
     FAIL(ERR_DECK, "%s: %s has %ld items, expected %d", s->path, name, items,
          n);
@@ -461,7 +461,7 @@ done:
 status fclib_read(const char *path, exchange_problem *p) {
   status st = OK;
   hdf5_source s;
-  TRY(dataset_open(path, "no HDF5 file, or cut short", &s));
+  TRY(dataset_open(path, &s));
   TRY(read_source(&s, p));
 done:
   dataset_close(&s);

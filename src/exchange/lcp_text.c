@@ -7,6 +7,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "exchange/parts.h"
+#include "system/input.h"
 
 #include <errno.h>
 #include <math.h>
@@ -36,7 +37,8 @@ static int next_char(words *w) {
   return c;
 }
 
-/* The next word; empty at the end of the file. */
+/* The next word; empty at the end of the file. Messages show none: the file may
+ * be another one than is meant. */
 static status next_word(words *w, char word[WORD]) {
   status st = OK;
   int c, n = 0;
@@ -65,8 +67,8 @@ static status next_real(words *w, const char *what, int row, double *value) {
     FAIL(ERR_DECK, "%s: the file ends in %s %d", w->path, what, row);
   const char *wrong = number_real(word, value);
   if (wrong != NULL)
-    FAIL(ERR_DECK, "%s:%d: %s %d: %s is %s", w->path, w->word_line_no, what,
-         row, word, wrong);
+    FAIL(ERR_DECK, "%s:%d: %s %d is %s", w->path, w->word_line_no, what, row,
+         wrong);
 done:
   return st;
 }
@@ -77,19 +79,18 @@ static status read_size(words *w, int *n) {
   TRY(next_word(w, word));
   const char *wrong = number_int(word, n);
   if (wrong != NULL || *n < 0 || *n > MOST_UNKNOWNS)
-    FAIL(ERR_DECK,
-         "%s: starts with '%s'; expected the number of unknowns, 0 to %d",
-         w->path, word, (int)MOST_UNKNOWNS);
+    FAIL(ERR_DECK, "%s: expected at its start the number of unknowns, 0 to %d",
+         w->path, (int)MOST_UNKNOWNS);
 done:
   return st;
 }
 
-/* The file is long enough for n unknowns; before room is made for them. A pipe
- * has no length and is read as far as it goes. */
+/* The file is long enough for n unknowns; before room is made for them. */
 static status check_length(words *w, int n) {
   status st = OK;
   const long here = ftell(w->f);
-  if (here < 0 || fseek(w->f, 0, SEEK_END) != 0) goto done;
+  if (here < 0 || fseek(w->f, 0, SEEK_END) != 0)
+    TRY(text_failed(w->path, "read", errno));
   const long left = ftell(w->f) - here, m = n;
   if (left < 2 * m * (m + 1) - 1)
     FAIL(ERR_DECK,
@@ -120,18 +121,20 @@ static status read_numbers(words *w, exchange_problem *p) {
     TRY(next_real(w, "q, item", (int)i + 1, &p->load[i]));
   TRY(next_word(w, word));
   if (word[0] != '\0')
-    FAIL(ERR_DECK, "%s:%d: %s follows the last item of q; expected %d numbers",
-         w->path, w->word_line_no, word, p->n * (p->n + 1) + 1);
+    FAIL(ERR_DECK,
+         "%s:%d: more follows the last item of q; expected %d numbers", w->path,
+         w->word_line_no, p->n * (p->n + 1) + 1);
 done:
   return st;
 }
 
 status lcp_text_read(const char *path, exchange_problem *p) {
   status st = OK;
+  const char *why = NULL;
   words w = {.path = path, .line_no = 1};
+  w.f = input_stream(path, &why);
+  if (w.f == NULL) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
   errno = 0;
-  w.f = fopen(path, "r");
-  if (w.f == NULL) TRY(text_failed(path, "open", errno));
   TRY(read_numbers(&w, p));
 done:
   if (w.f != NULL) fclose(w.f);

@@ -40,9 +40,11 @@ static status group_int(const hdf5_source *s, const char *group,
 static status read_arrays(arrays *a) {
   status st = OK;
   char name[NAME];
-  TRY(source_ints(a->s, name_of(name, a->group, "p"), 1, &a->n_p, &a->p));
-  TRY(source_ints(a->s, name_of(name, a->group, "i"), 1, &a->n_i, &a->i));
-  TRY(source_reals(a->s, name_of(name, a->group, "x"), 1, &a->n_x, &a->x));
+  const long most = MOST_ITEMS;
+  TRY(source_ints(a->s, name_of(name, a->group, "p"), 1, most, &a->n_p, &a->p));
+  TRY(source_ints(a->s, name_of(name, a->group, "i"), 1, most, &a->n_i, &a->i));
+  TRY(source_reals(a->s, name_of(name, a->group, "x"), 1, most, &a->n_x,
+                   &a->x));
 done:
   return st;
 }

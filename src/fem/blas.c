@@ -57,8 +57,10 @@ static const char *best_kernel(int *level) {
 #endif
 }
 
-/* CHOLMOD's parallel regions ask for a fixed number of threads; level 0 makes
- * them run on one. The OpenMP library is looked up, not linked. */
+/* CHOLMOD's parallel regions take OMP_THREADS threads whatever is asked; level
+ * 0 makes them run on one. The OpenMP library is looked up, not linked. */
+enum { OMP_THREADS = 4 };
+
 static void limit_openmp(int levels) {
   union {
     void *object;
@@ -73,16 +75,13 @@ static void limit_openmp(int levels) {
 
 void blas_set_threads(int n) {
   openblas_set_num_threads(n);
-  limit_openmp(n > 1 ? 1 : 0);
+  limit_openmp(n >= OMP_THREADS ? 1 : 0);
 }
 
 void blas_choose_kernel(char **argv) {
   int level;
   const char *best = best_kernel(&level);
-  if (getenv("OPENBLAS_NUM_THREADS") == NULL)
-    blas_set_threads(1);
-  else
-    limit_openmp(0);
+  blas_set_threads(1);
   if (best == NULL || kernel_level(blas_kernel()) >= level) return;
   if (getenv(choice) != NULL || getenv(guard) != NULL) return;
   if (setenv(choice, best, 1) != 0 || setenv(guard, best, 1) != 0) return;

@@ -177,8 +177,8 @@ void eigen_add_force(const domain *d, int n, const int *elem_id,
 void blas_choose_kernel(char **argv);
 const char *blas_kernel(void); /* core name, "SkylakeX"                       */
 int blas_kernel_changed(void); /* 1: mended at start-up                       */
-/* Threads of BLAS and CHOLMOD; blas_choose_kernel sets 1 unless the
- * environment (OPENBLAS_NUM_THREADS) says otherwise. */
+/* Threads of BLAS and CHOLMOD; blas_choose_kernel sets 1. What the environment
+ * says (OPENBLAS_NUM_THREADS and its kind) does not count. */
 void blas_set_threads(int n);
 
 #endif

@@ -5,15 +5,17 @@
 
 #include "base/memory.h"
 #include "exchange/dataset.h"
+#include "system/input.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE = 512, MOST_TAGS = 64 };
+/* Values beyond those of the mesh that a file may have: FOREIGN a node, and
+ * FEW. */
+enum { LINE = 512, MOST_TAGS = 64, FOREIGN = 8, FEW = 100000 };
 
 typedef struct pairs { /* as the file has them                                */
   long n;
@@ -25,6 +27,7 @@ typedef struct reader {
   FILE *f;
   const char *path;
   int binary;
+  long most; /* values                                                       */
 } reader;
 
 static int next_line(reader *r, char line[LINE]) {
@@ -63,6 +66,9 @@ static status read_tags(reader *r, int *n) {
   if (component != 1 || *n < 0)
     FAIL(ERR_DECK, "%s: $NodeData has %d components, one is needed", r->path,
          component);
+  if (*n > r->most)
+    FAIL(ERR_DECK, "%s: $NodeData has %d values, expected at most %ld", r->path,
+         *n, r->most);
 done:
   return st;
 }
@@ -114,14 +120,14 @@ done:
   return st;
 }
 
-static status read_hdf5(const char *path, pairs *p) {
+static status read_hdf5(const char *path, long most, pairs *p) {
   status st = OK;
   hdf5_source s;
   int *number = NULL;
   long n_value = 0;
-  TRY(dataset_open(path, "no HDF5 file, or cut short", &s));
-  TRY(source_ints(&s, "/node_no", 0, &p->n, &number));
-  TRY(source_reals(&s, "/temperature", 0, &n_value, &p->value));
+  TRY(dataset_open(path, &s));
+  TRY(source_ints(&s, "/node_no", 0, most, &p->n, &number));
+  TRY(source_reals(&s, "/temperature", 0, most, &n_value, &p->value));
   if (n_value != p->n)
     FAIL(ERR_DECK, "%s: /node_no has %ld items, /temperature %ld", path, p->n,
          n_value);
@@ -180,15 +186,15 @@ status nodal_field_read(const char *path, const mesh *msh, double **value) {
   static const char signature[8] = "\211HDF\r\n\032\n";
   char first[8] = "";
   pairs p = {0};
-  reader r = {.path = path};
+  const char *why = NULL;
+  reader r = {.path = path, .most = FEW + (1L + FOREIGN) * msh->n_node};
   *value = NULL;
-  r.f = fopen(path, "rb");
-  if (r.f == NULL)
-    FAIL(ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+  r.f = input_stream(path, &why);
+  if (r.f == NULL) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
   int hdf5 = fread(first, 1, 8, r.f) == 8 && memcmp(first, signature, 8) == 0;
   rewind(r.f);
   if (hdf5)
-    TRY(read_hdf5(path, &p));
+    TRY(read_hdf5(path, r.most, &p));
   else
     TRY(read_gmsh(&r, &p));
   NEW(*value, msh->n_node);

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 
+enum { MOST_RECORDS = 99999 };
 static const double SAME_PLACE = 1e-9; /* -, of the size of the mesh          */
 
 /* Items of a node in a dataset of n numbers: at least dim of them. */
@@ -31,7 +32,7 @@ static status check_mesh(const hdf5_source *s, const mesh *msh) {
   double *x = NULL;
   size_t width, dim = (size_t)msh->dim;
   long n = 0;
-  TRY(source_reals(s, name, 0, &n, &x));
+  TRY(source_reals(s, name, 0, 3L * msh->n_node, &n, &x));
   TRY(width_of(s, name, n, msh, &width));
   for (size_t i = 0; i < (size_t)msh->n_node; ++i)
     for (size_t c = 0; c < width; ++c) {
@@ -55,11 +56,11 @@ static status read_last(const hdf5_source *s, const mesh *msh, double *u,
   double *time = NULL, *all = NULL;
   size_t width, dim = (size_t)msh->dim;
   long n = 0, items = 0;
-  TRY(source_reals(s, "/fields/time", 0, &n, &time));
+  TRY(source_reals(s, "/fields/time", 0, MOST_RECORDS, &n, &time));
   if (n < 1) FAIL(ERR_DECK, "%s has no record of fields", s->path);
   *t = time[n - 1];
   snprintf(name, sizeof name, "/fields/u/%05ld", n);
-  TRY(source_reals(s, name, 0, &items, &all));
+  TRY(source_reals(s, name, 0, 3L * msh->n_node, &items, &all));
   TRY(width_of(s, name, items, msh, &width));
   for (size_t i = 0; i < (size_t)msh->n_node; ++i)
     for (size_t c = 0; c < dim; ++c) u[dim * i + c] = all[width * i + c];
@@ -73,7 +74,7 @@ status end_state_read(const char *path, const mesh *msh, const place *at,
                       message_log *log, double *u, double *t) {
   status st = OK;
   hdf5_source s;
-  TRY(dataset_open(path, "not there or no HDF5 file", &s));
+  TRY(dataset_open(path, &s));
   TRY(check_mesh(&s, msh));
   TRY(read_last(&s, msh, u, t));
 done:

@@ -65,6 +65,7 @@
     hid_t c), (f, s, a, b, c))                                                \
   X(H5Gopen2, hid_t, -1, (hid_t f, const char *s, hid_t a), (f, s, a))        \
   X(fopen, FILE *, NULL, (const char *p, const char *m), (p, m))              \
+  X(fdopen, FILE *, NULL, (int fd, const char *m), (fd, m))                   \
   X(open_memstream, FILE *, NULL, (char **p, size_t *n), (p, n))              \
   X(fsync, int, -1, (int f), (f))                                             \
   X(fflush, int, EOF, (FILE *f), (f))                                         \

@@ -220,8 +220,8 @@ START_TEST(wrong_files_are_refused) {
     const char *name, *file, *says;
     int n, code;
   } cases[] = {{"other", "first.h5", "has another mesh", 5, 2},
-               {"other", "nothing.h5", "is not there or no HDF5 file", 4, 4},
-               {"other", "other.geo", "is not there or no HDF5 file", 4, 4},
+               {"other", "nothing.h5", "No such file", 4, 4},
+               {"other", "other.inp", "is no HDF5 file", 4, 4},
                {"first", "first.h5", "would overwrite", 4, 2}};
   job j = job_begin("first");
   ck_assert_int_eq(write_and_run(&j, 4, "", STEP("*DSLOAD\nTOP, P, 10.\n")), 0);

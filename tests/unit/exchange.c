@@ -598,11 +598,11 @@ START_TEST(numbers_that_are_not_in_the_file_are_refused) {
   const hsize_t n[1] = {(hsize_t)1 << 27};
   enter();
   fclib_local(path, STORE_ROWS, 2, 1, W, q, mu);
-  replace("/fclib_local/vectors/q", 1, -1, 0);
+  replace("/fclib_local/W/x", 1, -1, 0);
   hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
   hid_t space = H5Screate_simple(1, n, NULL);
-  hid_t set = H5Dcreate2(file, "/fclib_local/vectors/q", H5T_NATIVE_DOUBLE,
-                         space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t set = H5Dcreate2(file, "/fclib_local/W/x", H5T_NATIVE_DOUBLE, space,
+                         H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   ck_assert(set >= 0);
   H5Dclose(set);
   H5Sclose(space);
@@ -610,7 +610,7 @@ START_TEST(numbers_that_are_not_in_the_file_are_refused) {
   const size_t before = memory_allocated();
   answer a = read_as(EXCHANGE_FCLIB);
   ck_assert_int_eq(a.st, ERR_DECK);
-  ck_assert_msg(strstr(a.text, "q has 134217728 items, and 0 bytes") != NULL,
+  ck_assert_msg(strstr(a.text, "x has 134217728 items, and 0 bytes") != NULL,
                 "%s", a.text);
   ck_assert_uint_lt(memory_allocated() - before, 1 << 20);
   leave();

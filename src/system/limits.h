@@ -1,0 +1,18 @@
+/*
+ * What the system lets this process have: cores and memory.
+ */
+#ifndef PROTIS_SYSTEM_LIMITS_H
+#define PROTIS_SYSTEM_LIMITS_H
+
+typedef struct limits {
+  int cores;       /* of the affinity and the quota of the control groups     */
+  double memory;   /* bytes that can still be taken; INFINITY: unknown        */
+  const char *who; /* whose limit that is, for messages                       */
+} limits;
+
+/* root: "", or a folder that stands for the root of the file system (tests). */
+void limits_read(const char *root, limits *l);
+/* Bytes of memory this process holds now (resident); 0: unknown. */
+double limits_held(void);
+
+#endif
