@@ -28,6 +28,7 @@ struct given_form {
   double *L;       /* [n*n] Cholesky factor of A_gg, lower                    */
   double *Y;       /* [n*m] inv(L) A_gc, zero in the columns of g             */
   double *f, *gap; /* [m], [number of nodes]                                  */
+  double *met;     /* [number of nodes] gaps closed at g by the answer, m     */
   double *y;       /* [n] inv(L) (f_g - F)                                    */
   double *force;   /* [n] F, N                                                */
   double *g0;      /* [number of nodes] N                                     */
@@ -45,6 +46,7 @@ void given_form_free(given_form *g) {
   memory_free(g->Y);
   memory_free(g->f);
   memory_free(g->gap);
+  memory_free(g->met);
   memory_free(g->y);
   memory_free(g->force);
   memory_free(g->g0);
@@ -62,6 +64,7 @@ static status new_arrays(const contact_problem *cp, given_form *g) {
   NEW(g->Y, n * m);
   NEW(g->f, m);
   NEW(g->gap, cp->n);
+  NEW(g->met, cp->n);
   NEW(g->y, n);
   NEW(g->force, n);
   NEW(g->g0, cp->n);
@@ -206,10 +209,11 @@ void given_form_apply(given_form *g, contact_problem *cp, double *u,
               1.0, g->y, 1);
   cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, g->n, g->L,
               g->n, g->y, 1);
+  memmove(g->met, cp->gap, (size_t)cp->n * sizeof *g->met);
   for (int k = 0; k < g->n; ++k) {
     size_t row = normal(g, k);
-    u[row] = g->gap[g->node[k]] = g->y[k];
+    u[row] = g->met[g->node[k]] = g->y[k];
     r[row] = -g->force[k];
   }
-  cp->gap = g->gap;
+  cp->gap = g->met;
 }

@@ -200,9 +200,9 @@ START_TEST(slip_in_space_is_opposite_to_the_drag) {
 }
 END_TEST
 
-/* Given on the left half of the foot, unilateral with friction on the right:
- * each keeps its own condition. */
-START_TEST(given_beside_unilateral) {
+/* Given on the left half of the foot (JET), a contact with friction on the
+ * right (FOOT). */
+static job run_halves(const char *floor, const char *law) {
   job j = job_begin("halves");
   job_write(&j, "halves.geo",
             "h = 0.125;\nPoint(1)={0,0,0,h};Point(2)={.5,0,0,h};"
@@ -214,20 +214,27 @@ START_TEST(given_beside_unilateral) {
   job_write(&j, "halves.inp",
             "*MESH, FILE=halves.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*OBSTACLE, NAME=O, TYPE=%s\n"
             "*CONTACT, NAME=A, GROUP=JET, OBSTACLE=O\n"
             "*CONTACT, NAME=B, GROUP=FOOT, OBSTACLE=O\n"
             "*FRICTION, CONTACT=A, LAW=COULOMB\n0.4\n"
-            "*FRICTION, CONTACT=B, LAW=COULOMB\n0.2\n"
+            "*FRICTION, CONTACT=B, LAW=%s\n0.2\n"
             "*CONTACT FORCE, CONTACT=A\n\"3+x\"\n*STEP\n*QUASISTATIC\n"
             "0.25, 1.\n*BOUNDARY\nTOP, 2, 2, -0.01\nTOP, 1, 1, 0.02\n"
-            "*PRINT, CONTACT, ENERGY\n*END STEP\n");
-  ck_assert_int_eq(job_run(&j, ""), 0);
-  dat c = job_table(&j, "CONTACT", -1), e = job_table(&j, "ENERGY", -1);
-  int given = 0;
+            "*PRINT, CONTACT, ENERGY\n*END STEP\n",
+            floor, law);
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  return j;
+}
+
+/* Each half of block k keeps its own condition; |f_t| is checked by the limit
+ * printed. How many nodes of FOOT touch. */
+static int check_halves(const job *j, int k) {
+  dat c = job_table(j, "CONTACT", k), e = job_table(j, "ENERGY", k);
+  int given = 0, touching = 0;
   for (int i = 0; i < c.n_row; ++i) {
-    double x = dat_at(&c, i, "x"), mu = x > 0.51 ? 0.2 : 0.4;
-    double n = dat_at(&c, i, "f_n"), gap = dat_at(&c, i, "gap");
+    double x = dat_at(&c, i, "x"), n = dat_at(&c, i, "f_n");
+    double gap = dat_at(&c, i, "gap");
     if (x < 0.51) {
       ++given;
       ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), 3 + x, 1e-10);
@@ -235,13 +242,38 @@ START_TEST(given_beside_unilateral) {
       ck_assert_double_ge(n, 0.0);
       ck_assert_double_ge(gap, -1e-12);
       ck_assert_double_le(n * gap, 1e-10);
+      touching += n > 0;
     }
-    ck_assert_double_le(fabs(dat_at(&c, i, "f_t")), mu * n + 1e-9);
+    ck_assert_double_le(fabs(dat_at(&c, i, "f_t")),
+                        dat_at(&c, i, "limit") + 1e-9);
   }
   ck_assert_int_gt(given, 3);
   ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
   dat_free(&c);
   dat_free(&e);
+  return touching;
+}
+
+START_TEST(given_beside_unilateral) {
+  job j = run_halves("CONFORMING", "COULOMB");
+  check_halves(&j, -1);
+  dat c = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < c.n_row; ++i) {
+    double mu = dat_at(&c, i, "x") > 0.51 ? 0.2 : 0.4;
+    ck_assert_double_le(fabs(dat_at(&c, i, "f_t")),
+                        mu * dat_at(&c, i, "f_n") + 1e-9);
+  }
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+/* The zone of friction is found by solving again: with the same gaps. */
+START_TEST(given_beside_a_zone_that_grows) {
+  job j = run_halves("GAP\n\"0.04*(x - 0.5)^2\"",
+                     "NONLOCAL, RADIUS=0.3, ZONE=CONTACT");
+  int first = check_halves(&j, 0), last = check_halves(&j, -1);
+  ck_assert_int_lt(first, last);
   job_end(&j);
 }
 END_TEST
@@ -267,4 +299,4 @@ UNIT_MAIN("given force", slip_under_a_given_force_by_every_method,
           stick_under_a_given_force, given_force_without_friction,
           pressures_of_contact_given_back,
           slip_in_space_is_opposite_to_the_drag, given_beside_unilateral,
-          unheld_body_is_refused)
+          given_beside_a_zone_that_grows, unheld_body_is_refused)
