@@ -46,15 +46,16 @@ static void orthonormalise(int m, int n, double *R) {
   }
 }
 
-/* L[m*m]: A scaled by "power"; lost. */
-static status find_modes(const contact_problem *cp, double power, double *L,
-                         anchor *an) {
+status anchor_modes(const contact_problem *cp, anchor *an) {
   status st = OK;
   int *pivot = NULL, m = cp->m, rank = 0;
-  double *work = NULL;
+  double *work = NULL, *L = NULL, power = dense_power(m, cp->A);
+  size_t size = (size_t)m * (size_t)m;
+  if (an->R != NULL) return OK;
   NEW(pivot, m);
   NEW(work, 2 * m);
-  for (size_t i = 0; i < (size_t)m * (size_t)m; ++i) L[i] = power * cp->A[i];
+  NEW(L, size);
+  for (size_t i = 0; i < size; ++i) L[i] = power * cp->A[i];
   LAPACKE_dpstrf_work(LAPACK_COL_MAJOR, 'L', m, L, m, pivot, &rank,
                       m * NULL_PIVOT, work);
   an->n_mode = m - rank;
@@ -66,6 +67,7 @@ static status find_modes(const contact_problem *cp, double power, double *L,
 done:
   memory_free(pivot);
   memory_free(work);
+  memory_free(L);
   return st;
 }
 
@@ -98,7 +100,7 @@ status anchor_make(const contact_problem *cp, anchor *an) {
   NEW(an->A, m * m);
   NEW(an->W, m * m);
   NEW(an->f, m);
-  TRY(find_modes(cp, dense_power(cp->m, cp->A), an->W, an));
+  TRY(anchor_modes(cp, an));
   for (size_t i = 0; i < m; ++i) an->spring += cp->A[i * (m + 1)] / (double)m;
   an->spring *= SOFT / cp->n;
   TRY(hold(cp, an));

@@ -29,6 +29,8 @@ typedef struct anchor {
       *step; /* [n_mode] place of the springs, last move of the body, m */
 } anchor;
 
+/* The modes R alone, of a problem with its stiffness, if they are not known. */
+status anchor_modes(const contact_problem *cp, anchor *an);
 /* Make it for the matrix of cp, if that has not been tried. */
 status anchor_make(const contact_problem *cp, anchor *an);
 void anchor_free(anchor *an); /* all zero afterwards                         */

@@ -121,12 +121,10 @@ static void note(contact_solver *s, const solver_report *rep,
  * does not fit less. */
 static int weight(const contact_problem *cp, outcome o) {
   if (o == STOPPED_UNFIT) return -1;
-  if (o == STOPPED_RAY) return 2;
   return o == STOPPED_SINGULAR && cp->A != NULL;
 }
 
-/* Which of two failures says more: no equilibrium, then singular, then the
- * lower residual. */
+/* Which of two failures says more: singular, then the lower residual. */
 static int says_more(const contact_problem *cp, const solver_report *a,
                      const solver_report *b) {
   int ra = weight(cp, a->outcome), rb = weight(cp, b->outcome);
@@ -149,9 +147,8 @@ static int is_skipped(const contact_problem *cp, int i) {
 }
 
 /* 1 if no other link is needed: an answer, a proof, or numbers beyond help. */
-static int is_final(const contact_problem *cp, outcome o) {
-  int proved = o == STOPPED_RAY && cp->B == NULL;
-  return proved || o == CONVERGED || o == STOPPED_NAN;
+static int is_final(outcome o) {
+  return o == CONVERGED || o == STOPPED_RAY || o == STOPPED_NAN;
 }
 
 /* Where an attempt starts and ends: u[m], r[m], and what it reports. */
@@ -269,6 +266,8 @@ static status run_link(contact_solver *s, const contact_problem *cp, int i,
   else
     TRY(attempt_run(s, cp, &a, listener, u, r, rep));
   if (rep->outcome != STOPPED_UNFIT) attempt_judge(s, cp, u, r, rep);
+  if (cp->floating || rep->outcome == STOPPED_RAY)
+    TRY(attempt_prove(s, cp, rep));
   if (i > 0 || rep->outcome != CONVERGED) note(s, rep, &a);
 done:
   return st;
@@ -314,9 +313,10 @@ status auto_solve(contact_solver *s, const contact_problem *cp,
       memcpy(s->best_u, u, bytes);
       memcpy(s->best_r, r, bytes);
     }
-    if (is_final(cp, rep->outcome)) break;
+    if (is_final(rep->outcome)) break;
   }
   if (solved) goto done;
+  TRY(attempt_prove(s, cp, &best));
   memcpy(u, s->best_u, bytes);
   memcpy(r, s->best_r, bytes);
   *rep = best;

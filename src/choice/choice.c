@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/timer.h"
 #include "choice/polish.h"
+#include "choice/proof.h"
 
 #include <limits.h>
 #include <math.h>
@@ -342,6 +343,20 @@ void attempt_judge(const contact_solver *s, const contact_problem *cp,
     rep->outcome = STOPPED_STAGNATION;
 }
 
+status attempt_prove(contact_solver *s, const contact_problem *cp,
+                     solver_report *rep) {
+  status st = OK;
+  if (rep->outcome >= 0 || rep->outcome == STOPPED_NAN) goto done;
+  if (!s->sought) TRY(proof_find(cp, &s->held, &s->proved));
+  s->sought = 1;
+  if (s->proved)
+    rep->outcome = STOPPED_RAY;
+  else if (rep->outcome == STOPPED_RAY)
+    rep->outcome = STOPPED_STAGNATION;
+done:
+  return st;
+}
+
 /* Start without any knowledge: stick, no penetration; r = A u - f. */
 void cold_start(const contact_problem *cp, double *u, double *r) {
   if (cp->A == NULL) {
@@ -405,6 +420,7 @@ status contact_solve(contact_solver *s, const contact_problem *cp,
   status st = OK;
   double start = timer_cpu();
   s->log[0] = '\0';
+  s->sought = s->proved = 0;
   *rep = (solver_report){.outcome = RUNNING};
   s->scale = contact_scale(cp);
   if (known_answer(s, cp, u, r, rep)) goto done;
@@ -415,6 +431,7 @@ status contact_solve(contact_solver *s, const contact_problem *cp,
     attempt a = {s->choice.ops, s->choice.param, PLAIN, s->choice.max_iter};
     TRY(attempt_run(s, cp, &a, listener, u, r, rep));
     attempt_judge(s, cp, u, r, rep);
+    TRY(attempt_prove(s, cp, rep));
   }
   if (rep->outcome == CONVERGED) TRY(polish(s, cp, u, r, rep));
 done:

@@ -32,6 +32,7 @@ struct contact_solver {
   normal_form normal;
   double *best_u, *best_r; /* [m] of the attempt with the lowest residual     */
   double scale;   /* contact_scale of the problem being solved               */
+  int sought, proved; /* a proof that it has no solution                     */
   archive *from;  /* borrowed: what the works are to remember; or NULL        */
   char group[80]; /* in it                                                    */
 };
@@ -55,6 +56,10 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
 /* The verdict: only the residual of the given problem counts. */
 void attempt_judge(const contact_solver *s, const contact_problem *cp,
                    const double *u, const double *r, solver_report *rep);
+/* After a failure: STOPPED_RAY if it is proved that there is no solution
+ * (proof.h), and only then. */
+status attempt_prove(contact_solver *s, const contact_problem *cp,
+                     solver_report *rep);
 /* Start without any knowledge: stick, no penetration; r = A u - f. */
 void cold_start(const contact_problem *cp, double *u, double *r);
 

@@ -168,7 +168,41 @@ START_TEST(every_method_holds_the_body_or_says_that_none_can) {
 }
 END_TEST
 
-UNIT_MAIN("floating", every_method_holds_the_body_or_says_that_none_can,
+/* A square that stands on a corner, loaded above it: it rolls freely, and all
+ * forces are known. */
+START_TEST(body_balanced_on_a_corner_rests) {
+  static const char *const mu[] = {"0.1", "1."};
+  for (int i = 0; i < 4; ++i) {
+    job j = job_begin("corner");
+    job_write(
+        &j, "corner.geo",
+        "Point(1) = {0, 0, 0, 0.25}; Point(2) = {1, 1, 0, 0.25};\n"
+        "Point(3) = {0, 2, 0, 0.25}; Point(4) = {-1, 1, 0, 0.25};\n"
+        "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4};\n"
+        "Line(4) = {4, 1}; Curve Loop(1) = {1, 2, 3, 4};\n"
+        "Plane Surface(1) = {1}; Physical Surface(\"BODY\") = {1};\n"
+        "Physical Curve(\"FOOT\") = {1, 4}; Physical Point(\"TIP\") = 3;\n");
+    job_write(
+        &j, "corner.inp",
+        "*MESH, FILE=corner.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+        "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+        "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+        "*FRICTION, CONTACT=C, LAW=COULOMB\n%s\n*STEP\n*STATIC\n"
+        "*SOLVER, METHOD=%s\n*CLOAD\nTIP, 2, -1.\n*PRINT, TOTALS\n"
+        "*END STEP\n",
+        mu[i % 2], i < 2 ? "NEWTON" : "AUTO");
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    dat t = job_table(&j, "TOTALS", -1);
+    ck_assert_double_eq_tol(dat_at(&t, 0, "force_y"), 1.0, 1e-8);
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("floating", body_balanced_on_a_corner_rests,
+          every_method_holds_the_body_or_says_that_none_can,
           resultants_are_those_of_statics,
           layers_of_any_contrast_weigh_the_same, no_equilibrium_is_a_verdict,
           free_motions_are_named)

@@ -1,0 +1,206 @@
+/*
+ * src/choice/proof.c: no equilibrium is said where an inequality proves it and
+ * only there, by every method, on both sides of the limit.
+ */
+#include "choice/proof.h"
+#include "support/solver_rows.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- bodies -------------------------------------------------------------- */
+
+static void add_spring(contact_case *c, int i, int j, const double *x) {
+  int dim = c->cp.dim, m = c->cp.m;
+  double d[3], length = 0.0;
+  for (int k = 0; k < dim; ++k) {
+    d[k] = x[j * dim + k] - x[i * dim + k];
+    length += d[k] * d[k];
+  }
+  for (int a = 0; a < 2 * dim; ++a)
+    for (int b = 0; b < 2 * dim; ++b) {
+      double sign = a / dim == b / dim ? 1.0 : -1.0;
+      int row = (a < dim ? i : j) * dim + a % dim;
+      int column = (b < dim ? i : j) * dim + b % dim;
+      c->A[row + m * column] += sign * d[a % dim] * d[b % dim] / length;
+    }
+}
+
+/* Row a of the stiffness in the frame of its node. */
+static void turn(contact_case *c, const double *frame) {
+  int dim = c->cp.dim, m = c->cp.m;
+  double *A = calloc((size_t)m * (size_t)m, sizeof *A);
+  for (int a = 0; a < m; ++a)
+    for (int b = 0; b < m; ++b)
+      for (int k = 0; k < dim * dim; ++k)
+        A[a + m * b] +=
+            frame[a * dim + k / dim] * frame[b * dim + k % dim] *
+            c->A[a / dim * dim + k / dim + m * (b / dim * dim + k % dim)];
+  memcpy(c->A, A, sizeof *A * (size_t)m * (size_t)m);
+  free(A);
+}
+
+/* n nodes at random places, all joined; normals off the first axis by up to
+ * "tilt", rad. */
+static contact_case body(int dim, int n, double mu, double tilt,
+                         unsigned long long *seed) {
+  double x[72], frame[216] = {0.0};
+  contact_case c = case_new(dim, n, mu);
+  for (int i = 0; i < n * dim; ++i) x[i] = case_random(seed);
+  for (int i = 0; i < n; ++i) {
+    double a = tilt * (2.0 * case_random(seed) - 1.0);
+    double *f = frame + i * dim * dim;
+    f[0] = f[dim + 1] = cos(a);
+    f[1] = sin(a);
+    f[dim] = -sin(a);
+    f[dim * dim - 1] = dim == 3 ? 1.0 : cos(a);
+    for (int j = i + 1; j < n; ++j) add_spring(&c, i, j, x);
+  }
+  turn(&c, frame);
+  c.cp.floating = 1;
+  return c;
+}
+
+static int is_proved(const contact_case *c) {
+  anchor an = {0};
+  int proved = 0;
+  ck_assert_int_eq(proof_find(&c->cp, &an, &proved), OK);
+  anchor_free(&an);
+  return proved;
+}
+
+/* Forces of the nodes hold the body, though all be at their limit. */
+START_TEST(balanced_load_has_no_proof) {
+  unsigned long long seed = 77;
+  for (int k = 0; k < 400; ++k) {
+    int dim = 2 + k % 2, n = 3 + k % 20;
+    contact_case c = body(dim, n, 0.1 + 0.7 * case_random(&seed), 1.5, &seed);
+    if (k % 4 > 1) case_average(&c, 2, 0.5);
+    for (int i = 0; i < n; ++i) {
+      c.g0[i] = 0.2 * case_random(&seed);
+      c.r[i * dim] = -case_random(&seed);
+      c.f[i * dim] = -c.r[i * dim];
+    }
+    for (int i = 0; i < n; ++i) {
+      double a = 6.3 * case_random(&seed);
+      double g = contact_node_limit(&c.cp, c.r, i);
+      c.f[i * dim + 1] = g * (dim == 3 ? cos(a) : a > 3.0 ? 1.0 : -1.0);
+      if (dim == 3) c.f[i * dim + 2] = g * sin(a);
+    }
+    ck_assert_msg(!is_proved(&c), "%d", k);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* All nodes on one plane, the load at each outside its limit by a little, or
+ * inside, in any direction of the plane. */
+START_TEST(limit_of_friction_is_met_from_both_sides) {
+  static const double off[] = {1e-1, 1e-3, 1e-6, 1e-8};
+  unsigned long long seed = 4;
+  for (int k = 0; k < 64; ++k) {
+    double mu = 0.1 + case_random(&seed), a = 6.3 * case_random(&seed);
+    int dim = 2 + k / 8 % 2, n = 12, outside = k / 4 % 2;
+    contact_case c = body(dim, n, mu, 0.0, &seed);
+    for (int i = 0; i < n; ++i) {
+      c.g0[i] = k < 32 ? 0.0 : 0.1 * i;
+      c.f[i * dim] = 1.0;
+      double g = (1.0 + (outside ? off[k % 4] : -off[k % 4])) * (c.g0[i] + mu);
+      c.f[i * dim + 1] = g * (dim == 3 ? cos(a) : a > 3.0 ? 1.0 : -1.0);
+      if (dim == 3) c.f[i * dim + 2] = g * sin(a);
+    }
+    ck_assert_msg(is_proved(&c) == outside, "%d", k);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* ---- compliances --------------------------------------------------------- */
+
+/* A node that is open, sticks or slips, mu = 0.5. */
+static void plant(double *u, double *r, unsigned long long *seed) {
+  double a = 6.3 * case_random(seed), p = case_random(seed);
+  int state = (int)(3.0 * case_random(seed));
+  double s = state == 2 ? case_random(seed) : 0.0;
+  double T = state == 2 ? 0.5 * p : 0.3 * p;
+  u[0] = state == 0 ? -p : 0.0;
+  u[1] = state == 0 ? p : s * cos(a);
+  u[2] = state == 0 ? a : s * sin(a);
+  r[0] = state == 0 ? 0.0 : -p;
+  r[1] = state == 0 ? 0.0 : -T * cos(a);
+  r[2] = state == 0 ? 0.0 : -T * sin(a);
+}
+
+/* A solution is planted into W of a rank below m, unsymmetric by "share". */
+static contact_case planted(int n, double share, unsigned long long *seed) {
+  contact_case c = case_new(3, n, 0.5);
+  int m = c.cp.m, rank = 1 + m / 2;
+  double *G = calloc((size_t)(m * rank), sizeof *G), *u = c.u, *r = c.r;
+  for (int i = 0; i < m * rank; ++i) G[i] = case_random(seed) - 0.5;
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < m; ++j) {
+      for (int k = 0; k < rank; ++k)
+        c.A[i + m * j] += G[i * rank + k] * G[j * rank + k];
+      c.A[i + m * j] *= 1.0 + share * (case_random(seed) - 0.5);
+    }
+  for (int i = 0; i < n; ++i) plant(u + 3 * i, r + 3 * i, seed);
+  contact_product(m, c.A, r, c.f);
+  for (int i = 0; i < m; ++i) c.f[i] = u[i] - c.f[i];
+  c.cp.W = c.A;
+  c.cp.A = NULL;
+  free(G);
+  return c;
+}
+
+START_TEST(solvable_problem_is_never_said_to_have_no_equilibrium) {
+  const solver_ops *ops;
+  unsigned long long seed = 11;
+  for (int k = 0; k < 60; ++k) {
+    contact_case c = planted(2 + k % 12, k % 2 ? 2e-2 : 1e-3, &seed);
+    ck_assert_double_lt(contact_residual(&c.cp, c.u, c.r), 1e-13);
+    for (int i = 0; solver_row(i, &ops); ++i) {
+      case_cold(&c);
+      solver_report rep = solve_by(ops, &c, 1e-9, c.u, c.r);
+      ck_assert_msg(rep.outcome != STOPPED_RAY && rep.outcome != STOPPED_NAN,
+                    "%s: %d: %s", row_name(ops), k, outcome_text(rep.outcome));
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* A rigid body between two walls that are as far apart as it is thick, but for
+ * a little; it slides along them. */
+START_TEST(body_too_thick_for_its_gap_has_no_equilibrium) {
+  static const double off[] = {1.0, 1e-3, 1e-6, 0.0, -1e-6, -1e-3};
+  const solver_ops *ops;
+  for (int k = 0; k < 12; ++k) {
+    int dim = 2 + k / 6;
+    contact_case c = case_new(dim, 2, 0.3);
+    double thick = off[k % 6];
+    for (int i = 0; i < 2 * dim; ++i)
+      for (int j = 0; j < 2 * dim; ++j)
+        if (i % dim == j % dim)
+          c.A[i + 2 * dim * j] = i % dim == 0 && i != j ? -2.0 : 2.0;
+    c.f[0] = 1.0;
+    c.f[dim] = -1.0 + thick;
+    c.f[1] = c.f[dim + 1] = 0.1;
+    c.cp.W = c.A;
+    c.cp.A = NULL;
+    for (int i = 0; solver_row(i, &ops); ++i) {
+      case_cold(&c);
+      solver_report rep = solve_by(ops, &c, 1e-9, c.u, c.r);
+      ck_assert_msg((rep.outcome == STOPPED_RAY) == (thick > 0.0), "%s: %g: %s",
+                    row_name(ops), thick, outcome_text(rep.outcome));
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
+UNIT_MAIN("proof", balanced_load_has_no_proof,
+          limit_of_friction_is_met_from_both_sides,
+          solvable_problem_is_never_said_to_have_no_equilibrium,
+          body_too_thick_for_its_gap_has_no_equilibrium)
