@@ -13,11 +13,12 @@
  * B in it the system is symmetric (Cholesky), else LU. c is the diagonal of A.
  *
  * The guess for the next step is read off the solution. A pattern that comes
- * back, or no progress, starts the method anew from another guess; on small
- * problems then one state is changed at a time, the least index first (Murty),
- * which ends for every P-matrix. A singular system (nothing holds the body
- * under the guess) is made regular by weak springs for the step; if the final
- * pattern is singular, that is the verdict.
+ * back, or no progress, starts the method anew from another guess (stick, then
+ * that of some sweeps of relaxation); on small problems then one state is
+ * changed at a time, the least index first (Murty), which ends for every
+ * P-matrix. A singular system (nothing holds the body under the guess) is made
+ * regular by weak springs for the step; if the final pattern is singular, that
+ * is the verdict.
  *
  * Where only the compliance is known a step solves for the forces the guess
  * leaves open (compliance.h); a singular system is then the end.
@@ -25,7 +26,8 @@
 #include "base/memory.h"
 #include "newton/compliance.h"
 #include "newton/states.h"
-#include "solver/solver.h"
+#include "solver/local.h"
+#include "solver/single.h"
 
 #include <math.h>
 #include <string.h>
@@ -46,16 +48,19 @@ enum {
   HISTORY = 64,    /* patterns remembered                                   */
   FULL_STEPS = 40, /* of an attempt; more while the residual falls          */
   MOST_STEPS = 1000,
-  PATIENCE = 25,   /* steps without a lower residual                        */
-  SMALL = 400,     /* unknowns: a step costs next to nothing                */
-  MANY_STEPS = 100 /* of an attempt that makes part of the changes          */
+  PATIENCE = 25,    /* steps without a lower residual                        */
+  SMALL = 400,      /* unknowns: a step costs next to nothing                */
+  MANY_STEPS = 100, /* of an attempt that makes part of the changes          */
+  SWEEPS = 100      /* of relaxation before another attempt                  */
 };
+static const double SETTLING = 0.5; /* -, residual a step with springs leaves */
 static const uint64_t DICE_START = 88172645463325252u;
 
 typedef struct newton_work {
   states states;
   newton_system *system;         /* NULL: only the compliance is known        */
   compliance_system *compliance; /* or NULL                                   */
+  node_blocks *blocks;
   best_iterate best;
   uint64_t seen[HISTORY]; /* hashes of the patterns of the attempt           */
 } newton_work;
@@ -66,6 +71,7 @@ static void newton_release(void *work) {
   states_free(&w->states);
   newton_system_free(w->system);
   compliance_system_free(w->compliance);
+  node_blocks_free(w->blocks);
   best_iterate_free(&w->best);
   memory_free(w);
 }
@@ -81,6 +87,7 @@ static status newton_setup(const contact_problem *cp, const void *par,
     TRY(newton_system_new(cp, &w->system));
   else
     TRY(compliance_system_new(cp, &w->compliance));
+  TRY(node_blocks_new(cp, &w->blocks));
   TRY(best_iterate_new(cp->m, &w->best));
   *work = w;
   w = NULL;
@@ -119,6 +126,7 @@ static int met_before(const run *s, int step) {
 /* How an attempt goes. */
 typedef struct course {
   double lowest;      /* residual, -                                      */
+  double before;      /* of the last step                                 */
   int at, best_at;    /* this step, the one of the lowest residual        */
   int changes, cycle; /* states that would change; pattern met before     */
   int settled;        /* the step before was within the tolerance         */
@@ -163,6 +171,13 @@ static int step(const run *s) {
   return newton_system_step(s->w->system, &st->guess, s->u, st->raw);
 }
 
+/* 1: springs bear part of the load, less with each step. */
+static int settles(const run *s, course *c, double residual) {
+  double before = c->before;
+  c->before = residual;
+  return c->changes == 0 && s->singular && residual < SETTLING * before;
+}
+
 /* RUNNING, or why the attempt ends without a solution. In the plane a pattern
  * that comes back is a cycle; in 3-D directions turn while the states stay. */
 static outcome verdict(const run *s, course *c, double residual) {
@@ -191,7 +206,7 @@ static int goes_on(const run *s, const course *c, int limit) {
 
 /* Steps from the present guess until solved, settled, cycling or "limit". */
 static outcome attempt(run *s, int limit) {
-  course c = {.lowest = HUGE_VAL};
+  course c = {.lowest = HUGE_VAL, .before = HUGE_VAL};
   int m = s->cp->m;
   for (c.at = 0; goes_on(s, &c, limit); ++c.at) {
     c.cycle = met_before(s, c.at);
@@ -205,7 +220,7 @@ static outcome attempt(run *s, int limit) {
     solver_tell_states(s->control, "newton", s->steps, residual, c.changes,
                        c.cycle);
     if (solved(s, &c, residual)) return CONVERGED;
-    outcome o = verdict(s, &c, residual);
+    outcome o = settles(s, &c, residual) ? RUNNING : verdict(s, &c, residual);
     if (o != RUNNING) return o;
   }
   return STOPPED_ITERATIONS;
@@ -218,7 +233,19 @@ static void return_to_best(run *s) {
   states_next(s->st, 1);
 }
 
-/* 1: nothing to add. Without B the problem is convex: a ray is a proof. */
+/* The guess after some sweeps of relaxation, each node solved exactly. */
+static void relax(run *s) {
+  relaxation x = {
+      .cp = s->cp, .blocks = s->w->blocks, .u = s->u, .r = s->r, .omega = 1.0};
+  solver_take_best(&s->w->best, s->cp->m, s->u, s->r);
+  relaxation_start(&x);
+  relaxation_refresh(&x);
+  for (int k = 0; k < SWEEPS; ++k) relaxation_sweep(&x, 0);
+  set_raw(s);
+  states_next(s->st, 1);
+}
+
+/* 1: nothing to add; without B the problem is convex. */
 static int final(const run *s, outcome o) {
   return o == CONVERGED || o == STOPPED_NAN || o == STOPPED_SINGULAR ||
          used_up(s) || (o == STOPPED_RAY && s->cp->B == NULL);
@@ -235,7 +262,10 @@ static outcome newton_run(run *s, const newton *p) {
   if (s->control->no_restart || final(s, o)) return o;
   states_all_stick(s->st);
   if (states_hash(s->st) != begun) o = first = attempt(s, limit);
-  if (o == STOPPED_RAY || final(s, o)) return o;
+  if (final(s, o)) return o;
+  relax(s);
+  o = attempt(s, limit);
+  if (final(s, o)) return o;
   return_to_best(s);
   s->st->dice = DICE_START;
   o = attempt(s, many);
@@ -272,8 +302,13 @@ static status newton_solve(const contact_problem *cp, const void *par,
   newton_work *w = work;
   run s = {
       .cp = cp, .w = w, .st = &w->states, .control = control, .u = u, .r = r};
-  *rep = (solver_report){.outcome = RUNNING};
+  *rep = (solver_report){.outcome = CONVERGED, .iterations = 1};
   begin(&s);
+  if (cp->n == 1 &&
+      single_solve(cp, w->states.scale, control->tol, u, r, &rep->residual)) {
+    solver_tell(control, "newton", 1, rep->residual);
+    return OK;
+  }
   rep->outcome = newton_run(&s, par);
   if (rep->outcome != CONVERGED && used_up(&s))
     rep->outcome = STOPPED_ITERATIONS;
@@ -303,10 +338,11 @@ const solver_ops newton_solver = {
     "2 to 4 from a warm start, to full accuracy, whatever the size. The\n"
     "factor is kept as long as exchanging the rows that change costs less\n"
     "than a new one, from increment to increment too. If a pattern of states\n"
-    "comes back the method starts anew from another guess. Where only the\n"
-    "compliance is known the unknowns of a step are the forces of the closed\n"
-    "nodes; no inverse is made, but the compliance must have one. The first\n"
-    "choice for all but very large problems and large friction.",
+    "comes back the method starts anew from another guess, one of them made\n"
+    "by sweeps of relaxation. A single node is solved directly. Where only\n"
+    "the compliance is known the unknowns of a step are the forces of the\n"
+    "closed nodes; no inverse is made, but the compliance must have one. The\n"
+    "first choice for all but very large problems and large friction.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              REGULAR_COMPLIANCE | SOLVES_FLOATING,
   .param_size = sizeof(newton),

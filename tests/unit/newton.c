@@ -114,6 +114,40 @@ START_TEST(front_of_slip_is_found_from_the_compliance) {
 }
 END_TEST
 
-UNIT_MAIN("newton", front_of_slip_is_followed_to_its_end,
-          front_goes_on_from_where_it_was,
+/* Few nodes in space that yield fifty times more in one tangent than in the
+ * other; a solution is planted. */
+START_TEST(nodes_of_uneven_tangents_do_not_cycle) {
+  static const double size[] = {0.114, 0.327, 0.047};
+  unsigned long long seed = 21;
+  for (int k = 0; k < 400; ++k) {
+    int n = 1 + k % 4, m = 3 * n;
+    contact_case c = case_new(3, n, 0.7);
+    double G[144], *r = c.r;
+    for (int i = 0; i < m * m; ++i)
+      G[i] = size[i / m % 3] * ((i % (m + 1) == 0) + case_random(&seed) - 0.5);
+    for (int i = 0; i < m * m; ++i)
+      for (int j = 0; j < m; ++j) c.A[i] += G[i / m * m + j] * G[i % m * m + j];
+    for (int i = 0; i < n; ++i) {
+      double a = 6.3 * case_random(&seed), p = 0.1 + case_random(&seed);
+      r[3 * i] = -p;
+      r[3 * i + 1] = -0.7 * p * cos(a);
+      r[3 * i + 2] = -0.7 * p * sin(a);
+    }
+    contact_product(m, c.A, r, c.u);
+    for (int i = 0; i < m; ++i)
+      c.f[i] = (i % 3 == 0 ? 0.0 : -0.01 * r[i]) - c.u[i];
+    c.cp.W = c.A;
+    c.cp.A = NULL;
+    memset(c.u, 0, sizeof *c.u * (size_t)m);
+    memset(r, 0, sizeof *r * (size_t)m);
+    solver_report rep = solve(&c);
+    ck_assert_msg(rep.outcome == CONVERGED, "%d: %s, %g", k,
+                  outcome_text(rep.outcome), rep.residual);
+    case_free(&c);
+  }
+}
+END_TEST
+
+UNIT_MAIN("newton", nodes_of_uneven_tangents_do_not_cycle,
+          front_of_slip_is_followed_to_its_end, front_goes_on_from_where_it_was,
           front_of_slip_is_found_from_the_compliance)
