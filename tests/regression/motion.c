@@ -5,6 +5,7 @@
  */
 #include "support/grid.h"
 #include "support/job.h"
+#include "support/turned_mesh.h"
 #include "support/unit.h"
 
 #include <math.h>
@@ -146,73 +147,17 @@ END_TEST
 
 /* ---- scenes turned as a whole -------------------------------------------- */
 
-/* v = R v for the axis a (unit) and the angle. */
-static void rotate(const double a[3], double angle, double v[3]) {
-  double w[3], along = a[0] * v[0] + a[1] * v[1] + a[2] * v[2];
-  for (int c = 0; c < 3; ++c) {
-    int d = (c + 1) % 3, e = (c + 2) % 3;
-    w[c] = cos(angle) * v[c] + sin(angle) * (a[d] * v[e] - a[e] * v[d]) +
-           (1 - cos(angle)) * along * a[c];
-  }
-  memcpy(v, w, sizeof w);
-}
-
-typedef struct turn {
-  double axis[3], angle;
-} turn;
-
-static void write_items(FILE *f, int type, int tag, int corners, int n,
-                        const int *node, int *no) {
-  for (int i = 0; i < n; ++i) {
-    fprintf(f, "%d %d 2 %d %d", ++*no, type, tag, tag);
-    for (int k = 0; k < corners; ++k)
-      fprintf(f, " %d", node[corners * i + k] + 1);
-    fputc('\n', f);
-  }
-}
-
-/* A grid with its groups BODY, FOOT and HEAD, turned, as JOB.msh. */
-static void write_mesh(const job *j, const mesh *m, const turn *t) {
-  char path[128];
-  int no = 0, dim = m->dim;
-  const mesh_group *foot = mesh_find_group(m, dim == 3 ? "FRONT" : "BOTTOM");
-  const mesh_group *head = mesh_find_group(m, dim == 3 ? "BACK" : "TOP");
-  snprintf(path, sizeof path, "%s/turned.msh", j->dir);
-  FILE *f = fopen(path, "w");
-  ck_assert_ptr_nonnull(f);
-  fprintf(f,
-          "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n"
-          "%d 1 \"FOOT\"\n%d 2 \"HEAD\"\n%d 3 \"BODY\"\n$EndPhysicalNames\n"
-          "$Nodes\n%d\n",
-          dim - 1, dim - 1, dim, m->n_node);
-  for (int i = 0; i < m->n_node; ++i) {
-    double x[3] = {0, 0, 0};
-    memcpy(x, m->x + dim * i, (size_t)dim * sizeof *x);
-    rotate(t->axis, t->angle, x);
-    fprintf(f, "%d %.17g %.17g %.17g\n", i + 1, x[0], x[1], x[2]);
-  }
-  fprintf(f, "$EndNodes\n$Elements\n%d\n",
-          foot->n_item + head->n_item + m->n_elem);
-  for (int k = 0; k < foot->n_item; ++k)
-    write_items(f, dim - 1, 1, dim, 1, m->face + dim * foot->item_id[k], &no);
-  for (int k = 0; k < head->n_item; ++k)
-    write_items(f, dim - 1, 2, dim, 1, m->face + dim * head->item_id[k], &no);
-  write_items(f, dim == 3 ? 4 : 2, 3, dim + 1, m->n_elem, m->elem, &no);
-  fprintf(f, "$EndElements\n");
-  ck_assert_int_eq(fclose(f), 0);
-}
-
 /* The obstacle below: rises by 0.01, then runs once round a circle (2-D: to and
  * fro) and turns by 0.5 about its normal (2-D: tilts by 0.001). */
 static void write_deck(const job *j, int dim, const turn *t) {
   double n[3] = {0, dim == 2, dim == 3}, e1[3] = {1, 0, 0};
   double e2[3] = {0, dim == 3, 0}, pivot[3] = {0.4, dim == 3 ? 0.7 : 0, 0};
   double axis[3] = {0, 0, 1};
-  rotate(t->axis, t->angle, n);
-  rotate(t->axis, t->angle, e1);
-  rotate(t->axis, t->angle, e2);
-  rotate(t->axis, t->angle, pivot);
-  rotate(t->axis, t->angle, axis);
+  turn_vector(t, n);
+  turn_vector(t, e1);
+  turn_vector(t, e2);
+  turn_vector(t, pivot);
+  turn_vector(t, axis);
   char shift[3][200];
   for (int c = 0; c < 3; ++c)
     snprintf(shift[c], sizeof shift[c],
@@ -240,7 +185,7 @@ static job run_turned(int dim, const turn *t) {
   job j = job_begin("turned");
   mesh *m = dim == 3 ? make_grid_3d(n3, length3) : make_grid_2d(n2, length2);
   ck_assert_ptr_nonnull(m);
-  write_mesh(&j, m, t);
+  turned_mesh_write(&j, m, t);
   mesh_free(m);
   write_deck(&j, dim, t);
   int code = job_run(&j, "");
@@ -263,7 +208,7 @@ static void same_forces(const job *a, const job *b, int dim, const turn *t,
     double f[3], g[3];
     force(&p, i, dim, f);
     force(&q, i, dim, g);
-    rotate(t->axis, t->angle, f);
+    turn_vector(t, f);
     for (int c = 0; c < 3; ++c)
       ck_assert_double_eq_tol(g[c], f[c], 1e-9 * scale);
     ck_assert_double_eq(dat_at(&p, i, "status"), dat_at(&q, i, "status"));

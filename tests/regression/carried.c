@@ -1,0 +1,194 @@
+/*
+ * What only the next increment or a run that goes on needs: bodies of one
+ * contact node, whose answers are closed forms, in many increments, and stopped
+ * within a step and gone on with.
+ *
+ * A triangle (area 1) clamped at the height 1: tangential stiffness G, normal
+ * 2 G (1 - nu)/(1 - 2 nu) of its tip, not coupled.
+ */
+#include "support/job.h"
+#include "support/traced.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Two of them, tips at x = 0 and 4: groups CLAMPED, TIPS, FOOT1 and FOOT2 (one
+ * edge each), SIDE1 (the other edge of the first), BODY. */
+static const char triangles[] =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n6\n"
+    "0 1 \"CLAMPED\"\n0 2 \"TIPS\"\n1 3 \"FOOT1\"\n1 4 \"FOOT2\"\n"
+    "1 5 \"SIDE1\"\n2 6 \"BODY\"\n$EndPhysicalNames\n$Nodes\n6\n"
+    "1 -1 1 0\n2 1 1 0\n3 0 0 0\n4 3 1 0\n5 5 1 0\n6 4 0 0\n$EndNodes\n"
+    "$Elements\n11\n1 15 2 1 1 1\n2 15 2 1 2 2\n3 15 2 1 4 4\n4 15 2 1 5 5\n"
+    "5 15 2 2 3 3\n6 15 2 2 6 6\n7 1 2 3 1 1 3\n8 1 2 4 2 4 6\n"
+    "9 1 2 5 3 3 2\n10 2 2 6 1 3 2 1\n11 2 2 6 2 6 5 4\n$EndElements\n";
+static const double G = 500, N = 10, mu = 0.3;
+
+/* The deck from *OBSTACLE on. */
+static job new_job(const char *cards) {
+  job j = job_begin("tips");
+  job_write(&j, "tips.msh", "%s", triangles);
+  job_write(&j, "tips.inp",
+            "*MESH, FILE=tips.msh\n*MATERIAL, NAME=M\n*ELASTIC\n%.17g, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n%s",
+            2.6 * G, cards);
+  return j;
+}
+
+static job run_job(const char *cards) {
+  job j = new_job(cards);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Stopped at some changes of its files and gone on with: all files the same. */
+static void check_stopped(const char *cards) {
+  static const char *const none[] = {NULL};
+  traced t = {.action = TRACE_COUNT};
+  job whole = new_job(cards);
+  ck_assert_int_eq(traced_run(&whole, none, &t), 0);
+  const int all = t.changes;
+  for (int k = 2; k <= 4; k += 2) {
+    job j = new_job(cards);
+    t = (traced){.action = TRACE_SIGNAL, .at = k * all / 5, .number = SIGINT};
+    ck_assert_int_eq(traced_run(&j, none, &t), 130);
+    int code = job_run(&j, "--restart --no-timing");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    const char *file = traced_difference(&whole, &j);
+    ck_assert_msg(file == NULL, "stopped at %d: .%s differs", k, file);
+    job_end(&j);
+  }
+  job_end(&whole);
+}
+
+/* ---- two rollers -------------------------------------------------------- */
+
+#define ROLLERS                                                             \
+  "*OBSTACLE, NAME=A, TYPE=CYLINDER, RADIUS=2\n0., -2.\n"                   \
+  "ROTATE, 0., -2., \"-0.2*t\"\n"                                           \
+  "*OBSTACLE, NAME=B, TYPE=CYLINDER, RADIUS=3\n4., -3.\n"                   \
+  "ROTATE, 4., -3., \"0.1*t\"\n"                                            \
+  "*CONTACT, NAME=A, GROUP=FOOT1, OBSTACLE=A, NORMAL=OBSTACLE\n"            \
+  "*CONTACT, NAME=B, GROUP=FOOT2, OBSTACLE=B, NORMAL=OBSTACLE\n"            \
+  "*FRICTION, CONTACT=A, LAW=COULOMB\n0.3\n"                                \
+  "*FRICTION, CONTACT=B, LAW=COULOMB\n0.3\n"                                \
+  "*STEP\n*STATIC\n1E-9\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\nTIPS, 2, -10.\n" \
+  "*SOLVER, TOL=1E-13\n*END STEP\n*STEP\n*QUASISTATIC\n0.1, 1.\n"           \
+  "*PRINT, CONTACT, LOOP, ENERGY\n*OUTPUT\n*END STEP\n"
+
+/* The surface passes by the radius times the angle; past mu N / G it slips: the
+ * rest of the way is slip, and heat, of each roller and of both. */
+START_TEST(rollers_heat_by_the_way_that_slips) {
+  const double drawn = mu * N / G, way[] = {0.4, -0.3}, angle[] = {-0.2, 0.1};
+  job j = run_job(ROLLERS);
+  double heat = 0;
+  for (int k = 0; k < 10; ++k) {
+    const double part = 0.1 * (k + 1);
+    dat l = job_table(&j, "LOOP", k), c = job_table(&j, "CONTACT", k);
+    dat e = job_table(&j, "ENERGY", k);
+    heat = 0;
+    for (int i = 0; i < 2; ++i) {
+      const double sign = way[i] > 0 ? 1 : -1;
+      const double slip = fabs(part * way[i]) - drawn;
+      heat += mu * N * slip;
+      ck_assert_double_eq_tol(dat_at(&l, i, "way"), part * way[i], 1e-8);
+      ck_assert_double_eq_tol(dat_at(&l, i, "angle"), part * angle[i], 1e-8);
+      ck_assert_double_eq_tol(dat_at(&l, i, "mean_u_t"), sign * drawn, 1e-8);
+      ck_assert_double_eq_tol(dat_at(&l, i, "loop_area"), mu * N * slip, 1e-6);
+      ck_assert_double_eq_tol(dat_at(&c, i, "slip_distance"), slip, 1e-8);
+    }
+    ck_assert_double_eq_tol(dat_at(&e, 0, "friction_work_end"), heat, 1e-6);
+    /* The force grows to mu N in the first increment. */
+    const double first = 0.5 * mu * N * (0.1 * 0.7 - 2 * drawn);
+    ck_assert_double_eq_tol(dat_at(&e, 0, "friction_work"), heat - first, 1e-6);
+    /* What the rollers put in is heat and the springs. */
+    ck_assert_double_eq_tol(dat_at(&e, 0, "normal_work"),
+                            heat - first + mu * N * drawn, 1e-6);
+    dat_free(&l);
+    dat_free(&c);
+    dat_free(&e);
+  }
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(rollers_go_on) { check_stopped(ROLLERS); }
+END_TEST
+
+/* ---- u_0 and supports that move on from there --------------------------- */
+
+#define RAMP                                                                   \
+  "*OBSTACLE, NAME=A, TYPE=CONFORMING\n"                                       \
+  "*CONTACT, NAME=A, GROUP=FOOT1, OBSTACLE=A\n"                                \
+  "*FRICTION, CONTACT=A, LAW=COULOMB\n0.3\n"                                   \
+  "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\nBODY, 1, 0.003\n"                   \
+  "*STEP\n*QUASISTATIC\n0.1, 1.\n*BOUNDARY\nCLAMPED, 1, 1, 0.01\nCLAMPED, 2\n" \
+  "TIPS, 2\n*PRINT, NODES, CONTACT\n*OUTPUT\n*END STEP\n"
+
+START_TEST(supports_move_on_from_the_start) {
+  job j = run_job(RAMP);
+  for (int k = 0; k < 10; ++k) {
+    dat u = job_table(&j, "NODES", k);
+    for (int i = 0; i < u.n_row; ++i)
+      if (dat_at(&u, i, "y") > 0.5)
+        ck_assert_double_eq_tol(dat_at(&u, i, "u_x"), 0.003 + 7e-4 * (k + 1),
+                                1e-12);
+    dat_free(&u);
+  }
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(supports_move_on_after_a_stop) { check_stopped(RAMP); }
+END_TEST
+
+/* ---- a corner ------------------------------------------------------------ */
+
+/* The tip is driven towards a floor 0.002 below and a wall 0.003 aside, loads
+ * that would bring it there at a quarter and at half of the step. */
+static void check_corner(const char *form) {
+  char cards[800];
+  const double kn = 2 * G * 0.7 / 0.4;
+  snprintf(cards, sizeof cards,
+           "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0., -0.002\n0., 1.\n"
+           "*OBSTACLE, NAME=WALL, TYPE=PLANE\n0.003, 0.\n-1., 0.\n"
+           "*CONTACT, NAME=FLOOR, GROUP=FOOT1, OBSTACLE=FLOOR, "
+           "NORMAL=OBSTACLE\n"
+           "*CONTACT, NAME=WALL, GROUP=SIDE1, OBSTACLE=WALL, NORMAL=OBSTACLE\n"
+           "*STEP\n*QUASISTATIC, FORM=%s\n0.1, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
+           "*CLOAD\nTIPS, 1, %.17g\nTIPS, 2, %.17g\n*SOLVER, TOL=1E-13\n"
+           "*PRINT, NODES, TOTALS\n*END STEP\n",
+           form, 2 * 0.003 * G, -4 * 0.002 * kn);
+  job j = run_job(cards);
+  for (int k = 0; k < 10; ++k) {
+    const double t = 0.1 * (k + 1);
+    dat u = job_table(&j, "NODES", k), f = job_table(&j, "TOTALS", k);
+    int tip = 0;
+    while (dat_at(&u, tip, "node_no") != 3) ++tip;
+    ck_assert_double_eq_tol(dat_at(&u, tip, "u_x"), fmin(0.003, 0.006 * t),
+                            1e-12);
+    ck_assert_double_eq_tol(dat_at(&u, tip, "u_y"), -fmin(0.002, 0.008 * t),
+                            1e-12);
+    ck_assert_double_eq_tol(dat_at(&f, 0, "normal"),
+                            fmax(0, kn * (0.008 * t - 0.002)), 1e-9);
+    ck_assert_double_eq_tol(dat_at(&f, 1, "normal"),
+                            fmax(0, G * (0.006 * t - 0.003)), 1e-9);
+    dat_free(&u);
+    dat_free(&f);
+  }
+  job_end(&j);
+}
+
+START_TEST(corner_closes_one_gap_after_the_other) {
+  check_corner("DISPLACEMENT");
+  check_corner("VELOCITY");
+}
+END_TEST
+
+UNIT_MAIN("carried", rollers_heat_by_the_way_that_slips, rollers_go_on,
+          supports_move_on_from_the_start, supports_move_on_after_a_stop,
+          corner_closes_one_gap_after_the_other)
