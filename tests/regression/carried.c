@@ -2,11 +2,8 @@
  * What only the next increment or a run that goes on needs: bodies of one
  * contact node, whose answers are closed forms, in many increments, and stopped
  * within a step and gone on with.
- *
- * A triangle (area 1) clamped at the height 1: tangential stiffness G, normal
- * 2 G (1 - nu)/(1 - 2 nu) of its tip, not coupled.
  */
-#include "support/job.h"
+#include "support/tips.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
@@ -15,28 +12,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Two of them, tips at x = 0 and 4: groups CLAMPED, TIPS, FOOT1 and FOOT2 (one
- * edge each), SIDE1 (the other edge of the first), BODY. */
-static const char triangles[] =
-    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n6\n"
-    "0 1 \"CLAMPED\"\n0 2 \"TIPS\"\n1 3 \"FOOT1\"\n1 4 \"FOOT2\"\n"
-    "1 5 \"SIDE1\"\n2 6 \"BODY\"\n$EndPhysicalNames\n$Nodes\n6\n"
-    "1 -1 1 0\n2 1 1 0\n3 0 0 0\n4 3 1 0\n5 5 1 0\n6 4 0 0\n$EndNodes\n"
-    "$Elements\n11\n1 15 2 1 1 1\n2 15 2 1 2 2\n3 15 2 1 4 4\n4 15 2 1 5 5\n"
-    "5 15 2 2 3 3\n6 15 2 2 6 6\n7 1 2 3 1 1 3\n8 1 2 4 2 4 6\n"
-    "9 1 2 5 3 3 2\n10 2 2 6 1 3 2 1\n11 2 2 6 2 6 5 4\n$EndElements\n";
 static const double G = 500, N = 10, mu = 0.3;
 
-/* The deck from *OBSTACLE on. */
-static job new_job(const char *cards) {
-  job j = job_begin("tips");
-  job_write(&j, "tips.msh", "%s", triangles);
-  job_write(&j, "tips.inp",
-            "*MESH, FILE=tips.msh\n*MATERIAL, NAME=M\n*ELASTIC\n%.17g, 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n%s",
-            2.6 * G, cards);
-  return j;
-}
+static job new_job(const char *cards) { return tips_new(G, "", cards); }
 
 static job run_job(const char *cards) {
   job j = new_job(cards);

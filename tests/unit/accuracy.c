@@ -162,6 +162,23 @@ START_TEST(rate_of_the_triangle_is_known) {
 }
 END_TEST
 
+/* The first passes of the map may contract less than those it tends to. */
+START_TEST(rate_is_that_of_the_worst_pass) {
+  int above = 0;
+  for (int k = 0; k < 40; ++k) {
+    contact_case c =
+        case_any(2 + k % 2, 8, 0.25, k / 2 % 2, (unsigned long long)(900 + k));
+    double rate, limit;
+    ck_assert_int_eq(solve(&c, "newton", 1e-13).outcome, CONVERGED);
+    ck_assert_int_eq(contraction_rate(&c.cp, c.u, c.r, NULL, &rate), OK);
+    ck_assert_int_eq(contraction_limit(&c.cp, c.u, c.r, &limit), OK);
+    above += rate > 1.05 * limit;
+    case_free(&c);
+  }
+  ck_assert_int_ge(above, 5);
+}
+END_TEST
+
 /* Slip to the right by 1.04 at mu = 2 is beyond the critical friction. */
 START_TEST(no_bound_beyond_the_critical_friction) {
   contact_case c = case_triangle(0.3, 2.0, 1.9, -1.0);
@@ -286,7 +303,8 @@ END_TEST
 
 UNIT_MAIN("accuracy", bound_holds_for_a_given_limit_and_is_not_absurd,
           bound_holds_without_friction, bound_holds_with_coulomb_friction,
-          rate_of_the_triangle_is_known, no_bound_beyond_the_critical_friction,
+          rate_of_the_triangle_is_known, rate_is_that_of_the_worst_pass,
+          no_bound_beyond_the_critical_friction,
           bound_holds_at_held_and_cornered_nodes,
           bound_holds_in_the_compliance_form, bound_changes_with_the_units_only,
           rounding_is_part_of_the_bound)

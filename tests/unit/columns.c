@@ -127,12 +127,65 @@ START_TEST(mises_of_simple_states) {
   double *s = made->array[MADE_STRESS];
   memset(s, 0, 18 * sizeof *s);
   s[2] = -7;
-  s[6 + 4] = 2;
+  s[6 + 3] = 2 * sqrt(2.0 / 3);
+  s[6 + 5] = 2 / sqrt(3.0);
   s[12] = s[13] = s[14] = -5;
   ck_assert_double_eq_tol(value_of(made, PER_ELEMENT, "mises", 0), 7, 1e-14);
   ck_assert_double_eq_tol(value_of(made, PER_ELEMENT, "mises", 1), 2 * sqrt(3),
                           1e-14);
   ck_assert(value_of(made, PER_ELEMENT, "mises", 2) == 0);
+  made_up_free(made);
+}
+END_TEST
+
+/* Three elements flow, with 2, 1 and 3 variables. */
+START_TEST(internal_variables_of_unlike_laws) {
+  made_up *made = made_up_new(2, 2, 3);
+  made_up_advance(made, 1);
+  const size_t start[] = {0, 2, 3, 6};
+  const int elem[] = {1, 3, 4};
+  double alpha[] = {10, 11, 20, 30, 31, 32}, ei[12];
+  const double expected[3][3] = {{10, 11, 0}, {20, 0, 0}, {30, 31, 32}};
+  for (int i = 0; i < 12; ++i) ei[i] = 100 + i;
+  flow x = {.ns = 4, .n = 3, .alpha_at = (size_t *)start};
+  flow_state inelastic = {.alpha = alpha, .ei = ei};
+  made->s.flow = &x;
+  made->s.flow_elem = elem;
+  made->s.inelastic = &inelastic;
+  view v = {&made->m, made->msh, &made->s};
+  int seen = 0;
+  for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
+    if (c->of != PER_ELEMENT) continue;
+    if (strncmp(c->name, "alpha_", 6) == 0)
+      for (int k = 0; k < 3; ++k, ++seen)
+        ck_assert_double_eq(c->value(&v, elem[k], c->part),
+                            c->part < 3 ? expected[k][c->part] : 0);
+    if (strncmp(c->name, "alpha_", 6) == 0 || strncmp(c->name, "ei_", 3) == 0)
+      ck_assert_double_eq(c->value(&v, 2, c->part), 0);
+    if (strcmp(c->name, "ei_yy") == 0)
+      ck_assert_double_eq(c->value(&v, 4, c->part), 100 + 2 * 4 + 1);
+  }
+  ck_assert_int_eq(seen, 3 * 12);
+  made->s.flow = NULL;
+  made_up_free(made);
+}
+END_TEST
+
+/* n = -y, t1 = x, t2 = z; slip (3, 4) in them. */
+START_TEST(slip_has_a_direction) {
+  made_up *made = made_up_new(3, 2, 3);
+  made_up_advance(made, 1);
+  double *slip = made->array[MADE_SLIP] + 2 * 4;
+  slip[0] = 3e-3;
+  slip[1] = -4e-3;
+  made->status[4] = CONTACT_SLIP;
+  ck_assert_double_eq_tol(value_of(made, PER_CONTACT_NODE, "slip_dir_x", 4),
+                          0.6, 1e-14);
+  ck_assert_double_eq(value_of(made, PER_CONTACT_NODE, "slip_dir_y", 4), 0);
+  ck_assert_double_eq_tol(value_of(made, PER_CONTACT_NODE, "slip_dir_z", 4),
+                          -0.8, 1e-14);
+  made->status[4] = CONTACT_STICK;
+  ck_assert_double_eq(value_of(made, PER_CONTACT_NODE, "slip_dir_x", 4), 0);
   made_up_free(made);
 }
 END_TEST
@@ -157,4 +210,5 @@ UNIT_MAIN("columns", every_row_has_unit_help_scene_and_value,
           names_are_unique_within_entity_and_scene,
           fields_have_distinct_components, every_value_is_finite,
           columns_follow_the_effects, contact_signs_and_directions,
-          mises_of_simple_states, units_are_composed_from_the_labels)
+          mises_of_simple_states, internal_variables_of_unlike_laws,
+          slip_has_a_direction, units_are_composed_from_the_labels)

@@ -326,6 +326,39 @@ START_TEST(surface_passes_by_angle_times_arm) {
 }
 END_TEST
 
+/* Moved and turned at once, along and about an axis across the surface: the
+ * arm from the axis changes in proportion to the time, so that the way is that
+ * of the velocity integrated, and two half steps make one. */
+START_TEST(surface_that_moves_and_turns_passes_by_its_velocity) {
+  obstacle o = {.shape = OBSTACLE_PLANE,
+                .direction = {0, 0, 1},
+                .pivot = {0.5, -0.25, 0},
+                .axis = {0, 0, 1},
+                .turns = 1};
+  const double low[3] = {0, 0, -1}, x[3] = {3, 4, 1}, s = 0.3, t = 1.9;
+  double d[3], half[2][3];
+  formula_compile(&o.angle, "0.7*t");
+  formula_compile(&o.motion[0], "0.4*t");
+  formula_compile(&o.motion[1], "-0.9*t");
+  obstacle_drift(&o, 3, x, low, s, t, d);
+  obstacle_drift(&o, 3, x, low, s, 0.5 * (s + t), half[0]);
+  obstacle_drift(&o, 3, x, low, 0.5 * (s + t), t, half[1]);
+  for (int c = 0; c < 3; ++c)
+    ck_assert_double_eq_tol(d[c], half[0][c] + half[1][c], 1e-13);
+  /* v = (0.4, -0.9) + 0.7 (-(y - y_axis), x - x_axis) */
+  const double squares = 0.5 * (t * t - s * s);
+  ck_assert_double_eq_tol(
+      d[0], 0.4 * (t - s) - 0.7 * ((4 + 0.25) * (t - s) + 0.9 * squares),
+      1e-13);
+  ck_assert_double_eq_tol(
+      d[1], -0.9 * (t - s) + 0.7 * ((3 - 0.5) * (t - s) - 0.4 * squares),
+      1e-13);
+  formula_release(&o.angle);
+  formula_release(&o.motion[0]);
+  formula_release(&o.motion[1]);
+}
+END_TEST
+
 /* A parabola that moves sideways is the parabola beside its new apex. */
 START_TEST(given_gap_is_that_of_the_point_now_opposite) {
   obstacle o = {.shape = OBSTACLE_GAP};
@@ -361,4 +394,5 @@ UNIT_MAIN("obstacle", plane_is_met_where_it_was_left,
           turned_obstacle_is_the_one_made_there,
           given_gap_turns_about_the_normal_and_tilts_a_little,
           surface_passes_by_angle_times_arm,
+          surface_that_moves_and_turns_passes_by_its_velocity,
           given_gap_is_that_of_the_point_now_opposite)

@@ -300,6 +300,41 @@ START_TEST(one_layer_of_elements_has_an_estimate) {
 }
 END_TEST
 
+static int shares_node(const mesh *m, int a, int b) {
+  const int v = m->dim + 1;
+  for (int i = 0; i < v; ++i)
+    for (int k = 0; k < v; ++k)
+      if (m->elem[v * a + i] == m->elem[v * b + k]) return 1;
+  return 0;
+}
+
+/* Inside a body a node has the stress of the elements that meet there: one
+ * element of another stress is an error of those it shares a node with. */
+START_TEST(inner_nodes_see_the_elements_that_meet_there) {
+  static const double length[] = {1, 1, 1};
+  mesh *m = _i == 3 ? make_grid_3d((int[]){7, 7, 7}, length)
+                    : make_grid_2d((int[]){7, 7}, length);
+  scene *s = scene_new(m, _i == 3 ? SOLID_3D : PLANE_STRAIN, 3);
+  double *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
+  double *eta = calloc((size_t)m->n_elem, sizeof *eta);
+  const int other = m->n_elem / 2;
+  space_recovery *recovery;
+  space_error found;
+  sigma[s->d.ns * other] = 1;
+  ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
+  space_estimate(recovery, sigma, eta, &found);
+  for (int e = 0; e < m->n_elem; ++e)
+    if (shares_node(m, e, other))
+      ck_assert_double_gt(eta[e], 1e-6 * found.error);
+    else
+      ck_assert_double_le(eta[e], 1e-12 * found.error);
+  space_recovery_free(recovery);
+  scene_free(s);
+  free(sigma);
+  free(eta);
+}
+END_TEST
+
 START_TEST(an_estimate_has_no_unit) {
   static const double length[] = {1, 1};
   scene *s = scene_new(make_grid_2d((int[]){4, 4}, length), PLANE_STRAIN, 3);
@@ -330,6 +365,8 @@ int main(void) {
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, estimate_is_near_the_true_error, 0, N_PROBLEM);
   tcase_add_loop_test(tests, uniform_stress_has_no_error, 0, 2);
+  tcase_add_loop_test(tests, inner_nodes_see_the_elements_that_meet_there, 2,
+                      4);
   tcase_add_test(tests, one_layer_of_elements_has_an_estimate);
   tcase_add_test(tests, an_estimate_has_no_unit);
   return unit_run("space", tests);
