@@ -85,6 +85,7 @@ help:
 	@echo "make stability    hard cases and 10000 random problems: minutes"
 	@echo "make scenes       the matrix of hard scenes and methods alone"
 	@echo "make torture      memory, files, kills, random input: a table, an hour"
+	@echo "make mutants      which test sees each of a list of single wrong lines"
 	@echo "make coverage     lines and branches of src the tests run; needs gcovr"
 	@echo "make verify       orders of convergence, observed and expected"
 	@echo "make effects-cost instructions of builds without an effect; needs valgrind"
@@ -195,6 +196,15 @@ torture: $(program) $(preload) $(tort) $(out)/tests/unit/conformance \
          $(out)/tests/stability/lcp $(out)/tests/regression/mutants
 	$(Q)$(torture) JOBS=$(JOBS) PROTIS_POINTS=$(POINTS) tools/torture \
 	  $(filter-out $(program) $(preload),$^)
+
+# Which test sees each single wrong line of tests/mutants/list, built in a copy
+# of the sources below build/mutants. FULL=1: all tests for what those named
+# there do not see; SLICE=1/4: the first of four parts; MUTANT=: by name.
+SLICE   ?= 1/1
+.PHONY: mutants
+mutants: deps
+	$(Q)tests/mutants/run --jobs $(JOBS) --slice $(SLICE) $(if $(FULL),--full) \
+	  $(MUTANT)
 
 # What the tests run of src; needs gcovr, no part of the tests.
 .PHONY: coverage
