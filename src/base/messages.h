@@ -278,6 +278,11 @@
   X(3005, ERROR, "last line of the .geo does not end",                       \
     "gmsh reads only the first statement of a last line without "            \
     "newline. Add a newline at the end of the file.")                        \
+  X(3006, ERROR, "damaged .msh file",                                        \
+    "The message names file and line, or byte. Formats 2.2 and 4.1 of gmsh " \
+    "are read, ASCII and binary, exactly as they are defined: counts, "      \
+    "numbers and ends of sections. Write the file again; another program's " \
+    "file is put right by gmsh: gmsh -save -o new.msh old.msh.")             \
   X(3010, ERROR, "mesh without physical groups",                             \
     "Name the parts in the .geo: Physical Surface(\"BODY\") = {1}; "         \
     "(3-D: Physical Volume) for what is solid, Physical "                    \

@@ -1,5 +1,5 @@
 /*
- * The child's side of the mesh reader: load libgmsh, open or mesh the file,
+ * The child's side of the mesh reader: load libgmsh, mesh the geometry,
  * send what it holds. Every end of this file is _exit: nothing the parent
  * registered or buffered may run or be written twice.
  *
@@ -211,7 +211,7 @@ static void set(const child *c, const char *option, double value) {
  * what DefineConstant says, before the file is read. */
 static void start(const child *c) {
   const mesh_source *r = c->request->source;
-  int n = c->request->is_geo ? r->n_number : 0, error;
+  int n = r->n_number, error;
   char **argv = memory_new(3 * (size_t)n + 2, sizeof *argv);
   char *text = memory_new((size_t)n + 1, 40);
   if (argv == NULL || text == NULL)
@@ -478,10 +478,10 @@ void child_run(const raw_request *request, pid_t parent, int fd, int error_fd) {
   start(c);
   c->gmsh.Open(request->source->file, &error);
   check(c, error, "read the file");
-  if (request->is_geo && request->source->size != NULL) free_counts(c);
+  if (request->source->size != NULL) free_counts(c);
   int dim = send_groups(c);
   const char *doing = "read the file";
-  if (request->is_geo && dim >= 2 && !has_elements(c, dim)) {
+  if (dim >= 2 && !has_elements(c, dim)) {
     doing = "mesh the geometry";
     fix_options(c);
     if (request->source->size != NULL) set_sizes(c);

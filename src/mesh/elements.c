@@ -264,21 +264,20 @@ done:
 
 /* ---- folds -------------------------------------------------------------- */
 
-/* Unit vector from corner i of the element to another one. */
-static void direction(const mesh *m, const int *v, int i, int to, double *d) {
-  double size = 0.0;
-  for (int k = 0; k < m->dim; ++k) {
-    d[k] =
-        m->x[(size_t)(m->dim * v[to] + k)] - m->x[(size_t)(m->dim * v[i] + k)];
-    size = hypot(size, d[k]);
-  }
-  for (int k = 0; k < m->dim; ++k) d[k] /= size;
-}
-
 static double dot(int n, const double *a, const double *b) {
   double sum = 0.0;
   for (int k = 0; k < n; ++k) sum += a[k] * b[k];
   return sum;
+}
+
+/* Unit vector from corner i of the element to another one; squares of lengths
+ * over the size of the mesh stay in range in any unit. */
+static void direction(const mesh *m, const int *v, int i, int to, double *d) {
+  const double *x = m->x + (size_t)m->dim * (size_t)v[i],
+               *y = m->x + (size_t)m->dim * (size_t)v[to];
+  for (int k = 0; k < m->dim; ++k) d[k] = (y[k] - x[k]) / m->size;
+  double length = sqrt(dot(m->dim, d, d));
+  for (int k = 0; k < m->dim; ++k) d[k] /= length;
 }
 
 /* Angle of the element at its corner i over the full one; in space the solid

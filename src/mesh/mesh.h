@@ -56,6 +56,8 @@ typedef struct mesh_source {
   const double *size; /* [old->n_node]                                        */
 } mesh_source;
 
+/* 1: the file is a .geo, a program that gmsh runs; 0: it is read as data. */
+int mesh_is_program(const char *file);
 /* Read .msh (2.2, 4.1, ASCII, binary) or mesh a .geo. What is wrong with the
  * mesh goes to the log with "at" (the *MESH card) as place and the answer is
  * ERR_MESH; ERR_FILE if the file is missing, ERR_MEMORY. */

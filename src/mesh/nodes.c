@@ -51,26 +51,29 @@ int nodes_find(const builder *b, size_t no) {
   }
 }
 
+/* Bit b of x to place dim*b of the key. */
+static uint64_t spread(uint32_t x, int dim) {
+  uint64_t key = 0;
+  for (int bit = 0; bit < CURVE_BITS; ++bit)
+    key |= (uint64_t)((x >> bit) & 1) << (dim * bit);
+  return key;
+}
+
 /* Position on the curve that fills the square or cube of side 2^bits. */
 static uint64_t on_curve(uint32_t *x, int dim) {
-  const uint32_t top = (uint32_t)1 << (CURVE_BITS - 1);
-  for (uint32_t q = top; q > 1; q >>= 1)
-    for (int i = 0; i < dim; ++i) {
-      uint32_t low = q - 1, t = (x[0] ^ x[i]) & low;
-      if (x[i] & q) {
-        x[0] ^= low;
-      } else {
-        x[0] ^= t;
-        x[i] ^= t;
-      }
+  for (int bit = CURVE_BITS - 1; bit > 0; --bit) {
+    const uint32_t low = ((uint32_t)1 << bit) - 1;
+    for (int i = 0; i < dim; ++i) { /* without a branch: 40 to be missed */
+      uint32_t is_set = 0 - ((x[i] >> bit) & 1), t = (x[0] ^ x[i]) & low;
+      x[0] ^= (is_set & low) | (~is_set & t);
+      x[i] ^= ~is_set & t;
     }
+  }
   for (int i = 1; i < dim; ++i) x[i] ^= x[i - 1];
-  uint32_t t = 0;
-  for (uint32_t q = top; q > 1; q >>= 1)
-    if (x[dim - 1] & q) t ^= q - 1;
+  uint32_t t = x[dim - 1] >> 1; /* parity of the bits above each */
+  for (int shift = 1; shift < 32; shift *= 2) t ^= t >> shift;
   uint64_t key = 0;
-  for (int bit = CURVE_BITS - 1; bit >= 0; --bit)
-    for (int i = 0; i < dim; ++i) key = key << 1 | (((x[i] ^ t) >> bit) & 1);
+  for (int i = 0; i < dim; ++i) key |= spread(x[i] ^ t, dim) << (dim - 1 - i);
   return key;
 }
 

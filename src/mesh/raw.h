@@ -1,8 +1,7 @@
 /*
- * The mesh as gmsh tells it, before any check: numbers of the file, elements
- * by entity and type, three coordinates. Inside src/mesh only.
+ * The mesh of a .geo on its way from gmsh. Inside src/mesh only.
  *
- * gmsh works in a child process that ends with the reading: it may crash, run
+ * gmsh meshes a .geo in a child process that ends with it: it may crash, run
  * out of memory or leave by itself, and its libraries cost nothing later. The
  * child sends records through a pipe: a head, then n items of one size.
  */
@@ -10,39 +9,10 @@
 #define PROTIS_MESH_RAW_H
 
 #include "mesh/mesh.h"
+#include "msh/raw_mesh.h"
 
 #include <stdint.h>
 #include <sys/types.h>
-
-typedef struct raw_block { /* elements of one type on one entity              */
-  int dim;                 /* of the entity                                   */
-  int type;                /* number of gmsh: 1 line, 2 triangle, 4 tet, ...  */
-  char *type_name;         /* "Triangle 3", "Quadrilateral 4", ...            */
-  int n_physical;          /* physical groups the entity belongs to, > 0      */
-  int *physical;           /* [n_physical] their tags                         */
-  size_t n;                /* elements                                        */
-  size_t n_per;            /* nodes of each                                   */
-  size_t *no;              /* [n] element numbers                             */
-  size_t *node;            /* [n_per*n] node numbers                          */
-} raw_block;
-
-typedef struct raw_group { /* physical group                                  */
-  int dim, tag;
-  char *name; /* "" if it has none                               */
-} raw_group;
-
-typedef struct raw_mesh {
-  size_t n_node;
-  size_t *node_no; /* [n_node]                                        */
-  double *xyz;     /* [3*n_node]                                      */
-  int n_block, n_group, n_warning;
-  raw_block *block;
-  raw_group *group;
-  char **warning;  /* [n_warning] texts of gmsh                       */
-  int n_entity[4]; /* geometric entities by dimension                 */
-  size_t n_loose;  /* elements of the highest dimension of the groups
-                      that are in no group                            */
-} raw_mesh;
 
 /* clang-format off */
 #define WIRE_LIST(X)                                                          \
@@ -73,17 +43,15 @@ enum { WIRE_MAGIC = 0x50524d31 }; /* "PRM1" */
 
 typedef struct raw_request {
   const mesh_source *source;
-  int is_geo;   /* mesh the geometry, else read the mesh                     */
-  int is_solid; /* a .geo of the kernel OpenCASCADE                          */
+  int is_solid; /* of the kernel OpenCASCADE                                 */
 } raw_request;
 
-/* Let a child process read the file. What fails is told in the record:
+/* Let a child process mesh a .geo. What fails is told in the record:
  * ERR_MEMORY for want of memory on either side, else ERR_MESH. */
 status raw_read(const raw_request *request, raw_mesh **out);
 /* Parent's end of the pipe: everything up to END. ERR_MESH if the stream
  * stops before (*stopped = 1) or holds what is no record. */
 status raw_receive(int fd, raw_mesh *raw, int *stopped);
-void raw_free(raw_mesh *raw);
 
 /* Child's end: gmsh from the request to the pipe. Never returns. */
 void child_run(const raw_request *request, pid_t parent, int fd, int error_fd);

@@ -1,8 +1,8 @@
 /*
- * libFuzzer: records from the process that reads a mesh, with any heads, then
- * the mesh of them: it is refused with an error or made, and what was made is
- * inside its own bounds. The first byte tells whether the rest are the bytes of
- * the pipe or choices of records.
+ * libFuzzer: a .msh if the first byte is "$", else records from the process
+ * that meshes a .geo, with any heads; then the mesh of it: it is refused with
+ * an error or made, and what was made is inside its own bounds. Of records the
+ * first byte tells whether the rest are the bytes of the pipe or choices.
  */
 #include "base/memory.h"
 #include "mesh/raw.h"
@@ -71,22 +71,33 @@ static void use_mesh(const mesh *m) {
     if (m->elem[k] < 0 || m->elem[k] >= m->n_node) abort();
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+/* Bytes of the pipe, or choices of records, to a raw mesh. */
+static status receive(fuzz_bytes *b, raw_mesh **out) {
   static stream s;
-  fuzz_bytes b = {data, size};
-  raw_mesh *raw = memory_new(1, sizeof *raw);
-  mesh *m = NULL;
-  message_log *log;
   int stopped;
   s.n = 0;
-  if (raw == NULL || message_log_new(&log) != OK) abort();
-  if (fuzz_byte(&b) % 4 == 0)
-    put(&s, b.at, b.left);
+  if (fuzz_byte(b) % 4 == 0)
+    put(&s, b->at, b->left);
   else
-    put_records(&s, &b);
+    put_records(&s, b);
   int fd = open(fuzz_file("pipe", s.data, s.n), O_RDONLY);
+  raw_mesh *raw = memory_new(1, sizeof *raw);
+  if (raw == NULL) abort();
   status st = raw_receive(fd, raw, &stopped);
   close(fd);
+  *out = raw;
+  return st;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  fuzz_bytes b = {data, size};
+  raw_mesh *raw = NULL;
+  mesh *m = NULL;
+  message_log *log;
+  if (message_log_new(&log) != OK) abort();
+  status st = size > 0 && data[0] == '$'
+                  ? msh_read(fuzz_file("msh", data, size), &raw)
+                  : receive(&b, &raw);
   if (st == OK) st = build_mesh(raw, 1.0, &(place){.file = "m"}, log, &m);
   if ((st == OK) != (m != NULL)) abort();
   if (m != NULL) use_mesh(m);

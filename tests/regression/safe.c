@@ -125,15 +125,16 @@ START_TEST(nothing_else_is_read) {
 }
 END_TEST
 
-/* A geometry is a program; so may be what bears another name. */
+/* A geometry is a program; what bears another name is data. */
 START_TEST(a_mesh_is_a_msh) {
-  static const char *const names[] = {"square.geo", "square.step",
+  static const char *const names[] = {"square.geo", "square.GEO", "square.step",
                                       "square.msh.opt", "square"};
   job j = begin();
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 5; ++i) {
     job_write(&j, names[i], "SystemCall \"touch %s/job.ran\";\n", j.dir);
-    ck_assert_int_eq(run(&j, 1, names[i], "--safe"), 2);
-    ck_assert_ptr_nonnull(strstr(j.errors, "the mesh must be a .msh"));
+    ck_assert_int_eq(run(&j, 1, names[i], "--safe"), i < 2 ? 2 : 3);
+    ck_assert_ptr_nonnull(strstr(
+        j.errors, i < 2 ? "the mesh must be a .msh" : "is no .geo and does"));
     ck_assert(!job_has(&j, "ran"));
   }
   job_end(&j);

@@ -471,7 +471,7 @@ START_TEST(reader_gives_back_all_when_refused) {
   mesh_file_open(&f);
   mesh_file_write(&f, "m.msh", small_msh, sizeof small_msh - 1);
   const mesh_source source = {.file = mesh_file_path(&f, "m.msh"), .scale = 1};
-  const raw_request request = {&source, 0, 0};
+  const raw_request request = {&source, 0};
   size_t before = memory_in_use();
   int k = 1;
   for (;; ++k) {
@@ -494,7 +494,7 @@ START_TEST(builder_gives_back_all_when_refused) {
   mesh_file_open(&f);
   mesh_file_write(&f, "m.msh", small_msh, sizeof small_msh - 1);
   const mesh_source source = {.file = mesh_file_path(&f, "m.msh"), .scale = 1};
-  const raw_request request = {&source, 0, 0};
+  const raw_request request = {&source, 0};
   raw_mesh *raw;
   ck_assert_int_eq(raw_read(&request, &raw), OK);
   long first = memory_requests(), n = 0;

@@ -1,0 +1,416 @@
+/* src/mesh: the reader of .msh files takes what the format says and no more */
+#include "base/memory.h"
+#include "msh/raw_mesh.h"
+#include "msh/scan.h"
+#include "support/mesh_file.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A unit square of two triangles, its lower side and a corner, twice. */
+static const char text_22[] =
+    MSH("3\n0 3 \"P\"\n1 2 \"SIDE\"\n2 1 \"BODY\"\n",
+        "4\n1 0 0 0\n2 1. 0e0 0\n3 1.0E+00 1 0\n4 -0 1 0\n",
+        "4\n7 2 2 1 5 1 2 3\n8 2 2 1 5 1 3 4\n9 1 2 2 6 1 2\n10 15 2 3 1 1\n");
+static const char text_41[] =
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+    "$PhysicalNames\n3\n0 3 \"P\"\n1 2 \"SIDE\"\n2 1 \"BODY\"\n"
+    "$EndPhysicalNames\n"
+    "$Entities\n1 1 1 0\n1 0 0 0 1 3\n6 0 0 0 1 0 0 1 -2 0\n"
+    "5 0 0 0 1 1 0 1 1 1 6\n$EndEntities\n"
+    "$Nodes\n2 4 1 4\n2 5 0 2\n1\n2\n0 0 0\n1 0 0\n2 5 1 2\n3\n4\n"
+    "1 1 0 .5 .5\n0 1 0 .5 .5\n$EndNodes\n"
+    "$Elements\n3 4 7 10\n2 5 2 2\n7 1 2 3\n8 1 3 4\n1 6 1 1\n9 1 2\n"
+    "0 1 15 1\n10 1\n$EndElements\n";
+static const char *const texts[] = {text_22, text_41};
+
+/* ---- binary files, in either order of bytes -------------------------------
+ */
+
+typedef struct bytes {
+  char data[4096];
+  size_t n;
+  int swap;
+} bytes;
+
+static void put(bytes *b, const void *from, size_t size) {
+  const char *p = from;
+  for (size_t i = 0; i < size; ++i)
+    b->data[b->n++] = p[b->swap ? size - 1 - i : i];
+}
+
+static void put_text(bytes *b, const char *text) {
+  memcpy(b->data + b->n, text, strlen(text));
+  b->n += strlen(text);
+}
+
+static void put_ints(bytes *b, int n, const int32_t *v) {
+  for (int i = 0; i < n; ++i) put(b, &v[i], sizeof v[i]);
+}
+
+static void put_sizes(bytes *b, int n, const uint64_t *v) {
+  for (int i = 0; i < n; ++i) put(b, &v[i], sizeof v[i]);
+}
+
+static void put_reals(bytes *b, int n, const double *v) {
+  for (int i = 0; i < n; ++i) put(b, &v[i], sizeof v[i]);
+}
+
+#define INTS(...)                                                        \
+  put_ints(b, (int)(sizeof((int32_t[]){__VA_ARGS__}) / sizeof(int32_t)), \
+           (const int32_t[]){__VA_ARGS__})
+#define SIZES(...)                                                          \
+  put_sizes(b, (int)(sizeof((uint64_t[]){__VA_ARGS__}) / sizeof(uint64_t)), \
+            (const uint64_t[]){__VA_ARGS__})
+#define REALS(...)                                                      \
+  put_reals(b, (int)(sizeof((double[]){__VA_ARGS__}) / sizeof(double)), \
+            (const double[]){__VA_ARGS__})
+
+static const char names[] =
+    "$PhysicalNames\n3\n0 3 \"P\"\n1 2 \"SIDE\"\n2 1 \"BODY\"\n"
+    "$EndPhysicalNames\n";
+
+static void binary_22(bytes *b) {
+  put_text(b, "$MeshFormat\n2.2 1 8\n");
+  INTS(1);
+  put_text(b, "\n$EndMeshFormat\n");
+  put_text(b, names);
+  put_text(b, "$Nodes\n4\n");
+  for (int i = 0; i < 4; ++i) {
+    INTS(i + 1);
+    REALS(i == 1 || i == 2, i > 1, 0.0);
+  }
+  put_text(b, "\n$EndNodes\n$Elements\n4\n");
+  INTS(2, 2, 2, 7, 1, 5, 1, 2, 3, 8, 1, 5, 1, 3, 4);
+  INTS(1, 1, 2, 9, 2, 6, 1, 2);
+  INTS(15, 1, 2, 10, 3, 1, 1);
+  put_text(b, "\n$EndElements\n");
+}
+
+static void binary_41(bytes *b) {
+  put_text(b, "$MeshFormat\n4.1 1 8\n");
+  INTS(1);
+  put_text(b, "\n$EndMeshFormat\n");
+  put_text(b, names);
+  put_text(b, "$Entities\n");
+  SIZES(1, 1, 1, 0);
+  INTS(1);
+  REALS(0.0, 0.0, 0.0);
+  SIZES(1);
+  INTS(3, 6);
+  REALS(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
+  SIZES(1);
+  INTS(-2);
+  SIZES(0);
+  INTS(5);
+  REALS(0.0, 0.0, 0.0, 1.0, 1.0, 0.0);
+  SIZES(1);
+  INTS(1);
+  SIZES(1);
+  INTS(6);
+  put_text(b, "\n$EndEntities\n$Nodes\n");
+  SIZES(1, 4, 1, 4);
+  INTS(2, 5, 0);
+  SIZES(4, 1, 2, 3, 4);
+  REALS(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0);
+  put_text(b, "\n$EndNodes\n$Elements\n");
+  SIZES(3, 4, 7, 10);
+  INTS(2, 5, 2);
+  SIZES(2, 7, 1, 2, 3, 8, 1, 3, 4);
+  INTS(1, 6, 1);
+  SIZES(1, 9, 1, 2);
+  INTS(0, 1, 15);
+  SIZES(1, 10, 1);
+  put_text(b, "\n$EndElements\n");
+}
+
+/* All six as bytes: two texts, each version in both orders. */
+static void variant(int i, bytes *b) {
+  memset(b, 0, sizeof *b);
+  b->swap = i % 2;
+  if (i < 2) {
+    b->swap = 0;
+    put_text(b, texts[i]);
+  } else if (i < 4) {
+    binary_22(b);
+  } else {
+    binary_41(b);
+  }
+}
+
+START_TEST(all_variants_give_the_same_mesh) {
+  mesh_file f;
+  bytes b;
+  mesh *first = NULL;
+  const char *what;
+  mesh_file_open(&f);
+  for (int i = 0; i < 6; ++i) {
+    variant(i, &b);
+    mesh_file_write(&f, "v.msh", b.data, b.n);
+    mesh *m = mesh_file_read(&f, "v.msh", 1.0, 0, NULL);
+    ck_assert_msg(m != NULL, "%d: %s", i, f.messages);
+    ck_assert_int_eq(m->n_elem, 2);
+    ck_assert_int_eq(m->n_face, 1);
+    ck_assert_uint_eq(m->elem_no[0] + m->elem_no[1], 7 + 8);
+    if (first == NULL) first = m;
+    ck_assert_msg(mesh_same(first, m, 0.0, &what), "%d: %s", i, what);
+    if (m != first) mesh_free(m);
+  }
+  mesh_free(first);
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* The last byte is a newline, the only one that may be lost. */
+START_TEST(file_cut_anywhere_is_refused) {
+  mesh_file f;
+  bytes b;
+  mesh_file_open(&f);
+  for (int i = 0; i < 6; ++i) {
+    variant(i, &b);
+    for (size_t cut = 1; cut + 1 < b.n; ++cut) {
+      mesh_file_write(&f, "cut.msh", b.data, cut);
+      mesh *m = mesh_file_read(&f, "cut.msh", 1.0, 0, NULL);
+      ck_assert_msg(m == NULL && f.answer == ERR_MESH, "%d: byte %zu: %s", i,
+                    cut, f.messages);
+    }
+  }
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* Each line left out, then each twice; and each word in the last lines of the
+ * nodes shortened to nothing by its line. */
+START_TEST(file_without_a_line_or_with_one_twice_is_refused) {
+  mesh_file f;
+  mesh_file_open(&f);
+  for (int i = 0; i < 2; ++i)
+    for (const char *p = texts[i], *q; *p != '\0'; p = q) {
+      char text[2048];
+      q = strchr(p, '\n') + 1;
+      for (int twice = 0; twice < 2; ++twice) {
+        snprintf(text, sizeof text, "%.*s%s", (int)(p - texts[i]), texts[i], q);
+        if (twice)
+          snprintf(text, sizeof text, "%.*s%s", (int)(q - texts[i]), texts[i],
+                   p);
+        ck_assert_msg(mesh_file_text(&f, "line.msh", text) == NULL &&
+                          f.answer == ERR_MESH,
+                      "%d: %d: %.*s", i, twice, (int)(q - p), p);
+      }
+    }
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* Each word in the place of every number of the file: no large block of
+ * memory, whatever it says. */
+START_TEST(counts_are_compared_with_the_file_first) {
+  static const char *const word[] = {"999999999", "2305843009213693952",
+                                     "9223372036854775807", "-1", "1e9"};
+  mesh_file f;
+  mesh_file_open(&f);
+  for (int i = 0; i < 2; ++i)
+    for (size_t at = 0; texts[i][at] != '\0'; ++at) {
+      if (at == 0 || strchr(" \n", texts[i][at - 1]) == NULL) continue;
+      size_t n = strcspn(texts[i] + at, " \n");
+      for (size_t k = 0; k < sizeof word / sizeof *word; ++k) {
+        char text[2048];
+        snprintf(text, sizeof text, "%.*s%s%s", (int)at, texts[i], word[k],
+                 texts[i] + at + n);
+        size_t before = memory_allocated();
+        mesh_free(mesh_file_text(&f, "n.msh", text));
+        ck_assert_msg(memory_allocated() - before < 200000, "%s", text);
+      }
+    }
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* Each byte of the binary files with all bits turned, likewise. */
+START_TEST(damaged_bytes_take_no_memory) {
+  mesh_file f;
+  bytes b;
+  mesh_file_open(&f);
+  for (int i = 2; i < 6; ++i) {
+    variant(i, &b);
+    for (size_t at = 0; at < b.n; ++at) {
+      b.data[at] = (char)~b.data[at];
+      size_t before = memory_allocated();
+      mesh_file_write(&f, "bits.msh", b.data, b.n);
+      mesh_free(mesh_file_read(&f, "bits.msh", 1.0, 0, NULL));
+      ck_assert_uint_lt(memory_allocated() - before, 200000);
+      b.data[at] = (char)~b.data[at];
+    }
+  }
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* clang-format off */
+static const struct { const char *from, *to, *message; } damages[] = {
+  {"4\n1 0 0 0", "5\n1 0 0 0", ":16: \"$EndNodes\" where a whole number"},
+  {"4\n1 0 0 0", "3\n1 0 0 0", ":15: \"4\" where $EndNodes"},
+  {"4\n7 2", "3\n7 2", ":22: \"10\" where $EndElements"},
+  {"1 0 0 0", "1 0 0", ":12: the line ends where a number is expected"},
+  {"1 0 0 0", "1 0 0 0 0", ":12: \"0\" where the end of the line is expected"},
+  {"1 0 0 0", "1 0 0 0x1", ":12: \"0x1\" where a number is expected"},
+  {"1 0 0 0", "1 0 0 1e", ":12: \"1e\" where a number is expected"},
+  {"1 0 0 0", "1 0 0 1,5", ":12: \"1,5\" where a number is expected"},
+  {"1 0 0 0", "1 0 0 1.5+3", ":12: \"1.5+3\" where a number is expected"},
+  {"1 0 0 0", "1.0 0 0 0", ":12: \"1.0\" where a whole number"},
+  {"1 0 0 0", "0 0 0 0", ":12: a number is not above zero"},
+  {"1 0 0 0", "-1 0 0 0", ":12: \"-1\" where a whole number not below zero"},
+  {"1 0 0 0", "1 0 0 \033[2J", ":12: \"?[2J\" where a number is expected"},
+  {"2 1 \"BODY\"", "1 2 \"BODY\"", ":8: the group 2 of dimension 1 is named"},
+  {"2 1 \"BODY\"", "2 1 \"BODY", ":8: a name has no end"},
+  {"7 2 2 1 5 1 2 3", "7 2 2 1 5 1 2", ":19: the line ends where a whole"},
+  {"7 2 2", "7 99 2", ":19: elements of type 99 are not known"},
+  {"7 2 2", "7 2 -2", ":19: a number of tags below zero"},
+  {"$EndNodes\n", "$EndNodes\n$Nodes\n0\n$EndNodes\n", ":18: $Nodes stands "
+   "there twice"},
+  {"$Nodes", "SystemCall \"id\";\n$Nodes", ":10: \"SystemCall\" where $ and"},
+  {"$Nodes", "$Other\n1 2\n$Nodes", ":11: $Other has no $EndOther"},
+  {"2.2 0 8", "2.2 0 4", ":3: $MeshFormat has file type 0, data size 4"},
+  {"2.2 0 8", "2.2 7 8", ": byte 20: $MeshFormat has file type 7, data size 8"},
+};
+/* clang-format on */
+
+START_TEST(damage_is_told_with_its_line) {
+  mesh_file f;
+  mesh_file_open(&f);
+  for (size_t i = 0; i < sizeof damages / sizeof *damages; ++i) {
+    char text[2048], wanted[256];
+    const char *at = strstr(text_22, damages[i].from);
+    ck_assert_ptr_nonnull(at);
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - text_22), text_22,
+             damages[i].to, at + strlen(damages[i].from));
+    ck_assert_ptr_null(mesh_file_text(&f, "d.msh", text));
+    snprintf(wanted, sizeof wanted, "P3006: mesh file %s%s",
+             mesh_file_path(&f, "d.msh"), damages[i].message);
+    ck_assert_msg(strstr(f.messages, wanted) != NULL, "wanted %s\ngot %s",
+                  wanted, f.messages);
+  }
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* Other sections, CRLF, comments, empty lines and blanks change nothing. */
+START_TEST(what_is_no_mesh_is_passed_over) {
+  mesh_file f;
+  mesh_file_open(&f);
+  char text[4096];
+  int n = snprintf(text, sizeof text,
+                   "$Comments\n$Nodes are below\n$EndComments\n\n%s"
+                   "$Periodic\n1\n0 2 1\n1\n4 1\n$EndPeriodic\n"
+                   "$NodeData\n1\n\"T\"\n$EndNodeData\n\n \n",
+                   text_22);
+  char crlf[8192];
+  int k = 0;
+  for (int i = 0; i < n; ++i) {
+    if (text[i] == '\n') crlf[k++] = '\r';
+    crlf[k++] = text[i];
+  }
+  mesh *plain = mesh_file_text(&f, "plain.msh", text_22);
+  mesh *m = mesh_file_text(&f, "other.msh", text);
+  ck_assert_msg(m != NULL && f.messages[0] == '\0', "%s", f.messages);
+  mesh_file_write(&f, "crlf.msh", crlf, (size_t)k);
+  mesh *dos = mesh_file_read(&f, "crlf.msh", 1.0, 0, NULL);
+  ck_assert_msg(dos != NULL && f.messages[0] == '\0', "%s", f.messages);
+  const char *what;
+  ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
+  ck_assert_msg(mesh_same(plain, dos, 0.0, &what), "%s", what);
+  mesh_free(plain);
+  mesh_free(m);
+  mesh_free(dos);
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* Elements on entities of partitions belong to the groups of those. */
+START_TEST(partitions_have_their_groups) {
+  static const char parts[] =
+      "$PartitionedEntities\n1\n1\n9 1\n1 1 1 0\n1 0 1 1 1 0 0 0 1 3\n"
+      "6 1 6 1 1 0 0 0 1 0 0 1 2 0\n5 2 5 1 1 0 0 0 1 1 0 1 1 1 6\n"
+      "$EndPartitionedEntities\n";
+  mesh_file f;
+  mesh_file_open(&f);
+  char text[4096];
+  const char *from = strstr(text_41, "$Entities"),
+             *to = strstr(text_41, "$Nodes");
+  snprintf(text, sizeof text, "%.*s%s%s", (int)(from - text_41), text_41, parts,
+           to);
+  mesh *plain = mesh_file_text(&f, "plain.msh", text_41);
+  mesh *m = mesh_file_text(&f, "parts.msh", text);
+  ck_assert_msg(m != NULL, "%s", f.messages);
+  const char *what;
+  ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
+  mesh_free(plain);
+  mesh_free(m);
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* Correctly rounded, whatever the number of digits. */
+START_TEST(coordinates_are_the_nearest_doubles) {
+  mesh_file f;
+  mesh_file_open(&f);
+  unsigned long random = 1;
+  char line[65536];
+  double wanted[1000];
+  int n = 0;
+  for (int i = 0; i < 1000; ++i) {
+    char word[400];
+    random = random * 6364136223846793005u + 1442695040888963407u;
+    double v = (double)(random >> 11) * ldexp(1.0, (int)(random % 200) - 150);
+    int digits = i % 7 == 0 ? 300 : 1 + i % 22;
+    snprintf(word, sizeof word, i % 3 ? "%.*e" : "%.*g",
+             digits > 100 ? 100 : digits, i % 5 ? v : 0.5 + 1.0 / (i + 1));
+    wanted[i] = strtod(word, NULL);
+    n += snprintf(line + n, sizeof line - (size_t)n, "%s ", word);
+  }
+  mesh_file_write(&f, "numbers", line, (size_t)n);
+  scan s;
+  ck_assert_int_eq(scan_open(&s, mesh_file_path(&f, "numbers"), ERR_MESH), OK);
+  for (int i = 0; i < 1000; ++i) {
+    double v;
+    ck_assert_int_eq(scan_real(&s, &v), OK);
+    ck_assert_msg(v == wanted[i], "%d: %.17g, not %.17g", i, v, wanted[i]);
+  }
+  scan_close(&s);
+  mesh_file_close(&f);
+}
+END_TEST
+
+START_TEST(reader_gives_back_all_when_refused) {
+  mesh_file f;
+  mesh_file_open(&f);
+  for (int i = 0; i < 2; ++i) {
+    mesh_file_write(&f, "m.msh", texts[i], strlen(texts[i]));
+    size_t before = memory_in_use();
+    int k = 1;
+    for (;; ++k) {
+      raw_mesh *raw;
+      memory_refuse(k, 0);
+      status st = msh_read(mesh_file_path(&f, "m.msh"), &raw);
+      memory_refuse(0, 0);
+      raw_free(raw);
+      ck_assert_uint_eq(memory_in_use(), before);
+      if (st == OK) break;
+      ck_assert_int_eq(st, ERR_MEMORY);
+    }
+    ck_assert_int_gt(k, 15);
+  }
+  mesh_file_close(&f);
+}
+END_TEST
+
+UNIT_MAIN("msh", all_variants_give_the_same_mesh, file_cut_anywhere_is_refused,
+          file_without_a_line_or_with_one_twice_is_refused,
+          counts_are_compared_with_the_file_first, damaged_bytes_take_no_memory,
+          damage_is_told_with_its_line, what_is_no_mesh_is_passed_over,
+          partitions_have_their_groups, coordinates_are_the_nearest_doubles,
+          reader_gives_back_all_when_refused)
