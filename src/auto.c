@@ -28,8 +28,7 @@ static int has_failed(const watcher *w, status run, int unsettled) {
 }
 
 static int is_final(status run) {
-  return run == ERR_INTERRUPTED || run == ERR_TERMINATED || run == ERR_MEMORY ||
-         run == ERR_FILE;
+  return status_is_request(run) || run == ERR_MEMORY || run == ERR_FILE;
 }
 
 /* A run without the rows that are not back; *again: some are now. */

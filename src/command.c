@@ -60,7 +60,8 @@ static const char *const exit_rows[][2] = {
   {"6", "no unique equilibrium: singular, not positive definite, NaN"},
   {"7", "a defect of the program"},
   {"130", "interrupted by SIGINT or a file JOB.stop; the files are whole"},
-  {"143", "the same by SIGTERM"}};
+  {"143", "the same by SIGTERM; 129 SIGHUP, 138 SIGUSR1, 140 SIGUSR2, 152 "
+          "SIGXCPU"}};
 
 static const struct option words[] = {
   {"check", no_argument, NULL, ASK_CHECK},

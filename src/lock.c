@@ -25,8 +25,10 @@ static void read_owner(int fd, char text[64]) {
 static status check_content(const char *path, int fd) {
   status st = OK;
   char text[64];
+  struct stat about;
+  int plain = fstat(fd, &about) == 0 && S_ISREG(about.st_mode);
   read_owner(fd, text);
-  if (text[0] != '\0' && strncmp(text, head, sizeof head - 1) != 0)
+  if (!plain || (text[0] != '\0' && strncmp(text, head, sizeof head - 1) != 0))
     FAIL(ERR_FILE,
          "%s is no lock of Protis, and a run would overwrite it: move it away, "
          "or use -o",
@@ -60,7 +62,8 @@ static status hold(const char *path, const char *job, int *fd) {
   status st = OK;
   do {
     if (*fd >= 0) close(*fd);
-    *fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    *fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
+               0666);
     if (*fd < 0) TRY(text_failed(path, "open for writing", errno));
     TRY(check_content(path, *fd));
     if (flock(*fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)

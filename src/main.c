@@ -14,7 +14,10 @@
 #include "restart.h"
 #include "target.h"
 
+#include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
 
 static status solve(const command *c, job_input *in, int *unsettled) {
   status st = OK;
@@ -22,6 +25,7 @@ static status solve(const command *c, job_input *in, int *unsettled) {
   archive *from = NULL;
   char *stop = text_path(c->dir, in->m->job, "stop");
   if (stop == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  TRY(output_spare_inputs(in->m, c->dir));
   TRY(job_lock_take(c->dir, in->m->job, &lock));
   interrupt_catch(stop);
   if (c->restart) TRY(restart_read(c, in, &from));
@@ -60,10 +64,9 @@ done:
 static int report(status st, const message_log *log, int unsettled) {
   int told = log != NULL && message_count(log, ERROR) > 0 && st != ERR_MEMORY &&
              st != ERR_INTERNAL;
-  int stopped = st == ERR_INTERRUPTED || st == ERR_TERMINATED;
   if (st != OK && !told)
     fprintf(stderr, "protis: %s%s\n",
-            stopped ? "" : "error: ", status_message());
+            status_is_request(st) ? "" : "error: ", status_message());
   if (st == ERR_INTERNAL || st == ERR_MEMORY)
     fprintf(stderr, "protis: in %s\n", status_path());
   if (st == OK && unsettled > 0) {
@@ -76,10 +79,21 @@ static int report(status st, const message_log *log, int unsettled) {
   return status_exit_code(st);
 }
 
+/* No file of the job gets the number of a stream that was closed; HDF5 locks
+ * no file: the job does (lock.h), and not every file system can. */
+static void prepare_process(void) {
+  int fd;
+  do fd = open("/dev/null", O_RDWR);
+  while (fd >= 0 && fd <= STDERR_FILENO);
+  if (fd > STDERR_FILENO) close(fd);
+  setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
+}
+
 int main(int argc, char **argv) {
   command c;
   message_log *log = NULL;
   int exit_code, unsettled = 0;
+  prepare_process();
   interrupt_crashes();
   blas_choose_kernel(argv);
   interrupt_spare_writes();

@@ -8,6 +8,7 @@
  */
 #include "archive/file.h"
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/text.h"
 
@@ -82,9 +83,10 @@ done:
 static status make_file(const archive *a, const char *path) {
   status st = OK;
   hid_t file = -1, room = H5Pcreate(H5P_FILE_CREATE);
+  TRY(file_clear(path));
   errno = 0;
   if (room >= 0 && H5Pset_userblock(room, ARCHIVE_SEAL) >= 0)
-    file = H5Fcreate(path, H5F_ACC_TRUNC, room, H5P_DEFAULT);
+    file = H5Fcreate(path, H5F_ACC_EXCL, room, H5P_DEFAULT);
   if (file < 0) TRY(text_failed(path, "open for writing", errno));
   TRY(put_items(a, file, path));
   errno = 0;
@@ -108,6 +110,7 @@ status archive_write(archive *a, const char *path, const char *before) {
   if (rename(path, before) != 0 && errno != ENOENT)
     TRY(text_failed(before, "replace", errno));
   if (rename(aside, path) != 0) TRY(text_failed(path, "replace", errno));
+  file_sync_folder(path);
 done:
   if (st != OK && aside != NULL) unlink(aside);
   memory_free(aside);

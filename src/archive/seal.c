@@ -6,6 +6,7 @@
  */
 #include "archive/file.h"
 
+#include "base/file.h"
 #include "base/text.h"
 
 #include <errno.h>
@@ -83,8 +84,9 @@ status archive_check_seal(const char *path) {
   status st = OK;
   content c;
   char text[ARCHIVE_SEAL], wanted[ARCHIVE_SEAL];
-  int fd = open(path, O_RDONLY | O_CLOEXEC);
-  if (fd < 0) TRY(text_failed(path, "read", errno));
+  const char *why;
+  int fd = file_descriptor(AT_FDCWD, path, O_RDONLY, &why);
+  if (fd < 0) FAIL(ERR_FILE, "%s: cannot read: %s", path, why);
   memset(text, 0, sizeof text);
   if (pread(fd, text, sizeof text, 0) < 0)
     TRY(text_failed(path, "read", errno));

@@ -4,12 +4,32 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { SIGNALLED = 128 }; /* exit code of a process that a signal ended      */
 
-static volatile sig_atomic_t caught; /* the first signal, 0: none            */
+/* clang-format off */
+static const struct {
+  int signal_no;
+  status code;
+  const char *name;
+  int urgent; /* 1: the second such one ends the process; the others are sent
+                 again and again, or together                                */
+} requests[] = {
+    {SIGINT,  ERR_INTERRUPTED, "SIGINT",  1},
+    {SIGTERM, ERR_TERMINATED,  "SIGTERM", 1},
+    {SIGHUP,  ERR_HANGUP,      "SIGHUP",  0},
+    {SIGXCPU, ERR_CPU_LIMIT,   "SIGXCPU", 0},
+    {SIGUSR1, ERR_USER_1,      "SIGUSR1", 0},
+    {SIGUSR2, ERR_USER_2,      "SIGUSR2", 0}};
+/* clang-format on */
+enum { REQUESTS = sizeof requests / sizeof *requests };
+
+static volatile sig_atomic_t caught; /* row of the first + 1, 0: none        */
+static volatile sig_atomic_t urgent; /* urgent ones so far                   */
 static const char *file;             /* borrowed                             */
+static struct stat file_before;      /* ino 0: there was none                */
 static int file_seen;
 
 enum {
@@ -19,36 +39,69 @@ static int watching;
 static char stack[STACK]; /* for the handlers: the other may be used up     */
 
 static void note(int signal_no) {
-  if (caught != 0) _exit(SIGNALLED + signal_no);
-  caught = signal_no;
+  int row = 0;
+  while (requests[row].signal_no != signal_no) ++row;
+  if (requests[row].urgent && urgent++) _exit(SIGNALLED + signal_no);
+  if (caught == 0) caught = row + 1;
 }
 
 void interrupt_spare_writes(void) {
   const struct sigaction ignore = {.sa_handler = SIG_IGN};
   sigaction(SIGXFSZ, &ignore, NULL);
+  sigaction(SIGPIPE, &ignore, NULL);
+}
+
+/* What is there, but for a folder. */
+static int look_at(const char *path, struct stat *about) {
+  if (lstat(path, about) == 0 && !S_ISDIR(about->st_mode)) return 1;
+  memset(about, 0, sizeof *about);
+  return 0;
+}
+
+/* Under nohup a hangup is no request. */
+static void catch (int row) {
+  struct sigaction act = {.sa_handler = note, .sa_flags = SA_RESTART}, old;
+  sigemptyset(&act.sa_mask);
+  if (!requests[row].urgent &&
+      sigaction(requests[row].signal_no, NULL, &old) == 0 &&
+      old.sa_handler == SIG_IGN)
+    return;
+  sigaction(requests[row].signal_no, &act, NULL);
 }
 
 void interrupt_catch(const char *stop_file) {
-  struct sigaction act = {.sa_handler = note, .sa_flags = SA_RESTART};
-  sigemptyset(&act.sa_mask);
-  caught = 0;
+  caught = urgent = 0;
   file_seen = 0;
   file = stop_file;
-  if (file != NULL) unlink(file);
-  sigaction(SIGINT, &act, NULL);
-  sigaction(SIGTERM, &act, NULL);
+  if (file != NULL) look_at(file, &file_before);
+  for (int row = 0; row < REQUESTS; ++row) catch (row);
+}
+
+/* 1: the file is another one than at the start, or was touched. */
+static int is_made_to_stop(void) {
+  struct stat now;
+  return look_at(file, &now) &&
+         (now.st_ino != file_before.st_ino ||
+          now.st_dev != file_before.st_dev ||
+          now.st_mtim.tv_sec != file_before.st_mtim.tv_sec ||
+          now.st_mtim.tv_nsec != file_before.st_mtim.tv_nsec);
+}
+
+/* One that was there before stays. */
+static int stops(void) {
+  if (!is_made_to_stop()) return 0;
+  if (file_before.st_ino == 0) unlink(file);
+  return 1;
 }
 
 status interrupt_asked(void) {
-  if (caught == SIGTERM) return ERR_TERMINATED;
-  if (caught != 0) return ERR_INTERRUPTED;
-  if (!file_seen && file != NULL) file_seen = unlink(file) == 0;
+  if (caught != 0) return requests[caught - 1].code;
+  if (!file_seen && file != NULL) file_seen = stops();
   return file_seen ? ERR_INTERRUPTED : OK;
 }
 
 const char *interrupt_name(void) {
-  if (caught == SIGTERM) return "SIGTERM";
-  if (caught != 0) return "SIGINT";
+  if (caught != 0) return requests[caught - 1].name;
   return file_seen ? file : "";
 }
 

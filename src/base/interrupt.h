@@ -1,22 +1,24 @@
 /*
- * Requests to end the run early: SIGINT, SIGTERM, or a file. They only leave a
- * note that the run reads between two increments; a second SIGINT or SIGTERM
- * ends the process at once.
+ * Requests to end the run early: SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1,
+ * SIGUSR2, or a file. They only leave a note that the run reads between two
+ * increments; the second SIGINT or SIGTERM ends the process at once.
  */
 #ifndef PROTIS_BASE_INTERRUPT_H
 #define PROTIS_BASE_INTERRUPT_H
 
 #include "base/status.h"
 
-/* A write beyond the file size limit fails like one on a full disk. */
+/* A write beyond the file size limit, or to a pipe that nobody reads, fails
+ * like one on a full disk. */
 void interrupt_spare_writes(void);
-/* From now on requests are noted; stop_file is borrowed, and removed if it is
- * there from an earlier run. NULL: no file is looked for. */
+/* From now on requests are noted; stop_file is borrowed, NULL: no file is
+ * looked for. One that is there already is no request, but for being touched.
+ */
 void interrupt_catch(const char *stop_file);
-/* OK, or ERR_INTERRUPTED (SIGINT, the file) or ERR_TERMINATED (SIGTERM); the
- * file is then removed. */
+/* OK, or the status of the first request, ERR_INTERRUPTED of a file; that is
+ * then removed if it was made during the run. */
 status interrupt_asked(void);
-/* "SIGINT", "SIGTERM" or the name of the file; "" if nothing was asked. */
+/* "SIGINT" or the like or the name of the file; "" if nothing was asked. */
 const char *interrupt_name(void);
 
 /*

@@ -4,6 +4,9 @@
 #ifndef PROTIS_BASE_SPARSE_H
 #define PROTIS_BASE_SPARSE_H
 
+#include "base/memory.h"
+
+#include <math.h>
 #include <stddef.h>
 
 typedef struct sparse_rows {
@@ -14,9 +17,18 @@ typedef struct sparse_rows {
 } sparse_rows;
 
 /* Frees the arrays and leaves all zero; accepts all-zero. */
-void sparse_free(sparse_rows *rows);
+static inline void sparse_free(sparse_rows *rows) {
+  memory_free(rows->start);
+  memory_free(rows->col);
+  memory_free(rows->val);
+  *rows = (sparse_rows){0};
+}
 
 /* Largest |v_i| of v[n]; 0 for n = 0. NaN is passed over. */
-double largest_entry(size_t n, const double *v);
+static inline double largest_entry(size_t n, const double *v) {
+  double most = 0.0;
+  for (size_t i = 0; i < n; ++i) most = fmax(most, fabs(v[i]));
+  return most;
+}
 
 #endif

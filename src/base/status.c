@@ -55,6 +55,8 @@ int status_exit_code(status s) {
   return (unsigned)s < STATUS_COUNT ? codes[s] : codes[ERR_INTERNAL];
 }
 
+int status_is_request(status s) { return status_exit_code(s) > 128; }
+
 void status_clear(void) {
   message[0] = '\0';
   path[0] = '\0';

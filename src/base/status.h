@@ -22,7 +22,11 @@
                       "definite or not a number")                            \
   X(ERR_INTERNAL,  7, "defect of the program")                               \
   X(ERR_INTERRUPTED, 130, "interrupted by SIGINT or JOB.stop")               \
-  X(ERR_TERMINATED,  143, "interrupted by SIGTERM")
+  X(ERR_HANGUP,    129, "interrupted by SIGHUP")                              \
+  X(ERR_USER_1,    138, "interrupted by SIGUSR1")                             \
+  X(ERR_USER_2,    140, "interrupted by SIGUSR2")                             \
+  X(ERR_TERMINATED,  143, "interrupted by SIGTERM")                           \
+  X(ERR_CPU_LIMIT,   152, "interrupted by SIGXCPU")
 /* clang-format on */
 
 #define STATUS_ENUM(name, exit_code, text) name,
@@ -55,6 +59,7 @@ const char *status_path(void);    /* functions passed, innermost first   */
 const char *status_name(status s);
 const char *status_text(status s);
 int status_exit_code(status s);
+int status_is_request(status s); /* 1: to end early, see base/interrupt.h     */
 void status_clear(void);
 
 #endif

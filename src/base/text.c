@@ -3,10 +3,12 @@
  */
 #include "base/text.h"
 
+#include "base/file.h"
 #include "base/memory.h"
 
 #include <ctype.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,27 +32,40 @@ status text_failed(const char *path, const char *doing, int error_no) {
                      error_no != 0 ? strerror(error_no) : "unknown reason");
 }
 
-static status open_as(text_file *t, const char *path, const char *mode,
-                      const char *doing, int by_line) {
+static status take(text_file *t, const char *path, FILE *f, int by_line) {
   status st = OK;
+  t->f = f;
   t->path = memory_text(path);
   if (t->path == NULL)
     FAIL(ERR_MEMORY, "memory exhausted: the name of %s", path);
-  errno = 0;
-  t->f = fopen(path, mode);
-  if (t->f == NULL) TRY(text_failed(path, doing, errno));
-  setvbuf(t->f, NULL, by_line ? _IOLBF : _IOFBF, BUFFER);
+  setvbuf(f, NULL, by_line ? _IOLBF : _IOFBF, BUFFER);
 done:
   return st;
 }
 
 status text_open(text_file *t, const char *path, int by_line) {
-  return open_as(t, path, "w", "open for writing", by_line);
+  status st = OK;
+  TRY(file_clear(path));
+  errno = 0;
+  FILE *f = fopen(path, "wx");
+  if (f == NULL) TRY(text_failed(path, "open for writing", errno));
+  TRY(take(t, path, f, by_line));
+done:
+  return st;
 }
 
 status text_reopen(text_file *t, const char *path, int by_line, long length) {
   status st = OK;
-  TRY(open_as(t, path, "r+", "open to go on with it", by_line));
+  const char *why = NULL;
+  FILE *f = NULL;
+  int fd = file_descriptor(AT_FDCWD, path, O_RDWR | O_NOFOLLOW, &why);
+  if (fd >= 0 && (f = fdopen(fd, "r+")) == NULL) {
+    why = strerror(errno);
+    close(fd);
+  }
+  if (f == NULL)
+    FAIL(ERR_FILE, "%s: cannot open to go on with it: %s", path, why);
+  TRY(take(t, path, f, by_line));
   if (fseek(t->f, 0, SEEK_END) != 0) TRY(text_failed(path, "read", errno));
   if (ftell(t->f) < length)
     FAIL(ERR_FILE, "%s is shorter than when the restart file was written",

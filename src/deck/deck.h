@@ -74,7 +74,9 @@ typedef struct deck {
   card *cards;
   symbol *symbols; /* [n_symbol] *PARAMETER and -D                     */
   int n_file;
-  const char **files;    /* [n_file] the deck and its includes, as read      */
+  const char **files; /* [n_file] the deck and its includes, as read      */
+  int n_input;
+  const char **inputs;   /* [n_input] all files the deck names, itself first */
   struct deck_text *own; /* strings, files, expressions: private             */
 } deck;
 
@@ -97,9 +99,11 @@ int deck_formula(deck *d, const field *f, const char *const names[4],
                  message_log *log, const expression **out);
 int deck_real(const field *f, message_log *log, double *out);
 int deck_int(const field *f, message_log *log, int *out);
-/* Name of a file in a card, relative to the file the card stands in; owned by
- * the deck. NULL without memory. */
+/* Name of a file in a card, relative to the file the card stands in; one of the
+ * inputs from now on, owned by the deck. NULL without memory. */
 const char *deck_path(deck *d, const field *f);
+/* Another file that is read: the text is borrowed. ERR_MEMORY. */
+status deck_input(deck *d, const char *path);
 /* Symbol by name for expressions: a symbol_value_fn whose ctx is the deck. */
 int deck_symbol(const void *deck_, const char *name, double *value);
 

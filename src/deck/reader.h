@@ -30,7 +30,7 @@ typedef struct chunk chunk;
 
 struct deck_text {
   chunk *last; /* strings, places and fields, newest chunk first      */
-  int card_capacity, symbol_capacity, file_capacity;
+  int card_capacity, symbol_capacity, file_capacity, input_capacity;
   int n_slot; /* size of the hash table: a power of two, or 0        */
   int *slot;  /* [n_slot] symbol number from 1; 0: free              */
   int n_expression, expression_capacity;

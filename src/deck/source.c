@@ -177,6 +177,14 @@ done:
   return st;
 }
 
+status deck_input(deck *d, const char *path) {
+  status st = OK;
+  GROW(d->inputs, d->n_input, d->own->input_capacity);
+  d->inputs[d->n_input++] = path;
+done:
+  return st;
+}
+
 status source_open(deck *d, message_log *log, const char *file, const place *at,
                    source **top) {
   status st = OK;
@@ -190,6 +198,7 @@ status source_open(deck *d, message_log *log, const char *file, const place *at,
     s->from = store_place(d, at);
     if (s->from == NULL) FAIL(ERR_MEMORY, "memory exhausted: place");
   }
+  if (at == NULL) TRY(deck_input(d, s->file));
   if (open_stream(s, log, at) != 0) goto done;
   TRY(note_file(d, s->file));
   *top = s;

@@ -125,6 +125,7 @@ void deck_free(deck *d) {
   memory_free(d->cards);
   memory_free(d->symbols);
   memory_free((void *)d->files);
+  memory_free((void *)d->inputs);
   if (d->own != NULL) {
     for (int i = 0; i < d->own->n_expression; ++i)
       expression_free(d->own->expressions[i]);

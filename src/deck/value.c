@@ -97,5 +97,5 @@ const char *deck_path(deck *d, const field *f) {
   if (path == NULL) return NULL;
   if (folder > 0) memcpy(path, f->at.file, folder);
   memcpy(path + folder, f->text, n + 1);
-  return path;
+  return deck_input(d, path) == OK ? path : NULL;
 }

@@ -14,6 +14,7 @@
  */
 #include "hdf5/file.h"
 
+#include "base/file.h"
 #include "base/memory.h"
 
 #include <errno.h>
@@ -97,12 +98,13 @@ static void drop_copies(hdf5_file *h) {
  * written again. */
 static status earlier_file(hdf5_file *h, const hdf5_count *before) {
   status st = OK;
+  const char *why;
+  h->fd = file_descriptor(AT_FDCWD, h->path, O_RDWR, &why);
+  if (h->fd < 0) FAIL(ERR_FILE, "%s: cannot go on with it: %s", h->path, why);
   TRY(hdf5_layout_read(h, &h->now));
   if (h->now.n_row < before->rows || h->now.n_record < before->records)
     FAIL(ERR_FILE, "%s holds less than when the restart file was written",
          h->path);
-  h->fd = open(h->path, O_RDWR | O_CLOEXEC);
-  if (h->fd < 0) TRY(text_failed(h->path, "open", errno));
   h->n_row = before->rows;
   h->n_record = h->cap_time = before->records;
   size_t bytes = (size_t)h->n_record * sizeof *h->times;

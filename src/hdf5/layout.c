@@ -4,6 +4,7 @@
  */
 #include "hdf5/file.h"
 
+#include "base/file.h"
 #include "base/memory.h"
 
 #include <errno.h>
@@ -23,8 +24,9 @@ static status maker_failed(const maker *k, const char *doing) {
 static status open_maker(maker *k) {
   status st = OK;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  TRY(file_clear(k->path));
   errno = 0;
-  k->file = H5Fcreate(k->path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  k->file = H5Fcreate(k->path, H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT);
   if (k->file < 0) TRY(maker_failed(k, "create"));
   k->with_groups = H5Pcreate(H5P_LINK_CREATE);
   k->plain = H5Pcreate(H5P_DATASET_CREATE);

@@ -5,6 +5,8 @@
  */
 #include "hdf5/file.h"
 
+#include "base/file.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -123,18 +125,6 @@ done:
   return st;
 }
 
-/* The new name must survive a power failure as well; best effort. */
-static void sync_folder(const char *path) {
-  char folder[4096];
-  snprintf(folder, sizeof folder, "%s", path);
-  char *slash = strrchr(folder, '/');
-  if (slash != NULL) slash[slash == folder ? 1 : 0] = '\0';
-  int fd = open(slash != NULL ? folder : ".", O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return;
-  if (fsync(fd) != 0) errno = 0;
-  close(fd);
-}
-
 static status fill_aside(hdf5_file *h, int fd, const hdf5_layout *l) {
   status st = OK;
   TRY(reserve(h, fd));
@@ -157,7 +147,7 @@ status hdf5_renew(hdf5_file *h, int n_row, int n_record) {
   TRY(fill_aside(h, fd, &l));
   if (rename(h->aside, h->path) != 0)
     TRY(text_failed(h->path, "replace", errno));
-  sync_folder(h->path);
+  file_sync_folder(h->path);
   if (h->fd >= 0) close(h->fd);
   hdf5_layout_free(&h->now);
   h->fd = fd;

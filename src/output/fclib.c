@@ -12,6 +12,7 @@
  * Only Coulomb friction of each node by itself has a place in this layout. A
  * prescribed tangential unknown has no force and no motion: q_T = 0 there.
  */
+#include "base/file.h"
 #include "base/memory.h"
 #include "output/writers.h"
 
@@ -334,7 +335,9 @@ static status write_all(written *f, const double *v, const char *title,
                         const char *description) {
   status st = OK;
   if (f->local) turn_matrix(f->cp, f->M);
-  f->file = H5Fcreate(f->path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  TRY(file_clear(f->path));
+  errno = 0;
+  f->file = H5Fcreate(f->path, H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT);
   if (f->file < 0) TRY(text_failed(f->path, "write", errno));
   TRY(f->local ? write_local(f) : write_global(f));
   TRY(write_info(f, title, description));

@@ -32,9 +32,6 @@ job job_of(const output *o); /* borrows from o                               */
 /* sink.c: JOB.xdmf with the records so far; "all": even if it was written just
  * before. */
 status output_show_records(output *o, int all);
-/* ERR_DECK if the file is one that the deck reads: it is no result and must
- * stay. */
-status output_spare_input(const output *o, const char *path);
 
 /* Lengths of the text files, bytes, -1: there is none; rows of JOB.h5. */
 typedef struct file_ends {

@@ -4,10 +4,10 @@
  */
 #include "output/open.h"
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/timer.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -37,18 +37,7 @@ static status remove_old(const output *o, const char *suffix) {
   status st = OK;
   char *path = text_path(o->o.dir, o->m->job, suffix);
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  if (unlink(path) != 0 && errno != ENOENT)
-    TRY(text_failed(path, "remove the earlier", errno));
-done:
-  memory_free(path);
-  return st;
-}
-
-static status spare_suffix(const output *o, const char *suffix) {
-  status st = OK;
-  char *path = text_path(o->o.dir, o->m->job, suffix);
-  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  TRY(output_spare_input(o, path));
+  TRY(file_clear(path));
 done:
   memory_free(path);
   return st;
@@ -118,11 +107,6 @@ done:
 
 static status open_all(output *o) {
   status st = OK;
-  static const char *const results[] = {"lst",    "sta",        "cvg",    "dat",
-                                        "h5",     "xdmf",       "json",   "tmp",
-                                        "rst.h5", "rst.old.h5", "rst.tmp"};
-  for (size_t k = 0; k < sizeof results / sizeof *results; ++k)
-    TRY(spare_suffix(o, results[k]));
   o->json = text_path(o->o.dir, o->m->job, "json");
   o->xdmf = text_path(o->o.dir, o->m->job, "xdmf");
   if (o->json == NULL || o->xdmf == NULL)

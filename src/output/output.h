@@ -10,6 +10,9 @@
 
 typedef struct output output;
 
+/* ERR_DECK if a file that the run writes or removes is one that its deck reads,
+ * under whatever name. Before anything is touched. */
+status output_spare_inputs(const model *m, const char *dir);
 /* Open all files of the job: the text files, flushed line by line, and JOB.h5
  * with room for all increments foreseen. JOB.xdmf and JOB.json of an earlier
  * run, and its restart files, are removed. ERR_FILE names the file. The options

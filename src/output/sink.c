@@ -8,7 +8,6 @@
 #include "base/timer.h"
 
 #include <stdio.h>
-#include <sys/stat.h>
 #include <time.h>
 
 enum { XDMF_PAUSE = 1 };
@@ -71,28 +70,6 @@ static status write_fields(output *o, const state *s) {
   return st;
 }
 
-static int same_file(const char *a, const char *b) {
-  struct stat one, other;
-  if (a == NULL || stat(a, &one) != 0 || stat(b, &other) != 0) return 0;
-  return one.st_dev == other.st_dev && one.st_ino == other.st_ino;
-}
-
-status output_spare_input(const output *o, const char *path) {
-  status st = OK;
-  const model *m = o->m;
-  static const char advice[] =
-      "the results would overwrite its file; name the deck or the file "
-      "otherwise, or use -o";
-  if (same_file(m->problem_file, path))
-    FAIL(ERR_DECK, "deck line %d: *CONDENSED PROBLEM, FILE=%s: %s",
-         m->problem_at.line_no, m->problem_file, advice);
-  if (same_file(m->start.file, path))
-    FAIL(ERR_DECK, "deck line %d: *INITIAL CONDITIONS, FILE=%s: %s",
-         m->start.file_at.line_no, m->start.file, advice);
-done:
-  return st;
-}
-
 /* The condensed problem, where asked for; of an attempt that failed without a
  * solution, replaced when the increment is mended. */
 static status write_condensed(output *o, const state *s) {
@@ -111,7 +88,6 @@ static status write_condensed(output *o, const state *s) {
            s->increment_no, s->t);
   path = text_path(o->o.dir, name, "h5");
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  TRY(output_spare_input(o, path));
   TRY(fclib_write(s->problem, s->settled ? s->uc : NULL, s->rc, o->m->title,
                   text, path));
 done:

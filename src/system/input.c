@@ -4,13 +4,13 @@
 #define _GNU_SOURCE /* O_PATH */
 #include "system/input.h"
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/text.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { DEEPEST = 64 }; /* folders below the one of the deck                  */
@@ -18,25 +18,9 @@ enum { DEEPEST = 64 }; /* folders below the one of the deck                  */
 static int confined; /* descriptor of that folder + 1; 0: no limit           */
 static char *folder; /* its name with a slash, "" for "."; owned             */
 
-static const int PLAIN = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
 static const int FOLDER = O_PATH | O_DIRECTORY | O_CLOEXEC;
 
 static const char *const outside = "it is not below the folder of the deck";
-
-/* O_NONBLOCK: a FIFO without writer does not wait. */
-static int open_plain(int at, const char *name, int flags, const char **why) {
-  struct stat info;
-  int fd = openat(at, name, PLAIN | flags);
-  if (fd < 0) {
-    *why = flags != 0 && errno == ELOOP ? "it is a symbolic link"
-                                        : strerror(errno);
-    return -1;
-  }
-  if (fstat(fd, &info) == 0 && S_ISREG(info.st_mode)) return fd;
-  *why = S_ISDIR(info.st_mode) ? "it is a folder" : "it is no plain file";
-  close(fd);
-  return -1;
-}
 
 /* The names between the slashes of a path, "." left out and ".." taken back;
  * *path is cut. Their number, or -1 if the path leads out. */
@@ -72,13 +56,13 @@ static int open_below(char *path, const char **why) {
     at = next;
   }
   if (at < 0) return -1;
-  int fd = open_plain(at, part[n - 1], O_NOFOLLOW, why);
+  int fd = file_descriptor(at, part[n - 1], O_RDONLY | O_NOFOLLOW, why);
   if (at != confined - 1) close(at);
   return fd;
 }
 
 int input_open(const char *path, const char **why) {
-  if (!confined) return open_plain(AT_FDCWD, path, 0, why);
+  if (!confined) return file_descriptor(AT_FDCWD, path, O_RDONLY, why);
   size_t skip = strlen(folder);
   *why = outside;
   if (strncmp(path, folder, skip) != 0) return -1;

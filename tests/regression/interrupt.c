@@ -47,6 +47,20 @@ static void into(const job *j, const char *file, int fd) {
   if (to < 0 || dup2(to, fd) < 0) _exit(99);
 }
 
+/* What a batch system or a lost terminal sends. */
+static const struct {
+  int number, code;
+  const char *told;
+} requests[] = {{SIGHUP, 129, "interrupted by SIGHUP"},
+                {SIGUSR1, 138, "interrupted by SIGUSR1"},
+                {SIGUSR2, 140, "interrupted by SIGUSR2"},
+                {SIGXCPU, 152, "interrupted by SIGXCPU"},
+                {SIGINT, 130, "interrupted by SIGINT"},
+                {SIGTERM, 143, "interrupted by SIGTERM"}};
+
+/* So many of them are ignored at the start of the next job: nohup. */
+static size_t n_ignored;
+
 /* Start the job; file_limit: bytes, 0 none. */
 static pid_t start(const job *j, rlim_t file_limit) {
   char deck[200];
@@ -58,6 +72,8 @@ static pid_t start(const job *j, rlim_t file_limit) {
   into(j, "stderr.txt", STDERR_FILENO);
   struct rlimit limit = {file_limit, file_limit};
   if (file_limit > 0 && setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(99);
+  for (size_t k = 0; k < sizeof requests / sizeof *requests; ++k)
+    signal(requests[k].number, k < n_ignored ? SIG_IGN : SIG_DFL);
   execl(program(), program(), deck, "--no-timing", (char *)NULL);
   _exit(99);
 }
@@ -169,24 +185,69 @@ static void signal_ends(int signal_no, const char *name, int code) {
 }
 
 START_TEST(signals_end_after_an_increment) {
-  signal_ends(SIGINT, "interrupted by SIGINT", 130);
-  signal_ends(SIGTERM, "interrupted by SIGTERM", 143);
+  for (size_t k = 0; k < sizeof requests / sizeof *requests; ++k)
+    signal_ends(requests[k].number, requests[k].told, requests[k].code);
+}
+END_TEST
+
+/* SIGXCPU comes every second, SIGTERM follows a hangup: the first counts, the
+ * files are closed. */
+START_TEST(signals_come_together) {
+  job j = block(MANY);
+  pid_t pid = start(&j, 0);
+  wait_for(&j, pid, SOME);
+  kill(pid, SIGXCPU);
+  kill(pid, SIGHUP);
+  kill(pid, SIGXCPU);
+  kill(pid, SIGTERM);
+  int code = finish(pid);
+  ck_assert_msg(code == 152 || code == 129 || code == 143, "exit %d", code);
+  ck_assert(job_has(&j, "json") && job_has(&j, "rst.h5"));
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(ignored_signals_stay_ignored) {
+  job j = block(MANY);
+  n_ignored = 4;
+  pid_t pid = start(&j, 0);
+  n_ignored = 0;
+  wait_for(&j, pid, SOME);
+  for (size_t k = 0; k < 4; ++k) kill(pid, requests[k].number);
+  int last, before = lines_of(&j, &last);
+  wait_for(&j, pid, before + SOME);
+  kill(pid, SIGTERM);
+  ck_assert_int_eq(finish(pid), 143);
+  job_end(&j);
 }
 END_TEST
 
 START_TEST(file_ends_after_an_increment) {
   job j = block(MANY);
-  job_write(&j, "block.stop", "\n"); /* of a run before: does not count */
   pid_t pid = start(&j, 0);
   wait_for(&j, pid, SOME);
-  char *stop = job_file(&j, "stop");
-  ck_assert_ptr_null(stop);
   job_write(&j, "block.stop", "\n");
   ck_assert_int_eq(finish(pid), 130);
   check_told(&j, "block.stop", 130);
   check_files(&j);
-  stop = job_file(&j, "stop");
-  ck_assert_ptr_null(stop);
+  ck_assert(!job_has(&j, "stop"));
+  job_end(&j);
+}
+END_TEST
+
+/* One that is there does not count and stays; it counts when it is touched. */
+START_TEST(earlier_file_stays) {
+  job j = block(MANY);
+  job_write(&j, "block.stop", "notes\n");
+  pid_t pid = start(&j, 0);
+  wait_for(&j, pid, SOME);
+  ck_assert(job_has(&j, "stop"));
+  job_write(&j, "block.stop", "more notes\n");
+  ck_assert_int_eq(finish(pid), 130);
+  check_told(&j, "block.stop", 130);
+  char *stop = job_file(&j, "stop");
+  ck_assert_str_eq(stop, "more notes\n");
+  free(stop);
   job_end(&j);
 }
 END_TEST
@@ -261,7 +322,30 @@ START_TEST(other_file_of_that_name_stays) {
 }
 END_TEST
 
-UNIT_MAIN("interrupt", signals_end_after_an_increment,
+/* Bits of the standard streams that are closed. */
+START_TEST(closed_streams_are_no_matter) {
+  static const unsigned closed[] = {3, 5, 6, 7};
+  for (size_t k = 0; k < sizeof closed / sizeof *closed; ++k) {
+    job j = block(2);
+    char deck[200];
+    snprintf(deck, sizeof deck, "%s/%s", j.dir, j.name);
+    pid_t pid = fork();
+    ck_assert_int_ge(pid, 0);
+    if (pid == 0) {
+      for (int fd = 0; fd < 3; ++fd)
+        if (closed[k] >> fd & 1) close(fd);
+      execl(program(), program(), deck, (char *)NULL);
+      _exit(99);
+    }
+    ck_assert_int_eq(finish(pid), 0);
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("interrupt", closed_streams_are_no_matter,
+          signals_end_after_an_increment, signals_come_together,
+          ignored_signals_stay_ignored, earlier_file_stays,
           file_ends_after_an_increment, second_signal_ends_at_once,
           file_size_limit_is_a_failed_write, second_job_of_the_name_is_refused,
           other_file_of_that_name_stays)

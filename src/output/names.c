@@ -1,0 +1,69 @@
+/*
+ * The files that a run writes or removes, by their names; none of them may be
+ * one that the deck reads.
+ */
+#include "base/file.h"
+#include "base/memory.h"
+#include "output/writers.h"
+
+#include <dirent.h>
+#include <string.h>
+
+/* JOB.stop is removed only if it was made during the run. */
+static const char *const results[] = {
+    "lst",    "sta",  "cvg",        "dat",       "h5",
+    "h5.tmp", "xdmf", "xdmf.tmp",   "json",      "json.tmp",
+    "rst.h5", "lock", "rst.h5.tmp", "rst.old.h5"};
+
+static const char middle[] = "_condensed_";
+
+static status spare(const deck *d, const char *path) {
+  status st = OK;
+  for (int i = 0; i < d->n_input; ++i)
+    if (file_same(d->inputs[i], path))
+      FAIL(ERR_DECK,
+           "%s is the file %s that the deck reads: the results would overwrite "
+           "it; name the deck or the file otherwise, or use -o",
+           path, d->inputs[i]);
+done:
+  return st;
+}
+
+static int is_condensed(const char *name, const char *of) {
+  size_t n = strlen(of), k = sizeof middle - 1;
+  return strncmp(name, of, n) == 0 && strncmp(name + n, middle, k) == 0;
+}
+
+static status spare_condensed(const model *m, const char *dir) {
+  status st = OK;
+  char *path = NULL;
+  DIR *folder = opendir(dir);
+  if (folder == NULL) return OK;
+  for (struct dirent *e; (e = readdir(folder)) != NULL;) {
+    if (!is_condensed(e->d_name, m->job)) continue;
+    memory_free(path);
+    NEW(path, strlen(dir) + strlen(e->d_name) + 2);
+    sprintf(path, "%s/%s", dir, e->d_name);
+    TRY(spare(m->deck, path));
+  }
+done:
+  closedir(folder);
+  memory_free(path);
+  return st;
+}
+
+status output_spare_inputs(const model *m, const char *dir) {
+  status st = OK;
+  char *path = NULL;
+  if (m->deck == NULL) return OK;
+  for (size_t k = 0; k < sizeof results / sizeof *results; ++k) {
+    memory_free(path);
+    path = text_path(dir, m->job, results[k]);
+    if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+    TRY(spare(m->deck, path));
+  }
+  TRY(spare_condensed(m, dir));
+done:
+  memory_free(path);
+  return st;
+}
