@@ -128,14 +128,7 @@ static void stiffen(const model *m, material *mat) {
                 mat->name, sum[0], sum[1]);
     return;
   }
-  for (int i = 0; i < mat->elastic.n; ++i) {
-    double *constant = mat->elastic.set[i].constant;
-    const double E = constant[0], nu = constant[1];
-    const double G = E / (2 * (1 + nu)) / (1 - sum[0]);
-    const double K = E / (3 * (1 - 2 * nu)) / (1 - sum[1]);
-    constant[0] = 9 * K * G / (3 * K + G);
-    constant[1] = (3 * K - 2 * G) / (2 * (3 * K + G));
-  }
+  elastic_table_relaxed(&mat->elastic, sum);
   (void)elastic_at(&mat->elastic, 0.0, mat->C, text, (int)sizeof text);
 }
 

@@ -114,6 +114,23 @@ done:
   return st;
 }
 
+/* E, nu of G/(1 - relaxed[0]), K/(1 - relaxed[1]). */
+static void make_whole(const double relaxed[2], double *constant) {
+  const double E = constant[0], nu = constant[1];
+  const double G = E / (2 * (1 + nu)) / (1 - relaxed[0]);
+  const double K = E / (3 * (1 - 2 * nu)) / (1 - relaxed[1]);
+  constant[0] = 9 * K * G / (3 * K + G);
+  constant[1] = (3 * K - 2 * G) / (2 * (3 * K + G));
+}
+
+/* What is given is linear between the sets, so that they stay as they are. */
+void elastic_table_relaxed(elastic_table *t, const double relaxed[2]) {
+  if (t->n == 1)
+    make_whole(relaxed, t->set[0].constant);
+  else
+    memcpy(t->relaxed, relaxed, sizeof t->relaxed);
+}
+
 const char *elastic_at(const elastic_table *t, double T, double C[36],
                        char *text, int text_size) {
   double constant[ELASTIC_MAX];
@@ -128,12 +145,19 @@ const char *elastic_at(const elastic_table *t, double T, double C[36],
     for (int i = 0; i < t->n_constant; ++i)
       constant[i] += part * (high->constant[i] - low->constant[i]);
   }
+  if (t->relaxed[0] > 0 || t->relaxed[1] > 0) make_whole(t->relaxed, constant);
   return elastic_matrix(t->type, t->n_constant, constant, C, text, text_size);
 }
 
 double elastic_table_most(const elastic_table *t, int i) {
   double most = -HUGE_VAL;
-  for (int k = 0; k < t->n; ++k) most = fmax(most, t->set[k].constant[i]);
+  for (int k = 0; k < t->n; ++k) {
+    double constant[ELASTIC_MAX];
+    memcpy(constant, t->set[k].constant, sizeof constant);
+    if (t->relaxed[0] > 0 || t->relaxed[1] > 0)
+      make_whole(t->relaxed, constant);
+    most = fmax(most, constant[i]);
+  }
   return most;
 }
 

@@ -17,6 +17,8 @@ typedef struct elastic_table {
   int n_constant;
   int n;                  /* sets; 0: none is valid, 1: the same everywhere   */
   elastic_constants *set; /* [n] their temperatures ascend, owned             */
+  double relaxed[2]; /* parts of G and K that the sets are without: those of
+                        elastic_at are whole, -                              */
 } elastic_table;
 /* From the data lines of a card: the constants of a set over any number of
  * lines, then its temperature (may be left out if there is one set). Errors go
@@ -27,6 +29,9 @@ status elastic_table_read(const card *c, elastic_type type,
 /* elastic_matrix() of the constants at a temperature. */
 const char *elastic_at(const elastic_table *t, double temperature, double C[36],
                        char *text, int text_size);
+/* The sets of E, nu are what is left after the parts relaxed[2] of G and K have
+ * relaxed. */
+void elastic_table_relaxed(elastic_table *t, const double relaxed[2]);
 /* Largest value of constant number i in any set. */
 double elastic_table_most(const elastic_table *t, int i);
 void elastic_table_free(elastic_table *t); /* accepts all-zero                */

@@ -225,6 +225,25 @@ static void check_moduli(const char *elastic, const char *cards, double shear,
   text_model_close(&s);
 }
 
+/* The long-term constants are those that are linear between the sets. */
+START_TEST(long_term_moduli_between_two_sets) {
+  text_model s;
+  double C[36];
+  char text[256];
+  const double E = 1500, nu = 0.2, G = E / (2 + 2 * nu), K = E / (3 - 6 * nu);
+  read_deck(&s,
+            "\n2000., 0.1, 0.\n1000., 0.3, 100.\n*VISCOELASTIC, TIME=PRONY\n"
+            ".3, .1, 2.\n.2, .15, 9.\n*MATERIAL, NAME=N\n*ELASTIC",
+            "");
+  ck_assert_int_eq(s.st, OK);
+  ck_assert_ptr_null(
+      elastic_at(&s.m->materials[0].elastic, 50.0, C, text, sizeof text));
+  near(C[21], G / .5);
+  near((C[0] + 2 * C[6]) / 3, K / .75);
+  text_model_close(&s);
+}
+END_TEST
+
 START_TEST(moduli_after_all_terms_have_relaxed) {
   const double G = 1000 / 2.6, K = 1000 / 1.2;
   const char *abaqus = "*VISCOELASTIC, TIME=PRONY\n.3, .1, 2.\n.2, .15, 9.";
@@ -268,5 +287,6 @@ END_TEST
 
 UNIT_MAIN("law_card", every_example_reads_as_it_is, every_field_is_checked,
           tables_are_linear_in_temperature, coefficients_may_vary_in_time,
-          creep_cards_of_abaqus, moduli_after_all_terms_have_relaxed,
+          creep_cards_of_abaqus, long_term_moduli_between_two_sets,
+          moduli_after_all_terms_have_relaxed,
           every_refused_request_is_reported)
