@@ -49,21 +49,39 @@ done:
   return st;
 }
 
-/* The stresses of the displacement w[n_dof] alone, over those of the answer. */
-static status compare_stresses(run *r, const double *w) {
+/* Arrays of a body whose answer is looked at. */
+typedef struct misfit {
+  condensed *c;
+  size_t n_stress;
+  double *stress;   /* [n_stress] of the answer, then of w alone, Pa          */
+  double *rest, *w; /* [n_dof] N; m                                           */
+} misfit;
+
+static status misfit_new(const run *r, misfit *x) {
   status st = OK;
-  const size_t n = (size_t)r->m->ns * (size_t)r->msh->n_elem;
-  domain plain = r->d;
-  double *stress = NULL, wrong;
-  plain.eigen = NULL;
-  NEW(stress, n);
-  domain_stress(&plain, w, NULL, stress);
-  wrong = largest_entry(n, stress);
-  r->now.peak_stress = fmax(r->now.peak_stress, largest_entry(n, r->stress));
-  if (wrong > 0.0) r->rounding.stress = wrong / r->now.peak_stress;
+  x->c = r->elastic.c != NULL ? r->elastic.c : r->c;
+  x->n_stress = (size_t)r->m->ns * (size_t)r->msh->n_elem;
+  NEW(x->stress, x->n_stress);
+  NEW(x->rest, r->n_dof);
+  NEW(x->w, r->n_dof);
 done:
-  memory_free(stress);
   return st;
+}
+
+static void misfit_free(misfit *x) {
+  memory_free(x->stress);
+  memory_free(x->rest);
+  memory_free(x->w);
+}
+
+/* The stresses of the displacement w alone, over those of the answer. */
+static void compare_stresses(run *r, misfit *x) {
+  domain plain = r->d;
+  double wrong;
+  plain.eigen = NULL;
+  domain_stress(&plain, x->w, NULL, x->stress);
+  wrong = largest_entry(x->n_stress, x->stress);
+  if (wrong > 0.0) r->rounding.stress = wrong / r->now.peak_stress;
 }
 
 int rounding_is_all(const run *r) {
@@ -85,25 +103,24 @@ static int moves_alone(const run *r) {
          largest_entry((size_t)r->n_c, r->now.rc) == 0.0;
 }
 
-/* What is missing to equilibrium but for contact forces, rest[n_dof], N. */
-static void find_rest(run *r, double *rest) {
-  domain_stress(&r->d, r->now.u, r->strain, r->stress);
-  domain_internal_force(&r->d, r->stress, rest);
-  for (size_t i = 0; i < r->n_dof; ++i) rest[i] = r->now.F[i] - rest[i];
+/* What is missing to equilibrium but for contact forces. */
+static void find_rest(run *r, misfit *x) {
+  domain_stress(&r->d, r->now.u, NULL, x->stress);
+  domain_internal_force(&r->d, x->stress, x->rest);
+  for (size_t i = 0; i < r->n_dof; ++i) x->rest[i] = r->now.F[i] - x->rest[i];
+  r->now.peak_stress =
+      fmax(r->now.peak_stress, largest_entry(x->n_stress, x->stress));
 }
 
-/* The loss that the way w[n_dof] to the exact answer means. */
-static status take_loss(run *r, const double *w, double square) {
-  status st = OK;
+/* The loss that the way w to the exact answer means. */
+static void take_loss(run *r, misfit *x, double square) {
   r->rounding = (rounding_loss){.found = 1, .norm = sqrt(square)};
   if (square > 0.0) {
     r->rounding.energy = sqrt(square / (2.0 * r->now.peak_energy));
     r->rounding.u =
-        largest_entry(r->n_dof, w) / largest_entry(r->n_dof, r->now.u);
+        largest_entry(r->n_dof, x->w) / largest_entry(r->n_dof, r->now.u);
   }
-  TRY(compare_stresses(r, w));
-done:
-  return st;
+  compare_stresses(r, x);
 }
 
 /* 1 for each unknown of the contact problem that contact holds in place. */
@@ -121,8 +138,7 @@ static void find_held(const run *r, const contact_status *touch,
 }
 
 /* Once more: contact holds the body where supports hardly do. */
-static status find_beside_contact(run *r, condensed *c, const double *rest,
-                                  double *w) {
+static status find_beside_contact(run *r, misfit *x) {
   status st = OK;
   contact_status *touch = NULL;
   unsigned char *held = NULL;
@@ -132,9 +148,9 @@ static status find_beside_contact(run *r, condensed *c, const double *rest,
   contact_classify(&r->cp, run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc),
                    touch);
   find_held(r, touch, held);
-  TRY(condensed_misfit_held(c, rest, run_rows(r, 1, r->now.rc), held, w,
-                            &square));
-  if (square < HUGE_VAL) TRY(take_loss(r, w, square));
+  TRY(condensed_misfit_held(x->c, x->rest, run_rows(r, 1, r->now.rc), held,
+                            x->w, &square));
+  if (square < HUGE_VAL) take_loss(r, x, square);
 done:
   memory_free(touch);
   memory_free(held);
@@ -143,20 +159,18 @@ done:
 
 static status find(run *r) {
   status st = OK;
-  condensed *c = r->elastic.c != NULL ? r->elastic.c : r->c;
-  double *rest = NULL, *w = NULL, square = 0.0;
-  NEW(rest, r->n_dof);
-  NEW(w, r->n_dof);
-  find_rest(r, rest);
-  TRY(condensed_misfit(c, rest, run_rows(r, 1, r->now.rc), w, &square));
-  TRY(take_loss(r, w, square));
-  if (leaves_none(&r->rounding, c) && r->n_row > 0)
-    TRY(find_beside_contact(r, c, rest, w));
+  misfit x = {0};
+  double square = 0.0;
+  TRY(misfit_new(r, &x));
+  find_rest(r, &x);
+  TRY(condensed_misfit(x.c, x.rest, run_rows(r, 1, r->now.rc), x.w, &square));
+  take_loss(r, &x, square);
+  if (leaves_none(&r->rounding, x.c) && r->n_row > 0)
+    TRY(find_beside_contact(r, &x));
   if (moves_alone(r)) r->rounding = (rounding_loss){0};
-  TRY(check(r, c));
+  TRY(check(r, x.c));
 done:
-  memory_free(rest);
-  memory_free(w);
+  misfit_free(&x);
   return st;
 }
 

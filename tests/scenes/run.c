@@ -14,13 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum {
-  COLUMNS = 32,
-  DECK = 8000,
-  NOTES = 16000,
-  JOBS = 16,
-  CPU_SECONDS = 1800
-};
+enum { COLUMNS = 32, NOTES = 16000, JOBS = 16, CPU_SECONDS = 1800 };
 
 typedef struct column {
   char label[4];
@@ -56,24 +50,42 @@ static int applies(const column *c, const char *text) {
 /* The deck of a column: marks replaced. */
 static void fill_deck(const char *from, const column *c, char *out) {
   size_t n = 0;
-  for (const char *p = from; *p != '\0' && n < DECK - 100;) {
+  for (const char *p = from; *p != '\0' && n < SCENE_DECK - 100;) {
     if (*p != '@') {
       out[n++] = *p++;
       continue;
     }
     if (p[1] == 'S')
-      n += (size_t)snprintf(out + n, DECK - n, "*SOLVER, METHOD=%s\n",
+      n += (size_t)snprintf(out + n, SCENE_DECK - n, "*SOLVER, METHOD=%s\n",
                             c->solver);
     else if (p[1] == 'V')
-      n += (size_t)snprintf(out + n, DECK - n, "%s",
+      n += (size_t)snprintf(out + n, SCENE_DECK - n, "%s",
                             c->velocity ? ", FORM=VELOCITY" : "");
     else
       n += (size_t)snprintf(
-          out + n, DECK - n, "INTEGRATOR=%s",
+          out + n, SCENE_DECK - n, "INTEGRATOR=%s",
           c->integrator[0] != '\0' ? c->integrator : "MIDPOINT");
     p += 2;
   }
   out[n] = '\0';
+}
+
+static void write_mesh(const scene_row *s, const mesh_change *change,
+                       const job *j, int **number) {
+  char path[100];
+  snprintf(path, sizeof path, "%s/scene.msh", j->dir);
+  FILE *out = fopen(path, "w");
+  if (out == NULL || !scene_mesh_write(out, s->mesh, change, number)) abort();
+  fclose(out);
+}
+
+void scene_prepare(const scene_row *s, const job *j, char text[SCENE_DECK]) {
+  static const column usual = {"AUT", "AUTO", "", 0};
+  int *number = NULL;
+  write_mesh(s, &s->change, j, &number);
+  free(number);
+  snprintf(text, SCENE_DECK, "*MESH, FILE=scene.msh\n");
+  fill_deck(s->deck, &usual, text + strlen(text));
 }
 
 /* A finished run, its exit code and the file numbers of its nodes. */
@@ -86,12 +98,8 @@ typedef struct finished {
 static finished run_one(const scene_row *s, const column *c,
                         const mesh_change *change, const char *words) {
   finished f = {.j = job_begin("scene")};
-  char text[DECK], path[100];
-  snprintf(path, sizeof path, "%s/scene.msh", f.j.dir);
-  FILE *out = fopen(path, "w");
-  if (out == NULL || !scene_mesh_write(out, s->mesh, change, &f.number))
-    abort();
-  fclose(out);
+  char text[SCENE_DECK];
+  write_mesh(s, change, &f.j, &f.number);
   fill_deck(s->deck, c, text);
   job_write(&f.j, "scene.inp", "*MESH, FILE=scene.msh\n%s", text);
   f.code = job_run(&f.j, words == NULL ? "--no-timing" : words);
@@ -267,7 +275,7 @@ static int chosen(const scene_row *s, int quick) {
   return !quick || (s->flags & QUICK) != 0;
 }
 
-static int list_rows(int quick, const scene_row **row) {
+int scenes_list(int quick, const scene_row *row[SCENES]) {
   static const scene_row *const family[] = {
       friction_scenes, contact_scenes, body_scenes, number_scenes, time_scenes};
   int n = 0;
@@ -279,11 +287,11 @@ static int list_rows(int quick, const scene_row **row) {
 
 int scenes_run(int quick, FILE *out) {
   column c[COLUMNS] = {0};
-  const scene_row *row[500];
+  const scene_row *row[SCENES];
   running r[JOBS];
   char *text = NULL;
   size_t size = 0;
-  int n = make_columns(c), n_row = list_rows(quick, row), count[3] = {0};
+  int n = make_columns(c), n_row = scenes_list(quick, row), count[3] = {0};
   const char *wanted = getenv("JOBS");
   int jobs = wanted == NULL ? 1 : atoi(wanted);
   if (jobs < 1 || jobs > JOBS) jobs = 1;

@@ -7,6 +7,7 @@
 #define PROTIS_TESTS_SCENES_H
 
 #include "scenes/mesh.h"
+#include "support/job.h"
 
 #include <stdio.h>
 
@@ -40,6 +41,13 @@ typedef struct scene_row {
 /* A family ends with a row without a name. */
 extern const scene_row friction_scenes[], contact_scenes[], body_scenes[],
     number_scenes[], time_scenes[];
+
+enum { SCENES = 500, SCENE_DECK = 9000 };
+
+/* The rows of all families, or those with the flag QUICK; their number. */
+int scenes_list(int quick, const scene_row *row[SCENES]);
+/* scene.msh into the folder of a job and its deck with METHOD=AUTO. */
+void scene_prepare(const scene_row *s, const job *j, char text[SCENE_DECK]);
 
 /* Run all scenes, or those with the flag QUICK; print the matrix and what went
  * wrong. Number of fails. $SCENE: only scenes whose name has that in it;
