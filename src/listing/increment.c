@@ -31,12 +31,14 @@ static void print_energies(const job *j, const view *v, FILE *f) {
 
 /* Where the condition gives reason to look. */
 static void print_rounding(const state *s, FILE *f) {
-  char norm[NUMBER_SIZE], stress[NUMBER_SIZE];
+  char norm[NUMBER_SIZE], stress[NUMBER_SIZE], u[NUMBER_SIZE];
   if (!s->rounding.found) return;
   fprintf(f,
-          "  rounding: %s %% of the energy norm, %s %% of the largest stress\n",
+          "  rounding: %s %% of the energy norm, %s %% of the largest stress, "
+          "%s %%\n    of the largest displacement\n",
           text_number(norm, 100 * s->rounding.energy, 1),
-          text_number(stress, 100 * s->rounding.stress, 1));
+          text_number(stress, 100 * s->rounding.stress, 1),
+          text_number(u, 100 * s->rounding.u, 1));
 }
 
 static void print_error(const job *j, const state *s, FILE *f) {
@@ -116,6 +118,7 @@ static void print_balance(const job *j, const state *s, FILE *f) {
 static void print_solver(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE];
   const solver_report *r = &s->report;
+  if (s->surface == NULL) return;
   if (j->m->dim > 1)
     fprintf(f, "  contact nodes: open %d, slip %d, stick %d\n", s->n_open,
             s->n_slip, s->n_stick);
@@ -124,6 +127,12 @@ static void print_solver(const job *j, const state *s, FILE *f) {
           r->iterations, r->limit_updates, text_number(text, r->residual, 2));
   if (!j->o->no_timing) fprintf(f, ", cpu %.3f s", r->cpu);
   fputc('\n', f);
+}
+
+/* What was reached, of jobs without contact too. */
+static void print_verdict(const job *j, const state *s, FILE *f) {
+  if (s->note != NULL) fputs(s->note, f);
+  print_solver(j, s, f);
   print_rounding(s, f);
   print_error(j, s, f);
   print_balance(j, s, f);
@@ -147,9 +156,8 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
       j->m->steps[s->step_no - 1].kind != STEP_VISCO)
     fputs("  no inelastic strain grows in this step: it is not *VISCO\n",
           lst->f);
+  print_verdict(j, s, lst->f);
   if (s->surface != NULL) {
-    if (s->note != NULL) fputs(s->note, lst->f);
-    print_solver(j, s, lst->f);
     listing_solutions(s, lst->f);
     listing_theory(j, s, lst->f);
     print_totals(j, &v, lst->f);

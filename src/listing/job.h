@@ -35,6 +35,7 @@ typedef struct increment_summary {
   int n_open, n_slip, n_stick, iterations, settled, outcome;
   double residual, defect;
   error_bound error;
+  rounding_loss rounding;
   int jumps; /* 1: the equilibrium jumps, at jump_t, s                     */
   double jump_t;
   int checked, n_solution;   /* by CHECK= of *SOLVER                          */

@@ -294,6 +294,11 @@ static void write_increment(json *w, const model *m,
     if (s->error.why != NULL)
       json_string(w, "solver_error_missing", s->error.why);
   }
+  if (s->rounding.found) {
+    json_real(w, "rounding_energy_percent", 100 * s->rounding.energy);
+    json_real(w, "rounding_stress_percent", 100 * s->rounding.stress);
+    json_real(w, "rounding_displacement_percent", 100 * s->rounding.u);
+  }
   json_real(w, "energy_defect", s->defect);
   json_flag(w, "settled", s->settled);
   json_string(w, "outcome", outcome_code((outcome)s->outcome));

@@ -59,6 +59,7 @@ status output_remember(output *o, const state *s) {
                            .outcome = s->report.outcome,
                            .residual = s->report.residual,
                            .error = s->error,
+                           .rounding = s->rounding,
                            .mesh_error = s->mesh_error,
                            .time_error = s->time_error,
                            .truth = s->truth,

@@ -75,16 +75,46 @@ static double stress_error(const job *j) {
   return worst;
 }
 
+static const char layers[] =
+    "*MATERIAL, NAME=S\n*ELASTIC\n1., 0.\n"
+    "*MATERIAL, NAME=H\n*ELASTIC\n%s, 0.\n"
+    "*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n"
+    "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n";
+
 static int run_layers(job *j, const char *contrast, const char *supports) {
   char text[400];
   const mesh_change wavy = {.map = {wavy_x, wavy_y}};
-  snprintf(text, sizeof text,
-           "*MATERIAL, NAME=S\n*ELASTIC\n1., 0.\n"
-           "*MATERIAL, NAME=H\n*ELASTIC\n%s, 0.\n"
-           "*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n"
-           "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n",
-           contrast);
+  snprintf(text, sizeof text, layers, contrast);
   return run_pressed(j, "rect 6 8 1 1 layers", &wavy, text, supports);
+}
+
+/* The same on a support in the place of the plane. */
+static int run_supported_layers(job *j, const char *contrast) {
+  char text[400];
+  const mesh_change wavy = {.map = {wavy_x, wavy_y}};
+  snprintf(text, sizeof text, layers, contrast);
+  begin(j, "rect 6 8 1 1 layers", &wavy);
+  job_write(j, "pressed.inp",
+            "*MESH, FILE=pressed.msh\n%s*STEP\n*STATIC\n*BOUNDARY\n"
+            "LEFT, 1\nBOTTOM, 2\n*DSLOAD\nTOP, P, 1.\n"
+            "*PRINT, ELEMENTS, NODES\n*END STEP\n",
+            text);
+  return job_run(j, "--no-timing");
+}
+
+/* Largest error of the displacements of the soft layer below the hard one of
+ * that contrast, over the largest. */
+static double displacement_error(const job *j, double contrast) {
+  dat n = job_table(j, "NODES", -1);
+  double worst = 0.0;
+  for (int i = 0; i < n.n_row; ++i) {
+    const double y = dat_at(&n, i, "y");
+    const double exact = -fmin(y, 0.5) - fmax(y - 0.5, 0.0) / contrast;
+    worst = fmax(worst, fabs(dat_at(&n, i, "u_y") - exact) / 0.5);
+    worst = fmax(worst, fabs(dat_at(&n, i, "u_x")) / 0.5);
+  }
+  dat_free(&n);
+  return worst;
 }
 
 static int run_stiff(job *j, const char *nu, const char *formulation) {
@@ -141,6 +171,25 @@ END_TEST
 START_TEST(no_digit_is_left_of_too_much_contrast) {
   job j;
   int code = run_layers(&j, "1.E15", _i == 0 ? "*BOUNDARY\nLEFT, 1\n" : "");
+  ck_refused(&j, code);
+}
+END_TEST
+
+START_TEST(loss_without_contact_is_told) {
+  static const char *const contrasts[] = {"1.E8", "1.E10", "1.E12", "1.E13"};
+  job j;
+  int code = run_supported_layers(&j, contrasts[_i]);
+  double error = displacement_error(&j, strtod(contrasts[_i], NULL));
+  double loss = 0.01 * job_told(&j, "rounding_displacement_percent");
+  ck_assert_msg(loss >= 0.1 * error && loss <= 10.0 * error + NOISE,
+                "told %g, error %g", loss, error);
+  ck_told(&j, code);
+}
+END_TEST
+
+START_TEST(no_digit_is_left_without_contact) {
+  job j;
+  int code = run_supported_layers(&j, "1.E15");
   ck_refused(&j, code);
 }
 END_TEST
@@ -205,6 +254,8 @@ int main(void) {
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, loss_by_contrast_is_told, 0, 6);
   tcase_add_loop_test(tests, no_digit_is_left_of_too_much_contrast, 0, 2);
+  tcase_add_loop_test(tests, loss_without_contact_is_told, 0, 4);
+  tcase_add_test(tests, no_digit_is_left_without_contact);
   tcase_add_loop_test(tests, loss_near_incompressibility_is_told, 0, 6);
   tcase_add_loop_test(tests, loss_of_thin_elements_is_told, 0, 4);
   tcase_add_test(tests, no_digit_is_left_of_needles);
