@@ -172,9 +172,22 @@ static double displacement_scale(const contact_problem *cp) {
 double contact_scale(const contact_problem *cp) {
   if (cp->A == NULL) return displacement_scale(cp);
   double scale = force_scale(cp, 0);
-  if (!any_gap(cp)) return scale;
-  double closed = force_scale(cp, 1);
-  return closed < scale || isnan(closed) ? closed : scale;
+  if (any_gap(cp)) {
+    double closed = force_scale(cp, 1);
+    if (closed < scale || isnan(closed)) scale = closed;
+  }
+  return larger(scale, ROUNDING_FLOOR * cp->load);
+}
+
+double contact_scale_at(const contact_problem *cp, double scale,
+                        const double *u) {
+  if (cp->A == NULL) return scale;
+  for (int i = 0; i < cp->n; ++i) {
+    const int dof = i * cp->dim;
+    const double way = fmin(fabs(u[dof]), fabs(cp->gap[i]));
+    scale = larger(scale, ROUNDING_FLOOR * diagonal(cp, dof) * way);
+  }
+  return scale;
 }
 
 /* ---- residual ---------------------------------------------------------- */
@@ -261,6 +274,7 @@ double contact_residual_at(const contact_problem *cp, double scale,
                            const double *u, const double *r) {
   double worst = contact_mismatch(cp, u, r);
   worst = larger(worst, equation_defect(cp, u, r));
+  scale = contact_scale_at(cp, scale, u);
   if (isnan(worst) || isnan(scale)) return NAN;
   if (scale > 0.0) return worst / scale;
   return worst > 0.0 ? HUGE_VAL : 0.0;

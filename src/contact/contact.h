@@ -39,6 +39,8 @@ typedef struct contact_problem {
                           prescribed. Its row of A is decoupled (A_ii u_i =
                           f_i), friction acts in the other direction only   */
   int floating; /* A is singular: contact alone holds the body         */
+  double load;  /* N, what loads grow to: forces that are nothing beside their
+                   rounding are nothing (contact_scale); 0: not known    */
 } contact_problem;
 
 typedef enum { CONTACT_OPEN, CONTACT_SLIP, CONTACT_STICK } contact_status;
@@ -62,10 +64,17 @@ void contact_classify(const contact_problem *cp, const double *u,
  * with every gap closed, d_n = gap. If f = A d, u = d without any contact force
  * is a solution: a load that only carries the body along with its obstacle
  * (f and A u large, r small) does not make F large. The second term keeps F
- * above the rounding of the first.
+ * above the rounding of the first; 2^-14 "load" is the least.
  * Compliance form: D = max(|q_t - ut0|, q_n - gap), at least 2^-14 |q|_max.
  */
 double contact_scale(const contact_problem *cp);
+/*
+ * The same at displacements u: at least 2^-14 of diag(A) times what the nodes
+ * have gone of their gaps. A body that falls through a gap under next to no
+ * load has forces that rounding of A u hides: they are right to that.
+ */
+double contact_scale_at(const contact_problem *cp, double scale,
+                        const double *u);
 /*
  * Largest part over the nodes of the natural map, N (m if A is NULL), without
  * the equation A u = f + r:
@@ -79,11 +88,11 @@ double contact_mismatch(const contact_problem *cp, const double *u,
                         const double *r);
 /*
  * How far (u, r) is from a solution: the larger of contact_mismatch and of
- * |A u - f - r|_max (|u - W r - q|_max), over contact_scale. No unit: a change
- * of units by factors 2^k leaves every bit. A residual of 1e-10 is an error of
- * the nodal forces of about 1e-10 of the largest. NaN if anything is NaN; 0 for
- * f = 0, gap >= 0, u = r = 0; HUGE_VAL if the scale is zero and (u, r) is not
- * a solution.
+ * |A u - f - r|_max (|u - W r - q|_max), over contact_scale_at. No unit: a
+ * change of units by factors 2^k leaves every bit. A residual of 1e-10 is an
+ * error of the nodal forces of about 1e-10 of the largest. NaN if anything is
+ * NaN; 0 for f = 0, gap >= 0, u = r = 0; HUGE_VAL if the scale is zero and (u,
+ * r) is not a solution.
  */
 double contact_residual(const contact_problem *cp, const double *u,
                         const double *r);

@@ -578,6 +578,17 @@ const double *condensed_matrix(const condensed *c) { return c->A; }
 
 int condensed_floating(const condensed *c) { return c->n_motion > 0; }
 
+double condensed_stiffest(const condensed *c) {
+  const stiffness *k = c->k;
+  double most = 0;
+  for (int i = 0; i < k->n_node; ++i)
+    for (int a = 0; a < k->dim; ++a)
+      if (k->free[i] >> a & 1)
+        most = fmax(most, k->block[(size_t)(k->dim * k->dim) * k->start[i] +
+                                   (size_t)(a * (k->dim + 1))]);
+  return most;
+}
+
 int condensed_kernel(const condensed *c, const double **kernel) {
   *kernel = c->rigid.Q;
   return c->just_held ? c->rigid.k : -1;

@@ -91,6 +91,7 @@ status condense(const stiffness *k, const domain *d, condensed **out);
 void condensed_free(condensed *c);
 const double *condensed_matrix(const condensed *c); /* A [m*m]                */
 int condensed_floating(const condensed *c); /* 1: contact alone holds a body  */
+double condensed_stiffest(const condensed *c); /* largest entry of K, N/m     */
 /* Estimate of the condition number of K with its unknowns scaled to a unit
  * diagonal (that scaling costs no digits). */
 double condensed_condition(const condensed *c);

@@ -36,10 +36,11 @@ static double next_end(const run *r, double dt) {
                          : dt);
 }
 
-/* A body in the air: its strains, and their error, are rounding. */
+/* A body in the air, or hardly touching: its strains, and their error, are
+ * rounding. */
 static int strains_are_rounding(run *r) {
   r->now.energy.strain = domain_strain_energy(&r->d, r->now.u);
-  return rounding_is_all(r);
+  return rounding_hides_strains(r);
 }
 
 /* One attempt at an increment of a step with a tolerance. */
@@ -59,7 +60,8 @@ static status attempt_adapted(run *r) {
   int settled = r->report.outcome > 0;
   if (settled && error > s->tolerance && strains_are_rounding(r)) error = 0.0;
   r->missed = settled && error > s->tolerance;
-  if ((!settled || r->missed) && fmin(tried, p->dt) > least) {
+  if ((!settled || r->missed) && fmin(tried, p->dt) > least &&
+      loop_cut_helps(r)) {
     TRY(loop_reject(r, attempt, p->increment_no + 1,
                     settled ? "strain error above TOLERANCE"
                             : outcome_text(r->report.outcome)));
@@ -71,7 +73,7 @@ static status attempt_adapted(run *r) {
   p->attempt = 1;
   ++p->increment_no;
   TRY(loop_accept(r, attempt, p->increment_no, t == end, cpu));
-  p->dt = fmax(least_length(r), next_length(s, tried, error));
+  p->dt = fmax(least_length(r), settled ? next_length(s, tried, error) : tried);
 done:
   r->missed = 0;
   return st;

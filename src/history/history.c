@@ -171,7 +171,15 @@ done:
   return st;
 }
 
+int loop_cut_helps(const run *r) {
+  const outcome o = r->report.outcome;
+  if (o == STOPPED_STAGNATION && r->at.attempt > 1)
+    return r->report.residual < r->at.residual;
+  return o != STOPPED_UNFIT;
+}
+
 status loop_reject(run *r, int attempt, int increment_no, const char *why) {
+  r->at.residual = r->report.residual;
   r->error = (error_bound){0};
   r->rounding = (rounding_loss){0};
   r->mesh_error.asked = r->time_error.asked = r->truth.asked = 0;

@@ -21,6 +21,9 @@ state loop_state(run *r, int attempt, int increment_no);
  */
 int table_is_due(const step *s, int tables, double t, int increment_no,
                  int last);
+/* 1 if a shorter increment may settle what this attempt at a chosen length did
+ * not: the solver does not stagnate, or at a lower residual than before. */
+int loop_cut_helps(const run *r);
 /* Why there is none: ERR_SINGULAR. */
 status loop_no_equilibrium(run *r);
 /* Between two attempts: the checkpoint that is due; ends the run if asked. */
@@ -56,8 +59,9 @@ status zones_find(run *r);
 /* rounding.c: what rounding has taken of r->now, whose energies are known.
  * ERR_SINGULAR: it leaves no digit. */
 status rounding_find(run *r);
-/* 1: no load acts on the body, and its strains and contact forces are no more
- * than the rounding of its motion. */
+/* 1: the strains of the body are no more than the rounding of its motion. */
+int rounding_hides_strains(const run *r);
+/* 1: no load acts on it either, and contact forces are no more than that. */
 int rounding_is_all(const run *r);
 
 /* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */

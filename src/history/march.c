@@ -87,13 +87,13 @@ static status attempt_balanced(run *r) {
   TRY(path_try(r, t));
   TRY(balance_advance(r, t));
   int settled = r->report.outcome > 0, shorter = p->dt > s->dt_min;
-  if (!settled && shorter) {
+  if (!settled && shorter && loop_cut_helps(r)) {
     TRY(refuse(r, tried, 0.0, outcome_text(r->report.outcome)));
     goto done;
   }
   if (outcome_is_fatal(r->report.outcome)) TRY(loop_no_equilibrium(r));
   if (!r->judged) TRY(estimate_judge(r));
-  part = rounding_is_all(r) ? 0.0 : path_measure(r) - before;
+  part = rounding_hides_strains(r) ? 0.0 : path_measure(r) - before;
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, part, allowed);
   if (part > allowed && shorter) {

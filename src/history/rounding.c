@@ -10,7 +10,7 @@
  * least energy. They are as rounded as the answer itself, and show so. Where
  * that leaves nothing, contact may hold the body better than its supports: w is
  * then found with the nodes at the obstacle held. An answer without one correct
- * digit ends the run.
+ * digit ends the run; loads that grow from zero count as those they become.
  */
 #include "base/memory.h"
 #include "base/sparse.h"
@@ -28,15 +28,17 @@ static const double CARRIED = 4 * DBL_EPSILON;
 /* -, work of creep, or forces times motion, over the strain energy */
 static const double FAR = 1e6;
 
-static int leaves_none(const rounding_loss *loss, const condensed *c) {
-  const double most = fmax(fmax(loss->energy, loss->stress), loss->u);
+/* share: of the answer in one that the loss counts against. */
+static int leaves_none(const rounding_loss *loss, double share,
+                       const condensed *c) {
+  const double most = share * fmax(fmax(loss->energy, loss->stress), loss->u);
   return !(most < (condensed_digits(c) > 0 ? LAST_DIGIT : IN_DOUBT));
 }
 
-static status check(const run *r, const condensed *c) {
+static status check(const run *r, double share, const condensed *c) {
   status st = OK;
   const rounding_loss *loss = &r->rounding;
-  if (!leaves_none(loss, c)) goto done;
+  if (!leaves_none(loss, share, c)) goto done;
   FAIL(ERR_SINGULAR,
        "step %d, time %g: rounding leaves no digit of the answer: the energy "
        "norm is wrong by about %.1g of itself, stresses by %.1g and "
@@ -84,15 +86,22 @@ static void compare_stresses(run *r, misfit *x) {
   if (wrong > 0.0) r->rounding.stress = wrong / r->now.peak_stress;
 }
 
+/* What is lost of the largest displacement, m. */
+static double lost(const run *r) {
+  return CARRIED * largest_entry(r->n_dof, r->now.u);
+}
+
+int rounding_hides_strains(const run *r) {
+  const double u = lost(r);
+  return r->now.energy.strain <=
+         r->msh->n_node * condensed_stiffest(r->c) * u * u;
+}
+
 int rounding_is_all(const run *r) {
-  const size_t m = (size_t)r->n_row;
-  const double *A = condensed_matrix(r->c);
-  const double u = CARRIED * largest_entry(r->n_dof, r->now.u);
-  double stiffest = 0.0;
   if (largest_entry(r->n_dof, r->now.F) > 0.0) return 0;
-  for (size_t i = 0; i < m; ++i) stiffest = fmax(stiffest, A[i * (m + 1)]);
-  return largest_entry((size_t)r->n_c, r->now.rc) <= stiffest * u &&
-         r->now.energy.strain <= r->msh->n_node * stiffest * u * u;
+  return largest_entry((size_t)r->n_c, r->now.rc) <=
+             condensed_stiffest(r->c) * lost(r) &&
+         rounding_hides_strains(r);
 }
 
 /* A body led through the air, without load and contact force: its stresses, of
@@ -157,18 +166,26 @@ done:
   return st;
 }
 
+/* The loads now over the largest of the step: what rounding takes does not grow
+ * with them, so that it counts against those. */
+static double share_of_step(const run *r) {
+  const double now = largest_entry(r->n_dof, r->now.F);
+  return now < r->step_load ? now / r->step_load : 1.0;
+}
+
 static status find(run *r) {
   status st = OK;
   misfit x = {0};
+  const double share = share_of_step(r);
   double square = 0.0;
   TRY(misfit_new(r, &x));
   find_rest(r, &x);
   TRY(condensed_misfit(x.c, x.rest, run_rows(r, 1, r->now.rc), x.w, &square));
   take_loss(r, &x, square);
-  if (leaves_none(&r->rounding, x.c) && r->n_row > 0)
+  if (leaves_none(&r->rounding, 1.0, x.c) && r->n_row > 0)
     TRY(find_beside_contact(r, &x));
   if (moves_alone(r)) r->rounding = (rounding_loss){0};
-  TRY(check(r, x.c));
+  TRY(check(r, share, x.c));
 done:
   misfit_free(&x);
   return st;

@@ -107,8 +107,9 @@ typedef struct run {
 } run;
 
 static double residual_of(const run *s) {
-  double defect = states_clean(s->st), scale = s->st->scale;
-  double residual = solver_mismatch(s->cp, scale, s->u, s->r);
+  double defect = states_clean(s->st);
+  double residual = solver_mismatch(s->cp, s->st->scale, s->u, s->r);
+  double scale = contact_scale_at(s->cp, s->st->scale, s->u);
   if (isnan(defect)) return NAN;
   defect = scale > 0.0 ? defect / scale : defect > 0.0 ? HUGE_VAL : 0.0;
   return defect > residual ? defect : residual;

@@ -382,7 +382,8 @@ static void set_problem(run *r) {
       .B = friction ? limit_matrix(r) : NULL,
       .side_gap = all && has_side_gap(r->surface) ? r->side_gap : NULL,
       .held = all && has_held(r->surface) ? r->surface->held : NULL,
-      .floating = condensed_floating(r->c)};
+      .floating = condensed_floating(r->c),
+      .load = r->step_load};
   if (r->reach.in != NULL) reach_cut(&r->reach, &r->part, &r->cp);
 }
 

@@ -76,6 +76,7 @@ typedef struct progress {
   long i, part; /* increment of the step's grid, piece of 2^level of it       */
   double dt;    /* of an adaptive step, to be tried, s                        */
   double error; /* of the increments before the step, sqrt(J)                 */
+  double residual; /* -, of the attempt before at the same increment          */
 } progress;
 
 typedef struct run {
@@ -126,7 +127,8 @@ typedef struct run {
 
   equilibrium old, now;
   double *start; /* [dim*n_node] displacements at the start of the step, m    */
-  double *ud;    /* [dim*n_node] prescribed displacements, m           */
+  double step_load; /* N, largest at a node at the ends of the step         */
+  double *ud;       /* [dim*n_node] prescribed displacements, m           */
   double *strain, *stress; /* [ns*n_elem] or NULL                             */
   double *open_gap, *slip, *g; /* [n], [n*(dim-1)], [n]                       */
   contact_status *contact; /* [n]                                            */

@@ -113,6 +113,7 @@ static status keep_counts(run *r, archive *a) {
   TRY(archive_ints(a, "jumps", &r->jumps, 1));
   TRY(archive_reals(a, "jump_t", &r->jump_t, 1));
   TRY(archive_reals(a, "start", r->start, r->n_dof));
+  TRY(archive_reals(a, "step_load", &r->step_load, 1));
 done:
   return st;
 }

@@ -100,6 +100,17 @@ static status report_ready(run *r) {
   return r->sink->ready(r->sink->ctx, &facts, r->surface);
 }
 
+/* The largest nodal load at the ends of the step. */
+static status find_load(run *r) {
+  status st = OK;
+  const double end = r->step->start + r->step->total;
+  TRY(load_forces(r->m, r->msh, r->step, end, r->now.F));
+  r->step_load = fmax(largest_entry(r->n_dof, r->old.F),
+                      largest_entry(r->n_dof, r->now.F));
+done:
+  return st;
+}
+
 status run_prepare(run *r) {
   status st = OK;
   int fresh = 0, motions = 0;
@@ -125,6 +136,7 @@ status run_prepare(run *r) {
     r->c = r->elastic.c;
     fresh = 1;
   }
+  TRY(find_load(r));
   TRY(limit_average(r));
   if (fresh) TRY(report_ready(r));
   contact_solver_free(r->elastic.solver);

@@ -24,6 +24,7 @@ const char *solver_family(const char *name) {
 double solver_mismatch(const contact_problem *cp, double scale, const double *u,
                        const double *r) {
   double worst = contact_mismatch(cp, u, r);
+  scale = contact_scale_at(cp, scale, u);
   if (isnan(worst) || isnan(scale)) return NAN;
   if (scale > 0.0) return worst / scale;
   return worst > 0.0 ? HUGE_VAL : 0.0;

@@ -59,6 +59,26 @@ START_TEST(each_broken_condition_shows_by_its_size) {
 }
 END_TEST
 
+START_TEST(scale_is_above_rounding_of_loads_and_of_the_way) {
+  contact_case c = one_node(4.0, 2.0, 0.5);
+  c.f[0] = 1e-9;
+  c.gap[0] = 1.0;
+  ck_assert(contact_scale(&c.cp) == 1e-9);
+  /* what the load becomes */
+  c.cp.load = 3.0;
+  ck_assert(contact_scale(&c.cp) == 0x1p-14 * 3.0);
+  c.cp.load = 0.0;
+  /* what the node has gone of its gap, and no more */
+  const double way[] = {0.0, 0.5, 1.0, -0.5, 7.0};
+  const double gone[] = {1e-9, 0x1p-13, 0x1p-12, 0x1p-13, 0x1p-12};
+  for (int k = 0; k < 5; ++k) {
+    double u[2] = {way[k], 0.0};
+    ck_assert(contact_scale_at(&c.cp, contact_scale(&c.cp), u) == gone[k]);
+  }
+  case_free(&c);
+}
+END_TEST
+
 START_TEST(scale_is_of_the_problem) {
   contact_case c = one_node(4.0, 2.0, 0.5);
   ck_assert(contact_scale(&c.cp) == 0.0);
@@ -215,6 +235,7 @@ END_TEST
 
 UNIT_MAIN("contact", residual_is_zero_for_solved_node,
           each_broken_condition_shows_by_its_size, scale_is_of_the_problem,
+          scale_is_above_rounding_of_loads_and_of_the_way,
           closed_gap_counts_where_it_is_nearer, nan_anywhere_gives_nan,
           factors_of_two_leave_every_bit, disc_is_exact_at_any_angle,
           compliance_form_measures_the_same_state, statuses_of_a_row_of_nodes,

@@ -1,0 +1,165 @@
+/*
+ * Bodies that hardly touch: they fall through a gap under loads that grow from
+ * nothing, start inside the floor by rounding, are led by their supports. Their
+ * forces are those of the load to what rounding of the motion leaves, and
+ * increments do not follow that rounding.
+ */
+#include "scenes/mesh.h"
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const mesh_change wavy = {
+    .map = {"x + 0.05*sin(3.14159265358979*x)*sin(9*y)",
+            "y + 0.05*sin(6.28318530717959*y)*cos(7*x)"}};
+/* A round foot, 1e-12 inside the floor. */
+static const mesh_change sunk = {
+    .map = {NULL, "y + 0.1*(1 - y)*(x - 0.45)^2 - 0.00025 - 1e-12"}};
+
+#define MAXWELL "*INELASTIC, LAW=MAXWELL\n2.\n"
+#define CHABOCHE \
+  "*INELASTIC, LAW=CHABOCHE\n0.3, 0.7, 3., 0.1, 50.\n100., 100.\n"
+
+typedef struct fall {
+  const mesh_change *mesh;
+  double gap, load;
+  const char *law, *step, *supports, *method;
+} fall;
+
+static int run_fall(job *j, const fall *f) {
+  char path[100];
+  int *number = NULL;
+  *j = job_begin("fall");
+  snprintf(path, sizeof path, "%s/fall.msh", j->dir);
+  FILE *out = fopen(path, "w");
+  ck_assert_ptr_nonnull(out);
+  ck_assert_int_eq(scene_mesh_write(out, "rect 6 4 1 1", f->mesh, &number), 1);
+  fclose(out);
+  free(number);
+  job_write(j, "fall.inp",
+            "*MESH, FILE=fall.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n%s"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., %.17g\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n%s\n%s"
+            "*DSLOAD\nTOP, P, %.17g\n*SOLVER, METHOD=%s\n*PRINT, TOTALS\n"
+            "*END STEP\n",
+            f->law, -f->gap, f->step, f->supports, f->load, f->method);
+  return job_run(j, "--no-timing --quiet");
+}
+
+/* All increments settled, few of them, the load carried in the end. */
+static void ck_carried(const fall *f, int most, double tol) {
+  job j;
+  const int code = run_fall(&j, f);
+  ck_assert_msg(code == 0, "gap %g, load %g, %s: exit %d: %s", f->gap, f->load,
+                f->method, code, j.errors);
+  dat t = job_table(&j, "TOTALS", -1);
+  const double normal = dat_at(&t, 0, "normal");
+  ck_assert_msg(fabs(normal - f->load) <= tol * f->load,
+                "gap %g, load %g, %s: %.17g", f->gap, f->load, f->method,
+                normal);
+  ck_assert_int_le((int)job_told(&j, "increment"), most);
+  dat_free(&t);
+  job_end(&j);
+}
+
+static const char in_ten[] = "*QUASISTATIC\n0.1, 1.";
+static const char held[] = "*BOUNDARY\nLEFT, 1\n";
+
+START_TEST(next_to_no_load_is_carried) {
+  static const char *const methods[] = {"AUTO",   "LEMKE",    "PCG",
+                                        "AUGLAG", "PROXIMAL", "LAGRANGE"};
+  const fall f = {&wavy, 1e-3, 1e-5, "", in_ten, held, methods[_i]};
+  ck_carried(&f, 10, 1e-6);
+}
+END_TEST
+
+START_TEST(chosen_increments_do_not_follow_the_fall) {
+  static const struct {
+    const char *law, *step;
+  } made[] = {{MAXWELL, "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1.E-3\n1., 1."},
+              {MAXWELL, "*VISCO, INTEGRATOR=RK4, TOLERANCE=1.E-3\n1., 1."},
+              {CHABOCHE, "*VISCO, INTEGRATOR=RK4, TOLERANCE=1.E-3\n1., 20."}};
+  static const double loads[] = {1e-2, 1e-3, 1e-5};
+  const fall f = {
+      &wavy, 1e-3,  loads[_i % 3], made[_i / 3].law, made[_i / 3].step,
+      held,  "AUTO"};
+  ck_carried(&f, 80, 1e-6);
+}
+END_TEST
+
+/* No digit of the first increments, four of the last. */
+START_TEST(rounding_counts_against_the_loads_of_the_step) {
+  const fall f = {&wavy,
+                  1.0,
+                  3e-8,
+                  MAXWELL,
+                  "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1.E-3\n1., 1.",
+                  held,
+                  "AUTO"};
+  ck_carried(&f, 80, 1e-2);
+}
+END_TEST
+
+START_TEST(no_load_at_all_ends_with_a_verdict) {
+  job j;
+  const fall f = {&wavy, 1.0, 1e-16, "", in_ten, held, "AUTO"};
+  ck_assert_int_eq(run_fall(&j, &f), 6);
+  ck_assert_ptr_nonnull(strstr(j.errors, "rounding leaves no digit"));
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(a_start_inside_the_floor_by_rounding_is_none) {
+  static const char *const methods[] = {"AUTO",     "PCG",   "PROXIMAL",
+                                        "LAGRANGE", "LEMKE", "SOR"};
+  const fall f = {&sunk,
+                  0.0,
+                  1.0,
+                  MAXWELL,
+                  "*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.",
+                  _i % 2 == 0 ? "" : "*BOUNDARY\nTOP, 1\n",
+                  methods[_i / 2]};
+  ck_carried(&f, 3, 1e-6);
+}
+END_TEST
+
+/* No contact: the strains of a body that its supports lead are rounding. */
+START_TEST(chosen_increments_do_not_follow_supports) {
+  job j = job_begin("led");
+  int *number = NULL;
+  char path[100];
+  snprintf(path, sizeof path, "%s/led.msh", j.dir);
+  FILE *out = fopen(path, "w");
+  ck_assert_ptr_nonnull(out);
+  ck_assert_int_eq(scene_mesh_write(out, "rect 6 4 1 1", &wavy, &number), 1);
+  fclose(out);
+  free(number);
+  job_write(
+      &j, "led.inp",
+      "*MESH, FILE=led.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n" MAXWELL
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n"
+      "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1.E-3\n0.5, 1.\n"
+      "*BOUNDARY\nTOP, 1, 1, 0.3\nTOP, 2, 2, -0.7\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, "--no-timing --quiet"), 0);
+  ck_assert_int_le((int)job_told(&j, "increment"), 2);
+  job_end(&j);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("falling");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, next_to_no_load_is_carried, 0, 6);
+  tcase_add_loop_test(tests, chosen_increments_do_not_follow_the_fall, 0, 9);
+  tcase_add_test(tests, rounding_counts_against_the_loads_of_the_step);
+  tcase_add_test(tests, no_load_at_all_ends_with_a_verdict);
+  tcase_add_loop_test(tests, a_start_inside_the_floor_by_rounding_is_none, 0,
+                      12);
+  tcase_add_test(tests, chosen_increments_do_not_follow_supports);
+  return unit_run("falling", tests);
+}
