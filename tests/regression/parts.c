@@ -1,0 +1,302 @@
+/*
+ * Parts of what is told as a sum or as the largest: the shares of a target, the
+ * bounds of effects left out under loads that rise and fall, zones of a ring,
+ * each component of a stress in the true error.
+ */
+#include "support/block_file.h"
+#include "support/grid.h"
+#include "support/tips.h"
+#include "support/turned_mesh.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double G = 500;
+
+static void run(job *j) {
+  int code = job_run(j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j->errors);
+}
+
+/* ---- a target ------------------------------------------------------------ */
+
+/* Figures of an increment, %: mesh, steps, solver (JOB.sta). */
+static void errors_of(const job *j, int increment, double error[3]) {
+  char *sta = job_file(j, "sta"), *line = sta, *word[16];
+  for (int no = -1; no != increment;) {
+    line = strchr(line, '\n') + 1;
+    ck_assert(line[0] != '\0');
+    sscanf(line, "%*d %d", &no);
+  }
+  word[0] = strtok(line, " \n");
+  for (int k = 1; k < 16; ++k) word[k] = strtok(NULL, " \n");
+  for (int k = 0; k < 3; ++k) error[k] = atof(word[11 + k]);
+  free(sta);
+}
+
+/* The load rises to its largest at the second increment and falls. */
+START_TEST(target_counts_all_errors_of_the_largest_increment) {
+  job j = job_begin("block");
+  double error[3], largest[3] = {0}, most = 0, sum = 0;
+  int at = 0;
+  block_file_write(&j, (int[]){8, 6}, (double[]){40.0, 30.0}, 0);
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.3\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.5\n*STEP\n*QUASISTATIC\n"
+            "0.25, 1.\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50., A\n"
+            "LEFT, P, \"100*t\", A\n*SOLVER, METHOD=SOR, TOL=1E-3\n"
+            "*ACCURACY, TARGET=90\n*PRINT, ENERGY\n*END STEP\n");
+  run(&j);
+  for (int k = 0; k < 4; ++k) {
+    dat e = job_table(&j, "ENERGY", k);
+    errors_of(&j, k + 1, error);
+    if (dat_at(&e, 0, "strain_energy") > most) {
+      most = dat_at(&e, 0, "strain_energy");
+      memcpy(largest, error, sizeof largest);
+      at = k;
+    }
+    dat_free(&e);
+  }
+  ck_assert(at > 0 && at < 3);
+  char *json = job_file(&j, "json"), *pass = strstr(json, "\"passes\"");
+  static const char *const name[] = {
+      "\"mesh_error_percent\": ", "\"time_error_percent\": ",
+      "\"solver_error_percent\": ", "\"total_error_percent\": "};
+  for (int k = 0; k < 3; ++k) {
+    double told = atof(strstr(pass, name[k]) + strlen(name[k]));
+    ck_assert_msg(fabs(told - largest[k]) <= 0.06 * largest[k], "%s%g, not %g",
+                  name[k], told, largest[k]);
+    ck_assert_double_gt(told, 1e-4);
+    sum += told;
+  }
+  double total = atof(strstr(pass, name[3]) + strlen(name[3]));
+  ck_assert_double_eq_tol(total, sum, 1e-5 * sum);
+  free(json);
+  job_end(&j);
+}
+END_TEST
+
+/* ---- effects left out -----------------------------------------------------
+ */
+
+/* Loads times 0, 1/2, 1, 5/8, 1/4 at t = 0, 1/4, ...: what adds up outlives
+ * the energy of the answer. */
+static const double level[] = {0, 0.5, 1, 0.625, 0.25};
+#define RISES "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n0., 0., 0.5, 1., 1., 0.25\n"
+
+static double bound_of(const char *material, const char *cards,
+                       const char *procedure, const char *loads,
+                       double *energy) {
+  char text[1200];
+  snprintf(text, sizeof text,
+           RISES
+           "%s*EFFECTS, MODE=AUTO\n*STEP\n%s0.25, 1.\n"
+           "*BOUNDARY\nCLAMPED, 1, 2\n%s*PRINT, ENERGY\n*END STEP\n",
+           cards, procedure, loads);
+  job j = tips_new(G, "", text);
+  char *deck = job_file(&j, "inp"), *at = strstr(deck, "*SOLID SECTION");
+  *at = '\0';
+  job_write(&j, "tips.inp", "%s%s*%s", deck, material, at + 1);
+  free(deck);
+  run(&j);
+  char *lst = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(strstr(lst, "left out: "));
+  ck_assert_ptr_null(strstr(lst, "not left out: "));
+  free(lst);
+  double bound = job_told(&j, "bound");
+  for (int k = 0; k < 4; ++k) {
+    dat e = job_table(&j, "ENERGY", k);
+    energy[k + 1] = dat_at(&e, 0, "strain_energy");
+    dat_free(&e);
+  }
+  job_end(&j);
+  return bound;
+}
+
+/* The largest of sum[k] / level[k], twice. */
+static double worst_of(const double *sum) {
+  double most = 0;
+  for (int k = 1; k < 5; ++k) most = fmax(most, 2 * sum[k] / level[k]);
+  return most;
+}
+
+/* Rates sigma/tau: the larger of both ends of each increment adds up. */
+START_TEST(bound_of_creep_under_a_load_that_falls) {
+  double sum[5] = {0}, energy[5];
+  for (int k = 1; k < 5; ++k)
+    sum[k] = sum[k - 1] + 0.25 * fmax(level[k - 1], level[k]) / 1e7;
+  double told =
+      bound_of("*INELASTIC, LAW=MAXWELL\n1E7\n", "",
+               "*VISCO, INTEGRATOR=EULER\n", "TIPS, 2, 2, -0.001, A\n", energy);
+  ck_assert_double_eq_tol(told / worst_of(sum), 1, 1e-6);
+}
+END_TEST
+
+/* A pull along the floor of 1, mu N s: square roots add up. */
+START_TEST(bound_of_friction_under_a_pull_that_falls) {
+  const double mu = 1e-13, N = 10, size = sqrt(2 / G);
+  double sum[5] = {0}, energy[5];
+  for (int k = 1; k < 5; ++k)
+    sum[k] = sum[k - 1] +
+             sqrt(2 * mu * N * fabs(level[k] - level[k - 1]) / G) / size;
+  double told = bound_of(
+      "",
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+      "*CONTACT, NAME=A, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n"
+      "*CONTACT, NAME=B, GROUP=FOOT2, OBSTACLE=O, NORMAL=OBSTACLE\n"
+      "*FRICTION, CONTACT=A, LAW=COULOMB\n1E-13\n"
+      "*FRICTION, CONTACT=B, LAW=COULOMB\n1E-13\n*AMPLITUDE, NAME=ON\n"
+      "0., 1., 1., 1.\n",
+      "*QUASISTATIC\n", "*CLOAD\nTIPS, 1, 1., A\nTIPS, 2, -10., ON\n", energy);
+  ck_assert_double_eq_tol(told / worst_of(sum), 1, 1e-6);
+}
+END_TEST
+
+/* Thermal strain alpha (T - 0), 3 sqrt(K) of it in the energy of each body:
+ * under friction all changes add up, twice; without it is that of now. */
+START_TEST(bound_of_heat_that_falls) {
+  static const char *const friction[] = {
+      "", "*FRICTION, CONTACT=A, LAW=COULOMB\n0.3\n"};
+  const double K = 2.6 * G / (3 * (1 - 0.6)), alpha_T = 1e-8;
+  const double whole = 3 * sqrt(2 * K) * alpha_T;
+  for (int k = 0; k < 2; ++k) {
+    char cards[400];
+    double added = 0, worst = 0, energy[5];
+    snprintf(cards, sizeof cards,
+             "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -1.\n0., 1.\n"
+             "*CONTACT, NAME=A, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n%s",
+             friction[k]);
+    double told = bound_of("*EXPANSION\n1E-5\n", cards, "*QUASISTATIC\n",
+                           "*DSLOAD\nFOOT1, P, 10.\nFOOT2, P, 10.\n"
+                           "*TEMPERATURE, AMPLITUDE=A\nBODY, 1E-3\n",
+                           energy);
+    for (int i = 1; i < 5; ++i) {
+      added += 2 * whole * fabs(level[i] - level[i - 1]);
+      worst = fmax(worst,
+                   (k == 0 ? whole * level[i] : added) / sqrt(2 * energy[i]));
+    }
+    ck_assert_double_eq_tol(told / worst, 1, 1e-9);
+  }
+}
+END_TEST
+
+/* ---- a ring ---------------------------------------------------------------
+ */
+
+/* A flat foot of a body of revolution, radius 2, on a ground that falls off
+ * with the radius; it is squeezed and creeps outwards over the ground. Each
+ * zone is the ring between its ends. */
+START_TEST(zones_of_revolution_are_rings) {
+  const turn none = {{0, 0, 1}, 0};
+  int seen[3] = {0};
+  job j = job_begin("turned");
+  mesh *m = make_grid_2d((int[]){12, 4}, (double[]){2, 1});
+  turned_mesh_write(&j, m, &none);
+  mesh_free(m);
+  job_write(&j, "turned.inp",
+            "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"2E-3*x^2\"\n"
+            "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nHEAD, 2, 2, -0.005\n"
+            "*PRINT, ZONES, CONTACT\n*END STEP\n");
+  run(&j);
+  const double pi = acos(-1.0);
+  for (int k = 0; k < 4; ++k) {
+    dat z = job_table(&j, "ZONES", k), c = job_table(&j, "CONTACT", k);
+    double end = 0;
+    for (int i = 0; i < z.n_row; ++i) {
+      double a = dat_at(&z, i, "r_from"), b = dat_at(&z, i, "r_to");
+      const int kind = (int)dat_at(&z, i, "zone");
+      ck_assert_double_eq_tol(a, end, 1e-12);
+      ck_assert_double_eq_tol(dat_at(&z, i, "extent"), b - a, 1e-12);
+      ck_assert_double_eq_tol(dat_at(&z, i, "area"), pi * (b * b - a * a),
+                              1e-10);
+      end = b;
+      ++seen[kind];
+      for (int q = 0; q < c.n_row; ++q) {
+        double r = dat_at(&c, q, "r");
+        if (r <= a || r >= b) continue;
+        ck_assert_double_eq(dat_at(&c, q, "status"), kind);
+        if (kind == 1)
+          ck_assert_double_gt(
+              dat_at(&z, i, "direction") * dat_at(&c, q, "slip"), 0);
+      }
+    }
+    ck_assert_double_eq_tol(end, 2, 1e-12);
+    dat_free(&z);
+    dat_free(&c);
+  }
+  ck_assert(seen[0] > 0 && seen[1] > 0 && seen[2] > 0);
+  job_end(&j);
+}
+END_TEST
+
+/* ---- true errors -----------------------------------------------------------
+ */
+
+/* One tetrahedron under the strain of u = H x; the closed form says each stress
+ * otherwise by its own part of 1: the norm of a stress counts shears twice. */
+START_TEST(true_stress_error_counts_every_component) {
+  static const char tetrahedron[] =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n"
+      "2 1 \"ALL\"\n3 2 \"BODY\"\n$EndPhysicalNames\n$Nodes\n4\n"
+      "1 0 0 0\n2 1 0.2 0.1\n3 0.3 1.1 0\n4 0.2 0.1 0.9\n$EndNodes\n"
+      "$Elements\n5\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 2 4\n3 2 2 1 1 1 3 4\n"
+      "4 2 2 1 1 2 3 4\n5 4 2 2 1 1 2 3 4\n$EndElements\n";
+  static const char *const name[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+  const double H[3][3] = {
+      {1e-3, 4e-4, -2e-4}, {1e-4, -8e-4, 5e-4}, {7e-4, -3e-4, 2e-3}};
+  const double E = 1000, nu = 0.3, mu = E / 2.6, lambda = mu * 0.6 / 0.4;
+  for (int other = 0; other < 6; ++other) {
+    double sigma[6], square = 0, all = 0;
+    char lines[800] = "";
+    for (int i = 0; i < 6; ++i) {
+      const int a = i % 3, b = i < 3 ? a : (i + 1) % 3;
+      sigma[i] = mu * (H[a][b] + H[b][a]);
+      if (i < 3) sigma[i] += lambda * (H[0][0] + H[1][1] + H[2][2]);
+      double exact = sigma[i] * (i == other ? 1.5 : 1);
+      square += (i < 3 ? 1 : 2) * pow(exact - sigma[i], 2);
+      all += (i < 3 ? 1 : 2) * exact * exact;
+      snprintf(lines + strlen(lines), 60, "stress_%s, %.17g\n", name[i], exact);
+    }
+    job j = job_begin("truth");
+    job_write(&j, "truth.msh", "%s", tetrahedron);
+    job_write(&j, "truth.inp",
+              "*MESH, FILE=truth.msh\n*MATERIAL, NAME=M\n*ELASTIC\n%g, %g\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*REFERENCE\n"
+              "u_x, \"%.17g*x + %.17g*y + %.17g*z\"\n"
+              "u_y, \"%.17g*x + %.17g*y + %.17g*z\"\n"
+              "u_z, \"%.17g*x + %.17g*y + %.17g*z\"\n%s"
+              "*STEP\n*STATIC\n*BOUNDARY\n"
+              "ALL, 1, 1, \"%.17g*x + %.17g*y + %.17g*z\"\n"
+              "ALL, 2, 2, \"%.17g*x + %.17g*y + %.17g*z\"\n"
+              "ALL, 3, 3, \"%.17g*x + %.17g*y + %.17g*z\"\n*END STEP\n",
+              E, nu, H[0][0], H[0][1], H[0][2], H[1][0], H[1][1], H[1][2],
+              H[2][0], H[2][1], H[2][2], other < 5 ? lines : "", H[0][0],
+              H[0][1], H[0][2], H[1][0], H[1][1], H[1][2], H[2][0], H[2][1],
+              H[2][2]);
+    run(&j);
+    ck_assert_double_le(job_told(&j, "true_displacement_error_percent"), 1e-9);
+    if (other < 5)
+      ck_assert_double_eq_tol(job_told(&j, "true_stress_error_percent"),
+                              100 * sqrt(square / all), 1e-7);
+    else /* strains by differences of the displacements */
+      ck_assert_double_le(job_told(&j, "true_error_percent"), 1e-6);
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("parts", bound_of_heat_that_falls, zones_of_revolution_are_rings,
+          true_stress_error_counts_every_component,
+          target_counts_all_errors_of_the_largest_increment,
+          bound_of_creep_under_a_load_that_falls,
+          bound_of_friction_under_a_pull_that_falls)
