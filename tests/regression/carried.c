@@ -124,6 +124,35 @@ END_TEST
 START_TEST(supports_move_on_after_a_stop) { check_stopped(RAMP); }
 END_TEST
 
+/* ---- a tolerance ----------------------------------------------------------
+ */
+
+/* Creep under a load of 1 that falls to some 0.002: errors are told in parts of
+ * the largest strain so far, and what the small load lets creep is none. */
+START_TEST(tolerance_is_of_the_largest_strain_so_far) {
+  job j = new_job(
+      "*AMPLITUDE, NAME=A\n"
+      "\"if(t < 1, 1, 0.002*(1 + sin(40*(t - 1))))\"\n"
+      "*STEP\n*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3\n"
+      "0.125, 2.\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n"
+      "TIPS, 2, -1., A\n*PRINT, ENERGY\n*END STEP\n");
+  char *deck = job_file(&j, "inp"), *at = strstr(deck, "*SOLID SECTION");
+  *at = '\0';
+  job_write(&j, "tips.inp", "%s*INELASTIC, LAW=MAXWELL\n1.\n*%s", deck, at + 1);
+  free(deck);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  char *text = job_file(&j, "dat");
+  int late = 0;
+  for (char *p = text; (p = strstr(p, " time ")) != NULL; p += 6)
+    late += atof(p + 6) > 1.1;
+  ck_assert_int_gt(late, 1);
+  ck_assert_int_le(late, 20);
+  free(text);
+  job_end(&j);
+}
+END_TEST
+
 /* ---- a corner ------------------------------------------------------------ */
 
 /* The tip is driven towards a floor 0.002 below and a wall 0.003 aside, loads
@@ -169,4 +198,5 @@ END_TEST
 
 UNIT_MAIN("carried", rollers_heat_by_the_way_that_slips, rollers_go_on,
           supports_move_on_from_the_start, supports_move_on_after_a_stop,
+          tolerance_is_of_the_largest_strain_so_far,
           corner_closes_one_gap_after_the_other)

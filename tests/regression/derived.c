@@ -29,23 +29,46 @@ static void turned(int dim, double x, double y, double z, double v[3]) {
   turn_vector(&whole_turn[dim - 2], v);
 }
 
+/* Where MOVE has brought the obstacle by time t: up, along. */
+static void moved_by(double t, double *up, double *along) {
+  *up = 0.008 * fmin(4 * t, 1) - 0.006 * fmax(t - 1, 0);
+  *along = 0.03 * sin(3 * fmax(t - 0.5, 0));
+}
+
+/* The axis of the torque, at[3] and a[3] of length 1: in the plane that of the
+ * obstacle, which moves with it. */
+static void torque_axis(int dim, double t, double at[3], double a[3]) {
+  double up, along, length = 0;
+  moved_by(t, &up, &along);
+  if (dim == 2) {
+    turned(2, pivot[0] + along, pivot[1] + up, 0, at);
+    turned(2, 0, 0, 1, a);
+  } else {
+    turned(3, axis_at[0], axis_at[1], axis_at[2], at);
+    turned(3, 2, -6, 3, a);
+  }
+  for (int c = 0; c < 3; ++c) length = hypot(length, a[c]);
+  for (int c = 0; c < 3; ++c) a[c] /= length;
+}
+
 static void write_deck(const job *j, int dim) {
   double n[3], e[3], p[3], a[3], at[3], along[3];
   turned(dim, 0, dim == 2, dim == 3, n);
   turned(dim, 1, 0, 0, e);
   turned(dim, pivot[0], pivot[1], dim == 3 ? pivot[2] : 0, p);
   turned(dim, dim == 3 ? 0.005 : 0, dim == 3 ? -0.005 : 0, 1, a);
-  turned(dim, axis_at[0], axis_at[1], dim == 3 ? axis_at[2] : 0, at);
-  turned(dim, dim == 3 ? 2 : 0, dim == 3 ? -6 : 0, 3, along);
-  char move[3][160], axis[160] = "", rotate[160] = "";
+  turned(dim, axis_at[0], axis_at[1], axis_at[2], at);
+  turned(dim, 2, -6, 3, along);
+  char move[3][160], axis[240] = "", rotate[160] = "";
   for (int c = 0; c < 3; ++c)
     snprintf(move[c], sizeof move[c],
              "\"(0.008*min(4*t,1) - 0.006*max(t-1,0))*(%.17g) + "
              "0.03*sin(3*max(t-0.5,0))*(%.17g)\"",
              n[c], e[c]);
   if (dim == 3) {
-    snprintf(axis, sizeof axis, ", %.17g, %.17g, %.17g, %.17g", at[2], along[0],
-             along[1], along[2]);
+    snprintf(axis, sizeof axis,
+             "AXIS, %.17g, %.17g, %.17g, %.17g, %.17g, %.17g\n", at[0], at[1],
+             at[2], along[0], along[1], along[2]);
     snprintf(rotate, sizeof rotate, ", %.17g, %.17g, %.17g, %.17g", p[2], a[0],
              a[1], a[2]);
   }
@@ -56,13 +79,13 @@ static void write_deck(const job *j, int dim) {
       "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n%.17g, %.17g, %.17g\n"
       "MOVE, %s,\n%s%s%s\nROTATE, %.17g, %.17g%s, \"%s%g*max(t - 0.5, 0)\"\n"
       "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O, NORMAL=OBSTACLE\n"
-      "AXIS, %.17g, %.17g%s\n*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n"
+      "%s*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n"
       "*STEP\n*QUASISTATIC\n0.2, 2.\n*BOUNDARY\nHEAD, 1, %d\n"
       "*SOLVER, TOL=1E-13\n*RESTART\n"
       "*PRINT, CONTACT, ENERGY, TOTALS, LOOP, REACTIONS\n*END STEP\n",
       n[0], n[1], n[2], move[0], move[1], dim == 3 ? ",\n" : "",
       dim == 3 ? move[2] : "", p[0], p[1], rotate, dim == 3 ? "" : "0.01*",
-      angle_rate, at[0], at[1], axis, mu, dim);
+      angle_rate, axis, mu, dim);
 }
 
 /* Tributary areas of the nodes of the foot, in the order of their numbers. */
@@ -203,18 +226,16 @@ static void check_totals(const job *j, int dim, int k, const node *p, int n,
                          const double *area, double scale) {
   dat t = job_table(j, "TOTALS", k);
   double f[3] = {0}, m[3] = {0}, r[3] = {0}, count[3] = {0}, closed = 0;
-  double a[3], at[3], torque = 0, length = 0;
-  turned(dim, axis_at[0], axis_at[1], dim == 3 ? axis_at[2] : 0, at);
-  turned(dim, dim == 3 ? 2 : 0, dim == 3 ? -6 : 0, 3, a);
-  for (int c = 0; c < 3; ++c) length = hypot(length, a[c]);
+  double a[3], at[3], torque = 0;
+  torque_axis(dim, 0.2 * (k + 1), at, a);
   for (int i = 0; i < n; ++i, ++p) {
     for (int c = 0; c < 3; ++c) {
       int d = (c + 1) % 3, e = (c + 2) % 3;
       f[c] += p->f[c];
       r[c] += p->r[c];
       m[c] += p->x[d] * p->f[e] - p->x[e] * p->f[d];
-      torque += a[c] / length *
-                ((p->x[d] - at[d]) * p->f[e] - (p->x[e] - at[e]) * p->f[d]);
+      torque +=
+          a[c] * ((p->x[d] - at[d]) * p->f[e] - (p->x[e] - at[e]) * p->f[d]);
     }
     count[(int)p->status] += 1;
     if (p->status > 0) closed += area[i];

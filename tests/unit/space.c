@@ -335,6 +335,76 @@ START_TEST(inner_nodes_see_the_elements_that_meet_there) {
 }
 END_TEST
 
+/* Stresses may jump from body to body: of other elasticity, thickness or kind.
+ * Two halves of one stress each have no error then. */
+START_TEST(stress_jumps_between_unlike_sections) {
+  static const double length[] = {1, 1};
+  scene *s = scene_new(make_grid_2d((int[]){4, 4}, length), PLANE_STRAIN, 3);
+  double E[32], C[72], thickness[2] = {1, _i == 1 ? 2 : 1};
+  kinematics kin[2] = {PLANE_STRAIN, _i == 2 ? PLANE_STRESS : PLANE_STRAIN};
+  double *sigma = calloc((size_t)(4 * s->m->n_elem), sizeof *sigma);
+  space_recovery *recovery;
+  space_error found;
+  for (int k = 0; k < 2; ++k) {
+    memcpy(C + 36 * k, s->C, 36 * sizeof *C);
+    for (int i = 0; i < 16; ++i)
+      E[16 * k + i] = s->E[i] * (k == 1 && _i == 3 ? 2 : 1);
+  }
+  s->d.E = E;
+  s->d.C = C;
+  s->d.kin = kin;
+  s->d.thickness = thickness;
+  for (int e = 0; e < s->m->n_elem; ++e) {
+    double y = 0;
+    for (int a = 0; a < 3; ++a) y += s->m->x[2 * s->m->elem[3 * e + a] + 1] / 3;
+    s->section_id[e] = y > 0.5;
+    sigma[4 * e] = 1 + (y > 0.5);
+  }
+  ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
+  space_estimate(recovery, sigma, NULL, &found);
+  if (_i == 0)
+    ck_assert_double_gt(found.relative, 0.01);
+  else
+    ck_assert_double_le(found.relative, 1e-12);
+  space_recovery_free(recovery);
+  free(sigma);
+  scene_free(s);
+}
+END_TEST
+
+/* Even errors 4 times the target: an error eta r for each element, r = 1/4,
+ * with the edge of a regular triangle of the same area. One element whose error
+ * is large: sizes grow from there by no more than 0.4 of the distance. */
+START_TEST(sizes_give_the_target_and_grow_slowly) {
+  static const double length[] = {1, 1};
+  mesh *m = make_grid_2d((int[]){8, 8}, length);
+  double *eta = calloc((size_t)m->n_elem, sizeof *eta);
+  double *size = calloc((size_t)m->n_node, sizeof *size);
+  const double edge = sqrt(4 / sqrt(3.0) / 128);
+  for (int e = 0; e < m->n_elem; ++e) eta[e] = 0.4 / sqrt(m->n_elem);
+  space_sizes(m, eta, 0.1, size);
+  for (int i = 0; i < m->n_node; ++i)
+    ck_assert_double_eq_tol(size[i], edge / 4, 1e-12);
+  for (int e = 0; e < m->n_elem; ++e) eta[e] = e == 71 ? 0.2 : 1e-6;
+  space_sizes(m, eta, 0.1, size);
+  double least = 1, most = 0;
+  for (int e = 0; e < m->n_elem; ++e)
+    for (int a = 0; a < 3; ++a) {
+      const int i = m->elem[3 * e + a], k = m->elem[3 * e + (a + 1) % 3];
+      const double d =
+          hypot(m->x[2 * i] - m->x[2 * k], m->x[2 * i + 1] - m->x[2 * k + 1]);
+      ck_assert_double_le(fabs(size[i] - size[k]), 0.4 * d + 1e-12);
+      least = fmin(least, size[i]);
+      most = fmax(most, size[i]);
+    }
+  ck_assert_double_gt(most, 1.9 * edge);
+  ck_assert_double_lt(least, 0.6 * edge);
+  mesh_free(m);
+  free(eta);
+  free(size);
+}
+END_TEST
+
 START_TEST(an_estimate_has_no_unit) {
   static const double length[] = {1, 1};
   scene *s = scene_new(make_grid_2d((int[]){4, 4}, length), PLANE_STRAIN, 3);
@@ -367,6 +437,8 @@ int main(void) {
   tcase_add_loop_test(tests, uniform_stress_has_no_error, 0, 2);
   tcase_add_loop_test(tests, inner_nodes_see_the_elements_that_meet_there, 2,
                       4);
+  tcase_add_loop_test(tests, stress_jumps_between_unlike_sections, 0, 4);
+  tcase_add_test(tests, sizes_give_the_target_and_grow_slowly);
   tcase_add_test(tests, one_layer_of_elements_has_an_estimate);
   tcase_add_test(tests, an_estimate_has_no_unit);
   return unit_run("space", tests);
