@@ -127,6 +127,13 @@ END_TEST
 /* ---- a tolerance ----------------------------------------------------------
  */
 
+static void give_law(const job *j, const char *law) {
+  char *deck = job_file(j, "inp"), *at = strstr(deck, "*SOLID SECTION");
+  *at = '\0';
+  job_write(j, "tips.inp", "%s*INELASTIC, LAW=%s\n*%s", deck, law, at + 1);
+  free(deck);
+}
+
 /* Creep under a load of 1 that falls to some 0.002: errors are told in parts of
  * the largest strain so far, and what the small load lets creep is none. */
 START_TEST(tolerance_is_of_the_largest_strain_so_far) {
@@ -136,10 +143,7 @@ START_TEST(tolerance_is_of_the_largest_strain_so_far) {
       "*STEP\n*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3\n"
       "0.125, 2.\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n"
       "TIPS, 2, -1., A\n*PRINT, ENERGY\n*END STEP\n");
-  char *deck = job_file(&j, "inp"), *at = strstr(deck, "*SOLID SECTION");
-  *at = '\0';
-  job_write(&j, "tips.inp", "%s*INELASTIC, LAW=MAXWELL\n1.\n*%s", deck, at + 1);
-  free(deck);
+  give_law(&j, "MAXWELL\n1.");
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   char *text = job_file(&j, "dat");
@@ -149,6 +153,26 @@ START_TEST(tolerance_is_of_the_largest_strain_so_far) {
   ck_assert_int_gt(late, 1);
   ck_assert_int_le(late, 20);
   free(text);
+  job_end(&j);
+}
+END_TEST
+
+/* Steps of no more than 0.5 are stable, tau = 0.25: an increment of 1 and the
+ * rest, 0.8, are made in halves. */
+START_TEST(rest_of_a_step_is_cut_in_halves) {
+  static const double end[] = {0.5, 1, 1.4, 1.8};
+  job j = new_job(
+      "*STEP\n*VISCO, INTEGRATOR=EULER, SUBSTEPS=AUTO\n1., 1.8\n*BOUNDARY\n"
+      "CLAMPED, 1, 2\nTIPS, 2, 2, -0.01\n*PRINT, ENERGY\n"
+      "*END STEP\n");
+  give_law(&j, "MAXWELL\n0.25");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  for (int k = 0; k < 4; ++k) {
+    dat e = job_table(&j, "ENERGY", k);
+    ck_assert_double_eq_tol(dat_at(&e, 0, "time"), end[k], 1e-12);
+    dat_free(&e);
+  }
   job_end(&j);
 }
 END_TEST
@@ -199,4 +223,5 @@ END_TEST
 UNIT_MAIN("carried", rollers_heat_by_the_way_that_slips, rollers_go_on,
           supports_move_on_from_the_start, supports_move_on_after_a_stop,
           tolerance_is_of_the_largest_strain_so_far,
+          rest_of_a_step_is_cut_in_halves,
           corner_closes_one_gap_after_the_other)

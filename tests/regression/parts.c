@@ -82,6 +82,27 @@ START_TEST(target_counts_all_errors_of_the_largest_increment) {
 }
 END_TEST
 
+/* The answer follows the load down to 1e-10: so does the error, over the norm
+ * that was the largest. */
+START_TEST(error_of_an_unloaded_body_is_over_the_largest) {
+  job j = job_begin("block");
+  double full[3], left[3];
+  block_file_write(&j, (int[]){8, 6}, (double[]){40.0, 30.0}, 0);
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 1E-10\n*STEP\n"
+            "*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nSYMMETRY, 1\nCONTACT, 1, 2\n"
+            "*DSLOAD\nTOP, P, 50., A\n*ACCURACY, MESH=YES\n*END STEP\n");
+  run(&j);
+  errors_of(&j, 1, full);
+  errors_of(&j, 2, left);
+  ck_assert_double_gt(full[0], 1);
+  ck_assert_double_eq_tol(1e10 * left[0] / full[0], 1, 0.06);
+  job_end(&j);
+}
+END_TEST
+
 /* ---- effects left out -----------------------------------------------------
  */
 
@@ -295,7 +316,8 @@ START_TEST(true_stress_error_counts_every_component) {
 }
 END_TEST
 
-UNIT_MAIN("parts", bound_of_heat_that_falls, zones_of_revolution_are_rings,
+UNIT_MAIN("parts", error_of_an_unloaded_body_is_over_the_largest,
+          bound_of_heat_that_falls, zones_of_revolution_are_rings,
           true_stress_error_counts_every_component,
           target_counts_all_errors_of_the_largest_increment,
           bound_of_creep_under_a_load_that_falls,

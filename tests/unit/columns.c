@@ -190,6 +190,152 @@ START_TEST(slip_has_a_direction) {
 }
 END_TEST
 
+/* The column of that name in a scene, whether visible or not. */
+static double told(const made_up *made, entity of, unsigned scene,
+                   const char *name) {
+  view v = {&made->m, made->msh, &made->s};
+  for (const column *c = column_next(NULL); c != NULL; c = column_next(c))
+    if (c->of == of && (c->scenes & scene) != 0 && strcmp(c->name, name) == 0)
+      return c->value(&v, 0, c->part);
+  ck_abort_msg("no column %s", name);
+  return NAN;
+}
+
+typedef struct named_value {
+  const char *name;
+  double value;
+} named_value;
+
+static void check_told(const made_up *made, entity of, unsigned scene, size_t n,
+                       const named_value *list) {
+  for (size_t i = 0; i < n; ++i)
+    ck_assert_msg(told(made, of, scene, list[i].name) == list[i].value, "%s",
+                  list[i].name);
+}
+#define CHECK_TOLD(of, scene, list) \
+  check_told(made, of, scene, sizeof list / sizeof *list, list)
+
+/* Every figure of a contact and of an increment is that of its name. */
+START_TEST(figures_stand_under_their_names) {
+  made_up *made = made_up_new(3, 1, 3);
+  made_up_advance(made, 1);
+  made->totals[0] = (contact_total){.force = {1, 2, 3},
+                                    .moment = {4, 5, 6},
+                                    .normal = -7,
+                                    .tangential = {8, 9},
+                                    .area = 10,
+                                    .n_open = 11,
+                                    .n_slip = 12,
+                                    .n_stick = 13};
+  made->loops[0] = (contact_loop){.way = {21, 22},
+                                  .mean_u_t = {23, 24},
+                                  .angle = 25,
+                                  .friction = 26,
+                                  .friction_end = 27,
+                                  .start_end = 20.5};
+  made->torque[0] = 28;
+  made->zones[0] = (contact_zone){
+      .from = {31, 32}, .to = {33, 34}, .length = 35, .area = 36};
+  made->s.energy = (energies){.strain = 41,
+                              .external = 42,
+                              .friction = 43,
+                              .friction_end = 44,
+                              .normal = 45,
+                              .thermal = 46,
+                              .inelastic = 47,
+                              .dissipated = 48,
+                              .stored = 49,
+                              .defect = 50,
+                              .largest = 100};
+  made->s.error = (error_bound){.energy = 51, .relative = 0.52, .rate = 53};
+  made->s.mesh_error = (error_share){.asked = 1, .relative = 0.54};
+  made->s.time_error = (error_share){.asked = 1, .relative = 0.55};
+  made->s.truth = (true_error){
+      .energy = 0.56, .displacement = 0.57, .stress = 0.58, .pressure = 0.59};
+  static const named_value solid[] = {
+      {"force_x", 1},        {"force_y", 2},
+      {"force_z", 3},        {"moment_x", 4},
+      {"moment_y", 5},       {"moment_z", 6},
+      {"normal", 7},         {"tangential_1", 8},
+      {"tangential_2", 9},   {"closed_area", 10},
+      {"open", 11},          {"slip", 12},
+      {"stick", 13},         {"way_1", 21},
+      {"way_2", 22},         {"mean_u_t1", 23},
+      {"mean_u_t2", 24},     {"angle", 25},
+      {"friction_work", 26}, {"friction_work_end", 27},
+      {"loop_area", 6.5},    {"torque", 28}};
+  static const named_value turned[] = {{"force_r", 1},
+                                       {"force_z", 2},
+                                       {"tangential", 8},
+                                       {"way", 21},
+                                       {"mean_u_t", 23}};
+  static const named_value zones[] = {{"r_from", 31}, {"z_from", 32},
+                                      {"r_to", 33},   {"z_to", 34},
+                                      {"extent", 35}, {"area", 36}};
+  static const named_value plane[] = {
+      {"x_from", 31}, {"y_from", 32}, {"x_to", 33}, {"y_to", 34}};
+  static const named_value increment[] = {
+      {"strain_energy", 41},
+      {"external_work", 42},
+      {"friction_work", 43},
+      {"friction_work_end", 44},
+      {"normal_work", 45},
+      {"thermal_work", 46},
+      {"inelastic_work", 47},
+      {"viscous_dissipation", 48},
+      {"inelastic_stored", 49},
+      {"energy_defect", 50},
+      {"energy_defect_relative", 0.5},
+      {"solver_error_energy", 51},
+      {"solver_error", 100 * 0.52},
+      {"contraction", 53},
+      {"mesh_error", 100 * 0.54},
+      {"time_error", 100 * 0.55},
+      {"true_error", 100 * 0.56},
+      {"true_displacement_error", 100 * 0.57},
+      {"true_stress_error", 100 * 0.58},
+      {"true_pressure_error", 100 * 0.59}};
+  CHECK_TOLD(PER_CONTACT, SCENE_SOLID, solid);
+  CHECK_TOLD(PER_CONTACT, SCENE_AXI, turned);
+  CHECK_TOLD(PER_ZONE, SCENE_AXI, zones);
+  CHECK_TOLD(PER_ZONE, SCENE_PLANE, plane);
+  CHECK_TOLD(PER_INCREMENT, SCENE_SOLID, increment);
+  made_up_free(made);
+}
+END_TEST
+
+enum { CARTESIAN = SCENE_PLANE | SCENE_SOLID };
+
+/* Components by their letters, of vectors and tensors: in a body of revolution
+ * r, z, then the hoop. */
+START_TEST(components_are_those_of_their_letters) {
+  static const struct {
+    const char *end;
+    unsigned scenes;
+    int part;
+  } letters[] = {
+      {"_xx", CARTESIAN, 0},  {"_yy", CARTESIAN, 1},   {"_zz", CARTESIAN, 2},
+      {"_xy", CARTESIAN, 3},  {"_yz", SCENE_SOLID, 4}, {"_zx", SCENE_SOLID, 5},
+      {"_rr", SCENE_AXI, 0},  {"_zz", SCENE_AXI, 1},   {"_tt", SCENE_AXI, 2},
+      {"_rz", SCENE_AXI, 3},  {"_x", CARTESIAN, 0},    {"_y", CARTESIAN, 1},
+      {"_r", SCENE_AXI, 0},   {"_z", SCENE_AXI, 1},    {"_z", SCENE_SOLID, 2},
+      {"t1", SCENE_SOLID, 0}, {"t2", SCENE_SOLID, 1},  {"_1", SCENE_SOLID, 0},
+      {"_2", SCENE_SOLID, 1}};
+  int seen = 0;
+  for (const column *c = column_next(NULL); c != NULL; c = column_next(c))
+    for (size_t k = 0; k < sizeof letters / sizeof *letters; ++k) {
+      const size_t n = strlen(c->name), m = strlen(letters[k].end);
+      if (n < m || strcmp(c->name + n - m, letters[k].end) != 0) continue;
+      if (strncmp(c->name, "alpha", 5) == 0 ||
+          (c->scenes & letters[k].scenes) == 0)
+        continue;
+      ck_assert_msg(c->part == letters[k].part, "%s: %d", c->name, c->part);
+      ++seen;
+    }
+  ck_assert_int_gt(seen, 70);
+}
+END_TEST
+
 START_TEST(units_are_composed_from_the_labels) {
   model m = {.length_unit = "mm", .force_unit = "N"};
   char text[80], tiny[4];
@@ -211,4 +357,6 @@ UNIT_MAIN("columns", every_row_has_unit_help_scene_and_value,
           fields_have_distinct_components, every_value_is_finite,
           columns_follow_the_effects, contact_signs_and_directions,
           mises_of_simple_states, internal_variables_of_unlike_laws,
-          slip_has_a_direction, units_are_composed_from_the_labels)
+          slip_has_a_direction, figures_stand_under_their_names,
+          components_are_those_of_their_letters,
+          units_are_composed_from_the_labels)

@@ -56,6 +56,37 @@ START_TEST(held_stress_has_the_factor_of_its_row) {
 }
 END_TEST
 
+static double energy(const flow_state *s) {
+  double sum = 0;
+  for (int i = 0; i < 6; ++i) sum += 0.5 * s->sigma[i] * (s->e[i] - s->ei[i]);
+  return sum;
+}
+
+/* What is lost of a held stress is what its elastic energy falls by, which the
+ * quadrature of a row has with its order; halved steps. */
+START_TEST(loss_has_the_order_of_its_row) {
+  for (int i = 0; scheme_list[i] != NULL; ++i) {
+    const scheme *s = scheme_list[i];
+    double error[2];
+    for (int k = 0; k < 2; ++k) {
+      const int n = 8 << k;
+      double lost = 0;
+      start("MAXWELL", "2.", &held);
+      const double before = energy(&b.old);
+      for (int step = 1; step <= n; ++step) {
+        point_body_run(&b, s, theta_of(s), 1.5 * step / n, 1, NULL);
+        lost += b.result.dissipated;
+      }
+      error[k] = fabs(lost / (before * (1 - exp(-1.5))) - 1);
+      point_body_free(&b);
+    }
+    ck_assert_double_le(error[0], 0.2);
+    ck_assert_msg(error[1] <= 1.25 * ldexp(error[0], -s->order) + 1e-13,
+                  "%s: %g, then %g", s->name, error[0], error[1]);
+  }
+}
+END_TEST
+
 /* At its limit a step leaves the magnitude as it is; there is none for rows
  * that damp everything. */
 START_TEST(limits_are_where_the_factor_is_one) {
@@ -250,7 +281,8 @@ START_TEST(a_rejected_step_leaves_nothing_behind) {
 }
 END_TEST
 
-UNIT_MAIN("scheme", held_stress_has_the_factor_of_its_row,
+UNIT_MAIN("scheme", loss_has_the_order_of_its_row,
+          held_stress_has_the_factor_of_its_row,
           limits_are_where_the_factor_is_one, rows_have_their_order,
           heun_estimates_by_euler, midpoint_and_backward_are_theta,
           exponential_is_exact_for_linear_laws, thirty_decades_in_one_body,
