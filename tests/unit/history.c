@@ -229,6 +229,22 @@ START_TEST(every_refused_request_is_reported) {
 }
 END_TEST
 
+/* |e|_A = 2, of a body whose norm is sqrt(2 8) = 4. */
+START_TEST(error_of_the_solver_is_half_its_square_and_its_part) {
+  error_bound e;
+  solver_error found = {.norm = 2, .rate = 0.3};
+  error_bound_set(&found, 8, &e);
+  ck_assert_double_eq(e.energy, 2);
+  ck_assert_double_eq(e.relative, 0.5);
+  ck_assert_double_eq(e.rate, 0.3);
+  error_bound_set(&found, 0, &e);
+  ck_assert(isnan(e.relative));
+  found.norm = 0;
+  error_bound_set(&found, 0, &e);
+  ck_assert_double_eq(e.relative, 0);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("history");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -237,6 +253,7 @@ int main(void) {
   tcase_add_test(tests, increment_that_cannot_be_cut_further_is_unsettled);
   tcase_add_test(tests, energies_balance_at_every_increment);
   tcase_add_test(tests, step_ends_at_the_time_asked_for);
+  tcase_add_test(tests, error_of_the_solver_is_half_its_square_and_its_part);
   tcase_add_test(tests, every_refused_request_is_reported);
   return unit_run("history", tests);
 }

@@ -338,6 +338,36 @@ static void check_lateral(law_case *c) {
 START_TEST(lateral_directions_flow_alike) { for_all(1, check_lateral); }
 END_TEST
 
+/* The terms of a series have no order: rates of e^i, what is lost and kept, the
+ * fastest rate, the law at its end. */
+START_TEST(terms_have_no_order) {
+  static const char *const data[][3] = {
+      {"PRONY", "0.3, 0.1, 0.5\n0.2, 0., 10.\n0.25, 0.3, 200.",
+       "0.25, 0.3, 200.\n0.2, 0., 10.\n0.3, 0.1, 0.5"},
+      {"KELVIN", "5E4, 1E5\n2E5, 3E6", "2E5, 3E6\n5E4, 1E5"}};
+  static law_case c;
+  for (int i = 0; i < 2; ++i) {
+    double out[2][6 + LAW_ALPHA_MAX], told[2][4], R[2][36];
+    const law_ops *ops = law_find(data[i][0]);
+    for (int k = 0; k < 2; ++k) {
+      law_case_new(ops, 0, data[i][1 + k], young, nu, SOLID_3D, &c);
+      for (int q = 0; q < 6; ++q) c.sigma[q] = stress * (q - 2.2);
+      rates(&c, out[k]);
+      law_point p = law_case_point(&c);
+      told[k][0] = law_dissipation(&p);
+      told[k][1] = law_stored(&p);
+      told[k][2] = ops->relaxed(&p, R[k]);
+      ck_assert_int_eq(law_fastest_rate(&p, &told[k][3]), OK);
+      if (k == 1) same(&c, out[0], out[1], 6, 1e-12, "rate");
+      for (int q = 0; k == 1 && q < 4; ++q)
+        same(&c, &told[0][q], &told[1][q], 1, 1e-12, "loss, kept, end, rate");
+      if (k == 1) same(&c, R[0], R[1], 36, 1e-12, "end");
+      law_case_free(&c);
+    }
+  }
+}
+END_TEST
+
 /* Linear rows: rates are the Jacobian times the state. */
 static void check_linear(law_case *c) {
   static double room[5][ROOM];
@@ -456,8 +486,9 @@ START_TEST(a_trial_law_passes) {
 }
 END_TEST
 
-UNIT_MAIN("law", nothing_happens_at_rest, dissipation_is_not_negative,
-          power_is_lost_or_kept, jacobian_agrees_with_differences,
+UNIT_MAIN("law", terms_have_no_order, nothing_happens_at_rest,
+          dissipation_is_not_negative, power_is_lost_or_kept,
+          jacobian_agrees_with_differences,
           fastest_rate_is_the_largest_eigenvalue,
           a_turned_stress_gives_turned_rates, plane_rates_are_those_of_3d,
           lateral_directions_flow_alike, a_linear_law_is_its_jacobian,
