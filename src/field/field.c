@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "exchange/dataset.h"
+#include "msh/scan.h"
 #include "system/input.h"
 
 #include <math.h>
@@ -15,7 +16,7 @@
 
 /* Values beyond those of the mesh that a file may have: FOREIGN a node, and
  * FEW. */
-enum { LINE = 512, MOST_TAGS = 64, FOREIGN = 8, FEW = 100000 };
+enum { FOREIGN = 8, FEW = 100000 };
 
 typedef struct pairs { /* as the file has them                                */
   long n;
@@ -23,99 +24,93 @@ typedef struct pairs { /* as the file has them                                */
   double *value;
 } pairs;
 
-typedef struct reader {
-  FILE *f;
-  const char *path;
-  int binary;
-  long most; /* values                                                       */
-} reader;
-
-static int next_line(reader *r, char line[LINE]) {
-  return fgets(line, LINE, r->f) != NULL;
-}
-
-/* An integer that stands on a line of its own. */
-static status line_int(reader *r, int least, int most, int *value) {
-  status st = OK;
-  char line[LINE];
-  if (!next_line(r, line) || sscanf(line, "%d", value) != 1 || *value < least ||
-      *value > most)
-    FAIL(ERR_DECK, "%s: $NodeData is cut short or damaged", r->path);
-done:
-  return st;
-}
-
-/* The tags before the values: *n of them, of one component. */
-static status read_tags(reader *r, int *n) {
-  status st = OK;
-  char line[LINE];
-  int count, component = 0;
-  for (int kind = 0; kind < 2; ++kind) { /* names, then times                 */
-    TRY(line_int(r, 0, MOST_TAGS, &count));
-    for (int i = 0; i < count; ++i)
-      if (!next_line(r, line))
-        FAIL(ERR_DECK, "%s: $NodeData is cut short", r->path);
-  }
-  TRY(line_int(r, 3, MOST_TAGS, &count));
-  for (int i = 0; i < count; ++i) {
-    int tag;
-    TRY(line_int(r, INT32_MIN, INT32_MAX, &tag));
-    if (i == 1) component = tag;
-    if (i == 2) *n = tag;
-  }
-  if (component != 1 || *n < 0)
-    FAIL(ERR_DECK, "%s: $NodeData has %d components, one is needed", r->path,
-         component);
-  if (*n > r->most)
-    FAIL(ERR_DECK, "%s: $NodeData has %d values, expected at most %ld", r->path,
-         *n, r->most);
-done:
-  return st;
-}
-
-static int read_pair(reader *r, long *node_no, double *value) {
-  int32_t number;
-  if (!r->binary) return fscanf(r->f, "%ld %lf", node_no, value) == 2;
-  if (fread(&number, sizeof number, 1, r->f) != 1) return 0;
-  *node_no = number;
-  return fread(value, sizeof *value, 1, r->f) == 1;
-}
-
 static void pairs_free(pairs *p) {
   memory_free(p->node_no);
   memory_free(p->value);
   *p = (pairs){0};
 }
 
-static status read_node_data(reader *r, pairs *p) {
+/* A count that stands on a line of its own. */
+static status read_count(scan *s, size_t *n) {
   status st = OK;
-  int n = 0;
-  pairs_free(p);
-  TRY(read_tags(r, &n));
-  NEW(p->node_no, n);
-  NEW(p->value, n);
-  for (p->n = 0; p->n < n; ++p->n)
-    if (!read_pair(r, &p->node_no[p->n], &p->value[p->n]))
-      FAIL(ERR_DECK, "%s: $NodeData ends after %ld of %d values", r->path, p->n,
-           n);
+  TRY(scan_size(s, n));
+  TRY(scan_line(s));
 done:
   return st;
 }
 
-static status read_gmsh(reader *r, pairs *p) {
+/* The tags before the values: *n of them, of one component. */
+static status read_tags(scan *s, size_t *n) {
   status st = OK;
-  char line[LINE];
-  int found = 0, binary;
-  while (next_line(r, line)) {
-    if (strncmp(line, "$MeshFormat", 11) == 0 && next_line(r, line) &&
-        sscanf(line, "%*f %d", &binary) == 1)
-      r->binary = binary == 1;
-    if (strncmp(line, "$NodeData", 9) != 0) continue;
-    TRY(read_node_data(r, p));
+  size_t count, length, component = 0;
+  const char *name;
+  double time;
+  TRY(read_count(s, &count));
+  for (size_t i = 0; i < count; ++i) {
+    TRY(scan_quoted(s, &name, &length));
+    TRY(scan_line(s));
+  }
+  TRY(read_count(s, &count));
+  for (size_t i = 0; i < count; ++i) {
+    TRY(scan_real(s, &time));
+    TRY(scan_line(s));
+  }
+  TRY(read_count(s, &count));
+  for (size_t i = 0; i < count; ++i) {
+    int tag;
+    TRY(scan_int(s, &tag));
+    TRY(scan_line(s));
+    if (i == 1) component = (size_t)tag;
+    if (i == 2) *n = tag < 0 ? SIZE_MAX : (size_t)tag;
+  }
+  if (count < 3) return scan_fail(s, "$NodeData needs three integer tags");
+  if (component != 1)
+    return scan_fail(s, "$NodeData has %zu components, one is needed",
+                     component);
+done:
+  return st;
+}
+
+static status read_node_data(scan *s, pairs *p) {
+  status st = OK;
+  size_t n = 0;
+  int no;
+  pairs_free(p);
+  TRY(read_tags(s, &n));
+  scan_start_binary(s);
+  TRY(scan_fits(s, n, sizeof "1 0", 12, "values"));
+  NEW(p->node_no, n);
+  NEW(p->value, n);
+  for (size_t i = 0; i < n; ++i) {
+    TRY(scan_int(s, &no));
+    TRY(scan_real(s, &p->value[i]));
+    TRY(scan_line(s));
+    p->node_no[i] = no;
+  }
+  p->n = (long)n;
+  TRY(scan_end(s, "NodeData", "its values"));
+done:
+  return st;
+}
+
+static status read_gmsh(scan *s, pairs *p) {
+  status st = OK;
+  char name[SCAN_NAME];
+  int found = 0;
+  for (;;) {
+    TRY(scan_section(s, name));
+    if (name[0] == '\0') break;
+    if (strcmp(name, "NodeData") != 0) {
+      TRY(scan_skip(s, name));
+      continue;
+    }
+    if (s->version == 0.0)
+      return scan_fail(s, "$MeshFormat is to stand before $NodeData");
+    TRY(read_node_data(s, p));
     found = 1;
   }
   if (!found)
-    FAIL(ERR_DECK, "%s: there is no $NodeData, and it is not HDF5", r->path);
+    FAIL(ERR_DECK, "%s: there is no $NodeData, and it is not HDF5", s->path);
 done:
   return st;
 }
@@ -168,6 +163,8 @@ static status to_mesh(const char *path, const pairs *p, const mesh *msh,
     if (!isfinite(p->value[i]))
       FAIL(ERR_DECK, "%s: the value of node %ld is not a finite number", path,
            p->node_no[i]);
+    if (known[at->id])
+      FAIL(ERR_DECK, "%s: node %ld is listed twice", path, p->node_no[i]);
     value[at->id] = p->value[i];
     known[at->id] = 1;
   }
@@ -181,26 +178,37 @@ done:
   return st;
 }
 
-status nodal_field_read(const char *path, const mesh *msh, double **value) {
+/* 1 if the file has the first bytes of one of HDF5. */
+static status find_kind(const char *path, int *is_hdf5) {
   status st = OK;
   static const char signature[8] = "\211HDF\r\n\032\n";
-  char first[8] = "";
+  char first[8];
+  const char *why;
+  FILE *f = input_stream(path, &why);
+  if (f == NULL) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
+  *is_hdf5 = fread(first, 1, 8, f) == 8 && memcmp(first, signature, 8) == 0;
+  fclose(f);
+done:
+  return st;
+}
+
+status nodal_field_read(const char *path, const mesh *msh, double **value) {
+  status st = OK;
   pairs p = {0};
-  const char *why = NULL;
-  reader r = {.path = path, .most = FEW + (1L + FOREIGN) * msh->n_node};
+  scan s = {0};
+  int is_hdf5 = 0;
   *value = NULL;
-  r.f = input_stream(path, &why);
-  if (r.f == NULL) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
-  int hdf5 = fread(first, 1, 8, r.f) == 8 && memcmp(first, signature, 8) == 0;
-  rewind(r.f);
-  if (hdf5)
-    TRY(read_hdf5(path, r.most, &p));
-  else
-    TRY(read_gmsh(&r, &p));
+  TRY(find_kind(path, &is_hdf5));
+  if (is_hdf5) {
+    TRY(read_hdf5(path, FEW + (1L + FOREIGN) * msh->n_node, &p));
+  } else {
+    TRY(scan_open(&s, path, ERR_DECK));
+    TRY(read_gmsh(&s, &p));
+  }
   NEW(*value, msh->n_node);
   TRY(to_mesh(path, &p, msh, *value));
 done:
-  if (r.f != NULL) fclose(r.f);
+  scan_close(&s);
   pairs_free(&p);
   if (st != OK) {
     memory_free(*value);

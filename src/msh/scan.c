@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/number.h"
 #include "system/input.h"
+#include "system/limits.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -44,12 +45,17 @@ done:
 status scan_open(scan *s, const char *path, status wrong) {
   status st = OK;
   struct stat about;
+  limits l;
   const char *why;
   *s = (scan){.path = path, .wrong = wrong};
   int fd = input_open(path, &why);
   if (fd < 0) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
   if (fstat(fd, &about) != 0)
     FAIL(ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+  limits_read("", &l);
+  if ((double)about.st_size > l.memory)
+    FAIL(ERR_MEMORY, "%s: its %lld bytes are more than %s leaves", path,
+         (long long)about.st_size, l.who);
   s->size = (size_t)about.st_size;
   TRY(read_all(s, fd));
 done:

@@ -11,6 +11,7 @@
 #include <hdf5.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct scene {
@@ -381,6 +382,61 @@ START_TEST(temperatures_from_a_file) {
 }
 END_TEST
 
+/* A field that is cut, or has a node twice, is no field. */
+START_TEST(damaged_fields_are_refused) {
+  job j = job_begin("field");
+  job_copy(&j, "tests/regression/bad/square.msh");
+  job_write(&j, "field.inp",
+            "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.\n"
+            "*EXPANSION\n1.E-5\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 2\n"
+            "*TEMPERATURE, FILE=t.msh\nBODY\n*END STEP\n");
+  static void (*const write[])(const char *) = {write_text_field,
+                                                write_binary_field};
+  char path[128];
+  snprintf(path, sizeof path, "%s/t.msh", j.dir);
+  for (int k = 0; k < 2; ++k) {
+    write[k](path);
+    char text[1024];
+    FILE *whole = fopen(path, "rb");
+    size_t size = fread(text, 1, sizeof text, whole);
+    fclose(whole);
+    ck_assert_int_eq(job_run(&j, "--check"), 0);
+    for (size_t cut = size - 30; cut < size - 1; ++cut) {
+      FILE *f = fopen(path, "wb");
+      fwrite(text, 1, cut, f);
+      fclose(f);
+      ck_assert_msg(job_run(&j, "--check") == 2, "%d: cut at %zu of %zu", k,
+                    cut, size);
+    }
+  }
+  static const struct {
+    const char *values, *message;
+  } cases[] = {
+      {"9\n1 1\n2 2\n3 3\n4 4\n5 5\n6 6\n7 7\n8 8\n8 9\n",
+       "t.msh: node 8 is listed twice"},
+      {"8\n1 1\n2 2\n3 3\n4 4\n5 5\n6 6\n7 7\n8 8\n9 9\n",
+       "t.msh:21: \"9\" where $EndNodeData"},
+      {"10\n1 1\n2 2\n3 3\n4 4\n5 5\n6 6\n7 7\n8 8\n9 9\n",
+       "t.msh:22: \"$EndNodeData\" where a whole number"},
+      {"9\n1 1\n2 2\n3 3\n4 4\n5 5\n6 6\n7 7\n8 8\n9 9.5.1\n",
+       "t.msh:21: \"9.5.1\" where a number"},
+      {"9\n1 1\n2 2\n3 3\n4 4\n5 5\n6 6\n7 7\n8 8\n9 nan\n",
+       "t.msh: the value of node 9 is not a finite number"},
+      {"2000000000\n1 1\n", "t.msh:13: 2000000000 values do not fit"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+    job_write(&j, "t.msh",
+              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$NodeData\n1\n\"T\"\n1\n"
+              "0.0\n3\n0\n1\n%s$EndNodeData\n",
+              cases[i].values);
+    ck_assert_int_eq(job_run(&j, "--check"), 2);
+    ck_assert_msg(strstr(j.errors, cases[i].message) != NULL, "%s", j.errors);
+  }
+  job_end(&j);
+}
+END_TEST
+
 /* Without *TEMPERATURE nothing of it is done or held. */
 START_TEST(costs_nothing_when_not_called) {
   scene s = {"square.geo",
@@ -406,5 +462,6 @@ UNIT_MAIN("thermal", bar_between_contacts, held_on_all_sides,
           free_expansion_has_no_stress, secants_over_the_temperature,
           temperatures_run_through_the_steps,
           cylinder_with_a_logarithmic_profile, strip_with_a_parabolic_profile,
-          temperatures_from_a_file, heat_closes_the_gap,
-          penetration_at_the_start, costs_nothing_when_not_called)
+          temperatures_from_a_file, damaged_fields_are_refused,
+          heat_closes_the_gap, penetration_at_the_start,
+          costs_nothing_when_not_called)
