@@ -6,9 +6,11 @@
  * libgmsh is loaded by the name that belongs to the header gmshc.h, whose
  * calls change from one minor version to the next.
  */
+#define _GNU_SOURCE /* memfd_create */
 #include "mesh/raw.h"
 
 #include "base/memory.h"
+#include "system/limits.h"
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -52,11 +54,13 @@ typedef struct gmsh_calls {
 typedef struct child {
   const raw_request *request;
   int fd;
+  char *path; /* of the geometry in full, or NULL                            */
   gmsh_calls gmsh;
 } child;
 
 enum { LEFT_BY_ITSELF = 71, MAX_WARNING = 5, TEXT_SIZE = 1024 };
 enum { PROBE = 64 << 20, CRASH_STACK = 64 << 10 }; /* bytes */
+enum { MOST_CPU = 3600 };                          /* s */
 
 static void put(const child *c, const void *data, size_t n) {
   while (n > 0) {
@@ -86,6 +90,16 @@ static void send_text(const child *c, wire_kind kind, int dim, int tag,
   send(c, (wire_head){0, kind, dim, tag, strlen(text)}, text, 1);
 }
 
+/* gmsh names the file in full: put what the user wrote in its place. */
+static void name_as_given(const child *c, char text[TEXT_SIZE]) {
+  const char *file = c->request->source->file;
+  char *at = c->path != NULL ? strstr(text, c->path) : NULL;
+  size_t n = c->path != NULL ? strlen(c->path) : 0, k = strlen(file);
+  if (at == NULL || k > n) return;
+  memmove(at + k, at + n, strlen(at + n) + 1);
+  memcpy(at, file, k);
+}
+
 static void give_up(const child *c, status code, const char *format, ...)
     __attribute__((noreturn, format(printf, 3, 4)));
 static void give_up(const child *c, status code, const char *format, ...) {
@@ -94,6 +108,7 @@ static void give_up(const child *c, status code, const char *format, ...) {
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
+  name_as_given(c, text);
   send_text(c, WIRE_FAILURE, 0, code, text);
   _exit(0);
 }
@@ -107,7 +122,7 @@ static void leave_at_once(void) { _exit(LEFT_BY_ITSELF); }
 static void detach(pid_t parent, int fd, int error_fd) {
   static const int signals[] = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT, SIGPIPE,
                                 SIGCHLD, SIGABRT, SIGSEGV, SIGFPE,  SIGBUS,
-                                SIGILL,  SIGALRM, SIGUSR1, SIGUSR2};
+                                SIGILL,  SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU};
   for (size_t i = 0; i < sizeof signals / sizeof *signals; ++i)
     signal(signals[i], SIG_DFL);
   sigset_t none;
@@ -128,6 +143,27 @@ static void detach(pid_t parent, int fd, int error_fd) {
   dup2(error_fd, STDERR_FILENO);
   setlocale(LC_ALL, "C");
   atexit(leave_at_once);
+}
+
+static void set_limit(int what, double most) {
+  struct rlimit l;
+  if (getrlimit(what, &l) != 0 || !(most < (double)l.rlim_cur)) return;
+  l.rlim_cur = (rlim_t)most;
+  setrlimit(what, &l);
+}
+
+/* A .geo is a program of the user, but one that ends and leaves memory to
+ * others. Nothing in the environment or a home has a say in the mesh, and no
+ * preferences are written: no folder can be made below a device. */
+static void confine(void) {
+  limits l;
+  limits_read("", &l);
+  set_limit(RLIMIT_CPU, MOST_CPU);
+#ifndef __SANITIZE_ADDRESS__ /* it takes terabytes of addresses itself */
+  set_limit(RLIMIT_DATA, l.memory);
+#endif
+  clearenv();
+  setenv("HOME", "/dev/null", 1);
 }
 
 /* Called by the C++ library in place of throwing bad_alloc, which gmsh would
@@ -335,6 +371,25 @@ static void set_sizes(const child *c) {
   memory_free(data);
 }
 
+/*
+ * Options beside a file (x.geo.opt) would be obeyed after it: the file is
+ * included by one that lives in memory, beside which there is nothing.
+ */
+static void open_geo(child *c) {
+  int error, fd = memfd_create("protis", MFD_CLOEXEC);
+  char name[32];
+  c->path = realpath(c->request->source->file, NULL);
+  if (fd < 0 || c->path == NULL)
+    give_up(c, ERR_MESH, "cannot hand the geometry to gmsh: %s",
+            strerror(errno));
+  if (strpbrk(c->path, "\"\n\\") != NULL)
+    give_up(c, ERR_MESH, "gmsh reads no path with quotes or backslashes");
+  dprintf(fd, "Include \"%s\";\n", c->path);
+  snprintf(name, sizeof name, "/proc/self/fd/%d", fd);
+  c->gmsh.Open(name, &error);
+  check(c, error, "read the file");
+}
+
 /* Highest dimension of the physical groups: 3, or 2, or less; -1 if none. */
 static int send_groups(const child *c) {
   int *dim_tag, error, dim = -1;
@@ -474,10 +529,10 @@ void child_run(const raw_request *request, pid_t parent, int fd, int error_fd) {
   child here = {.request = request, .fd = fd}, *c = &here;
   int error;
   detach(parent, fd, error_fd);
+  confine();
   load(c);
   start(c);
-  c->gmsh.Open(request->source->file, &error);
-  check(c, error, "read the file");
+  open_geo(c);
   if (request->source->size != NULL) free_counts(c);
   int dim = send_groups(c);
   const char *doing = "read the file";

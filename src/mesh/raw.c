@@ -220,16 +220,28 @@ done:
   return st;
 }
 
-/* 0 and -1 in both if there is no pipe. */
-static int open_pipe(int ends[2]) {
-  if (pipe(ends) == 0) return 1;
-  ends[0] = ends[1] = -1;
-  return 0;
-}
-
 static void close_end(int *end) {
   if (*end >= 0) close(*end);
   *end = -1;
+}
+
+/* Where standard streams are closed, a pipe would take their place. */
+static void leave_standard(int *end) {
+  if (*end > STDERR_FILENO) return;
+  int other = fcntl(*end, F_DUPFD, STDERR_FILENO + 1);
+  close_end(end);
+  *end = other;
+}
+
+/* 0 and -1 in both if there is no pipe. */
+static int open_pipe(int ends[2]) {
+  if (pipe(ends) != 0) {
+    ends[0] = ends[1] = -1;
+    return 0;
+  }
+  leave_standard(&ends[0]);
+  leave_standard(&ends[1]);
+  return ends[0] >= 0 && ends[1] >= 0;
 }
 
 /* Wait for the child; 1 if its end is known (not if SIGCHLD is ignored). */

@@ -22,6 +22,10 @@ static const char *kept;
 
 static void *real(const char *name) { return dlsym(RTLD_NEXT, name); }
 
+/* The reader clears the environment of the process that meshes. */
+static void look(void) __attribute__((constructor));
+static void look(void) { kept = getenv("MESH_KEPT"); }
+
 static void copy_name(char text[4096]) {
   snprintf(text, 4096, "%s.%d", kept, (int)getpid());
 }
@@ -53,7 +57,6 @@ void *dlopen(const char *file, int flags) {
   void *found = next == NULL ? real("dlopen") : NULL;
   char path[4096];
   if (found != NULL) memcpy(&next, &found, sizeof next);
-  kept = getenv("MESH_KEPT");
   if (file != NULL && kept != NULL && sink >= 0 &&
       strncmp(file, "libgmsh", 7) == 0) {
     int from = open(kept, O_RDONLY | O_CLOEXEC);

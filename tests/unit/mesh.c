@@ -467,10 +467,12 @@ static const char small_msh[] =
 
 /* Parent and child go on counting: each request is refused on one side. */
 START_TEST(reader_gives_back_all_when_refused) {
+  static const char merge[] = "Merge \"m.msh\";\n";
   mesh_file f;
   mesh_file_open(&f);
   mesh_file_write(&f, "m.msh", small_msh, sizeof small_msh - 1);
-  const mesh_source source = {.file = mesh_file_path(&f, "m.msh"), .scale = 1};
+  mesh_file_write(&f, "m.geo", merge, sizeof merge - 1);
+  const mesh_source source = {.file = mesh_file_path(&f, "m.geo"), .scale = 1};
   const raw_request request = {&source, 0};
   size_t before = memory_in_use();
   int k = 1;
@@ -493,10 +495,8 @@ START_TEST(builder_gives_back_all_when_refused) {
   mesh_file f;
   mesh_file_open(&f);
   mesh_file_write(&f, "m.msh", small_msh, sizeof small_msh - 1);
-  const mesh_source source = {.file = mesh_file_path(&f, "m.msh"), .scale = 1};
-  const raw_request request = {&source, 0};
   raw_mesh *raw;
-  ck_assert_int_eq(raw_read(&request, &raw), OK);
+  ck_assert_int_eq(msh_read(mesh_file_path(&f, "m.msh"), &raw), OK);
   long first = memory_requests(), n = 0;
   for (long k = 0; k <= 2 * n; ++k) { /* 0: none; then each, once or for good */
     message_log *log;

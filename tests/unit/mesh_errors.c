@@ -8,6 +8,7 @@
 #include <dirent.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -450,6 +451,58 @@ START_TEST(nothing_is_printed) {
 }
 END_TEST
 
+/* Options beside the file or in the home, and the environment, have no say;
+ * the home is left as it is. */
+START_TEST(geometry_alone_makes_the_mesh) {
+  static const char *const hidden[] = {"g.geo.opt", ".gmshrc", ".gmsh-options"};
+  mesh_file f;
+  mesh_file_open(&f);
+  char text[256], home[256], ran[192];
+  snprintf(ran, sizeof ran, "%s", mesh_file_path(&f, "ran"));
+  snprintf(text, sizeof text,
+           "Mesh.ElementOrder = 2; SystemCall \"touch %s\";\n", ran);
+  for (int i = 0; i < 3; ++i)
+    mesh_file_write(&f, hidden[i], text, strlen(text));
+  snprintf(home, sizeof home, "%s", getenv("HOME") ? getenv("HOME") : "/");
+  ck_assert_int_eq(setenv("HOME", f.folder, 1), 0);
+  mesh *m = mesh_file_text(
+      &f, "g.geo",
+      PLATE
+      "Physical Surface(1)={1};\n"
+      "If (StrFind(GetEnv(\"HOME\"), \"protis\")) Error(\"home\"); EndIf\n");
+  setenv("HOME", home, 1);
+  ck_assert_msg(m != NULL && f.messages[0] == '\0', "%s", f.messages);
+  mesh_free(m);
+  ck_assert_int_ne(access(ran, F_OK), 0);
+  int n = 0;
+  DIR *folder = opendir(f.folder);
+  while (readdir(folder) != NULL) ++n;
+  closedir(folder);
+  ck_assert_int_eq(n, 2 + 3 + 1); /* what was written above */
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* Pipes do not take the place of standard streams. */
+START_TEST(closed_streams_do_not_disturb) {
+  mesh_file f;
+  mesh_file_open(&f);
+  int kept[3];
+  for (int i = 0; i < 3; ++i) {
+    kept[i] = dup(i);
+    close(i);
+  }
+  mesh *m = mesh_file_text(&f, "g.geo", PLATE "Physical Surface(1)={1};\n");
+  for (int i = 0; i < 3; ++i) {
+    dup2(kept[i], i);
+    close(kept[i]);
+  }
+  ck_assert_msg(m != NULL && m->n_elem > 0, "%s", f.messages);
+  mesh_free(m);
+  mesh_file_close(&f);
+}
+END_TEST
+
 static char left_behind[192];
 
 static void leave_a_file(void) {
@@ -550,5 +603,6 @@ UNIT_MAIN("mesh_errors", every_error_has_its_text_and_no_mesh,
           reader_that_dies_is_told, signals_do_not_disturb,
           want_of_memory_in_gmsh_is_told,
           want_of_memory_is_never_taken_for_a_bad_mesh, nothing_is_printed,
+          geometry_alone_makes_the_mesh, closed_streams_do_not_disturb,
           exit_of_gmsh_runs_no_handler_of_the_program,
           rubbish_from_the_reader_is_refused, builder_trusts_nothing)
