@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "fem/fem.h"
 #include "inform.h"
 #include "system/input.h"
@@ -95,7 +96,16 @@ static void print_help(void) {
 }
 
 static int wrong(const char *what, const char *word) {
-  fprintf(stderr, "protis: error: %s%s; see protis --help\n", what, word);
+  fprintf(stderr, "protis: error: %s", what);
+  text_put(stderr, word);
+  fputs("; see protis --help\n", stderr);
+  return 2;
+}
+
+static int mean(const char *what, const char *word, const char *near) {
+  fprintf(stderr, "protis: error: %s", what);
+  text_put(stderr, word);
+  fprintf(stderr, "; did you mean %s%s?\n", word[0] == '-' ? "--" : "", near);
   return 2;
 }
 
@@ -108,9 +118,7 @@ static int print_keywords(const char *card) {
   if (inform_keywords(card)) return 0;
   const char *near = inform_nearest_card(card);
   if (near == NULL) return wrong("there is no card ", card);
-  fprintf(stderr, "protis: error: there is no card %s; did you mean %s?\n",
-          card, near);
-  return 2;
+  return mean("there is no card ", card, near);
 }
 
 static int print_list(const char *kind) {
@@ -144,9 +152,7 @@ static const char *long_option(const void *ctx, int i) {
 static int unknown_option(const char *given) {
   const char *near = inform_nearest(given + strspn(given, "-"), long_option);
   if (near == NULL) return wrong("there is no option ", given);
-  fprintf(stderr, "protis: error: there is no option %s; did you mean --%s?\n",
-          given, near);
-  return 2;
+  return mean("there is no option ", given, near);
 }
 
 /* What is asked without a job: the exit code. */

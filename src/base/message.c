@@ -70,18 +70,22 @@ static const char *put_text(const char *text, char **room) {
   return copy;
 }
 
+static const char *line_of(const place *p) {
+  return p->hidden ? NULL : p->line;
+}
+
 /* Copy of a place, its chain and its texts in one block; NULL if refused. */
 static place *place_copy(const place *at) {
   size_t n = 0, bytes = 0;
   for (const place *p = at; p != NULL; p = p->from, ++n)
-    bytes += sizeof *p + text_bytes(p->file) + text_bytes(p->line);
+    bytes += sizeof *p + text_bytes(p->file) + text_bytes(line_of(p));
   place *copy = memory_new(1, bytes);
   if (copy == NULL) return NULL;
   char *room = (char *)(copy + n);
   for (size_t i = 0; i < n; ++i, at = at->from) {
     copy[i] = *at;
     copy[i].file = put_text(at->file, &room);
-    copy[i].line = put_text(at->line, &room);
+    copy[i].line = put_text(line_of(at), &room);
     copy[i].from = i + 1 < n ? &copy[i + 1] : NULL;
   }
   return copy;
@@ -126,12 +130,6 @@ done:
   return st;
 }
 
-/* Control characters of hostile input do not reach the terminal. */
-static char shown_character(char c) {
-  int control = (unsigned char)c < ' ' || c == 127;
-  return control && c != '\t' ? '?' : c;
-}
-
 static status keep(message_log *log, const message *m) {
   status st = OK;
   GROW(log->items, log->n, log->capacity);
@@ -165,6 +163,22 @@ static int is_there(const message_log *log, const message *m, const place *at,
   return 0;
 }
 
+/* The text that is shown; of a hidden file only what kind of message it is. */
+static void make_text(const manual_entry *entry, const place *at,
+                      const char *format, va_list args, char out[TEXT_SIZE]) {
+  char text[TEXT_SIZE];
+  if (at != NULL && at->hidden && entry != NULL) {
+    snprintf(out, TEXT_SIZE,
+             "%s; nothing of this file is shown, as it does not start with a "
+             "card",
+             entry->title);
+    return;
+  }
+  int length = vsnprintf(text, sizeof text, format, args);
+  if (length >= TEXT_SIZE) memcpy(text + TEXT_SIZE - 4, "...", 4);
+  text_shown(out, TEXT_SIZE, text);
+}
+
 void message_add(message_log *log, message_id id, const place *at,
                  const char *format, ...) {
   char text[TEXT_SIZE];
@@ -176,10 +190,8 @@ void message_add(message_log *log, message_id id, const place *at,
   }
   va_list args;
   va_start(args, format);
-  int length = vsnprintf(text, sizeof text, format, args);
+  make_text(entry, at, format, args, text);
   va_end(args);
-  if (length >= TEXT_SIZE) memcpy(text + TEXT_SIZE - 4, "...", 4);
-  for (char *p = text; *p != '\0'; ++p) *p = shown_character(*p);
   if (m.level == WARNING && is_there(log, &m, at, text)) return;
   ++log->count[m.level];
   m.text = memory_text(text);
@@ -245,7 +257,8 @@ static const message **sorted_messages(const message_log *log) {
 
 static void print_place(const place *at, FILE *out) {
   if (at == NULL || at->file == NULL) return;
-  fprintf(out, "%s:", at->file);
+  text_put(out, at->file);
+  fputc(':', out);
   if (at->line_no > 0) fprintf(out, "%d:", at->line_no);
   if (at->line_no > 0 && at->column_no > 0) fprintf(out, "%d:", at->column_no);
   fputc(' ', out);
@@ -273,14 +286,27 @@ static void print_caret(const char *line, int first, int column, FILE *out) {
   fputs("^\n", out);
 }
 
+/* A line of a deck is in the shown form already, others may be not. */
+static void print_part(const char *line, int first, int last, FILE *out) {
+  char piece[PIECE_SIZE];
+  const char *p = line + first;
+  while (p < line + last && text_piece(&p, piece) > 0) fputs(piece, out);
+}
+
 static void print_source(const place *at, FILE *out) {
   if (at == NULL || at->line == NULL || at->line_no <= 0) return;
   int first, last, column = at->column_no - 1;
   visible_part(at->line, column, &first, &last);
   fprintf(out, "%8d | %s", at->line_no, first > 0 ? "..." : "");
-  for (int i = first; i < last; ++i) fputc(shown_character(at->line[i]), out);
+  print_part(at->line, first, last, out);
   fprintf(out, "%s\n", at->line[last] != '\0' ? "..." : "");
   if (column >= 0 && column <= last) print_caret(at->line, first, column, out);
+}
+
+static void print_include(const place *p, FILE *out) {
+  fprintf(out, "%8s   included from ", "");
+  text_put(out, p->file);
+  fprintf(out, ":%d\n", p->line_no);
 }
 
 static void print_message(const message *m, FILE *out) {
@@ -289,7 +315,7 @@ static void print_message(const message *m, FILE *out) {
   print_source(m->at, out);
   if (m->at == NULL) return;
   for (const place *p = m->at->from; p != NULL; p = p->from)
-    fprintf(out, "%8s   included from %s:%d\n", "", p->file, p->line_no);
+    print_include(p, out);
 }
 
 static void print_count(int n, const char *word, const char *before,

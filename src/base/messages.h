@@ -111,7 +111,10 @@
     "A number put in for <NAME> and the sign behind it would read as "       \
     "mantissa and exponent. Write an expression in quotes.")                 \
   X(1037, ERROR, "empty field",                                              \
-    "A number is needed here. Fields are separated by commas.")
+    "A number is needed here. Fields are separated by commas.")              \
+  X(1038, ERROR, "text of an included file",                                 \
+    "*INCLUDE reads cards, and data for the card before it. Text for "       \
+    "*HEADING stands in the deck, or below a *HEADING in the file.")
 
 #define MESSAGE_LIST_MODEL(X)                                                \
   X(2003, ERROR, "unknown parameter",                                        \

@@ -3,6 +3,8 @@
  */
 #include "base/status.h"
 
+#include "base/text.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -27,7 +29,7 @@ status status_fail(status code, const char *function, int line,
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  memcpy(message, text, sizeof message);
+  text_shown_lines(message, sizeof message, text);
   path[0] = '\0';
   status_trace(function, line);
   return code;

@@ -42,6 +42,22 @@ void text_cell(FILE *f, const char *text, int width);
 /* Words in lines of at most 78 columns, from column "indent" on, where the
  * first line stands already; ends the line. */
 void text_wrap(FILE *f, const char *text, int indent);
+/*
+ * Text from outside as it may be shown: printable UTF-8 stays; each byte of
+ * other characters (control characters but the tab, marks that turn the
+ * direction of writing or take no room, what is no UTF-8) becomes \xHH.
+ */
+enum { PIECE_SIZE = 20 };
+/* The first character of *text, which moves behind it; its length, 0 at the
+ * end. */
+int text_piece(const char **text, char piece[PIECE_SIZE]);
+/* All of it, cut at whole characters to the size; its length. */
+size_t text_shown(char *out, size_t size, const char *text);
+/* The same line by line; "text" is overwritten. */
+void text_shown_lines(char *out, size_t size, char *text);
+void text_put(FILE *f, const char *text);
+/* The bytes again that text_shown took away, in place: for names of files. */
+void text_plain(char *text);
 /* The text as one word: blanks become "_". */
 void text_word(char *word, size_t size, const char *text);
 

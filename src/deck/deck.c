@@ -313,8 +313,7 @@ static status add_record(reader *r, const physical *line, record **out) {
   new->raw = store_text(r->d, line->text, (size_t)line->length);
   if (new->raw == NULL) FAIL(ERR_MEMORY, "memory exhausted: line");
   while (is_blank(line->text[blanks])) ++blanks;
-  new->at = (place){source_file(r->top), line->line_no, (int)blanks + 1,
-                    new->raw, source_from(r->top)};
+  new->at = source_place(r->top, line->line_no, (int)blanks + 1, new->raw);
   ++c->n_record;
   *out = new;
 done:
@@ -378,10 +377,11 @@ done:
  * each other. */
 static void refuse_line(reader *r, const physical *line) {
   if (r->stray_seen) return;
-  place at = {source_file(r->top), line->line_no, 1, line->text,
-              source_from(r->top)};
+  place at = source_place(r->top, line->line_no, 1, line->text);
   while (is_blank(line->text[at.column_no - 1])) ++at.column_no;
-  if (r->mode == DATA_EARLY)
+  if (r->mode == DATA_TEXT)
+    message_add(r->log, P1038, &at, "text of an included file");
+  else if (r->mode == DATA_EARLY)
     message_add(r->log, P1015, &at, "data before the first card");
   else
     message_add(r->log, P2008, &at, "the card above takes no data lines");
@@ -395,7 +395,10 @@ static status read_data(reader *r, const physical *line) {
       TRY(r->format != NULL ? read_fixed(r, line) : read_record(r, line));
       break;
     case DATA_TEXT:
-      TRY(read_text(r, line));
+      if (source_hidden(r->top))
+        refuse_line(r, line);
+      else
+        TRY(read_text(r, line));
       break;
     case DATA_DEFINITION:
       TRY(logical_read(r, line, LINE_DEFINITION));
@@ -453,7 +456,7 @@ status deck_read(const char *file, int n_define, const char *const *defines,
   NEW(r.d->own, 1);
   TRY(source_open(r.d, log, file, NULL, &r.top));
   if (r.top == NULL) FAIL(ERR_FILE, "cannot read %s", file);
-  r.d->file = source_file(r.top);
+  r.d->file = r.d->files[0];
   for (int i = 0; i < n_define; ++i) TRY(symbols_from_command(&r, defines[i]));
   TRY(read_all(&r));
   *out = r.d;

@@ -75,9 +75,8 @@ static status add_segment(reader *r, const physical *line, int end) {
   GROW(l->segments, l->n_segment, l->segment_capacity);
   segment *s = &l->segments[l->n_segment];
   s->start = l->all.n;
-  s->at =
-      (place){source_file(r->top), line->line_no, 0, NULL, source_from(r->top)};
-  s->at.line = store_text(r->d, line->text, (size_t)line->length);
+  s->at = source_place(r->top, line->line_no, 0,
+                       store_text(r->d, line->text, (size_t)line->length));
   if (s->at.line == NULL) FAIL(ERR_MEMORY, "memory exhausted: line");
   ++l->n_segment;
   TRY(buffer_add(&l->all, line->text, (size_t)end));

@@ -64,8 +64,8 @@ char *store_name(deck *d, const char *text, size_t n);
 
 /* source.c --------------------------------------------------------------- */
 
-/* A physical line that is neither blank nor comment. The text is valid until
- * the next call for the same source. */
+/* A physical line that is neither blank nor comment, as text_shown writes it.
+ * Valid until the next call for the same source. */
 typedef struct physical {
   const char *text;
   int length, line_no;
@@ -82,9 +82,10 @@ status source_next(source *s, message_log *log, const physical **line);
 /* Have source_next give the line of the last call once more. */
 void source_hold(source *s);
 void source_pop(source **top);
-/* Name as in messages, place of the *INCLUDE or NULL. */
-const char *source_file(const source *s);
-const place *source_from(const source *s);
+/* A place in it. */
+place source_place(const source *s, int line_no, int column, const char *line);
+/* 1: messages show nothing of it. */
+int source_hidden(const source *s);
 
 /* line.c ----------------------------------------------------------------- */
 

@@ -3,6 +3,7 @@
  * passed over here; what a line means is decided elsewhere.
  */
 #include "base/memory.h"
+#include "base/text.h"
 #include "deck/reader.h"
 #include "system/input.h"
 
@@ -21,13 +22,20 @@ struct source {
   ino_t inode;
   int n_block, at; /* bytes in the block, next one                            */
   int line_no, held, ended, depth;
+  int hidden; /* messages show nothing of it: no card at its start           */
+  int begun;
   physical line;
-  char text[LINE_MAX_BYTES + 1];
+  char text[LINE_MAX_BYTES + 1];      /* as in the file                       */
+  char shown[4 * LINE_MAX_BYTES + 1]; /* as it is read: text_shown            */
   char block[BLOCK];
 };
 
-const char *source_file(const source *s) { return s->file; }
-const place *source_from(const source *s) { return s->from; }
+int source_hidden(const source *s) { return s->hidden; }
+
+place source_place(const source *s, int line_no, int column, const char *line) {
+  return (place){s->file, line_no, column, line, s->from, s->hidden};
+}
+
 void source_hold(source *s) { s->held = 1; }
 
 void source_pop(source **top) {
@@ -56,10 +64,6 @@ static void skip_mark(source *s) {
     s->at += 3;
 }
 
-static place place_here(const source *s, int column, const char *line) {
-  return (place){s->file, s->line_no, column, line, s->from};
-}
-
 /* LF, CR and CR LF end a line. */
 static int ends_line(source *s, int c) {
   if (c == '\r') {
@@ -77,12 +81,8 @@ static got read_line(source *s) {
   int n = 0, c, too_long = 0;
   ++s->line_no;
   while ((c = next_byte(s)) != EOF) {
-    if (ends_line(s, c)) {
-      s->text[n] = '\0';
-      s->line.length = n;
-      return too_long ? GOT_LONG : GOT_LINE;
-    }
     s->text[n] = '\0';
+    if (ends_line(s, c)) return too_long ? GOT_LONG : GOT_LINE;
     if (c == '\0') return GOT_NUL;
     if (n == LINE_MAX_BYTES)
       too_long = 1;
@@ -91,7 +91,6 @@ static got read_line(source *s) {
   }
   s->ended = 1;
   s->text[n] = '\0';
-  s->line.length = n;
   return too_long ? GOT_LONG : n > 0 ? GOT_LINE : GOT_END;
 }
 
@@ -100,14 +99,30 @@ static int is_empty_or_comment(const char *p) {
   return *p == '\0' || (p[0] == '*' && p[1] == '*');
 }
 
+/* *NAME, and then a comma or the end: what a file starts with that is a deck.
+ */
+static int is_card(const char *p) {
+  while (is_blank(*p)) ++p;
+  if (p[0] != '*' || !is_name_start(p[1])) return 0;
+  for (++p; is_name_part(*p) || is_blank(*p) || *p == '-';) ++p;
+  return *p == '\0' || *p == ',';
+}
+
+/* An included file begins: until a card stands at its start it may be any file
+ * that is there. */
+static void begin(source *s) {
+  if (!s->begun) s->hidden = s->from != NULL && !is_card(s->shown);
+  s->begun = 1;
+}
+
 static void report(source *s, message_log *log, got what) {
   place at;
   if (what == GOT_NUL) {
-    at = place_here(s, (int)strlen(s->text) + 1, s->text);
+    at = source_place(s, s->line_no, (int)strlen(s->text) + 1, s->shown);
     message_add(log, P1013, &at, "NUL byte: the file is not plain text");
     s->ended = 1;
   } else if (what == GOT_LONG) {
-    at = place_here(s, LINE_MAX_BYTES + 1, s->text);
+    at = source_place(s, s->line_no, LINE_MAX_BYTES + 1, s->shown);
     message_add(log, P1014, &at, "line of more than %d characters",
                 LINE_MAX_BYTES);
   }
@@ -121,15 +136,17 @@ status source_next(source *s, message_log *log, const physical **line) {
   }
   while (!s->ended) {
     got what = read_line(s);
+    s->line.length = (int)text_shown(s->shown, sizeof s->shown, s->text);
     report(s, log, what);
-    if (what == GOT_LINE && !is_empty_or_comment(s->text)) {
-      s->line.text = s->text;
+    if (what == GOT_LINE && !is_empty_or_comment(s->shown)) {
+      s->line.text = s->shown;
       s->line.line_no = s->line_no;
+      begin(s);
       return OK;
     }
   }
   if (ferror(s->stream)) {
-    place at = place_here(s, 0, NULL);
+    place at = source_place(s, s->line_no, 0, NULL);
     message_add(log, P1001, &at, "reading stopped: %s", strerror(errno));
     clearerr(s->stream);
   }
@@ -145,11 +162,12 @@ static int is_open_already(const source *s) {
 }
 
 /* Open and check; 0, or -1 after a message. */
-static int open_stream(source *s, message_log *log, const place *at) {
+static int open_stream(source *s, const char *file, message_log *log,
+                       const place *at) {
   struct stat info;
   place whole = {.file = s->file};
   const char *why = NULL;
-  s->stream = input_stream(s->file, &why);
+  s->stream = input_stream(file, &why);
   if (s->stream == NULL || fstat(fileno(s->stream), &info) != 0) {
     message_add(log, P1001, at != NULL ? at : &whole, "cannot read %s: %s",
                 s->file, why);
@@ -192,14 +210,18 @@ status source_open(deck *d, message_log *log, const char *file, const place *at,
   NEW(s, 1);
   s->below = *top;
   s->depth = *top != NULL ? (*top)->depth + 1 : 0;
-  s->file = store_text(d, file, strlen(file));
-  if (s->file == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  s->hidden = at != NULL;
+  size_t room = 4 * strlen(file) + 1;
+  char *shown = store_room(d, room, 1);
+  if (shown == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  text_shown(shown, room, file);
+  s->file = shown;
   if (at != NULL) {
     s->from = store_place(d, at);
     if (s->from == NULL) FAIL(ERR_MEMORY, "memory exhausted: place");
   }
-  if (at == NULL) TRY(deck_input(d, s->file));
-  if (open_stream(s, log, at) != 0) goto done;
+  if (at == NULL) TRY(deck_input(d, file));
+  if (open_stream(s, file, log, at) != 0) goto done;
   TRY(note_file(d, s->file));
   *top = s;
   s = NULL;

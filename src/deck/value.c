@@ -3,6 +3,7 @@
  */
 #include "base/memory.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "deck/reader.h"
 
 #include <math.h>
@@ -97,5 +98,6 @@ const char *deck_path(deck *d, const field *f) {
   if (path == NULL) return NULL;
   if (folder > 0) memcpy(path, f->at.file, folder);
   memcpy(path + folder, f->text, n + 1);
+  text_plain(path);
   return deck_input(d, path) == OK ? path : NULL;
 }

@@ -158,7 +158,9 @@ static void unknown_card(reading *r) {
   const char *near = message_wanted(r->m->log, ERROR)
                          ? nearest_word(c->name, keyword_name, NULL)
                          : NULL;
-  message_add(r->m->log, P1003, &c->at, "unknown card *%s%s%s%s", c->name,
+  place at = c->at; /* a file that is included may be no deck at all          */
+  at.hidden |= near == NULL && at.from != NULL;
+  message_add(r->m->log, P1003, &at, "unknown card *%s%s%s%s", c->name,
               near == NULL ? "" : "; did you mean *", near == NULL ? "" : near,
               near == NULL ? "" : "?");
   if (near == NULL || r->in_step) return;

@@ -5,6 +5,7 @@
 #include "mesh/sort.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,13 +13,16 @@
 
 static const char *const kind[] = {"point", "curve", "surface", "volume"};
 
-/* The group's name, or its tag as text. */
+/* The group's name as it may be shown, or its tag as text. */
 static status copy_name(const raw_group *g, const char **name) {
   status st = OK;
-  char tag[16];
+  char tag[16], *shown = NULL;
   snprintf(tag, sizeof tag, "%d", g->tag);
-  *name = memory_text(g->name[0] != '\0' ? g->name : tag);
-  if (*name == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a group");
+  const char *text = g->name[0] != '\0' ? g->name : tag;
+  size_t room = 4 * strlen(text) + 1;
+  NEW(shown, room);
+  text_shown(shown, room, text);
+  *name = shown;
 done:
   return st;
 }

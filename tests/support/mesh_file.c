@@ -45,7 +45,7 @@ mesh *mesh_file_read(mesh_file *f, const char *name, double scale, int n_number,
 mesh *mesh_file_from(mesh_file *f, const mesh_source *source) {
   message_log *log;
   mesh *m = NULL;
-  const place at = {"job.inp", 4, 1, NULL, NULL};
+  const place at = {.file = "job.inp", .line_no = 4, .column_no = 1};
   memset(f->messages, 0, sizeof f->messages);
   must(message_log_new(&log) == OK, "log");
   f->answer = mesh_read_gmsh(source, &at, log, &m);

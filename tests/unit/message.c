@@ -24,7 +24,7 @@ static message_log *new_log(void) {
 
 START_TEST(a_message_shows_place_line_and_caret) {
   message_log *log = new_log();
-  place at = {"block.inp", 14, 12, "*FRICTON, CONTACT=FOOT", NULL};
+  place at = {"block.inp", 14, 12, "*FRICTON, CONTACT=FOOT", NULL, 0};
   message_add(log, P1003, &at, "unknown card *%s", "FRICTON");
   ck_assert_str_eq(printed(log),
                    "block.inp:14:12: error P1003: unknown card *FRICTON\n"
@@ -37,7 +37,7 @@ END_TEST
 
 START_TEST(the_caret_stands_below_tabs_and_letters_of_two_bytes) {
   message_log *log = new_log();
-  place at = {"a", 1, 8, "\tA\xC3\xA4,\tB", NULL};
+  place at = {"a", 1, 8, "\tA\xC3\xA4,\tB", NULL, 0};
   message_add(log, P1003, &at, "x");
   at.column_no = 1;
   message_add(log, P1003, &at, "y");
@@ -55,8 +55,8 @@ END_TEST
 
 START_TEST(a_place_may_lack_column_line_or_file) {
   message_log *log = new_log();
-  place no_column = {"a", 3, 0, "text", NULL},
-        no_line = {"a", 0, 5, NULL, NULL};
+  place no_column = {"a", 3, 0, "text", NULL, 0},
+        no_line = {"a", 0, 5, NULL, NULL, 0};
   message_add(log, P1003, &no_column, "one");
   message_add(log, P1003, &no_line, "two");
   message_add(log, P1003, NULL, "three");
@@ -74,11 +74,12 @@ END_TEST
  * stands, whatever the order of the messages. */
 START_TEST(messages_come_in_the_order_of_the_input) {
   message_log *log = new_log();
-  place include = {"a", 5, 2, NULL, NULL}, deeper = {"b", 2, 1, NULL, &include};
-  place at[] = {{"a", 9, 1, NULL, NULL},     {"a", 4, 7, NULL, NULL},
-                {"b", 8, 1, NULL, &include}, {"b", 1, 1, NULL, &include},
-                {"c", 90, 1, NULL, &deeper}, {"a", 4, 2, NULL, NULL},
-                {"a", 5, 1, NULL, NULL},     {"m.msh", 1, 1, NULL, NULL}};
+  place include = {"a", 5, 2, NULL, NULL, 0},
+        deeper = {"b", 2, 1, NULL, &include, 0};
+  place at[] = {{"a", 9, 1, NULL, NULL, 0},     {"a", 4, 7, NULL, NULL, 0},
+                {"b", 8, 1, NULL, &include, 0}, {"b", 1, 1, NULL, &include, 0},
+                {"c", 90, 1, NULL, &deeper, 0}, {"a", 4, 2, NULL, NULL, 0},
+                {"a", 5, 1, NULL, NULL, 0},     {"m.msh", 1, 1, NULL, NULL, 0}};
   static const char *const names[] = {"7", "2", "6", "4", "5", "1", "3", "8"};
   for (size_t i = 0; i < sizeof at / sizeof *at; ++i)
     message_add(log, P1003, &at[i], "[%s]", names[i]);
@@ -101,7 +102,7 @@ END_TEST
 START_TEST(the_texts_are_copies) {
   message_log *log = new_log();
   char file[] = "a.inp", line[] = "*STEP";
-  place at = {file, 1, 1, line, NULL};
+  place at = {file, 1, 1, line, NULL, 0};
   message_add(log, P1003, &at, "x");
   memset(file, '#', sizeof file - 1);
   memset(line, '#', sizeof line - 1);
@@ -117,7 +118,7 @@ START_TEST(a_long_line_is_cut_around_the_column) {
   for (int i = 0; i < 4000; ++i) line[i] = (char)('a' + i % 10);
   line[4000] = '\0';
   line[2000] = '#';
-  place at = {"a", 1, 2001, line, NULL};
+  place at = {"a", 1, 2001, line, NULL, 0};
   message_add(log, P1003, &at, "x");
   const char *shown = strchr(printed(log), '|');
   const char *hash = strchr(shown, '#'), *below = strchr(shown + 1, '|');
@@ -130,7 +131,7 @@ END_TEST
 
 START_TEST(control_characters_are_not_printed) {
   message_log *log = new_log();
-  place at = {"a", 1, 1, "x\x1b[2J\x07", NULL};
+  place at = {"a", 1, 1, "x\x1b[2J\x07", NULL, 0};
   message_add(log, P1003, &at, "bad \x1b[31m");
   for (const char *p = printed(log); *p != '\0'; ++p)
     ck_assert((unsigned char)*p >= ' ' || *p == '\n');
@@ -153,10 +154,10 @@ START_TEST(after_a_hundred_errors_the_rest_is_counted) {
   message_log *log = new_log();
   for (int i = 1; i <= 250; ++i) {
     ck_assert_int_eq(message_wanted(log, ERROR), i <= 100);
-    place at = {"a", i, 1, "x", NULL};
+    place at = {"a", i, 1, "x", NULL, 0};
     message_add(log, P1003, &at, "number %d", i);
   }
-  place at = {"a", 999, 1, "x", NULL};
+  place at = {"a", 999, 1, "x", NULL, 0};
   message_add(log, P1030, &at, "a warning");
   ck_assert_int_eq(message_count(log, ERROR), 250);
   ck_assert_int_eq(message_count(log, WARNING), 1);
@@ -186,7 +187,7 @@ END_TEST
 /* The listing must not depend on the folder. */
 START_TEST(the_list_for_the_listing_has_no_folder_and_no_source) {
   message_log *log = new_log();
-  place at = {"/some/where/a.inp", 2, 3, "text", NULL};
+  place at = {"/some/where/a.inp", 2, 3, "text", NULL, 0};
   message_add(log, P1030, &at, "one");
   message_add(log, P1003, &at, "two");
   memset(text, 0, sizeof text);
@@ -242,7 +243,7 @@ START_TEST(an_unknown_number_is_not_explained) {
 END_TEST
 
 START_TEST(without_memory_messages_are_counted_and_reported) {
-  place include = {"a", 5, 2, "x", NULL}, at = {"b", 2, 1, "y", &include};
+  place include = {"a", 5, 2, "x", NULL, 0}, at = {"b", 2, 1, "y", &include, 0};
   size_t before = memory_in_use();
   for (long k = 1, refused = 1; refused; ++k) {
     message_log *log = new_log();

@@ -132,7 +132,37 @@ START_TEST(lines_are_handed_over_as_they_end) {
 }
 END_TEST
 
-UNIT_MAIN("text", seventeen_digits_read_back_exactly,
+/* What is shown, and the way back to the bytes. */
+START_TEST(text_from_outside_is_shown_without_control_characters) {
+  static const char *const rows[][2] = {
+      {"", ""},
+      {"plain\ttab \303\251 \342\202\254 \360\237\230\200",
+       "plain\ttab \303\251 \342\202\254 \360\237\230\200"},
+      {"\033[2J\r\n\b\177", "\\x1B[2J\\x0D\\x0A\\x08\\x7F"},
+      {"\302\205\302\240", "\\xC2\\x85\302\240"},
+      {"\342\200\256\342\201\246\330\234",
+       "\\xE2\\x80\\xAE\\xE2\\x81\\xA6\\xD8\\x9C"},
+      {"\355\240\200\300\200\377\303", "\\xED\\xA0\\x80\\xC0\\x80\\xFF\\xC3"},
+      {"\\x1B \\x41", "\\x1B \\x41"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+    char shown[200], back[200];
+    ck_assert_uint_eq(text_shown(shown, sizeof shown, rows[i][0]),
+                      strlen(rows[i][1]));
+    ck_assert_str_eq(shown, rows[i][1]);
+    text_shown(back, sizeof back, shown);
+    ck_assert_str_eq(back, shown);
+    text_plain(back);
+    if (strstr(rows[i][0], "\\x") == NULL && strchr(rows[i][0], '\n') == NULL)
+      ck_assert_str_eq(back, rows[i][0]);
+  }
+  char cut[5];
+  ck_assert_uint_eq(text_shown(cut, sizeof cut, "ab\033c"), 2);
+  ck_assert_str_eq(cut, "ab");
+}
+END_TEST
+
+UNIT_MAIN("text", text_from_outside_is_shown_without_control_characters,
+          seventeen_digits_read_back_exactly,
           exponents_have_three_digits_and_zero_no_sign, a_word_has_no_blank,
           wrapped_words_keep_their_order_and_the_indent, paths_are_joined_once,
           full_disk_is_told_with_file_and_reason, missing_folder_is_told,
