@@ -12,6 +12,7 @@
 #include "system/limits.h"
 
 #include <getopt.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -292,12 +293,21 @@ static void set_threads(int cores, command *c, message_log *log) {
   blas_set_threads(c->threads);
 }
 
+/* What is said counts for the whole process, libraries included. */
+static void set_memory(const limits *system, const command *c) {
+  const char *who = c->max_memory > 0.0 ? "--max-memory" : system->who;
+  double bytes = c->max_memory > 0.0 ? 1e6 * c->max_memory - limits_held()
+                                     : system->memory;
+  if (bytes < 1e18) memory_limit((size_t)fmax(bytes, 0.0), who);
+}
+
 status command_apply(command *c, message_log *log) {
   status st = OK;
   char *folder = NULL;
   limits system;
   limits_read("", &system);
   set_threads(system.cores, c, log);
+  set_memory(&system, c);
   if (!c->safe) goto done;
   folder = folder_of(c->deck_file);
   if (folder == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a folder");

@@ -168,26 +168,23 @@ done:
   return st;
 }
 
-/* Unknowns of the contact nodes; nodes of two contacts count twice. */
-static double contact_unknowns(const model *m, const mesh *msh) {
-  double n = 0.0;
-  for (int i = 0; i < m->n_contact; ++i)
-    n += msh->group[m->contacts[i].group_id].n_node;
-  return n * msh->dim;
-}
-
-/*
- * Rough, before anything is ordered: nested dissection leaves 7 n log2 n
- * entries in the factor in 2-D and 25 n^(4/3) in 3-D (fitted to the examples);
- * the condensed matrix is dense, a solver takes one more.
- */
-static void print_memory(const model *m, const mesh *msh) {
-  double n = (double)msh->dim * msh->n_node, c = contact_unknowns(m, msh);
-  double factor = msh->dim == 2 ? 7.0 * n * log2(n) : 25.0 * n * cbrt(n);
-  double mega = sizeof(double) / 1e6;
-  printf("unknowns  %.0f, of them %.0f of the contact\n", n, c);
-  printf("memory    about %.1f MB for the factor, %.1f MB for the contact\n",
-         factor * mega, 2.0 * c * c * mega);
+static status print_memory(const model *m, const mesh *msh) {
+  status st = OK;
+  const double mega = 1e6;
+  plan_bytes b;
+  TRY(plan_memory(m, msh, -1.0, &b));
+  double all = b.factor + b.contact + b.rest, left = memory_left();
+  printf(
+      "memory    about %.1f MB for the factor, %.1f MB for the contact, "
+      "%.1f MB for the rest\n",
+      b.factor / mega, b.contact / mega, b.rest / mega);
+  if (all > left)
+    printf(
+        "memory    %s leaves %.0f MB: the run would be refused, unless "
+        "contact nodes are out of reach; see --max-memory\n",
+        memory_limit_of(), floor(left / mega));
+done:
+  return st;
 }
 
 /* Motions that the supports of a step leave; ERR_SINGULAR if nothing at all
@@ -217,7 +214,7 @@ status inform_check_problem(const model *m, const exchange_problem *p) {
 status inform_check(const model *m, const mesh *msh) {
   status st = OK;
   print_sizes(m, msh);
-  print_memory(m, msh);
+  TRY(print_memory(m, msh));
   TRY(print_plan(m, msh, 0));
   /* Supports are only lost where *BOUNDARY, OP=NEW ends some. */
   for (int i = 0; i < m->n_step; ++i)

@@ -124,6 +124,12 @@ static void check_limits(pass *p, double factor) {
              "another pass would end after about %.3g s of CPU, MAX_CPU is %g",
              cpu, t->max_cpu);
     miss(p, text);
+  } else if (bytes - (double)memory_in_use() > memory_left()) {
+    snprintf(text, sizeof text,
+             "another pass would need about %.3g MB more than %s leaves",
+             (bytes - (double)memory_in_use() - memory_left()) / 1e6,
+             memory_limit_of());
+    miss(p, text);
   } else if (t->max_memory > 0.0 && bytes > t->max_memory * 1048576.0) {
     snprintf(text, sizeof text,
              "another pass would need about %.3g MB, MAX_MEMORY is %g",

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 
 #include <SuiteSparse_config.h>
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,8 @@
 enum { HEADER = 16 };
 
 static size_t in_use, peak, allocated;
+static size_t most = SIZE_MAX;
+static const char *limit_of = "nothing";
 static long requests, refuse_at;
 static int refuse_all;
 
@@ -29,6 +32,7 @@ void *memory_new(size_t n, size_t size) {
   if (refused()) return NULL;
   if (size != 0 && n > (SIZE_MAX - HEADER) / size) return NULL;
   size_t bytes = n * size;
+  if (in_use > most || bytes > most - in_use) return NULL;
   char *block = calloc(1, bytes + HEADER);
   if (block == NULL) return NULL;
   memcpy(block, &bytes, sizeof bytes);
@@ -83,6 +87,31 @@ size_t memory_in_use(void) { return in_use; }
 size_t memory_peak(void) { return peak; }
 size_t memory_allocated(void) { return allocated; }
 long memory_requests(void) { return requests; }
+
+void memory_limit(size_t bytes, const char *who) {
+  most = bytes;
+  limit_of = who;
+}
+
+const char *memory_limit_of(void) { return limit_of; }
+
+double memory_left(void) {
+  if (most == SIZE_MAX) return INFINITY;
+  return in_use < most ? (double)(most - in_use) : 0.0;
+}
+
+status memory_foresee(double bytes, const char *what) {
+  status st = OK;
+  const double mega = 1e6;
+  if (bytes > memory_left())
+    FAIL(ERR_MEMORY,
+         "%s needs about %.0f MB of memory, and %s leaves %.0f MB; take a "
+         "coarser mesh or fewer contact nodes, or set the limit with "
+         "--max-memory MB (for the passes of TARGET= MAX_MEMORY=)",
+         what, ceil(bytes / mega), limit_of, floor(memory_left() / mega));
+done:
+  return st;
+}
 
 void memory_refuse(long k, int all) {
   refuse_at = k;

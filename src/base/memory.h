@@ -51,6 +51,14 @@ size_t memory_in_use(void);    /* bytes now held                              */
 size_t memory_peak(void);      /* the most held at a time                     */
 size_t memory_allocated(void); /* bytes asked for since the start            */
 long memory_requests(void);    /* requests since the start                    */
+/* Bytes that may be held at a time; what would be more is refused. who: whose
+ * limit that is, for messages (a literal). SIZE_MAX: no limit, as at first. */
+void memory_limit(size_t bytes, const char *who);
+double memory_left(void); /* bytes; INFINITY without limit                   */
+const char *memory_limit_of(void);
+/* ERR_MEMORY with what to do if so many bytes more are above the limit: asked
+ * before a lot of work. what: "the run", ... */
+status memory_foresee(double bytes, const char *what);
 /* Refuse request number k (1 = the next) and, if "all", every later one.
  * k = 0 switches it off. For tests of the way back from a refusal. */
 void memory_refuse(long k, int all);

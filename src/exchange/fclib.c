@@ -47,6 +47,7 @@ static status set_size(const hdf5_source *s, const char *root, int m,
   if (m > MOST_UNKNOWNS)
     FAIL(ERR_DECK, "%s: %s has %d unknowns; at most %d can be solved", s->path,
          root, m, (int)MOST_UNKNOWNS);
+  TRY(foresee_problem(m));
   p->m = m;
   p->n = m / p->dim;
 done:
@@ -167,11 +168,12 @@ static status read_local(const hdf5_source *s, exchange_problem *p) {
   constraints c = {0};
   double *q = NULL;
   p->form = "FCLIB, local";
-  TRY(triplets_read(s, LOCAL "/W", &W));
+  TRY(triplets_size(s, LOCAL "/W", &W));
   if (W.rows != W.columns)
     FAIL(ERR_DECK, "%s: " LOCAL "/W is not square: %d rows, %d columns",
          s->path, W.rows, W.columns);
   TRY(set_size(s, LOCAL, W.rows, p));
+  TRY(triplets_read(s, LOCAL "/W", &W));
   TRY(new_arrays(p));
   TRY(read_vector(s, LOCAL "/vectors/q", p->m, &q));
   TRY(read_friction(s, LOCAL "/vectors/mu", p));
@@ -421,8 +423,9 @@ static status read_global(const hdf5_source *s, exchange_problem *p) {
   status st = OK;
   global g = {0};
   p->form = "FCLIB, global";
-  TRY(read_matrices(s, &g));
+  TRY(triplets_size(s, GLOBAL "/H", &g.H));
   TRY(set_size(s, GLOBAL, g.H.columns, p));
+  TRY(read_matrices(s, &g));
   TRY(new_arrays(p));
   TRY(read_vector(s, GLOBAL "/vectors/f", g.M.rows, &g.f));
   TRY(read_vector(s, GLOBAL "/vectors/w", p->m, &g.w));

@@ -111,6 +111,7 @@ static status read_numbers(words *w, exchange_problem *p) {
   p->dim = 1;
   p->m = p->unknowns = p->n;
   p->form = "linear complementarity problem";
+  TRY(foresee_problem(p->m));
   size_t m = (size_t)p->m;
   NEW(p->matrix, m * m);
   NEW(p->load, m);

@@ -126,18 +126,25 @@ done:
   return st;
 }
 
-status triplets_read(const hdf5_source *s, const char *group, triplets *t) {
+status triplets_size(const hdf5_source *s, const char *group, triplets *t) {
   status st = OK;
-  arrays a = {.s = s, .group = group};
   memset(t, 0, sizeof *t);
   if (!source_has(s, group))
     FAIL(ERR_DECK, "%s: there is no group %s", s->path, group);
   TRY(group_int(s, group, "m", &t->rows));
   TRY(group_int(s, group, "n", &t->columns));
-  TRY(group_int(s, group, "nz", &a.nz));
   if (t->rows < 0 || t->columns < 0)
     FAIL(ERR_DECK, "%s: %s has %d rows and %d columns", s->path, group, t->rows,
          t->columns);
+done:
+  return st;
+}
+
+status triplets_read(const hdf5_source *s, const char *group, triplets *t) {
+  status st = OK;
+  arrays a = {.s = s, .group = group};
+  TRY(triplets_size(s, group, t));
+  TRY(group_int(s, group, "nz", &a.nz));
   if (a.nz < BY_ROW)
     FAIL(ERR_DECK, "%s: %s/nz = %d; expected a number of entries, -1 or -2",
          s->path, group, a.nz);

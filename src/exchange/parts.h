@@ -9,6 +9,9 @@
 
 /* Unknowns of a dense matrix that can be asked for. */
 enum { MOST_UNKNOWNS = 30000 };
+/* ERR_MEMORY: no room for the matrices that a problem of m unknowns takes, its
+ * own and those of a solver; asked before they are read. */
+status foresee_problem(double m);
 
 /* ---- matrix.c: the matrix group ------------------------------------------ */
 
@@ -20,6 +23,8 @@ typedef struct triplets {
   double *value;     /* [n]                                                  */
 } triplets;
 
+/* Rows and columns alone. */
+status triplets_size(const hdf5_source *s, const char *group, triplets *t);
 /* GROUP/m, n, nz, p, i, x: triplet, by columns (CSC) or by rows (CSR). */
 status triplets_read(const hdf5_source *s, const char *group, triplets *t);
 void triplets_free(triplets *t);

@@ -54,6 +54,14 @@ typedef struct effect_plan {
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out);
 void plan_free(effect_plan *p); /* accepts NULL */
 
+/* Bytes that a run holds at most beside the mesh, from the sizes alone; nodes:
+ * of the contact that are condensed, or < 0: all. msh NULL: as in plan_new. */
+typedef struct plan_bytes {
+  double factor, contact, rest;
+} plan_bytes;
+status plan_memory(const model *m, const mesh *msh, double nodes,
+                   plan_bytes *b);
+
 /* The plan as a table; lead before each line. */
 void plan_print(const effect_plan *p, const char *lead, FILE *f);
 /* After the run: calls, and with "cost" CPU seconds, share and bytes beside

@@ -87,3 +87,28 @@ status sizes_find(const model *m, const mesh *msh, int n, plan_sizes *s) {
 done:
   return st;
 }
+
+/*
+ * Above the peaks measured over the examples: the factor; the condensed matrix,
+ * its factor and three matrices of a solver; OF_ELEMENT bytes for what
+ * assembly, ordering and fields take; BUFFERS of the files. A law that flows
+ * has a matrix of its own beside the elastic one, and the strains of the stages
+ * of its steps.
+ */
+status plan_memory(const model *m, const mesh *msh, double nodes,
+                   plan_bytes *b) {
+  enum { MATRICES = 5, OF_ELEMENT = 500, STAGES = 24, BUFFERS = 2000000 };
+  status st = OK;
+  plan_sizes s;
+  TRY(sizes_find(m, msh, 0, &s));
+  double all = s.contact + s.tangents, real = sizeof(double);
+  double dofs = nodes >= 0.0 && s.contact > 0.0 ? nodes / s.contact * all : all;
+  double sets = s.factors > 1.0 ? 2.0 : 1.0;
+  b->factor = sets * real * work_factor_entries(&s);
+  b->contact = sets * MATRICES * real * dofs * dofs;
+  b->rest = BUFFERS + s.elements * OF_ELEMENT;
+  if (m->effects & EFFECT_INELASTIC)
+    b->rest += s.elements * STAGES * real * s.ns;
+done:
+  return st;
+}

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/timer.h"
+#include "plan/plan.h"
 
 #include <math.h>
 #include <string.h>
@@ -111,6 +112,16 @@ done:
   return st;
 }
 
+/* Before anything is assembled. */
+static status foresee_memory(const run *r) {
+  status st = OK;
+  plan_bytes b;
+  TRY(plan_memory(r->m, r->msh, reach_count(&r->reach, r->n), &b));
+  TRY(memory_foresee(b.factor + b.contact + b.rest, "the run"));
+done:
+  return st;
+}
+
 status run_prepare(run *r) {
   status st = OK;
   int fresh = 0, motions = 0;
@@ -132,6 +143,7 @@ status run_prepare(run *r) {
     TRY(choose_nodes(r, motions));
     r->n_before = r->n_row;
     r->n_told = reach_count(&r->reach, r->n);
+    TRY(foresee_memory(r));
     TRY(run_renew_elastic(r));
     r->c = r->elastic.c;
     fresh = 1;

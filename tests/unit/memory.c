@@ -4,6 +4,7 @@
 #include "support/unit.h"
 
 #include <SuiteSparse_config.h>
+#include <stdint.h>
 #include <string.h>
 
 START_TEST(bytes_in_use_return_to_the_start) {
@@ -54,6 +55,23 @@ START_TEST(kth_request_is_refused_once_or_for_good) {
 }
 END_TEST
 
+/* What is above the limit is refused, and can be asked before. */
+START_TEST(limit_is_kept_and_foreseen) {
+  memory_limit(memory_in_use() + 1000, "a test");
+  ck_assert_double_eq(memory_left(), 1000.0);
+  ck_assert_ptr_null(memory_new(1001, 1));
+  void *a = memory_new(600, 1);
+  ck_assert_ptr_nonnull(a);
+  ck_assert_ptr_null(memory_new(401, 1));
+  ck_assert_int_eq(memory_foresee(400.0, "a run"), OK);
+  ck_assert_int_eq(memory_foresee(401.0, "a run"), ERR_MEMORY);
+  ck_assert_ptr_nonnull(strstr(status_message(), "a test leaves"));
+  memory_free(a);
+  memory_limit(SIZE_MAX, "nothing");
+  ck_assert_int_eq(memory_foresee(1e300, "a run"), OK);
+}
+END_TEST
+
 static status fails_inside(void) {
   status st = OK;
   FAIL(ERR_MESH, "element %d", 7);
@@ -97,5 +115,5 @@ END_TEST
 
 UNIT_MAIN("memory", bytes_in_use_return_to_the_start,
           blocks_of_suitesparse_are_counted, overflowing_request_is_refused,
-          kth_request_is_refused_once_or_for_good,
+          limit_is_kept_and_foreseen, kth_request_is_refused_once_or_for_good,
           failure_keeps_message_and_path, stage_is_charged_for_itself_only)

@@ -1,0 +1,92 @@
+/*
+ * Memory is foreseen: a run that would need more than there is ends at once
+ * with exit code 5 and says what to do; what is foreseen is what a run takes.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+
+static void must_be_refused(const job *j, int code, const char *whose) {
+  ck_assert_msg(code == 5, "exit %d: %s", code, j->errors);
+  ck_assert_ptr_nonnull(strstr(j->errors, "MB of memory, and "));
+  ck_assert_ptr_nonnull(strstr(j->errors, whose));
+  ck_assert_ptr_nonnull(strstr(j->errors, "--max-memory MB"));
+}
+
+START_TEST(limit_by_hand_is_obeyed) {
+  static const char deck[] = "input/block_shear_3d/block_shear_3d";
+  job j = job_begin("block_shear_3d");
+  must_be_refused(&j, job_run_deck(&j, deck, "-D N=16 --max-memory 40"),
+                  "--max-memory leaves ");
+  ck_assert_int_eq(job_run_deck(&j, deck, "-D N=16 --max-memory 40 --check"),
+                   0);
+  ck_assert_ptr_nonnull(strstr(j.text, "the run would be refused"));
+  ck_assert_int_eq(job_run_deck(&j, deck, "-D N=4 --max-memory 400"), 0);
+  job_end(&j);
+}
+END_TEST
+
+/* The limit of the process, unless a greater one is set by hand: a .msh, so
+ * that no library has to fit in. */
+START_TEST(limit_of_the_process_is_seen) {
+  struct rlimit old, less;
+  job j = job_begin("job");
+  job_write(&j, "job.txt", "9000\n");
+  job_write(&j, "job.inp",
+            "*CONDENSED PROBLEM, FILE=job.txt\n*STEP\n*STATIC\n*END STEP\n");
+  char command[200];
+  snprintf(command, sizeof command, "truncate -s 200M '%s/job.txt'", j.dir);
+  ck_assert_int_eq(system(command), 0);
+  ck_assert_int_eq(getrlimit(RLIMIT_AS, &old), 0);
+  less = old;
+  less.rlim_cur = (rlim_t)2000 << 20;
+  ck_assert_int_eq(setrlimit(RLIMIT_AS, &less), 0);
+  int code = job_run(&j, ""), other = job_run(&j, "--max-memory 1E5");
+  setrlimit(RLIMIT_AS, &old);
+  ck_assert_msg(other != 0 && code == 5, "exits %d and %d", code, other);
+  must_be_refused(&j, job_run(&j, "--max-memory 2000"), "--max-memory leaves");
+  job_end(&j);
+}
+END_TEST
+
+/* Sum of the numbers of the line "memory" of --check, bytes. */
+static double foreseen(const job *j) {
+  double factor, contact, rest;
+  const char *line = strstr(j->text, "\nmemory ");
+  ck_assert_ptr_nonnull(line);
+  ck_assert_int_eq(sscanf(line,
+                          "\nmemory about %lf MB for the factor, %lf MB for "
+                          "the contact, %lf MB for the rest",
+                          &factor, &contact, &rest),
+                   3);
+  return 1e6 * (factor + contact + rest);
+}
+
+START_TEST(runs_take_what_is_foreseen) {
+  static const char *const rows[][3] = {
+      {"greco/greco", "greco", "-D N=96"},
+      {"block_shear_3d/block_shear_3d", "block_shear_3d", "-D N=12"},
+      {"torsion_sphere_3d/torsion_sphere_3d", "torsion_sphere_3d", ""},
+      {"creep_block/creep_block", "creep_block", "-D N=64"},
+      {"lee_radok/lee_radok", "lee_radok", ""}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+    char deck[100], words[60];
+    job j = job_begin(rows[i][1]);
+    snprintf(deck, sizeof deck, "input/%s", rows[i][0]);
+    snprintf(words, sizeof words, "%s --check", rows[i][2]);
+    ck_assert_int_eq(job_run_deck(&j, deck, words), 0);
+    double most = foreseen(&j);
+    ck_assert_int_eq(job_run_deck(&j, deck, rows[i][2]), 0);
+    double taken = job_told(&j, "peak_bytes");
+    ck_assert_msg(taken <= most && most <= 2.5 * taken,
+                  "%s: foreseen %.3g, taken %.3g", deck, most, taken);
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("memory", limit_by_hand_is_obeyed, limit_of_the_process_is_seen,
+          runs_take_what_is_foreseen)
