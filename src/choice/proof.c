@@ -3,9 +3,9 @@
 
 #include "base/memory.h"
 #include "lcp/lcp.h"
+#include "lcp/nonnegative.h"
 
 #include <cblas.h>
-#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
@@ -127,35 +127,24 @@ int proof_holds(const contact_problem *cp, const double *v, double *room) {
  *
  * In the modes R the load b = R'f has to be a sum of columns: of a normal force
  * with the friction it brings, any times; of the friction g0, once, for which
- * an entry is added to all columns and to b. The columns that do most on the
- * rest are added one by one, their factors by least squares without negative
- * ones (Lawson, Hanson 1974). Where no column does work on the rest, it is v.
+ * an entry is added to all columns and to b (nonnegative.h). Where no column
+ * does work on the rest, it is v.
  */
 
 typedef struct balance {
   const contact_problem *cp;
   const anchor *an;
-  int rows, n;      /* modes + 1; columns taken                               */
-  double unit;      /* entry of the limit g0                                  */
-  double *b, *rest; /* [rows]                                                 */
-  double *G, *Q;    /* [rows*rows] columns; room                              */
-  double *x, *y;    /* [rows] their factors; room                             */
-  double *v, *c;    /* [m], [3*m] with slip                                   */
-  double *force;    /* [m]                                                    */
-  double *lift;     /* [m] set_lift                                           */
-  double *work;     /* [4*rows]                                               */
+  nonnegative sum; /* rows: modes + 1                                        */
+  double unit;     /* of the limit g0                                        */
+  double *v, *c;   /* [m], [3*m] with slip                                   */
+  double *force;   /* [m]                                                    */
+  double *lift;    /* [m] set_lift                                           */
 } balance;
 
 static status balance_new(balance *s) {
   status st = OK;
-  size_t rows = (size_t)s->rows, m = (size_t)s->cp->m;
-  NEW(s->b, rows);
-  NEW(s->rest, rows);
-  NEW(s->G, rows * rows);
-  NEW(s->Q, rows * rows);
-  NEW(s->x, rows);
-  NEW(s->y, rows);
-  NEW(s->work, 4 * rows);
+  size_t m = (size_t)s->cp->m;
+  TRY(nonnegative_new(s->an->n_mode + 1, &s->sum));
   NEW(s->v, m);
   NEW(s->c, 3 * m);
   NEW(s->force, m);
@@ -165,10 +154,11 @@ done:
 }
 
 static void balance_free(balance *s) {
-  void *const blocks[] = {s->b,    s->rest, s->G, s->Q,     s->x,   s->y,
-                          s->work, s->v,    s->c, s->force, s->lift};
-  for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
-    memory_free(blocks[k]);
+  nonnegative_free(&s->sum);
+  memory_free(s->v);
+  memory_free(s->c);
+  memory_free(s->force);
+  memory_free(s->lift);
 }
 
 /* Friction of node i against v, times "limit", added to the force. */
@@ -195,14 +185,14 @@ static void set_push(const balance *s, int dof) {
  * does. */
 static double best_column(balance *s, double *to) {
   const contact_problem *cp = s->cp;
-  int m = cp->m, k = s->rows - 1, best = 0;
+  int m = cp->m, k = s->an->n_mode, best = 0;
   double *slip = s->c + m;
-  cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, s->an->R, m, s->rest, 1,
-              0.0, s->v, 1);
+  cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, s->an->R, m, s->sum.rest,
+              1, 0.0, s->v, 1);
   largest_growth(cp, s->v, s->c, slip);
   for (int dof = 1; dof < m; ++dof)
     if (s->c[dof] > s->c[best]) best = dof;
-  double of_limit = held_by_limit(cp, slip) / s->unit + s->rest[k];
+  double of_limit = held_by_limit(cp, slip) / s->unit + s->sum.rest[k];
   int limit = of_limit > s->c[best];
   memset(s->force, 0, (size_t)m * sizeof *s->force);
   if (!limit) set_push(s, best);
@@ -214,71 +204,17 @@ static double best_column(balance *s, double *to) {
   return fmax(s->c[best], of_limit);
 }
 
-/* y[n]: factors of the columns for b[rows] by least squares; 0: not possible.
- */
-static int fit(balance *s, const double *b) {
-  int rows = s->rows;
-  memcpy(s->Q, s->G, (size_t)rows * (size_t)s->n * sizeof *s->Q);
-  memcpy(s->y, b, (size_t)rows * sizeof *s->y);
-  return LAPACKE_dgels_work(LAPACK_COL_MAJOR, 'N', rows, s->n, 1, s->Q, rows,
-                            s->y, rows, s->work, 4 * rows) == 0;
-}
-
-static void drop(balance *s, int j) {
-  size_t rows = (size_t)s->rows;
-  --s->n;
-  memmove(s->G + rows * (size_t)j, s->G + rows * (size_t)(j + 1),
-          rows * (size_t)(s->n - j) * sizeof *s->G);
-  memmove(s->x + j, s->x + j + 1, (size_t)(s->n - j) * sizeof *s->x);
-}
-
-/* From x towards y as far as no factor is negative; what ends there is dropped.
- * 1: all the way. */
-static int go(balance *s) {
-  double share = 1.0;
-  int end = -1;
-  for (int j = 0; j < s->n; ++j) {
-    double may = s->y[j] < 0.0 ? s->x[j] / (s->x[j] - s->y[j]) : 1.0;
-    if (!(s->y[j] < 0.0) || (end >= 0 && !(may < share))) continue;
-    share = may;
-    end = j;
-  }
-  for (int j = 0; j < s->n; ++j) s->x[j] += share * (s->y[j] - s->x[j]);
-  if (end < 0) return 1;
-  drop(s, end);
-  return s->n == 0;
-}
-
-static void subtract(balance *s, const double *x) {
-  cblas_dgemv(CblasColMajor, CblasNoTrans, s->rows, s->n, -1.0, s->G, s->rows,
-              x, 1, 1.0, s->rest, 1);
-}
-
-/* The rest is made normal to the columns twice, for its direction where little
- * is left. 0: no way on. */
-static int take_column(balance *s) {
-  if (s->n == s->rows) return 0;
-  s->x[s->n++] = 0.0;
-  do {
-    if (!fit(s, s->b)) return 0;
-  } while (!go(s));
-  memcpy(s->rest, s->b, (size_t)s->rows * sizeof *s->rest);
-  subtract(s, s->x);
-  if (s->n > 0 && fit(s, s->rest)) subtract(s, s->y);
-  return 1;
-}
-
 /* The motion that lifts all nodes most evenly; *gain: what times it takes off
  * every c, at least, 0: nothing. */
 static void set_lift(balance *s, double *gain) {
   const contact_problem *cp = s->cp;
-  int m = cp->m, k = s->rows - 1;
+  int m = cp->m, k = s->an->n_mode;
   for (int dof = 0; dof < m; ++dof)
     s->c[dof] = contact_bound(cp, dof) < HUGE_VAL ? -1.0 : 0.0;
   cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, s->an->R, m, s->c, 1, 0.0,
-              s->y, 1);
-  cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, s->an->R, m, s->y, 1, 0.0,
-              s->lift, 1);
+              s->sum.y, 1);
+  cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, s->an->R, m, s->sum.y, 1,
+              0.0, s->lift, 1);
   largest_growth(cp, s->lift, s->c, s->c + m);
   *gain = HUGE_VAL;
   for (int dof = 0; dof < m; ++dof)
@@ -298,24 +234,26 @@ static int is_proof(balance *s, double gain) {
 static status find_motion(const contact_problem *cp, const anchor *an,
                           int *proved) {
   status st = OK;
-  balance s = {.cp = cp, .an = an, .rows = an->n_mode + 1};
+  balance s = {.cp = cp, .an = an};
+  double *column, *b, size, gain, before = HUGE_VAL;
   TRY(balance_new(&s));
+  b = s.sum.b;
   cblas_dgemv(CblasColMajor, CblasTrans, cp->m, an->n_mode, 1.0, an->R, cp->m,
-              cp->f, 1, 0.0, s.b, 1);
-  double size = cblas_dnrm2(an->n_mode, s.b, 1), before = HUGE_VAL, gain;
-  set_lift(&s, &gain);
+              cp->f, 1, 0.0, b, 1);
+  size = cblas_dnrm2(an->n_mode, b, 1);
   if (!(size > 0.0 && size < HUGE_VAL)) goto done;
-  s.unit = s.b[an->n_mode] = size;
-  memcpy(s.rest, s.b, (size_t)s.rows * sizeof *s.rest);
+  s.unit = b[an->n_mode] = size;
+  set_lift(&s, &gain);
+  nonnegative_begin(&s.sum);
   for (int k = 0; k < PASSES; ++k) {
-    double left = cblas_dnrm2(s.rows, s.rest, 1);
-    if (!(left > BALANCED * size && left <= before)) goto done;
+    double left = cblas_dnrm2(s.sum.rows, s.sum.rest, 1);
+    if (!(left > BALANCED * size && left <= before)) break;
     before = left;
-    double *column = s.G + (size_t)s.rows * (size_t)s.n;
-    if (s.n == s.rows) break;
+    column = nonnegative_next(&s.sum);
+    if (column == NULL) break;
     double does = best_column(&s, column);
     *proved = is_proof(&s, gain);
-    if (*proved || !(does > 0.0) || !take_column(&s)) break;
+    if (*proved || !(does > 0.0) || !nonnegative_take(&s.sum)) break;
   }
 done:
   balance_free(&s);

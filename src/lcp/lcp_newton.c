@@ -12,6 +12,7 @@
  */
 #include "base/memory.h"
 #include "lcp/lcp_solve.h"
+#include "lcp/nonnegative.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -29,7 +30,8 @@ enum {
 static const double WORK = 1e10; /* operations of all starts                  */
 static const double RANK = 0x1p-40; /* -, of a singular basis                 */
 static const double DESCENT = 1e-9; /* -, of |g| |d|                          */
-static const double ENOUGH = 1e-4;  /* -, of the slope (Armijo)               */
+static const double MARGIN = 0x1p-30; /* -, of a vector that separates        */
+static const double ENOUGH = 1e-4; /* -, of the slope (Armijo)               */
 
 typedef struct run {
   const lcp_data *p;
@@ -270,17 +272,68 @@ done:
   return st;
 }
 
-status lcp_all_bases(const lcp_data *p, double tol, double *z, int *found) {
+/* Column j of a basis: of w_j, or of z_j, in q = w - M z. */
+static void column_of(const run *s, int j, double *to) {
+  size_t n = (size_t)s->p->n;
+  for (size_t i = 0; i < n; ++i)
+    to[i] = s->basis[j] ? -s->M[i + n * (size_t)j] : (int)i == j;
+}
+
+/* 1: q is no sum of the columns of the basis, by a margin: a vector separates
+ * it from them. */
+static int excludes(run *s, nonnegative *sum) {
+  int n = s->p->n;
+  double *column, *rest = sum->rest, before = HUGE_VAL;
+  memcpy(sum->b, s->q, (size_t)n * sizeof *sum->b);
+  nonnegative_begin(sum);
+  while ((column = nonnegative_next(sum)) != NULL) {
+    double left = cblas_dnrm2(n, rest, 1), most = 0.0;
+    if (!(left > MARGIN && left < before)) return 0;
+    before = left;
+    int best = -1;
+    for (int j = 0; j < n; ++j) {
+      column_of(s, j, column);
+      double size = cblas_dnrm2(n, column, 1);
+      double does = size > 0.0 ? cblas_ddot(n, column, 1, rest, 1) / size : 0.0;
+      if (does > most) best = j;
+      most = fmax(most, does);
+    }
+    if (best < 0 || most <= MARGIN * left) return 1;
+    column_of(s, best, column);
+    if (!nonnegative_take(sum)) return 0;
+  }
+  return 0;
+}
+
+static void set_basis(run *s, int set) {
+  for (int i = 0; i < s->p->n; ++i) s->basis[i] = set >> i & 1;
+}
+
+status lcp_all_bases(const lcp_data *p, double tol, double *z, outcome *end) {
   status st = OK;
   run s = {.p = p, .tol = tol};
-  *found = 0;
+  nonnegative sum = {0};
+  int found = 0, excluded = 1, n_set = 1 << p->n;
+  *end = STOPPED_STAGNATION;
   TRY(run_new(&s));
-  for (int set = 0; set < 1 << p->n && !*found; ++set) {
-    for (int i = 0; i < p->n; ++i) s.basis[i] = set >> i & 1;
-    *found = basis_solves(&s);
+  TRY(nonnegative_new(p->n, &sum));
+  for (int set = 0; set < n_set && !found; ++set) {
+    set_basis(&s, set);
+    found = basis_solves(&s);
   }
-  if (*found) memcpy(z, s.answer, (size_t)p->n * sizeof *z);
+  if (found) {
+    *end = CONVERGED;
+    memcpy(z, s.answer, (size_t)p->n * sizeof *z);
+    goto done;
+  }
+  scale(&s);
+  for (int set = 0; set < n_set && excluded; ++set) {
+    set_basis(&s, set);
+    excluded = excludes(&s, &sum);
+  }
+  if (excluded) *end = STOPPED_RAY;
 done:
+  nonnegative_free(&sum);
   run_free(&s);
   return st;
 }

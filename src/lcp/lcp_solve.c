@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FIRST = 2, ATTEMPTS = 100 };
+enum { FIRST = 2, ATTEMPTS = 100, FEW_PIVOTS = 50, PIVOTS_A_ROW = 5 };
 static const double PROOF = 0x1p-26; /* -, least work of a certificate      */
 static const double ROUNDING = 0x1p-44; /* -, of the terms of M'y */
 
@@ -46,6 +46,7 @@ typedef struct run {
   double *M, *q, *room;  /* [n*n], [n], [n]: in these units, over the cover   */
   unsigned char *turned; /* [n] 1: z_i and w_i have changed places            */
   unsigned seed;
+  int is_first; /* 1: one of the first tries                                  */
 } run;
 
 static status run_new(run *s) {
@@ -128,6 +129,16 @@ static void choose(run *s, int k) {
              s->room);
 }
 
+/* 0: as many as the method takes. Where others follow the first tries are
+ * short.
+ */
+static int pivots_allowed(const run *s) {
+  int most = s->control->max_iter, left = most - s->v->iterations;
+  int few = FEW_PIVOTS + PIVOTS_A_ROW * s->p->n;
+  if (!s->is_first || s->control->pivoting_only) return most > 0 ? left : 0;
+  return most > 0 && left < few ? left : few;
+}
+
 /* Lemke's method with a covering vector d is that of the rows over d with a
  * vector of ones. On a ray of the problem as it stands y is its direction. */
 static status pivot_once(run *s, lcp_report *rep) {
@@ -138,9 +149,7 @@ static status pivot_once(run *s, lcp_report *rep) {
     cblas_dscal((int)n, 1.0 / s->cover[i], s->M + i, (int)n);
     s->q[i] /= s->cover[i];
   }
-  int most = s->control->max_iter;
-  TRY(lcp_lemke((int)n, s->M, s->q, most > 0 ? most - s->v->iterations : 0,
-                s->try_z, rep));
+  TRY(lcp_lemke((int)n, s->M, s->q, pivots_allowed(s), s->try_z, rep));
   contact_product((int)n, s->M, s->try_z, slack);
   for (size_t i = 0; i < n; ++i) {
     if (s->turned[i])
@@ -165,6 +174,7 @@ static status pivot(run *s, int first, int last, outcome *o) {
   *o = STOPPED_ITERATIONS;
   for (int k = first; k < last && !is_spent(s); ++k) {
     choose(s, k);
+    s->is_first = k < FIRST;
     TRY(pivot_once(s, &rep));
     s->v->iterations += rep.pivots;
     *o = CONVERGED;
@@ -227,20 +237,35 @@ done:
 
 /* ---- all together -------------------------------------------------------- */
 
-/* The methods after pivoting. */
-static status other_ways(run *s, outcome *o) {
+/* All bases of few unknowns. */
+static status try_bases(run *s, outcome *o) {
+  status st = OK;
+  *o = STOPPED_STAGNATION;
+  if (s->p->n > LCP_MOST_BASES) goto done;
+  TRY(lcp_all_bases(s->p, s->control->tol, s->try_z, o));
+  if (*o == CONVERGED && !keep(s)) *o = STOPPED_STAGNATION;
+  note(s->v, "all bases", *o);
+done:
+  return st;
+}
+
+static status try_newton(run *s, outcome *o) {
   status st = OK;
   int found = 0;
-  double *z = s->try_z;
-  TRY(lcp_newton(s->p, s->control, z, &s->v->iterations, &found));
+  TRY(lcp_newton(s->p, s->control, s->try_z, &s->v->iterations, &found));
   *o = found && keep(s) ? CONVERGED
        : is_spent(s)    ? STOPPED_ITERATIONS
                         : STOPPED_STAGNATION;
   note(s->v, "newton", *o);
-  if (*o != STOPPED_STAGNATION || s->p->n > LCP_MOST_BASES) goto done;
-  TRY(lcp_all_bases(s->p, s->control->tol, z, &found));
-  *o = found && keep(s) ? CONVERGED : STOPPED_STAGNATION;
-  note(s->v, "all bases", *o);
+done:
+  return st;
+}
+
+/* The methods after pivoting. */
+static status other_ways(run *s, outcome *o) {
+  status st = OK;
+  TRY(try_bases(s, o));
+  if (*o == STOPPED_STAGNATION) TRY(try_newton(s, o));
 done:
   return st;
 }
@@ -261,7 +286,7 @@ static status follow(run *s) {
   if (!s->control->pivoting_only) {
     TRY(other_ways(s, &o));
     s->v->outcome = o;
-    if (o == CONVERGED) goto done;
+    if (o == CONVERGED || o == STOPPED_RAY) goto done;
   }
   TRY(pivot(s, FIRST, ATTEMPTS, &o));
   note(s->v, "lemke from other vertices", o);

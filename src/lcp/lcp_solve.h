@@ -10,10 +10,11 @@
  *
  *   w = 0 - M'y,  v = q + M z,   (z, w), (y, v) complementary,
  *
- * (its matrix is skew), and if there is one: the Newton method on the function
- * of Fischer and Burmeister from many starts (De Luca, Facchinei, Kanzow 1996),
- * for few unknowns all bases, and pivoting with other units, covering vectors
- * and from other vertices.
+ * (its matrix is skew), and if there is one: for few unknowns all bases, which
+ * decides; the Newton method on the function of Fischer and Burmeister from
+ * many starts (De Luca, Facchinei, Kanzow 1996), and pivoting with other units,
+ * covering vectors and from other vertices. The first try ends early where
+ * these follow.
  */
 #ifndef PROTIS_LCP_LCP_SOLVE_H
 #define PROTIS_LCP_LCP_SOLVE_H
@@ -35,9 +36,10 @@ typedef struct lcp_control {
 enum { LCP_LOG = 256 };
 typedef struct lcp_verdict {
   outcome outcome;    /* CONVERGED; STOPPED_RAY: proved that no z >= 0 has
-                         w >= 0; STOPPED_ITERATIONS: a limit was reached;
-                         STOPPED_STAGNATION: nothing found, nothing    proved;
-                         STOPPED_NAN                                  */
+                         w >= 0, or that no basis solves it;
+                         STOPPED_ITERATIONS: a limit was reached;
+                         STOPPED_STAGNATION: nothing found, nothing proved;
+                         STOPPED_NAN                                          */
   int iterations;     /* pivots and steps of all attempts                     */
   double residual;    /* lcp_residual of z                                    */
   const char *method; /* who answered last                                    */
@@ -57,11 +59,13 @@ status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,
 
 /* ---- lcp_newton.c: private to this folder -------------------------------- */
 
-/* Attempts by Newton's method from many starts; (few unknowns) all bases.
- * 1 in *found: z is a solution to tol. *steps grows. */
+/* Attempts by Newton's method from many starts. 1 in *found: z is a solution to
+ * tol. *steps grows. */
 status lcp_newton(const lcp_data *p, const lcp_control *control, double *z,
                   int *steps, int *found);
-status lcp_all_bases(const lcp_data *p, double tol, double *z, int *found);
+/* All bases: CONVERGED, z is a solution to tol; STOPPED_RAY: each is excluded,
+ * there is none; STOPPED_STAGNATION: not known. */
+status lcp_all_bases(const lcp_data *p, double tol, double *z, outcome *end);
 enum { LCP_MOST_BASES = 14 /* unknowns of which all bases are tried */ };
 
 /* ---- lcp_turn.c: private to this folder -----------------------------------

@@ -92,11 +92,47 @@ START_TEST(ray_of_an_indefinite_problem_is_no_verdict) {
     memcpy(c.q, q, sizeof q);
     c.M[1] = flip ? 1.0 : -1.0; /* flip: w_2 = z_1 + 1 is never zero          */
     lcp_verdict v = solve(&c, &usual);
-    ck_assert_int_eq(v.outcome, flip ? STOPPED_STAGNATION : CONVERGED);
+    ck_assert_int_eq(v.outcome, flip ? STOPPED_RAY : CONVERGED);
+    ck_assert_int_le(v.iterations, 100);
     if (!flip)
       for (int i = 0; i < 2; ++i) ck_assert_double_eq_tol(c.z[i], 1.0, 1e-15);
   }
   lcp_case_free(&c);
+}
+END_TEST
+
+/* Two 2^n pivots long: the first try ends early. */
+START_TEST(long_paths_are_left_early) {
+  for (int family = LCP_MURTY; family <= LCP_FATHI; ++family)
+    for (int n = 60; n <= 120; n += 60) {
+      lcp_case c = lcp_make((lcp_family)family, n, 1);
+      lcp_verdict v = solve(&c, &usual);
+      ck_assert_int_eq(v.outcome, CONVERGED);
+      ck_assert_int_le(v.iterations, 20 * n);
+      check_claim(&c, &v);
+      lcp_case_free(&c);
+    }
+}
+END_TEST
+
+/* No solution but a z >= 0 with w >= 0: only all bases tell; a little more, and
+ * there is one. */
+START_TEST(all_bases_decide_from_both_sides) {
+  static const double off[] = {1.0, 1e-3, 1e-6};
+  for (int k = 0; k < 6; ++k) {
+    int none = k % 2, n = 2 + k;
+    lcp_case c = lcp_make(LCP_DEFINITE, n, 5);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < 2; ++j) c.M[i + n * j] = c.M[j + n * i] = 0.0;
+    c.M[1] = c.M[n] = 1.0; /* w_1 = z_2 - 1, w_2 = z_1 + q_2                  */
+    c.q[0] = -1.0;
+    c.q[1] = none ? off[k / 2] : -off[k / 2];
+    lcp_verdict v = solve(&c, &usual);
+    ck_assert_msg(v.outcome == (none ? STOPPED_RAY : CONVERGED), "%d: %s (%s)",
+                  k, outcome_text(v.outcome), v.log);
+    check_claim(&c, &v);
+    lcp_case_free(&c);
+  }
 }
 END_TEST
 
@@ -217,7 +253,8 @@ START_TEST(every_refused_request_is_reported) {
 }
 END_TEST
 
-UNIT_MAIN("lcp_solve", families_with_a_solution_are_solved,
+UNIT_MAIN("lcp_solve", long_paths_are_left_early,
+          all_bases_decide_from_both_sides, families_with_a_solution_are_solved,
           planted_solutions_of_small_problems_are_found,
           problems_without_solution_are_proved_to_have_none,
           ray_of_an_indefinite_problem_is_no_verdict, limit_of_pivots_is_told,

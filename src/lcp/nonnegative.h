@@ -1,0 +1,29 @@
+/*
+ * A vector b as a sum of columns with factors that are not negative, as near as
+ * possible (Lawson, Hanson 1974). The caller hands over the columns one by one,
+ * each time that which does most on the rest, b less the sum; a rest on which
+ * no column does work separates b from all of them.
+ */
+#ifndef PROTIS_LCP_NONNEGATIVE_H
+#define PROTIS_LCP_NONNEGATIVE_H
+
+#include "base/status.h"
+
+typedef struct nonnegative {
+  int rows, n;      /* entries of a column; columns taken, at most rows       */
+  double *b, *rest; /* [rows]                                                 */
+  double *G;        /* [rows*rows] columns taken                              */
+  double *x;        /* [rows] their factors                                   */
+  double *y, *Q, *work; /* [rows], [rows*rows], [4*rows] room                 */
+} nonnegative;
+
+status nonnegative_new(int rows, nonnegative *s);
+void nonnegative_free(nonnegative *s);
+/* No column is taken yet; b is set. */
+void nonnegative_begin(nonnegative *s);
+/* Where the next column[rows] goes; NULL: as many as rows are taken. */
+double *nonnegative_next(const nonnegative *s);
+/* Take it, drop those with no share left. 0: no way on. */
+int nonnegative_take(nonnegative *s);
+
+#endif
