@@ -329,7 +329,7 @@ static status attempt_piece(run *r, long n) {
   if (!settled && outcome_is_fatal(r->report.outcome))
     TRY(loop_no_equilibrium(r));
   r->jumps = 0;
-  if (settled) TRY(jump_check(r, t));
+  TRY(jump_check(r, t));
   TRY(accept_piece(r, n, cpu));
 done:
   return st;

@@ -77,6 +77,7 @@ typedef struct progress {
   double dt;    /* of an adaptive step, to be tried, s                        */
   double error; /* of the increments before the step, sqrt(J)                 */
   double residual; /* -, of the attempt before at the same increment          */
+  int lost;     /* 1: the last state is none of equilibrium, by far           */
 } progress;
 
 typedef struct run {

@@ -20,8 +20,10 @@ typedef struct single {
   double P[9], Q[9], c[3];     /* [m*m], [m*m], [m]                           */
   int m, n_rub, rub[2];        /* tangents with friction                      */
   double ut0[2], g0, mu;       /* m, N, -                                     */
-  double u[3], r[3], residual; /* the nearest solution so far                 */
+  contact_status start;        /* its status                                  */
+  double u[3], r[3], residual; /* the best solution so far                    */
   double distance;             /* of it; HUGE_VAL: none                       */
+  int like;                    /* 1: with the status of the start             */
 } single;
 
 static void set_problem(single *s) {
@@ -45,14 +47,18 @@ static void set_problem(single *s) {
   }
 }
 
-/* Keep a candidate if it is a solution nearer to the start. */
+/* Keep a candidate if it is a solution and more like the start. */
 static void judge(single *s, const double *u, const double *r) {
   double apart = 0.0;
+  contact_status state;
   double residual = contact_residual_at(s->cp, s->scale, u, r);
   if (!(residual <= s->tol)) return;
+  contact_classify(s->cp, u, r, &state);
+  int like = state == s->start;
   for (int i = 0; i < s->m; ++i)
     apart = hypot(apart, s->cp->A != NULL ? u[i] - s->u0[i] : r[i] - s->r0[i]);
-  if (!(apart < s->distance)) return;
+  if (like < s->like || (like == s->like && !(apart < s->distance))) return;
+  s->like = like;
   memcpy(s->u, u, (size_t)s->m * sizeof *u);
   memcpy(s->r, r, (size_t)s->m * sizeof *r);
   s->distance = apart;
@@ -218,6 +224,7 @@ int single_solve(const contact_problem *cp, double scale, double tol, double *u,
   size_t bytes = (size_t)cp->m * sizeof *u;
   memcpy(s.u0, u, bytes);
   memcpy(s.r0, r, bytes);
+  contact_classify(cp, u, r, &s.start);
   set_problem(&s);
   try_all_linear(&s);
   if (s.n_rub > 0 && (s.g0 != 0.0 || s.mu != 0.0)) {

@@ -4,6 +4,7 @@
  * friction. K = area [(lambda + G) g g' + G |g|^2 I], g = grad of the P1
  * function of the free vertex.
  */
+#include "solver/solver.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -230,6 +231,43 @@ START_TEST(jump_of_the_equilibrium_is_told) {
 }
 END_TEST
 
-UNIT_MAIN("triangle", closed_form_agrees_with_the_published_numbers,
+/* The same with mu = 2: the push is 2 at 3.5, whatever the increment and the
+ * method, also where the method does not find the state after it. */
+START_TEST(jump_is_found_in_any_increment_by_any_method) {
+  static const double dt[] = {6.0, 3.0, 1.0, 0.1};
+  const solver_ops *ops = NULL;
+  for (int i = 0; i == 0 || ops != NULL; ++i) {
+    ops = solver_list[i];
+    for (int k = 0; k < 4; ++k) {
+      if (k % 2 == 1 && ops != NULL && i % 2 == 0) continue;
+      job j = job_begin("triangle");
+      job_write(&j, "triangle.msh", "%s", mesh_text);
+      job_write(
+          &j, "triangle.inp",
+          "*MESH, FILE=triangle.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+          "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+          "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+          "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+          "*FRICTION, CONTACT=C, LAW=COULOMB\n2.\n"
+          "*STEP\n*QUASISTATIC\n1., 1.\n*SOLVER, METHOD=%s\n"
+          "*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\nTIP, 2, -1.\n*END STEP\n"
+          "*STEP\n*QUASISTATIC\n%g, 6.\n*CLOAD\nTIP, 1, 4.8\n*END STEP\n",
+          ops == NULL ? "AUTO" : ops->name, dt[k]);
+      int code = job_run(&j, "");
+      ck_assert_msg(code == 0 || (code == 1 && ops != NULL), "%d", code);
+      char *json = job_file(&j, "json");
+      const char *at = strstr(json, "\"jump_time\": ");
+      ck_assert_ptr_nonnull(at);
+      ck_assert_double_eq_tol(atof(at + strlen("\"jump_time\": ")), 3.5, 1e-4);
+      ck_assert_ptr_null(strstr(at + 1, "\"jump_time\": "));
+      free(json);
+      job_end(&j);
+    }
+  }
+}
+END_TEST
+
+UNIT_MAIN("triangle", jump_is_found_in_any_increment_by_any_method,
+          closed_form_agrees_with_the_published_numbers,
           unique_solution_is_found, one_of_several_solutions_is_found,
           all_solutions_are_listed, jump_of_the_equilibrium_is_told)
