@@ -10,8 +10,8 @@
 /* Cards that may stand beside *CONDENSED PROBLEM. */
 static int goes_with_problem(const char *name) {
   static const char *const names[] = {
-      "HEADING", "PARAMETER", "INCLUDE", "LEGACY", "UNITS",   "STEP",
-      "STATIC",  "SOLVER",    "PRINT",   "OUTPUT", "END STEP"};
+      "HEADING", "PARAMETER", "INCLUDE",  "LEGACY", "UNITS",  "STEP",
+      "STATIC",  "SOLVER",    "ACCURACY", "PRINT",  "OUTPUT", "END STEP"};
   if (strcmp(name, "CONDENSED PROBLEM") == 0) return 1;
   for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
     if (strcmp(name, names[k]) == 0) return 1;
@@ -42,11 +42,25 @@ static void check_problem_tables(const reading *r, const step *s) {
                   "without GROUP= has rows");
 }
 
+/* The bound of the error factors the matrix, which costs more than many
+ * solutions: only on request. */
+static void check_problem_accuracy(const reading *r, step *s) {
+  int others =
+      s->mesh_error || s->time_error || s->theory || r->m->target.percent > 0.0;
+  if (!s->has_accuracy)
+    s->no_solver_error = 1;
+  else if (others)
+    message_add(r->m->log, P2034, &s->accuracy_at,
+                "a condensed problem has no mesh: of *ACCURACY only SOLVER= "
+                "has a place beside it");
+}
+
 status model_finish_problem(reading *r) {
   status st = OK;
   check_problem_cards(r);
   step *s = &r->m->steps[0];
   check_problem_tables(r, s);
+  check_problem_accuracy(r, s);
   s->kind = STEP_STATIC;
   if (!(s->total > 0.0)) s->total = 1.0;
   s->dt = s->dt_min = s->total;

@@ -18,7 +18,11 @@ static void reason_inelastic(const model *m, char *text, size_t size) {
 }
 
 static void reason_estimates(const model *m, char *text, size_t size) {
-  if (m->effects & EFFECT_ESTIMATES)
+  if (m->has_problem && !m->steps[0].has_accuracy)
+    snprintf(text, size, "no *ACCURACY card, which asks for it");
+  else if (m->effects & EFFECT_ESTIMATES && m->has_problem)
+    snprintf(text, size, "*ACCURACY, %s:%d", PLACE(m->steps[0].accuracy_at));
+  else if (m->effects & EFFECT_ESTIMATES)
     snprintf(text, size, "default; *ACCURACY, SOLVER=NO leaves it out");
   else if (m->n_contact == 0 && !m->has_problem)
     snprintf(text, size, "no *CONTACT card");

@@ -556,6 +556,31 @@ START_TEST(effect_plan_has_no_mesh) {
 }
 END_TEST
 
+/* It factors the matrix: only where *ACCURACY asks for it. */
+START_TEST(error_is_bound_on_request) {
+  static const char *const cards[] = {
+      "", "*ACCURACY\n", "*ACCURACY, SOLVER=NO\n", "*ACCURACY, MESH=YES\n"};
+  const double W[4] = {2.0, 0.0, 0.0, 1.0}, q[2] = {-1.0, 0.5}, mu[1] = {0.1};
+  for (int k = 0; k < 4; ++k) {
+    job j = job_begin("read");
+    fclib_local(in_folder(&j, "problem.h5"), STORE_COLUMNS, 2, 1, W, q, mu);
+    job_write(&j, "read.inp",
+              "*CONDENSED PROBLEM, FILE=problem.h5\n*STEP\n%s*END STEP\n",
+              cards[k]);
+    ck_assert_int_eq(job_run(&j, ""), k == 3 ? 2 : 0);
+    if (k == 3) ck_assert_ptr_nonnull(strstr(j.errors, "P2034"));
+    if (k < 3) {
+      char *lst = job_file(&j, "lst");
+      const char *at = strstr(lst, "error of solver");
+      ck_assert_ptr_nonnull(at);
+      ck_assert_int_eq(strncmp(at + 27, "on", 2) == 0, k == 1);
+      free(lst);
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
 START_TEST(no_contact_is_solved) {
   job j = job_begin("read");
   fclib_local(in_folder(&j, "problem.h5"), STORE_ROWS, 3, 0, NULL, NULL, NULL);
@@ -627,5 +652,5 @@ UNIT_MAIN("exchange", problem_written_and_read_has_the_same_solution,
           exponential_case_is_solved, semidefinite_case_is_solved,
           case_without_solution_ends_with_six,
           contact_without_solution_ends_with_six, effect_plan_has_no_mesh,
-          no_contact_is_solved, deck_errors_have_a_line,
-          file_of_the_problem_is_not_overwritten)
+          error_is_bound_on_request, no_contact_is_solved,
+          deck_errors_have_a_line, file_of_the_problem_is_not_overwritten)
