@@ -67,10 +67,19 @@ static void judge(single *s, const double *u, const double *r) {
 
 /* ---- states that are linear ---------------------------------------------- */
 
+/* Power of two that brings the largest of x[m] to order 1. */
+static double power_of(int m, const double *x) {
+  double largest = 0.0;
+  int exponent = 0;
+  for (int i = 0; i < m; ++i) largest = fmax(largest, fabs(x[i]));
+  if (largest > 0.0) frexp(largest, &exponent);
+  return ldexp(1.0, -exponent);
+}
+
 /* The state with u_i = u[i] of the unknowns in "fixed" (bit i), r_i = 0 of the
  * others. */
 static void try_linear(single *s, unsigned fixed, const double *at) {
-  double M[9], b[3], u[3], r[3], work[WORK];
+  double M[9], b[3], u[3], r[3], power[3], work[WORK];
   int m = s->m, pivot[3] = {0, 0, 0}, rank;
   for (int i = 0; i < m; ++i) {
     b[i] = s->c[i];
@@ -80,13 +89,17 @@ static void try_linear(single *s, unsigned fixed, const double *at) {
       if (is_fixed) b[i] -= s->P[i + m * j] * at[j];
     }
   }
+  for (int j = 0; j < m; ++j) {
+    power[j] = power_of(m, M + m * j);
+    for (int i = 0; i < m; ++i) M[i + m * j] *= power[j];
+  }
   if (LAPACKE_dgelsy_work(LAPACK_COL_MAJOR, m, m, 1, M, m, b, m, pivot, RANK,
                           &rank, work, WORK) != 0)
     return;
   for (int j = 0; j < m; ++j) {
     int is_fixed = fixed >> j & 1u;
-    u[j] = is_fixed ? at[j] : b[j];
-    r[j] = is_fixed ? b[j] : 0.0;
+    u[j] = is_fixed ? at[j] : power[j] * b[j];
+    r[j] = is_fixed ? power[j] * b[j] : 0.0;
   }
   judge(s, u, r);
 }
