@@ -99,6 +99,10 @@ START_TEST(error_of_an_unloaded_body_is_over_the_largest) {
   errors_of(&j, 2, left);
   ck_assert_double_gt(full[0], 1);
   ck_assert_double_eq_tol(1e10 * left[0] / full[0], 1, 0.06);
+  ck_assert_double_eq_tol(job_told(&j, "mesh_error_worst_percent") / full[0], 1,
+                          0.06);
+  ck_assert_double_eq_tol(job_told(&j, "mesh_error_percent") / left[0], 1,
+                          0.06);
   job_end(&j);
 }
 END_TEST

@@ -1,0 +1,180 @@
+/*
+ * Bodies of one contact node and one stress in closed form: limits per area,
+ * static problems, starts of inelastic strains and internal variables, heat
+ * with coefficients that vary, works that balance.
+ */
+#include "support/tips.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double G = 500, area = 0.70710678118654752; /* half an edge */
+
+#define FLOOR                                       \
+  "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n" \
+  "*CONTACT, NAME=A, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n"
+
+/* Cards below *MATERIAL, then those from *OBSTACLE on. */
+static job run(const char *material, const char *cards) {
+  job j = tips_new(G, "", cards);
+  char *deck = job_file(&j, "inp"), *at = strstr(deck, "*SOLID SECTION");
+  *at = '\0';
+  job_write(&j, "tips.inp", "%s%s*%s", deck, material, at + 1);
+  free(deck);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* ---- forces ----------------------------------------------------------------
+ */
+
+/* Pulled by 5 along the floor: the limit, a stress of 4, holds 4 area of it. */
+START_TEST(limit_of_tresca_is_a_stress) {
+  job j = run("", FLOOR
+              "*FRICTION, CONTACT=A, LAW=TRESCA\n4.\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\nTIPS, 1, 5.\nTIPS, 2, -10.\n"
+              "*SOLVER, TOL=1E-13\n*PRINT, CONTACT\n*END STEP\n");
+  dat c = job_table(&j, "CONTACT", -1);
+  ck_assert_double_eq_tol(dat_at(&c, 0, "f_t"), -4 * area, 1e-10);
+  ck_assert_double_eq_tol(dat_at(&c, 0, "traction_t"), -4, 1e-10);
+  ck_assert_double_eq_tol(dat_at(&c, 0, "u_t"), (5 - 4 * area) / G, 1e-12);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+/* Given p = 6 in the place of the floor: N = 6 area pushes up, T = mu N. */
+START_TEST(given_pressure_pushes) {
+  job j =
+      run("", FLOOR
+          "*CONTACT FORCE, CONTACT=A\n6.\n"
+          "*FRICTION, CONTACT=A, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+          "0.5, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\nTIPS, 1, 5.\n"
+          "TIPS, 2, -10.\n*SOLVER, TOL=1E-13\n*PRINT, CONTACT\n*END STEP\n");
+  dat c = job_table(&j, "CONTACT", -1);
+  const double N = 6 * area;
+  ck_assert_double_eq_tol(dat_at(&c, 0, "f_n"), N, 1e-10);
+  ck_assert_double_eq_tol(dat_at(&c, 0, "u_n"), (10 - N) / (3.5 * G), 1e-12);
+  ck_assert_double_eq_tol(dat_at(&c, 0, "f_t"), -0.3 * N, 1e-10);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+/* Two static problems of the same loads: the slip, and its work, are those from
+ * the origin in both. */
+START_TEST(static_problems_slip_from_the_origin) {
+  job j = run("", FLOOR
+              "*FRICTION, CONTACT=A, LAW=COULOMB\n0.3\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\nTIPS, 1, 5.\nTIPS, 2, -10.\n"
+              "*SOLVER, TOL=1E-13\n*PRINT, CONTACT, ENERGY\n*END STEP\n"
+              "*STEP\n*STATIC\n*END STEP\n");
+  const double slip = (5 - 3) / G;
+  for (int k = 0; k < 2; ++k) {
+    dat c = job_table(&j, "CONTACT", k), e = job_table(&j, "ENERGY", k);
+    ck_assert_double_eq_tol(dat_at(&c, 0, "slip"), slip, 1e-12);
+    ck_assert_double_eq_tol(dat_at(&c, 0, "slip_distance"), slip, 1e-12);
+    ck_assert_double_eq_tol(dat_at(&e, 0, "friction_work_end"), 3 * slip,
+                            1e-11);
+    dat_free(&c);
+    dat_free(&e);
+  }
+  job_end(&j);
+}
+END_TEST
+
+/* ---- starts -----------------------------------------------------------------
+ */
+
+#define HELD                                                    \
+  "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1E-3, 1E-3\n*BOUNDARY\n" \
+  "CLAMPED, 1, 2\nTIPS, 1, 2\n*PRINT, ELEMENTS\n*END STEP\n"
+
+/* Held by its supports, e^i gives the stress -C e^i; it hardly relaxes. */
+START_TEST(inelastic_strains_start_by_component) {
+  job j = run("*INELASTIC, LAW=MAXWELL\n1E9\n",
+              "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\n"
+              "BODY, 2, 1E-3\nBODY, 4, 3E-3\n" HELD);
+  static const char *const name[] = {"ei_xx", "ei_yy", "ei_zz", "ei_xy"};
+  static const double ei[] = {0, 1e-3, 0, 3e-3};
+  dat e = job_table(&j, "ELEMENTS", -1);
+  const double lambda = G * 0.6 / 0.4;
+  for (int i = 0; i < e.n_row; ++i) {
+    for (int k = 0; k < 4; ++k)
+      ck_assert_double_eq_tol(dat_at(&e, i, name[k]), ei[k], 1e-10);
+    ck_assert_double_eq_tol(dat_at(&e, i, "stress_xx"), -lambda * 1e-3, 1e-8);
+    ck_assert_double_eq_tol(dat_at(&e, i, "stress_yy"),
+                            -(lambda + 2 * G) * 1e-3, 1e-8);
+    ck_assert_double_eq_tol(dat_at(&e, i, "stress_xy"), -G * 3e-3, 1e-8);
+  }
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
+/* p and a back stress of a body without load: only what was given. */
+START_TEST(internal_variables_start_by_component) {
+  job j = run("*INELASTIC, LAW=CHABOCHE\n60., 150., 3., 20., 50.\n2E4, 100.\n",
+              "*INITIAL CONDITIONS, TYPE=INTERNAL\nBODY, 1, 0.02\n"
+              "BODY, 3, 1E-4\n" HELD);
+  dat e = job_table(&j, "ELEMENTS", -1);
+  for (int i = 0; i < e.n_row; ++i) {
+    ck_assert_double_eq_tol(dat_at(&e, i, "alpha_1"), 0.02, 1e-14);
+    ck_assert_double_eq_tol(dat_at(&e, i, "alpha_2"), 0, 1e-14);
+    ck_assert_double_eq_tol(dat_at(&e, i, "alpha_3"), 1e-4, 1e-14);
+  }
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
+/* ---- heat -------------------------------------------------------------------
+ */
+
+/* alpha = 1e-5 at 0 to 3e-5 at 100, secants from 20; from 50 to 90 in a body
+ * that cannot move: -3 K (alpha(90) 70 - alpha(50) 30). */
+START_TEST(secants_count_from_their_zero) {
+  job j = run("*EXPANSION, ZERO=20.\n1E-5, 0.\n3E-5, 100.\n",
+              "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, 50.\n"
+              "*STEP\n*STATIC\n*BOUNDARY\nCLAMPED, 1, 2\nTIPS, 1, 2\n"
+              "*TEMPERATURE\nBODY, 90.\n*PRINT, ELEMENTS\n*END STEP\n");
+  dat e = job_table(&j, "ELEMENTS", -1);
+  const double K = 2.6 * G / (3 * 0.4);
+  const double strain = 2.8e-5 * 70 - 2e-5 * 30;
+  for (int i = 0; i < e.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&e, i, "stress_zz"), -3 * K * strain, 1e-9);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
+/* Loads, heat and creep together and heat alone: works balance, and the heat is
+ * told. */
+START_TEST(works_of_heat_and_creep_balance) {
+  static const char *const law[] = {"", "*INELASTIC, LAW=MAXWELL\n0.7\n",
+                                    "*INELASTIC, LAW=ZENER\n800., 500.\n"};
+  for (int k = 0; k < 3; ++k) {
+    char material[200];
+    snprintf(material, sizeof material, "*EXPANSION\n1E-5\n%s", law[k]);
+    job j = run(material,
+                "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n*BOUNDARY\n"
+                "CLAMPED, 1, 2\n*CLOAD\nTIPS, 1, \"3*t\"\nTIPS, 2, 2.\n"
+                "*TEMPERATURE\nBODY, \"90*t*t\"\n*PRINT, ENERGY\n*END STEP\n");
+    dat e = job_table(&j, "ENERGY", -1);
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
+    ck_assert_double_gt(fabs(dat_at(&e, 0, "thermal_work")), 1e-6);
+    if (k > 0) ck_assert_double_gt(dat_at(&e, 0, "inelastic_work"), 1e-6);
+    dat_free(&e);
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("tips", limit_of_tresca_is_a_stress, given_pressure_pushes,
+          static_problems_slip_from_the_origin,
+          inelastic_strains_start_by_component,
+          internal_variables_start_by_component, secants_count_from_their_zero,
+          works_of_heat_and_creep_balance)
