@@ -6,9 +6,11 @@
  */
 #include "solver/solver.h"
 #include "support/job.h"
+#include "support/traced.h"
 #include "support/unit.h"
 
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -193,25 +195,30 @@ START_TEST(all_solutions_are_listed) {
 }
 END_TEST
 
+static job pushed(double mu) {
+  job j = job_begin("triangle");
+  job_write(&j, "triangle.msh", "%s", mesh_text);
+  job_write(&j, "triangle.inp",
+            "*MESH, FILE=triangle.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n"
+            "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
+            "*CLOAD\nTIP, 2, -1.\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n0.05, 1.\n*CLOAD\nTIP, 1, 3.3\n"
+            "*END STEP\n",
+            mu);
+  return j;
+}
+
 /* Pressed by 1, then pushed: with mu = 2 the vertex sticks until the push is 2
  * and finds no other state near then; with mu = 1.7 it slides and opens. */
 START_TEST(jump_of_the_equilibrium_is_told) {
   static const double mu[] = {1.0, 1.7, 2.0, 3.0};
   for (int k = 0; k < 4; ++k) {
     int jumps = mu[k] > 1.8;
-    job j = job_begin("triangle");
-    job_write(&j, "triangle.msh", "%s", mesh_text);
-    job_write(&j, "triangle.inp",
-              "*MESH, FILE=triangle.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
-              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
-              "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O, NORMAL=OBSTACLE\n"
-              "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n"
-              "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
-              "*CLOAD\nTIP, 2, -1.\n*END STEP\n"
-              "*STEP\n*QUASISTATIC\n0.05, 1.\n*CLOAD\nTIP, 1, 3.3\n"
-              "*END STEP\n",
-              mu[k]);
+    job j = pushed(mu[k]);
     ck_assert_int_eq(job_run(&j, ""), 0);
     char *sta = job_file(&j, "sta"), *lst = job_file(&j, "lst"),
          *json = job_file(&j, "json");
@@ -267,7 +274,31 @@ START_TEST(jump_is_found_in_any_increment_by_any_method) {
 }
 END_TEST
 
+/* A run that goes on just before the jump tells it as one that was not stopped.
+ */
+START_TEST(jump_is_told_by_a_run_that_goes_on) {
+  static const char *const none[] = {NULL};
+  traced t = {.action = TRACE_COUNT};
+  job whole = pushed(2);
+  ck_assert_int_eq(traced_run(&whole, none, &t), 0);
+  const int all = t.changes;
+  for (int k = 0; k < 3; ++k) {
+    job j = pushed(2);
+    t = (traced){
+        .action = TRACE_SIGNAL, .at = all * (24 + k) / 42, .number = SIGINT};
+    ck_assert_int_eq(traced_run(&j, none, &t), 130);
+    int code = job_run(&j, "--restart --no-timing");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    const char *file = traced_difference(&whole, &j);
+    ck_assert_msg(file == NULL, "stopped at %d: .%s differs", k, file);
+    job_end(&j);
+  }
+  job_end(&whole);
+}
+END_TEST
+
 UNIT_MAIN("triangle", jump_is_found_in_any_increment_by_any_method,
           closed_form_agrees_with_the_published_numbers,
           unique_solution_is_found, one_of_several_solutions_is_found,
-          all_solutions_are_listed, jump_of_the_equilibrium_is_told)
+          all_solutions_are_listed, jump_of_the_equilibrium_is_told,
+          jump_is_told_by_a_run_that_goes_on)
