@@ -128,13 +128,6 @@ END_TEST
 /* ---- a tolerance ----------------------------------------------------------
  */
 
-static void give_law(const job *j, const char *law) {
-  char *deck = job_file(j, "inp"), *at = strstr(deck, "*SOLID SECTION");
-  *at = '\0';
-  job_write(j, "tips.inp", "%s*INELASTIC, LAW=%s\n*%s", deck, law, at + 1);
-  free(deck);
-}
-
 /* Creep under a load of 1 that falls to some 0.002: errors are told in parts of
  * the largest strain so far, and what the small load lets creep is none. */
 START_TEST(tolerance_is_of_the_largest_strain_so_far) {
@@ -144,7 +137,7 @@ START_TEST(tolerance_is_of_the_largest_strain_so_far) {
       "*STEP\n*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3\n"
       "0.125, 2.\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n"
       "TIPS, 2, -1., A\n*PRINT, ENERGY\n*END STEP\n");
-  give_law(&j, "MAXWELL\n1.");
+  tips_material(&j, "*INELASTIC, LAW=MAXWELL\n1.\n");
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   char *text = job_file(&j, "dat");
@@ -166,7 +159,7 @@ START_TEST(rest_of_a_step_is_cut_in_halves) {
       "*STEP\n*VISCO, INTEGRATOR=EULER, SUBSTEPS=AUTO\n1., 1.8\n*BOUNDARY\n"
       "CLAMPED, 1, 2\nTIPS, 2, 2, -0.01\n*PRINT, ENERGY\n"
       "*END STEP\n");
-  give_law(&j, "MAXWELL\n0.25");
+  tips_material(&j, "*INELASTIC, LAW=MAXWELL\n0.25\n");
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   for (int k = 0; k < 4; ++k) {

@@ -19,10 +19,7 @@ static const double G = 500, area = 0.70710678118654752; /* half an edge */
 /* Cards below *MATERIAL, then those from *OBSTACLE on. */
 static job run(const char *material, const char *cards) {
   job j = tips_new(G, "", cards);
-  char *deck = job_file(&j, "inp"), *at = strstr(deck, "*SOLID SECTION");
-  *at = '\0';
-  job_write(&j, "tips.inp", "%s%s*%s", deck, material, at + 1);
-  free(deck);
+  tips_material(&j, material);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;
@@ -151,6 +148,30 @@ START_TEST(secants_count_from_their_zero) {
 }
 END_TEST
 
+/* Node k has 10 k, written in another order; an element the mean of its nodes:
+ * 1, 2, 3 and 4, 5, 6. */
+START_TEST(field_of_temperatures_goes_by_numbers) {
+  job j = tips_new(G, "",
+                   "*STEP\n*STATIC\n*BOUNDARY\nCLAMPED, 1, 2\n"
+                   "TIPS, 1, 2\n*TEMPERATURE, FILE=heat.msh\n"
+                   "*PRINT, ELEMENTS\n*END STEP\n");
+  job_write(&j, "heat.msh",
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$NodeData\n1\n\"T\"\n1\n0.\n"
+            "3\n0\n1\n6\n6 60.\n2 20.\n4 40.\n1 10.\n5 50.\n3 30.\n"
+            "$EndNodeData\n");
+  tips_material(&j, "*EXPANSION\n1E-5\n");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat e = job_table(&j, "ELEMENTS", -1);
+  const double K = 2.6 * G / (3 * 0.4);
+  for (int i = 0; i < 2; ++i)
+    ck_assert_double_eq_tol(dat_at(&e, i, "stress_zz"),
+                            -3 * K * 1e-5 * (20 + 30 * i), 1e-9);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
 /* Loads, heat and creep together and heat alone: works balance, and the heat is
  * told. */
 START_TEST(works_of_heat_and_creep_balance) {
@@ -177,4 +198,5 @@ UNIT_MAIN("tips", limit_of_tresca_is_a_stress, given_pressure_pushes,
           static_problems_slip_from_the_origin,
           inelastic_strains_start_by_component,
           internal_variables_start_by_component, secants_count_from_their_zero,
+          field_of_temperatures_goes_by_numbers,
           works_of_heat_and_creep_balance)

@@ -1,5 +1,8 @@
 #include "support/tips.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 static const char triangles[] =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n6\n"
     "0 1 \"CLAMPED\"\n0 2 \"TIPS\"\n1 3 \"FOOT1\"\n1 4 \"FOOT2\"\n"
@@ -17,4 +20,11 @@ job tips_new(double G, const char *mesh, const char *cards) {
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n%s",
             mesh, 2.6 * G, cards);
   return j;
+}
+
+void tips_material(const job *j, const char *cards) {
+  char *deck = job_file(j, "inp"), *at = strstr(deck, "*SOLID SECTION");
+  *at = '\0';
+  job_write(j, "tips.inp", "%s%s*%s", deck, cards, at + 1);
+  free(deck);
 }

@@ -14,5 +14,7 @@
 /* The deck tips.inp and its mesh: parameters of *MESH (", SCALE=2", or ""),
  * cards from *OBSTACLE on. */
 job tips_new(double G, const char *mesh, const char *cards);
+/* Cards below *MATERIAL of that deck. */
+void tips_material(const job *j, const char *cards);
 
 #endif
