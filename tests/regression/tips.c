@@ -153,7 +153,7 @@ END_TEST
 START_TEST(field_of_temperatures_goes_by_numbers) {
   job j = tips_new(G, "",
                    "*STEP\n*STATIC\n*BOUNDARY\nCLAMPED, 1, 2\n"
-                   "TIPS, 1, 2\n*TEMPERATURE, FILE=heat.msh\n"
+                   "TIPS, 1, 2\n*TEMPERATURE, FILE=heat.msh\nBODY\n"
                    "*PRINT, ELEMENTS\n*END STEP\n");
   job_write(&j, "heat.msh",
             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$NodeData\n1\n\"T\"\n1\n0.\n"
