@@ -82,7 +82,7 @@ static void write_deck(const job *j, int dim) {
       "%s*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n"
       "*STEP\n*QUASISTATIC\n0.2, 2.\n*BOUNDARY\nHEAD, 1, %d\n"
       "*SOLVER, TOL=1E-13\n*RESTART\n"
-      "*PRINT, CONTACT, ENERGY, TOTALS, LOOP, REACTIONS\n*END STEP\n",
+      "*PRINT, CONTACT, ENERGY, TOTALS, LOOP, REACTIONS, ZONES\n*END STEP\n",
       n[0], n[1], n[2], move[0], move[1], dim == 3 ? ",\n" : "",
       dim == 3 ? move[2] : "", p[0], p[1], rotate, dim == 3 ? "" : "0.01*",
       angle_rate, axis, mu, dim);
@@ -276,6 +276,13 @@ static void check_loop(const job *j, int dim, int k, const node *p, int n,
   dat_free(&l);
 }
 
+/* The zones cover the foot. */
+static void check_zones(const job *j, int dim, int k) {
+  dat z = job_table(j, "ZONES", k);
+  NEAR(dat_sum(&z, "area"), dim == 2 ? 2 : 3, 1);
+  dat_free(&z);
+}
+
 /* Nothing else acts on the body. */
 static void check_balance(const job *j, int dim, int k, const node *p, int n,
                           double scale) {
@@ -311,6 +318,7 @@ START_TEST(results_are_those_of_the_nodes) {
     check_totals(&j, dim, k - 1, p, n, area, scale);
     check_loop(&j, dim, k - 1, p, n, area, &sum);
     check_balance(&j, dim, k - 1, p, n, scale);
+    check_zones(&j, dim, k - 1);
     for (int i = 0; i < n; ++i) {
       check_node(dim, &p[i], sum.distance[i], scale);
       seen[(int)p[i].status] += 1;

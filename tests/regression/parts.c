@@ -261,6 +261,35 @@ START_TEST(zones_of_revolution_are_rings) {
 }
 END_TEST
 
+/* An even stress; next to no friction lets the foot slip by k (x - 0.37), to
+ * both sides of where it does not, between two nodes. */
+START_TEST(directions_of_slip_part_where_there_is_none) {
+  const turn none = {{0, 0, 1}, 0};
+  job j = job_begin("turned");
+  mesh *m = make_grid_2d((int[]){8, 4}, (double[]){2, 1});
+  turned_mesh_write(&j, m, &none);
+  mesh_free(m);
+  job_write(&j, "turned.inp",
+            "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.25\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n1E-9\n*STEP\n*QUASISTATIC\n"
+            "1., 1.\n*BOUNDARY\nHEAD, 1, 1, \"1E-3*(x - 0.37)\"\n"
+            "HEAD, 2, 2, -0.003\n*PRINT, ZONES\n*END STEP\n");
+  run(&j);
+  dat z = job_table(&j, "ZONES", -1);
+  ck_assert_int_eq(z.n_row, 2);
+  ck_assert_double_eq(dat_at(&z, 0, "zone") + dat_at(&z, 1, "zone"), 2);
+  ck_assert_double_eq(dat_at(&z, 0, "direction"), -dat_at(&z, 1, "direction"));
+  const double part = dat_at(&z, 0, "x_from") == 0 ? dat_at(&z, 0, "x_to")
+                                                   : dat_at(&z, 1, "x_to");
+  ck_assert_double_eq_tol(part, 0.37, 1e-6);
+  dat_free(&z);
+  job_end(&j);
+}
+END_TEST
+
 /* ---- true errors -----------------------------------------------------------
  */
 
@@ -319,6 +348,7 @@ END_TEST
 
 UNIT_MAIN("parts", error_of_an_unloaded_body_is_over_the_largest,
           bound_of_heat_that_falls, zones_of_revolution_are_rings,
+          directions_of_slip_part_where_there_is_none,
           true_stress_error_counts_every_component,
           target_counts_all_errors_of_the_largest_increment,
           bound_of_creep_under_a_load_that_falls,
