@@ -70,7 +70,7 @@ END_TEST
 #define LOADED                                                   \
   "*OBSTACLE, NAME=FLOOR, TYPE=CONFORMING\n"                     \
   "*CONTACT, NAME=FLOOR, GROUP=FOOT1, OBSTACLE=FLOOR\n%s*STEP\n" \
-  "*QUASISTATIC\n1., 1.\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n"     \
+  "*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n"     \
   "TIPS, 2, \"-10%s\"\n*OUTPUT\n*END STEP\n"
 
 static void end_of_other(const char *scale, int code) {
