@@ -425,7 +425,21 @@
     "that of a cylinder or sphere they lie on where they differ in size or " \
     "shape: normal forces then have a part along the obstacle, and a torque "\
     "about its axis. Write NORMAL=OBSTACLE on *CONTACT, or refine the mesh "  \
-    "evenly. A flat body on a roller is better served by its own normals.")
+    "evenly. A flat body on a roller is better served by its own normals.")  \
+  X(4019, WARNING, "strains that are not small",                             \
+    "Strains and displacements are taken as small: the answer is wrong by "  \
+    "about the strain. Look at the units (GPa for MPa, mm for m) and the "   \
+    "loads; creep strains grow with time. Told once a run, where the root "  \
+    "of the sum of the squares of the components is above 5 % first.")       \
+  X(4020, WARNING, "element turned inside out by the displacements",         \
+    "The displacements are larger than the element: no state of small "      \
+    "strains. Look at the units of moduli, loads and lengths.")              \
+  X(4021, WARNING, "contact that never touched",                             \
+    "No node of the contact came to its obstacle at the end of an "          \
+    "increment. If it should have: look at the point, normal and GAP of "    \
+    "*OBSTACLE, at the GROUP, the signs of the loads and their size. The "   \
+    "listing tells in which increment a contact touches for the first "      \
+    "time.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

@@ -9,6 +9,7 @@
 #include "base/timer.h"
 #include "material/voigt.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef struct element_shape {
@@ -431,4 +432,51 @@ double domain_energy_beside(const domain *d, int n, const int *elem_id,
 
 double domain_strain_energy(const domain *d, const double *u) {
   return domain_energy_beside(d, 0, NULL, u);
+}
+
+/* det(1 + G) of a gradient, G[3*3] row by row. */
+static double volume_ratio(const double *G) {
+  const double a = 1 + G[0], e = 1 + G[4], i = 1 + G[8];
+  return a * (e * i - G[5] * G[7]) - G[1] * (G[3] * i - G[5] * G[6]) +
+         G[2] * (G[3] * G[7] - e * G[6]);
+}
+
+/* Displacement gradient of an element, that of the hoop in G[8]. */
+static void gradient_at(const domain *d, int elem_id, const double *u,
+                        double G[9]) {
+  const int dim = d->mesh->dim, *v = d->mesh->elem + (dim + 1) * elem_id;
+  element_shape s;
+  shape_at(d, elem_id, &s);
+  memset(G, 0, 9 * sizeof *G);
+  for (int a = 0; a <= dim; ++a) {
+    const double *u_a = u + (size_t)dim * (size_t)v[a];
+    for (int i = 0; i < dim; ++i)
+      for (int c = 0; c < dim; ++c)
+        G[3 * i + c] += u_a[i] * s.grad[dim * a + c];
+    if (dim == 2) G[8] += u_a[0] * s.hoop;
+  }
+}
+
+void domain_deformation(const domain *d, const double *u, deformation *out) {
+  double largest = 0;
+  *out = (deformation){.volume = 1};
+  for (int e = 0; e < d->mesh->n_elem; ++e) {
+    double G[9], square = 0;
+    gradient_at(d, e, u, G);
+    for (int i = 0; i < 3; ++i)
+      for (int c = 0; c < 3; ++c) {
+        const double strain = 0.5 * (G[3 * i + c] + G[3 * c + i]);
+        square += strain * strain;
+      }
+    if (square > largest) {
+      largest = square;
+      out->strain_elem = e;
+    }
+    const double volume = volume_ratio(G);
+    if (volume < out->volume) {
+      out->volume = volume;
+      out->volume_elem = e;
+    }
+  }
+  out->strain = sqrt(largest);
 }

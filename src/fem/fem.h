@@ -156,6 +156,13 @@ int condensed_kernel(const condensed *c, const double **kernel);
 void domain_stress(const domain *d, const double *u, double *e, double *sigma);
 /* Internal forces F = sum B' sigma w, global components [dim*n_node]. */
 void domain_internal_force(const domain *d, const double *sigma, double *F);
+/* The largest strain, the root of e:e, and the least volume over that of the
+ * mesh, not positive where an element is turned inside out. */
+typedef struct deformation {
+  double strain, volume; /* -                                                 */
+  int strain_elem, volume_elem;
+} deformation;
+void domain_deformation(const domain *d, const double *u, deformation *out);
 double domain_strain_energy(const domain *d, const double *u); /* J           */
 /* The same of all elements but n of them, ascending, which hold whole
  * clusters. */

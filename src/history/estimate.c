@@ -1,7 +1,8 @@
 /*
  * What is asked about the answer of the contact solver at an accepted
  * increment: how far it is from the solution, whether it is the only one, and
- * whether a path leads to it (for large friction both are not known).
+ * whether a path leads to it (for large friction both are not known); and what
+ * makes it doubtful.
  *
  * The error is the bound of accuracy.h,
  * in energy units and relative to the energy norm of the body. The interior
@@ -437,4 +438,80 @@ done:
   memory_free(room);
   timer_leave(STAGE_CHECK);
   return st;
+}
+
+/* ---- warnings -----------------------------------------------------------
+ *
+ * What makes an answer doubtful though its equations are solved: strains that
+ * are not small, elements turned inside out by the displacements, a contact
+ * that no node ever touched. Each is told once a run.
+ */
+
+static const double LARGE = 0.05; /* -, strain                                */
+
+static const char *section_of(const run *r, int elem_id) {
+  return r->m->sections[r->m->elem_section[elem_id]].elset;
+}
+
+static void warn_deformation(run *r, int increment_no) {
+  deformation x;
+  if (r->told.strain && r->told.folded) return;
+  domain_deformation(&r->d, r->now.u, &x);
+  if (!r->told.strain && x.strain > LARGE) {
+    r->told.strain = 1;
+    message_add(r->m->log, P4019, &r->step->at,
+                "step %d, increment %d, time %g: the strain of element %zu "
+                "(group %s) is %.3g %%; strains are taken as small",
+                run_step_id(r) + 1, increment_no, r->now.t,
+                r->msh->elem_no[x.strain_elem], section_of(r, x.strain_elem),
+                100.0 * x.strain);
+  }
+  if (!r->told.folded && x.volume <= 0.0) {
+    r->told.folded = 1;
+    message_add(r->m->log, P4020, &r->step->at,
+                "step %d, increment %d, time %g: the displacements turn "
+                "element %zu (group %s) inside out",
+                run_step_id(r) + 1, increment_no, r->now.t,
+                r->msh->elem_no[x.volume_elem], section_of(r, x.volume_elem));
+  }
+}
+
+/* Which contacts touch; the listing tells when one does that did not. */
+static void note_touches(run *r) {
+  for (int i = 0; i < r->m->n_contact; ++i) {
+    const contact_total *t = &r->totals[i];
+    const size_t used = strlen(r->note);
+    if (r->told.touched[i] || t->n_slip + t->n_stick == 0) continue;
+    r->told.touched[i] = 1;
+    if (r->total_no > 1)
+      snprintf(r->note + used, sizeof r->note - used,
+               "  contact %s touches for the first time\n",
+               r->m->contacts[i].name);
+  }
+}
+
+void warn_increment(run *r, int increment_no) {
+  if (r->report.outcome <= 0) return;
+  warn_deformation(r, increment_no);
+  note_touches(r);
+}
+
+/* The least gap left of a contact, m; HUGE_VAL: it has no node. */
+static double least_gap(const run *r, int contact_id) {
+  double least = HUGE_VAL;
+  for (int i = 0; i < r->n; ++i)
+    if (r->surface->contact_id[i] == contact_id)
+      least = fmin(least, r->open_gap[i]);
+  return least;
+}
+
+void warn_end(run *r) {
+  for (int i = 0; i < r->m->n_contact; ++i) {
+    const contact *c = &r->m->contacts[i];
+    if (r->told.touched[i] || c->force.given) continue;
+    message_add(r->m->log, P4021, &c->at,
+                "*CONTACT %s: no node touched obstacle %s in the run; the "
+                "least gap at its end is %.3g",
+                c->name, c->obstacle_name, least_gap(r, i));
+  }
 }

@@ -157,6 +157,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
     TRY(zones_find(r));
   TRY(check_increment(r));
   note_nodes(r);
+  warn_increment(r, increment_no);
   TRY(note_misfit(r));
   path_compare(r);
   estimate_unloaded(r);
@@ -396,6 +397,7 @@ status history_continue(const model *m, const mesh *msh, archive *from,
     r.step = &m->steps[i];
     TRY(run_step(&r));
   }
+  warn_end(&r);
 done:
   *unsettled = r.unsettled;
   balance_free(&r.balance);

@@ -56,6 +56,11 @@ status balance_keep(run *r, archive *a);
 /* zones.c: the zones of r->now into r->zones. ERR_MEMORY. */
 status zones_find(run *r);
 
+/* estimate.c: what is doubtful of an accepted increment, whose totals are
+ * known; at the end of a run that went through. */
+void warn_increment(run *r, int increment_no);
+void warn_end(run *r);
+
 /* rounding.c: what rounding has taken of r->now, whose energies are known.
  * ERR_SINGULAR: it leaves no digit. */
 status rounding_find(run *r);

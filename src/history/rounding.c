@@ -98,7 +98,7 @@ int rounding_hides_strains(const run *r) {
 }
 
 int rounding_is_all(const run *r) {
-  if (largest_entry(r->n_dof, r->now.F) > 0.0) return 0;
+  if (increment_free_load(r, r->now.F) > 0.0) return 0;
   return largest_entry((size_t)r->n_c, r->now.rc) <=
              condensed_stiffest(r->c) * lost(r) &&
          rounding_hides_strains(r);
@@ -108,7 +108,7 @@ int rounding_is_all(const run *r) {
  * which nothing but rounding is there, are no loss. */
 static int moves_alone(const run *r) {
   if (rounding_is_all(r)) return 1;
-  return r->rounding.u < 1e-10 && largest_entry(r->n_dof, r->now.F) == 0.0 &&
+  return r->rounding.u < 1e-10 && increment_free_load(r, r->now.F) == 0.0 &&
          largest_entry((size_t)r->n_c, r->now.rc) == 0.0;
 }
 
@@ -169,7 +169,7 @@ done:
 /* The loads now over the largest of the step: what rounding takes does not grow
  * with them, so that it counts against those. */
 static double share_of_step(const run *r) {
-  const double now = largest_entry(r->n_dof, r->now.F);
+  const double now = increment_free_load(r, r->now.F);
   return now < r->step_load ? now / r->step_load : 1.0;
 }
 

@@ -314,6 +314,22 @@ static void write_resting(json *w, const flow_tally *t) {
   json_real(w, "threshold_resting", t->resting);
 }
 
+static void write_warnings(json *w, const message_log *log) {
+  message_view v;
+  char number[16];
+  json_open(w, "warnings", '[');
+  for (int k = 0; log != NULL && message_get(log, k, &v); ++k) {
+    if (v.level != WARNING) continue;
+    snprintf(number, sizeof number, "P%d", (int)v.id);
+    json_open(w, NULL, '{');
+    json_string(w, "number", number);
+    json_count(w, "line", v.at != NULL ? v.at->line_no : 0);
+    json_string(w, "text", v.text);
+    json_close(w, '}');
+  }
+  json_close(w, ']');
+}
+
 static void write_all(FILE *f, const void *what) {
   const job *j = what;
   json all = {.f = f}, *w = &all;
@@ -325,6 +341,7 @@ static void write_all(FILE *f, const void *what) {
   json_string(w, "blas_kernel", j->o->kernel);
   json_count(w, "threads", j->o->threads);
   write_exit(w, j->run);
+  write_warnings(w, j->m->log);
   write_effects(w, j);
   write_neglected(w, j->m);
   write_sizes(w, j);

@@ -148,6 +148,7 @@ static status keep_counts(output *o, archive *a, file_ends *ends) {
   TRY(archive_ints(a, "unsettled", &run->n_unsettled, 1));
   TRY(archive_reals(a, "residual_worst", &run->residual_worst, 1));
   TRY(archive_reals(a, "defect_worst", &run->defect_worst, 1));
+  TRY(archive_bytes(a, "tally", &run->tally, sizeof run->tally));
 done:
   return st;
 }

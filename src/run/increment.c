@@ -421,6 +421,13 @@ done:
   return st;
 }
 
+double increment_free_load(const run *r, const double *F) {
+  double most = 0.0;
+  for (size_t i = 0; i < r->n_dof; ++i)
+    if (!r->fixed[i]) most = fmax(most, fabs(F[i]));
+  return most;
+}
+
 status increment_load(run *r, double t) {
   status st = OK;
   r->now.t = t;

@@ -172,6 +172,10 @@ typedef struct run {
   double known_key; /* of the matrix that "rate" was read for, until in use   */
   int total_no, unsettled;
   int missed; /* 1: the increment misses the tolerance of its step            */
+  struct {
+    int strain, folded; /* 1: a warning has told of it                       */
+    int *touched; /* [n_contact] 1: a node has touched                       */
+  } told;
 } run;
 
 int run_step_id(const run *r); /* from 0 */
@@ -254,6 +258,8 @@ status visco_keep(run *r, archive *a);
 
 /* increment.c: the equilibrium at time t into r->now; read r->report. */
 status increment_solve(run *r, double t);
+/* Largest of the loads F[dim*n_node] that no support bears at once, N. */
+double increment_free_load(const run *r, const double *F);
 /* v[dim*n] of the contact frames as a vector of r->cp: v itself, or in
  * r->row[k], k = 0 or 1, where it has not all unknowns. */
 double *run_rows(const run *r, int k, double *v);

@@ -118,6 +118,16 @@ done:
   return st;
 }
 
+static status keep_told(run *r, archive *a) {
+  status st = OK;
+  const size_t contacts = r->n > 0 ? (size_t)r->m->n_contact : 0;
+  TRY(archive_ints(a, "told_strain", &r->told.strain, 1));
+  TRY(archive_ints(a, "told_folded", &r->told.folded, 1));
+  TRY(archive_ints(a, "touched", r->told.touched, contacts));
+done:
+  return st;
+}
+
 /* A limit that holds for all times of the step is made now, so that what is
  * counted from here on is what the other run counts. */
 static status keep_limit(run *r, archive *a) {
@@ -152,6 +162,7 @@ status run_keep(run *r, archive *a) {
   status st = OK;
   archive_enter(a, "run");
   TRY(keep_counts(r, a));
+  TRY(keep_told(r, a));
   TRY(keep_equilibrium(r, &r->old, a));
   TRY(keep_moduli(r, a));
   if (r->n > 0) TRY(keep_contact(r, a));

@@ -106,8 +106,8 @@ static status find_load(run *r) {
   status st = OK;
   const double end = r->step->start + r->step->total;
   TRY(load_forces(r->m, r->msh, r->step, end, r->now.F));
-  r->step_load = fmax(largest_entry(r->n_dof, r->old.F),
-                      largest_entry(r->n_dof, r->now.F));
+  r->step_load =
+      fmax(increment_free_load(r, r->old.F), increment_free_load(r, r->now.F));
 done:
   return st;
 }

@@ -65,6 +65,7 @@ static status new_pairs(run *r) {
   NEW(r->node_fixed, msh->n_node);
   NEW(r->face_weight, msh->n_face);
   NEW(r->totals, m->n_contact);
+  NEW(r->told.touched, m->n_contact);
   if (model_has_axis(m)) NEW(r->torque, m->n_contact);
   if (model_prints(m, PRINT_LOOP)) NEW(r->loops, m->n_contact);
   for (int i = 0; i < m->n_contact; ++i) {
@@ -132,6 +133,7 @@ void run_free(run *r) {
   memory_free(r->node_fixed);
   memory_free(r->face_weight);
   memory_free(r->totals);
+  memory_free(r->told.touched);
   memory_free(r->torque);
   memory_free(r->loops);
   memory_free(r->zones);

@@ -1,0 +1,141 @@
+/*
+ * Warnings of a run whose equations are solved and whose answer is doubtful:
+ * on stderr, in the listing, in JSON, each once. A run that is gone on with
+ * after its last increment writes the same listing.
+ */
+#include "scenes/mesh.h"
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* A block held in x above a plane, pressed in ten increments; E is 1000. */
+static job run_block(double gap, const char *law, const char *cards,
+                     const char *words) {
+  static const mesh_change none;
+  char path[100];
+  int *number = NULL;
+  job j = job_begin("block");
+  snprintf(path, sizeof path, "%s/block.msh", j.dir);
+  FILE *f = fopen(path, "w");
+  ck_assert_ptr_nonnull(f);
+  ck_assert_int_eq(scene_mesh_write(f, "rect 4 4 1 1", &none, &number), 1);
+  fclose(f);
+  free(number);
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n%s"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., %.17g\n0., 1.\n"
+            "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=O\n*STEP\n%s"
+            "*PRINT, TOTALS\n*END STEP\n",
+            law, -gap, cards);
+  ck_assert_msg(job_run(&j, words) == 0, "%s", j.errors);
+  return j;
+}
+
+static int count(const char *text, const char *what) {
+  int n = 0;
+  for (const char *p = text; (p = strstr(p, what)) != NULL; ++p) ++n;
+  return n;
+}
+
+/* Told n times, 0 or 1, everywhere. */
+static void ck_told(const job *j, const char *number, const char *what, int n) {
+  static const char *const files[] = {"lst", "json"};
+  ck_assert_msg(count(j->errors, what) == n, "%s: %s", what, j->errors);
+  ck_assert_int_eq(count(j->errors, number) > 0, n);
+  for (int k = 0; k < 2; ++k) {
+    char *text = job_file(j, files[k]);
+    ck_assert_msg(count(text, what) == n, "%s: %s", files[k], what);
+    free(text);
+  }
+}
+
+#define PRESSED(p) \
+  "*QUASISTATIC\n0.1, 1.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, " p "\n"
+
+START_TEST(strains_above_five_percent_are_told) {
+  job j = run_block(0.0, "", PRESSED("49.9"), "");
+  ck_told(&j, "P4019", "strains are taken as small", 0);
+  job_end(&j);
+  j = run_block(0.0, "", PRESSED("52."), "");
+  ck_told(&j, "P4019", "step 1, increment 10, time 1: the strain of", 1);
+  ck_told(&j, "P4020", "inside out", 0);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(elements_inside_out_are_told) {
+  job j = run_block(0.0, "", PRESSED("990."), "");
+  ck_told(&j, "P4020", "inside out", 0);
+  job_end(&j);
+  j = run_block(0.0, "", PRESSED("1050."), "");
+  ck_told(&j, "P4020", "step 1, increment 10, time 1: the displacements turn",
+          1);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(a_contact_that_never_touched_is_told) {
+  static const char lifted[] =
+      "*QUASISTATIC\n0.1, 1.\n*BOUNDARY\nLEFT, 1\nTOP, 2, 2, 0.01\n";
+  job j = run_block(0.125, "", lifted, "");
+  ck_told(&j, "P4021", "*CONTACT FOOT: no node touched obstacle O", 1);
+  ck_told(&j, "P4021", "0.135", 1);
+  job_end(&j);
+}
+END_TEST
+
+/* Led down by 0.01: the gap of 0.0042 closes in the fifth increment. */
+START_TEST(the_first_touch_is_told) {
+  static const char led[] =
+      "*QUASISTATIC\n0.1, 1.\n*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -0.01\n";
+  job j = run_block(0.0042, "", led, "");
+  ck_told(&j, "P4021", "no node touched", 0);
+  char *lst = job_file(&j, "lst");
+  const char *at = strstr(lst, "contact FOOT touches for the first time");
+  const char *fifth = strstr(lst, "step 1  increment 5 ");
+  const char *sixth = strstr(lst, "step 1  increment 6 ");
+  ck_assert(at != NULL && fifth < at && at < sixth);
+  ck_assert_int_eq(count(lst, "for the first time"), 1);
+  free(lst);
+  job_end(&j);
+}
+END_TEST
+
+/* 0: points below their threshold; 1: warnings so far. */
+START_TEST(a_restart_at_the_end_loses_no_line) {
+  static const char *const files[] = {"lst", "json", "sta", "dat"};
+  job j =
+      run_block(0.0, "*INELASTIC, LAW=BINGHAM\n1000., 20.\n",
+                _i == 0 ? "*VISCO, INTEGRATOR=BACKWARD\n0.1, 1.\n*BOUNDARY\n"
+                          "LEFT, 1\n*DSLOAD\nTOP, P, 30.\n*RESTART\n"
+                        : "*VISCO, INTEGRATOR=BACKWARD\n0.1, 1.\n*BOUNDARY\n"
+                          "LEFT, 1\n*DSLOAD\nTOP, P, 70.\n*RESTART\n",
+                "--no-timing");
+  char *text[4];
+  for (int k = 0; k < 4; ++k) text[k] = job_file(&j, files[k]);
+  ck_assert_ptr_nonnull(strstr(text[0], "points below their threshold"));
+  ck_assert_int_eq(count(text[0], "P4019"), _i);
+  ck_assert_int_eq(job_run(&j, "--no-timing --restart"), 0);
+  for (int k = 0; k < 4; ++k) {
+    char *again = job_file(&j, files[k]);
+    ck_assert_msg(strcmp(text[k], again) == 0, "JOB.%s differs", files[k]);
+    free(again);
+    free(text[k]);
+  }
+  job_end(&j);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("warnings");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_test(tests, strains_above_five_percent_are_told);
+  tcase_add_test(tests, elements_inside_out_are_told);
+  tcase_add_test(tests, a_contact_that_never_touched_is_told);
+  tcase_add_test(tests, the_first_touch_is_told);
+  tcase_add_loop_test(tests, a_restart_at_the_end_loses_no_line, 0, 2);
+  return unit_run("warnings", tests);
+}
