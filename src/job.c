@@ -12,6 +12,7 @@
 #include "restart.h"
 #include "system/input.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -156,6 +157,7 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
   static const mesh no_mesh;
   status st = OK;
   output *out = NULL;
+  char *files = NULL;
   const output_options options = {
       .dir = c->dir,
       .no_timing = c->no_timing,
@@ -165,9 +167,10 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
       .from = from,
       .n_problem = in->problem != NULL ? in->problem->n : 0,
       .progress = !c->quiet && isatty(STDERR_FILENO)};
+  if (watch == NULL && in->problem == NULL) TRY(restart_files(in, &files));
   TRY(output_open(in->m, in->problem == NULL ? in->msh : &no_mesh, &options,
                   &out));
-  relay r = {output_sink(out), watch, {c, in, out}};
+  relay r = {output_sink(out), watch, {c, in, out, files}};
   history_sink sink = {.ctx = &r,
                        .ready = relay_ready,
                        .start = relay_start,
@@ -185,5 +188,6 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
   if (st == OK && closed != ERR_UNSETTLED) st = closed;
   if (st == OK) TRY(message_status(in->m->log, ERR_INTERNAL));
 done:
+  free(files);
   return st;
 }

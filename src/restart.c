@@ -6,8 +6,10 @@
 #include "fem/fem.h"
 #include "inform.h"
 #include "keyword/keyword.h"
+#include "system/input.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -155,9 +157,11 @@ status restart_write(void *ctx, const run_memory *memory) {
   identify(w->c, w->in, &id);
   id.step_no = memory->step_no;
   TRY(archive_new(&a));
+  if (w->c->no_timing) archive_leave_out_cpu(a);
   TRY(archive_bytes(a, "identity", &id, sizeof id));
   TRY(archive_bytes(a, "deck", text, strlen(text) + 1));
   TRY(archive_bytes(a, "warnings", told, strlen(told)));
+  TRY(archive_bytes(a, "files", w->files, strlen(w->files)));
   TRY(output_keep(w->out, a));
   TRY(memory->keep(memory->run, a));
   TRY(archive_write(a, path, before));
@@ -167,6 +171,83 @@ done:
   free(told);
   memory_free(path);
   memory_free(before);
+  return st;
+}
+
+/* ---- files the deck names ------------------------------------------------ */
+
+/* Length and checksum (FNV-1a over words) of what stands in a file. */
+static status add_content(const char *name, const char *path, FILE *out) {
+  status st = OK;
+  const char *why = NULL;
+  uint64_t part[1024], bytes = 0, h = 14695981039346656037u;
+  size_t n;
+  FILE *f = input_stream(path, &why);
+  if (f == NULL) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
+  do {
+    memset(part, 0, sizeof part);
+    n = fread(part, 1, sizeof part, f);
+    for (size_t i = 0; 8 * i < n; ++i) h = (h ^ part[i]) * 1099511628211u;
+    bytes += n;
+  } while (n == sizeof part);
+  if (ferror(f)) TRY(text_failed(path, "read", errno));
+  fprintf(out, ", FILE=%s, %" PRIu64 " bytes, checksum %016" PRIx64 "\n", name,
+          bytes, h);
+done:
+  if (f != NULL) fclose(f);
+  return st;
+}
+
+/* A line for each card that names one, with its step. */
+static status add_files(const job_input *in, FILE *out) {
+  status st = OK;
+  int step_no = 0;
+  for (int i = 0; i < in->d->n_card; ++i) {
+    const card *c = &in->d->cards[i];
+    const parameter *file = card_parameter(c, "FILE");
+    if (strcmp(c->name, "STEP") == 0) ++step_no;
+    if (file == NULL || !file->has_value) continue;
+    const char *path = deck_path(in->d, &file->value);
+    if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+    fprintf(out, "%d *%s", step_no, c->name);
+    TRY(add_content(file->value.text, path, out));
+  }
+done:
+  return st;
+}
+
+status restart_files(const job_input *in, char **text) {
+  status st = OK;
+  size_t size = 0;
+  FILE *f = open_memstream(text, &size);
+  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: files of the deck");
+  st = add_files(in, f);
+  if (fclose(f) != 0 && st == OK)
+    FAIL(ERR_MEMORY, "memory exhausted: files of the deck");
+done:
+  return st;
+}
+
+/* The decks are the same up to that step: so are the cards of these lines. */
+static status compare_files(const char *was, const char *is, int step_no) {
+  status st = OK;
+  while (*was != '\0' && *is != '\0' && atoi(was) <= step_no) {
+    size_t n = strcspn(was, "\n"), m = strcspn(is, "\n");
+    size_t from = strcspn(was, " "), name = n;
+    if (n == m && memcmp(was, is, n) == 0) {
+      was += n + 1;
+      is += n + 1;
+      continue;
+    }
+    for (int comma = 0; comma < 2; ++comma)
+      while (name > from && was[--name] != ',') continue;
+    FAIL(
+        ERR_DECK,
+        "--restart: another file than when the run was started:%.*s: has other "
+        "contents; put the earlier one back, or start the run anew",
+        (int)(name - from), was + from);
+  }
+done:
   return st;
 }
 
@@ -272,6 +353,20 @@ done:
   return st;
 }
 
+static status check_files(const job_input *in, archive *a, int step_no) {
+  status st = OK;
+  char *was = NULL, *is = NULL;
+  size_t n = archive_length(a, "files");
+  NEW(was, n + 1);
+  TRY(archive_bytes(a, "files", was, n));
+  TRY(restart_files(in, &is));
+  TRY(compare_files(was, is, step_no));
+done:
+  memory_free(was);
+  free(is);
+  return st;
+}
+
 static status check_job(const command *c, const job_input *in, archive *a,
                         const char *path) {
   status st = OK;
@@ -284,6 +379,7 @@ static status check_job(const command *c, const job_input *in, archive *a,
   TRY(echo_of(in->m, &now));
   identify(c, in, &is);
   TRY(compare_decks(text, now, was.step_no));
+  TRY(check_files(in, a, was.step_no));
   TRY(check_identity(&was, &is, path));
 done:
   memory_free(text);

@@ -23,7 +23,11 @@ typedef struct restart_writer {
   const command *c;
   const job_input *in;
   output *out;
+  char *files; /* restart_files when the run was started                     */
 } restart_writer;
+
+/* Contents of the files that the cards of the deck name; free it. ERR_FILE. */
+status restart_files(const job_input *in, char **text);
 
 /* history_sink.checkpoint; ctx is a restart_writer. */
 status restart_write(void *ctx, const run_memory *memory);

@@ -23,6 +23,9 @@ void archive_free(archive *a) {
   memory_free(a);
 }
 
+void archive_leave_out_cpu(archive *a) { a->no_cpu = 1; }
+int archive_has_cpu(const archive *a) { return !a->no_cpu; }
+
 int archive_reads(const archive *a) { return a->path != NULL; }
 
 void archive_enter(archive *a, const char *group) {

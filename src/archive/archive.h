@@ -20,6 +20,10 @@ void archive_free(archive *a);     /* accepts NULL                            */
 /* 1: it comes from a file. */
 int archive_reads(const archive *a);
 
+/* No CPU seconds go into it: equal runs give equal bytes. */
+void archive_leave_out_cpu(archive *a);
+int archive_has_cpu(const archive *a);
+
 /* Names below are those of a group; names of groups nest. */
 void archive_enter(archive *a, const char *group);
 void archive_leave(archive *a);

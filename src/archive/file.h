@@ -18,6 +18,7 @@ typedef struct archive_item {
 struct archive {
   char *path;               /* owned; of the file it comes from, or NULL      */
   char group[ARCHIVE_NAME]; /* present one with its last slash, or ""         */
+  int no_cpu;               /* 1: see archive_leave_out_cpu                   */
   int n, capacity;
   archive_item *item; /* [n] in the order they were named                   */
 };

@@ -7,7 +7,11 @@
 #include "base/text.h"
 #include "hdf5/hdf5.h"
 
+#include <stdlib.h>
 #include <string.h>
+
+/* Where the name of a record and its time stand in a text of any record. */
+enum { NAME = 1, TIME = 2 };
 
 typedef struct part {
   const char *name, *points, *cells, *topology;
@@ -30,7 +34,7 @@ static void xml_text(FILE *f, const char *text) {
         fputs("&quot;", f);
         break;
       default:
-        fputc(*text, f);
+        fputc((unsigned char)*text >= ' ' || *text == NAME ? *text : '?', f);
     }
 }
 
@@ -62,12 +66,11 @@ static void write_mesh(FILE *f, const char *file, const part *p) {
 }
 
 static void write_field(FILE *f, const char *file, const part *p,
-                        const hdf5_field *shown, int record_id) {
-  char dataset[400], name[40];
+                        const hdf5_field *shown) {
+  char dataset[400];
   int on_points = shown->of == p->on_points;
-  hdf5_record_name(name, sizeof name, record_id);
-  snprintf(dataset, sizeof dataset, "%s/%s/%s", shown->group, shown->name,
-           name);
+  snprintf(dataset, sizeof dataset, "%s/%s/%c", shown->group, shown->name,
+           NAME);
   fprintf(f, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">",
           shown->name, shown->n_part == 3 ? "Vector" : "Scalar",
           on_points ? "Node" : "Cell");
@@ -76,27 +79,58 @@ static void write_field(FILE *f, const char *file, const part *p,
   fputs("</Attribute>\n", f);
 }
 
-static void write_part(FILE *f, const char *file, const part *p,
+static void write_pattern(FILE *f, const char *file, const part *p,
+                          const hdf5_shape *s) {
+  fprintf(f,
+          "<Grid Name=\"%s\" GridType=\"Uniform\">\n"
+          "<Time Value=\"%c\"/>\n",
+          p->name, TIME);
+  write_mesh(f, file, p);
+  for (int k = 0; k < s->n_field; ++k) {
+    entity of = s->fields[k].of;
+    if (of == PER_INCREMENT || of == PER_CONTACT) continue;
+    if (of == p->on_points || of == p->on_cells)
+      write_field(f, file, p, &s->fields[k]);
+  }
+  fputs("</Grid>\n", f);
+}
+
+/* The text of any record of a part, with NAME and TIME; free it. */
+static status make_pattern(const part *p, const hdf5_shape *s, char **text) {
+  status st = OK;
+  size_t size = 0;
+  const char *slash = strrchr(s->path, '/');
+  FILE *f = open_memstream(text, &size);
+  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
+  write_pattern(f, slash != NULL ? slash + 1 : s->path, p, s);
+  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
+done:
+  return st;
+}
+
+static void write_record(FILE *f, const char *pattern, int record_id,
+                         double t) {
+  static const char marks[] = {NAME, TIME, '\0'};
+  char name[40], time[NUMBER_SIZE];
+  hdf5_record_name(name, sizeof name, record_id);
+  text_number(time, t, 16);
+  for (;; ++pattern) {
+    size_t n = strcspn(pattern, marks);
+    fwrite(pattern, 1, n, f);
+    pattern += n;
+    if (*pattern == '\0') break;
+    fputs(*pattern == NAME ? name : time, f);
+  }
+}
+
+static void write_part(FILE *f, const part *p, const char *pattern,
                        const hdf5_shape *s) {
-  char time[NUMBER_SIZE];
   fprintf(f,
           "<Grid Name=\"%s\" GridType=\"Collection\" "
           "CollectionType=\"Temporal\">\n",
           p->name);
-  for (int i = 0; i < s->n_record; ++i) {
-    fprintf(f,
-            "<Grid Name=\"%s\" GridType=\"Uniform\">\n"
-            "<Time Value=\"%s\"/>\n",
-            p->name, text_number(time, s->times[i], 16));
-    write_mesh(f, file, p);
-    for (int k = 0; k < s->n_field; ++k) {
-      entity of = s->fields[k].of;
-      if (of == PER_INCREMENT || of == PER_CONTACT) continue;
-      if (of == p->on_points || of == p->on_cells)
-        write_field(f, file, p, &s->fields[k], i);
-    }
-    fputs("</Grid>\n", f);
-  }
+  for (int i = 0; i < s->n_record; ++i)
+    write_record(f, pattern, i, s->times[i]);
   fputs("</Grid>\n", f);
 }
 
@@ -116,24 +150,38 @@ static part surface_part(const hdf5_shape *s) {
   return p;
 }
 
+static part body_part(const hdf5_shape *s) {
+  return (part){"body",           "/mesh/nodes",
+                "/mesh/elements", s->corners == 3 ? "Triangle" : "Tetrahedron",
+                s->n_node,        s->n_elem,
+                s->corners,       PER_NODE,
+                PER_ELEMENT};
+}
+
+typedef struct content {
+  const hdf5_shape *shape;
+  part surface, body;
+  char *surface_text, *body_text; /* of a record; the first may be NULL       */
+} content;
+
 static void write_all(FILE *f, const void *what) {
-  const hdf5_shape *s = what;
-  const char *slash = strrchr(s->path, '/');
-  const char *file = slash != NULL ? slash + 1 : s->path;
-  part body = {"body",           "/mesh/nodes",
-               "/mesh/elements", s->corners == 3 ? "Triangle" : "Tetrahedron",
-               s->n_node,        s->n_elem,
-               s->corners,       PER_NODE,
-               PER_ELEMENT};
+  const content *c = what;
   fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n", f);
-  if (s->n_contact_node > 0) {
-    part surface = surface_part(s);
-    write_part(f, file, &surface, s);
-  }
-  write_part(f, file, &body, s);
+  if (c->surface_text != NULL)
+    write_part(f, &c->surface, c->surface_text, c->shape);
+  write_part(f, &c->body, c->body_text, c->shape);
   fputs("</Domain>\n</Xdmf>\n", f);
 }
 
 status xdmf_write(const hdf5_shape *shape, const char *path) {
-  return text_replace(path, shape, write_all);
+  status st = OK;
+  content c = {shape, surface_part(shape), body_part(shape), NULL, NULL};
+  if (shape->n_contact_node > 0)
+    TRY(make_pattern(&c.surface, shape, &c.surface_text));
+  TRY(make_pattern(&c.body, shape, &c.body_text));
+  TRY(text_replace(path, &c, write_all));
+done:
+  free(c.surface_text);
+  free(c.body_text);
+  return st;
 }

@@ -17,7 +17,7 @@ struct output {
   run_summary run;
   effect_plan *plan;
   int n_xdmf; /* records named in JOB.xdmf                                  */
-  double xdmf_at; /* when, s                                                 */
+  double xdmf_at, xdmf_cpu; /* when, and the cost so far, s                   */
   int attempt; /* of the increment now tried                                 */
   int progress;
   int quiet; /* 1: the first facts stand in the listing already               */

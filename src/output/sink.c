@@ -10,7 +10,8 @@
 #include <stdio.h>
 #include <time.h>
 
-enum { XDMF_PAUSE = 1 };
+enum { XDMF_PAUSE = 1 }; /* s                                    */
+static const double XDMF_SHARE = 0.02; /* of the CPU time at most */
 
 /* Wall clock, s; only its differences count. */
 static double clock_now(void) {
@@ -20,7 +21,8 @@ static double clock_now(void) {
 }
 
 /* The text is written anew each time, so not more than once in XDMF_PAUSE
- * seconds: the cost stays small however long it grows. */
+ * seconds, and not above its share of the run but for the last time: the cost
+ * stays small however long it grows. */
 status output_show_records(output *o, int all) {
   status st = OK;
   hdf5_shape shape;
@@ -29,7 +31,10 @@ status output_show_records(output *o, int all) {
   if (shape.n_record == o->n_xdmf) return OK;
   double now = clock_now();
   if (!all && o->n_xdmf > 0 && now < o->xdmf_at + XDMF_PAUSE) return OK;
+  double cpu = timer_cpu();
+  if (!all && o->xdmf_cpu > XDMF_SHARE * cpu) return OK;
   TRY(xdmf_write(&shape, o->xdmf));
+  o->xdmf_cpu += timer_cpu() - cpu;
   o->n_xdmf = shape.n_record;
   o->xdmf_at = now;
 done:

@@ -151,7 +151,10 @@ done:
 
 static status keep_costs(run *r, archive *a) {
   status st = OK;
-  for (int i = 0; i < STAGE_COUNT; ++i) r->costs[i] = timer_cost((stage)i);
+  for (int i = 0; i < STAGE_COUNT; ++i) {
+    r->costs[i] = timer_cost((stage)i);
+    if (!archive_has_cpu(a)) r->costs[i].cpu = 0.0;
+  }
   TRY(archive_bytes(a, "costs", r->costs, sizeof r->costs));
   if (archive_reads(a)) timer_resume(r->costs);
 done:

@@ -56,6 +56,26 @@ static void edit(const job *j, const char *from, const char *to) {
   free(deck);
 }
 
+/* So many degrees at each node, and more at the first. */
+static void write_field(const job *j, const char *file, int degrees) {
+  char text[8192];
+  int n = 200, used = 0;
+  for (int i = 1; i <= n; ++i)
+    used += snprintf(text + used, sizeof text - (size_t)used, "%d %d\n", i,
+                     degrees + (i == 1));
+  job_write(j, file,
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$NodeData\n1\n\"T\"\n1\n"
+            "0.0\n3\n0\n1\n%d\n%s$EndNodeData\n",
+            n, text);
+}
+
+static int same_bytes(const job *a, const job *b, const char *suffix) {
+  char line[400];
+  snprintf(line, sizeof line, "cmp -s '%s/%s.%s' '%s/%s.%s'", a->dir, a->name,
+           suffix, b->dir, b->name, suffix);
+  return system(line) == 0;
+}
+
 /* A block whose run is stopped at so many tenths. */
 static job stopped_at(int tenths) {
   int changes, all;
@@ -126,8 +146,7 @@ START_TEST(adapted_increments_go_on) {
                    130);
   goes_on(&both[1], 0, words);
   same_files(&both[0], &both[1], words);
-  for (int k = 0; k < 2; ++k)
-    job_end(&both[k]);
+  for (int k = 0; k < 2; ++k) job_end(&both[k]);
 }
 END_TEST
 
@@ -190,6 +209,40 @@ START_TEST(run_without_a_file_begins_anew) {
 }
 END_TEST
 
+/* Temperatures of a file under the name of before: of the step in progress, and
+ * of one to come. */
+START_TEST(files_are_in_the_seal) {
+  static const char *const names[] = {"first.msh", "second.msh"};
+  int changes, all;
+  job j = small_flat(0.4, "*TEMPERATURE, FILE=first.msh\nBODY\n", "AUTO");
+  edit(&j, "130.D3, 0.2", "130.D3, 0.2\n*EXPANSION\n1.E-5");
+  edit(&j, "*BOUNDARY\nTOP, 1, 1, -0.01",
+       "*TEMPERATURE, FILE=second.msh\nBODY\n*BOUNDARY\nTOP, 1, 1, -0.01");
+  for (int k = 0; k < 2; ++k) write_field(&j, names[k], 20);
+  ck_assert_int_eq(run_until(&j, nothing, 0, 0, &all), 0);
+  ck_assert_int_eq(run_until(&j, nothing, all * 3 / 10, SIGINT, &changes), 130);
+  write_field(&j, names[0], 21);
+  refused(&j, 2, "*TEMPERATURE, FILE=first.msh");
+  write_field(&j, names[0], 20);
+  write_field(&j, names[1], 21);
+  goes_on(&j, 0, "a file of a later step");
+  job_end(&j);
+}
+END_TEST
+
+/* Equal runs write equal restart files. */
+START_TEST(restart_files_are_equal) {
+  job a = small_creep(1.0, "*RESTART\n", "INTEGRATOR=MIDPOINT");
+  job b = small_creep(1.0, "*RESTART\n", "INTEGRATOR=MIDPOINT");
+  ck_assert_int_eq(job_run(&a, "--no-timing"), 0);
+  ck_assert_int_eq(job_run(&b, "--no-timing"), 0);
+  ck_assert_msg(same_bytes(&a, &b, "rst.h5"), "rst.h5");
+  ck_assert_msg(same_bytes(&a, &b, "rst.old.h5"), "rst.old.h5");
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
 START_TEST(some_jobs_start_anew) {
   job j = stopped_at(3);
   edit(&j, "TOP, 1, 1, -0.01\n", "TOP, 1, 1, -0.01\n*ACCURACY, THEORY=YES\n");
@@ -242,4 +295,5 @@ END_TEST
 UNIT_MAIN("restart", changed_decks_are_refused_by_card, later_steps_may_change,
           adapted_increments_go_on, killed_twice_goes_on,
           chosen_tolerance_goes_on, run_without_a_file_begins_anew,
-          some_jobs_start_anew, damaged_files_are_refused)
+          files_are_in_the_seal, restart_files_are_equal, some_jobs_start_anew,
+          damaged_files_are_refused)
