@@ -41,18 +41,20 @@ done:
   return st;
 }
 
-/* Told again when a step has other supports. */
+/* Told again when a step has other supports. Of a restart the facts are those
+ * told before, whose text is that of the same elimination. */
 static status sink_ready(void *ctx, const setup_facts *facts,
                          const contact_surface *surface) {
   output *o = ctx;
   job j = job_of(o);
   (void)surface;
-  o->run.facts = *facts;
   o->run.facts_known = 1;
   if (o->quiet) {
+    o->run.facts.info.ordering = facts->info.ordering;
     o->quiet = 0;
     return OK;
   }
+  o->run.facts = *facts;
   timer_enter(STAGE_LISTING);
   status st = listing_ready(&j, &o->lst);
   timer_leave(STAGE_LISTING);

@@ -145,11 +145,34 @@ done:
   return st;
 }
 
+/* All but the name of the ordering. */
+static status keep_setup(setup_facts *f, archive *a) {
+  status st = OK;
+  condense_info *i = &f->info;
+  TRY(archive_bytes(a, "unknowns", &i->unknowns, sizeof i->unknowns));
+  TRY(archive_bytes(a, "contact_unknowns", &i->contact_unknowns,
+                    sizeof i->contact_unknowns));
+  TRY(archive_bytes(a, "factor_entries", &i->factor_entries,
+                    sizeof i->factor_entries));
+  TRY(archive_ints(a, "bodies", &i->bodies, 1));
+  TRY(archive_reals(a, "flops", &i->flops, 1));
+  TRY(archive_bytes(a, "bytes", &i->bytes, sizeof i->bytes));
+  TRY(archive_reals(a, "condition", &f->condition, 1));
+  TRY(archive_reals(a, "digits", &f->digits, 1));
+  TRY(archive_ints(a, "floating", &f->floating, 1));
+  TRY(archive_ints(a, "n_contact_node", &f->n_contact_node, 1));
+  TRY(archive_ints(a, "n_left_out", &f->n_left_out, 1));
+  TRY(archive_reals(a, "average_entries", &f->average_entries, 1));
+done:
+  return st;
+}
+
 /* What both ways have in common. */
 static status keep_counts(output *o, archive *a, file_ends *ends) {
   status st = OK;
   run_summary *run = &o->run;
   TRY(archive_bytes(a, "ends", ends, sizeof *ends));
+  TRY(keep_setup(&run->facts, a));
   TRY(archive_ints(a, "attempt", &o->attempt, 1));
   TRY(archive_ints(a, "increments", &run->n_increment, 1));
   TRY(archive_ints(a, "rejected", &run->n_rejected, 1));

@@ -164,6 +164,8 @@ static const struct {
     {"nonlocal", "", "", FLOOR, "NONLOCAL, RADIUS=8.", "", LATER, ""},
     {"nonlocal creep", MAXWELL, "", FLOOR, "NONLOCAL, RADIUS=8.", "",
      "*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n0.25, 2.\n", ""},
+    {"other radius", "", "", FLOOR, "NONLOCAL, RADIUS=8.", "",
+     LATER "*FRICTION, CONTACT=C, LAW=NONLOCAL, RADIUS=20.\n0.4\n", ""},
     {"moving obstacle", "", "",
      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n0., 1., 0.\n"
      "MOVE, \"2e-2*t\", \"1e-2*sin(t)\", 0.\n", "COULOMB", "", LATER, ""},
