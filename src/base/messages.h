@@ -262,7 +262,16 @@
     "displacement, or of the stress (0 where there is none), or neither.")  \
   X(2057, ERROR, "times of tables not valid",                                \
     "*TIME POINTS lists times that ascend; with GENERATE each line has the "  \
-    "first time, the last one and an interval above zero.")
+    "first time, the last one and an interval above zero.")                   \
+  X(2058, WARNING, "said without effect",                                    \
+    "What the card says changes nothing here. Heat works through "           \
+    "*EXPANSION, *TRS or moduli over temperature; z varies in 3-D only (the " \
+    "axis of an axisymmetric model is y); times are counted from the start " \
+    "of a step unless TIME=TOTAL TIME.")                                     \
+  X(2059, WARNING, "displacement off the axis of symmetry",                  \
+    "A point of the axis cannot move along the radius: the strain u_r/r "    \
+    "would have no limit, and what is found depends on the mesh. Hold u_r "  \
+    "at zero there.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

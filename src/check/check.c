@@ -149,6 +149,7 @@ status model_check(model *m, const mesh *msh) {
   check_moduli(m);
   TRY(message_status(m->log, ERR_DECK));
   check_values(m, msh);
+  check_no_effect(m, msh);
   for (int i = 0; i < m->n_step; ++i) TRY(check_agreement(m, msh, i));
   TRY(check_visco(m));
   TRY(message_status(m->log, ERR_DECK));

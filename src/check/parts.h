@@ -47,6 +47,11 @@ status check_agreement(const model *m, const mesh *msh, int step_id);
 /* Increments of *VISCO steps against the laws that do not change. */
 status check_visco(const model *m);
 
+/* ---- no_effect.c ---- */
+
+/* Warnings of what the deck says and what changes nothing. */
+void check_no_effect(const model *m, const mesh *msh);
+
 /* ---- closed_form.c ---- */
 
 /* Components of *REFERENCE to their places; of u and of the stresses all. */

@@ -49,6 +49,7 @@ static int most_internal(const model *m) {
 static int is_asked(const column *c, const model *m) {
   const unsigned extra = PRINT_ZONES | PRINT_LOOP;
   if ((c->needs & NEEDS_TORQUE) != 0 && !model_has_axis(m)) return 0;
+  if ((c->needs & NEEDS_SEVERAL) != 0 && m->n_contact < 2) return 0;
   if ((c->needs & NEEDS_ALPHA) != 0 && c->part >= most_internal(m)) return 0;
   if (c->tables == 0 || (c->tables & ~extra) != 0) return 1;
   return model_prints(m, (int)c->tables);
@@ -69,7 +70,8 @@ int column_ready(const column *c, const state *s) {
   have |= if_there(s->stress, NEEDS_STRESS);
   have |= if_there(s->reaction, NEEDS_REACTION);
   have |= if_there(s->surface, NEEDS_SURFACE);
-  if (s->surface != NULL && s->surface->x != NULL) have |= NEEDS_PLACE;
+  if (s->surface != NULL && s->surface->x != NULL)
+    have |= NEEDS_PLACE | NEEDS_SEVERAL;
   have |= if_there(s->limit, NEEDS_LIMIT);
   have |= if_there(s->totals, NEEDS_TOTALS);
   have |= if_there(s->distance, NEEDS_DISTANCE);

@@ -48,7 +48,8 @@ enum {
   NEEDS_ZONES = 1024,
   NEEDS_ELEM_ERROR = 2048,
   NEEDS_FLOW = 4096, /* elements whose law flows                            */
-  NEEDS_ALPHA = 8192 /* that many internal variables                        */
+  NEEDS_ALPHA = 8192, /* that many internal variables                       */
+  NEEDS_SEVERAL = 16384 /* more than one contact                             */
 };
 
 /* What a value function sees. */

@@ -8,6 +8,7 @@
 /* Contact nodes: unknowns node by node n, t1[, t2] */
 #define SURFACE (v->s->surface)
 VALUE(contact_node_no, SURFACE->node_no[id])
+VALUE(contact_no, SURFACE->contact_id[id] + 1)
 VALUE(contact_x, SURFACE->x[at(SURFACE->dim, id, part)])
 VALUE(contact_u_n, v->s->uc[at(SURFACE->dim, id, 0)])
 VALUE(contact_u_t, v->s->uc[at(SURFACE->dim, id, part + 1)])
@@ -168,6 +169,9 @@ const column contact_node_columns[] = {
  "sliding limit"},
 {"status", "-", PER_CONTACT_NODE, AS_WORD, PRINT_CONTACT, C, SUR, "status", 0,
  contact_state, contact_word, "OPEN, SLIP, STICK; as number 0, 1, 2"},
+{"contact_no", "-", PER_CONTACT_NODE, AS_COUNT, PRINT_CONTACT, C, SCENE_ALL,
+ NEEDS_PLACE | NEEDS_SEVERAL, NULL, 0, contact_no, NULL,
+ "number of the *CONTACT"},
 
 {"row_no", "-", PER_CONTACT_NODE, AS_COUNT, PRINT_CONTACT, C, SCENE_LCP,
  NEEDS_SURFACE, NULL, 0, contact_node_no, NULL, "row of the matrix"},
