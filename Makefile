@@ -67,7 +67,7 @@ tort_c   := $(wildcard tests/torture/*.c)
 tort     := $(tort_c:%.c=$(out)/%)
 preload  := $(out)/tests/preload/refuse.so $(out)/tests/preload/mesh.so
 support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c \
-              tests/scenes/*.c))
+              tests/scenes/*.c tests/decks/*.c))
 
 .PHONY: all help deps demo test check unit regression stability layers style \
         format bench bench-solvers bench-auto clean

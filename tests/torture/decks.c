@@ -1,0 +1,118 @@
+/*
+ * Random decks that combine effects (tests/decks): each is run, its answer
+ * judged by what the test recomputes from the tables, and compared with that
+ * of the same deck with two threads, in other units, numbered anew, by another
+ * method, and stopped in its middle and gone on with.
+ *
+ * DECKS=count,first: how many, from which seed on; DECKS_KEEP=1: what is lost
+ * stays in its folder.
+ */
+#include "decks/twin.h"
+#include "support/points.h"
+#include "support/unit.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct tally {
+  points judged, twin[TWINS], restart;
+  long refused, other, touching, slipping, sticking;
+} tally;
+
+static void lose(points *p, const random_deck *d, const char *what) {
+  points_lose(p, "deck %llu (DECKS=1,%llu): %.250s", d->seed, d->seed, what);
+}
+
+/* 1: all that is recomputed agrees. */
+static int check_answer(tally *t, const random_deck *d, const job *j,
+                        const tables *all) {
+  char *sta = job_file(j, "sta"), what[400];
+  judgement q;
+  judge(d, all, sta, &q);
+  free(sta);
+  t->touching += q.touching;
+  t->slipping += q.slipping;
+  t->sticking += q.sticking;
+  for (int k = 0; k < CHECKS; ++k) {
+    if (q.worst[k] <= 1) continue;
+    snprintf(what, sizeof what, "%s is %.3g tolerances off: %s", check_name[k],
+             q.worst[k], q.where[k]);
+    lose(&t->judged, d, what);
+    return 0;
+  }
+  return 1;
+}
+
+static void check_twins(tally *t, const random_deck *d, const tables *all) {
+  char what[400];
+  for (int k = 0; k < TWINS; ++k) {
+    twin_answer answer = twin_check(d, (twin_kind)k, all, what);
+    points_try(&t->twin[k]);
+    t->refused += answer == TWIN_REFUSED;
+    t->other += answer == TWIN_OTHER;
+    if (answer == TWIN_OTHER)
+      printf("deck %llu: another answer by %s: %s\n", d->seed, twin_name[k],
+             what);
+    if (answer == TWIN_LOST) lose(&t->twin[k], d, what);
+  }
+  points_try(&t->restart);
+  if (!twin_restart(d, what)) lose(&t->restart, d, what);
+}
+
+static void check_deck(tally *t, unsigned long long seed) {
+  random_deck d;
+  const deck_text how = {.units = {1, 1, 1}};
+  char what[400];
+  job j = job_begin("deck");
+  deck_draw(seed, &d);
+  deck_write(&d, &how, &j);
+  int code = twin_run(&j, ""), good = code == 0;
+  tables all = tables_read(&j);
+  points_try(&t->judged);
+  const char *error = j.errors == NULL ? "" : strstr(j.errors, "error");
+  snprintf(what, sizeof what, "exit %d: %.300s", code,
+           error == NULL ? j.errors : error);
+  if (code != 0)
+    lose(&t->judged, &d, what);
+  else
+    good = check_answer(t, &d, &j, &all);
+  if (good) check_twins(t, &d, &all);
+  if (!good && getenv("DECKS_KEEP") != NULL)
+    printf("deck %llu is kept in %s\n", seed, j.dir);
+  else
+    job_end(&j);
+  tables_free(&all);
+  deck_release(&d);
+  fflush(stdout);
+}
+
+START_TEST(random_decks_hold) {
+  static const char *const kind[TWINS] = {
+      "random decks, 2 threads", "random decks, units 2^k",
+      "random decks, units 1000", "random decks, numbered anew",
+      "random decks, other methods"};
+  const char *text = getenv("DECKS");
+  unsigned long long first = getenv("PROTIS_POINTS") == NULL ? 12 : 0;
+  long count = points_number(16, 0.075);
+  tally t = {.judged.kind = "random decks, judged",
+             .restart.kind = "random decks, restarts"};
+  for (int k = 0; k < TWINS; ++k) t.twin[k].kind = kind[k];
+  if (text != NULL) sscanf(text, "%ld,%llu", &count, &first);
+  for (long k = 0; k < count; ++k)
+    check_deck(&t, first + (unsigned long long)k);
+  printf(
+      "methods that gave up: %ld; other answers: %ld; contact nodes: %ld "
+      "slip, %ld stick\n",
+      t.refused, t.other, t.slipping, t.sticking);
+  points_end(&t.judged);
+  for (int k = 0; k < TWINS; ++k) points_end(&t.twin[k]);
+  points_end(&t.restart);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("decks");
+  tcase_set_timeout(tests, 100 * UNIT_SECONDS);
+  tcase_add_test(tests, random_decks_hold);
+  return unit_run("decks", tests);
+}
