@@ -174,43 +174,50 @@ END_TEST
 /* ---- a corner ------------------------------------------------------------ */
 
 /* The tip is driven towards a floor 0.002 below and a wall 0.003 aside, loads
- * that would bring it there at a quarter and at half of the step. */
-static void check_corner(const char *form) {
+ * that would bring it there at a quarter and at half of the step; the wall is
+ * *CONTACT number "wall", from 0. */
+static void check_corner(const char *form, int wall) {
+  static const char *const contact[] = {
+      "*CONTACT, NAME=FLOOR, GROUP=FOOT1, OBSTACLE=FLOOR, NORMAL=OBSTACLE\n",
+      "*CONTACT, NAME=WALL, GROUP=SIDE1, OBSTACLE=WALL, NORMAL=OBSTACLE\n"};
   char cards[800];
   const double kn = 2 * G * 0.7 / 0.4;
   snprintf(cards, sizeof cards,
            "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0., -0.002\n0., 1.\n"
-           "*OBSTACLE, NAME=WALL, TYPE=PLANE\n0.003, 0.\n-1., 0.\n"
-           "*CONTACT, NAME=FLOOR, GROUP=FOOT1, OBSTACLE=FLOOR, "
-           "NORMAL=OBSTACLE\n"
-           "*CONTACT, NAME=WALL, GROUP=SIDE1, OBSTACLE=WALL, NORMAL=OBSTACLE\n"
+           "*OBSTACLE, NAME=WALL, TYPE=PLANE\n0.003, 0.\n-1., 0.\n%s%s"
            "*STEP\n*QUASISTATIC, FORM=%s\n0.1, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
            "*CLOAD\nTIPS, 1, %.17g\nTIPS, 2, %.17g\n*SOLVER, TOL=1E-13\n"
-           "*PRINT, NODES, TOTALS\n*END STEP\n",
-           form, 2 * 0.003 * G, -4 * 0.002 * kn);
+           "*PRINT, NODES, TOTALS, CONTACT\n*END STEP\n",
+           contact[1 - wall], contact[wall], form, 2 * 0.003 * G,
+           -4 * 0.002 * kn);
   job j = run_job(cards);
   for (int k = 0; k < 10; ++k) {
     const double t = 0.1 * (k + 1);
     dat u = job_table(&j, "NODES", k), f = job_table(&j, "TOTALS", k);
+    dat c = job_table(&j, "CONTACT", k);
     int tip = 0;
     while (dat_at(&u, tip, "node_no") != 3) ++tip;
     ck_assert_double_eq_tol(dat_at(&u, tip, "u_x"), fmin(0.003, 0.006 * t),
                             1e-12);
     ck_assert_double_eq_tol(dat_at(&u, tip, "u_y"), -fmin(0.002, 0.008 * t),
                             1e-12);
-    ck_assert_double_eq_tol(dat_at(&f, 0, "normal"),
+    ck_assert_double_eq_tol(dat_at(&f, 1 - wall, "normal"),
                             fmax(0, kn * (0.008 * t - 0.002)), 1e-9);
-    ck_assert_double_eq_tol(dat_at(&f, 1, "normal"),
+    ck_assert_double_eq_tol(dat_at(&f, wall, "normal"),
                             fmax(0, G * (0.006 * t - 0.003)), 1e-9);
+    ck_assert_double_eq(dat_at(&c, 0, "f_t"), 0);
     dat_free(&u);
     dat_free(&f);
+    dat_free(&c);
   }
   job_end(&j);
 }
 
 START_TEST(corner_closes_one_gap_after_the_other) {
-  check_corner("DISPLACEMENT");
-  check_corner("VELOCITY");
+  for (int wall = 0; wall < 2; ++wall) {
+    check_corner("DISPLACEMENT", wall);
+    check_corner("VELOCITY", wall);
+  }
 }
 END_TEST
 
