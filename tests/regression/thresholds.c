@@ -5,6 +5,7 @@
 #include "support/tips.h"
 #include "support/unit.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -70,7 +71,7 @@ END_TEST
 #define LOADED                                                   \
   "*OBSTACLE, NAME=FLOOR, TYPE=CONFORMING\n"                     \
   "*CONTACT, NAME=FLOOR, GROUP=FOOT1, OBSTACLE=FLOOR\n%s*STEP\n" \
-  "*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n"     \
+  "*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n"    \
   "TIPS, 2, \"-10%s\"\n*OUTPUT\n*END STEP\n"
 
 static void end_of_other(const char *scale, int code) {
@@ -97,5 +98,69 @@ START_TEST(end_of_a_run_is_of_the_same_mesh) {
 }
 END_TEST
 
-UNIT_MAIN("thresholds", start_is_compatible_to_a_millionth,
+/* ---- is an increment short enough? ----------------------------------------
+ */
+
+/* What a step of z = dt/tau makes of a held stress. */
+static double held_factor(const char *integrator, double z) {
+  if (strcmp(integrator, "EULER") == 0) return 1 - z;
+  if (strcmp(integrator, "BACKWARD") == 0) return 1 / (1 + z);
+  return (1 - z / 2) / (1 + z / 2); /* MIDPOINT                              */
+}
+
+/* The error of a step of z in parts of the strain at its start: halves of it
+ * with Richardson's factor, or Euler beside Heun. */
+static double told_error(const char *integrator, double z) {
+  if (strcmp(integrator, "HEUN") == 0) return z * z / 2;
+  const double power = strcmp(integrator, "MIDPOINT") == 0 ? 4 : 2;
+  const double half = held_factor(integrator, z / 2);
+  return power / (power - 1) * fabs(half * half - held_factor(integrator, z));
+}
+
+/* Lengths of the first increments that are taken, from the largest strain. */
+static void taken(const char *integrator, double tolerance, double dt[2]) {
+  char cards[600];
+  snprintf(cards, sizeof cards,
+           "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1E-9, 1E-9\n*BOUNDARY\n"
+           "CLAMPED, 1, 2\nTIPS, 2, 2, \"-0.01 + 0*t\"\nTIPS, 1\n*END STEP\n"
+           "*STEP\n*VISCO, INTEGRATOR=%s, TOLERANCE=%.17g\n0.1, 1., 1E-3\n"
+           "*PRINT, ENERGY\n*END STEP\n",
+           integrator, tolerance);
+  job j = tips_new(G, "", cards);
+  tips_material(&j, "*INELASTIC, LAW=MAXWELL\n1.\n");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  double before = 1e-9;
+  for (int k = 0; k < 2; ++k) {
+    dat e = job_table(&j, "ENERGY", k);
+    dt[k] = dat_at(&e, 0, "time") - before;
+    before += dt[k];
+    dat_free(&e);
+  }
+  job_end(&j);
+}
+
+START_TEST(increment_is_taken_up_to_its_tolerance) {
+  static const char *const rows[] = {"EULER", "HEUN", "BACKWARD", "MIDPOINT"};
+  for (int i = 0; i < 4; ++i) {
+    const double error = told_error(rows[i], 0.1);
+    double dt[2];
+    taken(rows[i], 1.01 * error, dt);
+    ck_assert_double_eq_tol(dt[0], 0.1, 1e-8);
+    taken(rows[i], 0.99 * error, dt);
+    ck_assert_double_le(dt[0], 0.05 + 1e-8);
+  }
+}
+END_TEST
+
+/* An error of half the tolerance: the next increment is 0.9 sqrt(2) as long. */
+START_TEST(next_increment_follows_the_error) {
+  double dt[2];
+  taken("HEUN", 2 * told_error("HEUN", 0.1), dt);
+  ck_assert_double_eq_tol(dt[1], 0.1 * 0.9 * sqrt(2), 1e-6);
+}
+END_TEST
+
+UNIT_MAIN("thresholds", increment_is_taken_up_to_its_tolerance,
+          next_increment_follows_the_error, start_is_compatible_to_a_millionth,
           end_of_a_run_is_of_the_same_mesh)

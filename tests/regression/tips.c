@@ -194,8 +194,31 @@ START_TEST(works_of_heat_and_creep_balance) {
 }
 END_TEST
 
-UNIT_MAIN("tips", limit_of_tresca_is_a_stress, given_pressure_pushes,
-          static_problems_slip_from_the_origin,
+/* Held strain, tau = 1: stress and loss at times within the increments. */
+START_TEST(points_lie_within_increments) {
+  static const double point[] = {0.1, 0.245, 0.4, 0.75};
+  job j = run(
+      "*INELASTIC, LAW=MAXWELL\n1.\n",
+      "*TIME POINTS, NAME=P\n0.1, 0.245, 0.4, 0.75\n*STEP\n*VISCO, "
+      "INTEGRATOR=RK4\n0.25, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
+      "TIPS, 1\nTIPS, 2, 2, \"-0.01 + 0*t\"\n*PRINT, ENERGY, TIME POINTS=P\n"
+      "*END STEP\n");
+  for (int k = 0; k < 4; ++k) {
+    dat e = job_table(&j, "ENERGY", k);
+    const double whole = 2 * 0.5 * 3.5 * G * 1e-4, left = exp(-2 * point[k]);
+    ck_assert_double_eq_tol(dat_at(&e, 0, "time"), point[k], 1e-12);
+    ck_assert_double_eq_tol(dat_at(&e, 0, "strain_energy"), whole * left,
+                            2e-4 * whole);
+    ck_assert_double_eq_tol(dat_at(&e, 0, "viscous_dissipation"),
+                            whole * (1 - left), 2e-4 * whole);
+    dat_free(&e);
+  }
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("tips", points_lie_within_increments, limit_of_tresca_is_a_stress,
+          given_pressure_pushes, static_problems_slip_from_the_origin,
           inelastic_strains_start_by_component,
           internal_variables_start_by_component, secants_count_from_their_zero,
           field_of_temperatures_goes_by_numbers,
