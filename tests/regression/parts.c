@@ -346,7 +346,32 @@ START_TEST(true_stress_error_counts_every_component) {
 }
 END_TEST
 
-UNIT_MAIN("parts", error_of_an_unloaded_body_is_over_the_largest,
+/* The same of displacements alone in a ring and in the plane. */
+START_TEST(true_error_of_a_ring_counts_the_hoop) {
+  static const char triangle[] =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n"
+      "1 1 \"ALL\"\n2 2 \"BODY\"\n$EndPhysicalNames\n$Nodes\n3\n1 1 0 0\n"
+      "2 2 0.1 0\n3 1.3 0.9 0\n$EndNodes\n$Elements\n4\n1 1 2 1 1 1 2\n"
+      "2 1 2 1 1 2 3\n3 1 2 1 1 3 1\n4 2 2 2 1 1 2 3\n$EndElements\n";
+  for (int ring = 0; ring < 2; ++ring) {
+    job j = job_begin("truth");
+    job_write(&j, "truth.msh", "%s", triangle);
+    job_write(&j, "truth.inp",
+              "*MESH, FILE=truth.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n*REFERENCE\n"
+              "u_%s, \"1E-3*x\"\nu_%s, \"4E-4*x - 7E-4*y\"\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nALL, 1, 1, \"1E-3*x\"\n"
+              "ALL, 2, 2, \"4E-4*x - 7E-4*y\"\n*END STEP\n",
+              ring ? "CAX3" : "CPE3", ring ? "r" : "x", ring ? "z" : "y");
+    run(&j);
+    ck_assert_double_le(job_told(&j, "true_error_percent"), 1e-6);
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("parts", true_error_of_a_ring_counts_the_hoop,
+          error_of_an_unloaded_body_is_over_the_largest,
           bound_of_heat_that_falls, zones_of_revolution_are_rings,
           directions_of_slip_part_where_there_is_none,
           true_stress_error_counts_every_component,
