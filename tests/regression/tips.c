@@ -217,7 +217,57 @@ START_TEST(points_lie_within_increments) {
 }
 END_TEST
 
-UNIT_MAIN("tips", points_lie_within_increments, limit_of_tresca_is_a_stress,
+/* ---- what the plan and *EFFECTS tell ----------------------------------------
+ */
+
+/* The shares of what is foreseen are all of it. */
+START_TEST(foreseen_shares_are_the_whole) {
+  job j = run("", FLOOR
+              "*STEP\n*STATIC\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n"
+              "TIPS, 2, -10.\n*END STEP\n");
+  char *json = job_file(&j, "json");
+  static const char name[] = "\"expected_cpu_percent\": ";
+  double sum = 0;
+  for (char *at = json; (at = strstr(at, name)) != NULL;)
+    sum += atof(at += sizeof name - 1);
+  ck_assert_double_eq_tol(sum, 100, 1e-6);
+  free(json);
+  job_end(&j);
+}
+END_TEST
+
+/* A law that is always at its end: springs of E and of 800 in a row, of which
+ * both keep energy, whether the law flows or constants stand for it. */
+START_TEST(law_at_its_end_keeps_the_energy_of_its_springs) {
+  static const char *const effects[] = {"", "*EFFECTS, MODE=AUTO\n"};
+  static const char *const name[] = {"strain_energy", "external_work",
+                                     "inelastic_work", "inelastic_stored"};
+  double value[2][4];
+  for (int k = 0; k < 2; ++k) {
+    char cards[400];
+    snprintf(cards, sizeof cards,
+             "%s*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n*BOUNDARY\n"
+             "CLAMPED, 1, 2\nTIPS, 1\nTIPS, 2, 2, -0.01\n*PRINT, ENERGY\n"
+             "*END STEP\n",
+             effects[k]);
+    job j = run("*INELASTIC, LAW=ZENER\n800., 1E-4\n", cards);
+    char *lst = job_file(&j, "lst");
+    ck_assert((strstr(lst, "  left out: ") != NULL) == k);
+    dat e = job_table(&j, "ENERGY", -1);
+    for (int i = 0; i < 4; ++i)
+      value[k][i] = dat_has(&e, name[i]) ? dat_at(&e, 0, name[i]) : value[0][i];
+    free(lst);
+    dat_free(&e);
+    job_end(&j);
+  }
+  for (int i = 0; i < 4; ++i)
+    ck_assert_double_eq_tol(value[1][i], value[0][i], 1e-4 * value[0][1]);
+}
+END_TEST
+
+UNIT_MAIN("tips", foreseen_shares_are_the_whole,
+          law_at_its_end_keeps_the_energy_of_its_springs,
+          points_lie_within_increments, limit_of_tresca_is_a_stress,
           given_pressure_pushes, static_problems_slip_from_the_origin,
           inelastic_strains_start_by_component,
           internal_variables_start_by_component, secants_count_from_their_zero,
