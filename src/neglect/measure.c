@@ -120,8 +120,8 @@ static double stress_scale(const neglect *n, const state *s) {
   for (int i = 0; c != NULL && i < c->n; ++i)
     if (c->area[i] > 0.0) most = fmax(most, -s->rc[c->dim * i] / c->area[i]);
   size_t size = (size_t)n->m->ns * (size_t)n->msh->n_elem;
-  for (size_t i = 0; i < size && most == 0.0; ++i)
-    most = fmax(most, fabs(n->sigma[i]));
+  if (most > 0.0) return most;
+  for (size_t i = 0; i < size; ++i) most = fmax(most, fabs(n->sigma[i]));
   return most;
 }
 

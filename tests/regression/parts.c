@@ -107,6 +107,26 @@ START_TEST(error_of_an_unloaded_body_is_over_the_largest) {
 }
 END_TEST
 
+/* The error of a coarse mesh: the squares of the shares add up to its own. */
+START_TEST(shares_of_the_elements_make_up_the_error) {
+  job j = job_begin("block");
+  block_file_write(&j, (int[]){4, 3}, (double[]){40.0, 30.0}, 0);
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nCONTACT, 1, 2\n*DSLOAD\nTOP, TX, 50.\n"
+            "*ACCURACY, MESH=YES\n*PRINT, ELEMENTS\n*END STEP\n");
+  run(&j);
+  dat e = job_table(&j, "ELEMENTS", -1);
+  double sum = 0, whole = job_told(&j, "mesh_error_percent");
+  for (int i = 0; i < e.n_row; ++i) sum += pow(dat_at(&e, i, "mesh_error"), 2);
+  ck_assert_double_gt(whole, 20);
+  ck_assert_double_eq_tol(sqrt(sum) / whole, 1, 1e-9);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
 /* ---- effects left out -----------------------------------------------------
  */
 
@@ -116,8 +136,8 @@ static const double level[] = {0, 0.5, 1, 0.625, 0.25};
 #define RISES "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n0., 0., 0.5, 1., 1., 0.25\n"
 
 static double bound_of(const char *material, const char *cards,
-                       const char *procedure, const char *loads,
-                       double *energy) {
+                       const char *procedure, const char *loads, double *energy,
+                       double *local) {
   char text[1200];
   snprintf(text, sizeof text,
            RISES
@@ -132,6 +152,7 @@ static double bound_of(const char *material, const char *cards,
   ck_assert_ptr_null(strstr(lst, "not left out: "));
   free(lst);
   double bound = job_told(&j, "bound");
+  *local = job_told(&j, "stress");
   for (int k = 0; k < 4; ++k) {
     dat e = job_table(&j, "ENERGY", k);
     energy[k + 1] = dat_at(&e, 0, "strain_energy");
@@ -150,32 +171,34 @@ static double worst_of(const double *sum) {
 
 /* Rates sigma/tau: the larger of both ends of each increment adds up. */
 START_TEST(bound_of_creep_under_a_load_that_falls) {
-  double sum[5] = {0}, energy[5];
+  double sum[5] = {0}, energy[5], local;
   for (int k = 1; k < 5; ++k)
     sum[k] = sum[k - 1] + 0.25 * fmax(level[k - 1], level[k]) / 1e7;
-  double told =
-      bound_of("*INELASTIC, LAW=MAXWELL\n1E7\n", "",
-               "*VISCO, INTEGRATOR=EULER\n", "TIPS, 2, 2, -0.001, A\n", energy);
+  double told = bound_of("*INELASTIC, LAW=MAXWELL\n1E7\n", "",
+                         "*VISCO, INTEGRATOR=EULER\n",
+                         "TIPS, 2, 2, -0.001, A\n", energy, &local);
   ck_assert_double_eq_tol(told / worst_of(sum), 1, 1e-6);
+  ck_assert_double_eq_tol(local / worst_of(sum), 1, 1e-6);
 }
 END_TEST
 
 /* A pull along the floor of 1, mu N s: square roots add up. */
 START_TEST(bound_of_friction_under_a_pull_that_falls) {
   const double mu = 1e-13, N = 10, size = sqrt(2 / G);
-  double sum[5] = {0}, energy[5];
+  double sum[5] = {0}, energy[5], local;
   for (int k = 1; k < 5; ++k)
     sum[k] = sum[k - 1] +
              sqrt(2 * mu * N * fabs(level[k] - level[k - 1]) / G) / size;
-  double told = bound_of(
-      "",
-      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
-      "*CONTACT, NAME=A, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n"
-      "*CONTACT, NAME=B, GROUP=FOOT2, OBSTACLE=O, NORMAL=OBSTACLE\n"
-      "*FRICTION, CONTACT=A, LAW=COULOMB\n1E-13\n"
-      "*FRICTION, CONTACT=B, LAW=COULOMB\n1E-13\n*AMPLITUDE, NAME=ON\n"
-      "0., 1., 1., 1.\n",
-      "*QUASISTATIC\n", "*CLOAD\nTIPS, 1, 1., A\nTIPS, 2, -10., ON\n", energy);
+  double told =
+      bound_of("",
+               "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+               "*CONTACT, NAME=A, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n"
+               "*CONTACT, NAME=B, GROUP=FOOT2, OBSTACLE=O, NORMAL=OBSTACLE\n"
+               "*FRICTION, CONTACT=A, LAW=COULOMB\n1E-13\n"
+               "*FRICTION, CONTACT=B, LAW=COULOMB\n1E-13\n*AMPLITUDE, NAME=ON\n"
+               "0., 1., 1., 1.\n",
+               "*QUASISTATIC\n", "*CLOAD\nTIPS, 1, 1., A\nTIPS, 2, -10., ON\n",
+               energy, &local);
   ck_assert_double_eq_tol(told / worst_of(sum), 1, 1e-6);
 }
 END_TEST
@@ -189,7 +212,7 @@ START_TEST(bound_of_heat_that_falls) {
   const double whole = 3 * sqrt(2 * K) * alpha_T;
   for (int k = 0; k < 2; ++k) {
     char cards[400];
-    double added = 0, worst = 0, energy[5];
+    double added = 0, worst = 0, energy[5], local;
     snprintf(cards, sizeof cards,
              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -1.\n0., 1.\n"
              "*CONTACT, NAME=A, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n%s",
@@ -197,7 +220,7 @@ START_TEST(bound_of_heat_that_falls) {
     double told = bound_of("*EXPANSION\n1E-5\n", cards, "*QUASISTATIC\n",
                            "*DSLOAD\nFOOT1, P, 10.\nFOOT2, P, 10.\n"
                            "*TEMPERATURE, AMPLITUDE=A\nBODY, 1E-3\n",
-                           energy);
+                           energy, &local);
     for (int i = 1; i < 5; ++i) {
       added += 2 * whole * fabs(level[i] - level[i - 1]);
       worst = fmax(worst,
@@ -370,7 +393,8 @@ START_TEST(true_error_of_a_ring_counts_the_hoop) {
 }
 END_TEST
 
-UNIT_MAIN("parts", true_error_of_a_ring_counts_the_hoop,
+UNIT_MAIN("parts", shares_of_the_elements_make_up_the_error,
+          true_error_of_a_ring_counts_the_hoop,
           error_of_an_unloaded_body_is_over_the_largest,
           bound_of_heat_that_falls, zones_of_revolution_are_rings,
           directions_of_slip_part_where_there_is_none,
