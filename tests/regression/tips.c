@@ -3,7 +3,10 @@
  * static problems, starts of inelastic strains and internal variables, heat
  * with coefficients that vary, works that balance.
  */
+#include "support/block_file.h"
+#include "support/grid.h"
 #include "support/tips.h"
+#include "support/turned_mesh.h"
 #include "support/unit.h"
 
 #include <math.h>
@@ -57,6 +60,33 @@ START_TEST(given_pressure_pushes) {
   ck_assert_double_eq_tol(dat_at(&c, 0, "u_n"), (10 - N) / (3.5 * G), 1e-12);
   ck_assert_double_eq_tol(dat_at(&c, 0, "f_t"), -0.3 * N, 1e-10);
   dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+/* On a foot of many nodes: each has the same pressure, those at the ends half
+ * the area. */
+START_TEST(given_pressure_goes_by_area) {
+  const turn none = {{0, 0, 1}, 0};
+  job j = job_begin("turned");
+  mesh *m = make_grid_2d((int[]){4, 2}, (double[]){2, 1});
+  turned_mesh_write(&j, m, &none);
+  mesh_free(m);
+  job_write(&j, "turned.inp",
+            "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n"
+            "*CONTACT FORCE, CONTACT=C\n6.\n*STEP\n*STATIC\n*BOUNDARY\n"
+            "HEAD, 1, 2\n*PRINT, CONTACT, TOTALS\n*END STEP\n");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat c = job_table(&j, "CONTACT", -1), t = job_table(&j, "TOTALS", -1);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), 6, 1e-10);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), 12, 1e-10);
+  dat_free(&c);
+  dat_free(&t);
   job_end(&j);
 }
 END_TEST
@@ -172,6 +202,39 @@ START_TEST(field_of_temperatures_goes_by_numbers) {
 }
 END_TEST
 
+/* Moduli of a table, at its middle, are their mean in each kind of section. */
+START_TEST(moduli_of_a_table_in_plane_strain_and_stress) {
+  static const char *const elastic[] = {
+      "*ELASTIC\n1000., 0.3\n", "*ELASTIC\n900., 0.3, 0.\n1100., 0.3, 100.\n"};
+  dat u[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("block");
+    block_file_write(&j, (int[]){4, 4}, (double[]){2, 2}, 1);
+    job_write(&j, "block.inp",
+              "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n%s"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+              "*SOLID SECTION, ELSET=UPPER, MATERIAL=M, TYPE=CPS3\n"
+              "*STEP\n*STATIC\n*BOUNDARY\nCONTACT, 1, 2\n*DSLOAD\n"
+              "TOP, P, 30.\nTOP, TX, 5.\n*TEMPERATURE\nBODY, 50.\nUPPER, 50.\n"
+              "*PRINT, NODES\n*END STEP\n",
+              elastic[k]);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    u[k] = job_table(&j, "NODES", -1);
+    job_end(&j);
+  }
+  const double size = dat_max(&u[0], "u_y");
+  for (int i = 0; i < u[0].n_row; ++i) {
+    ck_assert_double_eq_tol(dat_at(&u[0], i, "u_x"), dat_at(&u[1], i, "u_x"),
+                            1e-10 * size);
+    ck_assert_double_eq_tol(dat_at(&u[0], i, "u_y"), dat_at(&u[1], i, "u_y"),
+                            1e-10 * size);
+  }
+  dat_free(&u[0]);
+  dat_free(&u[1]);
+}
+END_TEST
+
 /* Loads, heat and creep together and heat alone: works balance, and the heat is
  * told. */
 START_TEST(works_of_heat_and_creep_balance) {
@@ -271,7 +334,9 @@ START_TEST(law_at_its_end_keeps_the_energy_of_its_springs) {
 }
 END_TEST
 
-UNIT_MAIN("tips", foreseen_shares_are_the_whole,
+UNIT_MAIN("tips", given_pressure_goes_by_area,
+          moduli_of_a_table_in_plane_strain_and_stress,
+          foreseen_shares_are_the_whole,
           law_at_its_end_keeps_the_energy_of_its_springs,
           points_lie_within_increments, limit_of_tresca_is_a_stress,
           given_pressure_pushes, static_problems_slip_from_the_origin,
