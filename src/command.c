@@ -150,7 +150,19 @@ static const char *long_option(const void *ctx, int i) {
   return words[i].name;
 }
 
+static int file_exists(const char *name) {
+  struct stat info;
+  return stat(name, &info) == 0;
+}
+
 static int unknown_option(const char *given) {
+  if (file_exists(given)) {
+    fprintf(stderr,
+            "protis: error: there is no option %s; a deck of that name is "
+            "./%s, or stands after --\n",
+            given, given);
+    return 2;
+  }
   const char *near = inform_nearest(given + strspn(given, "-"), long_option);
   if (near == NULL) return wrong("there is no option ", given);
   return mean("there is no option ", given, near);
@@ -225,11 +237,6 @@ static int take_option(int what, const char *value, const char *given,
   }
 }
 
-static int file_exists(const char *name) {
-  struct stat info;
-  return stat(name, &info) == 0;
-}
-
 /* JOB or JOB.inp: the name as given if there is such a file, else with .inp. */
 static char *find_deck(const char *name) {
   size_t length = strlen(name);
@@ -264,6 +271,13 @@ static int take_job(int n, char **job, command *c) {
   return c->dir == NULL ? no_memory() : -1;
 }
 
+/* The word that getopt has read, or reads letter by letter. */
+static const char *word_read(int argc, char **argv) {
+  int at = optind < argc && optopt != 0 && argv[optind][0] == '-' &&
+           argv[optind][1] == optopt;
+  return argv[at ? optind : optind - 1];
+}
+
 int command_read(int argc, char **argv, command *c, int *exit_code) {
   int what, code = -1;
   memset(c, 0, sizeof *c);
@@ -273,7 +287,7 @@ int command_read(int argc, char **argv, command *c, int *exit_code) {
   while (code < 0 &&
          (what = getopt_long(argc, argv, ":o:D:", words, NULL)) != -1) {
     const char *next = optind < argc ? argv[optind] : NULL;
-    code = take_option(what, optarg, argv[optind - 1], next, c);
+    code = take_option(what, optarg, word_read(argc, argv), next, c);
   }
   if (code < 0) code = take_job(argc - optind, argv + optind, c);
   if (code < 0) return 1;

@@ -6,14 +6,23 @@
  */
 #include "fem/fem.h"
 
+#include <cblas.h>
 #include <dlfcn.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 char *openblas_get_corename(void);
 void openblas_set_num_threads(int n);
 
+/* Bytes of a buffer of OpenBLAS and a little; MB of addresses for the program,
+ * its libraries and one buffer. */
+enum { BUFFER = 130 << 20, NEEDED = 230 };
+
+static const char threads_choice[] = "OPENBLAS_NUM_THREADS";
 static const char choice[] = "OPENBLAS_CORETYPE";
 static const char guard[] = "PROTIS_BLAS_KERNEL";
 
@@ -78,8 +87,42 @@ void blas_set_threads(int n) {
   limit_openmp(n >= OMP_THREADS ? 1 : 0);
 }
 
+/* A product that is large enough to be made in the buffer of the thread. */
+static void take_buffer(void) {
+  enum { SIDE = 64 };
+  double a[SIDE * SIDE] = {0}, b[SIDE * SIDE];
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, SIDE, SIDE, SIDE, 1.0,
+              a, SIDE, a, SIDE, 0.0, b, SIDE);
+}
+
+/* OpenBLAS asks for its buffers until it gets them. Where addresses are limited
+ * (ulimit -v) it starts without threads of its own, which have one each, and
+ * takes the one of this thread now, or the process ends. */
+static void fit_address_space(char **argv) {
+  struct rlimit limit;
+  const char *threads = getenv(threads_choice);
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return;
+  int one = threads != NULL && strcmp(threads, "1") == 0;
+  if (!one && setenv(threads_choice, "1", 1) == 0)
+    execv("/proc/self/exe", argv);
+  void *room = mmap(NULL, BUFFER, PROT_READ | PROT_WRITE,
+                    MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (room == MAP_FAILED) {
+    dprintf(STDERR_FILENO,
+            "protis: error: memory exhausted: the limit of addresses (ulimit "
+            "-v) is %.0f MB, the linear algebra needs %d MB to start; raise "
+            "it\n",
+            (double)limit.rlim_cur / 1048576.0, NEEDED);
+    _exit(status_exit_code(ERR_MEMORY));
+  }
+  munmap(room, BUFFER);
+  take_buffer();
+}
+
 void blas_choose_kernel(char **argv) {
   int level;
+  fit_address_space(argv);
   const char *best = best_kernel(&level);
   blas_set_threads(1);
   if (best == NULL || kernel_level(blas_kernel()) >= level) return;

@@ -343,9 +343,49 @@ START_TEST(closed_streams_are_no_matter) {
 }
 END_TEST
 
-UNIT_MAIN("interrupt", closed_streams_are_no_matter,
-          signals_end_after_an_increment, signals_come_together,
-          ignored_signals_stay_ignored, earlier_file_stays,
-          file_ends_after_an_increment, second_signal_ends_at_once,
-          file_size_limit_is_a_failed_write, second_job_of_the_name_is_refused,
-          other_file_of_that_name_stays)
+/* Too few addresses for the linear algebra: told, and not waited for. */
+START_TEST(few_addresses_are_told) {
+  job j = block(2);
+  char deck[200];
+  snprintf(deck, sizeof deck, "%s/%s", j.dir, j.name);
+  pid_t pid = fork();
+  ck_assert_int_ge(pid, 0);
+  if (pid == 0) {
+    const rlim_t bytes = (rlim_t)150 << 20;
+    into(&j, "stderr.txt", STDERR_FILENO);
+    alarm(UNIT_SECONDS / 10);
+    setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
+    execl(program(), program(), deck, (char *)NULL);
+    _exit(99);
+  }
+  ck_assert_int_eq(finish(pid), 5);
+  char *errors = errors_of(&j);
+  ck_assert_ptr_nonnull(strstr(errors, "ulimit -v"));
+  free(errors);
+  job_end(&j);
+}
+END_TEST
+
+/* An option, or a deck behind "--" or with its folder. */
+START_TEST(deck_may_begin_with_a_dash) {
+  job j = block(2);
+  char line[400];
+  snprintf(line, sizeof line, "mv '%s/block.inp' '%s/-x.inp'", j.dir, j.dir);
+  ck_assert_int_eq(system(line), 0);
+  snprintf(j.name, sizeof j.name, "-x.inp");
+  ck_assert_int_eq(job_run(&j, ""), 2);
+  ck_assert_ptr_nonnull(strstr(j.errors, "./-x.inp"));
+  snprintf(j.name, sizeof j.name, "-- -x");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  snprintf(j.name, sizeof j.name, "-x");
+  ck_assert(job_has(&j, "lst") && job_has(&j, "h5"));
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("interrupt", deck_may_begin_with_a_dash, few_addresses_are_told,
+          closed_streams_are_no_matter, signals_end_after_an_increment,
+          signals_come_together, ignored_signals_stay_ignored,
+          earlier_file_stays, file_ends_after_an_increment,
+          second_signal_ends_at_once, file_size_limit_is_a_failed_write,
+          second_job_of_the_name_is_refused, other_file_of_that_name_stays)
