@@ -54,9 +54,10 @@ typedef struct matrices {
 } matrices;
 
 /* In the place of a key: no rate has been read; one that belongs to a matrix
- * that is no more. */
+ * that is no more; the matrix of tangents of one solve. */
 #define RUN_NO_KEY (-1.0)
 #define RUN_OTHER_KEY (-2.0)
+#define RUN_FRESH_KEY (-3.0)
 
 /* What TOL=BALANCED has learnt (src/history/balance.c). */
 typedef struct balance {
@@ -77,7 +78,7 @@ typedef struct progress {
   double dt;    /* of an adaptive step, to be tried, s                        */
   double error; /* of the increments before the step, sqrt(J)                 */
   double residual; /* -, of the attempt before at the same increment          */
-  int lost;     /* 1: the last state is none of equilibrium, by far           */
+  int lost; /* 1: the last state is none of equilibrium, by far           */
 } progress;
 
 typedef struct run {

@@ -125,6 +125,7 @@ status strains_heat(run *r) {
   TRY(moduli_heat(&r->moduli, r->m, now->temperature, &changed));
   if (changed) {
     visco_forget(r);
+    run_forget_estimates(r);
     r->stale = 1;
     if (r->c != r->elastic.c) r->c = NULL;
   }

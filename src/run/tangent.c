@@ -157,7 +157,9 @@ static status use_fresh(run *r, const flow_tangent *law) {
   if (same && v->fresh.c != NULL) goto done;
   TRY(fresh_domain(r, law, &d));
   r->c = NULL;
+  if (!same) run_forget_estimates(r);
   TRY(same ? factor_again(&d, &v->fresh) : factor(&d, &v->fresh));
+  v->fresh.key = RUN_FRESH_KEY;
 done:
   return st;
 }
@@ -308,6 +310,7 @@ status tangent_keep(run *r, archive *a) {
   visco *v = r->visco;
   char name[20];
   double known = r->c == r->elastic.c ? r->elastic.key : RUN_OTHER_KEY;
+  if (v->fresh.c != NULL && v->fresh.c == r->c) known = v->fresh.key;
   for (int i = 0; i < SLOTS; ++i) {
     matrices *m = &v->slot[i];
     if (m->c != NULL && m->c == r->c) known = m->key;

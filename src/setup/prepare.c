@@ -130,6 +130,7 @@ status run_prepare(run *r) {
   load_fixed(r->m, r->msh, r->step, fixed);
   memcpy(r->start, r->old.u, r->n_dof * sizeof *r->start);
   r->limit_known = 0;
+  known_rate_forget(&r->rate);
   for (int i = 0; i < r->m->n_contact && r->loops != NULL; ++i)
     r->loops[i].start_end = r->loops[i].friction_end;
   if (r->elastic.c == NULL || memcmp(fixed, r->fixed, r->n_dof) != 0) {

@@ -146,6 +146,28 @@ START_TEST(friction_card_in_a_step_takes_over) {
 }
 END_TEST
 
+/* Each node slips as before a new card: the contraction, of an error that is
+ * bounded, is that of its mu, to which it is proportional. */
+START_TEST(contraction_is_that_of_the_card) {
+  job j = run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n0.1\n", "1+0*t",
+                   "*END STEP\n*STEP\n*QUASISTATIC\n0.5, 0.5\n"
+                   "*FRICTION, CONTACT=F, LAW=COULOMB\n0.2\n"
+                   "*DSLOAD\nRIGHT, TY, \"2+0*t\"\nLEFT, TY, \"-2-0*t\"\n"
+                   "*END STEP\n");
+  char *json = job_file(&j, "json"), *at = json;
+  double rate = 0.0, before = 0.0;
+  check_slip(&j, 5, 2.5, 0.2);
+  while ((at = strstr(at, "\"contraction\": ")) != NULL) {
+    before = rate;
+    rate = atof(at += strlen("\"contraction\": "));
+  }
+  ck_assert_double_gt(before, 0.0);
+  ck_assert_double_eq_tol(rate, 2.0 * before, 0.1 * before);
+  free(json);
+  job_end(&j);
+}
+END_TEST
+
 /* No friction on the left half: each node has its own limit. */
 START_TEST(mu_is_zero_in_places) {
   job j = run_drag(
@@ -201,4 +223,5 @@ END_TEST
 
 UNIT_MAIN("friction in time", mu_of_time_in_every_way,
           constant_amplitude_and_motion, jump_of_an_expression_is_told,
-          friction_card_in_a_step_takes_over, mu_is_zero_in_places, mu_by_group)
+          friction_card_in_a_step_takes_over, contraction_is_that_of_the_card,
+          mu_is_zero_in_places, mu_by_group)

@@ -175,6 +175,44 @@ START_TEST(chosen_tolerance_goes_on) {
 }
 END_TEST
 
+/* A block that slips on, with another material and another second step. */
+static job sliding(const char *material, const char *second) {
+  job j = small_flat(0.1, "", "AUTO");
+  edit(&j, "130.D3, 0.2\n", material);
+  edit(&j, "*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n", second);
+  edit(&j, "TOP, 1, 1, -0.01",
+       "TOP, 1, 1, 0.06\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=BACKWARD\n"
+       "0.25, 0.25\n");
+  return j;
+}
+
+/* The rate of contraction that is known for the statuses belongs to a matrix:
+ * moduli that change, tangents that stay. */
+START_TEST(known_rate_goes_on) {
+  static const char *const body[][2] = {
+      {"130.D3, 0.2, 0.\n65.D3, 0.3, 500.\n*EXPANSION\n1.2E-7\n"
+       "*INELASTIC, LAW=MAXWELL\n4.\n",
+       "*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n"
+       "*TEMPERATURE\nBODY, \"100*(t-1)\"\n"},
+      {"130.D3, 0.2\n*INELASTIC, LAW=BINGHAM\n1E6, 1.\n",
+       "*END STEP\n*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"}};
+  for (int i = 0; i < 2; ++i) {
+    int changes, all;
+    job whole = sliding(body[i][0], body[i][1]);
+    ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
+    for (int k = 6; k < 8; ++k) {
+      job j = sliding(body[i][0], body[i][1]);
+      ck_assert_int_eq(run_until(&j, nothing, all * k / 10, SIGINT, &changes),
+                       130);
+      goes_on(&j, 0, body[i][1]);
+      same_files(&whole, &j, body[i][1]);
+      job_end(&j);
+    }
+    job_end(&whole);
+  }
+}
+END_TEST
+
 /* Killed, gone on with and killed again: what the second restart file tells of
  * increments was read from the first. */
 START_TEST(killed_twice_goes_on) {
@@ -294,6 +332,7 @@ END_TEST
 
 UNIT_MAIN("restart", changed_decks_are_refused_by_card, later_steps_may_change,
           adapted_increments_go_on, killed_twice_goes_on,
-          chosen_tolerance_goes_on, run_without_a_file_begins_anew,
-          files_are_in_the_seal, restart_files_are_equal, some_jobs_start_anew,
+          chosen_tolerance_goes_on, known_rate_goes_on,
+          run_without_a_file_begins_anew, files_are_in_the_seal,
+          restart_files_are_equal, some_jobs_start_anew,
           damaged_files_are_refused)
