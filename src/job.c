@@ -30,19 +30,20 @@ static status read_mesh(const job_mesh *other, job_input *in) {
   const model *m = in->m;
   double cpu = timer_cpu();
   mesh_number *numbers = NULL;
+  int n = 0;
   TRY(check_safe_mesh(m));
   NEW(numbers, m->deck->n_symbol);
-  for (int i = 0; i < m->deck->n_symbol; ++i) {
-    numbers[i].name = m->deck->symbols[i].name;
-    numbers[i].value = m->deck->symbols[i].value;
-  }
+  for (int i = 0; i < m->deck->n_symbol; ++i)
+    if (m->deck->symbols[i].in_geometry)
+      numbers[n++] =
+          (mesh_number){m->deck->symbols[i].typed, m->deck->symbols[i].value};
   timer_enter(STAGE_MESH);
   if (m->target.percent > 0.0 && job_is_geo(m)) mesh_gmsh_load();
   in->library_cpu = timer_cpu() - cpu;
   st =
       mesh_read_gmsh(&(mesh_source){.file = m->mesh_file,
                                     .scale = m->mesh_scale,
-                                    .n_number = m->deck->n_symbol,
+                                    .n_number = n,
                                     .numbers = numbers,
                                     .old = other != NULL ? other->old : NULL,
                                     .size = other != NULL ? other->size : NULL},

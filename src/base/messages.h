@@ -208,9 +208,10 @@
   X(2041, ERROR, "value at a node that is no number",                        \
     "An expression divides by zero there, takes the root or logarithm of "   \
     "a negative number, or overflows; or a friction value is negative.")     \
-  X(2042, WARNING, "-D that the deck does not know",                         \
-    "-D NAME=VALUE replaces the value of a *PARAMETER. A name of its own "   \
-    "serves a .geo only; check the spelling.")                               \
+  X(2042, ERROR, "name that nothing uses",                                   \
+    "A *PARAMETER or -D NAME=VALUE that neither the deck nor its .geo uses "  \
+    "changes nothing: check the spelling. In a .geo upper and lower case "    \
+    "count; what is not needed is removed.")                                  \
   X(2043, ERROR, "obstacle cannot turn this way",                            \
     "In plane models ROTATE, x, y, angle turns about the point (x, y); "     \
     "torsion about an axis of symmetry needs a model in three dimensions.")  \

@@ -64,8 +64,11 @@ typedef struct card {
 typedef struct symbol {
   const char *name; /* upper case                                            */
   double value;
-  int overridden; /* by -D on the command line                             */
-  place at;       /* of its *PARAMETER line; at.file NULL: by -D alone     */
+  const char *typed; /* as *PARAMETER, else as -D, spells it              */
+  int overridden;    /* by -D on the command line                          */
+  int used;          /* the deck refers to it                              */
+  int in_geometry;   /* the .geo has it                                    */
+  place at;          /* of its *PARAMETER line; at.file NULL: by -D alone  */
 } symbol;
 
 typedef struct deck {

@@ -33,7 +33,6 @@ place logical_place(const logical *l, int byte) {
 static int looks_like_power(const reader *r, const char *text, int at) {
   char name[32];
   size_t n = 0;
-  double value;
   const char *p = text + at + 2;
   if (at > 0 && !is_blank(text[at - 1]) && text[at - 1] != ',') return 1;
   while (is_blank(*p)) ++p;
@@ -43,7 +42,7 @@ static int looks_like_power(const reader *r, const char *text, int at) {
     ++n;
   }
   name[n] = '\0';
-  return n > 0 && (p[n] == '(' || deck_symbol(r->d, name, &value));
+  return n > 0 && (p[n] == '(' || symbols_have(r->d, name));
 }
 
 typedef struct scan {

@@ -149,6 +149,7 @@ status symbols_replace(reader *r, const char *text, size_t n, replacing how,
                        const place *at, const char **out);
 /* One line under *PARAMETER, in r->line. */
 status symbols_define(reader *r);
+int symbols_have(const deck *d, const char *name);
 status symbols_from_command(reader *r, const char *define);
 /* Message of an expression that did not compile (the record says why), with
  * the nearest name. "column" is that of the error in text, from 0; the place

@@ -43,10 +43,21 @@ static symbol *find_symbol(const deck *d, const char *name, size_t n) {
   return slot != NULL && *slot != 0 ? &d->symbols[*slot - 1] : NULL;
 }
 
+/* A reference to the name. */
+static symbol *use_symbol(const deck *d, const char *name, size_t n) {
+  symbol *s = find_symbol(d, name, n);
+  if (s != NULL) s->used = 1;
+  return s;
+}
+
 int deck_symbol(const void *deck_, const char *name, double *value) {
-  const symbol *s = find_symbol(deck_, name, strlen(name));
+  const symbol *s = use_symbol(deck_, name, strlen(name));
   if (s != NULL) *value = s->value;
   return s != NULL;
+}
+
+int symbols_have(const deck *d, const char *name) {
+  return find_symbol(d, name, strlen(name)) != NULL;
 }
 
 /* At most half of the slots are taken. */
@@ -75,6 +86,15 @@ static status add_symbol(deck *d, const char *name, size_t n, symbol **out) {
   if (s->name == NULL) FAIL(ERR_MEMORY, "memory exhausted: name");
   *find_slot(d, name, n) = ++d->n_symbol;
   *out = s;
+done:
+  return st;
+}
+
+/* The .geo tells upper case from lower. */
+static status keep_spelling(deck *d, symbol *s, const char *name, size_t n) {
+  status st = OK;
+  s->typed = store_text(d, name, n);
+  if (s->typed == NULL) FAIL(ERR_MEMORY, "memory exhausted: name");
 done:
   return st;
 }
@@ -155,7 +175,7 @@ done:
 static status add_named(reader *r, const char *name, size_t n, replacing how,
                         const place *at) {
   status st = OK;
-  const symbol *s = find_symbol(r->d, name, n);
+  const symbol *s = use_symbol(r->d, name, n);
   if (s == NULL && left_alone(how, name, n)) {
     TRY(buffer_add(&r->scratch, name - 1, n + 2));
   } else if (s == NULL) {
@@ -297,6 +317,7 @@ static status define_piece(reader *r, piece p) {
   place value_at = logical_place(&r->line, (int)(def.value - text));
   TRY(definition_value(r, def.value, def.n_value, &value_at, &value));
   if (s == NULL) TRY(add_symbol(r->d, def.name, def.n_name, &s));
+  TRY(keep_spelling(r->d, s, def.name, def.n_name));
   if (!s->overridden) s->value = value;
   s->at = at;
   warn_of_variable(r, s, &at);
@@ -331,6 +352,7 @@ status symbols_from_command(reader *r, const char *define) {
   }
   TRY(definition_value(r, def.value, def.n_value, &at, &value));
   TRY(add_symbol(r->d, def.name, def.n_name, &s));
+  TRY(keep_spelling(r->d, s, def.name, def.n_name));
   s->value = value;
   s->overridden = 1;
   warn_of_variable(r, s, &at);

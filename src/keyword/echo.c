@@ -6,7 +6,9 @@
 
 #include <ctype.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { WIDTH = 78, TEXT = 512 };
 
@@ -103,12 +105,44 @@ static void echo_card(const model *m, const card *c, FILE *out) {
   for (int i = 0; i < c->n_record; ++i) echo_record(c, &c->records[i], out);
 }
 
+/* 1 if an expression of the text, which stands in quotes, has the name. */
+static int has_name(const char *text, const char *name) {
+  size_t n = strlen(name);
+  int quoted = 0;
+  for (const char *p = text; *p != '\0';) {
+    size_t k = 0;
+    while (isalnum((unsigned char)p[k]) || p[k] == '_') ++k;
+    if (quoted && k == n && strncasecmp(p, name, n) == 0) return 1;
+    if (k == 0) quoted = *p == '\n' ? 0 : quoted ^ (*p == '"');
+    p += k > 0 ? k : 1;
+  }
+  return 0;
+}
+
+/* Values stand where the names stood, but for expressions and the .geo. */
+static void echo_symbols(const deck *d, const char *cards, FILE *out) {
+  int any = 0;
+  for (int i = 0; i < d->n_symbol; ++i) {
+    const symbol *s = &d->symbols[i];
+    if (!s->in_geometry && !has_name(cards, s->name)) continue;
+    if (!any) fputs("*PARAMETER\n", out);
+    any = 1;
+    fprintf(out, "%s = %.17g\n", s->typed, s->value);
+  }
+}
+
 void model_echo(const model *m, FILE *out) {
   const deck *d = m->deck;
-  if (d->n_symbol > 0) fputs("*PARAMETER\n", out);
-  for (int i = 0; i < d->n_symbol; ++i)
-    fprintf(out, "%s = %.17g\n", d->symbols[i].name, d->symbols[i].value);
-  for (int i = 0; i < d->n_card; ++i) echo_card(m, &d->cards[i], out);
+  char *cards = NULL;
+  size_t size;
+  FILE *f = open_memstream(&cards, &size);
+  if (f == NULL) return;
+  for (int i = 0; i < d->n_card; ++i) echo_card(m, &d->cards[i], f);
+  if (fclose(f) == 0) {
+    echo_symbols(d, cards, out);
+    fputs(cards, out);
+  }
+  free(cards);
 }
 
 static const char *where_text(unsigned where) {

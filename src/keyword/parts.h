@@ -17,6 +17,10 @@ void resolve_friction(const model *m, friction_rule *rule);
 /* The points of a *PRINT that names some; an error if there are none. */
 void find_points(const model *m, print_request *p);
 
+/* symbols.c: names of *PARAMETER and -D that neither the deck nor the .geo uses
+ * are errors; the others learn whether the .geo has them. */
+status check_symbols(const model *m);
+
 /* steps.c: start, loads, solver and tables of each step, with what stays from
  * the one before. */
 status resolve_steps(model *m);

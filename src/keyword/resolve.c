@@ -195,29 +195,6 @@ done:
   return st;
 }
 
-/* Names of *PARAMETER; those of -D alone are passed over. */
-static const char *symbol_at(const void *ctx, int i) {
-  const deck *d = ctx;
-  if (i >= d->n_symbol) return NULL;
-  return d->symbols[i].at.file == NULL ? "" : d->symbols[i].name;
-}
-
-/* A -D that names no *PARAMETER, but nearly one. A .geo may want the others. */
-static void warn_defines(const model *m) {
-  const place at = {.file = "command line"};
-  for (int i = 0; i < m->deck->n_symbol; ++i) {
-    const symbol *s = &m->deck->symbols[i];
-    const char *near =
-        s->at.file == NULL ? nearest_word(s->name, symbol_at, m->deck) : NULL;
-    if (near != NULL)
-      message_add(
-          m->log, P2042, &at,
-          "-D %s: the deck has no *PARAMETER of that name; did you mean "
-          "%s?",
-          s->name, near);
-  }
-}
-
 /* A name that nothing refers to is often a misspelled reference. */
 static void warn_unused(const model *m) {
   static const char text[] = "*%s, NAME=%s is never used";
@@ -248,7 +225,7 @@ status model_resolve(model *m, int lost) {
   TRY(resolve_steps(m));
   if (!lost && message_count(m->log, ERROR) == 0) {
     warn_unused(m);
-    warn_defines(m);
+    TRY(check_symbols(m));
   }
 done:
   return st;

@@ -1,0 +1,26 @@
+/*
+ * The text of a .geo and of the files that it includes: which names it has.
+ */
+#ifndef PROTIS_MSH_GEO_H
+#define PROTIS_MSH_GEO_H
+
+#include "base/status.h"
+
+typedef struct geo_text {
+  int n_file, file_room;
+  char **file; /* [n_file] paths                                             */
+  char **text; /* [n_file] their bytes, a zero after each name               */
+  int n_name, name_room;
+  const char **name; /* [n_name] in text; a name as often as it stands there */
+  int is_open;       /* it includes what only gmsh can tell                  */
+} geo_text;
+
+/* Files that cannot be read are left to gmsh. ERR_MEMORY. */
+status geo_read(const char *file, geo_text *g);
+void geo_free(geo_text *g); /* accepts an all-zero object                    */
+/* 1 if the text has the name, letter by letter, or may have it. */
+int geo_has(const geo_text *g, const char *name);
+/* Name number i, or NULL: for nearest_word. */
+const char *geo_name(const void *geo, int i);
+
+#endif
