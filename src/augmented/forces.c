@@ -87,13 +87,7 @@ void auglag_take_states(auglag_run *s) {
 double auglag_judge(auglag_run *s) {
   const contact_problem *cp = s->cp;
   auglag_work *w = s->w;
-  double defect = 0.0, residual = solver_mismatch(cp, s->scale, s->u, w->F);
-  for (int i = 0; i < cp->m; ++i) {
-    double d = fabs(w->y[i] - w->F[i]);
-    if (!(d <= defect)) defect = d;
-  }
-  if (s->scale > 0.0) defect /= s->scale;
-  if (!(defect <= residual)) residual = defect;
+  double residual = contact_mismatch(cp, s->scale, s->u, w->F, w->y);
   solver_keep_best(&w->best, cp->m, residual, s->u, w->F);
   solver_tell_states(s->control, "auglag", s->steps, residual, s->turned,
                      s->cycle);

@@ -51,6 +51,8 @@ static void forget_factors(contact_solver *s) {
   s->inverse_wanted = 0;
   normal_form_free(&s->normal);
   anchor_free(&s->held);
+  contact_bodies_free(s->bodies);
+  s->bodies = NULL;
   memory_free(s->best_u);
   memory_free(s->best_r);
   s->best_u = s->best_r = NULL;
@@ -72,11 +74,14 @@ void contact_solver_tolerance(contact_solver *s, double tol) {
 
 const char *contact_solver_log(const contact_solver *s) { return s->log; }
 
+static int fits(const contact_solver *s, const contact_problem *cp) {
+  return s->A == cp->A && s->W == cp->W && s->m == cp->m && s->n == cp->n &&
+         s->best_u != NULL;
+}
+
 static status fit(contact_solver *s, const contact_problem *cp) {
   status st = OK;
-  if (s->A == cp->A && s->W == cp->W && s->m == cp->m && s->n == cp->n &&
-      s->best_u != NULL)
-    goto done;
+  if (fits(s, cp)) goto done;
   archive *from = s->best_u == NULL ? s->from : NULL;
   forget_factors(s);
   s->from = from;
@@ -86,6 +91,7 @@ static status fit(contact_solver *s, const contact_problem *cp) {
     archive_go(from, "");
     TRY(st);
   }
+  TRY(contact_bodies_new(cp, &s->bodies));
   NEW(s->best_u, cp->m);
   NEW(s->best_r, cp->m);
   s->A = cp->A;
@@ -414,17 +420,17 @@ done:
   return st;
 }
 
-status contact_solve(contact_solver *s, const contact_problem *cp,
-                     const solver_listener *listener, double *u, double *r,
-                     solver_report *rep) {
+const contact_bodies *contact_solver_bodies(const contact_solver *s,
+                                            const contact_problem *cp) {
+  return s != NULL && fits(s, cp) ? s->bodies : NULL;
+}
+
+static status solve_apart(contact_solver *s, const contact_problem *cp,
+                          const solver_listener *listener, double *u, double *r,
+                          solver_report *rep) {
   status st = OK;
-  double start = timer_cpu();
-  s->log[0] = '\0';
-  s->sought = s->proved = 0;
-  *rep = (solver_report){.outcome = RUNNING};
   s->scale = contact_scale(cp);
   if (known_answer(s, cp, u, r, rep)) goto done;
-  TRY(fit(s, cp));
   if (s->choice.ops == NULL) {
     TRY(auto_solve(s, cp, listener, u, r, rep));
   } else {
@@ -434,6 +440,22 @@ status contact_solve(contact_solver *s, const contact_problem *cp,
     TRY(attempt_prove(s, cp, rep));
   }
   if (rep->outcome == CONVERGED) TRY(polish(s, cp, u, r, rep));
+done:
+  return st;
+}
+
+status contact_solve(contact_solver *s, const contact_problem *cp,
+                     const solver_listener *listener, double *u, double *r,
+                     solver_report *rep) {
+  status st = OK;
+  double start = timer_cpu();
+  contact_problem apart = *cp;
+  s->log[0] = '\0';
+  s->sought = s->proved = 0;
+  *rep = (solver_report){.outcome = RUNNING};
+  TRY(fit(s, cp));
+  if (cp->bodies == NULL) apart.bodies = s->bodies;
+  TRY(solve_apart(s, &apart, listener, u, r, rep));
 done:
   rep->cpu = timer_cpu() - start;
   return st;

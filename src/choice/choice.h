@@ -30,6 +30,7 @@ struct contact_solver {
   int inverse_wanted; /* 1: the compliance alone did not do                  */
   anchor held; /* springs for a body that contact alone holds                 */
   normal_form normal;
+  contact_bodies *bodies;
   double *best_u, *best_r; /* [m] of the attempt with the lowest residual     */
   double scale;   /* contact_scale of the problem being solved               */
   int sought, proved; /* a proof that it has no solution                     */

@@ -17,14 +17,31 @@
 #include "base/sparse.h"
 #include "base/status.h"
 
+/* Nodes that the matrix joins, through others too, are of one body. */
+typedef struct body_size {
+  double load;    /* largest load, N                                          */
+  double contact; /* largest contact force, N                                 */
+  double way;     /* largest of both over the stiffness of its node, m        */
+  double fallen;  /* largest c_n times what a node has gone of its gap, N     */
+  double carried; /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m)           */
+  double reach;   /* the same of positions that the data lead to              */
+} body_size;
+typedef struct contact_bodies {
+  int n;
+  int *of;         /* [nodes] body of each                                    */
+  body_size *size; /* [n] room of the residual                                */
+} contact_bodies;
+
 typedef struct contact_problem {
-  int dim, n, m;     /* 2 or 3; contact nodes; m = dim*n unknowns           */
-  const double *A;   /* [m*m] condensed stiffness, N/m, symmetric, positive
-                        (semi)definite; NULL: only the compliance is known  */
-  const double *W;   /* [m*m] compliance, m/N; NULL until asked for. Given
-                        alone (A NULL) it may be semidefinite and slightly
-                        unsymmetric                                         */
-  const double *f;   /* [m] condensed load, N; with A NULL: q = W f, m      */
+  int dim, n, m;   /* 2 or 3; contact nodes; m = dim*n unknowns           */
+  const double *A; /* [m*m] condensed stiffness, N/m, symmetric, positive
+                      (semi)definite; NULL: only the compliance is known  */
+  const double *W; /* [m*m] compliance, m/N; NULL until asked for. Given
+                      alone (A NULL) it may be semidefinite and slightly
+                      unsymmetric                                         */
+  const double *f; /* [m] condensed load, N; with A NULL: q = W f, m      */
+  const double *f_load; /* [m] part of f that the motion of supports is not in,
+                         N; NULL: f                                         */
   const double *gap; /* [n] normal gap of the undeformed body, m            */
   const double *ut0; /* [n*(dim-1)] position of stick: tangential
                         displacement at increment start, plus the obstacle's
@@ -38,12 +55,17 @@ typedef struct contact_problem {
   const unsigned char *held; /* [m] or NULL: 1: a tangential unknown that is
                           prescribed. Its row of A is decoupled (A_ii u_i =
                           f_i), friction acts in the other direction only   */
+  const contact_bodies *bodies; /* NULL: not known; by contact_bodies_new */
   int floating; /* A is singular: contact alone holds the body         */
   double load;  /* N, what loads grow to: forces that are nothing beside their
                    rounding are nothing (contact_scale); 0: not known    */
 } contact_problem;
 
 typedef enum { CONTACT_OPEN, CONTACT_SLIP, CONTACT_STICK } contact_status;
+
+/* The parts of a problem with that matrix that hardly an entry joins. */
+status contact_bodies_new(const contact_problem *cp, contact_bodies **out);
+void contact_bodies_free(contact_bodies *b); /* accepts NULL                  */
 
 /* r = A u - f, N. r[m]. Stiffness form only. */
 void contact_reaction(const contact_problem *cp, const double *u, double *r);
@@ -55,7 +77,8 @@ void contact_classify(const contact_problem *cp, const double *u,
                       const double *r, contact_status *status);
 /*
  * Force scale of the problem, N (displacement scale, m, if A is NULL): how
- * large the forces of its solution are to be expected, from the data alone.
+ * large the forces of its solution can be expected at most, from the data
+ * alone.
  *
  *   F = min over d of max(|f - A d|_max, 2^-14 (|f| + diag(A) |d|)_max)
  *
@@ -69,36 +92,45 @@ void contact_classify(const contact_problem *cp, const double *u,
  */
 double contact_scale(const contact_problem *cp);
 /*
- * The same at displacements u: at least 2^-14 of diag(A) times what the nodes
- * have gone of their gaps. A body that falls through a gap under next to no
- * load has forces that rounding of A u hides: they are right to that.
- */
-double contact_scale_at(const contact_problem *cp, double scale,
-                        const double *u);
-/*
- * Largest part over the nodes of the natural map, N (m if A is NULL), without
- * the equation A u = f + r:
- *   normal      max(r_n, c (u_n - gap)),
+ * How far (u, r) is from a solution: the largest over the nodes of e/s, where e
+ * is an error in N of
+ *   normal      r_n - min(0, r_n - c (u_n - gap)),
  *   tangential  r_t - P_g(r_t - c (u_t - ut0)),  P_g projects on the disc
- * |.|<=g with c = A_nn, and the mean of the tangential diagonal of the node;
- * the compliance form takes c = 1/W and multiplies by W. NaN if anything is
- * NaN.
- */
-double contact_mismatch(const contact_problem *cp, const double *u,
-                        const double *r);
-/*
- * How far (u, r) is from a solution: the larger of contact_mismatch and of
- * |A u - f - r|_max (|u - W r - q|_max), over contact_scale_at. No unit: a
- * change of units by factors 2^k leaves every bit. A residual of 1e-10 is an
- * error of the nodal forces of about 1e-10 of the largest. NaN if anything is
- * NaN; 0 for f = 0, gap >= 0, u = r = 0; HUGE_VAL if the scale is zero and (u,
- * r) is not a solution.
+ *               |.| <= g,
+ *   equation    A u - f - r,  or c (W r + q - u),
+ * c = A_nn and the mean of the tangential diagonal of the node, or 1/W of them.
+ * With F the largest load or projected force of the body the node belongs to,
+ * and D the largest of those forces over k, k the larger c of its node,
+ *   s = min(F, k D, contact_scale)
+ * (c times contact_scale in the compliance form): the error is small beside
+ * the forces of the body, and the displacement that it makes beside those that
+ * they make. What only carries the body, in f, A u and c ut0, is not in s; what
+ * rounding can have put into a row with such terms, 2^-47 of
+ * |f_i| + sqrt(k_i) max_j sqrt(k_j) |u_j|, is taken off e.
+ * s is at least 2^-14 of cp->load and of c times what a node has gone of its
+ * gap: a body that falls through it has forces that rounding of A u hides.
+ * Loads of a body: f_load, in the compliance form the force that holds a node
+ * alone at its gap.
+ *
+ * Bodies are searched for where cp->bodies is NULL; the functions below then
+ * take all nodes as one.
+ *
+ * No unit: a change of units by factors 2^k leaves every bit. NaN if anything
+ * is NaN; 0 for f = 0, gap >= 0, u = r = 0; HUGE_VAL if s is zero and (u, r) is
+ * not a solution.
  */
 double contact_residual(const contact_problem *cp, const double *u,
                         const double *r);
 /* The same where contact_scale is known: it costs two products. */
 double contact_residual_at(const contact_problem *cp, double scale,
                            const double *u, const double *r);
+/* The same of an iterate whose equation misses what r is from raw[m] = A u - f
+ * (u from raw[m] = W r + q); raw NULL: nothing. It costs no product. */
+double contact_mismatch(const contact_problem *cp, double scale,
+                        const double *u, const double *r, const double *raw);
+/* What rounding can have put into the forces of each node, N. rounding[n]. */
+void contact_roundings(const contact_problem *cp, const double *u,
+                       const double *r, double *rounding);
 /* Single unknowns: 1 if prescribed; the bound from above (gap, or side_gap;
  * HUGE_VAL: none), m; the position of stick, m, of a tangential unknown. */
 int contact_held(const contact_problem *cp, int dof);

@@ -20,6 +20,8 @@ enum { LOG = 512 };
 typedef struct discrete {
   const step *step;
   const exchange_problem *p;
+  contact_problem cp; /* p->cp, with its bodies after the solve; dim 1: 0 */
+  contact_bodies *bodies;
   contact_surface surface; /* numbers only                                   */
   double *u, *r;           /* [m] start and answer; LCP: w, z                */
   double *gap, *slip, *g;  /* [n], [n*(dim-1)], [n]                          */
@@ -55,6 +57,7 @@ static void discrete_free(discrete *d) {
   memory_free(d->slip);
   memory_free(d->g);
   memory_free(d->contact);
+  contact_bodies_free(d->bodies);
   solution_set_free(&d->solutions);
 }
 
@@ -121,8 +124,10 @@ done:
 static status solve_contact(discrete *d, const history_sink *sink) {
   status st = OK;
   contact_solver *solver = NULL;
-  const contact_problem *cp = &d->p->cp;
+  contact_problem *cp = &d->cp;
   const solver_listener listener = {sink->iteration, sink->ctx};
+  TRY(contact_bodies_new(cp, &d->bodies));
+  cp->bodies = d->bodies;
   if (cp->A == NULL) memcpy(d->u, cp->f, (size_t)cp->m * sizeof *d->u);
   TRY(contact_solver_new(&d->step->solver, &solver));
   TRY(contact_solve(solver, cp, listener.step == NULL ? NULL : &listener, d->u,
@@ -178,27 +183,29 @@ done:
 
 static state state_of(const discrete *d) {
   const exchange_problem *p = d->p;
-  const contact_problem *cp = p->dim > 1 ? &p->cp : NULL;
-  state s = {.step_no = 1,
-             .increment_no = 1,
-             .total_no = 1,
-             .attempt = 1,
-             .t = d->step->total,
-             .dt = d->step->total,
-             .end_of_step = 1,
-             .problem = cp,
-             .surface = &d->surface,
-             .uc = d->u,
-             .rc = d->r,
-             .gap = d->gap,
-             .slip = d->slip,
-             .limit = cp != NULL && cp->g0 != NULL ? d->g : NULL,
-             .contact = d->contact,
-             .report = d->report,
-             .error = d->error,
-             .solutions = d->step->check != CHECK_NONE ? &d->solutions : NULL,
-             .solver_log = d->log,
-             .settled = d->report.outcome > 0};
+  const contact_problem *cp = p->dim > 1 ? &d->cp : NULL;
+  state s = {
+      .step_no = 1,
+      .increment_no = 1,
+      .total_no = 1,
+      .attempt = 1,
+      .t = d->step->total,
+      .dt = d->step->total,
+      .end_of_step = 1,
+      .problem = cp,
+      .surface = &d->surface,
+      .uc = d->u,
+      .rc = d->r,
+      .gap = d->gap,
+      .slip = d->slip,
+      .limit = cp != NULL && cp->g0 != NULL ? d->g : NULL,
+      .contact = d->contact,
+      .report = d->report,
+      .error = d->error,
+      .solutions = d->step->check != CHECK_NONE ? &d->solutions : NULL,
+      .solver_log = d->log,
+      .settled = d->report.outcome > 0 && !error_bound_doubts(&d->error, 1.0),
+      .in_doubt = error_bound_doubts(&d->error, 1.0)};
   for (int i = 0; i < p->n; ++i) {
     s.n_open += d->contact[i] == CONTACT_OPEN;
     s.n_slip += d->contact[i] == CONTACT_SLIP;
@@ -246,7 +253,7 @@ done:
 status condensed_run(const model *m, const exchange_problem *p,
                      const history_sink *sink, int *unsettled) {
   status st = OK;
-  discrete d = {.step = &m->steps[0], .p = p};
+  discrete d = {.step = &m->steps[0], .p = p, .cp = p->cp};
   double cpu = timer_cpu();
   *unsettled = 0;
   TRY(discrete_new(&d));
@@ -256,9 +263,9 @@ status condensed_run(const model *m, const exchange_problem *p,
   timer_leave(STAGE_CONTACT);
   TRY(st);
   if (p->dim > 1 && !outcome_is_fatal(d.report.outcome))
-    TRY(find_error(d.step, &p->cp, d.u, d.r, &d.error));
+    TRY(find_error(d.step, &d.cp, d.u, d.r, &d.error));
   if (p->dim > 1 && !outcome_is_fatal(d.report.outcome))
-    TRY(check_problem(d.step, &p->cp, &d.report, d.u, d.r, &d.solutions));
+    TRY(check_problem(d.step, &d.cp, &d.report, d.u, d.r, &d.solutions));
   TRY(tell_answer(&d, sink, cpu, unsettled));
 done:
   discrete_free(&d);

@@ -19,6 +19,7 @@
 
 const char *const error_bound_indefinite =
     "the matrix is not symmetric and positive semidefinite";
+static const double DOUBT = 0.1;        /* -, relative error                  */
 static const double UNLOADED = 0x1p-60; /* -, of the largest energy           */
 static const char weakly_held[] =
     "supports hold a body by lever arms of next to nothing";
@@ -31,6 +32,10 @@ void error_bound_set(const solver_error *found, double energy, error_bound *e) {
                      .why = found->why};
   if (found->why != NULL || found->norm > 0.0)
     e->relative = energy > 0.0 ? found->norm / sqrt(2.0 * energy) : NAN;
+}
+
+int error_bound_doubts(const error_bound *e, double share) {
+  return e->asked && e->why == NULL && share * e->relative > DOUBT;
 }
 
 static status force_energy(void *ctx, const double *d, double *square) {

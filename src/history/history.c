@@ -38,9 +38,10 @@ static long increments_of(const step *s) {
   return (long)ceil(n);
 }
 
-/* 1: reached its tolerance and violates no theorem. */
+/* 1: reached its tolerance, is not in doubt and violates no theorem. */
 static int is_settled(const run *r) {
-  return r->report.outcome > 0 && !r->missed && !r->theorems.violated;
+  return r->report.outcome > 0 && !r->missed && !r->theorems.violated &&
+         !error_bound_doubts(&r->error, share_of_step(r));
 }
 
 /* What the outputs see of an increment. */
@@ -87,6 +88,7 @@ state loop_state(run *r, int attempt, int increment_no) {
              .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
              .solver_log = contact_solver_log(r->solver),
              .settled = is_settled(r),
+             .in_doubt = error_bound_doubts(&r->error, share_of_step(r)),
              .again = {r, beside_with}};
   if (r->visco != NULL) visco_show(r, &s);
   if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
@@ -149,7 +151,6 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   TRY(dense_show(r, increment_no));
   ++r->total_no;
   TRY(theory_increment(r));
-  if (!is_settled(r)) ++r->unsettled;
   TRY(result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
   TRY(estimate_increment(r));
   r->n_zone = 0;
@@ -161,6 +162,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   TRY(note_misfit(r));
   path_compare(r);
   estimate_unloaded(r);
+  if (!is_settled(r)) ++r->unsettled;
   TRY(balance_learn(r));
   state s = loop_state(r, attempt, increment_no);
   s.end_of_step = last;

@@ -61,6 +61,8 @@ status zones_find(run *r);
 void warn_increment(run *r, int increment_no);
 void warn_end(run *r);
 
+/* The loads now over the largest of the step, at most 1. */
+double share_of_step(const run *r);
 /* rounding.c: what rounding has taken of r->now, whose energies are known.
  * ERR_SINGULAR: it leaves no digit. */
 status rounding_find(run *r);

@@ -168,7 +168,7 @@ done:
 
 /* The loads now over the largest of the step: what rounding takes does not grow
  * with them, so that it counts against those. */
-static double share_of_step(const run *r) {
+double share_of_step(const run *r) {
   const double now = increment_free_load(r, r->now.F);
   return now < r->step_load ? now / r->step_load : 1.0;
 }

@@ -138,7 +138,10 @@ static void print_verdict(const job *j, const state *s, FILE *f) {
   print_balance(j, s, f);
   if (s->solver_log != NULL && s->solver_log[0] != '\0')
     fprintf(f, "  tried: %s\n", s->solver_log);
-  if (!s->settled) fprintf(f, "  THE TOLERANCE WAS NOT REACHED\n");
+  if (s->in_doubt)
+    fprintf(f, "  THE ERROR OF THE SOLVER MAY BE ABOVE 10 %%\n");
+  else if (!s->settled)
+    fprintf(f, "  THE TOLERANCE WAS NOT REACHED\n");
 }
 
 static void print_when(const state *s, FILE *f) {

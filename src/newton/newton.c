@@ -102,17 +102,14 @@ typedef struct run {
   states *st;
   const solver_control *control;
   double *u, *r;
+  double scale; /* contact_scale, N (m)                                       */
   int steps;    /* made so far                                               */
   int singular; /* the last system needed springs                            */
 } run;
 
 static double residual_of(const run *s) {
-  double defect = states_clean(s->st);
-  double residual = solver_mismatch(s->cp, s->st->scale, s->u, s->r);
-  double scale = contact_scale_at(s->cp, s->st->scale, s->u);
-  if (isnan(defect)) return NAN;
-  defect = scale > 0.0 ? defect / scale : defect > 0.0 ? HUGE_VAL : 0.0;
-  return defect > residual ? defect : residual;
+  states_clean(s->st);
+  return contact_mismatch(s->cp, s->scale, s->u, s->r, s->st->raw);
 }
 
 /* 1: the pattern has been met in this attempt. */
@@ -140,7 +137,7 @@ typedef struct course {
 static int solved(const run *s, course *c, double residual) {
   int within = residual <= s->control->tol, linear = s->cp->dim == 2;
   if (solver_few_digits(s->control->tol)) return within;
-  int rests = (linear && c->changes == 0) || c->settled || residual <= 0x1p-43;
+  int rests = (linear && c->changes == 0) || c->settled;
   c->settled = within;
   return within && rests;
 }
@@ -283,8 +280,7 @@ static void begin(run *s) {
   s->st->cp = cp;
   s->st->u = s->u;
   s->st->r = s->r;
-  s->st->scale =
-      s->control->scale > 0.0 ? s->control->scale : contact_scale(cp);
+  s->scale = s->control->scale > 0.0 ? s->control->scale : contact_scale(cp);
   s->st->careful = 0;
   s->st->dice = 0;
   memset(s->st->guess.closed, 0, (size_t)cp->m);
@@ -306,7 +302,7 @@ static status newton_solve(const contact_problem *cp, const void *par,
   *rep = (solver_report){.outcome = CONVERGED, .iterations = 1};
   begin(&s);
   if (cp->n == 1 &&
-      single_solve(cp, w->states.scale, control->tol, u, r, &rep->residual)) {
+      single_solve(cp, s.scale, control->tol, u, r, &rep->residual)) {
     solver_tell(control, "newton", 1, rep->residual);
     return OK;
   }

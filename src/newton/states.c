@@ -6,8 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double STATE_MARGIN = 0x1p-46; /* -, of the scale: no change of
-                                               state below the rounding      */
 static const double WARM_SLIP = 0x1p-20; /* -, of g: counts as slipping at the
                                             start                            */
 
@@ -40,6 +38,7 @@ status states_new(const contact_problem *cp, states *s) {
   NEW(s->k, m);
   NEW(s->c, cp->n);
   NEW(s->g, cp->n);
+  NEW(s->rounding, cp->n);
   set_stiffness(cp, s);
 done:
   return st;
@@ -51,6 +50,7 @@ void states_free(states *s) {
   memory_free(s->k);
   memory_free(s->c);
   memory_free(s->g);
+  memory_free(s->rounding);
 }
 
 /* ---- reaction ------------------------------------------------------------ */
@@ -77,28 +77,25 @@ static void clean_slip(const states *s, int node_id) {
     if (!contact_held(cp, node_id * cp->dim + k)) r[k] *= g / size;
 }
 
-/* u from raw, the compliance form; returns the largest change, m. */
-static double clean_displacement(const states *s) {
+/* u from raw, the compliance form. */
+static void clean_displacement(const states *s) {
   const contact_problem *cp = s->cp;
-  double worst = 0.0;
   for (int dof = 0; dof < cp->m; ++dof) {
     int stick = dof % cp->dim > 0 && s->guess.mode[dof / cp->dim] == STICK;
-    double to = s->raw[dof];
     if (contact_held(cp, dof)) continue;
     if (s->guess.closed[dof])
-      to = contact_bound(cp, dof);
-    else if (stick)
-      to = contact_stick(cp, dof);
-    s->u[dof] = to;
-    if (!(fabs(to - s->raw[dof]) <= worst)) worst = fabs(to - s->raw[dof]);
+      s->u[dof] = contact_bound(cp, dof);
+    else
+      s->u[dof] = stick ? contact_stick(cp, dof) : s->raw[dof];
   }
-  return worst;
 }
 
-double states_clean(const states *s) {
+void states_clean(const states *s) {
   const contact_problem *cp = s->cp;
-  double worst = 0.0;
-  if (cp->A == NULL) return clean_displacement(s);
+  if (cp->A == NULL) {
+    clean_displacement(s);
+    return;
+  }
   memcpy(s->r, s->raw, (size_t)cp->m * sizeof *s->r);
   for (int dof = 0; dof < cp->m; ++dof) {
     int k = dof % cp->dim;
@@ -108,20 +105,9 @@ double states_clean(const states *s) {
   }
   for (int node_id = 0; node_id < cp->n; ++node_id)
     if (s->guess.mode[node_id] == SLIP) clean_slip(s, node_id);
-  for (int dof = 0; dof < cp->m; ++dof) {
-    double d = fabs(s->r[dof] - s->raw[dof]);
-    if (!(d <= worst)) worst = d;
-  }
-  return worst;
 }
 
 /* ---- states ------------------------------------------------------------ */
-
-/* Forces below it do not count, N; at a node of that stiffness. */
-static double margin_of(const states *s, double stiffness) {
-  double margin = STATE_MARGIN * s->scale;
-  return s->cp->A != NULL ? margin : margin * stiffness;
-}
 
 /* A node slips: direction and turning stiffness from z. */
 static void set_slip(states *s, int node_id, const double *z, double size,
@@ -156,7 +142,7 @@ static void friction_state(states *s, int node_id, int fresh) {
   tangent before = fresh ? FREE : (tangent)s->guess.mode[node_id];
   double slip[2], z[2], size = 0.0, along = 0.0;
   double g = s->g[node_id] = contact_node_limit(s->cp, s->r, node_id);
-  double margin = margin_of(s, s->c[node_id]);
+  double margin = s->rounding[node_id];
   newton_slip(s->cp, s->u, node_id, slip);
   for (int k = 0; k < tangents; ++k) {
     double force = contact_held(s->cp, first + k) ? 0.0 : s->r[first + k];
@@ -180,7 +166,7 @@ static void friction_state(states *s, int node_id, int fresh) {
 /* Normal or side unknown: 1 closed. */
 static int closed_state(states *s, int dof, int fresh) {
   double over = s->k[dof] * (s->u[dof] - contact_bound(s->cp, dof));
-  double margin = margin_of(s, s->k[dof]);
+  double margin = s->rounding[dof / s->cp->dim];
   if (fresh) return s->r[dof] <= over;
   if (s->guess.closed[dof]) return s->r[dof] <= margin;
   return over > margin;
@@ -237,6 +223,7 @@ int states_next(states *s, int fresh) {
     presume_pressure(s);
     bonded = 0;
   }
+  contact_roundings(cp, s->u, s->r, s->rounding);
   for (int node_id = 0; node_id < cp->n; ++node_id) {
     changes += next_bounds(s, node_id, fresh, changes);
     if (cp->g0 == NULL || contact_has_side(cp, node_id)) continue;

@@ -12,15 +12,15 @@
 typedef struct states {
   const contact_problem *cp;
   pattern guess;
-  double *u;     /* [m] of the caller, m                                   */
-  double *r;     /* [m] of the caller, N                                   */
-  double *raw;   /* [m] A u - f, N; compliance form: W r + q, m            */
-  double *k;     /* [m] stiffness of each unknown alone, N/m               */
-  double *c;     /* [n] mean of them in the tangent plane, N/m             */
-  double *g;     /* [n] sliding limits, N                                  */
-  double scale;  /* contact_scale, N (m)                                   */
-  int careful;   /* one state changed at a time, the least index first     */
-  uint64_t dice; /* not 0: each change is made or put off at random        */
+  double *u;        /* [m] of the caller, m                                   */
+  double *r;        /* [m] of the caller, N                                   */
+  double *raw;      /* [m] A u - f, N; compliance form: W r + q, m            */
+  double *k;        /* [m] stiffness of each unknown alone, N/m               */
+  double *c;        /* [n] mean of them in the tangent plane, N/m             */
+  double *g;        /* [n] sliding limits, N                                  */
+  double *rounding; /* [n] of the forces of each node, N                   */
+  int careful;      /* one state changed at a time, the least index first     */
+  uint64_t dice;    /* not 0: each change is made or put off at random        */
 } states;
 
 /* Arrays for a matrix. */
@@ -28,9 +28,8 @@ status states_new(const contact_problem *cp, states *s);
 void states_free(states *s);
 /* r from raw with what the guess fixes put in exactly: no force where open,
  * |r_t| = g where slipping; compliance form: u from raw, no gap where closed,
- * no slip where stuck. Returns the largest change made, N (m): the defect of
- * the linear solution. */
-double states_clean(const states *s);
+ * no slip where stuck. */
+void states_clean(const states *s);
 /* Read the next guess off (u, r); returns the number of states that would
  * change; some may be put off. fresh: there is no guess before. */
 int states_next(states *s, int fresh);

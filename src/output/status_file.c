@@ -30,13 +30,14 @@ static const char *check_text(const state *s, char text[32]) {
 
 /*
  * OK, OK JUMP, UNSETTLED (taken although it missed its tolerance) or CUT, then
- * the code of what stopped the contact solver, then words.
+ * the code of what stopped the contact solver, BOUND if its error may be above
+ * 10 %, then words.
  */
 static void print_reason(const state *s, const char *why, FILE *f) {
   char check[32];
   outcome o = s->report.outcome;
-  const char *code = o < 0 ? outcome_code(o) : "";
-  const char *blank = o < 0 ? " " : "";
+  const char *code = o < 0 ? outcome_code(o) : s->in_doubt ? "BOUND" : "";
+  const char *blank = code[0] != '\0' ? " " : "";
   if (why != NULL)
     fprintf(f, " CUT%s%s %s\n", blank, code, why);
   else if (!s->settled)

@@ -339,7 +339,7 @@ static status trial(run *s, int limit, int closed, outcome *end) {
   for (int idle = 0; idle < PATIENCE; ++idle) {
     memcpy(w->centre, s->r, bytes);
     evaluate(s);
-    double residual = solver_mismatch(s->cp, s->scale, s->u, s->r);
+    double residual = contact_mismatch(s->cp, s->scale, s->u, s->r, NULL);
     solver_keep_best(&w->best, s->cp->m, residual, s->u, s->r);
     solver_tell(s->control, "proximal", s->steps, residual);
     *end = residual <= s->control->tol ? CONVERGED

@@ -15,7 +15,7 @@ struct beside {
   visco v;
 };
 
-enum { OWN = 17 };
+enum { OWN = 18 };
 
 typedef struct own_array {
   double **at;
@@ -38,6 +38,7 @@ static void list_own(run *b, own_array list[OWN]) {
                               {&e->e0, strains},
                               {&e->sigma, strains},
                               {&b->f, (size_t)b->n_row},
+                              {&b->f_load, (size_t)b->n_row},
                               {&b->gap, n},
                               {&b->side_gap, sides},
                               {&b->ut0, sides},

@@ -255,6 +255,7 @@ static status forms_solve(run *r) {
   st = contact_solve(r->solver, &cp, told, u, rc, &r->report);
   timer_leave(STAGE_CONTACT);
   TRY(st);
+  r->cp.bodies = contact_solver_bodies(r->solver, &cp);
   if (in_du) velocity_form_apply(r->forms->velocity, &whole, own_u);
   if (given) given_form_apply(r->forms->given, &r->cp, own_u, rc);
   put_rows(r, own_u, rc);
@@ -376,6 +377,7 @@ static void set_problem(run *r) {
       .m = r->n_row,
       .A = condensed_matrix(r->c),
       .f = r->f,
+      .f_load = largest_entry(r->n_dof, r->ud) > 0.0 ? r->f_load : NULL,
       .gap = r->gap,
       .ut0 = r->ut0,
       .g0 = friction ? r->limit.g0 : NULL,
@@ -385,6 +387,7 @@ static void set_problem(run *r) {
       .floating = condensed_floating(r->c),
       .load = r->step_load};
   if (r->reach.in != NULL) reach_cut(&r->reach, &r->part, &r->cp);
+  r->cp.bodies = contact_solver_bodies(r->solver, &r->cp);
 }
 
 static status load_at(run *r, double t) {
@@ -415,6 +418,8 @@ done:
 static status pose(run *r, const double *F) {
   status st = OK;
   r->report = (solver_report){.outcome = CONVERGED, .solver = "linear"};
+  if (r->n > 0 && largest_entry(r->n_dof, r->ud) > 0.0)
+    TRY(condense_load(r->c, F, NULL, r->f_load));
   TRY(condense_load(r->c, F, r->ud, r->f));
   if (r->n > 0) TRY(pose_contact(r, r->now.t));
 done:

@@ -121,6 +121,7 @@ typedef struct run {
   char note[512]; /* what changed abruptly in the increment, "" or lines    */
 
   /* Contact problem of the increment. */
+  double *f_load; /* [n_row] of f, without the motion of supports, N */
   double *f, *gap, *side_gap, *ut0; /* [n_row], [n], [n*(dim-1)] twice        */
   double *row[2]; /* [rows*n] room of run_rows, NULL where r->cp has all      */
   reach_part part; /* what r->cp points to where it has not all nodes        */

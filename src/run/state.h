@@ -159,7 +159,8 @@ typedef struct state {
   const char *solver_log;
   const char *note; /* whole lines about what jumps, "" or NULL: nothing      */
   double cpu;       /* of this increment, s                                */
-  int settled;      /* 1: reached its tolerance                            */
+  int settled;      /* 1: reached its tolerance, and is not in doubt       */
+  int in_doubt;     /* 1: the bound of the solver's error is above 10 %     */
   what_if again;    /* until the next one                                  */
 } state;
 

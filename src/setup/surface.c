@@ -15,10 +15,10 @@ void run_free_surface(run *r) {
   r->c = NULL;
   r->surface = NULL;
   double **owned[] = {
-      &r->f,        &r->f_before, &r->gap,        &r->side_gap,   &r->ut0,
-      &r->open_gap, &r->slip,     &r->g,          &r->old.uc,     &r->old.rc,
-      &r->now.uc,   &r->now.rc,   &r->old.motion, &r->now.motion, &r->distance,
-      &r->row[0],   &r->row[1]};
+      &r->f,        &r->f_load,     &r->f_before, &r->gap,        &r->side_gap,
+      &r->ut0,      &r->open_gap, &r->slip,     &r->g,          &r->old.uc,
+      &r->old.rc,   &r->now.uc,   &r->now.rc,   &r->old.motion, &r->now.motion,
+      &r->distance, &r->row[0],   &r->row[1]};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) {
     memory_free(*owned[i]);
     *owned[i] = NULL;
@@ -48,6 +48,7 @@ static status new_contact_arrays(run *r) {
   status st = OK;
   int tangents = r->n * (r->msh->dim - 1);
   NEW(r->f, r->n_row);
+  NEW(r->f_load, r->n_row);
   NEW(r->f_before, r->n_row);
   NEW(r->gap, r->n);
   NEW(r->old.uc, r->n_c);

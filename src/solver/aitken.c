@@ -243,10 +243,10 @@ static outcome sweeps(run *s, const solver_control *control,
     if (k % REFRESH == 1) relaxation_refresh(z);
     memcpy(s->w->before, s->x, (size_t)s->m * sizeof *s->x);
     relaxation_sweep(z, s->symmetric && k % 2 == 0);
-    double residual = solver_mismatch(z->cp, scale, z->u, z->r);
+    double residual = contact_mismatch(z->cp, scale, z->u, z->r, NULL);
     if (residual <= control->tol) {
       relaxation_refresh(z);
-      residual = solver_mismatch(z->cp, scale, z->u, z->r);
+      residual = contact_mismatch(z->cp, scale, z->u, z->r, NULL);
     }
     solver_keep_best(&s->w->best, s->m, residual, z->u, z->r);
     int cycle = state_watch_returns(&s->watch, z);

@@ -148,10 +148,10 @@ static void refresh(run *s) {
 static outcome judge(run *s, int k) {
   const contact_problem *cp = s->cp;
   for (int i = 0; i < cp->m; ++i) s->u[i] = s->w->x[i] + s->w->set->origin[i];
-  double residual = solver_mismatch(cp, s->scale, s->u, s->r);
+  double residual = contact_mismatch(cp, s->scale, s->u, s->r, NULL);
   if (residual <= s->control->tol) {
     refresh(s);
-    residual = solver_mismatch(cp, s->scale, s->u, s->r);
+    residual = contact_mismatch(cp, s->scale, s->u, s->r, NULL);
   }
   solver_keep_best(&s->w->best, cp->m, residual, s->u, s->r);
   solver_tell(s->control, "lagrange", k, residual);

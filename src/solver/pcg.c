@@ -237,11 +237,11 @@ static void refresh(run *s) {
 static outcome judge(run *s) {
   const contact_problem *cp = s->cp;
   for (int i = 0; i < cp->m; ++i) s->u[i] = s->w->x[i] + s->w->set->origin[i];
-  s->residual = solver_mismatch(cp, s->scale, s->u, s->r);
+  s->residual = contact_mismatch(cp, s->scale, s->u, s->r, NULL);
   if (s->residual <= s->control->tol) {
     refresh(s);
     s->refreshed = 1;
-    s->residual = solver_mismatch(cp, s->scale, s->u, s->r);
+    s->residual = contact_mismatch(cp, s->scale, s->u, s->r, NULL);
   }
   solver_keep_best(&s->w->best, cp->m, s->residual, s->u, s->r);
   solver_tell(s->control, "pcg", s->steps, s->residual);

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 
 #include <math.h>
+
 #include <string.h>
 #include <strings.h>
 
@@ -19,15 +20,6 @@ const solver_ops *solver_find(const char *name) {
 const char *solver_family(const char *name) {
   const solver_ops *ops = name == NULL ? NULL : solver_find(name);
   return ops == NULL ? "direct" : ops->family;
-}
-
-double solver_mismatch(const contact_problem *cp, double scale, const double *u,
-                       const double *r) {
-  double worst = contact_mismatch(cp, u, r);
-  scale = contact_scale_at(cp, scale, u);
-  if (isnan(worst) || isnan(scale)) return NAN;
-  if (scale > 0.0) return worst / scale;
-  return worst > 0.0 ? HUGE_VAL : 0.0;
 }
 
 static const double FEW_DIGITS = 1e-4; /* -, tolerance                        */

@@ -94,10 +94,6 @@ extern const char auto_help[]; /* manual text of METHOD=AUTO                  */
 
 /* ---- what the solvers share ---- */
 
-/* contact_residual of an iterate that satisfies A u = f + r, its scale known.
- */
-double solver_mismatch(const contact_problem *cp, double scale, const double *u,
-                       const double *r);
 /* 1: so few digits are wanted (TOL=BALANCED) that an iterate within the
  * tolerance is the answer, even where one more step would be exact. */
 int solver_few_digits(double tol);
@@ -145,6 +141,9 @@ status contact_solve(contact_solver *s, const contact_problem *cp,
 /* What the solver remembers from solve to solve: kept, or read for the next
  * solve; a is then borrowed, in its present group, until a reset. */
 status contact_solver_keep(contact_solver *s, archive *a);
+/* The bodies of a problem with the matrix solved last; else NULL. Borrowed. */
+const contact_bodies *contact_solver_bodies(const contact_solver *s,
+                                            const contact_problem *cp);
 /* Who tried before the answer, "newton: cycle, sor: converged"; "" if one. */
 const char *contact_solver_log(const contact_solver *s);
 

@@ -148,7 +148,7 @@ static int cure(relaxation *s, course *c) {
 /* The residual with u and r carried anew; keeps the best. */
 static double check(relaxation *s, course *c, double scale) {
   relaxation_refresh(s);
-  double residual = solver_mismatch(s->cp, scale, s->u, s->r);
+  double residual = contact_mismatch(s->cp, scale, s->u, s->r, NULL);
   solver_keep_best(c->kept, s->cp->m, residual, s->u, s->r);
   if (residual < PROGRESS * c->mark) {
     c->mark = residual;

@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- one node ----------------------------------------------------------- */
@@ -263,6 +264,92 @@ START_TEST(cone_is_round_for_every_direction_of_slip) {
 }
 END_TEST
 
+/* ---- long motions -------------------------------------------------------- */
+
+/* A block pressed by p onto a floor, E = 300 (elastic motion 1e-3), mu = 0.3:
+ * the floor moves, or the top of the block is carried; one increment. Exit
+ * code; *T: tangential force, *reason: of the increment. */
+typedef struct long_motion {
+  const char *floor, *top; /* what moves */
+  double E, p;
+} long_motion;
+
+static int run_long(const long_motion *l, const char *solver, const char *form,
+                    double *T, char reason[40]) {
+  job j = job_begin("long");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "long.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n%.17g, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+            "*STEP\n*QUASISTATIC, FORM=%s\n1., 1.\n*BOUNDARY\n%s"
+            "*DSLOAD\nTOP, P, %.17g\n*SOLVER, %s\n"
+            "*PRINT, TOTALS\n*END STEP\n",
+            l->E, l->floor, form, l->top, l->p, solver);
+  int code = job_run(&j, "");
+  *T = NAN;
+  reason[0] = '\0';
+  if (code <= 1) {
+    dat t = job_table(&j, "TOTALS", -1);
+    *T = dat_at(&t, 0, "force_x");
+    dat_free(&t);
+    char *sta = job_file(&j, "sta"), *last = strrchr(sta, ' ');
+    last = strstr(sta, " UNSETTLED") ? strstr(sta, " UNSETTLED") : last;
+    sscanf(last, " %39[^\n]", reason);
+    free(sta);
+  }
+  job_end(&j);
+  return code;
+}
+
+/* What only carries is not in the scale of the residual: the friction force is
+ * right, or the increment is not OK. */
+START_TEST(long_motions_leave_the_forces_right) {
+  static const char *const methods[] = {"AUTO",   "NEWTON",   "LEMKE",
+                                        "SOR",    "PCG",      "AUGLAG",
+                                        "AITKEN", "LAGRANGE", "PROXIMAL"};
+  static const long_motion scenes[] = {
+      {"MOVE, 1E5, 0.\n", "TOP, 1\n", 300, 1},
+      {"MOVE, 1E6, 0.\n", "TOP, 1\n", 300, 1},
+      {"MOVE, 1E8, 0.\n", "TOP, 1\n", 300, 1},
+      {"", "TOP, 1, 1, -1E3\n", 1, 1e-9},
+  };
+  for (size_t k = 0; k < 4; ++k)
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m)
+      for (int velocity = 0; velocity <= (m < 2); ++velocity) {
+        char solver[40], reason[40];
+        double T;
+        snprintf(solver, sizeof solver, "METHOD=%s", methods[m]);
+        int code = run_long(&scenes[k], solver,
+                            velocity ? "VELOCITY" : "DISPLACEMENT", &T, reason);
+        int ok = code == 0;
+        ck_assert_msg(ok || m > 1, "%s: exit %d", methods[m], code);
+        double expected = 0.3 * scenes[k].p, most = k == 3 ? 0.05 : 1e-8;
+        ck_assert_msg(!ok || fabs(T - expected) <= most * expected,
+                      "scene %zu, %s: T = %.12g, %s", k, methods[m], T, reason);
+      }
+}
+END_TEST
+
+/* Rounding takes the digits of the forces: the bound says so, and the increment
+ * does not count. */
+START_TEST(forces_lost_to_rounding_are_never_ok) {
+  static const double p[] = {5e-10, 3e-10};
+  for (int k = 0; k < 2; ++k) {
+    const long_motion lost = {"", "TOP, 1, 1, 1E3\n", 1, p[k]};
+    double T;
+    char reason[40];
+    int code = run_long(&lost, "METHOD=AUTO", "DISPLACEMENT", &T, reason);
+    ck_assert_msg(code == 1, "exit %d, T = %g, %s", code, T, reason);
+    ck_assert_str_eq(reason, "UNSETTLED BOUND");
+  }
+}
+END_TEST
+
 UNIT_MAIN("motion", loop_of_a_force, loop_of_an_obstacle, node_on_a_turntable,
           scene_turned_as_a_whole_gives_the_answer_turned,
-          cone_is_round_for_every_direction_of_slip)
+          cone_is_round_for_every_direction_of_slip,
+          long_motions_leave_the_forces_right,
+          forces_lost_to_rounding_are_never_ok)

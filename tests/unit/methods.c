@@ -272,13 +272,14 @@ static void hear_cycle(void *ctx, const solver_step *s) {
   *(int *)ctx += s->cycle;
 }
 
-/* Steep friction: a few problems send the sweeps round in circles; a tolerance
- * below the rounding only stops them. */
+/* Steep friction: a few problems send the sweeps round in circles; small
+ * friction none, whatever the tolerance: below the rounding nothing is left to
+ * miss. */
 START_TEST(cycle_is_told_from_stagnation) {
   static const char *const names[] = {"sor", "aitken"};
   for (int a = 0; a < 2; ++a) {
     const solver_ops *ops = solver_find(names[a]);
-    int cycles = 0, others = 0;
+    int cycles = 0;
     double param[PARAM_SIZE / sizeof(double)] = {0.0};
     option_defaults(ops->options, param);
     for (int k = 0; k < 200; ++k)
@@ -296,15 +297,12 @@ START_TEST(cycle_is_told_from_stagnation) {
         ck_assert_int_eq(
             ops->solve(&c.cp, param, work, &control, c.u, c.r, &rep), OK);
         ops->release(work);
-        if (rounding && rep.outcome != CONVERGED)
-          ck_assert_int_eq(rep.outcome, STOPPED_STAGNATION);
+        if (rounding) ck_assert_int_eq(rep.outcome, CONVERGED);
         if (rep.outcome == STOPPED_CYCLE) ck_assert_int_gt(heard, 10);
         cycles += rep.outcome == STOPPED_CYCLE;
-        others += rounding && rep.outcome != CONVERGED;
         case_free(&c);
       }
-    ck_assert_msg(cycles > 0 && others > 0, "%s: %d, %d", names[a], cycles,
-                  others);
+    ck_assert_msg(cycles > 0, "%s: %d", names[a], cycles);
   }
 }
 END_TEST
@@ -324,10 +322,11 @@ static void hear_states(void *ctx, const solver_step *s) {
   if (s->cycle) ck_assert_int_gt(s->status_changes, 0);
 }
 
-static outcome run_auglag(contact_case *c, double tol, heard *h) {
+static outcome run_auglag(contact_case *c, double tol, int passes, heard *h) {
   double param[PARAM_SIZE / sizeof(double)] = {0.0};
   solver_listener listener = {hear_states, h};
-  solver_control control = {.tol = tol, .listener = &listener};
+  solver_control control = {
+      .tol = tol, .limit_max_iter = passes, .listener = &listener};
   solver_report rep;
   void *work = NULL;
   size_t bytes = (size_t)c->cp.m * sizeof *c->u;
@@ -344,18 +343,18 @@ static outcome run_auglag(contact_case *c, double tol, heard *h) {
 
 /* Steep friction sends the Newton steps of AUGLAG round in circles on a few
  * problems: told at the step, mended by the other variant, and the verdict
- * where that cannot end either (a tolerance below the rounding). */
+ * where that cannot end either (one pass of its sliding limit). */
 START_TEST(auglag_tells_states_that_come_back) {
   int cycling = 0, changes = 0;
   for (int k = 0; k < 100; ++k) {
     contact_case c = case_any(2 + k % 2, 2 + k % 6, 4.0 + k % 5 * 4, k / 2 % 2,
                               (unsigned long long)(7000 + k));
     heard h;
-    ck_assert_int_eq(run_auglag(&c, 1e-10, &h), CONVERGED);
+    ck_assert_int_eq(run_auglag(&c, 1e-10, 0, &h), CONVERGED);
     if (h.passes > 0) {
       ck_assert_int_gt(h.cycles, 20);
       if (cycling++ < 2)
-        ck_assert_int_eq(run_auglag(&c, 1e-25, &h), STOPPED_CYCLE);
+        ck_assert_int_eq(run_auglag(&c, 1e-10, 1, &h), STOPPED_CYCLE);
     }
     case_free(&c);
   }
@@ -363,10 +362,10 @@ START_TEST(auglag_tells_states_that_come_back) {
   for (int k = 0; k < 20; ++k) {
     contact_case c = case_any(2, 10 + k, 0.2, 0, (unsigned long long)k);
     heard h;
-    ck_assert_int_eq(run_auglag(&c, 1e-10, &h), CONVERGED);
+    ck_assert_int_eq(run_auglag(&c, 1e-10, 0, &h), CONVERGED);
     ck_assert_int_eq(h.cycles + h.passes, 0);
     changes += h.changes;
-    if (k < 4) ck_assert_int_ne(run_auglag(&c, 1e-25, &h), STOPPED_CYCLE);
+    if (k < 4) ck_assert_int_ne(run_auglag(&c, 1e-25, 0, &h), STOPPED_CYCLE);
     case_free(&c);
   }
   ck_assert_int_gt(changes, 20);

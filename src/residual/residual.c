@@ -1,0 +1,315 @@
+/*
+ * The one residual all solvers are judged by, and the status of the nodes
+ * (contact.h): natural map and equation, each node in the scale of the forces
+ * and displacements of its own body.
+ *
+ * Products with the matrix run over blocks of CHUNK rows, so that nothing but
+ * the search of the bodies allocates.
+ */
+#include "contact/parts.h"
+
+#include <cblas.h>
+#include <math.h>
+
+static const double ROUNDING = 0x1p-47; /* -, of the terms of a row      */
+static const double LEAST = 0x1p-37;    /* -, of them: scale             */
+static const double FLOOR = 0x1p-14;    /* -, of loads to come, of a fall */
+static const double LEVER = 0x1p10;     /* -, motion over force/stiffness */
+static const double STATUS_MARGIN = 0x1p-30; /* -, of the scale               */
+
+/* An iterate, and what its errors are compared with. */
+typedef struct measure {
+  const contact_problem *cp;
+  const double *u, *r;
+  double scale, largest; /* contact_scale; largest diagonal                   */
+  body_size one, *size;  /* of the only body; of all                          */
+} measure;
+
+/* A node of it. */
+typedef struct measured {
+  node_step c;          /* N/m                                                */
+  double k;             /* the larger of c, N/m                               */
+  double rounding;      /* what rounding can have put into a row, N           */
+  double normal, slide; /* scale along the normal, in the tangent plane, N    */
+  double q[3];          /* the nearest forces of an obstacle, N               */
+} measured;
+
+static body_size *body_of(measure *x, int node_id) {
+  return x->size + (x->cp->bodies == NULL ? 0 : x->cp->bodies->of[node_id]);
+}
+
+/* ---- natural map --------------------------------------------------------- */
+
+static double pushing(double z) { return z < 0.0 || isnan(z) ? z : 0.0; }
+
+int contact_has_side(const contact_problem *cp, int node_id) {
+  for (int k = 1; k < cp->dim; ++k)
+    if (contact_bound(cp, node_id * cp->dim + k) < HUGE_VAL) return 1;
+  return 0;
+}
+
+/* Frictionless node: no force along a free tangent, unilateral where a second
+ * obstacle bounds it. */
+static void project_sides(const measure *x, int node_id, double c, double *q) {
+  for (int k = 1; k < x->cp->dim; ++k) {
+    int dof = node_id * x->cp->dim + k;
+    double bound = contact_bound(x->cp, dof);
+    if (bound < HUGE_VAL) q[k] = pushing(x->r[dof] - c * (x->u[dof] - bound));
+  }
+}
+
+/* P_g(r_t - c (u_t - ut0)) in the directions friction acts in. */
+static void project_friction(const measure *x, int node_id, double c,
+                             double *q) {
+  double g = contact_node_limit(x->cp, x->r, node_id);
+  for (int k = 1; k < x->cp->dim; ++k) {
+    int dof = node_id * x->cp->dim + k;
+    if (!contact_held(x->cp, dof))
+      q[k] = x->r[dof] - c * (x->u[dof] - contact_stick(x->cp, dof));
+  }
+  double size = contact_length(x->cp->dim - 1, q + 1);
+  for (int k = 1; k < x->cp->dim && !(size <= g); ++k) q[k] *= g / size;
+}
+
+/* c, k and q of a node. */
+static void project(const measure *x, int node_id, measured *node) {
+  int n = node_id * x->cp->dim;
+  *node = (measured){.c = contact_step(x->cp, node_id, x->largest)};
+  node->k = larger(node->c.n, node->c.t);
+  node->q[0] = pushing(x->r[n] - node->c.n * (x->u[n] - x->cp->gap[node_id]));
+  if (contact_has_side(x->cp, node_id))
+    project_sides(x, node_id, node->c.t, node->q);
+  else
+    project_friction(x, node_id, node->c.t, node->q);
+}
+
+/* ---- scale --------------------------------------------------------------- */
+
+static double largest_of(int n, const double *v) {
+  double most = 0.0;
+  for (int i = 0; i < n; ++i) most = larger(most, fabs(v[i]));
+  return most;
+}
+
+/* How large what is carried can become by loads and obstacles: displacements
+ * that drift off, forces that grow without end are no answer, however large
+ * rounding gets by them. */
+static double reach_of(const measure *x, int node_id, double k) {
+  const contact_problem *cp = x->cp;
+  double force = 0.0, position = 0.0;
+  if (cp->A == NULL) return LEVER * x->scale * sqrt(k);
+  if (!cp->floating) return HUGE_VAL;
+  for (int i = node_id * cp->dim; i < (node_id + 1) * cp->dim; ++i) {
+    double bound = contact_bound(cp, i), stick = contact_stick(cp, i);
+    force = larger(force, fabs(cp->f[i]));
+    position = larger(position, bound < HUGE_VAL ? fabs(bound) : fabs(stick));
+  }
+  return larger(LEVER * force / sqrt(k), sqrt(k) * position);
+}
+
+/* Force that the load makes at a node that nothing else holds, N. */
+static double load_of(const contact_problem *cp, int node_id,
+                      const measured *node) {
+  const double *load = cp->f_load != NULL ? cp->f_load : cp->f;
+  int first = node_id * cp->dim;
+  double most = 0.0;
+  if (cp->A == NULL)
+    return node->c.n * larger(0.0, cp->f[first] - cp->gap[node_id]);
+  for (int k = 0; k < cp->dim; ++k)
+    if (!contact_held(cp, first + k))
+      most = larger(most, fabs(load[first + k]));
+  return most;
+}
+
+static void add_node(measure *x, int node_id) {
+  const contact_problem *cp = x->cp;
+  const double *v = (cp->A != NULL ? x->u : x->r) + node_id * cp->dim;
+  body_size *b = body_of(x, node_id);
+  measured node;
+  project(x, node_id, &node);
+  double root = cp->A != NULL ? sqrt(node.k) : 1.0 / sqrt(node.k);
+  double force =
+      larger(fabs(node.q[0]), contact_length(cp->dim - 1, node.q + 1));
+  double load = load_of(cp, node_id, &node);
+  b->contact = larger(b->contact, force);
+  b->load = larger(b->load, load);
+  b->way = larger(b->way, larger(force, load) / node.k);
+  double way = fmin(fabs(x->u[node_id * cp->dim]), fabs(cp->gap[node_id]));
+  b->fallen = larger(b->fallen, node.c.n * way);
+  b->carried = larger(b->carried, root * largest_of(cp->dim, v));
+  b->reach = larger(b->reach, reach_of(x, node_id, node.k));
+}
+
+static void measure_set(const contact_problem *cp, double scale,
+                        const double *u, const double *r, measure *x) {
+  *x = (measure){.cp = cp, .u = u, .r = r, .scale = scale};
+  x->size = cp->bodies == NULL ? &x->one : cp->bodies->size;
+  x->largest = contact_largest_diagonal(cp);
+  for (int b = 0; cp->bodies != NULL && b < cp->bodies->n; ++b)
+    x->size[b] = (body_size){0};
+  for (int i = 0; i < cp->n; ++i) add_node(x, i);
+}
+
+/* Forces that a part of a node, of stiffness c, is compared with. */
+static double forces_of(const measure *x, const measured *node,
+                        const body_size *b, double c) {
+  double most = x->cp->A != NULL ? x->scale : c * x->scale;
+  double own = smaller(larger(b->load, b->contact), node->k * b->way);
+  return smaller(most, own);
+}
+
+/* Scale of them: not below rounding. */
+static double scale_of(const measure *x, const body_size *b,
+                       const measured *node, double c) {
+  double least = x->cp->A != NULL ? larger(x->cp->load, b->fallen) : 0.0;
+  least = larger(FLOOR * least, LEAST / ROUNDING * node->rounding);
+  return larger(forces_of(x, node, b, c), least);
+}
+
+static void measure_node(measure *x, int node_id, measured *node) {
+  const contact_problem *cp = x->cp;
+  int first = node_id * cp->dim;
+  body_size *b = body_of(x, node_id);
+  project(x, node_id, node);
+  double terms = largest_of(cp->dim, cp->f + first);
+  if (cp->A == NULL)
+    terms = node->k * (terms + largest_of(cp->dim, x->u + first));
+  double carried = smaller(b->carried, b->reach);
+  node->rounding = ROUNDING * (terms + sqrt(node->k) * carried);
+  node->normal = scale_of(x, b, node, node->c.n);
+  node->slide = scale_of(x, b, node, node->c.t);
+}
+
+/* An error over its scale, beyond what rounding can have made of it. */
+static double beyond(const measured *node, double error, double scale) {
+  double more = error <= node->rounding ? 0.0 : error - node->rounding;
+  if (scale > 0.0 || isnan(scale)) return more / scale;
+  return more > 0.0 ? HUGE_VAL : more;
+}
+
+/* ---- residual ------------------------------------------------------------ */
+
+static double map_of(const measure *x, int node_id, const measured *node) {
+  const double *r = x->r + node_id * x->cp->dim;
+  double e[3] = {0.0, 0.0, 0.0};
+  for (int k = 0; k < x->cp->dim; ++k) e[k] = r[k] - node->q[k];
+  double normal = beyond(node, fabs(e[0]), node->normal);
+  double size = contact_length(x->cp->dim - 1, e + 1);
+  return larger(normal, beyond(node, size, node->slide));
+}
+
+/* d[dim]: what the equation misses at the node, N (m). */
+static double equation_of(const measure *x, const measured *node,
+                          const double *d) {
+  double worst = 0.0;
+  for (int k = 0; k < x->cp->dim; ++k) {
+    double c = k == 0 ? node->c.n : node->c.t;
+    double e = x->cp->A != NULL ? fabs(d[k]) : c * fabs(d[k]);
+    worst = larger(worst, beyond(node, e, k == 0 ? node->normal : node->slide));
+  }
+  return worst;
+}
+
+/* d[rows] = A u - f - r, or W r + q - u, from row "first". */
+static void equation_rows(const measure *x, int first, int rows, double *d) {
+  const contact_problem *cp = x->cp;
+  const double *M = cp->A != NULL ? cp->A : cp->W;
+  const double *v = cp->A != NULL ? x->u : x->r,
+               *y = cp->A != NULL ? x->r : x->u;
+  double sign = cp->A != NULL ? 1.0 : -1.0;
+  for (int i = 0; i < rows; ++i) d[i] = y[first + i] + sign * cp->f[first + i];
+  cblas_dgemv(CblasColMajor, CblasNoTrans, rows, cp->m, 1.0, M + first, cp->m,
+              v, 1, -1.0, d, 1);
+}
+
+double contact_residual_at(const contact_problem *cp, double scale,
+                           const double *u, const double *r) {
+  measure x;
+  double worst = 0.0, d[3 * CHUNK];
+  measure_set(cp, scale, u, r, &x);
+  for (int first = 0; first < cp->n; first += CHUNK) {
+    int count = cp->n - first < CHUNK ? cp->n - first : CHUNK;
+    equation_rows(&x, first * cp->dim, count * cp->dim, d);
+    for (int i = 0; i < count; ++i) {
+      measured node;
+      measure_node(&x, first + i, &node);
+      worst = larger(worst, map_of(&x, first + i, &node));
+      worst = larger(worst, equation_of(&x, &node, d + i * cp->dim));
+    }
+  }
+  return isnan(scale) ? NAN : worst;
+}
+
+double contact_residual(const contact_problem *cp, const double *u,
+                        const double *r) {
+  contact_problem apart = *cp;
+  contact_bodies *found = NULL;
+  if (cp->bodies == NULL && contact_bodies_new(cp, &found) == OK)
+    apart.bodies = found;
+  double residual = contact_residual_at(&apart, contact_scale(cp), u, r);
+  contact_bodies_free(found);
+  return residual;
+}
+
+double contact_mismatch(const contact_problem *cp, double scale,
+                        const double *u, const double *r, const double *raw) {
+  measure x;
+  const double *of = cp->A != NULL ? r : u;
+  double worst = 0.0, d[3];
+  measure_set(cp, scale, u, r, &x);
+  for (int i = 0; i < cp->n; ++i) {
+    measured node;
+    measure_node(&x, i, &node);
+    worst = larger(worst, map_of(&x, i, &node));
+    for (int k = 0; raw != NULL && k < cp->dim; ++k)
+      d[k] = of[i * cp->dim + k] - raw[i * cp->dim + k];
+    if (raw != NULL) worst = larger(worst, equation_of(&x, &node, d));
+  }
+  return isnan(scale) ? NAN : worst;
+}
+
+/* ---- status ------------------------------------------------------------ */
+
+void contact_roundings(const contact_problem *cp, const double *u,
+                       const double *r, double *rounding) {
+  measure x;
+  measure_set(cp, 0.0, u, r, &x);
+  for (int i = 0; i < cp->n; ++i) {
+    measured node;
+    measure_node(&x, i, &node);
+    rounding[i] = node.rounding;
+  }
+}
+
+/* |r_t - c (u_t - ut0)| in the directions friction acts in, N. */
+static double trial_friction(const measure *x, int node_id, double c) {
+  double z[2] = {0.0, 0.0};
+  for (int k = 1; k < x->cp->dim; ++k) {
+    int dof = node_id * x->cp->dim + k;
+    if (!contact_held(x->cp, dof))
+      z[k - 1] = x->r[dof] - c * (x->u[dof] - contact_stick(x->cp, dof));
+  }
+  return contact_length(x->cp->dim - 1, z);
+}
+
+void contact_classify(const contact_problem *cp, const double *u,
+                      const double *r, contact_status *state) {
+  measure x;
+  measure_set(cp, contact_scale(cp), u, r, &x);
+  for (int i = 0; i < cp->n; ++i) {
+    measured node;
+    int n = i * cp->dim;
+    measure_node(&x, i, &node);
+    const body_size *b = body_of(&x, i);
+    double push = node.c.n * (u[n] - cp->gap[i]) - r[n];
+    double g = contact_node_limit(cp, r, i);
+    double trial = trial_friction(&x, i, node.c.t);
+    if (!(push > STATUS_MARGIN * forces_of(&x, &node, b, node.c.n)))
+      state[i] = CONTACT_OPEN;
+    else if (g == 0.0 ||
+             trial - g > STATUS_MARGIN * forces_of(&x, &node, b, node.c.t))
+      state[i] = CONTACT_SLIP;
+    else
+      state[i] = CONTACT_STICK;
+  }
+}
