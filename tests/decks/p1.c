@@ -445,7 +445,8 @@ void judge_body(judged *j) {
   take_forces(j, &j->now->of[T_CONTACT], ring ? "f_r" : "f_x", NULL);
   /* what TOL=BALANCED leaves of an implicit increment */
   int loose = d->balanced && d->step[j->step].kind == IS_VISCO;
-  double most = LEAST_FORCE + largest(j->size, d->mesh.n_node);
+  double most = LEAST_FORCE + largest(j->size, d->mesh.n_node) +
+                1e-6 * scale * largest(j->stiffness, d->mesh.n_node);
   j->largest = most;
   for (size_t k = 0; k < n; ++k)
     judge_note(j->q, OF_BALANCE, j->force[k],
