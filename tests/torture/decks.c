@@ -92,7 +92,7 @@ START_TEST(random_decks_hold) {
       "random decks, units 1000", "random decks, numbered anew",
       "random decks, other methods"};
   const char *text = getenv("DECKS");
-  unsigned long long first = getenv("PROTIS_POINTS") == NULL ? 12 : 0;
+  unsigned long long first = getenv("PROTIS_POINTS") == NULL ? 270 : 0;
   long count = points_number(16, 0.075);
   tally t = {.judged.kind = "random decks, judged",
              .restart.kind = "random decks, restarts"};
