@@ -133,13 +133,16 @@ done:
   return st;
 }
 
-void visco_take(run *r) {
+/* v->now at an equilibrium whose inelastic strains it has. */
+static void take_strains(run *r, const equilibrium *e) {
   visco *v = r->visco;
-  v->now.t = r->now.t;
+  v->now.t = e->t;
   v->sums.known = 0;
-  visco_temperatures(r, &r->now, &v->now);
-  visco_strains(r, &r->now, &v->now);
+  visco_temperatures(r, e, &v->now);
+  visco_strains(r, e, &v->now);
 }
+
+void visco_take(run *r) { take_strains(r, &r->now); }
 
 status visco_advance(run *r, double t) {
   if (r->visco == NULL) return increment_solve(r, t);
@@ -331,15 +334,13 @@ status visco_accept(run *r) {
   status st = OK;
   visco *v = r->visco;
   double norm = 0.0;
-  if (r->step->kind != STEP_VISCO) {
-    change_places(v);
-    return OK;
-  }
+  const int flows = r->step->kind == STEP_VISCO && r->old.t > r->now.t;
   v->result.dissipated = 0.0;
   timer_enter(STAGE_INELASTIC);
+  if (!flows) take_strains(r, &r->old);
   TRY(elastic_norm(v, &norm));
   v->largest = fmax(v->largest, norm);
-  visco_warn_locking(r);
+  if (flows) visco_warn_locking(r);
   change_places(v);
 done:
   timer_leave(STAGE_INELASTIC);

@@ -20,13 +20,13 @@ static job run_deck(const char *contact, const char *load, const char *visco,
 static const char *const rows[] = {"EULER",    "HEUN",     "RK4",
                                    "MIDPOINT", "BACKWARD", "EXPONENTIAL"};
 
-/* The accepted increments of step 2: how many, and the first of them. */
+/* The accepted increments of a step: how many, and the first of them. */
 typedef struct accepted {
   int n, attempt; /* attempt: of the first                                   */
   double dt;
 } accepted;
 
-static accepted accepted_of(const job *j) {
+static accepted accepted_in(const job *j, int step_no) {
   accepted found = {0};
   char *sta = job_file(j, "sta"), *line = sta;
   while ((line = strchr(line, '\n')) != NULL && *++line != '\0') {
@@ -35,7 +35,8 @@ static accepted accepted_of(const job *j) {
     const char *end = strchr(line, '\n'), *why = strstr(line, "TOLERANCE");
     if (sscanf(line, "%d %d %d %lf %lf", &step, &increment, &tries, &t, &dt) !=
             5 ||
-        step != 2 || !(dt > 0) || (why != NULL && (end == NULL || why < end)))
+        step != step_no || !(dt > 0) ||
+        (why != NULL && (end == NULL || why < end)))
       continue;
     if (found.n++ == 0) {
       found.attempt = tries;
@@ -45,6 +46,8 @@ static accepted accepted_of(const job *j) {
   free(sta);
   return found;
 }
+
+static accepted accepted_of(const job *j) { return accepted_in(j, 2); }
 
 /*
  * Held strain 1e-3, free sides: the stress after one relaxation time, 2 s. No
@@ -93,6 +96,41 @@ START_TEST(rejected_increments_leave_nothing_behind) {
   free(second);
   job_end(&a);
   job_end(&b);
+}
+END_TEST
+
+/*
+ * Errors are compared with the largest elastic strain of all increments so far,
+ * of whatever step: of a held strain, after a *VISCO increment of next to no
+ * length; of *STATIC alone; applied suddenly; twice as large before, with half
+ * the tolerance.
+ */
+START_TEST(strains_of_other_steps_count) {
+  static const struct {
+    const char *load, *before, *sudden;
+    int step_no;
+    double factor;
+  } path[] = {
+      {HELD, "*VISCO, INTEGRATOR=BACKWARD\n1.E-9, 1.E-9\n*END STEP\n*STEP\n",
+       "", 3, 1.0},
+      {HELD, "", "", 2, 1.0},
+      {SYMMETRY, "", "*BOUNDARY\nTOP, 2, 2, \"1.E-3+0*t\"\n", 2, 1.0},
+      {SYMMETRY "TOP, 2, 2, 2.E-3\n",
+       "*STATIC\n*BOUNDARY\nTOP, 2, 2, 1.E-3\n*END STEP\n*STEP\n", "", 3, 0.5}};
+  accepted expected = {0};
+  for (int k = 0; k < 4; ++k) {
+    const double tolerance = 0.1 * pow(1.3, -2 - 4 * _i);
+    char visco[240];
+    snprintf(visco, sizeof visco,
+             "%s*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=%.9g\n1., 1.\n%s",
+             path[k].before, tolerance * path[k].factor, path[k].sudden);
+    job j = run_deck("", path[k].load, visco, 0);
+    const accepted found = accepted_in(&j, path[k].step_no);
+    if (k == 0) expected = found;
+    ck_assert_int_eq(found.n, expected.n);
+    ck_assert_double_eq_tol(found.dt, expected.dt, 1e-5 * expected.dt);
+    job_end(&j);
+  }
 }
 END_TEST
 
@@ -157,6 +195,7 @@ int main(void) {
   tcase_add_loop_test(tests, error_is_below_the_sum_of_what_is_allowed, 0,
                       (int)(sizeof rows / sizeof *rows));
   tcase_add_test(tests, rejected_increments_leave_nothing_behind);
+  tcase_add_loop_test(tests, strains_of_other_steps_count, 0, 2);
   tcase_add_test(tests, missed_tolerance_is_told);
   tcase_add_test(tests, increments_stay_stable);
   tcase_add_loop_test(tests, increments_grow_over_thirty_decades, 0, 2);
