@@ -169,8 +169,39 @@ START_TEST(without_other_errors_the_default_counts) {
 }
 END_TEST
 
+/* Bodies that creep by a nonlinear law are in equilibrium: over the square, of
+ * equal elements, the stress along the load has the mean of the load. */
+START_TEST(nonlinear_laws_are_in_equilibrium) {
+  static const char *const iteration[] = {"TANGENT", "INITIAL"};
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("creep");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "creep.inp",
+              "*PARAMETER\nN = 4\nKIND = 1\n*MESH, FILE=square.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+              "*INELASTIC, LAW=NORTON\n1.E-5, 3.\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n"
+              "*VISCO, INTEGRATOR=BACKWARD, ITERATION=%s\n0.5, 1.\n"
+              "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, \"10+0*t\"\n"
+              "*SOLVER, TOL=BALANCED\n*PRINT, ELEMENTS\n*END STEP\n",
+              iteration[k]);
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    for (int i = 0; i < 3; ++i) {
+      dat e = job_table(&j, "ELEMENTS", i);
+      ck_assert_double_eq_tol(dat_sum(&e, "stress_yy") / e.n_row, -10.0, 1e-7);
+      dat_free(&e);
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("balanced", error_left_is_the_share_of_the_mesh,
           examples_save_a_third_of_the_steps,
           true_error_grows_by_less_than_a_tenth,
           saved_iterations_are_those_of_the_default, share_is_that_of_the_deck,
-          without_other_errors_the_default_counts)
+          without_other_errors_the_default_counts,
+          nonlinear_laws_are_in_equilibrium)
