@@ -16,8 +16,9 @@
 
 #include <sys/types.h>
 
-/* Values written at once; records and rows of a file.                        */
-enum { CHUNK = 4096, MOST_RECORDS = 99999, MOST_ROWS = 10000000 };
+/* Values written at once; records and rows room is made for at once: a run of
+ * more makes more when it gets there.                                        */
+enum { CHUNK = 4096, MOST_RECORDS = 100000, MOST_ROWS = 10000000 };
 
 typedef enum { DATA_REAL, DATA_INT, DATA_NUMBER, DATA_TEXT } data_type;
 

@@ -109,7 +109,6 @@ status hdf5_increment(hdf5_file *h, const state *s) {
   view v = {h->m, h->msh, s};
   int due = frequency_shows(h->m->steps[s->step_no - 1].output_frequency,
                             s->increment_no, s->end_of_step);
-  if (due && h->n_record == MOST_RECORDS) due = 0;
   if (h->n_row == h->now.n_row || (due && h->n_record == h->now.n_record))
     TRY(grow(h, s));
   if (due) TRY(put_record(h, &v));

@@ -9,7 +9,6 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { MOST_RECORDS = 99999 };
 static const double SAME_PLACE = 1e-9; /* -, of the size of the mesh          */
 
 /* Items of a node in a dataset of n numbers: at least dim of them. */
@@ -56,7 +55,7 @@ static status read_last(const hdf5_source *s, const mesh *msh, double *u,
   double *time = NULL, *all = NULL;
   size_t width, dim = (size_t)msh->dim;
   long n = 0, items = 0;
-  TRY(source_reals(s, "/fields/time", 0, MOST_RECORDS, &n, &time));
+  TRY(source_reals(s, "/fields/time", 0, MOST_ITEMS, &n, &time));
   if (n < 1) FAIL(ERR_DECK, "%s has no record of fields", s->path);
   *t = time[n - 1];
   snprintf(name, sizeof name, "/fields/u/%05ld", n);

@@ -9,6 +9,7 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+#include <hdf5.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -214,6 +215,48 @@ START_TEST(end_of_a_run_is_a_start) {
 }
 END_TEST
 
+/* The last of 4 records of JOB.h5 becomes one of six digits. */
+static void make_long(const job *j, int n) {
+  char path[100], last[40];
+  const hsize_t size = (hsize_t)n;
+  double *t = malloc((size_t)n * sizeof *t);
+  ck_assert_ptr_nonnull(t);
+  for (int i = 0; i < n; ++i) t[i] = (i + 1.0) / n;
+  snprintf(path, sizeof path, "%s/%s.h5", j->dir, j->name);
+  snprintf(last, sizeof last, "/fields/u/%d", n);
+  hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+  hid_t space = H5Screate_simple(1, &size, NULL);
+  ck_assert_int_ge(H5Ldelete(file, "/fields/time", H5P_DEFAULT), 0);
+  hid_t set = H5Dcreate2(file, "/fields/time", H5T_NATIVE_DOUBLE, space,
+                         H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  ck_assert_int_ge(
+      H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, t), 0);
+  ck_assert_int_ge(
+      H5Lmove(file, "/fields/u/00004", file, last, H5P_DEFAULT, H5P_DEFAULT),
+      0);
+  H5Dclose(set);
+  H5Sclose(space);
+  ck_assert_int_ge(H5Fclose(file), 0);
+  free(t);
+}
+
+START_TEST(end_of_a_long_run_is_a_start) {
+  job j = job_begin("long");
+  ck_assert_int_eq(
+      write_and_run(&j, 2, "",
+                    "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, 10.\n"
+                    "*OUTPUT\n" PRINT),
+      0);
+  make_long(&j, 100001);
+  snprintf(j.name, sizeof j.name, "next");
+  int code = write_and_run(
+      &j, 2, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, FILE=long.h5\n",
+      STEP("*DSLOAD\nTOP, P, \"10+0*t\"\n"));
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job_end(&j);
+}
+END_TEST
+
 /* Another mesh, no such file, the file of the run itself. */
 START_TEST(wrong_files_are_refused) {
   static const struct {
@@ -244,4 +287,4 @@ END_TEST
 UNIT_MAIN("start", compatible_start_goes_on, start_remembers_where_the_foot_is,
           incompatible_start_is_refused_with_its_defect,
           incompatible_start_is_relaxed, end_of_a_run_is_a_start,
-          wrong_files_are_refused)
+          end_of_a_long_run_is_a_start, wrong_files_are_refused)

@@ -213,6 +213,45 @@ START_TEST(more_increments_than_foreseen_are_kept) {
 }
 END_TEST
 
+/* As if so many stood there: their places are that of the first one. */
+static void claim_records(hdf5_file *h, int n) {
+  off_t *room = memory_new((size_t)h->n_field * (size_t)n, sizeof *room);
+  ck_assert_ptr_nonnull(room);
+  for (int i = 0; i < h->n_field * n; ++i)
+    room[i] = h->now.record[i / n * h->now.n_record];
+  memory_free(h->now.record);
+  h->now.record = room;
+  h->now.n_record = n;
+}
+
+START_TEST(records_of_six_digits_are_kept) {
+  enum { BEFORE = 99998, ALL = 100002 };
+  char dir[64], name[40];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 1, 4);
+  output_options o = plain;
+  hdf5_file *h = NULL;
+  hdf5_shape shape;
+  o.dir = dir;
+  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, NULL, &h), OK);
+  claim_records(h, ALL);
+  h->n_record = h->cap_time = BEFORE;
+  h->times = memory_new(BEFORE, sizeof *h->times);
+  for (int i = 1; i <= ALL - BEFORE; ++i) {
+    made_up_advance(made, i);
+    ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
+  }
+  hdf5_shape_of(h, &shape);
+  ck_assert_int_eq(shape.n_record, ALL);
+  ck_assert(shape.times[ALL - 1] == made->s.t);
+  hdf5_record_name(name, sizeof name, ALL - 1);
+  ck_assert_str_eq(name, "100002");
+  ck_assert_int_eq(hdf5_close(h, 0), OK);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
 START_TEST(room_not_used_is_cut_at_the_end) {
   char dir[64];
   int dims[2];
@@ -620,8 +659,9 @@ END_TEST
 
 UNIT_MAIN("hdf5", fields_read_back_exactly, mesh_and_surface_stand_in_the_file,
           more_increments_than_foreseen_are_kept,
-          room_not_used_is_cut_at_the_end, frequency_chooses_the_records,
-          missing_arrays_are_not_zero, scene_without_contact_has_no_surface,
+          records_of_six_digits_are_kept, room_not_used_is_cut_at_the_end,
+          frequency_chooses_the_records, missing_arrays_are_not_zero,
+          scene_without_contact_has_no_surface,
           node_that_leaves_the_surface_has_no_value,
           group_names_with_slashes_and_twins_are_kept,
           killed_at_any_moment_keeps_every_acknowledged_increment,
