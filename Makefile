@@ -140,6 +140,7 @@ $(out)/tests/preload/traps.so: tests/preload/traps.c Makefile
 	$(Q)$(CC) -std=c11 $(warnings) -shared -fPIC $< -o $@ -lm -lpthread
 
 $(out)/tests/regression/examples: | $(out)/tests/preload/traps.so
+$(out)/tests/regression/interrupt: | $(out)/tests/preload/nolocks.so
 
 # Calls that fail: listed in a header, put in the place of the real ones.
 failing  := $(out)/tests/preload/failing.o $(out)/tests/preload/main.o

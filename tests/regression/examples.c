@@ -137,15 +137,7 @@ static void run_deck(const char *path, int n, const line *lines) {
 /* The sanitisers must be the first that is loaded: no traps then. */
 static void set_traps(void) {
 #ifndef __SANITIZE_ADDRESS__
-  const char *program = getenv("PROTIS");
-  char path[512], *cwd = getcwd(NULL, 0);
-  if (program == NULL) program = "build/release/protis";
-  snprintf(path, sizeof path, "%s%s%.*stests/preload/traps.so",
-           program[0] == '/' ? "" : cwd, program[0] == '/' ? "" : "/",
-           (int)(strrchr(program, '/') + 1 - program), program);
-  free(cwd);
-  ck_assert_msg(access(path, R_OK) == 0, "%s is not there", path);
-  setenv("LD_PRELOAD", path, 1);
+  job_preload("traps");
   int code = system("awk 'BEGIN { print log(-1) }' > /dev/null 2>&1");
   ck_assert_msg(code != 0, "traps are not set");
 #endif

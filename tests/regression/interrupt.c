@@ -7,6 +7,7 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <hdf5.h>
 #include <math.h>
@@ -310,6 +311,30 @@ START_TEST(second_job_of_the_name_is_refused) {
 }
 END_TEST
 
+/* Neither the lock of the job nor one of HDF5 ends a run. The sanitisers must
+ * be the first that is loaded. */
+START_TEST(file_system_without_locks_is_no_matter) {
+#ifndef __SANITIZE_ADDRESS__
+  static const int errors[] = {ENOLCK, EOPNOTSUPP, ENOSYS, EINVAL};
+  char number[20], seen[200];
+  job_preload("nolocks");
+  for (size_t k = 0; k < sizeof errors / sizeof *errors; ++k) {
+    job j = block(3);
+    snprintf(number, sizeof number, "%d", errors[k]);
+    snprintf(seen, sizeof seen, "%s/locks.seen", j.dir);
+    setenv("NOLOCKS", number, 1);
+    setenv("NOLOCKS_SEEN", seen, 1);
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    ck_assert_msg(access(seen, F_OK) == 0, "no lock was asked for");
+    ck_assert(job_has(&j, "h5") && !job_has(&j, "lock"));
+    ck_assert_msg(job_run(&j, "--restart") == 0, "%s", j.errors);
+    job_end(&j);
+  }
+  unsetenv("LD_PRELOAD");
+#endif
+}
+END_TEST
+
 START_TEST(other_file_of_that_name_stays) {
   job j = block(2);
   job_write(&j, "block.lock", "my notes\n");
@@ -383,7 +408,8 @@ START_TEST(deck_may_begin_with_a_dash) {
 }
 END_TEST
 
-UNIT_MAIN("interrupt", deck_may_begin_with_a_dash, few_addresses_are_told,
+UNIT_MAIN("interrupt", file_system_without_locks_is_no_matter,
+          deck_may_begin_with_a_dash, few_addresses_are_told,
           closed_streams_are_no_matter, signals_end_after_an_increment,
           signals_come_together, ignored_signals_stay_ignored,
           earlier_file_stays, file_ends_after_an_increment,

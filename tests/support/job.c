@@ -146,6 +146,15 @@ static void find_program(char *path) {
   snprintf(path, PATH, "%.250s/%.250s", cwd, p);
 }
 
+void job_preload(const char *name) {
+  char program[PATH], path[2 * PATH];
+  find_program(program);
+  snprintf(path, sizeof path, "%.*stests/preload/%s.so",
+           (int)(strrchr(program, '/') + 1 - program), program, name);
+  ck_assert_msg(access(path, R_OK) == 0, "%s is not there", path);
+  setenv("LD_PRELOAD", path, 1);
+}
+
 int job_run(job *j, const char *words) {
   char path[PATH], command[4 * PATH];
   find_program(path);

@@ -24,6 +24,9 @@ typedef struct dat {
   double *value;    /* [n_row*n_col] row by row                             */
 } dat;
 
+/* LD_PRELOAD of later runs is NAME.so of tests/preload, in the folder where the
+ * program was built; check fails if it is not there. */
+void job_preload(const char *name);
 /* A new empty folder; check fails if that is not possible. */
 job job_begin(const char *name);
 void job_end(job *j);

@@ -114,6 +114,64 @@ START_TEST(killed_run_goes_on) {
 }
 END_TEST
 
+/* A number of 1 .. all, the next of a row that begins anywhere. */
+static int at_random(unsigned long *row, int all) {
+  *row = *row * 6364136223846793005u + 1442695040888963407u;
+  return 1 + (int)((*row >> 33) % (unsigned long)all);
+}
+
+/* Killed, gone on with, killed again until a run comes to its end, which one
+ * without kills does in the end; NULL or what is wrong. */
+static const char *chain(const job *whole, job *j, unsigned long row,
+                         int changes, int *kills) {
+  enum { LONGEST = 40 };
+  const char *wrong = NULL;
+  job_clear(j);
+  int code = run(j, nothing, at_random(&row, changes), NULL);
+  for (*kills = 0; code == KILLED && wrong == NULL; ++*kills) {
+    wrong = after_kill(j, code);
+    int at = *kills < LONGEST ? at_random(&row, changes) : 0;
+    if (wrong == NULL) code = run(j, again, at, NULL);
+  }
+  if (wrong == NULL && code != 0) return "exit code";
+  if (wrong == NULL && traced_difference(whole, j) != NULL)
+    return "wrong files";
+  return wrong;
+}
+
+static void kill_in_chains(points *t, make_job *make, const char *method,
+                           double mu) {
+  job whole = make(mu, "*RESTART\n", method);
+  job j = make(mu, "*RESTART\n", method);
+  long n = points_number(1, 0.005);
+  int changes, kills, most = 0;
+  kept_mesh(&whole);
+  ck_assert_int_eq(run(&whole, nothing, 0, &changes), 0);
+  for (long k = 0; k < n; ++k) {
+    const char *wrong =
+        chain(&whole, &j, (unsigned long)(k + t->tried), changes, &kills);
+    if (kills > most) most = kills;
+    points_try(t);
+    if (wrong != NULL)
+      points_lose(t, "%s, row %ld, kill %d: %s: %.200s", j.name, k, kills,
+                  wrong, j.errors);
+  }
+  ck_assert_int_ge(most, 1);
+  kept_mesh(NULL);
+  job_end(&whole);
+  job_end(&j);
+}
+
+START_TEST(chain_of_kills_goes_on) {
+  points t = {.kind = "chains of kills"};
+  kill_in_chains(&t, small_flat, "AUTO", 0.1);
+  kill_in_chains(&t, small_flat, "NEWTON", 10.0);
+  kill_in_chains(&t, small_solid, "SOR", 0.4);
+  kill_in_chains(&t, small_creep, "INTEGRATOR=MIDPOINT", 1.0);
+  points_end(&t);
+}
+END_TEST
+
 /* SIGINT at a change of a file and at the next one. */
 static const char *after_second(const job *j, int at, int *changes) {
   traced t = {.action = TRACE_SIGNAL, .at = at, .number = SIGINT, .always = 1};
@@ -162,6 +220,7 @@ int main(void) {
   TCase *tests = tcase_create("kills");
   tcase_set_timeout(tests, 100 * UNIT_SECONDS);
   tcase_add_test(tests, killed_run_goes_on);
+  tcase_add_test(tests, chain_of_kills_goes_on);
   tcase_add_test(tests, second_signal_ends_at_once);
   return unit_run("kills", tests);
 }
