@@ -9,9 +9,16 @@
 
 #include <string.h>
 
-static const char *symbol_at(const void *ctx, int i) {
-  const deck *d = ctx;
-  return i < d->n_symbol ? d->symbols[i].name : NULL;
+/* The names of a deck but for one. */
+typedef struct others {
+  const deck *d;
+  const symbol *but;
+} others;
+
+static const char *other_at(const void *ctx, int i) {
+  const others *o = ctx;
+  i += i >= o->but - o->d->symbols;
+  return i < o->d->n_symbol ? o->d->symbols[i].name : NULL;
 }
 
 /* What may be meant: a name of the .geo but for upper and lower case, one of
@@ -21,9 +28,9 @@ static const char *nearest_use(const model *m, const geo_text *g,
   const char *word;
   for (int i = 0; (word = geo_name(g, i)) != NULL; ++i)
     if (same_word(s->name, word)) return word;
-  word = nearest_word(s->name, symbol_at, m->deck);
-  if (word != NULL && strcmp(word, s->name) != 0) return word;
-  return nearest_word(s->typed, geo_name, g);
+  const others o = {.d = m->deck, .but = s};
+  word = nearest_word(s->name, other_at, &o);
+  return word != NULL ? word : nearest_word(s->typed, geo_name, g);
 }
 
 static void tell_unused(const model *m, const geo_text *g, const symbol *s) {
