@@ -197,6 +197,8 @@ done:
 
 status deck_input(deck *d, const char *path) {
   status st = OK;
+  for (int i = 0; i < d->n_input; ++i)
+    if (strcmp(d->inputs[i], path) == 0) return OK;
   GROW(d->inputs, d->n_input, d->own->input_capacity);
   d->inputs[d->n_input++] = path;
 done:

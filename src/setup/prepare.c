@@ -101,6 +101,30 @@ static status report_ready(run *r) {
   return r->sink->ready(r->sink->ctx, &facts, r->surface);
 }
 
+/* Forces, stiffness and displacements are squared and multiplied. */
+static int in_range(double x) {
+  return x == 0.0 || (x > 0x1p-480 && x < 0x1p480);
+}
+
+static status check_range(const run *r) {
+  status st = OK;
+  double least = HUGE_VAL, most = 0.0, width = 1.0;
+  for (int e = 0; e < r->msh->n_elem; ++e) {
+    least = fmin(least, run_elasticity(r, e)[0]);
+    most = fmax(most, run_elasticity(r, e)[0]);
+  }
+  for (int k = 2; k < r->msh->dim; ++k) width *= r->msh->size;
+  if (!in_range(r->step_load) || !in_range(least) || !in_range(most) ||
+      !in_range(r->step_load / (least * width)))
+    FAIL(
+        ERR_DECK,
+        "step %d: the largest nodal load is %.3g, the moduli are %.3g to %.3g: "
+        "their squares leave the range of the numbers; use other units",
+        run_step_id(r) + 1, r->step_load, least, most);
+done:
+  return st;
+}
+
 /* The largest nodal load at the ends of the step. */
 static status find_load(run *r) {
   status st = OK;
@@ -108,6 +132,7 @@ static status find_load(run *r) {
   TRY(load_forces(r->m, r->msh, r->step, end, r->now.F));
   r->step_load =
       fmax(increment_free_load(r, r->old.F), increment_free_load(r, r->now.F));
+  TRY(check_range(r));
 done:
   return st;
 }

@@ -22,8 +22,9 @@ static job run_scene(const scene *s, const char *factor) {
   snprintf(path, sizeof path, "tests/regression/mesh/%s", s->geo);
   job_copy(&j, path);
   job_write(&j, "truth.inp",
-            "*PARAMETER\nF = %s\nN = 3 + 0*<F>\n*MESH, FILE=%s\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., %s\n*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
+            "*PARAMETER\nF = %s\nN = 3 + 0*<F>\n*MESH, FILE=%s\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., %s\n*SOLID SECTION, "
+            "ELSET=BODY, MATERIAL=M%s\n"
             "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
             "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
             "*REFERENCE\n%s*STEP\n*STATIC\n*BOUNDARY\n%s"

@@ -134,5 +134,35 @@ START_TEST(equal_runs_give_equal_bytes) {
 }
 END_TEST
 
+/* Loads and moduli of 2^400 leave every bit, of 2^600 are refused; so small
+ * ones. */
+START_TEST(forces_beyond_the_range_are_refused) {
+  job base = run_scaled(1.0, 1.0, methods[0]);
+  for (int sign = -1; sign <= 1; sign += 2) {
+    job j = run_scaled(1.0, ldexp(1.0, 400 * sign), methods[0]);
+    compare(&base, &j, 1.0, ldexp(1.0, 400 * sign), 0.0);
+    char words[64];
+    job_end(&j);
+    j = job_begin("range");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    snprintf(words, sizeof words, "-D F=1E%d", 180 * sign);
+    job_write(&j, "range.inp",
+              "*PARAMETER\nF = 1\nN = 2\n*MESH, FILE=square.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n1E5, 0.2\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n"
+              "*STEP\n*STATIC\n*BOUNDARY\nRIGHT, 1\n"
+              "*DSLOAD\nTOP, P, <F>\n*END STEP\n");
+    ck_assert_int_eq(job_run(&j, words), 2);
+    ck_assert_ptr_nonnull(strstr(j.errors, "the largest nodal load is"));
+    job_end(&j);
+  }
+  job_end(&base);
+}
+END_TEST
+
 UNIT_MAIN("scale", five_units_of_length, powers_of_two_leave_every_bit,
-          loads_of_any_size, equal_runs_give_equal_bytes)
+          loads_of_any_size, equal_runs_give_equal_bytes,
+          forces_beyond_the_range_are_refused)
