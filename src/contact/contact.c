@@ -91,6 +91,8 @@ node_step contact_step(const contact_problem *cp, int node_id,
       ++counted;
     }
   if (counted > 0) t /= counted;
+  /* Where no force moves anything, any step serves. */
+  if (!(largest_diagonal > 0.0)) largest_diagonal = 1.0;
   if (!(n > 0.0)) n = largest_diagonal;
   if (!(t > 0.0)) t = largest_diagonal;
   if (cp->A != NULL) return (node_step){n, t};

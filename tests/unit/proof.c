@@ -200,7 +200,31 @@ START_TEST(body_too_thick_for_its_gap_has_no_equilibrium) {
 }
 END_TEST
 
+/* Nodes that no force moves, all open: no forces. */
+START_TEST(compliance_of_zero_is_solved_without_forces) {
+  const solver_ops *ops;
+  for (int dim = 2; dim <= 3; ++dim) {
+    contact_case c = case_new(dim, 3, 0.3);
+    for (int i = 0; i < 3; ++i) c.f[i * dim] = -1.0 - i;
+    c.cp.W = c.A;
+    c.cp.A = NULL;
+    ck_assert_double_eq(contact_residual(&c.cp, c.f, c.r), 0.0);
+    for (int i = 0; solver_row(i, &ops); ++i) {
+      case_cold(&c);
+      solver_report rep = solve_by(ops, &c, 1e-9, c.u, c.r);
+      ck_assert_msg(rep.outcome != STOPPED_RAY && rep.outcome != STOPPED_NAN,
+                    "%s: %s", row_name(ops), outcome_text(rep.outcome));
+      if (ops == NULL) ck_assert_int_eq(rep.outcome, CONVERGED);
+      for (int k = 0; k < 3 * dim && rep.outcome > 0; ++k)
+        ck_assert_double_eq(c.r[k], 0.0);
+    }
+    case_free(&c);
+  }
+}
+END_TEST
+
 UNIT_MAIN("proof", balanced_load_has_no_proof,
           limit_of_friction_is_met_from_both_sides,
           solvable_problem_is_never_said_to_have_no_equilibrium,
-          body_too_thick_for_its_gap_has_no_equilibrium)
+          body_too_thick_for_its_gap_has_no_equilibrium,
+          compliance_of_zero_is_solved_without_forces)
