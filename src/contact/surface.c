@@ -24,10 +24,9 @@ static const double smooth_cosine = 0.70710678;
 /* Rounding: of a depth of penetration over the size of the mesh, of the sum of
  * the normals of the faces around a node over their area. */
 static const double rounding = 1e-9;
-/* A node nearer to its obstacle at time 0 than this, over the size of the mesh,
- * touches it; the sine of the angle between the normals of body and obstacle
- * there that is worth a note. */
-static const double touching = 1e-6, told_sine = 1e-3;
+/* The sine of the angle between the normals of body and obstacle where they
+ * touch that is worth a note. */
+static const double told_sine = 1e-3;
 
 typedef struct candidate {
   int node_id, pair_id;
@@ -254,7 +253,7 @@ static void compare_normals(const builder *b, const candidate *c) {
   tally *t = &b->tallies[c->pair_id];
   const double *x = &b->in->mesh->x[(size_t)b->dim * (size_t)c->node_id];
   double n[3], square = 0;
-  if (fabs(c->gap) > touching * b->in->mesh->size ||
+  if (fabs(c->gap) > rounding * b->in->mesh->size ||
       !obstacle_normal(p->support, b->dim, x, n))
     return;
   frame_project(b->dim, b->in->fixed[c->node_id], n);

@@ -16,6 +16,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <gmshc.h>
+#include <limits.h>
 #include <locale.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -371,10 +372,16 @@ static void set_sizes(const child *c) {
   memory_free(data);
 }
 
-/*
- * Options beside a file (x.geo.opt) would be obeyed after it: the file is
- * included by one that lives in memory, beside which there is nothing.
- */
+/* 1: options beside the file (x.geo.opt), which gmsh would obey after it. */
+static int has_options(const char *path) {
+  char name[PATH_MAX + 8];
+  snprintf(name, sizeof name, "%s.opt", path);
+  return access(name, F_OK) == 0;
+}
+
+/* Where there are such options the file is included by one that lives in
+ * memory, beside which there is nothing; some meshes differ by a few elements
+ * by that. */
 static void open_geo(child *c) {
   int error, fd = memfd_create("protis", MFD_CLOEXEC);
   char name[32];
@@ -386,7 +393,7 @@ static void open_geo(child *c) {
     give_up(c, ERR_MESH, "gmsh reads no path with quotes or backslashes");
   dprintf(fd, "Include \"%s\";\n", c->path);
   snprintf(name, sizeof name, "/proc/self/fd/%d", fd);
-  c->gmsh.Open(name, &error);
+  c->gmsh.Open(has_options(c->path) ? name : c->path, &error);
   check(c, error, "read the file");
 }
 
