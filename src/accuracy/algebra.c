@@ -150,14 +150,19 @@ static double pair_distance(const contact_problem *cp, const double *u,
   return sqrt(fmax(0.0, cblas_ddot(cp->m, move, 1, p->t, 1)));
 }
 
+static const double NO_PIVOT = 0x1p-44; /* -, of the largest diagonal         */
+
 /*
  * Largest |e|_inv(M) of what rounding can have put into d: its rows are sums
- * of m products. x' inv(M) x <= condition * sum x_i^2/M_ii.
+ * of m products. x' inv(M) x <= condition * sum x_i^2/M_ii. Of a body that
+ * moves without energy M_ii may be rounding itself.
  */
-static double pair_rounding(const contact_problem *cp, double condition,
-                            pair *p) {
+static double pair_rounding(const contact_problem *cp,
+                            const inverse_energy *inverse, pair *p) {
   const double *M = matrix_of(cp), *x = cp->A != NULL ? p->v : p->q;
-  double sum = 0.0, unit = 0.5 * DBL_EPSILON * (2.0 + sqrt(cp->m));
+  double sum = 0.0, unit = 0.5 * DBL_EPSILON * (2.0 + sqrt(cp->m)), least = 0.0;
+  for (int i = 0; i < cp->m && inverse->n_kernel > 0; ++i)
+    least = fmax(least, NO_PIVOT * diagonal(cp, i));
   for (int i = 0; i < cp->m; ++i)
     p->t[i] = fabs(cp->f[i]) + fabs(cp->A != NULL ? p->q[i] : p->v[i]);
   for (int j = 0; j < cp->m; ++j) {
@@ -167,8 +172,8 @@ static double pair_rounding(const contact_problem *cp, double condition,
       p->t[i] += size * fabs(column[i]);
   }
   for (int i = 0; i < cp->m; ++i)
-    sum += unit * p->t[i] * (unit * p->t[i] / diagonal(cp, i));
-  return sqrt(condition * sum);
+    sum += unit * p->t[i] * (unit * p->t[i] / fmax(diagonal(cp, i), least));
+  return sqrt(inverse->condition * sum);
 }
 
 /* ---- the bound ---------------------------------------------------------- */
@@ -207,6 +212,10 @@ status solver_error_bound(const contact_problem *cp,
   if (cp->m == 0) goto done;
   TRY(find_rate(cp, inverse->stiffness, u, r, known, error));
   if (error->why != NULL) goto done;
+  if (inverse->condition > 1.0 / DBL_EPSILON) {
+    no_bound(error, "without contact the body is hardly held");
+    goto done;
+  }
   TRY(pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
   pair_defect(cp, &p);
@@ -218,7 +227,7 @@ status solver_error_bound(const contact_problem *cp,
     }
   }
   TRY(inverse->square(inverse->ctx, p.d, &square));
-  error->norm = sqrt(square) + pair_rounding(cp, inverse->condition, &p);
+  error->norm = sqrt(square) + pair_rounding(cp, inverse, &p);
   error->norm /= 1.0 - error->rate;
   error->norm += pair_distance(cp, u, r, &p, p.d);
   if (!(error->norm < HUGE_VAL)) no_bound(error, "the answer is not a number");
