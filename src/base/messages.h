@@ -339,6 +339,12 @@
     "for each of its groups; version 4.1 does not.")                         \
   X(3027, ERROR, "mesh too large",                                           \
     "Up to 500 million nodes and elements can be numbered.")                 \
+  X(3028, ERROR, "two elements with the same nodes",                         \
+    "A group holds an element once. The file is damaged: write it again, "   \
+    "or remove the surface or volume that is there twice.")                  \
+  X(3029, ERROR, "number given twice",                                       \
+    "Each node and each element has its own number. The file is damaged: "   \
+    "write it again.")                                                       \
   X(3030, ERROR, "face of a group that bounds no element",                   \
     "The curves (2-D) or surfaces (3-D) of a group are sides of "            \
     "elements of the mesh. Remove construction lines from the group, "       \
@@ -346,17 +352,18 @@
   X(3031, NOTE, "faces listed twice",                                        \
     "They count once. Version 2.2 of the format lists a face once for "      \
     "each of its groups; version 4.1 does not.")                             \
-  X(3032, ERROR, "face of more than two elements",                           \
+  X(3032, ERROR, "two elements on one side of a face",                       \
     "Elements overlap there: the same surface or volume is there "           \
-    "twice, or parts are merged that intersect. Remove one of them.")        \
+    "twice, parts are merged that intersect, or a node was moved through "   \
+    "the sides of its elements. Remesh there, or remove one of the parts.")        \
   X(3033, ERROR, "node of a group that is in no element",                    \
     "The points and curves of a group carry nodes of elements. Remove "      \
     "construction points from the group; a point inside a body needs "       \
     "Point{n} In Surface{m}; to be a node.")                                 \
   X(3034, ERROR, "elements that overlap round a node",                       \
-    "Together they fill more than the full angle: a node was moved through " \
-    "the sides of its elements, or parts are merged that overlap. Remesh "   \
-    "there, or move the node back.")                                         \
+    "They fill more than the full angle, or a side of one lies inside of "   \
+    "another: a node was moved through the sides of its elements, or parts " \
+    "are merged that overlap. Remesh there, or move the node back.")                                         \
   X(3040, NOTE, "nodes that no element uses",                                \
     "They are left out: centres of circles and other construction "          \
     "points, or parts of the mesh in no group.")                             \

@@ -43,7 +43,7 @@ done:
 }
 
 static void release(builder *b) {
-  memory_free(b->slot);
+  memory_free(b->by_no.slot);
   memory_free(b->node_id);
   memory_free(b->corner);
   memory_free(b->elem_of_top);
@@ -76,7 +76,7 @@ status build_mesh(const raw_mesh *raw, double scale, const place *at,
   TRY(elements_finish(&b));
   TRY(faces_finish(&b));
   TRY(groups_fill(&b));
-  TRY(elements_check_folds(&b));
+  TRY(overlap_check(&b));
   TRY(nodes_coincident(&b));
 done:
   release(&b);

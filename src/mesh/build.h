@@ -12,6 +12,12 @@
 
 enum { MAX_ITEMS = 500000000, SHOWN = 5 };
 
+typedef struct number_table {
+  int bits;
+  int *slot;        /* [2^bits] index + 1, 0: none                           */
+  const size_t *no; /* borrowed                                              */
+} number_table;
+
 typedef struct builder {
   const raw_mesh *raw; /* borrowed                                       */
   double scale;
@@ -19,13 +25,12 @@ typedef struct builder {
   message_log *log;
   int errors; /* errors of the log before                                */
   mesh *m;
-  int slot_bits;
-  int *slot;        /* [2^slot_bits] raw node + 1 by number, 0: none     */
-  int *node_id;     /* [raw->n_node] mesh node, -1 if not used           */
-  int n_top, n_low; /* elements of the mesh dimension, one dimension less */
-  int *corner;      /* [(dim+1)*n_top] raw nodes                         */
-  int *elem_of_top; /* [n_top] element id                                */
-  int *face_of_low; /* [n_low] face id                                   */
+  number_table by_no; /* raw nodes                                       */
+  int *node_id;       /* [raw->n_node] mesh node, -1 if not used           */
+  int n_top, n_low;   /* elements of the mesh dimension, one dimension less */
+  int *corner;        /* [(dim+1)*n_top] raw nodes                         */
+  int *elem_of_top;   /* [n_top] element id                                */
+  int *face_of_low;   /* [n_low] face id                                   */
   int *first; /* [raw->n_block] first top or low element of the block    */
 } builder;
 
@@ -42,6 +47,13 @@ void culprit_at(culprits *c, int dim, size_t no, const double *x);
 /* ERR_MESH if the log got errors since the start. */
 status build_check(const builder *b);
 
+/* The first of the items with a number, -1: none; numbers may repeat. */
+status numbers_index(number_table *t, int n, const size_t *no);
+int numbers_find(const number_table *t, size_t no);
+/* Two items with one number are told, but not two with one id. */
+status numbers_check(builder *b, const char *what, int n, const size_t *no,
+                     const int *id);
+
 status groups_check(builder *b); /* names, dimension of the mesh             */
 status groups_fill(builder *b);  /* items and nodes                          */
 status nodes_index(builder *b);  /* raw node by number                       */
@@ -51,6 +63,8 @@ status nodes_coincident(builder *b);
 status elements_gather(builder *b); /* types; corners as raw nodes            */
 status elements_finish(builder *b); /* orientation, order, repeated ones      */
 status faces_finish(builder *b);    /* ids, elements on both sides            */
-status elements_check_folds(builder *b); /* round every node                  */
+/* Nodes of a side of an element, turned outward, in 3-D the lowest first. */
+void faces_side(const mesh *m, int elem, int side, int *v);
+status overlap_check(builder *b); /* across faces, round nodes            */
 
 #endif

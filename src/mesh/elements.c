@@ -13,8 +13,6 @@
 /* An element whose measure is below this part of (longest edge)^dim is flat:
  * far below any sliver that can be computed with, far above rounding. */
 static const double flat = 1e-12;
-/* What the angles round a node may be above the full one, -. */
-static const double rounding = 1e-6;
 
 /* Type of the one kind of element of a dimension that is read: P1. */
 static int first_order_type(int dim) {
@@ -219,6 +217,38 @@ static void fill_keys(builder *b, size_t *no, uint64_t *key, int *id) {
   }
 }
 
+static const raw_block *block_of(const builder *b, int e) {
+  int i = 0;
+  while (b->raw->block[i].dim != b->m->dim || e < b->first[i] ||
+         (size_t)(e - b->first[i]) >= b->raw->block[i].n)
+    ++i;
+  return &b->raw->block[i];
+}
+
+static int share_a_group(const raw_block *p, const raw_block *q) {
+  for (int i = 0; i < p->n_physical; ++i)
+    for (int j = 0; j < q->n_physical; ++j)
+      if (p->physical[i] == q->physical[j]) return 1;
+  return 0;
+}
+
+/* Version 2.2 lists an element once for each of its groups, not more. */
+static status check_repeated(builder *b, const top_list *t, const int *id) {
+  culprits bad = {0};
+  for (int i = 1; i < b->n_top; ++i)
+    for (int j = i; j > 0 && same_corners(t, id[j - 1], id[i]); --j)
+      if (share_a_group(block_of(b, id[j - 1]), block_of(b, id[i]))) {
+        culprit_add(&bad, "%zu and %zu", t->no[id[j - 1]], t->no[id[i]]);
+        break;
+      }
+  if (bad.n > 0)
+    message_add(b->log, P3028, b->at,
+                "%d element(s) have the nodes of another one of their group: "
+                "%s",
+                bad.n, bad.text);
+  return build_check(b);
+}
+
 /* Sorted top elements to the mesh, each set of corners once. */
 static status store_elements(builder *b, const top_list *t, const int *id) {
   status st = OK;
@@ -253,73 +283,13 @@ status elements_finish(builder *b) {
   fill_keys(b, no, key, id);
   top_list t = {b->m->dim + 1, b->corner, no};
   TRY(sort_by_key(b->n_top, key, id, by_corners, &t));
+  TRY(check_repeated(b, &t, id));
   TRY(store_elements(b, &t, id));
+  TRY(numbers_check(b, "element", b->n_top, no, b->elem_of_top));
   TRY(orient(b));
 done:
   memory_free(key);
   memory_free(id);
   memory_free(no);
-  return st;
-}
-
-/* ---- folds -------------------------------------------------------------- */
-
-static double dot(int n, const double *a, const double *b) {
-  double sum = 0.0;
-  for (int k = 0; k < n; ++k) sum += a[k] * b[k];
-  return sum;
-}
-
-/* Unit vector from corner i of the element to another one; squares of lengths
- * over the size of the mesh stay in range in any unit. */
-static void direction(const mesh *m, const int *v, int i, int to, double *d) {
-  const double *x = m->x + (size_t)m->dim * (size_t)v[i],
-               *y = m->x + (size_t)m->dim * (size_t)v[to];
-  for (int k = 0; k < m->dim; ++k) d[k] = (y[k] - x[k]) / m->size;
-  double length = sqrt(dot(m->dim, d, d));
-  for (int k = 0; k < m->dim; ++k) d[k] /= length;
-}
-
-/* Angle of the element at its corner i over the full one; in space the solid
- * angle (van Oosterom and Strackee 1983). */
-static double share_of_angle(const mesh *m, const int *v, int i) {
-  double d[3][3];
-  for (int k = 1; k <= m->dim; ++k)
-    direction(m, v, i, (i + k) % (m->dim + 1), d[k - 1]);
-  if (m->dim == 2) {
-    double across = d[0][0] * d[1][1] - d[0][1] * d[1][0];
-    return atan2(fabs(across), dot(2, d[0], d[1])) / (2.0 * acos(-1.0));
-  }
-  double triple = d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) -
-                  d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0]) +
-                  d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]);
-  double below =
-      1.0 + dot(3, d[0], d[1]) + dot(3, d[1], d[2]) + dot(3, d[2], d[0]);
-  return atan2(fabs(triple), below) / (2.0 * acos(-1.0));
-}
-
-/* A mesh folded over itself has nodes whose elements, all turned to positive
- * orientation, fill more than the full angle. */
-status elements_check_folds(builder *b) {
-  status st = OK;
-  const mesh *m = b->m;
-  culprits bad = {0};
-  double *share = NULL;
-  int n = m->dim + 1;
-  NEW(share, m->n_node);
-  for (int e = 0; e < m->n_elem; ++e)
-    for (int i = 0; i < n; ++i) {
-      const int *v = m->elem + (size_t)n * (size_t)e;
-      share[v[i]] += share_of_angle(m, v, i);
-    }
-  for (int i = 0; i < m->n_node; ++i)
-    if (share[i] > 1.0 + rounding)
-      culprit_at(&bad, m->dim, m->node_no[i], m->x + (size_t)(m->dim * i));
-  if (bad.n > 0)
-    message_add(b->log, P3034, b->at,
-                "the elements round %d node(s) overlap: %s", bad.n, bad.text);
-  TRY(build_check(b));
-done:
-  memory_free(share);
   return st;
 }

@@ -21,34 +21,70 @@ static const double same_place = 1e-10;
 static const double plane_digits = 1e-9;
 
 /* Numbers without gaps find themselves at once; others are spread. */
-static size_t slot_of(const builder *b, size_t no) {
-  size_t upper = no >> b->slot_bits;
-  return (no + upper * (size_t)0x9E3779B97F4A7C15u) &
-         (((size_t)1 << b->slot_bits) - 1);
+static size_t slot_of(const number_table *t, size_t no) {
+  size_t mask = ((size_t)1 << t->bits) - 1, upper = no >> t->bits;
+  size_t s = (no + upper * (size_t)0x9E3779B97F4A7C15u) & mask;
+  while (t->slot[s] != 0 && t->no[t->slot[s] - 1] != no) s = (s + 1) & mask;
+  return s;
 }
 
-status nodes_index(builder *b) {
+status numbers_index(number_table *t, int n, const size_t *no) {
   status st = OK;
-  const raw_mesh *raw = b->raw;
-  size_t mask;
-  while (((size_t)1 << b->slot_bits) < 2 * raw->n_node + 2) ++b->slot_bits;
-  mask = ((size_t)1 << b->slot_bits) - 1;
-  NEW(b->slot, mask + 1);
-  for (size_t i = 0; i < raw->n_node; ++i) {
-    size_t s = slot_of(b, raw->node_no[i]);
-    while (b->slot[s] != 0) s = (s + 1) & mask;
-    b->slot[s] = (int)i + 1;
+  t->no = no;
+  while (((size_t)1 << t->bits) < 2 * (size_t)n + 2) ++t->bits;
+  NEW(t->slot, (size_t)1 << t->bits);
+  for (int i = 0; i < n; ++i) {
+    size_t s = slot_of(t, no[i]);
+    if (t->slot[s] == 0) t->slot[s] = i + 1;
   }
 done:
   return st;
 }
 
-int nodes_find(const builder *b, size_t no) {
-  size_t mask = ((size_t)1 << b->slot_bits) - 1;
-  for (size_t s = slot_of(b, no);; s = (s + 1) & mask) {
-    int i = b->slot[s] - 1;
-    if (i < 0 || b->raw->node_no[i] == no) return i;
+int numbers_find(const number_table *t, size_t no) {
+  return t->slot[slot_of(t, no)] - 1;
+}
+
+static int ascend(int n, const size_t *no) {
+  for (int i = 1; i < n; ++i)
+    if (no[i] <= no[i - 1]) return 0;
+  return 1;
+}
+
+status numbers_check(builder *b, const char *what, int n, const size_t *no,
+                     const int *id) {
+  status st = OK;
+  number_table t = {0};
+  culprits bad = {0};
+  if (ascend(n, no)) return OK;
+  TRY(numbers_index(&t, n, no));
+  for (int i = 0; i < n; ++i) {
+    int j = numbers_find(&t, no[i]);
+    if (j != i && (id == NULL || id[j] != id[i]))
+      culprit_add(&bad, "%zu", no[i]);
   }
+  if (bad.n > 0)
+    message_add(b->log, P3029, b->at,
+                "%d %s(s) have the number of another "
+                "one: %s",
+                bad.n, what, bad.text);
+  TRY(build_check(b));
+done:
+  memory_free(t.slot);
+  return st;
+}
+
+status nodes_index(builder *b) {
+  status st = OK;
+  const raw_mesh *raw = b->raw;
+  TRY(numbers_index(&b->by_no, (int)raw->n_node, raw->node_no));
+  TRY(numbers_check(b, "node", (int)raw->n_node, raw->node_no, NULL));
+done:
+  return st;
+}
+
+int nodes_find(const builder *b, size_t no) {
+  return numbers_find(&b->by_no, no);
 }
 
 /* Bit b of x to place dim*b of the key. */

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 
-enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS, FEW = 32 };
+enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS, FEW = 128 };
 
 static void insertion(int n, uint64_t *key, int *id) {
   for (int i = 1; i < n; ++i) {

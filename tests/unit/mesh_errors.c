@@ -19,6 +19,9 @@
 #define BODY "1\n2 1 \"BODY\"\n"
 #define SIDE "2\n1 2 \"SIDE\"\n2 1 \"BODY\"\n"
 #define BODY_3D "1\n3 1 \"BODY\"\n"
+/* Above and below the triangle 1 2 3. */
+#define TETS                                                             \
+  "7\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n6 0 0 -1\n7 1 1 -1\n"
 #define TWO "1 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n"
 
 typedef struct bad_mesh {
@@ -77,7 +80,9 @@ static const bad_mesh errors[] = {
                 "6 .7 .5 0\n",
                 "6\n1 2 2 1 1 1 2 5\n2 2 2 1 1 2 6 5\n3 2 2 1 1 2 3 6\n"
                 "4 2 2 1 1 3 4 6\n5 2 2 1 1 4 5 6\n6 2 2 1 1 4 1 5\n"),
-   "error P3034: the elements round 1 node(s) overlap: 6 at (0.7, 0.5)"},
+   "error P3032: 4 face(s) have two elements on one side: 5 and 4 at "
+   "(0.35, 0.75), 6 and 5 at (0.4, 0.75), 2 and 3 at (0.85, 0.25), 1 and 2 at "
+   "(0.9, 0.25)"},
   {"l.msh", MSH(BODY, "4\n1 0 0 0\n2 nan 0 0\n3 1 inf 0\n4 0 1 0\n", "2\n" TWO),
    "error P3023: 2 node(s) without finite coordinates: 2 at (nan, 0, 0), 3 at "
    "(1, inf, 0)"},
@@ -98,8 +103,43 @@ static const bad_mesh errors[] = {
    "error P3030: 1 face(s) bound no element: 7 at (2, 1)"},
   {"r.msh", MSH(SIDE, "5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .1 .9 0\n",
                 "4\n" TWO "3 2 2 1 1 1 3 5\n7 1 2 2 1 1 3\n"),
-   "error P3032: 1 face(s) are sides of more than two elements: 7 at (0.5, "
+   "error P3032: 1 face(s) have two elements on one side: 2 and 3 at (0.5, "
    "0.5)"},
+  {"three.msh", MSH(BODY, "5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .1 .9 0\n",
+                "3\n" TWO "3 2 2 1 1 1 3 5\n"),
+   "error P3032: 1 face(s) have two elements on one side: 2 and 3 at (0.5, "
+   "0.5)"},
+  {"side.msh", MSH(BODY, "4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n",
+                   "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 4 2\n"),
+   "error P3032: 1 face(s) have two elements on one side: 1 and 2 at (0.5, 0)"},
+  {"side3.msh", MSH(BODY_3D, TETS, "2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 1 2 3 5\n"),
+   "error P3032: 1 face(s) have two elements on one side: 1 and 2 at "
+   "(0.333333, 0.333333, 0)"},
+  {"three3.msh", MSH(BODY_3D, TETS, "3\n1 4 2 1 1 1 2 3 4\n"
+                     "2 4 2 1 1 1 2 3 6\n3 4 2 1 1 1 2 3 7\n"),
+   "error P3032: 1 face(s) have two elements on one side: 2 and 3 at "
+   "(0.333333, 0.333333, 0)"},
+  {"over.msh", MSH(BODY, "5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 .1 0\n5 .1 1 0\n",
+                   "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 4 5\n"),
+   "error P3034: the elements round 1 node(s) overlap: 1 at (0, 0)"},
+  {"over3.msh", MSH(BODY_3D, "7\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+                    "5 1 .1 .1\n6 .1 1 .1\n7 .1 .1 1\n",
+                    "2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 1 5 6 7\n"),
+   "error P3034: the elements round 1 node(s) overlap: 1 at (0, 0, 0)"},
+  {"twice.msh", MSH(BODY, SQUARE, "3\n" TWO "3 2 2 1 2 2 1 3\n"),
+   "error P3028: 1 element(s) have the nodes of another one of their group: 1 "
+   "and 3"},
+  {"twice3.msh", MSH(BODY_3D, TETS,
+                     "2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 1 2 4 3\n"),
+   "error P3028: 1 element(s) have the nodes of another one of their group: 1 "
+   "and 2"},
+  {"no.msh", MSH(BODY, SQUARE, "2\n2 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n"),
+   "error P3029: 1 element(s) have the number of another one: 2"},
+  {"face.msh", MSH(SIDE, SQUARE, "4\n" TWO "5 1 2 2 1 1 2\n5 1 2 2 1 2 3\n"),
+   "error P3029: 1 face(s) have the number of another one: 5"},
+  {"node.msh", MSH(BODY, "5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n3 2 1 0\n",
+                   "2\n" TWO),
+   "error P3029: 1 node(s) have the number of another one: 3"},
   {"s.geo", PLATE "Point(9)={5,5,0}; Physical Point(\"P\")={9};"
    "Physical Surface(\"BODY\")={1};\n",
    "error P3033: physical point \"P\": 1 node(s) in no element of the mesh: 5"},
@@ -132,7 +172,7 @@ static const bad_mesh remarks[] = {
   {"b.msh", MSH(BODY, SQUARE, "3\n1 2 2 1 1 1 2 3\n2 2 2 0 2 1 3 4\n"
                 "3 1 2 0 3 1 2\n"),
    "warning P3014: 1 element(s) in no physical group are left out"},
-  {"c.msh", MSH(SIDE, SQUARE, "5\n" TWO "3 2 2 1 1 3 1 2\n4 1 2 2 1 1 2\n"
+  {"c.msh", MSH(SIDE, SQUARE, "5\n" TWO "1 2 2 3 1 3 1 2\n4 1 2 2 1 1 2\n"
                 "5 1 2 2 1 2 1\n"),
    "note P3026: 1 element(s) are listed more than once\n"
    "job.inp:4:1: note P3031: 1 face(s) are listed more than once"},
