@@ -355,7 +355,7 @@
   X(3032, ERROR, "two elements on one side of a face",                       \
     "Elements overlap there: the same surface or volume is there "           \
     "twice, parts are merged that intersect, or a node was moved through "   \
-    "the sides of its elements. Remesh there, or remove one of the parts.")        \
+    "the sides of its elements. Remesh there, or remove one of the parts.") \
   X(3033, ERROR, "node of a group that is in no element",                    \
     "The points and curves of a group carry nodes of elements. Remove "      \
     "construction points from the group; a point inside a body needs "       \
@@ -363,7 +363,7 @@
   X(3034, ERROR, "elements that overlap round a node",                       \
     "They fill more than the full angle, or a side of one lies inside of "   \
     "another: a node was moved through the sides of its elements, or parts " \
-    "are merged that overlap. Remesh there, or move the node back.")                                         \
+    "are merged that overlap. Remesh there, or move the node back.") \
   X(3040, NOTE, "nodes that no element uses",                                \
     "They are left out: centres of circles and other construction "          \
     "points, or parts of the mesh in no group.")                             \
