@@ -30,9 +30,9 @@ static void check_stopped(const char *cards) {
   job whole = new_job(cards);
   ck_assert_int_eq(traced_run(&whole, none, &t), 0);
   const int all = t.changes;
-  for (int k = 2; k <= 3; ++k) {
+  for (int k = 3; k <= 4; ++k) {
     job j = new_job(cards);
-    t = (traced){.action = TRACE_SIGNAL, .at = k * all / 5, .number = SIGINT};
+    t = (traced){.action = TRACE_SIGNAL, .at = k * all / 10, .number = SIGINT};
     ck_assert_int_eq(traced_run(&j, none, &t), 130);
     int code = job_run(&j, "--restart --no-timing");
     ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
