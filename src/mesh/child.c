@@ -383,17 +383,21 @@ static int has_options(const char *path) {
  * memory, beside which there is nothing; some meshes differ by a few elements
  * by that. */
 static void open_geo(child *c) {
-  int error, fd = memfd_create("protis", MFD_CLOEXEC);
+  int error;
   char name[32];
   c->path = realpath(c->request->source->file, NULL);
+  int fd = memfd_create("protis", MFD_CLOEXEC);
   if (fd < 0 || c->path == NULL)
     give_up(c, ERR_MESH, "cannot hand the geometry to gmsh: %s",
             strerror(errno));
-  if (strpbrk(c->path, "\"\n\\") != NULL)
-    give_up(c, ERR_MESH, "gmsh reads no path with quotes or backslashes");
-  dprintf(fd, "Include \"%s\";\n", c->path);
   snprintf(name, sizeof name, "/proc/self/fd/%d", fd);
-  c->gmsh.Open(has_options(c->path) ? name : c->path, &error);
+  const char *file = has_options(c->path) ? name : c->path;
+  if (file == name && strpbrk(c->path, "\"\n\\") != NULL)
+    give_up(c, ERR_MESH,
+            "a path with quotes or backslashes beside options of gmsh; "
+            "rename it or remove the options");
+  dprintf(fd, "Include \"%s\";\n", c->path);
+  c->gmsh.Open(file, &error);
   check(c, error, "read the file");
 }
 
