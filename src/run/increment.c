@@ -209,29 +209,34 @@ static void take_start(run *r) {
   memcpy(r->now.rc, rc, bytes);
 }
 
-static int was_open(const run *r) {
+static int is_open(const run *r, const double *uc) {
   for (int i = 0; i < r->n; ++i)
-    if (!(r->gap[i] > r->old.uc[r->msh->dim * i])) return 0;
-  return largest_entry((size_t)r->n_c, r->old.rc) == 0.0;
+    if (!(r->gap[i] > uc[r->msh->dim * i])) return 0;
+  return 1;
 }
 
 /*
- * A body in the air: the answer without contact forces, if it is one. The
- * tolerance of a method, of forces in the scale of the motion (contact_scale),
- * would leave forces that no contact carries.
+ * A body in the air: the answer without contact forces, if its residual,
+ * written to *residual, is not above that. The tolerance of a method, of
+ * forces in the scale of the motion (contact_scale), would leave forces that
+ * no contact carries.
  */
-static status start_in_the_air(const run *r, double *u, double *rc) {
+static status drop_reactions(const run *r, double *residual, double *u,
+                             double *rc) {
   status st = OK;
-  double *q = NULL;
-  if (r->beside || r->forms->n > 0 || condensed_floating(r->c) || !was_open(r))
-    goto done;
+  double *q = NULL, *zero = NULL;
+  if (r->beside || r->forms->n > 0 || condensed_floating(r->c)) goto done;
   NEW(q, r->n_row);
+  NEW(zero, r->n_row);
   TRY(condensed_untouched(r->c, r->cp.f, q));
+  double left = contact_residual(&r->cp, q, zero);
+  if (!(left <= *residual)) goto done;
+  *residual = left;
+  memcpy(u, q, (size_t)r->n_row * sizeof *u);
   memset(rc, 0, (size_t)r->n_row * sizeof *rc);
-  if (contact_residual(&r->cp, q, rc) <= r->tol)
-    memcpy(u, q, (size_t)r->n_row * sizeof *u);
 done:
   memory_free(q);
+  memory_free(zero);
   return st;
 }
 
@@ -246,7 +251,9 @@ static status forms_solve(run *r) {
   take_start(r);
   double *own_u = run_rows(r, 0, r->now.uc), *u = own_u;
   double *rc = run_rows(r, 1, r->now.rc);
-  TRY(start_in_the_air(r, u, rc));
+  double tol = r->tol;
+  if (is_open(r, r->old.uc) && largest_entry((size_t)r->n_c, r->old.rc) == 0.0)
+    TRY(drop_reactions(r, &tol, u, rc));
   if (given) TRY(take_given(r, u, rc, &whole));
   cp = whole;
   if (in_du) TRY(take_velocity(r, &cp, &u));
@@ -259,6 +266,10 @@ static status forms_solve(run *r) {
   if (in_du) velocity_form_apply(r->forms->velocity, &whole, own_u);
   if (given) given_form_apply(r->forms->given, &r->cp, own_u, rc);
   put_rows(r, own_u, rc);
+  if (is_open(r, r->now.uc) && largest_entry((size_t)r->n_c, r->now.rc) > 0.0) {
+    TRY(drop_reactions(r, &r->report.residual, own_u, rc));
+    put_rows(r, own_u, rc);
+  }
 done:
   return st;
 }

@@ -205,8 +205,12 @@ static twin_answer compare(const random_deck *d, const deck_text *how, job *j,
     char *sta = job_file(j, "sta");
     answer = d->balanced ? TWIN_SAME : may_branch(d) ? TWIN_OTHER : TWIN_LOST;
     judge(d, &t, sta, &q);
-    for (int k = 0; k < CHECKS; ++k)
-      if (q.worst[k] > 1) answer = TWIN_LOST;
+    for (int k = 0; k < CHECKS; ++k) {
+      if (q.worst[k] <= 1) continue;
+      answer = TWIN_LOST;
+      snprintf(what, 400, "%s is %.3g tolerances off: %.300s", check_name[k],
+               q.worst[k], q.where[k]);
+    }
     free(sta);
   }
   tables_free(&t);
