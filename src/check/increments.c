@@ -37,9 +37,11 @@ int step_level(const model *m, const step *s, double t, double dt, double rate,
   if (level == 0 || (s->substeps && level < DEEPEST)) return level;
   message_add(m->log, P2050, &s->at,
               "step %d, time %g: %s is stable up to dt = %.9g (fastest rate "
-              "%.9g), not with dt = %.9g; give a smaller dt, SUBSTEPS=AUTO, or "
+              "%.9g), not with dt = %.9g%s; give a smaller dt, %sor "
               "INTEGRATOR=BACKWARD",
-              (int)(s - m->steps) + 1, t, s->integrator->name, limit, rate, dt);
+              (int)(s - m->steps) + 1, t, s->integrator->name, limit, rate, dt,
+              s->substeps ? ", nor in 2^29 parts of it" : "",
+              s->substeps ? "" : "SUBSTEPS=AUTO, ");
   return -1;
 }
 

@@ -68,7 +68,8 @@ double share_of_step(const run *r);
 status rounding_find(run *r);
 /* 1: the strains of the body are no more than the rounding of its motion. */
 int rounding_hides_strains(const run *r);
-/* 1: no load acts on it either, and contact forces are no more than that. */
+/* 1: no load acts on it either, and contact forces are no more than that; or
+ * they carry the load straight, and strains are rounding of both. */
 int rounding_is_all(const run *r);
 
 /* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */

@@ -97,7 +97,17 @@ int rounding_hides_strains(const run *r) {
          r->msh->n_node * condensed_stiffest(r->c) * u * u;
 }
 
+/* 1: contact forces and supports carry the loads straight, and strains are no
+ * more than the rounding of both. */
+static int forces_hide_strains(const run *r) {
+  const double force = CARRIED * fmax(largest_entry(r->n_dof, r->now.F),
+                                      largest_entry((size_t)r->n_c, r->now.rc));
+  return r->now.energy.strain <=
+         r->msh->n_node * force * force / condensed_stiffest(r->c);
+}
+
 int rounding_is_all(const run *r) {
+  if (forces_hide_strains(r)) return 1;
   if (increment_free_load(r, r->now.F) > 0.0) return 0;
   return largest_entry((size_t)r->n_c, r->now.rc) <=
              condensed_stiffest(r->c) * lost(r) &&

@@ -151,6 +151,36 @@ START_TEST(chosen_increments_do_not_follow_supports) {
 }
 END_TEST
 
+/* The wall carries the traction on its nodes straight: no strain, no loss. */
+START_TEST(loads_carried_straight_lose_nothing) {
+  const mesh_change bent = {
+      .map = {NULL, NULL, "z + 0.05*(x - 0.5)^2*(1 - z)"}};
+  int *number = NULL;
+  char path[100];
+  job j = job_begin("wall");
+  snprintf(path, sizeof path, "%s/wall.msh", j.dir);
+  FILE *out = fopen(path, "w");
+  ck_assert_ptr_nonnull(out);
+  ck_assert_int_eq(scene_mesh_write(out, "box 2 2 2 1 1 1", &bent, &number), 1);
+  fclose(out);
+  free(number);
+  job_write(
+      &j, "wall.inp",
+      "*MESH, FILE=wall.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.07\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=C, GROUP=RIGHT, OBSTACLE=O\n"
+      "*OBSTACLE, NAME=FLOOR, TYPE=SPHERE, RADIUS=12.8\n0.5, 0.45, -12.8\n"
+      "*CONTACT, NAME=D, GROUP=BOTTOM, OBSTACLE=FLOOR, NORMAL=OBSTACLE\n"
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*STATIC\n"
+      "*BOUNDARY\nTOP, 1, 3\n"
+      "*DSLOAD\nRIGHT, TX, 0.14\n*PRINT, TOTALS\n*END STEP\n");
+  const int code = job_run(&j, "--no-timing --quiet");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job_end(&j);
+}
+END_TEST
+
 /* What a loose tolerance leaves between contact forces is nobody's once all
  * nodes are off. */
 START_TEST(a_body_lifted_off_keeps_no_forces) {
@@ -186,6 +216,7 @@ int main(void) {
   tcase_add_loop_test(tests, a_start_inside_the_floor_by_rounding_is_none, 0,
                       12);
   tcase_add_test(tests, chosen_increments_do_not_follow_supports);
+  tcase_add_test(tests, loads_carried_straight_lose_nothing);
   tcase_add_loop_test(tests, a_body_lifted_off_keeps_no_forces, 0, 4);
   return unit_run("falling", tests);
 }
