@@ -63,10 +63,12 @@ static double *vector(int n) {
   return v;
 }
 
-static void judge_one(const random_deck *d, const snapshot *before,
+static void judge_one(const random_deck *d, const snapshot *first,
                       const snapshot *now, double residual, judgement *q) {
+  const snapshot *before = now == first ? NULL : now - 1;
   int n = d->mesh.n_node, dof = d->mesh.dim * n;
   judged x = {.d = d,
+              .first = first,
               .now = now,
               .before = before,
               .residual = residual,
@@ -108,6 +110,5 @@ void judge(const random_deck *d, const tables *t, const char *sta,
            judgement *q) {
   memset(q, 0, sizeof *q);
   for (int i = 0; i < t->n; ++i)
-    judge_one(d, i == 0 ? NULL : &t->at[i - 1], &t->at[i],
-              residual_of(sta, &t->at[i]), q);
+    judge_one(d, t->at, &t->at[i], residual_of(sta, &t->at[i]), q);
 }

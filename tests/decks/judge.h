@@ -44,10 +44,10 @@ void judge_note(judgement *q, check_kind kind, double miss, double scale,
 /* An increment with what its equilibrium is checked against. */
 typedef struct judged {
   const random_deck *d;
-  const snapshot *now, *before; /* before: NULL for the first               */
-  double residual;              /* that the program reached, -              */
-  double largest;               /* sum of force magnitudes at a node        */
-  int step;                     /* from 0                                   */
+  const snapshot *first, *now, *before; /* before: NULL for the first       */
+  double residual; /* that the program reached, -              */
+  double largest;  /* sum of force magnitudes at a node        */
+  int step;        /* from 0                                   */
   judgement *q;
   double *u, *old_u;    /* [dim*n_node]                             */
   double *force, *size; /* [dim*n_node]; [n_node] sum of magnitudes */

@@ -224,15 +224,18 @@ static void judge_normal(const judged *j, const deck_contact *c,
              q->node + 1);
 }
 
-/* Slip since the last equilibrium, or from the origin in *STATIC. */
+/* Slip since the last equilibrium, or from the origin in *STATIC: past the
+ * obstacle that has moved by the increments of the run. */
 static void find_slip(const judged *j, const deck_contact *c,
                       const contact_node *q, double *slip) {
   const random_deck *d = j->d;
   int fresh = d->step[j->step].kind == IS_STATIC && j->now->increment > 0;
-  double t0 = fresh || j->before == NULL ? 0 : j->before->t, way[3];
-  drift(d, &c->obstacle, t0, j->now->t, q->x, q->n, way);
-  for (int k = 0; k < 3; ++k)
-    slip[k] = (fresh ? q->u[k] : q->moved[k]) - way[k];
+  for (int k = 0; k < 3; ++k) slip[k] = fresh ? q->u[k] : q->moved[k];
+  for (const snapshot *s = fresh ? j->first : j->now; s <= j->now; ++s) {
+    double t0 = s == j->first ? 0 : s[-1].t, way[3];
+    drift(d, &c->obstacle, t0, s->t, q->x, q->n, way);
+    for (int k = 0; k < 3; ++k) slip[k] -= way[k];
+  }
   tangential(q, slip);
 }
 
