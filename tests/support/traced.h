@@ -22,6 +22,7 @@ typedef struct traced {
   trace_action action;
   int at;      /* the change it happens at                                  */
   int always;  /* 1: and at every later one                                 */
+  int timed;   /* 1: changes of JOB.xdmf count, which is rewritten by time  */
   int number;  /* signal or errno                                           */
   int changes; /* out: changes of files in all                             */
 } traced;

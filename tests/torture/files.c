@@ -54,8 +54,9 @@ static const char *fault(const job *whole, job *j, int code) {
 
 /* The job under one fault at n changes. */
 static void disturb(points *t, traced how, job *whole, job *j, long n) {
-  traced usual = {.action = TRACE_COUNT};
+  traced usual = {.action = TRACE_COUNT, .timed = 1};
   char errors[200];
+  how.timed = 1;
   kept_mesh(whole);
   ck_assert_int_eq(traced_run(whole, nothing, &usual), 0);
   for (long k = 0; k < n && k < usual.changes; ++k) {

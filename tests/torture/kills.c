@@ -51,7 +51,7 @@ static int can_restart(const job *j) {
 }
 
 static int run(job *j, const char *const *words, int at, int *changes) {
-  traced t = {.action = TRACE_SIGNAL, .at = at, .number = SIGKILL};
+  traced t = {.action = TRACE_SIGNAL, .at = at, .timed = 1, .number = SIGKILL};
   int code = traced_run(j, words, &t);
   if (changes != NULL) *changes = t.changes;
   return code;
