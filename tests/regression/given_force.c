@@ -55,7 +55,8 @@ static void check_foot(const job *j, int k, double p, double shear, double u_t,
   "\"\nLEFT, TY, \"-(" tau ")\"\n"
 
 /* p(t) = 10 t by expression, amplitude, table. Static at t = 1 and in
- * increments, both forms. Coulomb with mu = 0.3, Tresca with g = 3 t: slip. */
+ * increments, both forms. Coulomb with mu = 0.3, Tresca with g = 3 t, an
+ * average of what is uniform: slip. */
 START_TEST(slip_under_a_given_force_by_every_method) {
   static const char *const cards[] = {
       "*CONTACT FORCE, CONTACT=C\n\"10*t\"\n"
@@ -64,18 +65,20 @@ START_TEST(slip_under_a_given_force_by_every_method) {
       "*CONTACT FORCE, CONTACT=C, AMPLITUDE=A\n10.\n"
       "*FRICTION, CONTACT=C, LAW=TRESCA\n\"3*t\"\n",
       "*CONTACT FORCE, CONTACT=C, TABLE=T\n0., 0., 1., 10.\n"
-      "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"};
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n",
+      "*CONTACT FORCE, CONTACT=C\n\"10*t\"\n*FRICTION, CONTACT=C, "
+      "LAW=NONLOCAL, RADIUS=0.6, EDGE=NORMALIZED\n0.3\n"};
   static const char *const procedures[] = {
       "*STATIC\n" DRAG("0.01*t", "3*t"),
       "*QUASISTATIC\n0.5, 1.\n" DRAG("0.01*t", "3*t"),
       "*QUASISTATIC, FORM=VELOCITY\n0.5, 1.\n" DRAG("0.01*t", "3*t")};
   for (int k = 0; solver_list[k] != NULL; ++k) {
     const char *method = solver_list[k]->name;
-    job j = run_block(cards[k % 3], procedures[(k + k / 3) % 3], method);
+    job j = run_block(cards[k % 4], procedures[(k + k / 3) % 3], method);
     check_foot(&j, -1, 10, 3, 0.01 - 0.006, method);
     job_end(&j);
   }
-  for (int k = 0; k < 9; ++k) {
+  for (int k = 0; k < 12; ++k) {
     job j = run_block(cards[k / 3], procedures[k % 3], "AUTO");
     check_foot(&j, -1, 10, 3, 0.01 - 0.006, "AUTO");
     if (k % 3 > 0) check_foot(&j, 0, 5, 1.5, 0.005 - 0.003, "AUTO");

@@ -169,8 +169,43 @@ START_TEST(same_contact_twice_is_refused) {
 }
 END_TEST
 
+/* Friction along a face whose nodes are held across: supports, contact and
+ * loads are in balance, each component by itself. */
+START_TEST(supports_of_contact_nodes_balance) {
+  static const char *const cards[] = {"LEFT, 1\nTOP, 1\nTOP, 2, 2, 0.02\n",
+                                      "FRONT, 2\nTOP, 2\nTOP, 1, 1, 0.02\n"};
+  static const char *const part[][2] = {{"reaction_x", "force_x"},
+                                        {"reaction_y", "force_y"},
+                                        {"reaction_z", "force_z"}};
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("cube");
+    job_copy(&j, "tests/regression/mesh/cube.geo");
+    job_write(&j, "cube.inp",
+              "*PARAMETER\nN = 2\n*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n"
+              "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nTOP, 3, 3, -0.01\n%s*DSLOAD\nRIGHT, TX, 3.\n"
+              "*PRINT, TOTALS, REACTIONS\n*END STEP\n",
+              cards[k]);
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    dat r = job_table(&j, "REACTIONS", -1), t = job_table(&j, "TOTALS", -1);
+    ck_assert_double_ge(fabs(dat_at(&t, 0, part[1 - k][1])), 1);
+    for (int c = 0; c < 3; ++c)
+      ck_assert_double_eq_tol(
+          dat_sum(&r, part[c][0]) + dat_at(&t, 0, part[c][1]), c == 0 ? -3 : 0,
+          1e-8);
+    dat_free(&r);
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
           gravity_turns_from_one_direction_to_the_other,
           corner_forces_belong_to_their_contacts,
-          support_takes_over_from_contact, balance_is_that_of_the_largest_work,
+          supports_of_contact_nodes_balance, support_takes_over_from_contact,
+          balance_is_that_of_the_largest_work,
           static_problem_slips_from_the_origin, same_contact_twice_is_refused)

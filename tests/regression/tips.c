@@ -216,11 +216,18 @@ START_TEST(moduli_of_a_table_in_plane_strain_and_stress) {
               "*SOLID SECTION, ELSET=UPPER, MATERIAL=M, TYPE=CPS3\n"
               "*STEP\n*STATIC\n*BOUNDARY\nCONTACT, 1, 2\n*DSLOAD\n"
               "TOP, P, 30.\nTOP, TX, 5.\n*TEMPERATURE\nBODY, 50.\nUPPER, 50.\n"
-              "*PRINT, NODES\n*END STEP\n",
+              "*PRINT, NODES, ELEMENTS\n*END STEP\n",
               elastic[k]);
     int code = job_run(&j, "");
     ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
     u[k] = job_table(&j, "NODES", -1);
+    dat e = job_table(&j, "ELEMENTS", -1);
+    for (int i = 0; i < e.n_row; ++i) {
+      double flat = dat_at(&e, i, "stress_xx") + dat_at(&e, i, "stress_yy");
+      ck_assert_double_eq_tol(dat_at(&e, i, "stress_zz"),
+                              dat_at(&e, i, "y") < 1 ? 0.3 * flat : 0, 1e-9);
+    }
+    dat_free(&e);
     job_end(&j);
   }
   const double size = dat_max(&u[0], "u_y");
@@ -286,6 +293,17 @@ START_TEST(points_lie_within_increments) {
 }
 END_TEST
 
+/* Sheared alone, tau = 1/99: what is left of G after an increment of 1 is
+ * G/100, and with 3 K = 6.5 G nu is 6.48/13.02. */
+START_TEST(creep_in_shear_is_near_the_locking_it_tells) {
+  job j = run("*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n0.010101010101\n",
+              "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n*BOUNDARY\n"
+              "CLAMPED, 1, 2\nTIPS, 2\nTIPS, 1, 1, 0.001\n*END STEP\n");
+  ck_assert_ptr_nonnull(strstr(j.errors, "an apparent 0.4977;"));
+  job_end(&j);
+}
+END_TEST
+
 /* ---- what the plan and *EFFECTS tell ----------------------------------------
  */
 
@@ -335,6 +353,7 @@ START_TEST(law_at_its_end_keeps_the_energy_of_its_springs) {
 END_TEST
 
 UNIT_MAIN("tips", given_pressure_goes_by_area,
+          creep_in_shear_is_near_the_locking_it_tells,
           moduli_of_a_table_in_plane_strain_and_stress,
           foreseen_shares_are_the_whole,
           law_at_its_end_keeps_the_energy_of_its_springs,
