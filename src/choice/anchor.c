@@ -268,6 +268,7 @@ status anchor_solve(const anchor *an, const contact_problem *cp,
       own.max_iter = control->max_iter - rep->iterations;
     own.tol = fmax(FINEST * control->tol, fmin(1e-3, 1e-2 * rep->residual));
     TRY(inner->solve(inner->ctx, &held, &own, u, r, &pass));
+    own.no_restart = control->no_restart || pass.outcome < 0;
     rep->iterations += pass.iterations;
     rep->limit_updates += pass.limit_updates;
     rep->rate = pass.rate;

@@ -56,6 +56,7 @@ typedef struct proximal_work {
   step_matrix *J;
   unsigned char *acts; /* [m] 1: the row of J is not that of the unit matrix */
   double *x, *F, *d, *z; /* [m]                                               */
+  double *weight; /* [m] of F, m/N                                            */
   double *start, *centre; /* [m] force at the start; of the pass              */
   double *before;         /* [m] end of the last pass                         */
 } proximal_work;
@@ -66,7 +67,7 @@ static void proximal_release(void *work) {
   force_set_free(w->set);
   best_iterate_free(&w->best);
   step_matrix_free(w->J);
-  void *const blocks[] = {w->x,     w->F,      w->d,      w->z,
+  void *const blocks[] = {w->x,     w->F,      w->d,      w->z,   w->weight,
                           w->start, w->centre, w->before, w->acts};
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
     memory_free(blocks[k]);
@@ -87,6 +88,7 @@ static status proximal_setup(const contact_problem *cp, const void *par,
   NEW(w->F, m);
   NEW(w->d, m);
   NEW(w->z, m);
+  NEW(w->weight, m);
   NEW(w->start, m);
   NEW(w->centre, m);
   NEW(w->before, m);
@@ -111,6 +113,20 @@ typedef struct run {
 /* ---- the equations --------------------------------------------------------
  */
 
+/* inv(D); friction counts in the pressures that its limit takes, or a limit
+ * that grows by far more than they would hide all else. */
+static void set_weights(proximal_work *w, const contact_problem *cp) {
+  const sparse_rows *B = cp->B;
+  for (int i = 0; i < cp->m; ++i) {
+    double mu = 0.0;
+    int node_id = i / cp->dim, normal = i % cp->dim == 0 || B == NULL;
+    for (int k = normal ? 0 : B->start[node_id];
+         !normal && k < B->start[node_id + 1]; ++k)
+      mu += B->val[k];
+    w->weight[i] = 1.0 / (w->set->D[i] * fmax(1.0, mu * mu));
+  }
+}
+
 /* Length of z in the tangents of a node where friction acts; their number. */
 static double tangent_length(const run *s, int node_id, int *count) {
   double sum = 0.0;
@@ -124,7 +140,7 @@ static double tangent_length(const run *s, int node_id, int *count) {
   return sqrt(sum);
 }
 
-/* F at r; returns its size in the metric of inv(D), squared. */
+/* F at r; returns its size in the metric of the weights, squared. */
 static double evaluate(run *s) {
   const contact_problem *cp = s->cp;
   proximal_work *w = s->w;
@@ -148,7 +164,7 @@ static double evaluate(run *s) {
       if (set->part[dof] == IN_DISC) w->F[dof] = s->r[dof] - share * w->z[dof];
     }
   }
-  for (int i = 0; i < cp->m; ++i) sum += w->F[i] * w->F[i] / set->D[i];
+  for (int i = 0; i < cp->m; ++i) sum += w->weight[i] * w->F[i] * w->F[i];
   return sum;
 }
 
@@ -355,6 +371,7 @@ static status trial(run *s, int limit, int closed, outcome *end) {
     before = residual;
     set_centre(s, creeps);
     TRY(pass(s, evaluate(s), &steps));
+    if (steps > PASS && s->share >= MOST_SHARE) break; /* would come again */
     if (steps > PASS) memcpy(s->r, w->centre, bytes);
     s->share = next_share(s->share, steps);
   }
@@ -374,9 +391,10 @@ static status proximal_solve(const contact_problem *cp, const void *par,
   *rep = (solver_report){.outcome = RUNNING};
   w->best.residual = HUGE_VAL;
   force_set_fit(w->set, cp);
+  set_weights(w, cp);
   memcpy(w->start, r, (size_t)cp->m * sizeof *r);
   for (int k = 0; k < TRIALS && rep->outcome != CONVERGED; ++k) {
-    if (s.steps >= limit && k > 0) break;
+    if (k > 0 && (s.steps >= limit || control->no_restart)) break;
     int until = s.steps + TRIAL;
     s.stretch = way[k].stretch;
     s.share = way[k].share;

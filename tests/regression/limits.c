@@ -208,6 +208,27 @@ START_TEST(greco_without_friction) {
 }
 END_TEST
 
+/* Friction that would hold anything: PROXIMAL finds the answer of AUTO, in
+ * steps that do not grow without bound. */
+START_TEST(greco_under_huge_friction) {
+  double tangential[2];
+  for (int k = 0; k < 2; ++k) {
+    job j;
+    int code = job_run_with(&j, "input/greco/greco",
+                            k == 0 ? "*SOLVER, METHOD=PROXIMAL\n" : "", 0,
+                            "-D MU=1E6 -D N=32 -D DT=1");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat t = job_table(&j, "TOTALS", -1);
+    tangential[k] = dat_at(&t, 0, "tangential");
+    ck_assert_double_le(job_told(&j, "iterations"), 1000);
+    dat_free(&t);
+    job_end(&j);
+  }
+  ck_assert_double_eq_tol(tangential[0], tangential[1],
+                          1e-8 * fabs(tangential[1]));
+}
+END_TEST
+
 /*
  * Cylinder on a plane with mu = 0.2, nu = 0.3 (Spence): the zone of stick in
  * half-widths of Hertz, on a mesh of 32 segments per half-width, is 0.125 in
@@ -361,5 +382,6 @@ UNIT_MAIN("limits", no_load_no_motion, constant_load_keeps_everything,
           rest_costs_at_most_two_iterations_with_any_method,
           all_open_is_linear_elasticity, first_touch_at_the_end_of_an_increment,
           friction_from_none_to_sticking, greco_without_friction,
-          path_makes_the_zone_of_stick, layers_of_a_million_to_one,
-          slip_turns_with_the_shear, local_friction_pays_for_nothing_else)
+          greco_under_huge_friction, path_makes_the_zone_of_stick,
+          layers_of_a_million_to_one, slip_turns_with_the_shear,
+          local_friction_pays_for_nothing_else)
