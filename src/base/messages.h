@@ -360,10 +360,10 @@
     "The points and curves of a group carry nodes of elements. Remove "      \
     "construction points from the group; a point inside a body needs "       \
     "Point{n} In Surface{m}; to be a node.")                                 \
-  X(3034, ERROR, "elements that overlap round a node",                       \
-    "They fill more than the full angle, or a side of one lies inside of "   \
-    "another: a node was moved through the sides of its elements, or parts " \
-    "are merged that overlap. Remesh there, or move the node back.") \
+  X(3034, ERROR, "elements that overlap",                                    \
+    "They belong to one body or one group: a node was moved through the "    \
+    "sides of its elements, a part is there twice, or parts are merged "     \
+    "that intersect. Remesh there, or remove one of the parts.")             \
   X(3040, NOTE, "nodes that no element uses",                                \
     "They are left out: centres of circles and other construction "          \
     "points, or parts of the mesh in no group.")                             \
@@ -374,7 +374,10 @@
   X(3042, WARNING, "bodies that touch without being joined",                 \
     "Their nodes lie on each other but are not the same. If the bodies "     \
     "are one, add Coherence; (built-in kernel), BooleanFragments "           \
-    "(OpenCASCADE) or Coherence Mesh; to the .geo.")
+    "(OpenCASCADE) or Coherence Mesh; to the .geo.")                         \
+  X(3043, WARNING, "bodies that overlap",                                    \
+    "Two bodies fill the same place. Bodies do not touch each other in "     \
+    "the computation: each answers as if it were alone.")
 
 #define MESSAGE_LIST_CONTACT(X)                                              \
   X(4001, ERROR, "contact group is not made of boundary faces",              \

@@ -1,13 +1,18 @@
 /*
- * The steps from the raw mesh to the mesh, and how their messages are made.
+ * mesh_read_gmsh: a .geo is a program that gmsh runs, all else is data that
+ * is read here; then the steps from the raw mesh to the mesh, and how their
+ * messages are made.
  */
 #include "mesh/build.h"
 
 #include "base/memory.h"
+#include "system/input.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 void culprit_add(culprits *c, const char *format, ...) {
   if (++c->n > SHOWN + 1) return;
@@ -32,6 +37,15 @@ void culprit_at(culprits *c, int dim, size_t no, const double *x) {
     culprit_add(c, "%zu at (%.6g, %.6g)", no, x[0], x[1]);
   else
     culprit_add(c, "%zu at (%.6g, %.6g, %.6g)", no, x[0], x[1], x[2]);
+}
+
+void culprit_pair(culprits *c, int dim, size_t one, size_t two,
+                  const double *x) {
+  if (dim == 2)
+    culprit_add(c, "%zu and %zu at (%.6g, %.6g)", one, two, x[0], x[1]);
+  else
+    culprit_add(c, "%zu and %zu at (%.6g, %.6g, %.6g)", one, two, x[0], x[1],
+                x[2]);
 }
 
 status build_check(const builder *b) {
@@ -84,5 +98,160 @@ done:
     mesh_free(b.m);
   else
     *out = b.m;
+  return st;
+}
+
+/* ---- the file ------------------------------------------------------------ */
+
+enum { HEAD_SIZE = 4096, TAIL_SIZE = 256 };
+
+static int ends_in(const char *text, const char *end) {
+  size_t n = strlen(text), k = strlen(end);
+  return n >= k && strcasecmp(text + n - k, end) == 0;
+}
+
+/* gmsh does not tell a missing file from an empty one: look first. The first
+ * bytes go to head, with a zero after them. */
+static status read_head(const char *file, char head[HEAD_SIZE + 1],
+                        const place *at, message_log *log) {
+  status st = OK;
+  const char *why = NULL;
+  FILE *in = input_stream(file, &why);
+  if (in != NULL) {
+    why = NULL;
+    size_t n = fread(head, 1, HEAD_SIZE, in);
+    head[n] = '\0';
+    if (ferror(in))
+      why = strerror(errno);
+    else if (n == 0)
+      why = "it is empty";
+  }
+  if (why != NULL) {
+    message_add(log, P3001, at, "mesh file \"%s\" cannot be read: %s", file,
+                why);
+    FAIL(ERR_FILE, "mesh file \"%s\" cannot be read: %s", file, why);
+  }
+done:
+  if (in != NULL) fclose(in);
+  return st;
+}
+
+/* The version of the format from the head of a .msh, "" if it has none. */
+static void find_version(const char *head, char version[8]) {
+  static const char start[] = "$MeshFormat";
+  version[0] = '\0';
+  const char *p = strstr(head, start);
+  if (p == NULL || (p != head && p[-1] != '\n')) return;
+  p += sizeof start - 1;
+  p += strspn(p, " \t\r\n");
+  snprintf(version, 8, "%.*s", (int)strspn(p, "0123456789."), p);
+}
+
+static status check_format(const char *file, const char *head, const place *at,
+                           message_log *log) {
+  status st = OK;
+  char version[8];
+  find_version(head, version);
+  const char *start = head + strspn(head, " \t\r\n");
+  if (strncmp(start, "$NOD", 4) == 0) strcpy(version, "1");
+  if (*start != '$') version[0] = '\0';
+  if (strcmp(version, "2.1") == 0 || strncmp(version, "2.2", 3) == 0 ||
+      strncmp(version, "4.1", 3) == 0)
+    return OK;
+  if (version[0] != '\0')
+    message_add(log, P3002, at,
+                "\"%s\" is a mesh of version %s; 2.2 and 4.1 are read", file,
+                version);
+  else
+    message_add(log, P3002, at,
+                "\"%s\" is no .geo and does not start with $MeshFormat", file);
+  FAIL(ERR_MESH, "\"%s\" is not a mesh of gmsh", file);
+done:
+  return st;
+}
+
+/* The last bytes of the file, *n of them, with a zero after. */
+static status read_tail(const char *file, char tail[TAIL_SIZE + 1], size_t *n) {
+  status st = OK;
+  const char *why;
+  FILE *in = input_stream(file, &why);
+  if (in == NULL) FAIL(ERR_FILE, "\"%s\": %s", file, why);
+  if (fseek(in, -TAIL_SIZE, SEEK_END) != 0) rewind(in); /* it is shorter */
+  *n = fread(tail, 1, TAIL_SIZE, in);
+  tail[*n] = '\0';
+done:
+  if (in != NULL) fclose(in);
+  return st;
+}
+
+/* Of a last line without newline gmsh obeys the first statement only. */
+static status check_geo_tail(const char *file, const place *at,
+                             message_log *log) {
+  status st = OK;
+  char tail[TAIL_SIZE + 1];
+  size_t n = 0;
+  TRY(read_tail(file, tail, &n));
+  if (n > 0 && (tail[n - 1] == '\n' || tail[n - 1] == '\r')) return OK;
+  const char *line = strrchr(tail, '\n');
+  const char *first = strchr(line != NULL ? line : tail, ';');
+  if (first != NULL && strchr(first + 1, ';') != NULL) {
+    message_add(log, P3005, at,
+                "\"%s\" ends without a newline after several statements", file);
+    FAIL(ERR_MESH, "\"%s\" ends without a newline", file);
+  }
+done:
+  return st;
+}
+
+/* gmsh calls a name given twice in one dimension an error of its own. */
+static message_id number_of(const char *text) {
+  return strstr(text, "Physical ") != NULL && strstr(text, "already exists")
+             ? P3012
+             : P3003;
+}
+
+/* gmsh runs the geometry as a program. */
+static status read_geo(const mesh_source *source, const char *head,
+                       const place *at, message_log *log, raw_mesh **raw) {
+  status st = OK;
+  int is_solid = strstr(head, "OpenCASCADE") != NULL;
+  TRY(check_geo_tail(source->file, at, log));
+  st = raw_read(&(raw_request){source, is_solid}, raw);
+  if (st == ERR_MESH)
+    message_add(log, number_of(status_message()), at, "mesh file \"%s\": %s",
+                source->file, status_message());
+done:
+  return st;
+}
+
+/* A .msh is nothing but data. */
+static status read_msh(const mesh_source *source, const char *head,
+                       const place *at, message_log *log, raw_mesh **raw) {
+  status st = OK;
+  const char *file = source->file;
+  TRY(check_format(file, head, at, log));
+  st = msh_read(file, raw);
+  if (st == ERR_MESH)
+    message_add(log, P3006, at, "mesh file %s", status_message());
+done:
+  return st;
+}
+
+int mesh_is_program(const char *file) { return ends_in(file, ".geo"); }
+
+status mesh_read_gmsh(const mesh_source *source, const place *at,
+                      message_log *log, mesh **out) {
+  status st = OK;
+  char head[HEAD_SIZE + 1];
+  raw_mesh *raw = NULL;
+  *out = NULL;
+  TRY(read_head(source->file, head, at, log));
+  if (mesh_is_program(source->file))
+    TRY(read_geo(source, head, at, log, &raw));
+  else
+    TRY(read_msh(source, head, at, log, &raw));
+  TRY(build_mesh(raw, source->scale, at, log, out));
+done:
+  raw_free(raw);
   return st;
 }

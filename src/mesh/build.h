@@ -43,6 +43,9 @@ void culprit_add(culprits *c, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /* " no. 17 at (0.5, 2)" for a number and raw or mesh coordinates. */
 void culprit_at(culprits *c, int dim, size_t no, const double *x);
+/* "no. 17 and 18 at (0.5, 2)". */
+void culprit_pair(culprits *c, int dim, size_t one, size_t two,
+                  const double *x);
 
 /* ERR_MESH if the log got errors since the start. */
 status build_check(const builder *b);
@@ -65,6 +68,10 @@ status elements_finish(builder *b); /* orientation, order, repeated ones      */
 status faces_finish(builder *b);    /* ids, elements on both sides            */
 /* Nodes of a side of an element, turned outward, in 3-D the lowest first. */
 void faces_side(const mesh *m, int elem, int side, int *v);
-status overlap_check(builder *b); /* across faces, round nodes            */
+status overlap_check(builder *b); /* across faces, anywhere               */
+
+/* Sets as trees: parent[i] = i for the lowest of each. */
+int forest_root(int *parent, int i);
+void forest_join(int *parent, int a, int b);
 
 #endif

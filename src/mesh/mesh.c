@@ -1,7 +1,7 @@
 /*
  * The finished mesh: release, look-up of groups, measures, bodies.
  */
-#include "mesh/mesh.h"
+#include "mesh/build.h"
 
 #include "base/memory.h"
 #include "base/option.h"
@@ -84,7 +84,7 @@ double mesh_elem_measure(const mesh *m, int elem_id) {
 }
 
 /* Root of a node in the forest of bodies; the path is halved on the way. */
-static int root_of(int *parent, int i) {
+int forest_root(int *parent, int i) {
   while (parent[i] != i) {
     parent[i] = parent[parent[i]];
     i = parent[i];
@@ -93,9 +93,9 @@ static int root_of(int *parent, int i) {
 }
 
 /* The lower root wins, so that bodies are numbered by their first node. */
-static void join(int *parent, int a, int b) {
-  a = root_of(parent, a);
-  b = root_of(parent, b);
+void forest_join(int *parent, int a, int b) {
+  a = forest_root(parent, a);
+  b = forest_root(parent, b);
   if (a < b)
     parent[b] = a;
   else
@@ -110,11 +110,11 @@ status mesh_bodies(const mesh *m, int *n_body, int *body) {
   for (int i = 0; i < m->n_node; ++i) parent[i] = i;
   for (int e = 0; e < m->n_elem; ++e) {
     const int *v = m->elem + (size_t)n_corner * (size_t)e;
-    for (int k = 1; k < n_corner; ++k) join(parent, v[0], v[k]);
+    for (int k = 1; k < n_corner; ++k) forest_join(parent, v[0], v[k]);
   }
   *n_body = 0;
   for (int i = 0; i < m->n_node; ++i) /* a root comes before its nodes */
-    body_of[i] = parent[i] == i ? (*n_body)++ : body_of[root_of(parent, i)];
+    body_of[i] = parent[i] == i ? (*n_body)++ : body_of[forest_root(parent, i)];
   for (int e = 0; e < m->n_elem; ++e)
     body[e] = body_of[m->elem[(size_t)n_corner * (size_t)e]];
 done:

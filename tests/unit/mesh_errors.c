@@ -4,8 +4,9 @@
 #include "support/mesh_file.h"
 #include "support/unit.h"
 
-#include <errno.h>
 #include <dirent.h>
+#include <errno.h>
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +21,7 @@
 #define SIDE "2\n1 2 \"SIDE\"\n2 1 \"BODY\"\n"
 #define BODY_3D "1\n3 1 \"BODY\"\n"
 /* Above and below the triangle 1 2 3. */
-#define TETS                                                             \
+#define TETS \
   "7\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n6 0 0 -1\n7 1 1 -1\n"
 #define TWO "1 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n"
 
@@ -121,11 +122,28 @@ static const bad_mesh errors[] = {
    "(0.333333, 0.333333, 0)"},
   {"over.msh", MSH(BODY, "5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 .1 0\n5 .1 1 0\n",
                    "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 4 5\n"),
-   "error P3034: the elements round 1 node(s) overlap: 1 at (0, 0)"},
+   "error P3034: elements overlap: 1 and 2 at (0.333333, 0.333333)"},
   {"over3.msh", MSH(BODY_3D, "7\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
                     "5 1 .1 .1\n6 .1 1 .1\n7 .1 .1 1\n",
                     "2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 1 5 6 7\n"),
-   "error P3034: the elements round 1 node(s) overlap: 1 at (0, 0, 0)"},
+   "error P3034: elements overlap: 2 and 1 at (0.3, 0.3, 0.3)"},
+  {"in.msh", MSH(BODY, "6\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 .2 .2 0\n5 .4 .2 0\n"
+                 "6 .2 .4 0\n", "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 4 5 6\n"),
+   "error P3034: elements overlap: 1 and 2 at (0.333333, 0.333333)"},
+  {"in3.msh", MSH(BODY_3D, "8\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+                  "5 .1 .1 .1\n6 .2 .1 .1\n7 .1 .2 .1\n8 .1 .1 .2\n",
+                  "2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 5 6 7 8\n"),
+   "error P3034: elements overlap: 1 and 2 at (0.25, 0.25, 0.25)"},
+  {"deep.msh", MSH(BODY, "9\n1 0 0 0\n2 9 0 0\n3 0 9 0\n4 2 2 0\n5 4 2 0\n"
+                   "6 2 4 0\n7 2.5 2.5 0\n8 3 2.5 0\n9 2.5 3 0\n",
+                   "8\n1 2 2 1 1 1 2 4\n2 2 2 1 1 2 5 4\n3 2 2 1 1 2 3 5\n"
+                   "4 2 2 1 1 3 6 5\n5 2 2 1 1 3 1 6\n6 2 2 1 1 1 4 6\n"
+                   "7 2 2 1 1 4 5 6\n8 2 2 1 1 7 8 9\n"),
+   "error P3034: elements overlap: 7 and 8 at (2.66667, 2.66667)"},
+  {"edges.msh", MSH(BODY_3D, "8\n1 -1 0 0\n2 1 0 0\n3 0 -1 -1\n4 0 1 -1\n"
+                    "5 0 -1 -.1\n6 0 1 -.1\n7 -1 0 1\n8 1 0 1\n",
+                    "2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 5 6 7 8\n"),
+   "error P3034: elements overlap: 1 and 2 at (0, 0, -0.5)"},
   {"twice.msh", MSH(BODY, SQUARE, "3\n" TWO "3 2 2 1 2 2 1 3\n"),
    "error P3028: 1 element(s) have the nodes of another one of their group: 1 "
    "and 3"},
@@ -184,6 +202,12 @@ static const bad_mesh remarks[] = {
                 "5 1.00000000000001 0 0\n6 0 1 0\n",
                 "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 4 5 6\n"),
    "warning P3042: 2 node(s) lie on a node of another body: "},
+  {"f.msh", MSH("2\n2 1 \"BODY\"\n2 2 \"OTHER\"\n",
+                "6\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 .2 .2 0\n5 .9 .2 0\n"
+                "6 .2 .9 0\n",
+                "2\n1 2 2 1 1 1 2 3\n2 2 2 2 1 4 5 6\n"),
+   "warning P3043: elements of two bodies overlap: 1 and 2 at (0.333333, "
+   "0.333333)"},
 };
 /* clang-format on */
 
@@ -278,6 +302,32 @@ START_TEST(flatness_has_no_unit) {
       ck_assert((strstr(f.messages, "P3022") == NULL) == cases[k].good);
       mesh_free(m);
     }
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* Two slivers along a slanted line far from the origin, on both sides of it,
+ * without common nodes. */
+START_TEST(bodies_that_touch_do_not_overlap) {
+  mesh_file f;
+  mesh_file_open(&f);
+  for (int k = 0; k < 24; ++k) {
+    char text[1024];
+    double a = 0.1 + k, c = cos(a), s = sin(a), far = k % 2 ? 1e6 : 0.0;
+    double h = k % 2 ? 1e-3 : 1e-6;
+    snprintf(text, sizeof text,
+             MSH(BODY,
+                 "6\n1 %.17g %.17g 0\n2 %.17g %.17g 0\n3 %.17g %.17g 0\n"
+                 "4 %.17g %.17g 0\n5 %.17g %.17g 0\n6 %.17g %.17g 0\n",
+                 "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 4 5 6\n"),
+             far, far, far + c, far + s, far - h * s, far + h * c,
+             far + 0.3 * c, far + 0.3 * s, far + 0.8 * c, far + 0.8 * s,
+             far + h * s, far - h * c);
+    mesh *m = mesh_file_text(&f, "t.msh", text);
+    ck_assert_msg(m != NULL && strstr(f.messages, "P3034") == NULL, "%d: %s", k,
+                  f.messages);
+    mesh_free(m);
+  }
   mesh_file_close(&f);
 }
 END_TEST
@@ -639,9 +689,9 @@ END_TEST
 
 UNIT_MAIN("mesh_errors", every_error_has_its_text_and_no_mesh,
           every_remark_has_its_text_and_a_mesh, flatness_has_no_unit,
-          files_that_cannot_be_read_are_told, good_file_is_read_after_bad_ones,
-          reader_that_dies_is_told, signals_do_not_disturb,
-          want_of_memory_in_gmsh_is_told,
+          bodies_that_touch_do_not_overlap, files_that_cannot_be_read_are_told,
+          good_file_is_read_after_bad_ones, reader_that_dies_is_told,
+          signals_do_not_disturb, want_of_memory_in_gmsh_is_told,
           want_of_memory_is_never_taken_for_a_bad_mesh, nothing_is_printed,
           geometry_alone_makes_the_mesh, closed_streams_do_not_disturb,
           exit_of_gmsh_runs_no_handler_of_the_program,

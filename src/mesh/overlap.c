@@ -1,0 +1,451 @@
+/*
+ * Elements that overlap: two on one side of a face, or two that intersect.
+ *
+ * How many elements lie over a point changes only across sides on the boundary
+ * once no face has two elements on one side. So where elements overlap anywhere
+ * an element that owns such a side overlaps another of them, or one piece of
+ * the boundary lies wholly inside of other elements: the cost is that of the
+ * boundary.
+ */
+#include "mesh/build.h"
+#include "mesh/sort.h"
+
+#include "base/memory.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- both sides of a face ------------------------------------------------ */
+
+typedef struct side_list {
+  int n;         /* sides of elements; after check_sides, on the boundary   */
+  int *start;    /* [n_node+2] sides whose lowest node is i                 */
+  uint64_t *key; /* [n] the other nodes                                     */
+  int *id;       /* [n] (dim+1) * element + side                            */
+} side_list;
+
+static void side_nodes(const mesh *m, int id, int *v) {
+  faces_side(m, id / (m->dim + 1), id % (m->dim + 1), v);
+}
+
+static int lowest(const mesh *m, const int *v) {
+  return m->dim == 2 && v[1] < v[0] ? v[1] : v[0];
+}
+
+/* Two elements on both sides of a face turn it in opposite ways. */
+static int turn(const mesh *m, int id) {
+  int v[3];
+  side_nodes(m, id, v);
+  return v[m->dim - 2] < v[m->dim - 1];
+}
+
+static status gather_sides(const mesh *m, side_list *s) {
+  status st = OK;
+  int v[3];
+  s->n = (m->dim + 1) * m->n_elem;
+  NEW(s->start, m->n_node + 2);
+  NEW(s->key, s->n);
+  NEW(s->id, s->n);
+  for (int i = 0; i < s->n; ++i) {
+    side_nodes(m, i, v);
+    ++s->start[lowest(m, v) + 2];
+  }
+  for (int i = 1; i < m->n_node; ++i) s->start[i + 1] += s->start[i];
+  for (int i = 0; i < s->n; ++i) {
+    side_nodes(m, i, v);
+    int to = s->start[lowest(m, v) + 1]++;
+    int a = v[m->dim - 2], c = v[m->dim - 1];
+    uint64_t low = (uint64_t)(a < c ? a : c), high = (uint64_t)(a < c ? c : a);
+    s->key[to] = m->dim == 2 ? high : low << 32 | high;
+    s->id[to] = i;
+  }
+done:
+  return st;
+}
+
+/* The sides [n] of elements at one face. */
+static void check_face(const mesh *m, const int *id, int n, culprits *bad) {
+  int first[2] = {-1, -1}, v[3];
+  for (int i = 0; i < n; ++i) {
+    int t = turn(m, id[i]);
+    if (first[t] < 0) {
+      first[t] = id[i];
+      continue;
+    }
+    double x[3] = {0.0, 0.0, 0.0};
+    side_nodes(m, id[i], v);
+    for (int j = 0; j < m->dim; ++j)
+      for (int k = 0; k < m->dim; ++k)
+        x[k] += m->x[(size_t)m->dim * (size_t)v[j] + (size_t)k] / m->dim;
+    culprit_pair(bad, m->dim, m->elem_no[first[t] / (m->dim + 1)],
+                 m->elem_no[id[i] / (m->dim + 1)], x);
+    return;
+  }
+}
+
+/* What stays in the list are the sides without an element behind. */
+static status check_sides(const builder *b, side_list *s) {
+  status st = OK;
+  const mesh *m = b->m;
+  culprits bad = {0};
+  s->n = 0;
+  for (int i = 0; i < m->n_node; ++i) {
+    int end = s->start[i + 1];
+    TRY(sort_by_key(end - s->start[i], s->key + s->start[i],
+                    s->id + s->start[i], NULL, NULL));
+    for (int j = s->start[i], next; j < end; j = next) {
+      for (next = j + 1; next < end && s->key[next] == s->key[j];) ++next;
+      if (next == j + 1)
+        s->id[s->n++] = s->id[j];
+      else
+        check_face(m, s->id + j, next - j, &bad);
+    }
+  }
+  if (bad.n > 0)
+    message_add(b->log, P3032, b->at,
+                "%d face(s) have two elements on one side: %s", bad.n,
+                bad.text);
+  TRY(build_check(b));
+done:
+  return st;
+}
+
+/* ---- two elements -------------------------------------------------------- */
+
+/* Elements that enter each other by less than this part of their width touch:
+ * coordinates are written with few digits, -. */
+static const double touching = 1e-6;
+
+typedef struct pair { /* two elements over the size of the mesh             */
+  int n;              /* corners of each                                     */
+  double x[2][4][3];  /* from the first corner of the first; 0 for z in 2-D  */
+  double far;         /* largest coordinate of the mesh                      */
+} pair;
+
+static void load_pair(const mesh *m, int a, int b, pair *p) {
+  const int id[2] = {a, b};
+  size_t dim = (size_t)m->dim;
+  double scale = 1.0 / m->size; /* products stay in range in any unit */
+  const double *from = m->x + dim * (size_t)m->elem[(dim + 1) * (size_t)a];
+  p->n = m->dim + 1;
+  memset(p->x, 0, sizeof p->x);
+  for (int i = 0; i < 2; ++i)
+    for (size_t k = 0; k <= dim; ++k) {
+      int v = m->elem[(dim + 1) * (size_t)id[i] + k];
+      for (size_t d = 0; d < dim; ++d)
+        p->x[i][k][d] = (m->x[dim * (size_t)v + d] - from[d]) * scale;
+    }
+}
+
+static double dot(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void edge(const pair *p, int i, int from, int to, double *d) {
+  for (int k = 0; k < 3; ++k) d[k] = p->x[i][to][k] - p->x[i][from][k];
+}
+
+/* Whether the elements lie side by side along a x b. An axis along which
+ * rounding hides one of them tells nothing. */
+static int apart(const pair *p, const double *a, const double *b) {
+  double lo[2], hi[2], axis[3];
+  for (int k = 0; k < 3; ++k)
+    axis[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+  for (int i = 0; i < 2; ++i) {
+    lo[i] = hi[i] = dot(axis, p->x[i][0]);
+    for (int k = 1; k < p->n; ++k) {
+      double at = dot(axis, p->x[i][k]);
+      if (at < lo[i]) lo[i] = at;
+      if (at > hi[i]) hi[i] = at;
+    }
+  }
+  double deep = fmin(hi[0] - lo[1], hi[1] - lo[0]);
+  double width = fmin(hi[0] - lo[0], hi[1] - lo[1]);
+  double noise = 64.0 * DBL_EPSILON * sqrt(dot(a, a) * dot(b, b)) * p->far;
+  return width > noise && deep <= touching * width + noise;
+}
+
+/* 1: a plane along a side of element i parts them. */
+static int side_parts(const pair *p, int i) {
+  static const double z[3] = {0.0, 0.0, 1.0};
+  double a[3], b[3];
+  for (int k = 0; k < p->n; ++k) {
+    edge(p, i, k, (k + 1) % p->n, a);
+    edge(p, i, k, (k + 2) % p->n, b);
+    if (apart(p, a, p->n == 3 ? z : b)) return 1;
+  }
+  return 0;
+}
+
+/* Separating axes: normals of the sides, in space those of two edges too. */
+static int intersect(const mesh *m, double far, int e, int f) {
+  static const int ends[6][2] = {{0, 1}, {0, 2}, {0, 3},
+                                 {1, 2}, {1, 3}, {2, 3}};
+  pair p = {.far = far};
+  double a[3], b[3];
+  load_pair(m, e, f, &p);
+  if (side_parts(&p, 0) || side_parts(&p, 1)) return 0;
+  for (int i = 0; i < 6 && m->dim == 3; ++i)
+    for (int j = 0; j < 6; ++j) {
+      edge(&p, 0, ends[i][0], ends[i][1], a);
+      edge(&p, 1, ends[j][0], ends[j][1], b);
+      if (apart(&p, a, b)) return 0;
+    }
+  return 1;
+}
+
+/* Elements on both sides of a face are known to lie apart. */
+static int share_a_side(const mesh *m, int e, int f) {
+  size_t n = (size_t)m->dim + 1;
+  const int *v = m->elem + n * (size_t)e, *w = m->elem + n * (size_t)f;
+  size_t common = 0;
+  for (size_t i = 0; i < n; ++i)
+    for (size_t j = 0; j < n; ++j) common += v[i] == w[j];
+  return common + 1 == n;
+}
+
+/* ---- a tree of boxes ----------------------------------------------------- */
+
+typedef struct box {
+  double lo[3], hi[3];
+} box;
+
+/* Node k has the children 2k and 2k+1; the elements, which follow each other
+ * in space as they do by id, are the leaves. */
+typedef struct tree {
+  int n, first; /* elements; number of the first leaf, a power of two        */
+  int *elem;    /* [n] ascending                                             */
+  box *node;    /* [2*first]                                                 */
+} tree;
+
+static void surround(const mesh *m, int e, box *b) {
+  size_t dim = (size_t)m->dim;
+  const int *v = m->elem + (dim + 1) * (size_t)e;
+  memset(b, 0, sizeof *b);
+  for (size_t k = 0; k <= dim; ++k)
+    for (size_t d = 0; d < dim; ++d) {
+      double x = m->x[dim * (size_t)v[k] + d];
+      if (k == 0 || x < b->lo[d]) b->lo[d] = x;
+      if (k == 0 || x > b->hi[d]) b->hi[d] = x;
+    }
+}
+
+static status grow_tree(const mesh *m, tree *t) {
+  status st = OK;
+  for (t->first = 1; t->first < t->n;) t->first *= 2;
+  NEW(t->node, 2 * (size_t)t->first);
+  for (int i = t->first; i-- > 0;) {
+    box *leaf = &t->node[t->first + i];
+    surround(m, t->elem[i < t->n ? i : t->n - 1], leaf);
+  }
+  for (int i = t->first; i-- > 1;) {
+    const box *p = &t->node[2 * i], *q = p + 1;
+    for (int k = 0; k < 3; ++k) {
+      t->node[i].lo[k] = fmin(p->lo[k], q->lo[k]);
+      t->node[i].hi[k] = fmax(p->hi[k], q->hi[k]);
+    }
+  }
+done:
+  return st;
+}
+
+static void tree_free(tree *t) {
+  memory_free(t->elem);
+  memory_free(t->node);
+  *t = (tree){0};
+}
+
+static int boxes_meet(const box *p, const box *q) {
+  return p->lo[0] < q->hi[0] && q->lo[0] < p->hi[0] && p->lo[1] < q->hi[1] &&
+         q->lo[1] < p->hi[1] && p->lo[2] <= q->hi[2] && q->lo[2] <= p->hi[2];
+}
+
+/* ---- which elements overlap ---------------------------------------------- */
+
+typedef struct search {
+  const builder *b;
+  tree t;
+  double far; /* largest coordinate over the size of the mesh                */
+  int *body;  /* [n_elem] when it is needed                                  */
+  int e;      /* the element whose box is "at"; those of the tree from "from" */
+  int from;   /* on are compared with it                                     */
+  box at;
+  culprits same, other; /* in one body or group; in different ones           */
+} search;
+
+static int by_id(const void *p, const void *q) {
+  return (*(const int *)p > *(const int *)q) -
+         (*(const int *)p < *(const int *)q);
+}
+
+/* Elements of one body or one group. */
+static status belong_together(search *s, int f, int *together) {
+  status st = OK;
+  const mesh *m = s->b->m;
+  int n_body;
+  if (s->body == NULL) {
+    NEW(s->body, m->n_elem);
+    TRY(mesh_bodies(m, &n_body, s->body));
+  }
+  *together = s->body[s->e] == s->body[f];
+  for (int i = 0; i < m->n_group && !*together; ++i) {
+    const mesh_group *g = &m->group[i];
+    size_t n = (size_t)g->n_item, size = sizeof(int);
+    *together = g->dim == m->dim &&
+                bsearch(&s->e, g->item_id, n, size, by_id) != NULL &&
+                bsearch(&f, g->item_id, n, size, by_id) != NULL;
+  }
+done:
+  return st;
+}
+
+static status compare(search *s, int f) {
+  status st = OK;
+  const mesh *m = s->b->m;
+  double x[3] = {0.0, 0.0, 0.0};
+  int e = s->e, together = 0;
+  if (s->same.n > SHOWN || e == f || share_a_side(m, e, f) ||
+      !intersect(m, s->far, e, f))
+    return OK;
+  TRY(belong_together(s, f, &together));
+  const int *v = m->elem + (size_t)(m->dim + 1) * (size_t)e;
+  for (int i = 0; i <= m->dim; ++i)
+    for (int k = 0; k < m->dim; ++k)
+      x[k] += m->x[(size_t)m->dim * (size_t)v[i] + (size_t)k] / (m->dim + 1);
+  culprit_pair(together ? &s->same : &s->other, m->dim, m->elem_no[e],
+               m->elem_no[f], x);
+done:
+  return st;
+}
+
+/* Below a node of the tree, which holds "count" leaves from "leaf" on. */
+static status descend(search *s, int node, int leaf, int count) {
+  status st = OK;
+  if (leaf >= s->t.n || leaf + count <= s->from ||
+      !boxes_meet(&s->t.node[node], &s->at))
+    return OK;
+  if (count == 1) return compare(s, s->t.elem[leaf]);
+  TRY(descend(s, 2 * node, leaf, count / 2));
+  TRY(descend(s, 2 * node + 1, leaf + count / 2, count / 2));
+done:
+  return st;
+}
+
+/* All that intersect element e, from that leaf on. */
+static status find(search *s, int e, int from) {
+  s->e = e;
+  s->from = from;
+  surround(s->b->m, e, &s->at);
+  return descend(s, 1, 0, s->t.first);
+}
+
+static status start_tree(search *s, int n) {
+  status st = OK;
+  tree_free(&s->t);
+  NEW(s->t.elem, n);
+done:
+  return st;
+}
+
+/* Elements that own a side of the boundary, with each other. */
+static status check_skin(search *s, const char *is_skin) {
+  status st = OK;
+  const mesh *m = s->b->m;
+  int n = 0;
+  for (int e = 0; e < m->n_elem; ++e) n += is_skin[e];
+  TRY(start_tree(s, n));
+  for (int e = 0; e < m->n_elem; ++e)
+    if (is_skin[e]) s->t.elem[s->t.n++] = e;
+  TRY(grow_tree(m, &s->t));
+  for (int i = 0; i < n; ++i) TRY(find(s, s->t.elem[i], i + 1));
+done:
+  return st;
+}
+
+/* One side of each piece of the boundary, -1 for the others. A piece goes on
+ * across edges (2-D: nodes) that two sides have in common. */
+static status find_pieces(const mesh *m, const side_list *sides, int *piece) {
+  status st = OK;
+  uint64_t *key = NULL;
+  int *id = NULL, v[3], n = m->dim * sides->n;
+  NEW(key, n);
+  NEW(id, n);
+  for (int i = 0; i < n; ++i) {
+    int side = i / m->dim, k = i % m->dim;
+    side_nodes(m, sides->id[side], v);
+    int a = v[k], c = m->dim == 2 ? a : v[(k + 1) % 3];
+    key[i] = (uint64_t)(a < c ? a : c) << 32 | (uint64_t)(a < c ? c : a);
+    id[i] = side;
+  }
+  TRY(sort_by_key(n, key, id, NULL, NULL));
+  for (int i = 0; i < sides->n; ++i) piece[i] = i;
+  for (int i = 0, end; i < n; i = end) {
+    for (end = i + 1; end < n && key[end] == key[i];) ++end;
+    if (end == i + 2) forest_join(piece, id[i], id[i + 1]);
+  }
+  for (int i = sides->n; i-- > 0;)
+    if (piece[i] != i) piece[i] = -1;
+done:
+  memory_free(key);
+  memory_free(id);
+  return st;
+}
+
+/* One element of each piece of the boundary with those below the skin. */
+static status check_inside(search *s, const side_list *sides,
+                           const char *is_skin) {
+  status st = OK;
+  const mesh *m = s->b->m;
+  int *piece = NULL;
+  NEW(piece, sides->n);
+  TRY(find_pieces(m, sides, piece));
+  TRY(start_tree(s, sides->n));
+  for (int i = 0; i < sides->n; ++i)
+    if (piece[i] >= 0) s->t.elem[s->t.n++] = sides->id[i] / (m->dim + 1);
+  if (s->t.n < 2) goto done; /* one closed surface bounds them all */
+  TRY(grow_tree(m, &s->t));
+  for (int e = 0; e < m->n_elem; ++e)
+    if (!is_skin[e]) TRY(find(s, e, 0));
+done:
+  memory_free(piece);
+  return st;
+}
+
+static status check_skins(const builder *b, const side_list *sides) {
+  status st = OK;
+  const mesh *m = b->m;
+  search s = {.b = b};
+  char *is_skin = NULL;
+  for (size_t i = 0; i < (size_t)m->dim * (size_t)m->n_node; ++i)
+    s.far = fmax(s.far, fabs(m->x[i]) / m->size);
+  NEW(is_skin, m->n_elem);
+  for (int i = 0; i < sides->n; ++i) is_skin[sides->id[i] / (m->dim + 1)] = 1;
+  TRY(check_skin(&s, is_skin));
+  TRY(check_inside(&s, sides, is_skin));
+  if (s.other.n > 0)
+    message_add(b->log, P3043, b->at, "elements of two bodies overlap: %s",
+                s.other.text);
+  if (s.same.n > 0)
+    message_add(b->log, P3034, b->at, "elements overlap: %s", s.same.text);
+  TRY(build_check(b));
+done:
+  memory_free(is_skin);
+  memory_free(s.body);
+  tree_free(&s.t);
+  return st;
+}
+
+status overlap_check(builder *b) {
+  status st = OK;
+  side_list s = {0};
+  TRY(gather_sides(b->m, &s));
+  TRY(check_sides(b, &s));
+  TRY(check_skins(b, &s));
+done:
+  memory_free(s.start);
+  memory_free(s.key);
+  memory_free(s.id);
+  return st;
+}
