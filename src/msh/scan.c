@@ -117,9 +117,9 @@ static status word_whole(scan *s, int64_t least, int64_t most, int64_t *value) {
   const char *start = s->data + s->at, *p = start + (*start == '-');
   int64_t v = 0;
   int n = 0;
-  for (; is_digit(*p) && n <= DIGITS; ++p, ++n) v = 10 * v + (*p - '0');
+  for (; is_digit(*p) && n < DIGITS; ++p, ++n) v = 10 * v + (*p - '0');
   if (*start == '-') v = -v;
-  if (n == 0 || n > DIGITS || !ends_word(*p) || v < least || v > most)
+  if (n == 0 || !ends_word(*p) || v < least || v > most)
     return not_expected(
         s, least < 0 ? "a whole number" : "a whole number not below zero");
   s->at += (size_t)(p - start);

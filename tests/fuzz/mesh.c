@@ -2,7 +2,8 @@
  * libFuzzer: a .msh if the first byte is "$", else records from the process
  * that meshes a .geo, with any heads; then the mesh of it: it is refused with
  * an error or made, and what was made is inside its own bounds. Of records the
- * first byte tells whether the rest are the bytes of the pipe or choices.
+ * first byte tells whether the rest are the bytes of the pipe or choices. The
+ * memory of a .msh is bounded by its size.
  */
 #include "base/memory.h"
 #include "mesh/raw.h"
@@ -14,7 +15,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { ROOM = 1 << 16, MOST = 40 };
+enum { ROOM = 1 << 16, MOST = 40, TIMES = 100 };
 
 typedef struct stream {
   uint8_t data[ROOM];
@@ -95,10 +96,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   mesh *m = NULL;
   message_log *log;
   if (message_log_new(&log) != OK) abort();
-  status st = size > 0 && data[0] == '$'
-                  ? msh_read(fuzz_file("msh", data, size), &raw)
-                  : receive(&b, &raw);
+  int is_msh = size > 0 && data[0] == '$';
+  memory_limit(is_msh ? ROOM + TIMES * size : SIZE_MAX, "the size");
+  status st =
+      is_msh ? msh_read(fuzz_file("msh", data, size), &raw) : receive(&b, &raw);
   if (st == OK) st = build_mesh(raw, 1.0, &(place){.file = "m"}, log, &m);
+  if (is_msh && st == ERR_MEMORY) abort();
   if ((st == OK) != (m != NULL)) abort();
   if (m != NULL) use_mesh(m);
   mesh_free(m);
