@@ -91,7 +91,7 @@ done:
 
 void estimate_unloaded(run *r) {
   const energies *e = &r->now.energy;
-  if (rounding_is_all(r) || rounding_is_rest(r)) {
+  if (rounding_is_all(r)) {
     r->mesh_error.relative = r->time_error.relative = 0.0;
     if (r->error.why == NULL) r->error.relative = 0.0;
     return;

@@ -71,9 +71,6 @@ int rounding_hides_strains(const run *r);
 /* 1: no load acts on it either, and contact forces are no more than that; or
  * they carry the load straight, and strains are rounding of both. */
 int rounding_is_all(const run *r);
-/* 1: contact and supports carry the loads where they act, so that the body has
- * no strain but by rounding and the tolerance of the solver. */
-int rounding_is_rest(const run *r);
 
 /* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
 status estimate_increment(run *r);

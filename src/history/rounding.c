@@ -27,7 +27,8 @@ static const double IN_DOUBT = 0.01;
 static const double CARRIED = 4 * DBL_EPSILON;
 /* -, work of creep, or forces times motion, over the strain energy */
 static const double FAR = 1e6;
-static const double REST = 1e-8; /* -, energy norm over that of the load      */
+static const double REST =
+    1e-8; /* -, what a solver leaves of forces, at most */
 
 /* share: of the answer in one that the loss counts against. */
 static int leaves_none(const rounding_loss *loss, double share,
@@ -99,10 +100,11 @@ int rounding_hides_strains(const run *r) {
 }
 
 /* 1: contact forces and supports carry the loads straight, and strains are no
- * more than the rounding of both. */
+ * more than the rounding of both, or what the solver leaves. */
 static int forces_hide_strains(const run *r) {
-  const double force = CARRIED * fmax(largest_entry(r->n_dof, r->now.F),
-                                      largest_entry((size_t)r->n_c, r->now.rc));
+  const double force = fmax(CARRIED, fmin(r->tol, REST)) *
+                       fmax(largest_entry(r->n_dof, r->now.F),
+                            largest_entry((size_t)r->n_c, r->now.rc));
   return r->now.energy.strain <=
          r->msh->n_node * force * force / condensed_stiffest(r->c);
 }
@@ -115,17 +117,10 @@ int rounding_is_all(const run *r) {
          rounding_hides_strains(r);
 }
 
-/* Alone a load has at least the energy F^2/2k of the stiffest node. */
-int rounding_is_rest(const run *r) {
-  const double part = fmax(REST, r->tol) * increment_free_load(r, r->now.F);
-  return 2.0 * r->now.energy.strain * condensed_stiffest(r->c) <= part * part;
-}
-
-/* A body led through the air, without load and contact force, or one whose load
- * contact carries at once: its stresses, of which nothing but rounding is
- * there, are no loss. */
+/* A body led through the air, without load and contact force: its stresses, of
+ * which nothing but rounding is there, are no loss. */
 static int moves_alone(const run *r) {
-  if (rounding_is_all(r) || rounding_is_rest(r)) return 1;
+  if (rounding_is_all(r)) return 1;
   return r->rounding.u < 1e-10 && increment_free_load(r, r->now.F) == 0.0 &&
          largest_entry((size_t)r->n_c, r->now.rc) == 0.0;
 }
