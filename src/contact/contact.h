@@ -131,6 +131,13 @@ double contact_mismatch(const contact_problem *cp, double scale,
 /* What rounding can have put into the forces of each node, N. rounding[n]. */
 void contact_roundings(const contact_problem *cp, const double *u,
                        const double *r, double *rounding);
+/* What (u, r) misses of the natural map within these, the largest over the
+ * nodes, over F, the largest load or contact force of the body or own[n] (NULL:
+ * none), N; of friction over the same share of F that the limit of the node is
+ * of its normal force, -. What rounding makes of a body without load whose
+ * contact forces are no more than that is left out. */
+double contact_hidden(const contact_problem *cp, const double *u,
+                      const double *r, const double *own);
 /* Single unknowns: 1 if prescribed; the bound from above (gap, or side_gap;
  * HUGE_VAL: none), m; the position of stick, m, of a tangential unknown. */
 int contact_held(const contact_problem *cp, int dof);

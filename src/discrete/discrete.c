@@ -105,13 +105,15 @@ static status find_error(const step *s, const contact_problem *cp,
   solver_error found = {.norm = NAN, .why = error_bound_indefinite};
   dense_inverse *dense = NULL;
   double energy = 0.0;
-  *e = (error_bound){0};
+  *e = (error_bound){.hidden = contact_hidden(cp, u, r, NULL)};
   if (cp->m == 0 || s->no_solver_error) return OK;
   timer_enter(STAGE_ESTIMATE);
   TRY(condensed_energy(cp, u, r, &energy));
   TRY(dense_inverse_new(cp->m, cp->A != NULL ? cp->A : cp->W, &dense));
   if (dense != NULL) TRY(bound_error(cp, dense, u, r, &found));
+  const double hidden = e->hidden;
   error_bound_set(&found, energy, e);
+  e->hidden = hidden;
 done:
   dense_inverse_free(dense);
   timer_leave(STAGE_ESTIMATE);

@@ -35,6 +35,7 @@ void error_bound_set(const solver_error *found, double energy, error_bound *e) {
 }
 
 int error_bound_doubts(const error_bound *e, double share) {
+  if (share * e->hidden > DOUBT) return 1;
   return e->asked && e->why == NULL && share * e->relative > DOUBT;
 }
 
@@ -94,6 +95,7 @@ void estimate_unloaded(run *r) {
   if (rounding_is_all(r)) {
     r->mesh_error.relative = r->time_error.relative = 0.0;
     if (r->error.why == NULL) r->error.relative = 0.0;
+    r->error.hidden = 0.0;
     return;
   }
   if (!(e->strain < UNLOADED * e->largest)) return;
@@ -145,6 +147,7 @@ status estimate_increment(run *r) {
     TRY(estimate_mesh(r));
   }
   add_rounding(r);
+  TRY(rounding_hidden(r, &r->error.hidden));
   r->judged = 0;
   TRY(find_truth(r));
 done:

@@ -23,8 +23,9 @@ status history_continue(const model *m, const mesh *msh, archive *from,
 /* The bound that is told, for a solution of that energy, J. */
 void error_bound_set(const solver_error *found, double energy, error_bound *e);
 /* Why there is none where the matrix has no inverse. */
-/* 1: above 10 % of the energy norm of an answer under full loads, of which
- * "share" act now: an answer that does not count as one. */
+/* 1: it, or what rounding hides of contact forces, is above 10 % of the energy
+ * norm of an answer under full loads, of which "share" act now: an answer that
+ * does not count as one. */
 int error_bound_doubts(const error_bound *e, double share);
 extern const char *const error_bound_indefinite;
 

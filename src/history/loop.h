@@ -66,6 +66,9 @@ double share_of_step(const run *r);
 /* rounding.c: what rounding has taken of r->now, whose energies are known.
  * ERR_SINGULAR: it leaves no digit. */
 status rounding_find(run *r);
+/* What rounding of the motion may hide of contact forces: contact_hidden, own
+ * forces by the stresses next to the node. */
+status rounding_hidden(const run *r, double *part);
 /* 1: the strains of the body are no more than the rounding of its motion. */
 int rounding_hides_strains(const run *r);
 /* 1: no load acts on it either, and contact forces are no more than that; or

@@ -229,6 +229,49 @@ static double farthest_work(const run *r) {
               largest_entry((size_t)r->n_c, r->now.rc));
 }
 
+/* Largest stress next to each contact node times its area, own[n], N. */
+static status find_own(const run *r, double *own) {
+  status st = OK;
+  const mesh *m = r->msh;
+  const contact_surface *s = r->surface;
+  double *sigma = NULL, *most = NULL;
+  NEW(sigma, (size_t)r->m->ns * (size_t)m->n_elem);
+  NEW(most, m->n_node);
+  domain_stress(&r->d, r->now.u, NULL, sigma);
+  for (int e = 0; e < m->n_elem; ++e) {
+    const size_t ns = (size_t)r->m->ns;
+    const double peak = largest_entry(ns, sigma + ns * (size_t)e);
+    for (int a = 0; a <= m->dim; ++a) {
+      const int v = m->elem[(m->dim + 1) * e + a];
+      most[v] = fmax(most[v], peak);
+    }
+  }
+  for (int k = 0; k < r->cp.n; ++k) {
+    const int i = r->reach.in != NULL ? r->reach.in[k] : k;
+    own[k] = most[s->node_id[i]] * s->area[i];
+  }
+done:
+  memory_free(sigma);
+  memory_free(most);
+  return st;
+}
+
+status rounding_hidden(const run *r, double *part) {
+  status st = OK;
+  double *own = NULL;
+  *part = 0.0;
+  if (r->n == 0 || r->report.outcome <= 0) return OK;
+  const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);
+  *part = contact_hidden(&r->cp, u, rc, NULL);
+  if (!(*part > LAST_DIGIT)) goto done;
+  NEW(own, r->cp.n);
+  TRY(find_own(r, own));
+  *part = contact_hidden(&r->cp, u, rc, own);
+done:
+  memory_free(own);
+  return st;
+}
+
 static int is_doubtful(const run *r) {
   const double far = FAR * r->now.peak_energy;
   if (condensed_costs_digits(r->c)) return 1;

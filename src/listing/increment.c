@@ -41,6 +41,13 @@ static void print_rounding(const state *s, FILE *f) {
           text_number(u, 100 * s->rounding.u, 1));
 }
 
+static void print_hidden(const state *s, FILE *f) {
+  char text[NUMBER_SIZE];
+  if (s->in_doubt && s->error.hidden > 0.1)
+    fprintf(f, "  rounding of the motion may be %s %% of the contact forces\n",
+            text_number(text, 100 * s->error.hidden, 1));
+}
+
 static void print_error(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE], unit[64];
   const error_bound *e = &s->error;
@@ -134,6 +141,7 @@ static void print_verdict(const job *j, const state *s, FILE *f) {
   if (s->note != NULL) fputs(s->note, f);
   print_solver(j, s, f);
   print_rounding(s, f);
+  print_hidden(s, f);
   print_error(j, s, f);
   print_balance(j, s, f);
   if (s->solver_log != NULL && s->solver_log[0] != '\0')

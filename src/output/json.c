@@ -299,6 +299,8 @@ static void write_increment(json *w, const model *m,
     json_real(w, "rounding_stress_percent", 100 * s->rounding.stress);
     json_real(w, "rounding_displacement_percent", 100 * s->rounding.u);
   }
+  if (!s->settled && s->error.hidden > 0.1)
+    json_real(w, "rounding_hidden_percent", 100 * s->error.hidden);
   json_real(w, "energy_defect", s->defect);
   json_flag(w, "settled", s->settled);
   json_string(w, "outcome", outcome_code((outcome)s->outcome));

@@ -189,13 +189,19 @@ static double beyond(const measured *node, double error, double scale) {
 
 /* ---- residual ------------------------------------------------------------ */
 
-static double map_of(const measure *x, int node_id, const measured *node) {
+/* What it misses of the natural map along the normal, in the tangent plane. */
+static node_step map_errors(const measure *x, int node_id,
+                            const measured *node) {
   const double *r = x->r + node_id * x->cp->dim;
   double e[3] = {0.0, 0.0, 0.0};
   for (int k = 0; k < x->cp->dim; ++k) e[k] = r[k] - node->q[k];
-  double normal = beyond(node, fabs(e[0]), node->normal);
-  double size = contact_length(x->cp->dim - 1, e + 1);
-  return larger(normal, beyond(node, size, node->slide));
+  return (node_step){fabs(e[0]), contact_length(x->cp->dim - 1, e + 1)};
+}
+
+static double map_of(const measure *x, int node_id, const measured *node) {
+  const node_step e = map_errors(x, node_id, node);
+  return larger(beyond(node, e.n, node->normal),
+                beyond(node, e.t, node->slide));
 }
 
 /* d[dim]: what the equation misses at the node, N (m). */
@@ -279,6 +285,28 @@ void contact_roundings(const contact_problem *cp, const double *u,
     measure_node(&x, i, &node);
     rounding[i] = node.rounding;
   }
+}
+
+double contact_hidden(const contact_problem *cp, const double *u,
+                      const double *r, const double *own) {
+  measure x;
+  double worst = 0.0;
+  measure_set(cp, 0.0, u, r, &x);
+  for (int i = 0; i < cp->n; ++i) {
+    measured node;
+    const body_size *b = body_of(&x, i);
+    measure_node(&x, i, &node);
+    const node_step e = map_errors(&x, i, &node);
+    double most = larger(b->load, b->contact), side = 1.0;
+    if (own != NULL) most = larger(most, own[i]);
+    if (b->load == 0.0 && !(b->contact > node.rounding)) continue;
+    if (cp->g0 != NULL && node.q[0] < 0.0)
+      side = smaller(1.0, contact_node_limit(cp, r, i) / -node.q[0]);
+    if (e.n > 0.0) worst = larger(worst, smaller(e.n, node.rounding) / most);
+    if (e.t > 0.0 && side > 0.0)
+      worst = larger(worst, smaller(e.t, node.rounding) / (side * most));
+  }
+  return worst;
 }
 
 /* |r_t - c (u_t - ut0)| in the directions friction acts in, N. */

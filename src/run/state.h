@@ -74,6 +74,7 @@ typedef struct error_bound {
   double cpu;      /* s, spent so far on finding it                           */
   double rate;     /* contraction of the sliding limit, -; 0: none            */
   const char *why; /* there is no bound; or NULL                              */
+  double hidden;   /* -, of contact forces, by rounding of the motion         */
 } error_bound;
 
 /* What rounding has taken of an answer (history/rounding.c). */
