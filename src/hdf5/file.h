@@ -14,6 +14,7 @@
 #include "base/text.h"
 #include "hdf5/hdf5.h"
 
+#include <stdint.h>
 #include <sys/types.h>
 
 /* Values written at once; records and rows room is made for at once: a run of
@@ -37,6 +38,13 @@ typedef struct hdf5_layout {
   off_t *record;       /* [n_field * n_record] of the others, field by field */
   off_t record_time, record_total; /* of "/fields/time" and "/fields/total"  */
 } hdf5_layout;
+
+/* A group of records of which HDF5 has made the first. */
+typedef struct record_group {
+  uint64_t group, set; /* addresses of their headers; 0: it has no records   */
+  size_t bytes;        /* of a record                                        */
+  off_t *offset;       /* [n_record] of the records in the file              */
+} record_group;
 
 struct hdf5_file {
   const model *m;
@@ -80,6 +88,10 @@ status hdf5_renew(hdf5_file *h, int n_row, int n_record);
  * offsets. */
 status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
                         hdf5_layout *l);
+/* records.c: records 2 to n > 1 of all groups and their offsets; the file is
+ * closed. ERR_FILE, ERR_MEMORY. */
+status hdf5_records_make(const char *path, int n, int n_group,
+                         const record_group *groups);
 /* That of the file "path"; without the fixed data. */
 status hdf5_layout_read(const hdf5_file *h, hdf5_layout *l);
 void hdf5_layout_free(hdf5_layout *l);

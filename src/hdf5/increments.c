@@ -38,19 +38,35 @@ static double item_value(const hdf5_file *h, const hdf5_field *f, const view *v,
   return id < 0 ? NAN : part_value(f, v, id, k);
 }
 
+static off_t slot(off_t offset, int i) {
+  return offset + (off_t)sizeof(double) * i;
+}
+
+/* Values that follow each other in the file, to be written at once. */
+typedef struct burst {
+  off_t at;
+  int n;
+  double value[CHUNK];
+} burst;
+
+static status put_burst(hdf5_file *h, burst *b) {
+  const size_t bytes = sizeof *b->value * (size_t)b->n;
+  b->n = 0;
+  return hdf5_put(h->fd, h->path, b->value, bytes, b->at);
+}
+
 static status put_field(hdf5_file *h, const hdf5_field *f, const view *v,
-                        off_t offset) {
+                        off_t offset, burst *b) {
   status st = OK;
-  double chunk[CHUNK];
-  int n = 0, items = hdf5_items(h, f);
-  for (int id = 0; id < items; ++id) {
-    for (int k = 0; k < f->n_part; ++k) chunk[n++] = item_value(h, f, v, id, k);
-    if (n + 3 < CHUNK && id + 1 < items) continue;
-    size_t bytes = sizeof(double) * (size_t)n;
-    TRY(hdf5_put(h->fd, h->path, chunk, bytes, offset));
-    offset += (off_t)bytes;
-    n = 0;
-  }
+  const int items = hdf5_items(h, f);
+  for (int id = 0; id < items; ++id)
+    for (int k = 0; k < f->n_part; ++k, offset = slot(offset, 1)) {
+      if (b->n == CHUNK || slot(b->at, b->n) != offset) {
+        TRY(put_burst(h, b));
+        b->at = offset;
+      }
+      b->value[b->n++] = item_value(h, f, v, id, k);
+    }
 done:
   return st;
 }
@@ -65,23 +81,21 @@ static void find_surface_ids(hdf5_file *h, const contact_surface *s) {
   }
 }
 
-static off_t slot(off_t offset, int i) {
-  return offset + (off_t)sizeof(double) * i;
-}
-
 static status put_real(hdf5_file *h, double value, off_t offset, int i) {
   return hdf5_put(h->fd, h->path, &value, sizeof value, slot(offset, i));
 }
 
 static status put_record(hdf5_file *h, const view *v) {
   status st = OK;
+  burst b = {.n = 0};
   GROW(h->times, h->n_record, h->cap_time);
   find_surface_ids(h, v->s->surface);
   for (int i = 0; i < h->n_field; ++i) {
     if (hdf5_is_history(&h->fields[i])) continue;
     size_t k = (size_t)i * (size_t)h->now.n_record + (size_t)h->n_record;
-    TRY(put_field(h, &h->fields[i], v, h->now.record[k]));
+    TRY(put_field(h, &h->fields[i], v, h->now.record[k], &b));
   }
+  TRY(put_burst(h, &b));
   TRY(put_real(h, v->s->total_no, h->now.record_total, h->n_record));
   TRY(put_real(h, v->s->t, h->now.record_time, h->n_record));
   h->times[h->n_record++] = v->s->t;

@@ -21,13 +21,25 @@ static status maker_failed(const maker *k, const char *doing) {
   return text_failed(k->path, doing, errno);
 }
 
+/* The formats that records.c writes, not those of later versions. */
+static status create_file(maker *k) {
+  status st = OK;
+  hid_t formats = H5Pcreate(H5P_FILE_ACCESS);
+  errno = 0;
+  if (formats >= 0 && H5Pset_libver_bounds(formats, H5F_LIBVER_EARLIEST,
+                                           H5F_LIBVER_LATEST) >= 0)
+    k->file = H5Fcreate(k->path, H5F_ACC_EXCL, H5P_DEFAULT, formats);
+  if (k->file < 0) TRY(maker_failed(k, "create"));
+done:
+  if (formats >= 0) H5Pclose(formats);
+  return st;
+}
+
 static status open_maker(maker *k) {
   status st = OK;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   TRY(file_clear(k->path));
-  errno = 0;
-  k->file = H5Fcreate(k->path, H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT);
-  if (k->file < 0) TRY(maker_failed(k, "create"));
+  TRY(create_file(k));
   k->with_groups = H5Pcreate(H5P_LINK_CREATE);
   k->plain = H5Pcreate(H5P_DATASET_CREATE);
   if (k->with_groups < 0 || k->plain < 0 ||
@@ -160,43 +172,38 @@ done:
   return st;
 }
 
-/* The datasets of a group, below it and of one space: with a path and a space
- * each they would take twice the time. */
-static status make_sets(const maker *k, hid_t group, hid_t space, int n,
-                        off_t *offset) {
+/* Where the header of an object stands: references are addresses. */
+static status find_address(const maker *k, const char *path,
+                           uint64_t *address) {
   status st = OK;
-  char name[40];
-  for (int i = 0; i < n; ++i) {
-    hdf5_record_name(name, sizeof name, i);
-    errno = 0;
-    hid_t set = H5Dcreate2(group, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT,
-                           k->plain, H5P_DEFAULT);
-    haddr_t address = set >= 0 ? H5Dget_offset(set) : HADDR_UNDEF;
-    if (set >= 0) H5Dclose(set);
-    if (address == HADDR_UNDEF) TRY(maker_failed(k, "make a dataset of"));
-    offset[i] = (off_t)address;
-  }
+  hobj_ref_t reference;
+  if (H5Rcreate(&reference, k->file, path, H5R_OBJECT, -1) < 0)
+    TRY(maker_failed(k, "make a group of"));
+  *address = reference;
 done:
   return st;
 }
 
+/* The group and its first record; records.c makes the others. */
 static status make_records(const maker *k, const hdf5_file *h, int field_id,
-                           hdf5_layout *l) {
+                           hdf5_layout *l, record_group *g) {
   status st = OK;
   const hdf5_field *f = &h->fields[field_id];
-  char path[400];
-  hid_t group = -1, space = -1;
+  char path[400], name[40], first[441];
+  hid_t group = -1;
   hsize_t dims[2] = {(hsize_t)hdf5_items(h, f), (hsize_t)f->n_part};
   snprintf(path, sizeof path, "%s/%s", f->group, f->name);
   TRY(make_group(k, path, &group));
   TRY(column_attributes(k, group, f->part[0], h->m));
-  if (dims[0] == 0) goto done;
-  space = H5Screate_simple(dims[1] > 1 ? 2 : 1, dims, NULL);
-  if (space < 0) TRY(maker_failed(k, "set up"));
-  TRY(make_sets(k, group, space, l->n_record,
-                &l->record[(size_t)field_id * (size_t)l->n_record]));
+  if (dims[0] == 0 || l->n_record == 0) goto done;
+  hdf5_record_name(name, sizeof name, 0);
+  snprintf(first, sizeof first, "%s/%s", path, name);
+  g->offset = &l->record[(size_t)field_id * (size_t)l->n_record];
+  g->bytes = sizeof(double) * (size_t)(dims[0] * dims[1]);
+  TRY(make_dataset(k, first, H5T_NATIVE_DOUBLE, dims, NULL, NULL, g->offset));
+  TRY(find_address(k, path, &g->group));
+  TRY(find_address(k, first, &g->set));
 done:
-  if (space >= 0) H5Sclose(space);
   if (group >= 0) H5Gclose(group);
   return st;
 }
@@ -262,6 +269,8 @@ status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
                         hdf5_layout *l) {
   status st = OK, closed;
   maker k = {h->aside, -1, -1, -1};
+  record_group *groups = NULL;
+  NEW(groups, h->n_field);
   TRY(alloc_layout(h, n_row, n_record, l));
   TRY(open_maker(&k));
   TRY(root_attributes(&k, h));
@@ -270,11 +279,14 @@ status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
     if (hdf5_is_history(&h->fields[i]))
       TRY(make_history(&k, h, i, l));
     else
-      TRY(make_records(&k, h, i, l));
+      TRY(make_records(&k, h, i, l, &groups[i]));
   TRY(make_record_times(&k, h, l));
 done:
   closed = close_maker(&k, st == OK);
   if (st == OK) st = closed;
+  if (st == OK && n_record > 1)
+    st = hdf5_records_make(h->aside, n_record, h->n_field, groups);
+  memory_free(groups);
   if (st != OK) hdf5_layout_free(l);
   return st;
 }

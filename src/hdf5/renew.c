@@ -85,16 +85,27 @@ done:
   return st;
 }
 
-static status copy_records(hdf5_file *h, int field_id, int fd,
-                           const hdf5_layout *l) {
+/* Those that follow each other in both files at once. */
+static status copy_records(hdf5_file *h, int fd, const hdf5_layout *l) {
   status st = OK;
-  const hdf5_field *f = &h->fields[field_id];
-  size_t bytes = sizeof(double) * (size_t)hdf5_items(h, f) * (size_t)f->n_part;
-  for (int i = 0; i < h->n_record; ++i) {
-    size_t from = (size_t)field_id * (size_t)h->now.n_record + (size_t)i;
-    size_t to = (size_t)field_id * (size_t)l->n_record + (size_t)i;
-    TRY(copy(h, h->now.record[from], fd, l->record[to], bytes));
-  }
+  off_t from = 0, to = 0;
+  size_t bytes = 0;
+  for (int i = 0; i < h->n_record; ++i)
+    for (int k = 0; k < h->n_field; ++k) {
+      const hdf5_field *f = &h->fields[k];
+      if (hdf5_is_history(f)) continue;
+      off_t old =
+          h->now.record[(size_t)k * (size_t)h->now.n_record + (size_t)i];
+      off_t new = l->record[(size_t)k * (size_t)l->n_record + (size_t)i];
+      if (old != from + (off_t)bytes || new != to + (off_t)bytes) {
+        TRY(copy(h, from, fd, to, bytes));
+        from = old;
+        to = new;
+        bytes = 0;
+      }
+      bytes += sizeof(double) * (size_t)hdf5_items(h, f) * (size_t)f->n_part;
+    }
+  TRY(copy(h, from, fd, to, bytes));
 done:
   return st;
 }
@@ -106,8 +117,7 @@ static status copy_results(hdf5_file *h, int fd, const hdf5_layout *l) {
   for (int i = 0; i < h->n_field; ++i)
     if (hdf5_is_history(&h->fields[i]))
       TRY(copy(h, h->now.history[i], fd, l->history[i], rows));
-    else
-      TRY(copy_records(h, i, fd, l));
+  TRY(copy_records(h, fd, l));
   TRY(copy(h, h->now.record_time, fd, l->record_time, records));
   TRY(copy(h, h->now.record_total, fd, l->record_total, records));
 done:
