@@ -27,14 +27,15 @@ typedef struct solver_error {
   const char *why; /* NULL, or why there is no bound                          */
 } solver_error;
 
-/* A rate that has been measured, and for which states of the unknowns: it is
- * not measured again while they stay. All zero: none. */
+/* Rates that have been measured last, and for which states of the unknowns:
+ * they are not measured again. All zero: none. */
+enum { KNOWN_RATES = 2 };
 typedef struct known_rate {
-  int m;
-  signed char *state; /* [m] owned                                            */
-  double rate;
+  int m, n;
+  signed char *state; /* [m*KNOWN_RATES] owned; the last used one first       */
+  double rate[KNOWN_RATES]; /* [n]                                            */
 } known_rate;
-/* A or B have changed: forget it. Accepts NULL. */
+/* A or B have changed: forget them. Accepts NULL. */
 void known_rate_forget(known_rate *k);
 
 /*

@@ -13,6 +13,7 @@
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
+#include <string.h>
 
 enum { PASSES = 12, LONG_RUN = 90, AVERAGED = 30 };
 
@@ -212,7 +213,7 @@ done:
   return st;
 }
 
-/* ---- a rate that is known ----------------------------------------------- */
+/* ---- rates that are known ----------------------------------------------- */
 
 void known_rate_forget(known_rate *k) {
   if (k == NULL) return;
@@ -227,22 +228,31 @@ static signed char state_of(const linear_map *s, int dof) {
   return s->e[dof] > 0.0 ? 3 : 2;
 }
 
-/* 1: the states are those of the known rate; else it now has them. */
+/* The known rate of these states comes first, *same = 1; or they stand in the
+ * place of the rate that has not been used for the longest time. */
 static status compare(const linear_map *s, known_rate *k, int *same) {
   status st = OK;
-  int m = s->cp->m;
-  *same = k->state != NULL && k->m == m;
-  if (!*same) {
+  const size_t m = (size_t)s->cp->m;
+  signed char *now = NULL;
+  int at = 0;
+  if (k->state == NULL || k->m != s->cp->m) {
     known_rate_forget(k);
-    NEW(k->state, m);
-    k->m = m;
+    NEW(k->state, KNOWN_RATES * m);
+    k->m = s->cp->m;
   }
-  for (int dof = 0; dof < m; ++dof) {
-    signed char now = state_of(s, dof);
-    *same = *same && k->state[dof] == now;
-    k->state[dof] = now;
-  }
+  NEW(now, m);
+  for (int dof = 0; dof < s->cp->m; ++dof) now[dof] = state_of(s, dof);
+  while (at < k->n && memcmp(k->state + m * (size_t)at, now, m) != 0) ++at;
+  *same = at < k->n;
+  if (!*same && k->n < KNOWN_RATES) ++k->n;
+  if (at == KNOWN_RATES) --at;
+  double rate = k->rate[at];
+  memmove(k->state + m, k->state, m * (size_t)at);
+  memmove(k->rate + 1, k->rate, (size_t)at * sizeof *k->rate);
+  memcpy(k->state, now, m);
+  k->rate[0] = rate;
 done:
+  memory_free(now);
   return st;
 }
 
@@ -288,10 +298,10 @@ status contraction_rate(const contact_problem *cp, const double *u,
   set_state(&s, u, r);
   if (known != NULL) TRY(compare(&s, known, &same));
   if (same)
-    *rate = known->rate;
+    *rate = known->rate[0];
   else
     TRY(measure(&s, r, rate));
-  if (known != NULL) known->rate = *rate;
+  if (known != NULL) known->rate[0] = *rate;
 done:
   if (st != OK) known_rate_forget(known);
   map_free(&s);

@@ -79,7 +79,6 @@ static status estimate_solver(run *r) {
   r->error = (error_bound){0};
   if (r->n == 0 || r->step->no_solver_error) return OK;
   timer_enter(STAGE_ESTIMATE);
-  if (!r->limit_known) known_rate_forget(&r->rate);
   if (choose_inverse(r, &inverse))
     TRY(solver_error_bound(&r->cp, &inverse, run_rows(r, 0, r->now.uc),
                            run_rows(r, 1, r->now.rc), &r->rate, &found));
@@ -273,7 +272,7 @@ static void set_sliding(const contact_problem *cp, const double *before,
   }
 }
 
-static status sliding_rate(const run *r, double *rate) {
+static status sliding_rate(run *r, double *rate) {
   status st = OK;
   const contact_problem *cp = &r->cp;
   size_t m = (size_t)cp->m;
@@ -285,7 +284,7 @@ static status sliding_rate(const run *r, double *rate) {
   memcpy(u, run_rows(r, 0, r->now.uc), m * sizeof *u);
   memcpy(q, run_rows(r, 1, r->now.rc), m * sizeof *q);
   set_sliding(cp, before, u, q);
-  TRY(contraction_rate(cp, u, q, NULL, rate));
+  TRY(contraction_rate(cp, u, q, &r->rate, rate));
 done:
   memory_free(u);
   memory_free(q);

@@ -338,6 +338,7 @@ status limit_update(run *r, double t) {
   NEW(node, r->n);
   for (int i = 0; i < r->m->n_contact; ++i) TRY(add_law(r, i, t, node));
   r->limit_known = !limit_varies(r);
+  if (!r->limit_known) known_rate_forget(&r->rate);
   TRY(zone_start(r));
 done:
   memory_free(node);

@@ -73,18 +73,20 @@ done:
   return st;
 }
 
-/* The rate of contraction that is known belongs to the matrix in use. */
+/* The rates of contraction that are known belong to the matrix in use. */
 static status keep_rate(run *r, archive *a) {
   status st = OK;
   known_rate *k = &r->rate;
-  int m = k->state == NULL ? 0 : k->m;
+  int n = k->n, m = n == 0 ? 0 : k->m;
   TRY(archive_ints(a, "rate_size", &m, 1));
+  TRY(archive_ints(a, "rates", &n, 1));
   if (archive_reads(a)) known_rate_forget(k);
-  if (m == 0) goto done;
-  if (archive_reads(a)) NEW(k->state, m);
+  if (n < 0 || n > KNOWN_RATES || m <= 0) goto done;
+  if (archive_reads(a)) NEW(k->state, KNOWN_RATES * (size_t)m);
   k->m = m;
-  TRY(archive_bytes(a, "rate_states", k->state, (size_t)m));
-  TRY(archive_reals(a, "rate", &k->rate, 1));
+  k->n = n;
+  TRY(archive_bytes(a, "rate_states", k->state, (size_t)m * (size_t)n));
+  TRY(archive_reals(a, "rate", k->rate, (size_t)n));
 done:
   return st;
 }

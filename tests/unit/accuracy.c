@@ -3,6 +3,7 @@
  * another method has brought to rounding, at every level of error.
  */
 #include "accuracy/accuracy.h"
+#include "base/memory.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
@@ -162,6 +163,36 @@ START_TEST(rate_of_the_triangle_is_known) {
 }
 END_TEST
 
+/* Two states in turn, as at the end of an increment and through it: a factor
+ * each, and none while they stay. */
+START_TEST(two_rates_are_remembered) {
+  contact_case c = case_any(3, 12, 0.25, 0, 901);
+  known_rate known = {0};
+  double fresh[2], again;
+  size_t bytes[2][3];
+  ck_assert_int_eq(solve(&c, "newton", 1e-13).outcome, CONVERGED);
+  double *other = malloc((size_t)c.cp.m * sizeof *other);
+  for (int dof = 0; dof < c.cp.m; ++dof)
+    other[dof] = dof % 3 == 0 ? c.u[dof] : -c.u[dof];
+  for (int i = 0; i < 6; ++i) {
+    const double *u = i % 2 == 0 ? c.u : other;
+    size_t before = memory_allocated();
+    ck_assert_int_eq(contraction_rate(&c.cp, u, c.r, &known, &again), OK);
+    bytes[i % 2][i / 2] = memory_allocated() - before;
+    ck_assert_int_eq(contraction_rate(&c.cp, u, c.r, NULL, &fresh[i % 2]), OK);
+    ck_assert(again == fresh[i % 2]);
+  }
+  ck_assert(fresh[0] > 0.0 && fresh[1] > 0.0 && fresh[0] != fresh[1]);
+  for (int k = 0; k < 2; ++k) {
+    ck_assert_uint_lt(2 * bytes[k][1], bytes[k][0]);
+    ck_assert_uint_eq(bytes[k][1], bytes[k][2]);
+  }
+  free(other);
+  known_rate_forget(&known);
+  case_free(&c);
+}
+END_TEST
+
 /* The first passes of the map may contract less than those it tends to. */
 START_TEST(rate_is_that_of_the_worst_pass) {
   int above = 0;
@@ -303,8 +334,8 @@ END_TEST
 
 UNIT_MAIN("accuracy", bound_holds_for_a_given_limit_and_is_not_absurd,
           bound_holds_without_friction, bound_holds_with_coulomb_friction,
-          rate_of_the_triangle_is_known, rate_is_that_of_the_worst_pass,
-          no_bound_beyond_the_critical_friction,
+          rate_of_the_triangle_is_known, two_rates_are_remembered,
+          rate_is_that_of_the_worst_pass, no_bound_beyond_the_critical_friction,
           bound_holds_at_held_and_cornered_nodes,
           bound_holds_in_the_compliance_form, bound_changes_with_the_units_only,
           rounding_is_part_of_the_bound)
