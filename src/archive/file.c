@@ -6,6 +6,7 @@
  * moment leaves a whole file under one of the two names. HDF5 opens a file only
  * if its seal is whole: damaged lengths inside can make it ask for any memory.
  */
+#include "archive/dataset.h"
 #include "archive/file.h"
 
 #include "base/file.h"
@@ -135,18 +136,24 @@ static hssize_t length_of(hid_t set) {
 static status get(hid_t file, const char *path, const char *name, hid_t type,
                   size_t size, size_t *n, void **out) {
   status st = OK;
+  const hdf5_source source = {.path = path, .file = file};
   hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  hid_t stored = set >= 0 ? H5Dget_type(set) : -1;
   hssize_t length = length_of(set);
   *out = NULL;
   if (length < 0 || (*n > 0 && (size_t)length != *n) ||
+      H5Tequal(stored, type) <= 0 ||
       H5Dget_storage_size(set) != size * (hsize_t)length)
     TRY(damaged(path, "the restart file is damaged: an array is missing"));
+  if (dataset_check(&source, name, set, (hsize_t)length) != OK)
+    TRY(damaged(path, "the restart file is damaged: an array is elsewhere"));
   *n = (size_t)length;
   *out = memory_new(*n * size + 1, 1);
   if (*out == NULL) FAIL(ERR_MEMORY, "memory exhausted: %s", path);
   if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, *out) < 0)
     TRY(damaged(path, "the restart file is damaged: an array is cut short"));
 done:
+  if (stored >= 0) H5Tclose(stored);
   if (set >= 0) H5Dclose(set);
   return st;
 }
@@ -191,6 +198,7 @@ status archive_read(const char *path, archive **out) {
   *out = NULL;
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  H5Lunregister(H5L_TYPE_EXTERNAL);
   TRY(archive_check_seal(path));
   NEW(a, 1);
   a->path = memory_text(path);

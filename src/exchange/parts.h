@@ -4,7 +4,7 @@
 #ifndef PROTIS_EXCHANGE_PARTS_H
 #define PROTIS_EXCHANGE_PARTS_H
 
-#include "exchange/dataset.h"
+#include "archive/dataset.h"
 #include "exchange/exchange.h"
 
 /* Unknowns of a dense matrix that can be asked for. */

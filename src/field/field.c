@@ -4,7 +4,7 @@
 #include "field/field.h"
 
 #include "base/memory.h"
-#include "exchange/dataset.h"
+#include "archive/dataset.h"
 #include "msh/scan.h"
 #include "system/input.h"
 

@@ -4,7 +4,7 @@
 #include "start/end_state.h"
 
 #include "base/memory.h"
-#include "exchange/dataset.h"
+#include "archive/dataset.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
-/* src/exchange/dataset.c: what an HDF5 file may not do, and what it may. */
-#include "exchange/dataset.h"
+/* src/archive: what an HDF5 file may not do, and what it may. */
+#include "archive/dataset.h"
+#include "archive/file.h"
 
 #include "base/memory.h"
 #include "support/made_up.h"
@@ -166,6 +167,80 @@ START_TEST(sizes_are_compared_first) {
 }
 END_TEST
 
+/* ---- restart files ------------------------------------------------------- */
+
+enum { WHOLE, ELSEWHERE, LINKED, VIRTUAL, NEVER_WRITTEN, WIDE, FORGED };
+
+/* A restart file with a whole seal whose array x of n numbers is what "kind"
+ * says. */
+static void put_archive(int kind, hsize_t n) {
+  char list[80];
+  const hsize_t length = 1 + (hsize_t)snprintf(list, sizeof list, "0 %llu x\n",
+                                               (unsigned long long)n);
+  hid_t room = H5Pcreate(H5P_FILE_CREATE), made = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_userblock(room, ARCHIVE_SEAL);
+  hid_t f = H5Fcreate(path, H5F_ACC_TRUNC, room, H5P_DEFAULT);
+  hid_t space = H5Screate_simple(1, &length, NULL);
+  hid_t set = H5Dcreate2(f, "list", H5T_NATIVE_UCHAR, space, H5P_DEFAULT,
+                         H5P_DEFAULT, H5P_DEFAULT);
+  H5Dwrite(set, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, list);
+  H5Dclose(set);
+  H5Sclose(space);
+  space = H5Screate_simple(1, &n, NULL);
+  H5Gclose(H5Gcreate2(f, "data", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  hid_t type = H5Tcopy(H5T_NATIVE_DOUBLE);
+  if (kind == ELSEWHERE) H5Pset_external(made, other, 0, n * sizeof(double));
+  if (kind == VIRTUAL) H5Pset_virtual(made, space, other, "x", space);
+  if (kind == FORGED) {
+    H5Pset_alloc_time(made, H5D_ALLOC_TIME_EARLY);
+    H5Pset_fill_time(made, H5D_FILL_TIME_NEVER);
+  }
+  if (kind == WIDE) type = H5Tarray_create2(H5T_NATIVE_DOUBLE, 1, &n);
+  if (kind == LINKED) {
+    H5Lcreate_external("b.h5", "/x", f, "data/x", H5P_DEFAULT, H5P_DEFAULT);
+  } else {
+    set = H5Dcreate2(f, "data/x", type, space, H5P_DEFAULT, made, H5P_DEFAULT);
+    ck_assert_int_ge(set, 0);
+    if (kind == WHOLE) {
+      double x[N] = {0};
+      H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, x);
+    }
+    H5Dclose(set);
+  }
+  H5Tclose(type);
+  H5Sclose(space);
+  H5Pclose(made);
+  H5Pclose(room);
+  H5Fclose(f);
+  /* The file ends before its data. */
+  if (kind == FORGED) ck_assert_int_eq(truncate(path, 4096), 0);
+  ck_assert_int_eq(archive_seal(path), OK);
+}
+
+/* Nothing is allocated for arrays that do not stand in it. */
+START_TEST(restart_files_are_not_believed) {
+  static const struct {
+    int kind;
+    hsize_t n;
+  } rows[] = {{WHOLE, N},       {ELSEWHERE, 1 << 20},     {LINKED, N},
+              {VIRTUAL, N},     {NEVER_WRITTEN, 1 << 28}, {WIDE, N},
+              {FORGED, 1 << 24}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+    archive *a = NULL;
+    begin();
+    put_set(other, N, H5P_DEFAULT);
+    put_archive(rows[k].kind, rows[k].n);
+    size_t before = memory_allocated();
+    status st = archive_read(path, &a);
+    ck_assert_msg(st == (rows[k].kind == WHOLE ? OK : ERR_FILE),
+                  "row %zu: status %d", k, (int)st);
+    ck_assert_uint_lt(memory_allocated() - before, 1 << 16);
+    archive_free(a);
+    end();
+  }
+}
+END_TEST
+
 UNIT_MAIN("dataset", data_of_other_files_are_refused,
           links_inside_the_file_are_followed, packing_is_deflate,
-          sizes_are_compared_first)
+          sizes_are_compared_first, restart_files_are_not_believed)

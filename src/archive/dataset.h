@@ -1,8 +1,8 @@
 /*
  * Datasets of an HDF5 file that others wrote, each call checked.
  */
-#ifndef PROTIS_EXCHANGE_DATASET_H
-#define PROTIS_EXCHANGE_DATASET_H
+#ifndef PROTIS_ARCHIVE_DATASET_H
+#define PROTIS_ARCHIVE_DATASET_H
 
 #include "base/status.h"
 

@@ -4,7 +4,7 @@
  * the names of file and dataset.
  */
 #include "base/memory.h"
-#include "exchange/parts.h"
+#include "archive/dataset.h"
 #include "system/input.h"
 
 #include <limits.h>
