@@ -163,6 +163,40 @@ START_TEST(forces_beyond_the_range_are_refused) {
 }
 END_TEST
 
+/* Between its ends the load of the first step is one of any other job; in the
+ * second next to nothing is left of it. */
+START_TEST(a_pulse_that_decays_to_next_to_nothing_is_a_load) {
+  double normal[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("pulse");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "pulse.inp",
+              "*PARAMETER\nN = 2\nE0 = %s\n*MESH, FILE=square.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n1E5, 0.2\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n"
+              "*AMPLITUDE, NAME=P\n0., <E0>\n1., 1.\n2., <E0>\n3., <E0>\n"
+              "*STEP\n*QUASISTATIC\n0.5, 2.\n*BOUNDARY\nRIGHT, 1\n"
+              "*DSLOAD, AMPLITUDE=P\nTOP, P, 50.\nLEFT, P, 150.\n"
+              "*PRINT, TOTALS\n*END STEP\n"
+              "*STEP\n*QUASISTATIC\n0.5, 1.\n*END STEP\n",
+              k == 0 ? "1E-12" : "1E-200");
+    int code = job_run(&j, "--no-timing");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat peak = job_table(&j, "TOTALS", 1), end = job_table(&j, "TOTALS", -1);
+    normal[k] = dat_at(&peak, 0, "normal");
+    ck_assert_double_le(dat_at(&end, 0, "normal"), 1e-10 * normal[k]);
+    dat_free(&peak);
+    dat_free(&end);
+    job_end(&j);
+  }
+  ck_assert_double_eq_tol(normal[1], normal[0], 1e-9 * normal[0]);
+}
+END_TEST
+
 UNIT_MAIN("scale", five_units_of_length, powers_of_two_leave_every_bit,
           loads_of_any_size, equal_runs_give_equal_bytes,
-          forces_beyond_the_range_are_refused)
+          forces_beyond_the_range_are_refused,
+          a_pulse_that_decays_to_next_to_nothing_is_a_load)
