@@ -22,9 +22,9 @@ static const double FLAT = 1e-6; /* -, pivot of a fit without enough points   */
 
 struct space_recovery {
   const domain *d;
-  int n_region;
+  int n_section, n_region;
   int *region;        /* [n_section] sections of one material have one        */
-  double *compliance; /* [ns*ns*n_section] 1/Pa, inv(E)                       */
+  double *compliance; /* [ns*ns*n_section] 1/Pa, inv(E) of the estimate       */
   int *start, *elem;  /* [n_node+1], elements round each node                 */
   int *patch, *stamp; /* [n_elem] elements of a patch; mark of the last patch */
   int *seen;          /* [n_node] mark of the last patch                      */
@@ -42,9 +42,9 @@ static int same_material(const domain *d, int a, int b) {
                 size * sizeof *d->E) == 0;
 }
 
-static void find_regions(space_recovery *s, int n_section) {
+static void find_regions(space_recovery *s) {
   const int *origin = s->d->origin;
-  for (int i = 0; i < n_section; ++i) {
+  for (int i = 0; i < s->n_section; ++i) {
     int first = 0;
     if (origin != NULL && origin[i] < i) {
       s->region[i] = s->region[origin[i]];
@@ -92,23 +92,20 @@ status space_recovery_new(const domain *d, space_recovery **out) {
   status st = OK;
   space_recovery *s = NULL;
   const mesh *m = d->mesh;
-  int n_section = 0, square = d->ns * d->ns;
   timer_enter(STAGE_MESH_ERROR);
-  for (int k = 0; k < m->n_elem; ++k)
-    if (d->section_id[k] >= n_section) n_section = d->section_id[k] + 1;
   NEW(s, 1);
   s->d = d;
-  NEW(s->region, n_section);
-  NEW(s->compliance, square * n_section);
+  for (int k = 0; k < m->n_elem; ++k)
+    if (d->section_id[k] >= s->n_section) s->n_section = d->section_id[k] + 1;
+  NEW(s->region, s->n_section);
+  NEW(s->compliance, d->ns * d->ns * s->n_section);
   NEW(s->start, m->n_node + 1);
   NEW(s->elem, (size_t)(m->dim + 1) * (size_t)m->n_elem);
   NEW(s->patch, m->n_elem);
   NEW(s->stamp, m->n_elem);
   NEW(s->seen, m->n_node);
   NEW(s->recovered, (size_t)d->ns * (size_t)m->n_node);
-  find_regions(s, n_section);
-  for (int i = 0; i < n_section; ++i)
-    TRY(space_compliance(d, i, s->compliance + square * i));
+  find_regions(s);
   list_neighbours(s);
   *out = s;
   s = NULL;
@@ -315,15 +312,21 @@ static void add_region(space_recovery *s, int region, const double *sigma,
   }
 }
 
-void space_estimate(space_recovery *s, const double *sigma, double *eta,
-                    space_error *out) {
+status space_estimate(space_recovery *s, const double *sigma, double *eta,
+                      space_error *out) {
+  status st = OK;
+  const int square = s->d->ns * s->d->ns;
   *out = (space_error){0.0, 0.0, 0.0};
   timer_enter(STAGE_MESH_ERROR);
+  for (int i = 0; i < s->n_section; ++i)
+    TRY(space_compliance(s->d, i, s->compliance + square * i));
   for (int region = 0; region < s->n_region; ++region)
     add_region(s, region, sigma, eta, out);
   double total = out->error + out->norm;
   out->relative = total > 0.0 ? sqrt(out->error / total) : 0.0;
   out->error = sqrt(out->error);
   out->norm = sqrt(out->norm);
+done:
   timer_leave(STAGE_MESH_ERROR);
+  return st;
 }

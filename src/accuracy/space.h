@@ -29,11 +29,12 @@ status space_recovery_new(const domain *d, space_recovery **out);
 void space_recovery_free(space_recovery *s); /* accepts NULL                */
 
 /*
- * Estimate for the stresses sigma[ns*n_elem] (domain_stress), Pa. eta[n_elem]
- * or NULL: contribution of each element to |u - u_h|, sqrt(J).
+ * Estimate for the stresses sigma[ns*n_elem] (domain_stress), Pa, with the
+ * moduli of the domain now. eta[n_elem] or NULL: contribution of each element
+ * to |u - u_h|, sqrt(J). ERR_INTERNAL: moduli that are not positive definite.
  */
-void space_estimate(space_recovery *s, const double *sigma, double *eta,
-                    space_error *out);
+status space_estimate(space_recovery *s, const double *sigma, double *eta,
+                      space_error *out);
 
 /*
  * Lengths size[n_node] of the elements of the next mesh for which |u - u_h| is

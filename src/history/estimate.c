@@ -61,7 +61,7 @@ static status estimate_mesh(run *r) {
   r->mesh_error.asked = r->step->mesh_error;
   if (!r->step->mesh_error) return OK;
   if (r->recovery == NULL) TRY(space_recovery_new(&r->d, &r->recovery));
-  space_estimate(r->recovery, r->stress, r->elem_error, &found);
+  TRY(space_estimate(r->recovery, r->stress, r->elem_error, &found));
   r->mesh_error.relative = found.relative;
   double whole = hypot(found.norm, found.error);
   for (int e = 0; e < r->msh->n_elem; ++e)
