@@ -217,14 +217,14 @@ static twin_answer compare(const random_deck *d, const deck_text *how, job *j,
   return answer;
 }
 
-/* A method may give up, but not say that there is nothing to find. */
-static twin_answer refused(twin_kind kind, int code, const job *j,
-                           char what[400]) {
+/* A method may give up, but not say that there is nothing to find; what nothing
+ * but touch holds may be known to rounding alone, and then is told. */
+static twin_answer refused(const random_deck *d, twin_kind kind, int code,
+                           const job *j, char what[400]) {
   int false_proof = j->errors != NULL && strstr(j->errors, "no equilibrium");
   snprintf(what, 400, "exit %d: %.300s", code, j->errors);
-  return kind == METHODS && (code == 1 || code == 6) && !false_proof
-             ? TWIN_REFUSED
-             : TWIN_LOST;
+  int may = kind == METHODS ? code == 1 || code == 6 : d->floats && code == 1;
+  return may && !false_proof ? TWIN_REFUSED : TWIN_LOST;
 }
 
 twin_answer twin_check(const random_deck *d, twin_kind kind, const tables *own,
@@ -240,7 +240,7 @@ twin_answer twin_check(const random_deck *d, twin_kind kind, const tables *own,
   deck_write(d, &how, &j);
   int code = twin_run(&j, kind == THREADS_ ? "--threads 2" : "");
   twin_answer answer = code == 0 ? compare(d, &how, &j, tol, own, what)
-                                 : refused(kind, code, &j, what);
+                                 : refused(d, kind, code, &j, what);
   if (kind == METHODS)
     snprintf(what + strlen(what), 400 - strlen(what), " (%s)", how.method);
   put_away(&j, answer == TWIN_LOST || answer == TWIN_OTHER, what);
