@@ -6,6 +6,7 @@
 #include "fem/fem.h"
 #include "inform.h"
 #include "keyword/keyword.h"
+#include "msh/geo.h"
 #include "system/input.h"
 
 #include <errno.h>
@@ -201,6 +202,23 @@ done:
   return st;
 }
 
+/* Files that a .geo includes, by names as seen from its folder. */
+static status add_geometry(const char *path, FILE *out) {
+  status st = OK;
+  geo_text g;
+  TRY(geo_read(path, &g));
+  const char *slash = strrchr(path, '/');
+  size_t folder = slash != NULL ? (size_t)(slash - path) + 1 : 0;
+  for (int i = 1; i < g.n_file; ++i) {
+    size_t pass = strncmp(g.file[i], path, folder) == 0 ? folder : 0;
+    fprintf(out, "0 *MESH");
+    TRY(add_content(g.file[i] + pass, g.file[i], out));
+  }
+done:
+  geo_free(&g);
+  return st;
+}
+
 /* A line for each card that names one, with its step. */
 static status add_files(const job_input *in, FILE *out) {
   status st = OK;
@@ -214,6 +232,8 @@ static status add_files(const job_input *in, FILE *out) {
     if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
     fprintf(out, "%d *%s", step_no, c->name);
     TRY(add_content(file->value.text, path, out));
+    if (strcmp(c->name, "MESH") == 0 && mesh_is_program(path))
+      TRY(add_geometry(path, out));
   }
 done:
   return st;

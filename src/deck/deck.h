@@ -107,6 +107,7 @@ int deck_int(const field *f, message_log *log, int *out);
 const char *deck_path(deck *d, const field *f);
 /* Another file that is read: the text is borrowed. ERR_MEMORY. */
 status deck_input(deck *d, const char *path);
+status deck_input_copy(deck *d, const char *path); /* the text is copied      */
 /* Symbol by name for expressions: a symbol_value_fn whose ctx is the deck. */
 int deck_symbol(const void *deck_, const char *name, double *value);
 

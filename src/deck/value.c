@@ -101,3 +101,13 @@ const char *deck_path(deck *d, const field *f) {
   text_plain(path);
   return deck_input(d, path) == OK ? path : NULL;
 }
+
+status deck_input_copy(deck *d, const char *path) {
+  status st = OK;
+  char *text = store_room(d, strlen(path) + 1, 1);
+  if (text == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  strcpy(text, path);
+  TRY(deck_input(d, text));
+done:
+  return st;
+}

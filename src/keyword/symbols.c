@@ -46,9 +46,9 @@ static void tell_unused(const model *m, const geo_text *g, const symbol *s) {
 status check_symbols(const model *m) {
   status st = OK;
   geo_text g = {0};
-  if (m->deck->n_symbol == 0) return OK;
   if (m->mesh_file != NULL && mesh_is_program(m->mesh_file))
     TRY(geo_read(m->mesh_file, &g));
+  for (int i = 1; i < g.n_file; ++i) TRY(deck_input_copy(m->deck, g.file[i]));
   for (int i = 0; i < m->deck->n_symbol; ++i) {
     symbol *s = &m->deck->symbols[i];
     s->in_geometry = geo_has(&g, s->typed);

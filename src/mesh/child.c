@@ -10,6 +10,7 @@
 #include "mesh/raw.h"
 
 #include "base/memory.h"
+#include "msh/geo.h"
 #include "system/limits.h"
 
 #include <dlfcn.h>
@@ -266,7 +267,11 @@ static void start(const child *c) {
       give_up(c, ERR_MEMORY, "memory exhausted: numbers for gmsh");
     argv[argc++] = value;
   }
+  /* The windows of gmsh would write preferences to /etc for root. */
+  const uid_t user = geteuid(), nobody = 65534;
+  int changed = user == 0 && seteuid(nobody) == 0;
   c->gmsh.Initialize(argc, argv, 0, &error);
+  if (changed && seteuid(user) != 0) _exit(LEFT_BY_ITSELF);
   check(c, error, "start");
   set(c, "General.Terminal", 1);
   c->gmsh.LoggerStart(&error);
@@ -379,12 +384,42 @@ static int has_options(const char *path) {
   return access(name, F_OK) == 0;
 }
 
+static void refuse_options(const child *c, const char *path)
+    __attribute__((noreturn));
+static void refuse_options(const child *c, const char *path) {
+  give_up(c, ERR_MESH,
+          "options of gmsh stand beside %s, which it merges: %s.opt would be "
+          "obeyed; remove it, or Include the file in the place of Merge",
+          path, path);
+}
+
+/* Options beside what the file merges, before gmsh sees them. */
+static void check_merged(const child *c) {
+  geo_text g;
+  if (geo_read(c->request->source->file, &g) != OK)
+    give_up(c, ERR_MEMORY, "memory exhausted: text of the geometry");
+  for (int i = 1; i < g.n_file; ++i)
+    if (g.merged[i] && has_options(g.file[i])) refuse_options(c, g.file[i]);
+  geo_free(&g);
+}
+
+/* The same for names that only gmsh can tell, by its log. */
+static void check_log(const child *c, char *line) {
+  static const char start[] = "Info: Reading '", end[] = ".opt'...";
+  char *path = line + sizeof start - 1, *at = strstr(line, end);
+  if (strncmp(line, start, sizeof start - 1) != 0 || at == NULL) return;
+  *at = '\0';
+  if (access(path, F_OK) == 0) refuse_options(c, path);
+  *at = end[0];
+}
+
 /* Where there are such options the file is included by one that lives in
  * memory, beside which there is nothing; some meshes differ by a few elements
  * by that. */
 static void open_geo(child *c) {
   int error;
   char name[32];
+  check_merged(c);
   c->path = realpath(c->request->source->file, NULL);
   int fd = memfd_create("protis", MFD_CLOEXEC);
   if (fd < 0 || c->path == NULL)
@@ -529,6 +564,7 @@ static void send_warnings(const child *c, const char *doing) {
   c->gmsh.LoggerGet(&line, &n, &error);
   check(c, error, "list its messages");
   for (size_t i = 0; i < n; ++i) {
+    check_log(c, line[i]);
     if (strncmp(line[i], "Error: ", 7) == 0)
       give_up(c, ERR_MESH, "gmsh fails to %s: %s", doing, line[i] + 7);
     if (strncmp(line[i], "Warning: ", 9) == 0 && n_warning++ < MAX_WARNING)

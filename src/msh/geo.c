@@ -12,13 +12,14 @@
 #include <string.h>
 #include <strings.h>
 
-enum { MOST_FILES = 64, MOST_BYTES = 1 << 26 };
+enum { MOST_BYTES = 1 << 26 };
 
 static status add_file(geo_text *g, const char *folder, size_t n_folder,
-                       const char *name) {
+                       const char *name, int merged) {
   status st = OK;
   char *path = NULL;
-  if (g->n_file >= MOST_FILES) {
+  int i = 0;
+  if (g->n_file >= GEO_FILES) {
     g->is_open = 1;
     return OK;
   }
@@ -26,8 +27,9 @@ static status add_file(geo_text *g, const char *folder, size_t n_folder,
   NEW(path, n_folder + strlen(name) + 1);
   if (n_folder > 0) memcpy(path, folder, n_folder);
   strcpy(path + n_folder, name);
-  for (int i = 0; i < g->n_file; ++i)
-    if (strcmp(g->file[i], path) == 0) goto done;
+  while (i < g->n_file && strcmp(g->file[i], path) != 0) ++i;
+  g->merged[i] = (char)(g->merged[i] | merged);
+  if (i < g->n_file) goto done;
   int room = g->file_room;
   GROW(g->file, g->n_file, room);
   GROW(g->text, g->n_file, g->file_room);
@@ -60,7 +62,8 @@ static int starts_name(char c) { return isalpha((unsigned char)c) || c == '_'; }
 static int in_name(char c) { return isalnum((unsigned char)c) || c == '_'; }
 
 /* After Include or Merge: the file, if it stands there in quotes. */
-static status include(geo_text *g, const char *path, const char *p) {
+static status include(geo_text *g, const char *path, const char *p,
+                      int merged) {
   status st = OK;
   char *name = NULL;
   const char *slash = strrchr(path, '/');
@@ -70,7 +73,8 @@ static status include(geo_text *g, const char *path, const char *p) {
   if (n == 0) return OK;
   NEW(name, n + 1);
   memcpy(name, p + 1, n);
-  TRY(add_file(g, path, slash != NULL ? (size_t)(slash - path) + 1 : 0, name));
+  TRY(add_file(g, path, slash != NULL ? (size_t)(slash - path) + 1 : 0, name,
+               merged));
 done:
   memory_free(name);
   return st;
@@ -106,10 +110,11 @@ static status find_names(geo_text *g, const char *path, char *text) {
     *q = '\0'; /* of the name; what stood there is looked at first */
     GROW(g->name, g->n_name, g->name_room);
     g->name[g->n_name++] = p;
-    int loads = strcmp(p, "Include") == 0 || strcmp(p, "Merge") == 0 ||
-                strcmp(p, "MergeFile") == 0;
+    int merged = strcmp(p, "Merge") == 0 || strcmp(p, "MergeFile") == 0;
+    int loads = merged || strcmp(p, "Include") == 0;
     if (after == '"') g->is_open |= loads;
-    if (loads && after != '\0' && after != '"') TRY(include(g, path, q + 1));
+    if (loads && after != '\0' && after != '"')
+      TRY(include(g, path, q + 1, merged));
     in_quotes ^= after == '"';
     p = rest;
   }
@@ -120,7 +125,7 @@ done:
 status geo_read(const char *file, geo_text *g) {
   status st = OK;
   *g = (geo_text){0};
-  TRY(add_file(g, NULL, 0, file));
+  TRY(add_file(g, NULL, 0, file, 0));
   for (int i = 0; i < g->n_file; ++i) {
     const char *path = g->file[i], *dot = strrchr(path, '.');
     if (i > 0 && (dot == NULL || strcasecmp(dot, ".geo") != 0)) continue;

@@ -6,6 +6,8 @@
 
 #include "base/status.h"
 
+enum { GEO_FILES = 64 };
+
 typedef struct geo_text {
   int n_file, file_room;
   char **file; /* [n_file] paths                                             */
@@ -13,6 +15,7 @@ typedef struct geo_text {
   int n_name, name_room;
   const char **name; /* [n_name] in text; a name as often as it stands there */
   int is_open;       /* it includes what only gmsh can tell                  */
+  char merged[GEO_FILES]; /* [n_file] 1: gmsh obeys options beside it         */
 } geo_text;
 
 /* Files that cannot be read are left to gmsh. ERR_MEMORY. */

@@ -127,6 +127,34 @@ START_TEST(inputs_are_known_by_what_they_are) {
 }
 END_TEST
 
+/* Of a .geo the files too that it includes: as the deck's own, they are not
+ * overwritten and a restart knows them. */
+START_TEST(what_a_geometry_includes_is_an_input) {
+  static const char plate[] =
+      "Point(1)={0,0,0}; Point(2)={1,0,0}; Point(3)={0,1,0};"
+      "Line(1)={1,2}; Line(2)={2,3}; Line(3)={3,1}; Curve Loop(1)={1:3};"
+      "Plane Surface(1)={1}; Transfinite Curve{1:3}=2;\n";
+  job j = begin();
+  job_write(&j, "job.inp", "%s",
+            "*MESH, FILE=one.geo\n" BODY STEP "*RESTART\n*END STEP\n");
+  job_write(
+      &j, "one.geo", "%s",
+      "Include \"job.lst\";\n"
+      "Physical Curve(\"BOTTOM\")={1}; Physical Surface(\"BODY\")={1};\n");
+  job_write(&j, "job.lst", "%s", plate);
+  ck_assert_int_eq(job_run(&j, ""), 2);
+  ck_assert_msg(strstr(j.errors, "would overwrite") != NULL, "%s", j.errors);
+  still_there(&j, "job.lst", plate);
+  shell(&j, "mv job.lst part.geo; sed -i s/job.lst/part.geo/ one.geo");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  shell(&j, "sed -i 's/=2;/=3;/' part.geo");
+  ck_assert_int_eq(job_run(&j, "--restart"), 2);
+  ck_assert_msg(strstr(j.errors, "FILE=part.geo: has other contents") != NULL,
+                "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
 /* Links to a file of another folder, of each name that is written. */
 START_TEST(results_stay_in_their_folder) {
   static const char *const names[] = {
@@ -220,6 +248,7 @@ START_TEST(no_plain_file_is_no_result) {
 END_TEST
 
 UNIT_MAIN("inputs", results_named_like_inputs_are_refused,
-          inputs_are_known_by_what_they_are, results_stay_in_their_folder,
+          inputs_are_known_by_what_they_are,
+          what_a_geometry_includes_is_an_input, results_stay_in_their_folder,
           stop_file_of_others_stays, no_plain_file_is_no_input,
           no_plain_file_is_no_result)

@@ -573,6 +573,27 @@ START_TEST(geometry_alone_makes_the_mesh) {
 }
 END_TEST
 
+/* gmsh obeys options beside what is merged, whatever the name is made of. */
+START_TEST(options_beside_merged_files_are_refused) {
+  static const char *const ways[] = {"Include \"in.geo\";", "Merge \"in.geo\";",
+                                     "Merge StrCat(\"in\", \".geo\");"};
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh_file_write(&f, "in.geo", PLATE, strlen(PLATE));
+  mesh_file_write(&f, "in.geo.opt", "Mesh.ElementOrder = 2;\n", 23);
+  for (int i = 0; i < 3; ++i) {
+    char text[256];
+    snprintf(text, sizeof text, "%s\nPhysical Surface(1)={1};\n", ways[i]);
+    mesh *m = mesh_file_text(&f, "g.geo", text);
+    ck_assert_msg((m != NULL) == (i == 0), "%s", f.messages);
+    ck_assert_int_eq(strstr(f.messages, "options of gmsh stand") != NULL,
+                     i > 0);
+    mesh_free(m);
+  }
+  mesh_file_close(&f);
+}
+END_TEST
+
 /* Pipes do not take the place of standard streams. */
 START_TEST(closed_streams_do_not_disturb) {
   mesh_file f;
@@ -693,6 +714,8 @@ UNIT_MAIN("mesh_errors", every_error_has_its_text_and_no_mesh,
           good_file_is_read_after_bad_ones, reader_that_dies_is_told,
           signals_do_not_disturb, want_of_memory_in_gmsh_is_told,
           want_of_memory_is_never_taken_for_a_bad_mesh, nothing_is_printed,
-          geometry_alone_makes_the_mesh, closed_streams_do_not_disturb,
+          geometry_alone_makes_the_mesh,
+          options_beside_merged_files_are_refused,
+          closed_streams_do_not_disturb,
           exit_of_gmsh_runs_no_handler_of_the_program,
           rubbish_from_the_reader_is_refused, builder_trusts_nothing)
