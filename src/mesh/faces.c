@@ -164,6 +164,8 @@ static void meet(mesh *m, face_list *f, int elem, int side) {
   size_t dim = (size_t)f->dim;
   int outward[3], v[3];
   faces_side(m, elem, side, outward);
+  int low = outward[dim == 2 && outward[1] < outward[0]];
+  if (f->start[low] == f->start[low + 1]) return;
   memcpy(v, outward, dim * sizeof *v);
   sort_corners(v, f->dim);
   int face = find_face(f, v);

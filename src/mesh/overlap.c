@@ -22,7 +22,7 @@
 typedef struct side_list {
   int n;         /* sides of elements; after check_sides, on the boundary   */
   int *start;    /* [n_node+2] sides whose lowest node is i                 */
-  uint64_t *key; /* [n] the other nodes                                     */
+  uint64_t *key; /* [n] the other nodes, which way they turn                */
   int *id;       /* [n] (dim+1) * element + side                            */
 } side_list;
 
@@ -30,46 +30,56 @@ static void side_nodes(const mesh *m, int id, int *v) {
   faces_side(m, id / (m->dim + 1), id % (m->dim + 1), v);
 }
 
-static int lowest(const mesh *m, const int *v) {
-  return m->dim == 2 && v[1] < v[0] ? v[1] : v[0];
+/* The lowest corner stands in all sides of an element but one, whose lowest is
+ * the second one. */
+static void two_lowest(int n, const int *w, int low[2]) {
+  low[0] = w[0] < w[1] ? w[0] : w[1];
+  low[1] = w[0] < w[1] ? w[1] : w[0];
+  for (int i = 2; i < n; ++i) {
+    int other = w[i] < low[0] ? low[0] : w[i];
+    if (w[i] < low[0]) low[0] = w[i];
+    if (other < low[1]) low[1] = other;
+  }
 }
 
-/* Two elements on both sides of a face turn it in opposite ways. */
-static int turn(const mesh *m, int id) {
-  int v[3];
-  side_nodes(m, id, v);
-  return v[m->dim - 2] < v[m->dim - 1];
+/* Two elements on both sides of a face turn it in opposite ways: last bit. */
+static uint64_t side_key(int dim, const int *v) {
+  int a = v[dim - 2], c = v[dim - 1], turn = a < c;
+  uint64_t low = (uint64_t)(turn ? a : c), high = (uint64_t)(turn ? c : a);
+  return (dim == 2 ? 0 : low << 32) | high << 1 | (uint64_t)turn;
 }
 
 static status gather_sides(const mesh *m, side_list *s) {
   status st = OK;
-  int v[3];
-  s->n = (m->dim + 1) * m->n_elem;
+  const int n = m->dim + 1;
+  int v[3], low[2];
+  s->n = n * m->n_elem;
   NEW(s->start, m->n_node + 2);
   NEW(s->key, s->n);
   NEW(s->id, s->n);
-  for (int i = 0; i < s->n; ++i) {
-    side_nodes(m, i, v);
-    ++s->start[lowest(m, v) + 2];
+  for (int e = 0; e < m->n_elem; ++e) {
+    two_lowest(n, m->elem + (size_t)n * (size_t)e, low);
+    s->start[low[0] + 2] += m->dim;
+    ++s->start[low[1] + 2];
   }
   for (int i = 1; i < m->n_node; ++i) s->start[i + 1] += s->start[i];
-  for (int i = 0; i < s->n; ++i) {
-    side_nodes(m, i, v);
-    int to = s->start[lowest(m, v) + 1]++;
-    int a = v[m->dim - 2], c = v[m->dim - 1];
-    uint64_t low = (uint64_t)(a < c ? a : c), high = (uint64_t)(a < c ? c : a);
-    s->key[to] = m->dim == 2 ? high : low << 32 | high;
-    s->id[to] = i;
-  }
+  for (int e = 0; e < m->n_elem; ++e)
+    for (int side = 0; side < n; ++side) {
+      faces_side(m, e, side, v);
+      int to = s->start[(m->dim == 2 && v[1] < v[0] ? v[1] : v[0]) + 1]++;
+      s->key[to] = side_key(m->dim, v);
+      s->id[to] = n * e + side;
+    }
 done:
   return st;
 }
 
 /* The sides [n] of elements at one face. */
-static void check_face(const mesh *m, const int *id, int n, culprits *bad) {
+static void check_face(const mesh *m, const uint64_t *key, const int *id, int n,
+                       culprits *bad) {
   int first[2] = {-1, -1}, v[3];
   for (int i = 0; i < n; ++i) {
-    int t = turn(m, id[i]);
+    int t = key[i] & 1;
     if (first[t] < 0) {
       first[t] = id[i];
       continue;
@@ -96,11 +106,12 @@ static status check_sides(const builder *b, side_list *s) {
     TRY(sort_by_key(end - s->start[i], s->key + s->start[i],
                     s->id + s->start[i], NULL, NULL));
     for (int j = s->start[i], next; j < end; j = next) {
-      for (next = j + 1; next < end && s->key[next] == s->key[j];) ++next;
+      for (next = j + 1; next < end && s->key[next] / 2 == s->key[j] / 2;)
+        ++next;
       if (next == j + 1)
         s->id[s->n++] = s->id[j];
       else
-        check_face(m, s->id + j, next - j, &bad);
+        check_face(m, s->key + j, s->id + j, next - j, &bad);
     }
   }
   if (bad.n > 0)
