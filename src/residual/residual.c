@@ -9,6 +9,7 @@
 #include "contact/parts.h"
 
 #include <cblas.h>
+#include <float.h>
 #include <math.h>
 
 static const double ROUNDING = 0x1p-47; /* -, of the terms of a row      */
@@ -30,6 +31,7 @@ typedef struct measured {
   node_step c;          /* N/m                                                */
   double k;             /* the larger of c, N/m                               */
   double rounding;      /* what rounding can have put into a row, N           */
+  double drift;         /* the same, by motion that no data lead to, N        */
   double normal, slide; /* scale along the normal, in the tangent plane, N    */
   double q[3];          /* the nearest forces of an obstacle, N               */
 } measured;
@@ -176,13 +178,17 @@ static void measure_node(measure *x, int node_id, measured *node) {
     terms = node->k * (terms + largest_of(cp->dim, x->u + first));
   double carried = smaller(b->carried, b->reach);
   node->rounding = ROUNDING * (terms + sqrt(node->k) * carried);
+  if (b->carried > b->reach && cp->A != NULL)
+    node->drift = DBL_EPSILON * sqrt(node->k) * b->carried;
   node->normal = scale_of(x, b, node, node->c.n);
   node->slide = scale_of(x, b, node, node->c.t);
 }
 
-/* An error over its scale, beyond what rounding can have made of it. */
+/* An error over its scale, beyond what rounding can have made of it, or what
+ * drift makes of every row. */
 static double beyond(const measured *node, double error, double scale) {
   double more = error <= node->rounding ? 0.0 : error - node->rounding;
+  more = larger(more, node->drift);
   if (scale > 0.0 || isnan(scale)) return more / scale;
   return more > 0.0 ? HUGE_VAL : more;
 }
