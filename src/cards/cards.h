@@ -227,6 +227,8 @@ status read_pairs(reading *r, int first_line, int variable, value_table *out);
 int same_word(const char *a, const char *b);
 /* Place of a parameter's value, or of the card. */
 const place *value_place(const reading *r, const char *parameter);
+/* Warn that a parameter, which is not its default, counts only with another. */
+void tell_idle(const reading *r, const char *name, const char *with);
 /* Report NAME= given twice; 1 if "old" has it. */
 int name_taken(const reading *r, const char *name, const char *old);
 /* Report a word that names nothing, with the nearest of those there are:

@@ -49,6 +49,7 @@ status apply_solver(reading *r) {
   s->solver.max_iter = p->max_iter;
   s->solver.limit_max_iter = p->limit_max_iter;
   s->check = p->check;
+  if (!s->balanced && p->share != 0.05) tell_idle(r, "SHARE", "TOL=BALANCED");
   if (r->plugin == NULL) goto done;
   s->solver_param = memory_new(1, r->plugin_size);
   if (s->solver_param == NULL)
@@ -74,9 +75,16 @@ status apply_accuracy(reading *r) {
   s->time_share = p->time_share;
   s->mesh_error |= s->time_balanced;
   s->theory = p->theory;
-  if (p->target > 0.0)
+  if (!s->time_balanced && p->time_share != 0.1)
+    tell_idle(r, "TIME_SHARE", "TIME=BALANCED");
+  if (p->target > 0.0) {
     r->m->target =
         (accuracy_target){p->target, p->max_cpu, p->max_memory, p->max_passes};
+    return OK;
+  }
+  if (p->max_cpu > 0.0) tell_idle(r, "MAX_CPU", "TARGET=");
+  if (p->max_memory > 0.0) tell_idle(r, "MAX_MEMORY", "TARGET=");
+  if (p->max_passes != 8) tell_idle(r, "MAX_PASSES", "TARGET=");
   return OK;
 }
 
@@ -105,6 +113,8 @@ status apply_print(reading *r) {
       message_add(r->m->log, P2037, &q->at,
                   "GROUP= counts for NODES, ELEMENTS and REACTIONS only");
   }
+  if (p->points != NULL && p->frequency != 1)
+    tell_idle(r, "FREQUENCY", "no TIME POINTS=");
   if (!any && !r->misread)
     message_add(r->m->log, P2005, &r->card->at,
                 "*PRINT names no table: CONTACT, TOTALS, NODES, ELEMENTS, "
@@ -120,6 +130,8 @@ status apply_output(reading *r) {
   s->output_at = r->card->at;
   s->output_frequency = p->hdf5 ? p->frequency : -1;
   s->condensed_frequency = p->condensed == 1 ? p->frequency : -1;
+  if (!p->hdf5 && p->condensed != 1 && p->frequency != 1)
+    tell_idle(r, "FREQUENCY", "HDF5=YES or CONDENSED=FCLIB");
   return OK;
 }
 

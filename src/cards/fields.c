@@ -44,6 +44,11 @@ const place *value_place(const reading *r, const char *name) {
   return p == NULL ? &r->card->at : &p->value.at;
 }
 
+void tell_idle(const reading *r, const char *name, const char *with) {
+  message_add(r->m->log, P2037, value_place(r, name),
+              "*%s: %s= counts with %s only", r->card->name, name, with);
+}
+
 int name_taken(const reading *r, const char *name, const char *old) {
   if (name == NULL || old == NULL || !same_word(name, old)) return 0;
   message_add(r->m->log, P2011, value_place(r, "NAME"),

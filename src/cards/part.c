@@ -218,5 +218,6 @@ status apply_effects(reading *r) {
   r->m->effects_auto = p->mode;
   r->m->effects_tol = p->tol;
   r->m->effects_at = r->card->at;
+  if (!p->mode && p->tol != 1e-3) tell_idle(r, "TOL", "MODE=AUTO");
   return OK;
 }

@@ -12,6 +12,32 @@ static int feels_heat(const material *mat) {
           (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE));
 }
 
+/* What a material says of temperatures where there are none. */
+static void check_material(const model *m, const material *mat) {
+  if (!mat->used || (m->effects & EFFECT_THERMAL)) return;
+  if (mat->expand.given)
+    message_add(m->log, P2058, &mat->at,
+                "material %s: *EXPANSION does nothing, as no temperature is "
+                "given",
+                mat->name);
+  if (mat->law.ops != NULL &&
+      (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE) != 0)
+    message_add(m->log, P2049, &mat->at,
+                "material %s: its law depends on temperature, but no "
+                "temperature is given: what it is at 0 is taken",
+                mat->name);
+}
+
+/* A step in which strains could flow. */
+static void check_flow(const model *m, const step *s) {
+  if (s->kind != STEP_VISCO) return;
+  for (int i = 0; i < m->n_material; ++i)
+    if (m->materials[i].used && m->materials[i].law.ops != NULL) return;
+  message_add(m->log, P2058, &s->at,
+              "*VISCO: no material has a law that flows; the step is "
+              "*QUASISTATIC");
+}
+
 /* 1 if some element of a group does not stay as it is when heated. */
 static int group_feels_heat(const model *m, const mesh_group *g) {
   for (int k = 0; k < g->n_item; ++k) {
@@ -21,13 +47,14 @@ static int group_feels_heat(const model *m, const mesh_group *g) {
   return 0;
 }
 
-static void check_heat(const model *m, const mesh *msh, const load *l) {
-  if (l->kind != LOAD_TEMPERATURE || l->group_id < 0) return;
-  if (group_feels_heat(m, &msh->group[l->group_id])) return;
-  message_add(m->log, P2058, &l->at,
-              "*TEMPERATURE on group %s does nothing: no material there has "
+/* A temperature that a card gives to a group. */
+static void check_heat(const model *m, const mesh *msh, const char *name,
+                       int group_id, const place *at) {
+  if (group_id < 0 || group_feels_heat(m, &msh->group[group_id])) return;
+  message_add(m->log, P2058, at,
+              "*%s on group %s does nothing: no material there has "
               "*EXPANSION, *TRS or moduli over temperature",
-              l->group);
+              name, msh->group[group_id].name);
 }
 
 /* z is zero in the plane, whatever the mesh has. */
@@ -102,29 +129,40 @@ static void check_times(const model *m, const time_points *p) {
                 p->name, missed, p->n, p->t[first]);
 }
 
-static void check_friction_z(const model *m, const mesh *msh,
-                             const friction_rule *rule) {
-  if (rule->law != NULL)
-    check_z(m, msh, &rule->card.value, "FRICTION", &rule->value_at);
+static void check_friction(const model *m, const mesh *msh,
+                           const friction_rule *rule) {
+  if (rule->law == NULL) return;
+  check_z(m, msh, &rule->card.value, "FRICTION", &rule->value_at);
+  if (rule->law->value_name != NULL && !rule_has_friction(rule))
+    message_add(m->log, P2058, &rule->value_at,
+                "*FRICTION, LAW=%s: %s = 0 is no friction", rule->law->name,
+                rule->law->value_name);
 }
 
 void check_no_effect(const model *m, const mesh *msh) {
   int axisymmetric = m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC;
   for (int i = 0; i < m->n_points; ++i) check_times(m, &m->points[i]);
+  for (int i = 0; i < m->n_material; ++i) check_material(m, &m->materials[i]);
+  for (int i = 0; i < m->n_initial; ++i)
+    if (m->initials[i].type == INITIAL_TEMPERATURE)
+      check_heat(m, msh, "INITIAL CONDITIONS", m->initials[i].group_id,
+                 &m->initials[i].at);
   for (int i = 0; i < m->n_contact; ++i) {
     const contact *c = &m->contacts[i];
-    check_friction_z(m, msh, &c->friction);
+    check_friction(m, msh, &c->friction);
     if (c->force.given)
       check_z(m, msh, &c->force.value, "CONTACT FORCE", &c->force.value_at);
   }
   for (int i = 0; i < m->n_step; ++i) {
     const step *s = &m->steps[i];
+    check_flow(m, s);
     for (int k = 0; k < s->n_change; ++k)
-      check_friction_z(m, msh, &s->changes[k].rule);
+      check_friction(m, msh, &s->changes[k].rule);
     for (int k = 0; k < s->loads.n; ++k) {
       const load *l = &s->loads.item[k];
       if (l->removed) continue;
-      check_heat(m, msh, l);
+      if (l->kind == LOAD_TEMPERATURE)
+        check_heat(m, msh, "TEMPERATURE", l->group_id, &l->at);
       check_z(m, msh, &l->value, card_of(l), &l->at);
       if (axisymmetric) check_axis(m, msh, s, l);
     }
