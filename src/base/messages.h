@@ -459,7 +459,13 @@
     "increment. If it should have: look at the point, normal and GAP of "    \
     "*OBSTACLE, at the GROUP, the signs of the loads and their size. The "   \
     "listing tells in which increment a contact touches for the first "      \
-    "time.")
+    "time.")                                                                 \
+  X(4022, WARNING, "supports hold a part of the normal of the obstacle",     \
+    "A contact node that *BOUNDARY holds in one direction moves in the "     \
+    "others alone, and its contact force is that of the normal without the " \
+    "held component: the rest is in the reaction. Where that is not meant, " \
+    "hold the body away from the contact, or turn the axes so that the "     \
+    "obstacle lies along them.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

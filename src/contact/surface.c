@@ -27,6 +27,8 @@ static const double rounding = 1e-9;
 /* The sine of the angle between the normals of body and obstacle where they
  * touch that is worth a note. */
 static const double told_sine = 1e-3;
+/* Of a contact force, what supports may take unseen. */
+static const double told_share = 0.01;
 
 typedef struct candidate {
   int node_id, pair_id;
@@ -45,6 +47,8 @@ typedef struct tally {
   double depth; /* deepest penetration, m                                   */
   int turned_node; /* where the normals of body and obstacle differ most    */
   double sine;     /* of the angle between them                             */
+  int held_node;   /* where supports hold most of the normal of the obstacle  */
+  double held;     /* 1 - the length that is left of it                       */
 } tally;
 
 typedef struct builder {
@@ -253,10 +257,10 @@ static void compare_normals(const builder *b, const candidate *c) {
   tally *t = &b->tallies[c->pair_id];
   const double *x = &b->in->mesh->x[(size_t)b->dim * (size_t)c->node_id];
   double n[3], square = 0;
-  if (fabs(c->gap) > rounding * b->in->mesh->size ||
-      !obstacle_normal(p->support, b->dim, x, n))
-    return;
-  frame_project(b->dim, b->in->fixed[c->node_id], n);
+  if (!obstacle_normal(p->support, b->dim, x, n)) return;
+  double held = 1.0 - frame_project(b->dim, b->in->fixed[c->node_id], n);
+  if (held > t->held) t->held = held, t->held_node = c->node_id;
+  if (fabs(c->gap) > rounding * b->in->mesh->size) return;
   double cosine = dot(b->dim, n, c->normal);
   for (int k = 0; k < b->dim; ++k) {
     double d = n[k] - cosine * c->normal[k];
@@ -382,6 +386,13 @@ static void say(const builder *b, int pair_id) {
                 "contact forces acts along the obstacle",
                 p->name, p->support->name, asin(fmin(t->sine, 1)),
                 describe(m, t->turned_node).text);
+  if (t->held > told_share)
+    message_add(b->log, P4022, &p->at,
+                "*CONTACT %s: supports hold a part of the normal of obstacle "
+                "%s: only %.3g of a contact force is seen, also by friction, "
+                "at %s",
+                p->name, p->support->name, 1.0 - t->held,
+                describe(m, t->held_node).text);
   if (t->n_corner > 0)
     message_add(b->log, P4005, &p->at,
                 "*CONTACT %s: %d nodes touch a second obstacle and have no "

@@ -283,7 +283,7 @@ typedef struct search {
   int e;      /* the element whose box is "at"; those of the tree from "from" */
   int from;   /* on are compared with it                                     */
   box at;
-  culprits same, other; /* in one body or group; in different ones           */
+  culprits same, other; /* in one body or group; what may be two bodies      */
 } search;
 
 static int by_id(const void *p, const void *q) {
@@ -291,7 +291,38 @@ static int by_id(const void *p, const void *q) {
          (*(const int *)p < *(const int *)q);
 }
 
-/* Elements of one body or one group. */
+/* Of x and the side of the first element across from its corner i. */
+static double corner_volume(const pair *p, int i, const double *x) {
+  double d[3][3], cross[3];
+  int n = 0;
+  for (int k = 0; k < p->n; ++k) {
+    if (k == i) continue;
+    for (int c = 0; c < 3; ++c) d[n][c] = p->x[0][k][c] - x[c];
+    ++n;
+  }
+  if (p->n == 3) return d[0][0] * d[1][1] - d[0][1] * d[1][0];
+  for (int k = 0; k < 3; ++k)
+    cross[k] = d[0][(k + 1) % 3] * d[1][(k + 2) % 3] -
+               d[0][(k + 2) % 3] * d[1][(k + 1) % 3];
+  return dot(cross, d[2]);
+}
+
+/* 1: the centre of element f lies in element e. Where bodies touch along a
+ * curve, elements enter each other by its sag alone. */
+static int holds_centre(const mesh *m, int e, int f) {
+  pair p;
+  double centre[3] = {0.0, 0.0, 0.0};
+  load_pair(m, e, f, &p);
+  for (int i = 0; i < p.n; ++i)
+    for (int k = 0; k < 3; ++k) centre[k] += p.x[1][i][k] / p.n;
+  for (int i = 0; i < p.n; ++i) {
+    double whole = corner_volume(&p, i, p.x[0][i]);
+    if (!(corner_volume(&p, i, centre) * whole > 0.0)) return 0;
+  }
+  return 1;
+}
+
+/* Elements of one body, or of one group and not by a sag. */
 static status belong_together(search *s, int f, int *together) {
   status st = OK;
   const mesh *m = s->b->m;
@@ -301,6 +332,8 @@ static status belong_together(search *s, int f, int *together) {
     TRY(mesh_bodies(m, &n_body, s->body));
   }
   *together = s->body[s->e] == s->body[f];
+  if (*together || !(holds_centre(m, s->e, f) || holds_centre(m, f, s->e)))
+    goto done;
   for (int i = 0; i < m->n_group && !*together; ++i) {
     const mesh_group *g = &m->group[i];
     size_t n = (size_t)g->n_item, size = sizeof(int);

@@ -208,6 +208,12 @@ static const bad_mesh remarks[] = {
                 "2\n1 2 2 1 1 1 2 3\n2 2 2 2 1 4 5 6\n"),
    "warning P3043: elements of two bodies overlap: 1 and 2 at (0.333333, "
    "0.333333)"},
+  /* one group, by less than an element: what curves do that touch */
+  {"g.msh", MSH(BODY, "6\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n5 .45 .5 0\n"
+                "6 .5 .45 0\n",
+                "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 4 5 6\n"),
+   "warning P3043: elements of two bodies overlap: 1 and 2 at (0.333333, "
+   "0.333333)"},
 };
 /* clang-format on */
 
