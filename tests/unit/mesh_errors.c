@@ -141,7 +141,7 @@ static const bad_mesh errors[] = {
                    "7 2 2 1 1 4 5 6\n8 2 2 1 1 7 8 9\n"),
    "error P3034: elements overlap: 7 and 8 at (2.66667, 2.66667)"},
   {"edges.msh", MSH(BODY_3D, "8\n1 -1 0 0\n2 1 0 0\n3 0 -1 -1\n4 0 1 -1\n"
-                    "5 0 -1 -.1\n6 0 1 -.1\n7 -1 0 1\n8 1 0 1\n",
+                    "5 0 -1 -.8\n6 0 1 -.8\n7 -1 0 1\n8 1 0 1\n",
                     "2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 5 6 7 8\n"),
    "error P3034: elements overlap: 1 and 2 at (0, 0, -0.5)"},
   {"twice.msh", MSH(BODY, SQUARE, "3\n" TWO "3 2 2 1 2 2 1 3\n"),
@@ -209,6 +209,11 @@ static const bad_mesh remarks[] = {
    "warning P3043: elements of two bodies overlap: 1 and 2 at (0.333333, "
    "0.333333)"},
   /* one group, by less than an element: what curves do that touch */
+  {"grazed.msh", MSH(BODY_3D, "8\n1 -1 0 0\n2 1 0 0\n3 0 -1 -1\n4 0 1 -1\n"
+                    "5 0 -1 -.1\n6 0 1 -.1\n7 -1 0 1\n8 1 0 1\n",
+                    "2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 5 6 7 8\n"),
+   "warning P3043: elements of two bodies overlap: 1 and 2 at (0, 0, "
+   "-0.5)"},
   {"g.msh", MSH(BODY, "6\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n5 .45 .5 0\n"
                 "6 .5 .45 0\n",
                 "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 4 5 6\n"),
