@@ -37,9 +37,15 @@ typedef struct trial {
   double unknowns, contact;   /* of the body, of the contact   */
   double energy, error, time; /* J, -, - at the largest energy                */
   double cpu[STAGE_COUNT], bytes; /* s; at most held                         */
+  const job_input *in;
   double *eta; /* [n_elem] shares of the elements there, or NULL; borrowed    */
   int n_elem;
 } trial;
+
+static status see_sizes(void *ctx, int n_node) {
+  const trial *t = ctx;
+  return job_foresee(t->in, n_node);
+}
 
 static status see_ready(void *ctx, const setup_facts *facts,
                         const contact_surface *surface) {
@@ -66,9 +72,12 @@ static status see_increment(void *ctx, const state *s) {
 static status run_trial(job_input *in, trial *t, double *eta) {
   status st = OK;
   int unsettled = 0;
-  const history_sink sink = {
-      .ctx = t, .ready = see_ready, .increment = see_increment};
+  const history_sink sink = {.ctx = t,
+                             .foresee = see_sizes,
+                             .ready = see_ready,
+                             .increment = see_increment};
   t->energy = -1.0;
+  t->in = in;
   t->eta = eta;
   t->n_elem = in->msh->n_elem;
   for (int i = 0; i < in->m->n_step; ++i)

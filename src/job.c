@@ -9,6 +9,7 @@
 #include "fem/fem.h"
 #include "inform.h"
 #include "keyword/keyword.h"
+#include "plan/plan.h"
 #include "restart.h"
 #include "system/input.h"
 
@@ -88,6 +89,15 @@ done:
   return st;
 }
 
+status job_foresee(const job_input *in, int n) {
+  status st = OK;
+  plan_bytes b;
+  TRY(plan_memory(in->m, in->msh, n, &b));
+  TRY(memory_foresee(b.factor + b.contact + b.rest, "the run"));
+done:
+  return st;
+}
+
 int job_is_geo(const model *m) {
   return m->mesh_file != NULL && mesh_is_program(m->mesh_file);
 }
@@ -109,6 +119,11 @@ typedef struct relay {
   const job_watch *watch; /* or NULL                                          */
   restart_writer restart;
 } relay;
+
+static status relay_foresee(void *ctx, int n_node) {
+  const relay *r = ctx;
+  return job_foresee(r->restart.in, n_node);
+}
 
 static status relay_ready(void *ctx, const setup_facts *facts,
                           const contact_surface *surface) {
@@ -173,6 +188,7 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
                   &out));
   relay r = {output_sink(out), watch, {c, in, out, files}};
   history_sink sink = {.ctx = &r,
+                       .foresee = relay_foresee,
                        .ready = relay_ready,
                        .start = relay_start,
                        .increment = relay_increment,

@@ -33,6 +33,9 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
                 job_input *in);
 void job_input_free(job_input *in);
 
+/* ERR_MEMORY: more than there is would be held with n contact nodes. */
+status job_foresee(const job_input *in, int n);
+
 int job_is_geo(const model *m); /* 1: the mesh is made by gmsh                */
 
 /* Who watches a pass. Any function may be NULL. */

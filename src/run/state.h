@@ -186,6 +186,8 @@ typedef struct run_memory {
 /* Who is told what. Any function may be NULL. */
 typedef struct history_sink {
   void *ctx;
+  /* Contact nodes that will be condensed, before anything is assembled. */
+  status (*foresee)(void *ctx, int n_node);
   status (*ready)(void *ctx, const setup_facts *facts,
                   const contact_surface *surface);
   /* *INITIAL CONDITIONS, TYPE=DISPLACEMENT: u_0 and its defect. */

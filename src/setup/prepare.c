@@ -6,7 +6,6 @@
 
 #include "base/memory.h"
 #include "base/timer.h"
-#include "plan/plan.h"
 
 #include <math.h>
 #include <string.h>
@@ -154,16 +153,6 @@ done:
   return st;
 }
 
-/* Before anything is assembled. */
-static status foresee_memory(const run *r) {
-  status st = OK;
-  plan_bytes b;
-  TRY(plan_memory(r->m, r->msh, reach_count(&r->reach, r->n), &b));
-  TRY(memory_foresee(b.factor + b.contact + b.rest, "the run"));
-done:
-  return st;
-}
-
 status run_prepare(run *r) {
   status st = OK;
   int fresh = 0, motions = 0;
@@ -186,7 +175,8 @@ status run_prepare(run *r) {
     TRY(choose_nodes(r, motions));
     r->n_before = r->n_row;
     r->n_told = reach_count(&r->reach, r->n);
-    TRY(foresee_memory(r));
+    if (r->sink->foresee != NULL)
+      TRY(r->sink->foresee(r->sink->ctx, r->n_told));
     TRY(run_renew_elastic(r));
     r->c = r->elastic.c;
     fresh = 1;
