@@ -121,6 +121,7 @@ typedef struct run {
   int circling;     /* of these sweeps those that left an old pattern       */
   state_watch watch;
   int symmetric; /* every other sweep backward                           */
+  int plain;     /* sweeps before the first that is combined             */
 } run;
 
 /* ---- combination ----------------------------------------------------------
@@ -233,6 +234,17 @@ static int cure(run *s) {
   return 1;
 }
 
+/* A body on its way to its obstacles is not led by differences. */
+static void steer(run *s, int k) {
+  if (k % PLAIN == 0 && relaxation_fly(&s->sweep, s->w->before)) {
+    s->since = s->circling = 0;
+    s->plain = s->depth > 1 ? k + REFRESH : k;
+    forget(s);
+  } else if (s->depth > 0 && k >= s->plain) {
+    accelerate(s, k);
+  }
+}
+
 static outcome sweeps(run *s, const solver_control *control,
                       solver_report *rep) {
   relaxation *z = &s->sweep;
@@ -262,7 +274,7 @@ static outcome sweeps(run *s, const solver_control *control,
     int circles = OFTEN * s->circling > s->since;
     if (s->since > PATIENCE && !cure(s))
       return circles ? STOPPED_CYCLE : STOPPED_STAGNATION;
-    if (s->depth > 0) accelerate(s, k);
+    steer(s, k);
   }
   return STOPPED_ITERATIONS;
 }
@@ -281,6 +293,7 @@ static status aitken_solve(const contact_problem *cp, const void *par,
       .m = cp->m,
       .depth = by_anderson ? DEPTH : p->acceleration == BY_AITKEN,
       .period = by_anderson ? 1 : PLAIN,
+      .plain = by_anderson && cp->floating ? REFRESH : 0,
       .mark = HUGE_VAL};
   *rep = (solver_report){.outcome = RUNNING};
   w->best.residual = HUGE_VAL;

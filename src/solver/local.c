@@ -10,7 +10,7 @@ enum { ROOT_STEPS = 100 };
 
 /* A state computed, and by how much it misses its inequalities, N. */
 typedef struct candidate {
-  double x[3], r[3], miss;
+  double d[3], r[3], miss;
 } candidate;
 
 static double positive(double a) { return a > 0.0 ? a : 0.0; }
@@ -21,16 +21,16 @@ static double size_of(const local_problem *lp, const double *v) {
   return sqrt(sum);
 }
 
-/* K x - b */
-static void reaction(const local_problem *lp, const double *x, double *r) {
+/* K d - b */
+static void reaction(const local_problem *lp, const double *d, double *r) {
   for (int i = 0; i < lp->dim; ++i) {
     r[i] = -lp->b[i];
-    for (int j = 0; j < lp->dim; ++j) r[i] += lp->K[i + lp->dim * j] * x[j];
+    for (int j = 0; j < lp->dim; ++j) r[i] += lp->K[i + lp->dim * j] * d[j];
   }
 }
 
-/* Solve the rows and columns in "free" (bit k: unknown k) of K x = b. */
-static void solve_free(const local_problem *lp, unsigned free_set, double *x) {
+/* Solve the rows and columns in "free" (bit k: unknown k) of K d = b. */
+static void solve_free(const local_problem *lp, unsigned free_set, double *d) {
   double L[9], y[3];
   int id[3], n = 0;
   for (int k = 0; k < lp->dim; ++k)
@@ -38,7 +38,7 @@ static void solve_free(const local_problem *lp, unsigned free_set, double *x) {
   for (int i = 0; i < n; ++i) {
     y[i] = lp->b[id[i]];
     for (int k = 0; k < lp->dim; ++k)
-      if (!(free_set >> k & 1u)) y[i] -= lp->K[id[i] + lp->dim * k] * x[k];
+      if (!(free_set >> k & 1u)) y[i] -= lp->K[id[i] + lp->dim * k] * d[k];
     for (int j = 0; j < n; ++j) L[i + 3 * j] = lp->K[id[i] + lp->dim * id[j]];
   }
   for (int k = 0; k < n; ++k)
@@ -50,28 +50,29 @@ static void solve_free(const local_problem *lp, unsigned free_set, double *x) {
   for (int k = n - 1; k >= 0; --k) {
     for (int j = k + 1; j < n; ++j) y[k] -= L[k + 3 * j] * y[j];
     y[k] /= L[k + 3 * k];
-    x[id[k]] = y[k];
+    d[id[k]] = y[k];
   }
 }
 
-/* S s = c + t, |t| <= g, t = -g s/|s| on slip, g = max(0, ga + gb . s): one or
- * two tangents. */
+/* S d = c + t, s = at + d, |t| <= g, t = -g s/|s| on slip,
+ * g = max(0, ga + gb . d): one or two tangents. */
 typedef struct disc_problem {
   int n;
-  double S[4], c[2], ga, gb[2];
+  double S[4], c[2], ga, gb[2], at[2];
 } disc_problem;
 
 /* Largest slope mu K_tn that keeps a one-dimensional slip unique is S itself:
- * s = (c + e ga)/(S - e gb), e = -sign(s). */
-static void slip_line(const disc_problem *dp, double *s) {
-  double e = dp->c[0] > 0.0 ? -1.0 : 1.0;
+ * d = (c + e ga)/(S - e gb), e = -sign(s), the sign of less the force that
+ * would hold it, "held". */
+static void slip_line(const disc_problem *dp, double held, double *d) {
+  double e = held > 0.0 ? -1.0 : 1.0;
   double stiffness = dp->S[0] - e * dp->gb[0];
-  s[0] = (dp->c[0] + e * dp->ga) / stiffness;
-  if (!(stiffness > 0.0) || e * s[0] > 0.0) s[0] = 0.0;
+  d[0] = (dp->c[0] + e * dp->ga) / stiffness;
+  if (!(stiffness > 0.0) || e * (dp->at[0] + d[0]) > 0.0) d[0] = -dp->at[0];
 }
 
-/* Slip for a given flexibility nu = |s|/|t|:  q = (nu S + I)^-1 c = -t and
- * s = nu q; returns |q| - g(s), and its derivative. */
+/* Posed in s (at = 0), slip for a given flexibility nu = |s|/|t|:  q = (nu S +
+ * I)^-1 c = -t and s = nu q; returns |q| - g(s), and its derivative. */
 static double slip_excess(const disc_problem *dp, double nu, double *q,
                           double *slope) {
   double a = nu * dp->S[0] + 1.0, b = nu * dp->S[1], d = nu * dp->S[3] + 1.0;
@@ -116,21 +117,50 @@ static void slip_disc(const disc_problem *dp, double *s) {
   s[1] = nu * q[1];
 }
 
-/* s and t = S s - c; 1 if it slips. */
-static int disc_solve(const disc_problem *dp, double *s, double *t) {
-  double size = dp->n == 1 ? fabs(dp->c[0])
-                           : sqrt(dp->c[0] * dp->c[0] + dp->c[1] * dp->c[1]);
-  s[0] = s[1] = 0.0;
-  for (int k = 0; k < dp->n; ++k) t[k] = -dp->c[k];
-  if (size <= positive(dp->ga)) return 0;
-  if (dp->n == 1) {
-    slip_line(dp, s);
-    t[0] = dp->S[0] * s[0] - dp->c[0];
-    return 1;
+/* The same in steps, where the slip s found is so long that errors of its
+ * direction n fade: (S + n gb') d = c - ga n. */
+static void slip_step(const disc_problem *dp, const double *s, double *d) {
+  double size = hypot(s[0], s[1]), n[2], y[2], M[4];
+  for (int i = 0; i < 2; ++i) {
+    d[i] = s[i] - dp->at[i];
+    n[i] = s[i] / size;
   }
-  slip_disc(dp, s);
-  t[0] = dp->S[0] * s[0] + dp->S[1] * s[1] - dp->c[0];
-  t[1] = dp->S[2] * s[0] + dp->S[3] * s[1] - dp->c[1];
+  double g = dp->ga + dp->gb[0] * d[0] + dp->gb[1] * d[1];
+  if (!(g > 0.0 && g < fmin(dp->S[0], dp->S[3]) * size)) return;
+  for (int i = 0; i < 2; ++i) {
+    y[i] = dp->c[i] - dp->ga * n[i];
+    for (int j = 0; j < 2; ++j)
+      M[i + 2 * j] = dp->S[i + 2 * j] + n[i] * dp->gb[j];
+  }
+  double det = M[0] * M[3] - M[1] * M[2];
+  if (!(det > 0.0)) return;
+  d[0] = (M[3] * y[0] - M[2] * y[1]) / det;
+  d[1] = (M[0] * y[1] - M[1] * y[0]) / det;
+}
+
+/* d and t = S d - c; 1 if it slips. */
+static int disc_solve(const disc_problem *dp, double *d, double *t) {
+  disc_problem held = *dp; /* posed in s */
+  double size = 0.0, s[2];
+  for (int i = 0; i < dp->n; ++i) {
+    for (int j = 0; j < dp->n; ++j)
+      held.c[i] += dp->S[i + dp->n * j] * dp->at[j];
+    held.ga -= dp->gb[i] * dp->at[i];
+    size = hypot(size, held.c[i]);
+    d[i] = -dp->at[i];
+    t[i] = -held.c[i];
+  }
+  if (size <= positive(held.ga)) return 0;
+  if (dp->n == 1) {
+    slip_line(dp, held.c[0], d);
+  } else {
+    slip_disc(&held, s);
+    slip_step(dp, s, d);
+  }
+  for (int i = 0; i < dp->n; ++i) {
+    t[i] = -dp->c[i];
+    for (int j = 0; j < dp->n; ++j) t[i] += dp->S[i + dp->n * j] * d[j];
+  }
   return 1;
 }
 
@@ -139,56 +169,57 @@ static void try_open(const local_problem *lp, candidate *c) {
   int d = lp->dim;
   disc_problem dp = {.n = d - 1, .ga = positive(lp->g0)};
   for (int i = 1; i < d; ++i) {
+    dp.at[i - 1] = lp->at[i];
     dp.c[i - 1] = lp->b[i] - lp->K[i] * lp->b[0] / lp->K[0];
     for (int j = 1; j < d; ++j)
       dp.S[i - 1 + (d - 1) * (j - 1)] =
           lp->K[i + d * j] - lp->K[i] * lp->K[d * j] / lp->K[0];
   }
   if (dp.ga == 0.0) {
-    solve_free(lp, (1u << d) - 1u, c->x);
+    solve_free(lp, (1u << d) - 1u, c->d);
     c->r[0] = c->r[1] = c->r[2] = 0.0;
   } else {
-    disc_solve(&dp, c->x + 1, c->r + 1);
-    solve_free(lp, 1u, c->x);
+    disc_solve(&dp, c->d + 1, c->r + 1);
+    solve_free(lp, 1u, c->d);
     c->r[0] = 0.0;
   }
-  c->miss = lp->K[0] * positive(c->x[0]);
+  c->miss = lp->K[0] * positive(lp->at[0] + c->d[0]);
 }
 
 static void try_stick(const local_problem *lp, candidate *c) {
-  for (int k = 0; k < lp->dim; ++k) {
-    c->x[k] = 0.0;
-    c->r[k] = -lp->b[k];
-  }
+  for (int k = 0; k < lp->dim; ++k) c->d[k] = -lp->at[k];
+  reaction(lp, c->d, c->r);
   double over = size_of(lp, c->r) - positive(lp->g0 - lp->mu * c->r[0]);
   c->miss = positive(over) + positive(c->r[0]);
 }
 
 static void try_slip(const local_problem *lp, candidate *c) {
   int d = lp->dim;
-  disc_problem dp = {.n = d - 1, .ga = lp->g0 + lp->mu * lp->b[0]};
+  double pressed = lp->b[0] + lp->K[0] * lp->at[0];
+  disc_problem dp = {.n = d - 1, .ga = lp->g0 + lp->mu * pressed};
   for (int i = 1; i < d; ++i) {
-    dp.c[i - 1] = lp->b[i];
+    dp.at[i - 1] = lp->at[i];
+    dp.c[i - 1] = lp->b[i] + lp->K[i] * lp->at[0];
     dp.gb[i - 1] = -lp->mu * lp->K[d * i];
     for (int j = 1; j < d; ++j)
       dp.S[i - 1 + (d - 1) * (j - 1)] = lp->K[i + d * j];
   }
-  c->x[0] = 0.0;
+  c->d[0] = -lp->at[0];
   if (lp->g0 == 0.0 && lp->mu == 0.0)
-    solve_free(lp, (1u << d) - 2u, c->x);
+    solve_free(lp, (1u << d) - 2u, c->d);
   else
-    disc_solve(&dp, c->x + 1, c->r + 1);
-  reaction(lp, c->x, c->r);
+    disc_solve(&dp, c->d + 1, c->r + 1);
+  reaction(lp, c->d, c->r);
   if (lp->g0 == 0.0 && lp->mu == 0.0)
     for (int k = 1; k < d; ++k) c->r[k] = 0.0;
   double g = positive(lp->g0 - lp->mu * c->r[0]), dot = 0.0;
-  for (int k = 1; k < d; ++k) dot += c->r[k] * c->x[k];
+  for (int k = 1; k < d; ++k) dot += c->r[k] * (lp->at[k] + c->d[k]);
   c->miss = positive(c->r[0]) + fabs(size_of(lp, c->r) - g);
   if (dot > 0.0) c->miss += size_of(lp, c->r);
 }
 
 /* A frictionless node at two or three obstacles: every set of closed ones. */
-static local_state solve_bounded(const local_problem *lp, double *x,
+static local_state solve_bounded(const local_problem *lp, double *d,
                                  double *r) {
   double best = HUGE_VAL;
   unsigned n_set = 1u << lp->dim, chosen = 0;
@@ -197,31 +228,32 @@ static local_state solve_bounded(const local_problem *lp, double *x,
     int possible = 1;
     for (int k = 0; k < lp->dim; ++k)
       if (closed >> k & 1u) {
-        c.x[k] = lp->bound[k];
+        c.d[k] = lp->bound[k] - lp->at[k];
         possible = possible && lp->bound[k] < HUGE_VAL;
       }
     if (!possible) continue;
-    solve_free(lp, ~closed & (n_set - 1u), c.x);
-    reaction(lp, c.x, c.r);
+    solve_free(lp, ~closed & (n_set - 1u), c.d);
+    reaction(lp, c.d, c.r);
     for (int k = 0; k < lp->dim; ++k)
       if (closed >> k & 1u) {
         c.miss += positive(c.r[k]);
       } else {
         c.r[k] = 0.0;
-        c.miss += lp->K[k + lp->dim * k] * positive(c.x[k] - lp->bound[k]);
+        c.miss += lp->K[k + lp->dim * k] *
+                  positive(lp->at[k] + c.d[k] - lp->bound[k]);
       }
     if (!(c.miss < best)) continue;
     best = c.miss;
     chosen = closed;
     for (int k = 0; k < lp->dim; ++k) {
-      x[k] = c.x[k];
+      d[k] = c.d[k];
       r[k] = c.r[k];
     }
   }
   return chosen & 1u ? LOCAL_SLIP : LOCAL_OPEN;
 }
 
-local_state local_solve(const local_problem *lp, local_state before, double *x,
+local_state local_solve(const local_problem *lp, local_state before, double *d,
                         double *r) {
   static void (*const attempt[])(const local_problem *, candidate *) = {
       try_open, try_stick, try_slip};
@@ -229,9 +261,11 @@ local_state local_solve(const local_problem *lp, local_state before, double *x,
       {LOCAL_OPEN, LOCAL_STICK, LOCAL_SLIP},
       {LOCAL_STICK, LOCAL_SLIP, LOCAL_OPEN},
       {LOCAL_SLIP, LOCAL_STICK, LOCAL_OPEN}};
-  if (lp->bounded) return solve_bounded(lp, x, r);
+  if (lp->bounded) return solve_bounded(lp, d, r);
   int frictionless = lp->g0 == 0.0 && lp->mu == 0.0;
-  double best = HUGE_VAL, force = fabs(lp->b[0]) + size_of(lp, lp->b);
+  double best = HUGE_VAL;
+  double force =
+      hypot(lp->b[0], size_of(lp, lp->b)) + fabs(lp->K[0] * lp->at[0]);
   local_state found = before;
   for (int i = 0; i < 3; ++i) {
     candidate c = {.miss = 0.0};
@@ -241,7 +275,7 @@ local_state local_solve(const local_problem *lp, local_state before, double *x,
     best = c.miss;
     found = order[before][i];
     for (int k = 0; k < lp->dim; ++k) {
-      x[k] = c.x[k];
+      d[k] = c.d[k];
       r[k] = c.r[k];
     }
     if (best <= 0x1p-46 * force) break;

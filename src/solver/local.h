@@ -2,9 +2,12 @@
  * The contact problem of one node with the others held: the exact projections
  * that the relaxation methods share.
  *
- *   K x = b + r,   x = (u_n - gap, u_t - ut0),   K symmetric positive definite,
+ *   K d = b + r,   x = at + d = (u_n - gap, u_t - ut0),
  *   x_n <= 0, r_n <= 0, x_n r_n = 0,
- *   |r_t| <= g, r_t = -g x_t/|x_t| on slip,   g = max(0, g0 - mu r_n).
+ *   |r_t| <= g, r_t = -g x_t/|x_t| on slip,   g = max(0, g0 - mu r_n),
+ *
+ * K symmetric positive definite. It is posed in the step d of the node: what d
+ * and r are is not lost beside a long way to the gap or to where it sticks.
  */
 #ifndef PROTIS_SOLVER_LOCAL_H
 #define PROTIS_SOLVER_LOCAL_H
@@ -16,7 +19,8 @@
 typedef struct local_problem {
   int dim;       /* 1, 2 or 3: unknowns, the normal one first                */
   double K[9];   /* [dim*dim] N/m                                          */
-  double b[3];   /* [dim] N                                                */
+  double b[3];   /* [dim] less the force at d = 0, N                          */
+  double at[3];  /* [dim] x at d = 0, m                                       */
   double g0, mu; /* sliding limit without pressure, N; its growth with -r_n */
   double bound[3]; /* [dim] upper bounds of x, m; bound[0] = 0; HUGE_VAL in a
                       tangent unless bounded = 1                             */
@@ -27,12 +31,12 @@ typedef enum { LOCAL_OPEN, LOCAL_STICK, LOCAL_SLIP } local_state;
 
 /*
  * Solve it; "before" is the state tried first (with large mu a node can have
- * several solutions). x[dim], r[dim] receive the solution, exact to rounding:
+ * several solutions). d[dim], r[dim] receive the solution, exact to rounding:
  * closed form in 2-D, one safeguarded root in 3-D (the disc, no facets).
  * Returns the state found. If no state fits (possible only by rounding, or for
  * mu beyond the local limit) the one that misses least is returned.
  */
-local_state local_solve(const local_problem *lp, local_state before, double *x,
+local_state local_solve(const local_problem *lp, local_state before, double *d,
                         double *r);
 
 /*
@@ -40,7 +44,7 @@ local_state local_solve(const local_problem *lp, local_state before, double *x,
  * held. Stiffness form: the unknown is u, r = A u - f is carried along with
  * the columns of A. Compliance form (A not known): the unknown is r, and
  * u = W r + q is carried along with the columns of W. Both see the same
- * problem of a node, K = A_ii or inv(W_ii), b = K x - r.
+ * problem of a node, K = A_ii or inv(W_ii), b = -r.
  */
 typedef struct node_blocks node_blocks; /* what belongs to one matrix        */
 status node_blocks_new(const contact_problem *cp, node_blocks **out);
@@ -69,6 +73,12 @@ void relaxation_start(const relaxation *s);
 /* Carry anew r = A u - f, or u = W r + q. */
 void relaxation_refresh(const relaxation *s);
 void relaxation_sweep(relaxation *s, int backward);
+/* After a sweep from from[m] that turned no node: a body that contact alone
+ * holds and that the load carries to its obstacles, or an obstacle to where it
+ * sticks, by a small step a sweep goes there at once, once what strains it in
+ * the step is rounding or makes forces no larger than the load. 1: it did,
+ * or waits for that; r is that of u. */
+int relaxation_fly(relaxation *s, const double *from);
 /* After the last sweep: the best iterate into u and r, its residual and the
  * outcome, STOPPED_RAY where the sweeps gave up on a body that contact alone
  * holds and that drifts off. room[m]: work. */

@@ -12,16 +12,19 @@
 
 enum { DRIFT_SWEEPS = 20 };
 static const double RIGID = 0x1p-5; /* -, of a drift: counts as no strain  */
+static const double ROUNDING = 0x1p-46; /* -, of stiffness times way         */
 
 struct node_blocks {
   double *K;          /* [dim*dim*n] stiffness of each node, N/m              */
   local_state *state; /* [n] state found at the last visit                    */
+  double *step;       /* [m] work                                             */
 };
 
 void node_blocks_free(node_blocks *b) {
   if (b == NULL) return;
   memory_free(b->K);
   memory_free(b->state);
+  memory_free(b->step);
   memory_free(b);
 }
 
@@ -58,6 +61,7 @@ status node_blocks_new(const contact_problem *cp, node_blocks **out) {
   NEW(b, 1);
   NEW(b->K, cp->n * d * d);
   NEW(b->state, cp->n);
+  NEW(b->step, cp->m);
   double lift = 0.0;
   for (size_t i = 0; i < (size_t)cp->m; ++i)
     lift = fmax(lift, M[i * (size_t)cp->m + i]);
@@ -86,9 +90,9 @@ static double origin(const contact_problem *cp, int node_id, int k) {
   return contact_stick(cp, node_id * cp->dim + k);
 }
 
-/* The problem of a node: unknowns not held, listed in id[]; x[] now. */
+/* The problem of a node: unknowns not held, listed in id[]. */
 static void local_of(const relaxation *s, int node_id, local_problem *lp,
-                     int *id, double *x) {
+                     int *id) {
   const contact_problem *cp = s->cp;
   const double *K = s->blocks->K + node_id * cp->dim * cp->dim;
   int first = node_id * cp->dim;
@@ -99,17 +103,15 @@ static void local_of(const relaxation *s, int node_id, local_problem *lp,
     if (k > 0 && cp->side_gap != NULL)
       bound = cp->side_gap[node_id * (cp->dim - 1) + k - 1];
     id[lp->dim] = k;
-    x[lp->dim] = s->u[first + k] - origin(cp, node_id, k);
+    lp->at[lp->dim] = s->u[first + k] - origin(cp, node_id, k);
     lp->bound[lp->dim] = k == 0 ? 0.0 : bound - origin(cp, node_id, k);
     if (bound < HUGE_VAL) lp->bounded = 1;
     ++lp->dim;
   }
   for (int i = 0; i < lp->dim; ++i) {
     lp->b[i] = -s->r[first + id[i]];
-    for (int j = 0; j < lp->dim; ++j) {
+    for (int j = 0; j < lp->dim; ++j)
       lp->K[i + lp->dim * j] = K[id[i] + cp->dim * id[j]];
-      lp->b[i] += lp->K[i + lp->dim * j] * x[j];
-    }
   }
   lp->g0 = cp->g0 == NULL ? 0.0 : cp->g0[node_id];
   lp->mu = 0.0;
@@ -124,22 +126,19 @@ static void local_of(const relaxation *s, int node_id, local_problem *lp,
   }
 }
 
-/* Go on past the solution x of the node by omega - 1 times the way from old,
- * if the state stayed and the kink of friction is not crossed. */
+/* Go on past the solution of the node by omega - 1 times the step d, if the
+ * state stayed and the kink of friction is not crossed. */
 static void relax(const relaxation *s, const local_problem *lp, local_state now,
-                  const double *old, double *x) {
-  double further[3], dot = 0.0, more = s->omega - 1.0;
-  int first = now == LOCAL_OPEN ? 0 : 1;
+                  double *d) {
+  double dot = 0.0;
   if (lp->bounded || now == LOCAL_STICK) return;
-  for (int k = 1; k < lp->dim; ++k) {
-    further[k] = x[k] + more * (x[k] - old[k]);
-    dot += further[k] * x[k];
-  }
-  if (first == 0) x[0] = fmin(0.0, x[0] + more * (x[0] - old[0]));
+  for (int k = 1; k < lp->dim; ++k)
+    dot += (lp->at[k] + s->omega * d[k]) * (lp->at[k] + d[k]);
+  if (now == LOCAL_OPEN) d[0] = fmin(-lp->at[0], s->omega * d[0]);
   if ((lp->g0 != 0.0 || lp->mu != 0.0) && !(dot > 0.0) &&
       !(now == LOCAL_OPEN && lp->g0 == 0.0))
     return;
-  for (int k = 1; k < lp->dim; ++k) x[k] = further[k];
+  for (int k = 1; k < lp->dim; ++k) d[k] *= s->omega;
 }
 
 /* The same for the forces, back onto their cone. */
@@ -157,13 +156,13 @@ static void relax_forces(const relaxation *s, const local_problem *lp,
   for (int k = 1; k < lp->dim && size > g; ++k) r[k] *= g / size;
 }
 
-/* Step of the node's displacement, along the way found, m. */
+/* Step of the node's displacement, of the unknowns not held d[], m. */
 static void displacement_step(const relaxation *s, int node_id,
                               const local_problem *lp, const int *id,
-                              const double *way, double *step) {
+                              const double *d, double *step) {
   const contact_problem *cp = s->cp;
   size_t first = (size_t)(node_id * cp->dim), m = (size_t)cp->m;
-  for (int k = 0; k < lp->dim; ++k) step[id[k]] = way[k];
+  for (int k = 0; k < lp->dim; ++k) step[id[k]] = d[k];
   for (int k = 1; k < cp->dim; ++k) {
     size_t dof = first + (size_t)k;
     if (contact_held(cp, (int)dof)) step[k] = -s->r[dof] / cp->A[dof * m + dof];
@@ -176,16 +175,15 @@ static void node_step(relaxation *s, int node_id, double *step) {
   const contact_problem *cp = s->cp;
   local_problem lp;
   int id[3] = {0, 0, 0};
-  double old[3], x[3], r[3];
-  local_of(s, node_id, &lp, id, old);
+  double d[3], r[3];
+  local_of(s, node_id, &lp, id);
   local_state before = s->blocks->state[node_id];
-  local_state now = local_solve(&lp, before, x, r);
+  local_state now = local_solve(&lp, before, d, r);
   s->blocks->state[node_id] = now;
   s->turned += now != before;
   if (cp->A != NULL) {
-    if (now == before) relax(s, &lp, now, old, x);
-    for (int k = 0; k < lp.dim; ++k) x[k] -= old[k];
-    displacement_step(s, node_id, &lp, id, x, step);
+    if (now == before) relax(s, &lp, now, d);
+    displacement_step(s, node_id, &lp, id, d, step);
     return;
   }
   double force[3] = {0.0, 0.0, 0.0};
@@ -249,6 +247,55 @@ void relaxation_start(const relaxation *s) {
                           : slip > 0.0             ? LOCAL_SLIP
                                                    : LOCAL_STICK;
   }
+}
+
+/* How often step d goes into the way to the nearest bound or to the nearest
+ * position of stick that it leads to; HUGE_VAL: it leads to none. */
+static double steps_to_touch(const relaxation *s, const double *d) {
+  const contact_problem *cp = s->cp;
+  double most = 0.0, steps = HUGE_VAL;
+  for (int i = 0; i < cp->m; ++i) most = fmax(most, fabs(d[i]));
+  for (int i = 0; i < cp->m; ++i) {
+    double bound = contact_bound(cp, i);
+    if (bound < HUGE_VAL && d[i] > RIGID * most)
+      steps = fmin(steps, (bound - s->u[i]) / d[i]);
+  }
+  for (int i = 0; i < cp->n && cp->ut0 != NULL; ++i) {
+    double way = 0.0, size = 0.0;
+    if (!(contact_node_limit(cp, s->r, i) > 0.0)) continue;
+    for (int k = i * cp->dim + 1; k < (i + 1) * cp->dim; ++k) {
+      way += d[k] * (contact_stick(cp, k) - s->u[k]);
+      size += d[k] * d[k];
+    }
+    if (way > 0.0 && sqrt(size) > RIGID * most) steps = fmin(steps, way / size);
+  }
+  return steps;
+}
+
+int relaxation_fly(relaxation *s, const double *from) {
+  const contact_problem *cp = s->cp;
+  double work = 0.0, stiff = 0.0, left = 0.0, load = 0.0, least = 0.0;
+  double *d = s->blocks->step;
+  size_t m = (size_t)cp->m;
+  if (!cp->floating || cp->A == NULL || s->turned > 0) return 0;
+  for (size_t i = 0; i < m; ++i) {
+    d[i] = s->u[i] - from[i];
+    work += cp->f[i] * d[i];
+    load = fmax(load, fabs(cp->f[i]));
+    stiff = fmax(stiff, cp->A[i * m + i] * fabs(d[i]));
+    least = fmax(least, ROUNDING * cp->A[i * m + i] * fabs(s->u[i]));
+  }
+  contact_product(cp->m, cp->A, d, s->r);
+  for (size_t i = 0; i < m; ++i) left = fmax(left, fabs(s->r[i]));
+  relaxation_refresh(s);
+  double steps = steps_to_touch(s, d);
+  if (!(work > 0.0 && left < RIGID * stiff && steps < HUGE_VAL)) return 0;
+  if (steps * left > load && left > least) return 1;
+  if (steps * left > load) steps = load / left;
+  if (!(steps > 1.0)) return 0;
+  cblas_daxpy(cp->m, steps, d, 1, s->u, 1);
+  relaxation_refresh(s);
+  return 1;
 }
 
 /* 1: a body that contact alone holds drifts off: what a few more sweeps make is

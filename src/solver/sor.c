@@ -6,7 +6,7 @@
  * Stiffness form: the unknown is u, r = A u - f is carried along with the
  * columns of A. Compliance form (A not known): the unknown is r, and
  * u = W r + q is carried along with the columns of W. Both see the same
- * problem of a node,  K x = b + r,  K = A_ii or inv(W_ii),  b = K x - r.
+ * problem of a node,  K d = b + r,  K = A_ii or inv(W_ii),  b = -r now.
  */
 #include "base/memory.h"
 #include "solver/fixed_point.h"
@@ -14,6 +14,7 @@
 #include "solver/solver.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct sor {
   double omega; /* relaxation factor, -; 0: chosen by the program            */
@@ -46,7 +47,7 @@ static const double PROGRESS = 0.9; /* a lower residual is lower by this      */
 typedef struct sor_work {
   node_blocks *blocks;
   best_iterate best;
-  double *before;     /* [m] work                                            */
+  double *before;     /* [m] u before a sweep that is checked; work          */
   fixed_point *fixed; /* for FRICTION_FIXED_POINT                            */
 } sor_work;
 
@@ -93,6 +94,7 @@ typedef struct course {
   int turned, returns; /* since the last check: nodes that changed their state,
                           patterns that came back                            */
   int circling;        /* checks since the last progress with such patterns  */
+  double *before;      /* [m] u before a sweep that is checked                */
 } course;
 
 /* Largest factor that friction updated in the sweep was seen to bear. */
@@ -165,6 +167,16 @@ static int is_checked(int k) {
   return k % CHECK == 0 || (k <= 8 && (k & (k - 1)) == 0);
 }
 
+/* A body on its way to its obstacles keeps the factor. */
+static void steer(relaxation *s, course *c, int k) {
+  if (relaxation_fly(s, c->before)) {
+    c->since = c->circling = 0;
+    c->last_change = 0.0;
+  } else if (k % CHECK == 0) {
+    choose_omega(s, c);
+  }
+}
+
 static outcome sweeps(relaxation *s, course *c, const solver_control *control,
                       solver_report *rep) {
   int limit = control->max_iter > 0 ? control->max_iter : SWEEPS;
@@ -172,6 +184,7 @@ static outcome sweeps(relaxation *s, course *c, const solver_control *control,
   relaxation_refresh(s);
   for (int k = 1; k <= limit; ++k) {
     rep->iterations = k;
+    if (is_checked(k)) memcpy(c->before, s->u, (size_t)s->cp->m * sizeof *s->u);
     relaxation_sweep(s, c->order == SWEEP_BACKWARD ||
                             (c->order == SWEEP_SYMMETRIC && k % 2 == 0));
     c->turned += s->turned;
@@ -182,7 +195,7 @@ static outcome sweeps(relaxation *s, course *c, const solver_control *control,
     c->turned = c->returns = 0;
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= control->tol) return CONVERGED;
-    if (k % CHECK == 0) choose_omega(s, c);
+    steer(s, c, k);
     if (c->since <= PATIENCE) continue;
     int circles = 2 * c->circling > c->since;
     if (!cure(s, c)) return circles ? STOPPED_CYCLE : STOPPED_STAGNATION;
@@ -209,6 +222,7 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
   w->best.residual = HUGE_VAL;
   course c = {.omega_cap = omega_limit(cp),
               .kept = &w->best,
+              .before = w->before,
               .mark = HUGE_VAL,
               .order = p->sweep,
               .chosen = cp->A != NULL && !(p->omega > 0.0)};

@@ -70,11 +70,16 @@ static void ck_carried(const fall *f, int most, double tol) {
 static const char in_ten[] = "*QUASISTATIC\n0.1, 1.";
 static const char held[] = "*BOUNDARY\nLEFT, 1\n";
 
+#define SWEEPS_FALL "SOR", "AITKEN", "AITKEN, ACCELERATION=ANDERSON"
+
 START_TEST(next_to_no_load_is_carried) {
-  static const char *const methods[] = {"AUTO",   "LEMKE",    "PCG",
-                                        "AUGLAG", "PROXIMAL", "LAGRANGE"};
-  const fall f = {&wavy, 1e-3, 1e-5, "", in_ten, held, methods[_i]};
-  ck_carried(&f, 10, 1e-6);
+  static const char *const methods[] = {
+      "AUTO", "LEMKE", "PCG", "AUGLAG", "PROXIMAL", "LAGRANGE", SWEEPS_FALL};
+  static const double loads[] = {1e-2, 1e-5, 1e-7};
+  for (int k = 0; k < 3; ++k) {
+    const fall f = {&wavy, 1e-3, loads[k], "", in_ten, held, methods[_i]};
+    ck_carried(&f, 10, 1e-6);
+  }
 }
 END_TEST
 
@@ -85,9 +90,14 @@ START_TEST(chosen_increments_do_not_follow_the_fall) {
               {MAXWELL, "*VISCO, INTEGRATOR=RK4, TOLERANCE=1.E-3\n1., 1."},
               {CHABOCHE, "*VISCO, INTEGRATOR=RK4, TOLERANCE=1.E-3\n1., 20."}};
   static const double loads[] = {1e-2, 1e-3, 1e-5};
-  const fall f = {
-      &wavy, 1e-3,  loads[_i % 3], made[_i / 3].law, made[_i / 3].step,
-      held,  "AUTO"};
+  static const char *const methods[] = {"AUTO", SWEEPS_FALL};
+  const fall f = {&wavy,
+                  1e-3,
+                  loads[_i % 3],
+                  made[_i / 3 % 3].law,
+                  made[_i / 3 % 3].step,
+                  held,
+                  methods[_i / 9]};
   ck_carried(&f, 80, 1e-6);
 }
 END_TEST
@@ -209,8 +219,8 @@ END_TEST
 int main(void) {
   TCase *tests = tcase_create("falling");
   tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, next_to_no_load_is_carried, 0, 6);
-  tcase_add_loop_test(tests, chosen_increments_do_not_follow_the_fall, 0, 9);
+  tcase_add_loop_test(tests, next_to_no_load_is_carried, 0, 9);
+  tcase_add_loop_test(tests, chosen_increments_do_not_follow_the_fall, 0, 36);
   tcase_add_test(tests, rounding_counts_against_the_loads_of_the_step);
   tcase_add_test(tests, no_load_at_all_ends_with_a_verdict);
   tcase_add_loop_test(tests, a_start_inside_the_floor_by_rounding_is_none, 0,

@@ -325,7 +325,9 @@ START_TEST(long_motions_leave_the_forces_right) {
         int code = run_long(&scenes[k], solver,
                             velocity ? "VELOCITY" : "DISPLACEMENT", &T, reason);
         int ok = code == 0;
-        ck_assert_msg(ok || m > 1, "%s: exit %d", methods[m], code);
+        int may_miss = k == 3 ? m > 1 : m == 2; /* LEMKE solves in u         */
+        ck_assert_msg(ok || may_miss, "scene %zu, %s: exit %d", k, methods[m],
+                      code);
         double expected = 0.3 * scenes[k].p, most = k == 3 ? 0.05 : 1e-8;
         ck_assert_msg(!ok || fabs(T - expected) <= most * expected,
                       "scene %zu, %s: T = %.12g, %s", k, methods[m], T, reason);
