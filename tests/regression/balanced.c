@@ -135,7 +135,21 @@ START_TEST(saved_iterations_are_those_of_the_default) {
 }
 END_TEST
 
-/* A smaller share: a smaller error; the error of increments counts too. */
+/* Number of an increment, from 0. */
+static double figure_at(const job *j, const char *name, int increment) {
+  char wanted[80], *json = job_file(j, "json"), *at = json;
+  snprintf(wanted, sizeof wanted, "\"%s\": ", name);
+  at = strstr(at, "\"increments\": [");
+  for (int k = 0; at != NULL && k <= increment; ++k)
+    at = strstr(at + 1, wanted);
+  ck_assert_msg(at != NULL, "%s is not told", name);
+  double value = atof(at + strlen(wanted));
+  free(json);
+  return value;
+}
+
+/* A smaller share: a smaller error; the error of increments counts too, that of
+ * the last one known. */
 START_TEST(share_is_that_of_the_deck) {
   job few = run_block(0.25, "METHOD=SOR, TOL=BALANCED, SHARE=0.5", "");
   job many = run_block(0.25, "METHOD=SOR, TOL=BALANCED, SHARE=0.005",
@@ -146,6 +160,13 @@ START_TEST(share_is_that_of_the_deck) {
       figure(&many, "solver_error_percent"),
       0.005 * (others + 2 * figure(&many, "time_error_worst_percent")));
   ck_assert_double_lt(iterations(&few), iterations(&many));
+  for (int k = 1; k < 4; ++k) {
+    double of_mesh = figure_at(&many, "mesh_error_percent", k);
+    double of_time = figure_at(&many, "time_error_percent", k - 1);
+    ck_assert_double_gt(of_time, 1e-4 * of_mesh);
+    ck_assert_double_eq_tol(figure_at(&many, "balanced_wanted_percent", k),
+                            0.005 * (of_mesh + of_time), 1e-6 * of_mesh);
+  }
   job_end(&few);
   job_end(&many);
 }

@@ -58,6 +58,30 @@ START_TEST(error_of_the_steps_is_near_the_true_one) {
 }
 END_TEST
 
+/* Steps that add no error of their own, each with a path of its own. */
+START_TEST(error_of_the_steps_is_that_of_all_steps) {
+  static const char still[] =
+      "*ACCURACY, TIME=YES\n*PRINT, ENERGY\n*END STEP\n*STEP\n*STATIC\n"
+      "*END STEP\n*STEP\n*QUASISTATIC\n1., 1.\n";
+  char more[400];
+  double norm[3];
+  for (int k = 0; k < 3; ++k) {
+    snprintf(more, sizeof more, "%s%s*ACCURACY, TIME=YES\n", k > 0 ? still : "",
+             k > 1 ? still : "");
+    job j = roll(1, more);
+    dat e = job_table(&j, "ENERGY", -1);
+    const double part = 0.01 * job_told(&j, "time_error_percent");
+    norm[k] =
+        part * sqrt(2 * dat_at(&e, 0, "strain_energy") / (1 - part * part));
+    dat_free(&e);
+    job_end(&j);
+  }
+  ck_assert_double_gt(norm[0], 0);
+  ck_assert_double_ge(norm[1], 0.999999 * norm[0]);
+  ck_assert_double_ge(norm[2], 0.999999 * norm[1]);
+}
+END_TEST
+
 /* Last figure of that name in JOB.json, %. */
 static double figure(const job *j, const char *name) {
   char wanted[80], *json = job_file(j, "json"), *last = NULL;
@@ -269,6 +293,7 @@ START_TEST(budget_stands_in_every_result) {
 END_TEST
 
 UNIT_MAIN("budget", error_of_the_steps_is_near_the_true_one,
+          error_of_the_steps_is_that_of_all_steps,
           proportional_load_has_no_error_of_steps,
           error_of_the_steps_is_told_where_a_law_flows,
           increments_are_balanced_with_the_mesh,

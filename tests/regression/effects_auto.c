@@ -245,6 +245,41 @@ START_TEST(nothing_is_left_out_unless_asked) {
 }
 END_TEST
 
+/* The middle strip of five gets warm: the change is that of the forces of its
+ * nodes over the largest force, the others keep theirs. */
+START_TEST(change_is_that_of_the_nodes_it_changes_most) {
+  dat c[2];
+  double told = NAN, largest = 0, most = 0;
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("strips");
+    job_copy(&j, "tests/regression/mesh/strips.geo");
+    job_write(&j, "strips.inp",
+              "*PARAMETER\nN = 5\n*MESH, FILE=strips.geo\n*MATERIAL, NAME=M\n"
+              "*ELASTIC\n1000., 0.\n*EXPANSION\n1.2E-5\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s*STEP\n*STATIC\n"
+              "*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.01\n*TEMPERATURE\n"
+              "MIDDLE, 0.05\n*PRINT, CONTACT\n*END STEP\n",
+              k == 0 ? "" : "*EFFECTS, MODE=AUTO\n");
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    c[k] = job_table(&j, "CONTACT", -1);
+    if (k == 1) told = job_told(&j, "change");
+    job_end(&j);
+  }
+  for (int i = 0; i < c[1].n_row; ++i) {
+    double with = dat_at(&c[0], i, "f_n"), without = dat_at(&c[1], i, "f_n");
+    most = fmax(most, fabs(with - without));
+    largest = fmax(largest, without);
+  }
+  ck_assert_double_gt(most, 0);
+  ck_assert_double_eq_tol(told / (most / largest), 1, 1e-3);
+  dat_free(&c[0]);
+  dat_free(&c[1]);
+}
+END_TEST
+
 static double uniform(unsigned *seed) {
   *seed = *seed * 1664525u + 1013904223u;
   return (double)(*seed >> 8) / 16777216.0;
@@ -287,4 +322,5 @@ UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
           law_at_its_end_is_left_out, elements_below_the_threshold_are_left_out,
           law_below_its_threshold_is_left_out,
           average_within_an_element_is_local, friction_without_slip_is_left_out,
+          change_is_that_of_the_nodes_it_changes_most,
           nothing_is_left_out_unless_asked, random_scenes_agree)

@@ -64,6 +64,9 @@ static void check_file(const job *j, const char *file, int dim) {
 
 /* The second increment of a deck, solved again from its file. */
 static void round_trip(job *j, const char *solver) {
+  static const char *const counted[] = {"open", "slip", "stick"};
+  double count[3];
+  for (int c = 0; c < 3; ++c) count[c] = job_told(j, counted[c]);
   job_write(j, "back.inp",
             "*CONDENSED PROBLEM, FILE=%s_condensed_00002.h5\n*STEP\n"
             "*SOLVER, TOL=1e-13%s\n*OUTPUT, CONDENSED=FCLIB\n*END STEP\n",
@@ -73,6 +76,8 @@ static void round_trip(job *j, const char *solver) {
   strcpy(name, j->name);
   strcpy(j->name, "back");
   ck_assert_msg(job_run(j, "") == 0, "%s", j->errors);
+  for (int c = 0; c < 3; ++c)
+    ck_assert_double_eq(job_told(j, counted[c]), count[c]);
   strcpy(j->name, name);
   compare(j, first, "back_condensed_00001.h5", "/solution/u");
   compare(j, first, "back_condensed_00001.h5", "/solution/r");

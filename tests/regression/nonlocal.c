@@ -244,6 +244,25 @@ START_TEST(zone_confines_friction_to_the_contact) {
 }
 END_TEST
 
+/* The zone of the increment before is where an increment begins: with nothing
+ * new, one solution each. */
+START_TEST(zone_that_stays_is_found_at_once) {
+  long calls[2];
+  for (int k = 0; k < 2; ++k) {
+    char steps[300];
+    snprintf(steps, sizeof steps, "%s*END STEP\n*STEP\n*QUASISTATIC\n%g, 1.\n",
+             PUSHED, k == 0 ? 1.0 : 0.1);
+    block b = {
+        32,   1, 0.2, "CPE3", "LAW=NONLOCAL, RADIUS=0.2, ZONE=CONTACT\n1.\n",
+        steps};
+    job j = run_block(&b);
+    calls[k] = job_stage(&j, "contact solver", NULL);
+    job_end(&j);
+  }
+  ck_assert_int_eq(calls[1] - calls[0], 9);
+}
+END_TEST
+
 /* ---- local limit, other laws ------------------------------------------- */
 
 static void expect_same(const job *a, const job *b, double tolerance) {
@@ -612,6 +631,7 @@ UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
           mirror_takes_the_edge_away, normalized_edges_keep_a_uniform_pressure,
           limit_is_the_average_of_the_pressures,
           zone_confines_friction_to_the_contact,
+          zone_that_stays_is_found_at_once,
           node_that_comes_and_goes_has_no_friction,
           small_radius_is_local_friction, only_the_nonlocal_law_pays,
           mu_multiplies_the_average, every_method_gives_the_same_answer,

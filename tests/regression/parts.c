@@ -107,6 +107,38 @@ START_TEST(error_of_an_unloaded_body_is_over_the_largest) {
 }
 END_TEST
 
+/* The bound of the solver, sqrt(2 J) over sqrt(2 W) of the largest load, where
+ * that is left and where nothing is left of it. */
+START_TEST(bound_of_the_solver_is_over_the_largest_energy) {
+  static const char *const left[] = {"1.", "1E-10"};
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("block");
+    block_file_write(&j, (int[]){8, 6}, (double[]){40.0, 30.0}, 0);
+    job_write(
+        &j, "block.inp",
+        "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+        "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., %s\n"
+        "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+        "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n*STEP\n"
+        "*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nSYMMETRY, 1\nTOP, 1, 1\n"
+        "*DSLOAD\nTOP, P, \"50 + x\", A\n*SOLVER, METHOD=SOR, TOL=1E-3\n"
+        "*PRINT, ENERGY\n*END STEP\n",
+        left[k]);
+    run(&j);
+    dat e = job_table(&j, "ENERGY", 0);
+    const double bound = job_told(&j, "solver_error_energy");
+    ck_assert_double_gt(bound, 0);
+    ck_assert_double_eq_tol(
+        job_told(&j, "solver_error_percent") /
+            (100 * sqrt(bound / dat_at(&e, 0, "strain_energy"))),
+        1, 1e-6);
+    dat_free(&e);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* The error of a coarse mesh: the squares of the shares add up to its own. */
 START_TEST(shares_of_the_elements_make_up_the_error) {
   job j = job_begin("block");
@@ -396,6 +428,7 @@ END_TEST
 UNIT_MAIN("parts", shares_of_the_elements_make_up_the_error,
           true_error_of_a_ring_counts_the_hoop,
           error_of_an_unloaded_body_is_over_the_largest,
+          bound_of_the_solver_is_over_the_largest_energy,
           bound_of_heat_that_falls, zones_of_revolution_are_rings,
           directions_of_slip_part_where_there_is_none,
           true_stress_error_counts_every_component,

@@ -73,14 +73,16 @@ START_TEST(uniform_stress_has_the_error_of_its_factor) {
 END_TEST
 
 /*
- * u_y = -0.01 y is found; 0.001 y^2 more is the closed form, over 0 < y < 1:
+ * u_y = -0.01 y (in 3-D u_z = -0.01 z) is found; 0.001 y^2 more is the closed
+ * form, over 0 < y < 1:
  * energy: sqrt(4/3 0.001^2 / (0.01^2 - 2 0.01 0.001 + 4/3 0.001^2)), and the
  * same of the stress; displacement: sqrt(0.001^2/5 / (0.01^2/3 - 0.01 0.001/2 +
  * 0.001^2/5)).
  */
-static void check_quadratic(const char *reference, double displacement,
-                            double stress) {
-  const scene s = {"square.geo", "", "0", reference, "LEFT, 1\n"};
+static void check_quadratic(const char *geo, const char *reference,
+                            double displacement, double stress) {
+  const char *supports = geo[0] == 's' ? "LEFT, 1\n" : "LEFT, 1\nFRONT, 2\n";
+  const scene s = {geo, "", "0", reference, supports};
   const double a = 0.01, b = 0.001;
   job j = run_scene(&s, "1");
   double energy = sqrt(4 * b * b / 3 / (a * a - 2 * a * b + 4 * b * b / 3));
@@ -100,11 +102,39 @@ static void check_quadratic(const char *reference, double displacement,
 }
 
 START_TEST(integrals_of_a_quadratic_field) {
-  check_quadratic("u_x, 0\nu_y, \"-0.01*y + 0.001*y^2\"\n", 1, 0);
-  check_quadratic(
-      "stress_xx, 0\nstress_yy, \"-10 + 2*y\"\nstress_zz, 0\n"
-      "stress_xy, 0\n",
-      0, 1);
+  check_quadratic("square.geo", "u_x, 0\nu_y, \"-0.01*y + 0.001*y^2\"\n", 1, 0);
+  check_quadratic("square.geo",
+                  "stress_xx, 0\nstress_yy, \"-10 + 2*y\"\nstress_zz, 0\n"
+                  "stress_xy, 0\n",
+                  0, 1);
+  check_quadratic("cube.geo", "u_x, 0\nu_y, 0\nu_z, \"-0.01*z + 0.001*z^2\"\n",
+                  1, 0);
+  check_quadratic("cube.geo",
+                  "stress_xx, 0\nstress_yy, 0\nstress_zz, \"-10 + 2*z\"\n"
+                  "stress_xy, 0\nstress_yz, 0\nstress_zx, 0\n",
+                  0, 1);
+}
+END_TEST
+
+/* Both layers are stretched to the stress 1; the closed form says 2 of the
+ * upper one, which is three times as thick, and as much of its displacement. */
+START_TEST(thick_parts_count_more) {
+  job j = job_begin("truth");
+  job_copy(&j, "tests/regression/mesh/layers.geo");
+  job_write(&j, "truth.inp",
+            "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=SOFT, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=HARD, MATERIAL=M, THICKNESS=3.\n"
+            "*REFERENCE\nu_x, \"1E-3*x*(1 + (y>0.5))\"\nu_y, 0\n"
+            "stress_xx, \"1 + (y>0.5)\"\nstress_yy, 0\nstress_zz, 0\n"
+            "stress_xy, 0\n*STEP\n*STATIC\n*BOUNDARY\nSOFT, 1, 1, \"1E-3*x\"\n"
+            "HARD, 1, 1, \"1E-3*x\"\nSOFT, 2\nHARD, 2\n*END STEP\n");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  for (int i = 0; i < 3; ++i)
+    ck_assert_double_eq_tol(0.01 * job_told(&j, norms[i]), sqrt(3 / 13.), 1e-9);
+  job_end(&j);
 }
 END_TEST
 
@@ -147,6 +177,6 @@ START_TEST(value_that_is_not_finite_is_an_error) {
 END_TEST
 
 UNIT_MAIN("reference", uniform_stress_has_the_error_of_its_factor,
-          integrals_of_a_quadratic_field,
+          integrals_of_a_quadratic_field, thick_parts_count_more,
           estimate_beside_the_true_error_of_hertz,
           value_that_is_not_finite_is_an_error)

@@ -95,6 +95,54 @@ START_TEST(start_remembers_where_the_foot_is) {
 }
 END_TEST
 
+/* A given force in balance with the load is a start too. */
+START_TEST(given_force_goes_on) {
+  job j = job_begin("start");
+  int code = write_and_run(&j, 4, "*CONTACT FORCE, CONTACT=F\n10.\n" PRESSED,
+                           "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1\n"
+                           "TOP, 2, 2, \"-0.01+0*t\"\n" PRINT);
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  ck_assert(listing_has(&j, "\n  compatible\n"));
+  dat u = job_table(&j, "NODES", -1);
+  for (int i = 0; i < u.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&u, i, "u_y"), -0.01 * dat_at(&u, i, "y"),
+                            1e-12);
+  dat_free(&u);
+  job_end(&j);
+}
+END_TEST
+
+/* A cube above a floor at -0.3 that has moved by 0.15 towards one of two walls,
+ * whose gaps are 0.1 and 0.2: to the far one it may. */
+START_TEST(walls_of_a_corner_have_gaps_of_their_own) {
+  static const char walls[] = "xy";
+  for (int far = 0; far < 2; ++far)
+    for (int moved = 0; moved < 2; ++moved) {
+      job j = job_begin("corner");
+      job_copy(&j, "tests/regression/mesh/cube.geo");
+      job_write(&j, "corner.inp",
+                "*PARAMETER\nN = 1\n*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n"
+                "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+                "*OBSTACLE, NAME=Z, TYPE=PLANE\n0., 0., -0.3\n0., 0., 1.\n"
+                "*OBSTACLE, NAME=X, TYPE=PLANE\n%g, 0., 0.\n1., 0., 0.\n"
+                "*OBSTACLE, NAME=Y, TYPE=PLANE\n0., %g, 0.\n0., 1., 0.\n"
+                "*CONTACT, NAME=Z, GROUP=BOTTOM, OBSTACLE=Z\n"
+                "*CONTACT, NAME=X, GROUP=LEFT, OBSTACLE=X\n"
+                "*CONTACT, NAME=Y, GROUP=FRONT, OBSTACLE=Y\n"
+                "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\nBODY, %d, -0.15\n"
+                "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 3\n"
+                "TOP, %d, %d, \"-0.15+0*t\"\n*PRINT, NODES\n*END STEP\n",
+                far == 0 ? -0.2 : -0.1, far == 1 ? -0.2 : -0.1, moved + 1,
+                moved + 1, moved + 1);
+      int code = job_run(&j, "");
+      ck_assert_msg(code == (far == moved ? 0 : 2), "far %c, moved %c: %d: %s",
+                    walls[far], walls[moved], code, j.errors);
+      ck_assert(listing_has(&j, "\n  compatible\n") == (far == moved));
+      job_end(&j);
+    }
+}
+END_TEST
+
 #define STEP(loads) "*STEP\n*QUASISTATIC\n0.5, 1.\n" loads PRINT
 
 /* Each condition broken alone; forces of uniform stress on nodes 1/4 apart. */
@@ -285,6 +333,7 @@ START_TEST(wrong_files_are_refused) {
 END_TEST
 
 UNIT_MAIN("start", compatible_start_goes_on, start_remembers_where_the_foot_is,
+          given_force_goes_on, walls_of_a_corner_have_gaps_of_their_own,
           incompatible_start_is_refused_with_its_defect,
           incompatible_start_is_relaxed, end_of_a_run_is_a_start,
           end_of_a_long_run_is_a_start, wrong_files_are_refused)

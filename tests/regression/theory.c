@@ -263,6 +263,7 @@ START_TEST(two_contacts_have_rows_of_their_own) {
   ck_assert_int_eq(count(&j, "lst", "\n  (all)  "), 2);
   ck_assert_double_ge(all, 0.999999 * fmax(foot, wall));
   ck_assert_double_gt(foot, wall);
+  ck_assert_double_eq_tol(result(&j, "mu_unique", 2) * all, 0.1, 1e-9);
   job_end(&j);
 }
 END_TEST
@@ -319,6 +320,8 @@ START_TEST(stress_contracts_with_the_rate_of_a_bar) {
       ck_assert_double_eq_tol(result(&j, "stress_bound", i), row[k].rate, 1e-9);
       ck_assert_double_eq_tol(result(&j, "stress_contraction", i), row[k].rate,
                               1e-6);
+      ck_assert_double_eq_tol(
+          result(&j, "dt_contraction", i) * row[k].rate / row[k].dt, 1, 1e-9);
     }
     ck_assert_int_eq(count(&j, "lst", "not below 1"), row[k].rate > 1 ? 3 : 0);
     job_end(&j);

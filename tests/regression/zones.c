@@ -97,11 +97,13 @@ START_TEST(belt_gives_slip_distance_direction_torque_and_loop) {
                      "AXIS, 0.25, 2.\n", 0.1, "*QUASISTATIC\n0.05, 3.\n");
   const double N = 2.0, T = 0.2;
   dat c = job_table(&j, "CONTACT", 19), l = job_table(&j, "LOOP", 19);
-  dat t = job_table(&j, "TOTALS", 19);
+  dat t = job_table(&j, "TOTALS", 19), z = job_table(&j, "ZONES", 19);
   double mean = 0.0;
+  ck_assert_int_eq(z.n_row, 1);
   for (int i = 0; i < c.n_row; ++i) {
     double u = dat_at(&c, i, "u_t");
     ck_assert_double_eq(dat_at(&c, i, "status"), 1.0);
+    ck_assert_double_gt(dat_at(&z, 0, "direction") * dat_at(&c, i, "slip"), 0);
     ck_assert_double_eq_tol(dat_at(&c, i, "slip_distance"), 0.5 - u, 1e-8);
     ck_assert_double_eq(dat_at(&c, i, "slip_dir_x"), -1.0);
     ck_assert_double_eq(dat_at(&c, i, "slip_dir_y"), 0.0);
@@ -119,6 +121,7 @@ START_TEST(belt_gives_slip_distance_direction_torque_and_loop) {
   dat_free(&c);
   dat_free(&l);
   dat_free(&t);
+  dat_free(&z);
   /* Back: the force has turned; all the way has become heat but for the
    * shearing to and fro. */
   l = job_table(&j, "LOOP", -1);

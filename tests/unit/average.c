@@ -659,6 +659,23 @@ START_TEST(quarter_of_a_square_has_no_edge_at_its_mirrors) {
 }
 END_TEST
 
+/* Points above a triangle and beside it, in any unit. */
+START_TEST(distance_of_a_face_is_to_its_foot_or_edge) {
+  static const double at[][4] = {/* x, y, z, distance */
+                                 {0.5, 0.5, 0.7, 0.7},  {0.5, 1.0, -0.2, 0.2},
+                                 {-3.0, 1.0, 4.0, 5.0}, {1.0, -0.6, 0.8, 1.0},
+                                 {5.0, 0.0, 4.0, 5.0},  {0.3, 0.4, 0.0, 0.0}};
+  for (double size = 1e-3; size < 1e4; size *= 10) {
+    const double corner[9] = {0, 0, 0, 2 * size, 0, 0, 0, 3 * size, 0};
+    for (size_t k = 0; k < sizeof at / sizeof *at; ++k) {
+      const double x[3] = {size * at[k][0], size * at[k][1], size * at[k][2]};
+      ck_assert_double_eq_tol(face_distance(3, corner, x) / size, at[k][3],
+                              1e-14);
+    }
+  }
+}
+END_TEST
+
 /* ---- units ------------------------------------------------------------- */
 
 START_TEST(factors_of_two_change_no_bit) {
@@ -750,6 +767,7 @@ UNIT_MAIN("average", bump_has_the_constants_of_the_literature,
           rows_are_symmetric_by_mass_and_keep_constants,
           rows_have_the_second_moment_of_the_kernel,
           surface_loses_mass_at_its_edges,
+          distance_of_a_face_is_to_its_foot_or_edge,
           disc_clear_of_nodes_left_out_is_whole, axisymmetric_rows,
           radius_below_the_mesh_is_local, coarse_nodes_are_counted,
           geodesic_distance_unbends_the_line, closed_line_has_no_edge,
