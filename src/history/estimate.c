@@ -498,9 +498,8 @@ static void note_touches(run *r) {
 }
 
 void warn_increment(run *r, int increment_no) {
-  if (r->report.outcome <= 0) return;
-  warn_deformation(r, increment_no);
   note_touches(r);
+  if (r->report.outcome > 0) warn_deformation(r, increment_no);
 }
 
 /* The least gap left of a contact, m; HUGE_VAL: it has no node. */

@@ -87,6 +87,29 @@ START_TEST(a_contact_that_never_touched_is_told) {
 }
 END_TEST
 
+/* Two sweeps solve nothing: the nodes that touch in an increment that does not
+ * count are none that never touched. */
+START_TEST(a_touch_of_an_increment_that_does_not_count_is_one) {
+  job j = job_begin("block");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(
+      &j, "block.inp",
+      "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+      "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n*STEP\n"
+      "*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 1, 0.01\nTOP, 2, 2, -0.01\n"
+      "*SOLVER, METHOD=SOR, MAX_ITER=2\n*PRINT, TOTALS\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 1);
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_gt(dat_at(&t, 0, "normal"), 0);
+  dat_free(&t);
+  ck_told(&j, "P4021", "no node touched", 0);
+  job_end(&j);
+}
+END_TEST
+
 /* Led down by 0.01: the gap of 0.0042 closes in the fifth increment. */
 START_TEST(the_first_touch_is_told) {
   static const char led[] =
@@ -135,6 +158,7 @@ int main(void) {
   tcase_add_test(tests, strains_above_five_percent_are_told);
   tcase_add_test(tests, elements_inside_out_are_told);
   tcase_add_test(tests, a_contact_that_never_touched_is_told);
+  tcase_add_test(tests, a_touch_of_an_increment_that_does_not_count_is_one);
   tcase_add_test(tests, the_first_touch_is_told);
   tcase_add_loop_test(tests, a_restart_at_the_end_loses_no_line, 0, 2);
   return unit_run("warnings", tests);
