@@ -61,6 +61,7 @@ enum {
   LEAST_ROUNDS = 3, /* to be worth a try                                     */
   READ = 8, /* solves whose arithmetic takes as long as reading the matrix    */
   FULL_SIZE = 1000,    /* m: up to here a link has all its iterations         */
+  SMALL_SIZE = 200,    /* m: up to here factorisations cost like products */
   LEAST_FACTORS = 80,  /* iterations with a factorisation, on large problems  */
   MOST_FACTORS = 4000, /*                                   on small ones    */
   LEAST_SWEEPS = 1000, /* iterations with a product                           */
@@ -71,8 +72,7 @@ enum {
 static const struct {
   const solver_ops *ops;
   drive how;
-  int compliance; /* 1: only where no stiffness is given, -1: only where one
-                     is, and it is definite: then there is a solution         */
+  int compliance; /* 1: only where no stiffness is given, -1: where one is   */
   int factors;    /* 1: an iteration costs a factorisation, else a product    */
   int most;       /* iterations, 0: as many as the cost allows                */
 } auto_chain[] = {{&newton_solver, PLAIN, 0, 1, 0},
@@ -87,7 +87,8 @@ static const struct {
                   {&proximal_solver, PLAIN, -1, 1, 0}};
 
 /* Iterations a link may make: such that its cost stays that of its most on a
- * problem with FULL_SIZE unknowns, but at least LEAST. */
+ * problem with FULL_SIZE unknowns, but at least LEAST. Of a body that contact
+ * alone holds the last link may not find what is not there for long. */
 static int allowance(const contact_solver *s, const contact_problem *cp,
                      int i) {
   double size = fmax(1.0, (double)cp->m / FULL_SIZE);
@@ -97,6 +98,10 @@ static int allowance(const contact_solver *s, const contact_problem *cp,
                         : MOST_SWEEPS / (size * size);
   int own = (int)fmax(most, factors ? LEAST_FACTORS : LEAST_SWEEPS);
   int asked = s->choice.max_iter, limit = auto_chain[i].most;
+  if (auto_chain[i].compliance < 0 && cp->floating) {
+    size = fmax(1.0, (double)cp->m / SMALL_SIZE);
+    own = (int)fmax(MOST_SWEEPS / (size * size * size), LEAST_FACTORS);
+  }
   if (limit > 0 && limit < own) own = limit;
   if (promising) own = cp->m / SWEEP_SHARE;
   return asked > 0 && asked < own ? asked : own;
@@ -142,7 +147,7 @@ static int sweeps_fit(const contact_problem *cp) {
 static int is_skipped(const contact_problem *cp, int i) {
   if (auto_chain[i].how == ALONG_PATH && cp->B == NULL) return 1;
   if (auto_chain[i].how == WHILE_PROMISING && !sweeps_fit(cp)) return 1;
-  if (auto_chain[i].compliance < 0) return cp->A == NULL || cp->floating;
+  if (auto_chain[i].compliance < 0) return cp->A == NULL;
   return auto_chain[i].compliance && cp->A != NULL;
 }
 

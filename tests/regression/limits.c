@@ -229,6 +229,17 @@ START_TEST(greco_under_huge_friction) {
 }
 END_TEST
 
+/* NEWTON, SOR and LEMKE all miss: PROXIMAL comes last, for a body that contact
+ * alone holds too. */
+START_TEST(auto_comes_to_proximal) {
+  job j;
+  int code =
+      job_run_with(&j, "input/greco/greco", "", 0, "-D MU=1E6 -D N=52 -D DT=1");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job_end(&j);
+}
+END_TEST
+
 /*
  * Cylinder on a plane with mu = 0.2, nu = 0.3 (Spence): the zone of stick in
  * half-widths of Hertz, on a mesh of 32 segments per half-width, is 0.125 in
@@ -382,6 +393,6 @@ UNIT_MAIN("limits", no_load_no_motion, constant_load_keeps_everything,
           rest_costs_at_most_two_iterations_with_any_method,
           all_open_is_linear_elasticity, first_touch_at_the_end_of_an_increment,
           friction_from_none_to_sticking, greco_without_friction,
-          greco_under_huge_friction, path_makes_the_zone_of_stick,
-          layers_of_a_million_to_one, slip_turns_with_the_shear,
-          local_friction_pays_for_nothing_else)
+          greco_under_huge_friction, auto_comes_to_proximal,
+          path_makes_the_zone_of_stick, layers_of_a_million_to_one,
+          slip_turns_with_the_shear, local_friction_pays_for_nothing_else)
