@@ -48,6 +48,8 @@ static const option auglag_options[] = {
 };
 /* clang-format on */
 
+static const double SOFT = 0x1p-20; /* -, of the stiffness: none         */
+
 enum { UZAWA_STEPS = 1000 /* Newton steps of all multiplier steps */ };
 
 static void auglag_release(void *work) {
@@ -76,14 +78,21 @@ static void auglag_release(void *work) {
   memory_free(w);
 }
 
+/* Of A, also where a motion of the whole body leaves nothing. */
 static void take_diagonal(const contact_problem *cp, double *diagonal) {
   size_t m = (size_t)cp->m;
   int d = cp->dim;
-  for (size_t i = 0; i < m; ++i) diagonal[i] = cp->A[i * m + i];
+  double largest = 0.0;
+  for (size_t i = 0; i < m; ++i) {
+    diagonal[i] = cp->A[i * m + i];
+    largest = fmax(largest, diagonal[i]);
+  }
   for (int i = 0; i < cp->n; ++i) {
-    double mean = 0.0;
-    for (int k = 1; k < d; ++k) mean += diagonal[i * d + k] / (d - 1);
-    for (int k = 1; k < d; ++k) diagonal[i * d + k] = mean;
+    double mean = 0.0, *own = diagonal + i * d;
+    for (int k = 1; k < d; ++k) mean += own[k] / (d - 1);
+    for (int k = 1; k < d; ++k) own[k] = mean;
+    double least = SOFT * fmax(fmax(own[0], mean), SOFT * largest);
+    for (int k = 0; k < d; ++k) own[k] = fmax(own[k], least);
   }
 }
 

@@ -352,7 +352,7 @@ void attempt_judge(const contact_solver *s, const contact_problem *cp,
 status attempt_prove(contact_solver *s, const contact_problem *cp,
                      solver_report *rep) {
   status st = OK;
-  if (rep->outcome >= 0 || rep->outcome == STOPPED_NAN) goto done;
+  if (rep->outcome >= 0 || !isfinite(rep->residual)) goto done;
   if (!s->sought) TRY(proof_find(cp, &s->held, &s->proved));
   s->sought = 1;
   if (s->proved)
@@ -455,6 +455,10 @@ static status solve_apart(contact_solver *s, const contact_problem *cp,
     attempt_judge(s, cp, u, r, rep);
     TRY(attempt_prove(s, cp, rep));
   }
+  /* Numbers that fail a method say nothing of the problem. */
+  if (isfinite(rep->residual) &&
+      (rep->outcome == STOPPED_NAN || rep->outcome == STOPPED_SINGULAR))
+    rep->outcome = STOPPED_STAGNATION;
   if (rep->outcome == CONVERGED) TRY(polish(s, cp, u, r, rep));
 done:
   return st;

@@ -12,6 +12,7 @@
 
 enum { DRIFT_SWEEPS = 20 };
 static const double RIGID = 0x1p-5; /* -, of a drift: counts as no strain  */
+static const double SOFT = 0x1p-20; /* -, of the stiffness: none        */
 static const double ROUNDING = 0x1p-46; /* -, of stiffness times way         */
 
 struct node_blocks {
@@ -53,6 +54,24 @@ static void invert_block(int d, const double *block, double lift, double *K) {
       K[i + d * j] = 0.5 * (M[i + d * j] + M[j + d * i]);
 }
 
+/* The block, or more than it where a motion of the body leaves it singular: the
+ * iteration then keeps its fixed point. */
+static void lift_block(int d, const double *block, double lift, double *K) {
+  double M[9], own = SOFT * lift;
+  memcpy(M, block, (size_t)(d * d) * sizeof *M);
+  memcpy(K, block, (size_t)(d * d) * sizeof *K);
+  for (int k = 0; k < d; ++k) own = fmax(own, block[k + d * k]);
+  for (int k = 0; k < d; ++k) {
+    if (!(M[k + d * k] > 0x1p-40 * own)) {
+      M[k + d * k] += SOFT * own;
+      K[k + d * k] += SOFT * own;
+    }
+    for (int i = k + 1; i < d; ++i)
+      for (int j = k + 1; j < d; ++j)
+        M[i + d * j] -= M[i + d * k] * M[k + d * j] / M[k + d * k];
+  }
+}
+
 status node_blocks_new(const contact_problem *cp, node_blocks **out) {
   status st = OK;
   node_blocks *b = NULL;
@@ -73,7 +92,7 @@ status node_blocks_new(const contact_problem *cp, node_blocks **out) {
         block[i + d * j] =
             M[first + (size_t)i + (first + (size_t)j) * (size_t)cp->m];
     if (cp->A != NULL)
-      memcpy(K, block, (size_t)(d * d) * sizeof *K);
+      lift_block(d, block, lift, K);
     else
       invert_block(d, block, lift, K);
   }

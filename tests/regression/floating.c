@@ -204,26 +204,32 @@ END_TEST
 /* The resultant of the load on the slanted side of a triangle meets the floor
  * at one corner: it alone bears, whatever the body turns about it. */
 START_TEST(resultant_through_the_only_node_that_touches) {
-  job j = job_begin("corner");
-  job_write(&j, "corner.msh",
-            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n"
-            "1 1 \"BOTTOM\"\n1 2 \"TOP\"\n2 3 \"BODY\"\n$EndPhysicalNames\n"
-            "$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n3\n"
-            "1 1 2 1 1 1 2\n2 1 2 2 2 2 3\n3 2 2 3 3 1 2 3\n$EndElements\n");
-  job_write(&j, "corner.inp",
-            "*MESH, FILE=corner.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., .3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n2.\n"
-            "*STEP\n*QUASISTATIC\n.1, 1.\n*DSLOAD\nTOP, P, 1.\n"
-            "*PRINT, TOTALS\n*END STEP\n");
-  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat t = job_table(&j, "TOTALS", -1);
-  ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), 1.0, 1e-8);
-  ck_assert_double_eq_tol(dat_at(&t, 0, "force_y"), 1.0, 1e-8);
-  dat_free(&t);
-  job_end(&j);
+  static const char *const methods[] = {"AUTO",   "NEWTON",   "LEMKE",
+                                        "SOR",    "PCG",      "AUGLAG",
+                                        "AITKEN", "LAGRANGE", "PROXIMAL"};
+  for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k) {
+    job j = job_begin("corner");
+    job_write(&j, "corner.msh",
+              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n"
+              "1 1 \"BOTTOM\"\n1 2 \"TOP\"\n2 3 \"BODY\"\n$EndPhysicalNames\n"
+              "$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n3\n"
+              "1 1 2 1 1 1 2\n2 1 2 2 2 2 3\n3 2 2 3 3 1 2 3\n$EndElements\n");
+    job_write(&j, "corner.inp",
+              "*MESH, FILE=corner.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., .3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n2.\n"
+              "*STEP\n*QUASISTATIC\n.1, 1.\n*DSLOAD\nTOP, P, 1.\n"
+              "*SOLVER, METHOD=%s\n*PRINT, TOTALS\n*END STEP\n",
+              methods[k]);
+    ck_assert_msg(job_run(&j, "") == 0, "%s: %s", methods[k], j.errors);
+    dat t = job_table(&j, "TOTALS", -1);
+    ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), 1.0, 1e-8);
+    ck_assert_double_eq_tol(dat_at(&t, 0, "force_y"), 1.0, 1e-8);
+    dat_free(&t);
+    job_end(&j);
+  }
 }
 END_TEST
 
