@@ -75,6 +75,19 @@ static double stress_error(const job *j) {
   return 64 * worst;
 }
 
+/* Root mean square of the errors of the stresses, over the same. */
+static double norm_error(const job *j) {
+  dat e = job_table(j, "ELEMENTS", -1);
+  double sum = 0.0;
+  for (int i = 0; i < e.n_row; ++i)
+    sum += pow(dat_at(&e, i, "stress_yy") + 1.0 / 64, 2) +
+           pow(dat_at(&e, i, "stress_xx"), 2) +
+           2.0 * pow(dat_at(&e, i, "stress_xy"), 2);
+  double mean = sum / e.n_row;
+  dat_free(&e);
+  return 64 * sqrt(mean);
+}
+
 static const char layers[] =
     "*MATERIAL, NAME=S\n*ELASTIC\n1., 0.\n"
     "*MATERIAL, NAME=H\n*ELASTIC\n%s, 0.\n"
@@ -237,9 +250,15 @@ START_TEST(no_digit_is_left_of_needles) {
 }
 END_TEST
 
+/* Without lateral strain the energy norm is that of the stresses. */
 START_TEST(loss_of_a_body_led_far_is_told) {
   job j;
   int code = run_led(&j, ldexp(1.0, 22 + 3 * _i));
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  double error = norm_error(&j);
+  double loss = 0.01 * job_told(&j, "rounding_energy_percent");
+  ck_assert_msg(loss >= 0.1 * error && loss <= 10.0 * error + NOISE,
+                "told %g, error %g", loss, error);
   ck_told(&j, code);
 }
 END_TEST

@@ -145,6 +145,15 @@ END_TEST
 
 #define STEP(loads) "*STEP\n*QUASISTATIC\n0.5, 1.\n" loads PRINT
 
+/* A figure of the initial state in the listing. */
+static double start_figure(const job *j, const char *name) {
+  char *lst = job_file(j, "lst"), *at = strstr(lst, name);
+  ck_assert_ptr_nonnull(at);
+  double value = strtod(at + strlen(name), NULL);
+  free(lst);
+  return value;
+}
+
 /* Each condition broken alone; forces of uniform stress on nodes 1/4 apart. */
 START_TEST(incompatible_start_is_refused_with_its_defect) {
   static const struct {
@@ -177,6 +186,12 @@ START_TEST(incompatible_start_is_refused_with_its_defect) {
     ck_assert_ptr_nonnull(strstr(j.errors, "P4014"));
     ck_assert_msg(strstr(j.errors, cases[k].kind) != NULL, "%s", j.errors);
     ck_assert(listing_has(&j, "\n  REFUSED\n"));
+    double force = start_figure(&j, "largest force");
+    double defect = start_figure(&j, "largest defect");
+    ck_assert_double_ge(force, defect);
+    ck_assert_double_gt(defect, 0);
+    ck_assert_double_eq_tol(start_figure(&j, "defect, relative"),
+                            defect / force, 5e-3);
     if (cases[k].worst > 0)
       ck_assert_double_eq_tol(strtod(strstr(j.errors, "defect ") + 7, NULL),
                               cases[k].worst, 6e-3);

@@ -204,6 +204,22 @@ START_TEST(statuses_of_a_row_of_nodes) {
 }
 END_TEST
 
+/* At its limit a node sticks as long as it has not moved. */
+START_TEST(node_at_its_limit_sticks_until_it_moves) {
+  static const double slip[] = {0.0, 1e-12, 1e-6};
+  contact_case c = one_node(4.0, 2.0, 0.5);
+  for (int k = 0; k < 3; ++k) {
+    double u[2] = {0.0, slip[k]}, r[2] = {-8.0, -4.0};
+    contact_status s;
+    c.f[0] = 8.0;
+    c.f[1] = 4.0 + 2.0 * slip[k];
+    contact_classify(&c.cp, u, r, &s);
+    ck_assert_int_eq(s, k < 2 ? CONTACT_STICK : CONTACT_SLIP);
+  }
+  case_free(&c);
+}
+END_TEST
+
 START_TEST(second_obstacle_bounds_the_tangent) {
   contact_case c = one_node(4.0, 2.0, 0.0);
   double side[1] = {0.5};
@@ -289,5 +305,6 @@ UNIT_MAIN("contact", residual_is_zero_for_solved_node,
           closed_gap_counts_where_it_is_nearer, nan_anywhere_gives_nan,
           factors_of_two_leave_every_bit, disc_is_exact_at_any_angle,
           compliance_form_measures_the_same_state, statuses_of_a_row_of_nodes,
+          node_at_its_limit_sticks_until_it_moves,
           second_obstacle_bounds_the_tangent, held_tangent_takes_no_friction,
           what_only_carries_is_not_in_the_scale, bodies_are_measured_apart)
