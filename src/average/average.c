@@ -26,8 +26,8 @@ typedef struct builder {
   double *mass;  /* [n_node] W_i, -                                    */
   sparse_rows raw, by_column; /* g_ij and its transpose, -                    */
   unsigned char *alone; /* [n_node] no other node within the radius           */
-  unsigned char *tight; /* [n_node] the mean of the pairs exceeds the mass    */
-  int *found;           /* [faces or rim]                                     */
+  double *part; /* [n_node] of its pairs that the mass of a node has room for */
+  int *found;   /* [faces or rim]                                     */
   int *touched, n_touched; /* [n_node] columns of the row at hand             */
   double *row;             /* [n_node] its values                             */
   int neighbours;          /* other active nodes within the radius            */
@@ -43,7 +43,7 @@ static void builder_free(builder *b) {
   sparse_free(&b->raw);
   sparse_free(&b->by_column);
   memory_free(b->alone);
-  memory_free(b->tight);
+  memory_free(b->part);
   memory_free(b->found);
   memory_free(b->touched);
   memory_free(b->row);
@@ -62,7 +62,7 @@ static status builder_new(builder *b) {
   NEW(b->raw.start, n + 1);
   b->raw.n = n;
   NEW(b->alone, n);
-  NEW(b->tight, n);
+  NEW(b->part, n);
   NEW(b->found, b->at.n_face + b->at.n_rim);
   NEW(b->touched, n);
   NEW(b->row, n);
@@ -292,11 +292,10 @@ done:
 
 /* ---- the symmetric matrix ---------------------------------------------- */
 
-/* l_i G_ij of a pair. */
+/* l_i G_ij of a pair, so that no node gives away more than its mass. */
 static double pair_value(const builder *b, int i, int j, double ij, double ji) {
   double one = b->share[i] * ij, other = b->share[j] * ji;
-  if (b->tight[i] || b->tight[j]) return fmin(one, other);
-  return 0.5 * (one + other);
+  return 0.5 * (one + other) * fmin(b->part[i], b->part[j]);
 }
 
 /* Row i of G into col, val; returns the number of its entries. *left is what
@@ -325,14 +324,18 @@ static int merge_row(const builder *b, int i, int *col, double *val,
 static status symmetrise(builder *b, sparse_rows *out) {
   status st = OK;
   const average_patch *p = b->p;
-  double left;
+  double left, *part = NULL;
+  NEW(part, p->n_node);
   NEW(out->start, p->n_node + 1);
   out->n = p->n_node;
+  for (int i = 0; i < p->n_node; ++i) b->part[i] = 1.0;
   for (int i = 0; i < p->n_node; ++i) {
     int n = p->active[i] ? merge_row(b, i, b->touched, b->row, &left) : 0;
     out->start[i + 1] = out->start[i] + n;
-    if (n > 0 && left < 0.0) b->tight[i] = 1;
+    double all = b->share[i] * b->mass[i];
+    part[i] = n > 0 && left < 0.0 ? all / (all - left) : 1.0;
   }
+  memcpy(b->part, part, (size_t)p->n_node * sizeof *part);
   NEW(out->col, out->start[p->n_node]);
   NEW(out->val, out->start[p->n_node]);
   for (int i = 0; i < p->n_node; ++i) {
@@ -344,6 +347,7 @@ static status symmetrise(builder *b, sparse_rows *out) {
     for (int k = first; k < first + n; ++k) out->val[k] /= by;
   }
 done:
+  memory_free(part);
   return st;
 }
 

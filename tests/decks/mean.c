@@ -280,23 +280,21 @@ static void find_rows(averager *a, unsigned char *open) {
   }
 }
 
-static double pair(const averager *a, const unsigned char *tight, int i,
-                   int j) {
+static double pair(const averager *a, const double *part, int i, int j) {
   double one = a->l[i] * a->g[i * a->n + j],
          other = a->l[j] * a->g[j * a->n + i];
-  if (tight[i] || tight[j]) return fmin(one, other);
-  return 0.5 * (one + other);
+  return 0.5 * (one + other) * fmin(part[i], part[j]);
 }
 
 /* R(p) of node i; *left: what its own pressure gets, times l_i. */
-static double row_mean(const averager *a, const unsigned char *tight,
+static double row_mean(const averager *a, const double *part,
                        const unsigned char *alone, int i, const double *p,
                        double *left) {
   double sum = 0;
   *left = a->l[i] * (alone[i] ? 1 : a->W[i]);
   for (int j = 0; j < a->n; ++j) {
     if (j == i || alone[i] || alone[j]) continue;
-    double v = pair(a, tight, i, j);
+    double v = pair(a, part, i, j);
     *left -= v;
     sum += v * p[j];
   }
@@ -325,20 +323,22 @@ static void find_shares(averager *a) {
   }
 }
 
-/* Pairs take the lesser of both where the mean would leave a node less than
- * nothing. */
+/* Pairs are less where they would leave a node less than nothing. */
 static void find_means(averager *a, const double *p, double *mean) {
   size_t n = (size_t)a->n;
-  unsigned char *tight = need(n, 1), *alone = need(n, 1);
-  double left;
+  unsigned char *alone = need(n, 1);
+  double left, *full = need(n, sizeof *full), *part = need(n, sizeof *part);
+  for (int i = 0; i < a->n; ++i) full[i] = 1;
   for (int i = 0; i < a->n; ++i) alone[i] = (unsigned char)is_alone(a, i);
   for (int i = 0; i < a->n; ++i) {
-    row_mean(a, tight, alone, i, p, &left);
-    tight[i] |= 2 * (left < 0);
+    double all = a->l[i] * (alone[i] ? 1 : a->W[i]);
+    row_mean(a, full, alone, i, p, &left);
+    part[i] = left < 0 ? all / (all - left) : 1;
   }
   for (int i = 0; i < a->n; ++i)
-    mean[i] = row_mean(a, tight, alone, i, p, &left);
-  free(tight);
+    mean[i] = row_mean(a, part, alone, i, p, &left);
+  free(full);
+  free(part);
   free(alone);
 }
 

@@ -738,6 +738,27 @@ START_TEST(search_finds_what_is_near) {
 }
 END_TEST
 
+/* No entry jumps where the mass of a node no longer holds its pairs. */
+START_TEST(entries_are_continuous_in_the_radius) {
+  enum { STEPS = 1000 };
+  owned o = square(3, 0.4);
+  const int n = o.p.n_node;
+  sparse_rows before = build(&o, KERNEL_BUMP, 0.4, 0, 0, NULL);
+  double most = 0;
+  for (int k = 1; k <= STEPS; ++k) {
+    sparse_rows G = build(&o, KERNEL_BUMP, 0.4 + 0.5 * k / STEPS, 0, 0, NULL);
+    for (int i = 0; i < n * n; ++i)
+      most = fmax(most,
+                  fabs(entry(&G, i / n, i % n) - entry(&before, i / n, i % n)));
+    sparse_free(&before);
+    before = G;
+  }
+  sparse_free(&before);
+  owned_free(&o);
+  ck_assert_double_le(most, 2e-3);
+}
+END_TEST
+
 START_TEST(refused_memory_is_given_back) {
   owned o = line(20, 0.0, 1.0, 0.0);
   const average_rule rule = {
@@ -774,4 +795,4 @@ UNIT_MAIN("average", bump_has_the_constants_of_the_literature,
           mirrors_stand_for_the_other_half,
           quarter_of_a_square_has_no_edge_at_its_mirrors,
           factors_of_two_change_no_bit, search_finds_what_is_near,
-          refused_memory_is_given_back)
+          entries_are_continuous_in_the_radius, refused_memory_is_given_back)
