@@ -236,8 +236,9 @@ static int cure(run *s) {
 
 /* A body on its way to its obstacles is not led by differences. */
 static void steer(run *s, int k) {
-  if (k % PLAIN == 0 && relaxation_fly(&s->sweep, s->w->before)) {
-    s->since = s->circling = 0;
+  int flies = k % PLAIN == 0 ? relaxation_fly(&s->sweep, s->w->before) : 0;
+  if (flies > 1) s->since = s->circling = 0;
+  if (flies) {
     s->plain = s->depth > 1 ? k + REFRESH : k;
     forget(s);
   } else if (s->depth > 0 && k >= s->plain) {

@@ -73,11 +73,11 @@ void relaxation_start(const relaxation *s);
 /* Carry anew r = A u - f, or u = W r + q. */
 void relaxation_refresh(const relaxation *s);
 void relaxation_sweep(relaxation *s, int backward);
-/* After a sweep from from[m] that turned no node: a body that contact alone
+/* After a sweep from from[m] that turned no node: each body that contact alone
  * holds and that the load carries to its obstacles, or an obstacle to where it
- * sticks, by a small step a sweep goes there at once, once what strains it in
- * the step is rounding or makes forces no larger than the load. 1: it did,
- * or waits for that; r is that of u. */
+ * sticks, by a small step a sweep goes there at once, as soon as what strains
+ * it in the step is rounding or makes forces no larger than the load. 2: one
+ * did, and r is that of u; 1: one waits for that. */
 int relaxation_fly(relaxation *s, const double *from);
 /* After the last sweep: the best iterate into u and r, its residual and the
  * outcome, STOPPED_RAY where the sweeps gave up on a body that contact alone

@@ -18,7 +18,7 @@ static const double ROUNDING = 0x1p-46; /* -, of stiffness times way         */
 struct node_blocks {
   double *K;          /* [dim*dim*n] stiffness of each node, N/m              */
   local_state *state; /* [n] state found at the last visit                    */
-  double *step;       /* [m] work                                             */
+  double *step, *strained; /* [m] of a sweep, m; A times it, N                */
 };
 
 void node_blocks_free(node_blocks *b) {
@@ -26,6 +26,7 @@ void node_blocks_free(node_blocks *b) {
   memory_free(b->K);
   memory_free(b->state);
   memory_free(b->step);
+  memory_free(b->strained);
   memory_free(b);
 }
 
@@ -81,6 +82,7 @@ status node_blocks_new(const contact_problem *cp, node_blocks **out) {
   NEW(b->K, cp->n * d * d);
   NEW(b->state, cp->n);
   NEW(b->step, cp->m);
+  NEW(b->strained, cp->m);
   double lift = 0.0;
   for (size_t i = 0; i < (size_t)cp->m; ++i)
     lift = fmax(lift, M[i * (size_t)cp->m + i]);
@@ -268,53 +270,91 @@ void relaxation_start(const relaxation *s) {
   }
 }
 
-/* How often step d goes into the way to the nearest bound or to the nearest
- * position of stick that it leads to; HUGE_VAL: it leads to none. */
-static double steps_to_touch(const relaxation *s, const double *d) {
+/* A body in a sweep, as if nothing but its load moved it. */
+typedef struct flight {
+  double work;        /* of the load on the step, N m                         */
+  double most;        /* largest step of an unknown, m                        */
+  double stiff, left; /* forces of the steps alone, of the strain of all, N   */
+  double load, least; /* largest load; what rounding makes of "left", N       */
+  double steps;       /* that lead to a bound, or to where a node sticks      */
+} flight;
+
+static int is_of(const contact_problem *cp, int node_id, int body_id) {
+  return cp->bodies == NULL || cp->bodies->of[node_id] == body_id;
+}
+
+static void add_unknown(const relaxation *s, int dof, const double *d,
+                        flight *f) {
   const contact_problem *cp = s->cp;
-  double most = 0.0, steps = HUGE_VAL;
-  for (int i = 0; i < cp->m; ++i) most = fmax(most, fabs(d[i]));
-  for (int i = 0; i < cp->m; ++i) {
+  double k = cp->A[(size_t)dof * (size_t)(cp->m + 1)];
+  f->work += cp->f[dof] * d[dof];
+  f->most = fmax(f->most, fabs(d[dof]));
+  f->stiff = fmax(f->stiff, k * fabs(d[dof]));
+  f->left = fmax(f->left, fabs(s->blocks->strained[dof]));
+  f->load = fmax(f->load, fabs(cp->f[dof]));
+  f->least = fmax(f->least, ROUNDING * k * fabs(s->u[dof]));
+}
+
+/* How often the step of a node goes into its way; HUGE_VAL: it leads nowhere.
+ */
+static double steps_of(const relaxation *s, int node_id, const double *d,
+                       double most) {
+  const contact_problem *cp = s->cp;
+  int first = node_id * cp->dim, last = first + cp->dim;
+  double steps = HUGE_VAL, way = 0.0, size = 0.0;
+  for (int i = first; i < last; ++i) {
     double bound = contact_bound(cp, i);
     if (bound < HUGE_VAL && d[i] > RIGID * most)
       steps = fmin(steps, (bound - s->u[i]) / d[i]);
   }
-  for (int i = 0; i < cp->n && cp->ut0 != NULL; ++i) {
-    double way = 0.0, size = 0.0;
-    if (!(contact_node_limit(cp, s->r, i) > 0.0)) continue;
-    for (int k = i * cp->dim + 1; k < (i + 1) * cp->dim; ++k) {
-      way += d[k] * (contact_stick(cp, k) - s->u[k]);
-      size += d[k] * d[k];
-    }
-    if (way > 0.0 && sqrt(size) > RIGID * most) steps = fmin(steps, way / size);
+  if (cp->ut0 == NULL || !(contact_node_limit(cp, s->r, node_id) > 0.0))
+    return steps;
+  for (int i = first + 1; i < last; ++i) {
+    way += d[i] * (contact_stick(cp, i) - s->u[i]);
+    size += d[i] * d[i];
   }
+  if (way > 0.0 && sqrt(size) > RIGID * most) steps = fmin(steps, way / size);
   return steps;
+}
+
+static flight flight_of(const relaxation *s, int body_id, const double *d) {
+  const contact_problem *cp = s->cp;
+  flight f = {.steps = HUGE_VAL};
+  for (int i = 0; i < cp->n; ++i)
+    for (int k = 0; k < cp->dim && is_of(cp, i, body_id); ++k)
+      add_unknown(s, i * cp->dim + k, d, &f);
+  for (int i = 0; i < cp->n; ++i)
+    if (is_of(cp, i, body_id))
+      f.steps = fmin(f.steps, steps_of(s, i, d, f.most));
+  return f;
+}
+
+/* 0: it is not on its way, 1: it waits, 2: it went. */
+static int fly_body(const relaxation *s, int body_id, const double *d) {
+  const contact_problem *cp = s->cp;
+  flight f = flight_of(s, body_id, d);
+  if (!(f.work > 0.0 && f.left < RIGID * f.stiff && f.steps < HUGE_VAL))
+    return 0;
+  if (f.steps * f.left > f.load && f.left > f.least) return 1;
+  if (!(f.steps > 1.0)) return 0;
+  for (int i = 0; i < cp->m; ++i)
+    if (is_of(cp, i / cp->dim, body_id)) s->u[i] += f.steps * d[i];
+  return 2;
 }
 
 int relaxation_fly(relaxation *s, const double *from) {
   const contact_problem *cp = s->cp;
-  double work = 0.0, stiff = 0.0, left = 0.0, load = 0.0, least = 0.0;
+  int bodies = cp->bodies == NULL ? 1 : cp->bodies->n, most = 0;
   double *d = s->blocks->step;
-  size_t m = (size_t)cp->m;
   if (!cp->floating || cp->A == NULL || s->turned > 0) return 0;
-  for (size_t i = 0; i < m; ++i) {
-    d[i] = s->u[i] - from[i];
-    work += cp->f[i] * d[i];
-    load = fmax(load, fabs(cp->f[i]));
-    stiff = fmax(stiff, cp->A[i * m + i] * fabs(d[i]));
-    least = fmax(least, ROUNDING * cp->A[i * m + i] * fabs(s->u[i]));
+  for (int i = 0; i < cp->m; ++i) d[i] = s->u[i] - from[i];
+  contact_product(cp->m, cp->A, d, s->blocks->strained);
+  for (int b = 0; b < bodies; ++b) {
+    int now = fly_body(s, b, d);
+    most = now > most ? now : most;
   }
-  contact_product(cp->m, cp->A, d, s->r);
-  for (size_t i = 0; i < m; ++i) left = fmax(left, fabs(s->r[i]));
-  relaxation_refresh(s);
-  double steps = steps_to_touch(s, d);
-  if (!(work > 0.0 && left < RIGID * stiff && steps < HUGE_VAL)) return 0;
-  if (steps * left > load && left > least) return 1;
-  if (steps * left > load) steps = load / left;
-  if (!(steps > 1.0)) return 0;
-  cblas_daxpy(cp->m, steps, d, 1, s->u, 1);
-  relaxation_refresh(s);
-  return 1;
+  if (most == 2) relaxation_refresh(s);
+  return most;
 }
 
 /* 1: a body that contact alone holds drifts off: what a few more sweeps make is

@@ -169,8 +169,9 @@ static int is_checked(int k) {
 
 /* A body on its way to its obstacles keeps the factor. */
 static void steer(relaxation *s, course *c, int k) {
-  if (relaxation_fly(s, c->before)) {
-    c->since = c->circling = 0;
+  int flies = relaxation_fly(s, c->before);
+  if (flies > 1) c->since = c->circling = 0;
+  if (flies) {
     c->last_change = 0.0;
   } else if (k % CHECK == 0) {
     choose_omega(s, c);

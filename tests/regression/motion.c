@@ -3,6 +3,7 @@
  * form, a node on a turntable, whole scenes turned in space, and the round cone
  * of friction for every direction of slip.
  */
+#include "scenes/mesh.h"
 #include "support/grid.h"
 #include "support/job.h"
 #include "support/turned_mesh.h"
@@ -360,8 +361,74 @@ START_TEST(forces_lost_to_rounding_are_never_ok) {
 }
 END_TEST
 
+static job begin_two(void) {
+  static const mesh_change none;
+  int *number = NULL;
+  char path[100];
+  job j = job_begin("two");
+  snprintf(path, sizeof path, "%s/two.msh", j.dir);
+  FILE *f = fopen(path, "w");
+  ck_assert_ptr_nonnull(f);
+  ck_assert(scene_mesh_write(f, "rect 3 3 1 1 + rect 3 3 1 1 at 2 0", &none,
+                             &number));
+  fclose(f);
+  free(number);
+  return j;
+}
+
+/* Two blocks of moduli 1 and 1e4 on one floor, or one that relaxes: what is
+ * counted is right, T = 0.3 N of each, and what is far from rounding counts. */
+START_TEST(bodies_and_laws_count_by_their_own_forces) {
+  static const struct {
+    const char *step, *floor;
+    double top, p;
+    int solvable; /* 1: exit 0                                            */
+  } run[] = {
+      {"*QUASISTATIC\n1., 1.\n", "MOVE, 100., 0.\n", 0, 2e-8, 1},
+      {"*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n", "MOVE, 100., 0.\n", 0, 2e-8, 1},
+      {"*QUASISTATIC\n1., 1.\n", "", 100, 1e-8, 1},
+      {"*VISCO, INTEGRATOR=RK4\n1., 1.\n", "", 100, 1e-8, 1},
+      {"*QUASISTATIC\n1., 1.\n", "", 1e3, 1e-11, 0},
+      {"*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n", "", 1e3, 3e-12, 0},
+      {"*VISCO, INTEGRATOR=RK4\n1., 1.\n", "", 1e3, 1e-12, 0}};
+  for (size_t k = 0; k < sizeof run / sizeof *run; ++k) {
+    int visco = run[k].step[1] == 'V';
+    job j = begin_two();
+    job_write(&j, "two.inp",
+              "*MESH, FILE=two.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n%s"
+              "*MATERIAL, NAME=H\n*ELASTIC\n1.E4, 0.3\n%s"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*SOLID SECTION, ELSET=BODY2, MATERIAL=H\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*CONTACT, NAME=C2, GROUP=BOTTOM2, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+              "*FRICTION, CONTACT=C2, LAW=COULOMB\n0.3\n"
+              "*STEP\n%s*BOUNDARY\nTOP, 1, 1, %g\nTOP2, 1, 1, %g\n"
+              "*DSLOAD\nTOP, P, %g\nTOP2, P, %g\n"
+              "*PRINT, TOTALS\n*END STEP\n",
+              visco ? "*INELASTIC, LAW=MAXWELL\n2.\n" : "",
+              visco ? "*INELASTIC, LAW=MAXWELL\n2.\n" : "", run[k].floor,
+              run[k].step, run[k].top, run[k].top, run[k].p, 1e3 * run[k].p);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0 || !run[k].solvable, "run %zu: exit %d: %s", k,
+                  code, j.errors);
+    for (int b = 0; b < 2 && code == 0; ++b) {
+      dat t = job_table(&j, "TOTALS", -1);
+      double T = 0.3 * run[k].p * (b == 0 ? 1 : 1e3);
+      ck_assert_msg(fabs(fabs(dat_at(&t, b, "force_x")) - T) <= 0.05 * T,
+                    "run %zu, body %d: %g for %g", k, b,
+                    dat_at(&t, b, "force_x"), T);
+      dat_free(&t);
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("motion", loop_of_a_force, loop_of_an_obstacle, node_on_a_turntable,
           scene_turned_as_a_whole_gives_the_answer_turned,
           cone_is_round_for_every_direction_of_slip,
           long_motions_leave_the_forces_right,
-          forces_lost_to_rounding_are_never_ok)
+          forces_lost_to_rounding_are_never_ok,
+          bodies_and_laws_count_by_their_own_forces)
