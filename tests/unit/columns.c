@@ -116,6 +116,9 @@ START_TEST(contact_signs_and_directions) {
   ck_assert(value_of(made, PER_CONTACT_NODE, "f_y", 4) == 2);
   ck_assert(value_of(made, PER_CONTACT_NODE, "f_z", 4) == -0.25);
   ck_assert(value_of(made, PER_CONTACT, "normal", 0) == 2.5);
+  made->m.n_contact = 2; /* the column is there for several               */
+  ck_assert(value_of(made, PER_CONTACT_NODE, "contact_no", 4) == 1);
+  made->m.n_contact = 1;
   made_up_free(made);
 }
 END_TEST

@@ -285,6 +285,16 @@ START_TEST(xdmf_names_every_record_of_the_file_beside_it) {
     snprintf(name, sizeof name, ">block.h5:/contact/pressure/%05d<", i);
     ck_assert_ptr_nonnull(strstr(text, name));
   }
+  snprintf(name, sizeof name, "Dimensions=\"%d 3\">block.h5:/fields/u/",
+           made->msh->n_node);
+  ck_assert_ptr_nonnull(strstr(text, name));
+  snprintf(name, sizeof name, "Dimensions=\"%d\">block.h5:/fields/stress_yz/",
+           made->msh->n_elem);
+  ck_assert_ptr_nonnull(strstr(text, name));
+  ck_assert_ptr_nonnull(
+      strstr(text, "Name=\"u\" AttributeType=\"Vector\" Center=\"Node\""));
+  ck_assert_ptr_nonnull(strstr(
+      text, "Name=\"stress_yz\" AttributeType=\"Scalar\" Center=\"Cell\""));
   ck_assert_ptr_null(strstr(text, dir));
   ck_assert_ptr_null(strstr(text, "/00006"));
   ck_assert_ptr_nonnull(strstr(text, "</Xdmf>"));
