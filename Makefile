@@ -46,7 +46,7 @@ LDLIBS   += -lumfpack -lcholmod -lcamd -lsuitesparseconfig -llapacke -lopenblas 
             $(shell pkg-config --libs hdf5-serial 2>/dev/null) -ldl -lm
 checklib := $(shell pkg-config --libs check 2>/dev/null)
 
-sources  := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
+sources  := $(filter-out src/main.c,$(wildcard src/*/*.c src/*/*/*.c))
 objects  := $(sources:%.c=$(out)/%.o)
 library  := $(out)/libprotis.a
 program  := $(out)/protis
@@ -288,7 +288,8 @@ bench-peers:
 	$(Q)for p in $(peers); do $$p || exit 1; done
 
 format:
-	$(Q)clang-format-14 --style=file:tools/clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] tests/*/*.[ch])
+	$(Q)clang-format-14 --style=file:tools/clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] \
+	  src/*/*/*.[ch] tests/*/*.[ch])
 
 # Hostile input for every reader; needs clang-14 and libclang-rt-14-dev, no part
 # of the tests. Seeds stand in tests/fuzz/seeds, those of the deck are the

@@ -2,17 +2,17 @@
  * protis: reads the command line, runs the stages in order, prints what went
  * wrong and chooses the exit code.
  */
-#include "auto.h"
+#include "program/auto.h"
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "fem/fem.h"
-#include "forecast.h"
-#include "inform.h"
-#include "job.h"
-#include "lock.h"
-#include "restart.h"
-#include "target.h"
+#include "program/forecast.h"
+#include "program/inform.h"
+#include "program/job.h"
+#include "program/lock.h"
+#include "program/restart.h"
+#include "program/target.h"
 
 #include <fcntl.h>
 #include <stdio.h>

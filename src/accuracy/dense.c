@@ -6,7 +6,7 @@
 #include "accuracy/accuracy.h"
 
 #include "base/memory.h"
-#include "newton/dense.h"
+#include "solver/newton/dense.h"
 
 #include <cblas.h>
 #include <lapacke.h>

@@ -3,7 +3,7 @@
 
 #include "accuracy/accuracy.h"
 #include "base/memory.h"
-#include "pivoting/lemke.h"
+#include "solver/pivoting/lemke.h"
 #include "solver/solver.h"
 
 #include <math.h>

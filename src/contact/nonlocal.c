@@ -4,10 +4,11 @@
  *
  * Nodal forces and pressures go together by the tributary areas, as in the
  * local law: p_j = -r_n,j / a_j and g_i = mu_i a_i R(p)(x_i), so that
- * B_ij = mu_i a_i G_ij / a_j with G of average/average.h; G = 1 is local
- * friction. p is zero outside of the contact: at its edges R(p) is less than p.
+ * B_ij = mu_i a_i G_ij / a_j with G of contact/average/average.h; G = 1 is
+ * local friction. p is zero outside of the contact: at its edges R(p) is less
+ * than p.
  */
-#include "average/average.h"
+#include "contact/average/average.h"
 #include "base/memory.h"
 #include "contact/friction.h"
 

@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "deck/reader.h"
-#include "system/input.h"
+#include "base/system/input.h"
 
 #include <errno.h>
 #include <string.h>

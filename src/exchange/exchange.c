@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "exchange/parts.h"
-#include "system/input.h"
+#include "base/system/input.h"
 
 #include <errno.h>
 #include <string.h>

@@ -7,7 +7,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "exchange/parts.h"
-#include "system/input.h"
+#include "base/system/input.h"
 
 #include <errno.h>
 #include <math.h>

@@ -4,7 +4,7 @@
 #ifndef PROTIS_EXCHANGE_PARTS_H
 #define PROTIS_EXCHANGE_PARTS_H
 
-#include "archive/dataset.h"
+#include "base/archive/dataset.h"
 #include "exchange/exchange.h"
 
 /* Unknowns of a dense matrix that can be asked for. */

@@ -6,7 +6,7 @@
 #include "mesh/build.h"
 
 #include "base/memory.h"
-#include "system/input.h"
+#include "base/system/input.h"
 
 #include <errno.h>
 #include <stdarg.h>

@@ -10,8 +10,8 @@
 #include "mesh/raw.h"
 
 #include "base/memory.h"
-#include "msh/geo.h"
-#include "system/limits.h"
+#include "mesh/msh/geo.h"
+#include "base/system/limits.h"
 
 #include <dlfcn.h>
 #include <errno.h>

@@ -9,7 +9,7 @@
 #define PROTIS_MESH_RAW_H
 
 #include "mesh/mesh.h"
-#include "msh/raw_mesh.h"
+#include "mesh/msh/raw_mesh.h"
 
 #include <stdint.h>
 #include <sys/types.h>

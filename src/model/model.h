@@ -9,10 +9,10 @@
 #include "contact/surface.h"
 #include "deck/deck.h"
 #include "deck/quantity.h"
-#include "law/law.h"
+#include "material/law/law.h"
 #include "material/material.h"
 #include "mesh/mesh.h"
-#include "scheme/scheme.h"
+#include "material/scheme/scheme.h"
 #include "solver/solver.h"
 
 typedef struct amplitude {

@@ -1,12 +1,12 @@
 /*
  * The files of a run. Every writer is a sink of history_run; the columns of
- * all tables and fields stand once, in src/columns.
+ * all tables and fields stand once, in src/output/columns.
  */
 #ifndef PROTIS_OUTPUT_OUTPUT_H
 #define PROTIS_OUTPUT_OUTPUT_H
 
-#include "columns/columns.h"
-#include "listing/job.h"
+#include "output/columns/columns.h"
+#include "output/listing/job.h"
 
 typedef struct output output;
 

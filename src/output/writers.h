@@ -5,9 +5,9 @@
 #define PROTIS_OUTPUT_WRITERS_H
 
 #include "base/text.h"
-#include "hdf5/hdf5.h"
-#include "keyword/keyword.h"
-#include "listing/listing.h"
+#include "output/hdf5/hdf5.h"
+#include "model/keyword/keyword.h"
+#include "output/listing/listing.h"
 #include "output/output.h"
 
 #include <stdio.h>

@@ -10,7 +10,7 @@
 #include "base/memory.h"
 #include "base/sparse.h"
 #include "base/timer.h"
-#include "form/form.h"
+#include "contact/formulation/form.h"
 
 #include <math.h>
 #include <string.h>

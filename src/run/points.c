@@ -1,10 +1,10 @@
 /*
- * The elements whose law flows, as points of src/scheme: their laws, initial
- * state, and what an equilibrium of the body means for them.
+ * The elements whose law flows, as points of src/material/scheme: their laws,
+ * initial state, and what an equilibrium of the body means for them.
  */
 #include "base/memory.h"
 #include "base/timer.h"
-#include "check/check.h"
+#include "model/check/check.h"
 #include "material/voigt.h"
 #include "run/visco.h"
 

@@ -1,6 +1,6 @@
 /*
  * The running state of history_run, shared by the files of this folder, of
- * src/setup and of src/history.
+ * src/run/setup and of src/run/history.
  */
 #ifndef PROTIS_RUN_RUN_H
 #define PROTIS_RUN_RUN_H
@@ -9,9 +9,9 @@
 #include "accuracy/space.h"
 #include "base/timer.h"
 #include "contact/reach.h"
-#include "moduli/moduli.h"
+#include "run/moduli/moduli.h"
 #include "run/state.h"
-#include "scheme/scheme.h"
+#include "material/scheme/scheme.h"
 
 /* One equilibrium: displacements, contact forces, loads, and its time. */
 typedef struct equilibrium {
@@ -59,7 +59,7 @@ typedef struct matrices {
 #define RUN_OTHER_KEY (-2.0)
 #define RUN_FRESH_KEY (-3.0)
 
-/* What TOL=BALANCED has learnt (src/history/balance.c). */
+/* What TOL=BALANCED has learnt (src/run/history/balance.c). */
 typedef struct balance {
   double mesh, time;   /* -, errors at the last increment; mesh 0: unknown    */
   double per_residual; /* -, error of the solver over the residual            */

@@ -9,10 +9,10 @@
 #include "accuracy/solutions.h"
 #include "fem/fem.h"
 #include "model/model.h"
-#include "scheme/scheme.h"
-#include "start/start.h"
-#include "theory/theory.h"
-#include "truth/truth.h"
+#include "material/scheme/scheme.h"
+#include "run/start/start.h"
+#include "accuracy/theorems/theory.h"
+#include "accuracy/closed_form/truth.h"
 
 /* Forces and moments of one contact: of the obstacle on the body. */
 typedef struct contact_total {
@@ -77,7 +77,7 @@ typedef struct error_bound {
   double hidden;   /* -, of contact forces, by rounding of the motion         */
 } error_bound;
 
-/* What rounding has taken of an answer (history/rounding.c). */
+/* What rounding has taken of an answer (run/history/rounding.c). */
 typedef struct rounding_loss {
   int found;   /* 0: not looked at, the condition is that of a plain mesh     */
   double norm; /* sqrt(J), error in the energy norm                           */

@@ -1,13 +1,13 @@
 /*
- * Inelastic strains over an increment: what the integrators of src/scheme ask
- * of the body, their steps and what limits them (CPR98 3.14-3.20: each stress
- * of a given e^i is one contact problem, with the slip counted from the last
- * accepted increment).
+ * Inelastic strains over an increment: what the integrators of
+ * src/material/scheme ask of the body, their steps and what limits them
+ * (CPR98 3.14-3.20: each stress of a given e^i is one contact problem, with the
+ * slip counted from the last accepted increment).
  */
 #include "run/visco.h"
 #include "base/memory.h"
 #include "base/timer.h"
-#include "check/check.h"
+#include "model/check/check.h"
 
 #include <math.h>
 #include <string.h>

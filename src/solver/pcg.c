@@ -26,7 +26,7 @@
  * but for the ends of the face. Without A: the diagonal of W.
  */
 #include "base/memory.h"
-#include "force/force_set.h"
+#include "contact/force/force_set.h"
 #include "solver/solver.h"
 
 #include <cblas.h>

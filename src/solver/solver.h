@@ -7,7 +7,7 @@
 #ifndef PROTIS_SOLVER_SOLVER_H
 #define PROTIS_SOLVER_SOLVER_H
 
-#include "archive/archive.h"
+#include "base/archive/archive.h"
 #include "base/option.h"
 #include "base/outcome.h"
 #include "contact/contact.h"

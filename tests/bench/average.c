@@ -3,7 +3,7 @@
  * with the same neighbours for each, the ratio (4 if the cost is linear), and
  * the time per pair. Medians of the runs of this process.
  */
-#include "average/average.h"
+#include "contact/average/average.h"
 #include "base/timer.h"
 
 #include <stdio.h>

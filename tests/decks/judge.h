@@ -9,7 +9,7 @@
 #include "decks/tables.h"
 
 /* Loads of the decks are near 1: what is below is none. */
-#define LEAST_FORCE 1e-3
+#define LEAST_FORCE 1e-2
 
 /* What is compared, each over a scale of its own. */
 typedef enum {

@@ -4,7 +4,7 @@
  * changed or its end is missing: it is refused, or all arrays are as they were;
  * or other arrays are asked for: refused, or there.
  */
-#include "archive/archive.h"
+#include "base/archive/archive.h"
 #include "base/memory.h"
 #include "support/fuzz.h"
 #include "support/fuzz_file.h"

@@ -12,7 +12,7 @@
 #ifndef PROTIS_TESTS_PRELOAD_FAILING_H
 #define PROTIS_TESTS_PRELOAD_FAILING_H
 
-#include "archive/archive.h"
+#include "base/archive/archive.h"
 #include "deck/expression.h"
 #include "mesh/raw.h"
 

@@ -12,7 +12,7 @@
  *   = exit code
  */
 #include "base/message.h"
-#include "keyword/keyword.h"
+#include "model/keyword/keyword.h"
 #include "support/job.h"
 #include "support/unit.h"
 

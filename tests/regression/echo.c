@@ -3,7 +3,7 @@
  * read back to the same echo, and running it gives the same tables to the last
  * byte.
  */
-#include "keyword/keyword.h"
+#include "model/keyword/keyword.h"
 #include "support/job.h"
 #include "support/unit.h"
 

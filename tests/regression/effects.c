@@ -106,12 +106,10 @@ static char *cost_of(const job *j, const char *effect, long *calls,
  * 0 at the end of the table. */
 static int next_row(const char **at, int width, char *name) {
   const char *end = strchr(*at, '\n');
-  if (end == NULL || end == *at)
-    return 0;
+  if (end == NULL || end == *at) return 0;
   ck_assert_int_gt(end - *at, 2 + width);
   snprintf(name, 80, "%.*s", width, *at + 2);
-  for (int k = width; k > 0 && name[k - 1] == ' '; --k)
-    name[k - 1] = '\0';
+  for (int k = width; k > 0 && name[k - 1] == ' '; --k) name[k - 1] = '\0';
   *at = end + 1;
   return 1;
 }
@@ -123,8 +121,7 @@ static const char *first_row(const char *text, const char *heading) {
   snprintf(key, sizeof key, "\n%s\n", heading);
   const char *at = strstr(text, key);
   ck_assert_msg(at != NULL, "no %s", heading);
-  for (int k = 0; k < 4; ++k)
-    at = strchr(at, '\n') + 1;
+  for (int k = 0; k < 4; ++k) at = strchr(at, '\n') + 1;
   return at;
 }
 
@@ -155,9 +152,9 @@ static void check_off(const job *j, const char *const *stages) {
   free(text);
 }
 
-#define ALWAYS                                                                 \
-  "deck and model", "mesh", "stiffness assembly",                              \
-      "ordering and symbolic factor", "factorisation", "loads",                \
+#define ALWAYS                                                  \
+  "deck and model", "mesh", "stiffness assembly",               \
+      "ordering and symbolic factor", "factorisation", "loads", \
       "interior solves", "energies", "listing, .sta, .cvg"
 #define TOUCHING "contact surface", "condensed stiffness", "contact solver"
 
@@ -186,8 +183,7 @@ static int is_called(const job *j, const char *effect) {
   for (const char *at = first_row(text, "COST OF THE EFFECTS");
        next_row(&at, 26, name);) {
     long calls, bytes;
-    if (strncmp(name, effect, strlen(effect)) != 0)
-      continue;
+    if (strncmp(name, effect, strlen(effect)) != 0) continue;
     char *line = cost_of(j, name, &calls, &bytes);
     called |= strncmp(line + 29, "on ", 3) == 0 &&
               (calls > 0 || strstr(line, "part of") != NULL);
@@ -217,19 +213,16 @@ START_TEST(every_effect_is_called_for) {
        ""}};
   enum { DECKS = sizeof decks / sizeof *decks };
   job j[DECKS];
-  for (int k = 0; k < DECKS; ++k)
-    j[k] = block(decks[k][0], decks[k][1], "");
+  for (int k = 0; k < DECKS; ++k) j[k] = block(decks[k][0], decks[k][1], "");
   char *text = job_file(&j[0], "lst"), name[80];
   for (const char *at = first_row(text, "COST OF THE EFFECTS");
        next_row(&at, 26, name);) {
     int called = 0;
-    for (int k = 0; k < DECKS; ++k)
-      called |= is_called(&j[k], name);
+    for (int k = 0; k < DECKS; ++k) called |= is_called(&j[k], name);
     ck_assert_msg(called, "'%s' is on in no deck", name);
   }
   free(text);
-  for (int k = 0; k < DECKS; ++k)
-    job_end(&j[k]);
+  for (int k = 0; k < DECKS; ++k) job_end(&j[k]);
 }
 END_TEST
 
@@ -258,8 +251,7 @@ START_TEST(no_friction_no_tangential_unknown) {
                                       "*PRINT, CONTACT\n"
                                       "*OUTPUT, CONDENSED=FCLIB\n"};
   job j[2];
-  for (int k = 0; k < 2; ++k)
-    j[k] = block("", steps[k], "-D MU=0");
+  for (int k = 0; k < 2; ++k) j[k] = block("", steps[k], "-D MU=0");
   long calls, bytes;
   char *line = cost_of(&j[0], "tangential unknowns", &calls, &bytes);
   ck_assert_msg(!is_on(&j[0], "tangential unknowns"), "%s", line);
@@ -270,8 +262,7 @@ START_TEST(no_friction_no_tangential_unknown) {
   ck_assert_double_eq(job_told(&j[1], "contact_unknowns"), 18.0);
   ck_assert_double_le(apart(&j[0], &j[1], lengths), 1e-12);
   ck_assert_double_le(apart(&j[0], &j[1], forces), 1e-12);
-  for (int k = 0; k < 2; ++k)
-    job_end(&j[k]);
+  for (int k = 0; k < 2; ++k) job_end(&j[k]);
 }
 END_TEST
 
@@ -314,8 +305,7 @@ START_TEST(calls_are_as_foreseen) {
       char *end = strchr(at, '}'), *calls = strstr(at, "\"expected_calls\": ");
       sum += strtod(strchr(at, ':') + 1, NULL);
       at = end;
-      if (calls == NULL || calls > end)
-        continue;
+      if (calls == NULL || calls > end) continue;
       expected = strtod(strchr(calls, ':') + 1, NULL);
       calls = strstr(calls, "\"calls\": ");
       counted = strtod(strchr(calls, ':') + 1, NULL);

@@ -7,9 +7,9 @@
  *   MUTANTS=20000 MUTANT_SEED=7 mutants    many instead of the few of the tests
  */
 #include "base/memory.h"
-#include "history/history.h"
-#include "check/check.h"
-#include "keyword/keyword.h"
+#include "run/history/history.h"
+#include "model/check/check.h"
+#include "model/keyword/keyword.h"
 #include "support/grid.h"
 #include "support/points.h"
 #include "support/unit.h"

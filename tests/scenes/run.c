@@ -3,7 +3,7 @@
  */
 #include "scenes/expect.h"
 #include "scenes/scenes.h"
-#include "scheme/scheme.h"
+#include "material/scheme/scheme.h"
 #include "solver/solver.h"
 
 #include <math.h>

@@ -97,46 +97,47 @@ static int add_law(scene *s, double dt) {
   const double tau = fast ? dt * power(s, -8, -3) : power(s, 0, 8);
   const double E1 = 1e5 * power(s, -1, 2), strain = 5e-4 / tau;
   switch (pick(s, fast ? 4 : 12)) {
-  case 0:
-    add(s, "*INELASTIC, LAW=ZENER\n%g, %g\n", E1, E1 * tau);
-    break;
-  case 1:
-    add(s, "*INELASTIC, LAW=PRONY\n%g, %g, %g\n%g, 0., %g\n", 0.5 * uniform(s),
-        0.5 * uniform(s), tau, 0.4 * uniform(s), tau * power(s, -2, 0));
-    break;
-  case 2:
-    add_units(s, tau);
-    break;
-  case 3:
-    add_spectrum(s, dt);
-    return 1;
-  case 4:
-    add(s, "*INELASTIC, LAW=MAXWELL\n%g\n", tau);
-    break;
-  case 5:
-    add(s, "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n%g\n", tau);
-    break;
-  case 6:
-    add(s, "*INELASTIC, LAW=NORTON\n%g, 5.\n", strain / pow(50.0, 5.0));
-    break;
-  case 7:
-    add(s, "*INELASTIC, LAW=HYPERBOLIC\n%g, 0.02, 3.\n", strain);
-    break;
-  case 8:
-    add(s, "*INELASTIC, LAW=BINGHAM\n%g, %g\n", 50.0 * power(s, -0.3, 1),
-        1e5 * tau);
-    break;
-  case 9:
-    add(s, "*INELASTIC, LAW=BURGERS\n%g, %g, %g\n", 1e5 * tau, E1,
-        E1 * tau * power(s, -3, 3));
-    break;
-  case 10:
-    add(s, "*INELASTIC, LAW=PERZYNA\n%g, %g, 1e4, 1.5\n",
-        50.0 * power(s, -0.3, 1), 1e4 * power(s, -1, 3));
-    break;
-  default:
-    add(s, "*INELASTIC, LAW=CHABOCHE\n%g, %g, 3., -10., 10.\n1e4, 100.\n",
-        50.0 * power(s, -0.3, 1), 100.0 * power(s, 0, 3));
+    case 0:
+      add(s, "*INELASTIC, LAW=ZENER\n%g, %g\n", E1, E1 * tau);
+      break;
+    case 1:
+      add(s, "*INELASTIC, LAW=PRONY\n%g, %g, %g\n%g, 0., %g\n",
+          0.5 * uniform(s), 0.5 * uniform(s), tau, 0.4 * uniform(s),
+          tau * power(s, -2, 0));
+      break;
+    case 2:
+      add_units(s, tau);
+      break;
+    case 3:
+      add_spectrum(s, dt);
+      return 1;
+    case 4:
+      add(s, "*INELASTIC, LAW=MAXWELL\n%g\n", tau);
+      break;
+    case 5:
+      add(s, "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n%g\n", tau);
+      break;
+    case 6:
+      add(s, "*INELASTIC, LAW=NORTON\n%g, 5.\n", strain / pow(50.0, 5.0));
+      break;
+    case 7:
+      add(s, "*INELASTIC, LAW=HYPERBOLIC\n%g, 0.02, 3.\n", strain);
+      break;
+    case 8:
+      add(s, "*INELASTIC, LAW=BINGHAM\n%g, %g\n", 50.0 * power(s, -0.3, 1),
+          1e5 * tau);
+      break;
+    case 9:
+      add(s, "*INELASTIC, LAW=BURGERS\n%g, %g, %g\n", 1e5 * tau, E1,
+          E1 * tau * power(s, -3, 3));
+      break;
+    case 10:
+      add(s, "*INELASTIC, LAW=PERZYNA\n%g, %g, 1e4, 1.5\n",
+          50.0 * power(s, -0.3, 1), 1e4 * power(s, -1, 3));
+      break;
+    default:
+      add(s, "*INELASTIC, LAW=CHABOCHE\n%g, %g, 3., -10., 10.\n1e4, 100.\n",
+          50.0 * power(s, -0.3, 1), 100.0 * power(s, 0, 3));
   }
   return fast;
 }
@@ -145,20 +146,20 @@ static int add_law(scene *s, double dt) {
 static void add_friction(scene *s) {
   const double mu = pick(s, 2) ? 0.1 + 0.7 * uniform(s) : power(s, -9, -2);
   switch (pick(s, 5)) {
-  case 0:
-    break;
-  case 1:
-    add(s, "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=%g\n%g\n", s->radius,
-        mu);
-    break;
-  case 2:
-    add(s, "*FRICTION, CONTACT=FOOT, LAW=TRESCA\n%g\n", 50.0 * mu);
-    break;
-  case 3:
-    add(s, "*FRICTION, CONTACT=FOOT, LAW=COULOMB, AMPLITUDE=WEAR\n%g\n", mu);
-    break;
-  default:
-    add(s, "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n%g\n", mu);
+    case 0:
+      break;
+    case 1:
+      add(s, "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=%g\n%g\n",
+          s->radius, mu);
+      break;
+    case 2:
+      add(s, "*FRICTION, CONTACT=FOOT, LAW=TRESCA\n%g\n", 50.0 * mu);
+      break;
+    case 3:
+      add(s, "*FRICTION, CONTACT=FOOT, LAW=COULOMB, AMPLITUDE=WEAR\n%g\n", mu);
+      break;
+    default:
+      add(s, "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n%g\n", mu);
   }
 }
 
@@ -195,14 +196,12 @@ static void add_step(scene *s, int first, int fast, double dt) {
   else
     add(s, "*VISCO, INTEGRATOR=%s\n%g, 1., %g, %g\n",
         fast ? damped[pick(s, 2)] : slow[pick(s, 3)], dt, least, dt);
-  if (first)
-    add(s, "*BOUNDARY\n%s, 1, 1\n", s->round ? "LEFT" : "SYMMETRY");
-  if (!first && pick(s, 3) == 0)
-    add_friction(s);
-  if (first || pick(s, 2))
-    add_loads(s);
-  add(s, "*PRINT, CONTACT, TOTALS, NODES, ELEMENTS, ENERGY\n*OUTPUT, HDF5=NO\n"
-         "*SOLVER, TOL=1e-12\n*END STEP\n");
+  if (first) add(s, "*BOUNDARY\n%s, 1, 1\n", s->round ? "LEFT" : "SYMMETRY");
+  if (!first && pick(s, 3) == 0) add_friction(s);
+  if (first || pick(s, 2)) add_loads(s);
+  add(s,
+      "*PRINT, CONTACT, TOTALS, NODES, ELEMENTS, ENERGY\n*OUTPUT, HDF5=NO\n"
+      "*SOLVER, TOL=1e-12\n*END STEP\n");
 }
 
 static void make_scene(scene *s, unsigned number, const job *j) {
@@ -210,8 +209,7 @@ static void make_scene(scene *s, unsigned number, const job *j) {
   static const int increments[] = {1, 2, 5, 40};
   static const char *const kind[] = {"CPE3", "CPS3", "CAX3"};
   *s = (scene){.seed = 2654435761u * (number + 1u)};
-  for (int k = 0; k < 8; ++k)
-    uniform(s);
+  for (int k = 0; k < 8; ++k) uniform(s);
   const double *size = shape[pick(s, 4)], dt = 1.0 / increments[pick(s, 4)];
   const double nu = pick(s, 3) ? 0.45 * uniform(s) : 0.0;
   block_file_write(j, (int[]){8, 4}, size, 0);
@@ -227,8 +225,7 @@ static void make_scene(scene *s, unsigned number, const job *j) {
   add_contact(s);
   s->part = 1;
   const int n = 1 + pick(s, 3);
-  for (int k = 0; k < n; ++k)
-    add_step(s, k == 0, fast, dt);
+  for (int k = 0; k < n; ++k) add_step(s, k == 0, fast, dt);
 }
 
 /* ---- both runs ------------------------------------------------------------
@@ -300,8 +297,7 @@ static double difference(const job *a, const job *b) {
       double scale = own.largest;
       if (row->scale != NULL)
         scale = fmax(scale, compare(&r, &r, row->scale).largest);
-      if (own.change > row->rounding)
-        worst = fmax(worst, own.change / scale);
+      if (own.change > row->rounding) worst = fmax(worst, own.change / scale);
       dat_free(&p);
       dat_free(&r);
     }
@@ -349,8 +345,7 @@ START_TEST(answers_are_those_of_all_effects) {
   const char *text = getenv("EFFECTS_SCENES");
   unsigned count = 300, first = 0;
   int rows = 0, scenes = 0;
-  if (text != NULL)
-    sscanf(text, "%u,%u", &count, &first);
+  if (text != NULL) sscanf(text, "%u,%u", &count, &first);
   for (unsigned k = first; k < first + count; ++k) {
     const int n = check_scene(k);
     rows += n;

@@ -3,7 +3,7 @@
  * a solution are solved, those without are proved to have none, and no claim is
  * wrong.
  */
-#include "lcp/lcp_solve.h"
+#include "solver/lcp/lcp_solve.h"
 #include "support/lcp_case.h"
 #include "support/points.h"
 #include "support/unit.h"

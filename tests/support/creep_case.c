@@ -3,7 +3,7 @@
  */
 #include "support/creep_case.h"
 
-#include "history/history.h"
+#include "run/history/history.h"
 #include "support/text_model.h"
 #include "support/unit.h"
 

@@ -5,7 +5,7 @@
 #ifndef PROTIS_TESTS_LAW_CASE_H
 #define PROTIS_TESTS_LAW_CASE_H
 
-#include "law/law.h"
+#include "material/law/law.h"
 
 enum { LAW_ALPHA_MAX = 256, LAW_VALUE_MAX = 64 };
 

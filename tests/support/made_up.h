@@ -7,7 +7,7 @@
 #ifndef PROTIS_TESTS_MADE_UP_H
 #define PROTIS_TESTS_MADE_UP_H
 
-#include "history/history.h"
+#include "run/history/history.h"
 
 enum {
   MADE_U,

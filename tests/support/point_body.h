@@ -1,11 +1,12 @@
 /*
- * A body of one material point for the integrators of src/scheme: components of
- * the strain that are held follow it in time, the others carry given stresses.
+ * A body of one material point for the integrators of src/material/scheme:
+ * components of the strain that are held follow it in time, the others carry
+ * given stresses.
  */
 #ifndef PROTIS_TESTS_POINT_BODY_H
 #define PROTIS_TESTS_POINT_BODY_H
 
-#include "scheme/scheme.h"
+#include "material/scheme/scheme.h"
 #include "support/law_case.h"
 
 /* What drives a point: held[i] = 1: strain i is e[i] + t e_rate[i], else

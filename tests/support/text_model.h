@@ -4,8 +4,8 @@
 #ifndef PROTIS_TESTS_TEXT_MODEL_H
 #define PROTIS_TESTS_TEXT_MODEL_H
 
-#include "check/check.h"
-#include "keyword/keyword.h"
+#include "model/check/check.h"
+#include "model/keyword/keyword.h"
 #include "support/grid.h"
 
 typedef struct text_model {

@@ -5,7 +5,7 @@
  * friction. The stops are counted in changes of files, so that nothing depends
  * on time.
  */
-#include "scheme/scheme.h"
+#include "material/scheme/scheme.h"
 #include "support/kept_mesh.h"
 #include "support/points.h"
 #include "support/small_job.h"

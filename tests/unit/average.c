@@ -1,9 +1,9 @@
-/* src/average: kernels, search, rows of the nonlocal average. Expected values:
- * closed forms, and sums over dense regular points that share nothing with the
- * quadrature of the program. */
-#include "average/average.h"
-#include "average/box_tree.h"
-#include "average/face.h"
+/* src/contact/average: kernels, search, rows of the nonlocal average. Expected
+ * values: closed forms, and sums over dense regular points that share nothing
+ * with the quadrature of the program. */
+#include "contact/average/average.h"
+#include "contact/average/box_tree.h"
+#include "contact/average/face.h"
 #include "base/memory.h"
 #include "support/unit.h"
 

@@ -1,5 +1,5 @@
 /* METHOD=AUTO, forms of a problem, what is kept from problem to problem. */
-#include "choice/form.h"
+#include "solver/choice/form.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/solver_rows.h"

@@ -1,5 +1,5 @@
-/* src/cluster and the averaged elements of src/fem. */
-#include "cluster/cluster.h"
+/* src/fem/cluster and the averaged elements of src/fem. */
+#include "fem/cluster/cluster.h"
 
 #include "fem/fem.h"
 #include "support/scene.h"

@@ -1,6 +1,6 @@
-/* src/columns: over the tables, so that a new row is tested too. */
+/* src/output/columns: over the tables, so that a new row is tested too. */
 #include "base/memory.h"
-#include "columns/columns.h"
+#include "output/columns/columns.h"
 #include "support/made_up.h"
 #include "support/unit.h"
 

@@ -440,8 +440,8 @@ START_TEST(condition_is_near_that_of_the_scaled_dense_matrix) {
     ck_assert_msg(found > 0.3 * exact && found < 5 * exact,
                   "scene %zu: %g for %g", q, found, exact);
     /* Half an epsilon times the condition is lost. */
-    ck_assert_double_eq_tol(condensed_digits(c) + log10(found),
-                            53 * log10(2.0), 1e-10);
+    ck_assert_double_eq_tol(condensed_digits(c) + log10(found), 53 * log10(2.0),
+                            1e-10);
     release(&p);
     end(s, k, c);
   }

@@ -1,11 +1,11 @@
-/* src/archive: what an HDF5 file may not do, and what it may. */
-#include "archive/dataset.h"
-#include "archive/file.h"
+/* src/base/archive: what an HDF5 file may not do, and what it may. */
+#include "base/archive/dataset.h"
+#include "base/archive/file.h"
 
 #include "base/memory.h"
 #include "support/made_up.h"
 #include "support/unit.h"
-#include "system/input.h"
+#include "base/system/input.h"
 
 #include <stdio.h>
 #include <string.h>

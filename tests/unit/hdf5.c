@@ -1,11 +1,11 @@
 /*
- * src/hdf5: JOB.h5 read back with the library; growth
+ * src/output/hdf5: JOB.h5 read back with the library; growth
  * and cutting; kills, full disks and refused memory.
  */
 #include <hdf5.h>
 
 #include "base/memory.h"
-#include "hdf5/file.h"
+#include "output/hdf5/file.h"
 #include "support/made_up.h"
 #include "support/unit.h"
 

@@ -1,5 +1,5 @@
-/* src/history: increments that are cut, rolled back, given up; energies. */
-#include "history/history.h"
+/* src/run/history: increments that are cut, rolled back, given up; energies. */
+#include "run/history/history.h"
 #include "base/memory.h"
 #include "support/text_model.h"
 #include "support/unit.h"

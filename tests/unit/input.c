@@ -1,5 +1,5 @@
-/* src/system/input.c: what is opened, and what is not. */
-#include "system/input.h"
+/* src/base/system/input.c: what is opened, and what is not. */
+#include "base/system/input.h"
 
 #include "support/made_up.h"
 #include "support/unit.h"

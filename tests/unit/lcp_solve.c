@@ -1,7 +1,7 @@
-/* src/lcp/lcp_solve.c, lcp_newton.c, lcp_turn.c: plain complementarity
+/* src/solver/lcp/lcp_solve.c, lcp_newton.c, lcp_turn.c: plain complementarity
  * problems of all kinds. */
 #include "base/memory.h"
-#include "lcp/lcp_solve.h"
+#include "solver/lcp/lcp_solve.h"
 #include "support/lcp_case.h"
 #include "support/unit.h"
 

@@ -1,7 +1,7 @@
 /* src/solver/lcp.c, lemke.c: complementary pivoting. */
 #include "base/memory.h"
-#include "lcp/lcp.h"
-#include "pivoting/lemke.h"
+#include "solver/lcp/lcp.h"
+#include "solver/pivoting/lemke.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"

@@ -1,5 +1,5 @@
-/* src/system/limits.c: groups of a folder that stands for the root. */
-#include "system/limits.h"
+/* src/base/system/limits.c: groups of a folder that stands for the root. */
+#include "base/system/limits.h"
 
 #include "support/made_up.h"
 #include "support/unit.h"

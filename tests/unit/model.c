@@ -1,7 +1,7 @@
 /* src/model: decks to models, loads of the steps, the echo of a deck. */
 #include "base/memory.h"
-#include "check/check.h"
-#include "keyword/keyword.h"
+#include "model/check/check.h"
+#include "model/keyword/keyword.h"
 #include "support/text_model.h"
 #include "support/unit.h"
 

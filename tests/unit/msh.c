@@ -1,7 +1,7 @@
 /* src/mesh: the reader of .msh files takes what the format says and no more */
 #include "base/memory.h"
-#include "msh/raw_mesh.h"
-#include "msh/scan.h"
+#include "mesh/msh/raw_mesh.h"
+#include "mesh/msh/scan.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
 

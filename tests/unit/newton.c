@@ -1,4 +1,4 @@
-/* src/newton: the steps of Newton's method on the states. */
+/* src/solver/newton: the steps of Newton's method on the states. */
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"

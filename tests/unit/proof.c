@@ -1,8 +1,8 @@
 /*
- * src/choice/proof.c: no equilibrium is said where an inequality proves it and
- * only there, by every method, on both sides of the limit.
+ * src/solver/choice/proof.c: no equilibrium is said where an inequality proves
+ * it and only there, by every method, on both sides of the limit.
  */
-#include "choice/proof.h"
+#include "solver/choice/proof.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
 

@@ -1,10 +1,10 @@
 /*
- * src/hdf5/records.c: groups of many records, read with the library: every name
- * once, in order, found, with the data where the offsets say.
+ * src/output/hdf5/records.c: groups of many records, read with the library:
+ * every name once, in order, found, with the data where the offsets say.
  */
 #include <hdf5.h>
 
-#include "hdf5/file.h"
+#include "output/hdf5/file.h"
 #include "support/made_up.h"
 #include "support/unit.h"
 

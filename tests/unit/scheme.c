@@ -1,8 +1,9 @@
 /*
- * Integrators of src/scheme on a material point: every row of scheme_list. What
- * a step makes of a held strain, orders, the estimate of HEUN, the theta-method
- * at 1/2 and 1, exact steps of linear laws, limits, states within a step, and
- * that the state a step starts from stays. E = 1000, nu = 0.3.
+ * Integrators of src/material/scheme on a material point: every row of
+ * scheme_list. What a step makes of a held strain, orders, the estimate of
+ * HEUN, the theta-method at 1/2 and 1, exact steps of linear laws, limits,
+ * states within a step, and that the state a step starts from stays. E = 1000,
+ * nu = 0.3.
  */
 #include "support/point_body.h"
 #include "support/unit.h"

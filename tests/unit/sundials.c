@@ -1,9 +1,10 @@
 /*
  * Histories of a material point against CVODE (SUNDIALS, BDF, relative
  * tolerance 1e-12): the right-hand sides stand here, written with tensors from
- * the equations of the papers, and share nothing with src/law. The integrators
- * of src/scheme must come to the answer of CVODE with their order, under given
- * strains, given stresses, and a bar that is pulled and twisted.
+ * the equations of the papers, and share nothing with src/material/law. The
+ * integrators of src/material/scheme must come to the answer of CVODE with
+ * their order, under given strains, given stresses, and a bar that is pulled
+ * and twisted.
  */
 #include "support/point_body.h"
 #include "support/unit.h"

@@ -1,9 +1,9 @@
 /*
- * src/theory: eigenvalues against closed forms, the triangle whose constants
- * are known, bounds and inequality on random problems, and wrong states, which
- * must be told.
+ * src/accuracy/theorems: eigenvalues against closed forms, the triangle whose
+ * constants are known, bounds and inequality on random problems, and wrong
+ * states, which must be told.
  */
-#include "theory/theory.h"
+#include "accuracy/theorems/theory.h"
 #include "base/memory.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"

@@ -1,10 +1,10 @@
 /*
- * src/plan/work.c: entries and operations of the factor foreseen from the
- * number of unknowns beside those that CHOLMOD counts for blocks in the plane
- * and in space, the contact last.
+ * src/effects/plan/work.c: entries and operations of the factor foreseen from
+ * the number of unknowns beside those that CHOLMOD counts for blocks in the
+ * plane and in space, the contact last.
  */
 #include "fem/fem.h"
-#include "plan/plan.h"
+#include "effects/plan/plan.h"
 #include "support/pressed_block.h"
 #include "support/unit.h"
 

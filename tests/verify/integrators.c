@@ -11,7 +11,7 @@
  * reason: there it is the slope of the errors over four octaves of n, for it
  * depends on where in its increment a kink falls.
  */
-#include "scheme/scheme.h"
+#include "material/scheme/scheme.h"
 #include "support/creep_case.h"
 #include "support/law_case.h"
 #include "support/unit.h"

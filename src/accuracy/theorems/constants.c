@@ -1,0 +1,174 @@
+/* Norms in the energy of A, and the constants of friction in them. */
+#include "accuracy/theorems/theory.h"
+
+#include "base/memory.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <string.h>
+
+static const double MOVES = 1e-8; /* -, of the largest part of a motion       */
+
+/* ---- norms -------------------------------------------------------------- */
+
+status energy_norm_new(int m, const double *A, energy_norm *out) {
+  status st = OK;
+  *out = (energy_norm){.m = m, .A = A};
+  NEW(out->x, m);
+  NEW(out->y, m);
+  TRY(dense_inverse_new(m, A, &out->inverse));
+  if (out->inverse != NULL) out->dual = dense_inverse_energy(out->inverse);
+done:
+  return st;
+}
+
+void energy_norm_free(energy_norm *e) {
+  dense_inverse_free(e->inverse);
+  memory_free(e->x);
+  memory_free(e->y);
+  *e = (energy_norm){0};
+}
+
+int energy_norm_regular(const energy_norm *e) {
+  return e->inverse != NULL && e->dual.n_kernel == 0;
+}
+
+double energy_norm_of(energy_norm *e, const double *v) {
+  contact_product(e->m, e->A, v, e->y);
+  return sqrt(fmax(0.0, cblas_ddot(e->m, v, 1, e->y, 1)));
+}
+
+double energy_norm_dual(energy_norm *e, const double *f) {
+  double square = NAN;
+  if (e->dual.square(e->dual.ctx, f, &square) != OK) return NAN;
+  return sqrt(square);
+}
+
+/* ---- constants ---------------------------------------------------------- */
+
+/* The unknowns that a map acts on. */
+typedef struct block {
+  const contact_problem *cp;
+  energy_norm *e;
+  int n, *dof; /* [n] of the block                                            */
+} block;
+
+static void scatter(const block *b, const double *x, double *full) {
+  memset(full, 0, (size_t)b->cp->m * sizeof *full);
+  for (int k = 0; k < b->n; ++k) full[b->dof[k]] = x[k];
+}
+
+static void gather(const block *b, const double *full, double *y) {
+  for (int k = 0; k < b->n; ++k) y[k] = full[b->dof[k]];
+}
+
+/* A_nn */
+static void apply_stiffness(void *ctx, const double *x, double *y) {
+  const block *b = ctx;
+  scatter(b, x, b->e->x);
+  contact_product(b->cp->m, b->cp->A, b->e->x, b->e->y);
+  gather(b, b->e->y, y);
+}
+
+/* inv(A)_tt */
+static void apply_inverse(void *ctx, const double *x, double *y) {
+  const block *b = ctx;
+  energy_norm *e = b->e;
+  scatter(b, x, e->y);
+  dense_inverse_solve(e->inverse, e->y, e->y);
+  gather(b, e->y, y);
+}
+
+/* B A_nn B'; the block holds the normal unknowns of the rows. */
+static void apply_limit(void *ctx, const double *x, double *y) {
+  const block *b = ctx;
+  const contact_problem *cp = b->cp;
+  const sparse_rows *B = cp->B;
+  memset(b->e->x, 0, (size_t)cp->m * sizeof *b->e->x);
+  for (int k = 0; k < b->n; ++k) {
+    int i = b->dof[k] / cp->dim;
+    for (int e = B->start[i]; e < B->start[i + 1]; ++e)
+      b->e->x[cp->dim * B->col[e]] += B->val[e] * x[k];
+  }
+  contact_product(cp->m, cp->A, b->e->x, b->e->y);
+  for (int k = 0; k < b->n; ++k) {
+    int i = b->dof[k] / cp->dim;
+    y[k] = 0.0;
+    for (int e = B->start[i]; e < B->start[i + 1]; ++e)
+      y[k] += B->val[e] * b->e->y[cp->dim * B->col[e]];
+  }
+}
+
+static int has_row(const contact_problem *cp, int i) {
+  const sparse_rows *B = cp->B;
+  for (int e = B == NULL ? 0 : B->start[i]; B != NULL && e < B->start[i + 1];
+       ++e)
+    if (B->val[e] != 0.0) return 1;
+  return 0;
+}
+
+/* Nodes whose pressure moves a limit: pressed[n]. */
+static void find_pressed(const contact_problem *cp, unsigned char *pressed) {
+  const sparse_rows *B = cp->B;
+  for (int e = 0; B != NULL && e < B->start[B->n]; ++e)
+    if (B->val[e] != 0.0) pressed[B->col[e]] = 1;
+}
+
+static status largest_of(const block *b,
+                         void (*apply)(void *ctx, const double *x, double *y),
+                         double *largest) {
+  symmetric_map map = {b->n, (void *)b, apply};
+  *largest = 0.0;
+  return b->n == 0 ? OK : largest_eigenvalue(&map, largest);
+}
+
+/* 1: a motion without energy moves the block: nothing bounds it. A motion that
+ * does not, as of a body that lies on its obstacle, adds nothing to |v_t|. */
+static int is_loose(const block *b) {
+  const inverse_energy *e = &b->e->dual;
+  if (b->e->inverse == NULL) return 1;
+  for (int c = 0; c < e->n_kernel; ++c) {
+    const double *z = e->kernel + (size_t)c * (size_t)b->cp->m;
+    double most = 0.0, part = 0.0;
+    for (int k = 0; k < b->cp->m; ++k) most = fmax(most, fabs(z[k]));
+    for (int k = 0; k < b->n; ++k) part = fmax(part, fabs(z[b->dof[k]]));
+    if (part > MOVES * most) return 1;
+  }
+  return 0;
+}
+
+static status tangential_constant(block *b, int limits, double *largest) {
+  const contact_problem *cp = b->cp;
+  b->n = 0;
+  for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) {
+    if (!has_row(cp, i) && !(limits && cp->g0[i] > 0.0)) continue;
+    for (int k = 1; k < cp->dim; ++k)
+      if (!contact_held(cp, cp->dim * i + k)) b->dof[b->n++] = cp->dim * i + k;
+  }
+  *largest = HUGE_VAL;
+  return is_loose(b) ? OK : largest_of(b, apply_inverse, largest);
+}
+
+status friction_constants(const contact_problem *cp, energy_norm *e, int limits,
+                          theory_contact *out) {
+  status st = OK;
+  block b = {.cp = cp, .e = e};
+  unsigned char *pressed = NULL;
+  double product = 0.0;
+  NEW(b.dof, cp->m);
+  NEW(pressed, cp->n);
+  find_pressed(cp, pressed);
+  for (int i = 0; i < cp->n; ++i)
+    if (pressed[i]) b.dof[b.n++] = cp->dim * i;
+  TRY(largest_of(&b, apply_stiffness, &out->normal));
+  b.n = 0;
+  for (int i = 0; i < cp->n; ++i)
+    if (has_row(cp, i)) b.dof[b.n++] = cp->dim * i;
+  TRY(largest_of(&b, apply_limit, &product));
+  TRY(tangential_constant(&b, limits, &out->tangent));
+  out->factor = product > 0.0 ? sqrt(product) * sqrt(out->tangent) : 0.0;
+done:
+  memory_free(b.dof);
+  memory_free(pressed);
+  return st;
+}

@@ -1,0 +1,284 @@
+/* The report on an increment from its parts (theory.h). */
+#include "accuracy/theorems/theory.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+struct theory {
+  energy_norm norm;
+  double *diagonal;   /* [m] of A: it is known again by that                 */
+  double *entries;    /* [n_entry] of B, the same                             */
+  int n_entry, fresh; /* fresh: the eigenvalues are not known                */
+  state_before before;
+  int seen;      /* 1: a state has been looked at                        */
+  int n_contact; /* rows of the report                                   */
+  theory_contact *contacts; /* [n_contact] the last one is all               */
+  double start;
+  int has_start;
+  double fastest; /* L of the step so far, 1/s                                */
+};
+
+static const double ROUNDING = 1e-8; /* -, of times and factors               */
+
+const char *mu_regime_text(mu_regime regime) {
+  static const char *const text[] = {
+      "above 1/C_h; nothing slides", "unique: under 1/C_h",
+      "between: above 1/C_h, contracts", "above both: does not contract"};
+  return text[regime];
+}
+
+status theory_new(theory **out) {
+  status st = OK;
+  NEW(*out, 1);
+done:
+  return st;
+}
+
+static void forget_friction(theory *t) {
+  memory_free(t->entries);
+  memory_free(t->contacts);
+  t->entries = NULL;
+  t->contacts = NULL;
+  t->n_entry = t->n_contact = 0;
+}
+
+static void forget_matrix(theory *t) {
+  energy_norm_free(&t->norm);
+  memory_free(t->diagonal);
+  t->diagonal = NULL;
+  forget_friction(t);
+  state_before_free(&t->before);
+}
+
+void theory_free(theory *t) {
+  if (t == NULL) return;
+  forget_matrix(t);
+  memory_free(t);
+}
+
+/* ---- what has to be found again ------------------------------------------ */
+
+static int same_matrix(const theory *t, const contact_problem *cp) {
+  if (t->diagonal == NULL || t->norm.m != cp->m || t->norm.A != cp->A) return 0;
+  for (int i = 0; i < cp->m; ++i)
+    if (t->diagonal[i] != cp->A[(size_t)i * (size_t)(cp->m + 1)]) return 0;
+  return 1;
+}
+
+static status know_matrix(theory *t, const contact_problem *cp) {
+  status st = OK;
+  t->fresh = !same_matrix(t, cp);
+  if (!t->fresh) goto done;
+  forget_matrix(t);
+  NEW(t->diagonal, cp->m);
+  for (int i = 0; i < cp->m; ++i)
+    t->diagonal[i] = cp->A[(size_t)i * (size_t)(cp->m + 1)];
+  TRY(energy_norm_new(cp->m, cp->A, &t->norm));
+done:
+  return st;
+}
+
+static int count_entries(const contact_problem *cp) {
+  return cp->B == NULL ? 0 : cp->B->start[cp->n];
+}
+
+static int same_friction(const theory *t, const contact_problem *cp) {
+  size_t size = (size_t)count_entries(cp) * sizeof *t->entries;
+  if (t->contacts == NULL || t->n_entry != count_entries(cp)) return 0;
+  return size == 0 || memcmp(t->entries, cp->B->val, size) == 0;
+}
+
+/* ---- contacts ------------------------------------------------------------ */
+
+/* 1 if a node of the contact has a limit that follows pressure; keep[n] marks
+ * its nodes. */
+static int mark_contact(const theory_scene *s, const contact_problem *cp,
+                        int contact_id, unsigned char *keep) {
+  int any = 0;
+  for (int i = 0; i < cp->n; ++i) {
+    keep[i] = s->contact_id[i] == contact_id;
+    if (!keep[i] || cp->B == NULL) continue;
+    for (int e = cp->B->start[i]; e < cp->B->start[i + 1]; ++e)
+      any |= cp->B->val[e] != 0.0;
+  }
+  return any;
+}
+
+static void add_row(theory *t, const theory_contact *row) {
+  t->contacts[t->n_contact++] = *row;
+}
+
+static void set_limit(theory_contact *row) {
+  row->limit = row->mu > 0.0 ? row->mu / row->factor : NAN;
+}
+
+/* Constants of every contact with friction, and of all. */
+static status know_friction(theory *t, const theory_scene *s,
+                            const frozen_problem *p) {
+  status st = OK;
+  unsigned char *keep = NULL;
+  theory_contact all = {.contact_id = -1};
+  int found = 0;
+  if (same_friction(t, &p->cp)) return OK;
+  forget_friction(t);
+  t->n_entry = count_entries(&p->cp);
+  NEW(t->entries, t->n_entry);
+  NEW(t->contacts, s->n_contact + 1);
+  NEW(keep, p->cp.n);
+  if (t->n_entry > 0)
+    memcpy(t->entries, p->cp.B->val, (size_t)t->n_entry * sizeof *t->entries);
+  TRY(friction_constants(&p->cp, &t->norm, 1, &all));
+  for (int c = 0; c < s->n_contact; ++c) {
+    theory_contact row = {.contact_id = c, .mu = s->mu[c]};
+    frozen_problem part = {0};
+    if (!mark_contact(s, &p->cp, c, keep)) continue;
+    ++found;
+    all.mu = fmax(all.mu, row.mu);
+    st = frozen_new(&p->cp, p->r, keep, NULL, &part);
+    if (st == OK) st = friction_constants(&part.cp, &t->norm, 0, &row);
+    frozen_free(&part);
+    TRY(st);
+    set_limit(&row);
+    add_row(t, &row);
+  }
+  set_limit(&all);
+  add_row(t, &all);
+done:
+  memory_free(keep);
+  if (st != OK) forget_friction(t);
+  return st;
+}
+
+static mu_regime regime_of(const theory_contact *row) {
+  if (row->factor < 1.0) return MU_UNDER;
+  if (row->rate == 0.0) return MU_FREE;
+  return row->rate < 1.0 ? MU_BETWEEN : MU_ABOVE;
+}
+
+/* The measured rate of one row, with the limits of other contacts as they are.
+ */
+static status measure(const theory_scene *s, const frozen_problem *p,
+                      unsigned char *keep, theory_contact *row) {
+  status st = OK;
+  frozen_problem part = {0};
+  row->rate = 0.0;
+  if (row->contact_id >= 0) {
+    mark_contact(s, &p->cp, row->contact_id, keep);
+    TRY(frozen_new(&p->cp, p->r, keep, NULL, &part));
+  }
+  const contact_problem *cp = row->contact_id >= 0 ? &part.cp : &p->cp;
+  if (cp->B != NULL) TRY(contraction_limit(cp, s->u, p->r, &row->rate));
+  row->suggested = row->rate > 0.0 ? row->mu / row->rate : HUGE_VAL;
+  row->regime = regime_of(row);
+done:
+  frozen_free(&part);
+  return st;
+}
+
+/* With one contact the row of all is its own. */
+static status measure_contacts(theory *t, const theory_scene *s,
+                               const frozen_problem *p) {
+  status st = OK;
+  unsigned char *keep = NULL;
+  NEW(keep, p->cp.n);
+  for (int k = 0; k < t->n_contact; ++k) {
+    if (t->n_contact == 2 && k == 0) continue;
+    TRY(measure(s, p, keep, &t->contacts[k]));
+  }
+  if (t->n_contact == 2) {
+    theory_contact *only = t->contacts, *all = t->contacts + 1;
+    only->rate = all->rate;
+    only->suggested = all->suggested;
+    only->regime = regime_of(only);
+  }
+done:
+  memory_free(keep);
+  return st;
+}
+
+/* ---- bounds -------------------------------------------------------------- */
+
+static status check_bounds(theory *t, const theory_scene *s,
+                           const frozen_problem *p, theory_report *out) {
+  status st = OK;
+  const theory_contact *all = &t->contacts[t->n_contact - 1];
+  const char *why = NULL;
+  if (!energy_norm_regular(&t->norm))
+    why = "contact alone holds a body, loads have no norm";
+  else if (!(all->factor < 1.0))
+    why = "mu is not under 1/C_h";
+  out->total.why = out->change.why = why;
+  if (why != NULL) goto done;
+  TRY(bound_total(&p->cp, s->u, all, &t->norm, &out->total));
+  if (s->alone)
+    out->change.why = "no increment";
+  else if (t->before.known == 0)
+    out->change.why = "the matrix is new";
+  else
+    TRY(bound_change(&p->cp, s->u, &t->before, all, &t->norm, &out->change));
+done:
+  return st;
+}
+
+/* ---- the report ---------------------------------------------------------- */
+
+static status check_inequality(const theory_scene *s, const contact_problem *cp,
+                               theory_report *out) {
+  status st = OK;
+  TRY(inequality_least(cp, s->u, &out->inequality, &out->n_field));
+  out->inequality_violated = !(out->inequality >= -s->tol);
+done:
+  return st;
+}
+
+status theory_start(theory *t, const theory_scene *s) {
+  status st = OK;
+  frozen_problem p = {0};
+  int fields;
+  TRY(frozen_new(s->cp, s->r, NULL, s->given, &p));
+  TRY(know_matrix(t, s->cp));
+  TRY(inequality_least(&p.cp, s->u, &t->start, &fields));
+  TRY(state_before_keep(&p.cp, s->u, p.r, &t->before));
+  t->has_start = t->seen = 1;
+done:
+  frozen_free(&p);
+  return st;
+}
+
+status theory_check(theory *t, const theory_scene *s, theory_report *out) {
+  status st = OK;
+  frozen_problem p = {0};
+  *out = (theory_report){.asked = 1, .has_start = t->has_start};
+  TRY(frozen_new(s->cp, s->r, NULL, s->given, &p));
+  TRY(know_matrix(t, s->cp));
+  if (!t->seen) t->before.known = -1;
+  out->fresh = t->contacts == NULL;
+  TRY(know_friction(t, s, &p));
+  TRY(measure_contacts(t, s, &p));
+  TRY(check_bounds(t, s, &p, out));
+  TRY(check_inequality(s, &p.cp, out));
+  out->start = t->start;
+  out->contacts = t->contacts;
+  out->n_contact = t->n_contact == 2 ? 1 : t->n_contact;
+  if (t->contacts[t->n_contact - 1].factor == 0.0) out->n_contact = 0;
+  out->violated =
+      out->total.violated || out->change.violated || out->inequality_violated;
+  TRY(state_before_keep(&p.cp, s->u, p.r, &t->before));
+  t->seen = 1;
+done:
+  frozen_free(&p);
+  return st;
+}
+
+void theory_path_learn(theory *t, double theta, double dt, double span,
+                       theory_path *p) {
+  p->speed = p->bound / (theta * dt);
+  p->longest = p->speed > 0.0 ? 1.0 / (theta * p->speed) : HUGE_VAL;
+  p->span = span;
+  if (!(span > dt * (1.0 + ROUNDING))) t->fastest = 0.0;
+  t->fastest = fmax(t->fastest, p->speed);
+  p->passes = theory_passes(t->fastest * span);
+  p->violated = p->why == NULL && !(p->rate <= p->bound * (1.0 + ROUNDING));
+}

@@ -1,0 +1,245 @@
+/*
+ * Datasets of an HDF5 file that others wrote: nothing of it is believed. The
+ * library's own error stack stays silent; what went wrong is told here with
+ * the names of file and dataset.
+ */
+#include "base/memory.h"
+#include "base/archive/dataset.h"
+#include "base/system/input.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+enum {
+  MOST_BYTES = 16, /* of one number                                          */
+  MOST_PACKED = 1100,  /* times its bytes in the file; deflate reaches 1032   */
+  LARGE_PART = 1 << 20 /* items                                              */
+};
+
+/* By the descriptor: the name may have come to mean another file. */
+status dataset_open(const char *path, hdf5_source *s) {
+  status st = OK;
+  const char *why = NULL;
+  char name[40];
+  *s = (hdf5_source){.path = path, .file = -1};
+  H5Eget_auto2(H5E_DEFAULT, &s->print, &s->print_data);
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  H5dont_atexit();
+  H5Lunregister(H5L_TYPE_EXTERNAL);
+  s->fd = input_open(path, &why);
+  if (s->fd < 0) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
+  snprintf(name, sizeof name, "/proc/self/fd/%d", s->fd);
+  if (H5Fis_hdf5(name) <= 0)
+    FAIL(ERR_FILE, "%s is no HDF5 file, or cut short", path);
+  s->file = H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (s->file < 0)
+    FAIL(ERR_FILE, "%s cannot be read: the HDF5 file is damaged or cut short",
+         path);
+done:
+  return st;
+}
+
+void dataset_close(hdf5_source *s) {
+  if (s->file >= 0) H5Fclose(s->file);
+  if (s->fd >= 0) close(s->fd);
+  H5Eset_auto2(H5E_DEFAULT, s->print, s->print_data);
+}
+
+/* Every group on the way must be there before the library is asked. */
+int source_has(const hdf5_source *s, const char *name) {
+  char part[256];
+  size_t length = strlen(name);
+  if (length >= sizeof part) return 0;
+  for (size_t k = 1; k <= length; ++k) {
+    if (name[k] != '/' && name[k] != '\0') continue;
+    memcpy(part, name, k);
+    part[k] = '\0';
+    if (H5Lexists(s->file, part, H5P_DEFAULT) <= 0 ||
+        H5Oexists_by_name(s->file, part, H5P_DEFAULT) <= 0)
+      return 0;
+  }
+  return 1;
+}
+
+/* The library makes buffers of the size that a damaged type claims. */
+static status check_type(const hdf5_source *s, const char *name, int real,
+                         hid_t set) {
+  status st = OK;
+  hid_t type = H5Dget_type(set);
+  H5T_class_t kind = H5Tget_class(type);
+  if (kind != H5T_INTEGER && !(real && kind == H5T_FLOAT))
+    FAIL(ERR_DECK, "%s: %s does not hold %s", s->path, name,
+         real ? "real numbers" : "integers");
+  if (H5Tget_size(type) > MOST_BYTES)
+    FAIL(ERR_DECK, "%s: %s has numbers of %zu bytes", s->path, name,
+         H5Tget_size(type));
+done:
+  if (type >= 0) H5Tclose(type);
+  return st;
+}
+
+static int may_pack(H5Z_filter_t filter) {
+  return filter == H5Z_FILTER_DEFLATE ||
+         (!input_is_confined() &&
+          (filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_FLETCHER32));
+}
+
+/* Items of the parts that the library unpacks at once; 0: not in parts. */
+static hsize_t part_items(hid_t made) {
+  hsize_t size[H5S_MAX_RANK], items = 1;
+  if (H5Pget_layout(made) != H5D_CHUNKED) return 0;
+  int rank = H5Pget_chunk(made, H5S_MAX_RANK, size);
+  for (int k = 0; k < rank; ++k) items *= size[k];
+  return items;
+}
+
+/* Where the data stand, and what they went through. */
+static status check_storage(const hdf5_source *s, const char *name, hid_t set,
+                            hsize_t items) {
+  status st = OK;
+  hid_t made = H5Dget_create_plist(set);
+  if (made < 0) FAIL(ERR_DECK, "%s: %s is damaged", s->path, name);
+  if (H5Pget_layout(made) == H5D_VIRTUAL || H5Pget_external_count(made) != 0)
+    FAIL(ERR_DECK, "%s: the data of %s stand in other files", s->path, name);
+  hsize_t part = part_items(made);
+  if (part > items && part > LARGE_PART)
+    FAIL(ERR_DECK, "%s: %s has %llu items, but parts of %llu", s->path, name,
+         (unsigned long long)items, (unsigned long long)part);
+  for (int k = 0; k < H5Pget_nfilters(made); ++k) {
+    unsigned flags, info;
+    size_t n = 0;
+    H5Z_filter_t filter =
+        H5Pget_filter2(made, (unsigned)k, &flags, &n, NULL, 0, NULL, &info);
+    if (!may_pack(filter))
+      FAIL(ERR_DECK, "%s: %s is packed by filter %d; only deflate is read",
+           s->path, name, (int)filter);
+  }
+done:
+  if (made >= 0) H5Pclose(made);
+  return st;
+}
+
+/* What a dataset claims to hold must come from the bytes of the file: one that
+ * was never written, or is damaged, would be any number of zeros. */
+status dataset_check(const hdf5_source *s, const char *name, hid_t set,
+                     hsize_t items) {
+  status st = OK;
+  hid_t type = H5Dget_type(set);
+  hsize_t size = 0, stored = H5Dget_storage_size(set);
+  hsize_t bytes = items * (hsize_t)H5Tget_size(type);
+  TRY(check_storage(s, name, set, items));
+  if (H5Fget_filesize(s->file, &size) < 0 || stored > size ||
+      bytes / MOST_PACKED > stored)
+    FAIL(ERR_DECK, "%s: %s has %llu items, and %llu bytes in the file", s->path,
+         name, (unsigned long long)items, (unsigned long long)stored);
+done:
+  if (type >= 0) H5Tclose(type);
+  return st;
+}
+
+/* The dataset opened, its kind and number of items checked; *set = -1 if it
+ * is not there and may be missing. */
+static status open_set(const hdf5_source *s, const char *name, int optional,
+                       int real, long most, hid_t *set, long *n) {
+  status st = OK;
+  hid_t space = -1;
+  *set = -1;
+  *n = 0;
+  if (!source_has(s, name)) {
+    if (optional) goto done;
+    FAIL(ERR_DECK, "%s: there is no dataset %s in this file", s->path, name);
+  }
+  *set = H5Dopen2(s->file, name, H5P_DEFAULT);
+  if (*set < 0)
+    FAIL(ERR_DECK, "%s: %s is no dataset, or damaged", s->path, name);
+  TRY(check_type(s, name, real, *set));
+  space = H5Dget_space(*set);
+  hssize_t items = H5Sget_simple_extent_npoints(space);
+  if (items < 0)
+    FAIL(ERR_DECK, "%s: %s has a size that cannot be used", s->path, name);
+  if (items > most)
+    FAIL(ERR_DECK, "%s: %s has %lld items, expected at most %ld", s->path, name,
+         (long long)items, most);
+  TRY(dataset_check(s, name, *set, (hsize_t)items));
+  *n = (long)items;
+done:
+  if (space >= 0) H5Sclose(space);
+  if (st != OK && *set >= 0) {
+    H5Dclose(*set);
+    *set = -1;
+  }
+  return st;
+}
+
+static status read_set(const hdf5_source *s, const char *name, hid_t set,
+                       hid_t as, void *into) {
+  status st = OK;
+  if (H5Dread(set, as, H5S_ALL, H5S_ALL, H5P_DEFAULT, into) < 0)
+    FAIL(ERR_FILE, "%s: %s cannot be read; the file is damaged or cut short",
+         s->path, name);
+done:
+  return st;
+}
+
+status source_ints(const hdf5_source *s, const char *name, int optional,
+                   long most, long *n, int **value) {
+  status st = OK;
+  hid_t set = -1;
+  long long *wide = NULL;
+  *value = NULL;
+  TRY(open_set(s, name, optional, 0, most, &set, n));
+  NEW(wide, *n);
+  NEW(*value, *n);
+  if (*n > 0) TRY(read_set(s, name, set, H5T_NATIVE_LLONG, wide));
+  for (long k = 0; k < *n; ++k) {
+    if (wide[k] < INT_MIN || wide[k] > INT_MAX)
+      FAIL(ERR_DECK, "%s: %s, item %ld = %lld is too large", s->path, name, k,
+           wide[k]);
+    (*value)[k] = (int)wide[k];
+  }
+done:
+  if (set >= 0) H5Dclose(set);
+  memory_free(wide);
+  if (st != OK) {
+    memory_free(*value);
+    *value = NULL;
+  }
+  return st;
+}
+
+status source_int(const hdf5_source *s, const char *name, int *value) {
+  status st = OK;
+  long n = 0;
+  int *all = NULL;
+  TRY(source_ints(s, name, 0, MOST_ITEMS, &n, &all));
+  if (n != 1)
+    FAIL(ERR_DECK, "%s: %s has %ld items, expected one integer", s->path, name,
+         n);
+  *value = all[0];
+done:
+  memory_free(all);
+  return st;
+}
+
+status source_reals(const hdf5_source *s, const char *name, int optional,
+                    long most, long *n, double **value) {
+  status st = OK;
+  hid_t set = -1;
+  *value = NULL;
+  TRY(open_set(s, name, optional, 1, most, &set, n));
+  NEW(*value, *n);
+  if (*n > 0) TRY(read_set(s, name, set, H5T_NATIVE_DOUBLE, *value));
+  for (long k = 0; k < *n; ++k)
+    if (!isfinite((*value)[k]))
+      FAIL(ERR_DECK, "%s: %s, item %ld is not a finite number", s->path, name,
+           k);
+done:
+  if (set >= 0) H5Dclose(set);
+  if (st != OK) {
+    memory_free(*value);
+    *value = NULL;
+  }
+  return st;
+}

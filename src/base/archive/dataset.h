@@ -1,0 +1,46 @@
+/*
+ * Datasets of an HDF5 file that others wrote, each call checked.
+ */
+#ifndef PROTIS_ARCHIVE_DATASET_H
+#define PROTIS_ARCHIVE_DATASET_H
+
+#include "base/status.h"
+
+#include <hdf5.h>
+
+typedef struct hdf5_source {
+  const char *path; /* of the file, for messages                             */
+  hid_t file;
+  int fd; /* by which it was opened                                           */
+  H5E_auto2_t print; /* how the library told its errors before               */
+  void *print_data;
+} hdf5_source;
+
+/* Items of what nothing else bounds. */
+enum { MOST_ITEMS = 1 << 30 };
+
+/* Open for reading (base/system/input.h), the library silent until
+ * dataset_close, which is called in any case. Links into other files are not
+ * followed. */
+status dataset_open(const char *path, hdf5_source *s);
+void dataset_close(hdf5_source *s);
+
+/* The data of an open dataset stand in this file, packed by nothing but deflate
+ * (without --safe also shuffle and fletcher32), and its "items" can come from
+ * the bytes there. ERR_DECK. */
+status dataset_check(const hdf5_source *s, const char *name, hid_t set,
+                     hsize_t items);
+
+/* 1 if there is a link of that absolute name that can be opened. */
+int source_has(const hdf5_source *s, const char *name);
+/* One integer. */
+status source_int(const hdf5_source *s, const char *name, int *value);
+/* All items of a dataset: *n of them, at most "most", new. Absent: error,
+ * unless "optional"; then *n = 0. Integers must fit an int, reals must be
+ * finite. */
+status source_ints(const hdf5_source *s, const char *name, int optional,
+                   long most, long *n, int **value);
+status source_reals(const hdf5_source *s, const char *name, int optional,
+                    long most, long *n, double **value);
+
+#endif

@@ -1,0 +1,372 @@
+/*
+ * Rows of the kernel against the P1 functions, then the symmetric matrix with
+ * the exact mass (average.h).
+ */
+#include "contact/average/average.h"
+
+#include "contact/average/box_tree.h"
+#include "contact/average/face.h"
+#include "contact/average/layout.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the radius: lengths that differ by less are equal. */
+static const double ROUNDING = 1e-9;
+
+typedef struct builder {
+  const average_patch *p;
+  const average_rule *rule;
+  mollifier m;
+  layout at;
+  box_tree faces, rim;
+  double *share; /* [n_node] l_i: integral of phi_i, m or m2           */
+  double *mass;  /* [n_node] W_i, -                                    */
+  sparse_rows raw, by_column; /* g_ij and its transpose, -                    */
+  unsigned char *alone; /* [n_node] no other node within the radius           */
+  double *part; /* [n_node] of its pairs that the mass of a node has room for */
+  int *found;   /* [faces or rim]                                     */
+  int *touched, n_touched; /* [n_node] columns of the row at hand             */
+  double *row;             /* [n_node] its values                             */
+  int neighbours;          /* other active nodes within the radius            */
+  int cut; /* 1: a face with a node left out is within it      */
+} builder;
+
+static void builder_free(builder *b) {
+  layout_free(&b->at);
+  box_tree_free(&b->faces);
+  box_tree_free(&b->rim);
+  memory_free(b->share);
+  memory_free(b->mass);
+  sparse_free(&b->raw);
+  sparse_free(&b->by_column);
+  memory_free(b->alone);
+  memory_free(b->part);
+  memory_free(b->found);
+  memory_free(b->touched);
+  memory_free(b->row);
+}
+
+static status builder_new(builder *b) {
+  status st = OK;
+  int n = b->p->n_node, dim = b->p->dim;
+  int line = dim == 2 && !b->p->axisymmetric;
+  b->m = mollifier_make(b->rule->kernel, b->rule->radius, line ? 1 : 2);
+  TRY(layout_new(b->p, b->rule, &b->at));
+  TRY(box_tree_new(dim, b->at.n_face, dim, b->at.corner, &b->faces));
+  TRY(box_tree_new(dim, b->at.n_rim, dim - 1, b->at.rim, &b->rim));
+  NEW(b->share, n);
+  NEW(b->mass, n);
+  NEW(b->raw.start, n + 1);
+  b->raw.n = n;
+  NEW(b->alone, n);
+  NEW(b->part, n);
+  NEW(b->found, b->at.n_face + b->at.n_rim);
+  NEW(b->touched, n);
+  NEW(b->row, n);
+done:
+  return st;
+}
+
+static double distance(int dim, const double *a, const double *b) {
+  double sum = 0.0;
+  for (int c = 0; c < dim; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
+  return sqrt(sum);
+}
+
+/* ---- the patch --------------------------------------------------------- */
+
+static double triangle_area(const double *x) {
+  double a[3], b[3], n[3];
+  for (int c = 0; c < 3; ++c) {
+    a[c] = x[3 + c] - x[c];
+    b[c] = x[6 + c] - x[c];
+  }
+  for (int c = 0; c < 3; ++c)
+    n[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+  return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
+/* Integrals of the P1 functions. */
+static void find_shares(builder *b) {
+  const average_patch *p = b->p;
+  for (int f = 0; f < p->n_face; ++f) {
+    const double *x = b->at.corner + (size_t)(p->dim * p->dim) * (size_t)f;
+    const int *node = p->face + p->dim * f;
+    double size = p->dim == 3 ? triangle_area(x) : distance(2, x, x + 2);
+    for (int k = 0; k < p->dim; ++k) {
+      double weight = 1.0 / p->dim;
+      if (p->axisymmetric) weight = (2.0 * x[2 * k] + x[2 * !k]) / 6.0;
+      b->share[node[k]] += weight * size;
+    }
+  }
+}
+
+/* Lengths of the edges against the radius. */
+static void find_facts(const builder *b, average_facts *facts,
+                       unsigned char *coarse) {
+  const average_patch *p = b->p;
+  memset(facts, 0, sizeof *facts);
+  for (int k = 0; k < p->dim * p->n_face; ++k) {
+    int next = k % p->dim == p->dim - 1 ? k + 1 - p->dim : k + 1;
+    double length = distance(p->dim, b->at.corner + (size_t)(p->dim * k),
+                             b->at.corner + (size_t)(p->dim * next));
+    facts->longest = fmax(facts->longest, length);
+    if (4.0 * length > b->rule->radius * (1.0 + ROUNDING))
+      coarse[p->face[k]] = coarse[p->face[next]] = 1;
+  }
+  for (int i = 0; i < p->n_node; ++i) {
+    if (!p->active[i]) continue;
+    ++facts->n_active;
+    facts->n_coarse += coarse[i];
+    facts->n_local += b->alone[i];
+  }
+}
+
+/* ---- rows of the kernel ------------------------------------------------ */
+
+/* 1 if a face with a node that carries no pressure lies within the disc. */
+static int cuts(const builder *b, int face, const double *x, double reach) {
+  const average_patch *p = b->p;
+  const double *corner =
+      b->at.corner + (size_t)(p->dim * p->dim) * (size_t)face;
+  int left_out = 0;
+  for (int k = 0; k < p->dim; ++k)
+    left_out |= !p->active[p->face[p->dim * face + k]];
+  return left_out &&
+         face_distance(p->dim, corner, x) < reach * (1.0 - ROUNDING);
+}
+
+static void add_face(builder *b, int i, int face, const double *x,
+                     double reach) {
+  const average_patch *p = b->p;
+  const double *corner =
+      b->at.corner + (size_t)(p->dim * p->dim) * (size_t)face;
+  double weight[3];
+  b->cut |= cuts(b, face, x, reach);
+  if (p->dim == 3)
+    face_triangle(&b->m, corner, x, weight);
+  else if (p->axisymmetric)
+    face_ring(&b->m, reach, corner, x, weight);
+  else
+    face_line(&b->m, reach, corner, x, weight);
+  for (int k = 0; k < p->dim; ++k) {
+    int j = p->face[p->dim * face + k];
+    if (j != i && p->active[j] &&
+        distance(p->dim, x, corner + p->dim * k) < reach)
+      ++b->neighbours;
+    if (!(weight[k] > 0.0)) continue;
+    if (b->row[j] == 0.0) b->touched[b->n_touched++] = j;
+    b->row[j] += weight[k];
+  }
+}
+
+/* What a node sees from one place; a closed line laid out straight is seen
+ * from three. */
+static void look_from(builder *b, int i, const double *x, double reach) {
+  int n = box_tree_near(&b->faces, x, reach, b->found);
+  for (int k = 0; k < n; ++k) add_face(b, i, b->found[k], x, reach);
+}
+
+/* The images of a place in the mirrors, and in two or three one after the
+ * other. */
+static void look_from_images(builder *b, int i, const double *x, double reach) {
+  for (int mask = 1; mask < 1 << b->p->dim; ++mask) {
+    double image[3];
+    int there = 1;
+    for (int c = 0; c < b->p->dim; ++c) {
+      int turned = mask >> c & 1;
+      image[c] = turned ? 2.0 * b->at.mirror[c] - x[c] : x[c];
+      there = there && (!turned || b->at.has_mirror[c]);
+    }
+    if (there) look_from(b, i, image, reach);
+  }
+}
+
+static void look_around(builder *b, int i) {
+  const double *x = b->at.x + (size_t)b->p->dim * (size_t)i;
+  double length = b->at.loop == NULL ? 0.0 : b->at.loop[i];
+  double reach = b->rule->radius;
+  b->n_touched = b->neighbours = b->cut = 0;
+  if (length > 0.0) {
+    const double before[2] = {x[0] - length, x[1]};
+    const double after[2] = {x[0] + length, x[1]};
+    reach = fmin(reach, 0.5 * length);
+    look_from(b, i, before, reach);
+    look_from(b, i, after, reach);
+  }
+  look_from(b, i, x, reach);
+  look_from_images(b, i, x, reach);
+}
+
+/* 1 if the disc around node i reaches beyond the patch. */
+static int meets_rim(builder *b, int i) {
+  int dim = b->p->dim, corners = dim - 1;
+  const double *x = b->at.x + (size_t)dim * (size_t)i;
+  int n = box_tree_near(&b->rim, x, b->rule->radius, b->found);
+  for (int k = 0; k < n; ++k) {
+    const double *a = b->at.rim + (size_t)(dim * corners) * (size_t)b->found[k];
+    double d = corners == 1 ? distance(dim, a, x)
+                            : face_segment_distance(dim, a, a + dim, x);
+    if (d < b->rule->radius * (1.0 - ROUNDING)) return 1;
+  }
+  return 0;
+}
+
+static int by_number(const void *a, const void *b) {
+  return *(const int *)a - *(const int *)b;
+}
+
+static status add_entry(sparse_rows *rows, int *n, int cap[2], int col,
+                        double val) {
+  status st = OK;
+  GROW(rows->col, *n, cap[0]);
+  GROW(rows->val, *n, cap[1]);
+  rows->col[*n] = col;
+  rows->val[(*n)++] = val;
+done:
+  return st;
+}
+
+/* Row i of raw from what the node sees, scaled to its mass. */
+static status keep_row(builder *b, int i, int cap[2]) {
+  status st = OK;
+  const average_patch *p = b->p;
+  double seen = 0.0;
+  int n = b->raw.start[i];
+  qsort(b->touched, (size_t)b->n_touched, sizeof *b->touched, by_number);
+  for (int k = 0; k < b->n_touched; ++k) {
+    int j = b->touched[k];
+    if (p->active[j]) seen += b->row[j];
+  }
+  b->alone[i] = b->neighbours == 0;
+  int whole = !b->cut && !meets_rim(b, i);
+  b->mass[i] = whole || b->alone[i] ? 1.0 : fmin(1.0, seen);
+  for (int k = 0; k < b->n_touched; ++k) {
+    int j = b->touched[k];
+    double value = b->row[j] * (b->mass[i] / seen);
+    b->row[j] = 0.0;
+    if (p->active[j]) TRY(add_entry(&b->raw, &n, cap, j, value));
+  }
+  b->raw.start[i + 1] = n;
+done:
+  return st;
+}
+
+static status find_rows(builder *b) {
+  status st = OK;
+  int cap[2] = {0, 0};
+  for (int i = 0; i < b->p->n_node; ++i) {
+    b->raw.start[i + 1] = b->raw.start[i];
+    if (!b->p->active[i]) continue;
+    look_around(b, i);
+    TRY(keep_row(b, i, cap));
+  }
+done:
+  return st;
+}
+
+static status transpose(const sparse_rows *a, sparse_rows *out) {
+  status st = OK;
+  int *start = NULL;
+  NEW(start, a->n + 2);
+  NEW(out->col, a->start[a->n]);
+  NEW(out->val, a->start[a->n]);
+  for (int k = 0; k < a->start[a->n]; ++k) ++start[a->col[k] + 2];
+  for (int i = 0; i < a->n; ++i) start[i + 2] += start[i + 1];
+  for (int i = 0; i < a->n; ++i)
+    for (int k = a->start[i]; k < a->start[i + 1]; ++k) {
+      int to = start[a->col[k] + 1]++;
+      out->col[to] = i;
+      out->val[to] = a->val[k];
+    }
+  out->n = a->n;
+  out->start = start;
+  start = NULL;
+done:
+  memory_free(start);
+  return st;
+}
+
+/* ---- the symmetric matrix ---------------------------------------------- */
+
+/* l_i G_ij of a pair, so that no node gives away more than its mass. */
+static double pair_value(const builder *b, int i, int j, double ij, double ji) {
+  double one = b->share[i] * ij, other = b->share[j] * ji;
+  return 0.5 * (one + other) * fmin(b->part[i], b->part[j]);
+}
+
+/* Row i of G into col, val; returns the number of its entries. *left is what
+ * the diagonal gets, times l_i. */
+static int merge_row(const builder *b, int i, int *col, double *val,
+                     double *left) {
+  const sparse_rows *r = &b->raw, *c = &b->by_column;
+  int k = r->start[i], end = r->start[i + 1], n = 0, place = -1;
+  int h = c->start[i], last = c->start[i + 1];
+  *left = b->share[i] * b->mass[i];
+  while (!b->alone[i] && (k < end || h < last)) {
+    int jk = k < end ? r->col[k] : b->p->n_node;
+    int jh = h < last ? c->col[h] : b->p->n_node, j = jk < jh ? jk : jh;
+    double ij = jk == j ? r->val[k++] : 0.0, ji = jh == j ? c->val[h++] : 0.0;
+    if (b->alone[j]) continue;
+    col[n] = j;
+    if (j == i) place = n;
+    val[n] = j == i ? 0.0 : pair_value(b, i, j, ij, ji);
+    *left -= val[n++];
+  }
+  if (place < 0) col[place = n++] = i;
+  val[place] = fmax(*left, 0.0);
+  return n;
+}
+
+static status symmetrise(builder *b, sparse_rows *out) {
+  status st = OK;
+  const average_patch *p = b->p;
+  double left, *part = NULL;
+  NEW(part, p->n_node);
+  NEW(out->start, p->n_node + 1);
+  out->n = p->n_node;
+  for (int i = 0; i < p->n_node; ++i) b->part[i] = 1.0;
+  for (int i = 0; i < p->n_node; ++i) {
+    int n = p->active[i] ? merge_row(b, i, b->touched, b->row, &left) : 0;
+    out->start[i + 1] = out->start[i] + n;
+    double all = b->share[i] * b->mass[i];
+    part[i] = n > 0 && left < 0.0 ? all / (all - left) : 1.0;
+  }
+  memcpy(b->part, part, (size_t)p->n_node * sizeof *part);
+  NEW(out->col, out->start[p->n_node]);
+  NEW(out->val, out->start[p->n_node]);
+  for (int i = 0; i < p->n_node; ++i) {
+    int first = out->start[i], n = out->start[i + 1] - first;
+    double by = b->share[i];
+    if (n == 0) continue;
+    if (b->rule->normalized && b->mass[i] > 0.0) by *= b->mass[i];
+    merge_row(b, i, out->col + first, out->val + first, &left);
+    for (int k = first; k < first + n; ++k) out->val[k] /= by;
+  }
+done:
+  memory_free(part);
+  return st;
+}
+
+status average_build(const average_patch *patch, const average_rule *rule,
+                     sparse_rows *out, average_facts *facts) {
+  status st = OK;
+  builder b = {.p = patch, .rule = rule};
+  unsigned char *coarse = NULL;
+  memset(out, 0, sizeof *out);
+  TRY(builder_new(&b));
+  find_shares(&b);
+  TRY(find_rows(&b));
+  TRY(transpose(&b.raw, &b.by_column));
+  TRY(symmetrise(&b, out));
+  NEW(coarse, patch->n_node);
+  find_facts(&b, facts, coarse);
+done:
+  memory_free(coarse);
+  builder_free(&b);
+  if (st != OK) sparse_free(out);
+  return st;
+}

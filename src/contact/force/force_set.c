@@ -1,0 +1,223 @@
+
+/* Admissible forces (force_set.h). */
+#include "contact/force/force_set.h"
+
+#include "base/memory.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <string.h>
+
+enum { SHARPENINGS = 4 }; /* of the bound of the spectrum                     */
+static const double SPARSE = 0.1; /* -, share of entries that are not zero    */
+
+void force_set_free(force_set *s) {
+  if (s == NULL) return;
+  memory_free(s->D);
+  memory_free(s->origin);
+  memory_free(s->part);
+  memory_free(s->rim);
+  memory_free(s->load);
+  memory_free(s->defect);
+  sparse_free(&s->rows);
+  memory_free(s);
+}
+
+/* D: 1/W_ii, equal in the tangents of a node so that discs stay discs. */
+static void scaling(const contact_problem *cp, double *D) {
+  int d = cp->dim;
+  double largest = 0.0;
+  for (size_t i = 0; i < (size_t)cp->m; ++i) {
+    D[i] = cp->W[i * (size_t)cp->m + i];
+    largest = fmax(largest, D[i]);
+  }
+  for (int i = 0; i < cp->n; ++i) {
+    double mean = 0.0;
+    for (int k = 1; k < d; ++k) mean += D[i * d + k] / (d - 1);
+    for (int k = 1; k < d; ++k)
+      if (!contact_held(cp, i * d + k)) D[i * d + k] = mean;
+  }
+  for (int i = 0; i < cp->m; ++i)
+    D[i] = 1.0 / (D[i] > 0x1p-40 * largest ? D[i] : largest);
+}
+
+/* Upper bound of the spectrum of D W by steps of the power method on |D W|
+ * (Collatz and Wielandt: the largest ratio bounds it). v, z [m]. */
+static double spectrum_bound(const contact_problem *cp, const double *D,
+                             double *v, double *z) {
+  size_t m = (size_t)cp->m;
+  double bound = HUGE_VAL;
+  for (size_t i = 0; i < m; ++i) v[i] = 1.0;
+  for (int k = 0; k < SHARPENINGS; ++k) {
+    double ratio = 0.0;
+    memset(z, 0, m * sizeof *z);
+    for (size_t j = 0; j < m; ++j)
+      for (size_t i = 0; i < m; ++i) z[i] += fabs(cp->W[i + m * j]) * v[j];
+    for (size_t i = 0; i < m; ++i) {
+      z[i] *= D[i];
+      ratio = fmax(ratio, z[i] / v[i]);
+    }
+    bound = fmin(bound, ratio);
+    for (size_t i = 0; i < m; ++i) v[i] = fmax(z[i] / ratio, 0x1p-20);
+  }
+  return bound;
+}
+
+static int is_symmetric(int m, const double *M) {
+  size_t n = (size_t)m;
+  for (size_t j = 0; j < n; ++j)
+    for (size_t i = 0; i < j; ++i)
+      if (!(fabs(M[i + n * j] - M[j + n * i]) <=
+            0x1p-36 * (fabs(M[i + n * i]) + fabs(M[j + n * j]))))
+        return 0;
+  return 1;
+}
+
+static size_t entries(const contact_problem *cp) {
+  size_t size = (size_t)cp->m * (size_t)cp->m, count = 0;
+  for (size_t k = 0; k < size; ++k) count += cp->W[k] != 0.0;
+  return count;
+}
+
+status compliance_rows(const contact_problem *cp, sparse_rows *rows) {
+  status st = OK;
+  size_t m = (size_t)cp->m, count = entries(cp);
+  int *at = NULL;
+  NEW(at, m);
+  NEW(rows->start, m + 1);
+  NEW(rows->col, count);
+  NEW(rows->val, count);
+  rows->n = cp->m;
+  for (size_t j = 0; j < m; ++j)
+    for (size_t i = 0; i < m; ++i)
+      rows->start[i + 1] += cp->W[i + m * j] != 0.0;
+  for (size_t i = 0; i < m; ++i) {
+    rows->start[i + 1] += rows->start[i];
+    at[i] = rows->start[i];
+  }
+  for (size_t j = 0; j < m; ++j)
+    for (size_t i = 0; i < m; ++i) {
+      double value = cp->W[i + m * j];
+      if (value == 0.0) continue;
+      rows->col[at[i]] = (int)j;
+      rows->val[at[i]++] = value;
+    }
+done:
+  memory_free(at);
+  return st;
+}
+
+status force_set_new(const contact_problem *cp, force_set **out) {
+  status st = OK;
+  force_set *s = NULL;
+  double *v = NULL;
+  NEW(s, 1);
+  NEW(s->D, cp->m);
+  NEW(s->origin, cp->m);
+  NEW(s->part, cp->m);
+  NEW(s->rim, cp->n);
+  NEW(s->load, cp->m);
+  NEW(s->defect, cp->m);
+  NEW(v, 2 * cp->m);
+  s->symmetric = is_symmetric(cp->m, cp->W);
+  scaling(cp, s->D);
+  if ((double)entries(cp) <= SPARSE * cp->m * cp->m)
+    TRY(compliance_rows(cp, &s->rows));
+  s->step = 1.0 / spectrum_bound(cp, s->D, v, v + cp->m);
+  *out = s;
+  s = NULL;
+done:
+  force_set_free(s);
+  memory_free(v);
+  return st;
+}
+
+static void sparse_product(const sparse_rows *rows, const double *x,
+                           double *y) {
+  for (int i = 0; i < rows->n; ++i) {
+    double sum = 0.0;
+    for (int k = rows->start[i]; k < rows->start[i + 1]; ++k)
+      sum += rows->val[k] * x[rows->col[k]];
+    y[i] = sum;
+  }
+}
+
+void force_set_product(const force_set *s, const double *r, double *u) {
+  int m = s->cp->m;
+  if (s->rows.start != NULL)
+    sparse_product(&s->rows, r, u);
+  else if (s->symmetric)
+    cblas_dsymv(CblasColMajor, CblasLower, m, 1.0, s->cp->W, m, r, 1, 0.0, u,
+                1);
+  else
+    contact_product(m, s->cp->W, r, u);
+}
+
+void force_set_displacement(const force_set *s, const double *r, double *u) {
+  const contact_problem *cp = s->cp;
+  if (cp->A == NULL) {
+    force_set_product(s, r, u);
+    cblas_daxpy(cp->m, 1.0, cp->f, 1, u, 1);
+    return;
+  }
+  for (int i = 0; i < cp->m; ++i) s->load[i] = r[i] + cp->f[i];
+  force_set_product(s, s->load, u);
+  contact_product(cp->m, cp->A, u, s->defect);
+  for (int i = 0; i < cp->m; ++i) s->defect[i] = s->load[i] - s->defect[i];
+  force_set_product(s, s->defect, s->load);
+  cblas_daxpy(cp->m, 1.0, s->load, 1, u, 1);
+}
+
+void force_parts(const contact_problem *cp, unsigned char *part,
+                 double *origin) {
+  for (int i = 0; i < cp->n; ++i) {
+    int first = i * cp->dim, t = i * (cp->dim - 1) - 1;
+    int disc = cp->g0 != NULL && (cp->B != NULL || cp->g0[i] > 0.0);
+    part[first] = PUSH;
+    origin[first] = cp->gap[i];
+    for (int k = 1; k < cp->dim; ++k) {
+      double side = cp->side_gap == NULL ? HUGE_VAL : cp->side_gap[t + k];
+      part[first + k] = NO_FORCE;
+      origin[first + k] = 0.0;
+      if (contact_held(cp, first + k)) continue;
+      if (side < HUGE_VAL) {
+        part[first + k] = PUSH;
+        origin[first + k] = side;
+      } else if (disc) {
+        part[first + k] = IN_DISC;
+        origin[first + k] = cp->ut0 == NULL ? 0.0 : cp->ut0[t + k];
+      }
+    }
+  }
+}
+
+void force_set_fit(force_set *s, const contact_problem *cp) {
+  s->cp = cp;
+  force_parts(cp, s->part, s->origin);
+  for (int i = 0; i < cp->n; ++i) s->rim[i] = 0;
+}
+
+/* Force into the tangent disc of a node; margin: relative depth at which a
+ * force counts as lying on the rim. */
+static void project_disc(const force_set *s, int node_id, double margin,
+                         double *r) {
+  const contact_problem *cp = s->cp;
+  const unsigned char *kind = s->part + node_id * cp->dim;
+  double size = 0.0, g = cp->g0 == NULL ? 0.0 : cp->g0[node_id];
+  double *t = r + node_id * cp->dim;
+  for (int k = 1; k < cp->dim; ++k)
+    if (kind[k] == IN_DISC) size += t[k] * t[k];
+  size = sqrt(size);
+  s->rim[node_id] = size > 0.0 && size >= g * (1.0 - margin);
+  if (!s->rim[node_id]) return;
+  for (int k = 1; k < cp->dim; ++k)
+    if (kind[k] == IN_DISC) t[k] *= g / size;
+}
+
+void force_set_project(const force_set *s, double margin, double *r) {
+  for (int dof = 0; dof < s->cp->m; ++dof) {
+    force_part kind = (force_part)s->part[dof];
+    if (kind == NO_FORCE || (kind == PUSH && r[dof] > 0.0)) r[dof] = 0.0;
+  }
+  for (int i = 0; i < s->cp->n; ++i) project_disc(s, i, margin, r);
+}

@@ -1,0 +1,219 @@
+/*
+ * Given normal forces F at some nodes in the place of the unilateral conditions
+ * (CPR98, 3.19-3.20, problem D3). There u_n is free and r_n = -F known, so that
+ * these normals (g) are condensed out of the rest (c):
+ *
+ *   A' = A_cc - A_cg inv(A_gg) A_gc
+ *   f' = f_c  - A_cg inv(A_gg) (f_g - F)
+ *   u_g = inv(A_gg) (f_g - F - A_gc u_c)
+ *
+ * The rows of g stay in their places without any coupling, below a gap that
+ * they do not reach. Friction there is against g0 + B p with p = F known.
+ */
+#include "contact/formulation/form.h"
+
+#include "base/memory.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+static const double SINGULAR = 1e-12; /* -, pivot over diagonal: not held     */
+
+struct given_form {
+  int n, m, dim;
+  int *node;       /* [n]                                                    */
+  double *A;       /* [m*m] A', diagonal in the rows of g                     */
+  double *L;       /* [n*n] Cholesky factor of A_gg, lower                    */
+  double *Y;       /* [n*m] inv(L) A_gc, zero in the columns of g             */
+  double *f, *gap; /* [m], [number of nodes]                                  */
+  double *met;     /* [number of nodes] gaps closed at g by the answer, m     */
+  double *y;       /* [n] inv(L) (f_g - F)                                    */
+  double *force;   /* [n] F, N                                                */
+  double *g0;      /* [number of nodes] N                                     */
+  double *mu;      /* entries of B without those of g; room for n_entry       */
+  int n_entry;
+  unsigned char *is; /* [number of nodes] 1: of g                            */
+  sparse_rows B;     /* borrows start and col of the problem's                */
+};
+
+void given_form_free(given_form *g) {
+  if (g == NULL) return;
+  memory_free(g->node);
+  memory_free(g->A);
+  memory_free(g->L);
+  memory_free(g->Y);
+  memory_free(g->f);
+  memory_free(g->gap);
+  memory_free(g->met);
+  memory_free(g->y);
+  memory_free(g->force);
+  memory_free(g->g0);
+  memory_free(g->mu);
+  memory_free(g->is);
+  memory_free(g);
+}
+
+static status new_arrays(const contact_problem *cp, given_form *g) {
+  status st = OK;
+  size_t n = (size_t)g->n, m = (size_t)cp->m;
+  NEW(g->node, n);
+  NEW(g->A, m * m);
+  NEW(g->L, n * n);
+  NEW(g->Y, n * m);
+  NEW(g->f, m);
+  NEW(g->gap, cp->n);
+  NEW(g->met, cp->n);
+  NEW(g->y, n);
+  NEW(g->force, n);
+  NEW(g->g0, cp->n);
+  NEW(g->is, cp->n);
+done:
+  return st;
+}
+
+static size_t normal(const given_form *g, int k) {
+  return (size_t)g->dim * (size_t)g->node[k];
+}
+
+/* L L' = A_gg */
+static status factorise(const contact_problem *cp, given_form *g) {
+  status st = OK;
+  size_t n = (size_t)g->n, m = (size_t)cp->m;
+  for (size_t j = 0; j < n; ++j)
+    for (size_t i = 0; i < n; ++i)
+      g->L[i + n * j] = cp->A[normal(g, (int)i) + m * normal(g, (int)j)];
+  int info = LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', g->n, g->L, g->n);
+  for (size_t i = 0; i < n && info == 0; ++i) {
+    double pivot = g->L[i + n * i], whole = cp->A[normal(g, (int)i) * (m + 1)];
+    if (!(pivot * pivot > SINGULAR * whole)) info = 1;
+  }
+  if (info != 0)
+    FAIL(ERR_SINGULAR,
+         "*CONTACT FORCE: nothing holds the body against the given normal "
+         "forces; hold it with *BOUNDARY or another *CONTACT");
+done:
+  return st;
+}
+
+/* Y = inv(L) A_gc and A' = A - Y'Y, diagonal in the rows of g. */
+static void condense_normals(const contact_problem *cp, given_form *g) {
+  size_t n = (size_t)g->n, m = (size_t)cp->m;
+  for (size_t j = 0; j < m; ++j)
+    for (size_t k = 0; k < n; ++k)
+      g->Y[k + n * j] = cp->A[normal(g, (int)k) + m * j];
+  for (size_t k = 0; k < n; ++k)
+    memset(g->Y + n * normal(g, (int)k), 0, n * sizeof *g->Y);
+  cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit,
+              g->n, cp->m, 1.0, g->L, g->n, g->Y, g->n);
+  memcpy(g->A, cp->A, m * m * sizeof *g->A);
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, cp->m, g->n, -1.0, g->Y,
+              g->n, 1.0, g->A, cp->m);
+  for (size_t k = 0; k < n; ++k) {
+    size_t row = normal(g, (int)k);
+    double own = cp->A[row * (m + 1)];
+    for (size_t j = 0; j < m; ++j) g->A[row + m * j] = g->A[j + m * row] = 0.0;
+    g->A[row * (m + 1)] = own;
+  }
+  for (size_t j = 0; j < m; ++j)
+    for (size_t i = 0; i < j; ++i) g->A[i + m * j] = g->A[j + m * i];
+}
+
+status given_form_new(const contact_problem *cp, int n, const int *node,
+                      given_form **out) {
+  status st = OK;
+  given_form *g = NULL;
+  NEW(g, 1);
+  g->n = n;
+  g->m = cp->m;
+  g->dim = cp->dim;
+  TRY(new_arrays(cp, g));
+  for (int k = 0; k < n; ++k) {
+    g->node[k] = node[k];
+    g->is[node[k]] = 1;
+  }
+  TRY(factorise(cp, g));
+  condense_normals(cp, g);
+  *out = g;
+  g = NULL;
+done:
+  given_form_free(g);
+  return st;
+}
+
+/* g0 and B with the known pressures taken from B to g0; B NULL if none are
+ * left. */
+static status set_limit(given_form *g, const contact_problem *cp,
+                        contact_problem *out) {
+  status st = OK;
+  const sparse_rows *B = cp->B;
+  int left = 0;
+  if (B == NULL) goto done;
+  if (g->n_entry < B->start[cp->n]) {
+    memory_free(g->mu);
+    g->mu = NULL;
+    g->n_entry = B->start[cp->n];
+    NEW(g->mu, g->n_entry);
+  }
+  /* The gaps are not in use yet: they hold the forces by node. */
+  memset(g->gap, 0, (size_t)cp->n * sizeof *g->gap);
+  for (int k = 0; k < g->n; ++k) g->gap[g->node[k]] = g->force[k];
+  for (int i = 0; i < cp->n; ++i) {
+    g->g0[i] = cp->g0[i];
+    for (int e = B->start[i]; e < B->start[i + 1]; ++e) {
+      int known = g->is[B->col[e]];
+      if (known) g->g0[i] += B->val[e] * g->gap[B->col[e]];
+      g->mu[e] = known ? 0.0 : B->val[e];
+      left += g->mu[e] != 0.0;
+    }
+  }
+  g->B = *B;
+  g->B.val = g->mu;
+  out->g0 = g->g0;
+  out->B = left > 0 ? &g->B : NULL;
+done:
+  return st;
+}
+
+status given_form_set(given_form *g, const contact_problem *cp,
+                      const double *force, double reach, double *u, double *r,
+                      contact_problem *out) {
+  status st = OK;
+  *out = *cp;
+  memcpy(g->force, force, (size_t)g->n * sizeof *force);
+  TRY(set_limit(g, cp, out));
+  memcpy(g->gap, cp->gap, (size_t)cp->n * sizeof *g->gap);
+  memcpy(g->f, cp->f, (size_t)cp->m * sizeof *g->f);
+  for (int k = 0; k < g->n; ++k) {
+    size_t row = normal(g, k);
+    g->y[k] = cp->f[row] - force[k];
+    g->gap[g->node[k]] = reach;
+    u[row] = r[row] = 0.0;
+  }
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, g->n, g->L,
+              g->n, g->y, 1);
+  cblas_dgemv(CblasColMajor, CblasTrans, g->n, cp->m, -1.0, g->Y, g->n, g->y, 1,
+              1.0, g->f, 1);
+  for (int k = 0; k < g->n; ++k) g->f[normal(g, k)] = 0.0;
+  out->A = g->A;
+  out->f = g->f;
+  out->gap = g->gap;
+done:
+  return st;
+}
+
+void given_form_apply(given_form *g, contact_problem *cp, double *u,
+                      double *r) {
+  cblas_dgemv(CblasColMajor, CblasNoTrans, g->n, g->m, -1.0, g->Y, g->n, u, 1,
+              1.0, g->y, 1);
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, g->n, g->L,
+              g->n, g->y, 1);
+  memmove(g->met, cp->gap, (size_t)cp->n * sizeof *g->met);
+  for (int k = 0; k < g->n; ++k) {
+    size_t row = normal(g, k);
+    u[row] = g->met[g->node[k]] = g->y[k];
+    r[row] = -g->force[k];
+  }
+  cp->gap = g->met;
+}

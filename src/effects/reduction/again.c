@@ -1,0 +1,142 @@
+/*
+ * The increment solved once more with an effect that is left out, its strains
+ * and forces as the state at hand calls for them: what it would change to first
+ * order, in displacements, in the forces of the nodes and in their sums. The
+ * bounds of measure.c speak of energies; a slender body may move far for little
+ * energy, and friction may be a small part of the forces.
+ */
+#include "effects/reduction/parts.h"
+
+#include "base/memory.h"
+#include "base/sparse.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Strains of the row of the elements it is about into n->strain. */
+static void take_strains(neglect *n, const neglected *row) {
+  const int ns = n->m->ns, heat = row->bit == EFFECT_BIT_THERMAL;
+  const double *from = heat ? n->heat : n->flown;
+  for (int e = 0; e < n->msh->n_elem; ++e) {
+    const int own = heat || neglect_is_about(n, row, e);
+    for (int i = 0; i < ns; ++i)
+      n->strain[ns * e + i] = own ? from[ns * e + i] : 0.0;
+  }
+}
+
+/* What friction at node i would do against a way: no more than its limit, nor
+ * than what takes the node back alone, N. */
+static double friction_force(const neglect *n, const state *s, int i,
+                             double way) {
+  const contact_problem *cp = s->problem;
+  const int k = cp->dim * i;
+  double held = 0.0;
+  for (int a = 1; a < cp->dim; ++a)
+    held = fmax(held, cp->A[(size_t)(k + a) * (size_t)(cp->m + 1)]);
+  return fmin(neglect_coefficient(n, s, i) * fmax(-s->rc[k], 0.0), held * way);
+}
+
+/* Friction against the way of each node into n->force, N. */
+static void take_friction(neglect *n, const state *s) {
+  const contact_surface *c = s->surface;
+  const int dim = n->msh->dim, sides = dim - 1;
+  for (int i = 0; c != NULL && i < c->n; ++i) {
+    const double *way = n->way + sides * c->node_id[i];
+    const double length = sides == 2 ? hypot(way[0], way[1]) : fabs(way[0]);
+    if (!(length > 0.0)) continue;
+    const double force = friction_force(n, s, i, length);
+    for (int a = 0; a < sides; ++a)
+      for (int k = 0; k < dim; ++k)
+        n->force[dim * c->node_id[i] + k] -=
+            force * way[a] / length *
+            c->frame[dim * dim * i + dim * (a + 1) + k];
+  }
+}
+
+static void take_forces(neglect *n, const state *s, const neglected *row) {
+  const eigenstrain x = {n->msh->n_elem, n->elem_id, n->strain};
+  memset(n->force, 0,
+         (size_t)(n->msh->dim * n->msh->n_node) * sizeof *n->force);
+  if (row->bit == EFFECT_BIT_FRICTION) {
+    take_friction(n, s);
+    return;
+  }
+  take_strains(n, row);
+  eigen_force(&n->d, &x, n->force);
+}
+
+/* ---- changes ------------------------------------------------------------ */
+
+/* Largest of a - b. */
+static double distance(size_t n, const double *a, const double *b) {
+  double most = 0.0;
+  for (size_t i = 0; i < n; ++i) most = fmax(most, fabs(a[i] - b[i]));
+  return most;
+}
+
+/* Of the nodes: largest normal and tangential force, sum of each direction of
+ * all nodes. */
+typedef struct force_sizes {
+  double node[2], sum[3];
+} force_sizes;
+
+/* Of rc, or of rc - from. */
+static force_sizes sizes_of(const contact_surface *c, const double *rc,
+                            const double *from) {
+  force_sizes f = {{0.0, 0.0}, {0.0, 0.0, 0.0}};
+  for (int i = 0; i < c->n; ++i) {
+    double side = 0.0;
+    for (int a = 0; a < c->dim; ++a) {
+      const int k = c->dim * i + a;
+      const double value = rc[k] - (from != NULL ? from[k] : 0.0);
+      f.sum[a] += value;
+      if (a == 0) f.node[0] = fmax(f.node[0], fabs(value));
+      if (a > 0) side = hypot(side, value);
+    }
+    f.node[1] = fmax(f.node[1], side);
+  }
+  return f;
+}
+
+/* The forces against those of the increment; of friction against its largest
+ * so far. */
+static double force_change(neglect *n, const state *s, const double *rc) {
+  const force_sizes now = sizes_of(s->surface, s->rc, NULL);
+  const force_sizes d = sizes_of(s->surface, rc, s->rc);
+  double worst = neglect_part(d.node[0], now.node[0]);
+  worst = fmax(worst, neglect_part(fabs(d.sum[0]), fabs(now.sum[0])));
+  if (!(n->m->effects & EFFECT_FRICTION)) return worst;
+  worst = fmax(worst, neglect_part(d.node[1], n->tangential));
+  return fmax(worst, neglect_part(hypot(d.sum[1], d.sum[2]), n->total));
+}
+
+static void grow_scales(neglect *n, const state *s) {
+  if (s->surface == NULL) return;
+  const force_sizes now = sizes_of(s->surface, s->rc, NULL);
+  n->tangential = fmax(n->tangential, now.node[1]);
+  n->total = fmax(n->total, hypot(now.sum[1], now.sum[2]));
+}
+
+status neglect_again(neglect *n, const state *s, int k, double bound,
+                     neglected *row) {
+  status st = OK;
+  double *rc = NULL;
+  int solved = 0;
+  const size_t dofs = (size_t)(n->msh->dim * n->msh->n_node);
+  grow_scales(n, s);
+  if (row->bit == EFFECT_BIT_NONLOCAL || bound == 0.0) goto done;
+  if (!s->end_of_step && bound <= 2.0 * n->seen[k]) goto done;
+  n->seen[k] = fmax(bound, n->seen[k]);
+  if (s->surface != NULL) NEW(rc, s->surface->dim * s->surface->n);
+  take_forces(n, s, row);
+  TRY(s->again.solve(s->again.run, n->force, n->u, rc, &solved));
+  double change = solved ? neglect_part(distance(dofs, n->u, s->u),
+                                        largest_entry(dofs, s->u))
+                         : HUGE_VAL;
+  if (rc != NULL) change = fmax(change, force_change(n, s, rc));
+  if (!(change <= row->change)) row->change = change;
+  ++row->again;
+done:
+  memory_free(rc);
+  return st;
+}

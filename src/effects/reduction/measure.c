@@ -1,0 +1,376 @@
+/*
+ * Bounds of what an effect left out would have changed, from the answer found
+ * without it; a(.,.) is the energy of the body, |.| its norm.
+ *
+ *   thermal strain e    |du| <= |e|_E of the strain at hand; with friction,
+ *                       which remembers, of all its changes added up (twice)
+ *   inelastic strain    |du| <= |e^i|_E <= sum of dt times the larger of
+ *                       |rate|_E at both ends, internal variables at their
+ *                       start, and twice that for the stress it relieves
+ *   law at its end      |du| <= |lag|_E of the strain that R sigma has grown by
+ *                       and that has not crept yet, twice
+ *   friction            both inequalities tested with each other's answer:
+ *                       a(du, du) <= j(u) - j(u') <= sum g |slip| of the answer
+ *                       without friction; square roots added up over the
+ *                       increments, twice
+ *
+ * over |u| of the increment. "local" is the largest stress E e of an element
+ * over the largest contact pressure, or stress where nothing touches.
+ */
+#include "effects/reduction/parts.h"
+
+#include "base/memory.h"
+#include "fem/fem.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SAFETY = 2 };
+
+static status new_domain(neglect *n) {
+  status st = OK;
+  const model *m = n->m;
+  size_t square = (size_t)(m->ns * m->ns);
+  NEW(n->kin, m->n_section);
+  NEW(n->thickness, m->n_section);
+  NEW(n->E, square * (size_t)m->n_section);
+  NEW(n->C, 36 * (size_t)m->n_section);
+  NEW(n->fixed, n->msh->dim * n->msh->n_node);
+  for (int i = 0; i < m->n_section; ++i) {
+    const section *s = &m->sections[i];
+    const double *C = m->materials[s->material_id].C;
+    n->kin[i] = (kinematics)s->kin;
+    n->thickness[i] = s->thickness;
+    memcpy(n->C + 36 * (size_t)i, C, 36 * sizeof *C);
+    elastic_reduce(C, n->kin[i], n->E + square * (size_t)i);
+  }
+  n->d = (domain){.mesh = n->msh,
+                  .ns = m->ns,
+                  .section_id = m->elem_section,
+                  .kin = n->kin,
+                  .thickness = n->thickness,
+                  .E = n->E,
+                  .C = n->C,
+                  .fixed = n->fixed};
+done:
+  return st;
+}
+
+status neglect_new(const model *m, const mesh *msh, neglect **out) {
+  status st = OK;
+  neglect *n = NULL;
+  const size_t strains = (size_t)m->ns * (size_t)msh->n_elem;
+  *out = NULL;
+  NEW(n, 1);
+  n->m = m;
+  n->msh = msh;
+  TRY(new_domain(n));
+  NEW(n->sigma, strains);
+  NEW(n->T0, msh->n_elem);
+  NEW(n->T, msh->n_elem);
+  NEW(n->heat, strains);
+  NEW(n->flown, strains);
+  NEW(n->flow_rate, strains);
+  NEW(n->strain, strains);
+  NEW(n->elem_id, msh->n_elem);
+  NEW(n->way, (msh->dim - 1) * msh->n_node);
+  NEW(n->force, msh->dim * msh->n_node);
+  NEW(n->u, msh->dim * msh->n_node);
+  for (int e = 0; e < msh->n_elem; ++e) n->elem_id[e] = e;
+  NEW(n->stress, msh->n_elem);
+  NEW(n->rate, msh->n_elem);
+  TRY(load_temperature_initial(m, msh, n->T0));
+  *out = n;
+  n = NULL;
+done:
+  neglect_free(n);
+  return st;
+}
+
+void neglect_free(neglect *n) {
+  if (n == NULL) return;
+  double *const arrays[] = {n->thickness, n->E,         n->C,      n->sigma,
+                            n->T0,        n->T,         n->heat,   n->stress,
+                            n->rate,      n->flown,     n->strain, n->way,
+                            n->force,     n->flow_rate, n->u};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
+    memory_free(arrays[i]);
+  memory_free(n->kin);
+  memory_free(n->elem_id);
+  memory_free(n->fixed);
+  memory_free(n);
+}
+
+const material *neglect_material(const neglect *n, int elem_id) {
+  const model *m = n->m;
+  return &m->materials[m->sections[m->elem_section[elem_id]].material_id];
+}
+
+int neglect_is_about(const neglect *n, const neglected *row, int elem_id) {
+  return neglect_material(n, elem_id) == &n->m->materials[row->id] &&
+         (row->some == 0 || n->m->still[elem_id]);
+}
+
+/* ---- scales ------------------------------------------------------------- */
+
+/* Largest contact pressure, or stress of an element, Pa. */
+static double stress_scale(const neglect *n, const state *s) {
+  double most = 0.0;
+  const contact_surface *c = s->surface;
+  for (int i = 0; c != NULL && i < c->n; ++i)
+    if (c->area[i] > 0.0) most = fmax(most, -s->rc[c->dim * i] / c->area[i]);
+  size_t size = (size_t)n->m->ns * (size_t)n->msh->n_elem;
+  if (most > 0.0) return most;
+  for (size_t i = 0; i < size; ++i) most = fmax(most, fabs(n->sigma[i]));
+  return most;
+}
+
+/* a / b; nothing is no part of anything. */
+double neglect_part(double a, double b) {
+  return a == 0.0 ? 0.0 : b > 0.0 ? a / b : HUGE_VAL;
+}
+
+/* e' E e of a strain; its largest stress into *stress. */
+static double energy_of(const neglect *n, int elem_id, const double *e,
+                        double *stress) {
+  double held[6], sum = 0.0;
+  int ns = n->m->ns;
+  const double *E =
+      n->E + (size_t)(ns * ns) * (size_t)n->m->elem_section[elem_id];
+  *stress = 0.0;
+  for (int i = 0; i < ns; ++i) {
+    held[i] = 0.0;
+    for (int k = 0; k < ns; ++k) held[i] += E[ns * k + i] * e[k];
+    sum += held[i] * e[i];
+    *stress = fmax(*stress, fabs(held[i]));
+  }
+  return sum;
+}
+
+/* Stresses of the run into n->sigma: its thermal strains and those of the laws
+ * in force carry none. */
+status neglect_stress(neglect *n, const state *s) {
+  status st = OK;
+  const model *m = n->m;
+  const int ns = m->ns, warm = (m->effects & EFFECT_THERMAL) != 0;
+  const eigenstrain x = {n->msh->n_elem, n->elem_id, n->strain};
+  if (warm)
+    TRY(load_temperature(m, n->msh, &m->steps[s->step_no - 1], s->t, n->T0,
+                         n->T));
+  for (int e = 0; e < n->msh->n_elem; ++e) {
+    double *own = n->strain + (size_t)(ns * e);
+    for (int i = 0; i < ns; ++i) own[i] = 0.0;
+    if (warm && neglect_material(n, e)->expand.given)
+      expansion_strain(&neglect_material(n, e)->expand, n->T[e], n->T0[e], own);
+  }
+  for (int k = 0; s->flow != NULL && k < s->flow->n; ++k)
+    for (int i = 0; i < ns; ++i)
+      n->strain[ns * s->flow_elem[k] + i] += s->inelastic->ei[ns * k + i];
+  n->d.eigen = &x;
+  domain_stress(&n->d, s->u, NULL, n->sigma);
+  n->d.eigen = NULL;
+done:
+  return st;
+}
+
+/* ---- the effects -------------------------------------------------------- */
+
+static status measure_thermal(neglect *n, const state *s, double *sum,
+                              double *norm, double *stress) {
+  status st = OK;
+  double now = 0.0, change = 0.0;
+  int ns = n->m->ns;
+  *stress = 0.0;
+  TRY(load_temperature(n->m, n->msh, &n->m->steps[s->step_no - 1], s->t, n->T0,
+                       n->T));
+  for (int e = 0; e < n->msh->n_elem; ++e) {
+    double strain[6] = {0.0}, moved[6] = {0.0}, own, none;
+    const material *mat = neglect_material(n, e);
+    if (!mat->expand.given) continue;
+    double w = element_weight(&n->d, e);
+    expansion_strain(&mat->expand, n->T[e], n->T0[e], strain);
+    for (int i = 0; i < 3; ++i) {
+      moved[i] = strain[i] - n->heat[ns * e + i];
+      n->heat[ns * e + i] = strain[i];
+    }
+    now += w * energy_of(n, e, strain, &own);
+    change += w * energy_of(n, e, moved, &none);
+    *stress = fmax(*stress, own);
+  }
+  *sum += sqrt(change);
+  *norm = n->m->effects & EFFECT_FRICTION ? SAFETY * *sum : sqrt(now);
+done:
+  return st;
+}
+
+/*
+ * The law at its end, e^i = R sigma. Where that moves by d(R sigma) in an
+ * increment, the strain lags behind by what is left of
+ *   lag = (lag_old + d(R sigma)) exp(-dt/time), at most / (1 + dt/time),
+ * which an implicit Euler step has exactly; not at all where the law does not
+ * flow, nor where a load is applied at once (dt = 0).
+ */
+static void measure_relaxed(neglect *n, const neglected *row, double dt,
+                            double *norm, double *stress) {
+  const int ns = n->m->ns;
+  const material *mat = &n->m->materials[row->id];
+  const double left = 1.0 / (1.0 + dt / row->time);
+  double sum = 0.0;
+  *stress = 0.0;
+  for (int e = 0; e < n->msh->n_elem; ++e) {
+    double ended[6], own;
+    double *before = n->flow_rate + (size_t)(ns * e);
+    double *lag = n->flown + (size_t)(ns * e);
+    if (!neglect_is_about(n, row, e)) continue;
+    tensor_product(ns, mat->relaxed, n->sigma + (size_t)(ns * e), ended);
+    for (int i = 0; i < ns; ++i) {
+      lag[i] = left * (lag[i] - (ended[i] - before[i]));
+      before[i] = ended[i];
+    }
+    sum += element_weight(&n->d, e) * energy_of(n, e, lag, &own);
+    *stress = fmax(*stress, SAFETY * own);
+  }
+  *norm = SAFETY * sqrt(sum);
+}
+
+/* Rates of one material under the stresses at hand: their norm; n->stress of
+ * its elements grows by dt. */
+static status add_rates(neglect *n, const state *s, const neglected *row,
+                        double dt, double *norm) {
+  status st = OK;
+  const material *mat = &n->m->materials[row->id];
+  law_card law = mat->law;
+  flow_kind kind = {0};
+  double value[FLOW_VALUE_MAX], alpha_rate[FLOW_VALUE_MAX], sum = 0.0;
+  static const double zero[FLOW_VALUE_MAX];
+  int section_id = -1;
+  if (row->some == 0) law.ops = mat->law_aside;
+  for (int e = 0; e < n->msh->n_elem; ++e) {
+    law_point p;
+    double ei_rate[6] = {0.0}, stress;
+    if (!neglect_is_about(n, row, e)) continue;
+    if (section_id != n->m->elem_section[e]) {
+      law_elastic elastic;
+      section_id = n->m->elem_section[e];
+      flow_kind_free(&kind);
+      TRY(law_elastic_read(&mat->elastic, 0.0, n->kin[section_id], &elastic));
+      TRY(flow_new_kind(&kind, &law, &elastic));
+    }
+    TRY(flow_coefficients(&kind, s->t, 0.0, value, &p));
+    p.sigma = n->sigma + (size_t)n->m->ns * (size_t)e;
+    p.ei = p.alpha = zero;
+    law_rate(&p, ei_rate, alpha_rate);
+    sum += element_weight(&n->d, e) * energy_of(n, e, ei_rate, &stress);
+    n->stress[e] += dt * fmax(stress, n->rate[e]);
+    n->rate[e] = stress;
+    for (int i = 0; i < n->m->ns; ++i) {
+      double *before = &n->flow_rate[n->m->ns * e + i];
+      n->flown[n->m->ns * e + i] += 0.5 * dt * (*before + ei_rate[i]);
+      *before = ei_rate[i];
+    }
+  }
+  *norm = sqrt(sum);
+done:
+  flow_kind_free(&kind);
+  return st;
+}
+
+static status measure_inelastic(neglect *n, const state *s, int k, double *norm,
+                                double *stress) {
+  status st = OK;
+  const neglected *row = &n->m->neglected[k];
+  double now;
+  int flows = n->m->steps[s->step_no - 1].kind == STEP_VISCO;
+  if (row->time > 0.0) {
+    measure_relaxed(n, row, flows ? s->dt : 0.0, norm, stress);
+    return OK;
+  }
+  TRY(add_rates(n, s, row, flows ? s->dt : 0.0, &now));
+  if (flows) n->sum[k] += s->dt * fmax(now, n->last[k]);
+  n->last[k] = now;
+  *norm = SAFETY * n->sum[k];
+  *stress = 0.0;
+  for (int e = 0; e < n->msh->n_elem; ++e)
+    if (neglect_is_about(n, row, e))
+      *stress = fmax(*stress, SAFETY * n->stress[e]);
+done:
+  return st;
+}
+
+/* The rule that was taken out. */
+double neglect_coefficient(const neglect *n, const state *s, int i) {
+  const contact_surface *c = s->surface;
+  const friction_rule *rule =
+      friction_in_force(n->m, s->step_no - 1, c->contact_id[i]);
+  double x[3] = {0.0, 0.0, 0.0};
+  if (rule->aside == NULL) return 0.0;
+  for (int k = 0; k < c->dim; ++k) x[k] = c->x[c->dim * i + k];
+  return quantity_value(&rule->card.value, x, s->t);
+}
+
+static void measure_friction(neglect *n, const state *s, double *sum,
+                             double *norm) {
+  const contact_surface *c = s->surface;
+  const int sides = n->msh->dim - 1;
+  double work = 0.0;
+  for (int i = 0; c != NULL && i < c->n; ++i) {
+    double slip = 0.0, p = -s->rc[c->dim * i];
+    for (int k = 0; k < sides; ++k) slip = hypot(slip, s->slip[sides * i + k]);
+    for (int k = 0; k < sides; ++k)
+      n->way[sides * c->node_id[i] + k] += s->slip[sides * i + k];
+    work += neglect_coefficient(n, s, i) * fmax(p, 0.0) * slip;
+  }
+  *sum += sqrt(work);
+  *norm = SAFETY * *sum;
+}
+
+status neglect_measure(neglect *n, const state *s, neglected *rows) {
+  status st = OK;
+  double size = sqrt(2.0 * fmax(s->energy.strain, 0.0));
+  TRY(neglect_stress(n, s));
+  double scale = stress_scale(n, s);
+  for (int k = 0; k < n->m->n_neglected; ++k) {
+    double norm = 0.0, stress = 0.0;
+    neglected *row = &rows[k];
+    if (row->back) continue;
+    if (row->bit == EFFECT_BIT_THERMAL)
+      TRY(measure_thermal(n, s, &n->sum[k], &norm, &stress));
+    if (row->bit == EFFECT_BIT_INELASTIC)
+      TRY(measure_inelastic(n, s, k, &norm, &stress));
+    if (row->bit == EFFECT_BIT_FRICTION)
+      measure_friction(n, s, &n->sum[k], &norm);
+    double bound = neglect_part(norm, size),
+           local = neglect_part(stress, scale);
+    TRY(neglect_again(n, s, k, bound, row));
+    if (!(bound <= row->bound)) row->bound = bound;
+    if (!(local <= row->local)) row->local = local;
+    ++row->checked;
+  }
+done:
+  return st;
+}
+
+static int neglect_holds(const model *m, const neglected *row) {
+  return row->checked > 0 && row->bound <= neglect_share * m->effects_tol &&
+         row->local <= m->effects_tol && row->change <= 0.5 * m->effects_tol;
+}
+
+int neglect_refuted(const model *m) {
+  for (int k = 0; k < m->n_neglected; ++k)
+    if (!m->neglected[k].back && m->neglected[k].checked > 0 &&
+        !neglect_holds(m, &m->neglected[k]))
+      return 1;
+  return 0;
+}
+
+int neglect_take_back(model *m, int all) {
+  int n = 0;
+  for (int k = 0; k < m->n_neglected; ++k) {
+    neglected *row = &m->neglected[k];
+    if (row->back || (neglect_holds(m, row) && !all)) continue;
+    row->back = 1;
+    row->lost = all;
+    ++n;
+  }
+  return n;
+}

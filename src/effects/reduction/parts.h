@@ -1,0 +1,67 @@
+/*
+ * What the bounds are summed up from, shared by the files of this folder only.
+ */
+#ifndef PROTIS_NEGLECT_PARTS_H
+#define PROTIS_NEGLECT_PARTS_H
+
+#include "effects/reduction/neglect.h"
+
+struct neglect {
+  const model *m;
+  const mesh *msh;
+  domain d;
+  kinematics *kin;       /* [n_section] */
+  double *thickness, *E; /* [n_section], [ns*ns*n_section] */
+  double *C;             /* [36*n_section] */
+  unsigned char *fixed;  /* [dim*n_node] zero */
+  double *sigma;         /* [ns*n_elem] Pa */
+  double *T0, *T;        /* [n_elem] */
+  double *heat;          /* [ns*n_elem] thermal strain of the last increment */
+  double *flown;         /* [ns*n_elem] inelastic strain so far */
+  double *flow_rate;     /* [ns*n_elem] 1/s, of the last increment */
+  double *stress;        /* [n_elem] Pa, of the inelastic strain so far */
+  double *rate;          /* [n_elem] Pa/s, of the last increment */
+  double *way;           /* [(dim-1)*n_node] all slip so far, m*/
+  double sum[NEGLECT_MAX];  /* sqrt(J), of the row */
+  double last[NEGLECT_MAX]; /* sqrt(J)/s, rate of the last increment */
+  double seen[NEGLECT_MAX]; /* -, bound at the last increment solved again    */
+  double tangential;        /* N, largest tangential force so far             */
+  double total;             /* N, largest of their sums so far                */
+  int *elem_id;   /* [n_elem] all                                            */
+  double *strain; /* [ns*n_elem] room                                        */
+  double *force, *u; /* [dim*n_node] room                                     */
+};
+
+/* choose.c: scales of the deck. */
+/* Largest stress that pressures and prescribed displacements speak of, Pa; 0:
+ * not known (expressions, forces). */
+double neglect_load_stress(const model *m, const mesh *msh, double young);
+double neglect_young(const material *mat); /* Pa                              */
+int neglect_has_initial(const model *m);   /* 1: of strains, displacements    */
+/* A new row; NULL: there is no room. */
+neglected *neglect_row(model *m, int bit, int id);
+/* laws.c: materials to try without their law. */
+status neglect_try_laws(model *m, const mesh *msh);
+
+int neglect_kinematics(const model *m, int material_id);
+/* Increments of a step if each has dt. */
+double neglect_increments(const step *s, double dt);
+/* threshold.c: elements that stay below the threshold of their law. */
+status neglect_try_threshold(model *m, const mesh *msh);
+
+const material *neglect_material(const neglect *n, int elem_id);
+/* 1: the row leaves out the law of that element. */
+int neglect_is_about(const neglect *n, const neglected *row, int elem_id);
+/* Stresses of the run into n->sigma. */
+status neglect_stress(neglect *n, const state *s);
+/* Coefficient of the friction left out at contact node i. */
+double neglect_coefficient(const neglect *n, const state *s, int i);
+/* a / b; nothing is no part of anything. */
+double neglect_part(double a, double b);
+
+/* again.c: the increment with the effect of row k in force, where the row's
+ * "bound" now has doubled since the last time or the step ends. */
+status neglect_again(neglect *n, const state *s, int k, double bound,
+                     neglected *row);
+
+#endif

@@ -1,0 +1,273 @@
+/*
+ * Clusters are grown in three passes over each section: the stars of inner
+ * nodes no two of which are neighbours; what is left joins, across a face, the
+ * smallest cluster beside it; parts without inner nodes are begun by stars of
+ * nodes on their boundary, or by an element.
+ */
+#include "fem/cluster/cluster.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A section at work. */
+typedef struct growth {
+  const mesh *m;
+  const int *section_id;
+  int section, n;         /* n: clusters so far, of all sections            */
+  size_t *start;          /* [n_node+1] elements round the nodes            */
+  int *elem;              /* [start[n_node]]                                */
+  int *of, *size;         /* [n_elem] cluster; elements of a cluster        */
+  unsigned char *outside; /* [n_node] 1: on the boundary of the section     */
+  unsigned char *taken;   /* [n_node] 1: root, or neighbour of one          */
+} growth;
+
+static const int *corners(const growth *g, int e) {
+  return g->m->elem + (size_t)(g->m->dim + 1) * (size_t)e;
+}
+
+static int has_node(const growth *g, int e, int node) {
+  const int *v = corners(g, e);
+  for (int a = 0; a <= g->m->dim; ++a)
+    if (v[a] == node) return 1;
+  return 0;
+}
+
+/* The element of the section behind the face opposite to corner a, or -1. */
+static int behind(const growth *g, int e, int a) {
+  const int *v = corners(g, e), dim = g->m->dim, from = v[a == 0];
+  for (size_t q = g->start[from]; q < g->start[from + 1]; ++q) {
+    const int other = g->elem[q];
+    int common = 0;
+    if (other == e || g->section_id[other] != g->section) continue;
+    for (int b = 0; b <= dim; ++b) common += b != a && has_node(g, other, v[b]);
+    if (common == dim) return other;
+  }
+  return -1;
+}
+
+static void mark_outside(growth *g) {
+  memset(g->outside, 0, (size_t)g->m->n_node);
+  memset(g->taken, 0, (size_t)g->m->n_node);
+  for (int e = 0; e < g->m->n_elem; ++e) {
+    if (g->section_id[e] != g->section) continue;
+    for (int a = 0; a <= g->m->dim; ++a)
+      for (int b = 0; b <= g->m->dim && behind(g, e, a) < 0; ++b)
+        if (b != a) g->outside[corners(g, e)[b]] = 1;
+  }
+}
+
+static void put(growth *g, int e, int cluster) {
+  g->of[e] = cluster;
+  ++g->size[cluster];
+}
+
+/* The star of a node becomes a cluster, as far as it is free. */
+static void take_star(growth *g, int node) {
+  int found = 0;
+  for (size_t q = g->start[node]; q < g->start[node + 1]; ++q) {
+    const int e = g->elem[q];
+    if (g->section_id[e] != g->section || g->of[e] >= 0) continue;
+    put(g, e, g->n);
+    found = 1;
+    for (int a = 0; a <= g->m->dim; ++a) g->taken[corners(g, e)[a]] = 1;
+  }
+  g->n += found;
+}
+
+static void take_stars(growth *g, int outside) {
+  for (int i = 0; i < g->m->n_node; ++i)
+    if (!g->taken[i] && g->outside[i] == outside) take_star(g, i);
+}
+
+/* The smallest cluster across a face, or -1. */
+static int smallest_beside(const growth *g, int e) {
+  int best = -1;
+  for (int a = 0; a <= g->m->dim; ++a) {
+    const int other = behind(g, e, a), c = other < 0 ? -1 : g->of[other];
+    if (c >= 0 && (best < 0 || g->size[c] < g->size[best])) best = c;
+  }
+  return best;
+}
+
+/* Free elements join, ring by ring; the number of those that stay free. */
+static int join_rest(growth *g) {
+  int joined, rest;
+  do {
+    joined = rest = 0;
+    for (int e = 0; e < g->m->n_elem; ++e) {
+      if (g->section_id[e] != g->section || g->of[e] >= 0) continue;
+      const int c = smallest_beside(g, e);
+      if (c >= 0) put(g, e, c);
+      joined += c >= 0;
+      rest += c < 0;
+    }
+  } while (joined > 0 && rest > 0);
+  return rest;
+}
+
+static void start_with_element(growth *g) {
+  for (int e = 0; e < g->m->n_elem; ++e)
+    if (g->section_id[e] == g->section && g->of[e] < 0) {
+      put(g, e, g->n++);
+      return;
+    }
+}
+
+static void grow_section(growth *g, int section) {
+  g->section = section;
+  mark_outside(g);
+  take_stars(g, 0);
+  if (join_rest(g) == 0) return;
+  take_stars(g, 1);
+  while (join_rest(g) > 0) start_with_element(g);
+}
+
+/* ---- the finished set ------------------------------------------------------
+ */
+
+static status list_elements(const mesh *m, cluster_set *c) {
+  status st = OK;
+  NEW(c->start, c->n + 2);
+  NEW(c->elem, m->n_elem);
+  for (int e = 0; e < m->n_elem; ++e)
+    if (c->of[e] >= 0) ++c->start[c->of[e] + 2];
+  for (int k = 0; k < c->n; ++k) c->start[k + 2] += c->start[k + 1];
+  for (int e = 0; e < m->n_elem; ++e)
+    if (c->of[e] >= 0) c->elem[c->start[c->of[e] + 1]++] = e;
+done:
+  return st;
+}
+
+static status list_nodes(const mesh *m, cluster_set *c) {
+  status st = OK;
+  const int per = m->dim + 1;
+  int *seen = NULL, n = 0;
+  NEW(seen, m->n_node);
+  NEW(c->first, c->n + 1);
+  NEW(c->node, per * c->start[c->n]);
+  for (int k = 0; k < c->n; ++k) {
+    for (int q = c->start[k]; q < c->start[k + 1]; ++q)
+      for (int a = 0; a < per; ++a) {
+        const int i = m->elem[(size_t)per * (size_t)c->elem[q] + (size_t)a];
+        if (seen[i] == k + 1) continue;
+        seen[i] = k + 1;
+        c->node[n++] = i;
+      }
+    c->first[k + 1] = n;
+  }
+done:
+  memory_free(seen);
+  return st;
+}
+
+/* Volume of an element but for a factor common to its section. */
+static double volume(const cluster_input *in, int e) {
+  const int *v = in->mesh->elem + (size_t)(in->mesh->dim + 1) * (size_t)e;
+  const double *x = in->mesh->x;
+  double size = mesh_elem_measure(in->mesh, e);
+  if (in->axisymmetric) size *= x[2 * v[0]] + x[2 * v[1]] + x[2 * v[2]];
+  return size;
+}
+
+static status weigh(const cluster_input *in, cluster_set *c) {
+  status st = OK;
+  NEW(c->share, c->n);
+  NEW(c->weight, in->mesh->n_elem);
+  for (int f = CLUSTER_STRAIN; f <= CLUSTER_STRESS; ++f) NEW(c->mean[f], c->n);
+  for (int k = 0; k < c->n; ++k) {
+    double sum = 0;
+    for (int q = c->start[k]; q < c->start[k + 1]; ++q)
+      sum += c->weight[c->elem[q]] = volume(in, c->elem[q]);
+    for (int q = c->start[k]; q < c->start[k + 1]; ++q)
+      c->weight[c->elem[q]] /= sum;
+    c->share[k] = in->share[in->section_id[c->elem[c->start[k]]]];
+  }
+done:
+  return st;
+}
+
+static status grow(const cluster_input *in, cluster_set *c) {
+  status st = OK;
+  const mesh *m = in->mesh;
+  growth g = {.m = m, .section_id = in->section_id};
+  TRY(mesh_node_elements(m, &g.start, &g.elem));
+  NEW(g.size, m->n_elem);
+  NEW(g.outside, m->n_node);
+  NEW(g.taken, m->n_node);
+  NEW(c->of, m->n_elem);
+  g.of = c->of;
+  for (int e = 0; e < m->n_elem; ++e) g.of[e] = -1;
+  for (int i = 0; i < in->n_section; ++i)
+    if (in->share[i] > 0) grow_section(&g, i);
+  c->n = g.n;
+done:
+  memory_free(g.start);
+  memory_free(g.elem);
+  memory_free(g.size);
+  memory_free(g.outside);
+  memory_free(g.taken);
+  return st;
+}
+
+status cluster_new(const cluster_input *in, cluster_set **out) {
+  status st = OK;
+  cluster_set *c = NULL;
+  int wanted = 0;
+  *out = NULL;
+  for (int i = 0; i < in->n_section; ++i) wanted |= in->share[i] > 0;
+  if (!wanted) goto done;
+  NEW(c, 1);
+  TRY(grow(in, c));
+  TRY(list_elements(in->mesh, c));
+  TRY(list_nodes(in->mesh, c));
+  TRY(weigh(in, c));
+  *out = c;
+  c = NULL;
+done:
+  cluster_free(c);
+  return st;
+}
+
+void cluster_free(cluster_set *c) {
+  if (c == NULL) return;
+  memory_free(c->of);
+  memory_free(c->start);
+  memory_free(c->elem);
+  memory_free(c->first);
+  memory_free(c->node);
+  memory_free(c->share);
+  memory_free(c->weight);
+  for (int f = CLUSTER_STRAIN; f <= CLUSTER_STRESS; ++f)
+    memory_free(c->mean[f]);
+  memory_free(c);
+}
+
+double cluster_share(int ns, const double *E, int flows) {
+  static const double kept = 14.0 / 3; /* bulk over shear modulus, nu = 0.4  */
+  double bulk = 0, shear = E[(ns + 1) * 3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) bulk += E[ns * j + i] / 9;
+  for (int i = 4; i < ns; ++i) shear = fmin(shear, E[(ns + 1) * i]);
+  if (flows) return 1;
+  return fmax(0, 1 - sqrt(kept * shear / bulk));
+}
+
+void cluster_begin(cluster_set *c, cluster_field f) {
+  if (c != NULL) memset(c->mean[f], 0, (size_t)c->n * sizeof *c->mean[f]);
+}
+
+void cluster_add(cluster_set *c, cluster_field f, int elem_id,
+                 const double *t) {
+  if (c == NULL || c->of[elem_id] < 0) return;
+  c->mean[f][c->of[elem_id]] += c->weight[elem_id] * (t[0] + t[1] + t[2]);
+}
+
+void cluster_smooth(const cluster_set *c, cluster_field f, int elem_id,
+                    double *t) {
+  if (c == NULL || c->of[elem_id] < 0) return;
+  const int k = c->of[elem_id];
+  const double add = c->share[k] / 3 * (c->mean[f][k] - (t[0] + t[1] + t[2]));
+  for (int i = 0; i < 3; ++i) t[i] += add;
+}

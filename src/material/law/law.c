@@ -1,0 +1,211 @@
+/*
+ * The list of inelastic laws, the elasticity they are coupled with, and their
+ * evaluation at a point.
+ */
+#include "material/law/law.h"
+
+#include "base/memory.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+#define LAW_ROW(name) &name##_law,
+const law_ops *const law_list[] = {LAW_LIST(LAW_ROW) NULL};
+
+const law_ops *law_find(const char *name) {
+  for (int k = 0; law_list[k] != NULL; ++k)
+    if (strcasecmp(law_list[k]->name, name) == 0) return law_list[k];
+  return NULL;
+}
+
+/* Inverse of a symmetric positive definite matrix in place (Gauss-Jordan). */
+static void invert(int n, double *A) {
+  for (int k = 0; k < n; ++k) {
+    const double pivot = A[k + n * k];
+    A[k + n * k] = 1;
+    for (int j = 0; j < n; ++j) A[k + n * j] /= pivot;
+    for (int i = 0; i < n; ++i) {
+      if (i == k) continue;
+      const double factor = A[i + n * k];
+      A[i + n * k] = 0;
+      for (int j = 0; j < n; ++j) A[i + n * j] -= factor * A[k + n * j];
+    }
+  }
+}
+
+/* The xx, yy, zz, xy block of a 6x6 matrix. */
+static void plane_block(const double A[36], double *B) {
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) B[i + 4 * j] = A[i + 6 * j];
+}
+
+void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
+                     law_elastic *out) {
+  double full[36];
+  const int ns = kin == SOLID_3D ? 6 : 4;
+  const size_t bytes = (size_t)(ns * ns) * sizeof(double);
+  memset(out, 0, sizeof *out);
+  out->ns = ns;
+  out->kin = kin;
+  out->isotropic = type == ELASTIC_ISO;
+  out->plane_stress = kin == PLANE_STRESS;
+  elastic_reduce(C6, kin, out->E);
+  memcpy(out->S, out->E, bytes);
+  if (kin == PLANE_STRESS) {
+    memcpy(full, C6, sizeof full);
+    invert(6, full);
+    plane_block(full, out->S);
+  } else {
+    invert(ns, out->S);
+  }
+  memcpy(out->C, out->S, bytes);
+  if (kin == PLANE_STRESS)
+    invert(ns, out->C);
+  else
+    memcpy(out->C, out->E, bytes);
+  out->young = 1 / out->S[0];
+  out->shear = out->C[3 + ns * 3];
+}
+
+status law_elastic_read(const elastic_table *table, double temperature,
+                        kinematics kin, law_elastic *out) {
+  status st = OK;
+  double C[36] = {0};
+  char text[256];
+  const char *wrong = elastic_at(table, temperature, C, text, sizeof text);
+  if (wrong != NULL)
+    FAIL(ERR_DECK, "*ELASTIC at the temperature %g: %s", temperature, wrong);
+  law_elastic_set(C, table->type, kin, out);
+  out->temperature = temperature;
+  if (table->n > 1) out->table = table;
+done:
+  return st;
+}
+
+status law_elastic_heat(law_elastic *el, double temperature) {
+  if (el->table == NULL || el->temperature == temperature) return OK;
+  return law_elastic_read(el->table, temperature, el->kin, el);
+}
+
+int law_n_alpha(const law_card *law, int ns) {
+  return law->ops->n_alpha == NULL ? 0 : law->ops->n_alpha(law, ns);
+}
+
+static void clear(double *x, int n) {
+  if (n > 0) memset(x, 0, (size_t)n * sizeof *x);
+}
+
+static void multiply(double *x, int n, double factor) {
+  if (factor == 1) return;
+  for (int i = 0; i < n; ++i) x[i] *= factor;
+}
+
+void law_rate(const law_point *p, double *ei_rate, double *alpha_rate) {
+  const int ns = p->elastic->ns, na = law_n_alpha(p->law, ns);
+  clear(ei_rate, ns);
+  clear(alpha_rate, na);
+  p->law->ops->rate(p, ei_rate, alpha_rate);
+  multiply(ei_rate, ns, p->speed);
+  multiply(alpha_rate, na, p->speed);
+}
+
+void law_jacobian_at(const law_point *p, law_jacobian *j) {
+  const int ns = p->elastic->ns, na = law_n_alpha(p->law, ns);
+  double *const block[] = {j->ei_sigma, j->ei_ei, j->ei_alpha, j->alpha_sigma,
+                           j->alpha_alpha};
+  const int size[] = {ns * ns, ns * ns, ns * na, na * ns, na * na};
+  for (int k = 0; k < 5; ++k) clear(block[k], size[k]);
+  p->law->ops->jacobian(p, j);
+  for (int k = 0; k < 5; ++k) multiply(block[k], size[k], p->speed);
+}
+
+int law_flows(const law_point *p) {
+  return p->speed > 0 && (p->law->ops->flows == NULL || p->law->ops->flows(p));
+}
+
+double law_dissipation(const law_point *p) {
+  return p->speed * p->law->ops->dissipation(p);
+}
+
+double law_stored(const law_point *p) {
+  return p->law->ops->stored == NULL ? 0 : p->law->ops->stored(p);
+}
+
+/* M[n*n] += -A E with A[rows*ns] at row "first": stress under held strain. */
+static void subtract_elastic(const law_elastic *el, const double *A, int rows,
+                             int first, double *M, int n) {
+  for (int j = 0; j < el->ns; ++j)
+    for (int k = 0; k < el->ns; ++k)
+      for (int i = 0; i < rows; ++i)
+        M[first + i + n * j] -= A[i + rows * k] * el->E[k + el->ns * j];
+}
+
+static void copy_block(const double *A, int rows, int columns, double *M,
+                       int n) {
+  for (int j = 0; j < columns; ++j)
+    for (int i = 0; i < rows; ++i) M[i + n * j] += A[i + rows * j];
+}
+
+/* Matrix of d(e^i, alpha)/dt under held strain, [n*n]. */
+static status coupled_matrix(const law_point *p, int na, double *M) {
+  status st = OK;
+  const int ns = p->elastic->ns, n = ns + na;
+  double *room = NULL;
+  law_jacobian j;
+  NEW(room, 2 * ns * ns + 2 * ns * na + na * na);
+  j.ei_sigma = room;
+  j.ei_ei = j.ei_sigma + ns * ns;
+  j.ei_alpha = j.ei_ei + ns * ns;
+  j.alpha_sigma = j.ei_alpha + ns * na;
+  j.alpha_alpha = j.alpha_sigma + ns * na;
+  law_jacobian_at(p, &j);
+  subtract_elastic(p->elastic, j.ei_sigma, ns, 0, M, n);
+  subtract_elastic(p->elastic, j.alpha_sigma, na, ns, M, n);
+  copy_block(j.ei_ei, ns, ns, M, n);
+  copy_block(j.ei_alpha, ns, na, M + n * ns, n);
+  copy_block(j.alpha_alpha, na, na, M + n * ns + ns, n);
+done:
+  memory_free(room);
+  return st;
+}
+
+/* The largest magnitude of an eigenvalue of M[n*n], which is destroyed. */
+static status spectral_radius(double *M, int n, double *radius) {
+  status st = OK;
+  double *re = NULL;
+  NEW(re, 2 * n);
+  for (int i = 0; i < n * n; ++i)
+    if (!isfinite(M[i]))
+      FAIL(ERR_SINGULAR, "derivative of an inelastic law is not a number");
+  if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, M, n, re, re + n, NULL, 1,
+                    NULL, 1) != 0)
+    FAIL(ERR_SINGULAR, "no eigenvalues of the rates of an inelastic law");
+  *radius = 0;
+  for (int i = 0; i < n; ++i) *radius = fmax(*radius, hypot(re[i], re[n + i]));
+done:
+  memory_free(re);
+  return st;
+}
+
+status law_fastest_rate(const law_point *p, double *rate) {
+  status st = OK;
+  const law_ops *ops = p->law->ops;
+  const law_elastic *el = p->elastic;
+  double *M = NULL;
+  *rate = 0;
+  if (!law_flows(p)) goto done;
+  if (ops->fastest_rate != NULL && el->isotropic && !el->plane_stress)
+    *rate = p->speed * ops->fastest_rate(p);
+  else
+    *rate = -1;
+  if (!(*rate < 0)) goto done;
+  const int na = law_n_alpha(p->law, el->ns), n = el->ns + na;
+  NEW(M, n * n);
+  TRY(coupled_matrix(p, na, M));
+  TRY(spectral_radius(M, n, rate));
+done:
+  memory_free(M);
+  return st;
+}

@@ -1,0 +1,232 @@
+/*
+ * Points whose law flows: their state, rates, limits and norms.
+ */
+#include "material/scheme/scheme.h"
+
+#include "base/memory.h"
+#include "material/voigt.h"
+
+#include <math.h>
+#include <string.h>
+
+status flow_new_kind(flow_kind *k, const law_card *law,
+                     const law_elastic *elastic) {
+  status st = OK;
+  k->law = law;
+  k->elastic = *elastic;
+  k->n_alpha = law_n_alpha(law, elastic->ns);
+  k->varies = law_varies(law);
+  if (elastic->table != NULL) k->varies |= LAW_VARIES_TEMPERATURE;
+  if (law_n_value(law) > FLOW_VALUE_MAX ||
+      elastic->ns + k->n_alpha > FLOW_VALUE_MAX)
+    FAIL(ERR_DECK, "law %s: more than %d coefficients or internal variables",
+         law->ops->name, FLOW_VALUE_MAX);
+  NEW(k->value, law_n_value(law));
+  k->speed = 1.0;
+  if (k->varies == 0) TRY(law_values(law, 0.0, 0.0, k->value));
+done:
+  return st;
+}
+
+status flow_new_points(flow *x, int n, const int *kind_id) {
+  status st = OK;
+  x->n = n;
+  NEW(x->kind_id, n);
+  NEW(x->alpha_at, n + 1);
+  NEW(x->weight, n);
+  NEW(x->tally, 1);
+  for (int k = 0; k < n; ++k) {
+    int n_alpha = x->kind[kind_id[k]].n_alpha;
+    x->kind_id[k] = kind_id[k];
+    x->alpha_at[k + 1] = x->alpha_at[k] + (size_t)n_alpha;
+    if (n_alpha > x->most_alpha) x->most_alpha = n_alpha;
+  }
+done:
+  return st;
+}
+
+void flow_kind_free(flow_kind *k) {
+  memory_free(k->value);
+  k->value = NULL;
+}
+
+void flow_free(flow *x) {
+  for (int i = 0; x->kind != NULL && i < x->n_kind; ++i)
+    flow_kind_free(&x->kind[i]);
+  memory_free(x->kind);
+  memory_free(x->kind_id);
+  memory_free(x->alpha_at);
+  memory_free(x->weight);
+  memory_free(x->tally);
+  memset(x, 0, sizeof *x);
+}
+
+static size_t components(const flow *x) { return (size_t)x->ns * (size_t)x->n; }
+
+status flow_state_new(const flow *x, flow_state *s) {
+  status st = OK;
+  NEW(s->e, components(x));
+  NEW(s->ei, components(x));
+  NEW(s->sigma, components(x));
+  NEW(s->alpha, x->alpha_at[x->n]);
+  NEW(s->temperature, x->n);
+done:
+  return st;
+}
+
+void flow_state_free(flow_state *s) {
+  memory_free(s->e);
+  memory_free(s->ei);
+  memory_free(s->sigma);
+  memory_free(s->alpha);
+  memory_free(s->temperature);
+  memset(s, 0, sizeof *s);
+}
+
+void flow_state_copy(const flow *x, const flow_state *from, flow_state *to) {
+  size_t bytes = components(x) * sizeof(double);
+  to->t = from->t;
+  memcpy(to->e, from->e, bytes);
+  memcpy(to->ei, from->ei, bytes);
+  memcpy(to->sigma, from->sigma, bytes);
+  memcpy(to->alpha, from->alpha, x->alpha_at[x->n] * sizeof(double));
+  memcpy(to->temperature, from->temperature, (size_t)x->n * sizeof(double));
+}
+
+status flow_heat(flow_kind *kind, double temperature) {
+  return law_elastic_heat(&kind->elastic, temperature);
+}
+
+status flow_coefficients(flow_kind *kind, double t, double temperature,
+                         double *value, law_point *p) {
+  status st = OK;
+  TRY(flow_heat(kind, temperature));
+  *p = (law_point){.law = kind->law,
+                   .elastic = &kind->elastic,
+                   .value = kind->value,
+                   .speed = kind->speed,
+                   .t = t,
+                   .temperature = temperature};
+  if (kind->varies != 0) {
+    TRY(law_values(kind->law, t, temperature, value));
+    p->value = value;
+    p->speed = law_speed(kind->law, temperature);
+  }
+done:
+  return st;
+}
+
+/* Point k of a state for the law. */
+static status flow_point(const flow *x, int k, const flow_state *s, double dt,
+                         double *value, law_point *p) {
+  status st = OK;
+  size_t at = (size_t)x->ns * (size_t)k;
+  TRY(flow_coefficients(&x->kind[x->kind_id[k]], s->t, s->temperature[k], value,
+                        p));
+  p->dt = dt;
+  p->sigma = s->sigma + at;
+  p->ei = s->ei + at;
+  p->alpha = s->alpha + x->alpha_at[k];
+done:
+  return st;
+}
+
+int flow_goes_on(const flow *x, const law_point *p) {
+  const int goes = law_flows(p);
+  if (p->law->ops->flows == NULL) return goes;
+  ++x->tally->asked;
+  if (!goes) ++x->tally->resting;
+  return goes;
+}
+
+status flow_rates(const flow *x, const flow_state *s, double dt,
+                  double *ei_rate, double *alpha_rate, double *power) {
+  status st = OK;
+  double value[FLOW_VALUE_MAX];
+  *power = 0.0;
+  memset(ei_rate, 0, components(x) * sizeof *ei_rate);
+  memset(alpha_rate, 0, x->alpha_at[x->n] * sizeof *alpha_rate);
+  for (int k = 0; k < x->n; ++k) {
+    law_point p;
+    TRY(flow_point(x, k, s, dt, value, &p));
+    if (!flow_goes_on(x, &p)) continue;
+    law_rate(&p, ei_rate + (size_t)x->ns * (size_t)k,
+             alpha_rate + x->alpha_at[k]);
+    *power += x->weight[k] * law_dissipation(&p);
+  }
+done:
+  return st;
+}
+
+status flow_fastest(const flow *x, const flow_state *s, double dt,
+                    double *rate) {
+  status st = OK;
+  double value[FLOW_VALUE_MAX];
+  const int constant = flow_is_constant(x);
+  *rate = 0.0;
+  for (int k = 0, last = -1; k < x->n; ++k) {
+    law_point p;
+    double own;
+    if (constant && x->kind_id[k] == last) continue; /* the same rate         */
+    last = x->kind_id[k];
+    TRY(flow_point(x, k, s, dt, value, &p));
+    TRY(law_fastest_rate(&p, &own));
+    *rate = fmax(*rate, own);
+  }
+done:
+  return st;
+}
+
+status flow_add_stored(const flow *x, const flow_state *s, int from, int to,
+                       double *energy) {
+  status st = OK;
+  double value[FLOW_VALUE_MAX];
+  for (int k = from; k < to; ++k) {
+    law_point p;
+    if (x->kind[x->kind_id[k]].law->ops->stored == NULL) continue;
+    TRY(flow_point(x, k, s, 0.0, value, &p));
+    *energy += x->weight[k] * law_stored(&p);
+  }
+done:
+  return st;
+}
+
+double flow_root(const flow *x, double sum) {
+  double volume = 0.0;
+  for (int k = 0; k < x->n; ++k) volume += x->weight[k];
+  return volume > 0.0 ? sqrt(sum / volume) : 0.0;
+}
+
+double flow_norm(const flow *x, const double *v) {
+  double sum = 0.0;
+  for (int k = 0; k < x->n; ++k) {
+    const double *own = v + (size_t)x->ns * (size_t)k;
+    sum += x->weight[k] * tensor_dot(x->ns, own, own);
+  }
+  return flow_root(x, sum);
+}
+
+status flow_add_elastic(const flow *x, const flow_state *s, int from, int to,
+                        double *sum) {
+  status st = OK;
+  for (int k = from; k < to; ++k) {
+    flow_kind *kind = &x->kind[x->kind_id[k]];
+    const size_t at = (size_t)x->ns * (size_t)k;
+    double e[6] = {0};
+    for (int i = 0; i < x->ns; ++i)
+      e[i] = s->e[at + (size_t)i] - s->ei[at + (size_t)i];
+    if (kind->elastic.plane_stress) { /* zz: the stress alone tells           */
+      TRY(flow_heat(kind, s->temperature[k]));
+      voigt_product(x->ns, kind->elastic.S, s->sigma + at, e);
+    }
+    *sum += x->weight[k] * voigt_dot(x->ns, e, e);
+  }
+done:
+  return st;
+}
+
+int flow_is_constant(const flow *x) {
+  for (int i = 0; i < x->n_kind; ++i)
+    if (x->kind[i].varies != 0 || !x->kind[i].law->ops->linear) return 0;
+  return 1;
+}

@@ -1,0 +1,259 @@
+/*
+ * Maps of implicit steps of linear laws with constant coefficients. With y =
+ * (e^i, alpha) and the strain e (less the thermal one) of a point, y' = L y + G
+ * e,   sigma = E (e - e^i), a step is y_new = P y_old + Q0 e_old + Q1 e_new
+ * with matrices that depend on the law and dt alone, so that the body sees the
+ * constant elasticity D = E (I - Q1_ei) and needs one equilibrium: THETA y_new
+ * = y_old + dt (L y_th + G e_th), x_th = (1-theta) x_old + theta x_new
+ *   EXPONENTIAL  the exact solution for e linear in time over the step:
+ *                exp(dt L), dt phi_1(dt L) G, dt phi_2(dt L) G
+ */
+#include "material/scheme/work.h"
+
+#include "base/memory.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+/* C[n*m] += a A[n*k] B[k*m], column major */
+static void multiply(int n, int k, int m, double a, const double *A,
+                     const double *B, double *C) {
+  for (int j = 0; j < m; ++j)
+    for (int q = 0; q < k; ++q) {
+      double factor = a * B[q + k * j];
+      for (int i = 0; i < n && factor != 0.0; ++i)
+        C[i + n * j] += factor * A[i + n * q];
+    }
+}
+
+static void put_block(int rows, int columns, const double *A, double *M,
+                      int ld) {
+  for (int j = 0; j < columns; ++j)
+    for (int i = 0; i < rows; ++i) M[i + ld * j] += A[i + rows * j];
+}
+
+/* Blocks of the Jacobian of the point p in one array, new. */
+static status new_jacobian(const law_point *p, int na, law_jacobian *j) {
+  status st = OK;
+  int ns = p->elastic->ns;
+  NEW(j->ei_sigma, 2 * ns * ns + 2 * ns * na + na * na);
+  j->ei_ei = j->ei_sigma + ns * ns;
+  j->ei_alpha = j->ei_ei + ns * ns;
+  j->alpha_sigma = j->ei_alpha + ns * na;
+  j->alpha_alpha = j->alpha_sigma + na * ns;
+  law_jacobian_at(p, j);
+done:
+  return st;
+}
+
+/* y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
+static status linear_law(const flow_kind *k, double *L, double *G) {
+  status st = OK;
+  const law_elastic *el = &k->elastic;
+  const int ns = el->ns, na = k->n_alpha, n = ns + na;
+  law_jacobian j = {0};
+  double *zero = NULL, *top = NULL;
+  NEW(zero, n);
+  NEW(top, n * ns);
+  law_point p = {.law = k->law,
+                 .elastic = el,
+                 .value = k->value,
+                 .speed = k->speed,
+                 .sigma = zero,
+                 .ei = zero,
+                 .alpha = zero};
+  TRY(new_jacobian(&p, na, &j));
+  put_block(ns, ns, j.ei_sigma, top, n);
+  put_block(na, ns, j.alpha_sigma, top + ns, n);
+  multiply(n, ns, ns, 1.0, top, el->E, G);
+  for (int i = 0; i < n * ns; ++i) L[i] = -G[i];
+  put_block(ns, ns, j.ei_ei, L, n);
+  put_block(ns, na, j.ei_alpha, L + n * ns, n);
+  put_block(na, na, j.alpha_alpha, L + n * ns + ns, n);
+done:
+  memory_free(j.ei_sigma);
+  memory_free(zero);
+  memory_free(top);
+  return st;
+}
+
+/* X[n*m] := inv(M) X; M is destroyed. */
+static status solve(int n, int m, double *M, double *X) {
+  status st = OK;
+  int *pivot = NULL;
+  NEW(pivot, n);
+  if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, m, M, n, pivot, X, n) != 0)
+    FAIL(ERR_SINGULAR, "the step of an inelastic law has no solution");
+done:
+  memory_free(pivot);
+  return st;
+}
+
+static status theta_map(const flow_kind *k, const scheme_step *p,
+                        const double *L, const double *G, linear_map *m) {
+  status st = OK;
+  const int n = m->n, ns = k->elastic.ns, columns = n + 2 * ns;
+  const double in = p->theta * p->dt, out = (1.0 - p->theta) * p->dt;
+  double *M = NULL, *X = NULL;
+  NEW(M, n * n);
+  NEW(X, n * columns);
+  for (int i = 0; i < n * n; ++i) {
+    double one = i % (n + 1) == 0;
+    M[i] = one - in * L[i];
+    X[i] = one + out * L[i];
+  }
+  for (int i = 0; i < n * ns; ++i) {
+    X[n * n + i] = out * G[i];
+    X[n * (n + ns) + i] = in * G[i];
+  }
+  TRY(solve(n, columns, M, X));
+  memcpy(m->P, X, (size_t)(n * n) * sizeof *X);
+  memcpy(m->Q0, X + n * n, (size_t)(n * ns) * sizeof *X);
+  memcpy(m->Q1, X + n * (n + ns), (size_t)(n * ns) * sizeof *X);
+done:
+  memory_free(M);
+  memory_free(X);
+  return st;
+}
+
+/* X = exp(A) - I for A[n*n] of any size: Taylor below 2^-6, then squaring in
+ * the form X <- 2 X + X X, which keeps slow parts beside fast ones. */
+status exponential_less_one(int n, const double *A, double *X) {
+  status st = OK;
+  enum { TERMS = 12 };
+  double *power = NULL, *next = NULL, largest = 0.0;
+  size_t square = (size_t)n * (size_t)n;
+  int halvings = 0;
+  NEW(power, square);
+  NEW(next, square);
+  for (int i = 0; i < n; ++i) {
+    double row = 0.0;
+    for (int j = 0; j < n; ++j) row += fabs(A[i + n * j]);
+    largest = fmax(largest, row);
+  }
+  if (largest > 0.0) frexp(largest * 64.0, &halvings);
+  if (halvings < 0) halvings = 0;
+  for (size_t i = 0; i < square; ++i) X[i] = power[i] = ldexp(A[i], -halvings);
+  for (int k = 2; k <= TERMS; ++k) {
+    memset(next, 0, square * sizeof *next);
+    multiply(n, n, n, ldexp(1.0 / k, -halvings), A, power, next);
+    for (size_t i = 0; i < square; ++i) X[i] += power[i] = next[i];
+  }
+  for (; halvings > 0; --halvings) {
+    for (size_t i = 0; i < square; ++i) next[i] = 2.0 * X[i];
+    multiply(n, n, n, 1.0, X, X, next);
+    memcpy(X, next, square * sizeof *X);
+  }
+done:
+  memory_free(power);
+  memory_free(next);
+  return st;
+}
+
+/* exp of [dt L, dt G, 0; 0, 0, I; 0, 0, 0]: its first row is exp(dt L),
+ * dt phi_1 G, dt phi_2 G. */
+static status exponential_map(const flow_kind *k, const scheme_step *p,
+                              const double *L, const double *G, linear_map *m) {
+  status st = OK;
+  const int n = m->n, ns = k->elastic.ns, N = n + 2 * ns;
+  double *A = NULL, *X = NULL;
+  NEW(A, N * N);
+  NEW(X, N * N);
+  put_block(n, n, L, A, N);
+  put_block(n, ns, G, A + N * n, N);
+  for (int i = 0; i < N * N; ++i) A[i] *= p->dt;
+  for (int i = 0; i < ns; ++i) A[n + i + N * (n + ns + i)] = 1.0;
+  TRY(exponential_less_one(N, A, X));
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) m->P[i + n * j] = X[i + N * j] + (i == j);
+  for (int j = 0; j < ns; ++j)
+    for (int i = 0; i < n; ++i) {
+      m->Q1[i + n * j] = X[i + N * (n + ns + j)];
+      m->Q0[i + n * j] = X[i + N * (n + j)] - m->Q1[i + n * j];
+    }
+done:
+  memory_free(A);
+  memory_free(X);
+  return st;
+}
+
+/* The general case: from L and G. */
+static status matrix_map(const flow_kind *k, const scheme_step *p, int exact,
+                         linear_map *m) {
+  status st = OK;
+  double *L = NULL, *G = NULL;
+  NEW(L, m->n * m->n);
+  NEW(G, m->n * k->elastic.ns);
+  TRY(linear_law(k, L, G));
+  TRY(exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m));
+done:
+  memory_free(L);
+  memory_free(G);
+  return st;
+}
+
+/* D = E (I - Q1) with the rows of e^i. */
+static void remains(const law_elastic *el, const linear_map *m, double *D) {
+  const int ns = el->ns;
+  double top[36];
+  for (int j = 0; j < ns; ++j)
+    for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + m->n * j];
+  memcpy(D, el->E, (size_t)(ns * ns) * sizeof *D);
+  multiply(ns, ns, ns, -1.0, el->E, top, D);
+}
+
+/* The deviator and the mean go by themselves if the elasticity lets them. */
+static int is_series(const flow_kind *k) {
+  law_unit unit;
+  const law_point p = {
+      .law = k->law, .elastic = &k->elastic, .value = k->value};
+  if (k->law->ops->series == NULL) return 0;
+  return k->elastic.isotropic ||
+         k->law->ops->series(&p, 0, 0, &unit) == LAW_WHOLE;
+}
+
+status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
+                       linear_map *m, double *D) {
+  status st = OK;
+  const int ns = k->elastic.ns, n = ns + k->n_alpha, series = is_series(k);
+  const int general = !series && k->law->ops->relaxing == NULL;
+  m->n = n;
+  TRY(need(&m->P, (size_t)(n * n)));
+  TRY(need(&m->Q0, (size_t)(n * ns)));
+  TRY(need(&m->Q1, (size_t)(n * ns)));
+  TRY(need(&m->Q, (size_t)(n * ns)));
+  if (series)
+    TRY(series_map(k, p, exact, m, D));
+  else if (!general)
+    TRY(relaxing_map(k, p, exact, m, D));
+  else
+    TRY(matrix_map(k, p, exact, m));
+  if (general)
+    remains(&k->elastic, m, D);
+  else if (k->elastic.plane_stress)
+    TRY(plane_stress_map(&k->elastic, m, D));
+  add_scaled((size_t)(n * ns), m->Q0, 1.0, m->Q1, m->Q);
+done:
+  return st;
+}
+
+status linear_maps(const flow *x, const scheme_step *p, int exact,
+                   scheme_work *w) {
+  status st = OK;
+  size_t square = (size_t)(x->ns * x->ns);
+  const linear_key key = {p->dt, p->theta, exact};
+  if (w->made.dt == key.dt && w->made.theta == key.theta &&
+      w->made.exact == exact)
+    return OK;
+  w->made.dt = 0.0;
+  if (w->map == NULL) NEW(w->map, x->n_kind);
+  w->n_kind = x->n_kind;
+  TRY(need(&w->D_kind, square * (size_t)x->n_kind));
+  for (int i = 0; i < x->n_kind; ++i)
+    TRY(linear_map_make(&x->kind[i], p, exact, &w->map[i],
+                        w->D_kind + square * (size_t)i));
+  w->made = key;
+done:
+  return st;
+}

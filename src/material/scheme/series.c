@@ -1,0 +1,240 @@
+/*
+ * Maps of laws of springs and dashpots in series (MAXWELL, ZENER, KELVIN,
+ * BURGERS). Each part of the strain (all of it, or deviator and mean by
+ * themselves) has scalar equations for the strains v_k of its units,
+ *   d(v_k)/dt = f_k (e - sum_j v_j - m_k v_k),   e^i = v_0 + v_1 + ...
+ * The matrices of the general case mix the parts and add all rates up in e^i:
+ * of rates that differ by more than 16 decades the slow ones drown. Here, with
+ * h_k = f_k dt and the change D of a step,
+ *   THETA   D v_k = b_k (x - m_k v_k),  b_k = 1/(1/h_k + theta m_k),
+ *           x = (e_th - sum_j v_j/(1 + theta h_j m_j))/(1 + theta sum_j b_j)
+ *   EXPONENTIAL  exact for e linear over the step: in closed form if one unit
+ *           moves, else by the exponential of the matrix. If a unit is faster
+ *           than MODERATE there, e - e^i is taken as linear over the step, or
+ *           as that of its end for dashpots so fast: order 2 for the others.
+ * All numbers are of the size of 1 for every rate.
+ */
+#include "material/scheme/work.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double MODERATE = 1e6, MOST = 1e200; /* of h, -                */
+
+/* A part with n units, and its map of them: D v = U v + u0 e_old + u1 e_new;
+ * kept = 1 - sum of u1. */
+typedef struct series {
+  int n;
+  double *h, *m;       /* [n] -                                             */
+  double *U, *u0, *u1; /* [n*n], [n], [n]                                   */
+  double kept;
+  double *room;
+} series;
+
+static status series_new(int n, series *s) {
+  status st = OK;
+  *s = (series){.n = n};
+  NEW(s->room, n * (n + 4));
+  s->h = s->room;
+  s->m = s->h + n;
+  s->u0 = s->m + n;
+  s->u1 = s->u0 + n;
+  s->U = s->u1 + n;
+done:
+  return st;
+}
+
+/* All units of a part; LAW_NO_PART: there is none. */
+static int units_of(const law_point *p, int part, double dt, series *s) {
+  int of = LAW_NO_PART;
+  for (int k = 0; k < s->n; ++k) {
+    law_unit unit = {0};
+    of = p->law->ops->series(p, part, k, &unit);
+    s->h[k] = fmin(p->speed * unit.flow * dt, MOST);
+    s->m[k] = unit.spring;
+  }
+  return of;
+}
+
+static void by_theta(double theta, series *s) {
+  double sum = 0.0;
+  for (int k = 0; k < s->n; ++k)
+    sum += s->h[k] > 0.0 ? 1.0 / (1.0 / s->h[k] + theta * s->m[k]) : 0.0;
+  s->kept = 1.0 / (1.0 + theta * sum);
+  for (int k = 0; k < s->n; ++k) {
+    const double b =
+        s->h[k] > 0.0 ? 1.0 / (1.0 / s->h[k] + theta * s->m[k]) : 0.0;
+    for (int j = 0; j < s->n; ++j)
+      s->U[k + s->n * j] = -b * s->kept / (1.0 + theta * s->h[j] * s->m[j]) -
+                           (j == k ? b * s->m[k] : 0.0);
+    s->u0[k] = (1.0 - theta) * b * s->kept;
+    s->u1[k] = theta * b * s->kept;
+  }
+}
+
+/* (1 - exp(-z))/z */
+static double mean_of_decay(double z) { return z > 0.0 ? -expm1(-z) / z : 1.0; }
+
+/* The unit q alone moves. */
+static void by_one(int q, series *s) {
+  const double stiff = 1.0 + s->m[q], z = s->h[q] * stiff, a = -expm1(-z);
+  for (int j = 0; j < s->n; ++j) s->U[q + s->n * j] = j == q ? -a : -a / stiff;
+  s->u1[q] = relaxing_late_share(z) / stiff;
+  s->u0[q] = a / stiff - s->u1[q];
+  s->kept = (s->m[q] + mean_of_decay(z)) / stiff;
+}
+
+static status by_matrix(series *s) {
+  status st = OK;
+  const int n = s->n, N = n + 2;
+  double *A = NULL, *X = NULL;
+  NEW(A, N * N);
+  NEW(X, N * N);
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) A[k + N * j] = -s->h[k];
+    A[k + N * k] -= s->h[k] * s->m[k];
+    A[k + N * n] = s->h[k];
+  }
+  A[n + N * (n + 1)] = 1.0;
+  TRY(exponential_less_one(N, A, X));
+  s->kept = 1.0;
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) s->U[k + n * j] = X[k + N * j];
+    s->u1[k] = X[k + N * (n + 1)];
+    s->u0[k] = X[k + N * n] - s->u1[k];
+    s->kept -= s->u1[k];
+  }
+done:
+  memory_free(A);
+  memory_free(X);
+  return st;
+}
+
+/* D v = -a v + b0 x_old + b1 x_new of a unit, x = e - e^i. */
+static void term_shares(double h, double m, double *a, double *b0, double *b1) {
+  const double z = h * m;
+  *a = -expm1(-z);
+  *b0 = 0.0;
+  *b1 = h;
+  if (h > MODERATE && z < 1.0) return;
+  *b1 = z > 0.0 ? h / z * relaxing_late_share(z) : h / 2;
+  *b0 = h * mean_of_decay(z) - *b1;
+}
+
+static void by_stress(series *s) {
+  double sum0 = 0.0, sum1 = 0.0, a, b0, b1;
+  for (int k = 0; k < s->n; ++k) {
+    term_shares(s->h[k], s->m[k], &a, &b0, &b1);
+    sum0 += b0;
+    sum1 += b1;
+  }
+  s->kept = 1.0 / (1.0 + sum1);
+  for (int k = 0; k < s->n; ++k) {
+    term_shares(s->h[k], s->m[k], &a, &b0, &b1);
+    s->u1[k] = b1 * s->kept;
+    s->u0[k] = b0 - s->u1[k] * sum0;
+    for (int j = 0; j < s->n; ++j)
+      s->U[k + s->n * j] =
+          -s->u0[k] - s->u1[k] * exp(-s->h[j] * s->m[j]) - (j == k ? a : 0.0);
+  }
+}
+
+static status by_exponential(series *s) {
+  status st = OK;
+  int moving = 0, last = 0;
+  double fastest = 0.0;
+  for (int k = 0; k < s->n; ++k) {
+    if (!(s->h[k] > 0.0)) continue;
+    ++moving;
+    last = k;
+    fastest = fmax(fastest, s->h[k] * (1.0 + s->m[k]));
+  }
+  if (moving <= 1)
+    by_one(last, s);
+  else if (fastest <= MODERATE)
+    TRY(by_matrix(s));
+  else
+    by_stress(s);
+done:
+  return st;
+}
+
+/* Entry (i, j) of the projector on a part of the strain. */
+static double projector(int of, int i, int j) {
+  const double mean = i < 3 && j < 3 ? 1.0 / 3 : 0.0, one = i == j;
+  return of == LAW_WHOLE ? one : of == LAW_MEAN ? mean : one - mean;
+}
+
+/* A row of the map gets a part of the change of unit k: from column j of each
+ * tensor; v_0 is e^i less the other units. */
+static void add_row(const series *s, int k, int ns, int row, int j, double part,
+                    linear_map *m) {
+  const int n = m->n;
+  const double *U = s->U + k;
+  m->P[row + n * j] += part * U[0];
+  for (int q = 1; q < s->n; ++q)
+    m->P[row + n * (ns * q + j)] += part * (U[s->n * q] - U[0]);
+  m->Q0[row + n * j] += part * s->u0[k];
+  m->Q1[row + n * j] += part * s->u1[k];
+}
+
+/* e^i gets the change of all units, alpha that of the units from 1 on. */
+static void add_part(const series *s, int of, int ns, linear_map *m) {
+  for (int j = 0; j < ns; ++j)
+    for (int i = 0; i < ns; ++i) {
+      const double part = projector(of, i, j);
+      for (int k = 0; k < s->n && part != 0.0; ++k) {
+        add_row(s, k, ns, i, j, part, m);
+        if (k > 0) add_row(s, k, ns, ns * k + i, j, part, m);
+      }
+    }
+}
+
+/* D[ns*ns] = C (what is left of each part). */
+static void remains(const law_elastic *el, const double kept[3], int whole,
+                    double *D) {
+  const int ns = el->ns;
+  for (int j = 0; j < ns; ++j) {
+    double column[6];
+    for (int i = 0; i < ns; ++i)
+      column[i] = whole ? kept[LAW_WHOLE] * projector(LAW_WHOLE, i, j)
+                        : kept[LAW_DEVIATOR] * projector(LAW_DEVIATOR, i, j) +
+                              kept[LAW_MEAN] * projector(LAW_MEAN, i, j);
+    tensor_product(ns, el->C, column, D + ns * j);
+  }
+}
+
+status series_map(const flow_kind *k, const scheme_step *p, int exact,
+                  linear_map *m, double *D) {
+  status st = OK;
+  const int ns = k->elastic.ns, n = m->n;
+  const law_point point = {.law = k->law,
+                           .elastic = &k->elastic,
+                           .value = k->value,
+                           .speed = k->speed};
+  double kept[3] = {1.0, 1.0, 1.0};
+  series s = {0};
+  TRY(series_new(n / ns, &s));
+  memset(m->P, 0, (size_t)(n * n) * sizeof *m->P);
+  memset(m->Q0, 0, (size_t)(n * ns) * sizeof *m->Q0);
+  memset(m->Q1, 0, (size_t)(n * ns) * sizeof *m->Q1);
+  for (int i = 0; i < n; ++i) m->P[i + n * i] = 1.0;
+  int of = LAW_NO_PART, whole = 0;
+  for (int part = 0; (of = units_of(&point, part, p->dt, &s)) != LAW_NO_PART;
+       ++part) {
+    memset(s.u0, 0, (size_t)(s.n * (s.n + 2)) * sizeof *s.u0);
+    if (exact)
+      TRY(by_exponential(&s));
+    else
+      by_theta(p->theta, &s);
+    add_part(&s, of, ns, m);
+    kept[of] = s.kept;
+    whole |= of == LAW_WHOLE;
+  }
+  remains(&k->elastic, kept, whole, D);
+done:
+  memory_free(s.room);
+  return st;
+}

@@ -1,0 +1,75 @@
+/*
+ * Room of the integrators and what their files share. Private to
+ * src/material/scheme.
+ */
+#ifndef PROTIS_SCHEME_WORK_H
+#define PROTIS_SCHEME_WORK_H
+
+#include "material/scheme/scheme.h"
+
+enum { STAGES = 4 };
+
+/* Step of a linear law with constant coefficients, y = (e^i, alpha):
+ * y_new = P y_old + Q0 e_old + Q1 e_new. */
+typedef struct linear_map {
+  int n;           /* ns + n_alpha                                           */
+  double *P;       /* [n*n]                                                  */
+  double *Q0, *Q1; /* [n*ns]                                                 */
+  double *Q;       /* [n*ns] Q0 + Q1: of strains that stay                   */
+} linear_map;
+
+/* What the maps of a step depend on beside the laws. */
+typedef struct linear_key {
+  double dt, theta; /* dt = 0: there are none                                 */
+  int exact;        /* 1: EXPONENTIAL, 0: THETA                               */
+} linear_key;
+
+struct scheme_work {
+  double *ei_rate[STAGES], *alpha_rate[STAGES]; /* [ns*n], [alpha_at[n]]     */
+  double *sigma_k, *e_k, *linear; /* [ns*n] when first needed                */
+  double *D;                      /* [ns*ns*n] the same                      */
+  linear_key made;                /* what map[] and D_kind are for         */
+  linear_map *map; /* [n_kind]                                     */
+  double *D_kind;  /* [ns*ns*n_kind] Pa                            */
+  int n_kind;
+};
+
+/* y = x + a v over n components */
+void add_scaled(size_t n, const double *x, double a, const double *v,
+                double *y);
+void linear_map_free(linear_map *m);
+status need(double **array, size_t n); /* allocate if NULL                   */
+
+/* linear.c: the map of a kind (arrays that are NULL are made) and its D[ns*ns];
+ * those of all kinds into w, if others are there; X = exp(A) - I for A[n*n]. */
+status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
+                       linear_map *m, double *D);
+status linear_maps(const flow *x, const scheme_step *p, int exact,
+                   scheme_work *w);
+status exponential_less_one(int n, const double *A, double *X);
+/* linear_step.c; y[m->n] of point k from the old state for the new strain e */
+void linear_at(const flow *x, const linear_map *m, int k, const flow_state *old,
+               const double *e, double *y);
+status linear_advance(const scheme_call *a, int exact);
+status exponential_between(const scheme_call *a, flow_state *mid);
+/* newton.c */
+status newton_advance(const scheme_call *a);
+/* series.c, relaxing.c: for laws with "series", "relaxing"; m->P, Q0, Q1 are
+ * there, D as if e_zz of plane stress were given. */
+status series_map(const flow_kind *k, const scheme_step *p, int exact,
+                  linear_map *m, double *D);
+status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
+                    linear_map *m, double *D);
+/* 1 - (1 - exp(-z))/z */
+double relaxing_late_share(double z);
+/* The map and D for the strains in the plane, sigma_zz = 0.
+ * ERR_SINGULAR: nothing resists e_zz. */
+status plane_stress_map(const law_elastic *el, linear_map *m, double *D);
+/* between.c */
+status hermite_between(const scheme_call *a, flow_state *mid);
+/* explicit.c */
+status euler_advance(const scheme_call *a);
+status heun_advance(const scheme_call *a);
+status rk4_advance(const scheme_call *a);
+
+#endif

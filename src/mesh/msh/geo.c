@@ -1,0 +1,160 @@
+/*
+ * Words of a .geo. Comments are passed over; what stands in quotes counts, as
+ * in GetNumber("h").
+ */
+#include "mesh/msh/geo.h"
+
+#include "base/memory.h"
+#include "base/system/input.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+enum { MOST_BYTES = 1 << 26 };
+
+static status add_file(geo_text *g, const char *folder, size_t n_folder,
+                       const char *name, int merged) {
+  status st = OK;
+  char *path = NULL;
+  int i = 0;
+  if (g->n_file >= GEO_FILES) {
+    g->is_open = 1;
+    return OK;
+  }
+  if (name[0] == '/') n_folder = 0;
+  NEW(path, n_folder + strlen(name) + 1);
+  if (n_folder > 0) memcpy(path, folder, n_folder);
+  strcpy(path + n_folder, name);
+  while (i < g->n_file && strcmp(g->file[i], path) != 0) ++i;
+  g->merged[i] = (char)(g->merged[i] | merged);
+  if (i < g->n_file) goto done;
+  int room = g->file_room;
+  GROW(g->file, g->n_file, room);
+  GROW(g->text, g->n_file, g->file_room);
+  g->file[g->n_file++] = path;
+  path = NULL;
+done:
+  memory_free(path);
+  return st;
+}
+
+/* The whole file as text, NULL if it cannot be read. */
+static status load(const char *path, char **text) {
+  status st = OK;
+  const char *why;
+  FILE *in = input_stream(path, &why);
+  if (in == NULL) return OK;
+  fseek(in, 0, SEEK_END);
+  long size = ftell(in);
+  rewind(in);
+  if (size >= 0 && size < MOST_BYTES) {
+    NEW(*text, size + 1);
+    (*text)[fread(*text, 1, (size_t)size, in)] = '\0';
+  }
+done:
+  fclose(in);
+  return st;
+}
+
+static int starts_name(char c) { return isalpha((unsigned char)c) || c == '_'; }
+static int in_name(char c) { return isalnum((unsigned char)c) || c == '_'; }
+
+/* After Include or Merge: the file, if it stands there in quotes. */
+static status include(geo_text *g, const char *path, const char *p,
+                      int merged) {
+  status st = OK;
+  char *name = NULL;
+  const char *slash = strrchr(path, '/');
+  p += strspn(p, " \t\r\n");
+  size_t n = *p == '"' ? strcspn(p + 1, "\"\n") : 0;
+  g->is_open |= n == 0;
+  if (n == 0) return OK;
+  NEW(name, n + 1);
+  memcpy(name, p + 1, n);
+  TRY(add_file(g, path, slash != NULL ? (size_t)(slash - path) + 1 : 0, name,
+               merged));
+done:
+  memory_free(name);
+  return st;
+}
+
+/* The end of a comment or number that begins at p, or p. */
+static char *pass_over(char *p, int in_quotes) {
+  if (!in_quotes && strncmp(p, "//", 2) == 0) return p + strcspn(p, "\n");
+  if (!in_quotes && strncmp(p, "/*", 2) == 0) {
+    char *end = strstr(p + 2, "*/");
+    return end != NULL ? end + 2 : p + strlen(p);
+  }
+  if (isdigit((unsigned char)*p))
+    while (in_name(*p) || *p == '.') ++p;
+  return p;
+}
+
+static status find_names(geo_text *g, const char *path, char *text) {
+  status st = OK;
+  int in_quotes = 0;
+  for (char *p = text, *q; *p != '\0';) {
+    if ((q = pass_over(p, in_quotes)) > p) {
+      p = q;
+      continue;
+    }
+    if (!starts_name(*p)) {
+      in_quotes ^= *p++ == '"';
+      continue;
+    }
+    for (q = p; in_name(*q);) ++q;
+    char after = *q, *rest = pass_over(q, in_quotes);
+    if (rest == q) rest += after != '\0';
+    *q = '\0'; /* of the name; what stood there is looked at first */
+    GROW(g->name, g->n_name, g->name_room);
+    g->name[g->n_name++] = p;
+    int merged = strcmp(p, "Merge") == 0 || strcmp(p, "MergeFile") == 0;
+    int loads = merged || strcmp(p, "Include") == 0;
+    if (after == '"') g->is_open |= loads;
+    if (loads && after != '\0' && after != '"')
+      TRY(include(g, path, q + 1, merged));
+    in_quotes ^= after == '"';
+    p = rest;
+  }
+done:
+  return st;
+}
+
+status geo_read(const char *file, geo_text *g) {
+  status st = OK;
+  *g = (geo_text){0};
+  TRY(add_file(g, NULL, 0, file, 0));
+  for (int i = 0; i < g->n_file; ++i) {
+    const char *path = g->file[i], *dot = strrchr(path, '.');
+    if (i > 0 && (dot == NULL || strcasecmp(dot, ".geo") != 0)) continue;
+    TRY(load(path, &g->text[i]));
+    g->is_open |= g->text[i] == NULL; /* gmsh tells why                       */
+    if (g->text[i] != NULL) TRY(find_names(g, path, g->text[i]));
+  }
+done:
+  return st;
+}
+
+void geo_free(geo_text *g) {
+  for (int i = 0; i < g->n_file; ++i) {
+    memory_free(g->file[i]);
+    memory_free(g->text[i]);
+  }
+  memory_free(g->file);
+  memory_free(g->text);
+  memory_free(g->name);
+  *g = (geo_text){0};
+}
+
+int geo_has(const geo_text *g, const char *name) {
+  for (int i = 0; i < g->n_name; ++i)
+    if (strcmp(g->name[i], name) == 0) return 1;
+  return g->is_open;
+}
+
+const char *geo_name(const void *geo, int i) {
+  const geo_text *g = geo;
+  return i < g->n_name ? g->name[i] : NULL;
+}

@@ -1,0 +1,281 @@
+/*
+ * The sections in turn, then what they hold together: blocks by dimension and
+ * tag, groups with their names.
+ */
+#include "mesh/msh/msh.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* clang-format off */
+static const element_type types[] = {
+  {0, 0, NULL},
+  {1, 2, "Line 2"},          {2, 3, "Triangle 3"},
+  {2, 4, "Quadrilateral 4"}, {3, 4, "Tetrahedron 4"},
+  {3, 8, "Hexahedron 8"},    {3, 6, "Prism 6"},
+  {3, 5, "Pyramid 5"},       {1, 3, "Line 3"},
+  {2, 6, "Triangle 6"},      {2, 9, "Quadrilateral 9"},
+  {3, 10, "Tetrahedron 10"}, {3, 27, "Hexahedron 27"},
+  {3, 18, "Prism 18"},       {3, 14, "Pyramid 14"},
+  {0, 1, "Point"},           {2, 8, "Quadrilateral 8"},
+  {3, 20, "Hexahedron 20"},  {3, 15, "Prism 15"},
+  {3, 13, "Pyramid 13"},     {2, 9, "Triangle 9"},
+  {2, 10, "Triangle 10"},    {2, 12, "Triangle 12"},
+  {2, 15, "Triangle 15"},    {2, 15, "Triangle 15I"},
+  {2, 21, "Triangle 21"},    {1, 4, "Line 4"},
+  {1, 5, "Line 5"},          {1, 6, "Line 6"},
+  {3, 20, "Tetrahedron 20"}, {3, 35, "Tetrahedron 35"},
+  {3, 56, "Tetrahedron 56"},
+};
+/* clang-format on */
+
+const element_type *msh_type(int type) {
+  int n = (int)(sizeof types / sizeof *types);
+  return type > 0 && type < n ? &types[type] : NULL;
+}
+
+/* ---- what the sections add ----------------------------------------------- */
+
+status msh_add_group(msh *m, int dim, int tag) {
+  status st = OK;
+  int id, n = m->groups.n;
+  TRY(table_add(&m->groups, table_key(dim, tag), &id));
+  if (id < n) return OK;
+  GROW(m->raw->group, id, m->groups_room);
+  m->raw->group[id] = (raw_group){dim, tag, NULL};
+  m->raw->n_group = id + 1;
+done:
+  return st;
+}
+
+static status new_block(msh *m, int id, int type, int tag, int n_physical,
+                        const int *physical) {
+  status st = OK;
+  const element_type *t = msh_type(type);
+  GROW(m->raw->block, id, m->blocks_room);
+  GROW(m->fill, id, m->fills_room);
+  m->fill[id] = (msh_fill){0, tag};
+  m->raw->n_block = id + 1;
+  raw_block *b = &m->raw->block[id];
+  *b = (raw_block){.dim = t->dim, .type = type, .n_per = (size_t)t->n_node};
+  NEW(b->physical, n_physical);
+  memcpy(b->physical, physical, (size_t)n_physical * sizeof *physical);
+  b->n_physical = n_physical;
+  b->type_name = memory_text(t->name);
+  if (b->type_name == NULL) FAIL(ERR_MEMORY, "memory exhausted: %s", t->name);
+done:
+  return st;
+}
+
+status msh_block(msh *m, int type, int tag, int n_physical, const int *physical,
+                 int *block) {
+  status st = OK;
+  int n = m->blocks.n;
+  *block = -1;
+  if (n_physical == 0) return OK;
+  TRY(table_add(&m->blocks, table_key(type, tag), block));
+  if (*block < n) return OK;
+  TRY(new_block(m, *block, type, tag, n_physical, physical));
+done:
+  return st;
+}
+
+status msh_add_element(msh *m, int block, size_t no, size_t **node) {
+  status st = OK;
+  raw_block *b = &m->raw->block[block];
+  if (b->n >= m->fill[block].room) {
+    size_t room = b->n < 4 ? 4 : 2 * b->n, per = b->n_per;
+    void *more = memory_resize(b->no, b->n, room, sizeof *b->no);
+    if (more == NULL) FAIL(ERR_MEMORY, "memory exhausted: element numbers");
+    b->no = more;
+    more = memory_resize(b->node, per * b->n, per * room, sizeof *b->node);
+    if (more == NULL) FAIL(ERR_MEMORY, "memory exhausted: elements");
+    b->node = more;
+    m->fill[block].room = room;
+  }
+  b->no[b->n] = no;
+  *node = b->node + b->n_per * b->n++;
+done:
+  return st;
+}
+
+status msh_new_nodes(msh *m, size_t n) {
+  status st = OK;
+  raw_mesh *raw = m->raw;
+  raw->n_node = n;
+  NEW(raw->node_no, n);
+  NEW(raw->xyz, 3 * n);
+done:
+  return st;
+}
+
+/* ---- names --------------------------------------------------------------- */
+
+/* Lines 'dimension tag "name"'. */
+static status read_names(msh *m) {
+  status st = OK;
+  scan *s = &m->s;
+  size_t n;
+  int dim, tag, id;
+  TRY(scan_size(s, &n));
+  TRY(scan_line(s));
+  TRY(scan_fits(s, n, sizeof "1 1 \"\"", 1, "names"));
+  for (size_t i = 0; i < n; ++i) {
+    msh_name name;
+    TRY(scan_int(s, &dim));
+    TRY(scan_int(s, &tag));
+    TRY(scan_quoted(s, &name.text, &name.length));
+    if (table_find(&m->names, table_key(dim, tag)) >= 0) {
+      st =
+          scan_fail(s, "the group %d of dimension %d is named twice", tag, dim);
+      goto done;
+    }
+    TRY(scan_line(s));
+    TRY(table_add(&m->names, table_key(dim, tag), &id));
+    GROW(m->name, id, m->names_room);
+    m->name[id] = name;
+  }
+  TRY(scan_end(s, "PhysicalNames", "its names"));
+done:
+  return st;
+}
+
+static int by_dim_and_tag(const void *p, const void *q) {
+  const raw_group *a = p, *b = q;
+  if (a->dim != b->dim) return a->dim - b->dim;
+  return (a->tag > b->tag) - (a->tag < b->tag);
+}
+
+static status finish_groups(msh *m) {
+  status st = OK;
+  raw_mesh *raw = m->raw;
+  if (raw->n_group > 0)
+    qsort(raw->group, (size_t)raw->n_group, sizeof *raw->group, by_dim_and_tag);
+  for (int i = 0; i < raw->n_group; ++i) {
+    raw_group *g = &raw->group[i];
+    int id = table_find(&m->names, table_key(g->dim, g->tag));
+    size_t n = id >= 0 ? m->name[id].length : 0;
+    NEW(g->name, n + 1);
+    if (n > 0) memcpy(g->name, m->name[id].text, n);
+  }
+done:
+  return st;
+}
+
+/* ---- blocks -------------------------------------------------------------- */
+
+typedef struct block_order {
+  int dim, tag, type, id;
+} block_order;
+
+static int by_entity(const void *p, const void *q) {
+  const block_order *a = p, *b = q;
+  if (a->dim != b->dim) return a->dim - b->dim;
+  if (a->tag != b->tag) return a->tag < b->tag ? -1 : 1;
+  return a->type - b->type;
+}
+
+/* The order in which the entities are numbered, not that of the file. */
+static status finish_blocks(msh *m) {
+  status st = OK;
+  raw_mesh *raw = m->raw;
+  block_order *order = NULL;
+  raw_block *sorted = NULL;
+  NEW(order, raw->n_block);
+  NEW(sorted, raw->n_block);
+  for (int i = 0; i < raw->n_block; ++i)
+    order[i] =
+        (block_order){raw->block[i].dim, m->fill[i].tag, raw->block[i].type, i};
+  qsort(order, (size_t)raw->n_block, sizeof *order, by_entity);
+  for (int i = 0; i < raw->n_block; ++i) sorted[i] = raw->block[order[i].id];
+  memory_free(raw->block);
+  raw->block = sorted;
+  sorted = NULL;
+  int top = raw->n_group > 0 ? raw->group[raw->n_group - 1].dim : -1;
+  if (top >= 2) raw->n_loose = m->n_loose[top];
+done:
+  memory_free(order);
+  memory_free(sorted);
+  return st;
+}
+
+/* ---- the file ------------------------------------------------------------ */
+
+/* Each of these sections is read once. */
+static status once(const msh *m, int *has, const char *name) {
+  if (*has) return scan_fail(&m->s, "$%s stands there twice", name);
+  *has = 1;
+  return OK;
+}
+
+static status read_section(msh *m, const char *name) {
+  status st = OK;
+  int is_4 = m->s.version > 4.0;
+  if (strcmp(name, "PhysicalNames") == 0) {
+    TRY(read_names(m));
+  } else if (strcmp(name, "Nodes") == 0) {
+    TRY(once(m, &m->has_nodes, name));
+    TRY(is_4 ? msh4_nodes(m) : msh2_nodes(m));
+  } else if (strcmp(name, "Elements") == 0) {
+    TRY(once(m, &m->has_elements, name));
+    TRY(is_4 ? msh4_elements(m) : msh2_elements(m));
+  } else if (is_4 && strcmp(name, "Entities") == 0) {
+    TRY(once(m, &m->has_entities, name));
+    TRY(msh4_entities(m, 0));
+  } else if (is_4 && strcmp(name, "PartitionedEntities") == 0) {
+    TRY(msh4_entities(m, 1));
+  } else {
+    TRY(scan_skip(&m->s, name));
+  }
+done:
+  return st;
+}
+
+static status read_sections(msh *m) {
+  status st = OK;
+  char name[SCAN_NAME];
+  for (;;) {
+    TRY(scan_section(&m->s, name));
+    if (name[0] == '\0') break;
+    if (m->s.version == 0.0 && strcmp(name, "Comments") != 0)
+      return scan_fail(&m->s, "$MeshFormat is to stand before $%s", name);
+    TRY(read_section(m, name));
+  }
+  if (!m->has_nodes || !m->has_elements)
+    return scan_fail(&m->s, "the file ends without $%s: it is cut short",
+                     m->has_nodes ? "Elements" : "Nodes");
+done:
+  return st;
+}
+
+static void release(msh *m) {
+  scan_close(&m->s);
+  table_free(&m->names);
+  table_free(&m->groups);
+  table_free(&m->entities);
+  table_free(&m->blocks);
+  memory_free(m->name);
+  memory_free(m->entity);
+  memory_free(m->physical);
+  memory_free(m->fill);
+}
+
+status msh_read(const char *file, raw_mesh **out) {
+  status st = OK;
+  msh m = {0};
+  *out = NULL;
+  TRY(scan_open(&m.s, file, ERR_MESH));
+  NEW(m.raw, 1);
+  TRY(read_sections(&m));
+  TRY(finish_groups(&m));
+  TRY(finish_blocks(&m));
+done:
+  release(&m);
+  if (st != OK)
+    raw_free(m.raw);
+  else
+    *out = m.raw;
+  return st;
+}

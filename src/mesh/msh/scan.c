@@ -1,0 +1,379 @@
+/*
+ * The scanner. Lines are counted only when a failure names one.
+ */
+#include "mesh/msh/scan.h"
+
+#include "base/memory.h"
+#include "base/number.h"
+#include "base/system/input.h"
+#include "base/system/limits.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { SHOWN = 24, WORD = 128, DIGITS = 18, POWERS = 27 };
+
+/* ---- the file ------------------------------------------------------------ */
+
+static status read_all(scan *s, int fd) {
+  status st = OK;
+  size_t got = 0;
+  NEW(s->data, s->size + 1);
+  while (got < s->size) {
+    ssize_t n = read(fd, s->data + got, s->size - got);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0)
+      FAIL(ERR_FILE, "%s: cannot be read: %s", s->path, strerror(errno));
+    if (n == 0) FAIL(ERR_FILE, "%s: it became shorter while read", s->path);
+    got += (size_t)n;
+  }
+done:
+  return st;
+}
+
+status scan_open(scan *s, const char *path, status wrong) {
+  status st = OK;
+  struct stat about;
+  limits l;
+  const char *why;
+  *s = (scan){.path = path, .wrong = wrong};
+  int fd = input_open(path, &why);
+  if (fd < 0) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
+  if (fstat(fd, &about) != 0)
+    FAIL(ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+  limits_read("", &l);
+  if ((double)about.st_size > l.memory)
+    FAIL(ERR_MEMORY, "%s: its %lld bytes are more than %s leaves", path,
+         (long long)about.st_size, l.who);
+  s->size = (size_t)about.st_size;
+  TRY(read_all(s, fd));
+done:
+  if (fd >= 0) close(fd);
+  return st;
+}
+
+void scan_close(scan *s) {
+  memory_free(s->data);
+  *s = (scan){0};
+}
+
+status scan_fail(const scan *s, const char *format, ...) {
+  status st = OK;
+  char text[256];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  long line = 1;
+  for (size_t i = 0; i < s->at; ++i) line += s->data[i] == '\n';
+  if (s->binary_file) FAIL(s->wrong, "%s: byte %zu: %s", s->path, s->at, text);
+  FAIL(s->wrong, "%s:%ld: %s", s->path, line, text);
+done:
+  return st;
+}
+
+/* ---- words --------------------------------------------------------------- */
+
+static int is_digit(char c) { return c >= '0' && c <= '9'; }
+
+static void skip_blanks(scan *s) {
+  while (s->data[s->at] == ' ' || s->data[s->at] == '\t') ++s->at;
+}
+
+/* After a word: a blank, the end of the line or of the file. */
+static int ends_word(char c) {
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\0';
+}
+
+/* The word that stands there, for a message. */
+static status not_expected(const scan *s, const char *wanted) {
+  char word[SHOWN + 1];
+  size_t n = 0;
+  for (; n < SHOWN && !ends_word(s->data[s->at + n]); ++n)
+    word[n] =
+        isprint((unsigned char)s->data[s->at + n]) ? s->data[s->at + n] : '?';
+  word[n] = '\0';
+  if (n == 0 && s->at + 1 >= s->size)
+    return scan_fail(s, "the file ends where %s is expected: it is cut short",
+                     wanted);
+  if (n == 0) return scan_fail(s, "the line ends where %s is expected", wanted);
+  return scan_fail(s, "\"%s\" where %s is expected", word, wanted);
+}
+
+/* A whole number of at most 18 digits. */
+static status word_whole(scan *s, int64_t least, int64_t most, int64_t *value) {
+  skip_blanks(s);
+  const char *start = s->data + s->at, *p = start + (*start == '-');
+  int64_t v = 0;
+  int n = 0;
+  for (; is_digit(*p) && n < DIGITS; ++p, ++n) v = 10 * v + (*p - '0');
+  if (*start == '-') v = -v;
+  if (n == 0 || !ends_word(*p) || v < least || v > most)
+    return not_expected(
+        s, least < 0 ? "a whole number" : "a whole number not below zero");
+  s->at += (size_t)(p - start);
+  *value = v;
+  return OK;
+}
+
+typedef struct decimal { /* mantissa * 10^power                             */
+  uint64_t mantissa; /* right up to DIGITS digits                             */
+  int n_digit;       /* without leading zeros                                 */
+  int power;
+} decimal;
+
+static const char *read_digits(const char *p, decimal *d, int fraction) {
+  for (; is_digit(*p); ++p) {
+    d->n_digit += d->n_digit > 0 || *p != '0';
+    if (d->n_digit <= DIGITS)
+      d->mantissa = 10 * d->mantissa + (uint64_t)(*p - '0');
+    d->power -= fraction;
+  }
+  return p;
+}
+
+/* The end of a number without sign, or NULL. */
+static const char *read_decimal(const char *p, decimal *d) {
+  const char *whole = read_digits(p, d, 0), *end = whole;
+  if (*whole == '.') end = read_digits(whole + 1, d, 1);
+  if (end - p - (*whole == '.') <= 0) return NULL;
+  if (*end != 'e' && *end != 'E') return end;
+  int sign = end[1] == '-' ? -1 : 1, e = 0;
+  p = end + 1 + (end[1] == '-' || end[1] == '+');
+  if (!is_digit(*p)) return NULL;
+  for (; is_digit(*p); ++p)
+    if (e < 10000) e = 10 * e + (*p - '0');
+  d->power += sign * e;
+  return p;
+}
+
+/* The nearest double where 64 bits of mantissa decide it; 0 if they do not. */
+static int convert(const decimal *d, double *value) {
+  static const long double ten[POWERS + 1] = {
+      1e0L,  1e1L,  1e2L,  1e3L,  1e4L,  1e5L,  1e6L,  1e7L,  1e8L,  1e9L,
+      1e10L, 1e11L, 1e12L, 1e13L, 1e14L, 1e15L, 1e16L, 1e17L, 1e18L, 1e19L,
+      1e20L, 1e21L, 1e22L, 1e23L, 1e24L, 1e25L, 1e26L, 1e27L};
+  if (d->n_digit > DIGITS || abs(d->power) > POWERS) return 0;
+  long double v = (long double)d->mantissa;
+  v = d->power < 0 ? v / ten[-d->power] : v * ten[d->power];
+  *value = (double)v;
+  return (double)(v - v * LDBL_EPSILON) == *value &&
+         (double)(v + v * LDBL_EPSILON) == *value;
+}
+
+/* Words of printf for what is no number: the mesh says where they stand. */
+static int not_finite(const char *word, double *value) {
+  *value = strncasecmp(word, "nan", 3) == 0 ? (double)NAN : (double)INFINITY;
+  return (strncasecmp(word, "nan", 3) == 0 ||
+          strncasecmp(word, "inf", 3) == 0) &&
+         ends_word(word[3]);
+}
+
+/* Any word that read_decimal took: correctly rounded, in any locale. */
+static status convert_word(const scan *s, const char *word, size_t n,
+                           double *value) {
+  char text[WORD];
+  if (n >= WORD) return not_expected(s, "a number of fewer digits");
+  memcpy(text, word, n);
+  text[n] = '\0';
+  if (number_real(text, value) != NULL) *value = INFINITY; /* too large */
+  return OK;
+}
+
+static status word_real(scan *s, double *value) {
+  status st = OK;
+  skip_blanks(s);
+  const char *start = s->data + s->at;
+  const char *p = start + (*start == '-' || *start == '+');
+  decimal d = {0};
+  const char *end = read_decimal(p, &d);
+  if (end == NULL && not_finite(p, value))
+    end = p + 3;
+  else if (end == NULL || !ends_word(*end))
+    return not_expected(s, "a number");
+  else if (!convert(&d, value))
+    TRY(convert_word(s, p, (size_t)(end - p), value));
+  if (*start == '-') *value = -*value;
+  s->at += (size_t)(end - start);
+done:
+  return st;
+}
+
+/* ---- numbers ------------------------------------------------------------- */
+
+/* The next "size" bytes in the order of this machine. */
+static status take_bytes(scan *s, void *to, size_t size) {
+  if (s->size - s->at < size)
+    return scan_fail(s, "the file ends inside a number");
+  memcpy(to, s->data + s->at, size);
+  s->at += size;
+  unsigned char *b = to;
+  for (size_t i = 0; s->swapped && i < size / 2; ++i) {
+    unsigned char t = b[i];
+    b[i] = b[size - 1 - i];
+    b[size - 1 - i] = t;
+  }
+  return OK;
+}
+
+status scan_int(scan *s, int *value) {
+  status st = OK;
+  int32_t four = 0;
+  int64_t word = 0;
+  if (s->binary) {
+    TRY(take_bytes(s, &four, sizeof four));
+    *value = four;
+  } else {
+    TRY(word_whole(s, INT_MIN, INT_MAX, &word));
+    *value = (int)word;
+  }
+done:
+  return st;
+}
+
+status scan_size(scan *s, size_t *value) {
+  status st = OK;
+  uint64_t eight = 0;
+  int64_t word = 0;
+  if (s->binary) {
+    TRY(take_bytes(s, &eight, sizeof eight));
+    *value = (size_t)eight;
+  } else {
+    TRY(word_whole(s, 0, INT64_MAX, &word));
+    *value = (size_t)word;
+  }
+done:
+  return st;
+}
+
+status scan_real(scan *s, double *value) {
+  return s->binary ? take_bytes(s, value, sizeof *value) : word_real(s, value);
+}
+
+status scan_fits(const scan *s, size_t n, size_t text_bytes,
+                 size_t binary_bytes, const char *what) {
+  if (n <= (s->size - s->at) / (s->binary ? binary_bytes : text_bytes))
+    return OK;
+  return scan_fail(s, "%zu %s do not fit into the rest of the file", n, what);
+}
+
+/* ---- lines and sections -------------------------------------------------- */
+
+status scan_line(scan *s) {
+  if (s->binary) return OK;
+  skip_blanks(s);
+  if (s->data[s->at] == '\r') ++s->at;
+  if (s->data[s->at] == '\n') {
+    ++s->at;
+    return OK;
+  }
+  return s->at >= s->size ? OK : not_expected(s, "the end of the line");
+}
+
+static void skip_empty_lines(scan *s) {
+  s->at += strspn(s->data + s->at, " \t\r\n");
+}
+
+status scan_quoted(scan *s, const char **text, size_t *length) {
+  skip_blanks(s);
+  if (s->data[s->at] != '"') return not_expected(s, "a name in \"quotes\"");
+  *text = s->data + s->at + 1;
+  *length = strcspn(*text, "\"\r\n");
+  if ((*text)[*length] != '"') return scan_fail(s, "a name has no end");
+  s->at += *length + 2;
+  return OK;
+}
+
+/* 1 if $Name or $EndName is the word that stands there. */
+static int is_mark(const scan *s, size_t at, const char *start,
+                   const char *name) {
+  size_t k = strlen(start), n = strlen(name);
+  return at + k + n <= s->size && memcmp(s->data + at, start, k) == 0 &&
+         memcmp(s->data + at + k, name, n) == 0 &&
+         ends_word(s->data[at + k + n]);
+}
+
+status scan_end(scan *s, const char *name, const char *what) {
+  s->binary = 0;
+  skip_empty_lines(s);
+  if (s->at < s->size && is_mark(s, s->at, "$End", name)) {
+    s->at += 4 + strlen(name);
+    return scan_line(s);
+  }
+  char wanted[128];
+  snprintf(wanted, sizeof wanted, "$End%s (%s are complete)", name, what);
+  return not_expected(s, wanted);
+}
+
+status scan_skip(scan *s, const char *name) {
+  for (size_t at = s->at; at < s->size; ++at) {
+    const char *dollar = memchr(s->data + at, '$', s->size - at);
+    if (dollar == NULL) break;
+    at = (size_t)(dollar - s->data);
+    if (!is_mark(s, at, "$End", name)) continue;
+    s->at = at;
+    return scan_end(s, name, "its lines");
+  }
+  return scan_fail(s, "$%s has no $End%s: the file is cut short", name, name);
+}
+
+/* "2.2 0 8", and a one in binary files that shows the order of bytes. */
+static status read_format(scan *s) {
+  status st = OK;
+  int bytes, one = 1;
+  if (s->version > 0.0) return scan_fail(s, "$MeshFormat stands there twice");
+  TRY(scan_real(s, &s->version));
+  TRY(scan_int(s, &s->binary_file));
+  TRY(scan_int(s, &bytes));
+  TRY(scan_line(s));
+  if (s->binary_file < 0 || s->binary_file > 1 || bytes != 8)
+    return scan_fail(s,
+                     "$MeshFormat has file type %d, data size %d; 0 (ASCII) "
+                     "or 1 (binary) and 8 are read",
+                     s->binary_file, bytes);
+  if (s->binary_file) {
+    s->binary = 1;
+    TRY(scan_int(s, &one));
+    s->swapped = one == 1 << 24;
+    if (one != 1 && !s->swapped)
+      return scan_fail(s, "the mark of the order of bytes is damaged");
+  }
+  TRY(scan_end(s, "MeshFormat", "its numbers"));
+done:
+  return st;
+}
+
+status scan_section(scan *s, char name[SCAN_NAME]) {
+  status st = OK;
+  do {
+    skip_empty_lines(s);
+    name[0] = '\0';
+    if (s->at >= s->size) return OK;
+    size_t n = 0;
+    const char *p = s->data + s->at;
+    if (*p != '$') return not_expected(s, "$ and the name of a section");
+    while (!ends_word(p[n + 1]) && n + 1 < SCAN_NAME) ++n;
+    memcpy(name, p + 1, n);
+    name[n] = '\0';
+    if (n == 0 || !ends_word(p[n + 1]) || strncmp(name, "End", 3) == 0)
+      return not_expected(s, "the start of a section");
+    s->at += n + 1;
+    TRY(scan_line(s));
+    if (strcmp(name, "MeshFormat") == 0) TRY(read_format(s));
+  } while (strcmp(name, "MeshFormat") == 0);
+done:
+  return st;
+}
+
+void scan_start_binary(scan *s) { s->binary = s->binary_file; }

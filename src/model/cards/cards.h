@@ -1,0 +1,248 @@
+/*
+ * What the cards of a deck mean: a function for each that needs one, told by
+ * the keyword table (model/keyword/keyword.h) what stands on the card. Errors
+ * of the deck go to the log; a status is of memory.
+ */
+#ifndef PROTIS_CARDS_CARDS_H
+#define PROTIS_CARDS_CARDS_H
+
+#include "model/model.h"
+
+/* State of reading a deck, card by card. */
+typedef struct reading {
+  model *m;
+  const card *card;   /* the card at hand                                   */
+  const void *param;  /* its options, as the row's table says               */
+  const void *plugin; /* options of the law or solver it names, or NULL     */
+  size_t plugin_size;
+  int material_id; /* open *MATERIAL, or -1                              */
+  int misread;     /* a parameter of the card was refused                */
+  int lost;        /* a card or its lines were refused: what seems to be
+                      missing may be that one and is not reported        */
+  int in_step;     /* inside *STEP ... *END STEP                         */
+  int lost_material, lost_step; /* 1: a card that no keyword has the name of
+                                   seems to have opened one                  */
+  int (*is_lost)(const model *m, const char *name); /* 1: such a card has the
+                      name, its absence is not reported; NULL: there is none */
+} reading;
+
+/* Options of a law or solver that a card names; NULL: none. */
+typedef struct plugin {
+  const option *options;
+  size_t size;
+  const char *parameter, *name; /* METHOD, newton; NULL: not known            */
+} plugin;
+
+enum { PARAM_SIZE = 512 }; /* room for the options of any row or plug-in      */
+
+/* ---- options of the cards, for the rows of the keyword table ---- */
+
+typedef struct units_param {
+  const char *length, *force, *time;
+} units_param;
+typedef struct mesh_param {
+  const char *file;
+  double scale;
+} mesh_param;
+typedef struct problem_param {
+  const char *file;
+  int type;
+} problem_param;
+typedef struct name_param {
+  const char *name;
+} name_param;
+typedef struct elastic_param {
+  int type, moduli;
+} elastic_param;
+typedef struct inelastic_param {
+  const char *law;
+  law_shift shift;
+} inelastic_param;
+typedef struct creep_param {
+  int law; /* CREEP_...                                                       */
+  law_shift shift;
+} creep_param;
+enum { CREEP_STRAIN, CREEP_TIME, CREEP_NORTON, CREEP_HYPERBOLIC };
+#define CREEP_WORDS "STRAIN|TIME|NORTON|HYPERB"
+typedef struct trs_param {
+  int definition;
+} trs_param;
+typedef struct viscoelastic_param {
+  int time;
+  law_shift shift;
+} viscoelastic_param;
+typedef struct expansion_param {
+  int type;
+  double zero;
+} expansion_param;
+typedef struct initial_param {
+  int type, incompatible;
+  const char *file;
+} initial_param;
+typedef struct section_param {
+  const char *elset, *material;
+  int type, formulation;
+  double thickness;
+} section_param;
+typedef struct obstacle_param {
+  const char *name, *amplitude;
+  int type, side;
+  double radius;
+} obstacle_param;
+typedef struct contact_param {
+  const char *name, *group, *obstacle;
+  int normal;
+} contact_param;
+typedef struct friction_param {
+  const char *contact, *law, *amplitude;
+  int table;
+} friction_param;
+typedef struct force_param {
+  const char *contact, *amplitude;
+  int table;
+} force_param;
+typedef struct amplitude_param {
+  const char *name;
+  int time;
+} amplitude_param;
+typedef struct points_param {
+  const char *name;
+  int time, generate;
+} points_param;
+typedef struct quasistatic_param {
+  int form;
+} quasistatic_param;
+typedef struct visco_param {
+  const char *integrator;
+  double theta, tolerance;
+  int iteration, substeps;
+} visco_param;
+typedef struct load_param {
+  const char *amplitude;
+  int op;
+} load_param;
+typedef struct temperature_param {
+  load_param load; /* first: what all loads have                             */
+  const char *file;
+} temperature_param;
+typedef struct solver_param {
+  const char *method;
+  double tol, share;
+  int max_iter, limit_max_iter, check;
+} solver_param;
+enum { TIME_NO, TIME_YES, TIME_BALANCED }; /* TIME= of *ACCURACY              */
+typedef struct accuracy_param {
+  int mesh, time, max_passes;
+  double target, max_cpu, max_memory, time_share;
+  int solver, theory;
+} accuracy_param;
+typedef struct effects_param {
+  int mode;
+  double tol;
+} effects_param;
+typedef struct print_param {
+  int contact, totals, nodes, elements, energy, reactions, zones, loop;
+  int frequency;
+  const char *group, *points;
+} print_param;
+typedef struct output_param {
+  int hdf5, frequency, condensed;
+} output_param;
+typedef struct restart_param {
+  int frequency;
+} restart_param;
+
+/* ---- part.c: title, units, mesh, sections, amplitudes, times ---- */
+status apply_heading(reading *r);
+status apply_units(reading *r);
+status apply_mesh(reading *r);
+status apply_condensed_problem(reading *r);
+status apply_section(reading *r);
+status apply_amplitude(reading *r);
+status apply_time_points(reading *r);
+status apply_effects(reading *r);
+/* ---- material.c ---- */
+status apply_material(reading *r);
+status apply_elastic(reading *r);
+status apply_density(reading *r);
+status apply_expansion(reading *r);
+/* ---- inelastic.c ---- */
+status apply_inelastic(reading *r);
+plugin names_inelastic(const reading *r);
+status apply_creep(reading *r);
+status apply_viscoelastic(reading *r);
+status apply_trs(reading *r);
+/* Once all cards are read: the law of a material beside its elasticity. */
+status material_resolve_law(const model *m, material *mat);
+/* ---- initial.c ---- */
+status apply_initial(reading *r);
+/* ---- reference.c ---- */
+status apply_reference(reading *r);
+/* Place of a component of *REFERENCE in "value", -1: there is none of that name
+ * in such a model. */
+int reference_place(const char *name, int dim, int axisymmetric);
+/* ---- contact.c ---- */
+status apply_obstacle(reading *r);
+status apply_contact(reading *r);
+status apply_friction(reading *r);
+status apply_contact_force(reading *r);
+plugin names_law(const reading *r);
+/* ---- procedure.c ---- */
+status apply_step(reading *r);
+status apply_end_step(reading *r);
+status apply_static(reading *r);
+status apply_quasistatic(reading *r);
+status apply_visco(reading *r);
+/* ---- load.c ---- */
+status apply_boundary(reading *r);
+status apply_dsload(reading *r);
+status apply_dload(reading *r);
+status apply_cload(reading *r);
+status apply_temperature(reading *r);
+/* ---- control.c: solver, accuracy, output ---- */
+status apply_solver(reading *r);
+plugin names_solver(const reading *r);
+status apply_accuracy(reading *r);
+status apply_print(reading *r);
+status apply_output(reading *r);
+status apply_restart(reading *r);
+
+/* ---- fields.c: helpers for the data lines ---- */
+
+/* 0 if the line has min..max fields. */
+int record_fields(const reading *r, const record *line, int min, int max,
+                  const char *expected);
+int field_real(const reading *r, const field *f, double min, double max,
+               const char *what, double *out);
+int field_int(const reading *r, const field *f, int min, int max,
+              const char *what, int *out);
+int field_quantity(const reading *r, const field *f, quantity *out);
+/* Path of the FILE= of the card from where the deck stands; NULL: not given. */
+status field_file(const reading *r, const char **path);
+/* Field of pair number i of the lines of a card: its first or second. */
+const field *pair_field(const card *c, int first_line, int i, int second);
+/* Pairs over all lines (any number per line) as a table; arrays are new. */
+status read_pairs(reading *r, int first_line, int variable, value_table *out);
+/* Compare words without regard to case. */
+int same_word(const char *a, const char *b);
+/* Place of a parameter's value, or of the card. */
+const place *value_place(const reading *r, const char *parameter);
+/* Warn that a parameter, which is not its default, counts only with another. */
+void tell_idle(const reading *r, const char *name, const char *with);
+/* Report NAME= given twice; 1 if "old" has it. */
+int name_taken(const reading *r, const char *name, const char *old);
+/* Report a word that names nothing, with the nearest of those there are:
+ * "text" is what is said before, as "there is no *MATERIAL, NAME=". */
+void unknown_word(message_log *log, message_id id, const place *at,
+                  const char *text, const char *word,
+                  const char *(*next)(const void *ctx, int i), const void *ctx);
+/* Id of a name among those of "next", or -1 and an error that names the card to
+ * write. */
+int find_name(const model *m, const char *name, const char *title,
+              const char *(*next)(const void *, int), const place *at);
+/* Id of an amplitude, or -1 and an error. */
+int find_amplitude(const model *m, const char *name, const place *at);
+/* The step that is being read. */
+step *open_step(const reading *r);
+
+#endif

@@ -1,0 +1,413 @@
+/*
+ * Cards of the contact: rigid obstacles, contact pairs, friction laws.
+ */
+#include "model/cards/cards.h"
+
+#include "base/memory.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static int read_point(const reading *r, const record *line, const char *what,
+                      double x[3]) {
+  if (record_fields(r, line, 2, 3, what) != 0) return -1;
+  for (int c = 0; c < line->n_field; ++c)
+    if (deck_real(&line->fields[c], r->m->log, &x[c]) != 0) return -1;
+  return 0;
+}
+
+/* Make a direction of any length, read from "line", a unit vector. */
+static int normalise(const reading *r, const record *line, const char *what,
+                     double d[3]) {
+  double largest = fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2])));
+  if (largest == 0.0) {
+    message_add(r->m->log, P2027, &line->at, "*%s: the %s is zero",
+                r->card->name, what);
+    return -1;
+  }
+  for (int c = 0; c < 3; ++c) d[c] /= largest;
+  double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  for (int c = 0; c < 3; ++c) d[c] /= length;
+  return 0;
+}
+
+static int read_direction(const reading *r, const record *line,
+                          const char *what, double d[3]) {
+  if (read_point(r, line, what, d) != 0) return -1;
+  return normalise(r, line, "direction", d);
+}
+
+/* A component of MOVE or the angle of ROTATE. */
+static int read_course(const reading *r, const record *line, int k,
+                       quantity *q) {
+  const field *f = &line->fields[k];
+  if (field_quantity(r, f, q) != 0) return -1;
+  if ((quantity_variables(q) & 7u) == 0) return 0;
+  message_add(r->m->log, P2033, &f->at,
+              "%s may depend on t only: the obstacle is rigid",
+              same_word(line->fields[0].text, "MOVE") ? "MOVE" : "ROTATE");
+  return -1;
+}
+
+/* MOVE, dx, dy[, dz] */
+static int read_move(const reading *r, const record *line, obstacle *o) {
+  if (record_fields(r, line, 3, 4, "MOVE, dx, dy [, dz]") != 0) return -1;
+  for (int c = 1; c < line->n_field; ++c)
+    if (read_course(r, line, c, &o->motion[c - 1]) != 0) return -1;
+  return 0;
+}
+
+/* Point and direction from the second field on: x, y (along z) or x, y, z, ax,
+ * ay, az. */
+static int read_axis(const reading *r, const record *line, int solid,
+                     double *point, double *axis) {
+  char what[80];
+  snprintf(what, sizeof what, "direction of the axis of %s",
+           same_word(line->fields[0].text, "AXIS") ? "the torque" : "ROTATE");
+  for (int c = 0; c < (solid ? 3 : 2); ++c) {
+    const field *f = &line->fields[1 + c];
+    if (deck_real(f, r->m->log, &point[c]) != 0) return -1;
+    if (solid && deck_real(f + 3, r->m->log, &axis[c]) != 0) return -1;
+  }
+  if (!solid) axis[2] = 1.0;
+  return normalise(r, line, what, axis);
+}
+
+/* ROTATE, x, y, angle: about an axis along z; ROTATE, x, y, z, ax, ay, az,
+ * angle: point and direction of the axis. */
+static int read_rotate(const reading *r, const record *line, obstacle *o) {
+  int n = line->n_field, solid = n == 8;
+  if (n != 4 && n != 8) {
+    message_add(r->m->log, P2009, &line->at,
+                "%d fields on this line of *OBSTACLE; expected: ROTATE, x, y, "
+                "angle or ROTATE, x, y, z, ax, ay, az, angle",
+                n);
+    return -1;
+  }
+  if (read_axis(r, line, solid, o->pivot, o->axis) != 0) return -1;
+  o->turns = 1;
+  return read_course(r, line, n - 1, &o->angle);
+}
+
+static int starts_with(const record *line, const char *word) {
+  return line->n_field > 0 && same_word(line->fields[0].text, word);
+}
+
+/* MOVE and ROTATE close the lines of the obstacle in any order. Returns the
+ * number of lines before them, -1 after an error. */
+static int read_course_lines(const reading *r, struct move *m, obstacle *o) {
+  const card *c = r->card;
+  int n = c->n_record, moves = 0;
+  for (; n > 0; --n) {
+    const record *line = &c->records[n - 1];
+    int shifts = starts_with(line, "MOVE");
+    if (!shifts && !starts_with(line, "ROTATE")) break;
+    if (shifts ? moves++ > 0 : o->turns) {
+      message_add(r->m->log, P2008, &line->at, "*OBSTACLE has two lines %s",
+                  shifts ? "MOVE" : "ROTATE");
+      return -1;
+    }
+    if (shifts) m->move_at = line->at;
+    if (!shifts) m->rotate_at = line->at;
+    if ((shifts ? read_move(r, line, o) : read_rotate(r, line, o)) != 0)
+      return -1;
+  }
+  return n;
+}
+
+/* A point or direction of two numbers: not enough in 3-D. */
+static void note_short(const reading *r, int n_line, const obstacle *o) {
+  move *of = &r->m->moves[o - r->m->obstacles];
+  const record *line = r->card->records;
+  for (int i = 0; i < n_line && o->shape != OBSTACLE_GAP; ++i)
+    if (line[i].n_field == 2 && of->short_at.file == NULL)
+      of->short_at = line[i].at;
+}
+
+/* The lines before MOVE and ROTATE, as the shape wants them. */
+static void read_shape(const reading *r, int n_line, obstacle *o) {
+  const record *line = r->card->records;
+  static const char *const wanted[] = {
+      "no geometry lines", "point; normal towards the body",
+      "point of the axis; direction of the axis (3-D)", "centre",
+      "the gap: a number or an expression of x y z t"};
+  static const int least[] = {0, 2, 1, 1, 1}, most[] = {0, 2, 2, 1, 1};
+  if (n_line < least[o->shape] || n_line > most[o->shape]) {
+    message_add(r->m->log, n_line < least[o->shape] ? P2007 : P2008,
+                n_line > 0 ? &line[n_line - 1].at : &r->card->at,
+                "*OBSTACLE: this type needs: %s", wanted[o->shape]);
+    return;
+  }
+  switch ((obstacle_shape)o->shape) {
+    case OBSTACLE_CONFORMING:
+      break;
+    case OBSTACLE_PLANE:
+    case OBSTACLE_CYLINDER:
+    case OBSTACLE_SPHERE:
+      if (read_point(r, &line[0], "x, y [, z]", o->point) != 0) return;
+      if (n_line == 2)
+        read_direction(r, &line[1], "nx, ny [, nz]", o->direction);
+      break;
+    case OBSTACLE_GAP:
+      if (record_fields(r, &line[0], 1, 1, wanted[o->shape]) == 0)
+        field_quantity(r, &line[0].fields[0], &o->gap);
+      break;
+  }
+}
+
+/* What only a cylinder or a sphere has. */
+static void check_round(const reading *r, const obstacle_param *p) {
+  message_log *log = r->m->log;
+  const parameter *radius = card_parameter(r->card, "RADIUS");
+  int round = p->type == OBSTACLE_CYLINDER || p->type == OBSTACLE_SPHERE;
+  if (r->misread) return;
+  if (round && radius == NULL)
+    message_add(log, P2005, &r->card->at,
+                "*OBSTACLE: this type needs the parameter RADIUS=");
+  if (!round && radius != NULL)
+    message_add(log, P2004, &radius->at,
+                "*OBSTACLE: RADIUS= belongs to CYLINDER and SPHERE only");
+  if (!round && p->side)
+    message_add(log, P2004, value_place(r, "SIDE"),
+                "*OBSTACLE: SIDE=INSIDE belongs to CYLINDER and SPHERE only");
+}
+
+status apply_obstacle(reading *r) {
+  status st = OK;
+  const obstacle_param *p = r->param;
+  model *m = r->m;
+  const card *c = r->card;
+  for (int i = 0; i < m->n_obstacle; ++i)
+    name_taken(r, p->name, m->obstacles[i].name);
+  int n = m->n_obstacle, capacity = m->cap_obstacle;
+  GROW(m->moves, n, capacity);
+  GROW(m->obstacles, n, m->cap_obstacle);
+  obstacle *o = &m->obstacles[m->n_obstacle++];
+  o->name = p->name == NULL ? "" : p->name;
+  o->shape = p->type;
+  o->inside = p->side;
+  o->radius = p->radius;
+  m->moves[n].amplitude_name = p->amplitude;
+  m->moves[n].at = c->at;
+  m->moves[n].move_at = c->at;
+  m->moves[n].rotate_at = c->at;
+  m->moves[n].amplitude_at = *value_place(r, "AMPLITUDE");
+  check_round(r, p);
+  if (r->misread && card_parameter(c, "TYPE") == NULL) goto done;
+  int lines = read_course_lines(r, &m->moves[n], o);
+  if (lines < 0) goto done;
+  if (lines == c->n_record && p->amplitude != NULL)
+    message_add(m->log, P2007, &c->at,
+                "*OBSTACLE: AMPLITUDE= needs a line MOVE, dx, dy [, dz] or "
+                "ROTATE");
+  note_short(r, lines, o);
+  read_shape(r, lines, o);
+done:
+  return st;
+}
+
+/* AXIS, x, y or AXIS, x, y, z, ax, ay, az */
+static void read_torque_axis(const reading *r, contact *c) {
+  const record *line = r->card->records;
+  int n = line->n_field;
+  if (!starts_with(line, "AXIS") || (n != 3 && n != 7)) {
+    message_add(r->m->log, P2009, &line->at,
+                "this line of *CONTACT is not: AXIS, x, y or AXIS, x, y, z, "
+                "ax, ay, az");
+    return;
+  }
+  c->axis_at = line->at;
+  c->has_axis = read_axis(r, line, n == 7, c->axis_point, c->axis) == 0;
+}
+
+status apply_contact(reading *r) {
+  status st = OK;
+  const contact_param *p = r->param;
+  model *m = r->m;
+  for (int i = 0; i < m->n_contact; ++i)
+    name_taken(r, p->name, m->contacts[i].name);
+  GROW(m->contacts, m->n_contact, m->cap_contact);
+  contact *c = &m->contacts[m->n_contact++];
+  c->name = p->name == NULL ? "" : p->name;
+  c->group = p->group == NULL ? "" : p->group;
+  c->obstacle_name = p->obstacle == NULL ? "" : p->obstacle;
+  c->at = r->card->at;
+  c->group_at = *value_place(r, "GROUP");
+  c->obstacle_at = *value_place(r, "OBSTACLE");
+  c->obstacle_normal =
+      card_parameter(r->card, "NORMAL") == NULL ? -1 : p->normal;
+  c->obstacle_id = -1;
+  c->group_id = -1;
+  if (r->card->n_record > 0) read_torque_axis(r, c);
+done:
+  return st;
+}
+
+static const char *law_name(const void *ctx, int i) {
+  (void)ctx;
+  return friction_list[i] == NULL ? NULL : friction_list[i]->name;
+}
+
+plugin names_law(const reading *r) {
+  const friction_param *p = r->param;
+  const parameter *law = card_parameter(r->card, "LAW");
+  plugin none = {NULL, 0, "LAW", NULL};
+  if (p->law == NULL || law == NULL) return none;
+  const friction_ops *ops = friction_find(p->law);
+  if (ops != NULL)
+    return (plugin){ops->options, ops->param_size, "LAW", ops->name};
+  unknown_word(r->m->log, P2012, &law->value.at,
+               "*FRICTION: there is no LAW=", p->law, law_name, NULL);
+  return none;
+}
+
+static const char *contact_name(const void *ctx, int i) {
+  const model *m = ctx;
+  return i < m->n_contact ? m->contacts[i].name : NULL;
+}
+
+/* Id of a contact, or -1 and the error that this card names none. */
+static int find_contact(const reading *r, const char *name) {
+  char text[80];
+  for (int i = 0; i < r->m->n_contact; ++i)
+    if (same_word(name, r->m->contacts[i].name)) return i;
+  if (r->is_lost != NULL && r->is_lost(r->m, name)) return -1;
+  snprintf(text, sizeof text,
+           "*%s: before this card there is no *CONTACT, NAME=", r->card->name);
+  unknown_word(r->m->log, P2012, value_place(r, "CONTACT"), text, name,
+               contact_name, r->m);
+  return -1;
+}
+
+/* Values of a table that must not be negative. */
+static void check_table(const reading *r, const char *what,
+                        const value_table *t) {
+  for (int i = 0; i < t->n; ++i)
+    if (!(t->value[i] >= 0.0))
+      message_add(r->m->log, P2010, &pair_field(r->card, 0, i, 1)->at,
+                  "*%s: %s = %.15g in the table is negative", r->card->name,
+                  what, t->value[i]);
+}
+
+/* The value lines: one quantity, or pairs with TABLE=. Not negative. */
+static status read_value(reading *r, const char *what, int variable,
+                         quantity *q, value_table *pairs) {
+  status st = OK;
+  const card *c = r->card;
+  const record *line = c->records;
+  if (card_parameter(c, "TABLE") != NULL) {
+    if (c->n_record == 0)
+      message_add(r->m->log, P2007, &c->at, "*%s, TABLE= needs lines of pairs",
+                  c->name);
+    TRY(read_pairs(r, 0, variable, pairs));
+    check_table(r, what, pairs);
+    q->number = 1.0;
+    q->factor = pairs; /* set anew by model_resolve                           */
+    goto done;
+  }
+  if (c->n_record != 1) {
+    int none = c->n_record < 1;
+    message_add(r->m->log, none ? P2007 : P2008, none ? &c->at : &line[1].at,
+                "*%s needs one line with %s", c->name, what);
+    goto done;
+  }
+  if (record_fields(r, line, 1, 1, what) != 0) goto done;
+  if (field_quantity(r, &line->fields[0], q) != 0) goto done;
+  if (q->formula == NULL && !(q->number >= 0.0))
+    message_add(r->m->log, P2010, &line->fields[0].at,
+                "*%s: %s = %s is negative", c->name, what,
+                line->fields[0].text);
+done:
+  return st;
+}
+
+/* The rule a *FRICTION card fills: of the contact, or of the step for it; NULL
+ * without memory, or *told after a message. */
+static friction_rule *new_rule(const reading *r, int contact_id, int *told) {
+  status st = OK;
+  contact *c = &r->m->contacts[contact_id];
+  friction_rule *rule = &c->friction;
+  const friction_rule *old = rule->law == NULL ? NULL : rule;
+  if (r->in_step) {
+    step *s = &r->m->steps[r->m->n_step - 1];
+    old = NULL;
+    for (int k = 0; k < s->n_change; ++k)
+      if (s->changes[k].contact_id == contact_id) old = &s->changes[k].rule;
+    GROW(s->changes, s->n_change, s->cap_change);
+    rule = &s->changes[s->n_change].rule;
+    s->changes[s->n_change].contact_id = contact_id;
+    s->n_change += old == NULL;
+  }
+  *told = old != NULL;
+  if (old != NULL)
+    message_add(r->m->log, P2032, &r->card->at,
+                "contact %s has its *FRICTION already, at line %d", c->name,
+                old->at.line_no);
+done:
+  return st != OK || *told ? NULL : rule;
+}
+
+static status copy_options(const reading *r, const friction_ops *law,
+                           const void **out) {
+  status st = OK;
+  if (law->param_size == 0) goto done;
+  void *param = memory_new(1, law->param_size);
+  if (param == NULL) FAIL(ERR_MEMORY, "memory exhausted: friction options");
+  memcpy(param, r->plugin, law->param_size);
+  *out = param;
+done:
+  return st;
+}
+
+status apply_friction(reading *r) {
+  status st = OK;
+  const friction_param *p = r->param;
+  const card *c = r->card;
+  const friction_ops *law = p->law == NULL ? NULL : friction_find(p->law);
+  if (law == NULL || p->contact == NULL) goto done;
+  int told = 0, id = find_contact(r, p->contact);
+  if (id < 0) goto done;
+  friction_rule *rule = new_rule(r, id, &told);
+  if (rule == NULL && !told) FAIL(ERR_MEMORY, "memory exhausted: *FRICTION");
+  if (rule == NULL) goto done;
+  rule->law = law;
+  rule->amplitude_name = p->amplitude;
+  rule->at = c->at;
+  rule->value_at = c->n_record > 0 ? c->records[0].at : c->at;
+  rule->amplitude_at = *value_place(r, "AMPLITUDE");
+  TRY(copy_options(r, law, &rule->card.param));
+  if (law->value_name != NULL)
+    TRY(read_value(r, law->value_name, p->table, &rule->card.value,
+                   &rule->position));
+  else if (c->n_record > 0)
+    message_add(r->m->log, P2008, &c->records[0].at,
+                "*FRICTION, LAW=%s has no data lines", p->law);
+done:
+  return st;
+}
+
+status apply_contact_force(reading *r) {
+  status st = OK;
+  const force_param *p = r->param;
+  const card *c = r->card;
+  if (p->contact == NULL) goto done;
+  int id = find_contact(r, p->contact);
+  if (id < 0) goto done;
+  given_force *f = &r->m->contacts[id].force;
+  if (f->given) {
+    message_add(r->m->log, P2011, &c->at,
+                "contact %s has its *CONTACT FORCE already, at line %d",
+                p->contact, f->at.line_no);
+    goto done;
+  }
+  f->given = 1;
+  f->amplitude_name = p->amplitude;
+  f->at = c->at;
+  f->value_at = c->n_record > 0 ? c->records[0].at : c->at;
+  f->amplitude_at = *value_place(r, "AMPLITUDE");
+  TRY(read_value(r, "p", p->table, &f->value, &f->position));
+done:
+  return st;
+}

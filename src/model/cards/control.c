@@ -1,0 +1,145 @@
+/*
+ * What a step is solved by and what it writes: solver, accuracy, tables,
+ * fields.
+ */
+#include "model/cards/cards.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+static const char *solver_name(const void *ctx, int i) {
+  (void)ctx;
+  if (i == 0) return "AUTO";
+  return solver_list[i - 1] == NULL ? NULL : solver_list[i - 1]->name;
+}
+
+plugin names_solver(const reading *r) {
+  const solver_param *p = r->param;
+  const parameter *method = card_parameter(r->card, "METHOD");
+  if (method == NULL || same_word(p->method, "AUTO"))
+    return (plugin){NULL, 0, "METHOD", "AUTO"};
+  const solver_ops *ops = solver_find(p->method);
+  if (ops != NULL)
+    return (plugin){ops->options, ops->param_size, "METHOD", ops->name};
+  if (method->has_value)
+    unknown_word(r->m->log, P2012, &method->value.at,
+                 "*SOLVER: this version has no METHOD=", p->method, solver_name,
+                 NULL);
+  return (plugin){NULL, 0, "METHOD", NULL};
+}
+
+/* Of a solver that is to be balanced with errors that are zero. */
+static const double TOL_DEFAULT = 1e-10;
+
+status apply_solver(reading *r) {
+  status st = OK;
+  const solver_param *p = r->param;
+  step *s = open_step(r);
+  if (s->solver_at.file != NULL) {
+    message_add(r->m->log, P2011, &r->card->at,
+                "a step has one *SOLVER card, this is its second");
+    goto done;
+  }
+  s->solver_at = r->card->at;
+  s->solver.ops = solver_find(p->method);
+  s->balanced = p->tol < 0.0;
+  s->share = p->share;
+  s->solver.tol = s->balanced ? TOL_DEFAULT : p->tol;
+  s->solver.max_iter = p->max_iter;
+  s->solver.limit_max_iter = p->limit_max_iter;
+  s->check = p->check;
+  if (!s->balanced && p->share != 0.05) tell_idle(r, "SHARE", "TOL=BALANCED");
+  if (r->plugin == NULL) goto done;
+  s->solver_param = memory_new(1, r->plugin_size);
+  if (s->solver_param == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: solver options");
+  memcpy(s->solver_param, r->plugin, r->plugin_size);
+  s->solver.param = s->solver_param;
+done:
+  return st;
+}
+
+status apply_accuracy(reading *r) {
+  const accuracy_param *p = r->param;
+  step *s = open_step(r);
+  if (s->has_accuracy)
+    message_add(r->m->log, P2011, &r->card->at,
+                "a step has one *ACCURACY card, this is its second");
+  s->has_accuracy = 1;
+  s->accuracy_at = r->card->at;
+  s->no_solver_error = !p->solver;
+  s->mesh_error = p->mesh || p->target > 0.0;
+  s->time_error = p->time > 0 || p->target > 0.0;
+  s->time_balanced = p->time == TIME_BALANCED;
+  s->time_share = p->time_share;
+  s->mesh_error |= s->time_balanced;
+  s->theory = p->theory;
+  if (!s->time_balanced && p->time_share != 0.1)
+    tell_idle(r, "TIME_SHARE", "TIME=BALANCED");
+  if (p->target > 0.0) {
+    r->m->target =
+        (accuracy_target){p->target, p->max_cpu, p->max_memory, p->max_passes};
+    return OK;
+  }
+  if (p->max_cpu > 0.0) tell_idle(r, "MAX_CPU", "TARGET=");
+  if (p->max_memory > 0.0) tell_idle(r, "MAX_MEMORY", "TARGET=");
+  if (p->max_passes != 8) tell_idle(r, "MAX_PASSES", "TARGET=");
+  return OK;
+}
+
+status apply_print(reading *r) {
+  status st = OK;
+  const print_param *p = r->param;
+  step *s = open_step(r);
+  const int asked[] = {p->contact, p->totals,    p->nodes, p->elements,
+                       p->energy,  p->reactions, p->zones, p->loop};
+  int any = 0;
+  s->has_print = 1;
+  for (int i = 0; i < 8; ++i) {
+    if (!asked[i]) continue;
+    any = 1;
+    GROW(s->prints, s->n_print, s->cap_print);
+    print_request *q = &s->prints[s->n_print++];
+    q->table = 1 << i;
+    q->group = p->group;
+    q->group_id = -1;
+    q->frequency = p->frequency;
+    q->points_name = p->points;
+    q->points_at = *value_place(r, "TIME POINTS");
+    q->at = *value_place(r, "GROUP");
+    if (p->group != NULL &&
+        (q->table & (PRINT_NODES | PRINT_ELEMENTS | PRINT_REACTIONS)) == 0)
+      message_add(r->m->log, P2037, &q->at,
+                  "GROUP= counts for NODES, ELEMENTS and REACTIONS only");
+  }
+  if (p->points != NULL && p->frequency != 1)
+    tell_idle(r, "FREQUENCY", "no TIME POINTS=");
+  if (!any && !r->misread)
+    message_add(r->m->log, P2005, &r->card->at,
+                "*PRINT names no table: CONTACT, TOTALS, NODES, ELEMENTS, "
+                "ENERGY, REACTIONS, ZONES or LOOP");
+done:
+  return st;
+}
+
+status apply_output(reading *r) {
+  const output_param *p = r->param;
+  step *s = open_step(r);
+  s->has_output = 1;
+  s->output_at = r->card->at;
+  s->output_frequency = p->hdf5 ? p->frequency : -1;
+  s->condensed_frequency = p->condensed == 1 ? p->frequency : -1;
+  if (!p->hdf5 && p->condensed != 1 && p->frequency != 1)
+    tell_idle(r, "FREQUENCY", "HDF5=YES or CONDENSED=FCLIB");
+  return OK;
+}
+
+status apply_restart(reading *r) {
+  const restart_param *p = r->param;
+  step *s = open_step(r);
+  s->has_restart = 1;
+  s->restart_at = r->card->at;
+  s->restart_frequency = p->frequency;
+  return OK;
+}

@@ -1,0 +1,158 @@
+/*
+ * Helpers for the data lines: number of fields, values in range, pairs, names.
+ */
+#include "model/cards/cards.h"
+
+#include "base/memory.h"
+
+#include <stdio.h>
+#include <strings.h>
+
+int same_word(const char *a, const char *b) { return strcasecmp(a, b) == 0; }
+
+int record_fields(const reading *r, const record *line, int min, int max,
+                  const char *expected) {
+  if (line->n_field >= min && line->n_field <= max) return 0;
+  message_add(r->m->log, P2009, &line->at,
+              "%d field%s on this line of *%s; expected: %s", line->n_field,
+              line->n_field == 1 ? "" : "s", r->card->name, expected);
+  return -1;
+}
+
+int field_real(const reading *r, const field *f, double min, double max,
+               const char *what, double *out) {
+  if (deck_real(f, r->m->log, out) != 0) return -1;
+  if (*out >= min && *out <= max) return 0;
+  char why[128];
+  range_text(*out, min, max, why, sizeof why);
+  message_add(r->m->log, P2010, &f->at, "*%s: %s = %s", r->card->name, what,
+              why);
+  return -1;
+}
+
+int field_int(const reading *r, const field *f, int min, int max,
+              const char *what, int *out) {
+  if (deck_int(f, r->m->log, out) != 0) return -1;
+  if (*out >= min && *out <= max) return 0;
+  message_add(r->m->log, P2010, &f->at, "*%s: %s = %s outside [%d, %d]",
+              r->card->name, what, f->text, min, max);
+  return -1;
+}
+
+const place *value_place(const reading *r, const char *name) {
+  const parameter *p = card_parameter(r->card, name);
+  return p == NULL ? &r->card->at : &p->value.at;
+}
+
+void tell_idle(const reading *r, const char *name, const char *with) {
+  message_add(r->m->log, P2037, value_place(r, name),
+              "*%s: %s= counts with %s only", r->card->name, name, with);
+}
+
+int name_taken(const reading *r, const char *name, const char *old) {
+  if (name == NULL || old == NULL || !same_word(name, old)) return 0;
+  message_add(r->m->log, P2011, value_place(r, "NAME"),
+              "*%s, NAME=%s is defined twice", r->card->name, name);
+  return 1;
+}
+
+void unknown_word(message_log *log, message_id id, const place *at,
+                  const char *text, const char *word,
+                  const char *(*next)(const void *ctx, int i),
+                  const void *ctx) {
+  const char *near =
+      message_wanted(log, ERROR) ? nearest_word(word, next, ctx) : NULL;
+  message_add(log, id, at, "%s%s%s%s%s", text, word,
+              near == NULL ? "" : "; did you mean ", near == NULL ? "" : near,
+              near == NULL ? "" : "?");
+}
+
+int field_quantity(const reading *r, const field *f, quantity *out) {
+  return deck_quantity(r->m->deck, f, r->m->log, out);
+}
+
+/* Field of pair number i of the lines of a card, from first_line on. */
+const field *pair_field(const card *c, int first_line, int i, int second) {
+  const record *line = &c->records[first_line];
+  for (; i >= line->n_field / 2; ++line) i -= line->n_field / 2;
+  return &line->fields[2 * i + second];
+}
+
+/* 0 if the pairs ascend; else the log has it. */
+static int pairs_ascend(const reading *r, int first_line,
+                        const value_table *t) {
+  for (int i = 1; i < t->n; ++i)
+    if (!(t->at[i] > t->at[i - 1])) {
+      message_add(r->m->log, P2029, &pair_field(r->card, first_line, i, 0)->at,
+                  "*%s: the table must ascend, but %.15g follows %.15g",
+                  r->card->name, t->at[i], t->at[i - 1]);
+      return -1;
+    }
+  return 0;
+}
+
+status field_file(const reading *r, const char **path) {
+  status st = OK;
+  const parameter *file = card_parameter(r->card, "FILE");
+  *path = NULL;
+  if (file == NULL || !file->has_value) goto done;
+  *path = deck_path(r->m->deck, &file->value);
+  if (*path == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: file of *%s", r->card->name);
+done:
+  return st;
+}
+
+status read_pairs(reading *r, int first_line, int variable, value_table *out) {
+  status st = OK;
+  const card *c = r->card;
+  int total = 0;
+  for (int i = first_line; i < c->n_record; ++i) {
+    if (c->records[i].n_field % 2 != 0 || c->records[i].n_field == 0) {
+      message_add(r->m->log, P2009, &c->records[i].at,
+                  "%d field%s on this line of *%s; expected pairs",
+                  c->records[i].n_field, c->records[i].n_field == 1 ? "" : "s",
+                  c->name);
+      goto done;
+    }
+    total += c->records[i].n_field / 2;
+  }
+  NEW(out->at, total);
+  NEW(out->value, total);
+  out->variable = variable;
+  int n = 0;
+  for (int i = first_line; i < c->n_record; ++i)
+    for (int k = 0; k + 1 < c->records[i].n_field; k += 2, ++n) {
+      const field *f = &c->records[i].fields[k];
+      if (deck_real(&f[0], r->m->log, &out->at[n]) != 0) goto done;
+      if (deck_real(&f[1], r->m->log, &out->value[n]) != 0) goto done;
+    }
+  out->n = n;
+  if (pairs_ascend(r, first_line, out) != 0) out->n = 0;
+done:
+  return st;
+}
+
+int find_name(const model *m, const char *name, const char *title,
+              const char *(*next)(const void *, int), const place *at) {
+  const char *candidate;
+  char text[80];
+  for (int i = 0; (candidate = next(m, i)) != NULL; ++i)
+    if (same_word(candidate, name)) return i;
+  snprintf(text, sizeof text, "there is no *%s, NAME=", title);
+  unknown_word(m->log, P2012, at, text, name, next, m);
+  return -1;
+}
+
+static const char *amplitude_at(const void *ctx, int i) {
+  const model *m = ctx;
+  return i < m->n_amplitude ? m->amplitudes[i].name : NULL;
+}
+
+int find_amplitude(const model *m, const char *name, const place *at) {
+  int i = find_name(m, name, "AMPLITUDE", amplitude_at, at);
+  if (i >= 0) m->amplitudes[i].used = 1;
+  return i;
+}
+
+step *open_step(const reading *r) { return &r->m->steps[r->m->n_step - 1]; }

@@ -1,0 +1,60 @@
+/*
+ * The parts of model_check: groups and contacts (contacts.c), loads and initial
+ * conditions (loads.c), values of expressions (values.c), increments against
+ * the laws (increments.c), the closed form (closed_form.c). Errors go to the
+ * log; a status is of memory. Private to src/model/check.
+ */
+#ifndef PROTIS_CHECK_PARTS_H
+#define PROTIS_CHECK_PARTS_H
+
+#include "model/check/check.h"
+
+/* ---- groups.c ---- */
+
+/* Id of a group, or -1 and an error with the nearest name. */
+int check_group(const model *m, const mesh *msh, const char *name,
+                const place *at);
+/* The same, of a wanted dimension. */
+int check_group_of(const model *m, const mesh *msh, const char *name, int dim,
+                   const place *at);
+
+/* ---- contacts.c ---- */
+
+/* Groups, obstacles and their axes, torques. */
+void check_contacts(model *m, const mesh *msh);
+/* Options of friction laws that are not for every model. */
+void check_laws(const model *m);
+
+/* ---- loads.c ---- */
+
+/* Groups and components. */
+void check_initials(model *m, const mesh *msh);
+/* The loads and tables of all steps, each card once. */
+void check_steps(model *m, const mesh *msh);
+/* The fields of FILE= of *TEMPERATURE, each read once. */
+status check_fields(model *m, const mesh *msh);
+
+/* ---- values.c ---- */
+
+/* Where each step begins and ends, what the expressions give is a number; in
+ * between it is seen when it is needed. */
+void check_values(const model *m, const mesh *msh);
+/* Two groups that share nodes prescribe the same displacement there. */
+status check_agreement(const model *m, const mesh *msh, int step_id);
+
+/* ---- increments.c ---- */
+
+/* Increments of *VISCO steps against the laws that do not change. */
+status check_visco(const model *m);
+
+/* ---- no_effect.c ---- */
+
+/* Warnings of what the deck says and what changes nothing. */
+void check_no_effect(const model *m, const mesh *msh);
+
+/* ---- closed_form.c ---- */
+
+/* Components of *REFERENCE to their places; of u and of the stresses all. */
+void check_reference(model *m);
+
+#endif

@@ -1,0 +1,218 @@
+/*
+ * Nodal fields: $NodeData of gmsh, or two datasets of HDF5.
+ */
+#include "model/field/field.h"
+
+#include "base/memory.h"
+#include "base/archive/dataset.h"
+#include "mesh/msh/scan.h"
+#include "base/system/input.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Values beyond those of the mesh that a file may have: FOREIGN a node, and
+ * FEW. */
+enum { FOREIGN = 8, FEW = 100000 };
+
+typedef struct pairs { /* as the file has them                                */
+  long n;
+  long *node_no;
+  double *value;
+} pairs;
+
+static void pairs_free(pairs *p) {
+  memory_free(p->node_no);
+  memory_free(p->value);
+  *p = (pairs){0};
+}
+
+/* A count that stands on a line of its own. */
+static status read_count(scan *s, size_t *n) {
+  status st = OK;
+  TRY(scan_size(s, n));
+  TRY(scan_line(s));
+done:
+  return st;
+}
+
+/* The tags before the values: *n of them, of one component. */
+static status read_tags(scan *s, size_t *n) {
+  status st = OK;
+  size_t count, length, component = 0;
+  const char *name;
+  double time;
+  TRY(read_count(s, &count));
+  for (size_t i = 0; i < count; ++i) {
+    TRY(scan_quoted(s, &name, &length));
+    TRY(scan_line(s));
+  }
+  TRY(read_count(s, &count));
+  for (size_t i = 0; i < count; ++i) {
+    TRY(scan_real(s, &time));
+    TRY(scan_line(s));
+  }
+  TRY(read_count(s, &count));
+  for (size_t i = 0; i < count; ++i) {
+    int tag;
+    TRY(scan_int(s, &tag));
+    TRY(scan_line(s));
+    if (i == 1) component = (size_t)tag;
+    if (i == 2) *n = tag < 0 ? SIZE_MAX : (size_t)tag;
+  }
+  if (count < 3) return scan_fail(s, "$NodeData needs three integer tags");
+  if (component != 1)
+    return scan_fail(s, "$NodeData has %zu components, one is needed",
+                     component);
+done:
+  return st;
+}
+
+static status read_node_data(scan *s, pairs *p) {
+  status st = OK;
+  size_t n = 0;
+  int no;
+  pairs_free(p);
+  TRY(read_tags(s, &n));
+  scan_start_binary(s);
+  TRY(scan_fits(s, n, sizeof "1 0", 12, "values"));
+  NEW(p->node_no, n);
+  NEW(p->value, n);
+  for (size_t i = 0; i < n; ++i) {
+    TRY(scan_int(s, &no));
+    TRY(scan_real(s, &p->value[i]));
+    TRY(scan_line(s));
+    p->node_no[i] = no;
+  }
+  p->n = (long)n;
+  TRY(scan_end(s, "NodeData", "its values"));
+done:
+  return st;
+}
+
+static status read_gmsh(scan *s, pairs *p) {
+  status st = OK;
+  char name[SCAN_NAME];
+  int found = 0;
+  for (;;) {
+    TRY(scan_section(s, name));
+    if (name[0] == '\0') break;
+    if (strcmp(name, "NodeData") != 0) {
+      TRY(scan_skip(s, name));
+      continue;
+    }
+    if (s->version == 0.0)
+      return scan_fail(s, "$MeshFormat is to stand before $NodeData");
+    TRY(read_node_data(s, p));
+    found = 1;
+  }
+  if (!found)
+    FAIL(ERR_DECK, "%s: there is no $NodeData, and it is not HDF5", s->path);
+done:
+  return st;
+}
+
+static status read_hdf5(const char *path, long most, pairs *p) {
+  status st = OK;
+  hdf5_source s;
+  int *number = NULL;
+  long n_value = 0;
+  TRY(dataset_open(path, &s));
+  TRY(source_ints(&s, "/node_no", 0, most, &p->n, &number));
+  TRY(source_reals(&s, "/temperature", 0, most, &n_value, &p->value));
+  if (n_value != p->n)
+    FAIL(ERR_DECK, "%s: /node_no has %ld items, /temperature %ld", path, p->n,
+         n_value);
+  NEW(p->node_no, p->n);
+  for (long i = 0; i < p->n; ++i) p->node_no[i] = number[i];
+done:
+  memory_free(number);
+  dataset_close(&s);
+  return st;
+}
+
+/* A node of the mesh with its place, sorted by number. */
+typedef struct numbered {
+  size_t no;
+  int id;
+} numbered;
+
+static int compare_no(const void *a, const void *b) {
+  const size_t x = ((const numbered *)a)->no, y = ((const numbered *)b)->no;
+  return (x > y) - (x < y);
+}
+
+static status to_mesh(const char *path, const pairs *p, const mesh *msh,
+                      double *value) {
+  status st = OK;
+  numbered *node = NULL;
+  unsigned char *known = NULL;
+  NEW(node, msh->n_node);
+  NEW(known, msh->n_node);
+  for (int i = 0; i < msh->n_node; ++i)
+    node[i] = (numbered){msh->node_no[i], i};
+  qsort(node, (size_t)msh->n_node, sizeof *node, compare_no);
+  for (long i = 0; i < p->n; ++i) {
+    const numbered key = {(size_t)p->node_no[i], 0};
+    const numbered *at =
+        bsearch(&key, node, (size_t)msh->n_node, sizeof key, compare_no);
+    if (at == NULL) continue;
+    if (!isfinite(p->value[i]))
+      FAIL(ERR_DECK, "%s: the value of node %ld is not a finite number", path,
+           p->node_no[i]);
+    if (known[at->id])
+      FAIL(ERR_DECK, "%s: node %ld is listed twice", path, p->node_no[i]);
+    value[at->id] = p->value[i];
+    known[at->id] = 1;
+  }
+  for (int i = 0; i < msh->n_node; ++i)
+    if (!known[i])
+      FAIL(ERR_DECK, "%s: node %zu of the mesh has no value", path,
+           msh->node_no[i]);
+done:
+  memory_free(node);
+  memory_free(known);
+  return st;
+}
+
+/* 1 if the file has the first bytes of one of HDF5. */
+static status find_kind(const char *path, int *is_hdf5) {
+  status st = OK;
+  static const char signature[8] = "\211HDF\r\n\032\n";
+  char first[8];
+  const char *why;
+  FILE *f = input_stream(path, &why);
+  if (f == NULL) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
+  *is_hdf5 = fread(first, 1, 8, f) == 8 && memcmp(first, signature, 8) == 0;
+  fclose(f);
+done:
+  return st;
+}
+
+status nodal_field_read(const char *path, const mesh *msh, double **value) {
+  status st = OK;
+  pairs p = {0};
+  scan s = {0};
+  int is_hdf5 = 0;
+  *value = NULL;
+  TRY(find_kind(path, &is_hdf5));
+  if (is_hdf5) {
+    TRY(read_hdf5(path, FEW + (1L + FOREIGN) * msh->n_node, &p));
+  } else {
+    TRY(scan_open(&s, path, ERR_DECK));
+    TRY(read_gmsh(&s, &p));
+  }
+  NEW(*value, msh->n_node);
+  TRY(to_mesh(path, &p, msh, *value));
+done:
+  scan_close(&s);
+  pairs_free(&p);
+  if (st != OK) {
+    memory_free(*value);
+    *value = NULL;
+  }
+  return st;
+}

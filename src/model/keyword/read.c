@@ -1,0 +1,262 @@
+/*
+ * From cards to the model: the driver over the keyword table.
+ */
+#include "model/keyword/parts.h"
+
+#include "base/memory.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *keyword_name(const void *ctx, int i) {
+  (void)ctx;
+  return keyword_table[i].name;
+}
+
+static const char *option_name(const void *ctx, int i) {
+  return ((const option *)ctx)[i].name;
+}
+
+/* Name of row i of two tables one after the other. */
+typedef struct two_tables {
+  const option *first, *second;
+} two_tables;
+
+static const char *either_name(const void *ctx, int i) {
+  const two_tables *t = ctx;
+  for (const option *o = t->first; o != NULL && o->name != NULL; ++o)
+    if (i-- == 0) return o->name;
+  return t->second == NULL ? NULL : option_name(t->second, i);
+}
+
+/* Read one parameter into the struct its row belongs to. */
+static void read_parameter(reading *r, const option *row, const parameter *p,
+                           void *into) {
+  char why[256];
+  if (option_read(row, p->has_value ? p->value.text : NULL, into, why,
+                  sizeof why) == 0)
+    return;
+  r->misread = 1;
+  message_add(r->m->log, P2004, p->has_value ? &p->value.at : &p->at,
+              "*%s, %s: %s", r->card->name, p->name, why);
+}
+
+/* A name that no row has: not reported after a law or method that is not
+ * known, whose option it may be. */
+static void unknown_parameter(reading *r, const parameter *p,
+                              const two_tables *all, const plugin *named) {
+  char text[256], of[128] = "";
+  r->misread = 1;
+  if (named->parameter != NULL && named->name == NULL) return;
+  if (named->parameter != NULL)
+    snprintf(of, sizeof of, ", %s=%.80s", named->parameter, named->name);
+  snprintf(text, sizeof text, "*%.80s%s has no parameter ", r->card->name, of);
+  unknown_word(r->m->log, P2003, &p->at, text, p->name, either_name, all);
+}
+
+/* Nothing is missing where something was not understood: it may be that. */
+static void report_missing(const reading *r, const option *table) {
+  if (r->misread) return;
+  for (const option *o = table; o != NULL && o->name != NULL; ++o)
+    if (o->initial == NULL && card_parameter(r->card, o->name) == NULL)
+      message_add(r->m->log, P2005, &r->card->at,
+                  "*%s needs the parameter %s= (%s)", r->card->name, o->name,
+                  o->help);
+}
+
+void keyword_parameters(const keyword *row, reading *r, void *param,
+                        void *plugin_param) {
+  const card *c = r->card;
+  memset(param, 0, PARAM_SIZE);
+  memset(plugin_param, 0, PARAM_SIZE);
+  r->param = param;
+  r->plugin = NULL;
+  if (row->options != NULL) option_defaults(row->options, param);
+  r->misread = c->damaged;
+  for (int i = 0; i < c->n_parameter; ++i) {
+    const option *o = option_find(row->options, c->parameters[i].name);
+    if (o != NULL) read_parameter(r, o, &c->parameters[i], param);
+  }
+  plugin named = {NULL, 0, NULL, NULL};
+  if (row->names != NULL) {
+    named = row->names(r);
+    r->plugin_size = named.size;
+    if (named.options != NULL) option_defaults(named.options, plugin_param);
+    if (named.size > 0) r->plugin = plugin_param;
+  }
+  two_tables all = {row->options, named.options};
+  for (int i = 0; i < c->n_parameter; ++i) {
+    const parameter *p = &c->parameters[i];
+    if (option_find(row->options, p->name) != NULL) continue;
+    const option *o = option_find(named.options, p->name);
+    if (o != NULL)
+      read_parameter(r, o, p, plugin_param);
+    else
+      unknown_parameter(r, p, &all, &named);
+  }
+  report_missing(r, row->options);
+  report_missing(r, named.options);
+}
+
+/* 1 if the card may stand here; opens and closes the blocks. */
+static int right_place(reading *r, const keyword *row) {
+  message_log *log = r->m->log;
+  const card *c = r->card;
+  if (r->in_step) {
+    if (row->where & IN_STEP) return 1;
+    message_add(log, P2006, &c->at,
+                "*%s does not belong inside a step; end the step first with "
+                "*END STEP",
+                c->name);
+    return 0;
+  }
+  if (row->where & IN_MATERIAL) {
+    if (r->material_id >= 0) return 1;
+    if (r->lost_material) return 0;
+    message_add(log, P2006, &c->at, "*%s must follow its *MATERIAL card",
+                c->name);
+    return 0;
+  }
+  r->material_id = -1;
+  r->lost_material = 0;
+  if (row->where & IN_MODEL) {
+    if (r->m->n_step == 0 || strcmp(row->name, "STEP") == 0) return 1;
+    message_add(log, P2006, &c->at, "*%s must stand before the first *STEP",
+                c->name);
+    return 0;
+  }
+  if (r->lost_step) {
+    r->lost_step = strcmp(row->name, "END STEP") != 0;
+    return 0;
+  }
+  message_add(log, P2006, &c->at, "*%s belongs between *STEP and *END STEP",
+              c->name);
+  return 0;
+}
+
+static int right_lines(const reading *r, const keyword *row) {
+  const card *c = r->card;
+  if (c->n_record < row->min_line) {
+    message_add(r->m->log, P2007, &c->at, "*%s needs %d data line%s: %s",
+                c->name, row->min_line, row->min_line == 1 ? "" : "s",
+                row->data);
+    return 0;
+  }
+  if (row->max_line < 0 || c->n_record <= row->max_line) return 1;
+  if (row->max_line == 0)
+    message_add(r->m->log, P2008, &c->records[0].at, "*%s has no data lines",
+                c->name);
+  else
+    message_add(r->m->log, P2008, &c->records[row->max_line].at,
+                "*%s has at most %d data line%s: %s", c->name, row->max_line,
+                row->max_line == 1 ? "" : "s", row->data);
+  return 0;
+}
+
+static void unknown_card(reading *r) {
+  const card *c = r->card;
+  const char *near = message_wanted(r->m->log, ERROR)
+                         ? nearest_word(c->name, keyword_name, NULL)
+                         : NULL;
+  place at = c->at; /* a file that is included may be no deck at all          */
+  at.hidden |= near == NULL && at.from != NULL;
+  message_add(r->m->log, P1003, &at, "unknown card *%s%s%s%s", c->name,
+              near == NULL ? "" : "; did you mean *", near == NULL ? "" : near,
+              near == NULL ? "" : "?");
+  if (near == NULL || r->in_step) return;
+  if (strcmp(near, "STEP") == 0) r->lost_step = 1;
+  if (strcmp(near, "MATERIAL") == 0) {
+    r->lost_material = 1;
+    r->material_id = -1;
+  }
+}
+
+static status read_card(reading *r) {
+  status st = OK;
+  _Alignas(16) char param[PARAM_SIZE], plugin_param[PARAM_SIZE];
+  const keyword *row = keyword_find(r->card->name);
+  if (row == NULL) unknown_card(r);
+  if (row != NULL && row->where & LANGUAGE) goto done;
+  if (row == NULL || !right_place(r, row)) {
+    r->lost = 1;
+    goto done;
+  }
+  keyword_parameters(row, r, param, plugin_param);
+  r->lost |= r->misread;
+  /* A card that has no lines means the same with some. */
+  if (right_lines(r, row) || row->max_line == 0)
+    TRY(row->apply(r));
+  else
+    r->lost = 1;
+done:
+  return st;
+}
+
+/* Name of the job: the file without folder and .inp. */
+static status name_job(model *m) {
+  status st = OK;
+  const char *slash = strrchr(m->deck->file, '/');
+  const char *base = slash == NULL ? m->deck->file : slash + 1;
+  m->job = memory_text(base);
+  if (m->job == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of the job");
+  size_t length = strlen(m->job);
+  if (length > 4 && same_word(m->job + length - 4, ".inp"))
+    m->job[length - 4] = '\0';
+done:
+  return st;
+}
+
+/* What the deck lacks, at its end; not after a card was lost, which may be
+ * the one. */
+static void report_absent(const reading *r) {
+  const model *m = r->m;
+  place at = {.file = m->deck->file};
+  if (r->lost) return;
+  if (m->deck->n_card > 0) at = m->deck->cards[m->deck->n_card - 1].at;
+  if (!m->has_mesh && !m->has_problem)
+    message_add(m->log, P2015, &at, "the deck has no *MESH card");
+  if (m->n_section == 0 && !m->has_problem)
+    message_add(m->log, P2016, &at,
+                "the deck has no *SOLID SECTION: nothing says what the "
+                "elements are made of");
+  if (m->n_step == 0 && !m->has_problem)
+    message_add(m->log, P2017, &at, "the deck has no *STEP: nothing to solve");
+  if (r->in_step)
+    message_add(m->log, P2019, &m->steps[m->n_step - 1].at,
+                "this *STEP is not closed by *END STEP");
+}
+
+/* A problem from a file needs no *STEP. */
+static status default_step(model *m) {
+  status st = OK;
+  GROW(m->steps, m->n_step, m->cap_step);
+  m->steps[m->n_step++] = (step){.name = "", .at = m->problem_at};
+done:
+  return st;
+}
+
+status model_from_deck(deck *d, message_log *log, model **out) {
+  status st = OK;
+  model *m = NULL;
+  NEW(m, 1);
+  *out = m;
+  m->deck = d;
+  m->log = log;
+  m->title = "";
+  TRY(name_job(m));
+  reading r = {.m = m,
+               .material_id = -1,
+               .is_lost = name_is_lost,
+               .lost = message_count(log, ERROR) > 0};
+  for (int i = 0; i < d->n_card; ++i) {
+    r.card = &d->cards[i];
+    TRY(read_card(&r));
+  }
+  report_absent(&r);
+  if (m->has_problem && m->n_step == 0) TRY(default_step(m));
+  TRY(model_resolve(m, r.lost));
+  if (m->has_problem) TRY(model_finish_problem(&r));
+  TRY(message_status(log, ERR_DECK));
+done:
+  return st;
+}

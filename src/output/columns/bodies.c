@@ -1,0 +1,220 @@
+/*
+ * Columns of the nodes and of the elements.
+ */
+#include "output/columns/rows.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Nodes */
+VALUE(node_no, v->msh->node_no[id])
+VALUE(node_x, v->msh->x[at(v->msh->dim, id, part)])
+VALUE(node_u, v->s->u[at(v->msh->dim, id, part)])
+VALUE(reaction, v->s->reaction[at(v->msh->dim, id, part)])
+
+/* Elements */
+VALUE(elem_no, v->msh->elem_no[id])
+
+static double elem_x(const view *v, int id, int part) {
+  const int dim = v->msh->dim, *node = v->msh->elem + (dim + 1) * id;
+  double sum = 0;
+  for (int k = 0; k <= dim; ++k) sum += v->msh->x[at(dim, node[k], part)];
+  return sum / (dim + 1);
+}
+
+VALUE(elem_error, 100 * v->s->elem_error[id])
+VALUE(temperature, v->s->temperature[id])
+VALUE(strain, v->s->strain[at(v->m->ns, id, part)])
+VALUE(stress, v->s->stress[at(v->m->ns, id, part)])
+
+static int compare_id(const void *a, const void *b) {
+  const int x = *(const int *)a, y = *(const int *)b;
+  return (x > y) - (x < y);
+}
+
+/* Point of an element whose law flows, or -1. */
+static int point_of(const view *v, int elem_id) {
+  const int *found = bsearch(&elem_id, v->s->flow_elem, (size_t)v->s->flow->n,
+                             sizeof elem_id, compare_id);
+  return found == NULL ? -1 : (int)(found - v->s->flow_elem);
+}
+
+/* Inelastic strain; 0 where no law flows. */
+static double inelastic(const view *v, int id, int part) {
+  int k = point_of(v, id);
+  return k < 0 ? 0 : v->s->inelastic->ei[at(v->m->ns, k, part)];
+}
+
+/* Internal variable; 0 where the law has fewer. */
+static double internal(const view *v, int id, int part) {
+  int k = point_of(v, id);
+  const size_t *start = v->s->flow->alpha_at;
+  if (k < 0 || start[k] + (size_t)part >= start[k + 1]) return 0;
+  return v->s->inelastic->alpha[start[k] + (size_t)part];
+}
+
+static double mises(const view *v, int id, int part) {
+  const double *s = v->s->stress + at(v->m->ns, id, 0);
+  (void)part;
+  double shear = s[3] * s[3];
+  if (v->m->ns == 6) shear += s[4] * s[4] + s[5] * s[5];
+  double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
+  return sqrt(0.5 * (a * a + b * b + c * c) + 3 * shear);
+}
+
+/* clang-format off */
+#define NODE  PER_NODE, AS_REAL
+#define ELEM  PER_ELEMENT, AS_REAL
+#define NODES (PRINT_NODES | PRINT_REACTIONS)
+#define STRAIN(scenes) PRINT_ELEMENTS, ON(STRESS), scenes, NEEDS_STRAIN
+#define STRESS(scenes) PRINT_ELEMENTS, ON(STRESS), scenes, NEEDS_STRESS
+#define FLOW(scenes) \
+  PRINT_ELEMENTS, ON(STRESS) | ON(INELASTIC), scenes, NEEDS_FLOW
+#define ALPHA \
+  PRINT_ELEMENTS, ON(STRESS) | ON(INELASTIC), SCENE_ALL, \
+  NEEDS_FLOW | NEEDS_ALPHA
+#define REACT(scenes) PRINT_REACTIONS, ON(REACTION), scenes, NEEDS_REACTION
+const column node_columns[] = {
+{"node_no", "-", PER_NODE, AS_COUNT, NODES, 0, ANY, NULL, 0, node_no, NULL,
+ "number in the mesh"},
+{"x", "length", NODE, NODES, 0, CART, 0, NULL, 0, node_x,
+ NULL, "coordinate"},
+{"r", "length", NODE, NODES, 0, SCENE_AXI, 0, NULL, 0, node_x, NULL,
+ "coordinate"},
+{"y", "length", NODE, NODES, 0, CART, 0, NULL, 1, node_x,
+ NULL, "coordinate"},
+{"z", "length", NODE, NODES, 0, SCENE_AXI, 0, NULL, 1, node_x, NULL,
+ "coordinate"},
+{"z", "length", NODE, NODES, 0, SCENE_SOLID, 0, NULL, 2, node_x, NULL,
+ "coordinate"},
+{"u_x", "length", NODE, PRINT_NODES, 0, CART, 0, "u", 0,
+ node_u, NULL, "displacement"},
+{"u_r", "length", NODE, PRINT_NODES, 0, SCENE_AXI, 0, "u", 0, node_u, NULL,
+ "displacement"},
+{"u_y", "length", NODE, PRINT_NODES, 0, CART, 0, "u", 1,
+ node_u, NULL, "displacement"},
+{"u_z", "length", NODE, PRINT_NODES, 0, SCENE_AXI, 0, "u", 1, node_u, NULL,
+ "displacement"},
+{"u_z", "length", NODE, PRINT_NODES, 0, SCENE_SOLID, 0, "u", 2, node_u, NULL,
+ "displacement"},
+{"reaction_x", "force", NODE, REACT(CART), "reaction", 0,
+ reaction, NULL, "force of the support on the body"},
+{"reaction_r", "force", NODE, REACT(SCENE_AXI), "reaction", 0, reaction, NULL,
+ "force of the support on the body"},
+{"reaction_y", "force", NODE, REACT(CART), "reaction", 1,
+ reaction, NULL, "force of the support on the body"},
+{"reaction_z", "force", NODE, REACT(SCENE_AXI), "reaction", 1, reaction, NULL,
+ "force of the support on the body"},
+{"reaction_z", "force", NODE, REACT(SCENE_SOLID), "reaction", 2, reaction,
+ NULL, "force of the support on the body"},
+NO_COLUMN};
+/* clang-format on */
+
+/* clang-format off */
+const column element_columns[] = {
+{"elem_no", "-", PER_ELEMENT, AS_COUNT, PRINT_ELEMENTS, 0, ANY, NULL, 0,
+ elem_no, NULL, "number in the mesh"},
+{"x", "length", ELEM, PRINT_ELEMENTS, 0, CART, 0, NULL, 0, elem_x, NULL,
+ "centre"},
+{"r", "length", ELEM, PRINT_ELEMENTS, 0, SCENE_AXI, 0, NULL, 0, elem_x, NULL,
+ "centre"},
+{"y", "length", ELEM, PRINT_ELEMENTS, 0, CART, 0, NULL, 1, elem_x, NULL,
+ "centre"},
+{"z", "length", ELEM, PRINT_ELEMENTS, 0, SCENE_AXI, 0, NULL, 1, elem_x, NULL,
+ "centre"},
+{"z", "length", ELEM, PRINT_ELEMENTS, 0, SCENE_SOLID, 0, NULL, 2, elem_x, NULL,
+ "centre"},
+{"temperature", "temperature", ELEM, PRINT_ELEMENTS,
+ ON(STRESS) | ON(THERMAL), ANY, "temperature", 0, temperature, NULL,
+ "mean of the element"},
+{"mesh_error", "%", ELEM, PRINT_ELEMENTS, ON(MESH_ERROR), SCENE_ALL,
+ NEEDS_ELEM_ERROR, "mesh_error", 0, elem_error, NULL, "share of the element in "
+ "the error of the mesh, whose square is the sum of their squares"},
+{"strain_xx", "-", ELEM, STRAIN(CART), "strain_xx", 0,
+ strain, NULL, "strain"},
+{"strain_yy", "-", ELEM, STRAIN(CART), "strain_yy", 1,
+ strain, NULL, "strain"},
+{"strain_zz", "-", ELEM, STRAIN(CART), "strain_zz", 2,
+ strain, NULL, "strain"},
+{"gamma_xy", "-", ELEM, STRAIN(CART), "gamma_xy", 3,
+ strain, NULL, "engineering shear strain"},
+{"gamma_yz", "-", ELEM, STRAIN(SCENE_SOLID), "gamma_yz", 4, strain, NULL,
+ "engineering shear strain"},
+{"gamma_zx", "-", ELEM, STRAIN(SCENE_SOLID), "gamma_zx", 5, strain, NULL,
+ "engineering shear strain"},
+{"strain_rr", "-", ELEM, STRAIN(SCENE_AXI), "strain_rr", 0, strain, NULL,
+ "strain"},
+{"strain_zz", "-", ELEM, STRAIN(SCENE_AXI), "strain_zz", 1, strain, NULL,
+ "strain"},
+{"strain_tt", "-", ELEM, STRAIN(SCENE_AXI), "strain_tt", 2, strain, NULL,
+ "hoop strain"},
+{"gamma_rz", "-", ELEM, STRAIN(SCENE_AXI), "gamma_rz", 3, strain, NULL,
+ "engineering shear strain"},
+{"stress_xx", PA, ELEM, STRESS(CART), "stress_xx", 0,
+ stress, NULL, "stress"},
+{"stress_yy", PA, ELEM, STRESS(CART), "stress_yy", 1,
+ stress, NULL, "stress"},
+{"stress_zz", PA, ELEM, STRESS(CART), "stress_zz", 2,
+ stress, NULL, "stress"},
+{"stress_xy", PA, ELEM, STRESS(CART), "stress_xy", 3,
+ stress, NULL, "shear stress"},
+{"stress_yz", PA, ELEM, STRESS(SCENE_SOLID), "stress_yz", 4, stress, NULL,
+ "shear stress"},
+{"stress_zx", PA, ELEM, STRESS(SCENE_SOLID), "stress_zx", 5, stress, NULL,
+ "shear stress"},
+{"stress_rr", PA, ELEM, STRESS(SCENE_AXI), "stress_rr", 0, stress, NULL,
+ "stress"},
+{"stress_zz", PA, ELEM, STRESS(SCENE_AXI), "stress_zz", 1, stress, NULL,
+ "stress"},
+{"stress_tt", PA, ELEM, STRESS(SCENE_AXI), "stress_tt", 2, stress, NULL,
+ "hoop stress"},
+{"stress_rz", PA, ELEM, STRESS(SCENE_AXI), "stress_rz", 3, stress, NULL,
+ "shear stress"},
+{"mises", PA, ELEM, STRESS(SCENE_ALL), "mises", 0, mises, NULL,
+ "von Mises stress"},
+{"ei_xx", "-", ELEM, FLOW(CART), "ei_xx", 0, inelastic, NULL,
+ "inelastic strain"},
+{"ei_yy", "-", ELEM, FLOW(CART), "ei_yy", 1, inelastic, NULL,
+ "inelastic strain"},
+{"ei_zz", "-", ELEM, FLOW(CART), "ei_zz", 2, inelastic, NULL,
+ "inelastic strain"},
+{"ei_xy", "-", ELEM, FLOW(CART), "ei_xy", 3, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"ei_yz", "-", ELEM, FLOW(SCENE_SOLID), "ei_yz", 4, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"ei_zx", "-", ELEM, FLOW(SCENE_SOLID), "ei_zx", 5, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"ei_rr", "-", ELEM, FLOW(SCENE_AXI), "ei_rr", 0, inelastic, NULL,
+ "inelastic strain"},
+{"ei_zz", "-", ELEM, FLOW(SCENE_AXI), "ei_zz", 1, inelastic, NULL,
+ "inelastic strain"},
+{"ei_tt", "-", ELEM, FLOW(SCENE_AXI), "ei_tt", 2, inelastic, NULL,
+ "inelastic strain"},
+{"ei_rz", "-", ELEM, FLOW(SCENE_AXI), "ei_rz", 3, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"alpha_1", "-", ELEM, ALPHA, "alpha_1", 0, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_2", "-", ELEM, ALPHA, "alpha_2", 1, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_3", "-", ELEM, ALPHA, "alpha_3", 2, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_4", "-", ELEM, ALPHA, "alpha_4", 3, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_5", "-", ELEM, ALPHA, "alpha_5", 4, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_6", "-", ELEM, ALPHA, "alpha_6", 5, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_7", "-", ELEM, ALPHA, "alpha_7", 6, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_8", "-", ELEM, ALPHA, "alpha_8", 7, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_9", "-", ELEM, ALPHA, "alpha_9", 8, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_10", "-", ELEM, ALPHA, "alpha_10", 9, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_11", "-", ELEM, ALPHA, "alpha_11", 10, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_12", "-", ELEM, ALPHA, "alpha_12", 11, internal, NULL,
+ "internal variable of the law, in its unit"},
+NO_COLUMN};
+/* clang-format on */

@@ -1,0 +1,45 @@
+/*
+ * What the rows of all tables of columns are written with; for the files of
+ * this folder only. Signs as in the manual: pressure p = -r_n/area >= 0, forces
+ * are those of the obstacle on the body, so f_n = -r_n >= 0 presses, and f_t
+ * is opposite to the slip.
+ */
+#ifndef PROTIS_COLUMNS_ROWS_H
+#define PROTIS_COLUMNS_ROWS_H
+
+#include "output/columns/columns.h"
+
+/* A value is one expression of the view v, the item id and the component. */
+#define VALUE(name, expression)                         \
+  static double name(const view *v, int id, int part) { \
+    (void)v, (void)id, (void)part;                      \
+    return (double)(expression);                        \
+  }
+
+/* Place of a component in an array of "stride" components an item. */
+static inline size_t at(int stride, int id, int part) {
+  return (size_t)stride * (size_t)id + (size_t)part;
+}
+
+const char *status_word(unsigned k); /* OPEN, SLIP, STICK                     */
+
+/* One table an entity; name NULL at the end. */
+extern const column increment_columns[], node_columns[], element_columns[],
+    contact_node_columns[], zone_columns[], contact_columns[];
+
+/* clang-format off */
+/* Needs an effect, also in a build that knows nothing of it. */
+#define ON(effect) (1u << EFFECT_BIT_##effect)
+#define C ON(CONTACT)
+#define F (ON(CONTACT) | ON(FRICTION))
+#define INC   PER_INCREMENT, AS_REAL
+#define CART (SCENE_PLANE | SCENE_SOLID)
+#define ANY SCENE_ALL, 0
+#define PA "force/length^2"
+#define J "force*length"
+/* A row: name, unit, entity and form, tables, effects, scenes, needs, field,
+ * part, value, word, help. */
+#define NO_COLUMN {NULL, NULL, INC, 0, 0, 0, 0, NULL, 0, NULL, NULL, NULL}
+/* clang-format on */
+
+#endif

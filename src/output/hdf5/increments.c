@@ -1,0 +1,132 @@
+/*
+ * Rows and records of JOB.h5, written while the job runs.
+ */
+#include "output/hdf5/file.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+
+/* Room for what the rest of the run will need, and for half as many again as
+ * there are, so that copying costs little on the whole. */
+static status grow(hdf5_file *h, const state *s) {
+  int rows, records;
+  const step *now = &h->m->steps[s->step_no - 1];
+  double left = (now->start + now->total - s->t) / fmax(s->dt, 1e-300);
+  hdf5_forecast(h->m, s->step_no, fmax(0, ceil(left * (1 - 1e-9))) + 1, &rows,
+                &records);
+  rows = h->n_row + (int)fmax(rows, 8 + h->n_row / 2);
+  if (h->n_record < h->now.n_record)
+    records = h->now.n_record;
+  else
+    records = h->n_record + (int)fmax(records, 4 + h->n_record / 2);
+  return hdf5_renew(h, rows, records);
+}
+
+static double part_value(const hdf5_field *f, const view *v, int id, int k) {
+  const column *c = f->part[k];
+  if (c == NULL) return 0;
+  if (!column_ready(c, v->s)) return NAN;
+  double value = c->value(v, id, c->part);
+  return value == 0 ? 0.0 : value;
+}
+
+/* A contact node that is not in the surface now has no value. */
+static double item_value(const hdf5_file *h, const hdf5_field *f, const view *v,
+                         int id, int k) {
+  if (f->of == PER_CONTACT_NODE) id = h->surface_id[id];
+  return id < 0 ? NAN : part_value(f, v, id, k);
+}
+
+static off_t slot(off_t offset, int i) {
+  return offset + (off_t)sizeof(double) * i;
+}
+
+/* Values that follow each other in the file, to be written at once. */
+typedef struct burst {
+  off_t at;
+  int n;
+  double value[CHUNK];
+} burst;
+
+static status put_burst(hdf5_file *h, burst *b) {
+  const size_t bytes = sizeof *b->value * (size_t)b->n;
+  b->n = 0;
+  return hdf5_put(h->fd, h->path, b->value, bytes, b->at);
+}
+
+static status put_field(hdf5_file *h, const hdf5_field *f, const view *v,
+                        off_t offset, burst *b) {
+  status st = OK;
+  const int items = hdf5_items(h, f);
+  for (int id = 0; id < items; ++id)
+    for (int k = 0; k < f->n_part; ++k, offset = slot(offset, 1)) {
+      if (b->n == CHUNK || slot(b->at, b->n) != offset) {
+        TRY(put_burst(h, b));
+        b->at = offset;
+      }
+      b->value[b->n++] = item_value(h, f, v, id, k);
+    }
+done:
+  return st;
+}
+
+/* Both lists ascend. */
+static void find_surface_ids(hdf5_file *h, const contact_surface *s) {
+  int k = 0;
+  for (int i = 0; i < h->n_contact_node; ++i) {
+    while (s != NULL && k < s->n && s->node_id[k] < h->contact_node[i]) ++k;
+    int there = s != NULL && k < s->n && s->node_id[k] == h->contact_node[i];
+    h->surface_id[i] = there ? k : -1;
+  }
+}
+
+static status put_real(hdf5_file *h, double value, off_t offset, int i) {
+  return hdf5_put(h->fd, h->path, &value, sizeof value, slot(offset, i));
+}
+
+static status put_record(hdf5_file *h, const view *v) {
+  status st = OK;
+  burst b = {.n = 0};
+  GROW(h->times, h->n_record, h->cap_time);
+  find_surface_ids(h, v->s->surface);
+  for (int i = 0; i < h->n_field; ++i) {
+    if (hdf5_is_history(&h->fields[i])) continue;
+    size_t k = (size_t)i * (size_t)h->now.n_record + (size_t)h->n_record;
+    TRY(put_field(h, &h->fields[i], v, h->now.record[k], &b));
+  }
+  TRY(put_burst(h, &b));
+  TRY(put_real(h, v->s->total_no, h->now.record_total, h->n_record));
+  TRY(put_real(h, v->s->t, h->now.record_time, h->n_record));
+  h->times[h->n_record++] = v->s->t;
+done:
+  return st;
+}
+
+static status put_row(hdf5_file *h, const view *v) {
+  status st = OK;
+  int time_id = hdf5_time_field(h);
+  for (int i = 0; i < h->n_field; ++i) {
+    const hdf5_field *f = &h->fields[i];
+    if (!hdf5_is_history(f) || i == time_id) continue;
+    TRY(put_real(h, part_value(f, v, f->id, 0), h->now.history[i], h->n_row));
+  }
+  TRY(put_real(h, v->s->t, h->now.history[time_id], h->n_row));
+  ++h->n_row;
+done:
+  return st;
+}
+
+status hdf5_increment(hdf5_file *h, const state *s) {
+  status st = OK;
+  if (h == NULL) return OK;
+  view v = {h->m, h->msh, s};
+  int due = frequency_shows(h->m->steps[s->step_no - 1].output_frequency,
+                            s->increment_no, s->end_of_step);
+  if (h->n_row == h->now.n_row || (due && h->n_record == h->now.n_record))
+    TRY(grow(h, s));
+  if (due) TRY(put_record(h, &v));
+  TRY(put_row(h, &v));
+done:
+  return st;
+}

@@ -1,0 +1,187 @@
+/*
+ * JOB.xdmf: XDMF 3 text that tells a viewer where the fields stand in JOB.h5,
+ * named without folder. Two temporal collections: the contact surface and the
+ * body; the body is the last one, as some readers take that one only. Data
+ * items are whole datasets (hyperslabs are not read everywhere).
+ */
+#include "base/text.h"
+#include "output/hdf5/hdf5.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Where the name of a record and its time stand in a text of any record. */
+enum { NAME = 1, TIME = 2 };
+
+typedef struct part {
+  const char *name, *points, *cells, *topology;
+  int n_point, n_cell, corners;
+  entity on_points, on_cells; /* fields shown on it; PER_INCREMENT: none     */
+} part;
+
+static void xml_text(FILE *f, const char *text) {
+  for (; *text != '\0'; ++text) switch (*text) {
+      case '&':
+        fputs("&amp;", f);
+        break;
+      case '<':
+        fputs("&lt;", f);
+        break;
+      case '>':
+        fputs("&gt;", f);
+        break;
+      case '"':
+        fputs("&quot;", f);
+        break;
+      default:
+        fputc((unsigned char)*text >= ' ' || *text == NAME ? *text : '?', f);
+    }
+}
+
+static void data_item(FILE *f, const char *file, const char *dataset,
+                      const char *type, int rows, int columns) {
+  fprintf(f, "<DataItem Format=\"HDF\" %s Dimensions=\"%d", type, rows);
+  if (columns > 1) fprintf(f, " %d", columns);
+  fputs("\">", f);
+  xml_text(f, file);
+  fputc(':', f);
+  xml_text(f, dataset);
+  fputs("</DataItem>\n", f);
+}
+
+#define REAL_TYPE "NumberType=\"Float\" Precision=\"8\""
+#define INT_TYPE "NumberType=\"Int\" Precision=\"4\""
+
+static void write_mesh(FILE *f, const char *file, const part *p) {
+  fprintf(f, "<Topology TopologyType=\"%s\" NumberOfElements=\"%d\"",
+          p->topology, p->n_cell);
+  if (strcmp(p->topology, "Polyline") == 0 || p->corners == 1)
+    fprintf(f, " NodesPerElement=\"%d\"", p->corners);
+  fputs(">", f);
+  data_item(f, file, p->cells, INT_TYPE, p->n_cell,
+            p->corners > 1 ? p->corners : 0);
+  fputs("</Topology>\n<Geometry GeometryType=\"XYZ\">", f);
+  data_item(f, file, p->points, REAL_TYPE, p->n_point, 3);
+  fputs("</Geometry>\n", f);
+}
+
+static void write_field(FILE *f, const char *file, const part *p,
+                        const hdf5_field *shown) {
+  char dataset[400];
+  int on_points = shown->of == p->on_points;
+  snprintf(dataset, sizeof dataset, "%s/%s/%c", shown->group, shown->name,
+           NAME);
+  fprintf(f, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">",
+          shown->name, shown->n_part == 3 ? "Vector" : "Scalar",
+          on_points ? "Node" : "Cell");
+  data_item(f, file, dataset, REAL_TYPE, on_points ? p->n_point : p->n_cell,
+            shown->n_part);
+  fputs("</Attribute>\n", f);
+}
+
+static void write_pattern(FILE *f, const char *file, const part *p,
+                          const hdf5_shape *s) {
+  fprintf(f,
+          "<Grid Name=\"%s\" GridType=\"Uniform\">\n"
+          "<Time Value=\"%c\"/>\n",
+          p->name, TIME);
+  write_mesh(f, file, p);
+  for (int k = 0; k < s->n_field; ++k) {
+    entity of = s->fields[k].of;
+    if (of == PER_INCREMENT || of == PER_CONTACT) continue;
+    if (of == p->on_points || of == p->on_cells)
+      write_field(f, file, p, &s->fields[k]);
+  }
+  fputs("</Grid>\n", f);
+}
+
+/* The text of any record of a part, with NAME and TIME; free it. */
+static status make_pattern(const part *p, const hdf5_shape *s, char **text) {
+  status st = OK;
+  size_t size = 0;
+  const char *slash = strrchr(s->path, '/');
+  FILE *f = open_memstream(text, &size);
+  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
+  write_pattern(f, slash != NULL ? slash + 1 : s->path, p, s);
+  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
+done:
+  return st;
+}
+
+static void write_record(FILE *f, const char *pattern, int record_id,
+                         double t) {
+  static const char marks[] = {NAME, TIME, '\0'};
+  char name[40], time[NUMBER_SIZE];
+  hdf5_record_name(name, sizeof name, record_id);
+  text_number(time, t, 16);
+  for (;; ++pattern) {
+    size_t n = strcspn(pattern, marks);
+    fwrite(pattern, 1, n, f);
+    pattern += n;
+    if (*pattern == '\0') break;
+    fputs(*pattern == NAME ? name : time, f);
+  }
+}
+
+static void write_part(FILE *f, const part *p, const char *pattern,
+                       const hdf5_shape *s) {
+  fprintf(f,
+          "<Grid Name=\"%s\" GridType=\"Collection\" "
+          "CollectionType=\"Temporal\">\n",
+          p->name);
+  for (int i = 0; i < s->n_record; ++i)
+    write_record(f, pattern, i, s->times[i]);
+  fputs("</Grid>\n", f);
+}
+
+/* Without faces (every neighbour was left out) the nodes are shown. */
+static part surface_part(const hdf5_shape *s) {
+  part p = {"contact",         "/contact/points",
+            "/contact/faces",  s->face_corners == 2 ? "Polyline" : "Triangle",
+            s->n_contact_node, s->n_contact_face,
+            s->face_corners,   PER_CONTACT_NODE,
+            PER_INCREMENT};
+  if (s->n_contact_face == 0) {
+    p.cells = "/contact/index";
+    p.topology = "Polyvertex";
+    p.n_cell = s->n_contact_node;
+    p.corners = 1;
+  }
+  return p;
+}
+
+static part body_part(const hdf5_shape *s) {
+  return (part){"body",           "/mesh/nodes",
+                "/mesh/elements", s->corners == 3 ? "Triangle" : "Tetrahedron",
+                s->n_node,        s->n_elem,
+                s->corners,       PER_NODE,
+                PER_ELEMENT};
+}
+
+typedef struct content {
+  const hdf5_shape *shape;
+  part surface, body;
+  char *surface_text, *body_text; /* of a record; the first may be NULL       */
+} content;
+
+static void write_all(FILE *f, const void *what) {
+  const content *c = what;
+  fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n", f);
+  if (c->surface_text != NULL)
+    write_part(f, &c->surface, c->surface_text, c->shape);
+  write_part(f, &c->body, c->body_text, c->shape);
+  fputs("</Domain>\n</Xdmf>\n", f);
+}
+
+status xdmf_write(const hdf5_shape *shape, const char *path) {
+  status st = OK;
+  content c = {shape, surface_part(shape), body_part(shape), NULL, NULL};
+  if (shape->n_contact_node > 0)
+    TRY(make_pattern(&c.surface, shape, &c.surface_text));
+  TRY(make_pattern(&c.body, shape, &c.body_text));
+  TRY(text_replace(path, &c, write_all));
+done:
+  free(c.surface_text);
+  free(c.body_text);
+  return st;
+}

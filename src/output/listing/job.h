@@ -1,0 +1,108 @@
+/*
+ * What is told of a run, in the listing and in JOB.json: options, increments,
+ * passes, sizes, error budget.
+ */
+#ifndef PROTIS_LISTING_JOB_H
+#define PROTIS_LISTING_JOB_H
+
+#include "base/archive/archive.h"
+#include "run/history/history.h"
+#include "effects/plan/plan.h"
+
+typedef struct output_options {
+  const char *dir;     /* folder of the results; NULL or "": the current one */
+  int no_timing;       /* leave out the cost columns                         */
+  int progress;        /* a line on the terminal, if stderr is one           */
+  const char *version; /* of the program, for the results; NULL: ""          */
+  const char *kernel;  /* BLAS kernel, for the results; NULL: ""             */
+  int threads;         /* threads of the run, for the results                */
+  archive *from; /* go on with the files of an earlier run; NULL: new ones    */
+  int n_problem; /* contacts of a *CONDENSED PROBLEM                          */
+} output_options;
+
+/* A pass towards *ACCURACY, TARGET=. */
+enum { MAX_PASS_ROWS = 20 };
+typedef struct pass_row {
+  double unknowns;
+  double mesh, time, solver, total; /* %, estimated errors                    */
+  double cpu;                       /* s, of the pass                         */
+  char change[80];                  /* what the next pass has changed, ""     */
+} pass_row;
+
+typedef struct increment_summary {
+  int step_no, increment_no, total_no, attempt;
+  double t, dt;
+  int n_open, n_slip, n_stick, iterations, settled, outcome;
+  double residual, defect;
+  error_bound error;
+  rounding_loss rounding;
+  int jumps; /* 1: the equilibrium jumps, at jump_t, s                     */
+  double jump_t;
+  int checked, n_solution;   /* by CHECK= of *SOLVER                          */
+  solution_facts *solutions; /* [n_solution] owned                            */
+  error_share mesh_error, time_error;
+  true_error truth;
+  balance_report balance;
+  theory_report theory; /* its contacts are owned                             */
+} increment_summary;
+
+typedef struct pass_table {
+  double target; /* %                                                         */
+  int n;         /* 0: no target                                              */
+  const pass_row *rows, *forecast;
+  const char *why;
+} pass_table;
+
+typedef struct run_summary {
+  pass_table passes;
+  int facts_known;
+  setup_facts facts;
+  int n_increment, capacity, n_rejected, n_unsettled;
+  increment_summary *increments; /* [n_increment]                          */
+  double residual_worst, defect_worst; /* - ; the defect relative           */
+  flow_tally tally; /* points with a threshold                              */
+  status verdict;
+  const char *message; /* of a failed run, or ""                            */
+} run_summary;
+
+/* One line of the error budget: what, its last and largest estimate, CPU
+ * seconds of the stages whose work decides it, and of estimating it. */
+typedef struct budget_row {
+  const char *name, *json;
+  double last, worst; /* %, of the energy norm; NAN: unknown                  */
+  double reached, estimated; /* s                                             */
+} budget_row;
+enum { BUDGET_ROWS = 4 };
+
+typedef struct job {
+  const model *m;
+  const mesh *msh;
+  const output_options *o;
+  const run_summary *run;
+  const effect_plan *plan; /* of the effects */
+} job;
+
+/* The estimates asked for; how many rows. */
+int job_budget(const job *j, budget_row rows[BUDGET_ROWS]);
+/* What TOL=BALANCED saved in all increments that were asked. */
+typedef struct balance_sum {
+  int asked;
+  double iterations, saved_iterations, saved_cpu; /* made; about; s           */
+} balance_sum;
+balance_sum job_balance(const job *j);
+/* Increments that dt of the deck would make in the steps with TIME=BALANCED; 0:
+ * there is none. Those made in them. */
+double job_increments_of_deck(const job *j, int *made);
+/* Sum of the estimates over the true error, last increment; NAN: unknown. */
+double job_effectivity(const job *j);
+
+/* Sizes of model and equations for listing and JSON, NULL ends; the answer
+ * counts those of the model, which come first. */
+typedef struct size_row {
+  const char *name;
+  double value;
+} size_row;
+enum { SIZE_ROWS = 20 };
+int job_sizes(const job *j, size_row rows[SIZE_ROWS]);
+
+#endif

@@ -1,0 +1,30 @@
+/*
+ * The parts of the listing: an increment (increment.c), the solutions of CHECK=
+ * (solutions.c), the theorems of THEORY= (theory.c), the budget of the errors
+ * (budget.c). Each writes nothing where it was not asked for. Private to
+ * src/output/listing.
+ */
+#ifndef PROTIS_LISTING_PARTS_H
+#define PROTIS_LISTING_PARTS_H
+
+#include "output/listing/listing.h"
+
+#include <stdio.h>
+
+enum { DIGITS = 5 }; /* after the point                                       */
+
+/* ---- solutions.c ---- */
+/* The solutions that CHECK= found. */
+void listing_solutions(const state *s, FILE *f);
+
+/* ---- theory.c ---- */
+/* The theorems of an increment. */
+void listing_theory(const job *j, const state *s, FILE *f);
+
+/* ---- budget.c ---- */
+/* What was reached, what it cost, and what it cost to know it. */
+void listing_budget(const job *j, FILE *f);
+/* The passes towards the target, and what a digit more would cost. */
+void listing_passes(const job *j, FILE *f);
+
+#endif

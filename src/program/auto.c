@@ -1,0 +1,74 @@
+/*
+ * The run without some effects, watched, and what follows from it.
+ */
+#include "program/auto.h"
+
+#include "effects/reduction/neglect.h"
+
+typedef struct watcher {
+  model *m;
+  neglect *n;
+  int refuted; /* 1: the run was ended, a row does not hold                   */
+} watcher;
+
+static status see_increment(void *ctx, const state *s) {
+  status st = OK;
+  watcher *w = ctx;
+  TRY(neglect_measure(w->n, s, w->m->neglected));
+  w->refuted = neglect_refuted(w->m);
+  if (w->refuted)
+    FAIL(ERR_UNSETTLED, "time %g: what was left out matters", s->t);
+done:
+  return st;
+}
+
+/* 1: the run gave no answer to measure, or one that missed its tolerance. */
+static int has_failed(const watcher *w, status run, int unsettled) {
+  return !w->refuted && (run != OK || unsettled > 0);
+}
+
+static int is_final(status run) {
+  return status_is_request(run) || run == ERR_MEMORY || run == ERR_FILE;
+}
+
+/* A run without the rows that are not back; *again: some are now. */
+static status try_without(watcher *w, const command *c, job_input *in,
+                          int *unsettled, int *again) {
+  status st = OK;
+  const job_watch watch = {.ctx = w, .increment = see_increment};
+  neglect_restore(in->m);
+  neglect_leave_out(in->m);
+  neglect_free(w->n);
+  w->n = NULL;
+  TRY(neglect_new(in->m, in->msh, &w->n));
+  w->refuted = 0;
+  st = job_solve(c, in, &watch, NULL, unsettled);
+  *again = !is_final(st) &&
+           neglect_take_back(in->m, has_failed(w, st, *unsettled)) > 0;
+done:
+  return st;
+}
+
+/* Rows that are left out. */
+static int left_out(const model *m) {
+  int n = 0;
+  for (int i = 0; i < m->n_neglected; ++i) n += !m->neglected[i].back;
+  return n;
+}
+
+status auto_solve_job(const command *c, job_input *in, int *unsettled) {
+  status st = OK;
+  watcher w = {.m = in->m};
+  int again = 1;
+  TRY(neglect_choose(in->m, in->msh));
+  while (again && left_out(in->m) > 0)
+    st = try_without(&w, c, in, unsettled, &again);
+  if (again) {
+    neglect_restore(in->m);
+    st = job_solve(c, in, NULL, NULL, unsettled);
+  }
+done:
+  neglect_free(w.n);
+  neglect_restore(in->m);
+  return st;
+}

@@ -1,0 +1,13 @@
+/*
+ * *EFFECTS, MODE=AUTO: a run without what seems not to matter, and the run with
+ * it if that is not confirmed (effects/reduction/neglect.h).
+ */
+#ifndef PROTIS_AUTO_H
+#define PROTIS_AUTO_H
+
+#include "program/job.h"
+
+/* The job, solved and written; *unsettled as history_run. */
+status auto_solve_job(const command *c, job_input *in, int *unsettled);
+
+#endif

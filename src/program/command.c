@@ -1,0 +1,339 @@
+/*
+ * The command line: options, their help, and what is asked without a job.
+ */
+#include "program/command.h"
+
+#include "base/memory.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "fem/fem.h"
+#include "program/inform.h"
+#include "base/system/input.h"
+#include "base/system/limits.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum {
+  ASK_CHECK = 256,
+  ASK_THREADS,
+  ASK_MEMORY,
+  ASK_SAFE,
+  ASK_RESTART,
+  ASK_QUIET,
+  ASK_ESTIMATE,
+  ASK_NO_TIMING,
+  ASK_HELP,
+  ASK_VERSION,
+  ASK_KEYWORDS,
+  ASK_LIST,
+  ASK_EXPLAIN
+};
+
+/* clang-format off */
+static const char *const help_rows[][2] = {
+  {"-o DIR", "folder of the results; default: where the deck is"},
+  {"-D NAME=VALUE", "set a *PARAMETER, wins over the deck; may be repeated"},
+  {"--check", "read and check everything, print sizes and plan, solve nothing"},
+  {"--estimate-cost", "what finer meshes and smaller errors would cost"},
+  {"--threads N", "threads of the dense algebra, 1 if not said"},
+  {"--max-memory MB", "memory the run may take, in the place of what there is"},
+  {"--safe", "for decks of strangers: no .geo, only files below the deck"},
+  {"--no-timing", "no CPU seconds in the files: equal runs give equal bytes"},
+  {"--restart", "go on with a run that was interrupted, from JOB.rst.h5"},
+  {"--quiet", "no progress line"},
+  {"--help", "this text"},
+  {"--version", "version, libraries, BLAS kernel"},
+  {"--keywords [CARD]", "cards of the deck, or one card in full"},
+  {"--list KIND", "solvers, materials, friction or integrators"},
+  {"--explain [NUMBER]", "what a message such as P1003 means and what to do"}};
+
+static const char *const exit_rows[][2] = {
+  {"0", "done"},
+  {"1", "finished, but an increment missed its tolerance"},
+  {"2", "command line or deck not valid"},
+  {"3", "mesh not valid"},
+  {"4", "a file cannot be opened, read or written"},
+  {"5", "memory exhausted"},
+  {"6", "no unique equilibrium: singular, not positive definite, NaN"},
+  {"7", "a defect of the program"},
+  {"130", "interrupted by SIGINT or a file JOB.stop; the files are whole"},
+  {"143", "the same by SIGTERM; 129 SIGHUP, 138 SIGUSR1, 140 SIGUSR2, 152 "
+          "SIGXCPU"}};
+
+static const struct option words[] = {
+  {"check", no_argument, NULL, ASK_CHECK},
+  {"estimate-cost", no_argument, NULL, ASK_ESTIMATE},
+  {"threads", required_argument, NULL, ASK_THREADS},
+  {"max-memory", required_argument, NULL, ASK_MEMORY},
+  {"safe", no_argument, NULL, ASK_SAFE},
+  {"restart", no_argument, NULL, ASK_RESTART},
+  {"quiet", no_argument, NULL, ASK_QUIET},
+  {"no-timing", no_argument, NULL, ASK_NO_TIMING},
+  {"help", no_argument, NULL, ASK_HELP},
+  {"version", no_argument, NULL, ASK_VERSION},
+  {"keywords", no_argument, NULL, ASK_KEYWORDS},
+  {"list", required_argument, NULL, ASK_LIST},
+  {"explain", no_argument, NULL, ASK_EXPLAIN},
+  {NULL, 0, NULL, 0}};
+/* clang-format on */
+
+static void print_help(void) {
+  puts("protis: quasistatic frictional contact of elastic bodies");
+  puts("usage: protis JOB[.inp] [options]\n");
+  for (size_t i = 0; i < sizeof help_rows / sizeof *help_rows; ++i)
+    printf("  %-20s %s\n", help_rows[i][0], help_rows[i][1]);
+  puts(
+      "\nfiles: JOB.lst listing, JOB.sta a line per increment, JOB.cvg a line "
+      "per\niteration, JOB.dat tables, JOB.h5 and JOB.xdmf fields, JOB.json "
+      "figures");
+  puts("exit codes:");
+  for (size_t i = 0; i < sizeof exit_rows / sizeof *exit_rows; ++i)
+    printf("  %-3s %s\n", exit_rows[i][0], exit_rows[i][1]);
+}
+
+static int wrong(const char *what, const char *word) {
+  fprintf(stderr, "protis: error: %s", what);
+  text_put(stderr, word);
+  fputs("; see protis --help\n", stderr);
+  return 2;
+}
+
+static int mean(const char *what, const char *word, const char *near) {
+  fprintf(stderr, "protis: error: %s", what);
+  text_put(stderr, word);
+  fprintf(stderr, "; did you mean %s%s?\n", word[0] == '-' ? "--" : "", near);
+  return 2;
+}
+
+static int no_memory(void) {
+  fputs("protis: error: memory exhausted: the command line\n", stderr);
+  return 5;
+}
+
+static int print_keywords(const char *card) {
+  if (inform_keywords(card)) return 0;
+  const char *near = inform_nearest_card(card);
+  if (near == NULL) return wrong("there is no card ", card);
+  return mean("there is no card ", card, near);
+}
+
+static int print_list(const char *kind) {
+  if (inform_list(kind)) return 0;
+  return wrong("--list knows solvers, materials, friction, integrators, not ",
+               kind);
+}
+
+static int print_explain(const char *number) {
+  if (message_explain(number, stdout)) return 0;
+  return wrong("there is no message ", number);
+}
+
+static int read_threads(const char *text, command *c) {
+  char *end;
+  long n = strtol(text, &end, 10);
+  if (*end != '\0' || end == text || n < 1 || n > 1024) return 0;
+  c->threads = (int)n;
+  return 1;
+}
+
+static int read_memory(const char *text, command *c) {
+  return number_real(text, &c->max_memory) == NULL && c->max_memory > 0.0;
+}
+
+static const char *long_option(const void *ctx, int i) {
+  (void)ctx;
+  return words[i].name;
+}
+
+static int file_exists(const char *name) {
+  struct stat info;
+  return stat(name, &info) == 0;
+}
+
+static int unknown_option(const char *given) {
+  if (file_exists(given)) {
+    fprintf(stderr,
+            "protis: error: there is no option %s; a deck of that name is "
+            "./%s, or stands after --\n",
+            given, given);
+    return 2;
+  }
+  const char *near = inform_nearest(given + strspn(given, "-"), long_option);
+  if (near == NULL) return wrong("there is no option ", given);
+  return mean("there is no option ", given, near);
+}
+
+/* What is asked without a job: the exit code. */
+static int answer(int what, const char *value, const char *given,
+                  const char *next) {
+  switch (what) {
+    case ASK_HELP:
+      print_help();
+      return 0;
+    case ASK_VERSION:
+      inform_version();
+      return 0;
+    case ASK_KEYWORDS:
+      return print_keywords(next);
+    case ASK_LIST:
+      return print_list(value);
+    case ASK_EXPLAIN:
+      return print_explain(next);
+    case ':':
+      return wrong("a value is missing after ", given);
+    default:
+      return unknown_option(given);
+  }
+}
+
+/* What an option without value sets to 1, or NULL. */
+static int *switch_of(int what, command *c) {
+  switch (what) {
+    case ASK_CHECK:
+      return &c->check_only;
+    case ASK_SAFE:
+      return &c->safe;
+    case ASK_ESTIMATE:
+      return &c->estimate_cost;
+    case ASK_RESTART:
+      return &c->restart;
+    case ASK_QUIET:
+      return &c->quiet;
+    case ASK_NO_TIMING:
+      return &c->no_timing;
+    default:
+      return NULL;
+  }
+}
+
+/* Option "what" as it was given; -1: go on, else the exit code. */
+static int take_option(int what, const char *value, const char *given,
+                       const char *next, command *c) {
+  switch (what) {
+    case 'o':
+      memory_free(c->dir);
+      c->dir = memory_text(value);
+      return c->dir == NULL ? no_memory() : -1;
+    case 'D':
+      if (strchr(value, '=') == NULL)
+        return wrong("-D needs NAME=VALUE, not ", value);
+      c->defines[c->n_define++] = value;
+      return -1;
+    case ASK_THREADS:
+      if (read_threads(value, c)) return -1;
+      return wrong("--threads needs a number from 1 to 1024, not ", value);
+    case ASK_MEMORY:
+      if (read_memory(value, c)) return -1;
+      return wrong("--max-memory needs a number of MB above 0, not ", value);
+    default:
+      if (switch_of(what, c) == NULL) return answer(what, value, given, next);
+      *switch_of(what, c) = 1;
+      return -1;
+  }
+}
+
+/* JOB or JOB.inp: the name as given if there is such a file, else with .inp. */
+static char *find_deck(const char *name) {
+  size_t length = strlen(name);
+  char *with = memory_new(length + 5, 1);
+  if (with == NULL) return NULL;
+  memcpy(with, name, length + 1);
+  int has = length > 4 && strcmp(name + length - 4, ".inp") == 0;
+  if (!has) {
+    memcpy(with + length, ".inp", 5);
+    if (!file_exists(with) && file_exists(name)) with[length] = '\0';
+  }
+  return with;
+}
+
+/* The folder the deck stands in. */
+static char *folder_of(const char *file) {
+  const char *slash = strrchr(file, '/');
+  if (slash == NULL) return memory_text(".");
+  size_t length = slash == file ? 1 : (size_t)(slash - file);
+  char *dir = memory_new(length + 1, 1);
+  if (dir != NULL) memcpy(dir, file, length);
+  return dir;
+}
+
+/* The job itself; -1: run it. */
+static int take_job(int n, char **job, command *c) {
+  if (n == 0 || job[0][0] == '\0') return wrong("no job given", "");
+  if (n > 1) return wrong("one job at a time; not expected: ", job[1]);
+  c->deck_file = find_deck(job[0]);
+  if (c->deck_file == NULL) return no_memory();
+  if (c->dir == NULL) c->dir = folder_of(c->deck_file);
+  return c->dir == NULL ? no_memory() : -1;
+}
+
+/* The word that getopt has read, or reads letter by letter. */
+static const char *word_read(int argc, char **argv) {
+  int at = optind < argc && optopt != 0 && argv[optind][0] == '-' &&
+           argv[optind][1] == optopt;
+  return argv[at ? optind : optind - 1];
+}
+
+int command_read(int argc, char **argv, command *c, int *exit_code) {
+  int what, code = -1;
+  memset(c, 0, sizeof *c);
+  opterr = 0; /* told here                                                   */
+  c->defines = memory_new((size_t)argc, sizeof *c->defines);
+  if (c->defines == NULL) code = no_memory();
+  while (code < 0 &&
+         (what = getopt_long(argc, argv, ":o:D:", words, NULL)) != -1) {
+    const char *next = optind < argc ? argv[optind] : NULL;
+    code = take_option(what, optarg, word_read(argc, argv), next, c);
+  }
+  if (code < 0) code = take_job(argc - optind, argv + optind, c);
+  if (code < 0) return 1;
+  *exit_code = code;
+  command_free(c);
+  return 0;
+}
+
+/* More threads than cores wait for each other. */
+static void set_threads(int cores, command *c, message_log *log) {
+  int asked = c->threads > 0 ? c->threads : 1;
+  c->threads = asked < cores ? asked : cores;
+  if (c->threads < asked)
+    message_add(log, P5020, NULL,
+                "--threads %d: more than the cores that this process may use",
+                asked);
+  blas_set_threads(c->threads);
+}
+
+/* What is said counts for the whole process, libraries included. */
+static void set_memory(const limits *system, const command *c) {
+  const char *who = c->max_memory > 0.0 ? "--max-memory" : system->who;
+  double bytes = c->max_memory > 0.0 ? 1e6 * c->max_memory - limits_held()
+                                     : system->memory;
+  if (bytes < 1e18) memory_limit((size_t)fmax(bytes, 0.0), who);
+}
+
+status command_apply(command *c, message_log *log) {
+  status st = OK;
+  char *folder = NULL;
+  limits system;
+  limits_read("", &system);
+  set_threads(system.cores, c, log);
+  set_memory(&system, c);
+  if (!c->safe) goto done;
+  folder = folder_of(c->deck_file);
+  if (folder == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a folder");
+  TRY(input_confine(folder));
+done:
+  memory_free(folder);
+  return st;
+}
+
+void command_free(command *c) {
+  memory_free(c->deck_file);
+  memory_free(c->dir);
+  memory_free(c->defines);
+  memset(c, 0, sizeof *c);
+}

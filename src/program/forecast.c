@@ -1,0 +1,372 @@
+/*
+ * What *ACCURACY, TARGET= would cost, from a run on the mesh of the deck and
+ * two on meshes that its errors ask for (space_sizes), some finer each.
+ *
+ * The error of the mesh goes like N^(-p) on such meshes, N unknowns, p from the
+ * two. P1 has p = 1/dim; where an edge is so sharp that the mesh cannot follow
+ * it, p is less, on uniform meshes down to half of that (stress like r^(-1/2));
+ * p is kept between the two. The passes of target.c are gone through with it:
+ * each aims at what is left of the target, makes (error/aim)^dim times the
+ * unknowns, or the share of that which the fine run had, and reaches the error
+ * of that mesh. In space, where the first errors tell little of the edges,
+ * later passes also move unknowns to where they count: the same share holds for
+ * them, and the error falls from the one before by the order of the element
+ * size.
+ *
+ * CPU seconds of a pass: those of the stages of the fine run, each by its own
+ * size. The factor and its solves go with N (1.2 and 1.05 in the plane, 1.75
+ * and 4/3 in space: nested dissection as measured with condense from 1e4 to 1e6
+ * unknowns), dense work with the m contact unknowns, m^2.5 (between the
+ * products and the factors of Newton's method, as measured from 100 to 8000), m
+ * like a power of N found from the two runs. The run beside that tells the
+ * error of the increments costs what these do. The rest is linear in N. All but
+ * what is paid once a run goes with the number of increments, which grows like
+ * their error is to fall.
+ */
+#include "program/forecast.h"
+
+#include "accuracy/space.h"
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct trial {
+  double unknowns, contact;   /* of the body, of the contact   */
+  double energy, error, time; /* J, -, - at the largest energy                */
+  double cpu[STAGE_COUNT], bytes; /* s; at most held                         */
+  const job_input *in;
+  double *eta; /* [n_elem] shares of the elements there, or NULL; borrowed    */
+  int n_elem;
+} trial;
+
+static status see_sizes(void *ctx, int n_node) {
+  const trial *t = ctx;
+  return job_foresee(t->in, n_node);
+}
+
+static status see_ready(void *ctx, const setup_facts *facts,
+                        const contact_surface *surface) {
+  trial *t = ctx;
+  (void)surface;
+  t->unknowns = (double)facts->info.unknowns;
+  t->contact = (double)facts->info.contact_unknowns;
+  return OK;
+}
+
+static status see_increment(void *ctx, const state *s) {
+  trial *t = ctx;
+  if (s->energy.strain < t->energy) return OK;
+  t->energy = s->energy.strain;
+  t->error = s->mesh_error.relative;
+  if (t->eta != NULL)
+    memcpy(t->eta, s->elem_error, (size_t)t->n_elem * sizeof *t->eta);
+  t->time = isfinite(s->time_error.relative) ? s->time_error.relative : 0.0;
+  return OK;
+}
+
+/* One run whose results nobody writes; eta[n_elem] or NULL: shares of the
+ * elements in its error. */
+static status run_trial(job_input *in, trial *t, double *eta) {
+  status st = OK;
+  int unsettled = 0;
+  const history_sink sink = {.ctx = t,
+                             .foresee = see_sizes,
+                             .ready = see_ready,
+                             .increment = see_increment};
+  t->energy = -1.0;
+  t->in = in;
+  t->eta = eta;
+  t->n_elem = in->msh->n_elem;
+  for (int i = 0; i < in->m->n_step; ++i)
+    in->m->steps[i].mesh_error = in->m->steps[i].time_error = 1;
+  in->m->effects |= EFFECT_MESH_ERROR | EFFECT_TIME_ERROR;
+  TRY(history_run(in->m, in->msh, &sink, &unsettled));
+  t->bytes = (double)memory_peak();
+done:
+  return st;
+}
+
+/* CPU seconds of the stages since "before". */
+static void stage_costs(const trial *before, trial *t) {
+  for (int i = 0; i < STAGE_COUNT; ++i)
+    t->cpu[i] =
+        timer_cost((stage)i).cpu - (before != NULL ? before->cpu[i] : 0);
+}
+
+/* 1: paid once a run, not once an increment. */
+static int is_of_run(int s) {
+  switch (s) {
+    case STAGE_DECK:
+    case STAGE_MESH:
+    case STAGE_SURFACE:
+    case STAGE_ASSEMBLY:
+    case STAGE_ORDERING:
+    case STAGE_FACTOR:
+    case STAGE_CONDENSE:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
+/* As in target.c: what the increments may leave of the target, what the mesh is
+ * aimed at, how far a pass goes. */
+static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, AIM = 0.93;
+static const double REACH = 8.0, FINEST = 0.25, FINEST_LAST = 0.1;
+static const double SHORTEST = 1.0 / 16;
+enum { MOST_PASSES = 20 };
+
+static const double MOST_UNKNOWNS = 1e9;
+static const double DENSE = 2.5; /* power of m                               */
+
+typedef struct model_of_cost {
+  int dim;
+  trial deck, coarse, fine;
+  double order;   /* of the error in N                                        */
+  double contact; /* power of N that m is like */
+  double share;   /* of the unknowns that P1 would need, on the first mesh    */
+} model_of_cost;
+
+/* Where a target leads, pass after pass. */
+typedef struct course {
+  double unknowns, error, time; /* of the last pass                           */
+  double times;                 /* the increments of the deck                 */
+  double cpu;                   /* s, all passes                              */
+} course;
+
+static double within(double least, double x, double most) {
+  return fmin(fmax(x, least), most);
+}
+
+static double exponent(double y0, double y1, double x0, double x1) {
+  return log(y1 / y0) / log(x1 / x0);
+}
+
+/* ---- cost ---------------------------------------------------------------- */
+
+/* Growth of the CPU of a stage when N is that many times those of fine. */
+static double growth(const model_of_cost *c, stage s, double ratio) {
+  int plane = c->dim == 2;
+  switch (s) {
+    case STAGE_FACTOR:
+      return pow(ratio, plane ? 1.2 : 1.75);
+    case STAGE_ORDERING:
+      return pow(ratio, 1.2);
+    case STAGE_RECOVERY:
+      return pow(ratio, plane ? 1.05 : 4.0 / 3.0);
+    case STAGE_CONDENSE:
+    case STAGE_CONTACT:
+    case STAGE_ESTIMATE:
+      return pow(ratio, DENSE * c->contact);
+    default:
+      return ratio;
+  }
+}
+
+/* CPU seconds of the stages that the run beside goes through too. */
+static double of_run_beside(const model_of_cost *c, double ratio) {
+  static const stage shared[] = {STAGE_CONTACT, STAGE_RECOVERY, STAGE_INELASTIC,
+                                 STAGE_STRESS};
+  double sum = 0.0;
+  for (size_t i = 0; i < sizeof shared / sizeof *shared; ++i)
+    sum += c->fine.cpu[shared[i]] * growth(c, shared[i], ratio);
+  return sum;
+}
+
+/* CPU seconds of a run with N unknowns and that many times the increments. */
+static double cpu_at(const model_of_cost *c, double unknowns, double times) {
+  const trial *b = &c->fine;
+  double sum = 0.0, ratio = unknowns / b->unknowns;
+  double beside = of_run_beside(c, 1.0);
+  for (int i = 0; i < STAGE_COUNT; ++i) {
+    double by = growth(c, (stage)i, ratio);
+    if (i == STAGE_TIME_ERROR && beside > 0.0)
+      by = of_run_beside(c, ratio) / beside;
+    sum += b->cpu[i] * by * (is_of_run(i) ? 1.0 : times);
+  }
+  return sum;
+}
+
+static double sum_of(const trial *t) {
+  double sum = 0.0;
+  for (int i = 0; i < STAGE_COUNT; ++i) sum += t->cpu[i];
+  return sum;
+}
+
+static double bytes_at(const model_of_cost *c, double unknowns) {
+  double ratio = unknowns / c->fine.unknowns;
+  double power = c->dim == 2 ? 1.05 : fmax(4.0 / 3.0, 2.0 * c->contact);
+  return c->fine.bytes * pow(ratio, power);
+}
+
+/* ---- passes ---------------------------------------------------------------
+ */
+
+/* The next mesh, whose error is to be "aim". */
+static void refine(const model_of_cost *c, double aim, course *at) {
+  double least = at->error <= REACH * aim ? FINEST_LAST : FINEST;
+  double length = within(least, aim / at->error, 1.0);
+  int first = at->unknowns <= c->deck.unknowns, moves = c->dim == 3;
+  double more = pow(length, -c->dim) * (first || moves ? c->share : 1.0);
+  double moved = at->error * pow(length, c->order * c->dim);
+  at->unknowns *= fmax(more, 1.0);
+  double error = c->fine.error * pow(c->fine.unknowns / at->unknowns, c->order);
+  if (!first && moves) error = fmin(error, moved);
+  at->error = fmin(error, at->error);
+}
+
+/* All passes to that error. */
+static course go(const model_of_cost *c, double goal) {
+  course at = {c->deck.unknowns, c->deck.error, c->deck.time, 1.0,
+               sum_of(&c->deck)};
+  for (int k = 1; at.error + at.time > goal && k < MOST_PASSES; ++k) {
+    int late = at.time > TIME_SHARE * goal;
+    double mesh_goal = late ? MESH_SHARE * goal : goal - at.time;
+    if (at.error > mesh_goal) refine(c, AIM * mesh_goal, &at);
+    if (late) {
+      double shorter = fmax(AIM * TIME_SHARE * goal / at.time, SHORTEST);
+      at.times /= shorter;
+      at.time *= shorter;
+    }
+    if (at.unknowns > MOST_UNKNOWNS) break;
+    at.cpu += cpu_at(c, at.unknowns, at.times);
+  }
+  return at;
+}
+
+static void print_row(const model_of_cost *c, double error) {
+  course end = go(c, error);
+  int there = end.unknowns <= c->deck.unknowns;
+  if (end.unknowns > MOST_UNKNOWNS) {
+    printf("  %8.3g %12s\n", 100 * error, "out of reach");
+    return;
+  }
+  double bytes = there ? c->deck.bytes : bytes_at(c, end.unknowns);
+  printf("  %8.3g %12.3g %12.3g %10.3g %12.3g%s\n", 100 * error, end.unknowns,
+         end.times, end.cpu, bytes / 1048576.0,
+         there ? "  the mesh of the deck does" : "");
+}
+
+/* In space, where a digit is dear, the levels lie closer. */
+static const double wanted_errors[] = {0.1,  0.07,  0.05, 0.03,
+                                       0.01, 0.003, 0.001};
+enum { N_WANTED = sizeof wanted_errors / sizeof *wanted_errors };
+
+static void print_table(const model_of_cost *c) {
+  printf("  %8s %12s %12s %10s %12s\n", "error[%]", "unknowns", "increments*",
+         "cpu[s]", "memory[MB]");
+  for (int k = 0; k < N_WANTED; ++k)
+    if (c->dim == 3 || k == 0 || k > 2) print_row(c, wanted_errors[k]);
+  printf(
+      "  * times those of the deck. CPU of all passes of TARGET=.\n"
+      "  mesh of the deck: %.3g %% with %.0f unknowns; increments: %.3g %%\n",
+      100 * c->deck.error, c->deck.unknowns, 100 * c->deck.time);
+}
+
+/* What the rows rest on. */
+static void print_fit(const model_of_cost *c) {
+  printf(
+      "  error ~ unknowns^(-%.2f) (size^%.2f), fitted to %.3g %% with %.0f "
+      "and %.3g %% with %.0f\n"
+      "  contact unknowns: %.0f, %.0f and %.0f, taken as unknowns^%.2f\n",
+      c->order, c->order * c->dim, 100 * c->coarse.error, c->coarse.unknowns,
+      100 * c->fine.error, c->fine.unknowns, c->deck.contact, c->coarse.contact,
+      c->fine.contact, c->contact);
+}
+
+/* Order of the error in N, from the two meshes that are much alike; where that
+ * is less than "full", from all three, by least squares: so near to one another
+ * meshes scatter. */
+static double order_of(const model_of_cost *c, double full) {
+  const trial *runs[] = {&c->deck, &c->coarse, &c->fine};
+  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  double two = -exponent(c->coarse.error, c->fine.error, c->coarse.unknowns,
+                         c->fine.unknowns);
+  for (int i = 0; i < 3; ++i) {
+    x += log(runs[i]->unknowns) / 3.0;
+    y += log(runs[i]->error) / 3.0;
+  }
+  for (int i = 0; i < 3; ++i) {
+    double dx = log(runs[i]->unknowns) - x;
+    xx += dx * dx;
+    xy += dx * (log(runs[i]->error) - y);
+  }
+  double order = two >= full ? two : fmax(two, fmin(-xy / xx, full));
+  return within(0.5 * full, order, 1.1 * full);
+}
+
+/* What the three runs tell; wanted: the error the fine one was to have, -. */
+static status fit(model_of_cost *c, double wanted) {
+  status st = OK;
+  const trial *a = &c->coarse, *b = &c->fine;
+  double full = 1.0 / c->dim;
+  if (!(b->error < 0.99 * a->error))
+    FAIL(ERR_UNSETTLED,
+         "the error of the mesh does not fall: %.3g %% with %.0f unknowns, "
+         "%.3g %% with %.0f; no forecast",
+         100 * a->error, a->unknowns, 100 * b->error, b->unknowns);
+  c->order = order_of(c, full);
+  c->contact = 1.0 - full;
+  if (a->contact > 0.0 && b->contact > 0.0)
+    c->contact =
+        within(0.5 * c->contact,
+               exponent(a->contact, b->contact, a->unknowns, b->unknowns), 1.0);
+  c->share =
+      b->unknowns / c->deck.unknowns * pow(wanted / c->deck.error, c->dim);
+done:
+  return st;
+}
+
+/* The job on a mesh that is to have the error "wanted"; eta[n_elem] of *in. */
+static status run_adapted(const command *c, const job_input *in,
+                          const double *eta, double wanted, trial *t) {
+  status st = OK;
+  double *size = NULL;
+  job_input other = {0};
+  trial before = {0};
+  NEW(size, in->msh->n_node);
+  TRY(message_log_new(&other.log));
+  space_sizes(in->msh, eta, wanted, size);
+  stage_costs(NULL, &before);
+  TRY(job_read(c, &(job_mesh){.old = in->msh, .size = size}, other.log,
+               &other));
+  TRY(run_trial(&other, t, NULL));
+  stage_costs(&before, t);
+done:
+  if (st != OK && other.log != NULL) message_print(other.log, stderr);
+  job_input_free(&other);
+  memory_free(size);
+  return st;
+}
+
+status forecast_print(const command *c, job_input *in) {
+  status st = OK;
+  double *eta = NULL;
+  model_of_cost cost = {.dim = in->m != NULL ? in->m->dim : 2};
+  if (in->problem != NULL || !job_is_geo(in->m))
+    FAIL(ERR_DECK,
+         "--estimate-cost meshes the geometry anew: the deck must name "
+         "a .geo in *MESH, FILE=");
+  mesh_gmsh_load();
+  NEW(eta, in->msh->n_elem);
+  TRY(run_trial(in, &cost.deck, eta));
+  stage_costs(NULL, &cost.deck);
+  int plane = cost.dim == 2;
+  double now = cost.deck.error;
+  if (now + cost.deck.time <= wanted_errors[N_WANTED - 1]) {
+    print_table(&cost);
+    goto done;
+  }
+  double wanted = now / (plane ? 3.0 : 1.6);
+  TRY(run_adapted(c, in, eta, now / (plane ? 1.5 : 1.2), &cost.coarse));
+  TRY(run_adapted(c, in, eta, wanted, &cost.fine));
+  TRY(fit(&cost, wanted));
+  print_table(&cost);
+  print_fit(&cost);
+done:
+  memory_free(eta);
+  return st;
+}

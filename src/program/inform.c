@@ -1,0 +1,225 @@
+/*
+ * What protis tells without solving: version, lists, the check of a deck.
+ */
+#include "program/inform.h"
+
+#include "base/memory.h"
+#include "base/option.h"
+#include "exchange/exchange.h"
+#include "run/history/history.h"
+#include "model/keyword/keyword.h"
+#include "effects/plan/plan.h"
+
+#include <cholmod.h>
+#include <ctype.h>
+#include <hdf5.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+extern char *openblas_get_config(void);
+
+void inform_version(void) {
+  unsigned major, minor, release;
+  int cholmod[3];
+  cholmod_version(cholmod);
+  H5get_libversion(&major, &minor, &release);
+  printf("protis %s\n", PROTIS_VERSION);
+  printf("CHOLMOD %d.%d.%d\n", cholmod[0], cholmod[1], cholmod[2]);
+  printf("%s\n", openblas_get_config());
+  printf("BLAS kernel %s%s\n", blas_kernel(),
+         blas_kernel_changed() ? " (chosen by protis)" : "");
+  printf("HDF5 %u.%u.%u\n", major, minor, release);
+}
+
+/* Name in capitals, source and manual text. */
+static void print_help(const char *name, const char *reference,
+                       const char *help) {
+  for (const char *p = name; *p != '\0'; ++p)
+    putchar(toupper((unsigned char)*p));
+  printf("  (%s)\n  ", reference);
+  for (const char *p = help; *p != '\0'; ++p) {
+    putchar(*p);
+    if (*p == '\n') fputs("  ", stdout);
+  }
+  putchar('\n');
+}
+
+/* The same with the options of a plug-in. */
+static void list_plugin(const char *name, const char *reference,
+                        const char *help, const option *options) {
+  print_help(name, reference, help);
+  option_print(options, stdout);
+}
+
+static void list_solvers(void) {
+  print_help("AUTO", "the default", auto_help);
+  for (int i = 0; solver_list[i] != NULL; ++i) {
+    const solver_ops *s = solver_list[i];
+    putchar('\n');
+    list_plugin(s->name, s->reference, s->help, s->options);
+  }
+}
+
+static void list_friction(void) {
+  for (int i = 0; friction_list[i] != NULL; ++i) {
+    const friction_ops *f = friction_list[i];
+    if (i > 0) putchar('\n');
+    list_plugin(f->name, f->reference, f->help, f->options);
+    if (f->value_name != NULL)
+      printf("  data line: %s, unit %s\n", f->value_name, f->value_unit);
+  }
+}
+
+/* Rows of a data line of a law: name, unit, what it is if absent, help. */
+static void list_fields(const option *table, const char *title) {
+  char text[200];
+  if (table == NULL) return;
+  printf("  %s: %s\n", title, law_line_text(table, text, sizeof text));
+  for (const option *o = table; o->name != NULL; ++o) {
+    printf("    %-10s %s", o->name, o->help);
+    if (strcmp(o->unit, "-") != 0) printf(", unit %s", o->unit);
+    if (o->initial != NULL && strcmp(o->initial, OPTION_ABSENT) != 0)
+      printf("; %s if absent", o->initial);
+    putchar('\n');
+  }
+}
+
+static void list_materials(void) {
+  puts(
+      "elastic  (CPR98 2.2)\n  *ELASTIC, TYPE=ISO, ORTHO or ANISO: linear "
+      "elasticity, any symmetric and\n  positive definite a_ijkl\n\n"
+      "With *INELASTIC, LAW=:");
+  for (int i = 0; law_list[i] != NULL; ++i) {
+    const law_ops *law = law_list[i];
+    putchar('\n');
+    list_plugin(law->name, law->reference, law->help, law->options);
+    list_fields(law->fields,
+                law->terms == NULL ? "data line" : "first data line");
+    list_fields(law->terms,
+                law->fields == NULL ? "data lines" : "then, a term a line");
+    for (const char *p = law->example; *p != '\0';) {
+      const int n = (int)strcspn(p, "\n");
+      printf("  %s %.*s\n", p == law->example ? "for example" : "           ",
+             n, p);
+      p += n + (p[n] != '\0');
+    }
+  }
+}
+
+static void list_integrators(void) {
+  for (int i = 0; scheme_list[i] != NULL; ++i)
+    printf("%s  (%s)\n  %s\n", scheme_list[i]->name, scheme_list[i]->reference,
+           scheme_list[i]->help);
+}
+
+int inform_keywords(const char *name) { return keywords_print(name, stdout); }
+
+static const char *card_name(const void *ctx, int i) {
+  (void)ctx;
+  return keyword_table[i].name;
+}
+
+const char *inform_nearest_card(const char *name) {
+  return inform_nearest(name + strspn(name, "*"), card_name);
+}
+
+int inform_list(const char *kind) {
+  if (strcmp(kind, "solvers") == 0)
+    list_solvers();
+  else if (strcmp(kind, "friction") == 0)
+    list_friction();
+  else if (strcmp(kind, "materials") == 0)
+    list_materials();
+  else if (strcmp(kind, "integrators") == 0)
+    list_integrators();
+  else
+    return 0;
+  return 1;
+}
+
+const char *inform_nearest(const char *word,
+                           const char *(*next)(const void *ctx, int i)) {
+  return nearest_word(word, next, NULL);
+}
+
+static void print_sizes(const model *m, const mesh *msh) {
+  static const char *const kinds[] = {"none", "static", "quasistatic", "visco"};
+  printf("mesh      %d nodes, %d elements, %d-D\n", msh->n_node, msh->n_elem,
+         msh->dim);
+  for (int i = 0; i < msh->n_group; ++i)
+    printf("group     %-20s dimension %d, %d nodes\n", msh->group[i].name,
+           msh->group[i].dim, msh->group[i].n_node);
+  for (int i = 0; i < m->n_step; ++i)
+    printf("step      %d %s: %s, time %g to %g, %.0f increments\n", i + 1,
+           m->steps[i].name, kinds[m->steps[i].kind], m->steps[i].start,
+           m->steps[i].start + m->steps[i].total,
+           m->steps[i].total / m->steps[i].dt);
+}
+
+static status print_plan(const model *m, const mesh *msh, int n) {
+  status st = OK;
+  effect_plan *p = NULL;
+  TRY(plan_new(m, msh, n, &p));
+  puts("effects");
+  plan_print(p, "  ", stdout);
+done:
+  plan_free(p);
+  return st;
+}
+
+static status print_memory(const model *m, const mesh *msh) {
+  status st = OK;
+  const double mega = 1e6;
+  plan_bytes b;
+  TRY(plan_memory(m, msh, -1.0, &b));
+  double all = b.factor + b.contact + b.rest, left = memory_left();
+  printf(
+      "memory    about %.1f MB for the factor, %.1f MB for the contact, "
+      "%.1f MB for the rest\n",
+      b.factor / mega, b.contact / mega, b.rest / mega);
+  if (all > left)
+    printf(
+        "memory    %s leaves %.0f MB: the run would be refused, unless "
+        "contact nodes are out of reach; see --max-memory\n",
+        memory_limit_of(), floor(left / mega));
+done:
+  return st;
+}
+
+/* Motions that the supports of a step leave; ERR_SINGULAR if nothing at all
+ * holds one. */
+static status print_motions(const model *m, const mesh *msh, int step_id) {
+  status st = OK;
+  static const char *const held[] = {
+      "nothing holds it", "held by friction only", "held by contact only"};
+  free_motion *list = NULL;
+  int n = 0;
+  st = history_motions(m, msh, step_id, &n, &list);
+  for (int i = 0; i < n; ++i)
+    printf("free      step %d, body %d, %s: %s\n", step_id + 1,
+           list[i].body_id + 1, list[i].text, held[list[i].held_by]);
+  if (n == 0 && st == OK)
+    printf("supports  of step %d hold every body\n", step_id + 1);
+  memory_free(list);
+  return st;
+}
+
+status inform_check_problem(const model *m, const exchange_problem *p) {
+  printf("problem   %s: %d %s, %d unknowns, condensed to %d\n", p->form, p->n,
+         p->dim == 1 ? "rows" : "contacts", p->unknowns, p->m);
+  return print_plan(m, NULL, p->n);
+}
+
+status inform_check(const model *m, const mesh *msh) {
+  status st = OK;
+  print_sizes(m, msh);
+  TRY(print_memory(m, msh));
+  TRY(print_plan(m, msh, 0));
+  /* Supports are only lost where *BOUNDARY, OP=NEW ends some. */
+  for (int i = 0; i < m->n_step; ++i)
+    if (i == 0 || m->steps[i].renewed >> LOAD_FIXING & 1u)
+      TRY(print_motions(m, msh, i));
+done:
+  return st;
+}

@@ -1,0 +1,210 @@
+/*
+ * One pass: the stages in their order.
+ */
+#include "program/job.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+#include "model/check/check.h"
+#include "fem/fem.h"
+#include "program/inform.h"
+#include "model/keyword/keyword.h"
+#include "effects/plan/plan.h"
+#include "program/restart.h"
+#include "base/system/input.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* --safe: a mesh that is a program is not run. */
+static status check_safe_mesh(const model *m) {
+  if (input_is_confined() && job_is_geo(m))
+    message_add(m->log, P5021, &m->mesh_at,
+                "--safe: the mesh must be a .msh, not \"%s\"", m->mesh_file);
+  return message_status(m->log, ERR_DECK);
+}
+
+/* Numbers of the deck go to a .geo under their own names. */
+static status read_mesh(const job_mesh *other, job_input *in) {
+  status st = OK;
+  const model *m = in->m;
+  double cpu = timer_cpu();
+  mesh_number *numbers = NULL;
+  int n = 0;
+  TRY(check_safe_mesh(m));
+  NEW(numbers, m->deck->n_symbol);
+  for (int i = 0; i < m->deck->n_symbol; ++i)
+    if (m->deck->symbols[i].in_geometry)
+      numbers[n++] =
+          (mesh_number){m->deck->symbols[i].typed, m->deck->symbols[i].value};
+  timer_enter(STAGE_MESH);
+  if (m->target.percent > 0.0 && job_is_geo(m)) mesh_gmsh_load();
+  in->library_cpu = timer_cpu() - cpu;
+  st =
+      mesh_read_gmsh(&(mesh_source){.file = m->mesh_file,
+                                    .scale = m->mesh_scale,
+                                    .n_number = n,
+                                    .numbers = numbers,
+                                    .old = other != NULL ? other->old : NULL,
+                                    .size = other != NULL ? other->size : NULL},
+                     &m->mesh_at, m->log, &in->msh);
+  timer_leave(STAGE_MESH);
+done:
+  memory_free(numbers);
+  return st;
+}
+
+/* A problem from a file in the place of a mesh. */
+static status read_problem(model *m, exchange_problem **problem) {
+  status st = OK;
+  timer_enter(STAGE_PROBLEM);
+  st = exchange_read(m->problem_file, m->problem_type, &m->problem_at, m->log,
+                     problem);
+  timer_leave(STAGE_PROBLEM);
+  if (st == OK)
+    model_fit_problem(m, (*problem)->dim, (*problem)->cp.g0 != NULL);
+  return st;
+}
+
+status job_read(const command *c, const job_mesh *other, message_log *log,
+                job_input *in) {
+  status st = OK;
+  timer_enter(STAGE_DECK);
+  st = deck_read(c->deck_file, c->n_define, c->defines, log, &in->d);
+  if (st == OK || st == ERR_DECK) st = model_from_deck(in->d, log, &in->m);
+  timer_leave(STAGE_DECK);
+  TRY(st);
+  TRY(message_status(log, ERR_DECK));
+  if (in->m->has_problem) {
+    TRY(read_problem(in->m, &in->problem));
+  } else {
+    if (other != NULL && other->same != NULL)
+      in->msh = other->same;
+    else
+      TRY(read_mesh(other, in));
+    TRY(model_check(in->m, in->msh));
+  }
+done:
+  return st;
+}
+
+status job_foresee(const job_input *in, int n) {
+  status st = OK;
+  plan_bytes b;
+  TRY(plan_memory(in->m, in->msh, n, &b));
+  TRY(memory_foresee(b.factor + b.contact + b.rest, "the run"));
+done:
+  return st;
+}
+
+int job_is_geo(const model *m) {
+  return m->mesh_file != NULL && mesh_is_program(m->mesh_file);
+}
+
+void job_input_free(job_input *in) {
+  exchange_free(in->problem);
+  mesh_free(in->msh);
+  model_free(in->m);
+  deck_free(in->d);
+  deck_free(in->first);
+  message_log_free(in->log);
+  *in = (job_input){0};
+}
+
+/* ---- the outputs, and who watches ---------------------------------------- */
+
+typedef struct relay {
+  history_sink to;        /* the outputs */
+  const job_watch *watch; /* or NULL                                          */
+  restart_writer restart;
+} relay;
+
+static status relay_foresee(void *ctx, int n_node) {
+  const relay *r = ctx;
+  return job_foresee(r->restart.in, n_node);
+}
+
+static status relay_ready(void *ctx, const setup_facts *facts,
+                          const contact_surface *surface) {
+  relay *r = ctx;
+  if (r->watch != NULL && r->watch->ready != NULL)
+    r->watch->ready(r->watch->ctx, facts);
+  return r->to.ready(r->to.ctx, facts, surface);
+}
+
+static status relay_start(void *ctx, const start_report *s) {
+  relay *r = ctx;
+  return r->to.start(r->to.ctx, s);
+}
+
+static status relay_increment(void *ctx, const state *s) {
+  status st = OK;
+  relay *r = ctx;
+  if (r->watch != NULL && r->watch->increment != NULL)
+    TRY(r->watch->increment(r->watch->ctx, s));
+  TRY(r->to.increment(r->to.ctx, s));
+done:
+  return st;
+}
+
+static status relay_between(void *ctx, const state *s) {
+  relay *r = ctx;
+  return r->to.between(r->to.ctx, s);
+}
+
+static void relay_iteration(void *ctx, const solver_step *s) {
+  relay *r = ctx;
+  r->to.iteration(r->to.ctx, s);
+}
+
+static status relay_rejected(void *ctx, const state *s, const char *why) {
+  relay *r = ctx;
+  return r->to.rejected(r->to.ctx, s, why);
+}
+
+static status relay_checkpoint(void *ctx, const run_memory *memory) {
+  relay *r = ctx;
+  return restart_write(&r->restart, memory);
+}
+
+status job_solve(const command *c, job_input *in, const job_watch *watch,
+                 archive *from, int *unsettled) {
+  static const mesh no_mesh;
+  status st = OK;
+  output *out = NULL;
+  char *files = NULL;
+  const output_options options = {
+      .dir = c->dir,
+      .no_timing = c->no_timing,
+      .version = PROTIS_VERSION,
+      .kernel = blas_kernel(),
+      .threads = c->threads,
+      .from = from,
+      .n_problem = in->problem != NULL ? in->problem->n : 0,
+      .progress = !c->quiet && isatty(STDERR_FILENO)};
+  if (watch == NULL && in->problem == NULL) TRY(restart_files(in, &files));
+  TRY(output_open(in->m, in->problem == NULL ? in->msh : &no_mesh, &options,
+                  &out));
+  relay r = {output_sink(out), watch, {c, in, out, files}};
+  history_sink sink = {.ctx = &r,
+                       .foresee = relay_foresee,
+                       .ready = relay_ready,
+                       .start = relay_start,
+                       .increment = relay_increment,
+                       .between = relay_between,
+                       .iteration = relay_iteration,
+                       .rejected = relay_rejected,
+                       .checkpoint = watch == NULL ? relay_checkpoint : NULL};
+  st = in->problem == NULL
+           ? history_continue(in->m, in->msh, from, &sink, unsettled)
+           : condensed_run(in->m, in->problem, &sink, unsettled);
+  if (watch != NULL && watch->finished != NULL)
+    st = watch->finished(watch->ctx, st, out);
+  status closed = output_close(out, st, *unsettled);
+  if (st == OK && closed != ERR_UNSETTLED) st = closed;
+  if (st == OK) TRY(message_status(in->m->log, ERR_INTERNAL));
+done:
+  free(files);
+  return st;
+}

@@ -1,0 +1,103 @@
+/* The lock of a job; the file holds the number of the process for people. */
+#include "program/lock.h"
+
+#include "base/memory.h"
+#include "base/text.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char head[] = "protis process ";
+
+/* The first line, "" for an empty file. */
+static void read_owner(int fd, char text[64]) {
+  ssize_t n = pread(fd, text, 63, 0);
+  text[n > 0 ? n : 0] = '\0';
+  text[strcspn(text, "\n")] = '\0';
+}
+
+/* What is not a lock of Protis stays as it is. */
+static status check_content(const char *path, int fd) {
+  status st = OK;
+  char text[64];
+  struct stat about;
+  int plain = fstat(fd, &about) == 0 && S_ISREG(about.st_mode);
+  read_owner(fd, text);
+  if (!plain || (text[0] != '\0' && strncmp(text, head, sizeof head - 1) != 0))
+    FAIL(ERR_FILE,
+         "%s is no lock of Protis, and a run would overwrite it: move it away, "
+         "or use -o",
+         path);
+done:
+  return st;
+}
+
+/* 1: the file at the path is the one that was opened; a run that ended between
+ * the two has removed it. */
+static int is_current(const char *path, int fd) {
+  struct stat one, other;
+  return stat(path, &one) == 0 && fstat(fd, &other) == 0 &&
+         one.st_ino == other.st_ino && one.st_dev == other.st_dev;
+}
+
+static status refuse(const char *path, int fd, const char *job) {
+  char text[64];
+  read_owner(fd, text);
+  return status_fail(
+      ERR_FILE, __func__, __LINE__,
+      "%s is held: job %s is running in this folder (%s). Wait until it has "
+      "ended, end it, or give this run another folder with -o. The lock goes "
+      "with its process: a file left behind by a kill does not block, it may "
+      "be removed",
+      path, job, text[0] != '\0' ? text : "process unknown");
+}
+
+/* A file system without locks runs without. */
+static status hold(const char *path, const char *job, int *fd) {
+  status st = OK;
+  do {
+    if (*fd >= 0) close(*fd);
+    *fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
+               0666);
+    if (*fd < 0) TRY(text_failed(path, "open for writing", errno));
+    TRY(check_content(path, *fd));
+    if (flock(*fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+      TRY(refuse(path, *fd, job));
+  } while (!is_current(path, *fd));
+done:
+  return st;
+}
+
+status job_lock_take(const char *dir, const char *job, job_lock *l) {
+  status st = OK;
+  int fd = -1, held = 0;
+  char *path = text_path(dir, job, "lock");
+  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of the lock");
+  if (mkdir(dir, 0777) != 0 && errno != EEXIST)
+    FAIL(ERR_FILE, "cannot make the folder %s: %s", dir, strerror(errno));
+  TRY(hold(path, job, &fd));
+  held = 1;
+  if (ftruncate(fd, 0) != 0 || dprintf(fd, "%s%ld\n", head, (long)getpid()) < 0)
+    TRY(text_failed(path, "write", errno));
+  *l = (job_lock){path, fd};
+done:
+  if (st != OK) {
+    if (held) unlink(path);
+    if (fd >= 0) close(fd);
+    memory_free(path);
+  }
+  return st;
+}
+
+void job_lock_release(job_lock *l) {
+  if (l->path == NULL) return;
+  unlink(l->path);
+  close(l->fd);
+  memory_free(l->path);
+  *l = (job_lock){0};
+}

@@ -1,0 +1,467 @@
+/* The restart file: who wrote it, and whether a deck may go on from it. */
+#include "program/restart.h"
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "fem/fem.h"
+#include "program/inform.h"
+#include "model/keyword/keyword.h"
+#include "mesh/msh/geo.h"
+#include "base/system/input.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- who wrote it -------------------------------------------------------- */
+
+typedef struct identity {
+  char version[40], kernel[40];
+  int threads, no_timing, step_no;
+  unsigned effects;
+  uint64_t mesh;
+} identity;
+
+static uint64_t add_bytes(uint64_t h, const void *data, size_t n) {
+  const unsigned char *at = data;
+  for (size_t i = 0; i < n; ++i) h = (h ^ at[i]) * 1099511628211u;
+  return h;
+}
+
+/* Nodes, elements and groups in their order. */
+static uint64_t mesh_hash(const mesh *s) {
+  size_t dim = (size_t)s->dim;
+  uint64_t h = add_bytes(14695981039346656037u, s->x,
+                         dim * (size_t)s->n_node * sizeof *s->x);
+  h = add_bytes(h, s->elem, (dim + 1) * (size_t)s->n_elem * sizeof *s->elem);
+  for (int i = 0; i < s->n_group; ++i)
+    h = add_bytes(h, s->group[i].node_id,
+                  (size_t)s->group[i].n_node * sizeof *s->group[i].node_id);
+  return h;
+}
+
+static void identify(const command *c, const job_input *in, identity *id) {
+  memset(id, 0, sizeof *id);
+  snprintf(id->version, sizeof id->version, "%s", PROTIS_VERSION);
+  snprintf(id->kernel, sizeof id->kernel, "%s", blas_kernel());
+  id->threads = c->threads;
+  id->no_timing = c->no_timing;
+  id->effects = in->m->effects;
+  id->mesh = mesh_hash(in->msh);
+}
+
+/* The deck with all its defaults; free it. */
+static status echo_of(const model *m, char **text) {
+  status st = OK;
+  size_t size = 0;
+  FILE *f = open_memstream(text, &size);
+  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
+  model_echo(m, f);
+  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
+done:
+  return st;
+}
+
+/* ---- warnings told so far ------------------------------------------------ */
+
+/* Number of a file of the deck, which another name may lead to, or -1. */
+static int file_no(const deck *d, const char *file) {
+  for (int i = 0; i < d->n_file; ++i)
+    if (strcmp(d->files[i], file) == 0) return i;
+  return -1;
+}
+
+/* A line each: number, line, column, number of the file, text; the file in a
+ * line before it. */
+static status list_warnings(const job_input *in, char **text) {
+  status st = OK;
+  size_t size = 0;
+  message_view w;
+  FILE *f = open_memstream(text, &size);
+  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: warnings so far");
+  for (int k = 0; message_get(in->m->log, k, &w); ++k) {
+    const char *file = w.at != NULL && w.at->file != NULL ? w.at->file : "";
+    if (w.level == WARNING)
+      fprintf(f, "%s\n%d %d %d %d %s\n", file, (int)w.id,
+              w.at != NULL ? w.at->line_no : 0,
+              w.at != NULL ? w.at->column_no : 0, file_no(in->d, file), w.text);
+  }
+  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: warnings so far");
+done:
+  return st;
+}
+
+/* That of a card, which knows its line and where it is included from. */
+static const place *place_in_deck(const deck *d, const place *at) {
+  for (int i = 0; i < d->n_card; ++i) {
+    const place *p = &d->cards[i].at;
+    if (p->line_no == at->line_no && p->column_no == at->column_no &&
+        p->file != NULL && strcmp(p->file, at->file) == 0)
+      return p;
+  }
+  return at;
+}
+
+/* What the run had told: what is told again is the same message. */
+static status tell_warnings(const job_input *in, archive *a) {
+  status st = OK;
+  size_t n = archive_length(a, "warnings");
+  char *text = NULL, *end;
+  NEW(text, n + 1);
+  TRY(archive_bytes(a, "warnings", text, n));
+  for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+    int id, no, used = 0;
+    *end = '\0';
+    place at = {.file = line};
+    line = end + 1;
+    if ((end = strchr(line, '\n')) == NULL) break;
+    *end = '\0';
+    if (sscanf(line, "%d %d %d %d%n", &id, &at.line_no, &at.column_no, &no,
+               &used) != 4)
+      break;
+    if (no >= 0 && no < in->d->n_file) at.file = in->d->files[no];
+    message_add(in->m->log, (message_id)id,
+                at.file[0] != '\0' ? place_in_deck(in->d, &at) : NULL, "%s",
+                line + used + 1);
+  }
+done:
+  memory_free(text);
+  return st;
+}
+
+/* ---- writing ------------------------------------------------------------- */
+
+static status file_names(const command *c, const model *m, char **path,
+                         char **before) {
+  status st = OK;
+  *path = text_path(c->dir, m->job, "rst.h5");
+  *before = text_path(c->dir, m->job, "rst.old.h5");
+  if (*path == NULL || *before == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: name of the restart file");
+done:
+  return st;
+}
+
+status restart_write(void *ctx, const run_memory *memory) {
+  status st = OK;
+  const restart_writer *w = ctx;
+  archive *a = NULL;
+  identity id;
+  char *path = NULL, *before = NULL, *text = NULL, *told = NULL;
+  TRY(file_names(w->c, w->in->m, &path, &before));
+  TRY(echo_of(w->in->m, &text));
+  TRY(list_warnings(w->in, &told));
+  identify(w->c, w->in, &id);
+  id.step_no = memory->step_no;
+  TRY(archive_new(&a));
+  if (w->c->no_timing) archive_leave_out_cpu(a);
+  TRY(archive_bytes(a, "identity", &id, sizeof id));
+  TRY(archive_bytes(a, "deck", text, strlen(text) + 1));
+  TRY(archive_bytes(a, "warnings", told, strlen(told)));
+  TRY(archive_bytes(a, "files", w->files, strlen(w->files)));
+  TRY(output_keep(w->out, a));
+  TRY(memory->keep(memory->run, a));
+  TRY(archive_write(a, path, before));
+done:
+  archive_free(a);
+  free(text);
+  free(told);
+  memory_free(path);
+  memory_free(before);
+  return st;
+}
+
+/* ---- files the deck names ------------------------------------------------ */
+
+/* Length and checksum (FNV-1a over words) of what stands in a file. */
+static status add_content(const char *name, const char *path, FILE *out) {
+  status st = OK;
+  const char *why = NULL;
+  uint64_t part[1024], bytes = 0, h = 14695981039346656037u;
+  size_t n;
+  FILE *f = input_stream(path, &why);
+  if (f == NULL) { /* who needs it tells, with its line                      */
+    fprintf(out, ", FILE=%s, not read\n", name);
+    goto done;
+  }
+  do {
+    memset(part, 0, sizeof part);
+    n = fread(part, 1, sizeof part, f);
+    for (size_t i = 0; 8 * i < n; ++i) h = (h ^ part[i]) * 1099511628211u;
+    bytes += n;
+  } while (n == sizeof part);
+  if (ferror(f)) TRY(text_failed(path, "read", errno));
+  fprintf(out, ", FILE=%s, %" PRIu64 " bytes, checksum %016" PRIx64 "\n", name,
+          bytes, h);
+done:
+  if (f != NULL) fclose(f);
+  return st;
+}
+
+/* Files that a .geo includes, by names as seen from its folder. */
+static status add_geometry(const char *path, FILE *out) {
+  status st = OK;
+  geo_text g;
+  TRY(geo_read(path, &g));
+  const char *slash = strrchr(path, '/');
+  size_t folder = slash != NULL ? (size_t)(slash - path) + 1 : 0;
+  for (int i = 1; i < g.n_file; ++i) {
+    size_t pass = strncmp(g.file[i], path, folder) == 0 ? folder : 0;
+    fprintf(out, "0 *MESH");
+    TRY(add_content(g.file[i] + pass, g.file[i], out));
+  }
+done:
+  geo_free(&g);
+  return st;
+}
+
+/* A line for each card that names one, with its step. */
+static status add_files(const job_input *in, FILE *out) {
+  status st = OK;
+  int step_no = 0;
+  for (int i = 0; i < in->d->n_card; ++i) {
+    const card *c = &in->d->cards[i];
+    const parameter *file = card_parameter(c, "FILE");
+    if (strcmp(c->name, "STEP") == 0) ++step_no;
+    if (file == NULL || !file->has_value) continue;
+    const char *path = deck_path(in->d, &file->value);
+    if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+    fprintf(out, "%d *%s", step_no, c->name);
+    TRY(add_content(file->value.text, path, out));
+    if (strcmp(c->name, "MESH") == 0 && mesh_is_program(path))
+      TRY(add_geometry(path, out));
+  }
+done:
+  return st;
+}
+
+status restart_files(const job_input *in, char **text) {
+  status st = OK;
+  size_t size = 0;
+  FILE *f = open_memstream(text, &size);
+  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: files of the deck");
+  st = add_files(in, f);
+  if (fclose(f) != 0 && st == OK)
+    FAIL(ERR_MEMORY, "memory exhausted: files of the deck");
+done:
+  return st;
+}
+
+/* The decks are the same up to that step: so are the cards of these lines. */
+static status compare_files(const char *was, const char *is, int step_no) {
+  status st = OK;
+  while (*was != '\0' && *is != '\0' && atoi(was) <= step_no) {
+    size_t n = strcspn(was, "\n"), m = strcspn(is, "\n");
+    size_t from = strcspn(was, " "), name = n;
+    if (n == m && memcmp(was, is, n) == 0) {
+      was += n + 1;
+      is += n + 1;
+      continue;
+    }
+    for (int comma = 0; comma < 2; ++comma)
+      while (name > from && was[--name] != ',') continue;
+    FAIL(
+        ERR_DECK,
+        "--restart: another file than when the run was started:%.*s: has other "
+        "contents; put the earlier one back, or start the run anew",
+        (int)(name - from), was + from);
+  }
+done:
+  return st;
+}
+
+/* ---- which cards may change ---------------------------------------------- */
+
+/* One card of an echo: "*NAME ... " up to the next one. */
+typedef struct echo_card {
+  const char *text;
+  size_t length; /* 0: the end                                               */
+  int step_no;   /* 0: before the first step                                 */
+} echo_card;
+
+/* Cards that start a line with a star; data lines never do. */
+static void next_card(echo_card *c) {
+  c->text += c->length;
+  c->length = strlen(c->text);
+  const char *end = strstr(c->text, "\n*");
+  if (end != NULL) c->length = (size_t)(end + 1 - c->text);
+  if (strncmp(c->text, "*STEP", 5) == 0) ++c->step_no;
+}
+
+static int is_named(const echo_card *c, const char *name) {
+  size_t n = strlen(name);
+  return strncmp(c->text + 1, name, n) == 0 &&
+         (c->text[n + 1] == ',' || c->text[n + 1] == '\n');
+}
+
+/* 1: the card may be another one, or not be there. */
+static int is_free(const echo_card *c, int step_no) {
+  static const char *const names[] = {"BOUNDARY", "DSLOAD",      "DLOAD",
+                                      "CLOAD",    "TEMPERATURE", "SOLVER",
+                                      "ACCURACY", "PRINT",       "OUTPUT"};
+  if (c->length == 0) return 0;
+  if (is_named(c, "RESTART")) return 1;
+  if (c->step_no <= step_no) return 0;
+  for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
+    if (is_named(c, names[k])) return 1;
+  return 0;
+}
+
+static void next_bound(echo_card *c, int step_no) {
+  do next_card(c);
+  while (is_free(c, step_no));
+}
+
+static int same_card(const echo_card *a, const echo_card *b) {
+  return a->length == b->length && memcmp(a->text, b->text, a->length) == 0;
+}
+
+/* The first line of a card. */
+static void first_line(const echo_card *c, char text[100]) {
+  size_t n = strcspn(c->text, "\n");
+  snprintf(text, 100, "%.*s", n < 90 ? (int)n : 90,
+           c->length > 0 ? c->text : "the end of the deck");
+}
+
+static status compare_decks(const char *was, const char *is, int step_no) {
+  status st = OK;
+  echo_card a = {was, 0, 0}, b = {is, 0, 0};
+  char before[100], now[100], where[40] = "";
+  do {
+    next_bound(&a, step_no);
+    next_bound(&b, step_no);
+    if (same_card(&a, &b)) continue;
+    first_line(&a, before);
+    first_line(&b, now);
+    if (a.step_no > 0) snprintf(where, sizeof where, "step %d, ", a.step_no);
+    FAIL(ERR_DECK,
+         "--restart: the deck has changed: %s%s%s%s; only loads, outputs and "
+         "the solver of the steps after step %d may change",
+         where, before,
+         strcmp(before, now) == 0 ? " has other data" : " is now ",
+         strcmp(before, now) == 0 ? "" : now, step_no);
+  } while (a.length > 0);
+done:
+  return st;
+}
+
+/* ---- reading ------------------------------------------------------------- */
+
+static status check_identity(const identity *was, const identity *is,
+                             const char *path) {
+  status st = OK;
+  if (strcmp(was->version, is->version) != 0)
+    FAIL(ERR_FILE, "%s was written by Protis %s, this is %s", path,
+         was->version, is->version);
+  if (was->mesh != is->mesh)
+    FAIL(ERR_FILE, "%s was written with another mesh", path);
+  if (was->no_timing != is->no_timing)
+    FAIL(ERR_DECK, "--restart: the run was started %s --no-timing",
+         was->no_timing ? "with" : "without");
+  if (was->effects != is->effects)
+    FAIL(ERR_DECK,
+         "--restart: the deck now calls for other effects (see --check) than "
+         "the run was started with");
+  if (was->threads != is->threads || strcmp(was->kernel, is->kernel) != 0)
+    fprintf(stderr,
+            "protis: warning: the run was started with %d thread%s and kernel "
+            "%s, this is %d and %s: last digits may differ\n",
+            was->threads, was->threads == 1 ? "" : "s", was->kernel,
+            is->threads, is->kernel);
+done:
+  return st;
+}
+
+static status check_files(const job_input *in, archive *a, int step_no) {
+  status st = OK;
+  char *was = NULL, *is = NULL;
+  size_t n = archive_length(a, "files");
+  NEW(was, n + 1);
+  TRY(archive_bytes(a, "files", was, n));
+  TRY(restart_files(in, &is));
+  TRY(compare_files(was, is, step_no));
+done:
+  memory_free(was);
+  free(is);
+  return st;
+}
+
+static status check_job(const command *c, const job_input *in, archive *a,
+                        const char *path) {
+  status st = OK;
+  identity was, is;
+  char *text = NULL, *now = NULL;
+  size_t n = archive_length(a, "deck");
+  TRY(archive_bytes(a, "identity", &was, sizeof was));
+  NEW(text, n + 1);
+  TRY(archive_bytes(a, "deck", text, n));
+  TRY(echo_of(in->m, &now));
+  identify(c, in, &is);
+  TRY(compare_decks(text, now, was.step_no));
+  TRY(check_files(in, a, was.step_no));
+  TRY(check_identity(&was, &is, path));
+done:
+  memory_free(text);
+  free(now);
+  return st;
+}
+
+/* JOB.rst.h5, or the one before it if that cannot be read. */
+static status read_either(const char *path, const char *before, archive **a) {
+  char why[512];
+  status st = archive_read(path, a);
+  if (st != ERR_FILE) return st;
+  snprintf(why, sizeof why, "%s", status_message());
+  if (archive_read(before, a) == OK) {
+    fprintf(stderr, "protis: warning: %s; the run goes on from %s\n", why,
+            before);
+    return OK;
+  }
+  return status_fail(st, __func__, __LINE__, "--restart: %s", why);
+}
+
+/* A run that ended before its first increment leaves none. */
+static int is_none(const char *path, const char *before) {
+  if (access(path, F_OK) == 0 || errno != ENOENT) return 0;
+  if (access(before, F_OK) == 0 || errno != ENOENT) return 0;
+  fprintf(stderr,
+          "protis: warning: --restart: there is no %s; the run begins anew\n",
+          path);
+  return 1;
+}
+
+status restart_read(const command *c, const job_input *in, archive **out) {
+  status st = OK;
+  char *path = NULL, *before = NULL;
+  *out = NULL;
+  if (in->problem != NULL)
+    FAIL(ERR_DECK,
+         "--restart: *CONDENSED PROBLEM is one increment, there is "
+         "nothing to go on with");
+  if (in->m->target.percent > 0.0)
+    FAIL(ERR_DECK,
+         "--restart: *ACCURACY, TARGET= makes passes of the whole "
+         "run; such a job starts anew");
+  for (int i = 0; i < in->m->n_step; ++i)
+    if (in->m->steps[i].theory)
+      FAIL(ERR_DECK,
+           "--restart: the theorems of *ACCURACY are checked over a "
+           "whole run; such a job starts anew");
+  TRY(file_names(c, in->m, &path, &before));
+  if (is_none(path, before)) goto done;
+  TRY(read_either(path, before, out));
+  TRY(check_job(c, in, *out, path));
+  TRY(tell_warnings(in, *out));
+done:
+  if (st != OK) {
+    archive_free(*out);
+    *out = NULL;
+  }
+  memory_free(path);
+  memory_free(before);
+  return st;
+}

@@ -1,0 +1,326 @@
+/*
+ * A pass gives three errors in the same norm: mesh, increments, solver. The
+ * next one changes only what has more than its share of the target: the mesh
+ * to sizes that give it with the fewest elements (space_sizes), the
+ * increments and the tolerance in proportion. The answer of a pass is taken
+ * if the sum of the three is below the target.
+ *
+ * Prices of a pass foreseen: the unknowns grow like error^(-dim) (P1: order 1
+ * in the energy norm), the CPU seconds of the mesh like the unknowns, without
+ * what gmsh costs to load, the rest like a power of them, 1.2 in the plane and
+ * 1.75 in space, measured with the nested dissection of condense.
+ */
+#include "program/target.h"
+
+#include "accuracy/space.h"
+#include "base/interrupt.h"
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Shares of the target, -: what the mesh, the increments and the solver may
+ * leave; the next pass aims at AIM of that. */
+static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, SOLVER_SHARE = 0.05;
+static const double AIM = 0.93;
+/* -, of the error, or a pass was in vain. */
+static const double LEAST_GAIN = 0.95;
+static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU       */
+static const double EXACT = 1e-10; /* -, errors of rounding alone             */
+static const double LEAST_TOL = 1e-14, SHORTEST = 1.0 / 16; /* -             */
+
+/* What a pass is told by the increments, and what follows from it. */
+typedef struct pass {
+  const command *c;
+  const accuracy_target *target;
+  job_input *in;
+  pass_row rows[MAX_PASS_ROWS], forecast;
+  int n;         /* rows, this pass included                             */
+  double energy; /* J, largest strain energy: the increment that counts   */
+  double mesh, time, solver; /* -, errors there                              */
+  double *eta;     /* [n_elem] shares of the elements there                 */
+  double unknowns; /* of this pass                                          */
+  double mesh_cpu, last_mesh_cpu; /* s, of meshing; of the pass before        */
+  double dt, tol; /* factors on the increments and tolerances of the deck  */
+  double cpu;     /* s, of the process when the pass began                 */
+  double meshed;  /* s, of that on meshes                                  */
+  int done;       /* 1: no other pass                                      */
+  char why[256];  /* the target is missed; "" if it is reached             */
+} pass;
+
+/* ---- watching ------------------------------------------------------------ */
+
+static void see_ready(void *ctx, const setup_facts *facts) {
+  pass *p = ctx;
+  p->unknowns = (double)facts->info.unknowns;
+}
+
+static status see_increment(void *ctx, const state *s) {
+  pass *p = ctx;
+  if (!s->mesh_error.asked || s->energy.strain < p->energy) return OK;
+  p->energy = s->energy.strain;
+  p->mesh = s->mesh_error.relative;
+  p->time = s->time_error.relative;
+  p->solver = s->error.asked ? s->error.relative : 0.0;
+  memcpy(p->eta, s->elem_error, (size_t)p->in->msh->n_elem * sizeof *p->eta);
+  return OK;
+}
+
+static double total(const pass *p) { return p->mesh + p->time + p->solver; }
+
+/* ---- deciding ------------------------------------------------------------ */
+
+static void miss(pass *p, const char *why) {
+  p->done = 1;
+  snprintf(p->why, sizeof p->why, "%s", why);
+}
+
+/* What the mesh may leave: all that the others do not, if they have no more
+ * than their shares. */
+static double mesh_goal(const pass *p) {
+  double goal = p->target->percent / 100.0;
+  if (p->time > TIME_SHARE * goal || p->solver > SOLVER_SHARE * goal)
+    return MESH_SHARE * goal;
+  return goal - p->time - p->solver;
+}
+
+/* Factor by which the unknowns grow if the mesh error falls to "wanted". */
+static double growth(const pass *p, double wanted) {
+  return p->mesh > wanted ? pow(p->mesh / wanted, p->in->m->dim) : 1.0;
+}
+
+/* Foreseen CPU seconds of meshing that many times the unknowns: linear from
+ * pass to pass, from the first on through zero. */
+static double price_of_mesh(const pass *p, double factor) {
+  double last = p->n > 1 ? p->rows[p->n - 2].unknowns : 0.0;
+  double more = p->unknowns - last, later = p->mesh_cpu - p->last_mesh_cpu;
+  double slope;
+  if (p->n > 1 && more > 0.0 && later >= 0.0)
+    slope = later / more;
+  else
+    slope = p->mesh_cpu / p->unknowns;
+  return p->mesh_cpu + slope * (factor - 1.0) * p->unknowns;
+}
+
+/* Foreseen CPU seconds of a run with that many times the unknowns. */
+static double price(const pass *p, double factor) {
+  double power = p->in->m->dim == 2 ? GROWTH_2D : GROWTH_3D;
+  double rest = p->rows[p->n - 1].cpu - p->mesh_cpu - p->in->library_cpu;
+  return price_of_mesh(p, factor) + fmax(rest, 0.0) * pow(factor, power);
+}
+
+/* A limit that the next pass would pass. */
+static void check_limits(pass *p, double factor) {
+  char text[200];
+  const accuracy_target *t = p->target;
+  double cpu = timer_cpu() + price(p, factor);
+  double bytes = (double)memory_peak() * factor;
+  if (p->n >= t->max_passes) {
+    miss(p, "MAX_PASSES is reached");
+  } else if (t->max_cpu > 0.0 && cpu > t->max_cpu) {
+    snprintf(text, sizeof text,
+             "another pass would end after about %.3g s of CPU, MAX_CPU is %g",
+             cpu, t->max_cpu);
+    miss(p, text);
+  } else if (bytes - (double)memory_in_use() > memory_left()) {
+    snprintf(text, sizeof text,
+             "another pass would need about %.3g MB more than %s leaves",
+             (bytes - (double)memory_in_use() - memory_left()) / 1e6,
+             memory_limit_of());
+    miss(p, text);
+  } else if (t->max_memory > 0.0 && bytes > t->max_memory * 1048576.0) {
+    snprintf(text, sizeof text,
+             "another pass would need about %.3g MB, MAX_MEMORY is %g",
+             bytes / 1048576.0, t->max_memory);
+    miss(p, text);
+  }
+}
+
+/* What of the next pass is other; "" if nothing can be. */
+static void choose(pass *p, char *text, size_t size) {
+  double goal = p->target->percent / 100.0;
+  size_t used = 0;
+  text[0] = '\0';
+  if (p->mesh > mesh_goal(p)) used += (size_t)snprintf(text, size, "mesh");
+  if (p->time > TIME_SHARE * goal && p->dt > SHORTEST * SHORTEST) {
+    double factor = fmax(AIM * TIME_SHARE * goal / p->time, SHORTEST);
+    p->dt *= factor;
+    used += (size_t)snprintf(text + used, size - used, "%sdt * %.2g",
+                             used > 0 ? ", " : "", factor);
+  }
+  if (p->solver > SOLVER_SHARE * goal && p->tol > LEAST_TOL) {
+    double factor = AIM * SOLVER_SHARE * goal / p->solver;
+    p->tol *= factor;
+    snprintf(text + used, size - used, "%stol * %.2g", used > 0 ? ", " : "",
+             factor);
+  }
+}
+
+static int refines(const pass_row *row) {
+  return strncmp(row->change, "mesh", 4) == 0;
+}
+
+/* 1 if the last pass gained nothing although the mesh was to change. */
+static int was_in_vain(const pass *p) {
+  if (p->n < 2 || !refines(&p->rows[p->n - 2])) return 0;
+  return p->rows[p->n - 1].mesh > LEAST_GAIN * p->rows[p->n - 2].mesh;
+}
+
+/* After the increments of a pass: is it the last? */
+static void decide(pass *p) {
+  double goal = p->target->percent / 100.0;
+  pass_row *row = &p->rows[p->n - 1];
+  if (total(p) <= goal) {
+    p->done = 1;
+    return;
+  }
+  if (isnan(total(p))) {
+    miss(p, isnan(p->time)
+                ? "the error of the steps is unknown, see the listing"
+                : "the solver has no bound of its error, see the "
+                  "listing");
+    return;
+  }
+  choose(p, row->change, sizeof row->change);
+  int finer = refines(row);
+  if (row->change[0] == '\0')
+    miss(p, "no error has more than its share, their sum is above the target");
+  else if (finer && !job_is_geo(p->in->m))
+    miss(p,
+         "the mesh is too coarse and a .msh cannot be meshed anew: give the "
+         ".geo");
+  else if (was_in_vain(p))
+    miss(p, "a mesh asked to be finer has no smaller error");
+  else
+    check_limits(p, finer ? growth(p, AIM * mesh_goal(p)) : 1.0);
+  if (p->done) row->change[0] = '\0';
+}
+
+/* ---- one pass ------------------------------------------------------------ */
+
+static void tell_pass(const pass *p) {
+  const pass_row *r = &p->rows[p->n - 1];
+  if (p->c->quiet) return;
+  if (p->n == 1)
+    printf("%4s %10s %9s %9s %9s %9s %9s  %s\n", "pass", "unknowns", "mesh[%]",
+           "steps[%]", "solver[%]", "total[%]", "cpu[s]", "next");
+  printf("%4d %10.0f %9.2e %9.2e %9.2e %9.2e %9.3g  %s\n", p->n, r->unknowns,
+         r->mesh, r->time, r->solver, r->total, r->cpu,
+         r->change[0] != '\0' ? r->change
+         : p->why[0] != '\0'  ? p->why
+                              : "done");
+  fflush(stdout);
+}
+
+/* Forecast of a tenth of the error reached. */
+static pass_row next_digit(const pass *p) {
+  const pass_row *r = &p->rows[p->n - 1];
+  double factor = pow(10.0, p->in->m->dim);
+  pass_row row = {.unknowns = r->unknowns * factor,
+                  .total = r->total / 10.0,
+                  .cpu = price(p, factor)};
+  return row;
+}
+
+static status see_finished(void *ctx, status st, output *out) {
+  pass *p = ctx;
+  if (st != OK) return st;
+  pass_row *row = &p->rows[p->n++];
+  *row = (pass_row){.unknowns = p->unknowns,
+                    .mesh = 100.0 * p->mesh,
+                    .time = 100.0 * p->time,
+                    .solver = 100.0 * p->solver,
+                    .total = 100.0 * total(p),
+                    .cpu = timer_cpu() - p->cpu};
+  p->mesh_cpu = timer_cost(STAGE_MESH).cpu - p->meshed - p->in->library_cpu;
+  decide(p);
+  tell_pass(p);
+  p->forecast = next_digit(p);
+  output_passes(out, p->target->percent, p->n, p->rows,
+                total(p) > EXACT ? &p->forecast : NULL, p->why);
+  if (p->why[0] != '\0')
+    FAIL(ERR_UNSETTLED,
+         "the error is %.3g %%, the target %g %%: %s; the files are those of "
+         "pass %d",
+         row->total, p->target->percent, p->why, p->n);
+done:
+  return st;
+}
+
+/* Increments and tolerances of the deck times the factors of the pass. */
+static void adjust(const pass *p, model *m) {
+  for (int i = 0; i < m->n_step; ++i) {
+    m->steps[i].dt *= p->dt;
+    m->steps[i].dt_min *= p->dt;
+    m->steps[i].solver.tol = fmax(m->steps[i].solver.tol * p->tol, LEAST_TOL);
+  }
+}
+
+static status run_pass(pass *p, int *unsettled) {
+  status st = OK;
+  const job_watch watch = {p, see_increment, see_ready, see_finished};
+  memory_free(p->eta);
+  p->eta = NULL;
+  p->energy = -1.0;
+  p->mesh = p->time = p->solver = 0.0;
+  NEW(p->eta, p->in->msh->n_elem);
+  adjust(p, p->in->m);
+  *unsettled = 0;
+  st = job_solve(p->c, p->in, &watch, NULL, unsettled);
+done:
+  return st;
+}
+
+/* The input of the next pass in the place of the last. Its messages are those
+ * of the first pass, shown only if something is wrong. */
+static status read_next(pass *p) {
+  status st = OK;
+  double *size = NULL;
+  job_input next = {0};
+  job_mesh other = {0};
+  mesh *msh = p->in->msh;
+  p->cpu = timer_cpu();
+  p->meshed = timer_cost(STAGE_MESH).cpu;
+  p->last_mesh_cpu = p->mesh_cpu;
+  NEW(size, msh->n_node);
+  TRY(message_log_new(&next.log));
+  if (refines(&p->rows[p->n - 1])) {
+    space_sizes(msh, p->eta, AIM * mesh_goal(p), size);
+    other = (job_mesh){.old = msh, .size = size};
+  } else {
+    other.same = msh;
+    p->in->msh = NULL;
+  }
+  TRY(job_read(p->c, &other, next.log, &next));
+  next.first = p->in->first != NULL ? p->in->first : p->in->d;
+  if (p->in->first == NULL) p->in->d = NULL;
+  p->in->first = NULL;
+  job_input_free(p->in);
+  *p->in = next;
+  next = (job_input){0};
+done:
+  if (st != OK && next.log != NULL) message_print(next.log, stderr);
+  job_input_free(&next);
+  memory_free(size);
+  return st;
+}
+
+status target_reach(const command *c, job_input *in, int *unsettled) {
+  status st = OK;
+  const accuracy_target target = in->m->target;
+  pass p = {.c = c, .target = &target, .in = in, .dt = 1.0, .tol = 1.0};
+  for (;;) {
+    TRY(run_pass(&p, unsettled));
+    if (p.done) break;
+    status stop = interrupt_asked();
+    if (stop != OK)
+      FAIL(stop, "interrupted by %s: the files are those of pass %d",
+           interrupt_name(), p.n);
+    TRY(read_next(&p));
+  }
+done:
+  memory_free(p.eta);
+  return st;
+}

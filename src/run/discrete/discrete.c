@@ -1,0 +1,275 @@
+/*
+ * A problem from a file: one solve, told to the outputs as one increment. A
+ * plain LCP goes to lcp_solve.
+ */
+#include "run/discrete/discrete.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+#include "solver/lcp/lcp_solve.h"
+#include "run/history/history.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+enum { LOG = 512 };
+
+/* One solve with all its arrays. */
+typedef struct discrete {
+  const step *step;
+  const exchange_problem *p;
+  contact_problem cp; /* p->cp, with its bodies after the solve; dim 1: 0 */
+  contact_bodies *bodies;
+  contact_surface surface; /* numbers only                                   */
+  double *u, *r;           /* [m] start and answer; LCP: w, z                */
+  double *gap, *slip, *g;  /* [n], [n*(dim-1)], [n]                          */
+  contact_status *contact; /* [n]                                            */
+  solver_report report;
+  error_bound error;
+  solution_set solutions;
+  char log[LOG];
+} discrete;
+
+static status discrete_new(discrete *d) {
+  status st = OK;
+  const exchange_problem *p = d->p;
+  NEW(d->surface.node_no, p->n);
+  NEW(d->u, p->m);
+  NEW(d->r, p->m);
+  NEW(d->gap, p->n);
+  NEW(d->slip, (size_t)p->n * (size_t)(p->dim - 1));
+  NEW(d->g, p->n);
+  NEW(d->contact, p->n);
+  d->surface.dim = p->dim;
+  d->surface.n = p->n;
+  for (int i = 0; i < p->n; ++i) d->surface.node_no[i] = (size_t)i + 1;
+done:
+  return st;
+}
+
+static void discrete_free(discrete *d) {
+  memory_free(d->surface.node_no);
+  memory_free(d->u);
+  memory_free(d->r);
+  memory_free(d->gap);
+  memory_free(d->slip);
+  memory_free(d->g);
+  memory_free(d->contact);
+  contact_bodies_free(d->bodies);
+  solution_set_free(&d->solutions);
+}
+
+/* Energy x' M x/2 of the condensed solution. */
+static status condensed_energy(const contact_problem *cp, const double *u,
+                               const double *r, double *energy) {
+  status st = OK;
+  double *y = NULL;
+  const double *x = cp->A != NULL ? u : r;
+  NEW(y, cp->m);
+  contact_product(cp->m, cp->A != NULL ? cp->A : cp->W, x, y);
+  *energy = 0.0;
+  for (int i = 0; i < cp->m; ++i) *energy += 0.5 * x[i] * y[i];
+done:
+  memory_free(y);
+  return st;
+}
+
+/* The bound by the inverse of the matrix given; where that is a definite
+ * compliance with Coulomb friction, the stiffness A[m*m] is made for its rate.
+ */
+static status bound_error(const contact_problem *cp, dense_inverse *dense,
+                          const double *u, const double *r,
+                          solver_error *found) {
+  status st = OK;
+  inverse_energy inverse = dense_inverse_energy(dense);
+  contact_problem stiff = *cp;
+  double *A = NULL;
+  int made = 0;
+  if (cp->A == NULL && cp->B != NULL) {
+    NEW(A, (size_t)cp->m * (size_t)cp->m);
+    dense_inverse_fill(dense, A, &made);
+    stiff.A = A;
+    inverse.stiffness = made ? &stiff : NULL;
+  }
+  TRY(solver_error_bound(cp, &inverse, u, r, NULL, found));
+done:
+  memory_free(A);
+  return st;
+}
+
+static status find_error(const step *s, const contact_problem *cp,
+                         const double *u, const double *r, error_bound *e) {
+  status st = OK;
+  solver_error found = {.norm = NAN, .why = error_bound_indefinite};
+  dense_inverse *dense = NULL;
+  double energy = 0.0;
+  *e = (error_bound){.hidden = contact_hidden(cp, u, r, NULL)};
+  if (cp->m == 0 || s->no_solver_error) return OK;
+  timer_enter(STAGE_ESTIMATE);
+  TRY(condensed_energy(cp, u, r, &energy));
+  TRY(dense_inverse_new(cp->m, cp->A != NULL ? cp->A : cp->W, &dense));
+  if (dense != NULL) TRY(bound_error(cp, dense, u, r, &found));
+  const double hidden = e->hidden;
+  error_bound_set(&found, energy, e);
+  e->hidden = hidden;
+done:
+  dense_inverse_free(dense);
+  timer_leave(STAGE_ESTIMATE);
+  return st;
+}
+
+/* ---- contact problems -----------------------------------------------------
+ */
+
+static status solve_contact(discrete *d, const history_sink *sink) {
+  status st = OK;
+  contact_solver *solver = NULL;
+  contact_problem *cp = &d->cp;
+  const solver_listener listener = {sink->iteration, sink->ctx};
+  TRY(contact_bodies_new(cp, &d->bodies));
+  cp->bodies = d->bodies;
+  if (cp->A == NULL) memcpy(d->u, cp->f, (size_t)cp->m * sizeof *d->u);
+  TRY(contact_solver_new(&d->step->solver, &solver));
+  TRY(contact_solve(solver, cp, listener.step == NULL ? NULL : &listener, d->u,
+                    d->r, &d->report));
+  snprintf(d->log, sizeof d->log, "%s", contact_solver_log(solver));
+  contact_classify(cp, d->u, d->r, d->contact);
+  if (cp->g0 != NULL) contact_limit(cp, d->r, d->g);
+  for (int i = 0; i < cp->n; ++i) {
+    d->gap[i] = cp->gap[i] - d->u[cp->dim * i];
+    for (int k = 1; k < cp->dim; ++k) {
+      int s = i * (cp->dim - 1) + k - 1;
+      d->slip[s] = d->u[cp->dim * i + k] - (cp->ut0 == NULL ? 0.0 : cp->ut0[s]);
+    }
+  }
+done:
+  contact_solver_free(solver);
+  return st;
+}
+
+/* ---- linear complementarity problems --------------------------------------
+ */
+
+static status solve_lcp(discrete *d) {
+  status st = OK;
+  double start = timer_cpu();
+  const solver_choice *choice = &d->step->solver;
+  const solver_ops *ops = choice->ops;
+  lcp_data p = {d->p->n, d->p->matrix, d->p->load};
+  lcp_control control = {choice->tol, choice->max_iter, ops != NULL};
+  lcp_verdict v;
+  if (ops != NULL && strcasecmp(ops->name, "lemke") != 0)
+    FAIL(ERR_DECK,
+         "deck line %d: METHOD=%s does not solve a plain linear "
+         "complementarity problem; use LEMKE or AUTO",
+         d->step->solver_at.line_no, ops->name);
+  TRY(lcp_solve(&p, &control, d->r, d->u, &v));
+  d->report = (solver_report){.outcome = v.outcome,
+                              .iterations = v.iterations,
+                              .residual = v.residual,
+                              .solver = v.method};
+  snprintf(d->log, sizeof d->log, "%s", v.log);
+  for (int i = 0; i < p.n; ++i) {
+    d->contact[i] = d->r[i] > 0.0 ? CONTACT_SLIP : CONTACT_OPEN;
+    d->gap[i] = d->u[i];
+  }
+done:
+  d->report.cpu = timer_cpu() - start;
+  return st;
+}
+
+/* ---- what the outputs are told --------------------------------------------
+ */
+
+static state state_of(const discrete *d) {
+  const exchange_problem *p = d->p;
+  const contact_problem *cp = p->dim > 1 ? &d->cp : NULL;
+  state s = {
+      .step_no = 1,
+      .increment_no = 1,
+      .total_no = 1,
+      .attempt = 1,
+      .t = d->step->total,
+      .dt = d->step->total,
+      .end_of_step = 1,
+      .problem = cp,
+      .surface = &d->surface,
+      .uc = d->u,
+      .rc = d->r,
+      .gap = d->gap,
+      .slip = d->slip,
+      .limit = cp != NULL && cp->g0 != NULL ? d->g : NULL,
+      .contact = d->contact,
+      .report = d->report,
+      .error = d->error,
+      .solutions = d->step->check != CHECK_NONE ? &d->solutions : NULL,
+      .solver_log = d->log,
+      .settled = d->report.outcome > 0 && !error_bound_doubts(&d->error, 1.0),
+      .in_doubt = error_bound_doubts(&d->error, 1.0)};
+  for (int i = 0; i < p->n; ++i) {
+    s.n_open += d->contact[i] == CONTACT_OPEN;
+    s.n_slip += d->contact[i] == CONTACT_SLIP;
+    s.n_stick += d->contact[i] == CONTACT_STICK;
+  }
+  return s;
+}
+
+static status tell_ready(const discrete *d, const history_sink *sink) {
+  const exchange_problem *p = d->p;
+  setup_facts facts = {
+      .info = {.unknowns = p->unknowns, .contact_unknowns = p->m},
+      .condition = NAN,
+      .digits = NAN,
+      .floating = p->cp.floating,
+      .n_contact_node = p->n};
+  if (sink->ready == NULL) return OK;
+  return sink->ready(sink->ctx, &facts, &d->surface);
+}
+
+static status tell_answer(discrete *d, const history_sink *sink, double cpu,
+                          int *unsettled) {
+  status st = OK;
+  state s = state_of(d);
+  const char *why = outcome_text(d->report.outcome);
+  s.cpu = timer_cpu() - cpu;
+  *unsettled = !s.settled;
+  if (!outcome_is_fatal(d->report.outcome)) {
+    if (sink->increment != NULL) TRY(sink->increment(sink->ctx, &s));
+    goto done;
+  }
+  s.n_open = s.n_slip = s.n_stick = 0;
+  if (sink->rejected != NULL) TRY(sink->rejected(sink->ctx, &s, why));
+  if (d->report.outcome == STOPPED_UNFIT)
+    FAIL(ERR_SINGULAR,
+         "the method cannot treat this problem: %s; use METHOD=AUTO or "
+         "PROXIMAL",
+         d->log);
+  FAIL(ERR_SINGULAR, "no solution found: %s%s%s%s", why,
+       d->log[0] == '\0' ? "" : " (", d->log, d->log[0] == '\0' ? "" : ")");
+done:
+  return st;
+}
+
+status condensed_run(const model *m, const exchange_problem *p,
+                     const history_sink *sink, int *unsettled) {
+  status st = OK;
+  discrete d = {.step = &m->steps[0], .p = p, .cp = p->cp};
+  double cpu = timer_cpu();
+  *unsettled = 0;
+  TRY(discrete_new(&d));
+  TRY(tell_ready(&d, sink));
+  timer_enter(STAGE_CONTACT);
+  st = p->dim == 1 ? solve_lcp(&d) : solve_contact(&d, sink);
+  timer_leave(STAGE_CONTACT);
+  TRY(st);
+  if (p->dim > 1 && !outcome_is_fatal(d.report.outcome))
+    TRY(find_error(d.step, &d.cp, d.u, d.r, &d.error));
+  if (p->dim > 1 && !outcome_is_fatal(d.report.outcome))
+    TRY(check_problem(d.step, &d.cp, &d.report, d.u, d.r, &d.solutions));
+  TRY(tell_answer(&d, sink, cpu, unsettled));
+done:
+  discrete_free(&d);
+  return st;
+}

@@ -1,0 +1,91 @@
+/*
+ * Increments of a *VISCO step with a tolerance: their lengths from the estimate
+ * of the error of the strains.
+ */
+#include "base/timer.h"
+#include "run/history/loop.h"
+
+#include <math.h>
+
+static const double ROUNDING = 0x1p-48; /* -, of the time                     */
+
+/* The next increment after one of length dt with this error; implicit
+ * integrators keep to halves and doubles, which they have factored. */
+static double next_length(const step *s, double dt, double error) {
+  const scheme *of = s->integrator;
+  int order = of->estimates ? 1 : of->order;
+  double factor = 4.0;
+  if (s->theta == 0.5 && of->has_theta) order = 2;
+  if (error > 0.0) factor = 0.9 * pow(s->tolerance / error, 1.0 / (order + 1));
+  factor = fmin(4.0, fmax(0.2, factor));
+  if (of->limit == 0.0) factor = ldexp(1.0, (int)floor(log2(factor)));
+  return fmin(dt * factor, s->dt_max);
+}
+
+/* The smallest increment: one that moves the time. */
+static double least_length(const run *r) {
+  return fmax(r->step->dt_min, ROUNDING * fabs(r->old.t));
+}
+
+/* End of the next increment: not a sliver before the end of the step. */
+static double next_end(const run *r, double dt) {
+  double end = r->step->start + r->step->total, left = end - r->old.t;
+  if (dt >= left * (1.0 - 1e-9)) return end;
+  return r->old.t + (dt > 0.5 * left && r->step->integrator->limit > 0.0
+                         ? 0.5 * left
+                         : dt);
+}
+
+/* A body in the air, or hardly touching: its strains, and their error, are
+ * rounding. */
+static int strains_are_rounding(run *r) {
+  r->now.energy.strain = domain_strain_energy(&r->d, r->now.u);
+  return rounding_hides_strains(r);
+}
+
+/* One attempt at an increment of a step with a tolerance. */
+static status attempt_adapted(run *r) {
+  status st = OK;
+  const step *s = r->step;
+  progress *p = &r->at;
+  const double least = least_length(r);
+  double end = s->start + s->total, error = 0.0;
+  double cpu = timer_cpu(), t = next_end(r, p->dt), tried;
+  int deeper, attempt = p->attempt;
+  TRY(visco_level(r, t - r->old.t, &deeper));
+  if (deeper > 0) t = next_end(r, ldexp(t - r->old.t, -deeper));
+  tried = t - r->old.t;
+  TRY(path_try(r, t));
+  TRY(visco_try(r, t, &error));
+  int settled = r->report.outcome > 0;
+  if (settled && error > s->tolerance && strains_are_rounding(r)) error = 0.0;
+  r->missed = settled && error > s->tolerance;
+  if ((!settled || r->missed) && fmin(tried, p->dt) > least &&
+      loop_cut_helps(r)) {
+    TRY(loop_reject(r, attempt, p->increment_no + 1,
+                    settled ? "strain error above TOLERANCE"
+                            : outcome_text(r->report.outcome)));
+    p->dt = fmax(least, fmin(0.5 * tried, next_length(s, tried, error)));
+    ++p->attempt;
+    goto done;
+  }
+  if (outcome_is_fatal(r->report.outcome)) TRY(loop_no_equilibrium(r));
+  p->attempt = 1;
+  ++p->increment_no;
+  TRY(loop_accept(r, attempt, p->increment_no, t == end, cpu));
+  p->dt = fmax(least_length(r), settled ? next_length(s, tried, error) : tried);
+done:
+  r->missed = 0;
+  return st;
+}
+
+status adaptive_run(run *r) {
+  status st = OK;
+  double end = r->step->start + r->step->total;
+  while (r->old.t < end) {
+    TRY(loop_pause(r));
+    TRY(attempt_adapted(r));
+  }
+done:
+  return st;
+}

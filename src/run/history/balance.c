@@ -1,0 +1,216 @@
+/*
+ * *SOLVER, TOL=BALANCED. The error of the contact solver need not be smaller
+ * than a share of those of the mesh and of the increments. Both are measured in
+ * the energy norm, while a solver stops at a residual: the ratio of the two is
+ * learnt from the bounds at the increments before. An answer whose bound is
+ * above the share is solved on, from where it is, with a smaller residual.
+ *
+ * An increment starts from the line through the last two equilibria if its
+ * residual is lower than that of the last one: with few digits wanted it may be
+ * all the answer.
+ *
+ * What was saved is reckoned from the digits of the residual that are missing
+ * to the default, and the iterations that a digit took so far; methods that end
+ * at once when their active set is found (Newton, pivoting) save a step.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "run/history/loop.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PASSES = 8 };
+static const double FIRST_TOL = 3e-2; /* -, before an error is known          */
+static const double MOST_TOL = 0.1;   /* -                                    */
+static const double SAFETY = 0.7;     /* -, of the share, for another pass    */
+static const double SHARPEST = 1e-3;  /* -, change of the residual in a pass  */
+
+static int is_balanced(const run *r) { return r->step->balanced && r->n > 0; }
+
+void balance_free(balance *b) {
+  memory_free(b->u);
+  memory_free(b->rc);
+  memory_free(b->guess_u);
+  memory_free(b->guess_r);
+  *b = (balance){0};
+}
+
+status balance_begin(run *r) {
+  status st = OK;
+  balance *b = &r->balance;
+  r->guess_u = r->guess_r = NULL;
+  b->known = 0;
+  b->report = (balance_report){0};
+  if (!is_balanced(r) || b->m == r->n_c) goto done;
+  balance_free(b);
+  b->m = r->n_c;
+  NEW(b->u, b->m);
+  NEW(b->rc, b->m);
+  NEW(b->guess_u, b->m);
+  NEW(b->guess_r, b->m);
+done:
+  return st;
+}
+
+/* The line through the last two equilibria, at t; without an earlier one in
+ * this step none. */
+static void guess(run *r, double t) {
+  balance *b = &r->balance;
+  double span = r->old.t - b->t, w = (t - r->old.t) / span;
+  r->guess_u = r->guess_r = NULL;
+  if (!b->known || !(span > 0.0)) return;
+  for (int i = 0; i < b->m; ++i) {
+    b->guess_u[i] = r->old.uc[i] + w * (r->old.uc[i] - b->u[i]);
+    b->guess_r[i] = r->old.rc[i] + w * (r->old.rc[i] - b->rc[i]);
+  }
+  r->guess_u = b->guess_u;
+  r->guess_r = b->guess_r;
+}
+
+/* The next solve goes on from r->now. */
+static void go_on(run *r) {
+  balance *b = &r->balance;
+  memcpy(b->guess_u, r->now.uc, (size_t)b->m * sizeof *b->guess_u);
+  memcpy(b->guess_r, r->now.rc, (size_t)b->m * sizeof *b->guess_r);
+  r->guess_u = b->guess_u;
+  r->guess_r = b->guess_r;
+}
+
+static double wanted_error(const run *r) {
+  const balance *b = &r->balance;
+  return r->step->share * (b->mesh + b->time);
+}
+
+/* Residual to ask for: what gave that error before. */
+static double wanted_tolerance(const run *r) {
+  const balance *b = &r->balance;
+  double tol = FIRST_TOL;
+  if (b->mesh > 0.0 && b->per_residual > 0.0)
+    tol = wanted_error(r) / b->per_residual;
+  return fmin(fmax(tol, r->step->solver.tol), MOST_TOL);
+}
+
+/* Errors of r->now: 1 if a lower residual is needed, *tol then. */
+static status judge(run *r, double *tol, int *again) {
+  status st = OK;
+  balance *b = &r->balance;
+  double least = r->step->solver.tol, at = fmin(*tol, r->report.residual);
+  *again = 0;
+  TRY(estimate_judge(r));
+  if (isfinite(r->mesh_error.relative)) b->mesh = r->mesh_error.relative;
+  double wanted = wanted_error(r), error = r->error.relative;
+  int unknown = !isfinite(error);
+  if (!unknown && error <= wanted) goto done;
+  if (*tol <= least || r->report.residual <= least) goto done;
+  double factor = unknown ? 0.0 : SAFETY * wanted / error;
+  *tol = unknown ? least : fmax(least, at * fmax(factor, SHARPEST));
+  *again = 1;
+done:
+  return st;
+}
+
+static status solve_once(run *r, double t) {
+  return r->step->kind == STEP_VISCO ? visco_advance(r, t)
+                                     : increment_solve(r, t);
+}
+
+status balance_advance(run *r, double t) {
+  status st = OK;
+  balance *b = &r->balance;
+  int again = 1, iterations = 0;
+  double tol, cpu = timer_cost(STAGE_CONTACT).cpu;
+  r->judged = 0;
+  if (!is_balanced(r)) return solve_once(r, t);
+  b->report = (balance_report){.asked = 1};
+  tol = wanted_tolerance(r);
+  guess(r, t);
+  for (int k = 1; again && k <= PASSES; ++k) {
+    r->tol = k == PASSES ? r->step->solver.tol : tol;
+    b->report.passes = k;
+    TRY(solve_once(r, t));
+    iterations += r->report.iterations;
+    if (r->report.outcome <= 0) break;
+    TRY(judge(r, &tol, &again));
+    go_on(r);
+  }
+  r->report.iterations = iterations;
+  b->iterations += iterations;
+  b->cpu += timer_cost(STAGE_CONTACT).cpu - cpu;
+done:
+  r->guess_u = r->guess_r = NULL;
+  return st;
+}
+
+/* ---- what is learnt ------------------------------------------------------ */
+
+static int ends_at_once(const solver_report *rep) {
+  const char *family = solver_family(rep->solver);
+  return strcmp(family, "Newton") == 0 || strcmp(family, "pivoting") == 0 ||
+         strcmp(family, "direct") == 0;
+}
+
+/* Iterations from the residual reached to the default. */
+static double saved_iterations(run *r) {
+  balance *b = &r->balance;
+  const solver_report *rep = &r->report;
+  double left = log10(rep->residual / r->step->solver.tol);
+  if (!(left > 0.0)) return 0.0;
+  if (ends_at_once(rep)) return 1.0;
+  double digits = -log10(rep->residual);
+  if (rep->iterations > 0 && digits > 0.0)
+    b->per_digit = rep->iterations / digits;
+  return left * b->per_digit;
+}
+
+static void make_report(run *r) {
+  balance *b = &r->balance;
+  balance_report *out = &b->report;
+  out->tol = r->tol;
+  out->wanted = isfinite(r->error.relative) ? wanted_error(r) : NAN;
+  out->saved_iterations = saved_iterations(r);
+  out->saved_cpu = b->iterations > 0.0
+                       ? out->saved_iterations * b->cpu / b->iterations
+                       : 0.0;
+}
+
+status balance_learn(run *r) {
+  balance *b = &r->balance;
+  size_t bytes = (size_t)b->m * sizeof *b->u;
+  if (!is_balanced(r)) return OK;
+  make_report(r);
+  if (isfinite(r->mesh_error.relative)) b->mesh = r->mesh_error.relative;
+  b->time = r->time_error.asked && isfinite(r->time_error.relative)
+                ? r->time_error.relative
+                : 0.0;
+  double rate = r->error.relative / r->report.residual;
+  if (r->report.residual > 10.0 * r->step->solver.tol && isfinite(rate))
+    b->per_residual = rate;
+  b->t = r->old.t;
+  b->known = r->now.t > r->old.t;
+  memcpy(b->u, r->old.uc, bytes);
+  memcpy(b->rc, r->old.rc, bytes);
+  return OK;
+}
+
+status balance_keep(run *r, archive *a) {
+  status st = OK;
+  balance *b = &r->balance;
+  size_t m = (size_t)b->m;
+  double *learnt[] = {&b->mesh,      &b->time,       &b->per_residual,
+                      &b->per_digit, &b->iterations, &b->cpu,
+                      &b->t,         &r->tol};
+  archive_enter(a, "balance");
+  TRY(archive_ints(a, "known", &b->known, 1));
+  for (size_t i = 0; i < sizeof learnt / sizeof *learnt; ++i) {
+    char name[20];
+    snprintf(name, sizeof name, "learnt%zu", i);
+    TRY(archive_reals(a, name, learnt[i], 1));
+  }
+  TRY(archive_reals(a, "u", b->u, m));
+  TRY(archive_reals(a, "rc", b->rc, m));
+done:
+  archive_leave(a);
+  return st;
+}

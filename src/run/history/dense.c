@@ -1,0 +1,43 @@
+/*
+ * Tables at the time points of *PRINT that no increment ends at.
+ */
+#include "run/history/loop.h"
+
+#include <math.h>
+
+/* The first time point of a table after "after" within the increment. */
+static double next_point(const run *r, double after) {
+  double next = HUGE_VAL;
+  for (int i = 0; i < r->step->n_print; ++i)
+    next =
+        fmin(next, print_next(&r->step->prints[i], r->step, after, r->now.t));
+  return next;
+}
+
+static status show(run *r, double t, int increment_no) {
+  status st = OK;
+  beside *b = NULL;
+  TRY(beside_at(r, t, &b));
+  run *own = beside_run(b);
+  own->n_zone = 0;
+  if (table_is_due(r->step, PRINT_ZONES, t, -1, 0)) st = zones_find(own);
+  r->zones = own->zones; /* may have grown                                   */
+  r->cap_zone = own->cap_zone;
+  TRY(st);
+  if (own->report.outcome <= 0) ++r->unsettled;
+  state s = loop_state(own, 1, increment_no);
+  s.within = 1;
+  TRY(r->sink->between(r->sink->ctx, &s));
+done:
+  beside_free(b);
+  return st;
+}
+
+status dense_show(run *r, int increment_no) {
+  status st = OK;
+  double t = next_point(r, r->old.t);
+  if (r->sink->between == NULL || r->step->kind == STEP_STATIC) return OK;
+  for (; isfinite(t); t = next_point(r, t)) TRY(show(r, t, increment_no));
+done:
+  return st;
+}

@@ -1,0 +1,426 @@
+/*
+ * The loop over steps and increments: grid of a fixed increment, its cutting
+ * with exact rollback, verdict of each increment, hand-over to the outputs.
+ */
+#include "accuracy/verdict.h"
+#include "run/history/loop.h"
+#include "run/visco.h"
+#include "run/setup/setup.h"
+
+#include "base/interrupt.h"
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { DEEPEST_CUT = 30 };
+
+/* End of piece "part" of 2^level pieces of increment number i (from 0) of n;
+ * computed from the ends of the step, so that no error adds up and the last
+ * one is the end of the step itself. */
+static double piece_end(const step *s, long n, long i, long part, int level) {
+  double pieces = ldexp(1.0, level);
+  double done = (double)i + (double)part / pieces;
+  if (i == n - 1 && part == (long)pieces) return s->start + s->total;
+  if (i < n - 1) return s->start + done * s->dt;
+  /* The last increment is what is left of the step. */
+  double left = s->total - (double)(n - 1) * s->dt;
+  return s->start + (double)(n - 1) * s->dt + (double)part / pieces * left;
+}
+
+static long increments_of(const step *s) {
+  double n = s->total / s->dt;
+  long whole = (long)floor(n + 0.5);
+  /* A step that is a multiple of dt up to rounding has no sliver at the end. */
+  if (whole >= 1 && fabs(n - (double)whole) <= 1e-9 * n) return whole;
+  return (long)ceil(n);
+}
+
+/* 1: reached its tolerance, is not in doubt and violates no theorem. */
+static int is_settled(const run *r) {
+  return r->report.outcome > 0 && !r->missed && !r->theorems.violated &&
+         !error_bound_doubts(&r->error, share_of_step(r));
+}
+
+/* What the outputs see of an increment. */
+state loop_state(run *r, int attempt, int increment_no) {
+  const equilibrium *e = &r->now;
+  state s = {.step_no = run_step_id(r) + 1,
+             .increment_no = increment_no,
+             .total_no = r->total_no,
+             .attempt = attempt,
+             .t = e->t,
+             .dt = e->t - r->old.t,
+             .u = e->u,
+             .strain = r->strain,
+             .stress = r->stress,
+             .temperature = e->temperature,
+             .reaction = e->reaction,
+             .problem = r->n > 0 ? &r->cp : NULL,
+             .surface = r->surface,
+             .uc = e->uc,
+             .rc = e->rc,
+             .gap = r->open_gap,
+             .slip = r->slip,
+             .limit = r->g,
+             .contact = r->contact,
+             .totals = r->totals,
+             .distance = r->distance,
+             .torque = r->torque,
+             .loops = r->loops,
+             .n_zone = r->n_zone,
+             .zones = r->zones,
+             .energy = e->energy,
+             .report = r->report,
+             .note = r->note,
+             .error = r->error,
+             .rounding = r->rounding,
+             .jumps = r->jumps,
+             .jump_t = r->jump_t,
+             .theory = r->theorems,
+             .solutions = r->step->check != CHECK_NONE ? &r->solutions : NULL,
+             .mesh_error = r->mesh_error,
+             .time_error = r->time_error,
+             .truth = r->truth,
+             .balance = r->balance.report,
+             .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
+             .solver_log = contact_solver_log(r->solver),
+             .settled = is_settled(r),
+             .in_doubt = error_bound_doubts(&r->error, share_of_step(r)),
+             .again = {r, beside_with}};
+  if (r->visco != NULL) visco_show(r, &s);
+  if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
+  if (!(r->m->effects & EFFECT_REACTION)) s.reaction = NULL;
+  for (int i = 0; i < r->n; ++i) {
+    s.n_open += r->contact[i] == CONTACT_OPEN;
+    s.n_slip += r->contact[i] == CONTACT_SLIP;
+    s.n_stick += r->contact[i] == CONTACT_STICK;
+  }
+  return s;
+}
+
+int table_is_due(const step *s, int tables, double t, int increment_no,
+                 int last) {
+  for (int i = 0; i < s->n_print; ++i)
+    if ((s->prints[i].table & tables) &&
+        print_shows(&s->prints[i], s, t, increment_no, last))
+      return 1;
+  return 0;
+}
+
+/* 1 if some output wants the stresses of this increment. */
+static int stress_is_due(const step *s, double t, int increment_no, int last) {
+  int f = s->output_frequency;
+  if (frequency_shows(f, increment_no, last)) return 1;
+  return table_is_due(s, ~0, t, increment_no, last);
+}
+
+/* Where an increment that is taken missed its tolerance. */
+static status note_misfit(run *r) {
+  status st = OK;
+  char text[400];
+  size_t used = strlen(r->note);
+  if (r->report.outcome > 0) goto done;
+  visco_warn_stuck(r);
+  if (r->n == 0) goto done;
+  TRY(verdict_misfit(&r->cp, r->surface, run_rows(r, 0, r->now.uc),
+                     run_rows(r, 1, r->now.rc), text, sizeof text));
+  if (text[0] != '\0')
+    snprintf(r->note + used, sizeof r->note - used, "  %s\n", text);
+done:
+  return st;
+}
+
+/* Where nodes were added in the increment. */
+static void note_nodes(run *r) {
+  const int now = reach_count(&r->reach, r->n);
+  size_t used = strlen(r->note);
+  if (r->n == 0 || now == r->n_told) return;
+  snprintf(r->note + used, sizeof r->note - used,
+           "  contact nodes thought out of reach touch: solved again with %d "
+           "nodes, not %d, of %d\n",
+           now, r->n_told, r->n);
+  r->n_told = now;
+}
+
+status loop_accept(run *r, int attempt, int increment_no, int last,
+                   double cpu) {
+  status st = OK;
+  TRY(dense_show(r, increment_no));
+  ++r->total_no;
+  TRY(theory_increment(r));
+  TRY(result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
+  TRY(estimate_increment(r));
+  r->n_zone = 0;
+  if (table_is_due(r->step, PRINT_ZONES, r->now.t, increment_no, last))
+    TRY(zones_find(r));
+  TRY(check_increment(r));
+  note_nodes(r);
+  warn_increment(r, increment_no);
+  TRY(note_misfit(r));
+  path_compare(r);
+  estimate_unloaded(r);
+  if (!is_settled(r)) ++r->unsettled;
+  TRY(balance_learn(r));
+  state s = loop_state(r, attempt, increment_no);
+  s.end_of_step = last;
+  s.cpu = timer_cpu() - cpu;
+  if (r->sink->increment != NULL) TRY(r->sink->increment(r->sink->ctx, &s));
+  TRY(result_accept(r));
+  r->due = frequency_shows(r->step->restart_frequency, increment_no, last);
+done:
+  return st;
+}
+
+int loop_cut_helps(const run *r) {
+  const outcome o = r->report.outcome;
+  if (o == STOPPED_STAGNATION && r->at.attempt > 1)
+    return r->report.residual < r->at.residual;
+  return o != STOPPED_UNFIT;
+}
+
+status loop_reject(run *r, int attempt, int increment_no, const char *why) {
+  r->at.residual = r->report.residual;
+  r->error = (error_bound){0};
+  r->rounding = (rounding_loss){0};
+  r->mesh_error.asked = r->time_error.asked = r->truth.asked = 0;
+  r->theorems = (theory_report){0};
+  r->jumps = 0;
+  state s = loop_state(r, attempt, increment_no);
+  s.n_open = s.n_slip = s.n_stick = 0;
+  if (r->sink->rejected == NULL) return OK;
+  return r->sink->rejected(r->sink->ctx, &s, why);
+}
+
+status loop_no_equilibrium(run *r) {
+  status st = OK;
+  char why[1024] = "";
+  const char *tried = contact_solver_log(r->solver);
+  verdict_scene scene = {.m = r->m,
+                         .msh = r->msh,
+                         .step = r->step,
+                         .t = r->now.t,
+                         .surface = r->surface,
+                         .cp = &r->cp,
+                         .u = run_rows(r, 0, r->now.uc),
+                         .r = run_rows(r, 1, r->now.rc),
+                         .c = r->c};
+  if (r->report.outcome == STOPPED_UNFIT)
+    FAIL(ERR_SINGULAR,
+         "step %d, time %g: the method cannot treat this problem: %s; use "
+         "METHOD=AUTO, NEWTON, AUGLAG or SOR",
+         run_step_id(r) + 1, r->now.t, contact_solver_log(r->solver));
+  TRY(verdict_text(&scene, why, sizeof why));
+  FAIL(ERR_SINGULAR,
+       "step %d, time %g: no equilibrium found: %s%s%s%s; the last state "
+       "written is that of time %g",
+       run_step_id(r) + 1, r->now.t, why, why[0] == '\0' ? "" : "; ",
+       tried[0] == '\0' ? "" : "tried ",
+       tried[0] == '\0' ? outcome_text(r->report.outcome) : tried, r->old.t);
+done:
+  return st;
+}
+
+/* ---- between two attempts ------------------------------------------------ */
+
+static status keep_all(void *run_, archive *a) {
+  status st = OK;
+  run *r = run_;
+  TRY(run_keep(r, a));
+  if (r->balance.m > 0) TRY(balance_keep(r, a));
+done:
+  return st;
+}
+
+static status checkpoint(run *r) {
+  status st = OK;
+  const run_memory memory = {r, keep_all, r->at.step_id + 1};
+  int planned = r->due; /* others are no stage of the run that goes on        */
+  r->due = 0;
+  if (r->sink->checkpoint == NULL) return OK;
+  if (planned) timer_enter(STAGE_RESTART);
+  st = r->sink->checkpoint(r->sink->ctx, &memory);
+  if (planned) timer_leave(STAGE_RESTART);
+  return st;
+}
+
+static status stop(run *r, status why) {
+  status st = OK;
+  const progress *p = &r->at;
+  const char *by = interrupt_name();
+  const char *on =
+      r->sink->checkpoint != NULL ? "; protis --restart goes on" : "";
+  if (r->total_no == 0)
+    FAIL(why, "interrupted by %s before the first increment", by);
+  if (!r->kept) TRY(checkpoint(r));
+  if (p->increment_no == 0)
+    FAIL(why, "interrupted by %s before step %d, at time %g%s", by,
+         p->step_id + 1, r->old.t, on);
+  FAIL(why, "interrupted by %s after step %d, increment %d, time %g%s", by,
+       p->step_id + 1, p->increment_no, r->old.t, on);
+done:
+  return st;
+}
+
+/* What is due where the run could go on from; ends it if that was asked for. */
+status loop_pause(run *r) {
+  status st = OK, why = interrupt_asked();
+  r->kept = r->due;
+  if (r->due) TRY(checkpoint(r));
+  if (why != OK) TRY(stop(r, why));
+done:
+  return st;
+}
+
+/* ---- increments ---------------------------------------------------------- */
+
+/* 1 if an attempt that found no equilibrium is made again in halves. */
+static int can_cut(const run *r) {
+  const step *s = r->step;
+  int level = r->at.level + 1;
+  return s->kind != STEP_STATIC && level <= DEEPEST_CUT &&
+         ldexp(s->dt, -level) >= s->dt_min &&
+         r->report.outcome != STOPPED_STAGNATION &&
+         r->report.outcome != STOPPED_UNFIT;
+}
+
+/* The next piece of n increments has been taken. */
+static status accept_piece(run *r, long n, double cpu) {
+  status st = OK;
+  progress *p = &r->at;
+  int attempt = p->attempt, end = p->part + 1 == 1L << p->level;
+  int last = p->i == n - 1 && end;
+  ++p->part;
+  ++p->increment_no;
+  p->attempt = 1;
+  if (end) {
+    ++p->i;
+    p->part = p->level = 0;
+  }
+  TRY(loop_accept(r, attempt, p->increment_no, last, cpu));
+done:
+  return st;
+}
+
+/* One attempt at the next piece of n increments: taken, or cut into halves. */
+static status attempt_piece(run *r, long n) {
+  status st = OK;
+  const step *s = r->step;
+  progress *p = &r->at;
+  double cpu = timer_cpu(), t = piece_end(s, n, p->i, p->part + 1, p->level);
+  int deeper;
+  TRY(visco_level(r, t - r->old.t, &deeper));
+  if (deeper > 0) {
+    p->part <<= deeper;
+    p->level += deeper;
+    goto done;
+  }
+  TRY(path_try(r, t));
+  TRY(balance_advance(r, t));
+  int settled = r->report.outcome > 0, finer = !settled && can_cut(r);
+  if (finer || (!settled && outcome_is_fatal(r->report.outcome)))
+    TRY(loop_reject(r, p->attempt, p->increment_no + 1,
+                    outcome_text(r->report.outcome)));
+  if (finer) {
+    p->part *= 2;
+    ++p->level;
+    ++p->attempt;
+    goto done;
+  }
+  if (!settled && outcome_is_fatal(r->report.outcome))
+    TRY(loop_no_equilibrium(r));
+  r->jumps = 0;
+  TRY(jump_check(r, t));
+  TRY(accept_piece(r, n, cpu));
+done:
+  return st;
+}
+
+static status run_fixed(run *r) {
+  status st = OK;
+  long n = increments_of(r->step);
+  while (r->at.i < n) {
+    TRY(loop_pause(r));
+    TRY(attempt_piece(r, n));
+  }
+done:
+  return st;
+}
+
+static status run_step(run *r) {
+  status st = OK;
+  TRY(run_prepare(r));
+  TRY(balance_begin(r));
+  if (r->from != NULL) {
+    TRY(run_keep(r, r->from));
+    if (r->balance.m > 0) TRY(balance_keep(r, r->from));
+    r->from = NULL;
+  } else {
+    r->at =
+        (progress){.step_id = run_step_id(r), .attempt = 1, .dt = r->step->dt};
+    TRY(start_step(r));
+  }
+  if (march_applies(r))
+    TRY(march_run(r));
+  else if (r->step->tolerance > 0.0 && r->visco != NULL)
+    TRY(adaptive_run(r));
+  else
+    TRY(run_fixed(r));
+  if (r->due) TRY(checkpoint(r));
+done:
+  return st;
+}
+
+/* The step in progress. */
+static status read_progress(run *r) {
+  status st = OK;
+  if (r->from == NULL) goto done;
+  archive_enter(r->from, "run");
+  st = archive_bytes(r->from, "at", &r->at, sizeof r->at);
+  archive_leave(r->from);
+  TRY(st);
+  if (r->at.step_id < 0 || r->at.step_id >= r->m->n_step)
+    FAIL(ERR_FILE, "the restart file is of a deck with other steps");
+done:
+  return st;
+}
+
+status history_continue(const model *m, const mesh *msh, archive *from,
+                        const history_sink *sink, int *unsettled) {
+  status st = OK;
+  run r = {.m = m, .msh = msh, .sink = sink, .from = from};
+  *unsettled = 0;
+  TRY(run_new(&r));
+  TRY(read_progress(&r));
+  if (from == NULL) TRY(start_read(&r));
+  for (int i = r.at.step_id; i < m->n_step; ++i) {
+    r.step = &m->steps[i];
+    TRY(run_step(&r));
+  }
+  warn_end(&r);
+done:
+  *unsettled = r.unsettled;
+  balance_free(&r.balance);
+  run_free(&r);
+  return st;
+}
+
+status history_run(const model *m, const mesh *msh, const history_sink *sink,
+                   int *unsettled) {
+  return history_continue(m, msh, NULL, sink, unsettled);
+}
+
+status history_motions(const model *m, const mesh *msh, int step_id, int *n,
+                       free_motion **list) {
+  status st = OK;
+  static const history_sink nobody;
+  run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[step_id]};
+  TRY(run_new(&r));
+  if (step_id == 0) TRY(start_read(&r));
+  TRY(run_motions(&r, n, list));
+done:
+  run_free(&r);
+  return st;
+}

@@ -1,0 +1,100 @@
+/*
+ * The loop over increments, shared by the files of this folder only.
+ */
+#ifndef PROTIS_HISTORY_LOOP_H
+#define PROTIS_HISTORY_LOOP_H
+
+#include "run/history/history.h"
+#include "run/run.h"
+
+/* history.c: r->now is an increment of the run: judged, told, made r->old.
+ *   attempt       1: not cut
+ *   increment_no  within the step, from 1; 0: the start
+ *   last          1: it ends the step
+ *   cpu           of the process when it began, s                           */
+status loop_accept(run *r, int attempt, int increment_no, int last, double cpu);
+/* It is not: told with the reason. */
+status loop_reject(run *r, int attempt, int increment_no, const char *why);
+/* What the outputs see of r->now. */
+state loop_state(run *r, int attempt, int increment_no);
+/* 1 if one of these tables (bits PRINT_*) shows the increment that ends at t.
+ */
+int table_is_due(const step *s, int tables, double t, int increment_no,
+                 int last);
+/* 1 if a shorter increment may settle what this attempt at a chosen length did
+ * not: the solver does not stagnate, or at a lower residual than before. */
+int loop_cut_helps(const run *r);
+/* Why there is none: ERR_SINGULAR. */
+status loop_no_equilibrium(run *r);
+/* Between two attempts: the checkpoint that is due; ends the run if asked. */
+status loop_pause(run *r);
+
+/* start.c: u_0 into r->old, before the contact surface is built. */
+status start_read(run *r);
+/* What comes before the increments of a step. */
+status start_step(run *r);
+
+/* march.c: increments of a step with TIME=BALANCED; 1: it applies. */
+int march_applies(const run *r);
+status march_run(run *r);
+
+/* adaptive.c: increments of a step with a tolerance. */
+status adaptive_run(run *r);
+
+/* dense.c: tables at time points within the increment r->old to r->now. */
+status dense_show(run *r, int increment_no);
+
+/* balance.c: from r->old to r->now at t by the procedure of the step. With
+ * TOL=BALANCED the contact solver stops at a share of the other errors. */
+status balance_begin(run *r); /* of a step                                    */
+status balance_advance(run *r, double t);
+/* At an increment that is taken, its errors known. */
+status balance_learn(run *r);
+void balance_free(balance *b);
+status balance_keep(run *r, archive *a);
+
+/* zones.c: the zones of r->now into r->zones. ERR_MEMORY. */
+status zones_find(run *r);
+
+/* estimate.c: what is doubtful of an accepted increment, whose totals are
+ * known; at the end of a run that went through. */
+void warn_increment(run *r, int increment_no);
+void warn_end(run *r);
+
+/* The loads now over the largest of the step, at most 1. */
+double share_of_step(const run *r);
+/* rounding.c: what rounding has taken of r->now, whose energies are known.
+ * ERR_SINGULAR: it leaves no digit. */
+status rounding_find(run *r);
+/* What rounding of the motion may hide of contact forces: contact_hidden, own
+ * forces by the stresses next to the node. */
+status rounding_hidden(const run *r, double *part);
+/* 1: the strains of the body are no more than the rounding of its motion. */
+int rounding_hides_strains(const run *r);
+/* 1: no load acts on it either, and contact forces are no more than that; or
+ * they carry the load straight, and strains are rounding of both. */
+int rounding_is_all(const run *r);
+
+/* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
+status estimate_increment(run *r);
+/* Those of solver and mesh alone, from r->now.u; read r->judged. */
+status estimate_judge(run *r);
+
+/* All errors at r->now known: those of a body that has been unloaded, which is
+ * left with rounding alone, count beside the largest energy so far; a body that
+ * is carried through the air has none. */
+void estimate_unloaded(run *r);
+
+/* theorems.c: the theorems at r->now into r->theorems, if asked for; at the
+ * initial state, which is posed in r->cp. */
+status theory_increment(run *r);
+status theory_initial(run *r);
+
+/* Whether the equilibrium jumps between r->old and r->now, at time t, into
+ * r->jumps, r->jump_t, r->note. r->now is solved again if it was looked for. */
+status jump_check(run *r, double t);
+/* Other solutions than that of r->now into r->solutions, if asked
+ * for. ERR_DECK: CHECK=ALL is not possible. */
+status check_increment(run *r);
+
+#endif

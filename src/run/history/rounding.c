@@ -1,0 +1,294 @@
+/*
+ * What rounding has taken of an answer. Where the condition number is far above
+ * that of a plain mesh, or where elastic strains are the difference of large
+ * numbers, since inelastic strains or motions of the whole body are far above
+ * them, the forces of the elements at
+ * the answer are compared with loads and contact forces. With d what is missing
+ * to equilibrium, the exact answer is w = inv(K) d away: its energy norm and
+ * its stresses are those of the error. Beside laws that flow K is that of the
+ * elastic body all the same: of all stresses that carry d, those of w have the
+ * least energy. They are as rounded as the answer itself, and show so. Where
+ * that leaves nothing, contact may hold the body better than its supports: w is
+ * then found with the nodes at the obstacle held. An answer without one correct
+ * digit ends the run; loads that grow from zero count as those they become.
+ */
+#include "base/memory.h"
+#include "base/sparse.h"
+#include "base/timer.h"
+#include "run/history/loop.h"
+
+#include <float.h>
+#include <math.h>
+
+static const double LAST_DIGIT = 0.1; /* -, an error that leaves none         */
+/* -, the same where the condition leaves none to the factor that measures */
+static const double IN_DOUBT = 0.01;
+/* -, displacements and forces in u and A u, by rounding */
+static const double CARRIED = 4 * DBL_EPSILON;
+/* -, work of creep, or forces times motion, over the strain energy */
+static const double FAR = 1e6;
+static const double REST =
+    1e-8; /* -, what a solver leaves of forces, at most */
+
+/* share: of the answer in one that the loss counts against. */
+static int leaves_none(const rounding_loss *loss, double share,
+                       const condensed *c) {
+  const double most = share * fmax(fmax(loss->energy, loss->stress), loss->u);
+  return !(most < (condensed_digits(c) > 0 ? LAST_DIGIT : IN_DOUBT));
+}
+
+static status check(const run *r, double share, const condensed *c) {
+  status st = OK;
+  const rounding_loss *loss = &r->rounding;
+  if (!leaves_none(loss, share, c)) goto done;
+  FAIL(ERR_SINGULAR,
+       "step %d, time %g: rounding leaves no digit of the answer: the energy "
+       "norm is wrong by about %.1g of itself, stresses by %.1g and "
+       "displacements by %.1g of the largest (condition %.1e); contrasts of "
+       "stiffness, slivers, nu near 1/2, supports that hardly hold, creep "
+       "strains and motions far above the elastic ones cost digits",
+       run_step_id(r) + 1, r->now.t, loss->energy, loss->stress, loss->u,
+       condensed_condition(c));
+done:
+  return st;
+}
+
+/* Arrays of a body whose answer is looked at. */
+typedef struct misfit {
+  condensed *c;
+  size_t n_stress;
+  double *stress;   /* [n_stress] of the answer, then of w alone, Pa          */
+  double *rest, *w; /* [n_dof] N; m                                           */
+} misfit;
+
+static status misfit_new(const run *r, misfit *x) {
+  status st = OK;
+  x->c = r->elastic.c != NULL ? r->elastic.c : r->c;
+  x->n_stress = (size_t)r->m->ns * (size_t)r->msh->n_elem;
+  NEW(x->stress, x->n_stress);
+  NEW(x->rest, r->n_dof);
+  NEW(x->w, r->n_dof);
+done:
+  return st;
+}
+
+static void misfit_free(misfit *x) {
+  memory_free(x->stress);
+  memory_free(x->rest);
+  memory_free(x->w);
+}
+
+/* The stresses of the displacement w alone, over those of the answer. */
+static void compare_stresses(run *r, misfit *x) {
+  domain plain = r->d;
+  double wrong;
+  plain.eigen = NULL;
+  domain_stress(&plain, x->w, NULL, x->stress);
+  wrong = largest_entry(x->n_stress, x->stress);
+  if (wrong > 0.0) r->rounding.stress = wrong / r->now.peak_stress;
+}
+
+/* What is lost of the largest displacement, m. */
+static double lost(const run *r) {
+  return CARRIED * largest_entry(r->n_dof, r->now.u);
+}
+
+int rounding_hides_strains(const run *r) {
+  const double u = lost(r);
+  return r->now.energy.strain <=
+         r->msh->n_node * condensed_stiffest(r->c) * u * u;
+}
+
+/* 1: contact forces and supports carry the loads straight, and strains are no
+ * more than the rounding of both, or what the solver leaves. */
+static int forces_hide_strains(const run *r) {
+  const double force = fmax(CARRIED, fmin(r->tol, REST)) *
+                       fmax(largest_entry(r->n_dof, r->now.F),
+                            largest_entry((size_t)r->n_c, r->now.rc));
+  return r->now.energy.strain <=
+         r->msh->n_node * force * force / condensed_stiffest(r->c);
+}
+
+int rounding_is_all(const run *r) {
+  if (forces_hide_strains(r)) return 1;
+  if (increment_free_load(r, r->now.F) > 0.0) return 0;
+  return largest_entry((size_t)r->n_c, r->now.rc) <=
+             condensed_stiffest(r->c) * lost(r) &&
+         rounding_hides_strains(r);
+}
+
+/* A body led through the air, without load and contact force: its stresses, of
+ * which nothing but rounding is there, are no loss. */
+static int moves_alone(const run *r) {
+  if (rounding_is_all(r)) return 1;
+  return r->rounding.u < 1e-10 && increment_free_load(r, r->now.F) == 0.0 &&
+         largest_entry((size_t)r->n_c, r->now.rc) == 0.0;
+}
+
+/* What is missing to equilibrium but for contact forces. */
+static void find_rest(run *r, misfit *x) {
+  domain_stress(&r->d, r->now.u, NULL, x->stress);
+  domain_internal_force(&r->d, x->stress, x->rest);
+  for (size_t i = 0; i < r->n_dof; ++i) x->rest[i] = r->now.F[i] - x->rest[i];
+  r->now.peak_stress =
+      fmax(r->now.peak_stress, largest_entry(x->n_stress, x->stress));
+}
+
+/* The loss that the way w to the exact answer means. */
+static void take_loss(run *r, misfit *x, double square) {
+  r->rounding = (rounding_loss){.found = 1, .norm = sqrt(square)};
+  if (square > 0.0) {
+    r->rounding.energy = sqrt(square / (2.0 * r->now.peak_energy));
+    r->rounding.u =
+        largest_entry(r->n_dof, x->w) / largest_entry(r->n_dof, r->now.u);
+  }
+  compare_stresses(r, x);
+}
+
+/* 1 for each unknown of the contact problem that contact holds in place. */
+static void find_held(const run *r, const contact_status *touch,
+                      unsigned char *held) {
+  const contact_problem *cp = &r->cp;
+  const double *rc = run_rows(r, 1, r->now.rc);
+  for (int q = 0; q < cp->m; ++q) {
+    const contact_status s = touch[q / cp->dim];
+    const int on_side = contact_bound(cp, q) < HUGE_VAL && rc[q] < 0.0;
+    held[q] =
+        q % cp->dim == 0 ? s != CONTACT_OPEN : s == CONTACT_STICK || on_side;
+    if (contact_held(cp, q)) held[q] = 1;
+  }
+}
+
+/* Once more: contact holds the body where supports hardly do. */
+static status find_beside_contact(run *r, misfit *x) {
+  status st = OK;
+  contact_status *touch = NULL;
+  unsigned char *held = NULL;
+  double square = 0.0;
+  NEW(touch, r->cp.n);
+  NEW(held, r->cp.m);
+  contact_classify(&r->cp, run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc),
+                   touch);
+  find_held(r, touch, held);
+  TRY(condensed_misfit_held(x->c, x->rest, run_rows(r, 1, r->now.rc), held,
+                            x->w, &square));
+  if (square < HUGE_VAL) take_loss(r, x, square);
+done:
+  memory_free(touch);
+  memory_free(held);
+  return st;
+}
+
+/* The loads now over the largest of the step: what rounding takes does not grow
+ * with them, so that it counts against those. */
+double share_of_step(const run *r) {
+  const double now = increment_free_load(r, r->now.F);
+  return now < r->step_load ? now / r->step_load : 1.0;
+}
+
+static status find(run *r) {
+  status st = OK;
+  misfit x = {0};
+  const double share = share_of_step(r);
+  double square = 0.0;
+  TRY(misfit_new(r, &x));
+  find_rest(r, &x);
+  TRY(condensed_misfit(x.c, x.rest, run_rows(r, 1, r->now.rc), x.w, &square));
+  take_loss(r, &x, square);
+  if (leaves_none(&r->rounding, 1.0, x.c) && r->n_row > 0)
+    TRY(find_beside_contact(r, &x));
+  if (moves_alone(r)) r->rounding = (rounding_loss){0};
+  TRY(check(r, share, x.c));
+done:
+  misfit_free(&x);
+  return st;
+}
+
+/* A body led far to where rounding hides whether it touches. */
+static status check_touch(const run *r) {
+  status st = OK;
+  const double u = largest_entry(r->n_dof, r->now.u);
+  if (u <= FAR * r->msh->size || !rounding_is_all(r)) goto done;
+  for (int i = 0; i < r->n; ++i) {
+    const double gap = r->gap[i] - r->now.uc[r->msh->dim * i];
+    if (fabs(gap) <= 16 * DBL_EPSILON * u)
+      FAIL(ERR_SINGULAR,
+           "step %d, time %g: rounding leaves no digit of the answer: after a "
+           "motion of %.1g a gap of %.1g may be open or closed; begin nearer "
+           "to the obstacle",
+           run_step_id(r) + 1, r->now.t, u, gap);
+  }
+done:
+  return st;
+}
+
+/* Largest force times largest motion, J: at most what one of them has done. */
+static double farthest_work(const run *r) {
+  return largest_entry(r->n_dof, r->now.u) *
+         fmax(largest_entry(r->n_dof, r->now.F),
+              largest_entry((size_t)r->n_c, r->now.rc));
+}
+
+/* Largest stress next to each contact node times its area, own[n], N. */
+static status find_own(const run *r, double *own) {
+  status st = OK;
+  const mesh *m = r->msh;
+  const contact_surface *s = r->surface;
+  double *sigma = NULL, *most = NULL;
+  NEW(sigma, (size_t)r->m->ns * (size_t)m->n_elem);
+  NEW(most, m->n_node);
+  domain_stress(&r->d, r->now.u, NULL, sigma);
+  for (int e = 0; e < m->n_elem; ++e) {
+    const size_t ns = (size_t)r->m->ns;
+    const double peak = largest_entry(ns, sigma + ns * (size_t)e);
+    for (int a = 0; a <= m->dim; ++a) {
+      const int v = m->elem[(m->dim + 1) * e + a];
+      most[v] = fmax(most[v], peak);
+    }
+  }
+  for (int k = 0; k < r->cp.n; ++k) {
+    const int i = r->reach.in != NULL ? r->reach.in[k] : k;
+    own[k] = most[s->node_id[i]] * s->area[i];
+  }
+done:
+  memory_free(sigma);
+  memory_free(most);
+  return st;
+}
+
+status rounding_hidden(const run *r, double *part) {
+  status st = OK;
+  double *own = NULL;
+  *part = 0.0;
+  if (r->n == 0 || r->report.outcome <= 0) return OK;
+  const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);
+  *part = contact_hidden(&r->cp, u, rc, NULL);
+  if (!(*part > LAST_DIGIT)) goto done;
+  NEW(own, r->cp.n);
+  TRY(find_own(r, own));
+  *part = contact_hidden(&r->cp, u, rc, own);
+done:
+  memory_free(own);
+  return st;
+}
+
+static int is_doubtful(const run *r) {
+  const double far = FAR * r->now.peak_energy;
+  if (condensed_costs_digits(r->c)) return 1;
+  return fabs(r->now.energy.inelastic) > far || farthest_work(r) > far;
+}
+
+status rounding_find(run *r) {
+  status st = OK;
+  r->rounding = (rounding_loss){0};
+  r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
+  r->now.peak_stress = r->old.peak_stress;
+  if (r->report.outcome <= 0) return OK;
+  TRY(check_touch(r));
+  if (!is_doubtful(r)) return OK;
+  timer_enter(STAGE_RECOVERY);
+  st = find(r);
+  timer_leave(STAGE_RECOVERY);
+done:
+  return st;
+}

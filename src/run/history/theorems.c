@@ -1,0 +1,209 @@
+/*
+ * The theorems of CPR98 at accepted increments (theory.h). That of inelastic
+ * strains (3.2) is looked at on the body with its contacts as they are, the
+ * sliding limit and given normal forces being given (problem Q3): a change of
+ * the stresses of the points changes their e^i by the law over the increment,
+ * that is a load on the elastic body, whose motion changes the stresses again.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "run/history/loop.h"
+#include "run/visco.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The problem at hand with an answer; mu[n_contact], given[n] are new. */
+static status theory_scene_new(run *r, const equilibrium *e, theory_scene *s,
+                               double **mu, unsigned char **given) {
+  status st = OK;
+  NEW(*mu, r->m->n_contact);
+  NEW(*given, r->n);
+  for (int c = 0; c < r->m->n_contact; ++c)
+    (*mu)[c] = limit_coefficient(r, c, r->now.t);
+  for (int i = 0; i < r->n; ++i)
+    (*given)[i] = r->m->contacts[r->surface->contact_id[i]].force.given != 0;
+  *s = (theory_scene){.cp = &r->cp,
+                      .u = e->uc,
+                      .r = e->rc,
+                      .n_contact = r->m->n_contact,
+                      .contact_id = r->surface->contact_id,
+                      .mu = *mu,
+                      .given = *given,
+                      .alone = r->step->kind == STEP_STATIC || r->relaxing,
+                      .tol = r->tol};
+  if (r->theory == NULL) TRY(theory_new(&r->theory));
+done:
+  return st;
+}
+
+/* ---- inelastic strains ----------------------------------------------- */
+
+typedef struct body_map {
+  run *r;
+  matrices own; /* where those of the run are of other moduli           */
+  condensed *c; /* of the elastic body, borrowed                        */
+  frozen_problem problem;
+  linear_contact *contact;
+  double *Q;          /* [ns*ns*n] of the points, 1/Pa                        */
+  double *e0, *sigma; /* [ns*eigen.n] de^i, -; ds, Pa                         */
+  double *F, *u;      /* [n_dof]                                              */
+  double *f, *du;     /* [m]                                                  */
+  int begun;          /* 0: e0 is there                                       */
+} body_map;
+
+static status elastic_body(run *r, body_map *b) {
+  status st = OK;
+  b->c = r->elastic.c;
+  if (!r->stale) goto done;
+  TRY(stiffness_assemble(&r->d, &b->own.k));
+  TRY(condense(b->own.k, &r->d, &b->own.c));
+  b->c = b->own.c;
+done:
+  return st;
+}
+
+/* The contact of the elastic body with a given limit, as the answer has it. */
+static status linear_body(run *r, const unsigned char *given, body_map *b) {
+  status st = OK;
+  unsigned char *none = NULL;
+  contact_problem cp = r->cp;
+  NEW(none, r->n);
+  TRY(elastic_body(r, b));
+  cp.A = condensed_matrix(b->c);
+  TRY(frozen_new(&cp, r->now.rc, none, given, &b->problem));
+  TRY(linear_contact_new(&b->problem.cp, r->now.uc, b->problem.r, &b->contact));
+done:
+  memory_free(none);
+  return st;
+}
+
+static status body_map_new(run *r, const unsigned char *given, body_map *b) {
+  status st = OK;
+  const visco *v = r->visco;
+  const size_t ns = (size_t)r->m->ns, n = (size_t)v->x.n;
+  b->r = r;
+  NEW(b->Q, ns * ns * n);
+  NEW(b->e0, ns * (size_t)r->eigen.n);
+  NEW(b->sigma, ns * (size_t)r->eigen.n);
+  NEW(b->F, r->n_dof);
+  NEW(b->u, r->n_dof);
+  NEW(b->f, r->n_c);
+  NEW(b->du, r->n_c);
+  TRY(linear_body(r, given, b));
+  double size = flow_norm(&v->x, v->now.ei);
+  for (int k = 0; k < v->x.n; ++k)
+    for (size_t i = 0; i < ns; ++i) {
+      size_t own = visco_at(r, k) + i;
+      double change = v->now.ei[own] - v->old.ei[own];
+      b->e0[visco_at(r, v->place[k]) + i] =
+          (size > 0.0 ? change / size : 0.0) + sin(1.0 + 2.0 * (double)own);
+    }
+done:
+  return st;
+}
+
+static void body_map_free(body_map *b) {
+  matrices_free(&b->own);
+  frozen_free(&b->problem);
+  linear_contact_free(b->contact);
+  double *owned[] = {b->Q, b->e0, b->sigma, b->F, b->u, b->f, b->du};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i)
+    memory_free(owned[i]);
+}
+
+/* e0 = Q sigma of all points. */
+static void flow_by_law(body_map *b) {
+  const visco *v = b->r->visco;
+  const int ns = b->r->m->ns;
+  for (int k = 0; k < v->x.n; ++k) {
+    size_t at = visco_at(b->r, v->place[k]);
+    tensor_product(ns, b->Q + visco_at(b->r, ns * k), b->sigma + at,
+                   b->e0 + at);
+  }
+}
+
+/* sigma of e0 over its size, in the energy of the points. */
+static status answer_of_body(void *ctx, double *size) {
+  status st = OK;
+  body_map *b = ctx;
+  run *r = b->r;
+  const visco *v = r->visco;
+  const eigenstrain x = {r->eigen.n, r->eigen_elem, b->e0};
+  double square = 0.0;
+  if (b->begun) flow_by_law(b);
+  b->begun = 1;
+  memset(b->F, 0, r->n_dof * sizeof *b->F);
+  eigen_force(&r->d, &x, b->F);
+  TRY(condense_load(b->c, b->F, NULL, b->f));
+  linear_contact_move(b->contact, b->f, b->du);
+  TRY(condense_recover(b->c, b->du, b->u));
+  double *elastic = v->stress;
+  eigen_stress(&r->d, &x, b->u, elastic, b->sigma);
+  for (int k = 0; k < v->x.n; ++k) {
+    size_t at = visco_at(r, v->place[k]);
+    square +=
+        v->x.weight[k] * tensor_dot(r->m->ns, elastic + at, b->sigma + at);
+  }
+  *size = sqrt(fmax(square, 0.0));
+  for (size_t i = 0; *size > 0.0 && i < visco_at(r, r->eigen.n); ++i)
+    b->sigma[i] /= *size;
+done:
+  return st;
+}
+
+/* theta of the rule: an integrator without takes the middle of the step. */
+static double theta_of(const step *s) {
+  const int own = s->integrator->has_theta || s->integrator->theta > 0.0;
+  return own ? s->theta : 0.5;
+}
+
+/* Theorem 3.2 over the increment. */
+static status see_path(run *r, const unsigned char *given, theory_path *out) {
+  status st = OK;
+  visco *v = r->visco;
+  body_map b = {0};
+  if (v == NULL || r->step->kind != STEP_VISCO) return OK;
+  const scheme_step p = {
+      .t = r->now.t, .dt = r->now.t - r->old.t, .theta = theta_of(r->step)};
+  const stress_map map = {&b, answer_of_body};
+  *out = (theory_path){.asked = 1};
+  TRY(body_map_new(r, given, &b));
+  TRY(flow_compliance(&v->x, &p, &v->old, &v->now, b.Q, &out->bound));
+  if (b.contact == NULL)
+    out->why = "nothing holds what is free under given friction";
+  else if (out->bound > 0.0)
+    TRY(theory_path_rate(&map, &out->rate));
+  theory_path_learn(r->theory, p.theta, p.dt, r->now.t - r->step->start, out);
+  r->theorems.violated |= out->violated;
+done:
+  body_map_free(&b);
+  return st;
+}
+
+/* ---- of an increment --------------------------------------------------- */
+
+static status see_theory(run *r, int at_start) {
+  status st = OK;
+  theory_scene s;
+  double *mu = NULL;
+  unsigned char *given = NULL;
+  r->theorems = (theory_report){0};
+  if (r->n == 0 || !r->step->theory) return OK;
+  timer_enter_whole(STAGE_THEORY);
+  TRY(theory_scene_new(r, at_start ? &r->old : &r->now, &s, &mu, &given));
+  if (at_start)
+    TRY(theory_start(r->theory, &s));
+  else
+    TRY(theory_check(r->theory, &s, &r->theorems));
+  if (!at_start) TRY(see_path(r, given, &r->theorems.path));
+done:
+  memory_free(mu);
+  memory_free(given);
+  timer_leave(STAGE_THEORY);
+  return st;
+}
+
+status theory_increment(run *r) { return see_theory(r, 0); }
+
+status theory_initial(run *r) { return see_theory(r, 1); }

@@ -1,0 +1,435 @@
+/*
+ * Zones of stick, slip and separation with their ends between the nodes.
+ *
+ * At the edge of a closed zone the pressure p goes to zero like the root of the
+ * distance d (Hertz). At the edge of a zone of stick so does what is left of
+ * the sliding limit, w = (g - |r_t|)/area, when a shear grows (Cattaneo,
+ * Mindlin), but like d^(3/2) when the zone grows under a pressure (Spence).
+ * So p^2, and w^2 or w^(2/3), are linear there: the squares are extended from
+ * the last node of the zone to zero over its neighbour inside (in 3-D along the
+ * gradient over the faces inside). w^(2/3) stays linear over several elements:
+ * a line of least squares takes the scatter of the nodes and of the increments
+ * out; which of the two it is, the smaller misfit tells. Without a neighbour
+ * inside, or with values that grow outwards, the end is put half way to the
+ * next node.
+ */
+#include "run/history/loop.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Nodes that a line is fitted through; more would see that it is a curve. */
+enum { FIT_NODES = 8 };
+
+/* A set of contact nodes and the traction that vanishes at its edge. */
+typedef struct level {
+  unsigned char *in; /* [n]                                                  */
+  double *square;    /* [n] its square, Pa^2                                 */
+  double *slope;     /* [dim*n] 3-D: its gradient over the faces inside      */
+  double *weight;    /* [n] 3-D: area of these faces                         */
+} level;
+
+/* The contact nodes as a chain along the tangent t, plane and axisymmetric. */
+typedef struct finder {
+  run *r;
+  int dim;
+  int *index; /* [n_node] contact node of a mesh node, or -1       */
+  level closed, stick;
+  int *next, *next_face; /* [n] along the chain, -1: none                     */
+  int *before;           /* [n] the node before, -1: none                     */
+} finder;
+
+static status level_new(int dim, int n, level *l) {
+  status st = OK;
+  NEW(l->in, n);
+  NEW(l->square, n);
+  NEW(l->slope, dim * n);
+  NEW(l->weight, n);
+done:
+  return st;
+}
+
+static void level_free(level *l) {
+  memory_free(l->in);
+  memory_free(l->square);
+  memory_free(l->slope);
+  memory_free(l->weight);
+}
+
+static void finder_free(finder *z) {
+  level_free(&z->closed);
+  level_free(&z->stick);
+  memory_free(z->index);
+  memory_free(z->next);
+  memory_free(z->next_face);
+  memory_free(z->before);
+}
+
+static status finder_new(run *r, finder *z) {
+  status st = OK;
+  const contact_surface *s = r->surface;
+  z->r = r;
+  z->dim = s->dim;
+  NEW(z->index, r->msh->n_node);
+  for (int i = 0; i < r->msh->n_node; ++i) z->index[i] = -1;
+  for (int i = 0; i < s->n; ++i) z->index[s->node_id[i]] = i;
+  TRY(level_new(z->dim, s->n, &z->closed));
+  TRY(level_new(z->dim, s->n, &z->stick));
+  NEW(z->next, s->n);
+  NEW(z->next_face, s->n);
+  NEW(z->before, s->n);
+done:
+  return st;
+}
+
+static double tangential(const run *r, int i) {
+  const double *rt = &r->now.rc[r->msh->dim * i + 1];
+  return r->msh->dim == 2 ? fabs(rt[0]) : hypot(rt[0], rt[1]);
+}
+
+static void set_levels(finder *z) {
+  const run *r = z->r;
+  for (int i = 0; i < r->n; ++i) {
+    double area = r->surface->area[i], scale = area > 0.0 ? 1.0 / area : 0.0;
+    double p = -scale * r->now.rc[z->dim * i];
+    double left = r->g == NULL ? 0.0 : scale * (r->g[i] - tangential(r, i));
+    z->closed.in[i] = r->contact[i] != CONTACT_OPEN;
+    z->stick.in[i] = r->contact[i] == CONTACT_STICK;
+    z->closed.square[i] = p * p;
+    z->stick.square[i] = left * left;
+  }
+}
+
+/* Contact nodes of a face, node[dim]; 0 if one of them is not in contact. */
+static int face_nodes(const finder *z, int face_id, int *node) {
+  const mesh *m = z->r->msh;
+  int all = 1;
+  for (int k = 0; k < z->dim; ++k) {
+    node[k] = z->index[m->face[z->dim * face_id + k]];
+    all &= node[k] >= 0;
+  }
+  return all;
+}
+
+static void difference(const finder *z, int from, int to, double *d) {
+  const double *x = z->r->surface->x;
+  d[2] = 0.0;
+  for (int c = 0; c < z->dim; ++c)
+    d[c] = x[z->dim * to + c] - x[z->dim * from + c];
+}
+
+static void cross(const double *a, const double *b, double *c) {
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double dot(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Gradient of the P1 function with the values w at the nodes of a triangle,
+ * times its area, into g[3]; the area. */
+static double face_gradient(const finder *z, const int *node, const double *w,
+                            double *g) {
+  double a[3], b[3], normal[3], part[3];
+  memset(g, 0, 3 * sizeof *g);
+  difference(z, node[0], node[1], a);
+  difference(z, node[0], node[2], b);
+  cross(a, b, normal);
+  double twice = sqrt(dot(normal, normal));
+  for (int k = 0; k < 3; ++k) {
+    difference(z, node[(k + 1) % 3], node[(k + 2) % 3], a);
+    cross(normal, a, part);
+    for (int c = 0; c < 3; ++c) g[c] += part[c] / twice * w[node[k]] / 2;
+  }
+  return twice / 2;
+}
+
+static void add_slopes(const finder *z, const mesh_group *group, level *l) {
+  for (int f = 0; f < group->n_item; ++f) {
+    int node[3] = {0}, inside = 1;
+    double g[3];
+    if (!face_nodes(z, group->item_id[f], node)) continue;
+    for (int k = 0; k < z->dim; ++k) inside &= l->in[node[k]];
+    if (!inside) continue;
+    double measure = face_gradient(z, node, l->square, g);
+    for (int k = 0; k < z->dim; ++k) {
+      l->weight[node[k]] += measure;
+      for (int c = 0; c < z->dim; ++c) l->slope[z->dim * node[k] + c] += g[c];
+    }
+  }
+}
+
+/* Part of the way from node i of the set to node j outside. */
+static double face_reach(const finder *z, const level *l, int i, int j) {
+  double way[3], fall = 0.0;
+  if (l->weight[i] <= 0.0) return 0.5;
+  difference(z, i, j, way);
+  for (int c = 0; c < z->dim; ++c)
+    fall -= way[c] * l->slope[z->dim * i + c] / l->weight[i];
+  return fall > 0.0 ? fmin(1.0, l->square[i] / fall) : 0.5;
+}
+
+static double distance(const finder *z, int i, int j) {
+  double way[3] = {0};
+  difference(z, i, j, way);
+  return sqrt(dot(way, way));
+}
+
+/* Nodes of the zone from node i at its edge inwards, away from j: as many as
+ * the fit may use, at most half the zone. */
+static int edge_nodes(const finder *z, const level *l, int i, int j,
+                      int node[FIT_NODES]) {
+  const int *inwards = z->next[i] == j ? z->before : z->next;
+  int n = 0;
+  for (int k = i; k >= 0 && l->in[k] && n < 2 * FIT_NODES; k = inwards[k]) {
+    if (n < FIT_NODES) node[n] = k;
+    ++n;
+  }
+  return n <= 6 ? (n < 3 ? n : 3) : n / 2;
+}
+
+/* Where the square to a power extends to zero, as a line of least squares
+ * through n nodes that go inwards: length from node[0] outwards, HUGE_VAL if it
+ * does not fall. *misfit, in [0, 1], tells how far the nodes are from it. */
+static double extend(const finder *z, const level *l, int n, const int *node,
+                     double power, double *misfit) {
+  double s[FIT_NODES] = {0}, y[FIT_NODES], ms = 0.0, my = 0.0;
+  double ss = 0.0, sy = 0.0, yy = 0.0;
+  for (int k = 0; k < n; ++k) {
+    if (k > 0) s[k] = s[k - 1] + distance(z, node[k - 1], node[k]);
+    y[k] = pow(l->square[node[k]], power);
+    ms += s[k] / n;
+    my += y[k] / n;
+  }
+  for (int k = 0; k < n; ++k) {
+    ss += (s[k] - ms) * (s[k] - ms);
+    sy += (s[k] - ms) * (y[k] - my);
+    yy += (y[k] - my) * (y[k] - my);
+  }
+  *misfit = yy > 0.0 ? 1.0 - sy / ss * sy / yy : 1.0;
+  return sy > 0.0 ? fmax(0.0, my * (ss / sy) - ms) : HUGE_VAL;
+}
+
+static double line_reach(const finder *z, const level *l, int i, int j) {
+  int node[FIT_NODES], n = edge_nodes(z, l, i, j, node);
+  double root_misfit, other_misfit, length = distance(z, i, j);
+  if (n < 2) return 0.5;
+  double end = extend(z, l, 2, node, 1.0, &root_misfit);
+  if (n >= 3 && l == &z->stick) {
+    double other = extend(z, l, n, node, 1.0 / 3, &other_misfit);
+    extend(z, l, n, node, 1.0, &root_misfit);
+    if (other_misfit < root_misfit) end = other;
+  }
+  return end < HUGE_VAL ? fmin(1.0, end / length) : 0.5;
+}
+
+static double level_reach(const finder *z, const level *l, int i, int j) {
+  return z->dim == 3 ? face_reach(z, l, i, j) : line_reach(z, l, i, j);
+}
+
+/* The same; a zone of stick ends at the latest where the contact does. */
+static double reach(const finder *z, const level *l, int i, int j) {
+  double part = level_reach(z, l, i, j);
+  if (l == &z->stick && !z->closed.in[j])
+    part = fmin(part, level_reach(z, &z->closed, i, j));
+  return part;
+}
+
+/* ---- in three dimensions: areas ------------------------------------------ */
+
+/* Area of the part of a triangle that belongs to the set. */
+static double part_of_face(const finder *z, const level *l, const int *node) {
+  double w[3], unused[3];
+  int n = 0, odd = 0;
+  for (int k = 0; k < 3; ++k) n += l->in[node[k]];
+  if (n == 0) return 0.0;
+  double area = face_gradient(z, node, l->square, unused);
+  if (n == 3) return area;
+  for (int k = 0; k < 3; ++k)
+    if (l->in[node[k]] == (n == 1)) odd = k;
+  for (int k = 1; k < 3; ++k) {
+    int other = node[(odd + k) % 3];
+    w[k] = n == 1 ? reach(z, l, node[odd], other)
+                  : 1.0 - reach(z, l, other, node[odd]);
+  }
+  return n == 1 ? area * w[1] * w[2] : area * (1.0 - w[1] * w[2]);
+}
+
+static status add_zone(run *r, const contact_zone *zone) {
+  status st = OK;
+  GROW(r->zones, r->n_zone, r->cap_zone);
+  r->zones[r->n_zone++] = *zone;
+done:
+  return st;
+}
+
+static status find_areas(const finder *z, int contact_id) {
+  status st = OK;
+  const mesh_group *group = z->r->pairs[contact_id].group;
+  double whole = 0.0, closed = 0.0, stick = 0.0;
+  contact_zone zone = {.contact_id = contact_id};
+  for (int f = 0; f < group->n_item; ++f) {
+    int node[3];
+    double unused[3];
+    if (!face_nodes(z, group->item_id[f], node)) continue;
+    whole += face_gradient(z, node, z->closed.square, unused);
+    closed += part_of_face(z, &z->closed, node);
+    stick += part_of_face(z, &z->stick, node);
+  }
+  const double area[] = {whole - closed, closed - stick, stick};
+  for (int kind = CONTACT_OPEN; kind <= CONTACT_STICK; ++kind) {
+    zone.kind = kind;
+    zone.area = area[kind];
+    TRY(add_zone(z->r, &zone));
+  }
+done:
+  return st;
+}
+
+/* ---- in the plane: a walk along the contact line --------------------------
+ */
+
+/* Direction of the slip along t; 0 without friction or slip. */
+static int slip_sign(const finder *z, int i) {
+  if (z->r->contact[i] != CONTACT_SLIP) return 0;
+  double rt = z->r->now.rc[2 * i + 1];
+  return (rt < 0.0) - (rt > 0.0);
+}
+
+/* Part of the way from node i to the next one, j, where the zone ends. */
+static double zone_end(const finder *z, int i, int j) {
+  const contact_status *kind = z->r->contact;
+  const level *l = &z->closed;
+  if (z->closed.in[i] && z->closed.in[j]) l = &z->stick;
+  if (kind[i] != kind[j])
+    return l->in[i] ? reach(z, l, i, j) : 1.0 - reach(z, l, j, i);
+  double a = fabs(z->r->slip[i]), b = fabs(z->r->slip[j]);
+  return a + b > 0.0 ? a / (a + b) : 0.5;
+}
+
+static int same_zone(const finder *z, int i, int j) {
+  return z->r->contact[i] == z->r->contact[j] &&
+         slip_sign(z, i) == slip_sign(z, j);
+}
+
+/* Add the piece from part a to part b of the way from node i to the next. */
+static void add_piece(const finder *z, int i, double a, double b,
+                      contact_zone *zone) {
+  double way[3];
+  const run *r = z->r;
+  difference(z, i, z->next[i], way);
+  double length = distance(z, i, z->next[i]) * (b - a);
+  double radius = r->surface->x[2 * i] + 0.5 * (a + b) * way[0];
+  zone->length += length;
+  zone->area +=
+      length * (r->input.axisymmetric ? 2 * acos(-1.0) * radius
+                                      : r->face_weight[z->next_face[i]]);
+}
+
+static void set_point(const finder *z, int i, double part, double *x) {
+  double way[3] = {0.0, 0.0, 0.0};
+  if (part > 0.0) difference(z, i, z->next[i], way);
+  for (int c = 0; c < 2; ++c)
+    x[c] = z->r->surface->x[2 * i + c] + part * way[c];
+}
+
+static contact_zone zone_at(const finder *z, int contact_id, int i) {
+  return (contact_zone){.contact_id = contact_id,
+                        .kind = (int)z->r->contact[i],
+                        .direction = slip_sign(z, i)};
+}
+
+/* The zone that begins with node j: half a piece before it, where the line is
+ * a ring and another zone ends on the way from i, -1 at the end of a line. */
+static contact_zone first_zone(const finder *z, int contact_id, int i, int j) {
+  contact_zone zone = zone_at(z, contact_id, j);
+  if (i < 0 || same_zone(z, i, j)) {
+    set_point(z, j, 0.0, zone.from);
+    return zone;
+  }
+  double begin = zone_end(z, i, j);
+  set_point(z, i, begin, zone.from);
+  add_piece(z, i, begin, 1.0, &zone);
+  return zone;
+}
+
+static status walk(const finder *z, int contact_id, int start) {
+  status st = OK;
+  int i = start;
+  contact_zone zone = first_zone(z, contact_id, z->before[start], start);
+  for (int j; (j = z->next[i]) >= 0; i = j) {
+    if (same_zone(z, i, j)) {
+      add_piece(z, i, 0.0, 1.0, &zone);
+    } else {
+      double end = zone_end(z, i, j);
+      add_piece(z, i, 0.0, end, &zone);
+      set_point(z, i, end, zone.to);
+      TRY(add_zone(z->r, &zone));
+      if (j == start) goto done;
+      zone = first_zone(z, contact_id, i, j);
+    }
+    if (j == start) break;
+  }
+  set_point(z, z->next[i] == start ? start : i, 0.0, zone.to);
+  TRY(add_zone(z->r, &zone));
+done:
+  return st;
+}
+
+/* Where to cut a closed line: before a node that begins a zone. */
+static int cut_ring(const finder *z, int start) {
+  for (int i = start;; i = z->next[i]) {
+    if (!same_zone(z, i, z->next[i])) return z->next[i];
+    if (z->next[i] == start) return start;
+  }
+}
+
+static status find_lines(finder *z, int contact_id) {
+  status st = OK;
+  const mesh_group *group = z->r->pairs[contact_id].group;
+  int n = z->r->n, node[3];
+  for (int i = 0; i < n; ++i) z->next[i] = z->before[i] = -1;
+  for (int f = 0; f < group->n_item; ++f) {
+    if (!face_nodes(z, group->item_id[f], node)) continue;
+    z->next[node[0]] = node[1];
+    z->next_face[node[0]] = group->item_id[f];
+    z->before[node[1]] = node[0];
+  }
+  for (int pass = 0; pass < 2; ++pass)
+    for (int i = 0; i < n; ++i) {
+      if (z->next[i] < 0 || (pass == 0 && z->before[i] >= 0)) continue;
+      int start = pass == 0 ? i : cut_ring(z, i);
+      TRY(walk(z, contact_id, start));
+      for (int k = start, next; k >= 0; k = next) {
+        next = z->next[k];
+        z->next[k] = -1;
+      }
+    }
+done:
+  return st;
+}
+
+status zones_find(run *r) {
+  status st = OK;
+  finder z = {0};
+  r->n_zone = 0;
+  if (r->n == 0) return OK;
+  timer_enter(STAGE_ZONES);
+  TRY(finder_new(r, &z));
+  set_levels(&z);
+  for (int i = 0; i < r->m->n_contact && z.dim == 3; ++i) {
+    add_slopes(&z, r->pairs[i].group, &z.closed);
+    add_slopes(&z, r->pairs[i].group, &z.stick);
+  }
+  for (int i = 0; i < r->m->n_contact; ++i)
+    TRY(z.dim == 3 ? find_areas(&z, i) : find_lines(&z, i));
+done:
+  finder_free(&z);
+  timer_leave(STAGE_ZONES);
+  return st;
+}

@@ -1,0 +1,124 @@
+/* Elasticity of the elements at their temperatures (moduli.h). */
+#include "run/moduli/moduli.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+static const material *material_of(const model *m, int section_id) {
+  return &m->materials[m->sections[section_id].material_id];
+}
+
+int moduli_follows(const model *m, int elem_id) {
+  return (m->effects & EFFECT_THERMAL) &&
+         material_of(m, m->elem_section[elem_id])->elastic.n > 1;
+}
+
+int moduli_entry(const moduli *x, const model *m, int elem_id) {
+  return x->section_id != NULL ? x->section_id[elem_id]
+                               : m->elem_section[elem_id];
+}
+
+/* C, which is of the size of an entry, into entry i. */
+static void put_entry(moduli *x, const model *m, int i, const double C[36]) {
+  memcpy(x->C + 36 * (size_t)i, C, 36 * sizeof *C);
+  elastic_reduce(C, x->kin[i], x->E + (size_t)(m->ns * m->ns) * (size_t)i);
+}
+
+/* Entry n_section + k at the temperature T; 1 in *changed if it is new. */
+static status heat_entry(moduli *x, const model *m, int k, double T,
+                         int *changed) {
+  status st = OK;
+  const int i = x->n - x->n_own + k, e = x->elem_id[k];
+  const material *mat = material_of(m, m->elem_section[e]);
+  double C[36] = {0};
+  char text[256];
+  const char *wrong = elastic_at(&mat->elastic, T, C, text, (int)sizeof text);
+  x->at[k] = T;
+  if (wrong != NULL)
+    FAIL(ERR_DECK, "material %s at the temperature %g: %s", mat->name, T,
+         wrong);
+  if (memcmp(C, x->C + 36 * (size_t)i, sizeof C) == 0) goto done;
+  put_entry(x, m, i, C);
+  *changed = 1;
+done:
+  return st;
+}
+
+/* Elements that follow their temperature get entries behind the sections. */
+static status own_entries(moduli *x, const model *m, const mesh *msh) {
+  status st = OK;
+  int n = 0;
+  NEW(x->section_id, msh->n_elem);
+  NEW(x->elem_id, x->n_own);
+  NEW(x->at, x->n_own);
+  for (int e = 0; e < msh->n_elem; ++e) {
+    x->section_id[e] = m->elem_section[e];
+    if (!moduli_follows(m, e)) continue;
+    const int own = m->n_section + n;
+    x->origin[own] = m->elem_section[e];
+    x->kin[own] = x->kin[m->elem_section[e]];
+    x->thickness[own] = x->thickness[m->elem_section[e]];
+    x->section_id[e] = own;
+    x->elem_id[n++] = e;
+  }
+done:
+  return st;
+}
+
+status moduli_new(const model *m, const mesh *msh, const double *T, moduli *x) {
+  status st = OK;
+  int changed = 0;
+  for (int e = 0; e < msh->n_elem && T != NULL; ++e)
+    x->n_own += moduli_follows(m, e);
+  x->n = m->n_section + x->n_own;
+  NEW(x->origin, x->n);
+  NEW(x->kin, x->n);
+  NEW(x->thickness, x->n);
+  NEW(x->E, (size_t)(m->ns * m->ns) * (size_t)x->n);
+  NEW(x->C, 36 * (size_t)x->n);
+  for (int i = 0; i < m->n_section; ++i) {
+    x->origin[i] = i;
+    x->kin[i] = (kinematics)m->sections[i].kin;
+    x->thickness[i] = m->sections[i].thickness;
+    put_entry(x, m, i, material_of(m, i)->C);
+  }
+  if (x->n_own == 0) goto done;
+  TRY(own_entries(x, m, msh));
+  for (int k = 0; k < x->n_own; ++k)
+    TRY(heat_entry(x, m, k, T[x->elem_id[k]], &changed));
+done:
+  return st;
+}
+
+void moduli_free(moduli *x) {
+  memory_free(x->elem_id);
+  memory_free(x->at);
+  memory_free(x->section_id);
+  memory_free(x->origin);
+  memory_free(x->kin);
+  memory_free(x->thickness);
+  memory_free(x->E);
+  memory_free(x->C);
+  *x = (moduli){0};
+}
+
+status moduli_heat(moduli *x, const model *m, const double *T, int *changed) {
+  status st = OK;
+  *changed = 0;
+  for (int k = 0; k < x->n_own; ++k)
+    if (T[x->elem_id[k]] != x->at[k])
+      TRY(heat_entry(x, m, k, T[x->elem_id[k]], changed));
+done:
+  return st;
+}
+
+void moduli_domain(const moduli *x, const model *m, domain *d) {
+  d->ns = m->ns;
+  d->section_id = x->section_id != NULL ? x->section_id : m->elem_section;
+  d->origin = x->origin;
+  d->kin = x->kin;
+  d->thickness = x->thickness;
+  d->E = x->E;
+  d->C = x->C;
+}

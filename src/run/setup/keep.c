@@ -1,0 +1,182 @@
+/*
+ * What a run goes on from: all that an increment starts from and the matrices
+ * do not tell, into an archive and back.
+ */
+#include "run/setup/setup.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+
+/* The nodes of a run that goes on. */
+static status keep_nodes(run *r, archive *a) {
+  status st = OK;
+  contact_reach x = r->reach;
+  x.in = NULL;
+  TRY(archive_reals(a, "reach", &x.way, 1));
+  TRY(archive_ints(a, "reach_passes", &x.passes, 1));
+  TRY(archive_ints(a, "nodes_in", &x.n_in, 1));
+  if (!archive_reads(a))
+    return archive_ints(a, "in", r->reach.in, (size_t)x.n_in);
+  if (x.n_in > 0) NEW(x.in, r->n);
+  TRY(archive_ints(a, "in", x.in, (size_t)x.n_in));
+  r->reach.way = x.way;
+  r->reach.passes = x.passes;
+  if (reach_is_same(&x, &r->reach)) goto done;
+  contact_reach old = r->reach;
+  r->reach = x;
+  x = old;
+  TRY(run_renew_nodes(r));
+done:
+  reach_free(&x);
+  return st;
+}
+
+static status keep_equilibrium(const run *r, equilibrium *e, archive *a) {
+  status st = OK;
+  size_t m = (size_t)r->n_c, strains = strains_kept(r);
+  size_t elements = e->temperature == NULL ? 0 : (size_t)r->msh->n_elem;
+  TRY(archive_reals(a, "t", &e->t, 1));
+  TRY(archive_reals(a, "u", e->u, r->n_dof));
+  TRY(archive_reals(a, "F", e->F, r->n_dof));
+  TRY(archive_reals(a, "reaction", e->reaction, r->n_dof));
+  TRY(archive_reals(a, "uc", e->uc, m));
+  TRY(archive_reals(a, "rc", e->rc, m));
+  TRY(archive_reals(a, "motion", e->motion, m));
+  TRY(archive_reals(a, "temperature", e->temperature, elements));
+  TRY(archive_reals(a, "thermal", e->thermal, strains));
+  TRY(archive_reals(a, "e0", e->e0, strains));
+  TRY(archive_reals(a, "sigma", e->sigma, strains));
+  TRY(archive_reals(a, "elastic_strain", e->elastic,
+                    e->elastic == NULL ? 0 : strains));
+  TRY(archive_bytes(a, "energy", &e->energy, sizeof e->energy));
+  TRY(archive_reals(a, "peak_energy", &e->peak_energy, 1));
+  TRY(archive_reals(a, "peak_stress", &e->peak_stress, 1));
+done:
+  return st;
+}
+
+/* Temperatures of the moduli, and whether the elastic matrix is theirs. */
+static status keep_moduli(run *r, archive *a) {
+  status st = OK;
+  int stale = r->stale, changed = 0;
+  size_t n = r->moduli.n_own == 0 ? 0 : (size_t)r->msh->n_elem;
+  double *T = r->now.temperature;
+  for (int k = 0; k < r->moduli.n_own && !archive_reads(a); ++k)
+    T[r->moduli.elem_id[k]] = r->moduli.at[k];
+  TRY(archive_ints(a, "stale", &stale, 1));
+  TRY(archive_reals(a, "moduli_temperature", T, n));
+  if (!archive_reads(a) || n == 0) goto done;
+  TRY(moduli_heat(&r->moduli, r->m, T, &changed));
+  r->stale = stale || changed;
+  if (!stale) TRY(run_use(r, &r->elastic));
+done:
+  return st;
+}
+
+/* The rates of contraction that are known belong to the matrix in use. */
+static status keep_rate(run *r, archive *a) {
+  status st = OK;
+  known_rate *k = &r->rate;
+  int n = k->n, m = n == 0 ? 0 : k->m;
+  TRY(archive_ints(a, "rate_size", &m, 1));
+  TRY(archive_ints(a, "rates", &n, 1));
+  if (archive_reads(a)) known_rate_forget(k);
+  if (n < 0 || n > KNOWN_RATES || m <= 0) goto done;
+  if (archive_reads(a)) NEW(k->state, KNOWN_RATES * (size_t)m);
+  k->m = m;
+  k->n = n;
+  TRY(archive_bytes(a, "rate_states", k->state, (size_t)m * (size_t)n));
+  TRY(archive_reals(a, "rate", k->rate, (size_t)n));
+done:
+  return st;
+}
+
+static status keep_contact(run *r, archive *a) {
+  status st = OK;
+  size_t contacts = r->loops == NULL ? 0 : (size_t)r->m->n_contact;
+  TRY(keep_nodes(r, a));
+  TRY(archive_reals(a, "f_before", r->f_before, (size_t)r->n_row));
+  r->n_before = r->n_row;
+  r->n_told = reach_count(&r->reach, r->n);
+  TRY(archive_reals(a, "distance", r->distance,
+                    r->distance == NULL ? 0 : (size_t)r->n));
+  TRY(archive_bytes(a, "loops", r->loops, contacts * sizeof *r->loops));
+  TRY(keep_rate(r, a));
+  TRY(matrices_keep(&r->elastic, a, "elastic"));
+done:
+  return st;
+}
+
+static status keep_counts(run *r, archive *a) {
+  status st = OK;
+  TRY(archive_bytes(a, "at", &r->at, sizeof r->at));
+  TRY(archive_ints(a, "total_no", &r->total_no, 1));
+  TRY(archive_ints(a, "unsettled", &r->unsettled, 1));
+  TRY(archive_ints(a, "jumps", &r->jumps, 1));
+  TRY(archive_reals(a, "jump_t", &r->jump_t, 1));
+  TRY(archive_reals(a, "start", r->start, r->n_dof));
+  TRY(archive_reals(a, "step_load", &r->step_load, 1));
+done:
+  return st;
+}
+
+static status keep_told(run *r, archive *a) {
+  status st = OK;
+  const size_t contacts = r->n > 0 ? (size_t)r->m->n_contact : 0;
+  TRY(archive_ints(a, "told_strain", &r->told.strain, 1));
+  TRY(archive_ints(a, "told_folded", &r->told.folded, 1));
+  TRY(archive_ints(a, "touched", r->told.touched, contacts));
+done:
+  return st;
+}
+
+/* A limit that holds for all times of the step is made now, so that what is
+ * counted from here on is what the other run counts. */
+static status keep_limit(run *r, archive *a) {
+  status st = OK;
+  int known = r->limit_known;
+  TRY(archive_ints(a, "limit_known", &known, 1));
+  if (archive_reads(a) && known) TRY(limit_update(r, r->old.t));
+done:
+  return st;
+}
+
+/* As the limit: the nodal averages of the error of the mesh are made now. */
+static status keep_recovery(run *r, archive *a) {
+  status st = OK;
+  int made = r->recovery != NULL;
+  TRY(archive_ints(a, "recovery", &made, 1));
+  if (archive_reads(a) && made) TRY(space_recovery_new(&r->d, &r->recovery));
+done:
+  return st;
+}
+
+static status keep_costs(run *r, archive *a) {
+  status st = OK;
+  for (int i = 0; i < STAGE_COUNT; ++i) {
+    r->costs[i] = timer_cost((stage)i);
+    if (!archive_has_cpu(a)) r->costs[i].cpu = 0.0;
+  }
+  TRY(archive_bytes(a, "costs", r->costs, sizeof r->costs));
+  if (archive_reads(a)) timer_resume(r->costs);
+done:
+  return st;
+}
+
+status run_keep(run *r, archive *a) {
+  status st = OK;
+  archive_enter(a, "run");
+  TRY(keep_counts(r, a));
+  TRY(keep_told(r, a));
+  TRY(keep_equilibrium(r, &r->old, a));
+  TRY(keep_moduli(r, a));
+  if (r->n > 0) TRY(keep_contact(r, a));
+  TRY(path_keep(r, a));
+  if (r->visco != NULL) TRY(visco_keep(r, a));
+  TRY(keep_limit(r, a));
+  TRY(keep_recovery(r, a));
+  TRY(keep_costs(r, a));
+done:
+  archive_leave(a);
+  return st;
+}

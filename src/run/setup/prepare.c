@@ -1,0 +1,195 @@
+/*
+ * What a run keeps as long as the supports stay the same: contact surface, the
+ * nodes of it within reach, condensed stiffness, solver.
+ */
+#include "run/setup/setup.h"
+
+#include "base/memory.h"
+#include "base/timer.h"
+
+#include <math.h>
+#include <string.h>
+
+/*
+ * Contact nodes whose gap is wider than what the step can close are left out of
+ * the condensed problem: they are free nodes of the interior, without force.
+ * After each solution none of them may be beyond its gap; where one is, or
+ * where no equilibrium was found, more nodes are taken and the problem is
+ * solved again. The answer is thus that of all nodes; only its price depends on
+ * the estimate of the reach.
+ */
+enum { FEWEST = 16 };               /* contact nodes                         */
+static const double GENEROUS = 4.0; /* -, of what loads move a compact body  */
+
+/* 1: no force on a node that does not touch, nothing but loads and supports
+ * moves the body, and the problem at hand is that of all increments. */
+static int may_leave_out(const run *r, int n_motion) {
+  const unsigned effects = r->m->effects;
+  const unsigned no = EFFECT_GIVEN | EFFECT_START | EFFECT_INELASTIC |
+                      EFFECT_THERMAL | EFFECT_BODY;
+  if ((effects & EFFECT_TANGENTS) &&
+      (!model_rubs_locally(r->m) || (effects & EFFECT_TIME_ERROR)))
+    return 0;
+  return n_motion == 0 && r->n >= FEWEST && !(effects & no) &&
+         r->m->n_points == 0 && r->m->n_neglected == 0;
+}
+
+/* Least diagonal entry of the moduli, Pa, times the section's thickness or the
+ * size of the mesh: a body of that size gives way by force over this, N/m. */
+static double least_stiffness(const run *r) {
+  const domain *d = &r->d;
+  const int ns = d->ns, flat = d->mesh->dim == 2;
+  double least = HUGE_VAL;
+  for (int e = 0; e < d->mesh->n_elem; ++e) {
+    const int s = d->section_id[e];
+    const double *E = d->E + (size_t)(ns * ns) * (size_t)s;
+    double size =
+        flat && d->kin[s] != AXISYMMETRIC ? d->thickness[s] : d->mesh->size;
+    for (int c = 0; c < d->mesh->dim; ++c)
+      least = fmin(least, E[c * (ns + 1)] * size);
+  }
+  return least;
+}
+
+/* Way of the contact nodes in the step, generously, m. */
+static status find_reach(run *r) {
+  status st = OK;
+  double force = 0.0, way = 0.0, end = r->step->start + r->step->total;
+  TRY(load_forces(r->m, r->msh, r->step, end, r->now.F));
+  TRY(load_prescribed(r->m, r->msh, r->step, end, r->start, r->ud));
+  for (size_t k = 0; k < r->n_dof; ++k) {
+    force += fabs(r->now.F[k]);
+    way = fmax(way, fabs(r->old.u[k]));
+    if (r->fixed[k]) way = fmax(way, fabs(r->ud[k]));
+  }
+  r->reach.way = 2.0 * way + GENEROUS * force / least_stiffness(r);
+done:
+  return st;
+}
+
+/* The nodes within reach at the start or the end of the step. */
+static status choose_nodes(run *r, int n_motion) {
+  status st = OK;
+  double *gap = NULL;
+  r->reach.passes = 0;
+  if (!may_leave_out(r, n_motion)) return OK;
+  timer_enter(STAGE_SURFACE);
+  NEW(gap, r->n);
+  TRY(find_reach(r));
+  TRY(surface_gap(r->surface, &r->input, r->step->start + r->step->total, gap,
+                  NULL));
+  for (int i = 0; i < r->n; ++i) gap[i] = fmin(gap[i], r->gap[i]);
+  TRY(reach_choose(&r->reach, r->n, gap));
+  run_take_nodes(r);
+  TRY(run_room_for_part(r));
+done:
+  timer_leave(STAGE_SURFACE);
+  memory_free(gap);
+  return st;
+}
+
+static status report_ready(run *r) {
+  if (r->sink->ready == NULL) return OK;
+  setup_facts facts = {.info = condensed_info(r->c),
+                       .condition = condensed_condition(r->c),
+                       .digits = condensed_digits(r->c),
+                       .floating = condensed_floating(r->c),
+                       .n_contact_node = r->n,
+                       .n_left_out = r->n - reach_count(&r->reach, r->n),
+                       .average_entries = limit_average_entries(r)};
+  return r->sink->ready(r->sink->ctx, &facts, r->surface);
+}
+
+/* Forces, stiffness and displacements are squared and multiplied. */
+static const double LEAST = 0x1p-480, MOST = 0x1p480;
+static int in_range(double x) { return x == 0.0 || (x > LEAST && x < MOST); }
+
+static status check_range(const run *r) {
+  status st = OK;
+  double least = HUGE_VAL, most = 0.0, width = 1.0;
+  for (int e = 0; e < r->msh->n_elem; ++e) {
+    least = fmin(least, run_elasticity(r, e)[0]);
+    most = fmax(most, run_elasticity(r, e)[0]);
+  }
+  for (int k = 2; k < r->msh->dim; ++k) width *= r->msh->size;
+  if (!in_range(r->step_load) || !in_range(least) || !in_range(most) ||
+      !in_range(r->step_load / (least * width)))
+    FAIL(
+        ERR_DECK,
+        "step %d: the largest nodal load is %.3g, the moduli are %.3g to %.3g: "
+        "their squares leave the range of the numbers; use other units",
+        run_step_id(r) + 1, r->step_load, least, most);
+done:
+  return st;
+}
+
+/* The first load of the run that is in range, at the increments of its steps:
+ * a step in which next to nothing is left, or not yet there, goes with it. */
+static status find_load_of_run(run *r) {
+  status st = OK;
+  for (int k = 0; k < r->m->n_step; ++k) {
+    const step *s = r->m->steps + k;
+    const double dt = s->dt > 0.0 ? s->dt : s->total;
+    for (int i = 1; (i - 0.5) * dt < s->total; ++i) {
+      TRY(load_forces(r->m, r->msh, s, s->start + i * dt, r->now.F));
+      r->step_load = fmax(r->step_load, increment_free_load(r, r->now.F));
+      if (r->step_load > LEAST) goto done;
+    }
+  }
+done:
+  return st;
+}
+
+/* The largest nodal load at the ends of the step. */
+static status find_load(run *r) {
+  status st = OK;
+  const double end = r->step->start + r->step->total;
+  TRY(load_forces(r->m, r->msh, r->step, end, r->now.F));
+  r->step_load =
+      fmax(increment_free_load(r, r->old.F), increment_free_load(r, r->now.F));
+  if (r->step_load > 0.0 && r->step_load <= LEAST) TRY(find_load_of_run(r));
+  TRY(check_range(r));
+done:
+  return st;
+}
+
+status run_prepare(run *r) {
+  status st = OK;
+  int fresh = 0, motions = 0;
+  unsigned char *fixed = NULL;
+  NEW(fixed, r->n_dof);
+  load_fixed(r->m, r->msh, r->step, fixed);
+  memcpy(r->start, r->old.u, r->n_dof * sizeof *r->start);
+  r->limit_known = 0;
+  known_rate_forget(&r->rate);
+  for (int i = 0; i < r->m->n_contact && r->loops != NULL; ++i)
+    r->loops[i].start_end = r->loops[i].friction_end;
+  if (r->elastic.c == NULL || memcmp(fixed, r->fixed, r->n_dof) != 0) {
+    memcpy(r->fixed, fixed, r->n_dof);
+    if (r->m->effects & EFFECT_CONTACT)
+      TRY(run_build_surface(r));
+    else
+      run_free_surface(r);
+    r->d.surface = r->surface;
+    TRY(run_check_supports(r, &motions));
+    TRY(choose_nodes(r, motions));
+    r->n_before = r->n_row;
+    r->n_told = reach_count(&r->reach, r->n);
+    if (r->sink->foresee != NULL)
+      TRY(r->sink->foresee(r->sink->ctx, r->n_told));
+    TRY(run_renew_elastic(r));
+    r->c = r->elastic.c;
+    fresh = 1;
+  }
+  TRY(find_load(r));
+  TRY(limit_average(r));
+  if (fresh) TRY(report_ready(r));
+  contact_solver_free(r->elastic.solver);
+  r->elastic.solver = NULL;
+  visco_new_solvers(r);
+  r->tol = r->step->solver.tol;
+  TRY(run_use(r, &r->elastic));
+done:
+  memory_free(fixed);
+  return st;
+}

@@ -1,0 +1,144 @@
+/*
+ * A run before its first step: arrays that stay as long as the run, from the
+ * model and the mesh.
+ */
+#include "run/setup/setup.h"
+
+#include "base/memory.h"
+
+static status new_equilibrium(const run *r, equilibrium *e) {
+  status st = OK;
+  NEW(e->u, r->n_dof);
+  NEW(e->F, r->n_dof);
+  NEW(e->reaction, r->n_dof);
+done:
+  return st;
+}
+
+static void free_equilibrium(equilibrium *e) {
+  memory_free(e->u);
+  memory_free(e->F);
+  memory_free(e->reaction);
+  memory_free(e->uc);
+  memory_free(e->rc);
+  memory_free(e->motion);
+  memory_free(e->temperature);
+  memory_free(e->thermal);
+  memory_free(e->e0);
+  memory_free(e->elastic);
+  memory_free(e->sigma);
+}
+
+/* Clusters of the sections with FORMULATION=AVERAGED. What may change its
+ * moduli is averaged as what flows. */
+static status new_clusters(run *r) {
+  status st = OK;
+  const model *m = r->m;
+  double *share = NULL;
+  int averaged = 0;
+  for (int i = 0; i < m->n_section; ++i) averaged |= m->sections[i].averaged;
+  if (!averaged) return OK;
+  timer_enter(STAGE_CLUSTER);
+  NEW(share, m->n_section);
+  for (int i = 0; i < m->n_section; ++i) {
+    const section *s = &m->sections[i];
+    const material *mat = &m->materials[s->material_id];
+    if (s->averaged && s->kin != PLANE_STRESS)
+      share[i] = cluster_share(
+          m->ns, r->moduli.E + (size_t)(m->ns * m->ns) * (size_t)i,
+          mat->law.ops != NULL || mat->elastic.n > 1);
+  }
+  const cluster_input in = {r->msh, m->sections[0].kin == AXISYMMETRIC,
+                            m->n_section, m->elem_section, share};
+  TRY(cluster_new(&in, &r->d.cluster));
+done:
+  timer_leave(STAGE_CLUSTER);
+  memory_free(share);
+  return st;
+}
+
+static status new_pairs(run *r) {
+  status st = OK;
+  const model *m = r->m;
+  const mesh *msh = r->msh;
+  NEW(r->pairs, m->n_contact);
+  NEW(r->node_fixed, msh->n_node);
+  NEW(r->face_weight, msh->n_face);
+  NEW(r->totals, m->n_contact);
+  NEW(r->told.touched, m->n_contact);
+  if (model_has_axis(m)) NEW(r->torque, m->n_contact);
+  if (model_prints(m, PRINT_LOOP)) NEW(r->loops, m->n_contact);
+  for (int i = 0; i < m->n_contact; ++i) {
+    const contact *c = &m->contacts[i];
+    r->pairs[i].name = c->name;
+    r->pairs[i].group = &msh->group[c->group_id];
+    r->pairs[i].support = &m->obstacles[c->obstacle_id];
+    for (int k = 0; k < m->n_step; ++k) {
+      const friction_ops *law = friction_in_force(m, k, i)->law;
+      r->pairs[i].friction |= law != NULL && law->value_name != NULL;
+    }
+    r->pairs[i].obstacle_normal = c->obstacle_normal;
+    r->pairs[i].at = c->at;
+  }
+  for (int i = 0; i < msh->n_face; ++i)
+    r->face_weight[i] =
+        m->sections[m->elem_section[msh->face_elem[i]]].thickness;
+  r->input.mesh = msh;
+  r->input.n_pair = m->n_contact;
+  r->input.pairs = r->pairs;
+  r->input.fixed = r->node_fixed;
+  r->input.face_weight = r->face_weight;
+  r->input.axisymmetric = m->sections[0].kin == AXISYMMETRIC;
+done:
+  return st;
+}
+
+status run_new(run *r) {
+  status st = OK;
+  r->n_dof = (size_t)r->msh->dim * (size_t)r->msh->n_node;
+  r->known_key = RUN_NO_KEY;
+  r->d.mesh = r->msh;
+  NEW(r->fixed, r->n_dof);
+  r->d.fixed = r->fixed;
+  TRY(new_equilibrium(r, &r->old));
+  TRY(new_equilibrium(r, &r->now));
+  NEW(r->ud, r->n_dof);
+  NEW(r->start, r->n_dof);
+  TRY(strains_new(r));
+  TRY(new_clusters(r));
+  if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
+  if (r->m->effects & EFFECT_MESH_ERROR) NEW(r->elem_error, r->msh->n_elem);
+  if (r->m->effects &
+      (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR | EFFECT_REFERENCE))
+    NEW(r->stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  if (r->m->effects & EFFECT_STRESS)
+    NEW(r->strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+done:
+  return st;
+}
+
+void run_free(run *r) {
+  start_report_free(&r->first);
+  run_free_surface(r);
+  space_recovery_free(r->recovery);
+  memory_free(r->elem_error);
+  free_equilibrium(&r->old);
+  free_equilibrium(&r->now);
+  strains_free(r);
+  theory_free(r->theory);
+  moduli_free(&r->moduli);
+  cluster_free(r->d.cluster);
+  memory_free(r->fixed);
+  memory_free(r->pairs);
+  memory_free(r->node_fixed);
+  memory_free(r->face_weight);
+  memory_free(r->totals);
+  memory_free(r->told.touched);
+  memory_free(r->torque);
+  memory_free(r->loops);
+  memory_free(r->zones);
+  memory_free(r->ud);
+  memory_free(r->start);
+  memory_free(r->strain);
+  memory_free(r->stress);
+}

@@ -1,0 +1,152 @@
+/*
+ * The contact surface of a step: made anew where the supports change, with the
+ * forces and displacements of the old surface in the frames of the new one.
+ */
+#include "run/setup/setup.h"
+
+#include "base/memory.h"
+
+void run_free_surface(run *r) {
+  run_forget_estimates(r);
+  matrices_free(&r->elastic);
+  visco_forget(r);
+  surface_free(r->surface);
+  r->solver = NULL;
+  r->c = NULL;
+  r->surface = NULL;
+  double **owned[] = {
+      &r->f,        &r->f_load,   &r->f_before, &r->gap,        &r->side_gap,
+      &r->ut0,      &r->open_gap, &r->slip,     &r->g,          &r->old.uc,
+      &r->old.rc,   &r->now.uc,   &r->now.rc,   &r->old.motion, &r->now.motion,
+      &r->distance, &r->row[0],   &r->row[1]};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) {
+    memory_free(*owned[i]);
+    *owned[i] = NULL;
+  }
+  memory_free(r->contact);
+  r->contact = NULL;
+  reach_free(&r->reach);
+  reach_part_free(&r->part);
+  run_take_nodes(r);
+  limit_free(r);
+  forms_free(r->forms);
+  r->forms = NULL;
+  path_restart(r);
+}
+
+static void node_bits(run *r) {
+  int dim = r->msh->dim;
+  for (int i = 0; i < r->msh->n_node; ++i) {
+    unsigned bits = 0;
+    for (int c = 0; c < dim; ++c)
+      bits |= (unsigned)(r->fixed[dim * i + c] != 0) << c;
+    r->node_fixed[i] = (unsigned char)bits;
+  }
+}
+
+static status new_contact_arrays(run *r) {
+  status st = OK;
+  int tangents = r->n * (r->msh->dim - 1);
+  NEW(r->f, r->n_row);
+  NEW(r->f_load, r->n_row);
+  NEW(r->f_before, r->n_row);
+  NEW(r->gap, r->n);
+  NEW(r->old.uc, r->n_c);
+  NEW(r->now.uc, r->n_c);
+  NEW(r->old.rc, r->n_c);
+  NEW(r->now.rc, r->n_c);
+  NEW(r->old.motion, r->n_c);
+  NEW(r->now.motion, r->n_c);
+  NEW(r->open_gap, r->n);
+  NEW(r->contact, r->n);
+  if (r->rows > 1) NEW(r->side_gap, tangents);
+  NEW(r->slip, tangents);
+  if (r->m->effects & EFFECT_FRICTION) {
+    NEW(r->ut0, tangents);
+    NEW(r->g, r->n);
+    NEW(r->distance, r->n);
+  }
+done:
+  return st;
+}
+
+/* a = frame u, and the forces dual to it: r = basis' force (equal for an
+ * orthonormal frame). Brings the old state into the frames of a new surface. */
+static void old_state_to_frames(run *r, const double *force) {
+  const contact_surface *s = r->surface;
+  int dim = s->dim;
+  for (int i = 0; i < s->n; ++i)
+    for (int a = 0; a < dim; ++a) {
+      double u = 0.0, rc = 0.0;
+      for (int c = 0; c < dim; ++c) {
+        size_t dof = (size_t)(dim * s->node_id[i] + c);
+        u += s->frame[dim * dim * i + dim * a + c] * r->old.u[dof];
+        rc += s->basis[dim * dim * i + dim * a + c] * force[dof];
+      }
+      r->old.uc[dim * i + a] = u;
+      r->old.rc[dim * i + a] = rc;
+    }
+}
+
+/* Contact forces of the old surface in global components, [dim*n_node]. */
+static void forces_to_global(const run *r, double *force) {
+  const contact_surface *s = r->surface;
+  if (s == NULL) return;
+  int dim = s->dim;
+  for (int i = 0; i < s->n; ++i)
+    for (int c = 0; c < dim; ++c)
+      for (int a = 0; a < dim; ++a)
+        force[dim * s->node_id[i] + c] +=
+            s->frame[dim * dim * i + dim * a + c] * r->old.rc[dim * i + a];
+}
+
+/* Slip so far of the nodes that stay in contact, [n_node]: to_nodes 1 from
+ * r->distance, 0 back. */
+static void carry_distance(run *r, int to_nodes, double *at_node) {
+  for (int i = 0; i < r->n && r->distance != NULL; ++i) {
+    double *node = &at_node[r->surface->node_id[i]];
+    if (to_nodes)
+      *node = r->distance[i];
+    else
+      r->distance[i] = *node;
+  }
+}
+
+/* A node that supports take out of the contact leaves its force to them. */
+static void leave_forces(run *r, double *force) {
+  int dim = r->msh->dim;
+  for (int i = 0; i < r->n; ++i)
+    for (int c = 0; c < dim; ++c) force[dim * r->surface->node_id[i] + c] = 0.0;
+  for (size_t k = 0; k < r->n_dof; ++k) r->old.reaction[k] += force[k];
+}
+
+status run_build_surface(run *r) {
+  status st = OK;
+  double *force = NULL, *distance = NULL;
+  NEW(force, r->n_dof);
+  NEW(distance, r->msh->n_node);
+  forces_to_global(r, force);
+  carry_distance(r, 1, distance);
+  run_free_surface(r);
+  timer_enter(STAGE_SURFACE);
+  node_bits(r);
+  st = surface_build(&r->input, r->m->log, &r->surface);
+  timer_leave(STAGE_SURFACE);
+  TRY(st);
+  r->n = r->surface->n;
+  r->n_c = r->msh->dim * r->n;
+  r->d.rows = r->rows = r->m->effects & EFFECT_TANGENTS ? r->msh->dim : 1;
+  r->n_row = r->rows * r->n;
+  TRY(new_contact_arrays(r));
+  TRY(run_room_for_part(r));
+  TRY(forms_new(r));
+  old_state_to_frames(r, force);
+  leave_forces(r, force);
+  carry_distance(r, 0, distance);
+  TRY(surface_gap(r->surface, &r->input, r->old.t, r->gap, r->side_gap));
+  surface_drift(r->surface, &r->input, 0.0, r->old.t, r->old.motion);
+done:
+  memory_free(force);
+  memory_free(distance);
+  return st;
+}

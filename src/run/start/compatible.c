@@ -1,0 +1,147 @@
+/*
+ * Is the initial state compatible? The residual of (3.8) node by node, in N.
+ */
+#include "run/start/start.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A start from the end of another run carries its solver's tolerance; one from
+ * expressions that equilibrium allows carries rounding. */
+const double start_tolerance = 1e-6;
+
+const char *defect_text(defect_kind kind) {
+  static const char *const text[] = {
+      "none", "not in balance with the loads",
+      "not at the place of its support", "unilateral condition not met",
+      "tangential force above the sliding limit"};
+  return text[kind];
+}
+
+void start_stiffness(const domain *d, double *diagonal) {
+  double B[6 * 12];
+  int dim = d->mesh->dim, ns = d->ns, n_u = dim * (dim + 1);
+  memset(diagonal, 0, (size_t)dim * (size_t)d->mesh->n_node * sizeof *diagonal);
+  for (int e = 0; e < d->mesh->n_elem; ++e) {
+    const double *E = d->E + (size_t)(ns * ns) * (size_t)d->section_id[e];
+    double w = element_strain(d, e, B);
+    for (int k = 0; k < n_u; ++k) {
+      const double *b = B + ns * k;
+      double sum = 0.0;
+      for (int i = 0; i < ns; ++i)
+        for (int j = 0; j < ns; ++j) sum += b[i] * E[i + ns * j] * b[j];
+      int node = d->mesh->elem[(dim + 1) * e + k / dim];
+      diagonal[dim * node + k % dim] += w * sum;
+    }
+  }
+}
+
+static void add_defect(start_report *report, int node_id, double size,
+                       defect_kind kind) {
+  if (!(size > report->defect[node_id])) return;
+  report->defect[node_id] = size;
+  report->kind[node_id] = (unsigned char)kind;
+}
+
+/* Contact forces of the start: r = basis' (K u - F); a held unknown has none,
+ * its force is the support's. */
+static void find_contact_forces(const start_input *in, double *rc) {
+  const contact_surface *s = in->surface;
+  int dim = s->dim;
+  for (int i = 0; i < s->n; ++i)
+    for (int a = 0; a < dim; ++a) {
+      double r = 0.0;
+      for (int c = 0; c < dim; ++c)
+        r += s->basis[dim * dim * i + dim * a + c] *
+             in->R[dim * s->node_id[i] + c];
+      rc[dim * i + a] = s->held[dim * i + a] ? 0.0 : r;
+    }
+}
+
+/* Remainder of K u - F at each component: free ones must have none. */
+static void test_balance(const start_input *in, const double *rc,
+                         double *reaction, start_report *report) {
+  int dim = in->mesh->dim;
+  size_t n_dof = (size_t)dim * (size_t)in->mesh->n_node;
+  memcpy(reaction, in->R, n_dof * sizeof *reaction);
+  for (int i = 0; in->surface != NULL && i < in->surface->n; ++i)
+    for (int c = 0; c < dim; ++c)
+      for (int a = 0; a < dim; ++a)
+        reaction[dim * in->surface->node_id[i] + c] -=
+            in->surface->frame[dim * dim * i + dim * a + c] * rc[dim * i + a];
+  for (size_t k = 0; k < n_dof; ++k) {
+    int node_id = (int)(k / (size_t)dim);
+    if (in->fixed[k]) {
+      add_defect(report, node_id, in->stiffness[k] * fabs(in->u[k] - in->ud[k]),
+                 DEFECT_SUPPORT);
+      continue;
+    }
+    add_defect(report, node_id, fabs(reaction[k]), DEFECT_INTERIOR);
+    reaction[k] = 0.0;
+  }
+}
+
+/* max(r_n, c (u_n - gap)), or the distance to the given force. */
+static double normal_defect(const start_input *in, const double *rc, int i) {
+  const contact_problem *cp = in->cp;
+  size_t k = (size_t)in->surface->dim * (size_t)i;
+  double c = cp->A[(size_t)cp->dim * (size_t)i * ((size_t)cp->m + 1)];
+  if (in->given != NULL && in->given[i] >= 0.0)
+    return fabs(rc[k] + in->given[i]);
+  return fabs(fmax(rc[k], c * (in->uc[k] - cp->gap[i])));
+}
+
+/* The same for the second obstacle of a corner. */
+static double side_defect(const contact_problem *cp, const double *uc,
+                          const double *rc, int i) {
+  double worst = 0.0;
+  for (int a = 1; a < cp->dim; ++a) {
+    size_t k = (size_t)(cp->dim * i + a);
+    double bound = cp->side_gap[(cp->dim - 1) * i + a - 1];
+    double c = cp->A[k * ((size_t)cp->m + 1)], part = fabs(rc[k]);
+    if (bound < HUGE_VAL) part = fabs(fmax(rc[k], c * (uc[k] - bound)));
+    worst = fmax(worst, part);
+  }
+  return worst;
+}
+
+/* |r_t| - g where it is positive. */
+static double sliding_defect(const start_input *in, const double *rc, int i) {
+  int dim = in->surface->dim;
+  double size = 0.0;
+  for (int a = 1; a < dim; ++a) size = hypot(size, rc[dim * i + a]);
+  return fmax(0.0, size - contact_node_limit(in->cp, rc, i));
+}
+
+static void test_contact(const start_input *in, const double *rc,
+                         start_report *report) {
+  const contact_problem *cp = in->cp;
+  for (int i = 0; i < cp->n; ++i) {
+    int node_id = in->surface->node_id[i];
+    int corner = surface_is_corner(in->surface, i);
+    add_defect(report, node_id, normal_defect(in, rc, i), DEFECT_NORMAL);
+    if (corner && cp->side_gap != NULL)
+      add_defect(report, node_id, side_defect(cp, in->uc, rc, i),
+                 DEFECT_NORMAL);
+    else
+      add_defect(report, node_id, sliding_defect(in, rc, i), DEFECT_SLIDING);
+  }
+}
+
+void start_test(const start_input *in, double *rc, double *reaction,
+                start_report *report) {
+  int n = in->mesh->n_node;
+  if (in->surface != NULL) find_contact_forces(in, rc);
+  test_balance(in, rc, reaction, report);
+  if (in->surface != NULL) test_contact(in, rc, report);
+  report->scale = in->load;
+  for (int i = 0; i < n; ++i)
+    if (report->defect[i] > report->worst) {
+      report->worst = report->defect[i];
+      report->node_id = i;
+    }
+  report->scale = fmax(report->scale, report->worst);
+  report->ratio = report->scale > 0.0 ? report->worst / report->scale : 0.0;
+  for (int i = 0; i < n; ++i)
+    report->n_bad += report->defect[i] > start_tolerance * report->scale;
+}

@@ -1,0 +1,286 @@
+/* Springs that hold a body while its contact is sought (anchor.h). */
+#include "solver/choice/anchor.h"
+
+#include "base/memory.h"
+#include "solver/choice/form.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+  MODES = 6, /* of a body in space; 3 in the plane                        */
+  PASSES = 200,
+  LATE = 3,     /* passes at the tolerance, for the resultant                 */
+  DRIFT = 3,    /* passes with the same move                                  */
+  PATIENCE = 20 /* passes without a lower residual                            */
+};
+static const double NULL_PIVOT = 0x1p-44; /* -, times m: of the largest pivot */
+static const double SOFT = 0x1p-5;        /* -, k of the mean diagonal over n */
+static const double FINEST = 0.1; /* -, of the tolerance: a pass asks no more */
+static const double PROGRESS = 0.9; /* -, a lower residual                    */
+static const double STEADY = 0x1p-7; /* -, of a step of a drift               */
+
+void anchor_free(anchor *an) {
+  memory_free(an->R);
+  memory_free(an->A);
+  memory_free(an->W);
+  memory_free(an->f);
+  memory_free(an->a);
+  memory_free(an->step);
+  *an = (anchor){0};
+}
+
+/* ---- the modes ----------------------------------------------------------- */
+
+/* R orthonormal, by Gram and Schmidt, twice for rounding. */
+static void orthonormalise(int m, int n, double *R) {
+  for (int j = 0; j < n; ++j) {
+    double *v = R + (size_t)j * (size_t)m;
+    for (int k = 0; k < 2 * j; ++k) {
+      const double *q = R + (size_t)(k % j) * (size_t)m;
+      cblas_daxpy(m, -cblas_ddot(m, q, 1, v, 1), q, 1, v, 1);
+    }
+    cblas_dscal(m, 1.0 / cblas_dnrm2(m, v, 1), v, 1);
+  }
+}
+
+status anchor_modes(const contact_problem *cp, anchor *an) {
+  status st = OK;
+  int *pivot = NULL, m = cp->m, rank = 0;
+  double *work = NULL, *L = NULL, power = dense_power(m, cp->A);
+  size_t size = (size_t)m * (size_t)m;
+  if (an->R != NULL) return OK;
+  NEW(pivot, m);
+  NEW(work, 2 * m);
+  NEW(L, size);
+  for (size_t i = 0; i < size; ++i) L[i] = power * cp->A[i];
+  LAPACKE_dpstrf_work(LAPACK_COL_MAJOR, 'L', m, L, m, pivot, &rank,
+                      m * NULL_PIVOT, work);
+  an->n_mode = m - rank;
+  NEW(an->R, m * an->n_mode);
+  NEW(an->a, an->n_mode);
+  NEW(an->step, an->n_mode);
+  dense_null(m, rank, L, pivot, work, an->R);
+  orthonormalise(m, an->n_mode, an->R);
+done:
+  memory_free(pivot);
+  memory_free(work);
+  memory_free(L);
+  return st;
+}
+
+/* A_s and its inverse. */
+static status hold(const contact_problem *cp, anchor *an) {
+  status st = OK;
+  dense d = {0};
+  int m = cp->m;
+  size_t size = (size_t)m * (size_t)m;
+  TRY(dense_new(m, &d));
+  memcpy(an->A, cp->A, size * sizeof *an->A);
+  for (int k = 0; k < an->n_mode; ++k) {
+    const double *v = an->R + (size_t)k * (size_t)m;
+    cblas_dger(CblasColMajor, m, m, an->spring, v, 1, v, 1, an->A, m);
+  }
+  memcpy(d.a, an->A, size * sizeof *d.a);
+  an->missing = !form_invert(m, &d);
+  memcpy(an->W, d.a, size * sizeof *d.a);
+done:
+  dense_free(&d);
+  return st;
+}
+
+status anchor_make(const contact_problem *cp, anchor *an) {
+  status st = OK;
+  size_t m = (size_t)cp->m;
+  if (an->missing || an->W != NULL) return OK;
+  an->missing = cp->A == NULL || cp->n == 0;
+  if (an->missing) return OK;
+  NEW(an->A, m * m);
+  NEW(an->W, m * m);
+  NEW(an->f, m);
+  TRY(anchor_modes(cp, an));
+  for (size_t i = 0; i < m; ++i) an->spring += cp->A[i * (m + 1)] / (double)m;
+  an->spring *= SOFT / cp->n;
+  TRY(hold(cp, an));
+done:
+  return st;
+}
+
+/* ---- the passes ---------------------------------------------------------- */
+
+typedef struct passes {
+  const anchor *an;
+  const contact_problem *cp;
+  double load;       /* largest |f|, N                                        */
+  double lowest;     /* residual at the last progress                         */
+  int since, steady; /* passes since; with the same move                      */
+  int closed;        /* 1: has been put onto its obstacles                    */
+  int late;          /* passes at the tolerance                               */
+} passes;
+
+/* The place of the body, R'u. */
+static void place(const anchor *an, int m, const double *u, double *a) {
+  for (int k = 0; k < an->n_mode; ++k)
+    a[k] = cblas_ddot(m, an->R + (size_t)k * (size_t)m, 1, u, 1);
+}
+
+/* What the last move is for unknown i, m. */
+static double move_of(const passes *p, int i) {
+  double d = 0.0;
+  for (int k = 0; k < p->an->n_mode; ++k)
+    d += p->an->step[k] * p->an->R[(size_t)i + (size_t)p->cp->m * (size_t)k];
+  return d;
+}
+
+/* How often the last move goes into the way from u to the nearest bound; at
+ * least 1, 1 if it leads to none. */
+static double moves_to_bound(const passes *p, const double *u) {
+  double moves = HUGE_VAL, most = 0.0;
+  for (int i = 0; i < p->cp->m; ++i) most = fmax(most, fabs(move_of(p, i)));
+  for (int i = 0; i < p->cp->m; ++i) {
+    double d = move_of(p, i), bound = contact_bound(p->cp, i);
+    if (bound < HUGE_VAL && d > STEADY * most)
+      moves = fmin(moves, (bound - u[i]) / d);
+  }
+  return moves > 1.0 && moves < HUGE_VAL ? moves : 1.0;
+}
+
+/* The place nearest to all gaps closed and all nodes where they stick. */
+static void close_gaps(passes *p) {
+  double *d = p->an->f;
+  for (int i = 0; i < p->cp->m; ++i) {
+    double bound = contact_bound(p->cp, i);
+    d[i] = bound < HUGE_VAL ? bound : contact_stick(p->cp, i);
+  }
+  place(p->an, p->cp->m, d, p->an->a);
+}
+
+/* A body on its way to an obstacle is put onto it, the next time onto the first
+ * bound on its way. */
+static void fly(passes *p, const double *u) {
+  double moves = moves_to_bound(p, u);
+  if (!(moves > 1.0)) return;
+  if (!p->closed) close_gaps(p);
+  for (int k = 0; k < p->an->n_mode && p->closed; ++k)
+    p->an->a[k] += (moves - 1.0) * p->an->step[k];
+  p->closed = 1;
+}
+
+/* The springs follow the body. */
+static void follow(passes *p, const double *u) {
+  const anchor *an = p->an;
+  double apart = 0.0, size = 0.0;
+  for (int k = 0; k < an->n_mode; ++k) {
+    double at =
+        cblas_ddot(p->cp->m, an->R + (size_t)k * (size_t)p->cp->m, 1, u, 1);
+    double step = at - an->a[k], turn = step - an->step[k];
+    apart += turn * turn;
+    size += step * step;
+    an->step[k] = step;
+    an->a[k] = at;
+  }
+  p->steady = sqrt(apart) <= STEADY * sqrt(size) ? p->steady + 1 : 0;
+}
+
+/* Resultant the springs carried in the last pass, over the load. */
+static double carried(const passes *p) {
+  double sum = 0.0;
+  for (int k = 0; k < p->an->n_mode; ++k)
+    sum += p->an->step[k] * p->an->step[k];
+  return sum > 0.0 ? p->an->spring * sqrt(sum * p->cp->m) / p->load : 0.0;
+}
+
+/* Most that friction can do against the last move, N m. */
+static double friction_against(const passes *p, const double *r) {
+  const contact_problem *cp = p->cp;
+  double sum = 0.0;
+  for (int i = 0; i < cp->n; ++i) {
+    double way = 0.0;
+    for (int k = 1; k < cp->dim; ++k)
+      way = hypot(way, move_of(p, i * cp->dim + k));
+    sum += contact_node_limit(cp, r, i) * way;
+  }
+  return sum;
+}
+
+/* 1: the last move is one that no obstacle stops and that the load drives
+ * against friction. */
+static int drifts(const passes *p, const double *r) {
+  double work = 0.0, into = 0.0, most = 0.0;
+  for (int i = 0; i < p->cp->m; ++i) {
+    double d = move_of(p, i);
+    work += p->cp->f[i] * d;
+    most = fmax(most, fabs(d));
+    if (contact_bound(p->cp, i) < HUGE_VAL) into = fmax(into, d);
+  }
+  double held = friction_against(p, r);
+  return into <= STEADY * most && work > 0.0 && work >= (1.0 - STEADY) * held;
+}
+
+/* RUNNING: another pass. */
+static outcome judge(passes *p, double tol, const double *r, solver_report *rep,
+                     outcome inner) {
+  if (isnan(rep->residual)) return STOPPED_NAN;
+  if (rep->residual <= tol && (carried(p) <= tol || ++p->late > LATE))
+    return CONVERGED;
+  ++p->since;
+  if (rep->residual < PROGRESS * p->lowest) {
+    p->lowest = rep->residual;
+    p->since = 0;
+  }
+  if (p->steady >= DRIFT && p->since >= DRIFT && drifts(p, r))
+    return STOPPED_RAY;
+  if (p->since <= PATIENCE) return RUNNING;
+  return inner < 0 ? inner : STOPPED_STAGNATION;
+}
+
+/* The problem with springs at a. */
+static contact_problem anchored(const passes *p) {
+  const anchor *an = p->an;
+  contact_problem own = *p->cp;
+  memcpy(an->f, p->cp->f, (size_t)own.m * sizeof *an->f);
+  for (int k = 0; k < an->n_mode; ++k)
+    cblas_daxpy(own.m, an->spring * p->an->a[k],
+                an->R + (size_t)k * (size_t)own.m, 1, an->f, 1);
+  own.A = an->A;
+  own.W = an->W;
+  own.f = an->f;
+  own.floating = 0;
+  return own;
+}
+
+status anchor_solve(const anchor *an, const contact_problem *cp,
+                    const anchored_solver *inner, const solver_control *control,
+                    double *u, double *r, solver_report *rep) {
+  status st = OK;
+  passes p = {.an = an, .cp = cp, .lowest = HUGE_VAL};
+  solver_control own = *control;
+  *rep = (solver_report){.outcome = RUNNING, .residual = 1.0};
+  place(an, cp->m, u, an->a);
+  memset(an->step, 0, (size_t)an->n_mode * sizeof *an->step);
+  for (int i = 0; i < cp->m; ++i) p.load = fmax(p.load, fabs(cp->f[i]));
+  for (int k = 0; k < PASSES && rep->outcome == RUNNING; ++k) {
+    solver_report pass;
+    contact_problem held = anchored(&p);
+    if (control->max_iter > 0)
+      own.max_iter = control->max_iter - rep->iterations;
+    own.tol = fmax(FINEST * control->tol, fmin(1e-3, 1e-2 * rep->residual));
+    TRY(inner->solve(inner->ctx, &held, &own, u, r, &pass));
+    own.no_restart = control->no_restart || pass.outcome < 0;
+    rep->iterations += pass.iterations;
+    rep->limit_updates += pass.limit_updates;
+    rep->rate = pass.rate;
+    rep->residual = contact_residual(cp, u, r);
+    follow(&p, u);
+    rep->outcome = judge(&p, control->tol, r, rep, pass.outcome);
+    if (rep->outcome == RUNNING && p.steady > 0) fly(&p, u);
+    if (rep->outcome == RUNNING && control->max_iter > 0 &&
+        rep->iterations >= control->max_iter)
+      rep->outcome = STOPPED_ITERATIONS;
+  }
+  if (rep->outcome == RUNNING) rep->outcome = STOPPED_ITERATIONS;
+done:
+  return st;
+}

@@ -1,0 +1,311 @@
+/* Whether a problem without an answer has none (proof.h). */
+#include "solver/choice/proof.h"
+
+#include "base/memory.h"
+#include "solver/lcp/lcp.h"
+#include "solver/lcp/nonnegative.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <string.h>
+
+enum { PASSES = 400 /* columns tried */ };
+static const double DEFECT = 0x1p-26;   /* -, force of a motion without any   */
+static const double ROUNDING = 0x1p-44; /* -, of a sum, of its terms          */
+static const double MARGIN = 0x1p-40;   /* -, of the work                     */
+static const double BALANCED = 0x1p-36; /* -, of the load                     */
+
+/* ---- the inequality ------------------------------------------------------ */
+
+/* Length of the tangential part at a node that friction acts on; 0 else. */
+static double slip_of(const contact_problem *cp, const double *v, int node_id) {
+  double sum = 0.0;
+  if (cp->g0 == NULL || contact_has_side(cp, node_id)) return 0.0;
+  for (int k = 1; k < cp->dim; ++k) {
+    int dof = node_id * cp->dim + k;
+    if (!contact_held(cp, dof)) sum += v[dof] * v[dof];
+  }
+  return sqrt(sum);
+}
+
+/* slip[n] of all nodes. */
+static void set_slip(const contact_problem *cp, const double *v, double *slip) {
+  for (int i = 0; i < cp->n; ++i) slip[i] = slip_of(cp, v, i);
+}
+
+/* c of every unknown with a bound, 0 at the others. c[m], slip[n] */
+static void set_growth(const contact_problem *cp, const double *v,
+                       const double *slip, double *c) {
+  const sparse_rows *B = cp->B;
+  for (int dof = 0; dof < cp->m; ++dof)
+    c[dof] = contact_bound(cp, dof) < HUGE_VAL ? v[dof] : 0.0;
+  for (int i = 0; B != NULL && i < cp->n; ++i)
+    for (int k = B->start[i]; k < B->start[i + 1]; ++k)
+      c[B->col[k] * cp->dim] += B->val[k] * slip[i];
+}
+
+static double held_by_limit(const contact_problem *cp, const double *slip) {
+  double h = 0.0;
+  for (int i = 0; cp->g0 != NULL && i < cp->n; ++i) h += cp->g0[i] * slip[i];
+  return h;
+}
+
+/* Largest c, at least 0; NaN: a number is missing. v[m]; sets c[m], slip[n]. */
+static double largest_growth(const contact_problem *cp, const double *v,
+                             double *c, double *slip) {
+  double most = 0.0;
+  set_slip(cp, v, slip);
+  set_growth(cp, v, slip, c);
+  for (int dof = 0; dof < cp->m; ++dof)
+    if (!(c[dof] <= most)) most = c[dof];
+  return most;
+}
+
+/* Largest force that A v should not have, of its terms; room[m]. */
+static double force_of(const contact_problem *cp, const double *v,
+                       double *room) {
+  double force = 0.0, size = 0.0;
+  contact_product(cp->m, cp->A, v, room);
+  for (size_t i = 0, m = (size_t)cp->m; i < m; ++i) {
+    force = fmax(force, fabs(room[i]));
+    size = fmax(size, cp->A[i * m + i] * fabs(v[i]));
+  }
+  return force > 0.0 ? force / size : 0.0;
+}
+
+static int motion_is_proof(const contact_problem *cp, const double *v,
+                           double *room) {
+  double work = 0.0, terms = 0.0, most = 0.0, *slip = room + cp->m;
+  if (!cp->floating || !(force_of(cp, v, room) <= DEFECT)) return 0;
+  for (int i = 0; i < cp->m; ++i) {
+    most = fmax(most, fabs(v[i]));
+    work += cp->f[i] * v[i];
+    terms += fabs(cp->f[i] * v[i]);
+  }
+  if (!(largest_growth(cp, v, room, slip) <= ROUNDING * most)) return 0;
+  return work - held_by_limit(cp, slip) > MARGIN * terms;
+}
+
+/* v = W'l with the sum of |terms| of its largest entry. */
+static double respond(const contact_problem *cp, const double *l, double *v) {
+  double most = 0.0;
+  for (size_t j = 0, m = (size_t)cp->m; j < m; ++j) {
+    const double *column = cp->W + j * m;
+    double terms = 0.0;
+    v[j] = 0.0;
+    for (size_t i = 0; i < m; ++i) {
+      v[j] += column[i] * l[i];
+      terms += fabs(column[i] * l[i]);
+    }
+    most = fmax(most, terms);
+  }
+  return most;
+}
+
+static int forces_are_proof(const contact_problem *cp, const double *l,
+                            double *room) {
+  double work = 0.0, terms = 0.0, *v = room, *c = room + cp->m;
+  for (int dof = 0; dof < cp->m; ++dof) {
+    double bound = contact_bound(cp, dof);
+    if (l[dof] < 0.0 || (l[dof] > 0.0 && !(bound < HUGE_VAL))) return 0;
+    if (!(l[dof] > 0.0)) continue;
+    work += l[dof] * (cp->f[dof] - bound);
+    terms += l[dof] * (fabs(cp->f[dof]) + fabs(bound));
+  }
+  double size = respond(cp, l, v);
+  double *slip = c + cp->m;
+  if (!(largest_growth(cp, v, c, slip) <= ROUNDING * cp->m * size)) return 0;
+  return work - held_by_limit(cp, slip) > MARGIN * terms;
+}
+
+int proof_holds(const contact_problem *cp, const double *v, double *room) {
+  return cp->A != NULL ? motion_is_proof(cp, v, room)
+                       : forces_are_proof(cp, v, room);
+}
+
+/* ---- stiffness: forces nearest to balance --------------------------------
+ *
+ * In the modes R the load b = R'f has to be a sum of columns: of a normal force
+ * with the friction it brings, any times; of the friction g0, once, for which
+ * an entry is added to all columns and to b (nonnegative.h). Where no column
+ * does work on the rest, it is v.
+ */
+
+typedef struct balance {
+  const contact_problem *cp;
+  const anchor *an;
+  nonnegative sum; /* rows: modes + 1                                        */
+  double unit;     /* of the limit g0                                        */
+  double *v, *c;   /* [m], [3*m] with slip                                   */
+  double *force;   /* [m]                                                    */
+  double *lift;    /* [m] set_lift                                           */
+} balance;
+
+static status balance_new(balance *s) {
+  status st = OK;
+  size_t m = (size_t)s->cp->m;
+  TRY(nonnegative_new(s->an->n_mode + 1, &s->sum));
+  NEW(s->v, m);
+  NEW(s->c, 3 * m);
+  NEW(s->force, m);
+  NEW(s->lift, m);
+done:
+  return st;
+}
+
+static void balance_free(balance *s) {
+  nonnegative_free(&s->sum);
+  memory_free(s->v);
+  memory_free(s->c);
+  memory_free(s->force);
+  memory_free(s->lift);
+}
+
+/* Friction of node i against v, times "limit", added to the force. */
+static void add_friction(const balance *s, int i, double limit) {
+  const contact_problem *cp = s->cp;
+  double slip = slip_of(cp, s->v, i);
+  for (int k = 1; k < cp->dim && slip > 0.0; ++k) {
+    int dof = i * cp->dim + k;
+    if (!contact_held(cp, dof)) s->force[dof] += limit * s->v[dof] / slip;
+  }
+}
+
+/* The normal force of an unknown with a bound, 1, and the friction it brings.
+ */
+static void set_push(const balance *s, int dof) {
+  const contact_problem *cp = s->cp;
+  s->force[dof] = 1.0;
+  for (int i = 0; cp->B != NULL && i < cp->n; ++i)
+    for (int e = cp->B->start[i]; e < cp->B->start[i + 1]; ++e)
+      if (cp->B->col[e] * cp->dim == dof) add_friction(s, i, cp->B->val[e]);
+}
+
+/* The column that does most on the rest, into to[rows]; its work, <= 0: none
+ * does. */
+static double best_column(balance *s, double *to) {
+  const contact_problem *cp = s->cp;
+  int m = cp->m, k = s->an->n_mode, best = 0;
+  double *slip = s->c + m;
+  cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, s->an->R, m, s->sum.rest,
+              1, 0.0, s->v, 1);
+  largest_growth(cp, s->v, s->c, slip);
+  for (int dof = 1; dof < m; ++dof)
+    if (s->c[dof] > s->c[best]) best = dof;
+  double of_limit = held_by_limit(cp, slip) / s->unit + s->sum.rest[k];
+  int limit = of_limit > s->c[best];
+  memset(s->force, 0, (size_t)m * sizeof *s->force);
+  if (!limit) set_push(s, best);
+  for (int i = 0; limit && cp->g0 != NULL && i < cp->n; ++i)
+    add_friction(s, i, cp->g0[i] / s->unit);
+  cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, s->an->R, m, s->force, 1,
+              0.0, to, 1);
+  to[k] = limit;
+  return fmax(s->c[best], of_limit);
+}
+
+/* The motion that lifts all nodes most evenly; *gain: what times it takes off
+ * every c, at least, 0: nothing. */
+static void set_lift(balance *s, double *gain) {
+  const contact_problem *cp = s->cp;
+  int m = cp->m, k = s->an->n_mode;
+  for (int dof = 0; dof < m; ++dof)
+    s->c[dof] = contact_bound(cp, dof) < HUGE_VAL ? -1.0 : 0.0;
+  cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, s->an->R, m, s->c, 1, 0.0,
+              s->sum.y, 1);
+  cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, s->an->R, m, s->sum.y, 1,
+              0.0, s->lift, 1);
+  largest_growth(cp, s->lift, s->c, s->c + m);
+  *gain = HUGE_VAL;
+  for (int dof = 0; dof < m; ++dof)
+    if (contact_bound(cp, dof) < HUGE_VAL) *gain = fmin(*gain, -s->c[dof]);
+  *gain = fmax(*gain, 0.0);
+}
+
+/* 1: v is a proof, lifted by what rounding lets it press. */
+static int is_proof(balance *s, double gain) {
+  double growth = largest_growth(s->cp, s->v, s->c, s->c + s->cp->m);
+  if (growth > 0.0 && gain > 0.0)
+    cblas_daxpy(s->cp->m, 2.0 * growth / gain, s->lift, 1, s->v, 1);
+  return proof_holds(s->cp, s->v, s->c);
+}
+
+/* *proved: the load on the modes has no balance. */
+static status find_motion(const contact_problem *cp, const anchor *an,
+                          int *proved) {
+  status st = OK;
+  balance s = {.cp = cp, .an = an};
+  double *column, *b, size, gain, before = HUGE_VAL;
+  TRY(balance_new(&s));
+  b = s.sum.b;
+  cblas_dgemv(CblasColMajor, CblasTrans, cp->m, an->n_mode, 1.0, an->R, cp->m,
+              cp->f, 1, 0.0, b, 1);
+  size = cblas_dnrm2(an->n_mode, b, 1);
+  if (!(size > 0.0 && size < HUGE_VAL)) goto done;
+  s.unit = b[an->n_mode] = size;
+  set_lift(&s, &gain);
+  nonnegative_begin(&s.sum);
+  for (int k = 0; k < PASSES; ++k) {
+    double left = cblas_dnrm2(s.sum.rows, s.sum.rest, 1);
+    if (!(left > BALANCED * size && left <= before)) break;
+    before = left;
+    column = nonnegative_next(&s.sum);
+    if (column == NULL) break;
+    double does = best_column(&s, column);
+    *proved = is_proof(&s, gain);
+    if (*proved || !(does > 0.0) || !nonnegative_take(&s.sum)) break;
+  }
+done:
+  balance_free(&s);
+  return st;
+}
+
+/* ---- compliance ---------------------------------------------------------- */
+
+/* The forces that end complementary pivoting without friction. */
+static status find_forces(const contact_problem *cp, int *proved) {
+  status st = OK;
+  double *M = NULL, *q = NULL, *y = NULL, *l = NULL, *room = NULL;
+  int *id = NULL, n = 0;
+  size_t m = (size_t)cp->m;
+  lcp_report rep;
+  NEW(id, m);
+  for (int dof = 0; dof < cp->m; ++dof)
+    if (contact_bound(cp, dof) < HUGE_VAL) id[n++] = dof;
+  NEW(M, (size_t)n * (size_t)n);
+  NEW(q, n);
+  NEW(y, n);
+  NEW(l, m);
+  NEW(room, 3 * m);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      M[(size_t)i + (size_t)n * (size_t)j] =
+          cp->W[(size_t)id[i] + m * (size_t)id[j]];
+  for (int i = 0; i < n; ++i) q[i] = contact_bound(cp, id[i]) - cp->f[id[i]];
+  TRY(lcp_lemke(n, M, q, 0, y, &rep));
+  if (rep.outcome != STOPPED_RAY) goto done;
+  for (int i = 0; i < n; ++i) l[id[i]] = y[i];
+  *proved = proof_holds(cp, l, room);
+done:
+  memory_free(M);
+  memory_free(q);
+  memory_free(y);
+  memory_free(l);
+  memory_free(room);
+  memory_free(id);
+  return st;
+}
+
+status proof_find(const contact_problem *cp, anchor *an, int *proved) {
+  status st = OK;
+  *proved = 0;
+  if (cp->m == 0) goto done;
+  if (cp->A == NULL) {
+    TRY(find_forces(cp, proved));
+  } else if (cp->floating) {
+    TRY(anchor_modes(cp, an));
+    if (an->n_mode > 0) TRY(find_motion(cp, an, proved));
+  }
+done:
+  return st;
+}

@@ -1,0 +1,314 @@
+/*
+ * Which method for a linear complementarity problem, and what is proved if
+ * none finds a solution (lcp_solve.h).
+ */
+#include "solver/lcp/lcp_solve.h"
+
+#include "base/memory.h"
+#include "contact/contact.h"
+#include "solver/lcp/lcp.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { FIRST = 2, ATTEMPTS = 100, FEW_PIVOTS = 50, PIVOTS_A_ROW = 5 };
+static const double PROOF = 0x1p-26; /* -, least work of a certificate      */
+static const double ROUNDING = 0x1p-44; /* -, of the terms of M'y */
+
+double lcp_residual(const lcp_data *p, const double *z, double *w) {
+  double c = 0.0, scale = 0.0, worst = 0.0;
+  size_t n = (size_t)p->n;
+  contact_product(p->n, p->M, z, w);
+  for (size_t k = 0; k < n * n; ++k) c = fmax(c, fabs(p->M[k]));
+  for (size_t i = 0; i < n; ++i) {
+    w[i] += p->q[i];
+    scale = fmax(scale, fabs(p->q[i]));
+    double miss = fabs(fmin(c * z[i], w[i]));
+    if (!(miss <= worst)) worst = miss;
+    if (isnan(w[i]) || isnan(z[i])) return NAN;
+  }
+  if (scale > 0.0) return worst / scale;
+  return worst > 0.0 ? HUGE_VAL : 0.0;
+}
+
+/* ---- a solve ------------------------------------------------------------- */
+
+typedef struct run {
+  const lcp_data *p;
+  const lcp_control *control;
+  lcp_verdict *v;
+  double *z, *w;     /* [n] the best so far                                   */
+  double *try_z, *y; /* [n] attempt; [2n] ray, certificate                    */
+  double *cover;     /* [n] covering vector                                   */
+  double *size;      /* [n] unit of z_i (and 1/w_i)                           */
+  double *M, *q, *room;  /* [n*n], [n], [n]: in these units, over the cover   */
+  unsigned char *turned; /* [n] 1: z_i and w_i have changed places            */
+  unsigned seed;
+  int is_first; /* 1: one of the first tries                                  */
+} run;
+
+static status run_new(run *s) {
+  status st = OK;
+  size_t n = (size_t)s->p->n;
+  NEW(s->try_z, n);
+  NEW(s->y, 2 * n);
+  NEW(s->cover, n);
+  NEW(s->size, n);
+  NEW(s->M, n * n);
+  NEW(s->q, n);
+  NEW(s->room, n);
+  NEW(s->turned, n);
+done:
+  return st;
+}
+
+static void run_free(run *s) {
+  memory_free(s->try_z);
+  memory_free(s->y);
+  memory_free(s->cover);
+  memory_free(s->size);
+  memory_free(s->M);
+  memory_free(s->q);
+  memory_free(s->room);
+  memory_free(s->turned);
+}
+
+static void note(lcp_verdict *v, const char *who, outcome o) {
+  size_t used = strlen(v->log);
+  snprintf(v->log + used, LCP_LOG - used, "%s%s: %s", used > 0 ? ", " : "", who,
+           outcome_text(o));
+  v->method = who;
+}
+
+/* Keep the attempt if it is better; 1: it solves the problem. */
+static int keep(run *s) {
+  size_t bytes = (size_t)s->p->n * sizeof *s->z;
+  double residual = lcp_residual(s->p, s->try_z, s->w);
+  if (residual < s->v->residual || isnan(s->v->residual)) {
+    s->v->residual = residual;
+    memcpy(s->z, s->try_z, bytes);
+  }
+  return residual <= s->control->tol;
+}
+
+/* ---- pivoting ------------------------------------------------------------ */
+
+/* Positive numbers of a fixed series, [0.25, 4). */
+static double cover(unsigned *seed) {
+  *seed = *seed * 1664525u + 1013904223u;
+  return ldexp(1.0 + (double)(*seed >> 8) * 0x1p-24,
+               (int)(*seed >> 6 & 3u) - 2);
+}
+
+/* Units that bring the diagonal to one, or the largest of row and column. */
+static double natural_unit(const lcp_data *p, size_t i) {
+  size_t n = (size_t)p->n;
+  double largest = fabs(p->M[i + n * i]);
+  for (size_t j = 0; j < n && largest == 0.0; ++j)
+    largest = fmax(largest, fmax(fabs(p->M[i + n * j]), fabs(p->M[j + n * i])));
+  return largest > 0.0 ? 1.0 / sqrt(largest) : 1.0;
+}
+
+/* Attempt k: plain; in natural units; then with other covering vectors and
+ * from other vertices. */
+static void choose(run *s, int k) {
+  size_t n = (size_t)s->p->n;
+  for (size_t i = 0; i < n; ++i) {
+    s->size[i] = k == 0 ? 1.0 : natural_unit(s->p, i);
+    s->cover[i] = k < FIRST ? 1.0 : cover(&s->seed);
+  }
+  for (size_t j = 0; j < n; ++j)
+    for (size_t i = 0; i < n; ++i)
+      s->M[i + n * j] = s->p->M[i + n * j] * s->size[i] * s->size[j];
+  for (size_t i = 0; i < n; ++i) s->q[i] = s->p->q[i] * s->size[i];
+  memset(s->turned, 0, n);
+  if (k >= FIRST && k % 4 != 0)
+    lcp_turn(s->p->n, k % 2 ? 1 : 1 + k / 8, &s->seed, s->M, s->q, s->turned,
+             s->room);
+}
+
+/* 0: as many as the method takes. Where others follow the first tries are
+ * short.
+ */
+static int pivots_allowed(const run *s) {
+  int most = s->control->max_iter, left = most - s->v->iterations;
+  int few = FEW_PIVOTS + PIVOTS_A_ROW * s->p->n;
+  if (!s->is_first || s->control->pivoting_only) return most > 0 ? left : 0;
+  return most > 0 && left < few ? left : few;
+}
+
+/* Lemke's method with a covering vector d is that of the rows over d with a
+ * vector of ones. On a ray of the problem as it stands y is its direction. */
+static status pivot_once(run *s, lcp_report *rep) {
+  status st = OK;
+  size_t n = (size_t)s->p->n;
+  double *slack = s->y + n;
+  for (size_t i = 0; i < n; ++i) {
+    cblas_dscal((int)n, 1.0 / s->cover[i], s->M + i, (int)n);
+    s->q[i] /= s->cover[i];
+  }
+  TRY(lcp_lemke((int)n, s->M, s->q, pivots_allowed(s), s->try_z, rep));
+  contact_product((int)n, s->M, s->try_z, slack);
+  for (size_t i = 0; i < n; ++i) {
+    if (s->turned[i])
+      s->try_z[i] = fmax(0.0, (slack[i] + s->q[i]) * s->cover[i]);
+    s->try_z[i] *= s->size[i];
+    s->y[i] = s->try_z[i];
+  }
+done:
+  return st;
+}
+
+/* 1: no more pivots and steps are allowed. */
+static int is_spent(const run *s) {
+  int most = s->control->max_iter;
+  return most > 0 && s->v->iterations >= most;
+}
+
+/* Attempts number first to last - 1; *o: how the last one ended. */
+static status pivot(run *s, int first, int last, outcome *o) {
+  status st = OK;
+  lcp_report rep = {.outcome = RUNNING};
+  *o = STOPPED_ITERATIONS;
+  for (int k = first; k < last && !is_spent(s); ++k) {
+    choose(s, k);
+    s->is_first = k < FIRST;
+    TRY(pivot_once(s, &rep));
+    s->v->iterations += rep.pivots;
+    *o = CONVERGED;
+    if (rep.outcome != STOPPED_RAY && keep(s)) break;
+    *o = rep.outcome == CONVERGED ? STOPPED_STAGNATION : rep.outcome;
+  }
+done:
+  return st;
+}
+
+/* ---- proof --------------------------------------------------------------- */
+
+/* 1: y >= 0, M'y <= 0, q'y < 0: for no z >= 0 is w >= 0, since
+ * y'w = q'y + (M'y)'z < 0. */
+static int is_certificate(const lcp_data *p, const double *y) {
+  size_t n = (size_t)p->n;
+  double work = 0.0, size = 0.0;
+  for (size_t j = 0; j < n; ++j) {
+    work += p->q[j] * y[j];
+    size += fabs(p->q[j]) * y[j];
+  }
+  if (!(work < -PROOF * size)) return 0;
+  for (size_t j = 0; j < n; ++j) {
+    double sum = 0.0, terms = 0.0;
+    for (size_t i = 0; i < n; ++i) {
+      sum += p->M[i + n * j] * y[i];
+      terms += fabs(p->M[i + n * j]) * y[i];
+    }
+    if (y[j] < 0.0 || !(sum <= ROUNDING * terms)) return 0;
+  }
+  return 1;
+}
+
+/* Is there any z >= 0 with w >= 0? *proved = 1: no. The ray of the skew problem
+ * is (z, y) with y the certificate. */
+static status look_for_proof(run *s, int *proved) {
+  status st = OK;
+  size_t n = (size_t)s->p->n, m = 2 * n;
+  double *K = NULL, *k = NULL, *ray = NULL;
+  lcp_report rep;
+  NEW(K, m * m);
+  NEW(k, m);
+  NEW(ray, m);
+  for (size_t j = 0; j < n; ++j)
+    for (size_t i = 0; i < n; ++i) {
+      double a = s->p->M[i + n * j];
+      K[n + i + m * j] = a;
+      K[j + m * (n + i)] = -a;
+    }
+  memcpy(k + n, s->p->q, n * sizeof *k);
+  TRY(lcp_lemke((int)m, K, k, 0, ray, &rep));
+  s->v->iterations += rep.pivots;
+  *proved = rep.outcome == STOPPED_RAY && is_certificate(s->p, ray + n);
+done:
+  memory_free(K);
+  memory_free(k);
+  memory_free(ray);
+  return st;
+}
+
+/* ---- all together -------------------------------------------------------- */
+
+/* All bases of few unknowns. */
+static status try_bases(run *s, outcome *o) {
+  status st = OK;
+  *o = STOPPED_STAGNATION;
+  if (s->p->n > LCP_MOST_BASES) goto done;
+  TRY(lcp_all_bases(s->p, s->control->tol, s->try_z, o));
+  if (*o == CONVERGED && !keep(s)) *o = STOPPED_STAGNATION;
+  note(s->v, "all bases", *o);
+done:
+  return st;
+}
+
+static status try_newton(run *s, outcome *o) {
+  status st = OK;
+  int found = 0;
+  TRY(lcp_newton(s->p, s->control, s->try_z, &s->v->iterations, &found));
+  *o = found && keep(s) ? CONVERGED
+       : is_spent(s)    ? STOPPED_ITERATIONS
+                        : STOPPED_STAGNATION;
+  note(s->v, "newton", *o);
+done:
+  return st;
+}
+
+/* The methods after pivoting. */
+static status other_ways(run *s, outcome *o) {
+  status st = OK;
+  TRY(try_bases(s, o));
+  if (*o == STOPPED_STAGNATION) TRY(try_newton(s, o));
+done:
+  return st;
+}
+
+static status follow(run *s) {
+  status st = OK;
+  outcome first = RUNNING, o = RUNNING;
+  int proved = 0;
+  TRY(pivot(s, 0, FIRST, &first));
+  s->v->outcome = first;
+  if (first == CONVERGED || first == STOPPED_NAN) goto done;
+  note(s->v, "lemke", first);
+  if (first == STOPPED_RAY && !is_certificate(s->p, s->y) && !is_spent(s))
+    TRY(look_for_proof(s, &proved));
+  else
+    proved = first == STOPPED_RAY && is_certificate(s->p, s->y);
+  if (proved) goto done;
+  if (!s->control->pivoting_only) {
+    TRY(other_ways(s, &o));
+    s->v->outcome = o;
+    if (o == CONVERGED || o == STOPPED_RAY) goto done;
+  }
+  TRY(pivot(s, FIRST, ATTEMPTS, &o));
+  note(s->v, "lemke from other vertices", o);
+  s->v->outcome = o == CONVERGED ? CONVERGED
+                  : first == STOPPED_ITERATIONS || is_spent(s)
+                      ? STOPPED_ITERATIONS
+                      : STOPPED_STAGNATION;
+done:
+  return st;
+}
+
+status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,
+                 double *w, lcp_verdict *v) {
+  status st = OK;
+  run s = {.p = p, .control = control, .v = v, .z = z, .w = w, .seed = 1};
+  *v = (lcp_verdict){.outcome = CONVERGED, .method = "lemke"};
+  v->residual = lcp_residual(p, z, w);
+  if (v->residual <= control->tol) goto done;
+  TRY(run_new(&s));
+  TRY(follow(&s));
+  v->residual = lcp_residual(p, z, w);
+done:
+  run_free(&s);
+  return st;
+}

@@ -1,0 +1,83 @@
+/*
+ * A linear complementarity problem from a file, whatever its matrix:
+ *
+ *   w = q + M z,   w >= 0,  z >= 0,  w'z = 0.
+ *
+ * Complementary pivoting (solver/lcp/lcp.h) comes first. It ends on a ray, or
+ * takes 2^n pivots, on problems that have a solution all the same; then the
+ * question whether any z >= 0 has w >= 0 is put as a problem that pivoting
+ * always decides,
+ *
+ *   w = 0 - M'y,  v = q + M z,   (z, w), (y, v) complementary,
+ *
+ * (its matrix is skew), and if there is one: for few unknowns all bases, which
+ * decides; the Newton method on the function of Fischer and Burmeister from
+ * many starts (De Luca, Facchinei, Kanzow 1996), and pivoting with other units,
+ * covering vectors and from other vertices. The first try ends early where
+ * these follow.
+ */
+#ifndef PROTIS_LCP_LCP_SOLVE_H
+#define PROTIS_LCP_LCP_SOLVE_H
+
+#include "base/outcome.h"
+#include "base/status.h"
+
+typedef struct lcp_data {
+  int n;
+  const double *M, *q; /* [n*n] column major, [n]                             */
+} lcp_data;
+
+typedef struct lcp_control {
+  double tol;   /* wanted lcp_residual, -                                 */
+  int max_iter; /* pivots and steps of all attempts; 0: each its own limit  */
+  int pivoting_only; /* 1: no other method                                    */
+} lcp_control;
+
+enum { LCP_LOG = 256 };
+typedef struct lcp_verdict {
+  outcome outcome;    /* CONVERGED; STOPPED_RAY: proved that no z >= 0 has
+                         w >= 0, or that no basis solves it;
+                         STOPPED_ITERATIONS: a limit was reached;
+                         STOPPED_STAGNATION: nothing found, nothing proved;
+                         STOPPED_NAN                                          */
+  int iterations;     /* pivots and steps of all attempts                     */
+  double residual;    /* lcp_residual of z                                    */
+  const char *method; /* who answered last                                    */
+  char log[LCP_LOG];  /* "lemke: no equilibrium, ..."; "" if the first did */
+} lcp_verdict;
+
+/*
+ * How far z is from a solution, -: largest of |min(z_i c, w_i)| over the rows,
+ * c the largest |M|, over the largest |q|. w[n] = q + M z. NaN if one is.
+ */
+double lcp_residual(const lcp_data *p, const double *z, double *w);
+
+/* z[n] start value, then the solution or the best found; w[n] = q + M z.
+ * Errors: ERR_MEMORY. */
+status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,
+                 double *w, lcp_verdict *v);
+
+/* ---- lcp_newton.c: private to this folder -------------------------------- */
+
+/* Attempts by Newton's method from many starts. 1 in *found: z is a solution to
+ * tol. *steps grows. */
+status lcp_newton(const lcp_data *p, const lcp_control *control, double *z,
+                  int *steps, int *found);
+/* All bases: CONVERGED, z is a solution to tol; STOPPED_RAY: each is excluded,
+ * there is none; STOPPED_STAGNATION: not known. */
+status lcp_all_bases(const lcp_data *p, double tol, double *z, outcome *end);
+enum { LCP_MOST_BASES = 14 /* unknowns of which all bases are tried */ };
+
+/* ---- lcp_turn.c: private to this folder -----------------------------------
+ */
+
+/*
+ * The problem with z_i and w_i exchanged for "want" of the unknowns (principal
+ * transform; Cottle, Pang, Stone 1992, 2.3), in place: pivoting then starts
+ * from another vertex. Those exchanged: turned[n] = 1; fewer where the block is
+ * nearly singular. row[n] is room.
+ */
+void lcp_turn(int n, int want, unsigned *seed, double *M, double *q,
+              unsigned char *turned, double *row);
+
+#endif

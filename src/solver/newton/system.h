@@ -1,0 +1,60 @@
+/*
+ * The linear system of one step of Newton's method (newton.c): rows of the
+ * unknowns that are free under a guess of the states, the others known.
+ *
+ *   known       du_i = 0 (the value is in u)
+ *   free        A_i du = -(A u - f)_i
+ *   slipping    (A_t + e B A_n) du + kappa (I - e e') du_t = b_t
+ *
+ * together M du = b. A factor is kept as long as it pays: with M0 the matrix
+ * factored and K the rows in which M differs, X = inv(M0) E_K gives the step of
+ * M from a small system,
+ *
+ *   du = x0 + X z,   M0 x0 = b without K,   (M_K X) z = b_K - M_K x0,
+ *
+ * so a few changed states cost a few solves, from step to step and from one
+ * problem on the same A to the next. Where that would cost more than a new
+ * factor, a new factor is made: of M, or, with few slipping nodes, of the
+ * symmetric matrix without their friction (Cholesky), friction being an update.
+ */
+#ifndef PROTIS_NEWTON_SYSTEM_H
+#define PROTIS_NEWTON_SYSTEM_H
+
+#include "base/archive/archive.h"
+#include "contact/contact.h"
+
+typedef enum { FREE, STICK, SLIP } tangent;
+
+/* A guess of the states. */
+typedef struct pattern {
+  unsigned char *closed; /* [m] 1: normal or side bound active                */
+  unsigned char *mode;   /* [n] tangent                                       */
+  double *e;             /* [n*(dim-1)] direction of the friction force, -    */
+  double *kappa;         /* [n] turning stiffness, N/m                        */
+  int *free_id, *place;  /* [m] free unknowns; their place, -1: known         */
+  int n_free;
+} pattern;
+status pattern_new(int dim, int n, pattern *p);
+void pattern_free(pattern *p);
+void pattern_copy(int dim, int n, const pattern *from, pattern *to);
+
+typedef struct newton_system newton_system;
+status newton_system_new(const contact_problem *cp, newton_system **out);
+void newton_system_free(newton_system *s); /* accepts NULL                    */
+/* The problem to be solved next, on the same A; borrowed. */
+void newton_system_fit(newton_system *s, const contact_problem *cp);
+/* A known value is put into u, then u is moved by the step of the guess p, of
+ * which the free unknowns are listed; raw = A u - f. Returns 1 if the system is
+ * singular (weak springs then held the body). */
+int newton_system_step(newton_system *s, pattern *p, double *u, double *raw);
+/* The kept factor and what was exchanged in it. */
+status newton_system_keep(newton_system *s, archive *a);
+/* 1: the last step came from a kept factor; forget it, so that the next does
+ * not. Accepts NULL. */
+int newton_system_refresh(newton_system *s);
+
+/* Slip of a node in the directions friction acts in, slip[2], m. */
+void newton_slip(const contact_problem *cp, const double *u, int node_id,
+                 double *slip);
+
+#endif

@@ -1,0 +1,436 @@
+/*
+ * Proximal point iteration on the forces of contact, for a compliance that may
+ * be semidefinite or unsymmetric (Rockafellar 1976; Alart, Curnier 1991). With
+ * x = W r + q - o the displacement from the gap or stick position, D the
+ * inverse diagonal of W, c the centre of the pass and a its share,
+ *
+ *   z = r - s (D x + a (r - c)),
+ *   F_n = r_n - min(z_n, 0),      F_t = r_t - P_g(z_t),   g = g0 + B p,
+ *
+ * P_g the projection on the disc |.| <= g. A pass finds r with F = 0 roughly,
+ * by Newton's method with the exact derivative; r is the next centre. At r = c
+ * F does not depend on a, and F = 0 is the contact problem. The share makes up
+ * for what W lacks where forces are not unique or its unsymmetric part turns
+ * them; it falls as long as passes are easy and rises where they are not. A
+ * step may raise |F| above its last value but not above the largest of the last
+ * ones. Where passes creep, forces that balance one another drifting on and on,
+ * the centre is taken ahead along the last change of r (Guler 1992).
+ * The stretch s > 0 changes none of the solutions, but the way to them.
+ */
+#include "base/memory.h"
+#include "solver/proximal/matrix.h"
+#include "solver/solver.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <string.h>
+
+static const option proximal_options[] = {OPTION_END};
+
+enum {
+  STEPS = 7200,   /* Newton steps, all trials                                */
+  TRIAL = 1800,   /* of a trial                                              */
+  TRIALS = 4,     /* one after the other                                     */
+  PASS = 40,      /* of a pass                                               */
+  EASY = 5,       /* a pass with so few: the share falls                     */
+  HARD = 15,      /*           with more: it rises                           */
+  PATIENCE = 100, /* passes without a lower residual                         */
+  MEMORY = 8,     /* last values a step is compared with                     */
+  HALVINGS = 10   /* of a step                                               */
+};
+static const double PASS_GAIN = 0x1p-7;    /* |F|^2 a pass shall leave, -     */
+static const double SLOPE = 0x1p-12;       /* of the descent asked for, -     */
+static const double CREEP = 0.75;          /* residual a pass shall leave, -  */
+static const double LEAST_SHARE = 0x1p-40; /* -                               */
+static const double MOST_SHARE = 0x1p10;
+
+/* How the trials go: stretch s, share a at the start. The last starts with all
+ * gaps closed (start_closed; its stretch is 1). */
+static const struct {
+  double stretch, share;
+} way[TRIALS] = {{1.0, 0x1p-7}, {4.0, 0x1p-7}, {4.0, 0x1p-10}, {1.0, 0x1p-20}};
+
+typedef struct proximal_work {
+  force_set *set;
+  best_iterate best;
+  step_matrix *J;
+  unsigned char *acts; /* [m] 1: the row of J is not that of the unit matrix */
+  double *x, *F, *d, *z; /* [m]                                               */
+  double *weight; /* [m] of F, m/N                                            */
+  double *start, *centre; /* [m] force at the start; of the pass              */
+  double *before;         /* [m] end of the last pass                         */
+} proximal_work;
+
+static void proximal_release(void *work) {
+  proximal_work *w = work;
+  if (w == NULL) return;
+  force_set_free(w->set);
+  best_iterate_free(&w->best);
+  step_matrix_free(w->J);
+  void *const blocks[] = {w->x,     w->F,      w->d,      w->z,   w->weight,
+                          w->start, w->centre, w->before, w->acts};
+  for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
+    memory_free(blocks[k]);
+  memory_free(w);
+}
+
+static status proximal_setup(const contact_problem *cp, const void *par,
+                             void **work) {
+  status st = OK;
+  proximal_work *w = NULL;
+  size_t m = (size_t)cp->m;
+  (void)par;
+  NEW(w, 1);
+  TRY(force_set_new(cp, &w->set));
+  TRY(best_iterate_new(cp->m, &w->best));
+  TRY(step_matrix_new(cp, w->set, &w->J));
+  NEW(w->x, m);
+  NEW(w->F, m);
+  NEW(w->d, m);
+  NEW(w->z, m);
+  NEW(w->weight, m);
+  NEW(w->start, m);
+  NEW(w->centre, m);
+  NEW(w->before, m);
+  NEW(w->acts, m);
+  *work = w;
+  w = NULL;
+done:
+  proximal_release(w);
+  return st;
+}
+
+typedef struct run {
+  const contact_problem *cp;
+  proximal_work *w;
+  const solver_control *control;
+  double *u, *r;
+  double scale;          /* contact_scale                                     */
+  double stretch, share; /* s and a                                           */
+  int steps;
+} run;
+
+/* ---- the equations --------------------------------------------------------
+ */
+
+/* inv(D); friction counts in the pressures that its limit takes, or a limit
+ * that grows by far more than they would hide all else. */
+static void set_weights(proximal_work *w, const contact_problem *cp) {
+  const sparse_rows *B = cp->B;
+  for (int i = 0; i < cp->m; ++i) {
+    double mu = 0.0;
+    int node_id = i / cp->dim, normal = i % cp->dim == 0 || B == NULL;
+    for (int k = normal ? 0 : B->start[node_id];
+         !normal && k < B->start[node_id + 1]; ++k)
+      mu += B->val[k];
+    w->weight[i] = 1.0 / (w->set->D[i] * fmax(1.0, mu * mu));
+  }
+}
+
+/* Length of z in the tangents of a node where friction acts; their number. */
+static double tangent_length(const run *s, int node_id, int *count) {
+  double sum = 0.0;
+  *count = 0;
+  for (int k = 1; k < s->cp->dim; ++k) {
+    int dof = node_id * s->cp->dim + k;
+    if (s->w->set->part[dof] != IN_DISC) continue;
+    sum += s->w->z[dof] * s->w->z[dof];
+    ++*count;
+  }
+  return sqrt(sum);
+}
+
+/* F at r; returns its size in the metric of the weights, squared. */
+static double evaluate(run *s) {
+  const contact_problem *cp = s->cp;
+  proximal_work *w = s->w;
+  const force_set *set = w->set;
+  double sum = 0.0;
+  int count;
+  force_set_displacement(set, s->r, s->u);
+  for (int i = 0; i < cp->m; ++i) {
+    w->x[i] = s->u[i] - set->origin[i];
+    w->z[i] = s->r[i] - s->stretch * (set->D[i] * w->x[i] +
+                                      s->share * (s->r[i] - w->centre[i]));
+    w->F[i] = s->r[i] - (set->part[i] == PUSH ? fmin(w->z[i], 0.0) : 0.0);
+  }
+  for (int i = 0; i < cp->n; ++i) {
+    double length = tangent_length(s, i, &count);
+    if (count == 0) continue;
+    double g = contact_node_limit(cp, s->r, i);
+    double share = length <= g ? 1.0 : g / length;
+    for (int k = 1; k < cp->dim; ++k) {
+      int dof = i * cp->dim + k;
+      if (set->part[dof] == IN_DISC) w->F[dof] = s->r[dof] - share * w->z[dof];
+    }
+  }
+  for (int i = 0; i < cp->m; ++i) sum += w->weight[i] * w->F[i] * w->F[i];
+  return sum;
+}
+
+/* Into the row at hand: minus "share" times that of z_j. */
+static void add_row(const run *s, int j, double share) {
+  step_matrix_add_row(s->w->J, j, share * s->stretch * s->w->set->D[j]);
+  step_matrix_add(s->w->J, j, -share * (1.0 - s->stretch * s->share));
+}
+
+/* Row of tangent a of a node that slips: g e turns with z and grows with the
+ * pressures. */
+static void add_slip(const run *s, int node_id, int a, double length) {
+  const contact_problem *cp = s->cp;
+  const proximal_work *w = s->w;
+  double g = contact_node_limit(cp, s->r, node_id);
+  int first = node_id * cp->dim;
+  double e_a = w->z[first + a] / length;
+  for (int b = 1; b < cp->dim; ++b) {
+    if (w->set->part[first + b] != IN_DISC) continue;
+    double e_b = w->z[first + b] / length;
+    double turn = g / length * ((a == b ? 1.0 : 0.0) - e_a * e_b);
+    if (turn != 0.0) add_row(s, first + b, turn);
+  }
+  if (cp->B == NULL) return;
+  for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
+    int normal = cp->B->col[k] * cp->dim;
+    if (s->r[normal] < 0.0 || w->z[normal] < 0.0)
+      step_matrix_add(w->J, normal, cp->B->val[k] * e_a);
+  }
+}
+
+/* 1: an open node, whose tangents carry nothing and will not in this step. */
+static int is_idle(const run *s, int node_id) {
+  const sparse_rows *B = s->cp->B;
+  if (contact_node_limit(s->cp, s->r, node_id) > 0.0) return 0;
+  for (int k = B == NULL ? 0 : B->start[node_id];
+       B != NULL && k < B->start[node_id + 1]; ++k) {
+    int normal = B->col[k] * s->cp->dim;
+    if (s->r[normal] < 0.0 || s->w->z[normal] < 0.0) return 0;
+  }
+  return 1;
+}
+
+static void mark_rows(const run *s) {
+  const contact_problem *cp = s->cp;
+  const proximal_work *w = s->w;
+  for (int i = 0; i < cp->n; ++i)
+    for (int k = 0, idle = is_idle(s, i); k < cp->dim; ++k) {
+      int dof = i * cp->dim + k;
+      if (w->set->part[dof] == PUSH) w->acts[dof] = w->z[dof] < 0.0;
+      if (w->set->part[dof] == IN_DISC) w->acts[dof] = !idle;
+      if (w->set->part[dof] == NO_FORCE) w->acts[dof] = 0;
+    }
+}
+
+static status fill_matrix(const run *s) {
+  status st = OK;
+  const contact_problem *cp = s->cp;
+  const proximal_work *w = s->w;
+  int count;
+  mark_rows(s);
+  step_matrix_begin(w->J, w->acts, w->d);
+  for (int dof = 0; dof < cp->m; ++dof) {
+    int node_id = dof / cp->dim;
+    if (!w->acts[dof]) continue;
+    double length = tangent_length(s, node_id, &count);
+    step_matrix_add(w->J, dof, 1.0);
+    if (w->set->part[dof] == PUSH ||
+        length <= contact_node_limit(cp, s->r, node_id))
+      add_row(s, dof, 1.0);
+    else
+      add_slip(s, node_id, dof % cp->dim, length);
+    TRY(step_matrix_put(w->J, dof));
+  }
+done:
+  return st;
+}
+
+/* ---- steps ----------------------------------------------------------------
+ */
+
+/* Along d, shortened while |F|^2 is above "bound"; the last try stays. */
+static double search(run *s, double bound) {
+  double t = 1.0, taken = 0.0, value = HUGE_VAL;
+  for (int k = 0; k < HALVINGS; ++k, t *= 0.5) {
+    cblas_daxpy(s->cp->m, t - taken, s->w->d, 1, s->r, 1);
+    taken = t;
+    value = evaluate(s);
+    if (value <= bound * (1.0 - SLOPE * t)) break;
+  }
+  return value;
+}
+
+/* One step of Newton's method; *value NAN if there is none. */
+static status newton_step(run *s, double bound, double *value) {
+  status st = OK;
+  proximal_work *w = s->w;
+  int singular = 0;
+  *value = NAN;
+  for (int i = 0; i < s->cp->m; ++i) w->d[i] = -w->F[i];
+  TRY(fill_matrix(s));
+  ++s->steps;
+  TRY(step_matrix_solve(w->J, w->d, &singular));
+  if (!singular) *value = search(s, bound);
+done:
+  return st;
+}
+
+/* From the centre, where |F|^2 = value, until PASS_GAIN of it is left. *steps:
+ * more than PASS: not found. */
+static status pass(run *s, double value, int *steps) {
+  status st = OK;
+  double last[MEMORY], wanted = PASS_GAIN * value;
+  for (int k = 0; k < MEMORY; ++k) last[k] = value;
+  *steps = PASS + 1;
+  for (int k = 0; k < PASS; ++k) {
+    double bound = 0.0;
+    for (int i = 0; i < MEMORY; ++i) bound = fmax(bound, last[i]);
+    TRY(newton_step(s, bound, &value));
+    if (isnan(value)) break;
+    if (value <= wanted) {
+      *steps = k + 1;
+      break;
+    }
+    last[k % MEMORY] = value;
+  }
+done:
+  return st;
+}
+
+/* The share for the next pass. */
+static double next_share(double share, int steps) {
+  double factor = 1.0;
+  if (steps <= EASY) factor = 0.25;
+  if (steps > HARD) factor = 2.0;
+  if (steps > PASS) factor = 8.0;
+  return fmax(LEAST_SHARE, fmin(MOST_SHARE, factor * share));
+}
+
+/* The forces that close every gap and let nothing slip, for limits so large
+ * that no step from zero leads there. */
+static status start_closed(run *s) {
+  status st = OK;
+  proximal_work *w = s->w;
+  int m = s->cp->m, singular = 0;
+  memset(s->r, 0, (size_t)m * sizeof *s->r);
+  memset(w->centre, 0, (size_t)m * sizeof *w->centre);
+  evaluate(s);
+  for (int i = 0; i < m; ++i) {
+    w->acts[i] = w->set->part[i] != NO_FORCE;
+    w->d[i] = w->acts[i] ? -w->set->D[i] * w->x[i] : 0.0;
+  }
+  step_matrix_begin(w->J, w->acts, w->d);
+  for (int i = 0; i < m; ++i) {
+    if (!w->acts[i]) continue;
+    step_matrix_add(w->J, i, 1.0);
+    add_row(s, i, 1.0);
+    TRY(step_matrix_put(w->J, i));
+  }
+  TRY(step_matrix_solve(w->J, w->d, &singular));
+  if (!singular) memcpy(s->r, w->d, (size_t)m * sizeof *s->r);
+done:
+  return st;
+}
+
+/* The centre of the next pass: r, or after passes that crept ahead of it. */
+static void set_centre(run *s, int creeps) {
+  proximal_work *w = s->w;
+  double ahead = creeps > 1 ? creeps / (creeps + 3.0) : 0.0;
+  for (int i = 0; i < s->cp->m; ++i) {
+    double now = s->r[i];
+    s->r[i] += ahead * (now - w->before[i]);
+    w->before[i] = now;
+    w->centre[i] = s->r[i];
+  }
+}
+
+/* Passes from the start forces. */
+static status trial(run *s, int limit, int closed, outcome *end) {
+  status st = OK;
+  proximal_work *w = s->w;
+  size_t bytes = (size_t)s->cp->m * sizeof *s->r;
+  double lowest = HUGE_VAL, before = HUGE_VAL;
+  int steps = 0, creeps = 0;
+  memcpy(s->r, w->start, bytes);
+  if (closed) TRY(start_closed(s));
+  *end = STOPPED_STAGNATION;
+  for (int idle = 0; idle < PATIENCE; ++idle) {
+    memcpy(w->centre, s->r, bytes);
+    evaluate(s);
+    double residual = contact_mismatch(s->cp, s->scale, s->u, s->r, NULL);
+    solver_keep_best(&w->best, s->cp->m, residual, s->u, s->r);
+    solver_tell(s->control, "proximal", s->steps, residual);
+    *end = residual <= s->control->tol ? CONVERGED
+           : isnan(residual)           ? STOPPED_NAN
+           : s->steps >= limit         ? STOPPED_ITERATIONS
+                                       : STOPPED_STAGNATION;
+    if (*end != STOPPED_STAGNATION) break;
+    if (residual < 0.9 * lowest) {
+      lowest = residual;
+      idle = 0;
+    }
+    creeps = residual > CREEP * before && steps <= HARD ? creeps + 1 : 0;
+    before = residual;
+    set_centre(s, creeps);
+    TRY(pass(s, evaluate(s), &steps));
+    if (steps > PASS && s->share >= MOST_SHARE) break; /* would come again */
+    if (steps > PASS) memcpy(s->r, w->centre, bytes);
+    s->share = next_share(s->share, steps);
+  }
+done:
+  return st;
+}
+
+static status proximal_solve(const contact_problem *cp, const void *par,
+                             void *work, const solver_control *control,
+                             double *u, double *r, solver_report *rep) {
+  status st = OK;
+  proximal_work *w = work;
+  run s = {.cp = cp, .w = w, .control = control, .u = u, .r = r};
+  int limit = control->max_iter > 0 ? control->max_iter : STEPS;
+  (void)par;
+  s.scale = contact_scale(cp);
+  *rep = (solver_report){.outcome = RUNNING};
+  w->best.residual = HUGE_VAL;
+  force_set_fit(w->set, cp);
+  set_weights(w, cp);
+  memcpy(w->start, r, (size_t)cp->m * sizeof *r);
+  for (int k = 0; k < TRIALS && rep->outcome != CONVERGED; ++k) {
+    if (k > 0 && (s.steps >= limit || control->no_restart)) break;
+    int until = s.steps + TRIAL;
+    s.stretch = way[k].stretch;
+    s.share = way[k].share;
+    TRY(trial(&s, until < limit ? until : limit, k == TRIALS - 1,
+              &rep->outcome));
+    if (rep->outcome == STOPPED_NAN) break;
+  }
+  if (rep->outcome == STOPPED_ITERATIONS && s.steps < limit)
+    rep->outcome = STOPPED_STAGNATION;
+  rep->iterations = s.steps;
+  rep->residual = w->best.residual;
+  solver_take_best(&w->best, cp->m, u, r);
+done:
+  return st;
+}
+
+/* clang-format off */
+const solver_ops proximal_solver = {
+  .name = "proximal",
+  .family = "Newton",
+  .reference = "Rockafellar 1976; Alart, Curnier 1991; Guler 1992",
+  .help =
+    "Proximal point iteration on the forces of contact, with the compliance:\n"
+    "each pass solves the equations of Alart and Curnier, friction with the\n"
+    "limit that follows the pressure, for a compliance made regular by a\n"
+    "share of its diagonal about the forces of the last pass. The share falls\n"
+    "as the passes succeed. Needs no stiffness: the compliance may be\n"
+    "semidefinite, with more contacts than bodies can move, and unsymmetric.\n"
+    "A step is a dense factorisation, a pass 2 to 20 steps. Choose it for\n"
+    "problems from files where the sweeps and PCG stop short of the\n"
+    "tolerance; for a body on its contact surface NEWTON is faster.",
+  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE,
+  .param_size = 0,
+  .options = proximal_options,
+  .setup = proximal_setup,
+  .solve = proximal_solve,
+  .release = proximal_release
+};
+/* clang-format on */
