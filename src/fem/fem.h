@@ -38,9 +38,9 @@ typedef struct domain {
                                  components)                                 */
   const eigenstrain *eigen;   /* NULL: none. Counts in stresses and energy;
                                  condense_load has it from F (eigen_force)   */
-  cluster_set *cluster;       /* elements whose change of volume is averaged, as
- * strains and stresses here always are; NULL: none. Its means are
- * overwritten */
+  /* Elements whose change of volume is averaged, as strains and stresses here
+   * always are; NULL: none. Its means are overwritten. */
+  cluster_set *cluster;
   int rows; /* contact unknowns of a node that are condensed, the normal first:
                1 (its tangents count in the interior) or dim; 0: dim         */
   int n_in; /* contact nodes that are condensed; the others are interior      */

@@ -197,7 +197,7 @@ const step *facts_first_step(const model *m, int (*is)(const step *s)) {
 
 int facts_asks_mesh_error(const step *s) { return s->mesh_error; }
 int facts_asks_time_error(const step *s) { return s->time_error; }
-int facts_asks_theory(const step *s) { return s->theory; }
+int facts_asks_theory(const step *s) { return s->theorems; }
 
 status model_find_corner(model *m, const mesh *msh) {
   status st = OK;
@@ -221,7 +221,7 @@ done:
 const step *facts_first_whole(const model *m) {
   for (int i = 0; i < m->n_step; ++i) {
     const step *s = &m->steps[i];
-    if (s->condensed_frequency >= 0 || s->check != CHECK_NONE || s->theory)
+    if (s->condensed_frequency >= 0 || s->check != CHECK_NONE || s->theorems)
       return s;
   }
   return NULL;

@@ -239,7 +239,7 @@ typedef struct step {
   int mesh_error, time_error; /* 1: asked for                                 */
   int time_balanced;          /* 1: TIME=BALANCED                             */
   double time_share;          /* -, of the error of the mesh                  */
-  int theory; /* 1: the theorems of CPR98 are checked                         */
+  int theorems; /* 1: the theorems of CPR98 are checked                       */
   int balanced; /* TOL=BALANCED                                              */
   double share; /* -, of the errors it is balanced with                      */
   solver_choice solver; /* its param is owned by the step it came with        */

@@ -198,7 +198,7 @@ static void write_solutions(json *w, const increment_summary *s) {
 }
 
 static void write_theory_contact(json *w, const model *m,
-                                 const theory_contact *c) {
+                                 const theorems_contact *c) {
   json_open(w, NULL, '{');
   json_string(w, "contact",
               c->contact_id < 0 ? "" : m->contacts[c->contact_id].name);
@@ -213,7 +213,7 @@ static void write_theory_contact(json *w, const model *m,
   json_close(w, '}');
 }
 
-static void write_bound(json *w, const char *name, const theory_bound *b) {
+static void write_bound(json *w, const char *name, const theorems_bound *b) {
   json_open(w, name, '{');
   if (b->why != NULL) {
     json_string(w, "missing", b->why);
@@ -225,7 +225,7 @@ static void write_bound(json *w, const char *name, const theory_bound *b) {
   json_close(w, '}');
 }
 
-static void write_path(json *w, const theory_path *p) {
+static void write_path(json *w, const theorems_path *p) {
   if (!p->asked) return;
   json_open(w, "theorem_3_2", '{');
   if (p->why != NULL)
@@ -241,7 +241,7 @@ static void write_path(json *w, const theory_path *p) {
   json_close(w, '}');
 }
 
-static void write_theory(json *w, const model *m, const theory_report *t) {
+static void write_theory(json *w, const model *m, const theorems_report *t) {
   if (!t->asked) return;
   json_open(w, "theory", '{');
   json_open(w, "contacts", '[');
@@ -280,12 +280,12 @@ static void write_increment(json *w, const model *m,
     json_real(w, "balanced_residual", s->balance.tol);
     json_count(w, "balanced_passes", s->balance.passes);
   }
-  if (s->truth.asked) {
-    json_real(w, "true_error_percent", 100 * s->truth.energy);
+  if (s->exact.asked) {
+    json_real(w, "true_error_percent", 100 * s->exact.energy);
     json_real(w, "true_displacement_error_percent",
-              100 * s->truth.displacement);
-    json_real(w, "true_stress_error_percent", 100 * s->truth.stress);
-    json_real(w, "true_pressure_error_percent", 100 * s->truth.pressure);
+              100 * s->exact.displacement);
+    json_real(w, "true_stress_error_percent", 100 * s->exact.stress);
+    json_real(w, "true_pressure_error_percent", 100 * s->exact.pressure);
   }
   if (s->error.asked) {
     json_real(w, "solver_error_percent", 100 * s->error.relative);
@@ -306,7 +306,7 @@ static void write_increment(json *w, const model *m,
   json_string(w, "outcome", outcome_code((outcome)s->outcome));
   if (s->jumps) json_real(w, "jump_time", s->jump_t);
   write_solutions(w, s);
-  write_theory(w, m, &s->theory);
+  write_theory(w, m, &s->theorems);
   json_close(w, '}');
 }
 

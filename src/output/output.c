@@ -22,7 +22,7 @@ static void release(output *o) {
   memory_free(o->xdmf);
   for (int i = 0; i < o->run.n_increment; ++i) {
     memory_free(o->run.increments[i].solutions);
-    memory_free((void *)o->run.increments[i].theory.contacts);
+    memory_free((void *)o->run.increments[i].theorems.contacts);
   }
   memory_free(o->run.increments);
   memory_free(o->kept);

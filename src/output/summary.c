@@ -25,17 +25,17 @@ done:
   return st;
 }
 
-static status remember_theory(const theory_report *t, increment_summary *i) {
+static status remember_theory(const theorems_report *t, increment_summary *i) {
   status st = OK;
-  theory_contact *own = NULL;
-  i->theory = *t;
-  i->theory.contacts = NULL;
-  i->theory.n_contact = 0;
+  theorems_contact *own = NULL;
+  i->theorems = *t;
+  i->theorems.contacts = NULL;
+  i->theorems.n_contact = 0;
   if (t->n_contact == 0) goto done;
   NEW(own, t->n_contact);
   memcpy(own, t->contacts, (size_t)t->n_contact * sizeof *own);
-  i->theory.contacts = own;
-  i->theory.n_contact = t->n_contact;
+  i->theorems.contacts = own;
+  i->theorems.n_contact = t->n_contact;
 done:
   return st;
 }
@@ -62,7 +62,7 @@ status output_remember(output *o, const state *s) {
                            .rounding = s->rounding,
                            .mesh_error = s->mesh_error,
                            .time_error = s->time_error,
-                           .truth = s->truth,
+                           .exact = s->exact,
                            .balance = s->balance,
                            .jumps = s->jumps,
                            .jump_t = s->jump_t,
@@ -72,7 +72,7 @@ status output_remember(output *o, const state *s) {
   run->defect_worst = worse(run->defect_worst, fabs(i->defect));
   if (s->flow != NULL) run->tally = *s->flow->tally;
   TRY(remember_solutions(s->solutions, i));
-  TRY(remember_theory(&s->theory, i));
+  TRY(remember_theory(&s->theorems, i));
   if (!s->settled) ++run->n_unsettled;
 done:
   return st;
@@ -105,7 +105,7 @@ static const char *as_pointer(size_t no) { return (const char *)no; }
 /* They differ from run to run. */
 static void leave_out_cpu(increment_summary *s) {
   s->error.cpu = s->mesh_error.cpu = s->time_error.cpu = 0.0;
-  s->truth.cpu = s->balance.saved_cpu = 0.0;
+  s->exact.cpu = s->balance.saved_cpu = 0.0;
 }
 
 /* The increments with numbers in the place of pointers. */
@@ -138,7 +138,7 @@ static status copy_increments(output *o, size_t *used, int *n_fact) {
     for (int k = 0; k < s->n_solution; ++k)
       o->facts[(*n_fact)++] = s->solutions[k];
     s->solutions = NULL;
-    s->theory = (theory_report){0}; /* such a run starts anew (restart.c)    */
+    s->theorems = (theorems_report){0}; /* such a run starts anew (restart.c) */
     if (o->o.no_timing) leave_out_cpu(s);
   }
 done:

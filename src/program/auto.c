@@ -3,19 +3,19 @@
  */
 #include "program/auto.h"
 
-#include "effects/reduction/neglect.h"
+#include "effects/reduction/reduction.h"
 
 typedef struct watcher {
   model *m;
-  neglect *n;
+  reduction *n;
   int refuted; /* 1: the run was ended, a row does not hold                   */
 } watcher;
 
 static status see_increment(void *ctx, const state *s) {
   status st = OK;
   watcher *w = ctx;
-  TRY(neglect_measure(w->n, s, w->m->neglected));
-  w->refuted = neglect_refuted(w->m);
+  TRY(reduction_measure(w->n, s, w->m->neglected));
+  w->refuted = reduction_refuted(w->m);
   if (w->refuted)
     FAIL(ERR_UNSETTLED, "time %g: what was left out matters", s->t);
 done:
@@ -36,15 +36,15 @@ static status try_without(watcher *w, const command *c, job_input *in,
                           int *unsettled, int *again) {
   status st = OK;
   const job_watch watch = {.ctx = w, .increment = see_increment};
-  neglect_restore(in->m);
-  neglect_leave_out(in->m);
-  neglect_free(w->n);
+  reduction_restore(in->m);
+  reduction_leave_out(in->m);
+  reduction_free(w->n);
   w->n = NULL;
-  TRY(neglect_new(in->m, in->msh, &w->n));
+  TRY(reduction_new(in->m, in->msh, &w->n));
   w->refuted = 0;
   st = job_solve(c, in, &watch, NULL, unsettled);
   *again = !is_final(st) &&
-           neglect_take_back(in->m, has_failed(w, st, *unsettled)) > 0;
+           reduction_take_back(in->m, has_failed(w, st, *unsettled)) > 0;
 done:
   return st;
 }
@@ -60,15 +60,15 @@ status auto_solve_job(const command *c, job_input *in, int *unsettled) {
   status st = OK;
   watcher w = {.m = in->m};
   int again = 1;
-  TRY(neglect_choose(in->m, in->msh));
+  TRY(reduction_choose(in->m, in->msh));
   while (again && left_out(in->m) > 0)
     st = try_without(&w, c, in, unsettled, &again);
   if (again) {
-    neglect_restore(in->m);
+    reduction_restore(in->m);
     st = job_solve(c, in, NULL, NULL, unsettled);
   }
 done:
-  neglect_free(w.n);
-  neglect_restore(in->m);
+  reduction_free(w.n);
+  reduction_restore(in->m);
   return st;
 }

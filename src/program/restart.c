@@ -447,7 +447,7 @@ status restart_read(const command *c, const job_input *in, archive **out) {
          "--restart: *ACCURACY, TARGET= makes passes of the whole "
          "run; such a job starts anew");
   for (int i = 0; i < in->m->n_step; ++i)
-    if (in->m->steps[i].theory)
+    if (in->m->steps[i].theorems)
       FAIL(ERR_DECK,
            "--restart: the theorems of *ACCURACY are checked over a "
            "whole run; such a job starts anew");

@@ -140,7 +140,7 @@ static status beside_new(const run *r, beside **out) {
   own->rate = (known_rate){0};
   own->solutions = (solution_set){0};
   own->recovery = NULL;
-  own->theorems = (theory_report){0};
+  own->theorems = (theorems_report){0};
   own->jumps = 0;
   own->note[0] = '\0';
   if (r->d.eigen != NULL) own->d.eigen = &own->eigen;

@@ -147,7 +147,7 @@ typedef struct run {
   error_bound error;
   rounding_loss rounding;
   error_share mesh_error, time_error;
-  true_error truth;
+  true_error exact;
   double tol; /* of the contact solver, in force, -                          */
   balance balance;
   double *guess_u, *guess_r; /* [m] start values that may be nearer than those
@@ -162,10 +162,10 @@ typedef struct run {
   known_rate rate;
   double *f_before; /* [n_row] condensed load of r->old, N                    */
   int n_before;     /* its n_row                                              */
-  int jumps;      /* 1: the equilibrium jumps in the increment               */
-  double jump_t;  /* s, there                                               */
-  theory *theory; /* NULL until asked for                                    */
-  theory_report theorems;
+  int jumps;     /* 1: the equilibrium jumps in the increment               */
+  double jump_t; /* s, there                                               */
+  theorems *at_work; /* NULL until asked for */
+  theorems_report theorems;
   solution_set solutions; /* found by CHECK= in the increment                 */
   progress at;
   archive *from; /* borrowed: what the step in progress starts from, or NULL  */

@@ -11,8 +11,8 @@
 #include "model/model.h"
 #include "material/scheme/scheme.h"
 #include "run/start/start.h"
-#include "accuracy/theorems/theory.h"
-#include "accuracy/closed_form/truth.h"
+#include "accuracy/theorems/theorems.h"
+#include "accuracy/closed_form/exact_error.h"
 
 /* Forces and moments of one contact: of the obstacle on the body. */
 typedef struct contact_total {
@@ -150,12 +150,12 @@ typedef struct state {
   rounding_loss rounding;
   error_share mesh_error, time_error; /* of the mesh, of the increments       */
   balance_report balance;
-  true_error truth; /* against *REFERENCE                                     */
+  true_error exact; /* against *REFERENCE                                     */
   const double *elem_error; /* [n_elem] share of each element in the error of
                                the mesh, -, relative as that; or NULL         */
   int jumps;     /* 1: no path of equilibria leads to this one                */
   double jump_t; /* s, where the equilibrium jumps then                       */
-  theory_report theory; /* the theorems at work                              */
+  theorems_report theorems;      /* the theorems at work      */
   const solution_set *solutions; /* of CHECK=; NULL: not asked for            */
   const char *solver_log;
   const char *note; /* whole lines about what jumps, "" or NULL: nothing      */

@@ -253,7 +253,7 @@ START_TEST(figures_stand_under_their_names) {
   made->s.error = (error_bound){.energy = 51, .relative = 0.52, .rate = 53};
   made->s.mesh_error = (error_share){.asked = 1, .relative = 0.54};
   made->s.time_error = (error_share){.asked = 1, .relative = 0.55};
-  made->s.truth = (true_error){
+  made->s.exact = (true_error){
       .energy = 0.56, .displacement = 0.57, .stress = 0.58, .pressure = 0.59};
   static const named_value solid[] = {
       {"force_x", 1},        {"force_y", 2},

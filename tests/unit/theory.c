@@ -3,7 +3,7 @@
  * constants are known, bounds and inequality on random problems, and wrong
  * states, which must be told.
  */
-#include "accuracy/theorems/theory.h"
+#include "accuracy/theorems/theorems.h"
 #include "base/memory.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
@@ -31,33 +31,33 @@ static void solve(contact_case *c) {
 
 /* All nodes on one contact. */
 typedef struct looker {
-  theory *t;
+  theorems *t;
   int *id;
   double mu;
-  theory_scene scene;
-  theory_report rep;
+  theorems_scene scene;
+  theorems_report rep;
 } looker;
 
 static void look_at(looker *l, contact_case *c, double mu) {
   *l = (looker){.mu = mu};
   l->id = calloc((size_t)c->cp.n, sizeof *l->id);
-  ck_assert_int_eq(theory_new(&l->t), OK);
-  l->scene = (theory_scene){.cp = &c->cp,
-                            .u = c->u,
-                            .r = c->r,
-                            .n_contact = 1,
-                            .contact_id = l->id,
-                            .mu = &l->mu,
-                            .tol = 1e-10};
+  ck_assert_int_eq(theorems_new(&l->t), OK);
+  l->scene = (theorems_scene){.cp = &c->cp,
+                              .u = c->u,
+                              .r = c->r,
+                              .n_contact = 1,
+                              .contact_id = l->id,
+                              .mu = &l->mu,
+                              .tol = 1e-10};
 }
 
-static const theory_report *look(looker *l) {
-  ck_assert_int_eq(theory_check(l->t, &l->scene, &l->rep), OK);
+static const theorems_report *look(looker *l) {
+  ck_assert_int_eq(theorems_check(l->t, &l->scene, &l->rep), OK);
   return &l->rep;
 }
 
 static void look_away(looker *l) {
-  theory_free(l->t);
+  theorems_free(l->t);
   free(l->id);
 }
 
@@ -120,7 +120,7 @@ START_TEST(triangle_has_its_constants) {
     looker l;
     solve(&c);
     look_at(&l, &c, rows[k].mu);
-    const theory_report *t = look(&l);
+    const theorems_report *t = look(&l);
     ck_assert_int_eq(t->n_contact, 1);
     ck_assert_double_eq_tol(exact, 0.8315, 5e-5);
     ck_assert_double_eq_tol(t->contacts[0].limit, exact, 1e-12);
@@ -150,7 +150,7 @@ START_TEST(above_the_critical_mu_it_does_not_contract) {
   c.u[1] = s * 1.9066666666666667;
   c.r[0] = -1.0 / 12.0;
   c.r[1] = -s * 0.25;
-  const theory_report *t = look(&l);
+  const theorems_report *t = look(&l);
   ck_assert_int_eq(t->contacts[0].regime, MU_ABOVE);
   ck_assert_double_eq_tol(t->contacts[0].rate, 3.0 / 1.8, 1e-9);
   ck_assert_int_eq(t->inequality_violated, 0);
@@ -226,7 +226,7 @@ START_TEST(bounds_hold_under_the_guaranteed_limit) {
     for (int i = 0; i < c.cp.m; ++i) c.f[i] *= k % 4 == 3 ? 1e-3 : 1.0;
     for (int step = 0; step < 6; ++step) {
       solve(&c);
-      const theory_report *t = look(&l);
+      const theorems_report *t = look(&l);
       ck_assert_double_eq_tol(t->contacts[0].factor, share, 1e-9);
       ck_assert_ptr_null(t->total.why);
       ck_assert_ptr_null(t->change.why);
@@ -352,7 +352,7 @@ START_TEST(block_held_by_contact_has_a_limit_and_no_bounds) {
   looker l;
   solve(&c);
   look_at(&l, &c, 0.05);
-  const theory_report *t = look(&l);
+  const theorems_report *t = look(&l);
   ck_assert_int_eq(t->contacts[0].regime, MU_UNDER);
   ck_assert_ptr_nonnull(t->total.why);
   ck_assert_int_eq(t->violated, 0);
@@ -377,7 +377,7 @@ START_TEST(refused_memory_is_told_and_returned) {
     looker l;
     look_at(&l, &c, 0.2);
     memory_refuse(k, 0);
-    status st = theory_check(l.t, &l.scene, &l.rep);
+    status st = theorems_check(l.t, &l.scene, &l.rep);
     memory_refuse(0, 0);
     look_away(&l);
     ck_assert_uint_eq(memory_in_use(), before);

@@ -1,5 +1,5 @@
 /*
- * (3.9) and (3.10) of CPR98 in the energy norm (theory.h).
+ * (3.9) and (3.10) of CPR98 in the energy norm (theorems.h).
  *
  * With w = 0 (or the initial penetration) as test field in S_i^n and
  * |ut0| - |u_t - ut0| <= |u_t|:
@@ -9,7 +9,7 @@
  *   |z|^2 <= (df - A e, z) + sum |dg_i| |z_t,i|.
  * Both give |z| <= (|load|_* + c)/(1 - q).
  */
-#include "accuracy/theorems/theory.h"
+#include "accuracy/theorems/theorems.h"
 
 #include "base/memory.h"
 
@@ -62,9 +62,9 @@ static void shift(const contact_problem *cp, energy_norm *n, const double *e,
   }
 }
 
-static void compare(const theory_contact *all, energy_norm *e, const double *z,
-                    const double *load, double limit, double scale,
-                    theory_bound *b) {
+static void compare(const theorems_contact *all, energy_norm *e,
+                    const double *z, const double *load, double limit,
+                    double scale, theorems_bound *b) {
   b->left = energy_norm_of(e, z);
   b->right = energy_norm_dual(e, load);
   scale = fmax(scale, fmax(b->left, b->right));
@@ -74,7 +74,8 @@ static void compare(const theory_contact *all, energy_norm *e, const double *z,
 }
 
 status bound_total(const contact_problem *cp, const double *u,
-                   const theory_contact *all, energy_norm *e, theory_bound *b) {
+                   const theorems_contact *all, energy_norm *e,
+                   theorems_bound *b) {
   status st = OK;
   double *w = NULL, *z = NULL, *load = NULL, limit = 0.0;
   NEW(w, cp->m);
@@ -132,8 +133,8 @@ static double limit_change(const contact_problem *cp,
 }
 
 status bound_change(const contact_problem *cp, const double *u,
-                    const state_before *before, const theory_contact *all,
-                    energy_norm *n, theory_bound *b) {
+                    const state_before *before, const theorems_contact *all,
+                    energy_norm *n, theorems_bound *b) {
   status st = OK;
   double *e = NULL, *z = NULL, *load = NULL;
   double limit = limit_change(cp, before);

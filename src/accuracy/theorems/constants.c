@@ -1,5 +1,5 @@
 /* Norms in the energy of A, and the constants of friction in them. */
-#include "accuracy/theorems/theory.h"
+#include "accuracy/theorems/theorems.h"
 
 #include "base/memory.h"
 
@@ -150,7 +150,7 @@ static status tangential_constant(block *b, int limits, double *largest) {
 }
 
 status friction_constants(const contact_problem *cp, energy_norm *e, int limits,
-                          theory_contact *out) {
+                          theorems_contact *out) {
   status st = OK;
   block b = {.cp = cp, .e = e};
   unsigned char *pressed = NULL;

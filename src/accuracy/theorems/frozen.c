@@ -1,6 +1,6 @@
 /* A contact problem with part of its sliding limit and of its normal forces
- * given (theory.h). */
-#include "accuracy/theorems/theory.h"
+ * given (theorems.h). */
+#include "accuracy/theorems/theorems.h"
 
 #include "base/memory.h"
 

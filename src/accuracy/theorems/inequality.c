@@ -3,7 +3,7 @@
  * K and the functional j of a frozen limit are sums over the nodes, so a field
  * on one node at a time decides; fields on all nodes are tried as well.
  */
-#include "accuracy/theorems/theory.h"
+#include "accuracy/theorems/theorems.h"
 
 #include "base/memory.h"
 

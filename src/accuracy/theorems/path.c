@@ -1,5 +1,5 @@
-/* The fixed point of Theorem 3.2 of CPR98: rate and constants (theory.h). */
-#include "accuracy/theorems/theory.h"
+/* The fixed point of Theorem 3.2 of CPR98: rate and constants (theorems.h). */
+#include "accuracy/theorems/theorems.h"
 
 #include <math.h>
 
@@ -7,7 +7,7 @@ enum { PASSES = 120 };
 static const double STEADY =
     1e-7; /* -, change of the factor from pass to pass */
 
-status theory_path_rate(const stress_map *map, double *rate) {
+status theorems_path_rate(const stress_map *map, double *rate) {
   status st = OK;
   double last = 0.0, first = 0.0;
   int calm = 0;
@@ -28,7 +28,7 @@ static double log_term(double x, double k) {
   return k * log(x) - lgamma(k + 1.0);
 }
 
-double theory_passes(double x) {
+double theorems_passes(double x) {
   double low = floor(x), high = 4.0 + ceil(3.0 * x);
   if (x < 1.0) return 1.0;
   if (!(high < 1e15)) return HUGE_VAL;

@@ -1,5 +1,5 @@
 /* The largest eigenvalue of a symmetric positive semidefinite map. */
-#include "accuracy/theorems/theory.h"
+#include "accuracy/theorems/theorems.h"
 
 #include "base/memory.h"
 

@@ -123,7 +123,7 @@ static effect_work products(const plan_sizes *s, double items) {
   return (effect_work){-1.0, s->increments * 3.0 * m * m};
 }
 
-static effect_work theory(const plan_sizes *s, double items) {
+static effect_work theorems(const plan_sizes *s, double items) {
   double m = contact_unknowns(s);
   return (effect_work){s->increments, m * m * m + s->increments * 80.0 *
                                                       (m * m + 100.0 * items)};
@@ -200,7 +200,7 @@ static const struct { const char *name; work_fn *of; } rows[] = {
   {"stresses", stresses},
   {"reactions", reactions},
   {"second solutions, jumps", products},
-  {"theory checks", theory},
+  {"theory checks", theorems},
   {"error of mesh", mesh_error},
   {"error of steps", time_error},
   {"error of solver", solver_error},

@@ -14,11 +14,11 @@
 #include <string.h>
 
 /* Strains of the row of the elements it is about into n->strain. */
-static void take_strains(neglect *n, const neglected *row) {
+static void take_strains(reduction *n, const neglected *row) {
   const int ns = n->m->ns, heat = row->bit == EFFECT_BIT_THERMAL;
   const double *from = heat ? n->heat : n->flown;
   for (int e = 0; e < n->msh->n_elem; ++e) {
-    const int own = heat || neglect_is_about(n, row, e);
+    const int own = heat || reduction_is_about(n, row, e);
     for (int i = 0; i < ns; ++i)
       n->strain[ns * e + i] = own ? from[ns * e + i] : 0.0;
   }
@@ -26,18 +26,19 @@ static void take_strains(neglect *n, const neglected *row) {
 
 /* What friction at node i would do against a way: no more than its limit, nor
  * than what takes the node back alone, N. */
-static double friction_force(const neglect *n, const state *s, int i,
+static double friction_force(const reduction *n, const state *s, int i,
                              double way) {
   const contact_problem *cp = s->problem;
   const int k = cp->dim * i;
   double held = 0.0;
   for (int a = 1; a < cp->dim; ++a)
     held = fmax(held, cp->A[(size_t)(k + a) * (size_t)(cp->m + 1)]);
-  return fmin(neglect_coefficient(n, s, i) * fmax(-s->rc[k], 0.0), held * way);
+  return fmin(reduction_coefficient(n, s, i) * fmax(-s->rc[k], 0.0),
+              held * way);
 }
 
 /* Friction against the way of each node into n->force, N. */
-static void take_friction(neglect *n, const state *s) {
+static void take_friction(reduction *n, const state *s) {
   const contact_surface *c = s->surface;
   const int dim = n->msh->dim, sides = dim - 1;
   for (int i = 0; c != NULL && i < c->n; ++i) {
@@ -53,7 +54,7 @@ static void take_friction(neglect *n, const state *s) {
   }
 }
 
-static void take_forces(neglect *n, const state *s, const neglected *row) {
+static void take_forces(reduction *n, const state *s, const neglected *row) {
   const eigenstrain x = {n->msh->n_elem, n->elem_id, n->strain};
   memset(n->force, 0,
          (size_t)(n->msh->dim * n->msh->n_node) * sizeof *n->force);
@@ -100,25 +101,25 @@ static force_sizes sizes_of(const contact_surface *c, const double *rc,
 
 /* The forces against those of the increment; of friction against its largest
  * so far. */
-static double force_change(neglect *n, const state *s, const double *rc) {
+static double force_change(reduction *n, const state *s, const double *rc) {
   const force_sizes now = sizes_of(s->surface, s->rc, NULL);
   const force_sizes d = sizes_of(s->surface, rc, s->rc);
-  double worst = neglect_part(d.node[0], now.node[0]);
-  worst = fmax(worst, neglect_part(fabs(d.sum[0]), fabs(now.sum[0])));
+  double worst = reduction_part(d.node[0], now.node[0]);
+  worst = fmax(worst, reduction_part(fabs(d.sum[0]), fabs(now.sum[0])));
   if (!(n->m->effects & EFFECT_FRICTION)) return worst;
-  worst = fmax(worst, neglect_part(d.node[1], n->tangential));
-  return fmax(worst, neglect_part(hypot(d.sum[1], d.sum[2]), n->total));
+  worst = fmax(worst, reduction_part(d.node[1], n->tangential));
+  return fmax(worst, reduction_part(hypot(d.sum[1], d.sum[2]), n->total));
 }
 
-static void grow_scales(neglect *n, const state *s) {
+static void grow_scales(reduction *n, const state *s) {
   if (s->surface == NULL) return;
   const force_sizes now = sizes_of(s->surface, s->rc, NULL);
   n->tangential = fmax(n->tangential, now.node[1]);
   n->total = fmax(n->total, hypot(now.sum[1], now.sum[2]));
 }
 
-status neglect_again(neglect *n, const state *s, int k, double bound,
-                     neglected *row) {
+status reduction_again(reduction *n, const state *s, int k, double bound,
+                       neglected *row) {
   status st = OK;
   double *rc = NULL;
   int solved = 0;
@@ -130,8 +131,8 @@ status neglect_again(neglect *n, const state *s, int k, double bound,
   if (s->surface != NULL) NEW(rc, s->surface->dim * s->surface->n);
   take_forces(n, s, row);
   TRY(s->again.solve(s->again.run, n->force, n->u, rc, &solved));
-  double change = solved ? neglect_part(distance(dofs, n->u, s->u),
-                                        largest_entry(dofs, s->u))
+  double change = solved ? reduction_part(distance(dofs, n->u, s->u),
+                                          largest_entry(dofs, s->u))
                          : HUGE_VAL;
   if (rc != NULL) change = fmax(change, force_change(n, s, rc));
   if (!(change <= row->change)) row->change = change;

@@ -23,13 +23,13 @@
 #include <math.h>
 #include <string.h>
 
-const double neglect_share = 0.1;
+const double reduction_share = 0.1;
 
 /* ---- scales of the deck ------------------------------------------------- */
 
 /* Largest stress that pressures and prescribed displacements speak of, Pa; 0:
  * not known (expressions, forces). */
-double neglect_load_stress(const model *m, const mesh *msh, double young) {
+double reduction_load_stress(const model *m, const mesh *msh, double young) {
   double most = 0.0;
   for (int i = 0; i < m->n_step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k) {
@@ -45,19 +45,19 @@ double neglect_load_stress(const model *m, const mesh *msh, double young) {
   return most;
 }
 
-double neglect_young(const material *mat) {
+double reduction_young(const material *mat) {
   double C = 0.0;
   for (int i = 0; i < 3; ++i) C = fmax(C, mat->C[7 * i]);
   return C;
 }
 
-int neglect_has_initial(const model *m) {
+int reduction_has_initial(const model *m) {
   for (int i = 0; i < m->n_initial; ++i)
     if (m->initials[i].type != INITIAL_TEMPERATURE) return 1;
   return m->start.given;
 }
 
-neglected *neglect_row(model *m, int bit, int id) {
+neglected *reduction_row(model *m, int bit, int id) {
   if (m->n_neglected == NEGLECT_MAX) return NULL;
   neglected *row = &m->neglected[m->n_neglected++];
   *row = (neglected){.bit = bit, .id = id};
@@ -119,8 +119,8 @@ static double thermal_part(const model *m, const mesh *msh) {
         (mat->law.ops != NULL &&
          (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE)))
       return HUGE_VAL;
-    double strain =
-        neglect_load_stress(m, msh, neglect_young(mat)) / neglect_young(mat);
+    double strain = reduction_load_stress(m, msh, reduction_young(mat)) /
+                    reduction_young(mat);
     if (!mat->expand.given) continue;
     expansion_strain(&mat->expand, T, 0.0, e);
     for (int k = 0; k < 3; ++k) worst = fmax(worst, fabs(e[k]) / strain);
@@ -133,12 +133,12 @@ static status try_thermal(model *m, const mesh *msh) {
   int jumps;
   if (!(m->effects & EFFECT_THERMAL)) goto done;
   double worst = thermal_part(m, msh);
-  if (!(worst <= neglect_share * m->effects_tol)) goto done;
+  if (!(worst <= reduction_share * m->effects_tol)) goto done;
   if (m->effects & EFFECT_INELASTIC) {
     TRY(find_jump(m, msh, &jumps));
     if (jumps) goto done;
   }
-  neglected *row = neglect_row(m, EFFECT_BIT_THERMAL, -1);
+  neglected *row = reduction_row(m, EFFECT_BIT_THERMAL, -1);
   if (row == NULL) goto done;
   snprintf(row->why, sizeof row->why,
            "at most %.1e of the strain the loads make", worst);
@@ -203,7 +203,7 @@ static void try_average(model *m, const mesh *msh) {
       any = 1;
     }
   }
-  neglected *row = any ? neglect_row(m, EFFECT_BIT_NONLOCAL, -1) : NULL;
+  neglected *row = any ? reduction_row(m, EFFECT_BIT_NONLOCAL, -1) : NULL;
   if (row != NULL)
     snprintf(row->why, sizeof row->why,
              "RADIUS is below %.3g, the least distance of contact nodes: the "
@@ -216,7 +216,7 @@ static void try_average(model *m, const mesh *msh) {
 static double all_increments(const model *m) {
   double n = 0.0;
   for (int i = 0; i < m->n_step; ++i)
-    n += neglect_increments(&m->steps[i], m->steps[i].dt);
+    n += reduction_increments(&m->steps[i], m->steps[i].dt);
   return n;
 }
 
@@ -238,7 +238,7 @@ static double largest_mu(const model *m) {
 static int has_no_coupling(const model *m) {
   for (int i = 0; i < m->n_material; ++i) {
     const material *mat = &m->materials[i];
-    double most = neglect_young(mat);
+    double most = reduction_young(mat);
     for (int k = 0; k < 9 && mat->used; ++k)
       if (k % 4 != 0 && fabs(mat->C[6 * (k / 3) + k % 3]) > 1e-12 * most)
         return 0;
@@ -265,15 +265,15 @@ done:
 
 static status try_friction(model *m, const mesh *msh) {
   status st = OK;
-  double mu = largest_mu(m), part = 2.0 * neglect_share * m->effects_tol;
+  double mu = largest_mu(m), part = 2.0 * reduction_share * m->effects_tol;
   int holds = 0, small = mu * all_increments(m) <= part * part;
   if (!(m->effects & EFFECT_FRICTION) || (m->effects & EFFECT_GIVEN) ||
-      !(mu < HUGE_VAL) || neglect_has_initial(m))
+      !(mu < HUGE_VAL) || reduction_has_initial(m))
     goto done;
   if (!small && !has_no_coupling(m)) goto done;
   TRY(friction_holds(m, msh, &holds));
   if (holds) goto done;
-  neglected *row = neglect_row(m, EFFECT_BIT_FRICTION, -1);
+  neglected *row = reduction_row(m, EFFECT_BIT_FRICTION, -1);
   if (row == NULL) goto done;
   if (small)
     snprintf(row->why, sizeof row->why, "mu is at most %.1e", mu);
@@ -290,7 +290,7 @@ done:
 static int must_stay(const model *m) {
   for (int i = 0; i < m->n_step; ++i) {
     const step *s = &m->steps[i];
-    if (s->check != CHECK_NONE || s->theory || s->condensed_frequency >= 0 ||
+    if (s->check != CHECK_NONE || s->theorems || s->condensed_frequency >= 0 ||
         s->form == FORM_VELOCITY || s->restart_frequency >= 0 ||
         s->tolerance > 0.0 || s->time_balanced)
       return 1;
@@ -301,13 +301,13 @@ static int must_stay(const model *m) {
   return m->target.percent > 0.0;
 }
 
-status neglect_choose(model *m, const mesh *msh) {
+status reduction_choose(model *m, const mesh *msh) {
   status st = OK;
   m->n_neglected = 0;
   if (must_stay(m)) goto done;
   try_average(m, msh);
   TRY(try_thermal(m, msh));
-  TRY(neglect_try_laws(m, msh));
+  TRY(reduction_try_laws(m, msh));
   TRY(try_friction(m, msh));
 done:
   return st;

@@ -48,7 +48,7 @@ done:
 }
 
 /* Kinematics of the first section of a material, or -1. */
-int neglect_kinematics(const model *m, int material_id) {
+int reduction_kinematics(const model *m, int material_id) {
   for (int i = 0; i < m->n_section; ++i)
     if (m->sections[i].material_id == material_id) return m->sections[i].kin;
   return -1;
@@ -60,14 +60,15 @@ int neglect_kinematics(const model *m, int material_id) {
 static status try_small(model *m, const mesh *msh, int id, int *tried) {
   status st = OK;
   material *mat = &m->materials[id];
-  double rate, young = neglect_young(mat);
+  double rate, young = reduction_young(mat);
   *tried = 0;
-  double stress = neglect_load_stress(m, msh, young);
+  double stress = reduction_load_stress(m, msh, young);
   if (!(stress > 0.0)) goto done;
-  TRY(uniaxial_rate(mat, (kinematics)neglect_kinematics(m, id), stress, &rate));
+  TRY(uniaxial_rate(mat, (kinematics)reduction_kinematics(m, id), stress,
+                    &rate));
   double share = rate * visco_time(m) * young / stress;
-  if (!(share <= neglect_share * m->effects_tol)) goto done;
-  neglected *row = neglect_row(m, EFFECT_BIT_INELASTIC, id);
+  if (!(share <= reduction_share * m->effects_tol)) goto done;
+  neglected *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
   if (row == NULL) goto done;
   *tried = 1;
   if (rate > 0.0)
@@ -132,13 +133,13 @@ static status try_relaxed(model *m, int id) {
   double R[36], time, dt = damped_increment(m);
   if (!(dt > 0.0) || mat->elastic.type != ELASTIC_ISO) goto done;
   TRY(relaxed_law(mat, SOLID_3D, R, &time));
-  if (!(time > 0.0) || !(time <= neglect_share * m->effects_tol * dt))
+  if (!(time > 0.0) || !(time <= reduction_share * m->effects_tol * dt))
     goto done;
-  neglected *row = neglect_row(m, EFFECT_BIT_INELASTIC, id);
+  neglected *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
   if (row == NULL) goto done;
   row->time = time;
   relaxed_constants(&mat->elastic.set[0], R, &mat->elastic_aside);
-  TRY(relaxed_law(mat, (kinematics)neglect_kinematics(m, id), mat->relaxed,
+  TRY(relaxed_law(mat, (kinematics)reduction_kinematics(m, id), mat->relaxed,
                   &time));
   snprintf(row->why, sizeof row->why,
            "material %s: %s ends within %.3g, %.1e of an increment; E = %.6g, "
@@ -153,7 +154,7 @@ static status try_law(model *m, const mesh *msh, int id) {
   status st = OK;
   const material *mat = &m->materials[id];
   int tried;
-  if (mat->law.ops == NULL || neglect_kinematics(m, id) < 0 ||
+  if (mat->law.ops == NULL || reduction_kinematics(m, id) < 0 ||
       mat->elastic.n != 1 || law_varies(&mat->law) != 0)
     goto done;
   TRY(try_small(m, msh, id, &tried));
@@ -162,11 +163,11 @@ done:
   return st;
 }
 
-status neglect_try_laws(model *m, const mesh *msh) {
+status reduction_try_laws(model *m, const mesh *msh) {
   status st = OK;
-  if (!(m->effects & EFFECT_INELASTIC) || neglect_has_initial(m)) goto done;
+  if (!(m->effects & EFFECT_INELASTIC) || reduction_has_initial(m)) goto done;
   for (int i = 0; i < m->n_material; ++i) TRY(try_law(m, msh, i));
-  TRY(neglect_try_threshold(m, msh));
+  TRY(reduction_try_threshold(m, msh));
 done:
   return st;
 }

@@ -1,7 +1,7 @@
 /*
  * Effects out of the model for a run, and back into it.
  */
-#include "effects/reduction/neglect.h"
+#include "effects/reduction/reduction.h"
 
 /* Each friction rule of the model once. */
 static void each_rule(model *m, void (*change)(friction_rule *rule)) {
@@ -40,7 +40,7 @@ static void change_constants(material *mat) {
   mat->is_relaxed = !mat->is_relaxed;
 }
 
-void neglect_leave_out(model *m) {
+void reduction_leave_out(model *m) {
   for (int i = 0; i < m->n_neglected; ++i) {
     neglected *row = &m->neglected[i];
     if (row->back) continue;
@@ -61,7 +61,7 @@ void neglect_leave_out(model *m) {
       m->effects &= ~(unsigned)EFFECT_THERMAL;
 }
 
-void neglect_restore(model *m) {
+void reduction_restore(model *m) {
   each_rule(m, put_back);
   for (int i = 0; i < m->n_material; ++i) {
     material *mat = &m->materials[i];

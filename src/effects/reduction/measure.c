@@ -27,7 +27,7 @@
 
 enum { SAFETY = 2 };
 
-static status new_domain(neglect *n) {
+static status new_domain(reduction *n) {
   status st = OK;
   const model *m = n->m;
   size_t square = (size_t)(m->ns * m->ns);
@@ -56,9 +56,9 @@ done:
   return st;
 }
 
-status neglect_new(const model *m, const mesh *msh, neglect **out) {
+status reduction_new(const model *m, const mesh *msh, reduction **out) {
   status st = OK;
-  neglect *n = NULL;
+  reduction *n = NULL;
   const size_t strains = (size_t)m->ns * (size_t)msh->n_elem;
   *out = NULL;
   NEW(n, 1);
@@ -83,11 +83,11 @@ status neglect_new(const model *m, const mesh *msh, neglect **out) {
   *out = n;
   n = NULL;
 done:
-  neglect_free(n);
+  reduction_free(n);
   return st;
 }
 
-void neglect_free(neglect *n) {
+void reduction_free(reduction *n) {
   if (n == NULL) return;
   double *const arrays[] = {n->thickness, n->E,         n->C,      n->sigma,
                             n->T0,        n->T,         n->heat,   n->stress,
@@ -101,20 +101,20 @@ void neglect_free(neglect *n) {
   memory_free(n);
 }
 
-const material *neglect_material(const neglect *n, int elem_id) {
+const material *reduction_material(const reduction *n, int elem_id) {
   const model *m = n->m;
   return &m->materials[m->sections[m->elem_section[elem_id]].material_id];
 }
 
-int neglect_is_about(const neglect *n, const neglected *row, int elem_id) {
-  return neglect_material(n, elem_id) == &n->m->materials[row->id] &&
+int reduction_is_about(const reduction *n, const neglected *row, int elem_id) {
+  return reduction_material(n, elem_id) == &n->m->materials[row->id] &&
          (row->some == 0 || n->m->still[elem_id]);
 }
 
 /* ---- scales ------------------------------------------------------------- */
 
 /* Largest contact pressure, or stress of an element, Pa. */
-static double stress_scale(const neglect *n, const state *s) {
+static double stress_scale(const reduction *n, const state *s) {
   double most = 0.0;
   const contact_surface *c = s->surface;
   for (int i = 0; c != NULL && i < c->n; ++i)
@@ -126,12 +126,12 @@ static double stress_scale(const neglect *n, const state *s) {
 }
 
 /* a / b; nothing is no part of anything. */
-double neglect_part(double a, double b) {
+double reduction_part(double a, double b) {
   return a == 0.0 ? 0.0 : b > 0.0 ? a / b : HUGE_VAL;
 }
 
 /* e' E e of a strain; its largest stress into *stress. */
-static double energy_of(const neglect *n, int elem_id, const double *e,
+static double energy_of(const reduction *n, int elem_id, const double *e,
                         double *stress) {
   double held[6], sum = 0.0;
   int ns = n->m->ns;
@@ -149,7 +149,7 @@ static double energy_of(const neglect *n, int elem_id, const double *e,
 
 /* Stresses of the run into n->sigma: its thermal strains and those of the laws
  * in force carry none. */
-status neglect_stress(neglect *n, const state *s) {
+status reduction_stress(reduction *n, const state *s) {
   status st = OK;
   const model *m = n->m;
   const int ns = m->ns, warm = (m->effects & EFFECT_THERMAL) != 0;
@@ -160,8 +160,9 @@ status neglect_stress(neglect *n, const state *s) {
   for (int e = 0; e < n->msh->n_elem; ++e) {
     double *own = n->strain + (size_t)(ns * e);
     for (int i = 0; i < ns; ++i) own[i] = 0.0;
-    if (warm && neglect_material(n, e)->expand.given)
-      expansion_strain(&neglect_material(n, e)->expand, n->T[e], n->T0[e], own);
+    if (warm && reduction_material(n, e)->expand.given)
+      expansion_strain(&reduction_material(n, e)->expand, n->T[e], n->T0[e],
+                       own);
   }
   for (int k = 0; s->flow != NULL && k < s->flow->n; ++k)
     for (int i = 0; i < ns; ++i)
@@ -175,7 +176,7 @@ done:
 
 /* ---- the effects -------------------------------------------------------- */
 
-static status measure_thermal(neglect *n, const state *s, double *sum,
+static status measure_thermal(reduction *n, const state *s, double *sum,
                               double *norm, double *stress) {
   status st = OK;
   double now = 0.0, change = 0.0;
@@ -185,7 +186,7 @@ static status measure_thermal(neglect *n, const state *s, double *sum,
                        n->T));
   for (int e = 0; e < n->msh->n_elem; ++e) {
     double strain[6] = {0.0}, moved[6] = {0.0}, own, none;
-    const material *mat = neglect_material(n, e);
+    const material *mat = reduction_material(n, e);
     if (!mat->expand.given) continue;
     double w = element_weight(&n->d, e);
     expansion_strain(&mat->expand, n->T[e], n->T0[e], strain);
@@ -210,7 +211,7 @@ done:
  * which an implicit Euler step has exactly; not at all where the law does not
  * flow, nor where a load is applied at once (dt = 0).
  */
-static void measure_relaxed(neglect *n, const neglected *row, double dt,
+static void measure_relaxed(reduction *n, const neglected *row, double dt,
                             double *norm, double *stress) {
   const int ns = n->m->ns;
   const material *mat = &n->m->materials[row->id];
@@ -221,7 +222,7 @@ static void measure_relaxed(neglect *n, const neglected *row, double dt,
     double ended[6], own;
     double *before = n->flow_rate + (size_t)(ns * e);
     double *lag = n->flown + (size_t)(ns * e);
-    if (!neglect_is_about(n, row, e)) continue;
+    if (!reduction_is_about(n, row, e)) continue;
     tensor_product(ns, mat->relaxed, n->sigma + (size_t)(ns * e), ended);
     for (int i = 0; i < ns; ++i) {
       lag[i] = left * (lag[i] - (ended[i] - before[i]));
@@ -235,7 +236,7 @@ static void measure_relaxed(neglect *n, const neglected *row, double dt,
 
 /* Rates of one material under the stresses at hand: their norm; n->stress of
  * its elements grows by dt. */
-static status add_rates(neglect *n, const state *s, const neglected *row,
+static status add_rates(reduction *n, const state *s, const neglected *row,
                         double dt, double *norm) {
   status st = OK;
   const material *mat = &n->m->materials[row->id];
@@ -248,7 +249,7 @@ static status add_rates(neglect *n, const state *s, const neglected *row,
   for (int e = 0; e < n->msh->n_elem; ++e) {
     law_point p;
     double ei_rate[6] = {0.0}, stress;
-    if (!neglect_is_about(n, row, e)) continue;
+    if (!reduction_is_about(n, row, e)) continue;
     if (section_id != n->m->elem_section[e]) {
       law_elastic elastic;
       section_id = n->m->elem_section[e];
@@ -275,8 +276,8 @@ done:
   return st;
 }
 
-static status measure_inelastic(neglect *n, const state *s, int k, double *norm,
-                                double *stress) {
+static status measure_inelastic(reduction *n, const state *s, int k,
+                                double *norm, double *stress) {
   status st = OK;
   const neglected *row = &n->m->neglected[k];
   double now;
@@ -291,14 +292,14 @@ static status measure_inelastic(neglect *n, const state *s, int k, double *norm,
   *norm = SAFETY * n->sum[k];
   *stress = 0.0;
   for (int e = 0; e < n->msh->n_elem; ++e)
-    if (neglect_is_about(n, row, e))
+    if (reduction_is_about(n, row, e))
       *stress = fmax(*stress, SAFETY * n->stress[e]);
 done:
   return st;
 }
 
 /* The rule that was taken out. */
-double neglect_coefficient(const neglect *n, const state *s, int i) {
+double reduction_coefficient(const reduction *n, const state *s, int i) {
   const contact_surface *c = s->surface;
   const friction_rule *rule =
       friction_in_force(n->m, s->step_no - 1, c->contact_id[i]);
@@ -308,7 +309,7 @@ double neglect_coefficient(const neglect *n, const state *s, int i) {
   return quantity_value(&rule->card.value, x, s->t);
 }
 
-static void measure_friction(neglect *n, const state *s, double *sum,
+static void measure_friction(reduction *n, const state *s, double *sum,
                              double *norm) {
   const contact_surface *c = s->surface;
   const int sides = n->msh->dim - 1;
@@ -318,16 +319,16 @@ static void measure_friction(neglect *n, const state *s, double *sum,
     for (int k = 0; k < sides; ++k) slip = hypot(slip, s->slip[sides * i + k]);
     for (int k = 0; k < sides; ++k)
       n->way[sides * c->node_id[i] + k] += s->slip[sides * i + k];
-    work += neglect_coefficient(n, s, i) * fmax(p, 0.0) * slip;
+    work += reduction_coefficient(n, s, i) * fmax(p, 0.0) * slip;
   }
   *sum += sqrt(work);
   *norm = SAFETY * *sum;
 }
 
-status neglect_measure(neglect *n, const state *s, neglected *rows) {
+status reduction_measure(reduction *n, const state *s, neglected *rows) {
   status st = OK;
   double size = sqrt(2.0 * fmax(s->energy.strain, 0.0));
-  TRY(neglect_stress(n, s));
+  TRY(reduction_stress(n, s));
   double scale = stress_scale(n, s);
   for (int k = 0; k < n->m->n_neglected; ++k) {
     double norm = 0.0, stress = 0.0;
@@ -339,9 +340,9 @@ status neglect_measure(neglect *n, const state *s, neglected *rows) {
       TRY(measure_inelastic(n, s, k, &norm, &stress));
     if (row->bit == EFFECT_BIT_FRICTION)
       measure_friction(n, s, &n->sum[k], &norm);
-    double bound = neglect_part(norm, size),
-           local = neglect_part(stress, scale);
-    TRY(neglect_again(n, s, k, bound, row));
+    double bound = reduction_part(norm, size),
+           local = reduction_part(stress, scale);
+    TRY(reduction_again(n, s, k, bound, row));
     if (!(bound <= row->bound)) row->bound = bound;
     if (!(local <= row->local)) row->local = local;
     ++row->checked;
@@ -350,24 +351,24 @@ done:
   return st;
 }
 
-static int neglect_holds(const model *m, const neglected *row) {
-  return row->checked > 0 && row->bound <= neglect_share * m->effects_tol &&
+static int reduction_holds(const model *m, const neglected *row) {
+  return row->checked > 0 && row->bound <= reduction_share * m->effects_tol &&
          row->local <= m->effects_tol && row->change <= 0.5 * m->effects_tol;
 }
 
-int neglect_refuted(const model *m) {
+int reduction_refuted(const model *m) {
   for (int k = 0; k < m->n_neglected; ++k)
     if (!m->neglected[k].back && m->neglected[k].checked > 0 &&
-        !neglect_holds(m, &m->neglected[k]))
+        !reduction_holds(m, &m->neglected[k]))
       return 1;
   return 0;
 }
 
-int neglect_take_back(model *m, int all) {
+int reduction_take_back(model *m, int all) {
   int n = 0;
   for (int k = 0; k < m->n_neglected; ++k) {
     neglected *row = &m->neglected[k];
-    if (row->back || (neglect_holds(m, row) && !all)) continue;
+    if (row->back || (reduction_holds(m, row) && !all)) continue;
     row->back = 1;
     row->lost = all;
     ++n;

@@ -1,12 +1,12 @@
 /*
  * What the bounds are summed up from, shared by the files of this folder only.
  */
-#ifndef PROTIS_NEGLECT_PARTS_H
-#define PROTIS_NEGLECT_PARTS_H
+#ifndef PROTIS_REDUCTION_PARTS_H
+#define PROTIS_REDUCTION_PARTS_H
 
-#include "effects/reduction/neglect.h"
+#include "effects/reduction/reduction.h"
 
-struct neglect {
+struct reduction {
   const model *m;
   const mesh *msh;
   domain d;
@@ -35,33 +35,33 @@ struct neglect {
 /* choose.c: scales of the deck. */
 /* Largest stress that pressures and prescribed displacements speak of, Pa; 0:
  * not known (expressions, forces). */
-double neglect_load_stress(const model *m, const mesh *msh, double young);
-double neglect_young(const material *mat); /* Pa                              */
-int neglect_has_initial(const model *m);   /* 1: of strains, displacements    */
+double reduction_load_stress(const model *m, const mesh *msh, double young);
+double reduction_young(const material *mat); /* Pa */
+int reduction_has_initial(const model *m); /* 1: of strains, displacements    */
 /* A new row; NULL: there is no room. */
-neglected *neglect_row(model *m, int bit, int id);
+neglected *reduction_row(model *m, int bit, int id);
 /* laws.c: materials to try without their law. */
-status neglect_try_laws(model *m, const mesh *msh);
+status reduction_try_laws(model *m, const mesh *msh);
 
-int neglect_kinematics(const model *m, int material_id);
+int reduction_kinematics(const model *m, int material_id);
 /* Increments of a step if each has dt. */
-double neglect_increments(const step *s, double dt);
+double reduction_increments(const step *s, double dt);
 /* threshold.c: elements that stay below the threshold of their law. */
-status neglect_try_threshold(model *m, const mesh *msh);
+status reduction_try_threshold(model *m, const mesh *msh);
 
-const material *neglect_material(const neglect *n, int elem_id);
+const material *reduction_material(const reduction *n, int elem_id);
 /* 1: the row leaves out the law of that element. */
-int neglect_is_about(const neglect *n, const neglected *row, int elem_id);
+int reduction_is_about(const reduction *n, const neglected *row, int elem_id);
 /* Stresses of the run into n->sigma. */
-status neglect_stress(neglect *n, const state *s);
+status reduction_stress(reduction *n, const state *s);
 /* Coefficient of the friction left out at contact node i. */
-double neglect_coefficient(const neglect *n, const state *s, int i);
+double reduction_coefficient(const reduction *n, const state *s, int i);
 /* a / b; nothing is no part of anything. */
-double neglect_part(double a, double b);
+double reduction_part(double a, double b);
 
 /* again.c: the increment with the effect of row k in force, where the row's
  * "bound" now has doubled since the last time or the step ends. */
-status neglect_again(neglect *n, const state *s, int k, double bound,
-                     neglected *row);
+status reduction_again(reduction *n, const state *s, int k, double bound,
+                       neglected *row);
 
 #endif

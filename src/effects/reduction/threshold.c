@@ -21,7 +21,7 @@ enum {
       times those of the elastic one           */
 
 typedef struct preview {
-  neglect *n;
+  reduction *n;
   unsigned char *flows; /* [n_elem] 1: comes near its threshold               */
   status st;
 } preview;
@@ -37,10 +37,10 @@ static int has_threshold(const model *m, int id) {
   const material *mat = &m->materials[id];
   return mat->law.ops != NULL && mat->law.ops->flows != NULL &&
          mat->elastic.n == 1 && law_varies(&mat->law) == 0 &&
-         neglect_kinematics(m, id) >= 0 && !is_tried(m, id);
+         reduction_kinematics(m, id) >= 0 && !is_tried(m, id);
 }
 
-double neglect_increments(const step *s, double dt) {
+double reduction_increments(const step *s, double dt) {
   return s->kind == STEP_STATIC ? 1.0 : ceil(s->total / dt);
 }
 
@@ -54,8 +54,8 @@ static int is_worth_it(const model *m) {
   int any = 0;
   for (int i = 0; i < m->n_material; ++i) any |= has_threshold(m, i);
   for (int i = 0; i < m->n_step; ++i) {
-    few += neglect_increments(&m->steps[i], short_step(&m->steps[i]));
-    all += neglect_increments(&m->steps[i], m->steps[i].dt);
+    few += reduction_increments(&m->steps[i], short_step(&m->steps[i]));
+    all += reduction_increments(&m->steps[i], m->steps[i].dt);
   }
   return any && all >= WORTH * few;
 }
@@ -63,7 +63,7 @@ static int is_worth_it(const model *m) {
 /* Elements of one material whose law flows under the margin of the stresses. */
 static status see_material(preview *p, int id, double t) {
   status st = OK;
-  const neglect *n = p->n;
+  const reduction *n = p->n;
   const model *m = n->m;
   const material *mat = &m->materials[id];
   law_card law = mat->law;
@@ -74,13 +74,13 @@ static status see_material(preview *p, int id, double t) {
   static const double zero[FLOW_VALUE_MAX];
   law.ops = mat->law_aside;
   TRY(law_elastic_read(&mat->elastic, 0.0,
-                       (kinematics)neglect_kinematics(m, id), &elastic));
+                       (kinematics)reduction_kinematics(m, id), &elastic));
   TRY(flow_new_kind(&kind, &law, &elastic));
   TRY(flow_coefficients(&kind, t, 0.0, value, &point));
   point.sigma = sigma;
   point.ei = point.alpha = zero;
   for (int e = 0; e < n->msh->n_elem; ++e) {
-    if (p->flows[e] || neglect_material(n, e) != mat) continue;
+    if (p->flows[e] || reduction_material(n, e) != mat) continue;
     for (int i = 0; i < m->ns; ++i) sigma[i] = margin * n->sigma[m->ns * e + i];
     p->flows[e] = (unsigned char)law_flows(&point);
   }
@@ -93,7 +93,7 @@ static status see_increment(void *ctx, const state *s) {
   status st = OK;
   preview *p = ctx;
   const model *m = p->n->m;
-  TRY(neglect_stress(p->n, s));
+  TRY(reduction_stress(p->n, s));
   for (int i = 0; i < m->n_material; ++i)
     if (m->materials[i].law_aside != NULL &&
         m->materials[i].law_aside->flows != NULL)
@@ -124,13 +124,13 @@ static status run_elastic(model *m, const mesh *msh, unsigned char *flows,
   NEW(dt, m->n_step);
   for (int i = 0; i < m->n_step; ++i) dt[i] = m->steps[i].dt;
   make_elastic(m);
-  TRY(neglect_new(m, msh, &p.n));
+  TRY(reduction_new(m, msh, &p.n));
   *seen = history_run(m, msh, &sink, &unsettled) == OK;
   st = p.st;
 done:
   for (int i = 0; i < m->n_step && dt != NULL; ++i) m->steps[i].dt = dt[i];
-  neglect_restore(m);
-  neglect_free(p.n);
+  reduction_restore(m);
+  reduction_free(p.n);
   memory_free(dt);
   return st;
 }
@@ -145,7 +145,7 @@ static void add_rows(model *m, const mesh *msh, const unsigned char *flows) {
       m->still[e] = !flows[e];
       n += m->still[e];
     }
-    neglected *row = n > 0 ? neglect_row(m, EFFECT_BIT_INELASTIC, i) : NULL;
+    neglected *row = n > 0 ? reduction_row(m, EFFECT_BIT_INELASTIC, i) : NULL;
     if (row == NULL) continue;
     row->some = n < all ? n : 0;
     snprintf(row->why, sizeof row->why,
@@ -154,7 +154,7 @@ static void add_rows(model *m, const mesh *msh, const unsigned char *flows) {
   }
 }
 
-status neglect_try_threshold(model *m, const mesh *msh) {
+status reduction_try_threshold(model *m, const mesh *msh) {
   status st = OK;
   unsigned char *flows = NULL;
   int seen = 0;

@@ -134,7 +134,7 @@ enum { TIME_NO, TIME_YES, TIME_BALANCED }; /* TIME= of *ACCURACY              */
 typedef struct accuracy_param {
   int mesh, time, max_passes;
   double target, max_cpu, max_memory, time_share;
-  int solver, theory;
+  int solver, theorems;
 } accuracy_param;
 typedef struct effects_param {
   int mode;

@@ -74,7 +74,7 @@ status apply_accuracy(reading *r) {
   s->time_balanced = p->time == TIME_BALANCED;
   s->time_share = p->time_share;
   s->mesh_error |= s->time_balanced;
-  s->theory = p->theory;
+  s->theorems = p->theorems;
   if (!s->time_balanced && p->time_share != 0.1)
     tell_idle(r, "TIME_SHARE", "TIME=BALANCED");
   if (p->target > 0.0) {

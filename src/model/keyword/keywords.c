@@ -220,7 +220,7 @@ static const option accuracy_options[] = {
               "of the error of the mesh, with TIME=BALANCED"),
   OPTION_FLAG(accuracy_param, solver, "SOLVER", "YES",
               "bound of the error of the contact solver in the energy norm"),
-  OPTION_FLAG(accuracy_param, theory, "THEORY", "NO",
+  OPTION_FLAG(accuracy_param, theorems, "THEORY", "NO",
               "limits of mu, bounds (3.9), (3.10) and inequality of CPR98"),
   OPTION_REAL(accuracy_param, target, "TARGET", 0, 100, "0", "%",
               "error to reach by finer meshes and increments; 0: none"),

@@ -45,8 +45,8 @@ static void check_problem_tables(const reading *r, const step *s) {
 /* The bound of the error factors the matrix, which costs more than many
  * solutions: only on request. */
 static void check_problem_accuracy(const reading *r, step *s) {
-  int others =
-      s->mesh_error || s->time_error || s->theory || r->m->target.percent > 0.0;
+  int others = s->mesh_error || s->time_error || s->theorems ||
+               r->m->target.percent > 0.0;
   if (!s->has_accuracy)
     s->no_solver_error = 1;
   else if (others)

@@ -170,7 +170,7 @@ static status carry_choices(const step *old, step *s) {
     s->time_error = old->time_error;
     s->time_balanced = old->time_balanced;
     s->time_share = old->time_share;
-    s->theory = old->theory;
+    s->theorems = old->theorems;
   }
   if (!s->has_output) {
     s->output_frequency = old->output_frequency;

@@ -40,8 +40,8 @@ static error_share time_share(const increment_summary *i) {
 }
 
 static error_share true_share(const increment_summary *i) {
-  int asked = i->truth.asked && !isnan(i->truth.energy);
-  return (error_share){asked, i->truth.energy, i->truth.cpu, NULL};
+  int asked = i->exact.asked && !isnan(i->exact.energy);
+  return (error_share){asked, i->exact.energy, i->exact.cpu, NULL};
 }
 
 static error_share solver_share(const increment_summary *i) {

@@ -85,7 +85,7 @@ static void print_share(const char *of, const error_share *e, FILE *f) {
 /* Against *REFERENCE, as far as it goes. */
 static void print_truth(const state *s, FILE *f) {
   char text[NUMBER_SIZE];
-  const true_error *e = &s->truth;
+  const true_error *e = &s->exact;
   const struct {
     const char *text;
     double value;

@@ -41,9 +41,9 @@ typedef struct increment_summary {
   int checked, n_solution;   /* by CHECK= of *SOLVER                          */
   solution_facts *solutions; /* [n_solution] owned                            */
   error_share mesh_error, time_error;
-  true_error truth;
+  true_error exact;
   balance_report balance;
-  theory_report theory; /* its contacts are owned                             */
+  theorems_report theorems; /* its contacts are owned */
 } increment_summary;
 
 typedef struct pass_table {

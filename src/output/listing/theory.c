@@ -5,17 +5,17 @@
 
 #include <math.h>
 
-static const char *row_name(const model *m, const theory_contact *c) {
+static const char *row_name(const model *m, const theorems_contact *c) {
   return c->contact_id < 0 ? "(all)" : m->contacts[c->contact_id].name;
 }
 
 /* The eigenvalues, when they have been found anew. */
-static void print_constants(const job *j, const theory_report *t, FILE *f) {
+static void print_constants(const job *j, const theorems_report *t, FILE *f) {
   char text[2][NUMBER_SIZE], stiff[64], soft[64];
   column_unit("force/length", j->m, stiff, sizeof stiff);
   column_unit("length/force", j->m, soft, sizeof soft);
   for (int i = 0; t->fresh && i < t->n_contact; ++i) {
-    const theory_contact *c = &t->contacts[i];
+    const theorems_contact *c = &t->contacts[i];
     fprintf(f, "  theory: %s: largest eigenvalues of A_nn %s %s, ",
             row_name(j->m, c), text_number(text[0], c->normal, 4), stiff);
     if (c->tangent < HUGE_VAL)
@@ -26,13 +26,13 @@ static void print_constants(const job *j, const theory_report *t, FILE *f) {
   }
 }
 
-static void print_limits(const job *j, const theory_report *t, FILE *f) {
+static void print_limits(const job *j, const theorems_report *t, FILE *f) {
   char text[4][NUMBER_SIZE];
   if (t->n_contact == 0) return;
   fprintf(f, "  %-20s %12s %12s %12s %12s  %s\n", "theory: contact", "mu[-]",
           "1/C_h[-]", "contraction", "mu/contr.[-]", "mu is");
   for (int i = 0; i < t->n_contact; ++i) {
-    const theory_contact *c = &t->contacts[i];
+    const theorems_contact *c = &t->contacts[i];
     fprintf(
         f, "  %-20s %12s %12s %12s %12s  %s\n", row_name(j->m, c),
         text_number(text[0], c->mu, 4), text_number(text[1], c->limit, 4),
@@ -42,7 +42,7 @@ static void print_limits(const job *j, const theory_report *t, FILE *f) {
   }
 }
 
-static void print_bound(const job *j, const char *what, const theory_bound *b,
+static void print_bound(const job *j, const char *what, const theorems_bound *b,
                         FILE *f) {
   char text[2][NUMBER_SIZE], unit[64];
   if (b->why != NULL) {
@@ -56,7 +56,7 @@ static void print_bound(const job *j, const char *what, const theory_bound *b,
 }
 
 /* Theorem 3.2: laws that flow under given friction. */
-static void print_path(const job *j, const theory_path *p, FILE *f) {
+static void print_path(const job *j, const theorems_path *p, FILE *f) {
   static const char *const word[] = {"ok", "ok, but not below 1", "VIOLATED"};
   char text[2][NUMBER_SIZE], unit[64], time[64];
   if (!p->asked) return;
@@ -79,7 +79,7 @@ static void print_path(const job *j, const theory_path *p, FILE *f) {
 
 void listing_theory(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE];
-  const theory_report *t = &s->theory;
+  const theorems_report *t = &s->theorems;
   if (!t->asked) return;
   if (t->has_start && s->total_no == 1)
     fprintf(f, "  theory: (3.8) of the initial state: least %s\n",

@@ -105,14 +105,14 @@ void estimate_unloaded(run *r) {
     r->error.relative = sqrt(r->error.energy / e->largest);
 }
 
-static status find_truth(run *r) {
+static status find_exact_error(run *r) {
   status st = OK;
   double cpu = timer_cpu();
   const answer_fields a = {r->now.t, r->now.u, r->stress, r->now.rc};
-  r->truth.asked = (r->m->effects & EFFECT_REFERENCE) != 0;
-  if (!r->truth.asked) return OK;
-  TRY(truth_find(&r->m->ref, &r->d, &a, &r->truth));
-  r->truth.cpu += timer_cpu() - cpu;
+  r->exact.asked = (r->m->effects & EFFECT_REFERENCE) != 0;
+  if (!r->exact.asked) return OK;
+  TRY(exact_error_find(&r->m->ref, &r->d, &a, &r->exact));
+  r->exact.cpu += timer_cpu() - cpu;
 done:
   return st;
 }
@@ -148,7 +148,7 @@ status estimate_increment(run *r) {
   add_rounding(r);
   TRY(rounding_hidden(r, &r->error.hidden));
   r->judged = 0;
-  TRY(find_truth(r));
+  TRY(find_exact_error(r));
 done:
   return st;
 }

@@ -79,11 +79,11 @@ state loop_state(run *r, int attempt, int increment_no) {
              .rounding = r->rounding,
              .jumps = r->jumps,
              .jump_t = r->jump_t,
-             .theory = r->theorems,
+             .theorems = r->theorems,
              .solutions = r->step->check != CHECK_NONE ? &r->solutions : NULL,
              .mesh_error = r->mesh_error,
              .time_error = r->time_error,
-             .truth = r->truth,
+             .exact = r->exact,
              .balance = r->balance.report,
              .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
              .solver_log = contact_solver_log(r->solver),
@@ -150,7 +150,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   status st = OK;
   TRY(dense_show(r, increment_no));
   ++r->total_no;
-  TRY(theory_increment(r));
+  TRY(theorems_increment(r));
   TRY(result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
   TRY(estimate_increment(r));
   r->n_zone = 0;
@@ -185,8 +185,8 @@ status loop_reject(run *r, int attempt, int increment_no, const char *why) {
   r->at.residual = r->report.residual;
   r->error = (error_bound){0};
   r->rounding = (rounding_loss){0};
-  r->mesh_error.asked = r->time_error.asked = r->truth.asked = 0;
-  r->theorems = (theory_report){0};
+  r->mesh_error.asked = r->time_error.asked = r->exact.asked = 0;
+  r->theorems = (theorems_report){0};
   r->jumps = 0;
   state s = loop_state(r, attempt, increment_no);
   s.n_open = s.n_slip = s.n_stick = 0;

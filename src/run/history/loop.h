@@ -87,8 +87,8 @@ void estimate_unloaded(run *r);
 
 /* theorems.c: the theorems at r->now into r->theorems, if asked for; at the
  * initial state, which is posed in r->cp. */
-status theory_increment(run *r);
-status theory_initial(run *r);
+status theorems_increment(run *r);
+status theorems_initial(run *r);
 
 /* Whether the equilibrium jumps between r->old and r->now, at time t, into
  * r->jumps, r->jump_t, r->note. r->now is solved again if it was looked for. */

@@ -1,5 +1,5 @@
 /*
- * The theorems of CPR98 at accepted increments (theory.h). That of inelastic
+ * The theorems of CPR98 at accepted increments (theorems.h). That of inelastic
  * strains (3.2) is looked at on the body with its contacts as they are, the
  * sliding limit and given normal forces being given (problem Q3): a change of
  * the stresses of the points changes their e^i by the law over the increment,
@@ -14,8 +14,9 @@
 #include <string.h>
 
 /* The problem at hand with an answer; mu[n_contact], given[n] are new. */
-static status theory_scene_new(run *r, const equilibrium *e, theory_scene *s,
-                               double **mu, unsigned char **given) {
+static status theorems_scene_new(run *r, const equilibrium *e,
+                                 theorems_scene *s, double **mu,
+                                 unsigned char **given) {
   status st = OK;
   NEW(*mu, r->m->n_contact);
   NEW(*given, r->n);
@@ -23,16 +24,16 @@ static status theory_scene_new(run *r, const equilibrium *e, theory_scene *s,
     (*mu)[c] = limit_coefficient(r, c, r->now.t);
   for (int i = 0; i < r->n; ++i)
     (*given)[i] = r->m->contacts[r->surface->contact_id[i]].force.given != 0;
-  *s = (theory_scene){.cp = &r->cp,
-                      .u = e->uc,
-                      .r = e->rc,
-                      .n_contact = r->m->n_contact,
-                      .contact_id = r->surface->contact_id,
-                      .mu = *mu,
-                      .given = *given,
-                      .alone = r->step->kind == STEP_STATIC || r->relaxing,
-                      .tol = r->tol};
-  if (r->theory == NULL) TRY(theory_new(&r->theory));
+  *s = (theorems_scene){.cp = &r->cp,
+                        .u = e->uc,
+                        .r = e->rc,
+                        .n_contact = r->m->n_contact,
+                        .contact_id = r->surface->contact_id,
+                        .mu = *mu,
+                        .given = *given,
+                        .alone = r->step->kind == STEP_STATIC || r->relaxing,
+                        .tol = r->tol};
+  if (r->at_work == NULL) TRY(theorems_new(&r->at_work));
 done:
   return st;
 }
@@ -159,7 +160,7 @@ static double theta_of(const step *s) {
 }
 
 /* Theorem 3.2 over the increment. */
-static status see_path(run *r, const unsigned char *given, theory_path *out) {
+static status see_path(run *r, const unsigned char *given, theorems_path *out) {
   status st = OK;
   visco *v = r->visco;
   body_map b = {0};
@@ -167,14 +168,15 @@ static status see_path(run *r, const unsigned char *given, theory_path *out) {
   const scheme_step p = {
       .t = r->now.t, .dt = r->now.t - r->old.t, .theta = theta_of(r->step)};
   const stress_map map = {&b, answer_of_body};
-  *out = (theory_path){.asked = 1};
+  *out = (theorems_path){.asked = 1};
   TRY(body_map_new(r, given, &b));
   TRY(flow_compliance(&v->x, &p, &v->old, &v->now, b.Q, &out->bound));
   if (b.contact == NULL)
     out->why = "nothing holds what is free under given friction";
   else if (out->bound > 0.0)
-    TRY(theory_path_rate(&map, &out->rate));
-  theory_path_learn(r->theory, p.theta, p.dt, r->now.t - r->step->start, out);
+    TRY(theorems_path_rate(&map, &out->rate));
+  theorems_path_learn(r->at_work, p.theta, p.dt, r->now.t - r->step->start,
+                      out);
   r->theorems.violated |= out->violated;
 done:
   body_map_free(&b);
@@ -185,17 +187,17 @@ done:
 
 static status see_theory(run *r, int at_start) {
   status st = OK;
-  theory_scene s;
+  theorems_scene s;
   double *mu = NULL;
   unsigned char *given = NULL;
-  r->theorems = (theory_report){0};
-  if (r->n == 0 || !r->step->theory) return OK;
+  r->theorems = (theorems_report){0};
+  if (r->n == 0 || !r->step->theorems) return OK;
   timer_enter_whole(STAGE_THEORY);
-  TRY(theory_scene_new(r, at_start ? &r->old : &r->now, &s, &mu, &given));
+  TRY(theorems_scene_new(r, at_start ? &r->old : &r->now, &s, &mu, &given));
   if (at_start)
-    TRY(theory_start(r->theory, &s));
+    TRY(theorems_start(r->at_work, &s));
   else
-    TRY(theory_check(r->theory, &s, &r->theorems));
+    TRY(theorems_check(r->at_work, &s, &r->theorems));
   if (!at_start) TRY(see_path(r, given, &r->theorems.path));
 done:
   memory_free(mu);
@@ -204,6 +206,6 @@ done:
   return st;
 }
 
-status theory_increment(run *r) { return see_theory(r, 0); }
+status theorems_increment(run *r) { return see_theory(r, 0); }
 
-status theory_initial(run *r) { return see_theory(r, 1); }
+status theorems_initial(run *r) { return see_theory(r, 1); }

@@ -125,7 +125,7 @@ void run_free(run *r) {
   free_equilibrium(&r->old);
   free_equilibrium(&r->now);
   strains_free(r);
-  theory_free(r->theory);
+  theorems_free(r->at_work);
   moduli_free(&r->moduli);
   cluster_free(r->d.cluster);
   memory_free(r->fixed);

@@ -4,7 +4,7 @@
  * Where the closed form has displacements alone, its strains are central
  * differences of fourth order over a small part of the element.
  */
-#include "accuracy/closed_form/truth.h"
+#include "accuracy/closed_form/exact_error.h"
 
 #include "accuracy/space.h"
 #include "base/memory.h"
@@ -222,8 +222,8 @@ static double pressure_error(const closed_form *ref, const domain *d,
   return relative(1, sum, all);
 }
 
-status truth_find(const closed_form *ref, const domain *d,
-                  const answer_fields *a, true_error *out) {
+status exact_error_find(const closed_form *ref, const domain *d,
+                        const answer_fields *a, true_error *out) {
   status st = OK;
   squares sum = {0};
   timer_enter(STAGE_REFERENCE);

@@ -1,12 +1,12 @@
-/* The report on an increment from its parts (theory.h). */
-#include "accuracy/theorems/theory.h"
+/* The report on an increment from its parts (theorems.h). */
+#include "accuracy/theorems/theorems.h"
 
 #include "base/memory.h"
 
 #include <math.h>
 #include <string.h>
 
-struct theory {
+struct theorems {
   energy_norm norm;
   double *diagonal;   /* [m] of A: it is known again by that                 */
   double *entries;    /* [n_entry] of B, the same                             */
@@ -14,7 +14,7 @@ struct theory {
   state_before before;
   int seen;      /* 1: a state has been looked at                        */
   int n_contact; /* rows of the report                                   */
-  theory_contact *contacts; /* [n_contact] the last one is all               */
+  theorems_contact *contacts; /* [n_contact] the last one is all */
   double start;
   int has_start;
   double fastest; /* L of the step so far, 1/s                                */
@@ -29,14 +29,14 @@ const char *mu_regime_text(mu_regime regime) {
   return text[regime];
 }
 
-status theory_new(theory **out) {
+status theorems_new(theorems **out) {
   status st = OK;
   NEW(*out, 1);
 done:
   return st;
 }
 
-static void forget_friction(theory *t) {
+static void forget_friction(theorems *t) {
   memory_free(t->entries);
   memory_free(t->contacts);
   t->entries = NULL;
@@ -44,7 +44,7 @@ static void forget_friction(theory *t) {
   t->n_entry = t->n_contact = 0;
 }
 
-static void forget_matrix(theory *t) {
+static void forget_matrix(theorems *t) {
   energy_norm_free(&t->norm);
   memory_free(t->diagonal);
   t->diagonal = NULL;
@@ -52,7 +52,7 @@ static void forget_matrix(theory *t) {
   state_before_free(&t->before);
 }
 
-void theory_free(theory *t) {
+void theorems_free(theorems *t) {
   if (t == NULL) return;
   forget_matrix(t);
   memory_free(t);
@@ -60,14 +60,14 @@ void theory_free(theory *t) {
 
 /* ---- what has to be found again ------------------------------------------ */
 
-static int same_matrix(const theory *t, const contact_problem *cp) {
+static int same_matrix(const theorems *t, const contact_problem *cp) {
   if (t->diagonal == NULL || t->norm.m != cp->m || t->norm.A != cp->A) return 0;
   for (int i = 0; i < cp->m; ++i)
     if (t->diagonal[i] != cp->A[(size_t)i * (size_t)(cp->m + 1)]) return 0;
   return 1;
 }
 
-static status know_matrix(theory *t, const contact_problem *cp) {
+static status know_matrix(theorems *t, const contact_problem *cp) {
   status st = OK;
   t->fresh = !same_matrix(t, cp);
   if (!t->fresh) goto done;
@@ -84,7 +84,7 @@ static int count_entries(const contact_problem *cp) {
   return cp->B == NULL ? 0 : cp->B->start[cp->n];
 }
 
-static int same_friction(const theory *t, const contact_problem *cp) {
+static int same_friction(const theorems *t, const contact_problem *cp) {
   size_t size = (size_t)count_entries(cp) * sizeof *t->entries;
   if (t->contacts == NULL || t->n_entry != count_entries(cp)) return 0;
   return size == 0 || memcmp(t->entries, cp->B->val, size) == 0;
@@ -94,7 +94,7 @@ static int same_friction(const theory *t, const contact_problem *cp) {
 
 /* 1 if a node of the contact has a limit that follows pressure; keep[n] marks
  * its nodes. */
-static int mark_contact(const theory_scene *s, const contact_problem *cp,
+static int mark_contact(const theorems_scene *s, const contact_problem *cp,
                         int contact_id, unsigned char *keep) {
   int any = 0;
   for (int i = 0; i < cp->n; ++i) {
@@ -106,20 +106,20 @@ static int mark_contact(const theory_scene *s, const contact_problem *cp,
   return any;
 }
 
-static void add_row(theory *t, const theory_contact *row) {
+static void add_row(theorems *t, const theorems_contact *row) {
   t->contacts[t->n_contact++] = *row;
 }
 
-static void set_limit(theory_contact *row) {
+static void set_limit(theorems_contact *row) {
   row->limit = row->mu > 0.0 ? row->mu / row->factor : NAN;
 }
 
 /* Constants of every contact with friction, and of all. */
-static status know_friction(theory *t, const theory_scene *s,
+static status know_friction(theorems *t, const theorems_scene *s,
                             const frozen_problem *p) {
   status st = OK;
   unsigned char *keep = NULL;
-  theory_contact all = {.contact_id = -1};
+  theorems_contact all = {.contact_id = -1};
   int found = 0;
   if (same_friction(t, &p->cp)) return OK;
   forget_friction(t);
@@ -131,7 +131,7 @@ static status know_friction(theory *t, const theory_scene *s,
     memcpy(t->entries, p->cp.B->val, (size_t)t->n_entry * sizeof *t->entries);
   TRY(friction_constants(&p->cp, &t->norm, 1, &all));
   for (int c = 0; c < s->n_contact; ++c) {
-    theory_contact row = {.contact_id = c, .mu = s->mu[c]};
+    theorems_contact row = {.contact_id = c, .mu = s->mu[c]};
     frozen_problem part = {0};
     if (!mark_contact(s, &p->cp, c, keep)) continue;
     ++found;
@@ -151,7 +151,7 @@ done:
   return st;
 }
 
-static mu_regime regime_of(const theory_contact *row) {
+static mu_regime regime_of(const theorems_contact *row) {
   if (row->factor < 1.0) return MU_UNDER;
   if (row->rate == 0.0) return MU_FREE;
   return row->rate < 1.0 ? MU_BETWEEN : MU_ABOVE;
@@ -159,8 +159,8 @@ static mu_regime regime_of(const theory_contact *row) {
 
 /* The measured rate of one row, with the limits of other contacts as they are.
  */
-static status measure(const theory_scene *s, const frozen_problem *p,
-                      unsigned char *keep, theory_contact *row) {
+static status measure(const theorems_scene *s, const frozen_problem *p,
+                      unsigned char *keep, theorems_contact *row) {
   status st = OK;
   frozen_problem part = {0};
   row->rate = 0.0;
@@ -178,7 +178,7 @@ done:
 }
 
 /* With one contact the row of all is its own. */
-static status measure_contacts(theory *t, const theory_scene *s,
+static status measure_contacts(theorems *t, const theorems_scene *s,
                                const frozen_problem *p) {
   status st = OK;
   unsigned char *keep = NULL;
@@ -188,7 +188,7 @@ static status measure_contacts(theory *t, const theory_scene *s,
     TRY(measure(s, p, keep, &t->contacts[k]));
   }
   if (t->n_contact == 2) {
-    theory_contact *only = t->contacts, *all = t->contacts + 1;
+    theorems_contact *only = t->contacts, *all = t->contacts + 1;
     only->rate = all->rate;
     only->suggested = all->suggested;
     only->regime = regime_of(only);
@@ -200,10 +200,10 @@ done:
 
 /* ---- bounds -------------------------------------------------------------- */
 
-static status check_bounds(theory *t, const theory_scene *s,
-                           const frozen_problem *p, theory_report *out) {
+static status check_bounds(theorems *t, const theorems_scene *s,
+                           const frozen_problem *p, theorems_report *out) {
   status st = OK;
-  const theory_contact *all = &t->contacts[t->n_contact - 1];
+  const theorems_contact *all = &t->contacts[t->n_contact - 1];
   const char *why = NULL;
   if (!energy_norm_regular(&t->norm))
     why = "contact alone holds a body, loads have no norm";
@@ -224,8 +224,9 @@ done:
 
 /* ---- the report ---------------------------------------------------------- */
 
-static status check_inequality(const theory_scene *s, const contact_problem *cp,
-                               theory_report *out) {
+static status check_inequality(const theorems_scene *s,
+                               const contact_problem *cp,
+                               theorems_report *out) {
   status st = OK;
   TRY(inequality_least(cp, s->u, &out->inequality, &out->n_field));
   out->inequality_violated = !(out->inequality >= -s->tol);
@@ -233,7 +234,7 @@ done:
   return st;
 }
 
-status theory_start(theory *t, const theory_scene *s) {
+status theorems_start(theorems *t, const theorems_scene *s) {
   status st = OK;
   frozen_problem p = {0};
   int fields;
@@ -247,10 +248,11 @@ done:
   return st;
 }
 
-status theory_check(theory *t, const theory_scene *s, theory_report *out) {
+status theorems_check(theorems *t, const theorems_scene *s,
+                      theorems_report *out) {
   status st = OK;
   frozen_problem p = {0};
-  *out = (theory_report){.asked = 1, .has_start = t->has_start};
+  *out = (theorems_report){.asked = 1, .has_start = t->has_start};
   TRY(frozen_new(s->cp, s->r, NULL, s->given, &p));
   TRY(know_matrix(t, s->cp));
   if (!t->seen) t->before.known = -1;
@@ -272,13 +274,13 @@ done:
   return st;
 }
 
-void theory_path_learn(theory *t, double theta, double dt, double span,
-                       theory_path *p) {
+void theorems_path_learn(theorems *t, double theta, double dt, double span,
+                         theorems_path *p) {
   p->speed = p->bound / (theta * dt);
   p->longest = p->speed > 0.0 ? 1.0 / (theta * p->speed) : HUGE_VAL;
   p->span = span;
   if (!(span > dt * (1.0 + ROUNDING))) t->fastest = 0.0;
   t->fastest = fmax(t->fastest, p->speed);
-  p->passes = theory_passes(t->fastest * span);
+  p->passes = theorems_passes(t->fastest * span);
   p->violated = p->why == NULL && !(p->rate <= p->bound * (1.0 + ROUNDING));
 }

@@ -26,13 +26,13 @@
  * projection, the second from the laws, whose constant is L. Over a time T the
  * path of s contracts after k maps if (L T)^k/k! < 1.
  */
-#ifndef PROTIS_THEORY_THEORY_H
-#define PROTIS_THEORY_THEORY_H
+#ifndef PROTIS_THEOREMS_THEOREMS_H
+#define PROTIS_THEOREMS_THEOREMS_H
 
 #include "accuracy/accuracy.h"
 
 /* What is looked at: a problem and its answer. */
-typedef struct theory_scene {
+typedef struct theorems_scene {
   const contact_problem *cp; /* with A                                        */
   const double *u, *r;       /* [m] its answer, m, N                          */
   int n_contact;
@@ -41,7 +41,7 @@ typedef struct theory_scene {
   const unsigned char *given; /* [n] 1: the normal force is given; NULL: none */
   int alone; /* 1: (3.10) has no meaning: a static problem, a start           */
   double tol; /* residual the solver was to reach, -                          */
-} theory_scene;
+} theorems_scene;
 
 /* mu is under what is guaranteed; between that and what is measured; above
  * both; nothing is known of the measured one, for nothing slides. */
@@ -49,7 +49,7 @@ typedef enum { MU_FREE, MU_UNDER, MU_BETWEEN, MU_ABOVE } mu_regime;
 const char *mu_regime_text(mu_regime regime);
 
 /* Friction of one contact, the limits of all others being given, or of all. */
-typedef struct theory_contact {
+typedef struct theorems_contact {
   int contact_id; /* -1: all together                                       */
   double mu;     /* largest, -                                                */
   double factor; /* q, -; HUGE_VAL: none, friction alone resists a motion     */
@@ -59,16 +59,16 @@ typedef struct theory_contact {
   double normal;    /* lmax(A_nn), N/m; of the contact                        */
   double tangent;   /* lmax(inv(A)_tt), m/N                                   */
   mu_regime regime;
-} theory_contact;
+} theorems_contact;
 
-typedef struct theory_bound {
+typedef struct theorems_bound {
   double left, right; /* sqrt(J)                                              */
   int violated;
   const char *why; /* NULL, or why there is none                              */
-} theory_bound;
+} theorems_bound;
 
 /* Theorem 3.2 over an increment. */
-typedef struct theory_path {
+typedef struct theorems_path {
   int asked;       /* 1: laws flow in the step                                */
   const char *why; /* NULL, or why there is no rate                           */
   double rate;  /* of the map linearised at the answer, pass after pass, -    */
@@ -78,35 +78,36 @@ typedef struct theory_path {
   double span;    /* T, since the start of the step, s                        */
   double passes;  /* least k over T, with the largest L so far, -             */
   int violated;   /* rate > bound                                           */
-} theory_path;
+} theorems_path;
 
-typedef struct theory_report {
+typedef struct theorems_report {
   int asked;
   int fresh;     /* 1: the matrix is new                                      */
   int n_contact; /* rows: contacts with friction on their own pressure, then
                     all of them if there are more than one                   */
-  const theory_contact *contacts; /* [n_contact] borrowed                     */
-  theory_bound total, change;     /* (3.9), (3.10)                            */
+  const theorems_contact *contacts; /* [n_contact] borrowed */
+  theorems_bound total, change; /* (3.9), (3.10)                            */
   double inequality; /* least of S_i^n over the test fields, -                */
   int n_field;       /* fields tried                                          */
   int inequality_violated;
   int has_start; /* 1: start is that of the initial state, (3.8)        */
   double start;  /* least of (3.8) over the test fields, -              */
-  theory_path path;
+  theorems_path path;
   int violated; /* any of them                                          */
-} theory_report;
+} theorems_report;
 
-typedef struct theory theory;
-status theory_new(theory **out); /* ERR_MEMORY */
-void theory_free(theory *t);     /* accepts NULL                              */
+typedef struct theorems theorems;
+status theorems_new(theorems **out); /* ERR_MEMORY */
+void theorems_free(theorems *t); /* accepts NULL                              */
 /* The initial state: (3.8), and where the first increment starts. */
-status theory_start(theory *t, const theory_scene *s);
+status theorems_start(theorems *t, const theorems_scene *s);
 /*
  * All of the report for an answer. Eigenvalues are found when matrix or B are
  * new. Cost: a factor of A when it is new; products and solves with it; of the
  * measured rate that of contraction_rate for each contact. ERR_MEMORY.
  */
-status theory_check(theory *t, const theory_scene *s, theory_report *out);
+status theorems_check(theorems *t, const theorems_scene *s,
+                      theorems_report *out);
 
 /* A map of stresses into themselves; |y| of the answer. ERR_* of its own. */
 typedef struct stress_map {
@@ -115,13 +116,13 @@ typedef struct stress_map {
 } stress_map;
 /* From where the context stands: the factor that passes end with, 0 if nothing
  * is left. Each pass starts from the last answer over its size. */
-status theory_path_rate(const stress_map *map, double *rate);
+status theorems_path_rate(const stress_map *map, double *rate);
 /* Constants from bound = q of a step dt by theta, after "span" since "start"
  * of a step. */
-void theory_path_learn(theory *t, double theta, double dt, double span,
-                       theory_path *p);
+void theorems_path_learn(theorems *t, double theta, double dt, double span,
+                         theorems_path *p);
 /* Least k with x^k/k! < 1. */
-double theory_passes(double x);
+double theorems_passes(double x);
 
 /* ---- parts, for this folder and its tests ------------------------------- */
 
@@ -175,7 +176,7 @@ void frozen_free(frozen_problem *p); /* accepts all-zero                      */
  * "limits", tangent counts nodes with g0 > 0 as well. ERR_MEMORY.
  */
 status friction_constants(const contact_problem *cp, energy_norm *e, int limits,
-                          theory_contact *out);
+                          theorems_contact *out);
 
 /* The state an increment starts from; frozen where normal forces are given. */
 typedef struct state_before {
@@ -187,10 +188,11 @@ status state_before_keep(const contact_problem *cp, const double *u,
 void state_before_free(state_before *b); /* accepts all-zero                  */
 /* (3.9) and (3.10) for a factor q < 1; "all" has q and tangent. */
 status bound_total(const contact_problem *cp, const double *u,
-                   const theory_contact *all, energy_norm *e, theory_bound *b);
+                   const theorems_contact *all, energy_norm *e,
+                   theorems_bound *b);
 status bound_change(const contact_problem *cp, const double *u,
-                    const state_before *before, const theory_contact *all,
-                    energy_norm *e, theory_bound *b);
+                    const state_before *before, const theorems_contact *all,
+                    energy_norm *e, theorems_bound *b);
 
 /*
  * Least value over random admissible test fields w in K (on one node, and on

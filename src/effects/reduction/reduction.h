@@ -10,31 +10,31 @@
  * the second below TOL at every increment; else the run is made again with that
  * effect, until what is left out holds.
  */
-#ifndef PROTIS_NEGLECT_NEGLECT_H
-#define PROTIS_NEGLECT_NEGLECT_H
+#ifndef PROTIS_REDUCTION_REDUCTION_H
+#define PROTIS_REDUCTION_REDUCTION_H
 
 #include "run/history/history.h"
 
 /* Part of TOL that the bound in the energy norm may have: pressures of single
  * nodes change by more than the norm. */
-extern const double neglect_share; /* -                                       */
+extern const double reduction_share; /* - */
 
 /* What to try without: m->neglected. */
-status neglect_choose(model *m, const mesh *msh);
+status reduction_choose(model *m, const mesh *msh);
 /* Leave the rows out that are not back, their bounds zero: m->effects. */
-void neglect_leave_out(model *m);
+void reduction_leave_out(model *m);
 /* Everything back in; m->neglected stays as the account of what was tried. */
-void neglect_restore(model *m);
+void reduction_restore(model *m);
 
-typedef struct neglect neglect; /* what the bounds are summed up from         */
-status neglect_new(const model *m, const mesh *msh, neglect **out);
-void neglect_free(neglect *n); /* accepts NULL                                */
+typedef struct reduction reduction; /* what the bounds are summed up from */
+status reduction_new(const model *m, const mesh *msh, reduction **out);
+void reduction_free(reduction *n); /* accepts NULL */
 /* An accepted increment into the rows[m->n_neglected] of m. */
-status neglect_measure(neglect *n, const state *s, neglected *rows);
+status reduction_measure(reduction *n, const state *s, neglected *rows);
 /* 1: a row is above the tolerance already; the run need not go on. */
-int neglect_refuted(const model *m);
+int reduction_refuted(const model *m);
 /* Take those back that are above the tolerance or never were measured; with
  * "all" all, the run without them not being solved. How many. */
-int neglect_take_back(model *m, int all);
+int reduction_take_back(model *m, int all);
 
 #endif

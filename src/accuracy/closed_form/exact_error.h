@@ -2,8 +2,8 @@
  * How far the answer of an increment is from the closed form of *REFERENCE:
  * the true error, in the norms of the estimates.
  */
-#ifndef PROTIS_TRUTH_TRUTH_H
-#define PROTIS_TRUTH_TRUTH_H
+#ifndef PROTIS_CLOSED_FORM_EXACT_ERROR_H
+#define PROTIS_CLOSED_FORM_EXACT_ERROR_H
 
 #include "fem/fem.h"
 #include "model/model.h"
@@ -29,7 +29,7 @@ typedef struct answer_fields {
 
 /* All parts of *REFERENCE into out->energy .. pressure. ERR_DECK: a value of
  * the closed form is not finite (the record says where); ERR_MEMORY. */
-status truth_find(const closed_form *ref, const domain *d,
-                  const answer_fields *a, true_error *out);
+status exact_error_find(const closed_form *ref, const domain *d,
+                        const answer_fields *a, true_error *out);
 
 #endif
