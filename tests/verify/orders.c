@@ -49,7 +49,7 @@ static series run_series(const char *name, const char *deck, double nu,
              "%s -D SIZE=100 -D NU=%g -D A=%.17g -D NC=%d -D GROWTH=%.6g",
              words, nu, part * s.a * widths[k % WIDTHS], n, 5.0 / n);
     s.j[k] = job_begin("verify");
-    int code = job_job_deck(&s.j[k], deck, all);
+    int code = job_run_deck(&s.j[k], deck, all);
     ck_assert_msg(code == 0, "%s: exit %d: %s", deck, code, s.j[k].errors);
     s.contact[k] = job_table(&s.j[k], "CONTACT", -1);
     s.zones[k] = job_table(&s.j[k], "ZONES", -1);
