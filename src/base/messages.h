@@ -482,7 +482,8 @@
     "run elsewhere if both have one name.")                                  \
   X(5020, WARNING, "more threads than cores",                                \
     "Threads beyond the cores that affinity and control group leave to the " \
-    "process wait for each other: as many as there are cores are used.")     \
+    "process wait for each other: as many as there are cores are used; one " \
+    "where ulimit -v leaves no room for the buffers of more.")               \
   X(5021, ERROR, "file that --safe does not read",                           \
     "With --safe a mesh is a .msh: a .geo is a program and may do what it "  \
     "likes. Mesh it before, where its author is trusted.")

@@ -16,6 +16,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 enum {
@@ -296,14 +297,19 @@ int command_read(int argc, char **argv, command *c, int *exit_code) {
   return 0;
 }
 
-/* More threads than cores wait for each other. */
+/* More threads than cores wait for each other; where addresses are limited the
+ * linear algebra waits for buffers of its threads for ever. */
 static void set_threads(int cores, command *c, message_log *log) {
+  struct rlimit addresses;
   int asked = c->threads > 0 ? c->threads : 1;
-  c->threads = asked < cores ? asked : cores;
+  int confined = getrlimit(RLIMIT_AS, &addresses) == 0 &&
+                 addresses.rlim_cur != RLIM_INFINITY;
+  int most = confined ? 1 : cores;
+  c->threads = asked < most ? asked : most;
   if (c->threads < asked)
-    message_add(log, P5020, NULL,
-                "--threads %d: more than the cores that this process may use",
-                asked);
+    message_add(log, P5020, NULL, "--threads %d: more than %s", asked,
+                confined ? "one, with a limit of addresses (ulimit -v)"
+                         : "the cores that this process may use");
   blas_set_threads(c->threads);
 }
 

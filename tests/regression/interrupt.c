@@ -391,6 +391,43 @@ START_TEST(few_addresses_are_told) {
 }
 END_TEST
 
+/* Threads of the linear algebra without room for their buffers: one runs. */
+START_TEST(few_addresses_leave_one_thread) {
+  job j = job_begin("square");
+  job_write(
+      &j, "square.msh",
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n"
+      "1 2 \"FOOT\"\n2 1 \"BODY\"\n$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n"
+      "2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n$Elements\n3\n"
+      "1 1 2 2 1 1 2\n2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4\n"
+      "$EndElements\n");
+  job_write(&j, "square.inp",
+            "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nFOOT, 1, 2\n*DLOAD\nBODY, BY, -1.\n*END STEP\n");
+  char deck[200];
+  snprintf(deck, sizeof deck, "%s/%s", j.dir, j.name);
+  pid_t pid = fork();
+  ck_assert_int_ge(pid, 0);
+  if (pid == 0) {
+    const rlim_t bytes = (rlim_t)240 << 20;
+    into(&j, "stderr.txt", STDERR_FILENO);
+    into(&j, "stdout.txt", STDOUT_FILENO);
+    signal(SIGALRM, SIG_DFL);
+    alarm(UNIT_SECONDS / 10);
+    setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
+    execl(program(), program(), deck, "--threads", "2", (char *)NULL);
+    _exit(99);
+  }
+  int code = finish(pid);
+  char *errors = errors_of(&j);
+  ck_assert_msg(code == 0, "exit %d: %s", code, errors);
+  ck_assert_ptr_nonnull(strstr(errors, "P5020"));
+  free(errors);
+  job_end(&j);
+}
+END_TEST
+
 /* An option, or a deck behind "--" or with its folder. */
 START_TEST(deck_may_begin_with_a_dash) {
   job j = block(2);
@@ -410,8 +447,9 @@ END_TEST
 
 UNIT_MAIN("interrupt", file_system_without_locks_is_no_matter,
           deck_may_begin_with_a_dash, few_addresses_are_told,
-          closed_streams_are_no_matter, signals_end_after_an_increment,
-          signals_come_together, ignored_signals_stay_ignored,
-          earlier_file_stays, file_ends_after_an_increment,
-          second_signal_ends_at_once, file_size_limit_is_a_failed_write,
-          second_job_of_the_name_is_refused, other_file_of_that_name_stays)
+          few_addresses_leave_one_thread, closed_streams_are_no_matter,
+          signals_end_after_an_increment, signals_come_together,
+          ignored_signals_stay_ignored, earlier_file_stays,
+          file_ends_after_an_increment, second_signal_ends_at_once,
+          file_size_limit_is_a_failed_write, second_job_of_the_name_is_refused,
+          other_file_of_that_name_stays)
