@@ -5,6 +5,7 @@
 #include "support/unit.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 START_TEST(every_row_has_unit_help_scene_and_value) {
@@ -119,6 +120,30 @@ START_TEST(contact_signs_and_directions) {
   made->m.n_contact = 2; /* the column is there for several               */
   ck_assert(value_of(made, PER_CONTACT_NODE, "contact_no", 4) == 1);
   made->m.n_contact = 1;
+  made_up_free(made);
+}
+END_TEST
+
+/* In a corner the rows of the second obstacle, whatever its number, are no
+ * friction. */
+START_TEST(force_of_a_second_obstacle_is_no_friction) {
+  made_up *made = made_up_new(3, 2, 3);
+  made_up_advance(made, 1);
+  int *side = calloc(2 * (size_t)made->surface.n, sizeof *side);
+  for (int i = 0; i < 2 * made->surface.n; ++i) side[i] = i % 3 - 1;
+  made->surface.side_id = side;
+  for (int i = 0; i < made->surface.n; ++i)
+    for (int k = 0; k < 2; ++k) {
+      const double force = made->array[MADE_RC][3 * i + 1 + k];
+      const double wanted = side[2 * i + k] < 0 ? force : 0;
+      ck_assert(value_of(made, PER_CONTACT_NODE, k == 0 ? "f_t1" : "f_t2", i) ==
+                wanted);
+      ck_assert(value_of(made, PER_CONTACT_NODE,
+                         k == 0 ? "traction_t1" : "traction_t2",
+                         i) == 4 * wanted);
+    }
+  made->surface.side_id = NULL;
+  free(side);
   made_up_free(made);
 }
 END_TEST
@@ -359,7 +384,8 @@ UNIT_MAIN("columns", every_row_has_unit_help_scene_and_value,
           names_are_unique_within_entity_and_scene,
           fields_have_distinct_components, every_value_is_finite,
           columns_follow_the_effects, contact_signs_and_directions,
-          mises_of_simple_states, internal_variables_of_unlike_laws,
-          slip_has_a_direction, figures_stand_under_their_names,
+          force_of_a_second_obstacle_is_no_friction, mises_of_simple_states,
+          internal_variables_of_unlike_laws, slip_has_a_direction,
+          figures_stand_under_their_names,
           components_are_those_of_their_letters,
           units_are_composed_from_the_labels)

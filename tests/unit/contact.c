@@ -299,6 +299,39 @@ START_TEST(bodies_are_measured_apart) {
 }
 END_TEST
 
+/* Two nodes of one body, the first a million times stiffer. What a node misses
+ * counts against the forces of the body, but not against more than what its
+ * own stiffness times the largest motion of the body makes. */
+START_TEST(unlike_nodes_of_a_body_are_measured_apart) {
+  for (int k = 0; k < 4; ++k) {
+    contact_case c = case_new(2, 2, 0.5);
+    const int compliance = k / 2, soft_moves = k % 2;
+    const double soft = soft_moves ? 1.0 : 1e-6; /* its forces               */
+    const int wrong = soft_moves ? 0 : 2;
+    const double force[2] = {1.0, soft};
+    double u[4] = {0, 1e-6, 0, soft};
+    double r[4] = {-8, -4, -8 * soft, -4 * soft};
+    for (int i = 0; i < 4; ++i) c.A[5 * i] = i < 2 ? 1e6 : 1.0;
+    for (int i = 0; i < 2; ++i)
+      c.A[i + 4 * (i + 2)] = c.A[i + 2 + 4 * i] = 1e-4;
+    if (compliance) {
+      ck_assert(case_inverse(4, c.A, c.A));
+      c.cp.W = c.A;
+      c.cp.A = NULL;
+    }
+    const double *x = compliance ? r : u, *y = compliance ? u : r;
+    contact_product(4, c.A, x, c.f);
+    for (int i = 0; i < 4; ++i)
+      c.f[i] = compliance ? y[i] - c.f[i] : c.f[i] - y[i];
+    ck_assert_double_le(contact_residual(&c.cp, u, r), 1e-9);
+    r[wrong] *= 1.01; /* 1 % of its normal force                             */
+    ck_assert_double_ge(contact_residual(&c.cp, u, r), 0.009);
+    ck_assert_double_le(contact_residual(&c.cp, u, r), 0.04 / force[wrong / 2]);
+    case_free(&c);
+  }
+}
+END_TEST
+
 UNIT_MAIN("contact", residual_is_zero_for_solved_node,
           each_broken_condition_shows_by_its_size, scale_is_of_the_problem,
           scale_is_above_rounding_of_loads_and_of_the_way,
@@ -307,4 +340,5 @@ UNIT_MAIN("contact", residual_is_zero_for_solved_node,
           compliance_form_measures_the_same_state, statuses_of_a_row_of_nodes,
           node_at_its_limit_sticks_until_it_moves,
           second_obstacle_bounds_the_tangent, held_tangent_takes_no_friction,
-          what_only_carries_is_not_in_the_scale, bodies_are_measured_apart)
+          what_only_carries_is_not_in_the_scale, bodies_are_measured_apart,
+          unlike_nodes_of_a_body_are_measured_apart)

@@ -201,6 +201,64 @@ START_TEST(mesh_and_surface_stand_in_the_file) {
 }
 END_TEST
 
+/* A side of two contacts, and an edge of theirs: each node bears the number of
+ * its first contact, and the faces are those of the contacts, one by one. */
+START_TEST(contacts_have_their_nodes_and_faces) {
+  static const char *const sides[] = {"TOP", "BOTTOM", "LEFT"};
+  for (int dim = 2; dim <= 3; ++dim) {
+    char dir[64];
+    int dims[2], n = 0;
+    folder_new(dir);
+    made_up *made = made_up_new(dim, 2, 1);
+    const mesh *m = made->msh;
+    contact three[3];
+    made->m.n_contact = 3;
+    made->m.contacts = three;
+    for (int c = 0; c < 3; ++c) {
+      three[c] = made->foot;
+      three[c].name = sides[c];
+      for (three[c].group_id = 0;
+           strcmp(m->group[three[c].group_id].name, sides[c]) != 0;)
+        ++three[c].group_id;
+    }
+    made->m.effects = EFFECT_CONTACT;
+    hdf5_file *h = NULL;
+    output_options o = plain;
+    o.dir = dir;
+    ck_assert_int_eq(hdf5_open(&made->m, m, &o, NULL, &h), OK);
+    ck_assert_int_eq(hdf5_close(h, 1), OK);
+    double *no = dataset(dir, "/contact/node_no", dims);
+    double *first = dataset(dir, "/contact/contact_no", dims);
+    double *faces = dataset(dir, "/contact/faces", (int[2]){0, 0});
+    ck_assert(no != NULL && first != NULL && faces != NULL);
+    const int nodes = dims[0];
+    for (int c = 0; c < 3; ++c) {
+      const mesh_group *g = &m->group[three[c].group_id];
+      for (int i = 0; i < g->n_item; ++i)
+        for (int k = 0; k < dim; ++k, ++n)
+          ck_assert(no[(int)faces[n]] ==
+                    (double)m->node_no[m->face[dim * g->item_id[i] + k]]);
+      for (int i = 0; i < g->n_node; ++i)
+        for (int p = 0; p < nodes; ++p)
+          if (no[p] == (double)m->node_no[g->node_id[i]])
+            ck_assert_double_le(first[p], c + 1);
+    }
+    for (int p = 0; p < nodes; ++p) {
+      const mesh_group *g = &m->group[three[(int)first[p] - 1].group_id];
+      int on = 0;
+      for (int i = 0; i < g->n_node; ++i)
+        on += no[p] == (double)m->node_no[g->node_id[i]];
+      ck_assert_int_eq(on, 1);
+    }
+    free(no);
+    free(first);
+    free(faces);
+    made_up_free(made);
+    folder_remove(dir);
+  }
+}
+END_TEST
+
 START_TEST(more_increments_than_foreseen_are_kept) {
   char dir[64];
   folder_new(dir);
@@ -658,6 +716,7 @@ START_TEST(every_refused_request_is_told_and_leaves_nothing) {
 END_TEST
 
 UNIT_MAIN("hdf5", fields_read_back_exactly, mesh_and_surface_stand_in_the_file,
+          contacts_have_their_nodes_and_faces,
           more_increments_than_foreseen_are_kept,
           records_of_six_digits_are_kept, room_not_used_is_cut_at_the_end,
           frequency_chooses_the_records, missing_arrays_are_not_zero,

@@ -1,6 +1,7 @@
 /* src/solver: the options of the rows. What every row must do with its
  * defaults is tested in solver.c. */
 #include "base/memory.h"
+#include "contact/force/force_set.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
@@ -161,6 +162,38 @@ START_TEST(compliance_form_gives_the_same_forces) {
     free(W);
     free(q);
     free(r);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* The compliance is known to a part in a million only: displacements of forces
+ * satisfy the stiffness to the square of that. */
+START_TEST(displacements_are_refined_by_the_stiffness) {
+  for (int k = 0; k < 6; ++k) {
+    contact_case c =
+        case_any(2 + k % 2, 6, 0.3, 0, (unsigned long long)(2300 + k));
+    const size_t m = (size_t)c.cp.m;
+    double *W = calloc(m * m, sizeof *W), *u = calloc(m, sizeof *u),
+           *Au = calloc(m, sizeof *Au), most = 0.0, scale = 0.0;
+    force_set *s = NULL;
+    ck_assert(case_inverse(c.cp.m, c.A, W));
+    for (size_t i = 0; i < m * m; ++i) W[i] *= 1.0 + 1e-6;
+    for (size_t i = 0; i < m; ++i) c.r[i] = sin(1.0 + (double)i);
+    c.cp.W = W;
+    ck_assert_int_eq(force_set_new(&c.cp, &s), OK);
+    force_set_fit(s, &c.cp);
+    force_set_displacement(s, c.r, u);
+    contact_product(c.cp.m, c.A, u, Au);
+    for (size_t i = 0; i < m; ++i) {
+      most = fmax(most, fabs(Au[i] - c.f[i] - c.r[i]));
+      scale = fmax(scale, fabs(c.f[i] + c.r[i]));
+    }
+    ck_assert_double_le(most, 1e-10 * scale);
+    force_set_free(s);
+    free(W);
+    free(u);
+    free(Au);
     case_free(&c);
   }
 }
@@ -430,7 +463,8 @@ UNIT_MAIN("methods", variants_agree_on_random_problems,
           variants_agree_with_a_given_limit,
           variants_agree_on_held_and_cornered_nodes,
           floating_block_is_held_by_its_floor,
-          compliance_form_gives_the_same_forces, accelerations_save_steps,
+          compliance_form_gives_the_same_forces,
+          displacements_are_refined_by_the_stiffness, accelerations_save_steps,
           options_of_sor_have_an_effect, long_row_of_slipping_nodes_is_solved,
           cycle_is_told_from_stagnation, auglag_tells_states_that_come_back,
           variants_keep_their_bits_under_factors_of_two,

@@ -22,7 +22,7 @@ static const char text_41[] =
     "$EndPhysicalNames\n"
     "$Entities\n1 1 1 0\n1 0 0 0 1 3\n6 0 0 0 1 0 0 1 -2 0\n"
     "5 0 0 0 1 1 0 1 1 1 6\n$EndEntities\n"
-    "$Nodes\n2 4 1 4\n2 5 0 2\n1\n2\n0 0 0\n1 0 0\n2 5 1 2\n3\n4\n"
+    "$Nodes\n3 4 1 4\n0 1 1 1\n1\n0 0 0\n1 6 1 1\n2\n1 0 0 .5\n2 5 1 2\n3\n4\n"
     "1 1 0 .5 .5\n0 1 0 .5 .5\n$EndNodes\n"
     "$Elements\n3 4 7 10\n2 5 2 2\n7 1 2 3\n8 1 3 4\n1 6 1 1\n9 1 2\n"
     "0 1 15 1\n10 1\n$EndElements\n";

@@ -284,6 +284,35 @@ START_TEST(uniform_stress_has_no_error) {
 }
 END_TEST
 
+/* A linear stress is recovered at every node of any mesh, closed patch or open:
+ * the estimate is the true error of the stress at the centroids. */
+START_TEST(linear_stress_is_recovered) {
+  const kinematics kin =
+      (kinematics[]){PLANE_STRAIN, PLANE_STRESS, SOLID_3D}[_i];
+  const problem p = {"linear", kin, kin == SOLID_3D ? solid_cubic : plane_cubic,
+                     0,        0,   0};
+  scene *s = box(kin, 4, 0);
+  const mesh *m = s->m;
+  double *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
+  space_recovery *recovery;
+  space_error found;
+  for (int e = 0; e < m->n_elem; ++e) {
+    double x[3] = {0};
+    for (int a = 0; a <= m->dim; ++a)
+      for (int c = 0; c < m->dim; ++c)
+        x[c] += m->x[m->dim * m->elem[(m->dim + 1) * e + a] + c] / (m->dim + 1);
+    exact_stress(&p, x, sigma + s->d.ns * e);
+  }
+  ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
+  ck_assert_int_eq(space_estimate(recovery, sigma, NULL, &found), OK);
+  ck_assert_double_eq_tol(found.error / sqrt(true_error(&p, s, sigma)), 1,
+                          1e-10);
+  space_recovery_free(recovery);
+  scene_free(s);
+  free(sigma);
+}
+END_TEST
+
 START_TEST(one_layer_of_elements_has_an_estimate) {
   static const double length[] = {4, 1};
   scene *s = scene_new(make_grid_2d((int[]){1, 1}, length), PLANE_STRAIN, 3);
@@ -445,6 +474,7 @@ int main(void) {
                       4);
   tcase_add_loop_test(tests, stress_jumps_between_unlike_sections, 0, 4);
   tcase_add_test(tests, sizes_give_the_target_and_grow_slowly);
+  tcase_add_loop_test(tests, linear_stress_is_recovered, 0, 3);
   tcase_add_test(tests, one_layer_of_elements_has_an_estimate);
   tcase_add_test(tests, an_estimate_has_no_unit);
   return unit_run("space", tests);

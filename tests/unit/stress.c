@@ -1,5 +1,6 @@
 /* src/fem/element.c: patch tests, forces, energy. */
 #include "fem/fem.h"
+#include "run/start/start.h"
 #include "support/scene.h"
 #include "support/unit.h"
 
@@ -185,6 +186,30 @@ START_TEST(element_beyond_the_axis_is_refused_by_number) {
 }
 END_TEST
 
+/* The diagonal of the stiffness is the force at an unknown that moves alone. */
+START_TEST(diagonal_is_the_force_of_a_unit_motion) {
+  scene *s = patch(all_kinematics[_i]);
+  const mesh *m = s->m;
+  const size_t n_dof = (size_t)(m->dim * m->n_node);
+  double *u = calloc(n_dof, sizeof *u), *f = calloc(n_dof, sizeof *f),
+         *diagonal = calloc(n_dof, sizeof *diagonal),
+         *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
+  start_stiffness(&s->d, diagonal);
+  for (size_t k = 0; k < n_dof; ++k) {
+    u[k] = 1;
+    domain_stress(&s->d, u, NULL, sigma);
+    domain_internal_force(&s->d, sigma, f);
+    ck_assert_double_eq_tol(diagonal[k] / f[k], 1, 1e-12);
+    u[k] = 0;
+  }
+  free(u);
+  free(f);
+  free(diagonal);
+  free(sigma);
+  scene_free(s);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("stress");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -192,6 +217,7 @@ int main(void) {
   tcase_add_loop_test(tests, weights_add_up_to_the_volume, 0, 4);
   tcase_add_loop_test(tests, internal_force_is_stiffness_times_displacement, 0,
                       4);
+  tcase_add_loop_test(tests, diagonal_is_the_force_of_a_unit_motion, 0, 4);
   tcase_add_test(tests, strain_matrix_of_one_turned_triangle);
   tcase_add_test(tests, element_beyond_the_axis_is_refused_by_number);
   return unit_run("stress", tests);
