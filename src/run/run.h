@@ -74,6 +74,8 @@ typedef struct balance {
 /* How far the run is: the next attempt. */
 typedef struct progress {
   int step_id, level, attempt, increment_no;
+  int cut; /* of "level", by attempts that failed: the rest is the stability of
+              an explicit integrator, which may need less later               */
   long i, part; /* increment of the step's grid, piece of 2^level of it       */
   double dt;    /* of an adaptive step, to be tried, s                        */
   double error; /* of the increments before the step, sqrt(J)                 */

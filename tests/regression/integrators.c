@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct scheme_row {
@@ -97,6 +98,31 @@ START_TEST(substeps_keep_an_explicit_scheme_stable) {
 }
 END_TEST
 
+/*
+ * Strain hardening, m = -1/2, A = 1e-4, n = 4 under q = 1: p = 2e-4 sqrt(t).
+ * The rate that a step of 1e-5 s leaves allows 1/4096 of the next increment at
+ * first, all of it once p has grown.
+ */
+START_TEST(substeps_are_as_long_as_what_they_start_from_allows) {
+  const char *const visco =
+      "*VISCO, INTEGRATOR=HEUN\n1.E-5, 1.E-5\n*END STEP\n"
+      "*STEP\n*VISCO, INTEGRATOR=HEUN, SUBSTEPS=AUTO\n1., 1.\n"
+      "*PRINT, NODES\n";
+  square_case s = {STEEL, "*CREEP, LAW=STRAIN\n1.E-4, 4., -0.5\n", "CPS3",
+                   "",    SYMMETRY "*DSLOAD\nTOP, TY, 1.\n",       visco};
+  job j = square_run(&s, 0);
+  char *sta = job_file(&j, "sta");
+  int n = 0;
+  for (const char *at = sta; (at = strstr(at, "\n")) != NULL; ++at) ++n;
+  ck_assert_int_lt(n, 100);
+  dat d = job_table(&j, "NODES", -1);
+  ck_assert_double_eq_tol(dat_max(&d, "u_y"), 1e-3 + 2e-4, 2e-5);
+  dat_free(&d);
+  free(sta);
+  job_end(&j);
+}
+END_TEST
+
 /* dt ten times the relaxation time: MIDPOINT says so, BACKWARD is quiet. */
 START_TEST(ringing_is_told) {
   square_case s = {STEEL,  PROPORTIONAL,
@@ -135,6 +161,7 @@ int main(void) {
                       N_SCHEME);
   tcase_add_test(tests, limit_is_twice_the_relaxation_time);
   tcase_add_test(tests, substeps_keep_an_explicit_scheme_stable);
+  tcase_add_test(tests, substeps_are_as_long_as_what_they_start_from_allows);
   tcase_add_test(tests, ringing_is_told);
   tcase_add_loop_test(tests, order_of_convergence_with_contact_and_friction, 0,
                       N_SCHEME);

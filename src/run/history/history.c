@@ -297,9 +297,28 @@ static status accept_piece(run *r, long n, double cpu) {
   p->attempt = 1;
   if (end) {
     ++p->i;
-    p->part = p->level = 0;
+    p->part = p->level = p->cut = 0;
   }
   TRY(loop_accept(r, attempt, p->increment_no, last, cpu));
+done:
+  return st;
+}
+
+/* End of the next piece of n increments: the longest that starts here and is
+ * stable. */
+static status choose_piece(run *r, long n, double *t) {
+  status st = OK;
+  progress *p = &r->at;
+  int deeper;
+  while (p->level > p->cut && p->part % 2 == 0) {
+    p->part /= 2;
+    --p->level;
+  }
+  *t = piece_end(r->step, n, p->i, p->part + 1, p->level);
+  TRY(visco_level(r, *t - r->old.t, &deeper));
+  p->part <<= deeper;
+  p->level += deeper;
+  *t = piece_end(r->step, n, p->i, p->part + 1, p->level);
 done:
   return st;
 }
@@ -307,16 +326,9 @@ done:
 /* One attempt at the next piece of n increments: taken, or cut into halves. */
 static status attempt_piece(run *r, long n) {
   status st = OK;
-  const step *s = r->step;
   progress *p = &r->at;
-  double cpu = timer_cpu(), t = piece_end(s, n, p->i, p->part + 1, p->level);
-  int deeper;
-  TRY(visco_level(r, t - r->old.t, &deeper));
-  if (deeper > 0) {
-    p->part <<= deeper;
-    p->level += deeper;
-    goto done;
-  }
+  double cpu = timer_cpu(), t;
+  TRY(choose_piece(r, n, &t));
   TRY(path_try(r, t));
   TRY(balance_advance(r, t));
   int settled = r->report.outcome > 0, finer = !settled && can_cut(r);
@@ -325,7 +337,7 @@ static status attempt_piece(run *r, long n) {
                     outcome_text(r->report.outcome)));
   if (finer) {
     p->part *= 2;
-    ++p->level;
+    p->cut = ++p->level;
     ++p->attempt;
     goto done;
   }
