@@ -21,15 +21,18 @@ int file_descriptor(int folder, const char *path, int flags, const char **why) {
     *why = is_link ? "it is a symbolic link" : strerror(errno);
     return -1;
   }
-  if (fstat(fd, &about) == 0 && S_ISREG(about.st_mode)) return fd;
-  *why = kind_fault(about.st_mode);
+  int known = fstat(fd, &about) == 0;
+  if (known && S_ISREG(about.st_mode)) return fd;
+  *why = known ? kind_fault(about.st_mode) : strerror(errno);
   close(fd);
   return -1;
 }
 
 int file_same(const char *a, const char *b) {
   struct stat one, other;
-  if (a == NULL || stat(a, &one) != 0 || stat(b, &other) != 0) return 0;
+  if (a == NULL) return 0;
+  if (stat(a, &one) != 0 || stat(b, &other) != 0)
+    return errno == ENOENT || errno == ENOTDIR || errno == ELOOP ? 0 : -1;
   return one.st_dev == other.st_dev && one.st_ino == other.st_ino;
 }
 

@@ -12,7 +12,7 @@
 /* A plain file below the folder (AT_FDCWD: the present one), opened without
  * waiting; -1 and the reason if it is none. */
 int file_descriptor(int folder, const char *path, int flags, const char **why);
-/* 1: both names lead to one file, which is there. */
+/* 1: both names lead to one file, which is there; -1, errno: not known. */
 int file_same(const char *a, const char *b);
 
 /* Remove what bears the name of a result: a regular file or a link, not what

@@ -1,6 +1,7 @@
 /* Requests to end early; the handler writes one flag and nothing else. */
 #include "base/interrupt.h"
 
+#include <errno.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,6 +30,7 @@ enum { REQUESTS = sizeof requests / sizeof *requests };
 static volatile sig_atomic_t caught; /* row of the first + 1, 0: none        */
 static volatile sig_atomic_t urgent; /* urgent ones so far                   */
 static const char *file;             /* borrowed                             */
+static int known_before;             /* 0: it could not be looked at       */
 static struct stat file_before;      /* ino 0: there was none                */
 static int file_seen;
 
@@ -51,11 +53,12 @@ void interrupt_spare_writes(void) {
   sigaction(SIGPIPE, &ignore, NULL);
 }
 
-/* What is there, but for a folder. */
+/* 1: something but a folder is there; 0: nothing is; -1: not known. */
 static int look_at(const char *path, struct stat *about) {
-  if (lstat(path, about) == 0 && !S_ISDIR(about->st_mode)) return 1;
+  int error_no = lstat(path, about) == 0 ? 0 : errno;
+  if (error_no == 0 && !S_ISDIR(about->st_mode)) return 1;
   memset(about, 0, sizeof *about);
-  return 0;
+  return error_no == 0 || error_no == ENOENT ? 0 : -1;
 }
 
 /* Under nohup a hangup is no request. */
@@ -73,14 +76,18 @@ void interrupt_catch(const char *stop_file) {
   caught = urgent = 0;
   file_seen = 0;
   file = stop_file;
-  if (file != NULL) look_at(file, &file_before);
+  known_before = file == NULL || look_at(file, &file_before) >= 0;
   for (int row = 0; row < REQUESTS; ++row) catch (row);
 }
 
 /* 1: the file is another one than at the start, or was touched. */
 static int is_made_to_stop(void) {
   struct stat now;
-  return look_at(file, &now) &&
+  if (!known_before) {
+    known_before = look_at(file, &file_before) >= 0;
+    return 0;
+  }
+  return look_at(file, &now) > 0 &&
          (now.st_ino != file_before.st_ino ||
           now.st_dev != file_before.st_dev ||
           now.st_mtim.tv_sec != file_before.st_mtim.tv_sec ||

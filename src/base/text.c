@@ -66,8 +66,9 @@ status text_reopen(text_file *t, const char *path, int by_line, long length) {
   if (f == NULL)
     FAIL(ERR_FILE, "%s: cannot open to go on with it: %s", path, why);
   TRY(take(t, path, f, by_line));
-  if (fseek(t->f, 0, SEEK_END) != 0) TRY(text_failed(path, "read", errno));
-  if (ftell(t->f) < length)
+  long size = fseek(t->f, 0, SEEK_END) == 0 ? ftell(t->f) : -1;
+  if (size < 0) TRY(text_failed(path, "read", errno));
+  if (size < length)
     FAIL(ERR_FILE, "%s is shorter than when the restart file was written",
          path);
   if (ftruncate(fileno(t->f), length) != 0 ||
@@ -100,7 +101,7 @@ status text_sync(text_file *t, long *length) {
   status st = OK;
   TRY(text_check(t));
   *length = t->f == NULL ? -1 : ftell(t->f);
-  if (t->f != NULL && fsync(fileno(t->f)) != 0)
+  if (t->f != NULL && (*length < 0 || fsync(fileno(t->f)) != 0))
     TRY(text_failed(t->path, "write", errno));
 done:
   return st;

@@ -89,9 +89,9 @@ done:
 static status check_length(words *w, int n) {
   status st = OK;
   const long here = ftell(w->f);
-  if (here < 0 || fseek(w->f, 0, SEEK_END) != 0)
-    TRY(text_failed(w->path, "read", errno));
-  const long left = ftell(w->f) - here, m = n;
+  const long end = here < 0 || fseek(w->f, 0, SEEK_END) != 0 ? -1 : ftell(w->f);
+  if (end < 0) TRY(text_failed(w->path, "read", errno));
+  const long left = end - here, m = n;
   if (left < 2 * m * (m + 1) - 1)
     FAIL(ERR_DECK,
          "%s: %ld characters follow the number of unknowns %d; expected %ld "

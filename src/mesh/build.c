@@ -176,9 +176,13 @@ static status read_tail(const char *file, char tail[TAIL_SIZE + 1], size_t *n) {
   const char *why;
   FILE *in = input_stream(file, &why);
   if (in == NULL) FAIL(ERR_FILE, "\"%s\": %s", file, why);
-  if (fseek(in, -TAIL_SIZE, SEEK_END) != 0) rewind(in); /* it is shorter */
-  *n = fread(tail, 1, TAIL_SIZE, in);
+  int sought = fseek(in, -TAIL_SIZE, SEEK_END) == 0;
+  int shorter = !sought && errno == EINVAL;
+  if (shorter) rewind(in);
+  *n = sought || shorter ? fread(tail, 1, TAIL_SIZE, in) : 0;
   tail[*n] = '\0';
+  if ((!sought && !shorter) || ferror(in))
+    FAIL(ERR_FILE, "\"%s\": %s", file, strerror(errno));
 done:
   if (in != NULL) fclose(in);
   return st;

@@ -396,8 +396,8 @@ static void refuse_options(const child *c, const char *path) {
 /* Options beside what the file merges, before gmsh sees them. */
 static void check_merged(const child *c) {
   geo_text g;
-  if (geo_read(c->request->source->file, &g) != OK)
-    give_up(c, ERR_MEMORY, "memory exhausted: text of the geometry");
+  status st = geo_read(c->request->source->file, &g);
+  if (st != OK) give_up(c, st, "%s", status_message());
   for (int i = 1; i < g.n_file; ++i)
     if (g.merged[i] && has_options(g.file[i])) refuse_options(c, g.file[i]);
   geo_free(&g);

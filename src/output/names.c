@@ -4,9 +4,11 @@
  */
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "output/writers.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <string.h>
 
 /* JOB.stop is removed only if it was made during the run. */
@@ -19,12 +21,15 @@ static const char middle[] = "_condensed_";
 
 static status spare(const deck *d, const char *path) {
   status st = OK;
-  for (int i = 0; i < d->n_input; ++i)
-    if (file_same(d->inputs[i], path))
+  for (int i = 0; i < d->n_input; ++i) {
+    int same = file_same(d->inputs[i], path);
+    if (same < 0) TRY(text_failed(path, "inspect", errno));
+    if (same)
       FAIL(ERR_DECK,
            "%s is the file %s that the deck reads: the results would overwrite "
            "it; name the deck or the file otherwise, or use -o",
            path, d->inputs[i]);
+  }
 done:
   return st;
 }
@@ -38,7 +43,8 @@ static status spare_condensed(const model *m, const char *dir) {
   status st = OK;
   char *path = NULL;
   DIR *folder = opendir(dir);
-  if (folder == NULL) return OK;
+  if (folder == NULL && errno == ENOENT) return OK;
+  if (folder == NULL) TRY(text_failed(dir, "read", errno));
   for (struct dirent *e; (e = readdir(folder)) != NULL;) {
     if (!is_condensed(e->d_name, m->job)) continue;
     memory_free(path);
@@ -47,7 +53,7 @@ static status spare_condensed(const model *m, const char *dir) {
     TRY(spare(m->deck, path));
   }
 done:
-  closedir(folder);
+  if (folder != NULL) closedir(folder);
   memory_free(path);
   return st;
 }

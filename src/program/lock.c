@@ -14,11 +14,12 @@
 
 static const char head[] = "protis process ";
 
-/* The first line, "" for an empty file. */
-static void read_owner(int fd, char text[64]) {
+/* The first line, "" for an empty file; 0 if it cannot be read. */
+static int read_owner(int fd, char text[64]) {
   ssize_t n = pread(fd, text, 63, 0);
   text[n > 0 ? n : 0] = '\0';
   text[strcspn(text, "\n")] = '\0';
+  return n >= 0;
 }
 
 /* What is not a lock of Protis stays as it is. */
@@ -26,8 +27,9 @@ static status check_content(const char *path, int fd) {
   status st = OK;
   char text[64];
   struct stat about;
-  int plain = fstat(fd, &about) == 0 && S_ISREG(about.st_mode);
-  read_owner(fd, text);
+  if (fstat(fd, &about) != 0) TRY(text_failed(path, "inspect", errno));
+  int plain = S_ISREG(about.st_mode);
+  if (plain && !read_owner(fd, text)) TRY(text_failed(path, "read", errno));
   if (!plain || (text[0] != '\0' && strncmp(text, head, sizeof head - 1) != 0))
     FAIL(ERR_FILE,
          "%s is no lock of Protis, and a run would overwrite it: move it away, "
@@ -37,12 +39,20 @@ done:
   return st;
 }
 
-/* 1: the file at the path is the one that was opened; a run that ended between
- * the two has removed it. */
-static int is_current(const char *path, int fd) {
+/* Is the file at the path the one that was opened? A run that ended between the
+ * two has removed it. */
+static status check_current(const char *path, int fd, int *current) {
+  status st = OK;
   struct stat one, other;
-  return stat(path, &one) == 0 && fstat(fd, &other) == 0 &&
-         one.st_ino == other.st_ino && one.st_dev == other.st_dev;
+  *current = 0;
+  if (stat(path, &one) != 0) {
+    if (errno == ENOENT) return OK;
+    TRY(text_failed(path, "inspect", errno));
+  }
+  if (fstat(fd, &other) != 0) TRY(text_failed(path, "inspect", errno));
+  *current = one.st_ino == other.st_ino && one.st_dev == other.st_dev;
+done:
+  return st;
 }
 
 static status refuse(const char *path, int fd, const char *job) {
@@ -57,18 +67,24 @@ static status refuse(const char *path, int fd, const char *job) {
       path, job, text[0] != '\0' ? text : "process unknown");
 }
 
-/* A file system without locks runs without. */
-static status hold(const char *path, const char *job, int *fd) {
+/* A file system without locks runs without. *held: the file is ours, to be
+ * removed in the end. */
+static status hold(const char *path, const char *job, int *fd, int *held) {
   status st = OK;
-  do {
+  const int flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
+  for (int current = 0; !current;) {
     if (*fd >= 0) close(*fd);
-    *fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
-               0666);
+    *fd = open(path, flags | O_EXCL, 0666);
+    int made = *fd >= 0;
+    if (!made && errno == EEXIST) *fd = open(path, flags, 0666);
     if (*fd < 0) TRY(text_failed(path, "open for writing", errno));
-    TRY(check_content(path, *fd));
+    if (!made) TRY(check_content(path, *fd));
     if (flock(*fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       TRY(refuse(path, *fd, job));
-  } while (!is_current(path, *fd));
+    *held = 1;
+    TRY(check_current(path, *fd, &current));
+    *held = current;
+  }
 done:
   return st;
 }
@@ -80,8 +96,7 @@ status job_lock_take(const char *dir, const char *job, job_lock *l) {
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of the lock");
   if (mkdir(dir, 0777) != 0 && errno != EEXIST)
     FAIL(ERR_FILE, "cannot make the folder %s: %s", dir, strerror(errno));
-  TRY(hold(path, job, &fd));
-  held = 1;
+  TRY(hold(path, job, &fd, &held));
   if (ftruncate(fd, 0) != 0 || dprintf(fd, "%s%ld\n", head, (long)getpid()) < 0)
     TRY(text_failed(path, "write", errno));
   *l = (job_lock){path, fd};

@@ -60,8 +60,9 @@ static status echo_of(const model *m, char **text) {
   size_t size = 0;
   FILE *f = open_memstream(text, &size);
   if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
-  model_echo(m, f);
-  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
+  st = model_echo(m, f);
+  if (fclose(f) != 0 && st == OK)
+    FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
 done:
   return st;
 }

@@ -16,9 +16,11 @@
 #include "deck/expression.h"
 #include "mesh/raw.h"
 
+#include <dirent.h>
 #include <hdf5.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -77,6 +79,12 @@
   X(pread, ssize_t, -1, (int f, void *v, size_t n, off_t at), (f, v, n, at))  \
   X(ftruncate, int, -1, (int f, off_t n), (f, n))                             \
   X(fstat, int, -1, (int f, struct stat *s), (f, s))                          \
+  X(stat, int, -1, (const char *p, struct stat *s), (p, s))                   \
+  X(lstat, int, -1, (const char *p, struct stat *s), (p, s))                  \
+  X(opendir, DIR *, NULL, (const char *p), (p))                               \
+  X(fseek, int, -1, (FILE *f, long at, int from), (f, at, from))              \
+  X(ftell, long, -1, (FILE *f), (f))                                          \
+  X(flock, int, -1, (int f, int how), (f, how))                               \
   X(pipe, int, -1, (int *p), (p))
 
 /* X(function, answer of a failure, parameter, argument): made, then answered

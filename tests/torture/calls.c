@@ -17,6 +17,7 @@
 #include "support/traced.h"
 #include "support/unit.h"
 
+#include <errno.h>
 #include <glob.h>
 #include <string.h>
 
@@ -151,8 +152,16 @@ static int keeps_room(const char *suffix, const job *whole, const job *j) {
          stat(other, &b) == 0 && b.st_size > a.st_size;
 }
 
-/* NULL, or what is wrong with the end of a run that failed. */
-static const char *wrong_end(failing_kind kind, const job *j, int code) {
+/* 1: a call of the system itself, which leaves its reason. */
+static int has_reason(failing_call call) {
+  const char *name = failing_name(call);
+  return failing_kind_of(call) == FAILING_FILE && call != FAILING_ferror &&
+         strncmp(name, "H5", 2) != 0 && strncmp(name, "archive", 7) != 0;
+}
+
+/* NULL, or what is wrong with the end of a run that failed. What could not be
+ * asked of the system is told as that, not as an answer. */
+static const char *wrong_end(failing_call call, const job *j, int code) {
   static const struct {
     int from, to; /* exit codes                                              */
     const char *said, *wrong;
@@ -162,9 +171,12 @@ static const char *wrong_end(failing_kind kind, const job *j, int code) {
       [FAILING_VALUE] = {2, 2, ".inp:", "not exit 2 with its place"},
       [FAILING_SIGNAL] = {130, 130, "interrupted", "not exit 130"},
   };
+  const failing_kind kind = failing_kind_of(call);
   if (code < ends[kind].from || code > ends[kind].to ||
       strstr(j->errors, ends[kind].said) == NULL)
     return ends[kind].wrong;
+  if (has_reason(call) && code != 5 && strstr(j->errors, strerror(EIO)) == NULL)
+    return "reason not told";
   return code != 4 || strstr(j->errors, j->dir) != NULL ? NULL
                                                         : "file not named";
 }
@@ -178,7 +190,7 @@ static const char *fault(const job *whole, const job *j, const failing_point *p,
   if (code == 0)
     other = traced_difference(whole, j);
   else
-    other = wrong_end(failing_kind_of(p->call), j, code);
+    other = wrong_end(p->call, j, code);
   if (other != NULL && (code != 0 || !keeps_room(other, whole, j)))
     return other;
   return litter(j);

@@ -31,8 +31,9 @@ status dataset_open(const char *path, hdf5_source *s) {
   s->fd = input_open(path, &why);
   if (s->fd < 0) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
   snprintf(name, sizeof name, "/proc/self/fd/%d", s->fd);
-  if (H5Fis_hdf5(name) <= 0)
-    FAIL(ERR_FILE, "%s is no HDF5 file, or cut short", path);
+  htri_t is_hdf5 = H5Fis_hdf5(name);
+  if (is_hdf5 < 0) FAIL(ERR_FILE, "%s: cannot be read", path);
+  if (is_hdf5 == 0) FAIL(ERR_FILE, "%s is no HDF5 file, or cut short", path);
   s->file = H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (s->file < 0)
     FAIL(ERR_FILE, "%s cannot be read: the HDF5 file is damaged or cut short",

@@ -6,8 +6,10 @@
 
 #include "base/memory.h"
 #include "base/system/input.h"
+#include "base/text.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -40,18 +42,19 @@ done:
   return st;
 }
 
-/* The whole file as text, NULL if it cannot be read. */
+/* The whole file as text, NULL if it cannot be opened or is too long. */
 static status load(const char *path, char **text) {
   status st = OK;
   const char *why;
   FILE *in = input_stream(path, &why);
   if (in == NULL) return OK;
-  fseek(in, 0, SEEK_END);
-  long size = ftell(in);
-  rewind(in);
-  if (size >= 0 && size < MOST_BYTES) {
+  long size = fseek(in, 0, SEEK_END) == 0 ? ftell(in) : -1;
+  if (size < 0 || fseek(in, 0, SEEK_SET) != 0)
+    TRY(text_failed(path, "read", errno));
+  if (size < MOST_BYTES) {
     NEW(*text, size + 1);
     (*text)[fread(*text, 1, (size_t)size, in)] = '\0';
+    if (ferror(in)) TRY(text_failed(path, "read", errno));
   }
 done:
   fclose(in);

@@ -18,7 +18,7 @@ typedef struct geo_text {
   char merged[GEO_FILES]; /* [n_file] 1: gmsh obeys options beside it         */
 } geo_text;
 
-/* Files that cannot be read are left to gmsh. ERR_MEMORY. */
+/* Files that cannot be opened are left to gmsh. ERR_MEMORY, ERR_FILE. */
 status geo_read(const char *file, geo_text *g);
 void geo_free(geo_text *g); /* accepts an all-zero object                    */
 /* 1 if the text has the name, letter by letter, or may have it. */

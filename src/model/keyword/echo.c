@@ -131,18 +131,20 @@ static void echo_symbols(const deck *d, const char *cards, FILE *out) {
   }
 }
 
-void model_echo(const model *m, FILE *out) {
+status model_echo(const model *m, FILE *out) {
+  status st = OK;
   const deck *d = m->deck;
   char *cards = NULL;
   size_t size;
   FILE *f = open_memstream(&cards, &size);
-  if (f == NULL) return;
+  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
   for (int i = 0; i < d->n_card; ++i) echo_card(m, &d->cards[i], f);
-  if (fclose(f) == 0) {
-    echo_symbols(d, cards, out);
-    fputs(cards, out);
-  }
+  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
+  echo_symbols(d, cards, out);
+  fputs(cards, out);
+done:
   free(cards);
+  return st;
 }
 
 static const char *where_text(unsigned where) {

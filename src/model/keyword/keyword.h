@@ -48,7 +48,7 @@ status model_from_deck(deck *d, message_log *log, model **out);
 
 /* The deck with all defaults written out, includes and parameters resolved;
  * reading it gives the same model. */
-void model_echo(const model *m, FILE *out);
+status model_echo(const model *m, FILE *out);
 /* Help from the keyword table: all cards in short, or one in full; 0 if there
  * is no card of that name. */
 int keywords_print(const char *name, FILE *out);

@@ -231,8 +231,10 @@ static status add_deck(hdf5_file *h) {
   if (h->m->deck == NULL) return OK;
   FILE *f = open_memstream(&text, &size);
   if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
-  model_echo(h->m, f);
-  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
+  st = model_echo(h->m, f);
+  if (fclose(f) != 0 && st == OK)
+    FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
+  if (st != OK) goto done;
   NEW(own, size + 1);
   memcpy(own, text, size);
   st = add_fixed(h, "/deck", DATA_TEXT, (int)size + 1, 1, NULL, own);
