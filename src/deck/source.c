@@ -168,9 +168,9 @@ static int open_stream(source *s, const char *file, message_log *log,
   place whole = {.file = s->file};
   const char *why = NULL;
   s->stream = input_stream(file, &why);
-  if (s->stream != NULL && fstat(fileno(s->stream), &info) != 0)
-    why = strerror(errno);
-  if (why != NULL) {
+  int known = s->stream != NULL && fstat(fileno(s->stream), &info) == 0;
+  if (s->stream != NULL && !known) why = strerror(errno);
+  if (!known) {
     message_add(log, P1001, at != NULL ? at : &whole, "cannot read %s: %s",
                 s->file, why);
     return -1;
