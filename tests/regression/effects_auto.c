@@ -245,11 +245,36 @@ START_TEST(nothing_is_left_out_unless_asked) {
 }
 END_TEST
 
+/* Two equal increments without friction, f and u in the end: its bound is twice
+ * the roots of the work on the slip, sqrt(W/4) + sqrt(W/2) for W the sum of
+ * mu f |u|, over the root of twice the strain energy. */
+START_TEST(bound_of_friction_is_that_of_the_work_at_its_nodes) {
+  const scene s = {"",
+                   "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.D-8\n",
+                   "LEFT, P, 20.\n",
+                   "*EFFECTS, MODE=AUTO, TOL=0.01\n",
+                   0.2,
+                   "0.5"};
+  job j = run_scene(&s);
+  ck_assert_int_eq(fate(&j, "friction"), 1);
+  dat c = job_table(&j, "CONTACT", -1), e = job_table(&j, "ENERGY", -1);
+  double work = 0.0;
+  for (int i = 0; i < c.n_row; ++i)
+    work += 1e-8 * dat_at(&c, i, "f_n") * fabs(dat_at(&c, i, "u_t"));
+  work /= 2.0 * dat_at(&e, 0, "strain_energy");
+  ck_assert_double_eq_tol(
+      job_told(&j, "bound") / (2.0 * (0.5 + sqrt(0.5)) * sqrt(work)), 1, 1e-6);
+  dat_free(&c);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
 /* The middle strip of five gets warm: the change is that of the forces of its
  * nodes over the largest force, the others keep theirs. */
 START_TEST(change_is_that_of_the_nodes_it_changes_most) {
   dat c[2];
-  double told = NAN, largest = 0, most = 0;
+  double told = NAN, stress = NAN, largest = 0, most = 0;
   for (int k = 0; k < 2; ++k) {
     job j = job_begin("strips");
     job_copy(&j, "tests/regression/mesh/strips.geo");
@@ -266,6 +291,7 @@ START_TEST(change_is_that_of_the_nodes_it_changes_most) {
     ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
     c[k] = job_table(&j, "CONTACT", -1);
     if (k == 1) told = job_told(&j, "change");
+    if (k == 1) stress = job_told(&j, "stress");
     job_end(&j);
   }
   for (int i = 0; i < c[1].n_row; ++i) {
@@ -275,6 +301,8 @@ START_TEST(change_is_that_of_the_nodes_it_changes_most) {
   }
   ck_assert_double_gt(most, 0);
   ck_assert_double_eq_tol(told / (most / largest), 1, 1e-3);
+  /* E alpha T over the pressure, E u */
+  ck_assert_double_eq_tol(stress / (1.2e-5 * 0.05 / 0.01), 1, 1e-6);
   dat_free(&c[0]);
   dat_free(&c[1]);
 }
@@ -322,5 +350,6 @@ UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
           law_at_its_end_is_left_out, elements_below_the_threshold_are_left_out,
           law_below_its_threshold_is_left_out,
           average_within_an_element_is_local, friction_without_slip_is_left_out,
+          bound_of_friction_is_that_of_the_work_at_its_nodes,
           change_is_that_of_the_nodes_it_changes_most,
           nothing_is_left_out_unless_asked, random_scenes_agree)

@@ -306,6 +306,39 @@ START_TEST(rigid_block_obeys_statics) {
 }
 END_TEST
 
+/* Two masses 2 that move by v = (f + r) / 2, u = v + w: the first is pressed
+ * with 10 - 2 and slides against mu 8 = 0.4, the second stays off. */
+START_TEST(slip_and_gap_are_those_of_the_moved_obstacle) {
+  double M[36] = {0}, H[36] = {0};
+  const double f[6] = {-10, 0, 0, 1, 0.4, 0}, w[6] = {1, 0.3, 0.4, 1, 0, -0.5};
+  const double mu[2] = {0.05, 0.05}, u[6] = {0, 0.18, 0.24, 1.5, 0.2, -0.5};
+  for (int i = 0; i < 6; ++i) {
+    M[7 * i] = 2.0;
+    H[7 * i] = 1.0;
+  }
+  const fclib_global_data g = {3, 2, 6, M, H, f, w, mu};
+  job j = job_begin("read");
+  fclib_global(in_folder(&j, "problem.h5"), STORE_TRIPLET, &g);
+  job_write(&j, "read.inp",
+            "*CONDENSED PROBLEM, FILE=problem.h5\n*STEP\n*SOLVER, TOL=1e-12\n"
+            "*PRINT, CONTACT\n*END STEP\n");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat c = job_table(&j, "CONTACT", -1);
+  ck_assert_int_eq(c.n_row, 2);
+  for (int i = 0; i < 2; ++i) {
+    ck_assert_double_eq_tol(dat_at(&c, i, "gap"), u[3 * i], 1e-9);
+    ck_assert_double_eq_tol(dat_at(&c, i, "slip_1"), u[3 * i + 1], 1e-9);
+    ck_assert_double_eq_tol(dat_at(&c, i, "slip_2"), u[3 * i + 2], 1e-9);
+  }
+  ck_assert_double_eq_tol(dat_at(&c, 0, "f_n"), 8, 1e-9);
+  ck_assert_double_eq_tol(dat_at(&c, 0, "f_t1"), -0.24, 1e-9);
+  ck_assert_double_eq_tol(dat_at(&c, 0, "f_t2"), -0.32, 1e-9);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
 enum { STOREYS = 20, JOINTS = 4 * STOREYS, FREE = 6 * STOREYS };
 
 /* A tower of unit cubes, four contacts between two of them, pushed at the top:
@@ -698,7 +731,8 @@ END_TEST
 UNIT_MAIN("exchange", problem_written_and_read_has_the_same_solution,
           problem_of_three_dimensions_comes_back,
           what_cannot_be_written_is_refused, rigid_block_obeys_statics,
-          tower_of_blocks_stands, every_solver_is_honest_on_problems_from_files,
+          slip_and_gap_are_those_of_the_moved_obstacle, tower_of_blocks_stands,
+          every_solver_is_honest_on_problems_from_files,
           auto_solves_unsymmetric_problems, tie_case_of_murty_is_solved,
           exponential_case_is_solved, semidefinite_case_is_solved,
           case_without_solution_ends_with_six,

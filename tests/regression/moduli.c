@@ -139,16 +139,19 @@ START_TEST(a_loaded_bar_gives_way) {
              "",
              "*STEP\n*STATIC\n" SYMMETRY "*DSLOAD\nTOP, TY, 100.\n" TABLES
              "*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n*TEMPERATURE\n"
-             "BODY, 400.\n" TABLES "*END STEP\n"};
-  static const double E[] = {2e5, 1.5e5, 1e5, 1e5, 1e5};
+             "BODY, 400.\n" TABLES
+             "*END STEP\n*STEP\n*QUASISTATIC\n"
+             "0.25, 1.\n*TEMPERATURE\nBODY, 0.\n" TABLES "*END STEP\n"};
+  static const double E[] = {2e5, 1.5e5, 1e5, 1e5, 1e5, 1e5, 1e5, 1.5e5, 2e5};
   job j = run_scene(&s, 0);
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 9; ++i) {
     all_are(&j, i, "stress_yy", 100, 1e-8);
     all_are(&j, i, "strain_yy", 100 / E[i], 1e-13);
     balanced(&j, i);
   }
-  /* One factor for each change: 0, 100 and 200 degrees; none beyond. */
-  ck_assert_int_eq(job_stage(&j, "factorisation", NULL), 3);
+  /* One factor for each change: 0, 100 and 200 degrees, back to 100 and
+   * 0; none beyond. */
+  ck_assert_int_eq(job_stage(&j, "factorisation", NULL), 5);
   job_end(&j);
 }
 END_TEST

@@ -175,6 +175,45 @@ START_TEST(chosen_tolerance_goes_on) {
 }
 END_TEST
 
+/* A load that grows from next to nothing and falls again, far below what moves
+ * the block to the floor: rounding counts against the largest load of the step,
+ * and energies and stresses against the largest so far. */
+static job light(void) {
+  job j = job_begin("light");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "light.inp",
+            "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -1.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+            "0.1, 1.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 3E-10\n"
+            "*PRINT, TOTALS\n*OUTPUT\n*END STEP\n*STEP\n*QUASISTATIC\n"
+            "0.2, 0.8\n*DSLOAD\nTOP, P, \"3E-10*(2 - t)\"\n*END STEP\n");
+  return j;
+}
+
+START_TEST(largest_loads_and_energies_go_on) {
+  static const int stops[] = {6, 8, 10, 12, 45};
+  int changes, all;
+  job whole = light();
+  int code = run_until(&whole, nothing, 0, 0, &all);
+  ck_assert_int_le(code, 1); /* the first forces are told to be in doubt     */
+  char *lst = job_file(&whole, "lst");
+  ck_assert_ptr_nonnull(strstr(lst, "\n  rounding: "));
+  free(lst);
+  for (int k = 0; k < 5; ++k) {
+    job j = light();
+    ck_assert_int_eq(
+        run_until(&j, nothing, all * stops[k] / 60, SIGINT, &changes), 130);
+    goes_on(&j, code, "light");
+    same_files(&whole, &j, "light");
+    job_end(&j);
+  }
+  job_end(&whole);
+}
+END_TEST
+
 /* A block that slips on, with another material and another second step. */
 static job sliding(const char *material, const char *second) {
   job j = small_flat(0.1, "", "AUTO");
@@ -333,6 +372,6 @@ END_TEST
 UNIT_MAIN("restart", changed_decks_are_refused_by_card, later_steps_may_change,
           adapted_increments_go_on, killed_twice_goes_on,
           chosen_tolerance_goes_on, known_rate_goes_on,
-          run_without_a_file_begins_anew, files_are_in_the_seal,
-          restart_files_are_equal, some_jobs_start_anew,
+          largest_loads_and_energies_go_on, run_without_a_file_begins_anew,
+          files_are_in_the_seal, restart_files_are_equal, some_jobs_start_anew,
           damaged_files_are_refused)

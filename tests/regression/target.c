@@ -211,6 +211,25 @@ START_TEST(forecast_is_near_the_truth) {
 }
 END_TEST
 
+/* Half of the foot is held: the stress there has no bound, and the order of the
+ * error is that of three meshes. */
+START_TEST(order_at_a_sharp_edge_is_that_of_three_meshes) {
+  job j = job_begin("edge");
+  job_write(&j, "edge.geo",
+            "h = 0.3; Point(1)={0,0,0,h};Point(2)={1,0,0,h};Point(3)={1,1,0,h};"
+            "Point(4)={0,1,0,h};Point(5)={0.5,0,0,h};\nLine(1)={1,5};"
+            "Line(2)={5,2};Line(3)={2,3};Line(4)={3,4};Line(5)={4,1};\n"
+            "Curve Loop(1)={1:5};Plane Surface(1)={1};\n"
+            "Physical Surface(\"BODY\")={1};Physical Curve(\"BOTTOM\")={1};\n"
+            "Physical Curve(\"TOP\")={4};\n");
+  job_write(&j, "edge.inp", "*MESH, FILE=edge.geo\n%s", square_deck);
+  int code = job_run(&j, "--estimate-cost");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  ck_order(&j);
+  job_end(&j);
+}
+END_TEST
+
 /* The error of the increments of *VISCO counts too. */
 START_TEST(flow_has_its_share_of_the_target) {
   job j = job_begin("creep");
@@ -234,25 +253,47 @@ START_TEST(flow_has_its_share_of_the_target) {
 }
 END_TEST
 
-/* A rough cylinder in two increments: the increments must become shorter. */
-START_TEST(increments_are_made_shorter) {
+/* A rough cylinder in increments of 0.5, for an error in %. */
+static job roll(int nc, const char *total, const char *accuracy) {
   job j = job_begin("cylinder");
   job_copy(&j, "input/hertz_line/hertz_line.geo");
   job_write(&j, "cylinder.inp",
-            "*PARAMETER\nR = 10.\nA = 0.2348908547\nNC = 12\n"
+            "*PARAMETER\nR = 10.\nA = 0.2348908547\nNC = %d\n"
             "*MESH, FILE=hertz_line.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
             "210.D3, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
             "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
             "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
             "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
-            "0.5, 1.\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\nTOP, P, 50.\n"
-            "*ACCURACY, TARGET=3\n*PRINT, ENERGY\n*END STEP\n");
+            "0.5, %s\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\n"
+            "TOP, P, 50.\n*ACCURACY, %s\n*PRINT, ENERGY\n*END STEP\n",
+            nc, total, accuracy);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* In two increments: they must become shorter. */
+START_TEST(increments_are_made_shorter) {
+  job j = roll(12, "1.", "TARGET=3");
   char *json = job_file(&j, "json"), *sta = job_file(&j, "sta");
   ck_assert_ptr_nonnull(strstr(json, "dt * "));
   ck_assert_int_gt(count(sta, " OK"), 2);
   free(json);
+  free(sta);
+  job_end(&j);
+}
+END_TEST
+
+/* Increments chosen in the step: the least of them goes with the others, so
+ * that the second is no longer than the first. */
+START_TEST(least_increment_is_made_shorter_too) {
+  job j = roll(4, "1., 0.5", "TARGET=5, TIME=BALANCED");
+  char *sta = job_file(&j, "sta"), *at = strchr(sta, '\n');
+  double dt[2] = {0.0, 0.0};
+  for (int k = 0; k < 2; ++k, at = strchr(at + 1, '\n'))
+    ck_assert_int_eq(sscanf(at, "%*d %*d %*d %*f %lf", &dt[k]), 1);
+  ck_assert_double_lt(dt[0], 0.3);
+  ck_assert_double_le(dt[1], 1.01 * dt[0]);
   free(sta);
   job_end(&j);
 }
@@ -335,7 +376,9 @@ END_TEST
 UNIT_MAIN("target", target_is_reached_in_truth,
           limits_stop_with_the_best_there_is, structured_geometry_is_made_finer,
           mesh_without_geometry_is_named, forecast_is_near_the_truth,
-          increments_are_made_shorter, flow_has_its_share_of_the_target,
+          increments_are_made_shorter, least_increment_is_made_shorter_too,
+          order_at_a_sharp_edge_is_that_of_three_meshes,
+          flow_has_its_share_of_the_target,
           exact_solution_costs_one_pass_and_no_forecast,
           exact_solution_needs_no_shorter_increments,
           unloaded_body_has_no_large_error)
