@@ -43,7 +43,7 @@ static status spare_condensed(const model *m, const char *dir) {
   status st = OK;
   char *path = NULL;
   DIR *folder = opendir(dir);
-  if (folder == NULL && errno == ENOENT) return OK;
+  if (folder == NULL && (errno == ENOENT || errno == ENOTDIR)) return OK;
   if (folder == NULL) TRY(text_failed(dir, "read", errno));
   for (struct dirent *e; (e = readdir(folder)) != NULL;) {
     if (!is_condensed(e->d_name, m->job)) continue;
