@@ -8,7 +8,8 @@
  *
  * STRAIN keeps w = p^(1/(m + 1)), whose rate (A q^n/(m + 1))^(1/(m + 1)) is
  * regular at p = 0. There, and at t = 0, m < 0 makes dp/dt infinite though its
- * integral is not: in that point alone the mean over the step dt is taken.
+ * integral is not: dp/dt is at most its mean over a step dt from there, which
+ * is more than any later step of that length makes.
  */
 #include "material/law/law.h"
 
@@ -58,19 +59,19 @@ typedef struct creep {
   double n;      /* d(rate)/dq = n rate/q                                     */
   double w_rate; /* of STRAIN, d(w_rate)/dq = n_w w_rate/q                    */
   double n_w;
+  int follows_w; /* 0: its mean over the step                              */
 } creep;
 
 static creep strain_hardening(const law_point *p, double q) {
   const norton_value *v = values(p);
-  const double k = 1 / (1 + v->m), w = p->alpha[0];
+  const double k = 1 / (1 + v->m), w = fmax(p->alpha[0], 0);
   creep c = {.n = v->n * k, .n_w = v->n * k};
   c.w_rate = power_law(v, q, k) * pow(k, k);
-  if (w > 0 || !(v->m < 0)) {
-    c.rate = (1 + v->m) * pow(fmax(w, 0), v->m) * c.w_rate;
-  } else if (c.w_rate > 0) { /* p = (w_rate dt)^(1 + m) at the end of dt      */
-    c.rate = pow(c.w_rate, 1 + v->m) * pow(p->dt, v->m);
-    c.n = v->n;
-  }
+  const double mean = pow(c.w_rate, 1 + v->m) * pow(p->dt, v->m);
+  if (c.w_rate > 0) c.rate = (1 + v->m) * pow(w, v->m) * c.w_rate;
+  c.follows_w = !(v->m < 0 && c.rate > mean);
+  if (!c.follows_w) c.rate = mean;
+  if (!c.follows_w) c.n = v->n;
   return c;
 }
 
@@ -79,8 +80,9 @@ static creep creep_of(const law_point *p, double q) {
   if (hardening_of(p) == STRAIN) return strain_hardening(p, q);
   creep c = {.rate = power_law(v, q, 1), .n = v->n};
   if (v->m == 0 || !(c.rate > 0)) return c;
-  c.rate *=
-      p->t > 0 || v->m > 0 ? pow(p->t, v->m) : pow(p->dt, v->m) / (1 + v->m);
+  const double mean = pow(p->dt, v->m) / (1 + v->m);
+  const double slowed = pow(p->t, v->m);
+  c.rate *= v->m < 0 && slowed > mean ? mean : slowed;
   return c;
 }
 
@@ -116,7 +118,7 @@ static void jacobian(const law_point *p, law_jacobian *j) {
   const double w = p->alpha[0];
   for (int i = 0; i < ns; ++i) {
     j->alpha_sigma[i] = slope(c.w_rate, q, c.n_w, 0) * n[i];
-    if (w > 0) j->ei_alpha[i] = values(p)->m * c.rate / w * n[i];
+    if (c.follows_w && w > 0) j->ei_alpha[i] = values(p)->m * c.rate / w * n[i];
   }
 }
 
@@ -133,7 +135,7 @@ static double fastest_rate(const law_point *p) {
   const double turning =
       q > 0 ? 3 * shear * c.rate / q : 3 * shear * slope(0, 0, c.n, one.rate);
   double rate_w = radial;
-  if (hardening_of(p) == STRAIN && q > 0 && p->alpha[0] > 0) {
+  if (hardening_of(p) == STRAIN && q > 0 && c.follows_w && p->alpha[0] > 0) {
     /* [-radial, b; -d, 0] on (strain along n, w) */
     const double b = values(p)->m * c.rate / p->alpha[0];
     const double d = 3 * shear * slope(c.w_rate, q, c.n_w, 0);
