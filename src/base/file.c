@@ -37,21 +37,19 @@ int file_same(const char *a, const char *b) {
 }
 
 status file_clear(const char *path) {
-  status st = OK;
   struct stat about;
   if (lstat(path, &about) != 0) {
     if (errno == ENOENT) return OK;
-    FAIL(ERR_FILE, "%s: cannot be replaced: %s", path, strerror(errno));
+    RAISE(ERR_FILE, "%s: cannot be replaced: %s", path, strerror(errno));
   }
   if (!S_ISREG(about.st_mode) && !S_ISLNK(about.st_mode))
-    FAIL(ERR_FILE,
-         "%s: cannot be replaced: %s; move it away, name the deck otherwise, "
-         "or use -o",
-         path, kind_fault(about.st_mode));
+    RAISE(ERR_FILE,
+          "%s: cannot be replaced: %s; move it away, name the deck otherwise, "
+          "or use -o",
+          path, kind_fault(about.st_mode));
   if (unlink(path) != 0 && errno != ENOENT)
-    FAIL(ERR_FILE, "%s: cannot remove the earlier: %s", path, strerror(errno));
-done:
-  return st;
+    RAISE(ERR_FILE, "%s: cannot remove the earlier: %s", path, strerror(errno));
+  return OK;
 }
 
 void file_sync_folder(const char *path) {

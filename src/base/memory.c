@@ -101,16 +101,14 @@ double memory_left(void) {
 }
 
 status memory_foresee(double bytes, const char *what) {
-  status st = OK;
   const double mega = 1e6;
   if (bytes > memory_left())
-    FAIL(ERR_MEMORY,
-         "%s needs about %.0f MB of memory, and %s leaves %.0f MB; take a "
-         "coarser mesh or fewer contact nodes, or set the limit with "
-         "--max-memory MB (for the passes of TARGET= MAX_MEMORY=)",
-         what, ceil(bytes / mega), limit_of, floor(memory_left() / mega));
-done:
-  return st;
+    RAISE(ERR_MEMORY,
+          "%s needs about %.0f MB of memory, and %s leaves %.0f MB; take a "
+          "coarser mesh or fewer contact nodes, or set the limit with "
+          "--max-memory MB (for the passes of TARGET= MAX_MEMORY=)",
+          what, ceil(bytes / mega), limit_of, floor(memory_left() / mega));
+  return OK;
 }
 
 void memory_refuse(long k, int all) {

@@ -13,24 +13,28 @@
 #include <stddef.h>
 
 /* NEW(pointer, n): n zeroed items of what the pointer points to, or FAIL. */
-#define NEW(pointer, n)                                                   \
+#define NEW(pointer, n) NEW_OR(FAIL, pointer, n)
+#define PASS_NEW(pointer, n) NEW_OR(RAISE, pointer, n)
+#define NEW_OR(fail, pointer, n)                                          \
   do {                                                                    \
     (pointer) = memory_new((size_t)(n), sizeof *(pointer));               \
     if ((pointer) == NULL)                                                \
-      FAIL(ERR_MEMORY, "memory exhausted: %zu items of %zu bytes for %s", \
+      fail(ERR_MEMORY, "memory exhausted: %zu items of %zu bytes for %s", \
            (size_t)(n), sizeof *(pointer), #pointer);                     \
   } while (0)
 
-/* GROW(pointer, n, capacity): room for item n (0-based), doubling as needed;
+/* GROW(pointer, n, capacity): space for item n (0-based), doubling as needed;
  * capacity is an int lvalue that belongs to the pointer. */
-#define GROW(pointer, n, capacity)                                         \
+#define GROW(pointer, n, capacity) GROW_OR(FAIL, pointer, n, capacity)
+#define PASS_GROW(pointer, n, capacity) GROW_OR(RAISE, pointer, n, capacity)
+#define GROW_OR(fail, pointer, n, capacity)                                \
   do {                                                                     \
     if ((n) >= (capacity)) {                                               \
       int wanted_ = (capacity) > 0 ? 2 * (capacity) : 8;                   \
       void *grown_ = memory_resize((pointer), (size_t)(capacity),          \
                                    (size_t)wanted_, sizeof *(pointer));    \
       if (grown_ == NULL)                                                  \
-        FAIL(ERR_MEMORY, "memory exhausted: %d items of %zu bytes for %s", \
+        fail(ERR_MEMORY, "memory exhausted: %d items of %zu bytes for %s", \
              wanted_, sizeof *(pointer), #pointer);                        \
       (pointer) = grown_;                                                  \
       (capacity) = wanted_;                                                \

@@ -92,10 +92,8 @@ static place *place_copy(const place *at) {
 }
 
 status message_log_new(message_log **log) {
-  status st = OK;
-  NEW(*log, 1);
-done:
-  return st;
+  PASS_NEW(*log, 1);
+  return OK;
 }
 
 void message_log_free(message_log *log) {
@@ -117,28 +115,24 @@ static const place *outermost(const place *p) {
 }
 
 static status file_rank(message_log *log, const place *at, int *rank) {
-  status st = OK;
   const place *root = outermost(at);
   const char *file = root != NULL && root->file != NULL ? root->file : "";
   for (*rank = 0; *rank < log->n_file; ++*rank)
-    if (strcmp(log->files[*rank], file) == 0) goto done;
-  GROW(log->files, log->n_file, log->file_capacity);
+    if (strcmp(log->files[*rank], file) == 0) return OK;
+  PASS_GROW(log->files, log->n_file, log->file_capacity);
   log->files[log->n_file] = memory_text(file);
-  if (log->files[log->n_file] == NULL) FAIL(ERR_MEMORY, "memory exhausted");
+  if (log->files[log->n_file] == NULL) RAISE(ERR_MEMORY, "memory exhausted");
   ++log->n_file;
-done:
-  return st;
+  return OK;
 }
 
 static status keep(message_log *log, const message *m) {
-  status st = OK;
-  GROW(log->items, log->n, log->capacity);
+  PASS_GROW(log->items, log->n, log->capacity);
   message *item = &log->items[log->n];
   *item = *m;
-  TRY(file_rank(log, m->at, &item->rank));
+  PASS(file_rank(log, m->at, &item->rank));
   ++log->n;
-done:
-  return st;
+  return OK;
 }
 
 int message_wanted(const message_log *log, severity s) {
@@ -401,10 +395,8 @@ int message_explain(const char *number, FILE *out) {
 }
 
 status message_status(const message_log *log, status code) {
-  status st = OK;
   int n = log->count[ERROR];
-  if (log->no_memory) FAIL(ERR_MEMORY, "memory exhausted by messages");
-  if (n > 0) FAIL(code, "%d error%s in the input", n, n == 1 ? "" : "s");
-done:
-  return st;
+  if (log->no_memory) RAISE(ERR_MEMORY, "memory exhausted by messages");
+  if (n > 0) RAISE(code, "%d error%s in the input", n, n == 1 ? "" : "s");
+  return OK;
 }

@@ -1,11 +1,11 @@
 /*
  * Status codes and the error record.
  *
- * A function that can fail returns a status. FAIL starts a failure and keeps
- * its message, TRY passes one up and notes the way; both jump to the single
- * label "done:" of the function, where locals are released. The function
- * declares "status st = OK;". Only main prints the record and turns the code
- * into the exit code of the process.
+ * A function that can fail returns a status. RAISE starts a failure and keeps
+ * its message, PASS passes one up and notes the function; both return at once.
+ * Where locals must be released, FAIL and TRY do the same, but jump to the
+ * single label "done:" of a function that declares "status st = OK;". Only main
+ * prints the record and turns the code into the exit code of the process.
  */
 #ifndef PROTIS_BASE_STATUS_H
 #define PROTIS_BASE_STATUS_H
@@ -31,6 +31,18 @@
 
 #define STATUS_ENUM(name, exit_code, text) name,
 typedef enum { STATUS_LIST(STATUS_ENUM) STATUS_COUNT } status;
+
+#define RAISE(code, ...) \
+  return status_fail((code), __func__, __LINE__, __VA_ARGS__)
+
+#define PASS(call)                      \
+  do {                                  \
+    status st_ = (call);                \
+    if (st_ != OK) {                    \
+      status_trace(__func__, __LINE__); \
+      return st_;                       \
+    }                                   \
+  } while (0)
 
 #define FAIL(code, ...)                                        \
   do {                                                         \

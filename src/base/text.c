@@ -33,29 +33,23 @@ status text_failed(const char *path, const char *doing, int error_no) {
 }
 
 static status take(text_file *t, const char *path, FILE *f, int by_line) {
-  status st = OK;
   t->f = f;
   t->path = memory_text(path);
   if (t->path == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: the name of %s", path);
+    RAISE(ERR_MEMORY, "memory exhausted: the name of %s", path);
   setvbuf(f, NULL, by_line ? _IOLBF : _IOFBF, BUFFER);
-done:
-  return st;
+  return OK;
 }
 
 status text_open(text_file *t, const char *path, int by_line) {
-  status st = OK;
-  TRY(file_clear(path));
+  PASS(file_clear(path));
   errno = 0;
   FILE *f = fopen(path, "wx");
-  if (f == NULL) TRY(text_failed(path, "open for writing", errno));
-  TRY(take(t, path, f, by_line));
-done:
-  return st;
+  if (f == NULL) PASS(text_failed(path, "open for writing", errno));
+  return take(t, path, f, by_line);
 }
 
 status text_reopen(text_file *t, const char *path, int by_line, long length) {
-  status st = OK;
   const char *why = NULL;
   FILE *f = NULL;
   int fd = file_descriptor(AT_FDCWD, path, O_RDWR | O_NOFOLLOW, &why);
@@ -64,18 +58,17 @@ status text_reopen(text_file *t, const char *path, int by_line, long length) {
     close(fd);
   }
   if (f == NULL)
-    FAIL(ERR_FILE, "%s: cannot open to go on with it: %s", path, why);
-  TRY(take(t, path, f, by_line));
+    RAISE(ERR_FILE, "%s: cannot open to go on with it: %s", path, why);
+  PASS(take(t, path, f, by_line));
   long size = fseek(t->f, 0, SEEK_END) == 0 ? ftell(t->f) : -1;
-  if (size < 0) TRY(text_failed(path, "read", errno));
+  if (size < 0) PASS(text_failed(path, "read", errno));
   if (size < length)
-    FAIL(ERR_FILE, "%s is shorter than when the restart file was written",
-         path);
+    RAISE(ERR_FILE, "%s is shorter than when the restart file was written",
+          path);
   if (ftruncate(fileno(t->f), length) != 0 ||
       fseek(t->f, length, SEEK_SET) != 0)
-    TRY(text_failed(path, "cut", errno));
-done:
-  return st;
+    PASS(text_failed(path, "cut", errno));
+  return OK;
 }
 
 /* A write that failed inside fprintf has left no reason: ask for it again. */
@@ -98,13 +91,11 @@ status text_check(text_file *t) {
 }
 
 status text_sync(text_file *t, long *length) {
-  status st = OK;
-  TRY(text_check(t));
+  PASS(text_check(t));
   *length = t->f == NULL ? -1 : ftell(t->f);
   if (t->f != NULL && (*length < 0 || fsync(fileno(t->f)) != 0))
-    TRY(text_failed(t->path, "write", errno));
-done:
-  return st;
+    PASS(text_failed(t->path, "write", errno));
+  return OK;
 }
 
 status text_close(text_file *t) {

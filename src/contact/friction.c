@@ -20,11 +20,9 @@ const friction_ops *friction_find(const char *name) {
 }
 
 status friction_limit_new(int n, friction_limit *out) {
-  status st = OK;
   memset(out, 0, sizeof *out);
-  NEW(out->g0, n);
-done:
-  return st;
+  PASS_NEW(out->g0, n);
+  return OK;
 }
 
 void friction_limit_free(friction_limit *limit) {
@@ -41,17 +39,15 @@ static void coordinates(const contact_surface *s, int i, double *x) {
 
 status friction_value(const friction_card *card, const contact_surface *s,
                       int i, double t, double *value) {
-  status st = OK;
   double x[3];
   coordinates(s, i, x);
   *value = quantity_value(&card->value, x, t);
   if (!isfinite(*value) || *value < 0)
-    FAIL(ERR_DECK,
-         "*FRICTION: value %g at node %zu (%g, %g, %g), time %g; expected a "
-         "number that is not negative",
-         *value, s->node_no[i], x[0], x[1], x[2], t);
-done:
-  return st;
+    RAISE(ERR_DECK,
+          "*FRICTION: value %g at node %zu (%g, %g, %g), time %g; expected a "
+          "number that is not negative",
+          *value, s->node_no[i], x[0], x[1], x[2], t);
+  return OK;
 }
 
 /* Entries of row i once the rows of part are in place. */

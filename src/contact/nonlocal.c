@@ -81,14 +81,13 @@ static int carries(const contact_surface *s, int i, int contact_id) {
 
 static status patch_new(const contact_surface *s, const surface_input *in,
                         int contact_id, patch *a) {
-  status st = OK;
   const mesh *m = in->mesh;
   const mesh_group *g = in->pairs[contact_id].group;
   size_t dim = (size_t)m->dim;
-  NEW(a->x, dim * (size_t)g->n_node);
-  NEW(a->face, m->dim * g->n_item);
-  NEW(a->active, g->n_node);
-  NEW(a->contact_node, g->n_node);
+  PASS_NEW(a->x, dim * (size_t)g->n_node);
+  PASS_NEW(a->face, m->dim * g->n_item);
+  PASS_NEW(a->active, g->n_node);
+  PASS_NEW(a->contact_node, g->n_node);
   for (int k = 0, i = 0; k < g->n_node; ++k) {
     for (size_t c = 0; c < dim; ++c)
       a->x[dim * (size_t)k + c] = m->x[dim * (size_t)g->node_id[k] + c];
@@ -108,8 +107,7 @@ static status patch_new(const contact_surface *s, const surface_input *in,
                          .x = a->x,
                          .face = a->face,
                          .active = a->active};
-done:
-  return st;
+  return OK;
 }
 
 static void warn(double radius, const char *contact_name,

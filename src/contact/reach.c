@@ -26,16 +26,14 @@ int reach_is_same(const contact_reach *a, const contact_reach *b) {
 
 /* keep[n]: 1 of the nodes to be taken. */
 static status take(contact_reach *x, int n, const unsigned char *keep) {
-  status st = OK;
   int count = 0;
   for (int i = 0; i < n; ++i) count += keep[i];
   reach_free(x);
   if (2 * count > n) return OK;
-  NEW(x->in, n);
+  PASS_NEW(x->in, n);
   for (int i = 0; i < n; ++i)
     if (keep[i]) x->in[x->n_in++] = i;
-done:
-  return st;
+  return OK;
 }
 
 status reach_choose(contact_reach *x, int n, const double *gap) {
@@ -94,18 +92,16 @@ void reach_part_free(reach_part *p) {
 }
 
 status reach_part_new(int n, int dim, reach_part *out) {
-  status st = OK;
   *out = (reach_part){0};
-  NEW(out->gap, n);
-  if (dim == 1) goto done;
-  NEW(out->ut0, n * (dim - 1));
-  NEW(out->g0, n);
-  NEW(out->held, n * dim);
-  NEW(out->B.start, n + 1);
-  NEW(out->B.col, n);
-  NEW(out->B.val, n);
-done:
-  return st;
+  PASS_NEW(out->gap, n);
+  if (dim == 1) return OK;
+  PASS_NEW(out->ut0, n * (dim - 1));
+  PASS_NEW(out->g0, n);
+  PASS_NEW(out->held, n * dim);
+  PASS_NEW(out->B.start, n + 1);
+  PASS_NEW(out->B.col, n);
+  PASS_NEW(out->B.val, n);
+  return OK;
 }
 
 /* The diagonal of "from", a row a node at most one entry. */

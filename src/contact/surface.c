@@ -467,34 +467,31 @@ int surface_is_corner(const contact_surface *s, int i) {
  * not met. */
 static status row_gap(const contact_surface *s, const contact_pair *p, int i,
                       int k, double t, double reach, double *gap) {
-  status st = OK;
   int dim = s->dim;
   *gap = obstacle_gap(p->support, dim, &s->x[dim * i],
                       &s->frame[dim * dim * i + dim * k], t);
   if (isnan(*gap) || *gap == -HUGE_VAL)
-    FAIL(ERR_DECK, "%s:%d: *CONTACT %s: gap is %g at node %zu, time %g",
-         p->at.file != NULL ? p->at.file : "", p->at.line_no, p->name, *gap,
-         s->node_no[i], t);
+    RAISE(ERR_DECK, "%s:%d: *CONTACT %s: gap is %g at node %zu, time %g",
+          p->at.file != NULL ? p->at.file : "", p->at.line_no, p->name, *gap,
+          s->node_no[i], t);
   if (*gap == HUGE_VAL) *gap = reach;
-done:
-  return st;
+  return OK;
 }
 
 status surface_gap(const contact_surface *s, const surface_input *in, double t,
                    double *gap, double *side_gap) {
-  status st = OK;
   const contact_pair *pairs = in->pairs;
   for (int i = 0; i < s->n; ++i) {
-    TRY(row_gap(s, &pairs[s->contact_id[i]], i, 0, t, in->mesh->size, &gap[i]));
+    PASS(
+        row_gap(s, &pairs[s->contact_id[i]], i, 0, t, in->mesh->size, &gap[i]));
     for (int k = 1; k < s->dim && side_gap != NULL; ++k) {
       int at = i * (s->dim - 1) + k - 1, side = s->side_id[at];
       side_gap[at] = HUGE_VAL;
       if (side < 0) continue;
-      TRY(row_gap(s, &pairs[side], i, k, t, HUGE_VAL, &side_gap[at]));
+      PASS(row_gap(s, &pairs[side], i, k, t, HUGE_VAL, &side_gap[at]));
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Row k of the frame of node i meets the obstacle of its own contact. */

@@ -52,27 +52,23 @@ static void report(reader *r, message_id id, int byte, const char *text) {
 
 /* The value behind the equals sign at that byte. */
 static status read_value(reader *r, piece p, int equals, parameter *out) {
-  status st = OK;
   piece value = part(r, equals + 1, p.start + p.length);
   const char *text = r->line.all.text + value.start;
   out->has_value = value.length > 0;
   if (!out->has_value) {
     place at = logical_place(&r->line, equals);
     message_add(r->log, P1007, &at, "%s has no value", out->name);
-    goto done;
+    return OK;
   }
   const char *second = memchr(text, '=', (size_t)value.length);
   if (*text != '"' && *text != '(' && second != NULL)
     report(r, P1010, (int)(second - r->line.all.text),
            "a second equals sign; is a comma missing before?");
-  TRY(field_read(r, value, 1, &out->value));
-done:
-  return st;
+  return field_read(r, value, 1, &out->value);
 }
 
 /* NAME or NAME=VALUE; *ok 0 if it was refused. */
 static status read_parameter(reader *r, piece p, parameter *out, int *ok) {
-  status st = OK;
   const char *text = r->line.all.text + p.start;
   const char *equals =
       p.length > 0 ? memchr(text, '=', (size_t)p.length) : NULL;
@@ -84,23 +80,21 @@ static status read_parameter(reader *r, piece p, parameter *out, int *ok) {
     report(r, P1008, p.start,
            equals != NULL ? "no name before the equals sign"
                           : "an empty parameter between commas");
-    goto done;
+    return OK;
   }
   *out = (parameter){.value = {.text = ""}};
   out->at = logical_place(&r->line, name.start);
   out->value.at = out->at;
   out->name =
       store_name(r->d, r->line.all.text + name.start, (size_t)name.length);
-  if (out->name == NULL) FAIL(ERR_MEMORY, "memory exhausted: parameter");
-  if (equals != NULL) TRY(read_value(r, p, end, out));
+  if (out->name == NULL) RAISE(ERR_MEMORY, "memory exhausted: parameter");
+  if (equals != NULL) PASS(read_value(r, p, end, out));
   *ok = equals == NULL || out->has_value;
-done:
-  return st;
+  return OK;
 }
 
 /* Parameters from the piece behind the name of the card on. */
 static status read_parameters(reader *r, int next, int nested, card *c) {
-  status st = OK;
   parameter list[PARAMETER_MAX];
   c->parameters = list;
   while (next >= 0) {
@@ -114,7 +108,7 @@ static status read_parameters(reader *r, int next, int nested, card *c) {
     }
     parameter *new = &list[c->n_parameter];
     int errors = message_count(r->log, ERROR);
-    TRY(read_parameter(r, p, new, &ok));
+    PASS(read_parameter(r, p, new, &ok));
     c->damaged |= message_count(r->log, ERROR) > errors;
     if (ok && card_parameter(c, new->name) != NULL)
       message_add(r->log, P1005, &new->at, "%s is repeated", new->name);
@@ -123,11 +117,10 @@ static status read_parameters(reader *r, int next, int nested, card *c) {
   }
   size_t n = (size_t)c->n_parameter;
   parameter *kept = store_room(r->d, n, sizeof *kept);
-  if (kept == NULL) FAIL(ERR_MEMORY, "memory exhausted: parameters");
+  if (kept == NULL) RAISE(ERR_MEMORY, "memory exhausted: parameters");
   if (n > 0) memcpy(kept, list, n * sizeof *kept);
   c->parameters = kept;
-done:
-  return st;
+  return OK;
 }
 
 /* ---- language cards ---------------------------------------------------- */
@@ -173,20 +166,17 @@ static status use_parameter(reader *r, const card *c) {
 /* Data lines behind *INCLUDE, in the file or after it, belong to the card
  * before: the mode stays. */
 static status use_include(reader *r, const card *c) {
-  status st = OK;
   const parameter *input = needed(r, c, "INPUT");
-  if (input == NULL) goto done;
+  if (input == NULL) return OK;
   if (++r->n_include > INCLUDE_TOTAL) {
     if (r->n_include == INCLUDE_TOTAL + 1)
       message_add(r->log, P1018, &c->at, "more than %d includes",
                   INCLUDE_TOTAL);
-    goto done;
+    return OK;
   }
   const char *path = deck_path(r->d, &input->value);
-  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  TRY(source_open(r->d, r->log, path, &input->value.at, &r->top));
-done:
-  return st;
+  if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
+  return source_open(r->d, r->log, path, &input->value.at, &r->top);
 }
 
 static void report_waiting(reader *r) {
@@ -242,9 +232,8 @@ static const language_card *find_language(const char *name) {
 
 /* A card of the model: append it; the format that waits is for its data. */
 static status add_card(reader *r, card *c) {
-  status st = OK;
   deck *d = r->d;
-  GROW(d->cards, d->n_card, d->own->card_capacity);
+  PASS_GROW(d->cards, d->n_card, d->own->card_capacity);
   format_free(r->format);
   r->format = r->waiting_format;
   r->waiting_format = NULL;
@@ -253,19 +242,17 @@ static status add_card(reader *r, card *c) {
   r->record_capacity = 0;
   r->mode =
       is_text_card(c->name) && r->format == NULL ? DATA_TEXT : DATA_RECORDS;
-done:
-  return st;
+  return OK;
 }
 
 /* Name of the card into c; 0 after a message. */
 static status read_name(reader *r, piece p, card *c, int *ok) {
-  status st = OK;
   const char *text = r->line.all.text + p.start;
   const char *equals = memchr(text, '=', (size_t)p.length);
   *ok = 0;
   c->at = logical_place(&r->line, p.start);
   c->name = store_name(r->d, text + 1, (size_t)p.length - 1);
-  if (c->name == NULL) FAIL(ERR_MEMORY, "memory exhausted: card");
+  if (c->name == NULL) RAISE(ERR_MEMORY, "memory exhausted: card");
   if (*c->name == '\0')
     message_add(r->log, P1009, &c->at, "a card without a name");
   else if (equals != NULL)
@@ -273,76 +260,65 @@ static status read_name(reader *r, piece p, card *c, int *ok) {
            "an equals sign in the name of a card; is a comma missing before?");
   else
     *ok = 1;
-done:
-  return st;
+  return OK;
 }
 
 static status read_card(reader *r, const physical *line) {
-  status st = OK;
   card c = {.n_parameter = 0};
   int ok;
-  TRY(logical_read(r, line, LINE_FREE));
+  PASS(logical_read(r, line, LINE_FREE));
   piece p = logical_piece(&r->line, 0, 0);
-  TRY(read_name(r, p, &c, &ok));
+  PASS(read_name(r, p, &c, &ok));
   const language_card *language = ok ? find_language(c.name) : NULL;
   r->excess_seen = 0;
   r->stray_seen = 0;
   if (!ok) {
     r->mode = DATA_DROPPED;
-    goto done;
+    return OK;
   }
-  TRY(read_parameters(r, p.next, language != NULL && language->nested, &c));
+  PASS(read_parameters(r, p.next, language != NULL && language->nested, &c));
   if (language == NULL) {
-    TRY(add_card(r, &c));
+    PASS(add_card(r, &c));
   } else {
     if (!language->keeps_mode) r->mode = DATA_DROPPED;
     if (check_names(r, &c, language->names) || language->names[0] == NULL)
-      TRY(language->use(r, &c));
+      PASS(language->use(r, &c));
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Room for one more record of the last card, with its raw text and place. */
 static status add_record(reader *r, const physical *line, record **out) {
-  status st = OK;
   card *c = &r->d->cards[r->d->n_card - 1];
-  GROW(c->records, c->n_record, r->record_capacity);
+  PASS_GROW(c->records, c->n_record, r->record_capacity);
   record *new = &c->records[c->n_record];
   size_t blanks = 0;
   new->raw = store_text(r->d, line->text, (size_t)line->length);
-  if (new->raw == NULL) FAIL(ERR_MEMORY, "memory exhausted: line");
+  if (new->raw == NULL) RAISE(ERR_MEMORY, "memory exhausted: line");
   while (is_blank(line->text[blanks])) ++blanks;
   new->at = source_place(r->top, line->line_no, (int)blanks + 1, new->raw);
   ++c->n_record;
   *out = new;
-done:
-  return st;
+  return OK;
 }
 
 static status read_text(reader *r, const physical *line) {
-  status st = OK;
   record *new;
   size_t length;
   const char *text = trim(line->text, (size_t)line->length, &length);
-  TRY(add_record(r, line, &new));
+  PASS(add_record(r, line, &new));
   new->fields = store_room(r->d, 1, sizeof *new->fields);
-  if (new->fields == NULL) FAIL(ERR_MEMORY, "memory exhausted: field");
+  if (new->fields == NULL) RAISE(ERR_MEMORY, "memory exhausted: field");
   new->n_field = 1;
   new->fields->at = new->at;
-  TRY(symbols_replace(r, text, length, REPLACE_LENIENT, &new->at,
-                      &new->fields->text));
-done:
-  return st;
+  return symbols_replace(r, text, length, REPLACE_LENIENT, &new->at,
+                         &new->fields->text);
 }
 
 static status read_fixed(reader *r, const physical *line) {
-  status st = OK;
   record *new;
-  TRY(add_record(r, line, &new));
-  TRY(format_record(r, r->format, line, new));
-done:
-  return st;
+  PASS(add_record(r, line, &new));
+  return format_record(r, r->format, line, new);
 }
 
 /* Fields of the logical line; an empty one at the end does not count. */
@@ -357,20 +333,18 @@ static int count_fields(const logical *l) {
 }
 
 static status read_record(reader *r, const physical *line) {
-  status st = OK;
   record *new;
-  TRY(add_record(r, line, &new));
-  TRY(logical_read(r, line, LINE_FREE));
+  PASS(add_record(r, line, &new));
+  PASS(logical_read(r, line, LINE_FREE));
   int n = count_fields(&r->line);
   new->fields = store_room(r->d, (size_t)n, sizeof *new->fields);
-  if (new->fields == NULL) FAIL(ERR_MEMORY, "memory exhausted: fields");
+  if (new->fields == NULL) RAISE(ERR_MEMORY, "memory exhausted: fields");
   piece p = {.next = 0};
   for (; new->n_field < n; ++new->n_field) {
     p = logical_piece(&r->line, p.next, 0);
-    TRY(field_read(r, p, 0, &new->fields[new->n_field]));
+    PASS(field_read(r, p, 0, &new->fields[new->n_field]));
   }
-done:
-  return st;
+  return OK;
 }
 
 /* A data line where none may stand: one message for the lines that follow
@@ -389,20 +363,19 @@ static void refuse_line(reader *r, const physical *line) {
 }
 
 static status read_data(reader *r, const physical *line) {
-  status st = OK;
   switch (r->mode) {
     case DATA_RECORDS:
-      TRY(r->format != NULL ? read_fixed(r, line) : read_record(r, line));
+      PASS(r->format != NULL ? read_fixed(r, line) : read_record(r, line));
       break;
     case DATA_TEXT:
       if (source_hidden(r->top))
         refuse_line(r, line);
       else
-        TRY(read_text(r, line));
+        PASS(read_text(r, line));
       break;
     case DATA_DEFINITION:
-      TRY(logical_read(r, line, LINE_DEFINITION));
-      TRY(symbols_define(r));
+      PASS(logical_read(r, line, LINE_DEFINITION));
+      PASS(symbols_define(r));
       break;
     case DATA_EARLY:
     case DATA_REFUSED:
@@ -411,32 +384,29 @@ static status read_data(reader *r, const physical *line) {
     default:
       break;
   }
-done:
-  return st;
+  return OK;
 }
 
 /* ---- the whole deck ---------------------------------------------------- */
 
 static status read_all(reader *r) {
-  status st = OK;
   while (r->top != NULL) {
     const physical *line;
-    TRY(source_next(r->top, r->log, &line));
+    PASS(source_next(r->top, r->log, &line));
     if (line == NULL) {
       source_pop(&r->top);
       continue;
     }
     const char *p = line->text;
     while (is_blank(*p)) ++p;
-    TRY(*p == '*' ? read_card(r, line) : read_data(r, line));
+    PASS(*p == '*' ? read_card(r, line) : read_data(r, line));
   }
   report_waiting(r);
   if (r->d->n_card == 0 && message_count(r->log, ERROR) == 0) {
     place at = {.file = r->d->file};
     message_add(r->log, P1002, &at, "no card in the file");
   }
-done:
-  return st;
+  return OK;
 }
 
 static void reader_free(reader *r) {

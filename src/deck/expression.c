@@ -164,24 +164,20 @@ static int fold(expression *e, const item *op) {
 }
 
 static status emit_value(compiler *c, const item *value) {
-  status st = OK;
   expression *e = c->e;
-  if (++c->depth > STACK) FAIL(ERR_DECK, "nested too deeply");
-  GROW(e->code, e->n, e->capacity);
+  if (++c->depth > STACK) RAISE(ERR_DECK, "nested too deeply");
+  PASS_GROW(e->code, e->n, e->capacity);
   e->code[e->n++] = *value;
-done:
-  return st;
+  return OK;
 }
 
 static status emit_operation(compiler *c, const item *op) {
-  status st = OK;
   expression *e = c->e;
   c->depth -= operands(op) - 1;
-  if (fold(e, op)) goto done;
-  GROW(e->code, e->n, e->capacity);
+  if (fold(e, op)) return OK;
+  PASS_GROW(e->code, e->n, e->capacity);
   e->code[e->n++] = *op;
-done:
-  return st;
+  return OK;
 }
 
 static status emit_waiting(compiler *c, const waiting *w) {
@@ -202,21 +198,17 @@ static int precedence(const waiting *w) {
 
 /* Emit what binds at least as strongly as "level", down to a parenthesis. */
 static status emit_down_to(compiler *c, int level) {
-  status st = OK;
   while (c->n_waiting > 0 && precedence(&c->stack[c->n_waiting - 1]) >= level) {
-    TRY(emit_waiting(c, &c->stack[c->n_waiting - 1]));
+    PASS(emit_waiting(c, &c->stack[c->n_waiting - 1]));
     --c->n_waiting;
   }
-done:
-  return st;
+  return OK;
 }
 
 static status push(compiler *c, const waiting *w) {
-  status st = OK;
-  if (c->n_waiting == WAITING) FAIL(ERR_DECK, "nested too deeply");
+  if (c->n_waiting == WAITING) RAISE(ERR_DECK, "nested too deeply");
   c->stack[c->n_waiting++] = *w;
-done:
-  return st;
+  return OK;
 }
 
 /* Upper case name at c->p, which moves on; cut if longer than any known. */
@@ -241,19 +233,16 @@ static const function *find_function(const char *name) {
 }
 
 static status read_call(compiler *c, const char *name) {
-  status st = OK;
   waiting w = {.kind = WAIT_CALL, .called = find_function(name)};
   w.column = c->column;
   if (w.called == NULL) {
     const char *near = nearest_word(name, next_function, NULL);
     if (near != NULL)
-      FAIL(ERR_DECK, "unknown function %s; did you mean %s?", name, near);
-    FAIL(ERR_DECK, "unknown function %s", name);
+      RAISE(ERR_DECK, "unknown function %s; did you mean %s?", name, near);
+    RAISE(ERR_DECK, "unknown function %s", name);
   }
   ++c->p; /* the parenthesis                                                  */
-  TRY(push(c, &w));
-done:
-  return st;
+  return push(c, &w);
 }
 
 static int find_variable(const compiler *c, const char *name) {
@@ -264,7 +253,6 @@ static int find_variable(const compiler *c, const char *name) {
 
 /* Variable, constant or name of the caller. */
 static status read_named_value(compiler *c, const char *name) {
-  status st = OK;
   item value = {.kind = NUMBER};
   int variable = find_variable(c, name);
   if (variable >= 0) {
@@ -274,11 +262,9 @@ static status read_named_value(compiler *c, const char *name) {
   } else if (strcmp(name, "PI") == 0) {
     value.number = 3.14159265358979323846;
   } else if (c->symbol == NULL || !c->symbol(c->ctx, name, &value.number)) {
-    FAIL(ERR_DECK, "unknown name %s", name);
+    RAISE(ERR_DECK, "unknown name %s", name);
   }
-  TRY(emit_value(c, &value));
-done:
-  return st;
+  return emit_value(c, &value);
 }
 
 /* One past the last character of a number; an exponent needs its letter. */
@@ -312,19 +298,16 @@ done:
 }
 
 static status missing_value(compiler *c) {
-  status st = OK;
-  if (*c->p == '\0') FAIL(ERR_DECK, "a value is missing at the end");
+  if (*c->p == '\0') RAISE(ERR_DECK, "a value is missing at the end");
   if ((unsigned char)*c->p > ' ' && (unsigned char)*c->p < 127)
-    FAIL(ERR_DECK, "a value is missing before '%c'", *c->p);
-  FAIL(ERR_DECK, "a character that has no meaning here");
-done:
-  return st;
+    RAISE(ERR_DECK, "a value is missing before '%c'", *c->p);
+  RAISE(ERR_DECK, "a character that has no meaning here");
+  return OK;
 }
 
 /* Where a value must start. *complete: 1 if it is there, 0 if after a sign,
  * a parenthesis or a function name it is still to come. */
 static status read_operand(compiler *c, int *complete) {
-  status st = OK;
   char name[NAME_SIZE];
   waiting w = {.kind = *c->p == '(' ? WAIT_PARENTHESIS : WAIT_SIGN};
   *complete = 0;
@@ -333,20 +316,19 @@ static status read_operand(compiler *c, int *complete) {
     ++c->p;
   } else if (*c->p == '-' || *c->p == '(') {
     ++c->p;
-    TRY(push(c, &w));
+    PASS(push(c, &w));
   } else if (is_digit(*c->p) || *c->p == '.') {
     *complete = 1;
-    TRY(read_number(c));
+    PASS(read_number(c));
   } else if (is_name(*c->p)) {
     read_name(c, name);
     skip_blanks(c);
     *complete = *c->p != '(';
-    TRY(*complete ? read_named_value(c, name) : read_call(c, name));
+    PASS(*complete ? read_named_value(c, name) : read_call(c, name));
   } else {
-    TRY(missing_value(c));
+    PASS(missing_value(c));
   }
-done:
-  return st;
+  return OK;
 }
 
 /* An argument of the call on top of the stack is complete. */
@@ -358,46 +340,39 @@ static status end_argument(compiler *c, waiting *w) {
 }
 
 static status read_comma(compiler *c) {
-  status st = OK;
-  TRY(emit_down_to(c, 1));
+  PASS(emit_down_to(c, 1));
   waiting *w = c->n_waiting > 0 ? &c->stack[c->n_waiting - 1] : NULL;
   if (w == NULL || w->kind != WAIT_CALL)
-    FAIL(ERR_DECK, "a comma outside the arguments of a function");
-  TRY(end_argument(c, w));
+    RAISE(ERR_DECK, "a comma outside the arguments of a function");
+  PASS(end_argument(c, w));
   ++c->p;
-done:
-  return st;
+  return OK;
 }
 
 static status end_call(compiler *c, waiting *w) {
-  status st = OK;
   const function *f = w->called;
   item op = {CHOICE, 0, 0, f->unary, f->binary};
-  TRY(end_argument(c, w));
+  PASS(end_argument(c, w));
   int n = w->n_argument;
   if (n < f->n_min || (f->n_max > 0 && n > f->n_max)) {
     c->column = w->column;
-    FAIL(ERR_DECK, "%s takes %d argument%s%s, not %d", f->name, f->n_min,
-         f->n_min == 1 ? "" : "s", f->n_max == 0 ? " or more" : "", n);
+    RAISE(ERR_DECK, "%s takes %d argument%s%s, not %d", f->name, f->n_min,
+          f->n_min == 1 ? "" : "s", f->n_max == 0 ? " or more" : "", n);
   }
-  if (f->n_max == 0) goto done;
+  if (f->n_max == 0) return OK;
   if (f->unary != NULL) op.kind = UNARY;
   if (f->binary != NULL) op.kind = BINARY;
-  TRY(emit_operation(c, &op));
-done:
-  return st;
+  return emit_operation(c, &op);
 }
 
 static status read_closing(compiler *c) {
-  status st = OK;
-  TRY(emit_down_to(c, 1));
-  if (c->n_waiting == 0) FAIL(ERR_DECK, "')' without '('");
+  PASS(emit_down_to(c, 1));
+  if (c->n_waiting == 0) RAISE(ERR_DECK, "')' without '('");
   waiting *w = &c->stack[c->n_waiting - 1];
-  if (w->kind == WAIT_CALL) TRY(end_call(c, w));
+  if (w->kind == WAIT_CALL) PASS(end_call(c, w));
   --c->n_waiting;
   ++c->p;
-done:
-  return st;
+  return OK;
 }
 
 static const operator_row *find_operator(const char *p) {
@@ -408,50 +383,46 @@ static const operator_row *find_operator(const char *p) {
 }
 
 static status read_operator(compiler *c) {
-  status st = OK;
   waiting w = {.kind = WAIT_OPERATOR, .operation = find_operator(c->p)};
   if (w.operation == NULL) {
     if ((unsigned char)*c->p > ' ' && (unsigned char)*c->p < 127)
-      FAIL(ERR_DECK, "an operator is missing before '%c'", *c->p);
-    FAIL(ERR_DECK, "a character that has no meaning here");
+      RAISE(ERR_DECK, "an operator is missing before '%c'", *c->p);
+    RAISE(ERR_DECK, "a character that has no meaning here");
   }
-  if (w.operation->apply == NULL) FAIL(ERR_DECK, "%s", w.operation->hint);
-  TRY(emit_down_to(c, w.operation->precedence + w.operation->right));
+  if (w.operation->apply == NULL) RAISE(ERR_DECK, "%s", w.operation->hint);
+  PASS(emit_down_to(c, w.operation->precedence + w.operation->right));
   w.column = c->column;
-  TRY(push(c, &w));
+  PASS(push(c, &w));
   c->p += strlen(w.operation->sign);
-done:
-  return st;
+  return OK;
 }
 
 static status compile(compiler *c) {
-  status st = OK;
   int complete = 0; /* a value stands to the left                             */
   for (;;) {
     skip_blanks(c);
     mark(c, c->p);
     if (!complete) {
-      TRY(read_operand(c, &complete));
+      PASS(read_operand(c, &complete));
       continue;
     }
     if (*c->p == '\0') break;
     if (*c->p == ')') {
-      TRY(read_closing(c));
+      PASS(read_closing(c));
     } else if (*c->p == ',') {
-      TRY(read_comma(c));
+      PASS(read_comma(c));
       complete = 0;
     } else {
-      TRY(read_operator(c));
+      PASS(read_operator(c));
       complete = 0;
     }
   }
-  TRY(emit_down_to(c, 1));
+  PASS(emit_down_to(c, 1));
   if (c->n_waiting > 0) {
     c->column = c->stack[c->n_waiting - 1].column;
-    FAIL(ERR_DECK, "'(' is not closed");
+    RAISE(ERR_DECK, "'(' is not closed");
   }
-done:
-  return st;
+  return OK;
 }
 
 status expression_compile(const char *text, symbol_value_fn *symbol,

@@ -71,57 +71,49 @@ static int read_decimals(unroller *u, char letter) {
 }
 
 static status add_fields(unroller *u, const column_field *c, int count) {
-  status st = OK;
   format *f = u->f;
   for (int i = 0; i < count; ++i) {
     if (c->width > FORMAT_MAX - f->width)
-      FAIL(ERR_DECK, "more than %d columns", FORMAT_MAX);
+      RAISE(ERR_DECK, "more than %d columns", FORMAT_MAX);
     if (c->kind != 'X') {
-      GROW(f->fields, f->n, f->capacity);
+      PASS_GROW(f->fields, f->n, f->capacity);
       f->fields[f->n] = *c;
       f->fields[f->n++].start = f->width;
     }
     f->width += c->width;
   }
-done:
-  return st;
+  return OK;
 }
 
 static status read_item(unroller *u, int count) {
-  status st = OK;
   char letter = upper_case(*u->p);
   column_field c = {letter, 0, 1, 0};
   if (letter == '\0' || strchr("IFEDGAX", letter) == NULL)
-    FAIL(ERR_DECK, "I, F, E, D, G, A or X expected at character %d",
-         (int)(u->p - u->text) + 1);
+    RAISE(ERR_DECK, "I, F, E, D, G, A or X expected at character %d",
+          (int)(u->p - u->text) + 1);
   ++u->p;
   if (letter != 'X') {
     c.width = read_count(u, 0);
-    if (c.width < 1) FAIL(ERR_DECK, "%c without a width", letter);
+    if (c.width < 1) RAISE(ERR_DECK, "%c without a width", letter);
     c.decimals = read_decimals(u, letter);
     if (c.decimals > FORMAT_MAX) c.decimals = FORMAT_MAX;
     if (letter != 'I' && letter != 'A') c.kind = 'F';
   }
-  TRY(add_fields(u, &c, count));
-done:
-  return st;
+  return add_fields(u, &c, count);
 }
 
 static status open_group(unroller *u, int count) {
-  status st = OK;
   if (u->n_group == GROUP_MAX)
-    FAIL(ERR_DECK, "groups more than %d deep", GROUP_MAX);
+    RAISE(ERR_DECK, "groups more than %d deep", GROUP_MAX);
   ++u->p;
   u->groups[u->n_group++] = (group){u->p, count - 1, u->f->width};
-done:
-  return st;
+  return OK;
 }
 
 /* At a closing parenthesis: once more, or on behind it. */
 static status close_group(unroller *u) {
-  status st = OK;
   group *g = &u->groups[u->n_group - 1];
-  if (u->f->width == g->width) FAIL(ERR_DECK, "a group without columns");
+  if (u->f->width == g->width) RAISE(ERR_DECK, "a group without columns");
   ++u->p;
   if (g->left > 0) {
     --g->left;
@@ -130,33 +122,30 @@ static status close_group(unroller *u) {
   } else {
     --u->n_group;
   }
-done:
-  return st;
+  return OK;
 }
 
 /* From an item to behind the comma or parenthesis that follows it. */
 static status read_next(unroller *u) {
-  status st = OK;
   int count = read_count(u, 1);
-  if (count < 1) FAIL(ERR_DECK, "a repeat count of zero");
+  if (count < 1) RAISE(ERR_DECK, "a repeat count of zero");
   if (*u->p == '(') {
-    TRY(open_group(u, count));
-    goto done;
+    PASS(open_group(u, count));
+    return OK;
   }
-  TRY(read_item(u, count));
+  PASS(read_item(u, count));
   for (skip(u); *u->p == ')' && u->n_group > 0; skip(u)) {
     int groups = u->n_group;
-    TRY(close_group(u));
-    if (u->n_group == groups) goto done; /* once more                         */
+    PASS(close_group(u));
+    if (u->n_group == groups) return OK; /* once more                         */
   }
-  if (u->n_group == 0) goto done;
-  if (*u->p == '\0') FAIL(ERR_DECK, "')' missing at the end");
+  if (u->n_group == 0) return OK;
+  if (*u->p == '\0') RAISE(ERR_DECK, "')' missing at the end");
   if (*u->p != ',')
-    FAIL(ERR_DECK, "a comma is missing at character %d",
-         (int)(u->p - u->text) + 1);
+    RAISE(ERR_DECK, "a comma is missing at character %d",
+          (int)(u->p - u->text) + 1);
   ++u->p;
-done:
-  return st;
+  return OK;
 }
 
 status format_read(const char *text, format **out) {
@@ -189,24 +178,20 @@ static const char *cut_column(const column_field *c, const physical *line,
 
 /* Put the point of Fw.d into digits that have none. */
 static status add_point(buffer *b, const char *text, int decimals) {
-  status st = OK;
   size_t sign = *text == '+' || *text == '-';
   size_t n = strspn(text + sign, "0123456789");
   size_t d = (size_t)decimals, whole = n > d ? n - d : 0;
   b->n = 0;
-  TRY(buffer_add(b, text, sign + whole));
-  TRY(buffer_add(b, ".", 1));
+  PASS(buffer_add(b, text, sign + whole));
+  PASS(buffer_add(b, ".", 1));
   for (size_t zeros = n < d ? d - n : 0; zeros > 0; --zeros)
-    TRY(buffer_add(b, "0", 1));
-  TRY(buffer_add(b, text + sign + whole, strlen(text + sign + whole)));
-done:
-  return st;
+    PASS(buffer_add(b, "0", 1));
+  return buffer_add(b, text + sign + whole, strlen(text + sign + whole));
 }
 
 /* Check a numeric column field; a real without point gets that of Fw.d. */
 static status settle_number(reader *r, const column_field *c, field *f,
                             int named) {
-  status st = OK;
   double real;
   int whole;
   const char *wrong = c->kind == 'I' ? number_int(f->text, &whole)
@@ -217,30 +202,27 @@ static status settle_number(reader *r, const column_field *c, field *f,
     f->text = "1"; /* no message follows from it                              */
   } else if (c->kind == 'F' && !named && c->decimals > 0 &&
              strchr(f->text, '.') == NULL) {
-    TRY(add_point(&r->scratch, f->text, c->decimals));
+    PASS(add_point(&r->scratch, f->text, c->decimals));
     f->text = store_text(r->d, r->scratch.text, (size_t)r->scratch.n);
-    if (f->text == NULL) FAIL(ERR_MEMORY, "memory exhausted: field");
+    if (f->text == NULL) RAISE(ERR_MEMORY, "memory exhausted: field");
   }
-done:
-  return st;
+  return OK;
 }
 
 static status read_column(reader *r, const column_field *c,
                           const physical *line, const place *whole, field *f) {
-  status st = OK;
   size_t length;
   const char *text = cut_column(c, line, &length);
   f->at = *whole;
   f->at.column_no = (int)(length > 0 ? text - line->text : c->start) + 1;
   if (length == 0) {
     f->text = c->kind == 'A' ? "" : "0";
-    goto done;
+    return OK;
   }
-  TRY(symbols_replace(r, text, length, REPLACE_PLAIN, &f->at, &f->text));
+  PASS(symbols_replace(r, text, length, REPLACE_PLAIN, &f->at, &f->text));
   if (c->kind != 'A')
-    TRY(settle_number(r, c, f, memchr(text, '<', length) != NULL));
-done:
-  return st;
+    PASS(settle_number(r, c, f, memchr(text, '<', length) != NULL));
+  return OK;
 }
 
 /* Number of fields up to the last one that is filled; at least 1. */
@@ -274,13 +256,11 @@ static void check_rest(reader *r, const format *f, const physical *line,
 
 status format_record(reader *r, const format *f, const physical *line,
                      record *out) {
-  status st = OK;
   out->n_field = filled_fields(f, line);
   out->fields = store_room(r->d, (size_t)out->n_field, sizeof *out->fields);
-  if (out->fields == NULL) FAIL(ERR_MEMORY, "memory exhausted: fields");
+  if (out->fields == NULL) RAISE(ERR_MEMORY, "memory exhausted: fields");
   check_rest(r, f, line, &out->at);
   for (int i = 0; i < out->n_field; ++i)
-    TRY(read_column(r, &f->fields[i], line, &out->at, &out->fields[i]));
-done:
-  return st;
+    PASS(read_column(r, &f->fields[i], line, &out->at, &out->fields[i]));
+  return OK;
 }

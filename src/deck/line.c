@@ -69,27 +69,23 @@ static scan scan_line(const reader *r, const physical *line, line_kind kind) {
 }
 
 static status add_segment(reader *r, const physical *line, int end) {
-  status st = OK;
   logical *l = &r->line;
-  GROW(l->segments, l->n_segment, l->segment_capacity);
+  PASS_GROW(l->segments, l->n_segment, l->segment_capacity);
   segment *s = &l->segments[l->n_segment];
   s->start = l->all.n;
   s->at = source_place(r->top, line->line_no, 0,
                        store_text(r->d, line->text, (size_t)line->length));
-  if (s->at.line == NULL) FAIL(ERR_MEMORY, "memory exhausted: line");
+  if (s->at.line == NULL) RAISE(ERR_MEMORY, "memory exhausted: line");
   ++l->n_segment;
-  TRY(buffer_add(&l->all, line->text, (size_t)end));
-done:
-  return st;
+  return buffer_add(&l->all, line->text, (size_t)end);
 }
 
 /* Append one physical line; *goes_on: it ends in a comma. */
 static status add_line(reader *r, const physical *line, line_kind kind,
                        int *goes_on) {
-  status st = OK;
   scan s = scan_line(r, line, kind);
   int start = r->line.all.n;
-  TRY(add_segment(r, line, s.end));
+  PASS(add_segment(r, line, s.end));
   *goes_on = s.open_quote < 0 && s.end > 0 && line->text[s.end - 1] == ',';
   if (s.open_quote >= 0) {
     place at = logical_place(&r->line, start + s.open_quote);
@@ -100,8 +96,7 @@ static status add_line(reader *r, const physical *line, line_kind kind,
     message_add(r->log, P1035, &at,
                 "** starts a comment; a power is written ^");
   }
-done:
-  return st;
+  return OK;
 }
 
 static char first_character(const char *p) {
@@ -110,15 +105,14 @@ static char first_character(const char *p) {
 }
 
 status logical_read(reader *r, const physical *first, line_kind kind) {
-  status st = OK;
   logical *l = &r->line;
   int goes_on, is_card = first_character(first->text) == '*';
   l->all.n = 0;
   l->n_segment = 0;
-  TRY(add_line(r, first, kind, &goes_on));
+  PASS(add_line(r, first, kind, &goes_on));
   while (goes_on) {
     const physical *next;
-    TRY(source_next(r->top, r->log, &next));
+    PASS(source_next(r->top, r->log, &next));
     if (next == NULL || first_character(next->text) == '*') {
       place at = logical_place(l, l->all.n - 1);
       if (next != NULL) source_hold(r->top);
@@ -127,10 +121,9 @@ status logical_read(reader *r, const physical *first, line_kind kind) {
                     "the card ends in a comma and does not go on");
       break;
     }
-    TRY(add_line(r, next, kind, &goes_on));
+    PASS(add_line(r, next, kind, &goes_on));
   }
-done:
-  return st;
+  return OK;
 }
 
 piece logical_piece(const logical *l, int from, int nested) {
@@ -212,28 +205,24 @@ static void check_exponent(reader *r, const char *raw, const field *f) {
 /* Text in quotes: an expression, or on a card also a name with commas. */
 static status read_quoted(reader *r, const char *text, size_t n, int on_card,
                           const place *at, field *out) {
-  status st = OK;
   int valid = 0;
-  TRY(symbols_replace(r, text, n, REPLACE_EXPRESSION, at, &out->text));
+  PASS(symbols_replace(r, text, n, REPLACE_EXPRESSION, at, &out->text));
   if (!(on_card && is_name_alone(out->text)))
-    TRY(settle_constant(r, out, &valid));
+    PASS(settle_constant(r, out, &valid));
   if (on_card && !valid)
-    TRY(symbols_replace(r, text, n, REPLACE_LENIENT, at, &out->text));
-done:
-  return st;
+    PASS(symbols_replace(r, text, n, REPLACE_LENIENT, at, &out->text));
+  return OK;
 }
 
 static status read_plain(reader *r, const char *text, size_t n, const place *at,
                          field *out) {
-  status st = OK;
-  TRY(symbols_replace(r, text, n, REPLACE_PLAIN, at, &out->text));
+  PASS(symbols_replace(r, text, n, REPLACE_PLAIN, at, &out->text));
   if (n > 0 && memchr(text, '<', n) != NULL) {
     const char *raw = store_text(r->d, text, n);
-    if (raw == NULL) FAIL(ERR_MEMORY, "memory exhausted: field");
+    if (raw == NULL) RAISE(ERR_MEMORY, "memory exhausted: field");
     check_exponent(r, raw, out);
   }
-done:
-  return st;
+  return OK;
 }
 
 status field_read(reader *r, piece p, int on_card, field *out) {

@@ -190,21 +190,17 @@ static int open_stream(source *s, const char *file, message_log *log,
 }
 
 static status note_file(deck *d, const char *file) {
-  status st = OK;
-  GROW(d->files, d->n_file, d->own->file_capacity);
+  PASS_GROW(d->files, d->n_file, d->own->file_capacity);
   d->files[d->n_file++] = file;
-done:
-  return st;
+  return OK;
 }
 
 status deck_input(deck *d, const char *path) {
-  status st = OK;
   for (int i = 0; i < d->n_input; ++i)
     if (strcmp(d->inputs[i], path) == 0) return OK;
-  GROW(d->inputs, d->n_input, d->own->input_capacity);
+  PASS_GROW(d->inputs, d->n_input, d->own->input_capacity);
   d->inputs[d->n_input++] = path;
-done:
-  return st;
+  return OK;
 }
 
 status source_open(deck *d, message_log *log, const char *file, const place *at,

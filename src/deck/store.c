@@ -62,16 +62,14 @@ const place *store_place(deck *d, const place *p) {
 }
 
 status buffer_add(buffer *b, const char *text, size_t n) {
-  status st = OK;
   if (n > INT32_MAX / 4 || b->n > INT32_MAX / 4)
-    FAIL(ERR_MEMORY, "a line of more than %d bytes", INT32_MAX / 4);
+    RAISE(ERR_MEMORY, "a line of more than %d bytes", INT32_MAX / 4);
   while ((size_t)b->n + n + 1 > (size_t)b->capacity)
-    GROW(b->text, b->capacity, b->capacity);
+    PASS_GROW(b->text, b->capacity, b->capacity);
   if (n > 0) memcpy(b->text + b->n, text, n);
   b->n += (int)n;
   b->text[b->n] = '\0';
-done:
-  return st;
+  return OK;
 }
 
 char upper_case(char c) {

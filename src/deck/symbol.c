@@ -62,41 +62,35 @@ int symbols_have(const deck *d, const char *name) {
 
 /* At most half of the slots are taken. */
 static status make_room(deck *d) {
-  status st = OK;
   struct deck_text *own = d->own;
   int *slots = NULL;
-  if (2 * (d->n_symbol + 1) <= own->n_slot) goto done;
+  if (2 * (d->n_symbol + 1) <= own->n_slot) return OK;
   int n = own->n_slot > 0 ? 2 * own->n_slot : 64;
-  NEW(slots, n);
+  PASS_NEW(slots, n);
   memory_free(own->slot);
   own->slot = slots;
   own->n_slot = n;
   for (int i = 0; i < d->n_symbol; ++i)
     *find_slot(d, d->symbols[i].name, strlen(d->symbols[i].name)) = i + 1;
-done:
-  return st;
+  return OK;
 }
 
 static status add_symbol(deck *d, const char *name, size_t n, symbol **out) {
-  status st = OK;
-  GROW(d->symbols, d->n_symbol, d->own->symbol_capacity);
-  TRY(make_room(d));
+  PASS_GROW(d->symbols, d->n_symbol, d->own->symbol_capacity);
+  PASS(make_room(d));
   symbol *s = &d->symbols[d->n_symbol];
   s->name = store_name(d, name, n);
-  if (s->name == NULL) FAIL(ERR_MEMORY, "memory exhausted: name");
+  if (s->name == NULL) RAISE(ERR_MEMORY, "memory exhausted: name");
   *find_slot(d, name, n) = ++d->n_symbol;
   *out = s;
-done:
-  return st;
+  return OK;
 }
 
 /* The .geo tells upper case from lower. */
 static status keep_spelling(deck *d, symbol *s, const char *name, size_t n) {
-  status st = OK;
   s->typed = store_text(d, name, n);
-  if (s->typed == NULL) FAIL(ERR_MEMORY, "memory exhausted: name");
-done:
-  return st;
+  if (s->typed == NULL) RAISE(ERR_MEMORY, "memory exhausted: name");
+  return OK;
 }
 
 static const char *next_symbol(const void *ctx, int i) {
@@ -154,7 +148,6 @@ static int left_alone(replacing how, const char *name, size_t n) {
 }
 
 static status add_value(buffer *b, double value, replacing how) {
-  status st = OK;
   char digits[NUMBER_TEXT_SIZE];
   const char *p = digits;
   number_text(value, digits);
@@ -164,56 +157,51 @@ static status add_value(buffer *b, double value, replacing how) {
     p += b->text[0] == '-'; /* - of a negative value                          */
     b->n = 0;
   }
-  if (in_parentheses) TRY(buffer_add(b, "(", 1));
-  TRY(buffer_add(b, p, strlen(p)));
-  if (in_parentheses) TRY(buffer_add(b, ")", 1));
-done:
-  return st;
+  if (in_parentheses) PASS(buffer_add(b, "(", 1));
+  PASS(buffer_add(b, p, strlen(p)));
+  if (in_parentheses) PASS(buffer_add(b, ")", 1));
+  return OK;
 }
 
 /* Value of <NAME>; unknown: 1 after the message, so that no other follows. */
 static status add_named(reader *r, const char *name, size_t n, replacing how,
                         const place *at) {
-  status st = OK;
   const symbol *s = use_symbol(r->d, name, n);
   if (s == NULL && left_alone(how, name, n)) {
-    TRY(buffer_add(&r->scratch, name - 1, n + 2));
+    PASS(buffer_add(&r->scratch, name - 1, n + 2));
   } else if (s == NULL) {
     const char *unknown = store_name(r->d, name, n);
-    if (unknown == NULL) FAIL(ERR_MEMORY, "memory exhausted: name");
+    if (unknown == NULL) RAISE(ERR_MEMORY, "memory exhausted: name");
     report_unknown(r, at, unknown);
-    TRY(buffer_add(&r->scratch, "1", 1));
+    PASS(buffer_add(&r->scratch, "1", 1));
   } else {
-    TRY(add_value(&r->scratch, s->value, how));
+    PASS(add_value(&r->scratch, s->value, how));
   }
-done:
-  return st;
+  return OK;
 }
 
 status symbols_replace(reader *r, const char *text, size_t n, replacing how,
                        const place *at, const char **out) {
-  status st = OK;
   const char *p = text, *end = text + n;
   const char *open = n > 0 ? memchr(p, '<', n) : NULL;
   r->scratch.n = 0;
   while (open != NULL) {
     size_t length = name_in_brackets(open, end);
     size_t before = (size_t)(open - p) + (length == 0);
-    TRY(buffer_add(&r->scratch, p, before));
+    PASS(buffer_add(&r->scratch, p, before));
     p += before;
     if (length > 0) {
       place there = *at;
       there.column_no += (int)(open - text);
-      TRY(add_named(r, open + 1, length, how, &there));
+      PASS(add_named(r, open + 1, length, how, &there));
       p = open + length + 2;
     }
     open = p < end ? memchr(p, '<', (size_t)(end - p)) : NULL;
   }
-  TRY(buffer_add(&r->scratch, p, (size_t)(end - p)));
+  PASS(buffer_add(&r->scratch, p, (size_t)(end - p)));
   *out = store_text(r->d, r->scratch.text, (size_t)r->scratch.n);
-  if (*out == NULL) FAIL(ERR_MEMORY, "memory exhausted: text");
-done:
-  return st;
+  if (*out == NULL) RAISE(ERR_MEMORY, "memory exhausted: text");
+  return OK;
 }
 
 /* Value of an expression that must not depend on place and time; 1 after a
@@ -252,16 +240,13 @@ done:
 /* The value part of NAME = VALUE. 1.5+03 alone is a number, as anywhere. */
 static status definition_value(reader *r, const char *text, size_t n,
                                const place *at, double *value) {
-  status st = OK;
   const char *replaced, *raw = store_text(r->d, text, n);
-  if (raw == NULL) FAIL(ERR_MEMORY, "memory exhausted: definition");
+  if (raw == NULL) RAISE(ERR_MEMORY, "memory exhausted: definition");
   if (strchr(raw, '.') != NULL && number_bare_exponent(raw) &&
       number_real(raw, value) == NULL)
-    goto done;
-  TRY(symbols_replace(r, text, n, REPLACE_EXPRESSION, at, &replaced));
-  TRY(constant_value(r, replaced, at->column_no - 1, at, value));
-done:
-  return st;
+    return OK;
+  PASS(symbols_replace(r, text, n, REPLACE_EXPRESSION, at, &replaced));
+  return constant_value(r, replaced, at->column_no - 1, at, value);
 }
 
 typedef struct definition {
@@ -298,7 +283,6 @@ static void warn_of_variable(reader *r, const symbol *s, const place *at) {
 }
 
 static status define_piece(reader *r, piece p) {
-  status st = OK;
   const char *text = r->line.all.text;
   definition def;
   double value = 1;
@@ -306,39 +290,35 @@ static status define_piece(reader *r, piece p) {
   const char *wrong = cut_definition(text + p.start, (size_t)p.length, &def);
   if (wrong != NULL) {
     message_add(r->log, P1019, &at, "%s", wrong);
-    goto done;
+    return OK;
   }
   symbol *s = find_symbol(r->d, def.name, def.n_name);
   if (s != NULL && s->at.file != NULL) {
     message_add(r->log, P1021, &at, "%s is defined already, in %s:%d", s->name,
                 s->at.file, s->at.line_no);
-    goto done;
+    return OK;
   }
   place value_at = logical_place(&r->line, (int)(def.value - text));
-  TRY(definition_value(r, def.value, def.n_value, &value_at, &value));
-  if (s == NULL) TRY(add_symbol(r->d, def.name, def.n_name, &s));
-  TRY(keep_spelling(r->d, s, def.name, def.n_name));
+  PASS(definition_value(r, def.value, def.n_value, &value_at, &value));
+  if (s == NULL) PASS(add_symbol(r->d, def.name, def.n_name, &s));
+  PASS(keep_spelling(r->d, s, def.name, def.n_name));
   if (!s->overridden) s->value = value;
   s->at = at;
   warn_of_variable(r, s, &at);
-done:
-  return st;
+  return OK;
 }
 
 status symbols_define(reader *r) {
-  status st = OK;
   piece p = {.next = 0};
   while (p.next >= 0) {
     p = logical_piece(&r->line, p.next, 1);
     if (p.length == 0 && p.next < 0) break;
-    TRY(define_piece(r, p));
+    PASS(define_piece(r, p));
   }
-done:
-  return st;
+  return OK;
 }
 
 status symbols_from_command(reader *r, const char *define) {
-  status st = OK;
   definition def;
   double value = 1;
   const place at = {.file = "command line"};
@@ -348,14 +328,13 @@ status symbols_from_command(reader *r, const char *define) {
   if (s != NULL) wrong = "the name is defined already";
   if (wrong != NULL) {
     message_add(r->log, P1026, &at, "-D %.200s: %s", define, wrong);
-    goto done;
+    return OK;
   }
-  TRY(definition_value(r, def.value, def.n_value, &at, &value));
-  TRY(add_symbol(r->d, def.name, def.n_name, &s));
-  TRY(keep_spelling(r->d, s, def.name, def.n_name));
+  PASS(definition_value(r, def.value, def.n_value, &at, &value));
+  PASS(add_symbol(r->d, def.name, def.n_name, &s));
+  PASS(keep_spelling(r->d, s, def.name, def.n_name));
   s->value = value;
   s->overridden = 1;
   warn_of_variable(r, s, &at);
-done:
-  return st;
+  return OK;
 }

@@ -39,16 +39,14 @@ int deck_int(const field *f, message_log *log, int *out) {
 /* Compile; the deck owns the expression. */
 static status compile(deck *d, const char *text, const char *const names[4],
                       const expression **out, int *column) {
-  status st = OK;
   struct deck_text *own = d->own;
   expression *e = NULL;
   *column = -1;
-  GROW(own->expressions, own->n_expression, own->expression_capacity);
-  TRY(expression_compile_in(text, names, deck_symbol, d, &e, column));
+  PASS_GROW(own->expressions, own->n_expression, own->expression_capacity);
+  PASS(expression_compile_in(text, names, deck_symbol, d, &e, column));
   own->expressions[own->n_expression++] = e;
   *out = e;
-done:
-  return st;
+  return OK;
 }
 
 /* Byte of the text behind the opening quote in its line, from 0. */
@@ -103,11 +101,8 @@ const char *deck_path(deck *d, const field *f) {
 }
 
 status deck_input_copy(deck *d, const char *path) {
-  status st = OK;
   char *text = store_room(d, strlen(path) + 1, 1);
-  if (text == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  if (text == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
   strcpy(text, path);
-  TRY(deck_input(d, text));
-done:
-  return st;
+  return deck_input(d, text);
 }

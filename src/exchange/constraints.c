@@ -24,12 +24,11 @@ typedef struct room {
 } room;
 
 static status room_new(int m, const constraints *c, room *a) {
-  status st = OK;
   size_t p = (size_t)c->p, all = p * ((size_t)m + 1);
-  NEW(a->R, p * p);
-  NEW(a->X, all);
-  NEW(a->rhs, all);
-  NEW(a->spread, p);
+  PASS_NEW(a->R, p * p);
+  PASS_NEW(a->X, all);
+  PASS_NEW(a->rhs, all);
+  PASS_NEW(a->spread, p);
   memcpy(a->R, c->R, p * p * sizeof *a->R);
   for (size_t k = 0; k < p; ++k) {
     for (size_t i = 0; i < (size_t)m; ++i)
@@ -37,8 +36,7 @@ static status room_new(int m, const constraints *c, room *a) {
     a->X[k + p * (size_t)m] = c->s[k];
   }
   memcpy(a->rhs, a->X, all * sizeof *a->X);
-done:
-  return st;
+  return OK;
 }
 
 static void room_free(room *a) {

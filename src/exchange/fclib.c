@@ -18,53 +18,47 @@
 static double sign_of(int dim, int dof) { return dof % dim == 0 ? -1.0 : 1.0; }
 
 static status new_arrays(exchange_problem *p) {
-  status st = OK;
   size_t m = (size_t)p->m;
-  NEW(p->matrix, m * m);
-  NEW(p->load, m);
-  NEW(p->gap, p->n);
-  NEW(p->ut0, (size_t)p->n * (size_t)(p->dim - 1));
-  NEW(p->g0, p->n);
-  NEW(p->B.start, p->n + 1);
-  NEW(p->B.col, p->n);
-  NEW(p->B.val, p->n);
-done:
-  return st;
+  PASS_NEW(p->matrix, m * m);
+  PASS_NEW(p->load, m);
+  PASS_NEW(p->gap, p->n);
+  PASS_NEW(p->ut0, (size_t)p->n * (size_t)(p->dim - 1));
+  PASS_NEW(p->g0, p->n);
+  PASS_NEW(p->B.start, p->n + 1);
+  PASS_NEW(p->B.col, p->n);
+  PASS_NEW(p->B.val, p->n);
+  return OK;
 }
 
 /* Dimension and unknowns are known: sizes of the problem. */
 static status set_size(const hdf5_source *s, const char *root, int m,
                        exchange_problem *p) {
-  status st = OK;
   char name[64];
   snprintf(name, sizeof name, "%s/spacedim", root);
-  TRY(source_int(s, name, &p->dim));
+  PASS(source_int(s, name, &p->dim));
   if (p->dim != 2 && p->dim != 3)
-    FAIL(ERR_DECK, "%s: %s = %d; expected 2 or 3", s->path, name, p->dim);
+    RAISE(ERR_DECK, "%s: %s = %d; expected 2 or 3", s->path, name, p->dim);
   if (m % p->dim != 0)
-    FAIL(ERR_DECK, "%s: %s has %d unknowns, no multiple of spacedim = %d",
-         s->path, root, m, p->dim);
+    RAISE(ERR_DECK, "%s: %s has %d unknowns, no multiple of spacedim = %d",
+          s->path, root, m, p->dim);
   if (m > MOST_UNKNOWNS)
-    FAIL(ERR_DECK, "%s: %s has %d unknowns; at most %d can be solved", s->path,
-         root, m, (int)MOST_UNKNOWNS);
-  TRY(foresee_problem(m));
+    RAISE(ERR_DECK, "%s: %s has %d unknowns; at most %d can be solved", s->path,
+          root, m, (int)MOST_UNKNOWNS);
+  PASS(foresee_problem(m));
   p->m = m;
   p->n = m / p->dim;
-done:
-  return st;
+  return OK;
 }
 
 /* A vector of exactly n items. */
 static status read_vector(const hdf5_source *s, const char *name, int n,
                           double **value) {
-  status st = OK;
   long items = 0;
-  TRY(source_reals(s, name, n == 0, n, &items, value));
+  PASS(source_reals(s, name, n == 0, n, &items, value));
   if (items != n)
-    FAIL(ERR_DECK, "%s: %s has %ld items, expected %d", s->path, name, items,
-         n);
-done:
-  return st;
+    RAISE(ERR_DECK, "%s: %s has %ld items, expected %d", s->path, name, items,
+          n);
+  return OK;
 }
 
 static status read_friction(const hdf5_source *s, const char *name,
@@ -93,12 +87,10 @@ done:
 
 static status refuse_group(const hdf5_source *s, const char *name,
                            const char *what) {
-  status st = OK;
   if (source_has(s, name))
-    FAIL(ERR_DECK, "%s: %s: %s are not available in this version", s->path,
-         name, what);
-done:
-  return st;
+    RAISE(ERR_DECK, "%s: %s: %s are not available in this version", s->path,
+          name, what);
+  return OK;
 }
 
 /* W, q of FCLIB into the signs of contact.h, in place. */
@@ -143,23 +135,20 @@ done:
 
 /* V, R and s, both matrices or none. */
 static status read_constraints(const hdf5_source *s, int m, constraints *c) {
-  status st = OK;
   int has_V = source_has(s, LOCAL "/V"), has_R = source_has(s, LOCAL "/R");
-  if (!has_V && !has_R) goto done;
+  if (!has_V && !has_R) return OK;
   if (!has_V || !has_R)
-    FAIL(ERR_DECK,
-         "%s: equality constraints need both " LOCAL "/V and " LOCAL
-         "/R; one is missing",
-         s->path);
-  TRY(source_int(s, LOCAL "/R/m", &c->p));
+    RAISE(ERR_DECK,
+          "%s: equality constraints need both " LOCAL "/V and " LOCAL
+          "/R; one is missing",
+          s->path);
+  PASS(source_int(s, LOCAL "/R/m", &c->p));
   if (c->p < 0 || c->p > MOST_UNKNOWNS)
-    FAIL(ERR_DECK, "%s: " LOCAL "/R has %d rows; at most %d can be eliminated",
-         s->path, c->p, (int)MOST_UNKNOWNS);
-  TRY(read_dense(s, LOCAL "/V", m, c->p, &c->V));
-  TRY(read_dense(s, LOCAL "/R", c->p, c->p, &c->R));
-  TRY(read_vector(s, LOCAL "/vectors/s", c->p, &c->s));
-done:
-  return st;
+    RAISE(ERR_DECK, "%s: " LOCAL "/R has %d rows; at most %d can be eliminated",
+          s->path, c->p, (int)MOST_UNKNOWNS);
+  PASS(read_dense(s, LOCAL "/V", m, c->p, &c->V));
+  PASS(read_dense(s, LOCAL "/R", c->p, c->p, &c->R));
+  return read_vector(s, LOCAL "/vectors/s", c->p, &c->s);
 }
 
 static status read_local(const hdf5_source *s, exchange_problem *p) {
@@ -211,28 +200,25 @@ static void global_release(global *g) {
 }
 
 static status read_matrices(const hdf5_source *s, global *g) {
-  status st = OK;
-  TRY(triplets_read(s, GLOBAL "/M", &g->M));
-  TRY(triplets_read(s, GLOBAL "/H", &g->H));
-  if (source_has(s, GLOBAL "/G")) TRY(triplets_read(s, GLOBAL "/G", &g->G));
+  PASS(triplets_read(s, GLOBAL "/M", &g->M));
+  PASS(triplets_read(s, GLOBAL "/H", &g->H));
+  if (source_has(s, GLOBAL "/G")) PASS(triplets_read(s, GLOBAL "/G", &g->G));
   if (g->G.columns > 0 && g->G.rows != g->M.rows)
-    FAIL(ERR_DECK, "%s: " GLOBAL "/G has %d rows, M has %d", s->path, g->G.rows,
-         g->M.rows);
+    RAISE(ERR_DECK, "%s: " GLOBAL "/G has %d rows, M has %d", s->path,
+          g->G.rows, g->M.rows);
   if (g->M.rows != g->M.columns)
-    FAIL(ERR_DECK, "%s: " GLOBAL "/M is not square: %d rows, %d columns",
-         s->path, g->M.rows, g->M.columns);
+    RAISE(ERR_DECK, "%s: " GLOBAL "/M is not square: %d rows, %d columns",
+          s->path, g->M.rows, g->M.columns);
   if (g->H.rows != g->M.rows)
-    FAIL(ERR_DECK, "%s: " GLOBAL "/H has %d rows, M has %d", s->path, g->H.rows,
-         g->M.rows);
-done:
-  return st;
+    RAISE(ERR_DECK, "%s: " GLOBAL "/H has %d rows, M has %d", s->path,
+          g->H.rows, g->M.rows);
+  return OK;
 }
 
 /* H square and diagonal without a zero: g->h gets it. */
 static status find_diagonal(global *g) {
-  status st = OK;
-  if (g->H.rows != g->H.columns) goto done;
-  NEW(g->h, g->H.rows);
+  if (g->H.rows != g->H.columns) return OK;
+  PASS_NEW(g->h, g->H.rows);
   int diagonal = 1;
   for (long k = 0; k < g->H.n; ++k)
     if (g->H.row[k] == g->H.column[k])
@@ -240,11 +226,10 @@ static status find_diagonal(global *g) {
     else
       diagonal = diagonal && g->H.value[k] == 0.0;
   for (int i = 0; i < g->H.rows; ++i) diagonal = diagonal && g->h[i] != 0.0;
-  if (diagonal) goto done;
+  if (diagonal) return OK;
   memory_free(g->h);
   g->h = NULL;
-done:
-  return st;
+  return OK;
 }
 
 /* 1: M is symmetric as far as a stiffness must be. Dense a[m*m]. */
@@ -298,13 +283,12 @@ static void take_stiffness(exchange_problem *p, const global *g, int floating,
 
 /* (H, G) as one matrix. */
 static status join(const global *g, triplets *all) {
-  status st = OK;
   all->rows = g->H.rows;
   all->columns = g->H.columns + g->G.columns;
   all->n = g->H.n + g->G.n;
-  NEW(all->row, all->n);
-  NEW(all->column, all->n);
-  NEW(all->value, all->n);
+  PASS_NEW(all->row, all->n);
+  PASS_NEW(all->column, all->n);
+  PASS_NEW(all->value, all->n);
   for (long k = 0; k < all->n; ++k) {
     const triplets *from = k < g->H.n ? &g->H : &g->G;
     long at = k < g->H.n ? k : k - g->H.n;
@@ -312,19 +296,17 @@ static status join(const global *g, triplets *all) {
     all->column[k] = from->column[at] + (k < g->H.n ? 0 : g->H.columns);
     all->value[k] = from->value[at];
   }
-done:
-  return st;
+  return OK;
 }
 
 /* The condensed matrix of (H, G) [size*size] and its vector, in their parts. */
 static status part(const double *all, const double *vector, int size, int m,
                    exchange_problem *p, constraints *c) {
-  status st = OK;
   size_t ld = (size_t)size, rows = (size_t)m, n = (size_t)(size - m);
   c->p = size - m;
-  NEW(c->V, rows * n);
-  NEW(c->R, n * n);
-  NEW(c->s, n);
+  PASS_NEW(c->V, rows * n);
+  PASS_NEW(c->R, n * n);
+  PASS_NEW(c->s, n);
   for (size_t j = 0; j < rows; ++j) {
     p->load[j] = vector[j];
     memcpy(p->matrix + rows * j, all + ld * j, rows * sizeof *all);
@@ -335,8 +317,7 @@ static status part(const double *all, const double *vector, int size, int m,
     memcpy(c->R + n * k, column + rows, n * sizeof *column);
     c->s[k] = vector[rows + k];
   }
-done:
-  return st;
+  return OK;
 }
 
 /* With s G (G'v + b) = 0 added, which makes M definite where the constraints
@@ -398,25 +379,23 @@ done:
 /* W and q, or, of a symmetric and singular M, A and f of the same size. */
 static status condense_global(const hdf5_source *s, global *g,
                               exchange_problem *p) {
-  status st = OK;
   int definite = 0, taken = 0;
   size_t size = (size_t)p->m * (size_t)p->m;
   memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
-  TRY(reduce_global(&g->M, &g->H, g->f, p->matrix, p->load, &definite));
+  PASS(reduce_global(&g->M, &g->H, g->f, p->matrix, p->load, &definite));
   if (g->h != NULL) take_stiffness(p, g, !definite, &taken);
-  if (taken) goto done;
+  if (taken) return OK;
   if (!definite)
-    TRY(springs_condense(&g->M, &g->H, g->f, p->matrix, p->load, &taken));
+    PASS(springs_condense(&g->M, &g->H, g->f, p->matrix, p->load, &taken));
   if (!definite && !taken) {
     memset(p->matrix, 0, size * sizeof *p->matrix);
     memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
-    TRY(reduce_any(s->path, &g->M, &g->H, g->f, p->matrix, p->load));
+    PASS(reduce_any(s->path, &g->M, &g->H, g->f, p->matrix, p->load));
   }
   turn_signs(p);
   if (taken) set_origin(p, g->w);
   set_problem(p, taken, taken);
-done:
-  return st;
+  return OK;
 }
 
 static status read_global(const hdf5_source *s, exchange_problem *p) {
@@ -447,18 +426,16 @@ done:
  */
 
 static status read_source(const hdf5_source *s, exchange_problem *p) {
-  status st = OK;
   const char *rolling = "rolling friction and its moments";
-  TRY(refuse_group(s, "/fclib_global_rolling", rolling));
-  TRY(refuse_group(s, "/fclib_local_rolling", rolling));
+  PASS(refuse_group(s, "/fclib_global_rolling", rolling));
+  PASS(refuse_group(s, "/fclib_local_rolling", rolling));
   if (source_has(s, LOCAL))
-    TRY(read_local(s, p));
+    PASS(read_local(s, p));
   else if (source_has(s, GLOBAL))
-    TRY(read_global(s, p));
+    PASS(read_global(s, p));
   else
-    FAIL(ERR_DECK, "%s has neither a group " LOCAL " nor " GLOBAL, s->path);
-done:
-  return st;
+    RAISE(ERR_DECK, "%s has neither a group " LOCAL " nor " GLOBAL, s->path);
+  return OK;
 }
 
 status fclib_read(const char *path, exchange_problem *p) {

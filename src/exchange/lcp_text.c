@@ -40,93 +40,83 @@ static int next_char(words *w) {
 /* The next word; empty at the end of the file. Messages show none: the file may
  * be another one than is meant. */
 static status next_word(words *w, char word[WORD]) {
-  status st = OK;
   int c, n = 0;
   do c = next_char(w);
   while (is_gap(c));
   w->word_line_no = w->line_no;
   for (; c != EOF && !is_gap(c); c = next_char(w)) {
     if (n + 1 == WORD)
-      FAIL(ERR_DECK,
-           "%s:%d: a word of more than %d characters; expected a "
-           "number",
-           w->path, w->word_line_no, WORD - 1);
+      RAISE(ERR_DECK,
+            "%s:%d: a word of more than %d characters; expected a "
+            "number",
+            w->path, w->word_line_no, WORD - 1);
     word[n++] = (char)c;
   }
   word[n] = '\0';
-  if (ferror(w->f)) TRY(text_failed(w->path, "read", errno));
-done:
-  return st;
+  if (ferror(w->f)) PASS(text_failed(w->path, "read", errno));
+  return OK;
 }
 
 static status next_real(words *w, const char *what, int row, double *value) {
-  status st = OK;
   char word[WORD];
-  TRY(next_word(w, word));
+  PASS(next_word(w, word));
   if (word[0] == '\0')
-    FAIL(ERR_DECK, "%s: the file ends in %s %d", w->path, what, row);
+    RAISE(ERR_DECK, "%s: the file ends in %s %d", w->path, what, row);
   const char *wrong = number_real(word, value);
   if (wrong != NULL)
-    FAIL(ERR_DECK, "%s:%d: %s %d is %s", w->path, w->word_line_no, what, row,
-         wrong);
-done:
-  return st;
+    RAISE(ERR_DECK, "%s:%d: %s %d is %s", w->path, w->word_line_no, what, row,
+          wrong);
+  return OK;
 }
 
 static status read_size(words *w, int *n) {
-  status st = OK;
   char word[WORD];
-  TRY(next_word(w, word));
+  PASS(next_word(w, word));
   const char *wrong = number_int(word, n);
   if (wrong != NULL || *n < 0 || *n > MOST_UNKNOWNS)
-    FAIL(ERR_DECK, "%s: expected at its start the number of unknowns, 0 to %d",
-         w->path, (int)MOST_UNKNOWNS);
-done:
-  return st;
+    RAISE(ERR_DECK, "%s: expected at its start the number of unknowns, 0 to %d",
+          w->path, (int)MOST_UNKNOWNS);
+  return OK;
 }
 
 /* The file is long enough for n unknowns; before room is made for them. */
 static status check_length(words *w, int n) {
-  status st = OK;
   const long here = ftell(w->f);
   const long end = here < 0 || fseek(w->f, 0, SEEK_END) != 0 ? -1 : ftell(w->f);
-  if (end < 0) TRY(text_failed(w->path, "read", errno));
+  if (end < 0) PASS(text_failed(w->path, "read", errno));
   const long left = end - here, m = n;
   if (left < 2 * m * (m + 1) - 1)
-    FAIL(ERR_DECK,
-         "%s: %ld characters follow the number of unknowns %d; expected %ld "
-         "numbers",
-         w->path, left, n, m * (m + 1));
+    RAISE(ERR_DECK,
+          "%s: %ld characters follow the number of unknowns %d; expected %ld "
+          "numbers",
+          w->path, left, n, m * (m + 1));
   if (fseek(w->f, here, SEEK_SET) != 0)
-    TRY(text_failed(w->path, "read", errno));
-done:
-  return st;
+    PASS(text_failed(w->path, "read", errno));
+  return OK;
 }
 
 static status read_numbers(words *w, exchange_problem *p) {
-  status st = OK;
   char word[WORD];
-  TRY(read_size(w, &p->n));
-  if (p->n > FEW_UNKNOWNS) TRY(check_length(w, p->n));
+  PASS(read_size(w, &p->n));
+  if (p->n > FEW_UNKNOWNS) PASS(check_length(w, p->n));
   p->dim = 1;
   p->m = p->unknowns = p->n;
   p->form = "linear complementarity problem";
-  TRY(foresee_problem(p->m));
+  PASS(foresee_problem(p->m));
   size_t m = (size_t)p->m;
-  NEW(p->matrix, m * m);
-  NEW(p->load, m);
+  PASS_NEW(p->matrix, m * m);
+  PASS_NEW(p->load, m);
   for (size_t i = 0; i < m; ++i)
     for (size_t j = 0; j < m; ++j)
-      TRY(next_real(w, "row", (int)i + 1, &p->matrix[i + m * j]));
+      PASS(next_real(w, "row", (int)i + 1, &p->matrix[i + m * j]));
   for (size_t i = 0; i < m; ++i)
-    TRY(next_real(w, "q, item", (int)i + 1, &p->load[i]));
-  TRY(next_word(w, word));
+    PASS(next_real(w, "q, item", (int)i + 1, &p->load[i]));
+  PASS(next_word(w, word));
   if (word[0] != '\0')
-    FAIL(ERR_DECK,
-         "%s:%d: more follows the last item of q; expected %d numbers", w->path,
-         w->word_line_no, p->n * (p->n + 1) + 1);
-done:
-  return st;
+    RAISE(ERR_DECK,
+          "%s:%d: more follows the last item of q; expected %d numbers",
+          w->path, w->word_line_no, p->n * (p->n + 1) + 1);
+  return OK;
 }
 
 status lcp_text_read(const char *path, exchange_problem *p) {

@@ -38,54 +38,47 @@ static status group_int(const hdf5_source *s, const char *group,
 
 /* The three arrays; those of a matrix without entries may be missing. */
 static status read_arrays(arrays *a) {
-  status st = OK;
   char name[NAME];
   const long most = MOST_ITEMS;
-  TRY(source_ints(a->s, name_of(name, a->group, "p"), 1, most, &a->n_p, &a->p));
-  TRY(source_ints(a->s, name_of(name, a->group, "i"), 1, most, &a->n_i, &a->i));
-  TRY(source_reals(a->s, name_of(name, a->group, "x"), 1, most, &a->n_x,
-                   &a->x));
-done:
-  return st;
+  PASS(
+      source_ints(a->s, name_of(name, a->group, "p"), 1, most, &a->n_p, &a->p));
+  PASS(
+      source_ints(a->s, name_of(name, a->group, "i"), 1, most, &a->n_i, &a->i));
+  return source_reals(a->s, name_of(name, a->group, "x"), 1, most, &a->n_x,
+                      &a->x);
 }
 
 static status too_short(const arrays *a, const char *item, long have,
                         long want) {
-  status st = OK;
   if (have < want)
-    FAIL(ERR_DECK, "%s: %s/%s has %ld items, expected %ld", a->s->path,
-         a->group, item, have, want);
-done:
-  return st;
+    RAISE(ERR_DECK, "%s: %s/%s has %ld items, expected %ld", a->s->path,
+          a->group, item, have, want);
+  return OK;
 }
 
 /* The starts of n lines ascend from 0; *entries = the last one. */
 static status check_starts(const arrays *a, int n, long *entries) {
-  status st = OK;
   *entries = 0;
-  if (n == 0 && a->n_p == 0) goto done;
-  TRY(too_short(a, "p", a->n_p, (long)n + 1));
+  if (n == 0 && a->n_p == 0) return OK;
+  PASS(too_short(a, "p", a->n_p, (long)n + 1));
   if (a->p[0] != 0)
-    FAIL(ERR_DECK, "%s: %s/p starts with %d, expected 0", a->s->path, a->group,
-         a->p[0]);
+    RAISE(ERR_DECK, "%s: %s/p starts with %d, expected 0", a->s->path, a->group,
+          a->p[0]);
   for (int k = 0; k < n; ++k)
     if (a->p[k + 1] < a->p[k])
-      FAIL(ERR_DECK, "%s: %s/p descends at item %d", a->s->path, a->group,
-           k + 1);
+      RAISE(ERR_DECK, "%s: %s/p descends at item %d", a->s->path, a->group,
+            k + 1);
   *entries = a->p[n];
-done:
-  return st;
+  return OK;
 }
 
 static status check_index(const arrays *a, const char *item, const int *index,
                           long n, int limit) {
-  status st = OK;
   for (long k = 0; k < n; ++k)
     if (index[k] < 0 || index[k] >= limit)
-      FAIL(ERR_DECK, "%s: %s/%s, item %ld = %d outside 0 to %d", a->s->path,
-           a->group, item, k, index[k], limit - 1);
-done:
-  return st;
+      RAISE(ERR_DECK, "%s: %s/%s, item %ld = %d outside 0 to %d", a->s->path,
+            a->group, item, k, index[k], limit - 1);
+  return OK;
 }
 
 /* Lines of a compressed matrix written out, one index per entry. */
@@ -95,20 +88,19 @@ static void expand(const int *start, int n, int *line) {
 }
 
 static status fill(arrays *a, triplets *t) {
-  status st = OK;
   int compressed = a->nz < 0;
   int lines = a->nz == BY_ROW ? t->rows : t->columns;
   int limit = a->nz == BY_ROW ? t->columns : t->rows;
   t->n = a->nz;
-  if (compressed) TRY(check_starts(a, lines, &t->n));
-  TRY(too_short(a, "i", a->n_i, t->n));
-  TRY(too_short(a, "x", a->n_x, t->n));
-  TRY(check_index(a, "i", a->i, t->n, limit));
+  if (compressed) PASS(check_starts(a, lines, &t->n));
+  PASS(too_short(a, "i", a->n_i, t->n));
+  PASS(too_short(a, "x", a->n_x, t->n));
+  PASS(check_index(a, "i", a->i, t->n, limit));
   if (!compressed) {
-    TRY(too_short(a, "p", a->n_p, t->n));
-    TRY(check_index(a, "p", a->p, t->n, lines));
+    PASS(too_short(a, "p", a->n_p, t->n));
+    PASS(check_index(a, "p", a->p, t->n, lines));
   }
-  NEW(t->column, t->n);
+  PASS_NEW(t->column, t->n);
   if (compressed && a->n_p > 0)
     expand(a->p, lines, t->column);
   else if (t->n > 0)
@@ -122,22 +114,19 @@ static status fill(arrays *a, triplets *t) {
     t->row = t->column;
     t->column = swap;
   }
-done:
-  return st;
+  return OK;
 }
 
 status triplets_size(const hdf5_source *s, const char *group, triplets *t) {
-  status st = OK;
   memset(t, 0, sizeof *t);
   if (!source_has(s, group))
-    FAIL(ERR_DECK, "%s: there is no group %s", s->path, group);
-  TRY(group_int(s, group, "m", &t->rows));
-  TRY(group_int(s, group, "n", &t->columns));
+    RAISE(ERR_DECK, "%s: there is no group %s", s->path, group);
+  PASS(group_int(s, group, "m", &t->rows));
+  PASS(group_int(s, group, "n", &t->columns));
   if (t->rows < 0 || t->columns < 0)
-    FAIL(ERR_DECK, "%s: %s has %d rows and %d columns", s->path, group, t->rows,
-         t->columns);
-done:
-  return st;
+    RAISE(ERR_DECK, "%s: %s has %d rows and %d columns", s->path, group,
+          t->rows, t->columns);
+  return OK;
 }
 
 status triplets_read(const hdf5_source *s, const char *group, triplets *t) {
@@ -172,14 +161,12 @@ void triplets_dense(const triplets *t, double *a) {
 }
 
 status triplets_by_column(const triplets *t, int **start, long **entry) {
-  status st = OK;
-  NEW(*start, t->columns + 2);
-  NEW(*entry, t->n);
+  PASS_NEW(*start, t->columns + 2);
+  PASS_NEW(*entry, t->n);
   for (long k = 0; k < t->n; ++k) ++(*start)[t->column[k] + 2];
   for (int j = 0; j <= t->columns; ++j) (*start)[j + 1] += (*start)[j];
   for (long k = 0; k < t->n; ++k) (*entry)[(*start)[t->column[k] + 1]++] = k;
-done:
-  return st;
+  return OK;
 }
 
 int triplets_triangle(const triplets *t) {

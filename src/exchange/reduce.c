@@ -96,21 +96,19 @@ done:
 
 /* *usable: M is symmetric and positive definite to rounding. */
 static status factorise(reduction *s, const triplets *M, int *usable) {
-  status st = OK;
   *usable = 0;
-  NEW(s->scale, M->rows);
-  if (!make_scale(M, s->scale)) goto done;
+  PASS_NEW(s->scale, M->rows);
+  if (!make_scale(M, s->scale)) return OK;
   int symmetric = 0;
-  TRY(symmetric_part(s, M, &symmetric));
-  if (!symmetric) goto done;
+  PASS(symmetric_part(s, M, &symmetric));
+  if (!symmetric) return OK;
   s->L = cholmod_analyze(s->M, &s->cm);
-  if (s->L == NULL) TRY(no_memory());
+  if (s->L == NULL) PASS(no_memory());
   cholmod_factorize(s->M, s->L, &s->cm);
-  if (s->cm.status < 0) TRY(no_memory());
+  if (s->cm.status < 0) PASS(no_memory());
   *usable =
       s->cm.status == CHOLMOD_OK && cholmod_rcond(s->L, &s->cm) > DEFINITE;
-done:
-  return st;
+  return OK;
 }
 
 /* ---- H and f as columns ----------------------------------------------------
@@ -126,12 +124,9 @@ typedef struct columns {
 } columns;
 
 static status columns_new(const triplets *H, const double *f, columns *c) {
-  status st = OK;
   c->H = H;
   c->f = f;
-  TRY(triplets_by_column(H, &c->start, &c->entry));
-done:
-  return st;
+  return triplets_by_column(H, &c->start, &c->entry);
 }
 
 static void columns_free(columns *c) {
@@ -195,13 +190,11 @@ static void symmetrise(int m, double *W) {
 
 static status reduce_sparse(reduction *s, const columns *c, double *W,
                             double *q) {
-  status st = OK;
   int all = c->H->columns + 1;
   for (int k = 0; k < all; k += BLOCK)
-    TRY(reduce_block(s, c, k, all - k < BLOCK ? all - k : BLOCK, W, q));
+    PASS(reduce_block(s, c, k, all - k < BLOCK ? all - k : BLOCK, W, q));
   symmetrise(c->H->columns, W);
-done:
-  return st;
+  return OK;
 }
 
 static status reduce_dense(const triplets *M, const columns *c, double *W,

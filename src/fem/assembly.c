@@ -18,12 +18,11 @@ typedef struct node_graph {
 
 /* Nodes of a list that come after j into column j. */
 static status add_rows(node_graph *g, int j, int n_more, const int *node) {
-  status st = OK;
   const size_t most = (size_t)n_more;
   if (g->n + most > g->room) {
     const size_t more = g->room / 2 + most;
     int *grown = memory_resize(g->k->row, g->n, g->room + more, sizeof *grown);
-    if (grown == NULL) FAIL(ERR_MEMORY, "memory exhausted: node graph");
+    if (grown == NULL) RAISE(ERR_MEMORY, "memory exhausted: node graph");
     g->k->row = grown;
     g->room += more;
   }
@@ -32,8 +31,7 @@ static status add_rows(node_graph *g, int j, int n_more, const int *node) {
     g->seen[node[a]] = j + 1;
     g->k->row[g->n++] = node[a];
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Nodes of an element, or of the cluster it belongs to, couple. */
@@ -70,19 +68,17 @@ done:
 }
 
 static status check_element(const domain *d, int e) {
-  status st = OK;
   const mesh *m = d->mesh;
   const int per = m->dim + 1;
   if (d->kin[d->section_id[e]] == AXISYMMETRIC)
     for (int a = 0; a < per; ++a)
       if (m->x[2 * m->elem[per * e + a]] < 0)
-        FAIL(ERR_MESH, "element %zu: node %zu has a negative radius",
-             m->elem_no[e], m->node_no[m->elem[per * e + a]]);
+        RAISE(ERR_MESH, "element %zu: node %zu has a negative radius",
+              m->elem_no[e], m->node_no[m->elem[per * e + a]]);
   if (!(element_weight(d, e) > 0))
-    FAIL(ERR_MESH, "element %zu: weight %g is not positive", m->elem_no[e],
-         element_weight(d, e));
-done:
-  return st;
+    RAISE(ERR_MESH, "element %zu: weight %g is not positive", m->elem_no[e],
+          element_weight(d, e));
+  return OK;
 }
 
 static void add_block(stiffness *k, int i, int j, const double *b) {
@@ -99,20 +95,18 @@ static void add_block(stiffness *k, int i, int j, const double *b) {
 }
 
 static status add_elements(const domain *d, stiffness *k) {
-  status st = OK;
   const int dim = k->dim, nb = dim * dim;
   double blocks[10 * 9];
-  NEW(k->block, (size_t)nb * k->start[k->n_node]);
+  PASS_NEW(k->block, (size_t)nb * k->start[k->n_node]);
   for (int e = 0; e < d->mesh->n_elem; ++e) {
     const int *v = d->mesh->elem + (size_t)(dim + 1) * (size_t)e;
-    TRY(check_element(d, e));
+    PASS(check_element(d, e));
     element_stiffness(d, e, blocks);
     const double *b = blocks;
     for (int a = 0; a <= dim; ++a)
       for (int c = 0; c <= a; ++c, b += nb) add_block(k, v[a], v[c], b);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Rows over the nodes of a cluster: t = <tr B>, r = sum w m'E R B. */
@@ -212,11 +206,10 @@ int contact_row(const stiffness *k, int i, int c) {
 
 /* Which components are unknown; contact nodes from the surface. */
 static status mark_unknowns(const domain *d, stiffness *k) {
-  status st = OK;
   const int dim = k->dim, all = (1 << dim) - 1;
   const contact_surface *s = d->surface;
-  NEW(k->free, k->n_node);
-  NEW(k->contact, k->n_node);
+  PASS_NEW(k->free, k->n_node);
+  PASS_NEW(k->contact, k->n_node);
   for (int i = 0; i < k->n_node; ++i) {
     k->contact[i] = -1;
     k->free[i] = (unsigned char)all;
@@ -231,14 +224,13 @@ static status mark_unknowns(const domain *d, stiffness *k) {
     for (int c = 0; c < dim; ++c)
       if (s->held[dim * q + c]) k->free[i] &= (unsigned char)~(1 << c);
   }
-  NEW(k->first_row, k->n_node);
+  PASS_NEW(k->first_row, k->n_node);
   for (int i = 0; i < k->n_node; ++i) k->first_row[i] = -1;
   const int n = s == NULL ? 0 : d->in != NULL ? d->n_in : s->n;
   for (int q = 0; q < n; ++q)
     k->first_row[s->node_id[d->in != NULL ? d->in[q] : q]] = k->rows * q;
   k->n_row = k->rows * n;
-done:
-  return st;
+  return OK;
 }
 
 /* Contact nodes count in their frame. */
@@ -263,21 +255,19 @@ static int couples(const stiffness *k, int i, int j) {
 }
 
 static status list_coupling(stiffness *k) {
-  status st = OK;
   size_t n = 0;
   for (int j = 0; j < k->n_node; ++j)
     for (size_t p = k->start[j]; p < k->start[j + 1]; ++p)
       n += (size_t)couples(k, k->row[p], j);
-  NEW(k->coupling, n);
-  NEW(k->coupling_column, n);
+  PASS_NEW(k->coupling, n);
+  PASS_NEW(k->coupling_column, n);
   for (int j = 0; j < k->n_node; ++j)
     for (size_t p = k->start[j]; p < k->start[j + 1]; ++p)
       if (couples(k, k->row[p], j)) {
         k->coupling[k->n_coupling] = p;
         k->coupling_column[k->n_coupling++] = j;
       }
-done:
-  return st;
+  return OK;
 }
 
 status stiffness_assemble(const domain *d, stiffness **out) {

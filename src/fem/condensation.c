@@ -77,61 +77,53 @@ static int count_bodies(const stiffness *k, const graph *g, unsigned char *seen,
  * list[n] ascending in, destroyed. */
 static status order_body(condensed *c, const graph *g, int n, int *list,
                          body_factor *f) {
-  status st = OK;
   const stiffness *k = c->k;
   int twice = k->rows < k->dim, contact = 0, last;
   for (int q = 0; q < n; ++q) contact += k->first_row[list[q]] >= 0;
   f->n_own = n;
   f->n_inner = twice ? n : n - contact;
   last = f->n_node = f->n_inner + contact;
-  NEW(f->node, f->n_node);
+  PASS_NEW(f->node, f->n_node);
   for (int q = 0, inner = 0; q < n; ++q) {
     const int is_contact = k->first_row[list[q]] >= 0;
     if (is_contact) f->node[--last] = list[q];
     if (!is_contact || twice) f->node[inner++] = list[q];
   }
-  TRY(order_nodes(g, k->dim, c->d.mesh->x, f->n_inner, f->node, c->cm,
-                  &c->ordering));
-done:
-  return st;
+  return order_nodes(g, k->dim, c->d.mesh->x, f->n_inner, f->node, c->cm,
+                     &c->ordering);
 }
 
 /* A body nothing holds: name it and the motion. */
 static status check_support(const condensed *c) {
-  status st = OK;
   for (int q = 0; q < c->n_motion; ++q)
     if (c->motion[q].held_by == HELD_BY_NOTHING)
-      FAIL(ERR_SINGULAR,
-           "body %d (with element %zu) is not held: free %s. Neither "
-           "*BOUNDARY nor contact resists it",
-           c->motion[q].body_id + 1, c->motion[q].elem_no, c->motion[q].text);
-done:
-  return st;
+      RAISE(ERR_SINGULAR,
+            "body %d (with element %zu) is not held: free %s. Neither "
+            "*BOUNDARY nor contact resists it",
+            c->motion[q].body_id + 1, c->motion[q].elem_no, c->motion[q].text);
+  return OK;
 }
 
 /* The failure of one body, with the node where it broke down. */
 static status name_body(const condensed *c, const body_factor *f, status code) {
-  status st = OK;
   char why[160];
   if (code != ERR_SINGULAR) return code;
   snprintf(why, sizeof why, "%s", status_message());
-  FAIL(ERR_SINGULAR, "body with node %zu: %s", c->d.mesh->node_no[f->bad_node],
-       why);
-done:
-  return st;
+  RAISE(ERR_SINGULAR, "body with node %zu: %s", c->d.mesh->node_no[f->bad_node],
+        why);
+  return OK;
 }
 
 /* Springs on the contact unknowns of bodies that contact alone holds: as many
  * as the motions of the body, on all if they are not exactly known. */
 static status pin_bodies(condensed *c, const unsigned char *floating) {
-  status st = OK;
   const stiffness *k = c->k;
   const size_t rows = (size_t)k->rows;
   int known = 0;
   c->just_held = 1;
-  if (c->n_motion == 0) goto done;
-  TRY(rigid_orthonormalise(k, &c->d, &c->rigid));
-  NEW(c->pinned, c->m);
+  if (c->n_motion == 0) return OK;
+  PASS(rigid_orthonormalise(k, &c->d, &c->rigid));
+  PASS_NEW(c->pinned, c->m);
   for (int i = 0; i < k->n_node; ++i)
     if (floating[i] && k->first_row[i] >= 0)
       memset(c->pinned + k->first_row[i], 1, rows);
@@ -145,11 +137,10 @@ static status pin_bodies(condensed *c, const unsigned char *floating) {
     for (int j = 0; j < b->n_node; ++j)
       if (k->first_row[b->node[j]] >= 0)
         memset(c->pinned + k->first_row[b->node[j]], 0, rows);
-    TRY(rigid_pin(&c->rigid, b, c->pinned));
+    PASS(rigid_pin(&c->rigid, b, c->pinned));
   }
   c->just_held = known == c->n_motion;
-done:
-  return st;
+  return OK;
 }
 
 static status factor_bodies(condensed *c) {
@@ -223,15 +214,13 @@ static void fill_held(condensed *c) {
 }
 
 static status estimate_condition(condensed *c) {
-  status st = OK;
   double condition = 0;
   c->condition = c->just_held ? 1 : 1 / (weak_arm * weak_arm);
   for (int q = 0; q < c->n_body; ++q) {
-    TRY(body_factor_condition(c->k, &c->body[q], c->cm, &condition));
+    PASS(body_factor_condition(c->k, &c->body[q], c->cm, &condition));
     c->condition = fmax(c->condition, condition);
   }
-done:
-  return st;
+  return OK;
 }
 
 static status form_matrix(condensed *c) {
@@ -359,15 +348,13 @@ static void move_prescribed(condensed *c) {
 
 /* f_c of the load in local components; the forward solve is kept. */
 static status forward(condensed *c, double *f_c) {
-  status st = OK;
   for (int q = 0; q < c->m; ++q)
     if (is_held(c, q))
       f_c[q] = c->A[(size_t)q * (size_t)(c->m + 1)] *
                c->prescribed[component_of(c, q)];
   for (int q = 0; q < c->n_body; ++q)
-    TRY(body_factor_forward(&c->body[q], c->load, f_c, c->cm));
-done:
-  return st;
+    PASS(body_factor_forward(&c->body[q], c->load, f_c, c->cm));
+  return OK;
 }
 
 /* Contact nodes of a displacement from their frame to global components. */
@@ -386,14 +373,12 @@ static void to_global(const condensed *c, double *u) {
 
 /* Interior displacements from the kept forward solve. */
 static status back(const condensed *c, const double *u_c, double *u) {
-  status st = OK;
   memcpy(u, c->prescribed,
          (size_t)c->k->dim * (size_t)c->k->n_node * sizeof *u);
   for (int q = 0; q < c->n_body; ++q)
-    TRY(body_factor_back(&c->body[q], u_c, u, c->cm));
+    PASS(body_factor_back(&c->body[q], u_c, u, c->cm));
   to_global(c, u);
-done:
-  return st;
+  return OK;
 }
 
 /* c->load: what is missing to equilibrium at u, in local components. */
@@ -404,7 +389,6 @@ static void set_residual(condensed *c, const double *u) {
 
 /* Iterative refinement of the interior of u for the load last condensed. */
 static status refine(condensed *c, double *u) {
-  status st = OK;
   enum { PASSES = 2 };
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
   double *more = c->rest; /* free once the residual is in c->load */
@@ -412,12 +396,11 @@ static status refine(condensed *c, double *u) {
     set_residual(c, u);
     memset(more, 0, n * sizeof *more);
     for (int q = 0; q < c->n_body; ++q)
-      TRY(body_factor_interior(&c->body[q], c->load, more, c->cm));
+      PASS(body_factor_interior(&c->body[q], c->load, more, c->cm));
     to_global(c, more);
     for (size_t i = 0; i < n; ++i) u[i] += more[i];
   }
-done:
-  return st;
+  return OK;
 }
 
 /* f_c anew: what holds the refined solution for u_c = 0, the sign turned. */
@@ -473,15 +456,13 @@ done:
 }
 
 status condensed_force_energy(condensed *c, const double *d, double *square) {
-  status st = OK;
   *square = 0;
   for (int q = 0; q < c->n_body; ++q)
-    if (c->body[q].nc > 0) TRY(body_factor_energy(&c->body[q], d, square));
+    if (c->body[q].nc > 0) PASS(body_factor_energy(&c->body[q], d, square));
   for (int q = 0; q < c->m; ++q)
     if (is_held(c, q))
       *square += d[q] * (d[q] / c->A[(size_t)q * (size_t)(c->m + 1)]);
-done:
-  return st;
+  return OK;
 }
 
 status condensed_untouched(condensed *c, const double *f, double *u) {
@@ -504,17 +485,15 @@ done:
 
 status condensed_misfit(condensed *c, const double *rest, const double *rc,
                         double *w, double *square) {
-  status st = OK;
   const stiffness *k = c->k;
   *square = 0;
   memset(w, 0, (size_t)k->dim * (size_t)k->n_node * sizeof *w);
   set_load(c, rest);
   for (int q = 0; q < c->m; ++q) c->load[component_of(c, q)] += rc[q];
   for (int q = 0; q < c->n_body; ++q)
-    TRY(body_factor_solve(&c->body[q], c->load, w, square, c->cm));
+    PASS(body_factor_solve(&c->body[q], c->load, w, square, c->cm));
   to_global(c, w);
-done:
-  return st;
+  return OK;
 }
 
 /* u[m] = inv(A_oo) f_o at the unknowns o that are not held, else 0; *good 0:

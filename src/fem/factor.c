@@ -135,17 +135,16 @@ done:
 }
 
 static status analyse(cholmod_sparse *a, cholmod_common *cm, body_factor *f) {
-  status st = OK;
   cm->nmethods = 1;
   cm->method[0].ordering = CHOLMOD_NATURAL;
   cm->postorder = 1;
   cm->supernodal = CHOLMOD_SUPERNODAL;
   f->L = cholmod_l_analyze(a, cm);
   if (f->L == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: symbolic factor of %ld unknowns", f->n);
+    RAISE(ERR_MEMORY, "memory exhausted: symbolic factor of %ld unknowns",
+          f->n);
   f->flops = cm->fl;
-done:
-  return st;
+  return OK;
 }
 
 /* The node of an unknown by its number, for a message. */
@@ -159,21 +158,19 @@ static int node_of(const stiffness *k, const body_factor *f, const long *number,
 
 static status factorise(const stiffness *k, const long *number,
                         cholmod_sparse *a, cholmod_common *cm, body_factor *f) {
-  status st = OK;
   const int done_ok = cholmod_l_factorize(a, f->L, cm);
   if (!done_ok || cm->status < 0)
-    FAIL(ERR_MEMORY, "memory exhausted: factor of %ld unknowns (%.3g bytes)",
-         f->n, cm->lnz * sizeof(double));
+    RAISE(ERR_MEMORY, "memory exhausted: factor of %ld unknowns (%.3g bytes)",
+          f->n, cm->lnz * sizeof(double));
   if (f->L->minor < (size_t)f->n) {
     const SuiteSparse_long *perm = f->L->Perm;
     f->bad_node = node_of(k, f, number, perm[f->L->minor]);
-    FAIL(ERR_SINGULAR,
-         "stiffness not positive definite: rounding leaves no digit of it; "
-         "contrasts of stiffness, slivers, nu near 1/2 and supports that "
-         "hardly hold cost digits");
+    RAISE(ERR_SINGULAR,
+          "stiffness not positive definite: rounding leaves no digit of it; "
+          "contrasts of stiffness, slivers, nu near 1/2 and supports that "
+          "hardly hold cost digits");
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Positions of the unknowns and of the contact ones in the factor. */

@@ -163,18 +163,17 @@ static void gram_schmidt(const rigid_set *r, rigid_body *b) {
 }
 
 status rigid_orthonormalise(const stiffness *k, const domain *d, rigid_set *r) {
-  status st = OK;
   enum { PASSES = 3 };
   r->m = k->n_row;
   for (int t = 0; t < r->n_body; ++t) {
     r->body[t].first = r->k;
     r->k += r->body[t].k;
   }
-  NEW(r->Q, (size_t)r->m * (size_t)r->k);
+  PASS_NEW(r->Q, (size_t)r->m * (size_t)r->k);
   for (int t = 0; t < r->n_body; ++t) {
     rigid_body *b = &r->body[t];
     rigid_modes at;
-    NEW(b->load, b->n);
+    PASS_NEW(b->load, b->n);
     if (!measure_contact(k, d, b, &at)) {
       b->k = 0;
       continue;
@@ -187,8 +186,7 @@ status rigid_orthonormalise(const stiffness *k, const domain *d, rigid_set *r) {
       gram_schmidt(r, b);
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 /* The unknown that the motions left in the rows of room[m*k] move most. */

@@ -34,7 +34,6 @@ static void count_error(lines *r, const place *at, const char *found) {
 
 /* One set is whole: its constants and temperature into the table. */
 static status close_set(lines *r, const place *at) {
-  status st = OK;
   elastic_table *t = r->table;
   const int n = t->n_constant, has = r->n == n + 1;
   const double T = has ? r->set[n] : 0.0;
@@ -42,7 +41,7 @@ static status close_set(lines *r, const place *at) {
   if (has != r->has_temperature || (t->n > 0 && !has)) {
     count_error(r, at,
                 "more found: several sets each end with their temperature");
-    goto done;
+    return OK;
   }
   if (t->n > 0 && !(T > t->set[t->n - 1].temperature)) {
     message_add(r->log, P2029, at,
@@ -50,19 +49,17 @@ static status close_set(lines *r, const place *at) {
                 "%.15g",
                 T, t->set[t->n - 1].temperature);
     r->wrong = 1;
-    goto done;
+    return OK;
   }
-  GROW(t->set, t->n, r->capacity);
+  PASS_GROW(t->set, t->n, r->capacity);
   memcpy(t->set[t->n].constant, r->set, (size_t)n * sizeof *r->set);
   t->set[t->n++].temperature = T;
   r->n = 0;
-done:
-  return st;
+  return OK;
 }
 
 /* A line goes on with the set at hand; one that fills it ends it. */
 static status add_line(lines *r, const record *line) {
-  status st = OK;
   const int n = r->table->n_constant;
   for (int k = 0; k < line->n_field && !r->wrong; ++k) {
     const field *f = &line->fields[k];
@@ -71,9 +68,8 @@ static status add_line(lines *r, const record *line) {
     else
       r->wrong |= deck_real(f, r->log, &r->set[r->n++]) != 0;
   }
-  if (!r->wrong && r->n >= n) TRY(close_set(r, &line->at));
-done:
-  return st;
+  if (!r->wrong && r->n >= n) PASS(close_set(r, &line->at));
+  return OK;
 }
 
 /* Every set alone is an elasticity. */

@@ -49,11 +49,9 @@ void culprit_pair(culprits *c, int dim, size_t one, size_t two,
 }
 
 status build_check(const builder *b) {
-  status st = OK;
   int n = message_count(b->log, ERROR) - b->errors;
-  if (n > 0) FAIL(ERR_MESH, "the mesh is not valid: %d error(s)", n);
-done:
-  return st;
+  if (n > 0) RAISE(ERR_MESH, "the mesh is not valid: %d error(s)", n);
+  return OK;
 }
 
 static void release(builder *b) {
@@ -149,7 +147,6 @@ static void find_version(const char *head, char version[8]) {
 
 static status check_format(const char *file, const char *head, const place *at,
                            message_log *log) {
-  status st = OK;
   char version[8];
   find_version(head, version);
   const char *start = head + strspn(head, " \t\r\n");
@@ -165,9 +162,8 @@ static status check_format(const char *file, const char *head, const place *at,
   else
     message_add(log, P3002, at,
                 "\"%s\" is no .geo and does not start with $MeshFormat", file);
-  FAIL(ERR_MESH, "\"%s\" is not a mesh of gmsh", file);
-done:
-  return st;
+  RAISE(ERR_MESH, "\"%s\" is not a mesh of gmsh", file);
+  return OK;
 }
 
 /* The last bytes of the file, *n of them, with a zero after. */
@@ -191,20 +187,18 @@ done:
 /* Of a last line without newline gmsh obeys the first statement only. */
 static status check_geo_tail(const char *file, const place *at,
                              message_log *log) {
-  status st = OK;
   char tail[TAIL_SIZE + 1];
   size_t n = 0;
-  TRY(read_tail(file, tail, &n));
+  PASS(read_tail(file, tail, &n));
   if (n > 0 && (tail[n - 1] == '\n' || tail[n - 1] == '\r')) return OK;
   const char *line = strrchr(tail, '\n');
   const char *first = strchr(line != NULL ? line : tail, ';');
   if (first != NULL && strchr(first + 1, ';') != NULL) {
     message_add(log, P3005, at,
                 "\"%s\" ends without a newline after several statements", file);
-    FAIL(ERR_MESH, "\"%s\" ends without a newline", file);
+    RAISE(ERR_MESH, "\"%s\" ends without a newline", file);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* gmsh calls a name given twice in one dimension an error of its own. */

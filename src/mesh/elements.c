@@ -59,7 +59,6 @@ static status check_types(builder *b) {
 
 /* Count top and low elements and where each block starts among them. */
 static status count_items(builder *b) {
-  status st = OK;
   size_t top = 0, low = 0;
   for (int i = 0; i < b->raw->n_block; ++i) {
     const raw_block *p = &b->raw->block[i];
@@ -71,12 +70,11 @@ static status count_items(builder *b) {
   if (top > MAX_ITEMS || low > MAX_ITEMS || b->raw->n_node > MAX_ITEMS) {
     message_add(b->log, P3027, b->at, "%zu nodes, %zu elements, %zu faces",
                 b->raw->n_node, top, low);
-    TRY(build_check(b));
+    PASS(build_check(b));
   }
   b->n_top = (int)top;
   b->n_low = (int)low;
-done:
-  return st;
+  return OK;
 }
 
 static void gather_block(builder *b, int block, culprits *unknown) {
@@ -95,22 +93,19 @@ static void gather_block(builder *b, int block, culprits *unknown) {
 
 /* Corners of the top elements as raw nodes; node_id marks the used ones. */
 status elements_gather(builder *b) {
-  status st = OK;
   culprits unknown = {0};
-  TRY(check_types(b));
-  TRY(count_items(b));
-  TRY(nodes_index(b));
-  NEW(b->node_id, b->raw->n_node);
+  PASS(check_types(b));
+  PASS(count_items(b));
+  PASS(nodes_index(b));
+  PASS_NEW(b->node_id, b->raw->n_node);
   for (size_t i = 0; i < b->raw->n_node; ++i) b->node_id[i] = -1;
-  NEW(b->corner, (size_t)(b->m->dim + 1) * (size_t)b->n_top);
+  PASS_NEW(b->corner, (size_t)(b->m->dim + 1) * (size_t)b->n_top);
   for (int i = 0; i < b->raw->n_block; ++i)
     if (b->raw->block[i].dim == b->m->dim) gather_block(b, i, &unknown);
   if (unknown.n > 0)
     message_add(b->log, P3025, b->at, "%d corner(s) are missing: %s", unknown.n,
                 unknown.text);
-  TRY(build_check(b));
-done:
-  return st;
+  return build_check(b);
 }
 
 /* Determinant of the edges from corner 0, and the longest edge. */
@@ -251,11 +246,10 @@ static status check_repeated(builder *b, const top_list *t, const int *id) {
 
 /* Sorted top elements to the mesh, each set of corners once. */
 static status store_elements(builder *b, const top_list *t, const int *id) {
-  status st = OK;
   mesh *m = b->m;
   size_t n = (size_t)t->n_corner;
-  NEW(m->elem, n * (size_t)b->n_top);
-  NEW(m->elem_no, b->n_top);
+  PASS_NEW(m->elem, n * (size_t)b->n_top);
+  PASS_NEW(m->elem_no, b->n_top);
   for (int i = 0; i < b->n_top; ++i) {
     if (i == 0 || !same_corners(t, id[i - 1], id[i])) {
       memcpy(m->elem + n * (size_t)m->n_elem, t->corner + n * (size_t)id[i],
@@ -267,8 +261,7 @@ static status store_elements(builder *b, const top_list *t, const int *id) {
   if (m->n_elem < b->n_top)
     message_add(b->log, P3026, b->at, "%d element(s) are listed more than once",
                 b->n_top - m->n_elem);
-done:
-  return st;
+  return OK;
 }
 
 status elements_finish(builder *b) {

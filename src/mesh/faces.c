@@ -70,10 +70,9 @@ static void tell(const builder *b, int j, culprits *bad) {
 
 /* Corners as mesh nodes; faces with nodes outside of the mesh go to bad. */
 static status gather(builder *b, face_list *f, culprits *bad) {
-  status st = OK;
   size_t dim = (size_t)f->dim;
-  NEW(f->low, dim * (size_t)b->n_low);
-  NEW(f->no, b->n_low);
+  PASS_NEW(f->low, dim * (size_t)b->n_low);
+  PASS_NEW(f->no, b->n_low);
   for (int i = 0; i < b->raw->n_block; ++i) {
     const raw_block *p = &b->raw->block[i];
     if (p->dim != f->dim - 1) continue;
@@ -89,8 +88,7 @@ static status gather(builder *b, face_list *f, culprits *bad) {
     sort_corners(v, f->dim);
     if (v[0] < 0) tell(b, j, bad);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Sort the low elements and give every set of corners one id. */
@@ -179,13 +177,12 @@ static void meet(mesh *m, face_list *f, int elem, int side) {
 }
 
 static status find_elements(builder *b, face_list *f) {
-  status st = OK;
   mesh *m = b->m;
   size_t dim = (size_t)f->dim;
-  NEW(m->face, dim * (size_t)m->n_face);
-  NEW(m->face_elem, m->n_face);
-  NEW(m->face_other, m->n_face);
-  NEW(f->start, m->n_node + 1);
+  PASS_NEW(m->face, dim * (size_t)m->n_face);
+  PASS_NEW(m->face_elem, m->n_face);
+  PASS_NEW(m->face_other, m->n_face);
+  PASS_NEW(f->start, m->n_node + 1);
   for (int i = 0; i < m->n_face; ++i) {
     m->face_elem[i] = m->face_other[i] = -1;
     ++f->start[f->corner[dim * (size_t)i] + 1];
@@ -193,8 +190,7 @@ static status find_elements(builder *b, face_list *f) {
   for (int i = 0; i < m->n_node; ++i) f->start[i + 1] += f->start[i];
   for (int e = 0; e < m->n_elem; ++e)
     for (int side = 0; side <= m->dim; ++side) meet(m, f, e, side);
-done:
-  return st;
+  return OK;
 }
 
 status faces_finish(builder *b) {

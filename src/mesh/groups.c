@@ -15,16 +15,14 @@ static const char *const kind[] = {"point", "curve", "surface", "volume"};
 
 /* The group's name as it may be shown, or its tag as text. */
 static status copy_name(const raw_group *g, const char **name) {
-  status st = OK;
   char tag[16], *shown = NULL;
   snprintf(tag, sizeof tag, "%d", g->tag);
   const char *text = g->name[0] != '\0' ? g->name : tag;
   size_t room = 4 * strlen(text) + 1;
-  NEW(shown, room);
+  PASS_NEW(shown, room);
   text_shown(shown, room, text);
   *name = shown;
-done:
-  return st;
+  return OK;
 }
 
 static int block_in_group(const raw_block *p, int dim, int tag) {
@@ -85,27 +83,24 @@ static void tell_no_group(const builder *b) {
 }
 
 status groups_check(builder *b) {
-  status st = OK;
   mesh *m = b->m;
-  NEW(m->group, b->raw->n_group);
+  PASS_NEW(m->group, b->raw->n_group);
   for (int i = 0; i < b->raw->n_group; ++i) {
     const raw_group *g = &b->raw->group[i];
     if (g->dim < 0 || g->dim > 3)
-      FAIL(ERR_MESH, "physical group of dimension %d", g->dim);
+      RAISE(ERR_MESH, "physical group of dimension %d", g->dim);
     m->group[i] = (mesh_group){.dim = g->dim, .tag = g->tag};
     m->n_group = i + 1;
-    TRY(copy_name(g, &m->group[i].name));
+    PASS(copy_name(g, &m->group[i].name));
     if (g->dim > m->dim) m->dim = g->dim;
   }
   if (m->dim < 2) {
     tell_no_group(b);
-    TRY(build_check(b));
+    PASS(build_check(b));
   }
-  TRY(check_names(b));
+  PASS(check_names(b));
   for (int i = 0; i < m->n_group; ++i) check_empty(b, &m->group[i]);
-  TRY(build_check(b));
-done:
-  return st;
+  return build_check(b);
 }
 
 typedef struct filling { /* marks are all 0 between two groups */
@@ -151,17 +146,13 @@ static void add_nodes(const builder *b, const raw_block *p, filling *f,
 }
 
 static status take_list(int n, const int *list, char *mark, int **out) {
-  status st = OK;
   for (int i = 0; i < n; ++i) mark[list[i]] = 0;
-  NEW(*out, n);
+  PASS_NEW(*out, n);
   memcpy(*out, list, (size_t)n * sizeof **out);
-  TRY(sort_ids(n, *out));
-done:
-  return st;
+  return sort_ids(n, *out);
 }
 
 static status fill_group(builder *b, mesh_group *g, filling *f) {
-  status st = OK;
   culprits outside = {0};
   f->n_node = f->n_item = 0;
   for (int i = 0; i < b->raw->n_block; ++i) {
@@ -174,15 +165,14 @@ static status fill_group(builder *b, mesh_group *g, filling *f) {
   }
   g->n_node = f->n_node;
   g->n_item = f->n_item;
-  TRY(take_list(f->n_node, f->node, f->node_mark, &g->node_id));
+  PASS(take_list(f->n_node, f->node, f->node_mark, &g->node_id));
   if (g->dim >= b->m->dim - 1)
-    TRY(take_list(f->n_item, f->item, f->item_mark, &g->item_id));
+    PASS(take_list(f->n_item, f->item, f->item_mark, &g->item_id));
   if (outside.n > 0)
     message_add(b->log, P3033, b->at,
                 "physical %s \"%s\": %d node(s) in no element of the mesh: %s",
                 kind[g->dim], g->name, outside.n, outside.text);
-done:
-  return st;
+  return OK;
 }
 
 status groups_fill(builder *b) {

@@ -29,16 +29,14 @@ static size_t slot_of(const number_table *t, size_t no) {
 }
 
 status numbers_index(number_table *t, int n, const size_t *no) {
-  status st = OK;
   t->no = no;
   while (((size_t)1 << t->bits) < 2 * (size_t)n + 2) ++t->bits;
-  NEW(t->slot, (size_t)1 << t->bits);
+  PASS_NEW(t->slot, (size_t)1 << t->bits);
   for (int i = 0; i < n; ++i) {
     size_t s = slot_of(t, no[i]);
     if (t->slot[s] == 0) t->slot[s] = i + 1;
   }
-done:
-  return st;
+  return OK;
 }
 
 int numbers_find(const number_table *t, size_t no) {
@@ -75,12 +73,9 @@ done:
 }
 
 status nodes_index(builder *b) {
-  status st = OK;
   const raw_mesh *raw = b->raw;
-  TRY(numbers_index(&b->by_no, (int)raw->n_node, raw->node_no));
-  TRY(numbers_check(b, "node", (int)raw->n_node, raw->node_no, NULL));
-done:
-  return st;
+  PASS(numbers_index(&b->by_no, (int)raw->n_node, raw->node_no));
+  return numbers_check(b, "node", (int)raw->n_node, raw->node_no, NULL);
 }
 
 int nodes_find(const builder *b, size_t no) {
@@ -192,11 +187,10 @@ static void fill_keys(const builder *b, const double lo[3], uint64_t *key,
 }
 
 static status store_nodes(builder *b, const int *raw_id) {
-  status st = OK;
   mesh *m = b->m;
   size_t dim = (size_t)m->dim;
-  NEW(m->x, dim * (size_t)m->n_node);
-  NEW(m->node_no, m->n_node);
+  PASS_NEW(m->x, dim * (size_t)m->n_node);
+  PASS_NEW(m->node_no, m->n_node);
   for (int i = 0; i < m->n_node; ++i) {
     size_t r = (size_t)raw_id[i];
     for (size_t k = 0; k < dim; ++k)
@@ -205,8 +199,7 @@ static status store_nodes(builder *b, const int *raw_id) {
     m->node_no[i] = b->raw->node_no[r];
     b->node_id[r] = i;
   }
-done:
-  return st;
+  return OK;
 }
 
 /* The nodes of the top elements get their ids. */

@@ -50,13 +50,12 @@ static uint64_t side_key(int dim, const int *v) {
 }
 
 static status gather_sides(const mesh *m, side_list *s) {
-  status st = OK;
   const int n = m->dim + 1;
   int v[3], low[2];
   s->n = n * m->n_elem;
-  NEW(s->start, m->n_node + 2);
-  NEW(s->key, s->n);
-  NEW(s->id, s->n);
+  PASS_NEW(s->start, m->n_node + 2);
+  PASS_NEW(s->key, s->n);
+  PASS_NEW(s->id, s->n);
   for (int e = 0; e < m->n_elem; ++e) {
     two_lowest(n, m->elem + (size_t)n * (size_t)e, low);
     s->start[low[0] + 2] += m->dim;
@@ -70,8 +69,7 @@ static status gather_sides(const mesh *m, side_list *s) {
       s->key[to] = side_key(m->dim, v);
       s->id[to] = n * e + side;
     }
-done:
-  return st;
+  return OK;
 }
 
 /* The sides [n] of elements at one face. */
@@ -97,14 +95,13 @@ static void check_face(const mesh *m, const uint64_t *key, const int *id, int n,
 
 /* What stays in the list are the sides without an element behind. */
 static status check_sides(const builder *b, side_list *s) {
-  status st = OK;
   const mesh *m = b->m;
   culprits bad = {0};
   s->n = 0;
   for (int i = 0; i < m->n_node; ++i) {
     int end = s->start[i + 1];
-    TRY(sort_by_key(end - s->start[i], s->key + s->start[i],
-                    s->id + s->start[i], NULL, NULL));
+    PASS(sort_by_key(end - s->start[i], s->key + s->start[i],
+                     s->id + s->start[i], NULL, NULL));
     for (int j = s->start[i], next; j < end; j = next) {
       for (next = j + 1; next < end && s->key[next] / 2 == s->key[j] / 2;)
         ++next;
@@ -118,9 +115,7 @@ static status check_sides(const builder *b, side_list *s) {
     message_add(b->log, P3032, b->at,
                 "%d face(s) have two elements on one side: %s", bad.n,
                 bad.text);
-  TRY(build_check(b));
-done:
-  return st;
+  return build_check(b);
 }
 
 /* ---- two elements -------------------------------------------------------- */
@@ -244,9 +239,8 @@ static void surround(const mesh *m, int e, box *b) {
 }
 
 static status grow_tree(const mesh *m, tree *t) {
-  status st = OK;
   for (t->first = 1; t->first < t->n;) t->first *= 2;
-  NEW(t->node, 2 * (size_t)t->first);
+  PASS_NEW(t->node, 2 * (size_t)t->first);
   for (int i = t->first; i-- > 0;) {
     box *leaf = &t->node[t->first + i];
     surround(m, t->elem[i < t->n ? i : t->n - 1], leaf);
@@ -258,8 +252,7 @@ static status grow_tree(const mesh *m, tree *t) {
       t->node[i].hi[k] = fmax(p->hi[k], q->hi[k]);
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 static void tree_free(tree *t) {
@@ -324,16 +317,15 @@ static int holds_centre(const mesh *m, int e, int f) {
 
 /* Elements of one body, or of one group and not by a sag. */
 static status belong_together(search *s, int f, int *together) {
-  status st = OK;
   const mesh *m = s->b->m;
   int n_body;
   if (s->body == NULL) {
-    NEW(s->body, m->n_elem);
-    TRY(mesh_bodies(m, &n_body, s->body));
+    PASS_NEW(s->body, m->n_elem);
+    PASS(mesh_bodies(m, &n_body, s->body));
   }
   *together = s->body[s->e] == s->body[f];
   if (*together || !(holds_centre(m, s->e, f) || holds_centre(m, f, s->e)))
-    goto done;
+    return OK;
   for (int i = 0; i < m->n_group && !*together; ++i) {
     const mesh_group *g = &m->group[i];
     size_t n = (size_t)g->n_item, size = sizeof(int);
@@ -341,40 +333,34 @@ static status belong_together(search *s, int f, int *together) {
                 bsearch(&s->e, g->item_id, n, size, by_id) != NULL &&
                 bsearch(&f, g->item_id, n, size, by_id) != NULL;
   }
-done:
-  return st;
+  return OK;
 }
 
 static status compare(search *s, int f) {
-  status st = OK;
   const mesh *m = s->b->m;
   double x[3] = {0.0, 0.0, 0.0};
   int e = s->e, together = 0;
   if (s->same.n > SHOWN || e == f || share_a_side(m, e, f) ||
       !intersect(m, s->far, e, f))
     return OK;
-  TRY(belong_together(s, f, &together));
+  PASS(belong_together(s, f, &together));
   const int *v = m->elem + (size_t)(m->dim + 1) * (size_t)e;
   for (int i = 0; i <= m->dim; ++i)
     for (int k = 0; k < m->dim; ++k)
       x[k] += m->x[(size_t)m->dim * (size_t)v[i] + (size_t)k] / (m->dim + 1);
   culprit_pair(together ? &s->same : &s->other, m->dim, m->elem_no[e],
                m->elem_no[f], x);
-done:
-  return st;
+  return OK;
 }
 
 /* Below a node of the tree, which holds "count" leaves from "leaf" on. */
 static status descend(search *s, int node, int leaf, int count) {
-  status st = OK;
   if (leaf >= s->t.n || leaf + count <= s->from ||
       !boxes_meet(&s->t.node[node], &s->at))
     return OK;
   if (count == 1) return compare(s, s->t.elem[leaf]);
-  TRY(descend(s, 2 * node, leaf, count / 2));
-  TRY(descend(s, 2 * node + 1, leaf + count / 2, count / 2));
-done:
-  return st;
+  PASS(descend(s, 2 * node, leaf, count / 2));
+  return descend(s, 2 * node + 1, leaf + count / 2, count / 2);
 }
 
 /* All that intersect element e, from that leaf on. */
@@ -386,26 +372,22 @@ static status find(search *s, int e, int from) {
 }
 
 static status start_tree(search *s, int n) {
-  status st = OK;
   tree_free(&s->t);
-  NEW(s->t.elem, n);
-done:
-  return st;
+  PASS_NEW(s->t.elem, n);
+  return OK;
 }
 
 /* Elements that own a side of the boundary, with each other. */
 static status check_skin(search *s, const char *is_skin) {
-  status st = OK;
   const mesh *m = s->b->m;
   int n = 0;
   for (int e = 0; e < m->n_elem; ++e) n += is_skin[e];
-  TRY(start_tree(s, n));
+  PASS(start_tree(s, n));
   for (int e = 0; e < m->n_elem; ++e)
     if (is_skin[e]) s->t.elem[s->t.n++] = e;
-  TRY(grow_tree(m, &s->t));
-  for (int i = 0; i < n; ++i) TRY(find(s, s->t.elem[i], i + 1));
-done:
-  return st;
+  PASS(grow_tree(m, &s->t));
+  for (int i = 0; i < n; ++i) PASS(find(s, s->t.elem[i], i + 1));
+  return OK;
 }
 
 /* One side of each piece of the boundary, -1 for the others. A piece goes on

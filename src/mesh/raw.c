@@ -32,9 +32,8 @@ static size_t read_bytes(int fd, void *data, size_t n) {
  * array (*payload is then NULL). 0 if it does not fit to what came before. */
 static status store_block_part(raw_mesh *raw, const wire_head *head,
                                void **payload) {
-  status st = OK;
   if (raw->n_block == 0)
-    FAIL(ERR_MESH, "the mesh reader sent parts of nothing");
+    RAISE(ERR_MESH, "the mesh reader sent parts of nothing");
   raw_block *b = &raw->block[raw->n_block - 1];
   void *part = *payload;
   if (head->kind == WIRE_PHYSICAL && b->physical == NULL) {
@@ -48,21 +47,18 @@ static status store_block_part(raw_mesh *raw, const wire_head *head,
     b->node = part;
     b->n_per = (size_t)head->n / b->n;
   } else {
-    FAIL(ERR_MESH, "the mesh reader sent parts that do not fit");
+    RAISE(ERR_MESH, "the mesh reader sent parts that do not fit");
   }
   *payload = NULL;
-done:
-  return st;
+  return OK;
 }
 
 /* Counts of fixed number are copied; the payload is not kept. */
 static status copy_items(const wire_head *head, uint64_t wanted, void *to,
                          const void *data, size_t bytes) {
-  status st = OK;
-  if (head->n != wanted) FAIL(ERR_MESH, "the mesh reader sent a wrong count");
+  if (head->n != wanted) RAISE(ERR_MESH, "the mesh reader sent a wrong count");
   memcpy(to, data, bytes);
-done:
-  return st;
+  return OK;
 }
 
 /* A new block, group or warning: the lists grow by doubling. */
@@ -72,15 +68,14 @@ static void *list_item(void *list, int n, size_t size) {
   return memory_resize(list, (size_t)n, room, size);
 }
 
-#define APPEND(list, n)                                                  \
-  do {                                                                   \
-    void *grown_ = list_item((list), (n), sizeof *(list));               \
-    if (grown_ == NULL) FAIL(ERR_MEMORY, "memory exhausted: %s", #list); \
-    (list) = grown_;                                                     \
+#define APPEND(list, n)                                                   \
+  do {                                                                    \
+    void *grown_ = list_item((list), (n), sizeof *(list));                \
+    if (grown_ == NULL) RAISE(ERR_MEMORY, "memory exhausted: %s", #list); \
+    (list) = grown_;                                                      \
   } while (0)
 
 static status store(raw_mesh *raw, const wire_head *head, void **payload) {
-  status st = OK;
   void *data = *payload;
   switch ((wire_kind)head->kind) {
     case WIRE_CENSUS:
@@ -89,13 +84,13 @@ static status store(raw_mesh *raw, const wire_head *head, void **payload) {
       return copy_items(head, 1, &raw->n_loose, data, sizeof raw->n_loose);
     case WIRE_NODE_NO:
       if (raw->node_no != NULL)
-        FAIL(ERR_MESH, "the mesh reader sent nodes twice");
+        RAISE(ERR_MESH, "the mesh reader sent nodes twice");
       raw->node_no = data;
       raw->n_node = (size_t)head->n;
       break;
     case WIRE_NODE_X:
       if (raw->xyz != NULL || head->n != 3 * (uint64_t)raw->n_node)
-        FAIL(ERR_MESH, "the mesh reader sent coordinates that do not fit");
+        RAISE(ERR_MESH, "the mesh reader sent coordinates that do not fit");
       raw->xyz = data;
       break;
     case WIRE_GROUP:
@@ -112,26 +107,23 @@ static status store(raw_mesh *raw, const wire_head *head, void **payload) {
       raw->warning[raw->n_warning++] = data;
       break;
     case WIRE_FAILURE:
-      FAIL(head->tag == ERR_MEMORY ? ERR_MEMORY : ERR_MESH, "%s",
-           (const char *)data);
+      RAISE(head->tag == ERR_MEMORY ? ERR_MEMORY : ERR_MESH, "%s",
+            (const char *)data);
     default:
       return store_block_part(raw, head, payload);
   }
   *payload = NULL;
-done:
-  return st;
+  return OK;
 }
 
 /* All that the later steps rely on: every array is there. */
 static status check_complete(const raw_mesh *raw) {
-  status st = OK;
   if (raw->node_no == NULL || raw->xyz == NULL)
-    FAIL(ERR_MESH, "the mesh reader sent no nodes");
+    RAISE(ERR_MESH, "the mesh reader sent no nodes");
   for (int i = 0; i < raw->n_block; ++i)
     if (raw->block[i].node == NULL || raw->block[i].physical == NULL)
-      FAIL(ERR_MESH, "the mesh reader sent half a block of elements");
-done:
-  return st;
+      RAISE(ERR_MESH, "the mesh reader sent half a block of elements");
+  return OK;
 }
 
 status raw_receive(int fd, raw_mesh *raw, int *stopped) {

@@ -90,17 +90,15 @@ static void heap_sort(int n, int *id, sort_compare *compare, const void *ctx) {
 
 status sort_by_key(int n, uint64_t *key, int *id, sort_compare *compare,
                    const void *ctx) {
-  status st = OK;
   if (n <= FEW)
     insertion(n, key, id);
   else
-    TRY(radix(n, key, id));
+    PASS(radix(n, key, id));
   for (int i = 0, end; compare != NULL && i < n; i = end) {
     for (end = i + 1; end < n && key[end] == key[i];) ++end;
     if (end - i > 1) heap_sort(end - i, id + i, compare, ctx);
   }
-done:
-  return st;
+  return OK;
 }
 
 status sort_ids(int n, int *id) {

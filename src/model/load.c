@@ -54,13 +54,11 @@ static void report_value(const model *m, const mesh *msh, const load *l,
 /* Value at a node, or the error that it is not finite. */
 static status node_value(const model *m, const mesh *msh, const load *l,
                          const step *s, double t, int node, double *value) {
-  status st = OK;
   *value = load_at_node(l, msh, s, node, t);
-  if (isfinite(*value)) goto done;
+  if (isfinite(*value)) return OK;
   report_value(m, msh, l, t, node, *value);
-  FAIL(ERR_DECK, "%s:%d: a value is not finite", l->at.file, l->at.line_no);
-done:
-  return st;
+  RAISE(ERR_DECK, "%s:%d: a value is not finite", l->at.file, l->at.line_no);
+  return OK;
 }
 
 int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
@@ -109,11 +107,10 @@ typedef struct patch {
 
 static status add_patch(const model *m, const mesh *msh, const load *l,
                         const step *s, double t, const patch *p, double *F) {
-  status st = OK;
   double value[MAX_NODE], r[MAX_NODE], M[MAX_NODE * MAX_NODE];
   int axisymmetric = m->sections[0].kin == AXISYMMETRIC;
   for (int i = 0; i < p->n; ++i) {
-    TRY(node_value(m, msh, l, s, t, p->node[i], &value[i]));
+    PASS(node_value(m, msh, l, s, t, p->node[i], &value[i]));
     r[i] = 2.0 * M_PI * msh->x[(size_t)msh->dim * (size_t)p->node[i]];
   }
   simplex_mass(p->n, p->measure, axisymmetric ? r : NULL, M);
@@ -124,8 +121,7 @@ static status add_patch(const model *m, const mesh *msh, const load *l,
     double *Fi = F + (size_t)msh->dim * (size_t)p->node[i];
     for (int c = 0; c < msh->dim; ++c) Fi[c] += force * p->direction[c];
   }
-done:
-  return st;
+  return OK;
 }
 
 static double elem_thickness(const model *m, int elem_id) {
@@ -134,7 +130,6 @@ static double elem_thickness(const model *m, int elem_id) {
 
 static status add_faces(const model *m, const mesh *msh, const load *l,
                         const step *s, double t, double *F) {
-  status st = OK;
   const mesh_group *g = &msh->group[l->group_id];
   for (int k = 0; k < g->n_item; ++k) {
     int face = g->item_id[k];
@@ -148,15 +143,13 @@ static status add_faces(const model *m, const mesh *msh, const load *l,
       p.direction[c] = l->kind == LOAD_PRESSURE ? -normal[c]
                        : c == l->component      ? 1.0
                                                 : 0.0;
-    TRY(add_patch(m, msh, l, s, t, &p, F));
+    PASS(add_patch(m, msh, l, s, t, &p, F));
   }
-done:
-  return st;
+  return OK;
 }
 
 static status add_elements(const model *m, const mesh *msh, const load *l,
                            const step *s, double t, double *F) {
-  status st = OK;
   const mesh_group *g = &msh->group[l->group_id];
   for (int k = 0; k < g->n_item; ++k) {
     int e = g->item_id[k];
@@ -171,23 +164,20 @@ static status add_elements(const model *m, const mesh *msh, const load *l,
     } else {
       p.direction[l->component] = 1.0;
     }
-    TRY(add_patch(m, msh, l, s, t, &p, F));
+    PASS(add_patch(m, msh, l, s, t, &p, F));
   }
-done:
-  return st;
+  return OK;
 }
 
 static status add_points(const model *m, const mesh *msh, const load *l,
                          const step *s, double t, double *F) {
-  status st = OK;
   const mesh_group *g = &msh->group[l->group_id];
   for (int k = 0; k < g->n_node; ++k) {
     double value;
-    TRY(node_value(m, msh, l, s, t, g->node_id[k], &value));
+    PASS(node_value(m, msh, l, s, t, g->node_id[k], &value));
     F[(size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component] += value;
   }
-done:
-  return st;
+  return OK;
 }
 
 status load_forces(const model *m, const mesh *msh, const step *s, double t,
@@ -228,7 +218,6 @@ static double start_share(const load *l, const step *s, double t) {
 
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        const double *start, double *ud) {
-  status st = OK;
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     if (l->kind != LOAD_FIXING) continue;
@@ -236,12 +225,11 @@ status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
     for (int k = 0; k < g->n_node; ++k) {
       size_t dof =
           (size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component;
-      TRY(node_value(m, msh, l, s, t, g->node_id[k], &ud[dof]));
+      PASS(node_value(m, msh, l, s, t, g->node_id[k], &ud[dof]));
       ud[dof] += start_share(l, s, t) * start[dof];
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Mean of a quantity at the nodes of an element, times a nodal field
@@ -261,31 +249,26 @@ static double elem_mean(const quantity *q, const double *times, const mesh *msh,
 
 status load_initial(const model *m, const mesh *msh, const initial *c,
                     int elem_id, double *value) {
-  status st = OK;
   *value = elem_mean(&c->value, NULL, msh, elem_id, 0.0);
-  if (isfinite(*value)) goto done;
+  if (isfinite(*value)) return OK;
   message_add(m->log, P2041, &c->at,
               "the initial value in element %zu is not a finite number",
               msh->elem_no[elem_id]);
-  FAIL(ERR_DECK, "%s:%d: an initial value is not finite", c->at.file,
-       c->at.line_no);
-done:
-  return st;
+  RAISE(ERR_DECK, "%s:%d: an initial value is not finite", c->at.file,
+        c->at.line_no);
+  return OK;
 }
 
 static status refuse_temperature(const model *m, const mesh *msh,
                                  const place *at, int elem_id) {
-  status st = OK;
   message_add(m->log, P2041, at,
               "the temperature of element %zu is not a finite number",
               msh->elem_no[elem_id]);
-  FAIL(ERR_DECK, "%s:%d: a temperature is not finite", at->file, at->line_no);
-done:
-  return st;
+  RAISE(ERR_DECK, "%s:%d: a temperature is not finite", at->file, at->line_no);
+  return OK;
 }
 
 status load_temperature_initial(const model *m, const mesh *msh, double *T) {
-  status st = OK;
   memset(T, 0, (size_t)msh->n_elem * sizeof *T);
   for (int i = 0; i < m->n_initial; ++i) {
     const initial *c = &m->initials[i];
@@ -293,11 +276,10 @@ status load_temperature_initial(const model *m, const mesh *msh, double *T) {
     const mesh_group *g = &msh->group[c->group_id];
     for (int k = 0; k < g->n_item; ++k) {
       int e = g->item_id[k];
-      TRY(load_initial(m, msh, c, e, &T[e]));
+      PASS(load_initial(m, msh, c, e, &T[e]));
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 /* A temperature starts from the initial one, and OP=NEW leads back to it. */
@@ -315,7 +297,6 @@ static double temperature_of(const load *l, const mesh *msh, const step *s,
 
 status load_temperature(const model *m, const mesh *msh, const step *s,
                         double t, const double *T0, double *T) {
-  status st = OK;
   memcpy(T, T0, (size_t)msh->n_elem * sizeof *T);
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
@@ -324,11 +305,10 @@ status load_temperature(const model *m, const mesh *msh, const step *s,
     for (int k = 0; k < g->n_item; ++k) {
       int e = g->item_id[k];
       T[e] = temperature_of(l, msh, s, t, e, T0[e]);
-      if (!isfinite(T[e])) TRY(refuse_temperature(m, msh, &l->at, e));
+      if (!isfinite(T[e])) PASS(refuse_temperature(m, msh, &l->at, e));
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 void load_fixed(const model *m, const mesh *msh, const step *s,

@@ -47,12 +47,10 @@ void solver_tell(const solver_control *control, const char *solver,
 }
 
 status best_iterate_new(int m, best_iterate *best) {
-  status st = OK;
   best->residual = HUGE_VAL;
-  NEW(best->u, m);
-  NEW(best->r, m);
-done:
-  return st;
+  PASS_NEW(best->u, m);
+  PASS_NEW(best->r, m);
+  return OK;
 }
 
 void best_iterate_free(best_iterate *best) {

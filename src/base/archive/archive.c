@@ -9,10 +9,8 @@
 enum { SHORT = 256 }; /* bytes, up to here an array is copied                 */
 
 status archive_new(archive **out) {
-  status st = OK;
-  NEW(*out, 1);
-done:
-  return st;
+  PASS_NEW(*out, 1);
+  return OK;
 }
 
 void archive_free(archive *a) {
@@ -65,13 +63,11 @@ size_t archive_length(const archive *a, const char *name) {
 
 status archive_add(archive *a, const char *name, archive_kind kind, size_t n,
                    archive_item **out) {
-  status st = OK;
-  GROW(a->item, a->n, a->capacity);
+  PASS_GROW(a->item, a->n, a->capacity);
   *out = &a->item[a->n++];
   **out = (archive_item){.kind = kind, .n = n};
   snprintf((*out)->name, sizeof(*out)->name, "%s", name);
-done:
-  return st;
+  return OK;
 }
 
 static size_t item_bytes(const archive_item *i) {
@@ -81,32 +77,28 @@ static size_t item_bytes(const archive_item *i) {
 
 static status put(archive *a, const char *name, archive_kind kind, void *v,
                   size_t n) {
-  status st = OK;
   archive_item *i = NULL;
   char text[ARCHIVE_NAME];
   full_name(a, name, text);
-  TRY(archive_add(a, text, kind, n, &i));
+  PASS(archive_add(a, text, kind, n, &i));
   i->data = v;
   size_t bytes = item_bytes(i);
-  if (bytes > SHORT) goto done;
+  if (bytes > SHORT) return OK;
   i->own = memory_new(bytes, 1);
-  if (i->own == NULL) FAIL(ERR_MEMORY, "memory exhausted: array %s", name);
+  if (i->own == NULL) RAISE(ERR_MEMORY, "memory exhausted: array %s", name);
   memcpy(i->own, v, bytes);
   i->data = i->own;
-done:
-  return st;
+  return OK;
 }
 
 static status take(const archive *a, const char *name, archive_kind kind,
                    void *v, size_t n) {
-  status st = OK;
   const archive_item *i = find(a, name);
   if (i == NULL || i->kind != kind || i->n != n)
-    FAIL(ERR_FILE, "%s: no array %s%s of %zu values: it is of another model",
-         a->path, a->group, name, n);
+    RAISE(ERR_FILE, "%s: no array %s%s of %zu values: it is of another model",
+          a->path, a->group, name, n);
   memcpy(v, i->data, item_bytes(i));
-done:
-  return st;
+  return OK;
 }
 
 static status pass(archive *a, const char *name, archive_kind kind, void *v,

@@ -20,7 +20,6 @@ enum {
 
 /* By the descriptor: the name may have come to mean another file. */
 status dataset_open(const char *path, hdf5_source *s) {
-  status st = OK;
   const char *why = NULL;
   char name[40];
   *s = (hdf5_source){.path = path, .file = -1};
@@ -29,17 +28,16 @@ status dataset_open(const char *path, hdf5_source *s) {
   H5dont_atexit();
   H5Lunregister(H5L_TYPE_EXTERNAL);
   s->fd = input_open(path, &why);
-  if (s->fd < 0) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
+  if (s->fd < 0) RAISE(ERR_FILE, "%s: cannot be read: %s", path, why);
   snprintf(name, sizeof name, "/proc/self/fd/%d", s->fd);
   htri_t is_hdf5 = H5Fis_hdf5(name);
-  if (is_hdf5 < 0) FAIL(ERR_FILE, "%s: cannot be read", path);
-  if (is_hdf5 == 0) FAIL(ERR_FILE, "%s is no HDF5 file, or cut short", path);
+  if (is_hdf5 < 0) RAISE(ERR_FILE, "%s: cannot be read", path);
+  if (is_hdf5 == 0) RAISE(ERR_FILE, "%s is no HDF5 file, or cut short", path);
   s->file = H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (s->file < 0)
-    FAIL(ERR_FILE, "%s cannot be read: the HDF5 file is damaged or cut short",
-         path);
-done:
-  return st;
+    RAISE(ERR_FILE, "%s cannot be read: the HDF5 file is damaged or cut short",
+          path);
+  return OK;
 }
 
 void dataset_close(hdf5_source *s) {
@@ -176,12 +174,10 @@ done:
 
 static status read_set(const hdf5_source *s, const char *name, hid_t set,
                        hid_t as, void *into) {
-  status st = OK;
   if (H5Dread(set, as, H5S_ALL, H5S_ALL, H5P_DEFAULT, into) < 0)
-    FAIL(ERR_FILE, "%s: %s cannot be read; the file is damaged or cut short",
-         s->path, name);
-done:
-  return st;
+    RAISE(ERR_FILE, "%s: %s cannot be read; the file is damaged or cut short",
+          s->path, name);
+  return OK;
 }
 
 status source_ints(const hdf5_source *s, const char *name, int optional,

@@ -29,17 +29,15 @@ static hid_t type_of(archive_kind kind) {
 /* ---- writing ------------------------------------------------------------ */
 
 static status list_items(const archive *a, char **out) {
-  status st = OK;
   size_t size = (size_t)a->n * (ARCHIVE_NAME + 40) + 1, used = 0;
   char *list = memory_new(size, 1);
-  if (list == NULL) FAIL(ERR_MEMORY, "memory exhausted: list of an archive");
+  if (list == NULL) RAISE(ERR_MEMORY, "memory exhausted: list of an archive");
   for (int i = 0; i < a->n; ++i)
     used +=
         (size_t)snprintf(list + used, size - used, "%d %zu %s\n",
                          (int)a->item[i].kind, a->item[i].n, a->item[i].name);
   *out = list;
-done:
-  return st;
+  return OK;
 }
 
 static status put(hid_t file, const char *path, const char *name, hid_t type,
@@ -159,7 +157,6 @@ done:
 }
 
 static status get_item(hid_t file, archive *a, const char *line) {
-  status st = OK;
   static const size_t size[] = {sizeof(double), sizeof(int), 1};
   int kind;
   size_t n;
@@ -167,13 +164,12 @@ static status get_item(hid_t file, archive *a, const char *line) {
   archive_item *i = NULL;
   if (sscanf(line, "%d %zu %199[^\n]", &kind, &n, name) != 3 || kind < 0 ||
       kind > ARCHIVE_BYTE || n == 0)
-    TRY(damaged(a->path, "the restart file is damaged: its list"));
-  TRY(archive_add(a, name, (archive_kind)kind, n, &i));
+    PASS(damaged(a->path, "the restart file is damaged: its list"));
+  PASS(archive_add(a, name, (archive_kind)kind, n, &i));
   snprintf(whole, sizeof whole, "/data/%s", name);
-  TRY(get(file, a->path, whole, type_of(i->kind), size[kind], &n, &i->own));
+  PASS(get(file, a->path, whole, type_of(i->kind), size[kind], &n, &i->own));
   i->data = i->own;
-done:
-  return st;
+  return OK;
 }
 
 static status get_items(hid_t file, archive *a) {

@@ -28,7 +28,6 @@ typedef struct content {
 
 /* What follows the seal; ERR_FILE if it cannot be read. */
 static status sum_up(int fd, const char *path, content *c) {
-  status st = OK;
   unsigned char part[PART];
   ssize_t n;
   *c = (content){0, 14695981039346656037u};
@@ -37,9 +36,8 @@ static status sum_up(int fd, const char *path, content *c) {
       c->checksum = (c->checksum ^ part[i]) * 1099511628211u;
     c->bytes += (uint64_t)n;
   }
-  if (n < 0) TRY(text_failed(path, "read", errno));
-done:
-  return st;
+  if (n < 0) PASS(text_failed(path, "read", errno));
+  return OK;
 }
 
 static void write_text(const content *c, char text[ARCHIVE_SEAL]) {
@@ -49,16 +47,14 @@ static void write_text(const content *c, char text[ARCHIVE_SEAL]) {
 }
 
 static status write_whole(int fd, const char *path, const char *text) {
-  status st = OK;
   size_t at = 0;
   while (at < ARCHIVE_SEAL) {
     ssize_t n = pwrite(fd, text + at, ARCHIVE_SEAL - at, (off_t)at);
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) TRY(text_failed(path, "write", errno));
+    if (n <= 0) PASS(text_failed(path, "write", errno));
     at += (size_t)n;
   }
-done:
-  return st;
+  return OK;
 }
 
 status archive_seal(const char *path) {

@@ -86,24 +86,22 @@ FILE *input_stream(const char *path, const char **why) {
 }
 
 status input_confine(const char *name) {
-  status st = OK;
   if (confined) close(confined - 1);
   confined = 0;
   memory_free(folder);
   folder = NULL;
-  if (name == NULL) goto done;
+  if (name == NULL) return OK;
   int here = strcmp(name, ".") == 0;
   size_t n = strlen(name), slash = n > 0 && name[n - 1] == '/' ? 0 : 1;
-  NEW(folder, n + 2);
+  PASS_NEW(folder, n + 2);
   if (!here) {
     memcpy(folder, name, n);
     memcpy(folder + n, "/", slash);
   }
   int fd = open(name, FOLDER);
-  if (fd < 0) TRY(text_failed(name, "open", errno));
+  if (fd < 0) PASS(text_failed(name, "open", errno));
   confined = fd + 1;
-done:
-  return st;
+  return OK;
 }
 
 int input_is_confined(void) { return confined > 0; }

@@ -50,24 +50,22 @@ static void builder_free(builder *b) {
 }
 
 static status builder_new(builder *b) {
-  status st = OK;
   int n = b->p->n_node, dim = b->p->dim;
   int line = dim == 2 && !b->p->axisymmetric;
   b->m = mollifier_make(b->rule->kernel, b->rule->radius, line ? 1 : 2);
-  TRY(layout_new(b->p, b->rule, &b->at));
-  TRY(box_tree_new(dim, b->at.n_face, dim, b->at.corner, &b->faces));
-  TRY(box_tree_new(dim, b->at.n_rim, dim - 1, b->at.rim, &b->rim));
-  NEW(b->share, n);
-  NEW(b->mass, n);
-  NEW(b->raw.start, n + 1);
+  PASS(layout_new(b->p, b->rule, &b->at));
+  PASS(box_tree_new(dim, b->at.n_face, dim, b->at.corner, &b->faces));
+  PASS(box_tree_new(dim, b->at.n_rim, dim - 1, b->at.rim, &b->rim));
+  PASS_NEW(b->share, n);
+  PASS_NEW(b->mass, n);
+  PASS_NEW(b->raw.start, n + 1);
   b->raw.n = n;
-  NEW(b->alone, n);
-  NEW(b->part, n);
-  NEW(b->found, b->at.n_face + b->at.n_rim);
-  NEW(b->touched, n);
-  NEW(b->row, n);
-done:
-  return st;
+  PASS_NEW(b->alone, n);
+  PASS_NEW(b->part, n);
+  PASS_NEW(b->found, b->at.n_face + b->at.n_rim);
+  PASS_NEW(b->touched, n);
+  PASS_NEW(b->row, n);
+  return OK;
 }
 
 static double distance(int dim, const double *a, const double *b) {
@@ -221,18 +219,15 @@ static int by_number(const void *a, const void *b) {
 
 static status add_entry(sparse_rows *rows, int *n, int cap[2], int col,
                         double val) {
-  status st = OK;
-  GROW(rows->col, *n, cap[0]);
-  GROW(rows->val, *n, cap[1]);
+  PASS_GROW(rows->col, *n, cap[0]);
+  PASS_GROW(rows->val, *n, cap[1]);
   rows->col[*n] = col;
   rows->val[(*n)++] = val;
-done:
-  return st;
+  return OK;
 }
 
 /* Row i of raw from what the node sees, scaled to its mass. */
 static status keep_row(builder *b, int i, int cap[2]) {
-  status st = OK;
   const average_patch *p = b->p;
   double seen = 0.0;
   int n = b->raw.start[i];
@@ -248,24 +243,21 @@ static status keep_row(builder *b, int i, int cap[2]) {
     int j = b->touched[k];
     double value = b->row[j] * (b->mass[i] / seen);
     b->row[j] = 0.0;
-    if (p->active[j]) TRY(add_entry(&b->raw, &n, cap, j, value));
+    if (p->active[j]) PASS(add_entry(&b->raw, &n, cap, j, value));
   }
   b->raw.start[i + 1] = n;
-done:
-  return st;
+  return OK;
 }
 
 static status find_rows(builder *b) {
-  status st = OK;
   int cap[2] = {0, 0};
   for (int i = 0; i < b->p->n_node; ++i) {
     b->raw.start[i + 1] = b->raw.start[i];
     if (!b->p->active[i]) continue;
     look_around(b, i);
-    TRY(keep_row(b, i, cap));
+    PASS(keep_row(b, i, cap));
   }
-done:
-  return st;
+  return OK;
 }
 
 static status transpose(const sparse_rows *a, sparse_rows *out) {

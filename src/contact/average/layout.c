@@ -24,15 +24,13 @@ static void fans_free(fans *f) {
 }
 
 static status fans_new(const average_patch *p, fans *f) {
-  status st = OK;
   int n = p->dim * p->n_face;
-  NEW(f->start, p->n_node + 2);
-  NEW(f->face, n);
+  PASS_NEW(f->start, p->n_node + 2);
+  PASS_NEW(f->face, n);
   for (int k = 0; k < n; ++k) ++f->start[p->face[k] + 2];
   for (int i = 0; i < p->n_node; ++i) f->start[i + 2] += f->start[i + 1];
   for (int k = 0; k < n; ++k) f->face[f->start[p->face[k] + 1]++] = k / p->dim;
-done:
-  return st;
+  return OK;
 }
 
 static int fan_size(const fans *f, int node) {
@@ -51,15 +49,13 @@ static int on_axis(const average_patch *p, int node) {
 }
 
 static status new_arrays(const average_patch *p, layout *l) {
-  status st = OK;
   size_t dim = (size_t)p->dim;
   l->dim = p->dim;
   l->n_face = p->n_face;
-  NEW(l->x, dim * (size_t)p->n_node);
-  NEW(l->corner, dim * dim * (size_t)p->n_face);
-  NEW(l->rim, dim * dim * dim * (size_t)(p->n_face + 1));
-done:
-  return st;
+  PASS_NEW(l->x, dim * (size_t)p->n_node);
+  PASS_NEW(l->corner, dim * dim * (size_t)p->n_face);
+  PASS_NEW(l->rim, dim * dim * dim * (size_t)(p->n_face + 1));
+  return OK;
 }
 
 void layout_free(layout *l) {

@@ -56,21 +56,19 @@ void given_form_free(given_form *g) {
 }
 
 static status new_arrays(const contact_problem *cp, given_form *g) {
-  status st = OK;
   size_t n = (size_t)g->n, m = (size_t)cp->m;
-  NEW(g->node, n);
-  NEW(g->A, m * m);
-  NEW(g->L, n * n);
-  NEW(g->Y, n * m);
-  NEW(g->f, m);
-  NEW(g->gap, cp->n);
-  NEW(g->met, cp->n);
-  NEW(g->y, n);
-  NEW(g->force, n);
-  NEW(g->g0, cp->n);
-  NEW(g->is, cp->n);
-done:
-  return st;
+  PASS_NEW(g->node, n);
+  PASS_NEW(g->A, m * m);
+  PASS_NEW(g->L, n * n);
+  PASS_NEW(g->Y, n * m);
+  PASS_NEW(g->f, m);
+  PASS_NEW(g->gap, cp->n);
+  PASS_NEW(g->met, cp->n);
+  PASS_NEW(g->y, n);
+  PASS_NEW(g->force, n);
+  PASS_NEW(g->g0, cp->n);
+  PASS_NEW(g->is, cp->n);
+  return OK;
 }
 
 static size_t normal(const given_form *g, int k) {
@@ -79,7 +77,6 @@ static size_t normal(const given_form *g, int k) {
 
 /* L L' = A_gg */
 static status factorise(const contact_problem *cp, given_form *g) {
-  status st = OK;
   size_t n = (size_t)g->n, m = (size_t)cp->m;
   for (size_t j = 0; j < n; ++j)
     for (size_t i = 0; i < n; ++i)
@@ -90,11 +87,10 @@ static status factorise(const contact_problem *cp, given_form *g) {
     if (!(pivot * pivot > SINGULAR * whole)) info = 1;
   }
   if (info != 0)
-    FAIL(ERR_SINGULAR,
-         "*CONTACT FORCE: nothing holds the body against the given normal "
-         "forces; hold it with *BOUNDARY or another *CONTACT");
-done:
-  return st;
+    RAISE(ERR_SINGULAR,
+          "*CONTACT FORCE: nothing holds the body against the given normal "
+          "forces; hold it with *BOUNDARY or another *CONTACT");
+  return OK;
 }
 
 /* Y = inv(L) A_gc and A' = A - Y'Y, diagonal in the rows of g. */
@@ -146,15 +142,14 @@ done:
  * left. */
 static status set_limit(given_form *g, const contact_problem *cp,
                         contact_problem *out) {
-  status st = OK;
   const sparse_rows *B = cp->B;
   int left = 0;
-  if (B == NULL) goto done;
+  if (B == NULL) return OK;
   if (g->n_entry < B->start[cp->n]) {
     memory_free(g->mu);
     g->mu = NULL;
     g->n_entry = B->start[cp->n];
-    NEW(g->mu, g->n_entry);
+    PASS_NEW(g->mu, g->n_entry);
   }
   /* The gaps are not in use yet: they hold the forces by node. */
   memset(g->gap, 0, (size_t)cp->n * sizeof *g->gap);
@@ -172,8 +167,7 @@ static status set_limit(given_form *g, const contact_problem *cp,
   g->B.val = g->mu;
   out->g0 = g->g0;
   out->B = left > 0 ? &g->B : NULL;
-done:
-  return st;
+  return OK;
 }
 
 status given_form_set(given_form *g, const contact_problem *cp,

@@ -128,16 +128,14 @@ static void grow_section(growth *g, int section) {
  */
 
 static status list_elements(const mesh *m, cluster_set *c) {
-  status st = OK;
-  NEW(c->start, c->n + 2);
-  NEW(c->elem, m->n_elem);
+  PASS_NEW(c->start, c->n + 2);
+  PASS_NEW(c->elem, m->n_elem);
   for (int e = 0; e < m->n_elem; ++e)
     if (c->of[e] >= 0) ++c->start[c->of[e] + 2];
   for (int k = 0; k < c->n; ++k) c->start[k + 2] += c->start[k + 1];
   for (int e = 0; e < m->n_elem; ++e)
     if (c->of[e] >= 0) c->elem[c->start[c->of[e] + 1]++] = e;
-done:
-  return st;
+  return OK;
 }
 
 static status list_nodes(const mesh *m, cluster_set *c) {
@@ -172,10 +170,10 @@ static double volume(const cluster_input *in, int e) {
 }
 
 static status weigh(const cluster_input *in, cluster_set *c) {
-  status st = OK;
-  NEW(c->share, c->n);
-  NEW(c->weight, in->mesh->n_elem);
-  for (int f = CLUSTER_STRAIN; f <= CLUSTER_STRESS; ++f) NEW(c->mean[f], c->n);
+  PASS_NEW(c->share, c->n);
+  PASS_NEW(c->weight, in->mesh->n_elem);
+  for (int f = CLUSTER_STRAIN; f <= CLUSTER_STRESS; ++f)
+    PASS_NEW(c->mean[f], c->n);
   for (int k = 0; k < c->n; ++k) {
     double sum = 0;
     for (int q = c->start[k]; q < c->start[k + 1]; ++q)
@@ -184,8 +182,7 @@ static status weigh(const cluster_input *in, cluster_set *c) {
       c->weight[c->elem[q]] /= sum;
     c->share[k] = in->share[in->section_id[c->elem[c->start[k]]]];
   }
-done:
-  return st;
+  return OK;
 }
 
 static status grow(const cluster_input *in, cluster_set *c) {

@@ -87,7 +87,6 @@ static void wrong_count(const lines *r, const record *line,
 
 /* The values of a line; an empty field or none has its initial value. */
 static status read_line(lines *r, const record *line, const option *table) {
-  status st = OK;
   law_card *law = r->law;
   double initial;
   const int n = law_n_field(table);
@@ -97,7 +96,7 @@ static status read_line(lines *r, const record *line, const option *table) {
   }
   for (int i = 0; i < n && !r->wrong; ++i) {
     const field *f = i < line->n_field ? &line->fields[i] : NULL;
-    GROW(law->value, r->n_value, r->capacity);
+    PASS_GROW(law->value, r->n_value, r->capacity);
     quantity *q = &law->value[r->n_value++];
     const int absent = f == NULL || (f->text[0] == '\0' && !f->quoted);
     if (!absent || table[i].initial == NULL) {
@@ -107,8 +106,7 @@ static status read_line(lines *r, const record *line, const option *table) {
       q->number = initial;
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Temperature of a line into T; 0: it has none. */
@@ -122,7 +120,6 @@ static int line_temperature(lines *r, const record *line, const option *table,
 
 /* Open a set for a line whose temperature is not that of the last one. */
 static status open_set(lines *r, const record *line, double T) {
-  status st = OK;
   law_card *law = r->law;
   if (law->n_set > 0 && !(T > law->temperature[law->n_set - 1])) {
     message_add(r->log, P2029, &line->at,
@@ -130,11 +127,10 @@ static status open_set(lines *r, const record *line, double T) {
                 r->c->name, T, law->temperature[law->n_set - 1]);
     r->wrong = 1;
   }
-  GROW(law->temperature, law->n_set, r->set_capacity);
+  PASS_GROW(law->temperature, law->n_set, r->set_capacity);
   law->temperature[law->n_set++] = T;
   r->in_set = 0;
-done:
-  return st;
+  return OK;
 }
 
 /* The lines of the set that just ended are as many as those of the first. */
@@ -193,20 +189,18 @@ static const option *place_line(lines *r, const record *line, double *T,
 
 /* A line goes on with the set at hand, or opens the next. */
 static status add_line(lines *r, const record *line) {
-  status st = OK;
   double T = 0;
   int opens;
   const option *table = place_line(r, line, &T, &opens);
   r->wrong |= table == NULL;
-  if (r->wrong) goto done;
-  TRY(read_line(r, line, table));
+  if (r->wrong) return OK;
+  PASS(read_line(r, line, table));
   if (opens) {
     if (r->law->n_set > 0) close_set(r, &line[-1].at);
-    TRY(open_set(r, line, T));
+    PASS(open_set(r, line, T));
   }
   ++r->in_set;
-done:
-  return st;
+  return OK;
 }
 
 /* The one line of a law that is a formula. */
@@ -235,21 +229,19 @@ static void read_formula(const lines *r) {
 }
 
 status law_card_read(deck *d, const card *c, message_log *log, law_card *law) {
-  status st = OK;
   lines r = {.d = d, .c = c, .log = log, .law = law};
   if (law->ops->needs_formula) {
-    NEW(law->temperature, 1);
+    PASS_NEW(law->temperature, 1);
     law->n_set = 1;
     read_formula(&r);
-    goto done;
+    return OK;
   }
   for (int i = 0; i < c->n_record && !r.wrong; ++i)
-    TRY(add_line(&r, &c->records[i]));
+    PASS(add_line(&r, &c->records[i]));
   if (c->n_record > 0) close_set(&r, &c->records[c->n_record - 1].at);
   law->n_term = r.wrong ? 0 : r.n_line - (law->ops->fields != NULL);
   if (r.wrong) law->n_set = 0;
-done:
-  return st;
+  return OK;
 }
 
 status law_card_check(const law_card *law, elastic_type type,
@@ -298,7 +290,6 @@ static int find_set(const law_card *law, double temperature, double *weight) {
 
 status law_values(const law_card *law, double t, double temperature,
                   double *value) {
-  status st = OK;
   static const double origin[3] = {0, 0, 0};
   const int n = law_n_value(law);
   double weight;
@@ -313,11 +304,10 @@ status law_values(const law_card *law, double t, double temperature,
     if (value[i] >= row->min && value[i] <= row->max) continue;
     char why[128];
     range_text(value[i], row->min, row->max, why, sizeof why);
-    FAIL(ERR_DECK, "%s = %s at time %g (data line %d of the law)", row->name,
-         why, t, term + (law->ops->fields != NULL));
+    RAISE(ERR_DECK, "%s = %s at time %g (data line %d of the law)", row->name,
+          why, t, term + (law->ops->fields != NULL));
   }
-done:
-  return st;
+  return OK;
 }
 
 double law_speed(const law_card *law, double temperature) {

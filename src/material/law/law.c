@@ -71,17 +71,15 @@ void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
 
 status law_elastic_read(const elastic_table *table, double temperature,
                         kinematics kin, law_elastic *out) {
-  status st = OK;
   double C[36] = {0};
   char text[256];
   const char *wrong = elastic_at(table, temperature, C, text, sizeof text);
   if (wrong != NULL)
-    FAIL(ERR_DECK, "*ELASTIC at the temperature %g: %s", temperature, wrong);
+    RAISE(ERR_DECK, "*ELASTIC at the temperature %g: %s", temperature, wrong);
   law_elastic_set(C, table->type, kin, out);
   out->temperature = temperature;
   if (table->n > 1) out->table = table;
-done:
-  return st;
+  return OK;
 }
 
 status law_elastic_heat(law_elastic *el, double temperature) {

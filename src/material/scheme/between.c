@@ -17,13 +17,10 @@
 /* Rates of a state, its power. */
 static status end_rates(const scheme_call *a, const flow_state *s, int i,
                         double *power) {
-  status st = OK;
   scheme_work *w = a->w;
-  TRY(need(&w->ei_rate[i], (size_t)a->x->ns * (size_t)a->x->n));
-  TRY(need(&w->alpha_rate[i], a->x->alpha_at[a->x->n]));
-  TRY(flow_rates(a->x, s, a->p->dt, w->ei_rate[i], w->alpha_rate[i], power));
-done:
-  return st;
+  PASS(need(&w->ei_rate[i], (size_t)a->x->ns * (size_t)a->x->n));
+  PASS(need(&w->alpha_rate[i], a->x->alpha_at[a->x->n]));
+  return flow_rates(a->x, s, a->p->dt, w->ei_rate[i], w->alpha_rate[i], power);
 }
 
 /* What is left of d[n] beside a change of this magnitude. */
@@ -60,14 +57,13 @@ static double part_at(const scheme_call *a, double t) {
 }
 
 status hermite_between(const scheme_call *a, flow_state *mid) {
-  status st = OK;
   const flow *x = a->x;
   const scheme_work *w = a->w;
   const size_t ns = (size_t)x->ns, n = (size_t)x->n;
   const double s = part_at(a, mid->t), dt = a->p->dt;
   double power;
-  TRY(end_rates(a, a->old, 0, &power));
-  TRY(end_rates(a, a->now, 1, &power));
+  PASS(end_rates(a, a->old, 0, &power));
+  PASS(end_rates(a, a->now, 1, &power));
   const step_end ei[2] = {{a->old->ei, w->ei_rate[0]},
                           {a->now->ei, w->ei_rate[1]}};
   const step_end alpha[2] = {{a->old->alpha, w->alpha_rate[0]},
@@ -76,18 +72,15 @@ status hermite_between(const scheme_call *a, flow_state *mid) {
     interpolate(x->ns, i, dt, s, ei, mid->ei);
   for (size_t i = 0; i < x->alpha_at[n]; ++i)
     interpolate(1, i, dt, s, alpha, mid->alpha);
-done:
-  return st;
+  return OK;
 }
 
 status scheme_dissipated(const scheme_call *a, double t, double *energy) {
-  status st = OK;
   double zero = 0.0, power[2];
-  TRY(end_rates(a, a->old, 0, &power[0]));
-  TRY(end_rates(a, a->now, 1, &power[1]));
+  PASS(end_rates(a, a->old, 0, &power[0]));
+  PASS(end_rates(a, a->now, 1, &power[1]));
   const step_end lost[2] = {{&zero, &power[0]},
                             {&a->out->dissipated, &power[1]}};
   interpolate(1, 0, a->p->dt, part_at(a, t), lost, energy);
-done:
-  return st;
+  return OK;
 }

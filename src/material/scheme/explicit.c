@@ -10,7 +10,6 @@
 /* now = old + sum of factor[i] times the rates of stage i, at old->t + dt, and
  * its equilibrium. */
 static status stage(const scheme_call *a, double dt, const double *factor) {
-  status st = OK;
   const scheme_work *w = a->w;
   size_t n = (size_t)a->x->ns * (size_t)a->x->n, na = a->x->alpha_at[a->x->n];
   int settled = 1;
@@ -22,66 +21,57 @@ static status stage(const scheme_call *a, double dt, const double *factor) {
     add_scaled(na, a->now->alpha, factor[i], w->alpha_rate[i], a->now->alpha);
   }
   a->now->t = dt == a->p->dt ? a->p->t : a->old->t + dt;
-  TRY(a->b->equilibrium(a->b->ctx, a->now, &settled));
+  PASS(a->b->equilibrium(a->b->ctx, a->now, &settled));
   if (!settled) a->out->settled = 0;
-done:
-  return st;
+  return OK;
 }
 
 /* Rates of a state into stage i; its power counts with the weight "part". */
 static status rates(const scheme_call *a, const flow_state *s, int i,
                     double part) {
-  status st = OK;
   scheme_work *w = a->w;
   double power;
-  TRY(need(&w->ei_rate[i], (size_t)a->x->ns * (size_t)a->x->n));
-  TRY(need(&w->alpha_rate[i], a->x->alpha_at[a->x->n]));
-  TRY(flow_rates(a->x, s, a->p->dt, w->ei_rate[i], w->alpha_rate[i], &power));
+  PASS(need(&w->ei_rate[i], (size_t)a->x->ns * (size_t)a->x->n));
+  PASS(need(&w->alpha_rate[i], a->x->alpha_at[a->x->n]));
+  PASS(flow_rates(a->x, s, a->p->dt, w->ei_rate[i], w->alpha_rate[i], &power));
   a->out->dissipated += part * power;
-done:
-  return st;
+  return OK;
 }
 
 status euler_advance(const scheme_call *a) {
-  status st = OK;
   const double h = a->p->dt;
-  TRY(rates(a, a->old, 0, h));
-  TRY(stage(a, h, (double[STAGES]){h}));
-done:
-  return st;
+  PASS(rates(a, a->old, 0, h));
+  PASS(stage(a, h, (double[STAGES]){h}));
+  return OK;
 }
 
 status heun_advance(const scheme_call *a) {
-  status st = OK;
   const double h = a->p->dt;
   const size_t n = (size_t)a->x->ns * (size_t)a->x->n;
   scheme_work *w = a->w;
-  TRY(rates(a, a->old, 0, h / 2));
-  TRY(stage(a, h, (double[STAGES]){h}));
-  if (!a->out->settled) goto done;
-  TRY(rates(a, a->now, 1, h / 2));
-  TRY(stage(a, h, (double[STAGES]){h / 2, h / 2}));
-  TRY(need(&w->e_k, n));
+  PASS(rates(a, a->old, 0, h / 2));
+  PASS(stage(a, h, (double[STAGES]){h}));
+  if (!a->out->settled) return OK;
+  PASS(rates(a, a->now, 1, h / 2));
+  PASS(stage(a, h, (double[STAGES]){h / 2, h / 2}));
+  PASS(need(&w->e_k, n));
   add_scaled(n, w->ei_rate[1], -1, w->ei_rate[0], w->e_k);
   a->out->error = h / 2 * flow_norm(a->x, w->e_k);
-done:
-  return st;
+  return OK;
 }
 
 status rk4_advance(const scheme_call *a) {
-  status st = OK;
   const double h = a->p->dt;
-  TRY(rates(a, a->old, 0, h / 6));
-  TRY(stage(a, h / 2, (double[STAGES]){h / 2}));
-  if (!a->out->settled) goto done;
-  TRY(rates(a, a->now, 1, h / 3));
-  TRY(stage(a, h / 2, (double[STAGES]){0, h / 2}));
-  if (!a->out->settled) goto done;
-  TRY(rates(a, a->now, 2, h / 3));
-  TRY(stage(a, h, (double[STAGES]){0, 0, h}));
-  if (!a->out->settled) goto done;
-  TRY(rates(a, a->now, 3, h / 6));
-  TRY(stage(a, h, (double[STAGES]){h / 6, h / 3, h / 3, h / 6}));
-done:
-  return st;
+  PASS(rates(a, a->old, 0, h / 6));
+  PASS(stage(a, h / 2, (double[STAGES]){h / 2}));
+  if (!a->out->settled) return OK;
+  PASS(rates(a, a->now, 1, h / 3));
+  PASS(stage(a, h / 2, (double[STAGES]){0, h / 2}));
+  if (!a->out->settled) return OK;
+  PASS(rates(a, a->now, 2, h / 3));
+  PASS(stage(a, h, (double[STAGES]){0, 0, h}));
+  if (!a->out->settled) return OK;
+  PASS(rates(a, a->now, 3, h / 6));
+  PASS(stage(a, h, (double[STAGES]){h / 6, h / 3, h / 3, h / 6}));
+  return OK;
 }

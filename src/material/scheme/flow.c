@@ -11,7 +11,6 @@
 
 status flow_new_kind(flow_kind *k, const law_card *law,
                      const law_elastic *elastic) {
-  status st = OK;
   k->law = law;
   k->elastic = *elastic;
   k->n_alpha = law_n_alpha(law, elastic->ns);
@@ -19,30 +18,27 @@ status flow_new_kind(flow_kind *k, const law_card *law,
   if (elastic->table != NULL) k->varies |= LAW_VARIES_TEMPERATURE;
   if (law_n_value(law) > FLOW_VALUE_MAX ||
       elastic->ns + k->n_alpha > FLOW_VALUE_MAX)
-    FAIL(ERR_DECK, "law %s: more than %d coefficients or internal variables",
-         law->ops->name, FLOW_VALUE_MAX);
-  NEW(k->value, law_n_value(law));
+    RAISE(ERR_DECK, "law %s: more than %d coefficients or internal variables",
+          law->ops->name, FLOW_VALUE_MAX);
+  PASS_NEW(k->value, law_n_value(law));
   k->speed = 1.0;
-  if (k->varies == 0) TRY(law_values(law, 0.0, 0.0, k->value));
-done:
-  return st;
+  if (k->varies == 0) PASS(law_values(law, 0.0, 0.0, k->value));
+  return OK;
 }
 
 status flow_new_points(flow *x, int n, const int *kind_id) {
-  status st = OK;
   x->n = n;
-  NEW(x->kind_id, n);
-  NEW(x->alpha_at, n + 1);
-  NEW(x->weight, n);
-  NEW(x->tally, 1);
+  PASS_NEW(x->kind_id, n);
+  PASS_NEW(x->alpha_at, n + 1);
+  PASS_NEW(x->weight, n);
+  PASS_NEW(x->tally, 1);
   for (int k = 0; k < n; ++k) {
     int n_alpha = x->kind[kind_id[k]].n_alpha;
     x->kind_id[k] = kind_id[k];
     x->alpha_at[k + 1] = x->alpha_at[k] + (size_t)n_alpha;
     if (n_alpha > x->most_alpha) x->most_alpha = n_alpha;
   }
-done:
-  return st;
+  return OK;
 }
 
 void flow_kind_free(flow_kind *k) {
@@ -64,14 +60,12 @@ void flow_free(flow *x) {
 static size_t components(const flow *x) { return (size_t)x->ns * (size_t)x->n; }
 
 status flow_state_new(const flow *x, flow_state *s) {
-  status st = OK;
-  NEW(s->e, components(x));
-  NEW(s->ei, components(x));
-  NEW(s->sigma, components(x));
-  NEW(s->alpha, x->alpha_at[x->n]);
-  NEW(s->temperature, x->n);
-done:
-  return st;
+  PASS_NEW(s->e, components(x));
+  PASS_NEW(s->ei, components(x));
+  PASS_NEW(s->sigma, components(x));
+  PASS_NEW(s->alpha, x->alpha_at[x->n]);
+  PASS_NEW(s->temperature, x->n);
+  return OK;
 }
 
 void flow_state_free(flow_state *s) {
@@ -99,8 +93,7 @@ status flow_heat(flow_kind *kind, double temperature) {
 
 status flow_coefficients(flow_kind *kind, double t, double temperature,
                          double *value, law_point *p) {
-  status st = OK;
-  TRY(flow_heat(kind, temperature));
+  PASS(flow_heat(kind, temperature));
   *p = (law_point){.law = kind->law,
                    .elastic = &kind->elastic,
                    .value = kind->value,
@@ -108,27 +101,24 @@ status flow_coefficients(flow_kind *kind, double t, double temperature,
                    .t = t,
                    .temperature = temperature};
   if (kind->varies != 0) {
-    TRY(law_values(kind->law, t, temperature, value));
+    PASS(law_values(kind->law, t, temperature, value));
     p->value = value;
     p->speed = law_speed(kind->law, temperature);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Point k of a state for the law. */
 static status flow_point(const flow *x, int k, const flow_state *s, double dt,
                          double *value, law_point *p) {
-  status st = OK;
   size_t at = (size_t)x->ns * (size_t)k;
-  TRY(flow_coefficients(&x->kind[x->kind_id[k]], s->t, s->temperature[k], value,
-                        p));
+  PASS(flow_coefficients(&x->kind[x->kind_id[k]], s->t, s->temperature[k],
+                         value, p));
   p->dt = dt;
   p->sigma = s->sigma + at;
   p->ei = s->ei + at;
   p->alpha = s->alpha + x->alpha_at[k];
-done:
-  return st;
+  return OK;
 }
 
 int flow_goes_on(const flow *x, const law_point *p) {
@@ -141,26 +131,23 @@ int flow_goes_on(const flow *x, const law_point *p) {
 
 status flow_rates(const flow *x, const flow_state *s, double dt,
                   double *ei_rate, double *alpha_rate, double *power) {
-  status st = OK;
   double value[FLOW_VALUE_MAX];
   *power = 0.0;
   memset(ei_rate, 0, components(x) * sizeof *ei_rate);
   memset(alpha_rate, 0, x->alpha_at[x->n] * sizeof *alpha_rate);
   for (int k = 0; k < x->n; ++k) {
     law_point p;
-    TRY(flow_point(x, k, s, dt, value, &p));
+    PASS(flow_point(x, k, s, dt, value, &p));
     if (!flow_goes_on(x, &p)) continue;
     law_rate(&p, ei_rate + (size_t)x->ns * (size_t)k,
              alpha_rate + x->alpha_at[k]);
     *power += x->weight[k] * law_dissipation(&p);
   }
-done:
-  return st;
+  return OK;
 }
 
 status flow_fastest(const flow *x, const flow_state *s, double dt,
                     double *rate) {
-  status st = OK;
   double value[FLOW_VALUE_MAX];
   const int constant = flow_is_constant(x);
   *rate = 0.0;
@@ -169,26 +156,23 @@ status flow_fastest(const flow *x, const flow_state *s, double dt,
     double own;
     if (constant && x->kind_id[k] == last) continue; /* the same rate         */
     last = x->kind_id[k];
-    TRY(flow_point(x, k, s, dt, value, &p));
-    TRY(law_fastest_rate(&p, &own));
+    PASS(flow_point(x, k, s, dt, value, &p));
+    PASS(law_fastest_rate(&p, &own));
     *rate = fmax(*rate, own);
   }
-done:
-  return st;
+  return OK;
 }
 
 status flow_add_stored(const flow *x, const flow_state *s, int from, int to,
                        double *energy) {
-  status st = OK;
   double value[FLOW_VALUE_MAX];
   for (int k = from; k < to; ++k) {
     law_point p;
     if (x->kind[x->kind_id[k]].law->ops->stored == NULL) continue;
-    TRY(flow_point(x, k, s, 0.0, value, &p));
+    PASS(flow_point(x, k, s, 0.0, value, &p));
     *energy += x->weight[k] * law_stored(&p);
   }
-done:
-  return st;
+  return OK;
 }
 
 double flow_root(const flow *x, double sum) {
@@ -208,7 +192,6 @@ double flow_norm(const flow *x, const double *v) {
 
 status flow_add_elastic(const flow *x, const flow_state *s, int from, int to,
                         double *sum) {
-  status st = OK;
   for (int k = from; k < to; ++k) {
     flow_kind *kind = &x->kind[x->kind_id[k]];
     const size_t at = (size_t)x->ns * (size_t)k;
@@ -216,13 +199,12 @@ status flow_add_elastic(const flow *x, const flow_state *s, int from, int to,
     for (int i = 0; i < x->ns; ++i)
       e[i] = s->e[at + (size_t)i] - s->ei[at + (size_t)i];
     if (kind->elastic.plane_stress) { /* zz: the stress alone tells           */
-      TRY(flow_heat(kind, s->temperature[k]));
+      PASS(flow_heat(kind, s->temperature[k]));
       voigt_product(x->ns, kind->elastic.S, s->sigma + at, e);
     }
     *sum += x->weight[k] * voigt_dot(x->ns, e, e);
   }
-done:
-  return st;
+  return OK;
 }
 
 int flow_is_constant(const flow *x) {

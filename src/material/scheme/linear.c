@@ -35,16 +35,14 @@ static void put_block(int rows, int columns, const double *A, double *M,
 
 /* Blocks of the Jacobian of the point p in one array, new. */
 static status new_jacobian(const law_point *p, int na, law_jacobian *j) {
-  status st = OK;
   int ns = p->elastic->ns;
-  NEW(j->ei_sigma, 2 * ns * ns + 2 * ns * na + na * na);
+  PASS_NEW(j->ei_sigma, 2 * ns * ns + 2 * ns * na + na * na);
   j->ei_ei = j->ei_sigma + ns * ns;
   j->ei_alpha = j->ei_ei + ns * ns;
   j->alpha_sigma = j->ei_alpha + ns * na;
   j->alpha_alpha = j->alpha_sigma + na * ns;
   law_jacobian_at(p, j);
-done:
-  return st;
+  return OK;
 }
 
 /* y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
@@ -215,45 +213,41 @@ static int is_series(const flow_kind *k) {
 
 status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
                        linear_map *m, double *D) {
-  status st = OK;
   const int ns = k->elastic.ns, n = ns + k->n_alpha, series = is_series(k);
   const int general = !series && k->law->ops->relaxing == NULL;
   m->n = n;
-  TRY(need(&m->P, (size_t)(n * n)));
-  TRY(need(&m->Q0, (size_t)(n * ns)));
-  TRY(need(&m->Q1, (size_t)(n * ns)));
-  TRY(need(&m->Q, (size_t)(n * ns)));
+  PASS(need(&m->P, (size_t)(n * n)));
+  PASS(need(&m->Q0, (size_t)(n * ns)));
+  PASS(need(&m->Q1, (size_t)(n * ns)));
+  PASS(need(&m->Q, (size_t)(n * ns)));
   if (series)
-    TRY(series_map(k, p, exact, m, D));
+    PASS(series_map(k, p, exact, m, D));
   else if (!general)
-    TRY(relaxing_map(k, p, exact, m, D));
+    PASS(relaxing_map(k, p, exact, m, D));
   else
-    TRY(matrix_map(k, p, exact, m));
+    PASS(matrix_map(k, p, exact, m));
   if (general)
     remains(&k->elastic, m, D);
   else if (k->elastic.plane_stress)
-    TRY(plane_stress_map(&k->elastic, m, D));
+    PASS(plane_stress_map(&k->elastic, m, D));
   add_scaled((size_t)(n * ns), m->Q0, 1.0, m->Q1, m->Q);
-done:
-  return st;
+  return OK;
 }
 
 status linear_maps(const flow *x, const scheme_step *p, int exact,
                    scheme_work *w) {
-  status st = OK;
   size_t square = (size_t)(x->ns * x->ns);
   const linear_key key = {p->dt, p->theta, exact};
   if (w->made.dt == key.dt && w->made.theta == key.theta &&
       w->made.exact == exact)
     return OK;
   w->made.dt = 0.0;
-  if (w->map == NULL) NEW(w->map, x->n_kind);
+  if (w->map == NULL) PASS_NEW(w->map, x->n_kind);
   w->n_kind = x->n_kind;
-  TRY(need(&w->D_kind, square * (size_t)x->n_kind));
+  PASS(need(&w->D_kind, square * (size_t)x->n_kind));
   for (int i = 0; i < x->n_kind; ++i)
-    TRY(linear_map_make(&x->kind[i], p, exact, &w->map[i],
-                        w->D_kind + square * (size_t)i));
+    PASS(linear_map_make(&x->kind[i], p, exact, &w->map[i],
+                         w->D_kind + square * (size_t)i));
   w->made = key;
-done:
-  return st;
+  return OK;
 }

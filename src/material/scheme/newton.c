@@ -37,7 +37,6 @@ static int has_map(const flow *x, int k) {
 
 /* Point k by the map: r->l.y and r->D. */
 static status follow_map(const scheme_call *a, int k, room *r) {
-  status st = OK;
   const flow *x = a->x;
   const size_t ns = (size_t)x->ns, n = ns + (size_t)x->most_alpha;
   point_step *l = &r->l;
@@ -46,45 +45,41 @@ static status follow_map(const scheme_call *a, int k, room *r) {
     now.value = l->value;
     now.speed = l->p.speed;
   }
-  TRY(need(&r->map.P, n * n));
-  TRY(need(&r->map.Q0, n * ns));
-  TRY(need(&r->map.Q1, n * ns));
-  TRY(need(&r->map.Q, n * ns));
-  TRY(linear_map_make(&now, a->p, 0, &r->map, r->D));
+  PASS(need(&r->map.P, n * n));
+  PASS(need(&r->map.Q0, n * ns));
+  PASS(need(&r->map.Q1, n * ns));
+  PASS(need(&r->map.Q, n * ns));
+  PASS(linear_map_make(&now, a->p, 0, &r->map, r->D));
   linear_at(x, &r->map, k, a->old, l->e, l->y);
-done:
-  return st;
+  return OK;
 }
 
 /* Point k for now->e: r->l.y, and into D[ns*ns] unless it is NULL. */
 static status follow_point(const scheme_call *a, int k, room *r, double *D) {
-  status st = OK;
   const size_t ns = (size_t)a->x->ns, bytes = ns * ns * sizeof *D;
   const double *sigma_old = a->old->sigma + ns * (size_t)k;
   point_step *l = &r->l;
-  TRY(point_step_begin(a->x, a->p, k, a->old, a->now, l));
+  PASS(point_step_begin(a->x, a->p, k, a->old, a->now, l));
   const int maps = has_map(a->x, k);
   const int rests = !maps && point_step_rests(a->x, a->p, sigma_old, l);
   if (maps)
-    TRY(follow_map(a, k, r));
+    PASS(follow_map(a, k, r));
   else if (!rests)
     point_step_solve(a->p, sigma_old, l, &a->out->settled);
   a->out->stuck = a->out->settled ? 0 : k + 1;
-  if (!a->out->settled) goto done;
+  if (!a->out->settled) return OK;
   point_step_place(a->p, sigma_old, l->y, l);
-  if (D == NULL) goto done;
+  if (D == NULL) return OK;
   if (maps || rests)
     memcpy(D, maps ? r->D : l->E, bytes);
   else
-    TRY(point_step_tangent(a->p, l, D));
-done:
-  return st;
+    PASS(point_step_tangent(a->p, l, D));
+  return OK;
 }
 
 /* All points for now->e: ei, alpha, sigma, the power of the step; w->D[ns*ns*n]
  * unless the iteration is that of initial stresses. */
 static status solve_points(const scheme_call *a, room *r) {
-  status st = OK;
   const flow *x = a->x;
   const size_t ns = (size_t)x->ns;
   point_step *l = &r->l;
@@ -92,8 +87,8 @@ static status solve_points(const scheme_call *a, room *r) {
   for (int k = 0; k < x->n; ++k) {
     const size_t at = ns * (size_t)k;
     double elastic[6];
-    TRY(follow_point(a, k, r, a->p->initial ? NULL : a->w->D + ns * at));
-    if (!a->out->settled) goto done;
+    PASS(follow_point(a, k, r, a->p->initial ? NULL : a->w->D + ns * at));
+    if (!a->out->settled) return OK;
     a->out->dissipated += a->p->dt * x->weight[k] * law_dissipation(&l->p);
     memcpy(a->now->ei + at, l->y, ns * sizeof *l->y);
     memcpy(a->now->alpha + x->alpha_at[k], l->y + ns,
@@ -101,8 +96,7 @@ static status solve_points(const scheme_call *a, room *r) {
     for (size_t i = 0; i < ns; ++i) elastic[i] = l->e[i] - l->y[i];
     tensor_product(x->ns, l->E, elastic, a->now->sigma + at);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Stresses of the linear law at now->e: linear[ns*n]; the scale of their
@@ -147,14 +141,12 @@ static double misfit(const flow *x, const flow_state *now, const double *linear,
 }
 
 static status need_room(const flow *x, const scheme_step *p, scheme_work *w) {
-  status st = OK;
   size_t n = (size_t)x->ns * (size_t)x->n;
-  TRY(need(&w->sigma_k, n));
-  TRY(need(&w->e_k, n));
-  TRY(need(&w->linear, n));
-  if (!p->initial) TRY(need(&w->D, n * (size_t)x->ns));
-done:
-  return st;
+  PASS(need(&w->sigma_k, n));
+  PASS(need(&w->e_k, n));
+  PASS(need(&w->linear, n));
+  if (!p->initial) PASS(need(&w->D, n * (size_t)x->ns));
+  return OK;
 }
 
 status newton_advance(const scheme_call *a) {

@@ -20,12 +20,11 @@ enum { MOST_LOCAL = 60, MOST_PARTS = 1000 };
 static const double point_tol = 1e-13, alpha_tol = 1e-10; /* -            */
 
 status point_step_new(const flow *x, point_step *l) {
-  status st = OK;
   int ns = x->ns, na = x->most_alpha, n = ns + na;
   memset(l, 0, sizeof *l);
-  NEW(l->pivot, n);
-  NEW(l->room,
-      na + 5 * n + n * n + n * ns + 2 * ns * ns + 2 * ns * na + na * na);
+  PASS_NEW(l->pivot, n);
+  PASS_NEW(l->room,
+           na + 5 * n + n * n + n * ns + 2 * ns * ns + 2 * ns * na + na * na);
   l->alpha = l->room;
   l->y = l->alpha + na;
   l->old = l->y + n;
@@ -39,8 +38,7 @@ status point_step_new(const flow *x, point_step *l) {
   l->j.ei_alpha = l->j.ei_ei + ns * ns;
   l->j.alpha_sigma = l->j.ei_alpha + ns * na;
   l->j.alpha_alpha = l->j.alpha_sigma + na * ns;
-done:
-  return st;
+  return OK;
 }
 
 void point_step_free(point_step *l) {
@@ -234,12 +232,11 @@ int point_step_rests(const flow *x, const scheme_step *p,
 
 /* D[ns*ns] at the solution. */
 status point_step_tangent(const scheme_step *p, point_step *l, double *D) {
-  status st = OK;
   const int ns = l->ns, n = l->n;
   const double *E = l->E;
   point_matrix(p, l->E, l);
   if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, ns, l->M, n, l->pivot, l->X, n) != 0)
-    FAIL(ERR_SINGULAR, "the step of an inelastic law has no solution");
+    RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
   for (int j = 0; j < ns; ++j)
     for (int i = 0; i < ns; ++i) {
       double sum = E[i + ns * j];
@@ -250,8 +247,7 @@ status point_step_tangent(const scheme_step *p, point_step *l, double *D) {
   for (int j = 0; j < ns; ++j)
     for (int i = 0; i < j; ++i)
       D[i + ns * j] = D[j + ns * i] = 0.5 * (D[i + ns * j] + D[j + ns * i]);
-done:
-  return st;
+  return OK;
 }
 
 /* Q[ns*ns] = d(e^i)/d(sigma) at the end of a step that has been made, for
@@ -294,17 +290,15 @@ static int square_root(int n, const double *E, double *R) {
 /* The largest singular value of R Q R. */
 static status energy_size(int n, const double *E, const double *Q,
                           double *size) {
-  status st = OK;
   double R[36], QR[36], N[36], w[6], unused[6];
   int known = square_root(n, E, R);
   for (int j = 0; j < n; ++j) tensor_product(n, Q, R + n * j, QR + n * j);
   for (int j = 0; j < n; ++j) tensor_product(n, R, QR + n * j, N + n * j);
   if (!known || LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, n, N, n, w, NULL,
                                1, NULL, 1, unused) != 0)
-    FAIL(ERR_SINGULAR, "the compliance of an inelastic law is no number");
+    RAISE(ERR_SINGULAR, "the compliance of an inelastic law is no number");
   *size = w[0];
-done:
-  return st;
+  return OK;
 }
 
 status flow_compliance(const flow *x, const scheme_step *p,

@@ -18,17 +18,13 @@ void add_scaled(size_t n, const double *x, double a, const double *v,
 }
 
 status need(double **array, size_t n) {
-  status st = OK;
-  if (*array == NULL) NEW(*array, n);
-done:
-  return st;
+  if (*array == NULL) PASS_NEW(*array, n);
+  return OK;
 }
 
 status scheme_work_new(scheme_work **out) {
-  status st = OK;
-  NEW(*out, 1);
-done:
-  return st;
+  PASS_NEW(*out, 1);
+  return OK;
 }
 
 void linear_map_free(linear_map *m) {

@@ -34,16 +34,14 @@ typedef struct series {
 } series;
 
 static status series_new(int n, series *s) {
-  status st = OK;
   *s = (series){.n = n};
-  NEW(s->room, n * (n + 4));
+  PASS_NEW(s->room, n * (n + 4));
   s->h = s->room;
   s->m = s->h + n;
   s->u0 = s->m + n;
   s->u1 = s->u0 + n;
   s->U = s->u1 + n;
-done:
-  return st;
+  return OK;
 }
 
 /* All units of a part; LAW_NO_PART: there is none. */
@@ -142,7 +140,6 @@ static void by_stress(series *s) {
 }
 
 static status by_exponential(series *s) {
-  status st = OK;
   int moving = 0, last = 0;
   double fastest = 0.0;
   for (int k = 0; k < s->n; ++k) {
@@ -154,11 +151,10 @@ static status by_exponential(series *s) {
   if (moving <= 1)
     by_one(last, s);
   else if (fastest <= MODERATE)
-    TRY(by_matrix(s));
+    PASS(by_matrix(s));
   else
     by_stress(s);
-done:
-  return st;
+  return OK;
 }
 
 /* Entry (i, j) of the projector on a part of the strain. */

@@ -96,7 +96,6 @@ static char *pass_over(char *p, int in_quotes) {
 }
 
 static status find_names(geo_text *g, const char *path, char *text) {
-  status st = OK;
   int in_quotes = 0;
   for (char *p = text, *q; *p != '\0';) {
     if ((q = pass_over(p, in_quotes)) > p) {
@@ -111,33 +110,30 @@ static status find_names(geo_text *g, const char *path, char *text) {
     char after = *q, *rest = pass_over(q, in_quotes);
     if (rest == q) rest += after != '\0';
     *q = '\0'; /* of the name; what stood there is looked at first */
-    GROW(g->name, g->n_name, g->name_room);
+    PASS_GROW(g->name, g->n_name, g->name_room);
     g->name[g->n_name++] = p;
     int merged = strcmp(p, "Merge") == 0 || strcmp(p, "MergeFile") == 0;
     int loads = merged || strcmp(p, "Include") == 0;
     if (after == '"') g->is_open |= loads;
     if (loads && after != '\0' && after != '"')
-      TRY(include(g, path, q + 1, merged));
+      PASS(include(g, path, q + 1, merged));
     in_quotes ^= after == '"';
     p = rest;
   }
-done:
-  return st;
+  return OK;
 }
 
 status geo_read(const char *file, geo_text *g) {
-  status st = OK;
   *g = (geo_text){0};
-  TRY(add_file(g, NULL, 0, file, 0));
+  PASS(add_file(g, NULL, 0, file, 0));
   for (int i = 0; i < g->n_file; ++i) {
     const char *path = g->file[i], *dot = strrchr(path, '.');
     if (i > 0 && (dot == NULL || strcasecmp(dot, ".geo") != 0)) continue;
-    TRY(load(path, &g->text[i]));
+    PASS(load(path, &g->text[i]));
     g->is_open |= g->text[i] == NULL; /* gmsh tells why                       */
-    if (g->text[i] != NULL) TRY(find_names(g, path, g->text[i]));
+    if (g->text[i] != NULL) PASS(find_names(g, path, g->text[i]));
   }
-done:
-  return st;
+  return OK;
 }
 
 void geo_free(geo_text *g) {

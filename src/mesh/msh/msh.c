@@ -39,76 +39,65 @@ const element_type *msh_type(int type) {
 /* ---- what the sections add ----------------------------------------------- */
 
 status msh_add_group(msh *m, int dim, int tag) {
-  status st = OK;
   int id, n = m->groups.n;
-  TRY(table_add(&m->groups, table_key(dim, tag), &id));
+  PASS(table_add(&m->groups, table_key(dim, tag), &id));
   if (id < n) return OK;
-  GROW(m->raw->group, id, m->groups_room);
+  PASS_GROW(m->raw->group, id, m->groups_room);
   m->raw->group[id] = (raw_group){dim, tag, NULL};
   m->raw->n_group = id + 1;
-done:
-  return st;
+  return OK;
 }
 
 static status new_block(msh *m, int id, int type, int tag, int n_physical,
                         const int *physical) {
-  status st = OK;
   const element_type *t = msh_type(type);
-  GROW(m->raw->block, id, m->blocks_room);
-  GROW(m->fill, id, m->fills_room);
+  PASS_GROW(m->raw->block, id, m->blocks_room);
+  PASS_GROW(m->fill, id, m->fills_room);
   m->fill[id] = (msh_fill){0, tag};
   m->raw->n_block = id + 1;
   raw_block *b = &m->raw->block[id];
   *b = (raw_block){.dim = t->dim, .type = type, .n_per = (size_t)t->n_node};
-  NEW(b->physical, n_physical);
+  PASS_NEW(b->physical, n_physical);
   memcpy(b->physical, physical, (size_t)n_physical * sizeof *physical);
   b->n_physical = n_physical;
   b->type_name = memory_text(t->name);
-  if (b->type_name == NULL) FAIL(ERR_MEMORY, "memory exhausted: %s", t->name);
-done:
-  return st;
+  if (b->type_name == NULL) RAISE(ERR_MEMORY, "memory exhausted: %s", t->name);
+  return OK;
 }
 
 status msh_block(msh *m, int type, int tag, int n_physical, const int *physical,
                  int *block) {
-  status st = OK;
   int n = m->blocks.n;
   *block = -1;
   if (n_physical == 0) return OK;
-  TRY(table_add(&m->blocks, table_key(type, tag), block));
+  PASS(table_add(&m->blocks, table_key(type, tag), block));
   if (*block < n) return OK;
-  TRY(new_block(m, *block, type, tag, n_physical, physical));
-done:
-  return st;
+  return new_block(m, *block, type, tag, n_physical, physical);
 }
 
 status msh_add_element(msh *m, int block, size_t no, size_t **node) {
-  status st = OK;
   raw_block *b = &m->raw->block[block];
   if (b->n >= m->fill[block].room) {
     size_t room = b->n < 4 ? 4 : 2 * b->n, per = b->n_per;
     void *more = memory_resize(b->no, b->n, room, sizeof *b->no);
-    if (more == NULL) FAIL(ERR_MEMORY, "memory exhausted: element numbers");
+    if (more == NULL) RAISE(ERR_MEMORY, "memory exhausted: element numbers");
     b->no = more;
     more = memory_resize(b->node, per * b->n, per * room, sizeof *b->node);
-    if (more == NULL) FAIL(ERR_MEMORY, "memory exhausted: elements");
+    if (more == NULL) RAISE(ERR_MEMORY, "memory exhausted: elements");
     b->node = more;
     m->fill[block].room = room;
   }
   b->no[b->n] = no;
   *node = b->node + b->n_per * b->n++;
-done:
-  return st;
+  return OK;
 }
 
 status msh_new_nodes(msh *m, size_t n) {
-  status st = OK;
   raw_mesh *raw = m->raw;
   raw->n_node = n;
-  NEW(raw->node_no, n);
-  NEW(raw->xyz, 3 * n);
-done:
-  return st;
+  PASS_NEW(raw->node_no, n);
+  PASS_NEW(raw->xyz, 3 * n);
+  return OK;
 }
 
 /* ---- names --------------------------------------------------------------- */
@@ -149,7 +138,6 @@ static int by_dim_and_tag(const void *p, const void *q) {
 }
 
 static status finish_groups(msh *m) {
-  status st = OK;
   raw_mesh *raw = m->raw;
   if (raw->n_group > 0)
     qsort(raw->group, (size_t)raw->n_group, sizeof *raw->group, by_dim_and_tag);
@@ -157,11 +145,10 @@ static status finish_groups(msh *m) {
     raw_group *g = &raw->group[i];
     int id = table_find(&m->names, table_key(g->dim, g->tag));
     size_t n = id >= 0 ? m->name[id].length : 0;
-    NEW(g->name, n + 1);
+    PASS_NEW(g->name, n + 1);
     if (n > 0) memcpy(g->name, m->name[id].text, n);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* ---- blocks -------------------------------------------------------------- */
@@ -211,43 +198,39 @@ static status once(const msh *m, int *has, const char *name) {
 }
 
 static status read_section(msh *m, const char *name) {
-  status st = OK;
   int is_4 = m->s.version > 4.0;
   if (strcmp(name, "PhysicalNames") == 0) {
-    TRY(read_names(m));
+    PASS(read_names(m));
   } else if (strcmp(name, "Nodes") == 0) {
-    TRY(once(m, &m->has_nodes, name));
-    TRY(is_4 ? msh4_nodes(m) : msh2_nodes(m));
+    PASS(once(m, &m->has_nodes, name));
+    PASS(is_4 ? msh4_nodes(m) : msh2_nodes(m));
   } else if (strcmp(name, "Elements") == 0) {
-    TRY(once(m, &m->has_elements, name));
-    TRY(is_4 ? msh4_elements(m) : msh2_elements(m));
+    PASS(once(m, &m->has_elements, name));
+    PASS(is_4 ? msh4_elements(m) : msh2_elements(m));
   } else if (is_4 && strcmp(name, "Entities") == 0) {
-    TRY(once(m, &m->has_entities, name));
-    TRY(msh4_entities(m, 0));
+    PASS(once(m, &m->has_entities, name));
+    PASS(msh4_entities(m, 0));
   } else if (is_4 && strcmp(name, "PartitionedEntities") == 0) {
-    TRY(msh4_entities(m, 1));
+    PASS(msh4_entities(m, 1));
   } else {
-    TRY(scan_skip(&m->s, name));
+    PASS(scan_skip(&m->s, name));
   }
-done:
-  return st;
+  return OK;
 }
 
 static status read_sections(msh *m) {
-  status st = OK;
   char name[SCAN_NAME];
   for (;;) {
-    TRY(scan_section(&m->s, name));
+    PASS(scan_section(&m->s, name));
     if (name[0] == '\0') break;
     if (m->s.version == 0.0 && strcmp(name, "Comments") != 0)
       return scan_fail(&m->s, "$MeshFormat is to stand before $%s", name);
-    TRY(read_section(m, name));
+    PASS(read_section(m, name));
   }
   if (!m->has_nodes || !m->has_elements)
     return scan_fail(&m->s, "the file ends without $%s: it is cut short",
                      m->has_nodes ? "Elements" : "Nodes");
-done:
-  return st;
+  return OK;
 }
 
 static void release(msh *m) {

@@ -11,54 +11,45 @@
 
 /* A number above zero; 4 bytes in binary files. */
 static status read_no(scan *s, size_t *no) {
-  status st = OK;
   int four;
   if (!s->binary)
-    TRY(scan_size(s, no));
+    PASS(scan_size(s, no));
   else {
-    TRY(scan_int(s, &four));
+    PASS(scan_int(s, &four));
     *no = four > 0 ? (size_t)four : 0;
   }
   if (*no == 0) return scan_fail(s, "a number is not above zero");
-done:
-  return st;
+  return OK;
 }
 
 /* The count on the line after the name. */
 static status read_count(scan *s, size_t *n) {
-  status st = OK;
-  TRY(scan_size(s, n));
-  TRY(scan_line(s));
+  PASS(scan_size(s, n));
+  PASS(scan_line(s));
   scan_start_binary(s);
-done:
-  return st;
+  return OK;
 }
 
 status msh2_nodes(msh *m) {
-  status st = OK;
   scan *s = &m->s;
   size_t n;
-  TRY(read_count(s, &n));
-  TRY(scan_fits(s, n, sizeof "1 0 0 0", 28, "nodes"));
-  TRY(msh_new_nodes(m, n));
+  PASS(read_count(s, &n));
+  PASS(scan_fits(s, n, sizeof "1 0 0 0", 28, "nodes"));
+  PASS(msh_new_nodes(m, n));
   for (size_t i = 0; i < n; ++i) {
-    TRY(read_no(s, &m->raw->node_no[i]));
-    for (size_t k = 0; k < 3; ++k) TRY(scan_real(s, &m->raw->xyz[3 * i + k]));
-    TRY(scan_line(s));
+    PASS(read_no(s, &m->raw->node_no[i]));
+    for (size_t k = 0; k < 3; ++k) PASS(scan_real(s, &m->raw->xyz[3 * i + k]));
+    PASS(scan_line(s));
   }
-  TRY(scan_end(s, "Nodes", "its nodes"));
-done:
-  return st;
+  return scan_end(s, "Nodes", "its nodes");
 }
 
 /* An entity that has elements counts once. */
 static status count_entity(msh *m, int dim, int tag) {
-  status st = OK;
   int id, n = m->entities.n;
-  TRY(table_add(&m->entities, table_key(dim, tag), &id));
+  PASS(table_add(&m->entities, table_key(dim, tag), &id));
   if (id == n) ++m->raw->n_entity[dim];
-done:
-  return st;
+  return OK;
 }
 
 typedef struct element_head { /* of elements that follow each other          */
@@ -69,17 +60,15 @@ typedef struct element_head { /* of elements that follow each other          */
 
 /* The block of an element, mostly that of the one before. */
 static status find_block(msh *m, element_head *h, int physical, int entity) {
-  status st = OK;
   int dim = msh_type(h->type)->dim;
-  if (entity != h->entity) TRY(count_entity(m, dim, entity));
+  if (entity != h->entity) PASS(count_entity(m, dim, entity));
   if (physical != h->physical) {
-    if (physical != 0) TRY(msh_add_group(m, dim, physical));
-    TRY(msh_block(m, h->type, physical, physical != 0, &physical, &h->block));
+    if (physical != 0) PASS(msh_add_group(m, dim, physical));
+    PASS(msh_block(m, h->type, physical, physical != 0, &physical, &h->block));
   }
   h->entity = entity;
   h->physical = physical;
-done:
-  return st;
+  return OK;
 }
 
 static status check_head(scan *s, const element_head *h) {
@@ -94,79 +83,70 @@ static status check_head(scan *s, const element_head *h) {
 
 /* Tags and nodes. Groups of negative number are those of turned elements. */
 static status read_element(msh *m, element_head *h, size_t no) {
-  status st = OK;
   scan *s = &m->s;
   int tag, own[2] = {0, 0};
   size_t *node = NULL, unused;
   for (int i = 0; i < h->n_tag; ++i) {
-    TRY(scan_int(s, &tag));
+    PASS(scan_int(s, &tag));
     if (i < 2) own[i] = tag;
   }
   if (own[0] < 0) own[0] = own[0] > -INT32_MAX ? -own[0] : INT32_MAX;
-  TRY(find_block(m, h, own[0], own[1]));
+  PASS(find_block(m, h, own[0], own[1]));
   if (h->block >= 0)
-    TRY(msh_add_element(m, h->block, no, &node));
+    PASS(msh_add_element(m, h->block, no, &node));
   else
     ++m->n_loose[msh_type(h->type)->dim];
   for (int i = 0; i < msh_type(h->type)->n_node; ++i)
-    TRY(read_no(s, node != NULL ? &node[i] : &unused));
-done:
-  return st;
+    PASS(read_no(s, node != NULL ? &node[i] : &unused));
+  return OK;
 }
 
 static const element_head none = {0, 0, -1, -1, -1};
 
 static status read_lines(msh *m, size_t n) {
-  status st = OK;
   scan *s = &m->s;
   element_head h = none;
   for (size_t i = 0, no; i < n; ++i) {
     int type = h.type;
-    TRY(read_no(s, &no));
-    TRY(scan_int(s, &h.type));
-    TRY(scan_int(s, &h.n_tag));
-    TRY(check_head(s, &h));
+    PASS(read_no(s, &no));
+    PASS(scan_int(s, &h.type));
+    PASS(scan_int(s, &h.n_tag));
+    PASS(check_head(s, &h));
     if (h.type != type) h.entity = h.physical = -1;
-    TRY(read_element(m, &h, no));
-    TRY(scan_line(s));
+    PASS(read_element(m, &h, no));
+    PASS(scan_line(s));
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Binary: heads of type, number and tags before elements of one kind. */
 static status read_records(msh *m, size_t n) {
-  status st = OK;
   scan *s = &m->s;
   for (size_t done_so_far = 0; done_so_far < n;) {
     element_head h = none;
     int follow;
     size_t no;
-    TRY(scan_int(s, &h.type));
-    TRY(scan_int(s, &follow));
-    TRY(scan_int(s, &h.n_tag));
-    TRY(check_head(s, &h));
+    PASS(scan_int(s, &h.type));
+    PASS(scan_int(s, &follow));
+    PASS(scan_int(s, &h.n_tag));
+    PASS(check_head(s, &h));
     if (follow <= 0 || (size_t)follow > n - done_so_far)
       return scan_fail(s, "%d elements follow where %zu of %zu are left",
                        follow, n - done_so_far, n);
     for (int i = 0; i < follow; ++i) {
-      TRY(read_no(s, &no));
-      TRY(read_element(m, &h, no));
+      PASS(read_no(s, &no));
+      PASS(read_element(m, &h, no));
     }
     done_so_far += (size_t)follow;
   }
-done:
-  return st;
+  return OK;
 }
 
 status msh2_elements(msh *m) {
-  status st = OK;
   scan *s = &m->s;
   size_t n;
-  TRY(read_count(s, &n));
-  TRY(scan_fits(s, n, sizeof "1 1 0 1", 8, "elements"));
-  TRY(s->binary ? read_records(m, n) : read_lines(m, n));
-  TRY(scan_end(s, "Elements", "its elements"));
-done:
-  return st;
+  PASS(read_count(s, &n));
+  PASS(scan_fits(s, n, sizeof "1 1 0 1", 8, "elements"));
+  PASS(s->binary ? read_records(m, n) : read_lines(m, n));
+  return scan_end(s, "Elements", "its elements");
 }

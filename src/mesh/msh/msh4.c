@@ -13,108 +13,94 @@ enum { ENTITY_TEXT = 16, ENTITY_BINARY = 4 + 24 + 8 };
 
 /* Pass over n numbers of 4 bytes. */
 static status pass_ints(scan *s, size_t n) {
-  status st = OK;
   int unused;
-  TRY(scan_fits(s, n, 2, 4, "tags"));
-  for (size_t i = 0; i < n; ++i) TRY(scan_int(s, &unused));
-done:
-  return st;
+  PASS(scan_fits(s, n, 2, 4, "tags"));
+  for (size_t i = 0; i < n; ++i) PASS(scan_int(s, &unused));
+  return OK;
 }
 
 static status pass_list(scan *s) {
-  status st = OK;
   size_t n;
-  TRY(scan_size(s, &n));
-  TRY(pass_ints(s, n));
-done:
-  return st;
+  PASS(scan_size(s, &n));
+  return pass_ints(s, n);
 }
 
 /* The groups of an entity; a negative number turns the entity. */
 static status read_groups(msh *m, int dim, msh_entity *e) {
-  status st = OK;
   scan *s = &m->s;
   size_t n;
   int tag;
-  TRY(scan_size(s, &n));
-  TRY(scan_fits(s, n, 2, 4, "groups"));
+  PASS(scan_size(s, &n));
+  PASS(scan_fits(s, n, 2, 4, "groups"));
   e->first = (size_t)m->n_physical;
   for (size_t i = 0; i < n; ++i) {
-    TRY(scan_int(s, &tag));
+    PASS(scan_int(s, &tag));
     if (tag == 0 || tag == INT32_MIN)
       return scan_fail(s, "a group has the number %d", tag);
-    GROW(m->physical, m->n_physical, m->physical_room);
+    PASS_GROW(m->physical, m->n_physical, m->physical_room);
     m->physical[m->n_physical++] = abs(tag);
-    TRY(msh_add_group(m, dim, abs(tag)));
+    PASS(msh_add_group(m, dim, abs(tag)));
   }
   e->n_physical = (int)n;
-done:
-  return st;
+  return OK;
 }
 
 /* Tag, bounding box, groups, entities that bound it. */
 static status read_entity(msh *m, int dim, int partitioned) {
-  status st = OK;
   scan *s = &m->s;
   int tag, id, n = m->entities.n;
   msh_entity e = {0};
   double box;
-  TRY(scan_int(s, &tag));
+  PASS(scan_int(s, &tag));
   if (partitioned) {
-    TRY(pass_ints(s, 2)); /* dimension and tag of the whole                   */
-    TRY(pass_list(s));
+    PASS(pass_ints(s, 2)); /* dimension and tag of the whole */
+    PASS(pass_list(s));
   }
-  for (int i = 0; i < (dim == 0 ? 3 : 6); ++i) TRY(scan_real(s, &box));
-  TRY(read_groups(m, dim, &e));
-  if (dim > 0) TRY(pass_list(s));
-  TRY(scan_line(s));
-  TRY(table_add(&m->entities, table_key(dim, tag), &id));
+  for (int i = 0; i < (dim == 0 ? 3 : 6); ++i) PASS(scan_real(s, &box));
+  PASS(read_groups(m, dim, &e));
+  if (dim > 0) PASS(pass_list(s));
+  PASS(scan_line(s));
+  PASS(table_add(&m->entities, table_key(dim, tag), &id));
   if (id < n)
     return scan_fail(s, "the entity %d of dimension %d is listed twice", tag,
                      dim);
-  GROW(m->entity, id, m->entities_room);
+  PASS_GROW(m->entity, id, m->entities_room);
   m->entity[id] = e;
   ++m->raw->n_entity[dim];
-done:
-  return st;
+  return OK;
 }
 
 /* Number of partitions, then ghost entities: two numbers each. */
 static status pass_partitions(scan *s) {
-  status st = OK;
   size_t n;
-  TRY(scan_size(s, &n));
-  TRY(scan_line(s));
-  TRY(scan_size(s, &n));
-  TRY(scan_fits(s, n, 4, 8, "ghost entities"));
-  TRY(scan_line(s));
+  PASS(scan_size(s, &n));
+  PASS(scan_line(s));
+  PASS(scan_size(s, &n));
+  PASS(scan_fits(s, n, 4, 8, "ghost entities"));
+  PASS(scan_line(s));
   for (size_t i = 0; i < n; ++i) {
-    TRY(pass_ints(s, 2));
-    TRY(scan_line(s));
+    PASS(pass_ints(s, 2));
+    PASS(scan_line(s));
   }
-done:
-  return st;
+  return OK;
 }
 
 status msh4_entities(msh *m, int partitioned) {
-  status st = OK;
   scan *s = &m->s;
   size_t n[4];
   if (m->has_elements)
     return scan_fail(s, "entities are to stand before $Elements");
   m->has_entities = 1;
   scan_start_binary(s);
-  if (partitioned) TRY(pass_partitions(s));
-  for (int dim = 0; dim < 4; ++dim) TRY(scan_size(s, &n[dim]));
-  TRY(scan_line(s));
+  if (partitioned) PASS(pass_partitions(s));
+  for (int dim = 0; dim < 4; ++dim) PASS(scan_size(s, &n[dim]));
+  PASS(scan_line(s));
   for (int dim = 0; dim < 4; ++dim) {
-    TRY(scan_fits(s, n[dim], ENTITY_TEXT / 2, ENTITY_BINARY, "entities"));
-    for (size_t i = 0; i < n[dim]; ++i) TRY(read_entity(m, dim, partitioned));
+    PASS(scan_fits(s, n[dim], ENTITY_TEXT / 2, ENTITY_BINARY, "entities"));
+    for (size_t i = 0; i < n[dim]; ++i) PASS(read_entity(m, dim, partitioned));
   }
-  TRY(scan_end(s, partitioned ? "PartitionedEntities" : "Entities",
-               "its entities"));
-done:
-  return st;
+  return scan_end(s, partitioned ? "PartitionedEntities" : "Entities",
+                  "its entities");
 }
 
 typedef struct totals { /* first line of $Nodes and $Elements                */
@@ -122,43 +108,35 @@ typedef struct totals { /* first line of $Nodes and $Elements                */
 } totals;
 
 static status read_totals(scan *s, totals *t) {
-  status st = OK;
   scan_start_binary(s);
-  TRY(scan_size(s, &t->n_block));
-  TRY(scan_size(s, &t->n));
-  TRY(scan_size(s, &t->lowest));
-  TRY(scan_size(s, &t->highest));
-  TRY(scan_line(s));
-done:
-  return st;
+  PASS(scan_size(s, &t->n_block));
+  PASS(scan_size(s, &t->n));
+  PASS(scan_size(s, &t->lowest));
+  PASS(scan_size(s, &t->highest));
+  return scan_line(s);
 }
 
 /* A number in the limits of the first line. */
 static status read_no(scan *s, const totals *t, size_t *no) {
-  status st = OK;
-  TRY(scan_size(s, no));
+  PASS(scan_size(s, no));
   if (*no == 0 || *no < t->lowest || *no > t->highest)
     return scan_fail(s,
                      "number %zu is outside of %zu to %zu, the limits of "
                      "the section",
                      *no, t->lowest, t->highest);
-done:
-  return st;
+  return OK;
 }
 
 /* Three numbers of a block, and how many items it has of those left. */
 static status read_head(scan *s, int head[3], size_t left, size_t *n) {
-  status st = OK;
-  for (int i = 0; i < 3; ++i) TRY(scan_int(s, &head[i]));
-  TRY(scan_size(s, n));
+  for (int i = 0; i < 3; ++i) PASS(scan_int(s, &head[i]));
+  PASS(scan_size(s, n));
   if (head[0] < 0 || head[0] > 3)
     return scan_fail(s, "a block of dimension %d", head[0]);
   if (*n > left)
     return scan_fail(s, "a block of %zu where %zu of the section are left", *n,
                      left);
-  TRY(scan_line(s));
-done:
-  return st;
+  return scan_line(s);
 }
 
 /* All blocks are read: the sum of their items is the number promised. */
@@ -173,41 +151,36 @@ static status check_total(const scan *s, size_t left, const char *what) {
 
 /* Numbers, then coordinates and, on curves and surfaces, parameters. */
 static status read_node_block(msh *m, const totals *t, size_t *left) {
-  status st = OK;
   scan *s = &m->s;
   int head[3]; /* dimension, tag, 1 with parameters */
   size_t n, at = m->raw->n_node - *left;
   double unused;
-  TRY(read_head(s, head, *left, &n));
+  PASS(read_head(s, head, *left, &n));
   for (size_t i = 0; i < n; ++i) {
-    TRY(read_no(s, t, &m->raw->node_no[at + i]));
-    TRY(scan_line(s));
+    PASS(read_no(s, t, &m->raw->node_no[at + i]));
+    PASS(scan_line(s));
   }
   for (size_t i = 0; i < n; ++i) {
     for (size_t k = 0; k < 3; ++k)
-      TRY(scan_real(s, &m->raw->xyz[3 * (at + i) + k]));
+      PASS(scan_real(s, &m->raw->xyz[3 * (at + i) + k]));
     for (int k = 0; head[2] != 0 && k < head[0]; ++k)
-      TRY(scan_real(s, &unused));
-    TRY(scan_line(s));
+      PASS(scan_real(s, &unused));
+    PASS(scan_line(s));
   }
   *left -= n;
-done:
-  return st;
+  return OK;
 }
 
 status msh4_nodes(msh *m) {
-  status st = OK;
   scan *s = &m->s;
   totals t;
-  TRY(read_totals(s, &t));
-  TRY(scan_fits(s, t.n, sizeof "1\n0 0 0", 32, "nodes"));
-  TRY(scan_fits(s, t.n_block, sizeof "0 1 0 0", 20, "blocks"));
-  TRY(msh_new_nodes(m, t.n));
-  for (size_t i = 0; i < t.n_block; ++i) TRY(read_node_block(m, &t, &t.n));
-  TRY(check_total(s, t.n, "nodes"));
-  TRY(scan_end(s, "Nodes", "its blocks"));
-done:
-  return st;
+  PASS(read_totals(s, &t));
+  PASS(scan_fits(s, t.n, sizeof "1\n0 0 0", 32, "nodes"));
+  PASS(scan_fits(s, t.n_block, sizeof "0 1 0 0", 20, "blocks"));
+  PASS(msh_new_nodes(m, t.n));
+  for (size_t i = 0; i < t.n_block; ++i) PASS(read_node_block(m, &t, &t.n));
+  PASS(check_total(s, t.n, "nodes"));
+  return scan_end(s, "Nodes", "its blocks");
 }
 
 /* The groups of the entity that a block of elements lies on. */
@@ -232,40 +205,35 @@ static status find_entity(const msh *m, const int head[3], msh_entity *e) {
 }
 
 static status read_element_block(msh *m, const totals *t, size_t *left) {
-  status st = OK;
   scan *s = &m->s;
   int head[3], block; /* dimension, tag, type */
   size_t n, no, unused;
   msh_entity e;
-  TRY(read_head(s, head, *left, &n));
-  TRY(find_entity(m, head, &e));
+  PASS(read_head(s, head, *left, &n));
+  PASS(find_entity(m, head, &e));
   *left -= n;
   if (n == 0) return OK;
-  TRY(msh_block(m, head[2], head[1], e.n_physical, m->physical + e.first,
-                &block));
+  PASS(msh_block(m, head[2], head[1], e.n_physical, m->physical + e.first,
+                 &block));
   if (block < 0) m->n_loose[head[0]] += n;
   for (size_t i = 0; i < n; ++i) {
     size_t *node = NULL;
-    TRY(read_no(s, t, &no));
-    if (block >= 0) TRY(msh_add_element(m, block, no, &node));
+    PASS(read_no(s, t, &no));
+    if (block >= 0) PASS(msh_add_element(m, block, no, &node));
     for (int k = 0; k < msh_type(head[2])->n_node; ++k)
-      TRY(scan_size(s, node != NULL ? &node[k] : &unused));
-    TRY(scan_line(s));
+      PASS(scan_size(s, node != NULL ? &node[k] : &unused));
+    PASS(scan_line(s));
   }
-done:
-  return st;
+  return OK;
 }
 
 status msh4_elements(msh *m) {
-  status st = OK;
   scan *s = &m->s;
   totals t;
-  TRY(read_totals(s, &t));
-  TRY(scan_fits(s, t.n, sizeof "1 1", 16, "elements"));
-  TRY(scan_fits(s, t.n_block, sizeof "0 1 15 0", 20, "blocks"));
-  for (size_t i = 0; i < t.n_block; ++i) TRY(read_element_block(m, &t, &t.n));
-  TRY(check_total(s, t.n, "elements"));
-  TRY(scan_end(s, "Elements", "its blocks"));
-done:
-  return st;
+  PASS(read_totals(s, &t));
+  PASS(scan_fits(s, t.n, sizeof "1 1", 16, "elements"));
+  PASS(scan_fits(s, t.n_block, sizeof "0 1 15 0", 20, "blocks"));
+  for (size_t i = 0; i < t.n_block; ++i) PASS(read_element_block(m, &t, &t.n));
+  PASS(check_total(s, t.n, "elements"));
+  return scan_end(s, "Elements", "its blocks");
 }

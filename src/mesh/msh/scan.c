@@ -27,19 +27,17 @@ enum { SHOWN = 24, WORD = 128, DIGITS = 18, POWERS = 27 };
 /* ---- the file ------------------------------------------------------------ */
 
 static status read_all(scan *s, int fd) {
-  status st = OK;
   size_t got = 0;
-  NEW(s->data, s->size + 1);
+  PASS_NEW(s->data, s->size + 1);
   while (got < s->size) {
     ssize_t n = read(fd, s->data + got, s->size - got);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0)
-      FAIL(ERR_FILE, "%s: cannot be read: %s", s->path, strerror(errno));
-    if (n == 0) FAIL(ERR_FILE, "%s: it became shorter while read", s->path);
+      RAISE(ERR_FILE, "%s: cannot be read: %s", s->path, strerror(errno));
+    if (n == 0) RAISE(ERR_FILE, "%s: it became shorter while read", s->path);
     got += (size_t)n;
   }
-done:
-  return st;
+  return OK;
 }
 
 status scan_open(scan *s, const char *path, status wrong) {
@@ -69,7 +67,6 @@ void scan_close(scan *s) {
 }
 
 status scan_fail(const scan *s, const char *format, ...) {
-  status st = OK;
   char text[256];
   va_list args;
   va_start(args, format);
@@ -77,10 +74,9 @@ status scan_fail(const scan *s, const char *format, ...) {
   va_end(args);
   long line = 1;
   for (size_t i = 0; i < s->at; ++i) line += s->data[i] == '\n';
-  if (s->binary_file) FAIL(s->wrong, "%s: byte %zu: %s", s->path, s->at, text);
-  FAIL(s->wrong, "%s:%ld: %s", s->path, line, text);
-done:
-  return st;
+  if (s->binary_file) RAISE(s->wrong, "%s: byte %zu: %s", s->path, s->at, text);
+  RAISE(s->wrong, "%s:%ld: %s", s->path, line, text);
+  return OK;
 }
 
 /* ---- words --------------------------------------------------------------- */
@@ -192,7 +188,6 @@ static status convert_word(const scan *s, const char *word, size_t n,
 }
 
 static status word_real(scan *s, double *value) {
-  status st = OK;
   skip_blanks(s);
   const char *start = s->data + s->at;
   const char *p = start + (*start == '-' || *start == '+');
@@ -203,11 +198,10 @@ static status word_real(scan *s, double *value) {
   else if (end == NULL || !ends_word(*end))
     return not_expected(s, "a number");
   else if (!convert(&d, value))
-    TRY(convert_word(s, p, (size_t)(end - p), value));
+    PASS(convert_word(s, p, (size_t)(end - p), value));
   if (*start == '-') *value = -*value;
   s->at += (size_t)(end - start);
-done:
-  return st;
+  return OK;
 }
 
 /* ---- numbers ------------------------------------------------------------- */
@@ -228,33 +222,29 @@ static status take_bytes(scan *s, void *to, size_t size) {
 }
 
 status scan_int(scan *s, int *value) {
-  status st = OK;
   int32_t four = 0;
   int64_t word = 0;
   if (s->binary) {
-    TRY(take_bytes(s, &four, sizeof four));
+    PASS(take_bytes(s, &four, sizeof four));
     *value = four;
   } else {
-    TRY(word_whole(s, INT_MIN, INT_MAX, &word));
+    PASS(word_whole(s, INT_MIN, INT_MAX, &word));
     *value = (int)word;
   }
-done:
-  return st;
+  return OK;
 }
 
 status scan_size(scan *s, size_t *value) {
-  status st = OK;
   uint64_t eight = 0;
   int64_t word = 0;
   if (s->binary) {
-    TRY(take_bytes(s, &eight, sizeof eight));
+    PASS(take_bytes(s, &eight, sizeof eight));
     *value = (size_t)eight;
   } else {
-    TRY(word_whole(s, 0, INT64_MAX, &word));
+    PASS(word_whole(s, 0, INT64_MAX, &word));
     *value = (size_t)word;
   }
-done:
-  return st;
+  return OK;
 }
 
 status scan_real(scan *s, double *value) {
@@ -330,13 +320,12 @@ status scan_skip(scan *s, const char *name) {
 
 /* "2.2 0 8", and a one in binary files that shows the order of bytes. */
 static status read_format(scan *s) {
-  status st = OK;
   int bytes, one = 1;
   if (s->version > 0.0) return scan_fail(s, "$MeshFormat stands there twice");
-  TRY(scan_real(s, &s->version));
-  TRY(scan_int(s, &s->binary_file));
-  TRY(scan_int(s, &bytes));
-  TRY(scan_line(s));
+  PASS(scan_real(s, &s->version));
+  PASS(scan_int(s, &s->binary_file));
+  PASS(scan_int(s, &bytes));
+  PASS(scan_line(s));
   if (s->binary_file < 0 || s->binary_file > 1 || bytes != 8)
     return scan_fail(s,
                      "$MeshFormat has file type %d, data size %d; 0 (ASCII) "
@@ -344,18 +333,15 @@ static status read_format(scan *s) {
                      s->binary_file, bytes);
   if (s->binary_file) {
     s->binary = 1;
-    TRY(scan_int(s, &one));
+    PASS(scan_int(s, &one));
     s->swapped = one == 1 << 24;
     if (one != 1 && !s->swapped)
       return scan_fail(s, "the mark of the order of bytes is damaged");
   }
-  TRY(scan_end(s, "MeshFormat", "its numbers"));
-done:
-  return st;
+  return scan_end(s, "MeshFormat", "its numbers");
 }
 
 status scan_section(scan *s, char name[SCAN_NAME]) {
-  status st = OK;
   do {
     skip_empty_lines(s);
     name[0] = '\0';
@@ -369,11 +355,10 @@ status scan_section(scan *s, char name[SCAN_NAME]) {
     if (n == 0 || !ends_word(p[n + 1]) || strncmp(name, "End", 3) == 0)
       return not_expected(s, "the start of a section");
     s->at += n + 1;
-    TRY(scan_line(s));
-    if (strcmp(name, "MeshFormat") == 0) TRY(read_format(s));
+    PASS(scan_line(s));
+    if (strcmp(name, "MeshFormat") == 0) PASS(read_format(s));
   } while (strcmp(name, "MeshFormat") == 0);
-done:
-  return st;
+  return OK;
 }
 
 void scan_start_binary(scan *s) { s->binary = s->binary_file; }

@@ -175,15 +175,14 @@ static void check_round(const reading *r, const obstacle_param *p) {
 }
 
 status apply_obstacle(reading *r) {
-  status st = OK;
   const obstacle_param *p = r->param;
   model *m = r->m;
   const card *c = r->card;
   for (int i = 0; i < m->n_obstacle; ++i)
     name_taken(r, p->name, m->obstacles[i].name);
   int n = m->n_obstacle, capacity = m->cap_obstacle;
-  GROW(m->moves, n, capacity);
-  GROW(m->obstacles, n, m->cap_obstacle);
+  PASS_GROW(m->moves, n, capacity);
+  PASS_GROW(m->obstacles, n, m->cap_obstacle);
   obstacle *o = &m->obstacles[m->n_obstacle++];
   o->name = p->name == NULL ? "" : p->name;
   o->shape = p->type;
@@ -195,17 +194,16 @@ status apply_obstacle(reading *r) {
   m->moves[n].rotate_at = c->at;
   m->moves[n].amplitude_at = *value_place(r, "AMPLITUDE");
   check_round(r, p);
-  if (r->misread && card_parameter(c, "TYPE") == NULL) goto done;
+  if (r->misread && card_parameter(c, "TYPE") == NULL) return OK;
   int lines = read_course_lines(r, &m->moves[n], o);
-  if (lines < 0) goto done;
+  if (lines < 0) return OK;
   if (lines == c->n_record && p->amplitude != NULL)
     message_add(m->log, P2007, &c->at,
                 "*OBSTACLE: AMPLITUDE= needs a line MOVE, dx, dy [, dz] or "
                 "ROTATE");
   note_short(r, lines, o);
   read_shape(r, lines, o);
-done:
-  return st;
+  return OK;
 }
 
 /* AXIS, x, y or AXIS, x, y, z, ax, ay, az */
@@ -223,12 +221,11 @@ static void read_torque_axis(const reading *r, contact *c) {
 }
 
 status apply_contact(reading *r) {
-  status st = OK;
   const contact_param *p = r->param;
   model *m = r->m;
   for (int i = 0; i < m->n_contact; ++i)
     name_taken(r, p->name, m->contacts[i].name);
-  GROW(m->contacts, m->n_contact, m->cap_contact);
+  PASS_GROW(m->contacts, m->n_contact, m->cap_contact);
   contact *c = &m->contacts[m->n_contact++];
   c->name = p->name == NULL ? "" : p->name;
   c->group = p->group == NULL ? "" : p->group;
@@ -241,8 +238,7 @@ status apply_contact(reading *r) {
   c->obstacle_id = -1;
   c->group_id = -1;
   if (r->card->n_record > 0) read_torque_axis(r, c);
-done:
-  return st;
+  return OK;
 }
 
 static const char *law_name(const void *ctx, int i) {
@@ -294,33 +290,31 @@ static void check_table(const reading *r, const char *what,
 /* The value lines: one quantity, or pairs with TABLE=. Not negative. */
 static status read_value(reading *r, const char *what, int variable,
                          quantity *q, value_table *pairs) {
-  status st = OK;
   const card *c = r->card;
   const record *line = c->records;
   if (card_parameter(c, "TABLE") != NULL) {
     if (c->n_record == 0)
       message_add(r->m->log, P2007, &c->at, "*%s, TABLE= needs lines of pairs",
                   c->name);
-    TRY(read_pairs(r, 0, variable, pairs));
+    PASS(read_pairs(r, 0, variable, pairs));
     check_table(r, what, pairs);
     q->number = 1.0;
     q->factor = pairs; /* set anew by model_resolve                           */
-    goto done;
+    return OK;
   }
   if (c->n_record != 1) {
     int none = c->n_record < 1;
     message_add(r->m->log, none ? P2007 : P2008, none ? &c->at : &line[1].at,
                 "*%s needs one line with %s", c->name, what);
-    goto done;
+    return OK;
   }
-  if (record_fields(r, line, 1, 1, what) != 0) goto done;
-  if (field_quantity(r, &line->fields[0], q) != 0) goto done;
+  if (record_fields(r, line, 1, 1, what) != 0) return OK;
+  if (field_quantity(r, &line->fields[0], q) != 0) return OK;
   if (q->formula == NULL && !(q->number >= 0.0))
     message_add(r->m->log, P2010, &line->fields[0].at,
                 "*%s: %s = %s is negative", c->name, what,
                 line->fields[0].text);
-done:
-  return st;
+  return OK;
 }
 
 /* The rule a *FRICTION card fills: of the contact, or of the step for it; NULL
@@ -351,63 +345,56 @@ done:
 
 static status copy_options(const reading *r, const friction_ops *law,
                            const void **out) {
-  status st = OK;
-  if (law->param_size == 0) goto done;
+  if (law->param_size == 0) return OK;
   void *param = memory_new(1, law->param_size);
-  if (param == NULL) FAIL(ERR_MEMORY, "memory exhausted: friction options");
+  if (param == NULL) RAISE(ERR_MEMORY, "memory exhausted: friction options");
   memcpy(param, r->plugin, law->param_size);
   *out = param;
-done:
-  return st;
+  return OK;
 }
 
 status apply_friction(reading *r) {
-  status st = OK;
   const friction_param *p = r->param;
   const card *c = r->card;
   const friction_ops *law = p->law == NULL ? NULL : friction_find(p->law);
-  if (law == NULL || p->contact == NULL) goto done;
+  if (law == NULL || p->contact == NULL) return OK;
   int told = 0, id = find_contact(r, p->contact);
-  if (id < 0) goto done;
+  if (id < 0) return OK;
   friction_rule *rule = new_rule(r, id, &told);
-  if (rule == NULL && !told) FAIL(ERR_MEMORY, "memory exhausted: *FRICTION");
-  if (rule == NULL) goto done;
+  if (rule == NULL && !told) RAISE(ERR_MEMORY, "memory exhausted: *FRICTION");
+  if (rule == NULL) return OK;
   rule->law = law;
   rule->amplitude_name = p->amplitude;
   rule->at = c->at;
   rule->value_at = c->n_record > 0 ? c->records[0].at : c->at;
   rule->amplitude_at = *value_place(r, "AMPLITUDE");
-  TRY(copy_options(r, law, &rule->card.param));
+  PASS(copy_options(r, law, &rule->card.param));
   if (law->value_name != NULL)
-    TRY(read_value(r, law->value_name, p->table, &rule->card.value,
-                   &rule->position));
+    PASS(read_value(r, law->value_name, p->table, &rule->card.value,
+                    &rule->position));
   else if (c->n_record > 0)
     message_add(r->m->log, P2008, &c->records[0].at,
                 "*FRICTION, LAW=%s has no data lines", p->law);
-done:
-  return st;
+  return OK;
 }
 
 status apply_contact_force(reading *r) {
-  status st = OK;
   const force_param *p = r->param;
   const card *c = r->card;
-  if (p->contact == NULL) goto done;
+  if (p->contact == NULL) return OK;
   int id = find_contact(r, p->contact);
-  if (id < 0) goto done;
+  if (id < 0) return OK;
   given_force *f = &r->m->contacts[id].force;
   if (f->given) {
     message_add(r->m->log, P2011, &c->at,
                 "contact %s has its *CONTACT FORCE already, at line %d",
                 p->contact, f->at.line_no);
-    goto done;
+    return OK;
   }
   f->given = 1;
   f->amplitude_name = p->amplitude;
   f->at = c->at;
   f->value_at = c->n_record > 0 ? c->records[0].at : c->at;
   f->amplitude_at = *value_place(r, "AMPLITUDE");
-  TRY(read_value(r, "p", p->table, &f->value, &f->position));
-done:
-  return st;
+  return read_value(r, "p", p->table, &f->value, &f->position);
 }

@@ -33,13 +33,12 @@ plugin names_solver(const reading *r) {
 static const double TOL_DEFAULT = 1e-10;
 
 status apply_solver(reading *r) {
-  status st = OK;
   const solver_param *p = r->param;
   step *s = open_step(r);
   if (s->solver_at.file != NULL) {
     message_add(r->m->log, P2011, &r->card->at,
                 "a step has one *SOLVER card, this is its second");
-    goto done;
+    return OK;
   }
   s->solver_at = r->card->at;
   s->solver.ops = solver_find(p->method);
@@ -50,14 +49,13 @@ status apply_solver(reading *r) {
   s->solver.limit_max_iter = p->limit_max_iter;
   s->check = p->check;
   if (!s->balanced && p->share != 0.05) tell_idle(r, "SHARE", "TOL=BALANCED");
-  if (r->plugin == NULL) goto done;
+  if (r->plugin == NULL) return OK;
   s->solver_param = memory_new(1, r->plugin_size);
   if (s->solver_param == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: solver options");
+    RAISE(ERR_MEMORY, "memory exhausted: solver options");
   memcpy(s->solver_param, r->plugin, r->plugin_size);
   s->solver.param = s->solver_param;
-done:
-  return st;
+  return OK;
 }
 
 status apply_accuracy(reading *r) {
@@ -89,7 +87,6 @@ status apply_accuracy(reading *r) {
 }
 
 status apply_print(reading *r) {
-  status st = OK;
   const print_param *p = r->param;
   step *s = open_step(r);
   const int asked[] = {p->contact, p->totals,    p->nodes, p->elements,
@@ -99,7 +96,7 @@ status apply_print(reading *r) {
   for (int i = 0; i < 8; ++i) {
     if (!asked[i]) continue;
     any = 1;
-    GROW(s->prints, s->n_print, s->cap_print);
+    PASS_GROW(s->prints, s->n_print, s->cap_print);
     print_request *q = &s->prints[s->n_print++];
     q->table = 1 << i;
     q->group = p->group;
@@ -119,8 +116,7 @@ status apply_print(reading *r) {
     message_add(r->m->log, P2005, &r->card->at,
                 "*PRINT names no table: CONTACT, TOTALS, NODES, ELEMENTS, "
                 "ENERGY, REACTIONS, ZONES or LOOP");
-done:
-  return st;
+  return OK;
 }
 
 status apply_output(reading *r) {

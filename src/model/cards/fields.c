@@ -92,19 +92,16 @@ static int pairs_ascend(const reading *r, int first_line,
 }
 
 status field_file(const reading *r, const char **path) {
-  status st = OK;
   const parameter *file = card_parameter(r->card, "FILE");
   *path = NULL;
-  if (file == NULL || !file->has_value) goto done;
+  if (file == NULL || !file->has_value) return OK;
   *path = deck_path(r->m->deck, &file->value);
   if (*path == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: file of *%s", r->card->name);
-done:
-  return st;
+    RAISE(ERR_MEMORY, "memory exhausted: file of *%s", r->card->name);
+  return OK;
 }
 
 status read_pairs(reading *r, int first_line, int variable, value_table *out) {
-  status st = OK;
   const card *c = r->card;
   int total = 0;
   for (int i = first_line; i < c->n_record; ++i) {
@@ -113,24 +110,23 @@ status read_pairs(reading *r, int first_line, int variable, value_table *out) {
                   "%d field%s on this line of *%s; expected pairs",
                   c->records[i].n_field, c->records[i].n_field == 1 ? "" : "s",
                   c->name);
-      goto done;
+      return OK;
     }
     total += c->records[i].n_field / 2;
   }
-  NEW(out->at, total);
-  NEW(out->value, total);
+  PASS_NEW(out->at, total);
+  PASS_NEW(out->value, total);
   out->variable = variable;
   int n = 0;
   for (int i = first_line; i < c->n_record; ++i)
     for (int k = 0; k + 1 < c->records[i].n_field; k += 2, ++n) {
       const field *f = &c->records[i].fields[k];
-      if (deck_real(&f[0], r->m->log, &out->at[n]) != 0) goto done;
-      if (deck_real(&f[1], r->m->log, &out->value[n]) != 0) goto done;
+      if (deck_real(&f[0], r->m->log, &out->at[n]) != 0) return OK;
+      if (deck_real(&f[1], r->m->log, &out->value[n]) != 0) return OK;
     }
   out->n = n;
   if (pairs_ascend(r, first_line, out) != 0) out->n = 0;
-done:
-  return st;
+  return OK;
 }
 
 int find_name(const model *m, const char *name, const char *title,

@@ -57,14 +57,13 @@ static void check_shift(const reading *r, const law_ops *ops,
 /* The law of the open material, with its words (NULL: all defaults). */
 static status read_law(reading *r, const law_ops *ops, const void *words,
                        const law_shift *shift) {
-  status st = OK;
   material *mat = &r->m->materials[r->material_id];
   void *param = NULL;
   if (mat->law.ops != NULL) {
     message_add(r->m->log, P2011, &r->card->at,
                 "material %s has its inelastic law already, line %d", mat->name,
                 mat->law.at.line_no);
-    goto done;
+    return OK;
   }
   mat->law.ops = ops;
   mat->law.at = r->card->at;
@@ -72,16 +71,14 @@ static status read_law(reading *r, const law_ops *ops, const void *words,
   check_shift(r, ops, shift);
   if (ops->param_size > 0) {
     param = memory_new(1, ops->param_size);
-    if (param == NULL) FAIL(ERR_MEMORY, "memory exhausted: words of a law");
+    if (param == NULL) RAISE(ERR_MEMORY, "memory exhausted: words of a law");
     mat->law.param = param;
     if (words != NULL)
       memcpy(param, words, ops->param_size);
     else
       option_defaults(ops->options, param);
   }
-  TRY(law_card_read(r->m->deck, r->card, r->m->log, &mat->law));
-done:
-  return st;
+  return law_card_read(r->m->deck, r->card, r->m->log, &mat->law);
 }
 
 status apply_inelastic(reading *r) {
@@ -165,12 +162,11 @@ static void set_clock(const model *m, material *mat) {
 }
 
 status material_resolve_law(const model *m, material *mat) {
-  status st = OK;
   const law_card *law = &mat->law;
   set_clock(m, mat);
-  if (law->ops == NULL || law->n_set == 0 || mat->elastic.n == 0) goto done;
+  if (law->ops == NULL || law->n_set == 0 || mat->elastic.n == 0) return OK;
   const int errors = message_count(m->log, ERROR);
-  TRY(law_card_check(law, mat->elastic.type, m->log));
+  PASS(law_card_check(law, mat->elastic.type, m->log));
   if (mat->moduli < 0) {
     mat->moduli =
         mat->is_abaqus_prony ? MODULI_LONG_TERM : MODULI_INSTANTANEOUS;
@@ -186,6 +182,5 @@ status material_resolve_law(const model *m, material *mat) {
   if (law->ops == &prony_law && mat->moduli == MODULI_LONG_TERM &&
       message_count(m->log, ERROR) == errors)
     stiffen(m, mat);
-done:
-  return st;
+  return OK;
 }

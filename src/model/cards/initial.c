@@ -64,7 +64,6 @@ static const struct {
 
 /* What stands on the card beside TYPE=. */
 static status open_initial(reading *r) {
-  status st = OK;
   const initial_param *p = r->param;
   model *m = r->m;
   const parameter *file = card_parameter(r->card, "FILE");
@@ -77,7 +76,7 @@ static status open_initial(reading *r) {
       message_add(m->log, P2007, &r->card->at,
                   "*INITIAL CONDITIONS needs a data line: %s",
                   initial_rows[p->type].line);
-    goto done;
+    return OK;
   }
   if (m->start.given)
     message_add(m->log, P2011, &r->card->at,
@@ -87,20 +86,17 @@ static status open_initial(reading *r) {
   m->start.given = 1;
   m->start.relax = p->incompatible;
   m->start.at = r->card->at;
-  if (file == NULL || !file->has_value) goto done;
+  if (file == NULL || !file->has_value) return OK;
   m->start.file_at = file->value.at;
   m->start.file_name = p->file;
-  TRY(field_file(r, &m->start.file));
-done:
-  return st;
+  return field_file(r, &m->start.file);
 }
 
 status apply_initial(reading *r) {
-  status st = OK;
   const initial_param *p = r->param;
   model *m = r->m;
-  if (r->misread) goto done;
-  TRY(open_initial(r));
+  if (r->misread) return OK;
+  PASS(open_initial(r));
   for (int i = 0; i < r->card->n_record; ++i) {
     const record *line = &r->card->records[i];
     initial c = {.type = p->type, .group_id = -1};
@@ -110,9 +106,8 @@ status apply_initial(reading *r) {
     if (quantity_variables(&c.value) & 8u)
       message_add(m->log, P2033, &line->fields[line->n_field - 1].at,
                   "*INITIAL CONDITIONS: the expression must not depend on t");
-    GROW(m->initials, m->n_initial, m->cap_initial);
+    PASS_GROW(m->initials, m->n_initial, m->cap_initial);
     m->initials[m->n_initial++] = c;
   }
-done:
-  return st;
+  return OK;
 }

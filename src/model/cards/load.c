@@ -84,7 +84,6 @@ static int read_fixing(const reading *r, const record *line, int *first,
 }
 
 status apply_boundary(reading *r) {
-  status st = OK;
   const card *c = r->card;
   load_list *list = r->in_step ? &open_step(r)->loads : &r->m->supports;
   renew(r, 1u << LOAD_FIXING, boundary_line);
@@ -96,14 +95,13 @@ status apply_boundary(reading *r) {
     if (read_fixing(r, line, &first, &last, &value) != 0) continue;
     for (int k = first; k <= last; ++k) {
       load *l = new_load(r, list, LOAD_FIXING, &f[0]);
-      if (l == NULL) FAIL(ERR_MEMORY, "memory exhausted: *BOUNDARY");
+      if (l == NULL) RAISE(ERR_MEMORY, "memory exhausted: *BOUNDARY");
       l->component = k - 1;
       l->value = value;
       if (line->n_field > 4) read_line_amplitude(&f[4], l);
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Rank of a label among words, or -1 and the error. */
@@ -117,7 +115,6 @@ static int read_label(const reading *r, const field *f, const char *words) {
 }
 
 status apply_dsload(reading *r) {
-  status st = OK;
   const card *c = r->card;
   static const char expected[] = "group, P or TX TY TZ, value [, amplitude]";
   renew(r, 1u << LOAD_PRESSURE | 1u << LOAD_TRACTION, expected);
@@ -130,13 +127,12 @@ status apply_dsload(reading *r) {
     if (label < 0 || field_quantity(r, &f[2], &value) != 0) continue;
     load *l = new_load(r, &open_step(r)->loads,
                        label == 0 ? LOAD_PRESSURE : LOAD_TRACTION, &f[0]);
-    if (l == NULL) FAIL(ERR_MEMORY, "memory exhausted: *DSLOAD");
+    if (l == NULL) RAISE(ERR_MEMORY, "memory exhausted: *DSLOAD");
     l->component = label == 0 ? 0 : label - 1;
     l->value = value;
     if (line->n_field > 3) read_line_amplitude(&f[3], l);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* GRAV, g, gx, gy [, gz [, amplitude]] */
@@ -165,7 +161,6 @@ static int read_gravity(const reading *r, const record *line, quantity *value,
 }
 
 status apply_dload(reading *r) {
-  status st = OK;
   const card *c = r->card;
   static const char expected[] = "group, label, value ...";
   renew(r, 1u << LOAD_BODY | 1u << LOAD_GRAVITY, expected);
@@ -184,19 +179,17 @@ status apply_dload(reading *r) {
       continue;
     load *l = new_load(r, &open_step(r)->loads,
                        gravity ? LOAD_GRAVITY : LOAD_BODY, &f[0]);
-    if (l == NULL) FAIL(ERR_MEMORY, "memory exhausted: *DLOAD");
+    if (l == NULL) RAISE(ERR_MEMORY, "memory exhausted: *DLOAD");
     l->component = gravity ? 0 : label;
     l->value = value;
     memcpy(l->direction, direction, sizeof direction);
     int at = gravity ? 6 : 3;
     if (line->n_field > at) read_line_amplitude(&f[at], l);
   }
-done:
-  return st;
+  return OK;
 }
 
 status apply_cload(reading *r) {
-  status st = OK;
   const card *c = r->card;
   static const char expected[] = "group, dof, value [, amplitude]";
   renew(r, 1u << LOAD_POINT, expected);
@@ -210,13 +203,12 @@ status apply_cload(reading *r) {
         field_quantity(r, &f[2], &value) != 0)
       continue;
     load *l = new_load(r, &open_step(r)->loads, LOAD_POINT, &f[0]);
-    if (l == NULL) FAIL(ERR_MEMORY, "memory exhausted: *CLOAD");
+    if (l == NULL) RAISE(ERR_MEMORY, "memory exhausted: *CLOAD");
     l->component = dof - 1;
     l->value = value;
     if (line->n_field > 3) read_line_amplitude(&f[3], l);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* One line of *TEMPERATURE: 0 if fine. */
@@ -233,23 +225,21 @@ static int read_temperature(const reading *r, const record *line, int file,
 }
 
 status apply_temperature(reading *r) {
-  status st = OK;
   const card *c = r->card;
   const char *path;
   renew(r, 1u << LOAD_TEMPERATURE, "group of elements, value [, amplitude]");
-  TRY(field_file(r, &path));
+  PASS(field_file(r, &path));
   for (int i = 0; i < c->n_record; ++i) {
     const record *line = &c->records[i];
     quantity value;
     if (read_temperature(r, line, path != NULL, &value) != 0) continue;
     load *l =
         new_load(r, &open_step(r)->loads, LOAD_TEMPERATURE, &line->fields[0]);
-    if (l == NULL) FAIL(ERR_MEMORY, "memory exhausted: *TEMPERATURE");
+    if (l == NULL) RAISE(ERR_MEMORY, "memory exhausted: *TEMPERATURE");
     l->value = value;
     l->file = path;
     l->file_at = *value_place(r, "FILE");
     if (line->n_field > 2) read_line_amplitude(&line->fields[2], l);
   }
-done:
-  return st;
+  return OK;
 }

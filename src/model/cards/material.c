@@ -8,21 +8,18 @@
 #include <float.h>
 
 status apply_material(reading *r) {
-  status st = OK;
   const name_param *p = r->param;
   model *m = r->m;
   for (int i = 0; i < m->n_material; ++i)
     name_taken(r, p->name, m->materials[i].name);
-  GROW(m->materials, m->n_material, m->cap_material);
+  PASS_GROW(m->materials, m->n_material, m->cap_material);
   r->material_id = m->n_material++;
   m->materials[r->material_id].name = p->name == NULL ? "" : p->name;
   m->materials[r->material_id].at = *value_place(r, "NAME");
-done:
-  return st;
+  return OK;
 }
 
 status apply_elastic(reading *r) {
-  status st = OK;
   const elastic_param *p = r->param;
   const card *c = r->card;
   material *mat = &r->m->materials[r->material_id];
@@ -30,15 +27,14 @@ status apply_elastic(reading *r) {
   if (mat->has_elastic++) {
     message_add(r->m->log, P2011, &c->at, "material %s has *ELASTIC twice",
                 mat->name);
-    goto done;
+    return OK;
   }
   mat->moduli = card_parameter(c, "MODULI") == NULL ? -1 : p->moduli;
-  TRY(elastic_table_read(c, (elastic_type)p->type, mat->name, r->m->log,
-                         &mat->elastic));
+  PASS(elastic_table_read(c, (elastic_type)p->type, mat->name, r->m->log,
+                          &mat->elastic));
   if (mat->elastic.n > 0)
     (void)elastic_at(&mat->elastic, 0.0, mat->C, text, (int)sizeof text);
-done:
-  return st;
+  return OK;
 }
 
 status apply_density(reading *r) {
@@ -78,7 +74,6 @@ static int read_expansion(const reading *r, const record *line, int i,
 }
 
 status apply_expansion(reading *r) {
-  status st = OK;
   const expansion_param *p = r->param;
   expansion *x = &r->m->materials[r->material_id].expand;
   int n = r->card->n_record, lines = 0;
@@ -86,19 +81,18 @@ status apply_expansion(reading *r) {
     message_add(r->m->log, P2011, &r->card->at,
                 "material %s has *EXPANSION twice",
                 r->m->materials[r->material_id].name);
-    goto done;
+    return OK;
   }
   x->type = p->type;
   x->zero = p->zero;
   for (int c = 0; c < 3; ++c) {
     x->alpha[c].variable = TABLE_T;
-    NEW(x->alpha[c].at, n);
-    NEW(x->alpha[c].value, n);
+    PASS_NEW(x->alpha[c].at, n);
+    PASS_NEW(x->alpha[c].value, n);
   }
   while (lines < n &&
          read_expansion(r, &r->card->records[lines], lines, x) == 0)
     ++lines;
   for (int c = 0; c < 3; ++c) x->alpha[c].n = lines;
-done:
-  return st;
+  return OK;
 }

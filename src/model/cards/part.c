@@ -26,43 +26,36 @@ status apply_units(reading *r) {
 }
 
 status apply_mesh(reading *r) {
-  status st = OK;
   const mesh_param *p = r->param;
   model *m = r->m;
   if (m->has_mesh) {
     message_add(m->log, P2015, &r->card->at, "a deck has one *MESH card");
-    goto done;
+    return OK;
   }
   m->has_mesh = 1;
   m->mesh_at = *value_place(r, "FILE");
   m->mesh_scale = p->scale;
-  TRY(field_file(r, &m->mesh_file));
-done:
-  return st;
+  return field_file(r, &m->mesh_file);
 }
 
 status apply_condensed_problem(reading *r) {
-  status st = OK;
   const problem_param *p = r->param;
   model *m = r->m;
   if (m->has_problem) {
     message_add(m->log, P2011, &r->card->at,
                 "a deck has one *CONDENSED PROBLEM card");
-    goto done;
+    return OK;
   }
   m->has_problem = 1;
   m->problem_at = *value_place(r, "FILE");
   m->problem_type = card_parameter(r->card, "TYPE") == NULL ? -1 : p->type;
-  TRY(field_file(r, &m->problem_file));
-done:
-  return st;
+  return field_file(r, &m->problem_file);
 }
 
 status apply_section(reading *r) {
-  status st = OK;
   const section_param *p = r->param;
   model *m = r->m;
-  GROW(m->sections, m->n_section, m->cap_section);
+  PASS_GROW(m->sections, m->n_section, m->cap_section);
   section *s = &m->sections[m->n_section++];
   s->elset = p->elset == NULL ? "" : p->elset;
   s->material_name = p->material == NULL ? "" : p->material;
@@ -87,29 +80,25 @@ status apply_section(reading *r) {
       field_real(r, &line->fields[0], DBL_MIN, DBL_MAX, "thickness",
                  &s->thickness);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* One pair: the same at all times. */
 static status constant_table(double value, value_table *t) {
-  status st = OK;
-  NEW(t->at, 1);
-  NEW(t->value, 1);
+  PASS_NEW(t->at, 1);
+  PASS_NEW(t->value, 1);
   t->value[0] = value;
   t->n = 1;
-done:
-  return st;
+  return OK;
 }
 
 status apply_amplitude(reading *r) {
-  status st = OK;
   const amplitude_param *p = r->param;
   model *m = r->m;
   const card *c = r->card;
   for (int i = 0; i < m->n_amplitude; ++i)
     name_taken(r, p->name, m->amplitudes[i].name);
-  GROW(m->amplitudes, m->n_amplitude, m->cap_amplitude);
+  PASS_GROW(m->amplitudes, m->n_amplitude, m->cap_amplitude);
   amplitude *a = &m->amplitudes[m->n_amplitude++];
   a->name = p->name == NULL ? "" : p->name;
   a->at = *value_place(r, "NAME");
@@ -117,96 +106,86 @@ status apply_amplitude(reading *r) {
   a->table.variable = TABLE_T;
   if (c->records[0].n_field == 1 && c->n_record == 1) {
     quantity q = {0};
-    if (field_quantity(r, &c->records[0].fields[0], &q) != 0) goto done;
+    if (field_quantity(r, &c->records[0].fields[0], &q) != 0) return OK;
     a->table.formula = q.formula;
     if (q.formula == NULL && !c->records[0].fields[0].quoted)
       message_add(m->log, P2009, &c->records[0].at,
                   "*AMPLITUDE needs pairs t, a or one expression in quotes");
     else if (q.formula == NULL)
-      TRY(constant_table(q.number, &a->table));
+      PASS(constant_table(q.number, &a->table));
     else if (expression_variables(q.formula) & 7u)
       message_add(m->log, P2033, &c->records[0].at,
                   "*AMPLITUDE: the expression may depend on t only");
-    goto done;
+    return OK;
   }
-  TRY(read_pairs(r, 0, TABLE_T, &a->table));
-done:
-  return st;
+  return read_pairs(r, 0, TABLE_T, &a->table);
 }
 
 /* One more time, after the others; *right 0 if it is not. */
 static status add_time(reading *r, const record *line, double t, time_points *p,
                        int *room, int *right) {
-  status st = OK;
   *right = p->n == 0 || t > p->t[p->n - 1];
   if (!*right) {
     message_add(r->m->log, P2057, &line->at,
                 "*TIME POINTS: %g after %g; expected times that ascend", t,
                 p->t[p->n - 1]);
-    goto done;
+    return OK;
   }
-  GROW(p->t, p->n, *room);
+  PASS_GROW(p->t, p->n, *room);
   p->t[p->n++] = t;
-done:
-  return st;
+  return OK;
 }
 
 /* First, last, interval. */
 static status read_range(reading *r, const record *line, time_points *p,
                          int *room) {
-  status st = OK;
   enum { MOST = 1000000 };
   double v[3];
   int right = 1;
-  if (record_fields(r, line, 3, 3, "first, last, interval") != 0) goto done;
+  if (record_fields(r, line, 3, 3, "first, last, interval") != 0) return OK;
   for (int i = 0; i < 3; ++i)
-    if (deck_real(&line->fields[i], r->m->log, &v[i]) != 0) goto done;
+    if (deck_real(&line->fields[i], r->m->log, &v[i]) != 0) return OK;
   double n = floor((v[1] - v[0]) / v[2] * (1 + 1e-12) + 1e-9);
   if (!(n >= 0.0 && n < MOST && v[2] > 0.0)) {
     message_add(r->m->log, P2057, &line->at,
                 "*TIME POINTS: from %g to %g by %g; expected a last time that "
                 "is not before the first, and up to %d of them",
                 v[0], v[1], v[2], MOST);
-    goto done;
+    return OK;
   }
   for (int i = 0; i <= (int)n && right; ++i)
-    TRY(add_time(r, line, v[0] + i * v[2], p, room, &right));
-done:
-  return st;
+    PASS(add_time(r, line, v[0] + i * v[2], p, room, &right));
+  return OK;
 }
 
 static status read_times(reading *r, const record *line, time_points *p,
                          int *room) {
-  status st = OK;
   int right = 1;
   for (int i = 0; i < line->n_field && right; ++i) {
     double t;
-    if (deck_real(&line->fields[i], r->m->log, &t) != 0) goto done;
-    TRY(add_time(r, line, t, p, room, &right));
+    if (deck_real(&line->fields[i], r->m->log, &t) != 0) return OK;
+    PASS(add_time(r, line, t, p, room, &right));
   }
-done:
-  return st;
+  return OK;
 }
 
 status apply_time_points(reading *r) {
-  status st = OK;
   const points_param *p = r->param;
   model *m = r->m;
   int room = 0;
   for (int i = 0; i < m->n_points; ++i)
     name_taken(r, p->name, m->points[i].name);
-  GROW(m->points, m->n_points, m->cap_points);
+  PASS_GROW(m->points, m->n_points, m->cap_points);
   time_points *own = &m->points[m->n_points++];
   *own = (time_points){.name = p->name == NULL ? "" : p->name,
                        .total_time = p->time,
                        .at = *value_place(r, "NAME")};
   for (int i = 0; i < r->card->n_record; ++i) {
     const record *line = &r->card->records[i];
-    TRY(p->generate ? read_range(r, line, own, &room)
-                    : read_times(r, line, own, &room));
+    PASS(p->generate ? read_range(r, line, own, &room)
+                     : read_times(r, line, own, &room));
   }
-done:
-  return st;
+  return OK;
 }
 
 status apply_effects(reading *r) {

@@ -9,16 +9,14 @@
 #include <math.h>
 
 status apply_step(reading *r) {
-  status st = OK;
   const name_param *p = r->param;
   model *m = r->m;
-  GROW(m->steps, m->n_step, m->cap_step);
+  PASS_GROW(m->steps, m->n_step, m->cap_step);
   step *s = &m->steps[m->n_step++];
   s->name = p->name == NULL ? "" : p->name;
   s->at = r->card->at;
   r->in_step = 1;
-done:
-  return st;
+  return OK;
 }
 
 status apply_end_step(reading *r) {

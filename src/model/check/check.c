@@ -83,8 +83,7 @@ static void check_radius(const model *m, const mesh *msh) {
 
 /* Each element in one section. */
 static status check_sections(model *m, const mesh *msh) {
-  status st = OK;
-  NEW(m->elem_section, msh->n_elem);
+  PASS_NEW(m->elem_section, msh->n_elem);
   for (int e = 0; e < msh->n_elem; ++e) m->elem_section[e] = -1;
   for (int i = 0; i < m->n_section; ++i) {
     section *s = &m->sections[i];
@@ -103,7 +102,7 @@ static status check_sections(model *m, const mesh *msh) {
       *of = i;
     }
   }
-  if (message_count(m->log, ERROR) > 0) goto done;
+  if (message_count(m->log, ERROR) > 0) return OK;
   int missing = 0, first = -1;
   for (int e = 0; e < msh->n_elem; ++e)
     if (m->elem_section[e] < 0) {
@@ -113,8 +112,7 @@ static status check_sections(model *m, const mesh *msh) {
     message_add(m->log, P2023, &m->sections[0].at,
                 "%d element%s, the first number %zu, without *SOLID SECTION",
                 missing, missing == 1 ? "" : "s", msh->elem_no[first]);
-done:
-  return st;
+  return OK;
 }
 
 /* Moduli over the temperature where there is none. */
@@ -131,28 +129,25 @@ static void check_moduli(const model *m) {
 }
 
 status model_check(model *m, const mesh *msh) {
-  status st = OK;
   m->dim = msh->dim;
   m->ns = msh->dim == 3 ? 6 : 4;
   check_kinematics(m, msh);
   check_radius(m, msh);
-  TRY(check_sections(m, msh));
+  PASS(check_sections(m, msh));
   check_locking(m);
   check_contacts(m, msh);
   check_laws(m);
   check_initials(m, msh);
   check_steps(m, msh);
-  TRY(check_fields(m, msh));
+  PASS(check_fields(m, msh));
   check_reference(m);
-  TRY(model_find_corner(m, msh));
+  PASS(model_find_corner(m, msh));
   model_find_effects(m);
   check_moduli(m);
-  TRY(message_status(m->log, ERR_DECK));
+  PASS(message_status(m->log, ERR_DECK));
   check_values(m, msh);
   check_no_effect(m, msh);
-  for (int i = 0; i < m->n_step; ++i) TRY(check_agreement(m, msh, i));
-  TRY(check_visco(m));
-  TRY(message_status(m->log, ERR_DECK));
-done:
-  return st;
+  for (int i = 0; i < m->n_step; ++i) PASS(check_agreement(m, msh, i));
+  PASS(check_visco(m));
+  return message_status(m->log, ERR_DECK);
 }

@@ -122,29 +122,26 @@ done:
 
 /* Bodies that creep at constant volume become incompressible. */
 static status check_creep(const model *m) {
-  status st = OK;
   for (int i = 0; i < m->n_section; ++i) {
     const section *s = &m->sections[i];
     const material *mat = &m->materials[s->material_id];
     int locks = 0;
     if (mat->law.ops == NULL || s->kin == PLANE_STRESS || s->averaged) continue;
-    TRY(keeps_volume(s, mat, &locks));
+    PASS(keeps_volume(s, mat, &locks));
     if (locks)
       message_add(m->log, P2055, &s->at,
                   "law %s of material %s creeps at constant volume: where its "
                   "strains outgrow the elastic ones, linear elements lock",
                   mat->law.ops->name, mat->name);
   }
-done:
-  return st;
+  return OK;
 }
 
 status check_visco(const model *m) {
-  status st = OK;
   double rate;
   if (!(m->effects & EFFECT_INELASTIC)) return OK;
-  TRY(constant_rate(m, &rate));
-  if (has_card(m, "VISCO")) TRY(check_creep(m));
+  PASS(constant_rate(m, &rate));
+  if (has_card(m, "VISCO")) PASS(check_creep(m));
   for (int i = 0; i < m->n_step; ++i) {
     const step *s = &m->steps[i];
     if (s->kind != STEP_VISCO) continue;
@@ -152,6 +149,5 @@ status check_visco(const model *m) {
     if (step_has_limit(s) && rate > 0.0)
       step_level(m, s, s->start, s->dt, rate, 1);
   }
-done:
-  return st;
+  return OK;
 }

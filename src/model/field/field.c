@@ -32,34 +32,30 @@ static void pairs_free(pairs *p) {
 
 /* A count that stands on a line of its own. */
 static status read_count(scan *s, size_t *n) {
-  status st = OK;
-  TRY(scan_size(s, n));
-  TRY(scan_line(s));
-done:
-  return st;
+  PASS(scan_size(s, n));
+  return scan_line(s);
 }
 
 /* The tags before the values: *n of them, of one component. */
 static status read_tags(scan *s, size_t *n) {
-  status st = OK;
   size_t count, length, component = 0;
   const char *name;
   double time;
-  TRY(read_count(s, &count));
+  PASS(read_count(s, &count));
   for (size_t i = 0; i < count; ++i) {
-    TRY(scan_quoted(s, &name, &length));
-    TRY(scan_line(s));
+    PASS(scan_quoted(s, &name, &length));
+    PASS(scan_line(s));
   }
-  TRY(read_count(s, &count));
+  PASS(read_count(s, &count));
   for (size_t i = 0; i < count; ++i) {
-    TRY(scan_real(s, &time));
-    TRY(scan_line(s));
+    PASS(scan_real(s, &time));
+    PASS(scan_line(s));
   }
-  TRY(read_count(s, &count));
+  PASS(read_count(s, &count));
   for (size_t i = 0; i < count; ++i) {
     int tag;
-    TRY(scan_int(s, &tag));
-    TRY(scan_line(s));
+    PASS(scan_int(s, &tag));
+    PASS(scan_line(s));
     if (i == 1) component = (size_t)tag;
     if (i == 2) *n = tag < 0 ? SIZE_MAX : (size_t)tag;
   }
@@ -67,52 +63,46 @@ static status read_tags(scan *s, size_t *n) {
   if (component != 1)
     return scan_fail(s, "$NodeData has %zu components, one is needed",
                      component);
-done:
-  return st;
+  return OK;
 }
 
 static status read_node_data(scan *s, pairs *p) {
-  status st = OK;
   size_t n = 0;
   int no;
   pairs_free(p);
-  TRY(read_tags(s, &n));
+  PASS(read_tags(s, &n));
   scan_start_binary(s);
-  TRY(scan_fits(s, n, sizeof "1 0", 12, "values"));
-  NEW(p->node_no, n);
-  NEW(p->value, n);
+  PASS(scan_fits(s, n, sizeof "1 0", 12, "values"));
+  PASS_NEW(p->node_no, n);
+  PASS_NEW(p->value, n);
   for (size_t i = 0; i < n; ++i) {
-    TRY(scan_int(s, &no));
-    TRY(scan_real(s, &p->value[i]));
-    TRY(scan_line(s));
+    PASS(scan_int(s, &no));
+    PASS(scan_real(s, &p->value[i]));
+    PASS(scan_line(s));
     p->node_no[i] = no;
   }
   p->n = (long)n;
-  TRY(scan_end(s, "NodeData", "its values"));
-done:
-  return st;
+  return scan_end(s, "NodeData", "its values");
 }
 
 static status read_gmsh(scan *s, pairs *p) {
-  status st = OK;
   char name[SCAN_NAME];
   int found = 0;
   for (;;) {
-    TRY(scan_section(s, name));
+    PASS(scan_section(s, name));
     if (name[0] == '\0') break;
     if (strcmp(name, "NodeData") != 0) {
-      TRY(scan_skip(s, name));
+      PASS(scan_skip(s, name));
       continue;
     }
     if (s->version == 0.0)
       return scan_fail(s, "$MeshFormat is to stand before $NodeData");
-    TRY(read_node_data(s, p));
+    PASS(read_node_data(s, p));
     found = 1;
   }
   if (!found)
-    FAIL(ERR_DECK, "%s: there is no $NodeData, and it is not HDF5", s->path);
-done:
-  return st;
+    RAISE(ERR_DECK, "%s: there is no $NodeData, and it is not HDF5", s->path);
+  return OK;
 }
 
 static status read_hdf5(const char *path, long most, pairs *p) {
@@ -180,16 +170,14 @@ done:
 
 /* 1 if the file has the first bytes of one of HDF5. */
 static status find_kind(const char *path, int *is_hdf5) {
-  status st = OK;
   static const char signature[8] = "\211HDF\r\n\032\n";
   char first[8];
   const char *why;
   FILE *f = input_stream(path, &why);
-  if (f == NULL) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
+  if (f == NULL) RAISE(ERR_FILE, "%s: cannot be read: %s", path, why);
   *is_hdf5 = fread(first, 1, 8, f) == 8 && memcmp(first, signature, 8) == 0;
   fclose(f);
-done:
-  return st;
+  return OK;
 }
 
 status nodal_field_read(const char *path, const mesh *msh, double **value) {

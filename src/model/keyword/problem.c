@@ -56,7 +56,6 @@ static void check_problem_accuracy(const reading *r, step *s) {
 }
 
 status model_finish_problem(reading *r) {
-  status st = OK;
   check_problem_cards(r);
   step *s = &r->m->steps[0];
   check_problem_tables(r, s);
@@ -66,10 +65,9 @@ status model_finish_problem(reading *r) {
   s->dt = s->dt_min = s->total;
   s->output_frequency = -1;
   s->restart_frequency = -1;
-  if (s->n_print > 0) goto done;
-  GROW(s->prints, s->n_print, s->cap_print);
+  if (s->n_print > 0) return OK;
+  PASS_GROW(s->prints, s->n_print, s->cap_print);
   s->prints[s->n_print++] = (print_request){
       .table = PRINT_CONTACT, .group_id = -1, .frequency = 1, .at = s->at};
-done:
-  return st;
+  return OK;
 }

@@ -172,38 +172,34 @@ static void unknown_card(reading *r) {
 }
 
 static status read_card(reading *r) {
-  status st = OK;
   _Alignas(16) char param[PARAM_SIZE], plugin_param[PARAM_SIZE];
   const keyword *row = keyword_find(r->card->name);
   if (row == NULL) unknown_card(r);
-  if (row != NULL && row->where & LANGUAGE) goto done;
+  if (row != NULL && row->where & LANGUAGE) return OK;
   if (row == NULL || !right_place(r, row)) {
     r->lost = 1;
-    goto done;
+    return OK;
   }
   keyword_parameters(row, r, param, plugin_param);
   r->lost |= r->misread;
   /* A card that has no lines means the same with some. */
   if (right_lines(r, row) || row->max_line == 0)
-    TRY(row->apply(r));
+    PASS(row->apply(r));
   else
     r->lost = 1;
-done:
-  return st;
+  return OK;
 }
 
 /* Name of the job: the file without folder and .inp. */
 static status name_job(model *m) {
-  status st = OK;
   const char *slash = strrchr(m->deck->file, '/');
   const char *base = slash == NULL ? m->deck->file : slash + 1;
   m->job = memory_text(base);
-  if (m->job == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of the job");
+  if (m->job == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of the job");
   size_t length = strlen(m->job);
   if (length > 4 && same_word(m->job + length - 4, ".inp"))
     m->job[length - 4] = '\0';
-done:
-  return st;
+  return OK;
 }
 
 /* What the deck lacks, at its end; not after a card was lost, which may be
@@ -228,35 +224,30 @@ static void report_absent(const reading *r) {
 
 /* A problem from a file needs no *STEP. */
 static status default_step(model *m) {
-  status st = OK;
-  GROW(m->steps, m->n_step, m->cap_step);
+  PASS_GROW(m->steps, m->n_step, m->cap_step);
   m->steps[m->n_step++] = (step){.name = "", .at = m->problem_at};
-done:
-  return st;
+  return OK;
 }
 
 status model_from_deck(deck *d, message_log *log, model **out) {
-  status st = OK;
   model *m = NULL;
-  NEW(m, 1);
+  PASS_NEW(m, 1);
   *out = m;
   m->deck = d;
   m->log = log;
   m->title = "";
-  TRY(name_job(m));
+  PASS(name_job(m));
   reading r = {.m = m,
                .material_id = -1,
                .is_lost = name_is_lost,
                .lost = message_count(log, ERROR) > 0};
   for (int i = 0; i < d->n_card; ++i) {
     r.card = &d->cards[i];
-    TRY(read_card(&r));
+    PASS(read_card(&r));
   }
   report_absent(&r);
-  if (m->has_problem && m->n_step == 0) TRY(default_step(m));
-  TRY(model_resolve(m, r.lost));
-  if (m->has_problem) TRY(model_finish_problem(&r));
-  TRY(message_status(log, ERR_DECK));
-done:
-  return st;
+  if (m->has_problem && m->n_step == 0) PASS(default_step(m));
+  PASS(model_resolve(m, r.lost));
+  if (m->has_problem) PASS(model_finish_problem(&r));
+  return message_status(log, ERR_DECK);
 }

@@ -52,19 +52,17 @@ void find_points(const model *m, print_request *p) {
 }
 
 static status resolve_laws(model *m, int lost) {
-  status st = OK;
   for (int i = 0; i < m->n_material; ++i)
-    TRY(material_resolve_law(m, &m->materials[i]));
+    PASS(material_resolve_law(m, &m->materials[i]));
   if (lost || m->n_step == 0 || has_card(m, "VISCO") ||
       message_count(m->log, ERROR) > 0)
-    goto done;
+    return OK;
   for (int i = 0; i < m->n_material; ++i)
     if (m->materials[i].law.ops != NULL && m->materials[i].used)
       message_add(m->log, P2048, &m->steps[0].at,
                   "material %s has the law %s, but no step is *VISCO",
                   m->materials[i].name, m->materials[i].law.ops->name);
-done:
-  return st;
+  return OK;
 }
 
 static void resolve_materials(model *m, int lost) {
@@ -158,17 +156,15 @@ static void resolve_contacts(model *m) {
 
 /* The ramp of motions that nothing else leads. */
 static status make_first_step(model *m) {
-  status st = OK;
   value_table *t = &m->first_step;
-  if (m->n_step == 0 || m->n_obstacle == 0) goto done;
-  NEW(t->at, 2);
-  NEW(t->value, 2);
+  if (m->n_step == 0 || m->n_obstacle == 0) return OK;
+  PASS_NEW(t->at, 2);
+  PASS_NEW(t->value, 2);
   t->variable = TABLE_T;
   t->n = 2;
   t->at[1] = m->steps[0].total;
   t->value[1] = 1.0;
-done:
-  return st;
+  return OK;
 }
 
 /* A number without amplitude is reached at the end of the first step, as loads
@@ -181,8 +177,7 @@ static void lead(const model *m, const value_table *t, quantity *q) {
 }
 
 static status resolve_moves(model *m) {
-  status st = OK;
-  TRY(make_first_step(m));
+  PASS(make_first_step(m));
   for (int i = 0; i < m->n_obstacle; ++i) {
     const move *of = &m->moves[i];
     const value_table *t = NULL;
@@ -191,8 +186,7 @@ static status resolve_moves(model *m) {
     for (int k = 0; k < 3; ++k) lead(m, t, &m->obstacles[i].motion[k]);
     lead(m, t, &m->obstacles[i].angle);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* A name that nothing refers to is often a misspelled reference. */
@@ -217,16 +211,14 @@ static void warn_unused(const model *m) {
 }
 
 status model_resolve(model *m, int lost) {
-  status st = OK;
   resolve_materials(m, lost);
-  TRY(resolve_laws(m, lost));
+  PASS(resolve_laws(m, lost));
   resolve_contacts(m);
-  TRY(resolve_moves(m));
-  TRY(resolve_steps(m));
+  PASS(resolve_moves(m));
+  PASS(resolve_steps(m));
   if (!lost && message_count(m->log, ERROR) == 0) {
     warn_unused(m);
-    TRY(check_symbols(m));
+    PASS(check_symbols(m));
   }
-done:
-  return st;
+  return OK;
 }

@@ -73,7 +73,6 @@ static load ended_load(const step *old, const load *l) {
 /* Loads of the step before that its own cards neither replace nor end. */
 static status carry_loads(const model *m, const step *old, step *s,
                           load_list *all) {
-  status st = OK;
   for (int i = 0; i < old->loads.n; ++i) {
     const load *l = &old->loads.item[i];
     int again = 0, renewed = (s->renewed >> l->kind & 1u) != 0;
@@ -87,21 +86,18 @@ static status carry_loads(const model *m, const step *old, step *s,
       if (same && own->run == RUN_RAMP) set_before(own, old, l);
     }
     if (again || (renewed && l->kind == LOAD_FIXING)) continue;
-    GROW(all->item, all->n, all->cap);
+    PASS_GROW(all->item, all->n, all->cap);
     all->item[all->n++] = renewed ? ended_load(old, l) : kept_load(m, old, l);
   }
-done:
-  return st;
+  return OK;
 }
 
 static status append_loads(load_list *all, const load_list *own) {
-  status st = OK;
   for (int i = 0; i < own->n; ++i) {
-    GROW(all->item, all->n, all->cap);
+    PASS_GROW(all->item, all->n, all->cap);
     all->item[all->n++] = own->item[i];
   }
-done:
-  return st;
+  return OK;
 }
 
 static int same_value(const load *a, const load *b) {
@@ -157,7 +153,6 @@ static void call_estimates(const model *m, step *s) {
 
 /* Solver, tables and fields stay until changed. */
 static status carry_choices(const step *old, step *s) {
-  status st = OK;
   if (s->solver_at.file == NULL) {
     s->solver = old->solver;
     s->balanced = old->balanced;
@@ -178,11 +173,10 @@ static status carry_choices(const step *old, step *s) {
   }
   if (!s->has_restart) s->restart_frequency = old->restart_frequency;
   for (int i = 0; i < old->n_print && !s->has_print; ++i) {
-    GROW(s->prints, s->n_print, s->cap_print);
+    PASS_GROW(s->prints, s->n_print, s->cap_print);
     s->prints[s->n_print++] = old->prints[i];
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Increments that the time of the step can tell apart. */
@@ -196,7 +190,6 @@ static void check_clock(const model *m, const step *s) {
 }
 
 status resolve_steps(model *m) {
-  status st = OK;
   step before = {.solver = default_solver,
                  .loads = m->supports,
                  .condensed_frequency = -1,
@@ -210,12 +203,11 @@ status resolve_steps(model *m) {
     check_clock(m, s);
     for (int k = 0; k < s->n_change; ++k)
       resolve_friction(m, &s->changes[k].rule);
-    TRY(resolve_loads(m, old, s));
+    PASS(resolve_loads(m, old, s));
     for (int k = 0; k < s->n_print; ++k) find_points(m, &s->prints[k]);
-    TRY(carry_choices(old, s));
+    PASS(carry_choices(old, s));
     call_estimates(m, s);
     old = s;
   }
-done:
-  return st;
+  return OK;
 }

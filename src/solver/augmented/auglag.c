@@ -140,7 +140,6 @@ done:
 /* The other variant, the limit updated around it. */
 static status follow_limit(auglag_run *s, solver_report *rep) {
   static const auglag uzawa = {BY_UZAWA};
-  status st = OK;
   inner_solver self = {&auglag_solver, &uzawa, s->w};
   solver_control rest = *s->control;
   int bounded = s->control->max_iter > 0;
@@ -149,11 +148,10 @@ static status follow_limit(auglag_run *s, solver_report *rep) {
   int before = s->steps;
   rep->outcome = STOPPED_ITERATIONS;
   rep->iterations = before;
-  if (bounded && rest.max_iter == 0) goto done;
-  TRY(fixed_point_solve(s->w->fixed, s->cp, &self, &rest, s->u, s->r, rep));
+  if (bounded && rest.max_iter == 0) return OK;
+  PASS(fixed_point_solve(s->w->fixed, s->cp, &self, &rest, s->u, s->r, rep));
   rep->iterations += before;
-done:
-  return st;
+  return OK;
 }
 
 /* 1: the other variant ended by itself, without progress: that the first one

@@ -92,20 +92,17 @@ done:
 }
 
 status anchor_make(const contact_problem *cp, anchor *an) {
-  status st = OK;
   size_t m = (size_t)cp->m;
   if (an->missing || an->W != NULL) return OK;
   an->missing = cp->A == NULL || cp->n == 0;
   if (an->missing) return OK;
-  NEW(an->A, m * m);
-  NEW(an->W, m * m);
-  NEW(an->f, m);
-  TRY(anchor_modes(cp, an));
+  PASS_NEW(an->A, m * m);
+  PASS_NEW(an->W, m * m);
+  PASS_NEW(an->f, m);
+  PASS(anchor_modes(cp, an));
   for (size_t i = 0; i < m; ++i) an->spring += cp->A[i * (m + 1)] / (double)m;
   an->spring *= SOFT / cp->n;
-  TRY(hold(cp, an));
-done:
-  return st;
+  return hold(cp, an);
 }
 
 /* ---- the passes ---------------------------------------------------------- */

@@ -117,22 +117,19 @@ static status keep_work(const contact_solver *s, int row, archive *a) {
 }
 
 status contact_solver_keep(contact_solver *s, archive *a) {
-  status st = OK;
   if (archive_reads(a)) {
     forget_factors(s);
     s->from = a;
     snprintf(s->group, sizeof s->group, "%s", archive_group(a));
-    goto done;
+    return OK;
   }
   int there = 0;
   for (int i = 0; i <= N_SOLVER; ++i) {
-    TRY(keep_work(s, i, a));
+    PASS(keep_work(s, i, a));
     if (s->work[i] != NULL) there |= 1 << i;
   }
-  TRY(archive_ints(a, "works", &there, 1));
-  TRY(normal_form_keep(&s->normal, a));
-done:
-  return st;
+  PASS(archive_ints(a, "works", &there, 1));
+  return normal_form_keep(&s->normal, a);
 }
 
 /* A work that is new takes over what it is to remember. */
@@ -153,14 +150,12 @@ done:
 /* The problem with springs on the motions of the whole body. */
 static status suit_by_springs(contact_solver *s, const contact_problem *cp,
                               contact_problem *out, const char **why) {
-  status st = OK;
-  TRY(anchor_make(cp, &s->held));
+  PASS(anchor_make(cp, &s->held));
   out->A = s->held.A;
   out->W = s->held.W;
   if (s->held.missing)
     *why = "needs the compliance, but the stiffness is nearly singular";
-done:
-  return st;
+  return OK;
 }
 
 static int lacks_stiffness(const contact_solver *s, const contact_problem *cp,
@@ -351,16 +346,14 @@ void attempt_judge(const contact_solver *s, const contact_problem *cp,
 
 status attempt_prove(contact_solver *s, const contact_problem *cp,
                      solver_report *rep) {
-  status st = OK;
-  if (rep->outcome >= 0 || !isfinite(rep->residual)) goto done;
-  if (!s->sought) TRY(proof_find(cp, &s->held, &s->proved));
+  if (rep->outcome >= 0 || !isfinite(rep->residual)) return OK;
+  if (!s->sought) PASS(proof_find(cp, &s->held, &s->proved));
   s->sought = 1;
   if (s->proved)
     rep->outcome = STOPPED_RAY;
   else if (rep->outcome == STOPPED_RAY)
     rep->outcome = STOPPED_STAGNATION;
-done:
-  return st;
+  return OK;
 }
 
 /* Start without any knowledge: stick, no penetration; r = A u - f. */
@@ -424,16 +417,14 @@ static int known_answer(const contact_solver *s, const contact_problem *cp,
 /* The last touch, within the iterations allowed. */
 static status polish(const contact_solver *s, const contact_problem *cp,
                      double *u, double *r, solver_report *rep) {
-  status st = OK;
   double tol = s->choice.tol;
   int sweeps = 0, asked = s->choice.max_iter;
   int most = asked > 0 ? asked - rep->iterations : INT_MAX;
-  TRY(polish_touch(cp, s->scale, tol, u, r, &rep->residual));
-  TRY(polish_slip(cp, tol, most, u, r, &sweeps));
+  PASS(polish_touch(cp, s->scale, tol, u, r, &rep->residual));
+  PASS(polish_slip(cp, tol, most, u, r, &sweeps));
   rep->iterations += sweeps;
   if (sweeps > 0) rep->residual = contact_residual_at(cp, s->scale, u, r);
-done:
-  return st;
+  return OK;
 }
 
 const contact_bodies *contact_solver_bodies(const contact_solver *s,

@@ -110,28 +110,24 @@ static void condense_tangents(normal_form *nf, const contact_problem *cp) {
 }
 
 static status factor(normal_form *nf, const contact_problem *cp) {
-  status st = OK;
   size_t nt = (size_t)(cp->m - cp->n);
-  if (nf->L != NULL) goto done;
-  NEW(nf->L, nt * nt);
-  NEW(nf->y, cp->m);
+  if (nf->L != NULL) return OK;
+  PASS_NEW(nf->L, nt * nt);
+  PASS_NEW(nf->y, cp->m);
   nf->missing = !factor_tangents(nf, cp);
-done:
-  return st;
+  return OK;
 }
 
 static status condense_form(normal_form *nf, const contact_problem *cp) {
-  status st = OK;
   size_t n = (size_t)cp->n, nt = (size_t)cp->m - n;
-  if (nf->S != NULL) goto done;
-  NEW(nf->S, n * n);
-  NEW(nf->Y, nt * n);
-  NEW(nf->f, n);
-  NEW(nf->u, n);
-  NEW(nf->r, n);
+  if (nf->S != NULL) return OK;
+  PASS_NEW(nf->S, n * n);
+  PASS_NEW(nf->Y, nt * n);
+  PASS_NEW(nf->f, n);
+  PASS_NEW(nf->u, n);
+  PASS_NEW(nf->r, n);
   condense_tangents(nf, cp);
-done:
-  return st;
+  return OK;
 }
 
 /* f of the problem in S; y = inv(L) f_t is kept for settle. */
@@ -181,13 +177,10 @@ done:
 
 /* Go to what is to be remembered; *there = 1: the named thing is. */
 static status remember(const normal_form *nf, const char *name, int *there) {
-  status st = OK;
   *there = 0;
   if (nf->from == NULL) return OK;
   archive_go(nf->from, nf->group);
-  TRY(archive_ints(nf->from, name, there, 1));
-done:
-  return st;
+  return archive_ints(nf->from, name, there, 1);
 }
 
 status normal_form_opened(normal_form *nf, const contact_problem *cp,

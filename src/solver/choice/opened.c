@@ -67,17 +67,14 @@ void opened_free(opened *o) {
 }
 
 status opened_keep(opened *o, archive *a) {
-  status st = OK;
   size_t room = (size_t)o->n;
-  TRY(archive_ints(a, "n_made", &o->n_made, 1));
+  PASS(archive_ints(a, "n_made", &o->n_made, 1));
   if (o->n_made < 0 || o->n_made > o->n)
-    FAIL(ERR_FILE, "the restart file is damaged: columns have other sizes");
-  TRY(archive_ints(a, "made", o->made, room));
-  TRY(archive_ints(a, "column", o->column, (size_t)o->n));
-  TRY(archive_reals(a, "Y", o->Y, (size_t)o->nt * (size_t)o->n_made));
-  TRY(archive_reals(a, "S", o->S, room * room));
-done:
-  return st;
+    RAISE(ERR_FILE, "the restart file is damaged: columns have other sizes");
+  PASS(archive_ints(a, "made", o->made, room));
+  PASS(archive_ints(a, "column", o->column, (size_t)o->n));
+  PASS(archive_reals(a, "Y", o->Y, (size_t)o->nt * (size_t)o->n_made));
+  return archive_reals(a, "S", o->S, room * room);
 }
 
 /* Number i of the tangential unknowns. */

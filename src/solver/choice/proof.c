@@ -142,15 +142,13 @@ typedef struct balance {
 } balance;
 
 static status balance_new(balance *s) {
-  status st = OK;
   size_t m = (size_t)s->cp->m;
-  TRY(nonnegative_new(s->an->n_mode + 1, &s->sum));
-  NEW(s->v, m);
-  NEW(s->c, 3 * m);
-  NEW(s->force, m);
-  NEW(s->lift, m);
-done:
-  return st;
+  PASS(nonnegative_new(s->an->n_mode + 1, &s->sum));
+  PASS_NEW(s->v, m);
+  PASS_NEW(s->c, 3 * m);
+  PASS_NEW(s->force, m);
+  PASS_NEW(s->lift, m);
+  return OK;
 }
 
 static void balance_free(balance *s) {
@@ -297,15 +295,13 @@ done:
 }
 
 status proof_find(const contact_problem *cp, anchor *an, int *proved) {
-  status st = OK;
   *proved = 0;
-  if (cp->m == 0) goto done;
+  if (cp->m == 0) return OK;
   if (cp->A == NULL) {
-    TRY(find_forces(cp, proved));
+    PASS(find_forces(cp, proved));
   } else if (cp->floating) {
-    TRY(anchor_modes(cp, an));
-    if (an->n_mode > 0) TRY(find_motion(cp, an, proved));
+    PASS(anchor_modes(cp, an));
+    if (an->n_mode > 0) PASS(find_motion(cp, an, proved));
   }
-done:
-  return st;
+  return OK;
 }

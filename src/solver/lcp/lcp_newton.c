@@ -51,21 +51,19 @@ typedef struct run {
 } run;
 
 static status run_new(run *s) {
-  status st = OK;
   size_t n = (size_t)s->p->n;
   double **by_row[] = {&s->size, &s->q, &s->z, &s->w,      &s->phi,  &s->a,
                        &s->b,    &s->d, &s->g, &s->answer, &s->slack};
   for (size_t k = 0; k < sizeof by_row / sizeof *by_row; ++k)
-    NEW(*by_row[k], n);
-  NEW(s->M, n * n);
-  NEW(s->J, n * n);
-  NEW(s->pivot, n);
-  NEW(s->basis, n);
-  NEW(s->N, n * n);
+    PASS_NEW(*by_row[k], n);
+  PASS_NEW(s->M, n * n);
+  PASS_NEW(s->J, n * n);
+  PASS_NEW(s->pivot, n);
+  PASS_NEW(s->basis, n);
+  PASS_NEW(s->N, n * n);
   s->room = 64 * (s->p->n + 1);
-  NEW(s->work, s->room);
-done:
-  return st;
+  PASS_NEW(s->work, s->room);
+  return OK;
 }
 
 static void run_free(run *s) {

@@ -50,18 +50,16 @@ typedef struct run {
 } run;
 
 static status run_new(run *s) {
-  status st = OK;
   size_t n = (size_t)s->p->n;
-  NEW(s->try_z, n);
-  NEW(s->y, 2 * n);
-  NEW(s->cover, n);
-  NEW(s->size, n);
-  NEW(s->M, n * n);
-  NEW(s->q, n);
-  NEW(s->room, n);
-  NEW(s->turned, n);
-done:
-  return st;
+  PASS_NEW(s->try_z, n);
+  PASS_NEW(s->y, 2 * n);
+  PASS_NEW(s->cover, n);
+  PASS_NEW(s->size, n);
+  PASS_NEW(s->M, n * n);
+  PASS_NEW(s->q, n);
+  PASS_NEW(s->room, n);
+  PASS_NEW(s->turned, n);
+  return OK;
 }
 
 static void run_free(run *s) {
@@ -142,14 +140,13 @@ static int pivots_allowed(const run *s) {
 /* Lemke's method with a covering vector d is that of the rows over d with a
  * vector of ones. On a ray of the problem as it stands y is its direction. */
 static status pivot_once(run *s, lcp_report *rep) {
-  status st = OK;
   size_t n = (size_t)s->p->n;
   double *slack = s->y + n;
   for (size_t i = 0; i < n; ++i) {
     cblas_dscal((int)n, 1.0 / s->cover[i], s->M + i, (int)n);
     s->q[i] /= s->cover[i];
   }
-  TRY(lcp_lemke((int)n, s->M, s->q, pivots_allowed(s), s->try_z, rep));
+  PASS(lcp_lemke((int)n, s->M, s->q, pivots_allowed(s), s->try_z, rep));
   contact_product((int)n, s->M, s->try_z, slack);
   for (size_t i = 0; i < n; ++i) {
     if (s->turned[i])
@@ -157,8 +154,7 @@ static status pivot_once(run *s, lcp_report *rep) {
     s->try_z[i] *= s->size[i];
     s->y[i] = s->try_z[i];
   }
-done:
-  return st;
+  return OK;
 }
 
 /* 1: no more pivots and steps are allowed. */
@@ -169,20 +165,18 @@ static int is_spent(const run *s) {
 
 /* Attempts number first to last - 1; *o: how the last one ended. */
 static status pivot(run *s, int first, int last, outcome *o) {
-  status st = OK;
   lcp_report rep = {.outcome = RUNNING};
   *o = STOPPED_ITERATIONS;
   for (int k = first; k < last && !is_spent(s); ++k) {
     choose(s, k);
     s->is_first = k < FIRST;
-    TRY(pivot_once(s, &rep));
+    PASS(pivot_once(s, &rep));
     s->v->iterations += rep.pivots;
     *o = CONVERGED;
     if (rep.outcome != STOPPED_RAY && keep(s)) break;
     *o = rep.outcome == CONVERGED ? STOPPED_STAGNATION : rep.outcome;
   }
-done:
-  return st;
+  return OK;
 }
 
 /* ---- proof --------------------------------------------------------------- */
@@ -239,63 +233,55 @@ done:
 
 /* All bases of few unknowns. */
 static status try_bases(run *s, outcome *o) {
-  status st = OK;
   *o = STOPPED_STAGNATION;
-  if (s->p->n > LCP_MOST_BASES) goto done;
-  TRY(lcp_all_bases(s->p, s->control->tol, s->try_z, o));
+  if (s->p->n > LCP_MOST_BASES) return OK;
+  PASS(lcp_all_bases(s->p, s->control->tol, s->try_z, o));
   if (*o == CONVERGED && !keep(s)) *o = STOPPED_STAGNATION;
   note(s->v, "all bases", *o);
-done:
-  return st;
+  return OK;
 }
 
 static status try_newton(run *s, outcome *o) {
-  status st = OK;
   int found = 0;
-  TRY(lcp_newton(s->p, s->control, s->try_z, &s->v->iterations, &found));
+  PASS(lcp_newton(s->p, s->control, s->try_z, &s->v->iterations, &found));
   *o = found && keep(s) ? CONVERGED
        : is_spent(s)    ? STOPPED_ITERATIONS
                         : STOPPED_STAGNATION;
   note(s->v, "newton", *o);
-done:
-  return st;
+  return OK;
 }
 
 /* The methods after pivoting. */
 static status other_ways(run *s, outcome *o) {
-  status st = OK;
-  TRY(try_bases(s, o));
-  if (*o == STOPPED_STAGNATION) TRY(try_newton(s, o));
-done:
-  return st;
+  PASS(try_bases(s, o));
+  if (*o == STOPPED_STAGNATION) PASS(try_newton(s, o));
+  return OK;
 }
 
 static status follow(run *s) {
-  status st = OK;
   outcome first = RUNNING, o = RUNNING;
   int proved = 0;
-  TRY(pivot(s, 0, FIRST, &first));
+  PASS(pivot(s, 0, FIRST, &first));
   s->v->outcome = first;
-  if (first == CONVERGED || first == STOPPED_NAN) goto done;
+  if (first == CONVERGED || first == STOPPED_NAN) return OK;
   note(s->v, "lemke", first);
   if (first == STOPPED_RAY && !is_certificate(s->p, s->y) && !is_spent(s))
-    TRY(look_for_proof(s, &proved));
+    PASS(look_for_proof(s, &proved));
   else
     proved = first == STOPPED_RAY && is_certificate(s->p, s->y);
-  if (proved) goto done;
+  if (proved) return OK;
   if (!s->control->pivoting_only) {
-    TRY(other_ways(s, &o));
+    PASS(other_ways(s, &o));
     s->v->outcome = o;
-    if (o == CONVERGED || o == STOPPED_RAY) goto done;
+    if (o == CONVERGED || o == STOPPED_RAY) return OK;
   }
-  TRY(pivot(s, FIRST, ATTEMPTS, &o));
+  PASS(pivot(s, FIRST, ATTEMPTS, &o));
   note(s->v, "lemke from other vertices", o);
   s->v->outcome = o == CONVERGED ? CONVERGED
                   : first == STOPPED_ITERATIONS || is_spent(s)
                       ? STOPPED_ITERATIONS
                       : STOPPED_STAGNATION;
-done:
-  return st;
+  return OK;
 }
 
 status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,

@@ -9,18 +9,16 @@
 #include <string.h>
 
 status nonnegative_new(int rows, nonnegative *s) {
-  status st = OK;
   size_t n = (size_t)rows;
   *s = (nonnegative){.rows = rows};
-  NEW(s->b, n);
-  NEW(s->rest, n);
-  NEW(s->G, n * n);
-  NEW(s->Q, n * n);
-  NEW(s->x, n);
-  NEW(s->y, n);
-  NEW(s->work, 4 * n);
-done:
-  return st;
+  PASS_NEW(s->b, n);
+  PASS_NEW(s->rest, n);
+  PASS_NEW(s->G, n * n);
+  PASS_NEW(s->Q, n * n);
+  PASS_NEW(s->x, n);
+  PASS_NEW(s->y, n);
+  PASS_NEW(s->work, 4 * n);
+  return OK;
 }
 
 void nonnegative_free(nonnegative *s) {

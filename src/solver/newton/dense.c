@@ -12,14 +12,12 @@ static const double SINGULAR_RCOND = 1e-13;
 static const double SUSPECT = 0x1p-20; /* -, smallest over largest pivot      */
 
 status dense_new(int room, dense *d) {
-  status st = OK;
   size_t m = (size_t)room;
-  NEW(d->a, m * m);
-  NEW(d->pivot, m);
-  NEW(d->iwork, m);
-  NEW(d->work, 4 * m);
-done:
-  return st;
+  PASS_NEW(d->a, m * m);
+  PASS_NEW(d->pivot, m);
+  PASS_NEW(d->iwork, m);
+  PASS_NEW(d->work, 4 * m);
+  return OK;
 }
 
 void dense_free(dense *d) {

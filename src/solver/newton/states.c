@@ -31,17 +31,15 @@ static void set_stiffness(const contact_problem *cp, states *s) {
 }
 
 status states_new(const contact_problem *cp, states *s) {
-  status st = OK;
   size_t m = (size_t)cp->m;
-  TRY(pattern_new(cp->dim, cp->n, &s->guess));
-  NEW(s->raw, m);
-  NEW(s->k, m);
-  NEW(s->c, cp->n);
-  NEW(s->g, cp->n);
-  NEW(s->rounding, cp->n);
+  PASS(pattern_new(cp->dim, cp->n, &s->guess));
+  PASS_NEW(s->raw, m);
+  PASS_NEW(s->k, m);
+  PASS_NEW(s->c, cp->n);
+  PASS_NEW(s->g, cp->n);
+  PASS_NEW(s->rounding, cp->n);
   set_stiffness(cp, s);
-done:
-  return st;
+  return OK;
 }
 
 void states_free(states *s) {

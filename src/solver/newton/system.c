@@ -14,15 +14,13 @@ static const double ROUNDING = 0x1p-44; /* -, of the forces                   */
 static const double CHORD = 0x1p-4; /* -, of it: what a 3-D update may leave  */
 
 status pattern_new(int dim, int n, pattern *p) {
-  status st = OK;
-  NEW(p->closed, dim * n);
-  NEW(p->mode, n);
-  NEW(p->e, n * (dim - 1));
-  NEW(p->kappa, n);
-  NEW(p->free_id, dim * n);
-  NEW(p->place, dim * n);
-done:
-  return st;
+  PASS_NEW(p->closed, dim * n);
+  PASS_NEW(p->mode, n);
+  PASS_NEW(p->e, n * (dim - 1));
+  PASS_NEW(p->kappa, n);
+  PASS_NEW(p->free_id, dim * n);
+  PASS_NEW(p->place, dim * n);
+  return OK;
 }
 
 void pattern_free(pattern *p) {
@@ -286,41 +284,35 @@ int newton_system_step(newton_system *s, pattern *p, double *u, double *raw) {
 
 /* What the base was made for. */
 static status keep_base(newton_system *s, archive *a) {
-  status st = OK;
   pattern *p = &s->base;
   size_t m = (size_t)s->m, n = s->n_node, e = m - n;
-  TRY(archive_bytes(a, "closed", p->closed, m * sizeof *p->closed));
-  TRY(archive_bytes(a, "mode", p->mode, n * sizeof *p->mode));
-  TRY(archive_reals(a, "e", p->e, e));
-  TRY(archive_reals(a, "kappa", p->kappa, n));
-  TRY(archive_ints(a, "free_id", p->free_id, m));
-  TRY(archive_ints(a, "place", p->place, m));
-done:
-  return st;
+  PASS(archive_bytes(a, "closed", p->closed, m * sizeof *p->closed));
+  PASS(archive_bytes(a, "mode", p->mode, n * sizeof *p->mode));
+  PASS(archive_reals(a, "e", p->e, e));
+  PASS(archive_reals(a, "kappa", p->kappa, n));
+  PASS(archive_ints(a, "free_id", p->free_id, m));
+  return archive_ints(a, "place", p->place, m);
 }
 
 status newton_system_keep(newton_system *s, archive *a) {
-  status st = OK;
   pattern *p = &s->base;
   size_t m = (size_t)s->m;
-  TRY(archive_ints(a, "has_base", &s->has_base, 1));
-  if (!s->has_base) goto done;
-  TRY(archive_ints(a, "full", &s->K.full, 1));
-  TRY(archive_ints(a, "n_column", &s->n_column, 1));
-  TRY(archive_ints(a, "n_free", &p->n_free, 1));
+  PASS(archive_ints(a, "has_base", &s->has_base, 1));
+  if (!s->has_base) return OK;
+  PASS(archive_ints(a, "full", &s->K.full, 1));
+  PASS(archive_ints(a, "n_column", &s->n_column, 1));
+  PASS(archive_ints(a, "n_free", &p->n_free, 1));
   if (p->n_free < 0 || p->n_free > s->m || s->n_column < 0 ||
       s->n_column > s->room)
-    FAIL(ERR_FILE, "the restart file is damaged: a factor has other sizes");
-  TRY(archive_bytes(a, "friction", &s->friction, sizeof s->friction));
-  TRY(archive_reals(a, "spent", &s->spent, 1));
-  TRY(keep_base(s, a));
+    RAISE(ERR_FILE, "the restart file is damaged: a factor has other sizes");
+  PASS(archive_bytes(a, "friction", &s->friction, sizeof s->friction));
+  PASS(archive_reals(a, "spent", &s->spent, 1));
+  PASS(keep_base(s, a));
   s->K.n = p->n_free;
-  TRY(archive_reals(a, "K", s->K.a, (size_t)p->n_free * (size_t)p->n_free));
-  TRY(archive_ints(a, "pivot", s->K.pivot, (size_t)p->n_free));
-  TRY(archive_ints(a, "column", s->column, m));
-  TRY(archive_reals(a, "X", s->X, m * (size_t)s->n_column));
-done:
-  return st;
+  PASS(archive_reals(a, "K", s->K.a, (size_t)p->n_free * (size_t)p->n_free));
+  PASS(archive_ints(a, "pivot", s->K.pivot, (size_t)p->n_free));
+  PASS(archive_ints(a, "column", s->column, m));
+  return archive_reals(a, "X", s->X, m * (size_t)s->n_column);
 }
 
 int newton_system_refresh(newton_system *s) {

@@ -59,20 +59,18 @@ static void lemke_release(void *work) {
 }
 
 static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
-  status st = OK;
   for (int i = 0; i < N_CORRECTOR && cp->dim == 3; ++i) {
     const solver_ops *ops = solver_find(corrector_name[i]);
     if (ops == NULL || !(ops->handles & SOLVES_3D)) continue;
     if ((ops->handles & NEEDS_STIFFNESS) && cp->A == NULL) continue;
     char *param = NULL;
-    NEW(param, ops->param_size + 1);
+    PASS_NEW(param, ops->param_size + 1);
     w->corrector_param[i] = param;
     w->corrector[i] = ops;
     option_defaults(ops->options, param);
-    TRY(ops->setup(cp, param, &w->corrector_work[i]));
+    PASS(ops->setup(cp, param, &w->corrector_work[i]));
   }
-done:
-  return st;
+  return OK;
 }
 
 static status lemke_setup(const contact_problem *cp, const void *par,
@@ -115,13 +113,12 @@ done:
 /* The verdict; from the state of the polygon to that of the disc by a solver
  * that knows it. */
 static status correct(lemke_run *s, double *u, double *r, solver_report *rep) {
-  status st = OK;
   lemke_work *w = s->w;
   size_t bytes = (size_t)s->cp->m * sizeof *u;
   rep->residual = contact_residual(s->cp, u, r);
-  if (rep->residual <= s->control->tol) goto done;
+  if (rep->residual <= s->control->tol) return OK;
   rep->outcome = STOPPED_STAGNATION;
-  if (!w->has_facets) goto done;
+  if (!w->has_facets) return OK;
   memcpy(w->best_u, u, bytes);
   memcpy(w->best_r, r, bytes);
   for (int i = 0; i < N_CORRECTOR && rep->outcome != CONVERGED; ++i) {
@@ -129,14 +126,14 @@ static status correct(lemke_run *s, double *u, double *r, solver_report *rep) {
     if (w->corrector[i] == NULL) continue;
     memcpy(u, w->best_u, bytes);
     memcpy(r, w->best_r, bytes);
-    TRY(w->corrector[i]->solve(s->cp, w->corrector_param[i],
-                               w->corrector_work[i], s->control, u, r, &inner));
+    PASS(w->corrector[i]->solve(s->cp, w->corrector_param[i],
+                                w->corrector_work[i], s->control, u, r,
+                                &inner));
     rep->iterations += inner.iterations;
     rep->residual = contact_residual(s->cp, u, r);
     rep->outcome = rep->residual <= s->control->tol ? CONVERGED : inner.outcome;
   }
-done:
-  return st;
+  return OK;
 }
 
 static void tell(const void *ctx, int pivot, double z0) {

@@ -97,18 +97,16 @@ static double take_out(step_matrix *s, int i) {
 }
 
 static status put_sparse(step_matrix *s, int row) {
-  status st = OK;
   int n = s->rows.start[row];
   for (int j = 0; j < s->m; ++j) {
     if (s->line[j] == 0.0) continue;
-    GROW(s->rows.col, n, s->room_col);
-    GROW(s->rows.val, n, s->room_val);
+    PASS_GROW(s->rows.col, n, s->room_col);
+    PASS_GROW(s->rows.val, n, s->room_val);
     s->rows.col[n] = s->place[j];
     s->rows.val[n++] = s->line[j];
   }
   s->rows.start[row + 1] = n;
-done:
-  return st;
+  return OK;
 }
 
 status step_matrix_put(step_matrix *s, int i) {
@@ -162,15 +160,13 @@ done:
 }
 
 status step_matrix_solve(step_matrix *s, double *d, int *singular) {
-  status st = OK;
   *singular = 0;
-  if (s->k == 0) goto done;
+  if (s->k == 0) return OK;
   if (is_sparse(s))
-    TRY(solve_sparse(s, singular));
+    PASS(solve_sparse(s, singular));
   else
     *singular = !solve_dense(s);
   for (int i = 0; i < s->m && !*singular; ++i)
     if (s->place[i] >= 0) d[i] = s->x[s->place[i]];
-done:
-  return st;
+  return OK;
 }

@@ -221,7 +221,6 @@ static void mark_rows(const run *s) {
 }
 
 static status fill_matrix(const run *s) {
-  status st = OK;
   const contact_problem *cp = s->cp;
   const proximal_work *w = s->w;
   int count;
@@ -237,10 +236,9 @@ static status fill_matrix(const run *s) {
       add_row(s, dof, 1.0);
     else
       add_slip(s, node_id, dof % cp->dim, length);
-    TRY(step_matrix_put(w->J, dof));
+    PASS(step_matrix_put(w->J, dof));
   }
-done:
-  return st;
+  return OK;
 }
 
 /* ---- steps ----------------------------------------------------------------
@@ -260,30 +258,27 @@ static double search(run *s, double bound) {
 
 /* One step of Newton's method; *value NAN if there is none. */
 static status newton_step(run *s, double bound, double *value) {
-  status st = OK;
   proximal_work *w = s->w;
   int singular = 0;
   *value = NAN;
   for (int i = 0; i < s->cp->m; ++i) w->d[i] = -w->F[i];
-  TRY(fill_matrix(s));
+  PASS(fill_matrix(s));
   ++s->steps;
-  TRY(step_matrix_solve(w->J, w->d, &singular));
+  PASS(step_matrix_solve(w->J, w->d, &singular));
   if (!singular) *value = search(s, bound);
-done:
-  return st;
+  return OK;
 }
 
 /* From the centre, where |F|^2 = value, until PASS_GAIN of it is left. *steps:
  * more than PASS: not found. */
 static status pass(run *s, double value, int *steps) {
-  status st = OK;
   double last[MEMORY], wanted = PASS_GAIN * value;
   for (int k = 0; k < MEMORY; ++k) last[k] = value;
   *steps = PASS + 1;
   for (int k = 0; k < PASS; ++k) {
     double bound = 0.0;
     for (int i = 0; i < MEMORY; ++i) bound = fmax(bound, last[i]);
-    TRY(newton_step(s, bound, &value));
+    PASS(newton_step(s, bound, &value));
     if (isnan(value)) break;
     if (value <= wanted) {
       *steps = k + 1;
@@ -291,8 +286,7 @@ static status pass(run *s, double value, int *steps) {
     }
     last[k % MEMORY] = value;
   }
-done:
-  return st;
+  return OK;
 }
 
 /* The share for the next pass. */
@@ -307,7 +301,6 @@ static double next_share(double share, int steps) {
 /* The forces that close every gap and let nothing slip, for limits so large
  * that no step from zero leads there. */
 static status start_closed(run *s) {
-  status st = OK;
   proximal_work *w = s->w;
   int m = s->cp->m, singular = 0;
   memset(s->r, 0, (size_t)m * sizeof *s->r);
@@ -322,12 +315,11 @@ static status start_closed(run *s) {
     if (!w->acts[i]) continue;
     step_matrix_add(w->J, i, 1.0);
     add_row(s, i, 1.0);
-    TRY(step_matrix_put(w->J, i));
+    PASS(step_matrix_put(w->J, i));
   }
-  TRY(step_matrix_solve(w->J, w->d, &singular));
+  PASS(step_matrix_solve(w->J, w->d, &singular));
   if (!singular) memcpy(s->r, w->d, (size_t)m * sizeof *s->r);
-done:
-  return st;
+  return OK;
 }
 
 /* The centre of the next pass: r, or after passes that crept ahead of it. */
@@ -344,13 +336,12 @@ static void set_centre(run *s, int creeps) {
 
 /* Passes from the start forces. */
 static status trial(run *s, int limit, int closed, outcome *end) {
-  status st = OK;
   proximal_work *w = s->w;
   size_t bytes = (size_t)s->cp->m * sizeof *s->r;
   double lowest = HUGE_VAL, before = HUGE_VAL;
   int steps = 0, creeps = 0;
   memcpy(s->r, w->start, bytes);
-  if (closed) TRY(start_closed(s));
+  if (closed) PASS(start_closed(s));
   *end = STOPPED_STAGNATION;
   for (int idle = 0; idle < PATIENCE; ++idle) {
     memcpy(w->centre, s->r, bytes);
@@ -370,13 +361,12 @@ static status trial(run *s, int limit, int closed, outcome *end) {
     creeps = residual > CREEP * before && steps <= HARD ? creeps + 1 : 0;
     before = residual;
     set_centre(s, creeps);
-    TRY(pass(s, evaluate(s), &steps));
+    PASS(pass(s, evaluate(s), &steps));
     if (steps > PASS && s->share >= MOST_SHARE) break; /* would come again */
     if (steps > PASS) memcpy(s->r, w->centre, bytes);
     s->share = next_share(s->share, steps);
   }
-done:
-  return st;
+  return OK;
 }
 
 static status proximal_solve(const contact_problem *cp, const void *par,
