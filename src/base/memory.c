@@ -70,6 +70,16 @@ void memory_free(void *p) {
   free((char *)p - HEADER);
 }
 
+void memory_free_all(int n, void *const *p) {
+  for (int i = 0; i < n; ++i) memory_free(p[i]);
+}
+
+void memory_leave(void *p) {
+  void *block;
+  memcpy(&block, p, sizeof block);
+  memory_free(block);
+}
+
 static void *malloc_counted(size_t bytes) { return memory_new(bytes, 1); }
 
 static void *realloc_counted(void *p, size_t bytes) {

@@ -46,6 +46,16 @@ void *memory_new(size_t n, size_t size); /* zeroed; NULL if refused          */
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size);
 char *memory_text(const char *text); /* copy of a string; NULL if refused    */
 void memory_free(void *p);           /* accepts NULL                         */
+void memory_free_all(int n, void *const *p);
+void memory_leave(void *p); /* p: address of a pointer whose block is freed  */
+
+/* RELEASE(a, b, ...): memory_free of each. */
+#define RELEASE(...)                                                       \
+  memory_free_all((int)(sizeof((void *[]){__VA_ARGS__}) / sizeof(void *)), \
+                  (void *[]){__VA_ARGS__})
+
+/* OWNED double *a = NULL: freed where the name ends, on each return. */
+#define OWNED __attribute__((cleanup(memory_leave)))
 
 /* From here on all blocks of SuiteSparse come from here too. Called before
  * its first use; further calls change nothing. */

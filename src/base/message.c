@@ -99,13 +99,10 @@ status message_log_new(message_log **log) {
 void message_log_free(message_log *log) {
   if (log == NULL) return;
   for (int i = 0; i < log->n; ++i) {
-    memory_free(log->items[i].at);
-    memory_free(log->items[i].text);
+    RELEASE(log->items[i].at, log->items[i].text);
   }
   for (int i = 0; i < log->n_file; ++i) memory_free(log->files[i]);
-  memory_free(log->files);
-  memory_free(log->items);
-  memory_free(log);
+  RELEASE(log->files, log->items, log);
 }
 
 /* Place in the outermost file; NULL if the message has no file. */
@@ -191,8 +188,7 @@ void message_add(message_log *log, message_id id, const place *at,
   m.text = memory_text(text);
   if (at != NULL) m.at = place_copy(at);
   if (m.text == NULL || (at != NULL && m.at == NULL) || keep(log, &m) != OK) {
-    memory_free(m.at);
-    memory_free(m.text);
+    RELEASE(m.at, m.text);
     log->no_memory = 1;
   }
 }

@@ -3,9 +3,10 @@
  *
  * A function that can fail returns a status. RAISE starts a failure and keeps
  * its message, PASS passes one up and notes the function; both return at once.
- * Where locals must be released, FAIL and TRY do the same, but jump to the
- * single label "done:" of a function that declares "status st = OK;". Only main
- * prints the record and turns the code into the exit code of the process.
+ * Memory of locals is freed by OWNED (memory.h). Where else is to be released,
+ * FAIL and TRY do the same, but jump to the single label "done:" of a function
+ * that declares "status st = OK;". Only main prints the record and turns the
+ * code into the exit code of the process.
  */
 #ifndef PROTIS_BASE_STATUS_H
 #define PROTIS_BASE_STATUS_H

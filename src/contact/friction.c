@@ -27,8 +27,7 @@ status friction_limit_new(int n, friction_limit *out) {
 
 void friction_limit_free(friction_limit *limit) {
   if (limit == NULL) return;
-  memory_free(limit->g0);
-  memory_free(limit->in_zone);
+  RELEASE(limit->g0, limit->in_zone);
   sparse_free(&limit->B);
   memset(limit, 0, sizeof *limit);
 }

@@ -55,10 +55,7 @@ typedef struct patch {
 } patch;
 
 static void patch_free(patch *a) {
-  memory_free(a->x);
-  memory_free(a->face);
-  memory_free(a->active);
-  memory_free(a->contact_node);
+  RELEASE(a->x, a->face, a->active, a->contact_node);
 }
 
 /* Place of a mesh node in the group, whose ids ascend. */

@@ -37,19 +37,15 @@ static status take(contact_reach *x, int n, const unsigned char *keep) {
 }
 
 status reach_choose(contact_reach *x, int n, const double *gap) {
-  status st = OK;
-  unsigned char *keep = NULL;
+  OWNED unsigned char *keep = NULL;
   int nearest = 0;
-  NEW(keep, n);
+  PASS_NEW(keep, n);
   for (int i = 0; i < n; ++i) {
     keep[i] = gap[i] <= x->way;
     if (gap[i] < gap[nearest]) nearest = i;
   }
   if (n > 0) keep[nearest] = 1;
-  TRY(take(x, n, keep));
-done:
-  memory_free(keep);
-  return st;
+  return take(x, n, keep);
 }
 
 int reach_misses(const contact_reach *x, int n, const double *gap,
@@ -65,28 +61,21 @@ int reach_misses(const contact_reach *x, int n, const double *gap,
 
 status reach_extend(contact_reach *x, int n, const double *gap,
                     const double *u_n, int stride, int all) {
-  status st = OK;
-  unsigned char *keep = NULL;
-  NEW(keep, n);
+  OWNED unsigned char *keep = NULL;
+  PASS_NEW(keep, n);
   all = all || x->passes >= MOST_PASSES;
   x->way *= LONGER;
   ++x->passes;
   for (int i = 0; i < n; ++i)
     keep[i] = all || gap[i] <= x->way || !(u_n[stride * i] <= gap[i]);
   for (int k = 0; k < x->n_in; ++k) keep[x->in[k]] = 1;
-  TRY(take(x, n, keep));
-done:
-  memory_free(keep);
-  return st;
+  return take(x, n, keep);
 }
 
 /* ---- the problem of the nodes within reach ------------------------------ */
 
 void reach_part_free(reach_part *p) {
-  memory_free(p->gap);
-  memory_free(p->ut0);
-  memory_free(p->g0);
-  memory_free(p->held);
+  RELEASE(p->gap, p->ut0, p->g0, p->held);
   sparse_free(&p->B);
   *p = (reach_part){0};
 }

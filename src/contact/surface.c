@@ -148,12 +148,11 @@ static void add_faces(const builder *b, int pair_id, candidate *first,
 
 /* Order by node; the contacts of a node keep their order. */
 static status sort_candidates(builder *b) {
-  status st = OK;
   int n_node = b->in->mesh->n_node;
-  int *start = NULL;
-  candidate *sorted = NULL;
-  NEW(start, n_node + 1);
-  NEW(sorted, b->n);
+  OWNED int *start = NULL;
+  OWNED candidate *sorted = NULL;
+  PASS_NEW(start, n_node + 1);
+  PASS_NEW(sorted, b->n);
   for (int i = 0; i < b->n; ++i) ++start[b->list[i].node_id + 1];
   for (int k = 0; k < n_node; ++k) start[k + 1] += start[k];
   for (int i = 0; i < b->n; ++i)
@@ -161,31 +160,25 @@ static status sort_candidates(builder *b) {
   memory_free(b->list);
   b->list = sorted;
   sorted = NULL;
-done:
-  memory_free(start);
-  memory_free(sorted);
-  return st;
+  return OK;
 }
 
 static status collect(builder *b) {
-  status st = OK;
   const surface_input *in = b->in;
-  int *index = NULL, n = 0;
-  NEW(b->tallies, in->n_pair);
-  NEW(index, in->mesh->n_node);
+  OWNED int *index = NULL;
+  int n = 0;
+  PASS_NEW(b->tallies, in->n_pair);
+  PASS_NEW(index, in->mesh->n_node);
   for (int p = 0; p < in->n_pair; ++p) n += in->pairs[p].group->n_node;
-  NEW(b->list, n);
+  PASS_NEW(b->list, n);
   for (int p = 0; p < in->n_pair; ++p) {
     check_axis(b, &in->pairs[p]);
     if (check_group(b, &in->pairs[p]) != 0) continue;
     add_faces(b, p, &b->list[b->n], index);
     b->n += in->pairs[p].group->n_node;
   }
-  TRY(message_status(b->log, ERR_DECK));
-  TRY(sort_candidates(b));
-done:
-  memory_free(index);
-  return st;
+  PASS(message_status(b->log, ERR_DECK));
+  return sort_candidates(b);
 }
 
 static double dot(int dim, const double *a, const double *b) {
@@ -454,8 +447,7 @@ status surface_build(const surface_input *in, message_log *log,
   s = NULL;
 done:
   surface_free(s);
-  memory_free(b.list);
-  memory_free(b.tallies);
+  RELEASE(b.list, b.tallies);
   return st;
 }
 
@@ -518,15 +510,6 @@ void surface_drift(const contact_surface *s, const surface_input *in, double t0,
 
 void surface_free(contact_surface *s) {
   if (s == NULL) return;
-  memory_free(s->node_id);
-  memory_free(s->node_no);
-  memory_free(s->contact_id);
-  memory_free(s->side_id);
-  memory_free(s->x);
-  memory_free(s->area);
-  memory_free(s->frame);
-  memory_free(s->basis);
-  memory_free(s->gap0);
-  memory_free(s->held);
-  memory_free(s);
+  RELEASE(s->node_id, s->node_no, s->contact_id, s->side_id, s->x, s->area,
+          s->frame, s->basis, s->gap0, s->held, s);
 }

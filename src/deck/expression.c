@@ -279,22 +279,18 @@ static const char *number_end(const char *p) {
 }
 
 static status read_number(compiler *c) {
-  status st = OK;
   char shown[NAME_SIZE];
   item value = {.kind = NUMBER};
   const char *end = number_end(c->p);
   size_t length = (size_t)(end - c->p);
-  char *text = NULL;
+  OWNED char *text = NULL;
   snprintf(shown, sizeof shown, "%.*s", (int)length, c->p);
-  NEW(text, length + 1);
+  PASS_NEW(text, length + 1);
   memcpy(text, c->p, length);
   const char *wrong = number_real(text, &value.number);
-  if (wrong != NULL) FAIL(ERR_DECK, "%s: '%s'", wrong, shown);
+  if (wrong != NULL) RAISE(ERR_DECK, "%s: '%s'", wrong, shown);
   c->p = end;
-  TRY(emit_value(c, &value));
-done:
-  memory_free(text);
-  return st;
+  return emit_value(c, &value);
 }
 
 static status missing_value(compiler *c) {
@@ -471,6 +467,5 @@ unsigned expression_variables(const expression *e) { return e->variables; }
 
 void expression_free(expression *e) {
   if (e == NULL) return;
-  memory_free(e->code);
-  memory_free(e);
+  RELEASE(e->code, e);
 }

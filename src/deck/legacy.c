@@ -37,8 +37,7 @@ typedef struct unroller {
 
 void format_free(format *f) {
   if (f == NULL) return;
-  memory_free(f->fields);
-  memory_free(f);
+  RELEASE(f->fields, f);
 }
 
 static void skip(unroller *u) {

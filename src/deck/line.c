@@ -9,10 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-void logical_free(logical *l) {
-  memory_free(l->all.text);
-  memory_free(l->segments);
-}
+void logical_free(logical *l) { RELEASE(l->all.text, l->segments); }
 
 place logical_place(const logical *l, int byte) {
   int low = 0, high = l->n_segment;

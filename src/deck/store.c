@@ -111,8 +111,7 @@ char *store_name(deck *d, const char *text, size_t n) {
 static void free_chunks(chunk *c) {
   while (c != NULL) {
     chunk *next = c->next;
-    memory_free(c->room);
-    memory_free(c);
+    RELEASE(c->room, c);
     c = next;
   }
 }
@@ -120,15 +119,11 @@ static void free_chunks(chunk *c) {
 void deck_free(deck *d) {
   if (d == NULL) return;
   for (int i = 0; i < d->n_card; ++i) memory_free(d->cards[i].records);
-  memory_free(d->cards);
-  memory_free(d->symbols);
-  memory_free((void *)d->files);
-  memory_free((void *)d->inputs);
+  RELEASE(d->cards, d->symbols, (void *)d->files, (void *)d->inputs);
   if (d->own != NULL) {
     for (int i = 0; i < d->own->n_expression; ++i)
       expression_free(d->own->expressions[i]);
-    memory_free(d->own->expressions);
-    memory_free(d->own->slot);
+    RELEASE(d->own->expressions, d->own->slot);
     free_chunks(d->own->last);
     memory_free(d->own);
   }

@@ -39,12 +39,7 @@ static status room_new(int m, const constraints *c, room *a) {
   return OK;
 }
 
-static void room_free(room *a) {
-  memory_free(a->R);
-  memory_free(a->X);
-  memory_free(a->rhs);
-  memory_free(a->spread);
-}
+static void room_free(room *a) { RELEASE(a->R, a->X, a->rhs, a->spread); }
 
 /* |R X - [V' s]| of the largest entry, relative. */
 static double contradiction(int m, const constraints *c, room *a) {
@@ -82,8 +77,4 @@ done:
   return st;
 }
 
-void constraints_free(constraints *c) {
-  memory_free(c->V);
-  memory_free(c->R);
-  memory_free(c->s);
-}
+void constraints_free(constraints *c) { RELEASE(c->V, c->R, c->s); }

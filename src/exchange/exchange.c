@@ -59,13 +59,6 @@ done:
 
 void exchange_free(exchange_problem *p) {
   if (p == NULL) return;
-  memory_free(p->matrix);
-  memory_free(p->load);
-  memory_free(p->gap);
-  memory_free(p->ut0);
-  memory_free(p->g0);
-  memory_free(p->B.start);
-  memory_free(p->B.col);
-  memory_free(p->B.val);
-  memory_free(p);
+  RELEASE(p->matrix, p->load, p->gap, p->ut0, p->g0, p->B.start, p->B.col,
+          p->B.val, p);
 }

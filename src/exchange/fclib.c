@@ -63,15 +63,14 @@ static status read_vector(const hdf5_source *s, const char *name, int n,
 
 static status read_friction(const hdf5_source *s, const char *name,
                             exchange_problem *p) {
-  status st = OK;
-  double *mu = NULL;
+  OWNED double *mu = NULL;
   int any = 0;
-  TRY(read_vector(s, name, p->n, &mu));
+  PASS(read_vector(s, name, p->n, &mu));
   p->B.n = p->n;
   for (int i = 0; i < p->n; ++i) {
     if (mu[i] < 0.0)
-      FAIL(ERR_DECK, "%s: %s, item %d = %g is negative", s->path, name, i,
-           mu[i]);
+      RAISE(ERR_DECK, "%s: %s, item %d = %g is negative", s->path, name, i,
+            mu[i]);
     any = any || mu[i] > 0.0;
     p->B.start[i + 1] = i + 1;
     p->B.col[i] = i;
@@ -80,9 +79,7 @@ static status read_friction(const hdf5_source *s, const char *name,
   p->cp.g0 = any ? p->g0 : NULL;
   p->cp.B = any ? &p->B : NULL;
   p->cp.ut0 = any ? p->ut0 : NULL;
-done:
-  memory_free(mu);
-  return st;
+  return OK;
 }
 
 static status refuse_group(const hdf5_source *s, const char *name,
@@ -193,10 +190,7 @@ static void global_release(global *g) {
   triplets_free(&g->M);
   triplets_free(&g->H);
   triplets_free(&g->G);
-  memory_free(g->f);
-  memory_free(g->w);
-  memory_free(g->b);
-  memory_free(g->h);
+  RELEASE(g->f, g->w, g->b, g->h);
 }
 
 static status read_matrices(const hdf5_source *s, global *g) {
@@ -371,8 +365,7 @@ static status condense_constrained(const hdf5_source *s, const global *g,
 done:
   triplets_free(&joined);
   constraints_free(&c);
-  memory_free(all);
-  memory_free(vector);
+  RELEASE(all, vector);
   return st;
 }
 

@@ -10,8 +10,6 @@
 #include "base/system/input.h"
 
 #include <errno.h>
-#include <math.h>
-#include <string.h>
 
 enum { WORD = 80 };
 enum { FEW_UNKNOWNS = 300 }; /* of a file too short the place is told       */

@@ -140,17 +140,13 @@ status triplets_read(const hdf5_source *s, const char *group, triplets *t) {
   TRY(read_arrays(&a));
   TRY(fill(&a, t));
 done:
-  memory_free(a.p);
-  memory_free(a.i);
-  memory_free(a.x);
+  RELEASE(a.p, a.i, a.x);
   if (st != OK) triplets_free(t);
   return st;
 }
 
 void triplets_free(triplets *t) {
-  memory_free(t->row);
-  memory_free(t->column);
-  memory_free(t->value);
+  RELEASE(t->row, t->column, t->value);
   memset(t, 0, sizeof *t);
 }
 

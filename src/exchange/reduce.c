@@ -129,10 +129,7 @@ static status columns_new(const triplets *H, const double *f, columns *c) {
   return triplets_by_column(H, &c->start, &c->entry);
 }
 
-static void columns_free(columns *c) {
-  memory_free(c->start);
-  memory_free(c->entry);
-}
+static void columns_free(columns *c) { RELEASE(c->start, c->entry); }
 
 static void put_column(const columns *c, int k, double *x) {
   if (k == c->H->columns) {
@@ -199,25 +196,25 @@ static status reduce_sparse(reduction *s, const columns *c, double *W,
 
 static status reduce_dense(const triplets *M, const columns *c, double *W,
                            double *q, int *singular) {
-  status st = OK;
   int n = M->rows, mirror = triplets_triangle(M) != 0;
   size_t size = (size_t)n * (size_t)n;
-  double *a = NULL, *work = NULL, *x = NULL, rcond = 0.0;
-  int *pivot = NULL;
+  OWNED double *a = NULL, *work = NULL, *x = NULL;
+  double rcond = 0.0;
+  OWNED int *pivot = NULL;
   *singular = 1;
-  NEW(a, size);
-  NEW(work, 4 * (size_t)n);
-  NEW(pivot, 2 * (size_t)n);
-  NEW(x, n);
+  PASS_NEW(a, size);
+  PASS_NEW(work, 4 * (size_t)n);
+  PASS_NEW(pivot, 2 * (size_t)n);
+  PASS_NEW(x, n);
   triplets_dense(M, a);
   for (long k = 0; k < M->n && mirror; ++k)
     if (M->row[k] != M->column[k])
       a[(size_t)M->column[k] + (size_t)n * (size_t)M->row[k]] += M->value[k];
   double norm = LAPACKE_dlange_work(LAPACK_COL_MAJOR, '1', n, n, a, n, work);
-  if (LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, a, n, pivot) != 0) goto done;
+  if (LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, a, n, pivot) != 0) return OK;
   LAPACKE_dgecon_work(LAPACK_COL_MAJOR, '1', n, a, n, norm, &rcond, work,
                       pivot + n);
-  if (!(rcond > RCOND)) goto done;
+  if (!(rcond > RCOND)) return OK;
   *singular = 0;
   for (int k = 0; k <= c->H->columns; ++k) {
     memset(x, 0, (size_t)n * sizeof *x);
@@ -225,12 +222,7 @@ static status reduce_dense(const triplets *M, const columns *c, double *W,
     LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', n, 1, a, n, pivot, x, n);
     take_column(c, x, target(c, k, W, q));
   }
-done:
-  memory_free(a);
-  memory_free(work);
-  memory_free(pivot);
-  memory_free(x);
-  return st;
+  return OK;
 }
 
 status reduce_global(const triplets *M, const triplets *H, const double *f,

@@ -14,7 +14,6 @@
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
 
 static const double RCOND = 1e-13; /* -, of Ws, below: H is rank deficient   */
 
@@ -31,19 +30,20 @@ static double stiffness(const triplets *M, const triplets *H) {
 /* In one triangle if M is. */
 status springs_add(const triplets *M, const triplets *H, double *s,
                    triplets *held) {
-  status st = OK;
   *s = stiffness(M, H);
-  int *start = NULL, triangle = triplets_triangle(M);
-  long *entry = NULL, count = M->n;
-  TRY(triplets_by_column(H, &start, &entry));
+  OWNED int *start = NULL;
+  int triangle = triplets_triangle(M);
+  OWNED long *entry = NULL;
+  long count = M->n;
+  PASS(triplets_by_column(H, &start, &entry));
   for (int j = 0; j < H->columns; ++j) {
     long n = start[j + 1] - start[j];
     count += n * n;
   }
   held->rows = held->columns = M->rows;
-  NEW(held->row, count);
-  NEW(held->column, count);
-  NEW(held->value, count);
+  PASS_NEW(held->row, count);
+  PASS_NEW(held->column, count);
+  PASS_NEW(held->value, count);
   for (; held->n < M->n; ++held->n) {
     held->row[held->n] = M->row[held->n];
     held->column[held->n] = M->column[held->n];
@@ -58,10 +58,7 @@ status springs_add(const triplets *M, const triplets *H, double *s,
         held->column[held->n] = column;
         held->value[held->n++] = *s * H->value[entry[a]] * H->value[entry[b]];
       }
-done:
-  memory_free(start);
-  memory_free(entry);
-  return st;
+  return OK;
 }
 
 /* inv(W) in place, both triangles; 0: singular. work[3m], iwork[m] */
@@ -95,8 +92,6 @@ status springs_condense(const triplets *M, const triplets *H, const double *f,
   for (size_t i = 0; i < (size_t)m; ++i) A[i * ((size_t)m + 1)] -= s;
 done:
   triplets_free(&held);
-  memory_free(q);
-  memory_free(work);
-  memory_free(iwork);
+  RELEASE(q, work, iwork);
   return st;
 }

@@ -61,9 +61,7 @@ static status find_graph(const domain *d, stiffness *k) {
     k->start[j + 1] = g.n;
   }
 done:
-  memory_free(from);
-  memory_free(elem);
-  memory_free(g.seen);
+  RELEASE(from, elem, g.seen);
   return st;
 }
 
@@ -171,9 +169,7 @@ static status add_clusters(const domain *d, stiffness *k) {
   NEW(x.r, k->dim * most);
   for (int q = 0; q < c->n; ++q) add_cluster(d, q, &x, k);
 done:
-  memory_free(x.place);
-  memory_free(x.t);
-  memory_free(x.r);
+  RELEASE(x.place, x.t, x.r);
   return st;
 }
 
@@ -296,13 +292,6 @@ done:
 
 void stiffness_free(stiffness *k) {
   if (k == NULL) return;
-  memory_free(k->start);
-  memory_free(k->row);
-  memory_free(k->block);
-  memory_free(k->free);
-  memory_free(k->contact);
-  memory_free(k->first_row);
-  memory_free(k->coupling);
-  memory_free(k->coupling_column);
-  memory_free(k);
+  RELEASE(k->start, k->row, k->block, k->free, k->contact, k->first_row,
+          k->coupling, k->coupling_column, k);
 }

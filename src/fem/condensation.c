@@ -171,9 +171,7 @@ static status factor_bodies(condensed *c) {
 done:
   timer_leave(STAGE_ORDERING);
   graph_release(&g);
-  memory_free(list);
-  memory_free(seen);
-  memory_free(number);
+  RELEASE(list, seen, number);
   return st;
 }
 
@@ -275,17 +273,9 @@ void condensed_free(condensed *c) {
   for (int q = 0; c->body != NULL && q < c->n_body; ++q)
     body_factor_release(&c->body[q], c->cm);
   if (c->cm != NULL) cholmod_l_finish(c->cm);
-  memory_free(c->cm);
-  memory_free(c->A);
-  memory_free(c->body);
-  memory_free(c->motion);
+  RELEASE(c->cm, c->A, c->body, c->motion);
   rigid_release(&c->rigid);
-  memory_free(c->pinned);
-  memory_free(c->load);
-  memory_free(c->prescribed);
-  memory_free(c->F);
-  memory_free(c->rest);
-  memory_free(c);
+  RELEASE(c->pinned, c->load, c->prescribed, c->F, c->rest, c);
 }
 
 /* The local components of the prescribed displacements: prescribed[]. */
@@ -405,23 +395,19 @@ static status refine(condensed *c, double *u) {
 
 /* f_c anew: what holds the refined solution for u_c = 0, the sign turned. */
 static status refine_load(condensed *c, const double *F, double *f_c) {
-  status st = OK;
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
-  double *u = NULL, *zero = NULL;
-  NEW(u, n);
-  NEW(zero, c->m);
-  if (c->rest == NULL) NEW(c->rest, n);
-  if (c->F == NULL) NEW(c->F, n);
+  OWNED double *u = NULL, *zero = NULL;
+  PASS_NEW(u, n);
+  PASS_NEW(zero, c->m);
+  if (c->rest == NULL) PASS_NEW(c->rest, n);
+  if (c->F == NULL) PASS_NEW(c->F, n);
   memcpy(c->F, F, n * sizeof *F);
-  TRY(back(c, zero, u));
-  TRY(refine(c, u));
+  PASS(back(c, zero, u));
+  PASS(refine(c, u));
   set_residual(c, u);
   for (int q = 0; q < c->m; ++q)
     if (!is_held(c, q)) f_c[q] = c->load[component_of(c, q)];
-done:
-  memory_free(u);
-  memory_free(zero);
-  return st;
+  return OK;
 }
 
 int condensed_costs_digits(const condensed *c) {
@@ -466,21 +452,18 @@ status condensed_force_energy(condensed *c, const double *d, double *square) {
 }
 
 status condensed_untouched(condensed *c, const double *f, double *u) {
-  status st = OK;
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
-  double *load = NULL, *w = NULL, square = 0;
-  NEW(load, n);
-  NEW(w, n);
+  OWNED double *load = NULL, *w = NULL;
+  double square = 0;
+  PASS_NEW(load, n);
+  PASS_NEW(w, n);
   for (int q = 0; q < c->m; ++q) load[component_of(c, q)] = f[q];
   for (int q = 0; q < c->n_body; ++q)
-    TRY(body_factor_solve(&c->body[q], load, w, &square, c->cm));
+    PASS(body_factor_solve(&c->body[q], load, w, &square, c->cm));
   for (int q = 0; q < c->m; ++q)
     u[q] = is_held(c, q) ? f[q] / c->A[(size_t)q * (size_t)(c->m + 1)]
                          : w[component_of(c, q)];
-done:
-  memory_free(load);
-  memory_free(w);
-  return st;
+  return OK;
 }
 
 status condensed_misfit(condensed *c, const double *rest, const double *rc,
@@ -500,16 +483,16 @@ status condensed_misfit(condensed *c, const double *rest, const double *rc,
  * A_oo is not positive definite. */
 static status solve_open(const condensed *c, const unsigned char *held,
                          const double *f, double *u, int *good) {
-  status st = OK;
-  double *A = NULL, *x = NULL;
-  int *open = NULL, n = 0;
-  NEW(open, c->m);
+  OWNED double *A = NULL, *x = NULL;
+  OWNED int *open = NULL;
+  int n = 0;
+  PASS_NEW(open, c->m);
   for (int q = 0; q < c->m; ++q) {
     u[q] = 0;
     if (!held[q]) open[n++] = q;
   }
-  NEW(A, (size_t)n * (size_t)n);
-  NEW(x, n);
+  PASS_NEW(A, (size_t)n * (size_t)n);
+  PASS_NEW(x, n);
   for (int b = 0; b < n; ++b) {
     x[b] = f[open[b]];
     for (int a = 0; a < n; ++a)
@@ -519,11 +502,7 @@ static status solve_open(const condensed *c, const unsigned char *held,
   *good = n == 0 ||
           LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'L', n, 1, A, n, x, n) == 0;
   for (int b = 0; b < n && *good; ++b) u[open[b]] = x[b];
-done:
-  memory_free(A);
-  memory_free(x);
-  memory_free(open);
-  return st;
+  return OK;
 }
 
 status condensed_misfit_held(condensed *c, const double *rest, const double *rc,
@@ -548,8 +527,7 @@ status condensed_misfit_held(condensed *c, const double *rest, const double *rc,
   for (int q = 0; q < c->m; ++q) *square += rc[q] * u_c[q];
   *square = fmax(0, *square);
 done:
-  memory_free(f_c);
-  memory_free(u_c);
+  RELEASE(f_c, u_c);
   return st;
 }
 

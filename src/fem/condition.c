@@ -90,16 +90,13 @@ done:
 
 status body_factor_condition(const stiffness *k, const body_factor *f,
                              cholmod_common *cm, double *condition) {
-  status st = OK;
   const size_t n = (size_t)k->dim * (size_t)k->n_node;
-  double *sum = NULL, *root = NULL, growth = 0;
-  NEW(sum, n);
-  NEW(root, n);
+  OWNED double *sum = NULL, *root = NULL;
+  double growth = 0;
+  PASS_NEW(sum, n);
+  PASS_NEW(root, n);
   fill_roots(k, f, root);
-  TRY(inverse_norm(f, root, cm, &growth));
+  PASS(inverse_norm(f, root, cm, &growth));
   *condition = largest_row_sum(k, f, root, sum) * growth;
-done:
-  memory_free(sum);
-  memory_free(root);
-  return st;
+  return OK;
 }

@@ -175,13 +175,13 @@ static status factorise(const stiffness *k, const long *number,
 
 /* Positions of the unknowns and of the contact ones in the factor. */
 static status locate(const stiffness *k, const long *number, body_factor *f) {
-  status st = OK;
   const SuiteSparse_long *perm = f->L->Perm;
-  long *position = NULL, q = 0;
-  NEW(position, f->n);
-  NEW(f->unknown, f->n);
-  NEW(f->contact_at, f->nc);
-  NEW(f->contact_id, f->nc);
+  OWNED long *position = NULL;
+  long q = 0;
+  PASS_NEW(position, f->n);
+  PASS_NEW(f->unknown, f->n);
+  PASS_NEW(f->contact_at, f->nc);
+  PASS_NEW(f->contact_id, f->nc);
   for (long p = 0; p < f->n; ++p) position[perm[p]] = p;
   for (int t = 0; t < f->n_node; ++t)
     for (int c = 0; c < k->dim; ++c) {
@@ -196,13 +196,11 @@ static status locate(const stiffness *k, const long *number, body_factor *f) {
   }
   if (f->nc > 0) {
     const long first = f->contact_at[0];
-    NEW(f->rank, f->n - first);
+    PASS_NEW(f->rank, f->n - first);
     for (long p = first; p < f->n; ++p) f->rank[p - first] = -1;
     for (q = 0; q < f->nc; ++q) f->rank[f->contact_at[q] - first] = (int)q;
   }
-done:
-  memory_free(position);
-  return st;
+  return OK;
 }
 
 status body_factor_build(const stiffness *k, const long *number,
@@ -235,11 +233,7 @@ void body_factor_release(body_factor *f, cholmod_common *cm) {
   cholmod_l_free_factor(&f->L, cm);
   cholmod_l_free_dense(&f->y, cm);
   cholmod_l_free_dense(&f->work, cm);
-  memory_free(f->node);
-  memory_free(f->unknown);
-  memory_free(f->contact_at);
-  memory_free(f->contact_id);
-  memory_free(f->rank);
+  RELEASE(f->node, f->unknown, f->contact_at, f->contact_id, f->rank);
   *f = (body_factor){0};
 }
 
@@ -314,20 +308,20 @@ void symmetric_fill(size_t n, double *A) {
 
 status body_factor_condense(const stiffness *k, const body_factor *f, int m,
                             double *A) {
-  status st = OK;
   const size_t nc = (size_t)f->nc, stride = (size_t)m;
   const int in_place = covers(f, m);
   const double scale = ldexp(1, f->exponent);
-  double *U = NULL, *S = A;
-  if (nc == 0) goto done;
+  OWNED double *U = NULL;
+  double *S = A;
+  if (nc == 0) return OK;
   if (!in_place) {
-    NEW(U, nc * nc);
+    PASS_NEW(U, nc * nc);
     S = U;
   }
   extract_reversed(f, S);
   if (LAPACKE_dlauum_work(LAPACK_COL_MAJOR, 'U', (lapack_int)nc, S,
                           (lapack_int)nc) != 0)
-    FAIL(ERR_INTERNAL, "condensed matrix of order %zu not formed", nc);
+    RAISE(ERR_INTERNAL, "condensed matrix of order %zu not formed", nc);
   for (size_t j = 0; j < nc; ++j) {
     const long at = f->contact_at[nc - 1 - j];
     S[j * (nc + 1)] -= body_factor_spring(k, f, f->unknown[at]);
@@ -339,28 +333,23 @@ status body_factor_condense(const stiffness *k, const body_factor *f, int m,
     for (size_t i = 0; i < nc; ++i)
       to[f->contact_id[nc - 1 - i]] = S[i + nc * j];
   }
-done:
-  memory_free(U);
-  return st;
+  return OK;
 }
 
 status body_factor_forward(body_factor *f, const double *load, double *f_c,
                            cholmod_common *cm) {
-  status st = OK;
-  double *y = f->y->x, *in = NULL, *out = NULL;
+  OWNED double *in = NULL, *out = NULL;
+  double *y = f->y->x;
   const double scale = ldexp(1, -f->exponent), back = ldexp(1, f->exponent);
-  NEW(in, f->nc);
-  NEW(out, f->nc);
+  PASS_NEW(in, f->nc);
+  PASS_NEW(out, f->nc);
   for (long p = 0; p < f->n; ++p) y[p] = scale * load[f->unknown[p]];
   if (!cholmod_l_super_lsolve(f->L, f->y, f->work, cm))
-    FAIL(ERR_INTERNAL, "forward solve of %ld unknowns failed", f->n);
+    RAISE(ERR_INTERNAL, "forward solve of %ld unknowns failed", f->n);
   for (long q = 0; q < f->nc; ++q) in[q] = y[f->contact_at[q]];
   multiply_cc(f, 0, in, out);
   for (long q = 0; q < f->nc; ++q) f_c[f->contact_id[q]] = back * out[q];
-done:
-  memory_free(in);
-  memory_free(out);
-  return st;
+  return OK;
 }
 
 status body_factor_back(const body_factor *f, const double *u_c, double *u,
@@ -383,8 +372,7 @@ status body_factor_back(const body_factor *f, const double *u_c, double *u,
   for (long q = 0; q < f->nc; ++q) u[f->unknown[f->contact_at[q]]] = in[q];
 done:
   cholmod_l_free_dense(&z, cm);
-  memory_free(in);
-  memory_free(out);
+  RELEASE(in, out);
   return st;
 }
 
@@ -412,10 +400,10 @@ done:
 
 status body_factor_energy(const body_factor *f, const double *d,
                           double *square) {
-  status st = OK;
-  double *x = NULL, sum = 0;
+  OWNED double *x = NULL;
+  double sum = 0;
   long super = 0;
-  NEW(x, f->nc);
+  PASS_NEW(x, f->nc);
   for (long q = 0; q < f->nc; ++q) x[q] = d[f->contact_id[q]];
   for (long q = 0; q < f->nc; ++q) {
     const factor_column c = column_at(f->L, f->contact_at[q], &super);
@@ -427,9 +415,7 @@ status body_factor_energy(const body_factor *f, const double *d,
     sum += x[q] * x[q];
   }
   *square += ldexp(sum, -f->exponent);
-done:
-  memory_free(x);
-  return st;
+  return OK;
 }
 
 status body_factor_solve(const body_factor *f, const double *d, double *w,

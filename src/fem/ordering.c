@@ -20,11 +20,10 @@ enum { LEAF = 24, LARGE_BODY = 200000, LARGE_PARTS = 16 };
 static const double work_limit = 5;
 
 status graph_of_unknowns(const stiffness *k, graph *g) {
-  status st = OK;
-  size_t *at = NULL;
+  OWNED size_t *at = NULL;
   g->n = k->n_node;
-  NEW(g->start, k->n_node + 1);
-  NEW(at, k->n_node + 1);
+  PASS_NEW(g->start, k->n_node + 1);
+  PASS_NEW(at, k->n_node + 1);
   for (int pass = 0; pass < 2; ++pass) {
     for (int j = 0; j < k->n_node; ++j)
       for (size_t p = k->start[j] + 1; k->free[j] && p < k->start[j + 1]; ++p) {
@@ -42,16 +41,13 @@ status graph_of_unknowns(const stiffness *k, graph *g) {
       g->start[i + 1] = g->start[i] + at[i];
       at[i] = g->start[i];
     }
-    NEW(g->next, g->start[k->n_node]);
+    PASS_NEW(g->next, g->start[k->n_node]);
   }
-done:
-  memory_free(at);
-  return st;
+  return OK;
 }
 
 void graph_release(graph *g) {
-  memory_free(g->start);
-  memory_free(g->next);
+  RELEASE(g->start, g->next);
   *g = (graph){0};
 }
 
@@ -243,8 +239,7 @@ static status order_by_cuts(const graph *g, int dim, const double *x, int n,
   dissect(&w, n, node);
   *work = w.work;
 done:
-  memory_free(w.side);
-  memory_free(w.spare);
+  RELEASE(w.side, w.spare);
   return st;
 }
 
@@ -303,8 +298,7 @@ static status order_by_pattern(order_method method, const graph *g, int n,
   for (int i = 0; i < n; ++i) node[i] = old[perm[i]];
 done:
   cholmod_l_free_sparse(&a, cm);
-  memory_free(perm);
-  memory_free(old);
+  RELEASE(perm, old);
   return st;
 }
 
@@ -338,21 +332,18 @@ done:
 /* Both ways, the cheaper by count: node[] holds the cuts' order. */
 static status compare_with_metis(const graph *g, int n, int *node,
                                  cholmod_common *cm, const char **name) {
-  status st = OK;
   double cuts, metis;
-  int *other = NULL;
-  NEW(other, n);
+  OWNED int *other = NULL;
+  PASS_NEW(other, n);
   memcpy(other, node, (size_t)n * sizeof *node);
-  TRY(order_by_pattern(ORDER_METIS, g, n, other, cm));
-  TRY(order_flops(g, n, node, cm, &cuts));
-  TRY(order_flops(g, n, other, cm, &metis));
+  PASS(order_by_pattern(ORDER_METIS, g, n, other, cm));
+  PASS(order_flops(g, n, node, cm, &cuts));
+  PASS(order_flops(g, n, other, cm, &metis));
   if (metis < cuts) {
     memcpy(node, other, (size_t)n * sizeof *node);
     *name = "METIS";
   }
-done:
-  memory_free(other);
-  return st;
+  return OK;
 }
 
 status order_nodes(const graph *g, int dim, const double *x, int n, int *node,

@@ -66,24 +66,20 @@ static void unite_round_node_3d(const mesh *m, const pieces *p, int j,
 }
 
 static status unite_by_faces(const mesh *m, const pieces *p, int *up) {
-  status st = OK;
-  int *last = NULL;
-  corner *list = NULL;
+  OWNED int *last = NULL;
+  OWNED corner *list = NULL;
   size_t most = 0;
   for (int j = 0; j < m->n_node; ++j)
     if (p->start[j + 1] - p->start[j] > most)
       most = p->start[j + 1] - p->start[j];
-  NEW(last, m->n_node);
-  NEW(list, 3 * most);
+  PASS_NEW(last, m->n_node);
+  PASS_NEW(list, 3 * most);
   for (int j = 0; j < m->n_node; ++j)
     if (m->dim == 2)
       unite_round_node_2d(m, p, j, last, up);
     else
       unite_round_node_3d(m, p, j, list, up);
-done:
-  memory_free(last);
-  memory_free(list);
-  return st;
+  return OK;
 }
 
 /* Number the sets by their first element: id[n_elem], returns how many. */
@@ -98,12 +94,11 @@ static int number_sets(int n_elem, int *up, int *id) {
 
 /* Number the pieces body by body; body_of[n_elem]. */
 static status sort_pieces(const mesh *m, const int *body_of, pieces *p) {
-  status st = OK;
-  int *count = NULL, *number = NULL;
-  NEW(count, p->n_body + 1);
-  NEW(number, p->n_piece);
-  NEW(p->body, p->n_piece);
-  NEW(p->piece_elem, p->n_piece);
+  OWNED int *count = NULL, *number = NULL;
+  PASS_NEW(count, p->n_body + 1);
+  PASS_NEW(number, p->n_piece);
+  PASS_NEW(p->body, p->n_piece);
+  PASS_NEW(p->piece_elem, p->n_piece);
   for (int q = 0; q < p->n_piece; ++q) number[q] = -1;
   for (int pass = 0; pass < 2; ++pass) {
     for (int e = 0; e < m->n_elem; ++e) {
@@ -122,10 +117,7 @@ static status sort_pieces(const mesh *m, const int *body_of, pieces *p) {
     for (int q = 0; q < p->n_piece; ++q) number[q] = -1;
   }
   for (int e = 0; e < m->n_elem; ++e) p->piece[e] = number[p->piece[e]];
-done:
-  memory_free(count);
-  memory_free(number);
-  return st;
+  return OK;
 }
 
 status pieces_find(const mesh *m, pieces *p) {
@@ -145,17 +137,12 @@ status pieces_find(const mesh *m, pieces *p) {
   p->n_body = number_sets(m->n_elem, up, body);
   TRY(sort_pieces(m, body, p));
 done:
-  memory_free(up);
-  memory_free(body);
+  RELEASE(up, body);
   if (st != OK) pieces_release(p);
   return st;
 }
 
 void pieces_release(pieces *p) {
-  memory_free(p->piece);
-  memory_free(p->body);
-  memory_free(p->piece_elem);
-  memory_free(p->start);
-  memory_free(p->elem);
+  RELEASE(p->piece, p->body, p->piece_elem, p->start, p->elem);
   *p = (pieces){0};
 }

@@ -40,13 +40,9 @@ void rigid_row(const rigid_modes *r, const double *x, const double *direction,
 
 void rigid_release(rigid_set *r) {
   for (int b = 0; b < r->n_body; ++b) {
-    memory_free(r->body[b].Y);
-    memory_free(r->body[b].node);
-    memory_free(r->body[b].column);
-    memory_free(r->body[b].load);
+    RELEASE(r->body[b].Y, r->body[b].node, r->body[b].column, r->body[b].load);
   }
-  memory_free(r->body);
-  memory_free(r->Q);
+  RELEASE(r->body, r->Q);
   *r = (rigid_set){0};
 }
 
@@ -205,12 +201,11 @@ static int most_moved(int m, int k, const double *room) {
 /* Gauss with pivots: the motion that a pin stops is taken out of the others. */
 status rigid_pin(const rigid_set *r, const rigid_body *b,
                  unsigned char *pinned) {
-  status st = OK;
   const int m = r->m, k = b->k;
-  double *room = NULL, *moved = NULL, *axis = NULL;
-  NEW(room, (size_t)m * (size_t)k);
-  NEW(moved, m);
-  NEW(axis, k);
+  OWNED double *room = NULL, *moved = NULL, *axis = NULL;
+  PASS_NEW(room, (size_t)m * (size_t)k);
+  PASS_NEW(moved, m);
+  PASS_NEW(axis, k);
   memcpy(room, r->Q + (size_t)m * (size_t)b->first,
          (size_t)m * (size_t)k * sizeof *room);
   for (int j = 0; j < k; ++j) {
@@ -222,21 +217,16 @@ status rigid_pin(const rigid_set *r, const rigid_body *b,
     cblas_dger(CblasColMajor, m, k, -1, moved, 1, axis, 1, room, m);
     pinned[at] = 1;
   }
-done:
-  memory_free(room);
-  memory_free(moved);
-  memory_free(axis);
-  return st;
+  return OK;
 }
 
 /* With V = A Q - Q (Q' A Q)/2:  A <- A - V Q' - Q V'. */
 status rigid_project(const rigid_set *r, double *A) {
-  status st = OK;
   const int m = r->m, k = r->k;
-  double *V = NULL, *S = NULL;
-  if (m == 0 || k == 0) goto done;
-  NEW(V, (size_t)m * (size_t)k);
-  NEW(S, (size_t)k * (size_t)k);
+  OWNED double *V = NULL, *S = NULL;
+  if (m == 0 || k == 0) return OK;
+  PASS_NEW(V, (size_t)m * (size_t)k);
+  PASS_NEW(S, (size_t)k * (size_t)k);
   cblas_dsymm(CblasColMajor, CblasLeft, CblasUpper, m, k, 1, A, m, r->Q, m, 0,
               V, m);
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, k, k, m, 1, r->Q, m, V,
@@ -246,10 +236,7 @@ status rigid_project(const rigid_set *r, double *A) {
   cblas_dsyr2k(CblasColMajor, CblasUpper, CblasNoTrans, m, k, -1, V, m, r->Q, m,
                1, A, m);
   symmetric_fill((size_t)m, A);
-done:
-  memory_free(V);
-  memory_free(S);
-  return st;
+  return OK;
 }
 
 /* Resultants of the loads on each piece. */

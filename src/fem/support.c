@@ -132,28 +132,24 @@ static void add_contact(const body *b, int normals, triangle *t) {
  * of the largest: rows of Z; its dimension. */
 static status null_space(const triangle *t, double limit, double *Z,
                          int *rank) {
-  status st = OK;
   const int n = t->n;
-  double *a = NULL, *u = NULL, *work = NULL, s[MAX_COLUMNS], none;
-  NEW(a, n * n);
-  NEW(u, n * n);
-  NEW(work, 16 * n);
+  OWNED double *a = NULL, *u = NULL, *work = NULL;
+  double s[MAX_COLUMNS], none;
+  PASS_NEW(a, n * n);
+  PASS_NEW(u, n * n);
+  PASS_NEW(work, 16 * n);
   /* The transpose in column major order: its left vectors are wanted. */
   memcpy(a, t->r, (size_t)(n * n) * sizeof *a);
   if (LAPACKE_dgesvd_work(LAPACK_COL_MAJOR, 'A', 'N', n, n, a, n, s, u, n,
                           &none, 1, work, 16 * n) != 0)
-    FAIL(ERR_INTERNAL, "singular values of the supports not found");
+    RAISE(ERR_INTERNAL, "singular values of the supports not found");
   *rank = 0;
   for (int k = 0; k < n; ++k) {
     if (s[0] > 0 && s[k] > limit * s[0]) continue;
     memcpy(Z + (size_t)(*rank)++ * (size_t)n, u + (size_t)k * (size_t)n,
            (size_t)n * sizeof *Z);
   }
-done:
-  memory_free(a);
-  memory_free(u);
-  memory_free(work);
-  return st;
+  return OK;
 }
 
 /* Reduced row echelon form, so that motions come out along the axes. */
@@ -322,26 +318,23 @@ done:
 
 /* Store what the supports in t leave free to rounding. */
 static status keep_motions(const body *b, const triangle *t, rigid_set *r) {
-  status st = OK;
   int rank = 0;
-  double *Z = NULL;
-  NEW(Z, b->n * b->n);
-  TRY(null_space(t, exact_limit, Z, &rank));
-  if (rank == 0) goto done;
-  GROW(r->body, r->n_body, r->room);
+  OWNED double *Z = NULL;
+  PASS_NEW(Z, b->n * b->n);
+  PASS(null_space(t, exact_limit, Z, &rank));
+  if (rank == 0) return OK;
+  PASS_GROW(r->body, r->n_body, r->room);
   rigid_body *to = &r->body[r->n_body++];
   *to = (rigid_body){
       .id = b->id, .at = b->at, .n = b->n, .k = rank, .n_node = b->n_node};
-  NEW(to->node, b->n_node);
-  NEW(to->column, b->n_node);
+  PASS_NEW(to->node, b->n_node);
+  PASS_NEW(to->column, b->n_node);
   memcpy(to->node, b->node, (size_t)b->n_node * sizeof *to->node);
   for (int i = 0; i < b->n_node; ++i)
     to->column[i] = column_of(b, b->p->elem[b->p->start[b->node[i]]]);
   to->Y = Z;
   Z = NULL;
-done:
-  memory_free(Z);
-  return st;
+  return OK;
 }
 
 static status body_motions(const body *b, motion_list *list, rigid_set *r) {
@@ -363,8 +356,7 @@ static status body_motions(const body *b, motion_list *list, rigid_set *r) {
     TRY(append_motions(b, (motion_hold)hold, rank[hold], Z[hold], known,
                        &n_known, list));
 done:
-  memory_free(t);
-  memory_free(known);
+  RELEASE(t, known);
   for (int i = 0; i < 3; ++i) memory_free(Z[i]);
   return st;
 }
@@ -443,9 +435,7 @@ status support_motions(const domain *d, int *n, free_motion **list,
   }
 done:
   pieces_release(&p);
-  memory_free(contact);
-  memory_free(start);
-  memory_free(node);
+  RELEASE(contact, start, node);
   if (st != OK) {
     memory_free(found.item);
     found = (motion_list){0};

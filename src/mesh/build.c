@@ -55,12 +55,8 @@ status build_check(const builder *b) {
 }
 
 static void release(builder *b) {
-  memory_free(b->by_no.slot);
-  memory_free(b->node_id);
-  memory_free(b->corner);
-  memory_free(b->elem_of_top);
-  memory_free(b->face_of_low);
-  memory_free(b->first);
+  RELEASE(b->by_no.slot, b->node_id, b->corner, b->elem_of_top, b->face_of_low,
+          b->first);
 }
 
 static void tell_warnings(const builder *b) {

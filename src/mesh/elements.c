@@ -265,24 +265,18 @@ static status store_elements(builder *b, const top_list *t, const int *id) {
 }
 
 status elements_finish(builder *b) {
-  status st = OK;
-  uint64_t *key = NULL;
-  int *id = NULL;
-  size_t *no = NULL;
-  NEW(key, b->n_top);
-  NEW(id, b->n_top);
-  NEW(no, b->n_top);
-  NEW(b->elem_of_top, b->n_top);
+  OWNED uint64_t *key = NULL;
+  OWNED int *id = NULL;
+  OWNED size_t *no = NULL;
+  PASS_NEW(key, b->n_top);
+  PASS_NEW(id, b->n_top);
+  PASS_NEW(no, b->n_top);
+  PASS_NEW(b->elem_of_top, b->n_top);
   fill_keys(b, no, key, id);
   top_list t = {b->m->dim + 1, b->corner, no};
-  TRY(sort_by_key(b->n_top, key, id, by_corners, &t));
-  TRY(check_repeated(b, &t, id));
-  TRY(store_elements(b, &t, id));
-  TRY(numbers_check(b, "element", b->n_top, no, b->elem_of_top));
-  TRY(orient(b));
-done:
-  memory_free(key);
-  memory_free(id);
-  memory_free(no);
-  return st;
+  PASS(sort_by_key(b->n_top, key, id, by_corners, &t));
+  PASS(check_repeated(b, &t, id));
+  PASS(store_elements(b, &t, id));
+  PASS(numbers_check(b, "element", b->n_top, no, b->elem_of_top));
+  return orient(b);
 }

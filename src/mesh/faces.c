@@ -19,11 +19,7 @@ typedef struct face_list {
 } face_list;
 
 static void release(face_list *f) {
-  memory_free(f->low);
-  memory_free(f->no);
-  memory_free(f->start);
-  memory_free(f->corner);
-  memory_free(f->example);
+  RELEASE(f->low, f->no, f->start, f->corner, f->example);
 }
 
 static void sort_corners(int *v, int n) {
@@ -93,16 +89,15 @@ static status gather(builder *b, face_list *f, culprits *bad) {
 
 /* Sort the low elements and give every set of corners one id. */
 static status number_faces(builder *b, face_list *f) {
-  status st = OK;
   mesh *m = b->m;
-  uint64_t *key = NULL;
-  int *id = NULL;
+  OWNED uint64_t *key = NULL;
+  OWNED int *id = NULL;
   size_t dim = (size_t)f->dim, bytes = dim * sizeof(int);
-  NEW(key, b->n_low);
-  NEW(id, b->n_low);
-  NEW(b->face_of_low, b->n_low);
-  NEW(f->corner, dim * (size_t)b->n_low);
-  NEW(f->example, b->n_low);
+  PASS_NEW(key, b->n_low);
+  PASS_NEW(id, b->n_low);
+  PASS_NEW(b->face_of_low, b->n_low);
+  PASS_NEW(f->corner, dim * (size_t)b->n_low);
+  PASS_NEW(f->example, b->n_low);
   int n = 0;
   for (int j = 0; j < b->n_low; ++j) {
     const int *v = f->low + dim * (size_t)j;
@@ -111,7 +106,7 @@ static status number_faces(builder *b, face_list *f) {
     key[n] = (uint64_t)v[0] << 32 | (uint64_t)v[1];
     id[n++] = j;
   }
-  TRY(sort_by_key(n, key, id, by_corners, f));
+  PASS(sort_by_key(n, key, id, by_corners, f));
   for (int i = 0; i < n; ++i) {
     const int *v = f->low + dim * (size_t)id[i];
     int last = m->n_face - 1;
@@ -124,10 +119,7 @@ static status number_faces(builder *b, face_list *f) {
   if (m->n_face < n)
     message_add(b->log, P3031, b->at, "%d face(s) are listed more than once",
                 n - m->n_face);
-done:
-  memory_free(key);
-  memory_free(id);
-  return st;
+  return OK;
 }
 
 /* The face with these ascending corners, or -1. */

@@ -50,10 +50,9 @@ static int by_name(const void *p, const void *q) {
 }
 
 static status check_names(const builder *b) {
-  status st = OK;
   const mesh *m = b->m;
-  const mesh_group **sorted = NULL;
-  NEW(sorted, m->n_group);
+  OWNED const mesh_group **sorted = NULL;
+  PASS_NEW(sorted, m->n_group);
   for (int i = 0; i < m->n_group; ++i) sorted[i] = &m->group[i];
   qsort(sorted, (size_t)m->n_group, sizeof *sorted, by_name);
   for (int i = 1; i < m->n_group; ++i) {
@@ -63,9 +62,7 @@ static status check_names(const builder *b) {
                   "\"%s\" names the physical %s %d and the physical %s %d",
                   a->name, kind[a->dim], a->tag, kind[g->dim], g->tag);
   }
-done:
-  memory_free(sorted);
-  return st;
+  return OK;
 }
 
 static void tell_no_group(const builder *b) {
@@ -187,9 +184,6 @@ status groups_fill(builder *b) {
   for (int i = 0; i < m->n_group; ++i) TRY(fill_group(b, &m->group[i], &f));
   TRY(build_check(b));
 done:
-  memory_free(f.node_mark);
-  memory_free(f.item_mark);
-  memory_free(f.node);
-  memory_free(f.item);
+  RELEASE(f.node_mark, f.item_mark, f.node, f.item);
   return st;
 }

@@ -12,19 +12,10 @@
 void mesh_free(mesh *m) {
   if (m == NULL) return;
   for (int i = 0; i < m->n_group && m->group != NULL; ++i) {
-    memory_free((void *)m->group[i].name);
-    memory_free(m->group[i].item_id);
-    memory_free(m->group[i].node_id);
+    RELEASE((void *)m->group[i].name, m->group[i].item_id, m->group[i].node_id);
   }
-  memory_free(m->group);
-  memory_free(m->x);
-  memory_free(m->node_no);
-  memory_free(m->elem);
-  memory_free(m->elem_no);
-  memory_free(m->face);
-  memory_free(m->face_elem);
-  memory_free(m->face_other);
-  memory_free(m);
+  RELEASE(m->group, m->x, m->node_no, m->elem, m->elem_no, m->face,
+          m->face_elem, m->face_other, m);
 }
 
 const mesh_group *mesh_find_group(const mesh *m, const char *name) {
@@ -103,10 +94,10 @@ void forest_join(int *parent, int a, int b) {
 }
 
 status mesh_bodies(const mesh *m, int *n_body, int *body) {
-  status st = OK;
-  int *parent = NULL, *body_of = NULL, n_corner = m->dim + 1;
-  NEW(parent, m->n_node);
-  NEW(body_of, m->n_node);
+  OWNED int *parent = NULL, *body_of = NULL;
+  int n_corner = m->dim + 1;
+  PASS_NEW(parent, m->n_node);
+  PASS_NEW(body_of, m->n_node);
   for (int i = 0; i < m->n_node; ++i) parent[i] = i;
   for (int e = 0; e < m->n_elem; ++e) {
     const int *v = m->elem + (size_t)n_corner * (size_t)e;
@@ -117,10 +108,7 @@ status mesh_bodies(const mesh *m, int *n_body, int *body) {
     body_of[i] = parent[i] == i ? (*n_body)++ : body_of[forest_root(parent, i)];
   for (int e = 0; e < m->n_elem; ++e)
     body[e] = body_of[m->elem[(size_t)n_corner * (size_t)e]];
-done:
-  memory_free(parent);
-  memory_free(body_of);
-  return st;
+  return OK;
 }
 
 status mesh_node_elements(const mesh *m, size_t **start, int **elem) {
@@ -135,8 +123,7 @@ status mesh_node_elements(const mesh *m, size_t **start, int **elem) {
   for (size_t k = 0; k < n; ++k) e[s[m->elem[k] + 1]++] = (int)(k / per);
 done:
   if (st != OK) {
-    memory_free(s);
-    memory_free(e);
+    RELEASE(s, e);
     s = NULL;
     e = NULL;
   }

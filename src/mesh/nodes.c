@@ -11,7 +11,6 @@
 #include "base/memory.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { CURVE_BITS = 20 };
 
@@ -204,33 +203,29 @@ static status store_nodes(builder *b, const int *raw_id) {
 
 /* The nodes of the top elements get their ids. */
 status nodes_order(builder *b) {
-  status st = OK;
   mesh *m = b->m;
-  uint64_t *key = NULL;
-  int *id = NULL;
+  OWNED uint64_t *key = NULL;
+  OWNED int *id = NULL;
   double lo[3], hi[3];
   for (size_t i = 0; i < b->raw->n_node; ++i) m->n_node += b->node_id[i] >= 0;
-  TRY(find_box(b, lo, hi));
-  TRY(check_plane(b, lo, hi));
+  PASS(find_box(b, lo, hi));
+  PASS(check_plane(b, lo, hi));
   for (int k = 0; k < m->dim; ++k) m->size = fmax(m->size, hi[k] - lo[k]);
-  NEW(key, m->n_node);
-  NEW(id, m->n_node);
+  PASS_NEW(key, m->n_node);
+  PASS_NEW(id, m->n_node);
   if (m->size == 0.0) { /* all in one point: the elements will tell */
     for (size_t i = 0, n = 0; i < b->raw->n_node; ++i)
       if (b->node_id[i] >= 0) id[n++] = (int)i;
   } else {
     fill_keys(b, lo, key, id);
   }
-  TRY(sort_by_key(m->n_node, key, id, by_coordinates, &(tie){b->raw}));
-  TRY(store_nodes(b, id));
+  PASS(sort_by_key(m->n_node, key, id, by_coordinates, &(tie){b->raw}));
+  PASS(store_nodes(b, id));
   size_t unused = b->raw->n_node - (size_t)m->n_node;
   if (unused > 0)
     message_add(b->log, P3040, b->at,
                 "%zu node(s) of the file are in no element", unused);
-done:
-  memory_free(key);
-  memory_free(id);
-  return st;
+  return OK;
 }
 
 static int coincide(const mesh *m, int a, int c) {
@@ -244,28 +239,25 @@ static int coincide(const mesh *m, int a, int c) {
 }
 
 static status body_of_nodes(const mesh *m, int *body_of) {
-  status st = OK;
-  int n_body, *body = NULL, corners = m->dim + 1;
-  NEW(body, m->n_elem);
-  TRY(mesh_bodies(m, &n_body, body));
+  OWNED int *body = NULL;
+  int n_body, corners = m->dim + 1;
+  PASS_NEW(body, m->n_elem);
+  PASS(mesh_bodies(m, &n_body, body));
   for (size_t i = 0; i < (size_t)corners * (size_t)m->n_elem; ++i)
     body_of[m->elem[i]] = body[i / (size_t)corners];
-done:
-  memory_free(body);
-  return st;
+  return OK;
 }
 
 /* Nodes at one place follow each other along the curve. */
 status nodes_coincident(builder *b) {
-  status st = OK;
   const mesh *m = b->m;
   culprits slit = {0}, touch = {0};
-  int *body_of = NULL;
+  OWNED int *body_of = NULL;
   for (int i = 1; i < m->n_node; ++i) {
     if (!coincide(m, i - 1, i)) continue;
     if (body_of == NULL) {
-      NEW(body_of, m->n_node);
-      TRY(body_of_nodes(m, body_of));
+      PASS_NEW(body_of, m->n_node);
+      PASS(body_of_nodes(m, body_of));
     }
     const double *x = m->x + (size_t)m->dim * (size_t)i;
     culprit_at(body_of[i - 1] == body_of[i] ? &slit : &touch, m->dim,
@@ -279,7 +271,5 @@ status nodes_coincident(builder *b) {
     message_add(b->log, P3042, b->at,
                 "%d node(s) lie on a node of another body: %s", touch.n,
                 touch.text);
-done:
-  memory_free(body_of);
-  return st;
+  return OK;
 }

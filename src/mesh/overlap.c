@@ -256,8 +256,7 @@ static status grow_tree(const mesh *m, tree *t) {
 }
 
 static void tree_free(tree *t) {
-  memory_free(t->elem);
-  memory_free(t->node);
+  RELEASE(t->elem, t->node);
   *t = (tree){0};
 }
 
@@ -393,11 +392,11 @@ static status check_skin(search *s, const char *is_skin) {
 /* One side of each piece of the boundary, -1 for the others. A piece goes on
  * across edges (2-D: nodes) that two sides have in common. */
 static status find_pieces(const mesh *m, const side_list *sides, int *piece) {
-  status st = OK;
-  uint64_t *key = NULL;
-  int *id = NULL, v[3], n = m->dim * sides->n;
-  NEW(key, n);
-  NEW(id, n);
+  OWNED uint64_t *key = NULL;
+  OWNED int *id = NULL;
+  int v[3], n = m->dim * sides->n;
+  PASS_NEW(key, n);
+  PASS_NEW(id, n);
   for (int i = 0; i < n; ++i) {
     int side = i / m->dim, k = i % m->dim;
     side_nodes(m, sides->id[side], v);
@@ -405,7 +404,7 @@ static status find_pieces(const mesh *m, const side_list *sides, int *piece) {
     key[i] = (uint64_t)(a < c ? a : c) << 32 | (uint64_t)(a < c ? c : a);
     id[i] = side;
   }
-  TRY(sort_by_key(n, key, id, NULL, NULL));
+  PASS(sort_by_key(n, key, id, NULL, NULL));
   for (int i = 0; i < sides->n; ++i) piece[i] = i;
   for (int i = 0, end; i < n; i = end) {
     for (end = i + 1; end < n && key[end] == key[i];) ++end;
@@ -413,30 +412,24 @@ static status find_pieces(const mesh *m, const side_list *sides, int *piece) {
   }
   for (int i = sides->n; i-- > 0;)
     if (piece[i] != i) piece[i] = -1;
-done:
-  memory_free(key);
-  memory_free(id);
-  return st;
+  return OK;
 }
 
 /* One element of each piece of the boundary with those below the skin. */
 static status check_inside(search *s, const side_list *sides,
                            const char *is_skin) {
-  status st = OK;
   const mesh *m = s->b->m;
-  int *piece = NULL;
-  NEW(piece, sides->n);
-  TRY(find_pieces(m, sides, piece));
-  TRY(start_tree(s, sides->n));
+  OWNED int *piece = NULL;
+  PASS_NEW(piece, sides->n);
+  PASS(find_pieces(m, sides, piece));
+  PASS(start_tree(s, sides->n));
   for (int i = 0; i < sides->n; ++i)
     if (piece[i] >= 0) s->t.elem[s->t.n++] = sides->id[i] / (m->dim + 1);
-  if (s->t.n < 2) goto done; /* one closed surface bounds them all */
-  TRY(grow_tree(m, &s->t));
+  if (s->t.n < 2) return OK; /* one closed surface bounds them all */
+  PASS(grow_tree(m, &s->t));
   for (int e = 0; e < m->n_elem; ++e)
-    if (!is_skin[e]) TRY(find(s, e, 0));
-done:
-  memory_free(piece);
-  return st;
+    if (!is_skin[e]) PASS(find(s, e, 0));
+  return OK;
 }
 
 static status check_skins(const builder *b, const side_list *sides) {
@@ -457,8 +450,7 @@ static status check_skins(const builder *b, const side_list *sides) {
     message_add(b->log, P3034, b->at, "elements overlap: %s", s.same.text);
   TRY(build_check(b));
 done:
-  memory_free(is_skin);
-  memory_free(s.body);
+  RELEASE(is_skin, s.body);
   tree_free(&s.t);
   return st;
 }
@@ -470,8 +462,6 @@ status overlap_check(builder *b) {
   TRY(check_sides(b, &s));
   TRY(check_skins(b, &s));
 done:
-  memory_free(s.start);
-  memory_free(s.key);
-  memory_free(s.id);
+  RELEASE(s.start, s.key, s.id);
   return st;
 }

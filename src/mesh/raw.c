@@ -184,9 +184,9 @@ static int tells_of_memory(const char *text) {
 
 /* How the child ended, when it did not send a whole mesh. */
 static status child_failure(int ended, int code, int error_fd) {
-  status st = OK;
-  char *text = NULL, last[LAST_SIZE];
-  NEW(text, TAIL_SIZE + 1);
+  OWNED char *text = NULL;
+  char last[LAST_SIZE];
+  PASS_NEW(text, TAIL_SIZE + 1);
   /* What gmsh started itself may hold the other end: do not wait for it. */
   fcntl(error_fd, F_SETFL, O_NONBLOCK);
   read_bytes(error_fd, text, TAIL_SIZE);
@@ -194,22 +194,20 @@ static status child_failure(int ended, int code, int error_fd) {
   const char *said = last[0] != '\0' ? "; it said: " : "";
   int killed = ended && WIFSIGNALED(code);
   if (tells_of_memory(text))
-    FAIL(ERR_MEMORY,
-         "gmsh ran out of memory while reading the mesh; a damaged file may "
-         "ask for too much");
+    RAISE(ERR_MEMORY,
+          "gmsh ran out of memory while reading the mesh; a damaged file may "
+          "ask for too much");
   if (killed && WTERMSIG(code) == SIGKILL)
-    FAIL(ERR_MEMORY,
-         "gmsh was killed while reading the mesh: the system has not the "
-         "memory, or somebody killed it%s%s",
-         said, last);
+    RAISE(ERR_MEMORY,
+          "gmsh was killed while reading the mesh: the system has not the "
+          "memory, or somebody killed it%s%s",
+          said, last);
   if (killed)
-    FAIL(ERR_MESH, "gmsh died of signal %d (%s)%s%s", WTERMSIG(code),
-         strsignal(WTERMSIG(code)), said, last);
-  FAIL(ERR_MESH, "gmsh ended by itself before the mesh was complete%s%s", said,
-       last);
-done:
-  memory_free(text);
-  return st;
+    RAISE(ERR_MESH, "gmsh died of signal %d (%s)%s%s", WTERMSIG(code),
+          strsignal(WTERMSIG(code)), said, last);
+  RAISE(ERR_MESH, "gmsh ended by itself before the mesh was complete%s%s", said,
+        last);
+  return OK;
 }
 
 static void close_end(int *end) {

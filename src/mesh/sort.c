@@ -41,11 +41,12 @@ static int pass(int n, int shift, const uint64_t *key, const int *id,
 }
 
 static status radix(int n, uint64_t *key, int *id) {
-  status st = OK;
-  uint64_t *other_key = NULL, *from_key = key;
-  int *other_id = NULL, *from_id = id;
-  NEW(other_key, n);
-  NEW(other_id, n);
+  OWNED uint64_t *other_key = NULL;
+  uint64_t *from_key = key;
+  OWNED int *other_id = NULL;
+  int *from_id = id;
+  PASS_NEW(other_key, n);
+  PASS_NEW(other_id, n);
   for (int shift = 0; shift < 64; shift += DIGIT_BITS) {
     uint64_t *to_key = from_key == key ? other_key : key;
     int *to_id = from_id == id ? other_id : id;
@@ -57,10 +58,7 @@ static status radix(int n, uint64_t *key, int *id) {
     key[i] = from_key[i];
     id[i] = from_id[i];
   }
-done:
-  memory_free(other_key);
-  memory_free(other_id);
-  return st;
+  return OK;
 }
 
 /* Let id[i] sink in the heap id[0..n-1] whose top is the last in order. */
@@ -102,12 +100,8 @@ status sort_by_key(int n, uint64_t *key, int *id, sort_compare *compare,
 }
 
 status sort_ids(int n, int *id) {
-  status st = OK;
-  uint64_t *key = NULL;
-  NEW(key, n);
+  OWNED uint64_t *key = NULL;
+  PASS_NEW(key, n);
   for (int i = 0; i < n; ++i) key[i] = (uint64_t)id[i];
-  TRY(sort_by_key(n, key, id, NULL, NULL));
-done:
-  memory_free(key);
-  return st;
+  return sort_by_key(n, key, id, NULL, NULL);
 }

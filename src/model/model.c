@@ -51,10 +51,7 @@ int print_shows(const print_request *p, const step *s, double t,
   return 0;
 }
 
-static void table_release(value_table *t) {
-  memory_free(t->at);
-  memory_free(t->value);
-}
+static void table_release(value_table *t) { RELEASE(t->at, t->value); }
 
 static void rule_release(friction_rule *rule) {
   table_release(&rule->position);
@@ -74,31 +71,19 @@ void model_free(model *m) {
   for (int i = 0; i < m->n_material; ++i)
     for (int k = 0; k < 3; ++k) table_release(&m->materials[i].expand.alpha[k]);
   for (int i = 0; i < m->n_step; ++i) {
-    memory_free(m->steps[i].loads.item);
-    memory_free(m->steps[i].prints);
+    RELEASE(m->steps[i].loads.item, m->steps[i].prints);
     for (int k = 0; k < m->steps[i].n_change; ++k)
       rule_release(&m->steps[i].changes[k].rule);
-    memory_free(m->steps[i].changes);
-    memory_free(m->steps[i].solver_param);
+    RELEASE(m->steps[i].changes, m->steps[i].solver_param);
   }
-  memory_free(m->supports.item);
-  memory_free(m->initials);
+  RELEASE(m->supports.item, m->initials);
   for (int i = 0; i < m->n_field; ++i) memory_free(m->fields[i].value);
   memory_free(m->fields);
   for (int i = 0; i < m->n_material; ++i) {
     law_card_free(&m->materials[i].law);
     elastic_table_free(&m->materials[i].elastic);
   }
-  memory_free(m->amplitudes);
-  memory_free(m->points);
-  memory_free(m->materials);
-  memory_free(m->sections);
-  memory_free(m->obstacles);
-  memory_free(m->moves);
-  memory_free(m->contacts);
-  memory_free(m->steps);
-  memory_free(m->still);
-  memory_free(m->elem_section);
-  memory_free(m->job);
-  memory_free(m);
+  RELEASE(m->amplitudes, m->points, m->materials, m->sections, m->obstacles,
+          m->moves, m->contacts, m->steps, m->still, m->elem_section, m->job,
+          m);
 }

@@ -69,15 +69,8 @@ static void aitken_release(void *work) {
   if (w == NULL) return;
   node_blocks_free(w->blocks);
   best_iterate_free(&w->best);
-  memory_free(w->before);
-  memory_free(w->x);
-  memory_free(w->y);
-  memory_free(w->defect);
-  memory_free(w->diagonal);
-  memory_free(w->dx);
-  memory_free(w->dy);
-  memory_free(w->df);
-  memory_free(w);
+  RELEASE(w->before, w->x, w->y, w->defect, w->diagonal, w->dx, w->dy, w->df,
+          w);
 }
 
 static status aitken_setup(const contact_problem *cp, const void *par,

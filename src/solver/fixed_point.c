@@ -48,13 +48,7 @@ done:
 
 void fixed_point_free(fixed_point *fp) {
   if (fp == NULL) return;
-  memory_free(fp->g);
-  memory_free(fp->image);
-  memory_free(fp->last_g);
-  memory_free(fp->last_G);
-  memory_free(fp->dg);
-  memory_free(fp->dG);
-  memory_free(fp);
+  RELEASE(fp->g, fp->image, fp->last_g, fp->last_G, fp->dg, fp->dG, fp);
 }
 
 static double norm(int n, const double *x) {
@@ -325,11 +319,7 @@ done:
 
 void friction_path_free(friction_path *path) {
   if (path == NULL) return;
-  memory_free(path->g0);
-  memory_free(path->val);
-  memory_free(path->good_u);
-  memory_free(path->good_r);
-  memory_free(path);
+  RELEASE(path->g0, path->val, path->good_u, path->good_r, path);
 }
 
 /* Largest sum of a row of B, -. */

@@ -25,7 +25,6 @@
 #include "contact/force/force_set.h"
 #include "solver/solver.h"
 
-#include <cblas.h>
 #include <math.h>
 #include <string.h>
 
@@ -67,12 +66,7 @@ static void lagrange_release(void *work) {
   lagrange_work *w = work;
   if (w == NULL) return;
   force_set_free(w->set);
-  memory_free(w->x);
-  memory_free(w->old_x);
-  memory_free(w->y);
-  memory_free(w->y_x);
-  memory_free(w->c);
-  memory_free(w->old_r);
+  RELEASE(w->x, w->old_x, w->y, w->y_x, w->c, w->old_r);
   best_iterate_free(&w->best);
   memory_free(w);
 }

@@ -71,16 +71,7 @@ static void pcg_release(void *work) {
   pcg_work *w = work;
   if (w == NULL) return;
   force_set_free(w->set);
-  memory_free(w->x);
-  memory_free(w->phi);
-  memory_free(w->beta);
-  memory_free(w->z);
-  memory_free(w->p);
-  memory_free(w->v);
-  memory_free(w->r0);
-  memory_free(w->x0);
-  memory_free(w->e);
-  memory_free(w->turn);
+  RELEASE(w->x, w->phi, w->beta, w->z, w->p, w->v, w->r0, w->x0, w->e, w->turn);
   best_iterate_free(&w->best);
   memory_free(w);
 }

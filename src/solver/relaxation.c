@@ -23,11 +23,7 @@ struct node_blocks {
 
 void node_blocks_free(node_blocks *b) {
   if (b == NULL) return;
-  memory_free(b->K);
-  memory_free(b->state);
-  memory_free(b->step);
-  memory_free(b->strained);
-  memory_free(b);
+  RELEASE(b->K, b->state, b->step, b->strained, b);
 }
 
 /* Inverse of a d*d block by elimination with complete symmetric pivoting left

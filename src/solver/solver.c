@@ -54,8 +54,7 @@ status best_iterate_new(int m, best_iterate *best) {
 }
 
 void best_iterate_free(best_iterate *best) {
-  memory_free(best->u);
-  memory_free(best->r);
+  RELEASE(best->u, best->r);
   best->u = best->r = NULL;
 }
 

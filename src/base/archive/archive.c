@@ -16,9 +16,7 @@ status archive_new(archive **out) {
 void archive_free(archive *a) {
   if (a == NULL) return;
   for (int i = 0; i < a->n; ++i) memory_free(a->item[i].own);
-  memory_free(a->item);
-  memory_free(a->path);
-  memory_free(a);
+  RELEASE(a->item, a->path, a);
 }
 
 void archive_leave_out_cpu(archive *a) { a->no_cpu = 1; }

@@ -207,17 +207,14 @@ done:
 }
 
 status source_int(const hdf5_source *s, const char *name, int *value) {
-  status st = OK;
   long n = 0;
-  int *all = NULL;
-  TRY(source_ints(s, name, 0, MOST_ITEMS, &n, &all));
+  OWNED int *all = NULL;
+  PASS(source_ints(s, name, 0, MOST_ITEMS, &n, &all));
   if (n != 1)
-    FAIL(ERR_DECK, "%s: %s has %ld items, expected one integer", s->path, name,
-         n);
+    RAISE(ERR_DECK, "%s: %s has %ld items, expected one integer", s->path, name,
+          n);
   *value = all[0];
-done:
-  memory_free(all);
-  return st;
+  return OK;
 }
 
 status source_reals(const hdf5_source *s, const char *name, int optional,

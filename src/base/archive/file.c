@@ -16,7 +16,6 @@
 #include <errno.h>
 #include <hdf5.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -65,18 +64,16 @@ done:
 }
 
 static status put_items(const archive *a, hid_t file, const char *path) {
-  status st = OK;
-  char *list = NULL, name[ARCHIVE_NAME + 8];
-  TRY(list_items(a, &list));
-  TRY(put(file, path, "/list", H5T_NATIVE_UCHAR, strlen(list) + 1, list));
+  OWNED char *list = NULL;
+  char name[ARCHIVE_NAME + 8];
+  PASS(list_items(a, &list));
+  PASS(put(file, path, "/list", H5T_NATIVE_UCHAR, strlen(list) + 1, list));
   for (int i = 0; i < a->n; ++i) {
     const archive_item *it = &a->item[i];
     snprintf(name, sizeof name, "/data/%s", it->name);
-    TRY(put(file, path, name, type_of(it->kind), it->n, it->data));
+    PASS(put(file, path, name, type_of(it->kind), it->n, it->data));
   }
-done:
-  memory_free(list);
-  return st;
+  return OK;
 }
 
 static status make_file(const archive *a, const char *path) {
@@ -173,18 +170,15 @@ static status get_item(hid_t file, archive *a, const char *line) {
 }
 
 static status get_items(hid_t file, archive *a) {
-  status st = OK;
   size_t n = 0;
-  void *list = NULL;
-  TRY(get(file, a->path, "/list", H5T_NATIVE_UCHAR, 1, &n, &list));
+  OWNED void *list = NULL;
+  PASS(get(file, a->path, "/list", H5T_NATIVE_UCHAR, 1, &n, &list));
   for (const char *line = list; *line != '\0'; ++line) {
-    TRY(get_item(file, a, line));
+    PASS(get_item(file, a, line));
     line = strchr(line, '\n');
     if (line == NULL) break;
   }
-done:
-  memory_free(list);
-  return st;
+  return OK;
 }
 
 status archive_read(const char *path, archive **out) {

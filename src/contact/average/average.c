@@ -38,15 +38,10 @@ static void builder_free(builder *b) {
   layout_free(&b->at);
   box_tree_free(&b->faces);
   box_tree_free(&b->rim);
-  memory_free(b->share);
-  memory_free(b->mass);
+  RELEASE(b->share, b->mass);
   sparse_free(&b->raw);
   sparse_free(&b->by_column);
-  memory_free(b->alone);
-  memory_free(b->part);
-  memory_free(b->found);
-  memory_free(b->touched);
-  memory_free(b->row);
+  RELEASE(b->alone, b->part, b->found, b->touched, b->row);
 }
 
 static status builder_new(builder *b) {
@@ -261,11 +256,10 @@ static status find_rows(builder *b) {
 }
 
 static status transpose(const sparse_rows *a, sparse_rows *out) {
-  status st = OK;
-  int *start = NULL;
-  NEW(start, a->n + 2);
-  NEW(out->col, a->start[a->n]);
-  NEW(out->val, a->start[a->n]);
+  OWNED int *start = NULL;
+  PASS_NEW(start, a->n + 2);
+  PASS_NEW(out->col, a->start[a->n]);
+  PASS_NEW(out->val, a->start[a->n]);
   for (int k = 0; k < a->start[a->n]; ++k) ++start[a->col[k] + 2];
   for (int i = 0; i < a->n; ++i) start[i + 2] += start[i + 1];
   for (int i = 0; i < a->n; ++i)
@@ -277,9 +271,7 @@ static status transpose(const sparse_rows *a, sparse_rows *out) {
   out->n = a->n;
   out->start = start;
   start = NULL;
-done:
-  memory_free(start);
-  return st;
+  return OK;
 }
 
 /* ---- the symmetric matrix ---------------------------------------------- */
@@ -314,11 +306,11 @@ static int merge_row(const builder *b, int i, int *col, double *val,
 }
 
 static status symmetrise(builder *b, sparse_rows *out) {
-  status st = OK;
   const average_patch *p = b->p;
-  double left, *part = NULL;
-  NEW(part, p->n_node);
-  NEW(out->start, p->n_node + 1);
+  OWNED double *part = NULL;
+  double left;
+  PASS_NEW(part, p->n_node);
+  PASS_NEW(out->start, p->n_node + 1);
   out->n = p->n_node;
   for (int i = 0; i < p->n_node; ++i) b->part[i] = 1.0;
   for (int i = 0; i < p->n_node; ++i) {
@@ -328,8 +320,8 @@ static status symmetrise(builder *b, sparse_rows *out) {
     part[i] = n > 0 && left < 0.0 ? all / (all - left) : 1.0;
   }
   memcpy(b->part, part, (size_t)p->n_node * sizeof *part);
-  NEW(out->col, out->start[p->n_node]);
-  NEW(out->val, out->start[p->n_node]);
+  PASS_NEW(out->col, out->start[p->n_node]);
+  PASS_NEW(out->val, out->start[p->n_node]);
   for (int i = 0; i < p->n_node; ++i) {
     int first = out->start[i], n = out->start[i + 1] - first;
     double by = b->share[i];
@@ -338,9 +330,7 @@ static status symmetrise(builder *b, sparse_rows *out) {
     merge_row(b, i, out->col + first, out->val + first, &left);
     for (int k = first; k < first + n; ++k) out->val[k] /= by;
   }
-done:
-  memory_free(part);
-  return st;
+  return OK;
 }
 
 status average_build(const average_patch *patch, const average_rule *rule,

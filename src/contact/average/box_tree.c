@@ -105,9 +105,7 @@ done:
 }
 
 void box_tree_free(box_tree *t) {
-  memory_free(t->item);
-  memory_free(t->of);
-  memory_free(t->box);
+  RELEASE(t->item, t->of, t->box);
   memset(t, 0, sizeof *t);
 }
 

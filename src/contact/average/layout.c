@@ -18,10 +18,7 @@ typedef struct fans {
   int *start, *face; /* [n_node+1], [dim*n_face]                              */
 } fans;
 
-static void fans_free(fans *f) {
-  memory_free(f->start);
-  memory_free(f->face);
-}
+static void fans_free(fans *f) { RELEASE(f->start, f->face); }
 
 static status fans_new(const average_patch *p, fans *f) {
   int n = p->dim * p->n_face;
@@ -59,10 +56,7 @@ static status new_arrays(const average_patch *p, layout *l) {
 }
 
 void layout_free(layout *l) {
-  memory_free(l->x);
-  memory_free(l->corner);
-  memory_free(l->loop);
-  memory_free(l->rim);
+  RELEASE(l->x, l->corner, l->loop, l->rim);
   memset(l, 0, sizeof *l);
 }
 

@@ -13,12 +13,7 @@ static const double SPARSE = 0.1; /* -, share of entries that are not zero    */
 
 void force_set_free(force_set *s) {
   if (s == NULL) return;
-  memory_free(s->D);
-  memory_free(s->origin);
-  memory_free(s->part);
-  memory_free(s->rim);
-  memory_free(s->load);
-  memory_free(s->defect);
+  RELEASE(s->D, s->origin, s->part, s->rim, s->load, s->defect);
   sparse_free(&s->rows);
   memory_free(s);
 }
@@ -80,13 +75,12 @@ static size_t entries(const contact_problem *cp) {
 }
 
 status compliance_rows(const contact_problem *cp, sparse_rows *rows) {
-  status st = OK;
   size_t m = (size_t)cp->m, count = entries(cp);
-  int *at = NULL;
-  NEW(at, m);
-  NEW(rows->start, m + 1);
-  NEW(rows->col, count);
-  NEW(rows->val, count);
+  OWNED int *at = NULL;
+  PASS_NEW(at, m);
+  PASS_NEW(rows->start, m + 1);
+  PASS_NEW(rows->col, count);
+  PASS_NEW(rows->val, count);
   rows->n = cp->m;
   for (size_t j = 0; j < m; ++j)
     for (size_t i = 0; i < m; ++i)
@@ -102,9 +96,7 @@ status compliance_rows(const contact_problem *cp, sparse_rows *rows) {
       rows->col[at[i]] = (int)j;
       rows->val[at[i]++] = value;
     }
-done:
-  memory_free(at);
-  return st;
+  return OK;
 }
 
 status force_set_new(const contact_problem *cp, force_set **out) {

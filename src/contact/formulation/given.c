@@ -16,7 +16,6 @@
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
 #include <string.h>
 
 static const double SINGULAR = 1e-12; /* -, pivot over diagonal: not held     */
@@ -40,19 +39,8 @@ struct given_form {
 
 void given_form_free(given_form *g) {
   if (g == NULL) return;
-  memory_free(g->node);
-  memory_free(g->A);
-  memory_free(g->L);
-  memory_free(g->Y);
-  memory_free(g->f);
-  memory_free(g->gap);
-  memory_free(g->met);
-  memory_free(g->y);
-  memory_free(g->force);
-  memory_free(g->g0);
-  memory_free(g->mu);
-  memory_free(g->is);
-  memory_free(g);
+  RELEASE(g->node, g->A, g->L, g->Y, g->f, g->gap, g->met, g->y, g->force,
+          g->g0, g->mu, g->is, g);
 }
 
 static status new_arrays(const contact_problem *cp, given_form *g) {

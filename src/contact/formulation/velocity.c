@@ -14,8 +14,6 @@
 
 #include "base/memory.h"
 
-#include <string.h>
-
 struct velocity_form {
   double *u_old;          /* [m] the last equilibrium, m                      */
   double *R;              /* [m] residual, N                                  */
@@ -44,13 +42,7 @@ done:
 
 void velocity_form_free(velocity_form *v) {
   if (v == NULL) return;
-  memory_free(v->u_old);
-  memory_free(v->R);
-  memory_free(v->gap);
-  memory_free(v->side);
-  memory_free(v->d);
-  memory_free(v->du);
-  memory_free(v);
+  RELEASE(v->u_old, v->R, v->gap, v->side, v->d, v->du, v);
 }
 
 double *velocity_form_old(velocity_form *v) { return v->u_old; }

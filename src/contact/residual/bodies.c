@@ -9,9 +9,7 @@ static const double JOINED = 0x1p-30; /* -, entry over those of the diagonal  */
 
 void contact_bodies_free(contact_bodies *b) {
   if (b == NULL) return;
-  memory_free(b->of);
-  memory_free(b->size);
-  memory_free(b);
+  RELEASE(b->of, b->size, b);
 }
 
 static const double *matrix_of(const contact_problem *cp) {
@@ -74,7 +72,6 @@ status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
   b = NULL;
 done:
   contact_bodies_free(b);
-  memory_free(root);
-  memory_free(list);
+  RELEASE(root, list);
   return st;
 }

@@ -139,12 +139,12 @@ static status list_elements(const mesh *m, cluster_set *c) {
 }
 
 static status list_nodes(const mesh *m, cluster_set *c) {
-  status st = OK;
   const int per = m->dim + 1;
-  int *seen = NULL, n = 0;
-  NEW(seen, m->n_node);
-  NEW(c->first, c->n + 1);
-  NEW(c->node, per * c->start[c->n]);
+  OWNED int *seen = NULL;
+  int n = 0;
+  PASS_NEW(seen, m->n_node);
+  PASS_NEW(c->first, c->n + 1);
+  PASS_NEW(c->node, per * c->start[c->n]);
   for (int k = 0; k < c->n; ++k) {
     for (int q = c->start[k]; q < c->start[k + 1]; ++q)
       for (int a = 0; a < per; ++a) {
@@ -155,9 +155,7 @@ static status list_nodes(const mesh *m, cluster_set *c) {
       }
     c->first[k + 1] = n;
   }
-done:
-  memory_free(seen);
-  return st;
+  return OK;
 }
 
 /* Volume of an element but for a factor common to its section. */
@@ -200,11 +198,7 @@ static status grow(const cluster_input *in, cluster_set *c) {
     if (in->share[i] > 0) grow_section(&g, i);
   c->n = g.n;
 done:
-  memory_free(g.start);
-  memory_free(g.elem);
-  memory_free(g.size);
-  memory_free(g.outside);
-  memory_free(g.taken);
+  RELEASE(g.start, g.elem, g.size, g.outside, g.taken);
   return st;
 }
 
@@ -229,13 +223,7 @@ done:
 
 void cluster_free(cluster_set *c) {
   if (c == NULL) return;
-  memory_free(c->of);
-  memory_free(c->start);
-  memory_free(c->elem);
-  memory_free(c->first);
-  memory_free(c->node);
-  memory_free(c->share);
-  memory_free(c->weight);
+  RELEASE(c->of, c->start, c->elem, c->first, c->node, c->share, c->weight);
   for (int f = CLUSTER_STRAIN; f <= CLUSTER_STRESS; ++f)
     memory_free(c->mean[f]);
   memory_free(c);

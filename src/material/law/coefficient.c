@@ -246,11 +246,10 @@ status law_card_read(deck *d, const card *c, message_log *log, law_card *law) {
 
 status law_card_check(const law_card *law, elastic_type type,
                       message_log *log) {
-  status st = OK;
   char text[256];
-  double *value = NULL;
-  if (law->ops->check == NULL) goto done;
-  NEW(value, law_n_value(law));
+  OWNED double *value = NULL;
+  if (law->ops->check == NULL) return OK;
+  PASS_NEW(value, law_n_value(law));
   for (int i = 0; i < law->n_set; ++i) {
     const char *wrong = NULL;
     if (law_values(law, 0, law->temperature[i], value) != OK)
@@ -261,9 +260,7 @@ status law_card_check(const law_card *law, elastic_type type,
     message_add(log, P2046, &law->at, "law %s: %s", law->ops->name, wrong);
     break;
   }
-done:
-  memory_free(value);
-  return st;
+  return OK;
 }
 
 /* Row of value number i, and the term it belongs to (from 1; 0: none). */
@@ -339,8 +336,6 @@ unsigned law_varies(const law_card *law) {
 
 void law_card_free(law_card *law) {
   if (law == NULL) return;
-  memory_free((void *)law->param);
-  memory_free(law->temperature);
-  memory_free(law->value);
+  RELEASE((void *)law->param, law->temperature, law->value);
   memset(law, 0, sizeof *law);
 }

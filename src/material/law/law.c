@@ -148,11 +148,10 @@ static void copy_block(const double *A, int rows, int columns, double *M,
 
 /* Matrix of d(e^i, alpha)/dt under held strain, [n*n]. */
 static status coupled_matrix(const law_point *p, int na, double *M) {
-  status st = OK;
   const int ns = p->elastic->ns, n = ns + na;
-  double *room = NULL;
+  OWNED double *room = NULL;
   law_jacobian j;
-  NEW(room, 2 * ns * ns + 2 * ns * na + na * na);
+  PASS_NEW(room, 2 * ns * ns + 2 * ns * na + na * na);
   j.ei_sigma = room;
   j.ei_ei = j.ei_sigma + ns * ns;
   j.ei_alpha = j.ei_ei + ns * ns;
@@ -164,46 +163,37 @@ static status coupled_matrix(const law_point *p, int na, double *M) {
   copy_block(j.ei_ei, ns, ns, M, n);
   copy_block(j.ei_alpha, ns, na, M + n * ns, n);
   copy_block(j.alpha_alpha, na, na, M + n * ns + ns, n);
-done:
-  memory_free(room);
-  return st;
+  return OK;
 }
 
 /* The largest magnitude of an eigenvalue of M[n*n], which is destroyed. */
 static status spectral_radius(double *M, int n, double *radius) {
-  status st = OK;
-  double *re = NULL;
-  NEW(re, 2 * n);
+  OWNED double *re = NULL;
+  PASS_NEW(re, 2 * n);
   for (int i = 0; i < n * n; ++i)
     if (!isfinite(M[i]))
-      FAIL(ERR_SINGULAR, "derivative of an inelastic law is not a number");
+      RAISE(ERR_SINGULAR, "derivative of an inelastic law is not a number");
   if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, M, n, re, re + n, NULL, 1,
                     NULL, 1) != 0)
-    FAIL(ERR_SINGULAR, "no eigenvalues of the rates of an inelastic law");
+    RAISE(ERR_SINGULAR, "no eigenvalues of the rates of an inelastic law");
   *radius = 0;
   for (int i = 0; i < n; ++i) *radius = fmax(*radius, hypot(re[i], re[n + i]));
-done:
-  memory_free(re);
-  return st;
+  return OK;
 }
 
 status law_fastest_rate(const law_point *p, double *rate) {
-  status st = OK;
   const law_ops *ops = p->law->ops;
   const law_elastic *el = p->elastic;
-  double *M = NULL;
+  OWNED double *M = NULL;
   *rate = 0;
-  if (!law_flows(p)) goto done;
+  if (!law_flows(p)) return OK;
   if (ops->fastest_rate != NULL && el->isotropic && !el->plane_stress)
     *rate = p->speed * ops->fastest_rate(p);
   else
     *rate = -1;
-  if (!(*rate < 0)) goto done;
+  if (!(*rate < 0)) return OK;
   const int na = law_n_alpha(p->law, el->ns), n = el->ns + na;
-  NEW(M, n * n);
-  TRY(coupled_matrix(p, na, M));
-  TRY(spectral_radius(M, n, rate));
-done:
-  memory_free(M);
-  return st;
+  PASS_NEW(M, n * n);
+  PASS(coupled_matrix(p, na, M));
+  return spectral_radius(M, n, rate);
 }

@@ -49,11 +49,7 @@ void flow_kind_free(flow_kind *k) {
 void flow_free(flow *x) {
   for (int i = 0; x->kind != NULL && i < x->n_kind; ++i)
     flow_kind_free(&x->kind[i]);
-  memory_free(x->kind);
-  memory_free(x->kind_id);
-  memory_free(x->alpha_at);
-  memory_free(x->weight);
-  memory_free(x->tally);
+  RELEASE(x->kind, x->kind_id, x->alpha_at, x->weight, x->tally);
   memset(x, 0, sizeof *x);
 }
 
@@ -69,11 +65,7 @@ status flow_state_new(const flow *x, flow_state *s) {
 }
 
 void flow_state_free(flow_state *s) {
-  memory_free(s->e);
-  memory_free(s->ei);
-  memory_free(s->sigma);
-  memory_free(s->alpha);
-  memory_free(s->temperature);
+  RELEASE(s->e, s->ei, s->sigma, s->alpha, s->temperature);
   memset(s, 0, sizeof *s);
 }
 

@@ -70,32 +70,26 @@ static status linear_law(const flow_kind *k, double *L, double *G) {
   put_block(ns, na, j.ei_alpha, L + n * ns, n);
   put_block(na, na, j.alpha_alpha, L + n * ns + ns, n);
 done:
-  memory_free(j.ei_sigma);
-  memory_free(zero);
-  memory_free(top);
+  RELEASE(j.ei_sigma, zero, top);
   return st;
 }
 
 /* X[n*m] := inv(M) X; M is destroyed. */
 static status solve(int n, int m, double *M, double *X) {
-  status st = OK;
-  int *pivot = NULL;
-  NEW(pivot, n);
+  OWNED int *pivot = NULL;
+  PASS_NEW(pivot, n);
   if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, m, M, n, pivot, X, n) != 0)
-    FAIL(ERR_SINGULAR, "the step of an inelastic law has no solution");
-done:
-  memory_free(pivot);
-  return st;
+    RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
+  return OK;
 }
 
 static status theta_map(const flow_kind *k, const scheme_step *p,
                         const double *L, const double *G, linear_map *m) {
-  status st = OK;
   const int n = m->n, ns = k->elastic.ns, columns = n + 2 * ns;
   const double in = p->theta * p->dt, out = (1.0 - p->theta) * p->dt;
-  double *M = NULL, *X = NULL;
-  NEW(M, n * n);
-  NEW(X, n * columns);
+  OWNED double *M = NULL, *X = NULL;
+  PASS_NEW(M, n * n);
+  PASS_NEW(X, n * columns);
   for (int i = 0; i < n * n; ++i) {
     double one = i % (n + 1) == 0;
     M[i] = one - in * L[i];
@@ -105,26 +99,23 @@ static status theta_map(const flow_kind *k, const scheme_step *p,
     X[n * n + i] = out * G[i];
     X[n * (n + ns) + i] = in * G[i];
   }
-  TRY(solve(n, columns, M, X));
+  PASS(solve(n, columns, M, X));
   memcpy(m->P, X, (size_t)(n * n) * sizeof *X);
   memcpy(m->Q0, X + n * n, (size_t)(n * ns) * sizeof *X);
   memcpy(m->Q1, X + n * (n + ns), (size_t)(n * ns) * sizeof *X);
-done:
-  memory_free(M);
-  memory_free(X);
-  return st;
+  return OK;
 }
 
 /* X = exp(A) - I for A[n*n] of any size: Taylor below 2^-6, then squaring in
  * the form X <- 2 X + X X, which keeps slow parts beside fast ones. */
 status exponential_less_one(int n, const double *A, double *X) {
-  status st = OK;
   enum { TERMS = 12 };
-  double *power = NULL, *next = NULL, largest = 0.0;
+  OWNED double *power = NULL, *next = NULL;
+  double largest = 0.0;
   size_t square = (size_t)n * (size_t)n;
   int halvings = 0;
-  NEW(power, square);
-  NEW(next, square);
+  PASS_NEW(power, square);
+  PASS_NEW(next, square);
   for (int i = 0; i < n; ++i) {
     double row = 0.0;
     for (int j = 0; j < n; ++j) row += fabs(A[i + n * j]);
@@ -143,26 +134,22 @@ status exponential_less_one(int n, const double *A, double *X) {
     multiply(n, n, n, 1.0, X, X, next);
     memcpy(X, next, square * sizeof *X);
   }
-done:
-  memory_free(power);
-  memory_free(next);
-  return st;
+  return OK;
 }
 
 /* exp of [dt L, dt G, 0; 0, 0, I; 0, 0, 0]: its first row is exp(dt L),
  * dt phi_1 G, dt phi_2 G. */
 static status exponential_map(const flow_kind *k, const scheme_step *p,
                               const double *L, const double *G, linear_map *m) {
-  status st = OK;
   const int n = m->n, ns = k->elastic.ns, N = n + 2 * ns;
-  double *A = NULL, *X = NULL;
-  NEW(A, N * N);
-  NEW(X, N * N);
+  OWNED double *A = NULL, *X = NULL;
+  PASS_NEW(A, N * N);
+  PASS_NEW(X, N * N);
   put_block(n, n, L, A, N);
   put_block(n, ns, G, A + N * n, N);
   for (int i = 0; i < N * N; ++i) A[i] *= p->dt;
   for (int i = 0; i < ns; ++i) A[n + i + N * (n + ns + i)] = 1.0;
-  TRY(exponential_less_one(N, A, X));
+  PASS(exponential_less_one(N, A, X));
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) m->P[i + n * j] = X[i + N * j] + (i == j);
   for (int j = 0; j < ns; ++j)
@@ -170,25 +157,17 @@ static status exponential_map(const flow_kind *k, const scheme_step *p,
       m->Q1[i + n * j] = X[i + N * (n + ns + j)];
       m->Q0[i + n * j] = X[i + N * (n + j)] - m->Q1[i + n * j];
     }
-done:
-  memory_free(A);
-  memory_free(X);
-  return st;
+  return OK;
 }
 
 /* The general case: from L and G. */
 static status matrix_map(const flow_kind *k, const scheme_step *p, int exact,
                          linear_map *m) {
-  status st = OK;
-  double *L = NULL, *G = NULL;
-  NEW(L, m->n * m->n);
-  NEW(G, m->n * k->elastic.ns);
-  TRY(linear_law(k, L, G));
-  TRY(exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m));
-done:
-  memory_free(L);
-  memory_free(G);
-  return st;
+  OWNED double *L = NULL, *G = NULL;
+  PASS_NEW(L, m->n * m->n);
+  PASS_NEW(G, m->n * k->elastic.ns);
+  PASS(linear_law(k, L, G));
+  return exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m);
 }
 
 /* D = E (I - Q1) with the rows of e^i. */

@@ -41,10 +41,7 @@ status point_step_new(const flow *x, point_step *l) {
   return OK;
 }
 
-void point_step_free(point_step *l) {
-  memory_free(l->room);
-  memory_free(l->pivot);
-}
+void point_step_free(point_step *l) { RELEASE(l->room, l->pivot); }
 
 /* Point k with its start values; coefficients at the theta-point. */
 status point_step_begin(const flow *x, const scheme_step *p, int k,

@@ -91,15 +91,14 @@ static void remains(const law_elastic *el, const linear_map *m, double *D) {
 
 status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
                     linear_map *m, double *D) {
-  status st = OK;
   const int ns = k->elastic.ns, n = m->n, terms = n / ns - 1;
   const law_point point = {.law = k->law,
                            .elastic = &k->elastic,
                            .value = k->value,
                            .speed = k->speed};
-  double *W = NULL, *rate = NULL;
-  NEW(W, ns * ns * terms);
-  NEW(rate, terms);
+  OWNED double *W = NULL, *rate = NULL;
+  PASS_NEW(W, ns * ns * terms);
+  PASS_NEW(rate, terms);
   for (int i = 0; i < terms; ++i)
     rate[i] = k->speed * k->law->ops->relaxing(&point, i, W + ns * ns * i);
   memset(m->P, 0, (size_t)(n * n) * sizeof *m->P);
@@ -113,10 +112,7 @@ status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
   }
   for (int i = 0; i < terms; ++i) add_rows(ns, i, W + ns * ns * i, m);
   remains(&k->elastic, m, D);
-done:
-  memory_free(W);
-  memory_free(rate);
-  return st;
+  return OK;
 }
 
 /* column[n] of a matrix times row[columns] over pivot goes to A[n*columns]. */
@@ -180,15 +176,12 @@ static void condense(int ns, double *D) {
 }
 
 status plane_stress_map(const law_elastic *el, linear_map *m, double *D) {
-  status st = OK;
-  double *row = NULL;
+  OWNED double *row = NULL;
   if (!(D[ZZ + el->ns * ZZ] > 0.0))
-    FAIL(ERR_SINGULAR, "the step of an inelastic law has no solution");
-  NEW(row, m->n);
+    RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
+  PASS_NEW(row, m->n);
   eliminate_old(el, m);
   eliminate_new(el, D, m, row);
   condense(el->ns, D);
-done:
-  memory_free(row);
-  return st;
+  return OK;
 }

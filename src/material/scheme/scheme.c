@@ -27,28 +27,16 @@ status scheme_work_new(scheme_work **out) {
   return OK;
 }
 
-void linear_map_free(linear_map *m) {
-  memory_free(m->P);
-  memory_free(m->Q0);
-  memory_free(m->Q1);
-  memory_free(m->Q);
-}
+void linear_map_free(linear_map *m) { RELEASE(m->P, m->Q0, m->Q1, m->Q); }
 
 void scheme_work_free(scheme_work *w) {
   if (w == NULL) return;
   for (int i = 0; i < STAGES; ++i) {
-    memory_free(w->ei_rate[i]);
-    memory_free(w->alpha_rate[i]);
+    RELEASE(w->ei_rate[i], w->alpha_rate[i]);
   }
   for (int i = 0; w->map != NULL && i < w->n_kind; ++i)
     linear_map_free(&w->map[i]);
-  memory_free(w->map);
-  memory_free(w->D_kind);
-  memory_free(w->sigma_k);
-  memory_free(w->e_k);
-  memory_free(w->linear);
-  memory_free(w->D);
-  memory_free(w);
+  RELEASE(w->map, w->D_kind, w->sigma_k, w->e_k, w->linear, w->D, w);
 }
 
 static status theta_advance(const scheme_call *a) {

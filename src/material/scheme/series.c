@@ -85,18 +85,17 @@ static void by_one(int q, series *s) {
 }
 
 static status by_matrix(series *s) {
-  status st = OK;
   const int n = s->n, N = n + 2;
-  double *A = NULL, *X = NULL;
-  NEW(A, N * N);
-  NEW(X, N * N);
+  OWNED double *A = NULL, *X = NULL;
+  PASS_NEW(A, N * N);
+  PASS_NEW(X, N * N);
   for (int k = 0; k < n; ++k) {
     for (int j = 0; j < n; ++j) A[k + N * j] = -s->h[k];
     A[k + N * k] -= s->h[k] * s->m[k];
     A[k + N * n] = s->h[k];
   }
   A[n + N * (n + 1)] = 1.0;
-  TRY(exponential_less_one(N, A, X));
+  PASS(exponential_less_one(N, A, X));
   s->kept = 1.0;
   for (int k = 0; k < n; ++k) {
     for (int j = 0; j < n; ++j) s->U[k + n * j] = X[k + N * j];
@@ -104,10 +103,7 @@ static status by_matrix(series *s) {
     s->u0[k] = X[k + N * n] - s->u1[k];
     s->kept -= s->u1[k];
   }
-done:
-  memory_free(A);
-  memory_free(X);
-  return st;
+  return OK;
 }
 
 /* D v = -a v + b0 x_old + b1 x_new of a unit, x = e - e^i. */

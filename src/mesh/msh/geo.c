@@ -18,28 +18,25 @@ enum { MOST_BYTES = 1 << 26 };
 
 static status add_file(geo_text *g, const char *folder, size_t n_folder,
                        const char *name, int merged) {
-  status st = OK;
-  char *path = NULL;
+  OWNED char *path = NULL;
   int i = 0;
   if (g->n_file >= GEO_FILES) {
     g->is_open = 1;
     return OK;
   }
   if (name[0] == '/') n_folder = 0;
-  NEW(path, n_folder + strlen(name) + 1);
+  PASS_NEW(path, n_folder + strlen(name) + 1);
   if (n_folder > 0) memcpy(path, folder, n_folder);
   strcpy(path + n_folder, name);
   while (i < g->n_file && strcmp(g->file[i], path) != 0) ++i;
   g->merged[i] = (char)(g->merged[i] | merged);
-  if (i < g->n_file) goto done;
+  if (i < g->n_file) return OK;
   int room = g->file_room;
-  GROW(g->file, g->n_file, room);
-  GROW(g->text, g->n_file, g->file_room);
+  PASS_GROW(g->file, g->n_file, room);
+  PASS_GROW(g->text, g->n_file, g->file_room);
   g->file[g->n_file++] = path;
   path = NULL;
-done:
-  memory_free(path);
-  return st;
+  return OK;
 }
 
 /* The whole file as text, NULL if it cannot be opened or is too long. */
@@ -67,20 +64,16 @@ static int in_name(char c) { return isalnum((unsigned char)c) || c == '_'; }
 /* After Include or Merge: the file, if it stands there in quotes. */
 static status include(geo_text *g, const char *path, const char *p,
                       int merged) {
-  status st = OK;
-  char *name = NULL;
+  OWNED char *name = NULL;
   const char *slash = strrchr(path, '/');
   p += strspn(p, " \t\r\n");
   size_t n = *p == '"' ? strcspn(p + 1, "\"\n") : 0;
   g->is_open |= n == 0;
   if (n == 0) return OK;
-  NEW(name, n + 1);
+  PASS_NEW(name, n + 1);
   memcpy(name, p + 1, n);
-  TRY(add_file(g, path, slash != NULL ? (size_t)(slash - path) + 1 : 0, name,
-               merged));
-done:
-  memory_free(name);
-  return st;
+  return add_file(g, path, slash != NULL ? (size_t)(slash - path) + 1 : 0, name,
+                  merged);
 }
 
 /* The end of a comment or number that begins at p, or p. */
@@ -138,12 +131,9 @@ status geo_read(const char *file, geo_text *g) {
 
 void geo_free(geo_text *g) {
   for (int i = 0; i < g->n_file; ++i) {
-    memory_free(g->file[i]);
-    memory_free(g->text[i]);
+    RELEASE(g->file[i], g->text[i]);
   }
-  memory_free(g->file);
-  memory_free(g->text);
-  memory_free(g->name);
+  RELEASE(g->file, g->text, g->name);
   *g = (geo_text){0};
 }
 

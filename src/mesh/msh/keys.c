@@ -52,7 +52,6 @@ status table_add(key_table *t, uint64_t key, int *id) {
 }
 
 void table_free(key_table *t) {
-  memory_free(t->key);
-  memory_free(t->id);
+  RELEASE(t->key, t->id);
   *t = (key_table){0};
 }

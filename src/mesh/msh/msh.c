@@ -166,12 +166,11 @@ static int by_entity(const void *p, const void *q) {
 
 /* The order in which the entities are numbered, not that of the file. */
 static status finish_blocks(msh *m) {
-  status st = OK;
   raw_mesh *raw = m->raw;
-  block_order *order = NULL;
-  raw_block *sorted = NULL;
-  NEW(order, raw->n_block);
-  NEW(sorted, raw->n_block);
+  OWNED block_order *order = NULL;
+  OWNED raw_block *sorted = NULL;
+  PASS_NEW(order, raw->n_block);
+  PASS_NEW(sorted, raw->n_block);
   for (int i = 0; i < raw->n_block; ++i)
     order[i] =
         (block_order){raw->block[i].dim, m->fill[i].tag, raw->block[i].type, i};
@@ -182,10 +181,7 @@ static status finish_blocks(msh *m) {
   sorted = NULL;
   int top = raw->n_group > 0 ? raw->group[raw->n_group - 1].dim : -1;
   if (top >= 2) raw->n_loose = m->n_loose[top];
-done:
-  memory_free(order);
-  memory_free(sorted);
-  return st;
+  return OK;
 }
 
 /* ---- the file ------------------------------------------------------------ */
@@ -239,10 +235,7 @@ static void release(msh *m) {
   table_free(&m->groups);
   table_free(&m->entities);
   table_free(&m->blocks);
-  memory_free(m->name);
-  memory_free(m->entity);
-  memory_free(m->physical);
-  memory_free(m->fill);
+  RELEASE(m->name, m->entity, m->physical, m->fill);
 }
 
 status msh_read(const char *file, raw_mesh **out) {

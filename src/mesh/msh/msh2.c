@@ -7,8 +7,6 @@
 
 #include "base/memory.h"
 
-#include <stdlib.h>
-
 /* A number above zero; 4 bytes in binary files. */
 static status read_no(scan *s, size_t *no) {
   int four;

@@ -109,13 +109,12 @@ void check_values(const model *m, const mesh *msh) {
 }
 
 status check_agreement(const model *m, const mesh *msh, int step_id) {
-  status st = OK;
   const step *s = &m->steps[step_id];
-  int *owner = NULL;
-  double *ud = NULL;
+  OWNED int *owner = NULL;
+  OWNED double *ud = NULL;
   size_t n_dof = (size_t)msh->dim * (size_t)msh->n_node;
-  NEW(owner, n_dof);
-  NEW(ud, n_dof);
+  PASS_NEW(owner, n_dof);
+  PASS_NEW(ud, n_dof);
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     const mesh_group *g = &msh->group[l->group_id];
@@ -136,8 +135,5 @@ status check_agreement(const model *m, const mesh *msh, int step_id) {
       ud[dof] = value;
     }
   }
-done:
-  memory_free(owner);
-  memory_free(ud);
-  return st;
+  return OK;
 }

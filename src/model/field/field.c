@@ -25,8 +25,7 @@ typedef struct pairs { /* as the file has them                                */
 } pairs;
 
 static void pairs_free(pairs *p) {
-  memory_free(p->node_no);
-  memory_free(p->value);
+  RELEASE(p->node_no, p->value);
   *p = (pairs){0};
 }
 
@@ -137,11 +136,10 @@ static int compare_no(const void *a, const void *b) {
 
 static status to_mesh(const char *path, const pairs *p, const mesh *msh,
                       double *value) {
-  status st = OK;
-  numbered *node = NULL;
-  unsigned char *known = NULL;
-  NEW(node, msh->n_node);
-  NEW(known, msh->n_node);
+  OWNED numbered *node = NULL;
+  OWNED unsigned char *known = NULL;
+  PASS_NEW(node, msh->n_node);
+  PASS_NEW(known, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i)
     node[i] = (numbered){msh->node_no[i], i};
   qsort(node, (size_t)msh->n_node, sizeof *node, compare_no);
@@ -151,21 +149,18 @@ static status to_mesh(const char *path, const pairs *p, const mesh *msh,
         bsearch(&key, node, (size_t)msh->n_node, sizeof key, compare_no);
     if (at == NULL) continue;
     if (!isfinite(p->value[i]))
-      FAIL(ERR_DECK, "%s: the value of node %ld is not a finite number", path,
-           p->node_no[i]);
+      RAISE(ERR_DECK, "%s: the value of node %ld is not a finite number", path,
+            p->node_no[i]);
     if (known[at->id])
-      FAIL(ERR_DECK, "%s: node %ld is listed twice", path, p->node_no[i]);
+      RAISE(ERR_DECK, "%s: node %ld is listed twice", path, p->node_no[i]);
     value[at->id] = p->value[i];
     known[at->id] = 1;
   }
   for (int i = 0; i < msh->n_node; ++i)
     if (!known[i])
-      FAIL(ERR_DECK, "%s: node %zu of the mesh has no value", path,
-           msh->node_no[i]);
-done:
-  memory_free(node);
-  memory_free(known);
-  return st;
+      RAISE(ERR_DECK, "%s: node %zu of the mesh has no value", path,
+            msh->node_no[i]);
+  return OK;
 }
 
 /* 1 if the file has the first bytes of one of HDF5. */

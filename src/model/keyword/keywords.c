@@ -6,7 +6,6 @@
 #include "model/keyword/keyword.h"
 
 #include <float.h>
-#include <math.h>
 #include <string.h>
 
 #define ANY (-1)

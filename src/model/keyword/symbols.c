@@ -7,8 +7,6 @@
 
 #include "mesh/msh/geo.h"
 
-#include <string.h>
-
 /* The names of a deck but for one. */
 typedef struct others {
   const deck *d;

@@ -55,24 +55,9 @@ enum { UZAWA_STEPS = 1000 /* Newton steps of all multiplier steps */ };
 static void auglag_release(void *work) {
   auglag_work *w = work;
   if (w == NULL) return;
-  memory_free(w->part);
-  memory_free(w->closed);
-  memory_free(w->mode);
-  memory_free(w->state);
-  memory_free(w->origin);
-  memory_free(w->diagonal);
-  memory_free(w->lambda);
-  memory_free(w->z);
-  memory_free(w->F);
-  memory_free(w->y);
-  memory_free(w->du);
-  memory_free(w->dy);
-  memory_free(w->e);
-  memory_free(w->share);
-  memory_free(w->bonded);
-  memory_free(w->K);
-  memory_free(w->pivot);
-  memory_free(w->free_id);
+  RELEASE(w->part, w->closed, w->mode, w->state, w->origin, w->diagonal,
+          w->lambda, w->z, w->F, w->y, w->du, w->dy, w->e, w->share, w->bonded,
+          w->K, w->pivot, w->free_id);
   fixed_point_free(w->fixed);
   best_iterate_free(&w->best);
   memory_free(w);

@@ -23,12 +23,7 @@ static const double PROGRESS = 0.9; /* -, a lower residual                    */
 static const double STEADY = 0x1p-7; /* -, of a step of a drift               */
 
 void anchor_free(anchor *an) {
-  memory_free(an->R);
-  memory_free(an->A);
-  memory_free(an->W);
-  memory_free(an->f);
-  memory_free(an->a);
-  memory_free(an->step);
+  RELEASE(an->R, an->A, an->W, an->f, an->a, an->step);
   *an = (anchor){0};
 }
 
@@ -47,28 +42,25 @@ static void orthonormalise(int m, int n, double *R) {
 }
 
 status anchor_modes(const contact_problem *cp, anchor *an) {
-  status st = OK;
-  int *pivot = NULL, m = cp->m, rank = 0;
-  double *work = NULL, *L = NULL, power = dense_power(m, cp->A);
+  OWNED int *pivot = NULL;
+  int m = cp->m, rank = 0;
+  OWNED double *work = NULL, *L = NULL;
+  double power = dense_power(m, cp->A);
   size_t size = (size_t)m * (size_t)m;
   if (an->R != NULL) return OK;
-  NEW(pivot, m);
-  NEW(work, 2 * m);
-  NEW(L, size);
+  PASS_NEW(pivot, m);
+  PASS_NEW(work, 2 * m);
+  PASS_NEW(L, size);
   for (size_t i = 0; i < size; ++i) L[i] = power * cp->A[i];
   LAPACKE_dpstrf_work(LAPACK_COL_MAJOR, 'L', m, L, m, pivot, &rank,
                       m * NULL_PIVOT, work);
   an->n_mode = m - rank;
-  NEW(an->R, m * an->n_mode);
-  NEW(an->a, an->n_mode);
-  NEW(an->step, an->n_mode);
+  PASS_NEW(an->R, m * an->n_mode);
+  PASS_NEW(an->a, an->n_mode);
+  PASS_NEW(an->step, an->n_mode);
   dense_null(m, rank, L, pivot, work, an->R);
   orthonormalise(m, an->n_mode, an->R);
-done:
-  memory_free(pivot);
-  memory_free(work);
-  memory_free(L);
-  return st;
+  return OK;
 }
 
 /* A_s and its inverse. */

@@ -53,8 +53,7 @@ static void forget_factors(contact_solver *s) {
   anchor_free(&s->held);
   contact_bodies_free(s->bodies);
   s->bodies = NULL;
-  memory_free(s->best_u);
-  memory_free(s->best_r);
+  RELEASE(s->best_u, s->best_r);
   s->best_u = s->best_r = NULL;
   s->A = s->W = NULL;
   s->m = s->n = -1;
@@ -64,8 +63,7 @@ static void forget_factors(contact_solver *s) {
 void contact_solver_free(contact_solver *s) {
   if (s == NULL) return;
   forget_factors(s);
-  memory_free(s->param);
-  memory_free(s);
+  RELEASE(s->param, s);
 }
 
 void contact_solver_tolerance(contact_solver *s, double tol) {

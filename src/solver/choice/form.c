@@ -6,7 +6,6 @@
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -49,8 +48,7 @@ done:
 }
 
 void other_form_free(other_form *o) {
-  memory_free(o->matrix);
-  memory_free(o->load);
+  RELEASE(o->matrix, o->load);
   *o = (other_form){0};
 }
 

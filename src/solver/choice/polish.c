@@ -100,23 +100,18 @@ static int touch(const contact_problem *cp, const double *u, const double *r,
 
 status polish_touch(const contact_problem *cp, double scale, double tol,
                     double *u, double *r, double *residual) {
-  status st = OK;
   size_t bytes = (size_t)cp->m * sizeof *u;
-  double *v = NULL, *s = NULL, *way = NULL;
-  NEW(v, cp->m);
-  NEW(s, cp->m);
-  NEW(way, cp->m);
-  if (!touch(cp, u, r, v, s, way)) goto done;
+  OWNED double *v = NULL, *s = NULL, *way = NULL;
+  PASS_NEW(v, cp->m);
+  PASS_NEW(s, cp->m);
+  PASS_NEW(way, cp->m);
+  if (!touch(cp, u, r, v, s, way)) return OK;
   double reached = contact_residual_at(cp, scale, v, s);
-  if (!(reached <= tol)) goto done;
+  if (!(reached <= tol)) return OK;
   *residual = reached;
   memcpy(u, v, bytes);
   memcpy(r, s, bytes);
-done:
-  memory_free(v);
-  memory_free(s);
-  memory_free(way);
-  return st;
+  return OK;
 }
 
 status polish_slip(const contact_problem *cp, double tol, int most, double *u,
@@ -146,7 +141,6 @@ status polish_slip(const contact_problem *cp, double tol, int most, double *u,
   }
 done:
   node_blocks_free(s.blocks);
-  memory_free(s.u);
-  memory_free(s.r);
+  RELEASE(s.u, s.r);
   return st;
 }

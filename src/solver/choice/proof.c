@@ -153,10 +153,7 @@ static status balance_new(balance *s) {
 
 static void balance_free(balance *s) {
   nonnegative_free(&s->sum);
-  memory_free(s->v);
-  memory_free(s->c);
-  memory_free(s->force);
-  memory_free(s->lift);
+  RELEASE(s->v, s->c, s->force, s->lift);
 }
 
 /* Friction of node i against v, times "limit", added to the force. */
@@ -262,36 +259,29 @@ done:
 
 /* The forces that end complementary pivoting without friction. */
 static status find_forces(const contact_problem *cp, int *proved) {
-  status st = OK;
-  double *M = NULL, *q = NULL, *y = NULL, *l = NULL, *room = NULL;
-  int *id = NULL, n = 0;
+  OWNED double *M = NULL, *q = NULL, *y = NULL, *l = NULL, *room = NULL;
+  OWNED int *id = NULL;
+  int n = 0;
   size_t m = (size_t)cp->m;
   lcp_report rep;
-  NEW(id, m);
+  PASS_NEW(id, m);
   for (int dof = 0; dof < cp->m; ++dof)
     if (contact_bound(cp, dof) < HUGE_VAL) id[n++] = dof;
-  NEW(M, (size_t)n * (size_t)n);
-  NEW(q, n);
-  NEW(y, n);
-  NEW(l, m);
-  NEW(room, 3 * m);
+  PASS_NEW(M, (size_t)n * (size_t)n);
+  PASS_NEW(q, n);
+  PASS_NEW(y, n);
+  PASS_NEW(l, m);
+  PASS_NEW(room, 3 * m);
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i)
       M[(size_t)i + (size_t)n * (size_t)j] =
           cp->W[(size_t)id[i] + m * (size_t)id[j]];
   for (int i = 0; i < n; ++i) q[i] = contact_bound(cp, id[i]) - cp->f[id[i]];
-  TRY(lcp_lemke(n, M, q, 0, y, &rep));
-  if (rep.outcome != STOPPED_RAY) goto done;
+  PASS(lcp_lemke(n, M, q, 0, y, &rep));
+  if (rep.outcome != STOPPED_RAY) return OK;
   for (int i = 0; i < n; ++i) l[id[i]] = y[i];
   *proved = proof_holds(cp, l, room);
-done:
-  memory_free(M);
-  memory_free(q);
-  memory_free(y);
-  memory_free(l);
-  memory_free(room);
-  memory_free(id);
-  return st;
+  return OK;
 }
 
 status proof_find(const contact_problem *cp, anchor *an, int *proved) {

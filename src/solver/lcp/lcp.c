@@ -31,27 +31,9 @@ enum { REFRESH = 16 /* pivots from one new start of the values to the next */ };
 
 void lcp_free(lcp_work *w) {
   if (w == NULL) return;
-  memory_free(w->K);
-  memory_free(w->P);
-  memory_free(w->lapack);
-  memory_free(w->swap);
-  memory_free(w->var);
-  memory_free(w->row);
-  memory_free(w->at_z);
-  memory_free(w->at_w);
-  memory_free(w->z);
-  memory_free(w->w);
-  memory_free(w->dz);
-  memory_free(w->dw);
-  memory_free(w->lz);
-  memory_free(w->lw);
-  memory_free(w->gather);
-  memory_free(w->line);
-  memory_free(w->column);
-  memory_free(w->q);
-  memory_free(w->tie);
-  memory_free(w->key);
-  memory_free(w);
+  RELEASE(w->K, w->P, w->lapack, w->swap, w->var, w->row, w->at_z, w->at_w,
+          w->z, w->w, w->dz, w->dw, w->lz, w->lw, w->gather, w->line, w->column,
+          w->q, w->tie, w->key, w);
 }
 
 status lcp_new(int n, int rank, lcp_work **out) {

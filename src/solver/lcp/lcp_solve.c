@@ -63,14 +63,7 @@ static status run_new(run *s) {
 }
 
 static void run_free(run *s) {
-  memory_free(s->try_z);
-  memory_free(s->y);
-  memory_free(s->cover);
-  memory_free(s->size);
-  memory_free(s->M);
-  memory_free(s->q);
-  memory_free(s->room);
-  memory_free(s->turned);
+  RELEASE(s->try_z, s->y, s->cover, s->size, s->M, s->q, s->room, s->turned);
 }
 
 static void note(lcp_verdict *v, const char *who, outcome o) {
@@ -205,13 +198,12 @@ static int is_certificate(const lcp_data *p, const double *y) {
 /* Is there any z >= 0 with w >= 0? *proved = 1: no. The ray of the skew problem
  * is (z, y) with y the certificate. */
 static status look_for_proof(run *s, int *proved) {
-  status st = OK;
   size_t n = (size_t)s->p->n, m = 2 * n;
-  double *K = NULL, *k = NULL, *ray = NULL;
+  OWNED double *K = NULL, *k = NULL, *ray = NULL;
   lcp_report rep;
-  NEW(K, m * m);
-  NEW(k, m);
-  NEW(ray, m);
+  PASS_NEW(K, m * m);
+  PASS_NEW(k, m);
+  PASS_NEW(ray, m);
   for (size_t j = 0; j < n; ++j)
     for (size_t i = 0; i < n; ++i) {
       double a = s->p->M[i + n * j];
@@ -219,14 +211,10 @@ static status look_for_proof(run *s, int *proved) {
       K[j + m * (n + i)] = -a;
     }
   memcpy(k + n, s->p->q, n * sizeof *k);
-  TRY(lcp_lemke((int)m, K, k, 0, ray, &rep));
+  PASS(lcp_lemke((int)m, K, k, 0, ray, &rep));
   s->v->iterations += rep.pivots;
   *proved = rep.outcome == STOPPED_RAY && is_certificate(s->p, ray + n);
-done:
-  memory_free(K);
-  memory_free(k);
-  memory_free(ray);
-  return st;
+  return OK;
 }
 
 /* ---- all together -------------------------------------------------------- */

@@ -5,7 +5,6 @@
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
 #include <string.h>
 
 status nonnegative_new(int rows, nonnegative *s) {
@@ -22,13 +21,7 @@ status nonnegative_new(int rows, nonnegative *s) {
 }
 
 void nonnegative_free(nonnegative *s) {
-  memory_free(s->b);
-  memory_free(s->rest);
-  memory_free(s->G);
-  memory_free(s->Q);
-  memory_free(s->x);
-  memory_free(s->y);
-  memory_free(s->work);
+  RELEASE(s->b, s->rest, s->G, s->Q, s->x, s->y, s->work);
 }
 
 void nonnegative_begin(nonnegative *s) {

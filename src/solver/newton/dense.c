@@ -20,12 +20,7 @@ status dense_new(int room, dense *d) {
   return OK;
 }
 
-void dense_free(dense *d) {
-  memory_free(d->a);
-  memory_free(d->pivot);
-  memory_free(d->iwork);
-  memory_free(d->work);
-}
+void dense_free(dense *d) { RELEASE(d->a, d->pivot, d->iwork, d->work); }
 
 int dense_is_symmetric(int m, const double *M, double apart) {
   size_t n = (size_t)m;

@@ -2,7 +2,6 @@
 #include "solver/newton/parts.h"
 
 #include <cblas.h>
-#include <math.h>
 #include <string.h>
 
 static const double SPRING = 0x1p-36; /* -, of the diagonal                   */

@@ -44,11 +44,7 @@ status states_new(const contact_problem *cp, states *s) {
 
 void states_free(states *s) {
   pattern_free(&s->guess);
-  memory_free(s->raw);
-  memory_free(s->k);
-  memory_free(s->c);
-  memory_free(s->g);
-  memory_free(s->rounding);
+  RELEASE(s->raw, s->k, s->c, s->g, s->rounding);
 }
 
 /* ---- reaction ------------------------------------------------------------ */

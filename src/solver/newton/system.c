@@ -24,12 +24,7 @@ status pattern_new(int dim, int n, pattern *p) {
 }
 
 void pattern_free(pattern *p) {
-  memory_free(p->closed);
-  memory_free(p->mode);
-  memory_free(p->e);
-  memory_free(p->kappa);
-  memory_free(p->free_id);
-  memory_free(p->place);
+  RELEASE(p->closed, p->mode, p->e, p->kappa, p->free_id, p->place);
 }
 
 void pattern_copy(int dim, int n, const pattern *from, pattern *to) {

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 
 #include <lapacke.h>
-#include <math.h>
 #include <string.h>
 #include <umfpack.h>
 
