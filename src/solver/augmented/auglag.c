@@ -29,10 +29,478 @@
  *
  * rho is a multiple of the diagonal of A, equal in the tangents of a node.
  */
-#include "solver/augmented/parts.h"
 #include "base/memory.h"
+#include "contact/force/force_set.h"
+#include "solver/fixed_point.h"
+#include "solver/local.h"
+#include "solver/solver.h"
 
+#include <cblas.h>
+#include <lapacke.h>
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+enum {
+  NEWTON_STEPS = 60, /* of the generalised Newton method                      */
+  SHORTENINGS = 10   /* of one step                                           */
+};
+
+typedef enum { OPEN, CLOSED } contact_state;
+
+typedef enum { FREE, STICK, SLIP } tangent;
+
+typedef struct auglag_work {
+  int m;                 /* unknowns                                        */
+  unsigned char *part;   /* [m] force_part                                   */
+  unsigned char *closed; /* [m] contact_state of the unknowns that push      */
+  unsigned char *mode;   /* [n] tangent                                      */
+  unsigned char *state;  /* [m] of the step told last                        */
+  double *origin;        /* [m] m                                            */
+  double *diagonal;      /* [m] of A, the mean in a tangent plane, N/m       */
+  double *lambda, *z, *F, *y; /* [m] N; y = A u - f. Newton: work, work    */
+  double *du, *dy;   /* [m] step, A du                                   */
+  double *bonded;    /* [n] no limit                                     */
+  double *e, *share; /* [m] direction of slip, [n] g/|z|                 */
+  double *K;         /* [m*m]                                            */
+  double power;      /* of two: power*A has a diagonal of order 1         */
+  uint64_t seen[NEWTON_STEPS + 1]; /* hashes of the states of the steps     */
+  int *pivot, *free_id; /* [m]                                              */
+  fixed_point *fixed;
+  best_iterate best;
+} auglag_work;
+
+typedef struct auglag_run {
+  const contact_problem *cp;
+  auglag_work *w;
+  const solver_control *control;
+  double *u, *r;
+  double scale, rho; /* N; -, of the diagonal                                */
+  int steps, limit;
+  int changes;  /* states changed by the last evaluation                      */
+  int turned;   /* nodes with another state than after the step before        */
+  int bent;     /* 1: F' of a slipping node moves with z (3-D)                */
+  int factored; /* w->K is the factor for the present states                 */
+  int singular; /* the last matrix needed springs                            */
+  int cycle;    /* the states were met before in these Newton steps          */
+} auglag_run;
+
+/* ---- the augmented forces F(z), the states of the nodes they stand for, and
+ * the residual of (u, F). */
+
+/* rho of an unknown, N/m. */
+static double auglag_rho(const auglag_run *s, int dof) {
+  return s->rho * s->w->diagonal[dof];
+}
+
+/* F in the tangent plane of a node. */
+static void tangent_force(auglag_run *s, int node_id) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  double size = 0.0, g = contact_node_limit(cp, w->F, node_id);
+  tangent now = FREE;
+  for (int dof = node_id * cp->dim + 1; dof < (node_id + 1) * cp->dim; ++dof)
+    if (w->part[dof] == IN_DISC) size += w->z[dof] * w->z[dof];
+  size = sqrt(size);
+  if (g > 0.0) now = size > g ? SLIP : STICK;
+  w->share[node_id] = now == FREE ? 0.0 : now == SLIP ? g / size : 1.0;
+  for (int dof = node_id * cp->dim + 1; dof < (node_id + 1) * cp->dim; ++dof) {
+    if (w->part[dof] != IN_DISC) continue;
+    double e = size > 0.0 ? w->z[dof] / size : 0.0;
+    w->F[dof] = w->share[node_id] * w->z[dof];
+    if (now == SLIP && e * w->e[dof] < 0.0) ++s->changes;
+    w->e[dof] = e;
+  }
+  s->changes += now != w->mode[node_id];
+  s->bent = s->bent || (now == SLIP && cp->dim == 3);
+  w->mode[node_id] = (unsigned char)now;
+}
+
+/* z, F and the states from base (lambda, or y) and u. */
+static void auglag_evaluate(auglag_run *s, const double *base) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  s->changes = s->bent = 0;
+  for (int dof = 0; dof < cp->m; ++dof) {
+    w->F[dof] = 0.0;
+    if (w->part[dof] == NO_FORCE) continue;
+    w->z[dof] = base[dof] - auglag_rho(s, dof) * (s->u[dof] - w->origin[dof]);
+    if (w->part[dof] != PUSH) continue;
+    contact_state now = w->z[dof] < 0.0 ? CLOSED : OPEN;
+    if (now == CLOSED) w->F[dof] = w->z[dof];
+    s->changes += now != w->closed[dof];
+    w->closed[dof] = (unsigned char)now;
+  }
+  for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) tangent_force(s, i);
+  if (s->changes > 0 || s->bent) s->factored = 0;
+}
+
+/* 1: an unknown in the tangent plane of a node that slips. */
+static int auglag_slips(const auglag_run *s, int dof) {
+  return s->w->part[dof] == IN_DISC && s->w->mode[dof / s->cp->dim] == SLIP;
+}
+
+/* 1: F of the unknown is z. */
+static int auglag_is_fixed(const auglag_run *s, int dof) {
+  if (s->w->part[dof] == PUSH) return s->w->closed[dof] == CLOSED;
+  return s->w->part[dof] == IN_DISC && s->w->mode[dof / s->cp->dim] == STICK;
+}
+
+/* share (I - e e') of a slipping node, entry of two of its unknowns. */
+static double auglag_turning(const auglag_run *s, int a, int b) {
+  const auglag_work *w = s->w;
+  if (s->cp->dim == 2 || !auglag_slips(s, a) || !auglag_slips(s, b)) return 0.0;
+  return w->share[a / s->cp->dim] * ((a == b) - w->e[a] * w->e[b]);
+}
+
+/* The states after a step into w->state; counts the nodes that differ from the
+ * step before. */
+static void auglag_take_states(auglag_run *s) {
+  auglag_work *w = s->w;
+  int dim = s->cp->dim;
+  s->turned = 0;
+  for (int node_id = 0; node_id < s->cp->n; ++node_id) {
+    int differs = 0;
+    for (int dof = node_id * dim; dof < (node_id + 1) * dim; ++dof) {
+      int sign = auglag_slips(s, dof) && w->e[dof] > 0.0;
+      unsigned char now =
+          (unsigned char)(w->closed[dof] | w->mode[node_id] << 1 | sign << 3);
+      differs = differs || now != w->state[dof];
+      w->state[dof] = now;
+    }
+    s->turned += differs;
+  }
+}
+
+/* Residual of (u, F), told and kept. */
+static double auglag_judge(auglag_run *s) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  double residual = contact_mismatch(cp, s->scale, s->u, w->F, w->y);
+  solver_keep_best(&w->best, cp->m, residual, s->u, w->F);
+  solver_tell_states(s->control, "auglag", s->steps, residual, s->turned,
+                     s->cycle);
+  return residual;
+}
+
+/* u += a du, y += a dy */
+static void auglag_move(auglag_run *s, double a) {
+  cblas_daxpy(s->cp->m, a, s->w->du, 1, s->u, 1);
+  cblas_daxpy(s->cp->m, a, s->w->dy, 1, s->w->y, 1);
+}
+
+/* ---- VARIANT=NEWTON: the generalised Newton method for both equations at
+ * once. */
+
+static const double RHO_NEWTON = 0x1p-2; /* -, of diag A                     */
+static const double DESCENT = 1e-4; /* -, share of the slope                 */
+enum { MEMORY = 4 /* steps |Phi| is compared with */ };
+
+/* Row of (A - F'(A - rho)) d of a free unknown; v = A d, d[m]. */
+static double newton_row(const auglag_run *s, int row, const double *v,
+                         const double *d) {
+  const contact_problem *cp = s->cp;
+  const auglag_work *w = s->w;
+  int node_id = row / cp->dim, first = node_id * cp->dim;
+  double value = v[row];
+  if (!auglag_slips(s, row)) return value;
+  for (int b = first + 1; b < first + cp->dim; ++b)
+    value -= auglag_turning(s, row, b) * (v[b] - auglag_rho(s, b) * d[b]);
+  if (cp->B == NULL) return value;
+  for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
+    int n = cp->B->col[k] * cp->dim;
+    if (w->closed[n] == CLOSED)
+      value += w->e[row] * cp->B->val[k] * (v[n] - auglag_rho(s, n) * d[n]);
+  }
+  return value;
+}
+
+/* What the states fix goes into du, the rest is listed; returns how many. */
+static int known_steps(auglag_run *s) {
+  auglag_work *w = s->w;
+  int n = 0;
+  for (int dof = 0; dof < s->cp->m; ++dof) {
+    w->du[dof] = 0.0;
+    if (auglag_is_fixed(s, dof))
+      w->du[dof] = (w->F[dof] - w->y[dof]) / auglag_rho(s, dof);
+    else
+      w->free_id[n++] = dof;
+  }
+  return n;
+}
+
+/* Rows and columns of the n free unknowns, times power; returns the number of
+ * rows that slip. */
+static int newton_matrix(auglag_run *s, int n) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  double *unit = w->z;
+  int slipping = 0;
+  memset(unit, 0, (size_t)cp->m * sizeof *unit);
+  for (int j = 0; j < n; ++j) {
+    const double *column = cp->A + (size_t)cp->m * (size_t)w->free_id[j];
+    double *to = w->K + (size_t)n * (size_t)j;
+    for (int i = 0; i < n; ++i) to[i] = w->power * column[w->free_id[i]];
+    slipping += auglag_slips(s, w->free_id[j]);
+  }
+  for (int j = 0; j < n && slipping > 0; ++j) {
+    int dof = w->free_id[j];
+    const double *column = cp->A + (size_t)cp->m * (size_t)dof;
+    unit[dof] = 1.0;
+    for (int i = 0; i < n; ++i)
+      if (auglag_slips(s, w->free_id[i]))
+        w->K[(size_t)i + (size_t)n * (size_t)j] =
+            w->power * newton_row(s, w->free_id[i], column, unit);
+    unit[dof] = 0.0;
+  }
+  return slipping;
+}
+
+/* du of a Newton step; 0: the matrix is singular. */
+static int newton_direction(auglag_run *s) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  int n = known_steps(s), info = 0;
+  contact_product(cp->m, cp->A, w->du, w->dy);
+  for (int i = 0; i < n; ++i) {
+    int dof = w->free_id[i];
+    w->lambda[i] =
+        w->power * (w->F[dof] - w->y[dof] - newton_row(s, dof, w->dy, w->du));
+  }
+  if (n > 0 && newton_matrix(s, n) > 0)
+    info = LAPACKE_dgesv_work(LAPACK_COL_MAJOR, n, 1, w->K, n, w->pivot,
+                              w->lambda, n);
+  else if (n > 0)
+    info =
+        LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'L', n, 1, w->K, n, w->lambda, n);
+  if (info != 0) return 0;
+  for (int i = 0; i < n; ++i) w->du[w->free_id[i]] = w->lambda[i];
+  contact_product(cp->m, cp->A, w->du, w->dy);
+  return 1;
+}
+
+/* |Phi|^2 in the metric of the diagonal, N m. */
+static double merit(const auglag_run *s) {
+  const auglag_work *w = s->w;
+  double sum = 0.0;
+  for (int i = 0; i < s->cp->m; ++i) {
+    double d = w->y[i] - w->F[i];
+    if (d != 0.0) sum += d * d / w->diagonal[i];
+  }
+  return sum;
+}
+
+/* Shorten the step until |Phi| is below the largest of the last ones. */
+static double shorten(auglag_run *s, double reference) {
+  double a = 1.0, now;
+  auglag_move(s, 1.0);
+  auglag_evaluate(s, s->w->y);
+  now = merit(s);
+  for (int k = 0; k < SHORTENINGS; ++k) {
+    if (now <= (1.0 - DESCENT * a) * reference) break;
+    auglag_move(s, -0.5 * a);
+    a *= 0.5;
+    auglag_evaluate(s, s->w->y);
+    now = merit(s);
+  }
+  return now;
+}
+
+/* 1: the states after step k are others than before it, and were met. FNV-1a.
+ */
+static int met_before(const auglag_run *s, int k) {
+  auglag_work *w = s->w;
+  uint64_t h = 1469598103934665603u;
+  int met = 0;
+  for (int i = 0; i < s->cp->m; ++i) h = (h ^ w->state[i]) * 1099511628211u;
+  for (int j = 0; j + 1 < k; ++j) met = met || w->seen[j] == h;
+  w->seen[k] = h;
+  return met && s->turned > 0;
+}
+
+/* From u to CONVERGED, or why it stopped. */
+static outcome auglag_newton(auglag_run *s) {
+  auglag_work *w = s->w;
+  int met = 0;
+  double past[MEMORY], residual;
+  s->rho = RHO_NEWTON;
+  contact_reaction(s->cp, s->u, w->y);
+  auglag_evaluate(s, w->y);
+  for (int k = 0; k < MEMORY; ++k) past[k] = merit(s);
+  for (int k = 0;; ++k) {
+    auglag_take_states(s);
+    s->cycle = met_before(s, k);
+    met += s->cycle;
+    residual = auglag_judge(s);
+    if (isnan(residual)) return STOPPED_NAN;
+    if (residual <= s->control->tol) return CONVERGED;
+    if (s->steps >= s->limit) return STOPPED_ITERATIONS;
+    if (k == NEWTON_STEPS)
+      return 2 * met > k ? STOPPED_CYCLE : STOPPED_ITERATIONS;
+    ++s->steps;
+    if (!newton_direction(s)) return STOPPED_SINGULAR;
+    double reference = past[0];
+    for (int i = 1; i < MEMORY; ++i) reference = fmax(reference, past[i]);
+    past[k % MEMORY] = shorten(s, reference);
+    contact_reaction(s->cp, s->u, w->y);
+    auglag_evaluate(s, w->y);
+  }
+}
+
+/* ---- VARIANT=UZAWA: displacement and multiplier in turn ------------------ */
+
+static const double RHO_UZAWA = 0x1p4; /* -, of diag A                       */
+static const double PROGRESS = 0.9; /* -, of the residual, in PATIENCE steps */
+static const double START_TOL = 1e-3; /* -, of pressures for a first limit   */
+static const double FLATTER = 0.5; /* -, slope that ends a search           */
+static const double SPRING = 0x1p-36; /* -, of the diagonal                  */
+
+enum {
+  INNER_STEPS = 60, /* Newton steps of one multiplier step                    */
+  PATIENCE = 20     /* multiplier steps without a lower residual              */
+};
+
+/* Cholesky factor of power (A + F' rho); springs where nothing holds the body.
+ */
+static int uzawa_factor(auglag_run *s) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  size_t m = (size_t)cp->m;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    memcpy(w->K, cp->A, m * m * sizeof *w->K);
+    for (int dof = 0; dof < cp->m; ++dof) {
+      double *column = w->K + m * (size_t)dof;
+      if (auglag_is_fixed(s, dof)) column[dof] += auglag_rho(s, dof);
+      if (attempt > 0) column[dof] += SPRING * w->diagonal[dof];
+      int end = (dof / cp->dim + 1) * cp->dim;
+      for (int b = dof; auglag_slips(s, dof) && b < end; ++b)
+        column[b] += auglag_rho(s, dof) * auglag_turning(s, dof, b);
+    }
+    for (size_t i = 0; i < m * m; ++i) w->K[i] *= w->power;
+    s->singular = attempt;
+    if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', cp->m, w->K, cp->m) == 0) {
+      s->factored = 1;
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* Slope of the augmented Lagrangian along du at the present u, N m. */
+static double slope(auglag_run *s) {
+  double sum = 0.0;
+  auglag_evaluate(s, s->w->lambda);
+  for (int i = 0; i < s->cp->m; ++i)
+    sum += s->w->du[i] * (s->w->y[i] - s->w->F[i]);
+  return sum;
+}
+
+/* Move along du to where the slope is small: the whole step, or less. */
+static void search(auglag_run *s) {
+  double low = 0.0, high = 1.0, at = 1.0, first = slope(s);
+  auglag_move(s, 1.0);
+  double now = slope(s), low_slope = first, high_slope = now;
+  for (int k = 0; k < SHORTENINGS && now > FLATTER * fabs(first); ++k) {
+    double next = low + (high - low) * low_slope / (low_slope - high_slope);
+    next = fmax(next, low + 0.1 * (high - low));
+    next = fmin(next, high - 0.1 * (high - low));
+    auglag_move(s, next - at);
+    at = next;
+    now = slope(s);
+    if (now > 0.0) {
+      high = at;
+      high_slope = now;
+    } else {
+      low = at;
+      low_slope = now;
+      if (now >= -FLATTER * fabs(first)) break;
+    }
+  }
+}
+
+/* |lambda - F| and |A u - f - F|, the largest, N. */
+static void defects(const auglag_run *s, double *multiplier, double *balance) {
+  const auglag_work *w = s->w;
+  *multiplier = *balance = 0.0;
+  for (int i = 0; i < s->cp->m; ++i) {
+    *multiplier = fmax(*multiplier, fabs(w->lambda[i] - w->F[i]));
+    *balance = fmax(*balance, fabs(w->y[i] - w->F[i]));
+  }
+}
+
+/* Minimise over u. */
+static outcome minimise(auglag_run *s) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  double multiplier, balance;
+  auglag_evaluate(s, w->lambda);
+  for (int k = 0;; ++k) {
+    auglag_take_states(s);
+    double residual = auglag_judge(s);
+    if (isnan(residual)) return STOPPED_NAN;
+    if (residual <= s->control->tol) return CONVERGED;
+    if (s->steps >= s->limit) return STOPPED_ITERATIONS;
+    defects(s, &multiplier, &balance);
+    if (k > 0 && (balance <= 0.01 * multiplier ||
+                  balance <= 0.1 * s->control->tol * s->scale))
+      return RUNNING;
+    if (k >= INNER_STEPS) return s->singular ? STOPPED_RAY : RUNNING;
+    ++s->steps;
+    if (!s->factored && !uzawa_factor(s)) return STOPPED_SINGULAR;
+    for (int i = 0; i < cp->m; ++i) w->du[i] = w->power * (w->F[i] - w->y[i]);
+    LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', cp->m, 1, w->K, cp->m, w->du,
+                        cp->m);
+    contact_product(cp->m, cp->A, w->du, w->dy);
+    search(s);
+    contact_reaction(cp, s->u, w->y);
+    auglag_evaluate(s, w->lambda);
+  }
+}
+
+/* The same from u and r, for a limit that does not follow the pressure. */
+static outcome auglag_uzawa(auglag_run *s) {
+  auglag_work *w = s->w;
+  size_t bytes = (size_t)s->cp->m * sizeof *s->u;
+  double mark = HUGE_VAL;
+  int since = 0;
+  outcome o;
+  s->rho = RHO_UZAWA;
+  s->cycle = 0;
+  s->factored = 0;
+  memcpy(w->lambda, s->r, bytes);
+  contact_reaction(s->cp, s->u, w->y);
+  while ((o = minimise(s)) == RUNNING) {
+    memcpy(w->lambda, w->F, bytes);
+    ++since;
+    if (w->best.residual < PROGRESS * mark) {
+      mark = w->best.residual;
+      since = 0;
+    }
+    if (since > PATIENCE) return s->singular ? STOPPED_RAY : STOPPED_STAGNATION;
+  }
+  return o;
+}
+
+/* u and r of the problem without slip: pressures for the first limit. */
+static void auglag_start_bonded(auglag_run *s) {
+  const contact_problem *cp = s->cp;
+  contact_problem bonded = *cp;
+  for (int i = 0; i < cp->n; ++i) {
+    if (contact_node_limit(cp, s->r, i) > 0.0) return;
+    s->w->bonded[i] = HUGE_VAL;
+  }
+  bonded.B = NULL;
+  bonded.g0 = s->w->bonded;
+  auglag_run start = *s;
+  solver_control coarse = *s->control;
+  coarse.tol = fmax(coarse.tol, START_TOL);
+  start.cp = &bonded;
+  start.control = &coarse;
+  s->w->best.residual = HUGE_VAL;
+  auglag_uzawa(&start);
+  s->steps = start.steps;
+  solver_take_best(&s->w->best, cp->m, s->u, s->r);
+}
 
 typedef struct auglag {
   int variant; /* variant_way                                                */

@@ -1,11 +1,347 @@
 /* A step: by the kept factor, or by a new one (system.h). */
-#include "solver/newton/parts.h"
+#include "solver/newton/system.h"
 
 #include "base/memory.h"
+#include "solver/newton/dense.h"
 
 #include <cblas.h>
+#include <lapacke.h>
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
+
+enum {
+  CHUNK = 32, /* rows gathered at a time                                      */
+  READ = 8    /* solves whose arithmetic takes as long as reading the factor  */
+};
+
+struct newton_system {
+  const contact_problem *cp; /* of the last fit                              */
+  size_t n_node;
+  int m, symmetric; /* symmetric: -1: not yet looked at                      */
+  double power; /* of two: A*power has a diagonal of order 1                  */
+  dense K;      /* factor of the base                                         */
+  pattern base; /* what it was made for                                       */
+  int has_base;
+  uint64_t friction;  /* hash of B in it                                     */
+  double spent;       /* on updates of the base, operations                  */
+  int updated;        /* the last step came from an update                   */
+  int room, n_column; /* columns of X: most, made                            */
+  int *column;        /* [m] of X, -1: not made                              */
+  double *X;          /* [m*room] inv(M0) e_j                                */
+  double *C;          /* [room*room] small system                            */
+  double *rows;       /* [m*CHUNK]                                           */
+  double *product;    /* [CHUNK*room]                                        */
+  int n_changed;      /* rows in which the guess differs from the base       */
+  int *changed;       /* [m]                                                 */
+  double *b, *x, *du; /* [m]                                                 */
+  double *z, *weight; /* [room], [room]                                      */
+  int *small_pivot;   /* [room]                                            */
+};
+
+/* ---- the matrix of a guess of the states, and its factor ----------------- */
+
+static const double SPRING = 0x1p-36; /* -, of the diagonal                   */
+
+/* ---- the matrix ---------------------------------------------------------- */
+
+/* 1: under the guess friction of the node follows pressure: M has no symmetry.
+ */
+static int couples(const newton_system *s, const pattern *p, int node_id) {
+  const sparse_rows *B = s->cp->B;
+  if (p->mode[node_id] != SLIP) return 0;
+  for (int k = B == NULL ? 0 : B->start[node_id];
+       B != NULL && k < B->start[node_id + 1]; ++k)
+    if (B->val[k] != 0.0 && p->closed[B->col[k] * s->cp->dim]) return 1;
+  return 0;
+}
+
+/* 1: the guess puts friction into the rows of the node. */
+static int newton_bends(const newton_system *s, const pattern *p, int node_id) {
+  if (s->cp->dim == 3) return p->mode[node_id] == SLIP;
+  return couples(s, p, node_id);
+}
+
+/* 1: M needs LU under the guess. */
+static int newton_needs_lu(const newton_system *s, const pattern *p) {
+  int full = !s->symmetric;
+  for (int i = 0; i < s->cp->n && !full; ++i) full = couples(s, p, i);
+  return full;
+}
+
+/* Rows of slipping nodes in one column of M: e (B A_n) of the closed nodes is
+ * added; column[m] of A, to[n_free]. */
+static void newton_limit_rows(const newton_system *s, const pattern *p,
+                              const double *column, double *to) {
+  const sparse_rows *B = s->cp->B;
+  int dim = s->cp->dim;
+  for (int node_id = 0; B != NULL && node_id < s->cp->n; ++node_id) {
+    if (p->mode[node_id] != SLIP) continue;
+    double sum = 0.0;
+    for (int k = B->start[node_id]; k < B->start[node_id + 1]; ++k)
+      if (p->closed[B->col[k] * dim])
+        sum += B->val[k] * column[B->col[k] * dim];
+    for (int k = 0; k < dim - 1; ++k) {
+      int i = p->place[node_id * dim + 1 + k];
+      if (i >= 0) to[i] += s->power * p->e[node_id * (dim - 1) + k] * sum;
+    }
+  }
+}
+
+/* Entry (a, b) of kappa (I - e e') of a slipping node, times power. */
+static double turning(const newton_system *s, const pattern *p, int node_id,
+                      int a, int b) {
+  const double *e = p->e + 2 * node_id;
+  return s->power * p->kappa[node_id] * ((a == b ? 1.0 : 0.0) - e[a] * e[b]);
+}
+
+static void fill(newton_system *s, double spring) {
+  const pattern *p = &s->base;
+  size_t ld = (size_t)p->n_free, m = (size_t)s->m;
+  for (size_t j = 0; j < ld; ++j) {
+    const double *column = s->cp->A + m * (size_t)p->free_id[j];
+    double *to = s->K.a + ld * j;
+    for (size_t i = s->K.full ? 0 : j; i < ld; ++i)
+      to[i] = s->power * column[p->free_id[i]];
+    to[j] += spring * to[j];
+    if (s->K.full) newton_limit_rows(s, p, column, to);
+  }
+  for (int node_id = 0; s->cp->dim == 3 && node_id < s->cp->n; ++node_id) {
+    if (p->mode[node_id] != SLIP) continue;
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b) {
+        int i = p->place[3 * node_id + 1 + a],
+            j = p->place[3 * node_id + 1 + b];
+        if (i >= 0 && j >= 0)
+          s->K.a[(size_t)i + ld * (size_t)j] += turning(s, p, node_id, a, b);
+      }
+  }
+}
+
+/* Row of a free unknown under the guess, all columns, times power. to[m] */
+static void newton_row(const newton_system *s, const pattern *p, int dof,
+                       double *to) {
+  const contact_problem *cp = s->cp;
+  const sparse_rows *B = cp->B;
+  int m = s->m, step = s->symmetric ? 1 : m, node_id = dof / cp->dim,
+      tangents = cp->dim - 1, k = dof % cp->dim - 1;
+  size_t stride = s->symmetric ? (size_t)m : 1u;
+  memset(to, 0, (size_t)m * sizeof *to);
+  cblas_daxpy(m, s->power, cp->A + stride * (size_t)dof, step, to, 1);
+  if (k < 0 || p->mode[node_id] != SLIP) return;
+  for (int j = B == NULL ? 0 : B->start[node_id];
+       B != NULL && j < B->start[node_id + 1]; ++j) {
+    int n = B->col[j] * cp->dim;
+    double a = s->power * p->e[node_id * tangents + k] * B->val[j];
+    if (p->closed[n])
+      cblas_daxpy(m, a, cp->A + stride * (size_t)n, step, to, 1);
+  }
+  for (int a = 0; tangents == 2 && a < 2; ++a)
+    to[node_id * 3 + 1 + a] += turning(s, p, node_id, k, a);
+}
+
+/* ---- new factor ---------------------------------------------------------- */
+
+/* Operations of a new factor. */
+static double newton_cost(int n, int full) {
+  double size = n;
+  return (full ? 2.0 : 1.0) / 3.0 * size * size * size + READ * size * size;
+}
+
+/* The condition is asked for only where the matrix can be singular without a
+ * fault of the data. */
+/* Factor of the base; 0: singular to rounding. */
+static int newton_factor(newton_system *s) {
+  fill(s, 0.0);
+  return dense_factor(&s->K, s->K.full || s->cp->floating);
+}
+
+/* x[n_free, n_rhs], distance m, from the right sides, by the factor. */
+static void newton_back(const newton_system *s, int n_rhs, double *x) {
+  dense_solve(&s->K, n_rhs, x, s->m);
+}
+
+/* From the free unknowns of the base to all, in place; x[m]. */
+static void newton_expand(const newton_system *s, double *x) {
+  for (int dof = s->m - 1; dof >= 0; --dof) {
+    int i = s->base.place[dof];
+    x[dof] = i >= 0 ? x[i] : 0.0;
+  }
+}
+
+/* du of the base's own matrix. */
+static void newton_plain_step(newton_system *s) {
+  for (int i = 0; i < s->base.n_free; ++i) s->du[i] = s->b[s->base.free_id[i]];
+  newton_back(s, 1, s->du);
+  newton_expand(s, s->du);
+}
+
+/* The guess becomes the base, without a factor yet. */
+static void newton_begin(newton_system *s, const pattern *p, int full) {
+  pattern_copy(s->cp->dim, s->cp->n, p, &s->base);
+  s->K.n = p->n_free;
+  s->K.full = full;
+  s->spent = 0.0;
+  s->n_column = 0;
+  for (int i = 0; i < s->m; ++i) s->column[i] = -1;
+}
+
+/* du with springs, where the system is singular; leaves no base. */
+static void newton_spring_step(newton_system *s, const pattern *p) {
+  newton_begin(s, p, 1);
+  fill(s, SPRING);
+  dense_factor(&s->K, 0);
+  newton_plain_step(s);
+  s->has_base = 0;
+}
+
+/* ---- rows exchanged in a kept factor ------------------------------------- */
+
+static const double DRIFT = 0x1p-3; /* -, change of a slip direction or turning
+                                       stiffness the base bears (3-D)         */
+
+/* 1: the node slips in another direction than in the base; in 3-D a small
+ * change is borne. */
+static int turned(const newton_system *s, const pattern *p, int dof) {
+  int node_id = dof / s->cp->dim, tangents = s->cp->dim - 1;
+  double change = 0.0, now = p->kappa[node_id], old = s->base.kappa[node_id];
+  for (int k = node_id * tangents; k < (node_id + 1) * tangents; ++k)
+    change = fmax(change, fabs(p->e[k] - s->base.e[k]));
+  if (tangents == 1) return change != 0.0;
+  double stiffness = s->cp->A[(size_t)dof * (size_t)s->m + (size_t)dof];
+  return change > DRIFT || fabs(now - old) > DRIFT * (stiffness + old);
+}
+
+/* 1: the row of the unknown in the base is the one under the guess. */
+static int same_row(const newton_system *s, const pattern *p, int dof) {
+  const pattern *base = &s->base;
+  const sparse_rows *B = s->cp->B;
+  int node_id = dof / s->cp->dim;
+  int free_now = p->place[dof] >= 0;
+  if (free_now != (base->place[dof] >= 0)) return 0;
+  if (!free_now || dof % s->cp->dim == 0) return 1;
+  int now = newton_bends(s, p, node_id),
+      before = newton_bends(s, base, node_id);
+  if (!now || !before) return now == before;
+  if (turned(s, p, dof)) return 0;
+  for (int k = B == NULL ? 0 : B->start[node_id];
+       B != NULL && k < B->start[node_id + 1]; ++k) {
+    int n = B->col[k] * s->cp->dim;
+    if (p->closed[n] != base->closed[n]) return 0;
+  }
+  return 1;
+}
+
+/* List the rows in which the guess differs from the base; returns what an
+ * update costs, operations. */
+static double newton_list_changes(newton_system *s, const pattern *p) {
+  double fresh = 0.0, equations = 0.0, n = s->base.n_free, m = s->m;
+  s->n_changed = 0;
+  for (int dof = 0; dof < s->m; ++dof) {
+    if (same_row(s, p, dof)) continue;
+    s->changed[s->n_changed++] = dof;
+    fresh += s->column[dof] < 0;
+    equations += p->place[dof] >= 0;
+  }
+  double columns = s->n_column + fresh, k = s->n_changed;
+  if (columns > s->room) return HUGE_VAL;
+  return 2.0 * n * n * (fresh + 1.0 + READ) + 2.0 * m * equations * columns +
+         2.0 / 3.0 * k * k * k;
+}
+
+/* Columns of X for the rows that have none. */
+static void make_columns(newton_system *s) {
+  size_t m = (size_t)s->m;
+  const pattern *p = &s->base;
+  int first = s->n_column;
+  for (int a = 0; a < s->n_changed; ++a) {
+    int dof = s->changed[a];
+    if (s->column[dof] >= 0) continue;
+    s->column[dof] = s->n_column++;
+    double *x = s->X + m * (size_t)s->column[dof];
+    memset(x, 0, m * sizeof *x);
+    if (p->place[dof] >= 0) {
+      x[p->place[dof]] = 1.0;
+      continue;
+    }
+    const double *column = s->cp->A + m * (size_t)dof;
+    for (int i = 0; i < p->n_free; ++i) x[i] = s->power * column[p->free_id[i]];
+    if (s->K.full) newton_limit_rows(s, p, column, x);
+    for (int i = 0; i < p->n_free; ++i) x[i] = -x[i];
+  }
+  newton_back(s, s->n_column - first, s->X + m * (size_t)first);
+  for (int c = first; c < s->n_column; ++c)
+    newton_expand(s, s->X + m * (size_t)c);
+  for (int a = 0; a < s->n_changed; ++a) {
+    int dof = s->changed[a];
+    if (s->column[dof] >= first && p->place[dof] < 0)
+      s->X[m * (size_t)s->column[dof] + (size_t)dof] = 1.0;
+  }
+}
+
+/* Rows a .. a + n of the small system, all of them equations. id: places among
+ * the changed. */
+static void equation_rows(newton_system *s, const pattern *p, int n,
+                          const int *id) {
+  int k = s->n_changed;
+  for (int i = 0; i < n; ++i)
+    newton_row(s, p, s->changed[id[i]], s->rows + (size_t)i * (size_t)s->m);
+  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, n, s->n_column, s->m,
+              1.0, s->rows, s->m, s->X, s->m, 0.0, s->product, CHUNK);
+  for (int i = 0; i < n; ++i) {
+    for (int b = 0; b < k; ++b)
+      s->C[(size_t)id[i] + (size_t)k * (size_t)b] =
+          s->product[i + CHUNK * s->column[s->changed[b]]];
+    s->z[id[i]] =
+        s->b[s->changed[id[i]]] -
+        cblas_ddot(s->m, s->rows + (size_t)i * (size_t)s->m, 1, s->x, 1);
+  }
+}
+
+/* The small system: matrix C, right side z. */
+static void small_system(newton_system *s, const pattern *p) {
+  int id[CHUNK], n = 0, k = s->n_changed;
+  for (int a = 0; a < k; ++a) {
+    int dof = s->changed[a];
+    if (p->place[dof] >= 0) {
+      id[n++] = a;
+    } else {
+      for (int b = 0; b < k; ++b)
+        s->C[(size_t)a + (size_t)k * (size_t)b] =
+            s->X[(size_t)s->m * (size_t)s->column[s->changed[b]] + (size_t)dof];
+      s->z[a] = -s->x[dof];
+    }
+    if (n == CHUNK) {
+      equation_rows(s, p, n, id);
+      n = 0;
+    }
+  }
+  if (n > 0) equation_rows(s, p, n, id);
+}
+
+/* du by exchange of the listed rows; 0: the small system is singular. */
+static int newton_exchange(newton_system *s, const pattern *p) {
+  int k = s->n_changed;
+  make_columns(s);
+  memcpy(s->x, s->b, (size_t)s->m * sizeof *s->x);
+  for (int a = 0; a < k; ++a) s->x[s->changed[a]] = 0.0;
+  for (int i = 0; i < s->base.n_free; ++i) s->du[i] = s->x[s->base.free_id[i]];
+  newton_back(s, 1, s->du);
+  newton_expand(s, s->du);
+  if (k == 0) return 1;
+  memcpy(s->x, s->du, (size_t)s->m * sizeof *s->x);
+  small_system(s, p);
+  if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, k, 1, s->C, k, s->small_pivot, s->z,
+                         k) != 0)
+    return 0;
+  memset(s->weight, 0, (size_t)s->n_column * sizeof *s->weight);
+  for (int a = 0; a < k; ++a) s->weight[s->column[s->changed[a]]] = s->z[a];
+  cblas_dgemv(CblasColMajor, CblasNoTrans, s->m, s->n_column, 1.0, s->X, s->m,
+              s->weight, 1, 1.0, s->du, 1);
+  for (int dof = 0; dof < s->m; ++dof)
+    if (p->place[dof] < 0) s->du[dof] = 0.0;
+  return 1;
+}
 
 enum { SHARE = 4 }; /* rows exchanged: at most 1/SHARE of the unknowns */
 static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal        */

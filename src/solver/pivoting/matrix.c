@@ -5,8 +5,163 @@
 #include "solver/pivoting/parts.h"
 
 #include <cblas.h>
+#include <lapacke.h>
 #include <math.h>
 #include <string.h>
+
+/* ---- unknowns of the contact problem and variables z of the complementarity
+ * problem: which are kept, and what each one stands for. */
+
+static int has_friction(const contact_problem *cp, int node_id) {
+  if (cp->g0 == NULL) return 0;
+  if (contact_has_side(cp, node_id)) return 0;
+  if (cp->g0[node_id] != 0.0) return 1;
+  for (int k = cp->B == NULL ? 0 : cp->B->start[node_id];
+       cp->B != NULL && k < cp->B->start[node_id + 1]; ++k)
+    if (cp->B->val[k] != 0.0) return 1;
+  return 0;
+}
+
+void lemke_sort_unknowns(lemke_run *s) {
+  const contact_problem *cp = s->cp;
+  lemke_work *w = s->w;
+  w->n_kept = w->n_free = 0;
+  for (int dof = 0; dof < cp->m; ++dof) {
+    dof_kind kind = IS_FREE;
+    if (contact_held(cp, dof))
+      kind = IS_HELD;
+    else if (contact_bound(cp, dof) < HUGE_VAL)
+      kind = IS_BOUND;
+    else if (has_friction(cp, dof / cp->dim))
+      kind = IS_FRICTION;
+    w->kind[dof] = (int)kind;
+    if (kind == IS_FREE) w->free_id[w->n_free++] = dof;
+    if (kind == IS_BOUND || kind == IS_FRICTION) w->kept[w->n_kept++] = dof;
+  }
+}
+
+/* The directions of slip of a node whose first tangent is "dof". */
+static void add_directions(lemke_work *w, int node_id, int dof, int tangents) {
+  int count = tangents == 1 ? 2 : w->facets;
+  const double full = 2.0 * acos(-1.0);
+  w->slide[node_id] = w->n_var;
+  w->n_slide[node_id] = count;
+  if (tangents == 2) w->has_facets = 1;
+  for (int j = 0; j < count; ++j) {
+    int half = j % (count / 2);
+    double sign = j < count / 2 ? 1.0 : -1.0, angle = full * half / count;
+    variable v = {SLIDE, node_id, dof, {sign, 0.0}};
+    if (tangents == 2) {
+      v.e[0] = sign * cos(angle);
+      v.e[1] = sign * sin(angle);
+    }
+    w->var[w->n_var++] = v;
+  }
+}
+
+void lemke_list_variables(lemke_run *s) {
+  lemke_work *w = s->w;
+  int dim = s->cp->dim;
+  w->n_var = w->has_facets = 0;
+  for (int i = 0; i < s->cp->n; ++i) w->n_slide[i] = 0;
+  for (int i = 0; i < w->n_kept; ++i) {
+    int dof = w->kept[i], node_id = dof / dim;
+    if (w->kind[dof] == IS_BOUND) {
+      if (dof % dim == 0) w->normal[node_id] = w->n_var;
+      w->var[w->n_var++] = (variable){BOUND, node_id, i, {-1.0, 0.0}};
+    } else if (w->n_slide[node_id] == 0) {
+      int two = i + 1 < w->n_kept && w->kept[i + 1] / dim == node_id;
+      add_directions(w, node_id, i, two ? 2 : 1);
+      if (!lemke_is_stiff(s))
+        w->var[w->n_var++] = (variable){LIMIT, node_id, i, {0.0, 0.0}};
+    }
+  }
+}
+
+/* ---- the matrix of the unknowns kept: the tangents without friction
+ * eliminated, node by node scaled. */
+
+static const double SINGULAR = 1e-13; /* -, of the largest eigenvalue         */
+
+static void gather(const lemke_run *s, int n_row, const int *row, int n_col,
+                   const int *col, double *to) {
+  for (int j = 0; j < n_col; ++j) {
+    const double *from = s->M + (size_t)col[j] * (size_t)s->cp->m;
+    double *column = to + (size_t)j * (size_t)n_row;
+    for (int i = 0; i < n_row; ++i) column[i] = from[row[i]];
+  }
+}
+
+/* inner = inv(A_FF); 0: singular. */
+static int invert_free(lemke_run *s) {
+  lemke_work *w = s->w;
+  int n = w->n_free;
+  gather(s, n, w->free_id, n, w->free_id, w->inner);
+  return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, w->inner, n, w->pivot) ==
+             0 &&
+         LAPACKE_dgetri_work(LAPACK_COL_MAJOR, n, w->inner, n, w->pivot,
+                             w->work, 4 * w->m) == 0;
+}
+
+/* inner = pseudo-inverse of A_FF: motions that nothing resists stay out. */
+static int pseudo_invert_free(lemke_run *s) {
+  lemke_work *w = s->w;
+  int n = w->n_free;
+  size_t ld = (size_t)n;
+  gather(s, n, w->free_id, n, w->free_id, w->spare);
+  if (LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'L', n, w->spare, n, w->t,
+                         w->work, 4 * w->m + 4) != 0)
+    return 0;
+  memset(w->inner, 0, ld * ld * sizeof *w->inner);
+  for (size_t k = 0; k < ld; ++k)
+    if (w->t[k] > SINGULAR * w->t[n - 1])
+      cblas_dger(CblasColMajor, n, n, 1.0 / w->t[k], w->spare + k * ld, 1,
+                 w->spare + k * ld, 1, w->inner, n);
+  return 1;
+}
+
+int lemke_reduce(lemke_run *s) {
+  lemke_work *w = s->w;
+  int nk = w->n_kept, nf = w->n_free;
+  gather(s, nk, w->kept, nk, w->kept, w->S);
+  if (!lemke_is_stiff(s)) w->n_free = nf = 0;
+  if (nf == 0) return 1;
+  if (!(s->cp->floating ? pseudo_invert_free(s) : invert_free(s))) return 0;
+  double *X = w->inner + (size_t)nf * (size_t)nf;
+  for (int j = 0; j < nk; ++j) {
+    gather(s, nf, w->free_id, 1, &w->kept[j], w->t);
+    contact_product(nf, w->inner, w->t, X + (size_t)j * (size_t)nf);
+  }
+  for (int k = 0; k < nf; ++k) {
+    gather(s, nk, w->kept, 1, &w->free_id[k], w->t);
+    cblas_dger(CblasColMajor, nk, nk, -1.0, w->t, 1, X + k, nf, w->S, nk);
+  }
+  return 1;
+}
+
+void lemke_scale(lemke_run *s) {
+  lemke_work *w = s->w;
+  int dim = s->cp->dim, nk = w->n_kept, top = 0;
+  double largest = 0.0;
+  for (int i = 0; i < s->cp->n; ++i) w->D[i] = 0.0;
+  for (int i = 0; i < nk; ++i) {
+    double a = w->S[(size_t)i * (size_t)nk + (size_t)i];
+    double *D = w->D + w->kept[i] / dim;
+    *D = fmax(*D, a);
+    largest = fmax(largest, a);
+  }
+  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &top);
+  w->unit = ldexp(1.0, -top);
+  for (int i = 0; i < s->cp->n; ++i) {
+    int exponent = top;
+    if (w->D[i] > 0x1p-60 * largest) frexp(w->D[i], &exponent);
+    w->D[i] = ldexp(1.0, (top - exponent) / 2);
+  }
+  for (int j = 0; j < nk; ++j)
+    for (int i = 0; i < nk; ++i)
+      w->S[(size_t)j * (size_t)nk + (size_t)i] *=
+          w->unit * w->D[w->kept[i] / dim] * w->D[w->kept[j] / dim];
+}
 
 /* Entries of a row of B: from *first to *last - 1. */
 static void limit_range(const lemke_run *s, int node_id, int *first,

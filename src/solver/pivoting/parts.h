@@ -1,8 +1,7 @@
 /*
- * What METHOD=LEMKE is made of: unknowns and variables (unknowns.c), the
- * reduced matrix (reduce.c), the matrix of the complementarity problem as
- * lcp_run asks for it (matrix.c), states of the body (state.c), rays (ray.c).
- * The two forms of the problem stand in lemke.c. Private to
+ * What METHOD=LEMKE is made of: unknowns, variables, the reduced matrix and the
+ * matrix of the complementarity problem as lcp_run requires it (matrix.c); the
+ * two forms of the problem, states of the body, rays (lemke.c). Private to
  * src/solver/pivoting.
  */
 #ifndef PROTIS_PIVOTING_PARTS_H
@@ -62,22 +61,18 @@ static inline int lemke_is_stiff(const lemke_run *s) {
   return s->cp->A != NULL;
 }
 
-/* ---- unknowns.c ---- */
+/* ---- matrix.c ---- */
 
 /* Sort the unknowns; those kept (bounded or with friction) come in order. */
 void lemke_sort_unknowns(lemke_run *s);
 /* The variables of the unknowns kept, in their order. */
 void lemke_list_variables(lemke_run *s);
 
-/* ---- reduce.c ---- */
-
 /* S = A_KK - A_KF inv(A_FF) A_FK (W_KK in the compliance form); 0: A_FF is
  * singular. */
 int lemke_reduce(lemke_run *s);
 /* Powers of two that bring the diagonal of S to order 1, one per node. */
 void lemke_scale(lemke_run *s);
-
-/* ---- matrix.c ---- */
 
 /* The rows with the limit grow with mu: a factor for each. */
 void lemke_tame_limits(lemke_run *s);
@@ -90,30 +85,5 @@ void lemke_add_limits(const lemke_run *s, const double *z, double *y);
 void lemke_product(const void *ctx, int n_id, const int *id, const double *x,
                    double *y);
 void lemke_row(const void *ctx, int i, int n_id, const int *id, double *to);
-
-/* ---- state.c ---- */
-
-/* raw = A u - f, or W r + q; load 0: without f or q. */
-void lemke_respond(const lemke_run *s, const double *x, int load, double *raw);
-/* The free unknowns in equilibrium with the others. */
-void lemke_settle_free(const lemke_run *s, int load, double *u);
-/* base[m] of the work: the state at z = 0. */
-void lemke_set_base(lemke_run *s);
-/* x += the motion (forces) of z on the unknowns kept, unscaled. */
-void lemke_add_motion(const lemke_work *w, const double *z, double *x);
-/* x = the state at z. */
-void lemke_state_of(const lemke_run *s, const double *z, double *x);
-/* q and d of the complementarity problem. */
-void lemke_set_vectors(lemke_run *s);
-/* u[m], r[m] of the final basis. */
-void lemke_set_solution(lemke_run *s, double *u, double *r);
-
-/* ---- ray.c ---- */
-
-/* STOPPED_RAY if the ray is a free motion in fact, against the limits of the
- * state it starts from. */
-outcome lemke_judge_ray(lemke_run *s);
-/* 0: a load on free unknowns that nothing resists: the ray is its direction. */
-int lemke_load_is_held(lemke_run *s);
 
 #endif

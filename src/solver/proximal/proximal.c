@@ -18,12 +18,198 @@
  * The stretch s > 0 changes none of the solutions, but the way to them.
  */
 #include "base/memory.h"
-#include "solver/proximal/matrix.h"
+#include "contact/force/force_set.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
+#include <lapacke.h>
 #include <math.h>
 #include <string.h>
+#include <umfpack.h>
+
+typedef struct step_matrix step_matrix;
+
+/* ---- matrix of a step ----------------------------------------------------
+ *
+ * The matrix of a step of Newton's method on the forces, row by row:
+ *
+ *   J_i = e_i                                         nothing acts on unknown i
+ *   J_i = e_i - sum_j c_ij (e_j (1 - a) - D_j W_j) + ...            the others
+ *
+ * with rows W_j of the compliance. Unknowns of the first kind are taken out of
+ * the system; what is left is sparse where W is, and then factored by UMFPACK,
+ * else by LAPACK.
+ */
+
+struct step_matrix {
+  int m, k;             /* unknowns; of them in the system                    */
+  const force_set *set; /* borrowed                                           */
+  sparse_rows own;      /* rows of W where the set has none                   */
+  const sparse_rows *W; /* the one or the other                               */
+  int *place;           /* [m] in the system, -1: taken out                   */
+  double *line;         /* [m] the row at hand                                */
+  const double *d;      /* [m] borrowed                                       */
+  double *rhs, *x;      /* [m]                                                */
+  double *full;         /* [m*m] rows of the system, one after the other      */
+  int *pivot;           /* [m]                                                */
+  sparse_rows rows;     /* the same where W is sparse                         */
+  int room_col, room_val; /* entries of rows                                  */
+  double control[UMFPACK_CONTROL];
+};
+
+static int is_sparse(const step_matrix *s) { return s->full == NULL; }
+
+/* accepts NULL */
+static void step_matrix_free(step_matrix *s) {
+  if (s == NULL) return;
+  sparse_free(&s->own);
+  sparse_free(&s->rows);
+  void *const blocks[] = {s->place, s->line, s->rhs, s->x, s->full, s->pivot};
+  for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
+    memory_free(blocks[k]);
+  memory_free(s);
+}
+
+static status step_matrix_new(const contact_problem *cp, const force_set *set,
+                              step_matrix **out) {
+  status st = OK;
+  step_matrix *s = NULL;
+  size_t m = (size_t)cp->m;
+  NEW(s, 1);
+  s->m = cp->m;
+  s->set = set;
+  s->W = &set->rows;
+  NEW(s->place, m);
+  NEW(s->line, m);
+  NEW(s->rhs, m);
+  NEW(s->x, m);
+  memory_count_suitesparse();
+  umfpack_di_defaults(s->control);
+  if (set->rows.start != NULL) {
+    NEW(s->rows.start, m + 1);
+  } else {
+    TRY(compliance_rows(cp, &s->own));
+    s->W = &s->own;
+    NEW(s->full, m * m);
+    NEW(s->pivot, m);
+  }
+  *out = s;
+  s = NULL;
+done:
+  step_matrix_free(s);
+  return st;
+}
+
+/* A new matrix: acts[m], 0: row i is e_i; d[m] the right side, kept by the
+ * caller until the solve. */
+static void step_matrix_begin(step_matrix *s, const unsigned char *acts,
+                              const double *d) {
+  s->k = 0;
+  s->d = d;
+  s->rows.n = 0;
+  for (int i = 0; i < s->m; ++i) s->place[i] = acts[i] ? s->k++ : -1;
+}
+
+/* Into the row at hand: share times row j of W; value in column j. */
+static void step_matrix_add_row(step_matrix *s, int j, double share) {
+  const sparse_rows *W = s->W;
+  for (int k = W->start[j]; k < W->start[j + 1]; ++k)
+    s->line[W->col[k]] += share * W->val[k];
+}
+
+static void step_matrix_add(step_matrix *s, int j, double value) {
+  s->line[j] += value;
+}
+
+/* What the unknowns that were taken out leave on the right side; the line is
+ * cleared but for the places of the others. */
+static double take_out(step_matrix *s, int i) {
+  double rhs = s->d[i];
+  for (int j = 0; j < s->m; ++j) {
+    if (s->place[j] >= 0) continue;
+    rhs -= s->line[j] * s->d[j];
+    s->line[j] = 0.0;
+  }
+  return rhs;
+}
+
+static status put_sparse(step_matrix *s, int row) {
+  int n = s->rows.start[row];
+  for (int j = 0; j < s->m; ++j) {
+    if (s->line[j] == 0.0) continue;
+    PASS_GROW(s->rows.col, n, s->room_col);
+    PASS_GROW(s->rows.val, n, s->room_val);
+    s->rows.col[n] = s->place[j];
+    s->rows.val[n++] = s->line[j];
+  }
+  s->rows.start[row + 1] = n;
+  return OK;
+}
+
+/* It is row i (with acts[i], in ascending order); the next one is empty.
+ * Errors: ERR_MEMORY. */
+static status step_matrix_put(step_matrix *s, int i) {
+  status st = OK;
+  int row = s->place[i];
+  s->rhs[row] = take_out(s, i);
+  if (is_sparse(s)) {
+    TRY(put_sparse(s, row));
+    goto done;
+  }
+  double *to = s->full + (size_t)row * (size_t)s->k;
+  for (int j = 0; j < s->m; ++j)
+    if (s->place[j] >= 0) to[s->place[j]] = s->line[j];
+done:
+  memset(s->line, 0, (size_t)s->m * sizeof *s->line);
+  return st;
+}
+
+/* The rows one after the other are the transpose by columns. */
+static int solve_dense(step_matrix *s) {
+  int k = s->k;
+  memcpy(s->x, s->rhs, (size_t)k * sizeof *s->x);
+  if (LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, k, k, s->full, k, s->pivot) != 0)
+    return 0;
+  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', k, 1, s->full, k, s->pivot, s->x,
+                      k);
+  return 1;
+}
+
+static status solve_sparse(step_matrix *s, int *singular) {
+  status st = OK;
+  double info[UMFPACK_INFO];
+  void *symbolic = NULL, *numeric = NULL;
+  const sparse_rows *a = &s->rows;
+  int k = s->k;
+  int end = umfpack_di_symbolic(k, k, a->start, a->col, a->val, &symbolic,
+                                s->control, info);
+  if (end == UMFPACK_OK)
+    end = umfpack_di_numeric(a->start, a->col, a->val, symbolic, &numeric,
+                             s->control, info);
+  if (end == UMFPACK_OK)
+    end = umfpack_di_solve(UMFPACK_At, a->start, a->col, a->val, s->x, s->rhs,
+                           numeric, s->control, info);
+  *singular = end != UMFPACK_OK;
+  if (end == UMFPACK_ERROR_out_of_memory)
+    FAIL(ERR_MEMORY, "memory exhausted: factor of %d sparse rows", k);
+done:
+  umfpack_di_free_symbolic(&symbolic);
+  umfpack_di_free_numeric(&numeric);
+  return st;
+}
+
+/* d <- inv(J) d; *singular = 1: not found. Errors: ERR_MEMORY. */
+static status step_matrix_solve(step_matrix *s, double *d, int *singular) {
+  *singular = 0;
+  if (s->k == 0) return OK;
+  if (is_sparse(s))
+    PASS(solve_sparse(s, singular));
+  else
+    *singular = !solve_dense(s);
+  for (int i = 0; i < s->m && !*singular; ++i)
+    if (s->place[i] >= 0) d[i] = s->x[s->place[i]];
+  return OK;
+}
 
 static const option proximal_options[] = {OPTION_END};
 
