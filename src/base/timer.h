@@ -56,8 +56,14 @@
   X(RESTART,     "restart")
 /* clang-format on */
 
+/* Those of the list, which every program has, and more that are named as they
+ * are needed (timer_own_stage). */
 #define STAGE_ENUM(name, text) STAGE_##name,
-typedef enum { STAGE_LIST(STAGE_ENUM) STAGE_COUNT } stage;
+typedef enum {
+  STAGE_LIST(STAGE_ENUM) STAGE_LISTED,
+  STAGE_COUNT = STAGE_LISTED + 40,
+  STAGE_NONE
+} stage;
 
 typedef struct stage_cost {
   long calls;   /* -            */
@@ -71,9 +77,11 @@ void timer_enter(stage s);
 void timer_enter_whole(stage s);
 void timer_leave(stage s);       /* must match the last timer_enter         */
 stage_cost timer_cost(stage s);  /* so far, running stages included         */
-const char *timer_name(stage s); /* the text of STAGE_LIST                  */
-double timer_cpu(void);          /* CPU seconds of the process so far, and of
-                                    the children it has waited for          */
+const char *timer_name(stage s); /* NULL: one that has not been named       */
+/* Stage number k, from 0, of those that are not listed; name is borrowed. */
+stage timer_own_stage(int k, const char *name);
+double timer_cpu(void); /* CPU seconds of the process so far, and of
+                           the children it has waited for          */
 void timer_reset(void);
 /* The process goes on with the run of another, which had spent this: its calls
  * are those of the whole from here on, the rest adds up. */

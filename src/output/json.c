@@ -26,10 +26,11 @@ static void write_effect(json *w, const plan_row *r, double cpu,
   if (r->of[0] != '\0') json_string(w, "of", r->of);
   json_flag(w, "on", r->on);
   json_string(w, "why", r->why);
-  if (r->kind != NULL) json_named_count(w, r->kind, r->items);
+  if (r->work.kind != NULL)
+    json_named_count(w, r->work.kind, r->work.items);
   json_real(w, "expected_cpu_percent", 100 * r->share);
-  if (r->on && r->calls >= 0 && r->n_stage > 0)
-    json_count(w, "expected_calls", r->calls);
+  if (r->on && r->work.calls >= 0 && r->n_stage > 0)
+    json_count(w, "expected_calls", r->work.calls);
   if (r->n_stage == 0 && r->on) {
     json_string(w, "part_of", r->within);
   } else {
@@ -157,6 +158,7 @@ static void write_cost(json *w, const output_options *o) {
   json_open(w, "cost", '{');
   json_open(w, "stages", '[');
   for (int i = 0; i < STAGE_COUNT; ++i) {
+    if (timer_name((stage)i) == NULL) continue;
     stage_cost c = timer_cost((stage)i);
     json_open(w, NULL, '{');
     json_string(w, "stage", timer_name((stage)i));

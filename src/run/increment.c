@@ -420,6 +420,7 @@ static status pose_contact(run *r, double t) {
   TRY(st);
   TRY(limit_update(r, t));
   TRY(set_stick_position(r));
+  TRY(effects_pose(r, t));
   set_problem(r);
 done:
   return st;
@@ -478,7 +479,9 @@ static status solve_with_nodes(run *r, const double *F, int *iterations) {
     TRY(forms_solve(r));
     *iterations += r->report.iterations;
     r->report.iterations = *iterations;
-    if (!limit_follow_zone(r)) break;
+    int again = limit_follow_zone(r);
+    if (!again) TRY(effects_found(r, &again));
+    if (!again) break;
   }
   TRY(condense_recover(r->c, run_rows(r, 0, r->now.uc), r->now.u));
   take_interior(r);

@@ -38,8 +38,7 @@ static void find_stresses(run *r, int shown) {
   timer_leave(s);
 }
 
-/* Motion of a contact unknown against the obstacle in the increment, m. */
-static double motion_over(const run *r, int k) {
+double run_motion_over(const run *r, int k) {
   return (r->now.uc[k] - r->old.uc[k]) - (r->now.motion[k] - r->old.motion[k]);
 }
 
@@ -48,7 +47,7 @@ static double motion_over(const run *r, int k) {
 static double slip_of(const run *r, int k) {
   if (r->step->kind == STEP_STATIC && !r->relaxing)
     return r->now.uc[k] - r->now.motion[k];
-  return motion_over(r, k);
+  return run_motion_over(r, k);
 }
 
 /* Slip against the obstacle, gap left, status. */
@@ -78,8 +77,8 @@ static void add_distance(run *r) {
   if (r->distance == NULL) return;
   if (history) timer_enter(STAGE_HISTORY);
   for (int i = 0; i < r->n; ++i) {
-    double s[2] = {motion_over(r, dim * i + 1), 0.0};
-    if (dim == 3) s[1] = motion_over(r, dim * i + 2);
+    double s[2] = {run_motion_over(r, dim * i + 1), 0.0};
+    if (dim == 3) s[1] = run_motion_over(r, dim * i + 2);
     if (r->contact[i] == CONTACT_SLIP) r->distance[i] += hypot(s[0], s[1]);
   }
   if (history) timer_leave(STAGE_HISTORY);
@@ -152,33 +151,6 @@ static void find_torques(run *r) {
   }
 }
 
-/* Motions of the contacts, and what friction dissipates in each. */
-static void find_loops(run *r) {
-  const contact_surface *s = r->surface;
-  int dim = r->msh->dim;
-  if (r->loops == NULL) return;
-  for (int i = 0; i < r->m->n_contact; ++i) {
-    contact_loop *l = &r->loops[i];
-    double weight = 0.0;
-    memset(l->way, 0, sizeof l->way);
-    memset(l->mean_u_t, 0, sizeof l->mean_u_t);
-    l->angle = obstacle_angle(r->pairs[i].support, r->now.t);
-    for (int k = 0; k < r->n; ++k) {
-      if (s->contact_id[k] != i) continue;
-      weight += s->area[k];
-      for (int a = 0; a < dim - 1; ++a) {
-        int c = dim * k + a + 1;
-        l->way[a] += s->area[k] * (r->now.motion[c] - l->way[a]) / weight;
-        l->mean_u_t[a] += s->area[k] * (r->now.uc[c] - l->mean_u_t[a]) / weight;
-        if (s->side_id[(dim - 1) * k + a] >= 0) continue;
-        double mean = 0.5 * (r->old.rc[c] + r->now.rc[c]);
-        l->friction -= mean * motion_over(r, c);
-        l->friction_end -= r->now.rc[c] * motion_over(r, c);
-      }
-    }
-  }
-}
-
 /* What the springs of laws that elastic constants stand for hold, J: the part
  * 1/2 sigma R sigma of their strain energy (model.h). */
 static status relaxed_energy(const run *r, double *kept) {
@@ -229,7 +201,7 @@ static status find_energies(run *r) {
       work += 0.5 * (a->rc[k] + b->rc[k]) * (b->uc[k] - a->uc[k]);
       /* The side of a corner is a second obstacle, no friction. */
       if (c == 0 || r->surface->side_id[(dim - 1) * i + c - 1] >= 0) continue;
-      friction -= 0.5 * (a->rc[k] + b->rc[k]) * motion_over(r, k);
+      friction -= 0.5 * (a->rc[k] + b->rc[k]) * run_motion_over(r, k);
       e.friction_end -= b->rc[k] * slip_of(r, k);
     }
   }
@@ -265,7 +237,6 @@ status result_evaluate(run *r, int due) {
   add_distance(r);
   if (r->m->n_contact > 0) find_totals(r);
   find_torques(r);
-  find_loops(r);
   if (r->relaxing)
     result_start(r, &r->now);
   else

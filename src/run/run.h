@@ -9,6 +9,7 @@
 #include "accuracy/space.h"
 #include "base/timer.h"
 #include "contact/reach.h"
+#include "run/effect.h"
 #include "run/moduli/moduli.h"
 #include "run/state.h"
 #include "material/scheme/scheme.h"
@@ -81,9 +82,11 @@ typedef struct progress {
   double error; /* of the increments before the step, sqrt(J)                 */
   double residual; /* -, of the attempt before at the same increment          */
   int lost; /* 1: the last state is none of equilibrium, by far           */
+  int last; /* 1: the increment at hand ends the step                       */
+  int violated; /* 1: and is not what the theorems say                      */
 } progress;
 
-typedef struct run {
+struct run {
   const model *m;
   const mesh *msh;
   const history_sink *sink;
@@ -140,16 +143,13 @@ typedef struct run {
   contact_total *totals;   /* [n_contact]                                    */
   double *distance;        /* [n] as in state; NULL: frictionless            */
   double *torque;          /* [n_contact] as in state, or NULL               */
-  contact_loop *loops;     /* [n_contact] as in state, or NULL               */
-  int n_zone, cap_zone;
-  contact_zone *zones; /* [n_zone]                                          */
-  start_report first;  /* of *INITIAL CONDITIONS, TYPE=DISPLACEMENT  */
-  int relaxing; /* the increment at hand leads the start to equilibrium */
+  effect_list effects;
+  start_report first; /* of *INITIAL CONDITIONS, TYPE=DISPLACEMENT  */
+  int relaxing;       /* the increment at hand leads the start to equilibrium */
   solver_report report;
   error_bound error;
   rounding_loss rounding;
   error_share mesh_error, time_error;
-  true_error exact;
   double tol; /* of the contact solver, in force, -                          */
   balance balance;
   double *guess_u, *guess_r; /* [m] start values that may be nearer than those
@@ -166,8 +166,6 @@ typedef struct run {
   int n_before;     /* its n_row                                              */
   int jumps;     /* 1: the equilibrium jumps in the increment               */
   double jump_t; /* s, there                                               */
-  theorems *at_work; /* NULL until asked for */
-  theorems_report theorems;
   solution_set solutions; /* found by CHECK= in the increment                 */
   progress at;
   archive *from; /* borrowed: what the step in progress starts from, or NULL  */
@@ -180,9 +178,24 @@ typedef struct run {
     int strain, folded; /* 1: a warning has told of it                       */
     int *touched; /* [n_contact] 1: a node has touched                       */
   } told;
-} run;
+};
+
+typedef struct run run;
 
 int run_step_id(const run *r); /* from 0 */
+
+/* effect.c: the hooks of all effects of a run, in the order of the table. */
+status effects_create(run *r);
+status effects_begin_step(run *r);
+status effects_initial(run *r);
+status effects_pose(run *r, double t);
+status effects_found(run *r, int *again);
+status effects_accept(run *r);
+void effects_show(const run *r, state *s);
+status effects_keep(run *r, archive *a);
+/* List of "from" for its copy; valid (release it) also after a failure. */
+status effects_copy(const run *from, run *copy);
+void effects_release(run *r);
 
 /* matrices.c: use m for the next equilibria; its solver is made if there is
  * none, and r->elastic anew if temperatures have changed the moduli. */
@@ -330,6 +343,8 @@ void path_keep_on(run *r);
 void path_restart(run *r);
 status path_keep(run *r, archive *a);
 
+/* Motion of a contact unknown against the obstacle in the increment, m. */
+double run_motion_over(const run *r, int k);
 /* Energies of e as those the run starts with. */
 void result_start(const run *r, equilibrium *e);
 /* r->now becomes r->old. */

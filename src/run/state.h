@@ -33,6 +33,11 @@ typedef struct contact_zone {
   double area; /* m2; times thickness, or around the axis                    */
 } contact_zone;
 
+typedef struct zone_list {
+  int n, cap;
+  contact_zone *zone; /* [n] owned                                            */
+} zone_list;
+
 /* One contact as a loop of friction: force (in the totals) against motion. */
 typedef struct contact_loop {
   double way[2];       /* mean way of the obstacle since time 0, tangents, m  */
@@ -140,9 +145,7 @@ typedef struct state {
   const contact_total *totals; /* [n_contact]                                 */
   const double *distance; /* [n] all slip so far, m; NULL: frictionless       */
   const double *torque;   /* [n_contact] about its axis, N m; NULL: no axis   */
-  const contact_loop *loops; /* [n_contact]; NULL: no table asks             */
-  int n_zone;
-  const contact_zone *zones; /* [n_zone]; NULL: no table asks now            */
+  const struct effect_list *effects; /* of the run, that are on; or NULL     */
   int n_open, n_slip, n_stick;
   energies energy;
   solver_report report;

@@ -51,6 +51,12 @@ static void make_surface(made_up *run) {
   }
 }
 
+static void put_effect(made_up *run, const char *name, void *own) {
+  effect_list *list = &run->effects;
+  list->on[list->n].ops = effect_find(name);
+  list->on[list->n++].state = own;
+}
+
 static void make_arrays(made_up *run) {
   int dim = run->m.dim, n = run->surface.n;
   int *count = run->count;
@@ -73,9 +79,12 @@ static void make_arrays(made_up *run) {
   run->s.limit = run->array[MADE_LIMIT];
   run->s.distance = run->array[MADE_DISTANCE];
   run->s.torque = run->torque;
-  run->s.loops = run->loops;
-  run->s.zones = run->zones;
-  run->s.n_zone = 2;
+  run->zone_list.zone = run->zones;
+  put_effect(run, "table of loops", run->loops);
+  put_effect(run, "table of zones", &run->zone_list);
+  put_effect(run, "closed form", &run->s.exact);
+  run->s.effects = &run->effects;
+  run->zone_list.n = 2;
   run->s.contact = run->status;
   run->s.totals = run->totals;
   run->s.surface = &run->surface;

@@ -7,6 +7,7 @@
 #ifndef PROTIS_TESTS_MADE_UP_H
 #define PROTIS_TESTS_MADE_UP_H
 
+#include "run/effect.h"
 #include "run/history/history.h"
 
 enum {
@@ -38,6 +39,8 @@ typedef struct made_up {
   contact_loop loops[1];
   double torque[1];
   contact_zone zones[2];
+  zone_list zone_list;
+  effect_list effects;
   double *array[MADE_ARRAYS];
   int count[MADE_ARRAYS]; /* items of each array                          */
   contact_status *status;

@@ -46,7 +46,7 @@ static int count_finite(const made_up *made) {
   for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
     if (!column_visible(c, &made->m)) continue;
     ck_assert(column_ready(c, &made->s));
-    for (int id = 0; id < column_items(c->of, &v); ++id) {
+    for (int id = 0; id < column_items(c, &v); ++id) {
       ck_assert_msg(isfinite(c->value(&v, id, c->part)), "%s", c->name);
       if (c->form == AS_WORD) ck_assert_str_ne(c->word(&v, id), "?");
       ++n;

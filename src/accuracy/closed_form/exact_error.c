@@ -8,7 +8,6 @@
 
 #include "accuracy/space.h"
 #include "base/memory.h"
-#include "base/timer.h"
 
 #include <math.h>
 #include <string.h>
@@ -226,7 +225,6 @@ status exact_error_find(const closed_form *ref, const domain *d,
                         const answer_fields *a, true_error *out) {
   status st = OK;
   squares sum = {0};
-  timer_enter(STAGE_REFERENCE);
   out->pressure = NAN;
   if (ref->has_u || ref->has_stress) TRY(sum_elements(ref, d, a, &sum));
   out->energy =
@@ -242,6 +240,5 @@ status exact_error_find(const closed_form *ref, const domain *d,
          "singular ones)",
          ref->at.line_no, a->t);
 done:
-  timer_leave(STAGE_REFERENCE);
   return st;
 }

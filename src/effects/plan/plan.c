@@ -1,145 +1,31 @@
 /*
- * The rows of the plan: a table of the effects, and what is on of them.
+ * The rows of the plan: the table of the effects, and what is on of them.
  */
-#include "effects/plan/rows.h"
+#include "effects/plan/plan.h"
 
 #include "base/memory.h"
 
 #include <math.h>
 
-#define NONE (-1)
-#define STAGE(name) \
-  { STAGE_##name }
-#define STAGES(...) \
-  { __VA_ARGS__ }
-
-/* clang-format off */
-/* bit: of model.effects, or NONE and what tells. "stages": end with
- * the deck, which belongs to no effect. */
-static const struct {
-  const char *name;
-  int bit;
-  asked_kind asked;
-  int table;
-  items_kind items;
-  const char *kind;
-  stage stages[8];
-  const char *within;
-} effects[] = {
-  {"finite elements", EFFECT_BIT_MESH, ASKED_ALWAYS, 0, OF_ELEMENTS, "elements",
-   STAGES(STAGE_ASSEMBLY, STAGE_ORDERING, STAGE_FACTOR, STAGE_LOAD,
-   STAGE_RECOVERY, STAGE_ENERGY), NULL},
-  {"unilateral contact", EFFECT_BIT_CONTACT, ASKED_ALWAYS, 0, OF_CONTACT,
-   "nodes", STAGES(STAGE_CONTACT, STAGE_SURFACE, STAGE_CONDENSE, STAGE_PROBLEM),
-   NULL},
-  {"friction", EFFECT_BIT_FRICTION, ASKED_ALWAYS, 0, OF_FRICTION, "nodes",
-   STAGE(LIMIT), NULL},
-  {"tangential unknowns", EFFECT_BIT_TANGENTS, ASKED_ALWAYS, 0, OF_TANGENTS,
-   "unknowns", STAGE(DECK), "unilateral contact"},
-  {"nonlocal average", EFFECT_BIT_NONLOCAL, ASKED_ALWAYS, 0, OF_AVERAGE,
-   "nodes", STAGE(NONLOCAL), NULL},
-  {"given contact forces", EFFECT_BIT_GIVEN, ASKED_ALWAYS, 0, OF_GIVEN, "nodes",
-   STAGE(GIVEN), NULL},
-  {"history of slip", EFFECT_BIT_HISTORY, ASKED_ALWAYS, 0, OF_FRICTION, "nodes",
-   STAGE(HISTORY), NULL},
-  {"velocity form", NONE, ASKED_VELOCITY, 0, OF_CONTACT, "nodes",
-   STAGE(VELOCITY), NULL},
-  {"initial state", EFFECT_BIT_START, ASKED_ALWAYS, 0, OF_NODES, "nodes",
-   STAGE(START), NULL},
-  {"inelastic strain", EFFECT_BIT_INELASTIC, ASKED_ALWAYS, 0, OF_ELEMENTS,
-   "elements", STAGE(INELASTIC), NULL},
-  {"thermal strain", EFFECT_BIT_THERMAL, ASKED_ALWAYS, 0, OF_HEATED, "elements",
-   STAGE(THERMAL), NULL},
-  {"body forces", EFFECT_BIT_BODY, ASKED_ALWAYS, 0, OF_LOADED, "elements",
-   STAGE(BODY), NULL},
-  {"stresses", EFFECT_BIT_STRESS, ASKED_ALWAYS, 0, OF_ELEMENTS, "elements",
-   STAGE(STRESS), NULL},
-  {"reactions", EFFECT_BIT_REACTION, ASKED_ALWAYS, 0, OF_HELD, "nodes",
-   STAGE(REACTION), NULL},
-  {"second solutions, jumps", NONE, ASKED_CHECK, 0, OF_CONTACT, "nodes",
-   STAGE(CHECK), NULL},
-  {"theory checks", EFFECT_BIT_THEORY, ASKED_ALWAYS, 0, OF_CONTACT, "nodes",
-   STAGE(THEORY), NULL},
-  {"error of mesh", EFFECT_BIT_MESH_ERROR, ASKED_ALWAYS, 0, OF_ELEMENTS,
-   "elements", STAGE(MESH_ERROR), NULL},
-  {"error of steps", EFFECT_BIT_TIME_ERROR, ASKED_ALWAYS, 0, OF_CONTACT,
-   "nodes", STAGE(TIME_ERROR), NULL},
-  {"error of solver", EFFECT_BIT_ESTIMATES, ASKED_ALWAYS, 0, OF_CONTACT,
-   "nodes", STAGE(ESTIMATE), NULL},
-  {"closed form", EFFECT_BIT_REFERENCE, ASKED_ALWAYS, 0, OF_ELEMENTS,
-   "elements", STAGE(REFERENCE), NULL},
-  {"table of contact nodes", NONE, ASKED_TABLE, PRINT_CONTACT, OF_CONTACT,
-   "rows", STAGE(TABLE_CONTACT), NULL},
-  {"table of resultants", NONE, ASKED_TABLE, PRINT_TOTALS, OF_CONTACTS, "rows",
-   STAGE(TABLE_TOTALS), NULL},
-  {"table of nodes", NONE, ASKED_TABLE, PRINT_NODES, OF_NODES, "rows",
-   STAGE(TABLE_NODES), NULL},
-  {"table of elements", NONE, ASKED_TABLE, PRINT_ELEMENTS, OF_ELEMENTS, "rows",
-   STAGE(TABLE_ELEMENTS), NULL},
-  {"table of energies", NONE, ASKED_TABLE, PRINT_ENERGY, OF_ONE, "rows",
-   STAGE(TABLE_ENERGY), NULL},
-  {"table of reactions", NONE, ASKED_TABLE, PRINT_REACTIONS, OF_HELD, "rows",
-   STAGE(TABLE_REACTIONS), NULL},
-  {"table of zones", NONE, ASKED_TABLE, PRINT_ZONES, OF_CONTACT, "nodes",
-   STAGES(STAGE_ZONES, STAGE_TABLE_ZONES), NULL},
-  {"table of loops", NONE, ASKED_TABLE, PRINT_LOOP, OF_CONTACTS, "rows",
-   STAGE(TABLE_LOOP), NULL},
-  {"fields in JOB.h5", NONE, ASKED_FIELDS, 0, OF_NODES, "nodes", STAGE(HDF5),
-   NULL},
-  {"condensed problems", NONE, ASKED_CONDENSED, 0, OF_CONTACT, "nodes",
-   STAGE(FCLIB), NULL},
-  {"restart", NONE, ASKED_RESTART, 0, OF_NODES, "nodes", STAGE(RESTART), NULL},
-  {"listing, .sta, .cvg", NONE, ASKED_ALWAYS, 0, OF_ONE, NULL, STAGE(LISTING),
-   NULL},
-};
-/* clang-format on */
-enum { N_EFFECT = sizeof effects / sizeof *effects };
-
-/* Rows of a table all of whose requests name a group: of the largest. */
-static void confine_rows(const model *m, const mesh *msh, int table,
-                         double *items) {
-  double most = 0.0;
-  for (int i = 0; i < m->n_step && msh != NULL; ++i)
-    for (int k = 0; k < m->steps[i].n_print; ++k) {
-      const print_request *p = &m->steps[i].prints[k];
-      if (p->table != table) continue;
-      if (p->group_id < 0) return;
-      const mesh_group *g = &msh->group[p->group_id];
-      most = fmax(most, table == PRINT_ELEMENTS ? g->n_item : g->n_node);
-    }
-  if (most > 0.0) *items = fmin(*items, most);
-}
-
-static plan_row row_of(const model *m, int k) {
-  plan_row r = {.name = effects[k].name,
-                .on = 1,
-                .kind = effects[k].kind,
-                .within = effects[k].within};
-  while (effects[k].stages[r.n_stage] != STAGE_DECK) {
-    r.stages[r.n_stage] = effects[k].stages[r.n_stage];
-    ++r.n_stage;
-  }
-  if (effects[k].bit != NONE) {
-    r.on = (m->effects >> effects[k].bit & 1u) != 0;
-    model_effect_reason(m, effects[k].bit, r.why, sizeof r.why);
-  } else {
-    r.on = asked(effects[k].asked, m, effects[k].table, r.why, sizeof r.why);
-  }
-  return r;
+static status row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
+  const model *m = s->m;
+  *r = (plan_row){
+      .name = e->name, .on = effect_is_on(e, m), .within = e->within};
+  if (e->bit != NO_BIT)
+    model_effect_reason(m, e->bit, r->why, sizeof r->why);
+  else
+    e->called_for(m, r->why, sizeof r->why);
+  if (effect_stage(e) != STAGE_NONE) r->stages[r->n_stage++] = effect_stage(e);
+  for (int k = 0; e->more[k] != 0; ++k) r->stages[r->n_stage++] = e->more[k];
+  status st = e->foreseen(s, &r->work);
+  if (!r->on) r->work = (effect_work){.kind = r->work.kind};
+  return st;
 }
 
 static status add_row(effect_plan *p, int *capacity, const plan_row *r) {
   status st = OK;
   GROW(p->rows, p->n, *capacity);
-  p->rows[p->n] = *r;
-  if (r->on) {
-    effect_work w = work_of(r->name, &p->sizes, r->items);
-    p->rows[p->n].calls = w.calls;
-    p->rows[p->n].work = w.operations;
-  } else {
-    p->rows[p->n].items = 0.0;
-  }
-  ++p->n;
+  p->rows[p->n++] = *r;
 done:
   return st;
 }
@@ -165,8 +51,8 @@ static status add_laws(const model *m, const mesh *msh, effect_plan *p,
     if (r.on)
       snprintf(r.why, sizeof r.why, "%s of material %s, %s:%d",
                mat->law.ops->name, mat->name, PLACE(mat->law.at));
-    r.items = flowing_elements(m, msh, i);
-    p->sizes.flowing += r.items;
+    r.work.items = r.on ? flowing_elements(m, msh, i) : 0.0;
+    r.work.operations *= r.work.items / fmax(1.0, all->work.items);
     if (!first) {
       r.n_stage = 0;
       r.within = "the first group";
@@ -181,9 +67,9 @@ done:
 
 static void find_shares(effect_plan *p) {
   double sum = 0.0;
-  for (int i = 0; i < p->n; ++i) sum += p->rows[i].work;
+  for (int i = 0; i < p->n; ++i) sum += p->rows[i].work.operations;
   for (int i = 0; i < p->n && sum > 0.0; ++i)
-    p->rows[i].share = p->rows[i].work / sum;
+    p->rows[i].share = p->rows[i].work.operations / sum;
 }
 
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
@@ -192,13 +78,11 @@ status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
   int capacity = 0;
   *out = NULL;
   NEW(p, 1);
-  TRY(sizes_find(m, msh, n, &p->sizes));
-  for (int k = 0; k < N_EFFECT; ++k) {
-    plan_row r = row_of(m, k);
-    p->sizes.shown = sizes_shown(m, effects[k].table);
-    TRY(items_of(effects[k].items, m, msh, &p->sizes, &r.items));
-    confine_rows(m, msh, effects[k].table, &r.items);
-    if (effects[k].bit == EFFECT_BIT_INELASTIC)
+  TRY(plan_sizes_find(m, msh, n, &p->sizes));
+  for (int k = 0; effect_table[k] != NULL; ++k) {
+    plan_row r;
+    TRY(row_of(&p->sizes, effect_table[k], &r));
+    if (effect_table[k]->bit == EFFECT_BIT_INELASTIC)
       TRY(add_laws(m, msh, p, &capacity, &r));
     else
       TRY(add_row(p, &capacity, &r));

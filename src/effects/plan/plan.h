@@ -10,34 +10,39 @@
 #ifndef PROTIS_PLAN_PLAN_H
 #define PROTIS_PLAN_PLAN_H
 
-#include "base/timer.h"
-#include "model/model.h"
+#include "run/effect.h"
 
 #include <stdio.h>
 
 /* What the expected work is told from, all known before anything is solved. */
-typedef struct plan_sizes {
+struct plan_sizes {
+  const model *m;
+  const mesh *msh; /* NULL: a condensed problem from a file                  */
   int dim, ns, is_flat; /* is_flat: plane or axisymmetric                     */
   double nodes, elements, unknowns; /* unknowns: of the body                  */
   double contact, tangents; /* nodes, tangential unknowns of the contact      */
-  double flowing, heated, loaded; /* elements: inelastic, thermal, body force */
   double increments; /* of all steps as the deck has them; of a step with a
                         tolerance at most ADAPTED                             */
-  double shown;      /* increments that the output at hand shows              */
+  double shown;      /* increments that any table or field shows              */
   int flows_linearly; /* all laws have a constant Jacobian                    */
   double equilibria; /* contact problems solved on the way                    */
   double factors;    /* matrices factored                                     */
-} plan_sizes;
+};
+
+/* Expected of a row: operations of about a nanosecond of one core (sizes.c). */
+struct effect_work {
+  double items;     /* that it works on                                      */
+  const char *kind; /* "nodes", "elements", "unknowns", "rows"; NULL: none   */
+  double calls;     /* of its first stage; < 0: not foreseen                 */
+  double operations;
+};
 
 typedef struct plan_row {
   const char *name; /* of the effect                                          */
   char of[80];      /* the group or law it is about, or ""                    */
   int on;
   char why[240];    /* card with file:line, or the fact                      */
-  double items;     /* of these it works on; 0: none                         */
-  const char *kind; /* "nodes", "elements", "unknowns", "rows"; NULL: none   */
-  double calls;     /* of its first stage expected; < 0: not foreseen        */
-  double work;      /* expected, operations (work.c)                         */
+  effect_work work; /* all zero: off                                         */
   double share;     /* of the work of all rows, -                            */
   int n_stage;      /* 0: part of another effect, named by "within"          */
   stage stages[8];  /* whose costs are its own                               */
@@ -73,13 +78,38 @@ stage_cost plan_cost(const plan_row *r);
 /* CPU seconds of all rows so far. */
 double plan_cpu(const effect_plan *p);
 
-/* work.c: expected operations and calls of a row, from the sizes. */
-typedef struct effect_work {
-  double calls, operations;
-} effect_work;
-effect_work work_of(const char *row, const plan_sizes *s, double items);
+/* sizes.c, for the rows. Nodes that a set of contacts has, each once; "is"
+ * NULL: all contacts. */
+status plan_contact_nodes(const plan_sizes *s,
+                          int (*is)(const friction_rule *rule), double *n);
+/* Displacements that supports hold in the first step, and their nodes. */
+status plan_held(const plan_sizes *s, double *unknowns, double *nodes);
+/* Material of a section; one without anything if it has none. */
+const material *plan_material(const model *m, int section_id);
+/* Elements of a section. */
+double plan_section_elements(const plan_sizes *s, int section_id);
+/* Increments that all steps show: in a table, or 0: in any table or field. */
+double plan_shown(const model *m, int table);
+/* 1: some *PRINT has the table, called word there; where, into why[size]. */
+int plan_calls_for_table(const model *m, int table, const char *word, char *why,
+                         size_t size);
+/* Rows of a table of "all": all of whose requests name a group, the largest. */
+double plan_rows(const plan_sizes *s, int table, double all);
+effect_work plan_table(const plan_sizes *s, int table, double all);
+double plan_contact_unknowns(const plan_sizes *s);
+double plan_element_work(const plan_sizes *s); /* a pass over one            */
+/* Condensed matrix of n unknowns, and the problems solved with it. */
+double plan_contact_work(const plan_sizes *s, double n);
 /* Of the factor of the stiffness: multiplications and additions; entries. */
 double work_factor_flops(const plan_sizes *s);
 double work_factor_entries(const plan_sizes *s);
+/* sizes.c: the increments, body and contact of a model; msh, n: plan_new. */
+status plan_sizes_find(const model *m, const mesh *msh, int n, plan_sizes *s);
+
+enum { PLAN_STEPS = 5 }; /* of Newton's method a problem               */
+enum {
+  PLAN_SPARSE = 4,
+  PLAN_DENSE = 10
+}; /* flops an operation                       */
 
 #endif

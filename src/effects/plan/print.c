@@ -37,8 +37,8 @@ void plan_print(const effect_plan *p, const char *lead, FILE *f) {
     const plan_row *r = &p->rows[i];
     char size[40] = "";
     print_name(r, lead, f);
-    if (r->on && r->kind != NULL)
-      snprintf(size, sizeof size, "%.0f %s", r->items, r->kind);
+    if (r->on && r->work.kind != NULL)
+      snprintf(size, sizeof size, "%.0f %s", r->work.items, r->work.kind);
     fprintf(f, " %18s", size);
     if (r->on)
       fprintf(f, " %7.1f", 100 * r->share);
@@ -52,8 +52,8 @@ static void print_row(const plan_row *r, double cpu, int cost, FILE *f) {
   stage_cost c = plan_cost(r);
   char calls[24] = "", expected[24] = "";
   if (r->on) snprintf(expected, sizeof expected, "%.1f", 100 * r->share);
-  if (r->on && r->calls >= 0 && r->n_stage > 0)
-    snprintf(calls, sizeof calls, "%.0f", r->calls);
+  if (r->on && r->work.calls >= 0 && r->n_stage > 0)
+    snprintf(calls, sizeof calls, "%.0f", r->work.calls);
   print_name(r, "  ", f);
   fprintf(f, " %11s", expected);
   if (r->n_stage == 0 && r->on) {

@@ -1,7 +1,7 @@
 /*
  * Columns of the nodes and of the elements.
  */
-#include "output/columns/rows.h"
+#include "run/column_row.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -107,6 +107,7 @@ const column node_columns[] = {
  "force of the support on the body"},
 {"reaction_z", "force", NODE, REACT(SCENE_SOLID), "reaction", 2, reaction,
  NULL, "force of the support on the body"},
+OF_EFFECTS,
 NO_COLUMN};
 /* clang-format on */
 
@@ -216,5 +217,6 @@ const column element_columns[] = {
  "internal variable of the law, in its unit"},
 {"alpha_12", "-", ELEM, ALPHA, "alpha_12", 11, internal, NULL,
  "internal variable of the law, in its unit"},
+OF_EFFECTS,
 NO_COLUMN};
 /* clang-format on */

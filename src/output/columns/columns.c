@@ -2,27 +2,69 @@
  * The columns one after another, which of them a model and a state have, and
  * their units.
  */
-#include "output/columns/rows.h"
+#include "run/column_row.h"
 
 #include <stdio.h>
 #include <string.h>
 
-static const column *const parts[] = {increment_columns, node_columns,
-                                      element_columns,   contact_node_columns,
-                                      zone_columns,      contact_columns};
+extern const column increment_columns[], node_columns[], element_columns[],
+    contact_node_columns[], contact_columns[];
+static const column zone_columns[] = {OF_EFFECTS, NO_COLUMN};
+
+static const struct {
+  entity of;
+  const column *column;
+} parts[] = {{PER_INCREMENT, increment_columns},
+             {PER_NODE, node_columns},
+             {PER_ELEMENT, element_columns},
+             {PER_CONTACT_NODE, contact_node_columns},
+             {PER_ZONE, zone_columns},
+             {PER_CONTACT, contact_columns}};
 enum { N_PART = sizeof parts / sizeof *parts };
 
-const column *column_next(const column *c) {
+static int part_of(entity of) {
   int k = 0;
-  if (c != NULL && c[1].name != NULL) return c + 1;
-  if (c != NULL)
-    while (parts[k++]->of != c->of) continue;
-  return k < N_PART ? parts[k] : NULL;
+  while (parts[k].of != of) ++k;
+  return k;
 }
 
-const char *status_word(unsigned k) {
-  static const char *const words[] = {"OPEN", "SLIP", "STICK"};
-  return k < 3 ? words[k] : "?";
+/* The place of the effects in the table of an entity. */
+static const column *place_of_effects(entity of) {
+  const column *c = parts[part_of(of)].column;
+  while (c->name[0] != '\0') ++c;
+  return c;
+}
+
+/* The first column of an entity from number k of effect number e on, or what
+ * follows the place of the effects. */
+static const column *next_of_effects(entity of, int e, int k) {
+  for (; effect_table[e] != NULL; ++e, k = 0)
+    for (; k < effect_table[e]->n_column; ++k)
+      if (effect_table[e]->columns[k].of == of)
+        return &effect_table[e]->columns[k];
+  return place_of_effects(of) + 1;
+}
+
+const column *column_next(const column *c) {
+  entity of = c == NULL ? parts[0].of : c->of;
+  const effect_ops *owner = c == NULL ? NULL : effect_of_column(c);
+  const column *next = c == NULL ? parts[0].column : c + 1;
+  if (owner != NULL) {
+    int e = 0;
+    while (effect_table[e] != owner) ++e;
+    next = next_of_effects(of, e, (int)(next - owner->columns));
+  }
+  while (next->name == NULL || next->name[0] == '\0') {
+    if (next->name != NULL) {
+      next = next_of_effects(of, 0, 0);
+    } else {
+      int k = part_of(of) + 1;
+      if (k == N_PART) return NULL;
+      of = parts[k].of;
+      next = parts[k].column;
+    }
+  }
+  return next;
 }
 
 unsigned scene_of(const model *m) {
@@ -45,17 +87,17 @@ static int most_internal(const model *m) {
   return most;
 }
 
-/* 1 unless its tables are ones that only *PRINT brings about. */
+/* 1: the model has what it is of. */
 static int is_asked(const column *c, const model *m) {
-  const unsigned extra = PRINT_ZONES | PRINT_LOOP;
   if ((c->needs & NEEDS_TORQUE) != 0 && !model_has_axis(m)) return 0;
   if ((c->needs & NEEDS_SEVERAL) != 0 && m->n_contact < 2) return 0;
   if ((c->needs & NEEDS_ALPHA) != 0 && c->part >= most_internal(m)) return 0;
-  if (c->tables == 0 || (c->tables & ~extra) != 0) return 1;
-  return model_prints(m, (int)c->tables);
+  return 1;
 }
 
 int column_visible(const column *c, const model *m) {
+  const effect_ops *e = effect_of_column(c);
+  if (e != NULL && !effect_is_on(e, m)) return 0;
   return is_asked(c, m) && (c->effects & ~m->effects) == 0 &&
          (c->scenes & scene_of(m)) != 0;
 }
@@ -65,7 +107,9 @@ static unsigned if_there(const void *p, unsigned bits) {
 }
 
 int column_ready(const column *c, const state *s) {
+  const effect_ops *e = effect_of_column(c);
   unsigned have = 0;
+  if (e != NULL && effect_state(s->effects, e) == NULL) return 0;
   have |= if_there(s->strain, NEEDS_STRAIN);
   have |= if_there(s->stress, NEEDS_STRESS);
   have |= if_there(s->reaction, NEEDS_REACTION);
@@ -76,15 +120,14 @@ int column_ready(const column *c, const state *s) {
   have |= if_there(s->totals, NEEDS_TOTALS);
   have |= if_there(s->distance, NEEDS_DISTANCE);
   have |= if_there(s->torque, NEEDS_TORQUE);
-  have |= if_there(s->loops, NEEDS_LOOP);
-  have |= if_there(s->zones, NEEDS_ZONES);
   have |= if_there(s->elem_error, NEEDS_ELEM_ERROR);
   have |= if_there(s->flow, NEEDS_FLOW | NEEDS_ALPHA);
   return (c->needs & ~have) == 0;
 }
 
-int column_items(entity of, const view *v) {
-  switch (of) {
+int column_items(const column *c, const view *v) {
+  const effect_ops *e = effect_of_column(c);
+  switch (c->of) {
     case PER_NODE:
       return v->msh->n_node;
     case PER_ELEMENT:
@@ -94,7 +137,7 @@ int column_items(entity of, const view *v) {
     case PER_CONTACT:
       return v->m->n_contact;
     case PER_ZONE:
-      return v->s->n_zone;
+      return e->items(effect_state(v->s->effects, e));
     default:
       return 1;
   }

@@ -1,7 +1,7 @@
 /*
  * Columns of the contact nodes, and of the rows of a plain LCP.
  */
-#include "output/columns/rows.h"
+#include "run/column_row.h"
 
 #include <math.h>
 
@@ -179,5 +179,6 @@ const column contact_node_columns[] = {
  NULL, "unknown of w = q + M z"},
 {"w", "-", CON, PRINT_CONTACT, C, SCENE_LCP, NEEDS_SURFACE, NULL, 0, lcp_w,
  NULL, "q + M z"},
+OF_EFFECTS,
 NO_COLUMN};
 /* clang-format on */

@@ -1,7 +1,7 @@
 /*
  * Columns with one value an increment.
  */
-#include "output/columns/rows.h"
+#include "run/column_row.h"
 
 #include <math.h>
 
@@ -22,10 +22,6 @@ VALUE(mesh_error,
       v->s->mesh_error.asked ? 100 * v->s->mesh_error.relative : NAN)
 VALUE(time_error,
       v->s->time_error.asked ? 100 * v->s->time_error.relative : NAN)
-VALUE(true_energy, 100 * v->s->exact.energy)
-VALUE(true_displacement, 100 * v->s->exact.displacement)
-VALUE(true_stress, 100 * v->s->exact.stress)
-VALUE(true_pressure, 100 * v->s->exact.pressure)
 VALUE(bound_error, 100 * v->s->error.relative)
 VALUE(solver_error_energy, v->s->error.energy)
 VALUE(contraction, v->s->error.rate)
@@ -76,17 +72,7 @@ const column increment_columns[] = {
 {"time_error", "%", INC, 0, ON(TIME_ERROR), ANY, "time_error", 0, time_error,
  NULL, "estimate of the error of the increments in that norm; NaN: not asked "
  "for, or unknown"},
-{"true_error", "%", INC, 0, ON(REFERENCE), ANY, "true_error", 0, true_energy,
- NULL, "error against *REFERENCE in that norm; NaN: it has no displacement and "
- "no stress"},
-{"true_displacement_error", "%", INC, 0, ON(REFERENCE), ANY,
- "true_displacement_error", 0, true_displacement, NULL,
- "the same of the displacement in the L2 norm"},
-{"true_stress_error", "%", INC, 0, ON(REFERENCE), ANY, "true_stress_error",
- 0, true_stress, NULL, "the same of the stress in the L2 norm"},
-{"true_pressure_error", "%", INC, 0, ON(REFERENCE), ANY,
- "true_pressure_error", 0, true_pressure, NULL,
- "the same of the contact pressure in the L2 norm"},
+OF_EFFECTS,
 {"solver_error", "%", INC, 0, C | ON(ESTIMATES), ANY, "solver_error", 0,
  bound_error, NULL, "bound of the error of the contact solver in the energy "
  "norm, of that of the solution; NaN: no bound"},

@@ -159,6 +159,7 @@ static void print_stages(const job *j, FILE *f) {
   fprintf(f, "  %-30s %8s", "stage", "calls");
   fprintf(f, cost ? " %12s %14s\n" : "\n", "cpu[s]", "bytes");
   for (int i = 0; i < STAGE_COUNT; ++i) {
+    if (timer_name((stage)i) == NULL) continue;
     stage_cost c = timer_cost((stage)i);
     cpu += c.cpu;
     fprintf(f, "  %-30s %8ld", timer_name((stage)i), c.calls);

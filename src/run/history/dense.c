@@ -19,11 +19,7 @@ static status show(run *r, double t, int increment_no) {
   beside *b = NULL;
   TRY(beside_at(r, t, &b));
   run *own = beside_run(b);
-  own->n_zone = 0;
-  if (table_is_due(r->step, PRINT_ZONES, t, -1, 0)) st = zones_find(own);
-  r->zones = own->zones; /* may have grown                                   */
-  r->cap_zone = own->cap_zone;
-  TRY(st);
+  TRY(effects_accept(own));
   if (own->report.outcome <= 0) ++r->unsettled;
   state s = loop_state(own, 1, increment_no);
   s.within = 1;

@@ -105,18 +105,6 @@ void estimate_unloaded(run *r) {
     r->error.relative = sqrt(r->error.energy / e->largest);
 }
 
-static status find_exact_error(run *r) {
-  status st = OK;
-  double cpu = timer_cpu();
-  const answer_fields a = {r->now.t, r->now.u, r->stress, r->now.rc};
-  r->exact.asked = (r->m->effects & EFFECT_REFERENCE) != 0;
-  if (!r->exact.asked) return OK;
-  TRY(exact_error_find(&r->m->ref, &r->d, &a, &r->exact));
-  r->exact.cpu += timer_cpu() - cpu;
-done:
-  return st;
-}
-
 status estimate_judge(run *r) {
   status st = OK;
   r->now.energy.strain = domain_strain_energy(&r->d, r->now.u);
@@ -148,7 +136,6 @@ status estimate_increment(run *r) {
   add_rounding(r);
   TRY(rounding_hidden(r, &r->error.hidden));
   r->judged = 0;
-  TRY(find_exact_error(r));
 done:
   return st;
 }

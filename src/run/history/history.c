@@ -40,7 +40,7 @@ static long increments_of(const step *s) {
 
 /* 1: reached its tolerance, is not in doubt and violates no theorem. */
 static int is_settled(const run *r) {
-  return r->report.outcome > 0 && !r->missed && !r->theorems.violated &&
+  return r->report.outcome > 0 && !r->missed && !r->at.violated &&
          !error_bound_doubts(&r->error, share_of_step(r));
 }
 
@@ -69,9 +69,7 @@ state loop_state(run *r, int attempt, int increment_no) {
              .totals = r->totals,
              .distance = r->distance,
              .torque = r->torque,
-             .loops = r->loops,
-             .n_zone = r->n_zone,
-             .zones = r->zones,
+             .effects = &r->effects,
              .energy = e->energy,
              .report = r->report,
              .note = r->note,
@@ -79,11 +77,9 @@ state loop_state(run *r, int attempt, int increment_no) {
              .rounding = r->rounding,
              .jumps = r->jumps,
              .jump_t = r->jump_t,
-             .theorems = r->theorems,
              .solutions = r->step->check != CHECK_NONE ? &r->solutions : NULL,
              .mesh_error = r->mesh_error,
              .time_error = r->time_error,
-             .exact = r->exact,
              .balance = r->balance.report,
              .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
              .solver_log = contact_solver_log(r->solver),
@@ -150,12 +146,11 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   status st = OK;
   TRY(dense_show(r, increment_no));
   ++r->total_no;
-  TRY(theorems_increment(r));
   TRY(result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
   TRY(estimate_increment(r));
-  r->n_zone = 0;
-  if (table_is_due(r->step, PRINT_ZONES, r->now.t, increment_no, last))
-    TRY(zones_find(r));
+  r->at.last = last;
+  r->at.violated = 0;
+  TRY(effects_accept(r));
   TRY(check_increment(r));
   note_nodes(r);
   warn_increment(r, increment_no);
@@ -167,6 +162,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   state s = loop_state(r, attempt, increment_no);
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
+  effects_show(r, &s);
   if (r->sink->increment != NULL) TRY(r->sink->increment(r->sink->ctx, &s));
   TRY(result_accept(r));
   r->due = frequency_shows(r->step->restart_frequency, increment_no, last);
@@ -185,8 +181,8 @@ status loop_reject(run *r, int attempt, int increment_no, const char *why) {
   r->at.residual = r->report.residual;
   r->error = (error_bound){0};
   r->rounding = (rounding_loss){0};
-  r->mesh_error.asked = r->time_error.asked = r->exact.asked = 0;
-  r->theorems = (theorems_report){0};
+  r->mesh_error.asked = r->time_error.asked = 0;
+  r->at.violated = 0;
   r->jumps = 0;
   state s = loop_state(r, attempt, increment_no);
   s.n_open = s.n_slip = s.n_stick = 0;

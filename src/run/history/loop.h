@@ -53,9 +53,6 @@ status balance_learn(run *r);
 void balance_free(balance *b);
 status balance_keep(run *r, archive *a);
 
-/* zones.c: the zones of r->now into r->zones. ERR_MEMORY. */
-status zones_find(run *r);
-
 /* estimate.c: what is doubtful of an accepted increment, whose totals are
  * known; at the end of a run that went through. */
 void warn_increment(run *r, int increment_no);
@@ -84,11 +81,6 @@ status estimate_judge(run *r);
  * left with rounding alone, count beside the largest energy so far; a body that
  * is carried through the air has none. */
 void estimate_unloaded(run *r);
-
-/* theorems.c: the theorems at r->now into r->theorems, if asked for; at the
- * initial state, which is posed in r->cp. */
-status theorems_increment(run *r);
-status theorems_initial(run *r);
 
 /* Whether the equilibrium jumps between r->old and r->now, at time t, into
  * r->jumps, r->jump_t, r->note. r->now is solved again if it was looked for. */

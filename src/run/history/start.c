@@ -95,7 +95,7 @@ static status test_start(run *r) {
                           .given = given,
                           .load = largest};
   start_test(&in, r->old.rc, r->old.reaction, &r->first);
-  TRY(theorems_initial(r));
+  TRY(effects_initial(r));
 done:
   timer_leave(STAGE_START);
   memory_free(R);

@@ -93,14 +93,12 @@ done:
 
 static status keep_contact(run *r, archive *a) {
   status st = OK;
-  size_t contacts = r->loops == NULL ? 0 : (size_t)r->m->n_contact;
   TRY(keep_nodes(r, a));
   TRY(archive_reals(a, "f_before", r->f_before, (size_t)r->n_row));
   r->n_before = r->n_row;
   r->n_told = reach_count(&r->reach, r->n);
   TRY(archive_reals(a, "distance", r->distance,
                     r->distance == NULL ? 0 : (size_t)r->n));
-  TRY(archive_bytes(a, "loops", r->loops, contacts * sizeof *r->loops));
   TRY(keep_rate(r, a));
   TRY(matrices_keep(&r->elastic, a, "elastic"));
 done:
@@ -175,6 +173,7 @@ status run_keep(run *r, archive *a) {
   if (r->visco != NULL) TRY(visco_keep(r, a));
   TRY(keep_limit(r, a));
   TRY(keep_recovery(r, a));
+  TRY(effects_keep(r, a));
   TRY(keep_costs(r, a));
 done:
   archive_leave(a);

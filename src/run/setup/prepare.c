@@ -162,8 +162,6 @@ status run_prepare(run *r) {
   memcpy(r->start, r->old.u, r->n_dof * sizeof *r->start);
   r->limit_known = 0;
   known_rate_forget(&r->rate);
-  for (int i = 0; i < r->m->n_contact && r->loops != NULL; ++i)
-    r->loops[i].start_end = r->loops[i].friction_end;
   if (r->elastic.c == NULL || memcmp(fixed, r->fixed, r->n_dof) != 0) {
     memcpy(r->fixed, fixed, r->n_dof);
     if (r->m->effects & EFFECT_CONTACT)
@@ -189,6 +187,7 @@ status run_prepare(run *r) {
   visco_new_solvers(r);
   r->tol = r->step->solver.tol;
   TRY(run_use(r, &r->elastic));
+  TRY(effects_begin_step(r));
 done:
   memory_free(fixed);
   return st;

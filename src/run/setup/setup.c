@@ -67,7 +67,6 @@ static status new_pairs(run *r) {
   NEW(r->totals, m->n_contact);
   NEW(r->told.touched, m->n_contact);
   if (model_has_axis(m)) NEW(r->torque, m->n_contact);
-  if (model_prints(m, PRINT_LOOP)) NEW(r->loops, m->n_contact);
   for (int i = 0; i < m->n_contact; ++i) {
     const contact *c = &m->contacts[i];
     r->pairs[i].name = c->name;
@@ -113,11 +112,13 @@ status run_new(run *r) {
     NEW(r->stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   if (r->m->effects & EFFECT_STRESS)
     NEW(r->strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  TRY(effects_create(r));
 done:
   return st;
 }
 
 void run_free(run *r) {
+  effects_release(r);
   start_report_free(&r->first);
   run_free_surface(r);
   space_recovery_free(r->recovery);
@@ -125,7 +126,6 @@ void run_free(run *r) {
   free_equilibrium(&r->old);
   free_equilibrium(&r->now);
   strains_free(r);
-  theorems_free(r->at_work);
   moduli_free(&r->moduli);
   cluster_free(r->d.cluster);
   memory_free(r->fixed);
@@ -135,8 +135,6 @@ void run_free(run *r) {
   memory_free(r->totals);
   memory_free(r->told.touched);
   memory_free(r->torque);
-  memory_free(r->loops);
-  memory_free(r->zones);
   memory_free(r->ud);
   memory_free(r->start);
   memory_free(r->strain);

@@ -13,13 +13,16 @@
  * inside, or with values that grow outwards, the end is put half way to the
  * next node.
  */
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
 #include "run/history/loop.h"
 
 #include "base/memory.h"
-#include "base/timer.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "run/column_row.h"
 
 /* Nodes that a line is fitted through; more would see that it is a curve. */
 enum { FIT_NODES = 8 };
@@ -35,6 +38,7 @@ typedef struct level {
 /* The contact nodes as a chain along the tangent t, plane and axisymmetric. */
 typedef struct finder {
   run *r;
+  zone_list *out;
   int dim;
   int *index; /* [n_node] contact node of a mesh node, or -1       */
   level closed, stick;
@@ -260,10 +264,10 @@ static double part_of_face(const finder *z, const level *l, const int *node) {
   return n == 1 ? area * w[1] * w[2] : area * (1.0 - w[1] * w[2]);
 }
 
-static status add_zone(run *r, const contact_zone *zone) {
+static status add_zone(zone_list *out, const contact_zone *zone) {
   status st = OK;
-  GROW(r->zones, r->n_zone, r->cap_zone);
-  r->zones[r->n_zone++] = *zone;
+  GROW(out->zone, out->n, out->cap);
+  out->zone[out->n++] = *zone;
 done:
   return st;
 }
@@ -285,7 +289,7 @@ static status find_areas(const finder *z, int contact_id) {
   for (int kind = CONTACT_OPEN; kind <= CONTACT_STICK; ++kind) {
     zone.kind = kind;
     zone.area = area[kind];
-    TRY(add_zone(z->r, &zone));
+    TRY(add_zone(z->out, &zone));
   }
 done:
   return st;
@@ -369,14 +373,14 @@ static status walk(const finder *z, int contact_id, int start) {
       double end = zone_end(z, i, j);
       add_piece(z, i, 0.0, end, &zone);
       set_point(z, i, end, zone.to);
-      TRY(add_zone(z->r, &zone));
+      TRY(add_zone(z->out, &zone));
       if (j == start) goto done;
       zone = first_zone(z, contact_id, i, j);
     }
     if (j == start) break;
   }
   set_point(z, z->next[i] == start ? start : i, 0.0, zone.to);
-  TRY(add_zone(z->r, &zone));
+  TRY(add_zone(z->out, &zone));
 done:
   return st;
 }
@@ -414,12 +418,10 @@ done:
   return st;
 }
 
-status zones_find(run *r) {
+static status find_zones(run *r, void *self) {
   status st = OK;
-  finder z = {0};
-  r->n_zone = 0;
-  if (r->n == 0) return OK;
-  timer_enter(STAGE_ZONES);
+  finder z = {.out = self};
+  z.out->n = 0;
   TRY(finder_new(r, &z));
   set_levels(&z);
   for (int i = 0; i < r->m->n_contact && z.dim == 3; ++i) {
@@ -430,6 +432,119 @@ status zones_find(run *r) {
     TRY(z.dim == 3 ? find_areas(&z, i) : find_lines(&z, i));
 done:
   finder_free(&z);
-  timer_leave(STAGE_ZONES);
   return st;
 }
+
+/* ---- the row --------------------------------------------------------------
+ */
+
+static int calls_for_zones(const model *m, char *why, size_t size) {
+  return plan_calls_for_table(m, PRINT_ZONES, "ZONES", why, size);
+}
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  const double n = plan_rows(s, PRINT_ZONES, s->contact);
+  const double shown = plan_shown(s->m, PRINT_ZONES);
+  *w = (effect_work){n, "nodes", shown, shown * n * 100.0};
+  return OK;
+}
+
+static status zones_new(run *r, void **self) {
+  status st = OK;
+  zone_list *own = NULL;
+  (void)r;
+  NEW(own, 1);
+  *self = own;
+done:
+  return st;
+}
+
+static status zones_copy(const run *r, const void *of, void **self) {
+  (void)of;
+  return zones_new((run *)r, self);
+}
+
+static int zones_due(const run *r) {
+  const int within = r->beside;
+  return r->n > 0 && table_is_due(r->step, PRINT_ZONES, r->now.t,
+                                  within ? -1 : r->at.increment_no,
+                                  within ? 0 : r->at.last);
+}
+
+static void zones_free(void *self) {
+  zone_list *own = self;
+  if (own == NULL) return;
+  memory_free(own->zone);
+  memory_free(own);
+}
+
+static int zones_items(const void *self) {
+  return ((const zone_list *)self)->n;
+}
+
+static const contact_zone *zone_of(const view *v, int id) {
+  const zone_list *own = effect_state(v->s->effects, &zones_effect);
+  return &own->zone[id];
+}
+
+VALUE(zone_kind, zone_of(v, id)->kind)
+VALUE(zone_contact_no, zone_of(v, id)->contact_id + 1)
+VALUE(zone_direction, zone_of(v, id)->direction)
+VALUE(zone_from, zone_of(v, id)->from[part])
+VALUE(zone_to, zone_of(v, id)->to[part])
+VALUE(zone_length, zone_of(v, id)->length)
+VALUE(zone_area, zone_of(v, id)->area)
+
+static const char *zone_word(const view *v, int id) {
+  return status_word((unsigned)zone_of(v, id)->kind);
+}
+
+static const char *zone_contact_name(const view *v, int id) {
+  return v->m->contacts[zone_of(v, id)->contact_id].name;
+}
+
+/* clang-format off */
+#define ZONE PER_ZONE, AS_REAL, PRINT_ZONES, C
+static const column columns[] = {
+{"contact", "-", PER_ZONE, AS_WORD, PRINT_ZONES, C, SCENE_ALL, 0,
+ NULL, 0, zone_contact_no, zone_contact_name, "name of the *CONTACT"},
+{"zone", "-", PER_ZONE, AS_WORD, PRINT_ZONES, C, SCENE_ALL, 0, NULL,
+ 0, zone_kind, zone_word, "OPEN, SLIP, STICK; as number 0, 1, 2"},
+{"direction", "-", PER_ZONE, AS_COUNT, PRINT_ZONES, F, SCENE_FLAT, 0,
+ NULL, 0, zone_direction, NULL, "sign of the slip along the tangent"},
+{"x_from", "length", ZONE, SCENE_PLANE, 0, NULL, 0, zone_from, NULL,
+ "where the zone begins"},
+{"y_from", "length", ZONE, SCENE_PLANE, 0, NULL, 1, zone_from, NULL,
+ "where the zone begins"},
+{"x_to", "length", ZONE, SCENE_PLANE, 0, NULL, 0, zone_to, NULL,
+ "where the zone ends"},
+{"y_to", "length", ZONE, SCENE_PLANE, 0, NULL, 1, zone_to, NULL,
+ "where the zone ends"},
+{"r_from", "length", ZONE, SCENE_AXI, 0, NULL, 0, zone_from, NULL,
+ "where the zone begins"},
+{"z_from", "length", ZONE, SCENE_AXI, 0, NULL, 1, zone_from, NULL,
+ "where the zone begins"},
+{"r_to", "length", ZONE, SCENE_AXI, 0, NULL, 0, zone_to, NULL,
+ "where the zone ends"},
+{"z_to", "length", ZONE, SCENE_AXI, 0, NULL, 1, zone_to, NULL,
+ "where the zone ends"},
+{"extent", "length", ZONE, SCENE_FLAT, 0, NULL, 0, zone_length, NULL,
+ "length along the contact line"},
+{"area", "length^2", ZONE, SCENE_ALL, 0, NULL, 0, zone_area, NULL,
+ "area of the zone, of the whole turn in axisymmetry"}};
+/* clang-format on */
+
+const effect_ops zones_effect = {.name = "table of zones",
+                                 .bit = NO_BIT,
+                                 .called_for = calls_for_zones,
+                                 .foreseen = expected,
+                                 .own = STAGE_ZONES,
+                                 .more = {STAGE_TABLE_ZONES},
+                                 .create = zones_new,
+                                 .due = zones_due,
+                                 .accept = find_zones,
+                                 .copy = zones_copy,
+                                 .release = zones_free,
+                                 .columns = columns,
+                                 .n_column = COLUMNS(columns),
+                                 .items = zones_items};

@@ -1,13 +1,13 @@
 /*
- * What the rows of all tables of columns are written with; for the files of
- * this folder only. Signs as in the manual: pressure p = -r_n/area >= 0, forces
- * are those of the obstacle on the body, so f_n = -r_n >= 0 presses, and f_t
- * is opposite to the slip.
+ * What the rows of all tables of columns are written with; for the files that
+ * hold such a table. Signs as in the manual: pressure p = -r_n/area >= 0,
+ * forces are those of the obstacle on the body, so f_n = -r_n >= 0 presses, and
+ * f_t is opposite to the slip.
  */
-#ifndef PROTIS_COLUMNS_ROWS_H
-#define PROTIS_COLUMNS_ROWS_H
+#ifndef PROTIS_RUN_COLUMN_ROW_H
+#define PROTIS_RUN_COLUMN_ROW_H
 
-#include "output/columns/columns.h"
+#include "run/effect.h"
 
 /* A value is one expression of the view v, the item id and the component. */
 #define VALUE(name, expression)                         \
@@ -21,11 +21,11 @@ static inline size_t at(int stride, int id, int part) {
   return (size_t)stride * (size_t)id + (size_t)part;
 }
 
-const char *status_word(unsigned k); /* OPEN, SLIP, STICK                     */
-
-/* One table an entity; name NULL at the end. */
-extern const column increment_columns[], node_columns[], element_columns[],
-    contact_node_columns[], zone_columns[], contact_columns[];
+/* OPEN, SLIP, STICK */
+static inline const char *status_word(unsigned k) {
+  static const char *const words[] = {"OPEN", "SLIP", "STICK"};
+  return k < 3 ? words[k] : "?";
+}
 
 /* clang-format off */
 /* Needs an effect, also in a build that knows nothing of it. */
@@ -37,8 +37,11 @@ extern const column increment_columns[], node_columns[], element_columns[],
 #define ANY SCENE_ALL, 0
 #define PA "force/length^2"
 #define J "force*length"
+#define COLUMNS(table) ((int)(sizeof table / sizeof *table))
 /* A row: name, unit, entity and form, tables, effects, scenes, needs, field,
  * part, value, word, help. */
+/* Where the columns of the effects stand in the table of an entity. */
+#define OF_EFFECTS {"", NULL, INC, 0, 0, 0, 0, NULL, 0, NULL, NULL, NULL}
 #define NO_COLUMN {NULL, NULL, INC, 0, 0, 0, 0, NULL, 0, NULL, NULL, NULL}
 /* clang-format on */
 

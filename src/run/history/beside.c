@@ -53,10 +53,7 @@ static status copy_arrays(run *b) {
   status st = OK;
   own_array list[OWN];
   const double *from[OWN];
-  const contact_loop *loops = b->loops;
-  size_t contacts = (size_t)b->m->n_contact;
   list_own(b, list);
-  b->loops = NULL;
   for (int i = 0; i < OWN; ++i) {
     from[i] = *list[i].at;
     *list[i].at = NULL;
@@ -66,9 +63,6 @@ static status copy_arrays(run *b) {
     NEW(*list[i].at, list[i].n);
     memcpy(*list[i].at, from[i], list[i].n * sizeof **list[i].at);
   }
-  if (loops == NULL) goto done;
-  NEW(b->loops, contacts);
-  memcpy(b->loops, loops, contacts * sizeof *loops);
 done:
   return st;
 }
@@ -78,7 +72,7 @@ void beside_free(beside *b) {
   if (b == NULL) return;
   list_own(&b->r, list);
   for (int i = 0; i < OWN; ++i) memory_free(*list[i].at);
-  memory_free(b->r.loops);
+  effects_release(&b->r);
   limit_free_copy(&b->r);
   if (b->r.moduli.n_own > 0) {
     matrices_free(&b->r.elastic);
@@ -140,15 +134,16 @@ static status beside_new(const run *r, beside **out) {
   own->rate = (known_rate){0};
   own->solutions = (solution_set){0};
   own->recovery = NULL;
-  own->theorems = (theorems_report){0};
   own->jumps = 0;
   own->note[0] = '\0';
   if (r->d.eigen != NULL) own->d.eigen = &own->eigen;
+  own->effects.n = 0;
   own->moduli.n_own = 0; /* not owned yet                                    */
   TRY(copy_arrays(own));
   TRY(own_points(r, b));
   TRY(own_moduli(r, own));
   if (r->forms != NULL) TRY(forms_new(own));
+  TRY(effects_copy(r, own));
 done:
   return st;
 }

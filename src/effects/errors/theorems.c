@@ -6,12 +6,18 @@
  * that is a load on the elastic body, whose motion changes the stresses again.
  */
 #include "base/memory.h"
-#include "base/timer.h"
-#include "run/history/loop.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "run/run.h"
 #include "run/visco.h"
 
 #include <math.h>
 #include <string.h>
+
+typedef struct checked {
+  theorems *at_work;
+  theorems_report report;
+} checked;
 
 /* The problem at hand with an answer; mu[n_contact], given[n] are new. */
 static status theorems_scene_new(run *r, const equilibrium *e,
@@ -33,7 +39,6 @@ static status theorems_scene_new(run *r, const equilibrium *e,
                         .given = *given,
                         .alone = r->step->kind == STEP_STATIC || r->relaxing,
                         .tol = r->tol};
-  if (r->at_work == NULL) TRY(theorems_new(&r->at_work));
 done:
   return st;
 }
@@ -160,9 +165,10 @@ static double theta_of(const step *s) {
 }
 
 /* Theorem 3.2 over the increment. */
-static status see_path(run *r, const unsigned char *given, theorems_path *out) {
+static status see_path(run *r, const unsigned char *given, checked *own) {
   status st = OK;
   visco *v = r->visco;
+  theorems_path *out = &own->report.path;
   body_map b = {0};
   if (v == NULL || r->step->kind != STEP_VISCO) return OK;
   const scheme_step p = {
@@ -175,9 +181,9 @@ static status see_path(run *r, const unsigned char *given, theorems_path *out) {
     out->why = "nothing holds what is free under given friction";
   else if (out->bound > 0.0)
     TRY(theorems_path_rate(&map, &out->rate));
-  theorems_path_learn(r->at_work, p.theta, p.dt, r->now.t - r->step->start,
+  theorems_path_learn(own->at_work, p.theta, p.dt, r->now.t - r->step->start,
                       out);
-  r->theorems.violated |= out->violated;
+  own->report.violated |= out->violated;
 done:
   body_map_free(&b);
   return st;
@@ -185,27 +191,71 @@ done:
 
 /* ---- of an increment --------------------------------------------------- */
 
-static status see_theory(run *r, int at_start) {
+static status see_theory(run *r, checked *own, int at_start) {
   status st = OK;
   theorems_scene s;
   double *mu = NULL;
   unsigned char *given = NULL;
-  r->theorems = (theorems_report){0};
-  if (r->n == 0 || !r->step->theorems) return OK;
-  timer_enter_whole(STAGE_THEORY);
+  own->report = (theorems_report){0};
   TRY(theorems_scene_new(r, at_start ? &r->old : &r->now, &s, &mu, &given));
   if (at_start)
-    TRY(theorems_start(r->at_work, &s));
+    TRY(theorems_start(own->at_work, &s));
   else
-    TRY(theorems_check(r->at_work, &s, &r->theorems));
-  if (!at_start) TRY(see_path(r, given, &r->theorems.path));
+    TRY(theorems_check(own->at_work, &s, &own->report));
+  if (!at_start) TRY(see_path(r, given, own));
+  r->at.violated = own->report.violated;
 done:
   memory_free(mu);
   memory_free(given);
-  timer_leave(STAGE_THEORY);
   return st;
 }
 
-status theorems_increment(run *r) { return see_theory(r, 0); }
+static status see_increment(run *r, void *own) { return see_theory(r, own, 0); }
 
-status theorems_initial(run *r) { return see_theory(r, 1); }
+static status see_start(run *r, void *own) { return see_theory(r, own, 1); }
+
+/* ---- the row --------------------------------------------------------------
+ */
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  double m = plan_contact_unknowns(s), n = s->contact;
+  *w = (effect_work){n, "nodes", s->increments,
+                     m * m * m + s->increments * 80.0 * (m * m + 100.0 * n)};
+  return OK;
+}
+
+static status checked_new(run *r, void **self) {
+  status st = OK;
+  checked *own = NULL;
+  (void)r;
+  NEW(own, 1);
+  *self = own;
+  TRY(theorems_new(&own->at_work));
+done:
+  return st;
+}
+
+static int due(const run *r) { return r->n > 0 && r->step->theorems; }
+
+static void show(const void *self, state *s) {
+  s->theorems = ((const checked *)self)->report;
+}
+
+static void release(void *self) {
+  checked *own = self;
+  if (own == NULL) return;
+  theorems_free(own->at_work);
+  memory_free(own);
+}
+
+const effect_ops theorems_effect = {.name = "theory checks",
+                                    .bit = EFFECT_BIT_THEORY,
+                                    .foreseen = expected,
+                                    .own = STAGE_THEORY,
+                                    .beside = 1,
+                                    .create = checked_new,
+                                    .due = due,
+                                    .initial = see_start,
+                                    .accept = see_increment,
+                                    .show = show,
+                                    .release = release};

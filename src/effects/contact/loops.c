@@ -1,0 +1,133 @@
+/*
+ * *PRINT, LOOP: each contact as a loop of friction, force against motion: mean
+ * motions of obstacle and nodes, and what friction dissipates.
+ */
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "run/run.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+#include "run/column_row.h"
+
+static int calls_for_loops(const model *m, char *why, size_t size) {
+  return plan_calls_for_table(m, PRINT_LOOP, "LOOP", why, size);
+}
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  *w = plan_table(s, PRINT_LOOP, s->m->n_contact);
+  return OK;
+}
+
+static status loops_new(run *r, void **self) {
+  status st = OK;
+  contact_loop *own = NULL;
+  NEW(own, r->m->n_contact);
+  *self = own;
+done:
+  return st;
+}
+
+static status loops_copy(const run *r, const void *of, void **self) {
+  status st = loops_new((run *)r, self);
+  if (st == OK)
+    memcpy(*self, of, (size_t)r->m->n_contact * sizeof(contact_loop));
+  return st;
+}
+
+static status begin_step(run *r, void *self) {
+  contact_loop *loops = self;
+  for (int i = 0; i < r->m->n_contact; ++i)
+    loops[i].start_end = loops[i].friction_end;
+  return OK;
+}
+
+/* Motions of the contacts, and what friction dissipates in each. */
+static status find_loops(run *r, void *self) {
+  contact_loop *loops = self;
+  const contact_surface *s = r->surface;
+  int dim = r->msh->dim;
+  for (int i = 0; i < r->m->n_contact; ++i) {
+    contact_loop *l = &loops[i];
+    double weight = 0.0;
+    memset(l->way, 0, sizeof l->way);
+    memset(l->mean_u_t, 0, sizeof l->mean_u_t);
+    l->angle = obstacle_angle(r->pairs[i].support, r->now.t);
+    for (int k = 0; k < r->n; ++k) {
+      if (s->contact_id[k] != i) continue;
+      weight += s->area[k];
+      for (int a = 0; a < dim - 1; ++a) {
+        int c = dim * k + a + 1;
+        l->way[a] += s->area[k] * (r->now.motion[c] - l->way[a]) / weight;
+        l->mean_u_t[a] += s->area[k] * (r->now.uc[c] - l->mean_u_t[a]) / weight;
+        if (s->side_id[(dim - 1) * k + a] >= 0) continue;
+        double mean = 0.5 * (r->old.rc[c] + r->now.rc[c]);
+        l->friction -= mean * run_motion_over(r, c);
+        l->friction_end -= r->now.rc[c] * run_motion_over(r, c);
+      }
+    }
+  }
+  return OK;
+}
+
+static status keep(run *r, void *self, archive *a) {
+  return archive_bytes(a, "loops", self,
+                       (size_t)r->m->n_contact * sizeof(contact_loop));
+}
+
+static const contact_loop *loop_of(const view *v, int id) {
+  const contact_loop *loops = effect_state(v->s->effects, &loops_effect);
+  return &loops[id];
+}
+
+VALUE(loop_time, v->s->t)
+VALUE(loop_way, loop_of(v, id)->way[part])
+VALUE(loop_u_t, loop_of(v, id)->mean_u_t[part])
+VALUE(loop_angle, loop_of(v, id)->angle)
+VALUE(loop_friction, loop_of(v, id)->friction)
+VALUE(loop_friction_end, loop_of(v, id)->friction_end)
+VALUE(loop_area, loop_of(v, id)->friction_end - loop_of(v, id)->start_end)
+
+/* clang-format off */
+#define LOOP PER_CONTACT, AS_REAL, PRINT_LOOP, C
+static const column columns[] = {
+{"time", "time", LOOP, SCENE_ALL, 0, NULL, 0, loop_time, NULL,
+ "end of the increment"},
+{"way", "length", LOOP, SCENE_FLAT, 0, NULL, 0, loop_way, NULL,
+ "mean way of the obstacle past the nodes"},
+{"way_1", "length", LOOP, SCENE_SOLID, 0, NULL, 0, loop_way, NULL,
+ "mean way of the obstacle past the nodes"},
+{"way_2", "length", LOOP, SCENE_SOLID, 0, NULL, 1, loop_way, NULL,
+ "mean way of the obstacle past the nodes"},
+{"angle", "rad", LOOP, CART, NEEDS_TORQUE, NULL, 0, loop_angle,
+ NULL, "angle of the obstacle"},
+{"mean_u_t", "length", LOOP, SCENE_FLAT, 0, NULL, 0, loop_u_t, NULL,
+ "mean tangential displacement of the contact nodes"},
+{"mean_u_t1", "length", LOOP, SCENE_SOLID, 0, NULL, 0, loop_u_t, NULL,
+ "mean tangential displacement of the contact nodes"},
+{"mean_u_t2", "length", LOOP, SCENE_SOLID, 0, NULL, 1, loop_u_t, NULL,
+ "mean tangential displacement of the contact nodes"},
+{"friction_work", J, LOOP, SCENE_ALL, 0, NULL, 0, loop_friction, NULL,
+ "dissipated by friction so far, trapezoidal"},
+{"friction_work_end", J, LOOP, SCENE_ALL, 0, NULL, 0,
+ loop_friction_end, NULL, "the same with the forces at the end of increments"},
+{"loop_area", J, LOOP, SCENE_ALL, 0, NULL, 0, loop_area, NULL,
+ "friction_work_end since the step began: the area of a loop that closes"}};
+/* clang-format on */
+
+const effect_ops loops_effect = {.name = "table of loops",
+                                 .bit = NO_BIT,
+                                 .called_for = calls_for_loops,
+                                 .foreseen = expected,
+                                 .own = STAGE_NONE,
+                                 .more = {STAGE_TABLE_LOOP},
+                                 .create = loops_new,
+                                 .begin_step = begin_step,
+                                 .accept = find_loops,
+                                 .keep = keep,
+                                 .copy = loops_copy,
+                                 .release = memory_free,
+                                 .columns = columns,
+                                 .n_column = COLUMNS(columns)};

@@ -1,0 +1,80 @@
+/*
+ * *REFERENCE: the true error of each increment against a closed form.
+ */
+#include "accuracy/closed_form/exact_error.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "run/run.h"
+
+#include "base/memory.h"
+
+#include "run/column_row.h"
+
+/* Formulas at many points of each element. */
+static status expected(const plan_sizes *s, effect_work *w) {
+  *w =
+      (effect_work){s->elements, "elements", s->increments,
+                    s->increments * s->elements * 600.0 * plan_element_work(s)};
+  return OK;
+}
+
+static status exact_new(run *r, void **self) {
+  status st = OK;
+  true_error *own = NULL;
+  (void)r;
+  NEW(own, 1);
+  own->asked = 1;
+  *self = own;
+done:
+  return st;
+}
+
+static status find(run *r, void *self) {
+  status st = OK;
+  true_error *own = self;
+  double cpu = timer_cpu();
+  const answer_fields a = {r->now.t, r->now.u, r->stress, r->now.rc};
+  TRY(exact_error_find(&r->m->ref, &r->d, &a, own));
+  own->cpu += timer_cpu() - cpu;
+done:
+  return st;
+}
+
+static void show(const void *own, state *s) {
+  s->exact = *(const true_error *)own;
+}
+
+static const true_error *exact_of(const view *v) {
+  return effect_state(v->s->effects, &closed_form_effect);
+}
+
+VALUE(true_energy, 100 * exact_of(v)->energy)
+VALUE(true_displacement, 100 * exact_of(v)->displacement)
+VALUE(true_stress, 100 * exact_of(v)->stress)
+VALUE(true_pressure, 100 * exact_of(v)->pressure)
+
+/* clang-format off */
+static const column columns[] = {
+{"true_error", "%", INC, 0, ON(REFERENCE), ANY, "true_error", 0, true_energy,
+ NULL, "error against *REFERENCE in that norm; NaN: it has no displacement and "
+ "no stress"},
+{"true_displacement_error", "%", INC, 0, ON(REFERENCE), ANY,
+ "true_displacement_error", 0, true_displacement, NULL,
+ "the same of the displacement in the L2 norm"},
+{"true_stress_error", "%", INC, 0, ON(REFERENCE), ANY, "true_stress_error",
+ 0, true_stress, NULL, "the same of the stress in the L2 norm"},
+{"true_pressure_error", "%", INC, 0, ON(REFERENCE), ANY,
+ "true_pressure_error", 0, true_pressure, NULL,
+ "the same of the contact pressure in the L2 norm"}};
+/* clang-format on */
+
+const effect_ops closed_form_effect = {.name = "closed form",
+                                       .bit = EFFECT_BIT_REFERENCE,
+                                       .foreseen = expected,
+                                       .own = STAGE_REFERENCE,
+                                       .create = exact_new,
+                                       .accept = find,
+                                       .show = show,
+                                       .release = memory_free,
+                                       .columns = columns,
+                                       .n_column = COLUMNS(columns)};

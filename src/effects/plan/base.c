@@ -1,0 +1,295 @@
+/*
+ * What every body has, and the rows of effects that are part of other files of
+ * the run: their expected work and their stages.
+ */
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+
+#include <math.h>
+
+static status elements(const plan_sizes *s, effect_work *w) {
+  double n = s->elements, entries = work_factor_entries(s);
+  double assembly = n * (s->is_flat ? 500.0 : 2500.0);
+  double ordering = s->nodes * (s->is_flat ? 700.0 : 3000.0);
+  double factor = work_factor_flops(s) / PLAN_SPARSE + entries;
+  double solves = s->equilibria * 2.0 * entries;
+  double energy = s->increments * n * plan_element_work(s);
+  *w = (effect_work){
+      n, "elements", s->factors,
+      s->factors * (assembly + ordering + factor) + solves + energy};
+  return OK;
+}
+
+static status unilateral(const plan_sizes *s, effect_work *w) {
+  double n = s->contact;
+  *w = (effect_work){n, "nodes", s->equilibria,
+                     plan_contact_work(s, n) + 500.0 * n};
+  return OK;
+}
+
+static status tangents(const plan_sizes *s, effect_work *w) {
+  double all = plan_contact_work(s, plan_contact_unknowns(s));
+  *w = (effect_work){s->tangents, "unknowns", s->equilibria,
+                     all - plan_contact_work(s, s->contact)};
+  return OK;
+}
+
+/* Contact nodes with a rule that "is", *n. */
+static status nodes_with(const plan_sizes *s,
+                         int (*is)(const friction_rule *rule), double *n) {
+  if (s->msh != NULL) return plan_contact_nodes(s, is, n);
+  *n = is == rule_has_friction ? s->contact : 0.0;
+  return OK;
+}
+
+static status friction(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){.kind = "nodes", .calls = 1.0};
+  status st = nodes_with(s, rule_has_friction, &w->items);
+  w->operations = 100.0 * w->items;
+  return st;
+}
+
+static status average(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){.kind = "nodes", .calls = 1.0};
+  status st = nodes_with(s, rule_has_average, &w->items);
+  w->operations = 1000.0 * w->items + w->items * w->items;
+  return st;
+}
+
+static status given(const plan_sizes *s, effect_work *w) {
+  double n = 0.0;
+  for (int i = 0; s->msh != NULL && i < s->m->n_contact; ++i)
+    if (s->m->contacts[i].force.given)
+      n += s->msh->group[s->m->contacts[i].group_id].n_node;
+  *w = (effect_work){n, "nodes", s->equilibria, 20.0 * s->equilibria * n};
+  return OK;
+}
+
+static status history(const plan_sizes *s, effect_work *w) {
+  double times = s->equilibria + s->increments;
+  *w = (effect_work){.kind = "nodes", .calls = times};
+  status st = nodes_with(s, rule_has_friction, &w->items);
+  w->operations = 20.0 * times * w->items;
+  return st;
+}
+
+static status velocity(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){s->contact, "nodes", s->equilibria,
+                     20.0 * s->equilibria * s->contact};
+  return OK;
+}
+
+static status initial_state(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){s->nodes, "nodes", 2.0,
+                     4.0 * s->elements * plan_element_work(s)};
+  return OK;
+}
+
+static status inelastic(const plan_sizes *s, effect_work *w) {
+  double law = s->flows_linearly ? 4.0 : 40.0;
+  *w = (effect_work){s->elements, "elements", -1.0,
+                     law * s->equilibria * s->elements * plan_element_work(s)};
+  return OK;
+}
+
+static status thermal(const plan_sizes *s, effect_work *w) {
+  double n = 0.0;
+  for (int i = 0; s->msh != NULL && i < s->m->n_section; ++i) {
+    const material *mat = plan_material(s->m, i);
+    if (mat->expand.given || (mat->law.ops != NULL &&
+                              (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE)))
+      n += plan_section_elements(s, i);
+  }
+  *w = (effect_work){n, "elements", 1.0 + s->equilibria,
+                     s->equilibria * n * 2.0 * plan_element_work(s)};
+  return OK;
+}
+
+static status body(const plan_sizes *s, effect_work *w) {
+  double n = 0.0;
+  for (int i = 0; s->msh != NULL && i < s->m->n_step; ++i) {
+    double here = 0.0;
+    const load_list *l = &s->m->steps[i].loads;
+    for (int k = 0; k < l->n; ++k)
+      if (l->item[k].kind == LOAD_BODY || l->item[k].kind == LOAD_GRAVITY)
+        here += s->msh->group[l->item[k].group_id].n_item;
+    n = fmax(n, here);
+  }
+  *w = (effect_work){n, "elements", -1.0,
+                     s->equilibria * n * 4.0 * plan_element_work(s)};
+  return OK;
+}
+
+static status stresses(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){s->elements, "elements", s->shown,
+                     s->shown * s->elements * plan_element_work(s)};
+  return OK;
+}
+
+static status reactions(const plan_sizes *s, effect_work *w) {
+  double unknowns;
+  *w = (effect_work){
+      .kind = "nodes",
+      .calls = s->increments,
+      .operations = s->increments * s->elements * plan_element_work(s)};
+  return s->msh == NULL ? OK : plan_held(s, &unknowns, &w->items);
+}
+
+static int calls_for_velocity(const model *m, char *why, size_t size) {
+  for (int i = 0; i < m->n_step; ++i) {
+    if (m->steps[i].form != FORM_VELOCITY) continue;
+    snprintf(why, size, "*QUASISTATIC, FORM=VELOCITY of %s:%d",
+             PLACE(m->steps[i].at));
+    return 1;
+  }
+  snprintf(why, size, "no *QUASISTATIC, FORM=VELOCITY");
+  return 0;
+}
+
+/* Jumps are looked for where friction makes a path of increments. */
+static int calls_for_check(const model *m, char *why, size_t size) {
+  for (int i = 0; i < m->n_step; ++i) {
+    const step *s = &m->steps[i];
+    if (s->check == CHECK_NONE) continue;
+    snprintf(why, size, "*SOLVER, CHECK=, %s:%d", PLACE(s->solver_at));
+    return 1;
+  }
+  for (int i = 0; i < m->n_step && (m->effects & EFFECT_FRICTION); ++i) {
+    const step *s = &m->steps[i];
+    if (s->kind != STEP_QUASISTATIC) continue;
+    snprintf(why, size, "friction in *QUASISTATIC of %s:%d may jump",
+             PLACE(s->at));
+    return 1;
+  }
+  snprintf(why, size, "no *SOLVER, CHECK=, no path of friction");
+  return 0;
+}
+
+/* Products with the condensed matrix in each increment. */
+static status products(const plan_sizes *s, effect_work *w) {
+  double m = plan_contact_unknowns(s);
+  *w = (effect_work){s->contact, "nodes", -1.0, s->increments * 3.0 * m * m};
+  return OK;
+}
+
+static status mesh_error(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){s->elements, "elements", 1.0 + s->increments,
+                     s->increments * s->elements * 9.0 * plan_element_work(s)};
+  return OK;
+}
+
+static status time_error(const plan_sizes *s, effect_work *w) {
+  double m = plan_contact_unknowns(s);
+  *w = (effect_work){
+      s->contact, "nodes", s->increments,
+      2.0 * s->increments *
+          (4.0 * work_factor_entries(s) + PLAN_STEPS * 2.0 * m * m)};
+  return OK;
+}
+
+static status bound_of_solver(const plan_sizes *s, effect_work *w) {
+  double m = plan_contact_unknowns(s), solve = 0.5 * work_factor_entries(s);
+  double factor = s->tangents > 0.0 ? 0.1 * m * m * m / 3.0 / PLAN_DENSE : 0.0;
+  *w = (effect_work){s->contact, "nodes", s->increments,
+                     s->increments * (3.0 * m * m + solve + factor)};
+  return OK;
+}
+
+/* clang-format off */
+const effect_ops finite_elements_effect = {
+    .name = "finite elements",
+    .bit = EFFECT_BIT_MESH,
+    .foreseen = elements,
+    .own = STAGE_ASSEMBLY,
+    .more = {STAGE_ORDERING, STAGE_FACTOR, STAGE_LOAD, STAGE_RECOVERY,
+             STAGE_ENERGY}};
+const effect_ops unilateral_contact_effect = {
+    .name = "unilateral contact",
+    .bit = EFFECT_BIT_CONTACT,
+    .foreseen = unilateral,
+    .own = STAGE_CONTACT,
+    .more = {STAGE_SURFACE, STAGE_CONDENSE, STAGE_PROBLEM}};
+const effect_ops friction_effect = {
+    .name = "friction",
+    .bit = EFFECT_BIT_FRICTION,
+    .foreseen = friction,
+    .own = STAGE_LIMIT};
+const effect_ops tangents_effect = {
+    .name = "tangential unknowns",
+    .bit = EFFECT_BIT_TANGENTS,
+    .foreseen = tangents,
+    .own = STAGE_NONE,
+    .within = "unilateral contact"};
+const effect_ops nonlocal_effect = {
+    .name = "nonlocal average",
+    .bit = EFFECT_BIT_NONLOCAL,
+    .foreseen = average,
+    .own = STAGE_NONLOCAL};
+const effect_ops given_forces_effect = {
+    .name = "given contact forces",
+    .bit = EFFECT_BIT_GIVEN,
+    .foreseen = given,
+    .own = STAGE_GIVEN};
+const effect_ops slip_history_effect = {
+    .name = "history of slip",
+    .bit = EFFECT_BIT_HISTORY,
+    .foreseen = history,
+    .own = STAGE_HISTORY};
+const effect_ops velocity_effect = {
+    .name = "velocity form",
+    .bit = NO_BIT,
+    .called_for = calls_for_velocity,
+    .foreseen = velocity,
+    .own = STAGE_VELOCITY};
+const effect_ops initial_state_effect = {
+    .name = "initial state",
+    .bit = EFFECT_BIT_START,
+    .foreseen = initial_state,
+    .own = STAGE_START};
+const effect_ops inelastic_effect = {
+    .name = "inelastic strain",
+    .bit = EFFECT_BIT_INELASTIC,
+    .foreseen = inelastic,
+    .own = STAGE_INELASTIC};
+const effect_ops thermal_effect = {
+    .name = "thermal strain",
+    .bit = EFFECT_BIT_THERMAL,
+    .foreseen = thermal,
+    .own = STAGE_THERMAL};
+const effect_ops body_forces_effect = {
+    .name = "body forces",
+    .bit = EFFECT_BIT_BODY,
+    .foreseen = body,
+    .own = STAGE_BODY};
+const effect_ops stresses_effect = {
+    .name = "stresses",
+    .bit = EFFECT_BIT_STRESS,
+    .foreseen = stresses,
+    .own = STAGE_STRESS};
+const effect_ops reactions_effect = {
+    .name = "reactions",
+    .bit = EFFECT_BIT_REACTION,
+    .foreseen = reactions,
+    .own = STAGE_REACTION};
+const effect_ops second_solutions_effect = {
+    .name = "second solutions, jumps",
+    .bit = NO_BIT,
+    .called_for = calls_for_check,
+    .foreseen = products,
+    .own = STAGE_CHECK};
+const effect_ops mesh_error_effect = {
+    .name = "error of mesh",
+    .bit = EFFECT_BIT_MESH_ERROR,
+    .foreseen = mesh_error,
+    .own = STAGE_MESH_ERROR};
+const effect_ops time_error_effect = {
+    .name = "error of steps",
+    .bit = EFFECT_BIT_TIME_ERROR,
+    .foreseen = time_error,
+    .own = STAGE_TIME_ERROR};
+const effect_ops solver_error_effect = {
+    .name = "error of solver",
+    .bit = EFFECT_BIT_ESTIMATES,
+    .foreseen = bound_of_solver,
+    .own = STAGE_ESTIMATE};
+/* clang-format on */

@@ -1,0 +1,173 @@
+/*
+ * Tables, fields and files: the cards that call for them, their expected work.
+ */
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+
+#include <math.h>
+
+static const double TEXT = 250.0; /* operations to write a number             */
+
+double plan_rows(const plan_sizes *s, int table, double items) {
+  double most = 0.0;
+  for (int i = 0; i < s->m->n_step && s->msh != NULL; ++i)
+    for (int k = 0; k < s->m->steps[i].n_print; ++k) {
+      const print_request *p = &s->m->steps[i].prints[k];
+      if (p->table != table) continue;
+      if (p->group_id < 0) return items;
+      const mesh_group *g = &s->msh->group[p->group_id];
+      most = fmax(most, table == PRINT_ELEMENTS ? g->n_item : g->n_node);
+    }
+  return most > 0.0 ? fmin(items, most) : items;
+}
+
+effect_work plan_table(const plan_sizes *s, int table, double all) {
+  double n = plan_rows(s, table, all), shown = plan_shown(s->m, table);
+  return (effect_work){n, "rows", shown, shown * n * 10.0 * TEXT};
+}
+
+int plan_calls_for_table(const model *m, int table, const char *word, char *why,
+                         size_t size) {
+  for (int i = 0; i < m->n_step; ++i)
+    for (int q = 0; q < m->steps[i].n_print; ++q) {
+      const print_request *p = &m->steps[i].prints[q];
+      if (p->table != table) continue;
+      snprintf(why, size, "*PRINT, %s, %s:%d", word, PLACE(p->at));
+      return 1;
+    }
+  snprintf(why, size, "no *PRINT, %s", word);
+  return 0;
+}
+
+static status held_rows(const plan_sizes *s, effect_work *w) {
+  double unknowns, nodes = 0.0;
+  status st = s->msh == NULL ? OK : plan_held(s, &unknowns, &nodes);
+  *w = plan_table(s, PRINT_REACTIONS, nodes);
+  return st;
+}
+
+#define TABLE_ROWS(name, bit, all)                                 \
+  static status name##_rows(const plan_sizes *s, effect_work *w) { \
+    *w = plan_table(s, bit, all);                                  \
+    return OK;                                                     \
+  }
+TABLE_ROWS(contact, PRINT_CONTACT, s->contact)
+TABLE_ROWS(totals, PRINT_TOTALS, s->m->n_contact)
+TABLE_ROWS(nodes, PRINT_NODES, s->nodes)
+TABLE_ROWS(elements, PRINT_ELEMENTS, s->elements)
+TABLE_ROWS(energy, PRINT_ENERGY, 1.0)
+
+#define TABLE(row, text, table, word, expected, stage_)                \
+  static int calls_for_##row(const model *m, char *why, size_t size) { \
+    return plan_calls_for_table(m, table, word, why, size);            \
+  }                                                                    \
+  const effect_ops row##_effect = {.name = text,                       \
+                                   .bit = NO_BIT,                      \
+                                   .called_for = calls_for_##row,      \
+                                   .foreseen = expected,               \
+                                   .own = stage_};
+TABLE(contact_table, "table of contact nodes", PRINT_CONTACT, "CONTACT",
+      contact_rows, STAGE_TABLE_CONTACT)
+TABLE(totals_table, "table of resultants", PRINT_TOTALS, "TOTALS", totals_rows,
+      STAGE_TABLE_TOTALS)
+TABLE(nodes_table, "table of nodes", PRINT_NODES, "NODES", nodes_rows,
+      STAGE_TABLE_NODES)
+TABLE(elements_table, "table of elements", PRINT_ELEMENTS, "ELEMENTS",
+      elements_rows, STAGE_TABLE_ELEMENTS)
+TABLE(energy_table, "table of energies", PRINT_ENERGY, "ENERGY", energy_rows,
+      STAGE_TABLE_ENERGY)
+TABLE(reactions_table, "table of reactions", PRINT_REACTIONS, "REACTIONS",
+      held_rows, STAGE_TABLE_REACTIONS)
+
+static int calls_for_fields(const model *m, char *why, size_t size) {
+  for (int i = 0; i < m->n_step; ++i) {
+    const step *s = &m->steps[i];
+    if (s->output_frequency < 0) continue;
+    if (s->has_output)
+      snprintf(why, size, "*OUTPUT, %s:%d", PLACE(s->output_at));
+    else
+      snprintf(why, size, "default; *OUTPUT, HDF5=NO leaves them out");
+    return 1;
+  }
+  snprintf(why, size, "*OUTPUT, HDF5=NO");
+  return 0;
+}
+
+static int calls_for_condensed(const model *m, char *why, size_t size) {
+  for (int i = 0; i < m->n_step; ++i) {
+    const step *s = &m->steps[i];
+    if (s->condensed_frequency < 0) continue;
+    snprintf(why, size, "*OUTPUT, CONDENSED=FCLIB, %s:%d", PLACE(s->output_at));
+    return 1;
+  }
+  snprintf(why, size, "no *OUTPUT, CONDENSED=FCLIB");
+  return 0;
+}
+
+static int calls_for_restart(const model *m, char *why, size_t size) {
+  for (int i = 0; i < m->n_step; ++i) {
+    const step *s = &m->steps[i];
+    if (s->restart_frequency < 0) continue;
+    snprintf(why, size, "*RESTART, %s:%d", PLACE(s->restart_at));
+    return 1;
+  }
+  snprintf(why, size, "no *RESTART card");
+  return 0;
+}
+
+static int calls_for_always(const model *m, char *why, size_t size) {
+  (void)m;
+  snprintf(why, size, "always");
+  return 1;
+}
+
+static status fields(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){s->nodes, "nodes", -1.0,
+                     4e6 + s->shown * (4e5 + 20.0 * s->nodes)};
+  return OK;
+}
+
+static status condensed_problems(const plan_sizes *s, effect_work *w) {
+  double m = plan_contact_unknowns(s);
+  *w = (effect_work){s->contact, "nodes", -1.0,
+                     s->increments * (1e6 + 3.0 * m * m)};
+  return OK;
+}
+
+static status restart(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){s->nodes, "nodes", -1.0,
+                     s->increments * (1e6 + 50.0 * s->nodes)};
+  return OK;
+}
+
+static status listing(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){1.0, NULL, -1.0, 2e5 + s->increments * 60.0 * TEXT};
+  return OK;
+}
+
+/* clang-format off */
+const effect_ops fields_effect = {
+    .name = "fields in JOB.h5",
+    .bit = NO_BIT,
+    .called_for = calls_for_fields,
+    .foreseen = fields,
+    .own = STAGE_HDF5};
+const effect_ops condensed_problems_effect = {
+    .name = "condensed problems",
+    .bit = NO_BIT,
+    .called_for = calls_for_condensed,
+    .foreseen = condensed_problems,
+    .own = STAGE_FCLIB};
+const effect_ops restart_effect = {
+    .name = "restart",
+    .bit = NO_BIT,
+    .called_for = calls_for_restart,
+    .foreseen = restart,
+    .own = STAGE_RESTART};
+const effect_ops listing_effect = {
+    .name = "listing, .sta, .cvg",
+    .bit = NO_BIT,
+    .called_for = calls_for_always,
+    .foreseen = listing,
+    .own = STAGE_LISTING};
+/* clang-format on */

@@ -1,0 +1,50 @@
+/*
+ * THE table of effects: a row of what a run computes and writes is a line here
+ * and NAME_effect in a file of its own. Plan, run, outputs and columns go
+ * through them in this order.
+ */
+#ifndef PROTIS_EFFECTS_ROWS_H
+#define PROTIS_EFFECTS_ROWS_H
+
+#include "run/effect.h"
+
+/* clang-format off */
+#define EFFECT_ROWS(X)   \
+  X(finite_elements)     \
+  X(unilateral_contact)  \
+  X(friction)            \
+  X(tangents)            \
+  X(nonlocal)            \
+  X(given_forces)        \
+  X(slip_history)        \
+  X(velocity)            \
+  X(initial_state)       \
+  X(inelastic)           \
+  X(thermal)             \
+  X(body_forces)         \
+  X(stresses)            \
+  X(reactions)           \
+  X(second_solutions)    \
+  X(theorems)            \
+  X(mesh_error)          \
+  X(time_error)          \
+  X(solver_error)        \
+  X(closed_form)         \
+  X(contact_table)       \
+  X(totals_table)        \
+  X(nodes_table)         \
+  X(elements_table)      \
+  X(energy_table)        \
+  X(reactions_table)     \
+  X(zones)               \
+  X(loops)               \
+  X(fields)              \
+  X(condensed_problems)  \
+  X(restart)             \
+  X(listing)
+/* clang-format on */
+
+#define EFFECT_ROW(name) extern const effect_ops name##_effect;
+EFFECT_ROWS(EFFECT_ROW)
+
+#endif
