@@ -23,6 +23,17 @@ const friction_rule *friction_in_force(const model *m, int step_id,
   return &m->contacts[contact_id].friction;
 }
 
+const effect_card *model_effect_card(const model *m, const char *keyword,
+                                     int contact_id) {
+  for (int i = m->n_effect_card - 1; i >= 0; --i) {
+    const effect_card *c = &m->effect_cards[i];
+    if (strcmp(c->keyword, keyword) == 0 &&
+        (contact_id < 0 || c->contact_id < 0 || c->contact_id == contact_id))
+      return c;
+  }
+  return NULL;
+}
+
 int rule_has_friction(const friction_rule *rule) {
   if (rule->law == NULL || rule->law->value_name == NULL) return 0;
   const quantity *q = &rule->card.value;

@@ -85,5 +85,5 @@ void model_free(model *m) {
   }
   RELEASE(m->amplitudes, m->points, m->materials, m->sections, m->obstacles,
           m->moves, m->contacts, m->steps, m->still, m->elem_section, m->job,
-          m);
+          m->effect_cards, m);
 }

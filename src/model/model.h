@@ -275,6 +275,15 @@ typedef struct accuracy_target { /* *ACCURACY, TARGET=                       */
   int max_passes;
 } accuracy_target;
 
+/* The card of an effect that the model knows no more of: its file does. */
+enum { EFFECT_VALUES = 4 };
+typedef struct effect_card {
+  const char *keyword;
+  int contact_id; /* -1: all                                                  */
+  double value[EFFECT_VALUES]; /* in the order of its row of keywords         */
+  place at;
+} effect_card;
+
 /* What *EFFECTS, MODE=AUTO leaves out, and what that would have changed. */
 typedef struct neglected {
   int bit, id;   /* EFFECT_BIT_..., material of a law or -1                  */
@@ -336,6 +345,8 @@ typedef struct model {
   unsigned char *still; /* [n_elem] as material.is_still says; NULL: nowhere,
                            owned                                              */
   closed_form ref;
+  int n_effect_card, cap_effect_card;
+  effect_card *effect_cards; /* [n_effect_card] in the order of the deck      */
   unsigned effects; /* bits EFFECT_*, set by model_check                    */
   int corner_id; /* a contact with nodes of another one before it, or -1      */
   int dim, ns;   /* from the mesh                                        */
@@ -414,6 +425,9 @@ double print_next(const print_request *p, const step *s, double after,
 int model_has_axis(const model *m);
 /* 1: the law of an element counts. */
 int model_flows(const model *m, int elem_id);
+/* The last of an effect's cards for a contact, -1: for any; NULL: none. */
+const effect_card *model_effect_card(const model *m, const char *keyword,
+                                     int contact_id);
 /* 1: its limit is an average over the surface. */
 int rule_has_average(const friction_rule *rule);
 /* 1: tangential unknowns are there for friction alone, which acts in all steps

@@ -101,6 +101,10 @@ typedef struct force_param {
   const char *contact, *amplitude;
   int table;
 } force_param;
+typedef struct effect_param { /* of an effect: CONTACT= and numbers           */
+  const char *contact;
+  double value[EFFECT_VALUES];
+} effect_param;
 typedef struct amplitude_param {
   const char *name;
   int time;
@@ -186,6 +190,8 @@ status apply_obstacle(reading *r);
 status apply_contact(reading *r);
 status apply_friction(reading *r);
 status apply_contact_force(reading *r);
+/* Of any effect whose options are effect_param. */
+status apply_effect(reading *r);
 plugin names_law(const reading *r);
 /* ---- procedure.c ---- */
 status apply_step(reading *r);

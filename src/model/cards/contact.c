@@ -397,3 +397,17 @@ status apply_contact_force(reading *r) {
   f->amplitude_at = *value_place(r, "AMPLITUDE");
   return read_value(r, "p", p->table, &f->value, &f->position);
 }
+
+status apply_effect(reading *r) {
+  status st = OK;
+  model *m = r->m;
+  const effect_param *p = r->param;
+  int id = p->contact == NULL ? -1 : find_contact(r, p->contact);
+  if (p->contact != NULL && id < 0) return OK;
+  GROW(m->effect_cards, m->n_effect_card, m->cap_effect_card);
+  effect_card *c = &m->effect_cards[m->n_effect_card++];
+  *c = (effect_card){r->card->name, id, {0}, r->card->at};
+  memcpy(c->value, p->value, sizeof c->value);
+done:
+  return st;
+}
