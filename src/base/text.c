@@ -131,6 +131,12 @@ done:
   return st;
 }
 
+/* Closing it does not tell where it could not grow: before, or now. */
+int text_memory_end(FILE *f, char **text) {
+  int whole = ferror(f) == 0;
+  return fclose(f) == 0 && whole && *text != NULL;
+}
+
 /* printf gives two digits of the exponent below 100. */
 const char *text_number(char text[NUMBER_SIZE], double value, int digits) {
   if (isnan(value)) return strcpy(text, "NaN");

@@ -30,6 +30,8 @@ status text_close(text_file *t); /* checked; accepts one never opened      */
  * whole or nothing. */
 status text_replace(const char *path, const void *what,
                     void (*write)(FILE *f, const void *what));
+/* Close a stream of memory; 1: all that was printed stands in it. */
+int text_memory_end(FILE *f, char **text);
 /* ERR_FILE, of ENOMEM ERR_MEMORY, with the path and the text of the error
  * number; 0: none known. */
 status text_failed(const char *path, const char *doing, int error_no);

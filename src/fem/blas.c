@@ -22,7 +22,6 @@ void openblas_set_num_threads(int n);
  * its libraries and one buffer. */
 enum { BUFFER = 130 << 20, NEEDED = 230 };
 
-static const char threads_choice[] = "OPENBLAS_NUM_THREADS";
 static const char choice[] = "OPENBLAS_CORETYPE";
 static const char guard[] = "PROTIS_BLAS_KERNEL";
 
@@ -95,17 +94,39 @@ static void take_buffer(void) {
               a, SIDE, a, SIDE, 0.0, b, SIDE);
 }
 
-/* OpenBLAS asks for its buffers until it gets them. Where addresses are limited
- * (ulimit -v) it starts without threads of its own, which have one each, and
- * takes the one of this thread now, or the process ends. */
-static void fit_address_space(char **argv) {
+static int addresses_are_limited(struct rlimit *limit) {
+  return getrlimit(RLIMIT_AS, limit) == 0 && limit->rlim_cur != RLIM_INFINITY;
+}
+
+/* Where addresses are limited (ulimit -v) OpenBLAS starts without threads of
+ * its own, which take a stack and a buffer each: where there is no room for
+ * them it ends the process when it is loaded. So this is run before, when there
+ * is nothing yet but the environment that it is handed. */
+static void start_one_thread(int argc, char **argv, char **env) {
   struct rlimit limit;
-  const char *threads = getenv(threads_choice);
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
-    return;
-  int one = threads != NULL && strcmp(threads, "1") == 0;
-  if (!one && setenv(threads_choice, "1", 1) == 0)
-    execv("/proc/self/exe", argv);
+  char one[] = "OPENBLAS_NUM_THREADS=1";
+  const size_t name = sizeof one - 2;
+  int n = 0, kept = 0;
+  (void)argc;
+  if (!addresses_are_limited(&limit)) return;
+  while (env[n] != NULL && strcmp(env[n], one) != 0) ++n;
+  if (env[n] != NULL) return;
+  char *other[n + 2];
+  for (int i = 0; i < n; ++i)
+    if (strncmp(env[i], one, name) != 0) other[kept++] = env[i];
+  other[kept] = one;
+  other[kept + 1] = NULL;
+  execve("/proc/self/exe", argv, other);
+}
+
+static void (*const before_libraries)(int, char **, char **)
+    __attribute__((section(".preinit_array"), used)) = start_one_thread;
+
+/* OpenBLAS asks for its buffers until it gets them: it takes that of this
+ * thread now, or the process ends. */
+static void fit_address_space(void) {
+  struct rlimit limit;
+  if (!addresses_are_limited(&limit)) return;
   void *room = mmap(NULL, BUFFER, PROT_READ | PROT_WRITE,
                     MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (room == MAP_FAILED) {
@@ -122,7 +143,7 @@ static void fit_address_space(char **argv) {
 
 void blas_choose_kernel(char **argv) {
   int level;
-  fit_address_space(argv);
+  fit_address_space();
   const char *best = best_kernel(&level);
   blas_set_threads(1);
   if (best == NULL || kernel_level(blas_kernel()) >= level) return;

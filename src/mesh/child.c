@@ -321,9 +321,10 @@ static void drop_counts(const child *c, const char *from, const char *to) {
       kept &= strncmp(line, words[i], strlen(words[i])) != 0;
     if (kept) fputs(line, out);
   }
+  int whole = feof(in) && !ferror(out);
   free(line);
   fclose(in);
-  if (fclose(out) != 0)
+  if (fclose(out) != 0 || !whole)
     give_up(c, ERR_MESH, "cannot copy the geometry to %s", to);
 }
 

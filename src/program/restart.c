@@ -61,7 +61,7 @@ static status echo_of(const model *m, char **text) {
   FILE *f = open_memstream(text, &size);
   if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
   st = model_echo(m, f);
-  if (fclose(f) != 0 && st == OK)
+  if (!text_memory_end(f, text) && st == OK)
     FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
 done:
   return st;
@@ -91,7 +91,8 @@ static status list_warnings(const job_input *in, char **text) {
               w.at != NULL ? w.at->line_no : 0,
               w.at != NULL ? w.at->column_no : 0, file_no(in->d, file), w.text);
   }
-  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: warnings so far");
+  if (!text_memory_end(f, text))
+    FAIL(ERR_MEMORY, "memory exhausted: warnings so far");
 done:
   return st;
 }
@@ -246,7 +247,7 @@ status restart_files(const job_input *in, char **text) {
   FILE *f = open_memstream(text, &size);
   if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: files of the deck");
   st = add_files(in, f);
-  if (fclose(f) != 0 && st == OK)
+  if (!text_memory_end(f, text) && st == OK)
     FAIL(ERR_MEMORY, "memory exhausted: files of the deck");
 done:
   return st;

@@ -139,7 +139,8 @@ status model_echo(const model *m, FILE *out) {
   FILE *f = open_memstream(&cards, &size);
   if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
   for (int i = 0; i < d->n_card; ++i) echo_card(m, &d->cards[i], f);
-  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
+  if (!text_memory_end(f, &cards))
+    FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
   echo_symbols(d, cards, out);
   fputs(cards, out);
 done:

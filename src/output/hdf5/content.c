@@ -5,6 +5,7 @@
 #include "output/hdf5/file.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "model/keyword/keyword.h"
 
 #include <stdlib.h>
@@ -232,7 +233,7 @@ static status add_deck(hdf5_file *h) {
   FILE *f = open_memstream(&text, &size);
   if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
   st = model_echo(h->m, f);
-  if (fclose(f) != 0 && st == OK)
+  if (!text_memory_end(f, &text) && st == OK)
     FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
   if (st != OK) goto done;
   NEW(own, size + 1);

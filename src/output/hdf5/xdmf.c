@@ -103,7 +103,8 @@ static status make_pattern(const part *p, const hdf5_shape *s, char **text) {
   FILE *f = open_memstream(text, &size);
   if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
   write_pattern(f, slash != NULL ? slash + 1 : s->path, p, s);
-  if (fclose(f) != 0) FAIL(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
+  if (!text_memory_end(f, text))
+    FAIL(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
 done:
   return st;
 }
