@@ -42,8 +42,12 @@ LDFLAGS  += $(filter -fsanitize% --coverage,$(optimise))
 leave_cover := $(out)/tests/preload/leave.o
 leave    := $(leave_$(BUILD))
 LDFLAGS  += $(if $(leave),-Wl$(comma)--wrap=_exit)
+# Debian's HDF5 is linked with libraries of the net, whose loading would be half
+# of the start of a process: its archive is taken, which needs none of them.
+hdf5     := $(shell pkg-config --libs hdf5-serial 2>/dev/null)
+archive  := $(if $(dpkg),$(wildcard $(patsubst -L%,%/libhdf5.a,$(filter -L%,$(hdf5)))))
 LDLIBS   += -lumfpack -lcholmod -lcamd -lsuitesparseconfig -llapacke -lopenblas \
-            $(shell pkg-config --libs hdf5-serial 2>/dev/null) -ldl -lm
+            $(if $(archive),$(archive) -lsz -lz,$(hdf5)) -ldl -lm
 checklib := $(shell pkg-config --libs check 2>/dev/null)
 
 sources  := $(filter-out src/main.c,$(wildcard src/*/*.c src/*/*/*.c))
@@ -66,6 +70,8 @@ verify   := $(verify_c:%.c=$(out)/%)
 tort_c   := $(wildcard tests/torture/*.c)
 tort     := $(tort_c:%.c=$(out)/%)
 preload  := $(out)/tests/preload/refuse.so $(out)/tests/preload/mesh.so
+# The sanitiser of addresses wants to be loaded first.
+kept     := $(if $(filter asan,$(BUILD)),,$(lastword $(preload)))
 support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c \
               tests/scenes/*.c tests/decks/*.c))
 
@@ -149,7 +155,8 @@ wrapped  := child_run \
               tests/preload/failing.h)
 $(out)/tests/torture/calls: $(failing)
 $(out)/tests/torture/calls: LDFLAGS += $(wrapped:%=-Wl$(comma)--wrap=%)
-$(out)/tests/torture/calls: LDLIBS := $(library) $(LDLIBS)
+$(out)/tests/torture/calls: LDLIBS := $(library) \
+              $(if $(archive),$(patsubst $(archive),$(hdf5),$(LDLIBS)),$(LDLIBS))
 $(out)/tests/preload/main.o: $(out)/src/main.o
 	@mkdir -p $(@D)
 	$(Q)objcopy --redefine-sym main=protis_main $< $@
@@ -179,8 +186,9 @@ check: unit regression torture-slice layers style
 unit: $(unit)
 	$(Q)JOBS=$(JOBS) tools/run_tests $^
 
-regression: $(program) $(regr)
-	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) tools/run_tests $(regr)
+regression: $(program) $(kept) $(regr)
+	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) \
+	  PROTIS_MESH=$(abspath $(kept)) tools/run_tests $(regr)
 
 # Memory refused, files that fail, kills: a slice of each in the tests. All of
 # it with random problems and decks in one table; POINTS: of each kind, by

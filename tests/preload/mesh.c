@@ -3,7 +3,13 @@
  * mesh reader sends is kept at the first run and given out again at later ones,
  * because loading libgmsh costs more than a small job.
  *
- *   MESH_KEPT  path: the stream of the reader; written where it is not there
+ *   MESH_KEPT  folder of the kept streams, each named by what was asked of
+ *              gmsh: its numbers and options, name and text of the .geo
+ *
+ * What is asked is found by a process forked where libgmsh would be loaded. It
+ * gets the calls below in its place, and either gives out a kept stream or ends
+ * with the name under which one may be kept. Files that reach beyond their text
+ * and meshes by sizes are always made by gmsh.
  */
 #define _GNU_SOURCE
 #include "mesh.h"
@@ -11,14 +17,20 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
-static int sink = -1; /* of the stream, as the reader marks it              */
-static int copy = -1; /* the stream is being kept                           */
+static int sink = -1;   /* of the stream, as the reader marks it            */
+static int copy = -1;   /* the stream is being kept                         */
+static int answer = -1; /* of the process that finds the name               */
+static uint64_t key = 14695981039346656037u;
+static int may_keep = 1;
 static const char *kept;
+static char path[4096]; /* of the stream that is being kept                 */
 
 static void *real(const char *name) { return dlsym(RTLD_NEXT, name); }
 
@@ -26,8 +38,8 @@ static void *real(const char *name) { return dlsym(RTLD_NEXT, name); }
 static void look(void) __attribute__((constructor));
 static void look(void) { kept = getenv("MESH_KEPT"); }
 
-static void copy_name(char text[4096]) {
-  snprintf(text, 4096, "%s.%d", kept, (int)getpid());
+static void name_stream(char name[4096], const char *suffix) {
+  snprintf(name, 4096, "%s/%016llx%s", kept, (unsigned long long)key, suffix);
 }
 
 /* The reader marks the end of the pipe that it writes to. */
@@ -43,34 +55,114 @@ int fcntl(int fd, int command, ...) {
   return next(fd, command, value);
 }
 
-static void give_out(int from) {
-  char part[65536];
+/* ---- what is asked of gmsh ----------------------------------------------- */
+
+static void leave(int code) __attribute__((noreturn));
+static void leave(int code) {
+  void (*next)(int) __attribute__((noreturn));
+  void *found = real("_exit");
+  memcpy(&next, &found, sizeof next);
+  next(code);
+}
+
+static void mix(const void *data, size_t n) {
+  for (const unsigned char *p = data; n > 0; ++p, --n)
+    key = (key ^ *p) * 1099511628211u;
+}
+
+void gmshInitialize(int argc, char **argv, int ignored, int *error) {
+  (void)ignored;
+  for (int i = 1; i < argc; ++i) mix(argv[i], strlen(argv[i]) + 1);
+  *error = 0;
+}
+
+void gmshLoggerStart(int *error) { *error = 0; }
+
+void gmshOptionSetNumber(const char *name, double value, int *error) {
+  mix(name, strlen(name));
+  mix(&value, sizeof value);
+  *error = 0;
+}
+
+void gmshOpen(const char *name, int *error) {
+  static const char *const beyond[] = {"Include", "Merge",   "Shape", "Get",
+                                       "System",  "Current", "Print", "Exit"};
+  static char text[1 << 16];
+  const char *slash = strrchr(name, '/');
+  FILE *f = fopen(name, "rb");
+  size_t n = f == NULL ? sizeof text : fread(text, 1, sizeof text - 1, f);
+  may_keep = n < sizeof text - 1 && memchr(text, '\0', n) == NULL;
+  for (size_t i = 0; may_keep && i < sizeof beyond / sizeof *beyond; ++i)
+    may_keep = strstr(text, beyond[i]) == NULL;
+  mix(slash != NULL ? slash : name, strlen(slash != NULL ? slash : name) + 1);
+  mix(text, may_keep ? n : 0);
+  if (f != NULL) fclose(f);
+  *error = 0;
+}
+
+/* The first call after that of a file whose sizes are its own. */
+void gmshModelGetPhysicalGroups(void) {
+  static char part[65536];
+  char name[4096];
   ssize_t n;
+  if (!may_keep) leave(1);
+  name_stream(name, "");
+  int from = open(name, O_RDONLY | O_CLOEXEC), to = sink;
+  sink = -1;
+  if (from < 0) leave(write(answer, &key, sizeof key) != sizeof key);
   while ((n = read(from, part, sizeof part)) > 0)
-    if (write(sink, part, (size_t)n) != n) _exit(71);
-  _exit(0);
+    if (write(to, part, (size_t)n) != n) break;
+  leave(0);
+}
+
+#define NEVER(name) \
+  void gmsh##name(void) { leave(1); }
+NEVER_LIST(NEVER)
+
+/* ---- in the place of the C library's ------------------------------------- */
+
+/* In the new process what takes the place of libgmsh, else NULL. */
+static void *ask(void *(*next)(const char *, int), int flags) {
+  int ends[2], code;
+  Dl_info here;
+  void *self = (void *)(uintptr_t)gmshOpen;
+  if (pipe(ends) != 0) return NULL;
+  pid_t pid = fork();
+  if (pid == 0) {
+    answer = ends[1];
+    return dladdr(self, &here) ? next(here.dli_fname, flags) : NULL;
+  }
+  close(ends[1]);
+  ssize_t n = read(ends[0], &key, sizeof key);
+  close(ends[0]);
+  if (pid < 0 || waitpid(pid, &code, 0) != pid) return NULL;
+  if (n == (ssize_t)sizeof key) {
+    char own[32];
+    snprintf(own, sizeof own, ".%d", (int)getpid());
+    name_stream(path, own);
+    copy = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  } else if (code == 0) {
+    leave(0);
+  }
+  return NULL;
 }
 
 /* The reader loads libgmsh: here its work begins. */
 void *dlopen(const char *file, int flags) {
   static void *(*next)(const char *, int);
-  void *found = next == NULL ? real("dlopen") : NULL;
-  char path[4096];
+  void *found = next == NULL ? real("dlopen") : NULL, *asked = NULL;
   if (found != NULL) memcpy(&next, &found, sizeof next);
   if (file != NULL && kept != NULL && sink >= 0 &&
-      strncmp(file, "libgmsh", 7) == 0) {
-    int from = open(kept, O_RDONLY | O_CLOEXEC);
-    if (from >= 0) give_out(from);
-    copy_name(path);
-    copy = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  }
-  return next(file, flags);
+      strncmp(file, "libgmsh", 7) == 0)
+    asked = ask(next, flags);
+  return asked != NULL ? asked : next(file, flags);
 }
 
 ssize_t write(int fd, const void *data, size_t n) {
   static ssize_t (*next)(int, const void *, size_t);
   void *found = next == NULL ? real("write") : NULL;
   if (found != NULL) memcpy(&next, &found, sizeof next);
+  if (answer >= 0 && fd == sink) leave(1); /* gmsh was not even asked         */
   ssize_t done = next(fd, data, n);
   if (copy >= 0 && fd == sink && done > 0 &&
       next(copy, data, (size_t)done) != done)
@@ -79,13 +171,8 @@ ssize_t write(int fd, const void *data, size_t n) {
 }
 
 void _exit(int code) {
-  char path[4096];
-  void (*next)(int) __attribute__((noreturn));
-  void *found = real("_exit");
-  memcpy(&next, &found, sizeof next);
-  if (copy >= 0 && code == 0) {
-    copy_name(path);
-    rename(path, kept);
-  }
-  next(code);
+  char name[4096];
+  name_stream(name, "");
+  if (copy >= 0 && code == 0) rename(path, name);
+  leave(code);
 }

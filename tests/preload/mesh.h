@@ -1,4 +1,5 @@
-/* What mesh.c puts before the C library's: each calls the one it hides. */
+/* What mesh.c puts before the C library's: each calls the one it hides; and
+ * before those of libgmsh, which it stands for until they are needed. */
 #ifndef PROTIS_TESTS_PRELOAD_MESH_H
 #define PROTIS_TESTS_PRELOAD_MESH_H
 
@@ -13,5 +14,31 @@ void *dlopen(const char *file, int flags);
 ssize_t write(int fd, const void *data, size_t n);
 /* Keeps a stream that was sent to its end. */
 void _exit(int code);
+
+/* gmshc.h: the numbers. */
+void gmshInitialize(int argc, char **argv, int ignored, int *error);
+/* gmshc.h: nothing. */
+void gmshLoggerStart(int *error);
+/* gmshc.h: an option. */
+void gmshOptionSetNumber(const char *name, double value, int *error);
+/* gmshc.h: the file. */
+void gmshOpen(const char *name, int *error);
+/* gmshc.h: never returns; the stream is given out, or its name told. */
+void gmshModelGetPhysicalGroups(void);
+
+/* clang-format off */
+/* All others: gmsh itself must do it. */
+#define NEVER_LIST(X)                                                         \
+  X(LoggerGet) X(LoggerGetLastError) X(ModelGetEntities)                      \
+  X(ModelGetPhysicalName) X(ModelGetPhysicalGroupsForEntity)                  \
+  X(ModelMeshGenerate) X(ModelMeshGetNodes) X(ModelMeshGetElements)           \
+  X(ModelMeshGetElementProperties) X(ModelMeshFieldAdd)                       \
+  X(ModelMeshFieldSetNumber) X(ModelMeshFieldSetAsBackgroundMesh)             \
+  X(ModelMeshRemoveConstraints) X(Clear) X(Write)                             \
+  X(ViewAdd) X(ViewAddListData) X(Free)
+/* clang-format on */
+
+#define NEVER_DECLARE(name) void gmsh##name(void);
+NEVER_LIST(NEVER_DECLARE)
 
 #endif

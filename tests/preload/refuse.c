@@ -8,6 +8,8 @@
  *   REFUSE_CHILD   1: count and refuse in processes it forks, not in itself
  *   REFUSE_OWN     1: count and refuse only those of the program itself and of
  *                  the solvers of its linear systems
+ *   REFUSE_LIBRARY  first and last address of a library that is linked into the
+ *                  program, from where it is loaded
  *   REFUSE_TOLD    path: PATH.by gets who was refused first, P: the program
  *                  itself or a solver of its linear systems, L: any other
  *                  library; PATH.end at the end of the process "requests
@@ -38,13 +40,15 @@ static int always, in_child, own, armed, n_range, lock;
 static pid_t main_process;
 static const char *told;
 static void *blocks[SLOTS]; /* judged blocks: a hash table, (void *)1: freed */
-static struct { const char *from, *to; } ranges[RANGES];
+static struct { const char *from, *to; } ranges[RANGES], library;
 
 static int counts_here(void) {
   return armed && (getpid() != main_process) == in_child;
 }
 
 static int is_judged(const void *caller) {
+  if ((const char *)caller >= library.from && (const char *)caller < library.to)
+    return 0;
   for (int i = 0; i < n_range; ++i)
     if ((const char *)caller >= ranges[i].from &&
         (const char *)caller < ranges[i].to)
@@ -145,6 +149,12 @@ static int add_range(struct dl_phdr_info *info, size_t size, void *ignored) {
                                        "libcamd", "liblapacke"};
   (void)size, (void)ignored;
   int mine = info->dlpi_name[0] == '\0' && n_range == 0;
+  unsigned long from, to;
+  const char *place = mine ? getenv("REFUSE_LIBRARY") : NULL;
+  if (place != NULL && sscanf(place, "%lx %lx", &from, &to) == 2) {
+    library.from = (const char *)(info->dlpi_addr + from);
+    library.to = (const char *)(info->dlpi_addr + to);
+  }
   for (size_t i = 0; i < sizeof judged / sizeof *judged; ++i)
     mine |= strstr(info->dlpi_name, judged[i]) != NULL;
   for (int i = 0; mine && i < info->dlpi_phnum && n_range < RANGES; ++i) {

@@ -118,12 +118,16 @@ static const char *program(void) {
   return p == NULL ? "build/release/protis" : p;
 }
 
-/* Run a command of the shell in "dir" and keep what it printed. */
+/* Run a command of the shell in "dir" and keep what it printed. Where meshes
+ * are kept for all programs, by tools/run_tests, they are read once. */
 static int run_command(job *j, const char *dir, const char *command) {
+  static const char mesh[] =
+      "LD_PRELOAD=\"${LD_PRELOAD:+$LD_PRELOAD:}$PROTIS_MESH\"";
   char line[6 * PATH], path[PATH];
+  int kept = getenv("MESH_KEPT") != NULL && getenv("PROTIS_MESH") != NULL;
   snprintf(line, sizeof line,
-           "cd '%s' && %s > '%s/stdout.txt' 2> '%s/stderr.txt'", dir, command,
-           j->dir, j->dir);
+           "cd '%s' && %s %s > '%s/stdout.txt' 2> '%s/stderr.txt'", dir,
+           kept ? mesh : "", command, j->dir, j->dir);
   int code = system(line);
   snprintf(path, sizeof path, "%s/stderr.txt", j->dir);
   free(j->errors);

@@ -7,11 +7,10 @@
 #include <stdlib.h>
 
 void kept_mesh(const job *j) {
-  char path[200];
-  unsetenv("MESH_KEPT");
-  if (j == NULL) return;
-  snprintf(path, sizeof path, "%s/mesh.kept", j->dir);
-  setenv("MESH_KEPT", path, 1);
+  if (j == NULL)
+    unsetenv("MESH_KEPT");
+  else
+    setenv("MESH_KEPT", j->dir, 1);
 }
 
 void kept_mesh_preload(const char *others) {
