@@ -7,10 +7,11 @@
 #include <stdlib.h>
 
 void kept_mesh(const job *j) {
+  const char *all = getenv("PROTIS_MESHES"); /* of tools/run_tests */
   if (j == NULL)
     unsetenv("MESH_KEPT");
   else
-    setenv("MESH_KEPT", j->dir, 1);
+    setenv("MESH_KEPT", all != NULL ? all : j->dir, 1);
 }
 
 void kept_mesh_preload(const char *others) {

@@ -7,8 +7,9 @@
 
 #include "support/job.h"
 
-/* From here on the mesh is the one kept in the folder of this job, whose first
- * run keeps it; NULL: meshes are read again. */
+/* From here on the mesh is the one kept in the folder of this job, or of all
+ * tests (PROTIS_MESHES), where a first run keeps it; NULL: meshes are read
+ * again. */
 void kept_mesh(const job *j);
 /* In the process that becomes the program: load other libraries, "" or their
  * paths joined by colons, and that of the mesh if there is need. */

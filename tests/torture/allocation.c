@@ -147,10 +147,10 @@ static const struct {
   refusal how;
   long few;
   double share;
-} kinds[] = {{"memory, program, one request", {.own = 1}, 8, 0.15},
-             {"memory, program, from one on", {.own = 1, .always = 1}, 8, 0.15},
-             {"memory, libraries, one request", {.own = 0}, 4, 0.115},
-             {"memory, libraries, from one on", {.always = 1}, 4, 0.115}};
+} kinds[] = {{"memory, program, one request", {.own = 1}, 4, 0.15},
+             {"memory, program, from one on", {.own = 1, .always = 1}, 4, 0.15},
+             {"memory, libraries, one request", {.own = 0}, 2, 0.115},
+             {"memory, libraries, from one on", {.always = 1}, 2, 0.115}};
 
 START_TEST(requests_are_refused) {
   points t = {.kind = kinds[_i].kind};

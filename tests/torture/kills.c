@@ -113,7 +113,7 @@ static void kill_often(points *t, points *twice, make_job *make,
 
 START_TEST(killed_run_goes_on) {
   points t = {.kind = "killed runs"}, twice = {.kind = "killed restarts"};
-  long n = points_number(12, 0.0375);
+  long n = points_number(4, 0.0375);
   kill_often(&t, &twice, small_flat, "AUTO", 0.1, n);
   kill_often(&t, &twice, small_flat, "NEWTON", 10.0, n);
   kill_often(&t, &twice, small_solid, "SOR", 0.4, n);
@@ -200,7 +200,7 @@ static void interrupt_twice(points *t, make_job *make, const char *method) {
   job j = make(0.4, "*RESTART\n", method);
   traced usual = {.action = TRACE_COUNT};
   int made;
-  long n = points_number(2, 0.005);
+  long n = points_number(1, 0.005);
   kept_mesh(&whole);
   ck_assert_int_eq(traced_run(&whole, nothing, &usual), 0);
   for (long k = 0; k < n; ++k) {

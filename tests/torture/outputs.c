@@ -106,7 +106,7 @@ START_TEST(examples_without_outputs) {
   source *s = calloc(files.gl_pathc, sizeof *s);
   ck_assert_ptr_nonnull(s);
   for (size_t i = 0; i < files.gl_pathc; ++i) s[i].path = files.gl_pathv[i];
-  try_sources(&t, points_number(3, 0.02), (int)files.gl_pathc, s);
+  try_sources(&t, points_number(2, 0.02), (int)files.gl_pathc, s);
   free(s);
   globfree(&files);
 }
@@ -118,7 +118,7 @@ START_TEST(scenes_without_outputs) {
   static source s[SCENES];
   const int n = scenes_list(0, row);
   for (int i = 0; i < n; ++i) s[i].scene = row[i];
-  try_sources(&t, points_number(8, 0.05), n, s);
+  try_sources(&t, points_number(4, 0.05), n, s);
 }
 END_TEST
 
