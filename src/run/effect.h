@@ -44,7 +44,7 @@ typedef struct effect_ops {
   int (*due)(const struct run *r);
   /* r->step has a surface, a matrix, and a solver for its contact. */
   status (*begin_step)(struct run *r, void *own);
-  /* The initial displacements are r->old, posed in r->cp. */
+  /* The initial displacements are r->old, posed in r->problem.cp. */
   status (*initial)(struct run *r, void *own);
   /* Gaps, position of stick and limit of time t are set: what it changes. */
   status (*pose)(struct run *r, void *own, double t);

@@ -49,7 +49,7 @@ static int forced_corner(const run *r, int i) {
 /* Two contacts at one node take its normals for unilateral conditions. */
 static status check_corners(const run *r) {
   status st = OK;
-  for (int i = 0; i < r->n; ++i) {
+  for (int i = 0; i < r->nodes.n; ++i) {
     int id = forced_corner(r, i);
     if (id < 0) continue;
     message_add(r->m->log, P4012, &r->m->contacts[id].force.at,
@@ -63,38 +63,39 @@ done:
 
 status forms_new(run *r) {
   status st = OK;
-  forms_free(r->forms);
-  r->forms = NULL;
-  NEW(r->forms, 1);
+  forms_free(r->problem.forms);
+  r->problem.forms = NULL;
+  NEW(r->problem.forms, 1);
   if (!(r->m->effects & EFFECT_GIVEN)) goto done;
-  forms *f = r->forms;
+  forms *f = r->problem.forms;
   TRY(check_corners(r));
-  NEW(f->node, r->n);
-  for (int i = 0; i < r->n; ++i)
+  NEW(f->node, r->nodes.n);
+  for (int i = 0; i < r->nodes.n; ++i)
     if (force_of(r, i)->given) f->node[f->n++] = i;
   NEW(f->force, f->n);
 done:
   return st;
 }
 
-/* The unknown of a row of r->cp among those of all contact nodes. */
+/* The unknown of a row of r->problem.cp among those of all contact nodes. */
 static int unknown_of(const run *r, int row) {
-  int i = row / r->rows;
-  return r->msh->dim * (r->reach.in != NULL ? r->reach.in[i] : i) +
-         row % r->rows;
+  int i = row / r->nodes.rows;
+  return r->msh->dim * (r->nodes.reach.in != NULL ? r->nodes.reach.in[i] : i) +
+         row % r->nodes.rows;
 }
 
 double *run_rows(const run *r, int k, double *v) {
-  if (r->n_row == r->n_c) return v;
-  for (int i = 0; i < r->n_row; ++i) r->row[k][i] = v[unknown_of(r, i)];
-  return r->row[k];
+  if (r->nodes.n_row == r->nodes.n_c) return v;
+  for (int i = 0; i < r->nodes.n_row; ++i)
+    r->problem.row[k][i] = v[unknown_of(r, i)];
+  return r->problem.row[k];
 }
 
-/* The answer u, r of r->cp: other forces are zero. */
+/* The answer u, r of r->problem.cp: other forces are zero. */
 static void put_rows(const run *r, const double *u, const double *force) {
-  if (r->n_row == r->n_c) return;
-  memset(r->now.rc, 0, (size_t)r->n_c * sizeof *r->now.rc);
-  for (int i = 0; i < r->n_row; ++i) {
+  if (r->nodes.n_row == r->nodes.n_c) return;
+  memset(r->now.rc, 0, (size_t)r->nodes.n_c * sizeof *r->now.rc);
+  for (int i = 0; i < r->nodes.n_row; ++i) {
     r->now.uc[unknown_of(r, i)] = u[i];
     r->now.rc[unknown_of(r, i)] = force[i];
   }
@@ -104,12 +105,12 @@ static void put_rows(const run *r, const double *u, const double *force) {
 static void take_interior(const run *r) {
   const contact_surface *s = r->surface;
   int dim = r->msh->dim, next = 0;
-  if (r->n_row == r->n_c) return;
-  for (int i = 0; i < r->n; ++i) {
-    int is_in =
-        r->reach.in == NULL || (next < r->reach.n_in && r->reach.in[next] == i);
+  if (r->nodes.n_row == r->nodes.n_c) return;
+  for (int i = 0; i < r->nodes.n; ++i) {
+    int is_in = r->nodes.reach.in == NULL ||
+                (next < r->nodes.reach.n_in && r->nodes.reach.in[next] == i);
     next += is_in;
-    for (int a = is_in ? r->rows : 0; a < dim; ++a) {
+    for (int a = is_in ? r->nodes.rows : 0; a < dim; ++a) {
       double sum = 0.0;
       for (int c = 0; c < dim; ++c)
         sum += s->frame[dim * (dim * i + a) + c] *
@@ -122,7 +123,7 @@ static void take_interior(const run *r) {
 /* The given pressures at time t times the areas of the nodes. */
 static status set_forces(run *r, double t) {
   status st = OK;
-  forms *f = r->forms;
+  forms *f = r->problem.forms;
   const contact_surface *s = r->surface;
   for (int k = 0; k < f->n; ++k) {
     int i = f->node[k];
@@ -145,8 +146,8 @@ done:
 
 status forms_given(run *r, double t, double *given) {
   status st = OK;
-  const forms *f = r->forms;
-  for (int i = 0; i < r->n; ++i) given[i] = -1.0;
+  const forms *f = r->problem.forms;
+  for (int i = 0; i < r->nodes.n; ++i) given[i] = -1.0;
   TRY(set_forces(r, t));
   for (int k = 0; k < f->n; ++k) given[f->node[k]] = f->force[k];
 done:
@@ -157,7 +158,7 @@ done:
  * u, rc hold the start values. */
 static status take_given(run *r, double *u, double *rc, contact_problem *cp) {
   status st = OK;
-  forms *f = r->forms;
+  forms *f = r->problem.forms;
   contact_problem own = *cp;
   timer_enter(STAGE_GIVEN);
   TRY(set_forces(r, r->now.t));
@@ -171,16 +172,17 @@ done:
 /* The last equilibrium, from which the increment and its slip are counted:
  * start values may be others. Normals with a given force stand apart, at 0. */
 static void put_old(const run *r, double *u_old) {
-  const forms *f = r->forms;
-  for (int i = 0; i < r->n_row; ++i) u_old[i] = r->old.uc[unknown_of(r, i)];
-  for (int k = 0; k < f->n; ++k) u_old[r->rows * f->node[k]] = 0.0;
+  const forms *f = r->problem.forms;
+  for (int i = 0; i < r->nodes.n_row; ++i)
+    u_old[i] = r->old.uc[unknown_of(r, i)];
+  for (int k = 0; k < f->n; ++k) u_old[r->nodes.rows * f->node[k]] = 0.0;
 }
 
 /* *cp in the displacement of the increment; *u: start values of the unknown
  * before in, of that out. */
 static status take_velocity(run *r, contact_problem *cp, double **u) {
   status st = OK;
-  forms *f = r->forms;
+  forms *f = r->problem.forms;
   contact_problem own = *cp;
   timer_enter(STAGE_VELOCITY);
   if (f->velocity == NULL) TRY(velocity_form_new(cp, &f->velocity));
@@ -192,26 +194,27 @@ done:
 }
 
 static double residual_of(run *r, double *u, double *rc) {
-  return contact_residual(&r->cp, run_rows(r, 0, u), run_rows(r, 1, rc));
+  return contact_residual(&r->problem.cp, run_rows(r, 0, u),
+                          run_rows(r, 1, rc));
 }
 
 /* Start values: the last equilibrium, or the guess if it is nearer. */
 static void take_start(run *r) {
-  size_t bytes = (size_t)r->n_c * sizeof *r->now.uc;
+  size_t bytes = (size_t)r->nodes.n_c * sizeof *r->now.uc;
   const double *u = r->old.uc, *rc = r->old.rc;
-  if (r->guess_u != NULL && !r->beside &&
-      residual_of(r, r->guess_u, r->guess_r) <
+  if (r->solving.guess_u != NULL && !r->course.beside &&
+      residual_of(r, r->solving.guess_u, r->solving.guess_r) <
           residual_of(r, r->old.uc, r->old.rc)) {
-    u = r->guess_u;
-    rc = r->guess_r;
+    u = r->solving.guess_u;
+    rc = r->solving.guess_r;
   }
   memcpy(r->now.uc, u, bytes);
   memcpy(r->now.rc, rc, bytes);
 }
 
 static int is_open(const run *r, const double *uc) {
-  for (int i = 0; i < r->n; ++i)
-    if (!(r->gap[i] > uc[r->msh->dim * i])) return 0;
+  for (int i = 0; i < r->nodes.n; ++i)
+    if (!(r->problem.gap[i] > uc[r->msh->dim * i])) return 0;
   return 1;
 }
 
@@ -225,49 +228,53 @@ static status drop_reactions(const run *r, double *residual, double *u,
                              double *rc) {
   status st = OK;
   double *q = NULL, *zero = NULL;
-  if (r->beside || r->forms->n > 0 || condensed_floating(r->c)) goto done;
-  NEW(q, r->n_row);
-  NEW(zero, r->n_row);
-  TRY(condensed_untouched(r->c, r->cp.f, q));
-  double left = contact_residual(&r->cp, q, zero);
+  if (r->course.beside || r->problem.forms->n > 0 || condensed_floating(r->c))
+    goto done;
+  NEW(q, r->nodes.n_row);
+  NEW(zero, r->nodes.n_row);
+  TRY(condensed_untouched(r->c, r->problem.cp.f, q));
+  double left = contact_residual(&r->problem.cp, q, zero);
   if (!(left <= *residual)) goto done;
   *residual = left;
-  memcpy(u, q, (size_t)r->n_row * sizeof *u);
-  memset(rc, 0, (size_t)r->n_row * sizeof *rc);
+  memcpy(u, q, (size_t)r->nodes.n_row * sizeof *u);
+  memset(rc, 0, (size_t)r->nodes.n_row * sizeof *rc);
 done:
   memory_free(q);
   memory_free(zero);
   return st;
 }
 
-/* r->cp solved in the form asked for, from r->old into r->now. */
+/* r->problem.cp solved in the form asked for, from r->old into r->now. */
 static status forms_solve(run *r) {
   status st = OK;
   const solver_listener listener = {r->sink->iteration, r->sink->ctx};
   const solver_listener *told =
-      listener.step == NULL || r->beside ? NULL : &listener;
-  int given = r->forms->n > 0, in_du = r->step->form == FORM_VELOCITY;
-  contact_problem whole = r->cp, cp;
+      listener.step == NULL || r->course.beside ? NULL : &listener;
+  int given = r->problem.forms->n > 0, in_du = r->step->form == FORM_VELOCITY;
+  contact_problem whole = r->problem.cp, cp;
   take_start(r);
   double *own_u = run_rows(r, 0, r->now.uc), *u = own_u;
   double *rc = run_rows(r, 1, r->now.rc);
-  double tol = r->tol;
-  if (is_open(r, r->old.uc) && largest_entry((size_t)r->n_c, r->old.rc) == 0.0)
+  double tol = r->solving.tol;
+  if (is_open(r, r->old.uc) &&
+      largest_entry((size_t)r->nodes.n_c, r->old.rc) == 0.0)
     TRY(drop_reactions(r, &tol, u, rc));
   if (given) TRY(take_given(r, u, rc, &whole));
   cp = whole;
   if (in_du) TRY(take_velocity(r, &cp, &u));
   timer_enter(STAGE_CONTACT);
-  contact_solver_tolerance(r->solver, r->tol);
-  st = contact_solve(r->solver, &cp, told, u, rc, &r->report);
+  contact_solver_tolerance(r->solver, r->solving.tol);
+  st = contact_solve(r->solver, &cp, told, u, rc, &r->solving.report);
   timer_leave(STAGE_CONTACT);
   TRY(st);
-  r->cp.bodies = contact_solver_bodies(r->solver, &cp);
-  if (in_du) velocity_form_apply(r->forms->velocity, &whole, own_u);
-  if (given) given_form_apply(r->forms->given, &r->cp, own_u, rc);
+  r->problem.cp.bodies = contact_solver_bodies(r->solver, &cp);
+  if (in_du) velocity_form_apply(r->problem.forms->velocity, &whole, own_u);
+  if (given)
+    given_form_apply(r->problem.forms->given, &r->problem.cp, own_u, rc);
   put_rows(r, own_u, rc);
-  if (is_open(r, r->now.uc) && largest_entry((size_t)r->n_c, r->now.rc) > 0.0) {
-    TRY(drop_reactions(r, &r->report.residual, own_u, rc));
+  if (is_open(r, r->now.uc) &&
+      largest_entry((size_t)r->nodes.n_c, r->now.rc) > 0.0) {
+    TRY(drop_reactions(r, &r->solving.report.residual, own_u, rc));
     put_rows(r, own_u, rc);
   }
 done:
@@ -282,14 +289,15 @@ static double held_value(const run *r, int i, int a) {
   int dim = s->dim;
   double u = 0.0;
   for (int c = 0; c < dim; ++c)
-    u += s->frame[dim * dim * i + dim * a + c] * r->ud[dim * s->node_id[i] + c];
+    u += s->frame[dim * dim * i + dim * a + c] *
+         r->loads.ud[dim * s->node_id[i] + c];
   return u;
 }
 
 /* 1 if the sliding limit of a node can be above zero. */
 static int can_stick(const run *r, int i) {
-  const sparse_rows *B = &r->limit.B;
-  if (r->limit.g0[i] > 0.0) return 1;
+  const sparse_rows *B = &r->friction.limit.B;
+  if (r->friction.limit.g0[i] > 0.0) return 1;
   for (int e = B->start == NULL ? 0 : B->start[i];
        B->start != NULL && e < B->start[i + 1]; ++e)
     if (B->val[e] > 0.0) return 1;
@@ -347,11 +355,11 @@ done:
 static status set_stick_position(run *r) {
   status st = OK;
   int dim = r->msh->dim;
-  int fresh = r->step->kind == STEP_STATIC && !r->relaxing;
+  int fresh = r->step->kind == STEP_STATIC && !r->course.relaxing;
   int history = (r->m->effects & EFFECT_HISTORY) != 0;
-  if (r->ut0 == NULL) return OK;
+  if (r->problem.ut0 == NULL) return OK;
   if (history) timer_enter(STAGE_HISTORY);
-  for (int i = 0; i < r->n; ++i)
+  for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 1; a < dim; ++a) {
       int k = dim * i + a;
       double from = fresh ? 0.0 : r->old.uc[k] - r->old.motion[k];
@@ -361,7 +369,7 @@ static status set_stick_position(run *r) {
         TRY(check_held(r, i, a, stick, to));
         stick = to;
       }
-      r->ut0[(dim - 1) * i + a - 1] = stick;
+      r->problem.ut0[(dim - 1) * i + a - 1] = stick;
     }
 done:
   if (history) timer_leave(STAGE_HISTORY);
@@ -381,31 +389,35 @@ static int has_side_gap(const contact_surface *s) {
 }
 
 static void set_problem(run *r) {
-  int friction = (r->m->effects & EFFECT_FRICTION) != 0, all = r->rows > 1;
-  r->cp = (contact_problem){
-      .dim = r->rows,
-      .n = reach_count(&r->reach, r->n),
-      .m = r->n_row,
+  int friction = (r->m->effects & EFFECT_FRICTION) != 0,
+      all = r->nodes.rows > 1;
+  r->problem.cp = (contact_problem){
+      .dim = r->nodes.rows,
+      .n = reach_count(&r->nodes.reach, r->nodes.n),
+      .m = r->nodes.n_row,
       .A = condensed_matrix(r->c),
-      .f = r->f,
-      .f_load = largest_entry(r->n_dof, r->ud) > 0.0 ? r->f_load : NULL,
-      .gap = r->gap,
-      .ut0 = r->ut0,
-      .g0 = friction ? r->limit.g0 : NULL,
+      .f = r->problem.f,
+      .f_load =
+          largest_entry(r->n_dof, r->loads.ud) > 0.0 ? r->problem.f_load : NULL,
+      .gap = r->problem.gap,
+      .ut0 = r->problem.ut0,
+      .g0 = friction ? r->friction.limit.g0 : NULL,
       .B = friction ? limit_matrix(r) : NULL,
-      .side_gap = all && has_side_gap(r->surface) ? r->side_gap : NULL,
+      .side_gap = all && has_side_gap(r->surface) ? r->problem.side_gap : NULL,
       .held = all && has_held(r->surface) ? r->surface->held : NULL,
       .floating = condensed_floating(r->c),
-      .load = r->step_load};
-  if (r->reach.in != NULL) reach_cut(&r->reach, &r->part, &r->cp);
-  r->cp.bodies = contact_solver_bodies(r->solver, &r->cp);
+      .load = r->loads.largest};
+  if (r->nodes.reach.in != NULL)
+    reach_cut(&r->nodes.reach, &r->problem.part, &r->problem.cp);
+  r->problem.cp.bodies = contact_solver_bodies(r->solver, &r->problem.cp);
 }
 
 static status load_at(run *r, double t) {
   status st = OK;
   timer_enter(STAGE_LOAD);
   st = load_forces(r->m, r->msh, r->step, t, r->now.F);
-  if (st == OK) st = load_prescribed(r->m, r->msh, r->step, t, r->start, r->ud);
+  if (st == OK)
+    st = load_prescribed(r->m, r->msh, r->step, t, r->loads.start, r->loads.ud);
   timer_leave(STAGE_LOAD);
   return st;
 }
@@ -413,9 +425,11 @@ static status load_at(run *r, double t) {
 static status pose_contact(run *r, double t) {
   status st = OK;
   timer_enter(STAGE_SURFACE);
-  st = surface_gap(r->surface, &r->input, t, r->gap, r->side_gap);
-  memcpy(r->now.motion, r->old.motion, (size_t)r->n_c * sizeof *r->now.motion);
-  surface_drift(r->surface, &r->input, r->old.t, t, r->now.motion);
+  st = surface_gap(r->surface, &r->faces.input, t, r->problem.gap,
+                   r->problem.side_gap);
+  memcpy(r->now.motion, r->old.motion,
+         (size_t)r->nodes.n_c * sizeof *r->now.motion);
+  surface_drift(r->surface, &r->faces.input, r->old.t, t, r->now.motion);
   timer_leave(STAGE_SURFACE);
   TRY(st);
   TRY(limit_update(r, t));
@@ -429,11 +443,11 @@ done:
 /* Condensed load and contact problem under the forces F. */
 static status pose(run *r, const double *F) {
   status st = OK;
-  r->report = (solver_report){.outcome = CONVERGED, .solver = "linear"};
-  if (r->n > 0 && largest_entry(r->n_dof, r->ud) > 0.0)
-    TRY(condense_load(r->c, F, NULL, r->f_load));
-  TRY(condense_load(r->c, F, r->ud, r->f));
-  if (r->n > 0) TRY(pose_contact(r, r->now.t));
+  r->solving.report = (solver_report){.outcome = CONVERGED, .solver = "linear"};
+  if (r->nodes.n > 0 && largest_entry(r->n_dof, r->loads.ud) > 0.0)
+    TRY(condense_load(r->c, F, NULL, r->problem.f_load));
+  TRY(condense_load(r->c, F, r->loads.ud, r->problem.f));
+  if (r->nodes.n > 0) TRY(pose_contact(r, r->now.t));
 done:
   return st;
 }
@@ -441,7 +455,7 @@ done:
 double increment_free_load(const run *r, const double *F) {
   double most = 0.0;
   for (size_t i = 0; i < r->n_dof; ++i)
-    if (!r->fixed[i]) most = fmax(most, fabs(F[i]));
+    if (!r->body.fixed[i]) most = fmax(most, fabs(F[i]));
   return most;
 }
 
@@ -449,7 +463,8 @@ status increment_load(run *r, double t) {
   status st = OK;
   r->now.t = t;
   TRY(load_at(r, t));
-  if (r->temperature0 != NULL && r->eigen.n > 0) TRY(strains_heat(r));
+  if (r->strains.temperature0 != NULL && r->strains.eigen.n > 0)
+    TRY(strains_heat(r));
 done:
   return st;
 }
@@ -475,10 +490,10 @@ done:
 static status solve_with_nodes(run *r, const double *F, int *iterations) {
   status st = OK;
   TRY(pose(r, F));
-  while (r->n > 0) {
+  while (r->nodes.n > 0) {
     TRY(forms_solve(r));
-    *iterations += r->report.iterations;
-    r->report.iterations = *iterations;
+    *iterations += r->solving.report.iterations;
+    r->solving.report.iterations = *iterations;
     int again = limit_follow_zone(r);
     if (!again) TRY(effects_found(r, &again));
     if (!again) break;

@@ -51,7 +51,7 @@ static jump largest_change(const run *r, int contact_id,
                            const friction_rule *before, double t0,
                            const friction_rule *now, double t1) {
   jump j = {.node_id = -1, .t = t1};
-  for (int i = 0; i < r->n; ++i) {
+  for (int i = 0; i < r->nodes.n; ++i) {
     if (r->surface->contact_id[i] != contact_id) continue;
     double a = value_at(r, before, i, t0), b = value_at(r, now, i, t1);
     if (j.node_id >= 0 && !(fabs(b - a) > fabs(j.to - j.from))) continue;
@@ -85,9 +85,9 @@ static jump narrow(const run *r, const friction_rule *rule, jump j, double t0) {
 }
 
 static void tell(run *r, const friction_rule *rule, int contact_id, jump j) {
-  size_t used = strlen(r->note);
+  size_t used = strlen(r->course.note);
   if (j.node_id < 0) return;
-  snprintf(r->note + used, sizeof r->note - used,
+  snprintf(r->course.note + used, sizeof r->course.note - used,
            "  %s of contact %s jumps at t = %.9g from %.6g to %.6g, node %zu\n",
            rule->law->value_name, r->m->contacts[contact_id].name, j.t, j.from,
            j.to, r->surface->node_no[j.node_id]);
@@ -95,8 +95,8 @@ static void tell(run *r, const friction_rule *rule, int contact_id, jump j) {
 
 static void tell_law(run *r, const friction_rule *before,
                      const friction_rule *now, int contact_id) {
-  size_t used = strlen(r->note);
-  snprintf(r->note + used, sizeof r->note - used,
+  size_t used = strlen(r->course.note);
+  snprintf(r->course.note + used, sizeof r->course.note - used,
            "  friction of contact %s changes at t = %.9g from %s to %s\n",
            r->m->contacts[contact_id].name, r->old.t,
            before->law == NULL ? "NONE" : before->law->name,
@@ -135,7 +135,7 @@ static void note_jump(run *r, int contact_id, double t) {
 }
 
 static void note_jumps(run *r, double t) {
-  r->note[0] = '\0';
+  r->course.note[0] = '\0';
   for (int i = 0; i < r->m->n_contact; ++i) {
     note_change(r, i);
     note_jump(r, i, t);
@@ -147,7 +147,7 @@ double limit_coefficient(const run *r, int contact_id, double t) {
   double largest = 0.0;
   if (!rule_has_friction(rule) || strcmp(rule->law->value_unit, "-") != 0)
     return 0.0;
-  for (int i = 0; i < r->n; ++i)
+  for (int i = 0; i < r->nodes.n; ++i)
     if (r->surface->contact_id[i] == contact_id)
       largest = fmax(largest, value_at(r, rule, i, t));
   return largest;
@@ -168,11 +168,11 @@ static int has_same_average(const friction_rule *a, const friction_rule *b) {
 
 static status make_average(run *r, int contact_id, const friction_rule *rule) {
   status st = OK;
-  friction_average *a = &r->average[contact_id];
+  friction_average *a = &r->friction.average[contact_id];
   if (has_same_average(a->rule, rule)) goto done;
   a->rule = NULL;
   sparse_free(&a->rows);
-  TRY(rule->law->average(&rule->card, r->surface, &r->input, contact_id,
+  TRY(rule->law->average(&rule->card, r->surface, &r->faces.input, contact_id,
                          &rule->at, r->m->log, &a->rows));
   a->rule = rule;
 done:
@@ -184,7 +184,7 @@ status limit_average(run *r) {
   int n = r->m->n_contact;
   if (!(r->m->effects & EFFECT_NONLOCAL)) return OK;
   timer_enter(STAGE_NONLOCAL);
-  if (r->average == NULL) NEW(r->average, n);
+  if (r->friction.average == NULL) NEW(r->friction.average, n);
   for (int i = 0; i < n; ++i) {
     const friction_rule *rule = friction_in_force(r->m, run_step_id(r), i);
     if (rule_has_average(rule)) TRY(make_average(r, i, rule));
@@ -196,16 +196,17 @@ done:
 
 double limit_average_entries(const run *r) {
   double n = 0.0;
-  for (int i = 0; r->average != NULL && i < r->m->n_contact; ++i)
-    if (r->average[i].rule != NULL) n += r->average[i].rows.start[r->n];
+  for (int i = 0; r->friction.average != NULL && i < r->m->n_contact; ++i)
+    if (r->friction.average[i].rule != NULL)
+      n += r->friction.average[i].rows.start[r->nodes.n];
   return n;
 }
 
 static void free_averages(run *r) {
-  for (int i = 0; r->average != NULL && i < r->m->n_contact; ++i)
-    sparse_free(&r->average[i].rows);
-  memory_free(r->average);
-  r->average = NULL;
+  for (int i = 0; r->friction.average != NULL && i < r->m->n_contact; ++i)
+    sparse_free(&r->friction.average[i].rows);
+  memory_free(r->friction.average);
+  r->friction.average = NULL;
 }
 
 /* ---- the zone ---------------------------------------------------------- */
@@ -227,8 +228,8 @@ static void zone_free(friction_zone *z) {
 }
 
 static void zone_apply(run *r) {
-  const sparse_rows *B = &r->limit.B;
-  const friction_zone *z = r->zone;
+  const sparse_rows *B = &r->friction.limit.B;
+  const friction_zone *z = r->friction.zone;
   for (int i = 0; i < B->n; ++i)
     for (int e = B->start[i]; e < B->start[i + 1]; ++e)
       z->B.val[e] = z->off[i] ? 0.0 : B->val[e];
@@ -236,13 +237,13 @@ static void zone_apply(run *r) {
 
 static status zone_fit(run *r) {
   status st = OK;
-  const sparse_rows *B = &r->limit.B;
-  if (r->zone == NULL) {
-    NEW(r->zone, 1);
-    NEW(r->zone->off, r->n);
-    NEW(r->zone->returned, r->n);
+  const sparse_rows *B = &r->friction.limit.B;
+  if (r->friction.zone == NULL) {
+    NEW(r->friction.zone, 1);
+    NEW(r->friction.zone->off, r->nodes.n);
+    NEW(r->friction.zone->returned, r->nodes.n);
   }
-  friction_zone *z = r->zone;
+  friction_zone *z = r->friction.zone;
   if (z->B.val == NULL || z->room < B->start[B->n]) {
     memory_free(z->B.val);
     NEW(z->B.val, B->start[B->n]);
@@ -256,17 +257,17 @@ done:
 static status zone_start(run *r) {
   status st = OK;
   int dim = r->msh->dim, touched = 0;
-  if (r->limit.in_zone == NULL) {
-    zone_free(r->zone);
-    r->zone = NULL;
+  if (r->friction.limit.in_zone == NULL) {
+    zone_free(r->friction.zone);
+    r->friction.zone = NULL;
     goto done;
   }
   TRY(zone_fit(r));
-  for (int i = 0; i < r->n; ++i) touched |= r->old.rc[dim * i] < 0.0;
-  for (int i = 0; i < r->n; ++i) {
+  for (int i = 0; i < r->nodes.n; ++i) touched |= r->old.rc[dim * i] < 0.0;
+  for (int i = 0; i < r->nodes.n; ++i) {
     int open = !(r->old.rc[dim * i] < 0.0);
-    r->zone->off[i] = r->limit.in_zone[i] && touched && open;
-    r->zone->returned[i] = 0;
+    r->friction.zone->off[i] = r->friction.limit.in_zone[i] && touched && open;
+    r->friction.zone->returned[i] = 0;
   }
   zone_apply(r);
 done:
@@ -274,25 +275,26 @@ done:
 }
 
 const sparse_rows *limit_matrix(const run *r) {
-  if (r->limit.B.start == NULL) return NULL;
-  return r->zone != NULL ? &r->zone->B : &r->limit.B;
+  if (r->friction.limit.B.start == NULL) return NULL;
+  return r->friction.zone != NULL ? &r->friction.zone->B : &r->friction.limit.B;
 }
 
 /* 1 if a node does not touch; one with a given force touches by that. */
 static int is_open(const run *r, int i) {
   const contact *c = &r->m->contacts[r->surface->contact_id[i]];
   if (c->force.given) return !(r->now.rc[r->msh->dim * i] < 0.0);
-  return r->contact[i] == CONTACT_OPEN;
+  return r->result.contact[i] == CONTACT_OPEN;
 }
 
 int limit_follow_zone(run *r) {
-  friction_zone *z = r->zone;
+  friction_zone *z = r->friction.zone;
   int changes = 0;
-  if (z == NULL || r->report.outcome <= 0) return 0;
-  contact_classify(&r->cp, r->now.uc, r->now.rc, r->contact);
-  for (int i = 0; i < r->n; ++i) {
+  if (z == NULL || r->solving.report.outcome <= 0) return 0;
+  contact_classify(&r->problem.cp, r->now.uc, r->now.rc, r->result.contact);
+  for (int i = 0; i < r->nodes.n; ++i) {
     int open = is_open(r, i);
-    if (!r->limit.in_zone[i] || open == z->off[i] || (!open && z->returned[i]))
+    if (!r->friction.limit.in_zone[i] || open == z->off[i] ||
+        (!open && z->returned[i]))
       continue;
     if (!open) z->returned[i] = 1;
     z->off[i] = (unsigned char)open;
@@ -310,11 +312,12 @@ static status add_law(run *r, int contact_id, double t, int *node) {
   const friction_rule *rule = rule_of(r, contact_id);
   int n = 0;
   if (rule->law == NULL) goto done;
-  for (int i = 0; i < r->n; ++i)
+  for (int i = 0; i < r->nodes.n; ++i)
     if (r->surface->contact_id[i] == contact_id) node[n++] = i;
   friction_card of = rule->card;
-  if (rule_has_average(rule)) of.average = &r->average[contact_id].rows;
-  st = rule->law->limit(&of, r->surface, n, node, t, &r->limit);
+  if (rule_has_average(rule))
+    of.average = &r->friction.average[contact_id].rows;
+  st = rule->law->limit(&of, r->surface, n, node, t, &r->friction.limit);
   if (st == ERR_DECK) {
     char why[256];
     snprintf(why, sizeof why, "%s", status_message());
@@ -331,14 +334,14 @@ status limit_update(run *r, double t) {
   int *node = NULL;
   if (!(r->m->effects & EFFECT_FRICTION)) return OK;
   note_jumps(r, t);
-  if (r->limit_known) return zone_start(r);
+  if (r->friction.known) return zone_start(r);
   timer_enter(STAGE_LIMIT);
-  friction_limit_free(&r->limit);
-  TRY(friction_limit_new(r->n, &r->limit));
-  NEW(node, r->n);
+  friction_limit_free(&r->friction.limit);
+  TRY(friction_limit_new(r->nodes.n, &r->friction.limit));
+  NEW(node, r->nodes.n);
   for (int i = 0; i < r->m->n_contact; ++i) TRY(add_law(r, i, t, node));
-  r->limit_known = !limit_varies(r);
-  if (!r->limit_known) known_rate_forget(&r->rate);
+  r->friction.known = !limit_varies(r);
+  if (!r->friction.known) known_rate_forget(&r->solving.rate);
   TRY(zone_start(r));
 done:
   memory_free(node);
@@ -347,9 +350,9 @@ done:
 }
 
 void limit_free_copy(run *r) {
-  friction_limit_free(&r->limit);
-  zone_free(r->zone);
-  r->zone = NULL;
+  friction_limit_free(&r->friction.limit);
+  zone_free(r->friction.zone);
+  r->friction.zone = NULL;
 }
 
 void limit_free(run *r) {

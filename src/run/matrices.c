@@ -17,8 +17,8 @@ void matrices_free(matrices *m) {
 }
 
 void run_forget_estimates(run *r) {
-  known_rate_forget(&r->rate);
-  solution_set_free(&r->solutions);
+  known_rate_forget(&r->solving.rate);
+  solution_set_free(&r->errors.solutions);
 }
 
 static status new_solver(const run *r, matrices *m) {
@@ -51,51 +51,54 @@ done:
 
 status run_renew_elastic(run *r) {
   status st = OK;
-  r->stale = 0;
+  r->body.stale = 0;
   r->c = NULL;
-  space_recovery_free(r->recovery);
-  r->recovery = NULL;
+  space_recovery_free(r->errors.recovery);
+  r->errors.recovery = NULL;
   matrices_free(&r->elastic);
-  TRY(stiffness_assemble(&r->d, &r->elastic.k));
-  TRY(condense(r->elastic.k, &r->d, &r->elastic.c));
+  TRY(stiffness_assemble(&r->body.d, &r->elastic.k));
+  TRY(condense(r->elastic.k, &r->body.d, &r->elastic.c));
 done:
   return st;
 }
 
 status run_use(run *r, matrices *m) {
   status st = OK;
-  if (m == &r->elastic && r->stale) TRY(run_renew_elastic(r));
+  if (m == &r->elastic && r->body.stale) TRY(run_renew_elastic(r));
   if (m->solver == NULL) TRY(new_solver(r, m));
-  int read = r->known_key != RUN_NO_KEY;
-  if (read ? r->known_key != m->key : r->c != m->c) run_forget_estimates(r);
-  if (r->c != m->c && r->forms != NULL) TRY(forms_new(r));
+  int read = r->solving.known_key != RUN_NO_KEY;
+  if (read ? r->solving.known_key != m->key : r->c != m->c)
+    run_forget_estimates(r);
+  if (r->c != m->c && r->problem.forms != NULL) TRY(forms_new(r));
   r->c = m->c;
   r->solver = m->solver;
-  r->known_key = RUN_NO_KEY;
+  r->solving.known_key = RUN_NO_KEY;
 done:
   return st;
 }
 
 void run_take_nodes(run *r) {
-  r->d.in = r->reach.in;
-  r->d.n_in = r->reach.n_in;
-  r->n_row = r->rows * reach_count(&r->reach, r->n);
+  r->body.d.in = r->nodes.reach.in;
+  r->body.d.n_in = r->nodes.reach.n_in;
+  r->nodes.n_row = r->nodes.rows * reach_count(&r->nodes.reach, r->nodes.n);
 }
 
 status run_room_for_part(run *r) {
   status st = OK;
-  for (int k = 0; k < 2 && r->n_row < r->n_c && r->row[k] == NULL; ++k)
-    NEW(r->row[k], r->rows * r->n);
-  if (r->reach.in != NULL && r->part.gap == NULL)
-    TRY(reach_part_new(r->n, r->rows, &r->part));
+  for (int k = 0;
+       k < 2 && r->nodes.n_row < r->nodes.n_c && r->problem.row[k] == NULL; ++k)
+    NEW(r->problem.row[k], r->nodes.rows * r->nodes.n);
+  if (r->nodes.reach.in != NULL && r->problem.part.gap == NULL)
+    TRY(reach_part_new(r->nodes.n, r->nodes.rows, &r->problem.part));
 done:
   return st;
 }
 
 int run_misses_nodes(const run *r) {
-  if (r->reach.in == NULL) return 0;
-  return r->report.outcome <= 0 ||
-         reach_misses(&r->reach, r->n, r->gap, r->now.uc, r->msh->dim);
+  if (r->nodes.reach.in == NULL) return 0;
+  return r->solving.report.outcome <= 0 ||
+         reach_misses(&r->nodes.reach, r->nodes.n, r->problem.gap, r->now.uc,
+                      r->msh->dim);
 }
 
 status run_renew_nodes(run *r) {
@@ -112,8 +115,8 @@ done:
 
 status run_add_nodes(run *r) {
   status st = OK;
-  TRY(reach_extend(&r->reach, r->n, r->gap, r->now.uc, r->msh->dim,
-                   r->report.outcome <= 0));
+  TRY(reach_extend(&r->nodes.reach, r->nodes.n, r->problem.gap, r->now.uc,
+                   r->msh->dim, r->solving.report.outcome <= 0));
   TRY(run_renew_nodes(r));
 done:
   return st;

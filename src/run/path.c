@@ -44,7 +44,8 @@ struct finer_path {
 static status waypoint_new(const run *r, waypoint *w) {
   status st = OK;
   TRY(start_point_new(r, &w->start));
-  if (r->visco != NULL) TRY(flow_state_new(&r->visco->x, &w->flow));
+  if (r->strains.visco != NULL)
+    TRY(flow_state_new(&r->strains.visco->x, &w->flow));
 done:
   return st;
 }
@@ -55,8 +56,8 @@ static void waypoint_free(waypoint *w) {
 }
 
 static void waypoint_copy(const run *r, const equilibrium *e, waypoint *w) {
-  if (e == &r->old && r->visco != NULL)
-    flow_state_copy(&r->visco->x, &r->visco->old, &w->flow);
+  if (e == &r->old && r->strains.visco != NULL)
+    flow_state_copy(&r->strains.visco->x, &r->strains.visco->old, &w->flow);
   start_point_copy(r, e, &w->start);
 }
 
@@ -69,11 +70,11 @@ static status path_new(const run *r, finer_path **out) {
   TRY(waypoint_new(r, &p->at));
   TRY(waypoint_new(r, &p->middle));
   TRY(waypoint_new(r, &p->end));
-  NEW(p->d, r->n_c);
-  NEW(p->Ad, r->n_c);
-  if (r->visco != NULL) {
+  NEW(p->d, r->nodes.n_c);
+  NEW(p->Ad, r->nodes.n_c);
+  if (r->strains.visco != NULL) {
     NEW(p->u, r->n_dof);
-    NEW(p->e0, visco_at(r, r->eigen.n));
+    NEW(p->e0, visco_at(r, r->strains.eigen.n));
   }
   waypoint_copy(r, &r->old, &p->at);
 done:
@@ -109,8 +110,8 @@ done:
 
 /* Only slip in increments and inelastic strains remember their path. */
 int path_exists(const run *r) {
-  int kind = r->step->kind, slips = r->n > 0 && r->ut0 != NULL;
-  if (kind == STEP_VISCO) return slips || r->visco != NULL;
+  int kind = r->step->kind, slips = r->nodes.n > 0 && r->problem.ut0 != NULL;
+  if (kind == STEP_VISCO) return slips || r->strains.visco != NULL;
   return slips && kind == STEP_QUASISTATIC;
 }
 
@@ -120,13 +121,14 @@ static status try_halves(run *r, finer_path *p, double t) {
   p->measured = 0;
   if (p->lost) return OK;
   TRY(half(r, &p->at, 0.5 * (p->at.start.t + t), &p->middle));
-  p->lost = r->report.outcome <= 0;
+  p->lost = r->solving.report.outcome <= 0;
   if (p->lost) return OK;
   TRY(half(r, &p->middle, t, &p->end));
-  p->lost = r->report.outcome <= 0;
+  p->lost = r->solving.report.outcome <= 0;
   if (p->lost || p->u == NULL) return OK;
   memcpy(p->u, r->now.u, r->n_dof * sizeof *p->u);
-  memcpy(p->e0, r->eigen.e0, visco_at(r, r->eigen.n) * sizeof *p->e0);
+  memcpy(p->e0, r->strains.eigen.e0,
+         visco_at(r, r->strains.eigen.n) * sizeof *p->e0);
 done:
   return st;
 }
@@ -136,16 +138,17 @@ status path_try(run *r, double t) {
   double cpu = timer_cpu();
   if (!r->step->time_error || !path_exists(r)) return OK;
   timer_enter_whole(STAGE_TIME_ERROR);
-  r->beside = 1;
-  if (r->path != NULL && (r->path->at.start.t != r->old.t ||
-                          r->path->flows != (r->step->kind == STEP_VISCO)))
+  r->course.beside = 1;
+  if (r->paths.path != NULL &&
+      (r->paths.path->at.start.t != r->old.t ||
+       r->paths.path->flows != (r->step->kind == STEP_VISCO)))
     path_restart(r);
-  if (r->path == NULL) TRY(path_new(r, &r->path));
-  TRY(try_halves(r, r->path, t));
+  if (r->paths.path == NULL) TRY(path_new(r, &r->paths.path));
+  TRY(try_halves(r, r->paths.path, t));
 done:
-  r->beside = 0;
+  r->course.beside = 0;
   timer_leave(STAGE_TIME_ERROR);
-  r->time_error.cpu += timer_cpu() - cpu;
+  r->errors.time_error.cpu += timer_cpu() - cpu;
   return st;
 }
 
@@ -153,16 +156,17 @@ done:
  * sqrt(J). */
 static double condensed_difference(const run *r, finer_path *p) {
   double square = 0.0;
-  for (int k = 0; k < r->n_c; ++k) p->d[k] = r->now.uc[k] - p->end.start.uc[k];
-  contact_product(r->n_c, condensed_matrix(r->c), p->d, p->Ad);
-  for (int k = 0; k < r->n_c; ++k) square += p->d[k] * p->Ad[k];
+  for (int k = 0; k < r->nodes.n_c; ++k)
+    p->d[k] = r->now.uc[k] - p->end.start.uc[k];
+  contact_product(r->nodes.n_c, condensed_matrix(r->c), p->d, p->Ad);
+  for (int k = 0; k < r->nodes.n_c; ++k) square += p->d[k] * p->Ad[k];
   return sqrt(fmax(square, 0.0));
 }
 
 /* sqrt(2 E) of displacements and strains without stress (NULL: none). */
 static double field_norm(const run *r, const double *u, const double *e0) {
-  domain d = r->d;
-  eigenstrain x = r->eigen;
+  domain d = r->body.d;
+  eigenstrain x = r->strains.eigen;
   x.e0 = e0;
   d.eigen = e0 != NULL ? &x : NULL;
   return sqrt(2.0 * fmax(domain_strain_energy(&d, u), 0.0));
@@ -174,8 +178,8 @@ static double field_difference(const run *r, finer_path *p) {
   double stress = sqrt(2.0 * fmax(r->now.energy.strain, 0.0));
   double strain = field_norm(r, r->now.u, NULL);
   for (size_t k = 0; k < r->n_dof; ++k) p->u[k] -= r->now.u[k];
-  for (size_t k = 0; k < visco_at(r, r->eigen.n); ++k)
-    p->e0[k] -= r->eigen.e0[k];
+  for (size_t k = 0; k < visco_at(r, r->strains.eigen.n); ++k)
+    p->e0[k] -= r->strains.eigen.e0[k];
   double of_stress = field_norm(r, p->u, p->e0);
   double of_strain = field_norm(r, p->u, NULL);
   return strain > 0.0 ? fmax(of_stress, of_strain * (stress / strain))
@@ -185,10 +189,11 @@ static double field_difference(const run *r, finer_path *p) {
 /* From the difference to half the increments to the error. */
 static double extrapolation(const run *r) {
   const scheme *of = r->step->integrator;
-  if (r->step->kind != STEP_VISCO || r->visco == NULL) return EXTRAPOLATION;
+  if (r->step->kind != STEP_VISCO || r->strains.visco == NULL)
+    return EXTRAPOLATION;
   int order = of->has_theta && r->step->theta == 0.5 ? 2 : of->order;
   if (order < 2) return 2.0;
-  return r->ut0 != NULL ? EXTRAPOLATION : 4.0 / 3.0;
+  return r->problem.ut0 != NULL ? EXTRAPOLATION : 4.0 / 3.0;
 }
 
 /* The attempt is accepted: the next one starts at its end. */
@@ -204,25 +209,25 @@ static const char *why_no_path(const run *r) {
                                      : "no friction, no path";
 }
 
-double path_total(const run *r) { return r->path_before + r->path_error; }
+double path_total(const run *r) { return r->paths.before + r->paths.now; }
 
 double path_measure(run *r) {
-  finer_path *p = r->path;
+  finer_path *p = r->paths.path;
   if (p == NULL || p->lost) return HUGE_VAL;
   if (!p->measured)
     p->error = extrapolation(r) * (p->u != NULL ? field_difference(r, p)
                                                 : condensed_difference(r, p));
   p->measured = 1;
-  return r->path_before + p->error;
+  return r->paths.before + p->error;
 }
 
 void path_keep_on(run *r) {
-  if (r->path != NULL) r->path->lost = 0;
+  if (r->paths.path != NULL) r->paths.path->lost = 0;
 }
 
 void path_compare(run *r) {
-  error_share *e = &r->time_error;
-  finer_path *p = r->path;
+  error_share *e = &r->errors.time_error;
+  finer_path *p = r->paths.path;
   e->asked = r->step->time_error;
   e->relative = 0.0;
   e->why = NULL;
@@ -242,44 +247,44 @@ void path_compare(run *r) {
   }
   double energy = r->now.energy.strain;
   double norm = path_measure(r);
-  r->path_error = p->error;
+  r->paths.now = p->error;
   if (norm > 0.0) e->relative = norm / sqrt(norm * norm + 2.0 * energy);
-  if (e->relative <= STRAIGHT * r->tol)
+  if (e->relative <= STRAIGHT * r->solving.tol)
     e->why = "the path is straight: half the increments give the same";
   advance(p);
 }
 
 static status keep_waypoint(const run *r, waypoint *w, archive *a) {
   status st = OK;
-  size_t m = (size_t)r->n_c;
+  size_t m = (size_t)r->nodes.n_c;
   TRY(archive_reals(a, "path_t", &w->start.t, 1));
   TRY(archive_reals(a, "path_uc", w->start.uc, m));
   TRY(archive_reals(a, "path_rc", w->start.rc, m));
   TRY(archive_reals(a, "path_motion", w->start.motion, m));
-  if (r->visco != NULL)
-    TRY(visco_keep_flow(&r->visco->x, &w->flow, a, "path_flow"));
+  if (r->strains.visco != NULL)
+    TRY(visco_keep_flow(&r->strains.visco->x, &w->flow, a, "path_flow"));
 done:
   return st;
 }
 
 status path_keep(run *r, archive *a) {
   status st = OK;
-  int there = r->path != NULL;
+  int there = r->paths.path != NULL;
   TRY(archive_ints(a, "path", &there, 1));
   if (archive_reads(a)) path_restart(r);
-  TRY(archive_reals(a, "path_before", &r->path_before, 1));
-  TRY(archive_reals(a, "path_error", &r->path_error, 1));
+  TRY(archive_reals(a, "path_before", &r->paths.before, 1));
+  TRY(archive_reals(a, "path_error", &r->paths.now, 1));
   if (!there) goto done;
-  if (r->path == NULL) TRY(path_new(r, &r->path));
-  TRY(archive_ints(a, "path_lost", &r->path->lost, 1));
-  TRY(keep_waypoint(r, &r->path->at, a));
+  if (r->paths.path == NULL) TRY(path_new(r, &r->paths.path));
+  TRY(archive_ints(a, "path_lost", &r->paths.path->lost, 1));
+  TRY(keep_waypoint(r, &r->paths.path->at, a));
 done:
   return st;
 }
 
 void path_restart(run *r) {
-  path_free(r->path);
-  r->path = NULL;
-  r->path_before += r->path_error;
-  r->path_error = 0.0;
+  path_free(r->paths.path);
+  r->paths.path = NULL;
+  r->paths.before += r->paths.now;
+  r->paths.now = 0.0;
 }

@@ -35,19 +35,19 @@ done:
 static status new_points(run *r, visco *v, const int *kind_of) {
   status st = OK;
   int n = 0, *kind_id = NULL;
-  NEW(kind_id, r->eigen.n);
-  NEW(v->place, r->eigen.n);
-  NEW(v->elem, r->eigen.n);
-  for (int k = 0; k < r->eigen.n; ++k) {
-    int kind = kind_of[r->m->elem_section[r->eigen_elem[k]]];
-    if (kind < 0 || !model_flows(r->m, r->eigen_elem[k])) continue;
+  NEW(kind_id, r->strains.eigen.n);
+  NEW(v->place, r->strains.eigen.n);
+  NEW(v->elem, r->strains.eigen.n);
+  for (int k = 0; k < r->strains.eigen.n; ++k) {
+    int kind = kind_of[r->m->elem_section[r->strains.elem[k]]];
+    if (kind < 0 || !model_flows(r->m, r->strains.elem[k])) continue;
     v->place[n] = k;
-    v->elem[n] = r->eigen_elem[k];
+    v->elem[n] = r->strains.elem[k];
     kind_id[n++] = kind;
   }
   TRY(flow_new_points(&v->x, n, kind_id));
   for (int k = 0; k < n; ++k)
-    v->x.weight[k] = element_weight(&r->d, v->elem[k]);
+    v->x.weight[k] = element_weight(&r->body.d, v->elem[k]);
 done:
   memory_free(kind_id);
   return st;
@@ -97,7 +97,7 @@ status visco_new(run *r) {
   visco *v = NULL;
   timer_enter(STAGE_INELASTIC);
   NEW(v, 1);
-  r->visco = v;
+  r->strains.visco = v;
   NEW(kind_of, r->m->n_section);
   TRY(new_kinds(r, &v->x, kind_of));
   TRY(new_points(r, v, kind_of));
@@ -105,7 +105,7 @@ status visco_new(run *r) {
   TRY(flow_state_new(&v->x, &v->now));
   TRY(initial_state(r, v));
   TRY(scheme_work_new(&v->work));
-  NEW(v->stress, (size_t)r->m->ns * (size_t)r->eigen.n);
+  NEW(v->stress, (size_t)r->m->ns * (size_t)r->strains.eigen.n);
 done:
   timer_leave(STAGE_INELASTIC);
   memory_free(kind_of);
@@ -133,22 +133,22 @@ void visco_free(visco *v) {
 }
 
 void visco_add_strains(const run *r, double *e0) {
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   for (int k = 0; k < v->x.n; ++k)
     for (size_t i = 0; i < (size_t)r->m->ns; ++i)
       e0[visco_at(r, v->place[k]) + i] += v->now.ei[visco_at(r, k) + i];
 }
 
 void visco_temperatures(const run *r, const equilibrium *e, flow_state *s) {
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   for (int k = 0; k < v->x.n && e->temperature != NULL; ++k)
     s->temperature[k] = e->temperature[v->elem[k]];
 }
 
 void visco_strains(run *r, const equilibrium *e, flow_state *s) {
-  visco *v = r->visco;
-  const eigenstrain thermal = {r->eigen.n, r->eigen_elem, e->thermal};
-  eigen_stress(&r->d, &thermal, e->u, v->stress, NULL);
+  visco *v = r->strains.visco;
+  const eigenstrain thermal = {r->strains.eigen.n, r->strains.elem, e->thermal};
+  eigen_stress(&r->body.d, &thermal, e->u, v->stress, NULL);
   for (int k = 0; k < v->x.n; ++k) {
     const double *E = run_elasticity(r, v->elem[k]);
     double elastic[6];
@@ -162,13 +162,14 @@ void visco_strains(run *r, const equilibrium *e, flow_state *s) {
 
 int visco_next_part(const run *r, visco_part *p) {
   enum { PART = 64 };
-  const visco *v = r->visco;
-  const int most = r->d.cluster == NULL ? PART : r->eigen.n;
+  const visco *v = r->strains.visco;
+  const int most = r->body.d.cluster == NULL ? PART : r->strains.eigen.n;
   p->item += p->n_item;
   p->point += p->n_point;
-  p->n_item = r->eigen.n - p->item < most ? r->eigen.n - p->item : most;
+  p->n_item =
+      r->strains.eigen.n - p->item < most ? r->strains.eigen.n - p->item : most;
   p->n_point = p->n_item;
-  if (v->x.n == r->eigen.n) return p->n_item > 0;
+  if (v->x.n == r->strains.eigen.n) return p->n_item > 0;
   const int end = p->item + p->n_item;
   p->n_point = 0;
   while (p->point + p->n_point < v->x.n &&
@@ -180,20 +181,20 @@ int visco_next_part(const run *r, visco_part *p) {
 /* Values of the items of a part, from[ns*n_item], to those of its points. */
 static void to_points(const run *r, const visco_part *p, const double *from,
                       double *to) {
-  const int *item = r->visco->place;
+  const int *item = r->strains.visco->place;
   for (int k = p->point; k < p->point + p->n_point; ++k)
     memcpy(to + visco_at(r, k), from + visco_at(r, item[k] - p->item),
            visco_at(r, 1) * sizeof *to);
 }
 
 void visco_part_strains(run *r, const visco_part *p) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   const int all = p->n_point == p->n_item;
   double *e = v->now.e + visco_at(r, p->point);
   const double *thermal = r->now.thermal;
   if (thermal != NULL) thermal += visco_at(r, p->item);
-  const eigenstrain x = {p->n_item, r->eigen_elem + p->item, thermal};
-  eigen_stress(&r->d, &x, r->now.u, all ? e : v->stress, NULL);
+  const eigenstrain x = {p->n_item, r->strains.elem + p->item, thermal};
+  eigen_stress(&r->body.d, &x, r->now.u, all ? e : v->stress, NULL);
   if (!all) to_points(r, p, v->stress, v->now.e);
 }
 
@@ -208,15 +209,15 @@ static inline double deviator_square(int ns, const double *t, double shear) {
 }
 
 static int can_lock(const run *r, int k) {
-  const visco *v = r->visco;
-  const cluster_set *c = r->d.cluster;
+  const visco *v = r->strains.visco;
+  const cluster_set *c = r->body.d.cluster;
   return !v->x.kind[v->x.kind_id[k]].elastic.plane_stress &&
          (c == NULL || c->of[v->elem[k]] < 0);
 }
 
 /* Adds point k of v->now. */
 static inline void add_locking(int ns, const run *r, int k, locking_sums *sum) {
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   const double w = v->x.weight[k];
   const double *ei = v->now.ei + visco_at(r, k);
   const double growth = ei[0] + ei[1] + ei[2];
@@ -228,7 +229,7 @@ static inline void add_locking(int ns, const run *r, int k, locking_sums *sum) {
 
 /* Mean of the bulk moduli, Pa. */
 static double mean_bulk(const run *r) {
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   const int ns = r->m->ns;
   double bulk = 0.0, volume = 0.0;
   for (int k = 0; k < v->x.n; ++k) {
@@ -246,7 +247,7 @@ static double mean_bulk(const run *r) {
  * -1 if there are none, or if they flow in volume too.
  */
 static double apparent_ratio(const run *r) {
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   locking_sums sum = {0};
   if (v->sums.known) sum = v->sums.locking;
   for (int k = 0; k < v->x.n && !v->sums.known; ++k)
@@ -258,7 +259,7 @@ static double apparent_ratio(const run *r) {
 
 void visco_warn_locking(run *r) {
   enum { COARSE = 16, FINE = 64 };
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   if (v->told_locking) return;
   double nu = apparent_ratio(r);
   if (nu <= 0.49) return;
@@ -274,7 +275,7 @@ void visco_warn_locking(run *r) {
 }
 
 void visco_warn_stuck(run *r) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   if (v == NULL || v->result.stuck == 0 || v->told_stuck) return;
   const int e = v->elem[v->result.stuck - 1];
   const material *mat = run_material(r, e);
@@ -291,7 +292,7 @@ void visco_warn_stuck(run *r) {
 
 /* Works and energies of point k. */
 static inline void add_works(int ns, const run *r, int k, point_sums *sum) {
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   const size_t at = visco_at(r, k);
   const double w = v->x.weight[k], *sigma = v->now.sigma + at;
   const double *ei[] = {v->old.ei + at, v->now.ei + at};
@@ -309,7 +310,7 @@ static inline void add_works(int ns, const run *r, int k, point_sums *sum) {
 
 /* What thermal strains add to them; e0 and sigma of r->now. */
 static void add_thermal(const run *r, int k, point_sums *sum) {
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   const int ns = r->m->ns;
   const size_t at = visco_at(r, k), item = visco_at(r, v->place[k]);
   const double *ei = v->now.ei + at, *sigma = v->now.sigma + at;
@@ -334,13 +335,13 @@ static inline void add_points(int ns, const run *r, const visco_part *p,
   for (int k = p->point; k < end; ++k) add_works(ns, r, k, sum);
   for (int k = p->point; k < end && r->now.thermal != NULL; ++k)
     add_thermal(r, k, sum);
-  if (r->visco->told_locking) return;
+  if (r->strains.visco->told_locking) return;
   for (int k = p->point; k < end; ++k) add_locking(ns, r, k, &sum->locking);
 }
 
 status visco_part_sums(run *r, const visco_part *p) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   const int end = p->point + p->n_point;
   point_sums sum = v->sums;
   if (p->n_point < p->n_item)
@@ -359,7 +360,7 @@ done:
 }
 
 void visco_show(const run *r, state *s) {
-  s->flow = &r->visco->x;
-  s->flow_elem = r->visco->elem;
-  s->inelastic = &r->visco->now;
+  s->flow = &r->strains.visco->x;
+  s->flow_elem = r->strains.visco->elem;
+  s->inelastic = &r->strains.visco->now;
 }

@@ -10,18 +10,20 @@
 #include <string.h>
 
 /* Reactions: internal forces less loads less contact forces, where fixed.
- * known: r->stress is that of r->now already. */
+ * known: r->result.stress is that of r->now already. */
 static void find_reactions(run *r, int known) {
   int dim = r->msh->dim;
   timer_enter(STAGE_REACTION);
-  if (!known) domain_stress(&r->d, r->now.u, r->strain, r->stress);
-  domain_internal_force(&r->d, r->stress, r->now.reaction);
+  if (!known)
+    domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
+  domain_internal_force(&r->body.d, r->result.stress, r->now.reaction);
   for (size_t i = 0; i < r->n_dof; ++i)
-    r->now.reaction[i] = r->fixed[i] ? r->now.reaction[i] - r->now.F[i] : 0.0;
-  for (int i = 0; i < r->n; ++i)
+    r->now.reaction[i] =
+        r->body.fixed[i] ? r->now.reaction[i] - r->now.F[i] : 0.0;
+  for (int i = 0; i < r->nodes.n; ++i)
     for (int c = 0; c < dim; ++c) {
       size_t dof = (size_t)(dim * r->surface->node_id[i] + c);
-      if (!r->fixed[dof]) continue;
+      if (!r->body.fixed[dof]) continue;
       for (int a = 0; a < dim; ++a)
         r->now.reaction[dof] -= r->surface->frame[dim * dim * i + dim * a + c] *
                                 r->now.rc[dim * i + a];
@@ -34,7 +36,7 @@ static void find_stresses(run *r, int shown) {
   stage s = r->step->mesh_error ? STAGE_MESH_ERROR : STAGE_REFERENCE;
   if (shown) s = STAGE_STRESS;
   timer_enter(s);
-  domain_stress(&r->d, r->now.u, r->strain, r->stress);
+  domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
   timer_leave(s);
 }
 
@@ -45,7 +47,7 @@ double run_motion_over(const run *r, int k) {
 /* What friction acts against: in a static problem the motion from the origin
  * (CPR98, P2), else that of the increment. */
 static double slip_of(const run *r, int k) {
-  if (r->step->kind == STEP_STATIC && !r->relaxing)
+  if (r->step->kind == STEP_STATIC && !r->course.relaxing)
     return r->now.uc[k] - r->now.motion[k];
   return run_motion_over(r, k);
 }
@@ -53,33 +55,35 @@ static double slip_of(const run *r, int k) {
 /* Slip against the obstacle, gap left, status. */
 static void find_contact(run *r) {
   int dim = r->msh->dim;
-  for (int i = 0; i < r->n; ++i) {
-    r->open_gap[i] = r->gap[i] - r->now.uc[dim * i];
+  for (int i = 0; i < r->nodes.n; ++i) {
+    r->result.open_gap[i] = r->problem.gap[i] - r->now.uc[dim * i];
     for (int a = 1; a < dim; ++a)
-      r->slip[(dim - 1) * i + a - 1] = slip_of(r, dim * i + a);
+      r->result.slip[(dim - 1) * i + a - 1] = slip_of(r, dim * i + a);
   }
-  if (r->g != NULL) {
-    contact_limit(&r->cp, run_rows(r, 1, r->now.rc), r->g);
-    reach_spread(&r->reach, r->n, r->g);
+  if (r->result.g != NULL) {
+    contact_limit(&r->problem.cp, run_rows(r, 1, r->now.rc), r->result.g);
+    reach_spread(&r->nodes.reach, r->nodes.n, r->result.g);
   }
-  contact_classify(&r->cp, run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc),
-                   r->contact);
-  for (int i = r->n - 1, k = r->reach.n_in - 1; r->reach.in != NULL && i >= 0;
-       --i)
-    r->contact[i] =
-        k >= 0 && r->reach.in[k] == i ? r->contact[k--] : CONTACT_OPEN;
+  contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
+                   run_rows(r, 1, r->now.rc), r->result.contact);
+  for (int i = r->nodes.n - 1, k = r->nodes.reach.n_in - 1;
+       r->nodes.reach.in != NULL && i >= 0; --i)
+    r->result.contact[i] = k >= 0 && r->nodes.reach.in[k] == i
+                               ? r->result.contact[k--]
+                               : CONTACT_OPEN;
 }
 
 /* Slip adds up while a node is closed. */
 static void add_distance(run *r) {
   int dim = r->msh->dim;
   int history = (r->m->effects & EFFECT_HISTORY) != 0;
-  if (r->distance == NULL) return;
+  if (r->result.distance == NULL) return;
   if (history) timer_enter(STAGE_HISTORY);
-  for (int i = 0; i < r->n; ++i) {
+  for (int i = 0; i < r->nodes.n; ++i) {
     double s[2] = {run_motion_over(r, dim * i + 1), 0.0};
     if (dim == 3) s[1] = run_motion_over(r, dim * i + 2);
-    if (r->contact[i] == CONTACT_SLIP) r->distance[i] += hypot(s[0], s[1]);
+    if (r->result.contact[i] == CONTACT_SLIP)
+      r->result.distance[i] += hypot(s[0], s[1]);
   }
   if (history) timer_leave(STAGE_HISTORY);
 }
@@ -110,7 +114,7 @@ static void add_node(const run *r, int i) {
   const contact_surface *s = r->surface;
   int dim = s->dim;
   for (int a = 0; a < dim; ++a) {
-    contact_total *t = &r->totals[row_contact(s, i, a)];
+    contact_total *t = &r->result.totals[row_contact(s, i, a)];
     double rc = r->now.rc[dim * i + a];
     int side = a > 0 && s->side_id[(dim - 1) * i + a - 1] >= 0;
     add_row(r, i, a, t);
@@ -123,31 +127,34 @@ static void add_node(const run *r, int i) {
       t->n_slip += rc != 0.0;
     }
   }
-  contact_total *t = &r->totals[s->contact_id[i]];
-  t->n_open += r->contact[i] == CONTACT_OPEN;
-  t->n_slip += r->contact[i] == CONTACT_SLIP;
-  t->n_stick += r->contact[i] == CONTACT_STICK;
-  if (r->contact[i] != CONTACT_OPEN) t->area += s->area[i];
+  contact_total *t = &r->result.totals[s->contact_id[i]];
+  t->n_open += r->result.contact[i] == CONTACT_OPEN;
+  t->n_slip += r->result.contact[i] == CONTACT_SLIP;
+  t->n_stick += r->result.contact[i] == CONTACT_STICK;
+  if (r->result.contact[i] != CONTACT_OPEN) t->area += s->area[i];
 }
 
 static void find_totals(run *r) {
-  memset(r->totals, 0, (size_t)r->m->n_contact * sizeof *r->totals);
-  for (int i = 0; i < r->n; ++i) add_node(r, i);
+  memset(r->result.totals, 0,
+         (size_t)r->m->n_contact * sizeof *r->result.totals);
+  for (int i = 0; i < r->nodes.n; ++i) add_node(r, i);
 }
 
 /* Torque of the contacts about their axes; one taken from an obstacle is where
  * MOVE has brought it. */
 static void find_torques(run *r) {
-  for (int i = 0; i < r->m->n_contact && r->torque != NULL; ++i) {
+  for (int i = 0; i < r->m->n_contact && r->result.torque != NULL; ++i) {
     const contact *c = &r->m->contacts[i];
-    const contact_total *t = &r->totals[i];
+    const contact_total *t = &r->result.totals[i];
     const double *f = t->force;
     double x[3], d[3] = {0.0, 0.0, 0.0};
-    if (c->axis_of_obstacle) obstacle_motion(r->pairs[i].support, r->now.t, d);
+    if (c->axis_of_obstacle)
+      obstacle_motion(r->faces.pairs[i].support, r->now.t, d);
     for (int k = 0; k < 3; ++k) x[k] = c->axis_point[k] + d[k];
-    r->torque[i] = c->axis[0] * (t->moment[0] - x[1] * f[2] + x[2] * f[1]) +
-                   c->axis[1] * (t->moment[1] - x[2] * f[0] + x[0] * f[2]) +
-                   c->axis[2] * (t->moment[2] - x[0] * f[1] + x[1] * f[0]);
+    r->result.torque[i] =
+        c->axis[0] * (t->moment[0] - x[1] * f[2] + x[2] * f[1]) +
+        c->axis[1] * (t->moment[1] - x[2] * f[0] + x[0] * f[2]) +
+        c->axis[2] * (t->moment[2] - x[0] * f[1] + x[1] * f[0]);
   }
 }
 
@@ -163,14 +170,14 @@ static status relaxed_energy(const run *r, double *kept) {
     any |= r->m->materials[i].is_relaxed;
   if (!any) goto done;
   NEW(sigma, (size_t)ns * (size_t)r->msh->n_elem);
-  domain_stress(&r->d, r->now.u, NULL, sigma);
+  domain_stress(&r->body.d, r->now.u, NULL, sigma);
   for (int e = 0; e < r->msh->n_elem; ++e) {
     const material *mat = run_material(r, e);
     double strain[6];
     const double *own = sigma + (size_t)ns * (size_t)e;
     if (!mat->is_relaxed) continue;
     tensor_product(ns, mat->relaxed, own, strain);
-    *kept += 0.5 * element_weight(&r->d, e) * tensor_dot(ns, own, strain);
+    *kept += 0.5 * element_weight(&r->body.d, e) * tensor_dot(ns, own, strain);
   }
 done:
   memory_free(sigma);
@@ -195,7 +202,7 @@ static status find_energies(run *r) {
     e.external += 0.5 * (a->reaction[i] + b->reaction[i]) * (b->u[i] - a->u[i]);
   double work = 0.0, friction = 0.0;
   if (r->step->kind == STEP_STATIC) e.friction_end = 0.0;
-  for (int i = 0; i < r->n; ++i) {
+  for (int i = 0; i < r->nodes.n; ++i) {
     for (int c = 0; c < dim; ++c) {
       int k = dim * i + c;
       work += 0.5 * (a->rc[k] + b->rc[k]) * (b->uc[k] - a->uc[k]);
@@ -209,7 +216,7 @@ static status find_energies(run *r) {
   e.normal += work + friction;
   e.stored -= a->kept;
   strains_work(r, &e);
-  if (r->visco != NULL) TRY(visco_energies(r, &e));
+  if (r->strains.visco != NULL) TRY(visco_energies(r, &e));
   TRY(relaxed_energy(r, &kept));
   e.strain = strains_energy(r) - kept;
   e.inelastic += kept - a->kept;
@@ -233,11 +240,11 @@ status result_evaluate(run *r, int due) {
   if (shown || (needed && !(effects & EFFECT_REACTION)))
     find_stresses(r, shown);
   if (effects & EFFECT_REACTION) find_reactions(r, shown);
-  if (r->n > 0) find_contact(r);
+  if (r->nodes.n > 0) find_contact(r);
   add_distance(r);
   if (r->m->n_contact > 0) find_totals(r);
   find_torques(r);
-  if (r->relaxing)
+  if (r->course.relaxing)
     result_start(r, &r->now);
   else
     TRY(find_energies(r));
@@ -246,16 +253,18 @@ done:
 }
 
 void result_start(const run *r, equilibrium *e) {
-  double strain = domain_strain_energy(&r->d, e->u);
+  double strain = domain_strain_energy(&r->body.d, e->u);
   e->energy = (energies){.strain = strain, .start = strain, .largest = strain};
 }
 
 status result_accept(run *r) {
-  if (r->n > 0) memcpy(r->f_before, r->f, (size_t)r->n_row * sizeof *r->f);
-  r->n_before = r->n_row;
+  if (r->nodes.n > 0)
+    memcpy(r->problem.f_before, r->problem.f,
+           (size_t)r->nodes.n_row * sizeof *r->problem.f);
+  r->problem.n_before = r->nodes.n_row;
   equilibrium e = r->old;
-  r->note[0] = '\0';
+  r->course.note[0] = '\0';
   r->old = r->now;
   r->now = e;
-  return r->visco == NULL ? OK : visco_accept(r);
+  return r->strains.visco == NULL ? OK : visco_accept(r);
 }

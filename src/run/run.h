@@ -24,11 +24,12 @@ typedef struct equilibrium {
   double *motion;   /* [dim*n] way of the obstacles past the nodes since 0 s,
                        added up over the increments, contact frame, m         */
   double *temperature; /* [n_elem] or NULL: no thermal strain                 */
-  double *thermal;     /* [ns*n] thermal strains of the elements of r->eigen;
-                          this and the next are empty where nothing but laws
-                          flows: the points have e^i and stress (visco.h)     */
-  double *e0, *sigma;  /* [ns*n] all their strains without stress; Pa         */
-  double *elastic;     /* [ns*n] the rest; NULL: moduli stay                  */
+  double
+      *thermal; /* [ns*n] thermal strains of the elements of r->strains.eigen;
+                   this and the next are empty where nothing but laws
+                   flows: the points have e^i and stress (visco.h)     */
+  double *e0, *sigma; /* [ns*n] all their strains without stress; Pa         */
+  double *elastic;    /* [ns*n] the rest; NULL: moduli stay                  */
   energies energy;
   double peak_energy, peak_stress; /* J, of the strains, Pa; largest so far,
                                       the stress where rounding was looked at */
@@ -86,98 +87,151 @@ typedef struct progress {
   int violated; /* 1: and is not what the theorems say                      */
 } progress;
 
+/* The contact nodes, and those of them that r->problem.cp has. */
+typedef struct contact_nodes {
+  int n, n_c;      /* contact nodes; dim*n                                    */
+  int rows, n_row; /* unknowns of a node in cp: 1 or dim; of all of them      */
+  contact_reach reach; /* the contact nodes of cp                             */
+  int n_told;          /* how many the output knows of                        */
+} contact_nodes;
+
+/* What the elements are made of. */
+typedef struct body_state {
+  domain d;
+  moduli moduli; /* at the temperatures of r->now                             */
+  int stale;     /* 1: r->elastic was made with others                        */
+  unsigned char *fixed; /* [dim*n_node]                                       */
+} body_state;
+
+/* Elements with strains that have no stress. */
+typedef struct strain_state {
+  visco *visco;         /* NULL: no law flows                                */
+  eigenstrain eigen;    /* e0 is that of the equilibrium at hand             */
+  int *elem;            /* [eigen.n]                                         */
+  double *temperature0; /* [n_elem] before the first step                    */
+  double *load;         /* [dim*n_node] F with the forces of eigen, N        */
+} strain_state;
+
+/* What a contact surface is made from. */
+typedef struct contact_faces {
+  surface_input input;
+  contact_pair *pairs;       /* [n_contact]                                  */
+  double *face_weight;       /* [n_face]                                     */
+  unsigned char *node_fixed; /* [n_node] bits                                */
+} contact_faces;
+
+typedef struct friction_state {
+  friction_limit limit;
+  int known;                 /* limit holds for all times of the step        */
+  friction_average *average; /* [n_contact], or NULL: no law has one         */
+  friction_zone *zone; /* NULL: no law is confined to the touching nodes     */
+} friction_state;
+
+/* Contact problem of the increment. */
+typedef struct posed_problem {
+  double *f_load; /* [n_row] of f, without the motion of supports, N */
+  double *f, *gap, *side_gap, *ut0; /* [n_row], [n], [n*(dim-1)] twice        */
+  double *row[2]; /* [rows*n] room of run_rows, NULL where cp has all         */
+  reach_part part; /* what cp points to where it has not all nodes           */
+  contact_problem cp;
+  forms *forms;     /* what rewrites it                                       */
+  double *f_before; /* [n_row] condensed load of r->old, N                    */
+  int n_before;     /* its n_row                                              */
+} posed_problem;
+
+typedef struct load_state {
+  double *start; /* [dim*n_node] displacements at the start of the step, m    */
+  double largest; /* N, at a node at the ends of the step                     */
+  double *ud;     /* [dim*n_node] prescribed displacements, m                 */
+} load_state;
+
+/* What is derived from r->now (result.c). */
+typedef struct derived {
+  double *strain, *stress;     /* [ns*n_elem] or NULL                         */
+  double *open_gap, *slip, *g; /* [n], [n*(dim-1)], [n]                       */
+  contact_status *contact;     /* [n]                                         */
+  contact_total *totals;       /* [n_contact]                                 */
+  double *distance; /* [n] as in state; NULL: frictionless                    */
+  double *torque;   /* [n_contact] as in state, or NULL                       */
+} derived;
+
+/* What is known of the errors of r->now. */
+typedef struct error_state {
+  error_bound error;
+  rounding_loss rounding;
+  error_share mesh_error, time_error;
+  space_recovery *recovery; /* NULL until the error of the mesh is estimated  */
+  double *elem_error;       /* [n_elem] or NULL                              */
+  double bound_cpu; /* s, spent so far on the error of the solver            */
+  int judged; /* 1: the errors of mesh and solver are those of r->now         */
+  int jumps;  /* 1: the equilibrium jumps in the increment               */
+  double jump_t;          /* s, there                                        */
+  solution_set solutions; /* found by CHECK= in the increment                 */
+} error_state;
+
+/* The finer path beside the run. */
+typedef struct path_state {
+  finer_path *path;   /* NULL until the error of the steps is estimated       */
+  double before, now; /* sqrt(J), error of finished paths; of this one        */
+} path_state;
+
+/* How the contact problem is solved. */
+typedef struct solving {
+  solver_report report;
+  double tol; /* of the contact solver, in force, -                          */
+  double *guess_u, *guess_r; /* [m] start values that may be nearer than those
+                                of r->old, borrowed; NULL: none               */
+  known_rate rate;
+  double known_key; /* of the matrix that "rate" was read for, until in use   */
+} solving;
+
+/* What is counted, told and kept of the run. */
+typedef struct course_state {
+  int total_no, unsettled;
+  int missed; /* 1: the increment misses the tolerance of its step            */
+  int beside; /* 1: an increment of a finer path is solved, or a copy of the
+                 run: no step of the run                                      */
+  int relaxing;  /* the increment at hand leads the start to equilibrium */
+  int due, kept; /* a checkpoint is due; has just been made                   */
+  archive *from; /* borrowed: what the step in progress starts from, or NULL  */
+  stage_cost costs[STAGE_COUNT]; /* at the checkpoint                         */
+  start_report first; /* of *INITIAL CONDITIONS, TYPE=DISPLACEMENT  */
+  char note[512]; /* what changed abruptly in the increment, "" or lines     */
+  struct {
+    int strain, folded; /* 1: a warning has told of it                       */
+    int *touched;       /* [n_contact] 1: a node has touched                  */
+  } told;
+} course_state;
+
 struct run {
   const model *m;
   const mesh *msh;
   const history_sink *sink;
   const step *step;
   size_t n_dof; /* dim*n_node                                                 */
-  int n, n_c;   /* contact nodes; dim*n                                       */
-  int rows, n_row; /* unknowns of a node in r->cp: 1 or dim; of all of them   */
-  contact_reach reach; /* the contact nodes of r->cp */
-  int n_told;          /* how many the output knows of                        */
-
-  /* What the elements are made of. */
-  domain d;
-  moduli moduli; /* at the temperatures of r->now                             */
-  int stale;     /* 1: r->elastic was made with others                        */
-  unsigned char *fixed; /* [dim*n_node]                                       */
-
-  /* Elements with strains that have no stress. */
-  visco *visco;         /* NULL: no law flows                                */
-  eigenstrain eigen;    /* e0 is that of the equilibrium at hand             */
-  int *eigen_elem;      /* [n]                                               */
-  double *temperature0; /* [n_elem] before the first step                    */
-  double *eigen_load;   /* [dim*n_node] F with the forces of r->eigen, N     */
+  body_state body;
+  strain_state strains;
 
   /* Contact surface and condensed stiffness: as long as "fixed" stays. */
-  surface_input input;
-  contact_pair *pairs;       /* [n_contact]                                  */
-  double *face_weight;       /* [n_face]                                     */
-  unsigned char *node_fixed; /* [n_node] bits                                */
+  contact_faces faces;
   contact_surface *surface;
+  contact_nodes nodes;
   matrices elastic;
   condensed *c;           /* in use, borrowed from elastic or visco          */
   contact_solver *solver; /* the same                                        */
-  friction_limit limit;
-  int limit_known; /* limit holds for all times of the step              */
-  friction_average *average; /* [n_contact], or NULL: no law has one         */
-  friction_zone *zone; /* NULL: no law is confined to the touching nodes     */
-  char note[512]; /* what changed abruptly in the increment, "" or lines    */
+  friction_state friction;
+  posed_problem problem;
+  solving solving;
 
-  /* Contact problem of the increment. */
-  double *f_load; /* [n_row] of f, without the motion of supports, N */
-  double *f, *gap, *side_gap, *ut0; /* [n_row], [n], [n*(dim-1)] twice        */
-  double *row[2]; /* [rows*n] room of run_rows, NULL where r->cp has all      */
-  reach_part part; /* what r->cp points to where it has not all nodes        */
-  contact_problem cp;
-  forms *forms; /* what rewrites it                                           */
-
+  load_state loads;
   equilibrium old, now;
-  double *start; /* [dim*n_node] displacements at the start of the step, m    */
-  double step_load; /* N, largest at a node at the ends of the step         */
-  double *ud;       /* [dim*n_node] prescribed displacements, m           */
-  double *strain, *stress; /* [ns*n_elem] or NULL                             */
-  double *open_gap, *slip, *g; /* [n], [n*(dim-1)], [n]                       */
-  contact_status *contact; /* [n]                                            */
-  contact_total *totals;   /* [n_contact]                                    */
-  double *distance;        /* [n] as in state; NULL: frictionless            */
-  double *torque;          /* [n_contact] as in state, or NULL               */
-  effect_list effects;
-  start_report first; /* of *INITIAL CONDITIONS, TYPE=DISPLACEMENT  */
-  int relaxing;       /* the increment at hand leads the start to equilibrium */
-  solver_report report;
-  error_bound error;
-  rounding_loss rounding;
-  error_share mesh_error, time_error;
-  double tol; /* of the contact solver, in force, -                          */
+  derived result;
+  error_state errors;
+  path_state paths;
   balance balance;
-  double *guess_u, *guess_r; /* [m] start values that may be nearer than those
-                                of r->old, borrowed; NULL: none               */
-  int judged; /* 1: the errors of mesh and solver are those of r->now         */
-  space_recovery *recovery; /* NULL until the error of the mesh is estimated  */
-  double *elem_error;       /* [n_elem] or NULL                              */
-  finer_path *path;         /* NULL until the error of the steps is estimated */
-  double path_before, path_error; /* sqrt(J), of finished paths; of this one */
-  int beside; /* 1: an increment of that path is solved, no step of the run  */
-  double bound_cpu; /* s, spent so far on the error of the solver            */
-  known_rate rate;
-  double *f_before; /* [n_row] condensed load of r->old, N                    */
-  int n_before;     /* its n_row                                              */
-  int jumps;     /* 1: the equilibrium jumps in the increment               */
-  double jump_t; /* s, there                                               */
-  solution_set solutions; /* found by CHECK= in the increment                 */
+  effect_list effects;
   progress at;
-  archive *from; /* borrowed: what the step in progress starts from, or NULL  */
-  stage_cost costs[STAGE_COUNT]; /* at the checkpoint                         */
-  int due, kept; /* a checkpoint is due; has just been made                   */
-  double known_key; /* of the matrix that "rate" was read for, until in use   */
-  int total_no, unsettled;
-  int missed; /* 1: the increment misses the tolerance of its step            */
-  struct {
-    int strain, folded; /* 1: a warning has told of it                       */
-    int *touched; /* [n_contact] 1: a node has touched                       */
-  } told;
+  course_state course;
 };
 
 typedef struct run run;
@@ -209,16 +263,17 @@ void matrices_free(matrices *m);
  * that is made next. */
 status matrices_keep(matrices *m, archive *a, const char *group);
 
-/* The contact nodes of r->cp are those of r->reach; room for the part of them
- * and of their unknowns. */
+/* The contact nodes of r->problem.cp are those of r->nodes.reach; room for the
+ * part of them and of their unknowns. */
 void run_take_nodes(run *r);
 status run_room_for_part(run *r);
-/* 1: a contact node that was left out of r->cp is beyond its gap in r->now, or
- * no equilibrium was found without those. */
+/* 1: a contact node that was left out of r->problem.cp is beyond its gap in
+ * r->now, or no equilibrium was found without those. */
 int run_misses_nodes(const run *r);
-/* Those and more nodes for r->cp, with a matrix and a solver of their own. */
+/* Those and more nodes for r->problem.cp, with a matrix and a solver of their
+ * own. */
 status run_add_nodes(run *r);
-/* A matrix and a solver for the nodes that r->reach now has. */
+/* A matrix and a solver for the nodes that r->nodes.reach now has. */
 status run_renew_nodes(run *r);
 
 /* strains.c: elasticity of the elements, strains that carry no stress. */
@@ -231,7 +286,7 @@ const double *run_elasticity(const run *r, int elem_id);
 status strains_heat(run *r);
 /* Components of them that an equilibrium has arrays for. */
 size_t strains_kept(const run *r);
-/* r->eigen.e0 from the strains at hand. */
+/* r->strains.eigen.e0 from the strains at hand. */
 void strains_collect(run *r);
 /* The loads with the forces that the strains of r->now call for: r->now.F
  * itself if there are none. */
@@ -243,8 +298,9 @@ double strains_energy(const run *r); /* of the stresses of r->now, J          */
 
 /* Inelastic strains. points.c: of the elements whose law flows. */
 status visco_new(run *r);
-void visco_free(visco *v);                        /* accepts NULL          */
-void visco_add_strains(const run *r, double *e0); /* e0[ns*r->eigen.n]     */
+void visco_free(visco *v); /* accepts NULL          */
+void visco_add_strains(const run *r,
+                       double *e0);      /* e0[ns*r->strains.eigen.n]     */
 void visco_show(const run *r, state *s); /* what the outputs see              */
 /* tangent.c */
 void visco_new_solvers(run *r); /* for a step with the same supports       */
@@ -255,7 +311,7 @@ void visco_rest(run *r);
 /* At the start of a *VISCO step: stresses of r->old. */
 status visco_begin_step(run *r);
 /* From r->old to r->now at time t by the integrator of the step; read
- * r->report. */
+ * r->solving.report. */
 status visco_advance(run *r, double t);
 /* The same with an estimate of the error of its strains over the largest
  * elastic strains so far: from the integrator, or from two steps of half the
@@ -273,12 +329,13 @@ void visco_take(run *r);
 status visco_accept(run *r);
 status visco_keep(run *r, archive *a);
 
-/* increment.c: the equilibrium at time t into r->now; read r->report. */
+/* increment.c: the equilibrium at time t into r->now; read r->solving.report.
+ */
 status increment_solve(run *r, double t);
 /* Largest of the loads F[dim*n_node] that no support bears at once, N. */
 double increment_free_load(const run *r, const double *F);
-/* v[dim*n] of the contact frames as a vector of r->cp: v itself, or in
- * r->row[k], k = 0 or 1, where it has not all unknowns. */
+/* v[dim*n] of the contact frames as a vector of r->problem.cp: v itself, or in
+ * r->problem.row[k], k = 0 or 1, where it has not all unknowns. */
 double *run_rows(const run *r, int k, double *v);
 /* Loads and contact problem of time t without solving. */
 status increment_pose(run *r, double t);
@@ -289,16 +346,17 @@ status increment_load(run *r, double t);
 status increment_begin(run *r, double t);
 status increment_equilibrium(run *r, const double *F);
 
-/* limit.c: the sliding limit at time t into r->limit, jumps into r->note. */
+/* limit.c: the sliding limit at time t into r->friction.limit, jumps into
+ * r->course.note. */
 status limit_update(run *r, double t);
 /* Averages of the rules in force, as far as they are not there. */
 status limit_average(run *r);
 double limit_average_entries(const run *r);
 /* Laws confined to the touching nodes (at the start of an increment those that
- * touched, all if none did): after a solution of r->cp, 1 if the zone, and
- * r->cp with it, has changed and is to be solved again. */
+ * touched, all if none did): after a solution of r->problem.cp, 1 if the zone,
+ * and r->problem.cp with it, has changed and is to be solved again. */
 int limit_follow_zone(run *r);
-const sparse_rows *limit_matrix(const run *r); /* B of r->cp, or NULL         */
+const sparse_rows *limit_matrix(const run *r); /* B of r->problem.cp, or NULL */
 /* Largest friction coefficient of the nodes of a contact at t, -; 0 for laws
  * without one. */
 double limit_coefficient(const run *r, int contact_id, double t);

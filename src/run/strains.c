@@ -18,8 +18,8 @@ const material *run_material(const run *r, int elem_id) {
 }
 
 const double *run_elasticity(const run *r, int elem_id) {
-  return r->moduli.E +
-         at(r, r->m->ns * moduli_entry(&r->moduli, r->m, elem_id));
+  return r->body.moduli.E +
+         at(r, r->m->ns * moduli_entry(&r->body.moduli, r->m, elem_id));
 }
 
 static int flows(const run *r, int elem_id) {
@@ -37,30 +37,30 @@ static int has_strains(const run *r, int elem_id) {
 }
 
 size_t strains_kept(const run *r) {
-  int all = (r->m->effects & EFFECT_THERMAL) || r->moduli.n_own > 0;
+  int all = (r->m->effects & EFFECT_THERMAL) || r->body.moduli.n_own > 0;
   for (int i = 0; i < r->m->n_initial; ++i) /* the first work is from zero    */
     all |= r->m->initials[i].type == INITIAL_STRAIN;
-  return all ? at(r, r->eigen.n) : 0;
+  return all ? at(r, r->strains.eigen.n) : 0;
 }
 
 /* What is without stress is e^i alone, and the points have it. */
 static int is_flow(const run *r) {
-  return r->visco != NULL && strains_kept(r) == 0;
+  return r->strains.visco != NULL && strains_kept(r) == 0;
 }
 
 static status new_strains(const run *r, equilibrium *e) {
   status st = OK;
   size_t n = strains_kept(r);
-  if (r->temperature0 != NULL) {
+  if (r->strains.temperature0 != NULL) {
     NEW(e->temperature, r->msh->n_elem);
-    memcpy(e->temperature, r->temperature0,
+    memcpy(e->temperature, r->strains.temperature0,
            (size_t)r->msh->n_elem * sizeof *e->temperature);
   }
   if (n == 0) goto done;
   NEW(e->thermal, n);
   NEW(e->e0, n);
   NEW(e->sigma, n);
-  if (r->moduli.n_own > 0) NEW(e->elastic, n);
+  if (r->body.moduli.n_own > 0) NEW(e->elastic, n);
 done:
   return st;
 }
@@ -68,12 +68,13 @@ done:
 static status list_elements(run *r) {
   status st = OK;
   int n = 0;
-  for (int e = 0; e < r->msh->n_elem; ++e) r->eigen.n += has_strains(r, e);
-  NEW(r->eigen_elem, r->eigen.n);
   for (int e = 0; e < r->msh->n_elem; ++e)
-    if (has_strains(r, e)) r->eigen_elem[n++] = e;
-  r->eigen.elem_id = r->eigen_elem;
-  NEW(r->eigen_load, r->n_dof);
+    r->strains.eigen.n += has_strains(r, e);
+  NEW(r->strains.elem, r->strains.eigen.n);
+  for (int e = 0; e < r->msh->n_elem; ++e)
+    if (has_strains(r, e)) r->strains.elem[n++] = e;
+  r->strains.eigen.elem_id = r->strains.elem;
+  NEW(r->strains.load, r->n_dof);
 done:
   return st;
 }
@@ -81,37 +82,37 @@ done:
 status strains_new(run *r) {
   status st = OK;
   if (r->m->effects & EFFECT_THERMAL) {
-    NEW(r->temperature0, r->msh->n_elem);
-    TRY(load_temperature_initial(r->m, r->msh, r->temperature0));
+    NEW(r->strains.temperature0, r->msh->n_elem);
+    TRY(load_temperature_initial(r->m, r->msh, r->strains.temperature0));
   }
-  TRY(moduli_new(r->m, r->msh, r->temperature0, &r->moduli));
-  moduli_domain(&r->moduli, r->m, &r->d);
+  TRY(moduli_new(r->m, r->msh, r->strains.temperature0, &r->body.moduli));
+  moduli_domain(&r->body.moduli, r->m, &r->body.d);
   if (!(r->m->effects & (EFFECT_THERMAL | EFFECT_INELASTIC))) goto done;
   TRY(list_elements(r));
   TRY(new_strains(r, &r->old));
   TRY(new_strains(r, &r->now));
   if (r->m->effects & EFFECT_INELASTIC) TRY(visco_new(r));
-  r->d.eigen = &r->eigen;
+  r->body.d.eigen = &r->strains.eigen;
 done:
   return st;
 }
 
 void strains_free(run *r) {
-  visco_free(r->visco);
-  memory_free(r->eigen_elem);
-  memory_free(r->temperature0);
-  memory_free(r->eigen_load);
+  visco_free(r->strains.visco);
+  memory_free(r->strains.elem);
+  memory_free(r->strains.temperature0);
+  memory_free(r->strains.load);
 }
 
 /* Thermal strains are averaged as the strains are that they are taken off. */
 static void average_thermal(run *r) {
-  cluster_set *c = r->d.cluster;
+  cluster_set *c = r->body.d.cluster;
   double *thermal = r->now.thermal;
   cluster_begin(c, CLUSTER_STRAIN);
-  for (int k = 0; k < r->eigen.n; ++k)
-    cluster_add(c, CLUSTER_STRAIN, r->eigen_elem[k], thermal + at(r, k));
-  for (int k = 0; k < r->eigen.n; ++k)
-    cluster_smooth(c, CLUSTER_STRAIN, r->eigen_elem[k], thermal + at(r, k));
+  for (int k = 0; k < r->strains.eigen.n; ++k)
+    cluster_add(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + at(r, k));
+  for (int k = 0; k < r->strains.eigen.n; ++k)
+    cluster_smooth(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + at(r, k));
 }
 
 status strains_heat(run *r) {
@@ -120,20 +121,21 @@ status strains_heat(run *r) {
   int changed = 0;
   size_t ns = (size_t)r->m->ns;
   timer_enter(STAGE_THERMAL);
-  TRY(load_temperature(r->m, r->msh, r->step, now->t, r->temperature0,
+  TRY(load_temperature(r->m, r->msh, r->step, now->t, r->strains.temperature0,
                        now->temperature));
-  TRY(moduli_heat(&r->moduli, r->m, now->temperature, &changed));
+  TRY(moduli_heat(&r->body.moduli, r->m, now->temperature, &changed));
   if (changed) {
     visco_forget(r);
     run_forget_estimates(r);
-    r->stale = 1;
+    r->body.stale = 1;
     if (r->c != r->elastic.c) r->c = NULL;
   }
-  for (int k = 0; k < r->eigen.n; ++k) {
-    int e = r->eigen_elem[k];
+  for (int k = 0; k < r->strains.eigen.n; ++k) {
+    int e = r->strains.elem[k];
     if (expands(r, e))
       expansion_strain(&run_material(r, e)->expand, now->temperature[e],
-                       r->temperature0[e], now->thermal + ns * (size_t)k);
+                       r->strains.temperature0[e],
+                       now->thermal + ns * (size_t)k);
   }
   average_thermal(r);
 done:
@@ -143,26 +145,27 @@ done:
 
 void strains_collect(run *r) {
   equilibrium *now = &r->now;
-  if (r->eigen.n == 0) return;
+  if (r->strains.eigen.n == 0) return;
   if (is_flow(r)) {
-    r->eigen.e0 = r->visco->now.ei;
+    r->strains.eigen.e0 = r->strains.visco->now.ei;
     return;
   }
   memcpy(now->e0, now->thermal,
-         (size_t)r->m->ns * (size_t)r->eigen.n * sizeof *now->e0);
-  if (r->visco != NULL) visco_add_strains(r, now->e0);
-  r->eigen.e0 = now->e0;
+         (size_t)r->m->ns * (size_t)r->strains.eigen.n * sizeof *now->e0);
+  if (r->strains.visco != NULL) visco_add_strains(r, now->e0);
+  r->strains.eigen.e0 = now->e0;
 }
 
 const double *strains_load(run *r) {
-  if (r->eigen.n == 0) return r->now.F;
-  memcpy(r->eigen_load, r->now.F, r->n_dof * sizeof *r->eigen_load);
-  eigen_force(&r->d, &r->eigen, r->eigen_load);
-  return r->eigen_load;
+  if (r->strains.eigen.n == 0) return r->now.F;
+  memcpy(r->strains.load, r->now.F, r->n_dof * sizeof *r->strains.load);
+  eigen_force(&r->body.d, &r->strains.eigen, r->strains.load);
+  return r->strains.load;
 }
 
-/* Item k of r->eigen: strain energy per volume that the change of the moduli
- * has set free, exact as the trapezoidal works are: 1/2 e_old (E_old - E) e. */
+/* Item k of r->strains.eigen: strain energy per volume that the change of the
+ * moduli has set free, exact as the trapezoidal works are: 1/2 e_old (E_old -
+ * E) e. */
 static double softened(const run *r, int k) {
   const equilibrium *a = &r->old, *b = &r->now;
   if (a->elastic == NULL) return 0.0;
@@ -179,7 +182,7 @@ typedef struct item_ends {
 
 static item_ends ends_of(const run *r) {
   const equilibrium *a = &r->old, *b = &r->now;
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   if (is_flow(r))
     return (item_ends){
         {v->old.sigma, v->now.sigma}, {v->old.ei, v->now.ei}, {NULL, NULL}};
@@ -187,11 +190,11 @@ static item_ends ends_of(const run *r) {
       {a->sigma, b->sigma}, {a->e0, b->e0}, {a->thermal, b->thermal}};
 }
 
-/* Item k of r->eigen. */
+/* Item k of r->strains.eigen. */
 static void item_work(const run *r, const item_ends *x, int k, energies *e,
                       double *held) {
   const int ns = r->m->ns;
-  double w = element_weight(&r->d, r->eigen_elem[k]);
+  double w = element_weight(&r->body.d, r->strains.elem[k]);
   double thermal = 0.0, all = 0.0, stress[6];
   for (size_t i = at(r, k); i < at(r, k + 1); ++i) {
     double sigma = 0.5 * (x->sigma[0][i] + x->sigma[1][i]);
@@ -201,7 +204,7 @@ static void item_work(const run *r, const item_ends *x, int k, energies *e,
   }
   e->thermal += w * (thermal + softened(r, k));
   e->inelastic += w * (all - thermal);
-  tensor_product(ns, run_elasticity(r, r->eigen_elem[k]), x->e0[1] + at(r, k),
+  tensor_product(ns, run_elasticity(r, r->strains.elem[k]), x->e0[1] + at(r, k),
                  stress);
   *held += 0.5 * w * tensor_dot(ns, x->e0[1] + at(r, k), stress);
 }
@@ -210,9 +213,9 @@ static void item_work(const run *r, const item_ends *x, int k, energies *e,
 static void items_work(run *r, int from, int to, energies *e, double *held) {
   const item_ends ends = ends_of(r);
   double *elastic = r->now.elastic;
-  const eigenstrain x = {to - from, r->eigen_elem + from,
+  const eigenstrain x = {to - from, r->strains.elem + from,
                          ends.e0[1] + at(r, from)};
-  eigen_stress(&r->d, &x, r->now.u,
+  eigen_stress(&r->body.d, &x, r->now.u,
                elastic == NULL ? NULL : elastic + at(r, from),
                ends.sigma[1] + at(r, from));
   for (int k = from; k < to; ++k) item_work(r, &ends, k, e, held);
@@ -220,21 +223,21 @@ static void items_work(run *r, int from, int to, energies *e, double *held) {
 
 /* The items that are no points whose sums are known. */
 static void rest_work(run *r, energies *e, double *held) {
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   int from = 0;
-  for (int k = 0; k < v->x.n && v->x.n < r->eigen.n; ++k) {
+  for (int k = 0; k < v->x.n && v->x.n < r->strains.eigen.n; ++k) {
     if (v->place[k] > from) items_work(r, from, v->place[k], e, held);
     from = v->place[k] + 1;
   }
-  if (v->x.n < r->eigen.n && from < r->eigen.n)
-    items_work(r, from, r->eigen.n, e, held);
+  if (v->x.n < r->strains.eigen.n && from < r->strains.eigen.n)
+    items_work(r, from, r->strains.eigen.n, e, held);
 }
 
 void strains_work(run *r, energies *e) {
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   const int known = v != NULL && v->sums.known;
   double held = 0.0;
-  if (r->eigen.n == 0) return;
+  if (r->strains.eigen.n == 0) return;
   timer_enter(STAGE_ENERGY);
   if (known) {
     e->thermal += v->sums.thermal;
@@ -242,15 +245,16 @@ void strains_work(run *r, energies *e) {
     held = v->sums.held;
     rest_work(r, e, &held);
   } else {
-    items_work(r, 0, r->eigen.n, e, &held);
+    items_work(r, 0, r->strains.eigen.n, e, &held);
   }
   e->largest = fmax(e->largest, held);
   timer_leave(STAGE_ENERGY);
 }
 
 double strains_energy(const run *r) {
-  const visco *v = r->visco;
-  if (v == NULL || !v->sums.known) return domain_strain_energy(&r->d, r->now.u);
+  const visco *v = r->strains.visco;
+  if (v == NULL || !v->sums.known)
+    return domain_strain_energy(&r->body.d, r->now.u);
   return v->sums.strain +
-         domain_energy_beside(&r->d, v->x.n, v->elem, r->now.u);
+         domain_energy_beside(&r->body.d, v->x.n, v->elem, r->now.u);
 }

@@ -13,7 +13,7 @@
 static const double TRACE = 0x1p-40; /* -, of the elasticity                  */
 
 void visco_forget(run *r) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   if (v == NULL) return;
   for (int i = 0; i < SLOTS; ++i) matrices_free(&v->slot[i]);
   matrices_free(&v->fresh);
@@ -27,7 +27,7 @@ static void forget_solver(matrices *m) {
 }
 
 void visco_new_solvers(run *r) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   if (v == NULL) return;
   for (int i = 0; i < SLOTS; ++i) forget_solver(&v->slot[i]);
   forget_solver(&v->fresh);
@@ -60,19 +60,20 @@ static status factor_again(const domain *d, matrices *m) {
 /* Sections as they are, with the tangents of their kinds. */
 static status constant_domain(run *r, const flow_tangent *law, domain *d) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   size_t square = visco_at(r, r->m->ns);
   int kind = 0;
-  if (v->E == NULL) NEW(v->E, square * (size_t)(r->moduli.n + v->x.n));
+  if (v->E == NULL) NEW(v->E, square * (size_t)(r->body.moduli.n + v->x.n));
   v->E_is_fresh = 0;
-  memcpy(v->E, r->moduli.E, square * (size_t)r->moduli.n * sizeof *v->E);
+  memcpy(v->E, r->body.moduli.E,
+         square * (size_t)r->body.moduli.n * sizeof *v->E);
   for (int i = 0; i < r->m->n_section; ++i) {
     const material *mat = &r->m->materials[r->m->sections[i].material_id];
     if (mat->law.ops == NULL) continue;
     memcpy(v->E + square * (size_t)i, law->D + square * (size_t)kind++,
            square * sizeof *v->E);
   }
-  *d = r->d;
+  *d = r->body.d;
   d->E = v->E;
 done:
   return st;
@@ -84,7 +85,7 @@ done:
  * which depends on how soft it is, rounding_find sees as forces that are not in
  * balance. */
 static status factor_constant(run *r, int again, const domain *d, matrices *m) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   const size_t square = visco_at(r, r->m->ns);
   status st = again ? factor_again(d, m) : factor(d, m);
   if (st != ERR_SINGULAR) return st;
@@ -92,7 +93,7 @@ static status factor_constant(run *r, int again, const domain *d, matrices *m) {
     const size_t at = square * (size_t)i;
     const material *mat = &r->m->materials[r->m->sections[i].material_id];
     for (size_t k = at; k < at + square && mat->law.ops != NULL; ++k)
-      v->E[k] += TRACE * r->moduli.E[k];
+      v->E[k] += TRACE * r->body.moduli.E[k];
   }
   return again ? factor_again(d, m) : factor(d, m);
 }
@@ -100,13 +101,13 @@ static status factor_constant(run *r, int again, const domain *d, matrices *m) {
 /* Each point a section of its own. */
 static status new_sections(run *r) {
   status st = OK;
-  visco *v = r->visco;
-  const moduli *own = &r->moduli;
+  visco *v = r->strains.visco;
+  const moduli *own = &r->body.moduli;
   int n = own->n + v->x.n;
   NEW(v->section_id, r->msh->n_elem);
   NEW(v->kin, n);
   NEW(v->thickness, n);
-  memcpy(v->section_id, r->d.section_id,
+  memcpy(v->section_id, r->body.d.section_id,
          (size_t)r->msh->n_elem * sizeof *v->section_id);
   memcpy(v->kin, own->kin, (size_t)own->n * sizeof *v->kin);
   memcpy(v->thickness, own->thickness, (size_t)own->n * sizeof *v->thickness);
@@ -122,14 +123,14 @@ done:
 
 static status fresh_domain(run *r, const flow_tangent *law, domain *d) {
   status st = OK;
-  visco *v = r->visco;
-  size_t square = visco_at(r, r->m->ns), n = (size_t)r->moduli.n;
+  visco *v = r->strains.visco;
+  size_t square = visco_at(r, r->m->ns), n = (size_t)r->body.moduli.n;
   if (v->section_id == NULL) TRY(new_sections(r));
   if (v->E == NULL) NEW(v->E, square * (n + (size_t)v->x.n));
-  memcpy(v->E, r->moduli.E, square * n * sizeof *v->E);
+  memcpy(v->E, r->body.moduli.E, square * n * sizeof *v->E);
   memcpy(v->E + square * n, law->D, square * (size_t)v->x.n * sizeof *v->E);
   v->E_is_fresh = 1;
-  *d = r->d;
+  *d = r->body.d;
   d->section_id = v->section_id;
   d->origin = NULL;
   d->kin = v->kin;
@@ -142,16 +143,17 @@ done:
 
 /* 1 if the tangents of the points are those of the last solve of its kind. */
 static int same_tangents(const run *r, const flow_tangent *law) {
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   const size_t square = visco_at(r, r->m->ns);
-  return v->E_is_fresh && memcmp(v->E + square * (size_t)r->moduli.n, law->D,
-                                 square * (size_t)v->x.n * sizeof *v->E) == 0;
+  return v->E_is_fresh &&
+         memcmp(v->E + square * (size_t)r->body.moduli.n, law->D,
+                square * (size_t)v->x.n * sizeof *v->E) == 0;
 }
 
 /* Tangents of this solve alone: what has been factored for them is kept. */
 static status use_fresh(run *r, const flow_tangent *law) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   domain d;
   int same = same_tangents(r, law);
   if (same && v->fresh.c != NULL) goto done;
@@ -167,7 +169,7 @@ done:
 /* The matrices of a tangent: those of its key if they are still there. */
 static status find_matrices(run *r, const flow_tangent *law, matrices **out) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   matrices *m = &v->slot[0];
   domain d;
   *out = law->elastic ? &r->elastic : &v->fresh;
@@ -200,10 +202,10 @@ done:
  * - e_k) and the thermal strains add to the loads; sigma[ns*x.n], e[ns*x.n]. */
 static void part_stress(run *r, const flow_tangent *law, const double *sigma,
                         const double *e, const visco_part *p) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   const int ns = r->m->ns, end = p->point + p->n_point;
   for (int k = 0, point = p->point; k < p->n_item; ++k) {
-    const int item = p->item + k, elem_id = r->eigen_elem[item];
+    const int item = p->item + k, elem_id = r->strains.elem[item];
     double *stress = v->stress + visco_at(r, k), e_k[6];
     if (point == end || v->place[point] != item) {
       voigt_product(ns, run_elasticity(r, elem_id),
@@ -225,36 +227,36 @@ static void part_stress(run *r, const flow_tangent *law, const double *sigma,
   }
 }
 
-/* r->eigen_load: the loads with what the linear law and the thermal strains
+/* r->strains.load: the loads with what the linear law and the thermal strains
  * add to them. */
 static const double *tangent_load(run *r, const flow_tangent *law) {
-  const visco_part all = {0, r->eigen.n, 0, r->visco->x.n};
+  const visco_part all = {0, r->strains.eigen.n, 0, r->strains.visco->x.n};
   part_stress(r, law, law->sigma, law->e, &all);
-  memcpy(r->eigen_load, r->now.F, r->n_dof * sizeof *r->eigen_load);
-  eigen_add_force(&r->d, r->eigen.n, r->eigen_elem, r->visco->stress,
-                  r->eigen_load);
-  return r->eigen_load;
+  memcpy(r->strains.load, r->now.F, r->n_dof * sizeof *r->strains.load);
+  eigen_add_force(&r->body.d, r->strains.eigen.n, r->strains.elem,
+                  r->strains.visco->stress, r->strains.load);
+  return r->strains.load;
 }
 
 /* The same for a step of constant laws, whose points are predicted. */
 static const double *step_load(run *r, const flow_tangent *law,
                                const scheme_call *a) {
   visco_part p = {0};
-  memcpy(r->eigen_load, r->now.F, r->n_dof * sizeof *r->eigen_load);
+  memcpy(r->strains.load, r->now.F, r->n_dof * sizeof *r->strains.load);
   while (visco_next_part(r, &p)) {
     linear_predict(a, p.point, p.point + p.n_point);
     part_stress(r, law, a->now->sigma, a->old->e, &p);
-    eigen_add_force(&r->d, p.n_item, r->eigen_elem + p.item, r->visco->stress,
-                    r->eigen_load);
+    eigen_add_force(&r->body.d, p.n_item, r->strains.elem + p.item,
+                    r->strains.visco->stress, r->strains.load);
   }
-  return r->eigen_load;
+  return r->strains.load;
 }
 
 /* The points at the equilibrium of a step of constant laws. */
 static status step_follow(run *r, const scheme_call *a) {
   status st = OK;
   visco_part p = {0};
-  r->visco->sums = (point_sums){0};
+  r->strains.visco->sums = (point_sums){0};
   while (visco_next_part(r, &p)) {
     visco_part_strains(r, &p);
     linear_follow(a, p.point, p.point + p.n_point);
@@ -293,8 +295,8 @@ done:
 /* The tangents that v->fresh is made of. */
 static status keep_fresh(run *r, archive *a) {
   status st = OK;
-  visco *v = r->visco;
-  size_t square = visco_at(r, r->m->ns), n = (size_t)r->moduli.n;
+  visco *v = r->strains.visco;
+  size_t square = visco_at(r, r->m->ns), n = (size_t)r->body.moduli.n;
   int there = v->E_is_fresh && v->fresh.c != NULL;
   TRY(archive_ints(a, "fresh", &there, 1));
   if (archive_reads(a)) v->E_is_fresh = there;
@@ -307,7 +309,7 @@ done:
 
 status tangent_keep(run *r, archive *a) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   char name[20];
   double known = r->c == r->elastic.c ? r->elastic.key : RUN_OTHER_KEY;
   if (v->fresh.c != NULL && v->fresh.c == r->c) known = v->fresh.key;
@@ -324,7 +326,7 @@ status tangent_keep(run *r, archive *a) {
   }
   TRY(keep_fresh(r, a));
   TRY(archive_reals(a, "known_key", &known, 1));
-  if (archive_reads(a)) r->known_key = known;
+  if (archive_reads(a)) r->solving.known_key = known;
   TRY(archive_bytes(a, "clock", &v->clock, sizeof v->clock));
 done:
   return st;

@@ -21,7 +21,7 @@ static status equilibrium_of(void *ctx, flow_state *s, int *settled) {
   TRY(st);
   visco_temperatures(r, &r->now, s);
   visco_strains(r, &r->now, s);
-  *settled = r->report.outcome > 0;
+  *settled = r->solving.report.outcome > 0;
 done:
   return st;
 }
@@ -40,14 +40,14 @@ static status begin(void *ctx, flow_state *s) {
 static status linear(void *ctx, const flow_tangent *law, flow_state *s,
                      int *settled) {
   run *r = ctx;
-  const double tol = r->tol;
+  const double tol = r->solving.tol;
   timer_leave(STAGE_INELASTIC);
-  r->tol = r->step->solver.tol;
+  r->solving.tol = r->step->solver.tol;
   status st = tangent_solve(r, law);
-  r->tol = tol;
+  r->solving.tol = tol;
   timer_enter(STAGE_INELASTIC);
   if (st == OK) visco_strains(r, &r->now, s);
-  *settled = r->report.outcome > 0;
+  *settled = r->solving.report.outcome > 0;
   return st;
 }
 
@@ -56,24 +56,24 @@ static status linear(void *ctx, const flow_tangent *law, flow_state *s,
 static status constant(void *ctx, const flow_tangent *law, const scheme_call *a,
                        int *settled) {
   run *r = ctx;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   timer_leave(STAGE_INELASTIC);
   status st = tangent_step(r, law, a);
   timer_enter(STAGE_INELASTIC);
-  *settled = r->report.outcome > 0;
-  v->sums.known = r->moduli.n_own == 0 &&
-                  (r->d.cluster == NULL || v->x.n == r->eigen.n) &&
-                  (r->total_no > 0 || strains_kept(r) == 0);
+  *settled = r->solving.report.outcome > 0;
+  v->sums.known = r->body.moduli.n_own == 0 &&
+                  (r->body.d.cluster == NULL || v->x.n == r->strains.eigen.n) &&
+                  (r->course.total_no > 0 || strains_kept(r) == 0);
   return st;
 }
 
 void visco_rest(run *r) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   if (v != NULL) flow_state_copy(&v->x, &v->old, &v->now);
 }
 
 status visco_begin_step(run *r) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   if (v == NULL) return OK;
   timer_enter(STAGE_INELASTIC);
   visco_temperatures(r, &r->old, &v->old);
@@ -88,7 +88,7 @@ status visco_begin_step(run *r) {
 /* Length of the step to t; one that differs by the rounding of the times only
  * from one before is the same, and so are its matrices. */
 static double step_length(run *r, double t) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   double dt = t - r->old.t, rounding = 4e-16 * (fabs(t) + fabs(r->old.t));
   for (int i = 0; i < SLOTS; ++i)
     if (fabs(v->length[i] - dt) <= rounding) return v->length[i];
@@ -98,7 +98,7 @@ static double step_length(run *r, double t) {
 
 static status advance(run *r, double t) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   const flow_body body = {r, equilibrium_of, begin, linear, constant};
   scheme_step p = {.t = t,
                    .dt = step_length(r, t),
@@ -113,18 +113,18 @@ static status advance(run *r, double t) {
   TRY(r->step->integrator->advance(&call));
   v->now.t = t;
   if (v->sums.known && r->now.e0 != NULL)
-    r->eigen.e0 = r->now.e0;
+    r->strains.eigen.e0 = r->now.e0;
   else
     strains_collect(r);
-  if (!v->result.settled && r->report.outcome > 0)
-    r->report.outcome = STOPPED_ITERATIONS;
+  if (!v->result.settled && r->solving.report.outcome > 0)
+    r->solving.report.outcome = STOPPED_ITERATIONS;
 done:
   return st;
 }
 
 status visco_between(run *r, double t, flow_state *s, double *dissipated) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   const scheme_step p = {
       .t = r->now.t, .dt = r->now.t - v->old.t, .theta = r->step->theta};
   const scheme_call call = {&v->x,   &p,      NULL,      v->work,
@@ -140,7 +140,7 @@ done:
 
 /* v->now at an equilibrium whose inelastic strains it has. */
 static void take_strains(run *r, const equilibrium *e) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   v->now.t = e->t;
   v->sums.known = 0;
   visco_temperatures(r, e, &v->now);
@@ -150,7 +150,7 @@ static void take_strains(run *r, const equilibrium *e) {
 void visco_take(run *r) { take_strains(r, &r->now); }
 
 status visco_advance(run *r, double t) {
-  if (r->visco == NULL) return increment_solve(r, t);
+  if (r->strains.visco == NULL) return increment_solve(r, t);
   timer_enter(STAGE_INELASTIC);
   status st = advance(r, t);
   timer_leave(STAGE_INELASTIC);
@@ -159,7 +159,7 @@ status visco_advance(run *r, double t) {
 
 /* From another state than that of the run, which stays. */
 static status advance_from(run *r, flow_state *from, double t) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   flow_state keep = v->old;
   v->old = *from;
   status st = advance(r, t);
@@ -170,7 +170,7 @@ static status advance_from(run *r, flow_state *from, double t) {
 }
 
 status visco_advance_from(run *r, flow_state *from, double t, flow_state *to) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   if (v == NULL) return increment_solve(r, t);
   timer_enter(STAGE_INELASTIC);
   status st = advance_from(r, from, t);
@@ -181,9 +181,9 @@ status visco_advance_from(run *r, flow_state *from, double t, flow_state *to) {
 
 status start_point_new(const run *r, start_point *p) {
   status st = OK;
-  NEW(p->uc, r->n_c);
-  NEW(p->rc, r->n_c);
-  NEW(p->motion, r->n_c);
+  NEW(p->uc, r->nodes.n_c);
+  NEW(p->rc, r->nodes.n_c);
+  NEW(p->motion, r->nodes.n_c);
 done:
   return st;
 }
@@ -195,9 +195,9 @@ void start_point_free(start_point *p) {
 }
 
 void start_point_copy(const run *r, const equilibrium *e, start_point *p) {
-  size_t bytes = (size_t)r->n_c * sizeof *p->uc;
+  size_t bytes = (size_t)r->nodes.n_c * sizeof *p->uc;
   p->t = e->t;
-  if (r->n_c == 0) return;
+  if (r->nodes.n_c == 0) return;
   memcpy(p->uc, e->uc, bytes);
   memcpy(p->rc, e->rc, bytes);
   memcpy(p->motion, e->motion, bytes);
@@ -215,7 +215,7 @@ equilibrium start_point_use(run *r, const start_point *p) {
 /* From r->now, which becomes the accepted state for the while, to t. */
 static status second_half(run *r, double t) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   start_point p = {0};
   if (v->middle.e == NULL) TRY(flow_state_new(&v->x, &v->middle));
   TRY(start_point_new(r, &p));
@@ -229,25 +229,25 @@ done:
   return st;
 }
 
-/* Two halves into v->fine[ns*n]; r->report tells if they were found. */
+/* Two halves into v->fine[ns*n]; r->solving.report tells if they were found. */
 static status two_halves(run *r, double t) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   size_t n = visco_at(r, v->x.n);
   if (v->fine == NULL) NEW(v->fine, n);
-  r->beside = 1;
+  r->course.beside = 1;
   TRY(advance(r, 0.5 * (r->old.t + t)));
-  if (r->report.outcome <= 0) goto done;
+  if (r->solving.report.outcome <= 0) goto done;
   TRY(second_half(r, t));
   memcpy(v->fine, v->now.ei, n * sizeof *v->fine);
 done:
-  r->beside = 0;
+  r->course.beside = 0;
   return st;
 }
 
 /* The difference to the halves, with Richardson's factor. */
 static double halves_error(const run *r) {
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   double power =
       ldexp(1.0, r->step->theta == 0.5 && r->step->integrator->has_theta
                      ? 2
@@ -272,13 +272,13 @@ done:
 
 static status try_step(run *r, double t, double *error) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   int estimates = r->step->integrator->estimates;
   *error = HUGE_VAL;
   if (!estimates) TRY(two_halves(r, t));
-  if (!estimates && r->report.outcome <= 0) goto done;
+  if (!estimates && r->solving.report.outcome <= 0) goto done;
   TRY(advance(r, t));
-  if (r->report.outcome <= 0) goto done;
+  if (r->solving.report.outcome <= 0) goto done;
   *error = estimates ? v->result.error : halves_error(r);
   double norm = 0.0;
   TRY(elastic_norm(v, &norm));
@@ -296,7 +296,7 @@ status visco_try(run *r, double t, double *error) {
 
 status visco_level(run *r, double dt, int *level) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   double rate;
   *level = 0;
   if (v == NULL || r->step->kind != STEP_VISCO || !step_has_limit(r->step))
@@ -315,7 +315,7 @@ done:
 
 status visco_energies(run *r, energies *e) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   timer_enter(STAGE_INELASTIC);
   e->dissipated += v->result.dissipated;
   e->stored = v->sums.stored;
@@ -337,7 +337,7 @@ static void change_places(visco *v) {
 
 status visco_accept(run *r) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   double norm = 0.0;
   const int flows = r->step->kind == STEP_VISCO && r->old.t > r->now.t;
   v->result.dissipated = 0.0;
@@ -370,7 +370,7 @@ done:
 
 status visco_keep(run *r, archive *a) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   int told = v->told == r->step;
   archive_enter(a, "visco");
   TRY(visco_keep_flow(&v->x, &v->old, a, "old"));

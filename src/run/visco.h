@@ -18,7 +18,7 @@ typedef struct locking_sums {
 /* What an increment and its end need of the points, found while a step of
  * constant laws is made. */
 typedef struct point_sums {
-  int known; /* 1: those of r->visco->old and now, r->old and r->now          */
+  int known; /* 1: those of r->strains.visco->old and now, r->old and r->now */
   double thermal, inelastic; /* J, work of the middle stress on the strains   */
   double held;    /* J, what the strains would store if they were held        */
   double strain;  /* J, energy of the stresses                                */
@@ -29,7 +29,7 @@ typedef struct point_sums {
 
 struct visco {
   flow x;
-  int *place; /* [x.n] of a point in r->eigen                                */
+  int *place; /* [x.n] of a point in r->strains.eigen */
   int *elem;  /* [x.n]                                                       */
   flow_state old, now;
   flow_state middle; /* between two halves of a step                         */
@@ -42,11 +42,11 @@ struct visco {
   long clock;
   double length[SLOTS]; /* of the last different steps, s                     */
   unsigned n_length;
-  double *E;       /* [ns*ns*(r->moduli.n + x.n)] of a tangent                */
-  double *stress;  /* [ns*r->eigen.n] Pa                                      */
+  double *E; /* [ns*ns*(r->body.moduli.n + x.n)] of a tangent                */
+  double *stress;  /* [ns*r->strains.eigen.n] Pa  */
   int E_is_fresh;  /* that of "fresh"                                    */
   int *section_id; /* [n_elem] sections of their own for the points     */
-  kinematics *kin; /* [r->moduli.n + x.n]                               */
+  kinematics *kin; /* [r->body.moduli.n + x.n]                               */
   double *thickness; /* the same                                          */
   double largest;    /* largest norm of the elastic strains so far        */
   const step *told;  /* step whose ringing has been told                  */
@@ -82,8 +82,8 @@ status visco_keep_flow(const flow *x, flow_state *s, archive *a,
 void visco_temperatures(const run *r, const equilibrium *e, flow_state *s);
 /* Strains, less the thermal ones, of an equilibrium into s->e; stresses. */
 void visco_strains(run *r, const equilibrium *e, flow_state *s);
-/* Items item, ..., item + n_item - 1 of r->eigen and the points among them,
- * which are points in turn from "point" on. */
+/* Items item, ..., item + n_item - 1 of r->strains.eigen and the points among
+ * them, which are points in turn from "point" on. */
 typedef struct visco_part {
   int item, n_item, point, n_point;
 } visco_part;
@@ -101,7 +101,7 @@ void visco_warn_locking(run *r);
 void visco_warn_stuck(run *r);
 
 /* tangent.c: equilibrium of r->now with the linear law of the points, with a
- * matrix of that tangent; read r->report. */
+ * matrix of that tangent; read r->solving.report. */
 status tangent_solve(run *r, const flow_tangent *law);
 /* The same for a step of constant laws, with v->sums. */
 status tangent_step(run *r, const flow_tangent *law, const scheme_call *a);

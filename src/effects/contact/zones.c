@@ -96,12 +96,13 @@ static double tangential(const run *r, int i) {
 
 static void set_levels(finder *z) {
   const run *r = z->r;
-  for (int i = 0; i < r->n; ++i) {
+  for (int i = 0; i < r->nodes.n; ++i) {
     double area = r->surface->area[i], scale = area > 0.0 ? 1.0 / area : 0.0;
     double p = -scale * r->now.rc[z->dim * i];
-    double left = r->g == NULL ? 0.0 : scale * (r->g[i] - tangential(r, i));
-    z->closed.in[i] = r->contact[i] != CONTACT_OPEN;
-    z->stick.in[i] = r->contact[i] == CONTACT_STICK;
+    double left =
+        r->result.g == NULL ? 0.0 : scale * (r->result.g[i] - tangential(r, i));
+    z->closed.in[i] = r->result.contact[i] != CONTACT_OPEN;
+    z->stick.in[i] = r->result.contact[i] == CONTACT_STICK;
     z->closed.square[i] = p * p;
     z->stick.square[i] = left * left;
   }
@@ -274,7 +275,7 @@ done:
 
 static status find_areas(const finder *z, int contact_id) {
   status st = OK;
-  const mesh_group *group = z->r->pairs[contact_id].group;
+  const mesh_group *group = z->r->faces.pairs[contact_id].group;
   double whole = 0.0, closed = 0.0, stick = 0.0;
   contact_zone zone = {.contact_id = contact_id};
   for (int f = 0; f < group->n_item; ++f) {
@@ -300,24 +301,24 @@ done:
 
 /* Direction of the slip along t; 0 without friction or slip. */
 static int slip_sign(const finder *z, int i) {
-  if (z->r->contact[i] != CONTACT_SLIP) return 0;
+  if (z->r->result.contact[i] != CONTACT_SLIP) return 0;
   double rt = z->r->now.rc[2 * i + 1];
   return (rt < 0.0) - (rt > 0.0);
 }
 
 /* Part of the way from node i to the next one, j, where the zone ends. */
 static double zone_end(const finder *z, int i, int j) {
-  const contact_status *kind = z->r->contact;
+  const contact_status *kind = z->r->result.contact;
   const level *l = &z->closed;
   if (z->closed.in[i] && z->closed.in[j]) l = &z->stick;
   if (kind[i] != kind[j])
     return l->in[i] ? reach(z, l, i, j) : 1.0 - reach(z, l, j, i);
-  double a = fabs(z->r->slip[i]), b = fabs(z->r->slip[j]);
+  double a = fabs(z->r->result.slip[i]), b = fabs(z->r->result.slip[j]);
   return a + b > 0.0 ? a / (a + b) : 0.5;
 }
 
 static int same_zone(const finder *z, int i, int j) {
-  return z->r->contact[i] == z->r->contact[j] &&
+  return z->r->result.contact[i] == z->r->result.contact[j] &&
          slip_sign(z, i) == slip_sign(z, j);
 }
 
@@ -330,9 +331,9 @@ static void add_piece(const finder *z, int i, double a, double b,
   double length = distance(z, i, z->next[i]) * (b - a);
   double radius = r->surface->x[2 * i] + 0.5 * (a + b) * way[0];
   zone->length += length;
-  zone->area +=
-      length * (r->input.axisymmetric ? 2 * acos(-1.0) * radius
-                                      : r->face_weight[z->next_face[i]]);
+  zone->area += length * (r->faces.input.axisymmetric
+                              ? 2 * acos(-1.0) * radius
+                              : r->faces.face_weight[z->next_face[i]]);
 }
 
 static void set_point(const finder *z, int i, double part, double *x) {
@@ -344,7 +345,7 @@ static void set_point(const finder *z, int i, double part, double *x) {
 
 static contact_zone zone_at(const finder *z, int contact_id, int i) {
   return (contact_zone){.contact_id = contact_id,
-                        .kind = (int)z->r->contact[i],
+                        .kind = (int)z->r->result.contact[i],
                         .direction = slip_sign(z, i)};
 }
 
@@ -395,8 +396,8 @@ static int cut_ring(const finder *z, int start) {
 
 static status find_lines(finder *z, int contact_id) {
   status st = OK;
-  const mesh_group *group = z->r->pairs[contact_id].group;
-  int n = z->r->n, node[3];
+  const mesh_group *group = z->r->faces.pairs[contact_id].group;
+  int n = z->r->nodes.n, node[3];
   for (int i = 0; i < n; ++i) z->next[i] = z->before[i] = -1;
   for (int f = 0; f < group->n_item; ++f) {
     if (!face_nodes(z, group->item_id[f], node)) continue;
@@ -425,8 +426,8 @@ static status find_zones(run *r, void *self) {
   TRY(finder_new(r, &z));
   set_levels(&z);
   for (int i = 0; i < r->m->n_contact && z.dim == 3; ++i) {
-    add_slopes(&z, r->pairs[i].group, &z.closed);
-    add_slopes(&z, r->pairs[i].group, &z.stick);
+    add_slopes(&z, r->faces.pairs[i].group, &z.closed);
+    add_slopes(&z, r->faces.pairs[i].group, &z.stick);
   }
   for (int i = 0; i < r->m->n_contact; ++i)
     TRY(z.dim == 3 ? find_areas(&z, i) : find_lines(&z, i));
@@ -465,10 +466,10 @@ static status zones_copy(const run *r, const void *of, void **self) {
 }
 
 static int zones_due(const run *r) {
-  const int within = r->beside;
-  return r->n > 0 && table_is_due(r->step, PRINT_ZONES, r->now.t,
-                                  within ? -1 : r->at.increment_no,
-                                  within ? 0 : r->at.last);
+  const int within = r->course.beside;
+  return r->nodes.n > 0 && table_is_due(r->step, PRINT_ZONES, r->now.t,
+                                        within ? -1 : r->at.increment_no,
+                                        within ? 0 : r->at.last);
 }
 
 static void zones_free(void *self) {

@@ -33,8 +33,8 @@ static status find(run *r, void *self) {
   status st = OK;
   true_error *own = self;
   double cpu = timer_cpu();
-  const answer_fields a = {r->now.t, r->now.u, r->stress, r->now.rc};
-  TRY(exact_error_find(&r->m->ref, &r->d, &a, own));
+  const answer_fields a = {r->now.t, r->now.u, r->result.stress, r->now.rc};
+  TRY(exact_error_find(&r->m->ref, &r->body.d, &a, own));
   own->cpu += timer_cpu() - cpu;
 done:
   return st;

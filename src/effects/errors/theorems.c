@@ -25,20 +25,21 @@ static status theorems_scene_new(run *r, const equilibrium *e,
                                  unsigned char **given) {
   status st = OK;
   NEW(*mu, r->m->n_contact);
-  NEW(*given, r->n);
+  NEW(*given, r->nodes.n);
   for (int c = 0; c < r->m->n_contact; ++c)
     (*mu)[c] = limit_coefficient(r, c, r->now.t);
-  for (int i = 0; i < r->n; ++i)
+  for (int i = 0; i < r->nodes.n; ++i)
     (*given)[i] = r->m->contacts[r->surface->contact_id[i]].force.given != 0;
-  *s = (theorems_scene){.cp = &r->cp,
-                        .u = e->uc,
-                        .r = e->rc,
-                        .n_contact = r->m->n_contact,
-                        .contact_id = r->surface->contact_id,
-                        .mu = *mu,
-                        .given = *given,
-                        .alone = r->step->kind == STEP_STATIC || r->relaxing,
-                        .tol = r->tol};
+  *s = (theorems_scene){
+      .cp = &r->problem.cp,
+      .u = e->uc,
+      .r = e->rc,
+      .n_contact = r->m->n_contact,
+      .contact_id = r->surface->contact_id,
+      .mu = *mu,
+      .given = *given,
+      .alone = r->step->kind == STEP_STATIC || r->course.relaxing,
+      .tol = r->solving.tol};
 done:
   return st;
 }
@@ -61,9 +62,9 @@ typedef struct body_map {
 static status elastic_body(run *r, body_map *b) {
   status st = OK;
   b->c = r->elastic.c;
-  if (!r->stale) goto done;
-  TRY(stiffness_assemble(&r->d, &b->own.k));
-  TRY(condense(b->own.k, &r->d, &b->own.c));
+  if (!r->body.stale) goto done;
+  TRY(stiffness_assemble(&r->body.d, &b->own.k));
+  TRY(condense(b->own.k, &r->body.d, &b->own.c));
   b->c = b->own.c;
 done:
   return st;
@@ -73,8 +74,8 @@ done:
 static status linear_body(run *r, const unsigned char *given, body_map *b) {
   status st = OK;
   unsigned char *none = NULL;
-  contact_problem cp = r->cp;
-  NEW(none, r->n);
+  contact_problem cp = r->problem.cp;
+  NEW(none, r->nodes.n);
   TRY(elastic_body(r, b));
   cp.A = condensed_matrix(b->c);
   TRY(frozen_new(&cp, r->now.rc, none, given, &b->problem));
@@ -86,16 +87,16 @@ done:
 
 static status body_map_new(run *r, const unsigned char *given, body_map *b) {
   status st = OK;
-  const visco *v = r->visco;
+  const visco *v = r->strains.visco;
   const size_t ns = (size_t)r->m->ns, n = (size_t)v->x.n;
   b->r = r;
   NEW(b->Q, ns * ns * n);
-  NEW(b->e0, ns * (size_t)r->eigen.n);
-  NEW(b->sigma, ns * (size_t)r->eigen.n);
+  NEW(b->e0, ns * (size_t)r->strains.eigen.n);
+  NEW(b->sigma, ns * (size_t)r->strains.eigen.n);
   NEW(b->F, r->n_dof);
   NEW(b->u, r->n_dof);
-  NEW(b->f, r->n_c);
-  NEW(b->du, r->n_c);
+  NEW(b->f, r->nodes.n_c);
+  NEW(b->du, r->nodes.n_c);
   TRY(linear_body(r, given, b));
   double size = flow_norm(&v->x, v->now.ei);
   for (int k = 0; k < v->x.n; ++k)
@@ -120,7 +121,7 @@ static void body_map_free(body_map *b) {
 
 /* e0 = Q sigma of all points. */
 static void flow_by_law(body_map *b) {
-  const visco *v = b->r->visco;
+  const visco *v = b->r->strains.visco;
   const int ns = b->r->m->ns;
   for (int k = 0; k < v->x.n; ++k) {
     size_t at = visco_at(b->r, v->place[k]);
@@ -134,25 +135,25 @@ static status answer_of_body(void *ctx, double *size) {
   status st = OK;
   body_map *b = ctx;
   run *r = b->r;
-  const visco *v = r->visco;
-  const eigenstrain x = {r->eigen.n, r->eigen_elem, b->e0};
+  const visco *v = r->strains.visco;
+  const eigenstrain x = {r->strains.eigen.n, r->strains.elem, b->e0};
   double square = 0.0;
   if (b->begun) flow_by_law(b);
   b->begun = 1;
   memset(b->F, 0, r->n_dof * sizeof *b->F);
-  eigen_force(&r->d, &x, b->F);
+  eigen_force(&r->body.d, &x, b->F);
   TRY(condense_load(b->c, b->F, NULL, b->f));
   linear_contact_move(b->contact, b->f, b->du);
   TRY(condense_recover(b->c, b->du, b->u));
   double *elastic = v->stress;
-  eigen_stress(&r->d, &x, b->u, elastic, b->sigma);
+  eigen_stress(&r->body.d, &x, b->u, elastic, b->sigma);
   for (int k = 0; k < v->x.n; ++k) {
     size_t at = visco_at(r, v->place[k]);
     square +=
         v->x.weight[k] * tensor_dot(r->m->ns, elastic + at, b->sigma + at);
   }
   *size = sqrt(fmax(square, 0.0));
-  for (size_t i = 0; *size > 0.0 && i < visco_at(r, r->eigen.n); ++i)
+  for (size_t i = 0; *size > 0.0 && i < visco_at(r, r->strains.eigen.n); ++i)
     b->sigma[i] /= *size;
 done:
   return st;
@@ -167,7 +168,7 @@ static double theta_of(const step *s) {
 /* Theorem 3.2 over the increment. */
 static status see_path(run *r, const unsigned char *given, checked *own) {
   status st = OK;
-  visco *v = r->visco;
+  visco *v = r->strains.visco;
   theorems_path *out = &own->report.path;
   body_map b = {0};
   if (v == NULL || r->step->kind != STEP_VISCO) return OK;
@@ -235,7 +236,7 @@ done:
   return st;
 }
 
-static int due(const run *r) { return r->n > 0 && r->step->theorems; }
+static int due(const run *r) { return r->nodes.n > 0 && r->step->theorems; }
 
 static void show(const void *self, state *s) {
   s->theorems = ((const checked *)self)->report;

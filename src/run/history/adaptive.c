@@ -39,7 +39,7 @@ static double next_end(const run *r, double dt) {
 /* A body in the air, or hardly touching: its strains, and their error, are
  * rounding. */
 static int strains_are_rounding(run *r) {
-  r->now.energy.strain = domain_strain_energy(&r->d, r->now.u);
+  r->now.energy.strain = domain_strain_energy(&r->body.d, r->now.u);
   return rounding_hides_strains(r);
 }
 
@@ -57,25 +57,25 @@ static status attempt_adapted(run *r) {
   tried = t - r->old.t;
   TRY(path_try(r, t));
   TRY(visco_try(r, t, &error));
-  int settled = r->report.outcome > 0;
+  int settled = r->solving.report.outcome > 0;
   if (settled && error > s->tolerance && strains_are_rounding(r)) error = 0.0;
-  r->missed = settled && error > s->tolerance;
-  if ((!settled || r->missed) && fmin(tried, p->dt) > least &&
+  r->course.missed = settled && error > s->tolerance;
+  if ((!settled || r->course.missed) && fmin(tried, p->dt) > least &&
       loop_cut_helps(r)) {
     TRY(loop_reject(r, attempt, p->increment_no + 1,
                     settled ? "strain error above TOLERANCE"
-                            : outcome_text(r->report.outcome)));
+                            : outcome_text(r->solving.report.outcome)));
     p->dt = fmax(least, fmin(0.5 * tried, next_length(s, tried, error)));
     ++p->attempt;
     goto done;
   }
-  if (outcome_is_fatal(r->report.outcome)) TRY(loop_no_equilibrium(r));
+  if (outcome_is_fatal(r->solving.report.outcome)) TRY(loop_no_equilibrium(r));
   p->attempt = 1;
   ++p->increment_no;
   TRY(loop_accept(r, attempt, p->increment_no, t == end, cpu));
   p->dt = fmax(least_length(r), settled ? next_length(s, tried, error) : tried);
 done:
-  r->missed = 0;
+  r->course.missed = 0;
   return st;
 }
 

@@ -27,7 +27,9 @@ static const double MOST_TOL = 0.1;   /* -                                    */
 static const double SAFETY = 0.7;     /* -, of the share, for another pass    */
 static const double SHARPEST = 1e-3;  /* -, change of the residual in a pass  */
 
-static int is_balanced(const run *r) { return r->step->balanced && r->n > 0; }
+static int is_balanced(const run *r) {
+  return r->step->balanced && r->nodes.n > 0;
+}
 
 void balance_free(balance *b) {
   memory_free(b->u);
@@ -40,12 +42,12 @@ void balance_free(balance *b) {
 status balance_begin(run *r) {
   status st = OK;
   balance *b = &r->balance;
-  r->guess_u = r->guess_r = NULL;
+  r->solving.guess_u = r->solving.guess_r = NULL;
   b->known = 0;
   b->report = (balance_report){0};
-  if (!is_balanced(r) || b->m == r->n_c) goto done;
+  if (!is_balanced(r) || b->m == r->nodes.n_c) goto done;
   balance_free(b);
-  b->m = r->n_c;
+  b->m = r->nodes.n_c;
   NEW(b->u, b->m);
   NEW(b->rc, b->m);
   NEW(b->guess_u, b->m);
@@ -59,14 +61,14 @@ done:
 static void guess(run *r, double t) {
   balance *b = &r->balance;
   double span = r->old.t - b->t, w = (t - r->old.t) / span;
-  r->guess_u = r->guess_r = NULL;
+  r->solving.guess_u = r->solving.guess_r = NULL;
   if (!b->known || !(span > 0.0)) return;
   for (int i = 0; i < b->m; ++i) {
     b->guess_u[i] = r->old.uc[i] + w * (r->old.uc[i] - b->u[i]);
     b->guess_r[i] = r->old.rc[i] + w * (r->old.rc[i] - b->rc[i]);
   }
-  r->guess_u = b->guess_u;
-  r->guess_r = b->guess_r;
+  r->solving.guess_u = b->guess_u;
+  r->solving.guess_r = b->guess_r;
 }
 
 /* The next solve goes on from r->now. */
@@ -74,8 +76,8 @@ static void go_on(run *r) {
   balance *b = &r->balance;
   memcpy(b->guess_u, r->now.uc, (size_t)b->m * sizeof *b->guess_u);
   memcpy(b->guess_r, r->now.rc, (size_t)b->m * sizeof *b->guess_r);
-  r->guess_u = b->guess_u;
-  r->guess_r = b->guess_r;
+  r->solving.guess_u = b->guess_u;
+  r->solving.guess_r = b->guess_r;
 }
 
 static double wanted_error(const run *r) {
@@ -96,14 +98,16 @@ static double wanted_tolerance(const run *r) {
 static status judge(run *r, double *tol, int *again) {
   status st = OK;
   balance *b = &r->balance;
-  double least = r->step->solver.tol, at = fmin(*tol, r->report.residual);
+  double least = r->step->solver.tol,
+         at = fmin(*tol, r->solving.report.residual);
   *again = 0;
   TRY(estimate_judge(r));
-  if (isfinite(r->mesh_error.relative)) b->mesh = r->mesh_error.relative;
-  double wanted = wanted_error(r), error = r->error.relative;
+  if (isfinite(r->errors.mesh_error.relative))
+    b->mesh = r->errors.mesh_error.relative;
+  double wanted = wanted_error(r), error = r->errors.error.relative;
   int unknown = !isfinite(error);
   if (!unknown && error <= wanted) goto done;
-  if (*tol <= least || r->report.residual <= least) goto done;
+  if (*tol <= least || r->solving.report.residual <= least) goto done;
   double factor = unknown ? 0.0 : SAFETY * wanted / error;
   *tol = unknown ? least : fmax(least, at * fmax(factor, SHARPEST));
   *again = 1;
@@ -121,25 +125,25 @@ status balance_advance(run *r, double t) {
   balance *b = &r->balance;
   int again = 1, iterations = 0;
   double tol, cpu = timer_cost(STAGE_CONTACT).cpu;
-  r->judged = 0;
+  r->errors.judged = 0;
   if (!is_balanced(r)) return solve_once(r, t);
   b->report = (balance_report){.asked = 1};
   tol = wanted_tolerance(r);
   guess(r, t);
   for (int k = 1; again && k <= PASSES; ++k) {
-    r->tol = k == PASSES ? r->step->solver.tol : tol;
+    r->solving.tol = k == PASSES ? r->step->solver.tol : tol;
     b->report.passes = k;
     TRY(solve_once(r, t));
-    iterations += r->report.iterations;
-    if (r->report.outcome <= 0) break;
+    iterations += r->solving.report.iterations;
+    if (r->solving.report.outcome <= 0) break;
     TRY(judge(r, &tol, &again));
     go_on(r);
   }
-  r->report.iterations = iterations;
+  r->solving.report.iterations = iterations;
   b->iterations += iterations;
   b->cpu += timer_cost(STAGE_CONTACT).cpu - cpu;
 done:
-  r->guess_u = r->guess_r = NULL;
+  r->solving.guess_u = r->solving.guess_r = NULL;
   return st;
 }
 
@@ -154,7 +158,7 @@ static int ends_at_once(const solver_report *rep) {
 /* Iterations from the residual reached to the default. */
 static double saved_iterations(run *r) {
   balance *b = &r->balance;
-  const solver_report *rep = &r->report;
+  const solver_report *rep = &r->solving.report;
   double left = log10(rep->residual / r->step->solver.tol);
   if (!(left > 0.0)) return 0.0;
   if (ends_at_once(rep)) return 1.0;
@@ -167,8 +171,8 @@ static double saved_iterations(run *r) {
 static void make_report(run *r) {
   balance *b = &r->balance;
   balance_report *out = &b->report;
-  out->tol = r->tol;
-  out->wanted = isfinite(r->error.relative) ? wanted_error(r) : NAN;
+  out->tol = r->solving.tol;
+  out->wanted = isfinite(r->errors.error.relative) ? wanted_error(r) : NAN;
   out->saved_iterations = saved_iterations(r);
   out->saved_cpu = b->iterations > 0.0
                        ? out->saved_iterations * b->cpu / b->iterations
@@ -180,12 +184,14 @@ status balance_learn(run *r) {
   size_t bytes = (size_t)b->m * sizeof *b->u;
   if (!is_balanced(r)) return OK;
   make_report(r);
-  if (isfinite(r->mesh_error.relative)) b->mesh = r->mesh_error.relative;
-  b->time = r->time_error.asked && isfinite(r->time_error.relative)
-                ? r->time_error.relative
-                : 0.0;
-  double rate = r->error.relative / r->report.residual;
-  if (r->report.residual > 10.0 * r->step->solver.tol && isfinite(rate))
+  if (isfinite(r->errors.mesh_error.relative))
+    b->mesh = r->errors.mesh_error.relative;
+  b->time =
+      r->errors.time_error.asked && isfinite(r->errors.time_error.relative)
+          ? r->errors.time_error.relative
+          : 0.0;
+  double rate = r->errors.error.relative / r->solving.report.residual;
+  if (r->solving.report.residual > 10.0 * r->step->solver.tol && isfinite(rate))
     b->per_residual = rate;
   b->t = r->old.t;
   b->known = r->now.t > r->old.t;
@@ -200,7 +206,7 @@ status balance_keep(run *r, archive *a) {
   size_t m = (size_t)b->m;
   double *learnt[] = {&b->mesh,      &b->time,       &b->per_residual,
                       &b->per_digit, &b->iterations, &b->cpu,
-                      &b->t,         &r->tol};
+                      &b->t,         &r->solving.tol};
   archive_enter(a, "balance");
   TRY(archive_ints(a, "known", &b->known, 1));
   for (size_t i = 0; i < sizeof learnt / sizeof *learnt; ++i) {

@@ -25,7 +25,8 @@ typedef struct own_array {
 /* Arrays that the copy changes and the run still needs. */
 static void list_own(run *b, own_array list[OWN]) {
   equilibrium *e = &b->now;
-  const size_t n = (size_t)b->n, n_c = (size_t)b->n_c, dofs = b->n_dof;
+  const size_t n = (size_t)b->nodes.n, n_c = (size_t)b->nodes.n_c,
+               dofs = b->n_dof;
   const size_t sides = n_c - n, elements = (size_t)b->msh->n_elem;
   const size_t strains = strains_kept(b);
   const own_array all[OWN] = {{&e->u, dofs},
@@ -37,14 +38,14 @@ static void list_own(run *b, own_array list[OWN]) {
                               {&e->thermal, strains},
                               {&e->e0, strains},
                               {&e->sigma, strains},
-                              {&b->f, (size_t)b->n_row},
-                              {&b->f_load, (size_t)b->n_row},
-                              {&b->gap, n},
-                              {&b->side_gap, sides},
-                              {&b->ut0, sides},
+                              {&b->problem.f, (size_t)b->nodes.n_row},
+                              {&b->problem.f_load, (size_t)b->nodes.n_row},
+                              {&b->problem.gap, n},
+                              {&b->problem.side_gap, sides},
+                              {&b->problem.ut0, sides},
                               {&e->elastic, strains},
-                              {&b->distance, n},
-                              {&b->ud, dofs},
+                              {&b->result.distance, n},
+                              {&b->loads.ud, dofs},
                               {&e->temperature, elements}};
   memcpy(list, all, sizeof all);
 }
@@ -74,11 +75,11 @@ void beside_free(beside *b) {
   for (int i = 0; i < OWN; ++i) memory_free(*list[i].at);
   effects_release(&b->r);
   limit_free_copy(&b->r);
-  if (b->r.moduli.n_own > 0) {
+  if (b->r.body.moduli.n_own > 0) {
     matrices_free(&b->r.elastic);
-    moduli_free(&b->r.moduli);
+    moduli_free(&b->r.body.moduli);
   }
-  forms_free(b->r.forms);
+  forms_free(b->r.problem.forms);
   flow_state_free(&b->v.now);
   memory_free(b);
 }
@@ -86,15 +87,15 @@ void beside_free(beside *b) {
 /* Moduli that follow the temperature, and their matrix, are the copy's own. */
 static status own_moduli(const run *r, run *b) {
   status st = OK;
-  if (r->moduli.n_own == 0) return OK;
+  if (r->body.moduli.n_own == 0) return OK;
   b->c = NULL;
-  b->stale = 1;
+  b->body.stale = 1;
   b->elastic = (matrices){0};
-  b->moduli = (moduli){0};
-  st = moduli_new(r->m, r->msh, r->now.temperature, &b->moduli);
-  b->moduli.n_own = r->moduli.n_own; /* owned also after a failure            */
+  b->body.moduli = (moduli){0};
+  st = moduli_new(r->m, r->msh, r->now.temperature, &b->body.moduli);
+  b->body.moduli.n_own = r->body.moduli.n_own; /* owned also after a failure */
   TRY(st);
-  moduli_domain(&b->moduli, r->m, &b->d);
+  moduli_domain(&b->body.moduli, r->m, &b->body.d);
 done:
   return st;
 }
@@ -102,15 +103,15 @@ done:
 static status own_points(const run *r, beside *b) {
   status st = OK;
   visco *v = &b->v;
-  if (r->visco == NULL) return OK;
-  *v = *r->visco;
+  if (r->strains.visco == NULL) return OK;
+  *v = *r->strains.visco;
   v->now = (flow_state){0};
   v->sums.known = 0;
   for (int i = 0; i < SLOTS; ++i) v->slot[i] = (matrices){0};
   v->fresh = (matrices){0};
-  b->r.visco = v;
+  b->r.strains.visco = v;
   TRY(flow_state_new(&v->x, &v->now));
-  flow_state_copy(&v->x, &r->visco->old, &v->now);
+  flow_state_copy(&v->x, &r->strains.visco->old, &v->now);
 done:
   return st;
 }
@@ -123,26 +124,26 @@ static status beside_new(const run *r, beside **out) {
   *out = b;
   run *own = &b->r;
   *own = *r;
-  own->beside = 1;
+  own->course.beside = 1;
   own->c = r->elastic.c;
   own->solver = r->elastic.solver;
-  own->known_key = RUN_NO_KEY;
-  own->forms = NULL;
-  own->limit = (friction_limit){0};
-  own->limit_known = 0;
-  own->zone = NULL;
-  own->rate = (known_rate){0};
-  own->solutions = (solution_set){0};
-  own->recovery = NULL;
-  own->jumps = 0;
-  own->note[0] = '\0';
-  if (r->d.eigen != NULL) own->d.eigen = &own->eigen;
+  own->solving.known_key = RUN_NO_KEY;
+  own->problem.forms = NULL;
+  own->friction.limit = (friction_limit){0};
+  own->friction.known = 0;
+  own->friction.zone = NULL;
+  own->solving.rate = (known_rate){0};
+  own->errors.solutions = (solution_set){0};
+  own->errors.recovery = NULL;
+  own->errors.jumps = 0;
+  own->course.note[0] = '\0';
+  if (r->body.d.eigen != NULL) own->body.d.eigen = &own->strains.eigen;
   own->effects.n = 0;
-  own->moduli.n_own = 0; /* not owned yet                                    */
+  own->body.moduli.n_own = 0; /* not owned yet */
   TRY(copy_arrays(own));
   TRY(own_points(r, b));
   TRY(own_moduli(r, own));
-  if (r->forms != NULL) TRY(forms_new(own));
+  if (r->problem.forms != NULL) TRY(forms_new(own));
   TRY(effects_copy(r, own));
 done:
   return st;
@@ -150,10 +151,11 @@ done:
 
 static status solve(run *r, run *b, double t) {
   status st = OK;
-  if (r->visco != NULL && r->step->kind == STEP_VISCO)
-    TRY(visco_between(r, t, &b->visco->now, &b->visco->result.dissipated));
+  if (r->strains.visco != NULL && r->step->kind == STEP_VISCO)
+    TRY(visco_between(r, t, &b->strains.visco->now,
+                      &b->strains.visco->result.dissipated));
   TRY(increment_solve(b, t));
-  if (b->visco != NULL) visco_take(b);
+  if (b->strains.visco != NULL) visco_take(b);
   TRY(result_evaluate(b, 1));
 done:
   return st;
@@ -176,8 +178,9 @@ done:
 
 static status solve_with(run *r, run *b, const double *more) {
   status st = OK;
-  if (b->visco != NULL)
-    flow_state_copy(&b->visco->x, &r->visco->now, &b->visco->now);
+  if (b->strains.visco != NULL)
+    flow_state_copy(&b->strains.visco->x, &r->strains.visco->now,
+                    &b->strains.visco->now);
   TRY(increment_begin(b, r->now.t));
   for (size_t i = 0; i < b->n_dof; ++i) b->now.F[i] += more[i];
   TRY(run_use(b, &b->elastic));
@@ -194,9 +197,10 @@ status beside_with(void *run_, const double *more, double *u, double *rc,
   timer_enter(STAGE_BETWEEN);
   TRY(beside_new(r, &b));
   TRY(solve_with(r, &b->r, more));
-  *solved = b->r.report.outcome > 0;
+  *solved = b->r.solving.report.outcome > 0;
   memcpy(u, b->r.now.u, r->n_dof * sizeof *u);
-  if (r->n_c > 0) memcpy(rc, b->r.now.rc, (size_t)r->n_c * sizeof *rc);
+  if (r->nodes.n_c > 0)
+    memcpy(rc, b->r.now.rc, (size_t)r->nodes.n_c * sizeof *rc);
 done:
   timer_leave(STAGE_BETWEEN);
   beside_free(b);

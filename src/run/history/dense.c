@@ -20,7 +20,7 @@ static status show(run *r, double t, int increment_no) {
   TRY(beside_at(r, t, &b));
   run *own = beside_run(b);
   TRY(effects_accept(own));
-  if (own->report.outcome <= 0) ++r->unsettled;
+  if (own->solving.report.outcome <= 0) ++r->course.unsettled;
   state s = loop_state(own, 1, increment_no);
   s.within = 1;
   TRY(r->sink->between(r->sink->ctx, &s));

@@ -53,20 +53,23 @@ static int choose_inverse(run *r, inverse_energy *out) {
   return out->n_kernel >= 0;
 }
 
-/* Error of the mesh and the share of each element, from r->stress. */
+/* Error of the mesh and the share of each element, from r->result.stress. */
 static status estimate_mesh(run *r) {
   status st = OK;
   double cpu = timer_cpu();
   space_error found;
-  r->mesh_error.asked = r->step->mesh_error;
+  r->errors.mesh_error.asked = r->step->mesh_error;
   if (!r->step->mesh_error) return OK;
-  if (r->recovery == NULL) TRY(space_recovery_new(&r->d, &r->recovery));
-  TRY(space_estimate(r->recovery, r->stress, r->elem_error, &found));
-  r->mesh_error.relative = found.relative;
+  if (r->errors.recovery == NULL)
+    TRY(space_recovery_new(&r->body.d, &r->errors.recovery));
+  TRY(space_estimate(r->errors.recovery, r->result.stress, r->errors.elem_error,
+                     &found));
+  r->errors.mesh_error.relative = found.relative;
   double whole = hypot(found.norm, found.error);
   for (int e = 0; e < r->msh->n_elem; ++e)
-    r->elem_error[e] = whole > 0.0 ? r->elem_error[e] / whole : 0.0;
-  r->mesh_error.cpu += timer_cpu() - cpu;
+    r->errors.elem_error[e] =
+        whole > 0.0 ? r->errors.elem_error[e] / whole : 0.0;
+  r->errors.mesh_error.cpu += timer_cpu() - cpu;
 done:
   return st;
 }
@@ -76,14 +79,15 @@ static status estimate_solver(run *r) {
   solver_error found = {.norm = NAN, .why = weakly_held};
   inverse_energy inverse;
   double cpu = timer_cpu();
-  r->error = (error_bound){0};
-  if (r->n == 0 || r->step->no_solver_error) return OK;
+  r->errors.error = (error_bound){0};
+  if (r->nodes.n == 0 || r->step->no_solver_error) return OK;
   timer_enter(STAGE_ESTIMATE);
   if (choose_inverse(r, &inverse))
-    TRY(solver_error_bound(&r->cp, &inverse, run_rows(r, 0, r->now.uc),
-                           run_rows(r, 1, r->now.rc), &r->rate, &found));
-  error_bound_set(&found, r->now.energy.strain, &r->error);
-  r->error.cpu = r->bound_cpu += timer_cpu() - cpu;
+    TRY(solver_error_bound(&r->problem.cp, &inverse, run_rows(r, 0, r->now.uc),
+                           run_rows(r, 1, r->now.rc), &r->solving.rate,
+                           &found));
+  error_bound_set(&found, r->now.energy.strain, &r->errors.error);
+  r->errors.error.cpu = r->errors.bound_cpu += timer_cpu() - cpu;
 done:
   timer_leave(STAGE_ESTIMATE);
   return st;
@@ -92,50 +96,51 @@ done:
 void estimate_unloaded(run *r) {
   const energies *e = &r->now.energy;
   if (rounding_is_all(r)) {
-    r->mesh_error.relative = r->time_error.relative = 0.0;
-    if (r->error.why == NULL) r->error.relative = 0.0;
-    r->error.hidden = 0.0;
+    r->errors.mesh_error.relative = r->errors.time_error.relative = 0.0;
+    if (r->errors.error.why == NULL) r->errors.error.relative = 0.0;
+    r->errors.error.hidden = 0.0;
     return;
   }
   if (!(e->strain < UNLOADED * e->largest)) return;
   double share = sqrt(fmax(e->strain, 0.0) / e->largest);
-  r->mesh_error.relative *= share;
-  r->time_error.relative *= share;
-  if (r->error.asked && r->error.why == NULL)
-    r->error.relative = sqrt(r->error.energy / e->largest);
+  r->errors.mesh_error.relative *= share;
+  r->errors.time_error.relative *= share;
+  if (r->errors.error.asked && r->errors.error.why == NULL)
+    r->errors.error.relative = sqrt(r->errors.error.energy / e->largest);
 }
 
 status estimate_judge(run *r) {
   status st = OK;
-  r->now.energy.strain = domain_strain_energy(&r->d, r->now.u);
-  domain_stress(&r->d, r->now.u, NULL, r->stress);
+  r->now.energy.strain = domain_strain_energy(&r->body.d, r->now.u);
+  domain_stress(&r->body.d, r->now.u, NULL, r->result.stress);
   TRY(estimate_solver(r));
   TRY(estimate_mesh(r));
-  r->judged = 1;
+  r->errors.judged = 1;
 done:
   return st;
 }
 
 /* The bound counts from the discrete solution, which rounding has missed. */
 static void add_rounding(run *r) {
-  solver_error e = {.rate = r->error.rate, .why = r->error.why};
-  double cpu = r->error.cpu;
-  if (!r->rounding.found || !r->error.asked || e.why != NULL) return;
-  e.norm = sqrt(2.0 * r->error.energy) + r->rounding.norm;
-  error_bound_set(&e, r->now.energy.strain, &r->error);
-  r->error.cpu = cpu;
+  solver_error e = {.rate = r->errors.error.rate, .why = r->errors.error.why};
+  double cpu = r->errors.error.cpu;
+  if (!r->errors.rounding.found || !r->errors.error.asked || e.why != NULL)
+    return;
+  e.norm = sqrt(2.0 * r->errors.error.energy) + r->errors.rounding.norm;
+  error_bound_set(&e, r->now.energy.strain, &r->errors.error);
+  r->errors.error.cpu = cpu;
 }
 
 status estimate_increment(run *r) {
   status st = OK;
   TRY(rounding_find(r));
-  if (!r->judged) {
+  if (!r->errors.judged) {
     TRY(estimate_solver(r));
     TRY(estimate_mesh(r));
   }
   add_rounding(r);
-  TRY(rounding_hidden(r, &r->error.hidden));
-  r->judged = 0;
+  TRY(rounding_hidden(r, &r->errors.error.hidden));
+  r->errors.judged = 0;
 done:
   return st;
 }
@@ -167,8 +172,8 @@ done:
 }
 
 status check_increment(run *r) {
-  return check_problem(r->step, &r->cp, &r->report, r->now.uc, r->now.rc,
-                       &r->solutions);
+  return check_problem(r->step, &r->problem.cp, &r->solving.report, r->now.uc,
+                       r->now.rc, &r->errors.solutions);
 }
 
 /* ---- jumps --------------------------------------------------------------
@@ -195,10 +200,10 @@ static const double STILL = 0x1p-30; /* -, of the largest slip: none          */
 static double distance(const run *r, const double *a, const double *b,
                        double *room) {
   double sum = 0.0;
-  for (int i = 0; i < r->n_c; ++i) room[i] = a[i] - b[i];
+  for (int i = 0; i < r->nodes.n_c; ++i) room[i] = a[i] - b[i];
   const double *d = run_rows(r, 0, room);
-  contact_product(r->n_row, r->cp.A, d, room + r->n_c);
-  for (int i = 0; i < r->n_row; ++i) sum += d[i] * room[r->n_c + i];
+  contact_product(r->nodes.n_row, r->problem.cp.A, d, room + r->nodes.n_c);
+  for (int i = 0; i < r->nodes.n_row; ++i) sum += d[i] * room[r->nodes.n_c + i];
   return sqrt(fmax(sum, 0.0));
 }
 
@@ -207,13 +212,15 @@ static status load_change(run *r, double *room, double *size) {
   status st = OK;
   double square = 0.0;
   *size = distance(r, r->now.motion, r->old.motion, room);
-  for (int i = 0; i < r->n_row; ++i) room[i] = r->f[i] - r->f_before[i];
-  if (r->moduli.n_own > 0 || r->n_before != r->n_row) { /* other matrix       */
+  for (int i = 0; i < r->nodes.n_row; ++i)
+    room[i] = r->problem.f[i] - r->problem.f_before[i];
+  if (r->body.moduli.n_own > 0 ||
+      r->problem.n_before != r->nodes.n_row) { /* other matrix       */
     const double *rc = run_rows(r, 1, r->old.rc);
-    contact_product(r->n_row, r->cp.A, run_rows(r, 0, r->old.uc),
-                    room + r->n_c);
-    for (int i = 0; i < r->n_row; ++i)
-      room[i] = r->f[i] + rc[i] - room[r->n_c + i];
+    contact_product(r->nodes.n_row, r->problem.cp.A, run_rows(r, 0, r->old.uc),
+                    room + r->nodes.n_c);
+    for (int i = 0; i < r->nodes.n_row; ++i)
+      room[i] = r->problem.f[i] + rc[i] - room[r->nodes.n_c + i];
   }
   if (condensed_floating(r->c))
     square = HUGE_VAL;
@@ -261,7 +268,7 @@ static void set_sliding(const contact_problem *cp, const double *before,
 
 static status sliding_rate(run *r, double *rate) {
   status st = OK;
-  const contact_problem *cp = &r->cp;
+  const contact_problem *cp = &r->problem.cp;
   size_t m = (size_t)cp->m;
   double *u = NULL, *q = NULL, *before = NULL;
   NEW(u, m);
@@ -271,7 +278,7 @@ static status sliding_rate(run *r, double *rate) {
   memcpy(u, run_rows(r, 0, r->now.uc), m * sizeof *u);
   memcpy(q, run_rows(r, 1, r->now.rc), m * sizeof *q);
   set_sliding(cp, before, u, q);
-  TRY(contraction_rate(cp, u, q, &r->rate, rate));
+  TRY(contraction_rate(cp, u, q, &r->solving.rate, rate));
 done:
   memory_free(u);
   memory_free(q);
@@ -284,7 +291,7 @@ done:
 typedef struct point {
   double t;               /* s                                                */
   double *u;              /* [n_c] m                                          */
-  contact_status *status; /* [n] of the nodes of r->cp                        */
+  contact_status *status; /* [n] of the nodes of r->problem.cp */
   double motion;          /* to the next point, energy norm                   */
 } point;
 
@@ -312,10 +319,10 @@ static status insert(path *s, int at, double t, const double *u,
   memmove(s->p + at + 1, s->p + at, (size_t)(s->n - at) * sizeof *s->p);
   s->p[at] = (point){.t = t};
   ++s->n;
-  NEW(s->p[at].u, r->n_c);
-  NEW(s->p[at].status, r->n);
-  memcpy(s->p[at].u, u, (size_t)r->n_c * sizeof *u);
-  contact_classify(&r->cp, run_rows(r, 0, s->p[at].u),
+  NEW(s->p[at].u, r->nodes.n_c);
+  NEW(s->p[at].status, r->nodes.n);
+  memcpy(s->p[at].u, u, (size_t)r->nodes.n_c * sizeof *u);
+  contact_classify(&r->problem.cp, run_rows(r, 0, s->p[at].u),
                    run_rows(r, 1, (double *)rc), s->p[at].status);
 done:
   return st;
@@ -324,7 +331,7 @@ done:
 /* 0 where the statuses at both ends of part k are the same. */
 static void measure(path *s, int k) {
   point *a = s->p + k, *b = a + 1;
-  size_t bytes = (size_t)s->r->cp.n * sizeof *a->status;
+  size_t bytes = (size_t)s->r->problem.cp.n * sizeof *a->status;
   a->motion = memcmp(a->status, b->status, bytes) == 0
                   ? 0.0
                   : distance(s->r, b->u, a->u, s->room);
@@ -346,7 +353,7 @@ static status follow(path *s, int *found) {
     }
     double middle = 0.5 * (s->p[k].t + s->p[k + 1].t);
     TRY(increment_solve(r, middle));
-    if (r->report.outcome <= 0) break;
+    if (r->solving.report.outcome <= 0) break;
     TRY(insert(s, k + 1, middle, r->now.uc, r->now.rc));
     measure(s, k);
     measure(s, k + 1);
@@ -377,10 +384,10 @@ static void give_back(run *r, contact_solver *own) {
 }
 
 static void note_jump(run *r, double t, double share) {
-  size_t used = strlen(r->note);
-  r->jumps = 1;
-  r->jump_t = t;
-  snprintf(r->note + used, sizeof r->note - used,
+  size_t used = strlen(r->course.note);
+  r->errors.jumps = 1;
+  r->errors.jump_t = t;
+  snprintf(r->course.note + used, sizeof r->course.note - used,
            "  JUMP: no path of equilibria leads here: at time %.6g, within "
            "%.0e of the load of the\n  increment, the state changes by %.0f %% "
            "of its motion; the run goes on with another branch\n",
@@ -394,9 +401,9 @@ static status look_into(run *r, double t, double *at, double *share) {
   contact_solver *own = NULL;
   int found = -1;
   TRY(lend_solver(r, &own));
-  NEW(s.room, 2 * r->n_c);
+  NEW(s.room, 2 * r->nodes.n_c);
   TRY(increment_solve(r, t));
-  if (r->report.outcome <= 0) goto done;
+  if (r->solving.report.outcome <= 0) goto done;
   TRY(insert(&s, 0, t, r->now.uc, r->now.rc));
   TRY(insert(&s, 0, r->old.t, r->old.uc, r->old.rc));
   double all = distance(r, s.p[1].u, s.p[0].u, s.room);
@@ -415,12 +422,14 @@ done:
 status jump_check(run *r, double t) {
   status st = OK;
   double change = HUGE_VAL, rate = 0.0, share = 0.0, at = 0.0, *room = NULL;
-  int missed = r->report.outcome <= 0, lost = r->at.lost;
-  r->at.lost = missed && !(r->report.residual <= NEAR);
-  if (r->n == 0 || r->cp.B == NULL || r->cp.floating || lost) return OK;
+  int missed = r->solving.report.outcome <= 0, lost = r->at.lost;
+  r->at.lost = missed && !(r->solving.report.residual <= NEAR);
+  if (r->nodes.n == 0 || r->problem.cp.B == NULL || r->problem.cp.floating ||
+      lost)
+    return OK;
   if (r->step->kind != STEP_QUASISTATIC) return OK;
   timer_enter_whole(STAGE_CHECK);
-  NEW(room, 2 * r->n_c);
+  NEW(room, 2 * r->nodes.n_c);
   TRY(load_change(r, room, &change));
   int leaps = distance(r, r->now.uc, r->old.uc, room) > SUSPECT * change;
   if (!missed && !leaps) TRY(sliding_rate(r, &rate));
@@ -449,10 +458,10 @@ static const char *section_of(const run *r, int elem_id) {
 
 static void warn_deformation(run *r, int increment_no) {
   deformation x;
-  if (r->told.strain && r->told.folded) return;
-  domain_deformation(&r->d, r->now.u, &x);
-  if (!r->told.strain && x.strain > LARGE) {
-    r->told.strain = 1;
+  if (r->course.told.strain && r->course.told.folded) return;
+  domain_deformation(&r->body.d, r->now.u, &x);
+  if (!r->course.told.strain && x.strain > LARGE) {
+    r->course.told.strain = 1;
     message_add(r->m->log, P4019, &r->step->at,
                 "step %d, increment %d, time %g: the strain of element %zu "
                 "(group %s) is %.3g %%; strains are taken as small",
@@ -460,8 +469,8 @@ static void warn_deformation(run *r, int increment_no) {
                 r->msh->elem_no[x.strain_elem], section_of(r, x.strain_elem),
                 100.0 * x.strain);
   }
-  if (!r->told.folded && x.volume <= 0.0) {
-    r->told.folded = 1;
+  if (!r->course.told.folded && x.volume <= 0.0) {
+    r->course.told.folded = 1;
     message_add(r->m->log, P4020, &r->step->at,
                 "step %d, increment %d, time %g: the displacements turn "
                 "element %zu (group %s) inside out",
@@ -473,12 +482,12 @@ static void warn_deformation(run *r, int increment_no) {
 /* Which contacts touch; the listing tells when one does that did not. */
 static void note_touches(run *r) {
   for (int i = 0; i < r->m->n_contact; ++i) {
-    const contact_total *t = &r->totals[i];
-    const size_t used = strlen(r->note);
-    if (r->told.touched[i] || t->n_slip + t->n_stick == 0) continue;
-    r->told.touched[i] = 1;
-    if (r->total_no > 1)
-      snprintf(r->note + used, sizeof r->note - used,
+    const contact_total *t = &r->result.totals[i];
+    const size_t used = strlen(r->course.note);
+    if (r->course.told.touched[i] || t->n_slip + t->n_stick == 0) continue;
+    r->course.told.touched[i] = 1;
+    if (r->course.total_no > 1)
+      snprintf(r->course.note + used, sizeof r->course.note - used,
                "  contact %s touches for the first time\n",
                r->m->contacts[i].name);
   }
@@ -486,22 +495,22 @@ static void note_touches(run *r) {
 
 void warn_increment(run *r, int increment_no) {
   note_touches(r);
-  if (r->report.outcome > 0) warn_deformation(r, increment_no);
+  if (r->solving.report.outcome > 0) warn_deformation(r, increment_no);
 }
 
 /* The least gap left of a contact, m; HUGE_VAL: it has no node. */
 static double least_gap(const run *r, int contact_id) {
   double least = HUGE_VAL;
-  for (int i = 0; i < r->n; ++i)
+  for (int i = 0; i < r->nodes.n; ++i)
     if (r->surface->contact_id[i] == contact_id)
-      least = fmin(least, r->open_gap[i]);
+      least = fmin(least, r->result.open_gap[i]);
   return least;
 }
 
 void warn_end(run *r) {
   for (int i = 0; i < r->m->n_contact; ++i) {
     const contact *c = &r->m->contacts[i];
-    if (r->told.touched[i] || c->force.given) continue;
+    if (r->course.told.touched[i] || c->force.given) continue;
     message_add(r->m->log, P4021, &c->at,
                 "*CONTACT %s: no node touched obstacle %s in the run; the "
                 "least gap at its end is %.3g",

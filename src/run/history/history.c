@@ -40,59 +40,61 @@ static long increments_of(const step *s) {
 
 /* 1: reached its tolerance, is not in doubt and violates no theorem. */
 static int is_settled(const run *r) {
-  return r->report.outcome > 0 && !r->missed && !r->at.violated &&
-         !error_bound_doubts(&r->error, share_of_step(r));
+  return r->solving.report.outcome > 0 && !r->course.missed &&
+         !r->at.violated &&
+         !error_bound_doubts(&r->errors.error, share_of_step(r));
 }
 
 /* What the outputs see of an increment. */
 state loop_state(run *r, int attempt, int increment_no) {
   const equilibrium *e = &r->now;
-  state s = {.step_no = run_step_id(r) + 1,
-             .increment_no = increment_no,
-             .total_no = r->total_no,
-             .attempt = attempt,
-             .t = e->t,
-             .dt = e->t - r->old.t,
-             .u = e->u,
-             .strain = r->strain,
-             .stress = r->stress,
-             .temperature = e->temperature,
-             .reaction = e->reaction,
-             .problem = r->n > 0 ? &r->cp : NULL,
-             .surface = r->surface,
-             .uc = e->uc,
-             .rc = e->rc,
-             .gap = r->open_gap,
-             .slip = r->slip,
-             .limit = r->g,
-             .contact = r->contact,
-             .totals = r->totals,
-             .distance = r->distance,
-             .torque = r->torque,
-             .effects = &r->effects,
-             .energy = e->energy,
-             .report = r->report,
-             .note = r->note,
-             .error = r->error,
-             .rounding = r->rounding,
-             .jumps = r->jumps,
-             .jump_t = r->jump_t,
-             .solutions = r->step->check != CHECK_NONE ? &r->solutions : NULL,
-             .mesh_error = r->mesh_error,
-             .time_error = r->time_error,
-             .balance = r->balance.report,
-             .elem_error = r->mesh_error.asked ? r->elem_error : NULL,
-             .solver_log = contact_solver_log(r->solver),
-             .settled = is_settled(r),
-             .in_doubt = error_bound_doubts(&r->error, share_of_step(r)),
-             .again = {r, beside_with}};
-  if (r->visco != NULL) visco_show(r, &s);
+  state s = {
+      .step_no = run_step_id(r) + 1,
+      .increment_no = increment_no,
+      .total_no = r->course.total_no,
+      .attempt = attempt,
+      .t = e->t,
+      .dt = e->t - r->old.t,
+      .u = e->u,
+      .strain = r->result.strain,
+      .stress = r->result.stress,
+      .temperature = e->temperature,
+      .reaction = e->reaction,
+      .problem = r->nodes.n > 0 ? &r->problem.cp : NULL,
+      .surface = r->surface,
+      .uc = e->uc,
+      .rc = e->rc,
+      .gap = r->result.open_gap,
+      .slip = r->result.slip,
+      .limit = r->result.g,
+      .contact = r->result.contact,
+      .totals = r->result.totals,
+      .distance = r->result.distance,
+      .torque = r->result.torque,
+      .effects = &r->effects,
+      .energy = e->energy,
+      .report = r->solving.report,
+      .note = r->course.note,
+      .error = r->errors.error,
+      .rounding = r->errors.rounding,
+      .jumps = r->errors.jumps,
+      .jump_t = r->errors.jump_t,
+      .solutions = r->step->check != CHECK_NONE ? &r->errors.solutions : NULL,
+      .mesh_error = r->errors.mesh_error,
+      .time_error = r->errors.time_error,
+      .balance = r->balance.report,
+      .elem_error = r->errors.mesh_error.asked ? r->errors.elem_error : NULL,
+      .solver_log = contact_solver_log(r->solver),
+      .settled = is_settled(r),
+      .in_doubt = error_bound_doubts(&r->errors.error, share_of_step(r)),
+      .again = {r, beside_with}};
+  if (r->strains.visco != NULL) visco_show(r, &s);
   if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
   if (!(r->m->effects & EFFECT_REACTION)) s.reaction = NULL;
-  for (int i = 0; i < r->n; ++i) {
-    s.n_open += r->contact[i] == CONTACT_OPEN;
-    s.n_slip += r->contact[i] == CONTACT_SLIP;
-    s.n_stick += r->contact[i] == CONTACT_STICK;
+  for (int i = 0; i < r->nodes.n; ++i) {
+    s.n_open += r->result.contact[i] == CONTACT_OPEN;
+    s.n_slip += r->result.contact[i] == CONTACT_SLIP;
+    s.n_stick += r->result.contact[i] == CONTACT_STICK;
   }
   return s;
 }
@@ -117,35 +119,36 @@ static int stress_is_due(const step *s, double t, int increment_no, int last) {
 static status note_misfit(run *r) {
   status st = OK;
   char text[400];
-  size_t used = strlen(r->note);
-  if (r->report.outcome > 0) goto done;
+  size_t used = strlen(r->course.note);
+  if (r->solving.report.outcome > 0) goto done;
   visco_warn_stuck(r);
-  if (r->n == 0) goto done;
-  TRY(verdict_misfit(&r->cp, r->surface, run_rows(r, 0, r->now.uc),
+  if (r->nodes.n == 0) goto done;
+  TRY(verdict_misfit(&r->problem.cp, r->surface, run_rows(r, 0, r->now.uc),
                      run_rows(r, 1, r->now.rc), text, sizeof text));
   if (text[0] != '\0')
-    snprintf(r->note + used, sizeof r->note - used, "  %s\n", text);
+    snprintf(r->course.note + used, sizeof r->course.note - used, "  %s\n",
+             text);
 done:
   return st;
 }
 
 /* Where nodes were added in the increment. */
 static void note_nodes(run *r) {
-  const int now = reach_count(&r->reach, r->n);
-  size_t used = strlen(r->note);
-  if (r->n == 0 || now == r->n_told) return;
-  snprintf(r->note + used, sizeof r->note - used,
+  const int now = reach_count(&r->nodes.reach, r->nodes.n);
+  size_t used = strlen(r->course.note);
+  if (r->nodes.n == 0 || now == r->nodes.n_told) return;
+  snprintf(r->course.note + used, sizeof r->course.note - used,
            "  contact nodes thought out of reach touch: solved again with %d "
            "nodes, not %d, of %d\n",
-           now, r->n_told, r->n);
-  r->n_told = now;
+           now, r->nodes.n_told, r->nodes.n);
+  r->nodes.n_told = now;
 }
 
 status loop_accept(run *r, int attempt, int increment_no, int last,
                    double cpu) {
   status st = OK;
   TRY(dense_show(r, increment_no));
-  ++r->total_no;
+  ++r->course.total_no;
   TRY(result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
   TRY(estimate_increment(r));
   r->at.last = last;
@@ -157,7 +160,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   TRY(note_misfit(r));
   path_compare(r);
   estimate_unloaded(r);
-  if (!is_settled(r)) ++r->unsettled;
+  if (!is_settled(r)) ++r->course.unsettled;
   TRY(balance_learn(r));
   state s = loop_state(r, attempt, increment_no);
   s.end_of_step = last;
@@ -165,25 +168,26 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   effects_show(r, &s);
   if (r->sink->increment != NULL) TRY(r->sink->increment(r->sink->ctx, &s));
   TRY(result_accept(r));
-  r->due = frequency_shows(r->step->restart_frequency, increment_no, last);
+  r->course.due =
+      frequency_shows(r->step->restart_frequency, increment_no, last);
 done:
   return st;
 }
 
 int loop_cut_helps(const run *r) {
-  const outcome o = r->report.outcome;
+  const outcome o = r->solving.report.outcome;
   if (o == STOPPED_STAGNATION && r->at.attempt > 1)
-    return r->report.residual < r->at.residual;
+    return r->solving.report.residual < r->at.residual;
   return o != STOPPED_UNFIT;
 }
 
 status loop_reject(run *r, int attempt, int increment_no, const char *why) {
-  r->at.residual = r->report.residual;
-  r->error = (error_bound){0};
-  r->rounding = (rounding_loss){0};
-  r->mesh_error.asked = r->time_error.asked = 0;
+  r->at.residual = r->solving.report.residual;
+  r->errors.error = (error_bound){0};
+  r->errors.rounding = (rounding_loss){0};
+  r->errors.mesh_error.asked = r->errors.time_error.asked = 0;
   r->at.violated = 0;
-  r->jumps = 0;
+  r->errors.jumps = 0;
   state s = loop_state(r, attempt, increment_no);
   s.n_open = s.n_slip = s.n_stick = 0;
   if (r->sink->rejected == NULL) return OK;
@@ -199,11 +203,11 @@ status loop_no_equilibrium(run *r) {
                          .step = r->step,
                          .t = r->now.t,
                          .surface = r->surface,
-                         .cp = &r->cp,
+                         .cp = &r->problem.cp,
                          .u = run_rows(r, 0, r->now.uc),
                          .r = run_rows(r, 1, r->now.rc),
                          .c = r->c};
-  if (r->report.outcome == STOPPED_UNFIT)
+  if (r->solving.report.outcome == STOPPED_UNFIT)
     FAIL(ERR_SINGULAR,
          "step %d, time %g: the method cannot treat this problem: %s; use "
          "METHOD=AUTO, NEWTON, AUGLAG or SOR",
@@ -214,7 +218,8 @@ status loop_no_equilibrium(run *r) {
        "written is that of time %g",
        run_step_id(r) + 1, r->now.t, why, why[0] == '\0' ? "" : "; ",
        tried[0] == '\0' ? "" : "tried ",
-       tried[0] == '\0' ? outcome_text(r->report.outcome) : tried, r->old.t);
+       tried[0] == '\0' ? outcome_text(r->solving.report.outcome) : tried,
+       r->old.t);
 done:
   return st;
 }
@@ -233,8 +238,8 @@ done:
 static status checkpoint(run *r) {
   status st = OK;
   const run_memory memory = {r, keep_all, r->at.step_id + 1};
-  int planned = r->due; /* others are no stage of the run that goes on        */
-  r->due = 0;
+  int planned = r->course.due; /* others are no stage of the run that goes on */
+  r->course.due = 0;
   if (r->sink->checkpoint == NULL) return OK;
   if (planned) timer_enter(STAGE_RESTART);
   st = r->sink->checkpoint(r->sink->ctx, &memory);
@@ -248,9 +253,9 @@ static status stop(run *r, status why) {
   const char *by = interrupt_name();
   const char *on =
       r->sink->checkpoint != NULL ? "; protis --restart goes on" : "";
-  if (r->total_no == 0)
+  if (r->course.total_no == 0)
     FAIL(why, "interrupted by %s before the first increment", by);
-  if (!r->kept) TRY(checkpoint(r));
+  if (!r->course.kept) TRY(checkpoint(r));
   if (p->increment_no == 0)
     FAIL(why, "interrupted by %s before step %d, at time %g%s", by,
          p->step_id + 1, r->old.t, on);
@@ -263,8 +268,8 @@ done:
 /* What is due where the run could go on from; ends it if that was asked for. */
 status loop_pause(run *r) {
   status st = OK, why = interrupt_asked();
-  r->kept = r->due;
-  if (r->due) TRY(checkpoint(r));
+  r->course.kept = r->course.due;
+  if (r->course.due) TRY(checkpoint(r));
   if (why != OK) TRY(stop(r, why));
 done:
   return st;
@@ -278,8 +283,8 @@ static int can_cut(const run *r) {
   int level = r->at.level + 1;
   return s->kind != STEP_STATIC && level <= DEEPEST_CUT &&
          ldexp(s->dt, -level) >= s->dt_min &&
-         r->report.outcome != STOPPED_STAGNATION &&
-         r->report.outcome != STOPPED_UNFIT;
+         r->solving.report.outcome != STOPPED_STAGNATION &&
+         r->solving.report.outcome != STOPPED_UNFIT;
 }
 
 /* The next piece of n increments has been taken. */
@@ -327,19 +332,19 @@ static status attempt_piece(run *r, long n) {
   TRY(choose_piece(r, n, &t));
   TRY(path_try(r, t));
   TRY(balance_advance(r, t));
-  int settled = r->report.outcome > 0, finer = !settled && can_cut(r);
-  if (finer || (!settled && outcome_is_fatal(r->report.outcome)))
+  int settled = r->solving.report.outcome > 0, finer = !settled && can_cut(r);
+  if (finer || (!settled && outcome_is_fatal(r->solving.report.outcome)))
     TRY(loop_reject(r, p->attempt, p->increment_no + 1,
-                    outcome_text(r->report.outcome)));
+                    outcome_text(r->solving.report.outcome)));
   if (finer) {
     p->part *= 2;
     p->cut = ++p->level;
     ++p->attempt;
     goto done;
   }
-  if (!settled && outcome_is_fatal(r->report.outcome))
+  if (!settled && outcome_is_fatal(r->solving.report.outcome))
     TRY(loop_no_equilibrium(r));
-  r->jumps = 0;
+  r->errors.jumps = 0;
   TRY(jump_check(r, t));
   TRY(accept_piece(r, n, cpu));
 done:
@@ -361,10 +366,10 @@ static status run_step(run *r) {
   status st = OK;
   TRY(run_prepare(r));
   TRY(balance_begin(r));
-  if (r->from != NULL) {
-    TRY(run_keep(r, r->from));
-    if (r->balance.m > 0) TRY(balance_keep(r, r->from));
-    r->from = NULL;
+  if (r->course.from != NULL) {
+    TRY(run_keep(r, r->course.from));
+    if (r->balance.m > 0) TRY(balance_keep(r, r->course.from));
+    r->course.from = NULL;
   } else {
     r->at =
         (progress){.step_id = run_step_id(r), .attempt = 1, .dt = r->step->dt};
@@ -372,11 +377,11 @@ static status run_step(run *r) {
   }
   if (march_applies(r))
     TRY(march_run(r));
-  else if (r->step->tolerance > 0.0 && r->visco != NULL)
+  else if (r->step->tolerance > 0.0 && r->strains.visco != NULL)
     TRY(adaptive_run(r));
   else
     TRY(run_fixed(r));
-  if (r->due) TRY(checkpoint(r));
+  if (r->course.due) TRY(checkpoint(r));
 done:
   return st;
 }
@@ -384,10 +389,10 @@ done:
 /* The step in progress. */
 static status read_progress(run *r) {
   status st = OK;
-  if (r->from == NULL) goto done;
-  archive_enter(r->from, "run");
-  st = archive_bytes(r->from, "at", &r->at, sizeof r->at);
-  archive_leave(r->from);
+  if (r->course.from == NULL) goto done;
+  archive_enter(r->course.from, "run");
+  st = archive_bytes(r->course.from, "at", &r->at, sizeof r->at);
+  archive_leave(r->course.from);
   TRY(st);
   if (r->at.step_id < 0 || r->at.step_id >= r->m->n_step)
     FAIL(ERR_FILE, "the restart file is of a deck with other steps");
@@ -398,7 +403,7 @@ done:
 status history_continue(const model *m, const mesh *msh, archive *from,
                         const history_sink *sink, int *unsettled) {
   status st = OK;
-  run r = {.m = m, .msh = msh, .sink = sink, .from = from};
+  run r = {.m = m, .msh = msh, .sink = sink, .course.from = from};
   *unsettled = 0;
   TRY(run_new(&r));
   TRY(read_progress(&r));
@@ -409,7 +414,7 @@ status history_continue(const model *m, const mesh *msh, archive *from,
   }
   warn_end(&r);
 done:
-  *unsettled = r.unsettled;
+  *unsettled = r.course.unsettled;
   balance_free(&r.balance);
   run_free(&r);
   return st;

@@ -72,9 +72,10 @@ int rounding_hides_strains(const run *r);
  * they carry the load straight, and strains are rounding of both. */
 int rounding_is_all(const run *r);
 
-/* estimate.c: errors at r->now into r->error, mesh_error, as asked for. */
+/* estimate.c: errors at r->now into r->errors.error, mesh_error, as asked for.
+ */
 status estimate_increment(run *r);
-/* Those of solver and mesh alone, from r->now.u; read r->judged. */
+/* Those of solver and mesh alone, from r->now.u; read r->errors.judged. */
 status estimate_judge(run *r);
 
 /* All errors at r->now known: those of a body that has been unloaded, which is
@@ -83,9 +84,10 @@ status estimate_judge(run *r);
 void estimate_unloaded(run *r);
 
 /* Whether the equilibrium jumps between r->old and r->now, at time t, into
- * r->jumps, r->jump_t, r->note. r->now is solved again if it was looked for. */
+ * r->errors.jumps, r->errors.jump_t, r->course.note. r->now is solved again if
+ * it was looked for. */
 status jump_check(run *r, double t);
-/* Other solutions than that of r->now into r->solutions, if asked
+/* Other solutions than that of r->now into r->errors.solutions, if asked
  * for. ERR_DECK: CHECK=ALL is not possible. */
 status check_increment(run *r);
 

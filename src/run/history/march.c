@@ -35,7 +35,7 @@ static double share_at_end(const run *r) {
   double old = sqrt(2.0 * r->old.energy.strain);
   double left = s->start + s->total - r->now.t, dt = r->now.t - r->old.t;
   double end = fmax(now + (now - old) * left / dt, 0.5 * now);
-  return s->time_share * r->mesh_error.relative * end;
+  return s->time_share * r->errors.mesh_error.relative * end;
 }
 
 /* The part of the error this increment may make, sqrt(J). */
@@ -86,13 +86,13 @@ static status attempt_balanced(run *r) {
   }
   TRY(path_try(r, t));
   TRY(balance_advance(r, t));
-  int settled = r->report.outcome > 0, shorter = p->dt > s->dt_min;
+  int settled = r->solving.report.outcome > 0, shorter = p->dt > s->dt_min;
   if (!settled && shorter && loop_cut_helps(r)) {
-    TRY(refuse(r, tried, 0.0, outcome_text(r->report.outcome)));
+    TRY(refuse(r, tried, 0.0, outcome_text(r->solving.report.outcome)));
     goto done;
   }
-  if (outcome_is_fatal(r->report.outcome)) TRY(loop_no_equilibrium(r));
-  if (!r->judged) TRY(estimate_judge(r));
+  if (outcome_is_fatal(r->solving.report.outcome)) TRY(loop_no_equilibrium(r));
+  if (!r->errors.judged) TRY(estimate_judge(r));
   part = rounding_hides_strains(r) ? 0.0 : path_measure(r) - before;
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, part, allowed);

@@ -39,7 +39,7 @@ static int leaves_none(const rounding_loss *loss, double share,
 
 static status check(const run *r, double share, const condensed *c) {
   status st = OK;
-  const rounding_loss *loss = &r->rounding;
+  const rounding_loss *loss = &r->errors.rounding;
   if (!leaves_none(loss, share, c)) goto done;
   FAIL(ERR_SINGULAR,
        "step %d, time %g: rounding leaves no digit of the answer: the energy "
@@ -80,12 +80,12 @@ static void misfit_free(misfit *x) {
 
 /* The stresses of the displacement w alone, over those of the answer. */
 static void compare_stresses(run *r, misfit *x) {
-  domain plain = r->d;
+  domain plain = r->body.d;
   double wrong;
   plain.eigen = NULL;
   domain_stress(&plain, x->w, NULL, x->stress);
   wrong = largest_entry(x->n_stress, x->stress);
-  if (wrong > 0.0) r->rounding.stress = wrong / r->now.peak_stress;
+  if (wrong > 0.0) r->errors.rounding.stress = wrong / r->now.peak_stress;
 }
 
 /* What is lost of the largest displacement, m. */
@@ -102,9 +102,9 @@ int rounding_hides_strains(const run *r) {
 /* 1: contact forces and supports carry the loads straight, and strains are no
  * more than the rounding of both, or what the solver leaves. */
 static int forces_hide_strains(const run *r) {
-  const double force = fmax(CARRIED, fmin(r->tol, REST)) *
+  const double force = fmax(CARRIED, fmin(r->solving.tol, REST)) *
                        fmax(largest_entry(r->n_dof, r->now.F),
-                            largest_entry((size_t)r->n_c, r->now.rc));
+                            largest_entry((size_t)r->nodes.n_c, r->now.rc));
   return r->now.energy.strain <=
          r->msh->n_node * force * force / condensed_stiffest(r->c);
 }
@@ -112,7 +112,7 @@ static int forces_hide_strains(const run *r) {
 int rounding_is_all(const run *r) {
   if (forces_hide_strains(r)) return 1;
   if (increment_free_load(r, r->now.F) > 0.0) return 0;
-  return largest_entry((size_t)r->n_c, r->now.rc) <=
+  return largest_entry((size_t)r->nodes.n_c, r->now.rc) <=
              condensed_stiffest(r->c) * lost(r) &&
          rounding_hides_strains(r);
 }
@@ -121,14 +121,15 @@ int rounding_is_all(const run *r) {
  * which nothing but rounding is there, are no loss. */
 static int moves_alone(const run *r) {
   if (rounding_is_all(r)) return 1;
-  return r->rounding.u < 1e-10 && increment_free_load(r, r->now.F) == 0.0 &&
-         largest_entry((size_t)r->n_c, r->now.rc) == 0.0;
+  return r->errors.rounding.u < 1e-10 &&
+         increment_free_load(r, r->now.F) == 0.0 &&
+         largest_entry((size_t)r->nodes.n_c, r->now.rc) == 0.0;
 }
 
 /* What is missing to equilibrium but for contact forces. */
 static void find_rest(run *r, misfit *x) {
-  domain_stress(&r->d, r->now.u, NULL, x->stress);
-  domain_internal_force(&r->d, x->stress, x->rest);
+  domain_stress(&r->body.d, r->now.u, NULL, x->stress);
+  domain_internal_force(&r->body.d, x->stress, x->rest);
   for (size_t i = 0; i < r->n_dof; ++i) x->rest[i] = r->now.F[i] - x->rest[i];
   r->now.peak_stress =
       fmax(r->now.peak_stress, largest_entry(x->n_stress, x->stress));
@@ -136,10 +137,10 @@ static void find_rest(run *r, misfit *x) {
 
 /* The loss that the way w to the exact answer means. */
 static void take_loss(run *r, misfit *x, double square) {
-  r->rounding = (rounding_loss){.found = 1, .norm = sqrt(square)};
+  r->errors.rounding = (rounding_loss){.found = 1, .norm = sqrt(square)};
   if (square > 0.0) {
-    r->rounding.energy = sqrt(square / (2.0 * r->now.peak_energy));
-    r->rounding.u =
+    r->errors.rounding.energy = sqrt(square / (2.0 * r->now.peak_energy));
+    r->errors.rounding.u =
         largest_entry(r->n_dof, x->w) / largest_entry(r->n_dof, r->now.u);
   }
   compare_stresses(r, x);
@@ -148,7 +149,7 @@ static void take_loss(run *r, misfit *x, double square) {
 /* 1 for each unknown of the contact problem that contact holds in place. */
 static void find_held(const run *r, const contact_status *touch,
                       unsigned char *held) {
-  const contact_problem *cp = &r->cp;
+  const contact_problem *cp = &r->problem.cp;
   const double *rc = run_rows(r, 1, r->now.rc);
   for (int q = 0; q < cp->m; ++q) {
     const contact_status s = touch[q / cp->dim];
@@ -165,10 +166,10 @@ static status find_beside_contact(run *r, misfit *x) {
   contact_status *touch = NULL;
   unsigned char *held = NULL;
   double square = 0.0;
-  NEW(touch, r->cp.n);
-  NEW(held, r->cp.m);
-  contact_classify(&r->cp, run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc),
-                   touch);
+  NEW(touch, r->problem.cp.n);
+  NEW(held, r->problem.cp.m);
+  contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
+                   run_rows(r, 1, r->now.rc), touch);
   find_held(r, touch, held);
   TRY(condensed_misfit_held(x->c, x->rest, run_rows(r, 1, r->now.rc), held,
                             x->w, &square));
@@ -183,7 +184,7 @@ done:
  * with them, so that it counts against those. */
 double share_of_step(const run *r) {
   const double now = increment_free_load(r, r->now.F);
-  return now < r->step_load ? now / r->step_load : 1.0;
+  return now < r->loads.largest ? now / r->loads.largest : 1.0;
 }
 
 static status find(run *r) {
@@ -195,9 +196,9 @@ static status find(run *r) {
   find_rest(r, &x);
   TRY(condensed_misfit(x.c, x.rest, run_rows(r, 1, r->now.rc), x.w, &square));
   take_loss(r, &x, square);
-  if (leaves_none(&r->rounding, 1.0, x.c) && r->n_row > 0)
+  if (leaves_none(&r->errors.rounding, 1.0, x.c) && r->nodes.n_row > 0)
     TRY(find_beside_contact(r, &x));
-  if (moves_alone(r)) r->rounding = (rounding_loss){0};
+  if (moves_alone(r)) r->errors.rounding = (rounding_loss){0};
   TRY(check(r, share, x.c));
 done:
   misfit_free(&x);
@@ -209,8 +210,8 @@ static status check_touch(const run *r) {
   status st = OK;
   const double u = largest_entry(r->n_dof, r->now.u);
   if (u <= FAR * r->msh->size || !rounding_is_all(r)) goto done;
-  for (int i = 0; i < r->n; ++i) {
-    const double gap = r->gap[i] - r->now.uc[r->msh->dim * i];
+  for (int i = 0; i < r->nodes.n; ++i) {
+    const double gap = r->problem.gap[i] - r->now.uc[r->msh->dim * i];
     if (fabs(gap) <= 16 * DBL_EPSILON * u)
       FAIL(ERR_SINGULAR,
            "step %d, time %g: rounding leaves no digit of the answer: after a "
@@ -226,7 +227,7 @@ done:
 static double farthest_work(const run *r) {
   return largest_entry(r->n_dof, r->now.u) *
          fmax(largest_entry(r->n_dof, r->now.F),
-              largest_entry((size_t)r->n_c, r->now.rc));
+              largest_entry((size_t)r->nodes.n_c, r->now.rc));
 }
 
 /* Largest stress next to each contact node times its area, own[n], N. */
@@ -237,7 +238,7 @@ static status find_own(const run *r, double *own) {
   double *sigma = NULL, *most = NULL;
   NEW(sigma, (size_t)r->m->ns * (size_t)m->n_elem);
   NEW(most, m->n_node);
-  domain_stress(&r->d, r->now.u, NULL, sigma);
+  domain_stress(&r->body.d, r->now.u, NULL, sigma);
   for (int e = 0; e < m->n_elem; ++e) {
     const size_t ns = (size_t)r->m->ns;
     const double peak = largest_entry(ns, sigma + ns * (size_t)e);
@@ -246,8 +247,8 @@ static status find_own(const run *r, double *own) {
       most[v] = fmax(most[v], peak);
     }
   }
-  for (int k = 0; k < r->cp.n; ++k) {
-    const int i = r->reach.in != NULL ? r->reach.in[k] : k;
+  for (int k = 0; k < r->problem.cp.n; ++k) {
+    const int i = r->nodes.reach.in != NULL ? r->nodes.reach.in[k] : k;
     own[k] = most[s->node_id[i]] * s->area[i];
   }
 done:
@@ -260,13 +261,13 @@ status rounding_hidden(const run *r, double *part) {
   status st = OK;
   double *own = NULL;
   *part = 0.0;
-  if (r->n == 0 || r->report.outcome <= 0) return OK;
+  if (r->nodes.n == 0 || r->solving.report.outcome <= 0) return OK;
   const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);
-  *part = contact_hidden(&r->cp, u, rc, NULL);
+  *part = contact_hidden(&r->problem.cp, u, rc, NULL);
   if (!(*part > LAST_DIGIT)) goto done;
-  NEW(own, r->cp.n);
+  NEW(own, r->problem.cp.n);
   TRY(find_own(r, own));
-  *part = contact_hidden(&r->cp, u, rc, own);
+  *part = contact_hidden(&r->problem.cp, u, rc, own);
 done:
   memory_free(own);
   return st;
@@ -280,10 +281,10 @@ static int is_doubtful(const run *r) {
 
 status rounding_find(run *r) {
   status st = OK;
-  r->rounding = (rounding_loss){0};
+  r->errors.rounding = (rounding_loss){0};
   r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
   r->now.peak_stress = r->old.peak_stress;
-  if (r->report.outcome <= 0) return OK;
+  if (r->solving.report.outcome <= 0) return OK;
   TRY(check_touch(r));
   if (!is_doubtful(r)) return OK;
   timer_enter(STAGE_RECOVERY);

@@ -15,13 +15,13 @@ static status start_forces(run *r, double *R, double *diagonal,
   status st = OK;
   double *sigma = NULL;
   NEW(sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
-  domain_stress(&r->d, r->old.u, NULL, sigma);
-  domain_internal_force(&r->d, sigma, R);
+  domain_stress(&r->body.d, r->old.u, NULL, sigma);
+  domain_internal_force(&r->body.d, sigma, R);
   for (size_t k = 0; k < r->n_dof; ++k) {
     *largest = fmax(*largest, fmax(fabs(R[k]), fabs(r->now.F[k])));
     R[k] -= r->now.F[k];
   }
-  start_stiffness(&r->d, diagonal);
+  start_stiffness(&r->body.d, diagonal);
 done:
   memory_free(sigma);
   return st;
@@ -36,23 +36,24 @@ static void accept_start(run *r) {
 static status relax_start(run *r) {
   status st = OK;
   double cpu = timer_cpu();
-  r->relaxing = 1;
+  r->course.relaxing = 1;
   TRY(increment_solve(r, 0.0));
-  if (r->report.outcome <= 0 && outcome_is_fatal(r->report.outcome)) {
-    TRY(loop_reject(r, 1, 0, outcome_text(r->report.outcome)));
+  if (r->solving.report.outcome <= 0 &&
+      outcome_is_fatal(r->solving.report.outcome)) {
+    TRY(loop_reject(r, 1, 0, outcome_text(r->solving.report.outcome)));
     TRY(loop_no_equilibrium(r));
   }
   TRY(loop_accept(r, 1, 0, 0, cpu));
-  memcpy(r->start, r->old.u, r->n_dof * sizeof *r->start);
+  memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
 done:
-  r->relaxing = 0;
+  r->course.relaxing = 0;
   return st;
 }
 
 static status judge_start(run *r) {
   status st = OK;
   const start_card *asked = &r->m->start;
-  start_report *s = &r->first;
+  start_report *s = &r->course.first;
   s->relaxed = s->n_bad > 0 && asked->relax;
   if (r->sink->start != NULL) TRY(r->sink->start(r->sink->ctx, s));
   if (s->n_bad > 0 && !s->relaxed) {
@@ -79,22 +80,22 @@ static status test_start(run *r) {
   timer_enter(STAGE_START);
   NEW(R, r->n_dof);
   NEW(diagonal, r->n_dof);
-  NEW(given, r->n);
+  NEW(given, r->nodes.n);
   TRY(increment_pose(r, 0.0));
   TRY(start_forces(r, R, diagonal, &largest));
-  if (r->n > 0) TRY(forms_given(r, 0.0, given));
+  if (r->nodes.n > 0) TRY(forms_given(r, 0.0, given));
   const start_input in = {.mesh = r->msh,
-                          .fixed = r->fixed,
+                          .fixed = r->body.fixed,
                           .u = r->old.u,
-                          .ud = r->ud,
+                          .ud = r->loads.ud,
                           .R = R,
                           .stiffness = diagonal,
-                          .surface = r->n > 0 ? r->surface : NULL,
-                          .cp = &r->cp,
+                          .surface = r->nodes.n > 0 ? r->surface : NULL,
+                          .cp = &r->problem.cp,
                           .uc = r->old.uc,
                           .given = given,
                           .load = largest};
-  start_test(&in, r->old.rc, r->old.reaction, &r->first);
+  start_test(&in, r->old.rc, r->old.reaction, &r->course.first);
   TRY(effects_initial(r));
 done:
   timer_leave(STAGE_START);
@@ -108,8 +109,9 @@ status start_read(run *r) {
   status st = OK;
   if (!(r->m->effects & EFFECT_START)) goto done;
   timer_enter(STAGE_START);
-  st = start_report_new(r->msh, &r->first);
-  if (st == OK) st = start_displacements(r->m, r->msh, r->old.u, &r->first);
+  st = start_report_new(r->msh, &r->course.first);
+  if (st == OK)
+    st = start_displacements(r->m, r->msh, r->old.u, &r->course.first);
   timer_leave(STAGE_START);
 done:
   return st;
@@ -127,11 +129,12 @@ static int same_vector(size_t n, const double *a, const double *b) {
 
 /* 1 if nothing acts at the start of the step that did not act before. */
 static int starts_smoothly(const run *r) {
-  if (r->total_no == 0 && r->n > 0) return 0;
+  if (r->course.total_no == 0 && r->nodes.n > 0) return 0;
   for (size_t i = 0; i < r->n_dof; ++i)
-    if (r->fixed[i] && fabs(r->ud[i] - r->old.u[i]) > 1e-12 * fabs(r->ud[i]))
+    if (r->body.fixed[i] &&
+        fabs(r->loads.ud[i] - r->old.u[i]) > 1e-12 * fabs(r->loads.ud[i]))
       return 0;
-  if (r->moduli.n_own > 0 &&
+  if (r->body.moduli.n_own > 0 &&
       !same_vector((size_t)r->msh->n_elem, r->now.temperature,
                    r->old.temperature))
     return 0;
@@ -141,7 +144,7 @@ static int starts_smoothly(const run *r) {
 
 /* 1: a law flows, or would if *EFFECTS had not left it out. */
 static int has_law(const run *r) {
-  int any = r->visco != NULL;
+  int any = r->strains.visco != NULL;
   for (int i = 0; i < r->m->n_material; ++i)
     any |= r->m->materials[i].law_aside != NULL;
   return any;
@@ -159,7 +162,8 @@ static status start_visco(run *r, int *increment_no) {
   TRY(increment_begin(r, r->step->start));
   if (!starts_smoothly(r)) {
     TRY(increment_solve(r, r->step->start));
-    if (outcome_is_fatal(r->report.outcome)) TRY(loop_no_equilibrium(r));
+    if (outcome_is_fatal(r->solving.report.outcome))
+      TRY(loop_no_equilibrium(r));
     if (!same_vector(r->n_dof, r->now.u, r->old.u))
       TRY(loop_accept(r, 1, ++*increment_no, 0, cpu));
   }

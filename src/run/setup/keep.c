@@ -10,20 +10,20 @@
 /* The nodes of a run that goes on. */
 static status keep_nodes(run *r, archive *a) {
   status st = OK;
-  contact_reach x = r->reach;
+  contact_reach x = r->nodes.reach;
   x.in = NULL;
   TRY(archive_reals(a, "reach", &x.way, 1));
   TRY(archive_ints(a, "reach_passes", &x.passes, 1));
   TRY(archive_ints(a, "nodes_in", &x.n_in, 1));
   if (!archive_reads(a))
-    return archive_ints(a, "in", r->reach.in, (size_t)x.n_in);
-  if (x.n_in > 0) NEW(x.in, r->n);
+    return archive_ints(a, "in", r->nodes.reach.in, (size_t)x.n_in);
+  if (x.n_in > 0) NEW(x.in, r->nodes.n);
   TRY(archive_ints(a, "in", x.in, (size_t)x.n_in));
-  r->reach.way = x.way;
-  r->reach.passes = x.passes;
-  if (reach_is_same(&x, &r->reach)) goto done;
-  contact_reach old = r->reach;
-  r->reach = x;
+  r->nodes.reach.way = x.way;
+  r->nodes.reach.passes = x.passes;
+  if (reach_is_same(&x, &r->nodes.reach)) goto done;
+  contact_reach old = r->nodes.reach;
+  r->nodes.reach = x;
   x = old;
   TRY(run_renew_nodes(r));
 done:
@@ -33,7 +33,7 @@ done:
 
 static status keep_equilibrium(const run *r, equilibrium *e, archive *a) {
   status st = OK;
-  size_t m = (size_t)r->n_c, strains = strains_kept(r);
+  size_t m = (size_t)r->nodes.n_c, strains = strains_kept(r);
   size_t elements = e->temperature == NULL ? 0 : (size_t)r->msh->n_elem;
   TRY(archive_reals(a, "t", &e->t, 1));
   TRY(archive_reals(a, "u", e->u, r->n_dof));
@@ -58,16 +58,16 @@ done:
 /* Temperatures of the moduli, and whether the elastic matrix is theirs. */
 static status keep_moduli(run *r, archive *a) {
   status st = OK;
-  int stale = r->stale, changed = 0;
-  size_t n = r->moduli.n_own == 0 ? 0 : (size_t)r->msh->n_elem;
+  int stale = r->body.stale, changed = 0;
+  size_t n = r->body.moduli.n_own == 0 ? 0 : (size_t)r->msh->n_elem;
   double *T = r->now.temperature;
-  for (int k = 0; k < r->moduli.n_own && !archive_reads(a); ++k)
-    T[r->moduli.elem_id[k]] = r->moduli.at[k];
+  for (int k = 0; k < r->body.moduli.n_own && !archive_reads(a); ++k)
+    T[r->body.moduli.elem_id[k]] = r->body.moduli.at[k];
   TRY(archive_ints(a, "stale", &stale, 1));
   TRY(archive_reals(a, "moduli_temperature", T, n));
   if (!archive_reads(a) || n == 0) goto done;
-  TRY(moduli_heat(&r->moduli, r->m, T, &changed));
-  r->stale = stale || changed;
+  TRY(moduli_heat(&r->body.moduli, r->m, T, &changed));
+  r->body.stale = stale || changed;
   if (!stale) TRY(run_use(r, &r->elastic));
 done:
   return st;
@@ -76,7 +76,7 @@ done:
 /* The rates of contraction that are known belong to the matrix in use. */
 static status keep_rate(run *r, archive *a) {
   status st = OK;
-  known_rate *k = &r->rate;
+  known_rate *k = &r->solving.rate;
   int n = k->n, m = n == 0 ? 0 : k->m;
   TRY(archive_ints(a, "rate_size", &m, 1));
   TRY(archive_ints(a, "rates", &n, 1));
@@ -94,11 +94,12 @@ done:
 static status keep_contact(run *r, archive *a) {
   status st = OK;
   TRY(keep_nodes(r, a));
-  TRY(archive_reals(a, "f_before", r->f_before, (size_t)r->n_row));
-  r->n_before = r->n_row;
-  r->n_told = reach_count(&r->reach, r->n);
-  TRY(archive_reals(a, "distance", r->distance,
-                    r->distance == NULL ? 0 : (size_t)r->n));
+  TRY(archive_reals(a, "f_before", r->problem.f_before,
+                    (size_t)r->nodes.n_row));
+  r->problem.n_before = r->nodes.n_row;
+  r->nodes.n_told = reach_count(&r->nodes.reach, r->nodes.n);
+  TRY(archive_reals(a, "distance", r->result.distance,
+                    r->result.distance == NULL ? 0 : (size_t)r->nodes.n));
   TRY(keep_rate(r, a));
   TRY(matrices_keep(&r->elastic, a, "elastic"));
 done:
@@ -108,22 +109,22 @@ done:
 static status keep_counts(run *r, archive *a) {
   status st = OK;
   TRY(archive_bytes(a, "at", &r->at, sizeof r->at));
-  TRY(archive_ints(a, "total_no", &r->total_no, 1));
-  TRY(archive_ints(a, "unsettled", &r->unsettled, 1));
-  TRY(archive_ints(a, "jumps", &r->jumps, 1));
-  TRY(archive_reals(a, "jump_t", &r->jump_t, 1));
-  TRY(archive_reals(a, "start", r->start, r->n_dof));
-  TRY(archive_reals(a, "step_load", &r->step_load, 1));
+  TRY(archive_ints(a, "total_no", &r->course.total_no, 1));
+  TRY(archive_ints(a, "unsettled", &r->course.unsettled, 1));
+  TRY(archive_ints(a, "jumps", &r->errors.jumps, 1));
+  TRY(archive_reals(a, "jump_t", &r->errors.jump_t, 1));
+  TRY(archive_reals(a, "start", r->loads.start, r->n_dof));
+  TRY(archive_reals(a, "step_load", &r->loads.largest, 1));
 done:
   return st;
 }
 
 static status keep_told(run *r, archive *a) {
   status st = OK;
-  const size_t contacts = r->n > 0 ? (size_t)r->m->n_contact : 0;
-  TRY(archive_ints(a, "told_strain", &r->told.strain, 1));
-  TRY(archive_ints(a, "told_folded", &r->told.folded, 1));
-  TRY(archive_ints(a, "touched", r->told.touched, contacts));
+  const size_t contacts = r->nodes.n > 0 ? (size_t)r->m->n_contact : 0;
+  TRY(archive_ints(a, "told_strain", &r->course.told.strain, 1));
+  TRY(archive_ints(a, "told_folded", &r->course.told.folded, 1));
+  TRY(archive_ints(a, "touched", r->course.told.touched, contacts));
 done:
   return st;
 }
@@ -132,7 +133,7 @@ done:
  * counted from here on is what the other run counts. */
 static status keep_limit(run *r, archive *a) {
   status st = OK;
-  int known = r->limit_known;
+  int known = r->friction.known;
   TRY(archive_ints(a, "limit_known", &known, 1));
   if (archive_reads(a) && known) TRY(limit_update(r, r->old.t));
 done:
@@ -142,9 +143,10 @@ done:
 /* As the limit: the nodal averages of the error of the mesh are made now. */
 static status keep_recovery(run *r, archive *a) {
   status st = OK;
-  int made = r->recovery != NULL;
+  int made = r->errors.recovery != NULL;
   TRY(archive_ints(a, "recovery", &made, 1));
-  if (archive_reads(a) && made) TRY(space_recovery_new(&r->d, &r->recovery));
+  if (archive_reads(a) && made)
+    TRY(space_recovery_new(&r->body.d, &r->errors.recovery));
 done:
   return st;
 }
@@ -152,11 +154,11 @@ done:
 static status keep_costs(run *r, archive *a) {
   status st = OK;
   for (int i = 0; i < STAGE_COUNT; ++i) {
-    r->costs[i] = timer_cost((stage)i);
-    if (!archive_has_cpu(a)) r->costs[i].cpu = 0.0;
+    r->course.costs[i] = timer_cost((stage)i);
+    if (!archive_has_cpu(a)) r->course.costs[i].cpu = 0.0;
   }
-  TRY(archive_bytes(a, "costs", r->costs, sizeof r->costs));
-  if (archive_reads(a)) timer_resume(r->costs);
+  TRY(archive_bytes(a, "costs", r->course.costs, sizeof r->course.costs));
+  if (archive_reads(a)) timer_resume(r->course.costs);
 done:
   return st;
 }
@@ -168,9 +170,9 @@ status run_keep(run *r, archive *a) {
   TRY(keep_told(r, a));
   TRY(keep_equilibrium(r, &r->old, a));
   TRY(keep_moduli(r, a));
-  if (r->n > 0) TRY(keep_contact(r, a));
+  if (r->nodes.n > 0) TRY(keep_contact(r, a));
   TRY(path_keep(r, a));
-  if (r->visco != NULL) TRY(visco_keep(r, a));
+  if (r->strains.visco != NULL) TRY(visco_keep(r, a));
   TRY(keep_limit(r, a));
   TRY(keep_recovery(r, a));
   TRY(effects_keep(r, a));

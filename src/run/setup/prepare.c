@@ -30,14 +30,14 @@ static int may_leave_out(const run *r, int n_motion) {
   if ((effects & EFFECT_TANGENTS) &&
       (!model_rubs_locally(r->m) || (effects & EFFECT_TIME_ERROR)))
     return 0;
-  return n_motion == 0 && r->n >= FEWEST && !(effects & no) &&
+  return n_motion == 0 && r->nodes.n >= FEWEST && !(effects & no) &&
          r->m->n_points == 0 && r->m->n_neglected == 0;
 }
 
 /* Least diagonal entry of the moduli, Pa, times the section's thickness or the
  * size of the mesh: a body of that size gives way by force over this, N/m. */
 static double least_stiffness(const run *r) {
-  const domain *d = &r->d;
+  const domain *d = &r->body.d;
   const int ns = d->ns, flat = d->mesh->dim == 2;
   double least = HUGE_VAL;
   for (int e = 0; e < d->mesh->n_elem; ++e) {
@@ -56,13 +56,13 @@ static status find_reach(run *r) {
   status st = OK;
   double force = 0.0, way = 0.0, end = r->step->start + r->step->total;
   TRY(load_forces(r->m, r->msh, r->step, end, r->now.F));
-  TRY(load_prescribed(r->m, r->msh, r->step, end, r->start, r->ud));
+  TRY(load_prescribed(r->m, r->msh, r->step, end, r->loads.start, r->loads.ud));
   for (size_t k = 0; k < r->n_dof; ++k) {
     force += fabs(r->now.F[k]);
     way = fmax(way, fabs(r->old.u[k]));
-    if (r->fixed[k]) way = fmax(way, fabs(r->ud[k]));
+    if (r->body.fixed[k]) way = fmax(way, fabs(r->loads.ud[k]));
   }
-  r->reach.way = 2.0 * way + GENEROUS * force / least_stiffness(r);
+  r->nodes.reach.way = 2.0 * way + GENEROUS * force / least_stiffness(r);
 done:
   return st;
 }
@@ -71,15 +71,15 @@ done:
 static status choose_nodes(run *r, int n_motion) {
   status st = OK;
   double *gap = NULL;
-  r->reach.passes = 0;
+  r->nodes.reach.passes = 0;
   if (!may_leave_out(r, n_motion)) return OK;
   timer_enter(STAGE_SURFACE);
-  NEW(gap, r->n);
+  NEW(gap, r->nodes.n);
   TRY(find_reach(r));
-  TRY(surface_gap(r->surface, &r->input, r->step->start + r->step->total, gap,
-                  NULL));
-  for (int i = 0; i < r->n; ++i) gap[i] = fmin(gap[i], r->gap[i]);
-  TRY(reach_choose(&r->reach, r->n, gap));
+  TRY(surface_gap(r->surface, &r->faces.input, r->step->start + r->step->total,
+                  gap, NULL));
+  for (int i = 0; i < r->nodes.n; ++i) gap[i] = fmin(gap[i], r->problem.gap[i]);
+  TRY(reach_choose(&r->nodes.reach, r->nodes.n, gap));
   run_take_nodes(r);
   TRY(run_room_for_part(r));
 done:
@@ -90,13 +90,14 @@ done:
 
 static status report_ready(run *r) {
   if (r->sink->ready == NULL) return OK;
-  setup_facts facts = {.info = condensed_info(r->c),
-                       .condition = condensed_condition(r->c),
-                       .digits = condensed_digits(r->c),
-                       .floating = condensed_floating(r->c),
-                       .n_contact_node = r->n,
-                       .n_left_out = r->n - reach_count(&r->reach, r->n),
-                       .average_entries = limit_average_entries(r)};
+  setup_facts facts = {
+      .info = condensed_info(r->c),
+      .condition = condensed_condition(r->c),
+      .digits = condensed_digits(r->c),
+      .floating = condensed_floating(r->c),
+      .n_contact_node = r->nodes.n,
+      .n_left_out = r->nodes.n - reach_count(&r->nodes.reach, r->nodes.n),
+      .average_entries = limit_average_entries(r)};
   return r->sink->ready(r->sink->ctx, &facts, r->surface);
 }
 
@@ -112,13 +113,13 @@ static status check_range(const run *r) {
     most = fmax(most, run_elasticity(r, e)[0]);
   }
   for (int k = 2; k < r->msh->dim; ++k) width *= r->msh->size;
-  if (!in_range(r->step_load) || !in_range(least) || !in_range(most) ||
-      !in_range(r->step_load / (least * width)))
+  if (!in_range(r->loads.largest) || !in_range(least) || !in_range(most) ||
+      !in_range(r->loads.largest / (least * width)))
     FAIL(
         ERR_DECK,
         "step %d: the largest nodal load is %.3g, the moduli are %.3g to %.3g: "
         "their squares leave the range of the numbers; use other units",
-        run_step_id(r) + 1, r->step_load, least, most);
+        run_step_id(r) + 1, r->loads.largest, least, most);
 done:
   return st;
 }
@@ -132,8 +133,9 @@ static status find_load_of_run(run *r) {
     const double dt = s->dt > 0.0 ? s->dt : s->total;
     for (int i = 1; (i - 0.5) * dt < s->total; ++i) {
       TRY(load_forces(r->m, r->msh, s, s->start + i * dt, r->now.F));
-      r->step_load = fmax(r->step_load, increment_free_load(r, r->now.F));
-      if (r->step_load > LEAST) goto done;
+      r->loads.largest =
+          fmax(r->loads.largest, increment_free_load(r, r->now.F));
+      if (r->loads.largest > LEAST) goto done;
     }
   }
 done:
@@ -145,9 +147,10 @@ static status find_load(run *r) {
   status st = OK;
   const double end = r->step->start + r->step->total;
   TRY(load_forces(r->m, r->msh, r->step, end, r->now.F));
-  r->step_load =
+  r->loads.largest =
       fmax(increment_free_load(r, r->old.F), increment_free_load(r, r->now.F));
-  if (r->step_load > 0.0 && r->step_load <= LEAST) TRY(find_load_of_run(r));
+  if (r->loads.largest > 0.0 && r->loads.largest <= LEAST)
+    TRY(find_load_of_run(r));
   TRY(check_range(r));
 done:
   return st;
@@ -159,22 +162,22 @@ status run_prepare(run *r) {
   unsigned char *fixed = NULL;
   NEW(fixed, r->n_dof);
   load_fixed(r->m, r->msh, r->step, fixed);
-  memcpy(r->start, r->old.u, r->n_dof * sizeof *r->start);
-  r->limit_known = 0;
-  known_rate_forget(&r->rate);
-  if (r->elastic.c == NULL || memcmp(fixed, r->fixed, r->n_dof) != 0) {
-    memcpy(r->fixed, fixed, r->n_dof);
+  memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
+  r->friction.known = 0;
+  known_rate_forget(&r->solving.rate);
+  if (r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0) {
+    memcpy(r->body.fixed, fixed, r->n_dof);
     if (r->m->effects & EFFECT_CONTACT)
       TRY(run_build_surface(r));
     else
       run_free_surface(r);
-    r->d.surface = r->surface;
+    r->body.d.surface = r->surface;
     TRY(run_check_supports(r, &motions));
     TRY(choose_nodes(r, motions));
-    r->n_before = r->n_row;
-    r->n_told = reach_count(&r->reach, r->n);
+    r->problem.n_before = r->nodes.n_row;
+    r->nodes.n_told = reach_count(&r->nodes.reach, r->nodes.n);
     if (r->sink->foresee != NULL)
-      TRY(r->sink->foresee(r->sink->ctx, r->n_told));
+      TRY(r->sink->foresee(r->sink->ctx, r->nodes.n_told));
     TRY(run_renew_elastic(r));
     r->c = r->elastic.c;
     fresh = 1;
@@ -185,7 +188,7 @@ status run_prepare(run *r) {
   contact_solver_free(r->elastic.solver);
   r->elastic.solver = NULL;
   visco_new_solvers(r);
-  r->tol = r->step->solver.tol;
+  r->solving.tol = r->step->solver.tol;
   TRY(run_use(r, &r->elastic));
   TRY(effects_begin_step(r));
 done:

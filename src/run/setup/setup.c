@@ -45,12 +45,12 @@ static status new_clusters(run *r) {
     const material *mat = &m->materials[s->material_id];
     if (s->averaged && s->kin != PLANE_STRESS)
       share[i] = cluster_share(
-          m->ns, r->moduli.E + (size_t)(m->ns * m->ns) * (size_t)i,
+          m->ns, r->body.moduli.E + (size_t)(m->ns * m->ns) * (size_t)i,
           mat->law.ops != NULL || mat->elastic.n > 1);
   }
   const cluster_input in = {r->msh, m->sections[0].kin == AXISYMMETRIC,
                             m->n_section, m->elem_section, share};
-  TRY(cluster_new(&in, &r->d.cluster));
+  TRY(cluster_new(&in, &r->body.d.cluster));
 done:
   timer_leave(STAGE_CLUSTER);
   memory_free(share);
@@ -61,33 +61,33 @@ static status new_pairs(run *r) {
   status st = OK;
   const model *m = r->m;
   const mesh *msh = r->msh;
-  NEW(r->pairs, m->n_contact);
-  NEW(r->node_fixed, msh->n_node);
-  NEW(r->face_weight, msh->n_face);
-  NEW(r->totals, m->n_contact);
-  NEW(r->told.touched, m->n_contact);
-  if (model_has_axis(m)) NEW(r->torque, m->n_contact);
+  NEW(r->faces.pairs, m->n_contact);
+  NEW(r->faces.node_fixed, msh->n_node);
+  NEW(r->faces.face_weight, msh->n_face);
+  NEW(r->result.totals, m->n_contact);
+  NEW(r->course.told.touched, m->n_contact);
+  if (model_has_axis(m)) NEW(r->result.torque, m->n_contact);
   for (int i = 0; i < m->n_contact; ++i) {
     const contact *c = &m->contacts[i];
-    r->pairs[i].name = c->name;
-    r->pairs[i].group = &msh->group[c->group_id];
-    r->pairs[i].support = &m->obstacles[c->obstacle_id];
+    r->faces.pairs[i].name = c->name;
+    r->faces.pairs[i].group = &msh->group[c->group_id];
+    r->faces.pairs[i].support = &m->obstacles[c->obstacle_id];
     for (int k = 0; k < m->n_step; ++k) {
       const friction_ops *law = friction_in_force(m, k, i)->law;
-      r->pairs[i].friction |= law != NULL && law->value_name != NULL;
+      r->faces.pairs[i].friction |= law != NULL && law->value_name != NULL;
     }
-    r->pairs[i].obstacle_normal = c->obstacle_normal;
-    r->pairs[i].at = c->at;
+    r->faces.pairs[i].obstacle_normal = c->obstacle_normal;
+    r->faces.pairs[i].at = c->at;
   }
   for (int i = 0; i < msh->n_face; ++i)
-    r->face_weight[i] =
+    r->faces.face_weight[i] =
         m->sections[m->elem_section[msh->face_elem[i]]].thickness;
-  r->input.mesh = msh;
-  r->input.n_pair = m->n_contact;
-  r->input.pairs = r->pairs;
-  r->input.fixed = r->node_fixed;
-  r->input.face_weight = r->face_weight;
-  r->input.axisymmetric = m->sections[0].kin == AXISYMMETRIC;
+  r->faces.input.mesh = msh;
+  r->faces.input.n_pair = m->n_contact;
+  r->faces.input.pairs = r->faces.pairs;
+  r->faces.input.fixed = r->faces.node_fixed;
+  r->faces.input.face_weight = r->faces.face_weight;
+  r->faces.input.axisymmetric = m->sections[0].kin == AXISYMMETRIC;
 done:
   return st;
 }
@@ -95,23 +95,24 @@ done:
 status run_new(run *r) {
   status st = OK;
   r->n_dof = (size_t)r->msh->dim * (size_t)r->msh->n_node;
-  r->known_key = RUN_NO_KEY;
-  r->d.mesh = r->msh;
-  NEW(r->fixed, r->n_dof);
-  r->d.fixed = r->fixed;
+  r->solving.known_key = RUN_NO_KEY;
+  r->body.d.mesh = r->msh;
+  NEW(r->body.fixed, r->n_dof);
+  r->body.d.fixed = r->body.fixed;
   TRY(new_equilibrium(r, &r->old));
   TRY(new_equilibrium(r, &r->now));
-  NEW(r->ud, r->n_dof);
-  NEW(r->start, r->n_dof);
+  NEW(r->loads.ud, r->n_dof);
+  NEW(r->loads.start, r->n_dof);
   TRY(strains_new(r));
   TRY(new_clusters(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
-  if (r->m->effects & EFFECT_MESH_ERROR) NEW(r->elem_error, r->msh->n_elem);
+  if (r->m->effects & EFFECT_MESH_ERROR)
+    NEW(r->errors.elem_error, r->msh->n_elem);
   if (r->m->effects &
       (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR | EFFECT_REFERENCE))
-    NEW(r->stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+    NEW(r->result.stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   if (r->m->effects & EFFECT_STRESS)
-    NEW(r->strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+    NEW(r->result.strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   TRY(effects_create(r));
 done:
   return st;
@@ -119,24 +120,24 @@ done:
 
 void run_free(run *r) {
   effects_release(r);
-  start_report_free(&r->first);
+  start_report_free(&r->course.first);
   run_free_surface(r);
-  space_recovery_free(r->recovery);
-  memory_free(r->elem_error);
+  space_recovery_free(r->errors.recovery);
+  memory_free(r->errors.elem_error);
   free_equilibrium(&r->old);
   free_equilibrium(&r->now);
   strains_free(r);
-  moduli_free(&r->moduli);
-  cluster_free(r->d.cluster);
-  memory_free(r->fixed);
-  memory_free(r->pairs);
-  memory_free(r->node_fixed);
-  memory_free(r->face_weight);
-  memory_free(r->totals);
-  memory_free(r->told.touched);
-  memory_free(r->torque);
-  memory_free(r->ud);
-  memory_free(r->start);
-  memory_free(r->strain);
-  memory_free(r->stress);
+  moduli_free(&r->body.moduli);
+  cluster_free(r->body.d.cluster);
+  memory_free(r->body.fixed);
+  memory_free(r->faces.pairs);
+  memory_free(r->faces.node_fixed);
+  memory_free(r->faces.face_weight);
+  memory_free(r->result.totals);
+  memory_free(r->course.told.touched);
+  memory_free(r->result.torque);
+  memory_free(r->loads.ud);
+  memory_free(r->loads.start);
+  memory_free(r->result.strain);
+  memory_free(r->result.stress);
 }

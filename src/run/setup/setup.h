@@ -17,7 +17,8 @@ status run_motions(run *r, int *n, free_motion **list);
 /* The same of the surface at hand; *n: those that contact alone holds. */
 status run_check_supports(const run *r, int *n);
 
-/* surface.c: the surface of r->fixed, with what the old one knew; without. */
+/* surface.c: the surface of r->body.fixed, with what the old one knew; without.
+ */
 status run_build_surface(run *r);
 void run_free_surface(run *r);
 

@@ -76,7 +76,7 @@ done:
 status run_check_supports(const run *r, int *n) {
   status st = OK;
   free_motion *list = NULL;
-  TRY(domain_free_motions(&r->d, n, &list));
+  TRY(domain_free_motions(&r->body.d, n, &list));
   TRY(refuse_unheld(r, *n, list));
 done:
   memory_free(list);
@@ -85,10 +85,10 @@ done:
 
 status run_motions(run *r, int *n, free_motion **list) {
   status st = OK;
-  load_fixed(r->m, r->msh, r->step, r->fixed);
+  load_fixed(r->m, r->msh, r->step, r->body.fixed);
   if (r->m->effects & EFFECT_CONTACT) TRY(run_build_surface(r));
-  r->d.surface = r->surface;
-  TRY(domain_free_motions(&r->d, n, list));
+  r->body.d.surface = r->surface;
+  TRY(domain_free_motions(&r->body.d, n, list));
   TRY(refuse_unheld(r, *n, *list));
   TRY(limit_average(r));
 done:

@@ -15,22 +15,24 @@ void run_free_surface(run *r) {
   r->c = NULL;
   r->surface = NULL;
   double **owned[] = {
-      &r->f,        &r->f_load,   &r->f_before, &r->gap,        &r->side_gap,
-      &r->ut0,      &r->open_gap, &r->slip,     &r->g,          &r->old.uc,
-      &r->old.rc,   &r->now.uc,   &r->now.rc,   &r->old.motion, &r->now.motion,
-      &r->distance, &r->row[0],   &r->row[1]};
+      &r->problem.f,       &r->problem.f_load,   &r->problem.f_before,
+      &r->problem.gap,     &r->problem.side_gap, &r->problem.ut0,
+      &r->result.open_gap, &r->result.slip,      &r->result.g,
+      &r->old.uc,          &r->old.rc,           &r->now.uc,
+      &r->now.rc,          &r->old.motion,       &r->now.motion,
+      &r->result.distance, &r->problem.row[0],   &r->problem.row[1]};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) {
     memory_free(*owned[i]);
     *owned[i] = NULL;
   }
-  memory_free(r->contact);
-  r->contact = NULL;
-  reach_free(&r->reach);
-  reach_part_free(&r->part);
+  memory_free(r->result.contact);
+  r->result.contact = NULL;
+  reach_free(&r->nodes.reach);
+  reach_part_free(&r->problem.part);
   run_take_nodes(r);
   limit_free(r);
-  forms_free(r->forms);
-  r->forms = NULL;
+  forms_free(r->problem.forms);
+  r->problem.forms = NULL;
   path_restart(r);
 }
 
@@ -39,32 +41,32 @@ static void node_bits(run *r) {
   for (int i = 0; i < r->msh->n_node; ++i) {
     unsigned bits = 0;
     for (int c = 0; c < dim; ++c)
-      bits |= (unsigned)(r->fixed[dim * i + c] != 0) << c;
-    r->node_fixed[i] = (unsigned char)bits;
+      bits |= (unsigned)(r->body.fixed[dim * i + c] != 0) << c;
+    r->faces.node_fixed[i] = (unsigned char)bits;
   }
 }
 
 static status new_contact_arrays(run *r) {
   status st = OK;
-  int tangents = r->n * (r->msh->dim - 1);
-  NEW(r->f, r->n_row);
-  NEW(r->f_load, r->n_row);
-  NEW(r->f_before, r->n_row);
-  NEW(r->gap, r->n);
-  NEW(r->old.uc, r->n_c);
-  NEW(r->now.uc, r->n_c);
-  NEW(r->old.rc, r->n_c);
-  NEW(r->now.rc, r->n_c);
-  NEW(r->old.motion, r->n_c);
-  NEW(r->now.motion, r->n_c);
-  NEW(r->open_gap, r->n);
-  NEW(r->contact, r->n);
-  if (r->rows > 1) NEW(r->side_gap, tangents);
-  NEW(r->slip, tangents);
+  int tangents = r->nodes.n * (r->msh->dim - 1);
+  NEW(r->problem.f, r->nodes.n_row);
+  NEW(r->problem.f_load, r->nodes.n_row);
+  NEW(r->problem.f_before, r->nodes.n_row);
+  NEW(r->problem.gap, r->nodes.n);
+  NEW(r->old.uc, r->nodes.n_c);
+  NEW(r->now.uc, r->nodes.n_c);
+  NEW(r->old.rc, r->nodes.n_c);
+  NEW(r->now.rc, r->nodes.n_c);
+  NEW(r->old.motion, r->nodes.n_c);
+  NEW(r->now.motion, r->nodes.n_c);
+  NEW(r->result.open_gap, r->nodes.n);
+  NEW(r->result.contact, r->nodes.n);
+  if (r->nodes.rows > 1) NEW(r->problem.side_gap, tangents);
+  NEW(r->result.slip, tangents);
   if (r->m->effects & EFFECT_FRICTION) {
-    NEW(r->ut0, tangents);
-    NEW(r->g, r->n);
-    NEW(r->distance, r->n);
+    NEW(r->problem.ut0, tangents);
+    NEW(r->result.g, r->nodes.n);
+    NEW(r->result.distance, r->nodes.n);
   }
 done:
   return st;
@@ -101,21 +103,21 @@ static void forces_to_global(const run *r, double *force) {
 }
 
 /* Slip so far of the nodes that stay in contact, [n_node]: to_nodes 1 from
- * r->distance, 0 back. */
+ * r->result.distance, 0 back. */
 static void carry_distance(run *r, int to_nodes, double *at_node) {
-  for (int i = 0; i < r->n && r->distance != NULL; ++i) {
+  for (int i = 0; i < r->nodes.n && r->result.distance != NULL; ++i) {
     double *node = &at_node[r->surface->node_id[i]];
     if (to_nodes)
-      *node = r->distance[i];
+      *node = r->result.distance[i];
     else
-      r->distance[i] = *node;
+      r->result.distance[i] = *node;
   }
 }
 
 /* A node that supports take out of the contact leaves its force to them. */
 static void leave_forces(run *r, double *force) {
   int dim = r->msh->dim;
-  for (int i = 0; i < r->n; ++i)
+  for (int i = 0; i < r->nodes.n; ++i)
     for (int c = 0; c < dim; ++c) force[dim * r->surface->node_id[i] + c] = 0.0;
   for (size_t k = 0; k < r->n_dof; ++k) r->old.reaction[k] += force[k];
 }
@@ -130,21 +132,23 @@ status run_build_surface(run *r) {
   run_free_surface(r);
   timer_enter(STAGE_SURFACE);
   node_bits(r);
-  st = surface_build(&r->input, r->m->log, &r->surface);
+  st = surface_build(&r->faces.input, r->m->log, &r->surface);
   timer_leave(STAGE_SURFACE);
   TRY(st);
-  r->n = r->surface->n;
-  r->n_c = r->msh->dim * r->n;
-  r->d.rows = r->rows = r->m->effects & EFFECT_TANGENTS ? r->msh->dim : 1;
-  r->n_row = r->rows * r->n;
+  r->nodes.n = r->surface->n;
+  r->nodes.n_c = r->msh->dim * r->nodes.n;
+  r->body.d.rows = r->nodes.rows =
+      r->m->effects & EFFECT_TANGENTS ? r->msh->dim : 1;
+  r->nodes.n_row = r->nodes.rows * r->nodes.n;
   TRY(new_contact_arrays(r));
   TRY(run_room_for_part(r));
   TRY(forms_new(r));
   old_state_to_frames(r, force);
   leave_forces(r, force);
   carry_distance(r, 0, distance);
-  TRY(surface_gap(r->surface, &r->input, r->old.t, r->gap, r->side_gap));
-  surface_drift(r->surface, &r->input, 0.0, r->old.t, r->old.motion);
+  TRY(surface_gap(r->surface, &r->faces.input, r->old.t, r->problem.gap,
+                  r->problem.side_gap));
+  surface_drift(r->surface, &r->faces.input, 0.0, r->old.t, r->old.motion);
 done:
   memory_free(force);
   memory_free(distance);
