@@ -1,7 +1,23 @@
 /*
- * The rows of the effects, of all their files.
+ * The rows of the effects, of all their files, and which of them a model calls
+ * for.
  */
 #include "effects/rows.h"
 
 #define EFFECT_PLACE(name) &name##_effect,
 const effect_ops *const effect_table[] = {EFFECT_ROWS(EFFECT_PLACE) NULL};
+
+unsigned effects_called_for(const model *m) {
+  unsigned bits = 0;
+  for (int k = 0; effect_table[k] != NULL; ++k)
+    if (effect_table[k]->bit != NO_BIT &&
+        effect_table[k]->called_for(m, NULL, 0))
+      bits |= 1u << effect_table[k]->bit;
+  return bits & ~(unsigned)(EFFECTS_WITHOUT);
+}
+
+const char *effect_name(int bit) {
+  int k = 0;
+  while (effect_table[k]->bit != bit) ++k;
+  return effect_table[k]->name;
+}

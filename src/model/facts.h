@@ -1,6 +1,6 @@
 /*
- * What effects.c and reasons.c ask of the deck; for the files of this folder
- * only. "First" is in the order of the deck, NULL if there is none.
+ * What the rows of the effects ask of the deck. "First" is in the order of the
+ * deck, NULL if there is none.
  */
 #ifndef PROTIS_MODEL_FACTS_H
 #define PROTIS_MODEL_FACTS_H

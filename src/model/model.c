@@ -87,3 +87,12 @@ void model_free(model *m) {
           m->moves, m->contacts, m->steps, m->still, m->elem_section, m->job,
           m->effect_cards, m);
 }
+
+void model_find_effects(model *m) { m->effects = effects_called_for(m); }
+
+void model_fit_problem(model *m, int dim, int friction) {
+  m->dim = dim;
+  m->problem_friction = friction;
+  m->effects = EFFECT_CONTACT | (friction ? EFFECT_FRICTION : 0u);
+  if (dim > 1) m->effects |= effects_called_for(m) & EFFECT_ESTIMATES;
+}

@@ -433,12 +433,11 @@ int rule_has_average(const friction_rule *rule);
 /* 1: tangential unknowns are there for friction alone, which acts in all steps
  * on nodes that touch and against their displacement. */
 int model_rubs_locally(const model *m);
-/* Which card or fact switched it on or off, into text; returns text. */
-const char *model_effect_reason(const model *m, int bit, char *text,
-                                size_t size);
 
 /* Which effects the deck calls for, into m->effects. */
 void model_find_effects(model *m);
+/* The same as bits EFFECT_*, from the rows of the effects (src/effects). */
+unsigned effects_called_for(const model *m);
 /* m->corner_id. ERR_MEMORY. */
 status model_find_corner(model *m, const mesh *msh);
 /* In the place of model_check for a deck with *CONDENSED PROBLEM, once it is

@@ -25,7 +25,8 @@ enum { EFFECT_STAGES = 7, NO_BIT = -1 };
 
 typedef struct effect_ops {
   const char *name;
-  int bit; /* EFFECT_BIT_... of model.effects, or NO_BIT: called_for tells    */
+  int bit; /* EFFECT_BIT_... that m->effects keeps the answer of called_for
+              under, for others that ask; or NO_BIT                           */
   /* 1: the model calls for it; which card or fact does, or why none does, into
    * why[size]; size 0: not wanted. */
   int (*called_for)(const model *m, char *why, size_t size);

@@ -10,6 +10,11 @@
 
 #include "run/column_row.h"
 
+static int calls_for_reference(const model *m, char *why, size_t size) {
+  if (m->ref.n == 0) return plan_says(0, why, size, "no *REFERENCE card");
+  return plan_says(1, why, size, "*REFERENCE, %s:%d", PLACE(m->ref.at));
+}
+
 /* Formulas at many points of each element. */
 static status expected(const plan_sizes *s, effect_work *w) {
   *w =
@@ -70,6 +75,7 @@ static const column columns[] = {
 
 const effect_ops closed_form_effect = {.name = "closed form",
                                        .bit = EFFECT_BIT_REFERENCE,
+                                       .called_for = calls_for_reference,
                                        .foreseen = expected,
                                        .own = STAGE_REFERENCE,
                                        .create = exact_new,

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "model/facts.h"
 #include "run/run.h"
 #include "run/visco.h"
 
@@ -218,6 +219,12 @@ static status see_start(run *r, void *own) { return see_theory(r, own, 1); }
 /* ---- the row --------------------------------------------------------------
  */
 
+static int calls_for_theorems(const model *m, char *why, size_t size) {
+  if (facts_first_step(m, facts_asks_theory) != NULL && m->n_contact == 0)
+    return plan_says(0, why, size, "no *CONTACT card");
+  return plan_calls_for_accuracy(m, "THEORY", facts_asks_theory, why, size);
+}
+
 static status expected(const plan_sizes *s, effect_work *w) {
   double m = plan_contact_unknowns(s), n = s->contact;
   *w = (effect_work){n, "nodes", s->increments,
@@ -251,6 +258,7 @@ static void release(void *self) {
 
 const effect_ops theorems_effect = {.name = "theory checks",
                                     .bit = EFFECT_BIT_THEORY,
+                                    .called_for = calls_for_theorems,
                                     .foreseen = expected,
                                     .own = STAGE_THEORY,
                                     .beside = 1,

@@ -4,6 +4,7 @@
  */
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "model/facts.h"
 
 #include <math.h>
 
@@ -135,6 +136,184 @@ static status reactions(const plan_sizes *s, effect_work *w) {
   return s->msh == NULL ? OK : plan_held(s, &unknowns, &w->items);
 }
 
+/* ---- the cards that call for them ----------------------------------------
+ */
+
+static int calls_for_mesh(const model *m, char *why, size_t size) {
+  return plan_says(!m->has_problem, why, size, "*MESH, %s:%d",
+                   PLACE(m->mesh_at));
+}
+
+static int calls_for_contact(const model *m, char *why, size_t size) {
+  if (m->n_contact == 0) return plan_says(0, why, size, "no *CONTACT card");
+  return plan_says(1, why, size, "*CONTACT, NAME=%s, %s:%d",
+                   m->contacts[0].name, PLACE(m->contacts[0].at));
+}
+
+/* The first rule that "is"; "none": there is no such rule. */
+static int calls_for_rule(const model *m, int (*is)(const friction_rule *rule),
+                          const char *none, char *why, size_t size) {
+  const contact *c = NULL;
+  const friction_rule *rule = facts_first_rule(m, is, &c);
+  if (rule == NULL) return plan_says(0, why, size, "%s", none);
+  return plan_says(1, why, size, "*FRICTION, LAW=%s on contact %s, %s:%d",
+                   rule->law->name, c->name, PLACE(rule->at));
+}
+
+static int calls_for_friction(const model *m, char *why, size_t size) {
+  return calls_for_rule(m, rule_has_friction,
+                        m->n_contact == 0
+                            ? "no *CONTACT card"
+                            : "no *FRICTION card with a value above zero",
+                        why, size);
+}
+
+static int calls_for_average(const model *m, char *why, size_t size) {
+  return calls_for_rule(m, rule_has_average, "no friction law with an average",
+                        why, size);
+}
+
+/* The normals of a second obstacle are tangents of the first. */
+static int calls_for_tangents(const model *m, char *why, size_t size) {
+  const step *s = facts_first_whole(m);
+  if (m->n_contact == 0 || calls_for_friction(m, NULL, 0))
+    return calls_for_friction(m, why, size);
+  if (m->corner_id >= 0)
+    return plan_says(1, why, size, "contact %s meets another, %s:%d",
+                     m->contacts[m->corner_id].name,
+                     PLACE(m->contacts[m->corner_id].at));
+  if (s == NULL && facts_neglects_friction(m))
+    return plan_says(1, why, size, "friction left out is judged, %s:%d",
+                     PLACE(m->effects_at));
+  if (s == NULL)
+    return plan_says(0, why, size, "mu = 0: only normals are condensed");
+  if (s->condensed_frequency >= 0)
+    return plan_says(1, why, size, "*OUTPUT, CONDENSED=FCLIB, %s:%d",
+                     PLACE(s->output_at));
+  if (s->check != CHECK_NONE)
+    return plan_says(1, why, size, "*SOLVER, CHECK=, %s:%d",
+                     PLACE(s->solver_at));
+  return plan_says(1, why, size, "*ACCURACY, THEORY=YES, %s:%d",
+                   PLACE(s->accuracy_at));
+}
+
+static int calls_for_given(const model *m, char *why, size_t size) {
+  const contact *c = facts_first_given(m);
+  if (c == NULL) return plan_says(0, why, size, "no *CONTACT FORCE card");
+  return plan_says(1, why, size, "*CONTACT FORCE on contact %s, %s:%d", c->name,
+                   PLACE(c->force.at));
+}
+
+/* More than one increment: slip and load have a history. */
+static int calls_for_history(const model *m, char *why, size_t size) {
+  if (!calls_for_friction(m, NULL, 0))
+    return plan_says(0, why, size, "no friction");
+  if (m->n_step == 0 ||
+      (m->n_step == 1 && !(m->steps[0].dt < m->steps[0].total)))
+    return plan_says(0, why, size, "one increment only");
+  return plan_says(1, why, size, "friction over more than one increment, %s:%d",
+                   PLACE(m->steps[0].at));
+}
+
+static int calls_for_start(const model *m, char *why, size_t size) {
+  if (!m->start.given)
+    return plan_says(0, why, size, "no *INITIAL CONDITIONS, TYPE=DISPLACEMENT");
+  return plan_says(1, why, size,
+                   "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, %s:%d",
+                   PLACE(m->start.at));
+}
+
+static int calls_for_inelastic(const model *m, char *why, size_t size) {
+  const section *s = facts_first_inelastic(m);
+  if (s == NULL) return plan_says(0, why, size, "no material has *INELASTIC");
+  const law_card *law = &m->materials[s->material_id].law;
+  return plan_says(facts_has_inelastic(m), why, size, "%s of group %s, %s:%d%s",
+                   law->ops->name, s->elset, PLACE(law->at),
+                   has_card(m, "VISCO") ? "" : ", but no step is *VISCO");
+}
+
+static int calls_for_thermal(const model *m, char *why, size_t size) {
+  const load *l = facts_first_temperature(m);
+  if (facts_has_warm_law(m))
+    return plan_says(
+        1, why, size, "law %s of material %s depends on temperature",
+        facts_first_warm_law(m)->law.ops->name, facts_first_warm_law(m)->name);
+  if (facts_has_warm_moduli(m))
+    return plan_says(1, why, size,
+                     "*ELASTIC of material %s depends on temperature",
+                     facts_first_warm_moduli(m)->name);
+  if (l == NULL) return plan_says(0, why, size, "no *TEMPERATURE card");
+  if (!facts_has_expansion(m))
+    return plan_says(0, why, size, "no material in use has *EXPANSION");
+  return plan_says(1, why, size, "*TEMPERATURE on group %s, %s:%d", l->group,
+                   PLACE(l->at));
+}
+
+static int calls_for_body(const model *m, char *why, size_t size) {
+  const load *l = facts_first_body_load(m);
+  if (l == NULL) return plan_says(0, why, size, "no *DLOAD card");
+  return plan_says(1, why, size, "*DLOAD on group %s, %s:%d", l->group,
+                   PLACE(l->at));
+}
+
+static int calls_for_output(const model *m, int table, char *why, size_t size) {
+  place at;
+  if (facts_first_print(m, table, &at) != NULL)
+    return plan_says(1, why, size, "*PRINT, %s:%d", PLACE(at));
+  if (facts_first_fields(m) != NULL)
+    return plan_says(1, why, size, "fields in JOB.h5, see below");
+  return plan_says(0, why, size, "no output asks for them");
+}
+
+static int calls_for_stress(const model *m, char *why, size_t size) {
+  return calls_for_output(m, PRINT_ELEMENTS, why, size);
+}
+
+/* Reactions are computed when printed, or where a support does work. */
+static int calls_for_reaction(const model *m, char *why, size_t size) {
+  const load *l = facts_moving_support(m);
+  if (l == NULL) return calls_for_output(m, PRINT_REACTIONS, why, size);
+  return plan_says(1, why, size,
+                   "work of the support %s, %s:%d, that moves or is let go",
+                   l->group, PLACE(l->at));
+}
+
+int plan_calls_for_accuracy(const model *m, const char *word,
+                            int (*is)(const step *s), char *why, size_t size) {
+  const step *s = facts_first_step(m, is);
+  if (s == NULL) return plan_says(0, why, size, "no *ACCURACY, %s=YES", word);
+  if (m->target.percent > 0.0)
+    return plan_says(1, why, size, "*ACCURACY, TARGET=, %s:%d",
+                     PLACE(s->accuracy_at));
+  if (s->accuracy_at.file == NULL)
+    return plan_says(1, why, size, "*SOLVER, TOL=BALANCED, %s:%d",
+                     PLACE(s->solver_at));
+  return plan_says(1, why, size, "*ACCURACY, %s=YES, %s:%d", word,
+                   PLACE(s->accuracy_at));
+}
+
+static int calls_for_mesh_error(const model *m, char *why, size_t size) {
+  return plan_calls_for_accuracy(m, "MESH", facts_asks_mesh_error, why, size);
+}
+
+static int calls_for_time_error(const model *m, char *why, size_t size) {
+  return plan_calls_for_accuracy(m, "TIME", facts_asks_time_error, why, size);
+}
+
+static int calls_for_bound(const model *m, char *why, size_t size) {
+  int any = 0;
+  for (int i = 0; i < m->n_step; ++i) any |= !m->steps[i].no_solver_error;
+  if (m->has_problem && !m->steps[0].has_accuracy)
+    return plan_says(any, why, size, "no *ACCURACY card, which asks for it");
+  if (m->has_problem && any)
+    return plan_says(1, why, size, "*ACCURACY, %s:%d",
+                     PLACE(m->steps[0].accuracy_at));
+  if (m->n_contact == 0 && !m->has_problem)
+    return plan_says(0, why, size, "no *CONTACT card");
+  if (!any) return plan_says(0, why, size, "*ACCURACY, SOLVER=NO");
+  return plan_says(1, why, size, "default; *ACCURACY, SOLVER=NO leaves it out");
+}
+
 static int calls_for_velocity(const model *m, char *why, size_t size) {
   for (int i = 0; i < m->n_step; ++i) {
     if (m->steps[i].form != FORM_VELOCITY) continue;
@@ -199,6 +378,7 @@ static status bound_of_solver(const plan_sizes *s, effect_work *w) {
 const effect_ops finite_elements_effect = {
     .name = "finite elements",
     .bit = EFFECT_BIT_MESH,
+    .called_for = calls_for_mesh,
     .foreseen = elements,
     .own = STAGE_ASSEMBLY,
     .more = {STAGE_ORDERING, STAGE_FACTOR, STAGE_LOAD, STAGE_RECOVERY,
@@ -206,33 +386,39 @@ const effect_ops finite_elements_effect = {
 const effect_ops unilateral_contact_effect = {
     .name = "unilateral contact",
     .bit = EFFECT_BIT_CONTACT,
+    .called_for = calls_for_contact,
     .foreseen = unilateral,
     .own = STAGE_CONTACT,
     .more = {STAGE_SURFACE, STAGE_CONDENSE, STAGE_PROBLEM}};
 const effect_ops friction_effect = {
     .name = "friction",
     .bit = EFFECT_BIT_FRICTION,
+    .called_for = calls_for_friction,
     .foreseen = friction,
     .own = STAGE_LIMIT};
 const effect_ops tangents_effect = {
     .name = "tangential unknowns",
     .bit = EFFECT_BIT_TANGENTS,
+    .called_for = calls_for_tangents,
     .foreseen = tangents,
     .own = STAGE_NONE,
     .within = "unilateral contact"};
 const effect_ops nonlocal_effect = {
     .name = "nonlocal average",
     .bit = EFFECT_BIT_NONLOCAL,
+    .called_for = calls_for_average,
     .foreseen = average,
     .own = STAGE_NONLOCAL};
 const effect_ops given_forces_effect = {
     .name = "given contact forces",
     .bit = EFFECT_BIT_GIVEN,
+    .called_for = calls_for_given,
     .foreseen = given,
     .own = STAGE_GIVEN};
 const effect_ops slip_history_effect = {
     .name = "history of slip",
     .bit = EFFECT_BIT_HISTORY,
+    .called_for = calls_for_history,
     .foreseen = history,
     .own = STAGE_HISTORY};
 const effect_ops velocity_effect = {
@@ -244,31 +430,37 @@ const effect_ops velocity_effect = {
 const effect_ops initial_state_effect = {
     .name = "initial state",
     .bit = EFFECT_BIT_START,
+    .called_for = calls_for_start,
     .foreseen = initial_state,
     .own = STAGE_START};
 const effect_ops inelastic_effect = {
     .name = "inelastic strain",
     .bit = EFFECT_BIT_INELASTIC,
+    .called_for = calls_for_inelastic,
     .foreseen = inelastic,
     .own = STAGE_INELASTIC};
 const effect_ops thermal_effect = {
     .name = "thermal strain",
     .bit = EFFECT_BIT_THERMAL,
+    .called_for = calls_for_thermal,
     .foreseen = thermal,
     .own = STAGE_THERMAL};
 const effect_ops body_forces_effect = {
     .name = "body forces",
     .bit = EFFECT_BIT_BODY,
+    .called_for = calls_for_body,
     .foreseen = body,
     .own = STAGE_BODY};
 const effect_ops stresses_effect = {
     .name = "stresses",
     .bit = EFFECT_BIT_STRESS,
+    .called_for = calls_for_stress,
     .foreseen = stresses,
     .own = STAGE_STRESS};
 const effect_ops reactions_effect = {
     .name = "reactions",
     .bit = EFFECT_BIT_REACTION,
+    .called_for = calls_for_reaction,
     .foreseen = reactions,
     .own = STAGE_REACTION};
 const effect_ops second_solutions_effect = {
@@ -280,16 +472,19 @@ const effect_ops second_solutions_effect = {
 const effect_ops mesh_error_effect = {
     .name = "error of mesh",
     .bit = EFFECT_BIT_MESH_ERROR,
+    .called_for = calls_for_mesh_error,
     .foreseen = mesh_error,
     .own = STAGE_MESH_ERROR};
 const effect_ops time_error_effect = {
     .name = "error of steps",
     .bit = EFFECT_BIT_TIME_ERROR,
+    .called_for = calls_for_time_error,
     .foreseen = time_error,
     .own = STAGE_TIME_ERROR};
 const effect_ops solver_error_effect = {
     .name = "error of solver",
     .bit = EFFECT_BIT_ESTIMATES,
+    .called_for = calls_for_bound,
     .foreseen = bound_of_solver,
     .own = STAGE_ESTIMATE};
 /* clang-format on */

@@ -6,15 +6,48 @@
 #include "base/memory.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+int plan_says(int on, char *why, size_t size, const char *format, ...) {
+  va_list list;
+  va_start(list, format);
+  vsnprintf(why, size, format, list);
+  va_end(list);
+  return on;
+}
+
+/* 1: *EFFECTS leaves out what the deck calls for. */
+static int is_neglected(const model *m, int bit) {
+  int any = 0;
+  for (int i = 0; i < m->n_neglected; ++i)
+    any |= m->neglected[i].bit == bit && !m->neglected[i].back;
+  return any && !(m->effects >> bit & 1u);
+}
+
+/* The reason of a row with a bit in a deck with *CONDENSED PROBLEM. */
+static void say_of_problem(const model *m, const effect_ops *e, plan_row *r) {
+  if (e->bit == EFFECT_BIT_CONTACT)
+    plan_says(1, r->why, sizeof r->why, "*CONDENSED PROBLEM, %s:%d",
+              PLACE(m->problem_at));
+  else if (e->bit == EFFECT_BIT_FRICTION)
+    plan_says(1, r->why, sizeof r->why,
+              "mu of *CONDENSED PROBLEM, %s:%d, is %s", PLACE(m->problem_at),
+              m->problem_friction ? "not zero" : "zero or not there");
+  else if (e->bit != EFFECT_BIT_ESTIMATES || m->dim == 1)
+    plan_says(1, r->why, sizeof r->why, "not part of a condensed problem");
+}
 
 static status row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
   const model *m = s->m;
   *r = (plan_row){
       .name = e->name, .on = effect_is_on(e, m), .within = e->within};
-  if (e->bit != NO_BIT)
-    model_effect_reason(m, e->bit, r->why, sizeof r->why);
-  else
-    e->called_for(m, r->why, sizeof r->why);
+  e->called_for(m, r->why, sizeof r->why);
+  if (e->bit != NO_BIT && m->has_problem)
+    say_of_problem(m, e, r);
+  else if (e->bit != NO_BIT && is_neglected(m, e->bit))
+    plan_says(1, r->why, sizeof r->why,
+              "left out by *EFFECTS, MODE=AUTO, %s:%d", PLACE(m->effects_at));
   if (effect_stage(e) != STAGE_NONE) r->stages[r->n_stage++] = effect_stage(e);
   for (int k = 0; e->more[k] != 0; ++k) r->stages[r->n_stage++] = e->more[k];
   status st = e->foreseen(s, &r->work);

@@ -90,6 +90,12 @@ const material *plan_material(const model *m, int section_id);
 double plan_section_elements(const plan_sizes *s, int section_id);
 /* Increments that all steps show: in a table, or 0: in any table or field. */
 double plan_shown(const model *m, int table);
+/* "on", with the reason in why[size] as by snprintf. */
+int plan_says(int on, char *why, size_t size, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* An estimate of *ACCURACY that the first step that "is" calls for. */
+int plan_calls_for_accuracy(const model *m, const char *word,
+                            int (*is)(const step *s), char *why, size_t size);
 /* 1: some *PRINT has the table, called word there; where, into why[size]. */
 int plan_calls_for_table(const model *m, int table, const char *word, char *why,
                          size_t size);
