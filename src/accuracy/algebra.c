@@ -66,23 +66,15 @@ node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id) {
 /* ---- the admissible pair ------------------------------------------------ */
 
 status pair_new(int n, int m, pair *p) {
-  status st = OK;
-  NEW(p->v, m);
-  NEW(p->q, m);
-  NEW(p->d, m);
-  NEW(p->t, m);
-  NEW(p->slides, n);
-done:
-  return st;
+  PASS_NEW(p->v, m);
+  PASS_NEW(p->q, m);
+  PASS_NEW(p->d, m);
+  PASS_NEW(p->t, m);
+  PASS_NEW(p->slides, n);
+  return OK;
 }
 
-void pair_free(pair *p) {
-  memory_free(p->v);
-  memory_free(p->q);
-  memory_free(p->d);
-  memory_free(p->t);
-  memory_free(p->slides);
-}
+void pair_free(pair *p) { RELEASE(p->v, p->q, p->d, p->t, p->slides); }
 
 /* Unilateral unknowns, and those without any force. */
 static void pair_normal(const contact_problem *cp, const double *u,

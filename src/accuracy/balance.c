@@ -54,19 +54,18 @@ static int admissible(const contact_problem *cp, const pair *p) {
 
 status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
                     pair *p, int *done) {
-  status st = OK;
   int m = cp->m, k = inverse->n_kernel;
-  double *Z = NULL, *G = NULL, *y = NULL;
-  int *pivot = NULL;
+  OWNED double *Z = NULL, *G = NULL, *y = NULL;
+  OWNED int *pivot = NULL;
   *done = 0;
   if (cblas_dasum(m, p->d, 1) == 0.0) {
     *done = 1;
-    goto done;
+    return OK;
   }
-  NEW(Z, (size_t)m * (size_t)k);
-  NEW(G, (size_t)k * (size_t)k);
-  NEW(y, k);
-  NEW(pivot, k);
+  PASS_NEW(Z, (size_t)m * (size_t)k);
+  PASS_NEW(G, (size_t)k * (size_t)k);
+  PASS_NEW(y, k);
+  PASS_NEW(pivot, k);
   for (int c = 0; c < k; ++c) {
     double *z = Z + (size_t)m * (size_t)c;
     for (int dof = 0; dof < m; ++dof)
@@ -79,17 +78,12 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
   cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, inverse->kernel, m, p->d, 1,
               0.0, y, 1);
   if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, k, 1, G, k, pivot, y, k) != 0)
-    goto done;
+    return OK;
   cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, Z, m, y, 1, 0.0, p->t, 1);
   for (int dof = 0; dof < m; ++dof) {
     p->q[dof] += p->t[dof];
     p->d[dof] -= p->t[dof];
   }
   *done = admissible(cp, p);
-done:
-  memory_free(Z);
-  memory_free(G);
-  memory_free(y);
-  memory_free(pivot);
-  return st;
+  return OK;
 }

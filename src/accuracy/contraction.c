@@ -32,31 +32,21 @@ typedef struct linear_map {
 } linear_map;
 
 static status map_new(const contact_problem *cp, linear_map *s) {
-  status st = OK;
   s->cp = cp;
-  NEW(s->free_id, cp->m);
-  NEW(s->place, cp->m);
-  NEW(s->closed, cp->n);
-  NEW(s->slip, cp->n);
-  NEW(s->e, cp->m);
-  NEW(s->kappa, cp->n);
-  NEW(s->x, cp->m);
-  NEW(s->dg, cp->n);
-done:
-  return st;
+  PASS_NEW(s->free_id, cp->m);
+  PASS_NEW(s->place, cp->m);
+  PASS_NEW(s->closed, cp->n);
+  PASS_NEW(s->slip, cp->n);
+  PASS_NEW(s->e, cp->m);
+  PASS_NEW(s->kappa, cp->n);
+  PASS_NEW(s->x, cp->m);
+  PASS_NEW(s->dg, cp->n);
+  return OK;
 }
 
 static void map_free(linear_map *s) {
-  memory_free(s->free_id);
-  memory_free(s->place);
-  memory_free(s->closed);
-  memory_free(s->slip);
-  memory_free(s->e);
-  memory_free(s->kappa);
-  memory_free(s->K);
-  memory_free(s->x);
-  memory_free(s->P);
-  memory_free(s->dg);
+  RELEASE(s->free_id, s->place, s->closed, s->slip, s->e, s->kappa, s->K, s->x,
+          s->P, s->dg);
 }
 
 /* Direction and turning stiffness of a node that friction acts on. */
@@ -189,15 +179,15 @@ static void first_change(linear_map *s, const double *r) {
 }
 
 static status measure(linear_map *s, const double *r, double *rate) {
-  status st = OK;
-  double *dn = NULL, last;
+  OWNED double *dn = NULL;
+  double last;
   *rate = 0.0;
-  if (s->n_slip == 0) goto done;
-  NEW(dn, s->cp->n);
-  NEW(s->K, (size_t)s->n_free * (size_t)s->n_free);
+  if (s->n_slip == 0) return OK;
+  PASS_NEW(dn, s->cp->n);
+  PASS_NEW(s->K, (size_t)s->n_free * (size_t)s->n_free);
   *rate = HUGE_VAL;
-  if (!factor(s)) goto done;
-  NEW(s->P, (size_t)s->n_free * (size_t)s->n_closed);
+  if (!factor(s)) return OK;
+  PASS_NEW(s->P, (size_t)s->n_free * (size_t)s->n_closed);
   gather_columns(s);
   *rate = 0.0;
   first_change(s, r);
@@ -208,9 +198,7 @@ static status measure(linear_map *s, const double *r, double *rate) {
     if (k > 1 || s->cp->n == 1) *rate = fmax(*rate, sqrt(energy / last));
     last = energy;
   }
-done:
-  memory_free(dn);
-  return st;
+  return OK;
 }
 
 /* ---- rates that are known ----------------------------------------------- */
@@ -258,9 +246,9 @@ done:
 
 /* Mean factor of the last passes of many; what they start from is forgotten. */
 static status measure_limit(linear_map *s, const double *r, double *rate) {
-  status st = OK;
-  double *dn = NULL, last, grown = 0.0;
-  NEW(dn, s->cp->n);
+  OWNED double *dn = NULL;
+  double last, grown = 0.0;
+  PASS_NEW(dn, s->cp->n);
   first_change(s, r);
   last = move(s);
   for (int k = 1; k <= LONG_RUN && last > 0.0; ++k) {
@@ -271,9 +259,7 @@ static status measure_limit(linear_map *s, const double *r, double *rate) {
     if (k > LONG_RUN - AVERAGED) grown += 0.5 * log(last);
   }
   *rate = last > 0.0 ? exp(grown / AVERAGED) : 0.0;
-done:
-  memory_free(dn);
-  return st;
+  return OK;
 }
 
 status contraction_limit(const contact_problem *cp, const double *u,

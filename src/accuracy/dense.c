@@ -62,14 +62,12 @@ static int factor(dense_inverse *d, double *work, int *iwork) {
 
 /* What L takes to zero, in the unknowns before the scaling. */
 static status find_kernel(dense_inverse *d) {
-  status st = OK;
   size_t m = (size_t)d->m;
-  NEW(d->kernel, m * (size_t)(d->m - d->rank));
+  PASS_NEW(d->kernel, m * (size_t)(d->m - d->rank));
   dense_null(d->m, d->rank, d->L, d->pivot, d->y, d->kernel);
   for (size_t k = 0; k < m * (size_t)(d->m - d->rank); ++k)
     d->kernel[k] *= d->unit[k % m];
-done:
-  return st;
+  return OK;
 }
 
 status dense_inverse_new(int m, const double *M, dense_inverse **out) {
@@ -91,20 +89,14 @@ status dense_inverse_new(int m, const double *M, dense_inverse **out) {
   *out = d;
   d = NULL;
 done:
-  memory_free(work);
-  memory_free(iwork);
+  RELEASE(work, iwork);
   dense_inverse_free(d);
   return st;
 }
 
 void dense_inverse_free(dense_inverse *d) {
   if (d == NULL) return;
-  memory_free(d->L);
-  memory_free(d->unit);
-  memory_free(d->pivot);
-  memory_free(d->y);
-  memory_free(d->kernel);
-  memory_free(d);
+  RELEASE(d->L, d->unit, d->pivot, d->y, d->kernel, d);
 }
 
 /* y = inv(L) x in the order of the pivots. */

@@ -220,24 +220,22 @@ static void cut_line(const search *s, const double *x, const double *v,
 
 /* The ends of a line of solutions. */
 static status take_line(search *s, const double *x, const double *v) {
-  status st = OK;
   double low, high, y[ROWS];
   int first = 0, second = 0;
   cut_line(s, x, v, &low, &high);
-  if (!(low <= high)) goto done;
+  if (!(low <= high)) return OK;
   if (!(low > -HUGE_VAL && high < HUGE_VAL)) {
     ++s->out->n_undecided;
-    goto done;
+    return OK;
   }
   for (int i = 0; i < s->cp->m; ++i) y[i] = x[i] + low * v[i];
-  TRY(take(s, y, &first));
+  PASS(take(s, y, &first));
   for (int i = 0; i < s->cp->m; ++i) y[i] = x[i] + high * v[i];
-  TRY(take(s, y, &second));
-  if (first == second || first == 0 || second == 0) goto done;
+  PASS(take(s, y, &second));
+  if (first == second || first == 0 || second == 0) return OK;
   int later = first > second ? first : second;
   s->out->found[later - 1].facts.joined = first + second - later;
-done:
-  return st;
+  return OK;
 }
 
 /* Singular values of K[n*n] (destroyed), rank by a scale of K; x: least squares
@@ -264,7 +262,6 @@ static int decompose(int n, double *K, const double *b, double scale, double *x,
 
 /* The whole system anew, with pivoting. */
 static status solve_anew(search *s) {
-  status st = OK;
   int dof[ROWS], n = free_unknowns(s, dof), no;
   double K[ROWS * ROWS], y[LENGTH], b[ROWS], xf[ROWS], vf[ROWS];
   double x[ROWS] = {0.0}, v[ROWS] = {0.0}, rest = 0.0;
@@ -275,14 +272,13 @@ static status solve_anew(search *s) {
   }
   int rank =
       n > 0 ? decompose(n, K, b, largest_stiffness(s), xf, vf, &rest) : 0;
-  if (rank < 0 || rest > MARGIN * s->force) goto done;
+  if (rank < 0 || rest > MARGIN * s->force) return OK;
   for (int i = 0; i < n; ++i) x[dof[i]] = xf[i];
   for (int i = 0; i < n; ++i) v[dof[i]] = vf[i];
-  if (rank == n && signs_hold(s, x)) TRY(take(s, x, &no));
-  if (rank == n - 1) TRY(take_line(s, x, v));
+  if (rank == n && signs_hold(s, x)) PASS(take(s, x, &no));
+  if (rank == n - 1) PASS(take_line(s, x, v));
   if (rank < n - 1) ++s->out->n_undecided;
-done:
-  return st;
+  return OK;
 }
 
 /* ---- depth first -------------------------------------------------------- */
@@ -347,7 +343,6 @@ static int labels_of(const contact_problem *cp, int i, label *list) {
 }
 
 static status descend(search *s, int i) {
-  status st = OK;
   label list[LABELS];
   if (i == s->cp->n) return leaf(s);
   int n = labels_of(s->cp, i, list);
@@ -356,40 +351,37 @@ static status descend(search *s, int i) {
     s->now[i] = list[k];
     for (int dof = 2 * i; dof < 2 * i + 2; ++dof)
       if (moves(s, dof)) s->weak += add_row(s, dof);
-    TRY(descend(s, i + 1));
+    PASS(descend(s, i + 1));
     s->n_row = rows;
     s->weak = weak;
   }
-done:
-  return st;
+  return OK;
 }
 
 static status check_size(const contact_problem *cp) {
-  status st = OK;
   if (cp->dim != 2 || cp->n > ENUMERATED_NODES)
-    FAIL(ERR_DECK,
-         "all statuses can be tried for up to %d contact nodes in 2-D, the "
-         "problem has %d in %d-D",
-         ENUMERATED_NODES, cp->n, cp->dim);
+    RAISE(ERR_DECK,
+          "all statuses can be tried for up to %d contact nodes in 2-D, the "
+          "problem has %d in %d-D",
+          ENUMERATED_NODES, cp->n, cp->dim);
   if (cp->A == NULL)
-    FAIL(ERR_DECK,
-         "all statuses can be tried where the stiffness is known; "
-         "of this problem only the compliance is");
+    RAISE(ERR_DECK,
+          "all statuses can be tried where the stiffness is known; "
+          "of this problem only the compliance is");
   double patterns = 1.0;
   label list[LABELS];
   for (int i = 0; i < cp->n; ++i) patterns *= labels_of(cp, i, list);
   if (patterns > PATTERNS)
-    FAIL(ERR_DECK,
-         "%.0f combinations of statuses are too many: the limit of friction "
-         "needs no pressure here, and the statuses of open nodes count too",
-         patterns);
+    RAISE(ERR_DECK,
+          "%.0f combinations of statuses are too many: the limit of friction "
+          "needs no pressure here, and the statuses of open nodes count too",
+          patterns);
   for (int dof = 0; dof < cp->m; ++dof)
     if (dof % 2 > 0 && contact_bound(cp, dof) < HUGE_VAL)
-      FAIL(ERR_DECK,
-           "all statuses cannot be tried where a contact node "
-           "touches two obstacles");
-done:
-  return st;
+      RAISE(ERR_DECK,
+            "all statuses cannot be tried where a contact node "
+            "touches two obstacles");
+  return OK;
 }
 
 status solutions_by_statuses(const contact_problem *cp, double tol,

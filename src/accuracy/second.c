@@ -129,7 +129,6 @@ status solutions_by_solvers(const contact_problem *cp, double tol,
   for (int i = 0; solver_list[i] != NULL; ++i)
     if (is_chosen(cp, i)) TRY(try_solver(cp, tol, solver_list[i], &x, out));
 done:
-  memory_free(x.u);
-  memory_free(x.r);
+  RELEASE(x.u, x.r);
   return st;
 }

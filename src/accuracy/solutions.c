@@ -11,11 +11,7 @@ static const double SAME = 1e-6; /* -, relative distance of one state         */
 static const double UNIT = 1e-3; /* -, of the energy of the scale: counts as
                                     the norm of a state without deformation   */
 
-static void free_solution(solution *s) {
-  memory_free(s->u);
-  memory_free(s->r);
-  memory_free(s->status);
-}
+static void free_solution(solution *s) { RELEASE(s->u, s->r, s->status); }
 
 int solution_set_confirmed(const solution_set *s) {
   const char *family = NULL;
@@ -33,8 +29,7 @@ int solution_set_confirmed(const solution_set *s) {
 void solution_set_free(solution_set *s) {
   if (s == NULL) return;
   for (int i = 0; i < s->n_found; ++i) free_solution(&s->found[i]);
-  memory_free(s->found);
-  memory_free(s->attempts);
+  RELEASE(s->found, s->attempts);
   *s = (solution_set){0};
 }
 
@@ -59,16 +54,13 @@ static double unit_energy(const contact_problem *cp) {
 
 static status find_distance(const contact_problem *cp, const double *a,
                             const double *b, double *distance) {
-  status st = OK;
-  double *t = NULL;
-  NEW(t, 2 * cp->m);
+  OWNED double *t = NULL;
+  PASS_NEW(t, 2 * cp->m);
   double size = fmax(energy(cp, a, NULL, t), energy(cp, b, NULL, t));
   size = fmax(size, unit_energy(cp));
   double apart = energy(cp, a, b, t);
   *distance = size > 0.0 ? sqrt(apart / size) : 0.0;
-done:
-  memory_free(t);
-  return st;
+  return OK;
 }
 
 /* ---- adding ------------------------------------------------------------- */
@@ -108,28 +100,26 @@ done:
 
 status solution_set_add(const contact_problem *cp, double tol, const double *u,
                         const double *r, solution_set *s, int *no) {
-  status st = OK;
   const double *x = cp->A != NULL ? u : r;
   double distance = 0.0;
   *no = 0;
   s->n = cp->n;
   s->m = cp->m;
-  if (!(contact_residual(cp, u, r) <= tol)) goto done;
+  if (!(contact_residual(cp, u, r) <= tol)) return OK;
   for (int i = 0; i < s->n_found; ++i) {
     const solution *old = &s->found[i];
-    TRY(find_distance(cp, x, cp->A != NULL ? old->u : old->r, &distance));
+    PASS(find_distance(cp, x, cp->A != NULL ? old->u : old->r, &distance));
     if (distance > SAME) continue;
     ++s->found[i].facts.patterns;
     *no = i + 1;
-    goto done;
+    return OK;
   }
   if (s->n_found > 0)
-    TRY(find_distance(cp, x, cp->A != NULL ? s->found[0].u : s->found[0].r,
-                      &distance));
-  GROW(s->found, s->n_found, s->cap_found);
-  TRY(copy_solution(cp, u, r, &s->found[s->n_found]));
+    PASS(find_distance(cp, x, cp->A != NULL ? s->found[0].u : s->found[0].r,
+                       &distance));
+  PASS_GROW(s->found, s->n_found, s->cap_found);
+  PASS(copy_solution(cp, u, r, &s->found[s->n_found]));
   s->found[s->n_found].facts.distance = distance;
   *no = ++s->n_found;
-done:
-  return st;
+  return OK;
 }

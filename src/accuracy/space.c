@@ -56,7 +56,6 @@ static void find_regions(space_recovery *s) {
 }
 
 status space_compliance(const domain *d, int section, double *S) {
-  status st = OK;
   int ns = d->ns, n = 0, active[MAX_NS];
   const double *E = d->E + (size_t)(ns * ns) * (size_t)section;
   double M[MAX_NS * MAX_NS];
@@ -66,15 +65,14 @@ status space_compliance(const domain *d, int section, double *S) {
     for (int i = 0; i < n; ++i) M[i + n * j] = E[active[i] + ns * active[j]];
   if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', n, M, n) != 0 ||
       LAPACKE_dpotri_work(LAPACK_COL_MAJOR, 'L', n, M, n) != 0)
-    FAIL(ERR_INTERNAL, "elasticity of section %d is not positive definite",
-         section + 1);
+    RAISE(ERR_INTERNAL, "elasticity of section %d is not positive definite",
+          section + 1);
   for (int j = 0; j < n; ++j)
     for (int i = j; i < n; ++i) {
       S[active[i] + ns * active[j]] = M[i + n * j];
       S[active[j] + ns * active[i]] = M[i + n * j];
     }
-done:
-  return st;
+  return OK;
 }
 
 static void list_neighbours(space_recovery *s) {
@@ -117,15 +115,8 @@ done:
 
 void space_recovery_free(space_recovery *s) {
   if (s == NULL) return;
-  memory_free(s->region);
-  memory_free(s->compliance);
-  memory_free(s->start);
-  memory_free(s->elem);
-  memory_free(s->patch);
-  memory_free(s->stamp);
-  memory_free(s->seen);
-  memory_free(s->recovered);
-  memory_free(s);
+  RELEASE(s->region, s->compliance, s->start, s->elem, s->patch, s->stamp,
+          s->seen, s->recovered, s);
 }
 
 /* ---- patches ------------------------------------------------------------- */

@@ -115,19 +115,18 @@ static status find_motion(const contact_problem *cp, double *v, outcome *end) {
     *end = STOPPED_STAGNATION;
 done:
   if (work != NULL) lemke->release(work);
-  memory_free(u);
-  memory_free(r);
+  RELEASE(u, r);
   return st;
 }
 
 /* Nodes that open, and those that only slide. */
 static status add_moving(const words *w, const verdict_scene *s,
                          const double *v) {
-  status st = OK;
   int dim = s->cp->dim, opening = 0;
-  double *open = NULL, *slide = NULL, most = 0.0;
-  NEW(open, s->cp->n);
-  NEW(slide, s->cp->n);
+  OWNED double *open = NULL, *slide = NULL;
+  double most = 0.0;
+  PASS_NEW(open, s->cp->n);
+  PASS_NEW(slide, s->cp->n);
   for (int dof = 0; dof < s->cp->m; ++dof) most = fmax(most, fabs(v[dof]));
   for (int i = 0; i < s->cp->n; ++i) {
     open[i] = fmax(0.0, -v[dim * i]);
@@ -152,10 +151,7 @@ static status add_moving(const words *w, const verdict_scene *s,
       add(w, n == 1 ? " slides" : " slide");
       break;
     }
-done:
-  memory_free(open);
-  memory_free(slide);
-  return st;
+  return OK;
 }
 
 static const char *card_of(const load *l) {
@@ -187,16 +183,15 @@ static status forces_of(const verdict_scene *s, int k, double *F) {
 /* The loads that do work on the motion u[n_dof] of the body. */
 static status add_loads(const words *w, const verdict_scene *s, const double *u,
                         double *F) {
-  status st = OK;
   size_t n = (size_t)s->msh->dim * (size_t)s->msh->n_node;
   int listed = 0;
   double sum[3] = {0.0};
-  TRY(load_forces(s->m, s->msh, s->step, s->t, F));
+  PASS(load_forces(s->m, s->msh, s->step, s->t, F));
   double work = dot(n, F, u);
   for (size_t i = 0; i < n; ++i) sum[i % (size_t)s->msh->dim] += F[i];
   for (int k = 0; k < s->step->loads.n && listed < LISTED; ++k) {
     const load *l = &s->step->loads.item[k];
-    TRY(forces_of(s, k, F));
+    PASS(forces_of(s, k, F));
     if (!(dot(n, F, u) > PART * fabs(work))) continue;
     add(w, listed++ == 0 ? ", driven by " : ", ");
     add(w, "%s on %s (line %d)", card_of(l), l->group, l->at.line_no);
@@ -205,27 +200,20 @@ static status add_loads(const words *w, const verdict_scene *s, const double *u,
   for (int k = 0; k < s->msh->dim; ++k)
     add(w, "%s%.6g", k > 0 ? ", " : "", sum[k]);
   add(w, ")");
-done:
-  return st;
+  return OK;
 }
 
 /* The whole body follows the contact nodes without load. */
 static status add_drive(const words *w, const verdict_scene *s,
                         const double *v) {
-  status st = OK;
   size_t n = (size_t)s->msh->dim * (size_t)s->msh->n_node;
-  double *F = NULL, *u = NULL, *f_c = NULL;
-  NEW(F, n);
-  NEW(u, n);
-  NEW(f_c, s->cp->m);
-  TRY(condense_load(s->c, F, NULL, f_c));
-  TRY(condense_recover(s->c, v, u));
-  TRY(add_loads(w, s, u, F));
-done:
-  memory_free(F);
-  memory_free(u);
-  memory_free(f_c);
-  return st;
+  OWNED double *F = NULL, *u = NULL, *f_c = NULL;
+  PASS_NEW(F, n);
+  PASS_NEW(u, n);
+  PASS_NEW(f_c, s->cp->m);
+  PASS(condense_load(s->c, F, NULL, f_c));
+  PASS(condense_recover(s->c, v, u));
+  return add_loads(w, s, u, F);
 }
 
 /* A load or gap that is no number: which node. */
@@ -243,24 +231,21 @@ static int add_bad_number(const words *w, const verdict_scene *s) {
 }
 
 status verdict_text(const verdict_scene *s, char *text, size_t size) {
-  status st = OK;
   words w = {text, size};
   outcome end = RUNNING;
-  double *v = NULL;
+  OWNED double *v = NULL;
   text[0] = '\0';
-  if (add_bad_number(&w, s)) goto done;
-  NEW(v, s->cp->m);
-  TRY(find_motion(s->cp, v, &end));
+  if (add_bad_number(&w, s)) return OK;
+  PASS_NEW(v, s->cp->m);
+  PASS(find_motion(s->cp, v, &end));
   if (end == STOPPED_RAY) {
-    TRY(add_moving(&w, s, v));
-    TRY(add_drive(&w, s, v));
+    PASS(add_moving(&w, s, v));
+    PASS(add_drive(&w, s, v));
     add(&w, "; a *BOUNDARY or another load can hold it");
   } else if (end == CONVERGED) {
     add(&w, "METHOD=LEMKE of *SOLVER finds an equilibrium");
   } else {
-    TRY(verdict_misfit(s->cp, s->surface, s->u, s->r, text, size));
+    PASS(verdict_misfit(s->cp, s->surface, s->u, s->r, text, size));
   }
-done:
-  memory_free(v);
-  return st;
+  return OK;
 }

@@ -31,12 +31,6 @@ void triplets_free(triplets *t);
 /* Dense, column major with leading dimension t->rows, into zeroed a. */
 void triplets_dense(const triplets *t, double *a);
 
-/* Numbers of the entries, column by column: those of column j are entry[k],
- * start[j] <= k < start[j + 1]. */
-status triplets_by_column(const triplets *t, int **start, long **entry);
-/* 1, -1: only the upper, the lower triangle is stored; 0: both or none. */
-int triplets_triangle(const triplets *t);
-
 /* ---- fclib.c, lcp_text.c --------------------------------------------------
  */
 

@@ -9,10 +9,340 @@
 #include "base/memory.h"
 #include "exchange/parts.h"
 
+#include <cblas.h>
 #include <cholmod.h>
 #include <lapacke.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+/* ---- the matrix group of FCLIB: nzmax, m (rows), n (columns), nz, p, i, x.
+ * nz >= 0   triplets: p = columns, i = rows, nz of them (nzmax may be more)
+ * nz = -1   by columns: p[n+1] starts of the columns, i = rows   nz = -2   by
+ * rows: p[m+1] starts of the rows,    i = columns  Indices count from 0. */
+
+enum { NAME = 240, BY_COLUMN = -1, BY_ROW = -2 };
+
+typedef struct arrays {
+  const hdf5_source *s;
+  const char *group;
+  int nz;
+  long n_p, n_i, n_x; /* items in the file                                   */
+  int *p, *i;
+  double *x;
+} arrays;
+
+static const char *name_of(char text[NAME], const char *group,
+                           const char *item) {
+  snprintf(text, NAME, "%s/%s", group, item);
+  return text;
+}
+
+static status group_int(const hdf5_source *s, const char *group,
+                        const char *item, int *value) {
+  char name[NAME];
+  return source_int(s, name_of(name, group, item), value);
+}
+
+/* The three arrays; those of a matrix without entries may be missing. */
+static status read_arrays(arrays *a) {
+  char name[NAME];
+  const long most = MOST_ITEMS;
+  PASS(
+      source_ints(a->s, name_of(name, a->group, "p"), 1, most, &a->n_p, &a->p));
+  PASS(
+      source_ints(a->s, name_of(name, a->group, "i"), 1, most, &a->n_i, &a->i));
+  return source_reals(a->s, name_of(name, a->group, "x"), 1, most, &a->n_x,
+                      &a->x);
+}
+
+static status too_short(const arrays *a, const char *item, long have,
+                        long want) {
+  if (have < want)
+    RAISE(ERR_DECK, "%s: %s/%s has %ld items, expected %ld", a->s->path,
+          a->group, item, have, want);
+  return OK;
+}
+
+/* The starts of n lines ascend from 0; *entries = the last one. */
+static status check_starts(const arrays *a, int n, long *entries) {
+  *entries = 0;
+  if (n == 0 && a->n_p == 0) return OK;
+  PASS(too_short(a, "p", a->n_p, (long)n + 1));
+  if (a->p[0] != 0)
+    RAISE(ERR_DECK, "%s: %s/p starts with %d, expected 0", a->s->path, a->group,
+          a->p[0]);
+  for (int k = 0; k < n; ++k)
+    if (a->p[k + 1] < a->p[k])
+      RAISE(ERR_DECK, "%s: %s/p descends at item %d", a->s->path, a->group,
+            k + 1);
+  *entries = a->p[n];
+  return OK;
+}
+
+static status check_index(const arrays *a, const char *item, const int *index,
+                          long n, int limit) {
+  for (long k = 0; k < n; ++k)
+    if (index[k] < 0 || index[k] >= limit)
+      RAISE(ERR_DECK, "%s: %s/%s, item %ld = %d outside 0 to %d", a->s->path,
+            a->group, item, k, index[k], limit - 1);
+  return OK;
+}
+
+/* Lines of a compressed matrix written out, one index per entry. */
+static void expand(const int *start, int n, int *line) {
+  for (int k = 0; k < n; ++k)
+    for (int e = start[k]; e < start[k + 1]; ++e) line[e] = k;
+}
+
+static status fill(arrays *a, triplets *t) {
+  int compressed = a->nz < 0;
+  int lines = a->nz == BY_ROW ? t->rows : t->columns;
+  int limit = a->nz == BY_ROW ? t->columns : t->rows;
+  t->n = a->nz;
+  if (compressed) PASS(check_starts(a, lines, &t->n));
+  PASS(too_short(a, "i", a->n_i, t->n));
+  PASS(too_short(a, "x", a->n_x, t->n));
+  PASS(check_index(a, "i", a->i, t->n, limit));
+  if (!compressed) {
+    PASS(too_short(a, "p", a->n_p, t->n));
+    PASS(check_index(a, "p", a->p, t->n, lines));
+  }
+  PASS_NEW(t->column, t->n);
+  if (compressed && a->n_p > 0)
+    expand(a->p, lines, t->column);
+  else if (t->n > 0)
+    memcpy(t->column, a->p, (size_t)t->n * sizeof *t->column);
+  t->row = a->i;
+  t->value = a->x;
+  a->i = NULL;
+  a->x = NULL;
+  if (a->nz == BY_ROW) {
+    int *swap = t->row;
+    t->row = t->column;
+    t->column = swap;
+  }
+  return OK;
+}
+
+status triplets_size(const hdf5_source *s, const char *group, triplets *t) {
+  memset(t, 0, sizeof *t);
+  if (!source_has(s, group))
+    RAISE(ERR_DECK, "%s: there is no group %s", s->path, group);
+  PASS(group_int(s, group, "m", &t->rows));
+  PASS(group_int(s, group, "n", &t->columns));
+  if (t->rows < 0 || t->columns < 0)
+    RAISE(ERR_DECK, "%s: %s has %d rows and %d columns", s->path, group,
+          t->rows, t->columns);
+  return OK;
+}
+
+status triplets_read(const hdf5_source *s, const char *group, triplets *t) {
+  status st = OK;
+  arrays a = {.s = s, .group = group};
+  TRY(triplets_size(s, group, t));
+  TRY(group_int(s, group, "nz", &a.nz));
+  if (a.nz < BY_ROW)
+    FAIL(ERR_DECK, "%s: %s/nz = %d; expected a number of entries, -1 or -2",
+         s->path, group, a.nz);
+  TRY(read_arrays(&a));
+  TRY(fill(&a, t));
+done:
+  RELEASE(a.p, a.i, a.x);
+  if (st != OK) triplets_free(t);
+  return st;
+}
+
+void triplets_free(triplets *t) {
+  RELEASE(t->row, t->column, t->value);
+  memset(t, 0, sizeof *t);
+}
+
+void triplets_dense(const triplets *t, double *a) {
+  for (long k = 0; k < t->n; ++k)
+    a[(size_t)t->row[k] + (size_t)t->rows * (size_t)t->column[k]] +=
+        t->value[k];
+}
+
+/* Numbers of the entries, column by column: those of column j are entry[k],
+ * start[j] <= k < start[j + 1]. */
+static status triplets_by_column(const triplets *t, int **start, long **entry) {
+  PASS_NEW(*start, t->columns + 2);
+  PASS_NEW(*entry, t->n);
+  for (long k = 0; k < t->n; ++k) ++(*start)[t->column[k] + 2];
+  for (int j = 0; j <= t->columns; ++j) (*start)[j + 1] += (*start)[j];
+  for (long k = 0; k < t->n; ++k) (*entry)[(*start)[t->column[k] + 1]++] = k;
+  return OK;
+}
+
+/* 1, -1: only the upper, the lower triangle is stored; 0: both or none. */
+static int triplets_triangle(const triplets *t) {
+  int lower = 0, upper = 0;
+  for (long k = 0; k < t->n; ++k)
+    if (t->value[k] != 0.0) {
+      lower |= t->row[k] > t->column[k];
+      upper |= t->row[k] < t->column[k];
+    }
+  return upper - lower;
+}
+
+/* ---- a global problem whose M is symmetric and singular: bodies that contact
+ * alone holds. Springs s between the contact points and their obstacles hold
+ * them, and are taken out again:    M v = H r + f,   y = H'v,   Ms = M + s H
+ * H',   Ws = H' inv(Ms) H,   A y = r + inv(Ws) H' inv(Ms) f,   A = inv(Ws) - s
+ * I.  A is the stiffness of the contact points, semidefinite. It needs H of
+ * full column rank, and H'z != 0 for every motion z without force. */
+
+static const double SPRING_RCOND =
+    1e-13; /* -, of Ws, below: H is rank deficient   */
+
+/* Mean diagonal of M over that of H H', where both are not zero. */
+static double stiffness(const triplets *M, const triplets *H) {
+  double sum = 0.0, squares = 0.0;
+  for (long k = 0; k < M->n; ++k)
+    if (M->row[k] == M->column[k]) sum += M->value[k] / M->rows;
+  for (long k = 0; k < H->n; ++k)
+    squares += H->value[k] * H->value[k] / H->columns;
+  return squares > 0.0 ? sum / squares : 0.0;
+}
+
+/* In one triangle if M is. */
+status springs_add(const triplets *M, const triplets *H, double *s,
+                   triplets *held) {
+  *s = stiffness(M, H);
+  OWNED int *start = NULL;
+  int triangle = triplets_triangle(M);
+  OWNED long *entry = NULL;
+  long count = M->n;
+  PASS(triplets_by_column(H, &start, &entry));
+  for (int j = 0; j < H->columns; ++j) {
+    long n = start[j + 1] - start[j];
+    count += n * n;
+  }
+  held->rows = held->columns = M->rows;
+  PASS_NEW(held->row, count);
+  PASS_NEW(held->column, count);
+  PASS_NEW(held->value, count);
+  for (; held->n < M->n; ++held->n) {
+    held->row[held->n] = M->row[held->n];
+    held->column[held->n] = M->column[held->n];
+    held->value[held->n] = M->value[held->n];
+  }
+  for (int j = 0; j < H->columns; ++j)
+    for (int a = start[j]; a < start[j + 1]; ++a)
+      for (int b = start[j]; b < start[j + 1]; ++b) {
+        int row = H->row[entry[a]], column = H->row[entry[b]];
+        if (triangle * (column - row) < 0) continue;
+        held->row[held->n] = row;
+        held->column[held->n] = column;
+        held->value[held->n++] = *s * H->value[entry[a]] * H->value[entry[b]];
+      }
+  return OK;
+}
+
+/* inv(W) in place, both triangles; 0: singular. work[3m], iwork[m] */
+static int invert(int m, double *W, double *work, int *iwork) {
+  double rcond = 0.0;
+  double norm = LAPACKE_dlansy_work(LAPACK_COL_MAJOR, '1', 'L', m, W, m, work);
+  if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', m, W, m) != 0) return 0;
+  LAPACKE_dpocon_work(LAPACK_COL_MAJOR, 'L', m, W, m, norm, &rcond, work,
+                      iwork);
+  if (!(rcond > SPRING_RCOND)) return 0;
+  if (LAPACKE_dpotri_work(LAPACK_COL_MAJOR, 'L', m, W, m) != 0) return 0;
+  for (size_t j = 0; j < (size_t)m; ++j)
+    for (size_t i = 0; i < j; ++i) W[i + (size_t)m * j] = W[j + (size_t)m * i];
+  return 1;
+}
+
+status springs_condense(const triplets *M, const triplets *H, const double *f,
+                        double *A, double *load, int *usable) {
+  status st = OK;
+  triplets held = {0};
+  double *q = NULL, *work = NULL, s = 0.0;
+  int *iwork = NULL, m = H->columns;
+  NEW(q, m);
+  NEW(work, 3 * m);
+  NEW(iwork, m);
+  TRY(springs_add(M, H, &s, &held));
+  TRY(reduce_global(&held, H, f, A, q, usable));
+  *usable = *usable && s > 0.0 && invert(m, A, work, iwork);
+  if (!*usable) goto done;
+  cblas_dsymv(CblasColMajor, CblasLower, m, 1.0, A, m, q, 1, 0.0, load, 1);
+  for (size_t i = 0; i < (size_t)m; ++i) A[i * ((size_t)m + 1)] -= s;
+done:
+  triplets_free(&held);
+  RELEASE(q, work, iwork);
+  return st;
+}
+
+/* ---- equality constraints of FCLIB eliminated:    V'r + R l + s = 0,   u = W
+ * r + V l + q,   l = -R+ (V'r + s):   W <- W - V R+ V',   q <- q - V R+ s.  R
+ * may be unsymmetric, or singular where constraints repeat one another (then l
+ * is not unique, u is); constraints that contradict one another are refused. */
+
+static const double REPEATED_RCOND = 1e-12; /* -, below: repeated */
+static const double CONSISTENT = 1e-8; /* -, of the right-hand side         */
+
+typedef struct room {
+  double *R, *X, *rhs; /* [p*p], [p*(m+1)]: least squares for [V' s]          */
+  double *spread;      /* [p]                                                 */
+} room;
+
+static status room_new(int m, const constraints *c, room *a) {
+  size_t p = (size_t)c->p, all = p * ((size_t)m + 1);
+  PASS_NEW(a->R, p * p);
+  PASS_NEW(a->X, all);
+  PASS_NEW(a->rhs, all);
+  PASS_NEW(a->spread, p);
+  memcpy(a->R, c->R, p * p * sizeof *a->R);
+  for (size_t k = 0; k < p; ++k) {
+    for (size_t i = 0; i < (size_t)m; ++i)
+      a->X[k + p * i] = c->V[i + (size_t)m * k];
+    a->X[k + p * (size_t)m] = c->s[k];
+  }
+  memcpy(a->rhs, a->X, all * sizeof *a->X);
+  return OK;
+}
+
+static void room_free(room *a) { RELEASE(a->R, a->X, a->rhs, a->spread); }
+
+/* |R X - [V' s]| of the largest entry, relative. */
+static double contradiction(int m, const constraints *c, room *a) {
+  size_t all = (size_t)c->p * ((size_t)m + 1);
+  double size = 0.0, miss = 0.0;
+  for (size_t k = 0; k < all; ++k) size = fmax(size, fabs(a->rhs[k]));
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, c->p, m + 1, c->p,
+              -1.0, c->R, c->p, a->X, c->p, 1.0, a->rhs, c->p);
+  for (size_t k = 0; k < all; ++k) miss = fmax(miss, fabs(a->rhs[k]));
+  return size > 0.0 ? miss / size : 0.0;
+}
+
+status constraints_eliminate(const char *path, int m, const constraints *c,
+                             double *W, double *q) {
+  status st = OK;
+  room a = {0};
+  lapack_int rank = 0;
+  if (c->p == 0) goto done;
+  TRY(room_new(m, c, &a));
+  if (LAPACKE_dgelsd(LAPACK_COL_MAJOR, c->p, c->p, m + 1, a.R, c->p, a.X, c->p,
+                     a.spread, REPEATED_RCOND, &rank) != 0)
+    FAIL(ERR_SINGULAR, "%s: the equality constraints cannot be eliminated",
+         path);
+  if (!(contradiction(m, c, &a) <= CONSISTENT))
+    FAIL(ERR_SINGULAR,
+         "%s: the equality constraints contradict one another: of %d only %d "
+         "are independent",
+         path, c->p, (int)rank);
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, m, c->p, -1.0, c->V,
+              m, a.X, c->p, 1.0, W, m);
+  cblas_dgemv(CblasColMajor, CblasNoTrans, m, c->p, -1.0, c->V, m,
+              a.X + (size_t)c->p * (size_t)m, 1, 1.0, q, 1);
+done:
+  room_free(&a);
+  return st;
+}
+
+void constraints_free(constraints *c) { RELEASE(c->V, c->R, c->s); }
 
 enum { BLOCK = 32, MOST_DENSE = 6000 };
 static const double ASYMMETRY = 1e-10; /* -, of the largest entry             */

@@ -43,25 +43,23 @@ static double sign_of(int dim, int dof) { return dof % dim == 0 ? -1.0 : 1.0; }
  */
 
 static status check_friction(const contact_problem *cp) {
-  status st = OK;
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i)
     if (cp->g0[i] != 0.0)
-      FAIL(ERR_DECK,
-           "*OUTPUT, CONDENSED=FCLIB: the layout holds Coulomb "
-           "friction only, no given sliding limit");
+      RAISE(ERR_DECK,
+            "*OUTPUT, CONDENSED=FCLIB: the layout holds Coulomb "
+            "friction only, no given sliding limit");
   for (int i = 0; i < cp->n && cp->B != NULL; ++i)
     for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
       if (cp->B->col[k] != i && cp->B->val[k] != 0.0)
-        FAIL(ERR_DECK,
-             "*OUTPUT, CONDENSED=FCLIB: the layout holds friction of "
-             "each node by itself only, no average");
+        RAISE(ERR_DECK,
+              "*OUTPUT, CONDENSED=FCLIB: the layout holds friction of "
+              "each node by itself only, no average");
   for (int k = 0; k < cp->n * (cp->dim - 1) && cp->side_gap != NULL; ++k)
     if (cp->side_gap[k] < HUGE_VAL)
-      FAIL(ERR_DECK,
-           "*OUTPUT, CONDENSED=FCLIB: the layout has no place for "
-           "nodes that touch two obstacles");
-done:
-  return st;
+      RAISE(ERR_DECK,
+            "*OUTPUT, CONDENSED=FCLIB: the layout has no place for "
+            "nodes that touch two obstacles");
+  return OK;
 }
 
 /* ---- the numbers ----------------------------------------------------------
@@ -108,31 +106,28 @@ static void turn_matrix(const contact_problem *cp, double *M) {
 }
 
 static status make_matrix(written *f) {
-  status st = OK;
   const contact_problem *cp = f->cp;
   size_t size = (size_t)cp->m * (size_t)cp->m;
   double *a = NULL;
-  NEW(a, size);
+  PASS_NEW(a, size);
   f->M = a;
   f->local = 1;
   if (cp->A == NULL) {
     memcpy(a, cp->W, size * sizeof *a);
-    goto done;
+    return OK;
   }
   memcpy(a, cp->A, size * sizeof *a);
-  if (!cp->floating && invert(cp->m, a)) goto done;
+  if (!cp->floating && invert(cp->m, a)) return OK;
   memcpy(a, cp->A, size * sizeof *a);
   f->local = 0;
-done:
-  return st;
+  return OK;
 }
 
 /* q of the local problem; w of the global one. M is still W by columns. */
 static status make_vectors(written *f) {
-  status st = OK;
   const contact_problem *cp = f->cp;
-  NEW(f->q, cp->m);
-  NEW(f->mu, cp->n);
+  PASS_NEW(f->q, cp->m);
+  PASS_NEW(f->mu, cp->n);
   if (f->local && cp->A == NULL)
     memcpy(f->q, cp->f, (size_t)cp->m * sizeof *f->q);
   else if (f->local)
@@ -144,22 +139,19 @@ static status make_vectors(written *f) {
   for (int i = 0; i < cp->n && cp->B != NULL; ++i)
     for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
       if (cp->B->col[k] == i) f->mu[i] += cp->B->val[k];
-done:
-  return st;
+  return OK;
 }
 
 static status make_solution(written *f, const double *u, const double *r) {
-  status st = OK;
   const contact_problem *cp = f->cp;
-  if (u == NULL) goto done;
-  NEW(f->u, cp->m);
-  NEW(f->r, cp->m);
+  if (u == NULL) return OK;
+  PASS_NEW(f->u, cp->m);
+  PASS_NEW(f->r, cp->m);
   for (int k = 0; k < cp->m; ++k) {
     f->u[k] = sign_of(cp->dim, k) * u[k] + offset_of(cp, k);
     f->r[k] = sign_of(cp->dim, k) * r[k];
   }
-done:
-  return st;
+  return OK;
 }
 
 /* ---- datasets -------------------------------------------------------------
@@ -179,7 +171,6 @@ static status put_group(const written *f, const char *name) {
 
 static status put_data(const written *f, const char *name, hid_t type, size_t n,
                        const void *data) {
-  status st = OK;
   hsize_t size = n;
   hid_t space = H5Screate_simple(1, &size, NULL), set = -1;
   hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
@@ -194,9 +185,8 @@ static status put_data(const written *f, const char *name, hid_t type, size_t n,
   if (set >= 0 && H5Dclose(set) < 0) bad = 1;
   if (space >= 0) H5Sclose(space);
   H5Pclose(plan);
-  if (bad) TRY(failed(f, name));
-done:
-  return st;
+  if (bad) PASS(failed(f, name));
+  return OK;
 }
 
 static status put_reals(const written *f, const char *name, size_t n,
@@ -212,7 +202,6 @@ static status put_int(const written *f, const char *group, const char *name,
 }
 
 static status put_text(const written *f, const char *name, const char *text) {
-  status st = OK;
   hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR), set = -1;
   H5Tset_size(type, strlen(text) + 1);
   H5Tset_strpad(type, H5T_STR_NULLTERM);
@@ -225,110 +214,94 @@ static status put_text(const written *f, const char *name, const char *text) {
   H5Tclose(type);
   H5Sclose(space);
   H5Pclose(plan);
-  if (bad) TRY(failed(f, name));
-done:
-  return st;
+  if (bad) PASS(failed(f, name));
+  return OK;
 }
 
 static status put_matrix(const written *f, const char *group, int nz, size_t n,
                          const double *x) {
-  status st = OK;
   char name[80];
   int m = f->cp->m;
   size_t n_p = nz == BY_ROW ? (size_t)m + 1 : n;
-  TRY(put_group(f, group));
-  TRY(put_int(f, group, "nzmax", (int)n));
-  TRY(put_int(f, group, "m", m));
-  TRY(put_int(f, group, "n", m));
-  TRY(put_int(f, group, "nz", nz));
+  PASS(put_group(f, group));
+  PASS(put_int(f, group, "nzmax", (int)n));
+  PASS(put_int(f, group, "m", m));
+  PASS(put_int(f, group, "n", m));
+  PASS(put_int(f, group, "nz", nz));
   snprintf(name, sizeof name, "%s/p", group);
-  TRY(put_data(f, name, H5T_STD_I32LE, n_p, f->start));
+  PASS(put_data(f, name, H5T_STD_I32LE, n_p, f->start));
   snprintf(name, sizeof name, "%s/i", group);
-  TRY(put_data(f, name, H5T_STD_I32LE, n, f->col));
+  PASS(put_data(f, name, H5T_STD_I32LE, n, f->col));
   snprintf(name, sizeof name, "%s/x", group);
-  TRY(put_reals(f, name, n, x));
-done:
-  return st;
+  return put_reals(f, name, n, x);
 }
 
 /* ---- the two kinds --------------------------------------------------------
  */
 
 static status write_local(written *f) {
-  status st = OK;
   size_t m = (size_t)f->cp->m;
-  NEW(f->start, m + 1);
-  NEW(f->col, m * m);
+  PASS_NEW(f->start, m + 1);
+  PASS_NEW(f->col, m * m);
   for (size_t i = 0; i <= m; ++i) f->start[i] = (int)(m * i);
   for (size_t k = 0; k < m * m; ++k) f->col[k] = (int)(k % m);
-  TRY(put_group(f, "/fclib_local"));
-  TRY(put_int(f, "/fclib_local", "spacedim", f->cp->dim));
-  TRY(put_matrix(f, "/fclib_local/W", BY_ROW, m * m, f->M));
-  TRY(put_group(f, "/fclib_local/vectors"));
-  TRY(put_reals(f, "/fclib_local/vectors/q", m, f->q));
-  TRY(put_reals(f, "/fclib_local/vectors/mu", (size_t)f->cp->n, f->mu));
-done:
-  return st;
+  PASS(put_group(f, "/fclib_local"));
+  PASS(put_int(f, "/fclib_local", "spacedim", f->cp->dim));
+  PASS(put_matrix(f, "/fclib_local/W", BY_ROW, m * m, f->M));
+  PASS(put_group(f, "/fclib_local/vectors"));
+  PASS(put_reals(f, "/fclib_local/vectors/q", m, f->q));
+  return put_reals(f, "/fclib_local/vectors/mu", (size_t)f->cp->n, f->mu);
 }
 
 /* M and f keep the signs of contact.h: H turns them. */
 static status write_global(written *f) {
-  status st = OK;
   const contact_problem *cp = f->cp;
   size_t m = (size_t)cp->m;
-  double *h = NULL;
-  NEW(f->start, m * m);
-  NEW(f->col, m * m);
-  NEW(h, m);
-  TRY(put_group(f, "/fclib_global"));
-  TRY(put_int(f, "/fclib_global", "spacedim", cp->dim));
+  OWNED double *h = NULL;
+  PASS_NEW(f->start, m * m);
+  PASS_NEW(f->col, m * m);
+  PASS_NEW(h, m);
+  PASS(put_group(f, "/fclib_global"));
+  PASS(put_int(f, "/fclib_global", "spacedim", cp->dim));
   for (size_t k = 0; k < m * m; ++k) {
     f->start[k] = (int)(k / m);
     f->col[k] = (int)(k % m);
   }
-  TRY(put_matrix(f, "/fclib_global/M", (int)(m * m), m * m, cp->A));
+  PASS(put_matrix(f, "/fclib_global/M", (int)(m * m), m * m, cp->A));
   for (size_t k = 0; k < m; ++k) {
     f->start[k] = f->col[k] = (int)k;
     h[k] = sign_of(cp->dim, (int)k);
   }
-  TRY(put_matrix(f, "/fclib_global/H", (int)m, m, h));
-  TRY(put_group(f, "/fclib_global/vectors"));
-  TRY(put_reals(f, "/fclib_global/vectors/f", m, cp->f));
-  TRY(put_reals(f, "/fclib_global/vectors/w", m, f->q));
-  TRY(put_reals(f, "/fclib_global/vectors/mu", (size_t)cp->n, f->mu));
-done:
-  memory_free(h);
-  return st;
+  PASS(put_matrix(f, "/fclib_global/H", (int)m, m, h));
+  PASS(put_group(f, "/fclib_global/vectors"));
+  PASS(put_reals(f, "/fclib_global/vectors/f", m, cp->f));
+  PASS(put_reals(f, "/fclib_global/vectors/w", m, f->q));
+  return put_reals(f, "/fclib_global/vectors/mu", (size_t)cp->n, f->mu);
 }
 
 static status write_solution(const written *f, const double *v) {
-  status st = OK;
   size_t m = (size_t)f->cp->m;
-  if (f->u == NULL) goto done;
-  TRY(put_group(f, "/solution"));
-  TRY(put_reals(f, "/solution/u", m, f->u));
-  TRY(put_reals(f, "/solution/r", m, f->r));
-  if (!f->local) TRY(put_reals(f, "/solution/v", m, v));
-done:
-  return st;
+  if (f->u == NULL) return OK;
+  PASS(put_group(f, "/solution"));
+  PASS(put_reals(f, "/solution/u", m, f->u));
+  PASS(put_reals(f, "/solution/r", m, f->r));
+  if (!f->local) PASS(put_reals(f, "/solution/v", m, v));
+  return OK;
 }
 
 static status write_info(const written *f, const char *title,
                          const char *description) {
-  status st = OK;
   char name[64];
   const char *root = f->local ? "/fclib_local/info" : "/fclib_global/info";
-  TRY(put_group(f, root));
+  PASS(put_group(f, root));
   snprintf(name, sizeof name, "%s/title", root);
-  TRY(put_text(f, name, title));
+  PASS(put_text(f, name, title));
   snprintf(name, sizeof name, "%s/description", root);
-  TRY(put_text(f, name, description));
+  PASS(put_text(f, name, description));
   snprintf(name, sizeof name, "%s/math_info", root);
-  TRY(put_text(f, name,
-               "quasistatic increment: u_N is the gap, u_T the slip of the "
-               "increment, r nodal forces"));
-done:
-  return st;
+  return put_text(f, name,
+                  "quasistatic increment: u_N is the gap, u_T the slip of the "
+                  "increment, r nodal forces");
 }
 
 static status write_all(written *f, const double *v, const char *title,
@@ -350,13 +323,7 @@ done:
 }
 
 static void written_free(written *f) {
-  memory_free(f->M);
-  memory_free(f->q);
-  memory_free(f->mu);
-  memory_free(f->start);
-  memory_free(f->col);
-  memory_free(f->u);
-  memory_free(f->r);
+  RELEASE(f->M, f->q, f->mu, f->start, f->col, f->u, f->r);
 }
 
 status fclib_write(const contact_problem *cp, const double *u, const double *r,

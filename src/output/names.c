@@ -20,18 +20,17 @@ static const char *const results[] = {
 static const char middle[] = "_condensed_";
 
 static status spare(const deck *d, const char *path) {
-  status st = OK;
   for (int i = 0; i < d->n_input; ++i) {
     int same = file_same(d->inputs[i], path);
-    if (same < 0) TRY(text_failed(path, "inspect", errno));
+    if (same < 0) PASS(text_failed(path, "inspect", errno));
     if (same)
-      FAIL(ERR_DECK,
-           "%s is the file %s that the deck reads: the results would overwrite "
-           "it; name the deck or the file otherwise, or use -o",
-           path, d->inputs[i]);
+      RAISE(
+          ERR_DECK,
+          "%s is the file %s that the deck reads: the results would overwrite "
+          "it; name the deck or the file otherwise, or use -o",
+          path, d->inputs[i]);
   }
-done:
-  return st;
+  return OK;
 }
 
 static int is_condensed(const char *name, const char *of) {
@@ -59,17 +58,13 @@ done:
 }
 
 status output_spare_inputs(const model *m, const char *dir) {
-  status st = OK;
-  char *path = NULL;
+  OWNED char *path = NULL;
   if (m->deck == NULL) return OK;
   for (size_t k = 0; k < sizeof results / sizeof *results; ++k) {
     memory_free(path);
     path = text_path(dir, m->job, results[k]);
-    if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-    TRY(spare(m->deck, path));
+    if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
+    PASS(spare(m->deck, path));
   }
-  TRY(spare_condensed(m, dir));
-done:
-  memory_free(path);
-  return st;
+  return spare_condensed(m, dir);
 }

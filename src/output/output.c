@@ -18,18 +18,12 @@ job job_of(const output *o) {
 
 static void release(output *o) {
   plan_free(o->plan);
-  memory_free(o->json);
-  memory_free(o->xdmf);
+  RELEASE(o->json, o->xdmf);
   for (int i = 0; i < o->run.n_increment; ++i) {
-    memory_free(o->run.increments[i].solutions);
-    memory_free((void *)o->run.increments[i].theorems.contacts);
+    RELEASE(o->run.increments[i].solutions,
+            (void *)o->run.increments[i].theorems.contacts);
   }
-  memory_free(o->run.increments);
-  memory_free(o->kept);
-  memory_free(o->facts);
-  memory_free(o->whys);
-  memory_free(o->reasons);
-  memory_free(o);
+  RELEASE(o->run.increments, o->kept, o->facts, o->whys, o->reasons, o);
 }
 
 /* What an earlier run left must not be taken for a result of this one. */
@@ -67,24 +61,21 @@ static status open_hdf5(output *o, const hdf5_count *before) {
 }
 
 static status open_new(output *o) {
-  status st = OK;
   job j = job_of(o);
   static const char *const old[] = {"h5", "xdmf", "json", "rst.h5",
                                     "rst.old.h5"};
-  TRY(open_text(o, "lst", -1, &o->lst));
-  TRY(open_text(o, "sta", -1, &o->sta));
-  TRY(open_text(o, "cvg", -1, &o->cvg));
+  PASS(open_text(o, "lst", -1, &o->lst));
+  PASS(open_text(o, "sta", -1, &o->sta));
+  PASS(open_text(o, "cvg", -1, &o->cvg));
   for (size_t k = 0; k < sizeof old / sizeof *old; ++k)
-    TRY(remove_old(o, old[k]));
-  TRY(tabular_open(o->m, o->msh, o->o.dir, -1, &o->dat));
-  if (o->dat == NULL) TRY(remove_old(o, "dat"));
-  TRY(sta_header(&o->o, &o->sta));
+    PASS(remove_old(o, old[k]));
+  PASS(tabular_open(o->m, o->msh, o->o.dir, -1, &o->dat));
+  if (o->dat == NULL) PASS(remove_old(o, "dat"));
+  PASS(sta_header(&o->o, &o->sta));
   cvg_header(&o->cvg);
-  TRY(text_check(&o->cvg));
-  TRY(listing_open(&j, &o->lst));
-  TRY(open_hdf5(o, NULL));
-done:
-  return st;
+  PASS(text_check(&o->cvg));
+  PASS(listing_open(&j, &o->lst));
+  return open_hdf5(o, NULL);
 }
 
 static status open_earlier(output *o) {
@@ -106,14 +97,11 @@ done:
 }
 
 static status open_all(output *o) {
-  status st = OK;
   o->json = text_path(o->o.dir, o->m->job, "json");
   o->xdmf = text_path(o->o.dir, o->m->job, "xdmf");
   if (o->json == NULL || o->xdmf == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  TRY(o->o.from == NULL ? open_new(o) : open_earlier(o));
-done:
-  return st;
+    RAISE(ERR_MEMORY, "memory exhausted: name of a file");
+  return o->o.from == NULL ? open_new(o) : open_earlier(o);
 }
 
 status output_open(const model *m, const mesh *msh, const output_options *opt,

@@ -24,7 +24,6 @@ static double clock_now(void) {
  * seconds, and not above its share of the run but for the last time: the cost
  * stays small however long it grows. */
 status output_show_records(output *o, int all) {
-  status st = OK;
   hdf5_shape shape;
   if (o->h5 == NULL) return OK;
   hdf5_shape_of(o->h5, &shape);
@@ -33,12 +32,11 @@ status output_show_records(output *o, int all) {
   if (!all && o->n_xdmf > 0 && now < o->xdmf_at + XDMF_PAUSE) return OK;
   double cpu = timer_cpu();
   if (!all && o->xdmf_cpu > XDMF_SHARE * cpu) return OK;
-  TRY(xdmf_write(&shape, o->xdmf));
+  PASS(xdmf_write(&shape, o->xdmf));
   o->xdmf_cpu += timer_cpu() - cpu;
   o->n_xdmf = shape.n_record;
   o->xdmf_at = now;
-done:
-  return st;
+  return OK;
 }
 
 /* Told again when a step has other supports. Of a restart the facts are those
@@ -119,15 +117,13 @@ done:
 }
 
 static status sink_increment(void *ctx, const state *s) {
-  status st = OK;
   output *o = ctx;
-  TRY(write_fields(o, s));
-  TRY(write_condensed(o, s));
-  TRY(write_tables(o, s));
+  PASS(write_fields(o, s));
+  PASS(write_condensed(o, s));
+  PASS(write_tables(o, s));
   o->attempt = 1;
   if (o->progress) progress_show(s);
-done:
-  return st;
+  return OK;
 }
 
 static status sink_between(void *ctx, const state *s) {

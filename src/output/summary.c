@@ -15,35 +15,30 @@ static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
 /* The facts of what CHECK= found. */
 static status remember_solutions(const solution_set *set,
                                  increment_summary *i) {
-  status st = OK;
-  if (set == NULL) goto done;
-  NEW(i->solutions, set->n_found);
+  if (set == NULL) return OK;
+  PASS_NEW(i->solutions, set->n_found);
   i->n_solution = set->n_found;
   i->checked = 1;
   for (int k = 0; k < set->n_found; ++k) i->solutions[k] = set->found[k].facts;
-done:
-  return st;
+  return OK;
 }
 
 static status remember_theory(const theorems_report *t, increment_summary *i) {
-  status st = OK;
   theorems_contact *own = NULL;
   i->theorems = *t;
   i->theorems.contacts = NULL;
   i->theorems.n_contact = 0;
-  if (t->n_contact == 0) goto done;
-  NEW(own, t->n_contact);
+  if (t->n_contact == 0) return OK;
+  PASS_NEW(own, t->n_contact);
   memcpy(own, t->contacts, (size_t)t->n_contact * sizeof *own);
   i->theorems.contacts = own;
   i->theorems.n_contact = t->n_contact;
-done:
-  return st;
+  return OK;
 }
 
 status output_remember(output *o, const state *s) {
-  status st = OK;
   run_summary *run = &o->run;
-  GROW(run->increments, run->n_increment, run->capacity);
+  PASS_GROW(run->increments, run->n_increment, run->capacity);
   increment_summary *i = &run->increments[run->n_increment++];
   *i = (increment_summary){.step_no = s->step_no,
                            .increment_no = s->increment_no,
@@ -71,11 +66,10 @@ status output_remember(output *o, const state *s) {
     run->residual_worst = worse(run->residual_worst, s->report.residual);
   run->defect_worst = worse(run->defect_worst, fabs(i->defect));
   if (s->flow != NULL) run->tally = *s->flow->tally;
-  TRY(remember_solutions(s->solutions, i));
-  TRY(remember_theory(&s->theorems, i));
+  PASS(remember_solutions(s->solutions, i));
+  PASS(remember_theory(&s->theorems, i));
   if (!s->settled) ++run->n_unsettled;
-done:
-  return st;
+  return OK;
 }
 
 /* Number of a reason among the lines of o->whys, from 1; a new one is added;
@@ -110,12 +104,9 @@ static void leave_out_cpu(increment_summary *s) {
 
 /* The increments with numbers in the place of pointers. */
 static status copy_increments(output *o, size_t *used, int *n_fact) {
-  status st = OK;
   const run_summary *run = &o->run;
   size_t room = 1;
-  memory_free(o->kept);
-  memory_free(o->facts);
-  memory_free(o->whys);
+  RELEASE(o->kept, o->facts, o->whys);
   o->kept = NULL;
   o->facts = NULL;
   o->whys = NULL;
@@ -125,9 +116,9 @@ static status copy_increments(output *o, size_t *used, int *n_fact) {
             room_for(s->time_error.why);
     *n_fact += s->n_solution;
   }
-  NEW(o->kept, run->n_increment);
-  NEW(o->facts, *n_fact);
-  NEW(o->whys, room);
+  PASS_NEW(o->kept, run->n_increment);
+  PASS_NEW(o->facts, *n_fact);
+  PASS_NEW(o->whys, room);
   *n_fact = 0;
   for (int i = 0; i < run->n_increment; ++i) {
     increment_summary *s = &o->kept[i];
@@ -141,60 +132,50 @@ static status copy_increments(output *o, size_t *used, int *n_fact) {
     s->theorems = (theorems_report){0}; /* such a run starts anew (restart.c) */
     if (o->o.no_timing) leave_out_cpu(s);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* All but the name of the ordering. */
 static status keep_setup(setup_facts *f, archive *a) {
-  status st = OK;
   condense_info *i = &f->info;
-  TRY(archive_bytes(a, "unknowns", &i->unknowns, sizeof i->unknowns));
-  TRY(archive_bytes(a, "contact_unknowns", &i->contact_unknowns,
-                    sizeof i->contact_unknowns));
-  TRY(archive_bytes(a, "factor_entries", &i->factor_entries,
-                    sizeof i->factor_entries));
-  TRY(archive_ints(a, "bodies", &i->bodies, 1));
-  TRY(archive_reals(a, "flops", &i->flops, 1));
-  TRY(archive_bytes(a, "bytes", &i->bytes, sizeof i->bytes));
-  TRY(archive_reals(a, "condition", &f->condition, 1));
-  TRY(archive_reals(a, "digits", &f->digits, 1));
-  TRY(archive_ints(a, "floating", &f->floating, 1));
-  TRY(archive_ints(a, "n_contact_node", &f->n_contact_node, 1));
-  TRY(archive_ints(a, "n_left_out", &f->n_left_out, 1));
-  TRY(archive_reals(a, "average_entries", &f->average_entries, 1));
-done:
-  return st;
+  PASS(archive_bytes(a, "unknowns", &i->unknowns, sizeof i->unknowns));
+  PASS(archive_bytes(a, "contact_unknowns", &i->contact_unknowns,
+                     sizeof i->contact_unknowns));
+  PASS(archive_bytes(a, "factor_entries", &i->factor_entries,
+                     sizeof i->factor_entries));
+  PASS(archive_ints(a, "bodies", &i->bodies, 1));
+  PASS(archive_reals(a, "flops", &i->flops, 1));
+  PASS(archive_bytes(a, "bytes", &i->bytes, sizeof i->bytes));
+  PASS(archive_reals(a, "condition", &f->condition, 1));
+  PASS(archive_reals(a, "digits", &f->digits, 1));
+  PASS(archive_ints(a, "floating", &f->floating, 1));
+  PASS(archive_ints(a, "n_contact_node", &f->n_contact_node, 1));
+  PASS(archive_ints(a, "n_left_out", &f->n_left_out, 1));
+  return archive_reals(a, "average_entries", &f->average_entries, 1);
 }
 
 /* What both ways have in common. */
 static status keep_counts(output *o, archive *a, file_ends *ends) {
-  status st = OK;
   run_summary *run = &o->run;
-  TRY(archive_bytes(a, "ends", ends, sizeof *ends));
-  TRY(keep_setup(&run->facts, a));
-  TRY(archive_ints(a, "attempt", &o->attempt, 1));
-  TRY(archive_ints(a, "increments", &run->n_increment, 1));
-  TRY(archive_ints(a, "rejected", &run->n_rejected, 1));
-  TRY(archive_ints(a, "unsettled", &run->n_unsettled, 1));
-  TRY(archive_reals(a, "residual_worst", &run->residual_worst, 1));
-  TRY(archive_reals(a, "defect_worst", &run->defect_worst, 1));
-  TRY(archive_bytes(a, "tally", &run->tally, sizeof run->tally));
-done:
-  return st;
+  PASS(archive_bytes(a, "ends", ends, sizeof *ends));
+  PASS(keep_setup(&run->facts, a));
+  PASS(archive_ints(a, "attempt", &o->attempt, 1));
+  PASS(archive_ints(a, "increments", &run->n_increment, 1));
+  PASS(archive_ints(a, "rejected", &run->n_rejected, 1));
+  PASS(archive_ints(a, "unsettled", &run->n_unsettled, 1));
+  PASS(archive_reals(a, "residual_worst", &run->residual_worst, 1));
+  PASS(archive_reals(a, "defect_worst", &run->defect_worst, 1));
+  return archive_bytes(a, "tally", &run->tally, sizeof run->tally);
 }
 
 static status keep_increments(output *o, archive *a) {
-  status st = OK;
   size_t used = 0, n = (size_t)o->run.n_increment;
   int n_fact = 0;
-  TRY(copy_increments(o, &used, &n_fact));
-  TRY(archive_bytes(a, "summary", o->kept, n * sizeof *o->kept));
-  TRY(archive_bytes(a, "whys", o->whys, used));
-  TRY(archive_bytes(a, "solutions", o->facts,
-                    (size_t)n_fact * sizeof *o->facts));
-done:
-  return st;
+  PASS(copy_increments(o, &used, &n_fact));
+  PASS(archive_bytes(a, "summary", o->kept, n * sizeof *o->kept));
+  PASS(archive_bytes(a, "whys", o->whys, used));
+  return archive_bytes(a, "solutions", o->facts,
+                       (size_t)n_fact * sizeof *o->facts);
 }
 
 status output_keep(output *o, archive *a) {
@@ -225,47 +206,40 @@ static const char *why_of(const output *o, const char *as_number) {
 }
 
 static status read_reasons(output *o, archive *a) {
-  status st = OK;
   size_t n = archive_length(a, "whys");
-  if (n == 0) goto done;
-  NEW(o->reasons, n + 1);
-  TRY(archive_bytes(a, "whys", o->reasons, n));
+  if (n == 0) return OK;
+  PASS_NEW(o->reasons, n + 1);
+  PASS(archive_bytes(a, "whys", o->reasons, n));
   for (size_t i = 0; i < n; ++i)
     if (o->reasons[i] == '\n') o->reasons[i] = '\0';
-done:
-  return st;
+  return OK;
 }
 
 static status read_increments(output *o, archive *a) {
-  status st = OK;
   run_summary *run = &o->run;
   size_t n = (size_t)run->n_increment, n_fact = 0, next = 0;
-  NEW(run->increments, n);
+  PASS_NEW(run->increments, n);
   run->capacity = run->n_increment;
-  TRY(archive_bytes(a, "summary", run->increments,
-                    n * sizeof *run->increments));
-  TRY(read_reasons(o, a));
+  PASS(archive_bytes(a, "summary", run->increments,
+                     n * sizeof *run->increments));
+  PASS(read_reasons(o, a));
   n_fact = archive_length(a, "solutions") / sizeof *o->facts;
-  NEW(o->facts, n_fact);
-  TRY(archive_bytes(a, "solutions", o->facts, n_fact * sizeof *o->facts));
+  PASS_NEW(o->facts, n_fact);
+  PASS(archive_bytes(a, "solutions", o->facts, n_fact * sizeof *o->facts));
   for (size_t i = 0; i < n; ++i) {
     increment_summary *s = &run->increments[i];
     s->error.why = why_of(o, s->error.why);
     s->mesh_error.why = why_of(o, s->mesh_error.why);
     s->time_error.why = why_of(o, s->time_error.why);
     if (s->n_solution <= 0) continue;
-    NEW(s->solutions, s->n_solution);
+    PASS_NEW(s->solutions, s->n_solution);
     for (int k = 0; k < s->n_solution && next < n_fact; ++k)
       s->solutions[k] = o->facts[next++];
   }
-done:
-  return st;
+  return OK;
 }
 
 status output_read(output *o, archive *a, file_ends *ends) {
-  status st = OK;
-  TRY(keep_counts(o, a, ends));
-  TRY(read_increments(o, a));
-done:
-  return st;
+  PASS(keep_counts(o, a, ends));
+  return read_increments(o, a);
 }

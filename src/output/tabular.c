@@ -93,16 +93,13 @@ static int by_number(const void *a_, const void *b_) {
 }
 
 static status order_by_number(int n, const size_t *no, int **order) {
-  status st = OK;
-  numbered *list = NULL;
-  NEW(*order, n);
-  NEW(list, n);
+  OWNED numbered *list = NULL;
+  PASS_NEW(*order, n);
+  PASS_NEW(list, n);
   for (int i = 0; i < n; ++i) list[i] = (numbered){no[i], i};
   qsort(list, (size_t)n, sizeof *list, by_number);
   for (int i = 0; i < n; ++i) (*order)[i] = list[i].id;
-done:
-  memory_free(list);
-  return st;
+  return OK;
 }
 
 static int in_group(const mesh_group *g, int node_id) {
@@ -120,21 +117,17 @@ static int in_group(const mesh_group *g, int node_id) {
 /* The contact nodes in the order of their node_no. */
 static status contact_rows(const table *columns, tabular *t, const view *v,
                            const mesh_group *g) {
-  status st = OK;
   const contact_surface *surface = v->s->surface;
-  size_t *no = NULL;
-  int *order = NULL;
+  OWNED size_t *no = NULL;
+  OWNED int *order = NULL;
   if (surface == NULL) return OK;
-  NEW(no, surface->n);
+  PASS_NEW(no, surface->n);
   for (int i = 0; i < surface->n; ++i) no[i] = surface->node_no[i];
-  TRY(order_by_number(surface->n, no, &order));
+  PASS(order_by_number(surface->n, no, &order));
   for (int i = 0; i < surface->n; ++i)
     if (g == NULL || in_group(g, surface->node_id[order[i]]))
       table_row(columns, v, order[i], t->dat.f);
-done:
-  memory_free(no);
-  memory_free(order);
-  return st;
+  return OK;
 }
 
 static status table_rows(const table *columns, tabular *t, const view *v,
@@ -160,7 +153,6 @@ static status table_rows(const table *columns, tabular *t, const view *v,
 }
 
 static status write_table(tabular *t, const view *v, const print_request *p) {
-  status st = OK;
   int k = kind_of(p->table);
   char number[NUMBER_SIZE];
   table columns;
@@ -170,10 +162,8 @@ static status write_table(tabular *t, const view *v, const print_request *p) {
           text_number(number, v->s->t, DIGITS), kinds[k].name,
           p->group != NULL ? " group " : "", p->group != NULL ? p->group : "");
   table_header(&columns, t->m, "#", t->dat.f);
-  TRY(table_rows(&columns, t, v, p));
-  TRY(text_check(&t->dat));
-done:
-  return st;
+  PASS(table_rows(&columns, t, v, p));
+  return text_check(&t->dat);
 }
 
 static status write_timed(tabular *t, const view *v, const print_request *p) {
@@ -185,16 +175,14 @@ static status write_timed(tabular *t, const view *v, const print_request *p) {
 }
 
 status tabular_increment(tabular *t, const state *s) {
-  status st = OK;
   if (t == NULL) return OK;
   view v = {t->m, t->msh, s};
   const step *now = &t->m->steps[s->step_no - 1];
   for (int i = 0; i < now->n_print; ++i)
     if (print_shows(&now->prints[i], now, s->t,
                     s->within ? -1 : s->increment_no, s->end_of_step))
-      TRY(write_timed(t, &v, &now->prints[i]));
-done:
-  return st;
+      PASS(write_timed(t, &v, &now->prints[i]));
+  return OK;
 }
 
 static unsigned tables_asked(const model *m) {
@@ -206,21 +194,19 @@ static unsigned tables_asked(const model *m) {
 }
 
 static status make_orders(tabular *t, unsigned tables) {
-  status st = OK;
   const mesh *msh = t->msh;
   const unsigned by_node = PRINT_NODES | PRINT_REACTIONS;
   int items = 0;
   if (tables & by_node) {
-    TRY(order_by_number(msh->n_node, msh->node_no, &t->node_order));
+    PASS(order_by_number(msh->n_node, msh->node_no, &t->node_order));
     items = msh->n_node;
   }
   if (tables & PRINT_ELEMENTS) {
-    TRY(order_by_number(msh->n_elem, msh->elem_no, &t->elem_order));
+    PASS(order_by_number(msh->n_elem, msh->elem_no, &t->elem_order));
     if (items < msh->n_elem) items = msh->n_elem;
   }
-  NEW(t->wanted, items);
-done:
-  return st;
+  PASS_NEW(t->wanted, items);
+  return OK;
 }
 
 status tabular_open(const model *m, const mesh *msh, const char *dir,
@@ -257,9 +243,6 @@ status tabular_sync(tabular *t, long *length) {
 status tabular_close(tabular *t) {
   if (t == NULL) return OK;
   status st = text_close(&t->dat);
-  memory_free(t->node_order);
-  memory_free(t->elem_order);
-  memory_free(t->wanted);
-  memory_free(t);
+  RELEASE(t->node_order, t->elem_order, t->wanted, t);
   return st;
 }

@@ -322,24 +322,18 @@ static void set_memory(const limits *system, const command *c) {
 }
 
 status command_apply(command *c, message_log *log) {
-  status st = OK;
-  char *folder = NULL;
+  OWNED char *folder = NULL;
   limits system;
   limits_read("", &system);
   set_threads(system.cores, c, log);
   set_memory(&system, c);
-  if (!c->safe) goto done;
+  if (!c->safe) return OK;
   folder = folder_of(c->deck_file);
-  if (folder == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a folder");
-  TRY(input_confine(folder));
-done:
-  memory_free(folder);
-  return st;
+  if (folder == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a folder");
+  return input_confine(folder);
 }
 
 void command_free(command *c) {
-  memory_free(c->deck_file);
-  memory_free(c->dir);
-  memory_free(c->defines);
+  RELEASE(c->deck_file, c->dir, c->defines);
   memset(c, 0, sizeof *c);
 }

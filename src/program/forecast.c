@@ -70,7 +70,6 @@ static status see_increment(void *ctx, const state *s) {
 /* One run whose results nobody writes; eta[n_elem] or NULL: shares of the
  * elements in its error. */
 static status run_trial(job_input *in, trial *t, double *eta) {
-  status st = OK;
   int unsettled = 0;
   const history_sink sink = {.ctx = t,
                              .foresee = see_sizes,
@@ -83,10 +82,9 @@ static status run_trial(job_input *in, trial *t, double *eta) {
   for (int i = 0; i < in->m->n_step; ++i)
     in->m->steps[i].mesh_error = in->m->steps[i].time_error = 1;
   in->m->effects |= EFFECT_MESH_ERROR | EFFECT_TIME_ERROR;
-  TRY(history_run(in->m, in->msh, &sink, &unsettled));
+  PASS(history_run(in->m, in->msh, &sink, &unsettled));
   t->bytes = (double)memory_peak();
-done:
-  return st;
+  return OK;
 }
 
 /* CPU seconds of the stages since "before". */
@@ -300,14 +298,13 @@ static double order_of(const model_of_cost *c, double full) {
 
 /* What the three runs tell; wanted: the error the fine one was to have, -. */
 static status fit(model_of_cost *c, double wanted) {
-  status st = OK;
   const trial *a = &c->coarse, *b = &c->fine;
   double full = 1.0 / c->dim;
   if (!(b->error < 0.99 * a->error))
-    FAIL(ERR_UNSETTLED,
-         "the error of the mesh does not fall: %.3g %% with %.0f unknowns, "
-         "%.3g %% with %.0f; no forecast",
-         100 * a->error, a->unknowns, 100 * b->error, b->unknowns);
+    RAISE(ERR_UNSETTLED,
+          "the error of the mesh does not fall: %.3g %% with %.0f unknowns, "
+          "%.3g %% with %.0f; no forecast",
+          100 * a->error, a->unknowns, 100 * b->error, b->unknowns);
   c->order = order_of(c, full);
   c->contact = 1.0 - full;
   if (a->contact > 0.0 && b->contact > 0.0)
@@ -316,8 +313,7 @@ static status fit(model_of_cost *c, double wanted) {
                exponent(a->contact, b->contact, a->unknowns, b->unknowns), 1.0);
   c->share =
       b->unknowns / c->deck.unknowns * pow(wanted / c->deck.error, c->dim);
-done:
-  return st;
+  return OK;
 }
 
 /* The job on a mesh that is to have the error "wanted"; eta[n_elem] of *in. */
@@ -343,30 +339,27 @@ done:
 }
 
 status forecast_print(const command *c, job_input *in) {
-  status st = OK;
-  double *eta = NULL;
+  OWNED double *eta = NULL;
   model_of_cost cost = {.dim = in->m != NULL ? in->m->dim : 2};
   if (in->problem != NULL || !job_is_geo(in->m))
-    FAIL(ERR_DECK,
-         "--estimate-cost meshes the geometry anew: the deck must name "
-         "a .geo in *MESH, FILE=");
+    RAISE(ERR_DECK,
+          "--estimate-cost meshes the geometry anew: the deck must name "
+          "a .geo in *MESH, FILE=");
   mesh_gmsh_load();
-  NEW(eta, in->msh->n_elem);
-  TRY(run_trial(in, &cost.deck, eta));
+  PASS_NEW(eta, in->msh->n_elem);
+  PASS(run_trial(in, &cost.deck, eta));
   stage_costs(NULL, &cost.deck);
   int plane = cost.dim == 2;
   double now = cost.deck.error;
   if (now + cost.deck.time <= wanted_errors[N_WANTED - 1]) {
     print_table(&cost);
-    goto done;
+    return OK;
   }
   double wanted = now / (plane ? 3.0 : 1.6);
-  TRY(run_adapted(c, in, eta, now / (plane ? 1.5 : 1.2), &cost.coarse));
-  TRY(run_adapted(c, in, eta, wanted, &cost.fine));
-  TRY(fit(&cost, wanted));
+  PASS(run_adapted(c, in, eta, now / (plane ? 1.5 : 1.2), &cost.coarse));
+  PASS(run_adapted(c, in, eta, wanted, &cost.fine));
+  PASS(fit(&cost, wanted));
   print_table(&cost);
   print_fit(&cost);
-done:
-  memory_free(eta);
-  return st;
+  return OK;
 }

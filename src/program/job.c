@@ -90,12 +90,9 @@ done:
 }
 
 status job_foresee(const job_input *in, int n) {
-  status st = OK;
   plan_bytes b;
-  TRY(plan_memory(in->m, in->msh, n, &b));
-  TRY(memory_foresee(b.factor + b.contact + b.rest, "the run"));
-done:
-  return st;
+  PASS(plan_memory(in->m, in->msh, n, &b));
+  return memory_foresee(b.factor + b.contact + b.rest, "the run");
 }
 
 int job_is_geo(const model *m) {
@@ -139,13 +136,10 @@ static status relay_start(void *ctx, const start_report *s) {
 }
 
 static status relay_increment(void *ctx, const state *s) {
-  status st = OK;
   relay *r = ctx;
   if (r->watch != NULL && r->watch->increment != NULL)
-    TRY(r->watch->increment(r->watch->ctx, s));
-  TRY(r->to.increment(r->to.ctx, s));
-done:
-  return st;
+    PASS(r->watch->increment(r->watch->ctx, s));
+  return r->to.increment(r->to.ctx, s);
 }
 
 static status relay_between(void *ctx, const state *s) {

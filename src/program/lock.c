@@ -24,35 +24,32 @@ static int read_owner(int fd, char text[64]) {
 
 /* What is not a lock of Protis stays as it is. */
 static status check_content(const char *path, int fd) {
-  status st = OK;
   char text[64];
   struct stat about;
-  if (fstat(fd, &about) != 0) TRY(text_failed(path, "inspect", errno));
+  if (fstat(fd, &about) != 0) PASS(text_failed(path, "inspect", errno));
   int plain = S_ISREG(about.st_mode);
-  if (plain && !read_owner(fd, text)) TRY(text_failed(path, "read", errno));
+  if (plain && !read_owner(fd, text)) PASS(text_failed(path, "read", errno));
   if (!plain || (text[0] != '\0' && strncmp(text, head, sizeof head - 1) != 0))
-    FAIL(ERR_FILE,
-         "%s is no lock of Protis, and a run would overwrite it: move it away, "
-         "or use -o",
-         path);
-done:
-  return st;
+    RAISE(
+        ERR_FILE,
+        "%s is no lock of Protis, and a run would overwrite it: move it away, "
+        "or use -o",
+        path);
+  return OK;
 }
 
 /* Is the file at the path the one that was opened? A run that ended between the
  * two has removed it. */
 static status check_current(const char *path, int fd, int *current) {
-  status st = OK;
   struct stat one, other;
   *current = 0;
   if (stat(path, &one) != 0) {
     if (errno == ENOENT) return OK;
-    TRY(text_failed(path, "inspect", errno));
+    PASS(text_failed(path, "inspect", errno));
   }
-  if (fstat(fd, &other) != 0) TRY(text_failed(path, "inspect", errno));
+  if (fstat(fd, &other) != 0) PASS(text_failed(path, "inspect", errno));
   *current = one.st_ino == other.st_ino && one.st_dev == other.st_dev;
-done:
-  return st;
+  return OK;
 }
 
 static status refuse(const char *path, int fd, const char *job) {
@@ -70,23 +67,21 @@ static status refuse(const char *path, int fd, const char *job) {
 /* A file system without locks runs without. *held: the file is ours, to be
  * removed in the end. */
 static status hold(const char *path, const char *job, int *fd, int *held) {
-  status st = OK;
   const int flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
   for (int current = 0; !current;) {
     if (*fd >= 0) close(*fd);
     *fd = open(path, flags | O_EXCL, 0666);
     int made = *fd >= 0;
     if (!made && errno == EEXIST) *fd = open(path, flags, 0666);
-    if (*fd < 0) TRY(text_failed(path, "open for writing", errno));
-    if (!made) TRY(check_content(path, *fd));
+    if (*fd < 0) PASS(text_failed(path, "open for writing", errno));
+    if (!made) PASS(check_content(path, *fd));
     if (flock(*fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-      TRY(refuse(path, *fd, job));
+      PASS(refuse(path, *fd, job));
     *held = 1;
-    TRY(check_current(path, *fd, &current));
+    PASS(check_current(path, *fd, &current));
     *held = current;
   }
-done:
-  return st;
+  return OK;
 }
 
 status job_lock_take(const char *dir, const char *job, job_lock *l) {

@@ -79,11 +79,10 @@ static int file_no(const deck *d, const char *file) {
 /* A line each: number, line, column, number of the file, text; the file in a
  * line before it. */
 static status list_warnings(const job_input *in, char **text) {
-  status st = OK;
   size_t size = 0;
   message_view w;
   FILE *f = open_memstream(text, &size);
-  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: warnings so far");
+  if (f == NULL) RAISE(ERR_MEMORY, "memory exhausted: warnings so far");
   for (int k = 0; message_get(in->m->log, k, &w); ++k) {
     const char *file = w.at != NULL && w.at->file != NULL ? w.at->file : "";
     if (w.level == WARNING)
@@ -92,9 +91,8 @@ static status list_warnings(const job_input *in, char **text) {
               w.at != NULL ? w.at->column_no : 0, file_no(in->d, file), w.text);
   }
   if (!text_memory_end(f, text))
-    FAIL(ERR_MEMORY, "memory exhausted: warnings so far");
-done:
-  return st;
+    RAISE(ERR_MEMORY, "memory exhausted: warnings so far");
+  return OK;
 }
 
 /* That of a card, which knows its line and where it is included from. */
@@ -110,11 +108,11 @@ static const place *place_in_deck(const deck *d, const place *at) {
 
 /* What the run had told: what is told again is the same message. */
 static status tell_warnings(const job_input *in, archive *a) {
-  status st = OK;
   size_t n = archive_length(a, "warnings");
-  char *text = NULL, *end;
-  NEW(text, n + 1);
-  TRY(archive_bytes(a, "warnings", text, n));
+  OWNED char *text = NULL;
+  char *end;
+  PASS_NEW(text, n + 1);
+  PASS(archive_bytes(a, "warnings", text, n));
   for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1) {
     int id, no, used = 0;
     *end = '\0';
@@ -130,22 +128,18 @@ static status tell_warnings(const job_input *in, archive *a) {
                 at.file[0] != '\0' ? place_in_deck(in->d, &at) : NULL, "%s",
                 line + used + 1);
   }
-done:
-  memory_free(text);
-  return st;
+  return OK;
 }
 
 /* ---- writing ------------------------------------------------------------- */
 
 static status file_names(const command *c, const model *m, char **path,
                          char **before) {
-  status st = OK;
   *path = text_path(c->dir, m->job, "rst.h5");
   *before = text_path(c->dir, m->job, "rst.old.h5");
   if (*path == NULL || *before == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: name of the restart file");
-done:
-  return st;
+    RAISE(ERR_MEMORY, "memory exhausted: name of the restart file");
+  return OK;
 }
 
 status restart_write(void *ctx, const run_memory *memory) {
@@ -172,8 +166,7 @@ done:
   archive_free(a);
   free(text);
   free(told);
-  memory_free(path);
-  memory_free(before);
+  RELEASE(path, before);
   return st;
 }
 
@@ -223,7 +216,6 @@ done:
 
 /* A line for each card that names one, with its step. */
 static status add_files(const job_input *in, FILE *out) {
-  status st = OK;
   int step_no = 0;
   for (int i = 0; i < in->d->n_card; ++i) {
     const card *c = &in->d->cards[i];
@@ -231,14 +223,13 @@ static status add_files(const job_input *in, FILE *out) {
     if (strcmp(c->name, "STEP") == 0) ++step_no;
     if (file == NULL || !file->has_value) continue;
     const char *path = deck_path(in->d, &file->value);
-    if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+    if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
     fprintf(out, "%d *%s", step_no, c->name);
-    TRY(add_content(file->value.text, path, out));
+    PASS(add_content(file->value.text, path, out));
     if (strcmp(c->name, "MESH") == 0 && mesh_is_program(path))
-      TRY(add_geometry(path, out));
+      PASS(add_geometry(path, out));
   }
-done:
-  return st;
+  return OK;
 }
 
 status restart_files(const job_input *in, char **text) {
@@ -255,7 +246,6 @@ done:
 
 /* The decks are the same up to that step: so are the cards of these lines. */
 static status compare_files(const char *was, const char *is, int step_no) {
-  status st = OK;
   while (*was != '\0' && *is != '\0' && atoi(was) <= step_no) {
     size_t n = strcspn(was, "\n"), m = strcspn(is, "\n");
     size_t from = strcspn(was, " "), name = n;
@@ -266,14 +256,13 @@ static status compare_files(const char *was, const char *is, int step_no) {
     }
     for (int comma = 0; comma < 2; ++comma)
       while (name > from && was[--name] != ',') continue;
-    FAIL(
+    RAISE(
         ERR_DECK,
         "--restart: another file than when the run was started:%.*s: has other "
         "contents; put the earlier one back, or start the run anew",
         (int)(name - from), was + from);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* ---- which cards may change ---------------------------------------------- */
@@ -330,7 +319,6 @@ static void first_line(const echo_card *c, char text[100]) {
 }
 
 static status compare_decks(const char *was, const char *is, int step_no) {
-  status st = OK;
   echo_card a = {was, 0, 0}, b = {is, 0, 0};
   char before[100], now[100], where[40] = "";
   do {
@@ -340,42 +328,39 @@ static status compare_decks(const char *was, const char *is, int step_no) {
     first_line(&a, before);
     first_line(&b, now);
     if (a.step_no > 0) snprintf(where, sizeof where, "step %d, ", a.step_no);
-    FAIL(ERR_DECK,
-         "--restart: the deck has changed: %s%s%s%s; only loads, outputs and "
-         "the solver of the steps after step %d may change",
-         where, before,
-         strcmp(before, now) == 0 ? " has other data" : " is now ",
-         strcmp(before, now) == 0 ? "" : now, step_no);
+    RAISE(ERR_DECK,
+          "--restart: the deck has changed: %s%s%s%s; only loads, outputs and "
+          "the solver of the steps after step %d may change",
+          where, before,
+          strcmp(before, now) == 0 ? " has other data" : " is now ",
+          strcmp(before, now) == 0 ? "" : now, step_no);
   } while (a.length > 0);
-done:
-  return st;
+  return OK;
 }
 
 /* ---- reading ------------------------------------------------------------- */
 
 static status check_identity(const identity *was, const identity *is,
                              const char *path) {
-  status st = OK;
   if (strcmp(was->version, is->version) != 0)
-    FAIL(ERR_FILE, "%s was written by Protis %s, this is %s", path,
-         was->version, is->version);
+    RAISE(ERR_FILE, "%s was written by Protis %s, this is %s", path,
+          was->version, is->version);
   if (was->mesh != is->mesh)
-    FAIL(ERR_FILE, "%s was written with another mesh", path);
+    RAISE(ERR_FILE, "%s was written with another mesh", path);
   if (was->no_timing != is->no_timing)
-    FAIL(ERR_DECK, "--restart: the run was started %s --no-timing",
-         was->no_timing ? "with" : "without");
+    RAISE(ERR_DECK, "--restart: the run was started %s --no-timing",
+          was->no_timing ? "with" : "without");
   if (was->effects != is->effects)
-    FAIL(ERR_DECK,
-         "--restart: the deck now calls for other effects (see --check) than "
-         "the run was started with");
+    RAISE(ERR_DECK,
+          "--restart: the deck now calls for other effects (see --check) than "
+          "the run was started with");
   if (was->threads != is->threads || strcmp(was->kernel, is->kernel) != 0)
     fprintf(stderr,
             "protis: warning: the run was started with %d thread%s and kernel "
             "%s, this is %d and %s: last digits may differ\n",
             was->threads, was->threads == 1 ? "" : "s", was->kernel,
             is->threads, is->kernel);
-done:
-  return st;
+  return OK;
 }
 
 static status check_files(const job_input *in, archive *a, int step_no) {
@@ -463,7 +448,6 @@ done:
     archive_free(*out);
     *out = NULL;
   }
-  memory_free(path);
-  memory_free(before);
+  RELEASE(path, before);
   return st;
 }

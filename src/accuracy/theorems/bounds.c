@@ -22,14 +22,13 @@ static const double ROUNDING = 1e-8; /* -, of the larger norm                 */
 
 status state_before_keep(const contact_problem *cp, const double *u,
                          const double *r, state_before *b) {
-  status st = OK;
   size_t m = (size_t)cp->m, n = (size_t)cp->n;
   if (b->u == NULL) {
-    NEW(b->u, m);
-    NEW(b->r, m);
-    NEW(b->f, m);
-    NEW(b->gap, m);
-    NEW(b->g, n);
+    PASS_NEW(b->u, m);
+    PASS_NEW(b->r, m);
+    PASS_NEW(b->f, m);
+    PASS_NEW(b->gap, m);
+    PASS_NEW(b->g, n);
   }
   memcpy(b->u, u, m * sizeof *u);
   memcpy(b->r, r, m * sizeof *r);
@@ -37,16 +36,11 @@ status state_before_keep(const contact_problem *cp, const double *u,
   for (int k = 0; k < cp->m; ++k) b->gap[k] = contact_bound(cp, k);
   contact_limit(cp, r, b->g);
   b->known = 1;
-done:
-  return st;
+  return OK;
 }
 
 void state_before_free(state_before *b) {
-  memory_free(b->u);
-  memory_free(b->r);
-  memory_free(b->f);
-  memory_free(b->gap);
-  memory_free(b->g);
+  RELEASE(b->u, b->r, b->f, b->gap, b->g);
   *b = (state_before){0};
 }
 
@@ -90,9 +84,7 @@ status bound_total(const contact_problem *cp, const double *u,
   shift(cp, e, w, z, load);
   compare(all, e, z, load, limit, 0.0, b);
 done:
-  memory_free(w);
-  memory_free(z);
-  memory_free(load);
+  RELEASE(w, z, load);
   return st;
 }
 
@@ -155,8 +147,6 @@ status bound_change(const contact_problem *cp, const double *u,
   shift(cp, n, e, z, load);
   compare(all, n, z, load, limit, whole, b);
 done:
-  memory_free(e);
-  memory_free(z);
-  memory_free(load);
+  RELEASE(e, z, load);
   return st;
 }

@@ -12,20 +12,17 @@ static const double MOVES = 1e-8; /* -, of the largest part of a motion       */
 /* ---- norms -------------------------------------------------------------- */
 
 status energy_norm_new(int m, const double *A, energy_norm *out) {
-  status st = OK;
   *out = (energy_norm){.m = m, .A = A};
-  NEW(out->x, m);
-  NEW(out->y, m);
-  TRY(dense_inverse_new(m, A, &out->inverse));
+  PASS_NEW(out->x, m);
+  PASS_NEW(out->y, m);
+  PASS(dense_inverse_new(m, A, &out->inverse));
   if (out->inverse != NULL) out->dual = dense_inverse_energy(out->inverse);
-done:
-  return st;
+  return OK;
 }
 
 void energy_norm_free(energy_norm *e) {
   dense_inverse_free(e->inverse);
-  memory_free(e->x);
-  memory_free(e->y);
+  RELEASE(e->x, e->y);
   *e = (energy_norm){0};
 }
 
@@ -168,7 +165,6 @@ status friction_constants(const contact_problem *cp, energy_norm *e, int limits,
   TRY(tangential_constant(&b, limits, &out->tangent));
   out->factor = product > 0.0 ? sqrt(product) * sqrt(out->tangent) : 0.0;
 done:
-  memory_free(b.dof);
-  memory_free(pressed);
+  RELEASE(b.dof, pressed);
   return st;
 }

@@ -64,10 +64,6 @@ done:
 }
 
 void frozen_free(frozen_problem *p) {
-  memory_free(p->B.val);
-  memory_free(p->f);
-  memory_free(p->gap);
-  memory_free(p->g0);
-  memory_free(p->r);
+  RELEASE(p->B.val, p->f, p->gap, p->g0, p->r);
   *p = (frozen_problem){0};
 }

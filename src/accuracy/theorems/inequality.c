@@ -172,7 +172,6 @@ status inequality_least(const contact_problem *cp, const double *u,
   *least = s.least < HUGE_VAL ? s.least : 0.0;
   *fields = s.n;
 done:
-  memory_free(s.r);
-  memory_free(s.w);
+  RELEASE(s.r, s.w);
   return st;
 }

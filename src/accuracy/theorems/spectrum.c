@@ -13,15 +13,15 @@ static const double CLOSE = 1e-10; /* -, residual of Lanczos over the value   */
 
 /* H from its columns, then dsyevr for the last eigenvalue. */
 static status dense_largest(const symmetric_map *map, double *largest) {
-  status st = OK;
-  int n = map->n, found, support[2], *iwork = NULL;
+  OWNED int *iwork = NULL;
+  int n = map->n, found, support[2];
   size_t ld = (size_t)n;
-  double *H = NULL, *x = NULL, *w = NULL, *work = NULL;
-  NEW(H, ld * ld);
-  NEW(x, ld);
-  NEW(w, ld);
-  NEW(work, 26 * ld);
-  NEW(iwork, 10 * ld);
+  OWNED double *H = NULL, *x = NULL, *w = NULL, *work = NULL;
+  PASS_NEW(H, ld * ld);
+  PASS_NEW(x, ld);
+  PASS_NEW(w, ld);
+  PASS_NEW(work, 26 * ld);
+  PASS_NEW(iwork, 10 * ld);
   for (size_t j = 0; j < ld; ++j) {
     x[j] = 1.0;
     map->apply(map->ctx, x, H + ld * j);
@@ -30,15 +30,9 @@ static status dense_largest(const symmetric_map *map, double *largest) {
   if (LAPACKE_dsyevr_work(LAPACK_COL_MAJOR, 'N', 'I', 'L', n, H, n, 0.0, 0.0, n,
                           n, 0.0, &found, w, NULL, 1, support, work, 26 * n,
                           iwork, 10 * n) != 0)
-    FAIL(ERR_INTERNAL, "eigenvalue of order %d not found", n);
+    RAISE(ERR_INTERNAL, "eigenvalue of order %d not found", n);
   *largest = fmax(w[0], 0.0);
-done:
-  memory_free(H);
-  memory_free(x);
-  memory_free(w);
-  memory_free(work);
-  memory_free(iwork);
-  return st;
+  return OK;
 }
 
 typedef struct lanczos {
@@ -117,14 +111,7 @@ status lanczos_largest(const symmetric_map *map, double *largest) {
   NEW(v, map->n);
   TRY(lanczos_run(map, &s, v, largest));
 done:
-  memory_free(s.Q);
-  memory_free(s.alpha);
-  memory_free(s.beta);
-  memory_free(s.d);
-  memory_free(s.e);
-  memory_free(s.Z);
-  memory_free(s.work);
-  memory_free(v);
+  RELEASE(s.Q, s.alpha, s.beta, s.d, s.e, s.Z, s.work, v);
   return st;
 }
 

@@ -30,15 +30,12 @@ const char *mu_regime_text(mu_regime regime) {
 }
 
 status theorems_new(theorems **out) {
-  status st = OK;
-  NEW(*out, 1);
-done:
-  return st;
+  PASS_NEW(*out, 1);
+  return OK;
 }
 
 static void forget_friction(theorems *t) {
-  memory_free(t->entries);
-  memory_free(t->contacts);
+  RELEASE(t->entries, t->contacts);
   t->entries = NULL;
   t->contacts = NULL;
   t->n_entry = t->n_contact = 0;
@@ -68,16 +65,13 @@ static int same_matrix(const theorems *t, const contact_problem *cp) {
 }
 
 static status know_matrix(theorems *t, const contact_problem *cp) {
-  status st = OK;
   t->fresh = !same_matrix(t, cp);
-  if (!t->fresh) goto done;
+  if (!t->fresh) return OK;
   forget_matrix(t);
-  NEW(t->diagonal, cp->m);
+  PASS_NEW(t->diagonal, cp->m);
   for (int i = 0; i < cp->m; ++i)
     t->diagonal[i] = cp->A[(size_t)i * (size_t)(cp->m + 1)];
-  TRY(energy_norm_new(cp->m, cp->A, &t->norm));
-done:
-  return st;
+  return energy_norm_new(cp->m, cp->A, &t->norm);
 }
 
 static int count_entries(const contact_problem *cp) {
@@ -180,12 +174,11 @@ done:
 /* With one contact the row of all is its own. */
 static status measure_contacts(theorems *t, const theorems_scene *s,
                                const frozen_problem *p) {
-  status st = OK;
-  unsigned char *keep = NULL;
-  NEW(keep, p->cp.n);
+  OWNED unsigned char *keep = NULL;
+  PASS_NEW(keep, p->cp.n);
   for (int k = 0; k < t->n_contact; ++k) {
     if (t->n_contact == 2 && k == 0) continue;
-    TRY(measure(s, p, keep, &t->contacts[k]));
+    PASS(measure(s, p, keep, &t->contacts[k]));
   }
   if (t->n_contact == 2) {
     theorems_contact *only = t->contacts, *all = t->contacts + 1;
@@ -193,16 +186,13 @@ static status measure_contacts(theorems *t, const theorems_scene *s,
     only->suggested = all->suggested;
     only->regime = regime_of(only);
   }
-done:
-  memory_free(keep);
-  return st;
+  return OK;
 }
 
 /* ---- bounds -------------------------------------------------------------- */
 
 static status check_bounds(theorems *t, const theorems_scene *s,
                            const frozen_problem *p, theorems_report *out) {
-  status st = OK;
   const theorems_contact *all = &t->contacts[t->n_contact - 1];
   const char *why = NULL;
   if (!energy_norm_regular(&t->norm))
@@ -210,16 +200,15 @@ static status check_bounds(theorems *t, const theorems_scene *s,
   else if (!(all->factor < 1.0))
     why = "mu is not under 1/C_h";
   out->total.why = out->change.why = why;
-  if (why != NULL) goto done;
-  TRY(bound_total(&p->cp, s->u, all, &t->norm, &out->total));
+  if (why != NULL) return OK;
+  PASS(bound_total(&p->cp, s->u, all, &t->norm, &out->total));
   if (s->alone)
     out->change.why = "no increment";
   else if (t->before.known == 0)
     out->change.why = "the matrix is new";
   else
-    TRY(bound_change(&p->cp, s->u, &t->before, all, &t->norm, &out->change));
-done:
-  return st;
+    PASS(bound_change(&p->cp, s->u, &t->before, all, &t->norm, &out->change));
+  return OK;
 }
 
 /* ---- the report ---------------------------------------------------------- */

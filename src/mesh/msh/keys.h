@@ -20,6 +20,5 @@ uint64_t table_key(int upper, long lower); /* two 32-bit numbers              */
 int table_find(const key_table *t, uint64_t key); /* id or -1 */
 /* The id of the key; a new key gets the id "n" of before. */
 status table_add(key_table *t, uint64_t key, int *id);
-void table_free(key_table *t);
 
 #endif

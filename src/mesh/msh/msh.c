@@ -5,9 +5,77 @@
 #include "mesh/msh/msh.h"
 
 #include "base/memory.h"
+#include "mesh/msh/keys.h"
+#include "mesh/msh/raw_mesh.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- open addressing, at most half of the slots in use ------------------- */
+
+uint64_t table_key(int upper, long lower) {
+  return (uint64_t)(uint32_t)upper << 32 | (uint32_t)lower;
+}
+
+/* The slot of the key, or the empty one where it belongs. */
+static size_t slot_of(const key_table *t, uint64_t key) {
+  uint64_t spread = key * 0x9E3779B97F4A7C15u;
+  size_t s = (size_t)(spread ^ spread >> 32) & (t->n_slot - 1);
+  while (t->id[s] != 0 && t->key[s] != key) s = (s + 1) & (t->n_slot - 1);
+  return s;
+}
+
+int table_find(const key_table *t, uint64_t key) {
+  return t->n_slot == 0 ? -1 : t->id[slot_of(t, key)] - 1;
+}
+
+static void table_free(key_table *t) {
+  RELEASE(t->key, t->id);
+  *t = (key_table){0};
+}
+
+static status grow(key_table *t) {
+  status st = OK;
+  key_table more = {.n = t->n, .n_slot = t->n_slot == 0 ? 16 : 2 * t->n_slot};
+  NEW(more.key, more.n_slot);
+  NEW(more.id, more.n_slot);
+  for (size_t i = 0; i < t->n_slot; ++i) {
+    if (t->id[i] == 0) continue;
+    size_t s = slot_of(&more, t->key[i]);
+    more.key[s] = t->key[i];
+    more.id[s] = t->id[i];
+  }
+  key_table swapped = *t;
+  *t = more;
+  more = swapped;
+done:
+  table_free(&more);
+  return st;
+}
+
+status table_add(key_table *t, uint64_t key, int *id) {
+  if (2 * (size_t)(t->n + 1) > t->n_slot) PASS(grow(t));
+  size_t s = slot_of(t, key);
+  if (t->id[s] == 0) {
+    t->key[s] = key;
+    t->id[s] = ++t->n;
+  }
+  *id = t->id[s] - 1;
+  return OK;
+}
+
+/* ---- release of a raw mesh ----------------------------------------------- */
+
+void raw_free(raw_mesh *raw) {
+  if (raw == NULL) return;
+  for (int i = 0; i < raw->n_block; ++i) {
+    RELEASE(raw->block[i].type_name, raw->block[i].physical, raw->block[i].no,
+            raw->block[i].node);
+  }
+  for (int i = 0; i < raw->n_group; ++i) memory_free(raw->group[i].name);
+  for (int i = 0; i < raw->n_warning; ++i) memory_free(raw->warning[i]);
+  RELEASE(raw->block, raw->group, raw->warning, raw->node_no, raw->xyz, raw);
+}
 
 /* clang-format off */
 static const element_type types[] = {

@@ -1,11 +1,190 @@
 /*
  * The model against the mesh: kinematics, sections, and the parts in order.
  */
+#include "base/memory.h"
+#include "model/cards/cards.h"
 #include "model/check/parts.h"
 
-#include "base/memory.h"
-
 #include <math.h>
+#include <stdio.h>
+
+/* ---- *REFERENCE: components to their places ------------------------------ */
+
+static void check_whole(const model *m, const char *what, int n, int all) {
+  if (n > 0 && n < all)
+    message_add(m->log, P2056, &m->ref.at,
+                "*REFERENCE: %d of %d components of the %s", n, all, what);
+}
+
+/* Components of *REFERENCE to their places; of u and of the stresses all. */
+static void check_reference(model *m) {
+  closed_form *ref = &m->ref;
+  int axi = m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC;
+  int n_u = 0, n_stress = 0;
+  for (int i = 0; i < ref->n; ++i) {
+    const reference_line *l = &ref->line[i];
+    int at = reference_place(l->name, m->dim, axi);
+    if (at < 0) {
+      message_add(m->log, P2024, &l->at, "*REFERENCE: %s has no %s",
+                  m->dim == 3 ? "a body in 3-D"
+                  : axi       ? "an axisymmetric body"
+                              : "a plane body",
+                  l->name);
+      continue;
+    }
+    ref->value[at] = l->value;
+    n_u += at < REFERENCE_STRESS;
+    n_stress += at >= REFERENCE_STRESS && at < REFERENCE_PRESSURE;
+    ref->has_pressure |= at == REFERENCE_PRESSURE;
+  }
+  check_whole(m, "displacement", n_u, m->dim);
+  check_whole(m, "stress", n_stress, m->ns);
+  ref->has_u = n_u > 0;
+  ref->has_stress = n_stress > 0;
+}
+
+/* ---- names of groups to their ids in the mesh ---------------------------- */
+
+static const char *const dim_words[] = {"points", "curves", "surfaces",
+                                        "volumes"};
+
+int check_group(const model *m, const mesh *msh, const char *name,
+                const place *at) {
+  const mesh_group *g = mesh_find_group(msh, name);
+  if (g != NULL) return (int)(g - msh->group);
+  const char *near =
+      message_wanted(m->log, ERROR) ? mesh_nearest_group(msh, name) : NULL;
+  if (near != NULL) {
+    message_add(m->log, P2021, at, "the mesh has no group %s; did you mean %s?",
+                name, near);
+    return -1;
+  }
+  char all[400] = "";
+  size_t n = 0;
+  for (int i = 0; i < msh->n_group && n < sizeof all / 2; ++i)
+    n += (size_t)snprintf(all + n, sizeof all - n, "%s%.60s",
+                          i == 0 ? "" : ", ", msh->group[i].name);
+  message_add(m->log, P2021, at, "the mesh has no group %s; it has %s", name,
+              all);
+  return -1;
+}
+
+int check_group_of(const model *m, const mesh *msh, const char *name, int dim,
+                   const place *at) {
+  int id = check_group(m, msh, name, at);
+  if (id < 0 || msh->group[id].dim == dim) return id;
+  message_add(m->log, P2022, at,
+              "group %s is made of %s; %s are needed here in %d-D", name,
+              dim_words[msh->group[id].dim], dim_words[dim], msh->dim);
+  return -1;
+}
+
+/* ---- Contacts, their obstacles and their friction laws against the mesh. ----
+ */
+
+/* A group meets an obstacle once: twice would count its areas twice. */
+static void check_twice(const model *m, int contact_id) {
+  const contact *c = &m->contacts[contact_id];
+  for (int i = 0; i < contact_id; ++i)
+    if (c->group_id >= 0 && m->contacts[i].group_id == c->group_id &&
+        m->contacts[i].obstacle_id == c->obstacle_id) {
+      message_add(m->log, P2011, &c->group_at,
+                  "contact %s has the group and the obstacle of contact %s",
+                  c->name, m->contacts[i].name);
+      return;
+    }
+}
+
+/* In the plane an obstacle turns in the plane, and not about r = 0. */
+static void check_turn(const model *m, int dim, int obstacle_id) {
+  const obstacle *o = &m->obstacles[obstacle_id];
+  const place *at = &m->moves[obstacle_id].rotate_at;
+  if (!o->turns || dim == 3) return;
+  if (m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC)
+    message_add(m->log, P2043, at,
+                "*OBSTACLE %s: an axisymmetric model has no displacement "
+                "around its axis that could follow ROTATE",
+                o->name);
+  else if (o->axis[0] != 0.0 || o->axis[1] != 0.0)
+    message_add(m->log, P2043, at,
+                "*OBSTACLE %s: the axis of ROTATE is (%g, %g, %g); in a plane "
+                "model it is along z",
+                o->name, o->axis[0], o->axis[1], o->axis[2]);
+}
+
+static void check_torque_axis(const model *m, int dim, const contact *c) {
+  if (!c->has_axis || c->axis_of_obstacle || dim == 3) return;
+  if (m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC)
+    message_add(m->log, P2037, &c->axis_at,
+                "*CONTACT %s: AXIS counts for plane models and in 3-D only",
+                c->name);
+  else if (c->axis[0] != 0.0 || c->axis[1] != 0.0)
+    message_add(m->log, P2037, &c->axis_at,
+                "*CONTACT %s: forces in the plane have a torque about z only",
+                c->name);
+}
+
+/* Options of a friction law that are not for every model. */
+static void check_law(const model *m, const char *contact_name,
+                      const friction_rule *rule) {
+  int axisymmetric = m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC;
+  if (rule->law == NULL || rule->law->misfit == NULL) return;
+  const char *why = rule->law->misfit(rule->card.param, m->dim, axisymmetric);
+  if (why != NULL)
+    message_add(m->log, P2045, &rule->at, "*FRICTION, LAW=%s on contact %s: %s",
+                rule->law->name, contact_name, why);
+}
+
+/* Options of friction laws that are not for every model. */
+static void check_laws(const model *m) {
+  for (int i = 0; i < m->n_contact; ++i)
+    check_law(m, m->contacts[i].name, &m->contacts[i].friction);
+  for (int k = 0; k < m->n_step; ++k)
+    for (int i = 0; i < m->steps[k].n_change; ++i) {
+      const friction_change *f = &m->steps[k].changes[i];
+      check_law(m, m->contacts[f->contact_id].name, &f->rule);
+    }
+}
+
+/* Points and directions of an obstacle in 3-D have three numbers; a sphere of
+ * an axisymmetric model stays on the axis. */
+static void check_obstacle_fields(const model *m, const mesh *msh, int id) {
+  const obstacle *o = &m->obstacles[id];
+  const quantity *radial = &o->motion[0];
+  if (msh->dim == 3 && m->moves[id].short_at.file != NULL)
+    message_add(m->log, P2009, &m->moves[id].short_at,
+                "2 numbers on this line of *OBSTACLE; a mesh in 3-D needs 3");
+  if (m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC &&
+      o->shape == OBSTACLE_SPHERE &&
+      (radial->formula != NULL || radial->number != 0.0))
+    message_add(m->log, P4009, &m->moves[id].move_at,
+                "*OBSTACLE %s: MOVE leads the sphere off the axis of symmetry",
+                o->name);
+}
+
+/* Groups, obstacles and their axes, torques. */
+static void check_contacts(model *m, const mesh *msh) {
+  for (int i = 0; i < m->n_contact; ++i) {
+    contact *c = &m->contacts[i];
+    c->group_id = check_group_of(m, msh, c->group, msh->dim - 1, &c->group_at);
+    check_twice(m, i);
+    if (c->obstacle_id < 0) continue;
+    const obstacle *o = &m->obstacles[c->obstacle_id];
+    int no_axis = o->direction[0] == 0.0 && o->direction[1] == 0.0 &&
+                  o->direction[2] == 0.0;
+    check_obstacle_fields(m, msh, c->obstacle_id);
+    if (msh->dim == 3 && o->shape == OBSTACLE_CYLINDER && no_axis)
+      message_add(m->log, P2007, &m->moves[c->obstacle_id].at,
+                  "*OBSTACLE: a cylinder in 3-D needs a line with the "
+                  "direction of its axis");
+    if (msh->dim == 2 && o->shape == OBSTACLE_PLANE && o->direction[0] == 0.0 &&
+        o->direction[1] == 0.0)
+      message_add(m->log, P2027, &m->moves[c->obstacle_id].at,
+                  "*OBSTACLE: the normal has no part in the plane of the mesh");
+    check_turn(m, msh->dim, c->obstacle_id);
+    check_torque_axis(m, msh->dim, c);
+  }
+}
 
 static void check_kinematics(model *m, const mesh *msh) {
   for (int i = 0; i < m->n_section; ++i) {

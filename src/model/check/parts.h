@@ -20,11 +20,6 @@ int check_group_of(const model *m, const mesh *msh, const char *name, int dim,
 
 /* ---- contacts.c ---- */
 
-/* Groups, obstacles and their axes, torques. */
-void check_contacts(model *m, const mesh *msh);
-/* Options of friction laws that are not for every model. */
-void check_laws(const model *m);
-
 /* ---- loads.c ---- */
 
 /* Groups and components. */
@@ -53,8 +48,5 @@ status check_visco(const model *m);
 void check_no_effect(const model *m, const mesh *msh);
 
 /* ---- closed_form.c ---- */
-
-/* Components of *REFERENCE to their places; of u and of the stresses all. */
-void check_reference(model *m);
 
 #endif

@@ -2,12 +2,184 @@
  * Values: expressions give numbers where steps begin and end, supports agree
  * where groups meet.
  */
-#include "model/check/parts.h"
-
 #include "base/memory.h"
+#include "model/check/parts.h"
+#include "model/field/field.h"
 
 #include <math.h>
 #include <string.h>
+
+/* ---- loads, initial conditions and tables against the mesh --------------- */
+
+/* Gravity needs a density wherever it acts. */
+static void check_density(const model *m, const mesh *msh, const load *l) {
+  const mesh_group *g = &msh->group[l->group_id];
+  for (int k = 0; k < g->n_item; ++k) {
+    int s = m->elem_section[g->item_id[k]];
+    if (s < 0 || m->sections[s].material_id < 0) continue;
+    const material *mat = &m->materials[m->sections[s].material_id];
+    if (mat->has_density) continue;
+    message_add(m->log, P2014, &l->at,
+                "GRAV on group %s: material %s has no *DENSITY", l->group,
+                mat->name);
+    return;
+  }
+}
+
+/* A pressure needs an outside. */
+static void check_outside(const model *m, const mesh *msh, const load *l) {
+  const mesh_group *g = &msh->group[l->group_id];
+  for (int k = 0; k < g->n_item; ++k) {
+    if (msh->face_other[g->item_id[k]] < 0) continue;
+    message_add(
+        m->log, P2035, &l->at,
+        "P on group %s: a face between elements %zu and %zu lies inside "
+        "the body",
+        l->group, msh->elem_no[msh->face_elem[g->item_id[k]]],
+        msh->elem_no[msh->face_other[g->item_id[k]]]);
+    return;
+  }
+}
+
+/* Id of the group a load acts on, or -1 and the error. */
+static int load_group(const model *m, const mesh *msh, const load *l) {
+  switch ((load_kind)l->kind) {
+    case LOAD_PRESSURE:
+    case LOAD_TRACTION:
+      return check_group_of(m, msh, l->group, msh->dim - 1, &l->at);
+    case LOAD_BODY:
+    case LOAD_GRAVITY:
+    case LOAD_TEMPERATURE:
+      return check_group_of(m, msh, l->group, msh->dim, &l->at);
+    case LOAD_POINT:
+    case LOAD_FIXING:
+      break;
+  }
+  return check_group(m, msh, l->group, &l->at);
+}
+
+static void check_load(const model *m, const mesh *msh, load *l) {
+  l->group_id = load_group(m, msh, l);
+  if (l->kind == LOAD_PRESSURE && l->group_id >= 0) check_outside(m, msh, l);
+  if (l->component >= msh->dim)
+    message_add(m->log, P2025, &l->at,
+                "component %d on group %s, but the mesh is %d-D",
+                l->component + 1, l->group, msh->dim);
+  if (l->kind == LOAD_GRAVITY && msh->dim == 2 && l->direction[2] != 0.0)
+    message_add(m->log, P2025, &l->at, "GRAV along z, but the mesh is 2-D");
+  if (l->kind == LOAD_GRAVITY && l->group_id >= 0) check_density(m, msh, l);
+}
+
+/* Strains and internal variables belong to elements whose law has them. */
+static void check_initial_law(const model *m, const mesh *msh,
+                              const initial *c) {
+  const mesh_group *g = &msh->group[c->group_id];
+  for (int k = 0; k < g->n_item; ++k) {
+    int s = m->elem_section[g->item_id[k]];
+    if (s < 0 || m->sections[s].material_id < 0) continue;
+    const material *mat = &m->materials[m->sections[s].material_id];
+    int n = m->ns;
+    if (mat->law.ops == NULL) {
+      message_add(m->log, P2014, &c->at,
+                  "*INITIAL CONDITIONS on group %s: material %s has no "
+                  "*INELASTIC",
+                  c->group, mat->name);
+      return;
+    }
+    if (c->type == INITIAL_INTERNAL) n = law_n_alpha(&mat->law, m->ns);
+    if (c->component < n) continue;
+    message_add(m->log, P2025, &c->at,
+                "*INITIAL CONDITIONS: component %d on group %s; law %s has %d "
+                "here",
+                c->component + 1, c->group, mat->law.ops->name, n);
+    return;
+  }
+}
+
+void check_initials(model *m, const mesh *msh) {
+  for (int i = 0; i < m->n_initial; ++i) {
+    initial *c = &m->initials[i];
+    int nodal = c->type == INITIAL_DISPLACEMENT;
+    c->group_id = nodal ? check_group(m, msh, c->group, &c->at)
+                        : check_group_of(m, msh, c->group, msh->dim, &c->at);
+    if (nodal && c->component >= msh->dim)
+      message_add(m->log, P2025, &c->at,
+                  "component %d on group %s, but the mesh is %d-D",
+                  c->component + 1, c->group, msh->dim);
+    if (c->group_id >= 0 &&
+        (c->type == INITIAL_STRAIN || c->type == INITIAL_INTERNAL))
+      check_initial_law(m, msh, c);
+  }
+}
+
+static void check_prints(const model *m, const mesh *msh, step *s) {
+  for (int i = 0; i < s->n_print; ++i) {
+    print_request *p = &s->prints[i];
+    if (p->group == NULL) continue;
+    p->group_id = p->table == PRINT_ELEMENTS
+                      ? check_group_of(m, msh, p->group, msh->dim, &p->at)
+                      : check_group(m, msh, p->group, &p->at);
+  }
+}
+
+/* The field of a file, read once; NULL after a message. */
+static status find_field(model *m, const mesh *msh, const char *file,
+                         const place *at, const double **out) {
+  status st = OK;
+  *out = NULL;
+  if (file == NULL) goto done;
+  for (int i = 0; i < m->n_field && *out == NULL; ++i)
+    if (strcmp(m->fields[i].file, file) == 0) *out = m->fields[i].value;
+  if (*out != NULL) goto done;
+  GROW(m->fields, m->n_field, m->cap_field);
+  nodal_field *f = &m->fields[m->n_field];
+  st = nodal_field_read(file, msh, &f->value);
+  if (st == ERR_FILE || st == ERR_DECK) {
+    message_add(m->log, P2053, at, "%s", status_message());
+    st = OK;
+    goto done;
+  }
+  TRY(st);
+  f->file = file;
+  *out = f->value;
+  ++m->n_field;
+done:
+  return st;
+}
+
+status check_fields(model *m, const mesh *msh) {
+  for (int i = 0; i < m->n_step; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k) {
+      load *l = &m->steps[i].loads.item[k];
+      PASS(find_field(m, msh, l->file, &l->file_at, &l->field));
+      PASS(find_field(m, msh, l->before_file, &l->file_at, &l->before_field));
+    }
+  return OK;
+}
+
+/* 1 if an earlier step has this load from the same line: checked there. */
+static int checked_before(const model *m, int step_id, load *l) {
+  for (int i = 0; i < step_id; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k) {
+      const load *old = &m->steps[i].loads.item[k];
+      if (old->at.file != l->at.file || old->at.line_no != l->at.line_no ||
+          old->component != l->component)
+        continue;
+      l->group_id = old->group_id;
+      return 1;
+    }
+  return 0;
+}
+
+void check_steps(model *m, const mesh *msh) {
+  for (int i = 0; i < m->n_step; ++i) {
+    step *s = &m->steps[i];
+    for (int k = 0; k < s->loads.n; ++k)
+      if (!checked_before(m, i, &s->loads.item[k]))
+        check_load(m, msh, &s->loads.item[k]);
+    check_prints(m, msh, s);
+  }
+}
 
 static double step_time(const step *s, int end) {
   return end ? s->start + s->total : s->start;

@@ -12,21 +12,9 @@
 status model_resolve(model *m, int lost);
 /* 1: a card that no keyword has the name of has NAME= this. */
 int name_is_lost(const model *m, const char *name);
-/* Amplitudes and tables of a rule. */
-void resolve_friction(const model *m, friction_rule *rule);
-/* The points of a *PRINT that names some; an error if there are none. */
-void find_points(const model *m, print_request *p);
 
 /* symbols.c: names of *PARAMETER and -D that neither the deck nor the .geo uses
  * are errors; the others learn whether the .geo has them. */
 status check_symbols(const model *m);
-
-/* steps.c: start, loads, solver and tables of each step, with what stays from
- * the one before. */
-status resolve_steps(model *m);
-
-/* problem.c: what a deck with *CONDENSED PROBLEM may hold; its one step and
- * table if it has none. After model_resolve. */
-status model_finish_problem(reading *r);
 
 #endif

@@ -1,12 +1,136 @@
 /*
  * From cards to the model: the driver over the keyword table.
  */
-#include "model/keyword/parts.h"
-
 #include "base/memory.h"
+#include "mesh/msh/geo.h"
+#include "model/keyword/parts.h"
 
 #include <stdio.h>
 #include <string.h>
+
+/* ---- decks with *CONDENSED PROBLEM: what may stand beside it ------------- */
+
+/* Cards that may stand beside *CONDENSED PROBLEM. */
+static int goes_with_problem(const char *name) {
+  static const char *const names[] = {
+      "HEADING", "PARAMETER", "INCLUDE",  "LEGACY", "UNITS",  "STEP",
+      "STATIC",  "SOLVER",    "ACCURACY", "PRINT",  "OUTPUT", "END STEP"};
+  if (strcmp(name, "CONDENSED PROBLEM") == 0) return 1;
+  for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
+    if (strcmp(name, names[k]) == 0) return 1;
+  return 0;
+}
+
+static void check_problem_cards(const reading *r) {
+  const model *m = r->m;
+  for (int i = 0; i < m->deck->n_card; ++i) {
+    const card *c = &m->deck->cards[i];
+    const keyword *row = keyword_find(c->name);
+    if (row != NULL && !goes_with_problem(c->name))
+      message_add(m->log, P2034, &c->at,
+                  "*%s has no place beside *CONDENSED PROBLEM, line %d",
+                  c->name, m->problem_at.line_no);
+  }
+  for (int i = 1; i < m->n_step; ++i)
+    message_add(m->log, P2034, &m->steps[i].at,
+                "a condensed problem is solved in one step, this is number %d",
+                i + 1);
+}
+
+static void check_problem_tables(const reading *r, const step *s) {
+  for (int i = 0; i < s->n_print; ++i)
+    if (s->prints[i].table != PRINT_CONTACT || s->prints[i].group != NULL)
+      message_add(r->m->log, P2034, &s->prints[i].at,
+                  "a condensed problem has no mesh: only *PRINT, CONTACT "
+                  "without GROUP= has rows");
+}
+
+/* The bound of the error factors the matrix, which costs more than many
+ * solutions: only on request. */
+static void check_problem_accuracy(const reading *r, step *s) {
+  int others = s->mesh_error || s->time_error || s->theorems ||
+               r->m->target.percent > 0.0;
+  if (!s->has_accuracy)
+    s->no_solver_error = 1;
+  else if (others)
+    message_add(r->m->log, P2034, &s->accuracy_at,
+                "a condensed problem has no mesh: of *ACCURACY only SOLVER= "
+                "has a place beside it");
+}
+
+/* problem.c: what a deck with *CONDENSED PROBLEM may hold; its one step and
+ * table if it has none. After model_resolve. */
+static status model_finish_problem(reading *r) {
+  check_problem_cards(r);
+  step *s = &r->m->steps[0];
+  check_problem_tables(r, s);
+  check_problem_accuracy(r, s);
+  s->kind = STEP_STATIC;
+  if (!(s->total > 0.0)) s->total = 1.0;
+  s->dt = s->dt_min = s->total;
+  s->output_frequency = -1;
+  s->restart_frequency = -1;
+  if (s->n_print > 0) return OK;
+  PASS_GROW(s->prints, s->n_print, s->cap_print);
+  s->prints[s->n_print++] = (print_request){
+      .table = PRINT_CONTACT, .group_id = -1, .frequency = 1, .at = s->at};
+  return OK;
+}
+
+/* ---- names of *PARAMETER and -D that nothing uses: misspelt ones, which
+ * leave the value they were to change as it was. Those of an included file may
+ * serve other decks. */
+
+/* The names of a deck but for one. */
+typedef struct others {
+  const deck *d;
+  const symbol *but;
+} others;
+
+static const char *other_at(const void *ctx, int i) {
+  const others *o = ctx;
+  i += i >= o->but - o->d->symbols;
+  return i < o->d->n_symbol ? o->d->symbols[i].name : NULL;
+}
+
+/* What may be meant: a name of the .geo but for upper and lower case, one of
+ * the deck, one of the .geo. */
+static const char *nearest_use(const model *m, const geo_text *g,
+                               const symbol *s) {
+  const char *word;
+  for (int i = 0; (word = geo_name(g, i)) != NULL; ++i)
+    if (same_word(s->name, word)) return word;
+  const others o = {.d = m->deck, .but = s};
+  word = nearest_word(s->name, other_at, &o);
+  return word != NULL ? word : nearest_word(s->typed, geo_name, g);
+}
+
+static void tell_unused(const model *m, const geo_text *g, const symbol *s) {
+  const place line = {.file = "command line"};
+  const char *near = nearest_use(m, g, s);
+  message_add(m->log, P2042, s->at.file != NULL ? &s->at : &line,
+              "%s%s is used neither in the deck nor in a .geo%s%s%s",
+              s->at.file != NULL ? "*PARAMETER " : "-D ", s->typed,
+              near != NULL ? "; did you mean " : "", near != NULL ? near : "",
+              near != NULL ? "?" : "");
+}
+
+status check_symbols(const model *m) {
+  status st = OK;
+  geo_text g = {0};
+  if (m->mesh_file != NULL && mesh_is_program(m->mesh_file))
+    TRY(geo_read(m->mesh_file, &g));
+  for (int i = 1; i < g.n_file; ++i) TRY(deck_input_copy(m->deck, g.file[i]));
+  for (int i = 0; i < m->deck->n_symbol; ++i) {
+    symbol *s = &m->deck->symbols[i];
+    s->in_geometry = geo_has(&g, s->typed);
+    if (!s->used && !s->in_geometry && s->at.from == NULL)
+      tell_unused(m, &g, s);
+  }
+done:
+  geo_free(&g);
+  return st;
+}
 
 static const char *keyword_name(const void *ctx, int i) {
   (void)ctx;

@@ -27,7 +27,6 @@ static const char *group_of(const column *c) {
 /* A column that shares its field with one before is its next component. */
 static status add_field(hdf5_file *h, const column *c, const char *group,
                         int id) {
-  status st = OK;
   for (int i = 0; i < h->n_field; ++i) {
     hdf5_field *f = &h->fields[i];
     if (strcmp(f->name, c->field) != 0 || strcmp(f->group, group) != 0)
@@ -36,33 +35,30 @@ static status add_field(hdf5_file *h, const column *c, const char *group,
     f->part[c->part] = c;
     return OK;
   }
-  GROW(h->fields, h->n_field, h->cap_field);
+  PASS_GROW(h->fields, h->n_field, h->cap_field);
   hdf5_field *f = &h->fields[h->n_field++];
   *f = (hdf5_field){.name = c->field, .of = c->of, .id = id, .n_part = 1};
   snprintf(f->group, sizeof f->group, "%s", group);
   f->part[0] = c;
-done:
-  return st;
+  return OK;
 }
 
 static status choose_fields(hdf5_file *h) {
-  status st = OK;
   char name[100], group[120];
   for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
     if (c->field == NULL || !column_visible(c, h->m)) continue;
     if (c->of == PER_CONTACT_NODE && h->n_contact_node == 0) continue;
     if (c->of != PER_CONTACT) {
-      TRY(add_field(h, c, group_of(c), 0));
+      PASS(add_field(h, c, group_of(c), 0));
       continue;
     }
     for (int i = 0; i < h->m->n_contact; ++i) {
       link_name(name, sizeof name, h->m->contacts[i].name);
       snprintf(group, sizeof group, "/totals/%s", name);
-      TRY(add_field(h, c, group, i));
+      PASS(add_field(h, c, group, i));
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Takes own over, also when it fails. */
@@ -86,17 +82,15 @@ done:
 /* Points of some nodes (NULL: all), with 3 components. */
 static status add_points(hdf5_file *h, const char *path, int n,
                          const int *node_id) {
-  status st = OK;
   size_t dim = (size_t)h->msh->dim;
   double *own = NULL;
-  NEW(own, 3 * (size_t)n);
+  PASS_NEW(own, 3 * (size_t)n);
   for (size_t i = 0; i < (size_t)n; ++i)
     for (size_t k = 0; k < dim; ++k)
       own[3 * i + k] =
           h->msh->x[dim * (node_id != NULL ? (size_t)node_id[i] : i) + k];
   return add_fixed(h, path, DATA_REAL, n, 3, NULL, own);
-done:
-  return st;
+  return OK;
 }
 
 static int path_known(const hdf5_file *h, const char *path) {
@@ -106,7 +100,6 @@ static int path_known(const hdf5_file *h, const char *path) {
 }
 
 static status add_group(hdf5_file *h, const mesh_group *g) {
-  status st = OK;
   char name[100], path[200];
   link_name(name, sizeof name, g->name);
   snprintf(path, sizeof path, "/mesh/groups/%s/nodes", name);
@@ -114,29 +107,26 @@ static status add_group(hdf5_file *h, const mesh_group *g) {
     snprintf(name + strlen(name), sizeof name - strlen(name), "_%d", g->dim);
   snprintf(path, sizeof path, "/mesh/groups/%s/nodes", name);
   if (path_known(h, path)) return OK;
-  TRY(add_fixed(h, path, DATA_INT, g->n_node, 1, g->node_id, NULL));
+  PASS(add_fixed(h, path, DATA_INT, g->n_node, 1, g->node_id, NULL));
   snprintf(path, sizeof path, "/mesh/groups/%s/%s", name,
            g->dim == h->msh->dim ? "elements" : "faces");
   if (g->item_id != NULL)
-    TRY(add_fixed(h, path, DATA_INT, g->n_item, 1, g->item_id, NULL));
-done:
-  return st;
+    PASS(add_fixed(h, path, DATA_INT, g->n_item, 1, g->item_id, NULL));
+  return OK;
 }
 
 static status add_mesh(hdf5_file *h) {
-  status st = OK;
   const mesh *s = h->msh;
-  TRY(add_points(h, "/mesh/nodes", s->n_node, NULL));
-  TRY(add_fixed(h, "/mesh/elements", DATA_INT, s->n_elem, s->dim + 1, s->elem,
-                NULL));
-  TRY(add_fixed(h, "/mesh/node_no", DATA_NUMBER, s->n_node, 1, s->node_no,
-                NULL));
-  TRY(add_fixed(h, "/mesh/elem_no", DATA_NUMBER, s->n_elem, 1, s->elem_no,
-                NULL));
-  TRY(add_fixed(h, "/mesh/faces", DATA_INT, s->n_face, s->dim, s->face, NULL));
-  for (int i = 0; i < s->n_group; ++i) TRY(add_group(h, &s->group[i]));
-done:
-  return st;
+  PASS(add_points(h, "/mesh/nodes", s->n_node, NULL));
+  PASS(add_fixed(h, "/mesh/elements", DATA_INT, s->n_elem, s->dim + 1, s->elem,
+                 NULL));
+  PASS(add_fixed(h, "/mesh/node_no", DATA_NUMBER, s->n_node, 1, s->node_no,
+                 NULL));
+  PASS(add_fixed(h, "/mesh/elem_no", DATA_NUMBER, s->n_elem, 1, s->elem_no,
+                 NULL));
+  PASS(add_fixed(h, "/mesh/faces", DATA_INT, s->n_face, s->dim, s->face, NULL));
+  for (int i = 0; i < s->n_group; ++i) PASS(add_group(h, &s->group[i]));
+  return OK;
 }
 
 static const mesh_group *contact_group(const hdf5_file *h, int contact_id) {
@@ -145,13 +135,12 @@ static const mesh_group *contact_group(const hdf5_file *h, int contact_id) {
 
 /* The faces of the contact groups, as places in contact_node. */
 static status add_faces(hdf5_file *h, const int *place_of) {
-  status st = OK;
   const mesh *s = h->msh;
   size_t dim = (size_t)s->dim, n = 0, most = 0;
   int *faces = NULL;
   for (int c = 0; c < h->m->n_contact; ++c)
     most += (size_t)contact_group(h, c)->n_item;
-  NEW(faces, dim * most);
+  PASS_NEW(faces, dim * most);
   for (int c = 0; c < h->m->n_contact; ++c) {
     const mesh_group *g = contact_group(h, c);
     if (g->dim != s->dim - 1 || g->item_id == NULL) continue;
@@ -162,21 +151,19 @@ static status add_faces(hdf5_file *h, const int *place_of) {
   h->n_contact_face = (int)(n / dim);
   return add_fixed(h, "/contact/faces", DATA_INT, h->n_contact_face, s->dim,
                    NULL, faces);
-done:
-  return st;
+  return OK;
 }
 
 /* place_of[n_node]: place in contact_node; contact_of[n_node]: the first
  * contact of a node, from 1; 0: none. */
 static status list_contact_nodes(hdf5_file *h, int *place_of, int *contact_of) {
-  status st = OK;
   int n = 0;
   for (int c = h->m->n_contact - 1; c >= 0; --c)
     for (int i = 0; i < contact_group(h, c)->n_node; ++i)
       contact_of[contact_group(h, c)->node_id[i]] = c + 1;
   for (int i = 0; i < h->msh->n_node; ++i) n += contact_of[i] > 0;
-  NEW(h->contact_node, n);
-  NEW(h->surface_id, n);
+  PASS_NEW(h->contact_node, n);
+  PASS_NEW(h->surface_id, n);
   h->n_contact_node = n;
   n = 0;
   for (int i = 0; i < h->msh->n_node; ++i) {
@@ -184,45 +171,36 @@ static status list_contact_nodes(hdf5_file *h, int *place_of, int *contact_of) {
     place_of[i] = n;
     h->contact_node[n++] = i;
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Number of the node and of its contact, and the place itself (points of a
  * viewer that draws no faces). */
 static status add_contact_numbers(hdf5_file *h, const int *contact_of) {
-  status st = OK;
   size_t *no = NULL;
   int *numbers = NULL, n = h->n_contact_node;
-  NEW(no, n);
+  PASS_NEW(no, n);
   for (int i = 0; i < n; ++i) no[i] = h->msh->node_no[h->contact_node[i]];
-  TRY(add_fixed(h, "/contact/node_no", DATA_NUMBER, n, 1, NULL, no));
-  NEW(numbers, n);
+  PASS(add_fixed(h, "/contact/node_no", DATA_NUMBER, n, 1, NULL, no));
+  PASS_NEW(numbers, n);
   for (int i = 0; i < n; ++i) numbers[i] = contact_of[h->contact_node[i]];
-  TRY(add_fixed(h, "/contact/contact_no", DATA_INT, n, 1, NULL, numbers));
-  NEW(numbers, n);
+  PASS(add_fixed(h, "/contact/contact_no", DATA_INT, n, 1, NULL, numbers));
+  PASS_NEW(numbers, n);
   for (int i = 0; i < n; ++i) numbers[i] = i;
-  TRY(add_fixed(h, "/contact/index", DATA_INT, n, 1, NULL, numbers));
-done:
-  return st;
+  return add_fixed(h, "/contact/index", DATA_INT, n, 1, NULL, numbers);
 }
 
 static status add_contact(hdf5_file *h) {
-  status st = OK;
-  int *place_of = NULL, *contact_of = NULL;
-  NEW(place_of, h->msh->n_node);
-  NEW(contact_of, h->msh->n_node);
-  TRY(list_contact_nodes(h, place_of, contact_of));
-  if (h->n_contact_node == 0) goto done;
-  TRY(add_points(h, "/contact/points", h->n_contact_node, h->contact_node));
-  TRY(add_fixed(h, "/contact/node", DATA_INT, h->n_contact_node, 1,
-                h->contact_node, NULL));
-  TRY(add_contact_numbers(h, contact_of));
-  TRY(add_faces(h, place_of));
-done:
-  memory_free(place_of);
-  memory_free(contact_of);
-  return st;
+  OWNED int *place_of = NULL, *contact_of = NULL;
+  PASS_NEW(place_of, h->msh->n_node);
+  PASS_NEW(contact_of, h->msh->n_node);
+  PASS(list_contact_nodes(h, place_of, contact_of));
+  if (h->n_contact_node == 0) return OK;
+  PASS(add_points(h, "/contact/points", h->n_contact_node, h->contact_node));
+  PASS(add_fixed(h, "/contact/node", DATA_INT, h->n_contact_node, 1,
+                 h->contact_node, NULL));
+  PASS(add_contact_numbers(h, contact_of));
+  return add_faces(h, place_of);
 }
 
 static status add_deck(hdf5_file *h) {
@@ -245,11 +223,8 @@ done:
 }
 
 status hdf5_content(hdf5_file *h) {
-  status st = OK;
-  TRY(add_mesh(h));
-  if (h->m->effects & EFFECT_CONTACT) TRY(add_contact(h));
-  TRY(add_deck(h));
-  TRY(choose_fields(h));
-done:
-  return st;
+  PASS(add_mesh(h));
+  if (h->m->effects & EFFECT_CONTACT) PASS(add_contact(h));
+  PASS(add_deck(h));
+  return choose_fields(h);
 }

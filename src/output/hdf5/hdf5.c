@@ -75,14 +75,8 @@ static void release(hdf5_file *h) {
   if (h->fd >= 0) close(h->fd);
   for (int i = 0; i < h->n_fixed; ++i) memory_free(h->fixed[i].own);
   hdf5_layout_free(&h->now);
-  memory_free(h->fields);
-  memory_free(h->fixed);
-  memory_free(h->contact_node);
-  memory_free(h->surface_id);
-  memory_free(h->times);
-  memory_free(h->path);
-  memory_free(h->aside);
-  memory_free(h);
+  RELEASE(h->fields, h->fixed, h->contact_node, h->surface_id, h->times,
+          h->path, h->aside, h);
 }
 
 /* The mesh may stay, what was copied for the first file goes. */
@@ -97,40 +91,36 @@ static void drop_copies(hdf5_file *h) {
 /* The file of the run that is gone on with: what it holds beyond "before" is
  * written again. */
 static status earlier_file(hdf5_file *h, const hdf5_count *before) {
-  status st = OK;
   const char *why;
   h->fd = file_descriptor(AT_FDCWD, h->path, O_RDWR, &why);
-  if (h->fd < 0) FAIL(ERR_FILE, "%s: cannot go on with it: %s", h->path, why);
-  TRY(hdf5_layout_read(h, &h->now));
+  if (h->fd < 0) RAISE(ERR_FILE, "%s: cannot go on with it: %s", h->path, why);
+  PASS(hdf5_layout_read(h, &h->now));
   if (h->now.n_row < before->rows || h->now.n_record < before->records)
-    FAIL(ERR_FILE, "%s holds less than when the restart file was written",
-         h->path);
+    RAISE(ERR_FILE, "%s holds less than when the restart file was written",
+          h->path);
   h->n_row = before->rows;
   h->n_record = h->cap_time = before->records;
   size_t bytes = (size_t)h->n_record * sizeof *h->times;
-  NEW(h->times, h->n_record);
+  PASS_NEW(h->times, h->n_record);
   errno = 0;
   if (bytes > 0 &&
       pread(h->fd, h->times, bytes, h->now.record_time) != (ssize_t)bytes)
-    TRY(text_failed(h->path, "read back", errno));
-done:
-  return st;
+    PASS(text_failed(h->path, "read back", errno));
+  return OK;
 }
 
 static status first_file(hdf5_file *h, const hdf5_count *before) {
-  status st = OK;
   int rows, records;
-  TRY(hdf5_content(h));
+  PASS(hdf5_content(h));
   hdf5_forecast(h->m, 0, 0, &rows, &records);
   if (before != NULL) {
-    TRY(earlier_file(h, before));
+    PASS(earlier_file(h, before));
     if (rows < before->rows) rows = before->rows;
     if (records < before->records) records = before->records;
   }
-  TRY(hdf5_renew(h, rows, records));
+  PASS(hdf5_renew(h, rows, records));
   drop_copies(h);
-done:
-  return st;
+  return OK;
 }
 
 static int fields_asked(const model *m) {
@@ -162,13 +152,11 @@ done:
 }
 
 status hdf5_sync(hdf5_file *h, hdf5_count *n) {
-  status st = OK;
   *n = (hdf5_count){0, 0};
   if (h == NULL) return OK;
   *n = (hdf5_count){h->n_row, h->n_record};
-  if (fsync(h->fd) != 0) TRY(text_failed(h->path, "write", errno));
-done:
-  return st;
+  if (fsync(h->fd) != 0) PASS(text_failed(h->path, "write", errno));
+  return OK;
 }
 
 void hdf5_shape_of(const hdf5_file *h, hdf5_shape *shape) {

@@ -57,18 +57,16 @@ static status put_burst(hdf5_file *h, burst *b) {
 
 static status put_field(hdf5_file *h, const hdf5_field *f, const view *v,
                         off_t offset, burst *b) {
-  status st = OK;
   const int items = hdf5_items(h, f);
   for (int id = 0; id < items; ++id)
     for (int k = 0; k < f->n_part; ++k, offset = slot(offset, 1)) {
       if (b->n == CHUNK || slot(b->at, b->n) != offset) {
-        TRY(put_burst(h, b));
+        PASS(put_burst(h, b));
         b->at = offset;
       }
       b->value[b->n++] = item_value(h, f, v, id, k);
     }
-done:
-  return st;
+  return OK;
 }
 
 /* Both lists ascend. */
@@ -86,47 +84,40 @@ static status put_real(hdf5_file *h, double value, off_t offset, int i) {
 }
 
 static status put_record(hdf5_file *h, const view *v) {
-  status st = OK;
   burst b = {.n = 0};
-  GROW(h->times, h->n_record, h->cap_time);
+  PASS_GROW(h->times, h->n_record, h->cap_time);
   find_surface_ids(h, v->s->surface);
   for (int i = 0; i < h->n_field; ++i) {
     if (hdf5_is_history(&h->fields[i])) continue;
     size_t k = (size_t)i * (size_t)h->now.n_record + (size_t)h->n_record;
-    TRY(put_field(h, &h->fields[i], v, h->now.record[k], &b));
+    PASS(put_field(h, &h->fields[i], v, h->now.record[k], &b));
   }
-  TRY(put_burst(h, &b));
-  TRY(put_real(h, v->s->total_no, h->now.record_total, h->n_record));
-  TRY(put_real(h, v->s->t, h->now.record_time, h->n_record));
+  PASS(put_burst(h, &b));
+  PASS(put_real(h, v->s->total_no, h->now.record_total, h->n_record));
+  PASS(put_real(h, v->s->t, h->now.record_time, h->n_record));
   h->times[h->n_record++] = v->s->t;
-done:
-  return st;
+  return OK;
 }
 
 static status put_row(hdf5_file *h, const view *v) {
-  status st = OK;
   int time_id = hdf5_time_field(h);
   for (int i = 0; i < h->n_field; ++i) {
     const hdf5_field *f = &h->fields[i];
     if (!hdf5_is_history(f) || i == time_id) continue;
-    TRY(put_real(h, part_value(f, v, f->id, 0), h->now.history[i], h->n_row));
+    PASS(put_real(h, part_value(f, v, f->id, 0), h->now.history[i], h->n_row));
   }
-  TRY(put_real(h, v->s->t, h->now.history[time_id], h->n_row));
+  PASS(put_real(h, v->s->t, h->now.history[time_id], h->n_row));
   ++h->n_row;
-done:
-  return st;
+  return OK;
 }
 
 status hdf5_increment(hdf5_file *h, const state *s) {
-  status st = OK;
   if (h == NULL) return OK;
   view v = {h->m, h->msh, s};
   int due = frequency_shows(h->m->steps[s->step_no - 1].output_frequency,
                             s->increment_no, s->end_of_step);
   if (h->n_row == h->now.n_row || (due && h->n_record == h->now.n_record))
-    TRY(grow(h, s));
-  if (due) TRY(put_record(h, &v));
-  TRY(put_row(h, &v));
-done:
-  return st;
+    PASS(grow(h, s));
+  if (due) PASS(put_record(h, &v));
+  return put_row(h, &v);
 }

@@ -36,10 +36,9 @@ done:
 }
 
 static status open_maker(maker *k) {
-  status st = OK;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  TRY(file_clear(k->path));
-  TRY(create_file(k));
+  PASS(file_clear(k->path));
+  PASS(create_file(k));
   k->with_groups = H5Pcreate(H5P_LINK_CREATE);
   k->plain = H5Pcreate(H5P_DATASET_CREATE);
   if (k->with_groups < 0 || k->plain < 0 ||
@@ -48,9 +47,8 @@ static status open_maker(maker *k) {
       H5Pset_alloc_time(k->plain, H5D_ALLOC_TIME_EARLY) < 0 ||
       H5Pset_fill_time(k->plain, H5D_FILL_TIME_NEVER) < 0 ||
       H5Pset_obj_track_times(k->plain, 0) < 0)
-    TRY(maker_failed(k, "set up"));
-done:
-  return st;
+    PASS(maker_failed(k, "set up"));
+  return OK;
 }
 
 static status close_maker(maker *k, int flush) {
@@ -110,23 +108,18 @@ static status attribute_int(const maker *k, hid_t object, const char *name,
 
 static status column_attributes(const maker *k, hid_t object, const column *c,
                                 const model *m) {
-  status st = OK;
   char unit[80];
   column_unit(c->unit, m, unit, sizeof unit);
-  TRY(attribute_text(k, object, "unit", unit));
-  TRY(attribute_text(k, object, "help", c->help));
-done:
-  return st;
+  PASS(attribute_text(k, object, "unit", unit));
+  return attribute_text(k, object, "help", c->help);
 }
 
 /* A group and those above it. */
 static status make_group(const maker *k, const char *path, hid_t *group) {
-  status st = OK;
   errno = 0;
   *group = H5Gcreate2(k->file, path, k->with_groups, H5P_DEFAULT, H5P_DEFAULT);
-  if (*group < 0) TRY(maker_failed(k, "make a group of"));
-done:
-  return st;
+  if (*group < 0) PASS(maker_failed(k, "make a group of"));
+  return OK;
 }
 
 static status make_dataset(const maker *k, const char *path, hid_t type,
@@ -175,13 +168,11 @@ done:
 /* Where the header of an object stands: references are addresses. */
 static status find_address(const maker *k, const char *path,
                            uint64_t *address) {
-  status st = OK;
   hobj_ref_t reference;
   if (H5Rcreate(&reference, k->file, path, H5R_OBJECT, -1) < 0)
-    TRY(maker_failed(k, "make a group of"));
+    PASS(maker_failed(k, "make a group of"));
   *address = reference;
-done:
-  return st;
+  return OK;
 }
 
 /* The group and its first record; records.c makes the others. */
@@ -221,15 +212,12 @@ static status make_history(const maker *k, const hdf5_file *h, int field_id,
 
 static status make_record_times(const maker *k, const hdf5_file *h,
                                 hdf5_layout *l) {
-  status st = OK;
   hsize_t dims[2] = {(hsize_t)l->n_record, 1};
   if (l->n_record == 0) return OK;
-  TRY(make_dataset(k, "/fields/time", H5T_NATIVE_DOUBLE, dims, NULL, h->m,
-                   &l->record_time));
-  TRY(make_dataset(k, "/fields/total", H5T_NATIVE_DOUBLE, dims, NULL, h->m,
-                   &l->record_total));
-done:
-  return st;
+  PASS(make_dataset(k, "/fields/time", H5T_NATIVE_DOUBLE, dims, NULL, h->m,
+                    &l->record_time));
+  return make_dataset(k, "/fields/total", H5T_NATIVE_DOUBLE, dims, NULL, h->m,
+                      &l->record_total);
 }
 
 static status root_attributes(const maker *k, const hdf5_file *h) {
@@ -256,13 +244,11 @@ done:
 
 static status alloc_layout(const hdf5_file *h, int n_row, int n_record,
                            hdf5_layout *l) {
-  status st = OK;
   *l = (hdf5_layout){.n_row = n_row, .n_record = n_record};
-  NEW(l->fixed, h->n_fixed);
-  NEW(l->history, h->n_field);
-  NEW(l->record, (size_t)h->n_field * (size_t)n_record);
-done:
-  return st;
+  PASS_NEW(l->fixed, h->n_fixed);
+  PASS_NEW(l->history, h->n_field);
+  PASS_NEW(l->record, (size_t)h->n_field * (size_t)n_record);
+  return OK;
 }
 
 status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
@@ -315,7 +301,6 @@ done:
 
 static status read_records(const hdf5_file *h, hid_t file, int field_id,
                            hdf5_layout *l) {
-  status st = OK;
   const hdf5_field *f = &h->fields[field_id];
   char path[400], name[40];
   for (int i = 0; i < l->n_record && hdf5_items(h, f) > 0; ++i) {
@@ -323,32 +308,29 @@ static status read_records(const hdf5_file *h, hid_t file, int field_id,
     size_t slot = (size_t)field_id * (size_t)l->n_record + (size_t)i;
     hdf5_record_name(name, sizeof name, i);
     snprintf(path, sizeof path, "%s/%s/%s", f->group, f->name, name);
-    TRY(read_offset(h, file, path, &n, &l->record[slot]));
+    PASS(read_offset(h, file, path, &n, &l->record[slot]));
   }
-done:
-  return st;
+  return OK;
 }
 
 static status read_fields(const hdf5_file *h, hid_t file, hdf5_layout *l) {
-  status st = OK;
   char path[400];
   hsize_t rows = 0, records = 0;
   off_t offset = 0;
-  TRY(read_offset(h, file, "/history/time", &rows, &offset));
-  TRY(read_offset(h, file, "/fields/time", &records, &offset));
-  TRY(alloc_layout(h, (int)rows, (int)records, l));
+  PASS(read_offset(h, file, "/history/time", &rows, &offset));
+  PASS(read_offset(h, file, "/fields/time", &records, &offset));
+  PASS(alloc_layout(h, (int)rows, (int)records, l));
   l->record_time = offset;
-  TRY(read_offset(h, file, "/fields/total", &records, &l->record_total));
+  PASS(read_offset(h, file, "/fields/total", &records, &l->record_total));
   for (int i = 0; i < h->n_field; ++i) {
     const hdf5_field *f = &h->fields[i];
     snprintf(path, sizeof path, "%s/%s", f->group, f->name);
     if (!hdf5_is_history(f))
-      TRY(read_records(h, file, i, l));
+      PASS(read_records(h, file, i, l));
     else if (rows > 0)
-      TRY(read_offset(h, file, path, &rows, &l->history[i]));
+      PASS(read_offset(h, file, path, &rows, &l->history[i]));
   }
-done:
-  return st;
+  return OK;
 }
 
 status hdf5_layout_read(const hdf5_file *h, hdf5_layout *l) {
@@ -365,8 +347,6 @@ done:
 }
 
 void hdf5_layout_free(hdf5_layout *l) {
-  memory_free(l->fixed);
-  memory_free(l->history);
-  memory_free(l->record);
+  RELEASE(l->fixed, l->history, l->record);
   *l = (hdf5_layout){0};
 }

@@ -76,21 +76,17 @@ static status get(const stream *s, uint64_t at, void *to, size_t n) {
 }
 
 static status flush(stream *s) {
-  status st = OK;
-  TRY(hdf5_put(s->fd, s->path, s->part, s->used, (off_t)s->at));
+  PASS(hdf5_put(s->fd, s->path, s->part, s->used, (off_t)s->at));
   s->at += s->used;
   s->used = 0;
-done:
-  return st;
+  return OK;
 }
 
 static status emit(stream *s, const void *data, size_t n) {
-  status st = OK;
-  if (s->used + n > sizeof s->part) TRY(flush(s));
+  if (s->used + n > sizeof s->part) PASS(flush(s));
   memcpy(s->part + s->used, data, n);
   s->used += n;
-done:
-  return st;
+  return OK;
 }
 
 static status emit_number(stream *s, int bytes, uint64_t v) {
@@ -121,52 +117,45 @@ static size_t find_message(const unsigned char *chunk, size_t from, size_t n,
 /* The header of an object and its length. */
 static status get_header(const stream *s, uint64_t at,
                          unsigned char header[HEADER_MOST], size_t *n) {
-  status st = OK;
-  TRY(get(s, at, header, 16));
+  PASS(get(s, at, header, 16));
   *n = 16 + number(header + 8, 4);
-  if (header[0] != 1 || *n > HEADER_MOST) TRY(other_format(s->path));
-  TRY(get(s, at, header, *n));
-done:
-  return st;
+  if (header[0] != 1 || *n > HEADER_MOST) PASS(other_format(s->path));
+  return get(s, at, header, *n);
 }
 
 /* Root of the tree and head of the heap of a group. */
 static status find_tables(const stream *s, uint64_t group, uint64_t *tree,
                           uint64_t *heap) {
-  status st = OK;
   unsigned char header[HEADER_MOST];
   size_t n, more, from = 16, at;
-  TRY(get_header(s, group, header, &n));
+  PASS(get_header(s, group, header, &n));
   while ((at = find_message(header, from, n, SYMBOL_TABLE)) == 0) {
     more = find_message(header, from, n, CONTINUED);
-    if (more == 0) TRY(other_format(s->path));
+    if (more == 0) PASS(other_format(s->path));
     uint64_t next = number(header + more, 8);
     n = number(header + more + 8, 8);
-    if (n > HEADER_MOST) TRY(other_format(s->path));
-    TRY(get(s, next, header, n));
+    if (n > HEADER_MOST) PASS(other_format(s->path));
+    PASS(get(s, next, header, n));
     from = 0;
   }
   *tree = number(header + at, 8);
   *heap = number(header + at + 8, 8);
-done:
-  return st;
+  return OK;
 }
 
 static status emit_headers(stream *s, const places *p, uint64_t set,
                            const record_group *g) {
-  status st = OK;
   unsigned char header[HEADER_MOST];
   size_t n;
-  TRY(get_header(s, set, header, &n));
+  PASS(get_header(s, set, header, &n));
   size_t at = find_message(header, 16, n, LAYOUT);
   if (at == 0 || number(header + at + 2, 8) != (uint64_t)g->offset[0])
-    TRY(other_format(s->path));
+    PASS(other_format(s->path));
   for (int i = 1; i < p->n; ++i) {
     set_number(header + at + 2, 8, (uint64_t)g->offset[i]);
-    TRY(emit(s, header, n));
+    PASS(emit(s, header, n));
   }
-done:
-  return st;
+  return OK;
 }
 
 /* ---- names, nodes and tree ----------------------------------------------- */
@@ -176,35 +165,31 @@ static uint64_t name_place(int record_id) {
 }
 
 static status emit_names(stream *s, const places *p) {
-  status st = OK;
-  TRY(emit_number(s, 8, 0)); /* the empty name                               */
+  PASS(emit_number(s, 8, 0)); /* the empty name                               */
   for (int i = 0; i < p->n; ++i) {
     char name[NAME] = "";
     hdf5_record_name(name, sizeof name, i);
-    TRY(emit(s, name, sizeof name));
+    PASS(emit(s, name, sizeof name));
   }
-done:
-  return st;
+  return OK;
 }
 
 static status emit_nodes(stream *s, const places *p, uint64_t set) {
-  status st = OK;
   static const unsigned char none[SYMBOL];
   for (int i = 0; i < p->n; i += p->per_node) {
     int n = p->n - i < p->per_node ? p->n - i : p->per_node;
-    TRY(emit(s, "SNOD\1", 6));
-    TRY(emit_number(s, 2, (uint64_t)n));
+    PASS(emit(s, "SNOD\1", 6));
+    PASS(emit_number(s, 2, (uint64_t)n));
     for (int k = 0; k < p->per_node; ++k) {
       int id = k < n ? p->order[i + k] : 0;
       uint64_t header =
           id == 0 ? set : p->header + p->header_size * (uint64_t)(id - 1);
-      TRY(emit_number(s, 8, k < n ? name_place(id) : 0));
-      TRY(emit_number(s, 8, k < n ? header : 0));
-      TRY(emit(s, none, SYMBOL - 16));
+      PASS(emit_number(s, 8, k < n ? name_place(id) : 0));
+      PASS(emit_number(s, 8, k < n ? header : 0));
+      PASS(emit(s, none, SYMBOL - 16));
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 static size_t node_size(const places *p) {
@@ -233,28 +218,25 @@ typedef struct tree_level {
 /* Node i of a level. */
 static status emit_tree(stream *s, const places *p, const tree_level *l,
                         int i) {
-  status st = OK;
   int first = i * p->per_tree, end = first + p->per_tree;
   uint64_t self = l->at + tree_size(p) * (uint64_t)i;
   if (end > l->n_child) end = l->n_child;
-  TRY(emit(s, "TREE", 5));
-  TRY(emit_number(s, 1, (uint64_t)l->level));
-  TRY(emit_number(s, 2, (uint64_t)(end - first)));
-  TRY(emit_number(s, 8, i > 0 ? self - tree_size(p) : NOWHERE));
-  TRY(emit_number(s, 8, i + 1 < l->n ? self + tree_size(p) : NOWHERE));
+  PASS(emit(s, "TREE", 5));
+  PASS(emit_number(s, 1, (uint64_t)l->level));
+  PASS(emit_number(s, 2, (uint64_t)(end - first)));
+  PASS(emit_number(s, 8, i > 0 ? self - tree_size(p) : NOWHERE));
+  PASS(emit_number(s, 8, i + 1 < l->n ? self + tree_size(p) : NOWHERE));
   for (int k = first; k <= first + p->per_tree; ++k) {
-    TRY(emit_number(s, 8, k <= end ? key(p, k * l->span) : 0));
+    PASS(emit_number(s, 8, k <= end ? key(p, k * l->span) : 0));
     if (k == first + p->per_tree) break;
-    TRY(emit_number(s, 8,
-                    k < end ? l->child + l->child_size * (uint64_t)k : 0));
+    PASS(emit_number(s, 8,
+                     k < end ? l->child + l->child_size * (uint64_t)k : 0));
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Level after level, at last the root. */
 static status emit_levels(stream *s, const places *p, uint64_t root) {
-  status st = OK;
   tree_level l = {.n = parts(p->n, p->per_node),
                   .at = p->node,
                   .child_size = node_size(p),
@@ -265,15 +247,14 @@ static status emit_levels(stream *s, const places *p, uint64_t root) {
     l.n = parts(l.n_child, p->per_tree);
     l.child = l.at;
     l.at = l.n > 1 ? next : root;
-    TRY(go_to(s, l.at));
-    for (int i = 0; i < l.n; ++i) TRY(emit_tree(s, p, &l, i));
+    PASS(go_to(s, l.at));
+    for (int i = 0; i < l.n; ++i) PASS(emit_tree(s, p, &l, i));
     next += tree_size(p) * (uint64_t)l.n;
     l.child_size = tree_size(p);
     l.span *= p->per_tree;
     ++l.level;
   } while (l.n > 1);
-done:
-  return st;
+  return OK;
 }
 
 /* ---- a group ------------------------------------------------------------- */
@@ -299,26 +280,23 @@ static void place_data(places *p, int n_group, const record_group *groups) {
 }
 
 static status fill_group(stream *s, places *p, const record_group *g) {
-  status st = OK;
   unsigned char header[HEADER_MOST];
   uint64_t tree, heap;
-  TRY(find_tables(s, g->group, &tree, &heap));
-  TRY(get_header(s, g->set, header, &p->header_size));
-  TRY(get(s, heap, header, HEAP_HEAD));
-  if (memcmp(header, "HEAP", 5) != 0) TRY(other_format(s->path));
+  PASS(find_tables(s, g->group, &tree, &heap));
+  PASS(get_header(s, g->set, header, &p->header_size));
+  PASS(get(s, heap, header, HEAP_HEAD));
+  if (memcmp(header, "HEAP", 5) != 0) PASS(other_format(s->path));
   set_places(p);
-  TRY(go_to(s, p->heap));
-  TRY(emit_names(s, p));
-  TRY(emit_headers(s, p, g->set, g));
-  TRY(emit_nodes(s, p, g->set));
-  TRY(emit_levels(s, p, tree));
-  TRY(go_to(s, heap + 8));
-  TRY(emit_number(s, 8, p->header - p->heap));
-  TRY(emit_number(s, 8, NO_FREE_BLOCK));
-  TRY(emit_number(s, 8, p->heap));
-  TRY(flush(s));
-done:
-  return st;
+  PASS(go_to(s, p->heap));
+  PASS(emit_names(s, p));
+  PASS(emit_headers(s, p, g->set, g));
+  PASS(emit_nodes(s, p, g->set));
+  PASS(emit_levels(s, p, tree));
+  PASS(go_to(s, heap + 8));
+  PASS(emit_number(s, 8, p->header - p->heap));
+  PASS(emit_number(s, 8, NO_FREE_BLOCK));
+  PASS(emit_number(s, 8, p->heap));
+  return flush(s);
 }
 
 /* Records no. 1 to n by name: 10000, 100000, 100001, ..., 10001, 100010, ... */
@@ -360,7 +338,6 @@ status hdf5_records_make(const char *path, int n, int n_group,
     TRY(text_failed(path, "write", errno));
 done:
   if (s != NULL && s->fd > 0) close(s->fd);
-  memory_free(s);
-  memory_free(order);
+  RELEASE(s, order);
   return st;
 }

@@ -33,34 +33,30 @@ status hdf5_put(int fd, const char *path, const void *data, size_t bytes,
 
 static status copy(const hdf5_file *h, off_t from, int fd, off_t to,
                    size_t bytes) {
-  status st = OK;
   char chunk[CHUNK * 8];
   while (bytes > 0) {
     errno = 0;
     ssize_t n =
         pread(h->fd, chunk, bytes < sizeof chunk ? bytes : sizeof chunk, from);
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) TRY(text_failed(h->path, "read back", errno));
-    TRY(hdf5_put(fd, h->aside, chunk, (size_t)n, to));
+    if (n <= 0) PASS(text_failed(h->path, "read back", errno));
+    PASS(hdf5_put(fd, h->aside, chunk, (size_t)n, to));
     from += n;
     to += n;
     bytes -= (size_t)n;
   }
-done:
-  return st;
+  return OK;
 }
 
 static status put_nan(int fd, const char *path, off_t offset, int n) {
-  status st = OK;
   double chunk[CHUNK];
   for (int i = 0; i < CHUNK; ++i) chunk[i] = NAN;
   for (int i = 0; i < n; i += CHUNK) {
     int part = n - i < CHUNK ? n - i : CHUNK;
-    TRY(hdf5_put(fd, path, chunk, sizeof(double) * (size_t)part,
-                 offset + (off_t)sizeof(double) * i));
+    PASS(hdf5_put(fd, path, chunk, sizeof(double) * (size_t)part,
+                  offset + (off_t)sizeof(double) * i));
   }
-done:
-  return st;
+  return OK;
 }
 
 int hdf5_time_field(const hdf5_file *h) {
@@ -72,22 +68,19 @@ int hdf5_time_field(const hdf5_file *h) {
 }
 
 static status put_fixed(hdf5_file *h, int fd, const hdf5_layout *l) {
-  status st = OK;
   for (int i = 0; i < h->n_fixed; ++i) {
     const fixed_data *d = &h->fixed[i];
     if (d->rows == 0) continue;
     if (d->data != NULL)
-      TRY(hdf5_put(fd, h->aside, d->data, fixed_bytes(d), l->fixed[i]));
+      PASS(hdf5_put(fd, h->aside, d->data, fixed_bytes(d), l->fixed[i]));
     else
-      TRY(copy(h, h->now.fixed[i], fd, l->fixed[i], fixed_bytes(d)));
+      PASS(copy(h, h->now.fixed[i], fd, l->fixed[i], fixed_bytes(d)));
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Those that follow each other in both files at once. */
 static status copy_records(hdf5_file *h, int fd, const hdf5_layout *l) {
-  status st = OK;
   off_t from = 0, to = 0;
   size_t bytes = 0;
   for (int i = 0; i < h->n_record; ++i)
@@ -98,53 +91,44 @@ static status copy_records(hdf5_file *h, int fd, const hdf5_layout *l) {
           h->now.record[(size_t)k * (size_t)h->now.n_record + (size_t)i];
       off_t new = l->record[(size_t)k * (size_t)l->n_record + (size_t)i];
       if (old != from + (off_t)bytes || new != to + (off_t)bytes) {
-        TRY(copy(h, from, fd, to, bytes));
+        PASS(copy(h, from, fd, to, bytes));
         from = old;
         to = new;
         bytes = 0;
       }
       bytes += sizeof(double) * (size_t)hdf5_items(h, f) * (size_t)f->n_part;
     }
-  TRY(copy(h, from, fd, to, bytes));
-done:
-  return st;
+  return copy(h, from, fd, to, bytes);
 }
 
 static status copy_results(hdf5_file *h, int fd, const hdf5_layout *l) {
-  status st = OK;
   const size_t rows = sizeof(double) * (size_t)h->n_row;
   const size_t records = sizeof(double) * (size_t)h->n_record;
   for (int i = 0; i < h->n_field; ++i)
     if (hdf5_is_history(&h->fields[i]))
-      TRY(copy(h, h->now.history[i], fd, l->history[i], rows));
-  TRY(copy_records(h, fd, l));
-  TRY(copy(h, h->now.record_time, fd, l->record_time, records));
-  TRY(copy(h, h->now.record_total, fd, l->record_total, records));
-done:
-  return st;
+      PASS(copy(h, h->now.history[i], fd, l->history[i], rows));
+  PASS(copy_records(h, fd, l));
+  PASS(copy(h, h->now.record_time, fd, l->record_time, records));
+  return copy(h, h->now.record_total, fd, l->record_total, records);
 }
 
 /* Reserve the space: a full disk is found now and not later. */
 static status reserve(const hdf5_file *h, int fd) {
-  status st = OK;
   struct stat info;
-  if (fstat(fd, &info) != 0) TRY(text_failed(h->aside, "inspect", errno));
+  if (fstat(fd, &info) != 0) PASS(text_failed(h->aside, "inspect", errno));
   int error_no = posix_fallocate(fd, 0, info.st_size);
-  if (error_no != 0) TRY(text_failed(h->aside, "reserve space for", error_no));
-done:
-  return st;
+  if (error_no != 0) PASS(text_failed(h->aside, "reserve space for", error_no));
+  return OK;
 }
 
 static status fill_aside(hdf5_file *h, int fd, const hdf5_layout *l) {
-  status st = OK;
-  TRY(reserve(h, fd));
-  TRY(put_nan(fd, h->aside, l->history[hdf5_time_field(h)], l->n_row));
-  TRY(put_nan(fd, h->aside, l->record_time, l->n_record));
-  TRY(put_fixed(h, fd, l));
-  if (h->fd >= 0) TRY(copy_results(h, fd, l));
-  if (fsync(fd) != 0) TRY(text_failed(h->aside, "write", errno));
-done:
-  return st;
+  PASS(reserve(h, fd));
+  PASS(put_nan(fd, h->aside, l->history[hdf5_time_field(h)], l->n_row));
+  PASS(put_nan(fd, h->aside, l->record_time, l->n_record));
+  PASS(put_fixed(h, fd, l));
+  if (h->fd >= 0) PASS(copy_results(h, fd, l));
+  if (fsync(fd) != 0) PASS(text_failed(h->aside, "write", errno));
+  return OK;
 }
 
 status hdf5_renew(hdf5_file *h, int n_row, int n_record) {

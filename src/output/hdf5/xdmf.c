@@ -97,16 +97,14 @@ static void write_pattern(FILE *f, const char *file, const part *p,
 
 /* The text of any record of a part, with NAME and TIME; free it. */
 static status make_pattern(const part *p, const hdf5_shape *s, char **text) {
-  status st = OK;
   size_t size = 0;
   const char *slash = strrchr(s->path, '/');
   FILE *f = open_memstream(text, &size);
-  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
+  if (f == NULL) RAISE(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
   write_pattern(f, slash != NULL ? slash + 1 : s->path, p, s);
   if (!text_memory_end(f, text))
-    FAIL(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
-done:
-  return st;
+    RAISE(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
+  return OK;
 }
 
 static void write_record(FILE *f, const char *pattern, int record_id,

@@ -102,22 +102,19 @@ static void print_proof(const model *m, FILE *f) {
 }
 
 status listing_open(const job *j, text_file *lst) {
-  status st = OK;
   FILE *f = lst->f;
   const char *version = j->o->version != NULL ? j->o->version : "";
   fprintf(f, "PROTIS %s\n\n%s\n", version,
           j->m->title != NULL ? j->m->title : "");
   heading(f, "DECK");
-  if (j->m->deck != NULL) TRY(model_echo(j->m, f));
+  if (j->m->deck != NULL) PASS(model_echo(j->m, f));
   heading(f, "MODEL");
   print_sizes(j, 0, f);
   print_model(j, f);
   heading(f, "EFFECTS");
   plan_print(j->plan, "  ", f);
   print_left_out(j->m, f);
-  TRY(text_check(lst));
-done:
-  return st;
+  return text_check(lst);
 }
 
 status listing_ready(const job *j, text_file *lst) {
