@@ -7,6 +7,8 @@
 BEGIN {
   MAX_COLUMNS = 80; MAX_LINES = 800; MAX_FILES = 10; MAX_PARAMETERS = 7
   SHORT = 20; LONG = 80; MAX_FUNCTION = 150; MAX_COMPLEXITY = 15
+  # See the table of words of the style.
+  REFUSED = "who answered|nobody listens|every solver is told"
   is_source = folder ~ /(^|\/)src$/
 }
 
@@ -50,6 +52,7 @@ function plain_rules(    visible) {
   if ($0 ~ /[ \t\r]$/) fail(FNR, "blank at the end of the line")
   if ($0 ~ /(^|[^A-Za-z0-9_.])\/(work|root|home|Users)\//)
     fail(FNR, "path of a machine")
+  if (tolower($0) ~ REFUSED) fail(FNR, "a word that is no term of the field")
 }
 
 function comment_rules(    text) {

@@ -96,7 +96,7 @@ void dense_inverse_solve(dense_inverse *d, const double *x, double *v);
 /* Displacement v and force q of the contact that are partners by its laws. */
 typedef struct pair {
   double *v, *q; /* [m] m, N                                                  */
-  double *d, *t; /* [m] what misses in the equation; room                     */
+  double *d, *t; /* [m] what misses in the equation; workspace */
   unsigned char *slides; /* [n] |q_t| = g                                     */
 } pair;
 

@@ -158,7 +158,7 @@ static void push(const linear_map *s, double *dn) {
   for (int i = s->cp->n - 1; i >= 0; --i) dn[i] = s->closed[i] ? dn[--c] : 0.0;
 }
 
-/* dg = -B (A x)_n on the sliding nodes; dn[n] room. */
+/* dg = -B (A x)_n on the sliding nodes; dn[n] workspace. */
 static void change_limit(linear_map *s, double *dn) {
   const contact_problem *cp = s->cp;
   const sparse_rows *B = cp->B;

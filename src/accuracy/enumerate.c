@@ -7,7 +7,7 @@
  *   free   rho_t = 0                            no friction
  *   slip   rho_t - s B rho_n + s g0 = 0         s = +1, -1 along the slip
  * followed depth first, so that the elimination of a node serves all that
- * follow it. What passes the signs is solved anew with pivoting and judged by
+ * follow it. What passes the signs is solved again with pivoting and judged by
  * contact_residual. A singular system that has solutions has a line of them,
  * cut by the signs: its ends are reported as joined.
  */
@@ -260,7 +260,7 @@ static int decompose(int n, double *K, const double *b, double scale, double *x,
   return rank;
 }
 
-/* The whole system anew, with pivoting. */
+/* The whole system again, with pivoting. */
 static status solve_anew(search *s) {
   int dof[ROWS], n = free_unknowns(s, dof), no;
   double K[ROWS * ROWS], y[LENGTH], b[ROWS], xf[ROWS], vf[ROWS];

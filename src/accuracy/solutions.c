@@ -35,7 +35,7 @@ void solution_set_free(solution_set *s) {
 
 /* ---- distance ----------------------------------------------------------- */
 
-/* x' M x of the difference of two states, b NULL: of one; t[2m] room. */
+/* x' M x of the difference of two states, b NULL: of one; t[2m] workspace. */
 static double energy(const contact_problem *cp, const double *a,
                      const double *b, double *t) {
   for (int i = 0; i < cp->m; ++i) t[i] = b == NULL ? a[i] : a[i] - b[i];

@@ -14,7 +14,8 @@
 /* clang-format off */
 #define STATUS_LIST(X)                                                       \
   X(OK,            0, "no error")                                            \
-  X(ERR_UNSETTLED, 1, "finished, but an increment missed its tolerance")     \
+  X(ERR_UNSETTLED, 1, "finished, but an increment did not "                  \
+                       "converge to its tolerance")                           \
   X(ERR_DECK,      2, "command line or input deck not valid")                \
   X(ERR_MESH,      3, "mesh not valid")                                      \
   X(ERR_FILE,      4, "file cannot be opened, read or written")              \

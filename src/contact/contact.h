@@ -29,7 +29,7 @@ typedef struct body_size {
 typedef struct contact_bodies {
   int n;
   int *of;         /* [nodes] body of each                                    */
-  body_size *size; /* [n] room of the residual                                */
+  body_size *size; /* [n] workspace of the residual */
 } contact_bodies;
 
 typedef struct contact_problem {

@@ -393,7 +393,7 @@ static status refine(condensed *c, double *u) {
   return OK;
 }
 
-/* f_c anew: what holds the refined solution for u_c = 0, the sign turned. */
+/* f_c again: what holds the refined solution for u_c = 0, the sign turned. */
 static status refine_load(condensed *c, const double *F, double *f_c) {
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
   OWNED double *u = NULL, *zero = NULL;

@@ -1,7 +1,7 @@
 /*
  * The motions are chosen so that R_c = Q is orthonormal: a step of modified
  * Gram-Schmidt on R_c goes through their coefficients Y too, and R_c is then
- * computed anew from them. So each column is a rigid motion to rounding, also
+ * computed again from them. So each column is a rigid motion to rounding, also
  * where the contact nodes are few or close together and tell the motions
  * apart badly.
  */

@@ -18,7 +18,7 @@ typedef struct lines {
   const card *c;
   message_log *log;
   elastic_table *table;
-  double set[ELASTIC_MAX + 1]; /* of the set at hand                        */
+  double set[ELASTIC_MAX + 1]; /* of the current set                        */
   int n;                       /* in it                                      */
   int has_temperature;         /* the first set ends with one; all do, then  */
   int capacity;                /* of the table                               */
@@ -58,7 +58,7 @@ static status close_set(lines *r, const place *at) {
   return OK;
 }
 
-/* A line goes on with the set at hand; one that fills it ends it. */
+/* A line goes on with the current set; one that fills it ends it. */
 static status add_line(lines *r, const record *line) {
   const int n = r->table->n_constant;
   for (int k = 0; k < line->n_field && !r->wrong; ++k) {

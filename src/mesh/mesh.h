@@ -50,7 +50,7 @@ typedef struct mesh_source {
   double scale;     /* coordinates are multiplied by it, -                    */
   int n_number;
   const mesh_number *numbers; /* [n_number] for a .geo                        */
-  /* A .geo meshed anew: the lengths its elements shall have, at the nodes of
+  /* A .geo meshed again: the lengths its elements shall have, at the nodes of
    * an earlier mesh of it, length; both NULL: the sizes of the .geo. */
   const mesh *old;
   const double *size; /* [old->n_node]                                        */
@@ -64,7 +64,7 @@ int mesh_is_program(const char *file);
 status mesh_read_gmsh(const mesh_source *source, const place *at,
                       message_log *log, mesh **out);
 /* The library of gmsh into this process, once: each mesh is made in a process
- * of its own, which else loads it anew (0.2 s). Fails in silence. */
+ * of its own, which else loads it again (0.2 s). Fails in silence. */
 void mesh_gmsh_load(void);
 void mesh_free(mesh *m);
 

@@ -1,10 +1,13 @@
 /*
  * Least significant digit first, 11 bits at a time; digits that are the same
- * in all keys are passed over. Runs of equal keys: heap sort, in place.
+ * in all keys are passed over. Runs of equal keys by qsort_r.
  */
+#define _GNU_SOURCE /* qsort_r */
 #include "mesh/sort.h"
 
 #include "base/memory.h"
+
+#include <stdlib.h>
 
 enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS, FEW = 128 };
 
@@ -61,29 +64,14 @@ static status radix(int n, uint64_t *key, int *id) {
   return OK;
 }
 
-/* Let id[i] sink in the heap id[0..n-1] whose top is the last in order. */
-static void sink(int n, int *id, int i, sort_compare *compare,
-                 const void *ctx) {
-  for (;;) {
-    int c = 2 * i + 1;
-    if (c >= n) return;
-    if (c + 1 < n && compare(ctx, id[c], id[c + 1]) < 0) ++c;
-    if (compare(ctx, id[i], id[c]) >= 0) return;
-    int v = id[i];
-    id[i] = id[c];
-    id[c] = v;
-    i = c;
-  }
-}
+typedef struct ties {
+  sort_compare *compare;
+  const void *ctx;
+} ties;
 
-static void heap_sort(int n, int *id, sort_compare *compare, const void *ctx) {
-  for (int i = n / 2 - 1; i >= 0; --i) sink(n, id, i, compare, ctx);
-  for (int end = n - 1; end > 0; --end) {
-    int v = id[0];
-    id[0] = id[end];
-    id[end] = v;
-    sink(end, id, 0, compare, ctx);
-  }
+static int by_ties(const void *a, const void *b, void *ctx) {
+  const ties *t = ctx;
+  return t->compare(t->ctx, *(const int *)a, *(const int *)b);
 }
 
 status sort_by_key(int n, uint64_t *key, int *id, sort_compare *compare,
@@ -94,7 +82,9 @@ status sort_by_key(int n, uint64_t *key, int *id, sort_compare *compare,
     PASS(radix(n, key, id));
   for (int i = 0, end; compare != NULL && i < n; i = end) {
     for (end = i + 1; end < n && key[end] == key[i];) ++end;
-    if (end - i > 1) heap_sort(end - i, id + i, compare, ctx);
+    if (end - i > 1)
+      qsort_r(id + i, (size_t)(end - i), sizeof *id, by_ties,
+              &(ties){compare, ctx});
   }
   return OK;
 }

@@ -461,7 +461,7 @@ int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
 
 /* Prescribed displacements ud[dim*n_node] at t, written where fixed; errors
  * as load_forces. start[dim*n_node]: displacements at the start of the step,
- * from where a component that is fixed anew is led to its value. */
+ * from where a component that is fixed again is led to its value. */
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        const double *start, double *ud);
 /* Value of an initial condition in an element, mean of its nodes; ERR_DECK if

@@ -20,7 +20,7 @@ static double clock_now(void) {
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* The text is written anew each time, so not more than once in XDMF_PAUSE
+/* The text is written again each time, so not more than once in XDMF_PAUSE
  * seconds, and not above its share of the run but for the last time: the cost
  * stays small however long it grows. */
 status output_show_records(output *o, int all) {

@@ -29,7 +29,7 @@ static const char *check_text(const state *s, char text[32]) {
 }
 
 /*
- * OK, OK JUMP, UNSETTLED (taken although it missed its tolerance) or CUT, then
+ * OK, OK JUMP, UNSETTLED (taken although it did not converge) or CUT, then
  * the code of what stopped the contact solver, BOUND if its error may be above
  * 10 %, then words.
  */

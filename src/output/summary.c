@@ -129,7 +129,8 @@ static status copy_increments(output *o, size_t *used, int *n_fact) {
     for (int k = 0; k < s->n_solution; ++k)
       o->facts[(*n_fact)++] = s->solutions[k];
     s->solutions = NULL;
-    s->theorems = (theorems_report){0}; /* such a run starts anew (restart.c) */
+    s->theorems =
+        (theorems_report){0}; /* such a run starts again (restart.c) */
     if (o->o.no_timing) leave_out_cpu(s);
   }
   return OK;

@@ -24,7 +24,7 @@ struct tabular {
   int n_block;           /* written so far                              */
   int *node_order;       /* [n_node] ids by node_no                     */
   int *elem_order;       /* [n_elem] ids by elem_no                     */
-  unsigned char *wanted; /* [items] rows of the table at hand           */
+  unsigned char *wanted; /* [items] rows of the current table           */
 };
 
 /* clang-format off */

@@ -20,7 +20,7 @@ static status see_increment(void *ctx, const state *s) {
   return OK;
 }
 
-/* 1: the run gave no answer to measure, or one that missed its tolerance. */
+/* 1: the run gave no answer to measure, or one that did not converge. */
 static int has_failed(const watcher *w, status run, int unsettled) {
   return !w->refuted && (run != OK || unsettled > 0);
 }

@@ -55,7 +55,7 @@ static const char *const help_rows[][2] = {
 
 static const char *const exit_rows[][2] = {
   {"0", "done"},
-  {"1", "finished, but an increment missed its tolerance"},
+  {"1", "finished, but an increment did not converge to its tolerance"},
   {"2", "command line or deck not valid"},
   {"3", "mesh not valid"},
   {"4", "a file cannot be opened, read or written"},

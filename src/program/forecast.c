@@ -343,7 +343,7 @@ status forecast_print(const command *c, job_input *in) {
   model_of_cost cost = {.dim = in->m != NULL ? in->m->dim : 2};
   if (in->problem != NULL || !job_is_geo(in->m))
     RAISE(ERR_DECK,
-          "--estimate-cost meshes the geometry anew: the deck must name "
+          "--estimate-cost meshes the geometry again: the deck must name "
           "a .geo in *MESH, FILE=");
   mesh_gmsh_load();
   PASS_NEW(eta, in->msh->n_elem);

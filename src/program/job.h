@@ -22,7 +22,7 @@ typedef struct job_input {
 
 /* The mesh of another pass. */
 typedef struct job_mesh {
-  const mesh *old; /* a .geo is meshed anew with sizes as in mesh_source      */
+  const mesh *old; /* a .geo is meshed again with sizes as in mesh_source */
   const double *size;
   mesh *same; /* or NULL: this mesh, taken over                              */
 } job_mesh;

@@ -259,7 +259,8 @@ static status compare_files(const char *was, const char *is, int step_no) {
     RAISE(
         ERR_DECK,
         "--restart: another file than when the run was started:%.*s: has other "
-        "contents; put the earlier one back, or start the run anew",
+        "contents; put the earlier one back, or start the run without "
+        "--restart",
         (int)(name - from), was + from);
   }
   return OK;
@@ -416,7 +417,8 @@ static int is_none(const char *path, const char *before) {
   if (access(path, F_OK) == 0 || errno != ENOENT) return 0;
   if (access(before, F_OK) == 0 || errno != ENOENT) return 0;
   fprintf(stderr,
-          "protis: warning: --restart: there is no %s; the run begins anew\n",
+          "protis: warning: --restart: there is no %s; the run begins at its "
+          "start\n",
           path);
   return 1;
 }
@@ -432,12 +434,12 @@ status restart_read(const command *c, const job_input *in, archive **out) {
   if (in->m->target.percent > 0.0)
     FAIL(ERR_DECK,
          "--restart: *ACCURACY, TARGET= makes passes of the whole "
-         "run; such a job starts anew");
+         "run; such a job starts at its beginning");
   for (int i = 0; i < in->m->n_step; ++i)
     if (in->m->steps[i].theorems)
       FAIL(ERR_DECK,
            "--restart: the theorems of *ACCURACY are checked over a "
-           "whole run; such a job starts anew");
+           "whole run; such a job starts at its beginning");
   TRY(file_names(c, in->m, &path, &before));
   if (is_none(path, before)) goto done;
   TRY(read_either(path, before, out));

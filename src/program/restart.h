@@ -6,7 +6,7 @@
  * slip so far, inelastic strains, the place in the grid of increments. What a
  * contact solver remembers from increment to increment (factors and what was
  * exchanged in them) is kept as well (contact_solver_keep), because a new
- * factor has other last digits; matrices, surfaces and averages are made anew,
+ * factor has other last digits; matrices, surfaces and averages are made again,
  * for they depend on the deck and the mesh alone. Of the files their lengths
  * are kept: what was written after the restart file is cut and written again.
  *

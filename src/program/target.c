@@ -189,7 +189,7 @@ static void decide(pass *p) {
     miss(p, "no error has more than its share, their sum is above the target");
   else if (finer && !job_is_geo(p->in->m))
     miss(p,
-         "the mesh is too coarse and a .msh cannot be meshed anew: give the "
+         "the mesh is too coarse and a .msh cannot be meshed again: give the "
          ".geo");
   else if (was_in_vain(p))
     miss(p, "a mesh asked to be finer has no smaller error");

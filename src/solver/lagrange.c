@@ -9,7 +9,7 @@
  *
  * P the projection on r_n <= 0, |r_t| <= g, o the gap and the stick position, D
  * the inverse diagonal of W = inv(A). theta = 0 is Uzawa's method; with
- * Nesterov's theta_k (1983), begun anew when a step turns against the gradient
+ * Nesterov's theta_k (1983), begun again when a step turns against the gradient
  * (O'Donoghue, Candes 2015), the number of steps grows with the square root of
  * the condition of D W only. u is carried by the combination of r, so a step is
  * one product with W.
@@ -127,7 +127,7 @@ typedef struct run {
   int accelerated, since;
 } run;
 
-/* u and x anew from r, as exactly as A allows; c is what W r leaves over. */
+/* u and x again from r, as exactly as A allows; c is what W r leaves over. */
 static void refresh(run *s) {
   lagrange_work *w = s->w;
   force_set_displacement(w->set, s->r, s->u);
@@ -158,7 +158,7 @@ static outcome judge(run *s, int k) {
   return k - s->since > PATIENCE ? STOPPED_STAGNATION : RUNNING;
 }
 
-/* y and its displacement; theta = 0 begins anew. */
+/* y and its displacement; theta = 0 begins again. */
 static void extrapolate(run *s, double theta) {
   lagrange_work *w = s->w;
   for (int i = 0; i < s->cp->m; ++i) {
@@ -268,7 +268,7 @@ const solver_ops lagrange_solver = {
     "projection on r_n <= 0 and the disc |r_t| <= g. The step rho comes\n"
     "from the largest eigenvalue of the compliance and is checked at every\n"
     "step, so there is nothing to choose. ACCELERATION=NESTEROV\n"
-    "extrapolates the forces and begins anew when the step turns; NONE is\n"
+    "extrapolates the forces and begins again when the step turns; NONE is\n"
     "Uzawa's method as it was written. The sliding limit is updated around\n"
     "it (CPR98, 2.3). Needs the compliance (an inverse, once per matrix); a\n"
     "body that contact alone holds is held by soft springs on its motions,\n"

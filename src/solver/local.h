@@ -70,7 +70,7 @@ int state_watch_returns(state_watch *w, const relaxation *s);
 
 /* State of each node at the start, from u and r. */
 void relaxation_start(const relaxation *s);
-/* Carry anew r = A u - f, or u = W r + q. */
+/* Carry again r = A u - f, or u = W r + q. */
 void relaxation_refresh(const relaxation *s);
 void relaxation_sweep(relaxation *s, int backward);
 /* After a sweep from from[m] that turned no node: each body that contact alone

@@ -113,7 +113,7 @@ typedef struct run {
   double phi2, beta2;           /* |phi|^2, |beta|^2 in the metric D         */
   int by_face, bent;            /* 1: a rim with two tangents is on the face */
   int steps, limit, since;
-  int refreshed; /* x was made anew: begin a new phase        */
+  int refreshed; /* x was made again: begin a new phase        */
 } run;
 
 /* Radii of the rims, and how strongly the circles bend J. */
@@ -217,7 +217,7 @@ static double longest(const run *s, const double *p, int rims_too) {
 
 /* ---- steps --------------------------------------------------------------- */
 
-/* u and x anew from r. */
+/* u and x again from r. */
 static void refresh(run *s) {
   force_set_displacement(s->w->set, s->r, s->u);
   for (int i = 0; i < s->cp->m; ++i)

@@ -19,10 +19,10 @@ typedef struct solver_report {
   double rate;        /* contraction of the fixed point, -; 0: not used       */
   double residual;    /* contact_residual(), -                                */
   double cpu;         /* s                                                    */
-  const char *solver; /* who answered                                         */
+  const char *solver; /* the method that converged */
 } solver_report;
 
-/* One line per iteration, for .cvg; NULL: nobody listens. */
+/* One line per iteration, for .cvg; NULL: no listener. */
 typedef struct solver_step {
   const char *solver;
   int iteration, limit_update;
@@ -36,14 +36,14 @@ typedef struct solver_listener {
   void *ctx;
 } solver_listener;
 
-/* What every solver is told besides its own options. */
+/* Control parameters of every solver, besides its own options. */
 typedef struct solver_control {
   double tol;         /* wanted contact_residual, -                          */
   int max_iter;       /* 0: the solver's own limit                           */
   int limit_max_iter; /* passes of a fixed point on g; 0: 200           */
   double scale;       /* contact_scale; 0: not known                         */
-  int no_restart;     /* 1: give up rather than start anew from another guess */
-  int limit_update;   /* pass now running, for the listener             */
+  int no_restart;   /* 1: give up rather than start again from another guess */
+  int limit_update; /* pass now running, for the listener             */
   const solver_listener *listener; /* or NULL                                 */
 } solver_control;
 

@@ -147,7 +147,7 @@ static int cure(relaxation *s, course *c) {
   return s->omega > 0.2;
 }
 
-/* The residual with u and r carried anew; keeps the best. */
+/* The residual with u and r carried again; keeps the best. */
 static double check(relaxation *s, course *c, double scale) {
   relaxation_refresh(s);
   double residual = contact_mismatch(s->cp, scale, s->u, s->r, NULL);

@@ -10,7 +10,7 @@ typedef enum {
   THREADS_,  /* two threads                                                  */
   POWERS,    /* units that are powers of two                                 */
   THOUSANDS, /* units as mm and kN                                          */
-  NUMBERS,   /* nodes and elements numbered anew                             */
+  NUMBERS,   /* nodes and elements numbered again                             */
   METHODS,   /* another method of *SOLVER                                    */
   TWINS
 } twin_kind;

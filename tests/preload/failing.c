@@ -190,7 +190,7 @@ void failing_setup(const char *meshes) {
   ck_assert_ptr_ne(all, MAP_FAILED);
   snprintf(kept_meshes, sizeof kept_meshes, "%s", meshes);
   backtrace(frame, 1); /* loads what it needs                                */
-  /* The program shall not start anew with another kernel. */
+  /* The program shall not start again with another kernel. */
   setenv("OPENBLAS_CORETYPE", "Haswell", 0);
 }
 

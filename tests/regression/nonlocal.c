@@ -1,6 +1,6 @@
 /*
  * Decks with LAW=NONLOCAL: closed forms of the uniform pressure, the average of
- * the printed pressures summed up anew, the local limit, the zone, contacts
+ * the printed pressures summed up again, the local limit, the zone, contacts
  * apart, mu(t), and that other laws pay nothing.
  */
 #include "solver/solver.h"

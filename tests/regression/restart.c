@@ -279,7 +279,8 @@ START_TEST(run_without_a_file_begins_anew) {
   ck_assert_int_eq(run_until(&j, nothing, 9, SIGTERM, &changes), 143);
   ck_assert(!job_has(&j, "rst.h5"));
   goes_on(&j, 0, "from nothing");
-  ck_assert_ptr_nonnull(strstr(j.errors, "block.rst.h5; the run begins anew"));
+  ck_assert_ptr_nonnull(
+      strstr(j.errors, "block.rst.h5; the run begins at its start"));
   same_files(&whole, &j, "from nothing");
   job_end(&whole);
   job_end(&j);

@@ -1,5 +1,5 @@
 /*
- * What changes from step to step: supports set anew, gravity that turns, force
+ * What changes from step to step: supports set again, gravity that turns, force
  * left to a support, a contact whose body has no friction of its own.
  */
 #include "support/job.h"

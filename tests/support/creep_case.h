@@ -30,7 +30,7 @@ typedef struct creep_end {
 } creep_end;
 
 /* integrator: as in INTEGRATOR=, further words of *VISCO may follow; n
- * increments. Check fails if a contact problem misses its tolerance. */
+ * increments. Check fails if a contact problem does not converge. */
 creep_end creep_case_run(const creep_case *c, const char *integrator, int n);
 /* |a - b| of the displacements. */
 double creep_distance(const creep_end *a, const creep_end *b);

@@ -26,7 +26,7 @@ typedef struct read_deck {
 read_deck decks_read(const char *file, int n, const char *const *defines);
 read_deck decks_read_text(const char *content);
 read_deck decks_read_good(const char *content);
-/* The messages of the deck read last; made anew from a log. */
+/* The messages of the deck read last; made again from a log. */
 char *decks_messages(void);
 void decks_print(const message_log *log);
 void decks_done(read_deck *r);

@@ -34,7 +34,7 @@ mesh *mesh_file_from(mesh_file *f, const mesh_source *source);
 /* Write the text as FOLDER/NAME, then read it. */
 mesh *mesh_file_text(mesh_file *f, const char *name, const char *text);
 /* 1 if both are the same in everything but the element numbers (version 2.2
- * numbers them anew), coordinates to digits*size (ASCII files have 16 digits);
+ * numbers them again), coordinates to digits*size (ASCII files have 16 digits);
  * "what" tells the first difference. */
 int mesh_same(const mesh *a, const mesh *b, double digits, const char **what);
 

@@ -1,7 +1,7 @@
 /*
  * Random decks that combine effects (tests/decks): each is run, its answer
  * judged by what the test recomputes from the tables, and compared with that
- * of the same deck with two threads, in other units, numbered anew, by another
+ * of the same deck with two threads, in other units, numbered again, by another
  * method, and stopped in its middle and gone on with.
  *
  * DECKS=count,first: how many, from which seed on; DECKS_KEEP=1: what is lost
@@ -92,7 +92,7 @@ static void check_deck(tally *t, unsigned long long seed) {
 START_TEST(random_decks_hold) {
   static const char *const kind[TWINS] = {
       "random decks, 2 threads", "random decks, units 2^k",
-      "random decks, units 1000", "random decks, numbered anew",
+      "random decks, units 1000", "random decks, numbered again",
       "random decks, other methods"};
   const char *text = getenv("DECKS");
   unsigned long long first = getenv("PROTIS_POINTS") == NULL ? 270 : 0;

@@ -82,7 +82,7 @@ START_TEST(what_is_kept_changes_no_answer) {
 END_TEST
 
 /* Without friction: nodes open and close with the load, what was made for them
- * stays; the answers are those of NEWTON, which starts anew. */
+ * stays; the answers are those of NEWTON, which starts again. */
 START_TEST(opened_nodes_are_kept_and_change_no_answer) {
   unsigned long long seed = 77;
   for (int k = 0; k < 8; ++k) {

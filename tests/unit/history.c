@@ -34,7 +34,7 @@ typedef struct run_record {
   double u[256];
 } run_record;
 
-/* If not 0, increments longer than this fail; the one at hand is try_dt. */
+/* If not 0, increments longer than this fail; the current one is try_dt. */
 static double picky_dt, try_dt;
 
 static status keep(void *ctx, const state *s) {

@@ -46,7 +46,7 @@ void state_before_free(state_before *b) {
 
 /* ---- the bounds ---------------------------------------------------------- */
 
-/* load less A e, and z less e, in place; room in the norm. */
+/* load less A e, and z less e, in place; workspace in the norm. */
 static void shift(const contact_problem *cp, energy_norm *n, const double *e,
                   double *z, double *load) {
   contact_product(cp->m, cp->A, e, n->x);

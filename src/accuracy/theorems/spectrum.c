@@ -39,7 +39,8 @@ typedef struct lanczos {
   int n, k;  /* order; vectors so far                               */
   double *Q; /* [n*STEPS]                                           */
   double *alpha, *beta; /* [STEPS] the tridiagonal matrix                     */
-  double *d, *e, *Z, *work; /* [STEPS], [STEPS], [STEPS^2], [2*STEPS] room    */
+  double *d, *e, *Z,
+      *work; /* [STEPS], [STEPS], [STEPS^2], [2*STEPS] workspace    */
 } lanczos;
 
 /* Largest eigenvalue of the tridiagonal matrix, and its residual added. */

@@ -28,7 +28,7 @@ typedef struct builder {
   unsigned char *alone; /* [n_node] no other node within the radius           */
   double *part; /* [n_node] of its pairs that the mass of a node has room for */
   int *found;   /* [faces or rim]                                     */
-  int *touched, n_touched; /* [n_node] columns of the row at hand             */
+  int *touched, n_touched; /* [n_node] columns of the current row             */
   double *row;             /* [n_node] its values                             */
   int neighbours;          /* other active nodes within the radius            */
   int cut; /* 1: a face with a node left out is within it      */

@@ -53,7 +53,7 @@ typedef struct lines {
   int n_value; /* read so far                                               */
   int capacity, set_capacity;
   int has_temperature; /* the first line ends with one; all do, then          */
-  int in_set;          /* lines of the set at hand                            */
+  int in_set;          /* lines of the current set                            */
   int wrong;           /* an error is in the log                              */
 } lines;
 
@@ -187,7 +187,7 @@ static const option *place_line(lines *r, const record *line, double *T,
   return NULL;
 }
 
-/* A line goes on with the set at hand, or opens the next. */
+/* A line goes on with the current set, or opens the next. */
 static status add_line(lines *r, const record *line) {
   double T = 0;
   int opens;

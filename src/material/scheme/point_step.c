@@ -145,7 +145,7 @@ static int point_update(const scheme_step *p, const double *sigma_old,
   return 0;
 }
 
-/* Largest strain at hand, the scale of the residual. */
+/* Largest current strain, the scale of the residual. */
 static double point_scale(const point_step *l) {
   double scale = 0.0;
   for (int i = 0; i < l->ns; ++i)

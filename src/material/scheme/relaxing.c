@@ -149,7 +149,7 @@ static void stress_row(const law_elastic *el, const double *A, int n,
 }
 
 /* e_zz of the new state: d e - c (P y + Q0 e_old) = 0 in the rows of e^i, d the
- * row of D; row[n] is room. */
+ * row of D; row[n] is workspace. */
 static void eliminate_new(const law_elastic *el, const double *D, linear_map *m,
                           double *row) {
   const int ns = el->ns, n = m->n;

@@ -11,7 +11,7 @@
 /* State of reading a deck, card by card. */
 typedef struct reading {
   model *m;
-  const card *card;   /* the card at hand                                   */
+  const card *card;   /* the current card                                   */
   const void *param;  /* its options, as the row's table says               */
   const void *plugin; /* options of the law or solver it names, or NULL     */
   size_t plugin_size;

@@ -298,7 +298,7 @@ static status read_value(reading *r, const char *what, int variable,
     PASS(read_pairs(r, 0, variable, pairs));
     check_table(r, what, pairs);
     q->number = 1.0;
-    q->factor = pairs; /* set anew by model_resolve                           */
+    q->factor = pairs; /* set again by model_resolve */
     return OK;
   }
   if (c->n_record != 1) {

@@ -9,7 +9,7 @@ static const char *row_name(const model *m, const theorems_contact *c) {
   return c->contact_id < 0 ? "(all)" : m->contacts[c->contact_id].name;
 }
 
-/* The eigenvalues, when they have been found anew. */
+/* The eigenvalues, when they have been found again. */
 static void print_constants(const job *j, const theorems_report *t, FILE *f) {
   char text[2][NUMBER_SIZE], stiff[64], soft[64];
   column_unit("force/length", j->m, stiff, sizeof stiff);

@@ -46,11 +46,12 @@ const char auto_help[] =
   "go first in 3-D, as long as their rate promises the answer for less than\n"
   "NEWTON costs; then the same chain with such sweeps, PCG, PROXIMAL, PCG\n"
   "at length and LAGRANGE before SOR, for compliances that are singular.\n"
-  "The first starts from the last increment, the others anew; each may make\n"
+  "The first starts from the last increment, the others afresh; each may make\n"
   "a number of iterations that bounds its cost, or MAX_ITER if that is less.\n"
   "An answer counts only by the residual of the given problem; the listing\n"
-  "says who tried, why it stopped and who answered. It has no options. Choose\n"
-  "another method to compare, or where one is known to be faster.";
+  "says which methods were tried, why each stopped and which converged. It\n"
+  "has no options. Choose another method to compare, or where one is known\n"
+  "to be faster.";
 /* clang-format on */
 
 enum {

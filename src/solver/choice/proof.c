@@ -61,7 +61,7 @@ static double largest_growth(const contact_problem *cp, const double *v,
   return most;
 }
 
-/* Largest force that A v should not have, of its terms; room[m]. */
+/* Largest force that A v should not have, of its terms; workspace[m]. */
 static double force_of(const contact_problem *cp, const double *v,
                        double *room) {
   double force = 0.0, size = 0.0;

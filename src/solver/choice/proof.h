@@ -22,7 +22,7 @@
 
 #include "solver/choice/anchor.h"
 
-/* 1: v[m] (l[m] of a compliance) is a proof; room[3*m]. */
+/* 1: v[m] (l[m] of a compliance) is a proof; workspace[3*m]. */
 int proof_holds(const contact_problem *cp, const double *v, double *room);
 
 /*

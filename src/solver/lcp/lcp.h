@@ -21,7 +21,7 @@ typedef struct lcp_report {
                       STOPPED_ITERATIONS, STOPPED_SINGULAR (of the basis),
                       STOPPED_NAN                                             */
   int pivots;      /* with the first, which brings z0 in                      */
-  int factorings;  /* inverses of the basis made anew                         */
+  int factorings; /* inverses of the basis made again                         */
   double residual; /* largest |min(z, w)|, in units of q; plain form only     */
 } lcp_report;
 

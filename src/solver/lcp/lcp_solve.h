@@ -42,7 +42,7 @@ typedef struct lcp_verdict {
                          STOPPED_NAN                                          */
   int iterations;     /* pivots and steps of all attempts                     */
   double residual;    /* lcp_residual of z                                    */
-  const char *method; /* who answered last                                    */
+  const char *method; /* the last method                                    */
   char log[LCP_LOG];  /* "lemke: no equilibrium, ..."; "" if the first did */
 } lcp_verdict;
 
@@ -75,7 +75,7 @@ enum { LCP_MOST_BASES = 14 /* unknowns of which all bases are tried */ };
  * The problem with z_i and w_i exchanged for "want" of the unknowns (principal
  * transform; Cottle, Pang, Stone 1992, 2.3), in place: pivoting then starts
  * from another vertex. Those exchanged: turned[n] = 1; fewer where the block is
- * nearly singular. row[n] is room.
+ * nearly singular. row[n] is workspace.
  */
 void lcp_turn(int n, int want, unsigned *seed, double *M, double *q,
               unsigned char *turned, double *row);

@@ -14,7 +14,7 @@ typedef struct nonnegative {
   double *b, *rest; /* [rows]                                                 */
   double *G;        /* [rows*rows] columns taken                              */
   double *x;        /* [rows] their factors                                   */
-  double *y, *Q, *work; /* [rows], [rows*rows], [4*rows] room                 */
+  double *y, *Q, *work; /* [rows], [rows*rows], [4*rows] workspace */
 } nonnegative;
 
 status nonnegative_new(int rows, nonnegative *s);

@@ -22,7 +22,7 @@ void dense_mirror(int m, double *M);
 double dense_power(int m, const double *M);
 /* N[m*(m-rank)], zero before: vectors that L[m*m], factor of rank "rank" in the
  * order "pivot" (from 1), takes to zero: the unknown of one place beyond the
- * rank moves by 1, those before follow. y[rank]: room. */
+ * rank moves by 1, those before follow. y[rank]: workspace. */
 void dense_null(int m, int rank, const double *L, const int *pivot, double *y,
                 double *N);
 /* 0: singular to rounding, which is asked for only if "doubt". */

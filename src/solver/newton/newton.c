@@ -13,7 +13,7 @@
  * B in it the system is symmetric (Cholesky), else LU. c is the diagonal of A.
  *
  * The guess for the next step is read off the solution. A pattern that comes
- * back, or no progress, starts the method anew from another guess (stick, then
+ * back, or no progress, starts the method again from another guess (stick, then
  * that of some sweeps of relaxation); on small problems then one state is
  * changed at a time, the least index first (Murty), which ends for every
  * P-matrix. A singular system (nothing holds the body under the guess) is made
@@ -335,7 +335,7 @@ const solver_ops newton_solver = {
     "2 to 4 from a warm start, to full accuracy, whatever the size. The\n"
     "factor is kept as long as exchanging the rows that change costs less\n"
     "than a new one, from increment to increment too. If a pattern of states\n"
-    "comes back the method starts anew from another guess, one of them made\n"
+    "comes back the method starts again from another guess, one of them made\n"
     "by sweeps of relaxation. A single node is solved directly. Where only\n"
     "the compliance is known the unknowns of a step are the forces of the\n"
     "closed nodes; no inverse is made, but the compliance must have one. The\n"

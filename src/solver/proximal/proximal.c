@@ -47,7 +47,7 @@ struct step_matrix {
   sparse_rows own;      /* rows of W where the set has none                   */
   const sparse_rows *W; /* the one or the other                               */
   int *place;           /* [m] in the system, -1: taken out                   */
-  double *line;         /* [m] the row at hand                                */
+  double *line;         /* [m] the current row                                */
   const double *d;      /* [m] borrowed                                       */
   double *rhs, *x;      /* [m]                                                */
   double *full;         /* [m*m] rows of the system, one after the other      */
@@ -110,7 +110,7 @@ static void step_matrix_begin(step_matrix *s, const unsigned char *acts,
   for (int i = 0; i < s->m; ++i) s->place[i] = acts[i] ? s->k++ : -1;
 }
 
-/* Into the row at hand: share times row j of W; value in column j. */
+/* Into the current row: share times row j of W; value in column j. */
 static void step_matrix_add_row(step_matrix *s, int j, double share) {
   const sparse_rows *W = s->W;
   for (int k = W->start[j]; k < W->start[j + 1]; ++k)
@@ -354,7 +354,7 @@ static double evaluate(run *s) {
   return sum;
 }
 
-/* Into the row at hand: minus "share" times that of z_j. */
+/* Into the current row: minus "share" times that of z_j. */
 static void add_row(const run *s, int j, double share) {
   step_matrix_add_row(s->w->J, j, share * s->stretch * s->w->set->D[j]);
   step_matrix_add(s->w->J, j, -share * (1.0 - s->stretch * s->share));
