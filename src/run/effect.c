@@ -107,6 +107,12 @@ status effects_found(run *r, int *again) {
   return st;
 }
 
+status effects_examine(run *r, double t) {
+  status st = OK;
+  EACH(r, examine, 1, e->examine(r, state_, t))
+  return st;
+}
+
 status effects_accept(run *r) {
   status st = OK;
   EACH(r, accept, is_due(r, k_), e->accept(r, state_))

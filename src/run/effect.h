@@ -51,6 +51,9 @@ typedef struct effect_ops {
   status (*pose)(struct run *r, void *own, double t);
   /* r->now is an equilibrium; *again = 1: the problem has changed. */
   status (*found)(struct run *r, void *own, int *again);
+  /* The increment that ends at t has been solved and will be taken; r->now may
+   * be solved again. */
+  status (*examine)(struct run *r, void *own, double t);
   /* r->now is an increment of the run, r->old what it started from. */
   status (*accept)(struct run *r, void *own);
   /* What the outputs show of it beside its columns. */

@@ -16,10 +16,7 @@ void matrices_free(matrices *m) {
   *m = (matrices){0};
 }
 
-void run_forget_estimates(run *r) {
-  known_rate_forget(&r->solving.rate);
-  solution_set_free(&r->errors.solutions);
-}
+void run_forget_estimates(run *r) { known_rate_forget(&r->solving.rate); }
 
 static status new_solver(const run *r, matrices *m) {
   status st = OK;

@@ -82,7 +82,6 @@ typedef struct progress {
   double dt;    /* of an adaptive step, to be tried, s                        */
   double error; /* of the increments before the step, sqrt(J)                 */
   double residual; /* -, of the attempt before at the same increment          */
-  int lost; /* 1: the last state is none of equilibrium, by far           */
   int last; /* 1: the increment at hand ends the step                       */
   int violated; /* 1: and is not what the theorems say                      */
 } progress;
@@ -164,9 +163,6 @@ typedef struct error_state {
   double *elem_error;       /* [n_elem] or NULL                              */
   double bound_cpu; /* s, spent so far on the error of the solver            */
   int judged; /* 1: the errors of mesh and solver are those of r->now         */
-  int jumps;  /* 1: the equilibrium jumps in the increment               */
-  double jump_t;          /* s, there                                        */
-  solution_set solutions; /* found by CHECK= in the increment                 */
 } error_state;
 
 /* The finer path beside the run. */
@@ -244,6 +240,7 @@ status effects_begin_step(run *r);
 status effects_initial(run *r);
 status effects_pose(run *r, double t);
 status effects_found(run *r, int *again);
+status effects_examine(run *r, double t);
 status effects_accept(run *r);
 void effects_show(const run *r, state *s);
 status effects_keep(run *r, archive *a);

@@ -325,32 +325,6 @@ static int calls_for_velocity(const model *m, char *why, size_t size) {
   return 0;
 }
 
-/* Jumps are looked for where friction makes a path of increments. */
-static int calls_for_check(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n_step; ++i) {
-    const step *s = &m->steps[i];
-    if (s->check == CHECK_NONE) continue;
-    snprintf(why, size, "*SOLVER, CHECK=, %s:%d", PLACE(s->solver_at));
-    return 1;
-  }
-  for (int i = 0; i < m->n_step && (m->effects & EFFECT_FRICTION); ++i) {
-    const step *s = &m->steps[i];
-    if (s->kind != STEP_QUASISTATIC) continue;
-    snprintf(why, size, "friction in *QUASISTATIC of %s:%d may jump",
-             PLACE(s->at));
-    return 1;
-  }
-  snprintf(why, size, "no *SOLVER, CHECK=, no path of friction");
-  return 0;
-}
-
-/* Products with the condensed matrix in each increment. */
-static status products(const plan_sizes *s, effect_work *w) {
-  double m = plan_contact_unknowns(s);
-  *w = (effect_work){s->contact, "nodes", -1.0, s->increments * 3.0 * m * m};
-  return OK;
-}
-
 static status mesh_error(const plan_sizes *s, effect_work *w) {
   *w = (effect_work){s->elements, "elements", 1.0 + s->increments,
                      s->increments * s->elements * 9.0 * plan_element_work(s)};
@@ -463,12 +437,6 @@ const effect_ops reactions_effect = {
     .called_for = calls_for_reaction,
     .foreseen = reactions,
     .own = STAGE_REACTION};
-const effect_ops second_solutions_effect = {
-    .name = "second solutions, jumps",
-    .bit = NO_BIT,
-    .called_for = calls_for_check,
-    .foreseen = products,
-    .own = STAGE_CHECK};
 const effect_ops mesh_error_effect = {
     .name = "error of mesh",
     .bit = EFFECT_BIT_MESH_ERROR,

@@ -133,9 +133,7 @@ static status beside_new(const run *r, beside **out) {
   own->friction.known = 0;
   own->friction.zone = NULL;
   own->solving.rate = (known_rate){0};
-  own->errors.solutions = (solution_set){0};
   own->errors.recovery = NULL;
-  own->errors.jumps = 0;
   own->course.note[0] = '\0';
   if (r->body.d.eigen != NULL) own->body.d.eigen = &own->strains.eigen;
   own->effects.n = 0;

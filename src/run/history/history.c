@@ -77,9 +77,6 @@ state loop_state(run *r, int attempt, int increment_no) {
       .note = r->course.note,
       .error = r->errors.error,
       .rounding = r->errors.rounding,
-      .jumps = r->errors.jumps,
-      .jump_t = r->errors.jump_t,
-      .solutions = r->step->check != CHECK_NONE ? &r->errors.solutions : NULL,
       .mesh_error = r->errors.mesh_error,
       .time_error = r->errors.time_error,
       .balance = r->balance.report,
@@ -154,7 +151,6 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   r->at.last = last;
   r->at.violated = 0;
   TRY(effects_accept(r));
-  TRY(check_increment(r));
   note_nodes(r);
   warn_increment(r, increment_no);
   TRY(note_misfit(r));
@@ -187,7 +183,6 @@ status loop_reject(run *r, int attempt, int increment_no, const char *why) {
   r->errors.rounding = (rounding_loss){0};
   r->errors.mesh_error.asked = r->errors.time_error.asked = 0;
   r->at.violated = 0;
-  r->errors.jumps = 0;
   state s = loop_state(r, attempt, increment_no);
   s.n_open = s.n_slip = s.n_stick = 0;
   if (r->sink->rejected == NULL) return OK;
@@ -344,8 +339,7 @@ static status attempt_piece(run *r, long n) {
   }
   if (!settled && outcome_is_fatal(r->solving.report.outcome))
     TRY(loop_no_equilibrium(r));
-  r->errors.jumps = 0;
-  TRY(jump_check(r, t));
+  TRY(effects_examine(r, t));
   TRY(accept_piece(r, n, cpu));
 done:
   return st;

@@ -83,12 +83,4 @@ status estimate_judge(run *r);
  * is carried through the air has none. */
 void estimate_unloaded(run *r);
 
-/* Whether the equilibrium jumps between r->old and r->now, at time t, into
- * r->errors.jumps, r->errors.jump_t, r->course.note. r->now is solved again if
- * it was looked for. */
-status jump_check(run *r, double t);
-/* Other solutions than that of r->now into r->errors.solutions, if asked
- * for. ERR_DECK: CHECK=ALL is not possible. */
-status check_increment(run *r);
-
 #endif

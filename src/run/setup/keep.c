@@ -111,8 +111,6 @@ static status keep_counts(run *r, archive *a) {
   TRY(archive_bytes(a, "at", &r->at, sizeof r->at));
   TRY(archive_ints(a, "total_no", &r->course.total_no, 1));
   TRY(archive_ints(a, "unsettled", &r->course.unsettled, 1));
-  TRY(archive_ints(a, "jumps", &r->errors.jumps, 1));
-  TRY(archive_reals(a, "jump_t", &r->errors.jump_t, 1));
   TRY(archive_reals(a, "start", r->loads.start, r->n_dof));
   TRY(archive_reals(a, "step_load", &r->loads.largest, 1));
 done:

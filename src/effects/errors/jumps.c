@@ -1,0 +1,371 @@
+/*
+ * Whether an answer with friction is the only one (CHECK=), and whether a path
+ * leads to it: for large friction neither is known.
+ *
+ * Where the fixed point on the sliding limit contracts with rate k, the motion
+ * of an increment is at most 1/(1 - k) times the change of its load, both in
+ * the energy norm, and the states in between form a path. An increment that
+ * moves by more, or in whose slip k is 1 or more, is looked into: states at
+ * times in between are solved for, always in the middle of the part that moves
+ * most. A part with the same statuses at both ends holds no jump. The motion of
+ * a path falls with the length of the part, that of a jump does not. AUTO
+ * solves, also where the method of the deck has missed the tolerance; nothing
+ * is said of an increment that starts from a state far off.
+ */
+#include "base/memory.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "run/history/loop.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct checked {
+  int asked;     /* 1: by CHECK= of the step                          */
+  int jumps;     /* 1: the equilibrium jumps in the increment        */
+  double jump_t; /* s, there                                         */
+  int lost;      /* 1: the last state is none of equilibrium, by far */
+  solution_set solutions; /* found by CHECK= in the increment                 */
+} checked;
+
+enum { DEPTH = 16, /* halvings of the increment */ POINTS = 80 };
+static const double SUSPECT = 2.0; /* -, motion over load                     */
+static const double LEFT = 0x1p-6; /* -, of the motion, in 2^-16 of the load  */
+static const double RATE = 0.98;   /* -, of a measured rate: it may be 1      */
+static const double NEAR = 1e-2;   /* -, residual of a state near the path    */
+static const double STILL = 0x1p-30; /* -, of the largest slip: none          */
+
+/* |a - b|_A of contact displacements; room[2*n_c]. */
+static double distance(const run *r, const double *a, const double *b,
+                       double *room) {
+  double sum = 0.0;
+  for (int i = 0; i < r->nodes.n_c; ++i) room[i] = a[i] - b[i];
+  const double *d = run_rows(r, 0, room);
+  contact_product(r->nodes.n_row, r->problem.cp.A, d, room + r->nodes.n_c);
+  for (int i = 0; i < r->nodes.n_row; ++i) sum += d[i] * room[r->nodes.n_c + i];
+  return sqrt(fmax(sum, 0.0));
+}
+
+/* What the load and the obstacles can move, in the energy norm; room[2*n_c]. */
+static status load_change(run *r, double *room, double *size) {
+  status st = OK;
+  double square = 0.0;
+  *size = distance(r, r->now.motion, r->old.motion, room);
+  for (int i = 0; i < r->nodes.n_row; ++i)
+    room[i] = r->problem.f[i] - r->problem.f_before[i];
+  if (r->body.moduli.n_own > 0 ||
+      r->problem.n_before != r->nodes.n_row) { /* other matrix       */
+    const double *rc = run_rows(r, 1, r->old.rc);
+    contact_product(r->nodes.n_row, r->problem.cp.A, run_rows(r, 0, r->old.uc),
+                    room + r->nodes.n_c);
+    for (int i = 0; i < r->nodes.n_row; ++i)
+      room[i] = r->problem.f[i] + rc[i] - room[r->nodes.n_c + i];
+  }
+  if (condensed_floating(r->c))
+    square = HUGE_VAL;
+  else
+    TRY(condensed_force_energy(r->c, room, &square));
+  *size += sqrt(square);
+done:
+  return st;
+}
+
+/* ---- slip through the increment ------------------------------------------ */
+
+/* Slip of node i since the last equilibrium, m. */
+static double slip_of(const contact_problem *cp, const double *u, int i) {
+  double slip = 0.0;
+  for (int k = 1; k < cp->dim; ++k) {
+    int dof = i * cp->dim + k;
+    if (!contact_held(cp, dof))
+      slip = hypot(slip, u[dof] - contact_stick(cp, dof));
+  }
+  return slip;
+}
+
+/* The state in which every node that has moved, and touches at one end of the
+ * increment, slides: u[m], q[m]. */
+static void set_sliding(const contact_problem *cp, const double *before,
+                        double *u, double *q) {
+  double most = 0.0;
+  for (int i = 0; i < cp->n; ++i) {
+    int normal = i * cp->dim;
+    double push = fmin(before[normal], q[normal]);
+    if (push < 0.0) u[normal] = cp->gap[i];
+    q[normal] = fmin(push, 0.0);
+    most = fmax(most, slip_of(cp, u, i));
+  }
+  for (int i = 0; i < cp->n; ++i) {
+    double slip = slip_of(cp, u, i), g = contact_node_limit(cp, q, i);
+    for (int k = 1; k < cp->dim; ++k) {
+      int dof = i * cp->dim + k;
+      int moves = slip > STILL * most && !contact_held(cp, dof);
+      q[dof] = moves ? -g * (u[dof] - contact_stick(cp, dof)) / slip : 0.0;
+    }
+  }
+}
+
+static status sliding_rate(run *r, double *rate) {
+  status st = OK;
+  const contact_problem *cp = &r->problem.cp;
+  size_t m = (size_t)cp->m;
+  double *u = NULL, *q = NULL, *before = NULL;
+  NEW(u, m);
+  NEW(q, m);
+  NEW(before, m);
+  memcpy(before, run_rows(r, 1, r->old.rc), m * sizeof *before);
+  memcpy(u, run_rows(r, 0, r->now.uc), m * sizeof *u);
+  memcpy(q, run_rows(r, 1, r->now.rc), m * sizeof *q);
+  set_sliding(cp, before, u, q);
+  TRY(contraction_rate(cp, u, q, &r->solving.rate, rate));
+done:
+  memory_free(u);
+  memory_free(q);
+  memory_free(before);
+  return st;
+}
+
+/* ---- states in between --------------------------------------------------- */
+
+typedef struct point {
+  double t;               /* s                                                */
+  double *u;              /* [n_c] m                                          */
+  contact_status *status; /* [n] of the nodes of r->problem.cp */
+  double motion;          /* to the next point, energy norm                   */
+} point;
+
+typedef struct path {
+  run *r;
+  point p[POINTS];
+  int n;
+  double shortest, least; /* part that is not halved, s; motion that counts   */
+  double *room;           /* [2*n_c]                                          */
+} path;
+
+static void path_free(path *s) {
+  for (int k = 0; k < s->n; ++k) {
+    memory_free(s->p[k].u);
+    memory_free(s->p[k].status);
+  }
+  memory_free(s->room);
+}
+
+/* The state u, rc as point number "at". */
+static status insert(path *s, int at, double t, const double *u,
+                     const double *rc) {
+  status st = OK;
+  run *r = s->r;
+  memmove(s->p + at + 1, s->p + at, (size_t)(s->n - at) * sizeof *s->p);
+  s->p[at] = (point){.t = t};
+  ++s->n;
+  NEW(s->p[at].u, r->nodes.n_c);
+  NEW(s->p[at].status, r->nodes.n);
+  memcpy(s->p[at].u, u, (size_t)r->nodes.n_c * sizeof *u);
+  contact_classify(&r->problem.cp, run_rows(r, 0, s->p[at].u),
+                   run_rows(r, 1, (double *)rc), s->p[at].status);
+done:
+  return st;
+}
+
+/* 0 where the statuses at both ends of part k are the same. */
+static void measure(path *s, int k) {
+  point *a = s->p + k, *b = a + 1;
+  size_t bytes = (size_t)s->r->problem.cp.n * sizeof *a->status;
+  a->motion = memcmp(a->status, b->status, bytes) == 0
+                  ? 0.0
+                  : distance(s->r, b->u, a->u, s->room);
+}
+
+/* Halve what moves most until it is short, *found, or moves by nothing. */
+static status follow(path *s, int *found) {
+  status st = OK;
+  run *r = s->r;
+  *found = -1;
+  while (s->n < POINTS) {
+    int k = 0;
+    for (int j = 1; j + 1 < s->n; ++j)
+      if (s->p[j].motion > s->p[k].motion) k = j;
+    if (!(s->p[k].motion > s->least)) break;
+    if (s->p[k + 1].t - s->p[k].t <= s->shortest) {
+      *found = k;
+      break;
+    }
+    double middle = 0.5 * (s->p[k].t + s->p[k + 1].t);
+    TRY(increment_solve(r, middle));
+    if (r->solving.report.outcome <= 0) break;
+    TRY(insert(s, k + 1, middle, r->now.uc, r->now.rc));
+    measure(s, k);
+    measure(s, k + 1);
+  }
+done:
+  return st;
+}
+
+/* AUTO in the place of the method of the deck, so that the answer does not
+ * depend on it; *own: that of the deck. */
+static status lend_solver(run *r, contact_solver **own) {
+  status st = OK;
+  solver_choice choice = r->step->solver;
+  choice.ops = NULL;
+  choice.param = NULL;
+  choice.max_iter = 0;
+  *own = r->elastic.solver;
+  r->elastic.solver = NULL;
+  TRY(contact_solver_new(&choice, &r->elastic.solver));
+done:
+  return st;
+}
+
+static void give_back(run *r, contact_solver *own) {
+  contact_solver_free(r->elastic.solver);
+  r->elastic.solver = own;
+  r->solver = own;
+}
+
+static void note_jump(run *r, checked *own, double t, double share) {
+  size_t used = strlen(r->course.note);
+  own->jumps = 1;
+  own->jump_t = t;
+  snprintf(r->course.note + used, sizeof r->course.note - used,
+           "  JUMP: no path of equilibria leads here: at time %.6g, within "
+           "%.0e of the load of the\n  increment, the state changes by %.0f %% "
+           "of its motion; the run goes on with another branch\n",
+           t, ldexp(1.0, -DEPTH), 100 * share);
+}
+
+/* *share of the motion, 0: no jump; *at: its time, s. r->now is lost. */
+static status look_into(run *r, double t, double *at, double *share) {
+  status st = OK;
+  path s = {.r = r, .shortest = ldexp(t - r->old.t, -DEPTH) * 1.5};
+  contact_solver *own = NULL;
+  int found = -1;
+  TRY(lend_solver(r, &own));
+  NEW(s.room, 2 * r->nodes.n_c);
+  TRY(increment_solve(r, t));
+  if (r->solving.report.outcome <= 0) goto done;
+  TRY(insert(&s, 0, t, r->now.uc, r->now.rc));
+  TRY(insert(&s, 0, r->old.t, r->old.uc, r->old.rc));
+  double all = distance(r, s.p[1].u, s.p[0].u, s.room);
+  s.least = LEFT * all;
+  measure(&s, 0);
+  TRY(follow(&s, &found));
+  if (found < 0) goto done;
+  *at = s.p[found + 1].t;
+  *share = s.p[found].motion / all;
+done:
+  if (own != NULL) give_back(r, own);
+  path_free(&s);
+  return st;
+}
+
+static status look_for_jump(run *r, void *self, double t) {
+  status st = OK;
+  checked *own = self;
+  double change = HUGE_VAL, rate = 0.0, share = 0.0, at = 0.0, *room = NULL;
+  int missed = r->solving.report.outcome <= 0, lost = own->lost;
+  own->jumps = 0;
+  own->lost = missed && !(r->solving.report.residual <= NEAR);
+  if (r->nodes.n == 0 || r->problem.cp.B == NULL || r->problem.cp.floating ||
+      lost)
+    return OK;
+  if (r->step->kind != STEP_QUASISTATIC) return OK;
+  timer_enter_whole(STAGE_CHECK);
+  NEW(room, 2 * r->nodes.n_c);
+  TRY(load_change(r, room, &change));
+  int leaps = distance(r, r->now.uc, r->old.uc, room) > SUSPECT * change;
+  if (!missed && !leaps) TRY(sliding_rate(r, &rate));
+  if (!missed && !leaps && !(rate >= RATE)) goto done;
+  TRY(look_into(r, t, &at, &share));
+  TRY(increment_solve(r, t));
+  if (share > 0.0) note_jump(r, own, at, share);
+done:
+  memory_free(room);
+  timer_leave(STAGE_CHECK);
+  return st;
+}
+
+/* ---- the row --------------------------------------------------------------
+ */
+
+/* Jumps are looked for where friction makes a path of increments. */
+static int calls_for_check(const model *m, char *why, size_t size) {
+  for (int i = 0; i < m->n_step; ++i) {
+    const step *s = &m->steps[i];
+    if (s->check == CHECK_NONE) continue;
+    snprintf(why, size, "*SOLVER, CHECK=, %s:%d", PLACE(s->solver_at));
+    return 1;
+  }
+  for (int i = 0; i < m->n_step && (m->effects & EFFECT_FRICTION); ++i) {
+    const step *s = &m->steps[i];
+    if (s->kind != STEP_QUASISTATIC) continue;
+    snprintf(why, size, "friction in *QUASISTATIC of %s:%d may jump",
+             PLACE(s->at));
+    return 1;
+  }
+  snprintf(why, size, "no *SOLVER, CHECK=, no path of friction");
+  return 0;
+}
+
+/* Products with the condensed matrix in each increment. */
+static status products(const plan_sizes *s, effect_work *w) {
+  double m = plan_contact_unknowns(s);
+  *w = (effect_work){s->contact, "nodes", -1.0, s->increments * 3.0 * m * m};
+  return OK;
+}
+
+static status checked_new(run *r, void **self) {
+  status st = OK;
+  checked *own = NULL;
+  (void)r;
+  NEW(own, 1);
+  *self = own;
+done:
+  return st;
+}
+
+static status begin_step(run *r, void *self) {
+  (void)r;
+  ((checked *)self)->jumps = 0;
+  return OK;
+}
+
+static status find_others(run *r, void *self) {
+  ((checked *)self)->asked = r->step->check != CHECK_NONE;
+  return check_problem(r->step, &r->problem.cp, &r->solving.report, r->now.uc,
+                       r->now.rc, &((checked *)self)->solutions);
+}
+
+static void show(const void *self, state *s) {
+  const checked *own = self;
+  s->jumps = own->jumps;
+  s->jump_t = own->jump_t;
+  if (own->asked) s->solutions = &own->solutions;
+}
+
+static status keep(run *r, void *self, archive *a) {
+  (void)r;
+  return archive_ints(a, "lost", &((checked *)self)->lost, 1);
+}
+
+static void release(void *self) {
+  checked *own = self;
+  if (own == NULL) return;
+  solution_set_free(&own->solutions);
+  memory_free(own);
+}
+
+/* The hooks enter the stage themselves, where there is something to do. */
+const effect_ops second_solutions_effect = {.name = "second solutions, jumps",
+                                            .bit = NO_BIT,
+                                            .called_for = calls_for_check,
+                                            .foreseen = products,
+                                            .own = STAGE_NONE,
+                                            .more = {STAGE_CHECK},
+                                            .create = checked_new,
+                                            .begin_step = begin_step,
+                                            .examine = look_for_jump,
+                                            .accept = find_others,
+                                            .show = show,
+                                            .keep = keep,
+                                            .release = release};
