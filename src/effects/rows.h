@@ -17,6 +17,7 @@
   X(nonlocal)            \
   X(given_forces)        \
   X(slip_history)        \
+  X(wear)                \
   X(velocity)            \
   X(initial_state)       \
   X(inelastic)           \

@@ -144,16 +144,23 @@ typedef enum { STEP_NONE, STEP_STATIC, STEP_QUASISTATIC, STEP_VISCO } step_kind;
 typedef enum { FORM_DISPLACEMENT, FORM_VELOCITY } step_form;
 #define STEP_FORMS "DISPLACEMENT|VELOCITY"
 
-enum {
-  PRINT_CONTACT = 1,
-  PRINT_TOTALS = 2,
-  PRINT_NODES = 4,
-  PRINT_ELEMENTS = 8,
-  PRINT_ENERGY = 16,
-  PRINT_REACTIONS = 32,
-  PRINT_ZONES = 64,
-  PRINT_LOOP = 128
-};
+/* The tables of *PRINT. */
+/* clang-format off */
+#define PRINT_LIST(X)                                                 \
+  X(CONTACT,   "contact nodes")                                       \
+  X(TOTALS,    "resultants per contact")                              \
+  X(NODES,     "nodal displacements")                                 \
+  X(ELEMENTS,  "strains and stresses")                                \
+  X(ENERGY,    "energies, their balance")                             \
+  X(REACTIONS, "forces of supports")                                  \
+  X(ZONES,     "zones of stick, slip, separation with their ends")    \
+  X(LOOP,      "force and motion per contact: loops of friction")     \
+  X(WEAR,      "depth and volume worn off at the nodes of *WEAR")
+/* clang-format on */
+#define PRINT_NUMBER(name, help) PRINT_NUMBER_##name,
+enum { PRINT_LIST(PRINT_NUMBER) PRINT_COUNT };
+#define PRINT_BIT(name, help) PRINT_##name = 1 << PRINT_NUMBER_##name,
+enum { PRINT_LIST(PRINT_BIT) };
 
 /* One line of *INITIAL CONDITIONS. */
 typedef struct initial {

@@ -37,6 +37,7 @@ static const struct { int bit; entity of; const char *name; } kinds[] = {
   {PRINT_REACTIONS, PER_NODE,         "REACTIONS"},
   {PRINT_ZONES,     PER_ZONE,         "ZONES"},
   {PRINT_LOOP,      PER_CONTACT,      "LOOP"},
+  {PRINT_WEAR,      PER_CONTACT_NODE, "WEAR"},
 };
 /* clang-format on */
 
@@ -135,6 +136,7 @@ static status table_rows(const table *columns, tabular *t, const view *v,
   const step *now = &t->m->steps[v->s->step_no - 1];
   switch (p->table) {
     case PRINT_CONTACT:
+    case PRINT_WEAR:
       return contact_rows(columns, t, v, request_group(t->msh, p));
     case PRINT_NODES:
     case PRINT_REACTIONS:

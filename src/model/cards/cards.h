@@ -145,7 +145,7 @@ typedef struct effects_param {
   double tol;
 } effects_param;
 typedef struct print_param {
-  int contact, totals, nodes, elements, energy, reactions, zones, loop;
+  int table[PRINT_COUNT];
   int frequency;
   const char *group, *points;
 } print_param;

@@ -86,15 +86,14 @@ status apply_accuracy(reading *r) {
   return OK;
 }
 
+#define PRINT_WORD(name, help) " " #name
 status apply_print(reading *r) {
   const print_param *p = r->param;
   step *s = open_step(r);
-  const int asked[] = {p->contact, p->totals,    p->nodes, p->elements,
-                       p->energy,  p->reactions, p->zones, p->loop};
   int any = 0;
   s->has_print = 1;
-  for (int i = 0; i < 8; ++i) {
-    if (!asked[i]) continue;
+  for (int i = 0; i < PRINT_COUNT; ++i) {
+    if (!p->table[i]) continue;
     any = 1;
     PASS_GROW(s->prints, s->n_print, s->cap_print);
     print_request *q = &s->prints[s->n_print++];
@@ -114,8 +113,7 @@ status apply_print(reading *r) {
     tell_idle(r, "FREQUENCY", "no TIME POINTS=");
   if (!any && !r->misread)
     message_add(r->m->log, P2005, &r->card->at,
-                "*PRINT names no table: CONTACT, TOTALS, NODES, ELEMENTS, "
-                "ENERGY, REACTIONS, ZONES or LOOP");
+                "*PRINT names no table:" PRINT_LIST(PRINT_WORD));
   return OK;
 }
 

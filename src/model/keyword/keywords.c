@@ -138,6 +138,11 @@ static const option force_options[] = {
   OPTION_CHOICE(force_param, table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
                 "data lines are pairs coordinate (or total time), value"),
   OPTION_END};
+static const option wear_options[] = {
+  OPTION_NAME(effect_param, contact, "CONTACT", NULL, "name of a *CONTACT"),
+  OPTION_REAL(effect_param, value[0], "COEFFICIENT", 0, DBL_MAX, NULL,
+              "length^2/force", "k of Archard's law, depth = k p |slip|"),
+  OPTION_END};
 static const option amplitude_options[] = {
   OPTION_NAME(amplitude_param, name, "NAME", NULL, "name for AMPLITUDE="),
   OPTION_CHOICE(amplitude_param, time, "TIME", "STEP TIME|TOTAL TIME",
@@ -231,16 +236,9 @@ static const option accuracy_options[] = {
              "passes for that"),
   OPTION_END};
 static const option print_options[] = {
-  OPTION_FLAG(print_param, contact, "CONTACT", "NO", "contact nodes"),
-  OPTION_FLAG(print_param, totals, "TOTALS", "NO", "resultants per contact"),
-  OPTION_FLAG(print_param, nodes, "NODES", "NO", "nodal displacements"),
-  OPTION_FLAG(print_param, elements, "ELEMENTS", "NO", "strains and stresses"),
-  OPTION_FLAG(print_param, energy, "ENERGY", "NO", "energies, their balance"),
-  OPTION_FLAG(print_param, reactions, "REACTIONS", "NO", "forces of supports"),
-  OPTION_FLAG(print_param, zones, "ZONES", "NO",
-              "zones of stick, slip, separation with their ends"),
-  OPTION_FLAG(print_param, loop, "LOOP", "NO",
-              "force and motion per contact: loops of friction"),
+#define PRINT_OPTION(name, help) \
+  OPTION_FLAG(print_param, table[PRINT_NUMBER_##name], #name, "NO", help),
+  PRINT_LIST(PRINT_OPTION)
   OPTION_INT(print_param, frequency, "FREQUENCY", 0, 1000000000, "1", "-",
              "every n-th increment and the last; 0: the last only"),
   OPTION_NAME(print_param, group, "GROUP", OPTION_ABSENT,
@@ -339,6 +337,9 @@ const keyword keyword_table[] = {
    "TABLE=",
    "given normal force in the place of the unilateral condition (CPR98 3.19): "
    "p times the area of the node; the node may leave or enter the obstacle"},
+  {"WEAR", IN_MODEL, wear_options, sizeof(effect_param), NULL, apply_effect, 0, 0, "",
+   "the body wears off where it slides: from increment to increment the gap "
+   "opens by COEFFICIENT times pressure times slip (Archard 1953)"},
   {"REFERENCE", IN_MODEL, NO_OPTIONS, NULL, apply_reference, 1, ANY,
    "u_x, u_y, u_z (all); stress_xx, _yy, _zz, _xy, _yz, _zx (all), in "
    "axisymmetry u_r, u_z, stress_rr, _zz, _tt, _rz; pressure: name, number or "

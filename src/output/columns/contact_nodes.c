@@ -76,19 +76,20 @@ static double slip_direction(const view *v, int id, int part) {
 #define CON   PER_CONTACT_NODE, AS_REAL
 #define SUR SCENE_ALL, NEEDS_SURFACE
 #define PLACED SCENE_ALL, NEEDS_PLACE
+#define PLACES PRINT_CONTACT | PRINT_WEAR
 #define SLIDES(scenes) PRINT_CONTACT, F, scenes, NEEDS_PLACE
 const column contact_node_columns[] = {
-{"node_no", "-", PER_CONTACT_NODE, AS_COUNT, PRINT_CONTACT, C, SUR, NULL, 0,
+{"node_no", "-", PER_CONTACT_NODE, AS_COUNT, PLACES, C, SUR, NULL, 0,
  contact_node_no, NULL, "number in the mesh"},
-{"x", "length", CON, PRINT_CONTACT, C, CART,
+{"x", "length", CON, PLACES, C, CART,
  NEEDS_PLACE, NULL, 0, contact_x, NULL, "coordinate"},
-{"r", "length", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_PLACE, NULL, 0,
+{"r", "length", CON, PLACES, C, SCENE_AXI, NEEDS_PLACE, NULL, 0,
  contact_x, NULL, "coordinate"},
-{"y", "length", CON, PRINT_CONTACT, C, CART,
+{"y", "length", CON, PLACES, C, CART,
  NEEDS_PLACE, NULL, 1, contact_x, NULL, "coordinate"},
-{"z", "length", CON, PRINT_CONTACT, C, SCENE_AXI, NEEDS_PLACE, NULL, 1,
+{"z", "length", CON, PLACES, C, SCENE_AXI, NEEDS_PLACE, NULL, 1,
  contact_x, NULL, "coordinate"},
-{"z", "length", CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_PLACE, NULL, 2,
+{"z", "length", CON, PLACES, C, SCENE_SOLID, NEEDS_PLACE, NULL, 2,
  contact_x, NULL, "coordinate"},
 {"area", "length^2", CON, 0, C, PLACED, "area", 0, contact_area, NULL,
  "tributary area"},

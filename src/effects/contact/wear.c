@@ -1,0 +1,208 @@
+/*
+ * *WEAR: a body wears off where it slides on an obstacle (Archard 1953): depth
+ * += k p |slip|, after each increment from its pressure p and slip, and the gap
+ * is opened by it from the next one on. At a corner each obstacle wears off
+ * along its own normal, the slip is that along both.
+ *
+ * This is Euler's method for the pressures: with A the stiffness of the normals
+ * of the nodes and D = k |slip|/area, the wear of an increment takes A D r of
+ * the forces r away, and what is wrong in them is multiplied by I - A D: it
+ * grows once an eigenvalue of A D is above 2, which is refused.
+ */
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "run/run.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "run/column_row.h"
+
+/* depth[dim*n_node] of the mesh, along the normals of the rows of a contact
+ * node, m. */
+
+static int calls_for_wear(const model *m, char *why, size_t size) {
+  const effect_card *c = model_effect_card(m, "WEAR", -1);
+  if (c != NULL)
+    snprintf(why, size, "*WEAR on contact %s, %s:%d",
+             m->contacts[c->contact_id].name, PLACE(c->at));
+  else
+    snprintf(why, size, "no *WEAR card");
+  return c != NULL;
+}
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  enum { PRODUCTS = 20 };
+  const double n = s->contact;
+  *w = (effect_work){n, "nodes", s->increments,
+                     s->increments * PRODUCTS * n * n / PLAN_DENSE};
+  return OK;
+}
+
+static size_t length_of(const run *r) {
+  return (size_t)r->msh->dim * (size_t)r->msh->n_node;
+}
+
+static status wear_new(run *r, void **self) {
+  status st = OK;
+  double *depth = NULL;
+  NEW(depth, length_of(r));
+  *self = depth;
+done:
+  return st;
+}
+
+static status wear_copy(const run *r, const void *of, void **self) {
+  status st = wear_new((run *)r, self);
+  if (st == OK) memcpy(*self, of, length_of(r) * sizeof(double));
+  return st;
+}
+
+/* The contact whose normal row a of node i is, or -1: a tangent. */
+static int normal_of(const contact_surface *s, int i, int a) {
+  return a == 0 ? s->contact_id[i] : s->side_id[(s->dim - 1) * i + a - 1];
+}
+
+static status open_gaps(run *r, void *self, double t) {
+  const double *depth = self;
+  const int dim = r->msh->dim;
+  (void)t;
+  for (int i = 0; i < r->n; ++i)
+    for (int a = 0; a < dim; ++a) {
+      if (normal_of(r->surface, i, a) < 0) continue;
+      double *gap = a == 0 ? &r->gap[i] : &r->side_gap[(dim - 1) * i + a - 1];
+      *gap += depth[dim * r->surface->node_id[i] + a];
+    }
+  return OK;
+}
+
+/* Slip of the increment along all tangents of a node that slides, m. */
+static double slip_of(const run *r, int i) {
+  const int dim = r->msh->dim;
+  double sum = 0.0;
+  if (r->contact[i] == CONTACT_STICK) return 0.0;
+  for (int a = 1; a < dim; ++a)
+    if (normal_of(r->surface, i, a) < 0)
+      sum = hypot(sum, run_motion_over(r, dim * i + a));
+  return sum;
+}
+
+/* The largest eigenvalue of the symmetric root A root from below, of the roots
+ * of D in the rows of r->cp. */
+static status overshoot(const run *r, const double *root, double *largest) {
+  enum { PRODUCTS = 20 };
+  status st = OK;
+  const contact_problem *cp = &r->cp;
+  const size_t m = (size_t)cp->m;
+  double *x = NULL, *y = NULL, norm = 0.0;
+  NEW(x, m);
+  NEW(y, m);
+  *largest = 0.0;
+  for (size_t i = 0; i < m; ++i) norm = hypot(norm, x[i] = root[i]);
+  for (int k = 0; k < PRODUCTS && norm > 0.0; ++k) {
+    double next = 0.0;
+    for (size_t i = 0; i < m; ++i) {
+      double sum = 0.0;
+      for (size_t j = 0; j < m && root[i] > 0.0; ++j)
+        sum += cp->A[m * i + j] * root[j] * x[j] / norm;
+      next = hypot(next, y[i] = root[i] * sum);
+    }
+    memcpy(x, y, m * sizeof *x);
+    *largest = norm = next;
+  }
+done:
+  RELEASE(x, y);
+  return st;
+}
+
+static status wear_off(run *r, void *self) {
+  status st = OK;
+  const contact_surface *s = r->surface;
+  const int dim = r->msh->dim;
+  double *depth = self, *root = NULL, factor;
+  NEW(root, r->n_c);
+  for (int i = 0; i < r->n; ++i) {
+    const double slip = slip_of(r, i);
+    for (int a = 0; a < dim && s->area[i] > 0.0; ++a) {
+      const int id = normal_of(s, i, a), k = dim * i + a;
+      const effect_card *c =
+          id < 0 ? NULL : model_effect_card(r->m, "WEAR", id);
+      if (c == NULL || !(r->now.rc[k] < 0.0)) continue;
+      const double per_force = c->value[0] * slip / s->area[i];
+      depth[dim * s->node_id[i] + a] -= per_force * r->now.rc[k];
+      root[k] = sqrt(per_force);
+    }
+  }
+  TRY(overshoot(r, run_rows(r, 0, root), &factor));
+  if (factor > 2.0)
+    FAIL(ERR_DECK,
+         "step %d, time %g: the wear of an increment of dt = %g takes %.3g "
+         "times the forces of a node away, above 2 they grow without end: give "
+         "increments of dt <= %.3g",
+         run_step_id(r) + 1, r->now.t, r->now.t - r->old.t, factor,
+         (r->now.t - r->old.t) / factor);
+done:
+  memory_free(root);
+  return st;
+}
+
+static status keep(run *r, void *self, archive *a) {
+  return archive_reals(a, "depth", self, length_of(r));
+}
+
+/* Depth of row a of contact node i, m. */
+static double depth_of(const view *v, int i, int a) {
+  const double *depth = effect_state(v->s->effects, &wear_effect);
+  return depth[v->s->surface->dim * v->s->surface->node_id[i] + a];
+}
+
+/* Volume that node i has lost, to a contact or, < 0, to all, m3. */
+static double volume_of(const view *v, int i, int contact_id) {
+  const contact_surface *s = v->s->surface;
+  double sum = 0.0;
+  for (int a = 0; a < s->dim; ++a) {
+    const int id = normal_of(s, i, a);
+    if (id >= 0 && (contact_id < 0 || id == contact_id))
+      sum += s->area[i] * depth_of(v, i, a);
+  }
+  return sum;
+}
+
+static double contact_volume(const view *v, int id, int part) {
+  double sum = 0.0;
+  (void)part;
+  for (int i = 0; i < v->s->surface->n; ++i) sum += volume_of(v, i, id);
+  return sum;
+}
+
+VALUE(wear_depth, depth_of(v, id, 0))
+VALUE(wear_volume, volume_of(v, id, -1))
+
+/* clang-format off */
+static const column columns[] = {
+{"depth", "length", PER_CONTACT_NODE, AS_REAL, PRINT_WEAR, C, SCENE_ALL,
+ NEEDS_PLACE, "wear_depth", 0, wear_depth, NULL,
+ "worn off so far along the normal; the gap is opened by it from the next "
+ "increment on"},
+{"volume", "length^3", PER_CONTACT_NODE, AS_REAL, PRINT_WEAR, C, SCENE_ALL,
+ NEEDS_PLACE, NULL, 0, wear_volume, NULL,
+ "the same times the tributary area"},
+{"worn_volume", "length^3", PER_CONTACT, AS_REAL, PRINT_TOTALS, C, SCENE_ALL,
+ NEEDS_TOTALS, "worn_volume", 0, contact_volume, NULL,
+ "volume worn off so far"}};
+/* clang-format on */
+
+const effect_ops wear_effect = {.name = "wear",
+                                .bit = NO_BIT,
+                                .called_for = calls_for_wear,
+                                .foreseen = expected,
+                                .create = wear_new,
+                                .pose = open_gaps,
+                                .accept = wear_off,
+                                .keep = keep,
+                                .copy = wear_copy,
+                                .release = memory_free,
+                                .columns = columns,
+                                .n_column = COLUMNS(columns)};

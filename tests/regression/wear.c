@@ -1,0 +1,188 @@
+/*
+ * *WEAR against closed forms: depth k p v t under a block that a belt passes,
+ * and the flat that a cylinder gets.
+ */
+#include "support/traced.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A body pressed by 3 on a belt, E = 1000, nu = 0, 1 s at rest and 10 s at
+ * "way"/10 a second; k = 1e-4. "cards" before the
+ * steps. */
+static int run_block(job *j, const char *geo, const char *type, const char *way,
+                     const char *cards, const char *words) {
+  const int solid = strstr(geo, "cube") != NULL;
+  char path[80];
+  snprintf(path, sizeof path, "tests/regression/mesh/%s.geo", geo);
+  job_copy(j, path);
+  job_write(j, "block.inp",
+            "*PARAMETER\nN = 2\nDT = 1.\n*MESH, FILE=%s.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s%s\n"
+            "*AMPLITUDE, NAME=RUN, TIME=TOTAL TIME\n0, 0, 1, 0, 11, 1\n"
+            "*OBSTACLE, NAME=BELT, TYPE=PLANE, AMPLITUDE=RUN\n0, 0%s\n0, %s\n"
+            "MOVE, %s\n*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=BELT\n%s"
+            "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nLEFT, 1\n%s"
+            "*DSLOAD\nTOP, P, 3.\n*PRINT, TOTALS, ENERGY, CONTACT%s\n"
+            "*RESTART\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n<DT>, 10.\n"
+            "*PRINT, TOTALS, ENERGY, CONTACT%s\n*RESTART\n*END STEP\n",
+            geo, type[0] != '\0' ? ", TYPE=" : "", type, solid ? ", 0" : "",
+            solid ? "0, 1" : "1", way, cards, solid ? "FRONT, 2\n" : "",
+            strstr(cards, "*WEAR") != NULL ? ", WEAR" : "",
+            strstr(cards, "*WEAR") != NULL ? ", WEAR" : "");
+  return job_run(j, words);
+}
+
+#define WORN "*WEAR, CONTACT=FOOT, COEFFICIENT=1.E-4\n"
+
+static void check_depth(const job *j, double expected) {
+  dat w = job_table(j, "WEAR", -1), all = job_table(j, "TOTALS", -1);
+  ck_assert_int_gt(w.n_row, 2);
+  for (int i = 0; i < w.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&w, i, "depth"), expected, 1e-10 * expected);
+  ck_assert_double_eq_tol(dat_sum(&w, "volume"), expected, 1e-10 * expected);
+  ck_assert_double_eq_tol(dat_at(&all, 0, "worn_volume"), expected,
+                          1e-10 * expected);
+  dat_free(&w);
+  dat_free(&all);
+}
+
+START_TEST(depth_under_a_belt) {
+  static const struct {
+    const char *geo, *type, *way;
+  } scenes[] = {{"square", "CPE3", "10, 0"}, {"cube", "", "6, -8, 0"}};
+  job j = job_begin("block");
+  int code = run_block(&j, scenes[_i].geo, scenes[_i].type, scenes[_i].way,
+                       WORN, "--no-timing");
+  ck_assert_msg(code == 0, "%s", j.errors);
+  check_depth(&j, 1e-4 * 3 * 10);
+  /* The obstacle takes the work p depth, less what it put in at first. */
+  dat e = job_table(&j, "ENERGY", -1), first = job_table(&j, "ENERGY", 0);
+  ck_assert_double_eq_tol(
+      dat_at(&first, 0, "normal_work") - dat_at(&e, 0, "normal_work"),
+      3 * 1e-4 * 3 * 9, 1e-10);
+  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect")), 1e-13);
+  dat_free(&e);
+  dat_free(&first);
+  job_end(&j);
+}
+END_TEST
+
+/* All of the block slips against friction: wear as the work of the normal
+ * forces, whatever the pressures; stopped and gone on with. */
+START_TEST(volume_with_friction_and_restart) {
+  job j = job_begin("block");
+  const char *const cards = "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.2\n" WORN;
+  ck_assert_int_eq(
+      run_block(&j, "square", "CPE3", "10, 0", cards, "--no-timing"), 0);
+  double volume = 0;
+  for (int k = 0; k <= 10; ++k) {
+    dat c = job_table(&j, "CONTACT", k);
+    for (int i = 0; i < c.n_row; ++i)
+      volume += 1e-4 * dat_at(&c, i, "f_n") * fabs(dat_at(&c, i, "slip"));
+    dat_free(&c);
+  }
+  dat all = job_table(&j, "TOTALS", -1);
+  ck_assert_double_eq_tol(dat_at(&all, 0, "worn_volume"), volume, 1e-12);
+  ck_assert_double_eq_tol(volume, 3e-3, 1e-5);
+  dat_free(&all);
+  /* Stopped half way and gone on with: the same files. */
+  static const char *const words[] = {"--no-timing", NULL};
+  traced t = {.action = TRACE_SIGNAL, .number = SIGTERM};
+  job stopped = job_begin("block");
+  run_block(&stopped, "square", "CPE3", "10, 0", cards, "--check");
+  ck_assert_int_eq(traced_run(&stopped, words, &t), 0);
+  t.at = t.changes / 2;
+  job_clear(&stopped);
+  ck_assert_int_ne(traced_run(&stopped, words, &t), 0);
+  ck_assert_int_eq(job_run(&stopped, "--restart --no-timing"), 0);
+  const char *differs = traced_difference(&j, &stopped);
+  ck_assert_msg(differs == NULL, ".%s differs", differs);
+  job_end(&stopped);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(increments_too_long_are_refused) {
+  job j = job_begin("block");
+  const char *const card = "*WEAR, CONTACT=FOOT, COEFFICIENT=%g\n";
+  char cards[80];
+  snprintf(cards, sizeof cards, card, 0.05);
+  ck_assert_int_eq(
+      run_block(&j, "square", "CPE3", "10, 0", cards, "--no-timing"), 2);
+  ck_assert_ptr_nonnull(strstr(j.errors, "give increments of dt <="));
+  ck_assert_int_eq(run_block(&j, "square", "CPE3", "10, 0", cards,
+                             "--no-timing -D DT=0.001"),
+                   0);
+  check_depth(&j, 0.05 * 3 * 10);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(nothing_without_the_card) {
+  job j = job_begin("block");
+  ck_assert_int_eq(run_block(&j, "square", "CPE3", "10, 0", "", "--no-timing"),
+                   0);
+  dat all = job_table(&j, "TOTALS", -1);
+  ck_assert(!dat_has(&all, "worn_volume"));
+  dat_free(&all);
+  ck_assert_int_eq(job_stage(&j, "wear", NULL), 0);
+  job_end(&j);
+}
+END_TEST
+
+/*
+ * A cylinder of steel worn on a plane until the flat is 5 Hertz half-widths a
+ * wide. With even pressure P/2b on a half plane (Johnson, Contact Mechanics,
+ * 2.30b) the profile that is left conforms if
+ *   k P s = b (4 b^2 - 3 a^2)/(6 R),
+ * without elasticity 2 b^3/3R. The pressure is the more even the larger b/a.
+ */
+START_TEST(flat_of_a_cylinder) {
+  job j = job_begin("pin");
+  job_copy(&j, "input/hertz_line/hertz_line.geo");
+  job_write(&j, "pin.inp",
+            "*PARAMETER\nR = 10.\nP = 1000.\nE = 210.D3\nNU = 0.3\n"
+            "A = \"sqrt(4*P*R*(1 - NU^2)/(pi*E))\"\nB = \"2.5*A\"\nNC = 6\n"
+            "K = \"B*(4*B^2 - 3*A^2)/(6*R)/P\"\n*MESH, FILE=hertz_line.geo\n"
+            "*MATERIAL, NAME=STEEL\n*ELASTIC\n<E>, <NU>\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL, TYPE=CPE3\n"
+            "*AMPLITUDE, NAME=RUN, TIME=TOTAL TIME\n0, 0, 1, 0, 2, 1\n"
+            "*OBSTACLE, NAME=PLANE, TYPE=PLANE, AMPLITUDE=RUN\n0, 0\n0, 1\n"
+            "MOVE, 1, 0\n*CONTACT, NAME=LINE, GROUP=CONTACT, OBSTACLE=PLANE, "
+            "NORMAL=OBSTACLE\n*WEAR, CONTACT=LINE, COEFFICIENT=<K>\n"
+            "*STEP\n*QUASISTATIC\n1, 1\n*BOUNDARY\nSYMMETRY, 1\n"
+            "*DSLOAD\nTOP, P, \"P/(2*R)\"\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n0.005, 1\n"
+            "*PRINT, CONTACT, TOTALS, FREQUENCY=0\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, "--no-timing"), 0);
+  const double a = 0.2348908547, b = 2.5 * a;
+  dat all = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
+  const double volume = b * (4 * b * b - 3 * a * a) / 60;
+  ck_assert_double_eq_tol(2 * dat_at(&all, 0, "worn_volume"), volume,
+                          2e-3 * volume);
+  ck_assert_double_eq_tol(dat_at(&all, 0, "closed_area"), b, 0.04 * b);
+  const double mean = 500 / b;
+  const double top = dat_at(&c, dat_row_near(&c, "x", 0), "pressure");
+  ck_assert_double_ge(top, mean);
+  ck_assert_double_le(top, 1.06 * mean);
+  dat_free(&all);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("wear");
+  tcase_add_loop_test(tests, depth_under_a_belt, 0, 2);
+  tcase_add_test(tests, volume_with_friction_and_restart);
+  tcase_add_test(tests, increments_too_long_are_refused);
+  tcase_add_test(tests, nothing_without_the_card);
+  tcase_add_test(tests, flat_of_a_cylinder);
+  return unit_run("wear", tests);
+}
