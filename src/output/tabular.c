@@ -148,7 +148,8 @@ static status table_rows(const table *columns, tabular *t, const view *v,
       ordered_rows(columns, t, v, t->msh->n_elem, t->elem_order);
       return OK;
     default:
-      for (int i = 0; i < column_items(columns->col[0], v); ++i)
+      for (int i = 0; columns->n > 0 && i < column_items(columns->col[0], v);
+           ++i)
         table_row(columns, v, i, t->dat.f);
       return OK;
   }

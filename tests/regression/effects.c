@@ -209,7 +209,8 @@ START_TEST(every_effect_is_called_for) {
       {"*REFERENCE\nu_x, 0.\nu_y, 0.\n"
        "*OBSTACLE, NAME=LID, TYPE=CONFORMING\n"
        "*CONTACT, NAME=TOP, GROUP=TOP, OBSTACLE=LID\n"
-       "*CONTACT FORCE, CONTACT=TOP\n50.\n",
+       "*CONTACT FORCE, CONTACT=TOP\n50.\n"
+       "*WEAR, CONTACT=TOP, COEFFICIENT=1.E-9\n",
        ""}};
   enum { DECKS = sizeof decks / sizeof *decks };
   job j[DECKS];

@@ -69,32 +69,36 @@ static status open_gaps(run *r, void *self, double t) {
   const double *depth = self;
   const int dim = r->msh->dim;
   (void)t;
-  for (int i = 0; i < r->n; ++i)
+  for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 0; a < dim; ++a) {
       if (normal_of(r->surface, i, a) < 0) continue;
-      double *gap = a == 0 ? &r->gap[i] : &r->side_gap[(dim - 1) * i + a - 1];
+      double *gap = a == 0 ? &r->problem.gap[i]
+                           : &r->problem.side_gap[(dim - 1) * i + a - 1];
       *gap += depth[dim * r->surface->node_id[i] + a];
     }
   return OK;
 }
 
-/* Slip of the increment along all tangents of a node that slides, m. */
+/* Slip of the increment along all tangents of a node that slides or that a
+ * support holds against the obstacle, m. */
 static double slip_of(const run *r, int i) {
   const int dim = r->msh->dim;
   double sum = 0.0;
-  if (r->contact[i] == CONTACT_STICK) return 0.0;
-  for (int a = 1; a < dim; ++a)
-    if (normal_of(r->surface, i, a) < 0)
-      sum = hypot(sum, run_motion_over(r, dim * i + a));
+  for (int a = 1; a < dim; ++a) {
+    const int k = dim * i + a;
+    if (normal_of(r->surface, i, a) < 0 &&
+        (r->result.contact[i] != CONTACT_STICK || r->surface->held[k]))
+      sum = hypot(sum, run_motion_over(r, k));
+  }
   return sum;
 }
 
 /* The largest eigenvalue of the symmetric root A root from below, of the roots
- * of D in the rows of r->cp. */
+ * of D in the rows of r->problem.cp. */
 static status overshoot(const run *r, const double *root, double *largest) {
   enum { PRODUCTS = 20 };
   status st = OK;
-  const contact_problem *cp = &r->cp;
+  const contact_problem *cp = &r->problem.cp;
   const size_t m = (size_t)cp->m;
   double *x = NULL, *y = NULL, norm = 0.0;
   NEW(x, m);
@@ -121,9 +125,9 @@ static status wear_off(run *r, void *self) {
   status st = OK;
   const contact_surface *s = r->surface;
   const int dim = r->msh->dim;
-  double *depth = self, *root = NULL, factor;
-  NEW(root, r->n_c);
-  for (int i = 0; i < r->n; ++i) {
+  double *depth = self, *root = NULL, factor = 0.0;
+  NEW(root, r->nodes.n_c);
+  for (int i = 0; i < r->nodes.n; ++i) {
     const double slip = slip_of(r, i);
     for (int a = 0; a < dim && s->area[i] > 0.0; ++a) {
       const int id = normal_of(s, i, a), k = dim * i + a;

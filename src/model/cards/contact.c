@@ -404,6 +404,13 @@ status apply_effect(reading *r) {
   const effect_param *p = r->param;
   int id = p->contact == NULL ? -1 : find_contact(r, p->contact);
   if (p->contact != NULL && id < 0) return OK;
+  const effect_card *first = model_effect_card(m, r->card->name, id);
+  if (first != NULL) {
+    message_add(m->log, P2011, &r->card->at,
+                "contact %s has its *%s already, at line %d", p->contact,
+                r->card->name, first->at.line_no);
+    return OK;
+  }
   GROW(m->effect_cards, m->n_effect_card, m->cap_effect_card);
   effect_card *c = &m->effect_cards[m->n_effect_card++];
   *c = (effect_card){r->card->name, id, {0}, r->card->at};

@@ -337,7 +337,8 @@ const keyword keyword_table[] = {
    "TABLE=",
    "given normal force in the place of the unilateral condition (CPR98 3.19): "
    "p times the area of the node; the node may leave or enter the obstacle"},
-  {"WEAR", IN_MODEL, wear_options, sizeof(effect_param), NULL, apply_effect, 0, 0, "",
+  {"WEAR", IN_MODEL, wear_options, sizeof(effect_param), NULL, apply_effect, 0,
+   0, "",
    "the body wears off where it slides: from increment to increment the gap "
    "opens by COEFFICIENT times pressure times slip (Archard 1953)"},
   {"REFERENCE", IN_MODEL, NO_OPTIONS, NULL, apply_reference, 1, ANY,
