@@ -107,8 +107,9 @@ double contact_scale(const contact_problem *cp);
  * they make. What only carries the body, in f, A u and c ut0, is not in s; what
  * rounding can have put into a row with such terms, 2^-47 of
  * |f_i| + sqrt(k_i) max_j sqrt(k_j) |u_j|, is taken off e.
- * s is at least 2^-14 of cp->load and of c times what a node has gone of its
- * gap: a body that falls through it has forces that rounding of A u hides.
+ * s is at least 2^-14 of cp->load, times the forces of the body over those of
+ * the one with the largest, and of c times what a node has gone of its gap: a
+ * body that falls through it has forces that rounding of A u hides.
  * Loads of a body: f_load, in the compliance form the force that holds a node
  * alone at its gap.
  *

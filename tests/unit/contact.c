@@ -78,6 +78,25 @@ START_TEST(scale_is_above_rounding_of_loads_and_of_the_way) {
 }
 END_TEST
 
+/* Two springs of 4 and 4e-8 N/m pressed by 1 and 1e-12 N: the force of the weak
+ * one misses a tenth, whatever the loads of the other come to. */
+START_TEST(weak_body_is_judged_by_its_own_loads) {
+  contact_case c = case_new(2, 2, 0.0);
+  const double load[2] = {1.0, 1e-12}, spring[2] = {4.0, 4e-8};
+  double u[4] = {0}, r[4] = {0};
+  for (int i = 0; i < 2; ++i) {
+    c.A[10 * i] = c.A[10 * i + 5] = spring[i];
+    c.f[2 * i] = load[i];
+    r[2 * i] = -load[i];
+  }
+  c.cp.load = 1.0;
+  ck_assert(contact_residual(&c.cp, u, r) == 0.0);
+  r[2] *= 0.9;
+  ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.1, 1e-3);
+  case_free(&c);
+}
+END_TEST
+
 START_TEST(scale_is_of_the_problem) {
   contact_case c = one_node(4.0, 2.0, 0.5);
   ck_assert(contact_scale(&c.cp) == 0.0);
@@ -333,7 +352,8 @@ START_TEST(unlike_nodes_of_a_body_are_measured_apart) {
 END_TEST
 
 UNIT_MAIN("contact", residual_is_zero_for_solved_node,
-          each_broken_condition_shows_by_its_size, scale_is_of_the_problem,
+          each_broken_condition_shows_by_its_size,
+          weak_body_is_judged_by_its_own_loads, scale_is_of_the_problem,
           scale_is_above_rounding_of_loads_and_of_the_way,
           closed_gap_counts_where_it_is_nearer, nan_anywhere_gives_nan,
           factors_of_two_leave_every_bit, disc_is_exact_at_any_angle,

@@ -23,6 +23,7 @@ typedef struct measure {
   const contact_problem *cp;
   const double *u, *r;
   double scale, largest; /* contact_scale; largest diagonal                   */
+  double forces;         /* largest of a body, N                              */
   body_size one, *size;  /* of the only body; of all                          */
 } measure;
 
@@ -150,6 +151,14 @@ static void measure_set(const contact_problem *cp, double scale,
   for (int b = 0; cp->bodies != NULL && b < cp->bodies->n; ++b)
     x->size[b] = (body_size){0};
   for (int i = 0; i < cp->n; ++i) add_node(x, i);
+  for (int b = 0; b < (cp->bodies == NULL ? 1 : cp->bodies->n); ++b)
+    x->forces = larger(x->forces, larger(x->size[b].load, x->size[b].contact));
+}
+
+/* What the loads of a body grow to, as those of all do, N. */
+static double load_to_come(const measure *x, const body_size *b) {
+  double own = larger(b->load, b->contact);
+  return x->forces > 0.0 ? own / x->forces * x->cp->load : x->cp->load;
 }
 
 /* Forces that a part of a node, of stiffness c, is compared with. */
@@ -163,7 +172,7 @@ static double forces_of(const measure *x, const measured *node,
 /* Scale of them: not below rounding. */
 static double scale_of(const measure *x, const body_size *b,
                        const measured *node, double c) {
-  double least = x->cp->A != NULL ? larger(x->cp->load, b->fallen) : 0.0;
+  double least = x->cp->A != NULL ? larger(load_to_come(x, b), b->fallen) : 0.0;
   least = larger(FLOOR * least, LEAST / ROUNDING * node->rounding);
   return larger(forces_of(x, node, b, c), least);
 }
