@@ -202,6 +202,7 @@ torture-slice: $(program) $(preload) $(tort)
 	$(Q)$(torture) JOBS=$(JOBS) tools/run_tests $(tort)
 
 torture: $(program) $(preload) $(tort) $(out)/tests/unit/conformance \
+         $(out)/tests/unit/deck_hostile $(out)/tests/unit/hdf5 \
          $(out)/tests/stability/lcp $(out)/tests/regression/mutants
 	$(Q)$(torture) JOBS=$(JOBS) PROTIS_POINTS=$(POINTS) tools/torture \
 	  $(filter-out $(program) $(preload),$^)

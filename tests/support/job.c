@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -254,16 +255,52 @@ static int opens_block(const char *line, const char *kind) {
          !isalnum((unsigned char)word[7 + n]);
 }
 
-dat job_table(const job *j, const char *kind, int k) {
-  char path[PATH], line[LINE];
+/* Where a file was read to: the next of its tables is looked for from there. */
+typedef struct reached {
+  char path[PATH], kind[32];
+  struct stat file;
+  int k; /* tables of the kind that were passed */
+  long at;
+} reached;
+
+static int goes_on(const reached *r, const reached *now) {
+  return strcmp(r->path, now->path) == 0 && strcmp(r->kind, now->kind) == 0 &&
+         r->k <= now->k && r->file.st_ino == now->file.st_ino &&
+         r->file.st_size == now->file.st_size &&
+         r->file.st_mtim.tv_sec == now->file.st_mtim.tv_sec &&
+         r->file.st_mtim.tv_nsec == now->file.st_mtim.tv_nsec;
+}
+
+/* Start of block k of the kind, k < 0: of the last; -1: there is none. */
+static long find_block(FILE *f, reached *now) {
+  static reached last;
+  char line[LINE];
   long wanted = -1;
-  int found = 0;
-  snprintf(path, sizeof path, "%s/%s.dat", j->dir, j->name);
-  FILE *f = fopen(path, "r");
-  ck_assert_msg(f != NULL, "no %s; stderr: %s", path, j->errors);
-  while (fgets(line, sizeof line, f) != NULL)
-    if (opens_block(line, kind) && (found++ == k || k < 0)) wanted = ftell(f);
-  ck_assert_msg(wanted >= 0, "no block %d of table %s in %s", k, kind, path);
+  int found = 0, k = now->k;
+  if (fstat(fileno(f), &now->file) == 0 && goes_on(&last, now)) {
+    found = last.k;
+    fseek(f, last.at, SEEK_SET);
+  }
+  while ((wanted < 0 || k < 0) && fgets(line, sizeof line, f) != NULL)
+    if (opens_block(line, now->kind) && (found++ == k || k < 0))
+      wanted = ftell(f);
+  if (wanted < 0 || k < 0) return wanted;
+  last = *now;
+  last.k = found;
+  last.at = wanted;
+  return wanted;
+}
+
+dat job_table(const job *j, const char *kind, int k) {
+  char line[LINE];
+  reached now = {.k = k};
+  snprintf(now.path, sizeof now.path, "%s/%s.dat", j->dir, j->name);
+  snprintf(now.kind, sizeof now.kind, "%s", kind);
+  FILE *f = fopen(now.path, "r");
+  ck_assert_msg(f != NULL, "no %s; stderr: %s", now.path, j->errors);
+  long wanted = find_block(f, &now);
+  ck_assert_msg(wanted >= 0, "no block %d of table %s in %s", k, kind,
+                now.path);
   dat d = {0};
   fseek(f, wanted, SEEK_SET);
   ck_assert_ptr_nonnull(fgets(line, sizeof line, f));

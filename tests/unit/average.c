@@ -376,7 +376,7 @@ END_TEST
 /* In the plane the edge of a half plane sees the kernel of the disc, whose
  * part beyond a line at distance s is a one-dimensional integral. */
 static double half_plane(const mollifier *m, double s) {
-  enum { STEPS = 1000 };
+  enum { STEPS = 400 };
   double sum = 0.0, h = 2.0 * m->radius / STEPS;
   for (int i = 0; i < STEPS; ++i)
     for (int j = 0; j < STEPS; ++j) {
@@ -450,7 +450,7 @@ START_TEST(disc_clear_of_nodes_left_out_is_whole) {
   }
   for (int i = 0; i < NODES; ++i) clear[i] = left_out_sampled(&o, i);
   for (int k = 0; k < KERNEL_COUNT; ++k)
-    for (double radius = 0.2; radius < 0.3; radius += 0.02) {
+    for (double radius = 0.2; radius < 0.3; radius += 0.04) {
       sparse_rows G = build(&o, (kernel)k, radius, 0, 0, NULL);
       for (int i = 0; i < o.p.n_node; ++i) {
         if (!o.active[i] || clear[i] < 1.03 * radius) continue;
