@@ -82,8 +82,9 @@ static status write_condensed(output *o, const state *s) {
   const step *now = &o->m->steps[s->step_no - 1];
   char name[512], text[200];
   char *path = NULL;
-  if (s->problem == NULL || !frequency_shows(now->condensed_frequency,
-                                             s->increment_no, s->end_of_step))
+  if (s->contacts.problem == NULL ||
+      !frequency_shows(now->condensed_frequency, s->increment_no,
+                       s->end_of_step))
     return OK;
   timer_enter(STAGE_FCLIB);
   snprintf(name, sizeof name, "%s_condensed_%05d", o->m->job,
@@ -93,8 +94,8 @@ static status write_condensed(output *o, const state *s) {
            s->increment_no, s->t);
   path = text_path(o->o.dir, name, "h5");
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  TRY(fclib_write(s->problem, s->settled ? s->uc : NULL, s->rc, o->m->title,
-                  text, path));
+  TRY(fclib_write(s->contacts.problem, s->settled ? s->contacts.uc : NULL,
+                  s->contacts.rc, o->m->title, text, path));
 done:
   memory_free(path);
   timer_leave(STAGE_FCLIB);

@@ -20,10 +20,10 @@ status sta_header(const output_options *o, text_file *sta) {
 /* What CHECK= found, after the reason. */
 static const char *check_text(const state *s, char text[32]) {
   text[0] = '\0';
-  if (s->solutions == NULL) return text;
-  if (s->solutions->n_found > 1)
-    snprintf(text, 32, " SOLUTIONS=%d", s->solutions->n_found);
-  else if (!solution_set_confirmed(s->solutions))
+  if (s->errors.solutions == NULL) return text;
+  if (s->errors.solutions->n_found > 1)
+    snprintf(text, 32, " SOLUTIONS=%d", s->errors.solutions->n_found);
+  else if (!solution_set_confirmed(s->errors.solutions))
     snprintf(text, 32, " UNCONFIRMED");
   return text;
 }
@@ -36,20 +36,23 @@ static const char *check_text(const state *s, char text[32]) {
 static void print_reason(const state *s, const char *why, FILE *f) {
   char check[32];
   outcome o = s->report.outcome;
-  const char *code = o < 0 ? outcome_code(o) : s->in_doubt ? "BOUND" : "";
+  const char *code = o < 0                ? outcome_code(o)
+                     : s->errors.in_doubt ? "BOUND"
+                                          : "";
   const char *blank = code[0] != '\0' ? " " : "";
   if (why != NULL)
     fprintf(f, " CUT%s%s %s\n", blank, code, why);
   else if (!s->settled)
     fprintf(f, " UNSETTLED%s%s%s\n", blank, code, check_text(s, check));
   else
-    fprintf(f, " OK%s%s\n", s->jumps ? " JUMP" : "", check_text(s, check));
+    fprintf(f, " OK%s%s\n", s->errors.jumps ? " JUMP" : "",
+            check_text(s, check));
 }
 
 /* Error of the solver in %, "-": not asked for, or no bound. */
 static const char *error_text(const state *s, char text[NUMBER_SIZE]) {
-  if (!s->error.asked || isnan(s->error.relative)) return "-";
-  return text_number(text, 100 * s->error.relative, 1);
+  if (!s->errors.error.asked || isnan(s->errors.error.relative)) return "-";
+  return text_number(text, 100 * s->errors.error.relative, 1);
 }
 
 /* An estimate in %, "-": not asked for, or unknown. */
@@ -65,11 +68,11 @@ status sta_line(const output_options *o, const state *s, const char *why,
   const solver_report *r = &s->report;
   fprintf(sta->f, "%6d %5d %3d %s %s %7d %7d %7d %-9s %7d %s %9s %9s %9s",
           s->step_no, s->increment_no, s->attempt, text_number(t, s->t, 4),
-          text_number(dt, s->dt, 4), s->n_open, s->n_slip, s->n_stick,
-          r->solver != NULL ? r->solver : "-", r->iterations,
-          text_number(residual, r->residual, 3),
-          share_text(&s->mesh_error, in_mesh),
-          share_text(&s->time_error, in_steps), error_text(s, error));
+          text_number(dt, s->dt, 4), s->contacts.n_open, s->contacts.n_slip,
+          s->contacts.n_stick, r->solver != NULL ? r->solver : "-",
+          r->iterations, text_number(residual, r->residual, 3),
+          share_text(&s->errors.mesh_error, in_mesh),
+          share_text(&s->errors.time_error, in_steps), error_text(s, error));
   if (!o->no_timing) fprintf(sta->f, " %9.3f", s->cpu);
   print_reason(s, why, sta->f);
   return text_check(sta);
@@ -96,7 +99,7 @@ void cvg_line(int total_no, int attempt, const solver_step *s, text_file *cvg) {
 
 void cvg_end(int total_no, int attempt, const state *s, text_file *cvg) {
   char residual[NUMBER_SIZE];
-  if (s->surface == NULL) return;
+  if (s->contacts.surface == NULL) return;
   fprintf(cvg->f, "# total %d att %d ended: %s %s (%s), residual %s\n",
           total_no, attempt, s->report.solver != NULL ? s->report.solver : "-",
           outcome_code(s->report.outcome), outcome_text(s->report.outcome),
@@ -113,7 +116,8 @@ void progress_show(const state *s) {
   snprintf(text, sizeof text,
            "step %d  increment %d  time %.4g  open %d  slip %d  stick %d  "
            "iterations %d  residual %.1e",
-           s->step_no, s->increment_no, s->t, s->n_open, s->n_slip, s->n_stick,
-           s->report.iterations, s->report.residual);
+           s->step_no, s->increment_no, s->t, s->contacts.n_open,
+           s->contacts.n_slip, s->contacts.n_stick, s->report.iterations,
+           s->report.residual);
   progress_line(text);
 }

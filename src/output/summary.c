@@ -46,28 +46,28 @@ status output_remember(output *o, const state *s) {
                            .attempt = s->attempt,
                            .t = s->t,
                            .dt = s->dt,
-                           .n_open = s->n_open,
-                           .n_slip = s->n_slip,
-                           .n_stick = s->n_stick,
+                           .n_open = s->contacts.n_open,
+                           .n_slip = s->contacts.n_slip,
+                           .n_stick = s->contacts.n_stick,
                            .iterations = s->report.iterations,
                            .settled = s->settled,
                            .outcome = s->report.outcome,
                            .residual = s->report.residual,
-                           .error = s->error,
-                           .rounding = s->rounding,
-                           .mesh_error = s->mesh_error,
-                           .time_error = s->time_error,
-                           .exact = s->exact,
-                           .balance = s->balance,
-                           .jumps = s->jumps,
-                           .jump_t = s->jump_t,
+                           .error = s->errors.error,
+                           .rounding = s->errors.rounding,
+                           .mesh_error = s->errors.mesh_error,
+                           .time_error = s->errors.time_error,
+                           .exact = s->errors.exact,
+                           .balance = s->errors.balance,
+                           .jumps = s->errors.jumps,
+                           .jump_t = s->errors.jump_t,
                            .defect = energy_defect_relative(&s->energy)};
-  if (s->surface != NULL)
+  if (s->contacts.surface != NULL)
     run->residual_worst = worse(run->residual_worst, s->report.residual);
   run->defect_worst = worse(run->defect_worst, fabs(i->defect));
-  if (s->flow != NULL) run->tally = *s->flow->tally;
-  PASS(remember_solutions(s->solutions, i));
-  PASS(remember_theory(&s->theorems, i));
+  if (s->body.flow != NULL) run->tally = *s->body.flow->tally;
+  PASS(remember_solutions(s->errors.solutions, i));
+  PASS(remember_theory(&s->errors.theorems, i));
   if (!s->settled) ++run->n_unsettled;
   return OK;
 }

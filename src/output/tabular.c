@@ -118,7 +118,7 @@ static int in_group(const mesh_group *g, int node_id) {
 /* The contact nodes in the order of their node_no. */
 static status contact_rows(const table *columns, tabular *t, const view *v,
                            const mesh_group *g) {
-  const contact_surface *surface = v->s->surface;
+  const contact_surface *surface = v->s->contacts.surface;
   OWNED size_t *no = NULL;
   OWNED int *order = NULL;
   if (surface == NULL) return OK;

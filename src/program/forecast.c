@@ -60,10 +60,12 @@ static status see_increment(void *ctx, const state *s) {
   trial *t = ctx;
   if (s->energy.strain < t->energy) return OK;
   t->energy = s->energy.strain;
-  t->error = s->mesh_error.relative;
+  t->error = s->errors.mesh_error.relative;
   if (t->eta != NULL)
-    memcpy(t->eta, s->elem_error, (size_t)t->n_elem * sizeof *t->eta);
-  t->time = isfinite(s->time_error.relative) ? s->time_error.relative : 0.0;
+    memcpy(t->eta, s->errors.elem_error, (size_t)t->n_elem * sizeof *t->eta);
+  t->time = isfinite(s->errors.time_error.relative)
+                ? s->errors.time_error.relative
+                : 0.0;
   return OK;
 }
 

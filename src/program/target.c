@@ -59,12 +59,13 @@ static void see_ready(void *ctx, const setup_facts *facts) {
 
 static status see_increment(void *ctx, const state *s) {
   pass *p = ctx;
-  if (!s->mesh_error.asked || s->energy.strain < p->energy) return OK;
+  if (!s->errors.mesh_error.asked || s->energy.strain < p->energy) return OK;
   p->energy = s->energy.strain;
-  p->mesh = s->mesh_error.relative;
-  p->time = s->time_error.relative;
-  p->solver = s->error.asked ? s->error.relative : 0.0;
-  memcpy(p->eta, s->elem_error, (size_t)p->in->msh->n_elem * sizeof *p->eta);
+  p->mesh = s->errors.mesh_error.relative;
+  p->time = s->errors.time_error.relative;
+  p->solver = s->errors.error.asked ? s->errors.error.relative : 0.0;
+  memcpy(p->eta, s->errors.elem_error,
+         (size_t)p->in->msh->n_elem * sizeof *p->eta);
   return OK;
 }
 

@@ -360,7 +360,7 @@ done:
 }
 
 void visco_show(const run *r, state *s) {
-  s->flow = &r->strains.visco->x;
-  s->flow_elem = r->strains.visco->elem;
-  s->inelastic = &r->strains.visco->now;
+  s->body.flow = &r->strains.visco->x;
+  s->body.flow_elem = r->strains.visco->elem;
+  s->body.inelastic = &r->strains.visco->now;
 }

@@ -118,54 +118,67 @@ typedef struct what_if {
                   int *solved);
 } what_if;
 
-/* One accepted increment. Arrays are borrowed and live until the next one. */
-typedef struct state {
-  int step_no, increment_no; /* from 1, increments counted within the step    */
-  int total_no; /* increments since the start, from 1                  */
-  int attempt;  /* 1: not cut                                          */
-  double t, dt; /* end of the increment, s                             */
-  int end_of_step;
-  int within; /* 1: t is a time point within the increment                    */
-  const double *u; /* [dim*n_node] m                                      */
+/* What is known of its errors. */
+typedef struct state_errors {
+  error_bound error; /* of the contact solver                                 */
+  int in_doubt;      /* 1: its bound is above 10 %                            */
+  rounding_loss rounding;
+  error_share mesh_error, time_error; /* of the mesh, of the increments       */
+  const double *elem_error; /* [n_elem] share of each element in the error of
+                               the mesh, -, relative as that; or NULL         */
+  balance_report balance;
+  true_error exact; /* against *REFERENCE                                     */
+  int jumps;        /* 1: no path of equilibria leads to this one             */
+  double jump_t;    /* s, where the equilibrium jumps then                    */
+  theorems_report theorems;      /* the theorems at work                      */
+  const solution_set *solutions; /* of CHECK=; NULL: not asked for            */
+} state_errors;
+
+typedef struct state_body {
+  const double *u;               /* [dim*n_node] m                            */
   const double *strain, *stress; /* [ns*n_elem] -, Pa; NULL if no output asks */
   const double *temperature; /* [n_elem] or NULL: no thermal strain           */
   const flow *flow;          /* elements whose law flows; NULL: none          */
   const int *flow_elem;      /* [flow->n] ascending                           */
   const flow_state *inelastic; /* their strains and internal variables        */
   const double *reaction; /* [dim*n_node] N, of the supports; 0 where free    */
+} state_body;
+
+typedef struct state_contacts {
   const contact_problem *problem; /* what was solved; NULL: no contact, LCP   */
   const contact_surface *surface; /* NULL: no contact. A problem from a file
                                 has numbers 1 to n and no geometry (x NULL) */
-  const double *uc, *rc; /* [dim*n] contact frame, m, N                     */
-  const double *gap;     /* [n] gap left open: gap0 - u_n, m                */
-  const double *slip;    /* [(dim-1)*n] slip of the increment, of a static
-                            problem from the origin, m                      */
-  const double *limit;   /* [n] sliding limit g, N; NULL: frictionless      */
+  const double *uc, *rc;          /* [dim*n] contact frame, m, N              */
+  const double *gap;              /* [n] gap left open: gap0 - u_n, m         */
+  const double *slip;  /* [(dim-1)*n] slip of the increment, of a static
+                          problem from the origin, m                          */
+  const double *limit; /* [n] sliding limit g, N; NULL: frictionless          */
   const contact_status *contact; /* [n]                                       */
-  const contact_total *totals; /* [n_contact]                                 */
+  const contact_total *totals;   /* [n_contact]                               */
   const double *distance; /* [n] all slip so far, m; NULL: frictionless       */
   const double *torque;   /* [n_contact] about its axis, N m; NULL: no axis   */
-  const struct effect_list *effects; /* of the run, that are on; or NULL     */
   int n_open, n_slip, n_stick;
+} state_contacts;
+
+/* One accepted increment. Arrays are borrowed and live until the next one. */
+typedef struct state {
+  int step_no, increment_no; /* from 1, increments counted within the step    */
+  int total_no; /* increments since the start, from 1                         */
+  int attempt;  /* 1: not cut                                                 */
+  double t, dt; /* end of the increment, s                                    */
+  int end_of_step;
+  int within; /* 1: t is a time point within the increment                    */
+  state_body body;
+  state_contacts contacts;
+  state_errors errors;
+  const struct effect_list *effects; /* of the run, that are on; or NULL      */
   energies energy;
   solver_report report;
-  error_bound error; /* of the contact solver                */
-  rounding_loss rounding;
-  error_share mesh_error, time_error; /* of the mesh, of the increments       */
-  balance_report balance;
-  true_error exact; /* against *REFERENCE                                     */
-  const double *elem_error; /* [n_elem] share of each element in the error of
-                               the mesh, -, relative as that; or NULL         */
-  int jumps;     /* 1: no path of equilibria leads to this one                */
-  double jump_t; /* s, where the equilibrium jumps then                       */
-  theorems_report theorems;      /* the theorems at work      */
-  const solution_set *solutions; /* of CHECK=; NULL: not asked for            */
   const char *solver_log;
   const char *note; /* whole lines about what jumps, "" or NULL: nothing      */
-  double cpu;       /* of this increment, s                                */
-  int settled;      /* 1: reached its tolerance, and is not in doubt       */
-  int in_doubt;     /* 1: the bound of the solver's error is above 10 %     */
-  what_if again;    /* until the next one                                  */
+  double cpu;       /* of this increment, s                                   */
+  int settled;      /* 1: reached its tolerance, and is not in doubt          */
+  what_if again;    /* until the next one                                     */
 } state;
 
 /* Facts of the run before the first increment, for the listing. */

@@ -19,14 +19,15 @@ typedef struct follower {
 static status keep(void *ctx, const state *s) {
   follower *r = ctx;
   creep_end *e = r->end;
-  const size_t n = (size_t)s->problem->n;
+  const size_t n = (size_t)s->contacts.problem->n;
   ck_assert_uint_le(n, 64);
-  memcpy(e->u, s->u, (size_t)e->n_dof * sizeof *e->u);
+  memcpy(e->u, s->body.u, (size_t)e->n_dof * sizeof *e->u);
   if (s->step_no == 2 && s->increment_no > 1)
-    e->changes += memcmp(r->before, s->contact, n * sizeof *s->contact) != 0;
-  memcpy(r->before, s->contact, n * sizeof *s->contact);
-  e->n_slip = s->n_slip;
-  e->n_stick = s->n_stick;
+    e->changes += memcmp(r->before, s->contacts.contact,
+                         n * sizeof *s->contacts.contact) != 0;
+  memcpy(r->before, s->contacts.contact, n * sizeof *s->contacts.contact);
+  e->n_slip = s->contacts.n_slip;
+  e->n_stick = s->contacts.n_stick;
   return OK;
 }
 

@@ -68,26 +68,26 @@ static void make_arrays(made_up *run) {
   for (int a = 0; a < MADE_ARRAYS; ++a)
     run->array[a] = need(memory_new((size_t)count[a], sizeof(double)));
   run->status = need(memory_new((size_t)n, sizeof *run->status));
-  run->s.u = run->array[MADE_U];
-  run->s.strain = run->array[MADE_STRAIN];
-  run->s.stress = run->array[MADE_STRESS];
-  run->s.reaction = run->array[MADE_REACTION];
-  run->s.uc = run->array[MADE_UC];
-  run->s.rc = run->array[MADE_RC];
-  run->s.gap = run->array[MADE_GAP];
-  run->s.slip = run->array[MADE_SLIP];
-  run->s.limit = run->array[MADE_LIMIT];
-  run->s.distance = run->array[MADE_DISTANCE];
-  run->s.torque = run->torque;
+  run->s.body.u = run->array[MADE_U];
+  run->s.body.strain = run->array[MADE_STRAIN];
+  run->s.body.stress = run->array[MADE_STRESS];
+  run->s.body.reaction = run->array[MADE_REACTION];
+  run->s.contacts.uc = run->array[MADE_UC];
+  run->s.contacts.rc = run->array[MADE_RC];
+  run->s.contacts.gap = run->array[MADE_GAP];
+  run->s.contacts.slip = run->array[MADE_SLIP];
+  run->s.contacts.limit = run->array[MADE_LIMIT];
+  run->s.contacts.distance = run->array[MADE_DISTANCE];
+  run->s.contacts.torque = run->torque;
   run->zone_list.zone = run->zones;
   put_effect(run, "table of loops", run->loops);
   put_effect(run, "table of zones", &run->zone_list);
-  put_effect(run, "closed form", &run->s.exact);
+  put_effect(run, "closed form", &run->s.errors.exact);
   run->s.effects = &run->effects;
   run->zone_list.n = 2;
-  run->s.contact = run->status;
-  run->s.totals = run->totals;
-  run->s.surface = &run->surface;
+  run->s.contacts.contact = run->status;
+  run->s.contacts.totals = run->totals;
+  run->s.contacts.surface = &run->surface;
 }
 
 static void make_step(made_up *run, int n_increment) {
@@ -182,7 +182,7 @@ void made_up_advance(made_up *run, int total_no) {
                                  .to = {0.75, 0},
                                  .length = 0.25,
                                  .area = 0.25};
-  s->n_open = s->n_slip = s->n_stick = total_no;
+  s->contacts.n_open = s->contacts.n_slip = s->contacts.n_stick = total_no;
 }
 
 void made_up_free(made_up *run) {

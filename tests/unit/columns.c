@@ -177,9 +177,9 @@ START_TEST(internal_variables_of_unlike_laws) {
   for (int i = 0; i < 12; ++i) ei[i] = 100 + i;
   flow x = {.ns = 4, .n = 3, .alpha_at = (size_t *)start};
   flow_state inelastic = {.alpha = alpha, .ei = ei};
-  made->s.flow = &x;
-  made->s.flow_elem = elem;
-  made->s.inelastic = &inelastic;
+  made->s.body.flow = &x;
+  made->s.body.flow_elem = elem;
+  made->s.body.inelastic = &inelastic;
   view v = {&made->m, made->msh, &made->s};
   int seen = 0;
   for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
@@ -194,7 +194,7 @@ START_TEST(internal_variables_of_unlike_laws) {
       ck_assert_double_eq(c->value(&v, 4, c->part), 100 + 2 * 4 + 1);
   }
   ck_assert_int_eq(seen, 3 * 12);
-  made->s.flow = NULL;
+  made->s.body.flow = NULL;
   made_up_free(made);
 }
 END_TEST
@@ -275,10 +275,11 @@ START_TEST(figures_stand_under_their_names) {
                               .stored = 49,
                               .defect = 50,
                               .largest = 100};
-  made->s.error = (error_bound){.energy = 51, .relative = 0.52, .rate = 53};
-  made->s.mesh_error = (error_share){.asked = 1, .relative = 0.54};
-  made->s.time_error = (error_share){.asked = 1, .relative = 0.55};
-  made->s.exact = (true_error){
+  made->s.errors.error =
+      (error_bound){.energy = 51, .relative = 0.52, .rate = 53};
+  made->s.errors.mesh_error = (error_share){.asked = 1, .relative = 0.54};
+  made->s.errors.time_error = (error_share){.asked = 1, .relative = 0.55};
+  made->s.errors.exact = (true_error){
       .energy = 0.56, .displacement = 0.57, .stress = 0.58, .pressure = 0.59};
   static const named_value solid[] = {
       {"force_x", 1},        {"force_y", 2},

@@ -355,7 +355,7 @@ START_TEST(missing_arrays_are_not_zero) {
   int dims[2];
   folder_new(dir);
   made_up *made = made_up_new(2, 2, 1);
-  made->s.stress = NULL;
+  made->s.body.stress = NULL;
   ck_assert_int_eq(write_file(made, dir, 1, 1), OK);
   double *x = dataset(dir, "/fields/mises/00001", dims);
   ck_assert(isnan(x[0]) && isnan(x[made->msh->n_elem - 1]));
@@ -375,7 +375,7 @@ START_TEST(scene_without_contact_has_no_surface) {
   o.dir = dir;
   made->m.effects = 0;
   made->m.n_contact = 0;
-  made->s.surface = NULL;
+  made->s.contacts.surface = NULL;
   ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, NULL, &h), OK);
   made_up_advance(made, 1);
   ck_assert_int_eq(hdf5_increment(h, &made->s), OK);

@@ -41,7 +41,7 @@ static status keep(void *ctx, const state *s) {
   run_record *r = ctx;
   ck_assert_int_lt(r->accepted, 64);
   r->t[r->accepted++] = s->t;
-  memcpy(r->u, s->u, (size_t)r->n_dof * sizeof *r->u);
+  memcpy(r->u, s->body.u, (size_t)r->n_dof * sizeof *r->u);
   if (s->t == 0.5) try_dt = 0.5;
   double scale = fabs(s->energy.external) + fabs(s->energy.strain);
   r->worst_defect = fmax(r->worst_defect, fabs(s->energy.defect) / scale);

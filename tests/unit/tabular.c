@@ -212,9 +212,9 @@ END_TEST
 
 START_TEST(missing_arrays_leave_their_columns_out) {
   made_up *made = made_up_new(2, 2, 1);
-  made->s.stress = NULL;
-  made->s.reaction = NULL;
-  made->s.limit = NULL;
+  made->s.body.stress = NULL;
+  made->s.body.reaction = NULL;
+  made->s.contacts.limit = NULL;
   char *text = write_tables(made, 1);
   ck_assert_ptr_null(strstr(text, "stress_xx"));
   ck_assert_ptr_null(strstr(text, "reaction_x"));

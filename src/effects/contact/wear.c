@@ -159,12 +159,14 @@ static status keep(run *r, void *self, archive *a) {
 /* Depth of row a of contact node i, m. */
 static double depth_of(const view *v, int i, int a) {
   const double *depth = effect_state(v->s->effects, &wear_effect);
-  return depth[v->s->surface->dim * v->s->surface->node_id[i] + a];
+  return depth[v->s->contacts.surface->dim *
+                   v->s->contacts.surface->node_id[i] +
+               a];
 }
 
 /* Volume that node i has lost, to a contact or, < 0, to all, m3. */
 static double volume_of(const view *v, int i, int contact_id) {
-  const contact_surface *s = v->s->surface;
+  const contact_surface *s = v->s->contacts.surface;
   double sum = 0.0;
   for (int a = 0; a < s->dim; ++a) {
     const int id = normal_of(s, i, a);
@@ -177,7 +179,8 @@ static double volume_of(const view *v, int i, int contact_id) {
 static double contact_volume(const view *v, int id, int part) {
   double sum = 0.0;
   (void)part;
-  for (int i = 0; i < v->s->surface->n; ++i) sum += volume_of(v, i, id);
+  for (int i = 0; i < v->s->contacts.surface->n; ++i)
+    sum += volume_of(v, i, id);
   return sum;
 }
 

@@ -46,7 +46,7 @@ done:
 }
 
 static void show(const void *own, state *s) {
-  s->exact = *(const true_error *)own;
+  s->errors.exact = *(const true_error *)own;
 }
 
 static const true_error *exact_of(const view *v) {

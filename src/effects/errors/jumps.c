@@ -338,9 +338,9 @@ static status find_others(run *r, void *self) {
 
 static void show(const void *self, state *s) {
   const checked *own = self;
-  s->jumps = own->jumps;
-  s->jump_t = own->jump_t;
-  if (own->asked) s->solutions = &own->solutions;
+  s->errors.jumps = own->jumps;
+  s->errors.jump_t = own->jump_t;
+  if (own->asked) s->errors.solutions = &own->solutions;
 }
 
 static status keep(run *r, void *self, archive *a) {

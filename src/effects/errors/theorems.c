@@ -246,7 +246,7 @@ done:
 static int due(const run *r) { return r->nodes.n > 0 && r->step->theorems; }
 
 static void show(const void *self, state *s) {
-  s->theorems = ((const checked *)self)->report;
+  s->errors.theorems = ((const checked *)self)->report;
 }
 
 static void release(void *self) {

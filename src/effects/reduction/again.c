@@ -28,18 +28,18 @@ static void take_strains(reduction *n, const neglected *row) {
  * than what takes the node back alone, N. */
 static double friction_force(const reduction *n, const state *s, int i,
                              double way) {
-  const contact_problem *cp = s->problem;
+  const contact_problem *cp = s->contacts.problem;
   const int k = cp->dim * i;
   double held = 0.0;
   for (int a = 1; a < cp->dim; ++a)
     held = fmax(held, cp->A[(size_t)(k + a) * (size_t)(cp->m + 1)]);
-  return fmin(reduction_coefficient(n, s, i) * fmax(-s->rc[k], 0.0),
+  return fmin(reduction_coefficient(n, s, i) * fmax(-s->contacts.rc[k], 0.0),
               held * way);
 }
 
 /* Friction against the way of each node into n->force, N. */
 static void take_friction(reduction *n, const state *s) {
-  const contact_surface *c = s->surface;
+  const contact_surface *c = s->contacts.surface;
   const int dim = n->msh->dim, sides = dim - 1;
   for (int i = 0; c != NULL && i < c->n; ++i) {
     const double *way = n->way + sides * c->node_id[i];
@@ -102,8 +102,8 @@ static force_sizes sizes_of(const contact_surface *c, const double *rc,
 /* The forces against those of the increment; of friction against its largest
  * so far. */
 static double force_change(reduction *n, const state *s, const double *rc) {
-  const force_sizes now = sizes_of(s->surface, s->rc, NULL);
-  const force_sizes d = sizes_of(s->surface, rc, s->rc);
+  const force_sizes now = sizes_of(s->contacts.surface, s->contacts.rc, NULL);
+  const force_sizes d = sizes_of(s->contacts.surface, rc, s->contacts.rc);
   double worst = reduction_part(d.node[0], now.node[0]);
   worst = fmax(worst, reduction_part(fabs(d.sum[0]), fabs(now.sum[0])));
   if (!(n->m->effects & EFFECT_FRICTION)) return worst;
@@ -112,8 +112,8 @@ static double force_change(reduction *n, const state *s, const double *rc) {
 }
 
 static void grow_scales(reduction *n, const state *s) {
-  if (s->surface == NULL) return;
-  const force_sizes now = sizes_of(s->surface, s->rc, NULL);
+  if (s->contacts.surface == NULL) return;
+  const force_sizes now = sizes_of(s->contacts.surface, s->contacts.rc, NULL);
   n->tangential = fmax(n->tangential, now.node[1]);
   n->total = fmax(n->total, hypot(now.sum[1], now.sum[2]));
 }
@@ -128,11 +128,12 @@ status reduction_again(reduction *n, const state *s, int k, double bound,
   if (row->bit == EFFECT_BIT_NONLOCAL || bound == 0.0) goto done;
   if (!s->end_of_step && bound <= 2.0 * n->seen[k]) goto done;
   n->seen[k] = fmax(bound, n->seen[k]);
-  if (s->surface != NULL) NEW(rc, s->surface->dim * s->surface->n);
+  if (s->contacts.surface != NULL)
+    NEW(rc, s->contacts.surface->dim * s->contacts.surface->n);
   take_forces(n, s, row);
   TRY(s->again.solve(s->again.run, n->force, n->u, rc, &solved));
-  double change = solved ? reduction_part(distance(dofs, n->u, s->u),
-                                          largest_entry(dofs, s->u))
+  double change = solved ? reduction_part(distance(dofs, n->u, s->body.u),
+                                          largest_entry(dofs, s->body.u))
                          : HUGE_VAL;
   if (rc != NULL) change = fmax(change, force_change(n, s, rc));
   if (!(change <= row->change)) row->change = change;

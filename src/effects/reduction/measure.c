@@ -116,9 +116,10 @@ int reduction_is_about(const reduction *n, const neglected *row, int elem_id) {
 /* Largest contact pressure, or stress of an element, Pa. */
 static double stress_scale(const reduction *n, const state *s) {
   double most = 0.0;
-  const contact_surface *c = s->surface;
+  const contact_surface *c = s->contacts.surface;
   for (int i = 0; c != NULL && i < c->n; ++i)
-    if (c->area[i] > 0.0) most = fmax(most, -s->rc[c->dim * i] / c->area[i]);
+    if (c->area[i] > 0.0)
+      most = fmax(most, -s->contacts.rc[c->dim * i] / c->area[i]);
   size_t size = (size_t)n->m->ns * (size_t)n->msh->n_elem;
   if (most > 0.0) return most;
   for (size_t i = 0; i < size; ++i) most = fmax(most, fabs(n->sigma[i]));
@@ -164,11 +165,12 @@ status reduction_stress(reduction *n, const state *s) {
       expansion_strain(&reduction_material(n, e)->expand, n->T[e], n->T0[e],
                        own);
   }
-  for (int k = 0; s->flow != NULL && k < s->flow->n; ++k)
+  for (int k = 0; s->body.flow != NULL && k < s->body.flow->n; ++k)
     for (int i = 0; i < ns; ++i)
-      n->strain[ns * s->flow_elem[k] + i] += s->inelastic->ei[ns * k + i];
+      n->strain[ns * s->body.flow_elem[k] + i] +=
+          s->body.inelastic->ei[ns * k + i];
   n->d.eigen = &x;
-  domain_stress(&n->d, s->u, NULL, n->sigma);
+  domain_stress(&n->d, s->body.u, NULL, n->sigma);
   n->d.eigen = NULL;
 done:
   return st;
@@ -300,7 +302,7 @@ done:
 
 /* The rule that was taken out. */
 double reduction_coefficient(const reduction *n, const state *s, int i) {
-  const contact_surface *c = s->surface;
+  const contact_surface *c = s->contacts.surface;
   const friction_rule *rule =
       friction_in_force(n->m, s->step_no - 1, c->contact_id[i]);
   double x[3] = {0.0, 0.0, 0.0};
@@ -311,14 +313,15 @@ double reduction_coefficient(const reduction *n, const state *s, int i) {
 
 static void measure_friction(reduction *n, const state *s, double *sum,
                              double *norm) {
-  const contact_surface *c = s->surface;
+  const contact_surface *c = s->contacts.surface;
   const int sides = n->msh->dim - 1;
   double work = 0.0;
   for (int i = 0; c != NULL && i < c->n; ++i) {
-    double slip = 0.0, p = -s->rc[c->dim * i];
-    for (int k = 0; k < sides; ++k) slip = hypot(slip, s->slip[sides * i + k]);
+    double slip = 0.0, p = -s->contacts.rc[c->dim * i];
     for (int k = 0; k < sides; ++k)
-      n->way[sides * c->node_id[i] + k] += s->slip[sides * i + k];
+      slip = hypot(slip, s->contacts.slip[sides * i + k]);
+    for (int k = 0; k < sides; ++k)
+      n->way[sides * c->node_id[i] + k] += s->contacts.slip[sides * i + k];
     work += reduction_coefficient(n, s, i) * fmax(p, 0.0) * slip;
   }
   *sum += sqrt(work);

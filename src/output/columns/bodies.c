@@ -9,8 +9,8 @@
 /* Nodes */
 VALUE(node_no, v->msh->node_no[id])
 VALUE(node_x, v->msh->x[at(v->msh->dim, id, part)])
-VALUE(node_u, v->s->u[at(v->msh->dim, id, part)])
-VALUE(reaction, v->s->reaction[at(v->msh->dim, id, part)])
+VALUE(node_u, v->s->body.u[at(v->msh->dim, id, part)])
+VALUE(reaction, v->s->body.reaction[at(v->msh->dim, id, part)])
 
 /* Elements */
 VALUE(elem_no, v->msh->elem_no[id])
@@ -22,10 +22,10 @@ static double elem_x(const view *v, int id, int part) {
   return sum / (dim + 1);
 }
 
-VALUE(elem_error, 100 * v->s->elem_error[id])
-VALUE(temperature, v->s->temperature[id])
-VALUE(strain, v->s->strain[at(v->m->ns, id, part)])
-VALUE(stress, v->s->stress[at(v->m->ns, id, part)])
+VALUE(elem_error, 100 * v->s->errors.elem_error[id])
+VALUE(temperature, v->s->body.temperature[id])
+VALUE(strain, v->s->body.strain[at(v->m->ns, id, part)])
+VALUE(stress, v->s->body.stress[at(v->m->ns, id, part)])
 
 static int compare_id(const void *a, const void *b) {
   const int x = *(const int *)a, y = *(const int *)b;
@@ -34,27 +34,28 @@ static int compare_id(const void *a, const void *b) {
 
 /* Point of an element whose law flows, or -1. */
 static int point_of(const view *v, int elem_id) {
-  const int *found = bsearch(&elem_id, v->s->flow_elem, (size_t)v->s->flow->n,
-                             sizeof elem_id, compare_id);
-  return found == NULL ? -1 : (int)(found - v->s->flow_elem);
+  const int *found =
+      bsearch(&elem_id, v->s->body.flow_elem, (size_t)v->s->body.flow->n,
+              sizeof elem_id, compare_id);
+  return found == NULL ? -1 : (int)(found - v->s->body.flow_elem);
 }
 
 /* Inelastic strain; 0 where no law flows. */
 static double inelastic(const view *v, int id, int part) {
   int k = point_of(v, id);
-  return k < 0 ? 0 : v->s->inelastic->ei[at(v->m->ns, k, part)];
+  return k < 0 ? 0 : v->s->body.inelastic->ei[at(v->m->ns, k, part)];
 }
 
 /* Internal variable; 0 where the law has fewer. */
 static double internal(const view *v, int id, int part) {
   int k = point_of(v, id);
-  const size_t *start = v->s->flow->alpha_at;
+  const size_t *start = v->s->body.flow->alpha_at;
   if (k < 0 || start[k] + (size_t)part >= start[k + 1]) return 0;
-  return v->s->inelastic->alpha[start[k] + (size_t)part];
+  return v->s->body.inelastic->alpha[start[k] + (size_t)part];
 }
 
 static double mises(const view *v, int id, int part) {
-  const double *s = v->s->stress + at(v->m->ns, id, 0);
+  const double *s = v->s->body.stress + at(v->m->ns, id, 0);
   (void)part;
   double shear = s[3] * s[3];
   if (v->m->ns == 6) shear += s[4] * s[4] + s[5] * s[5];

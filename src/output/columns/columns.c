@@ -110,18 +110,18 @@ int column_ready(const column *c, const state *s) {
   const effect_ops *e = effect_of_column(c);
   unsigned have = 0;
   if (e != NULL && effect_state(s->effects, e) == NULL) return 0;
-  have |= if_there(s->strain, NEEDS_STRAIN);
-  have |= if_there(s->stress, NEEDS_STRESS);
-  have |= if_there(s->reaction, NEEDS_REACTION);
-  have |= if_there(s->surface, NEEDS_SURFACE);
-  if (s->surface != NULL && s->surface->x != NULL)
+  have |= if_there(s->body.strain, NEEDS_STRAIN);
+  have |= if_there(s->body.stress, NEEDS_STRESS);
+  have |= if_there(s->body.reaction, NEEDS_REACTION);
+  have |= if_there(s->contacts.surface, NEEDS_SURFACE);
+  if (s->contacts.surface != NULL && s->contacts.surface->x != NULL)
     have |= NEEDS_PLACE | NEEDS_SEVERAL;
-  have |= if_there(s->limit, NEEDS_LIMIT);
-  have |= if_there(s->totals, NEEDS_TOTALS);
-  have |= if_there(s->distance, NEEDS_DISTANCE);
-  have |= if_there(s->torque, NEEDS_TORQUE);
-  have |= if_there(s->elem_error, NEEDS_ELEM_ERROR);
-  have |= if_there(s->flow, NEEDS_FLOW | NEEDS_ALPHA);
+  have |= if_there(s->contacts.limit, NEEDS_LIMIT);
+  have |= if_there(s->contacts.totals, NEEDS_TOTALS);
+  have |= if_there(s->contacts.distance, NEEDS_DISTANCE);
+  have |= if_there(s->contacts.torque, NEEDS_TORQUE);
+  have |= if_there(s->errors.elem_error, NEEDS_ELEM_ERROR);
+  have |= if_there(s->body.flow, NEEDS_FLOW | NEEDS_ALPHA);
   return (c->needs & ~have) == 0;
 }
 
@@ -133,7 +133,7 @@ int column_items(const column *c, const view *v) {
     case PER_ELEMENT:
       return v->msh->n_elem;
     case PER_CONTACT_NODE:
-      return v->s->surface != NULL ? v->s->surface->n : 0;
+      return v->s->contacts.surface != NULL ? v->s->contacts.surface->n : 0;
     case PER_CONTACT:
       return v->m->n_contact;
     case PER_ZONE:

@@ -6,14 +6,14 @@
 #include <math.h>
 
 /* Contact nodes: unknowns node by node n, t1[, t2] */
-#define SURFACE (v->s->surface)
+#define SURFACE (v->s->contacts.surface)
 VALUE(contact_node_no, SURFACE->node_no[id])
 VALUE(contact_no, SURFACE->contact_id[id] + 1)
 VALUE(contact_x, SURFACE->x[at(SURFACE->dim, id, part)])
-VALUE(contact_u_n, v->s->uc[at(SURFACE->dim, id, 0)])
-VALUE(contact_u_t, v->s->uc[at(SURFACE->dim, id, part + 1)])
-VALUE(contact_gap, v->s->gap[id])
-VALUE(contact_f_n, -v->s->rc[at(SURFACE->dim, id, 0)])
+VALUE(contact_u_n, v->s->contacts.uc[at(SURFACE->dim, id, 0)])
+VALUE(contact_u_t, v->s->contacts.uc[at(SURFACE->dim, id, part + 1)])
+VALUE(contact_gap, v->s->contacts.gap[id])
+VALUE(contact_f_n, -v->s->contacts.rc[at(SURFACE->dim, id, 0)])
 /* The side row of a corner node is a normal force of another obstacle. A
  * problem from a file has no corners. */
 static int is_side(const view *v, int id, int part) {
@@ -21,17 +21,18 @@ static int is_side(const view *v, int id, int part) {
   return side != NULL && side[at(SURFACE->dim - 1, id, part)] >= 0;
 }
 
-VALUE(contact_f_t,
-      is_side(v, id, part) ? 0 : v->s->rc[at(SURFACE->dim, id, part + 1)])
-VALUE(contact_slip, v->s->slip[at(SURFACE->dim - 1, id, part)])
-VALUE(sliding_limit, v->s->limit[id])
+VALUE(contact_f_t, is_side(v, id, part)
+                       ? 0
+                       : v->s->contacts.rc[at(SURFACE->dim, id, part + 1)])
+VALUE(contact_slip, v->s->contacts.slip[at(SURFACE->dim - 1, id, part)])
+VALUE(sliding_limit, v->s->contacts.limit[id])
 VALUE(contact_normal, SURFACE->frame[at(SURFACE->dim * SURFACE->dim, id, part)])
 VALUE(contact_area, SURFACE->area[id])
-VALUE(contact_state, v->s->contact[id])
+VALUE(contact_state, v->s->contacts.contact[id])
 
 /* A plain LCP: z stands for r, w for u. */
-VALUE(lcp_z, v->s->rc[id])
-VALUE(lcp_w, v->s->uc[id])
+VALUE(lcp_z, v->s->contacts.rc[id])
+VALUE(lcp_w, v->s->contacts.uc[id])
 
 /* Force over tributary area; a node without area carries none. */
 static double per_area(const view *v, int id, double force) {
@@ -46,29 +47,29 @@ VALUE(contact_traction, per_area(v, id, contact_f_t(v, id, part)))
 static double contact_force(const view *v, int id, int part) {
   int dim = SURFACE->dim;
   const double *frame = SURFACE->frame + at(dim * dim, id, 0);
-  const double *r = v->s->rc + at(dim, id, 0);
+  const double *r = v->s->contacts.rc + at(dim, id, 0);
   double sum = 0;
   for (int k = 0; k < dim; ++k) sum += frame[dim * k + part] * r[k];
   return sum;
 }
 
 static const char *contact_word(const view *v, int id) {
-  return status_word(v->s->contact[id]);
+  return status_word(v->s->contacts.contact[id]);
 }
 
-VALUE(slip_distance, v->s->distance[id])
+VALUE(slip_distance, v->s->contacts.distance[id])
 
 /* Unit vector of the slip, global components; 0 where the node does not slip */
 static double slip_direction(const view *v, int id, int part) {
   int dim = SURFACE->dim;
   const double *frame = SURFACE->frame + at(dim * dim, id, 0);
-  const double *slip = v->s->slip + at(dim - 1, id, 0);
+  const double *slip = v->s->contacts.slip + at(dim - 1, id, 0);
   double sum = frame[dim + part] * slip[0], length = fabs(slip[0]);
   if (dim == 3) {
     sum += frame[2 * dim + part] * slip[1];
     length = hypot(slip[0], slip[1]);
   }
-  if (v->s->contact[id] != CONTACT_SLIP || !(length > 0)) return 0;
+  if (v->s->contacts.contact[id] != CONTACT_SLIP || !(length > 0)) return 0;
   return sum / length;
 }
 

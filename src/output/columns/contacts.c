@@ -4,16 +4,16 @@
 #include "run/column_row.h"
 
 /* Contacts */
-VALUE(total_torque, v->s->torque[id])
+VALUE(total_torque, v->s->contacts.torque[id])
 VALUE(contact_no, id + 1)
-VALUE(total_force, v->s->totals[id].force[part])
-VALUE(total_moment, v->s->totals[id].moment[part])
-VALUE(total_normal, -v->s->totals[id].normal)
-VALUE(total_tangential, v->s->totals[id].tangential[part])
-VALUE(total_area, v->s->totals[id].area)
-VALUE(total_open, v->s->totals[id].n_open)
-VALUE(total_slip, v->s->totals[id].n_slip)
-VALUE(total_stick, v->s->totals[id].n_stick)
+VALUE(total_force, v->s->contacts.totals[id].force[part])
+VALUE(total_moment, v->s->contacts.totals[id].moment[part])
+VALUE(total_normal, -v->s->contacts.totals[id].normal)
+VALUE(total_tangential, v->s->contacts.totals[id].tangential[part])
+VALUE(total_area, v->s->contacts.totals[id].area)
+VALUE(total_open, v->s->contacts.totals[id].n_open)
+VALUE(total_slip, v->s->contacts.totals[id].n_slip)
+VALUE(total_stick, v->s->contacts.totals[id].n_stick)
 
 static const char *contact_name(const view *v, int id) {
   return v->m->contacts[id].name;

@@ -12,19 +12,21 @@ VALUE(attempt, v->s->attempt)
 VALUE(time_now, v->s->t)
 VALUE(time_step, v->s->dt)
 VALUE(settled, v->s->settled)
-VALUE(n_open, v->s->n_open)
-VALUE(n_slip, v->s->n_slip)
-VALUE(n_stick, v->s->n_stick)
+VALUE(n_open, v->s->contacts.n_open)
+VALUE(n_slip, v->s->contacts.n_slip)
+VALUE(n_stick, v->s->contacts.n_stick)
 VALUE(iterations, v->s->report.iterations)
 VALUE(limit_updates, v->s->report.limit_updates)
 VALUE(residual, v->s->report.residual)
-VALUE(mesh_error,
-      v->s->mesh_error.asked ? 100 * v->s->mesh_error.relative : NAN)
-VALUE(time_error,
-      v->s->time_error.asked ? 100 * v->s->time_error.relative : NAN)
-VALUE(bound_error, 100 * v->s->error.relative)
-VALUE(solver_error_energy, v->s->error.energy)
-VALUE(contraction, v->s->error.rate)
+VALUE(mesh_error, v->s->errors.mesh_error.asked
+                      ? 100 * v->s->errors.mesh_error.relative
+                      : NAN)
+VALUE(time_error, v->s->errors.time_error.asked
+                      ? 100 * v->s->errors.time_error.relative
+                      : NAN)
+VALUE(bound_error, 100 * v->s->errors.error.relative)
+VALUE(solver_error_energy, v->s->errors.error.energy)
+VALUE(contraction, v->s->errors.error.rate)
 VALUE(strain_energy, v->s->energy.strain)
 VALUE(external_work, v->s->energy.external)
 VALUE(friction_work, v->s->energy.friction)

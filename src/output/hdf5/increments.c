@@ -86,7 +86,7 @@ static status put_real(hdf5_file *h, double value, off_t offset, int i) {
 static status put_record(hdf5_file *h, const view *v) {
   burst b = {.n = 0};
   PASS_GROW(h->times, h->n_record, h->cap_time);
-  find_surface_ids(h, v->s->surface);
+  find_surface_ids(h, v->s->contacts.surface);
   for (int i = 0; i < h->n_field; ++i) {
     if (hdf5_is_history(&h->fields[i])) continue;
     size_t k = (size_t)i * (size_t)h->now.n_record + (size_t)h->n_record;

@@ -32,25 +32,25 @@ static void print_energies(const job *j, const view *v, FILE *f) {
 /* Where the condition gives reason to look. */
 static void print_rounding(const state *s, FILE *f) {
   char norm[NUMBER_SIZE], stress[NUMBER_SIZE], u[NUMBER_SIZE];
-  if (!s->rounding.found) return;
+  if (!s->errors.rounding.found) return;
   fprintf(f,
           "  rounding: %s %% of the energy norm, %s %% of the largest stress, "
           "%s %%\n    of the largest displacement\n",
-          text_number(norm, 100 * s->rounding.energy, 1),
-          text_number(stress, 100 * s->rounding.stress, 1),
-          text_number(u, 100 * s->rounding.u, 1));
+          text_number(norm, 100 * s->errors.rounding.energy, 1),
+          text_number(stress, 100 * s->errors.rounding.stress, 1),
+          text_number(u, 100 * s->errors.rounding.u, 1));
 }
 
 static void print_hidden(const state *s, FILE *f) {
   char text[NUMBER_SIZE];
-  if (s->in_doubt && s->error.hidden > 0.1)
+  if (s->errors.in_doubt && s->errors.error.hidden > 0.1)
     fprintf(f, "  rounding of the motion may be %s %% of the contact forces\n",
-            text_number(text, 100 * s->error.hidden, 1));
+            text_number(text, 100 * s->errors.error.hidden, 1));
 }
 
 static void print_error(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE], unit[64];
-  const error_bound *e = &s->error;
+  const error_bound *e = &s->errors.error;
   if (!e->asked) return;
   fprintf(f, "  error of the solver: ");
   if (e->why != NULL) {
@@ -85,7 +85,7 @@ static void print_share(const char *of, const error_share *e, FILE *f) {
 /* Against *REFERENCE, as far as it goes. */
 static void print_truth(const state *s, FILE *f) {
   char text[NUMBER_SIZE];
-  const true_error *e = &s->exact;
+  const true_error *e = &s->errors.exact;
   const struct {
     const char *text;
     double value;
@@ -105,7 +105,7 @@ static void print_truth(const state *s, FILE *f) {
 /* TOL=BALANCED: where the solver stopped. */
 static void print_balance(const job *j, const state *s, FILE *f) {
   char text[2][NUMBER_SIZE];
-  const balance_report *b = &s->balance;
+  const balance_report *b = &s->errors.balance;
   if (!b->asked) return;
   if (isnan(b->wanted)) {
     fprintf(f,
@@ -125,10 +125,10 @@ static void print_balance(const job *j, const state *s, FILE *f) {
 static void print_solver(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE];
   const solver_report *r = &s->report;
-  if (s->surface == NULL) return;
+  if (s->contacts.surface == NULL) return;
   if (j->m->dim > 1)
-    fprintf(f, "  contact nodes: open %d, slip %d, stick %d\n", s->n_open,
-            s->n_slip, s->n_stick);
+    fprintf(f, "  contact nodes: open %d, slip %d, stick %d\n",
+            s->contacts.n_open, s->contacts.n_slip, s->contacts.n_stick);
   fprintf(f, "  solver %s: %s, iterations %d, limit updates %d, residual %s",
           r->solver != NULL ? r->solver : "-", outcome_text(r->outcome),
           r->iterations, r->limit_updates, text_number(text, r->residual, 2));
@@ -146,7 +146,7 @@ static void print_verdict(const job *j, const state *s, FILE *f) {
   print_balance(j, s, f);
   if (s->solver_log != NULL && s->solver_log[0] != '\0')
     fprintf(f, "  tried: %s\n", s->solver_log);
-  if (s->in_doubt)
+  if (s->errors.in_doubt)
     fprintf(f, "  THE ERROR OF THE SOLVER MAY BE ABOVE 10 %%\n");
   else if (!s->settled)
     fprintf(f, "  THE TOLERANCE WAS NOT REACHED\n");
@@ -163,18 +163,18 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
   view v = {j->m, j->msh, s};
   print_when(s, lst->f);
   fputc('\n', lst->f);
-  if (s->flow != NULL && s->increment_no == 1 &&
+  if (s->body.flow != NULL && s->increment_no == 1 &&
       j->m->steps[s->step_no - 1].kind != STEP_VISCO)
     fputs("  no inelastic strain grows in this step: it is not *VISCO\n",
           lst->f);
   print_verdict(j, s, lst->f);
-  if (s->surface != NULL) {
+  if (s->contacts.surface != NULL) {
     listing_solutions(s, lst->f);
     listing_theory(j, s, lst->f);
     print_totals(j, &v, lst->f);
   }
-  print_share("mesh", &s->mesh_error, lst->f);
-  print_share("steps", &s->time_error, lst->f);
+  print_share("mesh", &s->errors.mesh_error, lst->f);
+  print_share("steps", &s->errors.time_error, lst->f);
   print_truth(s, lst->f);
   if (!j->m->has_problem) print_energies(j, &v, lst->f);
   return text_check(lst);

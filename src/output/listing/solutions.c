@@ -32,9 +32,10 @@ static void print_values(const state *s, const solution *a, FILE *f) {
   char text[4][NUMBER_SIZE];
   fprintf(f, "        %8s %-6s %12s %12s %12s %12s\n", "node_no", "status",
           "u_n", "u_t", "f_n", "f_t");
-  for (int i = 0; i < s->solutions->n; ++i)
-    fprintf(f, "        %8zu %-6s %s %s %s %s\n", s->surface->node_no[i],
-            words[a->status[i]], text_number(text[0], a->u[2 * i], 4),
+  for (int i = 0; i < s->errors.solutions->n; ++i)
+    fprintf(f, "        %8zu %-6s %s %s %s %s\n",
+            s->contacts.surface->node_no[i], words[a->status[i]],
+            text_number(text[0], a->u[2 * i], 4),
             text_number(text[1], a->u[2 * i + 1], 4),
             text_number(text[2], -a->r[2 * i], 4),
             text_number(text[3], a->r[2 * i + 1], 4));
@@ -70,7 +71,7 @@ static void print_finders(const solution_set *set, int i, FILE *f) {
 }
 
 void listing_solutions(const state *s, FILE *f) {
-  const solution_set *set = s->solutions;
+  const solution_set *set = s->errors.solutions;
   if (set == NULL) return;
   if (set->n_pattern > 0)
     fprintf(f, "  check: %ld combinations of statuses, ", set->n_pattern);

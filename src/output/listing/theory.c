@@ -79,7 +79,7 @@ static void print_path(const job *j, const theorems_path *p, FILE *f) {
 
 void listing_theory(const job *j, const state *s, FILE *f) {
   char text[NUMBER_SIZE];
-  const theorems_report *t = &s->theorems;
+  const theorems_report *t = &s->errors.theorems;
   if (!t->asked) return;
   if (t->has_start && s->total_no == 1)
     fprintf(f, "  theory: (3.8) of the initial state: least %s\n",

@@ -194,24 +194,24 @@ static state state_of(const discrete *d) {
       .t = d->step->total,
       .dt = d->step->total,
       .end_of_step = 1,
-      .problem = cp,
-      .surface = &d->surface,
-      .uc = d->u,
-      .rc = d->r,
-      .gap = d->gap,
-      .slip = d->slip,
-      .limit = cp != NULL && cp->g0 != NULL ? d->g : NULL,
-      .contact = d->contact,
+      .contacts.problem = cp,
+      .contacts.surface = &d->surface,
+      .contacts.uc = d->u,
+      .contacts.rc = d->r,
+      .contacts.gap = d->gap,
+      .contacts.slip = d->slip,
+      .contacts.limit = cp != NULL && cp->g0 != NULL ? d->g : NULL,
+      .contacts.contact = d->contact,
       .report = d->report,
-      .error = d->error,
-      .solutions = d->step->check != CHECK_NONE ? &d->solutions : NULL,
+      .errors.error = d->error,
+      .errors.solutions = d->step->check != CHECK_NONE ? &d->solutions : NULL,
       .solver_log = d->log,
       .settled = d->report.outcome > 0 && !error_bound_doubts(&d->error, 1.0),
-      .in_doubt = error_bound_doubts(&d->error, 1.0)};
+      .errors.in_doubt = error_bound_doubts(&d->error, 1.0)};
   for (int i = 0; i < p->n; ++i) {
-    s.n_open += d->contact[i] == CONTACT_OPEN;
-    s.n_slip += d->contact[i] == CONTACT_SLIP;
-    s.n_stick += d->contact[i] == CONTACT_STICK;
+    s.contacts.n_open += d->contact[i] == CONTACT_OPEN;
+    s.contacts.n_slip += d->contact[i] == CONTACT_SLIP;
+    s.contacts.n_stick += d->contact[i] == CONTACT_STICK;
   }
   return s;
 }
@@ -239,7 +239,7 @@ static status tell_answer(discrete *d, const history_sink *sink, double cpu,
     if (sink->increment != NULL) TRY(sink->increment(sink->ctx, &s));
     goto done;
   }
-  s.n_open = s.n_slip = s.n_stick = 0;
+  s.contacts.n_open = s.contacts.n_slip = s.contacts.n_stick = 0;
   if (sink->rejected != NULL) TRY(sink->rejected(sink->ctx, &s, why));
   if (d->report.outcome == STOPPED_UNFIT)
     FAIL(ERR_SINGULAR,

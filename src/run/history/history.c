@@ -55,43 +55,44 @@ state loop_state(run *r, int attempt, int increment_no) {
       .attempt = attempt,
       .t = e->t,
       .dt = e->t - r->old.t,
-      .u = e->u,
-      .strain = r->result.strain,
-      .stress = r->result.stress,
-      .temperature = e->temperature,
-      .reaction = e->reaction,
-      .problem = r->nodes.n > 0 ? &r->problem.cp : NULL,
-      .surface = r->surface,
-      .uc = e->uc,
-      .rc = e->rc,
-      .gap = r->result.open_gap,
-      .slip = r->result.slip,
-      .limit = r->result.g,
-      .contact = r->result.contact,
-      .totals = r->result.totals,
-      .distance = r->result.distance,
-      .torque = r->result.torque,
+      .body.u = e->u,
+      .body.strain = r->result.strain,
+      .body.stress = r->result.stress,
+      .body.temperature = e->temperature,
+      .body.reaction = e->reaction,
+      .contacts.problem = r->nodes.n > 0 ? &r->problem.cp : NULL,
+      .contacts.surface = r->surface,
+      .contacts.uc = e->uc,
+      .contacts.rc = e->rc,
+      .contacts.gap = r->result.open_gap,
+      .contacts.slip = r->result.slip,
+      .contacts.limit = r->result.g,
+      .contacts.contact = r->result.contact,
+      .contacts.totals = r->result.totals,
+      .contacts.distance = r->result.distance,
+      .contacts.torque = r->result.torque,
       .effects = &r->effects,
       .energy = e->energy,
       .report = r->solving.report,
       .note = r->course.note,
-      .error = r->errors.error,
-      .rounding = r->errors.rounding,
-      .mesh_error = r->errors.mesh_error,
-      .time_error = r->errors.time_error,
-      .balance = r->balance.report,
-      .elem_error = r->errors.mesh_error.asked ? r->errors.elem_error : NULL,
+      .errors.error = r->errors.error,
+      .errors.rounding = r->errors.rounding,
+      .errors.mesh_error = r->errors.mesh_error,
+      .errors.time_error = r->errors.time_error,
+      .errors.balance = r->balance.report,
+      .errors.elem_error =
+          r->errors.mesh_error.asked ? r->errors.elem_error : NULL,
       .solver_log = contact_solver_log(r->solver),
       .settled = is_settled(r),
-      .in_doubt = error_bound_doubts(&r->errors.error, share_of_step(r)),
+      .errors.in_doubt = error_bound_doubts(&r->errors.error, share_of_step(r)),
       .again = {r, beside_with}};
   if (r->strains.visco != NULL) visco_show(r, &s);
-  if (!(r->m->effects & EFFECT_STRESS)) s.stress = NULL;
-  if (!(r->m->effects & EFFECT_REACTION)) s.reaction = NULL;
+  if (!(r->m->effects & EFFECT_STRESS)) s.body.stress = NULL;
+  if (!(r->m->effects & EFFECT_REACTION)) s.body.reaction = NULL;
   for (int i = 0; i < r->nodes.n; ++i) {
-    s.n_open += r->result.contact[i] == CONTACT_OPEN;
-    s.n_slip += r->result.contact[i] == CONTACT_SLIP;
-    s.n_stick += r->result.contact[i] == CONTACT_STICK;
+    s.contacts.n_open += r->result.contact[i] == CONTACT_OPEN;
+    s.contacts.n_slip += r->result.contact[i] == CONTACT_SLIP;
+    s.contacts.n_stick += r->result.contact[i] == CONTACT_STICK;
   }
   return s;
 }
@@ -184,7 +185,7 @@ status loop_reject(run *r, int attempt, int increment_no, const char *why) {
   r->errors.mesh_error.asked = r->errors.time_error.asked = 0;
   r->at.violated = 0;
   state s = loop_state(r, attempt, increment_no);
-  s.n_open = s.n_slip = s.n_stick = 0;
+  s.contacts.n_open = s.contacts.n_slip = s.contacts.n_stick = 0;
   if (r->sink->rejected == NULL) return OK;
   return r->sink->rejected(r->sink->ctx, &s, why);
 }
