@@ -33,11 +33,6 @@ done:
   return st;
 }
 
-status foresee_problem(double m) {
-  enum { MATRICES = 5 };
-  return memory_foresee(MATRICES * m * m * sizeof(double), "the problem");
-}
-
 status exchange_read(const char *path, exchange_type type, const place *at,
                      message_log *log, exchange_problem **out) {
   status st = OK;

@@ -597,3 +597,8 @@ done:
   columns_free(&c);
   return st;
 }
+
+status foresee_problem(double m) {
+  enum { MATRICES = 5 };
+  return memory_foresee(MATRICES * m * m * sizeof(double), "the problem");
+}

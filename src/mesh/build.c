@@ -9,50 +9,9 @@
 #include "base/system/input.h"
 
 #include <errno.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-
-void culprit_add(culprits *c, const char *format, ...) {
-  if (++c->n > SHOWN + 1) return;
-  size_t used = strlen(c->text), room = sizeof c->text - used;
-  if (c->n > SHOWN) {
-    snprintf(c->text + used, room, ", ...");
-    return;
-  }
-  if (c->n > 1) {
-    int n = snprintf(c->text + used, room, ", ");
-    used += (size_t)n < room ? (size_t)n : room - 1;
-    room = sizeof c->text - used;
-  }
-  va_list args;
-  va_start(args, format);
-  vsnprintf(c->text + used, room, format, args);
-  va_end(args);
-}
-
-void culprit_at(culprits *c, int dim, size_t no, const double *x) {
-  if (dim == 2)
-    culprit_add(c, "%zu at (%.6g, %.6g)", no, x[0], x[1]);
-  else
-    culprit_add(c, "%zu at (%.6g, %.6g, %.6g)", no, x[0], x[1], x[2]);
-}
-
-void culprit_pair(culprits *c, int dim, size_t one, size_t two,
-                  const double *x) {
-  if (dim == 2)
-    culprit_add(c, "%zu and %zu at (%.6g, %.6g)", one, two, x[0], x[1]);
-  else
-    culprit_add(c, "%zu and %zu at (%.6g, %.6g, %.6g)", one, two, x[0], x[1],
-                x[2]);
-}
-
-status build_check(const builder *b) {
-  int n = message_count(b->log, ERROR) - b->errors;
-  if (n > 0) RAISE(ERR_MESH, "the mesh is not valid: %d error(s)", n);
-  return OK;
-}
 
 static void release(builder *b) {
   RELEASE(b->by_no.slot, b->node_id, b->corner, b->elem_of_top, b->face_of_low,

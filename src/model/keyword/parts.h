@@ -13,8 +13,5 @@ status model_resolve(model *m, int lost);
 /* 1: a card that no keyword has the name of has NAME= this. */
 int name_is_lost(const model *m, const char *name);
 
-/* symbols.c: names of *PARAMETER and -D that neither the deck nor the .geo uses
- * are errors; the others learn whether the .geo has them. */
-status check_symbols(const model *m);
 
 #endif

@@ -11,6 +11,7 @@
  * solutions are many, that next to the iterate. Then the iterate itself.
  */
 #include "base/memory.h"
+#include "contact/contact.h"
 #include "solver/lcp/lcp_solve.h"
 #include "solver/lcp/nonnegative.h"
 
@@ -18,6 +19,22 @@
 #include <lapacke.h>
 #include <math.h>
 #include <string.h>
+
+double lcp_residual(const lcp_data *p, const double *z, double *w) {
+  double c = 0.0, scale = 0.0, worst = 0.0;
+  size_t n = (size_t)p->n;
+  contact_product(p->n, p->M, z, w);
+  for (size_t k = 0; k < n * n; ++k) c = fmax(c, fabs(p->M[k]));
+  for (size_t i = 0; i < n; ++i) {
+    w[i] += p->q[i];
+    scale = fmax(scale, fabs(p->q[i]));
+    double miss = fabs(fmin(c * z[i], w[i]));
+    if (!(miss <= worst)) worst = miss;
+    if (isnan(w[i]) || isnan(z[i])) return NAN;
+  }
+  if (scale > 0.0) return worst / scale;
+  return worst > 0.0 ? HUGE_VAL : 0.0;
+}
 
 enum {
   STEPS = 100, /* from a start                                             */

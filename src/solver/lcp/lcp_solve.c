@@ -17,22 +17,6 @@ enum { FIRST = 2, ATTEMPTS = 100, FEW_PIVOTS = 50, PIVOTS_A_ROW = 5 };
 static const double PROOF = 0x1p-26; /* -, least work of a certificate      */
 static const double ROUNDING = 0x1p-44; /* -, of the terms of M'y */
 
-double lcp_residual(const lcp_data *p, const double *z, double *w) {
-  double c = 0.0, scale = 0.0, worst = 0.0;
-  size_t n = (size_t)p->n;
-  contact_product(p->n, p->M, z, w);
-  for (size_t k = 0; k < n * n; ++k) c = fmax(c, fabs(p->M[k]));
-  for (size_t i = 0; i < n; ++i) {
-    w[i] += p->q[i];
-    scale = fmax(scale, fabs(p->q[i]));
-    double miss = fabs(fmin(c * z[i], w[i]));
-    if (!(miss <= worst)) worst = miss;
-    if (isnan(w[i]) || isnan(z[i])) return NAN;
-  }
-  if (scale > 0.0) return worst / scale;
-  return worst > 0.0 ? HUGE_VAL : 0.0;
-}
-
 /* ---- a solve ------------------------------------------------------------- */
 
 typedef struct run {
