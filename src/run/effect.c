@@ -82,6 +82,13 @@ status effects_create(run *r) {
   return st;
 }
 
+const char *effects_sum_up(const run *r) {
+  for (int k = 0; k < r->effects.n; ++k)
+    if (r->effects.on[k].ops->sums_up != NULL)
+      return r->effects.on[k].ops->sums_up;
+  return NULL;
+}
+
 status effects_begin_step(run *r) {
   status st = OK;
   EACH(r, begin_step, 1, e->begin_step(r, state_))

@@ -39,6 +39,10 @@ typedef struct effect_ops {
   const char *within; /* the effect that it is part of; no stage then         */
   int beside; /* 1: stages entered inside a hook are part of it               */
 
+  /* Why half the increments tell nothing of the error of the steps, where what
+   * it adds up over them has a part in it; NULL: none. */
+  const char *sums_up;
+
   /* *own is new and not NULL; it is released also after a failure. */
   status (*create)(struct run *r, void **own);
   /* 0: accept has nothing to do at this increment, and is not counted. */

@@ -110,6 +110,7 @@ done:
 
 /* Only slip in increments and inelastic strains remember their path. */
 int path_exists(const run *r) {
+  if (effects_sum_up(r) != NULL) return 0;
   int kind = r->step->kind, slips = r->nodes.n > 0 && r->problem.ut0 != NULL;
   if (kind == STEP_VISCO) return slips || r->strains.visco != NULL;
   return slips && kind == STEP_QUASISTATIC;
@@ -204,6 +205,7 @@ static void advance(finer_path *p) {
 }
 
 static const char *why_no_path(const run *r) {
+  if (effects_sum_up(r) != NULL) return effects_sum_up(r);
   if (r->step->kind == STEP_STATIC) return "one static problem, no path";
   return r->step->kind == STEP_VISCO ? "no friction, no law flows: no path"
                                      : "no friction, no path";
@@ -234,6 +236,7 @@ void path_compare(run *r) {
   if (!e->asked) return;
   if (!path_exists(r)) {
     e->why = why_no_path(r);
+    if (effects_sum_up(r) != NULL) e->relative = NAN;
     return;
   }
   if (p == NULL || (!p->lost && p->end.start.t != r->now.t)) {

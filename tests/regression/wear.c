@@ -8,6 +8,7 @@
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A body pressed by 3 on a belt, E = 1000, nu = 0, 1 s at rest and 10 s at
@@ -159,8 +160,13 @@ START_TEST(flat_of_a_cylinder) {
             "*STEP\n*QUASISTATIC\n1, 1\n*BOUNDARY\nSYMMETRY, 1\n"
             "*DSLOAD\nTOP, P, \"P/(2*R)\"\n*END STEP\n"
             "*STEP\n*QUASISTATIC\n0.005, 1\n"
-            "*PRINT, CONTACT, TOTALS, FREQUENCY=0\n*END STEP\n");
+            "*PRINT, CONTACT, TOTALS, FREQUENCY=0\n*ACCURACY, TIME=YES\n"
+            "*END STEP\n");
   ck_assert_int_eq(job_run(&j, "--no-timing"), 0);
+  char *listing = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(
+      strstr(listing, "error of the steps: unknown, wear of half"));
+  free(listing);
   const double a = 0.2348908547, b = 2.5 * a;
   dat all = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
   const double volume = b * (4 * b * b - 3 * a * a) / 60;

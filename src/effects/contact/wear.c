@@ -79,17 +79,14 @@ static status open_gaps(run *r, void *self, double t) {
   return OK;
 }
 
-/* Slip of the increment along all tangents of a node that slides or that a
- * support holds against the obstacle, m. */
+/* Slip of the increment along all tangents of a node, m; rounding of the motion
+ * where it sticks. */
 static double slip_of(const run *r, int i) {
   const int dim = r->msh->dim;
   double sum = 0.0;
-  for (int a = 1; a < dim; ++a) {
-    const int k = dim * i + a;
-    if (normal_of(r->surface, i, a) < 0 &&
-        (r->result.contact[i] != CONTACT_STICK || r->surface->held[k]))
-      sum = hypot(sum, run_motion_over(r, k));
-  }
+  for (int a = 1; a < dim; ++a)
+    if (normal_of(r->surface, i, a) < 0)
+      sum = hypot(sum, run_motion_over(r, dim * i + a));
   return sum;
 }
 
@@ -205,6 +202,9 @@ const effect_ops wear_effect = {.name = "wear",
                                 .bit = NO_BIT,
                                 .called_for = calls_for_wear,
                                 .foreseen = expected,
+                                .sums_up =
+                                    "wear of half the increments is not "
+                                    "compared",
                                 .create = wear_new,
                                 .pose = open_gaps,
                                 .accept = wear_off,
