@@ -1,5 +1,5 @@
 /*
- * src/effects/plan/work.c: entries and operations of the factor foreseen from
+ * src/effects/plan/sizes.c: entries and operations of the factor foreseen from
  * the number of unknowns beside those that CHOLMOD counts for blocks in the
  * plane and in space, the contact last.
  */
