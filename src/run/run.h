@@ -236,7 +236,8 @@ int run_step_id(const run *r); /* from 0 */
 
 /* effect.c: the hooks of all effects of a run, in the order of the table. */
 status effects_create(run *r);
-const char *effects_sum_up(const run *r); /* sums_up of the first that has it  */
+/* sums_up of the first that has it, or NULL. */
+const char *effects_sum_up(const run *r);
 status effects_begin_step(run *r);
 status effects_initial(run *r);
 status effects_pose(run *r, double t);
