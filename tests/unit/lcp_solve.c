@@ -84,6 +84,18 @@ END_TEST
 /* w_1 = z_2 - 1, w_2 = 1 - z_1: z = (0, z_2) needs w_1 = 0 where z_1 > 0 only.
  * z_1 w_1 = 0 and z_2 w_2 = 0 with w_1 >= 0: z_2 >= 1, so w_2 = 0, z_1 = 1,
  * w_1 = 0: z = (1, 1). M is indefinite, and pivoting finds a ray. */
+/* The first tries, short where others follow, end before a ray. */
+START_TEST(proof_is_looked_for_after_short_tries) {
+  lcp_case c = lcp_make(LCP_INFEASIBLE, 200, 5);
+  const lcp_control control = {.tol = 1e-8};
+  lcp_data p = {c.n, c.M, c.q};
+  lcp_verdict v;
+  ck_assert_int_eq(lcp_solve(&p, &control, c.z, c.w, &v), OK);
+  ck_assert_int_eq(v.outcome, STOPPED_RAY);
+  lcp_case_free(&c);
+}
+END_TEST
+
 START_TEST(ray_of_an_indefinite_problem_is_no_verdict) {
   lcp_case c = lcp_make(LCP_INDEFINITE, 2, 1);
   const double M[4] = {0.0, -1.0, 1.0, 0.0}, q[2] = {-1.0, 1.0};
@@ -257,6 +269,7 @@ UNIT_MAIN("lcp_solve", long_paths_are_left_early,
           all_bases_decide_from_both_sides, families_with_a_solution_are_solved,
           planted_solutions_of_small_problems_are_found,
           problems_without_solution_are_proved_to_have_none,
+          proof_is_looked_for_after_short_tries,
           ray_of_an_indefinite_problem_is_no_verdict, limit_of_pivots_is_told,
           singular_bases_are_solved, transform_is_its_own_inverse,
           not_a_number_is_told, every_refused_request_is_reported)

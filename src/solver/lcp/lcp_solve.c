@@ -232,20 +232,24 @@ static status other_ways(run *s, outcome *o) {
 
 static status follow(run *s) {
   outcome first = RUNNING, o = RUNNING;
-  int proved = 0;
+  int proved = 0, looked = 0;
   PASS(pivot(s, 0, FIRST, &first));
   s->v->outcome = first;
   if (first == CONVERGED || first == STOPPED_NAN) return OK;
   note(s->v, "lemke", first);
-  if (first == STOPPED_RAY && !is_certificate(s->p, s->y) && !is_spent(s))
-    PASS(look_for_proof(s, &proved));
-  else
-    proved = first == STOPPED_RAY && is_certificate(s->p, s->y);
+  if (first == STOPPED_RAY) proved = is_certificate(s->p, s->y);
+  looked = first == STOPPED_RAY && !proved && !is_spent(s);
+  if (looked) PASS(look_for_proof(s, &proved));
   if (proved) return OK;
   if (!s->control->pivoting_only) {
     PASS(other_ways(s, &o));
     s->v->outcome = o;
     if (o == CONVERGED || o == STOPPED_RAY) return OK;
+  }
+  if (!looked && !is_spent(s)) { /* the first tries were too short for a ray */
+    PASS(look_for_proof(s, &proved));
+    s->v->outcome = STOPPED_RAY;
+    if (proved) return OK;
   }
   PASS(pivot(s, FIRST, ATTEMPTS, &o));
   note(s->v, "lemke from other vertices", o);
