@@ -111,7 +111,7 @@ static void give_up(const child *c, status code, const char *format, ...) {
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
   name_as_given(c, text);
-  send_text(c, WIRE_FAILURE, 0, code, text);
+  send_text(c, WIRE_FAILURE, 0, (int)code, text);
   _exit(0);
 }
 
@@ -147,7 +147,7 @@ static void detach(pid_t parent, int fd, int error_fd) {
   atexit(leave_at_once);
 }
 
-static void set_limit(int what, double most) {
+static void set_limit(unsigned what, double most) {
   struct rlimit l;
   if (getrlimit(what, &l) != 0 || !(most < (double)l.rlim_cur)) return;
   l.rlim_cur = (rlim_t)most;

@@ -8,7 +8,6 @@
 #include "support/traced.h"
 #include "support/unit.h"
 
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -46,12 +45,9 @@ static int run_behind(job *j, const char *first, const char *words) {
   return WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code);
 }
 
-/* Too little for the libraries, or for the thread that OpenBLAS begins with
- * while it is loaded: the program never began. */
+/* Too little for the libraries: the program never began. */
 static int never_began(const job *j, int code) {
-  return (code == 127 && strstr(j->errors, "shared librar") != NULL) ||
-         (code == 1000 + SIGINT &&
-          strstr(j->errors, "OpenBLAS blas_thread_init") != NULL);
+  return code == 127 && strstr(j->errors, "shared librar") != NULL;
 }
 
 /* 1: it was refused. */

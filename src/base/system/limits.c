@@ -165,7 +165,8 @@ enum { ALL_PAGES = 0, RESIDENT = 1, DATA_PAGES = 5 };
 
 static void read_process(limits *l) {
   static const struct {
-    int resource, column;
+    unsigned resource;
+    int column;
     const char *who;
   } rows[] = {{RLIMIT_AS, ALL_PAGES, "ulimit -v"},
               {RLIMIT_DATA, DATA_PAGES, "ulimit -d"}};

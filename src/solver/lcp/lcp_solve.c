@@ -230,6 +230,15 @@ static status other_ways(run *s, outcome *o) {
   return OK;
 }
 
+/* Outcome STOPPED_RAY if it is proved that there is no solution. */
+static status prove(run *s, int *looked, int *proved) {
+  *looked = 1;
+  *proved = s->v->outcome == STOPPED_RAY && is_certificate(s->p, s->y);
+  if (!*proved && !is_spent(s)) PASS(look_for_proof(s, proved));
+  if (*proved) s->v->outcome = STOPPED_RAY;
+  return OK;
+}
+
 static status follow(run *s) {
   outcome first = RUNNING, o = RUNNING;
   int proved = 0, looked = 0;
@@ -237,20 +246,16 @@ static status follow(run *s) {
   s->v->outcome = first;
   if (first == CONVERGED || first == STOPPED_NAN) return OK;
   note(s->v, "lemke", first);
-  if (first == STOPPED_RAY) proved = is_certificate(s->p, s->y);
-  looked = first == STOPPED_RAY && !proved && !is_spent(s);
-  if (looked) PASS(look_for_proof(s, &proved));
+  if (first == STOPPED_RAY) PASS(prove(s, &looked, &proved));
   if (proved) return OK;
   if (!s->control->pivoting_only) {
     PASS(other_ways(s, &o));
     s->v->outcome = o;
     if (o == CONVERGED || o == STOPPED_RAY) return OK;
   }
-  if (!looked && !is_spent(s)) { /* the first tries were too short for a ray */
-    PASS(look_for_proof(s, &proved));
-    s->v->outcome = STOPPED_RAY;
-    if (proved) return OK;
-  }
+  /* Short first tries may have ended before a ray. */
+  if (!looked) PASS(prove(s, &looked, &proved));
+  if (proved) return OK;
   PASS(pivot(s, FIRST, ATTEMPTS, &o));
   note(s->v, "lemke from other vertices", o);
   s->v->outcome = o == CONVERGED ? CONVERGED
