@@ -65,6 +65,7 @@ END_TEST
 
 /* Little friction: one solution, that of the solver, whatever the labels. */
 START_TEST(small_friction_has_one_solution) {
+  int sliding = 0;
   for (int k = 0; k < 60; ++k) {
     contact_case c =
         case_any(2, 1 + k % 6, 0.1, k / 2 % 2, (unsigned long long)(300 + k));
@@ -74,9 +75,18 @@ START_TEST(small_friction_has_one_solution) {
     ck_assert_msg(all.n_found == 1, "problem %d: %d solutions", k, all.n_found);
     ck_assert_int_ge(all.found[0].facts.patterns, 1);
     ck_assert_double_lt(all.found[0].facts.residual, 1e-11);
+    contact_status is[6];
+    int n[3] = {0};
+    contact_classify(&c.cp, all.found[0].u, all.found[0].r, is);
+    for (int i = 0; i < c.cp.n; ++i) ++n[is[i]];
+    ck_assert_int_eq(all.found[0].facts.n_stick, n[CONTACT_STICK]);
+    ck_assert_int_eq(all.found[0].facts.n_slip, n[CONTACT_SLIP]);
+    ck_assert_int_eq(all.found[0].facts.n_open, n[CONTACT_OPEN]);
+    sliding += n[CONTACT_SLIP];
     solution_set_free(&all);
     case_free(&c);
   }
+  ck_assert_int_gt(sliding, 5);
 }
 END_TEST
 
