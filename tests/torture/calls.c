@@ -214,13 +214,19 @@ static void try_scene(points *t, const char *kind, job j, const char *words) {
   ck_assert_msg(run(&j, words, &end) == 0, "%s", j.errors);
   int all = failing_points(&list);
   long n = getenv("PROTIS_CALLS") != NULL ? all : points_number(8, 0.02);
-  for (long k = 0; k < n && k < all; ++k) {
+  long missed = 0, tried = n < all ? n : all;
+  for (long k = 0; k < tried; ++k) {
     const failing_point *p = &list[points_spread(k, n, all) - 1];
     job_clear(&j);
     restore(&j);
     failing_at(p);
     int code = run(&j, words, &end);
     failing_at(NULL);
+    /* JOB.xdmf is rewritten by time: there are fewer calls in a quicker run. */
+    if (!end.reached && code == 0 && traced_difference(&whole, &j) == NULL) {
+      ck_assert_int_le(20 * ++missed, 20 + tried);
+      continue;
+    }
     const char *wrong = fault(&whole, &j, p, code, &end);
     points_try(t);
     if (wrong != NULL)
