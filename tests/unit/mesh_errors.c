@@ -317,6 +317,48 @@ START_TEST(flatness_has_no_unit) {
 }
 END_TEST
 
+/* A triangle on the line y = 0, the other below it but for a part of its width:
+ * coordinates of few digits touch, more is an overlap. */
+START_TEST(bodies_that_hardly_enter_each_other_touch) {
+  static const double part[] = {0, 1e-9, 5e-7, 1e-5, 1e-3};
+  mesh_file f;
+  mesh_file_open(&f);
+  for (int k = 0; k < 5; ++k) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             MSH(BODY,
+                 "6\n1 0 0 0\n2 1 0 0\n3 0.5 1 0\n"
+                 "4 0.1 %.17g 0\n5 0.5 -1 0\n6 0.9 %.17g 0\n",
+                 "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 4 5 6\n"),
+             part[k], part[k]);
+    mesh *m = mesh_file_text(&f, "t.msh", text);
+    const int told = strstr(f.messages, "overlap") != NULL;
+    ck_assert_msg(told == (k > 2), "%g: %s", part[k], f.messages);
+    mesh_free(m);
+  }
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* A triangle in an element of a square that has no side on its boundary. */
+START_TEST(body_inside_of_another_is_seen) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *m = mesh_file_text(
+      &f, "t.msh",
+      MSH(BODY,
+          "11\n1 0 0 0\n2 3 0 0\n3 3 3 0\n4 0 3 0\n5 1 1 0\n6 2 1 0\n"
+          "7 2 2 0\n8 1 2 0\n9 1.5 1.2 0\n10 1.7 1.2 0\n11 1.7 1.4 0\n",
+          "11\n1 2 2 1 1 1 2 6\n2 2 2 1 1 1 6 5\n3 2 2 1 1 2 3 7\n"
+          "4 2 2 1 1 2 7 6\n5 2 2 1 1 3 4 8\n6 2 2 1 1 3 8 7\n"
+          "7 2 2 1 1 4 1 5\n8 2 2 1 1 4 5 8\n9 2 2 1 1 5 6 7\n"
+          "10 2 2 1 1 5 7 8\n11 2 2 1 1 9 10 11\n"));
+  ck_assert_ptr_nonnull(strstr(f.messages, "overlap"));
+  mesh_free(m);
+  mesh_file_close(&f);
+}
+END_TEST
+
 /* Two slivers along a slanted line far from the origin, on both sides of it,
  * without common nodes. */
 START_TEST(bodies_that_touch_do_not_overlap) {
@@ -721,7 +763,9 @@ END_TEST
 
 UNIT_MAIN("mesh_errors", every_error_has_its_text_and_no_mesh,
           every_remark_has_its_text_and_a_mesh, flatness_has_no_unit,
-          bodies_that_touch_do_not_overlap, files_that_cannot_be_read_are_told,
+          bodies_that_touch_do_not_overlap,
+          bodies_that_hardly_enter_each_other_touch,
+          body_inside_of_another_is_seen, files_that_cannot_be_read_are_told,
           good_file_is_read_after_bad_ones, reader_that_dies_is_told,
           signals_do_not_disturb, want_of_memory_in_gmsh_is_told,
           want_of_memory_is_never_taken_for_a_bad_mesh, nothing_is_printed,
