@@ -139,6 +139,14 @@ static void check_friction(const model *m, const mesh *msh,
                 rule->law->value_name);
 }
 
+static void check_wear(const model *m, const step *s) {
+  for (int k = 0; k < s->n_print; ++k)
+    if (s->prints[k].table == PRINT_WEAR &&
+        model_effect_card(m, "WEAR", -1) == NULL)
+      message_add(m->log, P2058, &s->prints[k].at,
+                  "*PRINT, WEAR: no contact has *WEAR");
+}
+
 void check_no_effect(const model *m, const mesh *msh) {
   int axisymmetric = m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC;
   for (int i = 0; i < m->n_points; ++i) check_times(m, &m->points[i]);
@@ -156,6 +164,7 @@ void check_no_effect(const model *m, const mesh *msh) {
   for (int i = 0; i < m->n_step; ++i) {
     const step *s = &m->steps[i];
     check_flow(m, s);
+    check_wear(m, s);
     for (int k = 0; k < s->n_change; ++k)
       check_friction(m, msh, &s->changes[k].rule);
     for (int k = 0; k < s->loads.n; ++k) {
