@@ -96,22 +96,18 @@ static status overshoot(const run *r, const double *root, double *largest) {
   enum { PRODUCTS = 20 };
   status st = OK;
   const contact_problem *cp = &r->problem.cp;
-  const size_t m = (size_t)cp->m;
+  const int m = cp->m;
   double *x = NULL, *y = NULL, norm = 0.0;
   NEW(x, m);
   NEW(y, m);
   *largest = 0.0;
-  for (size_t i = 0; i < m; ++i) norm = hypot(norm, x[i] = root[i]);
+  for (int i = 0; i < m; ++i) norm = hypot(norm, y[i] = root[i]);
   for (int k = 0; k < PRODUCTS && norm > 0.0; ++k) {
-    double next = 0.0;
-    for (size_t i = 0; i < m; ++i) {
-      double sum = 0.0;
-      for (size_t j = 0; j < m && root[i] > 0.0; ++j)
-        sum += cp->A[m * i + j] * root[j] * x[j] / norm;
-      next = hypot(next, y[i] = root[i] * sum);
-    }
-    memcpy(x, y, m * sizeof *x);
-    *largest = norm = next;
+    for (int i = 0; i < m; ++i) x[i] = root[i] * y[i] / norm;
+    contact_product(m, cp->A, x, y);
+    norm = 0.0;
+    for (int i = 0; i < m; ++i) norm = hypot(norm, y[i] *= root[i]);
+    *largest = norm;
   }
 done:
   RELEASE(x, y);
