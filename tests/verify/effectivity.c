@@ -51,7 +51,8 @@ static const problem problems[] = {
    ALL("LEFT", UX, UY) ALL("RIGHT", UX, UY) ALL("TOP", UX, UY)
    "*DLOAD\nBODY, BX, \"2*E*A*sin(x)*cos(y)\"\n"
    "BODY, BY, \"2*E*A*cos(x)*sin(y)\"\n", {8, 16}},
-  {"sliding", "square.geo", "", "*FRICTION, CONTACT=C, LAW=COULOMB\n<MU>\n",
+  {"sliding", "square.geo", "",
+   "*PARAMETER\nMU = 0.3\n*FRICTION, CONTACT=C, LAW=COULOMB\n<MU>\n",
    "u_x, \"" SLIDE "\"\nu_y, \"" UY "\"\npressure, \"-E*A*cos(x)\"\n",
    ALL("LEFT", SLIDE, UY) ALL("RIGHT", SLIDE, UY) ALL("TOP", SLIDE, UY)
    "*DLOAD\nBODY, BX, \"2*E*A*sin(x)*cos(y) + 3*MU*E*A*cos(x)*sin(y)\"\n"
@@ -94,7 +95,7 @@ START_TEST(manufactured) {
     snprintf(path, sizeof path, "tests/regression/mesh/%s", p->mesh);
     job_copy(&j, path);
     job_write(&j, "verify.inp",
-              "*PARAMETER\nN = %d\nE = 1000.\nA = -0.01\nMU = 0.3\n"
+              "*PARAMETER\nN = %d\nE = 1000.\nA = -0.01\n"
               "*MESH, FILE=%s\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
               "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
               "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
