@@ -12,19 +12,21 @@ typedef struct inverse_energy {
   void *ctx;
   /* *square = d' inv(M) d, d[m] */
   status (*square)(void *ctx, const double *d, double *square);
-  double condition; /* of M scaled to a unit diagonal, -; for the rounding    */
-  int n_kernel;     /* motions without energy: M is semidefinite              */
-  const double *kernel; /* [m*n_kernel], borrowed                             */
+  double condition;     /* of M scaled to a unit diagonal, -; for the
+                           rounding */
+  int n_kernel;         /* motions without energy: M is semidefinite */
+  const double *kernel; /* [m*n_kernel], borrowed */
   /* Compliance form: the same problem in stiffness form, borrowed, for the rate
-   * of Coulomb friction; NULL: not known                                     */
+   * of Coulomb friction; NULL: not known */
   const contact_problem *stiffness;
 } inverse_energy;
 
 typedef struct solver_error {
-  double norm; /* bound of |u - u*|_A (|r - r*|_W if A is NULL), square root
-                  of an energy; NAN: there is none                            */
-  double rate; /* contraction of the sliding limit, -; 0: no Coulomb friction */
-  const char *why; /* NULL, or why there is no bound                          */
+  double norm;     /* bound of |u - u*|_A (|r - r*|_W if A is NULL), square root
+                      of an energy; NAN: there is none */
+  double rate;     /* contraction of the sliding limit, -; 0: no Coulomb
+                      friction */
+  const char *why; /* NULL, or why there is no bound */
 } solver_error;
 
 /* Rates that have been measured last, and for which states of the unknowns:
@@ -32,8 +34,8 @@ typedef struct solver_error {
 enum { KNOWN_RATES = 2 };
 typedef struct known_rate {
   int m, n;
-  signed char *state; /* [m*KNOWN_RATES] owned; the last used one first       */
-  double rate[KNOWN_RATES]; /* [n]                                            */
+  signed char *state;       /* [m*KNOWN_RATES] owned; the last used one first */
+  double rate[KNOWN_RATES]; /* [n] */
 } known_rate;
 /* A or B have changed: forget them. Accepts NULL. */
 void known_rate_forget(known_rate *k);
@@ -74,7 +76,7 @@ typedef struct linear_contact linear_contact;
 /* *out is NULL if the free unknowns are held by nothing. ERR_MEMORY. */
 status linear_contact_new(const contact_problem *cp, const double *u,
                           const double *r, linear_contact **out);
-void linear_contact_free(linear_contact *c); /* accepts NULL                  */
+void linear_contact_free(linear_contact *c); /* accepts NULL */
 /* du[m] of a change df[m] of the load, N. */
 void linear_contact_move(linear_contact *c, const double *df, double *du);
 
@@ -83,7 +85,7 @@ void linear_contact_move(linear_contact *c, const double *df, double *du);
  * is not symmetric and positive semidefinite. */
 typedef struct dense_inverse dense_inverse;
 status dense_inverse_new(int m, const double *M, dense_inverse **out);
-void dense_inverse_free(dense_inverse *d); /* accepts NULL                    */
+void dense_inverse_free(dense_inverse *d); /* accepts NULL */
 inverse_energy dense_inverse_energy(dense_inverse *d);
 /* N[m*m] = inv(M); *done = 0: M is semidefinite. */
 void dense_inverse_fill(dense_inverse *d, double *N, int *done);
@@ -95,9 +97,9 @@ void dense_inverse_solve(dense_inverse *d, const double *x, double *v);
 
 /* Displacement v and force q of the contact that are partners by its laws. */
 typedef struct pair {
-  double *v, *q; /* [m] m, N                                                  */
-  double *d, *t; /* [m] what misses in the equation; workspace */
-  unsigned char *slides; /* [n] |q_t| = g                                     */
+  double *v, *q;         /* [m] m, N */
+  double *d, *t;         /* [m] what misses in the equation; workspace */
+  unsigned char *slides; /* [n] |q_t| = g */
 } pair;
 
 status pair_new(int n, int m, pair *p);

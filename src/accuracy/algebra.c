@@ -142,7 +142,7 @@ static double pair_distance(const contact_problem *cp, const double *u,
   return sqrt(fmax(0.0, cblas_ddot(cp->m, move, 1, p->t, 1)));
 }
 
-static const double NO_PIVOT = 0x1p-44; /* -, of the largest diagonal         */
+static const double NO_PIVOT = 0x1p-44; /* -, of the largest diagonal */
 
 /*
  * Largest |e|_inv(M) of what rounding can have put into d: its rows are sums

@@ -20,15 +20,17 @@ enum { PASSES = 12, LONG_RUN = 90, AVERAGED = 30 };
 typedef struct linear_map {
   const contact_problem *cp;
   int n_free, n_slip;
-  int *free_id, *place; /* [m] free unknowns; their place or -1               */
-  unsigned char *closed, *slip; /* [n]                                        */
-  double *e;     /* [m] direction of the friction force on slip               */
-  double *kappa; /* [n] N/m                                                   */
-  double *K;     /* [n_free^2] factor                                         */
-  double *x;     /* [m] change of the free unknowns                           */
-  int n_closed;  /* closed nodes                                              */
-  double *P;     /* [n_free*n_closed] columns of A of their normal unknowns   */
-  double *dg;    /* [n] N                                                     */
+  int *free_id, *place;         /* [m] free unknowns; their place or -1 */
+  unsigned char *closed, *slip; /* [n] */
+  double *e;                    /* [m] direction of the friction force on
+                                   slip */
+  double *kappa;                /* [n] N/m */
+  double *K;                    /* [n_free^2] factor */
+  double *x;                    /* [m] change of the free unknowns */
+  int n_closed;                 /* closed nodes */
+  double *P;                    /* [n_free*n_closed] columns of A of their
+                                   normal unknowns */
+  double *dg;                   /* [n] N */
 } linear_map;
 
 static status map_new(const contact_problem *cp, linear_map *s) {

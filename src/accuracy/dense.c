@@ -14,16 +14,16 @@
 #include <string.h>
 
 enum { TILE = 32 };
-static const double SYMMETRY = 0x1p-40; /* -, of the diagonal                 */
-static const double RANK = 0x1p-38;     /* -, smaller pivots are zero         */
+static const double SYMMETRY = 0x1p-40; /* -, of the diagonal */
+static const double RANK = 0x1p-38;     /* -, smaller pivots are zero */
 
 struct dense_inverse {
   int m, rank;
   double condition;
-  double *L, *unit; /* [m*m] factor of the scaled matrix; [m] its scale       */
-  int *pivot;       /* [m] unknown of each place, from 1                      */
-  double *y;        /* [m]                                                    */
-  double *kernel;   /* [m*(m-rank)] motions without energy                    */
+  double *L, *unit; /* [m*m] factor of the scaled matrix; [m] its scale */
+  int *pivot;       /* [m] unknown of each place, from 1 */
+  double *y;        /* [m] */
+  double *kernel;   /* [m*(m-rank)] motions without energy */
 };
 
 /* Lower triangle of L = D M D with a unit diagonal; 0: not symmetric or no

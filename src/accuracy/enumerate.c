@@ -25,11 +25,11 @@ enum {
   LENGTH = ROWS + 1,
   SVD_WORK = 16 * ROWS,
   LABELS = 6,
-  PATTERNS = 1 << 21 /* a few seconds                                        */
+  PATTERNS = 1 << 21 /* a few seconds */
 };
 static const double WEAK = 1e-7;      /* -, of a row: elimination not trusted */
-static const double SINGULAR = 1e-11; /* -, of the stiffness: singular value  */
-static const double MARGIN = 1e-7;    /* -, of the scale: signs               */
+static const double SINGULAR = 1e-11; /* -, of the stiffness: singular value */
+static const double MARGIN = 1e-7;    /* -, of the scale: signs */
 
 static const double LEVEL = 1e-9; /* -, of the stiffness: does not change */
 
@@ -42,9 +42,9 @@ typedef struct label {
 
 typedef struct search {
   const contact_problem *cp;
-  double tol, force; /* -; scale, N                                           */
+  double tol, force; /* -; scale, N */
   solution_set *out;
-  double base[ROWS], rho0[ROWS]; /* u and rho with nothing free               */
+  double base[ROWS], rho0[ROWS]; /* u and rho with nothing free */
   label now[ENUMERATED_NODES];
   /* Rows eliminated so far, right side last, and their pivots. */
   int n_row, weak;

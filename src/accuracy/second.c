@@ -13,7 +13,7 @@
 
 enum { PARAM_SIZE = 512 };
 static const double FAR = 16.0; /* -, of the displacement that the scale of the
-                                   forces makes: distance of a start          */
+                                   forces makes: distance of a start */
 
 typedef enum { STICKING, OPEN_START, SLIDING, SLIDING_BACK, N_START } start;
 static const char *const start_text[] = {
@@ -53,7 +53,7 @@ static void set_start(const contact_problem *cp, start kind, double *u,
 
 /* Room for one start and its answer. */
 typedef struct trial {
-  double *u, *r; /* [m]                                                       */
+  double *u, *r; /* [m] */
 } trial;
 
 static status attempt(const contact_problem *cp, double tol,

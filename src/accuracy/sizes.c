@@ -17,10 +17,10 @@
 
 #include <math.h>
 
-static const double FINEST = 0.25, COARSEST = 2.0; /* -, in one pass          */
+static const double FINEST = 0.25, COARSEST = 2.0; /* -, in one pass */
 /* Within reach of the target the errors tell all sizes of the last mesh. */
-static const double REACH = 8.0, FINEST_LAST = 0.1; /* -                      */
-static const double GROWTH = 0.4; /* -, change of the size over a distance    */
+static const double REACH = 8.0, FINEST_LAST = 0.1; /* - */
+static const double GROWTH = 0.4; /* -, change of the size over a distance */
 enum { SWEEPS = 20 };
 
 /* Length of the edge of a regular element of the same measure. */

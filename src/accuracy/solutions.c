@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double SAME = 1e-6; /* -, relative distance of one state         */
+static const double SAME = 1e-6; /* -, relative distance of one state */
 static const double UNIT = 1e-3; /* -, of the energy of the scale: counts as
-                                    the norm of a state without deformation   */
+                                    the norm of a state without deformation */
 
 static void free_solution(solution *s) { RELEASE(s->u, s->r, s->status); }
 

@@ -9,18 +9,19 @@
 #include "solver/solver.h"
 
 typedef struct solution_facts {
-  double residual; /* contact_residual, -                                     */
-  double distance; /* |u - u_first|_A over the larger norm of the two, -      */
+  double residual; /* contact_residual, - */
+  double distance; /* |u - u_first|_A over the larger norm of the two, - */
   int n_open, n_slip, n_stick;
-  double lowest[2], highest[2]; /* u_n, u_t1 over the nodes, m                */
-  int patterns; /* attempts or status combinations that led to it             */
-  int joined;   /* number (from 1) of another solution: all states between
-                   the two are solutions as well; 0: none                     */
+  /* u_n, u_t1 over the nodes, m */
+  double lowest[2], highest[2];
+  int patterns; /* attempts or status combinations that led to it */
+  int joined;   /* number (from 1) of another solution: all states between the
+                   two are solutions as well; 0: none */
 } solution_facts;
 
 typedef struct solution {
-  double *u, *r;          /* [m] contact frame, m, N; owned                   */
-  contact_status *status; /* [n] owned                                        */
+  double *u, *r;          /* [m] contact frame, m, N; owned */
+  contact_status *status; /* [n] owned */
   solution_facts facts;
 } solution;
 
@@ -29,23 +30,25 @@ typedef struct solution_attempt {
   const char *solver, *family, *start;
   outcome outcome;
   double residual;
-  int solution_no; /* from 1; 0: none                                         */
+  int solution_no; /* from 1; 0: none */
 } solution_attempt;
 
 typedef struct solution_set {
-  int n, m; /* nodes, unknowns of the problem                            */
+  int n, m; /* nodes, unknowns of the problem */
   int n_found, cap_found;
-  solution *found; /* [n_found] owned; the first is that of the run, if any   */
+  solution *found; /* [n_found] owned; the first is that of the run,
+                      if any */
   int n_attempt, cap_attempt;
-  solution_attempt *attempts; /* [n_attempt] owned                            */
-  long n_pattern; /* status combinations tried; 0: not enumerated             */
-  int n_undecided; /* singular ones with solutions of unknown extent          */
+  solution_attempt *attempts; /* [n_attempt] owned */
+  long n_pattern;             /* status combinations tried; 0: not enumerated */
+  int n_undecided;            /* singular ones with solutions of unknown
+                                 extent */
 } solution_set;
 
 /* 1: what found the first solution is not all that did: a solver of another
  * family, or the enumeration. */
 int solution_set_confirmed(const solution_set *s);
-void solution_set_free(solution_set *s); /* accepts NULL, all zero            */
+void solution_set_free(solution_set *s); /* accepts NULL, all zero */
 /*
  * Add (u, r) if it is a solution to "tol" and not yet there; *no its number
  * from 1, 0: it is none. "r" may differ from A u - f by rounding.

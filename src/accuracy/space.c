@@ -18,18 +18,18 @@
 #include <string.h>
 
 enum { MAX_BASIS = 4, MAX_NS = 6 };
-static const double FLAT = 1e-6; /* -, pivot of a fit without enough points   */
+static const double FLAT = 1e-6; /* -, pivot of a fit without enough points */
 
 struct space_recovery {
   const domain *d;
   int n_section, n_region;
-  int *region;        /* [n_section] sections of one material have one        */
-  double *compliance; /* [ns*ns*n_section] 1/Pa, inv(E) of the estimate       */
-  int *start, *elem;  /* [n_node+1], elements round each node                 */
+  int *region;        /* [n_section] sections of one material have one */
+  double *compliance; /* [ns*ns*n_section] 1/Pa, inv(E) of the estimate */
+  int *start, *elem;  /* [n_node+1], elements round each node */
   int *patch, *stamp; /* [n_elem] elements of a patch; mark of the last patch */
-  int *seen;          /* [n_node] mark of the last patch                      */
-  int last;           /* mark                                                 */
-  double *recovered;  /* [ns*n_node] of the region at work, Pa                */
+  int *seen;          /* [n_node] mark of the last patch */
+  int last;           /* mark */
+  double *recovered;  /* [ns*n_node] of the region at work, Pa */
 };
 
 /* ---- set-up -------------------------------------------------------------- */

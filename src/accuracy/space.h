@@ -11,13 +11,13 @@
 
 #include "fem/fem.h"
 
-typedef struct space_recovery space_recovery; /* what belongs to the mesh   */
+typedef struct space_recovery space_recovery; /* what belongs to the mesh */
 
 /* Energy norms, sqrt(J): |v|^2 = integral of sigma' inv(E) sigma. */
 typedef struct space_error {
-  double error;    /* estimated |u - u_h|, sqrt(J)                            */
-  double norm;     /* |u_h|, sqrt(J)                                          */
-  double relative; /* error / sqrt(norm^2 + error^2), -; 0 without stress     */
+  double error;    /* estimated |u - u_h|, sqrt(J) */
+  double norm;     /* |u_h|, sqrt(J) */
+  double relative; /* error / sqrt(norm^2 + error^2), -; 0 without stress */
 } space_error;
 
 /* S[ns*ns] = inv(E) of a section over the components that carry stress, 1/Pa,
@@ -26,7 +26,7 @@ status space_compliance(const domain *d, int section, double *S);
 
 /* Patches of elements for the domain (borrowed); *out is new. ERR_MEMORY. */
 status space_recovery_new(const domain *d, space_recovery **out);
-void space_recovery_free(space_recovery *s); /* accepts NULL                */
+void space_recovery_free(space_recovery *s); /* accepts NULL */
 
 /*
  * Estimate for the stresses sigma[ns*n_elem] (domain_stress), Pa, with the

@@ -12,9 +12,9 @@
 #include <string.h>
 
 enum { LISTED = 5, LARGEST = 2000, PARAM_SIZE = 512 };
-static const double PART = 0.01; /* -, of the largest: does not count        */
-static const double TIE = 1e-6;  /* -, values that count as equal            */
-static const double MISFIT = 1e-9; /* -, of the force scale: none             */
+static const double PART = 0.01;   /* -, of the largest: does not count */
+static const double TIE = 1e-6;    /* -, values that count as equal */
+static const double MISFIT = 1e-9; /* -, of the force scale: none */
 
 /* A text that is added to. */
 typedef struct words {

@@ -14,11 +14,11 @@ typedef struct verdict_scene {
   const model *m;
   const mesh *msh;
   const step *step;
-  double t; /* s                                                              */
+  double t; /* s */
   const contact_surface *surface;
-  const contact_problem *cp; /* with A                                        */
-  const double *u, *r;       /* [m] what the solver left                      */
-  condensed *c; /* the load condensed last is lost                            */
+  const contact_problem *cp; /* with A */
+  const double *u, *r;       /* [m] what the solver left */
+  condensed *c;              /* the load condensed last is lost */
 } verdict_scene;
 
 /*

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { SIGNALLED = 128 }; /* exit code of a process that a signal ended      */
+enum { SIGNALLED = 128 }; /* exit code of a process that a signal ended */
 
 /* clang-format off */
 static const struct {
@@ -16,7 +16,7 @@ static const struct {
   status code;
   const char *name;
   int urgent; /* 1: the second such one ends the process; the others are sent
-                 again and again, or together                                */
+                 again and again, or together */
 } requests[] = {
     {SIGINT,  ERR_INTERRUPTED, "SIGINT",  1},
     {SIGTERM, ERR_TERMINATED,  "SIGTERM", 1},
@@ -27,18 +27,16 @@ static const struct {
 /* clang-format on */
 enum { REQUESTS = sizeof requests / sizeof *requests };
 
-static volatile sig_atomic_t caught; /* row of the first + 1, 0: none        */
-static volatile sig_atomic_t urgent; /* urgent ones so far                   */
-static const char *file;             /* borrowed                             */
-static int known_before;             /* 0: it could not be looked at       */
-static struct stat file_before;      /* ino 0: there was none                */
+static volatile sig_atomic_t caught; /* row of the first + 1, 0: none */
+static volatile sig_atomic_t urgent; /* urgent ones so far */
+static const char *file;             /* borrowed */
+static int known_before;             /* 0: it could not be looked at */
+static struct stat file_before;      /* ino 0: there was none */
 static int file_seen;
 
-enum {
-  STACK = 64 << 10
-}; /* bytes                                            */
+enum { STACK = 64 << 10 }; /* bytes */
 static int watching;
-static char stack[STACK]; /* for the handlers: the other may be used up     */
+static char stack[STACK]; /* for the handlers: the other may be used up */
 
 static void note(int signal_no) {
   int row = 0;

@@ -41,13 +41,13 @@
     }                                                                      \
   } while (0)
 
-void *memory_new(size_t n, size_t size); /* zeroed; NULL if refused          */
-/* New place for old_n items, the rest zeroed; on NULL the old one is kept.  */
+void *memory_new(size_t n, size_t size); /* zeroed; NULL if refused */
+/* New place for old_n items, the rest zeroed; on NULL the old one is kept. */
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size);
-char *memory_text(const char *text); /* copy of a string; NULL if refused    */
-void memory_free(void *p);           /* accepts NULL                         */
+char *memory_text(const char *text); /* copy of a string; NULL if refused */
+void memory_free(void *p);           /* accepts NULL */
 void memory_free_all(int n, void *const *p);
-void memory_leave(void *p); /* p: address of a pointer whose block is freed  */
+void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 
 /* RELEASE(a, b, ...): memory_free of each. */
 #define RELEASE(...)                                                       \
@@ -61,14 +61,14 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed  */
  * its first use; further calls change nothing. */
 void memory_count_suitesparse(void);
 
-size_t memory_in_use(void);    /* bytes now held                              */
-size_t memory_peak(void);      /* the most held at a time                     */
-size_t memory_allocated(void); /* bytes asked for since the start            */
-long memory_requests(void);    /* requests since the start                    */
+size_t memory_in_use(void);    /* bytes now held */
+size_t memory_peak(void);      /* the most held at a time */
+size_t memory_allocated(void); /* bytes asked for since the start */
+long memory_requests(void);    /* requests since the start */
 /* Bytes that may be held at a time; what would be more is refused. who: whose
  * limit that is, for messages (a literal). SIZE_MAX: no limit, as at first. */
 void memory_limit(size_t bytes, const char *who);
-double memory_left(void); /* bytes; INFINITY without limit                   */
+double memory_left(void); /* bytes; INFINITY without limit */
 const char *memory_limit_of(void);
 /* ERR_MEMORY with what to do if so many bytes more are above the limit: asked
  * before a lot of work. what: "the run", ... */

@@ -12,25 +12,25 @@
 #include <string.h>
 
 enum {
-  KEPT = 100,       /* messages kept of each severity                        */
-  TEXT_SIZE = 1024, /* longest text of one message                           */
-  SHOWN = 120       /* most characters of a source line                      */
+  KEPT = 100,       /* messages kept of each severity */
+  TEXT_SIZE = 1024, /* longest text of one message */
+  SHOWN = 120       /* most characters of a source line */
 };
 
 typedef struct message {
   message_id id;
   severity level;
-  place *at;  /* copy with its chain, owned; NULL: no place                  */
-  char *text; /* owned                                                       */
-  int rank;   /* of the outermost file, by first mention                     */
+  place *at;  /* copy with its chain, owned; NULL: no place */
+  char *text; /* owned */
+  int rank;   /* of the outermost file, by first mention */
 } message;
 
 struct message_log {
   int n, capacity;
   message *items;
-  int count[3]; /* by severity, those not kept included                      */
+  int count[3]; /* by severity, those not kept included */
   int n_file, file_capacity;
-  char **files; /* outermost files in the order of their first message       */
+  char **files; /* outermost files in the order of their first message */
   int no_memory;
 };
 
@@ -233,7 +233,7 @@ static int compare_messages(const void *x, const void *y) {
   int order = compare_places(a->at, b->at);
   if (order != 0) return order;
   if (a->level != b->level) return a->level > b->level ? -1 : 1;
-  return a < b ? -1 : a > b; /* in the order of their coming                  */
+  return a < b ? -1 : a > b; /* in the order of their coming */
 }
 
 /* Messages in order into sorted[]; without memory as they came. */

@@ -18,11 +18,12 @@
 #include <stdio.h>
 
 typedef struct place {
-  const char *file;       /* as the user named it; NULL: no file             */
-  int line_no, column_no; /* from 1; 0: unknown. Columns count bytes         */
-  const char *line;       /* text of the line for the caret, or NULL         */
-  const struct place *from; /* place of the *INCLUDE that led here, or NULL   */
-  int hidden; /* 1: messages show nothing of the file, which may be no deck   */
+  const char *file;         /* as the user named it; NULL: no file */
+  int line_no, column_no;   /* from 1; 0: unknown. Columns count bytes */
+  const char *line;         /* text of the line for the caret, or NULL */
+  const struct place *from; /* place of the *INCLUDE that led here, or NULL */
+  int hidden;               /* 1: messages show nothing of the file, which may
+                               be no deck */
 } place;
 
 typedef enum { NOTE, WARNING, ERROR } severity;
@@ -49,7 +50,7 @@ int message_count(const message_log *log, severity s);
 typedef struct message_view {
   message_id id;
   severity level;
-  const place *at; /* or NULL                                               */
+  const place *at; /* or NULL */
   const char *text;
 } message_view;
 int message_get(const message_log *log, int k, message_view *out);

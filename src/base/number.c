@@ -19,9 +19,9 @@ enum { DIGITS = 800, EXPONENT_LIMIT = 1000000 };
 typedef struct decimal {
   int negative;
   int n_digit;
-  char digit[DIGITS + 2]; /* without leading zeros                           */
-  long exponent;          /* value = digits * 10^exponent                    */
-  int bare;               /* exponent written without a letter               */
+  char digit[DIGITS + 2]; /* without leading zeros */
+  long exponent;          /* value = digits * 10^exponent */
+  int bare;               /* exponent written without a letter */
 } decimal;
 
 static int is_digit(char c) { return c >= '0' && c <= '9'; }

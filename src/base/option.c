@@ -107,7 +107,7 @@ const char *nearest_word(const char *word,
   int n = (int)strnlen(word, WORD_MAX + 1), best = 2 + n / 4;
   const char *found = NULL, *longer = NULL, *candidate;
   if (n == 0 || n > WORD_MAX) return NULL;
-  if (best > n) best = n; /* something of the word must remain                */
+  if (best > n) best = n; /* something of the word must remain */
   for (int i = 0; (candidate = next(ctx, i)) != NULL; ++i) {
     int m = (int)strnlen(candidate, WORD_MAX + 1);
     if (m > WORD_MAX) continue;
@@ -128,7 +128,7 @@ enum { CHOICE_TEXT = 1024, CHOICE_WORDS = 64 };
 typedef struct word_list {
   int n;
   char text[CHOICE_TEXT];
-  const char *word[CHOICE_WORDS]; /* [n] in text                              */
+  const char *word[CHOICE_WORDS]; /* [n] in text */
 } word_list;
 
 static void split_choices(const char *choices, word_list *list) {

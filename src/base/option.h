@@ -15,15 +15,15 @@
 typedef enum { OPT_INT, OPT_REAL, OPT_FLAG, OPT_NAME, OPT_CHOICE } option_type;
 
 typedef struct option {
-  const char *name; /* as in the deck, upper case                         */
+  const char *name; /* as in the deck, upper case */
   option_type type;
-  size_t offset;       /* offsetof() in the parameter struct                 */
-  double min, max;     /* closed range; OPT_INT and OPT_REAL                 */
+  size_t offset;       /* offsetof() in the parameter struct */
+  double min, max;     /* closed range; OPT_INT and OPT_REAL */
   const char *initial; /* text of the value if absent; NULL: must be given;
-                          OPTION_ABSENT: may be left out, field stays zero   */
-  const char *unit;    /* dimension: "length", "force/length^2", "-"         */
-  const char *choices; /* OPT_CHOICE: words joined by |, field = their rank  */
-  const char *help;    /* one line                                           */
+                          OPTION_ABSENT: may be left out, field stays zero */
+  const char *unit;    /* dimension: "length", "force/length^2", "-" */
+  const char *choices; /* OPT_CHOICE: words joined by |, field = their rank */
+  const char *help;    /* one line */
 } option;
 
 #define OPTION_ABSENT "(none)"

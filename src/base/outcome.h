@@ -7,13 +7,13 @@
 typedef enum {
   CONVERGED = 1,
   RUNNING = 0,
-  STOPPED_ITERATIONS = -1, /* limit of iterations                             */
-  STOPPED_STAGNATION = -2, /* no progress above the rounding level            */
-  STOPPED_RAY = -3,        /* no equilibrium: a secondary ray                 */
+  STOPPED_ITERATIONS = -1, /* limit of iterations */
+  STOPPED_STAGNATION = -2, /* no progress above the rounding level */
+  STOPPED_RAY = -3,        /* no equilibrium: a secondary ray */
   STOPPED_NAN = -4,
-  STOPPED_CYCLE = -5,    /* a status pattern came back                      */
-  STOPPED_SINGULAR = -6, /* a linear system of the method has no solution  */
-  STOPPED_UNFIT = -7     /* the method cannot treat the problem at all      */
+  STOPPED_CYCLE = -5,    /* a status pattern came back */
+  STOPPED_SINGULAR = -6, /* a linear system of the method has no solution */
+  STOPPED_UNFIT = -7     /* the method cannot treat the problem at all */
 } outcome;
 /* In a few words, for listings and messages. */
 const char *outcome_text(outcome o);

@@ -10,10 +10,10 @@
 #include <stddef.h>
 
 typedef struct sparse_rows {
-  int n;       /* rows                                                       */
-  int *start;  /* [n+1]                                                      */
-  int *col;    /* [start[n]] ascending in a row                              */
-  double *val; /* [start[n]]                                                 */
+  int n;       /* rows */
+  int *start;  /* [n+1] */
+  int *col;    /* [start[n]] ascending in a row */
+  double *val; /* [start[n]] */
 } sparse_rows;
 
 /* Frees the arrays and leaves all zero; accepts all-zero. */

@@ -68,12 +68,12 @@ status status_fail(status code, const char *function, int line,
 /* Note one function on the way up. */
 void status_trace(const char *function, int line);
 
-const char *status_message(void); /* what went wrong, one or more lines  */
-const char *status_path(void);    /* functions passed, innermost first   */
+const char *status_message(void); /* what went wrong, one or more lines */
+const char *status_path(void);    /* functions passed, innermost first */
 const char *status_name(status s);
 const char *status_text(status s);
 int status_exit_code(status s);
-int status_is_request(status s); /* 1: to end early, see base/interrupt.h     */
+int status_is_request(status s); /* 1: to end early, see base/interrupt.h */
 void status_clear(void);
 
 #endif

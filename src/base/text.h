@@ -11,7 +11,7 @@
 
 typedef struct text_file {
   FILE *f;
-  char *path; /* owned                                                      */
+  char *path; /* owned */
 } text_file;
 
 /* DIR/NAME.SUFFIX, or NULL without memory; memory_free it. */
@@ -25,7 +25,7 @@ status text_reopen(text_file *t, const char *path, int by_line, long length);
 status text_sync(text_file *t, long *length);
 /* Hand everything to the system; ERR_FILE names the file and the reason. */
 status text_check(text_file *t);
-status text_close(text_file *t); /* checked; accepts one never opened      */
+status text_close(text_file *t); /* checked; accepts one never opened */
 /* The file as "write" fills it; written aside and renamed: a reader sees the
  * whole or nothing. */
 status text_replace(const char *path, const void *what,

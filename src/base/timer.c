@@ -18,7 +18,7 @@ static stage_cost cost[STAGE_COUNT];
 static stage open_stage[DEPTH];
 static int depth;
 static int whole; /* depth of the stage that all others are part of; 0: none */
-static int inner; /* stages entered inside it                               */
+static int inner; /* stages entered inside it */
 static double last_cpu;
 static size_t last_bytes;
 

@@ -66,22 +66,22 @@ typedef enum {
 } stage;
 
 typedef struct stage_cost {
-  long calls;   /* -            */
-  double cpu;   /* CPU time, s  */
-  size_t bytes; /* asked for    */
+  long calls;   /* - */
+  double cpu;   /* CPU time, s */
+  size_t bytes; /* asked for */
 } stage_cost;
 
 void timer_enter(stage s);
 /* The same for work beside the run: stages entered before it is left are part
  * of it, their own costs and calls are not counted. */
 void timer_enter_whole(stage s);
-void timer_leave(stage s);       /* must match the last timer_enter         */
-stage_cost timer_cost(stage s);  /* so far, running stages included         */
-const char *timer_name(stage s); /* NULL: one that has not been named       */
+void timer_leave(stage s);       /* must match the last timer_enter */
+stage_cost timer_cost(stage s);  /* so far, running stages included */
+const char *timer_name(stage s); /* NULL: one that has not been named */
 /* Stage number k, from 0, of those that are not listed; name is borrowed. */
 stage timer_own_stage(int k, const char *name);
 double timer_cpu(void); /* CPU seconds of the process so far, and of
-                           the children it has waited for          */
+                           the children it has waited for */
 void timer_reset(void);
 /* The process goes on with the run of another, which had spent this: its calls
  * are those of the whole from here on, the rest adds up. */

@@ -9,7 +9,7 @@
 #include <cblas.h>
 #include <math.h>
 
-static const double ROUNDING_FLOOR = 0x1p-14; /* -, contact_scale             */
+static const double ROUNDING_FLOOR = 0x1p-14; /* -, contact_scale */
 
 double larger(double a, double b) {
   if (isnan(a)) return a;

@@ -19,53 +19,56 @@
 
 /* Nodes that the matrix joins, through others too, are of one body. */
 typedef struct body_size {
-  double load;    /* largest load, N                                          */
-  double contact; /* largest contact force, N                                 */
-  double way;     /* largest of both over the stiffness of its node, m        */
-  double fallen;  /* largest c_n times what a node has gone of its gap, N     */
-  double carried; /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m)           */
-  double reach;   /* the same of positions that the data lead to              */
+  double load;    /* largest load, N */
+  double contact; /* largest contact force, N */
+  double way;     /* largest of both over the stiffness of its node, m */
+  double fallen;  /* largest c_n times what a node has gone of its gap, N */
+  double carried; /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m) */
+  double reach;   /* the same of positions that the data lead to */
 } body_size;
 typedef struct contact_bodies {
   int n;
-  int *of;         /* [nodes] body of each                                    */
+  int *of;         /* [nodes] body of each */
   body_size *size; /* [n] workspace of the residual */
 } contact_bodies;
 
 typedef struct contact_problem {
-  int dim, n, m;   /* 2 or 3; contact nodes; m = dim*n unknowns           */
-  const double *A; /* [m*m] condensed stiffness, N/m, symmetric, positive
-                      (semi)definite; NULL: only the compliance is known  */
-  const double *W; /* [m*m] compliance, m/N; NULL until asked for. Given
-                      alone (A NULL) it may be semidefinite and slightly
-                      unsymmetric                                         */
-  const double *f; /* [m] condensed load, N; with A NULL: q = W f, m      */
-  const double *f_load; /* [m] part of f that the motion of supports is not in,
-                         N; NULL: f                                         */
-  const double *gap; /* [n] normal gap of the undeformed body, m            */
-  const double *ut0; /* [n*(dim-1)] position of stick: tangential
-                        displacement at increment start, plus the obstacle's
-                        motion since, m; NULL: frictionless                 */
-  const double *g0;  /* [n] sliding limit without pressure, N; NULL:
-                        frictionless (then B and ut0 are NULL too)          */
-  const sparse_rows *B; /* [n*n], -; NULL: g = g0 (Tresca); rows of mu        */
-  const double *side_gap;    /* [n*(dim-1)] or NULL: bounds u_t from above where
-                          the node touches a second (third) frictionless
-                          obstacle, HUGE_VAL elsewhere; such nodes have g = 0 */
-  const unsigned char *held; /* [m] or NULL: 1: a tangential unknown that is
-                          prescribed. Its row of A is decoupled (A_ii u_i =
-                          f_i), friction acts in the other direction only   */
-  const contact_bodies *bodies; /* NULL: not known; by contact_bodies_new */
-  int floating; /* A is singular: contact alone holds the body         */
+  int dim, n, m;          /* 2 or 3; contact nodes; m = dim*n unknowns */
+  const double *A;        /* [m*m] condensed stiffness, N/m, symmetric,
+                             positive (semi)definite; NULL: only the
+                             compliance is known */
+  const double *W;        /* [m*m] compliance, m/N; NULL until asked for. Given
+                             alone (A NULL) it may be semidefinite and slightly
+                             unsymmetric */
+  const double *f;        /* [m] condensed load, N; with A NULL: q = W f, m */
+  const double *f_load;   /* [m] part of f that the motion of supports is not
+                             in, N; NULL: f */
+  const double *gap;      /* [n] normal gap of the undeformed body, m */
+  const double *ut0;      /* [n*(dim-1)] position of stick: tangential
+                             displacement at increment start, plus the
+                             obstacle's motion since, m; NULL: frictionless */
+  const double *g0;       /* [n] sliding limit without pressure, N; NULL:
+                             frictionless (then B and ut0 are NULL too) */
+  const sparse_rows *B;   /* [n*n], -; NULL: g = g0 (Tresca); rows of mu */
+  const double *side_gap; /* [n*(dim-1)] or NULL: bounds u_t from above where
+                             the node touches a second (third) frictionless
+                             obstacle, HUGE_VAL elsewhere; such nodes have g
+                             = 0 */
+  /* [m] or NULL: 1: a tangential unknown that is prescribed. Its row of A is
+   * decoupled (A_ii u_i = f_i), friction acts in the other direction only */
+  const unsigned char *held;
+  /* NULL: not known; by contact_bodies_new */
+  const contact_bodies *bodies;
+  int floating; /* A is singular: contact alone holds the body */
   double load;  /* N, what loads grow to: forces that are nothing beside their
-                   rounding are nothing (contact_scale); 0: not known    */
+                   rounding are nothing (contact_scale); 0: not known */
 } contact_problem;
 
 typedef enum { CONTACT_OPEN, CONTACT_SLIP, CONTACT_STICK } contact_status;
 
 /* The parts of a problem with that matrix that hardly an entry joins. */
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out);
-void contact_bodies_free(contact_bodies *b); /* accepts NULL                  */
+void contact_bodies_free(contact_bodies *b); /* accepts NULL */
 
 /* r = A u - f, N. r[m]. Stiffness form only. */
 void contact_reaction(const contact_problem *cp, const double *u, double *r);

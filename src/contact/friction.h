@@ -11,23 +11,24 @@
 #include "deck/quantity.h"
 
 typedef struct friction_limit {
-  double *g0;    /* [n] N                                                     */
-  sparse_rows B; /* [n*n] -; start == NULL if the law needs none              */
+  double *g0;             /* [n] N */
+  sparse_rows B;          /* [n*n] -; start == NULL if the law needs none */
   unsigned char *in_zone; /* [n] or NULL; 1: no friction where r_n = 0 */
 } friction_limit;
 
 /* One *FRICTION card: the law on the nodes of one *CONTACT. */
 typedef struct friction_card {
-  quantity value;    /* mu, -, or the limit g, force/length^2 (dim 3) or
-                        force/length^2 times thickness: a traction        */
-  const void *param; /* [law->param_size] its options                      */
+  quantity value;             /* mu, -, or the limit g, force/length^2 (dim
+                                 3) or force/length^2 times thickness: a
+                                 traction */
+  const void *param;          /* [law->param_size] its options */
   const sparse_rows *average; /* [n*n] of law->average; NULL: local friction */
 } friction_card;
 
 typedef struct friction_ops {
-  const char *name, *reference; /* as in LAW=, source                         */
-  const char *help;             /* one line for --list friction               */
-  const char *value_name, *value_unit; /* the data line: "mu", "-"            */
+  const char *name, *reference;        /* as in LAW=, source */
+  const char *help;                    /* one line for --list friction */
+  const char *value_name, *value_unit; /* the data line: "mu", "-" */
   size_t param_size;
   const option *options;
   /* Why the options do not fit a model of that kind; NULL: they do. NULL
@@ -52,16 +53,16 @@ typedef struct friction_ops {
 /* clang-format on */
 #define FRICTION_EXTERN(name) extern const friction_ops name##_friction;
 FRICTION_LIST(FRICTION_EXTERN)
-extern const friction_ops *const friction_list[]; /* NULL at the end          */
+extern const friction_ops *const friction_list[]; /* NULL at the end */
 /* The law of that name, case ignored, or NULL. */
 const friction_ops *friction_find(const char *name);
 
 /* All zero for a surface of n nodes. */
 status friction_limit_new(int n, friction_limit *out);
-void friction_limit_free(friction_limit *limit); /* accepts all-zero, NULL    */
+void friction_limit_free(friction_limit *limit); /* accepts all-zero, NULL */
 
 /* For the laws. */
-extern const option friction_no_options[]; /* a law without options           */
+extern const option friction_no_options[]; /* a law without options */
 
 /* Value of the card at contact node i, not negative; ERR_DECK otherwise. */
 status friction_value(const friction_card *card, const contact_surface *s,

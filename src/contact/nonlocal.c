@@ -15,9 +15,9 @@
 #include <float.h>
 
 typedef struct nonlocal {
-  double radius;                    /* rho, m                                */
-  int kernel, edge, zone, distance; /* ranks of the words below              */
-  int mirror_x, mirror_y, mirror_z; /* average_mirror                        */
+  double radius;                    /* rho, m */
+  int kernel, edge, zone, distance; /* ranks of the words below */
+  int mirror_x, mirror_y, mirror_z; /* average_mirror */
 } nonlocal;
 
 /* clang-format off */
@@ -51,7 +51,7 @@ typedef struct patch {
   double *x;
   int *face;
   unsigned char *active;
-  int *contact_node; /* [n_node] of the surface, or -1                       */
+  int *contact_node; /* [n_node] of the surface, or -1 */
 } patch;
 
 static void patch_free(patch *a) {

@@ -18,24 +18,25 @@
 #include "deck/quantity.h"
 
 typedef enum {
-  OBSTACLE_CONFORMING, /* follows the body: gap 0                             */
-  OBSTACLE_PLANE,      /* point, outward normal (towards the body)            */
-  OBSTACLE_CYLINDER,   /* point of the axis, direction (3-D), radius          */
-  OBSTACLE_SPHERE,     /* centre, radius                                      */
-  OBSTACLE_GAP         /* gap along the normal as an expression of x y z t    */
+  OBSTACLE_CONFORMING, /* follows the body: gap 0 */
+  OBSTACLE_PLANE,      /* point, outward normal (towards the body) */
+  OBSTACLE_CYLINDER,   /* point of the axis, direction (3-D), radius */
+  OBSTACLE_SPHERE,     /* centre, radius */
+  OBSTACLE_GAP         /* gap along the normal as an expression of x y z t */
 } obstacle_shape;
 #define OBSTACLE_SHAPES "CONFORMING|PLANE|CYLINDER|SPHERE|GAP"
 
 typedef struct obstacle {
   const char *name;
-  int shape;  /* obstacle_shape                                      */
-  int inside; /* 1: the body is inside the cylinder or sphere        */
-  double point[3], direction[3], radius; /* m; direction of unit length       */
-  quantity gap;       /* OBSTACLE_GAP                                        */
-  quantity motion[3]; /* d: shift of the obstacle at time t, m               */
-  int turns;          /* 1: it has a rotation                                */
-  double pivot[3], axis[3]; /* c, m; a of unit length, in 2-D (0, 0, +-1)     */
-  quantity angle;           /* at time t, rad                                */
+  int shape;  /* obstacle_shape */
+  int inside; /* 1: the body is inside the cylinder or sphere */
+  /* m; direction of unit length */
+  double point[3], direction[3], radius;
+  quantity gap;             /* OBSTACLE_GAP */
+  quantity motion[3];       /* d: shift of the obstacle at time t, m */
+  int turns;                /* 1: it has a rotation */
+  double pivot[3], axis[3]; /* c, m; a of unit length, in 2-D (0, 0, +-1) */
+  quantity angle;           /* at time t, rad */
 } obstacle;
 
 /*

@@ -4,7 +4,7 @@
 
 #include "contact/contact.h"
 
-enum { CHUNK = 64 }; /* rows and columns of a product kept on the stack      */
+enum { CHUNK = 64 }; /* rows and columns of a product kept on the stack */
 
 /* The larger, the smaller of two, NaN if one is. */
 double larger(double a, double b);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum { MOST_PASSES = 2 };
-static const double LONGER = 4.0; /* -, after a way that was too short       */
+static const double LONGER = 4.0; /* -, after a way that was too short */
 
 void reach_free(contact_reach *x) {
   memory_free(x->in);

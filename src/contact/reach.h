@@ -9,8 +9,8 @@
 #include "contact/contact.h"
 
 typedef struct contact_reach {
-  double way;    /* gaps up to it may close, m                              */
-  int passes;    /* times that it was too short                             */
+  double way;    /* gaps up to it may close, m */
+  int passes;    /* times that it was too short */
   int n_in, *in; /* [n_in] nodes within reach, ascending; NULL: all, n_in 0 */
 } contact_reach;
 
@@ -29,13 +29,13 @@ status reach_extend(contact_reach *x, int n, const double *gap,
                     const double *u_n, int stride, int all);
 /* Room for what a problem says of its nodes. */
 typedef struct reach_part {
-  double *gap, *ut0, *g0; /* [n], [n*(dim-1)], [n]                            */
-  unsigned char *held;    /* [n*dim]                                          */
-  sparse_rows B;          /* [n*n] one entry a row at most                    */
+  double *gap, *ut0, *g0; /* [n], [n*(dim-1)], [n] */
+  unsigned char *held;    /* [n*dim] */
+  sparse_rows B;          /* [n*n] one entry a row at most */
 } reach_part;
 /* For n nodes of dim unknowns; frictionless with dim 1. ERR_MEMORY. */
 status reach_part_new(int n, int dim, reach_part *out);
-void reach_part_free(reach_part *p); /* accepts all-zero                      */
+void reach_part_free(reach_part *p); /* accepts all-zero */
 /* What *cp says of all nodes into room, and *cp to point to it, for those
  * within reach alone; limits are of local friction: B has its diagonal only. */
 void reach_cut(const contact_reach *x, reach_part *room, contact_problem *cp);

@@ -33,30 +33,32 @@ static const double told_share = 0.01;
 typedef struct candidate {
   int node_id, pair_id;
   int left_out;
-  double normal[3]; /* [dim] sum of w n, then the unit normal               */
-  double area;      /* m2                                                   */
-  double gap;       /* at time 0, m                                         */
+  double normal[3]; /* [dim] sum of w n, then the unit normal */
+  double area;      /* m2 */
+  double gap;       /* at time 0, m */
 } candidate;
 
 /* What is said once per contact. */
 typedef struct tally {
-  int n_fixed, n_unreached, n_corner, n_kept; /* nodes                      */
-  int fixed_node, corner_node;                /* the first of them          */
-  int n_dependent, dependent_node, dependent_on; /* first node and pair      */
+  /* nodes */
+  int n_fixed, n_unreached, n_corner, n_kept;
+  int fixed_node, corner_node; /* the first of them */
+  /* first node and pair */
+  int n_dependent, dependent_node, dependent_on;
   int deep_node;
-  double depth; /* deepest penetration, m                                   */
-  int turned_node; /* where the normals of body and obstacle differ most    */
-  double sine;     /* of the angle between them                             */
-  int held_node;   /* where supports hold most of the normal of the obstacle  */
-  double held;     /* 1 - the length that is left of it                       */
+  double depth;    /* deepest penetration, m */
+  int turned_node; /* where the normals of body and obstacle differ most */
+  double sine;     /* of the angle between them */
+  int held_node;   /* where supports hold most of the normal of the obstacle */
+  double held;     /* 1 - the length that is left of it */
 } tally;
 
 typedef struct builder {
   const surface_input *in;
   message_log *log;
   int dim, n;
-  candidate *list; /* [n] by node, then by contact                          */
-  tally *tallies;  /* [n_pair]                                              */
+  candidate *list; /* [n] by node, then by contact */
+  tally *tallies;  /* [n_pair] */
 } builder;
 
 /* Position of a node as text for a message. */

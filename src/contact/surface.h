@@ -10,19 +10,20 @@
 
 typedef struct contact_surface {
   int dim, n;
-  int *node_id;    /* [n] mesh node, ascending                                */
-  size_t *node_no; /* [n] its number in the mesh file                         */
-  int *contact_id; /* [n] the *CONTACT the normal belongs to                  */
-  int *side_id;    /* [n*(dim-1)] *CONTACT of a second (third) obstacle, -1   */
-  double *x;       /* [dim*n] m                                               */
-  double *area;    /* [n] tributary area (integral of the P1 function over the
-                      faces of contact_id), m2; 2-D: times thickness;
-                      axisymmetric: whole turn                                */
-  double *frame;   /* [dim*dim*n] rows n, t1[, t2]: a = frame u; orthonormal
-                      except where side_id >= 0 (then that row is the normal
-                      of the second obstacle)                                 */
-  double *basis;   /* [dim*dim*n] its inverse: u = basis a, column major      */
-  double *gap0;    /* [n] gap along the normal at time 0, m                   */
+  int *node_id;        /* [n] mesh node, ascending */
+  size_t *node_no;     /* [n] its number in the mesh file */
+  int *contact_id;     /* [n] the *CONTACT the normal belongs to */
+  int *side_id;        /* [n*(dim-1)] *CONTACT of a second (third) obstacle,
+                          -1 */
+  double *x;           /* [dim*n] m */
+  double *area;        /* [n] tributary area (integral of the P1 function over
+                          the faces of contact_id), m2; 2-D: times thickness;
+                          axisymmetric: whole turn */
+  double *frame;       /* [dim*dim*n] rows n, t1[, t2]: a = frame u; orthonormal
+                          except where side_id >= 0 (then that row is the normal
+                          of the second obstacle) */
+  double *basis;       /* [dim*dim*n] its inverse: u = basis a, column major */
+  double *gap0;        /* [n] gap along the normal at time 0, m */
   unsigned char *held; /* [dim*n] 1: this contact unknown is prescribed by
                         *BOUNDARY (never the normal one) */
 } contact_surface;
@@ -32,8 +33,8 @@ typedef struct contact_pair {
   const char *name;
   const mesh_group *group;
   const obstacle *support;
-  int friction; /* 1: its law has a sliding limit (for a warning only)    */
-  int obstacle_normal; /* 1: n is that of the obstacle, not of the body      */
+  int friction;        /* 1: its law has a sliding limit (for a warning only) */
+  int obstacle_normal; /* 1: n is that of the obstacle, not of the body */
   place at;
 } contact_pair;
 
@@ -41,9 +42,9 @@ typedef struct contact_pair {
 typedef struct surface_input {
   const mesh *mesh;
   int n_pair;
-  const contact_pair *pairs;  /* [n_pair]                                */
-  const unsigned char *fixed; /* [n_node]                                */
-  const double *face_weight;  /* [n_face] thickness; 1 in 3-D            */
+  const contact_pair *pairs;  /* [n_pair] */
+  const unsigned char *fixed; /* [n_node] */
+  const double *face_weight;  /* [n_face] thickness; 1 in 3-D */
   int axisymmetric;
 } surface_input;
 

@@ -11,12 +11,12 @@
 
 /* What data lines are taken for. */
 enum {
-  DATA_EARLY,      /* no card yet                                             */
-  DATA_RECORDS,    /* records of the last card                                */
-  DATA_TEXT,       /* the same, free text                                     */
-  DATA_DEFINITION, /* of *PARAMETER                                           */
-  DATA_REFUSED,    /* the card has none                                       */
-  DATA_DROPPED     /* of a card that could not be read                        */
+  DATA_EARLY,      /* no card yet */
+  DATA_RECORDS,    /* records of the last card */
+  DATA_TEXT,       /* the same, free text */
+  DATA_DEFINITION, /* of *PARAMETER */
+  DATA_REFUSED,    /* the card has none */
+  DATA_DROPPED     /* of a card that could not be read */
 };
 
 /* Cards whose data lines are free text. */
@@ -100,7 +100,7 @@ static status read_parameters(reader *r, int next, int nested, card *c) {
   while (next >= 0) {
     int ok;
     piece p = logical_piece(&r->line, next, nested);
-    if (p.length == 0 && p.next < 0) break; /* P1016 was given                */
+    if (p.length == 0 && p.next < 0) break; /* P1016 was given */
     next = p.next;
     if (c->n_parameter == PARAMETER_MAX) {
       report(r, P1033, p.start, "more than 64 parameters");
@@ -207,10 +207,10 @@ done:
 
 typedef struct language_card {
   const char *name;
-  int keeps_mode; /* data lines go on with the card before                    */
-  int nested;     /* commas inside parentheses are part of a value            */
+  int keeps_mode; /* data lines go on with the card before */
+  int nested;     /* commas inside parentheses are part of a value */
   status (*use)(reader *r, const card *c);
-  const char *names[2]; /* of parameters, NULL at the end                     */
+  const char *names[2]; /* of parameters, NULL at the end */
 } language_card;
 
 /* clang-format off */

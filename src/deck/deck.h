@@ -32,55 +32,56 @@
 #include "deck/quantity.h"
 
 typedef struct field {
-  const char *text; /* blanks around it cut, <NAME> replaced; "" if empty    */
-  int quoted;       /* stood in "...": an expression                         */
+  const char *text; /* blanks around it cut, <NAME> replaced; "" if empty */
+  int quoted;       /* stood in "...": an expression */
   place at;
 } field;
 
 typedef struct record {
   int n_field;
-  field *fields;   /* [n_field]; a last empty field (comma at end) is cut    */
+  field *fields;   /* [n_field]; a last empty field (comma at end) is cut */
   const char *raw; /* the line as it stands in the file (first if continued) */
   place at;
 } record;
 
 typedef struct parameter {
-  const char *name; /* upper case, inner blanks single                       */
-  field value;      /* text "" if the name stands alone                      */
+  const char *name; /* upper case, inner blanks single */
+  field value;      /* text "" if the name stands alone */
   int has_value;
   place at;
 } parameter;
 
 typedef struct card {
-  const char *name; /* without *, upper case, inner blanks single            */
+  const char *name; /* without *, upper case, inner blanks single */
   int n_parameter, n_record;
-  parameter *parameters; /* [n_parameter] in the order of the deck           */
-  record *records;       /* [n_record]                                       */
-  const char *format;    /* of the *LEGACY before it, or NULL                */
-  int damaged; /* a parameter was refused: what is missing may be that one   */
+  parameter *parameters; /* [n_parameter] in the order of the deck */
+  record *records;       /* [n_record] */
+  const char *format;    /* of the *LEGACY before it, or NULL */
+  int damaged;           /* a parameter was refused: what is missing may be that
+                            one */
   place at;
 } card;
 
 typedef struct symbol {
-  const char *name; /* upper case                                            */
+  const char *name; /* upper case */
   double value;
-  const char *typed; /* as *PARAMETER, else as -D, spells it              */
-  int overridden;    /* by -D on the command line                          */
-  int used;          /* the deck refers to it                              */
-  int in_geometry;   /* the .geo has it                                    */
-  place at;          /* of its *PARAMETER line; at.file NULL: by -D alone  */
+  const char *typed; /* as *PARAMETER, else as -D, spells it */
+  int overridden;    /* by -D on the command line */
+  int used;          /* the deck refers to it */
+  int in_geometry;   /* the .geo has it */
+  place at;          /* of its *PARAMETER line; at.file NULL: by -D alone */
 } symbol;
 
 typedef struct deck {
-  const char *file; /* as given                                              */
+  const char *file; /* as given */
   int n_card, n_symbol;
   card *cards;
-  symbol *symbols; /* [n_symbol] *PARAMETER and -D                     */
+  symbol *symbols; /* [n_symbol] *PARAMETER and -D */
   int n_file;
-  const char **files; /* [n_file] the deck and its includes, as read      */
+  const char **files; /* [n_file] the deck and its includes, as read */
   int n_input;
   const char **inputs;   /* [n_input] all files the deck names, itself first */
-  struct deck_text *own; /* strings, files, expressions: private             */
+  struct deck_text *own; /* strings, files, expressions: private */
 } deck;
 
 /* Read a deck and its includes. "defines": "NAME=VALUE" texts of -D, each of
@@ -107,7 +108,7 @@ int deck_int(const field *f, message_log *log, int *out);
 const char *deck_path(deck *d, const field *f);
 /* Another file that is read: the text is borrowed. ERR_MEMORY. */
 status deck_input(deck *d, const char *path);
-status deck_input_copy(deck *d, const char *path); /* the text is copied      */
+status deck_input_copy(deck *d, const char *path); /* the text is copied */
 /* Symbol by name for expressions: a symbol_value_fn whose ctx is the deck. */
 int deck_symbol(const void *deck_, const char *name, double *value);
 

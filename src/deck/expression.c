@@ -23,14 +23,14 @@ typedef enum { NUMBER, VARIABLE, UNARY, BINARY, CHOICE } item_kind;
 typedef struct item {
   item_kind kind;
   double number;
-  int variable; /* 0..3: x y z t                                              */
+  int variable; /* 0..3: x y z t */
   unary_fn *unary;
   binary_fn *binary;
 } item;
 
 struct expression {
   int n, capacity;
-  item *code; /* [n] reverse Polish                                           */
+  item *code; /* [n] reverse Polish */
   unsigned variables;
 };
 
@@ -55,15 +55,15 @@ static double either(double a, double b) { return a != 0 || b != 0; }
 
 typedef struct function {
   const char *name;
-  int n_min, n_max; /* arguments; n_max 0: any number                         */
+  int n_min, n_max; /* arguments; n_max 0: any number */
   unary_fn *unary;
-  binary_fn *binary; /* both NULL: if(a, b, c)                                */
+  binary_fn *binary; /* both NULL: if(a, b, c) */
 } function;
 
 typedef struct operator_row {
   const char *sign;
   int precedence, right;
-  binary_fn *apply; /* NULL: not to be used, the name is in "hint"            */
+  binary_fn *apply; /* NULL: not to be used, the name is in "hint" */
   const char *hint;
 } operator_row;
 
@@ -102,7 +102,7 @@ static const operator_row operators[] = {
 enum {
   N_FUNCTION = sizeof functions / sizeof *functions,
   N_OPERATOR = sizeof operators / sizeof *operators,
-  MINUS_PRECEDENCE = 7 /* of the sign: -2^2 = -4, 2*-3 = -6                   */
+  MINUS_PRECEDENCE = 7 /* of the sign: -2^2 = -4, 2*-3 = -6 */
 };
 
 /* What waits for its right operand or its closing parenthesis. */
@@ -110,20 +110,21 @@ typedef struct waiting {
   enum { WAIT_SIGN, WAIT_OPERATOR, WAIT_PARENTHESIS, WAIT_CALL } kind;
   const operator_row *operation;
   const function *called;
-  int n_argument; /* complete ones of the call                                */
+  int n_argument; /* complete ones of the call */
   int column;
 } waiting;
 
 typedef struct compiler {
   const char *text, *p;
-  const char *const *names; /* [4] of the variables                           */
+  const char *const *names; /* [4] of the variables */
   symbol_value_fn *symbol;
   const void *ctx;
   expression *e;
-  int depth; /* values on the stack once the code so far has run              */
+  int depth; /* values on the stack once the code so far has
+                run */
   int n_waiting;
   waiting stack[WAITING];
-  int column; /* of the error                                                 */
+  int column; /* of the error */
 } compiler;
 
 static int is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -241,7 +242,7 @@ static status read_call(compiler *c, const char *name) {
       RAISE(ERR_DECK, "unknown function %s; did you mean %s?", name, near);
     RAISE(ERR_DECK, "unknown function %s", name);
   }
-  ++c->p; /* the parenthesis                                                  */
+  ++c->p; /* the parenthesis */
   return push(c, &w);
 }
 
@@ -394,7 +395,7 @@ static status read_operator(compiler *c) {
 }
 
 static status compile(compiler *c) {
-  int complete = 0; /* a value stands to the left                             */
+  int complete = 0; /* a value stands to the left */
   for (;;) {
     skip_blanks(c);
     mark(c, c->p);

@@ -12,20 +12,20 @@
 enum { GROUP_MAX = 8, COUNT_MAX = 1000000 };
 
 typedef struct column_field {
-  char kind; /* I, F (also E, D, G) or A                                      */
+  char kind; /* I, F (also E, D, G) or A */
   int start, width, decimals;
 } column_field;
 
 struct format {
   int n, capacity;
-  column_field *fields; /* [n]                                                */
-  int width;            /* columns in all                                     */
+  column_field *fields; /* [n] */
+  int width;            /* columns in all */
 };
 
 typedef struct group {
-  const char *start; /* behind the parenthesis                                */
-  int left;          /* turns to come                                         */
-  int width;         /* columns taken when this turn began                    */
+  const char *start; /* behind the parenthesis */
+  int left;          /* turns to come */
+  int width;         /* columns taken when this turn began */
 } group;
 
 typedef struct unroller {
@@ -136,7 +136,7 @@ static status read_next(unroller *u) {
   for (skip(u); *u->p == ')' && u->n_group > 0; skip(u)) {
     int groups = u->n_group;
     PASS(close_group(u));
-    if (u->n_group == groups) return OK; /* once more                         */
+    if (u->n_group == groups) return OK; /* once more */
   }
   if (u->n_group == 0) return OK;
   if (*u->p == '\0') RAISE(ERR_DECK, "')' missing at the end");
@@ -198,7 +198,7 @@ static status settle_number(reader *r, const column_field *c, field *f,
   if (wrong != NULL) {
     message_add(r->log, P1028, &f->at, "%s in columns %d-%d: '%.200s'", wrong,
                 c->start + 1, c->start + c->width, f->text);
-    f->text = "1"; /* no message follows from it                              */
+    f->text = "1"; /* no message follows from it */
   } else if (c->kind == 'F' && !named && c->decimals > 0 &&
              strchr(f->text, '.') == NULL) {
     PASS(add_point(&r->scratch, f->text, c->decimals));

@@ -43,9 +43,9 @@ static int looks_like_power(const reader *r, const char *text, int at) {
 }
 
 typedef struct scan {
-  int end;        /* bytes before the comment, blanks cut                     */
-  int open_quote; /* byte of a quote that is not closed, or -1                */
-  int power;      /* byte of a doubtful **, or -1                             */
+  int end;        /* bytes before the comment, blanks cut */
+  int open_quote; /* byte of a quote that is not closed, or -1 */
+  int power;      /* byte of a doubtful **, or -1 */
 } scan;
 
 static scan scan_line(const reader *r, const physical *line, line_kind kind) {
@@ -178,7 +178,7 @@ static status settle_constant(reader *r, field *f, int *valid) {
   const double origin[3] = {0, 0, 0};
   char digits[NUMBER_TEXT_SIZE];
   st = expression_compile(f->text, deck_symbol, r->d, &e, &column);
-  if (st == ERR_DECK) st = OK; /* reported by who needs a value               */
+  if (st == ERR_DECK) st = OK; /* reported by who needs a value */
   TRY(st);
   *valid = e != NULL;
   if (e == NULL || expression_variables(e) != 0) goto done;

@@ -20,8 +20,8 @@ enum {
   LINE_MAX_BYTES = 4096,
   INCLUDE_DEPTH = 16,
   INCLUDE_TOTAL = 1000,
-  PARAMETER_MAX = 64, /* parameters of one card                              */
-  FORMAT_MAX = 4096   /* columns and fields of a format                      */
+  PARAMETER_MAX = 64, /* parameters of one card */
+  FORMAT_MAX = 4096   /* columns and fields of a format */
 };
 
 /* store.c ---------------------------------------------------------------- */
@@ -29,10 +29,10 @@ enum {
 typedef struct chunk chunk;
 
 struct deck_text {
-  chunk *last; /* strings, places and fields, newest chunk first      */
+  chunk *last; /* strings, places and fields, newest chunk first */
   int card_capacity, symbol_capacity, file_capacity, input_capacity;
-  int n_slot; /* size of the hash table: a power of two, or 0        */
-  int *slot;  /* [n_slot] symbol number from 1; 0: free              */
+  int n_slot; /* size of the hash table: a power of two, or 0 */
+  int *slot;  /* [n_slot] symbol number from 1; 0: free */
   int n_expression, expression_capacity;
   expression **expressions;
 };
@@ -45,7 +45,7 @@ const place *store_place(deck *d, const place *p);
 
 /* A growing text. */
 typedef struct buffer {
-  char *text; /* NULL as long as empty                                       */
+  char *text; /* NULL as long as empty */
   int n, capacity;
 } buffer;
 
@@ -90,8 +90,8 @@ int source_hidden(const source *s);
 /* line.c ----------------------------------------------------------------- */
 
 typedef struct segment {
-  int start; /* of the physical line in the logical one                      */
-  place at;  /* column 0; line text in the deck                              */
+  int start; /* of the physical line in the logical one */
+  place at;  /* column 0; line text in the deck */
 } segment;
 
 /* A logical line: physical ones joined, comments cut. */
@@ -107,13 +107,14 @@ typedef struct reader {
   source *top;
   int n_include;
   logical line;
-  buffer scratch;      /* text with names replaced                           */
-  int mode;            /* what data lines are taken for: deck.c              */
-  int record_capacity; /* of the last card                                   */
-  struct format *format, *waiting_format; /* of *LEGACY: in use, to come     */
-  const char *waiting_text; /* of waiting_format                             */
+  buffer scratch;      /* text with names replaced */
+  int mode;            /* what data lines are taken for: deck.c */
+  int record_capacity; /* of the last card */
+  /* of *LEGACY: in use, to come */
+  struct format *format, *waiting_format;
+  const char *waiting_text; /* of waiting_format */
   place legacy_at;
-  int stray_seen, excess_seen; /* reported once for the lines below a card   */
+  int stray_seen, excess_seen; /* reported once for the lines below a card */
 } reader;
 
 /* Under *PARAMETER a ** that could be meant as a power is an error. */
@@ -128,7 +129,7 @@ place logical_place(const logical *l, int byte);
 /* Piece of the logical line between separators, blanks cut. */
 typedef struct piece {
   int start, length;
-  int next; /* byte after the comma, or -1 at the end of the line            */
+  int next; /* byte after the comma, or -1 at the end of the line */
 } piece;
 
 /* Cut at the next comma outside quotes, and outside parentheses if "nested".

@@ -14,19 +14,22 @@
 enum { BLOCK = 1 << 16 };
 
 struct source {
-  source *below; /* the file that includes this one, or NULL                  */
+  source *below; /* the file that includes this one, or NULL */
   const char *file;
-  const place *from; /* of the *INCLUDE, or NULL                              */
+  const place *from; /* of the *INCLUDE, or NULL */
   FILE *stream;
-  dev_t device; /* with inode: which file it is, whatever its name            */
+  dev_t device; /* with inode: which file it is, whatever its
+                   name */
   ino_t inode;
-  int n_block, at; /* bytes in the block, next one                            */
+  int n_block, at; /* bytes in the block, next one */
   int line_no, held, ended, depth;
-  int hidden; /* messages show nothing of it: no card at its start           */
+  int hidden; /* messages show nothing of it: no card at its
+                 start */
   int begun;
   physical line;
-  char text[LINE_MAX_BYTES + 1];      /* as in the file                       */
-  char shown[4 * LINE_MAX_BYTES + 1]; /* as it is read: text_shown            */
+  char text[LINE_MAX_BYTES + 1]; /* as in the file */
+  /* as it is read: text_shown */
+  char shown[4 * LINE_MAX_BYTES + 1];
   char block[BLOCK];
 };
 

@@ -13,7 +13,7 @@ enum { CHUNK_BYTES = 1 << 16, ALIGN = 16 };
 struct chunk {
   chunk *next;
   size_t used, size;
-  char *room; /* [size]                                                       */
+  char *room; /* [size] */
 };
 
 static chunk *new_chunk(deck *d, size_t size) {

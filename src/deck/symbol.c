@@ -10,9 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum {
-  ADVICE_MAX = 2000
-}; /* names looked through for the nearest            */
+enum { ADVICE_MAX = 2000 }; /* names looked through for the nearest */
 
 static unsigned hash_name(const char *name, size_t n) {
   unsigned h = 2166136261u;
@@ -154,7 +152,7 @@ static status add_value(buffer *b, double value, replacing how) {
   int in_parentheses = how == REPLACE_EXPRESSION && *p == '-';
   if (how != REPLACE_EXPRESSION && *p == '-' && b->n == 1 &&
       (b->text[0] == '-' || b->text[0] == '+')) {
-    p += b->text[0] == '-'; /* - of a negative value                          */
+    p += b->text[0] == '-'; /* - of a negative value */
     b->n = 0;
   }
   if (in_parentheses) PASS(buffer_add(b, "(", 1));

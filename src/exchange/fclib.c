@@ -181,9 +181,9 @@ done:
  */
 
 typedef struct global {
-  triplets M, H, G;  /* G: equality constraints, or none                      */
-  double *f, *w, *b; /* [M.rows], [H.columns], [G.columns]                    */
-  double *h;         /* diagonal of H, or NULL                                */
+  triplets M, H, G;  /* G: equality constraints, or none */
+  double *f, *w, *b; /* [M.rows], [H.columns], [G.columns] */
+  double *h;         /* diagonal of H, or NULL */
 } global;
 
 static void global_release(global *g) {

@@ -12,13 +12,13 @@
 #include <errno.h>
 
 enum { WORD = 80 };
-enum { FEW_UNKNOWNS = 300 }; /* of a file too short the place is told       */
+enum { FEW_UNKNOWNS = 300 }; /* of a file too short the place is told */
 
 typedef struct words {
   FILE *f;
   const char *path;
-  int line_no; /* of the next character                                      */
-  int word_line_no; /* of the last word                                      */
+  int line_no;      /* of the next character */
+  int word_line_no; /* of the last word */
 } words;
 
 static int is_gap(int c) {

@@ -19,8 +19,8 @@ status foresee_problem(double m);
 typedef struct triplets {
   int rows, columns;
   long n;
-  int *row, *column; /* [n]                                                  */
-  double *value;     /* [n]                                                  */
+  int *row, *column; /* [n] */
+  double *value;     /* [n] */
 } triplets;
 
 /* Rows and columns alone. */
@@ -44,15 +44,15 @@ status lcp_text_read(const char *path, exchange_problem *p);
 
 /* V'r + R l + s = 0 beside u = W r + V l + q. */
 typedef struct constraints {
-  int p;     /* how many                                                     */
-  double *V; /* [m*p] column major                                           */
-  double *R; /* [p*p]                                                        */
-  double *s; /* [p]                                                          */
+  int p;     /* how many */
+  double *V; /* [m*p] column major */
+  double *R; /* [p*p] */
+  double *s; /* [p] */
 } constraints;
 /* W[m*m], q[m] without l. ERR_SINGULAR: they contradict one another. */
 status constraints_eliminate(const char *path, int m, const constraints *c,
                              double *W, double *q);
-void constraints_free(constraints *c); /* accepts all-zero                    */
+void constraints_free(constraints *c); /* accepts all-zero */
 
 /* ---- reduce.c --------------------------------------------------------------
  */

@@ -27,7 +27,7 @@ typedef struct arrays {
   const hdf5_source *s;
   const char *group;
   int nz;
-  long n_p, n_i, n_x; /* items in the file                                   */
+  long n_p, n_i, n_x; /* items in the file */
   int *p, *i;
   double *x;
 } arrays;
@@ -194,7 +194,7 @@ static int triplets_triangle(const triplets *t) {
  * full column rank, and H'z != 0 for every motion z without force. */
 
 static const double SPRING_RCOND =
-    1e-13; /* -, of Ws, below: H is rank deficient   */
+    1e-13; /* -, of Ws, below: H is rank deficient */
 
 /* Mean diagonal of M over that of H H', where both are not zero. */
 static double stiffness(const triplets *M, const triplets *H) {
@@ -281,11 +281,11 @@ done:
  * is not unique, u is); constraints that contradict one another are refused. */
 
 static const double REPEATED_RCOND = 1e-12; /* -, below: repeated */
-static const double CONSISTENT = 1e-8; /* -, of the right-hand side         */
+static const double CONSISTENT = 1e-8;      /* -, of the right-hand side */
 
 typedef struct room {
-  double *R, *X, *rhs; /* [p*p], [p*(m+1)]: least squares for [V' s]          */
-  double *spread;      /* [p]                                                 */
+  double *R, *X, *rhs; /* [p*p], [p*(m+1)]: least squares for [V' s] */
+  double *spread;      /* [p] */
 } room;
 
 static status room_new(int m, const constraints *c, room *a) {
@@ -345,18 +345,18 @@ done:
 void constraints_free(constraints *c) { RELEASE(c->V, c->R, c->s); }
 
 enum { BLOCK = 32, MOST_DENSE = 6000 };
-static const double ASYMMETRY = 1e-10; /* -, of the largest entry             */
-static const double RCOND = 1e-14;     /* -, below: singular                  */
-static const double DEFINITE = 1e-12;  /* -, below: not positive definite     */
+static const double ASYMMETRY = 1e-10; /* -, of the largest entry */
+static const double RCOND = 1e-14;     /* -, below: singular */
+static const double DEFINITE = 1e-12;  /* -, below: not positive definite */
 
 /* ---- M as a sparse matrix, scaled -----------------------------------------
  */
 
 typedef struct reduction {
   cholmod_common cm;
-  cholmod_sparse *M; /* upper triangle of the scaled symmetric part          */
+  cholmod_sparse *M; /* upper triangle of the scaled symmetric part */
   cholmod_factor *L;
-  double *scale; /* [rows] 1/sqrt(diagonal)                                  */
+  double *scale; /* [rows] 1/sqrt(diagonal) */
   int n;
 } reduction;
 
@@ -449,8 +449,8 @@ static status factorise(reduction *s, const triplets *M, int *usable) {
 typedef struct columns {
   const triplets *H;
   const double *f;
-  int *start;  /* [H->columns + 1]                                           */
-  long *entry; /* [H->n]                                                     */
+  int *start;  /* [H->columns + 1] */
+  long *entry; /* [H->n] */
 } columns;
 
 static status columns_new(const triplets *H, const double *f, columns *c) {
@@ -563,7 +563,7 @@ status reduce_global(const triplets *M, const triplets *H, const double *f,
   *usable = 1;
   cholmod_start(&s.cm);
   s.cm.print = 0;
-  s.cm.final_ll = 1; /* LL' finds what is not positive definite       */
+  s.cm.final_ll = 1; /* LL' finds what is not positive definite */
   s.cm.quick_return_if_not_posdef = 1;
   if (M->rows == 0) goto done;
   TRY(columns_new(H, f, &c));

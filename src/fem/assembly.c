@@ -11,9 +11,9 @@
 
 /* The lower node graph, grown column by column. */
 typedef struct node_graph {
-  stiffness *k; /* gets start and row                                       */
+  stiffness *k; /* gets start and row */
   size_t n, room;
-  int *seen; /* [n_node] last column that has the node, + 1             */
+  int *seen; /* [n_node] last column that has the node, + 1 */
 } node_graph;
 
 /* Nodes of a list that come after j into column j. */
@@ -109,9 +109,9 @@ static status add_elements(const domain *d, stiffness *k) {
 
 /* Rows over the nodes of a cluster: t = <tr B>, r = sum w m'E R B. */
 typedef struct cluster_rows {
-  int *place;    /* [n_node] of a node in the rows                           */
-  double *t, *r; /* [dim * most nodes] 1/m; N/m                              */
-  double bulk;   /* sum w m'E m, N m                                         */
+  int *place;    /* [n_node] of a node in the rows */
+  double *t, *r; /* [dim * most nodes] 1/m; N/m */
+  double bulk;   /* sum w m'E m, N m */
 } cluster_rows;
 
 /* Add one element; its volume is w, its part of the cluster "part". */

@@ -24,24 +24,25 @@ static const double refine_excess = 1e4;
 static const double weak_arm = 1e-8;
 
 struct condensed {
-  const stiffness *k; /* borrowed                                           */
-  domain d;           /* arrays borrowed                                    */
+  const stiffness *k; /* borrowed */
+  domain d;           /* arrays borrowed */
   int n_contact, m, n_body, n_motion;
-  double *A; /* [m*m]                                              */
+  double *A; /* [m*m] */
   body_factor *body;
-  free_motion *motion; /* those only contact holds                           */
-  rigid_set rigid;     /* the same as vectors                                */
+  free_motion *motion;   /* those only contact holds */
+  rigid_set rigid;       /* the same as vectors */
   unsigned char *pinned; /* [m] contact unknowns with a spring in the factor;
-                            NULL: no body needs one                          */
-  int just_held; /* 1: the springs hold those motions and nothing else      */
-  double *load;  /* [dim*n_node] in local components                   */
-  double *prescribed; /* [dim*n_node] local components, of the last load    */
-  double condition;   /* 0: not yet known                                   */
-  double *F;          /* [dim*n_node] the load last condensed; NULL unless
-                         solutions are refined                              */
-  double *rest;       /* [dim*n_node] its residual, likewise                */
+                            NULL: no body needs one */
+  int just_held;         /* 1: the springs hold those motions and nothing
+                            else */
+  double *load;          /* [dim*n_node] in local components */
+  double *prescribed;    /* [dim*n_node] local components, of the last load */
+  double condition;      /* 0: not yet known */
+  double *F;             /* [dim*n_node] the load last condensed; NULL unless
+                            solutions are refined */
+  double *rest;          /* [dim*n_node] its residual, likewise */
   const char *ordering;
-  cholmod_common *cm; /* owned                                              */
+  cholmod_common *cm; /* owned */
 };
 
 /* The connected set of the graph that holds "first": list[0..) and its size;

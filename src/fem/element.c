@@ -13,10 +13,10 @@
 #include <string.h>
 
 typedef struct element_shape {
-  double grad[12]; /* [dim*(dim+1)] gradient of each shape function, 1/m      */
-  double hoop;     /* shape function over radius at the centroid, 1/m; 0
-                      unless axisymmetric                                     */
-  double weight;   /* volume, thickness or 2 pi r included, m3                */
+  double grad[12]; /* [dim*(dim+1)] gradient of each shape function, 1/m */
+  double hoop;     /* shape function over radius at the centroid, 1/m; 0 unless
+                      axisymmetric */
+  double weight;   /* volume, thickness or 2 pi r included, m3 */
 } element_shape;
 
 static const double two_pi = 6.283185307179586476925286766559;

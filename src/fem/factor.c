@@ -62,7 +62,7 @@ double body_factor_spring(const stiffness *k, const body_factor *f,
   return ldexp(diagonal(k, node, c), -f->exponent);
 }
 
-typedef struct columns { /* lower triangle under construction             */
+typedef struct columns { /* lower triangle under construction */
   const stiffness *k;
   const body_factor *f;
   const long *number;
@@ -241,7 +241,7 @@ void body_factor_release(body_factor *f, cholmod_common *cm) {
 typedef struct factor_column {
   long n;
   const SuiteSparse_long *row; /* [n] positions */
-  const double *value;         /* [n]           */
+  const double *value;         /* [n] */
 } factor_column;
 
 /* Column at position p; *super: search starts there and ends there. */

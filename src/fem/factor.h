@@ -13,22 +13,27 @@
 
 typedef struct body_factor {
   int n_node, n_inner, n_own;
-  int *node;     /* [n_node] in elimination order: n_inner of the interior,
-                    then those with condensed unknowns; a node with both
-                    stands in both places, the first n_own once             */
-  int bad_node;  /* where the factor broke down, for the message            */
-  long n, nc;    /* unknowns; contact ones among them                       */
-  long *unknown; /* [n] dim*node + component of position p in the factor    */
-  long *contact_at; /* [nc] positions of the contact unknowns, ascending    */
-  int *contact_id;  /* [nc] their rows in A                                 */
-  int *rank;    /* [n - contact_at[0]] rank of a position among them or -1 */
-  int exponent; /* see above                                               */
-  double flops; /* of the factorisation                                    */
+  int *node;                   /* [n_node] in elimination order: n_inner of the
+                                  interior, then those with condensed unknowns;
+                                  a node with both stands in both places, the
+                                  first n_own once */
+  int bad_node;                /* where the factor broke down, for the
+                                  message */
+  long n, nc;                  /* unknowns; contact ones among them */
+  long *unknown;               /* [n] dim*node + component of position p in the
+                                  factor */
+  long *contact_at;            /* [nc] positions of the contact unknowns,
+                                  ascending */
+  int *contact_id;             /* [nc] their rows in A */
+  int *rank;                   /* [n - contact_at[0]] rank of a position among
+                                  them or -1 */
+  int exponent;                /* see above */
+  double flops;                /* of the factorisation */
   const unsigned char *pinned; /* [m] contact unknowns whose diagonal entry is
                                   doubled in the factor, borrowed; NULL: none */
   cholmod_factor *L;
-  cholmod_dense *y;    /* [n] kept forward solve                            */
-  cholmod_dense *work; /* [L->maxesize]                                     */
+  cholmod_dense *y;    /* [n] kept forward solve */
+  cholmod_dense *work; /* [L->maxesize] */
 } body_factor;
 
 /* Number the unknowns of f->node (set by the caller): sets n, nc and

@@ -18,33 +18,36 @@
  * sigma = E (e - e0). The others have none. */
 typedef struct eigenstrain {
   int n;
-  const int *elem_id; /* [n] ascending                                      */
-  const double *e0;   /* [ns*n] -; NULL: 0 (eigen_stress)                   */
+  const int *elem_id; /* [n] ascending */
+  const double *e0;   /* [ns*n] -; NULL: 0 (eigen_stress) */
 } eigenstrain;
 
 /* What the elements are made of. */
 typedef struct domain {
   const mesh *mesh;
-  const contact_surface *surface; /* NULL: no contact                         */
-  int ns;                  /* 4 or 6                                      */
-  const int *section_id;   /* [n_elem]                                    */
-  const int *origin;       /* [n_section] one it is of one material with,
-                              itself or before it; NULL: not known        */
-  const kinematics *kin;   /* [n_section]                                 */
-  const double *thickness; /* [n_section] m; 1 in 3-D and axisymmetric    */
-  const double *E;         /* [ns*ns*n_section] Pa                        */
-  const double *C; /* [36*n_section] Pa, for e_zz of plane stress; NULL: 0   */
-  const unsigned char *fixed; /* [dim*n_node] 1: prescribed (global
-                                 components)                                 */
-  const eigenstrain *eigen;   /* NULL: none. Counts in stresses and energy;
-                                 condense_load has it from F (eigen_force)   */
+  const contact_surface *surface; /* NULL: no contact */
+  int ns;                         /* 4 or 6 */
+  const int *section_id;          /* [n_elem] */
+  const int *origin;              /* [n_section] one it is of one material with,
+                                     itself or before it; NULL: not known */
+  const kinematics *kin;          /* [n_section] */
+  const double *thickness;        /* [n_section] m; 1 in 3-D and axisymmetric */
+  const double *E;                /* [ns*ns*n_section] Pa */
+  const double *C;                /* [36*n_section] Pa, for e_zz of plane
+                                     stress; NULL: 0 */
+  const unsigned char *fixed;     /* [dim*n_node] 1: prescribed (global
+                                     components) */
+  const eigenstrain *eigen;       /* NULL: none. Counts in stresses and
+                                     energy; condense_load has it from F
+                                     (eigen_force) */
   /* Elements whose change of volume is averaged, as strains and stresses here
    * always are; NULL: none. Its means are overwritten. */
   cluster_set *cluster;
-  int rows; /* contact unknowns of a node that are condensed, the normal first:
-               1 (its tangents count in the interior) or dim; 0: dim         */
-  int n_in; /* contact nodes that are condensed; the others are interior      */
-  const int *in; /* [n_in] ascending; NULL: all                              */
+  int rows;      /* contact unknowns of a node that are condensed, the normal
+                    first: 1 (its tangents count in the interior) or dim; 0:
+                    dim */
+  int n_in;      /* contact nodes that are condensed; the others are interior */
+  const int *in; /* [n_in] ascending; NULL: all */
 } domain;
 
 /* B of one element, nothing averaged: e = B u_e, B[ns*(dim+1)*dim] column
@@ -52,26 +55,26 @@ typedef struct domain {
 double element_strain(const domain *d, int elem_id, double *B);
 double element_weight(const domain *d, int elem_id);
 
-typedef struct stiffness stiffness; /* sparse K of the free unknowns        */
-typedef struct condensed condensed; /* factor and condensed matrix          */
+typedef struct stiffness stiffness; /* sparse K of the free unknowns */
+typedef struct condensed condensed; /* factor and condensed matrix */
 
 /* The stiffness of the domain; *out is new (stiffness_free), NULL on failure.
  * ERR_MESH: an element beyond the axis or without volume. ERR_MEMORY. */
 status stiffness_assemble(const domain *d, stiffness **out);
-void stiffness_free(stiffness *k); /* accepts NULL                         */
+void stiffness_free(stiffness *k); /* accepts NULL */
 
 /* What can resist a rigid motion that *BOUNDARY leaves to a body. */
 typedef enum {
-  HELD_BY_NOTHING,  /* no contact unknown moves with it: no equilibrium      */
-  HELD_BY_FRICTION, /* only tangential contact unknowns move with it         */
-  HELD_BY_CONTACT   /* contact nodes move along their normal (one-sided!)    */
+  HELD_BY_NOTHING,  /* no contact unknown moves with it: no equilibrium */
+  HELD_BY_FRICTION, /* only tangential contact unknowns move with it */
+  HELD_BY_CONTACT   /* contact nodes move along their normal (one-sided!) */
 } motion_hold;
 
 typedef struct free_motion {
-  int body_id; /* connected set of elements, from 0 in element order       */
+  int body_id; /* connected set of elements, from 0 in element order */
   motion_hold held_by;
-  size_t elem_no; /* an element of the body, number in the mesh file         */
-  char text[160]; /* "translation along x", "rotation about (1, 2)"          */
+  size_t elem_no; /* an element of the body, number in the mesh file */
+  char text[160]; /* "translation along x", "rotation about (1, 2)" */
 } free_motion;
 
 /* The free motions of all bodies without solving anything, HELD_BY_NOTHING
@@ -89,9 +92,9 @@ status domain_free_motions(const domain *d, int *n, free_motion **list);
  */
 status condense(const stiffness *k, const domain *d, condensed **out);
 void condensed_free(condensed *c);
-const double *condensed_matrix(const condensed *c); /* A [m*m]                */
-int condensed_floating(const condensed *c); /* 1: contact alone holds a body  */
-double condensed_stiffest(const condensed *c); /* largest entry of K, N/m     */
+const double *condensed_matrix(const condensed *c); /* A [m*m] */
+int condensed_floating(const condensed *c); /* 1: contact alone holds a body */
+double condensed_stiffest(const condensed *c); /* largest entry of K, N/m */
 /* Estimate of the condition number of K with its unknowns scaled to a unit
  * diagonal (that scaling costs no digits). */
 double condensed_condition(const condensed *c);
@@ -159,11 +162,11 @@ void domain_internal_force(const domain *d, const double *sigma, double *F);
 /* The largest strain, the root of e:e, and the least volume over that of the
  * mesh, not positive where an element is turned inside out. */
 typedef struct deformation {
-  double strain, volume; /* -                                                 */
+  double strain, volume; /* - */
   int strain_elem, volume_elem;
 } deformation;
 void domain_deformation(const domain *d, const double *u, deformation *out);
-double domain_strain_energy(const domain *d, const double *u); /* J           */
+double domain_strain_energy(const domain *d, const double *u); /* J */
 /* The same of all elements but n of them, ascending, which hold whole
  * clusters. */
 double domain_energy_beside(const domain *d, int n, const int *elem_id,
@@ -183,8 +186,8 @@ void eigen_add_force(const domain *d, int n, const int *elem_id,
 
 /* BLAS kernel: see blas.c. Called first in main; may replace the process. */
 void blas_choose_kernel(char **argv);
-const char *blas_kernel(void); /* core name, "SkylakeX"                       */
-int blas_kernel_changed(void); /* 1: mended at start-up                       */
+const char *blas_kernel(void); /* core name, "SkylakeX" */
+int blas_kernel_changed(void); /* 1: mended at start-up */
 /* Threads of BLAS and CHOLMOD; blas_choose_kernel sets 1. What the environment
  * says (OPENBLAS_NUM_THREADS and its kind) does not count. */
 void blas_set_threads(int n);

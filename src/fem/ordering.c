@@ -54,12 +54,12 @@ void graph_release(graph *g) {
 typedef struct dissection {
   const graph *g;
   int dim;
-  const double *x; /* [dim*g->n]                                     */
-  int n;           /* nodes of the body                             */
+  const double *x; /* [dim*g->n] */
+  int n;           /* nodes of the body */
   int *side;       /* [g->n] stamp of the half a node is in, 0: none */
   int stamp;
-  int *spare;  /* [n]                                              */
-  double work; /* sum of the cubes of the separators               */
+  int *spare;  /* [n] */
+  double work; /* sum of the cubes of the separators */
 } dissection;
 
 /* Axes x y z; in 2-D two more directions, x + y and x - y. */
@@ -173,8 +173,8 @@ static void sort_leaf(const dissection *w, int n, int *node) {
 }
 
 typedef struct cut {
-  int half, left, right; /* nodes before the cut; stamps of the halves       */
-  int at_left, at_right; /* nodes of each half that touch the other          */
+  int half, left, right; /* nodes before the cut; stamps of the halves */
+  int at_left, at_right; /* nodes of each half that touch the other */
 } cut;
 
 /* Halve node[0..n) across an axis. */

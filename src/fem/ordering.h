@@ -11,9 +11,9 @@
 
 /* Symmetric graph, both directions stored, no loops. */
 typedef struct graph {
-  int n;         /* nodes                                                 */
-  size_t *start; /* [n+1]                                                 */
-  int *next;     /* [start[n]]                                            */
+  int n;         /* nodes */
+  size_t *start; /* [n+1] */
+  int *next;     /* [start[n]] */
 } graph;
 
 /* The graph of the nodes with unknowns; g is new. */

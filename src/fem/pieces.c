@@ -41,7 +41,7 @@ static void unite_round_node_2d(const mesh *m, const pieces *p, int j,
 }
 
 typedef struct corner {
-  int v, w, elem; /* the other two vertices of a face, v < w; its element   */
+  int v, w, elem; /* the other two vertices of a face, v < w; its element */
 } corner;
 
 /* 3-D: faces whose lowest vertex is j, compared pair by pair. */

@@ -10,15 +10,15 @@
 
 typedef struct pieces {
   int n_body, n_piece;
-  int *piece;      /* [n_elem] piece of the element                        */
-  int *body;       /* [n_piece] body of the piece, ascending               */
-  int *piece_elem; /* [n_piece] its first element                          */
-  size_t *start;   /* [n_node+1] elements round the node                   */
-  int *elem;       /* [start[n_node]]                                      */
+  int *piece;      /* [n_elem] piece of the element */
+  int *body;       /* [n_piece] body of the piece, ascending */
+  int *piece_elem; /* [n_piece] its first element */
+  size_t *start;   /* [n_node+1] elements round the node */
+  int *elem;       /* [start[n_node]] */
 } pieces;
 
 /* Fill p; on failure it is empty. */
 status pieces_find(const mesh *m, pieces *p);
-void pieces_release(pieces *p); /* accepts an all-zero object               */
+void pieces_release(pieces *p); /* accepts an all-zero object */
 
 #endif

@@ -14,7 +14,7 @@
 /* Motion of a piece: u(x) = t + w x p, p = (x - centre)/size, as rotations and
  * translations (2-D: w, tx, ty; axisymmetric: ty; 3-D: wx, wy, wz, tx, ..). */
 typedef struct rigid_modes {
-  int dim, modes; /* coefficients per piece: 3, 1 or 6                      */
+  int dim, modes; /* coefficients per piece: 3, 1 or 6 */
   double centre[3], size;
 } rigid_modes;
 
@@ -23,21 +23,21 @@ void rigid_row(const rigid_modes *r, const double *x, const double *direction,
                double *row);
 
 typedef struct rigid_body {
-  int id; /* as in free_motion                                   */
+  int id; /* as in free_motion */
   rigid_modes at;
-  int n, k;   /* coefficients (all pieces); free motions               */
-  double *Y;  /* [n*k] the motions                                     */
-  int n_node; /* nodes of the body                                     */
+  int n, k;           /* coefficients (all pieces); free motions */
+  double *Y;          /* [n*k] the motions */
+  int n_node;         /* nodes of the body */
   int *node, *column; /* [n_node], and the first coefficient of its piece */
-  double *load;       /* [n] resultants of the pieces                     */
-  int first;          /* of its columns in Q                              */
+  double *load;       /* [n] resultants of the pieces */
+  int first;          /* of its columns in Q */
 } rigid_body;
 
 typedef struct rigid_set {
   int n_body, room;
   rigid_body *body;
-  int m, k;  /* contact unknowns; motions of all bodies            */
-  double *Q; /* [m*k] R_c of orthonormal motions                   */
+  int m, k;  /* contact unknowns; motions of all bodies */
+  double *Q; /* [m*k] R_c of orthonormal motions */
 } rigid_set;
 
 /* domain_free_motions, and floating[n_node] (or NULL): 1 on the nodes of
@@ -46,7 +46,7 @@ typedef struct rigid_set {
 status support_motions(const domain *d, int *n, free_motion **list,
                        unsigned char *floating, rigid_set *r);
 
-void rigid_release(rigid_set *r); /* accepts an all-zero object             */
+void rigid_release(rigid_set *r); /* accepts an all-zero object */
 /* Choose the motions Y so that their R_c is orthonormal, and store it. */
 status rigid_orthonormalise(const stiffness *k, const domain *d, rigid_set *r);
 /* Contact unknowns to hold a body by, as many as its motions and as far apart

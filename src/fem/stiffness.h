@@ -9,16 +9,17 @@
 
 struct stiffness {
   int dim, n_node;
-  int rows;      /* condensed unknowns of a contact node: 1 or dim         */
-  int n_row;     /* of them all                                            */
-  size_t *start; /* [n_node+1] first block of column j                     */
-  int *row;      /* [start[n_node]] node i >= j; the diagonal comes first  */
-  double *block; /* [dim*dim*start[n_node]] K_ij, column major, N/m        */
-  unsigned char *free;  /* [n_node] bit c: local component c is unknown       */
-  int *contact;         /* [n_node] id of the contact node or -1              */
-  int *first_row;       /* [n_node] its first condensed unknown or -1         */
+  int rows;             /* condensed unknowns of a contact node: 1 or dim */
+  int n_row;            /* of them all */
+  size_t *start;        /* [n_node+1] first block of column j */
+  int *row;             /* [start[n_node]] node i >= j; the diagonal comes
+                           first */
+  double *block;        /* [dim*dim*start[n_node]] K_ij, column major, N/m */
+  unsigned char *free;  /* [n_node] bit c: local component c is unknown */
+  int *contact;         /* [n_node] id of the contact node or -1 */
+  int *first_row;       /* [n_node] its first condensed unknown or -1 */
   size_t *coupling;     /* [n_coupling] blocks next to a prescribed component */
-  int *coupling_column; /* [n_coupling] their columns                         */
+  int *coupling_column; /* [n_coupling] their columns */
   size_t n_coupling;
 };
 

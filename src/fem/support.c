@@ -26,11 +26,11 @@ enum { MAX_PIECES = 16, MAX_COLUMNS = 6 * MAX_PIECES };
 typedef struct body {
   const domain *d;
   const pieces *p;
-  const int *contact; /* [n_node] contact node or -1                      */
-  int id, first_piece, n_piece, joined; /* joined: pieces count as one        */
-  int n; /* columns: motions of all pieces                             */
+  const int *contact;                   /* [n_node] contact node or -1 */
+  int id, first_piece, n_piece, joined; /* joined: pieces count as one */
+  int n;                                /* columns: motions of all pieces */
   int n_node;
-  const int *node; /* [n_node] of this body                            */
+  const int *node; /* [n_node] of this body */
   rigid_modes at;
 } body;
 

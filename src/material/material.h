@@ -40,11 +40,11 @@ void elastic_zz_strain(const double C[36], double e[4]);
 typedef enum { EXPANSION_ISO, EXPANSION_ORTHO } expansion_type;
 #define EXPANSION_WORDS "ISO|ORTHO"
 typedef struct expansion {
-  int given;            /* 0: the material does not expand                   */
-  int type;             /* expansion_type                                    */
-  double zero;          /* temperature at which the secants start            */
-  value_table alpha[3]; /* 1/temperature over the temperature, which stands
-                           for t; ISO: the first only; arrays owned          */
+  int given;            /* 0: the material does not expand */
+  int type;             /* expansion_type */
+  double zero;          /* temperature at which the secants start */
+  value_table alpha[3]; /* 1/temperature over the temperature, which stands for
+                           t; ISO: the first only; arrays owned */
 } expansion;
 /* Strain e[3] (no shear) at temperature T of what has none at T0, -. */
 void expansion_strain(const expansion *x, double T, double T0, double e[3]);

@@ -18,11 +18,11 @@ typedef struct lines {
   const card *c;
   message_log *log;
   elastic_table *table;
-  double set[ELASTIC_MAX + 1]; /* of the current set                        */
-  int n;                       /* in it                                      */
-  int has_temperature;         /* the first set ends with one; all do, then  */
-  int capacity;                /* of the table                               */
-  int wrong;                   /* an error is in the log                     */
+  double set[ELASTIC_MAX + 1]; /* of the current set */
+  int n;                       /* in it */
+  int has_temperature;         /* the first set ends with one; all do, then */
+  int capacity;                /* of the table */
+  int wrong;                   /* an error is in the log */
 } lines;
 
 static void count_error(lines *r, const place *at, const char *found) {

@@ -10,15 +10,15 @@
 /* Constants over the temperature: linear between, constant outside. */
 typedef struct elastic_constants {
   double temperature;
-  double constant[ELASTIC_MAX]; /* Pa, -                                      */
+  double constant[ELASTIC_MAX]; /* Pa, - */
 } elastic_constants;
 typedef struct elastic_table {
   elastic_type type;
   int n_constant;
-  int n;                  /* sets; 0: none is valid, 1: the same everywhere   */
-  elastic_constants *set; /* [n] their temperatures ascend, owned             */
-  double relaxed[2]; /* parts of G and K that the sets are without: those of
-                        elastic_at are whole, -                              */
+  int n;                  /* sets; 0: none is valid, 1: the same everywhere */
+  elastic_constants *set; /* [n] their temperatures ascend, owned */
+  double relaxed[2];      /* parts of G and K that the sets are without: those
+                             of elastic_at are whole, - */
 } elastic_table;
 /* From the data lines of a card: the constants of a set over any number of
  * lines, then its temperature (may be left out if there is one set). Errors go
@@ -34,6 +34,6 @@ const char *elastic_at(const elastic_table *t, double temperature, double C[36],
 void elastic_table_relaxed(elastic_table *t, const double relaxed[2]);
 /* Largest value of constant number i in any set. */
 double elastic_table_most(const elastic_table *t, int i);
-void elastic_table_free(elastic_table *t); /* accepts all-zero                */
+void elastic_table_free(elastic_table *t); /* accepts all-zero */
 
 #endif

@@ -14,24 +14,25 @@ enum { MAX_ITEMS = 500000000, SHOWN = 5 };
 
 typedef struct number_table {
   int bits;
-  int *slot;        /* [2^bits] index + 1, 0: none                           */
-  const size_t *no; /* borrowed                                              */
+  int *slot;        /* [2^bits] index + 1, 0: none */
+  const size_t *no; /* borrowed */
 } number_table;
 
 typedef struct builder {
-  const raw_mesh *raw; /* borrowed                                       */
+  const raw_mesh *raw; /* borrowed */
   double scale;
-  const place *at; /* borrowed                                           */
+  const place *at; /* borrowed */
   message_log *log;
-  int errors; /* errors of the log before                                */
+  int errors; /* errors of the log before */
   mesh *m;
-  number_table by_no; /* raw nodes                                       */
-  int *node_id;       /* [raw->n_node] mesh node, -1 if not used           */
+  number_table by_no; /* raw nodes */
+  int *node_id;       /* [raw->n_node] mesh node, -1 if not used */
   int n_top, n_low;   /* elements of the mesh dimension, one dimension less */
-  int *corner;        /* [(dim+1)*n_top] raw nodes                         */
-  int *elem_of_top;   /* [n_top] element id                                */
-  int *face_of_low;   /* [n_low] face id                                   */
-  int *first; /* [raw->n_block] first top or low element of the block    */
+  int *corner;        /* [(dim+1)*n_top] raw nodes */
+  int *elem_of_top;   /* [n_top] element id */
+  int *face_of_low;   /* [n_low] face id */
+  int *first;         /* [raw->n_block] first top or low element of the
+                         block */
 } builder;
 
 /* The first few of what is wrong, for a message. */
@@ -57,18 +58,18 @@ int numbers_find(const number_table *t, size_t no);
 status numbers_check(builder *b, const char *what, int n, const size_t *no,
                      const int *id);
 
-status groups_check(builder *b); /* names, dimension of the mesh             */
-status groups_fill(builder *b);  /* items and nodes                          */
-status nodes_index(builder *b);  /* raw node by number                       */
-int nodes_find(const builder *b, size_t no); /* raw node or -1                */
-status nodes_order(builder *b); /* ids, coordinates, numbers                */
+status groups_check(builder *b);             /* names, dimension of the mesh */
+status groups_fill(builder *b);              /* items and nodes */
+status nodes_index(builder *b);              /* raw node by number */
+int nodes_find(const builder *b, size_t no); /* raw node or -1 */
+status nodes_order(builder *b);              /* ids, coordinates, numbers */
 status nodes_coincident(builder *b);
-status elements_gather(builder *b); /* types; corners as raw nodes            */
-status elements_finish(builder *b); /* orientation, order, repeated ones      */
-status faces_finish(builder *b);    /* ids, elements on both sides            */
+status elements_gather(builder *b); /* types; corners as raw nodes */
+status elements_finish(builder *b); /* orientation, order, repeated ones */
+status faces_finish(builder *b);    /* ids, elements on both sides */
 /* Nodes of a side of an element, turned outward, in 3-D the lowest first. */
 void faces_side(const mesh *m, int elem, int side, int *v);
-status overlap_check(builder *b); /* across faces, anywhere               */
+status overlap_check(builder *b); /* across faces, anywhere */
 
 /* Sets as trees: parent[i] = i for the lowest of each. */
 int forest_root(int *parent, int i);

@@ -56,7 +56,7 @@ typedef struct gmsh_calls {
 typedef struct child {
   const raw_request *request;
   int fd;
-  char *path; /* of the geometry in full, or NULL                            */
+  char *path; /* of the geometry in full, or NULL */
   gmsh_calls gmsh;
 } child;
 

@@ -11,11 +11,11 @@
 
 typedef struct face_list {
   int dim;
-  int *low;     /* [dim*n_low] mesh nodes ascending, -1: not in the mesh     */
-  size_t *no;   /* [n_low] number in the file                                */
-  int *start;   /* [n_node+1] faces whose lowest node is i                   */
-  int *corner;  /* [dim*n_face] ascending                                    */
-  int *example; /* [n_face] a low element of the face                        */
+  int *low;     /* [dim*n_low] mesh nodes ascending, -1: not in the mesh */
+  size_t *no;   /* [n_low] number in the file */
+  int *start;   /* [n_node+1] faces whose lowest node is i */
+  int *corner;  /* [dim*n_face] ascending */
+  int *example; /* [n_face] a low element of the face */
 } face_list;
 
 static void release(face_list *f) {

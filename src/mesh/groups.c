@@ -101,9 +101,9 @@ status groups_check(builder *b) {
 }
 
 typedef struct filling { /* marks are all 0 between two groups */
-  char *node_mark;       /* [n_node]                        */
-  char *item_mark;       /* [max of n_elem, n_face]         */
-  int *node, *item;      /* lists of the group at work      */
+  char *node_mark;       /* [n_node] */
+  char *item_mark;       /* [max of n_elem, n_face] */
+  int *node, *item;      /* lists of the group at work */
   int n_node, n_item;
 } filling;
 

@@ -13,47 +13,47 @@
 #include <stddef.h>
 
 typedef struct mesh_group {
-  const char *name; /* physical name, case kept                              */
-  int dim;          /* 0 points, 1 curves, 2 surfaces, 3 volumes             */
-  int tag;          /* physical tag                                          */
-  int n_item;       /* elements (dim = mesh dim) or faces (mesh dim - 1)     */
-  int *item_id;     /* [n_item] ascending elem or face ids; else NULL        */
+  const char *name; /* physical name, case kept */
+  int dim;          /* 0 points, 1 curves, 2 surfaces, 3 volumes */
+  int tag;          /* physical tag */
+  int n_item;       /* elements (dim = mesh dim) or faces (mesh dim - 1) */
+  int *item_id;     /* [n_item] ascending elem or face ids; else NULL */
   int n_node;
-  int *node_id; /* [n_node] ascending                                    */
+  int *node_id; /* [n_node] ascending */
 } mesh_group;
 
 typedef struct mesh {
-  int dim; /* 2 or 3                                                */
+  int dim; /* 2 or 3 */
   int n_node, n_elem, n_face, n_group;
-  double *x;         /* [dim*n_node] coordinates, length                      */
-  size_t *node_no;   /* [n_node] number in the mesh file                      */
-  int *elem;         /* [(dim+1)*n_elem] node ids, positive orientation       */
-  size_t *elem_no;   /* [n_elem] number in the mesh file                      */
+  double *x;         /* [dim*n_node] coordinates, length */
+  size_t *node_no;   /* [n_node] number in the mesh file */
+  int *elem;         /* [(dim+1)*n_elem] node ids, positive orientation */
+  size_t *elem_no;   /* [n_elem] number in the mesh file */
   int *face;         /* [dim*n_face] node ids of the faces of the groups; seen
                         from outside face_elem they turn so that the normal
-                        (2-D: tangent turned by -90 degrees) points outward   */
-  int *face_elem;    /* [n_face] the element the face bounds                  */
-  int *face_other;   /* [n_face] the element behind it, -1 on the boundary    */
-  mesh_group *group; /* [n_group]                                            */
-  double z;          /* of the plane of a 2-D mesh, length                    */
-  double size;       /* largest extent of the bounding box, length            */
+                        (2-D: tangent turned by -90 degrees) points outward */
+  int *face_elem;    /* [n_face] the element the face bounds */
+  int *face_other;   /* [n_face] the element behind it, -1 on the boundary */
+  mesh_group *group; /* [n_group] */
+  double z;          /* of the plane of a 2-D mesh, length */
+  double size;       /* largest extent of the bounding box, length */
 } mesh;
 
-typedef struct mesh_number { /* a number handed to a .geo file               */
+typedef struct mesh_number { /* a number handed to a .geo file */
   const char *name;
   double value;
 } mesh_number;
 
 /* Where a mesh comes from. */
 typedef struct mesh_source {
-  const char *file; /* .msh, or .geo to be meshed                            */
-  double scale;     /* coordinates are multiplied by it, -                    */
+  const char *file; /* .msh, or .geo to be meshed */
+  double scale;     /* coordinates are multiplied by it, - */
   int n_number;
-  const mesh_number *numbers; /* [n_number] for a .geo                        */
+  const mesh_number *numbers; /* [n_number] for a .geo */
   /* A .geo meshed again: the lengths its elements shall have, at the nodes of
    * an earlier mesh of it, length; both NULL: the sizes of the .geo. */
   const mesh *old;
-  const double *size; /* [old->n_node]                                        */
+  const double *size; /* [old->n_node] */
 } mesh_source;
 
 /* 1: the file is a .geo, a program that gmsh runs; 0: it is read as data. */

@@ -20,10 +20,10 @@
 /* ---- both sides of a face ------------------------------------------------ */
 
 typedef struct side_list {
-  int n;         /* sides of elements; after check_sides, on the boundary   */
-  int *start;    /* [n_node+2] sides whose lowest node is i                 */
-  uint64_t *key; /* [n] the other nodes, which way they turn                */
-  int *id;       /* [n] (dim+1) * element + side                            */
+  int n;         /* sides of elements; after check_sides, on the boundary */
+  int *start;    /* [n_node+2] sides whose lowest node is i */
+  uint64_t *key; /* [n] the other nodes, which way they turn */
+  int *id;       /* [n] (dim+1) * element + side */
 } side_list;
 
 static void side_nodes(const mesh *m, int id, int *v) {
@@ -124,10 +124,10 @@ static status check_sides(const builder *b, side_list *s) {
  * coordinates are written with few digits, -. */
 static const double touching = 1e-6;
 
-typedef struct pair { /* two elements over the size of the mesh             */
-  int n;              /* corners of each                                     */
-  double x[2][4][3];  /* from the first corner of the first; 0 for z in 2-D  */
-  double far;         /* largest coordinate of the mesh                      */
+typedef struct pair { /* two elements over the size of the mesh */
+  int n;              /* corners of each */
+  double x[2][4][3];  /* from the first corner of the first; 0 for z in 2-D */
+  double far;         /* largest coordinate of the mesh */
 } pair;
 
 static void load_pair(const mesh *m, int a, int b, pair *p) {
@@ -221,9 +221,9 @@ typedef struct box {
 /* Node k has the children 2k and 2k+1; the elements, which follow each other
  * in space as they do by id, are the leaves. */
 typedef struct tree {
-  int n, first; /* elements; number of the first leaf, a power of two        */
-  int *elem;    /* [n] ascending                                             */
-  box *node;    /* [2*first]                                                 */
+  int n, first; /* elements; number of the first leaf, a power of two */
+  int *elem;    /* [n] ascending */
+  box *node;    /* [2*first] */
 } tree;
 
 static void surround(const mesh *m, int e, box *b) {
@@ -270,12 +270,13 @@ static int boxes_meet(const box *p, const box *q) {
 typedef struct search {
   const builder *b;
   tree t;
-  double far; /* largest coordinate over the size of the mesh                */
-  int *body;  /* [n_elem] when it is needed                                  */
-  int e;      /* the element whose box is "at"; those of the tree from "from" */
-  int from;   /* on are compared with it                                     */
+  double far; /* largest coordinate over the size of the mesh */
+  int *body;  /* [n_elem] when it is needed */
+  int e;      /* the element whose box is "at"; those of the tree from
+                 "from" */
+  int from;   /* on are compared with it */
   box at;
-  culprits same, other; /* in one body or group; what may be two bodies      */
+  culprits same, other; /* in one body or group; what may be two bodies */
 } search;
 
 static int by_id(const void *p, const void *q) {

@@ -16,17 +16,17 @@
 
 /* clang-format off */
 #define WIRE_LIST(X)                                                          \
-  X(CENSUS,    int)     /* entities of dimension 0, 1, 2, 3                 */ \
+  X(CENSUS,    int)     /* entities of dimension 0, 1, 2, 3 */ \
   X(NODE_NO,   size_t)                                                        \
   X(NODE_X,    double)                                                        \
-  X(GROUP,     char)    /* name; head: dim, tag                             */ \
-  X(BLOCK,     char)    /* type name; head: dim, type as tag                */ \
-  X(PHYSICAL,  int)     /* of the last block; likewise the next two         */ \
+  X(GROUP,     char)    /* name; head: dim, tag */ \
+  X(BLOCK,     char)    /* type name; head: dim, type as tag */ \
+  X(PHYSICAL,  int)     /* of the last block; likewise the next two */ \
   X(ELEM_NO,   size_t)                                                        \
   X(ELEM_NODE, size_t)                                                        \
   X(LOOSE,     size_t)                                                        \
   X(WARNING,   char)                                                          \
-  X(FAILURE,   char)    /* why there is no mesh; head: status as tag        */ \
+  X(FAILURE,   char)    /* why there is no mesh; head: status as tag */ \
   X(END,       char)
 /* clang-format on */
 
@@ -43,7 +43,7 @@ enum { WIRE_MAGIC = 0x50524d31 }; /* "PRM1" */
 
 typedef struct raw_request {
   const mesh_source *source;
-  int is_solid; /* of the kernel OpenCASCADE                                 */
+  int is_solid; /* of the kernel OpenCASCADE */
 } raw_request;
 
 /* Let a child process mesh a .geo. What fails is told in the record:

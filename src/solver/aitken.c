@@ -30,7 +30,7 @@
 typedef enum { BY_AITKEN, BY_ANDERSON, BY_NOTHING } acceleration_way;
 
 typedef struct aitken {
-  int acceleration; /* acceleration_way                                      */
+  int acceleration; /* acceleration_way */
 } aitken;
 
 /* clang-format off */
@@ -42,26 +42,26 @@ static const option aitken_options[] = {
 /* clang-format on */
 
 enum {
-  SWEEPS = 20000, /* default limit                                           */
-  DEPTH = 12,     /* differences of Anderson's mixing                        */
-  PLAIN = 6,      /* sweeps from one step of Aitken to the next              */
-  REFRESH = 64,   /* sweeps from one product to the next                     */
-  PATIENCE = 400, /* sweeps without a lower residual before a cure           */
-  OFTEN = 20      /* one old pattern in so many sweeps is a cycle            */
+  SWEEPS = 20000, /* default limit */
+  DEPTH = 12,     /* differences of Anderson's mixing */
+  PLAIN = 6,      /* sweeps from one step of Aitken to the next */
+  REFRESH = 64,   /* sweeps from one product to the next */
+  PATIENCE = 400, /* sweeps without a lower residual before a cure */
+  OFTEN = 20      /* one old pattern in so many sweeps is a cycle */
 };
-static const double PROGRESS = 0.9; /* a lower residual is lower by this    */
-static const double FARTHER = 4.0;  /* -, growth of |F|^2 that is borne     */
-static const double DEPENDENT = 1e-14; /* -, of |dF|^2: adds nothing          */
+static const double PROGRESS = 0.9;    /* a lower residual is lower by this */
+static const double FARTHER = 4.0;     /* -, growth of |F|^2 that is borne */
+static const double DEPENDENT = 1e-14; /* -, of |dF|^2: adds nothing */
 
 typedef struct aitken_work {
   node_blocks *blocks;
   best_iterate best;
-  double *before;       /* [m] x before the sweep                          */
-  double *x, *y;        /* [m] G of the sweep before, and its Y            */
-  double *defect;       /* [m] F of the sweep before, then of this one     */
-  double *diagonal;     /* [m] of the matrix                               */
-  double *dx, *dy, *df; /* [m*DEPTH] differences, a ring                   */
-  double gram[DEPTH][DEPTH]; /* (dF_i . dF_j)_D by place in the ring         */
+  double *before;            /* [m] x before the sweep */
+  double *x, *y;             /* [m] G of the sweep before, and its Y */
+  double *defect;            /* [m] F of the sweep before, then of this one */
+  double *diagonal;          /* [m] of the matrix */
+  double *dx, *dy, *df;      /* [m*DEPTH] differences, a ring */
+  double gram[DEPTH][DEPTH]; /* (dF_i . dF_j)_D by place in the ring */
 } aitken_work;
 
 static void aitken_release(void *work) {
@@ -103,18 +103,18 @@ done:
 typedef struct run {
   relaxation sweep;
   aitken_work *w;
-  double *x, *y; /* unknown and what is carried: u and r, or r and u     */
+  double *x, *y; /* unknown and what is carried: u and r, or r and u */
   int m, depth, period;
-  int kept, newest; /* differences; place of the newest                     */
-  int started;      /* w->x, w->y, w->defect are there                      */
-  int combined;     /* the sweep started from a combination                 */
-  double moved;     /* |F|^2 of the sweep before                            */
-  double mark;      /* residual at the last progress                        */
-  int since, cures; /* sweeps since; cures tried                            */
-  int circling;     /* of these sweeps those that left an old pattern       */
+  int kept, newest; /* differences; place of the newest */
+  int started;      /* w->x, w->y, w->defect are there */
+  int combined;     /* the sweep started from a combination */
+  double moved;     /* |F|^2 of the sweep before */
+  double mark;      /* residual at the last progress */
+  int since, cures; /* sweeps since; cures tried */
+  int circling;     /* of these sweeps those that left an old pattern */
   state_watch watch;
-  int symmetric; /* every other sweep backward                           */
-  int plain;     /* sweeps before the first that is combined             */
+  int symmetric; /* every other sweep backward */
+  int plain;     /* sweeps before the first that is combined */
 } run;
 
 /* ---- combination ----------------------------------------------------------

@@ -8,23 +8,23 @@
 
 enum {
   MOST = 200000, /* iterations of all passes, by default */
-  DEPTH = 4,     /* differences mixed                                         */
-  PASSES = 200,  /* default limit                                             */
-  PATIENCE = 30, /* passes without a lower residual                          */
-  IDLE = 2       /* iterations of a pass that did nothing                     */
+  DEPTH = 4,     /* differences mixed */
+  PASSES = 200,  /* default limit */
+  PATIENCE = 30, /* passes without a lower residual */
+  IDLE = 2       /* iterations of a pass that did nothing */
 };
-static const double PROGRESS = 0.9; /* -, a lower residual                  */
+static const double PROGRESS = 0.9; /* -, a lower residual */
 static const double FINEST = 0.1; /* -, of the tolerance: a pass asks no more */
-static const double COARSE = 0.9; /* -, of it: enough where passes stagnate   */
-static const double MIXING_RATE = 0.2;     /* -, slower: mix     */
+static const double COARSE = 0.9; /* -, of it: enough where passes stagnate */
+static const double MIXING_RATE = 0.2;     /* -, slower: mix */
 static const double RATE_MARGIN = 0x1p-24; /* -, of |g|: shorter differences
-                                              are rounding                  */
-static const double SHORTEST_STEP = 1.0 / 32.0; /* -, of G(g) - g             */
+                                              are rounding */
+static const double SHORTEST_STEP = 1.0 / 32.0; /* -, of G(g) - g */
 
 struct fixed_point {
-  int n, kept;             /* nodes; differences now kept                   */
-  double *g, *image;       /* [n] limit of the pass and G(g), N             */
-  double *last_g, *last_G; /* [n] pass accepted last             */
+  int n, kept;             /* nodes; differences now kept */
+  double *g, *image;       /* [n] limit of the pass and G(g), N */
+  double *last_g, *last_G; /* [n] pass accepted last */
   double *dg, *dG;         /* [n*DEPTH] differences of passes, newest first */
 };
 
@@ -177,11 +177,11 @@ static void tell(const solver_control *control, const solver_report *rep,
 
 /* How the passes go on. */
 typedef struct course {
-  double step;      /* share of G(g) - g taken                               */
-  double defect;    /* |G(g) - g| of the last accepted pass, N               */
-  double rate;      /* last one measured                                     */
-  double lowest;    /* residual at the last progress                         */
-  int mixed;        /* the pass just made came from a mixed step             */
+  double step;      /* share of G(g) - g taken */
+  double defect;    /* |G(g) - g| of the last accepted pass, N */
+  double rate;      /* last one measured */
+  double lowest;    /* residual at the last progress */
+  int mixed;        /* the pass just made came from a mixed step */
   int grown, since; /* passes with a growing defect; since the last progress */
 } course;
 
@@ -250,7 +250,7 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
   pass p = {inner, *control};
   course c = {.step = 1.0, .lowest = HUGE_VAL};
   int passes = control->limit_max_iter > 0 ? control->limit_max_iter : PASSES;
-  double change = 1.0, rounding = 0.0; /* what a pass could not go below      */
+  double change = 1.0, rounding = 0.0; /* what a pass could not go below */
   int before = 0;
   fp->kept = 0;
   *rep = (solver_report){.outcome = STOPPED_ITERATIONS};
@@ -293,12 +293,12 @@ done:
 /* ---- friction path ----------------------------------------------------- */
 
 enum { STAGES = 200 };
-static const double FIRST_MU = 0.25; /* -, largest mu of the first share  */
-static const double GROWTH = 2.0;    /* -, of the share per stage         */
-static const double LEAST_GROWTH = 1.004; /* -                                */
+static const double FIRST_MU = 0.25;      /* -, largest mu of the first share */
+static const double GROWTH = 2.0;         /* -, of the share per stage */
+static const double LEAST_GROWTH = 1.004; /* - */
 
 struct friction_path {
-  double *g0, *val;        /* [n], [entries of B] with the share              */
+  double *g0, *val;        /* [n], [entries of B] with the share */
   double *good_u, *good_r; /* [m] of the last share solved */
 };
 

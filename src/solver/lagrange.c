@@ -29,7 +29,7 @@
 #include <string.h>
 
 typedef struct lagrange {
-  int acceleration; /* acceleration_way                                      */
+  int acceleration; /* acceleration_way */
 } lagrange;
 
 typedef enum { BY_NESTEROV, BY_NOTHING } acceleration_way;
@@ -43,22 +43,22 @@ static const option lagrange_options[] = {
 /* clang-format on */
 
 enum {
-  STEPS = 100000,  /* default limit                                          */
-  PATIENCE = 2000, /* steps without a lower residual                         */
+  STEPS = 100000,  /* default limit */
+  PATIENCE = 2000, /* steps without a lower residual */
   POWER_STEPS = 12
 };
-static const double PROGRESS = 0.9; /* a lower residual is lower by this      */
+static const double PROGRESS = 0.9;     /* a lower residual is lower by this */
 static const double ROUNDING = 0x1p-30; /* -, of |r|^2: a shorter step shows
                                           rounding only */
-static const double LONGER = 0.98; /* share of the eigenvalue seen           */
+static const double LONGER = 0.98;      /* share of the eigenvalue seen */
 
 typedef struct lagrange_work {
   force_set *set;
-  double step;       /* -, rho of the next problem                       */
-  double *x, *old_x; /* [m] u - o at r, and at the r before              */
-  double *y, *y_x;   /* [m] N; u - o there. After the step y is r - y    */
-  double *c;         /* [m] x = W r + c, m                               */
-  double *old_r;     /* [m] N                                            */
+  double step;       /* -, rho of the next problem */
+  double *x, *old_x; /* [m] u - o at r, and at the r before */
+  double *y, *y_x;   /* [m] N; u - o there. After the step y is r - y */
+  double *c;         /* [m] x = W r + c, m */
+  double *old_r;     /* [m] N */
   best_iterate best;
 } lagrange_work;
 
@@ -122,8 +122,8 @@ typedef struct run {
   lagrange_work *w;
   const solver_control *control;
   double *u, *r;
-  double scale, mark; /* residual at the last progress                       */
-  double t;           /* of Nesterov's sequence, -                           */
+  double scale, mark; /* residual at the last progress */
+  double t;           /* of Nesterov's sequence, - */
   int accelerated, since;
 } run;
 

@@ -17,14 +17,14 @@
 #include <stdint.h>
 
 typedef struct local_problem {
-  int dim;       /* 1, 2 or 3: unknowns, the normal one first                */
-  double K[9];   /* [dim*dim] N/m                                          */
-  double b[3];   /* [dim] less the force at d = 0, N                          */
-  double at[3];  /* [dim] x at d = 0, m                                       */
-  double g0, mu; /* sliding limit without pressure, N; its growth with -r_n */
+  int dim;         /* 1, 2 or 3: unknowns, the normal one first */
+  double K[9];     /* [dim*dim] N/m */
+  double b[3];     /* [dim] less the force at d = 0, N */
+  double at[3];    /* [dim] x at d = 0, m */
+  double g0, mu;   /* sliding limit without pressure, N; its growth with -r_n */
   double bound[3]; /* [dim] upper bounds of x, m; bound[0] = 0; HUGE_VAL in a
-                      tangent unless bounded = 1                             */
-  int bounded;     /* 1: a second obstacle; frictionless                     */
+                      tangent unless bounded = 1 */
+  int bounded;     /* 1: a second obstacle; frictionless */
 } local_problem;
 
 typedef enum { LOCAL_OPEN, LOCAL_STICK, LOCAL_SLIP } local_state;
@@ -46,24 +46,24 @@ local_state local_solve(const local_problem *lp, local_state before, double *d,
  * u = W r + q is carried along with the columns of W. Both see the same
  * problem of a node, K = A_ii or inv(W_ii), b = -r.
  */
-typedef struct node_blocks node_blocks; /* what belongs to one matrix        */
+typedef struct node_blocks node_blocks; /* what belongs to one matrix */
 status node_blocks_new(const contact_problem *cp, node_blocks **out);
-void node_blocks_free(node_blocks *b); /* accepts NULL                       */
+void node_blocks_free(node_blocks *b); /* accepts NULL */
 
 typedef struct relaxation {
   const contact_problem *cp;
   node_blocks *blocks;
-  double *u, *r; /* [m] the iterate                                          */
-  double omega;  /* factor by which a visit goes past the solution, -        */
-  double change; /* sum of K (du)^2 of the sweep, N m                        */
-  int turned;    /* nodes whose state changed in the sweep                   */
+  double *u, *r; /* [m] the iterate */
+  double omega;  /* factor by which a visit goes past the solution, - */
+  double change; /* sum of K (du)^2 of the sweep, N m */
+  int turned;    /* nodes whose state changed in the sweep */
 } relaxation;
 
 /* The patterns of states that the last sweeps left behind. */
 enum { PATTERNS = 64 };
 typedef struct state_watch {
-  uint64_t seen[PATTERNS]; /* a ring                                         */
-  int n;                   /* patterns seen                                  */
+  uint64_t seen[PATTERNS]; /* a ring */
+  int n;                   /* patterns seen */
 } state_watch;
 /* Take note of the pattern. 1: it has been there, with another one since. */
 int state_watch_returns(state_watch *w, const relaxation *s);

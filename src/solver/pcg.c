@@ -34,7 +34,7 @@
 #include <string.h>
 
 typedef struct pcg {
-  int preconditioner; /* preconditioner_way                                  */
+  int preconditioner; /* preconditioner_way */
 } pcg;
 
 typedef enum { BY_FACE, BY_DIAGONAL } preconditioner_way;
@@ -48,22 +48,22 @@ static const option pcg_options[] = {
 /* clang-format on */
 
 enum {
-  STEPS = 20000,  /* default limit                                           */
-  PATIENCE = 500, /* steps without a lower residual                          */
-  HALVINGS = 3    /* of a projected step that does not descend               */
+  STEPS = 20000,  /* default limit */
+  PATIENCE = 500, /* steps without a lower residual */
+  HALVINGS = 3    /* of a projected step that does not descend */
 };
 static const double PROGRESS = 0.9; /* a lower residual is lower by this */
-static const double ON_THE_RIM = 0x1p-20; /* -, of g: counts as |r_t| = g     */
-static const double ROUNDING = 0x1p-48;   /* -, of the terms of J             */
-static const double ENOUGH = 0.1; /* -, of phi: the circle has turned         */
+static const double ON_THE_RIM = 0x1p-20; /* -, of g: counts as |r_t| = g */
+static const double ROUNDING = 0x1p-48;   /* -, of the terms of J */
+static const double ENOUGH = 0.1;         /* -, of phi: the circle has turned */
 
 typedef struct pcg_work {
   force_set *set;
-  double *x;          /* [m] m                                             */
-  double *phi, *beta; /* [m] m                                             */
-  double *z, *p, *v;  /* [m]                                               */
-  double *r0, *x0;    /* [m] where the phase began                         */
-  double *e, *turn;   /* [m] unit radius of a rim, [n] |x.e|/g, m/N        */
+  double *x;          /* [m] m */
+  double *phi, *beta; /* [m] m */
+  double *z, *p, *v;  /* [m] */
+  double *r0, *x0;    /* [m] where the phase began */
+  double *e, *turn;   /* [m] unit radius of a rim, [n] |x.e|/g, m/N */
   best_iterate best;
 } pcg_work;
 
@@ -109,11 +109,11 @@ typedef struct run {
   pcg_work *w;
   const solver_control *control;
   double *u, *r;
-  double scale, residual, mark; /* now; at the last progress                 */
-  double phi2, beta2;           /* |phi|^2, |beta|^2 in the metric D         */
+  double scale, residual, mark; /* now; at the last progress */
+  double phi2, beta2;           /* |phi|^2, |beta|^2 in the metric D */
   int by_face, bent;            /* 1: a rim with two tangents is on the face */
   int steps, limit, since;
-  int refreshed; /* x was made again: begin a new phase        */
+  int refreshed; /* x was made again: begin a new phase */
 } run;
 
 /* Radii of the rims, and how strongly the circles bend J. */

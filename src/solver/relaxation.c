@@ -11,14 +11,14 @@
 #include <string.h>
 
 enum { DRIFT_SWEEPS = 20 };
-static const double RIGID = 0x1p-5; /* -, of a drift: counts as no strain  */
-static const double SOFT = 0x1p-20; /* -, of the stiffness: none        */
-static const double ROUNDING = 0x1p-46; /* -, of stiffness times way         */
+static const double RIGID = 0x1p-5;     /* -, of a drift: counts as no strain */
+static const double SOFT = 0x1p-20;     /* -, of the stiffness: none */
+static const double ROUNDING = 0x1p-46; /* -, of stiffness times way */
 
 struct node_blocks {
-  double *K;          /* [dim*dim*n] stiffness of each node, N/m              */
-  local_state *state; /* [n] state found at the last visit                    */
-  double *step, *strained; /* [m] of a sweep, m; A times it, N                */
+  double *K;               /* [dim*dim*n] stiffness of each node, N/m */
+  local_state *state;      /* [n] state found at the last visit */
+  double *step, *strained; /* [m] of a sweep, m; A times it, N */
 };
 
 void node_blocks_free(node_blocks *b) {
@@ -234,7 +234,7 @@ void relaxation_sweep(relaxation *s, int backward) {
 }
 
 int state_watch_returns(state_watch *w, const relaxation *s) {
-  uint64_t hash = 14695981039346656037u; /* FNV-1a                            */
+  uint64_t hash = 14695981039346656037u; /* FNV-1a */
   int met = 0, kept = w->n < PATTERNS ? w->n : PATTERNS;
   for (int i = 0; i < s->cp->n; ++i)
     hash = (hash ^ (uint64_t)s->blocks->state[i]) * 1099511628211u;
@@ -268,11 +268,11 @@ void relaxation_start(const relaxation *s) {
 
 /* A body in a sweep, as if nothing but its load moved it. */
 typedef struct flight {
-  double work;        /* of the load on the step, N m                         */
-  double most;        /* largest step of an unknown, m                        */
-  double stiff, left; /* forces of the steps alone, of the strain of all, N   */
-  double load, least; /* largest load; what rounding makes of "left", N       */
-  double steps;       /* that lead to a bound, or to where a node sticks      */
+  double work;        /* of the load on the step, N m */
+  double most;        /* largest step of an unknown, m */
+  double stiff, left; /* forces of the steps alone, of the strain of all, N */
+  double load, least; /* largest load; what rounding makes of "left", N */
+  double steps;       /* that lead to a bound, or to where a node sticks */
 } flight;
 
 static int is_of(const contact_problem *cp, int node_id, int body_id) {

@@ -6,24 +6,24 @@
 #include <string.h>
 
 enum {
-  ANGLES = 256, /* of slip, looked at; roots lie at most 6                    */
+  ANGLES = 256, /* of slip, looked at; roots lie at most 6 */
   HALVINGS = 60,
   WORK = 32
 };
-static const double RANK = 0x1p-40; /* -, of a singular matrix                */
+static const double RANK = 0x1p-40; /* -, of a singular matrix */
 static const double GOLDEN = 0.6180339887498949;
 
 typedef struct single {
   const contact_problem *cp;
   double scale, tol;
-  double u0[3], r0[3];         /* the start                                   */
-  double P[9], Q[9], c[3];     /* [m*m], [m*m], [m]                           */
-  int m, n_rub, rub[2];        /* tangents with friction                      */
-  double ut0[2], g0, mu;       /* m, N, -                                     */
-  contact_status start;        /* its status                                  */
-  double u[3], r[3], residual; /* the best solution so far                    */
-  double distance;             /* of it; HUGE_VAL: none                       */
-  int like;                    /* 1: with the status of the start             */
+  double u0[3], r0[3];         /* the start */
+  double P[9], Q[9], c[3];     /* [m*m], [m*m], [m] */
+  int m, n_rub, rub[2];        /* tangents with friction */
+  double ut0[2], g0, mu;       /* m, N, - */
+  contact_status start;        /* its status */
+  double u[3], r[3], residual; /* the best solution so far */
+  double distance;             /* of it; HUGE_VAL: none */
+  int like;                    /* 1: with the status of the start */
 } single;
 
 static void set_problem(single *s) {

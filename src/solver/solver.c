@@ -22,7 +22,7 @@ const char *solver_family(const char *name) {
   return ops == NULL ? "direct" : ops->family;
 }
 
-static const double FEW_DIGITS = 1e-4; /* -, tolerance                        */
+static const double FEW_DIGITS = 1e-4; /* -, tolerance */
 
 int solver_few_digits(double tol) { return tol >= FEW_DIGITS; }
 

@@ -14,11 +14,11 @@
 
 typedef struct solver_report {
   outcome outcome;
-  int iterations;     /* sweeps, pivots or steps                              */
-  int limit_updates;  /* passes of the fixed point on g                       */
-  double rate;        /* contraction of the fixed point, -; 0: not used       */
-  double residual;    /* contact_residual(), -                                */
-  double cpu;         /* s                                                    */
+  int iterations;     /* sweeps, pivots or steps */
+  int limit_updates;  /* passes of the fixed point on g */
+  double rate;        /* contraction of the fixed point, -; 0: not used */
+  double residual;    /* contact_residual(), - */
+  double cpu;         /* s */
   const char *solver; /* the method that converged */
 } solver_report;
 
@@ -26,10 +26,10 @@ typedef struct solver_report {
 typedef struct solver_step {
   const char *solver;
   int iteration, limit_update;
-  double residual;     /* the measure the method steers by, -; NAN: none      */
-  double limit_change; /* change of the sliding limit, relative; NAN: none    */
-  int status_changes;  /* nodes; -1: unknown                                  */
-  int cycle;           /* 1: a status pattern came back                       */
+  double residual;     /* the measure the method steers by, -; NAN: none */
+  double limit_change; /* change of the sliding limit, relative; NAN: none */
+  int status_changes;  /* nodes; -1: unknown */
+  int cycle;           /* 1: a status pattern came back */
 } solver_step;
 typedef struct solver_listener {
   void (*step)(void *ctx, const solver_step *s);
@@ -38,32 +38,33 @@ typedef struct solver_listener {
 
 /* Control parameters of every solver, besides its own options. */
 typedef struct solver_control {
-  double tol;         /* wanted contact_residual, -                          */
-  int max_iter;       /* 0: the solver's own limit                           */
-  int limit_max_iter; /* passes of a fixed point on g; 0: 200           */
-  double scale;       /* contact_scale; 0: not known                         */
-  int no_restart;   /* 1: give up rather than start again from another guess */
-  int limit_update; /* pass now running, for the listener             */
-  const solver_listener *listener; /* or NULL                                 */
+  double tol;                      /* wanted contact_residual, - */
+  int max_iter;                    /* 0: the solver's own limit */
+  int limit_max_iter;              /* passes of a fixed point on g; 0: 200 */
+  double scale;                    /* contact_scale; 0: not known */
+  int no_restart;                  /* 1: give up rather than start again from
+                                      another guess */
+  int limit_update;                /* pass now running, for the listener */
+  const solver_listener *listener; /* or NULL */
 } solver_control;
 
 enum {
   SOLVES_TRESCA = 1,
-  SOLVES_COULOMB = 2, /* g = g0 + B p directly                               */
+  SOLVES_COULOMB = 2, /* g = g0 + B p directly */
   SOLVES_3D = 4,
   NEEDS_STIFFNESS = 8,
   NEEDS_COMPLIANCE = 16,
-  SOLVES_FLOATING = 32,   /* copes with a semidefinite A                      */
+  SOLVES_FLOATING = 32,   /* copes with a semidefinite A */
   REGULAR_COMPLIANCE = 64 /* instead of the stiffness one that has an inverse,
-                             which need not be made                           */
+                             which need not be made */
 };
 
 typedef struct solver_ops {
-  const char *name, *reference; /* METHOD= in lower case; source              */
-  const char *family;           /* kind of method: two of one family share
-                                   their weaknesses                           */
-  const char *help;             /* manual text: method, when to choose it     */
-  unsigned handles;             /* bits above                                 */
+  const char *name, *reference; /* METHOD= in lower case; source */
+  const char *family;           /* kind of method: two of one family share their
+                                   weaknesses */
+  const char *help;             /* manual text: method, when to choose it */
+  unsigned handles;             /* bits above */
   size_t param_size;
   const option *options;
   /* Once per matrix; par: [param_size]. work receives the private state. */
@@ -72,7 +73,7 @@ typedef struct solver_ops {
   status (*solve)(const contact_problem *cp, const void *par, void *work,
                   const solver_control *control, double *u, double *r,
                   solver_report *rep);
-  void (*release)(void *work); /* accepts NULL                                */
+  void (*release)(void *work); /* accepts NULL */
   /* What the work remembers from one solve to the next and the matrix does not
    * tell, kept or filled; NULL: nothing. */
   status (*keep)(void *work, archive *a);
@@ -86,11 +87,11 @@ typedef struct solver_ops {
 /* clang-format on */
 #define SOLVER_EXTERN(name) extern const solver_ops name##_solver;
 SOLVER_LIST(SOLVER_EXTERN)
-extern const solver_ops *const solver_list[]; /* NULL at the end              */
-const solver_ops *solver_find(const char *name); /* case ignored; or NULL     */
+extern const solver_ops *const solver_list[];    /* NULL at the end */
+const solver_ops *solver_find(const char *name); /* case ignored; or NULL */
 /* Family of the solver of that name; "direct" if none was needed (NULL too). */
 const char *solver_family(const char *name);
-extern const char auto_help[]; /* manual text of METHOD=AUTO                  */
+extern const char auto_help[]; /* manual text of METHOD=AUTO */
 
 /* ---- what the solvers share ---- */
 
@@ -105,8 +106,8 @@ void solver_tell_states(const solver_control *control, const char *solver,
                         int iteration, double residual, int changes, int cycle);
 /* The iterate with the lowest residual. */
 typedef struct best_iterate {
-  double residual; /* -; HUGE_VAL: none yet                                   */
-  double *u, *r;   /* [m]                                                    */
+  double residual; /* -; HUGE_VAL: none yet */
+  double *u, *r;   /* [m] */
 } best_iterate;
 status best_iterate_new(int m, best_iterate *best);
 void best_iterate_free(best_iterate *best);
@@ -117,11 +118,11 @@ void solver_take_best(const best_iterate *best, int m, double *u, double *r);
 
 /* The choice of the deck: one solver, or AUTO (ops NULL). */
 typedef struct solver_choice {
-  const solver_ops *ops; /* NULL: AUTO                                        */
-  const void *param;     /* [ops->param_size], NULL for AUTO                  */
-  double tol;            /* -                                                 */
-  int max_iter;          /* of the solver; 0: its own limit                   */
-  int limit_max_iter;    /* passes of the fixed point                         */
+  const solver_ops *ops; /* NULL: AUTO */
+  const void *param;     /* [ops->param_size], NULL for AUTO */
+  double tol;            /* - */
+  int max_iter;          /* of the solver; 0: its own limit */
+  int limit_max_iter;    /* passes of the fixed point */
 } solver_choice;
 
 /* Work that is kept as long as A stays the same. */

@@ -17,9 +17,9 @@
 #include <string.h>
 
 typedef struct sor {
-  double omega; /* relaxation factor, -; 0: chosen by the program            */
-  int sweep;    /* sweep_order                                             */
-  int friction; /* friction_way                                            */
+  double omega; /* relaxation factor, -; 0: chosen by the program */
+  int sweep;    /* sweep_order */
+  int friction; /* friction_way */
 } sor;
 
 typedef enum { SWEEP_FORWARD, SWEEP_BACKWARD, SWEEP_SYMMETRIC } sweep_order;
@@ -38,17 +38,17 @@ static const option sor_options[] = {
 /* clang-format on */
 
 enum {
-  SWEEPS = 20000, /* default limit                                         */
-  CHECK = 10,     /* sweeps from one check of the residual to the next     */
-  PATIENCE = 30   /* checks without a lower residual before a cure         */
+  SWEEPS = 20000, /* default limit */
+  CHECK = 10,     /* sweeps from one check of the residual to the next */
+  PATIENCE = 30   /* checks without a lower residual before a cure */
 };
-static const double PROGRESS = 0.9; /* a lower residual is lower by this      */
+static const double PROGRESS = 0.9; /* a lower residual is lower by this */
 
 typedef struct sor_work {
   node_blocks *blocks;
   best_iterate best;
-  double *before;     /* [m] u before a sweep that is checked; work          */
-  fixed_point *fixed; /* for FRICTION_FIXED_POINT                            */
+  double *before;     /* [m] u before a sweep that is checked; work */
+  fixed_point *fixed; /* for FRICTION_FIXED_POINT */
 } sor_work;
 
 static void sor_release(void *work) {
@@ -83,18 +83,18 @@ done:
 
 /* How the sweeps go: factor, order, progress. */
 typedef struct course {
-  double omega_cap;   /* the program's choice stays below                   */
-  best_iterate *kept; /* lowest residual                                    */
-  double mark;        /* residual at the last progress                      */
-  double last_change; /* of the check before                                */
-  int since;          /* checks since the last progress                     */
-  int cures;          /* cures tried                                        */
-  int order, chosen;  /* sweep_order; 1: omega by the program               */
+  double omega_cap;   /* the program's choice stays below */
+  best_iterate *kept; /* lowest residual */
+  double mark;        /* residual at the last progress */
+  double last_change; /* of the check before */
+  int since;          /* checks since the last progress */
+  int cures;          /* cures tried */
+  int order, chosen;  /* sweep_order; 1: omega by the program */
   state_watch watch;
   int turned, returns; /* since the last check: nodes that changed their state,
-                          patterns that came back                            */
-  int circling;        /* checks since the last progress with such patterns  */
-  double *before;      /* [m] u before a sweep that is checked                */
+                          patterns that came back */
+  int circling;        /* checks since the last progress with such patterns */
+  double *before;      /* [m] u before a sweep that is checked */
 } course;
 
 /* Largest factor that friction updated in the sweep was seen to bear. */

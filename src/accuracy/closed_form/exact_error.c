@@ -13,7 +13,7 @@
 #include <string.h>
 
 enum { MAX_NS = 6, RULE = 4, MAX_DOF = 12 };
-static const double PART = 1e-3; /* -, of the element, for differences        */
+static const double PART = 1e-3; /* -, of the element, for differences */
 /* Gauss-Legendre on [0, 1]. */
 static const double rule_at[RULE] = {0.06943184420297371, 0.33000947820757187,
                                      0.66999052179242813, 0.93056815579702629};
@@ -30,11 +30,11 @@ typedef struct element_at_work {
   const closed_form *ref;
   const domain *d;
   const answer_fields *a;
-  const double *S; /* [ns*ns] 1/Pa, inv(E) of its section                    */
-  const double *E; /* [ns*ns] Pa                                             */
+  const double *S; /* [ns*ns] 1/Pa, inv(E) of its section */
+  const double *E; /* [ns*ns] Pa */
   int elem_id;
-  double size;           /* m                                                 */
-  double strain[MAX_NS]; /* of the answer, -                                  */
+  double size;           /* m */
+  double strain[MAX_NS]; /* of the answer, - */
   squares *sum;
 } element_at_work;
 

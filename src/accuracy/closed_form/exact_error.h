@@ -12,19 +12,19 @@
 typedef struct true_error {
   int asked;
   double energy;       /* of the stresses, integral of s' inv(E) s; without
-                          stresses in the card of the strains, e' E e         */
-  double displacement; /* L2                                                  */
-  double stress;       /* L2, all components of the tensor                    */
-  double pressure;     /* L2 on the contact surface, of nodal values          */
-  double cpu;          /* s, spent so far on finding it                       */
+                          stresses in the card of the strains, e' E e */
+  double displacement; /* L2 */
+  double stress;       /* L2, all components of the tensor */
+  double pressure;     /* L2 on the contact surface, of nodal values */
+  double cpu;          /* s, spent so far on finding it */
 } true_error;
 
 /* An answer at time t. */
 typedef struct answer_fields {
-  double t;             /* s                                                  */
-  const double *u;      /* [dim*n_node] m                                     */
-  const double *stress; /* [ns*n_elem] Pa; NULL if the card has no stress     */
-  const double *rc;     /* [dim*n] forces of the contact frame, N             */
+  double t;             /* s */
+  const double *u;      /* [dim*n_node] m */
+  const double *stress; /* [ns*n_elem] Pa; NULL if the card has no stress */
+  const double *rc;     /* [dim*n] forces of the contact frame, N */
 } answer_fields;
 
 /* All parts of *REFERENCE into out->energy .. pressure. ERR_DECK: a value of

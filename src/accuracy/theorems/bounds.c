@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double ROUNDING = 1e-8; /* -, of the larger norm                 */
+static const double ROUNDING = 1e-8; /* -, of the larger norm */
 
 /* ---- the state before ---------------------------------------------------- */
 

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double MOVES = 1e-8; /* -, of the largest part of a motion       */
+static const double MOVES = 1e-8; /* -, of the largest part of a motion */
 
 /* ---- norms -------------------------------------------------------------- */
 
@@ -47,7 +47,7 @@ double energy_norm_dual(energy_norm *e, const double *f) {
 typedef struct block {
   const contact_problem *cp;
   energy_norm *e;
-  int n, *dof; /* [n] of the block                                            */
+  int n, *dof; /* [n] of the block */
 } block;
 
 static void scatter(const block *b, const double *x, double *full) {

@@ -24,9 +24,9 @@ enum { PATTERNS = sizeof moves / sizeof *moves, FIELDS_A_NODE = 80 };
 typedef struct trial {
   const contact_problem *cp;
   const double *u;
-  double *r, *w;       /* [m] A u - f; test field                             */
-  double size;         /* of test fields, m                                   */
-  double force, whole; /* (|f| + |r|), |u|: norms of the diagonal             */
+  double *r, *w;       /* [m] A u - f; test field */
+  double size;         /* of test fields, m */
+  double force, whole; /* (|f| + |r|), |u|: norms of the diagonal */
   unsigned long long seed;
   double least;
   int n;

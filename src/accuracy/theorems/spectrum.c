@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum { STEPS = 160, EVERY = 8 };
-static const double CLOSE = 1e-10; /* -, residual of Lanczos over the value   */
+static const double CLOSE = 1e-10; /* -, residual of Lanczos over the value */
 
 /* H from its columns, then dsyevr for the last eigenvalue. */
 static status dense_largest(const symmetric_map *map, double *largest) {
@@ -36,11 +36,11 @@ static status dense_largest(const symmetric_map *map, double *largest) {
 }
 
 typedef struct lanczos {
-  int n, k;  /* order; vectors so far                               */
-  double *Q; /* [n*STEPS]                                           */
-  double *alpha, *beta; /* [STEPS] the tridiagonal matrix                     */
+  int n, k;             /* order; vectors so far */
+  double *Q;            /* [n*STEPS] */
+  double *alpha, *beta; /* [STEPS] the tridiagonal matrix */
   double *d, *e, *Z,
-      *work; /* [STEPS], [STEPS], [STEPS^2], [2*STEPS] workspace    */
+      *work; /* [STEPS], [STEPS], [STEPS^2], [2*STEPS] workspace */
 } lanczos;
 
 /* Largest eigenvalue of the tridiagonal matrix, and its residual added. */

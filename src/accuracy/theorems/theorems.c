@@ -8,19 +8,19 @@
 
 struct theorems {
   energy_norm norm;
-  double *diagonal;   /* [m] of A: it is known again by that                 */
-  double *entries;    /* [n_entry] of B, the same                             */
-  int n_entry, fresh; /* fresh: the eigenvalues are not known                */
+  double *diagonal;   /* [m] of A: it is known again by that */
+  double *entries;    /* [n_entry] of B, the same */
+  int n_entry, fresh; /* fresh: the eigenvalues are not known */
   state_before before;
-  int seen;      /* 1: a state has been looked at                        */
-  int n_contact; /* rows of the report                                   */
+  int seen;                   /* 1: a state has been looked at */
+  int n_contact;              /* rows of the report */
   theorems_contact *contacts; /* [n_contact] the last one is all */
   double start;
   int has_start;
-  double fastest; /* L of the step so far, 1/s                                */
+  double fastest; /* L of the step so far, 1/s */
 };
 
-static const double ROUNDING = 1e-8; /* -, of times and factors               */
+static const double ROUNDING = 1e-8; /* -, of times and factors */
 
 const char *mu_regime_text(mu_regime regime) {
   static const char *const text[] = {

@@ -33,14 +33,15 @@
 
 /* What is looked at: a problem and its answer. */
 typedef struct theorems_scene {
-  const contact_problem *cp; /* with A                                        */
-  const double *u, *r;       /* [m] its answer, m, N                          */
+  const contact_problem *cp; /* with A */
+  const double *u, *r;       /* [m] its answer, m, N */
   int n_contact;
-  const int *contact_id;      /* [n]                                          */
-  const double *mu;           /* [n_contact] largest of its nodes, -          */
+  const int *contact_id;      /* [n] */
+  const double *mu;           /* [n_contact] largest of its nodes, - */
   const unsigned char *given; /* [n] 1: the normal force is given; NULL: none */
-  int alone; /* 1: (3.10) has no meaning: a static problem, a start           */
-  double tol; /* residual the solver was to reach, -                          */
+  int alone;                  /* 1: (3.10) has no meaning: a static problem, a
+                                 start */
+  double tol;                 /* residual the solver was to reach, - */
 } theorems_scene;
 
 /* mu is under what is guaranteed; between that and what is measured; above
@@ -50,55 +51,59 @@ const char *mu_regime_text(mu_regime regime);
 
 /* Friction of one contact, the limits of all others being given, or of all. */
 typedef struct theorems_contact {
-  int contact_id; /* -1: all together                                       */
-  double mu;     /* largest, -                                                */
-  double factor; /* q, -; HUGE_VAL: none, friction alone resists a motion     */
-  double limit;  /* unique for mu below it: mu/q = 1/C_h, -; NAN: mu = 0      */
-  double rate;   /* contraction of the fixed point measured at the answer, -  */
-  double suggested; /* mu/rate, -; HUGE_VAL: nothing slides                   */
-  double normal;    /* lmax(A_nn), N/m; of the contact                        */
-  double tangent;   /* lmax(inv(A)_tt), m/N                                   */
+  int contact_id;   /* -1: all together */
+  double mu;        /* largest, - */
+  double factor;    /* q, -; HUGE_VAL: none, friction alone resists a motion */
+  double limit;     /* unique for mu below it: mu/q = 1/C_h, -; NAN: mu = 0 */
+  double rate;      /* contraction of the fixed point measured at the answer,
+                       - */
+  double suggested; /* mu/rate, -; HUGE_VAL: nothing slides */
+  double normal;    /* lmax(A_nn), N/m; of the contact */
+  double tangent;   /* lmax(inv(A)_tt), m/N */
   mu_regime regime;
 } theorems_contact;
 
 typedef struct theorems_bound {
-  double left, right; /* sqrt(J)                                              */
+  double left, right; /* sqrt(J) */
   int violated;
-  const char *why; /* NULL, or why there is none                              */
+  const char *why; /* NULL, or why there is none */
 } theorems_bound;
 
 /* Theorem 3.2 over an increment. */
 typedef struct theorems_path {
-  int asked;       /* 1: laws flow in the step                                */
-  const char *why; /* NULL, or why there is no rate                           */
-  double rate;  /* of the map linearised at the answer, pass after pass, -    */
-  double bound; /* q, -                                                       */
-  double speed; /* L, 1/s                                                     */
-  double longest; /* s, increments below it contract; HUGE_VAL: nothing flows */
-  double span;    /* T, since the start of the step, s                        */
-  double passes;  /* least k over T, with the largest L so far, -             */
-  int violated;   /* rate > bound                                           */
+  int asked;       /* 1: laws flow in the step */
+  const char *why; /* NULL, or why there is no rate */
+  double rate;     /* of the map linearised at the answer, pass after pass, - */
+  double bound;    /* q, - */
+  double speed;    /* L, 1/s */
+  double longest;  /* s, increments below it contract; HUGE_VAL: nothing
+                      flows */
+  double span;     /* T, since the start of the step, s */
+  double passes;   /* least k over T, with the largest L so far, - */
+  int violated;    /* rate > bound */
 } theorems_path;
 
 typedef struct theorems_report {
   int asked;
-  int fresh;     /* 1: the matrix is new                                      */
-  int n_contact; /* rows: contacts with friction on their own pressure, then
-                    all of them if there are more than one                   */
+  int fresh;                        /* 1: the matrix is new */
+  int n_contact;                    /* rows: contacts with friction on their own
+                                       pressure, then all of them if there are
+                                       more than one */
   const theorems_contact *contacts; /* [n_contact] borrowed */
-  theorems_bound total, change; /* (3.9), (3.10)                            */
-  double inequality; /* least of S_i^n over the test fields, -                */
-  int n_field;       /* fields tried                                          */
+  theorems_bound total, change;     /* (3.9), (3.10) */
+  double inequality;                /* least of S_i^n over the test fields, - */
+  int n_field;                      /* fields tried */
   int inequality_violated;
-  int has_start; /* 1: start is that of the initial state, (3.8)        */
-  double start;  /* least of (3.8) over the test fields, -              */
+  int has_start; /* 1: start is that of the initial state,
+                    (3.8) */
+  double start;  /* least of (3.8) over the test fields, - */
   theorems_path path;
-  int violated; /* any of them                                          */
+  int violated; /* any of them */
 } theorems_report;
 
 typedef struct theorems theorems;
 status theorems_new(theorems **out); /* ERR_MEMORY */
-void theorems_free(theorems *t); /* accepts NULL                              */
+void theorems_free(theorems *t);     /* accepts NULL */
 /* The initial state: (3.8), and where the first increment starts. */
 status theorems_start(theorems *t, const theorems_scene *s);
 /*
@@ -129,17 +134,17 @@ double theorems_passes(double x);
 /* A and its inverse: the norms. */
 typedef struct energy_norm {
   int m;
-  const double *A;        /* [m*m] borrowed                                   */
-  dense_inverse *inverse; /* owned; NULL: A is not positive semidefinite      */
-  inverse_energy dual;    /* its kernel: motions without energy               */
-  double *x, *y;          /* [m] owned, room                                  */
+  const double *A;        /* [m*m] borrowed */
+  dense_inverse *inverse; /* owned; NULL: A is not positive semidefinite */
+  inverse_energy dual;    /* its kernel: motions without energy */
+  double *x, *y;          /* [m] owned, room */
 } energy_norm;
 status energy_norm_new(int m, const double *A, energy_norm *out);
-void energy_norm_free(energy_norm *e); /* accepts all-zero                    */
-double energy_norm_of(energy_norm *e, const double *v); /* |v|, sqrt(J)       */
+void energy_norm_free(energy_norm *e);                  /* accepts all-zero */
+double energy_norm_of(energy_norm *e, const double *v); /* |v|, sqrt(J) */
 /* |f|_*; defined without motions that have no energy only. */
 double energy_norm_dual(energy_norm *e, const double *f);
-int energy_norm_regular(const energy_norm *e); /* 1: there are none           */
+int energy_norm_regular(const energy_norm *e); /* 1: there are none */
 
 /* y = H x with a symmetric positive semidefinite H[n*n]. */
 typedef struct symmetric_map {
@@ -164,12 +169,12 @@ status lanczos_largest(const symmetric_map *map, double *largest);
 typedef struct frozen_problem {
   contact_problem cp;
   sparse_rows B;
-  double *f, *gap, *g0, *r; /* [m], [n], [n], [m] owned                       */
+  double *f, *gap, *g0, *r; /* [m], [n], [n], [m] owned */
 } frozen_problem;
 status frozen_new(const contact_problem *cp, const double *r,
                   const unsigned char *keep_row, const unsigned char *given,
                   frozen_problem *out);
-void frozen_free(frozen_problem *p); /* accepts all-zero                      */
+void frozen_free(frozen_problem *p); /* accepts all-zero */
 
 /*
  * normal, tangent and factor of the friction that the rows of cp->B say; with
@@ -180,12 +185,13 @@ status friction_constants(const contact_problem *cp, energy_norm *e, int limits,
 
 /* The state an increment starts from; frozen where normal forces are given. */
 typedef struct state_before {
-  int known; /* 0: nothing; 1: the arrays; -1: no load, no displacement       */
-  double *u, *r, *f, *gap, *g; /* [m] of all unknowns, [n] owned           */
+  int known;                   /* 0: nothing; 1: the arrays; -1: no load, no
+                                  displacement */
+  double *u, *r, *f, *gap, *g; /* [m] of all unknowns, [n] owned */
 } state_before;
 status state_before_keep(const contact_problem *cp, const double *u,
                          const double *r, state_before *b);
-void state_before_free(state_before *b); /* accepts all-zero                  */
+void state_before_free(state_before *b); /* accepts all-zero */
 /* (3.9) and (3.10) for a factor q < 1; "all" has q and tangent. */
 status bound_total(const contact_problem *cp, const double *u,
                    const theorems_contact *all, energy_norm *e,

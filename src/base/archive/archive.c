@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SHORT = 256 }; /* bytes, up to here an array is copied                 */
+enum { SHORT = 256 }; /* bytes, up to here an array is copied */
 
 status archive_new(archive **out) {
   PASS_NEW(*out, 1);

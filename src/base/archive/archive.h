@@ -15,8 +15,8 @@
 
 typedef struct archive archive;
 
-status archive_new(archive **out); /* empty, to be filled                     */
-void archive_free(archive *a);     /* accepts NULL                            */
+status archive_new(archive **out); /* empty, to be filled */
+void archive_free(archive *a);     /* accepts NULL */
 /* 1: it comes from a file. */
 int archive_reads(const archive *a);
 

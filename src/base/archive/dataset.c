@@ -13,9 +13,9 @@
 #include <unistd.h>
 
 enum {
-  MOST_BYTES = 16, /* of one number                                          */
-  MOST_PACKED = 1100,  /* times its bytes in the file; deflate reaches 1032   */
-  LARGE_PART = 1 << 20 /* items                                              */
+  MOST_BYTES = 16,     /* of one number */
+  MOST_PACKED = 1100,  /* times its bytes in the file; deflate reaches 1032 */
+  LARGE_PART = 1 << 20 /* items */
 };
 
 /* By the descriptor: the name may have come to mean another file. */

@@ -9,10 +9,10 @@
 #include <hdf5.h>
 
 typedef struct hdf5_source {
-  const char *path; /* of the file, for messages                             */
+  const char *path; /* of the file, for messages */
   hid_t file;
-  int fd; /* by which it was opened                                           */
-  H5E_auto2_t print; /* how the library told its errors before               */
+  int fd;            /* by which it was opened */
+  H5E_auto2_t print; /* how the library told its errors before */
   void *print_data;
 } hdf5_source;
 

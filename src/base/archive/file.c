@@ -99,7 +99,7 @@ status archive_write(archive *a, const char *path, const char *before) {
   status st = OK;
   char *aside = text_path("", path, "tmp");
   if (aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  H5dont_atexit(); /* the exit handler crashes after a failed write          */
+  H5dont_atexit(); /* the exit handler crashes after a failed write */
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   TRY(make_file(a, aside));
   TRY(archive_seal(aside));

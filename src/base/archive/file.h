@@ -11,16 +11,16 @@ typedef struct archive_item {
   char name[ARCHIVE_NAME];
   archive_kind kind;
   size_t n;
-  const void *data; /* [n] of the kind                                       */
-  void *own;        /* it, if it is to be freed                              */
+  const void *data; /* [n] of the kind */
+  void *own;        /* it, if it is to be freed */
 } archive_item;
 
 struct archive {
-  char *path;               /* owned; of the file it comes from, or NULL      */
-  char group[ARCHIVE_NAME]; /* present one with its last slash, or ""         */
-  int no_cpu;               /* 1: see archive_leave_out_cpu                   */
+  char *path;               /* owned; of the file it comes from, or NULL */
+  char group[ARCHIVE_NAME]; /* present one with its last slash, or "" */
+  int no_cpu;               /* 1: see archive_leave_out_cpu */
   int n, capacity;
-  archive_item *item; /* [n] in the order they were named                   */
+  archive_item *item; /* [n] in the order they were named */
 };
 
 /* A new item without data; its place may move with the next one. */

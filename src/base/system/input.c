@@ -13,10 +13,10 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { DEEPEST = 64 }; /* folders below the one of the deck                  */
+enum { DEEPEST = 64 }; /* folders below the one of the deck */
 
-static int confined; /* descriptor of that folder + 1; 0: no limit           */
-static char *folder; /* its name with a slash, "" for "."; owned             */
+static int confined; /* descriptor of that folder + 1; 0: no limit */
+static char *folder; /* its name with a slash, "" for "."; owned */
 
 static const int FOLDER = O_PATH | O_DIRECTORY | O_CLOEXEC;
 

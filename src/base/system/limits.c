@@ -181,7 +181,7 @@ static void read_process(limits *l) {
 static int allowed_cores(void) {
   cpu_set_t set;
   if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
-  long n = sysconf(_SC_NPROCESSORS_ONLN); /* more than the set can hold       */
+  long n = sysconf(_SC_NPROCESSORS_ONLN); /* more than the set can hold */
   return n > 0 ? (int)n : 1;
 }
 

@@ -5,9 +5,9 @@
 #define PROTIS_SYSTEM_LIMITS_H
 
 typedef struct limits {
-  int cores;       /* of the affinity and the quota of the control groups     */
-  double memory;   /* bytes that can still be taken; INFINITY: unknown        */
-  const char *who; /* whose limit that is, for messages                       */
+  int cores;       /* of the affinity and the quota of the control groups */
+  double memory;   /* bytes that can still be taken; INFINITY: unknown */
+  const char *who; /* whose limit that is, for messages */
 } limits;
 
 /* root: "", or a folder that stands for the root of the file system (tests). */

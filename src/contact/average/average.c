@@ -22,16 +22,17 @@ typedef struct builder {
   mollifier m;
   layout at;
   box_tree faces, rim;
-  double *share; /* [n_node] l_i: integral of phi_i, m or m2           */
-  double *mass;  /* [n_node] W_i, -                                    */
-  sparse_rows raw, by_column; /* g_ij and its transpose, -                    */
-  unsigned char *alone; /* [n_node] no other node within the radius           */
-  double *part; /* [n_node] of its pairs that the mass of a node has room for */
-  int *found;   /* [faces or rim]                                     */
-  int *touched, n_touched; /* [n_node] columns of the current row             */
-  double *row;             /* [n_node] its values                             */
-  int neighbours;          /* other active nodes within the radius            */
-  int cut; /* 1: a face with a node left out is within it      */
+  double *share;              /* [n_node] l_i: integral of phi_i, m or m2 */
+  double *mass;               /* [n_node] W_i, - */
+  sparse_rows raw, by_column; /* g_ij and its transpose, - */
+  unsigned char *alone;       /* [n_node] no other node within the radius */
+  double *part;               /* [n_node] of its pairs that the mass of a node
+                                 has room for */
+  int *found;                 /* [faces or rim] */
+  int *touched, n_touched;    /* [n_node] columns of the current row */
+  double *row;                /* [n_node] its values */
+  int neighbours;             /* other active nodes within the radius */
+  int cut;                    /* 1: a face with a node left out is within it */
 } builder;
 
 static void builder_free(builder *b) {

@@ -28,12 +28,12 @@
 
 /* Part of a contact surface; the arrays are the caller's. */
 typedef struct average_patch {
-  int dim;          /* 2: lines in the plane; 3: triangles                    */
-  int axisymmetric; /* 1: the lines turn around the axis x[0] = 0             */
+  int dim;          /* 2: lines in the plane; 3: triangles */
+  int axisymmetric; /* 1: the lines turn around the axis x[0] = 0 */
   int n_node, n_face;
-  const double *x;             /* [dim*n_node] m                              */
-  const int *face;             /* [dim*n_face] nodes                          */
-  const unsigned char *active; /* [n_node] 0: no contact node, p = 0 there    */
+  const double *x;             /* [dim*n_node] m */
+  const int *face;             /* [dim*n_face] nodes */
+  const unsigned char *active; /* [n_node] 0: no contact node, p = 0 there */
 } average_patch;
 
 /* A plane x[axis] = least or largest of the patch behind which the surface
@@ -42,18 +42,20 @@ typedef enum { MIRROR_NONE, MIRROR_MIN, MIRROR_MAX } average_mirror;
 
 typedef struct average_rule {
   kernel kernel;
-  double radius;  /* rho, m                                                   */
-  int normalized; /* 1: G_ij / W_i: a constant pressure is kept at edges too  */
-  int geodesic;   /* 1: distance along the lines (plane only), else straight  */
-  average_mirror mirror[3]; /* by axis; not with geodesic, nor of the radius  */
+  double radius;            /* rho, m */
+  int normalized;           /* 1: G_ij / W_i: a constant pressure is kept at
+                               edges too */
+  int geodesic;             /* 1: distance along the lines (plane only), else
+                               straight */
+  average_mirror mirror[3]; /* by axis; not with geodesic, nor of the radius */
 } average_rule;
 
 /* What was found, for messages. */
 typedef struct average_facts {
-  double longest; /* edge of the patch, m                                    */
-  int n_active;   /* nodes that carry pressure                               */
-  int n_coarse;   /* of these, with an edge longer than radius/4             */
-  int n_local;    /* of these, without another node within the radius        */
+  double longest; /* edge of the patch, m */
+  int n_active;   /* nodes that carry pressure */
+  int n_coarse;   /* of these, with an edge longer than radius/4 */
+  int n_local;    /* of these, without another node within the radius */
 } average_facts;
 
 /*

@@ -9,16 +9,16 @@
 #include "base/status.h"
 
 typedef struct box_tree {
-  int dim, n;  /* 2 or 3; items                                              */
-  int *item;   /* [n] in the order of the leaves                             */
-  double *box; /* [2*dim*nodes] least, then largest corner                   */
-  double *of;  /* [2*dim*n] boxes of the items                               */
+  int dim, n;  /* 2 or 3; items */
+  int *item;   /* [n] in the order of the leaves */
+  double *box; /* [2*dim*nodes] least, then largest corner */
+  double *of;  /* [2*dim*n] boxes of the items */
 } box_tree;
 
 /* n items of "corners" points each, one after the other: x[dim*corners*n]. */
 status box_tree_new(int dim, int n, int corners, const double *x,
                     box_tree *out);
-void box_tree_free(box_tree *t); /* accepts all-zero                         */
+void box_tree_free(box_tree *t); /* accepts all-zero */
 /* The items whose boxes are nearer than r to x: found[n], their number. */
 int box_tree_near(const box_tree *t, const double *x, double r, int *found);
 

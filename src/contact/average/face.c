@@ -10,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-static const double PIECE = 0.25; /* of the radius, longest for a fine rule   */
-static const double SHORT = 0.125; /* up to this the coarse rule is enough    */
+static const double PIECE = 0.25;  /* of the radius, longest for a fine rule */
+static const double SHORT = 0.125; /* up to this the coarse rule is enough */
 
 /* Which rule serves an interval, cut in how many pieces. */
 typedef struct rule {
@@ -163,10 +163,10 @@ void face_ring(const mollifier *m, double reach, const double *corner,
 /* A triangle in its plane, the foot of the point as origin. */
 typedef struct flat {
   const mollifier *m;
-  double p[3][2]; /* corners, m                                            */
-  double off2;    /* squared distance of the point from the plane, m2      */
-  double rim2;    /* squared radius of the disc in the plane, m2           */
-  double sum[3];  /* integrals of w, w y0, w y1: -, m, m                   */
+  double p[3][2]; /* corners, m */
+  double off2;    /* squared distance of the point from the plane, m2 */
+  double rim2;    /* squared radius of the disc in the plane, m2 */
+  double sum[3];  /* integrals of w, w y0, w y1: -, m, m */
 } flat;
 
 /* Radial means: *flux of w v dv, *moment of w v^2 dv over v in [0, 1], the

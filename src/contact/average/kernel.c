@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-enum { PANELS = 64 }; /* of [0, 1] for the normalisation: exact to rounding   */
+enum { PANELS = 64 }; /* of [0, 1] for the normalisation: exact to rounding */
 
 static double bump(double s2) { return exp(1.0 / (s2 - 1.0)); }
 

@@ -25,9 +25,9 @@ typedef enum { KERNEL_LIST(KERNEL_ENUM) KERNEL_COUNT } kernel;
 #define KERNEL_HELP KERNEL_LIST(KERNEL_TEXT)
 
 typedef struct mollifier {
-  double (*profile)(double s2); /* k as a function of (r/rho)^2 < 1          */
-  double radius;                /* rho, m                                    */
-  double scale;                 /* c, 1/m (line) or 1/m2 (surface)           */
+  double (*profile)(double s2); /* k as a function of (r/rho)^2 < 1 */
+  double radius;                /* rho, m */
+  double scale;                 /* c, 1/m (line) or 1/m2 (surface) */
 } mollifier;
 
 /* k of radius rho > 0, normalised over the line (dim 1) or plane (dim 2). */

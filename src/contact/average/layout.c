@@ -11,11 +11,11 @@
 
 /* A node this near to the axis, over the largest radius, is on it. */
 static const double ON_AXIS = 1e-9;
-static const double ON_MIRROR = 1e-9; /* over the radius of the average       */
+static const double ON_MIRROR = 1e-9; /* over the radius of the average */
 
 /* Faces around the nodes of a patch. */
 typedef struct fans {
-  int *start, *face; /* [n_node+1], [dim*n_face]                              */
+  int *start, *face; /* [n_node+1], [dim*n_face] */
 } fans;
 
 static void fans_free(fans *f) { RELEASE(f->start, f->face); }
@@ -131,8 +131,8 @@ typedef struct walk {
   const average_patch *p;
   const fans *f;
   layout *l;
-  unsigned char *done; /* [n_face]                                           */
-  double row;          /* second coordinate of this line, m                  */
+  unsigned char *done; /* [n_face] */
+  double row;          /* second coordinate of this line, m */
 } walk;
 
 static void put(double *to, double along, double row) {

@@ -9,15 +9,15 @@
 
 typedef struct layout {
   int dim, n_face, n_rim;
-  double *x;      /* [dim*n_node] place from where a node looks, m            */
-  double *corner; /* [dim*dim*n_face] corners of the faces, m                 */
+  double *x;      /* [dim*n_node] place from where a node looks, m */
+  double *corner; /* [dim*dim*n_face] corners of the faces, m */
   double *loop;   /* [n_node] length of the closed line of a node laid out
-                     straight, 0: none; or NULL                               */
+                     straight, 0: none; or NULL */
   double *rim;    /* [dim*(dim-1)*n_rim] end points (edges) of the patch that
-                     lie on no mirror, m                                      */
+                     lie on no mirror, m */
   int has_mirror[3];
-  double mirror[3]; /* place of the mirrors by axis, m                        */
-  double near;      /* nearer to a mirror is on it, m                         */
+  double mirror[3]; /* place of the mirrors by axis, m */
+  double near;      /* nearer to a mirror is on it, m */
 } layout;
 
 status layout_new(const average_patch *patch, const average_rule *rule,

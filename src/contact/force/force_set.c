@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { SHARPENINGS = 4 }; /* of the bound of the spectrum                     */
-static const double SPARSE = 0.1; /* -, share of entries that are not zero    */
+enum { SHARPENINGS = 4 };         /* of the bound of the spectrum */
+static const double SPARSE = 0.1; /* -, share of entries that are not zero */
 
 void force_set_free(force_set *s) {
   if (s == NULL) return;

@@ -20,18 +20,18 @@ typedef enum { NO_FORCE, PUSH, IN_DISC } force_part;
 void force_parts(const contact_problem *cp, unsigned char *part,
                  double *origin);
 typedef struct force_set {
-  const contact_problem *cp; /* of the last fit                              */
-  double *D;           /* [m] 1/W_ii, the mean in a tangent plane, N/m        */
-  double step;         /* -, 1/bound of the spectrum of D W                   */
-  double *origin;      /* [m] gap, stick position, second obstacle, m         */
-  unsigned char *part; /* [m] force_part                                     */
-  unsigned char *rim;  /* [n] 1: the last force projected has |r_t| = g       */
-  int symmetric;       /* W is, but for rounding                             */
-  sparse_rows rows;    /* of W if most of it is zero, else all zero           */
-  double *load, *defect; /* [m] work                                         */
+  const contact_problem *cp; /* of the last fit */
+  double *D;                 /* [m] 1/W_ii, the mean in a tangent plane, N/m */
+  double step;               /* -, 1/bound of the spectrum of D W */
+  double *origin;            /* [m] gap, stick position, second obstacle, m */
+  unsigned char *part;       /* [m] force_part */
+  unsigned char *rim;        /* [n] 1: the last force projected has |r_t| = g */
+  int symmetric;             /* W is, but for rounding */
+  sparse_rows rows;          /* of W if most of it is zero, else all zero */
+  double *load, *defect;     /* [m] work */
 } force_set;
 status force_set_new(const contact_problem *cp, force_set **out);
-void force_set_free(force_set *s); /* accepts NULL                           */
+void force_set_free(force_set *s); /* accepts NULL */
 /* Parts and origins of a problem with the same W. */
 void force_set_fit(force_set *s, const contact_problem *cp);
 /* Into the set; a force deeper than g by less than the share "margin" counts

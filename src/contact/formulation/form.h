@@ -22,7 +22,7 @@ void velocity_form_set(velocity_form *v, const contact_problem *cp,
 /* u[m] = u_old + du; cp as given to velocity_form_set. */
 void velocity_form_apply(const velocity_form *v, const contact_problem *cp,
                          double *u);
-void velocity_form_free(velocity_form *v); /* accepts NULL                    */
+void velocity_form_free(velocity_form *v); /* accepts NULL */
 
 typedef struct given_form given_form;
 /*
@@ -48,6 +48,6 @@ status given_form_set(given_form *g, const contact_problem *cp,
  * from g) that are closed at these nodes, so that (u, r) solves cp itself.
  */
 void given_form_apply(given_form *g, contact_problem *cp, double *u, double *r);
-void given_form_free(given_form *g); /* accepts NULL                          */
+void given_form_free(given_form *g); /* accepts NULL */
 
 #endif

@@ -18,23 +18,23 @@
 #include <lapacke.h>
 #include <string.h>
 
-static const double SINGULAR = 1e-12; /* -, pivot over diagonal: not held     */
+static const double SINGULAR = 1e-12; /* -, pivot over diagonal: not held */
 
 struct given_form {
   int n, m, dim;
-  int *node;       /* [n]                                                    */
-  double *A;       /* [m*m] A', diagonal in the rows of g                     */
-  double *L;       /* [n*n] Cholesky factor of A_gg, lower                    */
-  double *Y;       /* [n*m] inv(L) A_gc, zero in the columns of g             */
-  double *f, *gap; /* [m], [number of nodes]                                  */
-  double *met;     /* [number of nodes] gaps closed at g by the answer, m     */
-  double *y;       /* [n] inv(L) (f_g - F)                                    */
-  double *force;   /* [n] F, N                                                */
-  double *g0;      /* [number of nodes] N                                     */
-  double *mu;      /* entries of B without those of g; room for n_entry       */
+  int *node;       /* [n] */
+  double *A;       /* [m*m] A', diagonal in the rows of g */
+  double *L;       /* [n*n] Cholesky factor of A_gg, lower */
+  double *Y;       /* [n*m] inv(L) A_gc, zero in the columns of g */
+  double *f, *gap; /* [m], [number of nodes] */
+  double *met;     /* [number of nodes] gaps closed at g by the answer, m */
+  double *y;       /* [n] inv(L) (f_g - F) */
+  double *force;   /* [n] F, N */
+  double *g0;      /* [number of nodes] N */
+  double *mu;      /* entries of B without those of g; room for n_entry */
   int n_entry;
-  unsigned char *is; /* [number of nodes] 1: of g                            */
-  sparse_rows B;     /* borrows start and col of the problem's                */
+  unsigned char *is; /* [number of nodes] 1: of g */
+  sparse_rows B;     /* borrows start and col of the problem's */
 };
 
 void given_form_free(given_form *g) {

@@ -15,11 +15,11 @@
 #include "base/memory.h"
 
 struct velocity_form {
-  double *u_old;          /* [m] the last equilibrium, m                      */
-  double *R;              /* [m] residual, N                                  */
+  double *u_old;          /* [m] the last equilibrium, m */
+  double *R;              /* [m] residual, N */
   double *gap, *side, *d; /* [n], [n*(dim-1)] twice: bounds and step of the
-                             obstacle (of a held unknown: of its support), m  */
-  double *du;             /* [m] the unknown, m                               */
+                             obstacle (of a held unknown: of its support), m */
+  double *du;             /* [m] the unknown, m */
 };
 
 status velocity_form_new(const contact_problem *cp, velocity_form **out) {

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static const double JOINED = 0x1p-30; /* -, entry over those of the diagonal  */
+static const double JOINED = 0x1p-30; /* -, entry over those of the diagonal */
 
 void contact_bodies_free(contact_bodies *b) {
   if (b == NULL) return;

@@ -12,29 +12,29 @@
 #include <float.h>
 #include <math.h>
 
-static const double ROUNDING = 0x1p-47; /* -, of the terms of a row      */
-static const double LEAST = 0x1p-37;    /* -, of them: scale             */
+static const double ROUNDING = 0x1p-47; /* -, of the terms of a row */
+static const double LEAST = 0x1p-37;    /* -, of them: scale */
 static const double FLOOR = 0x1p-14;    /* -, of loads to come, of a fall */
 static const double LEVER = 0x1p10;     /* -, motion over force/stiffness */
-static const double STATUS_MARGIN = 0x1p-30; /* -, of the scale               */
+static const double STATUS_MARGIN = 0x1p-30; /* -, of the scale */
 
 /* An iterate, and what its errors are compared with. */
 typedef struct measure {
   const contact_problem *cp;
   const double *u, *r;
-  double scale, largest; /* contact_scale; largest diagonal                   */
-  double forces;         /* largest of a body, N                              */
-  body_size one, *size;  /* of the only body; of all                          */
+  double scale, largest; /* contact_scale; largest diagonal */
+  double forces;         /* largest of a body, N */
+  body_size one, *size;  /* of the only body; of all */
 } measure;
 
 /* A node of it. */
 typedef struct measured {
-  node_step c;          /* N/m                                                */
-  double k;             /* the larger of c, N/m                               */
-  double rounding;      /* what rounding can have put into a row, N           */
-  double drift;         /* the same, by motion that no data lead to, N        */
-  double normal, slide; /* scale along the normal, in the tangent plane, N    */
-  double q[3];          /* the nearest forces of an obstacle, N               */
+  node_step c;          /* N/m */
+  double k;             /* the larger of c, N/m */
+  double rounding;      /* what rounding can have put into a row, N */
+  double drift;         /* the same, by motion that no data lead to, N */
+  double normal, slide; /* scale along the normal, in the tangent plane, N */
+  double q[3];          /* the nearest forces of an obstacle, N */
 } measured;
 
 static body_size *body_of(measure *x, int node_id) {

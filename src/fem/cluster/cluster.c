@@ -15,12 +15,12 @@
 typedef struct growth {
   const mesh *m;
   const int *section_id;
-  int section, n;         /* n: clusters so far, of all sections            */
-  size_t *start;          /* [n_node+1] elements round the nodes            */
-  int *elem;              /* [start[n_node]]                                */
-  int *of, *size;         /* [n_elem] cluster; elements of a cluster        */
-  unsigned char *outside; /* [n_node] 1: on the boundary of the section     */
-  unsigned char *taken;   /* [n_node] 1: root, or neighbour of one          */
+  int section, n;         /* n: clusters so far, of all sections */
+  size_t *start;          /* [n_node+1] elements round the nodes */
+  int *elem;              /* [start[n_node]] */
+  int *of, *size;         /* [n_elem] cluster; elements of a cluster */
+  unsigned char *outside; /* [n_node] 1: on the boundary of the section */
+  unsigned char *taken;   /* [n_node] 1: root, or neighbour of one */
 } growth;
 
 static const int *corners(const growth *g, int e) {
@@ -230,7 +230,7 @@ void cluster_free(cluster_set *c) {
 }
 
 double cluster_share(int ns, const double *E, int flows) {
-  static const double kept = 14.0 / 3; /* bulk over shear modulus, nu = 0.4  */
+  static const double kept = 14.0 / 3; /* bulk over shear modulus, nu = 0.4 */
   double bulk = 0, shear = E[(ns + 1) * 3];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) bulk += E[ns * j + i] / 9;

@@ -24,12 +24,12 @@
 #include "mesh/mesh.h"
 
 typedef struct cluster_set {
-  int n;             /* clusters                                           */
-  int *of;           /* [n_elem] cluster of an element, -1: none           */
-  int *start, *elem; /* [n+1], elements of a cluster ascending             */
-  int *first, *node; /* [n+1], its nodes ascending                         */
-  double *share;     /* [n] -                                              */
-  double *weight;    /* [n_elem] part of its cluster's volume, -           */
+  int n;             /* clusters */
+  int *of;           /* [n_elem] cluster of an element, -1: none */
+  int *start, *elem; /* [n+1], elements of a cluster ascending */
+  int *first, *node; /* [n+1], its nodes ascending */
+  double *share;     /* [n] - */
+  double *weight;    /* [n_elem] part of its cluster's volume, - */
   double *mean[2];   /* [n] <t> of strains and of stresses, the last added */
 } cluster_set;
 
@@ -37,13 +37,13 @@ typedef struct cluster_input {
   const mesh *mesh;
   int axisymmetric;
   int n_section;
-  const int *section_id; /* [n_elem]                                        */
-  const double *share;   /* [n_section] 0: the section has no clusters      */
+  const int *section_id; /* [n_elem] */
+  const double *share;   /* [n_section] 0: the section has no clusters */
 } cluster_input;
 
 /* *out is new, NULL if no section has any. ERR_MEMORY. */
 status cluster_new(const cluster_input *in, cluster_set **out);
-void cluster_free(cluster_set *c); /* accepts NULL                          */
+void cluster_free(cluster_set *c); /* accepts NULL */
 
 /* The share for the elasticity E[ns*ns], Pa: what exceeds the ratio of bulk to
  * shear modulus that nu = 0.4 has; all of it if the section flows. */

@@ -20,10 +20,10 @@ typedef struct chain_param {
 enum { PROPORTIONAL, DEVIATORIC };
 
 typedef struct unit {
-  double modulus, viscosity; /* Pa, Pa s                                      */
+  double modulus, viscosity; /* Pa, Pa s */
 } unit;
 typedef struct burgers_value {
-  double dashpot; /* Pa s                                                     */
+  double dashpot; /* Pa s */
   unit kelvin;
 } burgers_value;
 
@@ -58,10 +58,10 @@ static const option burgers_fields[] = {
 /* The units of a point, whatever the law. */
 typedef struct chain {
   int n, ns;
-  const unit *k;   /* [n]                                                     */
-  double fluidity; /* of the single dashpot, 1/(Pa s)                         */
-  double Q[36];    /* [ns*ns] times E0, -                                     */
-  const double *a; /* [ns*n] strains of the units                             */
+  const unit *k;   /* [n] */
+  double fluidity; /* of the single dashpot, 1/(Pa s) */
+  double Q[36];    /* [ns*ns] times E0, - */
+  const double *a; /* [ns*n] strains of the units */
 } chain;
 
 static chain chain_of(const law_point *p) {

@@ -49,12 +49,12 @@ typedef struct lines {
   const card *c;
   message_log *log;
   law_card *law;
-  int n_line;  /* of a set: equal for all                                   */
-  int n_value; /* read so far                                               */
+  int n_line;  /* of a set: equal for all */
+  int n_value; /* read so far */
   int capacity, set_capacity;
-  int has_temperature; /* the first line ends with one; all do, then          */
-  int in_set;          /* lines of the current set                            */
-  int wrong;           /* an error is in the log                              */
+  int has_temperature; /* the first line ends with one; all do, then */
+  int in_set;          /* lines of the current set */
+  int wrong;           /* an error is in the log */
 } lines;
 
 /* One coefficient: a number in range, or an expression of t. */
@@ -170,7 +170,7 @@ static const option *place_line(lines *r, const record *line, double *T,
   *opens = first || !has || *T != law->temperature[law->n_set - 1];
   if (first) r->has_temperature = has;
   if (!r->has_temperature) *opens = first;
-  if (!first && *opens) { /* the next temperature begins                      */
+  if (!first && *opens) { /* the next temperature begins */
     table = table_of(law->ops, 0);
     has = line_temperature(r, line, table, T);
   }
@@ -178,7 +178,7 @@ static const option *place_line(lines *r, const record *line, double *T,
     message_add(r->log, P2008, &line->at,
                 "*%s, LAW=%s has one line, more only with temperatures",
                 r->c->name, law->ops->name);
-  /* Too few or too many: read_line tells.                                    */
+  /* Too few or too many: read_line tells. */
   if (table == NULL || has == r->has_temperature ||
       line->n_field < needed(table) || line->n_field > law_n_field(table) + 1)
     return table;
@@ -311,7 +311,7 @@ double law_speed(const law_card *law, double temperature) {
   const law_shift *s = &law->shift;
   const double over = temperature - s->reference;
   if (s->kind == SHIFT_WLF) {
-    if (!(s->c2 + over > 0)) return 0; /* below the glass: no flow            */
+    if (!(s->c2 + over > 0)) return 0; /* below the glass: no flow */
     return pow(10, s->c1 * over / (s->c2 + over));
   }
   if (s->kind == SHIFT_ARRHENIUS)

@@ -18,15 +18,20 @@
 
 /* Elasticity of a section, made once by law_elastic_set. */
 typedef struct law_elastic {
-  int ns; /* 4 in 2-D, 6 in 3-D                              */
+  int ns;                      /* 4 in 2-D, 6 in 3-D */
   int isotropic, plane_stress; /* *ELASTIC, TYPE=ISO; plane stress: s_zz = 0 */
-  double E[36]; /* [ns*ns] stress of e - e^i, Pa; in plane stress singular    */
-  double S[36]; /* [ns*ns] all components of e^e of a stress, 1/Pa            */
-  double C[36]; /* [ns*ns] inv(S), Pa; = E but for plane stress               */
-  double young, shear; /* 1/S_xx and C_xy,xy: the moduli if isotropic, Pa     */
+  double E[36];                /* [ns*ns] stress of e - e^i, Pa; in plane stress
+                                  singular */
+  double S[36];                /* [ns*ns] all components of e^e of a stress,
+                                  1/Pa */
+  double C[36];                /* [ns*ns] inv(S), Pa; = E but for plane
+                                  stress */
+  double young, shear;         /* 1/S_xx and C_xy,xy: the moduli if isotropic,
+                                  Pa */
   kinematics kin;
-  double temperature;         /* of what is above                             */
-  const elastic_table *table; /* borrowed; NULL: the same at all temperatures */
+  double temperature;         /* of what is above */
+  const elastic_table *table; /* borrowed; NULL: the same at all
+                                 temperatures */
 } law_elastic;
 /* C6: elastic_matrix(). No table. */
 void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
@@ -44,54 +49,56 @@ struct law_ops;
 typedef enum { SHIFT_NONE, SHIFT_WLF, SHIFT_ARRHENIUS } shift_kind;
 #define SHIFT_WORDS "NONE|WLF|ARRHENIUS"
 typedef struct law_shift {
-  int kind;         /* shift_kind                                             */
-  double reference; /* temperature at which a = 1                             */
-  double zero;      /* absolute zero on the scale of the deck                 */
-  double c1, c2;    /* WLF: log10 a = -c1 (T - ref)/(c2 + T - ref); -, temp.  */
-  double activation; /* ARRHENIUS: log a = Q/R (1/(T-zero) - 1/(ref-zero)),
-                        Q/R as a temperature                                  */
+  int kind;          /* shift_kind */
+  double reference;  /* temperature at which a = 1 */
+  double zero;       /* absolute zero on the scale of the deck */
+  double c1, c2;     /* WLF: log10 a = -c1 (T - ref)/(c2 + T - ref); -, temp. */
+  double activation; /* ARRHENIUS: log a = Q/R (1/(T-zero) - 1/(ref-zero)), Q/R
+                        as a temperature */
 } law_shift;
 
 /* A law with its data, as a *MATERIAL has it. */
 typedef struct law_card {
   const struct law_ops *ops;
-  const void *param; /* [ops->param_size] its words, owned                    */
-  int n_term;        /* lines of ops->terms, as the terms of a Prony series   */
-  int n_set;         /* temperatures of the table, 1 if it has none           */
-  double *temperature; /* [n_set] ascending, owned                            */
-  quantity *value; /* [n_set * law_n_value()] fields, then terms, owned       */
-  const expression *formula; /* rate of the law USER, borrowed; else NULL     */
+  const void *param;         /* [ops->param_size] its words, owned */
+  int n_term;                /* lines of ops->terms, as the terms of a Prony
+                                series */
+  int n_set;                 /* temperatures of the table, 1 if it has none */
+  double *temperature;       /* [n_set] ascending, owned */
+  quantity *value;           /* [n_set * law_n_value()] fields, then terms,
+                                owned */
+  const expression *formula; /* rate of the law USER, borrowed; else NULL */
   law_shift shift;
-  place at; /* of the card                                                    */
+  place at; /* of the card */
 } law_card;
 
 /* Where a law is evaluated. */
 typedef struct law_point {
   const law_card *law;
   const law_elastic *elastic;
-  const double *value; /* [law_n_value()] from law_values() at t and T       */
-  double speed;        /* from law_speed(): 1/a, -                           */
-  double t, dt;        /* s; dt: step being made, 0 if there is none         */
+  const double *value; /* [law_n_value()] from law_values() at t and T */
+  double speed;        /* from law_speed(): 1/a, - */
+  double t, dt;        /* s; dt: step being made, 0 if there is none */
   double temperature;
-  const double *sigma; /* [ns] Pa                                            */
-  const double *ei;    /* [ns] -                                             */
-  const double *alpha; /* [law_n_alpha()] each with the unit of its law      */
+  const double *sigma; /* [ns] Pa */
+  const double *ei;    /* [ns] - */
+  const double *alpha; /* [law_n_alpha()] each with the unit of its law */
 } law_point;
 
 /* Derivatives of the rates, column major, 1/s over the unit of the variable. */
 typedef struct law_jacobian {
-  double *ei_sigma;    /* [ns * ns]                                           */
-  double *ei_ei;       /* [ns * ns] zero unless the row says "uses_ei"        */
-  double *ei_alpha;    /* [ns * n_alpha]                                      */
-  double *alpha_sigma; /* [n_alpha * ns]                                      */
-  double *alpha_alpha; /* [n_alpha * n_alpha]                                 */
+  double *ei_sigma;    /* [ns * ns] */
+  double *ei_ei;       /* [ns * ns] zero unless the row says "uses_ei" */
+  double *ei_alpha;    /* [ns * n_alpha] */
+  double *alpha_sigma; /* [n_alpha * ns] */
+  double *alpha_alpha; /* [n_alpha * n_alpha] */
 } law_jacobian;
 
 /* Springs and dashpots in series: law_ops.series. */
 enum { LAW_WHOLE, LAW_DEVIATOR, LAW_MEAN, LAW_NO_PART };
 typedef struct law_unit {
-  double flow;   /* 1/s: modulus of *ELASTIC over the viscosity; 0: rests    */
-  double spring; /* the modulus beside the dashpot over that of *ELASTIC     */
+  double flow;   /* 1/s: modulus of *ELASTIC over the viscosity; 0: rests */
+  double spring; /* the modulus beside the dashpot over that of *ELASTIC */
 } law_unit;
 
 /*
@@ -99,23 +106,25 @@ typedef struct law_unit {
  * ignore; they write into arrays of zeros and allocate nothing.
  */
 typedef struct law_ops {
-  const char *name, *reference, *help; /* as in LAW=, source, one line        */
+  /* as in LAW=, source, one line */
+  const char *name, *reference, *help;
   size_t param_size;
-  const option *options; /* words on the card, or NULL                        */
-  const option *fields;  /* first data line, all OPT_REAL of a struct of
-                            doubles in the order of the line; or NULL         */
-  const option *terms;   /* each further line, the same; or NULL              */
-  int min_term;          /* lines of terms needed                             */
-  int linear;  /* rates linear in (sigma, e^i, alpha): one Jacobian for all
-                  points with the same values                                 */
-  int uses_ei; /* e^i itself enters its rate                                  */
+  const option *options; /* words on the card, or NULL */
+  const option *fields;  /* first data line, all OPT_REAL of a struct of doubles
+                            in the order of the line; or NULL */
+  const option *terms;   /* each further line, the same; or NULL */
+  int min_term;          /* lines of terms needed */
+  int linear;            /* rates linear in (sigma, e^i, alpha): one Jacobian
+                            for all points with the same values */
+  int uses_ei;           /* e^i itself enters its rate */
   /* 1: the temperature itself enters the rates of this card; NULL: none do.
    * T_ZERO= of the card is then known to the law. */
   int (*is_warm)(const law_card *law);
-  int needs_formula; /* one data line with a formula of law_formula_names     */
+  int needs_formula;   /* one data line with a formula of law_formula_names */
   const char *example; /* data lines for moduli of 1e5, stresses of 100, times
-                          of 1: shown in the help, used by the tests          */
-  int (*n_alpha)(const law_card *law, int ns); /* NULL: none                  */
+                          of 1: shown in the help, used by the tests */
+  /* NULL: none */
+  int (*n_alpha)(const law_card *law, int ns);
   void (*rate)(const law_point *p, double *ei_rate, double *alpha_rate);
   void (*jacobian)(const law_point *p, law_jacobian *j);
   /* Largest magnitude of the eigenvalues of d(e^i, alpha)/dt under held strain
@@ -157,8 +166,8 @@ typedef struct law_ops {
 extern const char *const law_formula_names[4];
 #define LAW_EXTERN(name) extern const law_ops name##_law;
 LAW_LIST(LAW_EXTERN)
-extern const law_ops *const law_list[]; /* NULL at the end                    */
-const law_ops *law_find(const char *name); /* case ignored; or NULL           */
+extern const law_ops *const law_list[];    /* NULL at the end */
+const law_ops *law_find(const char *name); /* case ignored; or NULL */
 
 /* Values: coefficient.c. */
 /* The data lines of a card into a law whose ops are set: per temperature the
@@ -171,7 +180,7 @@ status law_card_read(deck *d, const card *c, message_log *log, law_card *law);
 status law_card_check(const law_card *law, elastic_type type, message_log *log);
 /* What a data line holds: "A, n [, m] [, temperature]"; returns text. */
 const char *law_line_text(const option *table, char *text, size_t size);
-int law_n_field(const option *table); /* rows of fields or terms; NULL: 0     */
+int law_n_field(const option *table); /* rows of fields or terms; NULL: 0 */
 int law_n_value(const law_card *law);
 /* Coefficients at a time and temperature, value[law_n_value()]: ERR_DECK with
  * the field, the time and the temperature if one is out of its range. */
@@ -182,7 +191,7 @@ double law_speed(const law_card *law, double temperature);
 enum { LAW_VARIES_TIME = 1, LAW_VARIES_TEMPERATURE = 2 };
 /* What the values and the speed depend on: bits; 0: the same for ever. */
 unsigned law_varies(const law_card *law);
-void law_card_free(law_card *law); /* accepts an all-zero card, NULL          */
+void law_card_free(law_card *law); /* accepts an all-zero card, NULL */
 
 /* Evaluation with the speed; results are overwritten. */
 int law_n_alpha(const law_card *law, int ns);
@@ -190,7 +199,7 @@ void law_rate(const law_point *p, double *ei_rate, double *alpha_rate);
 void law_jacobian_at(const law_point *p, law_jacobian *j);
 int law_flows(const law_point *p);
 double law_dissipation(const law_point *p);
-double law_stored(const law_point *p); /* 0 if the law keeps nothing          */
+double law_stored(const law_point *p); /* 0 if the law keeps nothing */
 /* The largest magnitude of an eigenvalue of the rates of (e^i, alpha) with
  * sigma = E (e - e^i) under held e, 1/s: an explicit Euler or Heun step decays
  * if dt < 2/rate (exact for MAXWELL, whatever the mesh). ERR_MEMORY,
@@ -200,8 +209,8 @@ status law_fastest_rate(const law_point *p, double *rate);
 /* For the laws: tensor.c. Voigt vectors of ns components. */
 double tensor_trace(const double *v);
 void tensor_deviator(int ns, const double *v, double *d);
-double tensor_mises(int ns, const double *s); /* of a deviator, >= 0     */
-double tensor_dot(int ns, const double *a, const double *b); /* a' b          */
+double tensor_mises(int ns, const double *s); /* of a deviator, >= 0 */
+double tensor_dot(int ns, const double *a, const double *b); /* a' b */
 void tensor_product(int ns, const double *A, const double *x, double *y);
 /* Strain 3/2 s/q of a deviator s with q = tensor_mises > 0: the direction of
  * flow, its shears doubled. */

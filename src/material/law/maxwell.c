@@ -18,7 +18,7 @@ typedef struct maxwell {
 enum { PROPORTIONAL, DEVIATORIC };
 
 typedef struct maxwell_value {
-  double tau, tau_bulk; /* s; tau_bulk 0: the mean stress does not relax      */
+  double tau, tau_bulk; /* s; tau_bulk 0: the mean stress does not relax */
 } maxwell_value;
 
 /* clang-format off */

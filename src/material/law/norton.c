@@ -54,11 +54,11 @@ static double power_law(const norton_value *v, double q, double k) {
 }
 
 typedef struct creep {
-  double rate;   /* dp/dt, 1/s                                                */
-  double n;      /* d(rate)/dq = n rate/q                                     */
-  double w_rate; /* of STRAIN, d(w_rate)/dq = n_w w_rate/q                    */
+  double rate;   /* dp/dt, 1/s */
+  double n;      /* d(rate)/dq = n rate/q */
+  double w_rate; /* of STRAIN, d(w_rate)/dq = n_w w_rate/q */
   double n_w;
-  int follows_w; /* 0: its mean over the step                              */
+  int follows_w; /* 0: its mean over the step */
 } creep;
 
 static creep strain_hardening(const law_point *p, double q) {

@@ -90,7 +90,7 @@ static void jacobian(const law_point *p, law_jacobian *j) {
       for (int i = 0; i < ns; ++i)
         j->alpha_sigma[ns * k + i + na * m] =
             p->elastic->S[i + ns * m] / term[k].tau;
-      for (int l = 0; l < n; ++l) { /* e depends on v_l by its share          */
+      for (int l = 0; l < n; ++l) { /* e depends on v_l by its share */
         double share[6] = {0};
         add_share(ns, &term[l], unit, share);
         for (int i = 0; i < ns; ++i)

@@ -36,7 +36,7 @@ static double slope(const law_point *point, double q, double p, int which,
   return (8 * (f[2] - f[1]) - (f[3] - f[0])) / (12 * h);
 }
 
-static const double step = 1e-3; /* of q, and of p or the elastic strain      */
+static const double step = 1e-3; /* of q, and of p or the elastic strain */
 
 static double slope_q(const law_point *p, double q) {
   return slope(p, q, p->alpha[0], 0, step * q);

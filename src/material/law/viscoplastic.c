@@ -99,13 +99,13 @@ static const back_stress *back_of(const law_point *p) {
 typedef struct flow {
   yield y;
   int ns, n_back;
-  const back_stress *back; /* [n_back]                                        */
-  const double *a;         /* [ns*n_back]                                     */
+  const back_stress *back; /* [n_back] */
+  const double *a;         /* [ns*n_back] */
   double p;
-  double q, rate;   /* J(sigma - X), Pa; dp/dt, 1/s                           */
-  double slope;     /* d(rate)/dq, 1/(Pa s)                                   */
-  double hardening; /* dR/dp, Pa                                              */
-  double n[6];      /* [ns] 3/2 s/q, shears doubled                           */
+  double q, rate;   /* J(sigma - X), Pa; dp/dt, 1/s */
+  double slope;     /* d(rate)/dq, 1/(Pa s) */
+  double hardening; /* dR/dp, Pa */
+  double n[6];      /* [ns] 3/2 s/q, shears doubled */
 } flow;
 
 /* Stress of a strain like a_k over its factor: 2/3 C, shears halved. */
@@ -196,7 +196,7 @@ static void jacobian(const law_point *p, law_jacobian *j) {
   add_back_columns(&f, j->alpha_sigma, na, na, j->alpha_alpha, na);
 }
 
-enum { BACK_MAX = 15 }; /* back stresses of the closed form               */
+enum { BACK_MAX = 15 }; /* back stresses of the closed form */
 
 /* The largest magnitude of an eigenvalue of M[n*n], which is destroyed. */
 static double radius(double *M, int n) {

@@ -146,7 +146,7 @@ status flow_fastest(const flow *x, const flow_state *s, double dt,
   for (int k = 0, last = -1; k < x->n; ++k) {
     law_point p;
     double own;
-    if (constant && x->kind_id[k] == last) continue; /* the same rate         */
+    if (constant && x->kind_id[k] == last) continue; /* the same rate */
     last = x->kind_id[k];
     PASS(flow_point(x, k, s, dt, value, &p));
     PASS(law_fastest_rate(&p, &own));
@@ -190,7 +190,7 @@ status flow_add_elastic(const flow *x, const flow_state *s, int from, int to,
     double e[6] = {0};
     for (int i = 0; i < x->ns; ++i)
       e[i] = s->e[at + (size_t)i] - s->ei[at + (size_t)i];
-    if (kind->elastic.plane_stress) { /* zz: the stress alone tells           */
+    if (kind->elastic.plane_stress) { /* zz: the stress alone tells */
       PASS(flow_heat(kind, s->temperature[k]));
       voigt_product(x->ns, kind->elastic.S, s->sigma + at, e);
     }

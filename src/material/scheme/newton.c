@@ -21,8 +21,8 @@ enum { MOST_TANGENT = 40, MOST_INITIAL = 2000 };
 /* Room for one point. */
 typedef struct room {
   point_step l;
-  linear_map map; /* of a linear law, made when first needed                */
-  double D[36];   /* [ns*ns] that it leaves, Pa                              */
+  linear_map map; /* of a linear law, made when first needed */
+  double D[36];   /* [ns*ns] that it leaves, Pa */
 } room;
 
 static void room_free(room *r) {

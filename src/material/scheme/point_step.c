@@ -17,7 +17,7 @@
 #include <string.h>
 
 enum { MOST_LOCAL = 60, MOST_PARTS = 1000 };
-static const double point_tol = 1e-13, alpha_tol = 1e-10; /* -            */
+static const double point_tol = 1e-13, alpha_tol = 1e-10; /* - */
 
 status point_step_new(const flow *x, point_step *l) {
   int ns = x->ns, na = x->most_alpha, n = ns + na;

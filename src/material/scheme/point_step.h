@@ -10,12 +10,12 @@
 /* Room for one point, n = ns + most_alpha unknowns. */
 typedef struct point_step {
   int ns, na, n;
-  double e[6], sigma[6], ei[6]; /* at the theta-point; e of the end         */
-  double *alpha;                /* [na] at the theta-point                   */
-  double *y, *old, *f, *trial, *kept; /* [n] e^i and alpha                  */
-  double *M, *X; /* [n*n], [n*ns]                             */
-  int *pivot;    /* [n]                                       */
-  double E[36]; /* [ns*ns] at the end of the step, Pa                         */
+  double e[6], sigma[6], ei[6];       /* at the theta-point; e of the end */
+  double *alpha;                      /* [na] at the theta-point */
+  double *y, *old, *f, *trial, *kept; /* [n] e^i and alpha */
+  double *M, *X;                      /* [n*n], [n*ns] */
+  int *pivot;                         /* [n] */
+  double E[36];                       /* [ns*ns] at the end of the step, Pa */
   law_jacobian j;
   double value[FLOW_VALUE_MAX];
   law_point p;
@@ -23,7 +23,7 @@ typedef struct point_step {
 } point_step;
 
 status point_step_new(const flow *x, point_step *l); /* ERR_MEMORY */
-void point_step_free(point_step *l); /* accepts an all-zero one         */
+void point_step_free(point_step *l); /* accepts an all-zero one */
 /* Point k with its start values; coefficients at the theta-point. */
 status point_step_begin(const flow *x, const scheme_step *p, int k,
                         const flow_state *old, const flow_state *now,

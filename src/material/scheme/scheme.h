@@ -15,44 +15,44 @@
 
 /* Points of one material and elasticity. */
 typedef struct flow_kind {
-  const law_card *law; /* borrowed                                           */
+  const law_card *law; /* borrowed */
   law_elastic elastic; /* at the last temperature asked for: flow_heat() */
   int n_alpha;
   unsigned varies; /* law_varies(), and whether the elasticity depends on
-                      temperature; 0: all of it holds for ever               */
-  double *value;   /* [law_n_value()]                                        */
+                      temperature; 0: all of it holds for ever */
+  double *value;   /* [law_n_value()] */
   double speed;
 } flow_kind;
 
 /* Work on points whose law has a threshold, "flows" in its row. */
 typedef struct flow_tally {
-  double asked;   /* times that one was to be evaluated                      */
-  double resting; /* of these, left out: exactly no rate                     */
+  double asked;   /* times that one was to be evaluated */
+  double resting; /* of these, left out: exactly no rate */
 } flow_tally;
 
 typedef struct flow {
   int n, ns, n_kind;
-  int most_alpha;  /* of a point                                              */
-  flow_kind *kind; /* [n_kind]                                              */
-  int *kind_id;    /* [n]                                                   */
-  size_t *alpha_at;  /* [n+1] where alpha of a point starts                   */
-  double *weight;    /* [n] volume, m3                                        */
-  flow_tally *tally; /* so far, owned                                        */
+  int most_alpha;    /* of a point */
+  flow_kind *kind;   /* [n_kind] */
+  int *kind_id;      /* [n] */
+  size_t *alpha_at;  /* [n+1] where alpha of a point starts */
+  double *weight;    /* [n] volume, m3 */
+  flow_tally *tally; /* so far, owned */
 } flow;
 
 /* The state of the points at a time. e = total less thermal strain, so that
  * sigma = E (e - ei). */
 typedef struct flow_state {
-  double t;                       /* s                                       */
-  double *e, *ei, *sigma, *alpha; /* [ns*n] -, -, Pa; [alpha_at[n]]          */
-  double *temperature;            /* [n]                                     */
+  double t;                       /* s */
+  double *e, *ei, *sigma, *alpha; /* [ns*n] -, -, Pa; [alpha_at[n]] */
+  double *temperature;            /* [n] */
 } flow_state;
 
 /* flow.c. Kinds are filled by the caller: n_kind rows, then flow_new_kind for
  * each, flow_new_points once kind_id is known. */
 status flow_new_kind(flow_kind *k, const law_card *law,
                      const law_elastic *elastic);
-void flow_kind_free(flow_kind *k); /* accepts an all-zero kind                */
+void flow_kind_free(flow_kind *k); /* accepts an all-zero kind */
 status flow_new_points(flow *x, int n, const int *kind_id);
 void flow_free(flow *x);
 status flow_state_new(const flow *x, flow_state *s);
@@ -88,11 +88,11 @@ double flow_root(const flow *x, double sum);
 
 /* Law of the points for one linear solve: sigma = sigma_k + D (e - e_k). */
 typedef struct flow_tangent {
-  double key; /* > 0: D is constant, and the same whenever key and exact are;
-                 0: of this solve alone                                       */
-  int exact;  /* D of EXPONENTIAL, else of THETA                              */
-  int elastic;     /* D = E: the matrix of the elastic body                   */
-  const double *D; /* key > 0: [ns*ns*n_kind], else [ns*ns*n]; Pa             */
+  double key;              /* > 0: D is constant, and the same whenever key and
+                              exact are; 0: of this solve alone */
+  int exact;               /* D of EXPONENTIAL, else of THETA */
+  int elastic;             /* D = E: the matrix of the elastic body */
+  const double *D;         /* key > 0: [ns*ns*n_kind], else [ns*ns*n]; Pa */
   const double *sigma, *e; /* [ns*n] sigma_k, e_k; key > 0: those that
                               linear_predict makes, and of scheme_call.old */
 } flow_tangent;
@@ -117,20 +117,20 @@ typedef struct flow_body {
 } flow_body;
 
 typedef struct scheme_step {
-  double t;         /* end of the step: old->t + dt to rounding, s            */
-  double dt, theta; /* s, -                                                   */
-  int initial;      /* 1: iterate with the elastic matrix                     */
-  double tol;       /* of the iteration on stresses, -                        */
+  double t;         /* end of the step: old->t + dt to rounding, s */
+  double dt, theta; /* s, - */
+  int initial;      /* 1: iterate with the elastic matrix */
+  double tol;       /* of the iteration on stresses, - */
 } scheme_step;
 
 typedef struct scheme_result {
-  int settled;       /* 0: no answer to go on with                            */
-  int stuck;         /* point without a state at the end of the step, from 1;
-                        0: it was not for a point                             */
-  int iterations;    /* linear solves of an implicit step                     */
-  double error;      /* estimate of the strain error, root mean square; < 0:
-                        the scheme has none of its own                        */
-  double dissipated; /* J, in the quadrature of the scheme                    */
+  int settled;       /* 0: no answer to go on with */
+  int stuck;         /* point without a state at the end of the step, from 1; 0:
+                        it was not for a point */
+  int iterations;    /* linear solves of an implicit step */
+  double error;      /* estimate of the strain error, root mean square; < 0: the
+                        scheme has none of its own */
+  double dissipated; /* J, in the quadrature of the scheme */
 } scheme_result;
 
 typedef struct scheme_work scheme_work;
@@ -155,19 +155,20 @@ void linear_follow(const scheme_call *a, int from, int to);
 typedef struct scheme {
   const char *name, *reference, *help;
   int order;
-  int linear_only; /* laws with a constant Jacobian only                      */
-  double theta;    /* fixed by the row; 0: THETA=, or no such parameter       */
-  double limit; /* |rate| dt up to which decay is stable; 0: none, or theta   */
+  int linear_only; /* laws with a constant Jacobian only */
+  double theta;    /* fixed by the row; 0: THETA=, or no such parameter */
+  double limit;    /* |rate| dt up to which decay is stable; 0: none, or
+                      theta */
   int has_theta;
-  int estimates; /* scheme_result.error is set                               */
+  int estimates; /* scheme_result.error is set */
   status (*advance)(const scheme_call *a);
   /* Within a step that has been made, old->t < mid->t < now->t: e^i and alpha
    * of mid to the order of the scheme. */
   status (*between)(const scheme_call *a, flow_state *mid);
 } scheme;
 
-extern const scheme *const scheme_list[]; /* NULL at the end                  */
-const scheme *scheme_find(const char *name); /* case ignored; or NULL         */
+extern const scheme *const scheme_list[];    /* NULL at the end */
+const scheme *scheme_find(const char *name); /* case ignored; or NULL */
 status scheme_work_new(scheme_work **out);   /* filled as the schemes need it */
 void scheme_work_free(scheme_work *w);
 /* What the laws have dissipated in a step up to mid->t, J. */

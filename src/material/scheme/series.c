@@ -21,14 +21,14 @@
 #include <math.h>
 #include <string.h>
 
-static const double MODERATE = 1e6, MOST = 1e200; /* of h, -                */
+static const double MODERATE = 1e6, MOST = 1e200; /* of h, - */
 
 /* A part with n units, and its map of them: D v = U v + u0 e_old + u1 e_new;
  * kept = 1 - sum of u1. */
 typedef struct series {
   int n;
-  double *h, *m;       /* [n] -                                             */
-  double *U, *u0, *u1; /* [n*n], [n], [n]                                   */
+  double *h, *m;       /* [n] - */
+  double *U, *u0, *u1; /* [n*n], [n], [n] */
   double kept;
   double *room;
 } series;

@@ -12,25 +12,26 @@ enum { STAGES = 4 };
 /* Step of a linear law with constant coefficients, y = (e^i, alpha):
  * y_new = P y_old + Q0 e_old + Q1 e_new. */
 typedef struct linear_map {
-  int n;           /* ns + n_alpha                                           */
-  double *P;       /* [n*n]                                                  */
-  double *Q0, *Q1; /* [n*ns]                                                 */
-  double *Q;       /* [n*ns] Q0 + Q1: of strains that stay                   */
+  int n;           /* ns + n_alpha */
+  double *P;       /* [n*n] */
+  double *Q0, *Q1; /* [n*ns] */
+  double *Q;       /* [n*ns] Q0 + Q1: of strains that stay */
 } linear_map;
 
 /* What the maps of a step depend on beside the laws. */
 typedef struct linear_key {
-  double dt, theta; /* dt = 0: there are none                                 */
-  int exact;        /* 1: EXPONENTIAL, 0: THETA                               */
+  double dt, theta; /* dt = 0: there are none */
+  int exact;        /* 1: EXPONENTIAL, 0: THETA */
 } linear_key;
 
 struct scheme_work {
-  double *ei_rate[STAGES], *alpha_rate[STAGES]; /* [ns*n], [alpha_at[n]]     */
-  double *sigma_k, *e_k, *linear; /* [ns*n] when first needed                */
-  double *D;                      /* [ns*ns*n] the same                      */
-  linear_key made;                /* what map[] and D_kind are for         */
-  linear_map *map; /* [n_kind]                                     */
-  double *D_kind;  /* [ns*ns*n_kind] Pa                            */
+  /* [ns*n], [alpha_at[n]] */
+  double *ei_rate[STAGES], *alpha_rate[STAGES];
+  double *sigma_k, *e_k, *linear; /* [ns*n] when first needed */
+  double *D;                      /* [ns*ns*n] the same */
+  linear_key made;                /* what map[] and D_kind are for */
+  linear_map *map;                /* [n_kind] */
+  double *D_kind;                 /* [ns*ns*n_kind] Pa */
   int n_kind;
 };
 
@@ -38,7 +39,7 @@ struct scheme_work {
 void add_scaled(size_t n, const double *x, double a, const double *v,
                 double *y);
 void linear_map_free(linear_map *m);
-status need(double **array, size_t n); /* allocate if NULL                   */
+status need(double **array, size_t n); /* allocate if NULL */
 
 /* linear.c: the map of a kind (arrays that are NULL are made) and its D[ns*ns];
  * those of all kinds into w, if others are there; X = exp(A) - I for A[n*n]. */

@@ -123,7 +123,7 @@ status geo_read(const char *file, geo_text *g) {
     const char *path = g->file[i], *dot = strrchr(path, '.');
     if (i > 0 && (dot == NULL || strcasecmp(dot, ".geo") != 0)) continue;
     PASS(load(path, &g->text[i]));
-    g->is_open |= g->text[i] == NULL; /* gmsh tells why                       */
+    g->is_open |= g->text[i] == NULL; /* gmsh tells why */
     if (g->text[i] != NULL) PASS(find_names(g, path, g->text[i]));
   }
   return OK;

@@ -9,39 +9,40 @@
 #include "mesh/msh/raw_mesh.h"
 #include "mesh/msh/scan.h"
 
-typedef struct element_type { /* of gmsh, its number is the row              */
+typedef struct element_type { /* of gmsh, its number is the row */
   int dim, n_node;
   const char *name;
 } element_type;
 /* NULL: a number that is none, or of order above 5. */
 const element_type *msh_type(int type);
 
-typedef struct msh_name { /* of $PhysicalNames                               */
-  const char *text;       /* in the data of the scan                         */
+typedef struct msh_name { /* of $PhysicalNames */
+  const char *text;       /* in the data of the scan */
   size_t length;
 } msh_name;
 
-typedef struct msh_entity { /* of $Entities                                  */
+typedef struct msh_entity { /* of $Entities */
   int n_physical;
-  size_t first; /* in physical                                               */
+  size_t first; /* in physical */
 } msh_entity;
 
-typedef struct msh_fill { /* of a block                                      */
-  size_t room; /* elements it has room for                                   */
-  int tag;     /* its entity, in version 2.2 its group                       */
+typedef struct msh_fill { /* of a block */
+  size_t room;            /* elements it has room for */
+  int tag;                /* its entity, in version 2.2 its group */
 } msh_fill;
 
 typedef struct msh {
   scan s;
   raw_mesh *raw;
-  key_table names, groups, entities, blocks; /* ids by dimension and tag */
+  /* ids by dimension and tag */
+  key_table names, groups, entities, blocks;
   int names_room, groups_room, entities_room, blocks_room, fills_room;
-  msh_name *name;     /* [names.n]                                           */
-  msh_entity *entity; /* [entities.n], of version 4.1                        */
-  int *physical;      /* [n_physical] groups of the entities                 */
+  msh_name *name;     /* [names.n] */
+  msh_entity *entity; /* [entities.n], of version 4.1 */
+  int *physical;      /* [n_physical] groups of the entities */
   int n_physical, physical_room;
-  msh_fill *fill;    /* [blocks.n]                                           */
-  size_t n_loose[4]; /* elements in no group by dimension                   */
+  msh_fill *fill;    /* [blocks.n] */
+  size_t n_loose[4]; /* elements in no group by dimension */
   int has_nodes, has_entities, has_elements;
 } msh;
 

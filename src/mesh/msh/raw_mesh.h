@@ -9,37 +9,37 @@
 
 #include <stddef.h>
 
-typedef struct raw_block { /* elements of one type on one entity              */
-  int dim;                 /* of the entity                                   */
-  int type;                /* number of gmsh: 1 line, 2 triangle, 4 tet, ...  */
-  char *type_name;         /* "Triangle 3", "Quadrilateral 4", ...            */
-  int n_physical;          /* physical groups the entity belongs to, > 0      */
-  int *physical;           /* [n_physical] their tags                         */
-  size_t n;                /* elements                                        */
-  size_t n_per;            /* nodes of each                                   */
-  size_t *no;              /* [n] element numbers                             */
-  size_t *node;            /* [n_per*n] node numbers                          */
+typedef struct raw_block { /* elements of one type on one entity */
+  int dim;                 /* of the entity */
+  int type;                /* number of gmsh: 1 line, 2 triangle, 4 tet, ... */
+  char *type_name;         /* "Triangle 3", "Quadrilateral 4", ... */
+  int n_physical;          /* physical groups the entity belongs to, > 0 */
+  int *physical;           /* [n_physical] their tags */
+  size_t n;                /* elements */
+  size_t n_per;            /* nodes of each */
+  size_t *no;              /* [n] element numbers */
+  size_t *node;            /* [n_per*n] node numbers */
 } raw_block;
 
-typedef struct raw_group { /* physical group                                  */
+typedef struct raw_group { /* physical group */
   int dim, tag;
-  char *name; /* "" if it has none                               */
+  char *name; /* "" if it has none */
 } raw_group;
 
 typedef struct raw_mesh {
   size_t n_node;
-  size_t *node_no; /* [n_node]                                        */
-  double *xyz;     /* [3*n_node]                                      */
+  size_t *node_no; /* [n_node] */
+  double *xyz;     /* [3*n_node] */
   int n_block, n_group, n_warning;
   raw_block *block;
   raw_group *group;
-  char **warning;  /* [n_warning] texts of gmsh                       */
-  int n_entity[4]; /* geometric entities by dimension                 */
-  size_t n_loose;  /* elements of the highest dimension of the groups
-                      that are in no group                            */
+  char **warning;  /* [n_warning] texts of gmsh */
+  int n_entity[4]; /* geometric entities by dimension */
+  size_t n_loose;  /* elements of the highest dimension of the groups that are
+                      in no group */
 } raw_mesh;
 
-void raw_free(raw_mesh *raw); /* accepts NULL                                 */
+void raw_free(raw_mesh *raw); /* accepts NULL */
 
 /* Read a .msh: nothing but data, every number checked. ERR_MESH with file and
  * line in the record if it is damaged; ERR_FILE, ERR_MEMORY. */

@@ -123,9 +123,9 @@ static status word_whole(scan *s, int64_t least, int64_t most, int64_t *value) {
   return OK;
 }
 
-typedef struct decimal { /* mantissa * 10^power                             */
-  uint64_t mantissa; /* right up to DIGITS digits                             */
-  int n_digit;       /* without leading zeros                                 */
+typedef struct decimal { /* mantissa * 10^power */
+  uint64_t mantissa;     /* right up to DIGITS digits */
+  int n_digit;           /* without leading zeros */
   int power;
 } decimal;
 

@@ -66,9 +66,9 @@ static status count_entity(msh *m, int dim, int tag) {
   return OK;
 }
 
-typedef struct element_head { /* of elements that follow each other          */
+typedef struct element_head { /* of elements that follow each other */
   int type, n_tag;
-  int entity, physical; /* of the element before; its block                  */
+  int entity, physical; /* of the element before; its block */
   int block;
 } element_head;
 
@@ -258,7 +258,7 @@ status msh4_entities(msh *m, int partitioned) {
                   "its entities");
 }
 
-typedef struct totals { /* first line of $Nodes and $Elements                */
+typedef struct totals { /* first line of $Nodes and $Elements */
   size_t n_block, n, lowest, highest;
 } totals;
 

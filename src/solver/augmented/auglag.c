@@ -42,8 +42,8 @@
 #include <string.h>
 
 enum {
-  NEWTON_STEPS = 60, /* of the generalised Newton method                      */
-  SHORTENINGS = 10   /* of one step                                           */
+  NEWTON_STEPS = 60, /* of the generalised Newton method */
+  SHORTENINGS = 10   /* of one step */
 };
 
 typedef enum { OPEN, CLOSED } contact_state;
@@ -51,21 +51,22 @@ typedef enum { OPEN, CLOSED } contact_state;
 typedef enum { FREE, STICK, SLIP } tangent;
 
 typedef struct auglag_work {
-  int m;                 /* unknowns                                        */
-  unsigned char *part;   /* [m] force_part                                   */
-  unsigned char *closed; /* [m] contact_state of the unknowns that push      */
-  unsigned char *mode;   /* [n] tangent                                      */
-  unsigned char *state;  /* [m] of the step told last                        */
-  double *origin;        /* [m] m                                            */
-  double *diagonal;      /* [m] of A, the mean in a tangent plane, N/m       */
-  double *lambda, *z, *F, *y; /* [m] N; y = A u - f. Newton: work, work    */
-  double *du, *dy;   /* [m] step, A du                                   */
-  double *bonded;    /* [n] no limit                                     */
-  double *e, *share; /* [m] direction of slip, [n] g/|z|                 */
-  double *K;         /* [m*m]                                            */
-  double power;      /* of two: power*A has a diagonal of order 1         */
-  uint64_t seen[NEWTON_STEPS + 1]; /* hashes of the states of the steps     */
-  int *pivot, *free_id; /* [m]                                              */
+  int m;                      /* unknowns */
+  unsigned char *part;        /* [m] force_part */
+  unsigned char *closed;      /* [m] contact_state of the unknowns that push */
+  unsigned char *mode;        /* [n] tangent */
+  unsigned char *state;       /* [m] of the step told last */
+  double *origin;             /* [m] m */
+  double *diagonal;           /* [m] of A, the mean in a tangent plane, N/m */
+  double *lambda, *z, *F, *y; /* [m] N; y = A u - f. Newton: work, work */
+  double *du, *dy;            /* [m] step, A du */
+  double *bonded;             /* [n] no limit */
+  double *e, *share;          /* [m] direction of slip, [n] g/|z| */
+  double *K;                  /* [m*m] */
+  double power;               /* of two: power*A has a diagonal of order 1 */
+  /* hashes of the states of the steps */
+  uint64_t seen[NEWTON_STEPS + 1];
+  int *pivot, *free_id; /* [m] */
   fixed_point *fixed;
   best_iterate best;
 } auglag_work;
@@ -75,14 +76,14 @@ typedef struct auglag_run {
   auglag_work *w;
   const solver_control *control;
   double *u, *r;
-  double scale, rho; /* N; -, of the diagonal                                */
+  double scale, rho; /* N; -, of the diagonal */
   int steps, limit;
-  int changes;  /* states changed by the last evaluation                      */
-  int turned;   /* nodes with another state than after the step before        */
-  int bent;     /* 1: F' of a slipping node moves with z (3-D)                */
-  int factored; /* w->K is the factor for the present states                 */
-  int singular; /* the last matrix needed springs                            */
-  int cycle;    /* the states were met before in these Newton steps          */
+  int changes;  /* states changed by the last evaluation */
+  int turned;   /* nodes with another state than after the step before */
+  int bent;     /* 1: F' of a slipping node moves with z (3-D) */
+  int factored; /* w->K is the factor for the present states */
+  int singular; /* the last matrix needed springs */
+  int cycle;    /* the states were met before in these Newton steps */
 } auglag_run;
 
 /* ---- the augmented forces F(z), the states of the nodes they stand for, and
@@ -192,8 +193,8 @@ static void auglag_move(auglag_run *s, double a) {
 /* ---- VARIANT=NEWTON: the generalised Newton method for both equations at
  * once. */
 
-static const double RHO_NEWTON = 0x1p-2; /* -, of diag A                     */
-static const double DESCENT = 1e-4; /* -, share of the slope                 */
+static const double RHO_NEWTON = 0x1p-2; /* -, of diag A */
+static const double DESCENT = 1e-4;      /* -, share of the slope */
 enum { MEMORY = 4 /* steps |Phi| is compared with */ };
 
 /* Row of (A - F'(A - rho)) d of a free unknown; v = A d, d[m]. */
@@ -349,15 +350,15 @@ static outcome auglag_newton(auglag_run *s) {
 
 /* ---- VARIANT=UZAWA: displacement and multiplier in turn ------------------ */
 
-static const double RHO_UZAWA = 0x1p4; /* -, of diag A                       */
+static const double RHO_UZAWA = 0x1p4; /* -, of diag A */
 static const double PROGRESS = 0.9; /* -, of the residual, in PATIENCE steps */
-static const double START_TOL = 1e-3; /* -, of pressures for a first limit   */
-static const double FLATTER = 0.5; /* -, slope that ends a search           */
-static const double SPRING = 0x1p-36; /* -, of the diagonal                  */
+static const double START_TOL = 1e-3; /* -, of pressures for a first limit */
+static const double FLATTER = 0.5;    /* -, slope that ends a search */
+static const double SPRING = 0x1p-36; /* -, of the diagonal */
 
 enum {
-  INNER_STEPS = 60, /* Newton steps of one multiplier step                    */
-  PATIENCE = 20     /* multiplier steps without a lower residual              */
+  INNER_STEPS = 60, /* Newton steps of one multiplier step */
+  PATIENCE = 20     /* multiplier steps without a lower residual */
 };
 
 /* Cholesky factor of power (A + F' rho); springs where nothing holds the body.
@@ -503,7 +504,7 @@ static void auglag_start_bonded(auglag_run *s) {
 }
 
 typedef struct auglag {
-  int variant; /* variant_way                                                */
+  int variant; /* variant_way */
 } auglag;
 
 typedef enum { BY_NEWTON, BY_UZAWA } variant_way;
@@ -516,7 +517,7 @@ static const option auglag_options[] = {
 };
 /* clang-format on */
 
-static const double SOFT = 0x1p-20; /* -, of the stiffness: none         */
+static const double SOFT = 0x1p-20; /* -, of the stiffness: none */
 
 enum { UZAWA_STEPS = 1000 /* Newton steps of all multiplier steps */ };
 

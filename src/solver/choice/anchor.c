@@ -10,17 +10,17 @@
 #include <string.h>
 
 enum {
-  MODES = 6, /* of a body in space; 3 in the plane                        */
+  MODES = 6, /* of a body in space; 3 in the plane */
   PASSES = 200,
-  LATE = 3,     /* passes at the tolerance, for the resultant                 */
-  DRIFT = 3,    /* passes with the same move                                  */
-  PATIENCE = 20 /* passes without a lower residual                            */
+  LATE = 3,     /* passes at the tolerance, for the resultant */
+  DRIFT = 3,    /* passes with the same move */
+  PATIENCE = 20 /* passes without a lower residual */
 };
 static const double NULL_PIVOT = 0x1p-44; /* -, times m: of the largest pivot */
 static const double SOFT = 0x1p-5;        /* -, k of the mean diagonal over n */
 static const double FINEST = 0.1; /* -, of the tolerance: a pass asks no more */
-static const double PROGRESS = 0.9; /* -, a lower residual                    */
-static const double STEADY = 0x1p-7; /* -, of a step of a drift               */
+static const double PROGRESS = 0.9;  /* -, a lower residual */
+static const double STEADY = 0x1p-7; /* -, of a step of a drift */
 
 void anchor_free(anchor *an) {
   RELEASE(an->R, an->A, an->W, an->f, an->a, an->step);
@@ -102,11 +102,11 @@ status anchor_make(const contact_problem *cp, anchor *an) {
 typedef struct passes {
   const anchor *an;
   const contact_problem *cp;
-  double load;       /* largest |f|, N                                        */
-  double lowest;     /* residual at the last progress                         */
-  int since, steady; /* passes since; with the same move                      */
-  int closed;        /* 1: has been put onto its obstacles                    */
-  int late;          /* passes at the tolerance                               */
+  double load;       /* largest |f|, N */
+  double lowest;     /* residual at the last progress */
+  int since, steady; /* passes since; with the same move */
+  int closed;        /* 1: has been put onto its obstacles */
+  int late;          /* passes at the tolerance */
 } passes;
 
 /* The place of the body, R'u. */

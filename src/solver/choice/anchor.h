@@ -19,12 +19,12 @@
 #include "solver/solver.h"
 
 typedef struct anchor {
-  int missing;   /* 1: the null vectors could not be found                    */
-  int n_mode;    /* of them                                                   */
-  double *R;     /* [m*n_mode] -                                              */
-  double spring; /* k, N/m                                                    */
-  double *A, *W; /* [m*m] A_s and its inverse                                 */
-  double *f;     /* [m] f_s, N                                                */
+  int missing;   /* 1: the null vectors could not be found */
+  int n_mode;    /* of them */
+  double *R;     /* [m*n_mode] - */
+  double spring; /* k, N/m */
+  double *A, *W; /* [m*m] A_s and its inverse */
+  double *f;     /* [m] f_s, N */
   double *a,
       *step; /* [n_mode] place of the springs, last move of the body, m */
 } anchor;
@@ -33,7 +33,7 @@ typedef struct anchor {
 status anchor_modes(const contact_problem *cp, anchor *an);
 /* Make it for the matrix of cp, if that has not been tried. */
 status anchor_make(const contact_problem *cp, anchor *an);
-void anchor_free(anchor *an); /* all zero afterwards                         */
+void anchor_free(anchor *an); /* all zero afterwards */
 
 /* Solves a problem with springs as it stands, from u, r. */
 typedef struct anchored_solver {

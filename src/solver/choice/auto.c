@@ -55,17 +55,18 @@ const char auto_help[] =
 /* clang-format on */
 
 enum {
-  WARM_STEPS = 3,   /* of NEWTON before the normal form is made            */
-  ROUND = 10,       /* sweeps from one look at their rate to the next      */
-  SWEEP_SHARE = 4,  /* m over it: sweeps worth while without an inverse    */
-  STEPS = 6,        /* of NEWTON that sweeps are compared with             */
-  LEAST_ROUNDS = 3, /* to be worth a try                                     */
-  READ = 8, /* solves whose arithmetic takes as long as reading the matrix    */
-  FULL_SIZE = 1000,    /* m: up to here a link has all its iterations         */
+  WARM_STEPS = 3,      /* of NEWTON before the normal form is made */
+  ROUND = 10,          /* sweeps from one look at their rate to the next */
+  SWEEP_SHARE = 4,     /* m over it: sweeps worth while without an inverse */
+  STEPS = 6,           /* of NEWTON that sweeps are compared with */
+  LEAST_ROUNDS = 3,    /* to be worth a try */
+  READ = 8,            /* solves whose arithmetic takes as long as reading the
+                          matrix */
+  FULL_SIZE = 1000,    /* m: up to here a link has all its iterations */
   SMALL_SIZE = 200,    /* m: up to here factorisations cost like products */
-  LEAST_FACTORS = 80,  /* iterations with a factorisation, on large problems  */
-  MOST_FACTORS = 4000, /*                                   on small ones    */
-  LEAST_SWEEPS = 1000, /* iterations with a product                           */
+  LEAST_FACTORS = 80,  /* iterations with a factorisation, on large problems */
+  MOST_FACTORS = 4000, /* on small ones */
+  LEAST_SWEEPS = 1000, /* iterations with a product */
   MOST_SWEEPS = 20000
 };
 
@@ -73,9 +74,9 @@ enum {
 static const struct {
   const solver_ops *ops;
   drive how;
-  int compliance; /* 1: only where no stiffness is given, -1: where one is   */
-  int factors;    /* 1: an iteration costs a factorisation, else a product    */
-  int most;       /* iterations, 0: as many as the cost allows                */
+  int compliance; /* 1: only where no stiffness is given, -1: where one is */
+  int factors;    /* 1: an iteration costs a factorisation, else a product */
+  int most;       /* iterations, 0: as many as the cost allows */
 } auto_chain[] = {{&newton_solver, PLAIN, 0, 1, 0},
                   {&newton_solver, ALONG_PATH, 0, 1, 0},
                   {&sor_solver, WHILE_PROMISING, 1, 0, 0},

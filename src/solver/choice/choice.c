@@ -14,8 +14,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { TIGHTER = 3 };                /* tolerances tried on another form      */
-static const double OWN_SHARE = 0.5; /* of the tolerance, in that form        */
+enum { TIGHTER = 3 };                /* tolerances tried on another form */
+static const double OWN_SHARE = 0.5; /* of the tolerance, in that form */
 
 status contact_solver_new(const solver_choice *choice, contact_solver **out) {
   status st = OK;

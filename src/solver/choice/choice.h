@@ -17,25 +17,26 @@ struct contact_solver {
   solver_choice choice;
   char log[LOG_SIZE];
   /* What belongs to one matrix. */
-  const double *A, *W; /* it came with, borrowed; as seen                     */
+  const double *A, *W; /* it came with, borrowed; as seen */
   int m, n;
   void *work[N_SOLVER + 1]; /* of solver_list, last of a solver that is not in
-                               it; NULL: not set up                          */
-  void *param; /* defaults of the chain member at work                 */
+                               it; NULL: not set up */
+  void *param;              /* defaults of the chain member at work */
   size_t param_size;
   fixed_point *fixed;
   friction_path *path;
-  int path_room; /* entries of B it was made for                         */
+  int path_room; /* entries of B it was made for */
   other_form other;
-  int inverse_wanted; /* 1: the compliance alone did not do                  */
-  anchor held; /* springs for a body that contact alone holds                 */
+  int inverse_wanted; /* 1: the compliance alone did not do */
+  anchor held;        /* springs for a body that contact alone holds */
   normal_form normal;
   contact_bodies *bodies;
-  double *best_u, *best_r; /* [m] of the attempt with the lowest residual     */
-  double scale; /* contact_scale of the problem being solved               */
-  int sought, proved; /* a proof that it has no solution                     */
-  archive *from;  /* borrowed: what the works are to remember; or NULL        */
-  char group[80]; /* in it                                                    */
+  double *best_u, *best_r; /* [m] of the attempt with the lowest residual */
+  double scale;            /* contact_scale of the problem being solved */
+  int sought, proved;      /* a proof that it has no solution */
+  archive *from;           /* borrowed: what the works are to remember; or
+                              NULL */
+  char group[80];          /* in it */
 };
 
 /* WHILE_PROMISING: AUTO alone, sweeps whose rate is watched. */
@@ -46,7 +47,7 @@ typedef struct attempt {
   const solver_ops *ops;
   const void *param;
   drive how;
-  int max_iter; /* 0: the solver's own limit                                  */
+  int max_iter; /* 0: the solver's own limit */
 } attempt;
 
 /* Let one solver try. STOPPED_UNFIT: it cannot treat the problem, the log says

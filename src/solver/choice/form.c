@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double SYMMETRIC = 0x1p-40; /* -, of the largest diagonal      */
-static const double OWN_SHARE = 0.5; /* of the tolerance, in the normal form  */
+static const double SYMMETRIC = 0x1p-40; /* -, of the largest diagonal */
+static const double OWN_SHARE = 0.5; /* of the tolerance, in the normal form */
 
 static void multiply(size_t size, double a, double *M) {
   for (size_t i = 0; i < size; ++i) M[i] *= a;

@@ -20,27 +20,27 @@
 int form_invert(int m, dense *d);
 
 typedef struct other_form {
-  double *matrix; /* [m*m] inverse of the one given, or NULL                  */
-  double *load;   /* [m] load in that form                                    */
-  int missing;    /* 1: it does not exist                                     */
+  double *matrix; /* [m*m] inverse of the one given, or NULL */
+  double *load;   /* [m] load in that form */
+  int missing;    /* 1: it does not exist */
 } other_form;
 /* Make it, if that has not been tried. */
 status other_form_make(const contact_problem *cp, other_form *o);
-void other_form_free(other_form *o); /* all zero afterwards                   */
+void other_form_free(other_form *o); /* all zero afterwards */
 
 typedef struct normal_form {
-  int missing;       /* 1: it does not exist                            */
-  int wanted;        /* problems met that would have used it            */
-  double power;      /* of two: power A has a diagonal of order 1       */
-  double *L;         /* [nt*nt] Cholesky factor of power A_tt           */
-  double *Y;         /* [nt*n] inv(L) power A_tn                        */
-  double *S;         /* [n*n]                                           */
-  double *f, *u, *r; /* [n] of the problem in S                         */
-  opened *opened; /* without S                                                */
-  double *y;      /* [m] work                                        */
-  void *work;     /* of the solver                                   */
-  archive *from;  /* borrowed: what the work is to remember; or NULL          */
-  char group[80]; /* in it                                                    */
+  int missing;       /* 1: it does not exist */
+  int wanted;        /* problems met that would have used it */
+  double power;      /* of two: power A has a diagonal of order 1 */
+  double *L;         /* [nt*nt] Cholesky factor of power A_tt */
+  double *Y;         /* [nt*n] inv(L) power A_tn */
+  double *S;         /* [n*n] */
+  double *f, *u, *r; /* [n] of the problem in S */
+  opened *opened;    /* without S */
+  double *y;         /* [m] work */
+  void *work;        /* of the solver */
+  archive *from;     /* borrowed: what the work is to remember; or NULL */
+  char group[80];    /* in it */
 } normal_form;
 /* What it remembers from problem to problem; as contact_solver_keep. */
 status normal_form_keep(normal_form *nf, archive *a);
@@ -56,6 +56,6 @@ status normal_form_opened(normal_form *nf, const contact_problem *cp,
 status normal_form_solve(normal_form *nf, const contact_problem *cp,
                          const solver_control *control, double *u, double *r,
                          solver_report *rep);
-void normal_form_free(normal_form *nf); /* all zero afterwards                */
+void normal_form_free(normal_form *nf); /* all zero afterwards */
 
 #endif

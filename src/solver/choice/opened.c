@@ -9,21 +9,21 @@
 #include <string.h>
 
 enum { STEPS = 20, SHARE = 2 };       /* of the nodes: most that open */
-static const double MARGIN = 0x1p-46; /* -, of the scale: no change of state  */
+static const double MARGIN = 0x1p-46; /* -, of the scale: no change of state */
 
 struct opened {
   tangent_factor by;
   int n, nt, dim;
-  int n_made, *made; /* [n] nodes with a column                          */
-  int *column;       /* [n] of a node, or -1                                */
-  double *Y;         /* [nt*n] inv(L) power A_t,made                     */
-  double *S;         /* [n*n] of the nodes made                       */
-  double *F, *v;     /* [n*n], [n] of the open nodes               */
-  int n_open, *open; /* [n]                                                 */
-  unsigned char *is_open; /* [n]                                             */
-  double *u0, *r0; /* [m] every node closed                               */
-  double *du, *dr; /* [m] from there                                      */
-  double *y;       /* [nt]                                                */
+  int n_made, *made;      /* [n] nodes with a column */
+  int *column;            /* [n] of a node, or -1 */
+  double *Y;              /* [nt*n] inv(L) power A_t,made */
+  double *S;              /* [n*n] of the nodes made */
+  double *F, *v;          /* [n*n], [n] of the open nodes */
+  int n_open, *open;      /* [n] */
+  unsigned char *is_open; /* [n] */
+  double *u0, *r0;        /* [m] every node closed */
+  double *du, *dr;        /* [m] from there */
+  double *y;              /* [nt] */
 };
 
 status opened_new(const contact_problem *cp, const tangent_factor *by,

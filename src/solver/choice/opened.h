@@ -15,14 +15,14 @@
 
 /* A_tt = L L'/power, borrowed. */
 typedef struct tangent_factor {
-  const double *L; /* [nt*nt]                                                 */
-  double power;    /* of two                                                  */
+  const double *L; /* [nt*nt] */
+  double power;    /* of two */
 } tangent_factor;
 
 typedef struct opened opened;
 status opened_new(const contact_problem *cp, const tangent_factor *by,
                   opened **out);
-void opened_free(opened *o); /* accepts NULL                                  */
+void opened_free(opened *o); /* accepts NULL */
 /* The columns made so far, kept or filled. */
 status opened_keep(opened *o, archive *a);
 /* Solve from the states of u[m], r[m], both zero: all closed. rep->outcome

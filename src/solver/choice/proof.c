@@ -10,10 +10,10 @@
 #include <string.h>
 
 enum { PASSES = 400 /* columns tried */ };
-static const double DEFECT = 0x1p-26;   /* -, force of a motion without any   */
-static const double ROUNDING = 0x1p-44; /* -, of a sum, of its terms          */
-static const double MARGIN = 0x1p-40;   /* -, of the work                     */
-static const double BALANCED = 0x1p-36; /* -, of the load                     */
+static const double DEFECT = 0x1p-26;   /* -, force of a motion without any */
+static const double ROUNDING = 0x1p-44; /* -, of a sum, of its terms */
+static const double MARGIN = 0x1p-40;   /* -, of the work */
+static const double BALANCED = 0x1p-36; /* -, of the load */
 
 /* ---- the inequality ------------------------------------------------------ */
 
@@ -134,11 +134,11 @@ int proof_holds(const contact_problem *cp, const double *v, double *room) {
 typedef struct balance {
   const contact_problem *cp;
   const anchor *an;
-  nonnegative sum; /* rows: modes + 1                                        */
-  double unit;     /* of the limit g0                                        */
-  double *v, *c;   /* [m], [3*m] with slip                                   */
-  double *force;   /* [m]                                                    */
-  double *lift;    /* [m] set_lift                                           */
+  nonnegative sum; /* rows: modes + 1 */
+  double unit;     /* of the limit g0 */
+  double *v, *c;   /* [m], [3*m] with slip */
+  double *force;   /* [m] */
+  double *lift;    /* [m] set_lift */
 } balance;
 
 static status balance_new(balance *s) {

@@ -30,7 +30,7 @@
 typedef struct plain {
   int n;
   const double *M;
-  double factor; /* of two: M times factor is of order 1                      */
+  double factor; /* of two: M times factor is of order 1 */
 } plain;
 
 static void plain_product(const void *ctx, int n_id, const int *id,
@@ -99,34 +99,35 @@ done:
 }
 
 /* Relative to the largest number of the same kind. */
-#define TIE 0x1p-42      /* values that count as zero                         */
+#define TIE 0x1p-42      /* values that count as zero */
 #define ROUNDING 0x1p-53 /* error of a product, with K: noise */
 
 struct lcp_work {
-  int n, cap, s; /* n, cap: of the run, of the blocks */
-  double *K;     /* [cap*cap]                                                 */
-  double *P;     /* [cap*cap] for a new inverse                               */
-  double *lapack; /* [cap]                                                    */
-  int *swap; /* [cap]                                                     */
-  int *var, *row; /* [cap] columns and rows of P                              */
-  int *at_z, *at_w; /* [n+1], [n] their places, -1: none                      */
-  double *z, *w;    /* [cap] of var; [n] of the rows not in "row"             */
-  double *dz, *dw;  /* the same: change per unit of the entering variable     */
-  double *lz, *lw;  /* the same: one column of the inverse                    */
-  double *gather, *line; /* [cap]                                             */
-  double *column;        /* [n]                                               */
-  double *q;             /* [n] scaled                                        */
-  int *tie;              /* [n+cap] candidates: a < cap: z; cap + i: w_i      */
-  double *key;           /* [n+cap]                                           */
-  double power;          /* of two: q of the problem = power q                */
-  double size_K;   /* estimate of the largest |K|                         */
-  double z0_start; /* z0 after the first pivot                          */
-  int entering;    /* k: z_k; -1-k: w_k                                 */
+  int n, cap, s;         /* n, cap: of the run, of the blocks */
+  double *K;             /* [cap*cap] */
+  double *P;             /* [cap*cap] for a new inverse */
+  double *lapack;        /* [cap] */
+  int *swap;             /* [cap] */
+  int *var, *row;        /* [cap] columns and rows of P */
+  int *at_z, *at_w;      /* [n+1], [n] their places, -1: none */
+  double *z, *w;         /* [cap] of var; [n] of the rows not in "row" */
+  double *dz, *dw;       /* the same: change per unit of the entering
+                            variable */
+  double *lz, *lw;       /* the same: one column of the inverse */
+  double *gather, *line; /* [cap] */
+  double *column;        /* [n] */
+  double *q;             /* [n] scaled */
+  int *tie;              /* [n+cap] candidates: a < cap: z; cap + i: w_i */
+  double *key;           /* [n+cap] */
+  double power;          /* of two: q of the problem = power q */
+  double size_K;         /* estimate of the largest |K| */
+  double z0_start;       /* z0 after the first pivot */
+  int entering;          /* k: z_k; -1-k: w_k */
 };
 
 /* ---- inverse of the basis, basic variables and their change ------------- */
 
-static const double DRIFT = 0x1p-48; /* defect that calls for a correction  */
+static const double DRIFT = 0x1p-48; /* defect that calls for a correction */
 
 /* to[n] = [M d](:, var) x. While z0 is basic it stands first in var. */
 static void lcp_expand(lcp_work *w, const lcp_problem *p, const double *x,
@@ -244,9 +245,9 @@ static double lcp_direction(lcp_work *w, const lcp_problem *p) {
 /* ---- who leaves the basis: the first to vanish, ties by the lexicographic
  * rule. */
 
-static const double SMALL = 0x1p-38;   /* no pivot below                      */
-static const double UNEQUAL = 0x1p-26; /* pivots of tied rows not considered  */
-static const double MOST_NOISE = 0x1p-28; /* no more is taken for noise       */
+static const double SMALL = 0x1p-38;   /* no pivot below */
+static const double UNEQUAL = 0x1p-26; /* pivots of tied rows not considered */
+static const double MOST_NOISE = 0x1p-28; /* no more is taken for noise */
 
 /* What counts as zero, of each kind (z0, z, w): values, changes. */
 typedef struct sizes {
@@ -479,8 +480,8 @@ static void lcp_pivot(lcp_work *w, const lcp_problem *p, int c, double step) {
   w->entering = -1 - out; /* the complement */
 }
 
-static const double SPOILT = 0x1p-38;   /* defect that calls for an inverse  */
-static const double NEAR_END = 0x1p-30; /* share of z0 that is made exact    */
+static const double SPOILT = 0x1p-38;   /* defect that calls for an inverse */
+static const double NEAR_END = 0x1p-30; /* share of z0 that is made exact */
 enum { REFRESH = 16 /* pivots from one new start of the values to the next */ };
 
 void lcp_free(lcp_work *w) {

@@ -19,10 +19,10 @@
 typedef struct lcp_report {
   outcome outcome; /* CONVERGED; STOPPED_RAY: a secondary ray;
                       STOPPED_ITERATIONS, STOPPED_SINGULAR (of the basis),
-                      STOPPED_NAN                                             */
-  int pivots;      /* with the first, which brings z0 in                      */
-  int factorings; /* inverses of the basis made again                         */
-  double residual; /* largest |min(z, w)|, in units of q; plain form only     */
+                      STOPPED_NAN */
+  int pivots;      /* with the first, which brings z0 in */
+  int factorings;  /* inverses of the basis made again */
+  double residual; /* largest |min(z, w)|, in units of q; plain form only */
 } lcp_report;
 
 /*
@@ -39,21 +39,21 @@ status lcp_lemke(int n, const double *M, const double *q, int max_pivots,
 
 typedef struct lcp_problem {
   int n;
-  const double *q, *d; /* [n]; d >= 0, positive where q < 0                   */
-  int max_pivots;      /* 0: chosen by the program                            */
-  /* y[n] = sum over k of x[k] M(:, id[k]); largest |M| of order 1            */
+  const double *q, *d; /* [n]; d >= 0, positive where q < 0 */
+  int max_pivots;      /* 0: chosen by the program */
+  /* y[n] = sum over k of x[k] M(:, id[k]); largest |M| of order 1 */
   void (*product)(const void *ctx, int n_id, const int *id, const double *x,
                   double *y);
-  /* row[k] = M(i, id[k])                                                     */
+  /* row[k] = M(i, id[k]) */
   void (*row)(const void *ctx, int i, int n_id, const int *id, double *row);
-  void (*each)(const void *ctx, int pivot, double z0); /* or NULL             */
+  void (*each)(const void *ctx, int pivot, double z0); /* or NULL */
   const void *ctx;
 } lcp_problem;
 
 typedef struct lcp_work lcp_work;
 /* Room for n unknowns, of which at most "rank" (of M) are basic at a time. */
 status lcp_new(int n, int rank, lcp_work **out);
-void lcp_free(lcp_work *w); /* accepts NULL                                   */
+void lcp_free(lcp_work *w); /* accepts NULL */
 /* Solve p; rep->residual is left alone. Allocates nothing. */
 void lcp_run(lcp_work *w, const lcp_problem *p, lcp_report *rep);
 /* z[n] of the last run. */

@@ -37,34 +37,35 @@ double lcp_residual(const lcp_data *p, const double *z, double *w) {
 }
 
 enum {
-  STEPS = 100, /* from a start                                             */
+  STEPS = 100, /* from a start */
   LEAST_STARTS = 24,
   MOST_STARTS = 3000,
-  MEMORY = 5,    /* last values a step is compared with                      */
-  HALVINGS = 30, /* of a step                                                */
-  PERIOD = 5     /* steps from one basis that is tried to the next           */
+  MEMORY = 5,    /* last values a step is compared with */
+  HALVINGS = 30, /* of a step */
+  PERIOD = 5     /* steps from one basis that is tried to the next */
 };
-static const double WORK = 1e10; /* operations of all starts                  */
-static const double RANK = 0x1p-40; /* -, of a singular basis                 */
-static const double DESCENT = 1e-9; /* -, of |g| |d|                          */
-static const double MARGIN = 0x1p-30; /* -, of a vector that separates        */
-static const double ENOUGH = 1e-4; /* -, of the slope (Armijo)               */
+static const double WORK = 1e10;      /* operations of all starts */
+static const double RANK = 0x1p-40;   /* -, of a singular basis */
+static const double DESCENT = 1e-9;   /* -, of |g| |d| */
+static const double MARGIN = 0x1p-30; /* -, of a vector that separates */
+static const double ENOUGH = 1e-4;    /* -, of the slope (Armijo) */
 
 typedef struct run {
   const lcp_data *p;
   double tol;
-  int most;      /* steps, all starts; 0: no limit                       */
-  double unit;   /* of z: largest |q| over largest |M|                    */
-  double *size;  /* [n] units: M and q below have diagonal 1, |q| <= 1    */
-  double *M, *q; /* [n*n], [n]                                            */
-  double *z, *w; /* [n] in these units                                    */
-  double *phi, *a, *b, *d, *g; /* [n]                                         */
-  double *J; /* [n*n]                                                 */
-  int *pivot, *basis; /* [n]                                                  */
-  double *N;          /* [n*n] normal equations                               */
-  double *work;       /* [room] of LAPACK                                     */
+  int most;                    /* steps, all starts; 0: no limit */
+  double unit;                 /* of z: largest |q| over largest |M| */
+  double *size;                /* [n] units: M and q below have diagonal 1, |q|
+                                  <= 1 */
+  double *M, *q;               /* [n*n], [n] */
+  double *z, *w;               /* [n] in these units */
+  double *phi, *a, *b, *d, *g; /* [n] */
+  double *J;                   /* [n*n] */
+  int *pivot, *basis;          /* [n] */
+  double *N;                   /* [n*n] normal equations */
+  double *work;                /* [room] of LAPACK */
   int room;
-  double *answer, *slack; /* [n] in the units of the problem                  */
+  double *answer, *slack; /* [n] in the units of the problem */
 } run;
 
 static status run_new(run *s) {

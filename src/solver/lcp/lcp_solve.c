@@ -14,7 +14,7 @@
 #include <string.h>
 
 enum { FIRST = 2, ATTEMPTS = 100, FEW_PIVOTS = 50, PIVOTS_A_ROW = 5 };
-static const double PROOF = 0x1p-26; /* -, least work of a certificate      */
+static const double PROOF = 0x1p-26;    /* -, least work of a certificate */
 static const double ROUNDING = 0x1p-44; /* -, of the terms of M'y */
 
 /* ---- a solve ------------------------------------------------------------- */
@@ -23,14 +23,14 @@ typedef struct run {
   const lcp_data *p;
   const lcp_control *control;
   lcp_verdict *v;
-  double *z, *w;     /* [n] the best so far                                   */
-  double *try_z, *y; /* [n] attempt; [2n] ray, certificate                    */
-  double *cover;     /* [n] covering vector                                   */
-  double *size;      /* [n] unit of z_i (and 1/w_i)                           */
-  double *M, *q, *room;  /* [n*n], [n], [n]: in these units, over the cover   */
-  unsigned char *turned; /* [n] 1: z_i and w_i have changed places            */
+  double *z, *w;         /* [n] the best so far */
+  double *try_z, *y;     /* [n] attempt; [2n] ray, certificate */
+  double *cover;         /* [n] covering vector */
+  double *size;          /* [n] unit of z_i (and 1/w_i) */
+  double *M, *q, *room;  /* [n*n], [n], [n]: in these units, over the cover */
+  unsigned char *turned; /* [n] 1: z_i and w_i have changed places */
   unsigned seed;
-  int is_first; /* 1: one of the first tries                                  */
+  int is_first; /* 1: one of the first tries */
 } run;
 
 static status run_new(run *s) {

@@ -24,25 +24,25 @@
 
 typedef struct lcp_data {
   int n;
-  const double *M, *q; /* [n*n] column major, [n]                             */
+  const double *M, *q; /* [n*n] column major, [n] */
 } lcp_data;
 
 typedef struct lcp_control {
-  double tol;   /* wanted lcp_residual, -                                 */
-  int max_iter; /* pivots and steps of all attempts; 0: each its own limit  */
-  int pivoting_only; /* 1: no other method                                    */
+  double tol;        /* wanted lcp_residual, - */
+  int max_iter;      /* pivots and steps of all attempts; 0: each its own
+                        limit */
+  int pivoting_only; /* 1: no other method */
 } lcp_control;
 
 enum { LCP_LOG = 256 };
 typedef struct lcp_verdict {
-  outcome outcome;    /* CONVERGED; STOPPED_RAY: proved that no z >= 0 has
-                         w >= 0, or that no basis solves it;
-                         STOPPED_ITERATIONS: a limit was reached;
-                         STOPPED_STAGNATION: nothing found, nothing proved;
-                         STOPPED_NAN                                          */
-  int iterations;     /* pivots and steps of all attempts                     */
-  double residual;    /* lcp_residual of z                                    */
-  const char *method; /* the last method                                    */
+  outcome outcome;    /* CONVERGED; STOPPED_RAY: proved that no z >= 0 has w >=
+                         0, or that no basis solves it; STOPPED_ITERATIONS: a
+                         limit was reached; STOPPED_STAGNATION: nothing found,
+                         nothing proved; STOPPED_NAN */
+  int iterations;     /* pivots and steps of all attempts */
+  double residual;    /* lcp_residual of z */
+  const char *method; /* the last method */
   char log[LCP_LOG];  /* "lemke: no equilibrium, ..."; "" if the first did */
 } lcp_verdict;
 

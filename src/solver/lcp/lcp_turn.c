@@ -8,7 +8,7 @@
 #include <cblas.h>
 #include <math.h>
 
-static const double GOOD = 0x1p-7; /* -, of the largest entry of the row      */
+static const double GOOD = 0x1p-7; /* -, of the largest entry of the row */
 
 static double entry(int n, const double *M, int i, int j) {
   return M[(size_t)i + (size_t)n * (size_t)j];

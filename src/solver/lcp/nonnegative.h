@@ -10,10 +10,10 @@
 #include "base/status.h"
 
 typedef struct nonnegative {
-  int rows, n;      /* entries of a column; columns taken, at most rows       */
-  double *b, *rest; /* [rows]                                                 */
-  double *G;        /* [rows*rows] columns taken                              */
-  double *x;        /* [rows] their factors                                   */
+  int rows, n;          /* entries of a column; columns taken, at most rows */
+  double *b, *rest;     /* [rows] */
+  double *G;            /* [rows*rows] columns taken */
+  double *x;            /* [rows] their factors */
   double *y, *Q, *work; /* [rows], [rows*rows], [4*rows] workspace */
 } nonnegative;
 

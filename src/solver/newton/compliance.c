@@ -23,31 +23,31 @@
 /* An unknown force: of one degree of freedom, or along d in the tangent plane
  * of a slipping node. */
 typedef struct unknown {
-  int dof;     /* of d: the first tangent                                     */
-  int turns;   /* 1: along d                                                  */
-  double d[2]; /* -; {1, 0} of a single one                                   */
+  int dof;     /* of d: the first tangent */
+  int turns;   /* 1: along d */
+  double d[2]; /* -; {1, 0} of a single one */
 } unknown;
 
 struct compliance_system {
-  const contact_problem *cp; /* of this step                                  */
-  const pattern *p;          /* of this step                                  */
-  double power;              /* of two: W*power has a diagonal of order 1     */
-  unknown *list;             /* [m]                                           */
-  int *dof;                  /* [m] of each                                   */
-  int *place;                /* [n] of the normal force in the list, or -1    */
-  int *turn;                 /* [n] of the unknown along d, or -1             */
-  int n, n_turn;             /* unknowns; of them along d                     */
+  const contact_problem *cp; /* of this step */
+  const pattern *p;          /* of this step */
+  double power;              /* of two: W*power has a diagonal of order 1 */
+  unknown *list;             /* [m] */
+  int *dof;                  /* [m] of each */
+  int *place;                /* [n] of the normal force in the list, or -1 */
+  int *turn;                 /* [n] of the unknown along d, or -1 */
+  int n, n_turn;             /* unknowns; of them along d */
   dense K;                   /* their matrix, times power; factor of the base */
-  double *x, *y;             /* [m]                                           */
-  int n_base;                /* unknowns of the base, 0: none                 */
-  int *base, *in_base;       /* [m], [m] its unknowns; their place, -1: not   */
+  double *x, *y;             /* [m] */
+  int n_base;                /* unknowns of the base, 0: none */
+  int *base, *in_base;       /* [m], [m] its unknowns; their place, -1: not */
   double spent;              /* on freed forces since it was made, operations */
-  int room, n_column;        /* columns of X: most, made                      */
-  int *column;               /* [m] of X, of unknowns of the base, -1: none   */
-  double *X;                 /* [m*room]                                      */
-  int n_freed, *freed;       /* [room] unknowns of the base                   */
-  double *C, *z;             /* [room*room], [room] small system              */
-  int *pivot;                /* [room]                                        */
+  int room, n_column;        /* columns of X: most, made */
+  int *column;               /* [m] of X, of unknowns of the base, -1: none */
+  double *X;                 /* [m*room] */
+  int n_freed, *freed;       /* [room] unknowns of the base */
+  double *C, *z;             /* [room*room], [room] small system */
+  int *pivot;                /* [room] */
 };
 
 /* ---- forces freed in a kept factor --------------------------------------- */
@@ -55,7 +55,7 @@ struct compliance_system {
 enum {
   READ = 8
 }; /* solves whose arithmetic takes as long as reading the
-      factor                                                 */
+      factor */
 
 /* 1: the forces of a slipping node are unknowns of the base. */
 static int slip_in_base(const compliance_system *s, int node_id) {
@@ -196,10 +196,10 @@ static int freed_solve(compliance_system *s) {
   return 1;
 }
 
-enum { REFINEMENTS = 3, SHARE = 4 };    /* 1/SHARE: most forces freed         */
-static const double ROUNDING = 0x1p-44; /* -, of the displacements           */
+enum { REFINEMENTS = 3, SHARE = 4 };    /* 1/SHARE: most forces freed */
+static const double ROUNDING = 0x1p-44; /* -, of the displacements */
 static const double DEFECT = 0x1p-20;   /* -, of the right side: a good solve */
-static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal        */
+static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal */
 
 status compliance_system_new(const contact_problem *cp,
                              compliance_system **out) {

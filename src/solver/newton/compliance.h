@@ -20,7 +20,7 @@
 typedef struct compliance_system compliance_system;
 status compliance_system_new(const contact_problem *cp,
                              compliance_system **out);
-void compliance_system_free(compliance_system *s); /* accepts NULL            */
+void compliance_system_free(compliance_system *s); /* accepts NULL */
 /* raw = W r + q */
 void compliance_displace(const contact_problem *cp, const double *r,
                          double *raw);

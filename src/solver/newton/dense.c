@@ -9,7 +9,7 @@
 
 enum { TILE = 32 }; /* for the cache */
 static const double SINGULAR_RCOND = 1e-13;
-static const double SUSPECT = 0x1p-20; /* -, smallest over largest pivot      */
+static const double SUSPECT = 0x1p-20; /* -, smallest over largest pivot */
 
 status dense_new(int room, dense *d) {
   size_t m = (size_t)room;

@@ -5,10 +5,10 @@
 #include "base/status.h"
 
 typedef struct dense {
-  double *a;          /* [n*n] lower triangle or all, then the factor         */
-  int n, full;        /* unknowns; 1: LU, 0: Cholesky                         */
-  int *pivot, *iwork; /* [room]                                               */
-  double *work;       /* [4 room]                                             */
+  double *a;          /* [n*n] lower triangle or all, then the factor */
+  int n, full;        /* unknowns; 1: LU, 0: Cholesky */
+  int *pivot, *iwork; /* [room] */
+  double *work;       /* [4 room] */
 } dense;
 
 status dense_new(int room, dense *d);

@@ -33,7 +33,7 @@
 #include <string.h>
 
 typedef struct newton {
-  int steps; /* of one attempt; 0: chosen by the program                     */
+  int steps; /* of one attempt; 0: chosen by the program */
 } newton;
 
 /* clang-format off */
@@ -45,24 +45,24 @@ static const option newton_options[] = {
 /* clang-format on */
 
 enum {
-  HISTORY = 64,    /* patterns remembered                                   */
-  FULL_STEPS = 40, /* of an attempt; more while the residual falls          */
+  HISTORY = 64,    /* patterns remembered */
+  FULL_STEPS = 40, /* of an attempt; more while the residual falls */
   MOST_STEPS = 1000,
-  PATIENCE = 25,    /* steps without a lower residual                        */
-  SMALL = 400,      /* unknowns: a step costs next to nothing                */
-  MANY_STEPS = 100, /* of an attempt that makes part of the changes          */
-  SWEEPS = 100      /* of relaxation before another attempt                  */
+  PATIENCE = 25,    /* steps without a lower residual */
+  SMALL = 400,      /* unknowns: a step costs next to nothing */
+  MANY_STEPS = 100, /* of an attempt that makes part of the changes */
+  SWEEPS = 100      /* of relaxation before another attempt */
 };
 static const double SETTLING = 0.5; /* -, residual a step with springs leaves */
 static const uint64_t DICE_START = 88172645463325252u;
 
 typedef struct newton_work {
   states states;
-  newton_system *system;         /* NULL: only the compliance is known        */
-  compliance_system *compliance; /* or NULL                                   */
+  newton_system *system;         /* NULL: only the compliance is known */
+  compliance_system *compliance; /* or NULL */
   node_blocks *blocks;
   best_iterate best;
-  uint64_t seen[HISTORY]; /* hashes of the patterns of the attempt           */
+  uint64_t seen[HISTORY]; /* hashes of the patterns of the attempt */
 } newton_work;
 
 static void newton_release(void *work) {
@@ -102,9 +102,9 @@ typedef struct run {
   states *st;
   const solver_control *control;
   double *u, *r;
-  double scale; /* contact_scale, N (m)                                       */
-  int steps;    /* made so far                                               */
-  int singular; /* the last system needed springs                            */
+  double scale; /* contact_scale, N (m) */
+  int steps;    /* made so far */
+  int singular; /* the last system needed springs */
 } run;
 
 static double residual_of(const run *s) {
@@ -123,11 +123,11 @@ static int met_before(const run *s, int step) {
 
 /* How an attempt goes. */
 typedef struct course {
-  double lowest;      /* residual, -                                      */
-  double before;      /* of the last step                                 */
-  int at, best_at;    /* this step, the one of the lowest residual        */
-  int changes, cycle; /* states that would change; pattern met before     */
-  int settled;        /* the step before was within the tolerance         */
+  double lowest;      /* residual, - */
+  double before;      /* of the last step */
+  int at, best_at;    /* this step, the one of the lowest residual */
+  int changes, cycle; /* states that would change; pattern met before */
+  int settled;        /* the step before was within the tolerance */
 } course;
 
 /* 1: solved, and a further step would change nothing or little, or is more than

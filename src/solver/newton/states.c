@@ -7,7 +7,7 @@
 #include <string.h>
 
 static const double WARM_SLIP = 0x1p-20; /* -, of g: counts as slipping at the
-                                            start                            */
+                                            start */
 
 /* Of each unknown alone, and the mean over a tangent plane. */
 static void set_stiffness(const contact_problem *cp, states *s) {

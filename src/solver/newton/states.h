@@ -12,15 +12,15 @@
 typedef struct states {
   const contact_problem *cp;
   pattern guess;
-  double *u;        /* [m] of the caller, m                                   */
-  double *r;        /* [m] of the caller, N                                   */
-  double *raw;      /* [m] A u - f, N; compliance form: W r + q, m            */
-  double *k;        /* [m] stiffness of each unknown alone, N/m               */
-  double *c;        /* [n] mean of them in the tangent plane, N/m             */
-  double *g;        /* [n] sliding limits, N                                  */
-  double *rounding; /* [n] of the forces of each node, N                   */
-  int careful;      /* one state changed at a time, the least index first     */
-  uint64_t dice;    /* not 0: each change is made or put off at random        */
+  double *u;        /* [m] of the caller, m */
+  double *r;        /* [m] of the caller, N */
+  double *raw;      /* [m] A u - f, N; compliance form: W r + q, m */
+  double *k;        /* [m] stiffness of each unknown alone, N/m */
+  double *c;        /* [n] mean of them in the tangent plane, N/m */
+  double *g;        /* [n] sliding limits, N */
+  double *rounding; /* [n] of the forces of each node, N */
+  int careful;      /* one state changed at a time, the least index first */
+  uint64_t dice;    /* not 0: each change is made or put off at random */
 } states;
 
 /* Arrays for a matrix. */

@@ -11,37 +11,37 @@
 #include <string.h>
 
 enum {
-  CHUNK = 32, /* rows gathered at a time                                      */
-  READ = 8    /* solves whose arithmetic takes as long as reading the factor  */
+  CHUNK = 32, /* rows gathered at a time */
+  READ = 8    /* solves whose arithmetic takes as long as reading the factor */
 };
 
 struct newton_system {
-  const contact_problem *cp; /* of the last fit                              */
+  const contact_problem *cp; /* of the last fit */
   size_t n_node;
-  int m, symmetric; /* symmetric: -1: not yet looked at                      */
-  double power; /* of two: A*power has a diagonal of order 1                  */
-  dense K;      /* factor of the base                                         */
-  pattern base; /* what it was made for                                       */
+  int m, symmetric; /* symmetric: -1: not yet looked at */
+  double power;     /* of two: A*power has a diagonal of order 1 */
+  dense K;          /* factor of the base */
+  pattern base;     /* what it was made for */
   int has_base;
-  uint64_t friction;  /* hash of B in it                                     */
-  double spent;       /* on updates of the base, operations                  */
-  int updated;        /* the last step came from an update                   */
-  int room, n_column; /* columns of X: most, made                            */
-  int *column;        /* [m] of X, -1: not made                              */
-  double *X;          /* [m*room] inv(M0) e_j                                */
-  double *C;          /* [room*room] small system                            */
-  double *rows;       /* [m*CHUNK]                                           */
-  double *product;    /* [CHUNK*room]                                        */
-  int n_changed;      /* rows in which the guess differs from the base       */
-  int *changed;       /* [m]                                                 */
-  double *b, *x, *du; /* [m]                                                 */
-  double *z, *weight; /* [room], [room]                                      */
-  int *small_pivot;   /* [room]                                            */
+  uint64_t friction;  /* hash of B in it */
+  double spent;       /* on updates of the base, operations */
+  int updated;        /* the last step came from an update */
+  int room, n_column; /* columns of X: most, made */
+  int *column;        /* [m] of X, -1: not made */
+  double *X;          /* [m*room] inv(M0) e_j */
+  double *C;          /* [room*room] small system */
+  double *rows;       /* [m*CHUNK] */
+  double *product;    /* [CHUNK*room] */
+  int n_changed;      /* rows in which the guess differs from the base */
+  int *changed;       /* [m] */
+  double *b, *x, *du; /* [m] */
+  double *z, *weight; /* [room], [room] */
+  int *small_pivot;   /* [room] */
 };
 
 /* ---- the matrix of a guess of the states, and its factor ----------------- */
 
-static const double SPRING = 0x1p-36; /* -, of the diagonal                   */
+static const double SPRING = 0x1p-36; /* -, of the diagonal */
 
 /* ---- the matrix ---------------------------------------------------------- */
 
@@ -198,7 +198,7 @@ static void newton_spring_step(newton_system *s, const pattern *p) {
 /* ---- rows exchanged in a kept factor ------------------------------------- */
 
 static const double DRIFT = 0x1p-3; /* -, change of a slip direction or turning
-                                       stiffness the base bears (3-D)         */
+                                       stiffness the base bears (3-D) */
 
 /* 1: the node slips in another direction than in the base; in 3-D a small
  * change is borne. */
@@ -344,10 +344,10 @@ static int newton_exchange(newton_system *s, const pattern *p) {
 }
 
 enum { SHARE = 4 }; /* rows exchanged: at most 1/SHARE of the unknowns */
-static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal        */
+static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal */
 static const double DEFECT = 0x1p-20;   /* -, of the right side: a good solve */
-static const double ROUNDING = 0x1p-44; /* -, of the forces                   */
-static const double CHORD = 0x1p-4; /* -, of it: what a 3-D update may leave  */
+static const double ROUNDING = 0x1p-44; /* -, of the forces */
+static const double CHORD = 0x1p-4; /* -, of it: what a 3-D update may leave */
 
 status pattern_new(int dim, int n, pattern *p) {
   PASS_NEW(p->closed, dim * n);

@@ -27,11 +27,11 @@ typedef enum { FREE, STICK, SLIP } tangent;
 
 /* A guess of the states. */
 typedef struct pattern {
-  unsigned char *closed; /* [m] 1: normal or side bound active                */
-  unsigned char *mode;   /* [n] tangent                                       */
-  double *e;             /* [n*(dim-1)] direction of the friction force, -    */
-  double *kappa;         /* [n] turning stiffness, N/m                        */
-  int *free_id, *place;  /* [m] free unknowns; their place, -1: known         */
+  unsigned char *closed; /* [m] 1: normal or side bound active */
+  unsigned char *mode;   /* [n] tangent */
+  double *e;             /* [n*(dim-1)] direction of the friction force, - */
+  double *kappa;         /* [n] turning stiffness, N/m */
+  int *free_id, *place;  /* [m] free unknowns; their place, -1: known */
   int n_free;
 } pattern;
 status pattern_new(int dim, int n, pattern *p);
@@ -40,7 +40,7 @@ void pattern_copy(int dim, int n, const pattern *from, pattern *to);
 
 typedef struct newton_system newton_system;
 status newton_system_new(const contact_problem *cp, newton_system **out);
-void newton_system_free(newton_system *s); /* accepts NULL                    */
+void newton_system_free(newton_system *s); /* accepts NULL */
 /* The problem to be solved next, on the same A; borrowed. */
 void newton_system_fit(newton_system *s, const contact_problem *cp);
 /* A known value is put into u, then u is moved by the step of the guess p, of

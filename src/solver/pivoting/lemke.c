@@ -190,8 +190,8 @@ static void lemke_set_solution(lemke_run *s, double *u, double *r) {
 /* ---- rays: is the motion at the end of the path free in fact, and does the
  * load do more work on it than friction takes?. */
 
-static const double RAY_DEFECT = 1e-8; /* -, forces a free motion may cause   */
-static const double RAY_WORK = 0x1p-30; /* -, margin of the work of the load  */
+static const double RAY_DEFECT = 1e-8;  /* -, forces a free motion may cause */
+static const double RAY_WORK = 0x1p-30; /* -, margin of the work of the load */
 
 /* 1: the motion w->ray causes no force, and the load does more work on it than
  * "resistance", N m. */
@@ -258,7 +258,7 @@ const double *lemke_ray(const void *work) {
 }
 
 typedef struct lemke {
-  int facets; /* of the friction polygon, 3-D; 0: 8                           */
+  int facets; /* of the friction polygon, 3-D; 0: 8 */
 } lemke;
 
 /* clang-format off */

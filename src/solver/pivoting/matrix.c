@@ -81,7 +81,7 @@ void lemke_list_variables(lemke_run *s) {
 /* ---- the matrix of the unknowns kept: the tangents without friction
  * eliminated, node by node scaled. */
 
-static const double SINGULAR = 1e-13; /* -, of the largest eigenvalue         */
+static const double SINGULAR = 1e-13; /* -, of the largest eigenvalue */
 
 static void gather(const lemke_run *s, int n_row, const int *row, int n_col,
                    const int *col, double *to) {

@@ -18,33 +18,35 @@ typedef enum { BOUND, SLIDE, LIMIT } variable_type;
 
 typedef struct variable {
   variable_type type;
-  int node_id, dof; /* dof: of the reduced matrix, the first of two tangents  */
-  double e[2];      /* direction; the second is 0 in 2-D                      */
+  int node_id, dof; /* dof: of the reduced matrix, the first of two tangents */
+  double e[2];      /* direction; the second is 0 in 2-D */
 } variable;
 
 typedef enum { IS_BOUND, IS_FRICTION, IS_FREE, IS_HELD } dof_kind;
 
 typedef struct lemke_work {
   int m, facets;
-  int n_kept, n_free, n_var; /* reduced unknowns, eliminated ones, z          */
-  double unit;               /* of two: S = unit D A D has diagonal <= 1      */
+  int n_kept, n_free, n_var; /* reduced unknowns, eliminated ones, z */
+  double unit;               /* of two: S = unit D A D has diagonal <= 1 */
   lcp_work *lcp;
-  double *S;     /* [n_kept^2] reduced and scaled matrix                      */
-  double *inner; /* [n_free^2] inverse of A_FF, then [n_free*n_kept] that
-                    times A_FK                                                */
-  double *spare; /* [m*m] or NULL: for the pseudo-inverse                     */
-  double *D;     /* [n] scale of a node, power of two                         */
-  double *tame;  /* [n] factor of the rows with the limit, power of two      */
-  double *base;  /* [m] u (r) at z = 0                                        */
-  double *raw;   /* [m] A u - f (W r + q)                                     */
-  double *v, *t; /* [m]                                                       */
-  double *ray;   /* [m] motion of the last ray                                */
-  double *best_u, *best_r, *work; /* [m], [m], [4m]                           */
+  double *S;                      /* [n_kept^2] reduced and scaled matrix */
+  double *inner;                  /* [n_free^2] inverse of A_FF, then
+                                     [n_free*n_kept] that times A_FK */
+  double *spare;                  /* [m*m] or NULL: for the pseudo-inverse */
+  double *D;                      /* [n] scale of a node, power of two */
+  double *tame;                   /* [n] factor of the rows with the limit,
+                                     power of two */
+  double *base;                   /* [m] u (r) at z = 0 */
+  double *raw;                    /* [m] A u - f (W r + q) */
+  double *v, *t;                  /* [m] */
+  double *ray;                    /* [m] motion of the last ray */
+  double *best_u, *best_r, *work; /* [m], [m], [4m] */
   int has_ray, has_facets;
-  int *kept, *free_id, *pivot, *kind; /* [m]                                  */
-  int *normal, *slide, *n_slide;      /* [n] variable of u_n; first SLIDE     */
-  variable *var;          /* [n_var]                                         */
-  double *q, *d, *z, *dz; /* [n_var]                                         */
+  /* [m] */
+  int *kept, *free_id, *pivot, *kind;
+  int *normal, *slide, *n_slide; /* [n] variable of u_n; first SLIDE */
+  variable *var;                 /* [n_var] */
+  double *q, *d, *z, *dz;        /* [n_var] */
   const solver_ops *corrector[N_CORRECTOR];
   void *corrector_param[N_CORRECTOR], *corrector_work[N_CORRECTOR];
 } lemke_work;
@@ -53,7 +55,7 @@ typedef struct lemke_run {
   const contact_problem *cp;
   lemke_work *w;
   const solver_control *control;
-  const double *M; /* A or W                                                  */
+  const double *M; /* A or W */
 } lemke_run;
 
 /* 1: stiffness form; 0: compliance form. */

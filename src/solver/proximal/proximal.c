@@ -42,18 +42,18 @@ typedef struct step_matrix step_matrix;
  */
 
 struct step_matrix {
-  int m, k;             /* unknowns; of them in the system                    */
-  const force_set *set; /* borrowed                                           */
-  sparse_rows own;      /* rows of W where the set has none                   */
-  const sparse_rows *W; /* the one or the other                               */
-  int *place;           /* [m] in the system, -1: taken out                   */
-  double *line;         /* [m] the current row                                */
-  const double *d;      /* [m] borrowed                                       */
-  double *rhs, *x;      /* [m]                                                */
-  double *full;         /* [m*m] rows of the system, one after the other      */
-  int *pivot;           /* [m]                                                */
-  sparse_rows rows;     /* the same where W is sparse                         */
-  int room_col, room_val; /* entries of rows                                  */
+  int m, k;               /* unknowns; of them in the system */
+  const force_set *set;   /* borrowed */
+  sparse_rows own;        /* rows of W where the set has none */
+  const sparse_rows *W;   /* the one or the other */
+  int *place;             /* [m] in the system, -1: taken out */
+  double *line;           /* [m] the current row */
+  const double *d;        /* [m] borrowed */
+  double *rhs, *x;        /* [m] */
+  double *full;           /* [m*m] rows of the system, one after the other */
+  int *pivot;             /* [m] */
+  sparse_rows rows;       /* the same where W is sparse */
+  int room_col, room_val; /* entries of rows */
   double control[UMFPACK_CONTROL];
 };
 
@@ -214,20 +214,20 @@ static status step_matrix_solve(step_matrix *s, double *d, int *singular) {
 static const option proximal_options[] = {OPTION_END};
 
 enum {
-  STEPS = 7200,   /* Newton steps, all trials                                */
-  TRIAL = 1800,   /* of a trial                                              */
-  TRIALS = 4,     /* one after the other                                     */
-  PASS = 40,      /* of a pass                                               */
-  EASY = 5,       /* a pass with so few: the share falls                     */
-  HARD = 15,      /*           with more: it rises                           */
-  PATIENCE = 100, /* passes without a lower residual                         */
-  MEMORY = 8,     /* last values a step is compared with                     */
-  HALVINGS = 10   /* of a step                                               */
+  STEPS = 7200,   /* Newton steps, all trials */
+  TRIAL = 1800,   /* of a trial */
+  TRIALS = 4,     /* one after the other */
+  PASS = 40,      /* of a pass */
+  EASY = 5,       /* a pass with so few: the share falls */
+  HARD = 15,      /* with more: it rises */
+  PATIENCE = 100, /* passes without a lower residual */
+  MEMORY = 8,     /* last values a step is compared with */
+  HALVINGS = 10   /* of a step */
 };
-static const double PASS_GAIN = 0x1p-7;    /* |F|^2 a pass shall leave, -     */
-static const double SLOPE = 0x1p-12;       /* of the descent asked for, -     */
-static const double CREEP = 0.75;          /* residual a pass shall leave, -  */
-static const double LEAST_SHARE = 0x1p-40; /* -                               */
+static const double PASS_GAIN = 0x1p-7;    /* |F|^2 a pass shall leave, - */
+static const double SLOPE = 0x1p-12;       /* of the descent asked for, - */
+static const double CREEP = 0.75;          /* residual a pass shall leave, - */
+static const double LEAST_SHARE = 0x1p-40; /* - */
 static const double MOST_SHARE = 0x1p10;
 
 /* How the trials go: stretch s, share a at the start. The last starts with all
@@ -240,11 +240,12 @@ typedef struct proximal_work {
   force_set *set;
   best_iterate best;
   step_matrix *J;
-  unsigned char *acts; /* [m] 1: the row of J is not that of the unit matrix */
-  double *x, *F, *d, *z; /* [m]                                               */
-  double *weight; /* [m] of F, m/N                                            */
-  double *start, *centre; /* [m] force at the start; of the pass              */
-  double *before;         /* [m] end of the last pass                         */
+  unsigned char *acts;    /* [m] 1: the row of J is not that of the unit
+                             matrix */
+  double *x, *F, *d, *z;  /* [m] */
+  double *weight;         /* [m] of F, m/N */
+  double *start, *centre; /* [m] force at the start; of the pass */
+  double *before;         /* [m] end of the last pass */
 } proximal_work;
 
 static void proximal_release(void *work) {
@@ -291,8 +292,8 @@ typedef struct run {
   proximal_work *w;
   const solver_control *control;
   double *u, *r;
-  double scale;          /* contact_scale                                     */
-  double stretch, share; /* s and a                                           */
+  double scale;          /* contact_scale */
+  double stretch, share; /* s and a */
   int steps;
 } run;
 
