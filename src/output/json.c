@@ -6,6 +6,7 @@
 #include "output/json_text.h"
 #include "output/writers.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static void write_exit(json *w, const run_summary *run) {
@@ -26,8 +27,7 @@ static void write_effect(json *w, const plan_row *r, double cpu,
   if (r->of[0] != '\0') json_string(w, "of", r->of);
   json_flag(w, "on", r->on);
   json_string(w, "why", r->why);
-  if (r->work.kind != NULL)
-    json_named_count(w, r->work.kind, r->work.items);
+  if (r->work.kind != NULL) json_named_count(w, r->work.kind, r->work.items);
   json_real(w, "expected_cpu_percent", 100 * r->share);
   if (r->on && r->work.calls >= 0 && r->n_stage > 0)
     json_count(w, "expected_calls", r->work.calls);
@@ -124,10 +124,41 @@ static void write_accuracy(json *w, const job *j) {
   write_saved(w, j);
   if (j->m->effects & EFFECT_REFERENCE)
     json_real(w, "effectivity", job_effectivity(j));
+  if (j->m->n_contact > 0)
+    json_real(w, "penetration_worst", run->penetration_worst);
   json_real(w, "energy_defect_worst", run->defect_worst);
   if (run->facts_known) json_real(w, "condition", run->facts.condition);
   if (run->facts_known) json_real(w, "digits_left", run->facts.digits);
   json_close(w, '}');
+}
+
+/* A contact at the end of a step; the answer is what follows its values. */
+static const double *write_contact(json *w, const model *m, int id,
+                                   const double *value) {
+  json_string(w, "contact", m->contacts[id].name);
+  for (const column *c = NULL; (c = job_end_column(m, c)) != NULL; ++value)
+    if (c->form == AS_COUNT && isfinite(*value))
+      json_count(w, c->name, *value);
+    else
+      json_real(w, c->name, *value);
+  return value;
+}
+
+static void write_contacts(json *w, const job *j) {
+  const size_t size = job_end_size(j->m);
+  json_open(w, "contacts", '[');
+  for (int k = 0; k < j->m->n_step; ++k) {
+    const double *end = j->run->ends + (size_t)k * size, *value = end + 2;
+    for (int i = 0; i < j->m->n_contact && end[0] > 0; ++i) {
+      json_open(w, NULL, '{');
+      json_count(w, "step", k + 1);
+      json_count(w, "increment", end[0]);
+      json_real(w, "time", end[1]);
+      value = write_contact(w, j->m, i, value);
+      json_close(w, '}');
+    }
+  }
+  json_close(w, ']');
 }
 
 static void write_pass(json *w, const output_options *o, const pass_row *r) {
@@ -350,6 +381,7 @@ static void write_all(FILE *f, const void *what) {
   write_neglected(w, j->m);
   write_sizes(w, j);
   write_accuracy(w, j);
+  write_contacts(w, j);
   write_passes(w, j);
   write_cost(w, j->o);
   write_resting(w, &j->run->tally);

@@ -23,7 +23,8 @@ static void release(output *o) {
     RELEASE(o->run.increments[i].solutions,
             (void *)o->run.increments[i].theorems.contacts);
   }
-  RELEASE(o->run.increments, o->kept, o->facts, o->whys, o->reasons, o);
+  RELEASE(o->run.ends, o->run.increments, o->kept, o->facts, o->whys,
+          o->reasons, o);
 }
 
 /* What an earlier run left must not be taken for a result of this one. */
@@ -116,6 +117,7 @@ status output_open(const model *m, const mesh *msh, const output_options *opt,
   o->attempt = 1;
   o->run.message = "";
   o->progress = opt->progress && isatty(STDERR_FILENO);
+  NEW(o->run.ends, (size_t)m->n_step * job_end_size(m));
   TRY(plan_new(m, m->has_problem ? NULL : msh, opt->n_problem, &o->plan));
   TRY(open_all(o));
   *out = o;

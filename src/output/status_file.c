@@ -9,9 +9,9 @@
 
 status sta_header(const output_options *o, text_file *sta) {
   fprintf(sta->f,
-          "#%5s %5s %3s %11s %11s %7s %7s %7s %-9s %7s %10s %9s %9s %9s",
-          "step", "inc", "att", "time", "dt", "open", "slip", "stick", "solver",
-          "iter", "residual", "mesh[%]", "steps[%]", "error[%]");
+          "%-6s %5s %3s %11s %11s %7s %7s %7s %-9s %7s %10s %9s %9s %9s",
+          "#step", "inc", "att", "time", "dt", "open", "slip", "stick",
+          "solver", "iter", "residual", "mesh[%]", "steps[%]", "error[%]");
   if (!o->no_timing) fprintf(sta->f, " %9s", "cpu[s]");
   fprintf(sta->f, " reason\n");
   return text_check(sta);
@@ -66,7 +66,7 @@ status sta_line(const output_options *o, const state *s, const char *why,
   char t[NUMBER_SIZE], dt[NUMBER_SIZE], residual[NUMBER_SIZE];
   char error[NUMBER_SIZE], in_mesh[NUMBER_SIZE], in_steps[NUMBER_SIZE];
   const solver_report *r = &s->report;
-  fprintf(sta->f, "%6d %5d %3d %s %s %7d %7d %7d %-9s %7d %s %9s %9s %9s",
+  fprintf(sta->f, "%6d %5d %3d %11s %11s %7d %7d %7d %-9s %7d %10s %9s %9s %9s",
           s->step_no, s->increment_no, s->attempt, text_number(t, s->t, 4),
           text_number(dt, s->dt, 4), s->contacts.n_open, s->contacts.n_slip,
           s->contacts.n_stick, r->solver != NULL ? r->solver : "-",
@@ -79,7 +79,7 @@ status sta_line(const output_options *o, const state *s, const char *why,
 }
 
 void cvg_header(text_file *cvg) {
-  fprintf(cvg->f, "#%6s %3s %-9s %6s %6s %10s %8s %12s %5s\n", "total", "att",
+  fprintf(cvg->f, "%-7s %3s %-9s %6s %6s %10s %8s %12s %5s\n", "#total", "att",
           "solver", "iter", "limit", "residual", "changes", "limit_change",
           "cycle");
 }

@@ -12,6 +12,34 @@
 /* The larger; NaN wins, so that it is seen. */
 static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
 
+const column *job_end_column(const model *m, const column *c) {
+  do c = column_next(c);
+  while (c != NULL && (c->of != PER_CONTACT || c->form == AS_WORD ||
+                       !(c->tables & PRINT_TOTALS) || !column_visible(c, m)));
+  return c;
+}
+
+size_t job_end_size(const model *m) {
+  size_t n = 0;
+  for (const column *c = NULL; (c = job_end_column(m, c)) != NULL;) ++n;
+  return 2 + n * (size_t)m->n_contact;
+}
+
+/* The contacts of the last increment so far of the step. */
+static void remember_contacts(output *o, const state *s) {
+  const view v = {o->m, o->msh, s};
+  double *to = o->run.ends + (size_t)(s->step_no - 1) * job_end_size(o->m);
+  *to++ = s->increment_no;
+  *to++ = s->t;
+  for (int i = 0; i < o->m->n_contact; ++i) {
+    for (const column *c = NULL; (c = job_end_column(o->m, c)) != NULL;)
+      *to++ = column_ready(c, s) ? c->value(&v, i, c->part) : NAN;
+    if (s->contacts.totals != NULL)
+      o->run.penetration_worst =
+          worse(o->run.penetration_worst, s->contacts.totals[i].penetration);
+  }
+}
+
 /* The facts of what CHECK= found. */
 static status remember_solutions(const solution_set *set,
                                  increment_summary *i) {
@@ -68,6 +96,7 @@ status output_remember(output *o, const state *s) {
   if (s->body.flow != NULL) run->tally = *s->body.flow->tally;
   PASS(remember_solutions(s->errors.solutions, i));
   PASS(remember_theory(&s->errors.theorems, i));
+  remember_contacts(o, s);
   if (!s->settled) ++run->n_unsettled;
   return OK;
 }
@@ -166,7 +195,16 @@ static status keep_counts(output *o, archive *a, file_ends *ends) {
   PASS(archive_ints(a, "unsettled", &run->n_unsettled, 1));
   PASS(archive_reals(a, "residual_worst", &run->residual_worst, 1));
   PASS(archive_reals(a, "defect_worst", &run->defect_worst, 1));
+  PASS(archive_reals(a, "penetration_worst", &run->penetration_worst, 1));
   return archive_bytes(a, "tally", &run->tally, sizeof run->tally);
+}
+
+/* Of the steps so far, both ways. */
+static status keep_ends(output *o, archive *a) {
+  const int n = o->run.n_increment;
+  const size_t steps = n > 0 ? (size_t)o->run.increments[n - 1].step_no : 0;
+  return archive_reals(a, "contact_ends", o->run.ends,
+                       steps * job_end_size(o->m));
 }
 
 static status keep_increments(output *o, archive *a) {
@@ -174,6 +212,7 @@ static status keep_increments(output *o, archive *a) {
   int n_fact = 0;
   PASS(copy_increments(o, &used, &n_fact));
   PASS(archive_bytes(a, "summary", o->kept, n * sizeof *o->kept));
+  PASS(keep_ends(o, a));
   PASS(archive_bytes(a, "whys", o->whys, used));
   return archive_bytes(a, "solutions", o->facts,
                        (size_t)n_fact * sizeof *o->facts);
@@ -223,6 +262,7 @@ static status read_increments(output *o, archive *a) {
   run->capacity = run->n_increment;
   PASS(archive_bytes(a, "summary", run->increments,
                      n * sizeof *run->increments));
+  PASS(keep_ends(o, a));
   PASS(read_reasons(o, a));
   n_fact = archive_length(a, "solutions") / sizeof *o->facts;
   PASS_NEW(o->facts, n_fact);

@@ -132,6 +132,9 @@ static void add_node(const run *r, int i) {
   t->n_slip += r->result.contact[i] == CONTACT_SLIP;
   t->n_stick += r->result.contact[i] == CONTACT_STICK;
   if (r->result.contact[i] != CONTACT_OPEN) t->area += s->area[i];
+  t->penetration = fmax(t->penetration, -r->result.open_gap[i]);
+  if (s->area[i] > 0)
+    t->pressure = fmax(t->pressure, -r->now.rc[dim * i] / s->area[i]);
 }
 
 static void find_totals(run *r) {

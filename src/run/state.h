@@ -20,6 +20,7 @@ typedef struct contact_total {
   double moment[3]; /* N m, about the origin (2-D: moment[2] only)         */
   double normal, tangential[2]; /* sums in the contact frame, N               */
   double area; /* closed area, m2                                     */
+  double pressure, penetration; /* the largest of its nodes, Pa, m; >= 0      */
   int n_open, n_slip, n_stick;
 } contact_total;
 

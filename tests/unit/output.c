@@ -114,6 +114,43 @@ START_TEST(status_file_has_a_line_per_attempt) {
 }
 END_TEST
 
+/* Each word of the header ends where the numbers below it end, those of words
+ * (solver, reason) begin there, and awk counts as many. */
+START_TEST(header_of_the_status_file_stands_over_its_columns) {
+  char dir[64];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 2, 3);
+  output_options o = quiet(dir);
+  output *out = NULL;
+  o.no_timing = 0;
+  ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
+  history_sink sink = output_sink(out);
+  ck_assert_int_eq(sink.ready(sink.ctx, &made->facts, &made->surface), OK);
+  made_up_advance(made, 1);
+  made->s.report.residual = NAN;
+  ck_assert_int_eq(sink.increment(sink.ctx, &made->s), OK);
+  ck_assert_int_eq(output_close(out, OK, 0), OK);
+  char *text = folder_file(dir, "block.sta", NULL);
+  const char *head = text, *row = strchr(text, '\n') + 1;
+  int words = 0;
+  ck_assert(head[0] == '#' && head[1] == 's');
+  for (int i = 0; head[i] != '\n' && row[i] != '\n'; ++i) {
+    const int here = head[i] != ' ', next = head[i + 1] > ' ';
+    words += here && !next;
+    if (words < 2) continue; /* "#step" is flush with the margin */
+    if (here && !next && head + i < strstr(head, " reason") &&
+        strncmp(head + i - 5, "solver", 6) != 0)
+      ck_assert_msg(row[i] != ' ' && row[i + 1] == ' ', "at %d:\n%s", i, text);
+  }
+  ck_assert_int_eq(words, 15); /* without the last */
+  ck_assert(row[strstr(head, "solver") - head] == 'n');
+  ck_assert(row[strstr(head, "reason") - head] == 'O');
+  free(text);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
 START_TEST(unsettled_increment_is_seen_everywhere) {
   char dir[64];
   folder_new(dir);
@@ -536,6 +573,7 @@ END_TEST
 
 UNIT_MAIN("output", two_runs_give_the_same_bytes,
           status_file_has_a_line_per_attempt,
+          header_of_the_status_file_stands_over_its_columns,
           unsettled_increment_is_seen_everywhere,
           reasons_of_stopping_are_told_apart,
           json_is_valid_whatever_the_texts_and_numbers,

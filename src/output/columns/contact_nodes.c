@@ -9,6 +9,10 @@
 #define SURFACE (v->s->contacts.surface)
 VALUE(contact_node_no, SURFACE->node_no[id])
 VALUE(contact_no, SURFACE->contact_id[id] + 1)
+static const char *contact_name(const view *v, int id) {
+  return v->m->contacts[SURFACE->contact_id[id]].name;
+}
+
 VALUE(contact_x, SURFACE->x[at(SURFACE->dim, id, part)])
 VALUE(contact_u_n, v->s->contacts.uc[at(SURFACE->dim, id, 0)])
 VALUE(contact_u_t, v->s->contacts.uc[at(SURFACE->dim, id, part + 1)])
@@ -182,5 +186,7 @@ const column contact_node_columns[] = {
 {"w", "-", CON, PRINT_CONTACT, C, SCENE_LCP, NEEDS_SURFACE, NULL, 0, lcp_w,
  NULL, "q + M z"},
 OF_EFFECTS,
+{"contact", "-", PER_CONTACT_NODE, AS_WORD, PLACES, C, PLACED, NULL, 0,
+ contact_no, contact_name, "name of the *CONTACT"},
 NO_COLUMN};
 /* clang-format on */

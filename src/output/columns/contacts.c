@@ -11,6 +11,7 @@ VALUE(total_moment, v->s->contacts.totals[id].moment[part])
 VALUE(total_normal, -v->s->contacts.totals[id].normal)
 VALUE(total_tangential, v->s->contacts.totals[id].tangential[part])
 VALUE(total_area, v->s->contacts.totals[id].area)
+VALUE(total_pressure, v->s->contacts.totals[id].pressure)
 VALUE(total_open, v->s->contacts.totals[id].n_open)
 VALUE(total_slip, v->s->contacts.totals[id].n_slip)
 VALUE(total_stick, v->s->contacts.totals[id].n_stick)
@@ -63,5 +64,7 @@ OF_EFFECTS,
  "slipping nodes"},
 {"stick", "-", TOT_N, TOTAL(SCENE_ALL), "stick", 0, total_stick, NULL,
  "sticking nodes"},
+{"pressure_max", PA, TOT, TOTAL(SCENE_ALL), "pressure_max", 0, total_pressure,
+ NULL, "the largest of its nodes"},
 NO_COLUMN};
 /* clang-format on */

@@ -8,6 +8,7 @@
 #include "base/archive/archive.h"
 #include "run/history/history.h"
 #include "effects/plan/plan.h"
+#include "run/column.h"
 
 typedef struct output_options {
   const char *dir;     /* folder of the results; NULL or "": the current one */
@@ -60,6 +61,8 @@ typedef struct run_summary {
   int n_increment, capacity, n_rejected, n_unsettled;
   increment_summary *increments; /* [n_increment]                          */
   double residual_worst, defect_worst; /* - ; the defect relative           */
+  double penetration_worst;            /* m, of all contact nodes           */
+  double *ends; /* [n_step * job_end_size] owned: see job_end_column        */
   flow_tally tally; /* points with a threshold                              */
   status verdict;
   const char *message; /* of a failed run, or ""                            */
@@ -82,6 +85,12 @@ typedef struct job {
   const effect_plan *plan; /* of the effects */
 } job;
 
+/* The numbers of the table TOTALS that the model has, one after another: for
+ * each step run_summary.ends has the number (0: none) and the time of its last
+ * increment so far, then contact by contact the values of these columns. */
+const column *job_end_column(const model *m, const column *c);
+/* Numbers of a step there. */
+size_t job_end_size(const model *m);
 /* The estimates asked for; how many rows. */
 int job_budget(const job *j, budget_row rows[BUDGET_ROWS]);
 /* What TOL=BALANCED saved in all increments that were asked. */

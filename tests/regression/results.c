@@ -1,0 +1,82 @@
+/*
+ * What other programs and people read of a run: the contacts by name in tables
+ * and JOB.json, tables as csv, the lines on a terminal.
+ */
+#include "support/job.h"
+#include "support/tips.h"
+#include "support/unit.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const double area = 0.70710678118654752; /* of a tip: half an edge */
+
+/* Two tips, each in a contact of its own, pressed by 10 and 4, then by twice
+ * that: a smooth floor bears what presses. */
+static job two_contacts(void) {
+  job j = tips_new(
+      500, "",
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+      "*CONTACT, NAME=LEFT, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n"
+      "*CONTACT, NAME=\"RIGHT, OUTER\", GROUP=FOOT2, OBSTACLE=O, "
+      "NORMAL=OBSTACLE\n"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
+      "*CLOAD\nTIPS, 2, -4.\nFOOT1, 2, -6.\n*SOLVER, TOL=1E-13\n"
+      "*PRINT, CONTACT, TOTALS\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n1., 1.\n*CLOAD\nTIPS, 2, -8.\nFOOT1, 2, -12.\n"
+      "*END STEP\n");
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* The next number of that name after *at. */
+static double next_number(const char **at, const char *name) {
+  char key[60];
+  snprintf(key, sizeof key, "\"%s\": ", name);
+  *at = strstr(*at, key);
+  ck_assert_msg(*at != NULL, "no %s", name);
+  *at += strlen(key);
+  return strtod(*at, NULL);
+}
+
+START_TEST(json_has_the_contacts_at_the_end_of_each_step) {
+  static const double force[] = {10, 4, 20, 8};
+  job j = two_contacts();
+  char *text = job_file(&j, "json");
+  const char *at = strstr(text, "\"contacts\": [");
+  ck_assert_ptr_nonnull(at);
+  for (int i = 0; i < 4; ++i) {
+    ck_assert(next_number(&at, "step") == 1 + i / 2);
+    ck_assert(next_number(&at, "increment") == 2 - i / 2);
+    ck_assert_double_eq_tol(next_number(&at, "time"), 1 + i / 2, 1e-12);
+    next_number(&at, "contact");
+    ck_assert_int_eq(strncmp(at, i % 2 ? "\"RIGHT, OUTER\"" : "\"LEFT\"", 6),
+                     0);
+    ck_assert_double_eq_tol(next_number(&at, "force_y"), force[i], 1e-9);
+    ck_assert_double_eq_tol(next_number(&at, "closed_area"), area, 1e-12);
+    ck_assert(next_number(&at, "open") == 0);
+    ck_assert_double_eq_tol(next_number(&at, "pressure_max"), force[i] / area,
+                            1e-9);
+  }
+  free(text);
+  job_end(&j);
+}
+END_TEST
+
+/* The last word of each row of CONTACT. */
+START_TEST(nodes_have_the_name_of_their_contact) {
+  job j = two_contacts();
+  char *text = job_file(&j, "dat");
+  const char *at = strstr(text, "table CONTACT");
+  ck_assert_ptr_nonnull(strstr(at, " contact[-]\n"));
+  at = strstr(at, " LEFT\n");
+  ck_assert_ptr_nonnull(at);
+  ck_assert_ptr_nonnull(strstr(at, " RIGHT,_OUTER\n"));
+  free(text);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("results", json_has_the_contacts_at_the_end_of_each_step,
+          nodes_have_the_name_of_their_contact)
