@@ -12,6 +12,7 @@
 #include "program/job.h"
 #include "program/lock.h"
 #include "program/restart.h"
+#include "program/tables.h"
 #include "program/target.h"
 
 #include <fcntl.h>
@@ -103,7 +104,8 @@ int main(int argc, char **argv) {
   }
   status st = message_log_new(&log);
   if (st == OK) st = command_apply(&c, log);
-  if (st == OK) st = run_job(&c, log, &unsettled);
+  if (st == OK)
+    st = c.table != NULL ? tables_print(&c) : run_job(&c, log, &unsettled);
   exit_code = report(st, log, unsettled);
   message_log_free(log);
   command_free(&c);

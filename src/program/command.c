@@ -25,6 +25,8 @@ enum {
   ASK_MEMORY,
   ASK_SAFE,
   ASK_RESTART,
+  ASK_TABLE,
+  ASK_FORMAT,
   ASK_QUIET,
   ASK_ESTIMATE,
   ASK_NO_TIMING,
@@ -46,6 +48,8 @@ static const char *const help_rows[][2] = {
   {"--safe", "for decks of strangers: no .geo, only files below the deck"},
   {"--no-timing", "no CPU seconds in the files: equal runs give equal bytes"},
   {"--restart", "go on with a run that was interrupted, from JOB.rst.h5"},
+  {"--table NAME[:last]", "a table of the finished job as csv, to stdout"},
+  {"--format csv|tsv", "of --table"},
   {"--quiet", "no progress line"},
   {"--help", "this text"},
   {"--version", "version, libraries, BLAS kernel"},
@@ -73,6 +77,8 @@ static const struct option words[] = {
   {"max-memory", required_argument, NULL, ASK_MEMORY},
   {"safe", no_argument, NULL, ASK_SAFE},
   {"restart", no_argument, NULL, ASK_RESTART},
+  {"table", required_argument, NULL, ASK_TABLE},
+  {"format", required_argument, NULL, ASK_FORMAT},
   {"quiet", no_argument, NULL, ASK_QUIET},
   {"no-timing", no_argument, NULL, ASK_NO_TIMING},
   {"help", no_argument, NULL, ASK_HELP},
@@ -225,6 +231,13 @@ static int take_option(int what, const char *value, const char *given,
         return wrong("-D needs NAME=VALUE, not ", value);
       c->defines[c->n_define++] = value;
       return -1;
+    case ASK_TABLE:
+      c->table = value;
+      return -1;
+    case ASK_FORMAT:
+      c->tabs = strcmp(value, "tsv") == 0;
+      if (c->tabs || strcmp(value, "csv") == 0) return -1;
+      return wrong("--format knows csv and tsv, not ", value);
     case ASK_THREADS:
       if (read_threads(value, c)) return -1;
       return wrong("--threads needs a number from 1 to 1024, not ", value);

@@ -78,5 +78,50 @@ START_TEST(nodes_have_the_name_of_their_contact) {
 }
 END_TEST
 
-UNIT_MAIN("results", json_has_the_contacts_at_the_end_of_each_step,
+/* protis JOB --table words, through a command that reads it; what that says. */
+static char *read_by(const job *j, const char *words, const char *command) {
+  char text[600], *said = calloc(4000, 1);
+  snprintf(text, sizeof text, "'%s' '%s/%s' --table %s 2>&1 | %s",
+           getenv("PROTIS"), j->dir, j->name, words, command);
+  FILE *f = popen(text, "r");
+  ck_assert_ptr_nonnull(f);
+  ck_assert_uint_gt(fread(said, 1, 3999, f), 0);
+  ck_assert_int_eq(pclose(f), 0);
+  return said;
+}
+
+START_TEST(tables_are_read_by_other_programs) {
+  static const struct {
+    const char *words, *command, *said;
+  } ways[] = {
+      {"totals", "sed -n 's/,.*contact,.*/ &/;1p' | cut -d, -f1-5",
+       "step ,increment,time,contact,force_x\n"},
+      {"TOTALS", "wc -l | tr -d ' '", "7\n"},
+      {"TOTALS:last", "wc -l | tr -d ' '", "3\n"},
+      {"TOTALS:last", "grep -c '\"RIGHT,_OUTER\",'", "1\n"},
+      {"CONTACT:last --format tsv",
+       "awk -F '\\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i } "
+       "NR > 1 { print $4, $at[\"status\"], "
+       "int($at[\"f_n\"] + 0.5) }'",
+       "LEFT SLIP 20\nRIGHT,_OUTER SLIP 8\n"},
+      {"CONTACT --format tsv",
+       "gnuplot -e \"set datafile separator tab; stats '/dev/stdin' using "
+       "'f_n' nooutput; print sprintf('%d %.9g', STATS_records, STATS_sum)\" "
+       "2>&1",
+       "6 49\n"},
+      {"NODES", "sed 's/.*dat has/has/; s/ \\*PRINT.*//'",
+       "has no table NODES; it has CONTACT TOTALS;\n"}};
+  job j = two_contacts();
+  for (size_t i = 0; i < sizeof ways / sizeof *ways; ++i) {
+    char *said = read_by(&j, ways[i].words, ways[i].command);
+    ck_assert_msg(strcmp(said, ways[i].said) == 0, "--table %s: %s",
+                  ways[i].words, said);
+    free(said);
+  }
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("results", tables_are_read_by_other_programs,
+          json_has_the_contacts_at_the_end_of_each_step,
           nodes_have_the_name_of_their_contact)

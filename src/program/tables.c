@@ -1,0 +1,226 @@
+#include "program/tables.h"
+
+#include "base/memory.h"
+#include "base/text.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { WORDS = 80, NAME_SIZE = 160 };
+
+/* What a block of the table stands under. */
+typedef struct heading {
+  char step[16], increment[16], time[40], table[32], group[NAME_SIZE];
+} heading;
+
+typedef struct extract {
+  const char *path; /* of JOB.dat                                            */
+  char name[32];    /* of the table wanted                                   */
+  char separator;
+  int last; /* 1: only what belongs to the time of the last block            */
+  FILE *f;
+  char *line; /* of getline                                                  */
+  size_t size;
+  heading now, end; /* of the block read, of the last one wanted             */
+  int n_word;
+  char *word[WORDS]; /* of the line; into it                                 */
+  int n_column, n_place, grouped;
+  char column[WORDS][NAME_SIZE]; /* of all blocks                            */
+  int place[WORDS]; /* [n_place] of the words of the block in column; -1     */
+} extract;
+
+/* The columns that every row begins with, and what they are called in the
+ * tables that have them too. */
+static const char *const keys[] = {"step", "increment", "time"};
+
+static int is_key(const char *name) {
+  for (int i = 0; i < 3; ++i)
+    if (strcmp(name, keys[i]) == 0) return 1;
+  return 0;
+}
+
+static int split(extract *e) {
+  char *rest = e->line;
+  e->n_word = 0;
+  for (char *w; (w = strtok_r(rest, " \t\r\n", &rest)) != NULL;)
+    if (e->n_word < WORDS) e->word[e->n_word++] = w;
+  return e->n_word;
+}
+
+static int next_line(extract *e) {
+  return getline(&e->line, &e->size, e->f) > 0;
+}
+
+static int same_time(const heading *a, const heading *b) {
+  return strcmp(a->step, b->step) == 0 &&
+         strcmp(a->increment, b->increment) == 0 &&
+         strcmp(a->time, b->time) == 0;
+}
+
+/* 1: the line opens a block, whose heading is then known. */
+static int read_heading(extract *e) {
+  heading h = {.group = ""};
+  const int n =
+      sscanf(e->line,
+             "# step %15s increment %15s time %39s table %31s group %159[^\n]",
+             h.step, h.increment, h.time, h.table, h.group);
+  if (n >= 4) e->now = h;
+  return n >= 4;
+}
+
+/* The names of the columns, without units; new ones are added. */
+static void read_columns(extract *e) {
+  const int n = split(e);
+  e->n_place = n - 1;
+  for (int i = 1; i < n; ++i) {
+    char *unit = strchr(e->word[i], '[');
+    int k = 0;
+    if (unit != NULL) *unit = '\0';
+    e->place[i - 1] = -1;
+    if (is_key(e->word[i])) continue;
+    while (k < e->n_column && strcmp(e->column[k], e->word[i]) != 0) ++k;
+    if (k == WORDS) continue;
+    if (k == e->n_column)
+      snprintf(e->column[e->n_column++], NAME_SIZE, "%s", e->word[i]);
+    e->place[i - 1] = k;
+  }
+}
+
+/* Words with a comma or a quote stand in quotes (RFC 4180). */
+static void put_word(const extract *e, const char *word, char before) {
+  const int quoted = e->separator == ',' && strpbrk(word, ",\"") != NULL;
+  if (before != '\0') putchar(before);
+  if (quoted) putchar('"');
+  for (; *word != '\0'; ++word) {
+    if (quoted && *word == '"') putchar('"');
+    putchar(*word);
+  }
+  if (quoted) putchar('"');
+}
+
+/* Which column stands in place k: the name of the contact goes first. */
+static int shown_at(const extract *e, int k) {
+  int first = 0;
+  while (first < e->n_column && strcmp(e->column[first], "contact") != 0)
+    ++first;
+  if (first == e->n_column) return k;
+  if (k == 0) return first;
+  return k <= first ? k - 1 : k;
+}
+
+static void put_row(const extract *e, const char *const *value) {
+  const char *const all[] = {e->now.step, e->now.increment, e->now.time};
+  for (int i = 0; i < 3; ++i)
+    put_word(e, value == NULL ? keys[i] : all[i], i > 0 ? e->separator : '\0');
+  if (e->grouped)
+    put_word(e, value == NULL ? "group" : e->now.group, e->separator);
+  for (int k = 0; k < e->n_column; ++k) {
+    const int c = shown_at(e, k);
+    put_word(e, value == NULL ? e->column[c] : value[c], e->separator);
+  }
+  putchar('\n');
+}
+
+/* A row that a killed run has cut short is none. */
+static void copy_row(extract *e) {
+  const char *value[WORDS];
+  if (strchr(e->line, '\n') == NULL || split(e) != e->n_place) return;
+  for (int k = 0; k < e->n_column; ++k) value[k] = "";
+  for (int i = 0; i < e->n_place; ++i)
+    if (e->place[i] >= 0) value[e->place[i]] = e->word[i];
+  put_row(e, value);
+}
+
+/* All lines once: to know columns and end ("print" 0), or to print. */
+static void pass(extract *e, int print) {
+  int inside = 0; /* 1: before the names, 2: rows                           */
+  rewind(e->f);
+  while (next_line(e))
+    if (read_heading(e)) {
+      inside = strcasecmp(e->now.table, e->name) == 0;
+      if (inside && !print) e->end = e->now;
+      if (inside && e->now.group[0] != '\0') e->grouped = 1;
+      if (inside && print && e->last) inside = same_time(&e->now, &e->end);
+    } else if (inside == 1 && e->line[0] == '#') {
+      read_columns(e);
+      inside = 2;
+    } else if (inside == 2 && print) {
+      copy_row(e);
+    }
+}
+
+/* The tables of the file, each once. */
+static void list_tables(extract *e, char *text, size_t size) {
+  size_t used = 0;
+  text[0] = '\0';
+  rewind(e->f);
+  while (next_line(e)) {
+    char word[40];
+    if (!read_heading(e)) continue;
+    snprintf(word, sizeof word, " %s", e->now.table);
+    if (strstr(text, word) == NULL && used + strlen(word) < size)
+      used += (size_t)snprintf(text + used, size - used, "%s", word);
+  }
+}
+
+static status print_all(extract *e) {
+  char there[400];
+  pass(e, 0);
+  if (e->end.step[0] == '\0') {
+    list_tables(e, there, sizeof there);
+    RAISE(ERR_DECK,
+          "%s has no table %s; it has%s; *PRINT of the deck asks for others",
+          e->path, e->name, there[0] != '\0' ? there : " none");
+  }
+  put_row(e, NULL);
+  pass(e, 1);
+  if (ferror(e->f)) PASS(text_failed(e->path, "read", errno));
+  errno = 0;
+  if ((fflush(stdout) != 0 || ferror(stdout)) && errno != EPIPE)
+    PASS(text_failed("standard output", "write", errno));
+  return OK;
+}
+
+/* NAME, NAME:last or NAME:all. */
+static status read_name(const char *text, extract *e) {
+  const size_t n = strcspn(text, ":");
+  if (n == 0 || n >= sizeof e->name ||
+      (text[n] == ':' && strcasecmp(text + n, ":last") != 0 &&
+       strcasecmp(text + n, ":all") != 0))
+    RAISE(ERR_DECK, "--table needs NAME, NAME:last or NAME:all, not %s", text);
+  snprintf(e->name, sizeof e->name, "%.*s", (int)n, text);
+  e->last = strcasecmp(text + n, ":last") == 0;
+  return OK;
+}
+
+/* The name of the job of a deck JOB.inp or a table JOB.dat. */
+static char *job_name(const char *file) {
+  const char *slash = strrchr(file, '/');
+  char *name = memory_text(slash != NULL ? slash + 1 : file);
+  const size_t n = name != NULL ? strlen(name) : 0;
+  if (n > 4 && (strcasecmp(name + n - 4, ".inp") == 0 ||
+                strcasecmp(name + n - 4, ".dat") == 0))
+    name[n - 4] = '\0';
+  return name;
+}
+
+status tables_print(const command *c) {
+  status st = OK;
+  OWNED extract *e = NULL;
+  OWNED char *name = job_name(c->deck_file), *path = NULL;
+  if (name != NULL) path = text_path(c->dir, name, "dat");
+  if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
+  PASS_NEW(e, 1);
+  PASS(read_name(c->table, e));
+  e->path = path;
+  e->separator = c->tabs ? '\t' : ',';
+  e->f = fopen(path, "r");
+  if (e->f == NULL) PASS(text_failed(path, "read", errno));
+  st = print_all(e);
+  fclose(e->f);
+  free(e->line);
+  return st;
+}
