@@ -41,7 +41,7 @@ void *effect_state(const effect_list *list, const effect_ops *e) {
 
 static void enter(const effect_ops *e) {
   const stage s = effect_stage(e);
-  if (s == STAGE_NONE) return;
+  if (s == STAGE_NONE || e->inside) return;
   if (e->beside)
     timer_enter_whole(s);
   else
@@ -50,34 +50,22 @@ static void enter(const effect_ops *e) {
 
 static void leave(const effect_ops *e) {
   const stage s = effect_stage(e);
-  if (s != STAGE_NONE) timer_leave(s);
+  if (s != STAGE_NONE && !e->inside) timer_leave(s);
 }
 
 static int is_due(const run *r, int k) {
   const effect_ops *e = r->effects.on[k].ops;
-  return !r->effects.on[k].borrowed && (e->due == NULL || e->due(r));
+  return !r->effects.on[k].borrowed && (e->on.due == NULL || e->on.due(r));
 }
-
-/* Calls CALL with the hook of each effect e that has it and its state. */
-#define EACH(run_, hook, if_, call)                   \
-  for (int k_ = 0; k_ < (run_)->effects.n; ++k_) {    \
-    const effect_ops *e = (run_)->effects.on[k_].ops; \
-    void *state_ = (run_)->effects.on[k_].state;      \
-    if (e->hook == NULL || !(if_)) continue;          \
-    enter(e);                                         \
-    st = (call);                                      \
-    leave(e);                                         \
-    if (st != OK) break;                              \
-  }
 
 status effects_create(run *r) {
   status st = OK;
   effect_list *list = &r->effects;
   for (int k = 0; effect_table[k] != NULL && st == OK; ++k) {
     const effect_ops *e = effect_table[k];
-    if (e->create == NULL || !effect_is_on(e, r->m)) continue;
+    if (e->on.create == NULL || !effect_is_on(e, r->m)) continue;
     list->on[list->n].ops = e;
-    st = e->create(r, &list->on[list->n++].state);
+    st = e->on.create(r, &list->on[list->n++].state);
   }
   return st;
 }
@@ -89,56 +77,70 @@ const char *effects_sum_up(const run *r) {
   return NULL;
 }
 
-status effects_begin_step(run *r) {
-  status st = OK;
-  EACH(r, begin_step, 1, e->begin_step(r, state_))
-  return st;
+/* effects_HOOK: "call" for each effect e that has the hook and for which "if_"
+ * holds, own its state, timed or not. */
+#define EACH(hook, parameters, timed, if_, call)  \
+  status effects_##hook parameters {              \
+    for (int k = 0; k < r->effects.n; ++k) {      \
+      const effect_ops *e = r->effects.on[k].ops; \
+      void *own = r->effects.on[k].state;         \
+      if (e->on.hook == NULL || !(if_)) continue; \
+      if (timed) enter(e);                        \
+      const status st = call;                     \
+      if (timed) leave(e);                        \
+      if (st != OK) return st;                    \
+    }                                             \
+    return OK;                                    \
+  }
+
+EACH(prepare, (run * r), 0, 1, e->on.prepare(r, own))
+EACH(begin_step, (run * r), 1, 1, e->on.begin_step(r, own))
+EACH(initial, (run * r), 1, is_due(r, k), e->on.initial(r, own))
+EACH(pose, (run * r, double t), 1, 1, e->on.pose(r, own, t))
+EACH(rewrite, (run * r, contact_problem *cp, double **u, double *force), 1,
+     is_due(r, k), e->on.rewrite(r, own, cp, u, force))
+EACH(found, (run * r, int *again), 1, !*again, e->on.found(r, own, again))
+EACH(examine, (run * r, double t), 1, 1, e->on.examine(r, own, t))
+EACH(accept, (run * r), 1, is_due(r, k), e->on.accept(r, own))
+
+void effects_restore(run *r, contact_problem *cp, double *u, double *force) {
+  for (int k = r->effects.n - 1; k >= 0; --k)
+    if (r->effects.on[k].ops->on.restore != NULL && is_due(r, k))
+      r->effects.on[k].ops->on.restore(r, r->effects.on[k].state, cp, u, force);
 }
 
-status effects_initial(run *r) {
-  status st = OK;
-  EACH(r, initial, is_due(r, k_), e->initial(r, state_))
-  return st;
+void effects_describe(const run *r, setup_facts *f) {
+  for (int k = 0; k < r->effects.n; ++k)
+    if (r->effects.on[k].ops->on.describe != NULL)
+      r->effects.on[k].ops->on.describe(r, r->effects.on[k].state, f);
 }
 
-status effects_pose(run *r, double t) {
-  status st = OK;
-  EACH(r, pose, 1, e->pose(r, state_, t))
-  return st;
+void effects_forget(run *r) {
+  for (int k = 0; k < r->effects.n; ++k)
+    if (r->effects.on[k].ops->on.forget != NULL)
+      r->effects.on[k].ops->on.forget(r, r->effects.on[k].state);
 }
 
-status effects_found(run *r, int *again) {
-  status st = OK;
-  *again = 0;
-  EACH(r, found, 1, e->found(r, state_, again))
-  return st;
-}
-
-status effects_examine(run *r, double t) {
-  status st = OK;
-  EACH(r, examine, 1, e->examine(r, state_, t))
-  return st;
-}
-
-status effects_accept(run *r) {
-  status st = OK;
-  EACH(r, accept, is_due(r, k_), e->accept(r, state_))
-  return st;
+int effects_reach_far(const run *r) {
+  int any = 0;
+  for (int k = 0; effect_table[k] != NULL; ++k)
+    any |= effect_table[k]->far && effect_is_on(effect_table[k], r->m);
+  return any;
 }
 
 void effects_show(const run *r, state *s) {
   for (int k = 0; k < r->effects.n; ++k)
-    if (r->effects.on[k].ops->show != NULL && is_due(r, k))
-      r->effects.on[k].ops->show(r->effects.on[k].state, s);
+    if (r->effects.on[k].ops->on.show != NULL && is_due(r, k))
+      r->effects.on[k].ops->on.show(r->effects.on[k].state, s);
 }
 
 status effects_keep(run *r, archive *a) {
   status st = OK;
   for (int k = 0; k < r->effects.n && st == OK; ++k) {
     const effect_ops *e = r->effects.on[k].ops;
-    if (e->keep == NULL) continue;
+    if (e->on.keep == NULL) continue;
     archive_enter(a, e->name);
-    st = e->keep(r, r->effects.on[k].state, a);
+    st = e->on.keep(r, r->effects.on[k].state, a);
     archive_leave(a);
   }
   return st;
@@ -152,9 +154,10 @@ status effects_copy(const run *from, run *copy) {
     const effect_ops *e = from->effects.on[k].ops;
     void *own = from->effects.on[k].state;
     list->on[list->n].ops = e;
-    list->on[list->n].borrowed = e->copy == NULL;
-    list->on[list->n].state = e->copy == NULL ? own : NULL;
-    if (e->copy != NULL) st = e->copy(from, own, &list->on[list->n].state);
+    list->on[list->n].borrowed = e->on.copy == NULL;
+    list->on[list->n].state = e->on.copy == NULL ? own : NULL;
+    if (e->on.copy != NULL)
+      st = e->on.copy(from, own, copy, &list->on[list->n].state);
     ++list->n;
   }
   return st;
@@ -162,7 +165,7 @@ status effects_copy(const run *from, run *copy) {
 
 void effects_release(run *r) {
   for (int k = 0; k < r->effects.n; ++k)
-    if (!r->effects.on[k].borrowed && r->effects.on[k].ops->release != NULL)
-      r->effects.on[k].ops->release(r->effects.on[k].state);
+    if (!r->effects.on[k].borrowed && r->effects.on[k].ops->on.release != NULL)
+      r->effects.on[k].ops->on.release(r->effects.on[k].state);
   r->effects.n = 0;
 }

@@ -23,6 +23,51 @@ typedef struct effect_work effect_work; /* the same                           */
 
 enum { EFFECT_STAGES = 7, NO_BIT = -1 };
 
+/* Any may be NULL. The stage of the effect is entered around those marked T. */
+typedef struct effect_hooks {
+  /* *own is new and not NULL; it is released also after a failure. */
+  status (*create)(struct run *r, void **own);
+  /* 0: initial, accept, show, rewrite have nothing to do at this increment, and
+   * are not counted. */
+  int (*due)(const struct run *r);
+  /* A step begins, its supports are checked: what is made of r->surface. */
+  status (*prepare)(struct run *r, void *own);
+  /* What the listing is told before the first increment. */
+  void (*describe)(const struct run *r, const void *own, setup_facts *f);
+  /* T: r->step has a surface, a matrix, and a solver for its contact. */
+  status (*begin_step)(struct run *r, void *own);
+  /* T: the initial displacements are r->old, posed in r->problem.cp. */
+  status (*initial)(struct run *r, void *own);
+  /* T: gaps and load of time t are set: what it changes. */
+  status (*pose)(struct run *r, void *own, double t);
+  /* T: *cp as the solver takes it; u, force [cp->m]: start values, made to fit;
+   * *u may be put elsewhere. */
+  status (*rewrite)(struct run *r, void *own, contact_problem *cp, double **u,
+                    double *force);
+  /* The answer of what rewrite made of cp to the one of cp, into u, force. */
+  void (*restore)(struct run *r, void *own, contact_problem *cp, double *u,
+                  double *force);
+  /* T: r->now is an equilibrium; *again = 1: the problem has changed. */
+  status (*found)(struct run *r, void *own, int *again);
+  /* T: the increment that ends at t has been solved and will be taken; r->now
+   * may be solved again. */
+  status (*examine)(struct run *r, void *own, double t);
+  /* T: r->now is an increment of the run, r->old what it started from. */
+  status (*accept)(struct run *r, void *own);
+  /* What the outputs show of it beside its columns. */
+  void (*show)(const void *own, state *s);
+  /* The contact surface goes, and what is made of it. */
+  void (*forget)(struct run *r, void *own);
+  /* Both ways, in a group of its own. */
+  status (*keep)(struct run *r, void *own, archive *a);
+  /* *out: a state for "copy" of the run, which solves a state within the
+   * increment. Without this hook the copy poses with that of the run and
+   * accepts nothing. */
+  status (*copy)(const struct run *r, const void *own, struct run *copy,
+                 void **out);
+  void (*release)(void *own);
+} effect_hooks;
+
 typedef struct effect_ops {
   const char *name;
   int bit; /* EFFECT_BIT_... that m->effects keeps the answer of called_for
@@ -38,38 +83,16 @@ typedef struct effect_ops {
   stage more[EFFECT_STAGES]; /* of run and outputs that count as it, 0 ends   */
   const char *within; /* the effect that it is part of; no stage then         */
   int beside; /* 1: stages entered inside a hook are part of it               */
+  int inside; /* 1: the hooks enter the stage themselves, where it has work   */
 
   /* Why half the increments tell nothing of the error of the steps, where what
    * it adds up over them has a part in it; NULL: none. */
   const char *sums_up;
+  /* 1: contact nodes may be moved or pressed by it in ways that the loads and
+   * supports at the ends of a step do not tell. */
+  int far;
 
-  /* *own is new and not NULL; it is released also after a failure. */
-  status (*create)(struct run *r, void **own);
-  /* 0: accept has nothing to do at this increment, and is not counted. */
-  int (*due)(const struct run *r);
-  /* r->step has a surface, a matrix, and a solver for its contact. */
-  status (*begin_step)(struct run *r, void *own);
-  /* The initial displacements are r->old, posed in r->problem.cp. */
-  status (*initial)(struct run *r, void *own);
-  /* Gaps, position of stick and limit of time t are set: what it changes. */
-  status (*pose)(struct run *r, void *own, double t);
-  /* r->now is an equilibrium; *again = 1: the problem has changed. */
-  status (*found)(struct run *r, void *own, int *again);
-  /* The increment that ends at t has been solved and will be taken; r->now may
-   * be solved again. */
-  status (*examine)(struct run *r, void *own, double t);
-  /* r->now is an increment of the run, r->old what it started from. */
-  status (*accept)(struct run *r, void *own);
-  /* What the outputs show of it beside its columns. */
-  void (*show)(const void *own, state *s);
-  /* Both ways, in a group of its own. */
-  status (*keep)(struct run *r, void *own, archive *a);
-  /* *out: a state for a copy of the run that solves a state within the
-   * increment. Without this hook the copy poses with that of the run and
-   * accepts nothing. */
-  status (*copy)(const struct run *r, const void *own, void **out);
-  void (*release)(void *own);
-
+  effect_hooks on;
   const column *columns; /* [n_column]                                        */
   int n_column;
   int (*items)(const void *own); /* rows of its own table                   */

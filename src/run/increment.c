@@ -1,81 +1,15 @@
 /*
- * One equilibrium: loads and obstacles at time t, condensed load, sliding
- * limit, contact solver, recovery of the interior (CPR98, problem S_i^n).
- * The problem goes to the solver in the form the deck asks for: with given
- * normal forces taken out (*CONTACT FORCE), in the displacement or in its
- * change (*QUASISTATIC, FORM=).
+ * One equilibrium: loads and obstacles at time t, condensed load, contact
+ * problem, contact solver, recovery of the interior (CPR98, problem S_i^n).
  */
 #include "run/run.h"
 
 #include "base/memory.h"
 #include "base/sparse.h"
 #include "base/timer.h"
-#include "contact/formulation/form.h"
 
 #include <math.h>
 #include <string.h>
-
-struct forms {
-  velocity_form *velocity; /* NULL until asked for */
-  given_form *given; /* NULL until asked for                             */
-  int n, *node;      /* [n] contact nodes with a given normal force      */
-  double *force;     /* [n] N, >= 0                                      */
-};
-
-void forms_free(forms *f) {
-  if (f == NULL) return;
-  velocity_form_free(f->velocity);
-  given_form_free(f->given);
-  memory_free(f->node);
-  memory_free(f->force);
-  memory_free(f);
-}
-
-static const given_force *force_of(const run *r, int i) {
-  return &r->m->contacts[r->surface->contact_id[i]].force;
-}
-
-/* The contact with a given force among those that meet in a corner, or -1. */
-static int forced_corner(const run *r, int i) {
-  const contact_surface *s = r->surface;
-  int id = s->contact_id[i];
-  if (!surface_is_corner(s, i)) return -1;
-  for (int k = 0; k < s->dim - 1 && !r->m->contacts[id].force.given; ++k)
-    if (s->side_id[(s->dim - 1) * i + k] >= 0)
-      id = s->side_id[(s->dim - 1) * i + k];
-  return r->m->contacts[id].force.given ? id : -1;
-}
-
-/* Two contacts at one node take its normals for unilateral conditions. */
-static status check_corners(const run *r) {
-  status st = OK;
-  for (int i = 0; i < r->nodes.n; ++i) {
-    int id = forced_corner(r, i);
-    if (id < 0) continue;
-    message_add(r->m->log, P4012, &r->m->contacts[id].force.at,
-                "contact %s meets another contact at node %zu",
-                r->m->contacts[id].name, r->surface->node_no[i]);
-    FAIL(ERR_DECK, "*CONTACT FORCE at a corner of two contacts");
-  }
-done:
-  return st;
-}
-
-status forms_new(run *r) {
-  status st = OK;
-  forms_free(r->problem.forms);
-  r->problem.forms = NULL;
-  NEW(r->problem.forms, 1);
-  if (!(r->m->effects & EFFECT_GIVEN)) goto done;
-  forms *f = r->problem.forms;
-  TRY(check_corners(r));
-  NEW(f->node, r->nodes.n);
-  for (int i = 0; i < r->nodes.n; ++i)
-    if (force_of(r, i)->given) f->node[f->n++] = i;
-  NEW(f->force, f->n);
-done:
-  return st;
-}
 
 /* The unknown of a row of r->problem.cp among those of all contact nodes. */
 static int unknown_of(const run *r, int row) {
@@ -84,10 +18,13 @@ static int unknown_of(const run *r, int row) {
          row % r->nodes.rows;
 }
 
+void run_take_rows(const run *r, const double *v, double *rows) {
+  for (int i = 0; i < r->nodes.n_row; ++i) rows[i] = v[unknown_of(r, i)];
+}
+
 double *run_rows(const run *r, int k, double *v) {
   if (r->nodes.n_row == r->nodes.n_c) return v;
-  for (int i = 0; i < r->nodes.n_row; ++i)
-    r->problem.row[k][i] = v[unknown_of(r, i)];
+  run_take_rows(r, v, r->problem.row[k]);
   return r->problem.row[k];
 }
 
@@ -118,79 +55,6 @@ static void take_interior(const run *r) {
       r->now.uc[dim * i + a] = sum;
     }
   }
-}
-
-/* The given pressures at time t times the areas of the nodes. */
-static status set_forces(run *r, double t) {
-  status st = OK;
-  forms *f = r->problem.forms;
-  const contact_surface *s = r->surface;
-  for (int k = 0; k < f->n; ++k) {
-    int i = f->node[k];
-    double x[3] = {0.0, 0.0, 0.0};
-    memcpy(x, s->x + s->dim * i, (size_t)s->dim * sizeof *x);
-    const given_force *given = force_of(r, i);
-    double p = quantity_value(&given->value, x, t);
-    f->force[k] = p * s->area[i];
-    if (isfinite(p) && p >= 0.0) continue;
-    message_add(r->m->log, P2041, &given->value_at,
-                "*CONTACT FORCE: value %g at node %zu (%g, %g, %g), time %g; "
-                "expected a number that is not negative",
-                p, s->node_no[i], x[0], x[1], x[2], t);
-    FAIL(ERR_DECK, "%s:%d: a given contact force is negative or no number",
-         given->value_at.file, given->value_at.line_no);
-  }
-done:
-  return st;
-}
-
-status forms_given(run *r, double t, double *given) {
-  status st = OK;
-  const forms *f = r->problem.forms;
-  for (int i = 0; i < r->nodes.n; ++i) given[i] = -1.0;
-  TRY(set_forces(r, t));
-  for (int k = 0; k < f->n; ++k) given[f->node[k]] = f->force[k];
-done:
-  return st;
-}
-
-/* *cp with the given normal forces in the place of the unilateral condition;
- * u, rc hold the start values. */
-static status take_given(run *r, double *u, double *rc, contact_problem *cp) {
-  status st = OK;
-  forms *f = r->problem.forms;
-  contact_problem own = *cp;
-  timer_enter(STAGE_GIVEN);
-  TRY(set_forces(r, r->now.t));
-  if (f->given == NULL) TRY(given_form_new(cp, f->n, f->node, &f->given));
-  TRY(given_form_set(f->given, &own, f->force, r->msh->size, u, rc, cp));
-done:
-  timer_leave(STAGE_GIVEN);
-  return st;
-}
-
-/* The last equilibrium, from which the increment and its slip are counted:
- * start values may be others. Normals with a given force stand apart, at 0. */
-static void put_old(const run *r, double *u_old) {
-  const forms *f = r->problem.forms;
-  for (int i = 0; i < r->nodes.n_row; ++i)
-    u_old[i] = r->old.uc[unknown_of(r, i)];
-  for (int k = 0; k < f->n; ++k) u_old[r->nodes.rows * f->node[k]] = 0.0;
-}
-
-/* *cp in the displacement of the increment; *u: start values of the unknown
- * before in, of that out. */
-static status take_velocity(run *r, contact_problem *cp, double **u) {
-  status st = OK;
-  forms *f = r->problem.forms;
-  contact_problem own = *cp;
-  timer_enter(STAGE_VELOCITY);
-  if (f->velocity == NULL) TRY(velocity_form_new(cp, &f->velocity));
-  put_old(r, velocity_form_old(f->velocity));
-  velocity_form_set(f->velocity, &own, cp, u);
-done:
-  timer_leave(STAGE_VELOCITY);
-  return st;
 }
 
 static double residual_of(run *r, double *u, double *rc) {
@@ -228,7 +92,7 @@ static status drop_reactions(const run *r, double *residual, double *u,
                              double *rc) {
   status st = OK;
   double *q = NULL, *zero = NULL;
-  if (r->course.beside || r->problem.forms->n > 0 || condensed_floating(r->c))
+  if (r->course.beside || r->problem.given != NULL || condensed_floating(r->c))
     goto done;
   NEW(q, r->nodes.n_row);
   NEW(zero, r->nodes.n_row);
@@ -244,137 +108,37 @@ done:
   return st;
 }
 
-/* r->problem.cp solved in the form asked for, from r->old into r->now. */
-static status forms_solve(run *r) {
-  status st = OK;
+/* r->problem.cp solved as the effects rewrite it, from r->old into r->now. */
+static status solve_contact(run *r) {
   const solver_listener listener = {r->sink->iteration, r->sink->ctx};
   const solver_listener *told =
       listener.step == NULL || r->course.beside ? NULL : &listener;
-  int given = r->problem.forms->n > 0, in_du = r->step->form == FORM_VELOCITY;
-  contact_problem whole = r->problem.cp, cp;
+  contact_problem cp = r->problem.cp;
   take_start(r);
   double *own_u = run_rows(r, 0, r->now.uc), *u = own_u;
   double *rc = run_rows(r, 1, r->now.rc);
   double tol = r->solving.tol;
   if (is_open(r, r->old.uc) &&
       largest_entry((size_t)r->nodes.n_c, r->old.rc) == 0.0)
-    TRY(drop_reactions(r, &tol, u, rc));
-  if (given) TRY(take_given(r, u, rc, &whole));
-  cp = whole;
-  if (in_du) TRY(take_velocity(r, &cp, &u));
+    PASS(drop_reactions(r, &tol, u, rc));
+  PASS(effects_rewrite(r, &cp, &u, rc));
   timer_enter(STAGE_CONTACT);
   contact_solver_tolerance(r->solver, r->solving.tol);
-  st = contact_solve(r->solver, &cp, told, u, rc, &r->solving.report);
+  status st = contact_solve(r->solver, &cp, told, u, rc, &r->solving.report);
   timer_leave(STAGE_CONTACT);
-  TRY(st);
+  PASS(st);
   r->problem.cp.bodies = contact_solver_bodies(r->solver, &cp);
-  if (in_du) velocity_form_apply(r->problem.forms->velocity, &whole, own_u);
-  if (given)
-    given_form_apply(r->problem.forms->given, &r->problem.cp, own_u, rc);
+  effects_restore(r, &r->problem.cp, own_u, rc);
   put_rows(r, own_u, rc);
   if (is_open(r, r->now.uc) &&
       largest_entry((size_t)r->nodes.n_c, r->now.rc) > 0.0) {
-    TRY(drop_reactions(r, &r->solving.report.residual, own_u, rc));
+    PASS(drop_reactions(r, &r->solving.report.residual, own_u, rc));
     put_rows(r, own_u, rc);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* ---- the problem ------------------------------------------------------- */
-
-/* A contact unknown that *BOUNDARY prescribes: its value now, m. */
-static double held_value(const run *r, int i, int a) {
-  const contact_surface *s = r->surface;
-  int dim = s->dim;
-  double u = 0.0;
-  for (int c = 0; c < dim; ++c)
-    u += s->frame[dim * dim * i + dim * a + c] *
-         r->loads.ud[dim * s->node_id[i] + c];
-  return u;
-}
-
-/* 1 if the sliding limit of a node can be above zero. */
-static int can_stick(const run *r, int i) {
-  const sparse_rows *B = &r->friction.limit.B;
-  if (r->friction.limit.g0[i] > 0.0) return 1;
-  for (int e = B->start == NULL ? 0 : B->start[i];
-       B->start != NULL && e < B->start[i + 1]; ++e)
-    if (B->val[e] > 0.0) return 1;
-  return 0;
-}
-
-static int in_group(const mesh_group *g, int node_id) {
-  for (int k = 0; k < g->n_node; ++k)
-    if (g->node_id[k] == node_id) return 1;
-  return 0;
-}
-
-/* The *BOUNDARY that holds contact node i most along its axis a, or NULL. */
-static const load *holder(const run *r, int i, int a) {
-  const contact_surface *s = r->surface;
-  const double *axis = &s->frame[s->dim * s->dim * i + s->dim * a];
-  const load *best = NULL;
-  for (int k = 0; k < r->step->loads.n; ++k) {
-    const load *l = &r->step->loads.item[k];
-    if (l->kind != LOAD_FIXING ||
-        !in_group(&r->msh->group[l->group_id], s->node_id[i]))
-      continue;
-    if (best == NULL || fabs(axis[l->component]) > fabs(axis[best->component]))
-      best = l;
-  }
-  return best;
-}
-
-/*
- * Friction along t2 where t1 is made to move: the slip direction would depend
- * on the prescribed motion, which the condensed problem does not hold.
- */
-static status check_held(const run *r, int i, int a, double from, double to) {
-  status st = OK;
-  const contact_surface *s = r->surface;
-  int other = s->dim == 3 ? 3 - a : a;
-  if (s->dim < 3 || from == to || s->held[3 * i + other] || !can_stick(r, i))
-    goto done;
-  const load *l = holder(r, i, a);
-  message_add(r->m->log, P4015, l == NULL ? &r->step->at : &l->at,
-              "contact node %zu is led in one tangential direction while "
-              "friction acts in the other",
-              s->node_no[i]);
-  FAIL(ERR_DECK, "*BOUNDARY leads contact node %zu against friction",
-       s->node_no[i]);
-done:
-  return st;
-}
-
-/*
- * Position of stick: the tangential displacement at the last equilibrium, moved
- * along by the obstacle (CPR98 S_i^n); for one static problem the origin (P2).
- * A prescribed unknown sticks where it is put: its force is the support's.
- */
-static status set_stick_position(run *r) {
-  status st = OK;
-  int dim = r->msh->dim;
-  int fresh = r->step->kind == STEP_STATIC && !r->course.relaxing;
-  int history = (r->m->effects & EFFECT_HISTORY) != 0;
-  if (r->problem.ut0 == NULL) return OK;
-  if (history) timer_enter(STAGE_HISTORY);
-  for (int i = 0; i < r->nodes.n; ++i)
-    for (int a = 1; a < dim; ++a) {
-      int k = dim * i + a;
-      double from = fresh ? 0.0 : r->old.uc[k] - r->old.motion[k];
-      double stick = from + r->now.motion[k];
-      if (r->surface->held[k]) {
-        double to = held_value(r, i, a);
-        TRY(check_held(r, i, a, stick, to));
-        stick = to;
-      }
-      r->problem.ut0[(dim - 1) * i + a - 1] = stick;
-    }
-done:
-  if (history) timer_leave(STAGE_HISTORY);
-  return st;
-}
 
 static int has_held(const contact_surface *s) {
   for (int k = 0; k < s->n * s->dim; ++k)
@@ -389,8 +153,7 @@ static int has_side_gap(const contact_surface *s) {
 }
 
 static void set_problem(run *r) {
-  int friction = (r->m->effects & EFFECT_FRICTION) != 0,
-      all = r->nodes.rows > 1;
+  int all = r->nodes.rows > 1;
   r->problem.cp = (contact_problem){
       .dim = r->nodes.rows,
       .n = reach_count(&r->nodes.reach, r->nodes.n),
@@ -401,8 +164,8 @@ static void set_problem(run *r) {
           largest_entry(r->n_dof, r->loads.ud) > 0.0 ? r->problem.f_load : NULL,
       .gap = r->problem.gap,
       .ut0 = r->problem.ut0,
-      .g0 = friction ? r->friction.limit.g0 : NULL,
-      .B = friction ? limit_matrix(r) : NULL,
+      .g0 = r->problem.g0,
+      .B = r->problem.B,
       .side_gap = all && has_side_gap(r->surface) ? r->problem.side_gap : NULL,
       .held = all && has_held(r->surface) ? r->surface->held : NULL,
       .floating = condensed_floating(r->c),
@@ -432,8 +195,6 @@ static status pose_contact(run *r, double t) {
   surface_drift(r->surface, &r->faces.input, r->old.t, t, r->now.motion);
   timer_leave(STAGE_SURFACE);
   TRY(st);
-  TRY(limit_update(r, t));
-  TRY(set_stick_position(r));
   TRY(effects_pose(r, t));
   set_problem(r);
 done:
@@ -491,11 +252,11 @@ static status solve_with_nodes(run *r, const double *F, int *iterations) {
   status st = OK;
   TRY(pose(r, F));
   while (r->nodes.n > 0) {
-    TRY(forms_solve(r));
+    TRY(solve_contact(r));
     *iterations += r->solving.report.iterations;
     r->solving.report.iterations = *iterations;
-    int again = limit_follow_zone(r);
-    if (!again) TRY(effects_found(r, &again));
+    int again = 0;
+    TRY(effects_found(r, &again));
     if (!again) break;
   }
   TRY(condense_recover(r->c, run_rows(r, 0, r->now.uc), r->now.u));

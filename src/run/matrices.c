@@ -66,7 +66,7 @@ status run_use(run *r, matrices *m) {
   int read = r->solving.known_key != RUN_NO_KEY;
   if (read ? r->solving.known_key != m->key : r->c != m->c)
     run_forget_estimates(r);
-  if (r->c != m->c && r->problem.forms != NULL) TRY(forms_new(r));
+  r->solving.matrix_no += r->c != m->c;
   r->c = m->c;
   r->solver = m->solver;
   r->solving.known_key = RUN_NO_KEY;

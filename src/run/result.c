@@ -73,21 +73,6 @@ static void find_contact(run *r) {
                                : CONTACT_OPEN;
 }
 
-/* Slip adds up while a node is closed. */
-static void add_distance(run *r) {
-  int dim = r->msh->dim;
-  int history = (r->m->effects & EFFECT_HISTORY) != 0;
-  if (r->result.distance == NULL) return;
-  if (history) timer_enter(STAGE_HISTORY);
-  for (int i = 0; i < r->nodes.n; ++i) {
-    double s[2] = {run_motion_over(r, dim * i + 1), 0.0};
-    if (dim == 3) s[1] = run_motion_over(r, dim * i + 2);
-    if (r->result.contact[i] == CONTACT_SLIP)
-      r->result.distance[i] += hypot(s[0], s[1]);
-  }
-  if (history) timer_leave(STAGE_HISTORY);
-}
-
 /* The *CONTACT whose force row a of a node is: at a corner the side rows are
  * the normal forces of other obstacles. */
 static int row_contact(const contact_surface *s, int i, int a) {
@@ -244,7 +229,6 @@ status result_evaluate(run *r, int due) {
     find_stresses(r, shown);
   if (effects & EFFECT_REACTION) find_reactions(r, shown);
   if (r->nodes.n > 0) find_contact(r);
-  add_distance(r);
   if (r->m->n_contact > 0) find_totals(r);
   find_torques(r);
   if (r->course.relaxing)

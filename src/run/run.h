@@ -36,9 +36,6 @@ typedef struct equilibrium {
   double kept; /* J, of what elastic constants stand for                     */
 } equilibrium;
 
-typedef struct forms forms; /* increment.c                       */
-typedef struct friction_average friction_average; /* limit.c                 */
-typedef struct friction_zone friction_zone;       /* limit.c                 */
 typedef struct finer_path finer_path; /* path.c                               */
 typedef struct beside beside; /* beside.c                                   */
 typedef struct visco visco; /* visco.h                                        */
@@ -119,21 +116,17 @@ typedef struct contact_faces {
   unsigned char *node_fixed; /* [n_node] bits                                */
 } contact_faces;
 
-typedef struct friction_state {
-  friction_limit limit;
-  int known;                 /* limit holds for all times of the step        */
-  friction_average *average; /* [n_contact], or NULL: no law has one         */
-  friction_zone *zone; /* NULL: no law is confined to the touching nodes     */
-} friction_state;
-
 /* Contact problem of the increment. */
 typedef struct posed_problem {
   double *f_load; /* [n_row] of f, without the motion of supports, N */
-  double *f, *gap, *side_gap, *ut0; /* [n_row], [n], [n*(dim-1)] twice        */
+  double *f, *gap, *side_gap; /* [n_row], [n], [n*(dim-1)]                    */
+  /* Borrowed from effects, NULL: no friction, no given force. */
+  double *ut0, *g0;     /* [n*(dim-1)] m, [n] N                               */
+  const sparse_rows *B; /* [n*n] -                                            */
+  const double *given;  /* [n] given normal forces, N; < 0: none              */
   double *row[2]; /* [rows*n] room of run_rows, NULL where cp has all         */
   reach_part part; /* what cp points to where it has not all nodes           */
   contact_problem cp;
-  forms *forms;     /* what rewrites it                                       */
   double *f_before; /* [n_row] condensed load of r->old, N                    */
   int n_before;     /* its n_row                                              */
 } posed_problem;
@@ -147,7 +140,8 @@ typedef struct load_state {
 /* What is derived from r->now (result.c). */
 typedef struct derived {
   double *strain, *stress;     /* [ns*n_elem] or NULL                         */
-  double *open_gap, *slip, *g; /* [n], [n*(dim-1)], [n]                       */
+  double *open_gap, *slip;     /* [n], [n*(dim-1)]                            */
+  double *g; /* [n] limit, N; this and distance borrowed from friction        */
   contact_status *contact;     /* [n]                                         */
   contact_total *totals;       /* [n_contact]                                 */
   double *distance; /* [n] as in state; NULL: frictionless                    */
@@ -179,6 +173,7 @@ typedef struct solving {
                                 of r->old, borrowed; NULL: none               */
   known_rate rate;
   double known_key; /* of the matrix that "rate" was read for, until in use   */
+  long matrix_no;   /* counts the matrices taken into use                    */
 } solving;
 
 /* What is counted, told and kept of the run. */
@@ -215,7 +210,6 @@ struct run {
   matrices elastic;
   condensed *c;           /* in use, borrowed from elastic or visco          */
   contact_solver *solver; /* the same                                        */
-  friction_state friction;
   posed_problem problem;
   solving solving;
 
@@ -238,12 +232,18 @@ int run_step_id(const run *r); /* from 0 */
 status effects_create(run *r);
 /* sums_up of the first that has it, or NULL. */
 const char *effects_sum_up(const run *r);
+status effects_prepare(run *r);
+void effects_describe(const run *r, setup_facts *f);
 status effects_begin_step(run *r);
 status effects_initial(run *r);
 status effects_pose(run *r, double t);
-status effects_found(run *r, int *again);
+status effects_rewrite(run *r, contact_problem *cp, double **u, double *force);
+void effects_restore(run *r, contact_problem *cp, double *u, double *force);
+status effects_found(run *r, int *again); /* *again = 0 before                */
 status effects_examine(run *r, double t);
 status effects_accept(run *r);
+void effects_forget(run *r);
+int effects_reach_far(const run *r); /* 1: one is "far"                      */
 void effects_show(const run *r, state *s);
 status effects_keep(run *r, archive *a);
 /* List of "from" for its copy; valid (release it) also after a failure. */
@@ -336,6 +336,8 @@ double increment_free_load(const run *r, const double *F);
 /* v[dim*n] of the contact frames as a vector of r->problem.cp: v itself, or in
  * r->problem.row[k], k = 0 or 1, where it has not all unknowns. */
 double *run_rows(const run *r, int k, double *v);
+/* The same into rows[n_row]. */
+void run_take_rows(const run *r, const double *v, double *rows);
 /* Loads and contact problem of time t without solving. */
 status increment_pose(run *r, double t);
 /* Its parts: loads, temperatures and thermal strains at t; with all strains
@@ -344,30 +346,6 @@ status increment_pose(run *r, double t);
 status increment_load(run *r, double t);
 status increment_begin(run *r, double t);
 status increment_equilibrium(run *r, const double *F);
-
-/* limit.c: the sliding limit at time t into r->friction.limit, jumps into
- * r->course.note. */
-status limit_update(run *r, double t);
-/* Averages of the rules in force, as far as they are not there. */
-status limit_average(run *r);
-double limit_average_entries(const run *r);
-/* Laws confined to the touching nodes (at the start of an increment those that
- * touched, all if none did): after a solution of r->problem.cp, 1 if the zone,
- * and r->problem.cp with it, has changed and is to be solved again. */
-int limit_follow_zone(run *r);
-const sparse_rows *limit_matrix(const run *r); /* B of r->problem.cp, or NULL */
-/* Largest friction coefficient of the nodes of a contact at t, -; 0 for laws
- * without one. */
-double limit_coefficient(const run *r, int contact_id, double t);
-void limit_free(run *r);
-void limit_free_copy(run *r); /* without the averages                         */
-
-/* The same file: for a new surface; nodes of *CONTACT FORCE. */
-status forms_new(run *r);
-/* Given normal forces of the contact nodes at t, N, negative where there is
- * none: given[n]. */
-status forms_given(run *r, double t, double *given);
-void forms_free(forms *f); /* accepts NULL                                    */
 
 /* result.c: stresses, reactions, totals, energies of r->now as far as the
  * effects call for them and "due" says. */

@@ -30,7 +30,8 @@ done:
   return st;
 }
 
-static status loops_copy(const run *r, const void *of, void **self) {
+static status loops_copy(const run *r, const void *of, run *copy, void **self) {
+  (void)copy;
   status st = loops_new((run *)r, self);
   if (st == OK)
     memcpy(*self, of, (size_t)r->m->n_contact * sizeof(contact_loop));
@@ -123,11 +124,11 @@ const effect_ops loops_effect = {.name = "table of loops",
                                  .foreseen = expected,
                                  .own = STAGE_NONE,
                                  .more = {STAGE_TABLE_LOOP},
-                                 .create = loops_new,
-                                 .begin_step = begin_step,
-                                 .accept = find_loops,
-                                 .keep = keep,
-                                 .copy = loops_copy,
-                                 .release = memory_free,
+                                 .on.create = loops_new,
+                                 .on.begin_step = begin_step,
+                                 .on.accept = find_loops,
+                                 .on.keep = keep,
+                                 .on.copy = loops_copy,
+                                 .on.release = memory_free,
                                  .columns = columns,
                                  .n_column = COLUMNS(columns)};

@@ -54,7 +54,8 @@ done:
   return st;
 }
 
-static status wear_copy(const run *r, const void *of, void **self) {
+static status wear_copy(const run *r, const void *of, run *copy, void **self) {
+  (void)copy;
   status st = wear_new((run *)r, self);
   if (st == OK) memcpy(*self, of, length_of(r) * sizeof(double));
   return st;
@@ -201,11 +202,11 @@ const effect_ops wear_effect = {.name = "wear",
                                 .sums_up =
                                     "wear of half the increments is not "
                                     "compared",
-                                .create = wear_new,
-                                .pose = open_gaps,
-                                .accept = wear_off,
-                                .keep = keep,
-                                .copy = wear_copy,
-                                .release = memory_free,
+                                .on.create = wear_new,
+                                .on.pose = open_gaps,
+                                .on.accept = wear_off,
+                                .on.keep = keep,
+                                .on.copy = wear_copy,
+                                .on.release = memory_free,
                                 .columns = columns,
                                 .n_column = COLUMNS(columns)};

@@ -460,7 +460,8 @@ done:
   return st;
 }
 
-static status zones_copy(const run *r, const void *of, void **self) {
+static status zones_copy(const run *r, const void *of, run *copy, void **self) {
+  (void)copy;
   (void)of;
   return zones_new((run *)r, self);
 }
@@ -541,11 +542,11 @@ const effect_ops zones_effect = {.name = "table of zones",
                                  .foreseen = expected,
                                  .own = STAGE_ZONES,
                                  .more = {STAGE_TABLE_ZONES},
-                                 .create = zones_new,
-                                 .due = zones_due,
-                                 .accept = find_zones,
-                                 .copy = zones_copy,
-                                 .release = zones_free,
+                                 .on.create = zones_new,
+                                 .on.due = zones_due,
+                                 .on.accept = find_zones,
+                                 .on.copy = zones_copy,
+                                 .on.release = zones_free,
                                  .columns = columns,
                                  .n_column = COLUMNS(columns),
                                  .items = zones_items};

@@ -20,6 +20,23 @@ typedef struct checked {
   theorems_report report;
 } checked;
 
+/* Largest friction coefficient of the nodes of a contact now, -; 0 for laws
+ * without one. */
+static status largest_mu(const run *r, int contact_id, double *mu) {
+  const friction_rule *rule =
+      friction_in_force(r->m, run_step_id(r), contact_id);
+  double own;
+  *mu = 0.0;
+  if (!rule_has_friction(rule) || strcmp(rule->law->value_unit, "-") != 0)
+    return OK;
+  for (int i = 0; i < r->nodes.n; ++i) {
+    if (r->surface->contact_id[i] != contact_id) continue;
+    PASS(friction_value(&rule->card, r->surface, i, r->now.t, &own));
+    *mu = fmax(*mu, own);
+  }
+  return OK;
+}
+
 /* The problem at hand with an answer; mu[n_contact], given[n] are new. */
 static status theorems_scene_new(run *r, const equilibrium *e,
                                  theorems_scene *s, double **mu,
@@ -27,8 +44,7 @@ static status theorems_scene_new(run *r, const equilibrium *e,
   status st = OK;
   NEW(*mu, r->m->n_contact);
   NEW(*given, r->nodes.n);
-  for (int c = 0; c < r->m->n_contact; ++c)
-    (*mu)[c] = limit_coefficient(r, c, r->now.t);
+  for (int c = 0; c < r->m->n_contact; ++c) TRY(largest_mu(r, c, &(*mu)[c]));
   for (int i = 0; i < r->nodes.n; ++i)
     (*given)[i] = r->m->contacts[r->surface->contact_id[i]].force.given != 0;
   *s = (theorems_scene){
@@ -262,9 +278,9 @@ const effect_ops theorems_effect = {.name = "theory checks",
                                     .foreseen = expected,
                                     .own = STAGE_THEORY,
                                     .beside = 1,
-                                    .create = checked_new,
-                                    .due = due,
-                                    .initial = see_start,
-                                    .accept = see_increment,
-                                    .show = show,
-                                    .release = release};
+                                    .on.create = checked_new,
+                                    .on.due = due,
+                                    .on.initial = see_start,
+                                    .on.accept = see_increment,
+                                    .on.show = show,
+                                    .on.release = release};

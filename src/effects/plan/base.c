@@ -35,48 +35,10 @@ static status tangents(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-/* Contact nodes with a rule that "is", *n. */
-static status nodes_with(const plan_sizes *s,
-                         int (*is)(const friction_rule *rule), double *n) {
+status plan_rule_nodes(const plan_sizes *s,
+                       int (*is)(const friction_rule *rule), double *n) {
   if (s->msh != NULL) return plan_contact_nodes(s, is, n);
   *n = is == rule_has_friction ? s->contact : 0.0;
-  return OK;
-}
-
-static status friction(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){.kind = "nodes", .calls = 1.0};
-  status st = nodes_with(s, rule_has_friction, &w->items);
-  w->operations = 100.0 * w->items;
-  return st;
-}
-
-static status average(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){.kind = "nodes", .calls = 1.0};
-  status st = nodes_with(s, rule_has_average, &w->items);
-  w->operations = 1000.0 * w->items + w->items * w->items;
-  return st;
-}
-
-static status given(const plan_sizes *s, effect_work *w) {
-  double n = 0.0;
-  for (int i = 0; s->msh != NULL && i < s->m->n_contact; ++i)
-    if (s->m->contacts[i].force.given)
-      n += s->msh->group[s->m->contacts[i].group_id].n_node;
-  *w = (effect_work){n, "nodes", s->equilibria, 20.0 * s->equilibria * n};
-  return OK;
-}
-
-static status history(const plan_sizes *s, effect_work *w) {
-  double times = s->equilibria + s->increments;
-  *w = (effect_work){.kind = "nodes", .calls = times};
-  status st = nodes_with(s, rule_has_friction, &w->items);
-  w->operations = 20.0 * times * w->items;
-  return st;
-}
-
-static status velocity(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){s->contact, "nodes", s->equilibria,
-                     20.0 * s->equilibria * s->contact};
   return OK;
 }
 
@@ -150,9 +112,8 @@ static int calls_for_contact(const model *m, char *why, size_t size) {
                    m->contacts[0].name, PLACE(m->contacts[0].at));
 }
 
-/* The first rule that "is"; "none": there is no such rule. */
-static int calls_for_rule(const model *m, int (*is)(const friction_rule *rule),
-                          const char *none, char *why, size_t size) {
+int plan_calls_for_rule(const model *m, int (*is)(const friction_rule *rule),
+                        const char *none, char *why, size_t size) {
   const contact *c = NULL;
   const friction_rule *rule = facts_first_rule(m, is, &c);
   if (rule == NULL) return plan_says(0, why, size, "%s", none);
@@ -160,24 +121,11 @@ static int calls_for_rule(const model *m, int (*is)(const friction_rule *rule),
                    rule->law->name, c->name, PLACE(rule->at));
 }
 
-static int calls_for_friction(const model *m, char *why, size_t size) {
-  return calls_for_rule(m, rule_has_friction,
-                        m->n_contact == 0
-                            ? "no *CONTACT card"
-                            : "no *FRICTION card with a value above zero",
-                        why, size);
-}
-
-static int calls_for_average(const model *m, char *why, size_t size) {
-  return calls_for_rule(m, rule_has_average, "no friction law with an average",
-                        why, size);
-}
-
 /* The normals of a second obstacle are tangents of the first. */
 static int calls_for_tangents(const model *m, char *why, size_t size) {
   const step *s = facts_first_whole(m);
-  if (m->n_contact == 0 || calls_for_friction(m, NULL, 0))
-    return calls_for_friction(m, why, size);
+  if (m->n_contact == 0 || friction_effect.called_for(m, NULL, 0))
+    return friction_effect.called_for(m, why, size);
   if (m->corner_id >= 0)
     return plan_says(1, why, size, "contact %s meets another, %s:%d",
                      m->contacts[m->corner_id].name,
@@ -195,24 +143,6 @@ static int calls_for_tangents(const model *m, char *why, size_t size) {
                      PLACE(s->solver_at));
   return plan_says(1, why, size, "*ACCURACY, THEORY=YES, %s:%d",
                    PLACE(s->accuracy_at));
-}
-
-static int calls_for_given(const model *m, char *why, size_t size) {
-  const contact *c = facts_first_given(m);
-  if (c == NULL) return plan_says(0, why, size, "no *CONTACT FORCE card");
-  return plan_says(1, why, size, "*CONTACT FORCE on contact %s, %s:%d", c->name,
-                   PLACE(c->force.at));
-}
-
-/* More than one increment: slip and load have a history. */
-static int calls_for_history(const model *m, char *why, size_t size) {
-  if (!calls_for_friction(m, NULL, 0))
-    return plan_says(0, why, size, "no friction");
-  if (m->n_step == 0 ||
-      (m->n_step == 1 && !(m->steps[0].dt < m->steps[0].total)))
-    return plan_says(0, why, size, "one increment only");
-  return plan_says(1, why, size, "friction over more than one increment, %s:%d",
-                   PLACE(m->steps[0].at));
 }
 
 static int calls_for_start(const model *m, char *why, size_t size) {
@@ -314,17 +244,6 @@ static int calls_for_bound(const model *m, char *why, size_t size) {
   return plan_says(1, why, size, "default; *ACCURACY, SOLVER=NO leaves it out");
 }
 
-static int calls_for_velocity(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n_step; ++i) {
-    if (m->steps[i].form != FORM_VELOCITY) continue;
-    snprintf(why, size, "*QUASISTATIC, FORM=VELOCITY of %s:%d",
-             PLACE(m->steps[i].at));
-    return 1;
-  }
-  snprintf(why, size, "no *QUASISTATIC, FORM=VELOCITY");
-  return 0;
-}
-
 static status mesh_error(const plan_sizes *s, effect_work *w) {
   *w = (effect_work){s->elements, "elements", 1.0 + s->increments,
                      s->increments * s->elements * 9.0 * plan_element_work(s)};
@@ -364,12 +283,6 @@ const effect_ops unilateral_contact_effect = {
     .foreseen = unilateral,
     .own = STAGE_CONTACT,
     .more = {STAGE_SURFACE, STAGE_CONDENSE, STAGE_PROBLEM}};
-const effect_ops friction_effect = {
-    .name = "friction",
-    .bit = EFFECT_BIT_FRICTION,
-    .called_for = calls_for_friction,
-    .foreseen = friction,
-    .own = STAGE_LIMIT};
 const effect_ops tangents_effect = {
     .name = "tangential unknowns",
     .bit = EFFECT_BIT_TANGENTS,
@@ -377,49 +290,29 @@ const effect_ops tangents_effect = {
     .foreseen = tangents,
     .own = STAGE_NONE,
     .within = "unilateral contact"};
-const effect_ops nonlocal_effect = {
-    .name = "nonlocal average",
-    .bit = EFFECT_BIT_NONLOCAL,
-    .called_for = calls_for_average,
-    .foreseen = average,
-    .own = STAGE_NONLOCAL};
-const effect_ops given_forces_effect = {
-    .name = "given contact forces",
-    .bit = EFFECT_BIT_GIVEN,
-    .called_for = calls_for_given,
-    .foreseen = given,
-    .own = STAGE_GIVEN};
-const effect_ops slip_history_effect = {
-    .name = "history of slip",
-    .bit = EFFECT_BIT_HISTORY,
-    .called_for = calls_for_history,
-    .foreseen = history,
-    .own = STAGE_HISTORY};
-const effect_ops velocity_effect = {
-    .name = "velocity form",
-    .bit = NO_BIT,
-    .called_for = calls_for_velocity,
-    .foreseen = velocity,
-    .own = STAGE_VELOCITY};
 const effect_ops initial_state_effect = {
+    .far = 1,
     .name = "initial state",
     .bit = EFFECT_BIT_START,
     .called_for = calls_for_start,
     .foreseen = initial_state,
     .own = STAGE_START};
 const effect_ops inelastic_effect = {
+    .far = 1,
     .name = "inelastic strain",
     .bit = EFFECT_BIT_INELASTIC,
     .called_for = calls_for_inelastic,
     .foreseen = inelastic,
     .own = STAGE_INELASTIC};
 const effect_ops thermal_effect = {
+    .far = 1,
     .name = "thermal strain",
     .bit = EFFECT_BIT_THERMAL,
     .called_for = calls_for_thermal,
     .foreseen = thermal,
     .own = STAGE_THERMAL};
 const effect_ops body_forces_effect = {
+    .far = 1,
     .name = "body forces",
     .bit = EFFECT_BIT_BODY,
     .called_for = calls_for_body,

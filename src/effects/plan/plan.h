@@ -82,6 +82,12 @@ double plan_cpu(const effect_plan *p);
  * NULL: all contacts. */
 status plan_contact_nodes(const plan_sizes *s,
                           int (*is)(const friction_rule *rule), double *n);
+/* Nodes with a rule that "is"; of a condensed problem all or none. */
+status plan_rule_nodes(const plan_sizes *s,
+                       int (*is)(const friction_rule *rule), double *n);
+/* The first rule that "is"; "none": there is no such rule. */
+int plan_calls_for_rule(const model *m, int (*is)(const friction_rule *rule),
+                        const char *none, char *why, size_t size);
 /* Displacements that supports hold in the first step, and their nodes. */
 status plan_held(const plan_sizes *s, double *unknowns, double *nodes);
 /* Material of a section; one without anything if it has none. */

@@ -15,7 +15,7 @@ struct beside {
   visco v;
 };
 
-enum { OWN = 18 };
+enum { OWN = 16 };
 
 typedef struct own_array {
   double **at;
@@ -42,9 +42,7 @@ static void list_own(run *b, own_array list[OWN]) {
                               {&b->problem.f_load, (size_t)b->nodes.n_row},
                               {&b->problem.gap, n},
                               {&b->problem.side_gap, sides},
-                              {&b->problem.ut0, sides},
                               {&e->elastic, strains},
-                              {&b->result.distance, n},
                               {&b->loads.ud, dofs},
                               {&e->temperature, elements}};
   memcpy(list, all, sizeof all);
@@ -74,12 +72,10 @@ void beside_free(beside *b) {
   list_own(&b->r, list);
   for (int i = 0; i < OWN; ++i) memory_free(*list[i].at);
   effects_release(&b->r);
-  limit_free_copy(&b->r);
   if (b->r.body.moduli.n_own > 0) {
     matrices_free(&b->r.elastic);
     moduli_free(&b->r.body.moduli);
   }
-  forms_free(b->r.problem.forms);
   flow_state_free(&b->v.now);
   memory_free(b);
 }
@@ -128,10 +124,6 @@ static status beside_new(const run *r, beside **out) {
   own->c = r->elastic.c;
   own->solver = r->elastic.solver;
   own->solving.known_key = RUN_NO_KEY;
-  own->problem.forms = NULL;
-  own->friction.limit = (friction_limit){0};
-  own->friction.known = 0;
-  own->friction.zone = NULL;
   own->solving.rate = (known_rate){0};
   own->errors.recovery = NULL;
   own->course.note[0] = '\0';
@@ -141,7 +133,6 @@ static status beside_new(const run *r, beside **out) {
   TRY(copy_arrays(own));
   TRY(own_points(r, b));
   TRY(own_moduli(r, own));
-  if (r->problem.forms != NULL) TRY(forms_new(own));
   TRY(effects_copy(r, own));
 done:
   return st;

@@ -76,14 +76,12 @@ done:
 /* Test the initial displacements against the loads of time 0. */
 static status test_start(run *r) {
   status st = OK;
-  double *R = NULL, *diagonal = NULL, *given = NULL, largest = 0.0;
+  double *R = NULL, *diagonal = NULL, largest = 0.0;
   timer_enter(STAGE_START);
   NEW(R, r->n_dof);
   NEW(diagonal, r->n_dof);
-  NEW(given, r->nodes.n);
   TRY(increment_pose(r, 0.0));
   TRY(start_forces(r, R, diagonal, &largest));
-  if (r->nodes.n > 0) TRY(forms_given(r, 0.0, given));
   const start_input in = {.mesh = r->msh,
                           .fixed = r->body.fixed,
                           .u = r->old.u,
@@ -93,7 +91,7 @@ static status test_start(run *r) {
                           .surface = r->nodes.n > 0 ? r->surface : NULL,
                           .cp = &r->problem.cp,
                           .uc = r->old.uc,
-                          .given = given,
+                          .given = r->problem.given,
                           .load = largest};
   start_test(&in, r->old.rc, r->old.reaction, &r->course.first);
   TRY(effects_initial(r));
@@ -101,7 +99,6 @@ done:
   timer_leave(STAGE_START);
   memory_free(R);
   memory_free(diagonal);
-  memory_free(given);
   return st;
 }
 

@@ -98,8 +98,6 @@ static status keep_contact(run *r, archive *a) {
                     (size_t)r->nodes.n_row));
   r->problem.n_before = r->nodes.n_row;
   r->nodes.n_told = reach_count(&r->nodes.reach, r->nodes.n);
-  TRY(archive_reals(a, "distance", r->result.distance,
-                    r->result.distance == NULL ? 0 : (size_t)r->nodes.n));
   TRY(keep_rate(r, a));
   TRY(matrices_keep(&r->elastic, a, "elastic"));
 done:
@@ -127,18 +125,8 @@ done:
   return st;
 }
 
-/* A limit that holds for all times of the step is made now, so that what is
+/* The nodal averages of the error of the mesh are made now, so that what is
  * counted from here on is what the other run counts. */
-static status keep_limit(run *r, archive *a) {
-  status st = OK;
-  int known = r->friction.known;
-  TRY(archive_ints(a, "limit_known", &known, 1));
-  if (archive_reads(a) && known) TRY(limit_update(r, r->old.t));
-done:
-  return st;
-}
-
-/* As the limit: the nodal averages of the error of the mesh are made now. */
 static status keep_recovery(run *r, archive *a) {
   status st = OK;
   int made = r->errors.recovery != NULL;
@@ -171,7 +159,6 @@ status run_keep(run *r, archive *a) {
   if (r->nodes.n > 0) TRY(keep_contact(r, a));
   TRY(path_keep(r, a));
   if (r->strains.visco != NULL) TRY(visco_keep(r, a));
-  TRY(keep_limit(r, a));
   TRY(keep_recovery(r, a));
   TRY(effects_keep(r, a));
   TRY(keep_costs(r, a));

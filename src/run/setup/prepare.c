@@ -25,12 +25,10 @@ static const double GENEROUS = 4.0; /* -, of what loads move a compact body  */
  * moves the body, and the problem at hand is that of all increments. */
 static int may_leave_out(const run *r, int n_motion) {
   const unsigned effects = r->m->effects;
-  const unsigned no = EFFECT_GIVEN | EFFECT_START | EFFECT_INELASTIC |
-                      EFFECT_THERMAL | EFFECT_BODY;
   if ((effects & EFFECT_TANGENTS) &&
       (!model_rubs_locally(r->m) || (effects & EFFECT_TIME_ERROR)))
     return 0;
-  return n_motion == 0 && r->nodes.n >= FEWEST && !(effects & no) &&
+  return n_motion == 0 && r->nodes.n >= FEWEST && !effects_reach_far(r) &&
          r->m->n_points == 0 && r->m->n_neglected == 0;
 }
 
@@ -96,8 +94,8 @@ static status report_ready(run *r) {
       .digits = condensed_digits(r->c),
       .floating = condensed_floating(r->c),
       .n_contact_node = r->nodes.n,
-      .n_left_out = r->nodes.n - reach_count(&r->nodes.reach, r->nodes.n),
-      .average_entries = limit_average_entries(r)};
+      .n_left_out = r->nodes.n - reach_count(&r->nodes.reach, r->nodes.n)};
+  effects_describe(r, &facts);
   return r->sink->ready(r->sink->ctx, &facts, r->surface);
 }
 
@@ -163,7 +161,6 @@ status run_prepare(run *r) {
   NEW(fixed, r->n_dof);
   load_fixed(r->m, r->msh, r->step, fixed);
   memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
-  r->friction.known = 0;
   known_rate_forget(&r->solving.rate);
   if (r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0) {
     memcpy(r->body.fixed, fixed, r->n_dof);
@@ -183,7 +180,7 @@ status run_prepare(run *r) {
     fresh = 1;
   }
   TRY(find_load(r));
-  TRY(limit_average(r));
+  TRY(effects_prepare(r));
   if (fresh) TRY(report_ready(r));
   contact_solver_free(r->elastic.solver);
   r->elastic.solver = NULL;

@@ -119,9 +119,9 @@ done:
 }
 
 void run_free(run *r) {
-  effects_release(r);
   start_report_free(&r->course.first);
   run_free_surface(r);
+  effects_release(r);
   space_recovery_free(r->errors.recovery);
   memory_free(r->errors.elem_error);
   free_equilibrium(&r->old);

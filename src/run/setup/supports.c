@@ -90,7 +90,7 @@ status run_motions(run *r, int *n, free_motion **list) {
   r->body.d.surface = r->surface;
   TRY(domain_free_motions(&r->body.d, n, list));
   TRY(refuse_unheld(r, *n, *list));
-  TRY(limit_average(r));
+  TRY(effects_prepare(r));
 done:
   return st;
 }

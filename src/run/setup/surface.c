@@ -7,6 +7,7 @@
 #include "base/memory.h"
 
 void run_free_surface(run *r) {
+  effects_forget(r);
   run_forget_estimates(r);
   matrices_free(&r->elastic);
   visco_forget(r);
@@ -16,11 +17,10 @@ void run_free_surface(run *r) {
   r->surface = NULL;
   double **owned[] = {
       &r->problem.f,       &r->problem.f_load,   &r->problem.f_before,
-      &r->problem.gap,     &r->problem.side_gap, &r->problem.ut0,
-      &r->result.open_gap, &r->result.slip,      &r->result.g,
-      &r->old.uc,          &r->old.rc,           &r->now.uc,
-      &r->now.rc,          &r->old.motion,       &r->now.motion,
-      &r->result.distance, &r->problem.row[0],   &r->problem.row[1]};
+      &r->problem.gap,     &r->problem.side_gap, &r->result.slip,
+      &r->result.open_gap, &r->old.uc,           &r->old.rc,
+      &r->now.uc,          &r->now.rc,           &r->old.motion,
+      &r->now.motion,      &r->problem.row[0],   &r->problem.row[1]};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) {
     memory_free(*owned[i]);
     *owned[i] = NULL;
@@ -30,9 +30,6 @@ void run_free_surface(run *r) {
   reach_free(&r->nodes.reach);
   reach_part_free(&r->problem.part);
   run_take_nodes(r);
-  limit_free(r);
-  forms_free(r->problem.forms);
-  r->problem.forms = NULL;
   path_restart(r);
 }
 
@@ -63,11 +60,6 @@ static status new_contact_arrays(run *r) {
   NEW(r->result.contact, r->nodes.n);
   if (r->nodes.rows > 1) NEW(r->problem.side_gap, tangents);
   NEW(r->result.slip, tangents);
-  if (r->m->effects & EFFECT_FRICTION) {
-    NEW(r->problem.ut0, tangents);
-    NEW(r->result.g, r->nodes.n);
-    NEW(r->result.distance, r->nodes.n);
-  }
 done:
   return st;
 }
@@ -102,18 +94,6 @@ static void forces_to_global(const run *r, double *force) {
             s->frame[dim * dim * i + dim * a + c] * r->old.rc[dim * i + a];
 }
 
-/* Slip so far of the nodes that stay in contact, [n_node]: to_nodes 1 from
- * r->result.distance, 0 back. */
-static void carry_distance(run *r, int to_nodes, double *at_node) {
-  for (int i = 0; i < r->nodes.n && r->result.distance != NULL; ++i) {
-    double *node = &at_node[r->surface->node_id[i]];
-    if (to_nodes)
-      *node = r->result.distance[i];
-    else
-      r->result.distance[i] = *node;
-  }
-}
-
 /* A node that supports take out of the contact leaves its force to them. */
 static void leave_forces(run *r, double *force) {
   int dim = r->msh->dim;
@@ -124,11 +104,9 @@ static void leave_forces(run *r, double *force) {
 
 status run_build_surface(run *r) {
   status st = OK;
-  double *force = NULL, *distance = NULL;
+  double *force = NULL;
   NEW(force, r->n_dof);
-  NEW(distance, r->msh->n_node);
   forces_to_global(r, force);
-  carry_distance(r, 1, distance);
   run_free_surface(r);
   timer_enter(STAGE_SURFACE);
   node_bits(r);
@@ -142,15 +120,12 @@ status run_build_surface(run *r) {
   r->nodes.n_row = r->nodes.rows * r->nodes.n;
   TRY(new_contact_arrays(r));
   TRY(run_room_for_part(r));
-  TRY(forms_new(r));
   old_state_to_frames(r, force);
   leave_forces(r, force);
-  carry_distance(r, 0, distance);
   TRY(surface_gap(r->surface, &r->faces.input, r->old.t, r->problem.gap,
                   r->problem.side_gap));
   surface_drift(r->surface, &r->faces.input, 0.0, r->old.t, r->old.motion);
 done:
   memory_free(force);
-  memory_free(distance);
   return st;
 }

@@ -1,0 +1,468 @@
+/*
+ * Friction: the sliding limit of an increment, from the friction law in force
+ * on each contact, and where its value jumps in time; the position of stick,
+ * which is the history of slip; all slip so far. Existence theory asks for mu
+ * continuous in time (CPR98, 3.2); a jump is allowed and told.
+ *
+ * Any increment may be cut, so that each is one of several: the position of
+ * stick is always found from the last equilibrium.
+ */
+#include "effects/contact/friction.h"
+
+#include "base/memory.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "model/facts.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct friction {
+  friction_limit limit;
+  int known;        /* 1: limit holds for all times of the step              */
+  double *stick;    /* [n*(dim-1)] m                                         */
+  double *g;        /* [n] limit of r->now, N                                */
+  double *distance; /* [n] all slip so far, m                                */
+  double *left;     /* [n_node] that of a surface that goes, m               */
+} friction;
+
+const friction_limit *friction_limit_of(const run *r) {
+  const friction *own = effect_state(&r->effects, &friction_effect);
+  return &own->limit;
+}
+
+enum { T_BIT = 8, HALVINGS = 40 };
+static const double jump_share = 1e-3; /* of the larger value: below, none    */
+
+static const friction_rule *rule_of(const run *r, int contact_id) {
+  return friction_in_force(r->m, run_step_id(r), contact_id);
+}
+
+/* 1 if a friction value in force changes in time. */
+static int limit_varies(const run *r) {
+  for (int i = 0; i < r->m->n_contact; ++i)
+    if (quantity_variables(&rule_of(r, i)->card.value) & T_BIT) return 1;
+  return 0;
+}
+
+/* ---- jumps in time ------------------------------------------------------ */
+
+/* Value of a rule at a contact node; 0 without friction. */
+static double value_at(const run *r, const friction_rule *rule, int i,
+                       double t) {
+  double x[3] = {0.0, 0.0, 0.0};
+  int dim = r->surface->dim;
+  if (rule->law == NULL || rule->law->value_name == NULL) return 0.0;
+  for (int c = 0; c < dim; ++c) x[c] = r->surface->x[dim * i + c];
+  return quantity_value(&rule->card.value, x, t);
+}
+
+/* A change of value at a node, in time. */
+typedef struct jump {
+  int node_id; /* -1: none                                                   */
+  double t, from, to;
+} jump;
+
+/* The largest difference between two rules, or two times, over the nodes. */
+static jump largest_change(const run *r, int contact_id,
+                           const friction_rule *before, double t0,
+                           const friction_rule *now, double t1) {
+  jump j = {.node_id = -1, .t = t1};
+  for (int i = 0; i < r->nodes.n; ++i) {
+    if (r->surface->contact_id[i] != contact_id) continue;
+    double a = value_at(r, before, i, t0), b = value_at(r, now, i, t1);
+    if (j.node_id >= 0 && !(fabs(b - a) > fabs(j.to - j.from))) continue;
+    j.node_id = i;
+    j.from = a;
+    j.to = b;
+  }
+  if (!(fabs(j.to - j.from) > jump_share * fmax(j.from, j.to))) j.node_id = -1;
+  return j;
+}
+
+/*
+ * Halve the time between the two ends towards the larger change: what is
+ * continuous vanishes, a jump stays and is found.
+ */
+static jump narrow(const run *r, const friction_rule *rule, jump j, double t0) {
+  double t1 = j.t;
+  for (int k = 0; k < HALVINGS; ++k) {
+    double t = 0.5 * (t0 + t1), value = value_at(r, rule, j.node_id, t);
+    if (fabs(value - j.from) > fabs(j.to - value)) {
+      t1 = t;
+      j.to = value;
+    } else {
+      t0 = t;
+      j.from = value;
+    }
+  }
+  j.t = t1;
+  if (!(fabs(j.to - j.from) > jump_share * fmax(j.from, j.to))) j.node_id = -1;
+  return j;
+}
+
+static void tell(run *r, const friction_rule *rule, int contact_id, jump j) {
+  size_t used = strlen(r->course.note);
+  if (j.node_id < 0) return;
+  snprintf(r->course.note + used, sizeof r->course.note - used,
+           "  %s of contact %s jumps at t = %.9g from %.6g to %.6g, node %zu\n",
+           rule->law->value_name, r->m->contacts[contact_id].name, j.t, j.from,
+           j.to, r->surface->node_no[j.node_id]);
+}
+
+static void tell_law(run *r, const friction_rule *before,
+                     const friction_rule *now, int contact_id) {
+  size_t used = strlen(r->course.note);
+  snprintf(r->course.note + used, sizeof r->course.note - used,
+           "  friction of contact %s changes at t = %.9g from %s to %s\n",
+           r->m->contacts[contact_id].name, r->old.t,
+           before->law == NULL ? "NONE" : before->law->name,
+           now->law == NULL ? "NONE" : now->law->name);
+}
+
+/* What another *FRICTION changes at the start of a step. */
+static void note_change(run *r, int contact_id) {
+  int step_id = run_step_id(r);
+  if (step_id == 0 || r->old.t > r->step->start) return;
+  const friction_rule *now = rule_of(r, contact_id);
+  const friction_rule *before =
+      friction_in_force(r->m, step_id - 1, contact_id);
+  if (now == before) return;
+  if (now->law != before->law) {
+    tell_law(r, before, now, contact_id);
+    return;
+  }
+  if (now->law == NULL || now->law->value_name == NULL) return;
+  tell(r, now, contact_id,
+       largest_change(r, contact_id, before, r->old.t, now, r->old.t));
+}
+
+/* Expressions of t may jump; tables and amplitudes of pairs cannot. */
+static void note_jump(run *r, int contact_id, double t) {
+  const friction_rule *rule = rule_of(r, contact_id);
+  const quantity *q = &rule->card.value;
+  const expression *formula =
+      q->factor != NULL && q->factor->n == 0 ? q->factor->formula : NULL;
+  int varies = q->formula != NULL && (expression_variables(q->formula) & T_BIT);
+  if (formula != NULL) varies |= (expression_variables(formula) & T_BIT) != 0;
+  if (!varies || rule->law == NULL || rule->law->value_name == NULL) return;
+  jump j = largest_change(r, contact_id, rule, r->old.t, rule, t);
+  if (j.node_id >= 0) j = narrow(r, rule, j, r->old.t);
+  tell(r, rule, contact_id, j);
+}
+
+static void note_jumps(run *r, double t) {
+  r->course.note[0] = '\0';
+  for (int i = 0; i < r->m->n_contact; ++i) {
+    note_change(r, i);
+    note_jump(r, i, t);
+  }
+}
+
+/* ---- the limit ---------------------------------------------------------- */
+
+/* The law of one contact on its nodes. */
+static status add_law(run *r, friction *own, int contact_id, double t,
+                      int *node) {
+  const friction_rule *rule = rule_of(r, contact_id);
+  int n = 0;
+  if (rule->law == NULL) return OK;
+  for (int i = 0; i < r->nodes.n; ++i)
+    if (r->surface->contact_id[i] == contact_id) node[n++] = i;
+  friction_card of = rule->card;
+  if (rule_has_average(rule)) of.average = nonlocal_average(r, contact_id);
+  status st = rule->law->limit(&of, r->surface, n, node, t, &own->limit);
+  if (st == ERR_DECK) {
+    char why[256];
+    snprintf(why, sizeof why, "%s", status_message());
+    message_add(r->m->log, P2041, &rule->value_at, "%s", why);
+    RAISE(ERR_DECK, "%s:%d: %s", rule->value_at.file, rule->value_at.line_no,
+          why);
+  }
+  return st;
+}
+
+static status find_limit(run *r, friction *own, double t) {
+  status st = OK;
+  int *node = NULL;
+  timer_enter(STAGE_LIMIT);
+  friction_limit_free(&own->limit);
+  TRY(friction_limit_new(r->nodes.n, &own->limit));
+  NEW(node, r->nodes.n);
+  for (int i = 0; i < r->m->n_contact; ++i) TRY(add_law(r, own, i, t, node));
+  own->known = !limit_varies(r);
+  if (!own->known) run_forget_estimates(r);
+done:
+  memory_free(node);
+  timer_leave(STAGE_LIMIT);
+  return st;
+}
+
+static status update_limit(run *r, friction *own, double t) {
+  note_jumps(r, t);
+  if (!own->known) PASS(find_limit(r, own, t));
+  r->problem.g0 = own->limit.g0;
+  r->problem.B = own->limit.B.start == NULL ? NULL : &own->limit.B;
+  return OK;
+}
+
+/* ---- the history of slip ------------------------------------------------ */
+
+/* A contact unknown that *BOUNDARY prescribes: its value now, m. */
+static double held_value(const run *r, int i, int a) {
+  const contact_surface *s = r->surface;
+  int dim = s->dim;
+  double u = 0.0;
+  for (int c = 0; c < dim; ++c)
+    u += s->frame[dim * dim * i + dim * a + c] *
+         r->loads.ud[dim * s->node_id[i] + c];
+  return u;
+}
+
+/* 1 if the sliding limit of a node can be above zero. */
+static int can_stick(const friction_limit *limit, int i) {
+  const sparse_rows *B = &limit->B;
+  if (limit->g0[i] > 0.0) return 1;
+  for (int e = B->start == NULL ? 0 : B->start[i];
+       B->start != NULL && e < B->start[i + 1]; ++e)
+    if (B->val[e] > 0.0) return 1;
+  return 0;
+}
+
+static int in_group(const mesh_group *g, int node_id) {
+  for (int k = 0; k < g->n_node; ++k)
+    if (g->node_id[k] == node_id) return 1;
+  return 0;
+}
+
+/* The *BOUNDARY that holds contact node i most along its axis a, or NULL. */
+static const load *holder(const run *r, int i, int a) {
+  const contact_surface *s = r->surface;
+  const double *axis = &s->frame[s->dim * s->dim * i + s->dim * a];
+  const load *best = NULL;
+  for (int k = 0; k < r->step->loads.n; ++k) {
+    const load *l = &r->step->loads.item[k];
+    if (l->kind != LOAD_FIXING ||
+        !in_group(&r->msh->group[l->group_id], s->node_id[i]))
+      continue;
+    if (best == NULL || fabs(axis[l->component]) > fabs(axis[best->component]))
+      best = l;
+  }
+  return best;
+}
+
+/*
+ * Friction along t2 where t1 is made to move: the slip direction would depend
+ * on the prescribed motion, which the condensed problem does not hold.
+ */
+static status check_held(const run *r, const friction *own, int i, int a,
+                         double from, double to) {
+  status st = OK;
+  const contact_surface *s = r->surface;
+  int other = s->dim == 3 ? 3 - a : a;
+  if (s->dim < 3 || from == to || s->held[3 * i + other] ||
+      !can_stick(&own->limit, i))
+    goto done;
+  const load *l = holder(r, i, a);
+  message_add(r->m->log, P4015, l == NULL ? &r->step->at : &l->at,
+              "contact node %zu is led in one tangential direction while "
+              "friction acts in the other",
+              s->node_no[i]);
+  FAIL(ERR_DECK, "*BOUNDARY leads contact node %zu against friction",
+       s->node_no[i]);
+done:
+  return st;
+}
+
+/*
+ * Position of stick: the tangential displacement at the last equilibrium, moved
+ * along by the obstacle (CPR98 S_i^n); for one static problem the origin (P2).
+ * A prescribed unknown sticks where it is put: its force is the support's.
+ */
+static status find_stick(run *r, const friction *own) {
+  int dim = r->msh->dim;
+  int fresh = r->step->kind == STEP_STATIC && !r->course.relaxing;
+  for (int i = 0; i < r->nodes.n; ++i)
+    for (int a = 1; a < dim; ++a) {
+      int k = dim * i + a;
+      double from = fresh ? 0.0 : r->old.uc[k] - r->old.motion[k];
+      double stick = from + r->now.motion[k];
+      if (r->surface->held[k]) {
+        double to = held_value(r, i, a);
+        PASS(check_held(r, own, i, a, stick, to));
+        stick = to;
+      }
+      own->stick[(dim - 1) * i + a - 1] = stick;
+    }
+  return OK;
+}
+
+/* The stage of the history, where there is one. */
+static stage history_of(const run *r) {
+  return effect_is_on(&slip_history_effect, r->m) ? STAGE_HISTORY : STAGE_NONE;
+}
+
+static status pose(run *r, void *self, double t) {
+  friction *own = self;
+  const stage history = history_of(r);
+  PASS(update_limit(r, own, t));
+  if (history != STAGE_NONE) timer_enter(history);
+  status st = find_stick(r, own);
+  if (history != STAGE_NONE) timer_leave(history);
+  return st;
+}
+
+/* Slip adds up while a node is closed. */
+static status add_distance(run *r, void *self) {
+  friction *own = self;
+  const stage history = history_of(r);
+  int dim = r->msh->dim;
+  if (history != STAGE_NONE) timer_enter(history);
+  for (int i = 0; i < r->nodes.n; ++i) {
+    double s[2] = {run_motion_over(r, dim * i + 1), 0.0};
+    if (dim == 3) s[1] = run_motion_over(r, dim * i + 2);
+    if (r->result.contact[i] == CONTACT_SLIP)
+      own->distance[i] += hypot(s[0], s[1]);
+  }
+  if (history != STAGE_NONE) timer_leave(history);
+  return OK;
+}
+
+/* ---- its arrays --------------------------------------------------------- */
+
+static void free_arrays(friction *own) {
+  friction_limit_free(&own->limit);
+  RELEASE(own->stick, own->g, own->distance);
+  *own = (friction){.left = own->left};
+}
+
+static void use_arrays(const friction *own, run *r) {
+  r->problem.ut0 = own->stick;
+  r->result.g = own->g;
+  r->result.distance = own->distance;
+}
+
+static status new_arrays(const run *r, friction *own) {
+  PASS_NEW(own->stick, r->nodes.n * (r->msh->dim - 1));
+  PASS_NEW(own->g, r->nodes.n);
+  PASS_NEW(own->distance, r->nodes.n);
+  return OK;
+}
+
+static status friction_new(run *r, void **self) {
+  friction *own = NULL;
+  PASS_NEW(own, 1);
+  *self = own;
+  PASS_NEW(own->left, r->msh->n_node);
+  return OK;
+}
+
+static status prepare(run *r, void *self) {
+  friction *own = self;
+  own->known = 0;
+  if (own->stick != NULL) return OK;
+  PASS(new_arrays(r, own));
+  for (int i = 0; i < r->nodes.n; ++i)
+    own->distance[i] = own->left[r->surface->node_id[i]];
+  use_arrays(own, r);
+  return OK;
+}
+
+static void forget(run *r, void *self) {
+  friction *own = self;
+  memset(own->left, 0, (size_t)r->msh->n_node * sizeof *own->left);
+  for (int i = 0; i < r->nodes.n && own->distance != NULL; ++i)
+    own->left[r->surface->node_id[i]] = own->distance[i];
+  free_arrays(own);
+  use_arrays(own, r);
+}
+
+static status friction_copy(const run *r, const void *of, run *copy,
+                            void **self) {
+  friction *own = NULL;
+  const double *distance = ((const friction *)of)->distance;
+  PASS_NEW(own, 1);
+  *self = own;
+  PASS(new_arrays(r, own));
+  memcpy(own->distance, distance, (size_t)r->nodes.n * sizeof *distance);
+  use_arrays(own, copy);
+  return OK;
+}
+
+static void release(void *self) {
+  friction *own = self;
+  if (own == NULL) return;
+  free_arrays(own);
+  memory_free(own->left);
+  memory_free(own);
+}
+
+/* A limit that holds for all times of the step is made now, so that what is
+ * counted from here on is what the other run counts. */
+static status keep(run *r, void *self, archive *a) {
+  friction *own = self;
+  int known = own->known;
+  PASS(archive_ints(a, "limit_known", &known, 1));
+  PASS(archive_reals(a, "distance", own->distance, (size_t)r->nodes.n));
+  if (archive_reads(a) && known) PASS(update_limit(r, own, r->old.t));
+  return OK;
+}
+
+/* ---- the rows ----------------------------------------------------------- */
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){.kind = "nodes", .calls = 1.0};
+  status st = plan_rule_nodes(s, rule_has_friction, &w->items);
+  w->operations = 100.0 * w->items;
+  return st;
+}
+
+static status expected_history(const plan_sizes *s, effect_work *w) {
+  double times = s->equilibria + s->increments;
+  *w = (effect_work){.kind = "nodes", .calls = times};
+  status st = plan_rule_nodes(s, rule_has_friction, &w->items);
+  w->operations = 20.0 * times * w->items;
+  return st;
+}
+
+static int calls_for_friction(const model *m, char *why, size_t size) {
+  return plan_calls_for_rule(m, rule_has_friction,
+                             m->n_contact == 0
+                                 ? "no *CONTACT card"
+                                 : "no *FRICTION card with a value above zero",
+                             why, size);
+}
+
+/* More than one increment: slip and load have a history. */
+static int calls_for_history(const model *m, char *why, size_t size) {
+  if (!calls_for_friction(m, NULL, 0))
+    return plan_says(0, why, size, "no friction");
+  if (m->n_step == 0 ||
+      (m->n_step == 1 && !(m->steps[0].dt < m->steps[0].total)))
+    return plan_says(0, why, size, "one increment only");
+  return plan_says(1, why, size, "friction over more than one increment, %s:%d",
+                   PLACE(m->steps[0].at));
+}
+
+const effect_ops friction_effect = {.name = "friction",
+                                    .bit = EFFECT_BIT_FRICTION,
+                                    .called_for = calls_for_friction,
+                                    .foreseen = expected,
+                                    .own = STAGE_LIMIT,
+                                    .inside = 1,
+                                    .on.create = friction_new,
+                                    .on.prepare = prepare,
+                                    .on.pose = pose,
+                                    .on.accept = add_distance,
+                                    .on.forget = forget,
+                                    .on.keep = keep,
+                                    .on.copy = friction_copy,
+                                    .on.release = release};
+
+/* Its hooks are those of friction. */
+const effect_ops slip_history_effect = {.name = "history of slip",
+                                        .bit = EFFECT_BIT_HISTORY,
+                                        .called_for = calls_for_history,
+                                        .foreseen = expected_history,
+                                        .own = STAGE_HISTORY};

@@ -1,0 +1,180 @@
+/*
+ * *CONTACT FORCE: given normal forces in the place of unilateral contact
+ * (CPR98, problem D3). The solver takes a problem without those normals; its
+ * answer is brought back.
+ */
+#include "base/memory.h"
+#include "contact/formulation/form.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "model/facts.h"
+#include "run/run.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct given_forces {
+  int n, *node;     /* [n] contact nodes with a given normal force           */
+  double *force;    /* [n] N, >= 0                                           */
+  double *all;      /* [r->nodes.n] the same, -1 where there is none         */
+  given_form *form; /* NULL until needed                                     */
+  long matrix_no;   /* of the run, that form is made of                      */
+} given_forces;
+
+static const given_force *force_of(const run *r, int i) {
+  return &r->m->contacts[r->surface->contact_id[i]].force;
+}
+
+/* The contact with a given force among those that meet in a corner, or -1. */
+static int forced_corner(const run *r, int i) {
+  const contact_surface *s = r->surface;
+  int id = s->contact_id[i];
+  if (!surface_is_corner(s, i)) return -1;
+  for (int k = 0; k < s->dim - 1 && !r->m->contacts[id].force.given; ++k)
+    if (s->side_id[(s->dim - 1) * i + k] >= 0)
+      id = s->side_id[(s->dim - 1) * i + k];
+  return r->m->contacts[id].force.given ? id : -1;
+}
+
+/* Two contacts at one node take its normals for unilateral conditions. */
+static status check_corners(const run *r) {
+  for (int i = 0; i < r->nodes.n; ++i) {
+    int id = forced_corner(r, i);
+    if (id < 0) continue;
+    message_add(r->m->log, P4012, &r->m->contacts[id].force.at,
+                "contact %s meets another contact at node %zu",
+                r->m->contacts[id].name, r->surface->node_no[i]);
+    RAISE(ERR_DECK, "*CONTACT FORCE at a corner of two contacts");
+  }
+  return OK;
+}
+
+/* The given pressures at time t times the areas of the nodes. */
+static status set_forces(run *r, void *self, double t) {
+  given_forces *f = self;
+  if (f->n == 0) return OK;
+  const contact_surface *s = r->surface;
+  for (int k = 0; k < f->n; ++k) {
+    int i = f->node[k];
+    double x[3] = {0.0, 0.0, 0.0};
+    memcpy(x, s->x + s->dim * i, (size_t)s->dim * sizeof *x);
+    const given_force *given = force_of(r, i);
+    double p = quantity_value(&given->value, x, t);
+    f->force[k] = f->all[i] = p * s->area[i];
+    if (isfinite(p) && p >= 0.0) continue;
+    message_add(r->m->log, P2041, &given->value_at,
+                "*CONTACT FORCE: value %g at node %zu (%g, %g, %g), time %g; "
+                "expected a number that is not negative",
+                p, s->node_no[i], x[0], x[1], x[2], t);
+    RAISE(ERR_DECK, "%s:%d: a given contact force is negative or no number",
+          given->value_at.file, given->value_at.line_no);
+  }
+  r->problem.given = f->all;
+  return OK;
+}
+
+static status given_new(run *r, void **self) {
+  given_forces *own = NULL;
+  (void)r;
+  PASS_NEW(own, 1);
+  *self = own;
+  return OK;
+}
+
+static void forget(run *r, void *self) {
+  given_forces *own = self;
+  given_form_free(own->form);
+  RELEASE(own->node, own->force, own->all);
+  *own = (given_forces){0};
+  r->problem.given = NULL;
+}
+
+static status prepare(run *r, void *self) {
+  given_forces *own = self;
+  if (own->all != NULL) return OK;
+  PASS(check_corners(r));
+  PASS_NEW(own->node, r->nodes.n);
+  PASS_NEW(own->all, r->nodes.n);
+  for (int i = 0; i < r->nodes.n; ++i) {
+    own->all[i] = -1.0;
+    if (force_of(r, i)->given) own->node[own->n++] = i;
+  }
+  PASS_NEW(own->force, own->n);
+  return OK;
+}
+
+static status given_copy(const run *r, const void *of, run *copy, void **self) {
+  (void)r;
+  (void)of;
+  PASS(given_new(copy, self));
+  return prepare(copy, *self);
+}
+
+static void release(void *self) {
+  given_forces *own = self;
+  if (own == NULL) return;
+  given_form_free(own->form);
+  RELEASE(own->node, own->force, own->all);
+  memory_free(own);
+}
+
+static status take(run *r, void *self, contact_problem *cp, double **u,
+                   double *force) {
+  status st = OK;
+  given_forces *own = self;
+  contact_problem before = *cp;
+  if (own->n == 0) return OK;
+  timer_enter(STAGE_GIVEN);
+  if (own->matrix_no != r->solving.matrix_no) {
+    given_form_free(own->form);
+    own->form = NULL;
+  }
+  own->matrix_no = r->solving.matrix_no;
+  if (own->form == NULL) TRY(given_form_new(cp, own->n, own->node, &own->form));
+  TRY(given_form_set(own->form, &before, own->force, r->msh->size, *u, force,
+                     cp));
+done:
+  timer_leave(STAGE_GIVEN);
+  return st;
+}
+
+static void give(run *r, void *self, contact_problem *cp, double *u,
+                 double *force) {
+  given_forces *own = self;
+  (void)r;
+  if (own->n > 0) given_form_apply(own->form, cp, u, force);
+}
+
+/* ---- the row ------------------------------------------------------------ */
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  double n = 0.0;
+  for (int i = 0; s->msh != NULL && i < s->m->n_contact; ++i)
+    if (s->m->contacts[i].force.given)
+      n += s->msh->group[s->m->contacts[i].group_id].n_node;
+  *w = (effect_work){n, "nodes", s->equilibria, 20.0 * s->equilibria * n};
+  return OK;
+}
+
+static int calls_for_given(const model *m, char *why, size_t size) {
+  const contact *c = facts_first_given(m);
+  if (c == NULL) return plan_says(0, why, size, "no *CONTACT FORCE card");
+  return plan_says(1, why, size, "*CONTACT FORCE on contact %s, %s:%d", c->name,
+                   PLACE(c->force.at));
+}
+
+const effect_ops given_forces_effect = {.name = "given contact forces",
+                                        .bit = EFFECT_BIT_GIVEN,
+                                        .called_for = calls_for_given,
+                                        .foreseen = expected,
+                                        .own = STAGE_GIVEN,
+                                        .inside = 1,
+                                        .far = 1,
+                                        .on.create = given_new,
+                                        .on.prepare = prepare,
+                                        .on.pose = set_forces,
+                                        .on.rewrite = take,
+                                        .on.restore = give,
+                                        .on.forget = forget,
+                                        .on.copy = given_copy,
+                                        .on.release = release};

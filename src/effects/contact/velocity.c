@@ -1,0 +1,104 @@
+/*
+ * *QUASISTATIC, FORM=VELOCITY: the solver's unknown is the displacement of the
+ * increment (CPR98, problem N3).
+ */
+#include "contact/formulation/form.h"
+#include "base/memory.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "run/run.h"
+
+typedef struct velocity {
+  velocity_form *form;    /* NULL until needed                               */
+  long matrix_no;         /* of the run, that form is made of                */
+  contact_problem before; /* what was rewritten last                         */
+} velocity;
+
+static status velocity_new(run *r, void **self) {
+  velocity *own = NULL;
+  (void)r;
+  PASS_NEW(own, 1);
+  *self = own;
+  return OK;
+}
+
+static status velocity_copy(const run *r, const void *of, run *copy,
+                            void **self) {
+  (void)r;
+  (void)of;
+  return velocity_new(copy, self);
+}
+
+static void release(void *self) {
+  velocity *own = self;
+  if (own == NULL) return;
+  velocity_form_free(own->form);
+  memory_free(own);
+}
+
+/* The last equilibrium, from which the increment and its slip are counted:
+ * start values may be others. Normals with a given force stand apart, at 0. */
+static void put_old(run *r, double *u_old) {
+  const double *given = r->problem.given;
+  run_take_rows(r, r->old.uc, u_old);
+  for (int i = 0; i < r->nodes.n && given != NULL; ++i)
+    if (given[i] >= 0.0) u_old[r->nodes.rows * i] = 0.0;
+}
+
+static status take(run *r, void *self, contact_problem *cp, double **u,
+                   double *force) {
+  velocity *own = self;
+  (void)force;
+  own->before = *cp;
+  if (own->matrix_no != r->solving.matrix_no) {
+    velocity_form_free(own->form);
+    own->form = NULL;
+  }
+  own->matrix_no = r->solving.matrix_no;
+  if (own->form == NULL) PASS(velocity_form_new(cp, &own->form));
+  put_old(r, velocity_form_old(own->form));
+  velocity_form_set(own->form, &own->before, cp, u);
+  return OK;
+}
+
+static void give(run *r, void *self, contact_problem *cp, double *u,
+                 double *force) {
+  const velocity *own = self;
+  (void)r;
+  (void)cp;
+  (void)force;
+  velocity_form_apply(own->form, &own->before, u);
+}
+
+/* ---- the row ------------------------------------------------------------ */
+
+static int due(const run *r) { return r->step->form == FORM_VELOCITY; }
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){s->contact, "nodes", s->equilibria,
+                     20.0 * s->equilibria * s->contact};
+  return OK;
+}
+
+static int calls_for_velocity(const model *m, char *why, size_t size) {
+  for (int i = 0; i < m->n_step; ++i) {
+    if (m->steps[i].form != FORM_VELOCITY) continue;
+    snprintf(why, size, "*QUASISTATIC, FORM=VELOCITY of %s:%d",
+             PLACE(m->steps[i].at));
+    return 1;
+  }
+  snprintf(why, size, "no *QUASISTATIC, FORM=VELOCITY");
+  return 0;
+}
+
+const effect_ops velocity_effect = {.name = "velocity form",
+                                    .bit = NO_BIT,
+                                    .called_for = calls_for_velocity,
+                                    .foreseen = expected,
+                                    .own = STAGE_VELOCITY,
+                                    .on.create = velocity_new,
+                                    .on.due = due,
+                                    .on.rewrite = take,
+                                    .on.restore = give,
+                                    .on.copy = velocity_copy,
+                                    .on.release = release};
