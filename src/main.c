@@ -57,6 +57,7 @@ static status run_job(const command *c, message_log *log, int *unsettled) {
     TRY(solve(c, &in, unsettled));
 done:
   message_print(log, stderr);
+  if (in.closing != NULL) fputs(in.closing, stderr);
   job_input_free(&in);
   return st;
 }

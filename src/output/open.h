@@ -20,6 +20,8 @@ struct output {
   double xdmf_at, xdmf_cpu; /* when, and the cost so far, s                   */
   int attempt; /* of the increment now tried                                 */
   int progress;
+  double shown_at, began_at; /* line on the terminal; end of the setup, s    */
+  int n_done;                /* increments since then                        */
   int quiet; /* 1: the first facts stand in the listing already               */
   increment_summary *kept; /* [n_increment] of output_keep                   */
   solution_facts *facts;   /* all their solutions                            */

@@ -148,6 +148,22 @@ void output_passes(output *o, double target, int n, const pass_row *rows,
   o->run.passes = (pass_table){target, n, rows, forecast, why};
 }
 
+/* Without memory there are none. */
+static void make_closing(const output *o) {
+  const job j = job_of(o);
+  char *path = text_path(o->o.dir, o->m->job, "lst"), **to = o->o.closing;
+  size_t size = 0;
+  FILE *f = to != NULL && o->progress ? open_memstream(to, &size) : NULL;
+  if (f != NULL && path != NULL) {
+    char files[4096];
+    snprintf(files, sizeof files, "%s .sta .cvg%s%s .json", path,
+             o->dat != NULL ? " .dat" : "", o->h5 != NULL ? " .h5 .xdmf" : "");
+    closing_lines(&j, files, f);
+  }
+  if (f != NULL) text_memory_end(f, to);
+  memory_free(path);
+}
+
 status output_close(output *o, status run, int unsettled) {
   char message[2048] = "";
   status kept = OK;
@@ -166,6 +182,8 @@ status output_close(output *o, status run, int unsettled) {
   first_of(&kept, message, sizeof message, text_close(&o->lst));
   o->run.verdict = verdict_of(kept, unsettled);
   first_of(&kept, message, sizeof message, json_write(&j, o->json));
+  o->run.verdict = verdict_of(kept, unsettled);
+  make_closing(o);
   release(o);
   if (kept != OK) return status_fail(kept, __func__, __LINE__, "%s", message);
   return verdict_of(OK, unsettled);

@@ -46,6 +46,7 @@ static status sink_ready(void *ctx, const setup_facts *facts,
   output *o = ctx;
   job j = job_of(o);
   (void)surface;
+  if (!o->run.facts_known) o->began_at = clock_now();
   o->run.facts_known = 1;
   if (o->quiet) {
     o->run.facts.info.ordering = facts->info.ordering;
@@ -117,13 +118,23 @@ done:
   return st;
 }
 
+/* Ten times a second at most: a terminal is slow. */
+static void show_progress(output *o, const state *s) {
+  if (!o->progress) return;
+  const double now = clock_now();
+  ++o->n_done;
+  if (o->n_done > 1 && now < o->shown_at + 0.1) return;
+  o->shown_at = now;
+  progress_show(o->m, s, now - o->began_at, o->n_done);
+}
+
 static status sink_increment(void *ctx, const state *s) {
   output *o = ctx;
   PASS(write_fields(o, s));
   PASS(write_condensed(o, s));
   PASS(write_tables(o, s));
   o->attempt = 1;
-  if (o->progress) progress_show(s);
+  show_progress(o, s);
   return OK;
 }
 

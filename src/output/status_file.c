@@ -1,11 +1,14 @@
 /*
  * JOB.sta: one line per attempt at an increment, for tail -f and scripts.
  * JOB.cvg: one line per contact iteration.
- * The line on the terminal.
+ * The line on the terminal, and those at the end.
  */
+#include "base/memory.h"
+#include "base/timer.h"
 #include "output/writers.h"
 
 #include <math.h>
+#include <string.h>
 
 status sta_header(const output_options *o, text_file *sta) {
   fprintf(sta->f,
@@ -111,13 +114,102 @@ void progress_line(const char *text) {
   fflush(stderr);
 }
 
-void progress_show(const state *s) {
+/* Increments after this one: of its step at its dt, of the steps that follow.
+ */
+static double increments_left(const model *m, const state *s) {
+  const step *now = &m->steps[s->step_no - 1];
+  const double rest = now->start + now->total - s->t;
+  double n = fmax(0.0, ceil(rest / fmax(s->dt, now->dt_min) * (1 - 1e-9)));
+  if (s->end_of_step || !(rest > 1e-9 * now->total)) n = 0.0;
+  for (int i = s->step_no; i < m->n_step; ++i)
+    n += ceil(step_increments(&m->steps[i]) * (1 - 1e-9));
+  return n;
+}
+
+void progress_show(const model *m, const state *s, double seconds, int done) {
   char text[160];
+  const double left = increments_left(m, s), rest = seconds / done * left;
+  const char *unit = rest < 120 ? "s" : rest < 7200 ? "min" : "h";
+  const double per = rest < 120 ? 1 : rest < 7200 ? 60 : 3600;
   snprintf(text, sizeof text,
-           "step %d  increment %d  time %.4g  open %d  slip %d  stick %d  "
-           "iterations %d  residual %.1e",
-           s->step_no, s->increment_no, s->t, s->contacts.n_open,
-           s->contacts.n_slip, s->contacts.n_stick, s->report.iterations,
-           s->report.residual);
+           "step %d of %d, time %.4g, increment %d of %.0f, %.0f %s left",
+           s->step_no, m->n_step, s->t, s->total_no, s->total_no + left,
+           ceil(rest / per), unit);
   progress_line(text);
+}
+
+/* ---- the lines at the end ------------------------------------------------ */
+
+enum { MOST_SHOWN = 20 }; /* contacts                                        */
+
+/* The unit with a blank before it; nothing if *UNITS gives it no label. */
+static const char *unit_after(const char *unit, const model *m, char text[80]) {
+  text[0] = ' ';
+  column_unit(unit, m, text + 1, 79);
+  return strcmp(text + 1, unit) == 0 ? "" : text;
+}
+
+/* A contact at the last increment: the values of job_end_column. */
+static const double *close_contact(const job *j, int id, const double *value,
+                                   FILE *f) {
+  char unit[80];
+  fprintf(f, "%-9s ", j->m->contacts[id].name);
+  const char *before = "";
+  for (const column *c = NULL; (c = job_end_column(j->m, c)) != NULL; ++value)
+    if (strncmp(c->name, "force_", 6) == 0 || c->form == AS_COUNT) {
+      fprintf(f, "%s%s %.6g%s", before, c->name, *value,
+              unit_after(c->unit, j->m, unit));
+      before = ", ";
+    }
+  fputc('\n', f);
+  return value;
+}
+
+static void close_contacts(const job *j, FILE *f) {
+  const run_summary *run = j->run;
+  const increment_summary *last = &run->increments[run->n_increment - 1];
+  const int shown = j->m->n_contact < MOST_SHOWN ? j->m->n_contact : MOST_SHOWN;
+  const double *value =
+      run->ends + (size_t)(last->step_no - 1) * job_end_size(j->m) + 2;
+  for (int i = 0; i < shown; ++i) value = close_contact(j, i, value, f);
+  if (shown < j->m->n_contact)
+    fprintf(f, "%-9s %d contacts more: JOB.json\n", "",
+            j->m->n_contact - shown);
+  if (shown == 0)
+    fprintf(f, "%-9s open %d, slip %d, stick %d\n", "contact", last->n_open,
+            last->n_slip, last->n_stick);
+}
+
+/* The worst of the estimates; "-": not asked for, or unknown. */
+static void close_errors(const job *j, FILE *f) {
+  static const char *const names[] = {"mesh", "steps", "solver"};
+  budget_row rows[BUDGET_ROWS];
+  const int n = job_budget(j, rows);
+  fprintf(f, "%-9s ", "error");
+  for (int k = 0; k < 3; ++k) {
+    double worst = NAN;
+    for (int i = 0; i < n; ++i)
+      if (strcmp(rows[i].name, names[k]) == 0) worst = rows[i].worst;
+    fprintf(f, k > 0 ? ", %s " : "%s ", names[k]);
+    fprintf(f, isnan(worst) ? "-" : "%.2g %%", worst);
+  }
+  fputs(" of the energy norm\n", f);
+}
+
+void closing_lines(const job *j, const char *files, FILE *f) {
+  const run_summary *run = j->run;
+  char unit[80];
+  fprintf(f, "%-9s %s\n%-9s %d: %s; increments %d, attempts cut %d\n",
+          "results", files, "exit", status_exit_code(run->verdict),
+          run->verdict == OK ? "done" : status_text(run->verdict),
+          run->n_increment, run->n_rejected);
+  if (run->n_increment > 0) {
+    close_contacts(j, f);
+    fprintf(f, "%-9s residual %.1e, penetration %.2g%s\n", "worst",
+            run->residual_worst, run->penetration_worst,
+            unit_after("length", j->m, unit));
+    close_errors(j, f);
+  }
+  fprintf(f, "%-9s %.2f s CPU, %.1f MB of arrays\n", "cost", timer_cpu(),
+          1e-6 * (double)memory_peak());
 }

@@ -34,7 +34,10 @@ void cvg_line(int total_no, int attempt, const solver_step *s, text_file *cvg);
 void cvg_end(int total_no, int attempt, const state *s, text_file *cvg);
 /* One line on the terminal, rewritten; "" clears it. */
 void progress_line(const char *text);
-void progress_show(const state *s);
+/* "seconds" of "done" increments tell how long the rest will take. */
+void progress_show(const model *m, const state *s, double seconds, int done);
+/* Where the results are (files), exit, contacts, errors, cost. */
+void closing_lines(const job *j, const char *files, FILE *f);
 
 /* ---- json.c ----------------------------------------------------------- */
 /* Written aside and renamed: a program sees the whole or nothing. */

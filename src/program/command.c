@@ -50,7 +50,7 @@ static const char *const help_rows[][2] = {
   {"--restart", "go on with a run that was interrupted, from JOB.rst.h5"},
   {"--table NAME[:last]", "a table of the finished job as csv, to stdout"},
   {"--format csv|tsv", "of --table"},
-  {"--quiet", "no progress line"},
+  {"--quiet", "on a terminal: neither progress line nor lines at the end"},
   {"--help", "this text"},
   {"--version", "version, libraries, BLAS kernel"},
   {"--keywords [CARD]", "cards of the deck, or one card in full"},

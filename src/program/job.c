@@ -106,6 +106,7 @@ void job_input_free(job_input *in) {
   deck_free(in->d);
   deck_free(in->first);
   message_log_free(in->log);
+  free(in->closing);
   *in = (job_input){0};
 }
 
@@ -176,7 +177,10 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
       .threads = c->threads,
       .from = from,
       .n_problem = in->problem != NULL ? in->problem->n : 0,
+      .closing = &in->closing,
       .progress = !c->quiet && isatty(STDERR_FILENO)};
+  free(in->closing); /* of the pass before */
+  in->closing = NULL;
   if (watch == NULL && in->problem == NULL) TRY(restart_files(in, &files));
   TRY(output_open(in->m, in->problem == NULL ? in->msh : &no_mesh, &options,
                   &out));

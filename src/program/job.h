@@ -18,6 +18,7 @@ typedef struct job_input {
    * refer, and the messages of its own. */
   deck *first;
   message_log *log;
+  char *closing; /* lines for the end on a terminal, or NULL; free()          */
 } job_input;
 
 /* The mesh of another pass. */

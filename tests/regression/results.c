@@ -6,8 +6,11 @@
 #include "support/tips.h"
 #include "support/unit.h"
 
+#include <pty.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 static const double area = 0.70710678118654752; /* of a tip: half an edge */
 
@@ -122,6 +125,60 @@ START_TEST(tables_are_read_by_other_programs) {
 }
 END_TEST
 
-UNIT_MAIN("results", tables_are_read_by_other_programs,
+/* What a run with stderr on a terminal writes there; caller frees. */
+static char *on_a_terminal(const job *j, const char *words) {
+  char path[120], *said = calloc(20000, 1);
+  size_t n = 0;
+  int fd, code;
+  snprintf(path, sizeof path, "%s/%s.inp", j->dir, j->name);
+  const pid_t pid = forkpty(&fd, NULL, NULL, NULL);
+  ck_assert_int_ge(pid, 0);
+  if (pid == 0) {
+    execl(getenv("PROTIS"), "protis", path, words, (char *)NULL);
+    _exit(127);
+  }
+  for (ssize_t got; (got = read(fd, said + n, 19999 - n)) > 0;)
+    n += (size_t)got;
+  close(fd);
+  ck_assert_int_eq(waitpid(pid, &code, 0), pid);
+  ck_assert_msg(WIFEXITED(code) && WEXITSTATUS(code) == 0, "%s", said);
+  return said;
+}
+
+/* N = 20 and 8 on frictionless tips. */
+START_TEST(run_on_a_terminal_ends_with_what_matters) {
+  static const char *const lines[] = {
+      "step 1 of 2, time 0.5, increment 1 of 3, ",
+      "\nresults   ",
+      "/tips.lst .sta .cvg .dat .h5 .xdmf .json\r\n",
+      "exit      0: done; increments 3, attempts cut 0\r\n",
+      "LEFT      force_x 0, force_y 20, open 0, slip 1, stick 0\r\n",
+      "RIGHT, OUTER force_x 0, force_y 8, open 0, slip 1, stick 0\r\n",
+      "worst     residual ",
+      ", penetration ",
+      "error     mesh -, steps -, solver ",
+      " % of the energy norm\r\n",
+      "cost      ",
+      " MB of arrays\r\n"};
+  job j = two_contacts();
+  ck_assert_ptr_null(strpbrk(j.errors, "\r\033"));
+  ck_assert_ptr_null(strstr(j.errors, "results "));
+  ck_assert_str_eq(j.text, "");
+  char *said = on_a_terminal(&j, "--no-timing"), *at = said;
+  for (size_t i = 0; i < sizeof lines / sizeof *lines; ++i) {
+    at = strstr(at, lines[i]);
+    ck_assert_msg(at != NULL, "no %s in:\n%s", lines[i], said);
+  }
+  free(said);
+  said = on_a_terminal(&j, "--quiet");
+  ck_assert_ptr_null(strstr(said, "step 1 of"));
+  ck_assert_ptr_null(strstr(said, "results "));
+  free(said);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("results", run_on_a_terminal_ends_with_what_matters,
+          tables_are_read_by_other_programs,
           json_has_the_contacts_at_the_end_of_each_step,
           nodes_have_the_name_of_their_contact)

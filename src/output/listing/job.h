@@ -11,9 +11,10 @@
 #include "run/column.h"
 
 typedef struct output_options {
-  const char *dir;     /* folder of the results; NULL or "": the current one */
-  int no_timing;       /* leave out the cost columns                         */
-  int progress;        /* a line on the terminal, if stderr is one           */
+  const char *dir; /* folder of the results; NULL or "": the current one */
+  int no_timing;   /* leave out the cost columns                         */
+  char **closing;  /* lines for the end on a terminal, for free(); or NULL */
+  int progress;    /* a line on the terminal, if stderr is one           */
   const char *version; /* of the program, for the results; NULL: ""          */
   const char *kernel;  /* BLAS kernel, for the results; NULL: ""             */
   int threads;         /* threads of the run, for the results                */
