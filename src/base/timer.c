@@ -74,7 +74,7 @@ void timer_leave(stage s) {
 }
 
 stage_cost timer_cost(stage s) {
-  charge();
+  if (depth > 0 && open_stage[depth - 1] == s) charge();
   return cost[s];
 }
 

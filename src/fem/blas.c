@@ -6,6 +6,8 @@
  */
 #include "fem/fem.h"
 
+#include "base/system/limits.h"
+
 #include <cblas.h>
 #include <dlfcn.h>
 #include <stdio.h>
@@ -82,6 +84,7 @@ static void limit_openmp(int levels) {
 }
 
 void blas_set_threads(int n) {
+  limits_release_processors();
   openblas_set_num_threads(n);
   limit_openmp(n >= OMP_THREADS ? 1 : 0);
 }
@@ -97,30 +100,6 @@ static void take_buffer(void) {
 static int addresses_are_limited(struct rlimit *limit) {
   return getrlimit(RLIMIT_AS, limit) == 0 && limit->rlim_cur != RLIM_INFINITY;
 }
-
-/* Where addresses are limited (ulimit -v) OpenBLAS starts without threads of
- * its own, which take a stack and a buffer each: where there is no room for
- * them it ends the process when it is loaded. So this is run before, when there
- * is nothing yet but the environment that it is handed. */
-static void start_one_thread(int argc, char **argv, char **env) {
-  struct rlimit limit;
-  char one[] = "OPENBLAS_NUM_THREADS=1";
-  const size_t name = sizeof one - 2;
-  int n = 0, kept = 0;
-  (void)argc;
-  if (!addresses_are_limited(&limit)) return;
-  while (env[n] != NULL && strcmp(env[n], one) != 0) ++n;
-  if (env[n] != NULL) return;
-  char *other[n + 2];
-  for (int i = 0; i < n; ++i)
-    if (strncmp(env[i], one, name) != 0) other[kept++] = env[i];
-  other[kept] = one;
-  other[kept + 1] = NULL;
-  execve("/proc/self/exe", argv, other);
-}
-
-static void (*const before_libraries)(int, char **, char **)
-    __attribute__((section(".preinit_array"), used)) = start_one_thread;
 
 /* OpenBLAS asks for its buffers until it gets them: it takes that of this
  * thread now, or the process ends. */

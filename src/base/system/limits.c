@@ -4,7 +4,7 @@
  * root, and the limits of the process (ulimit -v, -d). Pages of files count as
  * free in a group: they are given back.
  */
-#define _GNU_SOURCE /* sched_getaffinity */
+#define _GNU_SOURCE /* sched_getaffinity, sched_getcpu */
 #include "base/system/limits.h"
 
 #include <math.h>
@@ -193,3 +193,30 @@ void limits_read(const char *root, limits *l) {
 }
 
 double limits_held(void) { return held(RESIDENT); }
+
+static cpu_set_t processors; /* of the process; none: not changed */
+
+/* OpenBLAS starts a thread for each processor when it is loaded. Each waits
+ * actively for tens of milliseconds and takes a stack and a buffer; without
+ * room for them (ulimit -v) the process ends. So the process has one processor
+ * until the first call of limits_release_processors. */
+static void take_one_processor(void) {
+  cpu_set_t one;
+  const int current = sched_getcpu();
+  if (current < 0 || current >= CPU_SETSIZE ||
+      sched_getaffinity(0, sizeof processors, &processors) != 0)
+    return;
+  CPU_ZERO(&one);
+  CPU_SET((size_t)current, &one);
+  sched_setaffinity(0, sizeof one, &one);
+}
+
+/* Called before the constructors of the libraries. */
+static void (*const before_libraries)(void)
+    __attribute__((section(".preinit_array"), used)) = take_one_processor;
+
+void limits_release_processors(void) {
+  if (CPU_COUNT(&processors) > 0)
+    sched_setaffinity(0, sizeof processors, &processors);
+  CPU_ZERO(&processors);
+}

@@ -14,5 +14,8 @@ typedef struct limits {
 void limits_read(const char *root, limits *l);
 /* Bytes of memory this process holds now (resident); 0: unknown. */
 double limits_held(void);
+/* All processors of the process, which has one until the first call: OpenBLAS
+ * starts no thread when it is loaded. */
+void limits_release_processors(void);
 
 #endif
