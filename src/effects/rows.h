@@ -42,7 +42,9 @@
   X(fields)              \
   X(condensed_problems)  \
   X(restart)             \
-  X(listing)
+  X(listing)             \
+  X(balance)             \
+  X(warnings)
 /* clang-format on */
 
 #define EFFECT_ROW(name) extern const effect_ops name##_effect;

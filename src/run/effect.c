@@ -95,12 +95,17 @@ const char *effects_sum_up(const run *r) {
 
 EACH(prepare, (run * r), 0, 1, e->on.prepare(r, own))
 EACH(begin_step, (run * r), 1, 1, e->on.begin_step(r, own))
+EACH(make_step, (run * r, int *made), 1, !*made, e->on.make_step(r, own, made))
+EACH(attempt, (run * r, double t), 1, 1, e->on.attempt(r, own, t))
+EACH(solve, (run * r, double t, int *made), 1, !*made,
+     e->on.solve(r, own, t, made))
 EACH(initial, (run * r), 1, is_due(r, k), e->on.initial(r, own))
 EACH(pose, (run * r, double t), 1, 1, e->on.pose(r, own, t))
 EACH(rewrite, (run * r, contact_problem *cp, double **u, double *force), 1,
      is_due(r, k), e->on.rewrite(r, own, cp, u, force))
 EACH(found, (run * r, int *again), 1, !*again, e->on.found(r, own, again))
 EACH(examine, (run * r, double t), 1, 1, e->on.examine(r, own, t))
+EACH(estimate, (run * r), 1, 1, e->on.estimate(r, own))
 EACH(accept, (run * r), 1, is_due(r, k), e->on.accept(r, own))
 
 void effects_restore(run *r, contact_problem *cp, double *u, double *force) {
@@ -119,6 +124,12 @@ void effects_forget(run *r) {
   for (int k = 0; k < r->effects.n; ++k)
     if (r->effects.on[k].ops->on.forget != NULL)
       r->effects.on[k].ops->on.forget(r, r->effects.on[k].state);
+}
+
+void effects_end(run *r) {
+  for (int k = 0; k < r->effects.n; ++k)
+    if (r->effects.on[k].ops->on.end != NULL)
+      r->effects.on[k].ops->on.end(r, r->effects.on[k].state);
 }
 
 int effects_reach_far(const run *r) {

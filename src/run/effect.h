@@ -38,6 +38,14 @@ typedef struct effect_hooks {
   status (*begin_step)(struct run *r, void *own);
   /* T: the initial displacements are r->old, posed in r->problem.cp. */
   status (*initial)(struct run *r, void *own);
+  /* T: *made = 1: it has made all increments of the step, with a grid of its
+   * own. */
+  status (*make_step)(struct run *r, void *own, int *made);
+  /* T: an attempt at the increment that ends at t begins; r->now may be written
+   * to. */
+  status (*attempt)(struct run *r, void *own, double t);
+  /* T: *made = 1: it has solved the increment that ends at t into r->now. */
+  status (*solve)(struct run *r, void *own, double t, int *made);
   /* T: gaps and load of time t are set: what it changes. */
   status (*pose)(struct run *r, void *own, double t);
   /* T: *cp as the solver takes it; u, force [cp->m]: start values, made to fit;
@@ -52,10 +60,14 @@ typedef struct effect_hooks {
   /* T: the increment that ends at t has been solved and will be taken; r->now
    * may be solved again. */
   status (*examine)(struct run *r, void *own, double t);
+  /* T: the errors of r->now into r->errors, for good or at an attempt. */
+  status (*estimate)(struct run *r, void *own);
   /* T: r->now is an increment of the run, r->old what it started from. */
   status (*accept)(struct run *r, void *own);
   /* What the outputs show of it beside its columns. */
   void (*show)(const void *own, state *s);
+  /* The run went through. */
+  void (*end)(struct run *r, void *own);
   /* The contact surface goes, and what is made of it. */
   void (*forget)(struct run *r, void *own);
   /* Both ways, in a group of its own. */
@@ -75,7 +87,8 @@ typedef struct effect_ops {
   /* 1: the model calls for it; which card or fact does, or why none does, into
    * why[size]; size 0: not wanted. */
   int (*called_for)(const model *m, char *why, size_t size);
-  /* Work expected before anything is solved. ERR_MEMORY. */
+  /* Work expected before anything is solved; NULL: none, no row in the plan.
+   * ERR_MEMORY. */
   status (*foreseen)(const plan_sizes *s, effect_work *work);
   /* Of the hooks; 0: one of its name is made; STAGE_NONE: they are not timed.
    */

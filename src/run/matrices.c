@@ -50,8 +50,7 @@ status run_renew_elastic(run *r) {
   status st = OK;
   r->body.stale = 0;
   r->c = NULL;
-  space_recovery_free(r->errors.recovery);
-  r->errors.recovery = NULL;
+  ++r->body.elastic_no;
   matrices_free(&r->elastic);
   TRY(stiffness_assemble(&r->body.d, &r->elastic.k));
   TRY(condense(r->elastic.k, &r->body.d, &r->elastic.c));

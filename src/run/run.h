@@ -36,7 +36,6 @@ typedef struct equilibrium {
   double kept; /* J, of what elastic constants stand for                     */
 } equilibrium;
 
-typedef struct finer_path finer_path; /* path.c                               */
 typedef struct beside beside; /* beside.c                                   */
 typedef struct visco visco; /* visco.h                                        */
 
@@ -57,18 +56,6 @@ typedef struct matrices {
 #define RUN_NO_KEY (-1.0)
 #define RUN_OTHER_KEY (-2.0)
 #define RUN_FRESH_KEY (-3.0)
-
-/* What TOL=BALANCED has learnt (src/run/history/balance.c). */
-typedef struct balance {
-  double mesh, time;   /* -, errors at the last increment; mesh 0: unknown    */
-  double per_residual; /* -, error of the solver over the residual            */
-  double per_digit;    /* iterations for a digit of the residual              */
-  double iterations, cpu; /* all so far; s                                    */
-  double t;               /* s, of the equilibrium before r->old              */
-  double *u, *rc, *guess_u, *guess_r; /* [m] of that; room                    */
-  int m, known; /* 1: u, rc are there                               */
-  balance_report report;
-} balance;
 
 /* How far the run is: the next attempt. */
 typedef struct progress {
@@ -96,6 +83,7 @@ typedef struct body_state {
   domain d;
   moduli moduli; /* at the temperatures of r->now                             */
   int stale;     /* 1: r->elastic was made with others                        */
+  long elastic_no; /* counts the matrices that r->elastic was                 */
   unsigned char *fixed; /* [dim*n_node]                                       */
 } body_state;
 
@@ -153,17 +141,11 @@ typedef struct error_state {
   error_bound error;
   rounding_loss rounding;
   error_share mesh_error, time_error;
-  space_recovery *recovery; /* NULL until the error of the mesh is estimated  */
-  double *elem_error;       /* [n_elem] or NULL                              */
-  double bound_cpu; /* s, spent so far on the error of the solver            */
+  const double *elem_error; /* [n_elem] borrowed, or NULL                    */
+  double left; /* -, of a body that was unloaded: what its errors count of the
+                  largest energy so far; 0: all of it is rounding            */
   int judged; /* 1: the errors of mesh and solver are those of r->now         */
 } error_state;
-
-/* The finer path beside the run. */
-typedef struct path_state {
-  finer_path *path;   /* NULL until the error of the steps is estimated       */
-  double before, now; /* sqrt(J), error of finished paths; of this one        */
-} path_state;
 
 /* How the contact problem is solved. */
 typedef struct solving {
@@ -188,10 +170,6 @@ typedef struct course_state {
   stage_cost costs[STAGE_COUNT]; /* at the checkpoint                         */
   start_report first; /* of *INITIAL CONDITIONS, TYPE=DISPLACEMENT  */
   char note[512]; /* what changed abruptly in the increment, "" or lines     */
-  struct {
-    int strain, folded; /* 1: a warning has told of it                       */
-    int *touched;       /* [n_contact] 1: a node has touched                  */
-  } told;
 } course_state;
 
 struct run {
@@ -217,8 +195,6 @@ struct run {
   equilibrium old, now;
   derived result;
   error_state errors;
-  path_state paths;
-  balance balance;
   effect_list effects;
   progress at;
   course_state course;
@@ -239,6 +215,11 @@ status effects_initial(run *r);
 status effects_pose(run *r, double t);
 status effects_rewrite(run *r, contact_problem *cp, double **u, double *force);
 void effects_restore(run *r, contact_problem *cp, double *u, double *force);
+status effects_make_step(run *r, int *made);
+status effects_attempt(run *r, double t);
+status effects_solve(run *r, double t, int *made);
+status effects_estimate(run *r);
+void effects_end(run *r);
 status effects_found(run *r, int *again); /* *again = 0 before                */
 status effects_examine(run *r, double t);
 status effects_accept(run *r);
@@ -359,24 +340,6 @@ run *beside_run(beside *b);
 status beside_with(void *run, const double *more, double *u, double *rc,
                    int *solved);
 void beside_free(beside *b); /* accepts NULL                                 */
-
-/*
- * path.c: the finer path beside the run, if asked for. Tried before the
- * increment that ends at t (r->now is overwritten), compared with the
- * accepted one in r->now.
- */
-status path_try(run *r, double t);
-void path_compare(run *r);
-int path_exists(const run *r); /* 1: the step has an error of that kind       */
-/* Error of the increments so far, sqrt(J); that with the attempt in r->now,
- * whose energy is known. HUGE_VAL: the path is lost. */
-double path_total(const run *r);
-double path_measure(run *r);
-/* The attempt is not taken; a path that was lost in it goes on. */
-void path_keep_on(run *r);
-/* The next increment starts from what is in r->old. */
-void path_restart(run *r);
-status path_keep(run *r, archive *a);
 
 /* Motion of a contact unknown against the obstacle in the increment, m. */
 double run_motion_over(const run *r, int k);

@@ -81,7 +81,6 @@ status visco_begin_step(run *r) {
   v->old.t = r->old.t;
   v->sums.known = 0;
   timer_leave(STAGE_INELASTIC);
-  path_restart(r);
   return OK;
 }
 

@@ -222,51 +222,6 @@ int plan_calls_for_accuracy(const model *m, const char *word,
                    PLACE(s->accuracy_at));
 }
 
-static int calls_for_mesh_error(const model *m, char *why, size_t size) {
-  return plan_calls_for_accuracy(m, "MESH", facts_asks_mesh_error, why, size);
-}
-
-static int calls_for_time_error(const model *m, char *why, size_t size) {
-  return plan_calls_for_accuracy(m, "TIME", facts_asks_time_error, why, size);
-}
-
-static int calls_for_bound(const model *m, char *why, size_t size) {
-  int any = 0;
-  for (int i = 0; i < m->n_step; ++i) any |= !m->steps[i].no_solver_error;
-  if (m->has_problem && !m->steps[0].has_accuracy)
-    return plan_says(any, why, size, "no *ACCURACY card, which asks for it");
-  if (m->has_problem && any)
-    return plan_says(1, why, size, "*ACCURACY, %s:%d",
-                     PLACE(m->steps[0].accuracy_at));
-  if (m->n_contact == 0 && !m->has_problem)
-    return plan_says(0, why, size, "no *CONTACT card");
-  if (!any) return plan_says(0, why, size, "*ACCURACY, SOLVER=NO");
-  return plan_says(1, why, size, "default; *ACCURACY, SOLVER=NO leaves it out");
-}
-
-static status mesh_error(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){s->elements, "elements", 1.0 + s->increments,
-                     s->increments * s->elements * 9.0 * plan_element_work(s)};
-  return OK;
-}
-
-static status time_error(const plan_sizes *s, effect_work *w) {
-  double m = plan_contact_unknowns(s);
-  *w = (effect_work){
-      s->contact, "nodes", s->increments,
-      2.0 * s->increments *
-          (4.0 * work_factor_entries(s) + PLAN_STEPS * 2.0 * m * m)};
-  return OK;
-}
-
-static status bound_of_solver(const plan_sizes *s, effect_work *w) {
-  double m = plan_contact_unknowns(s), solve = 0.5 * work_factor_entries(s);
-  double factor = s->tangents > 0.0 ? 0.1 * m * m * m / 3.0 / PLAN_DENSE : 0.0;
-  *w = (effect_work){s->contact, "nodes", s->increments,
-                     s->increments * (3.0 * m * m + solve + factor)};
-  return OK;
-}
-
 /* clang-format off */
 const effect_ops finite_elements_effect = {
     .name = "finite elements",
@@ -330,22 +285,4 @@ const effect_ops reactions_effect = {
     .called_for = calls_for_reaction,
     .foreseen = reactions,
     .own = STAGE_REACTION};
-const effect_ops mesh_error_effect = {
-    .name = "error of mesh",
-    .bit = EFFECT_BIT_MESH_ERROR,
-    .called_for = calls_for_mesh_error,
-    .foreseen = mesh_error,
-    .own = STAGE_MESH_ERROR};
-const effect_ops time_error_effect = {
-    .name = "error of steps",
-    .bit = EFFECT_BIT_TIME_ERROR,
-    .called_for = calls_for_time_error,
-    .foreseen = time_error,
-    .own = STAGE_TIME_ERROR};
-const effect_ops solver_error_effect = {
-    .name = "error of solver",
-    .bit = EFFECT_BIT_ESTIMATES,
-    .called_for = calls_for_bound,
-    .foreseen = bound_of_solver,
-    .own = STAGE_ESTIMATE};
 /* clang-format on */

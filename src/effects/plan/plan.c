@@ -114,6 +114,7 @@ status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
   TRY(plan_sizes_find(m, msh, n, &p->sizes));
   for (int k = 0; effect_table[k] != NULL; ++k) {
     plan_row r;
+    if (effect_table[k]->foreseen == NULL) continue;
     TRY(row_of(&p->sizes, effect_table[k], &r));
     if (effect_table[k]->bit == EFFECT_BIT_INELASTIC)
       TRY(add_laws(m, msh, p, &capacity, &r));

@@ -55,7 +55,7 @@ static status attempt_adapted(run *r) {
   TRY(visco_level(r, t - r->old.t, &deeper));
   if (deeper > 0) t = next_end(r, ldexp(t - r->old.t, -deeper));
   tried = t - r->old.t;
-  TRY(path_try(r, t));
+  TRY(effects_attempt(r, t));
   TRY(visco_try(r, t, &error));
   int settled = r->solving.report.outcome > 0;
   if (settled && error > s->tolerance && strains_are_rounding(r)) error = 0.0;

@@ -125,7 +125,6 @@ static status beside_new(const run *r, beside **out) {
   own->solver = r->elastic.solver;
   own->solving.known_key = RUN_NO_KEY;
   own->solving.rate = (known_rate){0};
-  own->errors.recovery = NULL;
   own->course.note[0] = '\0';
   if (r->body.d.eigen != NULL) own->body.d.eigen = &own->strains.eigen;
   own->effects.n = 0;

@@ -79,7 +79,6 @@ state loop_state(run *r, int attempt, int increment_no) {
       .errors.rounding = r->errors.rounding,
       .errors.mesh_error = r->errors.mesh_error,
       .errors.time_error = r->errors.time_error,
-      .errors.balance = r->balance.report,
       .errors.elem_error =
           r->errors.mesh_error.asked ? r->errors.elem_error : NULL,
       .solver_log = contact_solver_log(r->solver),
@@ -151,14 +150,10 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   TRY(estimate_increment(r));
   r->at.last = last;
   r->at.violated = 0;
-  TRY(effects_accept(r));
   note_nodes(r);
-  warn_increment(r, increment_no);
+  TRY(effects_accept(r));
   TRY(note_misfit(r));
-  path_compare(r);
-  estimate_unloaded(r);
   if (!is_settled(r)) ++r->course.unsettled;
-  TRY(balance_learn(r));
   state s = loop_state(r, attempt, increment_no);
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
@@ -222,14 +217,7 @@ done:
 
 /* ---- between two attempts ------------------------------------------------ */
 
-static status keep_all(void *run_, archive *a) {
-  status st = OK;
-  run *r = run_;
-  TRY(run_keep(r, a));
-  if (r->balance.m > 0) TRY(balance_keep(r, a));
-done:
-  return st;
-}
+static status keep_all(void *run_, archive *a) { return run_keep(run_, a); }
 
 static status checkpoint(run *r) {
   status st = OK;
@@ -272,6 +260,18 @@ done:
 }
 
 /* ---- increments ---------------------------------------------------------- */
+
+status loop_solve_once(run *r, double t) {
+  return r->step->kind == STEP_VISCO ? visco_advance(r, t)
+                                     : increment_solve(r, t);
+}
+
+status loop_solve(run *r, double t) {
+  int made = 0;
+  r->errors.judged = 0;
+  PASS(effects_solve(r, t, &made));
+  return made ? OK : loop_solve_once(r, t);
+}
 
 /* 1 if an attempt that found no equilibrium is made again in halves. */
 static int can_cut(const run *r) {
@@ -326,8 +326,8 @@ static status attempt_piece(run *r, long n) {
   progress *p = &r->at;
   double cpu = timer_cpu(), t;
   TRY(choose_piece(r, n, &t));
-  TRY(path_try(r, t));
-  TRY(balance_advance(r, t));
+  TRY(effects_attempt(r, t));
+  TRY(loop_solve(r, t));
   int settled = r->solving.report.outcome > 0, finer = !settled && can_cut(r);
   if (finer || (!settled && outcome_is_fatal(r->solving.report.outcome)))
     TRY(loop_reject(r, p->attempt, p->increment_no + 1,
@@ -359,22 +359,20 @@ done:
 
 static status run_step(run *r) {
   status st = OK;
+  int made = 0;
   TRY(run_prepare(r));
-  TRY(balance_begin(r));
   if (r->course.from != NULL) {
     TRY(run_keep(r, r->course.from));
-    if (r->balance.m > 0) TRY(balance_keep(r, r->course.from));
     r->course.from = NULL;
   } else {
     r->at =
         (progress){.step_id = run_step_id(r), .attempt = 1, .dt = r->step->dt};
     TRY(start_step(r));
   }
-  if (march_applies(r))
-    TRY(march_run(r));
-  else if (r->step->tolerance > 0.0 && r->strains.visco != NULL)
+  TRY(effects_make_step(r, &made));
+  if (!made && r->step->tolerance > 0.0 && r->strains.visco != NULL)
     TRY(adaptive_run(r));
-  else
+  else if (!made)
     TRY(run_fixed(r));
   if (r->course.due) TRY(checkpoint(r));
 done:
@@ -407,10 +405,9 @@ status history_continue(const model *m, const mesh *msh, archive *from,
     r.step = &m->steps[i];
     TRY(run_step(&r));
   }
-  warn_end(&r);
+  effects_end(&r);
 done:
   *unsettled = r.course.unsettled;
-  balance_free(&r.balance);
   run_free(&r);
   return st;
 }

@@ -26,6 +26,10 @@ int table_is_due(const step *s, int tables, double t, int increment_no,
 int loop_cut_helps(const run *r);
 /* Why there is none: ERR_SINGULAR. */
 status loop_no_equilibrium(run *r);
+/* From r->old to r->now at t by the procedure of the step, or that of an
+ * effect; the first alone. */
+status loop_solve(run *r, double t);
+status loop_solve_once(run *r, double t);
 /* Between two attempts: the checkpoint that is due; ends the run if asked. */
 status loop_pause(run *r);
 
@@ -34,29 +38,11 @@ status start_read(run *r);
 /* What comes before the increments of a step. */
 status start_step(run *r);
 
-/* march.c: increments of a step with TIME=BALANCED; 1: it applies. */
-int march_applies(const run *r);
-status march_run(run *r);
-
 /* adaptive.c: increments of a step with a tolerance. */
 status adaptive_run(run *r);
 
 /* dense.c: tables at time points within the increment r->old to r->now. */
 status dense_show(run *r, int increment_no);
-
-/* balance.c: from r->old to r->now at t by the procedure of the step. With
- * TOL=BALANCED the contact solver stops at a share of the other errors. */
-status balance_begin(run *r); /* of a step                                    */
-status balance_advance(run *r, double t);
-/* At an increment that is taken, its errors known. */
-status balance_learn(run *r);
-void balance_free(balance *b);
-status balance_keep(run *r, archive *a);
-
-/* estimate.c: what is doubtful of an accepted increment, whose totals are
- * known; at the end of a run that went through. */
-void warn_increment(run *r, int increment_no);
-void warn_end(run *r);
 
 /* The loads now over the largest of the step, at most 1. */
 double share_of_step(const run *r);
@@ -77,10 +63,5 @@ int rounding_is_all(const run *r);
 status estimate_increment(run *r);
 /* Those of solver and mesh alone, from r->now.u; read r->errors.judged. */
 status estimate_judge(run *r);
-
-/* All errors at r->now known: those of a body that has been unloaded, which is
- * left with rounding alone, count beside the largest energy so far; a body that
- * is carried through the air has none. */
-void estimate_unloaded(run *r);
 
 #endif

@@ -115,28 +115,6 @@ done:
   return st;
 }
 
-static status keep_told(run *r, archive *a) {
-  status st = OK;
-  const size_t contacts = r->nodes.n > 0 ? (size_t)r->m->n_contact : 0;
-  TRY(archive_ints(a, "told_strain", &r->course.told.strain, 1));
-  TRY(archive_ints(a, "told_folded", &r->course.told.folded, 1));
-  TRY(archive_ints(a, "touched", r->course.told.touched, contacts));
-done:
-  return st;
-}
-
-/* The nodal averages of the error of the mesh are made now, so that what is
- * counted from here on is what the other run counts. */
-static status keep_recovery(run *r, archive *a) {
-  status st = OK;
-  int made = r->errors.recovery != NULL;
-  TRY(archive_ints(a, "recovery", &made, 1));
-  if (archive_reads(a) && made)
-    TRY(space_recovery_new(&r->body.d, &r->errors.recovery));
-done:
-  return st;
-}
-
 static status keep_costs(run *r, archive *a) {
   status st = OK;
   for (int i = 0; i < STAGE_COUNT; ++i) {
@@ -153,13 +131,10 @@ status run_keep(run *r, archive *a) {
   status st = OK;
   archive_enter(a, "run");
   TRY(keep_counts(r, a));
-  TRY(keep_told(r, a));
   TRY(keep_equilibrium(r, &r->old, a));
   TRY(keep_moduli(r, a));
   if (r->nodes.n > 0) TRY(keep_contact(r, a));
-  TRY(path_keep(r, a));
   if (r->strains.visco != NULL) TRY(visco_keep(r, a));
-  TRY(keep_recovery(r, a));
   TRY(effects_keep(r, a));
   TRY(keep_costs(r, a));
 done:

@@ -65,7 +65,6 @@ static status new_pairs(run *r) {
   NEW(r->faces.node_fixed, msh->n_node);
   NEW(r->faces.face_weight, msh->n_face);
   NEW(r->result.totals, m->n_contact);
-  NEW(r->course.told.touched, m->n_contact);
   if (model_has_axis(m)) NEW(r->result.torque, m->n_contact);
   for (int i = 0; i < m->n_contact; ++i) {
     const contact *c = &m->contacts[i];
@@ -106,8 +105,6 @@ status run_new(run *r) {
   TRY(strains_new(r));
   TRY(new_clusters(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
-  if (r->m->effects & EFFECT_MESH_ERROR)
-    NEW(r->errors.elem_error, r->msh->n_elem);
   if (r->m->effects &
       (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR | EFFECT_REFERENCE))
     NEW(r->result.stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
@@ -122,8 +119,6 @@ void run_free(run *r) {
   start_report_free(&r->course.first);
   run_free_surface(r);
   effects_release(r);
-  space_recovery_free(r->errors.recovery);
-  memory_free(r->errors.elem_error);
   free_equilibrium(&r->old);
   free_equilibrium(&r->now);
   strains_free(r);
@@ -134,7 +129,6 @@ void run_free(run *r) {
   memory_free(r->faces.node_fixed);
   memory_free(r->faces.face_weight);
   memory_free(r->result.totals);
-  memory_free(r->course.told.touched);
   memory_free(r->result.torque);
   memory_free(r->loads.ud);
   memory_free(r->loads.start);

@@ -30,7 +30,6 @@ void run_free_surface(run *r) {
   reach_free(&r->nodes.reach);
   reach_part_free(&r->problem.part);
   run_take_nodes(r);
-  path_restart(r);
 }
 
 static void node_bits(run *r) {

@@ -15,6 +15,7 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
+#include "effects/rows.h"
 #include "run/history/loop.h"
 
 #include <math.h>
@@ -27,39 +28,57 @@ static const double MOST_TOL = 0.1;   /* -                                    */
 static const double SAFETY = 0.7;     /* -, of the share, for another pass    */
 static const double SHARPEST = 1e-3;  /* -, change of the residual in a pass  */
 
+typedef struct balance {
+  double mesh, time;   /* -, errors at the last increment; mesh 0: unknown    */
+  double per_residual; /* -, error of the solver over the residual            */
+  double per_digit;    /* iterations for a digit of the residual              */
+  double iterations, cpu; /* all so far; s                                    */
+  double t;               /* s, of the equilibrium before r->old              */
+  double *u, *rc, *guess_u, *guess_r; /* [m] of that; room                    */
+  int m, known; /* 1: u, rc are there                               */
+  balance_report report;
+} balance;
+
 static int is_balanced(const run *r) {
   return r->step->balanced && r->nodes.n > 0;
 }
 
-void balance_free(balance *b) {
-  memory_free(b->u);
-  memory_free(b->rc);
-  memory_free(b->guess_u);
-  memory_free(b->guess_r);
+static void free_arrays(balance *b) {
+  RELEASE(b->u, b->rc, b->guess_u, b->guess_r);
   *b = (balance){0};
 }
 
-status balance_begin(run *r) {
-  status st = OK;
-  balance *b = &r->balance;
+static void release(void *self) {
+  if (self != NULL) free_arrays(self);
+  memory_free(self);
+}
+
+static status balance_new(run *r, void **self) {
+  balance *b = NULL;
+  (void)r;
+  PASS_NEW(b, 1);
+  *self = b;
+  return OK;
+}
+
+static status begin_step(run *r, void *self) {
+  balance *b = self;
   r->solving.guess_u = r->solving.guess_r = NULL;
   b->known = 0;
   b->report = (balance_report){0};
-  if (!is_balanced(r) || b->m == r->nodes.n_c) goto done;
-  balance_free(b);
+  if (!is_balanced(r) || b->m == r->nodes.n_c) return OK;
+  free_arrays(b);
   b->m = r->nodes.n_c;
-  NEW(b->u, b->m);
-  NEW(b->rc, b->m);
-  NEW(b->guess_u, b->m);
-  NEW(b->guess_r, b->m);
-done:
-  return st;
+  PASS_NEW(b->u, b->m);
+  PASS_NEW(b->rc, b->m);
+  PASS_NEW(b->guess_u, b->m);
+  PASS_NEW(b->guess_r, b->m);
+  return OK;
 }
 
 /* The line through the last two equilibria, at t; without an earlier one in
  * this step none. */
-static void guess(run *r, double t) {
-  balance *b = &r->balance;
+static void guess(run *r, balance *b, double t) {
   double span = r->old.t - b->t, w = (t - r->old.t) / span;
   r->solving.guess_u = r->solving.guess_r = NULL;
   if (!b->known || !(span > 0.0)) return;
@@ -72,39 +91,35 @@ static void guess(run *r, double t) {
 }
 
 /* The next solve goes on from r->now. */
-static void go_on(run *r) {
-  balance *b = &r->balance;
+static void go_on(run *r, balance *b) {
   memcpy(b->guess_u, r->now.uc, (size_t)b->m * sizeof *b->guess_u);
   memcpy(b->guess_r, r->now.rc, (size_t)b->m * sizeof *b->guess_r);
   r->solving.guess_u = b->guess_u;
   r->solving.guess_r = b->guess_r;
 }
 
-static double wanted_error(const run *r) {
-  const balance *b = &r->balance;
+static double wanted_error(const run *r, const balance *b) {
   return r->step->share * (b->mesh + b->time);
 }
 
 /* Residual to ask for: what gave that error before. */
-static double wanted_tolerance(const run *r) {
-  const balance *b = &r->balance;
+static double wanted_tolerance(const run *r, const balance *b) {
   double tol = FIRST_TOL;
   if (b->mesh > 0.0 && b->per_residual > 0.0)
-    tol = wanted_error(r) / b->per_residual;
+    tol = wanted_error(r, b) / b->per_residual;
   return fmin(fmax(tol, r->step->solver.tol), MOST_TOL);
 }
 
 /* Errors of r->now: 1 if a lower residual is needed, *tol then. */
-static status judge(run *r, double *tol, int *again) {
+static status judge(run *r, balance *b, double *tol, int *again) {
   status st = OK;
-  balance *b = &r->balance;
   double least = r->step->solver.tol,
          at = fmin(*tol, r->solving.report.residual);
   *again = 0;
   TRY(estimate_judge(r));
   if (isfinite(r->errors.mesh_error.relative))
     b->mesh = r->errors.mesh_error.relative;
-  double wanted = wanted_error(r), error = r->errors.error.relative;
+  double wanted = wanted_error(r, b), error = r->errors.error.relative;
   int unknown = !isfinite(error);
   if (!unknown && error <= wanted) goto done;
   if (*tol <= least || r->solving.report.residual <= least) goto done;
@@ -115,29 +130,24 @@ done:
   return st;
 }
 
-static status solve_once(run *r, double t) {
-  return r->step->kind == STEP_VISCO ? visco_advance(r, t)
-                                     : increment_solve(r, t);
-}
-
-status balance_advance(run *r, double t) {
+static status solve(run *r, void *self, double t, int *made) {
   status st = OK;
-  balance *b = &r->balance;
+  balance *b = self;
   int again = 1, iterations = 0;
   double tol, cpu = timer_cost(STAGE_CONTACT).cpu;
-  r->errors.judged = 0;
-  if (!is_balanced(r)) return solve_once(r, t);
+  if (!is_balanced(r)) return OK;
+  *made = 1;
   b->report = (balance_report){.asked = 1};
-  tol = wanted_tolerance(r);
-  guess(r, t);
+  tol = wanted_tolerance(r, b);
+  guess(r, b, t);
   for (int k = 1; again && k <= PASSES; ++k) {
     r->solving.tol = k == PASSES ? r->step->solver.tol : tol;
     b->report.passes = k;
-    TRY(solve_once(r, t));
+    TRY(loop_solve_once(r, t));
     iterations += r->solving.report.iterations;
     if (r->solving.report.outcome <= 0) break;
-    TRY(judge(r, &tol, &again));
-    go_on(r);
+    TRY(judge(r, b, &tol, &again));
+    go_on(r, b);
   }
   r->solving.report.iterations = iterations;
   b->iterations += iterations;
@@ -156,8 +166,7 @@ static int ends_at_once(const solver_report *rep) {
 }
 
 /* Iterations from the residual reached to the default. */
-static double saved_iterations(run *r) {
-  balance *b = &r->balance;
+static double saved_iterations(const run *r, balance *b) {
   const solver_report *rep = &r->solving.report;
   double left = log10(rep->residual / r->step->solver.tol);
   if (!(left > 0.0)) return 0.0;
@@ -168,22 +177,21 @@ static double saved_iterations(run *r) {
   return left * b->per_digit;
 }
 
-static void make_report(run *r) {
-  balance *b = &r->balance;
+static void make_report(const run *r, balance *b) {
   balance_report *out = &b->report;
   out->tol = r->solving.tol;
-  out->wanted = isfinite(r->errors.error.relative) ? wanted_error(r) : NAN;
-  out->saved_iterations = saved_iterations(r);
+  out->wanted = isfinite(r->errors.error.relative) ? wanted_error(r, b) : NAN;
+  out->saved_iterations = saved_iterations(r, b);
   out->saved_cpu = b->iterations > 0.0
                        ? out->saved_iterations * b->cpu / b->iterations
                        : 0.0;
 }
 
-status balance_learn(run *r) {
-  balance *b = &r->balance;
+static status learn(run *r, void *self) {
+  balance *b = self;
   size_t bytes = (size_t)b->m * sizeof *b->u;
   if (!is_balanced(r)) return OK;
-  make_report(r);
+  make_report(r, b);
   if (isfinite(r->errors.mesh_error.relative))
     b->mesh = r->errors.mesh_error.relative;
   b->time =
@@ -200,23 +208,43 @@ status balance_learn(run *r) {
   return OK;
 }
 
-status balance_keep(run *r, archive *a) {
-  status st = OK;
-  balance *b = &r->balance;
+static status keep(run *r, void *self, archive *a) {
+  balance *b = self;
   size_t m = (size_t)b->m;
   double *learnt[] = {&b->mesh,      &b->time,       &b->per_residual,
                       &b->per_digit, &b->iterations, &b->cpu,
                       &b->t,         &r->solving.tol};
-  archive_enter(a, "balance");
-  TRY(archive_ints(a, "known", &b->known, 1));
+  if (b->m == 0) return OK;
+  PASS(archive_ints(a, "known", &b->known, 1));
   for (size_t i = 0; i < sizeof learnt / sizeof *learnt; ++i) {
     char name[20];
     snprintf(name, sizeof name, "learnt%zu", i);
-    TRY(archive_reals(a, name, learnt[i], 1));
+    PASS(archive_reals(a, name, learnt[i], 1));
   }
-  TRY(archive_reals(a, "u", b->u, m));
-  TRY(archive_reals(a, "rc", b->rc, m));
-done:
-  archive_leave(a);
-  return st;
+  PASS(archive_reals(a, "u", b->u, m));
+  return archive_reals(a, "rc", b->rc, m);
 }
+
+static void show(const void *self, state *s) {
+  s->errors.balance = ((const balance *)self)->report;
+}
+
+static int calls_for_balance(const model *m, char *why, size_t size) {
+  int any = 0;
+  (void)why;
+  (void)size;
+  for (int i = 0; i < m->n_step; ++i) any |= m->steps[i].balanced;
+  return any;
+}
+
+const effect_ops balance_effect = {.name = "balance",
+                                   .bit = NO_BIT,
+                                   .called_for = calls_for_balance,
+                                   .own = STAGE_NONE,
+                                   .on.create = balance_new,
+                                   .on.begin_step = begin_step,
+                                   .on.solve = solve,
+                                   .on.accept = learn,
+                                   .on.show = show,
+                                   .on.keep = keep,
+                                   .on.release = release};

@@ -1,0 +1,96 @@
+/*
+ * *ACCURACY, MESH=YES: the error of the mesh by recovered stresses, of the body
+ * and of each element.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "model/facts.h"
+#include "run/run.h"
+
+#include <math.h>
+
+typedef struct mesh_estimate {
+  space_recovery *recovery; /* NULL until the first estimate                 */
+  long elastic_no;          /* of the run, that it is made of                */
+  double *elem_error;       /* [n_elem] share of each element, -             */
+} mesh_estimate;
+
+static status estimate_new(run *r, void **self) {
+  mesh_estimate *own = NULL;
+  PASS_NEW(own, 1);
+  *self = own;
+  PASS_NEW(own->elem_error, r->msh->n_elem);
+  r->errors.elem_error = own->elem_error;
+  return OK;
+}
+
+static void release(void *self) {
+  mesh_estimate *own = self;
+  if (own == NULL) return;
+  space_recovery_free(own->recovery);
+  memory_free(own->elem_error);
+  memory_free(own);
+}
+
+static int is_recovery_known(const run *r, const mesh_estimate *own) {
+  return own->recovery != NULL && own->elastic_no == r->body.elastic_no;
+}
+
+static status recover(const run *r, mesh_estimate *own) {
+  if (is_recovery_known(r, own)) return OK;
+  space_recovery_free(own->recovery);
+  own->recovery = NULL;
+  own->elastic_no = r->body.elastic_no;
+  return space_recovery_new(&r->body.d, &own->recovery);
+}
+
+/* From r->result.stress. */
+static status estimate(run *r, void *self) {
+  mesh_estimate *own = self;
+  double cpu = timer_cpu();
+  space_error found;
+  r->errors.mesh_error.asked = r->step->mesh_error;
+  if (!r->step->mesh_error) return OK;
+  PASS(recover(r, own));
+  PASS(
+      space_estimate(own->recovery, r->result.stress, own->elem_error, &found));
+  r->errors.mesh_error.relative = found.relative;
+  double whole = hypot(found.norm, found.error);
+  for (int e = 0; e < r->msh->n_elem; ++e)
+    own->elem_error[e] = whole > 0.0 ? own->elem_error[e] / whole : 0.0;
+  r->errors.mesh_error.cpu += timer_cpu() - cpu;
+  return OK;
+}
+
+/* The nodal averages are made now, so that what is counted from here on is what
+ * the other run counts. */
+static status keep(run *r, void *self, archive *a) {
+  int made = is_recovery_known(r, self);
+  PASS(archive_ints(a, "recovery", &made, 1));
+  return archive_reads(a) && made ? recover(r, self) : OK;
+}
+
+/* ---- the row ------------------------------------------------------------ */
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){s->elements, "elements", 1.0 + s->increments,
+                     s->increments * s->elements * 9.0 * plan_element_work(s)};
+  return OK;
+}
+
+static int calls_for_mesh_error(const model *m, char *why, size_t size) {
+  return plan_calls_for_accuracy(m, "MESH", facts_asks_mesh_error, why, size);
+}
+
+const effect_ops mesh_error_effect = {.name = "error of mesh",
+                                      .bit = EFFECT_BIT_MESH_ERROR,
+                                      .called_for = calls_for_mesh_error,
+                                      .foreseen = expected,
+                                      .own = STAGE_MESH_ERROR,
+                                      .inside = 1,
+                                      .on.create = estimate_new,
+                                      .on.estimate = estimate,
+                                      .on.keep = keep,
+                                      .on.release = release};

@@ -1,0 +1,92 @@
+/*
+ * The error of the contact solver: the bound of accuracy.h, in energy units and
+ * relative to the energy norm of the body. The interior follows the contact
+ * nodes exactly, so that the error of the whole body has the energy of that of
+ * the condensed problem.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "run/history/loop.h"
+
+#include <math.h>
+
+static const char weakly_held[] =
+    "supports hold a body by lever arms of next to nothing";
+
+static status force_energy(void *ctx, const double *d, double *square) {
+  return condensed_force_energy(ctx, d, square);
+}
+
+/* The factor of the body; 0: the motions that contact alone holds are not
+ * known. */
+static int choose_inverse(run *r, inverse_energy *out) {
+  *out = (inverse_energy){.ctx = r->c,
+                          .square = force_energy,
+                          .condition = condensed_condition(r->c)};
+  out->n_kernel = condensed_kernel(r->c, &out->kernel);
+  return out->n_kernel >= 0;
+}
+
+/* *cpu: s, spent so far. */
+static status cpu_new(run *r, void **cpu) {
+  double *own = NULL;
+  (void)r;
+  PASS_NEW(own, 1);
+  *cpu = own;
+  return OK;
+}
+
+static status estimate(run *r, void *self) {
+  status st = OK;
+  solver_error found = {.norm = NAN, .why = weakly_held};
+  inverse_energy inverse;
+  double *spent = self, cpu = timer_cpu();
+  r->errors.error = (error_bound){0};
+  if (r->nodes.n == 0 || r->step->no_solver_error) return OK;
+  timer_enter(STAGE_ESTIMATE);
+  if (choose_inverse(r, &inverse))
+    TRY(solver_error_bound(&r->problem.cp, &inverse, run_rows(r, 0, r->now.uc),
+                           run_rows(r, 1, r->now.rc), &r->solving.rate,
+                           &found));
+  error_bound_set(&found, r->now.energy.strain, &r->errors.error);
+  r->errors.error.cpu = *spent += timer_cpu() - cpu;
+done:
+  timer_leave(STAGE_ESTIMATE);
+  return st;
+}
+
+/* ---- the row ------------------------------------------------------------ */
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  double m = plan_contact_unknowns(s), solve = 0.5 * work_factor_entries(s);
+  double factor = s->tangents > 0.0 ? 0.1 * m * m * m / 3.0 / PLAN_DENSE : 0.0;
+  *w = (effect_work){s->contact, "nodes", s->increments,
+                     s->increments * (3.0 * m * m + solve + factor)};
+  return OK;
+}
+
+static int calls_for_bound(const model *m, char *why, size_t size) {
+  int any = 0;
+  for (int i = 0; i < m->n_step; ++i) any |= !m->steps[i].no_solver_error;
+  if (m->has_problem && !m->steps[0].has_accuracy)
+    return plan_says(any, why, size, "no *ACCURACY card, which asks for it");
+  if (m->has_problem && any)
+    return plan_says(1, why, size, "*ACCURACY, %s:%d",
+                     PLACE(m->steps[0].accuracy_at));
+  if (m->n_contact == 0 && !m->has_problem)
+    return plan_says(0, why, size, "no *CONTACT card");
+  if (!any) return plan_says(0, why, size, "*ACCURACY, SOLVER=NO");
+  return plan_says(1, why, size, "default; *ACCURACY, SOLVER=NO leaves it out");
+}
+
+const effect_ops solver_error_effect = {.name = "error of solver",
+                                        .bit = EFFECT_BIT_ESTIMATES,
+                                        .called_for = calls_for_bound,
+                                        .foreseen = expected,
+                                        .own = STAGE_ESTIMATE,
+                                        .inside = 1,
+                                        .on.create = cpu_new,
+                                        .on.estimate = estimate,
+                                        .on.release = memory_free};

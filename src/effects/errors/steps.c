@@ -1,0 +1,481 @@
+/*
+ * Error of the steps: the path of slip and the inelastic strains depend on the
+ * increments. Beside the run goes a second one of half the increments, contact
+ * forces, slip and inelastic strains its own; the two meet at the end of each
+ * increment, where the loads are the same.
+ *
+ * Without inelastic strains their difference d has the energy d' A d of the
+ * condensed stiffness. With them the stresses differ by E (B du - de^i), whose
+ * energy counts against that of the stresses, and the strains by B du, against
+ * the strains: at constant stress a body creeps all the same. The larger of the
+ * two relative differences is told.
+ *
+ * The error of the run is that difference times 2^p/(2^p - 1) for an integrator
+ * of order p (Richardson), where nothing rubs; zones of stick and slip that
+ * grow lie between order 1 and 2: 5/3, or more for an integrator of order 1.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "model/facts.h"
+#include "run/history/loop.h"
+#include "run/visco.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double EXTRAPOLATION = 5.0 / 3.0; /* -, of growing zones         */
+static const double STRAIGHT = 10.0; /* -, of the tolerance of the solver     */
+
+/* What an increment starts from, of one path. */
+typedef struct waypoint {
+  start_point start;
+  flow_state flow; /* of the points whose law flows; empty: none              */
+} waypoint;
+
+typedef struct finer_path {
+  int lost; /* 1: it found no equilibrium                                   */
+  int measured; /* 1: "error" is that of the attempt                          */
+  double error; /* sqrt(J)                                                    */
+  int flows; /* 1: made in a *VISCO step                                     */
+  waypoint at, middle, end; /* accepted; of the attempt now made */
+  double *d, *Ad; /* [m] difference of the paths, m; N               */
+  double *u, *e0; /* [dim*n_node] m, [ns*eigen.n] at the end; NULL: no law
+                     flows */
+} finer_path;
+
+typedef struct paths {
+  finer_path *path;   /* NULL: none made                                     */
+  double before, now; /* sqrt(J), error of finished paths; of this one       */
+} paths;
+
+static status waypoint_new(const run *r, waypoint *w) {
+  status st = OK;
+  TRY(start_point_new(r, &w->start));
+  if (r->strains.visco != NULL)
+    TRY(flow_state_new(&r->strains.visco->x, &w->flow));
+done:
+  return st;
+}
+
+static void waypoint_free(waypoint *w) {
+  start_point_free(&w->start);
+  flow_state_free(&w->flow);
+}
+
+static void waypoint_copy(const run *r, const equilibrium *e, waypoint *w) {
+  if (e == &r->old && r->strains.visco != NULL)
+    flow_state_copy(&r->strains.visco->x, &r->strains.visco->old, &w->flow);
+  start_point_copy(r, e, &w->start);
+}
+
+static status path_new(const run *r, finer_path **out) {
+  status st = OK;
+  finer_path *p = NULL;
+  NEW(p, 1);
+  *out = p;
+  p->flows = r->step->kind == STEP_VISCO;
+  TRY(waypoint_new(r, &p->at));
+  TRY(waypoint_new(r, &p->middle));
+  TRY(waypoint_new(r, &p->end));
+  NEW(p->d, r->nodes.n_c);
+  NEW(p->Ad, r->nodes.n_c);
+  if (r->strains.visco != NULL) {
+    NEW(p->u, r->n_dof);
+    NEW(p->e0, visco_at(r, r->strains.eigen.n));
+  }
+  waypoint_copy(r, &r->old, &p->at);
+done:
+  return st;
+}
+
+static void path_free(finer_path *p) {
+  if (p == NULL) return;
+  waypoint_free(&p->at);
+  waypoint_free(&p->middle);
+  waypoint_free(&p->end);
+  memory_free(p->d);
+  memory_free(p->Ad);
+  memory_free(p->u);
+  memory_free(p->e0);
+  memory_free(p);
+}
+
+/* The equilibrium at t from where "from" stands, into "to". */
+static status half(run *r, waypoint *from, double t, waypoint *to) {
+  status st = OK;
+  equilibrium keep = start_point_use(r, &from->start);
+  if (r->step->kind == STEP_VISCO)
+    st = visco_advance_from(r, &from->flow, t, &to->flow);
+  else
+    st = increment_solve(r, t);
+  r->old = keep;
+  TRY(st);
+  waypoint_copy(r, &r->now, to);
+done:
+  return st;
+}
+
+/* The next increment starts from what is in r->old. */
+static void restart(paths *own) {
+  path_free(own->path);
+  own->path = NULL;
+  own->before += own->now;
+  own->now = 0.0;
+}
+
+/* Only slip in increments and inelastic strains remember their path. */
+static int path_exists(const run *r) {
+  if (effects_sum_up(r) != NULL) return 0;
+  int kind = r->step->kind, slips = r->nodes.n > 0 && r->problem.ut0 != NULL;
+  if (kind == STEP_VISCO) return slips || r->strains.visco != NULL;
+  return slips && kind == STEP_QUASISTATIC;
+}
+
+/* Both halves of the increment that ends at t; lost where there is none. */
+static status try_halves(run *r, finer_path *p, double t) {
+  status st = OK;
+  p->measured = 0;
+  if (p->lost) return OK;
+  TRY(half(r, &p->at, 0.5 * (p->at.start.t + t), &p->middle));
+  p->lost = r->solving.report.outcome <= 0;
+  if (p->lost) return OK;
+  TRY(half(r, &p->middle, t, &p->end));
+  p->lost = r->solving.report.outcome <= 0;
+  if (p->lost || p->u == NULL) return OK;
+  memcpy(p->u, r->now.u, r->n_dof * sizeof *p->u);
+  memcpy(p->e0, r->strains.eigen.e0,
+         visco_at(r, r->strains.eigen.n) * sizeof *p->e0);
+done:
+  return st;
+}
+
+static status try_path(run *r, void *self, double t) {
+  status st = OK;
+  paths *own = self;
+  double cpu = timer_cpu();
+  if (!r->step->time_error || !path_exists(r)) return OK;
+  timer_enter_whole(STAGE_TIME_ERROR);
+  r->course.beside = 1;
+  if (own->path != NULL && (own->path->at.start.t != r->old.t ||
+                            own->path->flows != (r->step->kind == STEP_VISCO)))
+    restart(own);
+  if (own->path == NULL) TRY(path_new(r, &own->path));
+  TRY(try_halves(r, own->path, t));
+done:
+  r->course.beside = 0;
+  timer_leave(STAGE_TIME_ERROR);
+  r->errors.time_error.cpu += timer_cpu() - cpu;
+  return st;
+}
+
+/* Energy norm of the difference of the paths without inelastic strains,
+ * sqrt(J). */
+static double condensed_difference(const run *r, finer_path *p) {
+  double square = 0.0;
+  for (int k = 0; k < r->nodes.n_c; ++k)
+    p->d[k] = r->now.uc[k] - p->end.start.uc[k];
+  contact_product(r->nodes.n_c, condensed_matrix(r->c), p->d, p->Ad);
+  for (int k = 0; k < r->nodes.n_c; ++k) square += p->d[k] * p->Ad[k];
+  return sqrt(fmax(square, 0.0));
+}
+
+/* sqrt(2 E) of displacements and strains without stress (NULL: none). */
+static double field_norm(const run *r, const double *u, const double *e0) {
+  domain d = r->body.d;
+  eigenstrain x = r->strains.eigen;
+  x.e0 = e0;
+  d.eigen = e0 != NULL ? &x : NULL;
+  return sqrt(2.0 * fmax(domain_strain_energy(&d, u), 0.0));
+}
+
+/* The same with them: as large as the larger relative difference. p->u and
+ * p->e0 become differences. */
+static double field_difference(const run *r, finer_path *p) {
+  double stress = sqrt(2.0 * fmax(r->now.energy.strain, 0.0));
+  double strain = field_norm(r, r->now.u, NULL);
+  for (size_t k = 0; k < r->n_dof; ++k) p->u[k] -= r->now.u[k];
+  for (size_t k = 0; k < visco_at(r, r->strains.eigen.n); ++k)
+    p->e0[k] -= r->strains.eigen.e0[k];
+  double of_stress = field_norm(r, p->u, p->e0);
+  double of_strain = field_norm(r, p->u, NULL);
+  return strain > 0.0 ? fmax(of_stress, of_strain * (stress / strain))
+                      : of_stress;
+}
+
+/* From the difference to half the increments to the error. */
+static double extrapolation(const run *r) {
+  const scheme *of = r->step->integrator;
+  if (r->step->kind != STEP_VISCO || r->strains.visco == NULL)
+    return EXTRAPOLATION;
+  int order = of->has_theta && r->step->theta == 0.5 ? 2 : of->order;
+  if (order < 2) return 2.0;
+  return r->problem.ut0 != NULL ? EXTRAPOLATION : 4.0 / 3.0;
+}
+
+/* The attempt is accepted: the next one starts at its end. */
+static void advance(finer_path *p) {
+  waypoint w = p->at;
+  p->at = p->end;
+  p->end = w;
+}
+
+static const char *why_no_path(const run *r) {
+  if (effects_sum_up(r) != NULL) return effects_sum_up(r);
+  if (r->step->kind == STEP_STATIC) return "one static problem, no path";
+  return r->step->kind == STEP_VISCO ? "no friction, no law flows: no path"
+                                     : "no friction, no path";
+}
+
+/* Error of the increments so far, sqrt(J); that with the attempt in r->now,
+ * whose energy is known. HUGE_VAL: the path is lost. */
+static double total_error(const paths *own) { return own->before + own->now; }
+
+static double measure(const run *r, paths *own) {
+  finer_path *p = own->path;
+  if (p == NULL || p->lost) return HUGE_VAL;
+  if (!p->measured)
+    p->error = extrapolation(r) * (p->u != NULL ? field_difference(r, p)
+                                                : condensed_difference(r, p));
+  p->measured = 1;
+  return own->before + p->error;
+}
+
+/* The path at the end of an increment that is taken. */
+static void compare_path(const run *r, paths *own, error_share *e) {
+  finer_path *p = own->path;
+  if (p == NULL || (!p->lost && p->end.start.t != r->now.t)) {
+    e->why = "the body answers at once";
+    return;
+  }
+  if (p->lost) {
+    e->relative = NAN;
+    e->why = "no equilibrium in half an increment";
+    return;
+  }
+  double energy = r->now.energy.strain;
+  double norm = measure(r, own);
+  own->now = p->error;
+  if (norm > 0.0) e->relative = norm / sqrt(norm * norm + 2.0 * energy);
+  if (e->relative <= STRAIGHT * r->solving.tol)
+    e->why = "the path is straight: half the increments give the same";
+  advance(p);
+}
+
+static status compare(run *r, void *self) {
+  error_share *e = &r->errors.time_error;
+  e->asked = r->step->time_error;
+  e->relative = 0.0;
+  e->why = NULL;
+  if (!e->asked) return OK;
+  if (!path_exists(r)) {
+    e->why = why_no_path(r);
+    if (effects_sum_up(r) != NULL) e->relative = NAN;
+  } else {
+    compare_path(r, self, e);
+  }
+  e->relative = r->errors.left > 0.0 ? e->relative * r->errors.left : 0.0;
+  return OK;
+}
+
+/* ---- its state ---------------------------------------------------------- */
+
+static status paths_new(run *r, void **self) {
+  paths *own = NULL;
+  (void)r;
+  PASS_NEW(own, 1);
+  *self = own;
+  return OK;
+}
+
+static void release(void *self) {
+  if (self != NULL) path_free(((paths *)self)->path);
+  memory_free(self);
+}
+
+static void forget(run *r, void *self) {
+  (void)r;
+  restart(self);
+}
+
+/* What acts suddenly at the start of a *VISCO step is no part of a path. */
+static status begin_step(run *r, void *self) {
+  if (r->step->kind == STEP_VISCO && r->strains.visco != NULL) restart(self);
+  return OK;
+}
+
+static status keep_waypoint(const run *r, waypoint *w, archive *a) {
+  status st = OK;
+  size_t m = (size_t)r->nodes.n_c;
+  TRY(archive_reals(a, "path_t", &w->start.t, 1));
+  TRY(archive_reals(a, "path_uc", w->start.uc, m));
+  TRY(archive_reals(a, "path_rc", w->start.rc, m));
+  TRY(archive_reals(a, "path_motion", w->start.motion, m));
+  if (r->strains.visco != NULL)
+    TRY(visco_keep_flow(&r->strains.visco->x, &w->flow, a, "path_flow"));
+done:
+  return st;
+}
+
+static status keep(run *r, void *self, archive *a) {
+  paths *own = self;
+  int there = own->path != NULL;
+  PASS(archive_ints(a, "path", &there, 1));
+  if (archive_reads(a)) restart(own);
+  PASS(archive_reals(a, "path_before", &own->before, 1));
+  PASS(archive_reals(a, "path_error", &own->now, 1));
+  if (!there) return OK;
+  if (own->path == NULL) PASS(path_new(r, &own->path));
+  PASS(archive_ints(a, "path_lost", &own->path->lost, 1));
+  return keep_waypoint(r, &own->path->at, a);
+}
+
+/*
+ * *ACCURACY, TIME=BALANCED: increments whose error is a share of that of the
+ * mesh. The finer path tells at each time t of the step how far the
+ * run is from one of half its increments. With B the share of the error of the
+ * mesh at the end of the step, in the energy norm, an increment is taken if
+ *
+ *   error(t) <= error at the start of the step + B sqrt((t - start)/total),
+ *   or its own part of the error <= B dt/total:
+ *
+ * a contact that grows from a point makes most of its error at first, whatever
+ * the increment. The norm of the solution at the end is foreseen from its
+ * change in the increment. The next increment is that for which a part that
+ * goes like dt^2 would meet the bound.
+ */
+static const double SAFETY = 0.8, LONGER = 2.0, SHORTER = 0.25; /* -          */
+static const double ROUNDING = 0x1p-40; /* -, of the largest energy norm      */
+
+/* End of the next increment: not a sliver before the end of the step. */
+static double next_end(const run *r) {
+  double end = r->step->start + r->step->total, left = end - r->old.t;
+  double dt = r->at.dt;
+  if (dt >= left * (1.0 - 1e-9)) return end;
+  return r->old.t + (dt > 0.6 * left ? 0.5 * left : dt);
+}
+
+/* B, sqrt(J). */
+static double share_at_end(const run *r) {
+  const step *s = r->step;
+  double now = sqrt(2.0 * r->now.energy.strain);
+  double old = sqrt(2.0 * r->old.energy.strain);
+  double left = s->start + s->total - r->now.t, dt = r->now.t - r->old.t;
+  double end = fmax(now + (now - old) * left / dt, 0.5 * now);
+  return s->time_share * r->errors.mesh_error.relative * end;
+}
+
+/* The part of the error this increment may make, sqrt(J). */
+static double allowed_part(const run *r, double before) {
+  const step *s = r->step;
+  double share = share_at_end(r), dt = r->now.t - r->old.t;
+  double sum = r->at.error + share * sqrt((r->now.t - s->start) / s->total);
+  double largest = fmax(r->old.energy.largest, r->now.energy.strain);
+  return fmax(fmax(sum - before, share * dt / s->total),
+              ROUNDING * sqrt(2.0 * largest));
+}
+
+/* Length of the next increment after one of dt; implicit integrators keep to
+ * halves and doubles, which they have factored. */
+static double next_length(const run *r, double dt, double part,
+                          double allowed) {
+  const step *s = r->step;
+  double factor = part > 0.0 ? SAFETY * sqrt(allowed / part) : LONGER;
+  factor = fmin(LONGER, fmax(SHORTER, factor));
+  if (s->integrator != NULL && s->integrator->limit == 0.0)
+    factor = ldexp(1.0, (int)floor(log2(factor)));
+  return fmax(s->dt_min, fmin(dt * factor, s->dt_max));
+}
+
+/* The attempt is not taken: r->at.dt the next time. */
+static status refuse(run *r, paths *own, double tried, double dt,
+                     const char *why) {
+  status st = OK;
+  progress *p = &r->at;
+  if (own->path != NULL) own->path->lost = 0;
+  TRY(loop_reject(r, p->attempt, p->increment_no + 1, why));
+  p->dt = fmax(r->step->dt_min, fmin(0.5 * tried, dt));
+  ++p->attempt;
+done:
+  return st;
+}
+
+static status attempt_balanced(run *r, paths *own) {
+  status st = OK;
+  const step *s = r->step;
+  progress *p = &r->at;
+  double cpu = timer_cpu(), t = next_end(r), tried = t - r->old.t;
+  double before = total_error(own), part, allowed;
+  int deeper, attempt = p->attempt;
+  TRY(visco_level(r, tried, &deeper));
+  if (deeper > 0) {
+    p->dt = ldexp(tried, -deeper);
+    goto done;
+  }
+  TRY(effects_attempt(r, t));
+  TRY(loop_solve(r, t));
+  int settled = r->solving.report.outcome > 0, shorter = p->dt > s->dt_min;
+  if (!settled && shorter && loop_cut_helps(r)) {
+    TRY(refuse(r, own, tried, 0.0, outcome_text(r->solving.report.outcome)));
+    goto done;
+  }
+  if (outcome_is_fatal(r->solving.report.outcome)) TRY(loop_no_equilibrium(r));
+  if (!r->errors.judged) TRY(estimate_judge(r));
+  part = rounding_hides_strains(r) ? 0.0 : measure(r, own) - before;
+  allowed = allowed_part(r, before);
+  double dt = next_length(r, tried, part, allowed);
+  if (part > allowed && shorter) {
+    TRY(refuse(r, own, tried, dt, "error of the steps above its share"));
+    goto done;
+  }
+  p->attempt = 1;
+  ++p->increment_no;
+  TRY(loop_accept(r, attempt, p->increment_no, t == s->start + s->total, cpu));
+  p->dt = dt;
+done:
+  return st;
+}
+
+static status march(run *r, void *self, int *made) {
+  paths *own = self;
+  double end = r->step->start + r->step->total;
+  if (!r->step->time_balanced || !path_exists(r)) return OK;
+  *made = 1;
+  if (r->at.increment_no == 0) r->at.error = total_error(own);
+  while (r->old.t < end) {
+    PASS(loop_pause(r));
+    PASS(attempt_balanced(r, own));
+  }
+  return OK;
+}
+
+/* ---- the row ------------------------------------------------------------ */
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  double m = plan_contact_unknowns(s);
+  *w = (effect_work){
+      s->contact, "nodes", s->increments,
+      2.0 * s->increments *
+          (4.0 * work_factor_entries(s) + PLAN_STEPS * 2.0 * m * m)};
+  return OK;
+}
+
+static int calls_for_time_error(const model *m, char *why, size_t size) {
+  return plan_calls_for_accuracy(m, "TIME", facts_asks_time_error, why, size);
+}
+
+const effect_ops time_error_effect = {.name = "error of steps",
+                                      .bit = EFFECT_BIT_TIME_ERROR,
+                                      .called_for = calls_for_time_error,
+                                      .foreseen = expected,
+                                      .own = STAGE_TIME_ERROR,
+                                      .inside = 1,
+                                      .on.create = paths_new,
+                                      .on.begin_step = begin_step,
+                                      .on.make_step = march,
+                                      .on.attempt = try_path,
+                                      .on.accept = compare,
+                                      .on.forget = forget,
+                                      .on.keep = keep,
+                                      .on.release = release};

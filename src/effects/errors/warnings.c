@@ -1,0 +1,123 @@
+/*
+ * What makes an answer doubtful though its equations are solved: strains that
+ * are not small, elements turned inside out by the displacements, a contact
+ * that no node ever touched. Each is told once a run.
+ */
+#include "base/memory.h"
+#include "effects/rows.h"
+#include "run/run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct warnings {
+  int strain, folded; /* 1: told                                             */
+  int *touched;       /* [n_contact] 1: a node has touched                   */
+} warnings;
+
+static const double LARGE = 0.05; /* -, strain                                */
+
+static const char *section_of(const run *r, int elem_id) {
+  return r->m->sections[r->m->elem_section[elem_id]].elset;
+}
+
+static void warn_deformation(run *r, warnings *told) {
+  deformation x;
+  if (told->strain && told->folded) return;
+  domain_deformation(&r->body.d, r->now.u, &x);
+  if (!told->strain && x.strain > LARGE) {
+    told->strain = 1;
+    message_add(r->m->log, P4019, &r->step->at,
+                "step %d, increment %d, time %g: the strain of element %zu "
+                "(group %s) is %.3g %%; strains are taken as small",
+                run_step_id(r) + 1, r->at.increment_no, r->now.t,
+                r->msh->elem_no[x.strain_elem], section_of(r, x.strain_elem),
+                100.0 * x.strain);
+  }
+  if (!told->folded && x.volume <= 0.0) {
+    told->folded = 1;
+    message_add(r->m->log, P4020, &r->step->at,
+                "step %d, increment %d, time %g: the displacements turn "
+                "element %zu (group %s) inside out",
+                run_step_id(r) + 1, r->at.increment_no, r->now.t,
+                r->msh->elem_no[x.volume_elem], section_of(r, x.volume_elem));
+  }
+}
+
+/* Which contacts touch; the listing tells when one does that did not. */
+static void note_touches(run *r, warnings *told) {
+  for (int i = 0; i < r->m->n_contact; ++i) {
+    const contact_total *t = &r->result.totals[i];
+    const size_t used = strlen(r->course.note);
+    if (told->touched[i] || t->n_slip + t->n_stick == 0) continue;
+    told->touched[i] = 1;
+    if (r->course.total_no > 1)
+      snprintf(r->course.note + used, sizeof r->course.note - used,
+               "  contact %s touches for the first time\n",
+               r->m->contacts[i].name);
+  }
+}
+
+static status look(run *r, void *self) {
+  note_touches(r, self);
+  if (r->solving.report.outcome > 0) warn_deformation(r, self);
+  return OK;
+}
+
+/* The least gap left of a contact, m; HUGE_VAL: it has no node. */
+static double least_gap(const run *r, int contact_id) {
+  double least = HUGE_VAL;
+  for (int i = 0; i < r->nodes.n; ++i)
+    if (r->surface->contact_id[i] == contact_id)
+      least = fmin(least, r->result.open_gap[i]);
+  return least;
+}
+
+static void end(run *r, void *self) {
+  const warnings *told = self;
+  for (int i = 0; i < r->m->n_contact; ++i) {
+    const contact *c = &r->m->contacts[i];
+    if (told->touched[i] || c->force.given) continue;
+    message_add(r->m->log, P4021, &c->at,
+                "*CONTACT %s: no node touched obstacle %s in the run; the "
+                "least gap at its end is %.3g",
+                c->name, c->obstacle_name, least_gap(r, i));
+  }
+}
+
+static status warnings_new(run *r, void **self) {
+  warnings *own = NULL;
+  PASS_NEW(own, 1);
+  *self = own;
+  PASS_NEW(own->touched, r->m->n_contact);
+  return OK;
+}
+
+static void release(void *self) {
+  if (self != NULL) memory_free(((warnings *)self)->touched);
+  memory_free(self);
+}
+
+static status keep(run *r, void *self, archive *a) {
+  warnings *own = self;
+  PASS(archive_ints(a, "told_strain", &own->strain, 1));
+  PASS(archive_ints(a, "told_folded", &own->folded, 1));
+  return archive_ints(a, "touched", own->touched, (size_t)r->m->n_contact);
+}
+
+static int calls_for_warnings(const model *m, char *why, size_t size) {
+  (void)why;
+  (void)size;
+  return !m->has_problem;
+}
+
+const effect_ops warnings_effect = {.name = "warnings",
+                                    .bit = NO_BIT,
+                                    .called_for = calls_for_warnings,
+                                    .own = STAGE_NONE,
+                                    .on.create = warnings_new,
+                                    .on.accept = look,
+                                    .on.end = end,
+                                    .on.keep = keep,
+                                    .on.release = release};
