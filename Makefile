@@ -10,7 +10,7 @@ Q     := $(if $(filter 1,$(V)),,@)
 
 packages := gcc make pkg-config libsuitesparse-dev libopenblas-dev \
             liblapacke-dev libhdf5-dev libgmsh-dev check gnuplot-nox \
-            libsundials-dev
+            libsundials-dev python3
 pc       := hdf5-serial check
 
 # Packages first: the variables below ask pkg-config.
@@ -57,7 +57,9 @@ static   := -Wl$(comma)--start-group $(patsubst %,-l:lib%.a,umfpack cholmod amd 
 checklib := $(shell pkg-config --libs check 2>/dev/null)
 
 sources  := $(filter-out src/main.c,$(wildcard src/*/*.c src/*/*/*.c))
-objects  := $(sources:%.c=$(out)/%.o)
+embedded := $(sort $(wildcard src/manual/*.md src/manual/*.inp \
+              input/*/*.inp input/*/*.geo))
+objects  := $(sources:%.c=$(out)/%.o) $(out)/embedded.o
 library  := $(out)/libprotis.a
 program  := $(out)/protis
 
@@ -130,6 +132,25 @@ $(out)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	@echo "  CC   $<"
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
+
+# Chapters of the manual and examples: the program carries them.
+$(out)/embedded.c: tools/embed $(embedded)
+	@mkdir -p $(@D)
+	$(Q)tools/embed $(embedded) > $@.new && mv $@.new $@
+
+$(out)/embedded.o: $(out)/embedded.c
+	@echo "  CC   $<"
+	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -c $< -o $@
+
+# The commit that --version tells; main.o follows it.
+commit   := $(shell git describe --always --dirty --abbrev=10 \
+              --exclude '*' 2>/dev/null || echo unknown)
+$(out)/commit: FORCE
+	@mkdir -p $(@D)
+	@echo '$(commit)' | cmp -s - $@ || echo '$(commit)' > $@
+.PHONY: FORCE
+$(out)/src/main.o: $(out)/commit
+$(out)/src/main.o: CPPFLAGS += -DPROTIS_COMMIT='"$(commit)"'
 
 $(library): $(objects)
 	@echo "  AR   $@"

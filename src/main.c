@@ -20,6 +20,10 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#ifndef PROTIS_COMMIT /* of the sources: told by the Makefile */
+#define PROTIS_COMMIT "unknown"
+#endif
+
 static status solve(const command *c, job_input *in, int *unsettled) {
   status st = OK;
   job_lock lock = {0};
@@ -92,7 +96,7 @@ static void prepare_process(void) {
 }
 
 int main(int argc, char **argv) {
-  command c;
+  command c = {.commit = PROTIS_COMMIT};
   message_log *log = NULL;
   int exit_code, unsettled = 0;
   prepare_process();

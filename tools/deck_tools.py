@@ -1,6 +1,8 @@
 """Decks and tables of protis for the tools: cards changed, JOB.dat read."""
+import os
 import pathlib
 import re
+import shutil
 import sys
 
 CARDS = {"METHOD": ("SOLVER", "METHOD"), "TOL": ("SOLVER", "TOL"),
@@ -13,6 +15,13 @@ FILES = ("MESH", "INCLUDE", "CONDENSED PROBLEM", "TEMPERATURE",
 def fail(text):
     """End with a message that begins with the name of the tool."""
     sys.exit(f"{sys.argv[0].rsplit('/', 1)[-1]}: {text}")
+
+
+def default_program():
+    """$PROTIS, else that of the sources, else protis on the PATH."""
+    built = pathlib.Path(__file__).resolve().parent.parent / "build/release/protis"
+    found = str(built) if built.exists() else shutil.which("protis")
+    return os.environ.get("PROTIS", found or str(built))
 
 
 # ---- the deck --------------------------------------------------------------

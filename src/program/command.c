@@ -7,6 +7,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "fem/fem.h"
+#include "manual/manual.h"
 #include "program/inform.h"
 #include "base/system/input.h"
 #include "base/system/limits.h"
@@ -30,11 +31,11 @@ enum {
   ASK_QUIET,
   ASK_ESTIMATE,
   ASK_NO_TIMING,
-  ASK_HELP,
-  ASK_VERSION,
   ASK_KEYWORDS,
   ASK_LIST,
-  ASK_EXPLAIN
+  ASK_EXPLAIN,
+  ASK_MANUAL,
+  ASK_EXAMPLE
 };
 
 /* clang-format off */
@@ -51,11 +52,14 @@ static const char *const help_rows[][2] = {
   {"--table NAME[:last]", "a table of the finished job as csv, to stdout"},
   {"--format csv|tsv", "of --table"},
   {"--quiet", "on a terminal: neither progress line nor lines at the end"},
-  {"--help", "this text"},
-  {"--version", "version, libraries, BLAS kernel"},
+  {"-h, --help", "this text"},
+  {"-V, --version", "version, commit, libraries, BLAS kernel"},
   {"--keywords [CARD]", "cards of the deck, or one card in full"},
-  {"--list KIND", "solvers, materials, friction or integrators"},
-  {"--explain [NUMBER]", "what a message such as P1003 means and what to do"}};
+  {"--list KIND", "solvers, materials, friction, integrators, columns, "
+   "examples"},
+  {"--explain [NUMBER]", "what a message such as P1003 means and what to do"},
+  {"--manual [CHAPTER]", "a chapter of the manual, or their list"},
+  {"--example NAME", "copy an example into the current folder"}};
 
 static const char *const exit_rows[][2] = {
   {"0", "done"},
@@ -81,11 +85,13 @@ static const struct option words[] = {
   {"format", required_argument, NULL, ASK_FORMAT},
   {"quiet", no_argument, NULL, ASK_QUIET},
   {"no-timing", no_argument, NULL, ASK_NO_TIMING},
-  {"help", no_argument, NULL, ASK_HELP},
-  {"version", no_argument, NULL, ASK_VERSION},
+  {"help", no_argument, NULL, 'h'},
+  {"version", no_argument, NULL, 'V'},
   {"keywords", no_argument, NULL, ASK_KEYWORDS},
   {"list", required_argument, NULL, ASK_LIST},
   {"explain", no_argument, NULL, ASK_EXPLAIN},
+  {"manual", no_argument, NULL, ASK_MANUAL},
+  {"example", required_argument, NULL, ASK_EXAMPLE},
   {NULL, 0, NULL, 0}};
 /* clang-format on */
 
@@ -129,10 +135,36 @@ static int print_keywords(const char *card) {
   return mean("there is no card ", card, near);
 }
 
+/* Not one of the words that there are; the nearest, or where they stand. */
+static int unknown(const char *what, const char *word,
+                   const char *(*next)(const void *ctx, int i),
+                   const char *seek) {
+  const char *near = inform_nearest(word, next);
+  fprintf(stderr, "protis: error: there is no %s ", what);
+  text_put(stderr, word);
+  if (near != NULL) fprintf(stderr, "; did you mean %s?\n", near);
+  if (near == NULL) fprintf(stderr, "; see protis %s\n", seek);
+  return 2;
+}
+
 static int print_list(const char *kind) {
-  if (inform_list(kind)) return 0;
-  return wrong("--list knows solvers, materials, friction, integrators, not ",
-               kind);
+  if (list_print(kind, stdout)) return 0;
+  return unknown("list", kind, list_kind, "--help");
+}
+
+static int print_manual(const char *chapter) {
+  if (manual_print(chapter, stdout)) return 0;
+  int code = unknown("chapter", chapter, manual_chapter, "--manual");
+  manual_print(NULL, stderr);
+  return code;
+}
+
+static int copy_example(const char *name) {
+  status st = example_copy(name, stdout);
+  if (st == ERR_DECK)
+    return unknown("example", name, example_name, "--list examples");
+  if (st != OK) fprintf(stderr, "protis: error: %s\n", status_message());
+  return status_exit_code(st);
 }
 
 static int print_explain(const char *number) {
@@ -177,13 +209,13 @@ static int unknown_option(const char *given) {
 
 /* What is asked without a job: the exit code. */
 static int answer(int what, const char *value, const char *given,
-                  const char *next) {
+                  const char *next, const command *c) {
   switch (what) {
-    case ASK_HELP:
+    case 'h':
       print_help();
       return 0;
-    case ASK_VERSION:
-      inform_version();
+    case 'V':
+      inform_version(c->commit);
       return 0;
     case ASK_KEYWORDS:
       return print_keywords(next);
@@ -191,6 +223,10 @@ static int answer(int what, const char *value, const char *given,
       return print_list(value);
     case ASK_EXPLAIN:
       return print_explain(next);
+    case ASK_MANUAL:
+      return print_manual(next);
+    case ASK_EXAMPLE:
+      return copy_example(value);
     case ':':
       return wrong("a value is missing after ", given);
     default:
@@ -245,7 +281,8 @@ static int take_option(int what, const char *value, const char *given,
       if (read_memory(value, c)) return -1;
       return wrong("--max-memory needs a number of MB above 0, not ", value);
     default:
-      if (switch_of(what, c) == NULL) return answer(what, value, given, next);
+      if (switch_of(what, c) == NULL)
+        return answer(what, value, given, next, c);
       *switch_of(what, c) = 1;
       return -1;
   }
@@ -294,12 +331,12 @@ static const char *word_read(int argc, char **argv) {
 
 int command_read(int argc, char **argv, command *c, int *exit_code) {
   int what, code = -1;
-  memset(c, 0, sizeof *c);
+  *c = (command){.commit = c->commit};
   opterr = 0; /* told here                                                   */
   c->defines = memory_new((size_t)argc, sizeof *c->defines);
   if (c->defines == NULL) code = no_memory();
   while (code < 0 &&
-         (what = getopt_long(argc, argv, ":o:D:", words, NULL)) != -1) {
+         (what = getopt_long(argc, argv, ":o:D:hV", words, NULL)) != -1) {
     const char *next = optind < argc ? argv[optind] : NULL;
     code = take_option(what, optarg, word_read(argc, argv), next, c);
   }

@@ -7,8 +7,9 @@
 #include "base/message.h"
 
 typedef struct command {
-  char *deck_file; /* owned                                              */
-  char *dir;       /* folder of the results; owned                       */
+  const char *commit; /* of the sources; borrowed, set before command_read    */
+  char *deck_file;    /* owned                                              */
+  char *dir;          /* folder of the results; owned                       */
   int n_define;
   const char **defines; /* [n_define] NAME=VALUE; array owned                 */
   int check_only, estimate_cost, quiet, no_timing, restart, safe;

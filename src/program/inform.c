@@ -6,12 +6,12 @@
 #include "base/memory.h"
 #include "base/option.h"
 #include "exchange/exchange.h"
+#include "fem/fem.h"
 #include "run/history/history.h"
 #include "model/keyword/keyword.h"
 #include "effects/plan/plan.h"
 
 #include <cholmod.h>
-#include <ctype.h>
 #include <hdf5.h>
 #include <math.h>
 #include <stdio.h>
@@ -19,98 +19,17 @@
 
 extern char *openblas_get_config(void);
 
-void inform_version(void) {
+void inform_version(const char *commit) {
   unsigned major, minor, release;
   int cholmod[3];
   cholmod_version(cholmod);
   H5get_libversion(&major, &minor, &release);
-  printf("protis %s\n", PROTIS_VERSION);
+  printf("protis %s (commit %s)\n", PROTIS_VERSION, commit);
   printf("CHOLMOD %d.%d.%d\n", cholmod[0], cholmod[1], cholmod[2]);
   printf("%s\n", openblas_get_config());
   printf("BLAS kernel %s%s\n", blas_kernel(),
          blas_kernel_changed() ? " (chosen by protis)" : "");
   printf("HDF5 %u.%u.%u\n", major, minor, release);
-}
-
-/* Name in capitals, source and manual text. */
-static void print_help(const char *name, const char *reference,
-                       const char *help) {
-  for (const char *p = name; *p != '\0'; ++p)
-    putchar(toupper((unsigned char)*p));
-  printf("  (%s)\n  ", reference);
-  for (const char *p = help; *p != '\0'; ++p) {
-    putchar(*p);
-    if (*p == '\n') fputs("  ", stdout);
-  }
-  putchar('\n');
-}
-
-/* The same with the options of a plug-in. */
-static void list_plugin(const char *name, const char *reference,
-                        const char *help, const option *options) {
-  print_help(name, reference, help);
-  option_print(options, stdout);
-}
-
-static void list_solvers(void) {
-  print_help("AUTO", "the default", auto_help);
-  for (int i = 0; solver_list[i] != NULL; ++i) {
-    const solver_ops *s = solver_list[i];
-    putchar('\n');
-    list_plugin(s->name, s->reference, s->help, s->options);
-  }
-}
-
-static void list_friction(void) {
-  for (int i = 0; friction_list[i] != NULL; ++i) {
-    const friction_ops *f = friction_list[i];
-    if (i > 0) putchar('\n');
-    list_plugin(f->name, f->reference, f->help, f->options);
-    if (f->value_name != NULL)
-      printf("  data line: %s, unit %s\n", f->value_name, f->value_unit);
-  }
-}
-
-/* Rows of a data line of a law: name, unit, what it is if absent, help. */
-static void list_fields(const option *table, const char *title) {
-  char text[200];
-  if (table == NULL) return;
-  printf("  %s: %s\n", title, law_line_text(table, text, sizeof text));
-  for (const option *o = table; o->name != NULL; ++o) {
-    printf("    %-10s %s", o->name, o->help);
-    if (strcmp(o->unit, "-") != 0) printf(", unit %s", o->unit);
-    if (o->initial != NULL && strcmp(o->initial, OPTION_ABSENT) != 0)
-      printf("; %s if absent", o->initial);
-    putchar('\n');
-  }
-}
-
-static void list_materials(void) {
-  puts(
-      "elastic  (CPR98 2.2)\n  *ELASTIC, TYPE=ISO, ORTHO or ANISO: linear "
-      "elasticity, any symmetric and\n  positive definite a_ijkl\n\n"
-      "With *INELASTIC, LAW=:");
-  for (int i = 0; law_list[i] != NULL; ++i) {
-    const law_ops *law = law_list[i];
-    putchar('\n');
-    list_plugin(law->name, law->reference, law->help, law->options);
-    list_fields(law->fields,
-                law->terms == NULL ? "data line" : "first data line");
-    list_fields(law->terms,
-                law->fields == NULL ? "data lines" : "then, a term a line");
-    for (const char *p = law->example; *p != '\0';) {
-      const int n = (int)strcspn(p, "\n");
-      printf("  %s %.*s\n", p == law->example ? "for example" : "           ",
-             n, p);
-      p += n + (p[n] != '\0');
-    }
-  }
-}
-
-static void list_integrators(void) {
-  for (int i = 0; scheme_list[i] != NULL; ++i)
-    printf("%s  (%s)\n  %s\n", scheme_list[i]->name, scheme_list[i]->reference,
-           scheme_list[i]->help);
 }
 
 int inform_keywords(const char *name) { return keywords_print(name, stdout); }
@@ -122,20 +41,6 @@ static const char *card_name(const void *ctx, int i) {
 
 const char *inform_nearest_card(const char *name) {
   return inform_nearest(name + strspn(name, "*"), card_name);
-}
-
-int inform_list(const char *kind) {
-  if (strcmp(kind, "solvers") == 0)
-    list_solvers();
-  else if (strcmp(kind, "friction") == 0)
-    list_friction();
-  else if (strcmp(kind, "materials") == 0)
-    list_materials();
-  else if (strcmp(kind, "integrators") == 0)
-    list_integrators();
-  else
-    return 0;
-  return 1;
 }
 
 const char *inform_nearest(const char *word,

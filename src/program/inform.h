@@ -6,19 +6,20 @@
 
 #include "base/status.h"
 
-#define PROTIS_VERSION "0.1"
+/* As in src/manual/changes.md: a change of the second number may change what a
+ * deck means or what its files hold. */
+#define PROTIS_VERSION "0.2.0"
 
 struct exchange_problem;
 struct mesh;
 struct model;
 
-void inform_version(void);
+/* "commit" of the sources, or "unknown". */
+void inform_version(const char *commit);
 /* All cards, or one in full; 0 if there is no card of that name. */
 int inform_keywords(const char *name);
 /* The card whose name is nearest, or NULL. */
 const char *inform_nearest_card(const char *name);
-/* "solvers", "materials", "friction" or "integrators"; 0 if none of them. */
-int inform_list(const char *kind);
 
 /* protis JOB --check: sizes, memory, effect plan, motions that nothing or only
  * contact holds; solves nothing. ERR_SINGULAR if a body is free. */

@@ -123,11 +123,11 @@ static const char *program(void) {
  * are kept for all programs, by tools/run_tests, they are read once. */
 static int run_command(job *j, const char *dir, const char *command) {
   static const char mesh[] =
-      "LD_PRELOAD=\"${LD_PRELOAD:+$LD_PRELOAD:}$PROTIS_MESH\"";
+      "export LD_PRELOAD=\"${LD_PRELOAD:+$LD_PRELOAD:}$PROTIS_MESH\" &&";
   char line[6 * PATH], path[PATH];
   int kept = getenv("MESH_KEPT") != NULL && getenv("PROTIS_MESH") != NULL;
   snprintf(line, sizeof line,
-           "cd '%s' && %s %s > '%s/stdout.txt' 2> '%s/stderr.txt'", dir,
+           "cd '%s' && %s { %s\n} > '%s/stdout.txt' 2> '%s/stderr.txt'", dir,
            kept ? mesh : "", command, j->dir, j->dir);
   int code = system(line);
   snprintf(path, sizeof path, "%s/stderr.txt", j->dir);
@@ -165,6 +165,18 @@ int job_run(job *j, const char *words) {
   find_program(path);
   snprintf(command, sizeof command, "'%s' %s %s", path, j->name, words);
   return run_command(j, j->dir, command);
+}
+
+int job_shell(job *j, const char *command) {
+  char path[PATH], all[8 * PATH];
+  const char *old = getenv("PATH");
+  find_program(path);
+  snprintf(all, sizeof all, "%.*s:%s", (int)(strrchr(path, '/') - path), path,
+           old);
+  setenv("PATH", all, 1);
+  int code = run_command(j, j->dir, command);
+  setenv("PATH", old, 1);
+  return code;
 }
 
 int job_run_deck(job *j, const char *deck, const char *words) {

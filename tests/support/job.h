@@ -40,6 +40,9 @@ void job_copy_meshes(const job *j, const char *deck);
 /* Run protis NAME with further words ("" or "-D N=4 --check"); exit code,
  * or 1000 + signal. */
 int job_run(job *j, const char *words);
+/* Run a command of the shell in the folder, "protis" being the program; its
+ * exit code. */
+int job_shell(job *j, const char *command);
 /* Run a deck of the sources (no .inp) with the results in the folder; JOB is
  * then its name. */
 int job_run_deck(job *j, const char *deck, const char *words);

@@ -1,0 +1,32 @@
+/*
+ * The manual and the examples that the program carries with it. A chapter is a
+ * file of this folder, NAME.md, and for some what the tables of the program
+ * add: cards, laws, methods, columns, messages.
+ */
+#ifndef PROTIS_MANUAL_MANUAL_H
+#define PROTIS_MANUAL_MANUAL_H
+
+#include "base/status.h"
+
+#include <stdio.h>
+
+/* A chapter as Markdown, or, with NULL, the names and titles of all; 0 if there
+ * is none of that name. */
+int manual_print(const char *chapter, FILE *out);
+/* Name of chapter i, from 0; NULL at the end. For nearest_word. */
+const char *manual_chapter(const void *ctx, int i);
+
+/* What --list can show, one after another for nearest_word; NULL at the end. */
+const char *list_kind(const void *ctx, int i);
+/* One of them; 0 if there is no such kind. */
+int list_print(const char *kind, FILE *out);
+
+/* Names of the examples and their titles. */
+void examples_print(FILE *out);
+const char *example_name(const void *ctx, int i);
+/* Copy decks and geometries of an example into the current folder and tell
+ * their names. ERR_DECK: no such example; ERR_FILE: one of the files is there
+ * already, then none is written, or cannot be written. */
+status example_copy(const char *name, FILE *out);
+
+#endif

@@ -1,0 +1,195 @@
+/*
+ * The manual against the program: every chapter prints, every command in it
+ * runs, every card has an example and these are decks that run, version and
+ * examples are those of the sources.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <glob.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { TEXT = 2048 };
+
+static char *source(const char *path) {
+  char copy[256];
+  snprintf(copy, sizeof copy, "%s", path);
+  char *dot = strrchr(copy, '.');
+  *dot = '\0';
+  job j = {.dir = "."};
+  ck_assert_uint_lt(strlen(copy), sizeof j.dir);
+  char *slash = strrchr(copy, '/');
+  if (slash != NULL) {
+    *slash = '\0';
+    snprintf(j.dir, sizeof j.dir, "%.63s", copy);
+  }
+  snprintf(j.name, sizeof j.name, "%.31s", slash == NULL ? copy : slash + 1);
+  char *text = job_file(&j, dot + 1);
+  ck_assert_msg(text != NULL, "%s: not there", path);
+  return text;
+}
+
+static int count(const char *text, const char *word) {
+  int n = 0;
+  for (; (text = strstr(text, word)) != NULL; ++text) ++n;
+  return n;
+}
+
+/* Run in the folder; check fails if the exit code is another. */
+static void expect(job *j, const char *command, int code) {
+  int found = job_shell(j, command);
+  ck_assert_msg(found == code, "%s: exit %d: %s%s", command, found, j->text,
+                j->errors);
+}
+
+START_TEST(every_chapter_of_the_sources_prints) {
+  char command[TEXT], row[80];
+  glob_t files;
+  job j = job_begin("manual"), list = job_begin("list");
+  ck_assert_int_eq(glob("src/manual/*.md", 0, NULL, &files), 0);
+  expect(&list, "protis --manual", 0);
+  ck_assert_int_eq(count(list.text, "\n"), (int)files.gl_pathc + 1);
+  for (size_t i = 0; i < files.gl_pathc; ++i) {
+    char *text = source(files.gl_pathv[i]);
+    const char *name = strrchr(files.gl_pathv[i], '/') + 1;
+    snprintf(command, sizeof command, "protis --manual %.*s",
+             (int)strcspn(name, "."), name);
+    expect(&j, command, 0);
+    ck_assert_msg(strncmp(j.text, text, strlen(text)) == 0, "%s", command);
+    snprintf(row, sizeof row, "\n  %.*s ", (int)strcspn(name, "."), name);
+    ck_assert_msg(strstr(list.text, row) != NULL, "no row of %s", name);
+    free(text);
+  }
+  expect(&j, "protis --manual nothing", 2);
+  ck_assert_ptr_nonnull(strstr(j.errors, "there is no chapter nothing"));
+  ck_assert_ptr_nonnull(strstr(j.errors, "\n  tutorial "));
+  globfree(&files);
+  job_end(&list);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(every_card_has_an_example) {
+  job j = job_begin("manual"), cards = job_begin("cards");
+  expect(&j, "protis --manual deck", 0);
+  expect(&cards, "protis --keywords", 0);
+  ck_assert_int_gt(count(cards.text, "\n*"), 30);
+  ck_assert_int_eq(count(j.text, "\nFor example\n"),
+                   1 + count(cards.text, "\n*"));
+  job_end(&cards);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(examples_of_the_cards_run_without_a_warning) {
+  glob_t files;
+  job j = job_begin("pattern");
+  ck_assert_int_eq(glob("src/manual/pattern*", 0, NULL, &files), 0);
+  for (size_t i = 0; i < files.gl_pathc; ++i) job_copy(&j, files.gl_pathv[i]);
+  globfree(&files);
+  expect(&j, "protis pattern --quiet", 0);
+  ck_assert_str_eq(j.errors, "");
+  expect(&j, "protis pattern_problem --quiet", 0);
+  ck_assert_str_eq(j.errors, "");
+  job_end(&j);
+}
+END_TEST
+
+/* Chapters whose fenced blocks are commands. */
+static const char *const commands[] = {"tutorial", "batch"};
+enum { COMMANDS = sizeof commands / sizeof *commands };
+
+START_TEST(every_command_runs) {
+  char cwd[TEXT / 4], command[TEXT];
+  job j = job_begin("manual");
+  ck_assert_ptr_nonnull(getcwd(cwd, sizeof cwd));
+  snprintf(command, sizeof command,
+           "'%s/tools/run_manual' '%s/src/manual/%s.md' .", cwd, cwd,
+           commands[_i]);
+  expect(&j, command, 0);
+  ck_assert_int_gt(count(j.text, "line "), 1);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(version_is_the_newest_of_the_changes) {
+  char version[100], name[TEXT];
+  job j = job_begin("version");
+  char *changes = source("src/manual/changes.md"),
+       *readme = source("README.md");
+  const char *at = strstr(changes, "\n## ");
+  ck_assert_int_eq(sscanf(at, "\n## %99s", version), 1);
+  for (int i = 0; i < 2; ++i) {
+    expect(&j, i == 0 ? "protis --version" : "protis -V", 0);
+    snprintf(name, sizeof name, "protis %s (commit ", version);
+    ck_assert_msg(strncmp(j.text, name, strlen(name)) == 0, "%s", j.text);
+  }
+  snprintf(name, sizeof name, "Protis %s,", version);
+  ck_assert_msg(strstr(readme, name) != NULL, "README.md: no '%s'", name);
+  free(changes);
+  free(readme);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(every_example_is_copied_and_nothing_overwritten) {
+  char name[64], command[TEXT], cwd[TEXT / 4];
+  int n = 0;
+  glob_t folders;
+  job list = job_begin("list");
+  ck_assert_ptr_nonnull(getcwd(cwd, sizeof cwd));
+  expect(&list, "protis --list examples", 0);
+  ck_assert_int_eq(glob("input/*", 0, NULL, &folders), 0);
+  for (const char *p = list.text; sscanf(p, "%63s", name) == 1; ++n) {
+    if (strcmp(name, "protis") == 0) break;
+    job j = job_begin(name);
+    snprintf(command, sizeof command, "protis --example %s", name);
+    expect(&j, command, 0);
+    snprintf(command, sizeof command,
+             "for f in *.inp *.geo; do cmp $f '%s/input/%s/'$f || exit 1; done",
+             cwd, name);
+    expect(&j, command, 0);
+    snprintf(command, sizeof command,
+             "echo mine > %s.inp; rm *.geo; protis --example %s", name, name);
+    expect(&j, command, 4);
+    char *text = job_file(&j, "inp");
+    ck_assert_str_eq(text, "mine\n");
+    ck_assert_int_eq(job_has(&j, "geo"), 0);
+    free(text);
+    job_end(&j);
+    p = strchr(p, '\n') + 1;
+  }
+  ck_assert_int_eq(n, (int)folders.gl_pathc);
+  globfree(&folders);
+  expect(&list, "protis --example grecco", 2);
+  ck_assert_ptr_nonnull(strstr(list.errors, "did you mean greco?"));
+  job_end(&list);
+}
+END_TEST
+
+START_TEST(columns_are_listed_by_table) {
+  job j = job_begin("list");
+  expect(&j, "protis --list columns", 0);
+  ck_assert_ptr_nonnull(strstr(j.text, "\nCONTACT: "));
+  ck_assert_ptr_nonnull(
+      strstr(j.text, "\n  pressure           force/length^2 "));
+  expect(&j, "protis --list solver", 2);
+  ck_assert_ptr_nonnull(strstr(j.errors, "did you mean solvers?"));
+  job_end(&j);
+}
+END_TEST
+
+int main(void) {
+  TCase *c = tcase_create("manual");
+  tcase_set_timeout(c, UNIT_SECONDS);
+  tcase_add_test(c, every_chapter_of_the_sources_prints);
+  tcase_add_test(c, every_card_has_an_example);
+  tcase_add_test(c, examples_of_the_cards_run_without_a_warning);
+  tcase_add_loop_test(c, every_command_runs, 0, COMMANDS);
+  tcase_add_test(c, version_is_the_newest_of_the_changes);
+  tcase_add_test(c, every_example_is_copied_and_nothing_overwritten);
+  tcase_add_test(c, columns_are_listed_by_table);
+  return unit_run("manual", c);
+}
