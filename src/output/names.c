@@ -13,9 +13,12 @@
 
 /* JOB.stop is removed only if it was made during the run. */
 static const char *const results[] = {
-    "lst",    "sta",  "cvg",        "dat",       "h5",
-    "h5.tmp", "xdmf", "xdmf.tmp",   "json",      "json.tmp",
-    "rst.h5", "lock", "rst.h5.tmp", "rst.old.h5"};
+    "lst",           "sta",          "cvg",
+    "dat",           "h5",           "h5.tmp",
+    "xdmf",          "xdmf.tmp",     "json",
+    "json.tmp",      "rst.h5",       "lock",
+    "rst.h5.tmp",    "rst.old.h5",   "body.xdmf",
+    "body.xdmf.tmp", "contact.xdmf", "contact.xdmf.tmp"};
 
 static const char middle[] = "_condensed_";
 

@@ -63,8 +63,9 @@ static status open_hdf5(output *o, const hdf5_count *before) {
 
 static status open_new(output *o) {
   job j = job_of(o);
-  static const char *const old[] = {"h5", "xdmf", "json", "rst.h5",
-                                    "rst.old.h5"};
+  static const char *const old[] = {"h5",          "xdmf",   "json",
+                                    "body.xdmf",   "rst.h5", "rst.old.h5",
+                                    "contact.xdmf"};
   PASS(open_text(o, "lst", -1, &o->lst));
   PASS(open_text(o, "sta", -1, &o->sta));
   PASS(open_text(o, "cvg", -1, &o->cvg));
@@ -148,6 +149,20 @@ void output_passes(output *o, double target, int n, const pass_row *rows,
   o->run.passes = (pass_table){target, n, rows, forecast, why};
 }
 
+/* The last record, once more in files of one grid. */
+static status write_last(const output *o) {
+  static const char *const names[] = {"body.xdmf", "contact.xdmf"};
+  hdf5_shape shape;
+  if (o->h5 == NULL) return OK;
+  hdf5_shape_of(o->h5, &shape);
+  for (int k = 0; k < 2; ++k) {
+    OWNED char *path = text_path(o->o.dir, o->m->job, names[k]);
+    if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
+    PASS(xdmf_write_last(&shape, k, path));
+  }
+  return OK;
+}
+
 /* Without memory there are none. */
 static void make_closing(const output *o) {
   const job j = job_of(o);
@@ -172,6 +187,7 @@ status output_close(output *o, status run, int unsettled) {
   if (o->progress) progress_line("");
   first_of(&kept, message, sizeof message, run);
   first_of(&kept, message, sizeof message, output_show_records(o, 1));
+  first_of(&kept, message, sizeof message, write_last(o));
   first_of(&kept, message, sizeof message, hdf5_close(o->h5, kept == OK));
   first_of(&kept, message, sizeof message, tabular_close(o->dat));
   first_of(&kept, message, sizeof message, text_close(&o->cvg));

@@ -124,6 +124,31 @@ START_TEST(contact_signs_and_directions) {
 }
 END_TEST
 
+/* Stresses with known principal values: turned ones, equal ones, none. */
+START_TEST(principal_stresses_are_those_of_the_tensor) {
+  static const struct {
+    double stress[6], principal[3]; /* xx yy zz xy yz zx                      */
+  } tensors[] = {{{0}, {0, 0, 0}},
+                 {{2, 2, 2, 0, 0, 0}, {2, 2, 2}},
+                 {{-3, 5, 1, 0, 0, 0}, {5, 1, -3}},
+                 {{0, 0, 0, 4, 0, 0}, {4, 0, -4}},
+                 {{1, 1, 1, 1, 1, 1}, {3, 0, 0}},
+                 {{2, 3, 4, -2, -2, 0}, {6, 3, 0}}};
+  made_up *made = made_up_new(3, 2, 3);
+  made_up_advance(made, 1);
+  for (size_t i = 0; i < sizeof tensors / sizeof *tensors; ++i) {
+    memcpy(made->array[MADE_STRESS], tensors[i].stress, sizeof(double[6]));
+    for (int k = 0; k < 3; ++k) {
+      char name[20];
+      snprintf(name, sizeof name, "principal_%d", k + 1);
+      ck_assert_double_eq_tol(value_of(made, PER_ELEMENT, name, 0),
+                              tensors[i].principal[k], 1e-14);
+    }
+  }
+  made_up_free(made);
+}
+END_TEST
+
 /* In a corner the rows of the second obstacle, whatever its number, are no
  * friction. */
 START_TEST(force_of_a_second_obstacle_is_no_friction) {
@@ -385,6 +410,7 @@ UNIT_MAIN("columns", every_row_has_unit_help_scene_and_value,
           names_are_unique_within_entity_and_scene,
           fields_have_distinct_components, every_value_is_finite,
           columns_follow_the_effects, contact_signs_and_directions,
+          principal_stresses_are_those_of_the_tensor,
           force_of_a_second_obstacle_is_no_friction, mises_of_simple_states,
           internal_variables_of_unlike_laws, slip_has_a_direction,
           figures_stand_under_their_names,

@@ -325,16 +325,27 @@ START_TEST(xdmf_names_every_record_of_the_file_beside_it) {
   snprintf(name, sizeof name, "Dimensions=\"%d 3\">block.h5:/fields/u/",
            made->msh->n_node);
   ck_assert_ptr_nonnull(strstr(text, name));
-  snprintf(name, sizeof name, "Dimensions=\"%d\">block.h5:/fields/stress_yz/",
+  snprintf(name, sizeof name, "Dimensions=\"%d 6\">block.h5:/fields/stress/",
            made->msh->n_elem);
   ck_assert_ptr_nonnull(strstr(text, name));
   ck_assert_ptr_nonnull(
       strstr(text, "Name=\"u\" AttributeType=\"Vector\" Center=\"Node\""));
+  ck_assert_ptr_nonnull(
+      strstr(text, "Name=\"mises\" AttributeType=\"Scalar\" Center=\"Cell\""));
   ck_assert_ptr_nonnull(strstr(
-      text, "Name=\"stress_yz\" AttributeType=\"Scalar\" Center=\"Cell\""));
+      text, "Name=\"stress\" AttributeType=\"Tensor6\" Center=\"Cell\""));
   ck_assert_ptr_null(strstr(text, dir));
   ck_assert_ptr_null(strstr(text, "/00006"));
   ck_assert_ptr_nonnull(strstr(text, "</Xdmf>"));
+  free(text);
+  text = folder_file(dir, "block.contact.xdmf", NULL);
+  ck_assert_ptr_nonnull(strstr(text, ">block.h5:/contact/u/00005<"));
+  ck_assert_ptr_null(strstr(text, "Time"));
+  ck_assert_ptr_null(strstr(text, "/fields/"));
+  free(text);
+  text = folder_file(dir, "block.body.xdmf", NULL);
+  ck_assert_ptr_nonnull(strstr(text, ">block.h5:/fields/u/00005<"));
+  ck_assert_ptr_null(strstr(text, "Collection"));
   free(text);
   made_up_free(made);
   folder_remove(dir);

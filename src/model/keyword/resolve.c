@@ -401,6 +401,7 @@ static void check_clock(const model *m, const step *s) {
 static status resolve_steps(model *m) {
   step before = {.solver = default_solver,
                  .loads = m->supports,
+                 .output_frequency = 1,
                  .condensed_frequency = -1,
                  .restart_frequency = -1};
   for (int i = 0; i < before.loads.n; ++i)

@@ -63,6 +63,32 @@ static double mises(const view *v, int id, int part) {
   return sqrt(0.5 * (a * a + b * b + c * c) + 3 * shear);
 }
 
+/* Principal stress number part, the largest first: rotations after Jacobi. */
+static double principal(const view *v, int id, int part) {
+  const double *s = v->s->body.stress + at(v->m->ns, id, 0);
+  const int solid = v->m->ns == 6;
+  double a[3][3] = {{s[0], s[3], solid ? s[5] : 0},
+                    {s[3], s[1], solid ? s[4] : 0},
+                    {solid ? s[5] : 0, solid ? s[4] : 0, s[2]}};
+  for (int pass = 0; pass < 30; ++pass) {
+    const int p = pass % 3, q = (p + 1) % 3, r = 3 - p - q;
+    if (a[p][q] == 0) continue;
+    const double half = (a[q][q] - a[p][p]) / 2;
+    const double t = a[p][q] / (half + copysign(hypot(half, a[p][q]), half));
+    const double cosine = 1 / hypot(1, t), sine = t * cosine;
+    const double rp = a[r][p], rq = a[r][q];
+    a[p][p] -= t * a[p][q];
+    a[q][q] += t * a[p][q];
+    a[p][q] = a[q][p] = 0;
+    a[r][p] = a[p][r] = cosine * rp - sine * rq;
+    a[r][q] = a[q][r] = sine * rp + cosine * rq;
+  }
+  const double most = fmax(fmax(a[0][0], a[1][1]), a[2][2]);
+  const double least = fmin(fmin(a[0][0], a[1][1]), a[2][2]);
+  if (part == 1) return a[0][0] + a[1][1] + a[2][2] - most - least;
+  return part == 0 ? most : least;
+}
+
 /* clang-format off */
 #define NODE  PER_NODE, AS_REAL
 #define ELEM  PER_ELEMENT, AS_REAL
@@ -152,28 +178,34 @@ const column element_columns[] = {
  "hoop strain"},
 {"gamma_rz", "-", ELEM, STRAIN(SCENE_AXI), "gamma_rz", 3, strain, NULL,
  "engineering shear strain"},
-{"stress_xx", PA, ELEM, STRESS(CART), "stress_xx", 0,
+{"stress_xx", PA, ELEM, STRESS(CART), "stress", 0,
  stress, NULL, "stress"},
-{"stress_yy", PA, ELEM, STRESS(CART), "stress_yy", 1,
+{"stress_yy", PA, ELEM, STRESS(CART), "stress", 1,
  stress, NULL, "stress"},
-{"stress_zz", PA, ELEM, STRESS(CART), "stress_zz", 2,
+{"stress_zz", PA, ELEM, STRESS(CART), "stress", 2,
  stress, NULL, "stress"},
-{"stress_xy", PA, ELEM, STRESS(CART), "stress_xy", 3,
+{"stress_xy", PA, ELEM, STRESS(CART), "stress", 3,
  stress, NULL, "shear stress"},
-{"stress_yz", PA, ELEM, STRESS(SCENE_SOLID), "stress_yz", 4, stress, NULL,
+{"stress_yz", PA, ELEM, STRESS(SCENE_SOLID), "stress", 4, stress, NULL,
  "shear stress"},
-{"stress_zx", PA, ELEM, STRESS(SCENE_SOLID), "stress_zx", 5, stress, NULL,
+{"stress_zx", PA, ELEM, STRESS(SCENE_SOLID), "stress", 5, stress, NULL,
  "shear stress"},
-{"stress_rr", PA, ELEM, STRESS(SCENE_AXI), "stress_rr", 0, stress, NULL,
+{"stress_rr", PA, ELEM, STRESS(SCENE_AXI), "stress", 0, stress, NULL,
  "stress"},
-{"stress_zz", PA, ELEM, STRESS(SCENE_AXI), "stress_zz", 1, stress, NULL,
+{"stress_zz", PA, ELEM, STRESS(SCENE_AXI), "stress", 1, stress, NULL,
  "stress"},
-{"stress_tt", PA, ELEM, STRESS(SCENE_AXI), "stress_tt", 2, stress, NULL,
+{"stress_tt", PA, ELEM, STRESS(SCENE_AXI), "stress", 2, stress, NULL,
  "hoop stress"},
-{"stress_rz", PA, ELEM, STRESS(SCENE_AXI), "stress_rz", 3, stress, NULL,
+{"stress_rz", PA, ELEM, STRESS(SCENE_AXI), "stress", 3, stress, NULL,
  "shear stress"},
 {"mises", PA, ELEM, STRESS(SCENE_ALL), "mises", 0, mises, NULL,
  "von Mises stress"},
+{"principal_1", PA, ELEM, 0, ON(STRESS), SCENE_ALL, NEEDS_STRESS,
+ "principal_1", 0, principal, NULL, "largest principal stress"},
+{"principal_2", PA, ELEM, 0, ON(STRESS), SCENE_ALL, NEEDS_STRESS,
+ "principal_2", 1, principal, NULL, "second principal stress"},
+{"principal_3", PA, ELEM, 0, ON(STRESS), SCENE_ALL, NEEDS_STRESS,
+ "principal_3", 2, principal, NULL, "least principal stress"},
 {"ei_xx", "-", ELEM, FLOW(CART), "ei_xx", 0, inelastic, NULL,
  "inelastic strain"},
 {"ei_yy", "-", ELEM, FLOW(CART), "ei_yy", 1, inelastic, NULL,

@@ -57,6 +57,20 @@ static double contact_force(const view *v, int id, int part) {
   return sum;
 }
 
+static double contact_pull(const view *v, int id, int part) {
+  return per_area(v, id, contact_force(v, id, part));
+}
+
+/* The slip in global components. */
+static double contact_slide(const view *v, int id, int part) {
+  int dim = SURFACE->dim;
+  const double *frame = SURFACE->frame + at(dim * dim, id, 0);
+  const double *slip = v->s->contacts.slip + at(dim - 1, id, 0);
+  double sum = 0;
+  for (int k = 1; k < dim; ++k) sum += frame[dim * k + part] * slip[k - 1];
+  return sum;
+}
+
 static const char *contact_word(const view *v, int id) {
   return status_word(v->s->contacts.contact[id]);
 }
@@ -160,6 +174,34 @@ const column contact_node_columns[] = {
  "slip of the increment; *STATIC: from the origin"},
 {"slip_distance", "length", CON, PRINT_CONTACT, F, SCENE_ALL, NEEDS_DISTANCE,
  "slip_distance", 0, slip_distance, NULL, "length of all slip so far"},
+{"traction_x", PA, CON, 0, C, CART, NEEDS_PLACE, "traction", 0, contact_pull,
+ NULL, "force of the obstacle over tributary area"},
+{"traction_r", PA, CON, 0, C, SCENE_AXI, NEEDS_PLACE,
+ "traction", 0, contact_pull,
+ NULL, "force of the obstacle over tributary area"},
+{"traction_y", PA, CON, 0, C, CART, NEEDS_PLACE, "traction", 1, contact_pull,
+ NULL, "force of the obstacle over tributary area"},
+{"traction_z", PA, CON, 0, C, SCENE_AXI, NEEDS_PLACE,
+ "traction", 1, contact_pull,
+ NULL, "force of the obstacle over tributary area"},
+{"traction_z", PA, CON, 0, C, SCENE_SOLID, NEEDS_PLACE,
+ "traction", 2, contact_pull,
+ NULL, "force of the obstacle over tributary area"},
+{"slip_x", "length", CON, 0, F, CART, NEEDS_PLACE,
+ "slip_vector", 0, contact_slide,
+ NULL, "slip of the increment in global components"},
+{"slip_r", "length", CON, 0, F, SCENE_AXI, NEEDS_PLACE,
+ "slip_vector", 0, contact_slide,
+ NULL, "slip of the increment in global components"},
+{"slip_y", "length", CON, 0, F, CART, NEEDS_PLACE,
+ "slip_vector", 1, contact_slide,
+ NULL, "slip of the increment in global components"},
+{"slip_z", "length", CON, 0, F, SCENE_AXI, NEEDS_PLACE,
+ "slip_vector", 1, contact_slide,
+ NULL, "slip of the increment in global components"},
+{"slip_z", "length", CON, 0, F, SCENE_SOLID, NEEDS_PLACE,
+ "slip_vector", 2, contact_slide,
+ NULL, "slip of the increment in global components"},
 {"slip_dir_x", "-", CON, SLIDES(CART), NULL, 0, slip_direction, NULL,
  "direction of the slip, 0 where there is none"},
 {"slip_dir_r", "-", CON, SLIDES(SCENE_AXI), NULL, 0, slip_direction, NULL,

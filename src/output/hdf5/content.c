@@ -24,20 +24,31 @@ static const char *group_of(const column *c) {
   return c->of == PER_CONTACT_NODE ? "/contact" : "/fields";
 }
 
-/* A column that shares its field with one before is its next component. */
-static status add_field(hdf5_file *h, const column *c, const char *group,
-                        int id) {
+/* A column that shares its field with those before is its next component; the
+ * fourth makes a symmetric tensor of them. */
+static void add_part(hdf5_field *f, const column *c) {
+  static const int order[] = {0, 3, 5, 1, 4, 2}; /* of xx yy zz xy yz zx      */
+  if (c->part > 2 && f->n_part == 3) {
+    f->part[5] = f->part[2];
+    f->part[3] = f->part[1];
+    f->part[1] = f->part[2] = NULL;
+  }
+  f->n_part = c->part > 2 ? 6 : 3;
+  f->part[f->n_part == 6 ? order[c->part] : c->part] = c;
+}
+
+static status add_field(hdf5_file *h, const column *c, entity of,
+                        const char *group, int id) {
   for (int i = 0; i < h->n_field; ++i) {
     hdf5_field *f = &h->fields[i];
     if (strcmp(f->name, c->field) != 0 || strcmp(f->group, group) != 0)
       continue;
-    f->n_part = 3;
-    f->part[c->part] = c;
+    add_part(f, c);
     return OK;
   }
   PASS_GROW(h->fields, h->n_field, h->cap_field);
   hdf5_field *f = &h->fields[h->n_field++];
-  *f = (hdf5_field){.name = c->field, .of = c->of, .id = id, .n_part = 1};
+  *f = (hdf5_field){.name = c->field, .of = of, .id = id, .n_part = 1};
   snprintf(f->group, sizeof f->group, "%s", group);
   f->part[0] = c;
   return OK;
@@ -49,13 +60,15 @@ static status choose_fields(hdf5_file *h) {
     if (c->field == NULL || !column_visible(c, h->m)) continue;
     if (c->of == PER_CONTACT_NODE && h->n_contact_node == 0) continue;
     if (c->of != PER_CONTACT) {
-      PASS(add_field(h, c, group_of(c), 0));
+      PASS(add_field(h, c, c->of, group_of(c), 0));
+      if (h->n_contact_node > 0 && strcmp(c->field, "u") == 0)
+        PASS(add_field(h, c, PER_CONTACT_NODE, "/contact", 0));
       continue;
     }
     for (int i = 0; i < h->m->n_contact; ++i) {
       link_name(name, sizeof name, h->m->contacts[i].name);
       snprintf(group, sizeof group, "/totals/%s", name);
-      PASS(add_field(h, c, group, i));
+      PASS(add_field(h, c, PER_CONTACT, group, i));
     }
   }
   return OK;

@@ -16,8 +16,8 @@ typedef struct hdf5_field {
   char group[200]; /* "/fields", "/contact", "/history", "/totals/NAME"      */
   entity of;
   int id;     /* of the contact for "/totals"                         */
-  int n_part; /* 1 or 3                                               */
-  const column *part[3]; /* NULL: zero                                      */
+  int n_part; /* 1, 3 or 6: xx, xy, xz, yy, yz, zz                     */
+  const column *part[6]; /* NULL: zero                                      */
 } hdf5_field;
 
 typedef struct hdf5_count { /* what has been written                         */
@@ -47,5 +47,9 @@ void hdf5_record_name(char *text, size_t size, int i);
 
 /* JOB.xdmf; written aside and renamed. */
 status xdmf_write(const hdf5_shape *shape, const char *path);
+/* The last record of the body or of the contact alone, the same way; nothing if
+ * there is none. */
+status xdmf_write_last(const hdf5_shape *shape, int of_contact,
+                       const char *path);
 
 #endif

@@ -31,10 +31,12 @@ static double part_value(const hdf5_field *f, const view *v, int id, int k) {
   return value == 0 ? 0.0 : value;
 }
 
-/* A contact node that is not in the surface now has no value. */
+/* A contact node that is not in the surface now moves, but has no other value.
+ */
 static double item_value(const hdf5_file *h, const hdf5_field *f, const view *v,
                          int id, int k) {
-  if (f->of == PER_CONTACT_NODE) id = h->surface_id[id];
+  if (f->of == PER_CONTACT_NODE)
+    id = f->part[0]->of == PER_NODE ? h->contact_node[id] : h->surface_id[id];
   return id < 0 ? NAN : part_value(f, v, id, k);
 }
 

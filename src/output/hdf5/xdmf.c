@@ -3,6 +3,9 @@
  * named without folder. Two temporal collections: the contact surface and the
  * body; the body is the last one, as some readers take that one only. Data
  * items are whole datasets (hyperslabs are not read everywhere).
+ *
+ * JOB.body.xdmf, JOB.contact.xdmf: one grid of the last record, without time,
+ * for readers that take nothing else (meshio.read).
  */
 #include "base/text.h"
 #include "output/hdf5/hdf5.h"
@@ -17,6 +20,7 @@ typedef struct part {
   const char *name, *points, *cells, *topology;
   int n_point, n_cell, corners;
   entity on_points, on_cells; /* fields shown on it; PER_INCREMENT: none     */
+  int alone; /* 1: without time                                              */
 } part;
 
 static void xml_text(FILE *f, const char *text) {
@@ -72,7 +76,10 @@ static void write_field(FILE *f, const char *file, const part *p,
   snprintf(dataset, sizeof dataset, "%s/%s/%c", shown->group, shown->name,
            NAME);
   fprintf(f, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">",
-          shown->name, shown->n_part == 3 ? "Vector" : "Scalar",
+          shown->name,
+          shown->n_part == 3   ? "Vector"
+          : shown->n_part == 6 ? "Tensor6"
+                               : "Scalar",
           on_points ? "Node" : "Cell");
   data_item(f, file, dataset, REAL_TYPE, on_points ? p->n_point : p->n_cell,
             shown->n_part);
@@ -81,10 +88,11 @@ static void write_field(FILE *f, const char *file, const part *p,
 
 static void write_pattern(FILE *f, const char *file, const part *p,
                           const hdf5_shape *s) {
-  fprintf(f,
-          "<Grid Name=\"%s\" GridType=\"Uniform\">\n"
-          "<Time Value=\"%c\"/>\n",
-          p->name, TIME);
+  fprintf(f, "<Grid Name=\"%s\" GridType=\"Uniform\">\n", p->name);
+  if (!p->alone) fprintf(f, "<Time Value=\"%c\"/>\n", TIME);
+  if (!p->alone && p->on_points == PER_CONTACT_NODE)
+    fputs("<Information Name=\"status\" Value=\"0 OPEN, 1 SLIP, 2 STICK\"/>\n",
+          f);
   write_mesh(f, file, p);
   for (int k = 0; k < s->n_field; ++k) {
     entity of = s->fields[k].of;
@@ -139,7 +147,7 @@ static part surface_part(const hdf5_shape *s) {
             "/contact/faces",  s->face_corners == 2 ? "Polyline" : "Triangle",
             s->n_contact_node, s->n_contact_face,
             s->face_corners,   PER_CONTACT_NODE,
-            PER_INCREMENT};
+            PER_INCREMENT,     0};
   if (s->n_contact_face == 0) {
     p.cells = "/contact/index";
     p.topology = "Polyvertex";
@@ -154,8 +162,11 @@ static part body_part(const hdf5_shape *s) {
                 "/mesh/elements", s->corners == 3 ? "Triangle" : "Tetrahedron",
                 s->n_node,        s->n_elem,
                 s->corners,       PER_NODE,
-                PER_ELEMENT};
+                PER_ELEMENT,      0};
 }
+
+static const char head[] =
+    "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n";
 
 typedef struct content {
   const hdf5_shape *shape;
@@ -165,7 +176,7 @@ typedef struct content {
 
 static void write_all(FILE *f, const void *what) {
   const content *c = what;
-  fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n", f);
+  fputs(head, f);
   if (c->surface_text != NULL)
     write_part(f, &c->surface, c->surface_text, c->shape);
   write_part(f, &c->body, c->body_text, c->shape);
@@ -182,5 +193,30 @@ status xdmf_write(const hdf5_shape *shape, const char *path) {
 done:
   free(c.surface_text);
   free(c.body_text);
+  return st;
+}
+
+typedef struct snapshot {
+  const char *text; /* of any record                                         */
+  int record_id;
+} snapshot;
+
+static void write_last(FILE *f, const void *what) {
+  const snapshot *s = what;
+  fputs(head, f);
+  write_record(f, s->text, s->record_id, 0);
+  fputs("</Domain>\n</Xdmf>\n", f);
+}
+
+status xdmf_write_last(const hdf5_shape *shape, int of_contact,
+                       const char *path) {
+  char *text = NULL;
+  part p = of_contact ? surface_part(shape) : body_part(shape);
+  if (shape->n_record == 0 || p.n_point == 0) return OK;
+  p.alone = 1;
+  status st = make_pattern(&p, shape, &text);
+  const snapshot last = {text, shape->n_record - 1};
+  if (st == OK) st = text_replace(path, &last, write_last);
+  free(text);
   return st;
 }
