@@ -1,13 +1,12 @@
 /*
- * How far an answer of the contact solver is from the solution of its problem,
- * and whether it is the only one.
+ * Error of a solution of the contact solver, and uniqueness of the solution.
  */
 #ifndef PROTIS_ACCURACY_ACCURACY_H
 #define PROTIS_ACCURACY_ACCURACY_H
 
 #include "contact/contact.h"
 
-/* The matrix M of a problem (A, or W if A is NULL) seen from its inverse. */
+/* The matrix M of a problem (A, or W if A is NULL) by its inverse. */
 typedef struct inverse_energy {
   void *ctx;
   /* *square = d' inv(M) d, d[m] */
@@ -29,15 +28,15 @@ typedef struct solver_error {
   const char *why; /* NULL, or why there is no bound */
 } solver_error;
 
-/* Rates that have been measured last, and for which states of the unknowns:
- * they are not measured again. All zero: none. */
+/* Rates measured last, with their states of the unknowns, to avoid repeated
+ * measurements. All zero: none. */
 enum { KNOWN_RATES = 2 };
 typedef struct known_rate {
   int m, n;
   signed char *state;       /* [m*KNOWN_RATES] owned; the last used one first */
   double rate[KNOWN_RATES]; /* [n] */
 } known_rate;
-/* A or B have changed: forget them. Accepts NULL. */
+/* A or B have changed: discard them. Accepts NULL. */
 void known_rate_forget(known_rate *k);
 
 /*
@@ -55,25 +54,25 @@ status solver_error_bound(const contact_problem *cp,
 /*
  * Contraction of the fixed point on the sliding limit (CPR98, 2.3) linearised
  * at (u, r), measured in the energy norm; 0 where nothing slides, HUGE_VAL if
- * the sliding body is held by nothing. Stiffness form; known or NULL as above.
+ * nothing holds the sliding body. Stiffness form; known or NULL as above.
  * Errors: ERR_MEMORY.
  */
 status contraction_rate(const contact_problem *cp, const double *u,
                         const double *r, known_rate *known, double *rate);
 
 /*
- * The same map as it contracts in the end, pass after pass, *rate: what a
- * fixed point near (u, r) shows; not above contraction_rate, and no bound.
+ * The asymptotic contraction of the same map, *rate: that of a fixed point near
+ * (u, r); at most contraction_rate, no bound.
  */
 status contraction_limit(const contact_problem *cp, const double *u,
                          const double *r, double *rate);
 
 /*
  * The contact linearised at (u, r), its limit being given (cp->B is not read):
- * what is closed, sticks or slides goes on with that. cp is borrowed.
+ * the states closed, stick and slip persist. cp is borrowed.
  */
 typedef struct linear_contact linear_contact;
-/* *out is NULL if the free unknowns are held by nothing. ERR_MEMORY. */
+/* *out is NULL if nothing holds the free unknowns. ERR_MEMORY. */
 status linear_contact_new(const contact_problem *cp, const double *u,
                           const double *r, linear_contact **out);
 void linear_contact_free(linear_contact *c); /* accepts NULL */
@@ -81,8 +80,8 @@ void linear_contact_free(linear_contact *c); /* accepts NULL */
 void linear_contact_move(linear_contact *c, const double *df, double *du);
 
 /* inverse_energy of a dense matrix M[m*m] by its Cholesky factor, for problems
- * of which nothing else is known. *out is new (dense_inverse_free), NULL if M
- * is not symmetric and positive semidefinite. */
+ * without another inverse. *out is new (dense_inverse_free), NULL if M is not
+ * symmetric and positive semidefinite. */
 typedef struct dense_inverse dense_inverse;
 status dense_inverse_new(int m, const double *M, dense_inverse **out);
 void dense_inverse_free(dense_inverse *d); /* accepts NULL */
@@ -90,28 +89,29 @@ inverse_energy dense_inverse_energy(dense_inverse *d);
 /* N[m*m] = inv(M); *done = 0: M is semidefinite. */
 void dense_inverse_fill(dense_inverse *d, double *N, int *done);
 /* v = inv(M) x; of a semidefinite M the v that leaves n_kernel unknowns at 0,
- * whose force then is what balances x. v[m] may be x. */
+ * whose force then balances x. v[m] may be x. */
 void dense_inverse_solve(dense_inverse *d, const double *x, double *v);
 
-/* ---- for the files of this folder --------------------------------------- */
+/* ---- private to this folder --------------------------------------- */
 
-/* Displacement v and force q of the contact that are partners by its laws. */
+/* Admissible pair: displacement v and force q of the contact related by its
+ * laws. */
 typedef struct pair {
   double *v, *q;         /* [m] m, N */
-  double *d, *t;         /* [m] what misses in the equation; workspace */
+  double *d, *t;         /* [m] defect of the equation; workspace */
   unsigned char *slides; /* [n] |q_t| = g */
 } pair;
 
 status pair_new(int n, int m, pair *p);
 void pair_free(pair *p);
-/* v and q from an answer (u, r) by one step of the natural map. */
+/* v and q from a solution (u, r) by one step of the natural map. */
 void pair_set(const contact_problem *cp, const double *u, const double *r,
               pair *p);
 
 /*
  * Where the stiffness is singular: change q, on the nodes that are closed or
- * stick and with the limit that follows on those that slide, until d is
- * balanced against the motions without energy. *done = 0: not possible with
+ * stick and with the limit that follows on those that slide, until d is in
+ * equilibrium for the motions without energy. *done = 0: not possible with
  * admissible forces. Errors: ERR_MEMORY.
  */
 status pair_balance(const contact_problem *cp, const inverse_energy *inverse,

@@ -2,31 +2,31 @@
  * Error of the solver in the energy norm, from the duality gap.
  *
  * For a given limit g the solution minimises J over the displacements without
- * penetration, and for every admissible pair, v_n <= gap, q_n <= 0,
- * |q_t| <= g, with d = A v - f - q and D the dual functional,
+ * penetration, and for every admissible pair, v_n <= gap, q_n <= 0, |q_t| <= g,
+ * with d = A v - f - q and D the dual functional,
  *
  *   J(v) - D(q) = C(v, q) + 1/2 d' inv(A) d,
  *   C = sum q_n (v_n - gap) + g |v_t - ut0| + q_t (v_t - ut0) >= 0.
  *
- * The pair is made from the answer (u, r) by one step of the natural map,
+ * The pair is made from the solution (u, r) by one step of the natural map,
  *   q = P(r - c (u - reference)),   v = u + (q - r)/c,
- * whose parts are exact partners: C = 0, nothing cancels, and
+ * with C = 0 exactly, and
  *
  *   |v - u*|_A <= |d|_inv(A),   |q - r*|_inv(A) <= |d|_inv(A)
  *
  * as q - r* and v - u* have a product that is not positive. So
  *   |u - u*|_A <= |u - v|_A + |d|_inv(A) + rounding:
- * two products with A and one solve. For Coulomb friction g is frozen at q.
- * The limit then is off by at most |B (q - r*)|, and a contraction with rate k
- * makes of it |v - u*|_A <= |d|_inv(A)/(1 - k).
+ * two products with A and one solve. For Coulomb friction g is frozen at q. The
+ * limit then is off by at most |B (q - r*)|, and a contraction with rate k
+ * gives |v - u*|_A <= |d|_inv(A)/(1 - k).
  *
  * Where contact alone holds a body, A is singular: the forces q are first
- * brought into balance with the load (balance.c), so that d has an energy; the
- * bound is that of the deformation, without the rigid motion.
+ * brought into equilibrium with the load (balance.c), so that d has an energy;
+ * the bound is that of the deformation, without the rigid motion.
  *
- * Compliance form: W, r in the place of A, u; d = v - W q - load. Two answers
- * that satisfy the equation are as far apart in r by W as in u by A, so that
- * the rate is the same.
+ * Compliance form: W, r in the place of A, u; d = v - W q - load. Two states
+ * that satisfy the equation have the same distance in r by W as in u by A, so
+ * that the rate is the same.
  */
 #include "accuracy/accuracy.h"
 
@@ -89,7 +89,7 @@ static void pair_normal(const contact_problem *cp, const double *u,
   }
 }
 
-/* Friction: disc of the limit that q_n brings. */
+/* Friction: disc of the limit of q_n. */
 static void pair_friction(const contact_problem *cp, const double *u,
                           const double *r, pair *p) {
   for (int i = 0; i < cp->n; ++i) {
@@ -118,7 +118,7 @@ void pair_set(const contact_problem *cp, const double *u, const double *r,
   pair_friction(cp, u, r, p);
 }
 
-/* d = M x - load - y, x the unknown that M is multiplied with. */
+/* d = M x - load - y, x the unknown multiplied by M. */
 static void pair_defect(const contact_problem *cp, pair *p) {
   const double *x = cp->A != NULL ? p->v : p->q;
   contact_product(cp->m, matrix_of(cp), x, p->d);
@@ -145,9 +145,9 @@ static double pair_distance(const contact_problem *cp, const double *u,
 static const double NO_PIVOT = 0x1p-44; /* -, of the largest diagonal */
 
 /*
- * Largest |e|_inv(M) of what rounding can have put into d: its rows are sums
- * of m products. x' inv(M) x <= condition * sum x_i^2/M_ii. Of a body that
- * moves without energy M_ii may be rounding itself.
+ * Largest |e|_inv(M) of the rounding of d: its rows are sums of m products. x'
+ * inv(M) x <= condition * sum x_i^2/M_ii. Of a body that moves without energy
+ * M_ii may be rounding itself.
  */
 static double pair_rounding(const contact_problem *cp,
                             const inverse_energy *inverse, pair *p) {
@@ -205,7 +205,7 @@ status solver_error_bound(const contact_problem *cp,
   TRY(find_rate(cp, inverse->stiffness, u, r, known, error));
   if (error->why != NULL) goto done;
   if (inverse->condition > 1.0 / DBL_EPSILON) {
-    no_bound(error, "without contact the body is hardly held");
+    no_bound(error, "without contact the body is weakly held");
     goto done;
   }
   TRY(pair_new(cp->n, cp->m, &p));

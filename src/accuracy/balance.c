@@ -1,9 +1,9 @@
 /*
- * Balance of a body that contact alone holds: its stiffness has motions R
+ * Equilibrium of a body that contact alone holds: its stiffness has motions R
  * without energy, and the energy of d is finite only if R' d = 0. The forces
  * change by dq = Z y, Z = W R with the forces themselves as weights (so that
- * they keep their sign), on sliding nodes by the limit of the new pressure;
- * R' Z y = R' d.
+ * they keep their sign), on sliding nodes by the limit of the new pressure; R'
+ * Z y = R' d.
  */
 #include "accuracy/accuracy.h"
 
@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-/* How far the force of an unknown can change, N; 0: it is given. */
+/* Largest change of the force of an unknown, N; 0: it is given. */
 static double slack(const contact_problem *cp, const pair *p, int dof) {
   int i = dof / cp->dim;
   if (contact_bound(cp, dof) < HUGE_VAL) return -p->q[dof];

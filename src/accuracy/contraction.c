@@ -172,7 +172,7 @@ static void change_limit(linear_map *s, double *dn) {
   }
 }
 
-/* The first change: the limit itself, neighbours not alike. */
+/* The first change: the limit itself, different at neighbours. */
 static void first_change(linear_map *s, const double *r) {
   for (int i = 0; i < s->cp->n; ++i)
     s->dg[i] = s->slip[i] ? contact_node_limit(s->cp, r, i) *
@@ -203,7 +203,7 @@ static status measure(linear_map *s, const double *r, double *rate) {
   return OK;
 }
 
-/* ---- rates that are known ----------------------------------------------- */
+/* ---- stored rates ----------------------------------------------- */
 
 void known_rate_forget(known_rate *k) {
   if (k == NULL) return;
@@ -218,8 +218,8 @@ static signed char state_of(const linear_map *s, int dof) {
   return s->e[dof] > 0.0 ? 3 : 2;
 }
 
-/* The known rate of these states comes first, *same = 1; or they stand in the
- * place of the rate that has not been used for the longest time. */
+/* The known rate of these states comes first, *same = 1; or they replace the
+ * least recently used rate. */
 static status compare(const linear_map *s, known_rate *k, int *same) {
   status st = OK;
   const size_t m = (size_t)s->cp->m;
@@ -246,7 +246,7 @@ done:
   return st;
 }
 
-/* Mean factor of the last passes of many; what they start from is forgotten. */
+/* Mean factor of the last passes of many, independent of the start. */
 static status measure_limit(linear_map *s, const double *r, double *rate) {
   OWNED double *dn = NULL;
   double last, grown = 0.0;

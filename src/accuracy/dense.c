@@ -1,7 +1,7 @@
 /*
  * Inverse of a dense symmetric matrix by Cholesky with pivoting: the matrix is
- * scaled to a unit diagonal; of a semidefinite one the pivots left at the end
- * are the unknowns that, held, take the motions without energy away.
+ * scaled to a unit diagonal; of a semidefinite one the remaining pivots are the
+ * unknowns that, held, remove the motions without energy.
  */
 #include "accuracy/accuracy.h"
 
@@ -60,7 +60,7 @@ static int factor(dense_inverse *d, double *work, int *iwork) {
   return d->condition < 1.0 / 0x1p-50;
 }
 
-/* What L takes to zero, in the unknowns before the scaling. */
+/* Null vectors of L, in the unknowns before the scaling. */
 static status find_kernel(dense_inverse *d) {
   size_t m = (size_t)d->m;
   PASS_NEW(d->kernel, m * (size_t)(d->m - d->rank));

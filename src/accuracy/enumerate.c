@@ -1,15 +1,16 @@
 /*
  * All solutions of a small plane problem: each node is open, sticks, or slides
- * one way or the other (with a limit that does not need pressure, the last
- * three when open too), and each of the 4^n or 6^n combinations is one linear
- * system in the displacements that are free,
+ * in either direction (with a limit that does not need pressure, the last three
+ * when open too), and each of the 4^n or 6^n combinations is one linear system
+ * in the displacements that are free,
  *   open   rho_n = 0                            rho = A u - f
  *   free   rho_t = 0                            no friction
  *   slip   rho_t - s B rho_n + s g0 = 0         s = +1, -1 along the slip
- * followed depth first, so that the elimination of a node serves all that
- * follow it. What passes the signs is solved again with pivoting and judged by
- * contact_residual. A singular system that has solutions has a line of them,
- * cut by the signs: its ends are reported as joined.
+ * followed depth first, so that the elimination of a node is shared by all that
+ * follow it. States that satisfy the inequalities are solved again with
+ * pivoting and checked by contact_residual. A singular system that has
+ * solutions has a line of them, bounded by the inequalities: its ends are
+ * reported as joined.
  */
 #include "accuracy/accuracy.h"
 #include "accuracy/solutions.h"
@@ -44,7 +45,7 @@ typedef struct search {
   const contact_problem *cp;
   double tol, force; /* -; scale, N */
   solution_set *out;
-  double base[ROWS], rho0[ROWS]; /* u and rho with nothing free */
+  double base[ROWS], rho0[ROWS]; /* u and rho without free unknowns */
   label now[ENUMERATED_NODES];
   /* Rows eliminated so far, right side last, and their pivots. */
   int n_row, weak;
@@ -125,7 +126,7 @@ static double linear_limit(const search *s, const double *rho, double given,
 }
 
 enum { CONDITIONS = 2 };
-/* What must not be positive at node i, N; linear in (x, given). */
+/* The inequalities at node i, <= 0, N; linear in (x, given). */
 static void conditions(const search *s, int i, const double *x,
                        const double *rho, double given, double *c) {
   label l = s->now[i];
@@ -154,7 +155,7 @@ static int signs_hold(const search *s, const double *x) {
 
 /* ---- solutions ---------------------------------------------------------- */
 
-/* u and r of x, with what the labels say put in exactly. */
+/* u and r of x, with the conditions of the labels enforced exactly. */
 static void state_of(const search *s, const double *x, double *u, double *r) {
   for (int i = 0; i < s->cp->m; ++i) u[i] = s->base[i] + x[i];
   forces(s, x, 1.0, r);
@@ -239,7 +240,8 @@ static status take_line(search *s, const double *x, const double *v) {
 }
 
 /* Singular values of K[n*n] (destroyed), rank by a scale of K; x: least squares
- * solution of K x = b, v: last right vector; *rest: part of b out of reach. */
+ * solution of K x = b, v: last right vector; *rest: part of b outside the
+ * range. */
 static int decompose(int n, double *K, const double *b, double scale, double *x,
                      double *v, double *rest) {
   double S[ROWS], U[ROWS * ROWS], V[ROWS * ROWS], work[SVD_WORK];

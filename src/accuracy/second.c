@@ -1,7 +1,7 @@
 /*
- * Solutions by several solvers: one of each family, from starts that lie apart:
- * sticking, all open, and sliding one way and the other. Where friction leaves
- * room for several states, methods and starts differ in the one they reach.
+ * Solutions by several solvers: one of each family, from different starts:
+ * sticking, all open, and sliding in both directions. Where friction allows
+ * several states, methods and starts converge to different ones.
  */
 #include "accuracy/solutions.h"
 
@@ -19,7 +19,7 @@ typedef enum { STICKING, OPEN_START, SLIDING, SLIDING_BACK, N_START } start;
 static const char *const start_text[] = {
     "sticking", "all open", "sliding along t", "sliding against t"};
 
-/* Displacement of the size that the forces of the problem can make, m. */
+/* Displacement of the size that the forces of the problem cause, m. */
 static double reach(const contact_problem *cp) {
   double least = HUGE_VAL, scale = contact_scale(cp);
   if (cp->A == NULL) return FAR * scale;
@@ -29,7 +29,7 @@ static double reach(const contact_problem *cp) {
 }
 
 /* +1, -1, 0: how a start slides along t1. */
-static double way_of(start kind) {
+static double direction_of(start kind) {
   return kind == SLIDING ? 1.0 : kind == SLIDING_BACK ? -1.0 : 0.0;
 }
 
@@ -45,13 +45,13 @@ static void set_start(const contact_problem *cp, start kind, double *u,
       u[first + 1 + k] = cp->ut0 == NULL ? 0.0 : cp->ut0[i * (cp->dim - 1) + k];
       r[first + 1 + k] = 0.0;
     }
-    if (cp->dim > 1) u[first + 1] += way_of(kind) * far;
+    if (cp->dim > 1) u[first + 1] += direction_of(kind) * far;
   }
   for (int i = 0; i < cp->n && cp->dim > 1; ++i)
-    r[i * cp->dim + 1] = -way_of(kind) * contact_node_limit(cp, r, i);
+    r[i * cp->dim + 1] = -direction_of(kind) * contact_node_limit(cp, r, i);
 }
 
-/* Room for one start and its answer. */
+/* Workspace for one start and its solution. */
 typedef struct trial {
   double *u, *r; /* [m] */
 } trial;
@@ -82,7 +82,7 @@ static int can_solve(const contact_problem *cp, const solver_ops *ops) {
   return cp->dim == 2 || (ops->handles & SOLVES_3D) != 0;
 }
 
-/* 1: row i stands for its family: no row before it of the same kind can. */
+/* 1: row i represents its family: no row before it of the same kind can. */
 static int is_chosen(const contact_problem *cp, int i) {
   const solver_ops *ops = solver_list[i];
   for (int k = 0; k < i; ++k)

@@ -18,7 +18,7 @@
 #include <math.h>
 
 static const double FINEST = 0.25, COARSEST = 2.0; /* -, in one pass */
-/* Within reach of the target the errors tell all sizes of the last mesh. */
+/* Near the target the errors determine all sizes of the last mesh. */
 static const double REACH = 8.0, FINEST_LAST = 0.1; /* - */
 static const double GROWTH = 0.4; /* -, change of the size over a distance */
 enum { SWEEPS = 20 };
@@ -43,7 +43,7 @@ static double finest(const mesh *m, const double *eta, double target) {
   return sqrt(sum) <= REACH * target ? FINEST_LAST : FINEST;
 }
 
-/* The smallest size the elements round a node ask for. */
+/* The smallest size required by the elements round a node. */
 static void sizes_at_nodes(const mesh *m, const double *eta, double target,
                            double *size) {
   double c = common_factor(m, eta, target), least = finest(m, eta, target);

@@ -1,4 +1,4 @@
-/* The set of solutions found: kept apart by their distance in energy. */
+/* The set of solutions found, distinguished by their distance in energy. */
 #include "accuracy/solutions.h"
 
 #include "base/memory.h"

@@ -14,7 +14,7 @@ typedef struct solution_facts {
   int n_open, n_slip, n_stick;
   /* u_n, u_t1 over the nodes, m */
   double lowest[2], highest[2];
-  int patterns; /* attempts or status combinations that led to it */
+  int patterns; /* attempts or status combinations that found it */
   int joined;   /* number (from 1) of another solution: all states between the
                    two are solutions as well; 0: none */
 } solution_facts;
@@ -45,8 +45,8 @@ typedef struct solution_set {
                                  extent */
 } solution_set;
 
-/* 1: what found the first solution is not all that did: a solver of another
- * family, or the enumeration. */
+/* 1: found by more than the first method: by a solver of another family, or the
+ * enumeration. */
 int solution_set_confirmed(const solution_set *s);
 void solution_set_free(solution_set *s); /* accepts NULL, all zero */
 /*
@@ -57,8 +57,8 @@ status solution_set_add(const contact_problem *cp, double tol, const double *u,
                         const double *r, solution_set *s, int *no);
 
 /*
- * second.c: solvers of other families, each from several starts, beside the
- * answer (u, r) of "report". Any form of problem. Errors: ERR_MEMORY.
+ * second.c: solvers of other families, each from several starts, in addition to
+ * the solution (u, r) of "report". Any form of problem. Errors: ERR_MEMORY.
  */
 status solutions_by_solvers(const contact_problem *cp, double tol,
                             const solver_report *report, const double *u,
@@ -67,7 +67,7 @@ status solutions_by_solvers(const contact_problem *cp, double tol,
 enum { ENUMERATED_NODES = 10 };
 /*
  * enumerate.c: all status combinations of a problem in 2-D with at most
- * ENUMERATED_NODES nodes; (u, r) is the answer of the run. ERR_DECK, with the
+ * ENUMERATED_NODES nodes; (u, r) is the solution of the run. ERR_DECK, with the
  * reason in the record: the problem is larger or of another kind.
  */
 status solutions_by_statuses(const contact_problem *cp, double tol,

@@ -29,7 +29,7 @@ struct space_recovery {
   int *patch, *stamp; /* [n_elem] elements of a patch; mark of the last patch */
   int *seen;          /* [n_node] mark of the last patch */
   int last;           /* mark */
-  double *recovered;  /* [ns*n_node] of the region at work, Pa */
+  double *recovered;  /* [ns*n_node] of the current region, Pa */
 };
 
 /* ---- set-up -------------------------------------------------------------- */
@@ -209,7 +209,7 @@ static void normal_equations(const space_recovery *s, int node, int n,
 }
 
 /* L[p*p] = G = L L', p <= MAX_BASIS; 1 if the points of the fit span the space.
- * So small a matrix costs a library more than its arithmetic. */
+ * For so small a matrix a library call costs more than the arithmetic. */
 static int factor(int p, const double *G, double *L) {
   for (int j = 0; j < p; ++j)
     for (int i = j; i < p; ++i) {
@@ -281,7 +281,7 @@ static double element_error(const space_recovery *s, int elem_id,
   return element_weight(s->d, elem_id) / (vertices * (vertices + 1)) * sum;
 }
 
-/* Squares of error and norm of one region added to out; eta as asked for. */
+/* Squares of error and norm of one region added to out; eta or NULL. */
 static void add_region(space_recovery *s, int region, const double *sigma,
                        double *eta, space_error *out) {
   const domain *d = s->d;

@@ -1,17 +1,17 @@
 /*
  * Error of the mesh, estimated from recovered stresses: the stress of P1
  * elements jumps from element to element, a polynomial fitted to it round each
- * node does not; what separates the two measures the error of the elements in
- * the energy norm (Zienkiewicz, Zhu 1992, Int. J. Num. Meth. Eng. 33, 1331-1364
- * and 1365-1382). Fits stay on one side of an interface between materials,
- * where the stress of the solution jumps itself.
+ * node does not; their difference measures the error of the elements in the
+ * energy norm (Zienkiewicz, Zhu 1992, Int. J. Num. Meth. Eng. 33, 1331-1364 and
+ * 1365-1382). Fits stay on one side of an interface between materials, where
+ * the stress of the solution jumps itself.
  */
 #ifndef PROTIS_ACCURACY_SPACE_H
 #define PROTIS_ACCURACY_SPACE_H
 
 #include "fem/fem.h"
 
-typedef struct space_recovery space_recovery; /* what belongs to the mesh */
+typedef struct space_recovery space_recovery; /* data of the mesh */
 
 /* Energy norms, sqrt(J): |v|^2 = integral of sigma' inv(E) sigma. */
 typedef struct space_error {

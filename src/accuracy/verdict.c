@@ -1,4 +1,4 @@
-/* Reasons for a missing equilibrium (verdict.h). */
+/* Reasons for a failed increment (verdict.h). */
 #include "accuracy/verdict.h"
 
 #include "accuracy/accuracy.h"
@@ -75,13 +75,13 @@ status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
   TRY(pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
   for (int dof = 0; dof < cp->m; ++dof) {
-    double miss = fabs(p.q[dof] - r[dof]);
-    value[dof / cp->dim] = fmax(value[dof / cp->dim], miss);
-    if (isnan(miss)) goto done;
-    most = fmax(most, miss);
+    double defect = fabs(p.q[dof] - r[dof]);
+    value[dof / cp->dim] = fmax(value[dof / cp->dim], defect);
+    if (isnan(defect)) goto done;
+    most = fmax(most, defect);
   }
   if (!(most > MISFIT * scale)) goto done;
-  add(&w, "the contact conditions are missed most at");
+  add(&w, "the contact conditions are violated most at");
   add_nodes(&w, surface, value);
 done:
   pair_free(&p);
@@ -89,7 +89,7 @@ done:
   return st;
 }
 
-/* ---- motion that nothing resists ---------------------------------------- */
+/* ---- motion without resistance ---------------------------------------- */
 
 /* v[m]: the motion; *outcome of complementary pivoting. */
 static status find_motion(const contact_problem *cp, double *v, outcome *end) {
@@ -203,7 +203,7 @@ static status add_loads(const words *w, const verdict_scene *s, const double *u,
   return OK;
 }
 
-/* The whole body follows the contact nodes without load. */
+/* The rigid motion of the body by the contact nodes, without load. */
 static status add_drive(const words *w, const verdict_scene *s,
                         const double *v) {
   size_t n = (size_t)s->msh->dim * (size_t)s->msh->n_node;

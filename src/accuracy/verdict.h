@@ -1,7 +1,7 @@
 /*
  * Why there is no equilibrium, in words: the contact nodes that move away and
  * the loads that drive them, or the nodes where the contact conditions are
- * missed most.
+ * violated most.
  */
 #ifndef PROTIS_ACCURACY_VERDICT_H
 #define PROTIS_ACCURACY_VERDICT_H
@@ -17,18 +17,18 @@ typedef struct verdict_scene {
   double t; /* s */
   const contact_surface *surface;
   const contact_problem *cp; /* with A */
-  const double *u, *r;       /* [m] what the solver left */
+  const double *u, *r;       /* [m] last iterate of the solver */
   condensed *c;              /* the load condensed last is lost */
 } verdict_scene;
 
 /*
- * A clause about the problem that has not been solved, "" if nothing is known.
- * A motion that nothing resists is looked for by complementary pivoting, up to
- * 2000 contact nodes. Errors: ERR_MEMORY.
+ * A clause about the unsolved problem, "" if nothing is known. A motion without
+ * resistance is searched by complementary pivoting, up to 2000 contact nodes.
+ * Errors: ERR_MEMORY.
  */
 status verdict_text(const verdict_scene *s, char *text, size_t size);
-/* The nodes where the conditions are missed most, as such a clause; "" if the
- * numbers do not tell. */
+/* The nodes where the conditions are violated most, as such a clause; "" if
+ * unknown. */
 status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
                       const double *u, const double *r, char *text,
                       size_t size);

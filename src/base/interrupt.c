@@ -15,8 +15,9 @@ static const struct {
   int signal_no;
   status code;
   const char *name;
-  int urgent; /* 1: the second such one ends the process; the others are sent
-                 again and again, or together */
+  /* 1: the second such signal ends the process; the others are sent repeatedly,
+   * or together */
+  int urgent;
 } requests[] = {
     {SIGINT,  ERR_INTERRUPTED, "SIGINT",  1},
     {SIGTERM, ERR_TERMINATED,  "SIGTERM", 1},
@@ -51,7 +52,7 @@ void interrupt_spare_writes(void) {
   sigaction(SIGPIPE, &ignore, NULL);
 }
 
-/* 1: something but a folder is there; 0: nothing is; -1: not known. */
+/* 1: the file exists and is no folder; 0: nothing exists; -1: not known. */
 static int look_at(const char *path, struct stat *about) {
   int error_no = lstat(path, about) == 0 ? 0 : errno;
   if (error_no == 0 && !S_ISDIR(about->st_mode)) return 1;
@@ -59,7 +60,7 @@ static int look_at(const char *path, struct stat *about) {
   return error_no == 0 || error_no == ENOENT ? 0 : -1;
 }
 
-/* Under nohup a hangup is no request. */
+/* Under nohup a hangup is not a request. */
 static void catch (int row) {
   struct sigaction act = {.sa_handler = note, .sa_flags = SA_RESTART}, old;
   sigemptyset(&act.sa_mask);
@@ -78,7 +79,7 @@ void interrupt_catch(const char *stop_file) {
   for (int row = 0; row < REQUESTS; ++row) catch (row);
 }
 
-/* 1: the file is another one than at the start, or was touched. */
+/* 1: the file differs from the one at the start, or was touched. */
 static int is_made_to_stop(void) {
   struct stat now;
   if (!known_before) {
@@ -110,7 +111,7 @@ const char *interrupt_name(void) {
   return file_seen ? file : "";
 }
 
-/* ---- ends that nobody chose -------------------------------------------- */
+/* ---- ends by a fault -------------------------------------------- */
 
 static void say(const char *text) {
   ssize_t ignored = write(STDERR_FILENO, text, strlen(text));
@@ -148,7 +149,7 @@ static void on_exit_of_library(void) {
   _exit(status_exit_code(ERR_MEMORY));
 }
 
-/* A sanitizer tells more of a crash. */
+/* A sanitizer reports more about a crash. */
 #ifdef __SANITIZE_ADDRESS__
 enum { CATCHES_SIGNALS = 0 };
 #else

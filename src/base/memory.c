@@ -57,7 +57,7 @@ char *memory_text(const char *text) {
   return copy;
 }
 
-/* Bytes asked for with this block. */
+/* Bytes requested for this block. */
 static size_t memory_size(const void *p) {
   size_t bytes;
   memcpy(&bytes, (const char *)p - HEADER, sizeof bytes);
@@ -110,7 +110,7 @@ double memory_left(void) {
   return in_use < most ? (double)(most - in_use) : 0.0;
 }
 
-status memory_foresee(double bytes, const char *what) {
+status memory_require(double bytes, const char *what) {
   const double mega = 1e6;
   if (bytes > memory_left())
     RAISE(ERR_MEMORY,

@@ -42,7 +42,8 @@
   } while (0)
 
 void *memory_new(size_t n, size_t size); /* zeroed; NULL if refused */
-/* New place for old_n items, the rest zeroed; on NULL the old one is kept. */
+/* Reallocate old_n items, the rest zeroed; on NULL the old block stays
+ * valid. */
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size);
 char *memory_text(const char *text); /* copy of a string; NULL if refused */
 void memory_free(void *p);           /* accepts NULL */
@@ -62,19 +63,19 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 void memory_count_suitesparse(void);
 
 size_t memory_in_use(void);    /* bytes now held */
-size_t memory_peak(void);      /* the most held at a time */
-size_t memory_allocated(void); /* bytes asked for since the start */
+size_t memory_peak(void);      /* largest number held at a time */
+size_t memory_allocated(void); /* bytes requested since the start */
 long memory_requests(void);    /* requests since the start */
-/* Bytes that may be held at a time; what would be more is refused. who: whose
- * limit that is, for messages (a literal). SIZE_MAX: no limit, as at first. */
+/* Bytes that may be held at a time; more is refused. who: source of the limit,
+ * for messages (a literal). SIZE_MAX: no limit, as at first. */
 void memory_limit(size_t bytes, const char *who);
 double memory_left(void); /* bytes; INFINITY without limit */
 const char *memory_limit_of(void);
-/* ERR_MEMORY with what to do if so many bytes more are above the limit: asked
+/* ERR_MEMORY, with advice, if so many bytes more exceed the limit: called
  * before a lot of work. what: "the run", ... */
-status memory_foresee(double bytes, const char *what);
-/* Refuse request number k (1 = the next) and, if "all", every later one.
- * k = 0 switches it off. For tests of the way back from a refusal. */
+status memory_require(double bytes, const char *what);
+/* Refuse request number k (1 = the next) and, if "all", every later one. k = 0
+ * switches it off. For tests of the recovery from a refusal. */
 void memory_refuse(long k, int all);
 
 #endif

@@ -1,6 +1,6 @@
 /*
- * The message log: messages are kept with copies of their places and printed
- * in the order of the input. A limited number of each severity is kept.
+ * The message log: messages are stored with copies of their places and printed
+ * in the order of the input. A limited number of each severity is stored.
  */
 #include "base/message.h"
 
@@ -12,7 +12,7 @@
 #include <string.h>
 
 enum {
-  KEPT = 100,       /* messages kept of each severity */
+  KEPT = 100,       /* messages stored of each severity */
   TEXT_SIZE = 1024, /* longest text of one message */
   SHOWN = 120       /* most characters of a source line */
 };
@@ -28,7 +28,7 @@ typedef struct message {
 struct message_log {
   int n, capacity;
   message *items;
-  int count[3]; /* by severity, those not kept included */
+  int count[3]; /* by severity, those not stored included */
   int n_file, file_capacity;
   char **files; /* outermost files in the order of their first message */
   int no_memory;
@@ -60,13 +60,13 @@ static size_t text_bytes(const char *text) {
   return text != NULL ? strlen(text) + 1 : 0;
 }
 
-/* Copy a text to *room and move on behind it. */
-static const char *put_text(const char *text, char **room) {
+/* Copy a text to *end, which moves past it. */
+static const char *put_text(const char *text, char **end) {
   size_t bytes = text_bytes(text);
-  char *copy = *room;
+  char *copy = *end;
   if (text == NULL) return NULL;
   memcpy(copy, text, bytes);
-  *room += bytes;
+  *end += bytes;
   return copy;
 }
 
@@ -81,11 +81,11 @@ static place *place_copy(const place *at) {
     bytes += sizeof *p + text_bytes(p->file) + text_bytes(line_of(p));
   place *copy = memory_new(1, bytes);
   if (copy == NULL) return NULL;
-  char *room = (char *)(copy + n);
+  char *end = (char *)(copy + n);
   for (size_t i = 0; i < n; ++i, at = at->from) {
     copy[i] = *at;
-    copy[i].file = put_text(at->file, &room);
-    copy[i].line = put_text(line_of(at), &room);
+    copy[i].file = put_text(at->file, &end);
+    copy[i].line = put_text(line_of(at), &end);
     copy[i].from = i + 1 < n ? &copy[i + 1] : NULL;
   }
   return copy;
@@ -154,7 +154,7 @@ static int is_there(const message_log *log, const message *m, const place *at,
   return 0;
 }
 
-/* The text that is shown; of a hidden file only what kind of message it is. */
+/* The text that is shown; of a hidden file only the kind of message. */
 static void make_text(const manual_entry *entry, const place *at,
                       const char *format, va_list args, char out[TEXT_SIZE]) {
   char text[TEXT_SIZE];
@@ -233,10 +233,10 @@ static int compare_messages(const void *x, const void *y) {
   int order = compare_places(a->at, b->at);
   if (order != 0) return order;
   if (a->level != b->level) return a->level > b->level ? -1 : 1;
-  return a < b ? -1 : a > b; /* in the order of their coming */
+  return a < b ? -1 : a > b; /* in the order in which they were added */
 }
 
-/* Messages in order into sorted[]; without memory as they came. */
+/* Messages in order into sorted[]; without memory as they were added. */
 static const message **sorted_messages(const message_log *log) {
   const message **sorted = memory_new((size_t)log->n, sizeof *sorted);
   if (sorted == NULL) return NULL;
@@ -256,7 +256,8 @@ static void print_place(const place *at, FILE *out) {
 
 static int is_continuation_byte(char c) { return ((unsigned char)c >> 6) == 2; }
 
-/* Part of a long line that holds the column: first byte and one past the last.
+/* Part of a long line that contains the column: first byte and one past the
+ * last.
  */
 static void visible_part(const char *line, int column, int *first, int *last) {
   int length = (int)strlen(line);
@@ -328,7 +329,7 @@ static void print_totals(const message_log *log, const message *first,
   if (warnings > 0)
     print_count(warnings, "warning", errors > 0 ? ", " : "", out);
   if (errors > 0 && first != NULL)
-    fprintf(out, "; protis --explain P%04d tells what to do", (int)first->id);
+    fprintf(out, "; protis --explain P%04d says what to do", (int)first->id);
   if (errors + warnings > 0) fputc('\n', out);
 }
 

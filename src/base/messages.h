@@ -1,6 +1,6 @@
 /*
- * Every message about the input: number, severity, title, and what to do.
- * The numbers never change their meaning; see message.h for the ranges.
+ * Every message about the input: number, severity, title and advice. The
+ * numbers never change their meaning; see message.h for the ranges.
  */
 #ifndef PROTIS_BASE_MESSAGES_H
 #define PROTIS_BASE_MESSAGES_H
@@ -40,7 +40,7 @@
     "in quotes.")                                                            \
   X(1011, ERROR, "quote not closed",                                         \
     "A value in quotes ends with a quote on the same line.")                 \
-  X(1012, ERROR, "text beside a quoted value",                               \
+  X(1012, ERROR, "text next to a quoted value",                              \
     "A quote encloses the whole value, from comma to comma.")                \
   X(1013, ERROR, "NUL byte in the file",                                     \
     "The file is not plain text, or is stored as UTF-16. Save it as "        \
@@ -55,8 +55,8 @@
     "A card that ends in a comma goes on in the next line. Remove the "      \
     "comma or write the parameter.")                                         \
   X(1017, ERROR, "file includes itself",                                     \
-    "Directly or through other files an *INCLUDE leads back to a file "      \
-    "that is still being read. Break the circle.")                           \
+    "Directly or through other files an *INCLUDE names a file that is still "  \
+    "being read. Remove the circular include.")                              \
   X(1018, ERROR, "too many includes",                                        \
     "Files may include each other 16 deep, and a deck may have 1000 "        \
     "includes in all.")                                                      \
@@ -104,7 +104,7 @@
     "the card.")                                                             \
   X(1034, WARNING, "name of a variable",                                     \
     "x, y, z, t and pi have a meaning of their own in expressions. The "     \
-    "value can be had as <NAME> only; a longer name avoids the doubt.")      \
+    "value can be had as <NAME> only; a longer name avoids the ambiguity.")  \
   X(1035, ERROR, "comment inside a definition",                              \
     "** starts a comment. A power is written with ^.")                       \
   X(1036, ERROR, "exponent after a name",                                    \
@@ -139,8 +139,7 @@
   X(2011, ERROR, "defined twice",                                            \
     "Names are unique within their kind of card, whatever their case.")      \
   X(2012, ERROR, "name not defined",                                         \
-    "Define it with the card named in the message, or mend the "             \
-    "spelling.")                                                             \
+    "Define it with the card named in the message, or correct the spelling.")  \
   X(2013, ERROR, "elastic constants not valid",                              \
     "The elasticity must be symmetric and positive definite (CPR98 "         \
     "2.2): for ISO E > 0 and -1 < nu < 0.5.")                                \
@@ -183,16 +182,16 @@
     "One *FRICTION card for each contact.")                                  \
   X(2033, ERROR, "dependence not possible here",                             \
     "The message says on what the value may depend.")                        \
-  X(2034, ERROR, "card has no place beside *CONDENSED PROBLEM",              \
-    "The file holds the whole problem. Beside it stand only *HEADING, "      \
+  X(2034, ERROR, "card not allowed with *CONDENSED PROBLEM",                 \
+    "The file holds the whole problem. Allowed with it are only *HEADING, "  \
     "*UNITS, *PARAMETER, *INCLUDE and one step with *STATIC, *SOLVER, "      \
     "*PRINT, CONTACT and *OUTPUT, CONDENSED=FCLIB.")                         \
   X(2035, ERROR, "pressure inside a body",                                   \
     "A pressure acts on the boundary: a face with elements on both sides "   \
     "has no outside. TX, TY and TZ may act there.")                          \
   X(2036, WARNING, "defined but never used",                                 \
-    "Nothing refers to the name. Is the reference missing, or is another "   \
-    "name meant there?")                                                     \
+    "Nothing refers to the name. Is the reference missing, or another name " \
+    "meant?")                                                                \
   X(2037, WARNING, "without effect here",                                    \
     "The parameter or value is read, but changes nothing. Remove it, or "    \
     "check whether another one is meant.")                                   \
@@ -202,16 +201,16 @@
   X(2039, ERROR, "negative radius",                                          \
     "x is the radius of an axisymmetric model: the mesh must lie at "        \
     "x >= 0, with the axis at x = 0.")                                       \
-  X(2040, WARNING, "said twice in one step",                                 \
+  X(2040, WARNING, "given twice in one step",                                \
     "A later line of the same step gives the same load or support on the "   \
     "same group another value; the later line counts.")                      \
   X(2041, ERROR, "value at a node that is no number",                        \
     "An expression divides by zero there, takes the root or logarithm of "   \
     "a negative number, or overflows; or a friction value is negative.")     \
   X(2042, ERROR, "name that nothing uses",                                   \
-    "A *PARAMETER or -D NAME=VALUE that neither the deck nor its .geo uses "  \
-    "changes nothing: check the spelling. In a .geo upper and lower case "    \
-    "count; what is not needed is removed.")                                  \
+    "A *PARAMETER or -D NAME=VALUE that neither the deck nor its .geo uses " \
+    "changes nothing: check the spelling. In a .geo upper and lower case "   \
+    "count; what is not needed is removed.")                                 \
   X(2043, ERROR, "obstacle cannot turn this way",                            \
     "In plane models ROTATE, x, y, angle turns about the point (x, y); "     \
     "torsion about an axis of symmetry needs a model in three dimensions.")  \
@@ -220,13 +219,13 @@
     "obstacles - run in total time. Write TIME=TOTAL TIME on the "           \
     "*AMPLITUDE to say so.")                                                 \
   X(2045, ERROR, "friction law that does not fit the model",                 \
-    "The message names the option. protis --list friction tells what each "  \
-    "is for.")                                                               \
+    "The message names the option. protis --list friction says what each is "  \
+    "for.")                                                                  \
   X(2046, ERROR, "inelastic law not valid",                                  \
     "The coefficients do not fit each other or *ELASTIC. protis --list "     \
     "materials shows every law with its fields.")                            \
   X(2047, NOTE, "long-term moduli",                                          \
-    "Beside *VISCOELASTIC the constants of *ELASTIC are those after all "    \
+    "With *VISCOELASTIC the constants of *ELASTIC are those after all "      \
     "terms have relaxed, as in Abaqus. *ELASTIC, MODULI=INSTANTANEOUS "      \
     "makes them those at once.")                                             \
   X(2048, WARNING, "inelastic law that never flows",                         \
@@ -247,26 +246,26 @@
     "Displacements are small: contact acts along the normals of time 0. "    \
     "Start from the tilted plane, or turn it in its own plane.")             \
   X(2053, ERROR, "nodal field not valid",                                    \
-    "FILE= of *TEMPERATURE names a .msh with $NodeData of one component, or "\
-    "HDF5 with /node_no and /temperature, with a value for each node of the "\
+    "FILE= of *TEMPERATURE names a .msh with $NodeData of one component, or "  \
+    "HDF5 with /node_no and /temperature, with a value for each node of the "  \
     "mesh by its number in the mesh file.")                                  \
   X(2054, ERROR, "law without an exact step",                                \
     "INTEGRATOR=EXPONENTIAL needs linear laws whose coefficients do not "    \
-    "depend on time or temperature. Take MIDPOINT or BACKWARD.")              \
+    "depend on time or temperature. Take MIDPOINT or BACKWARD.")             \
   X(2055, WARNING, "nearly incompressible",                                  \
     "Linear triangles and tetrahedra are too stiff where nu is near 1/2. "   \
     "The figures are those of a tube under pressure on an unstructured "     \
     "mesh; pressures suffer far more than displacements. "                   \
-    "FORMULATION=AVERAGED of *SOLID SECTION does not lock.")                \
+    "FORMULATION=AVERAGED of *SOLID SECTION does not lock.")                 \
   X(2056, ERROR, "closed form not complete",                                 \
     "*REFERENCE compares whole fields: give all components of the "          \
-    "displacement, or of the stress (0 where there is none), or neither.")  \
+    "displacement, or of the stress (0 where there is none), or neither.")   \
   X(2057, ERROR, "times of tables not valid",                                \
-    "*TIME POINTS lists times that ascend; with GENERATE each line has the "  \
-    "first time, the last one and an interval above zero.")                   \
-  X(2058, WARNING, "said without effect",                                    \
-    "What the card says changes nothing here. Heat works through "           \
-    "*EXPANSION, *TRS or moduli over temperature; z varies in 3-D only (the " \
+    "*TIME POINTS lists times that ascend; with GENERATE each line has the " \
+    "first time, the last one and an interval above zero.")                  \
+  X(2058, WARNING, "given without effect",                                   \
+    "What the card gives changes nothing here. Heat works through "          \
+    "*EXPANSION, *TRS or moduli over temperature; z varies in 3-D only (the "  \
     "axis of an axisymmetric model is y); times are counted from the start " \
     "of a step unless TIME=TOTAL TIME.")                                     \
   X(2059, WARNING, "displacement off the axis of symmetry",                  \
@@ -294,8 +293,8 @@
   X(3006, ERROR, "damaged .msh file",                                        \
     "The message names file and line, or byte. Formats 2.2 and 4.1 of gmsh " \
     "are read, ASCII and binary, exactly as they are defined: counts, "      \
-    "numbers and ends of sections. Write the file again; another program's " \
-    "file is put right by gmsh: gmsh -save -o new.msh old.msh.")             \
+    "numbers and ends of sections. Write the file again; a file of another " \
+    "program is converted by gmsh: gmsh -save -o new.msh old.msh.")          \
   X(3010, ERROR, "mesh without physical groups",                             \
     "Name the parts in the .geo: Physical Surface(\"BODY\") = {1}; "         \
     "(3-D: Physical Volume) for what is solid, Physical "                    \
@@ -348,14 +347,14 @@
   X(3030, ERROR, "face of a group that bounds no element",                   \
     "The curves (2-D) or surfaces (3-D) of a group are sides of "            \
     "elements of the mesh. Remove construction lines from the group, "       \
-    "or add the surface or volume beside it to a group.")                    \
+    "or add the adjacent surface or volume to a group.")                     \
   X(3031, NOTE, "faces listed twice",                                        \
     "They count once. Version 2.2 of the format lists a face once for "      \
     "each of its groups; version 4.1 does not.")                             \
   X(3032, ERROR, "two elements on one side of a face",                       \
     "Elements overlap there: the same surface or volume is there "           \
     "twice, parts are merged that intersect, or a node was moved through "   \
-    "the sides of its elements. Remesh there, or remove one of the parts.") \
+    "the sides of its elements. Remesh there, or remove one of the parts.")  \
   X(3033, ERROR, "node of a group that is in no element",                    \
     "The points and curves of a group carry nodes of elements. Remove "      \
     "construction points from the group; a point inside a body needs "       \
@@ -377,11 +376,11 @@
     "(OpenCASCADE) or Coherence Mesh; to the .geo.")                         \
   X(3043, WARNING, "bodies that overlap",                                    \
     "Two bodies fill the same place. Bodies do not touch each other in "     \
-    "the computation: each answers as if it were alone.")
+    "the computation: each is computed as if it were alone.")
 
 #define MESSAGE_LIST_CONTACT(X)                                              \
   X(4001, ERROR, "contact group is not made of boundary faces",              \
-    "GROUP= of *CONTACT names curves (2-D) or surfaces (3-D) on the boundary "\
+    "GROUP= of *CONTACT names curves (2-D) or surfaces (3-D) on the boundary " \
     "of a body, with an element on one side only.")                          \
   X(4002, WARNING, "contact nodes fixed in the normal direction",            \
     "*BOUNDARY already prescribes the motion towards the obstacle: these "   \
@@ -397,7 +396,7 @@
     "friction; the other nodes of the contact keep their law.")              \
   X(4006, ERROR, "contacts of one node are not independent",                 \
     "The normals of the contacts that share a node must differ in "          \
-    "direction. Give both contacts the same obstacle, or part their groups.")\
+    "direction. Give both contacts the same obstacle, or part their groups.")  \
   X(4007, ERROR, "gap is not a number",                                      \
     "The expression of the gap or of the motion of the obstacle must have "  \
     "a value at every contact node at the start.")                           \
@@ -405,13 +404,13 @@
     "The faces around the node cancel, as at the tip of a fin without "      \
     "thickness. Leave them out of the contact group.")                       \
   X(4009, ERROR, "sphere off the axis of symmetry",                          \
-    "In an axisymmetric model the centre of a sphere is on the axis, r = 0.")\
+    "In an axisymmetric model the centre of a sphere is on the axis, r = 0.")  \
   X(4010, ERROR, "contact without a node",                                   \
     "The body cannot touch the obstacle: check the group, where the "        \
     "obstacle is, that the normal of a plane points towards the body, and "  \
     "whether the body is inside or outside of a cylinder or sphere.")        \
   X(4011, ERROR, "body free to move",                                        \
-    "Neither *BOUNDARY nor contact holds the body against the motion named; "\
+    "Neither *BOUNDARY nor contact holds the body against the motion named; "  \
     "a contact without friction does not hold it along the obstacle. Add "   \
     "a support, or friction.")                                               \
   X(4012, ERROR, "given force at a corner of two contacts",                  \
@@ -425,41 +424,40 @@
     "They must be in equilibrium with the loads at time 0, under the "       \
     "unilateral and the friction condition (CPR98 3.3; 3.26 with e^i_0 or "  \
     "given forces). Loads without "                                          \
-    "AMPLITUDE= start from zero: one that is there at once has an amplitude "\
+    "AMPLITUDE= start from zero: one that is there at once has an amplitude "  \
     "or an expression of t. INCOMPATIBLE=RELAX takes the equilibrium of "    \
-    "time 0 that is next to them.")                                       \
-  X(4015, ERROR, "led against friction along one tangent",                   \
+    "time 0 that is next to them.")                                          \
+  X(4015, ERROR, "displacement prescribed against friction along one tangent", \
     "In 3-D the direction of slip depends on both tangential motions. "      \
     "Prescribe both, or none, at the nodes of a contact with friction.")     \
   X(4016, WARNING, "made nearly incompressible by creep",                    \
     "A body that creeps loses its shear stiffness and keeps its volume: "    \
     "linear triangles and tetrahedra become too stiff as near nu = 1/2 "     \
-    "(P2055). FORMULATION=AVERAGED of *SOLID SECTION does not lock.")         \
+    "(P2055). FORMULATION=AVERAGED of *SOLID SECTION does not lock.")        \
   X(4017, WARNING, "element without a state at the end of an increment",     \
     "The rates of the law grow so fast with the stress that its equations "  \
-    "cannot be solved over this increment. Let dt_min of *VISCO be smaller, "\
-    "so that increments are cut further, or give the law a smaller exponent " \
+    "cannot be solved over this increment. Let dt_min of *VISCO be smaller, "  \
+    "so that increments are cut further, or give the law a smaller exponent "  \
     "n or a larger K: what is left of (stress/K)^n must be a number.")       \
-  X(4018, NOTE, "normals of a curved body differ from those of the obstacle",\
+  X(4018, NOTE, "normals of a curved body differ from those of the obstacle",  \
     "The faces around a node have their mean as normal, which differs from " \
     "that of a cylinder or sphere they lie on where they differ in size or " \
-    "shape: normal forces then have a part along the obstacle, and a torque "\
-    "about its axis. Write NORMAL=OBSTACLE on *CONTACT, or refine the mesh "  \
+    "shape: normal forces then have a part along the obstacle, and a torque "  \
+    "about its axis. Write NORMAL=OBSTACLE on *CONTACT, or refine the mesh " \
     "evenly. A flat body on a roller is better served by its own normals.")  \
   X(4019, WARNING, "strains that are not small",                             \
     "Strains and displacements are taken as small: the answer is wrong by "  \
-    "about the strain. Look at the units (GPa for MPa, mm for m) and the "   \
-    "loads; creep strains grow with time. Told once a run, where the root "  \
-    "of the sum of the squares of the components is above 5 % first.")       \
+    "about the strain. Check the units (GPa for MPa, mm for m) and the "     \
+    "loads; creep strains grow with time. Reported once a run, when the "    \
+    "root of the sum of the squares of the components first exceeds 5 %.")   \
   X(4020, WARNING, "element turned inside out by the displacements",         \
     "The displacements are larger than the element: no state of small "      \
-    "strains. Look at the units of moduli, loads and lengths.")              \
+    "strains. Check the units of moduli, loads and lengths.")                \
   X(4021, WARNING, "contact that never touched",                             \
-    "No node of the contact came to its obstacle at the end of an "          \
-    "increment. If it should have: look at the point, normal and GAP of "    \
+    "No node of the contact touched its obstacle at the end of an "          \
+    "increment. If it should have: check the point, normal and GAP of "      \
     "*OBSTACLE, at the GROUP, the signs of the loads and their size. The "   \
-    "listing tells in which increment a contact touches for the first "      \
-    "time.")                                                                 \
+    "listing says in which increment a contact touches for the first time.") \
   X(4022, WARNING, "supports hold a part of the normal of the obstacle",     \
     "A contact node that *BOUNDARY holds in one direction moves in the "     \
     "others alone, and its contact force is that of the normal without the " \
@@ -477,16 +475,16 @@
     "/fclib_global with spacedim, M, H, vectors/f, w, mu. As text: n, the "  \
     "matrix by rows, q.")                                                    \
   X(5003, ERROR, "end of another run cannot be the start",                   \
-    "FILE= of *INITIAL CONDITIONS is the JOB.h5 of a run that ended, on the "\
-    "same mesh; the name is relative to the deck. Write the results of this "\
+    "FILE= of *INITIAL CONDITIONS is the JOB.h5 of a run that ended, on the "  \
+    "same mesh; the name is relative to the deck. Write the results of this "  \
     "run elsewhere if both have one name.")                                  \
   X(5020, WARNING, "more threads than cores",                                \
     "Threads beyond the cores that affinity and control group leave to the " \
-    "process wait for each other: as many as there are cores are used; one " \
-    "where ulimit -v leaves no room for the buffers of more.")               \
+    "process wait for each other: as many threads as cores are used; one "   \
+    "where ulimit -v leaves no memory for the buffers of more.")             \
   X(5021, ERROR, "file that --safe does not read",                           \
-    "With --safe a mesh is a .msh: a .geo is a program and may do what it "  \
-    "likes. Mesh it before, where its author is trusted.")
+    "With --safe a mesh is a .msh: a .geo is a program that may do "         \
+    "anything. Mesh it before, if its author is trusted.")
 /* clang-format on */
 
 #endif

@@ -1,7 +1,7 @@
 /*
- * Reading and writing numbers. A real is taken apart into digits and a power
- * of ten and handed to strtod as "DIGITSeEXPONENT": without a point, so that
- * the locale has no say, and correctly rounded.
+ * Reading and writing numbers. A real is taken apart into digits and a power of
+ * ten and handed to strtod as "DIGITSeEXPONENT": without a point, so that the
+ * locale has no influence, and correctly rounded.
  */
 #include "base/number.h"
 
@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* More digits than 767 cannot change how a double is rounded, but for one
- * last digit that tells whether anything follows. */
+/* More digits than 767 cannot change how a double is rounded, except one last
+ * digit for a non-zero rest. */
 enum { DIGITS = 800, EXPONENT_LIMIT = 1000000 };
 
 typedef struct decimal {
@@ -59,7 +59,7 @@ static const char *read_mantissa(const char *p, decimal *d) {
       long before = d->exponent;
       int n = d->n_digit;
       add_digit(d, *p);
-      /* A digit kept or a leading zero shifts; one dropped does not. */
+      /* A digit stored or a leading zero shifts; one dropped does not. */
       if (d->n_digit > n || n == 0) {
         if (d->exponent > -EXPONENT_LIMIT) --d->exponent;
       } else {

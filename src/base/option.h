@@ -1,10 +1,11 @@
 /*
  * Options: the parameters of keywords, solvers and laws, described in tables
- * that drive reading, range checks, help, the echo of defaults and the tests.
+ * that are used for reading, range checks, help, the echo of defaults and the
+ * tests.
  *
  * A table ends with OPTION_END. Each row is written with OPTION_REAL and its
- * kin; the macro compares pointer types inside sizeof, so a row whose field
- * has another type does not compile.
+ * kin; the macro compares pointer types inside sizeof, so a row whose field has
+ * another type does not compile.
  */
 #ifndef PROTIS_BASE_OPTION_H
 #define PROTIS_BASE_OPTION_H
@@ -54,7 +55,7 @@ typedef struct option {
     name, OPT_FLAG, OPTION_OFFSET(struct_, field, int), 0, 1, initial, "-", \
         NULL, help                                                          \
   }
-/* Any text, case kept. Field: const char *, borrowed from who gave the text. */
+/* Any text, case kept. Field: const char *, borrowed from the caller. */
 #define OPTION_NAME(struct_, field, name, initial, help)               \
   {                                                                    \
     name, OPT_NAME, OPTION_OFFSET(struct_, field, const char *), 0, 0, \

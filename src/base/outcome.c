@@ -1,5 +1,5 @@
 /*
- * Words for the ways an iteration can end.
+ * Texts for the outcomes of an iteration.
  */
 #include "base/outcome.h"
 
@@ -22,7 +22,7 @@ const char *outcome_text(outcome o) {
     case STOPPED_SINGULAR:
       return "singular";
     case STOPPED_UNFIT:
-      return "method does not fit the problem";
+      return "method does not apply to the problem";
   }
   return "?";
 }

@@ -1,5 +1,6 @@
 /*
- * How an iteration ended: above zero the answer is usable, below zero why not.
+ * How an iteration ended: above zero the result is usable, below zero the
+ * reason why not.
  */
 #ifndef PROTIS_BASE_OUTCOME_H
 #define PROTIS_BASE_OUTCOME_H
@@ -11,7 +12,7 @@ typedef enum {
   STOPPED_STAGNATION = -2, /* no progress above the rounding level */
   STOPPED_RAY = -3,        /* no equilibrium: a secondary ray */
   STOPPED_NAN = -4,
-  STOPPED_CYCLE = -5,    /* a status pattern came back */
+  STOPPED_CYCLE = -5,    /* a status pattern was repeated */
   STOPPED_SINGULAR = -6, /* a linear system of the method has no solution */
   STOPPED_UNFIT = -7     /* the method cannot treat the problem at all */
 } outcome;
@@ -20,8 +21,8 @@ const char *outcome_text(outcome o);
 /* In a word, for programs: CONVERGED, ITERATIONS, STAGNATION, RAY, NAN, CYCLE,
  * SINGULAR, UNFIT. */
 const char *outcome_code(outcome o);
-/* 1 if there is no answer to go on with: a ray, singular, not a number, a
- * method that does not fit. */
+/* 1 if there is no result to continue with: a ray, singular, not a number, a
+ * method that does not apply. */
 int outcome_is_fatal(outcome o);
 
 #endif

@@ -1,5 +1,5 @@
 /*
- * The error record: one message and the functions it passed on its way up.
+ * The error record: one message and the functions that passed it up.
  */
 #include "base/status.h"
 

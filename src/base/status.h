@@ -1,12 +1,12 @@
 /*
  * Status codes and the error record.
  *
- * A function that can fail returns a status. RAISE starts a failure and keeps
- * its message, PASS passes one up and notes the function; both return at once.
- * Memory of locals is freed by OWNED (memory.h). Where else is to be released,
- * FAIL and TRY do the same, but jump to the single label "done:" of a function
- * that declares "status st = OK;". Only main prints the record and turns the
- * code into the exit code of the process.
+ * A function that can fail returns a status. RAISE starts a failure and stores
+ * its message, PASS passes one up and records the function; both return at
+ * once. Memory of locals is freed by OWNED (memory.h). Where else is to be
+ * released, FAIL and TRY do the same, but jump to the single label "done:" of a
+ * function that declares "status st = OK;". Only main prints the record and
+ * turns the code into the exit code of the process.
  */
 #ifndef PROTIS_BASE_STATUS_H
 #define PROTIS_BASE_STATUS_H
@@ -61,11 +61,12 @@ typedef enum { STATUS_LIST(STATUS_ENUM) STATUS_COUNT } status;
     }                                   \
   } while (0)
 
-/* Keep the message of a new failure, forget the record before; return code. */
+/* Store the message of a new failure, discard the record before; return
+ * code. */
 status status_fail(status code, const char *function, int line,
                    const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* Note one function on the way up. */
+/* Record one function that passed the error up. */
 void status_trace(const char *function, int line);
 
 const char *status_message(void); /* what went wrong, one or more lines */

@@ -71,7 +71,7 @@ status text_reopen(text_file *t, const char *path, int by_line, long length) {
   return OK;
 }
 
-/* A write that failed inside fprintf has left no reason: ask for it again. */
+/* A write that failed inside fprintf has left no error number: repeat it. */
 static int reason_again(FILE *f) {
   errno = 0;
   return write(fileno(f), "\n", 1) < 0 ? errno : 0;
@@ -131,7 +131,7 @@ done:
   return st;
 }
 
-/* Closing it does not tell where it could not grow: before, or now. */
+/* Closing it does not say whether it could not grow before or now. */
 int text_memory_end(FILE *f, char **text) {
   int whole = ferror(f) == 0;
   return fclose(f) == 0 && whole && *text != NULL;
@@ -261,7 +261,7 @@ void text_put(FILE *f, const char *text) {
   while (text_piece(&text, piece) > 0) fputs(piece, f);
 }
 
-/* The byte that \xHH at p stands for; -1: it is no such text. */
+/* The byte that \xHH at p denotes; -1: it is no such text. */
 static int hidden_byte(const char *p) {
   static const char digits[] = "0123456789ABCDEF";
   if (p[0] != '\\' || p[1] != 'x' || p[2] == '\0' || p[3] == '\0') return -1;

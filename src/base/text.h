@@ -1,6 +1,6 @@
 /*
- * Text files of the results, every write checked, and the one way numbers are
- * printed in them.
+ * Text files of the results, every write checked, and the one format of the
+ * numbers in them.
  */
 #ifndef PROTIS_BASE_TEXT_H
 #define PROTIS_BASE_TEXT_H
@@ -14,23 +14,23 @@ typedef struct text_file {
   char *path; /* owned */
 } text_file;
 
-/* DIR/NAME.SUFFIX, or NULL without memory; memory_free it. */
+/* DIR/NAME.SUFFIX, new (memory_free), NULL without memory. */
 char *text_path(const char *dir, const char *name, const char *suffix);
-/* Open for writing; by_line: each line is handed over when it ends. */
+/* Open for writing; by_line: each line is flushed when it ends. */
 status text_open(text_file *t, const char *path, int by_line);
-/* Open to go on after "length" bytes; what stands beyond is cut. ERR_FILE also
- * if the file is shorter. */
+/* Open to append after "length" bytes; what follows is cut. ERR_FILE also if
+ * the file is shorter. */
 status text_reopen(text_file *t, const char *path, int by_line, long length);
-/* Hand everything to the disk; bytes so far into *length. */
+/* Synchronise the file; bytes so far into *length. */
 status text_sync(text_file *t, long *length);
-/* Hand everything to the system; ERR_FILE names the file and the reason. */
+/* Flush; ERR_FILE names the file and the reason. */
 status text_check(text_file *t);
 status text_close(text_file *t); /* checked; accepts one never opened */
-/* The file as "write" fills it; written aside and renamed: a reader sees the
- * whole or nothing. */
+/* The file as "write" fills it; written to a temporary file and renamed: a
+ * reader sees all of it or nothing. */
 status text_replace(const char *path, const void *what,
                     void (*write)(FILE *f, const void *what));
-/* Close a stream of memory; 1: all that was printed stands in it. */
+/* Close a memory stream; 1: it holds all that was printed. */
 int text_memory_end(FILE *f, char **text);
 /* ERR_FILE, of ENOMEM ERR_MEMORY, with the path and the text of the error
  * number; 0: none known. */
@@ -42,15 +42,15 @@ const char *text_number(char text[NUMBER_SIZE], double value, int digits);
 /* Right-aligned in a field of the width, at least one blank before it. */
 void text_cell(FILE *f, const char *text, int width);
 /* Words in lines of at most 78 columns, from column "indent" on, where the
- * first line stands already; ends the line. */
+ * first line already is; ends the line. */
 void text_wrap(FILE *f, const char *text, int indent);
 /*
- * Text from outside as it may be shown: printable UTF-8 stays; each byte of
- * other characters (control characters but the tab, marks that turn the
- * direction of writing or take no room, what is no UTF-8) becomes \xHH.
+ * Text from outside made printable: printable UTF-8 stays; each byte of other
+ * characters (control characters but the tab, marks that change the direction
+ * of writing or have no width, invalid UTF-8) becomes \xHH.
  */
 enum { PIECE_SIZE = 20 };
-/* The first character of *text, which moves behind it; its length, 0 at the
+/* The first character of *text, which moves past it; its length, 0 at the
  * end. */
 int text_piece(const char **text, char piece[PIECE_SIZE]);
 /* All of it, cut at whole characters to the size; its length. */
@@ -58,7 +58,7 @@ size_t text_shown(char *out, size_t size, const char *text);
 /* The same line by line; "text" is overwritten. */
 void text_shown_lines(char *out, size_t size, char *text);
 void text_put(FILE *f, const char *text);
-/* The bytes again that text_shown took away, in place: for names of files. */
+/* Undo text_shown, in place: for names of files. */
 void text_plain(char *text);
 /* The text as one word: blanks become "_". */
 void text_word(char *word, size_t size, const char *text);

@@ -1,5 +1,5 @@
 /*
- * CPU seconds and bytes by stage, kept on a small stack of open stages.
+ * CPU seconds and bytes by stage, with a small stack of open stages.
  */
 #include "base/timer.h"
 

@@ -1,7 +1,7 @@
 /*
  * What each stage of a run costs: calls, CPU seconds (user and system) and
- * bytes asked for. Stages nest; a stage is charged for itself only, not for
- * the stages entered inside it.
+ * bytes requested. Stages nest; a stage is charged for its own work only, not
+ * for the stages entered inside it.
  */
 #ifndef PROTIS_BASE_TIMER_H
 #define PROTIS_BASE_TIMER_H
@@ -56,8 +56,8 @@
   X(RESTART,     "restart")
 /* clang-format on */
 
-/* Those of the list, which every program has, and more that are named as they
- * are needed (timer_own_stage). */
+/* Those of the list, which every program has, and more that are named when
+ * needed (timer_own_stage). */
 #define STAGE_ENUM(name, text) STAGE_##name,
 typedef enum {
   STAGE_LIST(STAGE_ENUM) STAGE_LISTED,
@@ -72,8 +72,8 @@ typedef struct stage_cost {
 } stage_cost;
 
 void timer_enter(stage s);
-/* The same for work beside the run: stages entered before it is left are part
- * of it, their own costs and calls are not counted. */
+/* The same for a shadow run: stages entered before it is left are part of it,
+ * their own costs and calls are not counted. */
 void timer_enter_whole(stage s);
 void timer_leave(stage s);       /* must match the last timer_enter */
 stage_cost timer_cost(stage s);  /* so far, running stages included */
@@ -83,8 +83,8 @@ stage timer_own_stage(int k, const char *name);
 double timer_cpu(void); /* CPU seconds of the process so far, and of
                            the children it has waited for */
 void timer_reset(void);
-/* The process goes on with the run of another, which had spent this: its calls
- * are those of the whole from here on, the rest adds up. */
+/* The process continues the run of another one, which had spent this: its calls
+ * are those of the whole from here on, the rest is added. */
 void timer_resume(const stage_cost before[STAGE_COUNT]);
 
 #endif

@@ -1,15 +1,15 @@
 /*
  * The discrete contact problem on the condensed unknowns (CPR98, problems N1
- * and N2 reduced to Gamma_3), the one structure every solver works on.
+ * and N2 reduced to Gamma_3), the structure that every solver works on.
  *
  *   A u = f + r,
  *   u_n <= gap,  r_n <= 0,  r_n (u_n - gap) = 0,            (unilateral)
  *   |r_t| <= g,  r_t = -g (u_t - ut0)/|u_t - ut0| on slip,   (friction)
  *   g = g0 + B p,  p = -r_n.                                 (sliding limit)
  *
- * Unknowns are node by node n, t1[, t2]; dense matrices are column major.
- * With g affine in p, Tresca (B = NULL), local (B diagonal) and nonlocal
- * Coulomb friction are one problem.
+ * Unknowns are node by node n, t1[, t2]; dense matrices are column major. With
+ * g affine in p, Tresca (B = NULL), local (B diagonal) and nonlocal Coulomb
+ * friction are one problem.
  */
 #ifndef PROTIS_CONTACT_CONTACT_H
 #define PROTIS_CONTACT_CONTACT_H
@@ -19,12 +19,13 @@
 
 /* Nodes that the matrix joins, through others too, are of one body. */
 typedef struct body_size {
-  double load;    /* largest load, N */
-  double contact; /* largest contact force, N */
-  double way;     /* largest of both over the stiffness of its node, m */
-  double fallen;  /* largest c_n times what a node has gone of its gap, N */
-  double carried; /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m) */
-  double reach;   /* the same of positions that the data lead to */
+  double load;         /* largest load, N */
+  double contact;      /* largest contact force, N */
+  double displacement; /* largest of both over the stiffness of its node, m */
+  double fallen;       /* largest c_n times the part of its gap that a node has
+                          moved, N */
+  double carried;      /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m) */
+  double reach;        /* the same of positions that follow from the data */
 } body_size;
 typedef struct contact_bodies {
   int n;
@@ -37,12 +38,11 @@ typedef struct contact_problem {
   const double *A;        /* [m*m] condensed stiffness, N/m, symmetric,
                              positive (semi)definite; NULL: only the
                              compliance is known */
-  const double *W;        /* [m*m] compliance, m/N; NULL until asked for. Given
+  const double *W;        /* [m*m] compliance, m/N; NULL until needed. Given
                              alone (A NULL) it may be semidefinite and slightly
                              unsymmetric */
   const double *f;        /* [m] condensed load, N; with A NULL: q = W f, m */
-  const double *f_load;   /* [m] part of f that the motion of supports is not
-                             in, N; NULL: f */
+  const double *f_load;   /* [m] f without the motion of supports, N; NULL: f */
   const double *gap;      /* [n] normal gap of the undeformed body, m */
   const double *ut0;      /* [n*(dim-1)] position of stick: tangential
                              displacement at increment start, plus the
@@ -60,13 +60,13 @@ typedef struct contact_problem {
   /* NULL: not known; by contact_bodies_new */
   const contact_bodies *bodies;
   int floating; /* A is singular: contact alone holds the body */
-  double load;  /* N, what loads grow to: forces that are nothing beside their
-                   rounding are nothing (contact_scale); 0: not known */
+  double load;  /* N, final size of the loads: forces below its rounding are
+                   zero (contact_scale); 0: not known */
 } contact_problem;
 
 typedef enum { CONTACT_OPEN, CONTACT_SLIP, CONTACT_STICK } contact_status;
 
-/* The parts of a problem with that matrix that hardly an entry joins. */
+/* The parts of a problem that its matrix couples weakly or not at all. */
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out);
 void contact_bodies_free(contact_bodies *b); /* accepts NULL */
 
@@ -79,19 +79,18 @@ void contact_limit(const contact_problem *cp, const double *r, double *g);
 void contact_classify(const contact_problem *cp, const double *u,
                       const double *r, contact_status *status);
 /*
- * Force scale of the problem, N (displacement scale, m, if A is NULL): how
- * large the forces of its solution can be expected at most, from the data
- * alone.
+ * Force scale of the problem, N (displacement scale, m, if A is NULL): an upper
+ * estimate of the forces of its solution, from the data alone.
  *
  *   F = min over d of max(|f - A d|_max, 2^-14 (|f| + diag(A) |d|)_max)
  *
  * where d is one of two displacements the solution is measured from: stick
  * positions ut0 with the initial penetration taken back, d_n = min(gap, 0), or
  * with every gap closed, d_n = gap. If f = A d, u = d without any contact force
- * is a solution: a load that only carries the body along with its obstacle
- * (f and A u large, r small) does not make F large. The second term keeps F
- * above the rounding of the first; 2^-14 "load" is the least.
- * Compliance form: D = max(|q_t - ut0|, q_n - gap), at least 2^-14 |q|_max.
+ * is a solution: a load that only carries the body along with its obstacle (f
+ * and A u large, r small) does not make F large. The second term keeps F above
+ * the rounding of the first; 2^-14 "load" is the least. Compliance form: D =
+ * max(|q_t - ut0|, q_n - gap), at least 2^-14 |q|_max.
  */
 double contact_scale(const contact_problem *cp);
 /*
@@ -105,19 +104,18 @@ double contact_scale(const contact_problem *cp);
  * With F the largest load or projected force of the body the node belongs to,
  * and D the largest of those forces over k, k the larger c of its node,
  *   s = min(F, k D, contact_scale)
- * (c times contact_scale in the compliance form): the error is small beside
- * the forces of the body, and the displacement that it makes beside those that
- * they make. What only carries the body, in f, A u and c ut0, is not in s; what
- * rounding can have put into a row with such terms, 2^-47 of
- * |f_i| + sqrt(k_i) max_j sqrt(k_j) |u_j|, is taken off e.
- * s is at least 2^-14 of cp->load, times the forces of the body over those of
- * the one with the largest, and of c times what a node has gone of its gap: a
- * body that falls through it has forces that rounding of A u hides.
- * Loads of a body: f_load, in the compliance form the force that holds a node
- * alone at its gap.
+ * (c times contact_scale in the compliance form): the error is small against
+ * the forces of the body, and the displacement it causes against those they
+ * cause. A rigid motion of the body, in f, A u and c ut0, does not enter s; the
+ * rounding of a row with such terms, 2^-47 of |f_i| + sqrt(k_i) max_j sqrt(k_j)
+ * |u_j|, is subtracted from e. s is at least 2^-14 of cp->load, times the
+ * forces of the body over those of the one with the largest, and of c times the
+ * part of its gap that a node has moved: after a free fall through the gap
+ * forces are below the rounding of A u. Loads of a body: f_load, in the
+ * compliance form the force that holds a single node at its gap.
  *
- * Bodies are searched for where cp->bodies is NULL; the functions below then
- * take all nodes as one.
+ * Bodies are determined where cp->bodies is NULL; the functions below then take
+ * all nodes as one.
  *
  * No unit: a change of units by factors 2^k leaves every bit. NaN if anything
  * is NaN; 0 for f = 0, gap >= 0, u = r = 0; HUGE_VAL if s is zero and (u, r) is
@@ -125,21 +123,21 @@ double contact_scale(const contact_problem *cp);
  */
 double contact_residual(const contact_problem *cp, const double *u,
                         const double *r);
-/* The same where contact_scale is known: it costs two products. */
+/* The same with a known contact_scale, which costs two products. */
 double contact_residual_at(const contact_problem *cp, double scale,
                            const double *u, const double *r);
-/* The same of an iterate whose equation misses what r is from raw[m] = A u - f
- * (u from raw[m] = W r + q); raw NULL: nothing. It costs no product. */
+/* The same of an iterate whose defect of the equation is r - raw, raw[m] = A u
+ * - f (u - raw, raw[m] = W r + q); raw NULL: zero. It costs no product. */
 double contact_mismatch(const contact_problem *cp, double scale,
                         const double *u, const double *r, const double *raw);
-/* What rounding can have put into the forces of each node, N. rounding[n]. */
+/* Bound of the rounding of the forces of each node, N. rounding[n]. */
 void contact_roundings(const contact_problem *cp, const double *u,
                        const double *r, double *rounding);
-/* What (u, r) misses of the natural map within these, the largest over the
+/* Residual of the natural map within these roundings, the largest over the
  * nodes, over F, the largest load or contact force of the body or own[n] (NULL:
- * none), N; of friction over the same share of F that the limit of the node is
- * of its normal force, -. What rounding makes of a body without load whose
- * contact forces are no more than that is left out. */
+ * none), N; of friction over the share of F that the limit of the node is of
+ * its normal force, -. Bodies without load whose contact forces are rounding
+ * are left out. */
 double contact_hidden(const contact_problem *cp, const double *u,
                       const double *r, const double *own);
 /* Single unknowns: 1 if prescribed; the bound from above (gap, or side_gap;

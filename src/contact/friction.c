@@ -1,5 +1,5 @@
 /*
- * The list of friction laws, and what they share: the limit g = g0 + B p.
+ * The list of friction laws and their common limit g = g0 + B p.
  */
 #include "contact/friction.h"
 

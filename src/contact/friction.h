@@ -31,8 +31,8 @@ typedef struct friction_ops {
   const char *value_name, *value_unit; /* the data line: "mu", "-" */
   size_t param_size;
   const option *options;
-  /* Why the options do not fit a model of that kind; NULL: they do. NULL
-   * pointer: always. */
+  /* Reason why the options do not apply to a model of that kind; NULL: they do.
+   * NULL pointer: always. */
   const char *(*misfit)(const void *param, int dim, int axisymmetric);
   /* Limit per mu from the normal forces, -: rows of the nodes of the contact,
    * columns of the whole surface. Made once per surface; out all zero before.

@@ -45,7 +45,7 @@ static const option nonlocal_options[] = {
 };
 /* clang-format on */
 
-/* The faces of a contact as the average sees them. */
+/* The faces of a contact as a patch of the average. */
 typedef struct patch {
   average_patch p;
   double *x;

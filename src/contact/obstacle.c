@@ -107,8 +107,8 @@ static void turn_back(const obstacle *o, const double *x, double t, double *D,
 }
 
 /* Direction v[3] from y = x - point to a shape where it started; its length. */
-static double way_to_shape(const obstacle *o, int dim, const double *y,
-                           double *v) {
+static double direction_to_shape(const obstacle *o, int dim, const double *y,
+                                 double *v) {
   int round = o->shape != OBSTACLE_PLANE;
   double axis = 0, sign = round && !o->inside ? -1 : 1;
   for (int c = 0; c < dim; ++c) v[c] = round ? y[c] : -o->direction[c];
@@ -124,7 +124,7 @@ int obstacle_normal(const obstacle *o, int dim, const double *x, double *n) {
   obstacle_motion(o, 0, d);
   if (o->turns) turn_back(o, y, 0, d, unused);
   for (int c = 0; c < dim; ++c) y[c] = x[c] - d[c] - o->point[c];
-  double length = way_to_shape(o, dim, y, v);
+  double length = direction_to_shape(o, dim, y, v);
   if (!(length > 0)) return 0;
   if (o->turns) turn(o->axis, obstacle_angle(o, 0), v);
   for (int c = 0; c < dim; ++c) n[c] = v[c] / length;
@@ -141,14 +141,14 @@ int obstacle_moves(const obstacle *o) {
 
 double obstacle_gap(const obstacle *o, int dim, const double *x,
                     const double *n, double t) {
-  double d[3], y[3], beside[3] = {0, 0, 0};
+  double d[3], y[3], point[3] = {0, 0, 0};
   double at[3] = {0, 0, 0}, m[3] = {0, 0, 0};
   for (int c = 0; c < dim; ++c) at[c] = x[c], m[c] = n[c];
   obstacle_motion(o, t, d);
   if (o->turns) turn_back(o, at, t, d, m);
   double along = dot(dim, n, d);
   for (int c = 0; c < 3; ++c) y[c] = at[c] - d[c] - o->point[c];
-  for (int c = 0; c < dim; ++c) beside[c] = x[c] - (d[c] - along * n[c]);
+  for (int c = 0; c < dim; ++c) point[c] = x[c] - (d[c] - along * n[c]);
   switch ((obstacle_shape)o->shape) {
     case OBSTACLE_CONFORMING:
       return along;
@@ -158,7 +158,7 @@ double obstacle_gap(const obstacle *o, int dim, const double *x,
     case OBSTACLE_SPHERE:
       return round_gap(o, dim, y, m);
     case OBSTACLE_GAP:
-      return quantity_value(&o->gap, beside, t) + along;
+      return quantity_value(&o->gap, point, t) + along;
   }
   return NAN;
 }
@@ -175,7 +175,7 @@ static void find_arm(const obstacle *o, int dim, const double *x,
 
 void obstacle_drift(const obstacle *o, int dim, const double *x,
                     const double *n, double t0, double t, double *d) {
-  double start[3], arm[3], end[3], way[3];
+  double start[3], arm[3], end[3], advance[3];
   obstacle_motion(o, t0, start);
   obstacle_motion(o, t, d);
   for (int c = 0; c < 3; ++c) d[c] -= start[c];
@@ -184,6 +184,6 @@ void obstacle_drift(const obstacle *o, int dim, const double *x,
   find_arm(o, dim, x, n, t0, arm);
   find_arm(o, dim, x, n, t, end);
   for (int c = 0; c < 3; ++c) arm[c] = 0.5 * (arm[c] + end[c]);
-  cross(o->axis, arm, way);
-  for (int c = 0; c < 3; ++c) d[c] += angle * way[c];
+  cross(o->axis, arm, advance);
+  for (int c = 0; c < 3; ++c) d[c] += angle * advance[c];
 }

@@ -42,14 +42,15 @@ typedef struct obstacle {
 /*
  * Distance s from x along the unit vector n to the obstacle at time t, negative
  * if x is inside it; HUGE_VAL if the line does not meet it (a plane met from
- * behind or at a grazing angle, a sphere that is missed); NaN if an expression
+ * behind or at a grazing angle, a sphere that the line does not meet); NaN if
+ * an expression
  * is.  dim 2: a cylinder or sphere is a circle in the plane of the model, also
  * in an axisymmetric one (a sphere about the axis, else a ring).
  *
  * With D the displacement of the point of the obstacle that is at x at time t,
- * CONFORMING gives n.D, GAP the expression at the point that D has brought
- * beside x, x - D + (n.D) n, plus n.D: exact for a shift and for a rotation
- * about n, of first order in an angle that tilts the obstacle.
+ * CONFORMING gives n.D, GAP the expression at x - D + (n.D) n, plus n.D: exact
+ * for a shift and for a rotation about n, of first order in an angle that tilts
+ * the obstacle.
  */
 double obstacle_gap(const obstacle *o, int dim, const double *x,
                     const double *n, double t);
@@ -65,10 +66,10 @@ double obstacle_angle(const obstacle *o, double t);
  * shapes. */
 double obstacle_tilt(const obstacle *o, double t);
 /*
- * Way d[3] of the surface of the obstacle past the point where the line from x
- * along n meets it (x itself if it does not), from time t0 to t, m: v over the
- * interval by the trapezoidal rule in the arm y - c - d, exact if the arm
- * changes linearly with the angle.
+ * Displacement d[3] of the surface of the obstacle at the point where the line
+ * from x along n meets it (x itself if it does not), from time t0 to t, m: v
+ * over the interval by the trapezoidal rule in the arm y - c - d, exact if the
+ * arm changes linearly with the angle.
  */
 void obstacle_drift(const obstacle *o, int dim, const double *x,
                     const double *n, double t0, double t, double *d);

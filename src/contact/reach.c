@@ -1,4 +1,4 @@
-/* Contact nodes within reach (reach.h). */
+/* Active contact nodes (reach.h). */
 #include "contact/reach.h"
 
 #include "base/memory.h"
@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum { MOST_PASSES = 2 };
-static const double LONGER = 4.0; /* -, after a way that was too short */
+static const double LONGER = 4.0; /* -, after a distance that was too short */
 
 void reach_free(contact_reach *x) {
   memory_free(x->in);
@@ -41,7 +41,7 @@ status reach_choose(contact_reach *x, int n, const double *gap) {
   int nearest = 0;
   PASS_NEW(keep, n);
   for (int i = 0; i < n; ++i) {
-    keep[i] = gap[i] <= x->way;
+    keep[i] = gap[i] <= x->distance;
     if (gap[i] < gap[nearest]) nearest = i;
   }
   if (n > 0) keep[nearest] = 1;
@@ -64,15 +64,15 @@ status reach_extend(contact_reach *x, int n, const double *gap,
   OWNED unsigned char *keep = NULL;
   PASS_NEW(keep, n);
   all = all || x->passes >= MOST_PASSES;
-  x->way *= LONGER;
+  x->distance *= LONGER;
   ++x->passes;
   for (int i = 0; i < n; ++i)
-    keep[i] = all || gap[i] <= x->way || !(u_n[stride * i] <= gap[i]);
+    keep[i] = all || gap[i] <= x->distance || !(u_n[stride * i] <= gap[i]);
   for (int k = 0; k < x->n_in; ++k) keep[x->in[k]] = 1;
   return take(x, n, keep);
 }
 
-/* ---- the problem of the nodes within reach ------------------------------ */
+/* ---- the problem of the active nodes ------------------------------ */
 
 void reach_part_free(reach_part *p) {
   RELEASE(p->gap, p->ut0, p->g0, p->held);
@@ -117,19 +117,19 @@ static const double *cut_reals(const contact_reach *x, int size,
   return from != NULL ? to : NULL;
 }
 
-void reach_cut(const contact_reach *x, reach_part *room, contact_problem *cp) {
+void reach_cut(const contact_reach *x, reach_part *part, contact_problem *cp) {
   const int dim = cp->dim;
   const unsigned char *held = cp->held;
-  cp->gap = cut_reals(x, 1, cp->gap, room->gap);
-  cp->ut0 = cut_reals(x, dim - 1, cp->ut0, room->ut0);
-  cp->g0 = cut_reals(x, 1, cp->g0, room->g0);
+  cp->gap = cut_reals(x, 1, cp->gap, part->gap);
+  cp->ut0 = cut_reals(x, dim - 1, cp->ut0, part->ut0);
+  cp->g0 = cut_reals(x, 1, cp->g0, part->g0);
   for (int k = 0; held != NULL && k < x->n_in; ++k)
-    memcpy(room->held + dim * k, held + dim * x->in[k], (size_t)dim);
-  if (held != NULL) cp->held = room->held;
+    memcpy(part->held + dim * k, held + dim * x->in[k], (size_t)dim);
+  if (held != NULL) cp->held = part->held;
   if (cp->B == NULL) return;
-  room->B.n = x->n_in;
-  cut_limit(x, cp->B, &room->B);
-  cp->B = &room->B;
+  part->B.n = x->n_in;
+  cut_limit(x, cp->B, &part->B);
+  cp->B = &part->B;
 }
 
 void reach_spread(const contact_reach *x, int n, double *a) {

@@ -38,7 +38,7 @@ typedef struct candidate {
   double gap;       /* at time 0, m */
 } candidate;
 
-/* What is said once per contact. */
+/* Messages given once per contact. */
 typedef struct tally {
   /* nodes */
   int n_fixed, n_unreached, n_corner, n_kept;
@@ -214,7 +214,7 @@ static void merge_smooth(builder *b, int first, int end) {
 }
 
 /* The normal of the obstacle instead of that of the body; 0 where the body
- * turns its back to the obstacle. */
+ * faces away from the obstacle. */
 static int take_obstacle_normal(const builder *b, candidate *c) {
   const mesh *m = b->in->mesh;
   double body[3];
@@ -382,12 +382,12 @@ static void say(const builder *b, int pair_id) {
                 p->name, p->support->name, asin(fmin(t->sine, 1)),
                 describe(m, t->turned_node).text);
   if (t->held > told_share)
-    message_add(b->log, P4022, &p->at,
-                "*CONTACT %s: supports hold a part of the normal of obstacle "
-                "%s: only %.3g of a contact force is seen, also by friction, "
-                "at %s",
-                p->name, p->support->name, 1.0 - t->held,
-                describe(m, t->held_node).text);
+    message_add(
+        b->log, P4022, &p->at,
+        "*CONTACT %s: supports hold a part of the normal of obstacle "
+        "%s: only %.3g of a contact force acts, also for friction, at %s",
+        p->name, p->support->name, 1.0 - t->held,
+        describe(m, t->held_node).text);
   if (t->n_corner > 0)
     message_add(b->log, P4005, &p->at,
                 "*CONTACT %s: %d nodes touch a second obstacle and have no "
@@ -495,11 +495,11 @@ static void row_drift(const contact_surface *s, const contact_pair *pairs,
   int side = k > 0 ? s->side_id[i * (dim - 1) + k - 1] : -1;
   const obstacle *o = pairs[side >= 0 ? side : s->contact_id[i]].support;
   const double *frame = &s->frame[dim * dim * i], *row = frame + dim * k;
-  double way[3];
+  double drift[3];
   if (!obstacle_moves(o)) return;
   obstacle_drift(o, dim, &s->x[dim * i], side >= 0 ? row : frame, times[0],
-                 times[1], way);
-  *motion += dot(dim, row, way);
+                 times[1], drift);
+  *motion += dot(dim, row, drift);
 }
 
 void surface_drift(const contact_surface *s, const surface_input *in, double t0,

@@ -51,11 +51,11 @@ typedef struct surface_input {
 /*
  * Build it. The normal of a node is the sum of the normals of its faces in the
  * group weighted with its share of their area (the gradient of the volume), or
- * that of the obstacle beside it (obstacle_normal, where the shape has one),
- * taken orthogonal to the components that are fixed there; those become
+ * that of the obstacle at that place (obstacle_normal, where the shape has
+ * one), taken orthogonal to the components that are fixed there; those become
  * tangents, flagged in held.
  *
- * Left out, and said in the log: nodes fixed in the normal direction, nodes
+ * Left out, with a message: nodes fixed in the normal direction, nodes
  * that an obstacle at rest cannot reach along the normal.  A node in the groups
  * of two contacts has the normal of the first and, as a side, of the second;
  * where both have the same obstacle and the surface is smooth there, it belongs
@@ -72,8 +72,8 @@ status surface_build(const surface_input *in, message_log *log,
  */
 status surface_gap(const contact_surface *s, const surface_input *in, double t,
                    double *gap, double *side_gap);
-/* Adds to motion[dim*n] the way of the obstacle past each node from time t0 to
- * t (obstacle_drift) in the contact frame, m. */
+/* Adds to motion[dim*n] the displacement of the obstacle at each node from time
+ * t0 to t (obstacle_drift) in the contact frame, m. */
 void surface_drift(const contact_surface *s, const surface_input *in, double t0,
                    double t, double *motion);
 /* 1 if node i touches a second obstacle: it has no friction. */

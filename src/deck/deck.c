@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-/* What data lines are taken for. */
+/* How data lines are read. */
 enum {
   DATA_EARLY,      /* no card yet */
   DATA_RECORDS,    /* records of the last card */
@@ -116,7 +116,7 @@ static status read_parameters(reader *r, int next, int nested, card *c) {
       c->n_parameter += ok;
   }
   size_t n = (size_t)c->n_parameter;
-  parameter *kept = store_room(r->d, n, sizeof *kept);
+  parameter *kept = store_new(r->d, n, sizeof *kept);
   if (kept == NULL) RAISE(ERR_MEMORY, "memory exhausted: parameters");
   if (n > 0) memcpy(kept, list, n * sizeof *kept);
   c->parameters = kept;
@@ -148,7 +148,7 @@ static int check_names(reader *r, const card *c, const char *const *names) {
   return good;
 }
 
-/* The parameter the card cannot do without; NULL after a message. */
+/* The parameter that the card requires; NULL after a message. */
 static const parameter *needed(reader *r, const card *c, const char *name) {
   const parameter *p = card_parameter(c, name);
   if (p != NULL && p->has_value) return p;
@@ -230,7 +230,7 @@ static const language_card *find_language(const char *name) {
 
 /* ---- cards and records ------------------------------------------------- */
 
-/* A card of the model: append it; the format that waits is for its data. */
+/* A card of the model: append it; a pending format is for its data. */
 static status add_card(reader *r, card *c) {
   deck *d = r->d;
   PASS_GROW(d->cards, d->n_card, d->own->card_capacity);
@@ -287,7 +287,7 @@ static status read_card(reader *r, const physical *line) {
   return OK;
 }
 
-/* Room for one more record of the last card, with its raw text and place. */
+/* Space for one more record of the last card, with its raw text and place. */
 static status add_record(reader *r, const physical *line, record **out) {
   card *c = &r->d->cards[r->d->n_card - 1];
   PASS_GROW(c->records, c->n_record, r->record_capacity);
@@ -307,7 +307,7 @@ static status read_text(reader *r, const physical *line) {
   size_t length;
   const char *text = trim(line->text, (size_t)line->length, &length);
   PASS(add_record(r, line, &new));
-  new->fields = store_room(r->d, 1, sizeof *new->fields);
+  new->fields = store_new(r->d, 1, sizeof *new->fields);
   if (new->fields == NULL) RAISE(ERR_MEMORY, "memory exhausted: field");
   new->n_field = 1;
   new->fields->at = new->at;
@@ -337,7 +337,7 @@ static status read_record(reader *r, const physical *line) {
   PASS(add_record(r, line, &new));
   PASS(logical_read(r, line, LINE_FREE));
   int n = count_fields(&r->line);
-  new->fields = store_room(r->d, (size_t)n, sizeof *new->fields);
+  new->fields = store_new(r->d, (size_t)n, sizeof *new->fields);
   if (new->fields == NULL) RAISE(ERR_MEMORY, "memory exhausted: fields");
   piece p = {.next = 0};
   for (; new->n_field < n; ++new->n_field) {

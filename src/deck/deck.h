@@ -1,19 +1,19 @@
 /*
  * The input deck as text: cards with parameters and data lines, each with its
- * place. Knows the grammar and the language cards (*INCLUDE, *PARAMETER,
- * *LEGACY), and no mechanics. The meaning of the cards is in model/keywords.c.
+ * place. It handles the grammar and the language cards (*INCLUDE, *PARAMETER,
+ * *LEGACY), no mechanics. The meaning of the cards is in model/keywords.c.
  *
- * The language cards are used up here and do not appear in deck.card; what
- * they did is seen in deck.symbols, deck.files and card.format. A card whose
- * name cannot be read is reported and left out together with its data lines.
+ * The language cards are processed here and do not appear in deck.card; their
+ * results are in deck.symbols, deck.files and card.format. A card whose name
+ * cannot be read is reported and left out together with its data lines.
  *
  * Grammar, beyond what README says:
  * - ** starts a comment wherever it stands outside quotes; under *HEADING only
  *   at the start of a line. Blank lines mean nothing anywhere.
- * - A line ending in a comma goes on, but a data line before a card or before
- *   the end of its file just ends. Under *HEADING each line is a record of one
- *   field, commas and quotes are text, and unknown <NAME> are left alone.
- * - *INCLUDE does not end a card: the file may go on with its data lines.
+ * - A line ending in a comma is continued, but a data line before a card or
+ *   before the end of its file just ends. Under *HEADING each line is a record
+ *   of one field, commas and quotes are text, and unknown <NAME> are unchanged.
+ * - *INCLUDE does not end a card: the file may continue its data lines.
  * - NAME = VALUE under *PARAMETER is an expression: 3+1 is 4. Only the whole
  *   of a value that has a point, as 1.5+03, is read as a number by itself.
  * - The text of a quoted field without x y z t is its value, in full digits.
@@ -23,7 +23,7 @@
  *   with its last filled field; blanks inside a number are an error; a real
  *   without a point gets that of Fw.d. Text after the last column: warning.
  *
- * All strings belong to the deck and live until deck_free.
+ * All strings belong to the deck and are valid until deck_free.
  */
 #ifndef PROTIS_DECK_DECK_H
 #define PROTIS_DECK_DECK_H
@@ -85,10 +85,10 @@ typedef struct deck {
 } deck;
 
 /* Read a deck and its includes. "defines": "NAME=VALUE" texts of -D, each of
- * which wins over *PARAMETER; one that no *PARAMETER names still counts.
- * Errors of grammar go to the log and reading goes on; *out is valid (free
- * it) unless the answer is ERR_MEMORY or ERR_FILE (the deck itself cannot be
- * read: message in the log too). The answer is OK with grammar errors. */
+ * which wins over *PARAMETER; one that no *PARAMETER names still counts. Errors
+ * of grammar go to the log and reading continues; *out is valid (free it)
+ * unless the status is ERR_MEMORY or ERR_FILE (the deck itself cannot be read:
+ * message in the log too). The status is OK with grammar errors. */
 status deck_read(const char *file, int n_define, const char *const *defines,
                  message_log *log, deck **out);
 void deck_free(deck *d);

@@ -1,7 +1,8 @@
 /*
  * Expressions: one pass over the text with a stack of waiting operators
  * (Dijkstra's shunting yard) gives reverse Polish code. Both stacks are
- * bounded, so that no text makes the compiler or the evaluation run away.
+ * bounded, so that the cost of the compiler and the evaluation is bounded for
+ * any text.
  */
 #include "deck/expression.h"
 
@@ -105,7 +106,7 @@ enum {
   MINUS_PRECEDENCE = 7 /* of the sign: -2^2 = -4, 2*-3 = -6 */
 };
 
-/* What waits for its right operand or its closing parenthesis. */
+/* Operators that wait for their right operand or closing parenthesis. */
 typedef struct waiting {
   enum { WAIT_SIGN, WAIT_OPERATOR, WAIT_PARENTHESIS, WAIT_CALL } kind;
   const operator_row *operation;
@@ -197,7 +198,8 @@ static int precedence(const waiting *w) {
   return w->kind == WAIT_OPERATOR ? w->operation->precedence : 0;
 }
 
-/* Emit what binds at least as strongly as "level", down to a parenthesis. */
+/* Emit the operators of at least the precedence "level", down to a
+ * parenthesis. */
 static status emit_down_to(compiler *c, int level) {
   while (c->n_waiting > 0 && precedence(&c->stack[c->n_waiting - 1]) >= level) {
     PASS(emit_waiting(c, &c->stack[c->n_waiting - 1]));

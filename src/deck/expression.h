@@ -25,8 +25,8 @@ status expression_compile(const char *text, symbol_value_fn *symbol,
 status expression_compile_in(const char *text, const char *const names[4],
                              symbol_value_fn *symbol, const void *ctx,
                              expression **out, int *column);
-/* x[3] coordinates, length; t time. The result can be NaN or infinite (log of
- * a negative number): the caller tests it where it knows what is computed. */
+/* x[3] coordinates, length; t time. The result can be NaN or infinite (log of a
+ * negative number): the caller checks it. */
 double expression_value(const expression *e, const double x[3], double t);
 /* Bits 1 x, 2 y, 4 z, 8 t: the variables that occur. */
 unsigned expression_variables(const expression *e);

@@ -1,7 +1,7 @@
 /*
  * Fixed columns: a Fortran format is unrolled into columns, which cut a line
  * into the fields of a record. Groups are unrolled with a stack of their own;
- * each turn of a group must take columns, so that the work is bounded.
+ * each repetition of a group must use columns, so that the work is bounded.
  */
 #include "base/memory.h"
 #include "base/number.h"
@@ -24,8 +24,8 @@ struct format {
 
 typedef struct group {
   const char *start; /* behind the parenthesis */
-  int left;          /* turns to come */
-  int width;         /* columns taken when this turn began */
+  int left;          /* repetitions left */
+  int width;         /* columns used when this repetition began */
 } group;
 
 typedef struct unroller {
@@ -109,7 +109,7 @@ static status open_group(unroller *u, int count) {
   return OK;
 }
 
-/* At a closing parenthesis: once more, or on behind it. */
+/* At a closing parenthesis: repeat the group, or continue after it. */
 static status close_group(unroller *u) {
   group *g = &u->groups[u->n_group - 1];
   if (u->f->width == g->width) RAISE(ERR_DECK, "a group without columns");
@@ -256,7 +256,7 @@ static void check_rest(reader *r, const format *f, const physical *line,
 status format_record(reader *r, const format *f, const physical *line,
                      record *out) {
   out->n_field = filled_fields(f, line);
-  out->fields = store_room(r->d, (size_t)out->n_field, sizeof *out->fields);
+  out->fields = store_new(r->d, (size_t)out->n_field, sizeof *out->fields);
   if (out->fields == NULL) RAISE(ERR_MEMORY, "memory exhausted: fields");
   check_rest(r, f, line, &out->at);
   for (int i = 0; i < out->n_field; ++i)

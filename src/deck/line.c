@@ -178,7 +178,7 @@ static status settle_constant(reader *r, field *f, int *valid) {
   const double origin[3] = {0, 0, 0};
   char digits[NUMBER_TEXT_SIZE];
   st = expression_compile(f->text, deck_symbol, r->d, &e, &column);
-  if (st == ERR_DECK) st = OK; /* reported by who needs a value */
+  if (st == ERR_DECK) st = OK; /* reported by the caller that needs a value */
   TRY(st);
   *valid = e != NULL;
   if (e == NULL || expression_variables(e) != 0) goto done;

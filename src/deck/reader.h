@@ -37,19 +37,19 @@ struct deck_text {
   expression **expressions;
 };
 
-/* Zeroed room that lives as long as the deck; NULL if refused. */
-void *store_room(deck *d, size_t n, size_t size);
-/* Copy of n bytes, closed by a NUL; NULL if refused. */
+/* Zeroed memory that is valid until deck_free; NULL if refused. */
+void *store_new(deck *d, size_t n, size_t size);
+/* Copy of n bytes, terminated by a NUL; NULL if refused. */
 char *store_text(deck *d, const char *text, size_t n);
 const place *store_place(deck *d, const place *p);
 
 /* A growing text. */
 typedef struct buffer {
-  char *text; /* NULL as long as empty */
+  char *text; /* NULL while empty */
   int n, capacity;
 } buffer;
 
-/* Append n bytes; the text stays closed by a NUL. */
+/* Append n bytes; the text stays terminated by a NUL. */
 status buffer_add(buffer *b, const char *text, size_t n);
 
 /* Letters of ASCII only, whatever the locale. */
@@ -79,7 +79,7 @@ status source_open(deck *d, message_log *log, const char *file, const place *at,
                    source **top);
 /* Next line; *line NULL at the end of this file. */
 status source_next(source *s, message_log *log, const physical **line);
-/* Have source_next give the line of the last call once more. */
+/* Let source_next return the line of the last call once more. */
 void source_hold(source *s);
 void source_pop(source **top);
 /* A place in it. */
@@ -108,9 +108,9 @@ typedef struct reader {
   int n_include;
   logical line;
   buffer scratch;      /* text with names replaced */
-  int mode;            /* what data lines are taken for: deck.c */
+  int mode;            /* how data lines are read: deck.c */
   int record_capacity; /* of the last card */
-  /* of *LEGACY: in use, to come */
+  /* of *LEGACY: in use, for the next card */
   struct format *format, *waiting_format;
   const char *waiting_text; /* of waiting_format */
   place legacy_at;
@@ -120,7 +120,7 @@ typedef struct reader {
 /* Under *PARAMETER a ** that could be meant as a power is an error. */
 typedef enum { LINE_FREE, LINE_DEFINITION } line_kind;
 
-/* Fill r->line from the line given and those it goes on in. */
+/* Fill r->line from the line given and its continuation lines. */
 status logical_read(reader *r, const physical *first, line_kind kind);
 void logical_free(logical *l);
 /* Place of a byte of the logical line. */

@@ -1,6 +1,6 @@
 /*
  * Physical lines of the files of a deck. Blank lines and comment lines are
- * passed over here; what a line means is decided elsewhere.
+ * skipped here; the meaning of a line is decided elsewhere.
  */
 #include "base/memory.h"
 #include "base/text.h"
@@ -59,7 +59,7 @@ static int next_byte(source *s) {
   return (unsigned char)s->block[s->at++];
 }
 
-/* A byte order mark at the start of the file is passed over. */
+/* A byte order mark at the start of the file is skipped. */
 static void skip_mark(source *s) {
   if (next_byte(s) != EOF) --s->at;
   if (s->n_block - s->at >= 3 &&
@@ -102,7 +102,7 @@ static int is_empty_or_comment(const char *p) {
   return *p == '\0' || (p[0] == '*' && p[1] == '*');
 }
 
-/* *NAME, and then a comma or the end: what a file starts with that is a deck.
+/* *NAME, and then a comma or the end: the start of a deck.
  */
 static int is_card(const char *p) {
   while (is_blank(*p)) ++p;
@@ -111,8 +111,7 @@ static int is_card(const char *p) {
   return *p == '\0' || *p == ',';
 }
 
-/* An included file begins: until a card stands at its start it may be any file
- * that is there. */
+/* An included file begins: unless it starts with a card it may be any file. */
 static void begin(source *s) {
   if (!s->begun) s->hidden = s->from != NULL && !is_card(s->shown);
   s->begun = 1;
@@ -214,10 +213,10 @@ status source_open(deck *d, message_log *log, const char *file, const place *at,
   s->below = *top;
   s->depth = *top != NULL ? (*top)->depth + 1 : 0;
   s->hidden = at != NULL;
-  size_t room = 4 * strlen(file) + 1;
-  char *shown = store_room(d, room, 1);
+  size_t size = 4 * strlen(file) + 1;
+  char *shown = store_new(d, size, 1);
   if (shown == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  text_shown(shown, room, file);
+  text_shown(shown, size, file);
   s->file = shown;
   if (at != NULL) {
     s->from = store_place(d, at);

@@ -13,15 +13,15 @@ enum { CHUNK_BYTES = 1 << 16, ALIGN = 16 };
 struct chunk {
   chunk *next;
   size_t used, size;
-  char *room; /* [size] */
+  char *bytes; /* [size] */
 };
 
 static chunk *new_chunk(deck *d, size_t size) {
   chunk *c = memory_new(1, sizeof *c);
   if (c == NULL) return NULL;
   c->size = size > CHUNK_BYTES ? size : CHUNK_BYTES;
-  c->room = memory_new(c->size, 1);
-  if (c->room == NULL) {
+  c->bytes = memory_new(c->size, 1);
+  if (c->bytes == NULL) {
     memory_free(c);
     return NULL;
   }
@@ -39,10 +39,10 @@ static void *take(deck *d, size_t bytes, size_t align) {
     start = 0;
   }
   c->used = start + bytes;
-  return c->room + start;
+  return c->bytes + start;
 }
 
-void *store_room(deck *d, size_t n, size_t size) {
+void *store_new(deck *d, size_t n, size_t size) {
   if (size != 0 && n > SIZE_MAX / 2 / size) return NULL;
   return take(d, n * size, ALIGN);
 }
@@ -56,7 +56,7 @@ char *store_text(deck *d, const char *text, size_t n) {
 }
 
 const place *store_place(deck *d, const place *p) {
-  place *copy = store_room(d, 1, sizeof *copy);
+  place *copy = store_new(d, 1, sizeof *copy);
   if (copy != NULL) *copy = *p;
   return copy;
 }
@@ -111,7 +111,7 @@ char *store_name(deck *d, const char *text, size_t n) {
 static void free_chunks(chunk *c) {
   while (c != NULL) {
     chunk *next = c->next;
-    RELEASE(c->room, c);
+    RELEASE(c->bytes, c);
     c = next;
   }
 }

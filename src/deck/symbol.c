@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { ADVICE_MAX = 2000 }; /* names looked through for the nearest */
+enum { ADVICE_MAX = 2000 }; /* names searched for the nearest */
 
 static unsigned hash_name(const char *name, size_t n) {
   unsigned h = 2166136261u;
@@ -59,7 +59,7 @@ int symbols_have(const deck *d, const char *name) {
 }
 
 /* At most half of the slots are taken. */
-static status make_room(deck *d) {
+static status grow_table(deck *d) {
   struct deck_text *own = d->own;
   int *slots = NULL;
   if (2 * (d->n_symbol + 1) <= own->n_slot) return OK;
@@ -75,7 +75,7 @@ static status make_room(deck *d) {
 
 static status add_symbol(deck *d, const char *name, size_t n, symbol **out) {
   PASS_GROW(d->symbols, d->n_symbol, d->own->symbol_capacity);
-  PASS(make_room(d));
+  PASS(grow_table(d));
   symbol *s = &d->symbols[d->n_symbol];
   s->name = store_name(d, name, n);
   if (s->name == NULL) RAISE(ERR_MEMORY, "memory exhausted: name");
@@ -84,7 +84,7 @@ static status add_symbol(deck *d, const char *name, size_t n, symbol **out) {
   return OK;
 }
 
-/* The .geo tells upper case from lower. */
+/* A .geo distinguishes upper and lower case. */
 static status keep_spelling(deck *d, symbol *s, const char *name, size_t n) {
   s->typed = store_text(d, name, n);
   if (s->typed == NULL) RAISE(ERR_MEMORY, "memory exhausted: name");

@@ -92,7 +92,7 @@ const char *deck_path(deck *d, const field *f) {
   size_t folder = slash != NULL ? (size_t)(slash - f->at.file) + 1 : 0;
   size_t n = strlen(f->text);
   if (f->text[0] == '/') folder = 0;
-  char *path = store_room(d, folder + n + 1, 1);
+  char *path = store_new(d, folder + n + 1, 1);
   if (path == NULL) return NULL;
   if (folder > 0) memcpy(path, f->at.file, folder);
   memcpy(path + folder, f->text, n + 1);
@@ -101,7 +101,7 @@ const char *deck_path(deck *d, const field *f) {
 }
 
 status deck_input_copy(deck *d, const char *path) {
-  char *text = store_room(d, strlen(path) + 1, 1);
+  char *text = store_new(d, strlen(path) + 1, 1);
   if (text == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
   strcpy(text, path);
   return deck_input(d, text);

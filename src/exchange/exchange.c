@@ -1,5 +1,5 @@
 /*
- * Which reader, and its failure as a message of the deck.
+ * Choice of the reader, and its failure as a message of the deck.
  */
 #include "exchange/exchange.h"
 

@@ -10,9 +10,9 @@
  * Equality constraints are eliminated: (local)  u = W r + V l + q,
  * V'r + R l + s = 0;  (global)  M v = H r + G l + f,  G'v + b = 0.
  *
- * There u_N is the gap left open and r_N >= 0 pushes; here (contact.h) u_n runs
- * towards the obstacle and r_n <= 0 pushes: the normal components of u and r
- * change their sign, the tangential ones stay.
+ * There u_N is the remaining gap and r_N >= 0 pushes; here (contact.h) u_n is
+ * positive towards the obstacle and r_n <= 0 pushes: the normal components of u
+ * and r change their sign, the tangential ones stay.
  *
  * LCP as text: n, the matrix by rows, q; blanks, commas or line ends between
  * the numbers, # starts a comment.  w = q + M z,  w >= 0, z >= 0, w'z = 0.
@@ -43,8 +43,8 @@ typedef struct exchange_problem {
 } exchange_problem;
 
 /*
- * Read it. ERR_FILE: cannot be opened or read, no HDF5 file; ERR_DECK: what
- * stands in it is no problem (missing, wrong sizes, not finite); both with an
+ * Read it. ERR_FILE: cannot be opened or read, no HDF5 file; ERR_DECK: its
+ * contents are no problem (missing, wrong sizes, not finite); both with an
  * error in the log that names file and dataset. ERR_SINGULAR: M of a global
  * problem cannot be inverted. *out is NULL on failure.
  */

@@ -44,7 +44,7 @@ static status set_size(const hdf5_source *s, const char *root, int m,
   if (m > MOST_UNKNOWNS)
     RAISE(ERR_DECK, "%s: %s has %d unknowns; at most %d can be solved", s->path,
           root, m, (int)MOST_UNKNOWNS);
-  PASS(foresee_problem(m));
+  PASS(require_problem_memory(m));
   p->m = m;
   p->n = m / p->dim;
   return OK;
@@ -226,7 +226,7 @@ static status find_diagonal(global *g) {
   return OK;
 }
 
-/* 1: M is symmetric as far as a stiffness must be. Dense a[m*m]. */
+/* 1: M is symmetric to the accuracy that a stiffness needs. Dense a[m*m]. */
 static int is_symmetric(int m, const double *a) {
   double largest = 0.0, skew = 0.0;
   for (size_t j = 0; j < (size_t)m; ++j)

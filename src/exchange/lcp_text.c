@@ -11,8 +11,8 @@
 
 #include <errno.h>
 
-enum { WORD = 80 };
-enum { FEW_UNKNOWNS = 300 }; /* of a file too short the place is told */
+/* Up to FEW_UNKNOWNS the place where a short file ends is reported. */
+enum { WORD = 80, FEW_UNKNOWNS = 300 };
 
 typedef struct words {
   FILE *f;
@@ -26,7 +26,7 @@ static int is_gap(int c) {
          c == ';';
 }
 
-/* The next character that counts: comments are passed over. */
+/* The next character that counts: comments are skipped. */
 static int next_char(words *w) {
   int c = getc(w->f);
   if (c == '#')
@@ -77,7 +77,8 @@ static status read_size(words *w, int *n) {
   return OK;
 }
 
-/* The file is long enough for n unknowns; before room is made for them. */
+/* The file is long enough for n unknowns; checked before memory is
+ * allocated. */
 static status check_length(words *w, int n) {
   const long here = ftell(w->f);
   const long end = here < 0 || fseek(w->f, 0, SEEK_END) != 0 ? -1 : ftell(w->f);
@@ -100,7 +101,7 @@ static status read_numbers(words *w, exchange_problem *p) {
   p->dim = 1;
   p->m = p->unknowns = p->n;
   p->form = "linear complementarity problem";
-  PASS(foresee_problem(p->m));
+  PASS(require_problem_memory(p->m));
   size_t m = (size_t)p->m;
   PASS_NEW(p->matrix, m * m);
   PASS_NEW(p->load, m);

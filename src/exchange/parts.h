@@ -7,11 +7,11 @@
 #include "base/archive/dataset.h"
 #include "exchange/exchange.h"
 
-/* Unknowns of a dense matrix that can be asked for. */
+/* Largest number of unknowns of a dense matrix. */
 enum { MOST_UNKNOWNS = 30000 };
-/* ERR_MEMORY: no room for the matrices that a problem of m unknowns takes, its
- * own and those of a solver; asked before they are read. */
-status foresee_problem(double m);
+/* ERR_MEMORY: not enough memory for the matrices of a problem of m unknowns,
+ * its own and those of a solver; checked before they are read. */
+status require_problem_memory(double m);
 
 /* ---- matrix.c: the matrix group ------------------------------------------ */
 
@@ -42,7 +42,7 @@ status lcp_text_read(const char *path, exchange_problem *p);
 /* ---- constraints.c ----------------------------------------------------------
  */
 
-/* V'r + R l + s = 0 beside u = W r + V l + q. */
+/* V'r + R l + s = 0 with u = W r + V l + q. */
 typedef struct constraints {
   int p;     /* how many */
   double *V; /* [m*p] column major */

@@ -1,10 +1,11 @@
 /*
- * A global problem  M v = H r + f,  u = H' v + w  without v:
+ * Elimination of v from a global problem M v = H r + f, u = H' v + w:
  *
  *   W = H' inv(M) H,   q = H' inv(M) f + w.
  *
- * M is scaled to a unit diagonal and factored by CHOLMOD; what is not positive
- * definite or not symmetric can go to a dense LU factor, if it is small enough.
+ * M is scaled to a unit diagonal and factored by CHOLMOD; a matrix that is not
+ * positive definite or not symmetric gets a dense LU factor, if it is small
+ * enough.
  */
 #include "base/memory.h"
 #include "exchange/parts.h"
@@ -283,12 +284,12 @@ done:
 static const double REPEATED_RCOND = 1e-12; /* -, below: repeated */
 static const double CONSISTENT = 1e-8;      /* -, of the right-hand side */
 
-typedef struct room {
+typedef struct elimination {
   double *R, *X, *rhs; /* [p*p], [p*(m+1)]: least squares for [V' s] */
   double *spread;      /* [p] */
-} room;
+} elimination;
 
-static status room_new(int m, const constraints *c, room *a) {
+static status elimination_new(int m, const constraints *c, elimination *a) {
   size_t p = (size_t)c->p, all = p * ((size_t)m + 1);
   PASS_NEW(a->R, p * p);
   PASS_NEW(a->X, all);
@@ -304,26 +305,28 @@ static status room_new(int m, const constraints *c, room *a) {
   return OK;
 }
 
-static void room_free(room *a) { RELEASE(a->R, a->X, a->rhs, a->spread); }
+static void elimination_free(elimination *a) {
+  RELEASE(a->R, a->X, a->rhs, a->spread);
+}
 
 /* |R X - [V' s]| of the largest entry, relative. */
-static double contradiction(int m, const constraints *c, room *a) {
+static double contradiction(int m, const constraints *c, elimination *a) {
   size_t all = (size_t)c->p * ((size_t)m + 1);
-  double size = 0.0, miss = 0.0;
+  double size = 0.0, defect = 0.0;
   for (size_t k = 0; k < all; ++k) size = fmax(size, fabs(a->rhs[k]));
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, c->p, m + 1, c->p,
               -1.0, c->R, c->p, a->X, c->p, 1.0, a->rhs, c->p);
-  for (size_t k = 0; k < all; ++k) miss = fmax(miss, fabs(a->rhs[k]));
-  return size > 0.0 ? miss / size : 0.0;
+  for (size_t k = 0; k < all; ++k) defect = fmax(defect, fabs(a->rhs[k]));
+  return size > 0.0 ? defect / size : 0.0;
 }
 
 status constraints_eliminate(const char *path, int m, const constraints *c,
                              double *W, double *q) {
   status st = OK;
-  room a = {0};
+  elimination a = {0};
   lapack_int rank = 0;
   if (c->p == 0) goto done;
-  TRY(room_new(m, c, &a));
+  TRY(elimination_new(m, c, &a));
   if (LAPACKE_dgelsd(LAPACK_COL_MAJOR, c->p, c->p, m + 1, a.R, c->p, a.X, c->p,
                      a.spread, REPEATED_RCOND, &rank) != 0)
     FAIL(ERR_SINGULAR, "%s: the equality constraints cannot be eliminated",
@@ -338,7 +341,7 @@ status constraints_eliminate(const char *path, int m, const constraints *c,
   cblas_dgemv(CblasColMajor, CblasNoTrans, m, c->p, -1.0, c->V, m,
               a.X + (size_t)c->p * (size_t)m, 1, 1.0, q, 1);
 done:
-  room_free(&a);
+  elimination_free(&a);
   return st;
 }
 
@@ -480,7 +483,7 @@ static double *target(const columns *c, int k, double *W, double *q) {
   return k == c->H->columns ? q : W + (size_t)c->H->columns * (size_t)k;
 }
 
-/* ---- the two ways ---------------------------------------------------------
+/* ---- Cholesky or LU ---------------------------------------------------------
  */
 
 static status reduce_block(reduction *s, const columns *c, int first, int count,
@@ -586,7 +589,7 @@ status reduce_any(const char *path, const triplets *M, const triplets *H,
   if (M->rows > MOST_DENSE)
     FAIL(ERR_SINGULAR,
          "%s: /fclib_global/M is not symmetric and positive definite, and too "
-         "large (%d) for another way",
+         "large (%d) for a dense LU factor",
          path, M->rows);
   TRY(columns_new(H, f, &c));
   TRY(reduce_dense(M, &c, W, q, &singular));
@@ -598,7 +601,7 @@ done:
   return st;
 }
 
-status foresee_problem(double m) {
+status require_problem_memory(double m) {
   enum { MATRICES = 5 };
-  return memory_foresee(MATRICES * m * m * sizeof(double), "the problem");
+  return memory_require(MATRICES * m * m * sizeof(double), "the problem");
 }

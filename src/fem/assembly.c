@@ -12,19 +12,20 @@
 /* The lower node graph, grown column by column. */
 typedef struct node_graph {
   stiffness *k; /* gets start and row */
-  size_t n, room;
+  size_t n, capacity;
   int *seen; /* [n_node] last column that has the node, + 1 */
 } node_graph;
 
 /* Nodes of a list that come after j into column j. */
 static status add_rows(node_graph *g, int j, int n_more, const int *node) {
   const size_t most = (size_t)n_more;
-  if (g->n + most > g->room) {
-    const size_t more = g->room / 2 + most;
-    int *grown = memory_resize(g->k->row, g->n, g->room + more, sizeof *grown);
+  if (g->n + most > g->capacity) {
+    const size_t more = g->capacity / 2 + most;
+    int *grown =
+        memory_resize(g->k->row, g->n, g->capacity + more, sizeof *grown);
     if (grown == NULL) RAISE(ERR_MEMORY, "memory exhausted: node graph");
     g->k->row = grown;
-    g->room += more;
+    g->capacity += more;
   }
   for (int a = 0; a < n_more; ++a) {
     if (node[a] < j || g->seen[node[a]] == j + 1) continue;
@@ -47,13 +48,14 @@ static status add_element_rows(node_graph *g, const domain *d, int j, int e) {
 static status find_graph(const domain *d, stiffness *k) {
   status st = OK;
   const mesh *m = d->mesh;
-  node_graph g = {.k = k, .room = (size_t)m->n_node * (m->dim == 2 ? 5 : 9)};
+  node_graph g = {.k = k,
+                  .capacity = (size_t)m->n_node * (m->dim == 2 ? 5 : 9)};
   size_t *from = NULL;
   int *elem = NULL;
   TRY(mesh_node_elements(m, &from, &elem));
   NEW(g.seen, m->n_node);
   NEW(k->start, m->n_node + 1);
-  NEW(k->row, g.room);
+  NEW(k->row, g.capacity);
   for (int j = 0; j < m->n_node; ++j) {
     TRY(add_rows(&g, j, 1, &j)); /* the diagonal first */
     for (size_t q = from[j]; q < from[j + 1]; ++q)

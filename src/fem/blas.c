@@ -1,8 +1,8 @@
 /*
  * The BLAS kernel. OpenBLAS chooses it when the library is loaded, by a table
- * of processors it knows; an unknown one gets a kernel for SSE3 that takes
- * three times the time. The choice can only be mended by the environment of a
- * new process: set it and run the same program again, once.
+ * of processors; an unknown one gets a kernel for SSE3 that takes three times
+ * the time. The choice can only be changed by the environment of a new process:
+ * set it and run the same program again, once.
  */
 #include "fem/fem.h"
 
@@ -67,8 +67,8 @@ static const char *best_kernel(int *level) {
 #endif
 }
 
-/* CHOLMOD's parallel regions take OMP_THREADS threads whatever is asked; level
- * 0 makes them run on one. The OpenMP library is looked up, not linked. */
+/* CHOLMOD's parallel regions take OMP_THREADS threads in any case; level 0
+ * makes them run on one. The OpenMP library is looked up, not linked. */
 enum { OMP_THREADS = 4 };
 
 static void limit_openmp(int levels) {
@@ -101,14 +101,14 @@ static int addresses_are_limited(struct rlimit *limit) {
   return getrlimit(RLIMIT_AS, limit) == 0 && limit->rlim_cur != RLIM_INFINITY;
 }
 
-/* OpenBLAS asks for its buffers until it gets them: it takes that of this
+/* OpenBLAS requests its buffers until it gets them: it takes that of this
  * thread now, or the process ends. */
 static void fit_address_space(void) {
   struct rlimit limit;
   if (!addresses_are_limited(&limit)) return;
-  void *room = mmap(NULL, BUFFER, PROT_READ | PROT_WRITE,
-                    MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (room == MAP_FAILED) {
+  void *buffer = mmap(NULL, BUFFER, PROT_READ | PROT_WRITE,
+                      MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (buffer == MAP_FAILED) {
     dprintf(STDERR_FILENO,
             "protis: error: memory exhausted: the limit of addresses (ulimit "
             "-v) is %.0f MB, the linear algebra needs %d MB to start; raise "
@@ -116,7 +116,7 @@ static void fit_address_space(void) {
             (double)limit.rlim_cur / 1048576.0, NEEDED);
     _exit(status_exit_code(ERR_MEMORY));
   }
-  munmap(room, BUFFER);
+  munmap(buffer, BUFFER);
   take_buffer();
 }
 

@@ -1,8 +1,8 @@
 /*
  * Condensation to the contact unknowns: the unknowns of K fall into bodies
- * (connected through K), each with its own factor; A collects their parts.
- * A contact unknown prescribed by *BOUNDARY keeps a row of its own in A that
- * meets no other, with f_c such that r = 0 gives the prescribed value.
+ * (connected through K), each with its own factor; A collects their parts. A
+ * contact unknown prescribed by *BOUNDARY has an uncoupled row in A, with f_c
+ * such that r = 0 gives the prescribed value.
  */
 #include "base/memory.h"
 #include "base/timer.h"
@@ -17,10 +17,10 @@
 #include <string.h>
 
 /* The condition number of a plain mesh is a few times to 200 times its number
- * of unknowns. Beyond this multiple, contrast, slivers or weak supports have
- * cost digits that refinement brings back. */
+ * of unknowns. Beyond this multiple, digits are lost by contrast, slivers or
+ * weak supports, and iterative refinement recovers them. */
 static const double refine_excess = 1e4;
-/* Lever arms below this part of the size of the body hold it by so little. */
+/* Lever arms below this part of the size of the body are negligible. */
 static const double weak_arm = 1e-8;
 
 struct condensed {
@@ -29,7 +29,7 @@ struct condensed {
   int n_contact, m, n_body, n_motion;
   double *A; /* [m*m] */
   body_factor *body;
-  free_motion *motion;   /* those only contact holds */
+  free_motion *motion;   /* those that only contact holds */
   rigid_set rigid;       /* the same as vectors */
   unsigned char *pinned; /* [m] contact unknowns with a spring in the factor;
                             NULL: no body needs one */
@@ -337,7 +337,7 @@ static void move_prescribed(condensed *c) {
   }
 }
 
-/* f_c of the load in local components; the forward solve is kept. */
+/* f_c of the load in local components; the forward solve is stored. */
 static status forward(condensed *c, double *f_c) {
   for (int q = 0; q < c->m; ++q)
     if (is_held(c, q))
@@ -362,7 +362,7 @@ static void to_global(const condensed *c, double *u) {
   }
 }
 
-/* Interior displacements from the kept forward solve. */
+/* Interior displacements from the stored forward solve. */
 static status back(const condensed *c, const double *u_c, double *u) {
   memcpy(u, c->prescribed,
          (size_t)c->k->dim * (size_t)c->k->n_node * sizeof *u);
@@ -394,7 +394,8 @@ static status refine(condensed *c, double *u) {
   return OK;
 }
 
-/* f_c again: what holds the refined solution for u_c = 0, the sign turned. */
+/* f_c again: the reactions of the refined solution for u_c = 0, with opposite
+ * sign. */
 static status refine_load(condensed *c, const double *F, double *f_c) {
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
   OWNED double *u = NULL, *zero = NULL;

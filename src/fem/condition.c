@@ -1,9 +1,9 @@
 /*
  * Condition number of a factored body, its unknowns scaled to a unit diagonal:
  * that of inv(D) K inv(D), D^2 the diagonal. The rounding of a Cholesky factor
- * does not depend on such a scaling, so that stiff next to soft parts count
- * only where they cost digits. Two steps of inverse iteration and the largest
- * row sum: an estimate, a few times too large or too small.
+ * does not depend on such a scaling, so that contrasts of stiffness count only
+ * where digits are lost. Two steps of inverse iteration and the largest row
+ * sum: an estimate, a few times too large or too small.
  */
 #include "base/memory.h"
 #include "fem/factor.h"

@@ -405,8 +405,8 @@ void domain_residual(const domain *d, const double *u, const double *F,
   }
 }
 
-double domain_energy_beside(const domain *d, int n, const int *elem_id,
-                            const double *u) {
+double domain_energy_without(const domain *d, int n, const int *elem_id,
+                             const double *u) {
   double sum = 0;
   int next = 0, skip = 0;
   if (n == d->mesh->n_elem) return 0;
@@ -431,7 +431,7 @@ double domain_energy_beside(const domain *d, int n, const int *elem_id,
 }
 
 double domain_strain_energy(const domain *d, const double *u) {
-  return domain_energy_beside(d, 0, NULL, u);
+  return domain_energy_without(d, 0, NULL, u);
 }
 
 /* det(1 + G) of a gradient, G[3*3] row by row. */

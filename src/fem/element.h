@@ -16,8 +16,8 @@ void element_rest(const domain *d, int elem_id, double *E, double *m_E,
  * cluster with the E of element_rest(): what its average adds is not there. */
 void element_stiffness(const domain *d, int elem_id, double *blocks);
 /* rest = F - sum B' E B u w, global components [dim*n_node]. The strains of
- * each element are formed first: what K loses of a soft part beside a stiff one
- * is kept. */
+ * each element are formed first: so digits of a soft part next to a stiff one
+ * are not lost. */
 void domain_residual(const domain *d, const double *u, const double *F,
                      double *rest);
 

@@ -166,9 +166,8 @@ static status factorise(const stiffness *k, const long *number,
     const SuiteSparse_long *perm = f->L->Perm;
     f->bad_node = node_of(k, f, number, perm[f->L->minor]);
     RAISE(ERR_SINGULAR,
-          "stiffness not positive definite: rounding leaves no digit of it; "
-          "contrasts of stiffness, slivers, nu near 1/2 and supports that "
-          "hardly hold cost digits");
+          "stiffness not positive definite to rounding; contrasts of "
+          "stiffness, slivers, nu near 1/2 and weak supports lose digits");
   }
   return OK;
 }

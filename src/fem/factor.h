@@ -32,7 +32,7 @@ typedef struct body_factor {
   const unsigned char *pinned; /* [m] contact unknowns whose diagonal entry is
                                   doubled in the factor, borrowed; NULL: none */
   cholmod_factor *L;
-  cholmod_dense *y;    /* [n] kept forward solve */
+  cholmod_dense *y;    /* [n] stored forward solve */
   cholmod_dense *work; /* [L->maxesize] */
 } body_factor;
 
@@ -53,18 +53,19 @@ status body_factor_condense(const stiffness *k, const body_factor *f, int m,
                             double *A);
 /* Copy the upper triangle of A[n*n] to the lower one. */
 void symmetric_fill(size_t n, double *A);
-/* y = L^-1 P load, kept; the body's rows of f_c[m]. load[dim*n_node]. */
+/* y = L^-1 P load, stored; the body's rows of f_c[m]. load[dim*n_node]. */
 status body_factor_forward(body_factor *f, const double *load, double *f_c,
                            cholmod_common *cm);
-/* u[dim*n_node] at the body's unknowns from u_c[m] and the kept y. */
+/* u[dim*n_node] at the body's unknowns from u_c[m] and the stored y. */
 status body_factor_back(const body_factor *f, const double *u_c, double *u,
                         cholmod_common *cm);
 /* u += inv(K_ii) load_i at the interior unknowns; load[dim*n_node]. */
 status body_factor_interior(const body_factor *f, const double *load, double *u,
                             cholmod_common *cm);
 /* *square += d' inv(K) d for forces d[m] on the contact unknowns, which come
- * last in the factor: d' inv(A) d = |inv(L_cc) d|^2. Pins that just hold a body
- * carry nothing where d is in balance: then the same. */
+ * last in the factor: d' inv(A) d = |inv(L_cc) d|^2. Pins that hold only the
+ * rigid motions of a body carry no force where d is in equilibrium: then the
+ * same. */
 status body_factor_energy(const body_factor *f, const double *d,
                           double *square);
 /* w = inv(K) d at the unknowns of the body for forces d[dim*n_node] on them,

@@ -63,7 +63,7 @@ typedef struct condensed condensed; /* factor and condensed matrix */
 status stiffness_assemble(const domain *d, stiffness **out);
 void stiffness_free(stiffness *k); /* accepts NULL */
 
-/* What can resist a rigid motion that *BOUNDARY leaves to a body. */
+/* What resists a rigid motion that *BOUNDARY leaves free. */
 typedef enum {
   HELD_BY_NOTHING,  /* no contact unknown moves with it: no equilibrium */
   HELD_BY_FRICTION, /* only tangential contact unknowns move with it */
@@ -93,7 +93,8 @@ status domain_free_motions(const domain *d, int *n, free_motion **list);
 status condense(const stiffness *k, const domain *d, condensed **out);
 void condensed_free(condensed *c);
 const double *condensed_matrix(const condensed *c); /* A [m*m] */
-int condensed_floating(const condensed *c); /* 1: contact alone holds a body */
+int condensed_floating(
+    const condensed *c); /* 1: a body is held by contact alone */
 double condensed_stiffest(const condensed *c); /* largest entry of K, N/m */
 /* Estimate of the condition number of K with its unknowns scaled to a unit
  * diagonal (that scaling costs no digits). */
@@ -113,11 +114,11 @@ condense_info condensed_info(const condensed *c);
 
 /*
  * Condense a load: F[dim*n_node] forces in global components, ud[dim*n_node]
- * prescribed displacements (read where fixed; NULL: all zero).
- * f_c[m]. The forward solve is kept for condense_recover. Where the condition
- * number is far above that of a plain mesh, f_c and u are refined with the
- * forces of the elements (two more solves each; f_c also one back solve), and
- * are then correct to rounding for given u_c.
+ * prescribed displacements (read where fixed; NULL: all zero). f_c[m]. The
+ * forward solve is stored for condense_recover. Where the condition number is
+ * far above that of a plain mesh, f_c and u are refined with the forces of the
+ * elements (two more solves each; f_c also one back solve), and are then
+ * correct to rounding for given u_c.
  */
 status condense_load(condensed *c, const double *F, const double *ud,
                      double *f_c);
@@ -125,33 +126,33 @@ status condense_load(condensed *c, const double *F, const double *ud,
 status condense_recover(condensed *c, const double *u_c, double *u);
 
 /* *square = d' inv(A) d of forces d[m], J, by the same factor. Where contact
- * alone holds a body, A is singular: d must be in balance, K'd = 0 with the
+ * alone holds a body, A is singular: d must be in equilibrium, K'd = 0 with the
  * kernel below. */
 status condensed_force_energy(condensed *c, const double *d, double *square);
 /* u[m] = inv(A) f of a load f[m], by the same factor: the contact unknowns
  * without contact forces. Nothing floats. ERR_MEMORY. */
 status condensed_untouched(condensed *c, const double *f, double *u);
 /*
- * What rounding has left over of equilibrium: rest[dim*n_node] = loads less
- * internal forces at the answer, global components; rc[m] the contact forces.
- * With d what is missing at the unknowns: w[dim*n_node] = inv(K) d, the way to
- * the exact answer, global components, and *square = d' inv(K) d, J, the square
- * of its energy norm.
+ * Residual of equilibrium by rounding: rest[dim*n_node] = loads less internal
+ * forces of the solution, global components; rc[m] the contact forces. With d
+ * the residual at the unknowns: w[dim*n_node] = inv(K) d, the error of the
+ * displacements, global components, and *square = d' inv(K) d, J, the square of
+ * its energy norm.
  */
 status condensed_misfit(condensed *c, const double *rest, const double *rc,
                         double *w, double *square);
-/* The same where contact holds unknowns, held[m] 1: what is missing there is
- * borne by the contact, and w = 0. *square is HUGE_VAL, w untouched, where the
- * others are not held by that. Overwrites what condense_load keeps. */
+/* The same where contact holds unknowns, held[m] 1: the residual there is
+ * carried by the contact, and w = 0. *square is HUGE_VAL, w untouched, where
+ * the others are not held by that. Overwrites what condense_load stores. */
 status condensed_misfit_held(condensed *c, const double *rest, const double *rc,
                              const unsigned char *held, double *w,
                              double *square);
-/* 1: the condition is so far above that of a plain mesh that this is worth
- * looking at. */
+/* 1: the condition number is far above that of a plain mesh: the residual
+ * matters. */
 int condensed_costs_digits(const condensed *c);
 /* The motions of the contact unknowns without energy: kernel[m*n], orthonormal,
- * borrowed; returns n, or -1: supports hold a body, but by next to nothing
- * (lever arms below 1e-8 of its size). */
+ * borrowed; returns n, or -1: the supports of a body are negligible (lever arms
+ * below 1e-8 of its size). */
 int condensed_kernel(const condensed *c, const double **kernel);
 
 /* Strains and stresses of the elements: e[ns*n_elem], sigma[ns*n_elem]; either
@@ -169,8 +170,8 @@ void domain_deformation(const domain *d, const double *u, deformation *out);
 double domain_strain_energy(const domain *d, const double *u); /* J */
 /* The same of all elements but n of them, ascending, which hold whole
  * clusters. */
-double domain_energy_beside(const domain *d, int n, const int *elem_id,
-                            const double *u);
+double domain_energy_without(const domain *d, int n, const int *elem_id,
+                             const double *u);
 /* F += sum B' E e0 w: the forces that hold the strains of x back, global
  * components [dim*n_node], N. */
 void eigen_force(const domain *d, const eigenstrain *x, double *F);
@@ -187,9 +188,9 @@ void eigen_add_force(const domain *d, int n, const int *elem_id,
 /* BLAS kernel: see blas.c. Called first in main; may replace the process. */
 void blas_choose_kernel(char **argv);
 const char *blas_kernel(void); /* core name, "SkylakeX" */
-int blas_kernel_changed(void); /* 1: mended at start-up */
-/* Threads of BLAS and CHOLMOD; blas_choose_kernel sets 1. What the environment
- * says (OPENBLAS_NUM_THREADS and its kind) does not count. */
+int blas_kernel_changed(void); /* 1: changed at start-up */
+/* Threads of BLAS and CHOLMOD; blas_choose_kernel sets 1. The environment
+ * (OPENBLAS_NUM_THREADS and similar) has no effect. */
 void blas_set_threads(int n);
 
 #endif

@@ -15,8 +15,8 @@
 
 enum { LEAF = 24, LARGE_BODY = 200000, LARGE_PARTS = 16 };
 
-/* Sum of the cubes of the separators over n^1.5: about 2 on a square, less on
- * a strip. Above this limit the cuts do not suit the body. */
+/* Sum of the cubes of the separators over n^1.5: about 2 on a square, less on a
+ * strip. Above this limit METIS is used. */
 static const double work_limit = 5;
 
 status graph_of_unknowns(const stiffness *k, graph *g) {
@@ -270,7 +270,7 @@ done:
   return st;
 }
 
-/* METIS that was refused memory leaves any numbers, and CHOLMOD takes them. */
+/* METIS without memory returns arbitrary numbers, and CHOLMOD accepts them. */
 static int is_permutation(const SuiteSparse_long *perm, int n, int *seen) {
   memset(seen, 0, (size_t)n * sizeof *seen);
   for (int i = 0; i < n; ++i) {
@@ -329,7 +329,7 @@ done:
   return st;
 }
 
-/* Both ways, the cheaper by count: node[] holds the cuts' order. */
+/* Both orders, the cheaper by its count: node[] holds that of the cuts. */
 static status compare_with_metis(const graph *g, int n, int *node,
                                  cholmod_common *cm, const char **name) {
   double cuts, metis;

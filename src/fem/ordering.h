@@ -28,9 +28,9 @@ status order_by(order_method method, const graph *g, int dim, const double *x,
 status order_flops(const graph *g, int n, const int *node, cholmod_common *cm,
                    double *flops);
 /*
- * Order node[0..n) in place (the interior of one body); neighbours outside
- * the list are ignored. x[dim*g->n] coordinates. "name" tells which order was
- * taken. Nodes that follow later (contact) are the caller's.
+ * Order node[0..n) in place (the interior of one body); neighbours outside the
+ * list are ignored. x[dim*g->n] coordinates. "name" says which order was taken.
+ * Nodes that follow later (contact) are the caller's.
  */
 status order_nodes(const graph *g, int dim, const double *x, int n, int *node,
                    cholmod_common *cm, const char **name);

@@ -2,8 +2,8 @@
  * The motions are chosen so that R_c = Q is orthonormal: a step of modified
  * Gram-Schmidt on R_c goes through their coefficients Y too, and R_c is then
  * computed again from them. So each column is a rigid motion to rounding, also
- * where the contact nodes are few or close together and tell the motions
- * apart badly.
+ * where the contact nodes are few or close together and the motions are nearly
+ * dependent on them.
  */
 #include "fem/rigid.h"
 
@@ -185,12 +185,13 @@ status rigid_orthonormalise(const stiffness *k, const domain *d, rigid_set *r) {
   return OK;
 }
 
-/* The unknown that the motions left in the rows of room[m*k] move most. */
-static int most_moved(int m, int k, const double *room) {
+/* The unknown with the largest displacement by the motions left in the rows of
+ * rest[m*k]. */
+static int most_moved(int m, int k, const double *rest) {
   double most = 0;
   int at = 0;
   for (int i = 0; i < m; ++i) {
-    const double moved = cblas_dnrm2(k, room + i, m);
+    const double moved = cblas_dnrm2(k, rest + i, m);
     if (moved <= most * (1 + tie)) continue;
     most = moved;
     at = i;
@@ -198,23 +199,24 @@ static int most_moved(int m, int k, const double *room) {
   return at;
 }
 
-/* Gauss with pivots: the motion that a pin stops is taken out of the others. */
+/* Gauss elimination with pivots: a pinned motion is eliminated from the
+ * others. */
 status rigid_pin(const rigid_set *r, const rigid_body *b,
                  unsigned char *pinned) {
   const int m = r->m, k = b->k;
-  OWNED double *room = NULL, *moved = NULL, *axis = NULL;
-  PASS_NEW(room, (size_t)m * (size_t)k);
+  OWNED double *rest = NULL, *moved = NULL, *axis = NULL;
+  PASS_NEW(rest, (size_t)m * (size_t)k);
   PASS_NEW(moved, m);
   PASS_NEW(axis, k);
-  memcpy(room, r->Q + (size_t)m * (size_t)b->first,
-         (size_t)m * (size_t)k * sizeof *room);
+  memcpy(rest, r->Q + (size_t)m * (size_t)b->first,
+         (size_t)m * (size_t)k * sizeof *rest);
   for (int j = 0; j < k; ++j) {
-    const int at = most_moved(m, k, room);
-    cblas_dcopy(k, room + at, m, axis, 1);
+    const int at = most_moved(m, k, rest);
+    cblas_dcopy(k, rest + at, m, axis, 1);
     cblas_dscal(k, 1 / cblas_dnrm2(k, axis, 1), axis, 1);
-    cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1, room, m, axis, 1, 0,
+    cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1, rest, m, axis, 1, 0,
                 moved, 1);
-    cblas_dger(CblasColMajor, m, k, -1, moved, 1, axis, 1, room, m);
+    cblas_dger(CblasColMajor, m, k, -1, moved, 1, axis, 1, rest, m);
     pinned[at] = 1;
   }
   return OK;

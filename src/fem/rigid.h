@@ -1,7 +1,7 @@
 /*
- * Rigid motions that *BOUNDARY leaves free, and what they ask of the condensed
- * problem: no force for a motion, A R_c = 0, and the resultant of the loads
- * kept, R_c' f_c = R' F. Springs and factor leave both wrong by their rounding,
+ * Rigid motions that *BOUNDARY leaves free, and what they require of the
+ * condensed problem: no force for a motion, A R_c = 0, and the same resultant
+ * of the loads, R_c' f_c = R' F. Springs and factor violate both by rounding,
  * which a contrast of stiffness in the body magnifies. Private to src/fem.
  *
  * R: displacement of all unknowns in the motions, R_c: of the contact ones.
@@ -34,7 +34,7 @@ typedef struct rigid_body {
 } rigid_body;
 
 typedef struct rigid_set {
-  int n_body, room;
+  int n_body, capacity;
   rigid_body *body;
   int m, k;  /* contact unknowns; motions of all bodies */
   double *Q; /* [m*k] R_c of orthonormal motions */
@@ -49,8 +49,8 @@ status support_motions(const domain *d, int *n, free_motion **list,
 void rigid_release(rigid_set *r); /* accepts an all-zero object */
 /* Choose the motions Y so that their R_c is orthonormal, and store it. */
 status rigid_orthonormalise(const stiffness *k, const domain *d, rigid_set *r);
-/* Contact unknowns to hold a body by, as many as its motions and as far apart
- * as they go: pinned[m] set to 1. */
+/* Contact unknowns to hold a body, as many as its motions and as independent as
+ * possible: pinned[m] set to 1. */
 status rigid_pin(const rigid_set *r, const rigid_body *b,
                  unsigned char *pinned);
 /* A <- (I - Q Q') A (I - Q Q'), symmetric to the last bit; upper triangle

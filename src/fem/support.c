@@ -267,7 +267,7 @@ static void describe(const body *b, const double *z, free_motion *f) {
 }
 
 typedef struct motion_list {
-  int n, room;
+  int n, capacity;
   free_motion *item;
 } motion_list;
 
@@ -308,7 +308,7 @@ static status append_motions(const body *b, motion_hold hold, int n_row,
       const double *z = Z + i * b->n;
       if (turns(b, z) != rotation || !is_new_motion(b->n, z, known, n_known))
         continue;
-      GROW(list->item, list->n, list->room);
+      GROW(list->item, list->n, list->capacity);
       list->item[list->n].held_by = hold;
       describe(b, z, &list->item[list->n++]);
     }
@@ -323,7 +323,7 @@ static status keep_motions(const body *b, const triangle *t, rigid_set *r) {
   PASS_NEW(Z, b->n * b->n);
   PASS(null_space(t, exact_limit, Z, &rank));
   if (rank == 0) return OK;
-  PASS_GROW(r->body, r->n_body, r->room);
+  PASS_GROW(r->body, r->n_body, r->capacity);
   rigid_body *to = &r->body[r->n_body++];
   *to = (rigid_body){
       .id = b->id, .at = b->at, .n = b->n, .k = rank, .n_node = b->n_node};

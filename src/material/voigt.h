@@ -6,7 +6,7 @@
 #ifndef PROTIS_MATERIAL_VOIGT_H
 #define PROTIS_MATERIAL_VOIGT_H
 
-/* Two components that stand beside each other in any array of double. */
+/* Two adjacent components in any array of double. */
 typedef double voigt_pair
     __attribute__((vector_size(16), aligned(8), may_alias));
 

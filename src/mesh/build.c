@@ -63,8 +63,8 @@ static int ends_in(const char *text, const char *end) {
   return n >= k && strcasecmp(text + n - k, end) == 0;
 }
 
-/* gmsh does not tell a missing file from an empty one: look first. The first
- * bytes go to head, with a zero after them. */
+/* gmsh does not distinguish a missing file from an empty one: check first. The
+ * first bytes go to head, with a zero after them. */
 static status read_head(const char *file, char head[HEAD_SIZE + 1],
                         const place *at, message_log *log) {
   status st = OK;
@@ -139,7 +139,7 @@ done:
   return st;
 }
 
-/* Of a last line without newline gmsh obeys the first statement only. */
+/* Of a last line without newline gmsh executes the first statement only. */
 static status check_geo_tail(const char *file, const place *at,
                              message_log *log) {
   char tail[TAIL_SIZE + 1];
@@ -156,7 +156,7 @@ static status check_geo_tail(const char *file, const place *at,
   return OK;
 }
 
-/* gmsh calls a name given twice in one dimension an error of its own. */
+/* gmsh itself reports a name given twice in one dimension as an error. */
 static message_id number_of(const char *text) {
   return strstr(text, "Physical ") != NULL && strstr(text, "already exists")
              ? P3012
@@ -177,7 +177,7 @@ done:
   return st;
 }
 
-/* A .msh is nothing but data. */
+/* A .msh is data only. */
 static status read_msh(const mesh_source *source, const char *head,
                        const place *at, message_log *log, raw_mesh **raw) {
   status st = OK;

@@ -35,26 +35,25 @@ typedef struct builder {
                          block */
 } builder;
 
-/* The first few of what is wrong, for a message. */
-typedef struct culprits {
+/* The first few faulty items, for a message. */
+typedef struct faults {
   int n;
   char text[480];
-} culprits;
-void culprit_add(culprits *c, const char *format, ...)
+} faults;
+void fault_add(faults *c, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /* " no. 17 at (0.5, 2)" for a number and raw or mesh coordinates. */
-void culprit_at(culprits *c, int dim, size_t no, const double *x);
+void fault_at(faults *c, int dim, size_t no, const double *x);
 /* "no. 17 and 18 at (0.5, 2)". */
-void culprit_pair(culprits *c, int dim, size_t one, size_t two,
-                  const double *x);
+void fault_pair(faults *c, int dim, size_t one, size_t two, const double *x);
 
-/* ERR_MESH if the log got errors since the start. */
+/* ERR_MESH if errors were added to the log since the start. */
 status build_check(const builder *b);
 
 /* The first of the items with a number, -1: none; numbers may repeat. */
 status numbers_index(number_table *t, int n, const size_t *no);
 int numbers_find(const number_table *t, size_t no);
-/* Two items with one number are told, but not two with one id. */
+/* Two items with one number are reported, but not two with one id. */
 status numbers_check(builder *b, const char *what, int n, const size_t *no,
                      const int *id);
 

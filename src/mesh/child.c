@@ -1,10 +1,10 @@
 /*
- * The child's side of the mesh reader: load libgmsh, mesh the geometry,
- * send what it holds. Every end of this file is _exit: nothing the parent
+ * The child's side of the mesh reader: load libgmsh, mesh the geometry, send
+ * what it holds. Every end of this file is _exit: nothing that the parent
  * registered or buffered may run or be written twice.
  *
- * libgmsh is loaded by the name that belongs to the header gmshc.h, whose
- * calls change from one minor version to the next.
+ * libgmsh is loaded by the name that belongs to the header gmshc.h, whose calls
+ * change from one minor version to the next.
  */
 #define _GNU_SOURCE /* memfd_create */
 #include "mesh/raw.h"
@@ -68,7 +68,7 @@ static void put(const child *c, const void *data, size_t n) {
   while (n > 0) {
     ssize_t w = write(c->fd, data, n);
     if (w < 0 && errno == EINTR) continue;
-    if (w <= 0) _exit(LEFT_BY_ITSELF); /* nobody reads any more */
+    if (w <= 0) _exit(LEFT_BY_ITSELF); /* the reader has closed the pipe */
     data = (const char *)data + w;
     n -= (size_t)w;
   }
@@ -92,7 +92,7 @@ static void send_text(const child *c, wire_kind kind, int dim, int tag,
   send(c, (wire_head){0, kind, dim, tag, strlen(text)}, text, 1);
 }
 
-/* gmsh names the file in full: put what the user wrote in its place. */
+/* gmsh uses the full name of the file: replace it by what the user wrote. */
 static void name_as_given(const child *c, char text[TEXT_SIZE]) {
   const char *file = c->request->source->file;
   char *at = c->path != NULL ? strstr(text, c->path) : NULL;
@@ -115,12 +115,13 @@ static void give_up(const child *c, status code, const char *format, ...) {
   _exit(0);
 }
 
-/* gmsh may leave by itself (Exit in a .geo): skip what the parent set up. */
+/* gmsh may exit by itself (Exit in a .geo): skip the exit handlers of the
+ * parent. */
 static void leave_at_once(void) { _exit(LEFT_BY_ITSELF); }
 
-/* Cut the process off: streams, signals, files of a crash; die with the
- * parent. What gmsh writes about its errors goes to error_fd, which never
- * blocks; what does not fit is lost. */
+/* Isolate the process: streams, signals, core files; it ends with the parent.
+ * The error output of gmsh goes to error_fd, which never blocks; what does not
+ * fit is lost. */
 static void detach(pid_t parent, int fd, int error_fd) {
   static const int signals[] = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT, SIGPIPE,
                                 SIGCHLD, SIGABRT, SIGSEGV, SIGFPE,  SIGBUS,
@@ -154,22 +155,22 @@ static void set_limit(unsigned what, double most) {
   setrlimit(what, &l);
 }
 
-/* A .geo is a program of the user, but one that ends and leaves memory to
- * others. Nothing in the environment or a home has a say in the mesh, and no
- * preferences are written: no folder can be made below a device. */
+/* A .geo is a program of the user, with limits of time and memory. Neither the
+ * environment nor files in the home folder affect the mesh, and no preferences
+ * are written: no folder can be made below a device. */
 static void confine(void) {
   limits l;
   limits_read("", &l);
   set_limit(RLIMIT_CPU, MOST_CPU);
-#ifndef __SANITIZE_ADDRESS__ /* it takes terabytes of addresses itself */
+#ifndef __SANITIZE_ADDRESS__ /* it reserves terabytes of addresses itself */
   set_limit(RLIMIT_DATA, l.memory);
 #endif
   clearenv();
   setenv("HOME", "/dev/null", 1);
 }
 
-/* Called by the C++ library in place of throwing bad_alloc, which gmsh would
- * swallow here and there; the parent knows the word. */
+/* Called by the C++ library instead of throwing bad_alloc, which gmsh would
+ * catch in places; the parent recognises the text. */
 static void no_memory(void) {
   static const char word[] = "\nstd::bad_alloc\n";
   ssize_t ignored = write(STDERR_FILENO, word, sizeof word - 1);
@@ -177,17 +178,17 @@ static void no_memory(void) {
   _exit(LEFT_BY_ITSELF);
 }
 
-/* Parts of gmsh in C do not look at what malloc answers. If not even a small
- * mesh would find room now, want of memory is taken for the reason. */
+/* Parts of gmsh in C do not check the result of malloc. If not even a small
+ * mesh would fit now, lack of memory is taken as the reason. */
 static void on_crash(int number) {
-  void *room = mmap(NULL, PROBE, PROT_READ | PROT_WRITE,
-                    MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (room == MAP_FAILED) no_memory();
+  void *probe = mmap(NULL, PROBE, PROT_READ | PROT_WRITE,
+                     MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (probe == MAP_FAILED) no_memory();
   signal(number, SIG_DFL);
   raise(number);
 }
 
-/* On a stack of its own: the old one may be what could not grow. */
+/* On a separate stack: the failure may be that the old one could not grow. */
 static void watch_crashes(void) {
   static const int crash[] = {SIGSEGV, SIGBUS, SIGABRT};
   stack_t stack = {.ss_sp = memory_new(1, CRASH_STACK), .ss_size = CRASH_STACK};
@@ -228,7 +229,7 @@ static void load(child *c) {
   watch_crashes();
 }
 
-/* gmsh failed in what it was doing: its last error tells the rest. */
+/* A step of gmsh failed: its last error gives the reason. */
 static void check(const child *c, int error, const char *doing) {
   if (!error) return;
   char *last = NULL;
@@ -236,7 +237,7 @@ static void check(const child *c, int error, const char *doing) {
   c->gmsh.LoggerGetLastError(&last, &ignored);
   int memory = last != NULL && strstr(last, "bad_alloc") != NULL;
   give_up(c, memory ? ERR_MEMORY : ERR_MESH, "gmsh fails to %s: %s", doing,
-          last != NULL && last[0] != '\0' ? last : "it does not say why");
+          last != NULL && last[0] != '\0' ? last : "no reason given");
 }
 
 static void set(const child *c, const char *option, double value) {
@@ -245,8 +246,8 @@ static void set(const child *c, const char *option, double value) {
   check(c, error, option);
 }
 
-/* Numbers for the .geo go in as on the command line of gmsh: they win over
- * what DefineConstant says, before the file is read. */
+/* Numbers for the .geo are set as on the command line of gmsh, before the file
+ * is read: they override DefineConstant. */
 static void start(const child *c) {
   const mesh_source *r = c->request->source;
   int n = r->n_number, error;
@@ -267,7 +268,8 @@ static void start(const child *c) {
       give_up(c, ERR_MEMORY, "memory exhausted: numbers for gmsh");
     argv[argc++] = value;
   }
-  /* The windows of gmsh would write preferences to /etc for root. */
+  /* The graphical interface of gmsh would write preferences to /etc for
+   * root. */
   const uid_t user = geteuid(), nobody = 65534;
   int changed = user == 0 && seteuid(nobody) == 0;
   c->gmsh.Initialize(argc, argv, 0, &error);
@@ -312,10 +314,10 @@ static void drop_counts(const child *c, const char *from, const char *to) {
                                       "Background Field"};
   FILE *in = fopen(from, "r"), *out = fopen(to, "w");
   char *line = NULL;
-  size_t room = 0;
+  size_t capacity = 0;
   if (in == NULL || out == NULL)
     give_up(c, ERR_MESH, "cannot copy the geometry to %s", to);
-  while (getline(&line, &room, in) > 0) {
+  while (getline(&line, &capacity, in) > 0) {
     int kept = 1;
     for (size_t i = 0; i < sizeof words / sizeof *words; ++i)
       kept &= strncmp(line, words[i], strlen(words[i])) != 0;
@@ -330,8 +332,8 @@ static void drop_counts(const child *c, const char *from, const char *to) {
 
 /*
  * Transfinite curves would keep their number of segments whatever the sizes.
- * Those of the kernel of gmsh itself cannot be set free in a model: the
- * geometry is written out plainly, read again without them.
+ * Those of the built-in kernel cannot be removed in a model: the geometry is
+ * written out and read again without them.
  */
 static void free_counts(const child *c) {
   int error;
@@ -378,7 +380,8 @@ static void set_sizes(const child *c) {
   memory_free(data);
 }
 
-/* 1: options beside the file (x.geo.opt), which gmsh would obey after it. */
+/* 1: there is an options file (x.geo.opt), which gmsh would execute after the
+ * file. */
 static int has_options(const char *path) {
   char name[PATH_MAX + 8];
   snprintf(name, sizeof name, "%s.opt", path);
@@ -389,12 +392,12 @@ static void refuse_options(const child *c, const char *path)
     __attribute__((noreturn));
 static void refuse_options(const child *c, const char *path) {
   give_up(c, ERR_MESH,
-          "options of gmsh stand beside %s, which it merges: %s.opt would be "
-          "obeyed; remove it, or Include the file in the place of Merge",
+          "%s is merged and has an options file of gmsh: %s.opt would be "
+          "executed; remove it, or Include the file in the place of Merge",
           path, path);
 }
 
-/* Options beside what the file merges, before gmsh sees them. */
+/* Options files of merged files, before gmsh reads them. */
 static void check_merged(const child *c) {
   geo_text g;
   status st = geo_read(c->request->source->file, &g);
@@ -404,7 +407,7 @@ static void check_merged(const child *c) {
   geo_free(&g);
 }
 
-/* The same for names that only gmsh can tell, by its log. */
+/* The same for names that only gmsh can evaluate, by its log. */
 static void check_log(const child *c, char *line) {
   static const char start[] = "Info: Reading '", end[] = ".opt'...";
   char *path = line + sizeof start - 1, *at = strstr(line, end);
@@ -414,9 +417,8 @@ static void check_log(const child *c, char *line) {
   *at = end[0];
 }
 
-/* Where there are such options the file is included by one that lives in
- * memory, beside which there is nothing; some meshes differ by a few elements
- * by that. */
+/* Where there are such options the file is included by a file in memory, which
+ * has no options file; a few elements of some meshes differ for that. */
 static void open_geo(child *c) {
   int error;
   char name[32];
@@ -424,14 +426,14 @@ static void open_geo(child *c) {
   c->path = realpath(c->request->source->file, NULL);
   int fd = memfd_create("protis", MFD_CLOEXEC);
   if (fd < 0 || c->path == NULL)
-    give_up(c, ERR_MESH, "cannot hand the geometry to gmsh: %s",
+    give_up(c, ERR_MESH, "cannot pass the geometry to gmsh: %s",
             strerror(errno));
   snprintf(name, sizeof name, "/proc/self/fd/%d", fd);
   const char *file = has_options(c->path) ? name : c->path;
   if (file == name && strpbrk(c->path, "\"\n\\") != NULL)
     give_up(c, ERR_MESH,
-            "a path with quotes or backslashes beside options of gmsh; "
-            "rename it or remove the options");
+            "the path has quotes or backslashes and there is an options file "
+            "of gmsh; rename it or remove the options file");
   dprintf(fd, "Include \"%s\";\n", c->path);
   c->gmsh.Open(file, &error);
   check(c, error, "read the file");
@@ -557,7 +559,7 @@ static void send_nodes(const child *c) {
   c->gmsh.Free(parameter);
 }
 
-/* gmsh goes on after some errors: what it made then is not to be trusted. */
+/* gmsh continues after some errors: the mesh is then not valid. */
 static void send_warnings(const child *c, const char *doing) {
   char **line;
   size_t n;

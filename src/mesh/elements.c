@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* An element whose measure is below this part of (longest edge)^dim is flat:
- * far below any sliver that can be computed with, far above rounding. */
+ * far below any usable sliver, far above rounding. */
 static const double flat = 1e-12;
 
 /* Type of the one kind of element of a dimension that is read: P1. */
@@ -77,7 +77,7 @@ static status count_items(builder *b) {
   return OK;
 }
 
-static void gather_block(builder *b, int block, culprits *unknown) {
+static void gather_block(builder *b, int block, faults *unknown) {
   const raw_block *p = &b->raw->block[block];
   int *corner = b->corner + p->n_per * (size_t)b->first[block];
   for (size_t i = 0; i < p->n_per * p->n; ++i) {
@@ -86,14 +86,14 @@ static void gather_block(builder *b, int block, culprits *unknown) {
     if (r >= 0)
       b->node_id[r] = 0;
     else
-      culprit_add(unknown, "node %zu of element %zu", p->node[i],
-                  p->no[i / p->n_per]);
+      fault_add(unknown, "node %zu of element %zu", p->node[i],
+                p->no[i / p->n_per]);
   }
 }
 
 /* Corners of the top elements as raw nodes; node_id marks the used ones. */
 status elements_gather(builder *b) {
-  culprits unknown = {0};
+  faults unknown = {0};
   PASS(check_types(b));
   PASS(count_items(b));
   PASS(nodes_index(b));
@@ -149,10 +149,10 @@ static void sort_corners(int *v, int n) {
     for (int j = i; j > 0 && v[j - 1] > v[j]; --j) swap(&v[j - 1], &v[j]);
 }
 
-/* Turn every element to positive orientation; flat ones are told. */
+/* Turn every element to positive orientation; flat ones are reported. */
 static status orient(builder *b) {
   mesh *m = b->m;
-  culprits bad = {0};
+  faults bad = {0};
   int n = m->dim + 1;
   double far = largest_coordinate(m);
   for (int e = 0; e < m->n_elem; ++e) {
@@ -166,7 +166,7 @@ static status orient(builder *b) {
     for (int i = 0; i < n; ++i)
       for (int k = 0; k < m->dim; ++k)
         centre[k] += m->x[(size_t)m->dim * (size_t)v[i] + (size_t)k] / n;
-    culprit_at(&bad, m->dim, m->elem_no[e], centre);
+    fault_at(&bad, m->dim, m->elem_no[e], centre);
   }
   if (bad.n > 0)
     message_add(b->log, P3022, b->at, "%d element(s) have no %s: %s", bad.n,
@@ -227,13 +227,13 @@ static int share_a_group(const raw_block *p, const raw_block *q) {
   return 0;
 }
 
-/* Version 2.2 lists an element once for each of its groups, not more. */
+/* Version 2.2 lists an element once for each of its groups. */
 static status check_repeated(builder *b, const top_list *t, const int *id) {
-  culprits bad = {0};
+  faults bad = {0};
   for (int i = 1; i < b->n_top; ++i)
     for (int j = i; j > 0 && same_corners(t, id[j - 1], id[i]); --j)
       if (share_a_group(block_of(b, id[j - 1]), block_of(b, id[i]))) {
-        culprit_add(&bad, "%zu and %zu", t->no[id[j - 1]], t->no[id[i]]);
+        fault_add(&bad, "%zu and %zu", t->no[id[j - 1]], t->no[id[i]]);
         break;
       }
   if (bad.n > 0)

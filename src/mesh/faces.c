@@ -52,7 +52,7 @@ static void find_centre(const builder *b, const raw_block *p, size_t i,
 }
 
 /* Number and place of low element j, for a message. */
-static void tell(const builder *b, int j, culprits *bad) {
+static void note_missing(const builder *b, int j, faults *bad) {
   int i = 0;
   while (b->raw->block[i].dim != b->m->dim - 1 || j < b->first[i] ||
          (size_t)(j - b->first[i]) >= b->raw->block[i].n)
@@ -61,11 +61,11 @@ static void tell(const builder *b, int j, culprits *bad) {
   size_t item = (size_t)(j - b->first[i]);
   double x[3];
   find_centre(b, p, item, x);
-  culprit_at(bad, b->m->dim, p->no[item], x);
+  fault_at(bad, b->m->dim, p->no[item], x);
 }
 
 /* Corners as mesh nodes; faces with nodes outside of the mesh go to bad. */
-static status gather(builder *b, face_list *f, culprits *bad) {
+static status gather(builder *b, face_list *f, faults *bad) {
   size_t dim = (size_t)f->dim;
   PASS_NEW(f->low, dim * (size_t)b->n_low);
   PASS_NEW(f->no, b->n_low);
@@ -82,7 +82,7 @@ static status gather(builder *b, face_list *f, culprits *bad) {
   for (int j = 0; j < b->n_low; ++j) {
     int *v = f->low + dim * (size_t)j;
     sort_corners(v, f->dim);
-    if (v[0] < 0) tell(b, j, bad);
+    if (v[0] < 0) note_missing(b, j, bad);
   }
   return OK;
 }
@@ -188,13 +188,13 @@ static status find_elements(builder *b, face_list *f) {
 status faces_finish(builder *b) {
   status st = OK;
   face_list f = {.dim = b->m->dim};
-  culprits alone = {0};
+  faults alone = {0};
   TRY(gather(b, &f, &alone));
   TRY(number_faces(b, &f));
   TRY(numbers_check(b, "face", b->n_low, f.no, b->face_of_low));
   TRY(find_elements(b, &f));
   for (int i = 0; i < b->m->n_face; ++i)
-    if (b->m->face_elem[i] < 0) tell(b, f.example[i], &alone);
+    if (b->m->face_elem[i] < 0) note_missing(b, f.example[i], &alone);
   if (alone.n > 0)
     message_add(b->log, P3030, b->at, "%d face(s) bound no element: %s",
                 alone.n, alone.text);

@@ -18,9 +18,9 @@ static status copy_name(const raw_group *g, const char **name) {
   char tag[16], *shown = NULL;
   snprintf(tag, sizeof tag, "%d", g->tag);
   const char *text = g->name[0] != '\0' ? g->name : tag;
-  size_t room = 4 * strlen(text) + 1;
-  PASS_NEW(shown, room);
-  text_shown(shown, room, text);
+  size_t size = 4 * strlen(text) + 1;
+  PASS_NEW(shown, size);
+  text_shown(shown, size, text);
   *name = shown;
   return OK;
 }
@@ -103,7 +103,7 @@ status groups_check(builder *b) {
 typedef struct filling { /* marks are all 0 between two groups */
   char *node_mark;       /* [n_node] */
   char *item_mark;       /* [max of n_elem, n_face] */
-  int *node, *item;      /* lists of the group at work */
+  int *node, *item;      /* lists of the current group */
   int n_node, n_item;
 } filling;
 
@@ -131,14 +131,14 @@ static void add_items(const builder *b, int block, filling *f) {
 
 /* Nodes of a block of points or, in 3-D, of curves. */
 static void add_nodes(const builder *b, const raw_block *p, filling *f,
-                      culprits *outside) {
+                      faults *outside) {
   for (size_t i = 0; i < p->n_per * p->n; ++i) {
     int r = nodes_find(b, p->node[i]);
     int id = r < 0 ? -1 : b->node_id[r];
     if (id >= 0)
       add(f->node_mark, f->node, &f->n_node, id);
     else
-      culprit_add(outside, "%zu", p->node[i]);
+      fault_add(outside, "%zu", p->node[i]);
   }
 }
 
@@ -150,7 +150,7 @@ static status take_list(int n, const int *list, char *mark, int **out) {
 }
 
 static status fill_group(builder *b, mesh_group *g, filling *f) {
-  culprits outside = {0};
+  faults outside = {0};
   f->n_node = f->n_item = 0;
   for (int i = 0; i < b->raw->n_block; ++i) {
     const raw_block *p = &b->raw->block[i];

@@ -76,7 +76,7 @@ double mesh_elem_measure(const mesh *m, int elem_id) {
   return (ab[0] * c[0] + ab[1] * c[1] + ab[2] * c[2]) / 6.0;
 }
 
-/* Root of a node in the forest of bodies; the path is halved on the way. */
+/* Root of a node in the forest of bodies; the path is halved on each search. */
 int forest_root(int *parent, int i) {
   while (parent[i] != i) {
     parent[i] = parent[parent[i]];
@@ -137,38 +137,37 @@ done:
 /* ---- messages of the steps ------------------------------------------------
  */
 
-void culprit_add(culprits *c, const char *format, ...) {
+void fault_add(faults *c, const char *format, ...) {
   if (++c->n > SHOWN + 1) return;
-  size_t used = strlen(c->text), room = sizeof c->text - used;
+  size_t used = strlen(c->text), left = sizeof c->text - used;
   if (c->n > SHOWN) {
-    snprintf(c->text + used, room, ", ...");
+    snprintf(c->text + used, left, ", ...");
     return;
   }
   if (c->n > 1) {
-    int n = snprintf(c->text + used, room, ", ");
-    used += (size_t)n < room ? (size_t)n : room - 1;
-    room = sizeof c->text - used;
+    int n = snprintf(c->text + used, left, ", ");
+    used += (size_t)n < left ? (size_t)n : left - 1;
+    left = sizeof c->text - used;
   }
   va_list args;
   va_start(args, format);
-  vsnprintf(c->text + used, room, format, args);
+  vsnprintf(c->text + used, left, format, args);
   va_end(args);
 }
 
-void culprit_at(culprits *c, int dim, size_t no, const double *x) {
+void fault_at(faults *c, int dim, size_t no, const double *x) {
   if (dim == 2)
-    culprit_add(c, "%zu at (%.6g, %.6g)", no, x[0], x[1]);
+    fault_add(c, "%zu at (%.6g, %.6g)", no, x[0], x[1]);
   else
-    culprit_add(c, "%zu at (%.6g, %.6g, %.6g)", no, x[0], x[1], x[2]);
+    fault_add(c, "%zu at (%.6g, %.6g, %.6g)", no, x[0], x[1], x[2]);
 }
 
-void culprit_pair(culprits *c, int dim, size_t one, size_t two,
-                  const double *x) {
+void fault_pair(faults *c, int dim, size_t one, size_t two, const double *x) {
   if (dim == 2)
-    culprit_add(c, "%zu and %zu at (%.6g, %.6g)", one, two, x[0], x[1]);
+    fault_add(c, "%zu and %zu at (%.6g, %.6g)", one, two, x[0], x[1]);
   else
-    culprit_add(c, "%zu and %zu at (%.6g, %.6g, %.6g)", one, two, x[0], x[1],
-                x[2]);
+    fault_add(c, "%zu and %zu at (%.6g, %.6g, %.6g)", one, two, x[0], x[1],
+              x[2]);
 }
 
 status build_check(const builder *b) {

@@ -3,7 +3,7 @@
  *
  * Nodes and elements are stored in an order that keeps neighbours close in
  * memory; node_no and elem_no are the numbers of the mesh file, the only ones
- * a user sees. Nodes that no element uses are not stored.
+ * shown to the user. Nodes that no element uses are not stored.
  */
 #ifndef PROTIS_MESH_MESH_H
 #define PROTIS_MESH_MESH_H
@@ -58,13 +58,14 @@ typedef struct mesh_source {
 
 /* 1: the file is a .geo, a program that gmsh runs; 0: it is read as data. */
 int mesh_is_program(const char *file);
-/* Read .msh (2.2, 4.1, ASCII, binary) or mesh a .geo. What is wrong with the
- * mesh goes to the log with "at" (the *MESH card) as place and the answer is
- * ERR_MESH; ERR_FILE if the file is missing, ERR_MEMORY. */
+/* Read .msh (2.2, 4.1, ASCII, binary) or mesh a .geo. Faults of the mesh go to
+ * the log with "at" (the *MESH card) as place and the status is ERR_MESH;
+ * ERR_FILE if the file is missing, ERR_MEMORY. */
 status mesh_read_gmsh(const mesh_source *source, const place *at,
                       message_log *log, mesh **out);
 /* The library of gmsh into this process, once: each mesh is made in a process
- * of its own, which else loads it again (0.2 s). Fails in silence. */
+ * of its own, which otherwise loads it again (0.2 s). Failures are not
+ * reported. */
 void mesh_gmsh_load(void);
 void mesh_free(mesh *m);
 

@@ -19,7 +19,7 @@ static const double same_place = 1e-10;
 /* z may vary by this part of the extent in a plane mesh (ASCII digits). */
 static const double plane_digits = 1e-9;
 
-/* Numbers without gaps find themselves at once; others are spread. */
+/* Numbers without gaps index a table directly; others are hashed. */
 static size_t slot_of(const number_table *t, size_t no) {
   size_t mask = ((size_t)1 << t->bits) - 1, upper = no >> t->bits;
   size_t s = (no + upper * (size_t)0x9E3779B97F4A7C15u) & mask;
@@ -52,13 +52,12 @@ status numbers_check(builder *b, const char *what, int n, const size_t *no,
                      const int *id) {
   status st = OK;
   number_table t = {0};
-  culprits bad = {0};
+  faults bad = {0};
   if (ascend(n, no)) return OK;
   TRY(numbers_index(&t, n, no));
   for (int i = 0; i < n; ++i) {
     int j = numbers_find(&t, no[i]);
-    if (j != i && (id == NULL || id[j] != id[i]))
-      culprit_add(&bad, "%zu", no[i]);
+    if (j != i && (id == NULL || id[j] != id[i])) fault_add(&bad, "%zu", no[i]);
   }
   if (bad.n > 0)
     message_add(b->log, P3029, b->at,
@@ -93,7 +92,8 @@ static uint64_t spread(uint32_t x, int dim) {
 static uint64_t on_curve(uint32_t *x, int dim) {
   for (int bit = CURVE_BITS - 1; bit > 0; --bit) {
     const uint32_t low = ((uint32_t)1 << bit) - 1;
-    for (int i = 0; i < dim; ++i) { /* without a branch: 40 to be missed */
+    for (int i = 0; i < dim;
+         ++i) { /* without a branch, which would be mispredicted */
       uint32_t is_set = 0 - ((x[i] >> bit) & 1), t = (x[0] ^ x[i]) & low;
       x[0] ^= (is_set & low) | (~is_set & t);
       x[i] ^= ~is_set & t;
@@ -107,9 +107,10 @@ static uint64_t on_curve(uint32_t *x, int dim) {
   return key;
 }
 
-/* Bounding box of the used nodes; what is not finite is told. */
+/* Bounding box of the used nodes; coordinates that are not finite are
+ * reported. */
 static status find_box(builder *b, double lo[3], double hi[3]) {
-  culprits bad = {0};
+  faults bad = {0};
   for (int k = 0; k < 3; ++k) {
     lo[k] = HUGE_VAL;
     hi[k] = -HUGE_VAL;
@@ -124,7 +125,7 @@ static status find_box(builder *b, double lo[3], double hi[3]) {
       lo[k] = fmin(lo[k], v);
       hi[k] = fmax(hi[k], v);
     }
-    if (!finite) culprit_at(&bad, 3, b->raw->node_no[i], x);
+    if (!finite) fault_at(&bad, 3, b->raw->node_no[i], x);
   }
   if (bad.n > 0)
     message_add(b->log, P3023, b->at,
@@ -213,7 +214,8 @@ status nodes_order(builder *b) {
   for (int k = 0; k < m->dim; ++k) m->size = fmax(m->size, hi[k] - lo[k]);
   PASS_NEW(key, m->n_node);
   PASS_NEW(id, m->n_node);
-  if (m->size == 0.0) { /* all in one point: the elements will tell */
+  if (m->size ==
+      0.0) { /* all in one point: the check of the elements reports it */
     for (size_t i = 0, n = 0; i < b->raw->n_node; ++i)
       if (b->node_id[i] >= 0) id[n++] = (int)i;
   } else {
@@ -251,7 +253,7 @@ static status body_of_nodes(const mesh *m, int *body_of) {
 /* Nodes at one place follow each other along the curve. */
 status nodes_coincident(builder *b) {
   const mesh *m = b->m;
-  culprits slit = {0}, touch = {0};
+  faults slit = {0}, touch = {0};
   OWNED int *body_of = NULL;
   for (int i = 1; i < m->n_node; ++i) {
     if (!coincide(m, i - 1, i)) continue;
@@ -260,8 +262,8 @@ status nodes_coincident(builder *b) {
       PASS(body_of_nodes(m, body_of));
     }
     const double *x = m->x + (size_t)m->dim * (size_t)i;
-    culprit_at(body_of[i - 1] == body_of[i] ? &slit : &touch, m->dim,
-               m->node_no[i], x);
+    fault_at(body_of[i - 1] == body_of[i] ? &slit : &touch, m->dim,
+             m->node_no[i], x);
   }
   if (slit.n > 0)
     message_add(b->log, P3041, b->at,

@@ -22,7 +22,7 @@
 typedef struct side_list {
   int n;         /* sides of elements; after check_sides, on the boundary */
   int *start;    /* [n_node+2] sides whose lowest node is i */
-  uint64_t *key; /* [n] the other nodes, which way they turn */
+  uint64_t *key; /* [n] the other nodes, their orientation */
   int *id;       /* [n] (dim+1) * element + side */
 } side_list;
 
@@ -42,7 +42,8 @@ static void two_lowest(int n, const int *w, int low[2]) {
   }
 }
 
-/* Two elements on both sides of a face turn it in opposite ways: last bit. */
+/* Two elements on both sides of a face have opposite orientations of it: last
+ * bit. */
 static uint64_t side_key(int dim, const int *v) {
   int a = v[dim - 2], c = v[dim - 1], turn = a < c;
   uint64_t low = (uint64_t)(turn ? a : c), high = (uint64_t)(turn ? c : a);
@@ -74,7 +75,7 @@ static status gather_sides(const mesh *m, side_list *s) {
 
 /* The sides [n] of elements at one face. */
 static void check_face(const mesh *m, const uint64_t *key, const int *id, int n,
-                       culprits *bad) {
+                       faults *bad) {
   int first[2] = {-1, -1}, v[3];
   for (int i = 0; i < n; ++i) {
     int t = key[i] & 1;
@@ -87,8 +88,8 @@ static void check_face(const mesh *m, const uint64_t *key, const int *id, int n,
     for (int j = 0; j < m->dim; ++j)
       for (int k = 0; k < m->dim; ++k)
         x[k] += m->x[(size_t)m->dim * (size_t)v[j] + (size_t)k] / m->dim;
-    culprit_pair(bad, m->dim, m->elem_no[first[t] / (m->dim + 1)],
-                 m->elem_no[id[i] / (m->dim + 1)], x);
+    fault_pair(bad, m->dim, m->elem_no[first[t] / (m->dim + 1)],
+               m->elem_no[id[i] / (m->dim + 1)], x);
     return;
   }
 }
@@ -96,7 +97,7 @@ static void check_face(const mesh *m, const uint64_t *key, const int *id, int n,
 /* What stays in the list are the sides without an element behind. */
 static status check_sides(const builder *b, side_list *s) {
   const mesh *m = b->m;
-  culprits bad = {0};
+  faults bad = {0};
   s->n = 0;
   for (int i = 0; i < m->n_node; ++i) {
     int end = s->start[i + 1];
@@ -153,8 +154,8 @@ static void edge(const pair *p, int i, int from, int to, double *d) {
   for (int k = 0; k < 3; ++k) d[k] = p->x[i][to][k] - p->x[i][from][k];
 }
 
-/* Whether the elements lie side by side along a x b. An axis along which
- * rounding hides one of them tells nothing. */
+/* Whether the elements lie side by side along a x b. An axis along which one of
+ * them is below rounding decides nothing. */
 static int apart(const pair *p, const double *a, const double *b) {
   double lo[2], hi[2], axis[3];
   for (int k = 0; k < 3; ++k)
@@ -173,7 +174,7 @@ static int apart(const pair *p, const double *a, const double *b) {
   return width > noise && deep <= touching * width + noise;
 }
 
-/* 1: a plane along a side of element i parts them. */
+/* 1: a plane along a side of element i separates them. */
 static int side_parts(const pair *p, int i) {
   static const double z[3] = {0.0, 0.0, 1.0};
   double a[3], b[3];
@@ -276,7 +277,7 @@ typedef struct search {
                  "from" */
   int from;   /* on are compared with it */
   box at;
-  culprits same, other; /* in one body or group; what may be two bodies */
+  faults same, other; /* in one body or group; what may be two bodies */
 } search;
 
 static int by_id(const void *p, const void *q) {
@@ -348,8 +349,8 @@ static status compare(search *s, int f) {
   for (int i = 0; i <= m->dim; ++i)
     for (int k = 0; k < m->dim; ++k)
       x[k] += m->x[(size_t)m->dim * (size_t)v[i] + (size_t)k] / (m->dim + 1);
-  culprit_pair(together ? &s->same : &s->other, m->dim, m->elem_no[e],
-               m->elem_no[f], x);
+  fault_pair(together ? &s->same : &s->other, m->dim, m->elem_no[e],
+             m->elem_no[f], x);
   return OK;
 }
 
@@ -416,7 +417,7 @@ static status find_pieces(const mesh *m, const side_list *sides, int *piece) {
   return OK;
 }
 
-/* One element of each piece of the boundary with those below the skin. */
+/* One element of each piece of the boundary with the interior elements. */
 static status check_inside(search *s, const side_list *sides,
                            const char *is_skin) {
   const mesh *m = s->b->m;

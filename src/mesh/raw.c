@@ -1,6 +1,6 @@
 /*
- * The parent's side of the mesh reader: start the child, take its records,
- * and tell from its end what went wrong.
+ * The parent's side of the mesh reader: start the child, take its records, and
+ * derive the reason of a failure from its exit status.
  */
 #include "mesh/raw.h"
 
@@ -64,8 +64,8 @@ static status copy_items(const wire_head *head, uint64_t wanted, void *to,
 /* A new block, group or warning: the lists grow by doubling. */
 static void *list_item(void *list, int n, size_t size) {
   if (n > 0 && (n < 8 || (n & (n - 1)) != 0)) return list;
-  size_t room = n < 8 ? 8 : 2 * (size_t)n;
-  return memory_resize(list, (size_t)n, room, size);
+  size_t capacity = n < 8 ? 8 : 2 * (size_t)n;
+  return memory_resize(list, (size_t)n, capacity, size);
 }
 
 #define APPEND(list, n)                                                   \
@@ -116,7 +116,7 @@ static status store(raw_mesh *raw, const wire_head *head, void **payload) {
   return OK;
 }
 
-/* All that the later steps rely on: every array is there. */
+/* What the later steps require: every array is present. */
 static status check_complete(const raw_mesh *raw) {
   if (raw->node_no == NULL || raw->xyz == NULL)
     RAISE(ERR_MESH, "the mesh reader sent no nodes");
@@ -159,7 +159,7 @@ done:
   return st;
 }
 
-/* The last line of gmsh that tells an error, else its last line. */
+/* The last line of gmsh that reports an error, else its last line. */
 static void last_error(const char *text, char *last, size_t size) {
   last[0] = '\0';
   int found = 0;
@@ -187,7 +187,7 @@ static status child_failure(int ended, int code, int error_fd) {
   OWNED char *text = NULL;
   char last[LAST_SIZE];
   PASS_NEW(text, TAIL_SIZE + 1);
-  /* What gmsh started itself may hold the other end: do not wait for it. */
+  /* A process started by gmsh may hold the other end: do not wait for it. */
   fcntl(error_fd, F_SETFL, O_NONBLOCK);
   read_bytes(error_fd, text, TAIL_SIZE);
   last_error(text, last, sizeof last);
@@ -196,14 +196,14 @@ static status child_failure(int ended, int code, int error_fd) {
   if (tells_of_memory(text))
     RAISE(ERR_MEMORY,
           "gmsh ran out of memory while reading the mesh; a damaged file may "
-          "ask for too much");
+          "require too much");
   if (killed && WTERMSIG(code) == SIGKILL)
     RAISE(ERR_MEMORY,
-          "gmsh was killed while reading the mesh: the system has not the "
-          "memory, or somebody killed it%s%s",
+          "gmsh was killed while reading the mesh: the system is out of "
+          "memory, or the process was killed%s%s",
           said, last);
   if (killed)
-    RAISE(ERR_MESH, "gmsh died of signal %d (%s)%s%s", WTERMSIG(code),
+    RAISE(ERR_MESH, "gmsh was ended by signal %d (%s)%s%s", WTERMSIG(code),
           strsignal(WTERMSIG(code)), said, last);
   RAISE(ERR_MESH, "gmsh ended by itself before the mesh was complete%s%s", said,
         last);
@@ -215,7 +215,7 @@ static void close_end(int *end) {
   *end = -1;
 }
 
-/* Where standard streams are closed, a pipe would take their place. */
+/* Where standard streams are closed, a pipe would get their descriptors. */
 static void leave_standard(int *end) {
   if (*end > STDERR_FILENO) return;
   int other = fcntl(*end, F_DUPFD, STDERR_FILENO + 1);
@@ -264,7 +264,7 @@ status raw_read(const raw_request *request, raw_mesh **out) {
   close_end(&error[1]);
   st = raw_receive(data[0], raw, &stopped);
   close_end(&data[0]);
-  if (!stopped) kill(pid, SIGKILL); /* it has nothing more to say */
+  if (!stopped) kill(pid, SIGKILL); /* its output has ended */
   int ended = wait_for(pid, &code);
   if (stopped) st = child_failure(ended, code, error[0]);
 done:

@@ -1,8 +1,8 @@
 /*
- * The mesh of a .geo on its way from gmsh. Inside src/mesh only.
+ * The mesh of a .geo as gmsh sends it. Inside src/mesh only.
  *
  * gmsh meshes a .geo in a child process that ends with it: it may crash, run
- * out of memory or leave by itself, and its libraries cost nothing later. The
+ * out of memory or exit by itself, and its libraries take no memory later. The
  * child sends records through a pipe: a head, then n items of one size.
  */
 #ifndef PROTIS_MESH_RAW_H
@@ -26,7 +26,7 @@
   X(ELEM_NODE, size_t)                                                        \
   X(LOOSE,     size_t)                                                        \
   X(WARNING,   char)                                                          \
-  X(FAILURE,   char)    /* why there is no mesh; head: status as tag */ \
+  X(FAILURE,   char)    /* reason why there is no mesh; head: status as tag */ \
   X(END,       char)
 /* clang-format on */
 
@@ -46,8 +46,8 @@ typedef struct raw_request {
   int is_solid; /* of the kernel OpenCASCADE */
 } raw_request;
 
-/* Let a child process mesh a .geo. What fails is told in the record:
- * ERR_MEMORY for want of memory on either side, else ERR_MESH. */
+/* Let a child process mesh a .geo. The record says what failed: ERR_MEMORY for
+ * lack of memory on either side, else ERR_MESH. */
 status raw_read(const raw_request *request, raw_mesh **out);
 /* Parent's end of the pipe: everything up to END. ERR_MESH if the stream
  * stops before (*stopped = 1) or holds what is no record. */

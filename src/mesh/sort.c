@@ -1,6 +1,6 @@
 /*
- * Least significant digit first, 11 bits at a time; digits that are the same
- * in all keys are passed over. Runs of equal keys by qsort_r.
+ * Least significant digit first, 11 bits at a time; digits that are the same in
+ * all keys are skipped. Runs of equal keys by qsort_r.
  */
 #define _GNU_SOURCE /* qsort_r */
 #include "mesh/sort.h"

@@ -92,7 +92,7 @@ done:
 status job_foresee(const job_input *in, int n) {
   plan_bytes b;
   PASS(plan_memory(in->m, in->msh, n, &b));
-  return memory_foresee(b.factor + b.contact + b.rest, "the run");
+  return memory_require(b.factor + b.contact + b.rest, "the run");
 }
 
 int job_is_geo(const model *m) {

@@ -256,5 +256,5 @@ double strains_energy(const run *r) {
   if (v == NULL || !v->sums.known)
     return domain_strain_energy(&r->body.d, r->now.u);
   return v->sums.strain +
-         domain_energy_beside(&r->body.d, v->x.n, v->elem, r->now.u);
+         domain_energy_without(&r->body.d, v->x.n, v->elem, r->now.u);
 }

@@ -17,7 +17,7 @@
  * 2011). The weights add up to one, so r = A u - f (or u = W r + q) is carried
  * along by the same combination without a product.
  *
- * A combination after which a sweep moves farther than before is taken back.
+ * A combination after which a sweep moves farther than before is rejected.
  */
 #include "base/memory.h"
 #include "solver/local.h"
@@ -27,10 +27,10 @@
 #include <math.h>
 #include <string.h>
 
-typedef enum { BY_AITKEN, BY_ANDERSON, BY_NOTHING } acceleration_way;
+typedef enum { BY_AITKEN, BY_ANDERSON, BY_NOTHING } acceleration_kind;
 
 typedef struct aitken {
-  int acceleration; /* acceleration_way */
+  int acceleration; /* acceleration_kind */
 } aitken;
 
 /* clang-format off */
@@ -46,11 +46,11 @@ enum {
   DEPTH = 12,     /* differences of Anderson's mixing */
   PLAIN = 6,      /* sweeps from one step of Aitken to the next */
   REFRESH = 64,   /* sweeps from one product to the next */
-  PATIENCE = 400, /* sweeps without a lower residual before a cure */
+  PATIENCE = 400, /* sweeps without a lower residual before a remedy */
   OFTEN = 20      /* one old pattern in so many sweeps is a cycle */
 };
 static const double PROGRESS = 0.9;    /* a lower residual is lower by this */
-static const double FARTHER = 4.0;     /* -, growth of |F|^2 that is borne */
+static const double FARTHER = 4.0;     /* -, growth of |F|^2 that is accepted */
 static const double DEPENDENT = 1e-14; /* -, of |dF|^2: adds nothing */
 
 typedef struct aitken_work {
@@ -99,18 +99,18 @@ done:
   return st;
 }
 
-/* A run: the sweeps, and what is kept of them. */
+/* A run: the sweeps and their stored data. */
 typedef struct run {
   relaxation sweep;
   aitken_work *w;
   double *x, *y; /* unknown and what is carried: u and r, or r and u */
   int m, depth, period;
   int kept, newest; /* differences; place of the newest */
-  int started;      /* w->x, w->y, w->defect are there */
+  int started;      /* w->x, w->y, w->defect are valid */
   int combined;     /* the sweep started from a combination */
   double moved;     /* |F|^2 of the sweep before */
   double mark;      /* residual at the last progress */
-  int since, cures; /* sweeps since; cures tried */
+  int since, cures; /* sweeps since; remedies tried */
   int circling;     /* of these sweeps those that left an old pattern */
   state_watch watch;
   int symmetric; /* every other sweep backward */
@@ -211,10 +211,10 @@ static void accelerate(run *s, int k) {
   if (s->kept > 0 && k % s->period == 0) combine(s);
 }
 
-/* ---- control
- * ---------------------------------------------------------------*/
+/* ---- control ------------------------------------------------------------ */
 
-/* No progress for long: sweep both ways, then shorter steps. 0: no cure left.
+/* No progress for long: alternate forward and backward sweeps, then shorter
+ * steps. 0: no remedy left.
  */
 static int cure(run *s) {
   static const double shorter[] = {1.0, 0.6, 0.3};
@@ -227,7 +227,7 @@ static int cure(run *s) {
   return 1;
 }
 
-/* A body on its way to its obstacles is not led by differences. */
+/* A body in free motion to its obstacles is not extrapolated. */
 static void steer(run *s, int k) {
   int flies = k % PLAIN == 0 ? relaxation_fly(&s->sweep, s->w->before) : 0;
   if (flies > 1) s->since = s->circling = 0;
@@ -256,7 +256,7 @@ static outcome sweeps(run *s, const solver_control *control,
     }
     solver_keep_best(&s->w->best, s->m, residual, z->u, z->r);
     int cycle = state_watch_returns(&s->watch, z);
-    solver_tell_states(control, "aitken", k, residual, z->turned, cycle);
+    solver_report_states(control, "aitken", k, residual, z->turned, cycle);
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= control->tol) return CONVERGED;
     ++s->since;
@@ -305,19 +305,18 @@ const solver_ops aitken_solver = {
   .help =
     "Gauss-Seidel sweeps with Aitken's acceleration. The nodes are visited\n"
     "one after the other, each solved exactly with the others held (closed\n"
-    "form in 2-D, the true friction disc in 3-D, the sliding limit\n"
-    "following the pressure in the sweep). ACCELERATION=AITKEN extrapolates\n"
-    "every sixth sweep by the vector form of Irons and Tuck, x+ = G - F\n"
-    "(F.dF)/(dF.dF), F the change made by a sweep, dF its difference from\n"
-    "the one before, in the metric of the diagonal of A.\n"
-    "ACCELERATION=ANDERSON combines the last twelve sweeps after every\n"
-    "sweep so that the linearised change is least. A step after which the\n"
-    "sweep moves farther is taken back, so the safety of Gauss-Seidel is\n"
-    "kept; there is no factor to choose. Where plain sweeps cycle they are\n"
-    "made forward and backward in turn, then shortened. Costs one product\n"
-    "with the matrix a sweep. Choose it when the compliance alone is known\n"
-    "or is singular, when the direct methods fail, or for a few digits of a\n"
-    "very large problem.",
+    "form in 2-D, the true friction disc in 3-D, the sliding limit following\n"
+    "the pressure in the sweep). ACCELERATION=AITKEN extrapolates every sixth\n"
+    "sweep by the vector form of Irons and Tuck, x+ = G - F (F.dF)/(dF.dF), F\n"
+    "the change made by a sweep, dF its difference from the one before, in\n"
+    "the metric of the diagonal of A. ACCELERATION=ANDERSON combines the last\n"
+    "twelve sweeps after every sweep so that the linearised change is least.\n"
+    "A step after which the sweep moves farther is rejected, so the method is\n"
+    "as safe as Gauss-Seidel; there is no factor to choose. Where plain\n"
+    "sweeps cycle they are made forward and backward in turn, then shortened.\n"
+    "Costs one product with the matrix a sweep. Choose it when only the\n"
+    "compliance is known or is singular, when the direct methods fail, or for\n"
+    "a few digits of a very large problem.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
   .param_size = sizeof(aitken),
   .options = aitken_options,

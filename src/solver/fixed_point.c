@@ -11,18 +11,18 @@ enum {
   DEPTH = 4,     /* differences mixed */
   PASSES = 200,  /* default limit */
   PATIENCE = 30, /* passes without a lower residual */
-  IDLE = 2       /* iterations of a pass that did nothing */
+  IDLE = 2       /* iterations of a pass without effect */
 };
 static const double PROGRESS = 0.9; /* -, a lower residual */
-static const double FINEST = 0.1; /* -, of the tolerance: a pass asks no more */
-static const double COARSE = 0.9; /* -, of it: enough where passes stagnate */
+static const double FINEST = 0.1;   /* -, of the tolerance: enough for a pass */
+static const double COARSE = 0.9;   /* -, of it: enough where passes stagnate */
 static const double MIXING_RATE = 0.2;     /* -, slower: mix */
 static const double RATE_MARGIN = 0x1p-24; /* -, of |g|: shorter differences
                                               are rounding */
 static const double SHORTEST_STEP = 1.0 / 32.0; /* -, of G(g) - g */
 
 struct fixed_point {
-  int n, kept;             /* nodes; differences now kept */
+  int n, kept;             /* nodes; differences now stored */
   double *g, *image;       /* [n] limit of the pass and G(g), N */
   double *last_g, *last_G; /* [n] pass accepted last */
   double *dg, *dG;         /* [n*DEPTH] differences of passes, newest first */
@@ -75,7 +75,7 @@ static double keep_difference(fixed_point *fp, const double *g,
 }
 
 /* Least squares |F - dF x| of the defects F = G(g) - g by elimination on the
- * kept differences (dependent ones are left out); x[DEPTH]. */
+ * stored differences (dependent ones are left out); x[DEPTH]. */
 static void mixing_weights(const fixed_point *fp, double *x) {
   int n = fp->n, k = fp->kept;
   double N[DEPTH][DEPTH + 1];
@@ -105,7 +105,7 @@ static void mixing_weights(const fixed_point *fp, double *x) {
   }
 }
 
-/* Next limit: g + step (G - g), mixed with the kept differences. */
+/* Next limit: g + step (G - g), mixed with the stored differences. */
 static void next_limit(const fixed_point *fp, double step, int mixed,
                        double *g) {
   double x[DEPTH] = {0.0};
@@ -162,8 +162,8 @@ static double relative_change(const fixed_point *fp) {
   return size > 0.0 ? change / size : change > 0.0 ? 1.0 : 0.0;
 }
 
-static void tell(const solver_control *control, const solver_report *rep,
-                 double change) {
+static void report_pass(const solver_control *control, const solver_report *rep,
+                        double change) {
   const solver_listener *l = control->listener;
   if (l == NULL || l->step == NULL) return;
   solver_step s = {.solver = "limit",
@@ -175,7 +175,7 @@ static void tell(const solver_control *control, const solver_report *rep,
   l->step(l->ctx, &s);
 }
 
-/* How the passes go on. */
+/* State of the passes. */
 typedef struct course {
   double step;      /* share of G(g) - g taken */
   double defect;    /* |G(g) - g| of the last accepted pass, N */
@@ -185,7 +185,7 @@ typedef struct course {
   int grown, since; /* passes with a growing defect; since the last progress */
 } course;
 
-/* Take the pass just made as the point to go on from. */
+/* Accept the pass just made. */
 static void accept(fixed_point *fp, course *c, double defect, int first) {
   size_t bytes = (size_t)fp->n * sizeof *fp->g;
   double seen = first ? 0.0 : keep_difference(fp, fp->last_g, fp->last_G);
@@ -195,8 +195,8 @@ static void accept(fixed_point *fp, course *c, double defect, int first) {
   memcpy(fp->last_G, fp->image, bytes);
 }
 
-/* Judge the pass just made; choose the limit of the next one into fp->g.
- * 0: no way on. */
+/* Check the pass just made; set the limit of the next one in fp->g. 0: no
+ * further pass. */
 static int advance(fixed_point *fp, course *c, double residual, int first) {
   double defect = 0.0;
   for (int i = 0; i < fp->n; ++i)
@@ -250,7 +250,7 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
   pass p = {inner, *control};
   course c = {.step = 1.0, .lowest = HUGE_VAL};
   int passes = control->limit_max_iter > 0 ? control->limit_max_iter : PASSES;
-  double change = 1.0, rounding = 0.0; /* what a pass could not go below */
+  double change = 1.0, rounding = 0.0; /* lowest residual of a pass */
   int before = 0;
   fp->kept = 0;
   *rep = (solver_report){.outcome = STOPPED_ITERATIONS};
@@ -261,7 +261,8 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
       goto done;
     }
     rep->limit_updates = p.control.limit_update = k;
-    /* no finer than the limit is known; finer if the last pass did nothing */
+    /* not finer than the accuracy of the limit; finer if the last pass had no
+     * effect */
     int idle = rep->iterations - before <= IDLE;
     double wanted = fmin(1e-2 * change, idle ? 0.1 * c.lowest : HUGE_VAL);
     before = rep->iterations;
@@ -277,7 +278,7 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
     contact_limit(cp, r, fp->image);
     rep->residual = contact_residual(cp, u, r);
     change = relative_change(fp);
-    tell(control, rep, change);
+    report_pass(control, rep, change);
     rep->outcome = CONVERGED;
     if (rep->residual <= control->tol) goto done;
     rep->outcome = inner_outcome < 0 ? inner_outcome : STOPPED_STAGNATION;

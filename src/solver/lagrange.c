@@ -29,10 +29,10 @@
 #include <string.h>
 
 typedef struct lagrange {
-  int acceleration; /* acceleration_way */
+  int acceleration; /* acceleration_kind */
 } lagrange;
 
-typedef enum { BY_NESTEROV, BY_NOTHING } acceleration_way;
+typedef enum { BY_NESTEROV, BY_NOTHING } acceleration_kind;
 
 /* clang-format off */
 static const option lagrange_options[] = {
@@ -127,7 +127,7 @@ typedef struct run {
   int accelerated, since;
 } run;
 
-/* u and x again from r, as exactly as A allows; c is what W r leaves over. */
+/* u and x again from r, as exactly as A allows; c = u - o - W r. */
 static void refresh(run *s) {
   lagrange_work *w = s->w;
   force_set_displacement(w->set, s->r, s->u);
@@ -138,8 +138,8 @@ static void refresh(run *s) {
   }
 }
 
-/* Residual at (r, x), told and judged; RUNNING: go on. */
-static outcome judge(run *s, int k) {
+/* Residual at (r, x), reported and checked; RUNNING: continue. */
+static outcome check(run *s, int k) {
   const contact_problem *cp = s->cp;
   for (int i = 0; i < cp->m; ++i) s->u[i] = s->w->x[i] + s->w->set->origin[i];
   double residual = contact_mismatch(cp, s->scale, s->u, s->r, NULL);
@@ -148,7 +148,7 @@ static outcome judge(run *s, int k) {
     residual = contact_mismatch(cp, s->scale, s->u, s->r, NULL);
   }
   solver_keep_best(&s->w->best, cp->m, residual, s->u, s->r);
-  solver_tell(s->control, "lagrange", k, residual);
+  solver_report_step(s->control, "lagrange", k, residual);
   if (isnan(residual)) return STOPPED_NAN;
   if (residual <= s->control->tol) return CONVERGED;
   if (residual < PROGRESS * s->mark) {
@@ -208,7 +208,7 @@ static outcome steps(run *s, solver_report *rep) {
   force_set_fit(w->set, s->cp);
   force_set_project(w->set, 0.0, s->r);
   refresh(s);
-  outcome o = judge(s, 0);
+  outcome o = check(s, 0);
   for (int k = 1; k <= limit && o == RUNNING; ++k) {
     rep->iterations = k;
     extrapolate(s, theta);
@@ -221,7 +221,7 @@ static outcome steps(run *s, solver_report *rep) {
       theta = 0.0;
       continue;
     }
-    o = judge(s, k);
+    o = check(s, k);
     if (turns(s) || !s->accelerated) s->t = 1.0;
     double next = 0.5 * (1.0 + sqrt(1.0 + 4.0 * s->t * s->t));
     theta = (s->t - 1.0) / next;
@@ -262,19 +262,19 @@ const solver_ops lagrange_solver = {
   .reference = "CPR98, 3.3; Uzawa 1958; Nesterov 1983",
   .family = "multipliers",
   .help =
-    "Lagrangian method (Uzawa): the forces of contact are multipliers,\n"
-    "moved by r <- P(r - rho D (u - o)), A u = f + r, with o the gap and\n"
-    "the stick position, D the inverse diagonal of the compliance and P the\n"
-    "projection on r_n <= 0 and the disc |r_t| <= g. The step rho comes\n"
-    "from the largest eigenvalue of the compliance and is checked at every\n"
-    "step, so there is nothing to choose. ACCELERATION=NESTEROV\n"
-    "extrapolates the forces and begins again when the step turns; NONE is\n"
-    "Uzawa's method as it was written. The sliding limit is updated around\n"
-    "it (CPR98, 2.3). Needs the compliance (an inverse, once per matrix); a\n"
-    "body that contact alone holds is held by soft springs on its motions,\n"
-    "which follow it until they carry nothing. One product a step, many\n"
-    "steps: it is here for comparison and as the method that cannot fail on\n"
-    "a Tresca problem; PCG solves the same problem in far fewer products.",
+    "Lagrangian method (Uzawa): the forces of contact are multipliers, moved\n"
+    "by r <- P(r - rho D (u - o)), A u = f + r, with o the gap and the stick\n"
+    "position, D the inverse diagonal of the compliance and P the projection\n"
+    "on r_n <= 0 and the disc |r_t| <= g. The step rho comes from the largest\n"
+    "eigenvalue of the compliance and is checked at every step, so there is\n"
+    "nothing to choose. ACCELERATION=NESTEROV extrapolates the forces and\n"
+    "begins again when the step turns; NONE is Uzawa's original method. The\n"
+    "sliding limit is updated around it (CPR98, 2.3). Needs the compliance\n"
+    "(an inverse, once per matrix); a body that contact alone holds is held\n"
+    "by soft springs on its rigid motions, which follow it until they carry\n"
+    "nothing. One product a step, many steps: it is for comparison and as a\n"
+    "method that always converges on a Tresca problem; PCG solves the same\n"
+    "problem in far fewer products.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
   .param_size = sizeof(lagrange),
   .options = lagrange_options,

@@ -8,9 +8,9 @@
 
 enum { ROOT_STEPS = 100 };
 
-/* A state computed, and by how much it misses its inequalities, N. */
+/* A state computed, and the violation of its inequalities, N. */
 typedef struct candidate {
-  double d[3], r[3], miss;
+  double d[3], r[3], violation;
 } candidate;
 
 static double positive(double a) { return a > 0.0 ? a : 0.0; }
@@ -183,14 +183,14 @@ static void try_open(const local_problem *lp, candidate *c) {
     solve_free(lp, 1u, c->d);
     c->r[0] = 0.0;
   }
-  c->miss = lp->K[0] * positive(lp->at[0] + c->d[0]);
+  c->violation = lp->K[0] * positive(lp->at[0] + c->d[0]);
 }
 
 static void try_stick(const local_problem *lp, candidate *c) {
   for (int k = 0; k < lp->dim; ++k) c->d[k] = -lp->at[k];
   reaction(lp, c->d, c->r);
   double over = size_of(lp, c->r) - positive(lp->g0 - lp->mu * c->r[0]);
-  c->miss = positive(over) + positive(c->r[0]);
+  c->violation = positive(over) + positive(c->r[0]);
 }
 
 static void try_slip(const local_problem *lp, candidate *c) {
@@ -214,8 +214,8 @@ static void try_slip(const local_problem *lp, candidate *c) {
     for (int k = 1; k < d; ++k) c->r[k] = 0.0;
   double g = positive(lp->g0 - lp->mu * c->r[0]), dot = 0.0;
   for (int k = 1; k < d; ++k) dot += c->r[k] * (lp->at[k] + c->d[k]);
-  c->miss = positive(c->r[0]) + fabs(size_of(lp, c->r) - g);
-  if (dot > 0.0) c->miss += size_of(lp, c->r);
+  c->violation = positive(c->r[0]) + fabs(size_of(lp, c->r) - g);
+  if (dot > 0.0) c->violation += size_of(lp, c->r);
 }
 
 /* A frictionless node at two or three obstacles: every set of closed ones. */
@@ -224,7 +224,7 @@ static local_state solve_bounded(const local_problem *lp, double *d,
   double best = HUGE_VAL;
   unsigned n_set = 1u << lp->dim, chosen = 0;
   for (unsigned closed = 0; closed < n_set; ++closed) {
-    candidate c = {.miss = 0.0};
+    candidate c = {.violation = 0.0};
     int possible = 1;
     for (int k = 0; k < lp->dim; ++k)
       if (closed >> k & 1u) {
@@ -236,14 +236,14 @@ static local_state solve_bounded(const local_problem *lp, double *d,
     reaction(lp, c.d, c.r);
     for (int k = 0; k < lp->dim; ++k)
       if (closed >> k & 1u) {
-        c.miss += positive(c.r[k]);
+        c.violation += positive(c.r[k]);
       } else {
         c.r[k] = 0.0;
-        c.miss += lp->K[k + lp->dim * k] *
-                  positive(lp->at[k] + c.d[k] - lp->bound[k]);
+        c.violation += lp->K[k + lp->dim * k] *
+                       positive(lp->at[k] + c.d[k] - lp->bound[k]);
       }
-    if (!(c.miss < best)) continue;
-    best = c.miss;
+    if (!(c.violation < best)) continue;
+    best = c.violation;
     chosen = closed;
     for (int k = 0; k < lp->dim; ++k) {
       d[k] = c.d[k];
@@ -268,11 +268,11 @@ local_state local_solve(const local_problem *lp, local_state before, double *d,
       hypot(lp->b[0], size_of(lp, lp->b)) + fabs(lp->K[0] * lp->at[0]);
   local_state found = before;
   for (int i = 0; i < 3; ++i) {
-    candidate c = {.miss = 0.0};
+    candidate c = {.violation = 0.0};
     if (frictionless && order[before][i] == LOCAL_STICK) continue;
     attempt[order[before][i]](lp, &c);
-    if (!(c.miss < best) && i > 0) continue;
-    best = c.miss;
+    if (!(c.violation < best) && i > 0) continue;
+    best = c.violation;
     found = order[before][i];
     for (int k = 0; k < lp->dim; ++k) {
       d[k] = c.d[k];

@@ -6,8 +6,8 @@
  *   x_n <= 0, r_n <= 0, x_n r_n = 0,
  *   |r_t| <= g, r_t = -g x_t/|x_t| on slip,   g = max(0, g0 - mu r_n),
  *
- * K symmetric positive definite. It is posed in the step d of the node: what d
- * and r are is not lost beside a long way to the gap or to where it sticks.
+ * K symmetric positive definite. It is posed in the step d of the node: d and r
+ * do not lose digits to a large distance to the gap or to the stick position.
  */
 #ifndef PROTIS_SOLVER_LOCAL_H
 #define PROTIS_SOLVER_LOCAL_H
@@ -34,7 +34,7 @@ typedef enum { LOCAL_OPEN, LOCAL_STICK, LOCAL_SLIP } local_state;
  * several solutions). d[dim], r[dim] receive the solution, exact to rounding:
  * closed form in 2-D, one safeguarded root in 3-D (the disc, no facets).
  * Returns the state found. If no state fits (possible only by rounding, or for
- * mu beyond the local limit) the one that misses least is returned.
+ * mu beyond the local limit) the one with the least violation is returned.
  */
 local_state local_solve(const local_problem *lp, local_state before, double *d,
                         double *r);
@@ -54,35 +54,35 @@ typedef struct relaxation {
   const contact_problem *cp;
   node_blocks *blocks;
   double *u, *r; /* [m] the iterate */
-  double omega;  /* factor by which a visit goes past the solution, - */
+  double omega;  /* over-relaxation factor, - */
   double change; /* sum of K (du)^2 of the sweep, N m */
   int turned;    /* nodes whose state changed in the sweep */
 } relaxation;
 
-/* The patterns of states that the last sweeps left behind. */
+/* The patterns of states after the last sweeps. */
 enum { PATTERNS = 64 };
 typedef struct state_watch {
   uint64_t seen[PATTERNS]; /* a ring */
   int n;                   /* patterns seen */
 } state_watch;
-/* Take note of the pattern. 1: it has been there, with another one since. */
+/* Record the pattern. 1: it occurred before, with another one in between. */
 int state_watch_returns(state_watch *w, const relaxation *s);
 
 /* State of each node at the start, from u and r. */
 void relaxation_start(const relaxation *s);
-/* Carry again r = A u - f, or u = W r + q. */
+/* Compute r = A u - f, or u = W r + q, again. */
 void relaxation_refresh(const relaxation *s);
 void relaxation_sweep(relaxation *s, int backward);
 /* After a sweep from from[m] that turned no node: each body that contact alone
  * holds and that the load carries to its obstacles, or an obstacle to where it
- * sticks, by a small step a sweep goes there at once, as soon as what strains
- * it in the step is rounding or makes forces no larger than the load. 2: one
- * did, and r is that of u; 1: one waits for that. */
+ * sticks, by a small step a sweep is moved there at once, when the strain of
+ * the step is rounding or its forces are no larger than the load. 2: one was
+ * moved, and r is that of u; 1: one waits for that. */
 int relaxation_fly(relaxation *s, const double *from);
 /* After the last sweep: the best iterate into u and r, its residual and the
- * outcome, STOPPED_RAY where the sweeps gave up on a body that contact alone
- * holds and that drifts off. room[m]: work. */
-void relaxation_end(relaxation *s, const best_iterate *best, double *room,
+ * outcome, STOPPED_RAY where the sweeps stopped for a body that contact alone
+ * holds and that drifts off. work[m]: work. */
+void relaxation_end(relaxation *s, const best_iterate *best, double *work,
                     solver_report *rep);
 
 #endif

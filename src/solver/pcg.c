@@ -1,6 +1,6 @@
 /*
- * Projected preconditioned conjugate gradients for the forces of contact with
- * a given sliding limit (CPR98, 3.3; Dostal 2009, MPRGP; Kucera 2008).
+ * Projected preconditioned conjugate gradients for the forces of contact with a
+ * given sliding limit (CPR98, 3.3; Dostal 2009, MPRGP; Kucera 2008).
  *
  * The reciprocal problem: with the compliance W and x = W r + q - o the
  * displacement from the origin o (gap, stick position, second obstacle),
@@ -17,13 +17,13 @@
  * with e = r_t/g. r solves the problem if both vanish. While beta is not larger
  * than phi, conjugate gradients minimise on the face; a step that leaves the
  * set is projected back onto it, which closes many constraints at once. Else
- * one step along -beta lets go of the constraints. On the rim of a disc (3-D)
- * the face is a circle: its curvature |x.e|/g joins W, and r is brought back
- * onto the rim after a few steps.
+ * one step along -beta releases the constraints. On the rim of a disc (3-D) the
+ * face is a circle: its curvature |x.e|/g joins W, and r is brought back onto
+ * the rim after a few steps.
  *
  * Face preconditioner: the block A_FF of the stiffness. inv(W_FF) is that block
- * less what the other unknowns give way, so the two differ by a bounded factor
- * but for the ends of the face. Without A: the diagonal of W.
+ * less the compliance of the other unknowns, so the two differ by a bounded
+ * factor except at the ends of the face. Without A: the diagonal of W.
  */
 #include "base/memory.h"
 #include "contact/force/force_set.h"
@@ -34,10 +34,10 @@
 #include <string.h>
 
 typedef struct pcg {
-  int preconditioner; /* preconditioner_way */
+  int preconditioner; /* preconditioner_kind */
 } pcg;
 
-typedef enum { BY_FACE, BY_DIAGONAL } preconditioner_way;
+typedef enum { BY_FACE, BY_DIAGONAL } preconditioner_kind;
 
 /* clang-format off */
 static const option pcg_options[] = {
@@ -55,7 +55,8 @@ enum {
 static const double PROGRESS = 0.9; /* a lower residual is lower by this */
 static const double ON_THE_RIM = 0x1p-20; /* -, of g: counts as |r_t| = g */
 static const double ROUNDING = 0x1p-48;   /* -, of the terms of J */
-static const double ENOUGH = 0.1;         /* -, of phi: the circle has turned */
+static const double ENOUGH =
+    0.1; /* -, of phi: the direction on the circle has changed */
 
 typedef struct pcg_work {
   force_set *set;
@@ -116,7 +117,7 @@ typedef struct run {
   int refreshed; /* x was made again: begin a new phase */
 } run;
 
-/* Radii of the rims, and how strongly the circles bend J. */
+/* Radii of the rims, and the curvature of J by the circles. */
 static void directions(run *s) {
   const contact_problem *cp = s->cp;
   pcg_work *w = s->w;
@@ -199,8 +200,8 @@ static double longest_in_disc(const run *s, int node_id, const double *p) {
     rr += s->r[first + k] * s->r[first + k];
   }
   if (pp == 0.0) return HUGE_VAL;
-  double room = fmax(g * g - rr, 0.0);
-  return (rp + sqrt(rp * rp + pp * room)) / pp;
+  double rest = fmax(g * g - rr, 0.0);
+  return (rp + sqrt(rp * rp + pp * rest)) / pp;
 }
 
 /* Longest a for which r - a p stays in the set; rims turn freely. */
@@ -224,8 +225,8 @@ static void refresh(run *s) {
     s->w->x[i] = s->u[i] - s->w->set->origin[i];
 }
 
-/* Residual at (r, x), told and judged; RUNNING: go on. */
-static outcome judge(run *s) {
+/* Residual at (r, x), reported and checked; RUNNING: continue. */
+static outcome check(run *s) {
   const contact_problem *cp = s->cp;
   for (int i = 0; i < cp->m; ++i) s->u[i] = s->w->x[i] + s->w->set->origin[i];
   s->residual = contact_mismatch(cp, s->scale, s->u, s->r, NULL);
@@ -235,7 +236,7 @@ static outcome judge(run *s) {
     s->residual = contact_mismatch(cp, s->scale, s->u, s->r, NULL);
   }
   solver_keep_best(&s->w->best, cp->m, s->residual, s->u, s->r);
-  solver_tell(s->control, "pcg", s->steps, s->residual);
+  solver_report_step(s->control, "pcg", s->steps, s->residual);
   if (isnan(s->residual)) return STOPPED_NAN;
   if (s->residual <= s->control->tol) return CONVERGED;
   if (s->residual < PROGRESS * s->mark) {
@@ -258,7 +259,7 @@ static void precondition(run *s) {
   onto_face(s, w->z, w->z);
 }
 
-/* v = W p, with the bend of the circles. */
+/* v = W p, with the curvature of the circles. */
 static void curvature_product(run *s) {
   const contact_problem *cp = s->cp;
   pcg_work *w = s->w;
@@ -269,8 +270,8 @@ static void curvature_product(run *s) {
       w->v[i * cp->dim + k] += w->turn[i] * w->p[i * cp->dim + k];
 }
 
-/* r to r0 + share*(v - r0) and into the set; x there. 1: J has not
- * grown but by rounding. */
+/* r to r0 + share*(v - r0) and into the set; x there. 1: J has not grown but by
+ * rounding. */
 static int arrive(run *s, double share, const double *aim) {
   pcg_work *w = s->w;
   int m = s->cp->m;
@@ -301,7 +302,7 @@ static void remember(run *s) {
   memcpy(s->w->x0, s->w->x, (size_t)s->cp->m * sizeof *s->r);
 }
 
-/* The phase ended off the set: come back along the way gone. */
+/* The phase ended outside the set: go back along its step. */
 static void come_back(run *s) {
   pcg_work *w = s->w;
   double share = 1.0;
@@ -313,7 +314,7 @@ static void come_back(run *s) {
   gradient_step(s);
 }
 
-/* One step along -D beta: constraints are let go. */
+/* One step along -D beta: constraints are released. */
 static void let_go(run *s) {
   const contact_problem *cp = s->cp;
   pcg_work *w = s->w;
@@ -354,8 +355,8 @@ static int face_is_done(const run *s, double before) {
   return s->bent && s->phi2 <= ENOUGH * ENOUGH * before;
 }
 
-/* Conjugate gradients on the face until the set is left, the face is done, or
- * (on circles) the linearisation is used up. */
+/* Conjugate gradients on the face until the set is left, the face is solved, or
+ * (on circles) the linearisation is no longer valid. */
 static outcome phase(run *s) {
   pcg_work *w = s->w;
   int m = s->cp->m;
@@ -373,7 +374,7 @@ static outcome phase(run *s) {
     if (where == FLAT) return isnan(rho) ? STOPPED_NAN : STOPPED_SINGULAR;
     if (where == LEFT_SET) break;
     split(s);
-    if (!s->bent && (o = judge(s)) != RUNNING) return o;
+    if (!s->bent && (o = check(s)) != RUNNING) return o;
     if (face_is_done(s, before)) break;
     precondition(s);
     double next = cblas_ddot(m, w->phi, 1, w->z, 1);
@@ -389,10 +390,10 @@ static outcome phases(run *s) {
   force_set_fit(s->w->set, s->cp);
   force_set_project(s->w->set, ON_THE_RIM, s->r);
   refresh(s);
-  if ((o = judge(s)) != RUNNING) return o;
+  if ((o = check(s)) != RUNNING) return o;
   remember(s);
   gradient_step(s);
-  while ((o = judge(s)) == RUNNING) {
+  while ((o = check(s)) == RUNNING) {
     directions(s);
     split(s);
     if (!(s->phi2 > 0.0) && !(s->beta2 > 0.0)) {
@@ -438,20 +439,19 @@ const solver_ops pcg_solver = {
   .reference = "CPR98, 3.3; Dostal 2009 (MPRGP); Kucera 2008",
   .family = "projection",
   .help =
-    "Projected conjugate gradients, preconditioned, on the forces of\n"
-    "contact (compliance form): minimise 1/2 r'Wr + (q - o)'r over r_n <= 0\n"
-    "and |r_t| <= g, o the gap and the stick position. Conjugate gradients\n"
-    "run on the face of the active constraints; a step that leaves the set\n"
-    "is projected back, and when the gradient off the face outweighs the\n"
-    "one along it the constraints are let go (proportioning). In 3-D the\n"
-    "true disc is used and a slipping node turns along its rim.\n"
-    "PRECONDITIONER=FACE takes the block of the stiffness that belongs to\n"
-    "the face, DIAGONAL the diagonal. The sliding limit is updated around\n"
-    "it (CPR98, 2.3). Needs the compliance (an inverse, once per matrix); a\n"
-    "body that contact alone holds is held by soft springs on its motions,\n"
-    "which follow it until they carry nothing. A step costs two products.\n"
-    "Choose it for large problems with many increments on one matrix and\n"
-    "small friction.",
+    "Projected conjugate gradients, preconditioned, on the forces of contact\n"
+    "(compliance form): minimise 1/2 r'Wr + (q - o)'r over r_n <= 0 and |r_t|\n"
+    "<= g, o the gap and the stick position. Conjugate gradients run on the\n"
+    "face of the active constraints; a step that leaves the set is projected\n"
+    "back, and when the gradient off the face is larger than the one along it\n"
+    "the constraints are released (proportioning). In 3-D the true disc is\n"
+    "used and a slipping node turns along its rim. PRECONDITIONER=FACE takes\n"
+    "the block of the stiffness that belongs to the face, DIAGONAL the\n"
+    "diagonal. The sliding limit is updated around it (CPR98, 2.3). Needs the\n"
+    "compliance (an inverse, once per matrix); a body that contact alone\n"
+    "holds is held by soft springs on its rigid motions, which follow it\n"
+    "until they carry nothing. A step costs two products. Choose it for large\n"
+    "problems with many increments on one matrix and small friction.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
   .param_size = sizeof(pcg),
   .options = pcg_options,

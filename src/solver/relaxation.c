@@ -13,7 +13,7 @@
 enum { DRIFT_SWEEPS = 20 };
 static const double RIGID = 0x1p-5;     /* -, of a drift: counts as no strain */
 static const double SOFT = 0x1p-20;     /* -, of the stiffness: none */
-static const double ROUNDING = 0x1p-46; /* -, of stiffness times way */
+static const double ROUNDING = 0x1p-46; /* -, of stiffness times distance */
 
 struct node_blocks {
   double *K;               /* [dim*dim*n] stiffness of each node, N/m */
@@ -26,9 +26,9 @@ void node_blocks_free(node_blocks *b) {
   RELEASE(b->K, b->state, b->step, b->strained, b);
 }
 
-/* Inverse of a d*d block by elimination with complete symmetric pivoting left
- * out: the block is positive definite, else a share of "lift" is added to its
- * diagonal (the iteration then keeps its fixed point). */
+/* Inverse of a d*d block by elimination without pivoting: the block is positive
+ * definite, else a share of "lift" is added to its diagonal (the fixed point of
+ * the iteration is unchanged). */
 static void invert_block(int d, const double *block, double lift, double *K) {
   double M[9];
   memcpy(M, block, (size_t)(d * d) * sizeof *M);
@@ -51,8 +51,8 @@ static void invert_block(int d, const double *block, double lift, double *K) {
       K[i + d * j] = 0.5 * (M[i + d * j] + M[j + d * i]);
 }
 
-/* The block, or more than it where a motion of the body leaves it singular: the
- * iteration then keeps its fixed point. */
+/* The block, increased where a motion of the body makes it singular: the fixed
+ * point of the iteration is unchanged. */
 static void lift_block(int d, const double *block, double lift, double *K) {
   double M[9], own = SOFT * lift;
   memcpy(M, block, (size_t)(d * d) * sizeof *M);
@@ -143,8 +143,8 @@ static void local_of(const relaxation *s, int node_id, local_problem *lp,
   }
 }
 
-/* Go on past the solution of the node by omega - 1 times the step d, if the
- * state stayed and the kink of friction is not crossed. */
+/* Over-relaxation by omega - 1 times the step d, if the state stayed and the
+ * kink of friction is not crossed. */
 static void relax(const relaxation *s, const local_problem *lp, local_state now,
                   double *d) {
   double dot = 0.0;
@@ -266,13 +266,13 @@ void relaxation_start(const relaxation *s) {
   }
 }
 
-/* A body in a sweep, as if nothing but its load moved it. */
+/* A body in a sweep, moved by its load only. */
 typedef struct flight {
   double work;        /* of the load on the step, N m */
   double most;        /* largest step of an unknown, m */
   double stiff, left; /* forces of the steps alone, of the strain of all, N */
-  double load, least; /* largest load; what rounding makes of "left", N */
-  double steps;       /* that lead to a bound, or to where a node sticks */
+  double load, least; /* largest load; rounding of "left", N */
+  double steps;       /* that lead to a bound, or to a stick position */
 } flight;
 
 static int is_of(const contact_problem *cp, int node_id, int body_id) {
@@ -291,13 +291,14 @@ static void add_unknown(const relaxation *s, int dof, const double *d,
   f->least = fmax(f->least, ROUNDING * k * fabs(s->u[dof]));
 }
 
-/* How often the step of a node goes into its way; HUGE_VAL: it leads nowhere.
+/* Distance of a node to its bound or stick position over its step; HUGE_VAL:
+ * the step leads to neither.
  */
 static double steps_of(const relaxation *s, int node_id, const double *d,
                        double most) {
   const contact_problem *cp = s->cp;
   int first = node_id * cp->dim, last = first + cp->dim;
-  double steps = HUGE_VAL, way = 0.0, size = 0.0;
+  double steps = HUGE_VAL, distance = 0.0, size = 0.0;
   for (int i = first; i < last; ++i) {
     double bound = contact_bound(cp, i);
     if (bound < HUGE_VAL && d[i] > RIGID * most)
@@ -306,10 +307,11 @@ static double steps_of(const relaxation *s, int node_id, const double *d,
   if (cp->ut0 == NULL || !(contact_node_limit(cp, s->r, node_id) > 0.0))
     return steps;
   for (int i = first + 1; i < last; ++i) {
-    way += d[i] * (contact_stick(cp, i) - s->u[i]);
+    distance += d[i] * (contact_stick(cp, i) - s->u[i]);
     size += d[i] * d[i];
   }
-  if (way > 0.0 && sqrt(size) > RIGID * most) steps = fmin(steps, way / size);
+  if (distance > 0.0 && sqrt(size) > RIGID * most)
+    steps = fmin(steps, distance / size);
   return steps;
 }
 
@@ -325,7 +327,7 @@ static flight flight_of(const relaxation *s, int body_id, const double *d) {
   return f;
 }
 
-/* 0: it is not on its way, 1: it waits, 2: it went. */
+/* 0: it is not in free motion, 1: it waits, 2: it was moved. */
 static int fly_body(const relaxation *s, int body_id, const double *d) {
   const contact_problem *cp = s->cp;
   flight f = flight_of(s, body_id, d);
@@ -353,9 +355,9 @@ int relaxation_fly(relaxation *s, const double *from) {
   return most;
 }
 
-/* 1: a body that contact alone holds drifts off: what a few more sweeps make is
- * a rigid motion along which the load works and that leads to no obstacle that
- * is still open. The iterate is overwritten. from[m]: work. */
+/* 1: a body that contact alone holds drifts off: a few more sweeps make a rigid
+ * motion on which the load does work and that leads to no obstacle. The iterate
+ * is overwritten. from[m]: work. */
 static int drifts(relaxation *s, double *from) {
   const contact_problem *cp = s->cp;
   size_t m = (size_t)cp->m;
@@ -375,18 +377,18 @@ static int drifts(relaxation *s, double *from) {
     most = fmax(most, fabs(d[i]));
   }
   for (size_t i = 0; i < m; ++i) {
-    double bound = contact_bound(cp, (int)i), room = bound - from[i] - d[i];
-    if (bound < HUGE_VAL && d[i] > RIGID * most && room > RIGID * most)
+    double bound = contact_bound(cp, (int)i), rest = bound - from[i] - d[i];
+    if (bound < HUGE_VAL && d[i] > RIGID * most && rest > RIGID * most)
       falls = 1;
   }
   return work > 0.0 && left < RIGID * stiff && !falls;
 }
 
-void relaxation_end(relaxation *s, const best_iterate *best, double *room,
+void relaxation_end(relaxation *s, const best_iterate *best, double *work,
                     solver_report *rep) {
   int gave_up =
       rep->outcome == STOPPED_STAGNATION || rep->outcome == STOPPED_CYCLE;
   rep->residual = best->residual;
-  if (gave_up && drifts(s, room)) rep->outcome = STOPPED_RAY;
+  if (gave_up && drifts(s, work)) rep->outcome = STOPPED_RAY;
   solver_take_best(best, s->cp->m, s->u, s->r);
 }

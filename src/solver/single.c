@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum {
-  ANGLES = 256, /* of slip, looked at; roots lie at most 6 */
+  ANGLES = 256, /* of slip, searched; there are at most 6 roots */
   HALVINGS = 60,
   WORK = 32
 };
@@ -47,8 +47,8 @@ static void set_problem(single *s) {
   }
 }
 
-/* Keep a candidate if it is a solution and more like the start. */
-static void judge(single *s, const double *u, const double *r) {
+/* Store a candidate if it is a solution and nearer to the start. */
+static void check(single *s, const double *u, const double *r) {
   double apart = 0.0;
   contact_status state;
   double residual = contact_residual_at(s->cp, s->scale, u, r);
@@ -101,7 +101,7 @@ static void try_linear(single *s, unsigned fixed, const double *at) {
     u[j] = is_fixed ? at[j] : power[j] * b[j];
     r[j] = is_fixed ? power[j] * b[j] : 0.0;
   }
-  judge(s, u, r);
+  check(s, u, r);
 }
 
 /* Every set of closed unknowns, with and without stick. */
@@ -173,16 +173,16 @@ static void try_slip(single *s, int closed, double angle) {
   if (!(size > 0.0)) return;
   cross(c, b, x);
   cross(a, c, y);
-  double way = dot(x, n) / size, other = dot(y, n) / size;
+  double slip = dot(x, n) / size, other = dot(y, n) / size;
   double g = s->g0 + (closed ? s->mu * other : 0.0);
   for (int i = 0; i < s->m; ++i) u[i] = s->c[i] / s->P[i + s->m * i];
   u[0] = closed ? s->cp->gap[0] : other;
   r[0] = closed ? -other : 0.0;
   for (int k = 0; k < s->n_rub; ++k) {
-    u[s->rub[k]] = s->ut0[k] + way * e[k];
+    u[s->rub[k]] = s->ut0[k] + slip * e[k];
     r[s->rub[k]] = -g * e[k];
   }
-  judge(s, u, r);
+  check(s, u, r);
 }
 
 /* The root between two angles, by bisection. */

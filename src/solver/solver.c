@@ -1,4 +1,4 @@
-/* The table of solvers, and what its rows share (solver.h). */
+/* The table of solvers and functions common to them (solver.h). */
 #include "solver/solver.h"
 
 #include "base/memory.h"
@@ -26,9 +26,9 @@ static const double FEW_DIGITS = 1e-4; /* -, tolerance */
 
 int solver_few_digits(double tol) { return tol >= FEW_DIGITS; }
 
-void solver_tell_states(const solver_control *control, const char *solver,
-                        int iteration, double residual, int changes,
-                        int cycle) {
+void solver_report_states(const solver_control *control, const char *solver,
+                          int iteration, double residual, int changes,
+                          int cycle) {
   const solver_listener *l = control->listener;
   if (l == NULL || l->step == NULL) return;
   solver_step step = {.solver = solver,
@@ -41,9 +41,9 @@ void solver_tell_states(const solver_control *control, const char *solver,
   l->step(l->ctx, &step);
 }
 
-void solver_tell(const solver_control *control, const char *solver,
-                 int iteration, double residual) {
-  solver_tell_states(control, solver, iteration, residual, -1, 0);
+void solver_report_step(const solver_control *control, const char *solver,
+                        int iteration, double residual) {
+  solver_report_states(control, solver, iteration, residual, -1, 0);
 }
 
 status best_iterate_new(int m, best_iterate *best) {

@@ -1,8 +1,8 @@
 /*
- * Solvers of the contact problem: one file and one row in SOLVER_LIST each.
- * A solver works on one contact_problem; contact_solve wraps it: the fixed
- * point on the sliding limit where the solver knows Tresca friction only
- * (CPR98, 2.3), the verdict by contact_residual, the fallback chain of AUTO.
+ * Solvers of the contact problem: one file and one row in SOLVER_LIST each. A
+ * solver works on one contact_problem; contact_solve adds the fixed point on
+ * the sliding limit where the solver handles Tresca friction only (CPR98, 2.3),
+ * the check by contact_residual, the fallback chain of AUTO.
  */
 #ifndef PROTIS_SOLVER_SOLVER_H
 #define PROTIS_SOLVER_SOLVER_H
@@ -26,10 +26,10 @@ typedef struct solver_report {
 typedef struct solver_step {
   const char *solver;
   int iteration, limit_update;
-  double residual;     /* the measure the method steers by, -; NAN: none */
+  double residual;     /* the error measure of the method, -; NAN: none */
   double limit_change; /* change of the sliding limit, relative; NAN: none */
   int status_changes;  /* nodes; -1: unknown */
-  int cycle;           /* 1: a status pattern came back */
+  int cycle;           /* 1: a status pattern was repeated */
 } solver_step;
 typedef struct solver_listener {
   void (*step)(void *ctx, const solver_step *s);
@@ -42,7 +42,7 @@ typedef struct solver_control {
   int max_iter;                    /* 0: the solver's own limit */
   int limit_max_iter;              /* passes of a fixed point on g; 0: 200 */
   double scale;                    /* contact_scale; 0: not known */
-  int no_restart;                  /* 1: give up rather than start again from
+  int no_restart;                  /* 1: stop rather than start again from
                                       another guess */
   int limit_update;                /* pass now running, for the listener */
   const solver_listener *listener; /* or NULL */
@@ -54,9 +54,9 @@ enum {
   SOLVES_3D = 4,
   NEEDS_STIFFNESS = 8,
   NEEDS_COMPLIANCE = 16,
-  SOLVES_FLOATING = 32,   /* copes with a semidefinite A */
-  REGULAR_COMPLIANCE = 64 /* instead of the stiffness one that has an inverse,
-                             which need not be made */
+  SOLVES_FLOATING = 32,   /* works with a semidefinite A */
+  REGULAR_COMPLIANCE = 64 /* instead of the stiffness a compliance that has an
+                             inverse, which need not be made */
 };
 
 typedef struct solver_ops {
@@ -74,8 +74,8 @@ typedef struct solver_ops {
                   const solver_control *control, double *u, double *r,
                   solver_report *rep);
   void (*release)(void *work); /* accepts NULL */
-  /* What the work remembers from one solve to the next and the matrix does not
-   * tell, kept or filled; NULL: nothing. */
+  /* Save or read the data of the workspace that persist from one solve to the
+   * next and do not follow from the matrix; NULL: none. */
   status (*keep)(void *work, archive *a);
 } solver_ops;
 
@@ -93,17 +93,18 @@ const solver_ops *solver_find(const char *name); /* case ignored; or NULL */
 const char *solver_family(const char *name);
 extern const char auto_help[]; /* manual text of METHOD=AUTO */
 
-/* ---- what the solvers share ---- */
+/* ---- functions common to the solvers ---- */
 
-/* 1: so few digits are wanted (TOL=BALANCED) that an iterate within the
- * tolerance is the answer, even where one more step would be exact. */
+/* 1: the tolerance is so loose (TOL=BALANCED) that an iterate within it is
+ * accepted, even where one more step would be exact. */
 int solver_few_digits(double tol);
-void solver_tell(const solver_control *control, const char *solver,
-                 int iteration, double residual);
+void solver_report_step(const solver_control *control, const char *solver,
+                        int iteration, double residual);
 /* The same with the nodes that changed their state, and whether a pattern of
- * states came back. */
-void solver_tell_states(const solver_control *control, const char *solver,
-                        int iteration, double residual, int changes, int cycle);
+ * states was repeated. */
+void solver_report_states(const solver_control *control, const char *solver,
+                          int iteration, double residual, int changes,
+                          int cycle);
 /* The iterate with the lowest residual. */
 typedef struct best_iterate {
   double residual; /* -; HUGE_VAL: none yet */
@@ -125,11 +126,11 @@ typedef struct solver_choice {
   int limit_max_iter;    /* passes of the fixed point */
 } solver_choice;
 
-/* Work that is kept as long as A stays the same. */
+/* Workspace that persists while A is unchanged. */
 typedef struct contact_solver contact_solver;
 status contact_solver_new(const solver_choice *choice, contact_solver **out);
 void contact_solver_free(contact_solver *s);
-/* Another tolerance than that of the choice, from now on. */
+/* Replace the tolerance of the choice. */
 void contact_solver_tolerance(contact_solver *s, double tol);
 /*
  * Solve cp from the start values u[m], r[m]. rep->outcome > 0 only if
@@ -139,13 +140,13 @@ void contact_solver_tolerance(contact_solver *s, double tol);
 status contact_solve(contact_solver *s, const contact_problem *cp,
                      const solver_listener *listener, double *u, double *r,
                      solver_report *rep);
-/* What the solver remembers from solve to solve: kept, or read for the next
- * solve; a is then borrowed, in its present group, until a reset. */
+/* Data of the solver that persist from solve to solve: saved, or read for the
+ * next solve; a is then borrowed, in its present group, until a reset. */
 status contact_solver_keep(contact_solver *s, archive *a);
 /* The bodies of a problem with the matrix solved last; else NULL. Borrowed. */
 const contact_bodies *contact_solver_bodies(const contact_solver *s,
                                             const contact_problem *cp);
-/* Who tried before the answer, "newton: cycle, sor: converged"; "" if one. */
+/* The methods tried, "newton: cycle, sor: converged"; "" if only one. */
 const char *contact_solver_log(const contact_solver *s);
 
 #endif

@@ -1,11 +1,11 @@
 /*
  * Relaxation with projection, node after node (CPR98, 2.3 and 3.3): each visit
  * solves the contact problem of one node exactly (local.h) with the others
- * held, and moves on by the factor omega.
+ * held, with over-relaxation by the factor omega.
  *
  * Stiffness form: the unknown is u, r = A u - f is carried along with the
- * columns of A. Compliance form (A not known): the unknown is r, and
- * u = W r + q is carried along with the columns of W. Both see the same
+ * columns of A. Compliance form (A not known): the unknown is r, and u = W r +
+ * q is carried along with the columns of W. Both see the same
  * problem of a node,  K d = b + r,  K = A_ii or inv(W_ii),  b = -r now.
  */
 #include "base/memory.h"
@@ -19,11 +19,11 @@
 typedef struct sor {
   double omega; /* relaxation factor, -; 0: chosen by the program */
   int sweep;    /* sweep_order */
-  int friction; /* friction_way */
+  int friction; /* friction_update */
 } sor;
 
 typedef enum { SWEEP_FORWARD, SWEEP_BACKWARD, SWEEP_SYMMETRIC } sweep_order;
-typedef enum { FRICTION_DIRECT, FRICTION_FIXED_POINT } friction_way;
+typedef enum { FRICTION_DIRECT, FRICTION_FIXED_POINT } friction_update;
 
 /* clang-format off */
 static const option sor_options[] = {
@@ -40,7 +40,7 @@ static const option sor_options[] = {
 enum {
   SWEEPS = 20000, /* default limit */
   CHECK = 10,     /* sweeps from one check of the residual to the next */
-  PATIENCE = 30   /* checks without a lower residual before a cure */
+  PATIENCE = 30   /* checks without a lower residual before a remedy */
 };
 static const double PROGRESS = 0.9; /* a lower residual is lower by this */
 
@@ -81,9 +81,9 @@ done:
 
 /* ---- control ----------------------------------------------------------- */
 
-/* How the sweeps go: factor, order, progress. */
+/* State of the sweeps: factor, order, progress. */
 typedef struct course {
-  double omega_cap;   /* the program's choice stays below */
+  double omega_cap;   /* upper limit of the program's choice */
   best_iterate *kept; /* lowest residual */
   double mark;        /* residual at the last progress */
   double last_change; /* of the check before */
@@ -92,12 +92,12 @@ typedef struct course {
   int order, chosen;  /* sweep_order; 1: omega by the program */
   state_watch watch;
   int turned, returns; /* since the last check: nodes that changed their state,
-                          patterns that came back */
+                          repeated patterns */
   int circling;        /* checks since the last progress with such patterns */
   double *before;      /* [m] u before a sweep that is checked */
 } course;
 
-/* Largest factor that friction updated in the sweep was seen to bear. */
+/* Largest factor that converged with friction updated in the sweep. */
 static double omega_limit(const contact_problem *cp) {
   double mu = 0.0;
   for (int i = 0; cp->B != NULL && i < cp->n; ++i) {
@@ -124,8 +124,8 @@ static void choose_omega(relaxation *s, course *c) {
   if (wanted > omega) s->omega = fmin(wanted, c->omega_cap);
 }
 
-/* No progress for long: less relaxation, then another order, then damping.
- * 0: nothing left. */
+/* No progress for long: less relaxation, then another order, then damping. 0:
+ * no remedy left. */
 static int cure(relaxation *s, course *c) {
   c->since = c->circling = 0;
   c->mark = HUGE_VAL;
@@ -147,7 +147,7 @@ static int cure(relaxation *s, course *c) {
   return s->omega > 0.2;
 }
 
-/* The residual with u and r carried again; keeps the best. */
+/* The residual with u and r computed again; stores the best. */
 static double check(relaxation *s, course *c, double scale) {
   relaxation_refresh(s);
   double residual = contact_mismatch(s->cp, scale, s->u, s->r, NULL);
@@ -167,7 +167,7 @@ static int is_checked(int k) {
   return k % CHECK == 0 || (k <= 8 && (k & (k - 1)) == 0);
 }
 
-/* A body on its way to its obstacles keeps the factor. */
+/* The factor is unchanged during a free motion to the obstacles. */
 static void steer(relaxation *s, course *c, int k) {
   int flies = relaxation_fly(s, c->before);
   if (flies > 1) c->since = c->circling = 0;
@@ -192,7 +192,8 @@ static outcome sweeps(relaxation *s, course *c, const solver_control *control,
     c->returns += state_watch_returns(&c->watch, s);
     if (!is_checked(k) && k != limit) continue;
     double residual = check(s, c, scale);
-    solver_tell_states(control, "sor", k, residual, c->turned, c->returns > 0);
+    solver_report_states(control, "sor", k, residual, c->turned,
+                         c->returns > 0);
     c->turned = c->returns = 0;
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= control->tol) return CONVERGED;
@@ -244,18 +245,18 @@ const solver_ops sor_solver = {
     "Projected successive over-relaxation. The nodes are visited one after\n"
     "the other; each visit solves the contact problem of the node exactly\n"
     "with all others held (closed form in 2-D, the true friction disc in 3-D)\n"
-    "and goes on by the factor OMEGA. With FRICTION=DIRECT the sliding limit\n"
-    "follows the pressure within the sweep; with FRICTION=FIXED_POINT Tresca\n"
-    "problems are solved and the limit is updated around them (CPR98, 2.3),\n"
-    "which contracts for small friction only. Without OMEGA the program\n"
-    "chooses it from the observed rate and takes it back when the residual\n"
-    "stops falling: with friction in the sweep large factors do not converge,\n"
-    "and on the compliance form they do not pay (1 is taken).\n"
-    "If a sweep order cycles, the order is changed, then the steps damped; if\n"
-    "patterns of states still come back, it stops with a cycle.\n"
-    "Costs one product with the matrix a sweep, and many sweeps: choose it\n"
-    "when the direct methods fail, when the compliance alone is known or is\n"
-    "singular, or for a few digits of a large problem.",
+    "and over-relaxes by the factor OMEGA. With FRICTION=DIRECT the sliding\n"
+    "limit follows the pressure within the sweep; with FRICTION=FIXED_POINT\n"
+    "Tresca problems are solved and the limit is updated around them (CPR98,\n"
+    "2.3), which contracts for small friction only. Without OMEGA the program\n"
+    "chooses it from the observed rate and reduces it when the residual stops\n"
+    "falling: with friction in the sweep large factors do not converge, and\n"
+    "for the compliance form they have no advantage (1 is taken). If a sweep\n"
+    "order cycles, the order is changed, then the steps damped; if patterns\n"
+    "of states are still repeated, it stops with a cycle. Costs one product\n"
+    "with the matrix a sweep, and many sweeps: choose it when the direct\n"
+    "methods fail, when only the compliance is known or is singular, or for a\n"
+    "few digits of a large problem.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
   .param_size = sizeof(sor),
   .options = sor_options,

@@ -77,10 +77,10 @@ const scene_row time_scenes[] = {
    .deck = CREEPS("INTEGRATOR=MIDPOINT", "0.001", "10."),
    .expect = "NODES u_y = -0.006*y ~ 1e-8;"
      "ENERGY energy_defect_relative = 0 ~ 1e-9"},
-  {.name = "30 decades of relaxation times", .hard = "1e-15 and 1e15 beside dt",
+  {.name = "30 decades of relaxation times", .hard = "1e-15 and 1e15 times dt",
    .flags = QUICK, .mesh = "rect 4 4 1 1 layers",
    .deck = DECADES("INTEGRATOR=BACKWARD"), .expect = LAYER_STRESS},
-  {.name = "30 decades, exact steps", .hard = "1e-15 and 1e15 beside dt",
+  {.name = "30 decades, exact steps", .hard = "1e-15 and 1e15 times dt",
    .mesh = "rect 4 4 1 1 layers", .deck = DECADES("INTEGRATOR=EXPONENTIAL"),
    .expect = LAYER_STRESS},
   {.name = "30 decades, explicit", .hard = "no increment is small enough",

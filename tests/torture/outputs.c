@@ -1,5 +1,5 @@
 /*
- * What decks ask for beside their answer: every example and every hard scene
+ * What decks require besides their solution: every example and every hard scene
  * with other tables, fields and error estimates. The run ends as it does with
  * those of the deck, and its increments are the same to the last bit.
  */

@@ -659,7 +659,7 @@ START_TEST(quarter_of_a_square_has_no_edge_at_its_mirrors) {
 }
 END_TEST
 
-/* Points above a triangle and beside it, in any unit. */
+/* Points above a triangle and outside of it, in any unit. */
 START_TEST(distance_of_a_face_is_to_its_foot_or_edge) {
   static const double at[][4] = {/* x, y, z, distance */
                                  {0.5, 0.5, 0.7, 0.7},  {0.5, 1.0, -0.2, 0.2},

@@ -126,11 +126,11 @@ static const wrong_deck wrong_decks[] = {
    "1 error"},
   {"*A\n1, \"x+1\n", "a.inp:2:4: error P1011: quote not closed", "1 error"},
   {"*A, B=\"x\n", "a.inp:1:7: error P1011: quote not closed", "1 error"},
-  {"*A\n\"x\"y, 1\n", "a.inp:2:4: error P1012: text beside a quoted value",
+  {"*A\n\"x\"y, 1\n", "a.inp:2:4: error P1012: text next to a quoted value",
    "1 error"},
-  {"*A\nu\"x\", 1\n", "a.inp:2:2: error P1012: text beside a quoted value",
+  {"*A\nu\"x\", 1\n", "a.inp:2:2: error P1012: text next to a quoted value",
    "1 error"},
-  {"*A\n\"x\"\"y\", 1\n", "a.inp:2:4: error P1012: text beside a quoted value",
+  {"*A\n\"x\"\"y\", 1\n", "a.inp:2:4: error P1012: text next to a quoted value",
    "1 error"},
   /* Names. */
   {"*A\n1, <H>\n", "a.inp:2:4: error P1020: unknown name <H>", "1 error"},
@@ -250,7 +250,7 @@ static void check_wrong(const char *deck_text, const char *first,
   const char *number = strstr(first, "error P");
   char closing[120];
   snprintf(closing, sizeof closing,
-           number == NULL ? "%s" : "%s; protis --explain %.5s tells what to do",
+           number == NULL ? "%s" : "%s; protis --explain %.5s says what to do",
            totals, number == NULL ? "" : number + strlen("error "));
   read_deck r = decks_read_text(deck_text);
   char *end = strchr(decks_messages(), '\n');
@@ -312,7 +312,7 @@ START_TEST(a_missing_deck_is_no_deck) {
   ck_assert_str_eq(decks_messages(),
                    "none.inp: error P1001: cannot read none.inp: No such file "
                    "or directory\n1 error; "
-                   "protis --explain P1001 tells what to do\n");
+                   "protis --explain P1001 says what to do\n");
   decks_done(&r);
   r = decks_read(".", 0, NULL);
   ck_assert_int_eq(r.st, ERR_FILE);
@@ -329,7 +329,7 @@ START_TEST(a_nul_byte_ends_the_file) {
   ck_assert_str_eq(decks_messages(),
                    "a.inp:2:3: error P1013: NUL byte: the file is not plain "
                    "text\n       2 | 1,\n         |   ^\n1 error; "
-                   "protis --explain P1013 tells what to do\n");
+                   "protis --explain P1013 says what to do\n");
   ck_assert_str_eq(decks_shape(r.d), "*A");
   decks_done(&r);
   decks_leave();
@@ -415,7 +415,7 @@ START_TEST(a_circle_of_includes_is_found_with_its_chain) {
       "         |                 ^\n"
       "           included from sub/b.inp:2\n"
       "           included from a.inp:2\n1 error; "
-      "protis --explain P1017 tells what to do\n");
+      "protis --explain P1017 says what to do\n");
   ck_assert_str_eq(decks_shape(r.d), "*A*B*C*D");
   decks_done(&r);
   decks_leave();

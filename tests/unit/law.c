@@ -206,7 +206,8 @@ static void difference(law_case *c, double *x, double h, double *column) {
 
 enum { ROOM = (6 + LAW_ALPHA_MAX) * (6 + LAW_ALPHA_MAX) };
 
-/* Step for a number of alpha: a part of it, and not lost beside the largest. */
+/* Step for a number of alpha: a part of it, and not lost against the largest.
+ */
 static double alpha_step(const law_case *c, int i) {
   const double scale = fmax(largest(c->alpha, c->n_alpha), 1e-6);
   return fmax(1e-4 * fabs(c->alpha[i]), 1e-5 * scale);

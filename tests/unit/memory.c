@@ -63,12 +63,12 @@ START_TEST(limit_is_kept_and_foreseen) {
   void *a = memory_new(600, 1);
   ck_assert_ptr_nonnull(a);
   ck_assert_ptr_null(memory_new(401, 1));
-  ck_assert_int_eq(memory_foresee(400.0, "a run"), OK);
-  ck_assert_int_eq(memory_foresee(401.0, "a run"), ERR_MEMORY);
+  ck_assert_int_eq(memory_require(400.0, "a run"), OK);
+  ck_assert_int_eq(memory_require(401.0, "a run"), ERR_MEMORY);
   ck_assert_ptr_nonnull(strstr(status_message(), "a test leaves"));
   memory_free(a);
   memory_limit(SIZE_MAX, "nothing");
-  ck_assert_int_eq(memory_foresee(1e300, "a run"), OK);
+  ck_assert_int_eq(memory_require(1e300, "a run"), OK);
 }
 END_TEST
 

@@ -436,7 +436,7 @@ START_TEST(reader_that_dies_is_told) {
     const char *geo, *text;
     status answer;
   } cases[] = {
-      {"SystemCall \"kill -SEGV $PPID\";\n", "gmsh died of signal 11",
+      {"SystemCall \"kill -SEGV $PPID\";\n", "gmsh was ended by signal 11",
        ERR_MESH},
       {"Exit;\n", "gmsh ended by itself", ERR_MESH},
       {"Error(\"no h given\");\n", "gmsh fails to read the file: no h given",
@@ -594,8 +594,8 @@ START_TEST(nothing_is_printed) {
 }
 END_TEST
 
-/* Options beside the file or in the home, and the environment, have no say;
- * the home is left as it is. */
+/* Options files of the .geo or in the home, and the environment, have no
+ * effect; the home is left as it is. */
 START_TEST(geometry_alone_makes_the_mesh) {
   static const char *const hidden[] = {"g.geo.opt", ".gmshrc", ".gmsh-options"};
   mesh_file f;
@@ -626,8 +626,8 @@ START_TEST(geometry_alone_makes_the_mesh) {
 }
 END_TEST
 
-/* gmsh obeys options beside what is merged, whatever the name is made of. */
-START_TEST(options_beside_merged_files_are_refused) {
+/* gmsh executes the options files of merged files, however they are named. */
+START_TEST(options_of_merged_files_are_refused) {
   static const char *const ways[] = {"Include \"in.geo\";", "Merge \"in.geo\";",
                                      "Merge StrCat(\"in\", \".geo\");"};
   mesh_file f;
@@ -769,8 +769,7 @@ UNIT_MAIN("mesh_errors", every_error_has_its_text_and_no_mesh,
           good_file_is_read_after_bad_ones, reader_that_dies_is_told,
           signals_do_not_disturb, want_of_memory_in_gmsh_is_told,
           want_of_memory_is_never_taken_for_a_bad_mesh, nothing_is_printed,
-          geometry_alone_makes_the_mesh,
-          options_beside_merged_files_are_refused,
+          geometry_alone_makes_the_mesh, options_of_merged_files_are_refused,
           closed_streams_do_not_disturb,
           exit_of_gmsh_runs_no_handler_of_the_program,
           rubbish_from_the_reader_is_refused, builder_trusts_nothing)

@@ -30,7 +30,7 @@ START_TEST(a_message_shows_place_line_and_caret) {
                    "block.inp:14:12: error P1003: unknown card *FRICTON\n"
                    "      14 | *FRICTON, CONTACT=FOOT\n"
                    "         |            ^\n"
-                   "1 error; protis --explain P1003 tells what to do\n");
+                   "1 error; protis --explain P1003 says what to do\n");
   message_log_free(log);
 }
 END_TEST
@@ -48,7 +48,7 @@ START_TEST(the_caret_stands_below_tabs_and_letters_of_two_bytes) {
                    "a:1:8: error P1003: x\n"
                    "       1 | \tA\xC3\xA4,\tB\n"
                    "         | \t   \t ^\n"
-                   "2 errors; protis --explain P1003 tells what to do\n");
+                   "2 errors; protis --explain P1003 says what to do\n");
   message_log_free(log);
 }
 END_TEST
@@ -65,7 +65,7 @@ START_TEST(a_place_may_lack_column_line_or_file) {
                    "a:3: error P1003: one\n"
                    "       3 | text\n"
                    "error P1003: three\n"
-                   "3 errors; protis --explain P1003 tells what to do\n");
+                   "3 errors; protis --explain P1003 says what to do\n");
   message_log_free(log);
 }
 END_TEST
@@ -165,7 +165,7 @@ START_TEST(after_a_hundred_errors_the_rest_is_counted) {
   ck_assert_ptr_null(strstr(text, "number 101\n"));
   ck_assert_ptr_nonnull(strstr(text,
                                "\n250 errors (100 shown), 1 warning; protis "
-                               "--explain P1003 tells what to do\n"));
+                               "--explain P1003 says what to do\n"));
   ck_assert_int_eq(message_status(log, ERR_MESH), ERR_MESH);
   ck_assert_str_eq(status_message(), "250 errors in the input");
   message_log_free(log);

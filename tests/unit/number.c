@@ -38,7 +38,7 @@ static const good_real good_reals[] = {
    0.62230152778611417071440640537801242},
 };
 
-static const good_real wrong_reals[] = { /* value: 0, reason beside           */
+static const good_real wrong_reals[] = { /* value: 0, reason */
   {"", 0}, {" ", 0}, {"nan", 0}, {"NaN", 0}, {"inf", 0}, {"-Infinity", 0},
   {"0x10", 0}, {"-0X1p3", 0}, {"1.5x", 0}, {"1.5 mm", 0}, {"1.5.", 0},
   {"1,5", 0}, {"1E", 0}, {"1D+", 0}, {"1+", 0}, {".", 0}, {"-", 0}, {"+-1", 0},

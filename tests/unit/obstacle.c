@@ -123,7 +123,7 @@ START_TEST(line_along_the_axis_misses_the_cylinder) {
 }
 END_TEST
 
-/* A tiny gap beside a radius 1e9 times larger keeps its digits. */
+/* A tiny gap next to a radius 1e9 times larger keeps its digits. */
 START_TEST(flat_sphere_keeps_the_digits_of_the_gap) {
   obstacle o = {.shape = OBSTACLE_SPHERE, .radius = 1048576};
   o.point[1] = -1048576;
@@ -359,7 +359,7 @@ START_TEST(surface_that_moves_and_turns_passes_by_its_velocity) {
 }
 END_TEST
 
-/* A parabola that moves sideways is the parabola beside its new apex. */
+/* A parabola that moves sideways is the parabola about its new apex. */
 START_TEST(given_gap_is_that_of_the_point_now_opposite) {
   obstacle o = {.shape = OBSTACLE_GAP};
   double down[3] = {0, -1, 0}, x[3] = {3, 0, 0};

@@ -309,7 +309,7 @@ START_TEST(cost_is_shown_unless_left_out) {
 }
 END_TEST
 
-START_TEST(xdmf_names_every_record_of_the_file_beside_it) {
+START_TEST(xdmf_names_every_record_of_its_file) {
   char dir[64], name[80];
   folder_new(dir);
   made_up *made = made_up_new(3, 2, 3);
@@ -588,8 +588,7 @@ UNIT_MAIN("output", two_runs_give_the_same_bytes,
           unsettled_increment_is_seen_everywhere,
           reasons_of_stopping_are_told_apart,
           json_is_valid_whatever_the_texts_and_numbers,
-          cost_is_shown_unless_left_out,
-          xdmf_names_every_record_of_the_file_beside_it,
+          cost_is_shown_unless_left_out, xdmf_names_every_record_of_its_file,
           files_of_an_earlier_run_do_not_stay,
           run_that_never_became_ready_has_a_verdict,
           full_disk_of_any_text_file_is_told_and_the_others_are_kept,

@@ -1,6 +1,6 @@
 /*
  * src/effects/plan/sizes.c: entries and operations of the factor foreseen from
- * the number of unknowns beside those that CHOLMOD counts for blocks in the
+ * the number of unknowns besides those that CHOLMOD counts for blocks in the
  * plane and in space, the contact last.
  */
 #include "fem/fem.h"

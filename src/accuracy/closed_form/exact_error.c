@@ -34,7 +34,7 @@ typedef struct element_at_work {
   const double *E; /* [ns*ns] Pa */
   int elem_id;
   double size;           /* m */
-  double strain[MAX_NS]; /* of the answer, - */
+  double strain[MAX_NS]; /* of the solution, - */
   squares *sum;
 } element_at_work;
 
@@ -94,10 +94,10 @@ static void add_displacement(const element_at_work *e, const double x[3],
 
 static void add_strain(const element_at_work *e, const double x[3],
                        double weight) {
-  double exact[MAX_NS], miss[MAX_NS];
+  double exact[MAX_NS], error[MAX_NS];
   exact_strain(e, x, exact);
-  for (int i = 0; i < e->d->ns; ++i) miss[i] = e->strain[i] - exact[i];
-  e->sum->energy += weight * product(e->d->ns, e->E, miss);
+  for (int i = 0; i < e->d->ns; ++i) error[i] = e->strain[i] - exact[i];
+  e->sum->energy += weight * product(e->d->ns, e->E, error);
   e->sum->energy_all += weight * product(e->d->ns, e->E, exact);
 }
 
@@ -105,16 +105,16 @@ static void add_stress(const element_at_work *e, const double x[3],
                        double weight) {
   int ns = e->d->ns;
   const double *found = e->a->stress + (size_t)ns * (size_t)e->elem_id;
-  double exact[MAX_NS], miss[MAX_NS];
+  double exact[MAX_NS], error[MAX_NS];
   for (int i = 0; i < ns; ++i) {
     const quantity *q = &e->ref->value[REFERENCE_STRESS + i];
     exact[i] = quantity_value(q, x, e->a->t);
-    miss[i] = found[i] - exact[i];
+    error[i] = found[i] - exact[i];
     double twice = i < 3 ? weight : 2.0 * weight;
-    e->sum->stress += twice * miss[i] * miss[i];
+    e->sum->stress += twice * error[i] * error[i];
     e->sum->stress_all += twice * exact[i] * exact[i];
   }
-  e->sum->energy += weight * product(ns, e->S, miss);
+  e->sum->energy += weight * product(ns, e->S, error);
   e->sum->energy_all += weight * product(ns, e->S, exact);
 }
 
@@ -159,7 +159,7 @@ static void add_tetrahedron(const element_at_work *e) {
       }
 }
 
-/* Strain of the answer in the element, its size. */
+/* Strain of the solution in the element, its size. */
 static void open_element(element_at_work *e, int elem_id) {
   const mesh *m = e->d->mesh;
   int dim = m->dim, ns = e->d->ns;
@@ -211,8 +211,8 @@ static double pressure_error(const closed_form *ref, const domain *d,
     if (!(s->area[i] > 0.0)) continue;
     for (int c = 0; c < s->dim; ++c) x[c] = s->x[s->dim * i + c];
     double p = quantity_value(&ref->value[REFERENCE_PRESSURE], x, a->t);
-    double miss = -a->rc[s->dim * i] / s->area[i] - p;
-    sum += s->area[i] * miss * miss;
+    double error = -a->rc[s->dim * i] / s->area[i] - p;
+    sum += s->area[i] * error * error;
     all += s->area[i] * p * p;
   }
   return relative(1, sum, all);

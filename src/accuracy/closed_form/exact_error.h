@@ -1,6 +1,6 @@
 /*
- * How far the answer of an increment is from the closed form of *REFERENCE:
- * the true error, in the norms of the estimates.
+ * Difference between the solution of an increment and the closed form of
+ * *REFERENCE: the true error, in the norms of the estimates.
  */
 #ifndef PROTIS_CLOSED_FORM_EXACT_ERROR_H
 #define PROTIS_CLOSED_FORM_EXACT_ERROR_H
@@ -8,7 +8,7 @@
 #include "fem/fem.h"
 #include "model/model.h"
 
-/* Relative to the norm of the closed form, -; NAN: it does not tell. */
+/* Relative to the norm of the closed form, -; NAN: not available. */
 typedef struct true_error {
   int asked;
   double energy;       /* of the stresses, integral of s' inv(E) s; without
@@ -16,10 +16,10 @@ typedef struct true_error {
   double displacement; /* L2 */
   double stress;       /* L2, all components of the tensor */
   double pressure;     /* L2 on the contact surface, of nodal values */
-  double cpu;          /* s, spent so far on finding it */
+  double cpu;          /* s, CPU time for it so far */
 } true_error;
 
-/* An answer at time t. */
+/* A solution at time t. */
 typedef struct answer_fields {
   double t;             /* s */
   const double *u;      /* [dim*n_node] m */

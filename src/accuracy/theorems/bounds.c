@@ -18,7 +18,7 @@
 
 static const double ROUNDING = 1e-8; /* -, of the larger norm */
 
-/* ---- the state before ---------------------------------------------------- */
+/* ---- the previous state ------------------------------------------------- */
 
 status state_before_keep(const contact_problem *cp, const double *u,
                          const double *r, state_before *b) {

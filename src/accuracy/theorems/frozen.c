@@ -11,7 +11,7 @@ static int is_given(const unsigned char *given, int i) {
   return given != NULL && given[i];
 }
 
-/* Entries of B that are not kept become part of g0. */
+/* Entries of B that are left out become part of g0. */
 static status freeze_limit(const contact_problem *cp, const double *r,
                            const unsigned char *keep_row,
                            const unsigned char *given, frozen_problem *out) {

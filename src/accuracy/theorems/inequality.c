@@ -1,7 +1,7 @@
 /*
  * The variational inequality S_i^n of CPR98 over random test fields. The convex
- * K and the functional j of a frozen limit are sums over the nodes, so a field
- * on one node at a time decides; fields on all nodes are tried as well.
+ * K and the functional j of a frozen limit are sums over the nodes, so fields
+ * on one node at a time suffice; fields on all nodes are tried as well.
  */
 #include "accuracy/theorems/theorems.h"
 
@@ -12,8 +12,9 @@
 
 enum { FIELDS_OF_ALL = 32 };
 
-/* What a test field moves at a node. Where the friction or the pressure of a
- * node adds much, a defect of the other shows only if that stays as it is. */
+/* Components that a test field changes at a node. Where friction or pressure
+ * dominate, a defect of the other shows only if the dominant one is
+ * unchanged. */
 typedef enum { ALONG_N, ONTO_BOUND, ALONG_T, TO_REST, ANYWHERE } move;
 static const move moves[] = {ONTO_BOUND, ALONG_N,  ALONG_N,  ALONG_N,
                              ALONG_N,    TO_REST,  ALONG_T,  ALONG_T,
@@ -66,7 +67,7 @@ static void set_scales(trial *s) {
 }
 
 /* |v_t - ut0| of a node with friction. */
-static double way(const contact_problem *cp, const double *v, int i) {
+static double slip_size(const contact_problem *cp, const double *v, int i) {
   double size = 0.0;
   for (int k = 1; k < cp->dim; ++k) {
     int dof = cp->dim * i + k;
@@ -108,8 +109,8 @@ static double part(const trial *s, int i, double *square) {
     *square += diagonal(cp, dof) * d * d;
   }
   if (cp->g0 != NULL && !contact_has_side(cp, i))
-    sum +=
-        contact_node_limit(cp, s->r, i) * (way(cp, s->w, i) - way(cp, s->u, i));
+    sum += contact_node_limit(cp, s->r, i) *
+           (slip_size(cp, s->w, i) - slip_size(cp, s->u, i));
   return sum;
 }
 

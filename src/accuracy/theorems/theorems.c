@@ -8,11 +8,11 @@
 
 struct theorems {
   energy_norm norm;
-  double *diagonal;   /* [m] of A: it is known again by that */
+  double *diagonal;   /* [m] of A, to recognise it */
   double *entries;    /* [n_entry] of B, the same */
   int n_entry, fresh; /* fresh: the eigenvalues are not known */
   state_before before;
-  int seen;                   /* 1: a state has been looked at */
+  int seen;                   /* 1: a state has been evaluated */
   int n_contact;              /* rows of the report */
   theorems_contact *contacts; /* [n_contact] the last one is all */
   double start;
@@ -55,7 +55,7 @@ void theorems_free(theorems *t) {
   memory_free(t);
 }
 
-/* ---- what has to be found again ------------------------------------------ */
+/* ---- data to be computed again ------------------------------------------ */
 
 static int same_matrix(const theorems *t, const contact_problem *cp) {
   if (t->diagonal == NULL || t->norm.m != cp->m || t->norm.A != cp->A) return 0;
@@ -151,7 +151,7 @@ static mu_regime regime_of(const theorems_contact *row) {
   return row->rate < 1.0 ? MU_BETWEEN : MU_ABOVE;
 }
 
-/* The measured rate of one row, with the limits of other contacts as they are.
+/* The measured rate of one row, with the limits of other contacts fixed.
  */
 static status measure(const theorems_scene *s, const frozen_problem *p,
                       unsigned char *keep, theorems_contact *row) {
@@ -171,7 +171,7 @@ done:
   return st;
 }
 
-/* With one contact the row of all is its own. */
+/* With one contact the row of all contacts is the same. */
 static status measure_contacts(theorems *t, const theorems_scene *s,
                                const frozen_problem *p) {
   OWNED unsigned char *keep = NULL;

@@ -1,5 +1,5 @@
 /*
- * The theorems of CPR98 at work on a solved increment. With the energy norms
+ * The theorems of CPR98 evaluated on a solved increment. With the energy norms
  *   |v|^2 = v' A v  of displacements,   |f|_*^2 = f' inv(A) f  of loads
  * (so that m = M = 1), and g = g0 + B p, p = -r_n,
  *
@@ -31,10 +31,10 @@
 
 #include "accuracy/accuracy.h"
 
-/* What is looked at: a problem and its answer. */
+/* A problem and its solution. */
 typedef struct theorems_scene {
   const contact_problem *cp; /* with A */
-  const double *u, *r;       /* [m] its answer, m, N */
+  const double *u, *r;       /* [m] its solution, m, N */
   int n_contact;
   const int *contact_id;      /* [n] */
   const double *mu;           /* [n_contact] largest of its nodes, - */
@@ -44,8 +44,8 @@ typedef struct theorems_scene {
   double tol;                 /* residual the solver was to reach, - */
 } theorems_scene;
 
-/* mu is under what is guaranteed; between that and what is measured; above
- * both; nothing is known of the measured one, for nothing slides. */
+/* mu is below the guaranteed bound; between it and the measured one; above
+ * both; the measured one is unknown, as nothing slides. */
 typedef enum { MU_FREE, MU_UNDER, MU_BETWEEN, MU_ABOVE } mu_regime;
 const char *mu_regime_text(mu_regime regime);
 
@@ -55,7 +55,7 @@ typedef struct theorems_contact {
   double mu;        /* largest, - */
   double factor;    /* q, -; HUGE_VAL: none, friction alone resists a motion */
   double limit;     /* unique for mu below it: mu/q = 1/C_h, -; NAN: mu = 0 */
-  double rate;      /* contraction of the fixed point measured at the answer,
+  double rate;      /* contraction of the fixed point measured at the solution,
                        - */
   double suggested; /* mu/rate, -; HUGE_VAL: nothing slides */
   double normal;    /* lmax(A_nn), N/m; of the contact */
@@ -73,7 +73,7 @@ typedef struct theorems_bound {
 typedef struct theorems_path {
   int asked;       /* 1: laws flow in the step */
   const char *why; /* NULL, or why there is no rate */
-  double rate;     /* of the map linearised at the answer, pass after pass, - */
+  double rate;     /* of the map linearised at the solution, asymptotic, - */
   double bound;    /* q, - */
   double speed;    /* L, 1/s */
   double longest;  /* s, increments below it contract; HUGE_VAL: nothing
@@ -107,20 +107,20 @@ void theorems_free(theorems *t);     /* accepts NULL */
 /* The initial state: (3.8), and where the first increment starts. */
 status theorems_start(theorems *t, const theorems_scene *s);
 /*
- * All of the report for an answer. Eigenvalues are found when matrix or B are
- * new. Cost: a factor of A when it is new; products and solves with it; of the
+ * The report for a solution. Eigenvalues are found when matrix or B are new.
+ * Cost: a factor of A when it is new; products and solves with it; of the
  * measured rate that of contraction_rate for each contact. ERR_MEMORY.
  */
 status theorems_check(theorems *t, const theorems_scene *s,
                       theorems_report *out);
 
-/* A map of stresses into themselves; |y| of the answer. ERR_* of its own. */
+/* A map of stresses into themselves; |y| of the result. ERR_* of its own. */
 typedef struct stress_map {
   void *ctx;
   status (*apply)(void *ctx, double *size);
 } stress_map;
 /* From where the context stands: the factor that passes end with, 0 if nothing
- * is left. Each pass starts from the last answer over its size. */
+ * is left. Each pass starts from the last result over its norm. */
 status theorems_path_rate(const stress_map *map, double *rate);
 /* Constants from bound = q of a step dt by theta, after "span" since "start"
  * of a step. */
@@ -129,7 +129,7 @@ void theorems_path_learn(theorems *t, double theta, double dt, double span,
 /* Least k with x^k/k! < 1. */
 double theorems_passes(double x);
 
-/* ---- parts, for this folder and its tests ------------------------------- */
+/* ---- private to this folder and its tests ------------------------------- */
 
 /* A and its inverse: the norms. */
 typedef struct energy_norm {

@@ -1,10 +1,11 @@
 /*
- * Named arrays kept in a file and read back bit for bit: the state a run goes
- * on from. One function of a module serves both ways: it names each of its
- * arrays once, and archive_reads() tells whether they are filled or kept.
+ * Named arrays saved in a file and read back bit for bit: the state from which
+ * a run is continued. One function of a module serves both directions: it names
+ * each of its arrays once, and archive_reads() says whether they are read or
+ * saved.
  *
- * The file is HDF5 with one dataset per array, a list of them in the order
- * they were named, and a checksum of all.
+ * The file is HDF5 with one dataset per array, a list of them in the order they
+ * were named, and a checksum of all.
  */
 #ifndef PROTIS_ARCHIVE_ARCHIVE_H
 #define PROTIS_ARCHIVE_ARCHIVE_H
@@ -15,19 +16,19 @@
 
 typedef struct archive archive;
 
-status archive_new(archive **out); /* empty, to be filled */
+status archive_new(archive **out); /* empty, for writing */
 void archive_free(archive *a);     /* accepts NULL */
-/* 1: it comes from a file. */
+/* 1: the archive was read from a file. */
 int archive_reads(const archive *a);
 
-/* No CPU seconds go into it: equal runs give equal bytes. */
+/* CPU seconds are left out: equal runs give equal bytes. */
 void archive_leave_out_cpu(archive *a);
 int archive_has_cpu(const archive *a);
 
 /* Names below are those of a group; names of groups nest. */
 void archive_enter(archive *a, const char *group);
 void archive_leave(archive *a);
-/* The whole group, to come back to: "" at first. */
+/* The full name of the present group, to return to: "" at first. */
 const char *archive_group(const archive *a);
 void archive_go(archive *a, const char *group);
 /* Length of an array of the present group in items of its kind; 0: it is not
@@ -35,18 +36,18 @@ void archive_go(archive *a, const char *group);
 size_t archive_length(const archive *a, const char *name);
 
 /*
- * One array. Filling: v[n] is borrowed until archive_write, but for short ones,
- * which are copied. Reading: into v[n]; ERR_FILE if there is none of that kind
- * and length. n = 0: nothing to do.
+ * One array. Writing: v[n] is borrowed until archive_write, except short
+ * arrays, which are copied. Reading: into v[n]; ERR_FILE if there is none of
+ * that kind and length. n = 0: nothing to do.
  */
 status archive_reals(archive *a, const char *name, double *v, size_t n);
 status archive_ints(archive *a, const char *name, int *v, size_t n);
 status archive_bytes(archive *a, const char *name, void *v, size_t n);
 
-/* Write aside, hand it to the disk, rename; the file that was at "path" becomes
- * "before". ERR_FILE names the file. */
+/* Written to a temporary file, synchronised, renamed; the file that was at
+ * "path" becomes "before". ERR_FILE names the file. */
 status archive_write(archive *a, const char *path, const char *before);
-/* ERR_FILE: not there, none of Protis, of another layout, damaged. */
+/* ERR_FILE: missing, not a file of Protis, of another layout, damaged. */
 status archive_read(const char *path, archive **out);
 
 #endif

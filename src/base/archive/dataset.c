@@ -1,7 +1,7 @@
 /*
- * Datasets of an HDF5 file that others wrote: nothing of it is believed. The
- * library's own error stack stays silent; what went wrong is told here with
- * the names of file and dataset.
+ * Datasets of an HDF5 file from outside: nothing in it is trusted. The
+ * library's own error stack stays silent; messages name the file and the
+ * dataset.
  */
 #include "base/memory.h"
 #include "base/archive/dataset.h"
@@ -18,7 +18,7 @@ enum {
   LARGE_PART = 1 << 20 /* items */
 };
 
-/* By the descriptor: the name may have come to mean another file. */
+/* By the descriptor: the name may refer to another file by now. */
 status dataset_open(const char *path, hdf5_source *s) {
   const char *why = NULL;
   char name[40];
@@ -46,7 +46,7 @@ void dataset_close(hdf5_source *s) {
   H5Eset_auto2(H5E_DEFAULT, s->print, s->print_data);
 }
 
-/* Every group on the way must be there before the library is asked. */
+/* Every group of the path must exist before the library is called. */
 int source_has(const hdf5_source *s, const char *name) {
   char part[256];
   size_t length = strlen(name);
@@ -62,7 +62,7 @@ int source_has(const hdf5_source *s, const char *name) {
   return 1;
 }
 
-/* The library makes buffers of the size that a damaged type claims. */
+/* The library allocates buffers of the size that a damaged type states. */
 static status check_type(const hdf5_source *s, const char *name, int real,
                          hid_t set) {
   status st = OK;
@@ -85,7 +85,7 @@ static int may_pack(H5Z_filter_t filter) {
           (filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_FLETCHER32));
 }
 
-/* Items of the parts that the library unpacks at once; 0: not in parts. */
+/* Items of a chunk; 0: not chunked. */
 static hsize_t part_items(hid_t made) {
   hsize_t size[H5S_MAX_RANK], items = 1;
   if (H5Pget_layout(made) != H5D_CHUNKED) return 0;
@@ -94,7 +94,7 @@ static hsize_t part_items(hid_t made) {
   return items;
 }
 
-/* Where the data stand, and what they went through. */
+/* Where the data are stored, and their filters. */
 static status check_storage(const hdf5_source *s, const char *name, hid_t set,
                             hsize_t items) {
   status st = OK;
@@ -120,8 +120,8 @@ done:
   return st;
 }
 
-/* What a dataset claims to hold must come from the bytes of the file: one that
- * was never written, or is damaged, would be any number of zeros. */
+/* The number of items must be possible with the bytes of the file: a dataset
+ * that was never written, or is damaged, would be any number of zeros. */
 status dataset_check(const hdf5_source *s, const char *name, hid_t set,
                      hsize_t items) {
   status st = OK;

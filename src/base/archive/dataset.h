@@ -12,11 +12,11 @@ typedef struct hdf5_source {
   const char *path; /* of the file, for messages */
   hid_t file;
   int fd;            /* by which it was opened */
-  H5E_auto2_t print; /* how the library told its errors before */
+  H5E_auto2_t print; /* error output of the library before */
   void *print_data;
 } hdf5_source;
 
-/* Items of what nothing else bounds. */
+/* Largest number of items where nothing else bounds it. */
 enum { MOST_ITEMS = 1 << 30 };
 
 /* Open for reading (base/system/input.h), the library silent until
@@ -25,9 +25,9 @@ enum { MOST_ITEMS = 1 << 30 };
 status dataset_open(const char *path, hdf5_source *s);
 void dataset_close(hdf5_source *s);
 
-/* The data of an open dataset stand in this file, packed by nothing but deflate
- * (without --safe also shuffle and fletcher32), and its "items" can come from
- * the bytes there. ERR_DECK. */
+/* The data of an open dataset are stored in this file, with no filter but
+ * deflate (without --safe also shuffle and fletcher32), and its "items" are
+ * possible with the bytes there. ERR_DECK. */
 status dataset_check(const hdf5_source *s, const char *name, hid_t set,
                      hsize_t items);
 

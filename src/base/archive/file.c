@@ -2,9 +2,10 @@
  * The file of an archive: the seal, then HDF5 behind it (its user block):
  *   /list             text, a line "kind length name" per array, in order
  *   /data/NAME        the arrays
- * Written aside, sealed, handed to the disk and renamed, so that a kill at any
- * moment leaves a whole file under one of the two names. HDF5 opens a file only
- * if its seal is whole: damaged lengths inside can make it ask for any memory.
+ * Written to a temporary file, sealed, synchronised and renamed, so that a kill
+ * at any moment leaves a complete file under one of the two names. HDF5 opens a
+ * file only if its seal is valid: damaged lengths inside can make it allocate
+ * any amount of memory.
  */
 #include "base/archive/dataset.h"
 #include "base/archive/file.h"
@@ -78,11 +79,11 @@ static status put_items(const archive *a, hid_t file, const char *path) {
 
 static status make_file(const archive *a, const char *path) {
   status st = OK;
-  hid_t file = -1, room = H5Pcreate(H5P_FILE_CREATE);
+  hid_t file = -1, creation = H5Pcreate(H5P_FILE_CREATE);
   TRY(file_clear(path));
   errno = 0;
-  if (room >= 0 && H5Pset_userblock(room, ARCHIVE_SEAL) >= 0)
-    file = H5Fcreate(path, H5F_ACC_EXCL, room, H5P_DEFAULT);
+  if (creation >= 0 && H5Pset_userblock(creation, ARCHIVE_SEAL) >= 0)
+    file = H5Fcreate(path, H5F_ACC_EXCL, creation, H5P_DEFAULT);
   if (file < 0) TRY(text_failed(path, "open for writing", errno));
   TRY(put_items(a, file, path));
   errno = 0;
@@ -91,7 +92,7 @@ static status make_file(const archive *a, const char *path) {
 done:
   if (file >= 0 && H5Fclose(file) < 0 && st == OK)
     st = text_failed(path, "close", errno);
-  if (room >= 0) H5Pclose(room);
+  if (creation >= 0) H5Pclose(creation);
   return st;
 }
 

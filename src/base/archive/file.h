@@ -29,7 +29,7 @@ status archive_add(archive *a, const char *name, archive_kind kind, size_t n,
 
 /* Bytes before those of HDF5. */
 enum { ARCHIVE_SEAL = 512 };
-/* Write the seal of a file that is whole, and hand it to the disk. ERR_FILE. */
+/* Write the seal of a complete file and synchronise it. ERR_FILE. */
 status archive_seal(const char *path);
 /* ERR_FILE: not there, without a seal, of another layout, not as sealed. */
 status archive_check_seal(const char *path);

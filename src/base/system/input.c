@@ -22,8 +22,8 @@ static const int FOLDER = O_PATH | O_DIRECTORY | O_CLOEXEC;
 
 static const char *const outside = "it is not below the folder of the deck";
 
-/* The names between the slashes of a path, "." left out and ".." taken back;
- * *path is cut. Their number, or -1 if the path leads out. */
+/* The names between the slashes of a path, "." and ".." resolved; *path is cut.
+ * Their number, or -1 if the path leads out. */
 static int split(char *path, const char *part[DEEPEST]) {
   int n = 0;
   char *rest = NULL;

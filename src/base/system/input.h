@@ -3,8 +3,8 @@
  * folder, a FIFO or a device is refused without waiting for it.
  *
  * With input_confine they are also below one folder, reached without symbolic
- * links: each folder on the way is opened from the one before, so that nothing
- * that changes meanwhile leads elsewhere.
+ * links: each folder of the path is opened from the one before, so that a
+ * change in between cannot lead elsewhere.
  */
 #ifndef PROTIS_SYSTEM_INPUT_H
 #define PROTIS_SYSTEM_INPUT_H

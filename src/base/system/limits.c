@@ -2,7 +2,7 @@
  * Limits of the system. Memory is the least of what the machine has left
  * (MemAvailable and swap), the control groups (version 1 and 2) up to their
  * root, and the limits of the process (ulimit -v, -d). Pages of files count as
- * free in a group: they are given back.
+ * free in a group: they can be reclaimed.
  */
 #define _GNU_SOURCE /* sched_getaffinity, sched_getcpu */
 #include "base/system/limits.h"
@@ -45,7 +45,7 @@ static void lower(limits *l, double memory, const char *who) {
 /* ---- control groups -------------------------------------------------------
  */
 
-/* What one group, with its folder, takes from the limits. */
+/* The limits of one group, by its folder. */
 typedef void group_limit(const char *folder, limits *l);
 
 static double group_number(const char *folder, const char *file,

@@ -7,7 +7,7 @@
 typedef struct limits {
   int cores;       /* of the affinity and the quota of the control groups */
   double memory;   /* bytes that can still be taken; INFINITY: unknown */
-  const char *who; /* whose limit that is, for messages */
+  const char *who; /* source of the limit, for messages */
 } limits;
 
 /* root: "", or a folder that stands for the root of the file system (tests). */

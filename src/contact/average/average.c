@@ -26,8 +26,8 @@ typedef struct builder {
   double *mass;               /* [n_node] W_i, - */
   sparse_rows raw, by_column; /* g_ij and its transpose, - */
   unsigned char *alone;       /* [n_node] no other node within the radius */
-  double *part;               /* [n_node] of its pairs that the mass of a node
-                                 has room for */
+  double *part;               /* [n_node] share of its pairs that the mass of a
+                                 node allows */
   int *found;                 /* [faces or rim] */
   int *touched, n_touched;    /* [n_node] columns of the current row */
   double *row;                /* [n_node] its values */
@@ -157,7 +157,7 @@ static void add_face(builder *b, int i, int face, const double *x,
   }
 }
 
-/* What a node sees from one place; a closed line laid out straight is seen
+/* Entries of a node from one place; a closed line laid out straight is treated
  * from three. */
 static void look_from(builder *b, int i, const double *x, double reach) {
   int n = box_tree_near(&b->faces, x, reach, b->found);
@@ -222,7 +222,7 @@ static status add_entry(sparse_rows *rows, int *n, int cap[2], int col,
   return OK;
 }
 
-/* Row i of raw from what the node sees, scaled to its mass. */
+/* Row i of raw from these entries, scaled to its mass. */
 static status keep_row(builder *b, int i, int cap[2]) {
   const average_patch *p = b->p;
   double seen = 0.0;

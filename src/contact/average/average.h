@@ -13,11 +13,11 @@
  * W_i is 1 where the disc of radius rho around x_i lies in the patch, and the
  * part of the kernel's mass found in the patch where it does not. Both g_ij and
  * W_i are integrals of the kernel itself. Where the pairs of a node would
- * exceed its mass they take what part of it they can, so that no entry is
- * negative and all change continuously with the radius.
+ * exceed its mass they are reduced to it, so that no entry is negative and all
+ * change continuously with the radius.
  *
- * A node without another node within rho keeps its own pressure (G_ii = 1):
- * where the mesh is coarser than rho, friction is local.
+ * A node without another node within rho has its own pressure (G_ii = 1): where
+ * the mesh is coarser than rho, friction is local.
  */
 #ifndef PROTIS_AVERAGE_AVERAGE_H
 #define PROTIS_AVERAGE_AVERAGE_H

@@ -1,7 +1,7 @@
 /*
  * Search for the items (faces, edges, points) near a point: a balanced tree of
- * bounding boxes, which serves items of any size side by side.
- * Inside src/contact/average only.
+ * bounding boxes, which serves items of any size. Inside src/contact/average
+ * only.
  */
 #ifndef PROTIS_AVERAGE_BOX_TREE_H
 #define PROTIS_AVERAGE_BOX_TREE_H

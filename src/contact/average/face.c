@@ -94,9 +94,9 @@ static double line_density(const mollifier *m, const double *x,
 static double ring_density(const mollifier *m, const double *x,
                            const double *y) {
   double d2 = distance2(2, x, y), across = 4.0 * x[0] * y[0], sum = 0.0;
-  double room = m->radius * m->radius - d2;
-  if (room <= 0.0 || y[0] <= 0.0) return 0.0;
-  double end = room < across ? 2.0 * asin(sqrt(room / across)) : acos(-1.0);
+  double rest = m->radius * m->radius - d2;
+  if (rest <= 0.0 || y[0] <= 0.0) return 0.0;
+  double end = rest < across ? 2.0 * asin(sqrt(rest / across)) : acos(-1.0);
   rule q = rule_for(0.5 * end * sqrt(fmax(0.25 * across, 0.0)), m->radius);
   for (int p = 0; p < q.pieces; ++p)
     for (int g = 0; g < q.n; ++g) {

@@ -1,6 +1,6 @@
 /*
- * The straight layout copies the patch. The geodesic one walks along the lines
- * and lays each out on a row of its own, the rows too far apart to see another.
+ * The straight layout copies the patch. The geodesic one follows the lines and
+ * lays each out on a row of its own, the rows too far apart to interact.
  */
 #include "contact/average/layout.h"
 
@@ -126,7 +126,7 @@ static void lay_as_is(const average_patch *p, const fans *f, layout *l) {
 
 /* ---- along the lines --------------------------------------------------- */
 
-/* A walk along one line. */
+/* Traversal of one line. */
 typedef struct walk {
   const average_patch *p;
   const fans *f;
@@ -140,8 +140,8 @@ static void put(double *to, double along, double row) {
   to[1] = row;
 }
 
-/* A face around the node that no walk has passed, or -1. */
-static int way_on(const walk *w, int node) {
+/* A face around the node that has not been traversed, or -1. */
+static int next_face(const walk *w, int node) {
   for (int k = w->f->start[node]; k < w->f->start[node + 1]; ++k)
     if (!w->done[w->f->face[k]]) return w->f->face[k];
   return -1;
@@ -153,7 +153,7 @@ static void lay_line(walk *w, int first) {
   double along = 0.0;
   int node = first, face;
   put(w->l->x + 2 * first, along, w->row);
-  while ((face = way_on(w, node)) >= 0) {
+  while ((face = next_face(w, node)) >= 0) {
     int turned = p->face[2 * face] != node;
     int next = p->face[2 * face + !turned];
     const double *a = node_at(p, node), *b = node_at(p, next);
@@ -203,12 +203,12 @@ static status lay_straight(const average_patch *p, const fans *f, double apart,
   NEW(l->loop, p->n_node);
   /* Lines with ends first; what is left is closed. */
   for (int i = 0; i < p->n_node; ++i)
-    while (fan_size(f, i) != 2 && way_on(&w, i) >= 0) {
+    while (fan_size(f, i) != 2 && next_face(&w, i) >= 0) {
       lay_line(&w, i);
       w.row += apart;
     }
   for (int i = 0; i < p->n_node; ++i)
-    if (way_on(&w, i) >= 0) {
+    if (next_face(&w, i) >= 0) {
       lay_line(&w, i);
       close_loop(&w, i);
       w.row += apart;

@@ -9,7 +9,7 @@
 
 typedef struct layout {
   int dim, n_face, n_rim;
-  double *x;      /* [dim*n_node] place from where a node looks, m */
+  double *x;      /* [dim*n_node] place of a node, m */
   double *corner; /* [dim*dim*n_face] corners of the faces, m */
   double *loop;   /* [n_node] length of the closed line of a node laid out
                      straight, 0: none; or NULL */

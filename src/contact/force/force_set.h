@@ -1,6 +1,6 @@
 /*
- * Forces that the contact conditions admit, on a problem whose compliance is
- * known: what the methods share that seek them.
+ * Admissible contact forces of a problem whose compliance is known: common
+ * parts of the methods for them.
  */
 #ifndef PROTIS_FORCE_FORCE_SET_H
 #define PROTIS_FORCE_FORCE_SET_H

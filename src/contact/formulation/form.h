@@ -1,7 +1,7 @@
 /*
- * The contact problem rewritten: in the displacement of an increment (CPR98,
- * problem N3) and with given normal forces (problem D3). Each form is again a
- * contact problem that every solver takes; its answer is brought back.
+ * Formulations of the contact problem: in the displacement of an increment
+ * (CPR98, problem N3) and with given normal forces (problem D3). Each is again
+ * a contact problem for any solver; its solution is transformed back.
  */
 #ifndef PROTIS_FORM_FORM_H
 #define PROTIS_FORM_FORM_H
@@ -9,9 +9,9 @@
 #include "contact/contact.h"
 
 typedef struct velocity_form velocity_form;
-/* Room for problems of the size of cp. */
+/* Allocates for problems of the size of cp. */
 status velocity_form_new(const contact_problem *cp, velocity_form **out);
-/* [m] m: where u_old is put before velocity_form_set. */
+/* [m] m: set to u_old before velocity_form_set. */
 double *velocity_form_old(velocity_form *v);
 /*
  * cp in the unknown du = u - u_old. *u[m]: the start value of u in, that of du
@@ -34,16 +34,16 @@ status given_form_new(const contact_problem *cp, int n, const int *node,
                       given_form **out);
 /*
  * cp with the forces force[n] >= 0 (N, pushing into the body) in the place of
- * the unilateral conditions: in *out the normal unknowns of the nodes stand
- * apart from all others, at 0 below a gap of "reach" > 0, m, and the sliding
- * limit knows their pressure. u, r [m]: start values, made to fit. *out borrows
- * from g and cp. ERR_MEMORY.
+ * the unilateral conditions: in *out the normal unknowns of the nodes are
+ * uncoupled from all others, at 0 below a gap of "reach" > 0, m, and the
+ * sliding limit includes their pressure. u, r [m]: start values, made to fit.
+ * *out borrows from g and cp. ERR_MEMORY.
  */
 status given_form_set(given_form *g, const contact_problem *cp,
                       const double *force, double reach, double *u, double *r,
                       contact_problem *out);
 /*
- * From the answer u, r of that problem to the one of cp: the normal
+ * From the solution u, r of that problem to that of cp: the normal
  * displacements of the nodes, and -force. cp->gap then points to gaps (borrowed
  * from g) that are closed at these nodes, so that (u, r) solves cp itself.
  */

@@ -27,11 +27,11 @@ struct given_form {
   double *L;       /* [n*n] Cholesky factor of A_gg, lower */
   double *Y;       /* [n*m] inv(L) A_gc, zero in the columns of g */
   double *f, *gap; /* [m], [number of nodes] */
-  double *met;     /* [number of nodes] gaps closed at g by the answer, m */
+  double *met;     /* [number of nodes] gaps closed at g by the solution, m */
   double *y;       /* [n] inv(L) (f_g - F) */
   double *force;   /* [n] F, N */
   double *g0;      /* [number of nodes] N */
-  double *mu;      /* entries of B without those of g; room for n_entry */
+  double *mu;      /* entries of B without those of g; n_entry allocated */
   int n_entry;
   unsigned char *is; /* [number of nodes] 1: of g */
   sparse_rows B;     /* borrows start and col of the problem's */
@@ -139,7 +139,7 @@ static status set_limit(given_form *g, const contact_problem *cp,
     g->n_entry = B->start[cp->n];
     PASS_NEW(g->mu, g->n_entry);
   }
-  /* The gaps are not in use yet: they hold the forces by node. */
+  /* The gaps are not in use yet: the array stores the forces by node. */
   memset(g->gap, 0, (size_t)cp->n * sizeof *g->gap);
   for (int k = 0; k < g->n; ++k) g->gap[g->node[k]] = g->force[k];
   for (int i = 0; i < cp->n; ++i) {

@@ -24,7 +24,7 @@ static double root_of(const contact_problem *cp, int node_id) {
   return sqrt(most);
 }
 
-/* 1: an entry of columns a and rows b counts beside "least". */
+/* 1: an entry of columns a and rows b is above "least". */
 static int joined(const contact_problem *cp, int a, int b, double least) {
   for (int j = a * cp->dim; j < (a + 1) * cp->dim; ++j) {
     const double *column = matrix_of(cp) + (size_t)j * (size_t)cp->m;
@@ -34,8 +34,8 @@ static int joined(const contact_problem *cp, int a, int b, double least) {
   return 0;
 }
 
-/* Bodies, each from one node on: list[n] holds the nodes found, then those
- * that are left. */
+/* Bodies, each from one node on: list[n] holds the nodes found, then the
+ * remaining ones. */
 static void find_bodies(const contact_problem *cp, const double *root,
                         int *list, contact_bodies *b) {
   int found = 0;

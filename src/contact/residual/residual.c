@@ -1,5 +1,5 @@
 /*
- * The one residual all solvers are judged by, and the status of the nodes
+ * The residual by which all solvers are checked, and the status of the nodes
  * (contact.h): natural map and equation, each node in the scale of the forces
  * and displacements of its own body.
  *
@@ -18,7 +18,7 @@ static const double FLOOR = 0x1p-14;    /* -, of loads to come, of a fall */
 static const double LEVER = 0x1p10;     /* -, motion over force/stiffness */
 static const double STATUS_MARGIN = 0x1p-30; /* -, of the scale */
 
-/* An iterate, and what its errors are compared with. */
+/* An iterate and the scales of its errors. */
 typedef struct measure {
   const contact_problem *cp;
   const double *u, *r;
@@ -32,7 +32,8 @@ typedef struct measured {
   node_step c;          /* N/m */
   double k;             /* the larger of c, N/m */
   double rounding;      /* what rounding can have put into a row, N */
-  double drift;         /* the same, by motion that no data lead to, N */
+  double drift;         /* the same, by motion that does not follow from the
+                           data, N */
   double normal, slide; /* scale along the normal, in the tangent plane, N */
   double q[3];          /* the nearest forces of an obstacle, N */
 } measured;
@@ -94,9 +95,9 @@ static double largest_of(int n, const double *v) {
   return most;
 }
 
-/* How large what is carried can become by loads and obstacles: displacements
- * that drift off, forces that grow without end are no answer, however large
- * rounding gets by them. */
+/* Bound of the motion by loads and obstacles: displacements that drift off and
+ * forces that grow without bound are no solution, however large their rounding
+ * is. */
 static double reach_of(const measure *x, int node_id, double k) {
   const contact_problem *cp = x->cp;
   double force = 0.0, position = 0.0;
@@ -110,7 +111,7 @@ static double reach_of(const measure *x, int node_id, double k) {
   return larger(LEVER * force / sqrt(k), sqrt(k) * position);
 }
 
-/* Force that the load makes at a node that nothing else holds, N. */
+/* Force of the load at a node that nothing else holds, N. */
 static double load_of(const contact_problem *cp, int node_id,
                       const measured *node) {
   const double *load = cp->f_load != NULL ? cp->f_load : cp->f;
@@ -136,9 +137,9 @@ static void add_node(measure *x, int node_id) {
   double load = load_of(cp, node_id, &node);
   b->contact = larger(b->contact, force);
   b->load = larger(b->load, load);
-  b->way = larger(b->way, larger(force, load) / node.k);
-  double way = fmin(fabs(x->u[node_id * cp->dim]), fabs(cp->gap[node_id]));
-  b->fallen = larger(b->fallen, node.c.n * way);
+  b->displacement = larger(b->displacement, larger(force, load) / node.k);
+  double moved = fmin(fabs(x->u[node_id * cp->dim]), fabs(cp->gap[node_id]));
+  b->fallen = larger(b->fallen, node.c.n * moved);
   b->carried = larger(b->carried, root * largest_of(cp->dim, v));
   b->reach = larger(b->reach, reach_of(x, node_id, node.k));
 }
@@ -155,7 +156,7 @@ static void measure_set(const contact_problem *cp, double scale,
     x->forces = larger(x->forces, larger(x->size[b].load, x->size[b].contact));
 }
 
-/* What the loads of a body grow to, as those of all do, N. */
+/* Final size of the loads of a body, growing like those of all, N. */
 static double load_to_come(const measure *x, const body_size *b) {
   double own = larger(b->load, b->contact);
   return x->forces > 0.0 ? own / x->forces * x->cp->load : x->cp->load;
@@ -165,7 +166,7 @@ static double load_to_come(const measure *x, const body_size *b) {
 static double forces_of(const measure *x, const measured *node,
                         const body_size *b, double c) {
   double most = x->cp->A != NULL ? x->scale : c * x->scale;
-  double own = smaller(larger(b->load, b->contact), node->k * b->way);
+  double own = smaller(larger(b->load, b->contact), node->k * b->displacement);
   return smaller(most, own);
 }
 
@@ -193,8 +194,8 @@ static void measure_node(measure *x, int node_id, measured *node) {
   node->slide = scale_of(x, b, node, node->c.t);
 }
 
-/* An error over its scale, beyond what rounding can have made of it, or what
- * drift makes of every row. */
+/* An error over its scale, less the bound of its rounding, or that of a
+ * drift. */
 static double beyond(const measured *node, double error, double scale) {
   double more = error <= node->rounding ? 0.0 : error - node->rounding;
   more = larger(more, node->drift);
@@ -204,7 +205,7 @@ static double beyond(const measured *node, double error, double scale) {
 
 /* ---- residual ------------------------------------------------------------ */
 
-/* What it misses of the natural map along the normal, in the tangent plane. */
+/* Residual of the natural map along the normal, in the tangent plane. */
 static node_step map_errors(const measure *x, int node_id,
                             const measured *node) {
   const double *r = x->r + node_id * x->cp->dim;
@@ -219,7 +220,7 @@ static double map_of(const measure *x, int node_id, const measured *node) {
                 beyond(node, e.t, node->slide));
 }
 
-/* d[dim]: what the equation misses at the node, N (m). */
+/* d[dim]: defect of the equation at the node, N (m). */
 static double equation_of(const measure *x, const measured *node,
                           const double *d) {
   double worst = 0.0;

@@ -1,8 +1,8 @@
 /*
  * Clusters are grown in three passes over each section: the stars of inner
- * nodes no two of which are neighbours; what is left joins, across a face, the
- * smallest cluster beside it; parts without inner nodes are begun by stars of
- * nodes on their boundary, or by an element.
+ * nodes no two of which are neighbours; the remaining elements join, across a
+ * face, the smallest neighbouring cluster; parts without inner nodes start with
+ * stars of nodes on their boundary, or with an element.
  */
 #include "fem/cluster/cluster.h"
 
@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A section at work. */
+/* The current section. */
 typedef struct growth {
   const mesh *m;
   const int *section_id;
@@ -63,7 +63,7 @@ static void put(growth *g, int e, int cluster) {
   ++g->size[cluster];
 }
 
-/* The star of a node becomes a cluster, as far as it is free. */
+/* The free elements of the star of a node become a cluster. */
 static void take_star(growth *g, int node) {
   int found = 0;
   for (size_t q = g->start[node]; q < g->start[node + 1]; ++q) {
@@ -82,7 +82,7 @@ static void take_stars(growth *g, int outside) {
 }
 
 /* The smallest cluster across a face, or -1. */
-static int smallest_beside(const growth *g, int e) {
+static int smallest_neighbour(const growth *g, int e) {
   int best = -1;
   for (int a = 0; a <= g->m->dim; ++a) {
     const int other = behind(g, e, a), c = other < 0 ? -1 : g->of[other];
@@ -98,7 +98,7 @@ static int join_rest(growth *g) {
     joined = rest = 0;
     for (int e = 0; e < g->m->n_elem; ++e) {
       if (g->section_id[e] != g->section || g->of[e] >= 0) continue;
-      const int c = smallest_beside(g, e);
+      const int c = smallest_neighbour(g, e);
       if (c >= 0) put(g, e, c);
       joined += c >= 0;
       rest += c < 0;

@@ -1,22 +1,23 @@
 /*
  * Clusters: disjoint sets of some ten triangles or thirty tetrahedra of one
- * section, over which the change of volume is averaged, so that P1 elements
- * follow a body that keeps its volume. With t = tr e and <t> its mean over the
- * cluster, the strain that the law sees is
+ * section, over which the change of volume is averaged, so that P1 elements do
+ * not lock in a nearly incompressible body. With t = tr e and <t> its mean over
+ * the cluster, the strain that the law sees is
  *
  *   A e = e + share/3 (<t> - t) I,          K = sum w B' A E A B.
  *
  * A is symmetric under the weights w, so K is symmetric and, with E, positive
- * definite; A leaves a uniform strain alone, so patch tests hold. The stress in
- * equilibrium with the nodal forces is A sigma.
+ * definite; A leaves a uniform strain unchanged, so patch tests are passed. The
+ * stress in equilibrium with the nodal forces is A sigma.
  *
  * share = 1 makes the pressure one constant per cluster, with P1 displacements
  * (Stenberg, Math. Comp. 42, 1984, 9-23): stable without spurious pressures
  * where at most 3 clusters (4 in 3-D) meet at an inner node, which clusters
  * grown from the stars of nodes that are no neighbours give but for few. A
- * share below 1 keeps the fluctuations within a cluster with a modulus of
- * their own, (1 - share)^2 times that of the volume, of the size of the shear
- * modulus: cluster_share(). That costs no stability, and pressures gain.
+ * share below 1 keeps the fluctuations within a cluster with a modulus of their
+ * own, (1 - share)^2 times that of the volume, of the size of the shear
+ * modulus: cluster_share(). Stability is unaffected, and pressures are more
+ * accurate.
  */
 #ifndef PROTIS_CLUSTER_CLUSTER_H
 #define PROTIS_CLUSTER_CLUSTER_H

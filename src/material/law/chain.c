@@ -29,7 +29,7 @@ typedef struct burgers_value {
 
 #define MODULUS(struct_, field, name)                                   \
   OPTION_REAL(struct_, field, name, 0, DBL_MAX, NULL, "force/length^2", \
-              "modulus of the spring beside the dashpot")
+              "modulus of the spring parallel to the dashpot")
 #define VISCOSITY(struct_, field, name, help)               \
   OPTION_REAL(struct_, field, name, DBL_MIN, DBL_MAX, NULL, \
               "force/length^2 time", help)
@@ -51,7 +51,7 @@ static const option burgers_fields[] = {
   VISCOSITY(burgers_value, dashpot, "eta_M", "viscosity of the single dashpot"),
   MODULUS(burgers_value, kelvin.modulus, "E_K"),
   VISCOSITY(burgers_value, kelvin.viscosity, "eta_K",
-            "viscosity beside the spring"),
+            "viscosity parallel to the spring"),
   OPTION_END};
 /* clang-format on */
 

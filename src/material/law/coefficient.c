@@ -1,7 +1,7 @@
 /*
  * Coefficients of a law: read from the data lines of its card; their values at
  * a time and temperature (numbers or expressions of t, linear between the
- * temperatures of the table and constant outside); the clock of the shifts.
+ * temperatures of the table and constant outside); the time-temperature shifts.
  */
 #include "material/law/law.h"
 
@@ -178,7 +178,7 @@ static const option *place_line(lines *r, const record *line, double *T,
     message_add(r->log, P2008, &line->at,
                 "*%s, LAW=%s has one line, more only with temperatures",
                 r->c->name, law->ops->name);
-  /* Too few or too many: read_line tells. */
+  /* Too few or too many: read_line reports it. */
   if (table == NULL || has == r->has_temperature ||
       line->n_field < needed(table) || line->n_field > law_n_field(table) + 1)
     return table;

@@ -149,10 +149,10 @@ static void copy_block(const double *A, int rows, int columns, double *M,
 /* Matrix of d(e^i, alpha)/dt under held strain, [n*n]. */
 static status coupled_matrix(const law_point *p, int na, double *M) {
   const int ns = p->elastic->ns, n = ns + na;
-  OWNED double *room = NULL;
+  OWNED double *work = NULL;
   law_jacobian j;
-  PASS_NEW(room, 2 * ns * ns + 2 * ns * na + na * na);
-  j.ei_sigma = room;
+  PASS_NEW(work, 2 * ns * ns + 2 * ns * na + na * na);
+  j.ei_sigma = work;
   j.ei_ei = j.ei_sigma + ns * ns;
   j.ei_alpha = j.ei_ei + ns * ns;
   j.alpha_sigma = j.ei_alpha + ns * na;

@@ -45,7 +45,7 @@ status law_elastic_heat(law_elastic *el, double temperature);
 
 struct law_ops;
 
-/* How temperature runs the clock of a law: its rates are multiplied by 1/a. */
+/* Time-temperature shift of a law: its rates are multiplied by 1/a. */
 typedef enum { SHIFT_NONE, SHIFT_WLF, SHIFT_ARRHENIUS } shift_kind;
 #define SHIFT_WORDS "NONE|WLF|ARRHENIUS"
 typedef struct law_shift {
@@ -98,12 +98,12 @@ typedef struct law_jacobian {
 enum { LAW_WHOLE, LAW_DEVIATOR, LAW_MEAN, LAW_NO_PART };
 typedef struct law_unit {
   double flow;   /* 1/s: modulus of *ELASTIC over the viscosity; 0: rests */
-  double spring; /* the modulus beside the dashpot over that of *ELASTIC */
+  double spring; /* the modulus parallel to the dashpot over that of *ELASTIC */
 } law_unit;
 
 /*
- * A row. Functions get a point whose values are in range and whose speed they
- * ignore; they write into arrays of zeros and allocate nothing.
+ * A row. Functions get a point whose values are in range, ignore its speed,
+ * write into arrays of zeros and allocate nothing.
  */
 typedef struct law_ops {
   /* as in LAW=, source, one line */
@@ -147,12 +147,12 @@ typedef struct law_ops {
   int (*series)(const law_point *p, int part, int k, law_unit *unit);
   /* 0 if every rate is exactly zero at the point; NULL: the law always flows */
   int (*flows)(const law_point *p);
-  /* Power lost, >= 0, W/m3; energy kept by alpha and e^i, J/m3 (NULL: none):
+  /* Power lost, >= 0, W/m3; energy stored by alpha and e^i, J/m3 (NULL: none):
    * sigma . d(e^i)/dt = dissipation + d(stored)/dt. */
   double (*dissipation)(const law_point *p);
   double (*stored)(const law_point *p);
-  /* What is wrong with values that are in range each, or with the elasticity
-   * they stand beside, into text; or NULL. */
+  /* Text on what is wrong with values that are each in range, or with the
+   * elasticity they are used with; or NULL. */
   const char *(*check)(const law_card *law, elastic_type type,
                        const double *value, char *text, size_t size);
 } law_ops;
@@ -186,7 +186,7 @@ int law_n_value(const law_card *law);
  * the field, the time and the temperature if one is out of its range. */
 status law_values(const law_card *law, double t, double temperature,
                   double *value);
-/* 1/a of the shift; infinite or 0 only if the deck asks for it. */
+/* 1/a of the shift; infinite or 0 only if the deck requires it. */
 double law_speed(const law_card *law, double temperature);
 enum { LAW_VARIES_TIME = 1, LAW_VARIES_TEMPERATURE = 2 };
 /* What the values and the speed depend on: bits; 0: the same for ever. */
@@ -199,7 +199,7 @@ void law_rate(const law_point *p, double *ei_rate, double *alpha_rate);
 void law_jacobian_at(const law_point *p, law_jacobian *j);
 int law_flows(const law_point *p);
 double law_dissipation(const law_point *p);
-double law_stored(const law_point *p); /* 0 if the law keeps nothing */
+double law_stored(const law_point *p); /* 0 if the law has none */
 /* The largest magnitude of an eigenvalue of the rates of (e^i, alpha) with
  * sigma = E (e - e^i) under held e, 1/s: an explicit Euler or Heun step decays
  * if dt < 2/rate (exact for MAXWELL, whatever the mesh). ERR_MEMORY,

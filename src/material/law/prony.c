@@ -48,7 +48,7 @@ static void shares(const law_point *p, double *ei) {
     add_share(ns, &terms_of(p)[k], p->alpha + ns * k, ei);
 }
 
-/* Total strain less what e^i has beside the terms. */
+/* Total strain less the part of e^i that is not in the terms. */
 static void total_strain(const law_point *p, double *e) {
   const int ns = p->elastic->ns;
   double ei[6];

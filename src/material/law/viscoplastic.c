@@ -95,7 +95,7 @@ static const back_stress *back_of(const law_point *p) {
   return (const void *)(p->value + law_n_field(p->law->ops->fields));
 }
 
-/* What a point does. */
+/* State of a point. */
 typedef struct flow {
   yield y;
   int ns, n_back;
@@ -220,7 +220,7 @@ static double along_direction(const flow *f, int k) {
 }
 
 /*
- * Held strain: a change of (e^i, a_k) along n and one across n run apart. Each
+ * Held strain: changes of (e^i, a_k) along n and across n are uncoupled. Each
  * is x' = -c (A x + sum_k C_k y_k), y_k' = r_k x' - gamma_k rate y_k with
  *   along   c = slope,   A = 3 G + dR/dp,  r_k = 1 - gamma_k (2/3) n . a_k
  *   across  c = rate/q,  A = 3 G,          r_k = 1.

@@ -4,11 +4,11 @@
  * ends,
  *   y(s) = y_old + s D + s (1 - s) ((1 - s) d_old - s d_new),
  *   d_old = dt f_old - D,  d_new = dt f_new - D
- * is the cubic of Hermite, wrong by dt^4: no integrator loses its order. Parts
- * that relax within less than the step have rates that tell nothing about it:
- * d_old and d_new count up to the magnitude of D, so that y(s) of one component
- * is monotone from y_old to y_new; smooth solutions stay below as dt falls but
- * for the step in which a rate turns its sign.
+ * is the cubic of Hermite, wrong by dt^4: no integrator loses its order. The
+ * rates of parts that relax within less than the step do not describe it: d_old
+ * and d_new count up to the magnitude of D, so that y(s) of one component is
+ * monotone from y_old to y_new; smooth solutions stay below as dt falls but for
+ * the step in which a rate turns its sign.
  */
 #include "material/scheme/work.h"
 
@@ -23,7 +23,7 @@ static status end_rates(const scheme_call *a, const flow_state *s, int i,
   return flow_rates(a->x, s, a->p->dt, w->ei_rate[i], w->alpha_rate[i], power);
 }
 
-/* What is left of d[n] beside a change of this magnitude. */
+/* d[n] limited by a change of this magnitude. */
 static double bounded(double magnitude, double most) {
   return magnitude > most ? most / magnitude : 1.0;
 }

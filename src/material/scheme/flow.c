@@ -190,7 +190,7 @@ status flow_add_elastic(const flow *x, const flow_state *s, int from, int to,
     double e[6] = {0};
     for (int i = 0; i < x->ns; ++i)
       e[i] = s->e[at + (size_t)i] - s->ei[at + (size_t)i];
-    if (kind->elastic.plane_stress) { /* zz: the stress alone tells */
+    if (kind->elastic.plane_stress) { /* zz: from the stress alone */
       PASS(flow_heat(kind, s->temperature[k]));
       voigt_product(x->ns, kind->elastic.S, s->sigma + at, e);
     }

@@ -107,7 +107,7 @@ static status theta_map(const flow_kind *k, const scheme_step *p,
 }
 
 /* X = exp(A) - I for A[n*n] of any size: Taylor below 2^-6, then squaring in
- * the form X <- 2 X + X X, which keeps slow parts beside fast ones. */
+ * the form X <- 2 X + X X, which preserves slow rates next to fast ones. */
 status exponential_less_one(int n, const double *A, double *X) {
   enum { TERMS = 12 };
   OWNED double *power = NULL, *next = NULL;
@@ -180,7 +180,7 @@ static void remains(const law_elastic *el, const linear_map *m, double *D) {
   multiply(ns, ns, ns, -1.0, el->E, top, D);
 }
 
-/* The deviator and the mean go by themselves if the elasticity lets them. */
+/* Deviator and mean are treated separately if the elasticity is isotropic. */
 static int is_series(const flow_kind *k) {
   law_unit unit;
   const law_point p = {

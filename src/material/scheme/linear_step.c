@@ -1,7 +1,6 @@
 /*
- * Steps of linear laws with constant coefficients: what the maps of linear.c
- * make of the points, in parts that stay in the nearest memory from one piece
- * of work to the next.
+ * Steps of linear laws with constant coefficients: the maps of linear.c applied
+ * to the points, in blocks that stay in the cache.
  */
 #include "material/scheme/work.h"
 

@@ -18,14 +18,14 @@
 
 enum { MOST_TANGENT = 40, MOST_INITIAL = 2000 };
 
-/* Room for one point. */
-typedef struct room {
+/* Workspace of one point. */
+typedef struct point_work {
   point_step l;
   linear_map map; /* of a linear law, made when first needed */
   double D[36];   /* [ns*ns] that it leaves, Pa */
-} room;
+} point_work;
 
-static void room_free(room *r) {
+static void point_work_free(point_work *r) {
   point_step_free(&r->l);
   linear_map_free(&r->map);
 }
@@ -36,7 +36,7 @@ static int has_map(const flow *x, int k) {
 }
 
 /* Point k by the map: r->l.y and r->D. */
-static status follow_map(const scheme_call *a, int k, room *r) {
+static status follow_map(const scheme_call *a, int k, point_work *r) {
   const flow *x = a->x;
   const size_t ns = (size_t)x->ns, n = ns + (size_t)x->most_alpha;
   point_step *l = &r->l;
@@ -55,7 +55,8 @@ static status follow_map(const scheme_call *a, int k, room *r) {
 }
 
 /* Point k for now->e: r->l.y, and into D[ns*ns] unless it is NULL. */
-static status follow_point(const scheme_call *a, int k, room *r, double *D) {
+static status follow_point(const scheme_call *a, int k, point_work *r,
+                           double *D) {
   const size_t ns = (size_t)a->x->ns, bytes = ns * ns * sizeof *D;
   const double *sigma_old = a->old->sigma + ns * (size_t)k;
   point_step *l = &r->l;
@@ -79,7 +80,7 @@ static status follow_point(const scheme_call *a, int k, room *r, double *D) {
 
 /* All points for now->e: ei, alpha, sigma, the power of the step; w->D[ns*ns*n]
  * unless the iteration is that of initial stresses. */
-static status solve_points(const scheme_call *a, room *r) {
+static status solve_points(const scheme_call *a, point_work *r) {
   const flow *x = a->x;
   const size_t ns = (size_t)x->ns;
   point_step *l = &r->l;
@@ -140,7 +141,8 @@ static double misfit(const flow *x, const flow_state *now, const double *linear,
   return scale > 0.0 ? sqrt(sum) / scale : 0.0;
 }
 
-static status need_room(const flow *x, const scheme_step *p, scheme_work *w) {
+static status need_workspace(const flow *x, const scheme_step *p,
+                             scheme_work *w) {
   size_t n = (size_t)x->ns * (size_t)x->n;
   PASS(need(&w->sigma_k, n));
   PASS(need(&w->e_k, n));
@@ -157,9 +159,9 @@ status newton_advance(const scheme_call *a) {
   const int most = p->initial ? MOST_INITIAL : MOST_TANGENT;
   scheme_work *w = a->w;
   scheme_result *out = a->out;
-  room r = {0};
+  point_work r = {0};
   TRY(point_step_new(x, &r.l));
-  TRY(need_room(x, p, w));
+  TRY(need_workspace(x, p, w));
   a->now->t = p->t;
   TRY(a->b->begin(a->b->ctx, a->now));
   memcpy(a->now->e, a->old->e, bytes);
@@ -180,6 +182,6 @@ status newton_advance(const scheme_call *a) {
   }
   out->settled = 0;
 done:
-  room_free(&r);
+  point_work_free(&r);
   return st;
 }

@@ -23,9 +23,9 @@ status point_step_new(const flow *x, point_step *l) {
   int ns = x->ns, na = x->most_alpha, n = ns + na;
   memset(l, 0, sizeof *l);
   PASS_NEW(l->pivot, n);
-  PASS_NEW(l->room,
+  PASS_NEW(l->work,
            na + 5 * n + n * n + n * ns + 2 * ns * ns + 2 * ns * na + na * na);
-  l->alpha = l->room;
+  l->alpha = l->work;
   l->y = l->alpha + na;
   l->old = l->y + n;
   l->f = l->old + n;
@@ -41,7 +41,7 @@ status point_step_new(const flow *x, point_step *l) {
   return OK;
 }
 
-void point_step_free(point_step *l) { RELEASE(l->room, l->pivot); }
+void point_step_free(point_step *l) { RELEASE(l->work, l->pivot); }
 
 /* Point k with its start values; coefficients at the theta-point. */
 status point_step_begin(const flow *x, const scheme_step *p, int k,
@@ -178,7 +178,7 @@ static int point_newton(const scheme_step *p, const double *sigma_old,
       break;
     memcpy(l->X, l->trial, (size_t)l->n * sizeof *l->X);
     if (!point_update(p, sigma_old, l->X, &residual, l)) break;
-    /* Rounding: no progress at a level that is as good as nothing. */
+    /* Rounding: no progress at a negligible level. */
     if (residual >= before && residual <= 1e3 * enough) break;
   }
   return residual <= 1e4 * enough && alpha_misfit(l) <= 1e4 * alpha_tol;
@@ -187,7 +187,7 @@ static int point_newton(const scheme_step *p, const double *sigma_old,
 /*
  * Rates that are high powers of the stress: Newton's method takes one power of
  * e off the rate with each iteration, or fails. The same for steps dt, growing
- * from one that changes little, each from the answer of the last.
+ * from one that changes little, each from the solution of the last.
  */
 static int point_follow(const scheme_step *p, const double *sigma_old,
                         point_step *l) {

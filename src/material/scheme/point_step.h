@@ -7,7 +7,7 @@
 
 #include "material/scheme/scheme.h"
 
-/* Room for one point, n = ns + most_alpha unknowns. */
+/* Workspace of one point, n = ns + most_alpha unknowns. */
 typedef struct point_step {
   int ns, na, n;
   double e[6], sigma[6], ei[6];       /* at the theta-point; e of the end */
@@ -19,7 +19,7 @@ typedef struct point_step {
   law_jacobian j;
   double value[FLOW_VALUE_MAX];
   law_point p;
-  double *room;
+  double *work;
 } point_step;
 
 status point_step_new(const flow *x, point_step *l); /* ERR_MEMORY */

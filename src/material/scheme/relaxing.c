@@ -1,16 +1,16 @@
 /*
  * Maps of laws whose terms follow the strain each by itself (PRONY),
  *   d(v_k)/dt = (e - w - v_k) r_k,   e^i = w + sum_k W_k v_k,   w constant.
- * The matrices of the general case hold all rates r_k beside each other: of
- * rates that differ by more than 16 decades the slow ones drown. Here
+ * The matrices of the general case contain all rates r_k: of rates that differ
+ * by more than 16 decades the slow ones are lost. Here
  *   v_k,new - v_k = q0_k e_old + q1_k e_new - a_k (w + v_k),
  *   a_k = q0_k + q1_k,  z = r_k dt,
  *   THETA        q0 = (1 - theta) z/(1 + theta z),  q1 = theta z/(1 + theta z)
  *   EXPONENTIAL  a = 1 - exp(-z),  q1 = 1 - a/z     (e linear over the step)
  * are of the size of 1 for every rate.
  *
- * And the maps of linear laws in plane stress: the body knows e_zz no more than
- * e^i; sigma_zz = 0 at both ends of the step takes it out, so that EXPONENTIAL
+ * And the maps of linear laws in plane stress: e_zz is no unknown of the body;
+ * sigma_zz = 0 at both ends of the step eliminates it, so that EXPONENTIAL
  * takes e_zz too as linear over the step.
  */
 #include "material/scheme/work.h"

@@ -1,5 +1,5 @@
 /*
- * The list of integrators, and their room.
+ * The list of integrators and their workspace.
  *
  * The theta-method takes the rates at the theta-point, x_th = (1 - theta) x_old
  * + theta x_new: theta = 1/2 is the implicit midpoint rule on the line between

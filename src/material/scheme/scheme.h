@@ -2,9 +2,9 @@
  * Integrators of inelastic strains: for the points (elements) whose law flows,
  *   d(e^i)/dt = Phi_1(sigma, e^i, alpha), d(alpha)/dt = Phi_2(sigma, alpha)
  * where sigma of a given e^i is the equilibrium of the whole body with its
- * contacts (CPR98 3.14-3.20). An integrator knows points and asks the body; the
- * body knows elements, contact and friction, and that the position of stick is
- * the one of the last accepted state in all stages of a step.
+ * contacts (CPR98 3.14-3.20). An integrator works on points and calls the body;
+ * the body has elements, contact and friction, with the position of stick of
+ * the last accepted state in all stages of a step.
  *
  * One row in scheme_list per integrator.
  */
@@ -16,7 +16,7 @@
 /* Points of one material and elasticity. */
 typedef struct flow_kind {
   const law_card *law; /* borrowed */
-  law_elastic elastic; /* at the last temperature asked for: flow_heat() */
+  law_elastic elastic; /* at the last temperature requested: flow_heat() */
   int n_alpha;
   unsigned varies; /* law_varies(), and whether the elasticity depends on
                       temperature; 0: all of it holds for ever */
@@ -61,12 +61,12 @@ void flow_state_copy(const flow *x, const flow_state *from, flow_state *to);
 /* The elasticity of a kind at a temperature, into kind->elastic. ERR_DECK: the
  * constants are none there. */
 status flow_heat(flow_kind *kind, double temperature);
-/* A law at a time and temperature, without the state; "value" has room for
+/* A law at a time and temperature, without the state; "value" has space for
  * FLOW_VALUE_MAX coefficients. */
 status flow_coefficients(flow_kind *kind, double t, double temperature,
                          double *value, law_point *p);
 enum { FLOW_VALUE_MAX = 512 };
-/* A point is looked at: 1 if it flows, counted. */
+/* Test of a point: 1 if it flows, counted. */
 int flow_goes_on(const flow *x, const law_point *p);
 /* Rates at a state: ei_rate[ns*n], alpha_rate[alpha_at[n]]; *power gets what is
  * dissipated, W. dt: step being made. */
@@ -77,7 +77,7 @@ status flow_fastest(const flow *x, const flow_state *s, double dt,
                     double *rate);
 /* Root mean square over the volume of [ns*n] values. */
 double flow_norm(const flow *x, const double *v);
-/* Of the points from, ..., to - 1: energy kept by alpha and ei, J; the square
+/* Of the points from, ..., to - 1: energy stored by alpha and ei, J; the square
  * of the elastic strains over their volume, m3, for flow_root. */
 status flow_add_stored(const flow *x, const flow_state *s, int from, int to,
                        double *energy);
@@ -99,8 +99,8 @@ typedef struct flow_tangent {
 
 struct scheme_call;
 
-/* What an integrator asks of the body. *settled: 0 if the contact problem was
- * not solved to its tolerance. */
+/* What an integrator requires of the body. *settled: 0 if the contact problem
+ * was not solved to its tolerance. */
 typedef struct flow_body {
   void *ctx;
   /* Equilibrium at s->t with s->ei: e, sigma, temperature. */
@@ -124,7 +124,7 @@ typedef struct scheme_step {
 } scheme_step;
 
 typedef struct scheme_result {
-  int settled;       /* 0: no answer to go on with */
+  int settled;       /* 0: no result to continue with */
   int stuck;         /* point without a state at the end of the step, from 1; 0:
                         it was not for a point */
   int iterations;    /* linear solves of an implicit step */

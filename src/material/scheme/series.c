@@ -4,8 +4,8 @@
  * themselves) has scalar equations for the strains v_k of its units,
  *   d(v_k)/dt = f_k (e - sum_j v_j - m_k v_k),   e^i = v_0 + v_1 + ...
  * The matrices of the general case mix the parts and add all rates up in e^i:
- * of rates that differ by more than 16 decades the slow ones drown. Here, with
- * h_k = f_k dt and the change D of a step,
+ * of rates that differ by more than 16 decades the slow ones are lost. Here,
+ * with h_k = f_k dt and the change D of a step,
  *   THETA   D v_k = b_k (x - m_k v_k),  b_k = 1/(1/h_k + theta m_k),
  *           x = (e_th - sum_j v_j/(1 + theta h_j m_j))/(1 + theta sum_j b_j)
  *   EXPONENTIAL  exact for e linear over the step: in closed form if one unit
@@ -30,13 +30,13 @@ typedef struct series {
   double *h, *m;       /* [n] - */
   double *U, *u0, *u1; /* [n*n], [n], [n] */
   double kept;
-  double *room;
+  double *work;
 } series;
 
 static status series_new(int n, series *s) {
   *s = (series){.n = n};
-  PASS_NEW(s->room, n * (n + 4));
-  s->h = s->room;
+  PASS_NEW(s->work, n * (n + 4));
+  s->h = s->work;
   s->m = s->h + n;
   s->u0 = s->m + n;
   s->u1 = s->u0 + n;
@@ -227,6 +227,6 @@ status series_map(const flow_kind *k, const scheme_step *p, int exact,
   }
   remains(&k->elastic, kept, whole, D);
 done:
-  memory_free(s.room);
+  memory_free(s.work);
   return st;
 }

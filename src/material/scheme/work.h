@@ -1,5 +1,5 @@
 /*
- * Room of the integrators and what their files share. Private to
+ * Workspace of the integrators and what their files share. Private to
  * src/material/scheme.
  */
 #ifndef PROTIS_SCHEME_WORK_H
@@ -18,7 +18,7 @@ typedef struct linear_map {
   double *Q;       /* [n*ns] Q0 + Q1: of strains that stay */
 } linear_map;
 
-/* What the maps of a step depend on beside the laws. */
+/* What the maps of a step depend on besides the laws. */
 typedef struct linear_key {
   double dt, theta; /* dt = 0: there are none */
   int exact;        /* 1: EXPONENTIAL, 0: THETA */

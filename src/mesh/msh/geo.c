@@ -1,6 +1,6 @@
 /*
- * Words of a .geo. Comments are passed over; what stands in quotes counts, as
- * in GetNumber("h").
+ * Words of a .geo. Comments are skipped; text in quotes counts, as in
+ * GetNumber("h").
  */
 #include "mesh/msh/geo.h"
 
@@ -31,9 +31,9 @@ static status add_file(geo_text *g, const char *folder, size_t n_folder,
   while (i < g->n_file && strcmp(g->file[i], path) != 0) ++i;
   g->merged[i] = (char)(g->merged[i] | merged);
   if (i < g->n_file) return OK;
-  int room = g->file_room;
-  PASS_GROW(g->file, g->n_file, room);
-  PASS_GROW(g->text, g->n_file, g->file_room);
+  int capacity = g->file_capacity;
+  PASS_GROW(g->file, g->n_file, capacity);
+  PASS_GROW(g->text, g->n_file, g->file_capacity);
   g->file[g->n_file++] = path;
   path = NULL;
   return OK;
@@ -61,7 +61,7 @@ done:
 static int starts_name(char c) { return isalpha((unsigned char)c) || c == '_'; }
 static int in_name(char c) { return isalnum((unsigned char)c) || c == '_'; }
 
-/* After Include or Merge: the file, if it stands there in quotes. */
+/* After Include or Merge: the file, if its name is in quotes. */
 static status include(geo_text *g, const char *path, const char *p,
                       int merged) {
   OWNED char *name = NULL;
@@ -102,8 +102,8 @@ static status find_names(geo_text *g, const char *path, char *text) {
     for (q = p; in_name(*q);) ++q;
     char after = *q, *rest = pass_over(q, in_quotes);
     if (rest == q) rest += after != '\0';
-    *q = '\0'; /* of the name; what stood there is looked at first */
-    PASS_GROW(g->name, g->n_name, g->name_room);
+    *q = '\0'; /* of the name; of the word that was there before */
+    PASS_GROW(g->name, g->n_name, g->name_capacity);
     g->name[g->n_name++] = p;
     int merged = strcmp(p, "Merge") == 0 || strcmp(p, "MergeFile") == 0;
     int loads = merged || strcmp(p, "Include") == 0;
@@ -123,7 +123,7 @@ status geo_read(const char *file, geo_text *g) {
     const char *path = g->file[i], *dot = strrchr(path, '.');
     if (i > 0 && (dot == NULL || strcasecmp(dot, ".geo") != 0)) continue;
     PASS(load(path, &g->text[i]));
-    g->is_open |= g->text[i] == NULL; /* gmsh tells why */
+    g->is_open |= g->text[i] == NULL; /* gmsh reports the reason */
     if (g->text[i] != NULL) PASS(find_names(g, path, g->text[i]));
   }
   return OK;

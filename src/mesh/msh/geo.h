@@ -9,17 +9,19 @@
 enum { GEO_FILES = 64 };
 
 typedef struct geo_text {
-  int n_file, file_room;
+  int n_file, file_capacity;
   char **file; /* [n_file] paths */
   char **text; /* [n_file] their bytes, a zero after each name */
-  int n_name, name_room;
+  int n_name, name_capacity;
   const char **name;      /* [n_name] in text; a name as often as it stands
                              there */
-  int is_open;            /* it includes what only gmsh can tell */
-  char merged[GEO_FILES]; /* [n_file] 1: gmsh obeys options beside it */
+  int is_open;            /* it includes files whose names only gmsh can
+                             evaluate */
+  char merged[GEO_FILES]; /* [n_file] 1: gmsh executes its options file */
 } geo_text;
 
-/* Files that cannot be opened are left to gmsh. ERR_MEMORY, ERR_FILE. */
+/* Files that cannot be opened are skipped: gmsh reports them. ERR_MEMORY,
+ * ERR_FILE. */
 status geo_read(const char *file, geo_text *g);
 void geo_free(geo_text *g); /* accepts an all-zero object */
 /* 1 if the text has the name, letter by letter, or may have it. */

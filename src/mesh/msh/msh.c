@@ -1,6 +1,6 @@
 /*
- * The sections in turn, then what they hold together: blocks by dimension and
- * tag, groups with their names.
+ * The sections in turn, then their common data: blocks by dimension and tag,
+ * groups with their names.
  */
 #include "mesh/msh/msh.h"
 
@@ -110,7 +110,7 @@ status msh_add_group(msh *m, int dim, int tag) {
   int id, n = m->groups.n;
   PASS(table_add(&m->groups, table_key(dim, tag), &id));
   if (id < n) return OK;
-  PASS_GROW(m->raw->group, id, m->groups_room);
+  PASS_GROW(m->raw->group, id, m->groups_capacity);
   m->raw->group[id] = (raw_group){dim, tag, NULL};
   m->raw->n_group = id + 1;
   return OK;
@@ -119,8 +119,8 @@ status msh_add_group(msh *m, int dim, int tag) {
 static status new_block(msh *m, int id, int type, int tag, int n_physical,
                         const int *physical) {
   const element_type *t = msh_type(type);
-  PASS_GROW(m->raw->block, id, m->blocks_room);
-  PASS_GROW(m->fill, id, m->fills_room);
+  PASS_GROW(m->raw->block, id, m->blocks_capacity);
+  PASS_GROW(m->fill, id, m->fills_capacity);
   m->fill[id] = (msh_fill){0, tag};
   m->raw->n_block = id + 1;
   raw_block *b = &m->raw->block[id];
@@ -145,15 +145,15 @@ status msh_block(msh *m, int type, int tag, int n_physical, const int *physical,
 
 status msh_add_element(msh *m, int block, size_t no, size_t **node) {
   raw_block *b = &m->raw->block[block];
-  if (b->n >= m->fill[block].room) {
-    size_t room = b->n < 4 ? 4 : 2 * b->n, per = b->n_per;
-    void *more = memory_resize(b->no, b->n, room, sizeof *b->no);
+  if (b->n >= m->fill[block].capacity) {
+    size_t capacity = b->n < 4 ? 4 : 2 * b->n, per = b->n_per;
+    void *more = memory_resize(b->no, b->n, capacity, sizeof *b->no);
     if (more == NULL) RAISE(ERR_MEMORY, "memory exhausted: element numbers");
     b->no = more;
-    more = memory_resize(b->node, per * b->n, per * room, sizeof *b->node);
+    more = memory_resize(b->node, per * b->n, per * capacity, sizeof *b->node);
     if (more == NULL) RAISE(ERR_MEMORY, "memory exhausted: elements");
     b->node = more;
-    m->fill[block].room = room;
+    m->fill[block].capacity = capacity;
   }
   b->no[b->n] = no;
   *node = b->node + b->n_per * b->n++;
@@ -191,7 +191,7 @@ static status read_names(msh *m) {
     }
     TRY(scan_line(s));
     TRY(table_add(&m->names, table_key(dim, tag), &id));
-    GROW(m->name, id, m->names_room);
+    GROW(m->name, id, m->names_capacity);
     m->name[id] = name;
   }
   TRY(scan_end(s, "PhysicalNames", "its names"));
@@ -256,7 +256,7 @@ static status finish_blocks(msh *m) {
 
 /* Each of these sections is read once. */
 static status once(const msh *m, int *has, const char *name) {
-  if (*has) return scan_fail(&m->s, "$%s stands there twice", name);
+  if (*has) return scan_fail(&m->s, "$%s is given twice", name);
   *has = 1;
   return OK;
 }

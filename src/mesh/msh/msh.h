@@ -27,7 +27,7 @@ typedef struct msh_entity { /* of $Entities */
 } msh_entity;
 
 typedef struct msh_fill { /* of a block */
-  size_t room;            /* elements it has room for */
+  size_t capacity;        /* elements allocated */
   int tag;                /* its entity, in version 2.2 its group */
 } msh_fill;
 
@@ -36,11 +36,12 @@ typedef struct msh {
   raw_mesh *raw;
   /* ids by dimension and tag */
   key_table names, groups, entities, blocks;
-  int names_room, groups_room, entities_room, blocks_room, fills_room;
+  int names_capacity, groups_capacity, entities_capacity, blocks_capacity,
+      fills_capacity;
   msh_name *name;     /* [names.n] */
   msh_entity *entity; /* [entities.n], of version 4.1 */
   int *physical;      /* [n_physical] groups of the entities */
-  int n_physical, physical_room;
+  int n_physical, physical_capacity;
   msh_fill *fill;    /* [blocks.n] */
   size_t n_loose[4]; /* elements in no group by dimension */
   int has_nodes, has_entities, has_elements;
@@ -61,7 +62,7 @@ status msh_block(msh *m, int type, int tag, int n_physical, const int *physical,
                  int *block);
 /* One more element of the block: its nodes are to be filled in. */
 status msh_add_element(msh *m, int block, size_t no, size_t **node);
-/* Room for the nodes, once. */
+/* Allocate the nodes, once. */
 status msh_new_nodes(msh *m, size_t n);
 
 #endif

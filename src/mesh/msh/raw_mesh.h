@@ -1,6 +1,6 @@
 /*
- * The mesh as a file or gmsh tells it, before any check of what it describes:
- * numbers of the file, elements by entity and type, three coordinates.
+ * The mesh as a file or gmsh gives it, before its contents are checked: numbers
+ * of the file, elements by entity and type, three coordinates.
  */
 #ifndef PROTIS_MSH_RAW_MESH_H
 #define PROTIS_MSH_RAW_MESH_H
@@ -41,8 +41,8 @@ typedef struct raw_mesh {
 
 void raw_free(raw_mesh *raw); /* accepts NULL */
 
-/* Read a .msh: nothing but data, every number checked. ERR_MESH with file and
- * line in the record if it is damaged; ERR_FILE, ERR_MEMORY. */
+/* Read a .msh: data only, every number checked. ERR_MESH with file and line in
+ * the record if it is damaged; ERR_FILE, ERR_MEMORY. */
 status msh_read(const char *file, raw_mesh **out);
 
 #endif

@@ -92,7 +92,7 @@ static int ends_word(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\0';
 }
 
-/* The word that stands there, for a message. */
+/* The next word, for a message. */
 static status not_expected(const scan *s, const char *wanted) {
   char word[SHOWN + 1];
   size_t n = 0;
@@ -285,7 +285,7 @@ status scan_quoted(scan *s, const char **text, size_t *length) {
   return OK;
 }
 
-/* 1 if $Name or $EndName is the word that stands there. */
+/* 1 if $Name or $EndName is the next word. */
 static int is_mark(const scan *s, size_t at, const char *start,
                    const char *name) {
   size_t k = strlen(start), n = strlen(name);
@@ -321,7 +321,7 @@ status scan_skip(scan *s, const char *name) {
 /* "2.2 0 8", and a one in binary files that shows the order of bytes. */
 static status read_format(scan *s) {
   int bytes, one = 1;
-  if (s->version > 0.0) return scan_fail(s, "$MeshFormat stands there twice");
+  if (s->version > 0.0) return scan_fail(s, "$MeshFormat is given twice");
   PASS(scan_real(s, &s->version));
   PASS(scan_int(s, &s->binary_file));
   PASS(scan_int(s, &bytes));

@@ -1,8 +1,8 @@
 /*
- * A file of gmsh taken apart: lines of words in ASCII, numbers of fixed size in
- * binary sections. Every number is checked, every count against the bytes that
- * follow it. A failure names the file and the line, or the byte where the file
- * is binary. For src/mesh/msh and src/model/field.
+ * Scanner of a file of gmsh: lines of words in ASCII, numbers of fixed size in
+ * binary sections. Every number is checked, every count is compared with the
+ * bytes that follow it. A failure names the file and the line, or the byte
+ * where the file is binary. For src/mesh/msh and src/model/field.
  *
  * Sections stand between $Name and $EndName, each on a line of its own.
  */
@@ -47,8 +47,8 @@ status scan_int(scan *s, int *value);     /* binary: 4 bytes */
 status scan_size(scan *s, size_t *value); /* binary: 8 bytes */
 status scan_real(scan *s, double *value); /* binary: 8 bytes */
 status scan_line(scan *s);                /* end of a line, none in binary */
-/* A number of things that take at least so many bytes each, in a file of
- * either kind; they must find room in the rest of the file. */
+/* A number of things that take at least so many bytes each, in a file of either
+ * kind; they must fit into the rest of the file. */
 status scan_fits(const scan *s, size_t n, size_t text_bytes,
                  size_t binary_bytes, const char *what);
 /* "text" to the end of the line, without the quotes; borrowed. */

@@ -166,7 +166,7 @@ status msh2_elements(msh *m) {
 
 enum { ENTITY_TEXT = 16, ENTITY_BINARY = 4 + 24 + 8 };
 
-/* Pass over n numbers of 4 bytes. */
+/* Skip n numbers of 4 bytes. */
 static status pass_ints(scan *s, size_t n) {
   int unused;
   PASS(scan_fits(s, n, 2, 4, "tags"));
@@ -192,7 +192,7 @@ static status read_groups(msh *m, int dim, msh_entity *e) {
     PASS(scan_int(s, &tag));
     if (tag == 0 || tag == INT32_MIN)
       return scan_fail(s, "a group has the number %d", tag);
-    PASS_GROW(m->physical, m->n_physical, m->physical_room);
+    PASS_GROW(m->physical, m->n_physical, m->physical_capacity);
     m->physical[m->n_physical++] = abs(tag);
     PASS(msh_add_group(m, dim, abs(tag)));
   }
@@ -219,7 +219,7 @@ static status read_entity(msh *m, int dim, int partitioned) {
   if (id < n)
     return scan_fail(s, "the entity %d of dimension %d is listed twice", tag,
                      dim);
-  PASS_GROW(m->entity, id, m->entities_room);
+  PASS_GROW(m->entity, id, m->entities_capacity);
   m->entity[id] = e;
   ++m->raw->n_entity[dim];
   return OK;
@@ -294,7 +294,8 @@ static status read_head(scan *s, int head[3], size_t left, size_t *n) {
   return scan_line(s);
 }
 
-/* All blocks are read: the sum of their items is the number promised. */
+/* All blocks are read: the sum of their items must be the number of the first
+ * line. */
 static status check_total(const scan *s, size_t left, const char *what) {
   return left == 0
              ? OK

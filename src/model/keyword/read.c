@@ -27,7 +27,7 @@ static void check_problem_cards(const reading *r) {
     const keyword *row = keyword_find(c->name);
     if (row != NULL && !goes_with_problem(c->name))
       message_add(m->log, P2034, &c->at,
-                  "*%s has no place beside *CONDENSED PROBLEM, line %d",
+                  "*%s is not allowed with *CONDENSED PROBLEM, line %d",
                   c->name, m->problem_at.line_no);
   }
   for (int i = 1; i < m->n_step; ++i)

@@ -12,14 +12,14 @@ static status keep_nodes(run *r, archive *a) {
   status st = OK;
   contact_reach x = r->nodes.reach;
   x.in = NULL;
-  TRY(archive_reals(a, "reach", &x.way, 1));
+  TRY(archive_reals(a, "reach", &x.distance, 1));
   TRY(archive_ints(a, "reach_passes", &x.passes, 1));
   TRY(archive_ints(a, "nodes_in", &x.n_in, 1));
   if (!archive_reads(a))
     return archive_ints(a, "in", r->nodes.reach.in, (size_t)x.n_in);
   if (x.n_in > 0) NEW(x.in, r->nodes.n);
   TRY(archive_ints(a, "in", x.in, (size_t)x.n_in));
-  r->nodes.reach.way = x.way;
+  r->nodes.reach.distance = x.distance;
   r->nodes.reach.passes = x.passes;
   if (reach_is_same(&x, &r->nodes.reach)) goto done;
   contact_reach old = r->nodes.reach;

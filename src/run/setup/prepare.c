@@ -60,7 +60,7 @@ static status find_reach(run *r) {
     way = fmax(way, fabs(r->old.u[k]));
     if (r->body.fixed[k]) way = fmax(way, fabs(r->loads.ud[k]));
   }
-  r->nodes.reach.way = 2.0 * way + GENEROUS * force / least_stiffness(r);
+  r->nodes.reach.distance = 2.0 * way + GENEROUS * force / least_stiffness(r);
 done:
   return st;
 }

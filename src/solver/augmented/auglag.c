@@ -55,7 +55,7 @@ typedef struct auglag_work {
   unsigned char *part;        /* [m] force_part */
   unsigned char *closed;      /* [m] contact_state of the unknowns that push */
   unsigned char *mode;        /* [n] tangent */
-  unsigned char *state;       /* [m] of the step told last */
+  unsigned char *state;       /* [m] of the step reported last */
   double *origin;             /* [m] m */
   double *diagonal;           /* [m] of A, the mean in a tangent plane, N/m */
   double *lambda, *z, *F, *y; /* [m] N; y = A u - f. Newton: work, work */
@@ -83,7 +83,7 @@ typedef struct auglag_run {
   int bent;     /* 1: F' of a slipping node moves with z (3-D) */
   int factored; /* w->K is the factor for the present states */
   int singular; /* the last matrix needed springs */
-  int cycle;    /* the states were met before in these Newton steps */
+  int cycle;    /* the states occurred before in these Newton steps */
 } auglag_run;
 
 /* ---- the augmented forces F(z), the states of the nodes they stand for, and
@@ -173,14 +173,14 @@ static void auglag_take_states(auglag_run *s) {
   }
 }
 
-/* Residual of (u, F), told and kept. */
-static double auglag_judge(auglag_run *s) {
+/* Residual of (u, F), reported; the best iterate is stored. */
+static double auglag_check(auglag_run *s) {
   const contact_problem *cp = s->cp;
   auglag_work *w = s->w;
   double residual = contact_mismatch(cp, s->scale, s->u, w->F, w->y);
   solver_keep_best(&w->best, cp->m, residual, s->u, w->F);
-  solver_tell_states(s->control, "auglag", s->steps, residual, s->turned,
-                     s->cycle);
+  solver_report_states(s->control, "auglag", s->steps, residual, s->turned,
+                       s->cycle);
   return residual;
 }
 
@@ -216,7 +216,8 @@ static double newton_row(const auglag_run *s, int row, const double *v,
   return value;
 }
 
-/* What the states fix goes into du, the rest is listed; returns how many. */
+/* The unknowns fixed by the states go into du, the others are listed; returns
+ * their number. */
 static int known_steps(auglag_run *s) {
   auglag_work *w = s->w;
   int n = 0;
@@ -307,7 +308,7 @@ static double shorten(auglag_run *s, double reference) {
   return now;
 }
 
-/* 1: the states after step k are others than before it, and were met. FNV-1a.
+/* 1: the states changed in step k, and occurred before. FNV-1a.
  */
 static int met_before(const auglag_run *s, int k) {
   auglag_work *w = s->w;
@@ -332,7 +333,7 @@ static outcome auglag_newton(auglag_run *s) {
     auglag_take_states(s);
     s->cycle = met_before(s, k);
     met += s->cycle;
-    residual = auglag_judge(s);
+    residual = auglag_check(s);
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= s->control->tol) return CONVERGED;
     if (s->steps >= s->limit) return STOPPED_ITERATIONS;
@@ -361,7 +362,7 @@ enum {
   PATIENCE = 20     /* multiplier steps without a lower residual */
 };
 
-/* Cholesky factor of power (A + F' rho); springs where nothing holds the body.
+/* Cholesky factor of power (A + F' rho); springs where the body is free.
  */
 static int uzawa_factor(auglag_run *s) {
   const contact_problem *cp = s->cp;
@@ -437,7 +438,7 @@ static outcome minimise(auglag_run *s) {
   auglag_evaluate(s, w->lambda);
   for (int k = 0;; ++k) {
     auglag_take_states(s);
-    double residual = auglag_judge(s);
+    double residual = auglag_check(s);
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= s->control->tol) return CONVERGED;
     if (s->steps >= s->limit) return STOPPED_ITERATIONS;
@@ -504,10 +505,10 @@ static void auglag_start_bonded(auglag_run *s) {
 }
 
 typedef struct auglag {
-  int variant; /* variant_way */
+  int variant; /* variant_kind */
 } auglag;
 
-typedef enum { BY_NEWTON, BY_UZAWA } variant_way;
+typedef enum { BY_NEWTON, BY_UZAWA } variant_kind;
 
 /* clang-format off */
 static const option auglag_options[] = {
@@ -532,7 +533,7 @@ static void auglag_release(void *work) {
   memory_free(w);
 }
 
-/* Of A, also where a motion of the whole body leaves nothing. */
+/* Of A, also where a rigid motion makes it zero. */
 static void take_diagonal(const contact_problem *cp, double *diagonal) {
   size_t m = (size_t)cp->m;
   int d = cp->dim;
@@ -608,10 +609,10 @@ static status follow_limit(auglag_run *s, solver_report *rep) {
   return OK;
 }
 
-/* 1: the other variant ended by itself, without progress: that the first one
- * cycled says more. */
-static int made_no_way(const solver_control *control,
-                       const solver_report *rep) {
+/* 1: the other variant ended without progress: the cycle of the first one is
+ * the better reason. */
+static int made_no_progress(const solver_control *control,
+                            const solver_report *rep) {
   int bounded = control->max_iter > 0 && rep->iterations >= control->max_iter;
   return rep->outcome == STOPPED_STAGNATION ||
          (rep->outcome == STOPPED_ITERATIONS && !bounded);
@@ -642,12 +643,12 @@ static status auglag_solve(const contact_problem *cp, const void *par,
   rep->residual = w->best.residual;
   solver_take_best(&w->best, cp->m, u, r);
   if (!done_well && cp->B != NULL) TRY(follow_limit(&s, rep));
-  if (cycled && made_no_way(control, rep)) rep->outcome = STOPPED_CYCLE;
+  if (cycled && made_no_progress(control, rep)) rep->outcome = STOPPED_CYCLE;
 done:
   return st;
 }
 
-/* Changes of state are told against the step before. */
+/* Changes of state are counted against the step before. */
 static status auglag_keep(void *work, archive *a) {
   auglag_work *w = work;
   return archive_bytes(a, "state", w->state, (size_t)w->m);
@@ -659,17 +660,17 @@ const solver_ops auglag_solver = {
   .reference = "CPR98, 3.3; Alart, Curnier 1991",
   .family = "multipliers",
   .help =
-    "Augmented Lagrangian of Alart and Curnier: the forces of contact are F\n"
-    "= P(lambda - rho (u - o)), P the projection on r_n <= 0 and on the\n"
-    "disc |r_t| <= g. VARIANT=NEWTON solves A u = f + F and lambda = F by\n"
-    "the generalised Newton method, the limit following the pressure, the\n"
-    "step shortened until the equations are met better; should it stop, the\n"
-    "other variant goes on. VARIANT=UZAWA minimises over u for fixed\n"
-    "multipliers, a convex problem solved by Newton's method with a search\n"
-    "along the step, then sets lambda to F; the limit is updated around it\n"
-    "(CPR98, 2.3). rho is a multiple of the diagonal of A and never asked\n"
-    "for. A step costs one dense factorisation. Choose it where NEWTON\n"
-    "cycles, and UZAWA for a body that contact alone holds.",
+    "Augmented Lagrangian of Alart and Curnier: the forces of contact are F =\n"
+    "P(lambda - rho (u - o)), P the projection on r_n <= 0 and on the disc\n"
+    "|r_t| <= g. VARIANT=NEWTON solves A u = f + F and lambda = F by the\n"
+    "generalised Newton method, the limit following the pressure, the step\n"
+    "shortened until the equations are met better; should it stop, the other\n"
+    "variant goes on. VARIANT=UZAWA minimises over u for fixed multipliers, a\n"
+    "convex problem solved by Newton's method with a search along the step,\n"
+    "then sets lambda to F; the limit is updated around it (CPR98, 2.3). rho\n"
+    "is a multiple of the diagonal of A, no parameter. A step costs one dense\n"
+    "factorisation. Choose it where NEWTON cycles, and UZAWA for a body that\n"
+    "contact alone holds.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              SOLVES_FLOATING,
   .param_size = sizeof(auglag),

@@ -1,4 +1,4 @@
-/* Springs that hold a body while its contact is sought (anchor.h). */
+/* Springs that hold a body while its contact forces are found (anchor.h). */
 #include "solver/choice/anchor.h"
 
 #include "base/memory.h"
@@ -18,8 +18,8 @@ enum {
 };
 static const double NULL_PIVOT = 0x1p-44; /* -, times m: of the largest pivot */
 static const double SOFT = 0x1p-5;        /* -, k of the mean diagonal over n */
-static const double FINEST = 0.1; /* -, of the tolerance: a pass asks no more */
-static const double PROGRESS = 0.9;  /* -, a lower residual */
+static const double FINEST = 0.1;   /* -, of the tolerance: enough for a pass */
+static const double PROGRESS = 0.9; /* -, a lower residual */
 static const double STEADY = 0x1p-7; /* -, of a step of a drift */
 
 void anchor_free(anchor *an) {
@@ -105,7 +105,7 @@ typedef struct passes {
   double load;       /* largest |f|, N */
   double lowest;     /* residual at the last progress */
   int since, steady; /* passes since; with the same move */
-  int closed;        /* 1: has been put onto its obstacles */
+  int closed;        /* 1: has been moved onto its obstacles */
   int late;          /* passes at the tolerance */
 } passes;
 
@@ -115,7 +115,7 @@ static void place(const anchor *an, int m, const double *u, double *a) {
     a[k] = cblas_ddot(m, an->R + (size_t)k * (size_t)m, 1, u, 1);
 }
 
-/* What the last move is for unknown i, m. */
+/* The last move of unknown i, m. */
 static double move_of(const passes *p, int i) {
   double d = 0.0;
   for (int k = 0; k < p->an->n_mode; ++k)
@@ -123,8 +123,8 @@ static double move_of(const passes *p, int i) {
   return d;
 }
 
-/* How often the last move goes into the way from u to the nearest bound; at
- * least 1, 1 if it leads to none. */
+/* Distance from u to the nearest bound over the last move; at least 1, 1 if it
+ * leads to none. */
 static double moves_to_bound(const passes *p, const double *u) {
   double moves = HUGE_VAL, most = 0.0;
   for (int i = 0; i < p->cp->m; ++i) most = fmax(most, fabs(move_of(p, i)));
@@ -146,8 +146,8 @@ static void close_gaps(passes *p) {
   place(p->an, p->cp->m, d, p->an->a);
 }
 
-/* A body on its way to an obstacle is put onto it, the next time onto the first
- * bound on its way. */
+/* A body in free motion to an obstacle is moved onto it, the next time onto the
+ * first bound it meets. */
 static void fly(passes *p, const double *u) {
   double moves = moves_to_bound(p, u);
   if (!(moves > 1.0)) return;
@@ -181,21 +181,21 @@ static double carried(const passes *p) {
   return sum > 0.0 ? p->an->spring * sqrt(sum * p->cp->m) / p->load : 0.0;
 }
 
-/* Most that friction can do against the last move, N m. */
+/* Largest work of friction against the last move, N m. */
 static double friction_against(const passes *p, const double *r) {
   const contact_problem *cp = p->cp;
   double sum = 0.0;
   for (int i = 0; i < cp->n; ++i) {
-    double way = 0.0;
+    double slip = 0.0;
     for (int k = 1; k < cp->dim; ++k)
-      way = hypot(way, move_of(p, i * cp->dim + k));
-    sum += contact_node_limit(cp, r, i) * way;
+      slip = hypot(slip, move_of(p, i * cp->dim + k));
+    sum += contact_node_limit(cp, r, i) * slip;
   }
   return sum;
 }
 
-/* 1: the last move is one that no obstacle stops and that the load drives
- * against friction. */
+/* 1: no obstacle stops the last move, and the load does more work on it than
+ * friction. */
 static int drifts(const passes *p, const double *r) {
   double work = 0.0, into = 0.0, most = 0.0;
   for (int i = 0; i < p->cp->m; ++i) {
@@ -209,7 +209,7 @@ static int drifts(const passes *p, const double *r) {
 }
 
 /* RUNNING: another pass. */
-static outcome judge(passes *p, double tol, const double *r, solver_report *rep,
+static outcome check(passes *p, double tol, const double *r, solver_report *rep,
                      outcome inner) {
   if (isnan(rep->residual)) return STOPPED_NAN;
   if (rep->residual <= tol && (carried(p) <= tol || ++p->late > LATE))
@@ -263,7 +263,7 @@ status anchor_solve(const anchor *an, const contact_problem *cp,
     rep->rate = pass.rate;
     rep->residual = contact_residual(cp, u, r);
     follow(&p, u);
-    rep->outcome = judge(&p, control->tol, r, rep, pass.outcome);
+    rep->outcome = check(&p, control->tol, r, rep, pass.outcome);
     if (rep->outcome == RUNNING && p.steady > 0) fly(&p, u);
     if (rep->outcome == RUNNING && control->max_iter > 0 &&
         rep->iterations >= control->max_iter)

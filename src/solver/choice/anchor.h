@@ -11,7 +11,7 @@
  * equilibrium of the whole body (augmented Lagrangian; Dostal 2009, SMALBE),
  * and the proximal point iteration on its place (Rockafellar 1976): with a
  * given sliding limit it converges if there is an equilibrium. If there is none
- * the body drifts off for ever by the same way.
+ * the body drifts off for ever by the same step.
  */
 #ifndef PROTIS_CHOICE_ANCHOR_H
 #define PROTIS_CHOICE_ANCHOR_H
@@ -29,13 +29,13 @@ typedef struct anchor {
       *step; /* [n_mode] place of the springs, last move of the body, m */
 } anchor;
 
-/* The modes R alone, of a problem with its stiffness, if they are not known. */
+/* The modes R only, of a problem with its stiffness, if they are not known. */
 status anchor_modes(const contact_problem *cp, anchor *an);
-/* Make it for the matrix of cp, if that has not been tried. */
+/* Make it for the matrix of cp, unless it was tried before. */
 status anchor_make(const contact_problem *cp, anchor *an);
 void anchor_free(anchor *an); /* all zero afterwards */
 
-/* Solves a problem with springs as it stands, from u, r. */
+/* Solves a problem with springs as given, from u, r. */
 typedef struct anchored_solver {
   status (*solve)(void *ctx, const contact_problem *cp,
                   const solver_control *control, double *u, double *r,

@@ -1,30 +1,30 @@
 /*
- * METHOD=AUTO. The facts the choice depends on have no unit: whether there is
+ * METHOD=AUTO. The choice depends on quantities without unit: whether there is
  * friction, which form is given, whether it can be inverted, the dimension and
  * the number of unknowns m.
  *
  * No friction: the tangential unknowns are eliminated and the normal ones are
- * solved for by active sets, of the nodes that open alone (opened.h), and by
- * NEWTON where these do not settle. The full problem is taken for the first
+ * solved for by active sets, of the opening nodes only (opened.h), and by
+ * NEWTON where these do not converge. The full problem is taken for the first
  * steps from a warm start, which often suffice, and where the normal form
  * fails.
  *
- * Stiffness given: NEWTON. Its steps do not grow in number with m or with the
- * condition of A, and it keeps its factor from step to step and from problem to
- * problem. Then NEWTON along a friction path, for large mu; then SOR, which
- * needs no factor; LEMKE; PROXIMAL last, for a stiffness that is nearly
- * singular under large mu. In 3-D with few digits wanted (TOL=BALANCED)
+ * Stiffness given: NEWTON. The number of its steps does not grow with m or with
+ * the condition of A, and its factor is reused from step to step and from
+ * problem to problem. Then NEWTON along a friction path, for large mu; then
+ * SOR, which needs no factor; LEMKE; PROXIMAL last, for a stiffness that is
+ * nearly singular under large mu. In 3-D with a loose tolerance (TOL=BALANCED)
  * sweeps of SOR first, as many as cost less than some steps of NEWTON.
  *
- * Compliance given: in 3-D first sweeps of SOR, as long as their rate promises
- * the solution for less than the steps of NEWTON would cost. Then the same,
- * NEWTON solving for the forces, if the compliance is regular; sweeps again,
- * PCG, PROXIMAL, LAGRANGE, SOR and LEMKE work on a singular one.
- * Of rigid bodies PCG solves many in some hundred iterations, the others hardly
- * ever: then PROXIMAL, in some ten to a thousand steps, and PCG at length.
+ * Compliance given: in 3-D first sweeps of SOR, while their rate predicts the
+ * solution at less cost than the steps of NEWTON. Then the same, with NEWTON
+ * for the forces, if the compliance is regular; sweeps again, PCG, PROXIMAL,
+ * LAGRANGE, SOR and LEMKE work on a singular one. Of rigid bodies PCG solves
+ * many in some hundred iterations, the others rarely: then PROXIMAL, in some
+ * ten to a thousand steps, and PCG without the short limit.
  *
- * Each link starts cold after the first, on the same problem, and is given a
- * number of iterations that bounds its cost (allowance).
+ * After the first each method of the chain starts cold, on the same problem,
+ * with a limit of iterations that bounds its cost (allowance).
  */
 #include "solver/choice/choice.h"
 
@@ -36,33 +36,33 @@
 
 /* clang-format off */
 const char auto_help[] =
-  "Chooses by the problem and falls back on the same problem. Without\n"
-  "friction the tangential unknowns are eliminated and NEWTON solves in the\n"
-  "normal ones. With friction, and the stiffness known (every deck with a\n"
-  "mesh), it is NEWTON, then NEWTON along a friction path (the coefficient\n"
-  "grows to its value, each answer the start of the next), then SOR, then\n"
-  "LEMKE, then PROXIMAL; in 3-D with TOL above 1e-4 sweeps of SOR go first.\n"
-  "Of a problem that comes as a compliance (*CONDENSED PROBLEM) such sweeps\n"
-  "go first in 3-D, as long as their rate promises the answer for less than\n"
-  "NEWTON costs; then the same chain with such sweeps, PCG, PROXIMAL, PCG\n"
-  "at length and LAGRANGE before SOR, for compliances that are singular.\n"
-  "The first starts from the last increment, the others afresh; each may make\n"
-  "a number of iterations that bounds its cost, or MAX_ITER if that is less.\n"
-  "An answer counts only by the residual of the given problem; the listing\n"
-  "says which methods were tried, why each stopped and which converged. It\n"
-  "has no options. Choose another method to compare, or where one is known\n"
-  "to be faster.";
+  "Chooses a method by the problem and falls back to others on the same\n"
+  "problem. Without friction the tangential unknowns are eliminated and\n"
+  "NEWTON solves in the normal ones. With friction, and the stiffness known\n"
+  "(every deck with a mesh), it is NEWTON, then NEWTON along a friction path\n"
+  "(the coefficient grows to its value, each solution the start of the\n"
+  "next), then SOR, then LEMKE, then PROXIMAL; in 3-D with TOL above 1e-4\n"
+  "sweeps of SOR go first. Of a problem that comes as a compliance\n"
+  "(*CONDENSED PROBLEM) such sweeps go first in 3-D, while their rate\n"
+  "predicts the solution at less cost than NEWTON; then the same chain with\n"
+  "such sweeps, PCG, PROXIMAL, PCG with more iterations and LAGRANGE before\n"
+  "SOR, for compliances that are singular. The first starts from the last\n"
+  "increment, the others cold; each has a limit of iterations that bounds\n"
+  "its cost, or MAX_ITER if that is less. A result is accepted only by the\n"
+  "residual of the given problem; the listing says which methods were tried,\n"
+  "why each stopped and which converged. It has no options. Choose another\n"
+  "method to compare, or where one is known to be faster.";
 /* clang-format on */
 
 enum {
   WARM_STEPS = 3,      /* of NEWTON before the normal form is made */
-  ROUND = 10,          /* sweeps from one look at their rate to the next */
-  SWEEP_SHARE = 4,     /* m over it: sweeps worth while without an inverse */
-  STEPS = 6,           /* of NEWTON that sweeps are compared with */
-  LEAST_ROUNDS = 3,    /* to be worth a try */
-  READ = 8,            /* solves whose arithmetic takes as long as reading the
+  ROUND = 10,          /* sweeps from one check of their rate to the next */
+  SWEEP_SHARE = 4,     /* m over it: sweeps that cost less than an inverse */
+  STEPS = 6,           /* of NEWTON, compared with the cost of sweeps */
+  LEAST_ROUNDS = 3,    /* least number for a trial */
+  READ = 8,            /* solves whose arithmetic takes the time of reading the
                           matrix */
-  FULL_SIZE = 1000,    /* m: up to here a link has all its iterations */
+  FULL_SIZE = 1000,    /* m: up to here a method has all its iterations */
   SMALL_SIZE = 200,    /* m: up to here factorisations cost like products */
   LEAST_FACTORS = 80,  /* iterations with a factorisation, on large problems */
   MOST_FACTORS = 4000, /* on small ones */
@@ -70,7 +70,7 @@ enum {
   MOST_SWEEPS = 20000
 };
 
-/* The order of trial, how each is driven, and where it applies. */
+/* The order of the methods, their loops, and where they apply. */
 static const struct {
   const solver_ops *ops;
   drive how;
@@ -88,9 +88,9 @@ static const struct {
                   {&lemke_solver, PLAIN, 0, 0, 0},
                   {&proximal_solver, PLAIN, -1, 1, 0}};
 
-/* Iterations a link may make: such that its cost stays that of its most on a
- * problem with FULL_SIZE unknowns, but at least LEAST. Of a body that contact
- * alone holds the last link may not find what is not there for long. */
+/* Limit of the iterations of a method: such that its cost is at most that of a
+ * problem with FULL_SIZE unknowns, but at least LEAST. For a body held by
+ * contact alone the last method is limited, as there may be no solution. */
 static int allowance(const contact_solver *s, const contact_problem *cp,
                      int i) {
   double size = fmax(1.0, (double)cp->m / FULL_SIZE);
@@ -124,14 +124,14 @@ static void note(contact_solver *s, const solver_report *rep,
              rep->iterations, a->max_iter);
 }
 
-/* How much a failure says; a singular compliance says nothing, a method that
- * does not fit less. */
+/* Significance of a failure; a singular compliance has none, a method that does
+ * not apply less. */
 static int weight(const contact_problem *cp, outcome o) {
   if (o == STOPPED_UNFIT) return -1;
   return o == STOPPED_SINGULAR && cp->A != NULL;
 }
 
-/* Which of two failures says more: singular, then the lower residual. */
+/* The more significant of two failures: singular, then the lower residual. */
 static int says_more(const contact_problem *cp, const solver_report *a,
                      const solver_report *b) {
   int ra = weight(cp, a->outcome), rb = weight(cp, b->outcome);
@@ -139,12 +139,12 @@ static int says_more(const contact_problem *cp, const solver_report *a,
   return !(a->residual >= b->residual);
 }
 
-/* 1: sweeps may be quick. */
+/* 1: sweeps may be fast. */
 static int sweeps_fit(const contact_problem *cp) {
   return cp->A == NULL && cp->dim == 3 && cp->B != NULL;
 }
 
-/* 1 if a link of the chain does not apply: a friction path without Coulomb
+/* 1 if a method of the chain does not apply: a friction path without Coulomb
  * friction, a method for problems of which only the compliance is known. */
 static int is_skipped(const contact_problem *cp, int i) {
   if (auto_chain[i].how == ALONG_PATH && cp->B == NULL) return 1;
@@ -153,18 +153,18 @@ static int is_skipped(const contact_problem *cp, int i) {
   return auto_chain[i].compliance && cp->A != NULL;
 }
 
-/* 1 if no other link is needed: an answer, a proof, or numbers beyond help. */
+/* 1 if no other method is needed: a solution, a proof, or a NaN. */
 static int is_final(outcome o) {
   return o == CONVERGED || o == STOPPED_RAY || o == STOPPED_NAN;
 }
 
-/* Where an attempt starts and ends: u[m], r[m], and what it reports. */
+/* Start and end of an attempt: u[m], r[m], and its report. */
 typedef struct answer {
   double *u, *r;
   solver_report *rep;
 } answer;
 
-/* A try of few iterations, which need not succeed. */
+/* An attempt of few iterations, which need not succeed. */
 static status short_try(contact_solver *s, const contact_problem *cp,
                         const solver_ops *ops, int iterations,
                         const solver_listener *listener, const answer *to) {
@@ -175,13 +175,13 @@ static status short_try(contact_solver *s, const contact_problem *cp,
   memset(s->param, 0, s->param_size);
   option_defaults(ops->options, s->param);
   TRY(attempt_run(s, cp, &a, listener, to->u, to->r, to->rep));
-  attempt_judge(s, cp, to->u, to->r, to->rep);
+  attempt_check(s, cp, to->u, to->r, to->rep);
 done:
   return st;
 }
 
-/* Sweeps that take as long as NEWTON does to find the forces of the nodes that
- * would penetrate without any, all slipping. */
+/* Sweeps at the cost of NEWTON for the forces of the nodes that would penetrate
+ * without forces, all slipping. */
 static int sweeps_of_newton(const contact_problem *cp) {
   double n = 0.0, m = cp->m;
   for (int i = 0; i < cp->n; ++i) n += cp->f[i * cp->dim] > cp->gap[i];
@@ -190,8 +190,8 @@ static int sweeps_of_newton(const contact_problem *cp) {
   return most < LEAST_ROUNDS * ROUND ? 0 : (int)most;
 }
 
-/* Sweeps of SOR on a compliance, as long as the rate of the last round promises
- * the solution within "most". rep->outcome CONVERGED: solved. */
+/* Sweeps of SOR on a compliance, while the rate of the last round predicts the
+ * solution within "most". rep->outcome CONVERGED: solved. */
 static status promising_sweeps(contact_solver *s, const contact_problem *cp,
                                int most, const solver_listener *listener,
                                const answer *to) {
@@ -242,7 +242,7 @@ static status solve_normal(contact_solver *s, const contact_problem *cp,
   TRY(normal_form_opened(&s->normal, cp, &control, u, r, rep));
   rep->iterations += before;
   if (rep->outcome == CONVERGED) {
-    attempt_judge(s, cp, u, r, rep);
+    attempt_check(s, cp, u, r, rep);
     *done_well = rep->outcome == CONVERGED;
     if (*done_well) goto done;
   }
@@ -250,13 +250,13 @@ static status solve_normal(contact_solver *s, const contact_problem *cp,
   TRY(normal_form_solve(&s->normal, cp, &control, u, r, rep));
   rep->iterations += before;
   if (rep->outcome != CONVERGED) goto done;
-  attempt_judge(s, cp, u, r, rep);
+  attempt_check(s, cp, u, r, rep);
   *done_well = rep->outcome == CONVERGED;
 done:
   return st;
 }
 
-/* One link; its verdict in rep. */
+/* One method of the chain; its outcome in rep. */
 static status run_link(contact_solver *s, const contact_problem *cp, int i,
                        const solver_listener *listener, double *u, double *r,
                        solver_report *rep) {
@@ -266,13 +266,13 @@ static status run_link(contact_solver *s, const contact_problem *cp, int i,
   memset(s->param, 0, s->param_size);
   option_defaults(a.ops->options, s->param);
   if (i > 0) cold_start(cp, u, r);
-  /* The forces of a stiffness that is nearly singular lead it astray. */
+  /* With a nearly singular stiffness its start forces are too large. */
   if (a.ops == &proximal_solver) memset(r, 0, (size_t)cp->m * sizeof *r);
   if (a.how == WHILE_PROMISING)
     TRY(promising_sweeps(s, cp, a.max_iter, listener, &(answer){u, r, rep}));
   else
     TRY(attempt_run(s, cp, &a, listener, u, r, rep));
-  if (rep->outcome != STOPPED_UNFIT) attempt_judge(s, cp, u, r, rep);
+  if (rep->outcome != STOPPED_UNFIT) attempt_check(s, cp, u, r, rep);
   if (cp->floating || rep->outcome == STOPPED_RAY)
     TRY(attempt_prove(s, cp, rep));
   if (i > 0 || rep->outcome != CONVERGED) note(s, rep, &a);
@@ -280,7 +280,7 @@ done:
   return st;
 }
 
-/* Sweeps of SOR on a stiffness in 3-D where few digits are wanted. */
+/* Sweeps of SOR on a stiffness in 3-D with a loose tolerance. */
 static status coarse_sweeps(contact_solver *s, const contact_problem *cp,
                             const solver_listener *listener, const answer *to) {
   to->rep->outcome = STOPPED_UNFIT;

@@ -1,6 +1,6 @@
 /*
- * contact_solve: one solver or AUTO on a problem, in a form that suits, with
- * what the matrix allows kept (solver/solver.h).
+ * contact_solve: one solver or AUTO on a problem, in a suitable form, with data
+ * of the matrix reused (solver/solver.h).
  */
 #include "solver/choice/choice.h"
 
@@ -36,7 +36,7 @@ done:
   return st;
 }
 
-/* A (or W) has changed: forget factors. */
+/* A (or W) has changed: discard factors. */
 static void forget_factors(contact_solver *s) {
   for (int i = 0; i <= N_SOLVER; ++i) {
     const solver_ops *ops = i < N_SOLVER ? solver_list[i] : s->choice.ops;
@@ -100,7 +100,7 @@ done:
   return st;
 }
 
-/* ---- what is remembered ------------------------------------------------- */
+/* ---- saved data ------------------------------------------------- */
 
 static status keep_work(const contact_solver *s, int row, archive *a) {
   status st = OK;
@@ -130,7 +130,7 @@ status contact_solver_keep(contact_solver *s, archive *a) {
   return normal_form_keep(&s->normal, a);
 }
 
-/* A work that is new takes over what it is to remember. */
+/* A new workspace reads its saved data. */
 static status remember(contact_solver *s, int row) {
   status st = OK;
   int there = 0;
@@ -202,19 +202,19 @@ static int row_of(const solver_ops *ops) {
   return row;
 }
 
-/* The loop around the solver that the problem and the drive ask for. */
+/* The loop around the solver that the problem and the drive require. */
 static status drive_one(contact_solver *s, const contact_problem *cp,
                         const attempt *a, const solver_control *control,
                         double *u, double *r, solver_report *rep) {
   status st = OK;
   inner_solver inner = {a->ops, a->param, s->work[row_of(a->ops)]};
   if (a->how == ALONG_PATH) {
-    int room = cp->B->start[cp->n];
-    if (s->path == NULL || s->path_room < room) {
+    int entries = cp->B->start[cp->n];
+    if (s->path == NULL || s->path_capacity < entries) {
       friction_path_free(s->path);
       s->path = NULL;
       TRY(friction_path_new(cp, &s->path));
-      s->path_room = room;
+      s->path_capacity = entries;
     }
     TRY(friction_path_solve(s->path, cp, &inner, control, u, r, rep));
   } else if (cp->B != NULL && !(a->ops->handles & SOLVES_COULOMB)) {
@@ -234,7 +234,7 @@ static void log_unfit(contact_solver *s, const char *name, const char *why) {
            name, why);
 }
 
-/* An attempt on the problem given. */
+/* An attempt on the given problem. */
 typedef struct drive_call {
   contact_solver *s;
   const attempt *a;
@@ -248,8 +248,8 @@ static status drive_anchored(void *ctx, const contact_problem *cp,
   return drive_one(x->s, cp, x->a, control, u, r, rep);
 }
 
-/* 1: a method found the compliance, or the part of it that a guess of the
- * states takes, singular: only the inverse can tell which. */
+/* 1: a method found the compliance, or its part for a guess of the states,
+ * singular: the inverse decides which. */
 static int wants_inverse(contact_solver *s, const contact_problem *cp,
                          const attempt *a, const solver_report *rep) {
   int row = row_of(a->ops);
@@ -272,8 +272,9 @@ static status drive_form(drive_call *x, const contact_problem *own,
   return drive_one(x->s, own, x->a, control, u, r, rep);
 }
 
-/* The residual of the stiffness form can be met where that of the compliance
- * given is missed by a little: the solver goes on with a tighter tolerance. */
+/* The residual of the stiffness form can be below the tolerance where that of
+ * the given compliance is slightly above: the solver continues with a tighter
+ * tolerance. */
 static status drive_until_met(drive_call *x, const contact_problem *own,
                               solver_control control, double *u, double *r,
                               solver_report *rep) {
@@ -331,7 +332,7 @@ done:
   return st;
 }
 
-void attempt_judge(const contact_solver *s, const contact_problem *cp,
+void attempt_check(const contact_solver *s, const contact_problem *cp,
                    const double *u, const double *r, solver_report *rep) {
   rep->residual = contact_residual_at(cp, s->scale, u, r);
   if (isnan(rep->residual))
@@ -354,7 +355,7 @@ status attempt_prove(contact_solver *s, const contact_problem *cp,
   return OK;
 }
 
-/* Start without any knowledge: stick, no penetration; r = A u - f. */
+/* Cold start: stick, no penetration; r = A u - f. */
 void cold_start(const contact_problem *cp, double *u, double *r) {
   if (cp->A == NULL) {
     memset(r, 0, (size_t)cp->m * sizeof *r);
@@ -371,7 +372,7 @@ void cold_start(const contact_problem *cp, double *u, double *r) {
   contact_reaction(cp, u, r);
 }
 
-/* 1: a compliance whose nodes stay clear of their obstacles without forces. */
+/* 1: a compliance whose nodes do not reach their obstacles without forces. */
 static int stays_clear(const contact_problem *cp) {
   if (cp->A != NULL) return 0;
   for (int dof = 0; dof < cp->m; ++dof)
@@ -381,7 +382,7 @@ static int stays_clear(const contact_problem *cp) {
   return 1;
 }
 
-/* 1: the answer is known without a solver: no node, no load, start solves, no
+/* 1: the solution is known without a solver: no node, no load, start solves, no
  * node reaches its obstacle. */
 static int known_answer(const contact_solver *s, const contact_problem *cp,
                         double *u, double *r, solver_report *rep) {
@@ -412,7 +413,7 @@ static int known_answer(const contact_solver *s, const contact_problem *cp,
   return 0;
 }
 
-/* The last touch, within the iterations allowed. */
+/* The final correction, within the iterations allowed. */
 static status polish(const contact_solver *s, const contact_problem *cp,
                      double *u, double *r, solver_report *rep) {
   double tol = s->choice.tol;
@@ -441,10 +442,10 @@ static status solve_apart(contact_solver *s, const contact_problem *cp,
   } else {
     attempt a = {s->choice.ops, s->choice.param, PLAIN, s->choice.max_iter};
     TRY(attempt_run(s, cp, &a, listener, u, r, rep));
-    attempt_judge(s, cp, u, r, rep);
+    attempt_check(s, cp, u, r, rep);
     TRY(attempt_prove(s, cp, rep));
   }
-  /* Numbers that fail a method say nothing of the problem. */
+  /* A NaN of a method says nothing about the problem. */
   if (isfinite(rep->residual) &&
       (rep->outcome == STOPPED_NAN || rep->outcome == STOPPED_SINGULAR))
     rep->outcome = STOPPED_STAGNATION;

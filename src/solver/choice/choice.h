@@ -1,6 +1,6 @@
 /*
- * What contact_solve (solver/solver.h) is made of: one attempt with one solver
- * in a form it can use, and AUTO, the choice among them.
+ * Parts of contact_solve (solver/solver.h): one attempt with one solver in a
+ * form it can use, and AUTO, the choice among them.
  */
 #ifndef PROTIS_CHOICE_CHOICE_H
 #define PROTIS_CHOICE_CHOICE_H
@@ -17,24 +17,24 @@ struct contact_solver {
   solver_choice choice;
   char log[LOG_SIZE];
   /* What belongs to one matrix. */
-  const double *A, *W; /* it came with, borrowed; as seen */
+  const double *A, *W; /* of the last problem, borrowed */
   int m, n;
   void *work[N_SOLVER + 1]; /* of solver_list, last of a solver that is not in
                                it; NULL: not set up */
-  void *param;              /* defaults of the chain member at work */
+  void *param;              /* defaults of the current method of the chain */
   size_t param_size;
   fixed_point *fixed;
   friction_path *path;
-  int path_room; /* entries of B it was made for */
+  int path_capacity; /* entries of B allocated */
   other_form other;
-  int inverse_wanted; /* 1: the compliance alone did not do */
+  int inverse_wanted; /* 1: the compliance alone did not suffice */
   anchor held;        /* springs for a body that contact alone holds */
   normal_form normal;
   contact_bodies *bodies;
   double *best_u, *best_r; /* [m] of the attempt with the lowest residual */
   double scale;            /* contact_scale of the problem being solved */
   int sought, proved;      /* a proof that it has no solution */
-  archive *from;           /* borrowed: what the works are to remember; or
+  archive *from;           /* borrowed: saved data for the workspaces; or
                               NULL */
   char group[80];          /* in it */
 };
@@ -42,7 +42,7 @@ struct contact_solver {
 /* WHILE_PROMISING: AUTO alone, sweeps whose rate is watched. */
 typedef enum { PLAIN, ALONG_PATH, WHILE_PROMISING } drive;
 
-/* A solver, its parameters, how it is driven. */
+/* A solver, its parameters, the loop around it. */
 typedef struct attempt {
   const solver_ops *ops;
   const void *param;
@@ -50,19 +50,19 @@ typedef struct attempt {
   int max_iter; /* 0: the solver's own limit */
 } attempt;
 
-/* Let one solver try. STOPPED_UNFIT: it cannot treat the problem, the log says
- * why. rep->outcome and residual are those the solver claims. */
+/* One attempt with one solver. STOPPED_UNFIT: it cannot treat the problem, the
+ * log says why. rep->outcome and residual are those of the solver. */
 status attempt_run(contact_solver *s, const contact_problem *cp,
                    const attempt *a, const solver_listener *listener, double *u,
                    double *r, solver_report *rep);
-/* The verdict: only the residual of the given problem counts. */
-void attempt_judge(const contact_solver *s, const contact_problem *cp,
+/* The final outcome: only the residual of the given problem counts. */
+void attempt_check(const contact_solver *s, const contact_problem *cp,
                    const double *u, const double *r, solver_report *rep);
 /* After a failure: STOPPED_RAY if it is proved that there is no solution
  * (proof.h), and only then. */
 status attempt_prove(contact_solver *s, const contact_problem *cp,
                      solver_report *rep);
-/* Start without any knowledge: stick, no penetration; r = A u - f. */
+/* Cold start: stick, no penetration; r = A u - f. */
 void cold_start(const contact_problem *cp, double *u, double *r);
 
 /* METHOD=AUTO (auto.c), as contact_solve. */

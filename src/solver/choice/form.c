@@ -74,7 +74,7 @@ static size_t tangent_dof(int dim, int i) {
 }
 
 /* L of the lower triangle; 0: not positive definite. Where A is not symmetric
- * the answer is none of the problem, and is judged so. */
+ * the result does not solve the problem, which the residual shows. */
 static int factor_tangents(normal_form *nf, const contact_problem *cp) {
   int nt = cp->m - cp->n, d = cp->dim;
   size_t m = (size_t)cp->m;
@@ -128,7 +128,7 @@ static status condense_form(normal_form *nf, const contact_problem *cp) {
   return OK;
 }
 
-/* f of the problem in S; y = inv(L) f_t is kept for settle. */
+/* f of the problem in S; y = inv(L) f_t is stored for settle. */
 static void set_load(normal_form *nf, const contact_problem *cp) {
   int n = cp->n, nt = cp->m - n, d = cp->dim;
   for (int i = 0; i < n; ++i) nf->f[i] = cp->f[i * d];
@@ -173,7 +173,7 @@ done:
   return st;
 }
 
-/* Go to what is to be remembered; *there = 1: the named thing is. */
+/* Open the group of the saved data; *there = 1: the named array exists. */
 static status remember(const normal_form *nf, const char *name, int *there) {
   *there = 0;
   if (nf->from == NULL) return OK;

@@ -1,5 +1,5 @@
 /*
- * Forms of a problem that suit a solver better than the one given.
+ * Other forms of a problem, more suitable for a solver.
  *
  * The other form: stiffness from compliance, or the reverse, by an inverse that
  * is made once per matrix.
@@ -24,13 +24,13 @@ typedef struct other_form {
   double *load;   /* [m] load in that form */
   int missing;    /* 1: it does not exist */
 } other_form;
-/* Make it, if that has not been tried. */
+/* Make it, unless it was tried before. */
 status other_form_make(const contact_problem *cp, other_form *o);
 void other_form_free(other_form *o); /* all zero afterwards */
 
 typedef struct normal_form {
   int missing;       /* 1: it does not exist */
-  int wanted;        /* problems met that would have used it */
+  int wanted;        /* problems so far that would have used it */
   double power;      /* of two: power A has a diagonal of order 1 */
   double *L;         /* [nt*nt] Cholesky factor of power A_tt */
   double *Y;         /* [nt*n] inv(L) power A_tn */
@@ -39,10 +39,10 @@ typedef struct normal_form {
   opened *opened;    /* without S */
   double *y;         /* [m] work */
   void *work;        /* of the solver */
-  archive *from;     /* borrowed: what the work is to remember; or NULL */
+  archive *from;     /* borrowed: saved data for the workspace; or NULL */
   char group[80];    /* in it */
 } normal_form;
-/* What it remembers from problem to problem; as contact_solver_keep. */
+/* Data saved from problem to problem; as contact_solver_keep. */
 status normal_form_keep(normal_form *nf, archive *a);
 /* 1: stiffness known, no friction, no second obstacle, nothing held, matrix
  * not singular. */

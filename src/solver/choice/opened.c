@@ -67,14 +67,14 @@ void opened_free(opened *o) {
 }
 
 status opened_keep(opened *o, archive *a) {
-  size_t room = (size_t)o->n;
+  size_t capacity = (size_t)o->n;
   PASS(archive_ints(a, "n_made", &o->n_made, 1));
   if (o->n_made < 0 || o->n_made > o->n)
     RAISE(ERR_FILE, "the restart file is damaged: columns have other sizes");
-  PASS(archive_ints(a, "made", o->made, room));
+  PASS(archive_ints(a, "made", o->made, capacity));
   PASS(archive_ints(a, "column", o->column, (size_t)o->n));
   PASS(archive_reals(a, "Y", o->Y, (size_t)o->nt * (size_t)o->n_made));
-  return archive_reals(a, "S", o->S, room * room);
+  return archive_reals(a, "S", o->S, capacity * capacity);
 }
 
 /* Number i of the tangential unknowns. */
@@ -102,7 +102,7 @@ static void close_all(opened *o, const contact_problem *cp) {
 
 /* Of the open nodes that have none. */
 static void make_columns(opened *o, const contact_problem *cp) {
-  int first = o->n_made, nt = o->nt, room = o->n;
+  int first = o->n_made, nt = o->nt, capacity = o->n;
   size_t m = (size_t)cp->m;
   for (int a = 0; a < o->n_open; ++a) {
     if (o->column[o->open[a]] >= 0) continue;
@@ -120,16 +120,16 @@ static void make_columns(opened *o, const contact_problem *cp) {
               nt, fresh, 1.0, o->by.L, nt, Y, nt);
   for (int b = first; b < o->n_made; ++b)
     for (int a = 0; a < o->n_made; ++a)
-      o->S[(size_t)a + (size_t)room * (size_t)b] =
+      o->S[(size_t)a + (size_t)capacity * (size_t)b] =
           cp->A[(size_t)(o->made[a] * o->dim) +
                 m * (size_t)(o->made[b] * o->dim)];
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, o->n_made, fresh, nt,
               -1.0 / o->by.power, o->Y, nt, Y, nt, 1.0,
-              o->S + (size_t)room * (size_t)first, room);
+              o->S + (size_t)capacity * (size_t)first, capacity);
   for (int b = first; b < o->n_made; ++b)
     for (int a = 0; a < first; ++a)
-      o->S[(size_t)b + (size_t)room * (size_t)a] =
-          o->S[(size_t)a + (size_t)room * (size_t)b];
+      o->S[(size_t)b + (size_t)capacity * (size_t)a] =
+          o->S[(size_t)a + (size_t)capacity * (size_t)b];
 }
 
 /* ---- steps --------------------------------------------------------------- */
@@ -165,7 +165,8 @@ static void displace(opened *o, const contact_problem *cp) {
   contact_product(cp->m, cp->A, o->du, o->dr);
 }
 
-/* The next guess; returns the states that change, *worst how wrong one was, N.
+/* The next guess; returns the number of changes, *worst: the largest violation,
+ * N.
  */
 static int next_states(opened *o, const contact_problem *cp, double margin,
                        double *worst) {
@@ -198,7 +199,7 @@ static void begin(opened *o, const contact_problem *cp, const double *u,
   }
 }
 
-/* What was found into u, r; no force pulls. */
+/* The solution into u, r; tensile forces are set to zero. */
 static void finish(const opened *o, const contact_problem *cp, double *u,
                    double *r) {
   memset(r, 0, (size_t)cp->m * sizeof *r);
@@ -226,8 +227,8 @@ void opened_solve(opened *o, const contact_problem *cp,
     displace(o, cp);
     int changes = next_states(o, cp, margin * scale, &worst);
     ++rep->iterations;
-    solver_tell_states(control, rep->solver, rep->iterations,
-                       scale > 0.0 ? worst / scale : 0.0, changes, 0);
+    solver_report_states(control, rep->solver, rep->iterations,
+                         scale > 0.0 ? worst / scale : 0.0, changes, 0);
     if (isnan(worst)) return;
     if (changes > 0) continue;
     finish(o, cp, u, r);

@@ -1,4 +1,4 @@
-/* Last touch of an answer in space (polish.h). */
+/* Final correction of a solution (polish.h). */
 #include "solver/choice/polish.h"
 
 #include "base/memory.h"
@@ -52,9 +52,10 @@ double slip_misdirection(const contact_problem *cp, const double *u,
   return scale > 0.0 ? worst / scale : 0.0;
 }
 
-/* Way of an unknown to where the obstacle holds it, m; 0: it does not. */
-static double way_to_bound(const contact_problem *cp, const double *u,
-                           const double *r, int dof) {
+/* Distance of an unknown to its bound at the obstacle, m; 0: it is not
+ * pressed. */
+static double distance_to_bound(const contact_problem *cp, const double *u,
+                                const double *r, int dof) {
   const double *M = cp->A != NULL ? cp->A : cp->W;
   double own = M[(size_t)dof * (size_t)(cp->m + 1)];
   double c = cp->A != NULL ? own : 1.0 / own, bound = contact_bound(cp, dof);
@@ -62,38 +63,38 @@ static double way_to_bound(const contact_problem *cp, const double *u,
   return r[dof] - c * (u[dof] - bound) < 0.0 ? bound - u[dof] : 0.0;
 }
 
-/* The same of a node that sticks, way[dim], normal left alone. */
-static void ways_to_stick(const contact_problem *cp, const double *u,
-                          const double *r, int node_id, double *way) {
+/* The same of a sticking node, move[dim], without the normal. */
+static void distances_to_stick(const contact_problem *cp, const double *u,
+                               const double *r, int node_id, double *move) {
   double unit, c = tangent_stiffness(cp, node_id, &unit), size = 0.0;
   int first = node_id * cp->dim;
   if (cp->g0 == NULL || contact_has_side(cp, node_id)) return;
   for (int k = 1; k < cp->dim; ++k) {
-    way[k] = contact_stick(cp, first + k) - u[first + k];
-    if (contact_held(cp, first + k)) way[k] = 0.0;
-    size = hypot(size, r[first + k] + c * way[k]);
+    move[k] = contact_stick(cp, first + k) - u[first + k];
+    if (contact_held(cp, first + k)) move[k] = 0.0;
+    size = hypot(size, r[first + k] + c * move[k]);
   }
   if (size < contact_node_limit(cp, r, node_id)) return;
-  for (int k = 1; k < cp->dim; ++k) way[k] = 0.0;
+  for (int k = 1; k < cp->dim; ++k) move[k] = 0.0;
 }
 
-/* v = u on the bounds, s = r with what that asks of the forces there. */
+/* v = u on the bounds, s = r with the corresponding forces. */
 static int touch(const contact_problem *cp, const double *u, const double *r,
-                 double *v, double *s, double *way) {
+                 double *v, double *s, double *move) {
   int changed = 0;
   for (int i = 0; i < cp->n; ++i) {
-    double *own = way + i * cp->dim;
+    double *own = move + i * cp->dim;
     for (int k = 0; k < cp->dim; ++k)
-      own[k] = way_to_bound(cp, u, r, i * cp->dim + k);
-    ways_to_stick(cp, u, r, i, own);
+      own[k] = distance_to_bound(cp, u, r, i * cp->dim + k);
+    distances_to_stick(cp, u, r, i, own);
   }
-  for (int i = 0; i < cp->m; ++i) changed |= way[i] != 0.0;
+  for (int i = 0; i < cp->m; ++i) changed |= move[i] != 0.0;
   if (!changed) return 0;
   memcpy(s, r, (size_t)cp->m * sizeof *s);
-  if (cp->A != NULL) contact_product(cp->m, cp->A, way, v);
+  if (cp->A != NULL) contact_product(cp->m, cp->A, move, v);
   for (int i = 0; i < cp->m; ++i) {
-    if (cp->A != NULL && way[i] != 0.0) s[i] += v[i];
-    v[i] = u[i] + way[i];
+    if (cp->A != NULL && move[i] != 0.0) s[i] += v[i];
+    v[i] = u[i] + move[i];
   }
   return 1;
 }
@@ -101,11 +102,11 @@ static int touch(const contact_problem *cp, const double *u, const double *r,
 status polish_touch(const contact_problem *cp, double scale, double tol,
                     double *u, double *r, double *residual) {
   size_t bytes = (size_t)cp->m * sizeof *u;
-  OWNED double *v = NULL, *s = NULL, *way = NULL;
+  OWNED double *v = NULL, *s = NULL, *move = NULL;
   PASS_NEW(v, cp->m);
   PASS_NEW(s, cp->m);
-  PASS_NEW(way, cp->m);
-  if (!touch(cp, u, r, v, s, way)) return OK;
+  PASS_NEW(move, cp->m);
+  if (!touch(cp, u, r, v, s, move)) return OK;
   double reached = contact_residual_at(cp, scale, v, s);
   if (!(reached <= tol)) return OK;
   *residual = reached;

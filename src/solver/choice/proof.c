@@ -1,4 +1,4 @@
-/* Whether a problem without an answer has none (proof.h). */
+/* Proof that a problem has no solution (proof.h). */
 #include "solver/choice/proof.h"
 
 #include "base/memory.h"
@@ -61,28 +61,28 @@ static double largest_growth(const contact_problem *cp, const double *v,
   return most;
 }
 
-/* Largest force that A v should not have, of its terms; workspace[m]. */
+/* Largest force of A v, which should be zero, over its terms; workspace[m]. */
 static double force_of(const contact_problem *cp, const double *v,
-                       double *room) {
+                       double *workspace) {
   double force = 0.0, size = 0.0;
-  contact_product(cp->m, cp->A, v, room);
+  contact_product(cp->m, cp->A, v, workspace);
   for (size_t i = 0, m = (size_t)cp->m; i < m; ++i) {
-    force = fmax(force, fabs(room[i]));
+    force = fmax(force, fabs(workspace[i]));
     size = fmax(size, cp->A[i * m + i] * fabs(v[i]));
   }
   return force > 0.0 ? force / size : 0.0;
 }
 
 static int motion_is_proof(const contact_problem *cp, const double *v,
-                           double *room) {
-  double work = 0.0, terms = 0.0, most = 0.0, *slip = room + cp->m;
-  if (!cp->floating || !(force_of(cp, v, room) <= DEFECT)) return 0;
+                           double *workspace) {
+  double work = 0.0, terms = 0.0, most = 0.0, *slip = workspace + cp->m;
+  if (!cp->floating || !(force_of(cp, v, workspace) <= DEFECT)) return 0;
   for (int i = 0; i < cp->m; ++i) {
     most = fmax(most, fabs(v[i]));
     work += cp->f[i] * v[i];
     terms += fabs(cp->f[i] * v[i]);
   }
-  if (!(largest_growth(cp, v, room, slip) <= ROUNDING * most)) return 0;
+  if (!(largest_growth(cp, v, workspace, slip) <= ROUNDING * most)) return 0;
   return work - held_by_limit(cp, slip) > MARGIN * terms;
 }
 
@@ -103,8 +103,8 @@ static double respond(const contact_problem *cp, const double *l, double *v) {
 }
 
 static int forces_are_proof(const contact_problem *cp, const double *l,
-                            double *room) {
-  double work = 0.0, terms = 0.0, *v = room, *c = room + cp->m;
+                            double *workspace) {
+  double work = 0.0, terms = 0.0, *v = workspace, *c = workspace + cp->m;
   for (int dof = 0; dof < cp->m; ++dof) {
     double bound = contact_bound(cp, dof);
     if (l[dof] < 0.0 || (l[dof] > 0.0 && !(bound < HUGE_VAL))) return 0;
@@ -118,17 +118,17 @@ static int forces_are_proof(const contact_problem *cp, const double *l,
   return work - held_by_limit(cp, slip) > MARGIN * terms;
 }
 
-int proof_holds(const contact_problem *cp, const double *v, double *room) {
-  return cp->A != NULL ? motion_is_proof(cp, v, room)
-                       : forces_are_proof(cp, v, room);
+int proof_holds(const contact_problem *cp, const double *v, double *workspace) {
+  return cp->A != NULL ? motion_is_proof(cp, v, workspace)
+                       : forces_are_proof(cp, v, workspace);
 }
 
 /* ---- stiffness: forces nearest to balance --------------------------------
  *
- * In the modes R the load b = R'f has to be a sum of columns: of a normal force
- * with the friction it brings, any times; of the friction g0, once, for which
- * an entry is added to all columns and to b (nonnegative.h). Where no column
- * does work on the rest, it is v.
+ * In the modes R the load b = R'f must be a sum of columns with factors >= 0:
+ * of a normal force with its friction; of the friction g0, with factor 1, for
+ * which an entry is added to all columns and to b (nonnegative.h). Where no
+ * column does work on the rest, it is v.
  */
 
 typedef struct balance {
@@ -166,7 +166,7 @@ static void add_friction(const balance *s, int i, double limit) {
   }
 }
 
-/* The normal force of an unknown with a bound, 1, and the friction it brings.
+/* The normal force of an unknown with a bound, 1, and its friction.
  */
 static void set_push(const balance *s, int dof) {
   const contact_problem *cp = s->cp;
@@ -176,8 +176,8 @@ static void set_push(const balance *s, int dof) {
       if (cp->B->col[e] * cp->dim == dof) add_friction(s, i, cp->B->val[e]);
 }
 
-/* The column that does most on the rest, into to[rows]; its work, <= 0: none
- * does. */
+/* The column with the largest work on the rest, into to[rows]; its work, <= 0:
+ * none. */
 static double best_column(balance *s, double *to) {
   const contact_problem *cp = s->cp;
   int m = cp->m, k = s->an->n_mode, best = 0;
@@ -199,8 +199,8 @@ static double best_column(balance *s, double *to) {
   return fmax(s->c[best], of_limit);
 }
 
-/* The motion that lifts all nodes most evenly; *gain: what times it takes off
- * every c, at least, 0: nothing. */
+/* The motion that lifts all nodes most evenly; *gain: the least decrease of c
+ * per unit of it, 0: none. */
 static void set_lift(balance *s, double *gain) {
   const contact_problem *cp = s->cp;
   int m = cp->m, k = s->an->n_mode;
@@ -217,7 +217,7 @@ static void set_lift(balance *s, double *gain) {
   *gain = fmax(*gain, 0.0);
 }
 
-/* 1: v is a proof, lifted by what rounding lets it press. */
+/* 1: v is a proof, after a lift by its rounding. */
 static int is_proof(balance *s, double gain) {
   double growth = largest_growth(s->cp, s->v, s->c, s->c + s->cp->m);
   if (growth > 0.0 && gain > 0.0)
@@ -225,7 +225,7 @@ static int is_proof(balance *s, double gain) {
   return proof_holds(s->cp, s->v, s->c);
 }
 
-/* *proved: the load on the modes has no balance. */
+/* *proved: the load on the modes cannot be balanced. */
 static status find_motion(const contact_problem *cp, const anchor *an,
                           int *proved) {
   status st = OK;
@@ -257,9 +257,9 @@ done:
 
 /* ---- compliance ---------------------------------------------------------- */
 
-/* The forces that end complementary pivoting without friction. */
+/* The final forces of complementary pivoting without friction. */
 static status find_forces(const contact_problem *cp, int *proved) {
-  OWNED double *M = NULL, *q = NULL, *y = NULL, *l = NULL, *room = NULL;
+  OWNED double *M = NULL, *q = NULL, *y = NULL, *l = NULL, *work = NULL;
   OWNED int *id = NULL;
   int n = 0;
   size_t m = (size_t)cp->m;
@@ -271,7 +271,7 @@ static status find_forces(const contact_problem *cp, int *proved) {
   PASS_NEW(q, n);
   PASS_NEW(y, n);
   PASS_NEW(l, m);
-  PASS_NEW(room, 3 * m);
+  PASS_NEW(work, 3 * m);
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i)
       M[(size_t)i + (size_t)n * (size_t)j] =
@@ -280,7 +280,7 @@ static status find_forces(const contact_problem *cp, int *proved) {
   PASS(lcp_lemke(n, M, q, 0, y, &rep));
   if (rep.outcome != STOPPED_RAY) return OK;
   for (int i = 0; i < n; ++i) l[id[i]] = y[i];
-  *proved = proof_holds(cp, l, room);
+  *proved = proof_holds(cp, l, work);
   return OK;
 }
 

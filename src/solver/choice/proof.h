@@ -1,7 +1,6 @@
 /*
- * Proof that a contact problem has no solution: an inequality that is checked,
- * whatever method has failed on the problem. Without it a method has only not
- * found one.
+ * Proof that a contact problem has no solution: an inequality that is checked
+ * after a method has failed. Without it the failure proves nothing.
  *
  * The direction of friction follows the slip, so that only what holds for all
  * forces within their limits is a proof. With
@@ -23,13 +22,13 @@
 #include "solver/choice/anchor.h"
 
 /* 1: v[m] (l[m] of a compliance) is a proof; workspace[3*m]. */
-int proof_holds(const contact_problem *cp, const double *v, double *room);
+int proof_holds(const contact_problem *cp, const double *v, double *workspace);
 
 /*
- * Look for a proof. Stiffness: among the motions of the whole body, by the
- * forces nearest to balance, so that none is missed where there is one but for
- * rounding. Compliance: by complementary pivoting without friction.
- * an: modes of the matrix, made if need be. Errors: ERR_MEMORY.
+ * Search for a proof. Stiffness: among the motions of the whole body, by the
+ * forces nearest to balance, so that a proof is found if there is one, to
+ * rounding. Compliance: by complementary pivoting without friction. an: modes
+ * of the matrix, made if need be. Errors: ERR_MEMORY.
  */
 status proof_find(const contact_problem *cp, anchor *an, int *proved);
 

@@ -7,12 +7,11 @@
  *
  *   z_var = -K q_row,   w_i = q_i + [M d](i, var) z_var   for the other i.
  *
- * The variable that left last names the next one to enter, its complement. A
- * pivot adds, replaces or removes one row and one column of P; K follows by a
- * rank-one change. Lexicographic rule: q is thought of as q + (e, e^2, ...)
- * with an infinitesimal e; only the columns of the inverse that are needed to
- * tell the tied rows apart are formed.
- * The form with a dense matrix is in plain.c.
+ * The complement of the variable that left last enters next. A pivot adds,
+ * replaces or removes one row and one column of P; K follows by a rank-one
+ * change. Lexicographic rule: q is thought of as q + (e, e^2, ...) with an
+ * infinitesimal e; only the columns of the inverse that are needed to break
+ * ties are formed. The form with a dense matrix is in plain.c.
  */
 #include "solver/lcp/lcp.h"
 
@@ -56,8 +55,8 @@ static double plain_residual(int n, const double *M, const double *q,
   for (size_t i = 0; i < (size_t)n; ++i) {
     double sum = q[i];
     for (size_t j = 0; j < (size_t)n; ++j) sum += M[i + (size_t)n * j] * z[j];
-    double miss = fabs(fmin(sum, z[i]));
-    if (!(miss <= worst)) worst = miss;
+    double violation = fabs(fmin(sum, z[i]));
+    if (!(violation <= worst)) worst = violation;
   }
   return worst;
 }
@@ -100,7 +99,7 @@ done:
 
 /* Relative to the largest number of the same kind. */
 #define TIE 0x1p-42      /* values that count as zero */
-#define ROUNDING 0x1p-53 /* error of a product, with K: noise */
+#define ROUNDING 0x1p-53 /* rounding error of a product, with K */
 
 struct lcp_work {
   int n, cap, s;         /* n, cap: of the run, of the blocks */
@@ -127,7 +126,7 @@ struct lcp_work {
 
 /* ---- inverse of the basis, basic variables and their change ------------- */
 
-static const double DRIFT = 0x1p-48; /* defect that calls for a correction */
+static const double DRIFT = 0x1p-48; /* defect that requires a correction */
 
 /* to[n] = [M d](:, var) x. While z0 is basic it stands first in var. */
 static void lcp_expand(lcp_work *w, const lcp_problem *p, const double *x,
@@ -166,8 +165,8 @@ static void measure_inverse(lcp_work *w) {
         fmax(w->size_K, lcp_largest(w->s, w->K + (size_t)b * (size_t)w->cap));
 }
 
-/* z = -K q_row, w = q + M z, and the defect of the rows put right once.
- * Returns the defect that was left before, relative. */
+/* z = -K q_row, w = q + M z, with one correction of the defect of the rows.
+ * Returns the relative defect before. */
 static double lcp_refresh(lcp_work *w, const lcp_problem *p) {
   double defect = 0.0, size = 0.0;
   for (int b = 0; b < w->s; ++b) w->gather[b] = -w->q[w->row[b]];
@@ -242,12 +241,13 @@ static double lcp_direction(lcp_work *w, const lcp_problem *p) {
   return first;
 }
 
-/* ---- who leaves the basis: the first to vanish, ties by the lexicographic
- * rule. */
+/* ---- which variable leaves the basis: the first to vanish, ties by the
+ * lexicographic rule. */
 
 static const double SMALL = 0x1p-38;   /* no pivot below */
 static const double UNEQUAL = 0x1p-26; /* pivots of tied rows not considered */
-static const double MOST_NOISE = 0x1p-28; /* no more is taken for noise */
+static const double MOST_NOISE =
+    0x1p-28; /* larger values are not taken for rounding */
 
 /* What counts as zero, of each kind (z0, z, w): values, changes. */
 typedef struct sizes {
@@ -268,7 +268,7 @@ static double change_of(const lcp_work *w, int candidate) {
   return candidate < w->cap ? w->dz[candidate] : w->dw[candidate - w->cap];
 }
 
-/* What counts as zero beside "size": its share, or what is noise there. */
+/* Bound of zero against "size": a share of it, or the rounding error. */
 static double lcp_zero(double share, double size, double noise) {
   return fmax(share * size, fmin(noise, MOST_NOISE * size));
 }
@@ -349,8 +349,8 @@ static int split_ties(lcp_work *w, const lcp_problem *p, int j, int n_tie) {
   return kept;
 }
 
-/* Candidate that leaves, -1: none (a ray). z0 has the first right: the problem
- * is then solved. */
+/* Candidate that leaves, -1: none (a ray). z0 has priority: the problem is then
+ * solved. */
 static int lcp_leaving(lcp_work *w, const lcp_problem *p, double *step) {
   sizes k = measure(w);
   int n_tie = first_to_vanish(w, &k, step);
@@ -362,7 +362,7 @@ static int lcp_leaving(lcp_work *w, const lcp_problem *p, double *step) {
   return w->tie[0];
 }
 
-/* ---- one change of basis: a row, a column or both of P come, go or are
+/* ---- one change of basis: a row, a column or both of P are added, removed or
  * replaced, and its inverse follows by a change of rank one. */
 
 /* gather = (row i of P) K */
@@ -480,7 +480,7 @@ static void lcp_pivot(lcp_work *w, const lcp_problem *p, int c, double step) {
   w->entering = -1 - out; /* the complement */
 }
 
-static const double SPOILT = 0x1p-38;   /* defect that calls for an inverse */
+static const double SPOILT = 0x1p-38;   /* defect that requires a new inverse */
 static const double NEAR_END = 0x1p-30; /* share of z0 that is made exact */
 enum { REFRESH = 16 /* pivots from one new start of the values to the next */ };
 
@@ -566,7 +566,7 @@ static outcome renew(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
   return w->at_z[w->n] >= 0 && w->z[0] > zero ? RUNNING : CONVERGED;
 }
 
-/* One pivot; RUNNING: go on. *age: pivots since the last new inverse. */
+/* One pivot; RUNNING: continue. *age: pivots since the last new inverse. */
 static outcome advance(lcp_work *w, const lcp_problem *p, lcp_report *rep,
                        int *age) {
   double step, defect = lcp_direction(w, p);

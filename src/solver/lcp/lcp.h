@@ -6,7 +6,7 @@
  * by complementary pivoting (Lemke 1965; Cottle, Pang, Stone 1992, 4.4): the
  * problem w = q + M z + d z0 with a covering vector d >= 0 is followed from
  * large z0 to z0 = 0. Ties are decided by the lexicographic rule, so that no
- * basis comes back. The inverse of the basis is kept for the rows and columns
+ * basis is repeated. The inverse of the basis is kept for the rows and columns
  * that differ from the start only (at most rank + 1) and updated: a pivot costs
  * two products with it, one rank-one change and one product with M.
  */
@@ -51,10 +51,11 @@ typedef struct lcp_problem {
 } lcp_problem;
 
 typedef struct lcp_work lcp_work;
-/* Room for n unknowns, of which at most "rank" (of M) are basic at a time. */
+/* Allocates for n unknowns, of which at most "rank" (of M) are basic at a
+ * time. */
 status lcp_new(int n, int rank, lcp_work **out);
 void lcp_free(lcp_work *w); /* accepts NULL */
-/* Solve p; rep->residual is left alone. Allocates nothing. */
+/* Solve p; rep->residual is unchanged. Allocates nothing. */
 void lcp_run(lcp_work *w, const lcp_problem *p, lcp_report *rep);
 /* z[n] of the last run. */
 void lcp_values(const lcp_work *w, double *z);

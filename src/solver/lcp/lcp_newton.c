@@ -7,8 +7,8 @@
  * phi = 0 says z, w >= 0, z_i w_i = 0. Newton's direction where it descends on
  * |phi|^2/2, that of Levenberg and Marquardt where not; a step may raise it
  * above the last values but not above their largest. The basis z_i > w_i of an
- * iterate is tried out: its solution is exact; of a singular basis, whose
- * solutions are many, that next to the iterate. Then the iterate itself.
+ * iterate is tried: its solution is exact; of a singular basis the solution
+ * nearest to the iterate. Then the iterate itself.
  */
 #include "base/memory.h"
 #include "contact/contact.h"
@@ -28,8 +28,8 @@ double lcp_residual(const lcp_data *p, const double *z, double *w) {
   for (size_t i = 0; i < n; ++i) {
     w[i] += p->q[i];
     scale = fmax(scale, fabs(p->q[i]));
-    double miss = fabs(fmin(c * z[i], w[i]));
-    if (!(miss <= worst)) worst = miss;
+    double violation = fabs(fmin(c * z[i], w[i]));
+    if (!(violation <= worst)) worst = violation;
     if (isnan(w[i]) || isnan(z[i])) return NAN;
   }
   if (scale > 0.0) return worst / scale;
@@ -63,8 +63,8 @@ typedef struct run {
   double *J;                   /* [n*n] */
   int *pivot, *basis;          /* [n] */
   double *N;                   /* [n*n] normal equations */
-  double *work;                /* [room] of LAPACK */
-  int room;
+  double *work;                /* [lwork] of LAPACK */
+  int lwork;
   double *answer, *slack; /* [n] in the units of the problem */
 } run;
 
@@ -79,8 +79,8 @@ static status run_new(run *s) {
   PASS_NEW(s->pivot, n);
   PASS_NEW(s->basis, n);
   PASS_NEW(s->N, n * n);
-  s->room = 64 * (s->p->n + 1);
-  PASS_NEW(s->work, s->room);
+  s->lwork = 64 * (s->p->n + 1);
+  PASS_NEW(s->work, s->lwork);
   return OK;
 }
 
@@ -157,7 +157,7 @@ static int nearest_solves(run *s) {
     if (s->basis[i]) s->d[row++] = -s->slack[i];
   memset(s->pivot, 0, (size_t)k * sizeof *s->pivot);
   if (LAPACKE_dgelsy_work(LAPACK_COL_MAJOR, k, k, 1, s->J, k, s->d, k, s->pivot,
-                          RANK, &rank, s->work, s->room) != 0)
+                          RANK, &rank, s->work, s->lwork) != 0)
     return 0;
   for (int i = 0, row = 0; i < n; ++i)
     if (s->basis[i]) s->answer[i] = fmax(0.0, s->answer[i] + s->d[row++]);
@@ -254,8 +254,8 @@ static int descend(run *s, int *steps) {
   return basis_of_iterate_solves(s);
 }
 
-/* Start k: zero, what q alone asks for, then a fixed series of sparse vectors
- * of growing size. */
+/* Start k: zero, max(-q, 0), then a fixed series of sparse vectors of growing
+ * size. */
 static void start(run *s, int k, unsigned *seed) {
   double size = ldexp(1.0, k / 3 % 10 - 2);
   for (int i = 0; i < s->p->n; ++i) {

@@ -1,5 +1,5 @@
 /*
- * Which method for a linear complementarity problem, and what is proved if
+ * Choice of the method for a linear complementarity problem, and the proof if
  * none finds a solution (lcp_solve.h).
  */
 #include "solver/lcp/lcp_solve.h"
@@ -27,7 +27,7 @@ typedef struct run {
   double *try_z, *y;     /* [n] attempt; [2n] ray, certificate */
   double *cover;         /* [n] covering vector */
   double *size;          /* [n] unit of z_i (and 1/w_i) */
-  double *M, *q, *room;  /* [n*n], [n], [n]: in these units, over the cover */
+  double *M, *q, *work;  /* [n*n], [n], [n]: in these units, over the cover */
   unsigned char *turned; /* [n] 1: z_i and w_i have changed places */
   unsigned seed;
   int is_first; /* 1: one of the first tries */
@@ -41,13 +41,13 @@ static status run_new(run *s) {
   PASS_NEW(s->size, n);
   PASS_NEW(s->M, n * n);
   PASS_NEW(s->q, n);
-  PASS_NEW(s->room, n);
+  PASS_NEW(s->work, n);
   PASS_NEW(s->turned, n);
   return OK;
 }
 
 static void run_free(run *s) {
-  RELEASE(s->try_z, s->y, s->cover, s->size, s->M, s->q, s->room, s->turned);
+  RELEASE(s->try_z, s->y, s->cover, s->size, s->M, s->q, s->work, s->turned);
 }
 
 static void note(lcp_verdict *v, const char *who, outcome o) {
@@ -101,11 +101,10 @@ static void choose(run *s, int k) {
   memset(s->turned, 0, n);
   if (k >= FIRST && k % 4 != 0)
     lcp_turn(s->p->n, k % 2 ? 1 : 1 + k / 8, &s->seed, s->M, s->q, s->turned,
-             s->room);
+             s->work);
 }
 
-/* 0: as many as the method takes. Where others follow the first tries are
- * short.
+/* 0: the limit of the method. Where others follow the first attempts are short.
  */
 static int pivots_allowed(const run *s) {
   int most = s->control->max_iter, left = most - s->v->iterations;
@@ -115,7 +114,7 @@ static int pivots_allowed(const run *s) {
 }
 
 /* Lemke's method with a covering vector d is that of the rows over d with a
- * vector of ones. On a ray of the problem as it stands y is its direction. */
+ * vector of ones. On a ray of the given problem y is its direction. */
 static status pivot_once(run *s, lcp_report *rep) {
   size_t n = (size_t)s->p->n;
   double *slack = s->y + n;
@@ -201,7 +200,7 @@ static status look_for_proof(run *s, int *proved) {
   return OK;
 }
 
-/* ---- all together -------------------------------------------------------- */
+/* ---- the solve -------------------------------------------------------- */
 
 /* All bases of few unknowns. */
 static status try_bases(run *s, outcome *o) {
@@ -224,7 +223,7 @@ static status try_newton(run *s, outcome *o) {
 }
 
 /* The methods after pivoting. */
-static status other_ways(run *s, outcome *o) {
+static status other_methods(run *s, outcome *o) {
   PASS(try_bases(s, o));
   if (*o == STOPPED_STAGNATION) PASS(try_newton(s, o));
   return OK;
@@ -249,7 +248,7 @@ static status follow(run *s) {
   if (first == STOPPED_RAY) PASS(prove(s, &looked, &proved));
   if (proved) return OK;
   if (!s->control->pivoting_only) {
-    PASS(other_ways(s, &o));
+    PASS(other_methods(s, &o));
     s->v->outcome = o;
     if (o == CONVERGED || o == STOPPED_RAY) return OK;
   }

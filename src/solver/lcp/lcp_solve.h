@@ -3,17 +3,17 @@
  *
  *   w = q + M z,   w >= 0,  z >= 0,  w'z = 0.
  *
- * Complementary pivoting (solver/lcp/lcp.h) comes first. It ends on a ray, or
- * takes 2^n pivots, on problems that have a solution all the same; then the
- * question whether any z >= 0 has w >= 0 is put as a problem that pivoting
- * always decides,
+ * Complementary pivoting (solver/lcp/lcp.h) comes first. It can end on a ray,
+ * or take 2^n pivots, though the problem has a solution; then the question
+ * whether any z >= 0 has w >= 0 is posed as a problem that pivoting always
+ * decides,
  *
  *   w = 0 - M'y,  v = q + M z,   (z, w), (y, v) complementary,
  *
  * (its matrix is skew), and if there is one: for few unknowns all bases, which
  * decides; the Newton method on the function of Fischer and Burmeister from
  * many starts (De Luca, Facchinei, Kanzow 1996), and pivoting with other units,
- * covering vectors and from other vertices. The first try ends early where
+ * covering vectors and from other vertices. The first attempt ends early where
  * these follow.
  */
 #ifndef PROTIS_LCP_LCP_SOLVE_H
@@ -47,8 +47,8 @@ typedef struct lcp_verdict {
 } lcp_verdict;
 
 /*
- * How far z is from a solution, -: largest of |min(z_i c, w_i)| over the rows,
- * c the largest |M|, over the largest |q|. w[n] = q + M z. NaN if one is.
+ * Residual of z, -: largest of |min(z_i c, w_i)| over the rows, c the largest
+ * |M|, over the largest |q|. w[n] = q + M z. NaN if one is.
  */
 double lcp_residual(const lcp_data *p, const double *z, double *w);
 

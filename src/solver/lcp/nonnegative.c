@@ -51,8 +51,8 @@ static void drop(nonnegative *s, int j) {
   memmove(s->x + j, s->x + j + 1, (size_t)(s->n - j) * sizeof *s->x);
 }
 
-/* From x towards y as far as no factor is negative; what ends there is dropped.
- * 1: all the way. */
+/* From x towards y while no factor is negative; factors that become zero are
+ * dropped. 1: y is reached. */
 static int go(nonnegative *s) {
   double share = 1.0;
   int end = -1;

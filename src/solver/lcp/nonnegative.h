@@ -1,8 +1,8 @@
 /*
  * A vector b as a sum of columns with factors that are not negative, as near as
  * possible (Lawson, Hanson 1974). The caller hands over the columns one by one,
- * each time that which does most on the rest, b less the sum; a rest on which
- * no column does work separates b from all of them.
+ * each time the one with the largest work on the rest, b less the sum; a rest
+ * on which no column does work separates b from all of them.
  */
 #ifndef PROTIS_LCP_NONNEGATIVE_H
 #define PROTIS_LCP_NONNEGATIVE_H
@@ -21,9 +21,9 @@ status nonnegative_new(int rows, nonnegative *s);
 void nonnegative_free(nonnegative *s);
 /* No column is taken yet; b is set. */
 void nonnegative_begin(nonnegative *s);
-/* Where the next column[rows] goes; NULL: as many as rows are taken. */
+/* Where the next column[rows] goes; NULL: already as many columns as rows. */
 double *nonnegative_next(const nonnegative *s);
-/* Take it, drop those with no share left. 0: no way on. */
+/* Take it, drop those with factor zero. 0: no progress. */
 int nonnegative_take(nonnegative *s);
 
 #endif

@@ -1,14 +1,14 @@
 /*
  * A step from the compliance (compliance.h).
  *
- * A factor without slip in it is kept as the base, of the plain forces N. Where
- * a later guess frees some of them, C, by opening or slip, the displacements of
- * C become unknowns z, and with X = inv(W_NN) E_C the change of the forces is
+ * A factor without slip is kept as the base, of the plain forces N. Where a
+ * later guess frees some of them, C, by opening or slip, the displacements of C
+ * become unknowns z, and with X = inv(W_NN) E_C the change of the forces is
  *
  *   dr = x0 + X z,   W_NN x0 = b without C,
  *
- * z from what the guess asks of the forces of C: none where open, on the limit
- * where slipping. These rows have few entries; X is kept.
+ * z from the conditions on the forces of C: zero where open, on the limit where
+ * slipping. These rows have few entries; X is kept.
  */
 #include "solver/newton/compliance.h"
 
@@ -42,20 +42,18 @@ struct compliance_system {
   int n_base;                /* unknowns of the base, 0: none */
   int *base, *in_base;       /* [m], [m] its unknowns; their place, -1: not */
   double spent;              /* on freed forces since it was made, operations */
-  int room, n_column;        /* columns of X: most, made */
+  int capacity, n_column;    /* columns of X: most, made */
   int *column;               /* [m] of X, of unknowns of the base, -1: none */
-  double *X;                 /* [m*room] */
-  int n_freed, *freed;       /* [room] unknowns of the base */
-  double *C, *z;             /* [room*room], [room] small system */
-  int *pivot;                /* [room] */
+  double *X;                 /* [m*capacity] */
+  int n_freed, *freed;       /* [capacity] unknowns of the base */
+  double *C, *z;             /* [capacity*capacity], [capacity] small system */
+  int *pivot;                /* [capacity] */
 };
 
-/* ---- forces freed in a kept factor --------------------------------------- */
+/* ---- forces freed by an update of the factor ---------------------------- */
 
-enum {
-  READ = 8
-}; /* solves whose arithmetic takes as long as reading the
-      factor */
+/* Solves whose arithmetic takes the time of reading the factor. */
+enum { READ = 8 };
 
 /* 1: the forces of a slipping node are unknowns of the base. */
 static int slip_in_base(const compliance_system *s, int node_id) {
@@ -81,7 +79,7 @@ static void mark(compliance_system *s) {
 }
 
 /* List what the guess frees; the operations of a step with it, or HUGE_VAL if
- * there is no base or the guess asks for forces that are not in it. */
+ * there is no base or the guess has forces that are not in it. */
 static double freed_cost(compliance_system *s) {
   double fresh = 0.0, n = s->n_base;
   if (s->n_base == 0 || !base_has_all(s)) return HUGE_VAL;
@@ -89,12 +87,12 @@ static double freed_cost(compliance_system *s) {
   s->n_freed = 0;
   for (int a = 0; a < s->n_base; ++a) {
     if (s->y[a] != 0.0) continue;
-    if (s->n_freed == s->room) return HUGE_VAL;
+    if (s->n_freed == s->capacity) return HUGE_VAL;
     s->freed[s->n_freed++] = a;
     fresh += s->column[a] < 0;
   }
   double columns = s->n_column + fresh, k = s->n_freed;
-  if (columns > s->room) return HUGE_VAL;
+  if (columns > s->capacity) return HUGE_VAL;
   return 2.0 * n * n * (fresh + 1.0 + READ) + 2.0 * n * columns +
          2.0 / 3.0 * k * k * k;
 }
@@ -114,7 +112,7 @@ static void make_columns(compliance_system *s) {
 }
 
 /* Direction of friction at a slipping node, the first of its two rows in 3-D:
- * what the forces y miss of the limit. */
+ * the excess of the forces y over the limit. */
 static double on_limit(const compliance_system *s, int node_id,
                        const double *y) {
   const sparse_rows *B = s->cp->B;
@@ -138,7 +136,7 @@ static double across(const compliance_system *s, int node_id, const double *y) {
   return sum * s->power / s->p->kappa[node_id];
 }
 
-/* What the row of a freed force takes of forces y. */
+/* Product of the row of a freed force with forces y. */
 static double row_of(const compliance_system *s, int a, const double *y) {
   int dof = s->base[a], dim = s->cp->dim, node_id = dof / dim;
   if (dof % dim == 0 || s->p->mode[node_id] != SLIP) return y[a];
@@ -146,7 +144,7 @@ static double row_of(const compliance_system *s, int a, const double *y) {
   return across(s, node_id, y);
 }
 
-/* What it takes of the displacement of another freed one. */
+/* Its product with the displacement of another freed one. */
 static double displacement_part(const compliance_system *s, int a, int other) {
   int dof = s->base[a], node_id = dof / s->cp->dim;
   if (s->turn[node_id] < 0 || dof % 3 != 2) return 0.0;
@@ -206,7 +204,7 @@ status compliance_system_new(const contact_problem *cp,
   status st = OK;
   compliance_system *s = NULL;
   size_t m = (size_t)cp->m;
-  int room = cp->g0 == NULL && cp->side_gap == NULL ? cp->n : cp->m;
+  int capacity = cp->g0 == NULL && cp->side_gap == NULL ? cp->n : cp->m;
   NEW(s, 1);
   NEW(s->list, m);
   NEW(s->place, cp->n);
@@ -217,13 +215,13 @@ status compliance_system_new(const contact_problem *cp,
   NEW(s->base, m);
   NEW(s->in_base, m);
   NEW(s->column, m);
-  s->room = room / SHARE + 1;
-  NEW(s->X, room * s->room);
-  NEW(s->freed, s->room);
-  NEW(s->C, s->room * s->room);
-  NEW(s->z, s->room);
-  NEW(s->pivot, s->room);
-  TRY(dense_new(room, &s->K));
+  s->capacity = capacity / SHARE + 1;
+  NEW(s->X, capacity * s->capacity);
+  NEW(s->freed, s->capacity);
+  NEW(s->C, s->capacity * s->capacity);
+  NEW(s->z, s->capacity);
+  NEW(s->pivot, s->capacity);
+  TRY(dense_new(capacity, &s->K));
   s->power = dense_power(cp->m, cp->W);
   *out = s;
   s = NULL;
@@ -292,7 +290,7 @@ static void list_unknowns(compliance_system *s) {
   }
 }
 
-/* What an unknown of the list takes of a vector over all. */
+/* Component of a full vector for an unknown of the list. */
 static double part(const unknown *a, const double *of) {
   return a->turns ? a->d[0] * of[a->dof] + a->d[1] * of[a->dof + 1]
                   : of[a->dof];
@@ -367,7 +365,7 @@ static void set_slip(const compliance_system *s, int node_id, double along,
   t[1] += along * e[0];
 }
 
-/* Forces the guess knows, and those that follow from others, into r. */
+/* Known forces of the guess, and those that follow from others, into r. */
 static void settle(const compliance_system *s, double *r) {
   const contact_problem *cp = s->cp;
   for (int i = 0; i < cp->n; ++i) {
@@ -385,7 +383,7 @@ static void settle(const compliance_system *s, double *r) {
   }
 }
 
-/* x, times power: what each row misses; returns the largest. */
+/* x, times power: the residual of each row; returns the largest. */
 static double load(compliance_system *s, const double *r, const double *raw) {
   const contact_problem *cp = s->cp;
   double largest = 0.0;
@@ -422,7 +420,7 @@ static void keep_base(compliance_system *s) {
   }
 }
 
-/* 1: a new factor of n unknowns costs more than the kept one. */
+/* 1: a new factor of n unknowns costs more than the update. */
 static int base_pays(compliance_system *s) {
   double n = s->n, cost = freed_cost(s), fresh;
   int slips = 0;
@@ -476,7 +474,8 @@ static int project(const compliance_system *s, double *r) {
   return moved;
 }
 
-/* Forces of the guess by the kept factor (freed) or the new one; 0: not solved.
+/* Forces of the guess by the updated factor (freed) or a new one; 0: not
+ * solved.
  */
 static int solve(compliance_system *s, int by_base, double *r, double *raw) {
   double left = load(s, r, raw), before = HUGE_VAL, first = left;

@@ -1,7 +1,7 @@
 /*
  * The linear system of one step of Newton's method (newton.c) where only the
- * compliance is known: the unknowns are the forces a guess of the states leaves
- * open, u = W r + q.
+ * compliance is known: the unknowns are the unknown forces of a guess of the
+ * states, u = W r + q.
  *
  *   open    r_n = 0                      known
  *   closed  u_n = gap                    unknown r_n
@@ -9,8 +9,8 @@
  *   slip    r_t = g e + s d,  g = g0 - B r_n,  d normal to e
  *           d.(u_t - ut0) + s/kappa = 0  unknown s, in 3-D
  *
- * The less is closed and the more slips, the smaller the system. No inverse of
- * W is made; W may be unsymmetric.
+ * The system is the smaller, the fewer nodes are closed and the more slip. No
+ * inverse of W is made; W may be unsymmetric.
  */
 #ifndef PROTIS_NEWTON_COMPLIANCE_H
 #define PROTIS_NEWTON_COMPLIANCE_H
@@ -25,7 +25,7 @@ void compliance_system_free(compliance_system *s); /* accepts NULL */
 void compliance_displace(const contact_problem *cp, const double *r,
                          double *raw);
 /* r becomes the forces of the guess p, raw = W r + q. Returns 1 if the system
- * is singular: r and raw are then of no use. */
+ * is singular: r and raw are then undefined. */
 int compliance_system_step(compliance_system *s, const contact_problem *cp,
                            const pattern *p, double *r, double *raw);
 

@@ -11,8 +11,8 @@ enum { TILE = 32 }; /* for the cache */
 static const double SINGULAR_RCOND = 1e-13;
 static const double SUSPECT = 0x1p-20; /* -, smallest over largest pivot */
 
-status dense_new(int room, dense *d) {
-  size_t m = (size_t)room;
+status dense_new(int capacity, dense *d) {
+  size_t m = (size_t)capacity;
   PASS_NEW(d->a, m * m);
   PASS_NEW(d->pivot, m);
   PASS_NEW(d->iwork, m);
@@ -52,7 +52,7 @@ double dense_power(int m, const double *M) {
   return ldexp(1.0, -exponent);
 }
 
-/* 1: the pivots leave doubt, and the condition says singular. */
+/* 1: the pivots leave doubt, and the condition number says singular. */
 static int is_singular(dense *d, double norm) {
   size_t n = (size_t)d->n;
   double least = HUGE_VAL, most = 0.0, rcond = 1.0;

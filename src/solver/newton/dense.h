@@ -1,4 +1,4 @@
-/* A dense matrix and its factor in the same place: Cholesky, or LU. */
+/* A dense matrix and its factor in the same array: Cholesky or LU. */
 #ifndef PROTIS_NEWTON_DENSE_H
 #define PROTIS_NEWTON_DENSE_H
 
@@ -7,25 +7,25 @@
 typedef struct dense {
   double *a;          /* [n*n] lower triangle or all, then the factor */
   int n, full;        /* unknowns; 1: LU, 0: Cholesky */
-  int *pivot, *iwork; /* [room] */
-  double *work;       /* [4 room] */
+  int *pivot, *iwork; /* [capacity] */
+  double *work;       /* [4 capacity] */
 } dense;
 
-status dense_new(int room, dense *d);
+status dense_new(int capacity, dense *d);
 void dense_free(dense *d);
-/* 1: M[m*m] equals its transpose but for "apart". */
+/* 1: M[m*m] equals its transpose within "apart". */
 int dense_is_symmetric(int m, const double *M, double apart);
 /* The upper triangle of M[m*m] from the lower. */
 void dense_mirror(int m, double *M);
 /* Power of two that brings the largest diagonal entry of M[m*m] to order 1:
  * roots then keep their bits under a change of units by such powers. */
 double dense_power(int m, const double *M);
-/* N[m*(m-rank)], zero before: vectors that L[m*m], factor of rank "rank" in the
- * order "pivot" (from 1), takes to zero: the unknown of one place beyond the
- * rank moves by 1, those before follow. y[rank]: workspace. */
+/* N[m*(m-rank)], zero before: null vectors of L[m*m], a factor of rank "rank"
+ * in the order "pivot" (from 1): one unknown beyond the rank is 1, those before
+ * follow. y[rank]: workspace. */
 void dense_null(int m, int rank, const double *L, const int *pivot, double *y,
                 double *N);
-/* 0: singular to rounding, which is asked for only if "doubt". */
+/* 0: singular to rounding, which is tested only if "doubt". */
 int dense_factor(dense *d, int doubt);
 /* The inverse in place of the factor, all of it; 0: not possible. */
 int dense_invert(dense *d);

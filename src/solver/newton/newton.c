@@ -9,19 +9,18 @@
  *   stick       u_t = ut0             known
  *   slip        r_t = g e - kappa (I - e e') (u_t - ut0),  g = g0 - B r_n
  * with e the direction of z = r_t - c (u_t - ut0) and kappa = c g/(|z| - g),
- * the exact derivative of the projection on the disc; in 2-D e = +-1. Without
- * B in it the system is symmetric (Cholesky), else LU. c is the diagonal of A.
+ * the exact derivative of the projection on the disc; in 2-D e = +-1. Without B
+ * in it the system is symmetric (Cholesky), else LU. c is the diagonal of A.
  *
- * The guess for the next step is read off the solution. A pattern that comes
- * back, or no progress, starts the method again from another guess (stick, then
- * that of some sweeps of relaxation); on small problems then one state is
- * changed at a time, the least index first (Murty), which ends for every
- * P-matrix. A singular system (nothing holds the body under the guess) is made
- * regular by weak springs for the step; if the final pattern is singular, that
- * is the verdict.
+ * The guess for the next step follows from the solution. A repeated pattern, or
+ * no progress, starts the method again from another guess (stick, then that of
+ * some sweeps of relaxation); on small problems then one state is changed at a
+ * time, the least index first (Murty), which ends for every P-matrix. A
+ * singular system (the body is free under the guess) is made regular by weak
+ * springs for the step; if the final pattern is singular, that is the outcome.
  *
- * Where only the compliance is known a step solves for the forces the guess
- * leaves open (compliance.h); a singular system is then the end.
+ * Where only the compliance is known a step solves for the unknown forces of
+ * the guess (compliance.h); a singular system then ends the method.
  */
 #include "base/memory.h"
 #include "solver/newton/compliance.h"
@@ -49,11 +48,11 @@ enum {
   FULL_STEPS = 40, /* of an attempt; more while the residual falls */
   MOST_STEPS = 1000,
   PATIENCE = 25,    /* steps without a lower residual */
-  SMALL = 400,      /* unknowns: a step costs next to nothing */
-  MANY_STEPS = 100, /* of an attempt that makes part of the changes */
+  SMALL = 400,      /* unknowns: the cost of a step is negligible */
+  MANY_STEPS = 100, /* of an attempt that makes a part of the changes */
   SWEEPS = 100      /* of relaxation before another attempt */
 };
-static const double SETTLING = 0.5; /* -, residual a step with springs leaves */
+static const double SETTLING = 0.5; /* -, residual after a step with springs */
 static const uint64_t DICE_START = 88172645463325252u;
 
 typedef struct newton_work {
@@ -112,7 +111,7 @@ static double residual_of(const run *s) {
   return contact_mismatch(s->cp, s->scale, s->u, s->r, s->st->raw);
 }
 
-/* 1: the pattern has been met in this attempt. */
+/* 1: the pattern occurred before in this attempt. */
 static int met_before(const run *s, int step) {
   uint64_t h = states_hash(s->st);
   int met = 0;
@@ -121,19 +120,19 @@ static int met_before(const run *s, int step) {
   return met;
 }
 
-/* How an attempt goes. */
+/* State of an attempt. */
 typedef struct course {
   double lowest;      /* residual, - */
   double before;      /* of the last step */
   int at, best_at;    /* this step, the one of the lowest residual */
-  int changes, cycle; /* states that would change; pattern met before */
+  int changes, cycle; /* states that would change; pattern occurred before */
   int settled;        /* the step before was within the tolerance */
 } course;
 
 /* 1: solved, and a further step would change nothing or little, or is more than
- * was asked for. On the round cone of three dimensions one within the tolerance
- * is still quadratic: it turns the forces of slipping nodes exactly against
- * their slip. */
+ * the tolerance requires. On the round cone of three dimensions one within the
+ * tolerance is still quadratic: it turns the forces of slipping nodes exactly
+ * against their slip. */
 static int solved(const run *s, course *c, double residual) {
   int within = residual <= s->control->tol, linear = s->cp->dim == 2;
   if (solver_few_digits(s->control->tol)) return within;
@@ -169,15 +168,15 @@ static int step(const run *s) {
   return newton_system_step(s->w->system, &st->guess, s->u, st->raw);
 }
 
-/* 1: springs bear part of the load, less with each step. */
+/* 1: springs carry part of the load, less with each step. */
 static int settles(const run *s, course *c, double residual) {
   double before = c->before;
   c->before = residual;
   return c->changes == 0 && s->singular && residual < SETTLING * before;
 }
 
-/* RUNNING, or why the attempt ends without a solution. In the plane a pattern
- * that comes back is a cycle; in 3-D directions turn while the states stay. */
+/* RUNNING, or why the attempt ends without a solution. In the plane a repeated
+ * pattern is a cycle; in 3-D directions change while the states stay. */
 static outcome verdict(const run *s, course *c, double residual) {
   int all = s->st->dice == 0, full = all && !s->st->careful;
   int still = stuck(c, residual), plane = s->cp->dim < 3;
@@ -189,20 +188,21 @@ static outcome verdict(const run *s, course *c, double residual) {
   return full && still ? STOPPED_STAGNATION : RUNNING;
 }
 
-/* 1: no step is left to this solver. */
+/* 1: the limit of steps is reached. */
 static int used_up(const run *s) {
   return s->control->max_iter > 0 && s->steps >= s->control->max_iter;
 }
 
-/* 1: the attempt may go on: within its steps, or the residual still falls (a
- * front of few states that moves on; such steps cost little). */
+/* 1: the attempt may continue: within its steps, or the residual still falls (a
+ * few states change per step, at little cost). */
 static int goes_on(const run *s, const course *c, int limit) {
   if (used_up(s)) return 0;
   return c->at < limit ||
          (limit == FULL_STEPS && c->at < MOST_STEPS && c->at - c->best_at <= 2);
 }
 
-/* Steps from the present guess until solved, settled, cycling or "limit". */
+/* Steps from the present guess until solved, without progress, cycling or
+ * "limit". */
 static outcome attempt(run *s, int limit) {
   course c = {.lowest = HUGE_VAL, .before = HUGE_VAL};
   int m = s->cp->m;
@@ -215,8 +215,8 @@ static outcome attempt(run *s, int limit) {
     if (isnan(residual)) return STOPPED_NAN;
     solver_keep_best(&s->w->best, m, residual, s->u, s->r);
     c.changes = states_next(s->st, 0);
-    solver_tell_states(s->control, "newton", s->steps, residual, c.changes,
-                       c.cycle);
+    solver_report_states(s->control, "newton", s->steps, residual, c.changes,
+                         c.cycle);
     if (solved(s, &c, residual)) return CONVERGED;
     outcome o = settles(s, &c, residual) ? RUNNING : verdict(s, &c, residual);
     if (o != RUNNING) return o;
@@ -224,7 +224,7 @@ static outcome attempt(run *s, int limit) {
   return STOPPED_ITERATIONS;
 }
 
-/* Go on from the state with the lowest residual. */
+/* Continue from the state with the lowest residual. */
 static void return_to_best(run *s) {
   solver_take_best(&s->w->best, s->cp->m, s->u, s->r);
   set_raw(s);
@@ -243,14 +243,14 @@ static void relax(run *s) {
   states_next(s->st, 1);
 }
 
-/* 1: nothing to add; without B the problem is convex. */
+/* 1: no further attempt; without B the problem is convex. */
 static int final(const run *s, outcome o) {
   return o == CONVERGED || o == STOPPED_NAN || o == STOPPED_SINGULAR ||
          used_up(s) || (o == STOPPED_RAY && s->cp->B == NULL);
 }
 
-/* Attempts one after the other; a verdict of an attempt with all changes made
- * (no equilibrium, cycle) counts more than one of those after it. */
+/* Attempts one after the other; the outcome of an attempt with all changes made
+ * (no equilibrium, cycle) has priority over later ones. */
 static outcome newton_run(run *s, const newton *p) {
   int limit = p->steps > 0 ? p->steps : FULL_STEPS;
   int many = s->cp->m <= SMALL ? MANY_STEPS : limit;
@@ -303,7 +303,7 @@ static status newton_solve(const contact_problem *cp, const void *par,
   begin(&s);
   if (cp->n == 1 &&
       single_solve(cp, s.scale, control->tol, u, r, &rep->residual)) {
-    solver_tell(control, "newton", 1, rep->residual);
+    solver_report_step(control, "newton", 1, rep->residual);
     return OK;
   }
   rep->outcome = newton_run(&s, par);
@@ -333,13 +333,13 @@ const solver_ops newton_solver = {
     "the pressure inside the step; in 3-D the slip turns with the exact\n"
     "derivative of the friction disc. Typically 5 to 15 steps from a cold and\n"
     "2 to 4 from a warm start, to full accuracy, whatever the size. The\n"
-    "factor is kept as long as exchanging the rows that change costs less\n"
-    "than a new one, from increment to increment too. If a pattern of states\n"
-    "comes back the method starts again from another guess, one of them made\n"
-    "by sweeps of relaxation. A single node is solved directly. Where only\n"
-    "the compliance is known the unknowns of a step are the forces of the\n"
-    "closed nodes; no inverse is made, but the compliance must have one. The\n"
-    "first choice for all but very large problems and large friction.",
+    "factor is updated while exchanging the rows that change costs less than\n"
+    "a new one, from increment to increment too. If a pattern of states is\n"
+    "repeated the method starts again from another guess, one of them made by\n"
+    "sweeps of relaxation. A single node is solved directly. Where only the\n"
+    "compliance is known the unknowns of a step are the forces of the closed\n"
+    "nodes; no inverse is made, but the compliance must have one. The first\n"
+    "choice for all but very large problems and large friction.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              REGULAR_COMPLIANCE | SOLVES_FLOATING,
   .param_size = sizeof(newton),

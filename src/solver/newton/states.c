@@ -115,7 +115,7 @@ static void set_slip(states *s, int node_id, const double *z, double size,
       size - g > 0x1p-20 * g ? c * g / (size - g) : 0x1p20 * c;
 }
 
-/* 1: no force is known: nothing to read the state of friction off. */
+/* 1: no force is known: the state of friction cannot be determined. */
 static int unloaded(const states *s) {
   for (int i = 0; i < s->cp->m; ++i)
     if (s->r[i] != 0.0) return 0;
@@ -166,7 +166,7 @@ static int closed_state(states *s, int dof, int fresh) {
   return over > margin;
 }
 
-/* Friction of a node under the guess, to take a change back. */
+/* Friction of a node under the guess, to undo a change. */
 typedef struct node_friction {
   unsigned char mode;
   double e[2], kappa;
@@ -187,7 +187,8 @@ static void restore_friction(states *s, int node_id, const node_friction *f) {
     s->guess.e[node_id * (s->cp->dim - 1) + k] = f->e[k];
 }
 
-/* 1: put this change off. Reproducible: the dice start at the same number. */
+/* 1: postpone this change. Reproducible: the random numbers start from the same
+ * seed. */
 static int put_off(states *s, int changes) {
   if (s->careful) return changes > 0;
   if (s->dice == 0) return 0;
@@ -197,7 +198,7 @@ static int put_off(states *s, int changes) {
   return (int)(s->dice >> 60 & 1u);
 }
 
-/* Change the bounds of a node that are guessed wrong; returns how many are. */
+/* Change the wrongly guessed bounds of a node; returns their number. */
 static int next_bounds(states *s, int node_id, int fresh, int changes) {
   int before = changes;
   for (int dof = node_id * s->cp->dim; dof < (node_id + 1) * s->cp->dim;

@@ -1,6 +1,7 @@
 /*
- * The guess of the states of a run of Newton's method: read off the forces and
- * displacements of the last step, and put into the forces exactly (newton.c).
+ * The guess of the states of a run of Newton's method: from the forces and
+ * displacements of the last step, and enforced exactly in the forces
+ * (newton.c).
  */
 #ifndef PROTIS_NEWTON_STATES_H
 #define PROTIS_NEWTON_STATES_H
@@ -20,18 +21,18 @@ typedef struct states {
   double *g;        /* [n] sliding limits, N */
   double *rounding; /* [n] of the forces of each node, N */
   int careful;      /* one state changed at a time, the least index first */
-  uint64_t dice;    /* not 0: each change is made or put off at random */
+  uint64_t dice;    /* not 0: each change is made or postponed at random */
 } states;
 
 /* Arrays for a matrix. */
 status states_new(const contact_problem *cp, states *s);
 void states_free(states *s);
-/* r from raw with what the guess fixes put in exactly: no force where open,
- * |r_t| = g where slipping; compliance form: u from raw, no gap where closed,
- * no slip where stuck. */
+/* r from raw with the conditions of the guess enforced exactly: no force where
+ * open, |r_t| = g where slipping; compliance form: u from raw, no gap where
+ * closed, no slip where stuck. */
 void states_clean(const states *s);
-/* Read the next guess off (u, r); returns the number of states that would
- * change; some may be put off. fresh: there is no guess before. */
+/* The next guess from (u, r); returns the number of states that would change;
+ * some may be postponed. fresh: there is no guess before. */
 int states_next(states *s, int fresh);
 /* Every node closed, every node with friction sticks. */
 void states_all_stick(states *s);

@@ -1,4 +1,4 @@
-/* A step: by the kept factor, or by a new one (system.h). */
+/* A step: by an updated factor, or by a new one (system.h). */
 #include "solver/newton/system.h"
 
 #include "base/memory.h"
@@ -12,31 +12,31 @@
 
 enum {
   CHUNK = 32, /* rows gathered at a time */
-  READ = 8    /* solves whose arithmetic takes as long as reading the factor */
+  READ = 8    /* solves whose arithmetic takes the time of reading the factor */
 };
 
 struct newton_system {
   const contact_problem *cp; /* of the last fit */
   size_t n_node;
-  int m, symmetric; /* symmetric: -1: not yet looked at */
+  int m, symmetric; /* symmetric: -1: not yet tested */
   double power;     /* of two: A*power has a diagonal of order 1 */
   dense K;          /* factor of the base */
-  pattern base;     /* what it was made for */
+  pattern base;     /* its guess */
   int has_base;
-  uint64_t friction;  /* hash of B in it */
-  double spent;       /* on updates of the base, operations */
-  int updated;        /* the last step came from an update */
-  int room, n_column; /* columns of X: most, made */
-  int *column;        /* [m] of X, -1: not made */
-  double *X;          /* [m*room] inv(M0) e_j */
-  double *C;          /* [room*room] small system */
-  double *rows;       /* [m*CHUNK] */
-  double *product;    /* [CHUNK*room] */
-  int n_changed;      /* rows in which the guess differs from the base */
-  int *changed;       /* [m] */
-  double *b, *x, *du; /* [m] */
-  double *z, *weight; /* [room], [room] */
-  int *small_pivot;   /* [room] */
+  uint64_t friction;      /* hash of B in it */
+  double spent;           /* on updates of the base, operations */
+  int updated;            /* the last step came from an update */
+  int capacity, n_column; /* columns of X: most, made */
+  int *column;            /* [m] of X, -1: not made */
+  double *X;              /* [m*capacity] inv(M0) e_j */
+  double *C;              /* [capacity*capacity] small system */
+  double *rows;           /* [m*CHUNK] */
+  double *product;        /* [CHUNK*capacity] */
+  int n_changed;          /* rows in which the guess differs from the base */
+  int *changed;           /* [m] */
+  double *b, *x, *du;     /* [m] */
+  double *z, *weight;     /* [capacity], [capacity] */
+  int *small_pivot;       /* [capacity] */
 };
 
 /* ---- the matrix of a guess of the states, and its factor ----------------- */
@@ -148,8 +148,8 @@ static double newton_cost(int n, int full) {
   return (full ? 2.0 : 1.0) / 3.0 * size * size * size + READ * size * size;
 }
 
-/* The condition is asked for only where the matrix can be singular without a
- * fault of the data. */
+/* The condition number is computed only where the matrix can be singular for
+ * valid data. */
 /* Factor of the base; 0: singular to rounding. */
 static int newton_factor(newton_system *s) {
   fill(s, 0.0);
@@ -195,13 +195,13 @@ static void newton_spring_step(newton_system *s, const pattern *p) {
   s->has_base = 0;
 }
 
-/* ---- rows exchanged in a kept factor ------------------------------------- */
+/* ---- rows exchanged by an update of the factor -------------------------- */
 
 static const double DRIFT = 0x1p-3; /* -, change of a slip direction or turning
-                                       stiffness the base bears (3-D) */
+                                       stiffness that the base allows (3-D) */
 
 /* 1: the node slips in another direction than in the base; in 3-D a small
- * change is borne. */
+ * change is allowed. */
 static int turned(const newton_system *s, const pattern *p, int dof) {
   int node_id = dof / s->cp->dim, tangents = s->cp->dim - 1;
   double change = 0.0, now = p->kappa[node_id], old = s->base.kappa[node_id];
@@ -244,7 +244,7 @@ static double newton_list_changes(newton_system *s, const pattern *p) {
     equations += p->place[dof] >= 0;
   }
   double columns = s->n_column + fresh, k = s->n_changed;
-  if (columns > s->room) return HUGE_VAL;
+  if (columns > s->capacity) return HUGE_VAL;
   return 2.0 * n * n * (fresh + 1.0 + READ) + 2.0 * m * equations * columns +
          2.0 / 3.0 * k * k * k;
 }
@@ -347,7 +347,8 @@ enum { SHARE = 4 }; /* rows exchanged: at most 1/SHARE of the unknowns */
 static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal */
 static const double DEFECT = 0x1p-20;   /* -, of the right side: a good solve */
 static const double ROUNDING = 0x1p-44; /* -, of the forces */
-static const double CHORD = 0x1p-4; /* -, of it: what a 3-D update may leave */
+static const double CHORD =
+    0x1p-4; /* -, of it: residual allowed after a 3-D update */
 
 status pattern_new(int dim, int n, pattern *p) {
   PASS_NEW(p->closed, dim * n);
@@ -389,25 +390,25 @@ void newton_system_free(newton_system *s) {
 status newton_system_new(const contact_problem *cp, newton_system **out) {
   status st = OK;
   newton_system *s = NULL;
-  size_t m = (size_t)cp->m, room = m / SHARE + 1;
+  size_t m = (size_t)cp->m, capacity = m / SHARE + 1;
   NEW(s, 1);
   s->m = cp->m;
   s->n_node = (size_t)cp->n;
-  s->room = (int)room;
+  s->capacity = (int)capacity;
   TRY(dense_new(cp->m, &s->K));
   TRY(pattern_new(cp->dim, cp->n, &s->base));
   NEW(s->column, m);
-  NEW(s->X, m * room);
-  NEW(s->C, room * room);
+  NEW(s->X, m * capacity);
+  NEW(s->C, capacity * capacity);
   NEW(s->rows, m * CHUNK);
-  NEW(s->product, CHUNK * room);
+  NEW(s->product, CHUNK * capacity);
   NEW(s->changed, m);
   NEW(s->b, m);
   NEW(s->x, m);
   NEW(s->du, m);
-  NEW(s->z, room);
-  NEW(s->weight, room);
-  NEW(s->small_pivot, room);
+  NEW(s->z, capacity);
+  NEW(s->weight, capacity);
+  NEW(s->small_pivot, capacity);
   s->power = dense_power(cp->m, cp->A);
   s->symmetric = -1;
   *out = s;
@@ -495,8 +496,8 @@ static double linear_limit(const contact_problem *cp, const pattern *p,
   return g;
 }
 
-/* b, times power: minus what each free row misses at the present u. Returns the
- * largest. */
+/* b, times power: minus the residual of each free row at the present u. Returns
+ * the largest. */
 static double load(newton_system *s, const pattern *p, const double *u,
                    const double *raw) {
   const contact_problem *cp = s->cp;
@@ -540,7 +541,7 @@ static double force_size(const newton_system *s, const double *u) {
   return s->power * size;
 }
 
-/* Move u by an update; 0: not good enough, u and raw are as before. */
+/* Move u by an update; 0: not accurate enough, u and raw are unchanged. */
 static int try_update(newton_system *s, const pattern *p, double before,
                       double *u, double *raw) {
   if (!newton_exchange(s, p)) return 0;
@@ -568,7 +569,7 @@ static int symmetric_base(newton_system *s, const pattern *p) {
   double n = p->n_free, m = s->m, k = bent;
   double update =
       2.0 * n * n * (k + 1.0 + READ) + 2.0 * m * k * k + 2.0 / 3.0 * k * k * k;
-  if (!s->symmetric || bent > s->room ||
+  if (!s->symmetric || bent > s->capacity ||
       newton_cost(p->n_free, 0) + update > newton_cost(p->n_free, 1))
     return 0;
   newton_begin(s, p, 0);
@@ -613,7 +614,7 @@ int newton_system_step(newton_system *s, pattern *p, double *u, double *raw) {
   return fresh_step(s, p, before, u, raw);
 }
 
-/* What the base was made for. */
+/* Matrix and guess of the base. */
 static status keep_base(newton_system *s, archive *a) {
   pattern *p = &s->base;
   size_t m = (size_t)s->m, n = s->n_node, e = m - n;
@@ -634,7 +635,7 @@ status newton_system_keep(newton_system *s, archive *a) {
   PASS(archive_ints(a, "n_column", &s->n_column, 1));
   PASS(archive_ints(a, "n_free", &p->n_free, 1));
   if (p->n_free < 0 || p->n_free > s->m || s->n_column < 0 ||
-      s->n_column > s->room)
+      s->n_column > s->capacity)
     RAISE(ERR_FILE, "the restart file is damaged: a factor has other sizes");
   PASS(archive_bytes(a, "friction", &s->friction, sizeof s->friction));
   PASS(archive_reals(a, "spent", &s->spent, 1));

@@ -6,9 +6,9 @@
  *   free        A_i du = -(A u - f)_i
  *   slipping    (A_t + e B A_n) du + kappa (I - e e') du_t = b_t
  *
- * together M du = b. A factor is kept as long as it pays: with M0 the matrix
- * factored and K the rows in which M differs, X = inv(M0) E_K gives the step of
- * M from a small system,
+ * together M du = b. A factor is reused while that costs less than a new one:
+ * with M0 the matrix factored and K the rows in which M differs, X = inv(M0)
+ * E_K gives the step of M from a small system,
  *
  *   du = x0 + X z,   M0 x0 = b without K,   (M_K X) z = b_K - M_K x0,
  *
@@ -41,16 +41,16 @@ void pattern_copy(int dim, int n, const pattern *from, pattern *to);
 typedef struct newton_system newton_system;
 status newton_system_new(const contact_problem *cp, newton_system **out);
 void newton_system_free(newton_system *s); /* accepts NULL */
-/* The problem to be solved next, on the same A; borrowed. */
+/* Set the problem to be solved next, with the same A; borrowed. */
 void newton_system_fit(newton_system *s, const contact_problem *cp);
 /* A known value is put into u, then u is moved by the step of the guess p, of
  * which the free unknowns are listed; raw = A u - f. Returns 1 if the system is
  * singular (weak springs then held the body). */
 int newton_system_step(newton_system *s, pattern *p, double *u, double *raw);
-/* The kept factor and what was exchanged in it. */
+/* Save or read the factor and its exchanged rows. */
 status newton_system_keep(newton_system *s, archive *a);
-/* 1: the last step came from a kept factor; forget it, so that the next does
- * not. Accepts NULL. */
+/* 1: the last step came from an updated factor, which is discarded for the
+ * next. Accepts NULL. */
 int newton_system_refresh(newton_system *s);
 
 /* Slip of a node in the directions friction acts in, slip[2], m. */

@@ -13,8 +13,8 @@
  * of the state reached: with A positive definite there is none, whatever the
  * friction, and the method always ends with a solution.
  *
- * Compliance form (A not known; W may be singular or slightly unsymmetric):
- * r_t = sum of e_j b_j, slip speed y (Stewart, Trinkle 1996),
+ * Compliance form (A not known; W may be singular or slightly unsymmetric): r_t
+ * = sum of e_j b_j, slip speed y (Stewart, Trinkle 1996),
  *   p >= 0      gap - u_n >= 0       b_j >= 0      e_j s + y >= 0
  *   y >= 0      g0 + B p - sum b_j >= 0.
  *
@@ -28,8 +28,8 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- states of the body: at z = 0, at a given z, and at the end, where what
- * the basis says is put in exactly. */
+/* ---- states of the body: at z = 0, at a given z, and at the end, where the
+ * conditions of the basis are enforced exactly. */
 
 enum { POLISH = 3 /* passes */ };
 
@@ -122,8 +122,8 @@ static void lemke_set_vectors(lemke_run *s) {
   if (lemke_is_stiff(s)) lemke_add_limits(s, w->z, w->d);
 }
 
-/* Take what the rows of the final basis miss, measured with the given matrix,
- * out of z. */
+/* Correct z by the residual of the rows of the final basis with the given
+ * matrix. */
 static void polish(lemke_run *s, double *x) {
   lemke_work *w = s->w;
   lcp_values(w->lcp, w->z);
@@ -138,7 +138,8 @@ static void polish(lemke_run *s, double *x) {
   lemke_respond(s, x, 1, w->raw);
 }
 
-/* Stiffness form: r from raw with what the basis says put in exactly. */
+/* Stiffness form: r from raw with the conditions of the basis enforced
+ * exactly. */
 static void clean_forces(const lemke_run *s, double *r) {
   const contact_problem *cp = s->cp;
   const lemke_work *w = s->w;
@@ -187,8 +188,8 @@ static void lemke_set_solution(lemke_run *s, double *u, double *r) {
   }
 }
 
-/* ---- rays: is the motion at the end of the path free in fact, and does the
- * load do more work on it than friction takes?. */
+/* ---- rays: is the motion at the end of the path free, and does the load do
+ * more work on it than friction takes. */
 
 static const double RAY_DEFECT = 1e-8;  /* -, forces a free motion may cause */
 static const double RAY_WORK = 0x1p-30; /* -, margin of the work of the load */
@@ -210,9 +211,9 @@ static int motion_is_free(lemke_run *s, double resistance) {
          work > resistance * (1.0 - RAY_WORK);
 }
 
-/* STOPPED_RAY if the ray is a free motion in fact, against the limits of the
- * state it starts from. */
-static outcome lemke_judge_ray(lemke_run *s) {
+/* STOPPED_RAY if the ray is a free motion, against the limits of the state it
+ * starts from. */
+static outcome lemke_check_ray(lemke_run *s) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;
   double resistance = 0.0;
@@ -341,8 +342,8 @@ done:
   return st;
 }
 
-/* The verdict; from the state of the polygon to that of the disc by a solver
- * that knows it. */
+/* The outcome; from the state of the polygon to that of the disc by a solver
+ * with the exact disc. */
 static status correct(lemke_run *s, double *u, double *r, solver_report *rep) {
   lemke_work *w = s->w;
   size_t bytes = (size_t)s->cp->m * sizeof *u;
@@ -367,9 +368,9 @@ static status correct(lemke_run *s, double *u, double *r, solver_report *rep) {
   return OK;
 }
 
-static void tell(const void *ctx, int pivot, double z0) {
+static void report_pivot(const void *ctx, int pivot, double z0) {
   const lemke_run *s = ctx;
-  solver_tell_states(s->control, "lemke", pivot, z0, 1, 0);
+  solver_report_states(s->control, "lemke", pivot, z0, 1, 0);
 }
 
 static int prepare(lemke_run *s) {
@@ -390,10 +391,10 @@ static outcome follow(lemke_run *s, int *count) {
   p.max_pivots = s->control->max_iter;
   p.product = lemke_product;
   p.row = lemke_row;
-  p.each = tell;
+  p.each = report_pivot;
   lcp_run(w->lcp, &p, &rep);
   *count += rep.pivots;
-  return rep.outcome == STOPPED_RAY ? lemke_judge_ray(s) : rep.outcome;
+  return rep.outcome == STOPPED_RAY ? lemke_check_ray(s) : rep.outcome;
 }
 
 static status lemke_solve(const contact_problem *cp, const void *par,

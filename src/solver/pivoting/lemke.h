@@ -1,5 +1,5 @@
 /*
- * METHOD=LEMKE, what others than the solver's row ask of it.
+ * METHOD=LEMKE: interface besides the row of the solver.
  */
 #ifndef PROTIS_PIVOTING_LEMKE_H
 #define PROTIS_PIVOTING_LEMKE_H
@@ -7,7 +7,7 @@
 /*
  * work: of its setup. The motion [m] that ended the last solve with
  * STOPPED_RAY: no elastic force, no penetration, and the load does more work on
- * it than friction. NULL: the last solve had no such end.
+ * it than friction. NULL: the last solve ended otherwise.
  */
 const double *lemke_ray(const void *work);
 

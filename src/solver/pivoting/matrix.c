@@ -103,7 +103,7 @@ static int invert_free(lemke_run *s) {
                              w->work, 4 * w->m) == 0;
 }
 
-/* inner = pseudo-inverse of A_FF: motions that nothing resists stay out. */
+/* inner = pseudo-inverse of A_FF: motions without resistance are left out. */
 static int pseudo_invert_free(lemke_run *s) {
   lemke_work *w = s->w;
   int n = w->n_free;

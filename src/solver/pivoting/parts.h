@@ -1,7 +1,7 @@
 /*
- * What METHOD=LEMKE is made of: unknowns, variables, the reduced matrix and the
- * matrix of the complementarity problem as lcp_run requires it (matrix.c); the
- * two forms of the problem, states of the body, rays (lemke.c). Private to
+ * Parts of METHOD=LEMKE: unknowns, variables, the reduced matrix and the matrix
+ * of the complementarity problem as lcp_run requires it (matrix.c); the two
+ * forms of the problem, states of the body, rays (lemke.c). Private to
  * src/solver/pivoting.
  */
 #ifndef PROTIS_PIVOTING_PARTS_H

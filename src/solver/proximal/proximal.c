@@ -7,15 +7,16 @@
  *   z = r - s (D x + a (r - c)),
  *   F_n = r_n - min(z_n, 0),      F_t = r_t - P_g(z_t),   g = g0 + B p,
  *
- * P_g the projection on the disc |.| <= g. A pass finds r with F = 0 roughly,
- * by Newton's method with the exact derivative; r is the next centre. At r = c
- * F does not depend on a, and F = 0 is the contact problem. The share makes up
- * for what W lacks where forces are not unique or its unsymmetric part turns
- * them; it falls as long as passes are easy and rises where they are not. A
- * step may raise |F| above its last value but not above the largest of the last
- * ones. Where passes creep, forces that balance one another drifting on and on,
- * the centre is taken ahead along the last change of r (Guler 1992).
- * The stretch s > 0 changes none of the solutions, but the way to them.
+ * P_g the projection on the disc |.| <= g. A pass finds r with F = 0
+ * approximately, by Newton's method with the exact derivative; r is the next
+ * centre. At r = c F does not depend on a, and F = 0 is the contact problem.
+ * The share makes the problem regular where forces are not unique or W is
+ * unsymmetric; it falls while passes converge in few steps and rises otherwise.
+ * A step may raise |F| above its last value but not above the largest of the
+ * last ones. Where passes converge slowly, with a steady drift of forces in
+ * equilibrium with one another, the centre is extrapolated along the last
+ * change of r (Guler 1992). The stretch s > 0 affects the convergence, not the
+ * solutions.
  */
 #include "base/memory.h"
 #include "contact/force/force_set.h"
@@ -36,24 +37,25 @@ typedef struct step_matrix step_matrix;
  *   J_i = e_i                                         nothing acts on unknown i
  *   J_i = e_i - sum_j c_ij (e_j (1 - a) - D_j W_j) + ...            the others
  *
- * with rows W_j of the compliance. Unknowns of the first kind are taken out of
- * the system; what is left is sparse where W is, and then factored by UMFPACK,
- * else by LAPACK.
+ * with rows W_j of the compliance. Unknowns of the first kind are eliminated;
+ * what is left is sparse where W is, and then factored by UMFPACK, else by
+ * LAPACK.
  */
 
 struct step_matrix {
-  int m, k;               /* unknowns; of them in the system */
-  const force_set *set;   /* borrowed */
-  sparse_rows own;        /* rows of W where the set has none */
-  const sparse_rows *W;   /* the one or the other */
-  int *place;             /* [m] in the system, -1: taken out */
-  double *line;           /* [m] the current row */
-  const double *d;        /* [m] borrowed */
-  double *rhs, *x;        /* [m] */
-  double *full;           /* [m*m] rows of the system, one after the other */
-  int *pivot;             /* [m] */
-  sparse_rows rows;       /* the same where W is sparse */
-  int room_col, room_val; /* entries of rows */
+  int m, k;                       /* unknowns; of them in the system */
+  const force_set *set;           /* borrowed */
+  sparse_rows own;                /* rows of W where the set has none */
+  const sparse_rows *W;           /* the one or the other */
+  int *place;                     /* [m] in the system, -1: eliminated */
+  double *line;                   /* [m] the current row */
+  const double *d;                /* [m] borrowed */
+  double *rhs, *x;                /* [m] */
+  double *full;                   /* [m*m] rows of the system, one after the
+                                     other */
+  int *pivot;                     /* [m] */
+  sparse_rows rows;               /* the same where W is sparse */
+  int col_capacity, val_capacity; /* entries of rows */
   double control[UMFPACK_CONTROL];
 };
 
@@ -121,8 +123,8 @@ static void step_matrix_add(step_matrix *s, int j, double value) {
   s->line[j] += value;
 }
 
-/* What the unknowns that were taken out leave on the right side; the line is
- * cleared but for the places of the others. */
+/* Contribution of the eliminated unknowns to the right side; their entries of
+ * the line are cleared. */
 static double take_out(step_matrix *s, int i) {
   double rhs = s->d[i];
   for (int j = 0; j < s->m; ++j) {
@@ -137,8 +139,8 @@ static status put_sparse(step_matrix *s, int row) {
   int n = s->rows.start[row];
   for (int j = 0; j < s->m; ++j) {
     if (s->line[j] == 0.0) continue;
-    PASS_GROW(s->rows.col, n, s->room_col);
-    PASS_GROW(s->rows.val, n, s->room_val);
+    PASS_GROW(s->rows.col, n, s->col_capacity);
+    PASS_GROW(s->rows.val, n, s->val_capacity);
     s->rows.col[n] = s->place[j];
     s->rows.val[n++] = s->line[j];
   }
@@ -224,17 +226,19 @@ enum {
   MEMORY = 8,     /* last values a step is compared with */
   HALVINGS = 10   /* of a step */
 };
-static const double PASS_GAIN = 0x1p-7;    /* |F|^2 a pass shall leave, - */
-static const double SLOPE = 0x1p-12;       /* of the descent asked for, - */
-static const double CREEP = 0.75;          /* residual a pass shall leave, - */
+static const double PASS_GAIN =
+    0x1p-7; /* |F|^2 after a pass, over that before, - */
+static const double SLOPE = 0x1p-12;       /* of the descent required, - */
+static const double CREEP = 0.75;          /* residual after a pass, - */
 static const double LEAST_SHARE = 0x1p-40; /* - */
 static const double MOST_SHARE = 0x1p10;
 
-/* How the trials go: stretch s, share a at the start. The last starts with all
- * gaps closed (start_closed; its stretch is 1). */
+/* Settings of the trials: stretch s, share a at the start. The last starts with
+ * all gaps closed (start_closed; its stretch is 1). */
 static const struct {
   double stretch, share;
-} way[TRIALS] = {{1.0, 0x1p-7}, {4.0, 0x1p-7}, {4.0, 0x1p-10}, {1.0, 0x1p-20}};
+} settings[TRIALS] = {
+    {1.0, 0x1p-7}, {4.0, 0x1p-7}, {4.0, 0x1p-10}, {1.0, 0x1p-20}};
 
 typedef struct proximal_work {
   force_set *set;
@@ -301,7 +305,7 @@ typedef struct run {
  */
 
 /* inv(D); friction counts in the pressures that its limit takes, or a limit
- * that grows by far more than they would hide all else. */
+ * that grows by far more than they would dominate. */
 static void set_weights(proximal_work *w, const contact_problem *cp) {
   const sparse_rows *B = cp->B;
   for (int i = 0; i < cp->m; ++i) {
@@ -383,7 +387,7 @@ static void add_slip(const run *s, int node_id, int a, double length) {
   }
 }
 
-/* 1: an open node, whose tangents carry nothing and will not in this step. */
+/* 1: an open node, whose tangents carry no force in this step. */
 static int is_idle(const run *s, int node_id) {
   const sparse_rows *B = s->cp->B;
   if (contact_node_limit(s->cp, s->r, node_id) > 0.0) return 0;
@@ -431,7 +435,7 @@ static status fill_matrix(const run *s) {
 /* ---- steps ----------------------------------------------------------------
  */
 
-/* Along d, shortened while |F|^2 is above "bound"; the last try stays. */
+/* Along d, shortened while |F|^2 is above "bound"; the last trial is taken. */
 static double search(run *s, double bound) {
   double t = 1.0, taken = 0.0, value = HUGE_VAL;
   for (int k = 0; k < HALVINGS; ++k, t *= 0.5) {
@@ -509,7 +513,7 @@ static status start_closed(run *s) {
   return OK;
 }
 
-/* The centre of the next pass: r, or after passes that crept ahead of it. */
+/* The centre of the next pass: r, or after slow passes an extrapolation. */
 static void set_centre(run *s, int creeps) {
   proximal_work *w = s->w;
   double ahead = creeps > 1 ? creeps / (creeps + 3.0) : 0.0;
@@ -535,7 +539,7 @@ static status trial(run *s, int limit, int closed, outcome *end) {
     evaluate(s);
     double residual = contact_mismatch(s->cp, s->scale, s->u, s->r, NULL);
     solver_keep_best(&w->best, s->cp->m, residual, s->u, s->r);
-    solver_tell(s->control, "proximal", s->steps, residual);
+    solver_report_step(s->control, "proximal", s->steps, residual);
     *end = residual <= s->control->tol ? CONVERGED
            : isnan(residual)           ? STOPPED_NAN
            : s->steps >= limit         ? STOPPED_ITERATIONS
@@ -549,7 +553,7 @@ static status trial(run *s, int limit, int closed, outcome *end) {
     before = residual;
     set_centre(s, creeps);
     PASS(pass(s, evaluate(s), &steps));
-    if (steps > PASS && s->share >= MOST_SHARE) break; /* would come again */
+    if (steps > PASS && s->share >= MOST_SHARE) break; /* would be repeated */
     if (steps > PASS) memcpy(s->r, w->centre, bytes);
     s->share = next_share(s->share, steps);
   }
@@ -573,8 +577,8 @@ static status proximal_solve(const contact_problem *cp, const void *par,
   for (int k = 0; k < TRIALS && rep->outcome != CONVERGED; ++k) {
     if (k > 0 && (s.steps >= limit || control->no_restart)) break;
     int until = s.steps + TRIAL;
-    s.stretch = way[k].stretch;
-    s.share = way[k].share;
+    s.stretch = settings[k].stretch;
+    s.share = settings[k].share;
     TRY(trial(&s, until < limit ? until : limit, k == TRIALS - 1,
               &rep->outcome));
     if (rep->outcome == STOPPED_NAN) break;
@@ -601,8 +605,8 @@ const solver_ops proximal_solver = {
     "as the passes succeed. Needs no stiffness: the compliance may be\n"
     "semidefinite, with more contacts than bodies can move, and unsymmetric.\n"
     "A step is a dense factorisation, a pass 2 to 20 steps. Choose it for\n"
-    "problems from files where the sweeps and PCG stop short of the\n"
-    "tolerance; for a body on its contact surface NEWTON is faster.",
+    "problems from files where the sweeps and PCG do not reach the tolerance;\n"
+    "for a body on its contact surface NEWTON is faster.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE,
   .param_size = 0,
   .options = proximal_options,
