@@ -158,7 +158,7 @@ static int take_quotes(reader *r, piece *p) {
   if (quote != text || after != end) {
     const char *wrong = quote != text ? quote : after;
     place at = logical_place(&r->line, (int)(wrong - r->line.all.text));
-    message_add(r->log, P1012, &at, "text beside a quoted value");
+    message_add(r->log, P1012, &at, "text next to a quoted value");
   }
   return quote == text;
 }
