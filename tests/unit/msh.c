@@ -270,8 +270,7 @@ static const struct { const char *from, *to, *message; } damages[] = {
   {"7 2 2 1 5 1 2 3", "7 2 2 1 5 1 2", ":19: the line ends where a whole"},
   {"7 2 2", "7 99 2", ":19: elements of type 99 are not known"},
   {"7 2 2", "7 2 -2", ":19: a number of tags below zero"},
-  {"$EndNodes\n", "$EndNodes\n$Nodes\n0\n$EndNodes\n", ":18: $Nodes stands "
-   "there twice"},
+  {"$EndNodes\n", "$EndNodes\n$Nodes\n0\n$EndNodes\n", ":18: $Nodes is given twice"},
   {"$Nodes", "SystemCall \"id\";\n$Nodes", ":10: \"SystemCall\" where $ and"},
   {"$Nodes", "$Other\n1 2\n$Nodes", ":11: $Other has no $EndOther"},
   {"2.2 0 8", "2.2 0 4", ":3: $MeshFormat has file type 0, data size 4"},
