@@ -63,9 +63,10 @@ status effects_create(run *r) {
   effect_list *list = &r->effects;
   for (int k = 0; effect_table[k] != NULL && st == OK; ++k) {
     const effect_ops *e = effect_table[k];
-    if (e->on.create == NULL || !effect_is_on(e, r->m)) continue;
+    if (!effect_is_on(e, r->m)) continue;
     list->on[list->n].ops = e;
-    st = e->on.create(r, &list->on[list->n++].state);
+    void **own = &list->on[list->n++].state;
+    if (e->on.create != NULL) st = e->on.create(r, own);
   }
   return st;
 }
@@ -95,11 +96,13 @@ const char *effects_sum_up(const run *r) {
 
 EACH(prepare, (run * r), 0, 1, e->on.prepare(r, own))
 EACH(begin_step, (run * r), 1, 1, e->on.begin_step(r, own))
+EACH(start, (run * r), 1, 1, e->on.start(r, own))
 EACH(make_step, (run * r, int *made), 1, !*made, e->on.make_step(r, own, made))
 EACH(attempt, (run * r, double t), 1, 1, e->on.attempt(r, own, t))
 EACH(solve, (run * r, double t, int *made), 1, !*made,
      e->on.solve(r, own, t, made))
 EACH(initial, (run * r), 1, is_due(r, k), e->on.initial(r, own))
+EACH(load, (run * r, double t), 1, 1, e->on.load(r, own, t))
 EACH(pose, (run * r, double t), 1, 1, e->on.pose(r, own, t))
 EACH(rewrite, (run * r, contact_problem *cp, double **u, double *force), 1,
      is_due(r, k), e->on.rewrite(r, own, cp, u, force))
@@ -121,9 +124,21 @@ void effects_describe(const run *r, setup_facts *f) {
 }
 
 void effects_forget(run *r) {
-  for (int k = 0; k < r->effects.n; ++k)
-    if (r->effects.on[k].ops->on.forget != NULL)
-      r->effects.on[k].ops->on.forget(r, r->effects.on[k].state);
+  for (int k = 0; k < r->effects.n; ++k) {
+    const effect_hooks *on = &r->effects.on[k].ops->on;
+    void *own = r->effects.on[k].state;
+    if (on->forget != NULL && (own != NULL || on->create == NULL))
+      on->forget(r, own);
+  }
+}
+
+int effects_strain(const run *r, int elem_id) {
+  int any = 0;
+  for (int k = 0; k < r->effects.n && !any; ++k) {
+    const effect_ops *e = r->effects.on[k].ops;
+    any = e->strains != NULL && e->strains(r->m, elem_id);
+  }
+  return any;
 }
 
 void effects_end(run *r) {

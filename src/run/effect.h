@@ -36,6 +36,8 @@ typedef struct effect_hooks {
   void (*describe)(const struct run *r, const void *own, setup_facts *f);
   /* T: r->step has a surface, a matrix, and a solver for its contact. */
   status (*begin_step)(struct run *r, void *own);
+  /* T: the increments of a step begin; not where a run goes on within it. */
+  status (*start)(struct run *r, void *own);
   /* T: the initial displacements are r->old, posed in r->problem.cp. */
   status (*initial)(struct run *r, void *own);
   /* T: *made = 1: it has made all increments of the step, with a grid of its
@@ -46,7 +48,9 @@ typedef struct effect_hooks {
   status (*attempt)(struct run *r, void *own, double t);
   /* T: *made = 1: it has solved the increment that ends at t into r->now. */
   status (*solve)(struct run *r, void *own, double t, int *made);
-  /* T: gaps and load of time t are set: what it changes. */
+  /* T: the loads of time t are in r->now.F: what else acts then. */
+  status (*load)(struct run *r, void *own, double t);
+  /* T: gaps and condensed load of time t are set: what it changes. */
   status (*pose)(struct run *r, void *own, double t);
   /* T: *cp as the solver takes it; u, force [cp->m]: start values, made to fit;
    * *u may be put elsewhere. */
@@ -104,6 +108,9 @@ typedef struct effect_ops {
   /* 1: contact nodes may be moved or pressed by it in ways that the loads and
    * supports at the ends of a step do not tell. */
   int far;
+
+  /* 1: gives the element strains without stress; NULL: none. */
+  int (*strains)(const model *m, int elem_id);
 
   effect_hooks on;
   const column *columns; /* [n_column]                                        */

@@ -224,8 +224,7 @@ status increment_load(run *r, double t) {
   status st = OK;
   r->now.t = t;
   TRY(load_at(r, t));
-  if (r->strains.temperature0 != NULL && r->strains.eigen.n > 0)
-    TRY(strains_heat(r));
+  TRY(effects_load(r, t));
 done:
   return st;
 }

@@ -92,7 +92,8 @@ typedef struct strain_state {
   visco *visco;         /* NULL: no law flows                                */
   eigenstrain eigen;    /* e0 is that of the equilibrium at hand             */
   int *elem;            /* [eigen.n]                                         */
-  double *temperature0; /* [n_elem] before the first step                    */
+  const double *temperature0; /* [n_elem] before the first step, borrowed; NULL:
+                                 no thermal strain                            */
   double *load;         /* [dim*n_node] F with the forces of eigen, N        */
 } strain_state;
 
@@ -168,7 +169,6 @@ typedef struct course_state {
   int due, kept; /* a checkpoint is due; has just been made                   */
   archive *from; /* borrowed: what the step in progress starts from, or NULL  */
   stage_cost costs[STAGE_COUNT]; /* at the checkpoint                         */
-  start_report first; /* of *INITIAL CONDITIONS, TYPE=DISPLACEMENT  */
   char note[512]; /* what changed abruptly in the increment, "" or lines     */
 } course_state;
 
@@ -212,9 +212,11 @@ status effects_prepare(run *r);
 void effects_describe(const run *r, setup_facts *f);
 status effects_begin_step(run *r);
 status effects_initial(run *r);
+status effects_load(run *r, double t);
 status effects_pose(run *r, double t);
 status effects_rewrite(run *r, contact_problem *cp, double **u, double *force);
 void effects_restore(run *r, contact_problem *cp, double *u, double *force);
+status effects_start(run *r);
 status effects_make_step(run *r, int *made);
 status effects_attempt(run *r, double t);
 status effects_solve(run *r, double t, int *made);
@@ -224,6 +226,8 @@ status effects_found(run *r, int *again); /* *again = 0 before                */
 status effects_examine(run *r, double t);
 status effects_accept(run *r);
 void effects_forget(run *r);
+/* 1: one gives the element strains without stress. */
+int effects_strain(const run *r, int elem_id);
 int effects_reach_far(const run *r); /* 1: one is "far"                      */
 void effects_show(const run *r, state *s);
 status effects_keep(run *r, archive *a);
@@ -262,8 +266,8 @@ void strains_free(run *r);
 const material *run_material(const run *r, int elem_id);
 /* E[ns*ns] of an element at the temperatures of r->now, Pa. */
 const double *run_elasticity(const run *r, int elem_id);
-/* Temperatures, moduli and thermal strains of r->now at its time t. */
-status strains_heat(run *r);
+/* The moduli of elements are others: the matrices are made again. */
+void run_change_moduli(run *r);
 /* Components of them that an equilibrium has arrays for. */
 size_t strains_kept(const run *r);
 /* r->strains.eigen.e0 from the strains at hand. */

@@ -22,22 +22,8 @@ const double *run_elasticity(const run *r, int elem_id) {
          at(r, r->m->ns * moduli_entry(&r->body.moduli, r->m, elem_id));
 }
 
-static int flows(const run *r, int elem_id) {
-  return (r->m->effects & EFFECT_INELASTIC) && model_flows(r->m, elem_id);
-}
-
-static int expands(const run *r, int elem_id) {
-  return (r->m->effects & EFFECT_THERMAL) &&
-         run_material(r, elem_id)->expand.given;
-}
-
-static int has_strains(const run *r, int elem_id) {
-  return expands(r, elem_id) || flows(r, elem_id) ||
-         moduli_follows(r->m, elem_id);
-}
-
 size_t strains_kept(const run *r) {
-  int all = (r->m->effects & EFFECT_THERMAL) || r->body.moduli.n_own > 0;
+  int all = r->strains.temperature0 != NULL;
   for (int i = 0; i < r->m->n_initial; ++i) /* the first work is from zero    */
     all |= r->m->initials[i].type == INITIAL_STRAIN;
   return all ? at(r, r->strains.eigen.n) : 0;
@@ -65,14 +51,21 @@ done:
   return st;
 }
 
+void run_change_moduli(run *r) {
+  visco_forget(r);
+  run_forget_estimates(r);
+  r->body.stale = 1;
+  if (r->c != r->elastic.c) r->c = NULL;
+}
+
 static status list_elements(run *r) {
   status st = OK;
   int n = 0;
   for (int e = 0; e < r->msh->n_elem; ++e)
-    r->strains.eigen.n += has_strains(r, e);
+    r->strains.eigen.n += effects_strain(r, e);
   NEW(r->strains.elem, r->strains.eigen.n);
   for (int e = 0; e < r->msh->n_elem; ++e)
-    if (has_strains(r, e)) r->strains.elem[n++] = e;
+    if (effects_strain(r, e)) r->strains.elem[n++] = e;
   r->strains.eigen.elem_id = r->strains.elem;
   NEW(r->strains.load, r->n_dof);
 done:
@@ -81,10 +74,6 @@ done:
 
 status strains_new(run *r) {
   status st = OK;
-  if (r->m->effects & EFFECT_THERMAL) {
-    NEW(r->strains.temperature0, r->msh->n_elem);
-    TRY(load_temperature_initial(r->m, r->msh, r->strains.temperature0));
-  }
   TRY(moduli_new(r->m, r->msh, r->strains.temperature0, &r->body.moduli));
   moduli_domain(&r->body.moduli, r->m, &r->body.d);
   if (!(r->m->effects & (EFFECT_THERMAL | EFFECT_INELASTIC))) goto done;
@@ -100,47 +89,7 @@ done:
 void strains_free(run *r) {
   visco_free(r->strains.visco);
   memory_free(r->strains.elem);
-  memory_free(r->strains.temperature0);
   memory_free(r->strains.load);
-}
-
-/* Thermal strains are averaged as the strains are that they are taken off. */
-static void average_thermal(run *r) {
-  cluster_set *c = r->body.d.cluster;
-  double *thermal = r->now.thermal;
-  cluster_begin(c, CLUSTER_STRAIN);
-  for (int k = 0; k < r->strains.eigen.n; ++k)
-    cluster_add(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + at(r, k));
-  for (int k = 0; k < r->strains.eigen.n; ++k)
-    cluster_smooth(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + at(r, k));
-}
-
-status strains_heat(run *r) {
-  status st = OK;
-  equilibrium *now = &r->now;
-  int changed = 0;
-  size_t ns = (size_t)r->m->ns;
-  timer_enter(STAGE_THERMAL);
-  TRY(load_temperature(r->m, r->msh, r->step, now->t, r->strains.temperature0,
-                       now->temperature));
-  TRY(moduli_heat(&r->body.moduli, r->m, now->temperature, &changed));
-  if (changed) {
-    visco_forget(r);
-    run_forget_estimates(r);
-    r->body.stale = 1;
-    if (r->c != r->elastic.c) r->c = NULL;
-  }
-  for (int k = 0; k < r->strains.eigen.n; ++k) {
-    int e = r->strains.elem[k];
-    if (expands(r, e))
-      expansion_strain(&run_material(r, e)->expand, now->temperature[e],
-                       r->strains.temperature0[e],
-                       now->thermal + ns * (size_t)k);
-  }
-  average_thermal(r);
-done:
-  timer_leave(STAGE_THERMAL);
-  return st;
 }
 
 void strains_collect(run *r) {

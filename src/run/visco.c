@@ -371,7 +371,6 @@ status visco_keep(run *r, archive *a) {
   status st = OK;
   visco *v = r->strains.visco;
   int told = v->told == r->step;
-  archive_enter(a, "visco");
   TRY(visco_keep_flow(&v->x, &v->old, a, "old"));
   TRY(visco_keep_flow(&v->x, &v->now, a, "now"));
   TRY(archive_reals(a, "largest", &v->largest, 1));
@@ -385,6 +384,5 @@ status visco_keep(run *r, archive *a) {
   TRY(archive_ints(a, "told_stuck", &v->told_stuck, 1));
   TRY(tangent_keep(r, a));
 done:
-  archive_leave(a);
   return st;
 }

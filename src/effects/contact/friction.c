@@ -371,8 +371,9 @@ static status prepare(run *r, void *self) {
 
 static void forget(run *r, void *self) {
   friction *own = self;
+  if (own->distance == NULL) return;
   memset(own->left, 0, (size_t)r->msh->n_node * sizeof *own->left);
-  for (int i = 0; i < r->nodes.n && own->distance != NULL; ++i)
+  for (int i = 0; i < r->nodes.n; ++i)
     own->left[r->surface->node_id[i]] = own->distance[i];
   free_arrays(own);
   use_arrays(own, r);

@@ -42,32 +42,6 @@ status plan_rule_nodes(const plan_sizes *s,
   return OK;
 }
 
-static status initial_state(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){s->nodes, "nodes", 2.0,
-                     4.0 * s->elements * plan_element_work(s)};
-  return OK;
-}
-
-static status inelastic(const plan_sizes *s, effect_work *w) {
-  double law = s->flows_linearly ? 4.0 : 40.0;
-  *w = (effect_work){s->elements, "elements", -1.0,
-                     law * s->equilibria * s->elements * plan_element_work(s)};
-  return OK;
-}
-
-static status thermal(const plan_sizes *s, effect_work *w) {
-  double n = 0.0;
-  for (int i = 0; s->msh != NULL && i < s->m->n_section; ++i) {
-    const material *mat = plan_material(s->m, i);
-    if (mat->expand.given || (mat->law.ops != NULL &&
-                              (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE)))
-      n += plan_section_elements(s, i);
-  }
-  *w = (effect_work){n, "elements", 1.0 + s->equilibria,
-                     s->equilibria * n * 2.0 * plan_element_work(s)};
-  return OK;
-}
-
 static status body(const plan_sizes *s, effect_work *w) {
   double n = 0.0;
   for (int i = 0; s->msh != NULL && i < s->m->n_step; ++i) {
@@ -145,40 +119,6 @@ static int calls_for_tangents(const model *m, char *why, size_t size) {
                    PLACE(s->accuracy_at));
 }
 
-static int calls_for_start(const model *m, char *why, size_t size) {
-  if (!m->start.given)
-    return plan_says(0, why, size, "no *INITIAL CONDITIONS, TYPE=DISPLACEMENT");
-  return plan_says(1, why, size,
-                   "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, %s:%d",
-                   PLACE(m->start.at));
-}
-
-static int calls_for_inelastic(const model *m, char *why, size_t size) {
-  const section *s = facts_first_inelastic(m);
-  if (s == NULL) return plan_says(0, why, size, "no material has *INELASTIC");
-  const law_card *law = &m->materials[s->material_id].law;
-  return plan_says(facts_has_inelastic(m), why, size, "%s of group %s, %s:%d%s",
-                   law->ops->name, s->elset, PLACE(law->at),
-                   has_card(m, "VISCO") ? "" : ", but no step is *VISCO");
-}
-
-static int calls_for_thermal(const model *m, char *why, size_t size) {
-  const load *l = facts_first_temperature(m);
-  if (facts_has_warm_law(m))
-    return plan_says(
-        1, why, size, "law %s of material %s depends on temperature",
-        facts_first_warm_law(m)->law.ops->name, facts_first_warm_law(m)->name);
-  if (facts_has_warm_moduli(m))
-    return plan_says(1, why, size,
-                     "*ELASTIC of material %s depends on temperature",
-                     facts_first_warm_moduli(m)->name);
-  if (l == NULL) return plan_says(0, why, size, "no *TEMPERATURE card");
-  if (!facts_has_expansion(m))
-    return plan_says(0, why, size, "no material in use has *EXPANSION");
-  return plan_says(1, why, size, "*TEMPERATURE on group %s, %s:%d", l->group,
-                   PLACE(l->at));
-}
-
 static int calls_for_body(const model *m, char *why, size_t size) {
   const load *l = facts_first_body_load(m);
   if (l == NULL) return plan_says(0, why, size, "no *DLOAD card");
@@ -245,27 +185,6 @@ const effect_ops tangents_effect = {
     .foreseen = tangents,
     .own = STAGE_NONE,
     .within = "unilateral contact"};
-const effect_ops initial_state_effect = {
-    .far = 1,
-    .name = "initial state",
-    .bit = EFFECT_BIT_START,
-    .called_for = calls_for_start,
-    .foreseen = initial_state,
-    .own = STAGE_START};
-const effect_ops inelastic_effect = {
-    .far = 1,
-    .name = "inelastic strain",
-    .bit = EFFECT_BIT_INELASTIC,
-    .called_for = calls_for_inelastic,
-    .foreseen = inelastic,
-    .own = STAGE_INELASTIC};
-const effect_ops thermal_effect = {
-    .far = 1,
-    .name = "thermal strain",
-    .bit = EFFECT_BIT_THERMAL,
-    .called_for = calls_for_thermal,
-    .foreseen = thermal,
-    .own = STAGE_THERMAL};
 const effect_ops body_forces_effect = {
     .far = 1,
     .name = "body forces",

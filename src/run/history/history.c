@@ -370,10 +370,7 @@ static status run_step(run *r) {
     TRY(start_step(r));
   }
   TRY(effects_make_step(r, &made));
-  if (!made && r->step->tolerance > 0.0 && r->strains.visco != NULL)
-    TRY(adaptive_run(r));
-  else if (!made)
-    TRY(run_fixed(r));
+  if (!made) TRY(run_fixed(r));
   if (r->course.due) TRY(checkpoint(r));
 done:
   return st;
@@ -400,7 +397,6 @@ status history_continue(const model *m, const mesh *msh, archive *from,
   *unsettled = 0;
   TRY(run_new(&r));
   TRY(read_progress(&r));
-  if (from == NULL) TRY(start_read(&r));
   for (int i = r.at.step_id; i < m->n_step; ++i) {
     r.step = &m->steps[i];
     TRY(run_step(&r));
@@ -423,7 +419,6 @@ status history_motions(const model *m, const mesh *msh, int step_id, int *n,
   static const history_sink nobody;
   run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[step_id]};
   TRY(run_new(&r));
-  if (step_id == 0) TRY(start_read(&r));
   TRY(run_motions(&r, n, list));
 done:
   run_free(&r);

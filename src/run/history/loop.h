@@ -33,13 +33,8 @@ status loop_solve_once(run *r, double t);
 /* Between two attempts: the checkpoint that is due; ends the run if asked. */
 status loop_pause(run *r);
 
-/* start.c: u_0 into r->old, before the contact surface is built. */
-status start_read(run *r);
-/* What comes before the increments of a step. */
+/* start.c: what comes before the increments of a step. */
 status start_step(run *r);
-
-/* adaptive.c: increments of a step with a tolerance. */
-status adaptive_run(run *r);
 
 /* dense.c: tables at time points within the increment r->old to r->now. */
 status dense_show(run *r, int increment_no);

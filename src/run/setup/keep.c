@@ -134,7 +134,6 @@ status run_keep(run *r, archive *a) {
   TRY(keep_equilibrium(r, &r->old, a));
   TRY(keep_moduli(r, a));
   if (r->nodes.n > 0) TRY(keep_contact(r, a));
-  if (r->strains.visco != NULL) TRY(visco_keep(r, a));
   TRY(effects_keep(r, a));
   TRY(keep_costs(r, a));
 done:

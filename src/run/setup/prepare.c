@@ -184,7 +184,6 @@ status run_prepare(run *r) {
   if (fresh) TRY(report_ready(r));
   contact_solver_free(r->elastic.solver);
   r->elastic.solver = NULL;
-  visco_new_solvers(r);
   r->solving.tol = r->step->solver.tol;
   TRY(run_use(r, &r->elastic));
   TRY(effects_begin_step(r));

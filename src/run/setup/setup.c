@@ -102,6 +102,7 @@ status run_new(run *r) {
   TRY(new_equilibrium(r, &r->now));
   NEW(r->loads.ud, r->n_dof);
   NEW(r->loads.start, r->n_dof);
+  TRY(effects_create(r));
   TRY(strains_new(r));
   TRY(new_clusters(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
@@ -110,13 +111,11 @@ status run_new(run *r) {
     NEW(r->result.stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   if (r->m->effects & EFFECT_STRESS)
     NEW(r->result.strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);
-  TRY(effects_create(r));
 done:
   return st;
 }
 
 void run_free(run *r) {
-  start_report_free(&r->course.first);
   run_free_surface(r);
   effects_release(r);
   free_equilibrium(&r->old);

@@ -10,7 +10,6 @@ void run_free_surface(run *r) {
   effects_forget(r);
   run_forget_estimates(r);
   matrices_free(&r->elastic);
-  visco_forget(r);
   surface_free(r->surface);
   r->solver = NULL;
   r->c = NULL;

@@ -1,11 +1,20 @@
 /*
- * Increments of a *VISCO step with a tolerance: their lengths from the estimate
- * of the error of the strains.
+ * Inelastic strain of materials with a law: which elements have it, and *VISCO
+ * steps whose increments follow from the estimate of the error of the strains
+ * (TOLERANCE=). The state of the elements and the equilibria that an integrator
+ * asks for are those of the run (run/visco.h): states within an increment, the
+ * error of the steps and theorem 3.2 need them too.
  */
 #include "base/timer.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "model/facts.h"
 #include "run/history/loop.h"
+#include "run/visco.h"
 
 #include <math.h>
+
+/* ---- increments with a tolerance ---------------------------------------- */
 
 static const double ROUNDING = 0x1p-48; /* -, of the time                     */
 
@@ -79,13 +88,70 @@ done:
   return st;
 }
 
-status adaptive_run(run *r) {
-  status st = OK;
+static status adapt(run *r, void *self, int *made) {
   double end = r->step->start + r->step->total;
+  (void)self;
+  /* TIME=BALANCED goes before TOLERANCE=, where it can. */
+  int balanced = r->step->time_balanced && effects_sum_up(r) == NULL;
+  if (balanced || !(r->step->tolerance > 0.0)) return OK;
+  *made = 1;
   while (r->old.t < end) {
-    TRY(loop_pause(r));
-    TRY(attempt_adapted(r));
+    PASS(loop_pause(r));
+    PASS(attempt_adapted(r));
   }
-done:
-  return st;
+  return OK;
 }
+
+/* ---- its state ---------------------------------------------------------- */
+
+static int strains(const model *m, int elem_id) {
+  return model_flows(m, elem_id);
+}
+
+/* Solvers are those of the step. */
+static status prepare(run *r, void *self) {
+  (void)self;
+  visco_new_solvers(r);
+  return OK;
+}
+
+static void forget(run *r, void *self) {
+  (void)self;
+  visco_forget(r);
+}
+
+static status keep(run *r, void *self, archive *a) {
+  (void)self;
+  return visco_keep(r, a);
+}
+
+/* ---- the row ------------------------------------------------------------ */
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  double law = s->flows_linearly ? 4.0 : 40.0;
+  *w = (effect_work){s->elements, "elements", -1.0,
+                     law * s->equilibria * s->elements * plan_element_work(s)};
+  return OK;
+}
+
+static int calls_for_inelastic(const model *m, char *why, size_t size) {
+  const section *s = facts_first_inelastic(m);
+  if (s == NULL) return plan_says(0, why, size, "no material has *INELASTIC");
+  const law_card *law = &m->materials[s->material_id].law;
+  return plan_says(facts_has_inelastic(m), why, size, "%s of group %s, %s:%d%s",
+                   law->ops->name, s->elset, PLACE(law->at),
+                   has_card(m, "VISCO") ? "" : ", but no step is *VISCO");
+}
+
+const effect_ops inelastic_effect = {.name = "inelastic strain",
+                                     .bit = EFFECT_BIT_INELASTIC,
+                                     .called_for = calls_for_inelastic,
+                                     .foreseen = expected,
+                                     .own = STAGE_INELASTIC,
+                                     .inside = 1,
+                                     .far = 1,
+                                     .strains = strains,
+                                     .on.prepare = prepare,
+                                     .on.make_step = adapt,
+                                     .on.forget = forget,
+                                     .on.keep = keep};

@@ -1,0 +1,157 @@
+/*
+ * *INITIAL CONDITIONS, TYPE=DISPLACEMENT: the displacements a run starts from,
+ * and their test for equilibrium with loads and contact of time 0.
+ */
+#include "base/memory.h"
+#include "base/timer.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "run/history/loop.h"
+
+#include <math.h>
+#include <string.h>
+
+/* K u_0 - F into R, the largest of both into *largest; diagonal of K. */
+static status start_forces(run *r, double *R, double *diagonal,
+                           double *largest) {
+  status st = OK;
+  double *sigma = NULL;
+  NEW(sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  domain_stress(&r->body.d, r->old.u, NULL, sigma);
+  domain_internal_force(&r->body.d, sigma, R);
+  for (size_t k = 0; k < r->n_dof; ++k) {
+    *largest = fmax(*largest, fmax(fabs(R[k]), fabs(r->now.F[k])));
+    R[k] -= r->now.F[k];
+  }
+  start_stiffness(&r->body.d, diagonal);
+done:
+  memory_free(sigma);
+  return st;
+}
+
+/* The start is the old equilibrium of the first increment. */
+static void accept_start(run *r) {
+  memcpy(r->old.F, r->now.F, r->n_dof * sizeof *r->old.F);
+  result_start(r, &r->old);
+}
+
+static status relax_start(run *r) {
+  status st = OK;
+  double cpu = timer_cpu();
+  r->course.relaxing = 1;
+  TRY(increment_solve(r, 0.0));
+  if (r->solving.report.outcome <= 0 &&
+      outcome_is_fatal(r->solving.report.outcome)) {
+    TRY(loop_reject(r, 1, 0, outcome_text(r->solving.report.outcome)));
+    TRY(loop_no_equilibrium(r));
+  }
+  TRY(loop_accept(r, 1, 0, 0, cpu));
+  memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
+done:
+  r->course.relaxing = 0;
+  return st;
+}
+
+static status judge_start(run *r, start_report *s) {
+  status st = OK;
+  const start_card *asked = &r->m->start;
+  s->relaxed = s->n_bad > 0 && asked->relax;
+  if (r->sink->start != NULL) TRY(r->sink->start(r->sink->ctx, s));
+  if (s->n_bad > 0 && !s->relaxed) {
+    message_add(r->m->log, P4014, &asked->at,
+                "the start is not compatible: defect %.3g (%.2g of the largest "
+                "force) at node %zu, %s; %d node%s above %.0e",
+                s->worst, s->ratio, r->msh->node_no[s->node_id],
+                defect_text(s->kind[s->node_id]), s->n_bad,
+                s->n_bad == 1 ? "" : "s", start_tolerance);
+    FAIL(ERR_DECK, "the initial displacements are not compatible");
+  }
+  if (s->relaxed)
+    TRY(relax_start(r));
+  else
+    accept_start(r);
+done:
+  return st;
+}
+
+/* Test the initial displacements against the loads of time 0. */
+static status test_start(run *r, start_report *s) {
+  status st = OK;
+  double *R = NULL, *diagonal = NULL, largest = 0.0;
+  timer_enter(STAGE_START);
+  NEW(R, r->n_dof);
+  NEW(diagonal, r->n_dof);
+  TRY(increment_pose(r, 0.0));
+  TRY(start_forces(r, R, diagonal, &largest));
+  const start_input in = {.mesh = r->msh,
+                          .fixed = r->body.fixed,
+                          .u = r->old.u,
+                          .ud = r->loads.ud,
+                          .R = R,
+                          .stiffness = diagonal,
+                          .surface = r->nodes.n > 0 ? r->surface : NULL,
+                          .cp = &r->problem.cp,
+                          .uc = r->old.uc,
+                          .given = r->problem.given,
+                          .load = largest};
+  start_test(&in, r->old.rc, r->old.reaction, s);
+  TRY(effects_initial(r));
+done:
+  timer_leave(STAGE_START);
+  memory_free(R);
+  memory_free(diagonal);
+  return st;
+}
+
+/* u_0 into r->old, before the contact surface is built. */
+static status report_new(run *r, void **self) {
+  status st = OK;
+  start_report *own = NULL;
+  PASS_NEW(own, 1);
+  *self = own;
+  if (r->course.from != NULL || (r->step != NULL && run_step_id(r) > 0))
+    return OK;
+  timer_enter(STAGE_START);
+  st = start_report_new(r->msh, own);
+  if (st == OK) st = start_displacements(r->m, r->msh, r->old.u, own);
+  timer_leave(STAGE_START);
+  return st;
+}
+
+static void release(void *self) {
+  if (self != NULL) start_report_free(self);
+  memory_free(self);
+}
+
+static status start(run *r, void *self) {
+  if (run_step_id(r) > 0) return OK;
+  PASS(test_start(r, self));
+  return judge_start(r, self);
+}
+
+/* ---- the row ------------------------------------------------------------ */
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){s->nodes, "nodes", 2.0,
+                     4.0 * s->elements * plan_element_work(s)};
+  return OK;
+}
+
+static int calls_for_start(const model *m, char *why, size_t size) {
+  if (!m->start.given)
+    return plan_says(0, why, size, "no *INITIAL CONDITIONS, TYPE=DISPLACEMENT");
+  return plan_says(1, why, size,
+                   "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, %s:%d",
+                   PLACE(m->start.at));
+}
+
+const effect_ops initial_state_effect = {.name = "initial state",
+                                         .bit = EFFECT_BIT_START,
+                                         .called_for = calls_for_start,
+                                         .foreseen = expected,
+                                         .own = STAGE_START,
+                                         .inside = 1,
+                                         .far = 1,
+                                         .on.create = report_new,
+                                         .on.start = start,
+                                         .on.release = release};

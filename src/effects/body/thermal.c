@@ -1,0 +1,107 @@
+/*
+ * Thermal strain: temperatures of the elements at each time, the strains of
+ * their expansion, the moduli that follow them.
+ */
+#include "base/memory.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "model/facts.h"
+#include "run/run.h"
+
+/* *T: [n_elem] before the first step. */
+static status temperatures_new(run *r, void **T) {
+  double *own = NULL;
+  PASS_NEW(own, r->msh->n_elem);
+  *T = own;
+  r->strains.temperature0 = own;
+  return load_temperature_initial(r->m, r->msh, own);
+}
+
+static int expands(const model *m, int elem_id) {
+  const section *s = &m->sections[m->elem_section[elem_id]];
+  return m->materials[s->material_id].expand.given;
+}
+
+static int strains(const model *m, int elem_id) {
+  return expands(m, elem_id) || moduli_follows(m, elem_id);
+}
+
+/* Thermal strains are averaged as the strains are that they are taken off. */
+static void average_thermal(run *r) {
+  cluster_set *c = r->body.d.cluster;
+  double *thermal = r->now.thermal;
+  const size_t ns = (size_t)r->m->ns;
+  cluster_begin(c, CLUSTER_STRAIN);
+  for (int k = 0; k < r->strains.eigen.n; ++k)
+    cluster_add(c, CLUSTER_STRAIN, r->strains.elem[k],
+                thermal + ns * (size_t)k);
+  for (int k = 0; k < r->strains.eigen.n; ++k)
+    cluster_smooth(c, CLUSTER_STRAIN, r->strains.elem[k],
+                   thermal + ns * (size_t)k);
+}
+
+static void strain(run *r, const double *T0) {
+  const size_t ns = (size_t)r->m->ns;
+  equilibrium *now = &r->now;
+  for (int k = 0; k < r->strains.eigen.n; ++k) {
+    int e = r->strains.elem[k];
+    if (expands(r->m, e))
+      expansion_strain(&run_material(r, e)->expand, now->temperature[e], T0[e],
+                       now->thermal + ns * (size_t)k);
+  }
+  average_thermal(r);
+}
+
+/* Temperatures, moduli and thermal strains of r->now at t. */
+static status heat(run *r, void *T0, double t) {
+  int changed = 0;
+  if (r->strains.eigen.n == 0) return OK;
+  PASS(load_temperature(r->m, r->msh, r->step, t, T0, r->now.temperature));
+  PASS(moduli_heat(&r->body.moduli, r->m, r->now.temperature, &changed));
+  if (changed) run_change_moduli(r);
+  strain(r, T0);
+  return OK;
+}
+
+/* ---- the row ------------------------------------------------------------ */
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  double n = 0.0;
+  for (int i = 0; s->msh != NULL && i < s->m->n_section; ++i) {
+    const material *mat = plan_material(s->m, i);
+    if (mat->expand.given || (mat->law.ops != NULL &&
+                              (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE)))
+      n += plan_section_elements(s, i);
+  }
+  *w = (effect_work){n, "elements", 1.0 + s->equilibria,
+                     s->equilibria * n * 2.0 * plan_element_work(s)};
+  return OK;
+}
+
+static int calls_for_thermal(const model *m, char *why, size_t size) {
+  const load *l = facts_first_temperature(m);
+  if (facts_has_warm_law(m))
+    return plan_says(
+        1, why, size, "law %s of material %s depends on temperature",
+        facts_first_warm_law(m)->law.ops->name, facts_first_warm_law(m)->name);
+  if (facts_has_warm_moduli(m))
+    return plan_says(1, why, size,
+                     "*ELASTIC of material %s depends on temperature",
+                     facts_first_warm_moduli(m)->name);
+  if (l == NULL) return plan_says(0, why, size, "no *TEMPERATURE card");
+  if (!facts_has_expansion(m))
+    return plan_says(0, why, size, "no material in use has *EXPANSION");
+  return plan_says(1, why, size, "*TEMPERATURE on group %s, %s:%d", l->group,
+                   PLACE(l->at));
+}
+
+const effect_ops thermal_effect = {.name = "thermal strain",
+                                   .bit = EFFECT_BIT_THERMAL,
+                                   .called_for = calls_for_thermal,
+                                   .foreseen = expected,
+                                   .own = STAGE_THERMAL,
+                                   .far = 1,
+                                   .strains = strains,
+                                   .on.create = temperatures_new,
+                                   .on.load = heat,
+                                   .on.release = memory_free};
