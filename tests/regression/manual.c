@@ -98,7 +98,7 @@ START_TEST(examples_of_the_cards_run_without_a_warning) {
 END_TEST
 
 /* Chapters whose fenced blocks are commands. */
-static const char *const commands[] = {"tutorial", "batch"};
+static const char *const commands[] = {"tutorial", "batch", "trouble"};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 START_TEST(every_command_runs) {
