@@ -12,12 +12,16 @@ packages := gcc make pkg-config libsuitesparse-dev libopenblas-dev \
             liblapacke-dev libhdf5-dev libgmsh-dev check gnuplot-nox \
             libsundials-dev python3
 pc       := hdf5-serial check
+# Of tools/plot and tools/report; of the test of pages in a browser.
+drawing  := python3-matplotlib python3-h5py
+browser  := $(drawing) chromium chromium-driver python3-selenium
 
 # Packages first: the variables below ask pkg-config.
 dpkg     := $(shell command -v dpkg-query 2>/dev/null)
-missing  := $(if $(dpkg),$(shell for p in $(packages); do \
+absent    = $(if $(dpkg),$(shell for p in $(1); do \
               dpkg-query -W -f='$${Status}\n' $$p 2>/dev/null | \
               grep -q 'ok installed' || echo $$p; done))
+missing  := $(call absent,$(packages))
 # Where there is no dpkg: what the compiler must find.
 headers  := cholmod.h umfpack.h lapacke.h cblas.h hdf5.h gmshc.h check.h
 
@@ -103,6 +107,8 @@ help:
 	@echo "make coverage     lines and branches of src the tests run; needs gcovr"
 	@echo "make verify       orders of convergence, observed and expected"
 	@echo "make effects-cost instructions of builds without an effect; needs valgrind"
+	@echo "make gallery      pictures of all examples for the manual"
+	@echo "make browser-test pages of tools/report in a headless browser"
 	@echo "make study        error against CPU seconds: four pictures"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
@@ -112,14 +118,23 @@ help:
 	@echo "make format       clang-format on all sources"
 	@echo "make clean        remove build/"
 
-deps:
-ifneq ($(missing),)
-	@echo "installing: $(missing)"
-	@if [ "$$(id -u)" = 0 ]; then s=; else s=sudo; fi; \
+define install
+	@[ -z "$(1)" ] || { echo "installing: $(strip $(1))"; \
+	  if [ "$$(id -u)" = 0 ]; then s=; else s=sudo; fi; \
 	  $$s apt-get update -qq && DEBIAN_FRONTEND=noninteractive \
-	  $$s apt-get install -y -qq --no-install-recommends $(missing) \
-	  > /dev/null || { echo "cannot install: $(missing)" >&2; exit 1; }
-endif
+	  $$s apt-get install -y -qq --no-install-recommends $(1) \
+	  > /dev/null || { echo "cannot install: $(strip $(1))" >&2; exit 1; }; }
+endef
+
+.PHONY: deps-drawing deps-browser
+deps-drawing: deps
+	$(call install,$(call absent,$(drawing)))
+
+deps-browser: deps
+	$(call install,$(call absent,$(browser)))
+
+deps:
+	$(call install,$(missing))
 ifeq ($(dpkg),)
 	@none=; for h in $(headers); do \
 	  echo "#include <$$h>" | $(CC) $(CPPFLAGS) -E - \
@@ -200,6 +215,7 @@ $(out)/tests/preload/%.so: tests/preload/%.c Makefile
 	$(Q)$(CC) -std=gnu11 -O2 -Wall -Wextra -shared -fPIC $< -o $@ -ldl
 
 # A fresh machine has no pkg-config when make starts: install, then start anew.
+demo test: deps-drawing
 demo test bench: deps
 	$(Q)$(MAKE) --no-print-directory -j$(JOBS) $@-run
 
@@ -209,7 +225,7 @@ demo-run: $(program)
 
 test-run: check
 
-check: unit regression torture-slice layers style
+check: unit regression tool-tests torture-slice layers style
 
 unit: $(unit)
 	$(Q)JOBS=$(JOBS) tools/run_tests $^
@@ -217,6 +233,30 @@ unit: $(unit)
 regression: $(program) $(kept) $(regr)
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) \
 	  PROTIS_MESH=$(abspath $(kept)) tools/run_tests $(regr)
+
+# Tests of the tools, in Python; in a browser: what tools/report writes.
+tools_py := $(patsubst %.py,$(out)/%,$(wildcard tests/tools/*.py))
+pages    := $(out)/tests/tools/browser
+.PHONY: tool-tests browser-test browser-run gallery gallery-run
+tool-tests: $(program) $(filter-out $(pages),$(tools_py))
+	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) tools/run_tests \
+	  $(filter-out $(program),$^)
+
+$(out)/tests/tools/%: tests/tools/%.py
+	$(Q)install -D $< $@
+
+gallery: deps-drawing
+browser-test: deps-browser
+gallery browser-test:
+	$(Q)$(MAKE) --no-print-directory -j$(JOBS) $(@:-test=)-run
+
+browser-run: $(program) $(pages)
+	$(Q)PROTIS=$(abspath $(program)) tools/run_tests $(pages)
+
+# The pictures of src/manual/gallery.md, the same bytes each time.
+gallery-run: $(program)
+	$(Q)tools/plot example all -o build/gallery --pictures src/manual/pictures \
+	  --program $(program) 2> build/gallery.log || { cat build/gallery.log; exit 1; }
 
 # Memory refused, files that fail, kills: a slice of each in the tests. All of
 # it with random problems and decks in one table; POINTS: of each kind, by

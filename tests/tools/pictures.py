@@ -1,0 +1,233 @@
+#!/usr/bin/python3
+"""Pictures and page of results: contacts are drawn in their own planes from the
+traction columns, the page is well-formed and its figures are those of
+JOB.json. Runs in the folder of the sources; PROTIS: the program. Needs
+python3-matplotlib and python3-h5py."""
+import json
+import math
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as tree
+
+sys.path.insert(0, "tools")
+import numpy as np
+from pictures import results
+
+# Two blocks under given pressures, dragged: 20 on the wall x = 0, which moves
+# along y with mu = 0.4, 10 on the floor z = 0, which moves along -x with
+# mu = 0.3. Shear 8 and 3 at every node.
+BLOCKS = """SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 1, 1, 1, 1};
+Box(2) = {3, 0, 0, 1, 1, 1};
+Mesh.MeshSizeMax = 0.5;
+Physical Volume("BODY") = {1, 2};
+Physical Surface("LEFT") = Surface In BoundingBox{-0.1, -1, 0, 0.1, 2, 3};
+Physical Surface("BOTTOM") = Surface In BoundingBox{2, -1, -0.1, 5, 2, 0.1};
+Physical Surface("HELD") = {Surface In BoundingBox{0.9, -1, 0, 1.1, 2, 3},
+                            Surface In BoundingBox{2, -1, 0.9, 5, 2, 1.1}};
+"""
+WALLS = """*HEADING
+A floor & a wall <that> drag two blocks
+*MESH, FILE=walls.geo
+*MATERIAL, NAME=STEEL
+*ELASTIC
+210.D3, 0.3
+*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL, TYPE=C3D4
+*OBSTACLE, NAME=FLOOR, TYPE=PLANE
+0., 0., 0.
+0., 0., 1.
+MOVE, -1., 0., 0.
+*OBSTACLE, NAME=WALL, TYPE=PLANE
+0., 0., 0.
+1., 0., 0.
+MOVE, 0., 1., 0.
+*CONTACT, NAME=BASE, GROUP=BOTTOM, OBSTACLE=FLOOR
+*CONTACT, NAME=SIDE, GROUP=LEFT, OBSTACLE=WALL
+*FRICTION, CONTACT=BASE, LAW=COULOMB
+0.3
+*FRICTION, CONTACT=SIDE, LAW=COULOMB
+0.4
+*CONTACT FORCE, CONTACT=BASE
+10.
+*CONTACT FORCE, CONTACT=SIDE
+20.
+*STEP
+*QUASISTATIC
+0.5, 1.
+*BOUNDARY
+HELD, 1, 3, 0.
+*PRINT, CONTACT, TOTALS
+*END STEP
+"""
+ROOT = pathlib.Path.cwd()
+PROGRAM = os.environ.get("PROTIS", str(ROOT / "build/release/protis"))
+SPACE = "{http://www.w3.org/1999/xhtml}"
+
+
+def run(*command):
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise AssertionError(f"{command}: exit {done.returncode}: {done.stderr}")
+    return done.stdout
+
+
+class Walls(unittest.TestCase):
+    """Each contact in its plane, from JOB.h5 and from JOB.dat alone."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.job = pathlib.Path(cls.folder.name) / "walls"
+        cls.job.with_suffix(".inp").write_text(WALLS, encoding="utf-8")
+        cls.job.with_suffix(".geo").write_text(BLOCKS, encoding="utf-8")
+        run(PROGRAM, f"{cls.job}.inp", "-o", cls.folder.name, "--quiet")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def check(self, job):
+        said = run("tools/plot_contact", f"{job}.dat", f"{job}.svg", "walls", "x")
+        tree.parse(f"{job}.svg")
+        svg = pathlib.Path(f"{job}.svg").read_text(encoding="utf-8")
+        found = re.findall(r"^(.*): largest pressure (\S+), shear ([^ ;]+)",
+                           said, re.MULTILINE)
+        self.assertEqual([f[1:] for f in found], [("10", "3"), ("20", "8")])
+        for name, _, shear in found:
+            self.assertIn(f"{name}: ", svg)
+            self.assertIn(f"shear ≤ {shear}", svg)
+        axes = "".join(re.findall(r"> ?([xyz])</text>", svg))
+        self.assertEqual(axes, "xyyz")  # x-y for the floor, y-z for the wall
+
+    def test_each_contact_has_a_panel_in_its_plane(self):
+        self.check(self.job)
+
+    def test_table_alone_gives_the_same(self):
+        alone = self.job.with_name("alone.dat")
+        alone.write_bytes(self.job.with_suffix(".dat").read_bytes())
+        self.check(self.job.with_name("alone"))
+
+    def test_shear_is_that_of_the_traction_columns(self):
+        found = results.Results(self.job).contacts
+        self.assertEqual([c.name for c in found], ["BASE", "SIDE"])
+        for contact, shear in zip(found, ([-3, 0, 0], [0, 8, 0])):
+            self.assertGreater(len(contact.shear), 8)
+            np.testing.assert_allclose(contact.shear, np.tile(
+                shear, (len(contact.shear), 1)), atol=1e-6)
+
+    def test_normal_force_of_a_second_obstacle_is_no_shear(self):
+        shear = results.shears(np.array([[214.0, 0, 123], [0, 5, 1]]),
+                               np.array([[0.0, 0, -1], [0, 0, -1]]),
+                               np.array([0.0, 2]))
+        np.testing.assert_allclose(shear, [[0, 0, 0], [0, 2, 0]])
+
+
+class Page(unittest.TestCase):
+    """JOB.html of two jobs."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.pages = {}
+        for name in ("hertz_line/hertz_exact", "hild_triangle/hild_triangle"):
+            run(PROGRAM, f"input/{name}.inp", "-o", cls.folder.name, "--quiet")
+            job = pathlib.Path(cls.folder.name) / name.split("/")[1]
+            cls.pages[job] = run("tools/report", str(job)).strip()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_figures_are_those_of_the_json(self):
+        for job, page in self.pages.items():
+            data = json.loads(job.with_suffix(".json").read_text())
+            found = {}
+            for e in tree.parse(page).iter(SPACE + "data"):
+                value = data
+                for part in e.get("data-json").split("."):
+                    value = value[int(part) if part.isdigit() else part]
+                self.assertEqual(float(e.get("value")), value)
+                self.assertTrue(math.isclose(float(e.text), value,
+                                             rel_tol=6e-4), e.text)
+                found[e.get("data-json")] = value
+            wanted = ["exit.code", "cost.cpu"]
+            for part in ("accuracy", "sizes"):
+                wanted += [f"{part}.{k}" for k, v in data[part].items()
+                           if isinstance(v, (int, float))]
+            wanted += [f"cost.stages.{i}.cpu"
+                       for i, s in enumerate(data["cost"]["stages"])
+                       if s["calls"]]
+            wanted += [f"effects.{i}.expected_cpu_percent"
+                       for i, e in enumerate(data["effects"])]
+            self.assertEqual([k for k in wanted if k not in found], [])
+
+    def test_page_needs_nothing_but_itself(self):
+        for page in self.pages.values():
+            text = pathlib.Path(page).read_text(encoding="utf-8")
+            for word in re.findall(r'(?:src|href|action)="([^"]*)"', text):
+                self.assertRegex(word, "^(#|data:)")
+            self.assertNotIn("<script", text)
+            self.assertNotRegex(text, r"url\([^#]")
+            ids = re.findall(r'\sid="([^"]*)"', text)
+            self.assertEqual(len(ids), len(set(ids)))
+
+    def test_page_shows_deck_warnings_and_reasons(self):
+        for job, page in self.pages.items():
+            text = " ".join(tree.parse(page).getroot().itertext())
+            data = json.loads(job.with_suffix(".json").read_text())
+            for effect in data["effects"]:
+                self.assertIn(effect["why"], text)
+            for warning in data["warnings"]:
+                self.assertIn(warning["text"], text)
+            self.assertIn(data["title"], text)
+            self.assertIn("*SOLID SECTION", text)
+            self.assertIn(data["version"], text)
+
+    def test_page_has_its_pictures(self):
+        for job, page in self.pages.items():
+            svg = "{http://www.w3.org/2000/svg}svg"
+            count = len(list(tree.parse(page).iter(svg)))
+            self.assertGreaterEqual(count, 3 if "hild" in job.name else 4)
+
+
+class Gallery(unittest.TestCase):
+    """Kept pictures: one for each example, small, all in the chapter."""
+
+    def test_each_example_has_its_picture(self):
+        kept = ROOT / "src/manual/pictures"
+        sizes = {p.name: p.stat().st_size for p in kept.iterdir()}
+        self.assertLess(max(sizes.values()), 200_000)
+        self.assertLess(sum(sizes.values()), 3_000_000)
+        chapter = (ROOT / "src/manual/gallery.md").read_text(encoding="utf-8")
+        for folder in (ROOT / "input").iterdir():
+            if folder.is_dir():
+                self.assertIn(folder.name + ".png", sizes)
+                self.assertIn(f"pictures/{folder.name}.png", chapter)
+
+
+class Refused(unittest.TestCase):
+    """What cannot be drawn is said in a line."""
+
+    def test_missing_results_are_named(self):
+        for command in (["tools/report", "nowhere/job"],
+                        ["tools/plot_contact", "nowhere/job.dat", "x.png"]):
+            done = subprocess.run(command, capture_output=True, text=True,
+                                  check=False)
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stderr, "nowhere/job: no results")
+            self.assertEqual(done.stderr.count("\n"), 1)
+
+
+if __name__ == "__main__":
+    suite = unittest.defaultTestLoader.loadTestsFromModule(sys.modules[__name__])
+    done = unittest.TextTestRunner(verbosity=2).run(suite)
+    bad = len(done.failures) + len(done.errors)
+    print(f"{100 * (done.testsRun - bad) // max(done.testsRun, 1)}%: Checks: "
+          f"{done.testsRun}, Failures: {len(done.failures)}, Errors: "
+          f"{len(done.errors)}")
+    sys.exit(bad > 0)
