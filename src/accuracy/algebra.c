@@ -145,9 +145,10 @@ static double pair_distance(const contact_problem *cp, const double *u,
 static const double NO_PIVOT = 0x1p-44; /* -, of the largest diagonal */
 
 /*
- * Largest |e|_inv(M) of the rounding of d: its rows are sums of m products. x'
- * inv(M) x <= condition * sum x_i^2/M_ii. Of a body that moves without energy
- * M_ii may be rounding itself.
+ * Largest |e|_inv(M) of what rounding can have put into d: its rows are sums
+ * of m products. x' inv(M) x <= condition * sum x_i^2/D_ii, D the diagonal of M
+ * or of what M is condensed from: where the body moves without energy, or its
+ * forces follow from statics, M_ii may be rounding itself.
  */
 static double pair_rounding(const contact_problem *cp,
                             const inverse_energy *inverse, pair *p) {
@@ -163,8 +164,11 @@ static double pair_rounding(const contact_problem *cp,
     for (int i = 0; size > 0.0 && i < cp->m; ++i)
       p->t[i] += size * fabs(column[i]);
   }
-  for (int i = 0; i < cp->m; ++i)
-    sum += unit * p->t[i] * (unit * p->t[i] / fmax(diagonal(cp, i), least));
+  for (int i = 0; i < cp->m; ++i) {
+    const double own = inverse->diagonal != NULL ? inverse->diagonal[i] : 0.0;
+    const double of = fmax(fmax(diagonal(cp, i), least), own);
+    sum += unit * p->t[i] * (unit * p->t[i] / of);
+  }
   return sqrt(inverse->condition * sum);
 }
 

@@ -52,10 +52,33 @@ static int admissible(const contact_problem *cp, const pair *p) {
   return 1;
 }
 
+static const double NO_LEVER = 0x1p-44; /* -, condition that is rounding   */
+
+/* y of G y = b in place of b[k]; 0: some motion has no force against it, or
+ * only one with a lever arm of rounding. root[k], pivot[k] are workspace. */
+static int solve_balance(int k, double *G, double *b, double *root,
+                         int *pivot) {
+  double norm, condition = 0.0;
+  for (int a = 0; a < k; ++a) {
+    root[a] = 1.0 / sqrt(fabs(G[a + k * a]));
+    if (!(root[a] < HUGE_VAL)) return 0;
+  }
+  for (int c = 0; c < k; ++c)
+    for (int a = 0; a < k; ++a) G[a + k * c] *= root[a] * root[c];
+  norm = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', k, k, G, k);
+  if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, k, k, G, k, pivot) != 0) return 0;
+  LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', k, G, k, norm, &condition);
+  if (!(condition > NO_LEVER)) return 0;
+  for (int a = 0; a < k; ++a) b[a] *= root[a];
+  LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', k, 1, G, k, pivot, b, k);
+  for (int a = 0; a < k; ++a) b[a] *= root[a];
+  return 1;
+}
+
 status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
                     pair *p, int *done) {
   int m = cp->m, k = inverse->n_kernel;
-  OWNED double *Z = NULL, *G = NULL, *y = NULL;
+  OWNED double *Z = NULL, *G = NULL, *y = NULL, *root = NULL;
   OWNED int *pivot = NULL;
   *done = 0;
   if (cblas_dasum(m, p->d, 1) == 0.0) {
@@ -65,6 +88,7 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
   PASS_NEW(Z, (size_t)m * (size_t)k);
   PASS_NEW(G, (size_t)k * (size_t)k);
   PASS_NEW(y, k);
+  PASS_NEW(root, k);
   PASS_NEW(pivot, k);
   for (int c = 0; c < k; ++c) {
     double *z = Z + (size_t)m * (size_t)c;
@@ -77,8 +101,7 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
               inverse->kernel, m, Z, m, 0.0, G, k);
   cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, inverse->kernel, m, p->d, 1,
               0.0, y, 1);
-  if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, k, 1, G, k, pivot, y, k) != 0)
-    return OK;
+  if (!solve_balance(k, G, y, root, pivot)) return OK;
   cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, Z, m, y, 1, 0.0, p->t, 1);
   for (int dof = 0; dof < m; ++dof) {
     p->q[dof] += p->t[dof];

@@ -553,6 +553,16 @@ int condensed_kernel(const condensed *c, const double **kernel) {
   return c->just_held ? c->rigid.k : -1;
 }
 
+void condensed_diagonal(const condensed *c, double *diagonal) {
+  const size_t dim = (size_t)c->k->dim;
+  for (int q = 0; q < c->m; ++q) {
+    const size_t at = component_of(c, q);
+    const double *block = c->k->block + dim * dim * c->k->start[at / dim];
+    diagonal[q] = is_held(c, q) ? c->A[(size_t)q * (size_t)(c->m + 1)]
+                                : block[at % dim * (dim + 1)];
+  }
+}
+
 double condensed_condition(const condensed *c) { return c->condition; }
 
 double condensed_digits(const condensed *c) {

@@ -99,6 +99,9 @@ double condensed_stiffest(const condensed *c); /* largest entry of K, N/m */
 /* Estimate of the condition number of K with its unknowns scaled to a unit
  * diagonal (that scaling costs no digits). */
 double condensed_condition(const condensed *c);
+/* diagonal[m] of the stiffness of the whole body at the contact unknowns, of
+ * which condensed_condition is, N/m; of held ones that of the matrix. */
+void condensed_diagonal(const condensed *c, double *diagonal);
 /* Digits that it leaves at least: 16 less its power of ten, not below 0. */
 double condensed_digits(const condensed *c);
 

@@ -21,10 +21,12 @@ static status force_energy(void *ctx, const double *d, double *square) {
 
 /* The factor of the body; 0: the motions that contact alone holds are not
  * known. */
-static int choose_inverse(run *r, inverse_energy *out) {
+static int choose_inverse(run *r, double *diagonal, inverse_energy *out) {
+  condensed_diagonal(r->c, diagonal);
   *out = (inverse_energy){.ctx = r->c,
                           .square = force_energy,
-                          .condition = condensed_condition(r->c)};
+                          .condition = condensed_condition(r->c),
+                          .diagonal = diagonal};
   out->n_kernel = condensed_kernel(r->c, &out->kernel);
   return out->n_kernel >= 0;
 }
@@ -42,11 +44,13 @@ static status estimate(run *r, void *self) {
   status st = OK;
   solver_error found = {.norm = NAN, .why = weakly_held};
   inverse_energy inverse;
+  OWNED double *diagonal = NULL;
   double *spent = self, cpu = timer_cpu();
   r->errors.error = (error_bound){0};
   if (r->nodes.n == 0 || r->step->no_solver_error) return OK;
   timer_enter(STAGE_ESTIMATE);
-  if (choose_inverse(r, &inverse))
+  NEW(diagonal, r->problem.cp.m);
+  if (choose_inverse(r, diagonal, &inverse))
     TRY(solver_error_bound(&r->problem.cp, &inverse, run_rows(r, 0, r->now.uc),
                            run_rows(r, 1, r->now.rc), &r->solving.rate,
                            &found));

@@ -74,9 +74,10 @@ static double least_gap(const run *r, int contact_id) {
   return least;
 }
 
+/* Where an increment is not solved, what touched in it is not known. */
 static void end(run *r, void *self) {
   const warnings *told = self;
-  for (int i = 0; i < r->m->n_contact; ++i) {
+  for (int i = 0; i < r->m->n_contact && r->course.unsettled == 0; ++i) {
     const contact *c = &r->m->contacts[i];
     if (told->touched[i] || c->force.given) continue;
     message_add(r->m->log, P4021, &c->at,

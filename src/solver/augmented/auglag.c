@@ -46,6 +46,8 @@ enum {
   SHORTENINGS = 10   /* of one step */
 };
 
+static const double SPRING = 0x1p-36; /* -, of the diagonal                  */
+
 typedef enum { OPEN, CLOSED } contact_state;
 
 typedef enum { FREE, STICK, SLIP } tangent;
@@ -231,8 +233,8 @@ static int known_steps(auglag_run *s) {
   return n;
 }
 
-/* Rows and columns of the n free unknowns, times power; returns the number of
- * rows that slip. */
+/* Rows and columns of the n free unknowns, times power, springs where contact
+ * alone holds the body; returns the number of rows that slip. */
 static int newton_matrix(auglag_run *s, int n) {
   const contact_problem *cp = s->cp;
   auglag_work *w = s->w;
@@ -255,6 +257,9 @@ static int newton_matrix(auglag_run *s, int n) {
             w->power * newton_row(s, w->free_id[i], column, unit);
     unit[dof] = 0.0;
   }
+  for (int i = 0; cp->floating && i < n; ++i)
+    w->K[(size_t)i * ((size_t)n + 1)] +=
+        w->power * SPRING * w->diagonal[w->free_id[i]];
   return slipping;
 }
 
@@ -353,9 +358,8 @@ static outcome auglag_newton(auglag_run *s) {
 
 static const double RHO_UZAWA = 0x1p4; /* -, of diag A */
 static const double PROGRESS = 0.9; /* -, of the residual, in PATIENCE steps */
-static const double START_TOL = 1e-3; /* -, of pressures for a first limit */
-static const double FLATTER = 0.5;    /* -, slope that ends a search */
-static const double SPRING = 0x1p-36; /* -, of the diagonal */
+static const double START_TOL = 1e-3; /* -, of pressures for a first limit   */
+static const double FLATTER = 0.5; /* -, slope that ends a search           */
 
 enum {
   INNER_STEPS = 60, /* Newton steps of one multiplier step */

@@ -153,10 +153,8 @@ static int is_skipped(const contact_problem *cp, int i) {
   return auto_chain[i].compliance && cp->A != NULL;
 }
 
-/* 1 if no other method is needed: a solution, a proof, or a NaN. */
-static int is_final(outcome o) {
-  return o == CONVERGED || o == STOPPED_RAY || o == STOPPED_NAN;
-}
+/* 1 if no other method is needed: a solution or a proof. */
+static int is_final(outcome o) { return o == CONVERGED || o == STOPPED_RAY; }
 
 /* Start and end of an attempt: u[m], r[m], and its report. */
 typedef struct answer {

@@ -297,6 +297,13 @@ done:
   return st;
 }
 
+static int is_number(const contact_problem *cp, const double *u,
+                     const double *r) {
+  for (int i = 0; i < cp->m; ++i)
+    if (!isfinite(u[i]) || !isfinite(r[i])) return 0;
+  return 1;
+}
+
 status attempt_run(contact_solver *s, const contact_problem *cp,
                    const attempt *a, const solver_listener *listener, double *u,
                    double *r, solver_report *rep) {
@@ -321,6 +328,10 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
   }
   drive_call x = {s, a, cp};
   TRY(drive_until_met(&x, &own, control, u, r, rep));
+  if (!is_number(cp, u, r)) { /* of the method, as the data are numbers     */
+    cold_start(cp, u, r);
+    rep->outcome = STOPPED_NAN;
+  }
   if (wants_inverse(s, cp, a, rep)) {
     attempt again = *a;
     if (a->max_iter > 0) again.max_iter -= rep->iterations;
