@@ -458,7 +458,7 @@
     "increment. If it should have: check the point, normal and GAP of "      \
     "*OBSTACLE, at the GROUP, the signs of the loads and their size. The "   \
     "listing says in which increment a contact touches for the first time.") \
-  X(4022, WARNING, "supports hold a part of the normal of the obstacle",     \
+  X(4022, WARNING, "supports hold a part of the contact normal",             \
     "A contact node that *BOUNDARY holds in one direction moves in the "     \
     "others alone, and its contact force is that of the normal without the " \
     "held component: the rest is in the reaction. Where that is not meant, " \

@@ -33,9 +33,10 @@ static const double told_share = 0.01;
 typedef struct candidate {
   int node_id, pair_id;
   int left_out;
-  double normal[3]; /* [dim] sum of w n, then the unit normal */
-  double area;      /* m2 */
-  double gap;       /* at time 0, m */
+  double normal[3]; /* [dim] sum of w n, then the unit normal               */
+  double held;      /* 1 - what supports leave of the normal's length       */
+  double area;      /* m2                                                   */
+  double gap;       /* at time 0, m                                         */
 } candidate;
 
 /* Messages given once per contact. */
@@ -46,19 +47,21 @@ typedef struct tally {
   /* first node and pair */
   int n_dependent, dependent_node, dependent_on;
   int deep_node;
-  double depth;    /* deepest penetration, m */
-  int turned_node; /* where the normals of body and obstacle differ most */
-  double sine;     /* of the angle between them */
-  int held_node;   /* where supports hold most of the normal of the obstacle */
-  double held;     /* 1 - the length that is left of it */
+  double depth; /* deepest penetration, m                                   */
+  int turned_node; /* where the normals of body and obstacle differ most    */
+  double sine;     /* of the angle between them                             */
+  int held_node;   /* where supports hold most of the contact normal       */
+  double held;     /* 1 - the length that is left of it                       */
 } tally;
 
 typedef struct builder {
   const surface_input *in;
   message_log *log;
   int dim, n;
-  candidate *list; /* [n] by node, then by contact */
-  tally *tallies;  /* [n_pair] */
+  unsigned mirrors; /* bit 2c, 2c+1: least, greatest x_c is a mirror plane  */
+  double low[3], high[3]; /* [dim] box of the mesh, m                       */
+  candidate *list; /* [n] by node, then by contact                          */
+  tally *tallies;  /* [n_pair]                                              */
 } builder;
 
 /* Position of a node as text for a message. */
@@ -225,6 +228,47 @@ static int take_obstacle_normal(const builder *b, candidate *c) {
          -fixed_sine * sqrt(dot(b->dim, body, body));
 }
 
+/* Nodes of the mesh in the plane x_c = at, a node that is not held in it: -1.
+ */
+static int held_in_plane(const builder *b, int c, double at) {
+  const mesh *m = b->in->mesh;
+  int n = 0;
+  for (int i = 0; i < m->n_node; ++i) {
+    if (fabs(m->x[b->dim * i + c] - at) > rounding * m->size) continue;
+    if (!(b->in->fixed[i] >> c & 1)) return -1;
+    ++n;
+  }
+  return n;
+}
+
+/* Planes at an end of the mesh that hold all their nodes, at least a face. */
+static void find_mirrors(builder *b) {
+  const mesh *m = b->in->mesh;
+  for (int c = 0; c < b->dim; ++c) {
+    b->low[c] = HUGE_VAL, b->high[c] = -HUGE_VAL;
+    for (int i = 0; i < m->n_node; ++i) {
+      b->low[c] = fmin(b->low[c], m->x[b->dim * i + c]);
+      b->high[c] = fmax(b->high[c], m->x[b->dim * i + c]);
+    }
+    if (held_in_plane(b, c, b->low[c]) >= b->dim) b->mirrors |= 1u << 2 * c;
+    if (held_in_plane(b, c, b->high[c]) >= b->dim) b->mirrors |= 2u << 2 * c;
+  }
+}
+
+/* 1: what holds the node is a mirror, where the normals of its own faces, half
+ * of those around it, lean. */
+static int at_mirror(const builder *b, int node_id) {
+  const double *x = &b->in->mesh->x[(size_t)b->dim * (size_t)node_id];
+  const double near = rounding * b->in->mesh->size;
+  for (int c = 0; c < b->dim; ++c) {
+    if (!(b->in->fixed[node_id] >> c & 1)) continue;
+    if ((b->mirrors >> 2 * c & 1) && x[c] - b->low[c] <= near) continue;
+    if ((b->mirrors >> 2 * c & 2) && b->high[c] - x[c] <= near) continue;
+    return 0;
+  }
+  return 1;
+}
+
 /* Unit normal orthogonal to the fixed components, or left out. */
 static void orient(builder *b, candidate *c) {
   const contact_pair *p = &b->in->pairs[c->pair_id];
@@ -241,9 +285,18 @@ static void orient(builder *b, candidate *c) {
     return;
   }
   unsigned fixed = b->in->fixed[c->node_id];
-  if (frame_project(b->dim, fixed, c->normal) > fixed_sine) return;
+  double left = frame_project(b->dim, fixed, c->normal);
+  if (!at_mirror(b, c->node_id)) c->held = 1.0 - left;
+  if (left > fixed_sine) return;
   c->left_out = 1;
   if (t->n_fixed++ == 0) t->fixed_node = c->node_id;
+}
+
+/* What supports hold of the normal: of the obstacle's, or of the body's where
+ * the obstacle has none of its own. */
+static void note_held(const builder *b, const candidate *c, double held) {
+  tally *t = &b->tallies[c->pair_id];
+  if (held > t->held) t->held = held, t->held_node = c->node_id;
 }
 
 /* The angle between the normals of body and obstacle where they touch. */
@@ -252,9 +305,11 @@ static void compare_normals(const builder *b, const candidate *c) {
   tally *t = &b->tallies[c->pair_id];
   const double *x = &b->in->mesh->x[(size_t)b->dim * (size_t)c->node_id];
   double n[3], square = 0;
-  if (!obstacle_normal(p->support, b->dim, x, n)) return;
-  double held = 1.0 - frame_project(b->dim, b->in->fixed[c->node_id], n);
-  if (held > t->held) t->held = held, t->held_node = c->node_id;
+  if (!obstacle_normal(p->support, b->dim, x, n)) {
+    note_held(b, c, c->held);
+    return;
+  }
+  note_held(b, c, 1.0 - frame_project(b->dim, b->in->fixed[c->node_id], n));
   if (fabs(c->gap) > rounding * b->in->mesh->size) return;
   double cosine = dot(b->dim, n, c->normal);
   for (int k = 0; k < b->dim; ++k) {
@@ -384,7 +439,7 @@ static void say(const builder *b, int pair_id) {
   if (t->held > told_share)
     message_add(
         b->log, P4022, &p->at,
-        "*CONTACT %s: supports hold a part of the normal of obstacle "
+        "*CONTACT %s: supports hold a part of the normal at obstacle "
         "%s: only %.3g of a contact force acts, also for friction, at %s",
         p->name, p->support->name, 1.0 - t->held,
         describe(m, t->held_node).text);
@@ -435,6 +490,7 @@ status surface_build(const surface_input *in, message_log *log,
   contact_surface *s = NULL;
   *out = NULL;
   TRY(collect(&b));
+  find_mirrors(&b);
   TRY(surface_new(b.dim, b.n, &s));
   for (int first = 0, end; first < b.n; first = end) {
     const candidate *kept[3];

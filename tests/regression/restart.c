@@ -363,6 +363,8 @@ START_TEST(damaged_files_are_refused) {
   damage(&j, "rst.h5");
   damage(&j, "rst.old.h5");
   refused(&j, 4, "damaged");
+  job_write(&j, "block.rst.h5", "Protis restart, layout 2\n7 0\nolder");
+  refused(&j, 4, "layout of another version");
   job_write(&j, "block.rst.h5", "no HDF5\n");
   refused(&j, 4, "no restart file of Protis");
   job_end(&whole);

@@ -275,7 +275,7 @@ START_TEST(fixed_direction_is_held_as_tangent) {
   scene c;
   flat_bottom(&c, 4);
   c.x[2 * 4 + 1] = 0.1;
-  c.fixed[4] = 1;
+  c.fixed[4] = c.fixed[add_node(&c, 1, 1, 0)] = 1;
   add_contact(&c, "FOOT", 0, 4);
   ck_assert_int_eq(build(&c), OK);
   static const double frame[] = {0, -1, 1, 0};

@@ -1,6 +1,6 @@
 /*
  * The seal of an archive, text before the bytes of HDF5:
- *   Protis restart, layout 2
+ *   Protis restart, layout 3
  *   BYTES CHECKSUM       of what follows the seal: their number; FNV-1a, 64
  * bits
  */
@@ -20,7 +20,7 @@
 enum { PART = 1 << 16 };
 
 static const char mark[] = "Protis restart, layout ";
-static const char layout[] = "2\n";
+static const char layout[] = "3\n";
 
 typedef struct content {
   uint64_t bytes, checksum;
@@ -89,7 +89,9 @@ status archive_check_seal(const char *path) {
   if (strncmp(text, mark, strlen(mark)) != 0)
     TRY(refuse(path, "this is no restart file of Protis"));
   if (strncmp(text + strlen(mark), layout, strlen(layout)) != 0)
-    TRY(refuse(path, "the restart file has the layout of another version"));
+    TRY(refuse(path,
+               "the restart file has the layout of another version of Protis; "
+               "go on with that one, or start the run without --restart"));
   TRY(sum_up(fd, path, &c));
   write_text(&c, wanted);
   if (memcmp(text, wanted, sizeof text) != 0)
