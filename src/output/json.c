@@ -336,6 +336,7 @@ static void write_increment(json *w, const model *m,
     json_real(w, "rounding_hidden_percent", 100 * s->error.hidden);
   json_real(w, "energy_defect", s->defect);
   json_flag(w, "settled", s->settled);
+  if (s->after_miss) json_flag(w, "after_unsettled", 1);
   json_string(w, "outcome", outcome_code((outcome)s->outcome));
   if (s->jumps) json_real(w, "jump_time", s->jump_t);
   write_solutions(w, s);

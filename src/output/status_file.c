@@ -32,9 +32,10 @@ static const char *check_text(const state *s, char text[32]) {
 }
 
 /*
- * OK, OK JUMP, UNSETTLED (taken although it did not converge) or CUT, then
- * the code of what stopped the contact solver, BOUND if its error may be above
- * 10 %, then words.
+ * OK (JUMP; AFTER_UNSETTLED: solved, but from a history that holds one that is
+ * not), UNSETTLED (taken although it did not converge) or CUT, then the code of
+ * what stopped the contact solver, BOUND if its error may be above 10 %, then
+ * words.
  */
 static void print_reason(const state *s, const char *why, FILE *f) {
   char check[32];
@@ -48,7 +49,8 @@ static void print_reason(const state *s, const char *why, FILE *f) {
   else if (!s->settled)
     fprintf(f, " UNSETTLED%s%s%s\n", blank, code, check_text(s, check));
   else
-    fprintf(f, " OK%s%s\n", s->errors.jumps ? " JUMP" : "",
+    fprintf(f, " OK%s%s%s\n", s->errors.jumps ? " JUMP" : "",
+            s->errors.after_miss ? " AFTER_UNSETTLED" : "",
             check_text(s, check));
 }
 

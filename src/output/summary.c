@@ -79,6 +79,7 @@ status output_remember(output *o, const state *s) {
                            .n_stick = s->contacts.n_stick,
                            .iterations = s->report.iterations,
                            .settled = s->settled,
+                           .after_miss = s->errors.after_miss,
                            .outcome = s->report.outcome,
                            .residual = s->report.residual,
                            .error = s->errors.error,

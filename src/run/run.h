@@ -208,6 +208,9 @@ int run_step_id(const run *r); /* from 0 */
 status effects_create(run *r);
 /* sums_up of the first that has it, or NULL. */
 const char *effects_sum_up(const run *r);
+/* history/history.c: 1: slip or inelastic strains of the increments before have
+ * a part in this one. */
+int run_remembers(const run *r);
 status effects_prepare(run *r);
 void effects_describe(const run *r, setup_facts *f);
 status effects_begin_step(run *r);

@@ -123,6 +123,7 @@ typedef struct what_if {
 typedef struct state_errors {
   error_bound error; /* of the contact solver                                 */
   int in_doubt;      /* 1: its bound is above 10 %                            */
+  int after_miss;    /* 1: its history holds an increment that is not settled */
   rounding_loss rounding;
   error_share mesh_error, time_error; /* of the mesh, of the increments       */
   const double *elem_error; /* [n_elem] share of each element in the error of

@@ -110,6 +110,41 @@ START_TEST(a_touch_of_an_increment_that_does_not_count_is_one) {
 }
 END_TEST
 
+/* Step 1 ends after two sweeps, step 2 is solved: from where it starts counts
+ * for slip in increments, not for one static problem. */
+static void ck_after_a_miss(const char *step, int n_ok, int n) {
+  job j = job_begin("block");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "block.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n*STEP\n"
+            "*STATIC\n*BOUNDARY\nTOP, 1, 1, 0.01\nTOP, 2, 2, -0.01\n"
+            "*SOLVER, METHOD=SOR, MAX_ITER=2\n*END STEP\n*STEP\n"
+            "%s\n*SOLVER, METHOD=AUTO\n*END STEP\n",
+            step);
+  ck_assert_int_eq(job_run(&j, ""), 1);
+  char *sta = job_file(&j, "sta"), *lst = job_file(&j, "lst");
+  char *json = job_file(&j, "json");
+  ck_assert_int_eq(count(sta, " UNSETTLED"), 1);
+  ck_assert_int_eq(count(sta, " OK"), n_ok);
+  ck_assert_int_eq(count(sta, " OK AFTER_UNSETTLED\n"), n);
+  ck_assert_int_eq(count(lst, "DID NOT CONVERGE"), n);
+  ck_assert_int_eq(count(json, "\"after_unsettled\": true"), n);
+  free(sta);
+  free(lst);
+  free(json);
+  job_end(&j);
+}
+
+START_TEST(what_goes_on_from_a_miss_says_so) {
+  ck_after_a_miss("*QUASISTATIC\n0.5, 1.", 2, 2);
+  ck_after_a_miss("*STATIC", 1, 0);
+}
+END_TEST
+
 /* Led down by 0.01: the gap of 0.0042 closes in the fifth increment. */
 START_TEST(the_first_touch_is_told) {
   static const char led[] =
@@ -152,6 +187,33 @@ START_TEST(a_restart_at_the_end_loses_no_line) {
 }
 END_TEST
 
+/* The slanted side of a triangle on a conforming obstacle: where its end at
+ * (1, 0) is held in x, 0.707 of a force is left; y = 0, a side that is held as
+ * a whole, is a mirror, which takes nothing. */
+START_TEST(a_held_part_of_the_bodys_normal_is_told) {
+  for (int axis = 1; axis <= 2; ++axis) {
+    job j = job_begin("slope");
+    job_write(&j, "slope.msh",
+              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n"
+              "1 1 \"BOTTOM\"\n1 2 \"SIDE\"\n2 3 \"BODY\"\n$EndPhysicalNames\n"
+              "$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n3\n"
+              "1 1 2 1 1 1 2\n2 1 2 2 2 2 3\n3 2 2 3 3 1 2 3\n$EndElements\n");
+    job_write(&j, "slope.inp",
+              "*MESH, FILE=slope.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., .3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=FOOT, GROUP=SIDE, OBSTACLE=O\n"
+              "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, %d\n"
+              "*DSLOAD\nBOTTOM, P, 1.\n*END STEP\n",
+              axis);
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    ck_told(&j, "P4022", "only 0.707 of a contact force acts", axis == 1);
+    ck_told(&j, "P4022", "at node 2 at (1, 0)", axis == 1);
+    job_end(&j);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("warnings");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -159,6 +221,8 @@ int main(void) {
   tcase_add_test(tests, elements_inside_out_are_told);
   tcase_add_test(tests, a_contact_that_never_touched_is_told);
   tcase_add_test(tests, a_touch_of_an_increment_that_does_not_count_is_one);
+  tcase_add_test(tests, what_goes_on_from_a_miss_says_so);
+  tcase_add_test(tests, a_held_part_of_the_bodys_normal_is_told);
   tcase_add_test(tests, the_first_touch_is_told);
   tcase_add_loop_test(tests, a_restart_at_the_end_loses_no_line, 0, 2);
   return unit_run("warnings", tests);

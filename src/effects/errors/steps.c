@@ -127,10 +127,7 @@ static void restart(paths *own) {
 
 /* Only slip in increments and inelastic strains remember their path. */
 static int path_exists(const run *r) {
-  if (effects_sum_up(r) != NULL) return 0;
-  int kind = r->step->kind, slips = r->nodes.n > 0 && r->problem.ut0 != NULL;
-  if (kind == STEP_VISCO) return slips || r->strains.visco != NULL;
-  return slips && kind == STEP_QUASISTATIC;
+  return effects_sum_up(r) == NULL && run_remembers(r);
 }
 
 /* Both halves of the increment that ends at t; lost where there is none. */

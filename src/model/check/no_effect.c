@@ -140,6 +140,12 @@ static void check_friction(const model *m, const mesh *msh,
 }
 
 static void check_wear(const model *m, const step *s) {
+  const effect_card *wear = model_effect_card(m, "WEAR", -1);
+  if (wear != NULL && s->time_balanced)
+    message_add(m->log, P2058, &s->accuracy_at,
+                "*ACCURACY, TIME=BALANCED: the increments stay those of the "
+                "step, as their error under *WEAR, line %d, is not known",
+                wear->at.line_no);
   for (int k = 0; k < s->n_print; ++k)
     if (s->prints[k].table == PRINT_WEAR &&
         model_effect_card(m, "WEAR", -1) == NULL)

@@ -150,6 +150,10 @@ static void print_verdict(const job *j, const state *s, FILE *f) {
     fprintf(f, "  THE ERROR OF THE SOLVER MAY BE ABOVE 10 %%\n");
   else if (!s->settled)
     fprintf(f, "  THE TOLERANCE WAS NOT REACHED\n");
+  if (s->errors.after_miss)
+    fprintf(f,
+            "  AN INCREMENT BEFORE, FROM WHICH THIS ONE GOES ON, DID NOT "
+            "CONVERGE\n");
 }
 
 static void print_when(const state *s, FILE *f) {

@@ -45,6 +45,19 @@ static int is_settled(const run *r) {
          !error_bound_doubts(&r->errors.error, share_of_step(r));
 }
 
+int run_remembers(const run *r) {
+  const int kind = r->step->kind;
+  const int slips = r->nodes.n > 0 && r->problem.ut0 != NULL;
+  if (kind == STEP_VISCO) return slips || r->strains.visco != NULL;
+  return slips && kind == STEP_QUASISTATIC;
+}
+
+/* 1: what was missed before is in what this increment starts from. */
+static int is_after_miss(const run *r) {
+  return r->course.unsettled > 0 &&
+         (run_remembers(r) || effects_sum_up(r) != NULL);
+}
+
 /* What the outputs see of an increment. */
 state loop_state(run *r, int attempt, int increment_no) {
   const equilibrium *e = &r->now;
@@ -84,6 +97,7 @@ state loop_state(run *r, int attempt, int increment_no) {
       .solver_log = contact_solver_log(r->solver),
       .settled = is_settled(r),
       .errors.in_doubt = error_bound_doubts(&r->errors.error, share_of_step(r)),
+      .errors.after_miss = is_after_miss(r),
       .again = {r, beside_with}};
   if (r->strains.visco != NULL) visco_show(r, &s);
   if (!(r->m->effects & EFFECT_STRESS)) s.body.stress = NULL;
@@ -153,8 +167,8 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   note_nodes(r);
   TRY(effects_accept(r));
   TRY(note_misfit(r));
-  if (!is_settled(r)) ++r->course.unsettled;
   state s = loop_state(r, attempt, increment_no);
+  if (!s.settled) ++r->course.unsettled;
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
   effects_show(r, &s);
