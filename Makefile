@@ -109,6 +109,7 @@ help:
 	@echo "make effects-cost instructions of builds without an effect; needs valgrind"
 	@echo "make gallery      pictures of all examples for the manual"
 	@echo "make browser-test pages of tools/report in a headless browser"
+	@echo "make reference    every example against its input/*/reference (-update)"
 	@echo "make study        error against CPU seconds: four pictures"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
@@ -323,6 +324,13 @@ verify: $(program) $(verify)
 .PHONY: effects-cost
 effects-cost: $(program)
 	$(Q)tools/effects_cost
+
+# Every example against the part of its tables that is kept beside it; -update:
+# what is kept becomes that of this program.
+.PHONY: reference reference-update
+reference reference-update: $(program)
+	$(Q)PROTIS=$(abspath $(program)) tools/reference $(if $(filter %-update,$@),--update) -j $(JOBS) \
+	  -o build/reference input/*/*.inp
 
 # Error against CPU seconds: solvers, meshes, integrators, nonlocal radii.
 STUDY := PROTIS=$(abspath $(program)) tools/study -j $(JOBS)

@@ -1,9 +1,14 @@
 """Decks and tables of protis for the tools: cards changed, JOB.dat read."""
+import json
 import os
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "python"))
+from protis import read_blocks  # noqa: E402
 
 CARDS = {"METHOD": ("SOLVER", "METHOD"), "TOL": ("SOLVER", "TOL"),
          "FORM": ("QUASISTATIC", "FORM"),
@@ -129,22 +134,22 @@ def deck_of(job):
 
 # ---- tables of JOB.dat -------------------------------------------------------
 
+def last_block(file, wanted):
+    """The last table of that name, as read_blocks gives it."""
+    found = None
+    for block in read_blocks(file):
+        if block["table"] == wanted:
+            found = block
+    if found is None:
+        fail(f"{file} has no table {wanted}: ask for it with *PRINT")
+    return found
+
+
 def read_table(file, wanted):
     """Columns of the last table of that name: {name: [values]}."""
-    columns, rows, inside = [], [], False
-    for line in open(file, encoding="utf-8"):
-        words = line.split()
-        if line.startswith("#") and "table" in words:
-            inside = words[-1] == wanted
-            if inside:
-                columns, rows = [], []
-        elif inside and line.startswith("#"):
-            columns = [w.split("[")[0] for w in words[1:]]
-        elif inside and words:
-            rows.append(words)
-    if not columns:
-        fail(f"{file} has no table {wanted}: ask for it with *PRINT")
-    return {c: [r[i] for r in rows] for i, c in enumerate(columns)}
+    block = last_block(file, wanted)
+    return {c: [r[i] for r in block["rows"]]
+            for i, c in enumerate(block["names"])}
 
 
 def column(file, table, name):
@@ -188,3 +193,43 @@ def insert_in_steps(lines, text):
             out.append(text)
         out.append(line)
     return out
+
+
+# ---- runs ------------------------------------------------------------------
+
+RUNNING = set()
+
+
+def call(command):
+    """Exit code and messages of a program, which ends with this one."""
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL,
+                          stderr=subprocess.PIPE, text=True) as process:
+        RUNNING.add(process)
+        errors = process.communicate()[1]
+        RUNNING.discard(process)
+    return process.returncode, errors
+
+
+def stop(signal_no, _frame):
+    """End the runs at hand; finished ones are in runs.jsonl."""
+    for process in list(RUNNING):
+        process.terminate()
+    print("interrupted; the same command goes on from here",
+          file=sys.stderr, flush=True)
+    os._exit(128 + signal_no)
+
+
+def load_done(file):
+    done = {}
+    if file.exists():
+        text = file.read_text(encoding="utf-8")
+        if text and not text.endswith("\n"):
+            with open(file, "a", encoding="utf-8") as out:
+                out.write("\n")
+        for line in text.splitlines():
+            try:
+                entry = json.loads(line)
+                done[entry["key"]] = entry
+            except (json.JSONDecodeError, KeyError):
+                continue  # the line a kill cut short
+    return done

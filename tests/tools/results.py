@@ -1,0 +1,284 @@
+#!/usr/bin/python3
+"""Results for other programs: tools/compare, reference, batch, study and the
+Python package. Runs in the folder of the sources; PROTIS: the program. Needs
+python3-numpy and python3-h5py; pandas is looked at where it is there."""
+import csv
+import importlib.util
+import io
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+sys.path.insert(0, "tools/python")
+import protis  # noqa: E402
+
+PROGRAM = os.path.abspath(os.environ.get("PROTIS", "build/release/protis"))
+os.environ["PROTIS"] = PROGRAM
+DECK = pathlib.Path("input/greco/greco.inp")
+SMALL = ["-DN=4", "-DMU=0.5"]
+
+
+def tool(name, *words):
+    """Exit code and what a tool says."""
+    done = subprocess.run([sys.executable, f"tools/{name}", *map(str, words)],
+                          capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+class Results(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.job = protis.run(DECK, None, SMALL)
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.dir = pathlib.Path(self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    # ---- compare ---------------------------------------------------------
+
+    def test_compare_knows_what_each_column_is(self):
+        a, b = self.job, protis.run(DECK, None, [*SMALL, "--threads", "2"])
+        for suffix in ("dat", "sta", "json", "h5"):
+            code, said = tool("compare", a.file(suffix), b.file(suffix))
+            self.assertEqual(code, 0, said)
+        # Words and counts of a row: changed, and by how much of what.
+        changes = [
+            ("CONTACT", "f_n", lambda v, s: v + 1e-4 * s, 1),
+            ("CONTACT", "f_n", lambda v, s: v + 1e-8 * s, 0),
+            ("CONTACT", "node_no", lambda v, s: v + 1000, 1),
+            ("CONTACT", "status", lambda v, s: "OPENED", 1),
+            ("TOTALS", "stick", lambda v, s: v + 1, 1),
+            ("ENERGY", "energy_defect", lambda v, s: 1e-12 * s, 0),
+            ("ENERGY", "energy_defect", lambda v, s: 1e-3 * s, 1),
+            ("ENERGY", "energy_defect_relative", lambda v, s: 1e-12, 0),
+            ("ENERGY", "energy_defect_relative", lambda v, s: 1e-3, 1)]
+        scale = {"f_n": abs(a.table("TOTALS")["force_y"]).max(),
+                 "energy_defect": a.table("ENERGY")["external_work"].max()}
+        for unit in (1e-12, 1e9):  # no tolerance has a dimension
+            for table, name, change, wanted in changes:
+                for k, file in enumerate(("new.dat", "old.dat")):
+                    self.write_dat(a, file, unit, None if k else (
+                        table, name, lambda v: change(v, scale.get(name))))
+                code, said = tool("compare", self.dir / "new.dat",
+                                  self.dir / "old.dat")
+                self.assertEqual(code, wanted, f"{name}, {unit}: {said}")
+                if wanted:
+                    self.assertIn(f"{table}.{name}, " if name != "node_no"
+                                  else "missing", said)
+
+    def write_dat(self, job, file, unit, change):
+        """The tables with all numbers with a dimension times unit; one value
+        changed before that."""
+        with open(self.dir / file, "w", encoding="utf-8") as out:
+            for b in protis.read_blocks(job.file("dat")):
+                out.write(f"# step {b['step']} increment {b['increment']} time "
+                          f"{b['time']} table {b['table']}\n# "
+                          + " ".join(f"{n}[{u}]" for n, u in
+                                     zip(b["names"], b["units"])) + "\n")
+                for k, row in enumerate(b["rows"]):
+                    for i, (n, u) in enumerate(zip(b["names"], b["units"])):
+                        word = row[i]
+                        if change and (b["table"], n, 2 if len(
+                                b["rows"]) > 2 else 0) == (*change[:2], k):
+                            word = change[2](float(word) if "E" in word
+                                             and word[0] in "-0123456789"
+                                             else int(word) if word.isdigit()
+                                             else word)
+                        if re.match(r"-?\d.*[E.]", str(word)):
+                            word = f"{float(word) * (unit if u != '-' else 1):.16E}"
+                        out.write(f" {word}")
+                    out.write("\n")
+                out.write("\n\n")
+
+    def test_compare_names_what_is_missing(self):
+        a = self.job
+        lines = a.file("dat").read_text().splitlines(keepends=True)
+        (self.dir / "short.dat").write_text("".join(lines[:3] + lines[4:]))
+        code, said = tool("compare", self.dir / "short.dat", a.file("dat"))
+        self.assertEqual(code, 1)
+        self.assertIn("missing in", said)
+        self.assertEqual(tool("compare", a.file("dat"), self.dir / "short.dat")
+                         [0], 1)
+        self.assertEqual(tool("compare", "--part", a.file("dat"),
+                              self.dir / "short.dat")[0], 0)
+        for words in ((self.dir / "none.dat", a.file("dat")), (
+                a.file("lst"), a.file("lst")), (a.file("dat"),), (
+                    a.file("dat"), a.file("dat"), "--atol-of", "f_q")):
+            self.assertEqual(tool("compare", *words)[0], 2)
+
+    def test_scale_of_a_column_for_all_of_its_kind(self):
+        for name, other in (("new", 1.001), ("old", 1.0)):
+            (self.dir / f"{name}.dat").write_text(
+                "# step 1 increment 1 time 1.0 table NODES\n"
+                "# node_no[-] u_x[m] u_y[m] reaction_x[N]\n"
+                f"1 1.0E+006 {other}E+000 2.0E+000\n")
+        files = [self.dir / "new.dat", self.dir / "old.dat"]
+        self.assertEqual(tool("compare", *files)[0], 0)
+        self.assertEqual(tool("compare", *files, "--atol-of", "u_y")[0], 1)
+        self.assertEqual(tool("compare", *files, "--atol-of", "u_y",
+                              "--ignore", "u_y")[0], 0)
+
+    def test_reference_is_red_for_a_broken_value(self):
+        shutil.copytree(DECK.parent, self.dir / "greco",
+                        ignore=shutil.ignore_patterns("reference"))
+        deck = self.dir / "greco" / DECK.name
+        deck.write_text(deck.read_text().replace("N = 32", "N = 4"))
+        words = ["tools/reference", "-o", str(self.dir / "out"), str(deck)]
+
+        def reference(*more):
+            done = subprocess.run([words[0], *more, *words[1:]], text=True,
+                                  capture_output=True, check=False)
+            return done.returncode, done.stdout + done.stderr
+        self.assertEqual(reference()[0], 1)  # there is none yet
+        self.assertEqual(reference("--update")[0], 0)
+        code, said = reference()
+        self.assertEqual(code, 0, said)
+        kept = self.dir / "greco/reference/greco.dat"
+        self.assertLess(kept.stat().st_size, 10000)
+        text = kept.read_text()
+        found = re.search(r"(\n\d+ (?:\S+ ){5})(\d)\.", text)
+        broken = f"{found[1]}{int(found[2]) ^ 1}."
+        kept.write_text(text.replace(found[0], broken, 1))
+        code, said = reference()
+        self.assertEqual(code, 1)
+        self.assertRegex(said, r"CONTACT\.\w+, step 1 increment 5 node_no \d+")
+
+    # ---- batch and study ---------------------------------------------------
+
+    def test_batch_goes_on_after_an_interruption(self):
+        decks = []
+        for name in ("a", "b", "c"):
+            folder = self.dir / name
+            folder.mkdir()
+            shutil.copy(DECK.with_suffix(".geo"), folder)
+            text = DECK.read_text() if name != "c" else "*NONSENSE\n"
+            (folder / "job.inp").write_text(text)
+            decks.append(str(folder / "job.inp"))
+        words = [sys.executable, "tools/batch", *decks, "-o",
+                 str(self.dir / "out"), "--", "-DN=4"]
+        with subprocess.Popen(words, stdout=subprocess.PIPE, text=True,
+                              stderr=subprocess.DEVNULL) as first:
+            line = json.loads(first.stdout.readline())
+            first.send_signal(signal.SIGTERM)
+            first.wait()
+        self.assertEqual((line["deck"], line["exit"]), (decks[0], 0))
+        self.assertEqual(line["contacts"][0]["contact"], "FOOT")
+        self.assertAlmostEqual(line["contacts"][0]["normal"], 2000, places=6)
+        again = subprocess.run(words, capture_output=True, text=True,
+                               check=False)
+        self.assertEqual(again.returncode, 1)
+        lines = [json.loads(text) for text in
+                 (self.dir / "out/batch.jsonl").read_text().splitlines()]
+        self.assertEqual([entry["deck"] for entry in lines], decks)
+        self.assertEqual([entry["exit"] for entry in lines], [0, 0, 2])
+        self.assertIn("NONSENSE", lines[2]["message"])
+        self.assertEqual(len({entry["folder"] for entry in lines}), 3)
+        third = subprocess.run(words, capture_output=True, text=True,
+                               check=False)
+        self.assertEqual((third.returncode, third.stdout), (1, ""))
+
+    def test_study_tells_a_response(self):
+        code, said = tool("study", DECK, "--response", "TOTALS.force_x",
+                          "--vary", "MU=0.2,0.8", "--vary", "N=4", "-o",
+                          self.dir / "study")
+        self.assertEqual(code, 0, said)
+        rows = [line.split() for line in
+                (self.dir / "study/study.txt").read_text().splitlines()]
+        self.assertEqual(rows[0][:3], ["MU", "N", "TOTALS.force_x[N]"])
+        for row in rows[1:]:
+            job = protis.run(DECK, N=4, MU=row[0])
+            self.assertAlmostEqual(float(row[2]), job.table(
+                "TOTALS", last=True)["force_x"][0], places=5)
+        self.assertGreater((self.dir / "study/study.svg").stat().st_size, 3000)
+        self.assertNotEqual(tool("study", DECK, "--response", "TOTALS.nix",
+                                 "--vary", "N=4", "-o", self.dir / "s")[0], 0)
+
+    # ---- Python and csv ------------------------------------------------------
+
+    def test_tables_have_names_numbers_and_units(self):
+        job = protis.run(DECK, MU=0.5, N=4)
+        contact = job.table("contact", last=True)
+        self.assertEqual(contact.units["pressure"], "N/mm^2")
+        self.assertEqual(contact["node_no"].dtype.kind, "i")
+        self.assertEqual(set(contact["contact"]), {"FOOT"})
+        total = job.table("TOTALS", last=True)
+        self.assertAlmostEqual(contact["f_n"].sum(), total["normal"][0], 8)
+        self.assertEqual(len(contact.where(status="STICK")), total["stick"][0])
+        nodes = job.table("NODES")  # no *PRINT: of JOB.h5, five increments
+        self.assertEqual(len(nodes) % 5, 0)
+        self.assertEqual(nodes.units["u_x"], "mm")
+        self.assertEqual(len(job.table("NODES", last=True)), len(nodes) // 5)
+        stress = job.table("ELEMENTS", last=True)
+        xx, yy, zz, xy = (stress[f"stress_{c}"] for c in
+                          ("xx", "yy", "zz", "xy"))
+        np.testing.assert_allclose(stress["mises"], np.sqrt(
+            ((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) / 2 + 3 * xy**2))
+        middle, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+        np.testing.assert_allclose(
+            stress["principal_1"], np.maximum(zz, middle + radius), atol=1e-9)
+        history = job.table("HISTORY")
+        self.assertEqual(list(history["increment"]), [1, 2, 3, 4, 5])
+        if importlib.util.find_spec("pandas"):
+            frame = contact.to_pandas()
+            self.assertEqual(len(frame), len(contact))
+            self.assertEqual(frame.attrs["units"]["x"], "mm")
+
+    def test_errors_of_the_program_are_exceptions(self):
+        with self.assertRaises(protis.Error) as caught:
+            protis.run(DECK, NIX=1)
+        self.assertEqual(caught.exception.code, 2)
+        self.assertIn("-D NIX is used neither in the deck", str(caught.exception))
+        with self.assertRaises(KeyError) as caught:
+            protis.run(DECK, N=4).table("REACTIONS")
+        self.assertIn("it has CONTACT, TOTALS, ENERGY", str(caught.exception))
+
+    def test_csv_is_read_in_one_line(self):
+        job = self.job
+        text = subprocess.run([PROGRAM, job.path, "--table", "CONTACT"],
+                              capture_output=True, text=True, check=True).stdout
+        wanted = job.table("CONTACT")
+        rows = list(csv.DictReader(io.StringIO(text)))
+        self.assertEqual([float(r["pressure"]) for r in rows],
+                         list(wanted["pressure"]))
+        data = np.genfromtxt(io.StringIO(text), delimiter=",", names=True,
+                             dtype=None, encoding=None)
+        np.testing.assert_array_equal(data["u_n"], wanted["u_n"])
+        self.assertEqual(list(data["status"]), list(wanted["status"]))
+        self.assertEqual(list(data.dtype.names[:5]),
+                         ["step", "increment", "time", "contact", "node_no"])
+        if importlib.util.find_spec("pandas"):
+            import pandas
+            frame = pandas.read_csv(io.StringIO(text))
+            self.assertEqual(frame["f_n"].sum(), wanted["f_n"].sum())
+
+    def test_example_of_the_package(self):
+        table, picture = self.dir / "study.csv", self.dir / "study.png"
+        subprocess.run([sys.executable, "tools/python/example.py", table,
+                        picture], check=True)
+        friction = [float(r["friction"]) for r in
+                    csv.DictReader(io.StringIO(table.read_text()))]
+        self.assertEqual(len(friction), 5)
+        self.assertEqual(friction, sorted(friction))
+        self.assertLess(friction[0], 0.2 * 2000)  # mu N
+        self.assertGreater(picture.stat().st_size, 3000)
+
+
+if __name__ == "__main__":
+    result = unittest.main(exit=False, argv=["results"]).result
+    bad = len(result.failures) + len(result.errors)
+    run = result.testsRun
+    print(f"{100 * (run - bad) // max(run, 1)}%: Checks: {run}, "
+          f"Failures: {len(result.failures)}, Errors: {len(result.errors)}")
+    sys.exit(bad > 0 or run == 0)
