@@ -28,15 +28,15 @@ static status solve(const command *c, job_input *in, int *unsettled) {
   status st = OK;
   job_lock lock = {0};
   archive *from = NULL;
-  char *stop = text_path(c->dir, in->m->job, "stop");
+  char *stop = text_path(c->dir, in->m->name.job, "stop");
   if (stop == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
   TRY(output_spare_inputs(in->m, c->dir));
-  TRY(job_lock_take(c->dir, in->m->job, &lock));
+  TRY(job_lock_take(c->dir, in->m->name.job, &lock));
   interrupt_catch(stop);
   if (c->restart) TRY(restart_read(c, in, &from));
-  if (in->m->target.percent > 0.0 && in->problem == NULL)
+  if (in->m->accuracy.target.percent > 0.0 && in->problem == NULL)
     TRY(target_reach(c, in, unsettled));
-  else if (in->m->effects_auto && in->problem == NULL && from == NULL)
+  else if (in->m->reduction.is_auto && in->problem == NULL && from == NULL)
     TRY(auto_solve_job(c, in, unsettled));
   else
     TRY(job_solve(c, in, NULL, from, unsettled));

@@ -17,15 +17,15 @@ const char *place_file(const place *at) {
 const friction_rule *friction_in_force(const model *m, int step_id,
                                        int contact_id) {
   for (int i = step_id; i >= 0; --i)
-    for (int k = 0; k < m->steps[i].n_change; ++k)
-      if (m->steps[i].changes[k].contact_id == contact_id)
-        return &m->steps[i].changes[k].rule;
+    for (int k = 0; k < m->steps[i].friction.n; ++k)
+      if (m->steps[i].friction.changes[k].contact_id == contact_id)
+        return &m->steps[i].friction.changes[k].rule;
   return &m->contacts[contact_id].friction;
 }
 
 const effect_card *model_effect_card(const model *m, const char *keyword,
                                      int contact_id) {
-  for (int i = m->n_effect_card - 1; i >= 0; --i) {
+  for (int i = m->n.effect_card - 1; i >= 0; --i) {
     const effect_card *c = &m->effect_cards[i];
     if (strcmp(c->keyword, keyword) == 0 &&
         (contact_id < 0 || c->contact_id < 0 || c->contact_id == contact_id))
@@ -47,8 +47,8 @@ int rule_has_average(const friction_rule *rule) {
 const friction_rule *facts_first_rule(const model *m,
                                       int (*is)(const friction_rule *rule),
                                       const contact **of) {
-  for (int i = 0; i < m->n_contact; ++i)
-    for (int k = 0; k < m->n_step; ++k) {
+  for (int i = 0; i < m->n.contact; ++i)
+    for (int k = 0; k < m->n.step; ++k) {
       const friction_rule *rule = friction_in_force(m, k, i);
       *of = &m->contacts[i];
       if (is(rule)) return rule;
@@ -57,13 +57,13 @@ const friction_rule *facts_first_rule(const model *m,
 }
 
 const contact *facts_first_given(const model *m) {
-  for (int i = 0; i < m->n_contact; ++i)
+  for (int i = 0; i < m->n.contact; ++i)
     if (m->contacts[i].force.given) return &m->contacts[i];
   return NULL;
 }
 
 const load *facts_first_body_load(const model *m) {
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k) {
       const load *l = &m->steps[i].loads.item[k];
       if (l->kind == LOAD_BODY || l->kind == LOAD_GRAVITY) return l;
@@ -72,7 +72,7 @@ const load *facts_first_body_load(const model *m) {
 }
 
 const load *facts_first_temperature(const model *m) {
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k)
       if (m->steps[i].loads.item[k].kind == LOAD_TEMPERATURE)
         return &m->steps[i].loads.item[k];
@@ -80,10 +80,10 @@ const load *facts_first_temperature(const model *m) {
 }
 
 const step *facts_first_print(const model *m, int table, place *at) {
-  for (int i = 0; i < m->n_step; ++i)
-    for (int k = 0; k < m->steps[i].n_print; ++k)
-      if (m->steps[i].prints[k].table & table) {
-        *at = m->steps[i].prints[k].at;
+  for (int i = 0; i < m->n.step; ++i)
+    for (int k = 0; k < m->steps[i].print.n; ++k)
+      if (m->steps[i].print.requests[k].table & table) {
+        *at = m->steps[i].print.requests[k].at;
         return &m->steps[i];
       }
   return NULL;
@@ -96,13 +96,13 @@ int model_prints(const model *m, int tables) {
 
 int model_has_axis(const model *m) {
   int any = 0;
-  for (int i = 0; i < m->n_contact; ++i) any |= m->contacts[i].has_axis;
+  for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].has_axis;
   return any;
 }
 
 const step *facts_first_fields(const model *m) {
-  for (int i = 0; i < m->n_step; ++i)
-    if (m->steps[i].output_frequency >= 0) return &m->steps[i];
+  for (int i = 0; i < m->n.step; ++i)
+    if (m->steps[i].output.frequency >= 0) return &m->steps[i];
   return NULL;
 }
 
@@ -123,11 +123,11 @@ static int held_before(const model *m, int step_id, const load *l) {
 }
 
 const load *facts_moving_support(const model *m) {
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k) {
       const load *l = &m->steps[i].loads.item[k];
       if (l->kind != LOAD_FIXING) continue;
-      int let_go = i + 1 < m->n_step &&
+      int let_go = i + 1 < m->n.step &&
                    (m->steps[i + 1].renewed >> LOAD_FIXING & 1u) != 0;
       if (l->value.formula != NULL || l->value.number != 0.0 || l->has_before ||
           let_go || !held_before(m, i, l))
@@ -137,17 +137,17 @@ const load *facts_moving_support(const model *m) {
 }
 
 const section *facts_first_inelastic(const model *m) {
-  for (int i = 0; i < m->n_section; ++i) {
+  for (int i = 0; i < m->n.section; ++i) {
     const int id = m->sections[i].material_id;
-    if (id >= 0 && id < m->n_material && m->materials[id].law.ops != NULL)
+    if (id >= 0 && id < m->n.material && m->materials[id].law.ops != NULL)
       return &m->sections[i];
   }
   return NULL;
 }
 
 static const initial *first_initial(const model *m, int type) {
-  for (int i = 0; i < m->n_initial; ++i)
-    if (m->initials[i].type == type) return &m->initials[i];
+  for (int i = 0; i < m->n.initial; ++i)
+    if (m->initial.lines[i].type == type) return &m->initial.lines[i];
   return NULL;
 }
 
@@ -159,11 +159,12 @@ int facts_has_inelastic(const model *m) {
 int model_flows(const model *m, int elem_id) {
   const section *s = &m->sections[m->elem_section[elem_id]];
   const material *mat = &m->materials[s->material_id];
-  return mat->law.ops != NULL && !(mat->is_still && m->still[elem_id]);
+  return mat->law.ops != NULL &&
+         !(mat->is_still && m->reduction.still[elem_id]);
 }
 
 const material *facts_first_warm_law(const model *m) {
-  for (int i = 0; i < m->n_material; ++i) {
+  for (int i = 0; i < m->n.material; ++i) {
     const material *mat = &m->materials[i];
     if (mat->used && mat->law.ops != NULL &&
         (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE))
@@ -179,7 +180,7 @@ static int has_temperature(const model *m) {
 }
 
 const material *facts_first_warm_moduli(const model *m) {
-  for (int i = 0; i < m->n_material; ++i)
+  for (int i = 0; i < m->n.material; ++i)
     if (m->materials[i].used && m->materials[i].elastic.n > 1)
       return &m->materials[i];
   return NULL;
@@ -195,27 +196,27 @@ int facts_has_warm_law(const model *m) {
 }
 
 int facts_has_expansion(const model *m) {
-  for (int i = 0; i < m->n_material; ++i)
+  for (int i = 0; i < m->n.material; ++i)
     if (m->materials[i].used && m->materials[i].expand.given) return 1;
   return 0;
 }
 
 const step *facts_first_step(const model *m, int (*is)(const step *s)) {
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.step; ++i)
     if (is(&m->steps[i])) return &m->steps[i];
   return NULL;
 }
 
-int facts_asks_mesh_error(const step *s) { return s->mesh_error; }
-int facts_asks_time_error(const step *s) { return s->time_error; }
-int facts_asks_theory(const step *s) { return s->theorems; }
+int facts_asks_mesh_error(const step *s) { return s->accuracy.mesh; }
+int facts_asks_time_error(const step *s) { return s->accuracy.time; }
+int facts_asks_theory(const step *s) { return s->accuracy.theorems; }
 
 status model_find_corner(model *m, const mesh *msh) {
   status st = OK;
   int *of = NULL;
   m->corner_id = -1;
   NEW(of, msh->n_node);
-  for (int i = 0; i < m->n_contact; ++i) {
+  for (int i = 0; i < m->n.contact; ++i) {
     if (m->contacts[i].group_id < 0) continue;
     const mesh_group *g = &msh->group[m->contacts[i].group_id];
     for (int k = 0; k < g->n_node; ++k) {
@@ -230,9 +231,10 @@ done:
 }
 
 const step *facts_first_whole(const model *m) {
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
-    if (s->condensed_frequency >= 0 || s->check != CHECK_NONE || s->theorems)
+    if (s->output.condensed >= 0 || s->check != CHECK_NONE ||
+        s->accuracy.theorems)
       return s;
   }
   return NULL;
@@ -240,16 +242,17 @@ const step *facts_first_whole(const model *m) {
 
 int facts_neglects_friction(const model *m) {
   int any = 0;
-  for (int i = 0; i < m->n_neglected; ++i)
-    any |= m->neglected[i].bit == EFFECT_BIT_FRICTION && !m->neglected[i].back;
+  for (int i = 0; i < m->reduction.n; ++i)
+    any |= m->reduction.row[i].bit == EFFECT_BIT_FRICTION &&
+           !m->reduction.row[i].back;
   return any;
 }
 
 int model_rubs_locally(const model *m) {
   int local = m->corner_id < 0 && facts_first_whole(m) == NULL;
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     local = local && m->steps[i].form == FORM_DISPLACEMENT;
-    for (int k = 0; k < m->n_contact; ++k) {
+    for (int k = 0; k < m->n.contact; ++k) {
       const friction_rule *rule = friction_in_force(m, i, k);
       local =
           local && (!rule_has_friction(rule) || rule->law == &coulomb_friction);

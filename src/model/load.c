@@ -270,8 +270,8 @@ static status refuse_temperature(const model *m, const mesh *msh,
 
 status load_temperature_initial(const model *m, const mesh *msh, double *T) {
   memset(T, 0, (size_t)msh->n_elem * sizeof *T);
-  for (int i = 0; i < m->n_initial; ++i) {
-    const initial *c = &m->initials[i];
+  for (int i = 0; i < m->n.initial; ++i) {
+    const initial *c = &m->initial.lines[i];
     if (c->type != INITIAL_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[c->group_id];
     for (int k = 0; k < g->n_item; ++k) {

@@ -60,39 +60,39 @@ static void rule_release(friction_rule *rule) {
 
 void model_free(model *m) {
   if (m == NULL) return;
-  table_release(&m->first_step);
-  for (int i = 0; i < m->n_amplitude; ++i)
-    table_release(&m->amplitudes[i].table);
-  for (int i = 0; i < m->n_points; ++i) memory_free(m->points[i].t);
-  for (int i = 0; i < m->n_contact; ++i) {
+  table_release(&m->time.first_step);
+  for (int i = 0; i < m->n.amplitude; ++i)
+    table_release(&m->time.amplitudes[i].table);
+  for (int i = 0; i < m->n.points; ++i) memory_free(m->time.points[i].t);
+  for (int i = 0; i < m->n.contact; ++i) {
     rule_release(&m->contacts[i].friction);
     table_release(&m->contacts[i].force.position);
   }
-  for (int i = 0; i < m->n_material; ++i)
+  for (int i = 0; i < m->n.material; ++i)
     for (int k = 0; k < 3; ++k) table_release(&m->materials[i].expand.alpha[k]);
-  for (int i = 0; i < m->n_step; ++i) {
-    RELEASE(m->steps[i].loads.item, m->steps[i].prints);
-    for (int k = 0; k < m->steps[i].n_change; ++k)
-      rule_release(&m->steps[i].changes[k].rule);
-    RELEASE(m->steps[i].changes, m->steps[i].solver_param);
+  for (int i = 0; i < m->n.step; ++i) {
+    RELEASE(m->steps[i].loads.item, m->steps[i].print.requests);
+    for (int k = 0; k < m->steps[i].friction.n; ++k)
+      rule_release(&m->steps[i].friction.changes[k].rule);
+    RELEASE(m->steps[i].friction.changes, m->steps[i].solver_param);
   }
-  RELEASE(m->supports.item, m->initials);
-  for (int i = 0; i < m->n_field; ++i) memory_free(m->fields[i].value);
-  memory_free(m->fields);
-  for (int i = 0; i < m->n_material; ++i) {
+  RELEASE(m->load.supports.item, m->initial.lines);
+  for (int i = 0; i < m->n.field; ++i) memory_free(m->load.fields[i].value);
+  memory_free(m->load.fields);
+  for (int i = 0; i < m->n.material; ++i) {
     law_card_free(&m->materials[i].law);
     elastic_table_free(&m->materials[i].elastic);
   }
-  RELEASE(m->amplitudes, m->points, m->materials, m->sections, m->obstacles,
-          m->moves, m->contacts, m->steps, m->still, m->elem_section, m->job,
-          m->effect_cards, m);
+  RELEASE(m->time.amplitudes, m->time.points, m->materials, m->sections,
+          m->obstacles, m->moves, m->contacts, m->steps, m->reduction.still,
+          m->elem_section, m->name.job, m->effect_cards, m);
 }
 
 void model_find_effects(model *m) { m->effects = effects_called_for(m); }
 
 void model_fit_problem(model *m, int dim, int friction) {
   m->dim = dim;
-  m->problem_friction = friction;
+  m->problem.friction = friction;
   m->effects = EFFECT_CONTACT | (friction ? EFFECT_FRICTION : 0u);
   if (dim > 1) m->effects |= effects_called_for(m) & EFFECT_ESTIMATES;
 }

@@ -217,40 +217,54 @@ typedef enum { CHECK_NONE, CHECK_SOLVERS, CHECK_ALL } solution_check;
 typedef struct step {
   const char *name;
   place at;
-  int kind;                 /* step_kind                             */
-  int form;                 /* step_form                             */
-  const scheme *integrator; /* of *VISCO, else NULL                  */
-  double theta;             /* of the integrator, -                  */
-  int initial;              /* ITERATION=INITIAL                     */
-  int substeps;             /* explicit increments are cut as needed */
-  double tolerance;         /* of strains over elastic ones; 0: dt stays */
-  double start;             /* total time, s                         */
-  double dt, total, dt_min, dt_max; /* s                                     */
-  load_list loads;  /* all in force, those kept from before included        */
-  unsigned renewed; /* bit of each load_kind that OP=NEW ends               */
-  int n_change, cap_change;
-  friction_change *changes; /* [n_change] owned                               */
-  int n_print, cap_print;
-  print_request *prints;
-  int output_frequency; /* HDF5 fields: every n-th increment; 0: last only;
-                           -1: no HDF5                                        */
-  int has_print, has_output;
-  int restart_frequency; /* of JOB.rst.h5, as above; -1: none               */
-  int has_restart;
-  int condensed_frequency; /* of the condensed problems; 0 the last only, -1
-                              none */
-  int check; /* solution_check, comes with *SOLVER                            */
-  int has_accuracy;
-  place accuracy_at, output_at, restart_at; /* of the cards *ACCURACY, ...   */
-  int no_solver_error; /* 1: the error of the solver is not asked for        */
-  int mesh_error, time_error; /* 1: asked for                                 */
-  int time_balanced;          /* 1: TIME=BALANCED                             */
-  double time_share;          /* -, of the error of the mesh                  */
-  int theorems; /* 1: the theorems of CPR98 are checked                       */
-  int balanced; /* TOL=BALANCED                                              */
-  double share; /* -, of the errors it is balanced with                      */
-  solver_choice solver; /* its param is owned by the step it came with        */
-  void *solver_param;   /* owned, or NULL                                     */
+  int kind; /* step_kind */
+  int form; /* step_form */
+  struct {
+    const scheme *integrator; /* of *VISCO, else NULL */
+    double theta;             /* of the integrator, - */
+    int initial;              /* ITERATION=INITIAL */
+    int substeps;             /* explicit increments are cut as needed */
+    double tolerance;         /* of strains over elastic ones; 0: dt stays */
+  } visco;
+  double start;                     /* total time, s */
+  double dt, total, dt_min, dt_max; /* s */
+  load_list loads;  /* all in force, those kept from before included */
+  unsigned renewed; /* bit of each load_kind that OP=NEW ends */
+  struct {
+    int n, cap;
+    friction_change *changes; /* [n] owned */
+  } friction;
+  struct {
+    int n, cap;
+    print_request *requests; /* [n] owned */
+    int given;
+  } print;
+  struct {
+    int frequency; /* HDF5 fields: every n-th increment; 0: last only; -1: no
+                      HDF5 */
+    int condensed; /* the same of the condensed problems */
+    int given;
+    place at;
+  } output;
+  struct {
+    int frequency; /* of JOB.rst.h5, as above; -1: none */
+    int given;
+    place at;
+  } restart;
+  struct {
+    int given;
+    place at;
+    int no_solver;     /* 1: the error of the solver is not asked for */
+    int mesh, time;    /* 1: their errors are */
+    int time_balanced; /* 1: TIME=BALANCED */
+    double time_share; /* -, of the error of the mesh */
+    int theorems;      /* 1: the theorems of CPR98 are checked */
+  } accuracy;
+  int check;            /* solution_check, comes with *SOLVER */
+  int balanced;         /* TOL=BALANCED */
+  double share;         /* -, of the errors it is balanced with */
+  solver_choice solver; /* its param is owned by the step it came with */
+  void *solver_param;   /* owned, or NULL */
   place solver_at;
 } step;
 
@@ -312,52 +326,68 @@ enum { NEGLECT_MAX = 16 };
 typedef struct model {
   deck *deck;
   message_log *log;
-  char *job;         /* name of the deck without folder and .inp              */
-  const char *title; /* first line of *HEADING or ""                          */
-  const char *mesh_file;
-  double mesh_scale;
-  place mesh_at;
-  int has_mesh, has_units;
-  const char *problem_file; /* *CONDENSED PROBLEM, in the place of a mesh     */
-  int problem_type;         /* exchange_type                                  */
-  int problem_friction;     /* 1: some mu > 0; known when it is read          */
-  place problem_at;
-  int has_problem;
-  const char *length_unit, *force_unit, *time_unit; /* labels or NULL         */
-  int n_amplitude, n_material, n_section, n_obstacle, n_contact, n_step,
-      n_points;
-  int cap_amplitude, cap_material, cap_section, cap_obstacle, cap_contact,
-      cap_step, cap_points;
-  amplitude *amplitudes;
-  time_points *points; /* [n_points]                                         */
+  struct {
+    char *job;         /* name of the deck without folder and .inp */
+    const char *title; /* first line of *HEADING or "" */
+  } name;
+  struct {
+    const char *file;
+    double scale;
+    place at;
+    int given;
+  } mesh;
+  struct { /* *CONDENSED PROBLEM, in the place of a mesh */
+    const char *file;
+    int type;     /* exchange_type */
+    int friction; /* 1: some mu > 0; known when it is read */
+    place at;
+    int given;
+  } problem;
+  struct {
+    int given;
+    const char *length, *force, *time; /* labels or NULL */
+  } unit;
+  struct model_count {
+    int amplitude, points, material, section, obstacle, contact, step, field,
+        initial, effect_card;
+  } n, cap; /* of the arrays below; how many there is room for */
+  struct {
+    amplitude *amplitudes;
+    time_points *points;
+    value_table first_step; /* 0 to 1 over the first step; arrays owned */
+  } time;
   material *materials;
   section *sections;
   obstacle *obstacles;
-  struct move *moves; /* [n_obstacle] amplitude names of the obstacles */
+  struct move *moves; /* [n.obstacle] amplitude names of the obstacles */
   contact *contacts;
-  load_list supports; /* *BOUNDARY before the first step                      */
-  int n_field, cap_field;
-  nodal_field *fields; /* [n_field] of all FILE= of *TEMPERATURE             */
-  int n_initial, cap_initial;
-  initial *initials; /* [n_initial] in the order of the deck                 */
-  start_card start;
-  value_table first_step; /* 0 to 1 over the first step; arrays owned         */
+  struct {
+    load_list supports;  /* *BOUNDARY before the first step */
+    nodal_field *fields; /* [n.field] of all FILE= of *TEMPERATURE */
+  } load;
+  struct {
+    initial *lines; /* [n.initial] in the order of the deck */
+    start_card start;
+  } initial;
   step *steps;
-  accuracy_target target;
-  int has_effects, effects_auto; /* *EFFECTS, MODE=AUTO                       */
-  double effects_tol;            /* -                                         */
-  place effects_at;
-  int n_neglected;
-  neglected neglected[NEGLECT_MAX]; /* [n_neglected]                          */
-  unsigned char *still; /* [n_elem] as material.is_still says; NULL: nowhere,
-                           owned                                              */
-  closed_form ref;
-  int n_effect_card, cap_effect_card;
-  effect_card *effect_cards; /* [n_effect_card] in the order of the deck      */
-  unsigned effects; /* bits EFFECT_*, set by model_check                    */
-  int corner_id; /* a contact with nodes of another one before it, or -1      */
-  int dim, ns;   /* from the mesh                                        */
-  int *elem_section; /* [n_elem] section of each element                     */
+  struct {
+    accuracy_target target;
+    closed_form ref;
+  } accuracy;
+  struct {              /* *EFFECTS */
+    int given, is_auto; /* is_auto: MODE=AUTO */
+    double tol;         /* - */
+    place at;
+    int n;
+    neglected row[NEGLECT_MAX]; /* [n] */
+    unsigned char *still;       /* [n_elem] as material.is_still says; NULL:
+                                   nowhere, owned */
+  } reduction;
+  effect_card *effect_cards; /* [n.effect_card] in the order of the deck */
+  unsigned effects;          /* bits EFFECT_*, set by model_check */
+  int corner_id;     /* a contact with nodes of another one before it, or -1 */
+  int dim, ns;       /* from the mesh */
+  int *elem_section; /* [n_elem] section of each element */
 } model;
 
 typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */

@@ -54,10 +54,10 @@ static void write_effects(json *w, const job *j) {
 
 /* What *EFFECTS, MODE=AUTO left out or took back. */
 static void write_neglected(json *w, const model *m) {
-  if (!m->effects_auto) return;
+  if (!m->reduction.is_auto) return;
   json_open(w, "left_out", '[');
-  for (int i = 0; i < m->n_neglected; ++i) {
-    const neglected *n = &m->neglected[i];
+  for (int i = 0; i < m->reduction.n; ++i) {
+    const neglected *n = &m->reduction.row[i];
     json_open(w, NULL, '{');
     json_string(w, "effect", effect_name(n->bit));
     json_string(w, "why", n->why);
@@ -124,7 +124,7 @@ static void write_accuracy(json *w, const job *j) {
   write_saved(w, j);
   if (j->m->effects & EFFECT_REFERENCE)
     json_real(w, "effectivity", job_effectivity(j));
-  if (j->m->n_contact > 0)
+  if (j->m->n.contact > 0)
     json_real(w, "penetration_worst", run->penetration_worst);
   json_real(w, "energy_defect_worst", run->defect_worst);
   if (run->facts_known) json_real(w, "condition", run->facts.condition);
@@ -147,9 +147,9 @@ static const double *write_contact(json *w, const model *m, int id,
 static void write_contacts(json *w, const job *j) {
   const size_t size = job_end_size(j->m);
   json_open(w, "contacts", '[');
-  for (int k = 0; k < j->m->n_step; ++k) {
+  for (int k = 0; k < j->m->n.step; ++k) {
     const double *end = j->run->ends + (size_t)k * size, *value = end + 2;
-    for (int i = 0; i < j->m->n_contact && end[0] > 0; ++i) {
+    for (int i = 0; i < j->m->n.contact && end[0] > 0; ++i) {
       json_open(w, NULL, '{');
       json_count(w, "step", k + 1);
       json_count(w, "increment", end[0]);
@@ -299,9 +299,9 @@ static void write_increment(json *w, const model *m,
   json_count(w, "attempt", s->attempt);
   json_real(w, "time", s->t);
   json_real(w, "dt", s->dt);
-  json_count(w, "open", s->n_open);
-  json_count(w, "slip", s->n_slip);
-  json_count(w, "stick", s->n_stick);
+  json_count(w, "open", s->count.open);
+  json_count(w, "slip", s->count.slip);
+  json_count(w, "stick", s->count.stick);
   json_count(w, "iterations", s->iterations);
   json_real(w, "residual", s->residual);
   if (s->mesh_error.asked)
@@ -372,8 +372,8 @@ static void write_all(FILE *f, const void *what) {
   json_open(w, NULL, '{');
   json_string(w, "program", "protis");
   json_string(w, "version", j->o->version);
-  json_string(w, "job", j->m->job);
-  json_string(w, "title", j->m->title);
+  json_string(w, "job", j->m->name.job);
+  json_string(w, "title", j->m->name.title);
   json_string(w, "blas_kernel", j->o->kernel);
   json_count(w, "threads", j->o->threads);
   write_exit(w, j->run);

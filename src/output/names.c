@@ -48,7 +48,7 @@ static status spare_condensed(const model *m, const char *dir) {
   if (folder == NULL && (errno == ENOENT || errno == ENOTDIR)) return OK;
   if (folder == NULL) TRY(text_failed(dir, "read", errno));
   for (struct dirent *e; (e = readdir(folder)) != NULL;) {
-    if (!is_condensed(e->d_name, m->job)) continue;
+    if (!is_condensed(e->d_name, m->name.job)) continue;
     memory_free(path);
     NEW(path, strlen(dir) + strlen(e->d_name) + 2);
     sprintf(path, "%s/%s", dir, e->d_name);
@@ -65,7 +65,7 @@ status output_spare_inputs(const model *m, const char *dir) {
   if (m->deck == NULL) return OK;
   for (size_t k = 0; k < sizeof results / sizeof *results; ++k) {
     memory_free(path);
-    path = text_path(dir, m->job, results[k]);
+    path = text_path(dir, m->name.job, results[k]);
     if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
     PASS(spare(m->deck, path));
   }

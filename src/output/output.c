@@ -30,7 +30,7 @@ static void release(output *o) {
 /* What an earlier run left must not be taken for a result of this one. */
 static status remove_old(const output *o, const char *suffix) {
   status st = OK;
-  char *path = text_path(o->o.dir, o->m->job, suffix);
+  char *path = text_path(o->o.dir, o->m->name.job, suffix);
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
   TRY(file_clear(path));
 done:
@@ -42,7 +42,7 @@ done:
 static status open_text(const output *o, const char *suffix, long length,
                         text_file *t) {
   status st = OK;
-  char *path = text_path(o->o.dir, o->m->job, suffix);
+  char *path = text_path(o->o.dir, o->m->name.job, suffix);
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
   if (length < 0)
     TRY(text_open(t, path, 1));
@@ -99,8 +99,8 @@ done:
 }
 
 static status open_all(output *o) {
-  o->json = text_path(o->o.dir, o->m->job, "json");
-  o->xdmf = text_path(o->o.dir, o->m->job, "xdmf");
+  o->json = text_path(o->o.dir, o->m->name.job, "json");
+  o->xdmf = text_path(o->o.dir, o->m->name.job, "xdmf");
   if (o->json == NULL || o->xdmf == NULL)
     RAISE(ERR_MEMORY, "memory exhausted: name of a file");
   return o->o.from == NULL ? open_new(o) : open_earlier(o);
@@ -118,8 +118,8 @@ status output_open(const model *m, const mesh *msh, const output_options *opt,
   o->attempt = 1;
   o->run.message = "";
   o->progress = opt->progress && isatty(STDERR_FILENO);
-  NEW(o->run.ends, (size_t)m->n_step * job_end_size(m));
-  TRY(plan_new(m, m->has_problem ? NULL : msh, opt->n_problem, &o->plan));
+  NEW(o->run.ends, (size_t)m->n.step * job_end_size(m));
+  TRY(plan_new(m, m->problem.given ? NULL : msh, opt->n_problem, &o->plan));
   TRY(open_all(o));
   *out = o;
 done:
@@ -156,7 +156,7 @@ static status write_last(const output *o) {
   if (o->h5 == NULL) return OK;
   hdf5_shape_of(o->h5, &shape);
   for (int k = 0; k < 2; ++k) {
-    OWNED char *path = text_path(o->o.dir, o->m->job, names[k]);
+    OWNED char *path = text_path(o->o.dir, o->m->name.job, names[k]);
     if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
     PASS(xdmf_write_last(&shape, k, path));
   }
@@ -166,7 +166,7 @@ static status write_last(const output *o) {
 /* Without memory there are none. */
 static void make_closing(const output *o) {
   const job j = job_of(o);
-  char *path = text_path(o->o.dir, o->m->job, "lst"), **to = o->o.closing;
+  char *path = text_path(o->o.dir, o->m->name.job, "lst"), **to = o->o.closing;
   size_t size = 0;
   FILE *f = to != NULL && o->progress ? open_memstream(to, &size) : NULL;
   if (f != NULL && path != NULL) {

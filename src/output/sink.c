@@ -84,11 +84,10 @@ static status write_condensed(output *o, const state *s) {
   char name[512], text[200];
   char *path = NULL;
   if (s->contacts.problem == NULL ||
-      !frequency_shows(now->condensed_frequency, s->increment_no,
-                       s->end_of_step))
+      !frequency_shows(now->output.condensed, s->increment_no, s->end_of_step))
     return OK;
   timer_enter(STAGE_FCLIB);
-  snprintf(name, sizeof name, "%s_condensed_%05d", o->m->job,
+  snprintf(name, sizeof name, "%s_condensed_%05d", o->m->name.job,
            o->run.n_increment + 1);
   snprintf(text, sizeof text, "Protis %s: step %d, increment %d, time %.9g",
            o->o.version != NULL ? o->o.version : "", s->step_no,
@@ -96,7 +95,7 @@ static status write_condensed(output *o, const state *s) {
   path = text_path(o->o.dir, name, "h5");
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
   TRY(fclib_write(s->contacts.problem, s->settled ? s->contacts.uc : NULL,
-                  s->contacts.rc, o->m->title, text, path));
+                  s->contacts.rc, o->m->name.title, text, path));
 done:
   memory_free(path);
   timer_leave(STAGE_FCLIB);

@@ -123,7 +123,7 @@ static double increments_left(const model *m, const state *s) {
   const double rest = now->start + now->total - s->t;
   double n = fmax(0.0, ceil(rest / fmax(s->dt, now->dt_min) * (1 - 1e-9)));
   if (s->end_of_step || !(rest > 1e-9 * now->total)) n = 0.0;
-  for (int i = s->step_no; i < m->n_step; ++i)
+  for (int i = s->step_no; i < m->n.step; ++i)
     n += ceil(step_increments(&m->steps[i]) * (1 - 1e-9));
   return n;
 }
@@ -135,7 +135,7 @@ void progress_show(const model *m, const state *s, double seconds, int done) {
   const double per = rest < 120 ? 1 : rest < 7200 ? 60 : 3600;
   snprintf(text, sizeof text,
            "step %d of %d, time %.4g, increment %d of %.0f, %.0f %s left",
-           s->step_no, m->n_step, s->t, s->total_no, s->total_no + left,
+           s->step_no, m->n.step, s->t, s->total_no, s->total_no + left,
            ceil(rest / per), unit);
   progress_line(text);
 }
@@ -170,16 +170,16 @@ static const double *close_contact(const job *j, int id, const double *value,
 static void close_contacts(const job *j, FILE *f) {
   const run_summary *run = j->run;
   const increment_summary *last = &run->increments[run->n_increment - 1];
-  const int shown = j->m->n_contact < MOST_SHOWN ? j->m->n_contact : MOST_SHOWN;
+  const int shown = j->m->n.contact < MOST_SHOWN ? j->m->n.contact : MOST_SHOWN;
   const double *value =
       run->ends + (size_t)(last->step_no - 1) * job_end_size(j->m) + 2;
   for (int i = 0; i < shown; ++i) value = close_contact(j, i, value, f);
-  if (shown < j->m->n_contact)
+  if (shown < j->m->n.contact)
     fprintf(f, "%-9s %d contacts more: JOB.json\n", "",
-            j->m->n_contact - shown);
+            j->m->n.contact - shown);
   if (shown == 0)
-    fprintf(f, "%-9s open %d, slip %d, stick %d\n", "contact", last->n_open,
-            last->n_slip, last->n_stick);
+    fprintf(f, "%-9s open %d, slip %d, stick %d\n", "contact", last->count.open,
+            last->count.slip, last->count.stick);
 }
 
 /* The worst of the estimates; "-": not asked for, or unknown. */

@@ -22,7 +22,7 @@ const column *job_end_column(const model *m, const column *c) {
 size_t job_end_size(const model *m) {
   size_t n = 0;
   for (const column *c = NULL; (c = job_end_column(m, c)) != NULL;) ++n;
-  return 2 + n * (size_t)m->n_contact;
+  return 2 + n * (size_t)m->n.contact;
 }
 
 /* The contacts of the last increment so far of the step. */
@@ -31,7 +31,7 @@ static void remember_contacts(output *o, const state *s) {
   double *to = o->run.ends + (size_t)(s->step_no - 1) * job_end_size(o->m);
   *to++ = s->increment_no;
   *to++ = s->t;
-  for (int i = 0; i < o->m->n_contact; ++i) {
+  for (int i = 0; i < o->m->n.contact; ++i) {
     for (const column *c = NULL; (c = job_end_column(o->m, c)) != NULL;)
       *to++ = column_ready(c, s) ? c->value(&v, i, c->part) : NAN;
     if (s->contacts.totals != NULL)
@@ -74,9 +74,9 @@ status output_remember(output *o, const state *s) {
                            .attempt = s->attempt,
                            .t = s->t,
                            .dt = s->dt,
-                           .n_open = s->contacts.n_open,
-                           .n_slip = s->contacts.n_slip,
-                           .n_stick = s->contacts.n_stick,
+                           .count.open = s->contacts.n_open,
+                           .count.slip = s->contacts.n_slip,
+                           .count.stick = s->contacts.n_stick,
                            .iterations = s->report.iterations,
                            .settled = s->settled,
                            .after_miss = s->errors.after_miss,

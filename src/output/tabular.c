@@ -181,18 +181,18 @@ status tabular_increment(tabular *t, const state *s) {
   if (t == NULL) return OK;
   view v = {t->m, t->msh, s};
   const step *now = &t->m->steps[s->step_no - 1];
-  for (int i = 0; i < now->n_print; ++i)
-    if (print_shows(&now->prints[i], now, s->t,
+  for (int i = 0; i < now->print.n; ++i)
+    if (print_shows(&now->print.requests[i], now, s->t,
                     s->within ? -1 : s->increment_no, s->end_of_step))
-      PASS(write_timed(t, &v, &now->prints[i]));
+      PASS(write_timed(t, &v, &now->print.requests[i]));
   return OK;
 }
 
 static unsigned tables_asked(const model *m) {
   unsigned bits = 0;
-  for (int i = 0; i < m->n_step; ++i)
-    for (int k = 0; k < m->steps[i].n_print; ++k)
-      bits |= (unsigned)m->steps[i].prints[k].table;
+  for (int i = 0; i < m->n.step; ++i)
+    for (int k = 0; k < m->steps[i].print.n; ++k)
+      bits |= (unsigned)m->steps[i].print.requests[k].table;
   return bits;
 }
 
@@ -220,7 +220,7 @@ status tabular_open(const model *m, const mesh *msh, const char *dir,
   unsigned tables = tables_asked(m);
   *out = NULL;
   if (tables == 0) return OK;
-  path = text_path(dir, m->job, "dat");
+  path = text_path(dir, m->name.job, "dat");
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of the tables");
   NEW(t, 1);
   t->m = m;

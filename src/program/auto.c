@@ -13,7 +13,7 @@ typedef struct watcher {
 
 static status see_increment(void *ctx, const state *s) {
   watcher *w = ctx;
-  PASS(reduction_measure(w->n, s, w->m->neglected));
+  PASS(reduction_measure(w->n, s, w->m->reduction.row));
   w->refuted = reduction_refuted(w->m);
   if (w->refuted)
     RAISE(ERR_UNSETTLED, "time %g: what was left out matters", s->t);
@@ -50,7 +50,7 @@ done:
 /* Rows that are left out. */
 static int left_out(const model *m) {
   int n = 0;
-  for (int i = 0; i < m->n_neglected; ++i) n += !m->neglected[i].back;
+  for (int i = 0; i < m->reduction.n; ++i) n += !m->reduction.row[i].back;
   return n;
 }
 

@@ -81,8 +81,8 @@ static status run_trial(job_input *in, trial *t, double *eta) {
   t->in = in;
   t->eta = eta;
   t->n_elem = in->msh->n_elem;
-  for (int i = 0; i < in->m->n_step; ++i)
-    in->m->steps[i].mesh_error = in->m->steps[i].time_error = 1;
+  for (int i = 0; i < in->m->n.step; ++i)
+    in->m->steps[i].accuracy.mesh = in->m->steps[i].accuracy.time = 1;
   in->m->effects |= EFFECT_MESH_ERROR | EFFECT_TIME_ERROR;
   PASS(history_run(in->m, in->msh, &sink, &unsettled));
   t->bytes = (double)memory_peak();

@@ -55,7 +55,7 @@ static void print_sizes(const model *m, const mesh *msh) {
   for (int i = 0; i < msh->n_group; ++i)
     printf("group     %-20s dimension %d, %d nodes\n", msh->group[i].name,
            msh->group[i].dim, msh->group[i].n_node);
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.step; ++i)
     printf("step      %d %s: %s, time %g to %g, %.0f increments\n", i + 1,
            m->steps[i].name, kinds[m->steps[i].kind], m->steps[i].start,
            m->steps[i].start + m->steps[i].total,
@@ -119,7 +119,7 @@ status inform_check(const model *m, const mesh *msh) {
   PASS(print_memory(m, msh));
   PASS(print_plan(m, msh, 0));
   /* Supports are only lost where *BOUNDARY, OP=NEW ends some. */
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.step; ++i)
     if (i == 0 || m->steps[i].renewed >> LOAD_FIXING & 1u)
       PASS(print_motions(m, msh, i));
   return OK;

@@ -20,8 +20,8 @@
 /* --safe: a mesh that is a program is not run. */
 static status check_safe_mesh(const model *m) {
   if (input_is_confined() && job_is_geo(m))
-    message_add(m->log, P5021, &m->mesh_at,
-                "--safe: the mesh must be a .msh, not \"%s\"", m->mesh_file);
+    message_add(m->log, P5021, &m->mesh.at,
+                "--safe: the mesh must be a .msh, not \"%s\"", m->mesh.file);
   return message_status(m->log, ERR_DECK);
 }
 
@@ -39,16 +39,16 @@ static status read_mesh(const job_mesh *other, job_input *in) {
       numbers[n++] =
           (mesh_number){m->deck->symbols[i].typed, m->deck->symbols[i].value};
   timer_enter(STAGE_MESH);
-  if (m->target.percent > 0.0 && job_is_geo(m)) mesh_gmsh_load();
+  if (m->accuracy.target.percent > 0.0 && job_is_geo(m)) mesh_gmsh_load();
   in->library_cpu = timer_cpu() - cpu;
   st =
-      mesh_read_gmsh(&(mesh_source){.file = m->mesh_file,
-                                    .scale = m->mesh_scale,
+      mesh_read_gmsh(&(mesh_source){.file = m->mesh.file,
+                                    .scale = m->mesh.scale,
                                     .n_number = n,
                                     .numbers = numbers,
                                     .old = other != NULL ? other->old : NULL,
                                     .size = other != NULL ? other->size : NULL},
-                     &m->mesh_at, m->log, &in->msh);
+                     &m->mesh.at, m->log, &in->msh);
   timer_leave(STAGE_MESH);
 done:
   memory_free(numbers);
@@ -59,7 +59,7 @@ done:
 static status read_problem(model *m, exchange_problem **problem) {
   status st = OK;
   timer_enter(STAGE_PROBLEM);
-  st = exchange_read(m->problem_file, m->problem_type, &m->problem_at, m->log,
+  st = exchange_read(m->problem.file, m->problem.type, &m->problem.at, m->log,
                      problem);
   timer_leave(STAGE_PROBLEM);
   if (st == OK)
@@ -76,7 +76,7 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
   timer_leave(STAGE_DECK);
   TRY(st);
   TRY(message_status(log, ERR_DECK));
-  if (in->m->has_problem) {
+  if (in->m->problem.given) {
     TRY(read_problem(in->m, &in->problem));
   } else {
     if (other != NULL && other->same != NULL)
@@ -96,7 +96,7 @@ status job_foresee(const job_input *in, int n) {
 }
 
 int job_is_geo(const model *m) {
-  return m->mesh_file != NULL && mesh_is_program(m->mesh_file);
+  return m->mesh.file != NULL && mesh_is_program(m->mesh.file);
 }
 
 void job_input_free(job_input *in) {

@@ -135,8 +135,8 @@ static status tell_warnings(const job_input *in, archive *a) {
 
 static status file_names(const command *c, const model *m, char **path,
                          char **before) {
-  *path = text_path(c->dir, m->job, "rst.h5");
-  *before = text_path(c->dir, m->job, "rst.old.h5");
+  *path = text_path(c->dir, m->name.job, "rst.h5");
+  *before = text_path(c->dir, m->name.job, "rst.old.h5");
   if (*path == NULL || *before == NULL)
     RAISE(ERR_MEMORY, "memory exhausted: name of the restart file");
   return OK;
@@ -431,12 +431,12 @@ status restart_read(const command *c, const job_input *in, archive **out) {
     FAIL(ERR_DECK,
          "--restart: *CONDENSED PROBLEM is one increment, there is "
          "nothing to go on with");
-  if (in->m->target.percent > 0.0)
+  if (in->m->accuracy.target.percent > 0.0)
     FAIL(ERR_DECK,
          "--restart: *ACCURACY, TARGET= makes passes of the whole "
          "run; such a job starts at its beginning");
-  for (int i = 0; i < in->m->n_step; ++i)
-    if (in->m->steps[i].theorems)
+  for (int i = 0; i < in->m->n.step; ++i)
+    if (in->m->steps[i].accuracy.theorems)
       FAIL(ERR_DECK,
            "--restart: the theorems of *ACCURACY are checked over a "
            "whole run; such a job starts at its beginning");

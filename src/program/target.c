@@ -252,7 +252,7 @@ done:
 
 /* Increments and tolerances of the deck times the factors of the pass. */
 static void adjust(const pass *p, model *m) {
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     m->steps[i].dt *= p->dt;
     m->steps[i].dt_min *= p->dt;
     m->steps[i].solver.tol = fmax(m->steps[i].solver.tol * p->tol, LEAST_TOL);
@@ -310,7 +310,7 @@ done:
 
 status target_reach(const command *c, job_input *in, int *unsettled) {
   status st = OK;
-  const accuracy_target target = in->m->target;
+  const accuracy_target target = in->m->accuracy.target;
   pass p = {.c = c, .target = &target, .in = in, .dt = 1.0, .tol = 1.0};
   for (;;) {
     TRY(run_pass(&p, unsettled));

@@ -17,8 +17,8 @@ static status new_kinds(const run *r, flow *x, int *kind_of) {
   status st = OK;
   const model *m = r->m;
   x->ns = m->ns;
-  NEW(x->kind, m->n_section);
-  for (int i = 0; i < m->n_section; ++i) {
+  NEW(x->kind, m->n.section);
+  for (int i = 0; i < m->n.section; ++i) {
     const material *mat = &m->materials[m->sections[i].material_id];
     law_elastic elastic;
     kind_of[i] = -1;
@@ -82,8 +82,8 @@ done:
 
 static status initial_state(const run *r, visco *v) {
   status st = OK;
-  for (int i = 0; i < r->m->n_initial; ++i) {
-    const initial *c = &r->m->initials[i];
+  for (int i = 0; i < r->m->n.initial; ++i) {
+    const initial *c = &r->m->initial.lines[i];
     if (c->type == INITIAL_STRAIN || c->type == INITIAL_INTERNAL)
       TRY(take_initial(r, v, c));
   }
@@ -98,7 +98,7 @@ status visco_new(run *r) {
   timer_enter(STAGE_INELASTIC);
   NEW(v, 1);
   r->strains.visco = v;
-  NEW(kind_of, r->m->n_section);
+  NEW(kind_of, r->m->n.section);
   TRY(new_kinds(r, &v->x, kind_of));
   TRY(new_points(r, v, kind_of));
   TRY(flow_state_new(&v->x, &v->old));

@@ -33,7 +33,7 @@ static void find_reactions(run *r, int known) {
 
 /* Stresses that an output shows, or that only an error is told from. */
 static void find_stresses(run *r, int shown) {
-  stage s = r->step->mesh_error ? STAGE_MESH_ERROR : STAGE_REFERENCE;
+  stage s = r->step->accuracy.mesh ? STAGE_MESH_ERROR : STAGE_REFERENCE;
   if (shown) s = STAGE_STRESS;
   timer_enter(s);
   domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
@@ -124,14 +124,14 @@ static void add_node(const run *r, int i) {
 
 static void find_totals(run *r) {
   memset(r->result.totals, 0,
-         (size_t)r->m->n_contact * sizeof *r->result.totals);
+         (size_t)r->m->n.contact * sizeof *r->result.totals);
   for (int i = 0; i < r->nodes.n; ++i) add_node(r, i);
 }
 
 /* Torque of the contacts about their axes; one taken from an obstacle is where
  * MOVE has brought it. */
 static void find_torques(run *r) {
-  for (int i = 0; i < r->m->n_contact && r->result.torque != NULL; ++i) {
+  for (int i = 0; i < r->m->n.contact && r->result.torque != NULL; ++i) {
     const contact *c = &r->m->contacts[i];
     const contact_total *t = &r->result.totals[i];
     const double *f = t->force;
@@ -154,7 +154,7 @@ static status relaxed_energy(const run *r, double *kept) {
   const int ns = r->m->ns;
   int any = 0;
   *kept = 0.0;
-  for (int i = 0; i < r->m->n_material; ++i)
+  for (int i = 0; i < r->m->n.material; ++i)
     any |= r->m->materials[i].is_relaxed;
   if (!any) goto done;
   NEW(sigma, (size_t)ns * (size_t)r->msh->n_elem);
@@ -224,12 +224,12 @@ status result_evaluate(run *r, int due) {
   status st = OK;
   unsigned effects = r->m->effects;
   int shown = (effects & EFFECT_STRESS) && due;
-  int needed = r->step->mesh_error || r->m->ref.has_stress;
+  int needed = r->step->accuracy.mesh || r->m->accuracy.ref.has_stress;
   if (shown || (needed && !(effects & EFFECT_REACTION)))
     find_stresses(r, shown);
   if (effects & EFFECT_REACTION) find_reactions(r, shown);
   if (r->nodes.n > 0) find_contact(r);
-  if (r->m->n_contact > 0) find_totals(r);
+  if (r->m->n.contact > 0) find_totals(r);
   find_torques(r);
   if (r->course.relaxing)
     result_start(r, &r->now);

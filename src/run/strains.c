@@ -24,8 +24,8 @@ const double *run_elasticity(const run *r, int elem_id) {
 
 size_t strains_kept(const run *r) {
   int all = r->strains.temperature0 != NULL;
-  for (int i = 0; i < r->m->n_initial; ++i) /* the first work is from zero    */
-    all |= r->m->initials[i].type == INITIAL_STRAIN;
+  for (int i = 0; i < r->m->n.initial; ++i) /* the first work is from zero    */
+    all |= r->m->initial.lines[i].type == INITIAL_STRAIN;
   return all ? at(r, r->strains.eigen.n) : 0;
 }
 

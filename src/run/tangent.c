@@ -67,7 +67,7 @@ static status constant_domain(run *r, const flow_tangent *law, domain *d) {
   v->E_is_fresh = 0;
   memcpy(v->E, r->body.moduli.E,
          square * (size_t)r->body.moduli.n * sizeof *v->E);
-  for (int i = 0; i < r->m->n_section; ++i) {
+  for (int i = 0; i < r->m->n.section; ++i) {
     const material *mat = &r->m->materials[r->m->sections[i].material_id];
     if (mat->law.ops == NULL) continue;
     memcpy(v->E + square * (size_t)i, law->D + square * (size_t)kind++,
@@ -89,7 +89,7 @@ static status factor_constant(run *r, int again, const domain *d, matrices *m) {
   const size_t square = visco_at(r, r->m->ns);
   status st = again ? factor_again(d, m) : factor(d, m);
   if (st != ERR_SINGULAR) return st;
-  for (int i = 0; i < r->m->n_section; ++i) {
+  for (int i = 0; i < r->m->n.section; ++i) {
     const size_t at = square * (size_t)i;
     const material *mat = &r->m->materials[r->m->sections[i].material_id];
     for (size_t k = at; k < at + square && mat->law.ops != NULL; ++k)

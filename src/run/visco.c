@@ -101,15 +101,15 @@ static status advance(run *r, double t) {
   const flow_body body = {r, equilibrium_of, begin, linear, constant};
   scheme_step p = {.t = t,
                    .dt = step_length(r, t),
-                   .theta = r->step->theta,
-                   .initial = r->step->initial,
+                   .theta = r->step->visco.theta,
+                   .initial = r->step->visco.initial,
                    .tol = r->step->solver.tol};
   v->result = (scheme_result){.settled = 1, .error = -1.0};
   v->old.t = r->old.t;
   v->sums.known = 0;
   const scheme_call call = {&v->x,   &p,      &body,     v->work,
                             &v->old, &v->now, &v->result};
-  TRY(r->step->integrator->advance(&call));
+  TRY(r->step->visco.integrator->advance(&call));
   v->now.t = t;
   if (v->sums.known && r->now.e0 != NULL)
     r->strains.eigen.e0 = r->now.e0;
@@ -125,12 +125,12 @@ status visco_between(run *r, double t, flow_state *s, double *dissipated) {
   status st = OK;
   visco *v = r->strains.visco;
   const scheme_step p = {
-      .t = r->now.t, .dt = r->now.t - v->old.t, .theta = r->step->theta};
+      .t = r->now.t, .dt = r->now.t - v->old.t, .theta = r->step->visco.theta};
   const scheme_call call = {&v->x,   &p,      NULL,      v->work,
                             &v->old, &v->now, &v->result};
   timer_enter(STAGE_INELASTIC);
   s->t = t;
-  TRY(r->step->integrator->between(&call, s));
+  TRY(r->step->visco.integrator->between(&call, s));
   TRY(scheme_dissipated(&call, t, dissipated));
 done:
   timer_leave(STAGE_INELASTIC);
@@ -247,10 +247,10 @@ done:
 /* The difference to the halves, with Richardson's factor. */
 static double halves_error(const run *r) {
   visco *v = r->strains.visco;
-  double power =
-      ldexp(1.0, r->step->theta == 0.5 && r->step->integrator->has_theta
-                     ? 2
-                     : r->step->integrator->order);
+  double power = ldexp(
+      1.0, r->step->visco.theta == 0.5 && r->step->visco.integrator->has_theta
+               ? 2
+               : r->step->visco.integrator->order);
   size_t n = visco_at(r, v->x.n);
   for (size_t i = 0; i < n; ++i) v->fine[i] -= v->now.ei[i];
   return power / (power - 1.0) * flow_norm(&v->x, v->fine);
@@ -272,7 +272,7 @@ done:
 static status try_step(run *r, double t, double *error) {
   status st = OK;
   visco *v = r->strains.visco;
-  int estimates = r->step->integrator->estimates;
+  int estimates = r->step->visco.integrator->estimates;
   *error = HUGE_VAL;
   if (!estimates) TRY(two_halves(r, t));
   if (!estimates && r->solving.report.outcome <= 0) goto done;

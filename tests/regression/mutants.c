@@ -151,8 +151,8 @@ static status check_deck(const char *path, message_log *log, mesh *msh) {
   int n;
   status st = deck_read(path, 0, NULL, log, &d);
   if (st == OK || st == ERR_DECK) st = model_from_deck(d, log, &m);
-  if (st == OK && m->problem_file == NULL) st = model_check(m, msh);
-  if (st == OK && m->problem_file == NULL) {
+  if (st == OK && m->problem.file == NULL) st = model_check(m, msh);
+  if (st == OK && m->problem.file == NULL) {
     st = history_motions(m, msh, 0, &n, &list);
     echo_nowhere(m);
   }

@@ -100,9 +100,9 @@ static void make_step(made_up *run, int n_increment) {
   *s = (step){.kind = STEP_QUASISTATIC, .dt = 0.5, .total = 0.5 * n_increment};
   s->loads.n = 1;
   s->loads.item = &run->support;
-  s->n_print = 8;
-  s->prints = run->prints;
-  s->output_frequency = 1;
+  s->print.n = 8;
+  s->print.requests = run->prints;
+  s->output.frequency = 1;
 }
 
 static void make_model(made_up *run, int n_increment) {
@@ -115,9 +115,9 @@ static void make_model(made_up *run, int n_increment) {
   run->body =
       (section){.elset = "BODY", .material_name = "STEEL", .material_id = -1};
   run->body.kin = m->dim == 3 ? SOLID_3D : PLANE_STRAIN;
-  m->job = (char *)"block";
-  m->title = "a made-up <block> & \"more\"";
-  m->n_section = m->n_contact = m->n_step = 1;
+  m->name.job = (char *)"block";
+  m->name.title = "a made-up <block> & \"more\"";
+  m->n.section = m->n.contact = m->n.step = 1;
   m->sections = &run->body;
   m->contacts = &run->foot;
   m->steps = run->steps;

@@ -117,9 +117,9 @@ START_TEST(contact_signs_and_directions) {
   ck_assert(value_of(made, PER_CONTACT_NODE, "f_y", 4) == 2);
   ck_assert(value_of(made, PER_CONTACT_NODE, "f_z", 4) == -0.25);
   ck_assert(value_of(made, PER_CONTACT, "normal", 0) == 2.5);
-  made->m.n_contact = 2; /* the column is there for several               */
+  made->m.n.contact = 2; /* the column is there for several               */
   ck_assert(value_of(made, PER_CONTACT_NODE, "contact_no", 4) == 1);
-  made->m.n_contact = 1;
+  made->m.n.contact = 1;
   made_up_free(made);
 }
 END_TEST
@@ -391,7 +391,7 @@ START_TEST(components_are_those_of_their_letters) {
 END_TEST
 
 START_TEST(units_are_composed_from_the_labels) {
-  model m = {.length_unit = "mm", .force_unit = "N"};
+  model m = {.unit.length = "mm", .unit.force = "N"};
   char text[80], tiny[4];
   column_unit("force/length^2", &m, text, sizeof text);
   ck_assert_str_eq(text, "N/mm^2");

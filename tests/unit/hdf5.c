@@ -183,8 +183,8 @@ START_TEST(mesh_and_surface_stand_in_the_file) {
   folder_new(dir);
   made_up *made = made_up_new(3, 2, 1);
   const mesh *m = made->msh;
-  made->m.length_unit = "mm";
-  made->m.force_unit = "N";
+  made->m.unit.length = "mm";
+  made->m.unit.force = "N";
   ck_assert_int_eq(write_file(made, dir, 1, 1), OK);
   double *x = dataset(dir, "/mesh/nodes", dims);
   for (int i = 0; i < 3 * m->n_node; ++i) ck_assert(x[i] == m->x[i]);
@@ -209,7 +209,7 @@ START_TEST(mesh_and_surface_stand_in_the_file) {
   free(points);
   free(faces);
   attribute_is(dir, "/", "version", "1.2.3");
-  attribute_is(dir, "/", "title", made->m.title);
+  attribute_is(dir, "/", "title", made->m.name.title);
   attribute_is(dir, "/contact/pressure", "unit", "N/mm^2");
   attribute_is(dir, "/history/strain_energy", "unit", "N*mm");
   made_up_free(made);
@@ -228,7 +228,7 @@ START_TEST(contacts_have_their_nodes_and_faces) {
     made_up *made = made_up_new(dim, 2, 1);
     const mesh *m = made->msh;
     contact three[3];
-    made->m.n_contact = 3;
+    made->m.n.contact = 3;
     made->m.contacts = three;
     for (int c = 0; c < 3; ++c) {
       three[c] = made->foot;
@@ -350,14 +350,14 @@ START_TEST(frequency_chooses_the_records) {
   int dims[2];
   folder_new(dir);
   made_up *made = made_up_new(2, 2, 5);
-  made->steps[0].output_frequency = 2;
+  made->steps[0].output.frequency = 2;
   ck_assert_int_eq(write_file(made, dir, 5, 1), OK);
   double *total = dataset(dir, "/fields/total", dims);
   ck_assert_int_eq(dims[0], 3);
   ck_assert(total[0] == 2 && total[1] == 4 && total[2] == 5);
   free(total);
   rows_are(dir, 5);
-  made->steps[0].output_frequency = -1;
+  made->steps[0].output.frequency = -1;
   hdf5_file *h = NULL;
   ck_assert_int_eq(hdf5_open(&made->m, made->msh, &plain, NULL, &h), OK);
   ck_assert_ptr_null(h);
@@ -390,7 +390,7 @@ START_TEST(scene_without_contact_has_no_surface) {
   output_options o = plain;
   o.dir = dir;
   made->m.effects = 0;
-  made->m.n_contact = 0;
+  made->m.n.contact = 0;
   made->s.contacts.surface = NULL;
   ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, NULL, &h), OK);
   made_up_advance(made, 1);

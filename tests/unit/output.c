@@ -259,7 +259,7 @@ START_TEST(json_is_valid_whatever_the_texts_and_numbers) {
   made_up *made = made_up_new(2, 2, 2);
   output_options o = quiet(dir);
   output *out = NULL;
-  made->m.title =
+  made->m.name.title =
       "tab\t quote\" back\\ \xC3\xA9 latin \xE9 bad \xED\xA0\x80\x01";
   made->facts.condition = INFINITY;
   ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
@@ -359,7 +359,7 @@ START_TEST(files_of_an_earlier_run_do_not_stay) {
   output_options o = quiet(dir);
   output *out = NULL;
   ck_assert_int_eq(run(made, &o, 2), OK);
-  made->steps[0].n_print = 0;
+  made->steps[0].print.n = 0;
   ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
   const char *const gone[] = {"block.dat", "block.xdmf", "block.json"};
   for (int i = 0; i < 3; ++i)

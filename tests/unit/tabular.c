@@ -146,9 +146,9 @@ END_TEST
 
 START_TEST(labels_stand_in_the_header) {
   made_up *made = made_up_new(2, 1, 1);
-  made->m.length_unit = "mm";
-  made->m.force_unit = "kN";
-  made->m.time_unit = "s";
+  made->m.unit.length = "mm";
+  made->m.unit.force = "kN";
+  made->m.unit.time = "s";
   char *text = write_tables(made, 1);
   ck_assert_ptr_nonnull(strstr(text, " pressure[kN/mm^2]"));
   ck_assert_ptr_nonnull(strstr(text, " strain_energy[kN*mm]"));
@@ -247,7 +247,7 @@ END_TEST
 START_TEST(no_print_no_file) {
   made_up *made = made_up_new(2, 1, 1);
   tabular *t = NULL;
-  made->steps[0].n_print = 0;
+  made->steps[0].print.n = 0;
   ck_assert_int_eq(tabular_open(&made->m, made->msh, "/nowhere", -1, &t), OK);
   ck_assert_ptr_null(t);
   ck_assert_int_eq(tabular_increment(t, &made->s), OK);

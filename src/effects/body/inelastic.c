@@ -21,11 +21,12 @@ static const double ROUNDING = 0x1p-48; /* -, of the time                     */
 /* The next increment after one of length dt with this error; implicit
  * integrators keep to halves and doubles, which they have factored. */
 static double next_length(const step *s, double dt, double error) {
-  const scheme *of = s->integrator;
+  const scheme *of = s->visco.integrator;
   int order = of->estimates ? 1 : of->order;
   double factor = 4.0;
-  if (s->theta == 0.5 && of->has_theta) order = 2;
-  if (error > 0.0) factor = 0.9 * pow(s->tolerance / error, 1.0 / (order + 1));
+  if (s->visco.theta == 0.5 && of->has_theta) order = 2;
+  if (error > 0.0)
+    factor = 0.9 * pow(s->visco.tolerance / error, 1.0 / (order + 1));
   factor = fmin(4.0, fmax(0.2, factor));
   if (of->limit == 0.0) factor = ldexp(1.0, (int)floor(log2(factor)));
   return fmin(dt * factor, s->dt_max);
@@ -40,7 +41,7 @@ static double least_length(const run *r) {
 static double next_end(const run *r, double dt) {
   double end = r->step->start + r->step->total, left = end - r->old.t;
   if (dt >= left * (1.0 - 1e-9)) return end;
-  return r->old.t + (dt > 0.5 * left && r->step->integrator->limit > 0.0
+  return r->old.t + (dt > 0.5 * left && r->step->visco.integrator->limit > 0.0
                          ? 0.5 * left
                          : dt);
 }
@@ -67,8 +68,9 @@ static status attempt_adapted(run *r) {
   TRY(effects_attempt(r, t));
   TRY(visco_try(r, t, &error));
   int settled = r->solving.report.outcome > 0;
-  if (settled && error > s->tolerance && strains_are_rounding(r)) error = 0.0;
-  r->course.missed = settled && error > s->tolerance;
+  if (settled && error > s->visco.tolerance && strains_are_rounding(r))
+    error = 0.0;
+  r->course.missed = settled && error > s->visco.tolerance;
   if ((!settled || r->course.missed) && fmin(tried, p->dt) > least &&
       loop_cut_helps(r)) {
     TRY(loop_reject(r, attempt, p->increment_no + 1,
@@ -92,8 +94,8 @@ static status adapt(run *r, void *self, int *made) {
   double end = r->step->start + r->step->total;
   (void)self;
   /* TIME=BALANCED goes before TOLERANCE=, where it can. */
-  int balanced = r->step->time_balanced && effects_sum_up(r) == NULL;
-  if (balanced || !(r->step->tolerance > 0.0)) return OK;
+  int balanced = r->step->accuracy.time_balanced && effects_sum_up(r) == NULL;
+  if (balanced || !(r->step->visco.tolerance > 0.0)) return OK;
   *made = 1;
   while (r->old.t < end) {
     PASS(loop_pause(r));

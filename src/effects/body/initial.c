@@ -54,7 +54,7 @@ done:
 
 static status judge_start(run *r, start_report *s) {
   status st = OK;
-  const start_card *asked = &r->m->start;
+  const start_card *asked = &r->m->initial.start;
   s->relaxed = s->n_bad > 0 && asked->relax;
   if (r->sink->start != NULL) TRY(r->sink->start(r->sink->ctx, s));
   if (s->n_bad > 0 && !s->relaxed) {
@@ -138,11 +138,11 @@ static status expected(const plan_sizes *s, effect_work *w) {
 }
 
 static int calls_for_start(const model *m, char *why, size_t size) {
-  if (!m->start.given)
+  if (!m->initial.start.given)
     return plan_says(0, why, size, "no *INITIAL CONDITIONS, TYPE=DISPLACEMENT");
   return plan_says(1, why, size,
                    "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, %s:%d",
-                   PLACE(m->start.at));
+                   PLACE(m->initial.start.at));
 }
 
 const effect_ops initial_state_effect = {.name = "initial state",

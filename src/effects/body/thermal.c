@@ -67,7 +67,7 @@ static status heat(run *r, void *T0, double t) {
 
 static status expected(const plan_sizes *s, effect_work *w) {
   double n = 0.0;
-  for (int i = 0; s->msh != NULL && i < s->m->n_section; ++i) {
+  for (int i = 0; s->msh != NULL && i < s->m->n.section; ++i) {
     const material *mat = plan_material(s->m, i);
     if (mat->expand.given || (mat->law.ops != NULL &&
                               (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE)))

@@ -41,7 +41,7 @@ static const friction_rule *rule_of(const run *r, int contact_id) {
 
 /* 1 if a friction value in force changes in time. */
 static int limit_varies(const run *r) {
-  for (int i = 0; i < r->m->n_contact; ++i)
+  for (int i = 0; i < r->m->n.contact; ++i)
     if (quantity_variables(&rule_of(r, i)->card.value) & T_BIT) return 1;
   return 0;
 }
@@ -154,7 +154,7 @@ static void note_jump(run *r, int contact_id, double t) {
 
 static void note_jumps(run *r, double t) {
   r->course.note[0] = '\0';
-  for (int i = 0; i < r->m->n_contact; ++i) {
+  for (int i = 0; i < r->m->n.contact; ++i) {
     note_change(r, i);
     note_jump(r, i, t);
   }
@@ -190,7 +190,7 @@ static status find_limit(run *r, friction *own, double t) {
   friction_limit_free(&own->limit);
   TRY(friction_limit_new(r->nodes.n, &own->limit));
   NEW(node, r->nodes.n);
-  for (int i = 0; i < r->m->n_contact; ++i) TRY(add_law(r, own, i, t, node));
+  for (int i = 0; i < r->m->n.contact; ++i) TRY(add_law(r, own, i, t, node));
   own->known = !limit_varies(r);
   if (!own->known) run_forget_estimates(r);
 done:
@@ -429,7 +429,7 @@ static status expected_history(const plan_sizes *s, effect_work *w) {
 
 static int calls_for_friction(const model *m, char *why, size_t size) {
   return plan_calls_for_rule(m, rule_has_friction,
-                             m->n_contact == 0
+                             m->n.contact == 0
                                  ? "no *CONTACT card"
                                  : "no *FRICTION card with a value above zero",
                              why, size);
@@ -439,8 +439,8 @@ static int calls_for_friction(const model *m, char *why, size_t size) {
 static int calls_for_history(const model *m, char *why, size_t size) {
   if (!calls_for_friction(m, NULL, 0))
     return plan_says(0, why, size, "no friction");
-  if (m->n_step == 0 ||
-      (m->n_step == 1 && !(m->steps[0].dt < m->steps[0].total)))
+  if (m->n.step == 0 ||
+      (m->n.step == 1 && !(m->steps[0].dt < m->steps[0].total)))
     return plan_says(0, why, size, "one increment only");
   return plan_says(1, why, size, "friction over more than one increment, %s:%d",
                    PLACE(m->steps[0].at));

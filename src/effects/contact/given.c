@@ -149,7 +149,7 @@ static void give(run *r, void *self, contact_problem *cp, double *u,
 
 static status expected(const plan_sizes *s, effect_work *w) {
   double n = 0.0;
-  for (int i = 0; s->msh != NULL && i < s->m->n_contact; ++i)
+  for (int i = 0; s->msh != NULL && i < s->m->n.contact; ++i)
     if (s->m->contacts[i].force.given)
       n += s->msh->group[s->m->contacts[i].group_id].n_node;
   *w = (effect_work){n, "nodes", s->equilibria, 20.0 * s->equilibria * n};

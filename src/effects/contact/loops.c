@@ -17,14 +17,14 @@ static int calls_for_loops(const model *m, char *why, size_t size) {
 }
 
 static status expected(const plan_sizes *s, effect_work *w) {
-  *w = plan_table(s, PRINT_LOOP, s->m->n_contact);
+  *w = plan_table(s, PRINT_LOOP, s->m->n.contact);
   return OK;
 }
 
 static status loops_new(run *r, void **self) {
   status st = OK;
   contact_loop *own = NULL;
-  NEW(own, r->m->n_contact);
+  NEW(own, r->m->n.contact);
   *self = own;
 done:
   return st;
@@ -34,13 +34,13 @@ static status loops_copy(const run *r, const void *of, run *copy, void **self) {
   (void)copy;
   status st = loops_new((run *)r, self);
   if (st == OK)
-    memcpy(*self, of, (size_t)r->m->n_contact * sizeof(contact_loop));
+    memcpy(*self, of, (size_t)r->m->n.contact * sizeof(contact_loop));
   return st;
 }
 
 static status begin_step(run *r, void *self) {
   contact_loop *loops = self;
-  for (int i = 0; i < r->m->n_contact; ++i)
+  for (int i = 0; i < r->m->n.contact; ++i)
     loops[i].start_end = loops[i].friction_end;
   return OK;
 }
@@ -50,7 +50,7 @@ static status find_loops(run *r, void *self) {
   contact_loop *loops = self;
   const contact_surface *s = r->surface;
   int dim = r->msh->dim;
-  for (int i = 0; i < r->m->n_contact; ++i) {
+  for (int i = 0; i < r->m->n.contact; ++i) {
     contact_loop *l = &loops[i];
     double weight = 0.0;
     memset(l->way, 0, sizeof l->way);
@@ -75,7 +75,7 @@ static status find_loops(run *r, void *self) {
 
 static status keep(run *r, void *self, archive *a) {
   return archive_bytes(a, "loops", self,
-                       (size_t)r->m->n_contact * sizeof(contact_loop));
+                       (size_t)r->m->n.contact * sizeof(contact_loop));
 }
 
 static const contact_loop *loop_of(const view *v, int id) {

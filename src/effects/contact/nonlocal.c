@@ -54,7 +54,7 @@ static status make_averages(run *r, void *self) {
   status st = OK;
   nonlocal *own = self;
   timer_enter(STAGE_NONLOCAL);
-  for (int i = 0; i < r->m->n_contact; ++i) {
+  for (int i = 0; i < r->m->n.contact; ++i) {
     const friction_rule *rule = friction_in_force(r->m, run_step_id(r), i);
     if (rule_has_average(rule)) TRY(make_average(r, &own->average[i], i, rule));
   }
@@ -70,7 +70,7 @@ const sparse_rows *nonlocal_average(const run *r, int contact_id) {
 
 static void count_entries(const run *r, const void *self, setup_facts *f) {
   const nonlocal *own = self;
-  for (int i = 0; i < r->m->n_contact; ++i)
+  for (int i = 0; i < r->m->n.contact; ++i)
     if (own->average[i].rule != NULL)
       f->average_entries += own->average[i].rows.start[r->nodes.n];
 }
@@ -158,13 +158,13 @@ static status nonlocal_new(run *r, void **self) {
   nonlocal *own = NULL;
   PASS_NEW(own, 1);
   *self = own;
-  PASS_NEW(own->average, r->m->n_contact);
+  PASS_NEW(own->average, r->m->n.contact);
   return OK;
 }
 
 static void forget(run *r, void *self) {
   nonlocal *own = self;
-  for (int i = 0; i < r->m->n_contact && own->average != NULL; ++i) {
+  for (int i = 0; i < r->m->n.contact && own->average != NULL; ++i) {
     sparse_free(&own->average[i].rows);
     own->average[i].rule = NULL;
   }

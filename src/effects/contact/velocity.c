@@ -81,7 +81,7 @@ static status expected(const plan_sizes *s, effect_work *w) {
 }
 
 static int calls_for_velocity(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     if (m->steps[i].form != FORM_VELOCITY) continue;
     snprintf(why, size, "*QUASISTATIC, FORM=VELOCITY of %s:%d",
              PLACE(m->steps[i].at));

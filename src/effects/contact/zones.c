@@ -425,11 +425,11 @@ static status find_zones(run *r, void *self) {
   z.out->n = 0;
   TRY(finder_new(r, &z));
   set_levels(&z);
-  for (int i = 0; i < r->m->n_contact && z.dim == 3; ++i) {
+  for (int i = 0; i < r->m->n.contact && z.dim == 3; ++i) {
     add_slopes(&z, r->faces.pairs[i].group, &z.closed);
     add_slopes(&z, r->faces.pairs[i].group, &z.stick);
   }
-  for (int i = 0; i < r->m->n_contact; ++i)
+  for (int i = 0; i < r->m->n.contact; ++i)
     TRY(z.dim == 3 ? find_areas(&z, i) : find_lines(&z, i));
 done:
   finder_free(&z);

@@ -233,7 +233,7 @@ static int calls_for_balance(const model *m, char *why, size_t size) {
   int any = 0;
   (void)why;
   (void)size;
-  for (int i = 0; i < m->n_step; ++i) any |= m->steps[i].balanced;
+  for (int i = 0; i < m->n.step; ++i) any |= m->steps[i].balanced;
   return any;
 }
 

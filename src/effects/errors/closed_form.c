@@ -11,8 +11,10 @@
 #include "run/column_row.h"
 
 static int calls_for_reference(const model *m, char *why, size_t size) {
-  if (m->ref.n == 0) return plan_says(0, why, size, "no *REFERENCE card");
-  return plan_says(1, why, size, "*REFERENCE, %s:%d", PLACE(m->ref.at));
+  if (m->accuracy.ref.n == 0)
+    return plan_says(0, why, size, "no *REFERENCE card");
+  return plan_says(1, why, size, "*REFERENCE, %s:%d",
+                   PLACE(m->accuracy.ref.at));
 }
 
 /* Formulas at many points of each element. */
@@ -39,7 +41,7 @@ static status find(run *r, void *self) {
   true_error *own = self;
   double cpu = timer_cpu();
   const answer_fields a = {r->now.t, r->now.u, r->result.stress, r->now.rc};
-  TRY(exact_error_find(&r->m->ref, &r->body.d, &a, own));
+  TRY(exact_error_find(&r->m->accuracy.ref, &r->body.d, &a, own));
   own->cpu += timer_cpu() - cpu;
 done:
   return st;

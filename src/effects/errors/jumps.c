@@ -290,13 +290,13 @@ done:
 
 /* Jumps are looked for where friction makes a path of increments. */
 static int calls_for_check(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     if (s->check == CHECK_NONE) continue;
     snprintf(why, size, "*SOLVER, CHECK=, %s:%d", PLACE(s->solver_at));
     return 1;
   }
-  for (int i = 0; i < m->n_step && (m->effects & EFFECT_FRICTION); ++i) {
+  for (int i = 0; i < m->n.step && (m->effects & EFFECT_FRICTION); ++i) {
     const step *s = &m->steps[i];
     if (s->kind != STEP_QUASISTATIC) continue;
     snprintf(why, size, "friction in *QUASISTATIC of %s:%d may jump",

@@ -51,8 +51,8 @@ static status estimate(run *r, void *self) {
   mesh_estimate *own = self;
   double cpu = timer_cpu();
   space_error found;
-  r->errors.mesh_error.asked = r->step->mesh_error;
-  if (!r->step->mesh_error) return OK;
+  r->errors.mesh_error.asked = r->step->accuracy.mesh;
+  if (!r->step->accuracy.mesh) return OK;
   PASS(recover(r, own));
   PASS(
       space_estimate(own->recovery, r->result.stress, own->elem_error, &found));

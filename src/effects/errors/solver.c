@@ -47,7 +47,7 @@ static status estimate(run *r, void *self) {
   OWNED double *diagonal = NULL;
   double *spent = self, cpu = timer_cpu();
   r->errors.error = (error_bound){0};
-  if (r->nodes.n == 0 || r->step->no_solver_error) return OK;
+  if (r->nodes.n == 0 || r->step->accuracy.no_solver) return OK;
   timer_enter(STAGE_ESTIMATE);
   NEW(diagonal, r->problem.cp.m);
   if (choose_inverse(r, diagonal, &inverse))
@@ -73,13 +73,13 @@ static status expected(const plan_sizes *s, effect_work *w) {
 
 static int calls_for_bound(const model *m, char *why, size_t size) {
   int any = 0;
-  for (int i = 0; i < m->n_step; ++i) any |= !m->steps[i].no_solver_error;
-  if (m->has_problem && !m->steps[0].has_accuracy)
+  for (int i = 0; i < m->n.step; ++i) any |= !m->steps[i].accuracy.no_solver;
+  if (m->problem.given && !m->steps[0].accuracy.given)
     return plan_says(any, why, size, "no *ACCURACY card, which asks for it");
-  if (m->has_problem && any)
+  if (m->problem.given && any)
     return plan_says(1, why, size, "*ACCURACY, %s:%d",
-                     PLACE(m->steps[0].accuracy_at));
-  if (m->n_contact == 0 && !m->has_problem)
+                     PLACE(m->steps[0].accuracy.at));
+  if (m->n.contact == 0 && !m->problem.given)
     return plan_says(0, why, size, "no *CONTACT card");
   if (!any) return plan_says(0, why, size, "*ACCURACY, SOLVER=NO");
   return plan_says(1, why, size, "default; *ACCURACY, SOLVER=NO leaves it out");

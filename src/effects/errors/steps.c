@@ -152,7 +152,7 @@ static status try_path(run *r, void *self, double t) {
   status st = OK;
   paths *own = self;
   double cpu = timer_cpu();
-  if (!r->step->time_error || !path_exists(r)) return OK;
+  if (!r->step->accuracy.time || !path_exists(r)) return OK;
   timer_enter_whole(STAGE_TIME_ERROR);
   r->course.beside = 1;
   if (own->path != NULL && (own->path->at.start.t != r->old.t ||
@@ -203,10 +203,10 @@ static double field_difference(const run *r, finer_path *p) {
 
 /* From the difference to half the increments to the error. */
 static double extrapolation(const run *r) {
-  const scheme *of = r->step->integrator;
+  const scheme *of = r->step->visco.integrator;
   if (r->step->kind != STEP_VISCO || r->strains.visco == NULL)
     return EXTRAPOLATION;
-  int order = of->has_theta && r->step->theta == 0.5 ? 2 : of->order;
+  int order = of->has_theta && r->step->visco.theta == 0.5 ? 2 : of->order;
   if (order < 2) return 2.0;
   return r->problem.ut0 != NULL ? EXTRAPOLATION : 4.0 / 3.0;
 }
@@ -262,7 +262,7 @@ static void compare_path(const run *r, paths *own, error_share *e) {
 
 static status compare(run *r, void *self) {
   error_share *e = &r->errors.time_error;
-  e->asked = r->step->time_error;
+  e->asked = r->step->accuracy.time;
   e->relative = 0.0;
   e->why = NULL;
   if (!e->asked) return OK;
@@ -360,7 +360,7 @@ static double share_at_end(const run *r) {
   double old = sqrt(2.0 * r->old.energy.strain);
   double left = s->start + s->total - r->now.t, dt = r->now.t - r->old.t;
   double end = fmax(now + (now - old) * left / dt, 0.5 * now);
-  return s->time_share * r->errors.mesh_error.relative * end;
+  return s->accuracy.time_share * r->errors.mesh_error.relative * end;
 }
 
 /* The part of the error this increment may make, sqrt(J). */
@@ -380,7 +380,7 @@ static double next_length(const run *r, double dt, double part,
   const step *s = r->step;
   double factor = part > 0.0 ? SAFETY * sqrt(allowed / part) : LONGER;
   factor = fmin(LONGER, fmax(SHORTER, factor));
-  if (s->integrator != NULL && s->integrator->limit == 0.0)
+  if (s->visco.integrator != NULL && s->visco.integrator->limit == 0.0)
     factor = ldexp(1.0, (int)floor(log2(factor)));
   return fmax(s->dt_min, fmin(dt * factor, s->dt_max));
 }
@@ -437,7 +437,7 @@ done:
 static status march(run *r, void *self, int *made) {
   paths *own = self;
   double end = r->step->start + r->step->total;
-  if (!r->step->time_balanced || !path_exists(r)) return OK;
+  if (!r->step->accuracy.time_balanced || !path_exists(r)) return OK;
   *made = 1;
   if (r->at.increment_no == 0) r->at.error = total_error(own);
   while (r->old.t < end) {

@@ -42,16 +42,16 @@ static status theorems_scene_new(run *r, const equilibrium *e,
                                  theorems_scene *s, double **mu,
                                  unsigned char **given) {
   status st = OK;
-  NEW(*mu, r->m->n_contact);
+  NEW(*mu, r->m->n.contact);
   NEW(*given, r->nodes.n);
-  for (int c = 0; c < r->m->n_contact; ++c) TRY(largest_mu(r, c, &(*mu)[c]));
+  for (int c = 0; c < r->m->n.contact; ++c) TRY(largest_mu(r, c, &(*mu)[c]));
   for (int i = 0; i < r->nodes.n; ++i)
     (*given)[i] = r->m->contacts[r->surface->contact_id[i]].force.given != 0;
   *s = (theorems_scene){
       .cp = &r->problem.cp,
       .u = e->uc,
       .r = e->rc,
-      .n_contact = r->m->n_contact,
+      .n_contact = r->m->n.contact,
       .contact_id = r->surface->contact_id,
       .mu = *mu,
       .given = *given,
@@ -178,8 +178,9 @@ done:
 
 /* theta of the rule: an integrator without takes the middle of the step. */
 static double theta_of(const step *s) {
-  const int own = s->integrator->has_theta || s->integrator->theta > 0.0;
-  return own ? s->theta : 0.5;
+  const int own =
+      s->visco.integrator->has_theta || s->visco.integrator->theta > 0.0;
+  return own ? s->visco.theta : 0.5;
 }
 
 /* Theorem 3.2 over the increment. */
@@ -236,7 +237,7 @@ static status see_start(run *r, void *own) { return see_theory(r, own, 1); }
  */
 
 static int calls_for_theorems(const model *m, char *why, size_t size) {
-  if (facts_first_step(m, facts_asks_theory) != NULL && m->n_contact == 0)
+  if (facts_first_step(m, facts_asks_theory) != NULL && m->n.contact == 0)
     return plan_says(0, why, size, "no *CONTACT card");
   return plan_calls_for_accuracy(m, "THEORY", facts_asks_theory, why, size);
 }
@@ -259,7 +260,9 @@ done:
   return st;
 }
 
-static int due(const run *r) { return r->nodes.n > 0 && r->step->theorems; }
+static int due(const run *r) {
+  return r->nodes.n > 0 && r->step->accuracy.theorems;
+}
 
 static void show(const void *self, state *s) {
   s->errors.theorems = ((const checked *)self)->report;

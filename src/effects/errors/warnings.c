@@ -47,7 +47,7 @@ static void warn_deformation(run *r, warnings *told) {
 
 /* Which contacts touch; the listing tells when one does that did not. */
 static void note_touches(run *r, warnings *told) {
-  for (int i = 0; i < r->m->n_contact; ++i) {
+  for (int i = 0; i < r->m->n.contact; ++i) {
     const contact_total *t = &r->result.totals[i];
     const size_t used = strlen(r->course.note);
     if (told->touched[i] || t->n_slip + t->n_stick == 0) continue;
@@ -77,7 +77,7 @@ static double least_gap(const run *r, int contact_id) {
 /* Where an increment is not solved, what touched in it is not known. */
 static void end(run *r, void *self) {
   const warnings *told = self;
-  for (int i = 0; i < r->m->n_contact && r->course.unsettled == 0; ++i) {
+  for (int i = 0; i < r->m->n.contact && r->course.unsettled == 0; ++i) {
     const contact *c = &r->m->contacts[i];
     if (told->touched[i] || c->force.given) continue;
     message_add(r->m->log, P4021, &c->at,
@@ -91,7 +91,7 @@ static status warnings_new(run *r, void **self) {
   warnings *own = NULL;
   PASS_NEW(own, 1);
   *self = own;
-  PASS_NEW(own->touched, r->m->n_contact);
+  PASS_NEW(own->touched, r->m->n.contact);
   return OK;
 }
 
@@ -104,13 +104,13 @@ static status keep(run *r, void *self, archive *a) {
   warnings *own = self;
   PASS(archive_ints(a, "told_strain", &own->strain, 1));
   PASS(archive_ints(a, "told_folded", &own->folded, 1));
-  return archive_ints(a, "touched", own->touched, (size_t)r->m->n_contact);
+  return archive_ints(a, "touched", own->touched, (size_t)r->m->n.contact);
 }
 
 static int calls_for_warnings(const model *m, char *why, size_t size) {
   (void)why;
   (void)size;
-  return !m->has_problem;
+  return !m->problem.given;
 }
 
 const effect_ops warnings_effect = {.name = "warnings",

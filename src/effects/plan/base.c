@@ -44,7 +44,7 @@ status plan_rule_nodes(const plan_sizes *s,
 
 static status body(const plan_sizes *s, effect_work *w) {
   double n = 0.0;
-  for (int i = 0; s->msh != NULL && i < s->m->n_step; ++i) {
+  for (int i = 0; s->msh != NULL && i < s->m->n.step; ++i) {
     double here = 0.0;
     const load_list *l = &s->m->steps[i].loads;
     for (int k = 0; k < l->n; ++k)
@@ -76,12 +76,12 @@ static status reactions(const plan_sizes *s, effect_work *w) {
  */
 
 static int calls_for_mesh(const model *m, char *why, size_t size) {
-  return plan_says(!m->has_problem, why, size, "*MESH, %s:%d",
-                   PLACE(m->mesh_at));
+  return plan_says(!m->problem.given, why, size, "*MESH, %s:%d",
+                   PLACE(m->mesh.at));
 }
 
 static int calls_for_contact(const model *m, char *why, size_t size) {
-  if (m->n_contact == 0) return plan_says(0, why, size, "no *CONTACT card");
+  if (m->n.contact == 0) return plan_says(0, why, size, "no *CONTACT card");
   return plan_says(1, why, size, "*CONTACT, NAME=%s, %s:%d",
                    m->contacts[0].name, PLACE(m->contacts[0].at));
 }
@@ -98,7 +98,7 @@ int plan_calls_for_rule(const model *m, int (*is)(const friction_rule *rule),
 /* The normals of a second obstacle are tangents of the first. */
 static int calls_for_tangents(const model *m, char *why, size_t size) {
   const step *s = facts_first_whole(m);
-  if (m->n_contact == 0 || friction_effect.called_for(m, NULL, 0))
+  if (m->n.contact == 0 || friction_effect.called_for(m, NULL, 0))
     return friction_effect.called_for(m, why, size);
   if (m->corner_id >= 0)
     return plan_says(1, why, size, "contact %s meets another, %s:%d",
@@ -106,17 +106,17 @@ static int calls_for_tangents(const model *m, char *why, size_t size) {
                      PLACE(m->contacts[m->corner_id].at));
   if (s == NULL && facts_neglects_friction(m))
     return plan_says(1, why, size, "friction left out is judged, %s:%d",
-                     PLACE(m->effects_at));
+                     PLACE(m->reduction.at));
   if (s == NULL)
     return plan_says(0, why, size, "mu = 0: only normals are condensed");
-  if (s->condensed_frequency >= 0)
+  if (s->output.condensed >= 0)
     return plan_says(1, why, size, "*OUTPUT, CONDENSED=FCLIB, %s:%d",
-                     PLACE(s->output_at));
+                     PLACE(s->output.at));
   if (s->check != CHECK_NONE)
     return plan_says(1, why, size, "*SOLVER, CHECK=, %s:%d",
                      PLACE(s->solver_at));
   return plan_says(1, why, size, "*ACCURACY, THEORY=YES, %s:%d",
-                   PLACE(s->accuracy_at));
+                   PLACE(s->accuracy.at));
 }
 
 static int calls_for_body(const model *m, char *why, size_t size) {
@@ -152,14 +152,14 @@ int plan_calls_for_accuracy(const model *m, const char *word,
                             int (*is)(const step *s), char *why, size_t size) {
   const step *s = facts_first_step(m, is);
   if (s == NULL) return plan_says(0, why, size, "no *ACCURACY, %s=YES", word);
-  if (m->target.percent > 0.0)
+  if (m->accuracy.target.percent > 0.0)
     return plan_says(1, why, size, "*ACCURACY, TARGET=, %s:%d",
-                     PLACE(s->accuracy_at));
-  if (s->accuracy_at.file == NULL)
+                     PLACE(s->accuracy.at));
+  if (s->accuracy.at.file == NULL)
     return plan_says(1, why, size, "*SOLVER, TOL=BALANCED, %s:%d",
                      PLACE(s->solver_at));
   return plan_says(1, why, size, "*ACCURACY, %s=YES, %s:%d", word,
-                   PLACE(s->accuracy_at));
+                   PLACE(s->accuracy.at));
 }
 
 /* clang-format off */

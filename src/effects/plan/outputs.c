@@ -10,9 +10,9 @@ static const double TEXT = 250.0; /* operations to write a number             */
 
 double plan_rows(const plan_sizes *s, int table, double items) {
   double most = 0.0;
-  for (int i = 0; i < s->m->n_step && s->msh != NULL; ++i)
-    for (int k = 0; k < s->m->steps[i].n_print; ++k) {
-      const print_request *p = &s->m->steps[i].prints[k];
+  for (int i = 0; i < s->m->n.step && s->msh != NULL; ++i)
+    for (int k = 0; k < s->m->steps[i].print.n; ++k) {
+      const print_request *p = &s->m->steps[i].print.requests[k];
       if (p->table != table) continue;
       if (p->group_id < 0) return items;
       const mesh_group *g = &s->msh->group[p->group_id];
@@ -28,9 +28,9 @@ effect_work plan_table(const plan_sizes *s, int table, double all) {
 
 int plan_calls_for_table(const model *m, int table, const char *word, char *why,
                          size_t size) {
-  for (int i = 0; i < m->n_step; ++i)
-    for (int q = 0; q < m->steps[i].n_print; ++q) {
-      const print_request *p = &m->steps[i].prints[q];
+  for (int i = 0; i < m->n.step; ++i)
+    for (int q = 0; q < m->steps[i].print.n; ++q) {
+      const print_request *p = &m->steps[i].print.requests[q];
       if (p->table != table) continue;
       snprintf(why, size, "*PRINT, %s, %s:%d", word, PLACE(p->at));
       return 1;
@@ -52,7 +52,7 @@ static status held_rows(const plan_sizes *s, effect_work *w) {
     return OK;                                                     \
   }
 TABLE_ROWS(contact, PRINT_CONTACT, s->contact)
-TABLE_ROWS(totals, PRINT_TOTALS, s->m->n_contact)
+TABLE_ROWS(totals, PRINT_TOTALS, s->m->n.contact)
 TABLE_ROWS(nodes, PRINT_NODES, s->nodes)
 TABLE_ROWS(elements, PRINT_ELEMENTS, s->elements)
 TABLE_ROWS(energy, PRINT_ENERGY, 1.0)
@@ -80,11 +80,11 @@ TABLE(reactions_table, "table of reactions", PRINT_REACTIONS, "REACTIONS",
       held_rows, STAGE_TABLE_REACTIONS)
 
 static int calls_for_fields(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
-    if (s->output_frequency < 0) continue;
-    if (s->has_output)
-      snprintf(why, size, "*OUTPUT, %s:%d", PLACE(s->output_at));
+    if (s->output.frequency < 0) continue;
+    if (s->output.given)
+      snprintf(why, size, "*OUTPUT, %s:%d", PLACE(s->output.at));
     else
       snprintf(why, size, "default; *OUTPUT, HDF5=NO leaves them out");
     return 1;
@@ -94,10 +94,10 @@ static int calls_for_fields(const model *m, char *why, size_t size) {
 }
 
 static int calls_for_condensed(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
-    if (s->condensed_frequency < 0) continue;
-    snprintf(why, size, "*OUTPUT, CONDENSED=FCLIB, %s:%d", PLACE(s->output_at));
+    if (s->output.condensed < 0) continue;
+    snprintf(why, size, "*OUTPUT, CONDENSED=FCLIB, %s:%d", PLACE(s->output.at));
     return 1;
   }
   snprintf(why, size, "no *OUTPUT, CONDENSED=FCLIB");
@@ -105,10 +105,10 @@ static int calls_for_condensed(const model *m, char *why, size_t size) {
 }
 
 static int calls_for_restart(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
-    if (s->restart_frequency < 0) continue;
-    snprintf(why, size, "*RESTART, %s:%d", PLACE(s->restart_at));
+    if (s->restart.frequency < 0) continue;
+    snprintf(why, size, "*RESTART, %s:%d", PLACE(s->restart.at));
     return 1;
   }
   snprintf(why, size, "no *RESTART card");

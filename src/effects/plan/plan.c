@@ -20,8 +20,8 @@ int plan_says(int on, char *why, size_t size, const char *format, ...) {
 /* 1: *EFFECTS leaves out what the deck calls for. */
 static int is_neglected(const model *m, int bit) {
   int any = 0;
-  for (int i = 0; i < m->n_neglected; ++i)
-    any |= m->neglected[i].bit == bit && !m->neglected[i].back;
+  for (int i = 0; i < m->reduction.n; ++i)
+    any |= m->reduction.row[i].bit == bit && !m->reduction.row[i].back;
   return any && !(m->effects >> bit & 1u);
 }
 
@@ -29,11 +29,11 @@ static int is_neglected(const model *m, int bit) {
 static void say_of_problem(const model *m, const effect_ops *e, plan_row *r) {
   if (e->bit == EFFECT_BIT_CONTACT)
     plan_says(1, r->why, sizeof r->why, "*CONDENSED PROBLEM, %s:%d",
-              PLACE(m->problem_at));
+              PLACE(m->problem.at));
   else if (e->bit == EFFECT_BIT_FRICTION)
     plan_says(1, r->why, sizeof r->why,
-              "mu of *CONDENSED PROBLEM, %s:%d, is %s", PLACE(m->problem_at),
-              m->problem_friction ? "not zero" : "zero or not there");
+              "mu of *CONDENSED PROBLEM, %s:%d, is %s", PLACE(m->problem.at),
+              m->problem.friction ? "not zero" : "zero or not there");
   else if (e->bit != EFFECT_BIT_ESTIMATES || m->dim == 1)
     plan_says(1, r->why, sizeof r->why, "not part of a condensed problem");
 }
@@ -43,11 +43,11 @@ static status row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
   *r = (plan_row){
       .name = e->name, .on = effect_is_on(e, m), .within = e->within};
   e->called_for(m, r->why, sizeof r->why);
-  if (e->bit != NO_BIT && m->has_problem)
+  if (e->bit != NO_BIT && m->problem.given)
     say_of_problem(m, e, r);
   else if (e->bit != NO_BIT && is_neglected(m, e->bit))
     plan_says(1, r->why, sizeof r->why,
-              "left out by *EFFECTS, MODE=AUTO, %s:%d", PLACE(m->effects_at));
+              "left out by *EFFECTS, MODE=AUTO, %s:%d", PLACE(m->reduction.at));
   if (effect_stage(e) != STAGE_NONE) r->stages[r->n_stage++] = effect_stage(e);
   for (int k = 0; e->more[k] != 0; ++k) r->stages[r->n_stage++] = e->more[k];
   status st = e->foreseen(s, &r->work);
@@ -76,7 +76,7 @@ static status add_laws(const model *m, const mesh *msh, effect_plan *p,
                        int *capacity, const plan_row *all) {
   status st = OK;
   int first = 1;
-  for (int i = 0; i < m->n_section && msh != NULL; ++i) {
+  for (int i = 0; i < m->n.section && msh != NULL; ++i) {
     const material *mat = plan_material(m, i);
     plan_row r = *all;
     if (mat->law.ops == NULL) continue;

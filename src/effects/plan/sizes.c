@@ -21,7 +21,7 @@ enum { ADAPTED = 50 }; /* increments of a step with a tolerance, at most      */
 
 static double increments_of(const step *s) {
   double n = step_increments(s);
-  return s->tolerance > 0.0 ? fmin(n, ADAPTED) : n;
+  return s->visco.tolerance > 0.0 ? fmin(n, ADAPTED) : n;
 }
 
 /* Increments that an output with this frequency shows. */
@@ -32,12 +32,12 @@ static double shown_of(const step *s, int frequency) {
 
 double plan_shown(const model *m, int table) {
   double n = 0.0;
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
-    double here = table != 0 ? 0.0 : shown_of(s, s->output_frequency);
-    for (int k = 0; k < s->n_print; ++k)
-      if (table == 0 || s->prints[k].table == table)
-        here = fmax(here, shown_of(s, s->prints[k].frequency));
+    double here = table != 0 ? 0.0 : shown_of(s, s->output.frequency);
+    for (int k = 0; k < s->print.n; ++k)
+      if (table == 0 || s->print.requests[k].table == table)
+        here = fmax(here, shown_of(s, s->print.requests[k].frequency));
     n += here;
   }
   return n;
@@ -45,7 +45,7 @@ double plan_shown(const model *m, int table) {
 
 /* 1 if all laws that flow have a constant Jacobian. */
 static int flows_linearly(const model *m) {
-  for (int i = 0; i < m->n_section; ++i) {
+  for (int i = 0; i < m->n.section; ++i) {
     const law_card *law = &plan_material(m, i)->law;
     if (law->ops != NULL && !law->ops->linear) return 0;
   }
@@ -57,23 +57,23 @@ enum { NEWTON_STEPS = 4 }; /* of an implicit step of a law that is not linear */
 /* Contact problems of an increment of a step. */
 static double problems_of(const model *m, const step *s) {
   if (s->kind != STEP_VISCO || !(m->effects & EFFECT_INELASTIC)) return 1.0;
-  const scheme *i = s->integrator;
+  const scheme *i = s->visco.integrator;
   if (!i->has_theta && i->theta == 0.0 && !i->linear_only) return i->order;
   return flows_linearly(m) ? 1.0 : NEWTON_STEPS;
 }
 
 static double factors_of(const model *m, const step *s) {
   if (s->kind != STEP_VISCO || !(m->effects & EFFECT_INELASTIC)) return 0.0;
-  const scheme *i = s->integrator;
+  const scheme *i = s->visco.integrator;
   if (!i->has_theta && i->theta == 0.0 && !i->linear_only) return 0.0;
   if (flows_linearly(m)) return 1.0;
-  return s->initial ? 0.0 : NEWTON_STEPS * increments_of(s);
+  return s->visco.initial ? 0.0 : NEWTON_STEPS * increments_of(s);
 }
 
 static void count_increments(const model *m, plan_sizes *s) {
   s->factors = 1.0;
   s->flows_linearly = flows_linearly(m);
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     double n = increments_of(&m->steps[i]);
     s->increments += n;
     s->equilibria += n * problems_of(m, &m->steps[i]);
@@ -89,10 +89,10 @@ status plan_contact_nodes(const plan_sizes *s,
   unsigned char *seen = NULL;
   *n = 0.0;
   NEW(seen, msh->n_node);
-  for (int i = 0; i < m->n_contact; ++i) {
+  for (int i = 0; i < m->n.contact; ++i) {
     const mesh_group *g = &msh->group[m->contacts[i].group_id];
     int counts = is == NULL;
-    for (int k = 0; k < m->n_step && !counts; ++k)
+    for (int k = 0; k < m->n.step && !counts; ++k)
       counts = is(friction_in_force(m, k, i));
     for (int k = 0; k < g->n_node && counts; ++k) {
       *n += !seen[g->node_id[k]];
@@ -112,7 +112,7 @@ status plan_held(const plan_sizes *s, double *unknowns, double *nodes) {
   unsigned char *fixed = NULL;
   *unknowns = *nodes = 0.0;
   NEW(fixed, dim * msh->n_node);
-  if (m->n_step > 0) load_fixed(m, msh, &m->steps[0], fixed);
+  if (m->n.step > 0) load_fixed(m, msh, &m->steps[0], fixed);
   for (int i = 0; i < msh->n_node; ++i) {
     int any = 0;
     for (int c = 0; c < dim; ++c) any += fixed[dim * i + c] != 0;

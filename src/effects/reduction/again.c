@@ -16,7 +16,7 @@
 /* Strains of the row of the elements it is about into n->strain. */
 static void take_strains(reduction *n, const neglected *row) {
   const int ns = n->m->ns, heat = row->bit == EFFECT_BIT_THERMAL;
-  const double *from = heat ? n->heat : n->flown;
+  const double *from = heat ? n->heat : n->flow.strain;
   for (int e = 0; e < n->msh->n_elem; ++e) {
     const int own = heat || reduction_is_about(n, row, e);
     for (int i = 0; i < ns; ++i)

@@ -31,7 +31,7 @@ const double reduction_share = 0.1;
  * not known (expressions, forces). */
 double reduction_load_stress(const model *m, const mesh *msh, double young) {
   double most = 0.0;
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k) {
       const load *l = &m->steps[i].loads.item[k];
       double value = fabs(l->value.number);
@@ -52,14 +52,14 @@ double reduction_young(const material *mat) {
 }
 
 int reduction_has_initial(const model *m) {
-  for (int i = 0; i < m->n_initial; ++i)
-    if (m->initials[i].type != INITIAL_TEMPERATURE) return 1;
-  return m->start.given;
+  for (int i = 0; i < m->n.initial; ++i)
+    if (m->initial.lines[i].type != INITIAL_TEMPERATURE) return 1;
+  return m->initial.start.given;
 }
 
 neglected *reduction_row(model *m, int bit, int id) {
-  if (m->n_neglected == NEGLECT_MAX) return NULL;
-  neglected *row = &m->neglected[m->n_neglected++];
+  if (m->reduction.n == NEGLECT_MAX) return NULL;
+  neglected *row = &m->reduction.row[m->reduction.n++];
   *row = (neglected){.bit = bit, .id = id};
   return row;
 }
@@ -69,15 +69,15 @@ neglected *reduction_row(model *m, int bit, int id) {
 /* Largest temperature the deck gives as a number; HUGE_VAL: by other means. */
 static double largest_temperature(const model *m) {
   double most = 0.0;
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k) {
       const load *l = &m->steps[i].loads.item[k];
       if (l->kind != LOAD_TEMPERATURE) continue;
       if (l->value.formula != NULL || l->file != NULL) return HUGE_VAL;
       most = fmax(most, fabs(l->value.number));
     }
-  for (int i = 0; i < m->n_initial; ++i)
-    if (m->initials[i].type == INITIAL_TEMPERATURE) return HUGE_VAL;
+  for (int i = 0; i < m->n.initial; ++i)
+    if (m->initial.lines[i].type == INITIAL_TEMPERATURE) return HUGE_VAL;
   return most;
 }
 
@@ -93,7 +93,7 @@ static status find_jump(const model *m, const mesh *msh, int *jumps) {
   NEW(T, msh->n_elem);
   TRY(load_temperature_initial(m, msh, T0));
   memcpy(before, T0, bytes);
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     TRY(load_temperature(m, msh, s, s->start, T0, T));
     for (int e = 0; e < msh->n_elem && s->kind == STEP_VISCO; ++e)
@@ -111,7 +111,7 @@ done:
 static double thermal_part(const model *m, const mesh *msh) {
   double T = largest_temperature(m), worst = 0.0;
   if (!(T < HUGE_VAL)) return HUGE_VAL;
-  for (int i = 0; i < m->n_material; ++i) {
+  for (int i = 0; i < m->n.material; ++i) {
     const material *mat = &m->materials[i];
     double e[3];
     if (!mat->used) continue;
@@ -133,7 +133,7 @@ static status try_thermal(model *m, const mesh *msh) {
   int jumps;
   if (!(m->effects & EFFECT_THERMAL)) goto done;
   double worst = thermal_part(m, msh);
-  if (!(worst <= reduction_share * m->effects_tol)) goto done;
+  if (!(worst <= reduction_share * m->reduction.tol)) goto done;
   if (m->effects & EFFECT_INELASTIC) {
     TRY(find_jump(m, msh, &jumps));
     if (jumps) goto done;
@@ -191,9 +191,9 @@ static int is_local(const friction_rule *rule, double least) {
 static void try_average(model *m, const mesh *msh) {
   int any = 0;
   double least = HUGE_VAL;
-  for (int i = 0; i < m->n_contact; ++i) {
+  for (int i = 0; i < m->n.contact; ++i) {
     double own = -1.0;
-    for (int k = 0; k < m->n_step; ++k) {
+    for (int k = 0; k < m->n.step; ++k) {
       const friction_rule *rule = friction_in_force(m, k, i);
       if (!rule_has_average(rule)) continue;
       if (own < 0.0)
@@ -215,7 +215,7 @@ static void try_average(model *m, const mesh *msh) {
 
 static double all_increments(const model *m) {
   double n = 0.0;
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.step; ++i)
     n += reduction_increments(&m->steps[i], m->steps[i].dt);
   return n;
 }
@@ -223,8 +223,8 @@ static double all_increments(const model *m) {
 /* The largest mu given as a number; HUGE_VAL: otherwise, or another law. */
 static double largest_mu(const model *m) {
   double most = 0.0;
-  for (int i = 0; i < m->n_contact; ++i)
-    for (int k = 0; k < m->n_step; ++k) {
+  for (int i = 0; i < m->n.contact; ++i)
+    for (int k = 0; k < m->n.step; ++k) {
       const friction_rule *rule = friction_in_force(m, k, i);
       if (!rule_has_friction(rule)) continue;
       if (rule->law != &coulomb_friction || rule->card.value.formula != NULL)
@@ -236,7 +236,7 @@ static double largest_mu(const model *m) {
 
 /* 1: no material expands across its load. */
 static int has_no_coupling(const model *m) {
-  for (int i = 0; i < m->n_material; ++i) {
+  for (int i = 0; i < m->n.material; ++i) {
     const material *mat = &m->materials[i];
     double most = reduction_young(mat);
     for (int k = 0; k < 9 && mat->used; ++k)
@@ -251,7 +251,7 @@ static status friction_holds(const model *m, const mesh *msh, int *holds) {
   status st = OK;
   free_motion *list = NULL;
   *holds = 0;
-  for (int i = 0; i < m->n_step && !*holds; ++i) {
+  for (int i = 0; i < m->n.step && !*holds; ++i) {
     int n = 0;
     TRY(history_motions(m, msh, i, &n, &list));
     for (int k = 0; k < n; ++k) *holds |= list[k].held_by == HELD_BY_FRICTION;
@@ -265,7 +265,7 @@ done:
 
 static status try_friction(model *m, const mesh *msh) {
   status st = OK;
-  double mu = largest_mu(m), part = 2.0 * reduction_share * m->effects_tol;
+  double mu = largest_mu(m), part = 2.0 * reduction_share * m->reduction.tol;
   int holds = 0, small = mu * all_increments(m) <= part * part;
   if (!(m->effects & EFFECT_FRICTION) || (m->effects & EFFECT_GIVEN) ||
       !(mu < HUGE_VAL) || reduction_has_initial(m))
@@ -288,22 +288,23 @@ done:
 
 /* 1: what asks for the problem itself, not its answer, or moves on its own. */
 static int must_stay(const model *m) {
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
-    if (s->check != CHECK_NONE || s->theorems || s->condensed_frequency >= 0 ||
-        s->form == FORM_VELOCITY || s->restart_frequency >= 0 ||
-        s->tolerance > 0.0 || s->time_balanced)
+    if (s->check != CHECK_NONE || s->accuracy.theorems ||
+        s->output.condensed >= 0 || s->form == FORM_VELOCITY ||
+        s->restart.frequency >= 0 || s->visco.tolerance > 0.0 ||
+        s->accuracy.time_balanced)
       return 1;
   }
-  for (int i = 0; i < m->n_section; ++i)
+  for (int i = 0; i < m->n.section; ++i)
     if (m->sections[i].averaged) return 1;
-  if (m->n_points > 0) return 1;
-  return m->target.percent > 0.0;
+  if (m->n.points > 0) return 1;
+  return m->accuracy.target.percent > 0.0;
 }
 
 status reduction_choose(model *m, const mesh *msh) {
   status st = OK;
-  m->n_neglected = 0;
+  m->reduction.n = 0;
   if (must_stay(m)) goto done;
   try_average(m, msh);
   TRY(try_thermal(m, msh));

@@ -9,7 +9,7 @@
 
 static double visco_time(const model *m) {
   double t = 0.0;
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.step; ++i)
     if (m->steps[i].kind == STEP_VISCO) t += m->steps[i].total;
   return t;
 }
@@ -49,7 +49,7 @@ done:
 
 /* Kinematics of the first section of a material, or -1. */
 int reduction_kinematics(const model *m, int material_id) {
-  for (int i = 0; i < m->n_section; ++i)
+  for (int i = 0; i < m->n.section; ++i)
     if (m->sections[i].material_id == material_id) return m->sections[i].kin;
   return -1;
 }
@@ -67,7 +67,7 @@ static status try_small(model *m, const mesh *msh, int id, int *tried) {
   TRY(uniaxial_rate(mat, (kinematics)reduction_kinematics(m, id), stress,
                     &rate));
   double share = rate * visco_time(m) * young / stress;
-  if (!(share <= reduction_share * m->effects_tol)) goto done;
+  if (!(share <= reduction_share * m->reduction.tol)) goto done;
   neglected *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
   if (row == NULL) goto done;
   *tried = 1;
@@ -90,10 +90,10 @@ done:
  * what is fast; else 0. */
 static double damped_increment(const model *m) {
   double least = HUGE_VAL;
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     if (s->kind != STEP_VISCO) return 0.0;
-    if (!s->integrator->linear_only && s->theta != 1.0) return 0.0;
+    if (!s->visco.integrator->linear_only && s->visco.theta != 1.0) return 0.0;
     least = fmin(least, s->dt);
   }
   return least;
@@ -133,7 +133,7 @@ static status try_relaxed(model *m, int id) {
   double R[36], time, dt = damped_increment(m);
   if (!(dt > 0.0) || mat->elastic.type != ELASTIC_ISO) goto done;
   TRY(relaxed_law(mat, SOLID_3D, R, &time));
-  if (!(time > 0.0) || !(time <= reduction_share * m->effects_tol * dt))
+  if (!(time > 0.0) || !(time <= reduction_share * m->reduction.tol * dt))
     goto done;
   neglected *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
   if (row == NULL) goto done;
@@ -166,7 +166,7 @@ done:
 status reduction_try_laws(model *m, const mesh *msh) {
   status st = OK;
   if (!(m->effects & EFFECT_INELASTIC) || reduction_has_initial(m)) goto done;
-  for (int i = 0; i < m->n_material; ++i) TRY(try_law(m, msh, i));
+  for (int i = 0; i < m->n.material; ++i) TRY(try_law(m, msh, i));
   TRY(reduction_try_threshold(m, msh));
 done:
   return st;

@@ -5,10 +5,10 @@
 
 /* Each friction rule of the model once. */
 static void each_rule(model *m, void (*change)(friction_rule *rule)) {
-  for (int i = 0; i < m->n_contact; ++i) change(&m->contacts[i].friction);
-  for (int i = 0; i < m->n_step; ++i)
-    for (int k = 0; k < m->steps[i].n_change; ++k)
-      change(&m->steps[i].changes[k].rule);
+  for (int i = 0; i < m->n.contact; ++i) change(&m->contacts[i].friction);
+  for (int i = 0; i < m->n.step; ++i)
+    for (int k = 0; k < m->steps[i].friction.n; ++k)
+      change(&m->steps[i].friction.changes[k].rule);
 }
 
 static void make_local(friction_rule *rule) {
@@ -41,8 +41,8 @@ static void change_constants(material *mat) {
 }
 
 void reduction_leave_out(model *m) {
-  for (int i = 0; i < m->n_neglected; ++i) {
-    neglected *row = &m->neglected[i];
+  for (int i = 0; i < m->reduction.n; ++i) {
+    neglected *row = &m->reduction.row[i];
     if (row->back) continue;
     row->bound = row->local = row->change = 0.0;
     row->checked = row->again = 0;
@@ -56,14 +56,15 @@ void reduction_leave_out(model *m) {
     if (row->time > 0.0) change_constants(&m->materials[row->id]);
   }
   model_find_effects(m);
-  for (int i = 0; i < m->n_neglected; ++i)
-    if (m->neglected[i].bit == EFFECT_BIT_THERMAL && !m->neglected[i].back)
+  for (int i = 0; i < m->reduction.n; ++i)
+    if (m->reduction.row[i].bit == EFFECT_BIT_THERMAL &&
+        !m->reduction.row[i].back)
       m->effects &= ~(unsigned)EFFECT_THERMAL;
 }
 
 void reduction_restore(model *m) {
   each_rule(m, put_back);
-  for (int i = 0; i < m->n_material; ++i) {
+  for (int i = 0; i < m->n.material; ++i) {
     material *mat = &m->materials[i];
     if (mat->law_aside != NULL) mat->law.ops = mat->law_aside;
     mat->law_aside = NULL;

@@ -31,12 +31,12 @@ static status new_domain(reduction *n) {
   status st = OK;
   const model *m = n->m;
   size_t square = (size_t)(m->ns * m->ns);
-  NEW(n->kin, m->n_section);
-  NEW(n->thickness, m->n_section);
-  NEW(n->E, square * (size_t)m->n_section);
-  NEW(n->C, 36 * (size_t)m->n_section);
+  NEW(n->kin, m->n.section);
+  NEW(n->thickness, m->n.section);
+  NEW(n->E, square * (size_t)m->n.section);
+  NEW(n->C, 36 * (size_t)m->n.section);
   NEW(n->fixed, n->msh->dim * n->msh->n_node);
-  for (int i = 0; i < m->n_section; ++i) {
+  for (int i = 0; i < m->n.section; ++i) {
     const section *s = &m->sections[i];
     const double *C = m->materials[s->material_id].C;
     n->kin[i] = (kinematics)s->kin;
@@ -69,16 +69,16 @@ status reduction_new(const model *m, const mesh *msh, reduction **out) {
   NEW(n->T0, msh->n_elem);
   NEW(n->T, msh->n_elem);
   NEW(n->heat, strains);
-  NEW(n->flown, strains);
-  NEW(n->flow_rate, strains);
+  NEW(n->flow.strain, strains);
+  NEW(n->flow.strain_rate, strains);
   NEW(n->strain, strains);
   NEW(n->elem_id, msh->n_elem);
   NEW(n->way, (msh->dim - 1) * msh->n_node);
   NEW(n->force, msh->dim * msh->n_node);
   NEW(n->u, msh->dim * msh->n_node);
   for (int e = 0; e < msh->n_elem; ++e) n->elem_id[e] = e;
-  NEW(n->stress, msh->n_elem);
-  NEW(n->rate, msh->n_elem);
+  NEW(n->flow.stress, msh->n_elem);
+  NEW(n->flow.rate, msh->n_elem);
   TRY(load_temperature_initial(m, msh, n->T0));
   *out = n;
   n = NULL;
@@ -89,10 +89,14 @@ done:
 
 void reduction_free(reduction *n) {
   if (n == NULL) return;
-  double *const arrays[] = {n->thickness, n->E,         n->C,      n->sigma,
-                            n->T0,        n->T,         n->heat,   n->stress,
-                            n->rate,      n->flown,     n->strain, n->way,
-                            n->force,     n->flow_rate, n->u};
+  double *const arrays[] = {n->thickness, n->E,
+                            n->C,         n->sigma,
+                            n->T0,        n->T,
+                            n->heat,      n->flow.stress,
+                            n->flow.rate, n->flow.strain,
+                            n->strain,    n->way,
+                            n->force,     n->flow.strain_rate,
+                            n->u};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
     memory_free(arrays[i]);
   memory_free(n->kin);
@@ -108,7 +112,7 @@ const material *reduction_material(const reduction *n, int elem_id) {
 
 int reduction_is_about(const reduction *n, const neglected *row, int elem_id) {
   return reduction_material(n, elem_id) == &n->m->materials[row->id] &&
-         (row->some == 0 || n->m->still[elem_id]);
+         (row->some == 0 || n->m->reduction.still[elem_id]);
 }
 
 /* ---- scales ------------------------------------------------------------- */
@@ -222,8 +226,8 @@ static void measure_relaxed(reduction *n, const neglected *row, double dt,
   *stress = 0.0;
   for (int e = 0; e < n->msh->n_elem; ++e) {
     double ended[6], own;
-    double *before = n->flow_rate + (size_t)(ns * e);
-    double *lag = n->flown + (size_t)(ns * e);
+    double *before = n->flow.strain_rate + (size_t)(ns * e);
+    double *lag = n->flow.strain + (size_t)(ns * e);
     if (!reduction_is_about(n, row, e)) continue;
     tensor_product(ns, mat->relaxed, n->sigma + (size_t)(ns * e), ended);
     for (int i = 0; i < ns; ++i) {
@@ -264,11 +268,11 @@ static status add_rates(reduction *n, const state *s, const neglected *row,
     p.ei = p.alpha = zero;
     law_rate(&p, ei_rate, alpha_rate);
     sum += element_weight(&n->d, e) * energy_of(n, e, ei_rate, &stress);
-    n->stress[e] += dt * fmax(stress, n->rate[e]);
-    n->rate[e] = stress;
+    n->flow.stress[e] += dt * fmax(stress, n->flow.rate[e]);
+    n->flow.rate[e] = stress;
     for (int i = 0; i < n->m->ns; ++i) {
-      double *before = &n->flow_rate[n->m->ns * e + i];
-      n->flown[n->m->ns * e + i] += 0.5 * dt * (*before + ei_rate[i]);
+      double *before = &n->flow.strain_rate[n->m->ns * e + i];
+      n->flow.strain[n->m->ns * e + i] += 0.5 * dt * (*before + ei_rate[i]);
       *before = ei_rate[i];
     }
   }
@@ -281,7 +285,7 @@ done:
 static status measure_inelastic(reduction *n, const state *s, int k,
                                 double *norm, double *stress) {
   status st = OK;
-  const neglected *row = &n->m->neglected[k];
+  const neglected *row = &n->m->reduction.row[k];
   double now;
   int flows = n->m->steps[s->step_no - 1].kind == STEP_VISCO;
   if (row->time > 0.0) {
@@ -295,7 +299,7 @@ static status measure_inelastic(reduction *n, const state *s, int k,
   *stress = 0.0;
   for (int e = 0; e < n->msh->n_elem; ++e)
     if (reduction_is_about(n, row, e))
-      *stress = fmax(*stress, SAFETY * n->stress[e]);
+      *stress = fmax(*stress, SAFETY * n->flow.stress[e]);
 done:
   return st;
 }
@@ -333,7 +337,7 @@ status reduction_measure(reduction *n, const state *s, neglected *rows) {
   double size = sqrt(2.0 * fmax(s->energy.strain, 0.0));
   TRY(reduction_stress(n, s));
   double scale = stress_scale(n, s);
-  for (int k = 0; k < n->m->n_neglected; ++k) {
+  for (int k = 0; k < n->m->reduction.n; ++k) {
     double norm = 0.0, stress = 0.0;
     neglected *row = &rows[k];
     if (row->back) continue;
@@ -355,22 +359,23 @@ done:
 }
 
 static int reduction_holds(const model *m, const neglected *row) {
-  return row->checked > 0 && row->bound <= reduction_share * m->effects_tol &&
-         row->local <= m->effects_tol && row->change <= 0.5 * m->effects_tol;
+  return row->checked > 0 && row->bound <= reduction_share * m->reduction.tol &&
+         row->local <= m->reduction.tol &&
+         row->change <= 0.5 * m->reduction.tol;
 }
 
 int reduction_refuted(const model *m) {
-  for (int k = 0; k < m->n_neglected; ++k)
-    if (!m->neglected[k].back && m->neglected[k].checked > 0 &&
-        !reduction_holds(m, &m->neglected[k]))
+  for (int k = 0; k < m->reduction.n; ++k)
+    if (!m->reduction.row[k].back && m->reduction.row[k].checked > 0 &&
+        !reduction_holds(m, &m->reduction.row[k]))
       return 1;
   return 0;
 }
 
 int reduction_take_back(model *m, int all) {
   int n = 0;
-  for (int k = 0; k < m->n_neglected; ++k) {
-    neglected *row = &m->neglected[k];
+  for (int k = 0; k < m->reduction.n; ++k) {
+    neglected *row = &m->reduction.row[k];
     if (row->back || (reduction_holds(m, row) && !all)) continue;
     row->back = 1;
     row->lost = all;

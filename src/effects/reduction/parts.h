@@ -17,11 +17,13 @@ struct reduction {
   double *sigma;         /* [ns*n_elem] Pa */
   double *T0, *T;        /* [n_elem] */
   double *heat;          /* [ns*n_elem] thermal strain of the last increment */
-  double *flown;         /* [ns*n_elem] inelastic strain so far */
-  double *flow_rate;     /* [ns*n_elem] 1/s, of the last increment */
-  double *stress;        /* [n_elem] Pa, of the inelastic strain so far */
-  double *rate;          /* [n_elem] Pa/s, of the last increment */
-  double *way;           /* [(dim-1)*n_node] all slip so far, m*/
+  struct {
+    double *strain;      /* [ns*n_elem] inelastic strain so far */
+    double *strain_rate; /* [ns*n_elem] 1/s, of the last increment */
+    double *stress;      /* [n_elem] Pa, of the inelastic strain so far */
+    double *rate;        /* [n_elem] Pa/s, of the last increment */
+  } flow;
+  double *way;              /* [(dim-1)*n_node] all slip so far, m*/
   double sum[NEGLECT_MAX];  /* sqrt(J), of the row */
   double last[NEGLECT_MAX]; /* sqrt(J)/s, rate of the last increment */
   double seen[NEGLECT_MAX]; /* -, bound at the last increment solved again    */

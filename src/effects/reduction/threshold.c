@@ -27,8 +27,9 @@ typedef struct preview {
 } preview;
 
 static int is_tried(const model *m, int id) {
-  for (int k = 0; k < m->n_neglected; ++k)
-    if (m->neglected[k].bit == EFFECT_BIT_INELASTIC && m->neglected[k].id == id)
+  for (int k = 0; k < m->reduction.n; ++k)
+    if (m->reduction.row[k].bit == EFFECT_BIT_INELASTIC &&
+        m->reduction.row[k].id == id)
       return 1;
   return 0;
 }
@@ -52,8 +53,8 @@ static double short_step(const step *s) {
 static int is_worth_it(const model *m) {
   double few = 0.0, all = 0.0;
   int any = 0;
-  for (int i = 0; i < m->n_material; ++i) any |= has_threshold(m, i);
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.material; ++i) any |= has_threshold(m, i);
+  for (int i = 0; i < m->n.step; ++i) {
     few += reduction_increments(&m->steps[i], short_step(&m->steps[i]));
     all += reduction_increments(&m->steps[i], m->steps[i].dt);
   }
@@ -94,7 +95,7 @@ static status see_increment(void *ctx, const state *s) {
   preview *p = ctx;
   const model *m = p->n->m;
   TRY(reduction_stress(p->n, s));
-  for (int i = 0; i < m->n_material; ++i)
+  for (int i = 0; i < m->n.material; ++i)
     if (m->materials[i].law_aside != NULL &&
         m->materials[i].law_aside->flows != NULL)
       TRY(see_material(p, i, s->t));
@@ -105,11 +106,11 @@ done:
 
 /* Without any law, in few increments. */
 static void make_elastic(model *m) {
-  for (int i = 0; i < m->n_material; ++i) {
+  for (int i = 0; i < m->n.material; ++i) {
     m->materials[i].law_aside = m->materials[i].law.ops;
     m->materials[i].law.ops = NULL;
   }
-  for (int i = 0; i < m->n_step; ++i) m->steps[i].dt = short_step(&m->steps[i]);
+  for (int i = 0; i < m->n.step; ++i) m->steps[i].dt = short_step(&m->steps[i]);
   model_find_effects(m);
 }
 
@@ -121,14 +122,14 @@ static status run_elastic(model *m, const mesh *msh, unsigned char *flows,
   const history_sink sink = {.ctx = &p, .increment = see_increment};
   double *dt = NULL;
   int unsettled = 0;
-  NEW(dt, m->n_step);
-  for (int i = 0; i < m->n_step; ++i) dt[i] = m->steps[i].dt;
+  NEW(dt, m->n.step);
+  for (int i = 0; i < m->n.step; ++i) dt[i] = m->steps[i].dt;
   make_elastic(m);
   TRY(reduction_new(m, msh, &p.n));
   *seen = history_run(m, msh, &sink, &unsettled) == OK;
   st = p.st;
 done:
-  for (int i = 0; i < m->n_step && dt != NULL; ++i) m->steps[i].dt = dt[i];
+  for (int i = 0; i < m->n.step && dt != NULL; ++i) m->steps[i].dt = dt[i];
   reduction_restore(m);
   reduction_free(p.n);
   memory_free(dt);
@@ -136,14 +137,14 @@ done:
 }
 
 static void add_rows(model *m, const mesh *msh, const unsigned char *flows) {
-  for (int i = 0; i < m->n_material; ++i) {
+  for (int i = 0; i < m->n.material; ++i) {
     int n = 0, all = 0;
     if (!has_threshold(m, i)) continue;
     for (int e = 0; e < msh->n_elem; ++e) {
       if (m->sections[m->elem_section[e]].material_id != i) continue;
       ++all;
-      m->still[e] = !flows[e];
-      n += m->still[e];
+      m->reduction.still[e] = !flows[e];
+      n += m->reduction.still[e];
     }
     neglected *row = n > 0 ? reduction_row(m, EFFECT_BIT_INELASTIC, i) : NULL;
     if (row == NULL) continue;
@@ -162,7 +163,7 @@ status reduction_try_threshold(model *m, const mesh *msh) {
   NEW(flows, msh->n_elem);
   TRY(run_elastic(m, msh, flows, &seen));
   if (!seen) goto done;
-  if (m->still == NULL) NEW(m->still, msh->n_elem);
+  if (m->reduction.still == NULL) NEW(m->reduction.still, msh->n_elem);
   add_rows(m, msh, flows);
 done:
   memory_free(flows);

@@ -177,12 +177,12 @@ status apply_obstacle(reading *r) {
   const obstacle_param *p = r->param;
   model *m = r->m;
   const card *c = r->card;
-  for (int i = 0; i < m->n_obstacle; ++i)
+  for (int i = 0; i < m->n.obstacle; ++i)
     name_taken(r, p->name, m->obstacles[i].name);
-  int n = m->n_obstacle, capacity = m->cap_obstacle;
+  int n = m->n.obstacle, capacity = m->cap.obstacle;
   PASS_GROW(m->moves, n, capacity);
-  PASS_GROW(m->obstacles, n, m->cap_obstacle);
-  obstacle *o = &m->obstacles[m->n_obstacle++];
+  PASS_GROW(m->obstacles, n, m->cap.obstacle);
+  obstacle *o = &m->obstacles[m->n.obstacle++];
   o->name = p->name == NULL ? "" : p->name;
   o->shape = p->type;
   o->inside = p->side;
@@ -222,10 +222,10 @@ static void read_torque_axis(const reading *r, contact *c) {
 status apply_contact(reading *r) {
   const contact_param *p = r->param;
   model *m = r->m;
-  for (int i = 0; i < m->n_contact; ++i)
+  for (int i = 0; i < m->n.contact; ++i)
     name_taken(r, p->name, m->contacts[i].name);
-  PASS_GROW(m->contacts, m->n_contact, m->cap_contact);
-  contact *c = &m->contacts[m->n_contact++];
+  PASS_GROW(m->contacts, m->n.contact, m->cap.contact);
+  contact *c = &m->contacts[m->n.contact++];
   c->name = p->name == NULL ? "" : p->name;
   c->group = p->group == NULL ? "" : p->group;
   c->obstacle_name = p->obstacle == NULL ? "" : p->obstacle;
@@ -260,13 +260,13 @@ plugin names_law(const reading *r) {
 
 static const char *contact_name(const void *ctx, int i) {
   const model *m = ctx;
-  return i < m->n_contact ? m->contacts[i].name : NULL;
+  return i < m->n.contact ? m->contacts[i].name : NULL;
 }
 
 /* Id of a contact, or -1 and the error that this card names none. */
 static int find_contact(const reading *r, const char *name) {
   char text[80];
-  for (int i = 0; i < r->m->n_contact; ++i)
+  for (int i = 0; i < r->m->n.contact; ++i)
     if (same_word(name, r->m->contacts[i].name)) return i;
   if (r->is_lost != NULL && r->is_lost(r->m, name)) return -1;
   snprintf(text, sizeof text,
@@ -324,14 +324,15 @@ static friction_rule *new_rule(const reading *r, int contact_id, int *told) {
   friction_rule *rule = &c->friction;
   const friction_rule *old = rule->law == NULL ? NULL : rule;
   if (r->in_step) {
-    step *s = &r->m->steps[r->m->n_step - 1];
+    step *s = &r->m->steps[r->m->n.step - 1];
     old = NULL;
-    for (int k = 0; k < s->n_change; ++k)
-      if (s->changes[k].contact_id == contact_id) old = &s->changes[k].rule;
-    GROW(s->changes, s->n_change, s->cap_change);
-    rule = &s->changes[s->n_change].rule;
-    s->changes[s->n_change].contact_id = contact_id;
-    s->n_change += old == NULL;
+    for (int k = 0; k < s->friction.n; ++k)
+      if (s->friction.changes[k].contact_id == contact_id)
+        old = &s->friction.changes[k].rule;
+    GROW(s->friction.changes, s->friction.n, s->friction.cap);
+    rule = &s->friction.changes[s->friction.n].rule;
+    s->friction.changes[s->friction.n].contact_id = contact_id;
+    s->friction.n += old == NULL;
   }
   *told = old != NULL;
   if (old != NULL)
@@ -411,8 +412,8 @@ status apply_effect(reading *r) {
                 r->card->name, first->at.line_no);
     return OK;
   }
-  GROW(m->effect_cards, m->n_effect_card, m->cap_effect_card);
-  effect_card *c = &m->effect_cards[m->n_effect_card++];
+  GROW(m->effect_cards, m->n.effect_card, m->cap.effect_card);
+  effect_card *c = &m->effect_cards[m->n.effect_card++];
   *c = (effect_card){r->card->name, id, {0}, r->card->at};
   memcpy(c->value, p->value, sizeof c->value);
 done:

@@ -61,22 +61,22 @@ status apply_solver(reading *r) {
 status apply_accuracy(reading *r) {
   const accuracy_param *p = r->param;
   step *s = open_step(r);
-  if (s->has_accuracy)
+  if (s->accuracy.given)
     message_add(r->m->log, P2011, &r->card->at,
                 "a step has one *ACCURACY card, this is its second");
-  s->has_accuracy = 1;
-  s->accuracy_at = r->card->at;
-  s->no_solver_error = !p->solver;
-  s->mesh_error = p->mesh || p->target > 0.0;
-  s->time_error = p->time > 0 || p->target > 0.0;
-  s->time_balanced = p->time == TIME_BALANCED;
-  s->time_share = p->time_share;
-  s->mesh_error |= s->time_balanced;
-  s->theorems = p->theorems;
-  if (!s->time_balanced && p->time_share != 0.1)
+  s->accuracy.given = 1;
+  s->accuracy.at = r->card->at;
+  s->accuracy.no_solver = !p->solver;
+  s->accuracy.mesh = p->mesh || p->target > 0.0;
+  s->accuracy.time = p->time > 0 || p->target > 0.0;
+  s->accuracy.time_balanced = p->time == TIME_BALANCED;
+  s->accuracy.time_share = p->time_share;
+  s->accuracy.mesh |= s->accuracy.time_balanced;
+  s->accuracy.theorems = p->theorems;
+  if (!s->accuracy.time_balanced && p->time_share != 0.1)
     tell_idle(r, "TIME_SHARE", "TIME=BALANCED");
   if (p->target > 0.0) {
-    r->m->target =
+    r->m->accuracy.target =
         (accuracy_target){p->target, p->max_cpu, p->max_memory, p->max_passes};
     return OK;
   }
@@ -91,12 +91,12 @@ status apply_print(reading *r) {
   const print_param *p = r->param;
   step *s = open_step(r);
   int any = 0;
-  s->has_print = 1;
+  s->print.given = 1;
   for (int i = 0; i < PRINT_COUNT; ++i) {
     if (!p->table[i]) continue;
     any = 1;
-    PASS_GROW(s->prints, s->n_print, s->cap_print);
-    print_request *q = &s->prints[s->n_print++];
+    PASS_GROW(s->print.requests, s->print.n, s->print.cap);
+    print_request *q = &s->print.requests[s->print.n++];
     q->table = 1 << i;
     q->group = p->group;
     q->group_id = -1;
@@ -120,10 +120,10 @@ status apply_print(reading *r) {
 status apply_output(reading *r) {
   const output_param *p = r->param;
   step *s = open_step(r);
-  s->has_output = 1;
-  s->output_at = r->card->at;
-  s->output_frequency = p->hdf5 ? p->frequency : -1;
-  s->condensed_frequency = p->condensed == 1 ? p->frequency : -1;
+  s->output.given = 1;
+  s->output.at = r->card->at;
+  s->output.frequency = p->hdf5 ? p->frequency : -1;
+  s->output.condensed = p->condensed == 1 ? p->frequency : -1;
   if (!p->hdf5 && p->condensed != 1 && p->frequency != 1)
     tell_idle(r, "FREQUENCY", "HDF5=YES or CONDENSED=FCLIB");
   return OK;
@@ -132,8 +132,8 @@ status apply_output(reading *r) {
 status apply_restart(reading *r) {
   const restart_param *p = r->param;
   step *s = open_step(r);
-  s->has_restart = 1;
-  s->restart_at = r->card->at;
-  s->restart_frequency = p->frequency;
+  s->restart.given = 1;
+  s->restart.at = r->card->at;
+  s->restart.frequency = p->frequency;
   return OK;
 }

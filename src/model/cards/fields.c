@@ -142,13 +142,13 @@ int find_name(const model *m, const char *name, const char *title,
 
 static const char *amplitude_at(const void *ctx, int i) {
   const model *m = ctx;
-  return i < m->n_amplitude ? m->amplitudes[i].name : NULL;
+  return i < m->n.amplitude ? m->time.amplitudes[i].name : NULL;
 }
 
 int find_amplitude(const model *m, const char *name, const place *at) {
   int i = find_name(m, name, "AMPLITUDE", amplitude_at, at);
-  if (i >= 0) m->amplitudes[i].used = 1;
+  if (i >= 0) m->time.amplitudes[i].used = 1;
   return i;
 }
 
-step *open_step(const reading *r) { return &r->m->steps[r->m->n_step - 1]; }
+step *open_step(const reading *r) { return &r->m->steps[r->m->n.step - 1]; }

@@ -78,18 +78,18 @@ static status open_initial(reading *r) {
                   initial_rows[p->type].line);
     return OK;
   }
-  if (m->start.given)
+  if (m->initial.start.given)
     message_add(m->log, P2011, &r->card->at,
                 "a deck has one *INITIAL CONDITIONS, TYPE=DISPLACEMENT; the "
                 "other is at line %d",
-                m->start.at.line_no);
-  m->start.given = 1;
-  m->start.relax = p->incompatible;
-  m->start.at = r->card->at;
+                m->initial.start.at.line_no);
+  m->initial.start.given = 1;
+  m->initial.start.relax = p->incompatible;
+  m->initial.start.at = r->card->at;
   if (file == NULL || !file->has_value) return OK;
-  m->start.file_at = file->value.at;
-  m->start.file_name = p->file;
-  return field_file(r, &m->start.file);
+  m->initial.start.file_at = file->value.at;
+  m->initial.start.file_name = p->file;
+  return field_file(r, &m->initial.start.file);
 }
 
 status apply_initial(reading *r) {
@@ -106,8 +106,8 @@ status apply_initial(reading *r) {
     if (quantity_variables(&c.value) & 8u)
       message_add(m->log, P2033, &line->fields[line->n_field - 1].at,
                   "*INITIAL CONDITIONS: the expression must not depend on t");
-    PASS_GROW(m->initials, m->n_initial, m->cap_initial);
-    m->initials[m->n_initial++] = c;
+    PASS_GROW(m->initial.lines, m->n.initial, m->cap.initial);
+    m->initial.lines[m->n.initial++] = c;
   }
   return OK;
 }

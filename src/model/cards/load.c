@@ -10,8 +10,9 @@
 
 /* 0 as well for one that the card has been told about. */
 static int known_amplitude(const reading *r, const char *name) {
-  for (int i = 0; i < r->m->n_amplitude; ++i)
-    if (name != NULL && same_word(name, r->m->amplitudes[i].name)) return 1;
+  for (int i = 0; i < r->m->n.amplitude; ++i)
+    if (name != NULL && same_word(name, r->m->time.amplitudes[i].name))
+      return 1;
   return 0;
 }
 
@@ -85,7 +86,7 @@ static int read_fixing(const reading *r, const record *line, int *first,
 
 status apply_boundary(reading *r) {
   const card *c = r->card;
-  load_list *list = r->in_step ? &open_step(r)->loads : &r->m->supports;
+  load_list *list = r->in_step ? &open_step(r)->loads : &r->m->load.supports;
   renew(r, 1u << LOAD_FIXING, boundary_line);
   for (int i = 0; i < c->n_record; ++i) {
     const record *line = &c->records[i];

@@ -10,10 +10,10 @@
 status apply_material(reading *r) {
   const name_param *p = r->param;
   model *m = r->m;
-  for (int i = 0; i < m->n_material; ++i)
+  for (int i = 0; i < m->n.material; ++i)
     name_taken(r, p->name, m->materials[i].name);
-  PASS_GROW(m->materials, m->n_material, m->cap_material);
-  r->material_id = m->n_material++;
+  PASS_GROW(m->materials, m->n.material, m->cap.material);
+  r->material_id = m->n.material++;
   m->materials[r->material_id].name = p->name == NULL ? "" : p->name;
   m->materials[r->material_id].at = *value_place(r, "NAME");
   return OK;

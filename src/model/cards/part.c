@@ -10,53 +10,53 @@
 
 status apply_heading(reading *r) {
   const card *c = r->card;
-  if (c->n_record > 0 && r->m->title[0] == '\0')
-    r->m->title = c->records[0].raw;
+  if (c->n_record > 0 && r->m->name.title[0] == '\0')
+    r->m->name.title = c->records[0].raw;
   return OK;
 }
 
 status apply_units(reading *r) {
   const units_param *p = r->param;
-  if (r->m->has_units++)
+  if (r->m->unit.given++)
     message_add(r->m->log, P2011, &r->card->at, "a deck has one *UNITS card");
-  r->m->length_unit = p->length;
-  r->m->force_unit = p->force;
-  r->m->time_unit = p->time;
+  r->m->unit.length = p->length;
+  r->m->unit.force = p->force;
+  r->m->unit.time = p->time;
   return OK;
 }
 
 status apply_mesh(reading *r) {
   const mesh_param *p = r->param;
   model *m = r->m;
-  if (m->has_mesh) {
+  if (m->mesh.given) {
     message_add(m->log, P2015, &r->card->at, "a deck has one *MESH card");
     return OK;
   }
-  m->has_mesh = 1;
-  m->mesh_at = *value_place(r, "FILE");
-  m->mesh_scale = p->scale;
-  return field_file(r, &m->mesh_file);
+  m->mesh.given = 1;
+  m->mesh.at = *value_place(r, "FILE");
+  m->mesh.scale = p->scale;
+  return field_file(r, &m->mesh.file);
 }
 
 status apply_condensed_problem(reading *r) {
   const problem_param *p = r->param;
   model *m = r->m;
-  if (m->has_problem) {
+  if (m->problem.given) {
     message_add(m->log, P2011, &r->card->at,
                 "a deck has one *CONDENSED PROBLEM card");
     return OK;
   }
-  m->has_problem = 1;
-  m->problem_at = *value_place(r, "FILE");
-  m->problem_type = card_parameter(r->card, "TYPE") == NULL ? -1 : p->type;
-  return field_file(r, &m->problem_file);
+  m->problem.given = 1;
+  m->problem.at = *value_place(r, "FILE");
+  m->problem.type = card_parameter(r->card, "TYPE") == NULL ? -1 : p->type;
+  return field_file(r, &m->problem.file);
 }
 
 status apply_section(reading *r) {
   const section_param *p = r->param;
   model *m = r->m;
-  PASS_GROW(m->sections, m->n_section, m->cap_section);
-  section *s = &m->sections[m->n_section++];
+  PASS_GROW(m->sections, m->n.section, m->cap.section);
+  section *s = &m->sections[m->n.section++];
   s->elset = p->elset == NULL ? "" : p->elset;
   s->material_name = p->material == NULL ? "" : p->material;
   s->at = r->card->at;
@@ -96,10 +96,10 @@ status apply_amplitude(reading *r) {
   const amplitude_param *p = r->param;
   model *m = r->m;
   const card *c = r->card;
-  for (int i = 0; i < m->n_amplitude; ++i)
-    name_taken(r, p->name, m->amplitudes[i].name);
-  PASS_GROW(m->amplitudes, m->n_amplitude, m->cap_amplitude);
-  amplitude *a = &m->amplitudes[m->n_amplitude++];
+  for (int i = 0; i < m->n.amplitude; ++i)
+    name_taken(r, p->name, m->time.amplitudes[i].name);
+  PASS_GROW(m->time.amplitudes, m->n.amplitude, m->cap.amplitude);
+  amplitude *a = &m->time.amplitudes[m->n.amplitude++];
   a->name = p->name == NULL ? "" : p->name;
   a->at = *value_place(r, "NAME");
   a->total_time = p->time;
@@ -173,10 +173,10 @@ status apply_time_points(reading *r) {
   const points_param *p = r->param;
   model *m = r->m;
   int room = 0;
-  for (int i = 0; i < m->n_points; ++i)
-    name_taken(r, p->name, m->points[i].name);
-  PASS_GROW(m->points, m->n_points, m->cap_points);
-  time_points *own = &m->points[m->n_points++];
+  for (int i = 0; i < m->n.points; ++i)
+    name_taken(r, p->name, m->time.points[i].name);
+  PASS_GROW(m->time.points, m->n.points, m->cap.points);
+  time_points *own = &m->time.points[m->n.points++];
   *own = (time_points){.name = p->name == NULL ? "" : p->name,
                        .total_time = p->time,
                        .at = *value_place(r, "NAME")};
@@ -190,13 +190,13 @@ status apply_time_points(reading *r) {
 
 status apply_effects(reading *r) {
   const effects_param *p = r->param;
-  if (r->m->has_effects)
+  if (r->m->reduction.given)
     message_add(r->m->log, P2011, &r->card->at,
                 "a deck has one *EFFECTS card, this is its second");
-  r->m->has_effects = 1;
-  r->m->effects_auto = p->mode;
-  r->m->effects_tol = p->tol;
-  r->m->effects_at = r->card->at;
+  r->m->reduction.given = 1;
+  r->m->reduction.is_auto = p->mode;
+  r->m->reduction.tol = p->tol;
+  r->m->reduction.at = r->card->at;
   if (!p->mode && p->tol != 1e-3) tell_idle(r, "TOL", "MODE=AUTO");
   return OK;
 }

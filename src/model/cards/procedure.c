@@ -11,8 +11,8 @@
 status apply_step(reading *r) {
   const name_param *p = r->param;
   model *m = r->m;
-  PASS_GROW(m->steps, m->n_step, m->cap_step);
-  step *s = &m->steps[m->n_step++];
+  PASS_GROW(m->steps, m->n.step, m->cap.step);
+  step *s = &m->steps[m->n.step++];
   s->name = p->name == NULL ? "" : p->name;
   s->at = r->card->at;
   r->in_step = 1;
@@ -21,7 +21,7 @@ status apply_step(reading *r) {
 
 status apply_end_step(reading *r) {
   const step *s = open_step(r);
-  if (s->kind == STEP_NONE && !r->m->has_problem && !r->lost)
+  if (s->kind == STEP_NONE && !r->m->problem.given && !r->lost)
     message_add(r->m->log, P2018, &s->at,
                 "this step has no procedure: *STATIC, *QUASISTATIC or *VISCO");
   r->in_step = 0;
@@ -67,7 +67,7 @@ static void check_increments(const reading *r, const field *f, const step *s) {
     message_add(log, P2020, &f[0].at,
                 "the increment dt = %s is shorter than dt_min = %s", f[0].text,
                 f[2].text);
-  if (s->tolerance == 0.0 && s->total / s->dt > 1e8)
+  if (s->visco.tolerance == 0.0 && s->total / s->dt > 1e8)
     message_add(log, P2020, &f[0].at,
                 "%.3g increments; at most 1e8 are possible", s->total / s->dt);
 }
@@ -132,20 +132,22 @@ status apply_visco(reading *r) {
   const visco_param *p = r->param;
   if (second_procedure(r)) return OK;
   s->kind = STEP_VISCO;
-  s->tolerance = p->tolerance;
+  s->visco.tolerance = p->tolerance;
   read_increments(r, s);
-  s->integrator = p->integrator == NULL ? NULL : scheme_find(p->integrator);
-  if (s->integrator == NULL) {
+  s->visco.integrator =
+      p->integrator == NULL ? NULL : scheme_find(p->integrator);
+  if (s->visco.integrator == NULL) {
     if (p->integrator != NULL)
       unknown_word(r->m->log, P2012, value_place(r, "INTEGRATOR"),
                    "*VISCO: this version has no INTEGRATOR=", p->integrator,
                    scheme_name, NULL);
     return OK;
   }
-  check_visco(r, s->integrator);
-  s->theta = s->integrator->has_theta ? p->theta : s->integrator->theta;
-  s->initial = p->iteration == 1;
-  s->substeps = p->substeps == 1 || p->tolerance > 0.0;
+  check_visco(r, s->visco.integrator);
+  s->visco.theta =
+      s->visco.integrator->has_theta ? p->theta : s->visco.integrator->theta;
+  s->visco.initial = p->iteration == 1;
+  s->visco.substeps = p->substeps == 1 || p->tolerance > 0.0;
   if (p->tolerance > 0.0 && !gives_dt_min(r)) s->dt_min = 1e-6 * s->dt;
   return OK;
 }

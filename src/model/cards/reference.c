@@ -38,7 +38,7 @@ static int is_component(const char *name) {
 }
 
 status apply_reference(reading *r) {
-  closed_form *ref = &r->m->ref;
+  closed_form *ref = &r->m->accuracy.ref;
   message_log *log = r->m->log;
   if (ref->n > 0)
     message_add(log, P2011, &r->card->at,

@@ -12,14 +12,14 @@
 
 static void check_whole(const model *m, const char *what, int n, int all) {
   if (n > 0 && n < all)
-    message_add(m->log, P2056, &m->ref.at,
+    message_add(m->log, P2056, &m->accuracy.ref.at,
                 "*REFERENCE: %d of %d components of the %s", n, all, what);
 }
 
 /* Components of *REFERENCE to their places; of u and of the stresses all. */
 static void check_reference(model *m) {
-  closed_form *ref = &m->ref;
-  int axi = m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC;
+  closed_form *ref = &m->accuracy.ref;
+  int axi = m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC;
   int n_u = 0, n_stress = 0;
   for (int i = 0; i < ref->n; ++i) {
     const reference_line *l = &ref->line[i];
@@ -100,7 +100,7 @@ static void check_turn(const model *m, int dim, int obstacle_id) {
   const obstacle *o = &m->obstacles[obstacle_id];
   const place *at = &m->moves[obstacle_id].rotate_at;
   if (!o->turns || dim == 3) return;
-  if (m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC)
+  if (m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC)
     message_add(m->log, P2043, at,
                 "*OBSTACLE %s: an axisymmetric model has no displacement "
                 "around its axis that could follow ROTATE",
@@ -114,7 +114,7 @@ static void check_turn(const model *m, int dim, int obstacle_id) {
 
 static void check_torque_axis(const model *m, int dim, const contact *c) {
   if (!c->has_axis || c->axis_of_obstacle || dim == 3) return;
-  if (m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC)
+  if (m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC)
     message_add(m->log, P2037, &c->axis_at,
                 "*CONTACT %s: AXIS counts for plane models and in 3-D only",
                 c->name);
@@ -127,7 +127,7 @@ static void check_torque_axis(const model *m, int dim, const contact *c) {
 /* Options of a friction law that are not for every model. */
 static void check_law(const model *m, const char *contact_name,
                       const friction_rule *rule) {
-  int axisymmetric = m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC;
+  int axisymmetric = m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC;
   if (rule->law == NULL || rule->law->misfit == NULL) return;
   const char *why = rule->law->misfit(rule->card.param, m->dim, axisymmetric);
   if (why != NULL)
@@ -137,11 +137,11 @@ static void check_law(const model *m, const char *contact_name,
 
 /* Options of friction laws that are not for every model. */
 static void check_laws(const model *m) {
-  for (int i = 0; i < m->n_contact; ++i)
+  for (int i = 0; i < m->n.contact; ++i)
     check_law(m, m->contacts[i].name, &m->contacts[i].friction);
-  for (int k = 0; k < m->n_step; ++k)
-    for (int i = 0; i < m->steps[k].n_change; ++i) {
-      const friction_change *f = &m->steps[k].changes[i];
+  for (int k = 0; k < m->n.step; ++k)
+    for (int i = 0; i < m->steps[k].friction.n; ++i) {
+      const friction_change *f = &m->steps[k].friction.changes[i];
       check_law(m, m->contacts[f->contact_id].name, &f->rule);
     }
 }
@@ -154,7 +154,7 @@ static void check_obstacle_fields(const model *m, const mesh *msh, int id) {
   if (msh->dim == 3 && m->moves[id].short_at.file != NULL)
     message_add(m->log, P2009, &m->moves[id].short_at,
                 "2 numbers on this line of *OBSTACLE; a mesh in 3-D needs 3");
-  if (m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC &&
+  if (m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC &&
       o->shape == OBSTACLE_SPHERE &&
       (radial->formula != NULL || radial->number != 0.0))
     message_add(m->log, P4009, &m->moves[id].move_at,
@@ -164,7 +164,7 @@ static void check_obstacle_fields(const model *m, const mesh *msh, int id) {
 
 /* Groups, obstacles and their axes, torques. */
 static void check_contacts(model *m, const mesh *msh) {
-  for (int i = 0; i < m->n_contact; ++i) {
+  for (int i = 0; i < m->n.contact; ++i) {
     contact *c = &m->contacts[i];
     c->group_id = check_group_of(m, msh, c->group, msh->dim - 1, &c->group_at);
     check_twice(m, i);
@@ -187,7 +187,7 @@ static void check_contacts(model *m, const mesh *msh) {
 }
 
 static void check_kinematics(model *m, const mesh *msh) {
-  for (int i = 0; i < m->n_section; ++i) {
+  for (int i = 0; i < m->n.section; ++i) {
     section *s = &m->sections[i];
     if (s->kin < 0) s->kin = msh->dim == 3 ? SOLID_3D : PLANE_STRAIN;
     if ((s->kin == SOLID_3D) != (msh->dim == 3))
@@ -227,7 +227,7 @@ double model_locking_error(double nu, int n) {
 
 static void check_locking(const model *m) {
   enum { COARSE = 16, FINE = 64 };
-  for (int i = 0; i < m->n_section; ++i) {
+  for (int i = 0; i < m->n.section; ++i) {
     const section *s = &m->sections[i];
     const material *mat =
         s->material_id < 0 || s->kin == PLANE_STRESS || s->averaged
@@ -249,7 +249,7 @@ static void check_locking(const model *m) {
 /* The radius x of an axisymmetric model is not negative. */
 static void check_radius(const model *m, const mesh *msh) {
   static const double rounding = 1e-9; /* of the size of the mesh            */
-  if (m->n_section == 0 || m->sections[0].kin != AXISYMMETRIC) return;
+  if (m->n.section == 0 || m->sections[0].kin != AXISYMMETRIC) return;
   for (int i = 0; i < msh->n_node; ++i) {
     const double *x = msh->x + (size_t)msh->dim * (size_t)i;
     if (x[0] >= -rounding * msh->size) continue;
@@ -264,7 +264,7 @@ static void check_radius(const model *m, const mesh *msh) {
 static status check_sections(model *m, const mesh *msh) {
   PASS_NEW(m->elem_section, msh->n_elem);
   for (int e = 0; e < msh->n_elem; ++e) m->elem_section[e] = -1;
-  for (int i = 0; i < m->n_section; ++i) {
+  for (int i = 0; i < m->n.section; ++i) {
     section *s = &m->sections[i];
     s->group_id = check_group_of(m, msh, s->elset, msh->dim, &s->elset_at);
     if (s->group_id < 0) continue;
@@ -296,7 +296,7 @@ static status check_sections(model *m, const mesh *msh) {
 
 /* Moduli over the temperature where there is none. */
 static void check_moduli(const model *m) {
-  for (int i = 0; i < m->n_material; ++i) {
+  for (int i = 0; i < m->n.material; ++i) {
     const material *mat = &m->materials[i];
     if (!mat->used || mat->elastic.n < 2 || (m->effects & EFFECT_THERMAL))
       continue;
@@ -326,7 +326,7 @@ status model_check(model *m, const mesh *msh) {
   PASS(message_status(m->log, ERR_DECK));
   check_values(m, msh);
   check_no_effect(m, msh);
-  for (int i = 0; i < m->n_step; ++i) PASS(check_agreement(m, msh, i));
+  for (int i = 0; i < m->n.step; ++i) PASS(check_agreement(m, msh, i));
   PASS(check_visco(m));
   return message_status(m->log, ERR_DECK);
 }

@@ -9,14 +9,14 @@
 #include <math.h>
 
 int step_has_limit(const step *s) {
-  return !s->integrator->linear_only && s->theta < 1.0;
+  return !s->visco.integrator->linear_only && s->visco.theta < 1.0;
 }
 
 /* THETA < 1 turns the sign of what is much faster than dt at each step. */
 static void tell_ringing(const model *m, const step *s, double t, double dt,
                          double rate) {
-  double theta = s->theta, z = rate * dt;
-  if (s->integrator->limit > 0.0 || (1.0 - theta) * z <= 1.0) return;
+  double theta = s->visco.theta, z = rate * dt;
+  if (s->visco.integrator->limit > 0.0 || (1.0 - theta) * z <= 1.0) return;
   message_add(m->log, P2051, &s->at,
               "step %d, time %g: dt = %.6g is %.4g times the shortest "
               "relaxation time: THETA = %g multiplies what relaxes so fast by "
@@ -29,19 +29,19 @@ int step_level(const model *m, const step *s, double t, double dt, double rate,
                int tell) {
   enum { DEEPEST = 30 };
   int level = 0;
-  double limit = scheme_limit(s->integrator, s->theta) / rate;
+  double limit = scheme_limit(s->visco.integrator, s->visco.theta) / rate;
   /* Ends of increments are sums: dt is known to the rounding of the time. */
   double rounding = 4e-16 * (fabs(t) + dt);
   if (tell) tell_ringing(m, s, t, dt, rate);
   while (ldexp(dt, -level) > limit + rounding && level < DEEPEST) ++level;
-  if (level == 0 || (s->substeps && level < DEEPEST)) return level;
+  if (level == 0 || (s->visco.substeps && level < DEEPEST)) return level;
   message_add(m->log, P2050, &s->at,
               "step %d, time %g: %s is stable up to dt = %.9g (fastest rate "
               "%.9g), not with dt = %.9g%s; give a smaller dt, %sor "
               "INTEGRATOR=BACKWARD",
-              (int)(s - m->steps) + 1, t, s->integrator->name, limit, rate, dt,
-              s->substeps ? ", nor in 2^29 parts of it" : "",
-              s->substeps ? "" : "SUBSTEPS=AUTO, ");
+              (int)(s - m->steps) + 1, t, s->visco.integrator->name, limit,
+              rate, dt, s->visco.substeps ? ", nor in 2^29 parts of it" : "",
+              s->visco.substeps ? "" : "SUBSTEPS=AUTO, ");
   return -1;
 }
 
@@ -53,13 +53,13 @@ static int is_constant(const material *mat) {
 /* Laws of the bodies under an integrator that is exact for constant ones. */
 static void check_exact(const model *m, int step_id) {
   const step *s = &m->steps[step_id];
-  for (int i = 0; i < m->n_section; ++i) {
+  for (int i = 0; i < m->n.section; ++i) {
     const material *mat = &m->materials[m->sections[i].material_id];
     const law_card *law = &mat->law;
     if (law->ops == NULL || is_constant(mat)) continue;
     message_add(m->log, P2054, &s->at,
                 "step %d: INTEGRATOR=%s, but %s of material %s %s", step_id + 1,
-                s->integrator->name, law->ops->name, mat->name,
+                s->visco.integrator->name, law->ops->name, mat->name,
                 !law->ops->linear ? "is not linear"
                 : law_varies(law) & LAW_VARIES_TIME
                     ? "has coefficients that vary in time"
@@ -74,7 +74,7 @@ static status constant_rate(const model *m, double *fastest) {
   static const double zero[FLOW_VALUE_MAX];
   flow_kind kind = {0};
   *fastest = 0.0;
-  for (int i = 0; i < m->n_section; ++i) {
+  for (int i = 0; i < m->n.section; ++i) {
     const material *mat = &m->materials[m->sections[i].material_id];
     law_elastic elastic;
     law_point p;
@@ -122,7 +122,7 @@ done:
 
 /* Bodies that creep at constant volume become incompressible. */
 static status check_creep(const model *m) {
-  for (int i = 0; i < m->n_section; ++i) {
+  for (int i = 0; i < m->n.section; ++i) {
     const section *s = &m->sections[i];
     const material *mat = &m->materials[s->material_id];
     int locks = 0;
@@ -142,10 +142,10 @@ status check_visco(const model *m) {
   if (!(m->effects & EFFECT_INELASTIC)) return OK;
   PASS(constant_rate(m, &rate));
   if (has_card(m, "VISCO")) PASS(check_creep(m));
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     if (s->kind != STEP_VISCO) continue;
-    if (s->integrator->linear_only) check_exact(m, i);
+    if (s->visco.integrator->linear_only) check_exact(m, i);
     if (step_has_limit(s) && rate > 0.0)
       step_level(m, s, s->start, s->dt, rate, 1);
   }

@@ -31,7 +31,7 @@ static void check_material(const model *m, const material *mat) {
 /* A step in which strains could flow. */
 static void check_flow(const model *m, const step *s) {
   if (s->kind != STEP_VISCO) return;
-  for (int i = 0; i < m->n_material; ++i)
+  for (int i = 0; i < m->n.material; ++i)
     if (m->materials[i].used && m->materials[i].law.ops != NULL) return;
   message_add(m->log, P2058, &s->at,
               "*VISCO: no material has a law that flows; the step is "
@@ -104,13 +104,13 @@ static void check_axis(const model *m, const mesh *msh, const step *s,
 
 /* 1 if a time is in a step that prints at these times. */
 static int is_printed(const model *m, const time_points *p, double t) {
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     double first = p->total_time ? s->start : 0.0;
     double rounding = 1e-9 * s->total;
     if (t < first - rounding || t > first + s->total + rounding) continue;
-    for (int k = 0; k < s->n_print; ++k)
-      if (s->prints[k].points == p) return 1;
+    for (int k = 0; k < s->print.n; ++k)
+      if (s->print.requests[k].points == p) return 1;
   }
   return 0;
 }
@@ -141,38 +141,38 @@ static void check_friction(const model *m, const mesh *msh,
 
 static void check_wear(const model *m, const step *s) {
   const effect_card *wear = model_effect_card(m, "WEAR", -1);
-  if (wear != NULL && s->time_balanced)
-    message_add(m->log, P2058, &s->accuracy_at,
+  if (wear != NULL && s->accuracy.time_balanced)
+    message_add(m->log, P2058, &s->accuracy.at,
                 "*ACCURACY, TIME=BALANCED: the increments stay those of the "
                 "step, as their error under *WEAR, line %d, is not known",
                 wear->at.line_no);
-  for (int k = 0; k < s->n_print; ++k)
-    if (s->prints[k].table == PRINT_WEAR &&
+  for (int k = 0; k < s->print.n; ++k)
+    if (s->print.requests[k].table == PRINT_WEAR &&
         model_effect_card(m, "WEAR", -1) == NULL)
-      message_add(m->log, P2058, &s->prints[k].at,
+      message_add(m->log, P2058, &s->print.requests[k].at,
                   "*PRINT, WEAR: no contact has *WEAR");
 }
 
 void check_no_effect(const model *m, const mesh *msh) {
-  int axisymmetric = m->n_section > 0 && m->sections[0].kin == AXISYMMETRIC;
-  for (int i = 0; i < m->n_points; ++i) check_times(m, &m->points[i]);
-  for (int i = 0; i < m->n_material; ++i) check_material(m, &m->materials[i]);
-  for (int i = 0; i < m->n_initial; ++i)
-    if (m->initials[i].type == INITIAL_TEMPERATURE)
-      check_heat(m, msh, "INITIAL CONDITIONS", m->initials[i].group_id,
-                 &m->initials[i].at);
-  for (int i = 0; i < m->n_contact; ++i) {
+  int axisymmetric = m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC;
+  for (int i = 0; i < m->n.points; ++i) check_times(m, &m->time.points[i]);
+  for (int i = 0; i < m->n.material; ++i) check_material(m, &m->materials[i]);
+  for (int i = 0; i < m->n.initial; ++i)
+    if (m->initial.lines[i].type == INITIAL_TEMPERATURE)
+      check_heat(m, msh, "INITIAL CONDITIONS", m->initial.lines[i].group_id,
+                 &m->initial.lines[i].at);
+  for (int i = 0; i < m->n.contact; ++i) {
     const contact *c = &m->contacts[i];
     check_friction(m, msh, &c->friction);
     if (c->force.given)
       check_z(m, msh, &c->force.value, "CONTACT FORCE", &c->force.value_at);
   }
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     check_flow(m, s);
     check_wear(m, s);
-    for (int k = 0; k < s->n_change; ++k)
-      check_friction(m, msh, &s->changes[k].rule);
+    for (int k = 0; k < s->friction.n; ++k)
+      check_friction(m, msh, &s->friction.changes[k].rule);
     for (int k = 0; k < s->loads.n; ++k) {
       const load *l = &s->loads.item[k];
       if (l->removed) continue;

@@ -97,8 +97,8 @@ static void check_initial_law(const model *m, const mesh *msh,
 }
 
 void check_initials(model *m, const mesh *msh) {
-  for (int i = 0; i < m->n_initial; ++i) {
-    initial *c = &m->initials[i];
+  for (int i = 0; i < m->n.initial; ++i) {
+    initial *c = &m->initial.lines[i];
     int nodal = c->type == INITIAL_DISPLACEMENT;
     c->group_id = nodal ? check_group(m, msh, c->group, &c->at)
                         : check_group_of(m, msh, c->group, msh->dim, &c->at);
@@ -113,8 +113,8 @@ void check_initials(model *m, const mesh *msh) {
 }
 
 static void check_prints(const model *m, const mesh *msh, step *s) {
-  for (int i = 0; i < s->n_print; ++i) {
-    print_request *p = &s->prints[i];
+  for (int i = 0; i < s->print.n; ++i) {
+    print_request *p = &s->print.requests[i];
     if (p->group == NULL) continue;
     p->group_id = p->table == PRINT_ELEMENTS
                       ? check_group_of(m, msh, p->group, msh->dim, &p->at)
@@ -128,11 +128,12 @@ static status find_field(model *m, const mesh *msh, const char *file,
   status st = OK;
   *out = NULL;
   if (file == NULL) goto done;
-  for (int i = 0; i < m->n_field && *out == NULL; ++i)
-    if (strcmp(m->fields[i].file, file) == 0) *out = m->fields[i].value;
+  for (int i = 0; i < m->n.field && *out == NULL; ++i)
+    if (strcmp(m->load.fields[i].file, file) == 0)
+      *out = m->load.fields[i].value;
   if (*out != NULL) goto done;
-  GROW(m->fields, m->n_field, m->cap_field);
-  nodal_field *f = &m->fields[m->n_field];
+  GROW(m->load.fields, m->n.field, m->cap.field);
+  nodal_field *f = &m->load.fields[m->n.field];
   st = nodal_field_read(file, msh, &f->value);
   if (st == ERR_FILE || st == ERR_DECK) {
     message_add(m->log, P2053, at, "%s", status_message());
@@ -142,13 +143,13 @@ static status find_field(model *m, const mesh *msh, const char *file,
   TRY(st);
   f->file = file;
   *out = f->value;
-  ++m->n_field;
+  ++m->n.field;
 done:
   return st;
 }
 
 status check_fields(model *m, const mesh *msh) {
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k) {
       load *l = &m->steps[i].loads.item[k];
       PASS(find_field(m, msh, l->file, &l->file_at, &l->field));
@@ -172,7 +173,7 @@ static int checked_before(const model *m, int step_id, load *l) {
 }
 
 void check_steps(model *m, const mesh *msh) {
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     step *s = &m->steps[i];
     for (int k = 0; k < s->loads.n; ++k)
       if (!checked_before(m, i, &s->loads.item[k]))
@@ -217,7 +218,7 @@ static int contact_finite(const model *m, const mesh *msh, const contact *c,
 static void check_contact_values(const model *m, const mesh *msh, int id) {
   const contact *c = &m->contacts[id];
   int good = 1, fine = 1;
-  for (int k = 0; k < m->n_step; ++k) {
+  for (int k = 0; k < m->n.step; ++k) {
     double t = step_time(&m->steps[k], 1);
     const friction_rule *rule = friction_in_force(m, k, id);
     contact_value friction = {"FRICTION",
@@ -254,7 +255,7 @@ static int motion_finite(const model *m, int obstacle_id, double t) {
  * plane has left them by more than a tenth. */
 static void check_tilt(const model *m, int obstacle_id) {
   const obstacle *o = &m->obstacles[obstacle_id];
-  for (int k = 0; k < m->n_step; ++k) {
+  for (int k = 0; k < m->n.step; ++k) {
     double t = step_time(&m->steps[k], 1), tilt = obstacle_tilt(o, t);
     if (!(tilt > 0.1)) continue;
     message_add(m->log, P2052, &m->moves[obstacle_id].rotate_at,
@@ -266,14 +267,14 @@ static void check_tilt(const model *m, int obstacle_id) {
 }
 
 void check_values(const model *m, const mesh *msh) {
-  for (int i = 0; i < m->n_obstacle; ++i) {
+  for (int i = 0; i < m->n.obstacle; ++i) {
     int good = motion_finite(m, i, 0.0);
-    for (int k = 0; k < m->n_step && good; ++k)
+    for (int k = 0; k < m->n.step && good; ++k)
       good = motion_finite(m, i, step_time(&m->steps[k], 1));
     if (good) check_tilt(m, i);
   }
-  for (int i = 0; i < m->n_contact; ++i) check_contact_values(m, msh, i);
-  for (int i = 0; i < m->n_step; ++i)
+  for (int i = 0; i < m->n.contact; ++i) check_contact_values(m, msh, i);
+  for (int i = 0; i < m->n.step; ++i)
     for (int k = 0; k < m->steps[i].loads.n; ++k)
       if (m->steps[i].loads.item[k].run != RUN_HELD)
         load_finite(m, msh, &m->steps[i], &m->steps[i].loads.item[k],

@@ -28,18 +28,19 @@ static void check_problem_cards(const reading *r) {
     if (row != NULL && !goes_with_problem(c->name))
       message_add(m->log, P2034, &c->at,
                   "*%s is not allowed with *CONDENSED PROBLEM, line %d",
-                  c->name, m->problem_at.line_no);
+                  c->name, m->problem.at.line_no);
   }
-  for (int i = 1; i < m->n_step; ++i)
+  for (int i = 1; i < m->n.step; ++i)
     message_add(m->log, P2034, &m->steps[i].at,
                 "a condensed problem is solved in one step, this is number %d",
                 i + 1);
 }
 
 static void check_problem_tables(const reading *r, const step *s) {
-  for (int i = 0; i < s->n_print; ++i)
-    if (s->prints[i].table != PRINT_CONTACT || s->prints[i].group != NULL)
-      message_add(r->m->log, P2034, &s->prints[i].at,
+  for (int i = 0; i < s->print.n; ++i)
+    if (s->print.requests[i].table != PRINT_CONTACT ||
+        s->print.requests[i].group != NULL)
+      message_add(r->m->log, P2034, &s->print.requests[i].at,
                   "a condensed problem has no mesh: only *PRINT, CONTACT "
                   "without GROUP= has rows");
 }
@@ -47,12 +48,12 @@ static void check_problem_tables(const reading *r, const step *s) {
 /* The bound of the error factors the matrix, which costs more than many
  * solutions: only on request. */
 static void check_problem_accuracy(const reading *r, step *s) {
-  int others = s->mesh_error || s->time_error || s->theorems ||
-               r->m->target.percent > 0.0;
-  if (!s->has_accuracy)
-    s->no_solver_error = 1;
+  int others = s->accuracy.mesh || s->accuracy.time || s->accuracy.theorems ||
+               r->m->accuracy.target.percent > 0.0;
+  if (!s->accuracy.given)
+    s->accuracy.no_solver = 1;
   else if (others)
-    message_add(r->m->log, P2034, &s->accuracy_at,
+    message_add(r->m->log, P2034, &s->accuracy.at,
                 "a condensed problem has no mesh: of *ACCURACY only SOLVER= "
                 "has a place beside it");
 }
@@ -67,11 +68,11 @@ static status model_finish_problem(reading *r) {
   s->kind = STEP_STATIC;
   if (!(s->total > 0.0)) s->total = 1.0;
   s->dt = s->dt_min = s->total;
-  s->output_frequency = -1;
-  s->restart_frequency = -1;
-  if (s->n_print > 0) return OK;
-  PASS_GROW(s->prints, s->n_print, s->cap_print);
-  s->prints[s->n_print++] = (print_request){
+  s->output.frequency = -1;
+  s->restart.frequency = -1;
+  if (s->print.n > 0) return OK;
+  PASS_GROW(s->print.requests, s->print.n, s->print.cap);
+  s->print.requests[s->print.n++] = (print_request){
       .table = PRINT_CONTACT, .group_id = -1, .frequency = 1, .at = s->at};
   return OK;
 }
@@ -188,7 +189,7 @@ static int right_place(reading *r, const keyword *row) {
   r->material_id = -1;
   r->lost_material = 0;
   if (row->where & IN_MODEL) {
-    if (r->m->n_step == 0 || strcmp(row->name, "STEP") == 0) return 1;
+    if (r->m->n.step == 0 || strcmp(row->name, "STEP") == 0) return 1;
     message_add(log, P2006, &c->at, "*%s must stand before the first *STEP",
                 c->name);
     return 0;
@@ -262,11 +263,12 @@ static status read_card(reading *r) {
 static status name_job(model *m) {
   const char *slash = strrchr(m->deck->file, '/');
   const char *base = slash == NULL ? m->deck->file : slash + 1;
-  m->job = memory_text(base);
-  if (m->job == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of the job");
-  size_t length = strlen(m->job);
-  if (length > 4 && same_word(m->job + length - 4, ".inp"))
-    m->job[length - 4] = '\0';
+  m->name.job = memory_text(base);
+  if (m->name.job == NULL)
+    RAISE(ERR_MEMORY, "memory exhausted: name of the job");
+  size_t length = strlen(m->name.job);
+  if (length > 4 && same_word(m->name.job + length - 4, ".inp"))
+    m->name.job[length - 4] = '\0';
   return OK;
 }
 
@@ -277,23 +279,23 @@ static void report_absent(const reading *r) {
   place at = {.file = m->deck->file};
   if (r->lost) return;
   if (m->deck->n_card > 0) at = m->deck->cards[m->deck->n_card - 1].at;
-  if (!m->has_mesh && !m->has_problem)
+  if (!m->mesh.given && !m->problem.given)
     message_add(m->log, P2015, &at, "the deck has no *MESH card");
-  if (m->n_section == 0 && !m->has_problem)
+  if (m->n.section == 0 && !m->problem.given)
     message_add(m->log, P2016, &at,
                 "the deck has no *SOLID SECTION: nothing says what the "
                 "elements are made of");
-  if (m->n_step == 0 && !m->has_problem)
+  if (m->n.step == 0 && !m->problem.given)
     message_add(m->log, P2017, &at, "the deck has no *STEP: nothing to solve");
   if (r->in_step)
-    message_add(m->log, P2019, &m->steps[m->n_step - 1].at,
+    message_add(m->log, P2019, &m->steps[m->n.step - 1].at,
                 "this *STEP is not closed by *END STEP");
 }
 
 /* A problem from a file needs no *STEP. */
 static status default_step(model *m) {
-  PASS_GROW(m->steps, m->n_step, m->cap_step);
-  m->steps[m->n_step++] = (step){.name = "", .at = m->problem_at};
+  PASS_GROW(m->steps, m->n.step, m->cap.step);
+  m->steps[m->n.step++] = (step){.name = "", .at = m->problem.at};
   return OK;
 }
 
@@ -303,7 +305,7 @@ status model_from_deck(deck *d, message_log *log, model **out) {
   *out = m;
   m->deck = d;
   m->log = log;
-  m->title = "";
+  m->name.title = "";
   PASS(name_job(m));
   reading r = {.m = m,
                .material_id = -1,
@@ -314,8 +316,8 @@ status model_from_deck(deck *d, message_log *log, model **out) {
     PASS(read_card(&r));
   }
   report_absent(&r);
-  if (m->has_problem && m->n_step == 0) PASS(default_step(m));
+  if (m->problem.given && m->n.step == 0) PASS(default_step(m));
   PASS(model_resolve(m, r.lost));
-  if (m->has_problem) PASS(model_finish_problem(&r));
+  if (m->problem.given) PASS(model_finish_problem(&r));
   return message_status(log, ERR_DECK);
 }

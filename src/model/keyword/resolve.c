@@ -11,17 +11,17 @@
 
 static const char *material_at(const void *ctx, int i) {
   const model *m = ctx;
-  return i < m->n_material ? m->materials[i].name : NULL;
+  return i < m->n.material ? m->materials[i].name : NULL;
 }
 
 static const char *obstacle_at(const void *ctx, int i) {
   const model *m = ctx;
-  return i < m->n_obstacle ? m->obstacles[i].name : NULL;
+  return i < m->n.obstacle ? m->obstacles[i].name : NULL;
 }
 
 static const char *points_at(const void *ctx, int i) {
   const model *m = ctx;
-  return i < m->n_points ? m->points[i].name : NULL;
+  return i < m->n.points ? m->time.points[i].name : NULL;
 }
 
 int name_is_lost(const model *m, const char *name) {
@@ -50,17 +50,17 @@ static void find_points(const model *m, print_request *p) {
   int i =
       find_known(m, p->points_name, "TIME POINTS", points_at, &p->points_at);
   if (i < 0) return;
-  m->points[i].used = 1;
-  p->points = &m->points[i];
+  m->time.points[i].used = 1;
+  p->points = &m->time.points[i];
 }
 
 static status resolve_laws(model *m, int lost) {
-  for (int i = 0; i < m->n_material; ++i)
+  for (int i = 0; i < m->n.material; ++i)
     PASS(material_resolve_law(m, &m->materials[i]));
-  if (lost || m->n_step == 0 || has_card(m, "VISCO") ||
+  if (lost || m->n.step == 0 || has_card(m, "VISCO") ||
       message_count(m->log, ERROR) > 0)
     return OK;
-  for (int i = 0; i < m->n_material; ++i)
+  for (int i = 0; i < m->n.material; ++i)
     if (m->materials[i].law.ops != NULL && m->materials[i].used)
       message_add(m->log, P2048, &m->steps[0].at,
                   "material %s has the law %s, but no step is *VISCO",
@@ -69,14 +69,14 @@ static status resolve_laws(model *m, int lost) {
 }
 
 static void resolve_materials(model *m, int lost) {
-  for (int i = 0; i < m->n_section; ++i) {
+  for (int i = 0; i < m->n.section; ++i) {
     section *s = &m->sections[i];
     if (s->material_name[0] == '\0') continue;
     s->material_id = find_known(m, s->material_name, "MATERIAL", material_at,
                                 &s->material_at);
     if (s->material_id >= 0) m->materials[s->material_id].used = 1;
   }
-  for (int i = 0; i < m->n_material; ++i)
+  for (int i = 0; i < m->n.material; ++i)
     if (!m->materials[i].has_elastic && !lost)
       message_add(m->log, P2014, &m->materials[i].at,
                   "material %s has no *ELASTIC card", m->materials[i].name);
@@ -87,11 +87,11 @@ static const value_table *total_amplitude(const model *m, const char *name,
                                           const place *at) {
   int a = find_amplitude(m, name, at);
   if (a < 0) return NULL;
-  if (m->n_step > 1 && !m->amplitudes[a].total_time)
+  if (m->n.step > 1 && !m->time.amplitudes[a].total_time)
     message_add(
         m->log, P2044, at,
         "amplitude %s counts the total time here, whatever its TIME=", name);
-  return &m->amplitudes[a].table;
+  return &m->time.amplitudes[a].table;
 }
 
 /* The value of a card, its TABLE= or AMPLITUDE=. */
@@ -137,7 +137,7 @@ static void resolve_axis(const model *m, contact *c) {
 }
 
 static void resolve_contacts(model *m) {
-  for (int i = 0; i < m->n_contact; ++i) {
+  for (int i = 0; i < m->n.contact; ++i) {
     contact *c = &m->contacts[i];
     resolve_friction(m, &c->friction);
     resolve_force(m, &c->force);
@@ -160,8 +160,8 @@ static void resolve_contacts(model *m) {
 
 /* The ramp of motions that nothing else leads. */
 static status make_first_step(model *m) {
-  value_table *t = &m->first_step;
-  if (m->n_step == 0 || m->n_obstacle == 0) return OK;
+  value_table *t = &m->time.first_step;
+  if (m->n.step == 0 || m->n.obstacle == 0) return OK;
   PASS_NEW(t->at, 2);
   PASS_NEW(t->value, 2);
   t->variable = TABLE_T;
@@ -176,13 +176,13 @@ static status make_first_step(model *m) {
 static void lead(const model *m, const value_table *t, quantity *q) {
   if (t != NULL)
     q->factor = t;
-  else if (m->first_step.n > 0 && q->formula == NULL && q->number != 0.0)
-    q->factor = &m->first_step;
+  else if (m->time.first_step.n > 0 && q->formula == NULL && q->number != 0.0)
+    q->factor = &m->time.first_step;
 }
 
 static status resolve_moves(model *m) {
   PASS(make_first_step(m));
-  for (int i = 0; i < m->n_obstacle; ++i) {
+  for (int i = 0; i < m->n.obstacle; ++i) {
     const move *of = &m->moves[i];
     const value_table *t = NULL;
     if (of->amplitude_name != NULL)
@@ -196,19 +196,19 @@ static status resolve_moves(model *m) {
 /* A name that nothing refers to is often a misspelled reference. */
 static void warn_unused(const model *m) {
   static const char text[] = "*%s, NAME=%s is never used";
-  for (int i = 0; i < m->n_amplitude; ++i)
-    if (!m->amplitudes[i].used)
-      message_add(m->log, P2036, &m->amplitudes[i].at, text, "AMPLITUDE",
-                  m->amplitudes[i].name);
-  for (int i = 0; i < m->n_points; ++i)
-    if (!m->points[i].used)
-      message_add(m->log, P2036, &m->points[i].at, text, "TIME POINTS",
-                  m->points[i].name);
-  for (int i = 0; i < m->n_material; ++i)
+  for (int i = 0; i < m->n.amplitude; ++i)
+    if (!m->time.amplitudes[i].used)
+      message_add(m->log, P2036, &m->time.amplitudes[i].at, text, "AMPLITUDE",
+                  m->time.amplitudes[i].name);
+  for (int i = 0; i < m->n.points; ++i)
+    if (!m->time.points[i].used)
+      message_add(m->log, P2036, &m->time.points[i].at, text, "TIME POINTS",
+                  m->time.points[i].name);
+  for (int i = 0; i < m->n.material; ++i)
     if (!m->materials[i].used)
       message_add(m->log, P2036, &m->materials[i].at, text, "MATERIAL",
                   m->materials[i].name);
-  for (int i = 0; i < m->n_obstacle; ++i)
+  for (int i = 0; i < m->n.obstacle; ++i)
     if (!m->moves[i].used)
       message_add(m->log, P2036, &m->moves[i].at, text, "OBSTACLE",
                   m->obstacles[i].name);
@@ -239,7 +239,7 @@ static void start_load(const model *m, const step *s, load *l) {
   if (l->amplitude_name != NULL) {
     l->amplitude_id = find_amplitude(m, l->amplitude_name, &l->amplitude_at);
     if (l->amplitude_id < 0) return;
-    const amplitude *a = &m->amplitudes[l->amplitude_id];
+    const amplitude *a = &m->time.amplitudes[l->amplitude_id];
     l->value.factor = &a->table;
     l->value.factor_start = a->total_time ? 0.0 : s->start;
   }
@@ -251,7 +251,7 @@ static load kept_load(const model *m, const step *old, const load *l) {
   load kept = *l;
   kept.has_before = 0;
   int step_time =
-      l->amplitude_id >= 0 && !m->amplitudes[l->amplitude_id].total_time;
+      l->amplitude_id >= 0 && !m->time.amplitudes[l->amplitude_id].total_time;
   if (l->run == RUN_HELD) return kept;
   if (l->run == RUN_DIRECT && !step_time) return kept;
   kept.run = RUN_HELD;
@@ -351,11 +351,11 @@ static const solver_choice default_solver = {
 /* TOL=BALANCED calls for the estimates it is balanced with. */
 static void call_estimates(const model *m, step *s) {
   if (!s->balanced) return;
-  if (m->has_problem && s->solver_at.file != NULL)
+  if (m->problem.given && s->solver_at.file != NULL)
     message_add(m->log, P2037, &s->solver_at,
                 "*SOLVER, TOL=BALANCED needs a mesh, whose error counts");
-  s->mesh_error |= m->n_contact > 0;
-  s->no_solver_error = 0;
+  s->accuracy.mesh |= m->n.contact > 0;
+  s->accuracy.no_solver = 0;
 }
 
 /* Solver, tables and fields stay until changed. */
@@ -366,22 +366,22 @@ static status carry_choices(const step *old, step *s) {
     s->share = old->share;
     s->check = old->check;
   }
-  if (!s->has_accuracy) {
-    s->no_solver_error = old->no_solver_error;
-    s->mesh_error = old->mesh_error;
-    s->time_error = old->time_error;
-    s->time_balanced = old->time_balanced;
-    s->time_share = old->time_share;
-    s->theorems = old->theorems;
+  if (!s->accuracy.given) {
+    s->accuracy.no_solver = old->accuracy.no_solver;
+    s->accuracy.mesh = old->accuracy.mesh;
+    s->accuracy.time = old->accuracy.time;
+    s->accuracy.time_balanced = old->accuracy.time_balanced;
+    s->accuracy.time_share = old->accuracy.time_share;
+    s->accuracy.theorems = old->accuracy.theorems;
   }
-  if (!s->has_output) {
-    s->output_frequency = old->output_frequency;
-    s->condensed_frequency = old->condensed_frequency;
+  if (!s->output.given) {
+    s->output.frequency = old->output.frequency;
+    s->output.condensed = old->output.condensed;
   }
-  if (!s->has_restart) s->restart_frequency = old->restart_frequency;
-  for (int i = 0; i < old->n_print && !s->has_print; ++i) {
-    PASS_GROW(s->prints, s->n_print, s->cap_print);
-    s->prints[s->n_print++] = old->prints[i];
+  if (!s->restart.given) s->restart.frequency = old->restart.frequency;
+  for (int i = 0; i < old->print.n && !s->print.given; ++i) {
+    PASS_GROW(s->print.requests, s->print.n, s->print.cap);
+    s->print.requests[s->print.n++] = old->print.requests[i];
   }
   return OK;
 }
@@ -400,21 +400,21 @@ static void check_clock(const model *m, const step *s) {
  * the one before. */
 static status resolve_steps(model *m) {
   step before = {.solver = default_solver,
-                 .loads = m->supports,
-                 .output_frequency = 1,
-                 .condensed_frequency = -1,
-                 .restart_frequency = -1};
+                 .loads = m->load.supports,
+                 .output.frequency = 1,
+                 .output.condensed = -1,
+                 .restart.frequency = -1};
   for (int i = 0; i < before.loads.n; ++i)
     start_load(m, &before, &before.loads.item[i]);
   const step *old = &before;
-  for (int i = 0; i < m->n_step; ++i) {
+  for (int i = 0; i < m->n.step; ++i) {
     step *s = &m->steps[i];
     s->start = step_end(old);
     check_clock(m, s);
-    for (int k = 0; k < s->n_change; ++k)
-      resolve_friction(m, &s->changes[k].rule);
+    for (int k = 0; k < s->friction.n; ++k)
+      resolve_friction(m, &s->friction.changes[k].rule);
     PASS(resolve_loads(m, old, s));
-    for (int k = 0; k < s->n_print; ++k) find_points(m, &s->prints[k]);
+    for (int k = 0; k < s->print.n; ++k) find_points(m, &s->print.requests[k]);
     PASS(carry_choices(old, s));
     call_estimates(m, s);
     old = s;
@@ -465,8 +465,8 @@ static void tell_unused(const model *m, const geo_text *g, const symbol *s) {
 static status check_symbols(const model *m) {
   status st = OK;
   geo_text g = {0};
-  if (m->mesh_file != NULL && mesh_is_program(m->mesh_file))
-    TRY(geo_read(m->mesh_file, &g));
+  if (m->mesh.file != NULL && mesh_is_program(m->mesh.file))
+    TRY(geo_read(m->mesh.file, &g));
   for (int i = 1; i < g.n_file; ++i) TRY(deck_input_copy(m->deck, g.file[i]));
   for (int i = 0; i < m->deck->n_symbol; ++i) {
     symbol *s = &m->deck->symbols[i];

@@ -70,7 +70,7 @@ const column *column_next(const column *c) {
 unsigned scene_of(const model *m) {
   if (m->dim == 3) return SCENE_SOLID;
   if (m->dim == 1) return SCENE_LCP;
-  for (int i = 0; i < m->n_section; ++i)
+  for (int i = 0; i < m->n.section; ++i)
     if (m->sections[i].kin % 4 == AXISYMMETRIC) return SCENE_AXI;
   return SCENE_PLANE;
 }
@@ -78,7 +78,7 @@ unsigned scene_of(const model *m) {
 /* The most internal variables that a law of the model has. */
 static int most_internal(const model *m) {
   int most = 0;
-  for (int i = 0; i < m->n_material; ++i) {
+  for (int i = 0; i < m->n.material; ++i) {
     const law_card *law = &m->materials[i].law;
     if (!m->materials[i].used || law->ops == NULL) continue;
     int n = law_n_alpha(law, m->ns);
@@ -90,7 +90,7 @@ static int most_internal(const model *m) {
 /* 1: the model has what it is of. */
 static int is_asked(const column *c, const model *m) {
   if ((c->needs & NEEDS_TORQUE) != 0 && !model_has_axis(m)) return 0;
-  if ((c->needs & NEEDS_SEVERAL) != 0 && m->n_contact < 2) return 0;
+  if ((c->needs & NEEDS_SEVERAL) != 0 && m->n.contact < 2) return 0;
   if ((c->needs & NEEDS_ALPHA) != 0 && c->part >= most_internal(m)) return 0;
   return 1;
 }
@@ -135,7 +135,7 @@ int column_items(const column *c, const view *v) {
     case PER_CONTACT_NODE:
       return v->s->contacts.surface != NULL ? v->s->contacts.surface->n : 0;
     case PER_CONTACT:
-      return v->m->n_contact;
+      return v->m->n.contact;
     case PER_ZONE:
       return e->items(effect_state(v->s->effects, e));
     default:
@@ -145,7 +145,7 @@ int column_items(const column *c, const view *v) {
 
 void column_unit(const char *unit, const model *m, char *text, size_t size) {
   const char *const words[] = {"length", "force", "time"};
-  const char *const labels[] = {m->length_unit, m->force_unit, m->time_unit};
+  const char *const labels[] = {m->unit.length, m->unit.force, m->unit.time};
   size_t used = 0;
   text[0] = '\0';
   while (*unit != '\0' && used + 1 < size) {

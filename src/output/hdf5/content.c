@@ -65,7 +65,7 @@ static status choose_fields(hdf5_file *h) {
         PASS(add_field(h, c, PER_CONTACT_NODE, "/contact", 0));
       continue;
     }
-    for (int i = 0; i < h->m->n_contact; ++i) {
+    for (int i = 0; i < h->m->n.contact; ++i) {
       link_name(name, sizeof name, h->m->contacts[i].name);
       snprintf(group, sizeof group, "/totals/%s", name);
       PASS(add_field(h, c, PER_CONTACT, group, i));
@@ -151,10 +151,10 @@ static status add_faces(hdf5_file *h, const int *place_of) {
   const mesh *s = h->msh;
   size_t dim = (size_t)s->dim, n = 0, most = 0;
   int *faces = NULL;
-  for (int c = 0; c < h->m->n_contact; ++c)
+  for (int c = 0; c < h->m->n.contact; ++c)
     most += (size_t)contact_group(h, c)->n_item;
   PASS_NEW(faces, dim * most);
-  for (int c = 0; c < h->m->n_contact; ++c) {
+  for (int c = 0; c < h->m->n.contact; ++c) {
     const mesh_group *g = contact_group(h, c);
     if (g->dim != s->dim - 1 || g->item_id == NULL) continue;
     for (int i = 0; i < g->n_item; ++i)
@@ -171,7 +171,7 @@ static status add_faces(hdf5_file *h, const int *place_of) {
  * contact of a node, from 1; 0: none. */
 static status list_contact_nodes(hdf5_file *h, int *place_of, int *contact_of) {
   int n = 0;
-  for (int c = h->m->n_contact - 1; c >= 0; --c)
+  for (int c = h->m->n.contact - 1; c >= 0; --c)
     for (int i = 0; i < contact_group(h, c)->n_node; ++i)
       contact_of[contact_group(h, c)->node_id[i]] = c + 1;
   for (int i = 0; i < h->msh->n_node; ++i) n += contact_of[i] > 0;

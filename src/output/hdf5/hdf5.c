@@ -61,11 +61,11 @@ void hdf5_forecast(const model *m, int first_id, double extra, int *n_row,
                    int *n_record) {
   double rows = extra, records = 0;
   if (first_id > 0)
-    records = shown(extra, m->steps[first_id - 1].output_frequency);
-  for (int i = first_id; i < m->n_step; ++i) {
+    records = shown(extra, m->steps[first_id - 1].output.frequency);
+  for (int i = first_id; i < m->n.step; ++i) {
     rows += step_increments(&m->steps[i]);
     records +=
-        shown(step_increments(&m->steps[i]), m->steps[i].output_frequency);
+        shown(step_increments(&m->steps[i]), m->steps[i].output.frequency);
   }
   *n_row = bounded(rows, MOST_ROWS);
   *n_record = bounded(records, MOST_RECORDS);
@@ -124,8 +124,8 @@ static status first_file(hdf5_file *h, const hdf5_count *before) {
 }
 
 static int fields_asked(const model *m) {
-  for (int i = 0; i < m->n_step; ++i)
-    if (m->steps[i].output_frequency >= 0) return 1;
+  for (int i = 0; i < m->n.step; ++i)
+    if (m->steps[i].output.frequency >= 0) return 1;
   return 0;
 }
 
@@ -141,7 +141,7 @@ status hdf5_open(const model *m, const mesh *msh, const output_options *o,
   h->m = m;
   h->msh = msh;
   h->o = o;
-  h->path = text_path(o->dir, m->job, "h5");
+  h->path = text_path(o->dir, m->name.job, "h5");
   if (h->path != NULL) h->aside = text_path("", h->path, "tmp");
   if (h->aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of JOB.h5");
   TRY(first_file(h, before));

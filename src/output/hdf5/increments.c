@@ -116,7 +116,7 @@ static status put_row(hdf5_file *h, const view *v) {
 status hdf5_increment(hdf5_file *h, const state *s) {
   if (h == NULL) return OK;
   view v = {h->m, h->msh, s};
-  int due = frequency_shows(h->m->steps[s->step_no - 1].output_frequency,
+  int due = frequency_shows(h->m->steps[s->step_no - 1].output.frequency,
                             s->increment_no, s->end_of_step);
   if (h->n_row == h->now.n_row || (due && h->n_record == h->now.n_record))
     PASS(grow(h, s));

@@ -227,14 +227,14 @@ static status root_attributes(const maker *k, const hdf5_file *h) {
   if (root < 0) TRY(maker_failed(k, "write an attribute of"));
   TRY(attribute_text(k, root, "program", "protis"));
   TRY(attribute_text(k, root, "version", h->o->version));
-  TRY(attribute_text(k, root, "job", m->job));
-  TRY(attribute_text(k, root, "title", m->title));
+  TRY(attribute_text(k, root, "job", m->name.job));
+  TRY(attribute_text(k, root, "title", m->name.title));
   TRY(attribute_text(k, root, "blas_kernel", h->o->kernel));
   TRY(attribute_int(k, root, "threads", h->o->threads));
   TRY(attribute_int(k, root, "dimension", m->dim));
-  TRY(attribute_text(k, root, "length_unit", m->length_unit));
-  TRY(attribute_text(k, root, "force_unit", m->force_unit));
-  TRY(attribute_text(k, root, "time_unit", m->time_unit));
+  TRY(attribute_text(k, root, "length_unit", m->unit.length));
+  TRY(attribute_text(k, root, "force_unit", m->unit.force));
+  TRY(attribute_text(k, root, "time_unit", m->unit.time));
   TRY(attribute_text(k, root, "note",
                      "rows and records whose time is NaN were not reached"));
 done:

@@ -115,12 +115,13 @@ balance_sum job_balance(const job *j) {
 double job_increments_of_deck(const job *j, int *made) {
   double sum = 0;
   *made = 0;
-  for (int i = 0; i < j->m->n_step; ++i) {
+  for (int i = 0; i < j->m->n.step; ++i) {
     const step *s = &j->m->steps[i];
-    if (s->time_balanced) sum += ceil(s->total / s->dt - 1e-9);
+    if (s->accuracy.time_balanced) sum += ceil(s->total / s->dt - 1e-9);
   }
   for (int i = 0; i < j->run->n_increment; ++i)
-    *made += j->m->steps[j->run->increments[i].step_no - 1].time_balanced;
+    *made +=
+        j->m->steps[j->run->increments[i].step_no - 1].accuracy.time_balanced;
   return sum;
 }
 

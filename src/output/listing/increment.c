@@ -9,9 +9,9 @@
 static void print_totals(const job *j, const view *v, FILE *f) {
   table t;
   table_choose(&t, PER_CONTACT, PRINT_TOTALS, v, DIGITS);
-  if (j->m->n_contact == 0 || t.n == 0) return;
+  if (j->m->n.contact == 0 || t.n == 0) return;
   table_header(&t, j->m, " ", f);
-  for (int i = 0; i < j->m->n_contact; ++i) table_row(&t, v, i, f);
+  for (int i = 0; i < j->m->n.contact; ++i) table_row(&t, v, i, f);
 }
 
 /* One line per energy; step, increment and time stand above already. */
@@ -180,7 +180,7 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
   print_share("mesh", &s->errors.mesh_error, lst->f);
   print_share("steps", &s->errors.time_error, lst->f);
   print_truth(s, lst->f);
-  if (!j->m->has_problem) print_energies(j, &v, lst->f);
+  if (!j->m->problem.given) print_energies(j, &v, lst->f);
   return text_check(lst);
 }
 

@@ -34,7 +34,10 @@ typedef struct pass_row {
 typedef struct increment_summary {
   int step_no, increment_no, total_no, attempt;
   double t, dt;
-  int n_open, n_slip, n_stick, iterations, settled, after_miss, outcome;
+  struct {
+    int open, slip, stick;
+  } count;
+  int iterations, settled, after_miss, outcome;
   double residual, defect;
   error_bound error;
   rounding_loss rounding;

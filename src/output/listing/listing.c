@@ -42,18 +42,18 @@ static void print_model(const job *j, FILE *f) {
     fprintf(f, "  group    %-20s dimension %d  items %8d  nodes %8d\n", g->name,
             g->dim, g->n_item, g->n_node);
   }
-  for (int i = 0; i < m->n_section; ++i)
+  for (int i = 0; i < m->n.section; ++i)
     fprintf(f, "  section  %-20s %s, material %s%s\n", m->sections[i].elset,
             kinematics_text(m->sections[i].kin), m->sections[i].material_name,
             m->sections[i].averaged ? ", volume averaged" : "");
-  for (int i = 0; i < m->n_contact; ++i) {
+  for (int i = 0; i < m->n.contact; ++i) {
     const contact *c = &m->contacts[i];
     fprintf(f, "  contact  %-20s group %s, obstacle %s, friction %s\n", c->name,
             c->group, c->obstacle_name, law_text(&c->friction));
   }
-  for (int i = 0; i < m->n_step; ++i)
-    for (int k = 0; k < m->steps[i].n_change; ++k) {
-      const friction_change *change = &m->steps[i].changes[k];
+  for (int i = 0; i < m->n.step; ++i)
+    for (int k = 0; k < m->steps[i].friction.n; ++k) {
+      const friction_change *change = &m->steps[i].friction.changes[k];
       fprintf(f, "  contact  %-20s from step %d on friction %s\n",
               m->contacts[change->contact_id].name, i + 1,
               law_text(&change->rule));
@@ -62,8 +62,8 @@ static void print_model(const job *j, FILE *f) {
 
 /* What *EFFECTS, MODE=AUTO tries without, or had to take back. */
 static void print_left_out(const model *m, FILE *f) {
-  for (int i = 0; i < m->n_neglected; ++i) {
-    const neglected *n = &m->neglected[i];
+  for (int i = 0; i < m->reduction.n; ++i) {
+    const neglected *n = &m->reduction.row[i];
     fprintf(f, "  %s %s: %s\n",
             n->back ? "not left out:" : "left out:", effect_name(n->bit),
             n->why);
@@ -73,7 +73,7 @@ static void print_left_out(const model *m, FILE *f) {
               "largest stress,\n    solved again with it: %.1e of the largest "
               "displacement or force, after %ld\n    increments; too much for "
               "TOL=%g, this is the run with it\n",
-              n->bound, n->local, n->change, n->checked, m->effects_tol);
+              n->bound, n->local, n->change, n->checked, m->reduction.tol);
     else if (n->back)
       fputs(
           "    without it an increment was not solved to its tolerance, this "
@@ -85,8 +85,8 @@ static void print_left_out(const model *m, FILE *f) {
 
 /* The proof at the end: what would have changed at most. */
 static void print_proof(const model *m, FILE *f) {
-  for (int i = 0; i < m->n_neglected; ++i) {
-    const neglected *n = &m->neglected[i];
+  for (int i = 0; i < m->reduction.n; ++i) {
+    const neglected *n = &m->reduction.row[i];
     if (n->back) continue;
     fprintf(f,
             "  without %s: changes the answer by at most %.1e of the energy "
@@ -105,7 +105,7 @@ status listing_open(const job *j, text_file *lst) {
   FILE *f = lst->f;
   const char *version = j->o->version != NULL ? j->o->version : "";
   fprintf(f, "PROTIS %s\n\n%s\n", version,
-          j->m->title != NULL ? j->m->title : "");
+          j->m->name.title != NULL ? j->m->name.title : "");
   heading(f, "DECK");
   if (j->m->deck != NULL) PASS(model_echo(j->m, f));
   heading(f, "MODEL");

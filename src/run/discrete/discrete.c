@@ -106,7 +106,7 @@ static status find_error(const step *s, const contact_problem *cp,
   dense_inverse *dense = NULL;
   double energy = 0.0;
   *e = (error_bound){.hidden = contact_hidden(cp, u, r, NULL)};
-  if (cp->m == 0 || s->no_solver_error) return OK;
+  if (cp->m == 0 || s->accuracy.no_solver) return OK;
   timer_enter(STAGE_ESTIMATE);
   TRY(condensed_energy(cp, u, r, &energy));
   TRY(dense_inverse_new(cp->m, cp->A != NULL ? cp->A : cp->W, &dense));

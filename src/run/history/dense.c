@@ -8,9 +8,9 @@
 /* The first time point of a table after "after" within the increment. */
 static double next_point(const run *r, double after) {
   double next = HUGE_VAL;
-  for (int i = 0; i < r->step->n_print; ++i)
-    next =
-        fmin(next, print_next(&r->step->prints[i], r->step, after, r->now.t));
+  for (int i = 0; i < r->step->print.n; ++i)
+    next = fmin(next, print_next(&r->step->print.requests[i], r->step, after,
+                                 r->now.t));
   return next;
 }
 

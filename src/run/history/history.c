@@ -112,16 +112,16 @@ state loop_state(run *r, int attempt, int increment_no) {
 
 int table_is_due(const step *s, int tables, double t, int increment_no,
                  int last) {
-  for (int i = 0; i < s->n_print; ++i)
-    if ((s->prints[i].table & tables) &&
-        print_shows(&s->prints[i], s, t, increment_no, last))
+  for (int i = 0; i < s->print.n; ++i)
+    if ((s->print.requests[i].table & tables) &&
+        print_shows(&s->print.requests[i], s, t, increment_no, last))
       return 1;
   return 0;
 }
 
 /* 1 if some output wants the stresses of this increment. */
 static int stress_is_due(const step *s, double t, int increment_no, int last) {
-  int f = s->output_frequency;
+  int f = s->output.frequency;
   if (frequency_shows(f, increment_no, last)) return 1;
   return table_is_due(s, ~0, t, increment_no, last);
 }
@@ -175,7 +175,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   if (r->sink->increment != NULL) TRY(r->sink->increment(r->sink->ctx, &s));
   TRY(result_accept(r));
   r->course.due =
-      frequency_shows(r->step->restart_frequency, increment_no, last);
+      frequency_shows(r->step->restart.frequency, increment_no, last);
 done:
   return st;
 }
@@ -398,7 +398,7 @@ static status read_progress(run *r) {
   st = archive_bytes(r->course.from, "at", &r->at, sizeof r->at);
   archive_leave(r->course.from);
   TRY(st);
-  if (r->at.step_id < 0 || r->at.step_id >= r->m->n_step)
+  if (r->at.step_id < 0 || r->at.step_id >= r->m->n.step)
     FAIL(ERR_FILE, "the restart file is of a deck with other steps");
 done:
   return st;
@@ -411,7 +411,7 @@ status history_continue(const model *m, const mesh *msh, archive *from,
   *unsettled = 0;
   TRY(run_new(&r));
   TRY(read_progress(&r));
-  for (int i = r.at.step_id; i < m->n_step; ++i) {
+  for (int i = r.at.step_id; i < m->n.step; ++i) {
     r.step = &m->steps[i];
     TRY(run_step(&r));
   }

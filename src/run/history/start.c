@@ -35,7 +35,7 @@ static int starts_smoothly(const run *r) {
 /* 1: a law flows, or would if *EFFECTS had not left it out. */
 static int has_law(const run *r) {
   int any = r->strains.visco != NULL;
-  for (int i = 0; i < r->m->n_material; ++i)
+  for (int i = 0; i < r->m->n.material; ++i)
     any |= r->m->materials[i].law_aside != NULL;
   return any;
 }

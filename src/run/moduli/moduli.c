@@ -55,7 +55,7 @@ static status own_entries(moduli *x, const model *m, const mesh *msh) {
   for (int e = 0; e < msh->n_elem; ++e) {
     x->section_id[e] = m->elem_section[e];
     if (!moduli_follows(m, e)) continue;
-    const int own = m->n_section + n;
+    const int own = m->n.section + n;
     x->origin[own] = m->elem_section[e];
     x->kin[own] = x->kin[m->elem_section[e]];
     x->thickness[own] = x->thickness[m->elem_section[e]];
@@ -71,13 +71,13 @@ status moduli_new(const model *m, const mesh *msh, const double *T, moduli *x) {
   int changed = 0;
   for (int e = 0; e < msh->n_elem && T != NULL; ++e)
     x->n_own += moduli_follows(m, e);
-  x->n = m->n_section + x->n_own;
+  x->n = m->n.section + x->n_own;
   NEW(x->origin, x->n);
   NEW(x->kin, x->n);
   NEW(x->thickness, x->n);
   NEW(x->E, (size_t)(m->ns * m->ns) * (size_t)x->n);
   NEW(x->C, 36 * (size_t)x->n);
-  for (int i = 0; i < m->n_section; ++i) {
+  for (int i = 0; i < m->n.section; ++i) {
     x->origin[i] = i;
     x->kin[i] = (kinematics)m->sections[i].kin;
     x->thickness[i] = m->sections[i].thickness;

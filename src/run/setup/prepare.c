@@ -29,7 +29,7 @@ static int may_leave_out(const run *r, int n_motion) {
       (!model_rubs_locally(r->m) || (effects & EFFECT_TIME_ERROR)))
     return 0;
   return n_motion == 0 && r->nodes.n >= FEWEST && !effects_reach_far(r) &&
-         r->m->n_points == 0 && r->m->n_neglected == 0;
+         r->m->n.points == 0 && r->m->reduction.n == 0;
 }
 
 /* Least diagonal entry of the moduli, Pa, times the section's thickness or the
@@ -126,7 +126,7 @@ done:
  * a step in which next to nothing is left, or not yet there, goes with it. */
 static status find_load_of_run(run *r) {
   status st = OK;
-  for (int k = 0; k < r->m->n_step; ++k) {
+  for (int k = 0; k < r->m->n.step; ++k) {
     const step *s = r->m->steps + k;
     const double dt = s->dt > 0.0 ? s->dt : s->total;
     for (int i = 1; (i - 0.5) * dt < s->total; ++i) {

@@ -36,11 +36,11 @@ static status new_clusters(run *r) {
   const model *m = r->m;
   double *share = NULL;
   int averaged = 0;
-  for (int i = 0; i < m->n_section; ++i) averaged |= m->sections[i].averaged;
+  for (int i = 0; i < m->n.section; ++i) averaged |= m->sections[i].averaged;
   if (!averaged) return OK;
   timer_enter(STAGE_CLUSTER);
-  NEW(share, m->n_section);
-  for (int i = 0; i < m->n_section; ++i) {
+  NEW(share, m->n.section);
+  for (int i = 0; i < m->n.section; ++i) {
     const section *s = &m->sections[i];
     const material *mat = &m->materials[s->material_id];
     if (s->averaged && s->kin != PLANE_STRESS)
@@ -49,7 +49,7 @@ static status new_clusters(run *r) {
           mat->law.ops != NULL || mat->elastic.n > 1);
   }
   const cluster_input in = {r->msh, m->sections[0].kin == AXISYMMETRIC,
-                            m->n_section, m->elem_section, share};
+                            m->n.section, m->elem_section, share};
   TRY(cluster_new(&in, &r->body.d.cluster));
 done:
   timer_leave(STAGE_CLUSTER);
@@ -61,17 +61,17 @@ static status new_pairs(run *r) {
   status st = OK;
   const model *m = r->m;
   const mesh *msh = r->msh;
-  NEW(r->faces.pairs, m->n_contact);
+  NEW(r->faces.pairs, m->n.contact);
   NEW(r->faces.node_fixed, msh->n_node);
   NEW(r->faces.face_weight, msh->n_face);
-  NEW(r->result.totals, m->n_contact);
-  if (model_has_axis(m)) NEW(r->result.torque, m->n_contact);
-  for (int i = 0; i < m->n_contact; ++i) {
+  NEW(r->result.totals, m->n.contact);
+  if (model_has_axis(m)) NEW(r->result.torque, m->n.contact);
+  for (int i = 0; i < m->n.contact; ++i) {
     const contact *c = &m->contacts[i];
     r->faces.pairs[i].name = c->name;
     r->faces.pairs[i].group = &msh->group[c->group_id];
     r->faces.pairs[i].support = &m->obstacles[c->obstacle_id];
-    for (int k = 0; k < m->n_step; ++k) {
+    for (int k = 0; k < m->n.step; ++k) {
       const friction_ops *law = friction_in_force(m, k, i)->law;
       r->faces.pairs[i].friction |= law != NULL && law->value_name != NULL;
     }
@@ -82,7 +82,7 @@ static status new_pairs(run *r) {
     r->faces.face_weight[i] =
         m->sections[m->elem_section[msh->face_elem[i]]].thickness;
   r->faces.input.mesh = msh;
-  r->faces.input.n_pair = m->n_contact;
+  r->faces.input.n_pair = m->n.contact;
   r->faces.input.pairs = r->faces.pairs;
   r->faces.input.fixed = r->faces.node_fixed;
   r->faces.input.face_weight = r->faces.face_weight;

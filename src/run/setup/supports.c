@@ -23,7 +23,7 @@ static status has_body_friction(const run *r, int elem_id, int *answer) {
   *answer = 0;
   NEW(body, msh->n_elem);
   TRY(mesh_bodies(msh, &n, body));
-  for (int i = 0; i < m->n_contact; ++i) {
+  for (int i = 0; i < m->n.contact; ++i) {
     const contact *c = &m->contacts[i];
     const mesh_group *g = &msh->group[c->group_id];
     if (!rule_has_friction(friction_in_force(m, run_step_id(r), i))) continue;

@@ -49,15 +49,15 @@ done:
 status start_displacements(const model *m, const mesh *msh, double *u,
                            start_report *report) {
   status st = OK;
-  const start_card *asked = &m->start;
+  const start_card *asked = &m->initial.start;
   if (asked->file != NULL) {
     TRY(end_state_read(asked->file, msh, &asked->file_at, m->log, u,
                        &report->source_time));
     report->source = asked->file_name;
   }
-  for (int i = 0; i < m->n_initial; ++i)
-    if (m->initials[i].type == INITIAL_DISPLACEMENT)
-      TRY(set_line(m, msh, &m->initials[i], u));
+  for (int i = 0; i < m->n.initial; ++i)
+    if (m->initial.lines[i].type == INITIAL_DISPLACEMENT)
+      TRY(set_line(m, msh, &m->initial.lines[i], u));
 done:
   return st;
 }

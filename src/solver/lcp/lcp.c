@@ -102,17 +102,19 @@ done:
 #define ROUNDING 0x1p-53 /* rounding error of a product, with K */
 
 struct lcp_work {
-  int n, cap, s;         /* n, cap: of the run, of the blocks */
-  double *K;             /* [cap*cap] */
-  double *P;             /* [cap*cap] for a new inverse */
-  double *lapack;        /* [cap] */
-  int *swap;             /* [cap] */
-  int *var, *row;        /* [cap] columns and rows of P */
-  int *at_z, *at_w;      /* [n+1], [n] their places, -1: none */
-  double *z, *w;         /* [cap] of var; [n] of the rows not in "row" */
-  double *dz, *dw;       /* the same: change per unit of the entering
-                            variable */
-  double *lz, *lw;       /* the same: one column of the inverse */
+  int n, cap, s;    /* n, cap: of the run, of the blocks */
+  double *K;        /* [cap*cap] */
+  double *P;        /* [cap*cap] for a new inverse */
+  double *lapack;   /* [cap] */
+  int *swap;        /* [cap] */
+  int *var, *row;   /* [cap] columns and rows of P */
+  int *at_z, *at_w; /* [n+1], [n] their places, -1: none */
+  double *z, *w;    /* [cap] of var; [n] of the rows not in "row" */
+  struct {
+    int id;              /* k: z_k; -1-k: w_k */
+    double *dz, *dw;     /* as z, w: change per unit of the variable */
+    double *lz, *lw;     /* the same: one column of the inverse */
+  } enter;               /* the entering variable */
   double *gather, *line; /* [cap] */
   double *column;        /* [n] */
   double *q;             /* [n] scaled */
@@ -121,7 +123,6 @@ struct lcp_work {
   double power;          /* of two: q of the problem = power q */
   double size_K;         /* estimate of the largest |K| */
   double z0_start;       /* z0 after the first pivot */
-  int entering;          /* k: z_k; -1-k: w_k */
 };
 
 /* ---- inverse of the basis, basic variables and their change ------------- */
@@ -212,32 +213,32 @@ static int lcp_invert(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
 /* Direction of all basic variables for the entering one, corrected once if the
  * inverse has drifted; returns the relative defect before. */
 static double lcp_direction(lcp_work *w, const lcp_problem *p) {
-  int s = w->s, k = w->entering, enters_z = k >= 0;
+  int s = w->s, k = w->enter.id, enters_z = k >= 0;
   double defect = 0.0, first = 0.0, size = 1.0, one = 1.0;
   if (enters_z) {
     p->product(p->ctx, 1, &k, &one, w->column);
     for (int b = 0; b < s; ++b) w->gather[b] = -w->column[w->row[b]];
-    lcp_apply_inverse(w, w->gather, w->dz);
+    lcp_apply_inverse(w, w->gather, w->enter.dz);
   } else {
-    memcpy(w->dz, w->K + (size_t)w->at_w[-1 - k] * (size_t)w->cap,
-           (size_t)s * sizeof *w->dz);
+    memcpy(w->enter.dz, w->K + (size_t)w->at_w[-1 - k] * (size_t)w->cap,
+           (size_t)s * sizeof *w->enter.dz);
   }
   for (int pass = 0; pass < 2; ++pass) {
-    lcp_expand(w, p, w->dz, w->dw);
-    if (enters_z) cblas_daxpy(w->n, 1.0, w->column, 1, w->dw, 1);
-    if (!enters_z) w->dw[-1 - k] -= 1.0;
+    lcp_expand(w, p, w->enter.dz, w->enter.dw);
+    if (enters_z) cblas_daxpy(w->n, 1.0, w->column, 1, w->enter.dw, 1);
+    if (!enters_z) w->enter.dw[-1 - k] -= 1.0;
     defect = 0.0;
-    size = fmax(1.0, lcp_largest(s, w->dz));
+    size = fmax(1.0, lcp_largest(s, w->enter.dz));
     for (int b = 0; b < s; ++b) {
-      w->gather[b] = w->dw[w->row[b]];
+      w->gather[b] = w->enter.dw[w->row[b]];
       if (!(fabs(w->gather[b]) <= defect)) defect = fabs(w->gather[b]);
     }
     if (pass == 0) first = defect / size;
     if (pass == 1 || defect <= DRIFT * size) break;
     lcp_apply_inverse(w, w->gather, w->line);
-    for (int a = 0; a < s; ++a) w->dz[a] -= w->line[a];
+    for (int a = 0; a < s; ++a) w->enter.dz[a] -= w->line[a];
   }
-  for (int b = 0; b < s; ++b) w->dw[w->row[b]] = 0.0;
+  for (int b = 0; b < s; ++b) w->enter.dw[w->row[b]] = 0.0;
   return first;
 }
 
@@ -265,7 +266,8 @@ static double value_of(const lcp_work *w, int candidate) {
 }
 
 static double change_of(const lcp_work *w, int candidate) {
-  return candidate < w->cap ? w->dz[candidate] : w->dw[candidate - w->cap];
+  return candidate < w->cap ? w->enter.dz[candidate]
+                            : w->enter.dw[candidate - w->cap];
 }
 
 /* Bound of zero against "size": a share of it, or the rounding error. */
@@ -281,9 +283,10 @@ static sizes measure(const lcp_work *w) {
     value[kind] = fmax(value[kind], fabs(w->z[a]));
   }
   value[2] = fmax(value[2], lcp_largest(w->n, w->w));
-  double moved = fmax(lcp_largest(w->s, w->dz), w->entering >= 0 ? 1.0 : 0.0);
+  double moved =
+      fmax(lcp_largest(w->s, w->enter.dz), w->enter.id >= 0 ? 1.0 : 0.0);
   change[0] = change[1] = moved;
-  change[2] = fmax(lcp_largest(w->n, w->dw), moved);
+  change[2] = fmax(lcp_largest(w->n, w->enter.dw), moved);
   double noise = ROUNDING * w->size_K;
   for (int i = 0; i < 3; ++i) {
     k.value[i] = lcp_zero(TIE, value[i], noise * fmax(1.0, value[1]));
@@ -330,16 +333,16 @@ static int split_ties(lcp_work *w, const lcp_problem *p, int j, int n_tie) {
     return kept > 0 ? kept : n_tie;
   }
   for (int a = 0; a < w->s; ++a)
-    w->lz[a] = -w->K[(size_t)a + (size_t)b * (size_t)w->cap];
+    w->enter.lz[a] = -w->K[(size_t)a + (size_t)b * (size_t)w->cap];
   for (int i = 0; i < n_tie; ++i) any_w = any_w || w->tie[i] >= w->cap;
-  size_w = size_z = lcp_largest(w->s, w->lz);
+  size_w = size_z = lcp_largest(w->s, w->enter.lz);
   if (any_w) {
-    lcp_expand(w, p, w->lz, w->lw);
-    size_w = fmax(size_w, lcp_largest(w->n, w->lw));
+    lcp_expand(w, p, w->enter.lz, w->enter.lw);
+    size_w = fmax(size_w, lcp_largest(w->n, w->enter.lw));
   }
   for (int i = 0; i < n_tie; ++i) {
     int c = w->tie[i], is_w = c >= w->cap;
-    double entry = is_w ? w->lw[c - w->cap] : w->lz[c];
+    double entry = is_w ? w->enter.lw[c - w->cap] : w->enter.lz[c];
     w->key[i] = entry / -change_of(w, c);
     least = fmin(least, w->key[i]);
     noise = fmax(noise, (is_w ? size_w : size_z) / -change_of(w, c));
@@ -383,16 +386,16 @@ static void rank_one(lcp_work *w, double factor, const double *x,
 static void border(lcp_work *w, const lcp_problem *p, int k, int j) {
   int s = w->s;
   size_t ld = (size_t)w->cap, last = (size_t)s;
-  double pivot = w->dw[j];
+  double pivot = w->enter.dw[j];
   row_times_inverse(w, p, j);
-  rank_one(w, -1.0 / pivot, w->dz, w->gather);
+  rank_one(w, -1.0 / pivot, w->enter.dz, w->gather);
   for (size_t a = 0; a < last; ++a) {
-    w->K[a + last * ld] = w->dz[a] / pivot;
+    w->K[a + last * ld] = w->enter.dz[a] / pivot;
     w->K[last + a * ld] = -w->gather[a] / pivot;
   }
   w->K[last + last * ld] = 1.0 / pivot;
   double edge =
-      fmax(1.0, fmax(lcp_largest(s, w->dz), lcp_largest(s, w->gather)));
+      fmax(1.0, fmax(lcp_largest(s, w->enter.dz), lcp_largest(s, w->gather)));
   w->size_K = fmax(w->size_K, edge / fabs(pivot));
   w->var[s] = k;
   w->row[s] = j;
@@ -402,9 +405,9 @@ static void border(lcp_work *w, const lcp_problem *p, int k, int j) {
 
 /* z_k enters for the z at place a. */
 static void replace_column(lcp_work *w, int k, int a) {
-  double pivot = -w->dz[a];
+  double pivot = -w->enter.dz[a];
   cblas_dcopy(w->s, w->K + a, w->cap, w->gather, 1);
-  for (int i = 0; i < w->s; ++i) w->line[i] = -w->dz[i];
+  for (int i = 0; i < w->s; ++i) w->line[i] = -w->enter.dz[i];
   w->line[a] -= 1.0;
   rank_one(w, -1.0 / pivot, w->line, w->gather);
   w->at_z[w->var[a]] = -1;
@@ -414,10 +417,10 @@ static void replace_column(lcp_work *w, int k, int a) {
 
 /* w at place b enters, w_j leaves. */
 static void replace_row(lcp_work *w, const lcp_problem *p, int b, int j) {
-  double pivot = w->dw[j];
+  double pivot = w->enter.dw[j];
   row_times_inverse(w, p, j);
   w->gather[b] -= 1.0;
-  rank_one(w, -1.0 / pivot, w->dz, w->gather);
+  rank_one(w, -1.0 / pivot, w->enter.dz, w->gather);
   w->at_w[w->row[b]] = -1;
   w->row[b] = j;
   w->at_w[j] = b;
@@ -440,7 +443,7 @@ static void swap_columns(lcp_work *w, int a, int b) {
 static void shrink(lcp_work *w, int b, int a) {
   int last = w->s - 1;
   size_t ld = (size_t)w->cap;
-  double pivot = w->dz[a];
+  double pivot = w->enter.dz[a];
   cblas_dcopy(w->s, w->K + a, w->cap, w->gather, 1);
   memcpy(w->line, w->K + (size_t)b * ld, (size_t)w->s * sizeof *w->line);
   rank_one(w, -1.0 / pivot, w->line, w->gather);
@@ -458,10 +461,10 @@ static void shrink(lcp_work *w, int b, int a) {
 
 /* One change of basis: c leaves after "step". Sets the next entering one. */
 static void lcp_pivot(lcp_work *w, const lcp_problem *p, int c, double step) {
-  int k = w->entering, out = c < w->cap ? w->var[c] : -1 - (c - w->cap);
+  int k = w->enter.id, out = c < w->cap ? w->var[c] : -1 - (c - w->cap);
   int old_s = w->s;
-  cblas_daxpy(w->s, step, w->dz, 1, w->z, 1);
-  cblas_daxpy(w->n, step, w->dw, 1, w->w, 1);
+  cblas_daxpy(w->s, step, w->enter.dz, 1, w->z, 1);
+  cblas_daxpy(w->n, step, w->enter.dw, 1, w->w, 1);
   if (k >= 0 && out < 0) {
     border(w, p, k, -1 - out);
     w->z[old_s] = step;
@@ -477,7 +480,7 @@ static void lcp_pivot(lcp_work *w, const lcp_problem *p, int c, double step) {
     shrink(w, w->at_w[-1 - k], c);
     w->w[-1 - k] = step;
   }
-  w->entering = -1 - out; /* the complement */
+  w->enter.id = -1 - out; /* the complement */
 }
 
 static const double SPOILT = 0x1p-38;   /* defect that requires a new inverse */
@@ -487,8 +490,8 @@ enum { REFRESH = 16 /* pivots from one new start of the values to the next */ };
 void lcp_free(lcp_work *w) {
   if (w == NULL) return;
   RELEASE(w->K, w->P, w->lapack, w->swap, w->var, w->row, w->at_z, w->at_w,
-          w->z, w->w, w->dz, w->dw, w->lz, w->lw, w->gather, w->line, w->column,
-          w->q, w->tie, w->key, w);
+          w->z, w->w, w->enter.dz, w->enter.dw, w->enter.lz, w->enter.lw,
+          w->gather, w->line, w->column, w->q, w->tie, w->key, w);
 }
 
 status lcp_new(int n, int rank, lcp_work **out) {
@@ -507,10 +510,10 @@ status lcp_new(int n, int rank, lcp_work **out) {
   NEW(w->at_w, n);
   NEW(w->z, cap);
   NEW(w->w, n);
-  NEW(w->dz, cap);
-  NEW(w->dw, n);
-  NEW(w->lz, cap);
-  NEW(w->lw, n);
+  NEW(w->enter.dz, cap);
+  NEW(w->enter.dw, n);
+  NEW(w->enter.lz, cap);
+  NEW(w->enter.lw, n);
   NEW(w->gather, cap);
   NEW(w->line, cap);
   NEW(w->column, n);
@@ -553,7 +556,7 @@ static void bring_in_z0(lcp_work *w, const lcp_problem *p, int row) {
   w->z[0] = w->z0_start = z0;
   cblas_daxpy(w->n, z0, p->d, 1, w->w, 1);
   w->w[row] = 0.0;
-  w->entering = row;
+  w->enter.id = row;
 }
 
 /* A new inverse and values from it; RUNNING, or CONVERGED if they show that
@@ -623,11 +626,11 @@ double lcp_ray(const lcp_work *w, double *y) {
   memset(y, 0, (size_t)w->n * sizeof *y);
   for (int a = 0; a < w->s; ++a) {
     if (w->var[a] == w->n)
-      y0 = w->dz[a];
+      y0 = w->enter.dz[a];
     else
-      y[w->var[a]] = fmax(w->dz[a], 0.0);
+      y[w->var[a]] = fmax(w->enter.dz[a], 0.0);
   }
-  if (w->entering >= 0 && w->entering < w->n) y[w->entering] = 1.0;
+  if (w->enter.id >= 0 && w->enter.id < w->n) y[w->enter.id] = 1.0;
   return y0;
 }
 

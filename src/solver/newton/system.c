@@ -23,20 +23,22 @@ struct newton_system {
   dense K;          /* factor of the base */
   pattern base;     /* its guess */
   int has_base;
-  uint64_t friction;      /* hash of B in it */
-  double spent;           /* on updates of the base, operations */
-  int updated;            /* the last step came from an update */
-  int capacity, n_column; /* columns of X: most, made */
-  int *column;            /* [m] of X, -1: not made */
-  double *X;              /* [m*capacity] inv(M0) e_j */
-  double *C;              /* [capacity*capacity] small system */
-  double *rows;           /* [m*CHUNK] */
-  double *product;        /* [CHUNK*capacity] */
-  int n_changed;          /* rows in which the guess differs from the base */
-  int *changed;           /* [m] */
-  double *b, *x, *du;     /* [m] */
-  double *z, *weight;     /* [capacity], [capacity] */
-  int *small_pivot;       /* [capacity] */
+  uint64_t friction; /* hash of B in it */
+  double spent;      /* on updates of the base, operations */
+  int updated;       /* the last step came from an update */
+  struct {
+    int capacity, n;  /* columns of X: most, made */
+    int *column;      /* [m] of X, -1: not made */
+    double *X;        /* [m*capacity] inv(M0) e_j */
+    double *C;        /* [capacity*capacity] small system */
+    int *small_pivot; /* [capacity] */
+  } inverse;
+  double *rows;       /* [m*CHUNK] */
+  double *product;    /* [CHUNK*capacity] */
+  int n_changed;      /* rows in which the guess differs from the base */
+  int *changed;       /* [m] */
+  double *b, *x, *du; /* [m] */
+  double *z, *weight; /* [capacity], [capacity] */
 };
 
 /* ---- the matrix of a guess of the states, and its factor ----------------- */
@@ -182,8 +184,8 @@ static void newton_begin(newton_system *s, const pattern *p, int full) {
   s->K.n = p->n_free;
   s->K.full = full;
   s->spent = 0.0;
-  s->n_column = 0;
-  for (int i = 0; i < s->m; ++i) s->column[i] = -1;
+  s->inverse.n = 0;
+  for (int i = 0; i < s->m; ++i) s->inverse.column[i] = -1;
 }
 
 /* du with springs, where the system is singular; leaves no base. */
@@ -240,11 +242,11 @@ static double newton_list_changes(newton_system *s, const pattern *p) {
   for (int dof = 0; dof < s->m; ++dof) {
     if (same_row(s, p, dof)) continue;
     s->changed[s->n_changed++] = dof;
-    fresh += s->column[dof] < 0;
+    fresh += s->inverse.column[dof] < 0;
     equations += p->place[dof] >= 0;
   }
-  double columns = s->n_column + fresh, k = s->n_changed;
-  if (columns > s->capacity) return HUGE_VAL;
+  double columns = s->inverse.n + fresh, k = s->n_changed;
+  if (columns > s->inverse.capacity) return HUGE_VAL;
   return 2.0 * n * n * (fresh + 1.0 + READ) + 2.0 * m * equations * columns +
          2.0 / 3.0 * k * k * k;
 }
@@ -253,12 +255,12 @@ static double newton_list_changes(newton_system *s, const pattern *p) {
 static void make_columns(newton_system *s) {
   size_t m = (size_t)s->m;
   const pattern *p = &s->base;
-  int first = s->n_column;
+  int first = s->inverse.n;
   for (int a = 0; a < s->n_changed; ++a) {
     int dof = s->changed[a];
-    if (s->column[dof] >= 0) continue;
-    s->column[dof] = s->n_column++;
-    double *x = s->X + m * (size_t)s->column[dof];
+    if (s->inverse.column[dof] >= 0) continue;
+    s->inverse.column[dof] = s->inverse.n++;
+    double *x = s->inverse.X + m * (size_t)s->inverse.column[dof];
     memset(x, 0, m * sizeof *x);
     if (p->place[dof] >= 0) {
       x[p->place[dof]] = 1.0;
@@ -269,13 +271,13 @@ static void make_columns(newton_system *s) {
     if (s->K.full) newton_limit_rows(s, p, column, x);
     for (int i = 0; i < p->n_free; ++i) x[i] = -x[i];
   }
-  newton_back(s, s->n_column - first, s->X + m * (size_t)first);
-  for (int c = first; c < s->n_column; ++c)
-    newton_expand(s, s->X + m * (size_t)c);
+  newton_back(s, s->inverse.n - first, s->inverse.X + m * (size_t)first);
+  for (int c = first; c < s->inverse.n; ++c)
+    newton_expand(s, s->inverse.X + m * (size_t)c);
   for (int a = 0; a < s->n_changed; ++a) {
     int dof = s->changed[a];
-    if (s->column[dof] >= first && p->place[dof] < 0)
-      s->X[m * (size_t)s->column[dof] + (size_t)dof] = 1.0;
+    if (s->inverse.column[dof] >= first && p->place[dof] < 0)
+      s->inverse.X[m * (size_t)s->inverse.column[dof] + (size_t)dof] = 1.0;
   }
 }
 
@@ -286,12 +288,12 @@ static void equation_rows(newton_system *s, const pattern *p, int n,
   int k = s->n_changed;
   for (int i = 0; i < n; ++i)
     newton_row(s, p, s->changed[id[i]], s->rows + (size_t)i * (size_t)s->m);
-  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, n, s->n_column, s->m,
-              1.0, s->rows, s->m, s->X, s->m, 0.0, s->product, CHUNK);
+  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, n, s->inverse.n, s->m,
+              1.0, s->rows, s->m, s->inverse.X, s->m, 0.0, s->product, CHUNK);
   for (int i = 0; i < n; ++i) {
     for (int b = 0; b < k; ++b)
-      s->C[(size_t)id[i] + (size_t)k * (size_t)b] =
-          s->product[i + CHUNK * s->column[s->changed[b]]];
+      s->inverse.C[(size_t)id[i] + (size_t)k * (size_t)b] =
+          s->product[i + CHUNK * s->inverse.column[s->changed[b]]];
     s->z[id[i]] =
         s->b[s->changed[id[i]]] -
         cblas_ddot(s->m, s->rows + (size_t)i * (size_t)s->m, 1, s->x, 1);
@@ -307,8 +309,10 @@ static void small_system(newton_system *s, const pattern *p) {
       id[n++] = a;
     } else {
       for (int b = 0; b < k; ++b)
-        s->C[(size_t)a + (size_t)k * (size_t)b] =
-            s->X[(size_t)s->m * (size_t)s->column[s->changed[b]] + (size_t)dof];
+        s->inverse.C[(size_t)a + (size_t)k * (size_t)b] =
+            s->inverse
+                .X[(size_t)s->m * (size_t)s->inverse.column[s->changed[b]] +
+                   (size_t)dof];
       s->z[a] = -s->x[dof];
     }
     if (n == CHUNK) {
@@ -331,13 +335,14 @@ static int newton_exchange(newton_system *s, const pattern *p) {
   if (k == 0) return 1;
   memcpy(s->x, s->du, (size_t)s->m * sizeof *s->x);
   small_system(s, p);
-  if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, k, 1, s->C, k, s->small_pivot, s->z,
-                         k) != 0)
+  if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, k, 1, s->inverse.C, k,
+                         s->inverse.small_pivot, s->z, k) != 0)
     return 0;
-  memset(s->weight, 0, (size_t)s->n_column * sizeof *s->weight);
-  for (int a = 0; a < k; ++a) s->weight[s->column[s->changed[a]]] = s->z[a];
-  cblas_dgemv(CblasColMajor, CblasNoTrans, s->m, s->n_column, 1.0, s->X, s->m,
-              s->weight, 1, 1.0, s->du, 1);
+  memset(s->weight, 0, (size_t)s->inverse.n * sizeof *s->weight);
+  for (int a = 0; a < k; ++a)
+    s->weight[s->inverse.column[s->changed[a]]] = s->z[a];
+  cblas_dgemv(CblasColMajor, CblasNoTrans, s->m, s->inverse.n, 1.0,
+              s->inverse.X, s->m, s->weight, 1, 1.0, s->du, 1);
   for (int dof = 0; dof < s->m; ++dof)
     if (p->place[dof] < 0) s->du[dof] = 0.0;
   return 1;
@@ -377,9 +382,18 @@ void pattern_copy(int dim, int n, const pattern *from, pattern *to) {
 
 void newton_system_free(newton_system *s) {
   if (s == NULL) return;
-  void *const blocks[] = {s->column,  s->X,       s->C,      s->rows,
-                          s->product, s->changed, s->b,      s->x,
-                          s->du,      s->z,       s->weight, s->small_pivot};
+  void *const blocks[] = {s->inverse.column,
+                          s->inverse.X,
+                          s->inverse.C,
+                          s->rows,
+                          s->product,
+                          s->changed,
+                          s->b,
+                          s->x,
+                          s->du,
+                          s->z,
+                          s->weight,
+                          s->inverse.small_pivot};
   for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
     memory_free(blocks[i]);
   dense_free(&s->K);
@@ -394,12 +408,12 @@ status newton_system_new(const contact_problem *cp, newton_system **out) {
   NEW(s, 1);
   s->m = cp->m;
   s->n_node = (size_t)cp->n;
-  s->capacity = (int)capacity;
+  s->inverse.capacity = (int)capacity;
   TRY(dense_new(cp->m, &s->K));
   TRY(pattern_new(cp->dim, cp->n, &s->base));
-  NEW(s->column, m);
-  NEW(s->X, m * capacity);
-  NEW(s->C, capacity * capacity);
+  NEW(s->inverse.column, m);
+  NEW(s->inverse.X, m * capacity);
+  NEW(s->inverse.C, capacity * capacity);
   NEW(s->rows, m * CHUNK);
   NEW(s->product, CHUNK * capacity);
   NEW(s->changed, m);
@@ -408,7 +422,7 @@ status newton_system_new(const contact_problem *cp, newton_system **out) {
   NEW(s->du, m);
   NEW(s->z, capacity);
   NEW(s->weight, capacity);
-  NEW(s->small_pivot, capacity);
+  NEW(s->inverse.small_pivot, capacity);
   s->power = dense_power(cp->m, cp->A);
   s->symmetric = -1;
   *out = s;
@@ -569,7 +583,7 @@ static int symmetric_base(newton_system *s, const pattern *p) {
   double n = p->n_free, m = s->m, k = bent;
   double update =
       2.0 * n * n * (k + 1.0 + READ) + 2.0 * m * k * k + 2.0 / 3.0 * k * k * k;
-  if (!s->symmetric || bent > s->capacity ||
+  if (!s->symmetric || bent > s->inverse.capacity ||
       newton_cost(p->n_free, 0) + update > newton_cost(p->n_free, 1))
     return 0;
   newton_begin(s, p, 0);
@@ -632,10 +646,10 @@ status newton_system_keep(newton_system *s, archive *a) {
   PASS(archive_ints(a, "has_base", &s->has_base, 1));
   if (!s->has_base) return OK;
   PASS(archive_ints(a, "full", &s->K.full, 1));
-  PASS(archive_ints(a, "n_column", &s->n_column, 1));
+  PASS(archive_ints(a, "n_column", &s->inverse.n, 1));
   PASS(archive_ints(a, "n_free", &p->n_free, 1));
-  if (p->n_free < 0 || p->n_free > s->m || s->n_column < 0 ||
-      s->n_column > s->capacity)
+  if (p->n_free < 0 || p->n_free > s->m || s->inverse.n < 0 ||
+      s->inverse.n > s->inverse.capacity)
     RAISE(ERR_FILE, "the restart file is damaged: a factor has other sizes");
   PASS(archive_bytes(a, "friction", &s->friction, sizeof s->friction));
   PASS(archive_reals(a, "spent", &s->spent, 1));
@@ -643,8 +657,8 @@ status newton_system_keep(newton_system *s, archive *a) {
   s->K.n = p->n_free;
   PASS(archive_reals(a, "K", s->K.a, (size_t)p->n_free * (size_t)p->n_free));
   PASS(archive_ints(a, "pivot", s->K.pivot, (size_t)p->n_free));
-  PASS(archive_ints(a, "column", s->column, m));
-  return archive_reals(a, "X", s->X, m * (size_t)s->n_column);
+  PASS(archive_ints(a, "column", s->inverse.column, m));
+  return archive_reals(a, "X", s->inverse.X, m * (size_t)s->inverse.n);
 }
 
 int newton_system_refresh(newton_system *s) {

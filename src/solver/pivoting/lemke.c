@@ -44,12 +44,12 @@ static void lemke_respond(const lemke_run *s, const double *x, int load,
 /* The free unknowns in equilibrium with the others. */
 static void lemke_settle_free(const lemke_run *s, int load, double *u) {
   const lemke_work *w = s->w;
-  int n = w->n_free;
+  int n = w->reduced.n_free;
   for (int pass = 0; pass < 2 && n > 0; ++pass) {
     lemke_respond(s, u, load, w->raw);
-    for (int k = 0; k < n; ++k) w->v[k] = -w->raw[w->free_id[k]];
-    contact_product(n, w->inner, w->v, w->t);
-    for (int k = 0; k < n; ++k) u[w->free_id[k]] += w->t[k];
+    for (int k = 0; k < n; ++k) w->v[k] = -w->raw[w->reduced.free_id[k]];
+    contact_product(n, w->reduced.inner, w->v, w->t);
+    for (int k = 0; k < n; ++k) u[w->reduced.free_id[k]] += w->t[k];
   }
 }
 
@@ -57,15 +57,16 @@ static void lemke_settle_free(const lemke_run *s, int load, double *u) {
 static void lemke_set_base(lemke_run *s) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;
-  memset(w->base, 0, (size_t)cp->m * sizeof *w->base);
+  memset(w->reduced.base, 0, (size_t)cp->m * sizeof *w->reduced.base);
   if (!lemke_is_stiff(s)) return;
   for (int dof = 0; dof < cp->m; ++dof) {
     size_t at = (size_t)dof * (size_t)cp->m + (size_t)dof;
-    if (w->kind[dof] == IS_BOUND) w->base[dof] = contact_bound(cp, dof);
-    if (w->kind[dof] == IS_FRICTION) w->base[dof] = contact_stick(cp, dof);
-    if (w->kind[dof] == IS_HELD) w->base[dof] = cp->f[dof] / cp->A[at];
+    if (w->kind[dof] == IS_BOUND) w->reduced.base[dof] = contact_bound(cp, dof);
+    if (w->kind[dof] == IS_FRICTION)
+      w->reduced.base[dof] = contact_stick(cp, dof);
+    if (w->kind[dof] == IS_HELD) w->reduced.base[dof] = cp->f[dof] / cp->A[at];
   }
-  lemke_settle_free(s, 1, w->base);
+  lemke_settle_free(s, 1, w->reduced.base);
 }
 
 /* w of every variable from raw, scaled as the matrix is; z: scaled, for the
@@ -75,14 +76,14 @@ static void slacks(const lemke_run *s, const double *raw, const double *z,
   const contact_problem *cp = s->cp;
   const lemke_work *w = s->w;
   int stiff = lemke_is_stiff(s);
-  for (int a = 0; a < w->n_var; ++a) {
+  for (int a = 0; a < w->reduced.n_var; ++a) {
     const variable *v = w->var + a;
-    double unit = w->unit * w->D[v->node_id], g0 = 0.0;
-    int dof = w->kept[v->dof];
+    double unit = w->unit * w->reduced.D[v->node_id], g0 = 0.0;
+    int dof = w->reduced.kept[v->dof];
     if (v->type == BOUND)
       to[a] = unit * (stiff ? -raw[dof] : contact_bound(cp, dof) - raw[dof]);
     if (lemke_has_limit(s, v)) g0 = cp->g0[v->node_id];
-    if (v->type == LIMIT) to[a] = g0 / w->D[v->node_id];
+    if (v->type == LIMIT) to[a] = g0 / w->reduced.D[v->node_id];
     if (v->type != SLIDE) continue;
     double sum =
         g0 + v->e[0] * (raw[dof] - (stiff ? 0.0 : contact_stick(cp, dof)));
@@ -96,18 +97,18 @@ static void slacks(const lemke_run *s, const double *raw, const double *z,
 
 /* x += the motion (forces) of z on the unknowns kept, unscaled. */
 static void lemke_add_motion(const lemke_work *w, const double *z, double *x) {
-  for (int a = 0; a < w->n_var; ++a) {
+  for (int a = 0; a < w->reduced.n_var; ++a) {
     const variable *v = w->var + a;
-    double size = w->D[v->node_id] * z[a];
+    double size = w->reduced.D[v->node_id] * z[a];
     if (v->type == LIMIT || size == 0.0) continue;
-    x[w->kept[v->dof]] += v->e[0] * size;
-    if (v->e[1] != 0.0) x[w->kept[v->dof + 1]] += v->e[1] * size;
+    x[w->reduced.kept[v->dof]] += v->e[0] * size;
+    if (v->e[1] != 0.0) x[w->reduced.kept[v->dof + 1]] += v->e[1] * size;
   }
 }
 
 /* x = the state at z. */
 static void lemke_state_of(const lemke_run *s, const double *z, double *x) {
-  memcpy(x, s->w->base, (size_t)s->cp->m * sizeof *x);
+  memcpy(x, s->w->reduced.base, (size_t)s->cp->m * sizeof *x);
   lemke_add_motion(s->w, z, x);
   lemke_settle_free(s, 1, x);
 }
@@ -115,10 +116,10 @@ static void lemke_state_of(const lemke_run *s, const double *z, double *x) {
 /* q and d of the complementarity problem. */
 static void lemke_set_vectors(lemke_run *s) {
   lemke_work *w = s->w;
-  memset(w->z, 0, (size_t)w->n_var * sizeof *w->z);
-  lemke_respond(s, w->base, 1, w->raw);
+  memset(w->z, 0, (size_t)w->reduced.n_var * sizeof *w->z);
+  lemke_respond(s, w->reduced.base, 1, w->raw);
   slacks(s, w->raw, w->z, w->q);
-  for (int a = 0; a < w->n_var; ++a) w->d[a] = 1.0;
+  for (int a = 0; a < w->reduced.n_var; ++a) w->d[a] = 1.0;
   if (lemke_is_stiff(s)) lemke_add_limits(s, w->z, w->d);
 }
 
@@ -132,7 +133,8 @@ static void polish(lemke_run *s, double *x) {
     lemke_respond(s, x, 1, w->raw);
     slacks(s, w->raw, w->z, w->q);
     lcp_correction(w->lcp, w->q, w->dz);
-    for (int a = 0; a < w->n_var; ++a) w->z[a] = fmax(0.0, w->z[a] + w->dz[a]);
+    for (int a = 0; a < w->reduced.n_var; ++a)
+      w->z[a] = fmax(0.0, w->z[a] + w->dz[a]);
     lemke_state_of(s, w->z, x);
   }
   lemke_respond(s, x, 1, w->raw);
@@ -145,15 +147,15 @@ static void clean_forces(const lemke_run *s, double *r) {
   const lemke_work *w = s->w;
   for (int dof = 0; dof < cp->m; ++dof)
     r[dof] = w->kind[dof] == IS_FRICTION ? w->raw[dof] : 0.0;
-  for (int a = 0; a < w->n_var; ++a) {
-    int dof = w->kept[w->var[a].dof];
+  for (int a = 0; a < w->reduced.n_var; ++a) {
+    int dof = w->reduced.kept[w->var[a].dof];
     if (w->var[a].type == BOUND && !lcp_row_is_tight(w->lcp, a))
       r[dof] = fmin(w->raw[dof], 0.0);
   }
-  for (int a = 0; a < w->n_var; ++a) {
+  for (int a = 0; a < w->reduced.n_var; ++a) {
     const variable *v = w->var + a;
-    int dof = w->kept[v->dof];
-    if (v->type != SLIDE || w->n_slide[v->node_id] != 2) continue;
+    int dof = w->reduced.kept[v->dof];
+    if (v->type != SLIDE || w->node.n_slide[v->node_id] != 2) continue;
     double g = contact_node_limit(cp, r, v->node_id);
     if (lcp_row_is_tight(w->lcp, a) || v->e[0] * r[dof] < -g)
       r[dof] = -g * v->e[0];
@@ -165,9 +167,10 @@ static void clean_motion(const lemke_run *s, double *u) {
   const contact_problem *cp = s->cp;
   const lemke_work *w = s->w;
   memcpy(u, w->raw, (size_t)cp->m * sizeof *u);
-  for (int a = 0; a < w->n_var; ++a) {
+  for (int a = 0; a < w->reduced.n_var; ++a) {
     const variable *v = w->var + a;
-    int dof = w->kept[v->dof], closed = w->z[w->normal[v->node_id]] > 0.0;
+    int dof = w->reduced.kept[v->dof],
+        closed = w->z[w->node.normal[v->node_id]] > 0.0;
     if (v->type == BOUND)
       u[dof] = w->z[a] > 0.0 ? contact_bound(cp, dof)
                              : fmin(u[dof], contact_bound(cp, dof));
@@ -240,11 +243,11 @@ static outcome lemke_check_ray(lemke_run *s) {
 static int lemke_load_is_held(lemke_run *s) {
   lemke_work *w = s->w;
   double worst = 0.0;
-  if (w->n_free == 0 || !s->cp->floating) return 1;
-  lemke_respond(s, w->base, 1, w->raw);
+  if (w->reduced.n_free == 0 || !s->cp->floating) return 1;
+  lemke_respond(s, w->reduced.base, 1, w->raw);
   memset(w->ray, 0, (size_t)s->cp->m * sizeof *w->ray);
-  for (int k = 0; k < w->n_free; ++k) {
-    int dof = w->free_id[k];
+  for (int k = 0; k < w->reduced.n_free; ++k) {
+    int dof = w->reduced.free_id[k];
     w->ray[dof] = -w->raw[dof];
     worst = fmax(worst, fabs(w->raw[dof]));
   }
@@ -276,15 +279,36 @@ static void lemke_release(void *work) {
   lemke_work *w = work;
   if (w == NULL) return;
   for (int i = 0; i < N_CORRECTOR; ++i) {
-    if (w->corrector[i] != NULL) w->corrector[i]->release(w->corrector_work[i]);
-    memory_free(w->corrector_param[i]);
+    if (w->corrector.ops[i] != NULL)
+      w->corrector.ops[i]->release(w->corrector.work[i]);
+    memory_free(w->corrector.param[i]);
   }
   lcp_free(w->lcp);
-  void *const blocks[] = {w->S,     w->inner,  w->spare,  w->D,     w->tame,
-                          w->base,  w->raw,    w->v,      w->t,     w->ray,
-                          w->work,  w->best_u, w->best_r, w->kept,  w->free_id,
-                          w->pivot, w->kind,   w->normal, w->slide, w->n_slide,
-                          w->var,   w->q,      w->d,      w->z,     w->dz};
+  void *const blocks[] = {w->reduced.S,
+                          w->reduced.inner,
+                          w->spare,
+                          w->reduced.D,
+                          w->reduced.tame,
+                          w->reduced.base,
+                          w->raw,
+                          w->v,
+                          w->t,
+                          w->ray,
+                          w->work,
+                          w->best_u,
+                          w->best_r,
+                          w->reduced.kept,
+                          w->reduced.free_id,
+                          w->pivot,
+                          w->kind,
+                          w->node.normal,
+                          w->node.slide,
+                          w->node.n_slide,
+                          w->var,
+                          w->q,
+                          w->d,
+                          w->z,
+                          w->dz};
   for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
     memory_free(blocks[i]);
   memory_free(w);
@@ -297,10 +321,10 @@ static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
     if ((ops->handles & NEEDS_STIFFNESS) && cp->A == NULL) continue;
     char *param = NULL;
     PASS_NEW(param, ops->param_size + 1);
-    w->corrector_param[i] = param;
-    w->corrector[i] = ops;
+    w->corrector.param[i] = param;
+    w->corrector.ops[i] = ops;
     option_defaults(ops->options, param);
-    PASS(ops->setup(cp, param, &w->corrector_work[i]));
+    PASS(ops->setup(cp, param, &w->corrector.work[i]));
   }
   return OK;
 }
@@ -315,23 +339,24 @@ static status lemke_setup(const contact_problem *cp, const void *par,
   w->m = cp->m;
   w->facets = p->facets >= 4 ? p->facets + p->facets % 2 : 8;
   int n_var = cp->n * (cp->dim == 2 ? 4 : w->facets + 2);
-  double **by_unknown[] = {&w->base, &w->raw,    &w->v,     &w->t,
-                           &w->ray,  &w->best_u, &w->best_r};
+  double **by_unknown[] = {&w->reduced.base, &w->raw,    &w->v,     &w->t,
+                           &w->ray,          &w->best_u, &w->best_r};
   double **by_variable[] = {&w->q, &w->d, &w->z, &w->dz};
-  int **by_place[] = {&w->kept,   &w->free_id, &w->pivot,  &w->kind,
-                      &w->normal, &w->slide,   &w->n_slide};
+  int **by_place[] = {&w->reduced.kept, &w->reduced.free_id, &w->pivot,
+                      &w->kind,         &w->node.normal,     &w->node.slide,
+                      &w->node.n_slide};
   for (size_t i = 0; i < sizeof by_unknown / sizeof *by_unknown; ++i)
     NEW(*by_unknown[i], m);
   for (size_t i = 0; i < sizeof by_variable / sizeof *by_variable; ++i)
     NEW(*by_variable[i], n_var);
   for (size_t i = 0; i < sizeof by_place / sizeof *by_place; ++i)
     NEW(*by_place[i], 2 * m);
-  NEW(w->S, m * m);
-  NEW(w->inner, m * m);
+  NEW(w->reduced.S, m * m);
+  NEW(w->reduced.inner, m * m);
   if (cp->floating) NEW(w->spare, m * m);
   NEW(w->work, 4 * m + 4);
-  NEW(w->D, cp->n);
-  NEW(w->tame, cp->n);
+  NEW(w->reduced.D, cp->n);
+  NEW(w->reduced.tame, cp->n);
   NEW(w->var, n_var);
   TRY(lcp_new(n_var, cp->A != NULL ? cp->m : cp->m + 2 * cp->n, &w->lcp));
   TRY(set_up_correctors(cp, w));
@@ -355,12 +380,12 @@ static status correct(lemke_run *s, double *u, double *r, solver_report *rep) {
   memcpy(w->best_r, r, bytes);
   for (int i = 0; i < N_CORRECTOR && rep->outcome != CONVERGED; ++i) {
     solver_report inner = {.outcome = RUNNING};
-    if (w->corrector[i] == NULL) continue;
+    if (w->corrector.ops[i] == NULL) continue;
     memcpy(u, w->best_u, bytes);
     memcpy(r, w->best_r, bytes);
-    PASS(w->corrector[i]->solve(s->cp, w->corrector_param[i],
-                                w->corrector_work[i], s->control, u, r,
-                                &inner));
+    PASS(w->corrector.ops[i]->solve(s->cp, w->corrector.param[i],
+                                    w->corrector.work[i], s->control, u, r,
+                                    &inner));
     rep->iterations += inner.iterations;
     rep->residual = contact_residual(s->cp, u, r);
     rep->outcome = rep->residual <= s->control->tol ? CONVERGED : inner.outcome;
@@ -387,7 +412,7 @@ static outcome follow(lemke_run *s, int *count) {
   lemke_work *w = s->w;
   lcp_report rep;
   lemke_set_vectors(s);
-  lcp_problem p = {.n = w->n_var, .q = w->q, .d = w->d, .ctx = s};
+  lcp_problem p = {.n = w->reduced.n_var, .q = w->q, .d = w->d, .ctx = s};
   p.max_pivots = s->control->max_iter;
   p.product = lemke_product;
   p.row = lemke_row;
@@ -421,9 +446,10 @@ static status lemke_keep(void *work, archive *a) {
   status st = OK;
   lemke_work *w = work;
   for (int i = 0; i < N_CORRECTOR && st == OK; ++i) {
-    if (w->corrector[i] == NULL || w->corrector[i]->keep == NULL) continue;
-    archive_enter(a, w->corrector[i]->name);
-    st = w->corrector[i]->keep(w->corrector_work[i], a);
+    if (w->corrector.ops[i] == NULL || w->corrector.ops[i]->keep == NULL)
+      continue;
+    archive_enter(a, w->corrector.ops[i]->name);
+    st = w->corrector.ops[i]->keep(w->corrector.work[i], a);
     archive_leave(a);
   }
   return st;

@@ -25,7 +25,7 @@ static int has_friction(const contact_problem *cp, int node_id) {
 void lemke_sort_unknowns(lemke_run *s) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;
-  w->n_kept = w->n_free = 0;
+  w->reduced.n_kept = w->reduced.n_free = 0;
   for (int dof = 0; dof < cp->m; ++dof) {
     dof_kind kind = IS_FREE;
     if (contact_held(cp, dof))
@@ -35,8 +35,9 @@ void lemke_sort_unknowns(lemke_run *s) {
     else if (has_friction(cp, dof / cp->dim))
       kind = IS_FRICTION;
     w->kind[dof] = (int)kind;
-    if (kind == IS_FREE) w->free_id[w->n_free++] = dof;
-    if (kind == IS_BOUND || kind == IS_FRICTION) w->kept[w->n_kept++] = dof;
+    if (kind == IS_FREE) w->reduced.free_id[w->reduced.n_free++] = dof;
+    if (kind == IS_BOUND || kind == IS_FRICTION)
+      w->reduced.kept[w->reduced.n_kept++] = dof;
   }
 }
 
@@ -44,8 +45,8 @@ void lemke_sort_unknowns(lemke_run *s) {
 static void add_directions(lemke_work *w, int node_id, int dof, int tangents) {
   int count = tangents == 1 ? 2 : w->facets;
   const double full = 2.0 * acos(-1.0);
-  w->slide[node_id] = w->n_var;
-  w->n_slide[node_id] = count;
+  w->node.slide[node_id] = w->reduced.n_var;
+  w->node.n_slide[node_id] = count;
   if (tangents == 2) w->has_facets = 1;
   for (int j = 0; j < count; ++j) {
     int half = j % (count / 2);
@@ -55,25 +56,26 @@ static void add_directions(lemke_work *w, int node_id, int dof, int tangents) {
       v.e[0] = sign * cos(angle);
       v.e[1] = sign * sin(angle);
     }
-    w->var[w->n_var++] = v;
+    w->var[w->reduced.n_var++] = v;
   }
 }
 
 void lemke_list_variables(lemke_run *s) {
   lemke_work *w = s->w;
   int dim = s->cp->dim;
-  w->n_var = w->has_facets = 0;
-  for (int i = 0; i < s->cp->n; ++i) w->n_slide[i] = 0;
-  for (int i = 0; i < w->n_kept; ++i) {
-    int dof = w->kept[i], node_id = dof / dim;
+  w->reduced.n_var = w->has_facets = 0;
+  for (int i = 0; i < s->cp->n; ++i) w->node.n_slide[i] = 0;
+  for (int i = 0; i < w->reduced.n_kept; ++i) {
+    int dof = w->reduced.kept[i], node_id = dof / dim;
     if (w->kind[dof] == IS_BOUND) {
-      if (dof % dim == 0) w->normal[node_id] = w->n_var;
-      w->var[w->n_var++] = (variable){BOUND, node_id, i, {-1.0, 0.0}};
-    } else if (w->n_slide[node_id] == 0) {
-      int two = i + 1 < w->n_kept && w->kept[i + 1] / dim == node_id;
+      if (dof % dim == 0) w->node.normal[node_id] = w->reduced.n_var;
+      w->var[w->reduced.n_var++] = (variable){BOUND, node_id, i, {-1.0, 0.0}};
+    } else if (w->node.n_slide[node_id] == 0) {
+      int two =
+          i + 1 < w->reduced.n_kept && w->reduced.kept[i + 1] / dim == node_id;
       add_directions(w, node_id, i, two ? 2 : 1);
       if (!lemke_is_stiff(s))
-        w->var[w->n_var++] = (variable){LIMIT, node_id, i, {0.0, 0.0}};
+        w->var[w->reduced.n_var++] = (variable){LIMIT, node_id, i, {0.0, 0.0}};
     }
   }
 }
@@ -95,58 +97,59 @@ static void gather(const lemke_run *s, int n_row, const int *row, int n_col,
 /* inner = inv(A_FF); 0: singular. */
 static int invert_free(lemke_run *s) {
   lemke_work *w = s->w;
-  int n = w->n_free;
-  gather(s, n, w->free_id, n, w->free_id, w->inner);
-  return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, w->inner, n, w->pivot) ==
-             0 &&
-         LAPACKE_dgetri_work(LAPACK_COL_MAJOR, n, w->inner, n, w->pivot,
+  int n = w->reduced.n_free;
+  gather(s, n, w->reduced.free_id, n, w->reduced.free_id, w->reduced.inner);
+  return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, w->reduced.inner, n,
+                             w->pivot) == 0 &&
+         LAPACKE_dgetri_work(LAPACK_COL_MAJOR, n, w->reduced.inner, n, w->pivot,
                              w->work, 4 * w->m) == 0;
 }
 
 /* inner = pseudo-inverse of A_FF: motions without resistance are left out. */
 static int pseudo_invert_free(lemke_run *s) {
   lemke_work *w = s->w;
-  int n = w->n_free;
+  int n = w->reduced.n_free;
   size_t ld = (size_t)n;
-  gather(s, n, w->free_id, n, w->free_id, w->spare);
+  gather(s, n, w->reduced.free_id, n, w->reduced.free_id, w->spare);
   if (LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'L', n, w->spare, n, w->t,
                          w->work, 4 * w->m + 4) != 0)
     return 0;
-  memset(w->inner, 0, ld * ld * sizeof *w->inner);
+  memset(w->reduced.inner, 0, ld * ld * sizeof *w->reduced.inner);
   for (size_t k = 0; k < ld; ++k)
     if (w->t[k] > SINGULAR * w->t[n - 1])
       cblas_dger(CblasColMajor, n, n, 1.0 / w->t[k], w->spare + k * ld, 1,
-                 w->spare + k * ld, 1, w->inner, n);
+                 w->spare + k * ld, 1, w->reduced.inner, n);
   return 1;
 }
 
 int lemke_reduce(lemke_run *s) {
   lemke_work *w = s->w;
-  int nk = w->n_kept, nf = w->n_free;
-  gather(s, nk, w->kept, nk, w->kept, w->S);
-  if (!lemke_is_stiff(s)) w->n_free = nf = 0;
+  int nk = w->reduced.n_kept, nf = w->reduced.n_free;
+  gather(s, nk, w->reduced.kept, nk, w->reduced.kept, w->reduced.S);
+  if (!lemke_is_stiff(s)) w->reduced.n_free = nf = 0;
   if (nf == 0) return 1;
   if (!(s->cp->floating ? pseudo_invert_free(s) : invert_free(s))) return 0;
-  double *X = w->inner + (size_t)nf * (size_t)nf;
+  double *X = w->reduced.inner + (size_t)nf * (size_t)nf;
   for (int j = 0; j < nk; ++j) {
-    gather(s, nf, w->free_id, 1, &w->kept[j], w->t);
-    contact_product(nf, w->inner, w->t, X + (size_t)j * (size_t)nf);
+    gather(s, nf, w->reduced.free_id, 1, &w->reduced.kept[j], w->t);
+    contact_product(nf, w->reduced.inner, w->t, X + (size_t)j * (size_t)nf);
   }
   for (int k = 0; k < nf; ++k) {
-    gather(s, nk, w->kept, 1, &w->free_id[k], w->t);
-    cblas_dger(CblasColMajor, nk, nk, -1.0, w->t, 1, X + k, nf, w->S, nk);
+    gather(s, nk, w->reduced.kept, 1, &w->reduced.free_id[k], w->t);
+    cblas_dger(CblasColMajor, nk, nk, -1.0, w->t, 1, X + k, nf, w->reduced.S,
+               nk);
   }
   return 1;
 }
 
 void lemke_scale(lemke_run *s) {
   lemke_work *w = s->w;
-  int dim = s->cp->dim, nk = w->n_kept, top = 0;
+  int dim = s->cp->dim, nk = w->reduced.n_kept, top = 0;
   double largest = 0.0;
-  for (int i = 0; i < s->cp->n; ++i) w->D[i] = 0.0;
+  for (int i = 0; i < s->cp->n; ++i) w->reduced.D[i] = 0.0;
   for (int i = 0; i < nk; ++i) {
-    double a = w->S[(size_t)i * (size_t)nk + (size_t)i];
-    double *D = w->D + w->kept[i] / dim;
+    double a = w->reduced.S[(size_t)i * (size_t)nk + (size_t)i];
+    double *D = w->reduced.D + w->reduced.kept[i] / dim;
     *D = fmax(*D, a);
     largest = fmax(largest, a);
   }
@@ -154,13 +157,14 @@ void lemke_scale(lemke_run *s) {
   w->unit = ldexp(1.0, -top);
   for (int i = 0; i < s->cp->n; ++i) {
     int exponent = top;
-    if (w->D[i] > 0x1p-60 * largest) frexp(w->D[i], &exponent);
-    w->D[i] = ldexp(1.0, (top - exponent) / 2);
+    if (w->reduced.D[i] > 0x1p-60 * largest) frexp(w->reduced.D[i], &exponent);
+    w->reduced.D[i] = ldexp(1.0, (top - exponent) / 2);
   }
   for (int j = 0; j < nk; ++j)
     for (int i = 0; i < nk; ++i)
-      w->S[(size_t)j * (size_t)nk + (size_t)i] *=
-          w->unit * w->D[w->kept[i] / dim] * w->D[w->kept[j] / dim];
+      w->reduced.S[(size_t)j * (size_t)nk + (size_t)i] *=
+          w->unit * w->reduced.D[w->reduced.kept[i] / dim] *
+          w->reduced.D[w->reduced.kept[j] / dim];
 }
 
 /* Entries of a row of B: from *first to *last - 1. */
@@ -174,7 +178,7 @@ static void limit_range(const lemke_run *s, int node_id, int *first,
 /* Entry of B between the scaled limits and pressures of two nodes. */
 static double limit_entry(const lemke_run *s, int node_id, int k) {
   const lemke_work *w = s->w;
-  double from = w->D[s->cp->B->col[k]], to = w->D[node_id];
+  double from = w->reduced.D[s->cp->B->col[k]], to = w->reduced.D[node_id];
   return s->cp->B->val[k] * (lemke_is_stiff(s) ? to / from : from / to);
 }
 
@@ -184,7 +188,7 @@ static double limit_sum(const lemke_run *s, int node_id, const double *p) {
   double sum = 0.0;
   limit_range(s, node_id, &first, &last);
   for (int k = first; k < last; ++k)
-    sum += limit_entry(s, node_id, k) * p[s->w->normal[s->cp->B->col[k]]];
+    sum += limit_entry(s, node_id, k) * p[s->w->node.normal[s->cp->B->col[k]]];
   return sum;
 }
 
@@ -195,7 +199,7 @@ void lemke_tame_limits(lemke_run *s) {
     limit_range(s, i, &first, &last);
     for (int k = first; k < last; ++k) sum += limit_entry(s, i, k);
     frexp(sum, &exponent);
-    s->w->tame[i] = ldexp(1.0, 1 - exponent);
+    s->w->reduced.tame[i] = ldexp(1.0, 1 - exponent);
   }
 }
 
@@ -206,23 +210,24 @@ int lemke_has_limit(const lemke_run *s, const variable *v) {
 void lemke_add_limits(const lemke_run *s, const double *z, double *y) {
   const lemke_work *w = s->w;
   int stiff = lemke_is_stiff(s);
-  for (int a = 0; a < w->n_var; ++a) {
+  for (int a = 0; a < w->reduced.n_var; ++a) {
     const variable *v = w->var + a;
     if (!lemke_has_limit(s, v)) continue;
-    int first = w->slide[v->node_id], last = first + w->n_slide[v->node_id];
+    int first = w->node.slide[v->node_id],
+        last = first + w->node.n_slide[v->node_id];
     y[a] += limit_sum(s, v->node_id, stiff ? y : z);
     for (int j = first; j < last && !stiff; ++j) {
       y[a] -= z[j];
       y[j] += z[a];
     }
-    y[a] *= w->tame[v->node_id];
+    y[a] *= w->reduced.tame[v->node_id];
   }
 }
 
 /* v[n_kept] = sum of x V(:, id) */
 static void spread(const lemke_run *s, int n_id, const int *id, const double *x,
                    double *v) {
-  memset(v, 0, (size_t)s->w->n_kept * sizeof *v);
+  memset(v, 0, (size_t)s->w->reduced.n_kept * sizeof *v);
   for (int k = 0; k < n_id; ++k) {
     const variable *a = s->w->var + id[k];
     if (a->type == LIMIT) continue;
@@ -239,16 +244,16 @@ static double along(const variable *a, const double *t) {
 /* t = S v, by columns where v has few entries. */
 static void multiply(const lemke_run *s, const double *v, double *t) {
   const lemke_work *w = s->w;
-  int n = w->n_kept, filled = 0;
+  int n = w->reduced.n_kept, filled = 0;
   for (int i = 0; i < n; ++i) filled += v[i] != 0.0;
   if (2 * filled > n) {
-    contact_product(n, w->S, v, t);
+    contact_product(n, w->reduced.S, v, t);
     return;
   }
   memset(t, 0, (size_t)n * sizeof *t);
   for (int i = 0; i < n; ++i)
     if (v[i] != 0.0)
-      cblas_daxpy(n, v[i], w->S + (size_t)i * (size_t)n, 1, t, 1);
+      cblas_daxpy(n, v[i], w->reduced.S + (size_t)i * (size_t)n, 1, t, 1);
 }
 
 void lemke_product(const void *ctx, int n_id, const int *id, const double *x,
@@ -257,9 +262,10 @@ void lemke_product(const void *ctx, int n_id, const int *id, const double *x,
   const lemke_work *w = s->w;
   spread(s, n_id, id, x, w->v);
   multiply(s, w->v, w->t);
-  for (int a = 0; a < w->n_var; ++a)
+  for (int a = 0; a < w->reduced.n_var; ++a)
     y[a] = w->var[a].type == LIMIT ? 0.0 : along(&w->var[a], w->t);
-  for (int a = 0; a < w->n_var && !lemke_is_stiff(s); ++a) w->dz[a] = 0.0;
+  for (int a = 0; a < w->reduced.n_var && !lemke_is_stiff(s); ++a)
+    w->dz[a] = 0.0;
   for (int k = 0; k < n_id && !lemke_is_stiff(s); ++k) w->dz[id[k]] = x[k];
   lemke_add_limits(s, w->dz, y);
 }
@@ -277,7 +283,7 @@ static void add_limit_row(const lemke_run *s, const variable *v, int n_id,
     if (v->type != LIMIT) continue;
     if (a->type == SLIDE && same) to[k] -= 1.0;
     for (int e = first; e < last; ++e)
-      if (w->normal[s->cp->B->col[e]] == id[k])
+      if (w->node.normal[s->cp->B->col[e]] == id[k])
         to[k] += limit_entry(s, v->node_id, e);
   }
 }
@@ -286,16 +292,19 @@ void lemke_row(const void *ctx, int i, int n_id, const int *id, double *to) {
   const lemke_run *s = ctx;
   const lemke_work *w = s->w;
   const variable *v = w->var + i;
-  int first, last, n = w->n_kept, stiff = lemke_is_stiff(s);
+  int first, last, n = w->reduced.n_kept, stiff = lemke_is_stiff(s);
   limit_range(s, v->node_id, &first, &last);
-  memset(w->t, 0, (size_t)w->n_kept * sizeof *w->t);
+  memset(w->t, 0, (size_t)w->reduced.n_kept * sizeof *w->t);
   for (int k = 0; k < 2; ++k)
-    if (v->e[k] != 0.0) cblas_daxpy(n, v->e[k], w->S + v->dof + k, n, w->t, 1);
+    if (v->e[k] != 0.0)
+      cblas_daxpy(n, v->e[k], w->reduced.S + v->dof + k, n, w->t, 1);
   for (int k = first; k < last && stiff && v->type == SLIDE; ++k)
     cblas_daxpy(n, -limit_entry(s, v->node_id, k),
-                w->S + w->var[w->normal[s->cp->B->col[k]]].dof, n, w->t, 1);
+                w->reduced.S + w->var[w->node.normal[s->cp->B->col[k]]].dof, n,
+                w->t, 1);
   for (int k = 0; k < n_id; ++k)
     to[k] = w->var[id[k]].type == LIMIT ? 0.0 : along(w->var + id[k], w->t);
   if (!stiff) add_limit_row(s, v, n_id, id, to);
-  if (lemke_has_limit(s, v)) cblas_dscal(n_id, w->tame[v->node_id], to, 1);
+  if (lemke_has_limit(s, v))
+    cblas_dscal(n_id, w->reduced.tame[v->node_id], to, 1);
 }

@@ -26,29 +26,35 @@ typedef enum { IS_BOUND, IS_FRICTION, IS_FREE, IS_HELD } dof_kind;
 
 typedef struct lemke_work {
   int m, facets;
-  int n_kept, n_free, n_var; /* reduced unknowns, eliminated ones, z */
-  double unit;               /* of two: S = unit D A D has diagonal <= 1 */
+  double unit; /* of two: S = unit D A D has diagonal <= 1 */
   lcp_work *lcp;
-  double *S;                      /* [n_kept^2] reduced and scaled matrix */
-  double *inner;                  /* [n_free^2] inverse of A_FF, then
-                                     [n_free*n_kept] that times A_FK */
+  struct {
+    int n_kept, n_free, n_var; /* reduced unknowns, eliminated ones, z */
+    int *kept, *free_id;       /* [m] */
+    double *S;                 /* [n_kept^2] reduced and scaled matrix */
+    double *inner;             /* [n_free^2] inverse of A_FF, then
+                                  [n_free*n_kept] that times A_FK */
+    double *base;              /* [m] u (r) at z = 0 */
+    double *D;                 /* [n] scale of a node, power of two */
+    double *tame;              /* [n] factor of the rows with the limit,
+                                  power of two */
+  } reduced;
+  struct {
+    int *normal, *slide, *n_slide; /* [n] variable of u_n; first SLIDE */
+  } node;
   double *spare;                  /* [m*m] or NULL: for the pseudo-inverse */
-  double *D;                      /* [n] scale of a node, power of two */
-  double *tame;                   /* [n] factor of the rows with the limit,
-                                     power of two */
-  double *base;                   /* [m] u (r) at z = 0 */
   double *raw;                    /* [m] A u - f (W r + q) */
   double *v, *t;                  /* [m] */
   double *ray;                    /* [m] motion of the last ray */
   double *best_u, *best_r, *work; /* [m], [m], [4m] */
   int has_ray, has_facets;
-  /* [m] */
-  int *kept, *free_id, *pivot, *kind;
-  int *normal, *slide, *n_slide; /* [n] variable of u_n; first SLIDE */
-  variable *var;                 /* [n_var] */
-  double *q, *d, *z, *dz;        /* [n_var] */
-  const solver_ops *corrector[N_CORRECTOR];
-  void *corrector_param[N_CORRECTOR], *corrector_work[N_CORRECTOR];
+  int *pivot, *kind;      /* [m] */
+  variable *var;          /* [n_var] */
+  double *q, *d, *z, *dz; /* [n_var] */
+  struct {
+    const solver_ops *ops[N_CORRECTOR];
+    void *param[N_CORRECTOR], *work[N_CORRECTOR];
+  } corrector;
 } lemke_work;
 
 typedef struct lemke_run {
