@@ -110,6 +110,7 @@ help:
 	@echo "make gallery      pictures of all examples for the manual"
 	@echo "make browser-test pages of tools/report in a headless browser"
 	@echo "make reference    every example against its input/*/reference (-update)"
+	@echo "make viewers      JOB.xdmf read by VTK, pyvista, meshio from PyPI"
 	@echo "make study        error against CPU seconds: four pictures"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
@@ -331,6 +332,19 @@ effects-cost: $(program)
 reference reference-update: $(program)
 	$(Q)PROTIS=$(abspath $(program)) tools/reference $(if $(filter %-update,$@),--update) -j $(JOBS) \
 	  -o build/reference input/*/*.inp
+
+# JOB.xdmf in the readers of VTK, pyvista and meshio, the package of
+# tools/python installed by pip; both from PyPI, no part of the tests.
+.PHONY: viewers
+viewers: $(program)
+	$(Q)python3 -m venv build/viewers
+	$(Q)cp -r tools/python build/viewers
+	$(Q)build/viewers/bin/pip -q install vtk pyvista meshio build/viewers/python
+	$(Q)for d in greco/greco block_shear_3d/block_shear_3d \
+	    hertz_sphere/hertz_sphere relaxing_seal/relaxing_seal; do \
+	  $(program) input/$$d.inp -o build/viewers/out --quiet || exit 1; done
+	$(Q)build/viewers/bin/python tools/check_xdmf \
+	  $$(ls build/viewers/out/*.xdmf | grep -v "\.[a-z]*\.xdmf")
 
 # Error against CPU seconds: solvers, meshes, integrators, nonlocal radii.
 STUDY := PROTIS=$(abspath $(program)) tools/study -j $(JOBS)
