@@ -95,8 +95,10 @@ void deck_free(deck *d);
 
 const parameter *card_parameter(const card *c, const char *name); /* or NULL */
 /* Value field as number or expression: a quoted field is compiled with the
- * symbols of the deck. Anything wrong goes to the log; 0 if fine, else -1. */
-int deck_quantity(deck *d, const field *f, message_log *log, quantity *out);
+ * symbols of the deck; "names" of the variables as in expression_compile_in,
+ * NULL: x y z t. Anything wrong goes to the log; 0 if fine, else -1. */
+int deck_quantity(deck *d, const field *f, const char *const names[4],
+                  message_log *log, quantity *out);
 /* The same for an expression of other variables than x y z t: "names" as in
  * expression_compile_in. The deck owns it. */
 int deck_formula(deck *d, const field *f, const char *const names[4],

@@ -250,7 +250,7 @@ static status read_call(compiler *c, const char *name) {
 
 static int find_variable(const compiler *c, const char *name) {
   for (int i = 0; i < 4; ++i)
-    if (strcmp(c->names[i], name) == 0) return i;
+    if (choice_rank(c->names[i], name) >= 0) return i;
   return -1;
 }
 

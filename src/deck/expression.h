@@ -21,7 +21,8 @@ typedef int symbol_value_fn(const void *ctx, const char *name, double *value);
  * status record says what is wrong there. ERR_MEMORY. */
 status expression_compile(const char *text, symbol_value_fn *symbol,
                           const void *ctx, expression **out, int *column);
-/* The same with other names, upper case, in the place of X, Y, Z and T. */
+/* The same with other names, upper case, in place of X, Y, Z and T; a variable
+ * may have several, joined by |, or none, "". */
 status expression_compile_in(const char *text, const char *const names[4],
                              symbol_value_fn *symbol, const void *ctx,
                              expression **out, int *column);

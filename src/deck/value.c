@@ -73,11 +73,13 @@ int deck_formula(deck *d, const field *f, const char *const names[4],
   return -1;
 }
 
-int deck_quantity(deck *d, const field *f, message_log *log, quantity *out) {
-  static const char *const names[] = {"X", "Y", "Z", "T"};
+int deck_quantity(deck *d, const field *f, const char *const names[4],
+                  message_log *log, quantity *out) {
+  static const char *const plain[] = {"X", "Y", "Z", "T"};
   const double origin[3] = {0, 0, 0};
   *out = (quantity){.number = 0};
   if (!f->quoted) return deck_real(f, log, &out->number);
+  if (names == NULL) names = plain;
   if (deck_formula(d, f, names, log, &out->formula) != 0) return -1;
   if (expression_variables(out->formula) != 0) return 0;
   out->number = expression_value(out->formula, origin, 0);

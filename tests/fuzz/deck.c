@@ -15,7 +15,7 @@ static void use_field(deck *d, const field *f, message_log *log) {
   quantity q;
   double real;
   int whole;
-  if (deck_quantity(d, f, log, &q) == 0) (void)quantity_value(&q, x, 1);
+  if (deck_quantity(d, f, NULL, log, &q) == 0) (void)quantity_value(&q, x, 1);
   (void)deck_real(f, log, &real);
   (void)deck_int(f, log, &whole);
   if (deck_path(d, f) == NULL) abort();

@@ -169,6 +169,44 @@ START_TEST(every_example_is_copied_and_nothing_overwritten) {
 }
 END_TEST
 
+/* A short cylinder on a floor under a pressure and a friction that follow the
+ * place. */
+static char *axisymmetric_run(const char *parameters, const char *pressure,
+                              const char *friction) {
+  job j = job_begin("ring");
+  job_copy(&j, "input/relaxing_seal/relaxing_seal.geo");
+  job_write(&j, "ring.inp",
+            "%s*MESH, FILE=relaxing_seal.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*SOLID SECTION, "
+            "ELSET=RING, MATERIAL=M, TYPE=CAX3\n*OBSTACLE, NAME=O, "
+            "TYPE=CONFORMING\n*CONTACT, NAME=C, GROUP=SEAT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB%s\n*STEP\n*STATIC\n*DSLOAD\n"
+            "LIP, P, %s\n*PRINT, CONTACT\n*END STEP\n",
+            parameters, friction, pressure);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s: %s", pressure, j.errors);
+  char *text = job_file(&j, "dat");
+  job_end(&j);
+  return text;
+}
+
+START_TEST(axisymmetric_expressions_know_r_and_z) {
+  static const char *const same[][5] = {
+      {"*PARAMETER\nS = 3.\n", "\"<S>*x + y\"", "\n\"0.02*x + 0.1*y\"",
+       "\"<S>*r + z\"", "\n\"0.02*r + 0.1*Z\""},
+      {"", "5.", ", TABLE=Y\n-1., 0.1, 1., 0.3", "5.",
+       ", TABLE=Z\n-1., 0.1, 1., 0.3"},
+      {"*PARAMETER\nR = 4.\n", "\"<R>*x\"", "\n0.3", "\"R*x\"", "\n0.3"}};
+  for (size_t i = 0; i < sizeof same / sizeof *same; ++i) {
+    const char *const *s = same[i];
+    char *old = axisymmetric_run(s[0], s[1], s[2]);
+    char *new = axisymmetric_run(s[0], s[3], s[4]);
+    ck_assert_str_eq(old, new);
+    free(old);
+    free(new);
+  }
+}
+END_TEST
+
 START_TEST(columns_are_listed_by_table) {
   job j = job_begin("list");
   expect(&j, "protis --list columns", 0);
@@ -190,6 +228,7 @@ int main(void) {
   tcase_add_loop_test(c, every_command_runs, 0, COMMANDS);
   tcase_add_test(c, version_is_the_newest_of_the_changes);
   tcase_add_test(c, every_example_is_copied_and_nothing_overwritten);
+  tcase_add_test(c, axisymmetric_expressions_know_r_and_z);
   tcase_add_test(c, columns_are_listed_by_table);
   return unit_run("manual", c);
 }

@@ -538,12 +538,12 @@ START_TEST(values_are_numbers_or_expressions) {
   read_deck r =
       decks_read_good("*PARAMETER\nH=2\n*A\n1.5D1, \"x*H+t\", \"<H>*3\", 7\n");
   const field *f = r.d->cards[0].records[0].fields;
-  ck_assert_int_eq(deck_quantity(r.d, &f[0], r.log, &q), 0);
+  ck_assert_int_eq(deck_quantity(r.d, &f[0], NULL, r.log, &q), 0);
   ck_assert(q.formula == NULL && q.number == 15 && q.factor == NULL);
-  ck_assert_int_eq(deck_quantity(r.d, &f[1], r.log, &q), 0);
+  ck_assert_int_eq(deck_quantity(r.d, &f[1], NULL, r.log, &q), 0);
   ck_assert(q.formula != NULL && quantity_value(&q, x, 0.5) == 4.5);
   ck_assert_uint_eq(quantity_variables(&q), 9);
-  ck_assert_int_eq(deck_quantity(r.d, &f[2], r.log, &q), 0);
+  ck_assert_int_eq(deck_quantity(r.d, &f[2], NULL, r.log, &q), 0);
   ck_assert(q.formula == NULL && q.number == 6);
   ck_assert_int_eq(deck_real(&f[2], r.log, &real), 0);
   ck_assert(real == 6);
@@ -575,11 +575,11 @@ START_TEST(wrong_values_are_reported_at_their_place) {
       "*A\nx, 1.5q, ,2.0,\"x+foo\",\"1/0\", 9999999999\n\"x*2\"\n");
   const field *f = r.d->cards[0].records[0].fields;
   ck_assert_int_eq(deck_real(&f[0], r.log, &real), -1);
-  ck_assert_int_eq(deck_quantity(r.d, &f[1], r.log, &q), -1);
+  ck_assert_int_eq(deck_quantity(r.d, &f[1], NULL, r.log, &q), -1);
   ck_assert_int_eq(deck_real(&f[2], r.log, &real), -1);
   ck_assert_int_eq(deck_int(&f[3], r.log, &whole), -1);
-  ck_assert_int_eq(deck_quantity(r.d, &f[4], r.log, &q), -1);
-  ck_assert_int_eq(deck_quantity(r.d, &f[5], r.log, &q), -1);
+  ck_assert_int_eq(deck_quantity(r.d, &f[4], NULL, r.log, &q), -1);
+  ck_assert_int_eq(deck_quantity(r.d, &f[5], NULL, r.log, &q), -1);
   ck_assert_int_eq(deck_int(&f[6], r.log, &whole), -1);
   f = r.d->cards[0].records[1].fields;
   ck_assert_int_eq(deck_real(&f[0], r.log, &real), -1);

@@ -25,7 +25,7 @@ static void use_values(read_deck *r) {
         quantity q;
         double real;
         int whole;
-        if (deck_quantity(r->d, &row->fields[j], r->log, &q) == 0)
+        if (deck_quantity(r->d, &row->fields[j], NULL, r->log, &q) == 0)
           (void)quantity_value(&q, x, 1);
         (void)deck_real(&row->fields[j], r->log, &real);
         (void)deck_int(&row->fields[j], r->log, &whole);

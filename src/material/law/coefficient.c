@@ -61,7 +61,7 @@ typedef struct lines {
 static int read_value(const lines *r, const field *f, const option *row,
                       quantity *out) {
   char why[128];
-  if (deck_quantity(r->d, f, r->log, out) != 0) return -1;
+  if (deck_quantity(r->d, f, NULL, r->log, out) != 0) return -1;
   if (out->formula != NULL) {
     if ((expression_variables(out->formula) & 7u) == 0) return 0;
     message_add(r->log, P2033, &f->at,

@@ -20,11 +20,16 @@ typedef struct reading {
   int lost;        /* a card or its lines were refused: what seems to be
                       missing may be that one and is not reported        */
   int in_step;     /* inside *STEP ... *END STEP                         */
+  const char *const *axisymmetric; /* names of variables, or NULL            */
   int lost_material, lost_step; /* 1: a card that no keyword has the name of
                                    seems to have opened one                  */
   int (*is_lost)(const model *m, const char *name); /* 1: such a card has the
                       name, its absence is not reported; NULL: there is none */
 } reading;
+
+/* Names of the variables of expressions if some *SOLID SECTION of the deck is
+ * axisymmetric: r and z too, but R where it is a *PARAMETER; else NULL. */
+const char *const *axisymmetric_names(const deck *d);
 
 /* Options of a law or solver that a card names; NULL: none. */
 typedef struct plugin {

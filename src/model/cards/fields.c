@@ -6,6 +6,7 @@
 #include "base/memory.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <strings.h>
 
 int same_word(const char *a, const char *b) { return strcasecmp(a, b) == 0; }
@@ -67,8 +68,24 @@ void unknown_word(message_log *log, message_id id, const place *at,
               near == NULL ? "" : "?");
 }
 
+const char *const *axisymmetric_names(const deck *d) {
+  static const char *const names[] = {"X|R", "Y|Z", "", "T"};
+  static const char *const r_taken[] = {"X", "Y|Z", "", "T"};
+  int found = 0;
+  for (int i = 0; i < d->n_card && !found; ++i) {
+    const parameter *type = card_parameter(&d->cards[i], "TYPE");
+    if (type == NULL || !type->has_value) continue;
+    if (strcmp(d->cards[i].name, "SOLID SECTION") != 0) continue;
+    found = choice_rank(KINEMATICS_WORDS, type->value.text) % 4 == AXISYMMETRIC;
+  }
+  if (!found) return NULL;
+  for (int i = 0; i < d->n_symbol; ++i)
+    if (strcmp(d->symbols[i].name, "R") == 0) return r_taken;
+  return names;
+}
+
 int field_quantity(const reading *r, const field *f, quantity *out) {
-  return deck_quantity(r->m->deck, f, r->m->log, out);
+  return deck_quantity(r->m->deck, f, r->axisymmetric, r->m->log, out);
 }
 
 /* Field of pair number i of the lines of a card, from first_line on. */
@@ -104,6 +121,7 @@ status field_file(const reading *r, const char **path) {
 status read_pairs(reading *r, int first_line, int variable, value_table *out) {
   const card *c = r->card;
   int total = 0;
+  if (r->axisymmetric != NULL && variable == TABLE_Z) variable = TABLE_Y;
   for (int i = first_line; i < c->n_record; ++i) {
     if (c->records[i].n_field % 2 != 0 || c->records[i].n_field == 0) {
       message_add(r->m->log, P2009, &c->records[i].at,

@@ -309,6 +309,7 @@ status model_from_deck(deck *d, message_log *log, model **out) {
   PASS(name_job(m));
   reading r = {.m = m,
                .material_id = -1,
+               .axisymmetric = axisymmetric_names(d),
                .is_lost = name_is_lost,
                .lost = message_count(log, ERROR) > 0};
   for (int i = 0; i < d->n_card; ++i) {
