@@ -50,4 +50,15 @@
 #define EFFECT_ROW(name) extern const effect_ops name##_effect;
 EFFECT_ROWS(EFFECT_ROW)
 
+/* NULL ends. */
+extern const effect_ops *const effect_table[];
+
+/* Bits EFFECT_* of those that the model calls for. */
+unsigned effects_called_for(const model *m);
+const char *effect_name(int bit);
+const effect_ops *effect_find(const char *name); /* or NULL */
+/* The effect whose column it is, or NULL. */
+const effect_ops *effect_of_column(const column *c);
+stage effect_stage(const effect_ops *e);
+
 #endif

@@ -4,6 +4,8 @@
  */
 #include "effects/rows.h"
 
+#include <string.h>
+
 #define EFFECT_PLACE(name) &name##_effect,
 const effect_ops *const effect_table[] = {EFFECT_ROWS(EFFECT_PLACE) NULL};
 
@@ -20,4 +22,25 @@ const char *effect_name(int bit) {
   int k = 0;
   while (effect_table[k]->bit != bit) ++k;
   return effect_table[k]->name;
+}
+
+const effect_ops *effect_find(const char *name) {
+  for (int k = 0; effect_table[k] != NULL; ++k)
+    if (strcmp(effect_table[k]->name, name) == 0) return effect_table[k];
+  return NULL;
+}
+
+const effect_ops *effect_of_column(const column *c) {
+  for (int k = 0; effect_table[k] != NULL; ++k) {
+    const effect_ops *e = effect_table[k];
+    if (c >= e->columns && c < e->columns + e->n_column) return e;
+  }
+  return NULL;
+}
+
+stage effect_stage(const effect_ops *e) {
+  int k = 0;
+  if (e->own != 0) return e->own;
+  while (effect_table[k] != e) ++k;
+  return timer_own_stage(k, e->name);
 }

@@ -88,11 +88,9 @@ void model_free(model *m) {
           m->elem_section, m->name.job, m->effect_cards, m);
 }
 
-void model_find_effects(model *m) { m->effects = effects_called_for(m); }
-
-void model_fit_problem(model *m, int dim, int friction) {
+void model_fit_problem(model *m, int dim, int friction, effect_finder *find) {
   m->dim = dim;
   m->problem.friction = friction;
   m->effects = EFFECT_CONTACT | (friction ? EFFECT_FRICTION : 0u);
-  if (dim > 1) m->effects |= effects_called_for(m) & EFFECT_ESTIMATES;
+  if (dim > 1) m->effects |= find(m) & EFFECT_ESTIMATES;
 }

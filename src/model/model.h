@@ -429,7 +429,6 @@ enum { EFFECT_LIST(EFFECT_BIT) EFFECT_COUNT };
 #define EFFECT_MASK(name, text) \
   EFFECT_##name = (1 << EFFECT_BIT_##name) & ~(EFFECTS_WITHOUT),
 enum { EFFECT_LIST(EFFECT_MASK) EFFECT_ALL = (1 << EFFECT_COUNT) - 1 };
-const char *effect_name(int bit);
 /* Name of the file of a place, without folder. */
 const char *place_file(const place *at);
 /* For "%s:%d": file without folder, line. */
@@ -471,15 +470,14 @@ int rule_has_average(const friction_rule *rule);
  * on nodes that touch and against their displacement. */
 int model_rubs_locally(const model *m);
 
-/* Which effects the deck calls for, into m->effects. */
-void model_find_effects(model *m);
-/* The same as bits EFFECT_*, from the rows of the effects (src/effects). */
-unsigned effects_called_for(const model *m);
+/* Bits EFFECT_* of what the deck calls for: those who read a model hand it in
+ * from above (effects_called_for of src/effects). */
+typedef unsigned effect_finder(const model *m);
 /* m->corner_id. ERR_MEMORY. */
 status model_find_corner(model *m, const mesh *msh);
 /* In the place of model_check for a deck with *CONDENSED PROBLEM, once it is
  * read: dimension (1: LCP), 1 if it has friction. */
-void model_fit_problem(model *m, int dim, int friction);
+void model_fit_problem(model *m, int dim, int friction, effect_finder *find);
 void model_free(model *m);
 
 /* load.c */

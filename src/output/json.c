@@ -2,6 +2,7 @@
  * JOB.json: the verdict and the figures of the run for programs.
  */
 #include "base/memory.h"
+#include "effects/rows.h"
 #include "base/timer.h"
 #include "output/json_text.h"
 #include "output/writers.h"

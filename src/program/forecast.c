@@ -24,6 +24,7 @@
  * their error is to fall.
  */
 #include "program/forecast.h"
+#include "effects/rows.h"
 
 #include "accuracy/space.h"
 #include "base/memory.h"
@@ -84,7 +85,7 @@ static status run_trial(job_input *in, trial *t, double *eta) {
   for (int i = 0; i < in->m->n.step; ++i)
     in->m->steps[i].accuracy.mesh = in->m->steps[i].accuracy.time = 1;
   in->m->effects |= EFFECT_MESH_ERROR | EFFECT_TIME_ERROR;
-  PASS(history_run(in->m, in->msh, &sink, &unsettled));
+  PASS(history_run(in->m, in->msh, effect_table, &sink, &unsettled));
   t->bytes = (double)memory_peak();
   return OK;
 }

@@ -2,6 +2,7 @@
  * What protis tells without solving: version, lists, the check of a deck.
  */
 #include "program/inform.h"
+#include "effects/rows.h"
 
 #include "base/memory.h"
 #include "base/option.h"
@@ -98,7 +99,7 @@ static status print_motions(const model *m, const mesh *msh, int step_id) {
       "nothing holds it", "held by friction only", "held by contact only"};
   free_motion *list = NULL;
   int n = 0;
-  st = history_motions(m, msh, step_id, &n, &list);
+  st = history_motions(m, msh, effect_table, step_id, &n, &list);
   for (int i = 0; i < n; ++i)
     printf("free      step %d, body %d, %s: %s\n", step_id + 1,
            list[i].body_id + 1, list[i].text, held[list[i].held_by]);

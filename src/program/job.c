@@ -2,6 +2,7 @@
  * One pass: the stages in their order.
  */
 #include "program/job.h"
+#include "effects/rows.h"
 
 #include "base/memory.h"
 #include "base/timer.h"
@@ -63,7 +64,8 @@ static status read_problem(model *m, exchange_problem **problem) {
                      problem);
   timer_leave(STAGE_PROBLEM);
   if (st == OK)
-    model_fit_problem(m, (*problem)->dim, (*problem)->cp.g0 != NULL);
+    model_fit_problem(m, (*problem)->dim, (*problem)->cp.g0 != NULL,
+                      effects_called_for);
   return st;
 }
 
@@ -83,7 +85,7 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
       in->msh = other->same;
     else
       TRY(read_mesh(other, in));
-    TRY(model_check(in->m, in->msh));
+    TRY(model_check(in->m, in->msh, effects_called_for));
   }
 done:
   return st;
@@ -195,7 +197,8 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
                        .rejected = relay_rejected,
                        .checkpoint = watch == NULL ? relay_checkpoint : NULL};
   st = in->problem == NULL
-           ? history_continue(in->m, in->msh, from, &sink, unsettled)
+           ? history_continue(in->m, in->msh, effect_table, from, &sink,
+                              unsettled)
            : condensed_run(in->m, in->problem, &sink, unsettled);
   if (watch != NULL && watch->finished != NULL)
     st = watch->finished(watch->ctx, st, out);

@@ -5,32 +5,9 @@
 
 #include "run/run.h"
 
-#include <string.h>
-
-const effect_ops *effect_find(const char *name) {
-  for (int k = 0; effect_table[k] != NULL; ++k)
-    if (strcmp(effect_table[k]->name, name) == 0) return effect_table[k];
-  return NULL;
-}
-
-const effect_ops *effect_of_column(const column *c) {
-  for (int k = 0; effect_table[k] != NULL; ++k) {
-    const effect_ops *e = effect_table[k];
-    if (c >= e->columns && c < e->columns + e->n_column) return e;
-  }
-  return NULL;
-}
-
 int effect_is_on(const effect_ops *e, const model *m) {
   if (e->bit != NO_BIT) return (m->effects >> e->bit & 1u) != 0;
   return e->called_for(m, NULL, 0);
-}
-
-stage effect_stage(const effect_ops *e) {
-  int k = 0;
-  if (e->own != 0) return e->own;
-  while (effect_table[k] != e) ++k;
-  return timer_own_stage(k, e->name);
 }
 
 void *effect_state(const effect_list *list, const effect_ops *e) {
@@ -39,8 +16,9 @@ void *effect_state(const effect_list *list, const effect_ops *e) {
   return NULL;
 }
 
-static void enter(const effect_ops *e) {
-  const stage s = effect_stage(e);
+static void enter(const run *r, int k) {
+  const effect_ops *e = r->effects.on[k].ops;
+  const stage s = r->effects.on[k].stage;
   if (s == STAGE_NONE || e->inside) return;
   if (e->beside)
     timer_enter_whole(s);
@@ -48,9 +26,9 @@ static void enter(const effect_ops *e) {
     timer_enter(s);
 }
 
-static void leave(const effect_ops *e) {
-  const stage s = effect_stage(e);
-  if (s != STAGE_NONE && !e->inside) timer_leave(s);
+static void leave(const run *r, int k) {
+  const stage s = r->effects.on[k].stage;
+  if (s != STAGE_NONE && !r->effects.on[k].ops->inside) timer_leave(s);
 }
 
 static int is_due(const run *r, int k) {
@@ -58,13 +36,15 @@ static int is_due(const run *r, int k) {
   return !r->effects.on[k].borrowed && (e->on.due == NULL || e->on.due(r));
 }
 
-status effects_create(run *r) {
+status effects_create(run *r, const effect_ops *const *table) {
   status st = OK;
   effect_list *list = &r->effects;
-  for (int k = 0; effect_table[k] != NULL && st == OK; ++k) {
-    const effect_ops *e = effect_table[k];
+  for (int k = 0; table[k] != NULL && st == OK; ++k) {
+    const effect_ops *e = table[k];
     if (!effect_is_on(e, r->m)) continue;
     list->on[list->n].ops = e;
+    list->on[list->n].stage =
+        e->own != 0 ? e->own : timer_own_stage(k, e->name);
     void **own = &list->on[list->n++].state;
     if (e->on.create != NULL) st = e->on.create(r, own);
   }
@@ -86,9 +66,9 @@ const char *effects_sum_up(const run *r) {
       const effect_ops *e = r->effects.on[k].ops; \
       void *own = r->effects.on[k].state;         \
       if (e->on.hook == NULL || !(if_)) continue; \
-      if (timed) enter(e);                        \
+      if (timed) enter(r, k);                     \
       const status st = call;                     \
-      if (timed) leave(e);                        \
+      if (timed) leave(r, k);                     \
       if (st != OK) return st;                    \
     }                                             \
     return OK;                                    \
@@ -149,8 +129,7 @@ void effects_end(run *r) {
 
 int effects_reach_far(const run *r) {
   int any = 0;
-  for (int k = 0; effect_table[k] != NULL; ++k)
-    any |= effect_table[k]->far && effect_is_on(effect_table[k], r->m);
+  for (int k = 0; k < r->effects.n; ++k) any |= r->effects.on[k].ops->far;
   return any;
 }
 
@@ -180,6 +159,7 @@ status effects_copy(const run *from, run *copy) {
     const effect_ops *e = from->effects.on[k].ops;
     void *own = from->effects.on[k].state;
     list->on[list->n].ops = e;
+    list->on[list->n].stage = from->effects.on[k].stage;
     list->on[list->n].borrowed = e->on.copy == NULL;
     list->on[list->n].state = e->on.copy == NULL ? own : NULL;
     if (e->on.copy != NULL)

@@ -118,14 +118,8 @@ typedef struct effect_ops {
   int (*items)(const void *own); /* rows of its own table                   */
 } effect_ops;
 
-/* src/effects/table.c; NULL ends. */
-extern const effect_ops *const effect_table[];
-
-const effect_ops *effect_find(const char *name); /* or NULL                   */
-/* The effect whose column it is, or NULL. */
-const effect_ops *effect_of_column(const column *c);
+/* The table of effects (src/effects/rows.h) is handed in from above. */
 int effect_is_on(const effect_ops *e, const model *m);
-stage effect_stage(const effect_ops *e);
 
 /* The effects of a run that are on. */
 enum { EFFECTS_MOST = 40 };
@@ -134,6 +128,7 @@ struct effect_list {
   int n;
   struct {
     const effect_ops *ops;
+    stage stage;
     void *state;
     int borrowed; /* 1: of another run                                        */
   } on[EFFECTS_MOST];

@@ -89,12 +89,12 @@ typedef struct body_state {
 
 /* Elements with strains that have no stress. */
 typedef struct strain_state {
-  visco *visco;         /* NULL: no law flows                                */
-  eigenstrain eigen;    /* e0 is that of the equilibrium at hand             */
-  int *elem;            /* [eigen.n]                                         */
+  visco *visco;      /* NULL: no law flows                                */
+  eigenstrain eigen; /* e0 is that of the equilibrium at hand             */
+  int *elem;         /* [eigen.n]                                         */
   const double *temperature0; /* [n_elem] before the first step, borrowed; NULL:
                                  no thermal strain                            */
-  double *load;         /* [dim*n_node] F with the forces of eigen, N        */
+  double *load; /* [dim*n_node] F with the forces of eigen, N        */
 } strain_state;
 
 /* What a contact surface is made from. */
@@ -128,11 +128,11 @@ typedef struct load_state {
 
 /* What is derived from r->now (result.c). */
 typedef struct derived {
-  double *strain, *stress;     /* [ns*n_elem] or NULL                         */
-  double *open_gap, *slip;     /* [n], [n*(dim-1)]                            */
+  double *strain, *stress; /* [ns*n_elem] or NULL                         */
+  double *open_gap, *slip; /* [n], [n*(dim-1)]                            */
   double *g; /* [n] limit, N; this and distance borrowed from friction        */
-  contact_status *contact;     /* [n]                                         */
-  contact_total *totals;       /* [n_contact]                                 */
+  contact_status *contact; /* [n]                                         */
+  contact_total *totals;   /* [n_contact]                                 */
   double *distance; /* [n] as in state; NULL: frictionless                    */
   double *torque;   /* [n_contact] as in state, or NULL                       */
 } derived;
@@ -205,7 +205,7 @@ typedef struct run run;
 int run_step_id(const run *r); /* from 0 */
 
 /* effect.c: the hooks of all effects of a run, in the order of the table. */
-status effects_create(run *r);
+status effects_create(run *r, const effect_ops *const *table);
 /* sums_up of the first that has it, or NULL. */
 const char *effects_sum_up(const run *r);
 /* history/history.c: 1: slip or inelastic strains of the increments before have

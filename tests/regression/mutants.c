@@ -7,6 +7,7 @@
  *   MUTANTS=20000 MUTANT_SEED=7 mutants    many instead of the few of the tests
  */
 #include "base/memory.h"
+#include "effects/rows.h"
 #include "run/history/history.h"
 #include "model/check/check.h"
 #include "model/keyword/keyword.h"
@@ -151,9 +152,10 @@ static status check_deck(const char *path, message_log *log, mesh *msh) {
   int n;
   status st = deck_read(path, 0, NULL, log, &d);
   if (st == OK || st == ERR_DECK) st = model_from_deck(d, log, &m);
-  if (st == OK && m->problem.file == NULL) st = model_check(m, msh);
+  if (st == OK && m->problem.file == NULL)
+    st = model_check(m, msh, effects_called_for);
   if (st == OK && m->problem.file == NULL) {
-    st = history_motions(m, msh, 0, &n, &list);
+    st = history_motions(m, msh, effect_table, 0, &n, &list);
     echo_nowhere(m);
   }
   memory_free(list);

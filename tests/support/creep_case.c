@@ -2,6 +2,7 @@
  * The deck of the creeping block and its runs.
  */
 #include "support/creep_case.h"
+#include "effects/rows.h"
 
 #include "run/history/history.h"
 #include "support/text_model.h"
@@ -72,7 +73,7 @@ creep_end creep_case_run(const creep_case *c, const char *integrator, int n) {
   ck_assert_int_le(end.n_dof, 256);
   const history_sink sink = {.ctx = &r, .increment = keep};
   int unsettled = 0;
-  const status st = history_run(s.m, s.msh, &sink, &unsettled);
+  const status st = history_run(s.m, s.msh, effect_table, &sink, &unsettled);
   ck_assert_msg(st == OK && unsettled == 0, "%s, %d increments: %s", integrator,
                 n, st == OK ? "a tolerance was missed" : status_message());
   text_model_close(&s);

@@ -1,4 +1,5 @@
 #include "support/made_up.h"
+#include "effects/rows.h"
 
 #include "base/memory.h"
 #include "support/grid.h"

@@ -2,6 +2,7 @@
  * A model from the text of a deck, checked against a mesh made in memory.
  */
 #include "support/text_model.h"
+#include "effects/rows.h"
 
 #include <check.h>
 #include <stdlib.h>
@@ -19,7 +20,8 @@ void text_model_read(text_model *s, const char *text, mesh *msh) {
   ck_assert_int_eq(message_log_new(&s->log), OK);
   ck_assert_int_eq(deck_read(name, 0, NULL, s->log, &s->d), OK);
   s->st = model_from_deck(s->d, s->log, &s->m);
-  if (s->st == OK && msh != NULL) s->st = model_check(s->m, msh);
+  if (s->st == OK && msh != NULL)
+    s->st = model_check(s->m, msh, effects_called_for);
   if (s->st != OK) message_print(s->log, stdout);
   unlink(name);
 }

@@ -1,5 +1,6 @@
 /* src/run/history: increments that are cut, rolled back, given up; energies. */
 #include "run/history/history.h"
+#include "effects/rows.h"
 #include "base/memory.h"
 #include "support/text_model.h"
 #include "support/unit.h"
@@ -99,7 +100,8 @@ static run_record run_deck(const char *text, double picky) {
   r.n_dof = 2 * s.msh->n_node;
   ck_assert_int_le(r.n_dof, 256);
   history_sink sink = {.ctx = &r, .increment = keep, .rejected = count};
-  ck_assert_int_eq(history_run(s.m, s.msh, &sink, &r.unsettled), OK);
+  ck_assert_int_eq(history_run(s.m, s.msh, effect_table, &sink, &r.unsettled),
+                   OK);
   free(param);
   text_model_close(&s);
   return r;
@@ -216,7 +218,7 @@ START_TEST(every_refused_request_is_reported) {
   for (long k = 1; !done; ++k) {
     r.accepted = 0;
     memory_refuse(k, 0);
-    status st = history_run(s.m, s.msh, &sink, &r.unsettled);
+    status st = history_run(s.m, s.msh, effect_table, &sink, &r.unsettled);
     memory_refuse(0, 0);
     ck_assert_msg(st == OK || st == ERR_MEMORY, "request %ld: %s", k,
                   status_message());

@@ -1,5 +1,6 @@
 /* src/model: decks to models, loads of the steps, the echo of a deck. */
 #include "base/memory.h"
+#include "effects/rows.h"
 #include "model/check/check.h"
 #include "model/keyword/keyword.h"
 #include "support/text_model.h"
@@ -216,7 +217,7 @@ START_TEST(every_refused_request_is_reported) {
     s.m = NULL;
     memory_refuse(k, 0);
     status st = model_from_deck(s.d, s.log, &s.m);
-    if (st == OK) st = model_check(s.m, s.msh);
+    if (st == OK) st = model_check(s.m, s.msh, effects_called_for);
     done = st == OK;
     memory_refuse(0, 0);
     refused += st == ERR_MEMORY;

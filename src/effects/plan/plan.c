@@ -2,6 +2,7 @@
  * The rows of the plan: the table of the effects, and what is on of them.
  */
 #include "effects/plan/plan.h"
+#include "effects/rows.h"
 
 #include "base/memory.h"
 

@@ -15,6 +15,7 @@
  *                      body is held by friction
  */
 #include "effects/reduction/parts.h"
+#include "effects/rows.h"
 
 #include "base/memory.h"
 #include "fem/fem.h"
@@ -253,7 +254,7 @@ static status friction_holds(const model *m, const mesh *msh, int *holds) {
   *holds = 0;
   for (int i = 0; i < m->n.step && !*holds; ++i) {
     int n = 0;
-    TRY(history_motions(m, msh, i, &n, &list));
+    TRY(history_motions(m, msh, effect_table, i, &n, &list));
     for (int k = 0; k < n; ++k) *holds |= list[k].held_by == HELD_BY_FRICTION;
     memory_free(list);
     list = NULL;

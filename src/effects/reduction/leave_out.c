@@ -2,6 +2,7 @@
  * Effects out of the model for a run, and back into it.
  */
 #include "effects/reduction/reduction.h"
+#include "effects/rows.h"
 
 /* Each friction rule of the model once. */
 static void each_rule(model *m, void (*change)(friction_rule *rule)) {
@@ -55,7 +56,7 @@ void reduction_leave_out(model *m) {
     m->materials[row->id].law.ops = NULL;
     if (row->time > 0.0) change_constants(&m->materials[row->id]);
   }
-  model_find_effects(m);
+  m->effects = effects_called_for(m);
   for (int i = 0; i < m->reduction.n; ++i)
     if (m->reduction.row[i].bit == EFFECT_BIT_THERMAL &&
         !m->reduction.row[i].back)
@@ -71,5 +72,5 @@ void reduction_restore(model *m) {
     mat->is_still = 0;
     if (mat->is_relaxed) change_constants(mat);
   }
-  model_find_effects(m);
+  m->effects = effects_called_for(m);
 }

@@ -7,6 +7,7 @@
  * these elements must be nothing, or add to the bound as any other.
  */
 #include "effects/reduction/parts.h"
+#include "effects/rows.h"
 
 #include "base/memory.h"
 
@@ -111,7 +112,7 @@ static void make_elastic(model *m) {
     m->materials[i].law.ops = NULL;
   }
   for (int i = 0; i < m->n.step; ++i) m->steps[i].dt = short_step(&m->steps[i]);
-  model_find_effects(m);
+  m->effects = effects_called_for(m);
 }
 
 /* The elastic run; *seen 1 if it came to its end. */
@@ -126,7 +127,7 @@ static status run_elastic(model *m, const mesh *msh, unsigned char *flows,
   for (int i = 0; i < m->n.step; ++i) dt[i] = m->steps[i].dt;
   make_elastic(m);
   TRY(reduction_new(m, msh, &p.n));
-  *seen = history_run(m, msh, &sink, &unsettled) == OK;
+  *seen = history_run(m, msh, effect_table, &sink, &unsettled) == OK;
   st = p.st;
 done:
   for (int i = 0; i < m->n.step && dt != NULL; ++i) m->steps[i].dt = dt[i];

@@ -307,7 +307,7 @@ static void check_moduli(const model *m) {
   }
 }
 
-status model_check(model *m, const mesh *msh) {
+status model_check(model *m, const mesh *msh, effect_finder *find) {
   m->dim = msh->dim;
   m->ns = msh->dim == 3 ? 6 : 4;
   check_kinematics(m, msh);
@@ -321,7 +321,7 @@ status model_check(model *m, const mesh *msh) {
   PASS(check_fields(m, msh));
   check_reference(m);
   PASS(model_find_corner(m, msh));
-  model_find_effects(m);
+  m->effects = find(m);
   check_moduli(m);
   PASS(message_status(m->log, ERR_DECK));
   check_values(m, msh);

@@ -8,7 +8,7 @@
 
 /* Compare with the mesh: groups, sections, dimensions; fill the _id fields and
  * the effects. Errors go to the log: ERR_DECK or ERR_MESH. */
-status model_check(model *m, const mesh *msh);
+status model_check(model *m, const mesh *msh, effect_finder *find);
 
 /* Relative error of displacements to expect of P1 elements that lock at nu, n
  * of them across a wall. */

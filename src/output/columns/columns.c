@@ -3,6 +3,7 @@
  * their units.
  */
 #include "run/column_row.h"
+#include "effects/rows.h"
 
 #include <stdio.h>
 #include <string.h>

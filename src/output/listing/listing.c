@@ -5,6 +5,7 @@
  * are left out on request, and then two runs give the same bytes.
  */
 #include "base/timer.h"
+#include "effects/rows.h"
 #include "model/keyword/keyword.h"
 #include "output/listing/parts.h"
 

@@ -404,12 +404,13 @@ done:
   return st;
 }
 
-status history_continue(const model *m, const mesh *msh, archive *from,
+status history_continue(const model *m, const mesh *msh,
+                        const effect_ops *const *effects, archive *from,
                         const history_sink *sink, int *unsettled) {
   status st = OK;
   run r = {.m = m, .msh = msh, .sink = sink, .course.from = from};
   *unsettled = 0;
-  TRY(run_new(&r));
+  TRY(run_new(&r, effects));
   TRY(read_progress(&r));
   for (int i = r.at.step_id; i < m->n.step; ++i) {
     r.step = &m->steps[i];
@@ -422,17 +423,19 @@ done:
   return st;
 }
 
-status history_run(const model *m, const mesh *msh, const history_sink *sink,
+status history_run(const model *m, const mesh *msh,
+                   const effect_ops *const *effects, const history_sink *sink,
                    int *unsettled) {
-  return history_continue(m, msh, NULL, sink, unsettled);
+  return history_continue(m, msh, effects, NULL, sink, unsettled);
 }
 
-status history_motions(const model *m, const mesh *msh, int step_id, int *n,
+status history_motions(const model *m, const mesh *msh,
+                       const effect_ops *const *effects, int step_id, int *n,
                        free_motion **list) {
   status st = OK;
   static const history_sink nobody;
   run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[step_id]};
-  TRY(run_new(&r));
+  TRY(run_new(&r, effects));
   TRY(run_motions(&r, n, list));
 done:
   run_free(&r);

@@ -4,20 +4,23 @@
 #ifndef PROTIS_HISTORY_HISTORY_H
 #define PROTIS_HISTORY_HISTORY_H
 
-#include "run/state.h"
+#include "run/effect.h"
 
 /*
- * Run all steps. *unsettled counts the increments that missed their
+ * Run all steps with those of the effects (a table that NULL ends) that the
+ * model calls for. *unsettled counts the increments that missed their
  * tolerance at the smallest dt. Errors: ERR_SINGULAR (no equilibrium), those
  * of interrupt_asked, which ends the run between two attempts, those of the
  * sink, ERR_MEMORY.
  */
-status history_run(const model *m, const mesh *msh, const history_sink *sink,
+status history_run(const model *m, const mesh *msh,
+                   const effect_ops *const *effects, const history_sink *sink,
                    int *unsettled);
 /* The same from a checkpoint of an equal model on (from NULL: from the start):
  * bit for bit the run that was not interrupted. Borrowed; ERR_FILE if it does
  * not fit. */
-status history_continue(const model *m, const mesh *msh, archive *from,
+status history_continue(const model *m, const mesh *msh,
+                        const effect_ops *const *effects, archive *from,
                         const history_sink *sink, int *unsettled);
 
 /* The bound that is told, for a solution of that energy, J. */
@@ -38,7 +41,8 @@ status check_problem(const step *s, const contact_problem *cp,
 /* Rigid motions that the supports of a step leave free, nothing solved: *list
  * is new (memory_free), NULL if there are none. ERR_SINGULAR with the list if
  * nothing at all resists one; the log tells which. */
-status history_motions(const model *m, const mesh *msh, int step_id, int *n,
+status history_motions(const model *m, const mesh *msh,
+                       const effect_ops *const *effects, int step_id, int *n,
                        free_motion **list);
 
 #endif

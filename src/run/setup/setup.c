@@ -91,7 +91,7 @@ done:
   return st;
 }
 
-status run_new(run *r) {
+status run_new(run *r, const effect_ops *const *effects) {
   status st = OK;
   r->n_dof = (size_t)r->msh->dim * (size_t)r->msh->n_node;
   r->solving.known_key = RUN_NO_KEY;
@@ -102,7 +102,7 @@ status run_new(run *r) {
   TRY(new_equilibrium(r, &r->now));
   NEW(r->loads.ud, r->n_dof);
   NEW(r->loads.start, r->n_dof);
-  TRY(effects_create(r));
+  TRY(effects_create(r, effects));
   TRY(strains_new(r));
   TRY(new_clusters(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));

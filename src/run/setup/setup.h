@@ -7,7 +7,7 @@
 #include "run/run.h"
 
 /* setup.c */
-status run_new(run *r);
+status run_new(run *r, const effect_ops *const *effects);
 void run_free(run *r);
 
 /* supports.c: rigid motions that the supports of r->step leave free, nothing
