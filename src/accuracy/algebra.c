@@ -29,38 +29,122 @@
  * that the rate is the same.
  */
 #include "accuracy/accuracy.h"
-
 #include "base/memory.h"
+#include "contact/parts.h"
 
 #include <cblas.h>
 #include <float.h>
+#include <lapacke.h>
 #include <math.h>
+#include <string.h>
+
+/*
+ * Equilibrium of a body that contact alone holds: its stiffness has motions R
+ * without energy, and the energy of d is finite only if R' d = 0. The forces
+ * change by dq = Z y, Z = W R with the forces themselves as weights (so that
+ * they keep their sign), on sliding nodes by the limit of the new pressure; R'
+ * Z y = R' d.
+ */
+
+/* Largest change of the force of an unknown, N; 0: it is given. */
+static double slack(const contact_problem *cp, const pair *p, int dof) {
+  int i = dof / cp->dim;
+  if (contact_bound(cp, dof) < HUGE_VAL) return -p->q[dof];
+  if (!accuracy_rubs(cp, dof) || p->slides[i]) return 0.0;
+  double g = contact_node_limit(cp, p->q, i), size = 0.0;
+  for (int k = 1; k < cp->dim; ++k) size = hypot(size, p->q[i * cp->dim + k]);
+  return fmax(g - size, 0.0);
+}
+
+/* Change of q_t on sliding nodes with the limit, in one column z[m]. */
+static void follow_limit(const contact_problem *cp, const pair *p, double *z) {
+  for (int i = 0; i < cp->n && cp->B != NULL; ++i) {
+    double change = 0.0, g = contact_node_limit(cp, p->q, i);
+    if (!p->slides[i] || !(g > 0.0)) continue;
+    for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
+      change -= cp->B->val[k] * z[cp->B->col[k] * cp->dim];
+    for (int k = 1; k < cp->dim; ++k) {
+      int dof = i * cp->dim + k;
+      if (accuracy_rubs(cp, dof)) z[dof] = change * (p->q[dof] / g);
+    }
+  }
+}
+
+/* 1: the changed forces are admissible. */
+static int admissible(const contact_problem *cp, const pair *p) {
+  for (int i = 0; i < cp->n; ++i) {
+    double size = 0.0, g = contact_node_limit(cp, p->q, i);
+    for (int k = 0; k < cp->dim; ++k) {
+      int dof = i * cp->dim + k;
+      if (contact_bound(cp, dof) < HUGE_VAL && !(p->q[dof] <= 0.0)) return 0;
+      if (accuracy_rubs(cp, dof)) size = hypot(size, p->q[dof]);
+    }
+    if (!p->slides[i] && size > g) return 0;
+  }
+  return 1;
+}
+
+static const double NO_LEVER = 0x1p-44; /* -, condition that is rounding   */
+
+/* y of G y = b in place of b[k]; 0: some motion has no force against it, or
+ * only one with a lever arm of rounding. root[k], pivot[k] are workspace. */
+static int solve_balance(int k, double *G, double *b, double *root,
+                         int *pivot) {
+  double norm, condition = 0.0;
+  for (int a = 0; a < k; ++a) {
+    root[a] = 1.0 / sqrt(fabs(G[a + k * a]));
+    if (!(root[a] < HUGE_VAL)) return 0;
+  }
+  for (int c = 0; c < k; ++c)
+    for (int a = 0; a < k; ++a) G[a + k * c] *= root[a] * root[c];
+  norm = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', k, k, G, k);
+  if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, k, k, G, k, pivot) != 0) return 0;
+  LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', k, G, k, norm, &condition);
+  if (!(condition > NO_LEVER)) return 0;
+  for (int a = 0; a < k; ++a) b[a] *= root[a];
+  LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', k, 1, G, k, pivot, b, k);
+  for (int a = 0; a < k; ++a) b[a] *= root[a];
+  return 1;
+}
+
+static status pair_balance(const contact_problem *cp,
+                           const inverse_energy *inverse, pair *p, int *done) {
+  int m = cp->m, k = inverse->n_kernel;
+  OWNED double *Z = NULL, *G = NULL, *y = NULL, *root = NULL;
+  OWNED int *pivot = NULL;
+  *done = 0;
+  if (cblas_dasum(m, p->d, 1) == 0.0) {
+    *done = 1;
+    return OK;
+  }
+  PASS_NEW(Z, (size_t)m * (size_t)k);
+  PASS_NEW(G, (size_t)k * (size_t)k);
+  PASS_NEW(y, k);
+  PASS_NEW(root, k);
+  PASS_NEW(pivot, k);
+  for (int c = 0; c < k; ++c) {
+    double *z = Z + (size_t)m * (size_t)c;
+    for (int dof = 0; dof < m; ++dof)
+      z[dof] = slack(cp, p, dof) *
+               inverse->kernel[(size_t)m * (size_t)c + (size_t)dof];
+    follow_limit(cp, p, z);
+  }
+  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, k, k, m, 1.0,
+              inverse->kernel, m, Z, m, 0.0, G, k);
+  cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, inverse->kernel, m, p->d, 1,
+              0.0, y, 1);
+  if (!solve_balance(k, G, y, root, pivot)) return OK;
+  cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, Z, m, y, 1, 0.0, p->t, 1);
+  for (int dof = 0; dof < m; ++dof) {
+    p->q[dof] += p->t[dof];
+    p->d[dof] -= p->t[dof];
+  }
+  *done = admissible(cp, p);
+  return OK;
+}
 
 static const double *matrix_of(const contact_problem *cp) {
   return cp->A != NULL ? cp->A : cp->W;
-}
-
-static double diagonal(const contact_problem *cp, int dof) {
-  return matrix_of(cp)[(size_t)dof * (size_t)(cp->m + 1)];
-}
-
-int accuracy_rubs(const contact_problem *cp, int dof) {
-  int node_id = dof / cp->dim;
-  if (cp->g0 == NULL || dof % cp->dim == 0 || contact_held(cp, dof)) return 0;
-  return !contact_has_side(cp, node_id);
-}
-
-node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id) {
-  int first = node_id * cp->dim, counted = 0;
-  double n = diagonal(cp, first), t = 0.0;
-  for (int k = 1; k < cp->dim; ++k)
-    if (!contact_held(cp, first + k)) {
-      t += diagonal(cp, first + k);
-      ++counted;
-    }
-  t = counted > 0 ? t / counted : n;
-  if (cp->A != NULL) return (node_stiffness){n, t};
-  return (node_stiffness){1.0 / n, 1.0 / t};
 }
 
 /* ---- the admissible pair ------------------------------------------------ */
@@ -155,7 +239,7 @@ static double pair_rounding(const contact_problem *cp,
   const double *M = matrix_of(cp), *x = cp->A != NULL ? p->v : p->q;
   double sum = 0.0, unit = 0.5 * DBL_EPSILON * (2.0 + sqrt(cp->m)), least = 0.0;
   for (int i = 0; i < cp->m && inverse->n_kernel > 0; ++i)
-    least = fmax(least, NO_PIVOT * diagonal(cp, i));
+    least = fmax(least, NO_PIVOT * contact_diagonal(cp, i));
   for (int i = 0; i < cp->m; ++i)
     p->t[i] = fabs(cp->f[i]) + fabs(cp->A != NULL ? p->q[i] : p->v[i]);
   for (int j = 0; j < cp->m; ++j) {
@@ -166,7 +250,7 @@ static double pair_rounding(const contact_problem *cp,
   }
   for (int i = 0; i < cp->m; ++i) {
     const double own = inverse->diagonal != NULL ? inverse->diagonal[i] : 0.0;
-    const double of = fmax(fmax(diagonal(cp, i), least), own);
+    const double of = fmax(fmax(contact_diagonal(cp, i), least), own);
     sum += unit * p->t[i] * (unit * p->t[i] / of);
   }
   return sqrt(inverse->condition * sum);

@@ -9,6 +9,7 @@
 #include "accuracy/accuracy.h"
 
 #include "base/memory.h"
+#include "contact/parts.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -32,6 +33,25 @@ typedef struct linear_map {
                                    normal unknowns */
   double *dg;                   /* [n] N */
 } linear_map;
+
+int accuracy_rubs(const contact_problem *cp, int dof) {
+  int node_id = dof / cp->dim;
+  if (cp->g0 == NULL || dof % cp->dim == 0 || contact_held(cp, dof)) return 0;
+  return !contact_has_side(cp, node_id);
+}
+
+node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id) {
+  int first = node_id * cp->dim, counted = 0;
+  double n = contact_diagonal(cp, first), t = 0.0;
+  for (int k = 1; k < cp->dim; ++k)
+    if (!contact_held(cp, first + k)) {
+      t += contact_diagonal(cp, first + k);
+      ++counted;
+    }
+  t = counted > 0 ? t / counted : n;
+  if (cp->A != NULL) return (node_stiffness){n, t};
+  return (node_stiffness){1.0 / n, 1.0 / t};
+}
 
 static status map_new(const contact_problem *cp, linear_map *s) {
   s->cp = cp;

@@ -3,9 +3,16 @@
 
 #include "base/memory.h"
 
+#include <assert.h>
 #include <cblas.h>
 #include <math.h>
 #include <string.h>
+
+/*
+ * Solutions by several solvers: one of each family, from different starts:
+ * sticking, all open, and sliding in both directions. Where friction allows
+ * several states, methods and starts converge to different ones.
+ */
 
 static const double SAME = 1e-6; /* -, relative distance of one state */
 static const double UNIT = 1e-3; /* -, of the energy of the scale: counts as
@@ -122,4 +129,126 @@ status solution_set_add(const contact_problem *cp, double tol, const double *u,
   s->found[s->n_found].facts.distance = distance;
   *no = ++s->n_found;
   return OK;
+}
+
+enum { PARAM_SIZE = 512 };
+static const double FAR = 16.0; /* -, of the displacement that the scale of the
+                                   forces makes: distance of a start */
+
+typedef enum { STICKING, OPEN_START, SLIDING, SLIDING_BACK, N_START } start;
+static const char *const start_text[] = {
+    "sticking", "all open", "sliding along t", "sliding against t"};
+
+/* Displacement of the size that the forces of the problem cause, m. */
+static double reach(const contact_problem *cp) {
+  double least = HUGE_VAL, scale = contact_scale(cp);
+  if (cp->A == NULL) return FAR * scale;
+  for (int i = 0; i < cp->m; ++i)
+    least = fmin(least, cp->A[(size_t)i * (size_t)(cp->m + 1)]);
+  return least > 0.0 ? FAR * scale / least : 0.0;
+}
+
+/* +1, -1, 0: how a start slides along t1. */
+static double direction_of(start kind) {
+  return kind == SLIDING ? 1.0 : kind == SLIDING_BACK ? -1.0 : 0.0;
+}
+
+static void set_start(const contact_problem *cp, start kind, double *u,
+                      double *r) {
+  double far = reach(cp), force = cp->A == NULL ? 0.0 : contact_scale(cp);
+  int open = kind == OPEN_START;
+  for (int i = 0; i < cp->n; ++i) {
+    int first = i * cp->dim;
+    u[first] = cp->gap[i] - (open ? far : 0.0);
+    r[first] = open ? 0.0 : -force;
+    for (int k = 0; k < cp->dim - 1; ++k) {
+      u[first + 1 + k] = cp->ut0 == NULL ? 0.0 : cp->ut0[i * (cp->dim - 1) + k];
+      r[first + 1 + k] = 0.0;
+    }
+    if (cp->dim > 1) u[first + 1] += direction_of(kind) * far;
+  }
+  for (int i = 0; i < cp->n && cp->dim > 1; ++i)
+    r[i * cp->dim + 1] = -direction_of(kind) * contact_node_limit(cp, r, i);
+}
+
+/* Workspace for one start and its solution. */
+typedef struct trial {
+  double *u, *r; /* [m] */
+} trial;
+
+static status attempt(const contact_problem *cp, double tol,
+                      contact_solver *solver, const char *name, start kind,
+                      const trial *x, solution_set *s) {
+  status st = OK;
+  double *u = x->u, *r = x->r;
+  solver_report rep;
+  int no = 0;
+  set_start(cp, kind, u, r);
+  TRY(contact_solve(solver, cp, NULL, u, r, &rep));
+  if (rep.outcome > 0) TRY(solution_set_add(cp, tol, u, r, s, &no));
+  GROW(s->attempts, s->n_attempt, s->cap_attempt);
+  s->attempts[s->n_attempt++] =
+      (solution_attempt){.solver = name,
+                         .family = solver_family(name),
+                         .start = start_text[kind],
+                         .outcome = rep.outcome,
+                         .residual = rep.residual,
+                         .solution_no = no};
+done:
+  return st;
+}
+
+static int can_solve(const contact_problem *cp, const solver_ops *ops) {
+  return cp->dim == 2 || (ops->handles & SOLVES_3D) != 0;
+}
+
+/* 1: row i represents its family: no row before it of the same kind can. */
+static int is_chosen(const contact_problem *cp, int i) {
+  const solver_ops *ops = solver_list[i];
+  for (int k = 0; k < i; ++k)
+    if (strcmp(solver_list[k]->family, ops->family) == 0 &&
+        can_solve(cp, solver_list[k]))
+      return 0;
+  return can_solve(cp, ops);
+}
+
+static status try_solver(const contact_problem *cp, double tol,
+                         const solver_ops *ops, const trial *x,
+                         solution_set *s) {
+  status st = OK;
+  _Alignas(16) char param[PARAM_SIZE] = {0};
+  contact_solver *solver = NULL;
+  assert(ops->param_size <= PARAM_SIZE);
+  option_defaults(ops->options, param);
+  solver_choice choice = {.ops = ops, .param = param, .tol = tol};
+  TRY(contact_solver_new(&choice, &solver));
+  for (int k = 0; k < N_START; ++k)
+    TRY(attempt(cp, tol, solver, ops->name, (start)k, x, s));
+done:
+  contact_solver_free(solver);
+  return st;
+}
+
+status solutions_by_solvers(const contact_problem *cp, double tol,
+                            const solver_report *report, const double *u,
+                            const double *r, solution_set *out) {
+  status st = OK;
+  trial x = {0};
+  int no = 0;
+  NEW(x.u, cp->m);
+  NEW(x.r, cp->m);
+  TRY(solution_set_add(cp, tol, u, r, out, &no));
+  GROW(out->attempts, out->n_attempt, out->cap_attempt);
+  out->attempts[out->n_attempt++] =
+      (solution_attempt){.solver = report->solver,
+                         .family = solver_family(report->solver),
+                         .start = "last increment",
+                         .outcome = report->outcome,
+                         .residual = report->residual,
+                         .solution_no = no};
+  for (int i = 0; solver_list[i] != NULL; ++i)
+    if (is_chosen(cp, i)) TRY(try_solver(cp, tol, solver_list[i], &x, out));
+done:
+  RELEASE(x.u, x.r);
+  return st;
 }

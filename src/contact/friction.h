@@ -67,9 +67,5 @@ extern const option friction_no_options[]; /* a law without options */
 /* Value of the card at contact node i, not negative; ERR_DECK otherwise. */
 status friction_value(const friction_card *card, const contact_surface *s,
                       int i, double t, double *value);
-/* g = mu(x, t) times the normal force, or its average (card->average). */
-status friction_pressure_limit(const friction_card *card,
-                               const contact_surface *s, int n_node,
-                               const int *node, double t, friction_limit *out);
 
 #endif

@@ -142,6 +142,11 @@ status field_read(reader *r, piece p, int on_card, field *out);
 
 /* symbol.c --------------------------------------------------------------- */
 
+/* store.c: the symbol of that name, case ignored, or NULL; symbol_use marks it
+ * as used. A new symbol. */
+symbol *symbol_find(const deck *d, const char *name, size_t n);
+symbol *symbol_use(const deck *d, const char *name, size_t n);
+status symbol_add(deck *d, const char *name, size_t n, symbol **out);
 /* Replace each <NAME>. What stands in quotes is an expression: a negative
  * value is put in parentheses there, and x y z t are left alone. "lenient":
  * unknown names are left alone and are no error. *out belongs to the deck. */
@@ -150,7 +155,6 @@ status symbols_replace(reader *r, const char *text, size_t n, replacing how,
                        const place *at, const char **out);
 /* One line under *PARAMETER, in r->line. */
 status symbols_define(reader *r);
-int symbols_have(const deck *d, const char *name);
 status symbols_from_command(reader *r, const char *define);
 /* Message of an expression that did not compile (the record says why), with
  * the nearest name. "column" is that of the error in text, from 0; the place

@@ -129,3 +129,66 @@ void deck_free(deck *d) {
   }
   memory_free(d);
 }
+
+/* ---- names: a hash table over deck.symbols ------------------------------- */
+
+static unsigned hash_name(const char *name, size_t n) {
+  unsigned h = 2166136261u;
+  for (size_t i = 0; i < n; ++i)
+    h = (h ^ (unsigned char)upper_case(name[i])) * 16777619u;
+  return h ^ (h >> 15);
+}
+
+static int same_name(const char *stored, const char *name, size_t n) {
+  for (size_t i = 0; i < n; ++i)
+    if (stored[i] != upper_case(name[i])) return 0;
+  return stored[n] == '\0';
+}
+
+/* Slot of the name, or the free one where it belongs; NULL: no table yet. */
+static int *find_slot(const deck *d, const char *name, size_t n) {
+  const struct deck_text *own = d->own;
+  if (own->n_slot == 0) return NULL;
+  unsigned mask = (unsigned)own->n_slot - 1, i = hash_name(name, n) & mask;
+  while (own->slot[i] != 0 &&
+         !same_name(d->symbols[own->slot[i] - 1].name, name, n))
+    i = (i + 1) & mask;
+  return &own->slot[i];
+}
+
+symbol *symbol_find(const deck *d, const char *name, size_t n) {
+  const int *slot = find_slot(d, name, n);
+  return slot != NULL && *slot != 0 ? &d->symbols[*slot - 1] : NULL;
+}
+
+symbol *symbol_use(const deck *d, const char *name, size_t n) {
+  symbol *s = symbol_find(d, name, n);
+  if (s != NULL) s->used = 1;
+  return s;
+}
+
+/* At most half of the slots are taken. */
+static status grow_table(deck *d) {
+  struct deck_text *own = d->own;
+  int *slots = NULL;
+  if (2 * (d->n_symbol + 1) <= own->n_slot) return OK;
+  int n = own->n_slot > 0 ? 2 * own->n_slot : 64;
+  PASS_NEW(slots, n);
+  memory_free(own->slot);
+  own->slot = slots;
+  own->n_slot = n;
+  for (int i = 0; i < d->n_symbol; ++i)
+    *find_slot(d, d->symbols[i].name, strlen(d->symbols[i].name)) = i + 1;
+  return OK;
+}
+
+status symbol_add(deck *d, const char *name, size_t n, symbol **out) {
+  PASS_GROW(d->symbols, d->n_symbol, d->own->symbol_capacity);
+  PASS(grow_table(d));
+  symbol *s = &d->symbols[d->n_symbol];
+  s->name = store_name(d, name, n);
+  if (s->name == NULL) RAISE(ERR_MEMORY, "memory exhausted: name");
+  *find_slot(d, name, n) = ++d->n_symbol;
+  *out = s;
+  return OK;
+}

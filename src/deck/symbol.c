@@ -1,6 +1,5 @@
 /*
- * Names of *PARAMETER and -D: a hash table over deck.symbols, definition,
- * and replacement of <NAME>.
+ * Names of *PARAMETER and -D: definition, and replacement of <NAME>.
  */
 #include "base/memory.h"
 #include "base/number.h"
@@ -12,76 +11,10 @@
 
 enum { ADVICE_MAX = 2000 }; /* names searched for the nearest */
 
-static unsigned hash_name(const char *name, size_t n) {
-  unsigned h = 2166136261u;
-  for (size_t i = 0; i < n; ++i)
-    h = (h ^ (unsigned char)upper_case(name[i])) * 16777619u;
-  return h ^ (h >> 15);
-}
-
-static int same_name(const char *stored, const char *name, size_t n) {
-  for (size_t i = 0; i < n; ++i)
-    if (stored[i] != upper_case(name[i])) return 0;
-  return stored[n] == '\0';
-}
-
-/* Slot of the name, or the free one where it belongs; NULL: no table yet. */
-static int *find_slot(const deck *d, const char *name, size_t n) {
-  const struct deck_text *own = d->own;
-  if (own->n_slot == 0) return NULL;
-  unsigned mask = (unsigned)own->n_slot - 1, i = hash_name(name, n) & mask;
-  while (own->slot[i] != 0 &&
-         !same_name(d->symbols[own->slot[i] - 1].name, name, n))
-    i = (i + 1) & mask;
-  return &own->slot[i];
-}
-
-static symbol *find_symbol(const deck *d, const char *name, size_t n) {
-  const int *slot = find_slot(d, name, n);
-  return slot != NULL && *slot != 0 ? &d->symbols[*slot - 1] : NULL;
-}
-
-/* A reference to the name. */
-static symbol *use_symbol(const deck *d, const char *name, size_t n) {
-  symbol *s = find_symbol(d, name, n);
-  if (s != NULL) s->used = 1;
-  return s;
-}
-
 int deck_symbol(const void *deck_, const char *name, double *value) {
-  const symbol *s = use_symbol(deck_, name, strlen(name));
+  const symbol *s = symbol_use(deck_, name, strlen(name));
   if (s != NULL) *value = s->value;
   return s != NULL;
-}
-
-int symbols_have(const deck *d, const char *name) {
-  return find_symbol(d, name, strlen(name)) != NULL;
-}
-
-/* At most half of the slots are taken. */
-static status grow_table(deck *d) {
-  struct deck_text *own = d->own;
-  int *slots = NULL;
-  if (2 * (d->n_symbol + 1) <= own->n_slot) return OK;
-  int n = own->n_slot > 0 ? 2 * own->n_slot : 64;
-  PASS_NEW(slots, n);
-  memory_free(own->slot);
-  own->slot = slots;
-  own->n_slot = n;
-  for (int i = 0; i < d->n_symbol; ++i)
-    *find_slot(d, d->symbols[i].name, strlen(d->symbols[i].name)) = i + 1;
-  return OK;
-}
-
-static status add_symbol(deck *d, const char *name, size_t n, symbol **out) {
-  PASS_GROW(d->symbols, d->n_symbol, d->own->symbol_capacity);
-  PASS(grow_table(d));
-  symbol *s = &d->symbols[d->n_symbol];
-  s->name = store_name(d, name, n);
-  if (s->name == NULL) RAISE(ERR_MEMORY, "memory exhausted: name");
-  *find_slot(d, name, n) = ++d->n_symbol;
-  *out = s;
-  return OK;
 }
 
 /* A .geo distinguishes upper and lower case. */
@@ -164,7 +97,7 @@ static status add_value(buffer *b, double value, replacing how) {
 /* Value of <NAME>; unknown: 1 after the message, so that no other follows. */
 static status add_named(reader *r, const char *name, size_t n, replacing how,
                         const place *at) {
-  const symbol *s = use_symbol(r->d, name, n);
+  const symbol *s = symbol_use(r->d, name, n);
   if (s == NULL && left_alone(how, name, n)) {
     PASS(buffer_add(&r->scratch, name - 1, n + 2));
   } else if (s == NULL) {
@@ -290,7 +223,7 @@ static status define_piece(reader *r, piece p) {
     message_add(r->log, P1019, &at, "%s", wrong);
     return OK;
   }
-  symbol *s = find_symbol(r->d, def.name, def.n_name);
+  symbol *s = symbol_find(r->d, def.name, def.n_name);
   if (s != NULL && s->at.file != NULL) {
     message_add(r->log, P1021, &at, "%s is defined already, in %s:%d", s->name,
                 s->at.file, s->at.line_no);
@@ -298,7 +231,7 @@ static status define_piece(reader *r, piece p) {
   }
   place value_at = logical_place(&r->line, (int)(def.value - text));
   PASS(definition_value(r, def.value, def.n_value, &value_at, &value));
-  if (s == NULL) PASS(add_symbol(r->d, def.name, def.n_name, &s));
+  if (s == NULL) PASS(symbol_add(r->d, def.name, def.n_name, &s));
   PASS(keep_spelling(r->d, s, def.name, def.n_name));
   if (!s->overridden) s->value = value;
   s->at = at;
@@ -322,14 +255,14 @@ status symbols_from_command(reader *r, const char *define) {
   const place at = {.file = "command line"};
   const char *wrong = cut_definition(define, strlen(define), &def);
   symbol *s = NULL;
-  if (wrong == NULL) s = find_symbol(r->d, def.name, def.n_name);
+  if (wrong == NULL) s = symbol_find(r->d, def.name, def.n_name);
   if (s != NULL) wrong = "the name is defined already";
   if (wrong != NULL) {
     message_add(r->log, P1026, &at, "-D %.200s: %s", define, wrong);
     return OK;
   }
   PASS(definition_value(r, def.value, def.n_value, &at, &value));
-  PASS(add_symbol(r->d, def.name, def.n_name, &s));
+  PASS(symbol_add(r->d, def.name, def.n_name, &s));
   PASS(keep_spelling(r->d, s, def.name, def.n_name));
   s->value = value;
   s->overridden = 1;

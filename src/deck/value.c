@@ -1,5 +1,5 @@
 /*
- * Values of fields: numbers, quantities, names of files.
+ * Fields of a line, and their values: numbers, quantities, names of files.
  */
 #include "base/memory.h"
 #include "base/number.h"
@@ -107,4 +107,96 @@ status deck_input_copy(deck *d, const char *path) {
   if (text == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
   strcpy(text, path);
   return deck_input(d, text);
+}
+
+/* ---- fields of a line ---------------------------------------------------- */
+
+/* Take the quotes off; what is wrong with them is reported. */
+static int take_quotes(reader *r, piece *p) {
+  const char *text = r->line.all.text + p->start;
+  const char *end = text + p->length, *quote;
+  quote = p->length > 0 ? memchr(text, '"', (size_t)p->length) : NULL;
+  if (quote == NULL) return 0;
+  const char *after = NULL;
+  if (quote == text) {
+    const char *close = memchr(text + 1, '"', (size_t)(p->length - 1));
+    after = close != NULL ? close + 1 : end;
+    p->length = (int)((close != NULL ? close : end) - text) - 1;
+    ++p->start;
+  }
+  if (quote != text || after != end) {
+    const char *wrong = quote != text ? quote : after;
+    place at = logical_place(&r->line, (int)(wrong - r->line.all.text));
+    message_add(r->log, P1012, &at, "text next to a quoted value");
+  }
+  return quote == text;
+}
+
+static int is_name_alone(const char *text) {
+  if (!is_name_start(*text)) return 0;
+  while (is_name_part(*text)) ++text;
+  return *text == '\0';
+}
+
+/* A quoted field without variables becomes the digits of its value; *valid:
+ * it is an expression at all. */
+static status settle_constant(reader *r, field *f, int *valid) {
+  status st = OK;
+  expression *e = NULL;
+  int column;
+  const double origin[3] = {0, 0, 0};
+  char digits[NUMBER_TEXT_SIZE];
+  st = expression_compile(f->text, deck_symbol, r->d, &e, &column);
+  if (st == ERR_DECK) st = OK; /* reported by the caller that needs a value */
+  TRY(st);
+  *valid = e != NULL;
+  if (e == NULL || expression_variables(e) != 0) goto done;
+  double value = expression_value(e, origin, 0);
+  if (!isfinite(value)) goto done;
+  number_text(value, digits);
+  f->text = store_text(r->d, digits, strlen(digits));
+  if (f->text == NULL) FAIL(ERR_MEMORY, "memory exhausted: field");
+done:
+  expression_free(e);
+  return st;
+}
+
+/* <NAME>+3 with a number put in would be read as mantissa and exponent. */
+static void check_exponent(reader *r, const char *raw, const field *f) {
+  if (strchr(raw, '<') == NULL || !number_bare_exponent(f->text)) return;
+  message_add(r->log, P1036, &f->at,
+              "'%s' becomes '%s', a number with exponent", raw, f->text);
+}
+
+/* Text in quotes: an expression, or on a card also a name with commas. */
+static status read_quoted(reader *r, const char *text, size_t n, int on_card,
+                          const place *at, field *out) {
+  int valid = 0;
+  PASS(symbols_replace(r, text, n, REPLACE_EXPRESSION, at, &out->text));
+  if (!(on_card && is_name_alone(out->text)))
+    PASS(settle_constant(r, out, &valid));
+  if (on_card && !valid)
+    PASS(symbols_replace(r, text, n, REPLACE_LENIENT, at, &out->text));
+  return OK;
+}
+
+static status read_plain(reader *r, const char *text, size_t n, const place *at,
+                         field *out) {
+  PASS(symbols_replace(r, text, n, REPLACE_PLAIN, at, &out->text));
+  if (n > 0 && memchr(text, '<', n) != NULL) {
+    const char *raw = store_text(r->d, text, n);
+    if (raw == NULL) RAISE(ERR_MEMORY, "memory exhausted: field");
+    check_exponent(r, raw, out);
+  }
+  return OK;
+}
+
+status field_read(reader *r, piece p, int on_card, field *out) {
+  size_t n;
+  out->at = logical_place(&r->line, p.start);
+  out->quoted = take_quotes(r, &p);
+  const char *text = trim(r->line.all.text + p.start, (size_t)p.length, &n);
+  place inside = logical_place(&r->line, (int)(text - r->line.all.text));
+  return out->quoted ? read_quoted(r, text, n, on_card, &inside, out)
+                     : read_plain(r, text, n, &inside, out);
 }

@@ -36,8 +36,6 @@ void triplets_dense(const triplets *t, double *a);
 
 /* p is all zero before; release it on failure too. */
 status fclib_read(const char *path, exchange_problem *p);
-/* The same for a text. */
-status lcp_text_read(const char *path, exchange_problem *p);
 
 /* ---- constraints.c ----------------------------------------------------------
  */

@@ -10,6 +10,7 @@
 #define PROTIS_MATERIAL_MATERIAL_H
 
 #include "base/status.h"
+#include "deck/deck.h"
 #include "deck/quantity.h"
 
 typedef enum { PLANE_STRAIN, PLANE_STRESS, AXISYMMETRIC, SOLID_3D } kinematics;
@@ -35,6 +36,35 @@ const char *elastic_matrix(elastic_type type, int n, const double *constants,
 void elastic_reduce(const double C[36], kinematics kin, double *E);
 /* Strain zz of plane stress from the in-plane strains: e[4] in and out. */
 void elastic_zz_strain(const double C[36], double e[4]);
+
+/* Constants over the temperature: linear between, constant outside. */
+typedef struct elastic_constants {
+  double temperature;
+  double constant[ELASTIC_MAX]; /* Pa, - */
+} elastic_constants;
+typedef struct elastic_table {
+  elastic_type type;
+  int n_constant;
+  int n;                  /* sets; 0: none is valid, 1: the same everywhere */
+  elastic_constants *set; /* [n] their temperatures ascend, owned */
+  double relaxed[2];      /* parts of G and K that the sets are without: those
+                             of elastic_at are whole, - */
+} elastic_table;
+/* From the data lines of a card: the constants of a set over any number of
+ * lines, then its temperature (may be left out if there is one set). Errors go
+ * to the log (n = 0 if a set is not whole); ERR_MEMORY. */
+status elastic_table_read(const card *c, elastic_type type,
+                          const char *material_name, message_log *log,
+                          elastic_table *table);
+/* elastic_matrix() of the constants at a temperature. */
+const char *elastic_at(const elastic_table *t, double temperature, double C[36],
+                       char *text, int text_size);
+/* The sets of E, nu are what is left after the parts relaxed[2] of G and K have
+ * relaxed. */
+void elastic_table_relaxed(elastic_table *t, const double relaxed[2]);
+/* Largest value of constant number i in any set. */
+double elastic_table_most(const elastic_table *t, int i);
+void elastic_table_free(elastic_table *t); /* accepts all-zero */
 
 /* Thermal expansion along the axes xx, yy, zz (rr, zz, theta). */
 typedef enum { EXPANSION_ISO, EXPANSION_ORTHO } expansion_type;

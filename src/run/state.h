@@ -12,7 +12,7 @@
 #include "material/scheme/scheme.h"
 #include "run/start/start.h"
 #include "accuracy/theorems/theorems.h"
-#include "accuracy/closed_form/exact_error.h"
+#include "accuracy/exact_error.h"
 
 /* Forces and moments of one contact: of the obstacle on the body. */
 typedef struct contact_total {

@@ -22,7 +22,7 @@
  * and shortens rho, never below the bound of Collatz and Wielandt.
  */
 #include "base/memory.h"
-#include "contact/force/force_set.h"
+#include "contact/force_set.h"
 #include "solver/solver.h"
 
 #include <math.h>

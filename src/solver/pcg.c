@@ -26,7 +26,7 @@
  * factor except at the ends of the face. Without A: the diagonal of W.
  */
 #include "base/memory.h"
-#include "contact/force/force_set.h"
+#include "contact/force_set.h"
 #include "solver/solver.h"
 
 #include <cblas.h>

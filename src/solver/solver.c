@@ -1,26 +1,10 @@
-/* The table of solvers and functions common to them (solver.h). */
+/* Functions common to the solvers (solver.h). */
 #include "solver/solver.h"
 
 #include "base/memory.h"
 
 #include <math.h>
-
 #include <string.h>
-#include <strings.h>
-
-#define SOLVER_ROW(name) &name##_solver,
-const solver_ops *const solver_list[] = {SOLVER_LIST(SOLVER_ROW) NULL};
-
-const solver_ops *solver_find(const char *name) {
-  for (int i = 0; solver_list[i] != NULL; ++i)
-    if (strcasecmp(solver_list[i]->name, name) == 0) return solver_list[i];
-  return NULL;
-}
-
-const char *solver_family(const char *name) {
-  const solver_ops *ops = name == NULL ? NULL : solver_find(name);
-  return ops == NULL ? "direct" : ops->family;
-}
 
 static const double FEW_DIGITS = 1e-4; /* -, tolerance */
 

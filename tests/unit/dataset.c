@@ -1,6 +1,6 @@
 /* src/base/archive: what an HDF5 file may not do, and what it may. */
 #include "base/archive/dataset.h"
-#include "base/archive/file.h"
+#include "base/archive/archive.h"
 
 #include "base/memory.h"
 #include "support/made_up.h"

@@ -1,7 +1,7 @@
 /* src/solver: the options of the rows. What every row must do with its
  * defaults is tested in solver.c. */
 #include "base/memory.h"
-#include "contact/force/force_set.h"
+#include "contact/force_set.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"

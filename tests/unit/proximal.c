@@ -1,5 +1,5 @@
 /*
- * src/solver/proximal.c: contacts of rigid bodies whose compliance is
+ * src/solver/newton/proximal.c: contacts of rigid bodies whose compliance is
  * semidefinite, also disturbed so that it is unsymmetric.
  */
 #include "support/rigid_scene.h"

@@ -1,10 +1,48 @@
 /* The arrays of an archive in memory. */
-#include "base/archive/file.h"
+#include "base/archive/archive.h"
 
+#include "base/archive/dataset.h"
+#include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 
+#include <errno.h>
+#include <fcntl.h>
+#include <hdf5.h>
+#include <inttypes.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
+
+enum { ARCHIVE_NAME = 200 };
+typedef enum { ARCHIVE_REAL, ARCHIVE_INT, ARCHIVE_BYTE } archive_kind;
+
+typedef struct archive_item {
+  char name[ARCHIVE_NAME];
+  archive_kind kind;
+  size_t n;
+  const void *data; /* [n] of the kind */
+  void *own;        /* it, if it is to be freed */
+} archive_item;
+
+struct archive {
+  char *path;               /* owned; of the file it comes from, or NULL */
+  char group[ARCHIVE_NAME]; /* present one with its last slash, or "" */
+  int no_cpu;               /* 1: see archive_leave_out_cpu */
+  int n, capacity;
+  archive_item *item; /* [n] in the order they were named */
+};
+
+/* Bytes before those of HDF5. */
+enum { ARCHIVE_SEAL = 512 };
+
+/*
+ * The seal of an archive, text before the bytes of HDF5:
+ *   Protis restart, layout 3
+ *   BYTES CHECKSUM       of what follows the seal: their number; FNV-1a, 64
+ * bits
+ */
 
 enum { SHORT = 256 }; /* bytes, up to here an array is copied */
 
@@ -59,8 +97,9 @@ size_t archive_length(const archive *a, const char *name) {
   return i != NULL ? i->n : 0;
 }
 
-status archive_add(archive *a, const char *name, archive_kind kind, size_t n,
-                   archive_item **out) {
+/* A new item without data; its place may move with the next one. */
+static status archive_add(archive *a, const char *name, archive_kind kind,
+                          size_t n, archive_item **out) {
   PASS_GROW(a->item, a->n, a->capacity);
   *out = &a->item[a->n++];
   **out = (archive_item){.kind = kind, .n = n};
@@ -116,4 +155,285 @@ status archive_ints(archive *a, const char *name, int *v, size_t n) {
 
 status archive_bytes(archive *a, const char *name, void *v, size_t n) {
   return pass(a, name, ARCHIVE_BYTE, v, n);
+}
+
+/*
+ * The file of an archive: the seal, then HDF5 behind it (its user block):
+ *   /list             text, a line "kind length name" per array, in order
+ *   /data/NAME        the arrays
+ * Written to a temporary file, sealed, synchronised and renamed, so that a kill
+ * at any moment leaves a complete file under one of the two names. HDF5 opens a
+ * file only if its seal is valid: damaged lengths inside can make it allocate
+ * any amount of memory.
+ */
+
+enum { PART = 1 << 16 };
+
+static const char mark[] = "Protis restart, layout ";
+static const char layout[] = "3\n";
+
+typedef struct content {
+  uint64_t bytes, checksum;
+} content;
+
+/* What follows the seal; ERR_FILE if it cannot be read. */
+static status sum_up(int fd, const char *path, content *c) {
+  unsigned char part[PART];
+  ssize_t n;
+  *c = (content){0, 14695981039346656037u};
+  while ((n = pread(fd, part, PART, (off_t)(ARCHIVE_SEAL + c->bytes))) > 0) {
+    for (ssize_t i = 0; i < n; ++i)
+      c->checksum = (c->checksum ^ part[i]) * 1099511628211u;
+    c->bytes += (uint64_t)n;
+  }
+  if (n < 0) PASS(text_failed(path, "read", errno));
+  return OK;
+}
+
+static void write_text(const content *c, char text[ARCHIVE_SEAL]) {
+  memset(text, 0, ARCHIVE_SEAL);
+  snprintf(text, ARCHIVE_SEAL, "%s%s%" PRIu64 " %016" PRIx64 "\n", mark, layout,
+           c->bytes, c->checksum);
+}
+
+static status write_whole(int fd, const char *path, const char *text) {
+  size_t at = 0;
+  while (at < ARCHIVE_SEAL) {
+    ssize_t n = pwrite(fd, text + at, ARCHIVE_SEAL - at, (off_t)at);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) PASS(text_failed(path, "write", errno));
+    at += (size_t)n;
+  }
+  return OK;
+}
+
+status archive_seal(const char *path) {
+  status st = OK;
+  content c;
+  char text[ARCHIVE_SEAL];
+  int fd = open(path, O_RDWR | O_CLOEXEC);
+  if (fd < 0) TRY(text_failed(path, "open", errno));
+  TRY(sum_up(fd, path, &c));
+  write_text(&c, text);
+  TRY(write_whole(fd, path, text));
+  if (fsync(fd) != 0) TRY(text_failed(path, "write", errno));
+done:
+  if (fd >= 0) close(fd);
+  return st;
+}
+
+static status refuse(const char *path, const char *why) {
+  return status_fail(ERR_FILE, __func__, __LINE__, "%s: %s", path, why);
+}
+
+/* ERR_FILE: not there, without a seal, of another layout, not as sealed. */
+static status archive_check_seal(const char *path) {
+  status st = OK;
+  content c;
+  char text[ARCHIVE_SEAL], wanted[ARCHIVE_SEAL];
+  const char *why;
+  int fd = file_descriptor(AT_FDCWD, path, O_RDONLY, &why);
+  if (fd < 0) FAIL(ERR_FILE, "%s: cannot read: %s", path, why);
+  memset(text, 0, sizeof text);
+  if (pread(fd, text, sizeof text, 0) < 0)
+    TRY(text_failed(path, "read", errno));
+  if (strncmp(text, mark, strlen(mark)) != 0)
+    TRY(refuse(path, "this is no restart file of Protis"));
+  if (strncmp(text + strlen(mark), layout, strlen(layout)) != 0)
+    TRY(refuse(path,
+               "the restart file has the layout of another version of Protis; "
+               "continue with that one, or start the run without --restart"));
+  TRY(sum_up(fd, path, &c));
+  write_text(&c, wanted);
+  if (memcmp(text, wanted, sizeof text) != 0)
+    TRY(refuse(path, "the restart file is damaged: wrong checksum"));
+done:
+  if (fd >= 0) close(fd);
+  return st;
+}
+
+static hid_t type_of(archive_kind kind) {
+  return kind == ARCHIVE_REAL  ? H5T_NATIVE_DOUBLE
+         : kind == ARCHIVE_INT ? H5T_NATIVE_INT
+                               : H5T_NATIVE_UCHAR;
+}
+
+/* ---- writing ------------------------------------------------------------ */
+
+static status list_items(const archive *a, char **out) {
+  size_t size = (size_t)a->n * (ARCHIVE_NAME + 40) + 1, used = 0;
+  char *list = memory_new(size, 1);
+  if (list == NULL) RAISE(ERR_MEMORY, "memory exhausted: list of an archive");
+  for (int i = 0; i < a->n; ++i)
+    used +=
+        (size_t)snprintf(list + used, size - used, "%d %zu %s\n",
+                         (int)a->item[i].kind, a->item[i].n, a->item[i].name);
+  *out = list;
+  return OK;
+}
+
+static status write_dataset(hid_t file, const char *path, const char *name,
+                            hid_t type, size_t n, const void *data) {
+  status st = OK;
+  hsize_t dims[1] = {n};
+  hid_t space = H5Screate_simple(1, dims, NULL);
+  hid_t links = H5Pcreate(H5P_LINK_CREATE),
+        plain = H5Pcreate(H5P_DATASET_CREATE);
+  hid_t set = -1;
+  errno = 0;
+  if (space >= 0 && links >= 0 && plain >= 0 &&
+      H5Pset_create_intermediate_group(links, 1) >= 0 &&
+      H5Pset_obj_track_times(plain, 0) >= 0)
+    set = H5Dcreate2(file, name, type, space, links, plain, H5P_DEFAULT);
+  if (set < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+    TRY(text_failed(path, "write", errno));
+done:
+  if (set >= 0 && H5Dclose(set) < 0 && st == OK)
+    st = text_failed(path, "write", errno);
+  if (plain >= 0) H5Pclose(plain);
+  if (links >= 0) H5Pclose(links);
+  if (space >= 0) H5Sclose(space);
+  return st;
+}
+
+static status put_items(const archive *a, hid_t file, const char *path) {
+  OWNED char *list = NULL;
+  char name[ARCHIVE_NAME + 8];
+  PASS(list_items(a, &list));
+  PASS(write_dataset(file, path, "/list", H5T_NATIVE_UCHAR, strlen(list) + 1,
+                     list));
+  for (int i = 0; i < a->n; ++i) {
+    const archive_item *it = &a->item[i];
+    snprintf(name, sizeof name, "/data/%s", it->name);
+    PASS(write_dataset(file, path, name, type_of(it->kind), it->n, it->data));
+  }
+  return OK;
+}
+
+static status make_file(const archive *a, const char *path) {
+  status st = OK;
+  hid_t file = -1, creation = H5Pcreate(H5P_FILE_CREATE);
+  TRY(file_clear(path));
+  errno = 0;
+  if (creation >= 0 && H5Pset_userblock(creation, ARCHIVE_SEAL) >= 0)
+    file = H5Fcreate(path, H5F_ACC_EXCL, creation, H5P_DEFAULT);
+  if (file < 0) TRY(text_failed(path, "open for writing", errno));
+  TRY(put_items(a, file, path));
+  errno = 0;
+  if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0)
+    TRY(text_failed(path, "write", errno));
+done:
+  if (file >= 0 && H5Fclose(file) < 0 && st == OK)
+    st = text_failed(path, "close", errno);
+  if (creation >= 0) H5Pclose(creation);
+  return st;
+}
+
+status archive_write(archive *a, const char *path, const char *before) {
+  status st = OK;
+  char *aside = text_path("", path, "tmp");
+  if (aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  H5dont_atexit(); /* the exit handler crashes after a failed write */
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  TRY(make_file(a, aside));
+  TRY(archive_seal(aside));
+  if (rename(path, before) != 0 && errno != ENOENT)
+    TRY(text_failed(before, "replace", errno));
+  if (rename(aside, path) != 0) TRY(text_failed(path, "replace", errno));
+  file_sync_folder(path);
+done:
+  if (st != OK && aside != NULL) unlink(aside);
+  memory_free(aside);
+  return st;
+}
+
+/* ---- reading ------------------------------------------------------------ */
+
+static status damaged(const char *path, const char *why) {
+  return status_fail(ERR_FILE, __func__, __LINE__, "%s: %s", path, why);
+}
+
+/* Length of a dataset of this type, or -1. */
+static hssize_t length_of(hid_t set) {
+  hid_t space = set >= 0 ? H5Dget_space(set) : -1;
+  hssize_t n = space >= 0 ? H5Sget_simple_extent_npoints(space) : -1;
+  if (space >= 0) H5Sclose(space);
+  return n;
+}
+
+/* n items of "size" bytes into a new array; one byte more, zero. */
+static status get(hid_t file, const char *path, const char *name, hid_t type,
+                  size_t size, size_t *n, void **out) {
+  status st = OK;
+  const hdf5_source source = {.path = path, .file = file};
+  hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  hid_t stored = set >= 0 ? H5Dget_type(set) : -1;
+  hssize_t length = length_of(set);
+  *out = NULL;
+  if (length < 0 || (*n > 0 && (size_t)length != *n) ||
+      H5Tequal(stored, type) <= 0 ||
+      H5Dget_storage_size(set) != size * (hsize_t)length)
+    TRY(damaged(path, "the restart file is damaged: an array is missing"));
+  if (dataset_check(&source, name, set, (hsize_t)length) != OK)
+    TRY(damaged(path, "the restart file is damaged: an array is elsewhere"));
+  *n = (size_t)length;
+  *out = memory_new(*n * size + 1, 1);
+  if (*out == NULL) FAIL(ERR_MEMORY, "memory exhausted: %s", path);
+  if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, *out) < 0)
+    TRY(damaged(path, "the restart file is damaged: an array is cut short"));
+done:
+  if (stored >= 0) H5Tclose(stored);
+  if (set >= 0) H5Dclose(set);
+  return st;
+}
+
+static status get_item(hid_t file, archive *a, const char *line) {
+  static const size_t size[] = {sizeof(double), sizeof(int), 1};
+  int kind;
+  size_t n;
+  char name[ARCHIVE_NAME], whole[ARCHIVE_NAME + 8];
+  archive_item *i = NULL;
+  if (sscanf(line, "%d %zu %199[^\n]", &kind, &n, name) != 3 || kind < 0 ||
+      kind > ARCHIVE_BYTE || n == 0)
+    PASS(damaged(a->path, "the restart file is damaged: its list"));
+  PASS(archive_add(a, name, (archive_kind)kind, n, &i));
+  snprintf(whole, sizeof whole, "/data/%s", name);
+  PASS(get(file, a->path, whole, type_of(i->kind), size[kind], &n, &i->own));
+  i->data = i->own;
+  return OK;
+}
+
+static status get_items(hid_t file, archive *a) {
+  size_t n = 0;
+  OWNED void *list = NULL;
+  PASS(get(file, a->path, "/list", H5T_NATIVE_UCHAR, 1, &n, &list));
+  for (const char *line = list; *line != '\0'; ++line) {
+    PASS(get_item(file, a, line));
+    line = strchr(line, '\n');
+    if (line == NULL) break;
+  }
+  return OK;
+}
+
+status archive_read(const char *path, archive **out) {
+  status st = OK;
+  archive *a = NULL;
+  hid_t file = -1;
+  *out = NULL;
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  H5Lunregister(H5L_TYPE_EXTERNAL);
+  TRY(archive_check_seal(path));
+  NEW(a, 1);
+  a->path = memory_text(path);
+  if (a->path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) TRY(damaged(path, "this is no restart file of Protis"));
+  TRY(get_items(file, a));
+  *out = a;
+  a = NULL;
+done:
+  if (file >= 0) H5Fclose(file);
+  archive_free(a);
+  return st;
 }

@@ -4,7 +4,7 @@
  * answer is brought back.
  */
 #include "base/memory.h"
-#include "contact/formulation/form.h"
+#include "contact/formulation.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "model/facts.h"

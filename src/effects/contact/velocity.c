@@ -2,7 +2,7 @@
  * *QUASISTATIC, FORM=VELOCITY: the solver's unknown is the displacement of the
  * increment (CPR98, problem N3).
  */
-#include "contact/formulation/form.h"
+#include "contact/formulation.h"
 #include "base/memory.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"

@@ -1,7 +1,7 @@
 /*
  * *REFERENCE: the true error of each increment against a closed form.
  */
-#include "accuracy/closed_form/exact_error.h"
+#include "accuracy/exact_error.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "run/run.h"

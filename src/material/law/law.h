@@ -14,7 +14,7 @@
 
 #include "base/option.h"
 #include "deck/deck.h"
-#include "material/table.h"
+#include "material/material.h"
 
 /* Elasticity of a section, made once by law_elastic_set. */
 typedef struct law_elastic {

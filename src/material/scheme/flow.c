@@ -1,7 +1,7 @@
 /*
  * Points whose law flows: their state, rates, limits and norms.
  */
-#include "material/scheme/scheme.h"
+#include "material/scheme/work.h"
 
 #include "base/memory.h"
 #include "material/voigt.h"
@@ -203,4 +203,14 @@ int flow_is_constant(const flow *x) {
   for (int i = 0; i < x->n_kind; ++i)
     if (x->kind[i].varies != 0 || !x->kind[i].law->ops->linear) return 0;
   return 1;
+}
+
+void add_scaled(size_t n, const double *x, double a, const double *v,
+                double *y) {
+  for (size_t i = 0; i < n; ++i) y[i] = x[i] + a * v[i];
+}
+
+status need(double **array, size_t n) {
+  if (*array == NULL) PASS_NEW(*array, n);
+  return OK;
 }

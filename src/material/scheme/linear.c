@@ -1,10 +1,13 @@
 /*
- * Maps of implicit steps of linear laws with constant coefficients. With y =
- * (e^i, alpha) and the strain e (less the thermal one) of a point, y' = L y + G
- * e,   sigma = E (e - e^i), a step is y_new = P y_old + Q0 e_old + Q1 e_new
- * with matrices that depend on the law and dt alone, so that the body sees the
- * constant elasticity D = E (I - Q1_ei) and needs one equilibrium: THETA y_new
- * = y_old + dt (L y_th + G e_th), x_th = (1-theta) x_old + theta x_new
+ * Maps of implicit steps of linear laws with constant coefficients. With
+ * y = (e^i, alpha) and the strain e (less the thermal one) of a point,
+ *   y' = L y + G e,   sigma = E (e - e^i),
+ * a step is
+ *   y_new = P y_old + Q0 e_old + Q1 e_new
+ * with matrices that depend on the law and dt alone, so that the body has the
+ * constant elasticity D = E (I - Q1_ei) and needs one equilibrium:
+ *   THETA        y_new = y_old + dt (L y_th + G e_th),
+ *                x_th = (1-theta) x_old + theta x_new
  *   EXPONENTIAL  the exact solution for e linear in time over the step:
  *                exp(dt L), dt phi_1(dt L) G, dt phi_2(dt L) G
  */
@@ -160,16 +163,6 @@ static status exponential_map(const flow_kind *k, const scheme_step *p,
   return OK;
 }
 
-/* The general case: from L and G. */
-static status matrix_map(const flow_kind *k, const scheme_step *p, int exact,
-                         linear_map *m) {
-  OWNED double *L = NULL, *G = NULL;
-  PASS_NEW(L, m->n * m->n);
-  PASS_NEW(G, m->n * k->elastic.ns);
-  PASS(linear_law(k, L, G));
-  return exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m);
-}
-
 /* D = E (I - Q1) with the rows of e^i. */
 static void remains(const law_elastic *el, const linear_map *m, double *D) {
   const int ns = el->ns;
@@ -180,53 +173,14 @@ static void remains(const law_elastic *el, const linear_map *m, double *D) {
   multiply(ns, ns, ns, -1.0, el->E, top, D);
 }
 
-/* Deviator and mean are treated separately if the elasticity is isotropic. */
-static int is_series(const flow_kind *k) {
-  law_unit unit;
-  const law_point p = {
-      .law = k->law, .elastic = &k->elastic, .value = k->value};
-  if (k->law->ops->series == NULL) return 0;
-  return k->elastic.isotropic ||
-         k->law->ops->series(&p, 0, 0, &unit) == LAW_WHOLE;
-}
-
-status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
-                       linear_map *m, double *D) {
-  const int ns = k->elastic.ns, n = ns + k->n_alpha, series = is_series(k);
-  const int general = !series && k->law->ops->relaxing == NULL;
-  m->n = n;
-  PASS(need(&m->P, (size_t)(n * n)));
-  PASS(need(&m->Q0, (size_t)(n * ns)));
-  PASS(need(&m->Q1, (size_t)(n * ns)));
-  PASS(need(&m->Q, (size_t)(n * ns)));
-  if (series)
-    PASS(series_map(k, p, exact, m, D));
-  else if (!general)
-    PASS(relaxing_map(k, p, exact, m, D));
-  else
-    PASS(matrix_map(k, p, exact, m));
-  if (general)
-    remains(&k->elastic, m, D);
-  else if (k->elastic.plane_stress)
-    PASS(plane_stress_map(&k->elastic, m, D));
-  add_scaled((size_t)(n * ns), m->Q0, 1.0, m->Q1, m->Q);
-  return OK;
-}
-
-status linear_maps(const flow *x, const scheme_step *p, int exact,
-                   scheme_work *w) {
-  size_t square = (size_t)(x->ns * x->ns);
-  const linear_key key = {p->dt, p->theta, exact};
-  if (w->made.dt == key.dt && w->made.theta == key.theta &&
-      w->made.exact == exact)
-    return OK;
-  w->made.dt = 0.0;
-  if (w->map == NULL) PASS_NEW(w->map, x->n_kind);
-  w->n_kind = x->n_kind;
-  PASS(need(&w->D_kind, square * (size_t)x->n_kind));
-  for (int i = 0; i < x->n_kind; ++i)
-    PASS(linear_map_make(&x->kind[i], p, exact, &w->map[i],
-                         w->D_kind + square * (size_t)i));
-  w->made = key;
+/* The general case: from L and G. */
+status general_map(const flow_kind *k, const scheme_step *p, int exact,
+                   linear_map *m, double *D) {
+  OWNED double *L = NULL, *G = NULL;
+  PASS_NEW(L, m->n * m->n);
+  PASS_NEW(G, m->n * k->elastic.ns);
+  PASS(linear_law(k, L, G));
+  PASS(exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m));
+  remains(&k->elastic, m, D);
   return OK;
 }

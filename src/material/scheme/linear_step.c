@@ -1,6 +1,6 @@
 /*
- * Steps of linear laws with constant coefficients: the maps of linear.c applied
- * to the points, in blocks that stay in the cache.
+ * Steps of linear laws with constant coefficients: the maps of the points (of
+ * linear.c or series.c), applied in blocks that stay in the cache.
  */
 #include "material/scheme/work.h"
 
@@ -8,6 +8,57 @@
 #include "material/voigt.h"
 
 #include <string.h>
+
+void linear_map_free(linear_map *m) { RELEASE(m->P, m->Q0, m->Q1, m->Q); }
+
+/* Deviator and mean are treated separately if the elasticity is isotropic. */
+static int is_series(const flow_kind *k) {
+  law_unit unit;
+  const law_point p = {
+      .law = k->law, .elastic = &k->elastic, .value = k->value};
+  if (k->law->ops->series == NULL) return 0;
+  return k->elastic.isotropic ||
+         k->law->ops->series(&p, 0, 0, &unit) == LAW_WHOLE;
+}
+
+status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
+                       linear_map *m, double *D) {
+  const int ns = k->elastic.ns, n = ns + k->n_alpha, series = is_series(k);
+  const int general = !series && k->law->ops->relaxing == NULL;
+  m->n = n;
+  PASS(need(&m->P, (size_t)(n * n)));
+  PASS(need(&m->Q0, (size_t)(n * ns)));
+  PASS(need(&m->Q1, (size_t)(n * ns)));
+  PASS(need(&m->Q, (size_t)(n * ns)));
+  if (series)
+    PASS(series_map(k, p, exact, m, D));
+  else if (!general)
+    PASS(relaxing_map(k, p, exact, m, D));
+  else
+    PASS(general_map(k, p, exact, m, D));
+  if (!general && k->elastic.plane_stress)
+    PASS(plane_stress_map(&k->elastic, m, D));
+  add_scaled((size_t)(n * ns), m->Q0, 1.0, m->Q1, m->Q);
+  return OK;
+}
+
+status linear_maps(const flow *x, const scheme_step *p, int exact,
+                   scheme_work *w) {
+  size_t square = (size_t)(x->ns * x->ns);
+  const linear_key key = {p->dt, p->theta, exact};
+  if (w->made.dt == key.dt && w->made.theta == key.theta &&
+      w->made.exact == exact)
+    return OK;
+  w->made.dt = 0.0;
+  if (w->map == NULL) PASS_NEW(w->map, x->n_kind);
+  w->n_kind = x->n_kind;
+  PASS(need(&w->D_kind, square * (size_t)x->n_kind));
+  for (int i = 0; i < x->n_kind; ++i)
+    PASS(linear_map_make(&x->kind[i], p, exact, &w->map[i],
+                         w->D_kind + square * (size_t)i));
+  w->made = key;
+  return OK;
+}
 
 static inline void mean(int n, double th, const double *a, const double *b,
                         double *y) {

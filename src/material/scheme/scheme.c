@@ -5,20 +5,172 @@
  * + theta x_new: theta = 1/2 is the implicit midpoint rule on the line between
  * the ends of the step (MIDPOINT), theta = 1 implicit Euler (BACKWARD).
  */
-#include "material/scheme/work.h"
-
 #include "base/memory.h"
+#include "material/scheme/work.h"
 
 #include <math.h>
 #include <strings.h>
 
-void add_scaled(size_t n, const double *x, double a, const double *v,
-                double *y) {
-  for (size_t i = 0; i < n; ++i) y[i] = x[i] + a * v[i];
+/*
+ * Explicit integrators: rates at known states, one equilibrium per stage.
+ *   EULER  y1 = y0 + dt f(y0)
+ *   HEUN   y1 = y0 + dt/2 (f(y0) + f(y0 + dt f(y0)))
+ *   RK4    the classical method of order 4
+ * The difference of HEUN and EULER is the estimate of the error of HEUN.
+ */
+
+/* now = old + sum of factor[i] times the rates of stage i, at old->t + dt, and
+ * its equilibrium. */
+static status stage(const scheme_call *a, double dt, const double *factor) {
+  const scheme_work *w = a->w;
+  size_t n = (size_t)a->x->ns * (size_t)a->x->n, na = a->x->alpha_at[a->x->n];
+  int settled = 1;
+  add_scaled(n, a->old->ei, factor[0], w->ei_rate[0], a->now->ei);
+  add_scaled(na, a->old->alpha, factor[0], w->alpha_rate[0], a->now->alpha);
+  for (int i = 1; i < STAGES; ++i) {
+    if (factor[i] == 0.0) continue;
+    add_scaled(n, a->now->ei, factor[i], w->ei_rate[i], a->now->ei);
+    add_scaled(na, a->now->alpha, factor[i], w->alpha_rate[i], a->now->alpha);
+  }
+  a->now->t = dt == a->p->dt ? a->p->t : a->old->t + dt;
+  PASS(a->b->equilibrium(a->b->ctx, a->now, &settled));
+  if (!settled) a->out->settled = 0;
+  return OK;
 }
 
-status need(double **array, size_t n) {
-  if (*array == NULL) PASS_NEW(*array, n);
+/* Rates of a state into stage i; its power counts with the weight "part". */
+static status rates(const scheme_call *a, const flow_state *s, int i,
+                    double part) {
+  scheme_work *w = a->w;
+  double power;
+  PASS(need(&w->ei_rate[i], (size_t)a->x->ns * (size_t)a->x->n));
+  PASS(need(&w->alpha_rate[i], a->x->alpha_at[a->x->n]));
+  PASS(flow_rates(a->x, s, a->p->dt, w->ei_rate[i], w->alpha_rate[i], &power));
+  a->out->dissipated += part * power;
+  return OK;
+}
+
+/* explicit.c */
+static status euler_advance(const scheme_call *a) {
+  const double h = a->p->dt;
+  PASS(rates(a, a->old, 0, h));
+  PASS(stage(a, h, (double[STAGES]){h}));
+  return OK;
+}
+
+static status heun_advance(const scheme_call *a) {
+  const double h = a->p->dt;
+  const size_t n = (size_t)a->x->ns * (size_t)a->x->n;
+  scheme_work *w = a->w;
+  PASS(rates(a, a->old, 0, h / 2));
+  PASS(stage(a, h, (double[STAGES]){h}));
+  if (!a->out->settled) return OK;
+  PASS(rates(a, a->now, 1, h / 2));
+  PASS(stage(a, h, (double[STAGES]){h / 2, h / 2}));
+  PASS(need(&w->e_k, n));
+  add_scaled(n, w->ei_rate[1], -1, w->ei_rate[0], w->e_k);
+  a->out->error = h / 2 * flow_norm(a->x, w->e_k);
+  return OK;
+}
+
+static status rk4_advance(const scheme_call *a) {
+  const double h = a->p->dt;
+  PASS(rates(a, a->old, 0, h / 6));
+  PASS(stage(a, h / 2, (double[STAGES]){h / 2}));
+  if (!a->out->settled) return OK;
+  PASS(rates(a, a->now, 1, h / 3));
+  PASS(stage(a, h / 2, (double[STAGES]){0, h / 2}));
+  if (!a->out->settled) return OK;
+  PASS(rates(a, a->now, 2, h / 3));
+  PASS(stage(a, h, (double[STAGES]){0, 0, h}));
+  if (!a->out->settled) return OK;
+  PASS(rates(a, a->now, 3, h / 6));
+  PASS(stage(a, h, (double[STAGES]){h / 6, h / 3, h / 3, h / 6}));
+  return OK;
+}
+
+/*
+ * States within a step that has been made (dense output). With the part s of
+ * the step, the change D = y_new - y_old and the rates f of the laws at both
+ * ends,
+ *   y(s) = y_old + s D + s (1 - s) ((1 - s) d_old - s d_new),
+ *   d_old = dt f_old - D,  d_new = dt f_new - D
+ * is the cubic of Hermite, wrong by dt^4: no integrator loses its order. The
+ * rates of parts that relax within less than the step do not describe it: d_old
+ * and d_new count up to the magnitude of D, so that y(s) of one component is
+ * monotone from y_old to y_new; smooth solutions stay below as dt falls but for
+ * the step in which a rate turns its sign.
+ */
+
+/* Rates of a state, its power. */
+static status end_rates(const scheme_call *a, const flow_state *s, int i,
+                        double *power) {
+  scheme_work *w = a->w;
+  PASS(need(&w->ei_rate[i], (size_t)a->x->ns * (size_t)a->x->n));
+  PASS(need(&w->alpha_rate[i], a->x->alpha_at[a->x->n]));
+  return flow_rates(a->x, s, a->p->dt, w->ei_rate[i], w->alpha_rate[i], power);
+}
+
+/* d[n] limited by a change of this magnitude. */
+static double bounded(double magnitude, double most) {
+  return magnitude > most ? most / magnitude : 1.0;
+}
+
+/* One end of a step: where values and their rates stand there. */
+typedef struct step_end {
+  const double *y, *f;
+} step_end;
+
+/* Components [n] of one tensor, or one number, from place "at" on. */
+static void interpolate(int n, size_t at, double dt, double s,
+                        const step_end end[2], double *y) {
+  const double *old = end[0].y + at;
+  double change[6], d[2][6], in[2];
+  for (int i = 0; i < n; ++i) change[i] = end[1].y[at + (size_t)i] - old[i];
+  double most = sqrt(tensor_dot(n, change, change));
+  for (int k = 0; k < 2; ++k) {
+    for (int i = 0; i < n; ++i)
+      d[k][i] = dt * end[k].f[at + (size_t)i] - change[i];
+    in[k] = bounded(sqrt(tensor_dot(n, d[k], d[k])), most);
+  }
+  for (int i = 0; i < n; ++i)
+    y[at + (size_t)i] =
+        old[i] + s * change[i] +
+        s * (1 - s) * ((1 - s) * in[0] * d[0][i] - s * in[1] * d[1][i]);
+}
+
+/* The part of the step at t. */
+static double part_at(const scheme_call *a, double t) {
+  return (t - a->old->t) / (a->now->t - a->old->t);
+}
+
+/* between.c */
+static status hermite_between(const scheme_call *a, flow_state *mid) {
+  const flow *x = a->x;
+  const scheme_work *w = a->w;
+  const size_t ns = (size_t)x->ns, n = (size_t)x->n;
+  const double s = part_at(a, mid->t), dt = a->p->dt;
+  double power;
+  PASS(end_rates(a, a->old, 0, &power));
+  PASS(end_rates(a, a->now, 1, &power));
+  const step_end ei[2] = {{a->old->ei, w->ei_rate[0]},
+                          {a->now->ei, w->ei_rate[1]}};
+  const step_end alpha[2] = {{a->old->alpha, w->alpha_rate[0]},
+                             {a->now->alpha, w->alpha_rate[1]}};
+  for (size_t i = 0; i < ns * n; i += ns)
+    interpolate(x->ns, i, dt, s, ei, mid->ei);
+  for (size_t i = 0; i < x->alpha_at[n]; ++i)
+    interpolate(1, i, dt, s, alpha, mid->alpha);
+  return OK;
+}
+
+status scheme_dissipated(const scheme_call *a, double t, double *energy) {
+  double zero = 0.0, power[2];
+  PASS(end_rates(a, a->old, 0, &power[0]));
+  PASS(end_rates(a, a->now, 1, &power[1]));
+  const step_end lost[2] = {{&zero, &power[0]},
+                            {&a->out->dissipated, &power[1]}};
+  interpolate(1, 0, a->p->dt, part_at(a, t), lost, energy);
   return OK;
 }
 
@@ -26,8 +178,6 @@ status scheme_work_new(scheme_work **out) {
   PASS_NEW(*out, 1);
   return OK;
 }
-
-void linear_map_free(linear_map *m) { RELEASE(m->P, m->Q0, m->Q1, m->Q); }
 
 void scheme_work_free(scheme_work *w) {
   if (w == NULL) return;

@@ -41,36 +41,31 @@ void add_scaled(size_t n, const double *x, double a, const double *v,
 void linear_map_free(linear_map *m);
 status need(double **array, size_t n); /* allocate if NULL */
 
-/* linear.c: the map of a kind (arrays that are NULL are made) and its D[ns*ns];
- * those of all kinds into w, if others are there; X = exp(A) - I for A[n*n]. */
+/* linear_step.c: the map of a kind (arrays that are NULL are made) and its
+ * D[ns*ns]; those of all kinds into w, if others are there. */
 status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
                        linear_map *m, double *D);
 status linear_maps(const flow *x, const scheme_step *p, int exact,
                    scheme_work *w);
-status exponential_less_one(int n, const double *A, double *X);
-/* linear_step.c; y[m->n] of point k from the old state for the new strain e */
+/* y[m->n] of point k from the old state for the new strain e */
 void linear_at(const flow *x, const linear_map *m, int k, const flow_state *old,
                const double *e, double *y);
 status linear_advance(const scheme_call *a, int exact);
 status exponential_between(const scheme_call *a, flow_state *mid);
 /* newton.c */
 status newton_advance(const scheme_call *a);
-/* series.c, relaxing.c: for laws with "series", "relaxing"; m->P, Q0, Q1 are
+/* linear.c: by the Jacobian of the law; X = exp(A) - I for A[n*n]. */
+status general_map(const flow_kind *k, const scheme_step *p, int exact,
+                   linear_map *m, double *D);
+status exponential_less_one(int n, const double *A, double *X);
+/* series.c: for laws with "series", "relaxing"; m->P, Q0, Q1 are
  * there, D as if e_zz of plane stress were given. */
 status series_map(const flow_kind *k, const scheme_step *p, int exact,
                   linear_map *m, double *D);
 status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
                     linear_map *m, double *D);
-/* 1 - (1 - exp(-z))/z */
-double relaxing_late_share(double z);
 /* The map and D for the strains in the plane, sigma_zz = 0.
  * ERR_SINGULAR: nothing resists e_zz. */
 status plane_stress_map(const law_elastic *el, linear_map *m, double *D);
-/* between.c */
-status hermite_between(const scheme_call *a, flow_state *mid);
-/* explicit.c */
-status euler_advance(const scheme_call *a);
-status heun_advance(const scheme_call *a);
-status rk4_advance(const scheme_call *a);
 
 #endif

@@ -5,9 +5,24 @@
 #ifndef PROTIS_MSH_MSH_H
 #define PROTIS_MSH_MSH_H
 
-#include "mesh/msh/keys.h"
 #include "mesh/msh/raw_mesh.h"
 #include "mesh/msh/scan.h"
+
+#include <stdint.h>
+
+/* Ids by key, a hash table that grows. */
+typedef struct key_table {
+  int n;         /* keys */
+  size_t n_slot; /* power of two, or 0 */
+  uint64_t *key; /* [n_slot] */
+  int *id;       /* [n_slot] id + 1, 0: empty */
+} key_table;
+
+uint64_t table_key(int upper, long lower);        /* two 32-bit numbers */
+int table_find(const key_table *t, uint64_t key); /* id or -1 */
+/* The id of the key; a new key gets the id "n" of before. */
+status table_add(key_table *t, uint64_t key, int *id);
+void table_free(key_table *t);
 
 typedef struct element_type { /* of gmsh, its number is the row */
   int dim, n_node;

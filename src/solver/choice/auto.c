@@ -4,7 +4,7 @@
  * the number of unknowns m.
  *
  * No friction: the tangential unknowns are eliminated and the normal ones are
- * solved for by active sets, of the opening nodes only (opened.h), and by
+ * solved for by active sets, of the opening nodes only, and by
  * NEWTON where these do not converge. The full problem is taken for the first
  * steps from a warm start, which often suffice, and where the normal form
  * fails.

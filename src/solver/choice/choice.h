@@ -50,6 +50,8 @@ typedef struct attempt {
   int max_iter; /* 0: the solver's own limit */
 } attempt;
 
+/* Save or read the data of the workspace of a row of solver_list. */
+status attempt_archive(const contact_solver *s, int row, archive *a);
 /* One attempt with one solver. STOPPED_UNFIT: it cannot treat the problem, the
  * log says why. rep->outcome and residual are those of the solver. */
 status attempt_run(contact_solver *s, const contact_problem *cp,

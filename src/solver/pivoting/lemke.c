@@ -273,7 +273,8 @@ static const option lemke_options[] = {
 };
 /* clang-format on */
 
-static const char *const corrector_name[N_CORRECTOR] = {"newton", "sor"};
+static const solver_ops *const correctors[N_CORRECTOR] = {&newton_solver,
+                                                          &sor_solver};
 
 static void lemke_release(void *work) {
   lemke_work *w = work;
@@ -316,8 +317,7 @@ static void lemke_release(void *work) {
 
 static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
   for (int i = 0; i < N_CORRECTOR && cp->dim == 3; ++i) {
-    const solver_ops *ops = solver_find(corrector_name[i]);
-    if (ops == NULL || !(ops->handles & SOLVES_3D)) continue;
+    const solver_ops *ops = correctors[i];
     if ((ops->handles & NEEDS_STIFFNESS) && cp->A == NULL) continue;
     char *param = NULL;
     PASS_NEW(param, ops->param_size + 1);

@@ -2,8 +2,8 @@
  * Admissible contact forces of a problem whose compliance is known: common
  * parts of the methods for them.
  */
-#ifndef PROTIS_FORCE_FORCE_SET_H
-#define PROTIS_FORCE_FORCE_SET_H
+#ifndef PROTIS_CONTACT_FORCE_SET_H
+#define PROTIS_CONTACT_FORCE_SET_H
 
 #include "contact/contact.h"
 

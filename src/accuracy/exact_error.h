@@ -2,8 +2,8 @@
  * Difference between the solution of an increment and the closed form of
  * *REFERENCE: the true error, in the norms of the estimates.
  */
-#ifndef PROTIS_CLOSED_FORM_EXACT_ERROR_H
-#define PROTIS_CLOSED_FORM_EXACT_ERROR_H
+#ifndef PROTIS_ACCURACY_EXACT_ERROR_H
+#define PROTIS_ACCURACY_EXACT_ERROR_H
 
 #include "fem/fem.h"
 #include "model/model.h"

@@ -19,7 +19,7 @@
  * solutions.
  */
 #include "base/memory.h"
-#include "contact/force/force_set.h"
+#include "contact/force_set.h"
 #include "solver/solver.h"
 
 #include <cblas.h>

@@ -3,8 +3,8 @@
  * (CPR98, problem N3) and with given normal forces (problem D3). Each is again
  * a contact problem for any solver; its solution is transformed back.
  */
-#ifndef PROTIS_FORM_FORM_H
-#define PROTIS_FORM_FORM_H
+#ifndef PROTIS_CONTACT_FORMULATION_H
+#define PROTIS_CONTACT_FORMULATION_H
 
 #include "contact/contact.h"
 

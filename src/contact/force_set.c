@@ -1,6 +1,6 @@
 
 /* Admissible forces (force_set.h). */
-#include "contact/force/force_set.h"
+#include "contact/force_set.h"
 
 #include "base/memory.h"
 

@@ -30,7 +30,7 @@
  * rho is a multiple of the diagonal of A, equal in the tangents of a node.
  */
 #include "base/memory.h"
-#include "contact/force/force_set.h"
+#include "contact/force_set.h"
 #include "solver/fixed_point.h"
 #include "solver/local.h"
 #include "solver/solver.h"

@@ -4,7 +4,7 @@
  * Where the closed form has displacements alone, its strains are central
  * differences of fourth order over a small part of the element.
  */
-#include "accuracy/closed_form/exact_error.h"
+#include "accuracy/exact_error.h"
 
 #include "accuracy/space.h"
 #include "base/memory.h"
