@@ -34,8 +34,6 @@ struct archive {
   archive_item *item; /* [n] in the order they were named */
 };
 
-/* Bytes before those of HDF5. */
-enum { ARCHIVE_SEAL = 512 };
 
 /*
  * The seal of an archive, text before the bytes of HDF5:

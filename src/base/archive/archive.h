@@ -49,6 +49,8 @@ status archive_bytes(archive *a, const char *name, void *v, size_t n);
 status archive_write(archive *a, const char *path, const char *before);
 /* ERR_FILE: missing, not a file of Protis, of another layout, damaged. */
 status archive_read(const char *path, archive **out);
+/* Bytes of the seal, before those of HDF5. */
+enum { ARCHIVE_SEAL = 512 };
 /* Write the seal of a complete file and synchronise it. ERR_FILE. */
 status archive_seal(const char *path);
 
