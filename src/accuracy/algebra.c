@@ -107,8 +107,8 @@ static int solve_balance(int k, double *G, double *b, double *root,
   return 1;
 }
 
-static status pair_balance(const contact_problem *cp,
-                           const inverse_energy *inverse, pair *p, int *done) {
+status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
+                    pair *p, int *done) {
   int m = cp->m, k = inverse->n_kernel;
   OWNED double *Z = NULL, *G = NULL, *y = NULL, *root = NULL;
   OWNED int *pivot = NULL;

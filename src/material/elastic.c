@@ -5,8 +5,10 @@
  * No square root and no constant with a dimension: scaling the moduli by a
  * power of two scales every entry exactly.
  */
-#include "base/memory.h"
 #include "material/material.h"
+
+#include "base/memory.h"
+#include "deck/deck.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -9,8 +9,8 @@
 #ifndef PROTIS_MATERIAL_MATERIAL_H
 #define PROTIS_MATERIAL_MATERIAL_H
 
+#include "base/message.h"
 #include "base/status.h"
-#include "deck/deck.h"
 #include "deck/quantity.h"
 
 typedef enum { PLANE_STRAIN, PLANE_STRESS, AXISYMMETRIC, SOLID_3D } kinematics;
@@ -50,10 +50,11 @@ typedef struct elastic_table {
   double relaxed[2];      /* parts of G and K that the sets are without: those
                              of elastic_at are whole, - */
 } elastic_table;
+struct card; /* deck/deck.h */
 /* From the data lines of a card: the constants of a set over any number of
  * lines, then its temperature (may be left out if there is one set). Errors go
  * to the log (n = 0 if a set is not whole); ERR_MEMORY. */
-status elastic_table_read(const card *c, elastic_type type,
+status elastic_table_read(const struct card *c, elastic_type type,
                           const char *material_name, message_log *log,
                           elastic_table *table);
 /* elastic_matrix() of the constants at a temperature. */

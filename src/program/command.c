@@ -128,11 +128,11 @@ static int no_memory(void) {
   return 5;
 }
 
-static int print_keywords(const char *name) {
-  if (inform_keywords(name)) return 0;
-  const char *near = inform_nearest_card(name);
-  if (near == NULL) return wrong("there is no card ", name);
-  return mean("there is no card ", name, near);
+static int print_keywords(const char *card) {
+  if (inform_keywords(card)) return 0;
+  const char *near = inform_nearest_card(card);
+  if (near == NULL) return wrong("there is no card ", card);
+  return mean("there is no card ", card, near);
 }
 
 /* Not one of the words that there are; the nearest, or where they stand. */
