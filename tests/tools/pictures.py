@@ -15,6 +15,7 @@ import unittest
 import xml.etree.ElementTree as tree
 
 sys.path.insert(0, "tools")
+import deck_tools
 import numpy as np
 from pictures import results
 
@@ -72,7 +73,8 @@ SPACE = "{http://www.w3.org/1999/xhtml}"
 def run(*command):
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise AssertionError(f"{command}: exit {done.returncode}: {done.stderr}")
+        raise AssertionError(
+            f"{command}: exit {done.returncode}: {done.stderr}")
     return done.stdout
 
 
@@ -92,7 +94,12 @@ class Walls(unittest.TestCase):
         cls.folder.cleanup()
 
     def check(self, job):
-        said = run("tools/plot_contact", f"{job}.dat", f"{job}.svg", "walls", "x")
+        said = run(
+    "tools/plot_contact",
+    f"{job}.dat",
+    f"{job}.svg",
+    "walls",
+     "x")
         tree.parse(f"{job}.svg")
         svg = pathlib.Path(f"{job}.svg").read_text(encoding="utf-8")
         found = re.findall(r"^(.*): largest pressure (\S+), shear ([^ ;]+)",
@@ -128,71 +135,68 @@ class Walls(unittest.TestCase):
 
 
 class Page(unittest.TestCase):
-    """JOB.html of two jobs."""
+    """JOB.html of a job with warnings and an error of the mesh."""
 
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-        cls.pages = {}
-        for name in ("hertz_line/hertz_exact", "hild_triangle/hild_triangle"):
-            run(PROGRAM, f"input/{name}.inp", "-o", cls.folder.name, "--quiet")
-            job = pathlib.Path(cls.folder.name) / name.split("/")[1]
-            cls.pages[job] = run("tools/report", str(job)).strip()
+        lines = deck_tools.read_deck(
+            pathlib.Path("input/hild_triangle/hild_triangle.inp"))
+        lines = deck_tools.insert_in_steps(lines, "*ACCURACY, MESH=YES")
+        job = pathlib.Path(cls.folder.name) / "hild"
+        job.with_suffix(".inp").write_text("\n".join(lines), encoding="utf-8")
+        run(PROGRAM, f"{job}.inp", "-o", cls.folder.name, "--quiet")
+        cls.page = run("tools/report", str(job)).strip()
+        cls.data = json.loads(job.with_suffix(".json").read_text())
 
     @classmethod
     def tearDownClass(cls):
         cls.folder.cleanup()
 
     def test_figures_are_those_of_the_json(self):
-        for job, page in self.pages.items():
-            data = json.loads(job.with_suffix(".json").read_text())
-            found = {}
-            for e in tree.parse(page).iter(SPACE + "data"):
-                value = data
-                for part in e.get("data-json").split("."):
-                    value = value[int(part) if part.isdigit() else part]
-                self.assertEqual(float(e.get("value")), value)
-                self.assertTrue(math.isclose(float(e.text), value,
-                                             rel_tol=6e-4), e.text)
-                found[e.get("data-json")] = value
-            wanted = ["exit.code", "cost.cpu"]
-            for part in ("accuracy", "sizes"):
-                wanted += [f"{part}.{k}" for k, v in data[part].items()
-                           if isinstance(v, (int, float))]
-            wanted += [f"cost.stages.{i}.cpu"
-                       for i, s in enumerate(data["cost"]["stages"])
-                       if s["calls"]]
-            wanted += [f"effects.{i}.expected_cpu_percent"
-                       for i, e in enumerate(data["effects"])]
-            self.assertEqual([k for k in wanted if k not in found], [])
+        found = {}
+        for e in tree.parse(self.page).iter(SPACE + "data"):
+            value = self.data
+            for part in e.get("data-json").split("."):
+                value = value[int(part) if part.isdigit() else part]
+            self.assertEqual(float(e.get("value")), value)
+            self.assertTrue(math.isclose(float(e.text), value, rel_tol=6e-4))
+            found[e.get("data-json")] = value
+        wanted = ["exit.code", "cost.cpu", "accuracy.mesh_error_percent"]
+        for part in ("accuracy", "sizes"):
+            wanted += [f"{part}.{k}" for k, v in self.data[part].items()
+                       if isinstance(v, (int, float))]
+        wanted += [f"cost.stages.{i}.cpu" for i, s in enumerate(
+            self.data["cost"]["stages"]) if s["calls"]]
+        wanted += [f"effects.{i}.expected_cpu_percent"
+                   for i, e in enumerate(self.data["effects"])]
+        wanted += [f"contacts.{i}.{k}"
+                   for i, c in enumerate(self.data["contacts"])
+                   for k, v in c.items() if isinstance(v, (int, float))]
+        self.assertEqual([k for k in wanted if k not in found], [])
 
     def test_page_needs_nothing_but_itself(self):
-        for page in self.pages.values():
-            text = pathlib.Path(page).read_text(encoding="utf-8")
-            for word in re.findall(r'(?:src|href|action)="([^"]*)"', text):
-                self.assertRegex(word, "^(#|data:)")
-            self.assertNotIn("<script", text)
-            self.assertNotRegex(text, r"url\([^#]")
-            ids = re.findall(r'\sid="([^"]*)"', text)
-            self.assertEqual(len(ids), len(set(ids)))
+        text = pathlib.Path(self.page).read_text(encoding="utf-8")
+        for word in re.findall(r'(?:src|href|action)="([^"]*)"', text):
+            self.assertRegex(word, "^(#|data:)")
+        self.assertNotIn("<script", text)
+        self.assertNotRegex(text, r"url\([^#]")
+        ids = re.findall(r'\sid="([^"]*)"', text)
+        self.assertEqual(len(ids), len(set(ids)))
 
     def test_page_shows_deck_warnings_and_reasons(self):
-        for job, page in self.pages.items():
-            text = " ".join(tree.parse(page).getroot().itertext())
-            data = json.loads(job.with_suffix(".json").read_text())
-            for effect in data["effects"]:
-                self.assertIn(effect["why"], text)
-            for warning in data["warnings"]:
-                self.assertIn(warning["text"], text)
-            self.assertIn(data["title"], text)
-            self.assertIn("*SOLID SECTION", text)
-            self.assertIn(data["version"], text)
+        text = " ".join(tree.parse(self.page).getroot().itertext())
+        self.assertGreater(len(self.data["warnings"]), 0)
+        for part, key in (("effects", "why"), ("warnings", "text")):
+            for entry in self.data[part]:
+                self.assertIn(entry[key], text)
+        for word in (self.data["title"],
+                     self.data["version"], "*SOLID SECTION"):
+            self.assertIn(word, text)
 
     def test_page_has_its_pictures(self):
-        for job, page in self.pages.items():
-            svg = "{http://www.w3.org/2000/svg}svg"
-            count = len(list(tree.parse(page).iter(svg)))
-            self.assertGreaterEqual(count, 3 if "hild" in job.name else 4)
+        svg = "{http://www.w3.org/2000/svg}svg"
+        self.assertEqual(len(list(tree.parse(self.page).iter(svg))), 4)
 
 
 class Gallery(unittest.TestCase):
@@ -214,17 +218,15 @@ class Refused(unittest.TestCase):
     """What cannot be drawn is said in a line."""
 
     def test_missing_results_are_named(self):
-        for command in (["tools/report", "nowhere/job"],
-                        ["tools/plot_contact", "nowhere/job.dat", "x.png"]):
-            done = subprocess.run(command, capture_output=True, text=True,
-                                  check=False)
-            self.assertEqual(done.returncode, 1)
-            self.assertRegex(done.stderr, "nowhere/job: no results")
-            self.assertEqual(done.stderr.count("\n"), 1)
+        done = subprocess.run(["tools/report", "nowhere/job"], check=False,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, "^report: nowhere/job: no results.*\n$")
 
 
 if __name__ == "__main__":
-    suite = unittest.defaultTestLoader.loadTestsFromModule(sys.modules[__name__])
+    suite = unittest.defaultTestLoader.loadTestsFromModule(
+        sys.modules[__name__])
     done = unittest.TextTestRunner(verbosity=2).run(suite)
     bad = len(done.failures) + len(done.errors)
     print(f"{100 * (done.testsRun - bad) // max(done.testsRun, 1)}%: Checks: "

@@ -1,16 +1,18 @@
 """Pictures of Protis' results: what tools/plot, tools/report and the gallery
 share. Needs numpy, h5py and matplotlib."""
 import pathlib
+import warnings
 
 import matplotlib
 
 matplotlib.use("Agg")
 
-from matplotlib import colors, pyplot  # noqa: E402  after the choice of the backend
+from matplotlib import colors, pyplot  # noqa: E402  behind the backend
 
 BLUE, RED, GREEN, GREY = "#1b4f9c", "#b5432a", "#2d7a3a", "#666666"
 OPEN, SLIP, STICK = "#ffffff", "#f2a100", "#b0124e"
 
+warnings.filterwarnings("ignore", "Glyph .* missing")
 pyplot.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 10, "axes.titlesize": 10.5,
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
@@ -18,6 +20,11 @@ pyplot.rcParams.update({
     "legend.frameon": False, "legend.fontsize": 9.5, "lines.linewidth": 1.5,
     "lines.markersize": 3.5, "savefig.dpi": 150, "svg.fonttype": "none",
     "svg.hashsalt": "protis", "axes.formatter.useoffset": False})
+
+
+def plain(text):
+    """Text of a user for a picture: no formula."""
+    return str(text).replace("$", r"\$")
 
 
 def new(width=9.0, height=4.2, columns=1, ratios=None):
@@ -31,7 +38,8 @@ def new(width=9.0, height=4.2, columns=1, ratios=None):
 
 def legend_below(axes, columns=3, handles=None):
     """The legend under an axes, off its curves and labels."""
-    handles = handles if handles is not None else axes.get_legend_handles_labels()[0]
+    if handles is None:
+        handles = axes.get_legend_handles_labels()[0]
     if handles:
         axes.legend(handles=handles, loc="upper center", ncol=columns,
                     bbox_to_anchor=(0.5, 0), columnspacing=1.2,

@@ -13,10 +13,11 @@ MARKS = {0: "o", 1: "^", 2: "s"}
 
 def title_of(name):
     """What the colours mean, in words."""
-    names = {"mises": "von Mises stress", "u": "displacement"}
-    if name.startswith("stress_"):
-        return "stress " + name[7:]
-    return names.get(name, name.replace("_", " "))
+    names = {"mises": "von Mises stress", "u": "displacement",
+             "stress_tt": "hoop stress"}
+    if name in names:
+        return names[name]
+    return name.replace("_", " ")
 
 
 def comma(unit):
@@ -36,7 +37,7 @@ def default_field(job):
 def element_values(job, name):
     """A field per element; a vector by its length, points by their mean."""
     values = job.field(name)
-    if values.ndim == 2:
+    if values.ndim == 2 and values.shape[1] == 3:
         values = np.linalg.norm(values, axis=1)
     if len(values) == len(job.points) != len(job.elements):
         values = values[job.elements].mean(axis=1)
@@ -80,9 +81,16 @@ def norm_of(values, symmetric=None):
     return colors.Normalize(-top if symmetric else 0.0, top), symmetric
 
 
-def colour_bar(figure, axes, norm, palette, label, **how):
-    bar = figure.colorbar(cm.ScalarMappable(norm, palette), ax=axes,
-                          label=label, **how)
+def colour_bar(figure, axes, norm, palette, label, extend="neither"):
+    """Beside the axes and as high; above where the axes are flat."""
+    (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+    shown = cm.ScalarMappable(norm, palette)
+    if axes.get_aspect() != "auto" and y1 - y0 < 0.55 * (x1 - x0):
+        bar = figure.colorbar(shown, ax=axes, label=label, extend=extend,
+                              location="top", shrink=0.8, aspect=30)
+    else:
+        own = axes.inset_axes([1.03, 0.0, 0.045, 1.0])
+        bar = figure.colorbar(shown, cax=own, label=label, extend=extend)
     bar.outline.set_visible(False)
     return bar
 
@@ -120,12 +128,17 @@ def line_of(contact, points):
 
 
 def obstacle_2d(axes, surface, normal, depth):
-    """A line with ticks on the side of the obstacle."""
+    """A line with ticks on the obstacle's side; depth: (x, y) of a tick."""
     axes.plot(*surface.T, color="#333333", lw=1.3, zorder=5)
-    along = np.r_[0, np.cumsum(np.linalg.norm(np.diff(surface, axis=0), axis=1))]
-    if along[-1] <= 0:
-        return
-    at = np.arange(0.25, along[-1] / depth, 0.5) * depth
+    along = np.r_[
+    0,
+    np.cumsum(
+        np.linalg.norm(
+            np.diff(
+                surface,
+                axis=0),
+                 axis=1))]
+    at = np.arange(0.25, along[-1] / depth[0], 0.5) * depth[0]
     foot = np.array([np.interp(at, along, surface[:, k]) for k in (0, 1)]).T
     out = np.array([np.interp(at, along, normal[:, k]) for k in (0, 1)]).T
     side = np.array([-out[:, 1], out[:, 0]]).T
@@ -134,29 +147,44 @@ def obstacle_2d(axes, surface, normal, depth):
         colors="#444444", lw=0.8, zorder=4))
 
 
-def contact_2d(axes, job, scale, wide):
-    """Obstacle, pressure and status of each contact; wide: what is shown."""
-    depth, top = 0.034 * wide, 0.2 * wide
+def pressure_2d(axes, foot, out, share):
+    """The pressure over a line, as lengths share*out."""
+    tip = foot + out * share[:, None]
+    axes.fill(*np.concatenate([foot, tip[::-1]]).T, color=BLUE, alpha=0.25,
+              lw=0,
+              zorder=3)
+    near = np.convolve(share > 0, [1, 1, 1], "same") > 0
+    tip[~near] = np.nan
+    axes.plot(*tip.T, color=BLUE, lw=1.2, zorder=6)
+
+
+def marks(axes, contact, points, shown, size):
+    """Nodes that are shown in the marks of their statuses."""
+    for k in COLOURS:
+        mine = (contact.status == k) & shown
+        if mine.any():
+            axes.plot(*points[mine].T, MARKS[k], color=COLOURS[k], ms=size,
+                      mec="#222222", mew=0.1 * size, zorder=7,
+                      label=meaning(contact, k))
+
+
+def contact_2d(axes, job, scale, spans):
+    """Obstacle, pressure and status of each contact; spans: of what is shown
+    along x and y."""
     most = max((c.pressure.max() for c in job.contacts), default=0)
     for contact in job.contacts:
-        rest = contact.points
-        points = (rest + scale * job.field("u")[contact.node])[:, :2]
+        points = (contact.points
+                  + scale * job.field("u")[contact.node])[:, :2]
         normal = contact.normal[:, :2]
         faced = points + scale * contact.gap[:, None] * normal
-        for part in line_of(contact, rest):
-            obstacle_2d(axes, faced[part], normal[part], depth)
+        for part in line_of(contact, contact.points):
+            obstacle_2d(axes, faced[part], normal[part], 0.034 * spans)
             if most > 0:
-                tip = faced[part] + normal[part] * (
-                    top * contact.pressure[part] / most)[:, None]
-                axes.fill(*np.concatenate([faced[part], tip[::-1]]).T,
-                          color=BLUE, alpha=0.25, lw=0, zorder=3)
-                axes.plot(*tip.T, color=BLUE, lw=1.2, zorder=6)
-        inside = np.ptp(points, axis=0).max() / max(len(points), 1)
-        size = np.clip(250 * inside / wide, 1.2, 4.6)
-        for k in COLOURS:
-            mine = contact.status == k
-            axes.plot(*points[mine].T, MARKS[k], color=COLOURS[k],
-                      mec="#222222", mew=0.1 * size, ms=size, zorder=7)
+                pressure_2d(axes, faced[part], 0.2 * spans * normal[part],
+                            contact.pressure[part] / most)
+        apart = np.ptp(points, axis=0).max() / max(len(points), 1)
+        marks(axes, contact, points, True,
+              np.clip(250 * apart / spans[0], 1.2, 4.6))
 
 
 def moved(job, scale):
@@ -165,23 +193,20 @@ def moved(job, scale):
 
 
 def keys(axes, job, pressure=True):
-    """Handles of the legend: pressure and the statuses that occur."""
-    found = axes.get_legend_handles_labels()[0]
-    if job.contacts and pressure:
-        most = max(c.pressure.max() for c in job.contacts)
-        if most > 0:
-            unit = job.unit("pressure", "contact")
-            found.append(lines.Line2D(
-                [], [], color=BLUE, lw=1.5,
-                label=f"pressure ≤ {most:.4g} {unit}".rstrip()))
-    shown = {}
-    for contact in job.contacts:
-        for k in COLOURS:
-            if (contact.status == k).any():
-                shown.setdefault(meaning(contact, k), k)
-    return found + [lines.Line2D([], [], ls="", marker=MARKS[k],
-                                 color=COLOURS[k], mec="#222222", mew=0.5,
-                                 label=word) for word, k in shown.items()]
+    """Handles of the legend: the largest pressure, and what has been drawn."""
+    found = []
+    most = max((c.pressure.max() for c in job.contacts), default=0)
+    if pressure and most > 0:
+        text = f"pressure ≤ {most:.4g} {job.contacts[0].unit}".rstrip()
+        found.append(lines.Line2D([], [], color=BLUE, lw=1.5, label=text))
+    handles, labels = axes.get_legend_handles_labels()
+    for label, drawn in dict(zip(labels, handles)).items():
+        if drawn.__class__ is lines.Line2D:  # marks as large as can be read
+            drawn = lines.Line2D([], [], ls="", marker=drawn.get_marker(),
+                                 color=drawn.get_color(), mec="#222222",
+                                 mew=0.5, ms=4.6, label=label)
+        found.append(drawn)
+    return found
 
 
 def mesh_2d(axes, job, points, values, norm, palette, seen):
@@ -193,7 +218,7 @@ def mesh_2d(axes, job, points, values, norm, palette, seen):
     fine = size / (seen[:, 1] - seen[:, 0]).max()
     face = collections.PolyCollection(
         shape[inside], array=values[inside] if values is not None else None,
-        cmap=palette, norm=norm, lw=min(0.45, 12 * fine),
+        cmap=palette, norm=norm, lw=np.clip(12 * fine, 0.2, 0.45),
         edgecolor="#20304090" if fine > 0.006 else "face", zorder=2)
     if values is None:
         face.set_facecolor("#e8edf3")
@@ -210,12 +235,12 @@ def draw_2d(axes, job, name=None, scale=None, window=None, stretch=False):
     points = job.points + scale * job.field("u")
     values = element_values(job, name) if name else None
     seen = np.array([[points[:, k].min(), points[:, k].max()] for k in (0, 1)])
-    wide = (seen[:, 1] - seen[:, 0]).max()
     if window is not None:
         seen = np.array(window, float)
-        wide = (seen[:, 1] - seen[:, 0]).max()
-    if stretch:
-        wide = seen[1, 1] - seen[1, 0]
+    spans = seen[:, 1] - seen[:, 0]
+    wide = spans.max()
+    if not stretch:
+        spans = np.full(2, wide)
     shown = values
     if values is not None and window is not None:
         middle = points[job.elements].mean(axis=1)[:, :2]
@@ -229,9 +254,9 @@ def draw_2d(axes, job, name=None, scale=None, window=None, stretch=False):
         points[edges][:, :, :2], colors="#203040", lw=0.9, zorder=3))
     if moved(job, scale) > 0.005 * wide:
         axes.add_collection(collections.LineCollection(
-            job.points[edges][:, :, :2], colors="#999999", lw=0.9, ls="--",
-            zorder=2.5, label="before loading"))
-    contact_2d(axes, job, scale, wide)
+            job.points[edges][:, :, :2], colors="#a0a0a0", lw=1.0,
+            zorder=1, label="before loading"))
+    contact_2d(axes, job, scale, spans)
     axes.set_aspect("auto" if stretch else "equal")
     axes.grid(False)
     if window is not None:
@@ -284,25 +309,42 @@ def frame_3d(axes, view, size):
     """A small triad of axes at the lower left, and how large things are."""
     axes.set_aspect("equal")
     axes.axis("off")
-    triad = axes.inset_axes([-0.02, -0.2, 0.18, 0.18])
-    triad.set_aspect("equal")
-    triad.axis("off")
-    triad.set_xlim(-1.3, 1.3)
-    triad.set_ylim(-1.3, 1.3)
+    foot = {"xy": (0.05, -0.1), "xycoords": "axes fraction",
+            "textcoords": "offset points", "color": GREY}
     for k, name in enumerate("xyz"):
-        tip = view[:2, k]
-        triad.annotate("", tip, (0, 0), arrowprops={
-            "arrowstyle": "-|>", "lw": 1, "color": GREY, "shrinkA": 0,
-            "shrinkB": 0})
-        if np.linalg.norm(tip) > 0.2:
-            triad.text(*(1.35 * tip), name, ha="center", va="center",
-                       color=GREY, fontsize=9)
+        tip = 22 * view[:2, k]
+        axes.annotate("", xytext=tip, arrowprops={
+            "arrowstyle": "<|-", "lw": 1, "color": GREY, "shrinkA": 0,
+            "shrinkB": 0}, **foot)
+        if np.linalg.norm(view[:2, k]) > 0.2:
+            axes.annotate(name, xytext=tip + 7 * view[:2, k], ha="center",
+                          va="center", fontsize=9, **foot)
     axes.text(0.5, -0.02, size, transform=axes.transAxes, ha="center",
               va="top", color=GREY, fontsize=9)
 
 
 def size_of(spans, unit):
     return " × ".join(f"{s:.4g}" for s in spans) + f" {unit}".rstrip()
+
+
+def in_sight(flat, faces, at, normal):
+    """Which points no face hides from the eye. flat [n, 3]: right, up, depth of
+    the nodes of the faces; at [m, 3]: of the points; normal [m]: share of
+    their outward normals towards the eye."""
+    a, b, c = (flat[faces[:, k]] for k in range(3))
+    (e, f), whole = ((b - a)[:, :2].T, (c - a)[:, :2].T), np.ptp(flat[:, 2])
+    det = e[0] * f[1] - e[1] * f[0]
+    good = np.abs(det) > 1e-9 * np.abs(det).max()
+    shown = normal > 0
+    for i in np.flatnonzero(shown):
+        d = (at[i] - a)[:, :2].T
+        with np.errstate(divide="ignore", invalid="ignore"):
+            s = (d[0] * f[1] - d[1] * f[0]) / det
+            t = (e[0] * d[1] - e[1] * d[0]) / det
+        inside = good & (s > -0.01) & (t > -0.01) & (s + t < 1.01)
+        depth = a[:, 2] + s * (b - a)[:, 2] + t * (c - a)[:, 2]
+        shown[i] = not np.any(depth[inside] > at[i, 2] + 1e-3 * whole)
+    return shown
 
 
 def draw_3d(axes, job, name=None, scale=None, elevation=None, azimuth=-60.0,
@@ -333,14 +375,14 @@ def draw_3d(axes, job, name=None, scale=None, elevation=None, azimuth=-60.0,
     shapes.set_rasterized(len(faces) > 3000)
     axes.add_collection(shapes)
     for contact in job.contacts:
-        if contact.normal.mean(axis=0) @ view[2] <= 0:
-            continue
-        place = points[contact.node] @ view[:2].T
-        for k in COLOURS:
-            mine = contact.status == k
-            axes.plot(*place[mine].T, MARKS[k], color=COLOURS[k], zorder=7,
-                      mec="#222222", mew=0.3,
-                      ms=np.clip(60 / np.sqrt(len(place)), 1.2, 4))
+        place = points[contact.node] @ view.T
+        shown = in_sight(
+    points @ view.T,
+    faces,
+    place,
+     contact.normal @ view[2])
+        marks(axes, contact, place[:, :2], shown,
+              np.clip(60 / np.sqrt(len(place)), 1.2, 4))
     if zoom is not None:
         centre = view[:2] @ zoom[0]
         axes.set_xlim(*(centre[0] + zoom[1] * np.array([-1, 1])))
@@ -353,8 +395,8 @@ def draw_3d(axes, job, name=None, scale=None, elevation=None, azimuth=-60.0,
 
 
 def revolved(job, points, values, turn, parts=48):
-    """Polygons of a body of revolution that lacks a wedge, and their values: its
-    outer surfaces and the two cuts. Rows of polygons: 4 corners."""
+    """Polygons of a body of revolution that lacks a wedge, and their values:
+    its outer surfaces and the two cuts. Rows of polygons: 4 corners."""
     def at(p, angle):
         return np.stack([p[..., 0] * np.cos(angle), p[..., 0] * np.sin(angle),
                          p[..., 1]], axis=-1)
@@ -402,8 +444,7 @@ def draw(figure, axes, job, name=None, legend=True, **how):
     way = draw_2d if flat else draw_round if "turn" in how else draw_3d
     norm, palette, scale = way(axes, job, name, **how)
     if name:
-        colour_bar(figure, axes, norm, palette, label_of(job, name),
-                   shrink=0.8, pad=0.02, extend="max")
+        colour_bar(figure, axes, norm, palette, label_of(job, name), "max")
     if scale != 1:
         axes.set_title(f"displacements × {scale:g}", loc="left")
     if legend:

@@ -36,7 +36,7 @@ class Sphere:
         return self.p0 * root(1 - (r / self.a) ** 2)
 
 
-# ---- friction under Hertz's pressure -------------------------------------------
+# ---- friction under Hertz's pressure -----------------------------------
 
 def cattaneo(line, x, mu, share):
     """Shear traction under the tangential force share*mu*P, and c/a."""
@@ -146,7 +146,7 @@ def sliding(line, x, mu):
             * (half + s) ** (0.5 - e))
 
 
-# ---- torsion (Lubkin) ------------------------------------------------------------
+# ---- torsion (Lubkin) --------------------------------------------------
 
 def elliptic(k):
     """Complete integrals K and E of the modulus k < 1, by the
@@ -196,7 +196,7 @@ class Torsion(Sphere):
             E / (s * s)) * (high - low)
 
 
-# ---- nonlocal friction -----------------------------------------------------------
+# ---- nonlocal friction -------------------------------------------------
 
 def bump(s):
     """The mollifier exp(1/(s^2 - 1)) of mass 1 on ]-1, 1[."""
@@ -211,7 +211,7 @@ def edge_mass(s):
     return np.array([np.sum(bump(t) * (t > -v)) / 2000 for v in s])
 
 
-# ---- time ------------------------------------------------------------------------
+# ---- time --------------------------------------------------------------
 
 def heun(rate, y, steps, h, every):
     """y after every so many of the steps of Heun's method: times, states."""

@@ -5,9 +5,9 @@ import matplotlib.tri
 import numpy as np
 from matplotlib import collections, pyplot
 
-from . import BLUE, GREY, RED, legend_below
+from . import BLUE, GREY, RED, legend_below, plain
 from .body import (COLOURS, MAP, MARKS, boundary, colour_bar, comma, line_of,
-                   meaning, norm_of)
+                   marks, meaning, norm_of)
 from .results import Missing
 
 
@@ -24,7 +24,7 @@ def summary(contact):
             + "; " + counts(contact))
 
 
-# ---- two dimensions: along a line ---------------------------------------------
+# ---- two dimensions: along a line --------------------------------------
 
 def places(job, contact, abscissa):
     """(name of the abscissa, [order of nodes], [their places]) of each part."""
@@ -60,7 +60,11 @@ def draw_line(axes, job, contact, abscissa=None):
             for sign in (1, -1):
                 axes.plot(s, sign * contact.limit[part], color=GREY, lw=1,
                           ls="--", label=label("± limit") if sign > 0 else None)
-        axes.plot(s, contact.pressure[part], color=BLUE, label=label("pressure"))
+        axes.plot(
+    s,
+    contact.pressure[part],
+    color=BLUE,
+     label=label("pressure"))
         if shorn:
             axes.plot(s, contact.slides[part], color=RED,
                       label=label("shear traction"))
@@ -76,14 +80,11 @@ def draw_line(axes, job, contact, abscissa=None):
     axes.axhline(0, color="#444444", lw=0.8)
 
 
-# ---- three dimensions: in the plane --------------------------------------------
+# ---- three dimensions: in the plane ------------------------------------
 
 def plane(contact):
-    """(rows e1, e2 of the plane of a contact, their names)."""
+    """Rows e1, e2 of the plane of a contact, and their names."""
     normal = contact.normal.mean(axis=0)
-    if np.linalg.norm(normal) < 0.3:
-        centre = contact.points - contact.points.mean(axis=0)
-        normal = np.linalg.svd(centre, full_matrices=False)[2][2]
     normal /= np.linalg.norm(normal)
     k = int(np.argmax(np.abs(normal)))
     if abs(normal[k]) > 0.99:
@@ -91,8 +92,36 @@ def plane(contact):
         return np.eye(3)[kept], ["xyz"[i] for i in kept]
     level = np.cross([0.0, 0.0, 1.0], normal)
     level /= np.linalg.norm(level)
-    up = np.cross(normal, level)
-    return np.array([level, up]), ["level", "up the slope"]
+    return np.array([level, np.cross(normal, level)]), ["level", "up the slope"]
+
+
+def flattened(contact):
+    """Places and shear in the plane of a contact, its faces and the names of
+    the axes. A contact that goes round an axis is unrolled, without the faces
+    where it is cut open."""
+    normals = contact.normal
+    axis = np.linalg.svd(normals.T @ normals)[2][2]
+    if np.linalg.norm(normals.mean(axis=0)) > 0.7 or (
+            np.abs(normals @ axis).max() > 0.2):
+        basis, names = plane(contact)
+        return (contact.points @ basis.T, contact.shear @ basis.T,
+                contact.faces, names)
+    axis *= np.sign(axis[np.argmax(np.abs(axis))])
+    off = contact.points - contact.points.mean(axis=0)
+    first = np.eye(3)[np.argmin(np.abs(axis))]
+    first -= axis * (first @ axis)
+    first /= np.linalg.norm(first)
+    second = np.cross(axis, first)
+    angle = np.arctan2(off @ second, off @ first)
+    radius = np.hypot(off @ second, off @ first).mean()
+    along = (np.cos(angle)[:, None] * second - np.sin(angle)[:, None] * first)
+    flat = np.column_stack([radius * angle, contact.points @ axis])
+    shear = np.column_stack([np.sum(contact.shear * along, axis=1),
+                             contact.shear @ axis])
+    whole = np.ptp(angle[contact.faces], axis=1) < np.pi if len(
+        contact.faces) else slice(None)
+    return flat, shear, contact.faces[whole], [
+        "arc, unrolled", "along the axis"]
 
 
 def spacing_of(flat):
@@ -104,40 +133,34 @@ def spacing_of(flat):
 def draw_plane(figure, axes, job, contact, unit):
     """Pressure as colour, shear as arrows, status as marks, seen along the
     normal."""
-    basis, names = plane(contact)
-    flat = contact.points @ basis.T
+    flat, shear, faces, names = flattened(contact)
     gap = spacing_of(flat)
     norm, _ = norm_of(contact.pressure, False)
-    if len(contact.group):
+    if len(contact.group) and names[0][:3] != "arc":
         edges = boundary(contact.group)[0]
         axes.add_collection(collections.LineCollection(
-            (job.points @ basis.T)[edges], colors="#444444", lw=1, zorder=3))
-    if len(contact.faces):
-        mesh = matplotlib.tri.Triangulation(*flat.T, contact.faces)
+            (job.points @ plane(contact)[0].T)[edges], colors="#444444", lw=1,
+            zorder=3))
+    if len(faces):
+        mesh = matplotlib.tri.Triangulation(*flat.T, faces)
         axes.tripcolor(mesh, contact.pressure, cmap=MAP, norm=norm,
                        shading="gouraud", rasterized=True)
         axes.triplot(mesh, color="#20304055", lw=0.3)
     else:
         axes.scatter(*flat.T, c=contact.pressure, cmap=MAP, norm=norm, s=90)
-    colour_bar(figure, axes, norm, MAP, "pressure" + comma(contact.unit),
-               shrink=0.8)
     most = np.abs(contact.slides).max()
     if most > 0:
-        arrows = contact.shear @ basis.T * (2 * gap / most)
+        arrows = shear * (2 * gap / most)
         axes.quiver(*flat.T, *arrows.T, color=RED, angles="xy", zorder=6,
                     scale_units="xy", scale=1, width=0.004)
         axes.update_datalim(flat + arrows)
         axes.plot([], [], color=RED, marker=">", markevery=[-1], ms=5,
                   label=f"shear ≤ {most:.4g} {contact.unit}")
-    for k in COLOURS:
-        mine = contact.status == k
-        if mine.any():
-            axes.plot(*flat[mine].T, MARKS[k], color=COLOURS[k], mec="#222222",
-                      mew=0.4, zorder=5, ms=np.clip(110 / np.sqrt(len(flat)), 1,
-                                                    4), label=meaning(contact, k))
+    marks(axes, contact, flat, True, np.clip(110 / np.sqrt(len(flat)), 1, 4))
     axes.set_aspect("equal")
     axes.grid(False)
     axes.margins(0.08)
+    colour_bar(figure, axes, norm, MAP, "pressure" + comma(contact.unit))
     for name, label in zip(names, (axes.set_xlabel, axes.set_ylabel)):
         label(name + comma(unit))
 
@@ -164,10 +187,14 @@ def draw(job, title=None, abscissa=None, only=None):
             draw_plane(figure, panel, job, contact, job.length)
         else:
             draw_line(panel, job, contact, abscissa)
-        panel.set_title(f"{contact.name}: {counts(contact)}")
+        panel.set_title(plain(f"{contact.name}: {counts(contact)}"))
         legend_below(panel)
     for panel in axes.flat[len(contacts):]:
         panel.axis("off")
     if title:
-        figure.suptitle(textwrap.fill(title, 12 * wide + 40), fontsize=12)
+        figure.suptitle(
+    textwrap.fill(
+        plain(title),
+        12 * wide + 40),
+         fontsize=12)
     return figure, contacts

@@ -23,7 +23,7 @@ def example(name, title, *decks, rows=1, **view):
     return register
 
 
-# ---- frame ---------------------------------------------------------------------
+# ---- frame -------------------------------------------------------------
 
 def thumbnail(axes, job, window, place):
     """The whole body, small, with the part that is shown large."""
@@ -55,9 +55,10 @@ def picture(one, results):
     wide = one.view.get("width", 1.0)
     figure = pyplot.figure(figsize=(9.6, 4.5 if one.rows == 1 else 6.2),
                            layout="constrained")
-    figure.get_layout_engine().set(w_pad=0.08, wspace=0.05)
+    figure.get_layout_engine().set(w_pad=0.08, wspace=0.05,
+                                   rect=(0, 0, 0.985, 1))
     grid = figure.add_gridspec(one.rows, 2, width_ratios=(wide, 1))
-    view = {k: v for k, v in one.view.items() if k not in ("width", "record")}
+    view = {k: v for k, v in one.view.items() if k not in ("width", "at")}
     draw_body(figure, figure.add_subplot(grid[:, 0]), results[0], **view)
     panels = [figure.add_subplot(grid[i, 1]) for i in range(one.rows)]
     one.draw(*results, *panels)
@@ -70,7 +71,8 @@ def picture(one, results):
 def readme(plane, solid):
     """The picture of the README: a plane body and a contact in space."""
     figure = pyplot.figure(figsize=(9.6, 4.9), layout="constrained")
-    figure.get_layout_engine().set(w_pad=0.08, wspace=0.05)
+    figure.get_layout_engine().set(w_pad=0.08, wspace=0.05,
+                                   rect=(0, 0, 0.985, 1))
     left, right = figure.subplots(1, 2, width_ratios=(1, 1.12))
     body.draw(figure, left, plane)
     body.draw(figure, right, solid, elevation=-38.0, zoom=((0, 0, 0), 0.6))
@@ -97,9 +99,9 @@ def tractions(axes, unit="mm", x="x"):
     axes.set_ylim(bottom=0)
 
 
-# ---- contact -------------------------------------------------------------------
+# ---- contact -----------------------------------------------------------
 
-@example("greco", "GRECO block: pressed from above, pushed from the left, mu = 1",
+@example("greco", "GRECO block: pressed and pushed from the left, mu = 1",
          rows=2)
 def greco(job, above, below):
     x, u, p, q = by(job, "x", "u_t", "pressure", "traction_t")
@@ -161,7 +163,7 @@ def block_shear_3d(job, axes):
     axes.plot(x / n, y / n, "o-", color=RED, lw=1, label="Protis")
     axes.set_aspect("equal")
     axes.set_ylim(-0.45, 0.1)
-    label(axes, "T_x/N", "T_y/N")
+    label(axes, "$T_x/N$", "$T_y/N$")
 
 
 @example("lying_block", "Block that nothing but contact and friction holds",
@@ -191,7 +193,12 @@ def spence(job, axes):
     axes.plot(s, 5 * q, color=RED, label="Spence, 5 × shear", **FORM)
     x, found, shear = by(job, "x", "pressure", "traction_t")
     axes.plot(x, found, color=BLUE, label="Protis, pressure", **DOTS)
-    axes.plot(x, 5 * np.abs(shear), color=RED, label="Protis, 5 × shear", **DOTS)
+    axes.plot(
+    x,
+    5 * np.abs(shear),
+    color=RED,
+    label="Protis, 5 × shear",
+     **DOTS)
     axes.axvline(c * a * line.a, color=GREY, lw=0.8, ls=":")
     axes.text(c * a * line.a + 0.004, 80, f"stick up to {c:.3f} a", color=GREY)
     axes.set_xlim(0, 0.26)
@@ -206,7 +213,14 @@ def mindlin_loop(job, above, below):
     s = np.linspace(-line.a, line.a, 400)
     q, _ = closed.cattaneo(line, s, mu, 0.5)
     x, p, shear = by(job, "x", "pressure", "traction_t")
-    above.plot(s, mu * line.pressure(s), color=GREY, ls="--", lw=1, label="mu p")
+    above.plot(
+    s,
+    mu *
+    line.pressure(s),
+    color=GREY,
+    ls="--",
+    lw=1,
+     label="mu p")
     above.plot(s, q, color=RED, label="Cattaneo, shear", **FORM)
     above.plot(x, np.abs(shear), color=RED, label="Protis, shear", **DOTS)
     tractions(above)
@@ -242,7 +256,8 @@ def torsion_sphere_3d(job, above, below):
     below.plot([1e3 * b.columns["angle"][0] for b in blocks],
                [b.columns["torque"][0] for b in blocks], color=RED,
                label="Protis", **DOTS)
-    below.axhline(3 * np.pi * case.mu * case.P * case.a / 16, color=GREY, ls="--",
+    slip = 3 * np.pi * case.mu * case.P * case.a / 16
+    below.axhline(slip, color=GREY, ls="--",
                   lw=1, label="full slip")
     label(below, "angle, 10$^{-3}$ rad", "torque, N mm")
 
@@ -276,7 +291,11 @@ def hild_triangle(job, above, below):
     lame = nu / ((1 + nu) * (1 - 2 * nu))
     beta = p0 * (mu - mu0) / (lame * (mu - np.sqrt((1 - nu) / nu)))
     x, p, q, u = by(job, "x", "pressure", "traction_t", "u_t")
-    above.axhline(p0 - lame * beta, color=BLUE, label="closed form, both", **FORM)
+    above.axhline(
+    p0 - lame * beta,
+    color=BLUE,
+    label="closed form, both",
+     **FORM)
     above.plot(x, p, "o", color=BLUE, ms=4, label="Protis, pressure")
     above.plot(x, np.abs(q), "s", mfc="none", ms=8, color=RED,
                label="Protis, shear")
@@ -288,7 +307,7 @@ def hild_triangle(job, above, below):
     label(below, "x", "displacement along the base")
 
 
-@example("nonlocal_slider", "Linings that slide: nonlocal friction of radius rho",
+@example("nonlocal_slider", "Linings that slide: nonlocal friction",
          width=1.0, window=((-2, 26), (-0.06, 0.12)), scale=1.0,
          stretch=True)
 def nonlocal_slider(job, axes):
@@ -319,14 +338,19 @@ def nonlocal_hertz(job, axes):
             for v in s]
     axes.plot(s + middle, mu * line.pressure(s), color=GREY, ls="--", lw=1,
               label="mu p (Hertz)")
-    axes.plot(s + middle, mu * np.array(mean), color=RED, label="mu R(p)", **FORM)
+    axes.plot(
+    s + middle,
+    mu * np.array(mean),
+    color=RED,
+    label="mu R(p)",
+     **FORM)
     axes.plot(x, np.abs(q), color=RED, label="Protis", **DOTS)
     axes.set_xlim(-0.3, 0.3)
     label(axes, "x, mm", "shear traction, N/mm²")
     axes.set_ylim(bottom=0)
 
 
-# ---- materials -----------------------------------------------------------------
+# ---- materials ---------------------------------------------------------
 
 @example("creep_block", "Maxwell block on a rough floor: creep, relaxation",
          "creep_block/creep_block", "creep_block/held_block", rows=2)
@@ -354,7 +378,8 @@ def lee_radok(job, above, below):
     line, tau = closed.Line(P=1.0, E=1e3), 2.0
     time, a = job.over_time("ZONES", "x_to")
     t = np.linspace(0, 10, 200)
-    above.plot(t, line.a * np.sqrt(1 + t / tau), color=BLUE, label="closed form",
+    above.plot(t, line.a * np.sqrt(1 + t / tau), color=BLUE,
+               label="closed form",
                **FORM)
     above.plot(time - 1, a, color=RED, label="Protis", **DOTS)
     above.set_ylim(0, 0.3)
@@ -418,7 +443,7 @@ def periodic_viscous(job, above, below):
 
 
 @example("relaxing_seal", "Seal: closes hot, relaxes, opens when it cools",
-         width=0.8, scale=20.0, record=1)
+         width=0.8, scale=20.0, at=1.0)
 def relaxing_seal(job, axes):
     E, alpha, gap, tau = 2e5, 1.2e-5, 1e-3, 1000.0
     t = np.r_[np.linspace(0, 1, 50), np.linspace(1, 1 + tau, 300),
@@ -441,4 +466,5 @@ def tempered_strip(job, axes):
     y, s = by(job, "y", "stress_xx", table="ELEMENTS")
     axes.plot(y, s, color=RED, label="Protis", **DOTS)
     axes.axhline(0, color=GREY, lw=0.8)
-    label(axes, "y, mm (0: middle, 1: surface)", "stress along the strip, N/mm²")
+    label(axes, "y, mm (0: middle, 1: surface)",
+          "stress along the strip, N/mm²")

@@ -1,10 +1,9 @@
 """Curves over time, loops, forces, and what errors and stages cost."""
 import math
 
-import numpy as np
 from matplotlib import pyplot
 
-from . import BLUE, GREEN, GREY, RED, legend_below, new
+from . import BLUE, GREEN, RED, legend_below, new, plain
 from .results import Missing
 
 COLOURS = (BLUE, RED, GREEN, "#6b4a9c", "#c77700", "#0b7a87")
@@ -31,7 +30,7 @@ def over_time(job, table, names, title=None):
     shown = {units[n] for n in names}
     axes.set_ylabel(", ".join(sorted(shown)))
     if title:
-        axes.set_title(title)
+        axes.set_title(plain(title))
     legend_below(axes)
     return figure
 
@@ -59,7 +58,7 @@ def loop(job, contact, x, y, title=None):
     axes[0, 0].set_xlabel(f"{x}, {units[x]}")
     axes[0, 0].set_ylabel(f"{y}, {units[y]}")
     if title:
-        axes[0, 0].set_title(title)
+        axes[0, 0].set_title(plain(title))
     return figure
 
 
@@ -77,10 +76,11 @@ def forces(job):
         group = totals[contact]
         shown = [n for n in group if n.startswith("force_")]
         for k, name in enumerate(shown):
-            panel.plot(time, group[name][:len(time)], "o-", color=COLOURS[k % 6],
+            panel.plot(time, group[name][:len(time)], "o-",
+                       color=COLOURS[k % 6],
                        label=name)
         unit = group[shown[0]].attrs.get("unit", b"").decode() if shown else ""
-        panel.set_title(contact)
+        panel.set_title(plain(contact))
         panel.set_xlabel(time_label(job))
         panel.set_ylabel(f"force on the body, {unit}")
         legend_below(panel)
@@ -104,7 +104,7 @@ def costs(job):
     """Left: each error against the CPU seconds of the work that decides it;
     right: the stages that cost."""
     stages = [s for s in job.json.get("cost", {}).get("stages", [])
-              if s["cpu"] > 0]
+              if s.get("cpu", 0) > 0]  # none with --no-timing
     if not stages:
         return None
     stages = sorted(stages, key=lambda s: s["cpu"])[-12:]

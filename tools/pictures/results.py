@@ -8,7 +8,8 @@ import re
 import h5py
 import numpy as np
 
-Block = collections.namedtuple("Block", "step increment time table columns units")
+Block = collections.namedtuple(
+    "Block", "step increment time table columns units")
 Block.__doc__ = """A table of JOB.dat at one time: columns and units by name;
 numbers as arrays, words as lists of str."""
 
@@ -25,6 +26,9 @@ status        [n] 0 open, 1 slip, 2 stick
 slides        [n] 2-D: shear along the tangent with its sign; 3-D: its size
 unit          of the tractions"""
 
+# Components of a symmetric tensor, of plane and solid and of round bodies.
+PLACES = ({"xx": 0, "xy": 1, "zx": 2, "yy": 3, "yz": 4, "zz": 5},
+          {"rr": 0, "rz": 1, "zz": 3, "tt": 5})
 STATUS = ("open", "slip", "stick")
 
 
@@ -77,15 +81,15 @@ def cards(deck, name):
 
 
 class Results:
-    """Results of a job: JOB, or any file JOB.suffix of it. record: of the
-    fields, from 1, the last that was reached if None."""
+    """Results of a job: JOB, or any file JOB.suffix of it. at: time of the
+    fields, the last if None."""
 
-    def __init__(self, path, record=None):
+    def __init__(self, path, at=None):
         path = pathlib.Path(path)
         if path.suffix in (".h5", ".dat", ".json", ".lst", ".sta", ".xdmf",
                            ".inp"):
             path = path.with_suffix("")
-        self.base, self.name, self.chosen = path, path.name, record
+        self.base, self.name, self.at = path, path.name, at
         if not any(self.file(s).is_file() for s in ("json", "dat", "h5")):
             raise Missing(f"{path}: no results of a run: neither "
                           f"{self.name}.json nor .dat nor .h5")
@@ -100,7 +104,10 @@ class Results:
 
     @functools.cached_property
     def json(self):
-        return json.loads(self.text("json") or "{}")
+        try:
+            return json.loads(self.text("json") or "{}")
+        except ValueError as error:
+            raise Missing(f"{self.file('json')}: {error}") from error
 
     @functools.cached_property
     def title(self):
@@ -111,7 +118,10 @@ class Results:
         if not self.file("h5").is_file():
             raise Missing(f"{self.name}: no {self.name}.h5: the deck says "
                           "*OUTPUT, HDF5=NO")
-        return h5py.File(self.file("h5"), "r")
+        try:
+            return h5py.File(self.file("h5"), "r")
+        except OSError as error:
+            raise Missing(f"{self.file('h5')}: {error}") from error
 
     @functools.cached_property
     def deck(self):
@@ -159,7 +169,7 @@ class Results:
     def axes(self):
         """Names of the coordinates, of JOB.h5 or of the last CONTACT table."""
         if self.file("h5").is_file():
-            if "stress_rr" in self.h5["fields"]:
+            if "strain_rr" in self.h5["fields"]:
                 return "rz"
             return "xyz"[:int(self.h5.attrs["dimension"])]
         table = self.table("CONTACT")
@@ -184,9 +194,10 @@ class Results:
         reached = np.flatnonzero(~np.isnan(time))
         if not len(reached):
             raise Missing(f"{self.name}.h5: no increment was finished")
-        if self.chosen is not None:
-            return f"{self.chosen:05d}"
-        return f"{reached[-1] + 1:05d}"
+        last = reached[-1]
+        if self.at is not None:
+            last = reached[np.argmin(np.abs(time[reached] - self.at))]
+        return f"{last + 1:05d}"
 
     @functools.cached_property
     def time(self):
@@ -196,14 +207,21 @@ class Results:
         return group in self.h5 and name in self.h5[group]
 
     def field(self, name, group="fields"):
-        """Values of a field at the end of the run."""
-        if not self.has(name, group):
-            raise Missing(f"{self.name}.h5 has no field {name}; it has "
-                          f"{', '.join(self.h5.get(group, {}))}")
-        return self.h5[group][name][self.record][...]
+        """Values of a field; a component of the tensor of stresses by the name
+        that it has in the tables."""
+        if self.has(name, group):
+            return self.h5[group][name][self.record][...]
+        tensor, _, part = name.partition("_")
+        places = PLACES["rz" in self.axes]
+        if part in places and self.has(tensor, group):
+            return self.field(tensor, group)[:, places[part]]
+        raise Missing(f"{self.name}.h5 has no field {name}; it has "
+                      f"{', '.join(self.h5.get(group, {}))}")
 
     def unit(self, name, group="fields"):
         """Unit of a field as text, "" for none."""
+        if not self.has(name, group):
+            name = name.partition("_")[0]
         return unit_text(self.h5[group][name].attrs.get("unit", b"-"))
 
     @functools.cached_property
@@ -233,7 +251,8 @@ class Results:
         limit = np.zeros(len(area))
         if self.has("limit", "contact"):
             limit = field("limit") / np.where(area > 0, area, 1)
-        shear, node = shears(force, normal, slides), self.h5["contact/node"][...]
+        shear, node = shears(
+    force, normal, slides), self.h5["contact/node"][...]
         known = ~np.isnan(field("status"))  # supports hold the others
         numbers = self.h5["contact/contact_no"][...]
         asked = cards(self.deck, "CONTACT")
@@ -264,6 +283,9 @@ class Results:
         block = self.tables("CONTACT")[-1]
         table = {k: v for k, v in block.columns.items()
                  if not isinstance(v, list)}
+        if "pressure" not in table:
+            raise Missing(f"table CONTACT of {self.name}.dat has no pressure: "
+                          "the job is no body")
         n, flat = len(table["pressure"]), "traction_t" in table
         zero = np.zeros(n)
         points = np.array([table.get(a, zero) for a in self.axes + "?"][:3]).T
@@ -284,7 +306,8 @@ class Results:
                 normal[mine] = mean_normal(points[mine], force[mine])
             name = names[np.flatnonzero(mine)[0]]
             found.append(Contact(
-                name if name != "contact" else f"contact {no:.0f}", points[mine],
+                name if name != "contact" else f"contact {no:.0f}",
+                points[mine],
                 none, none, none, normal[mine], table["gap"][mine],
                 table["pressure"][mine], shears(force, normal, slides)[mine],
                 (table.get("limit", zero) / area)[mine], status[mine],
