@@ -350,6 +350,25 @@ def nonlocal_hertz(job, axes):
     axes.set_ylim(bottom=0)
 
 
+@example("brake_pad", "Brake pad: friction tilts the pressure, wear makes it "
+         "linear", rows=2, width=1.2)
+def brake_pad(job, above, below):
+    blocks = job.tables("CONTACT")
+    for block, colour in zip((blocks[0], blocks[-1]), (GREY, RED)):
+        order = np.argsort(block.columns["x"])
+        above.plot(block.columns["x"][order], block.columns["pressure"][order],
+                   color=colour, label=f"t = {block.time:.4g} s", **DOTS)
+    x = np.array([-30.0, 30])
+    above.plot(x, 2 * (1 - 12 * 0.4 * 15 * x / 3600), color=BLUE,
+               label="worn in, closed form", **FORM)
+    label(above, "x, mm", "pressure, N/mm²")
+    above.set_ylim(bottom=0)
+    time, volume = job.over_time("TOTALS", "worn_volume")
+    below.plot([0, 900], [0, 10.8], color=BLUE, label="K N V t", **FORM)
+    below.plot(time, volume, "o", color=RED, ms=5, label="Protis")
+    label(below, "time, s", "worn volume, mm³/mm")
+
+
 # ---- materials ---------------------------------------------------------
 
 @example("creep_block", "Maxwell block on a rough floor: creep, relaxation",
