@@ -470,22 +470,18 @@ static void write_with_theory(const job *j, const char *path) {
   ck_assert_int_eq(fclose(to), 0);
 }
 
-/* Words that make the large examples smaller. */
-static const char *coarser(const char *name) {
-  if (strcmp(name, "nonlocal_slider") == 0) return "-D N=80";
-  return strcmp(name, "torsion_sphere_3d") == 0 ? "-D NC=5" : "";
-}
-
 START_TEST(inequality_holds_on_every_example) {
   glob_t decks;
   ck_assert_int_eq(glob("input/*/*.inp", 0, NULL, &decks), 0);
   for (size_t i = 0; i < decks.gl_pathc; ++i) {
     const char *path = decks.gl_pathv[i], *name = strrchr(path, '/') + 1;
+    char words[LINE];
     job j = job_begin("");
     snprintf(j.name, sizeof j.name, "%.*s", (int)(strlen(name) - 4), name);
     job_copy_meshes(&j, path);
     write_with_theory(&j, path);
-    int code = job_run(&j, coarser(j.name));
+    job_coarsen(path, words, sizeof words);
+    int code = job_run(&j, words);
     ck_assert_msg(code == 0, "%s: exit %d: %s", path, code, j.errors);
     ck_assert_msg(count(&j, "lst", "VIOLATED") == 0, "%s", path);
     char *json = job_file(&j, "json");

@@ -279,7 +279,7 @@ START_TEST(factors_are_kept) {
       {DEVIATORIC, "*VISCO, INTEGRATOR=RK4\n0.1, 1.\n", 1, 1},
       {"*INELASTIC, LAW=NORTON\n1., 5.\n",
        "*VISCO, INTEGRATOR=BACKWARD\n0.1, 1.\n", 21, 61},
-      {"*INELASTIC, LAW=NORTON\n1., 5.\n",
+      {"*INELASTIC, LAW=NORTON\n0.01, 5.\n",
        "*VISCO, INTEGRATOR=BACKWARD, ITERATION=INITIAL\n0.1, 1.\n", 1, 1},
       /* a coefficient that could vary in time: it stays, changes once (the
        * first increments and the rest), or always */

@@ -37,6 +37,9 @@ void job_write(const job *j, const char *file, const char *format, ...)
 void job_copy(const job *j, const char *path);
 /* Copy the .geo and .msh files beside a deck of the sources. */
 void job_copy_meshes(const job *j, const char *deck);
+/* Options that make an example cheaper: half the segments (a quarter of more
+ * than 30), increments of four times the length. */
+void job_coarsen(const char *deck, char *words, size_t size);
 /* Run protis NAME with further words ("" or "-D N=4 --check"); exit code,
  * or 1000 + signal. */
 int job_run(job *j, const char *words);
