@@ -16,7 +16,8 @@
 enum { LINE = 512 };
 
 /* Copy of a deck in the folder of the job: each *QUASISTATIC in the form asked
- * for, the displacements printed at the end of each step. The number of those. */
+ * for, the displacements printed at the end of each step. The number of those.
+ */
 static int write_in_form(const job *j, const char *path, const char *form) {
   char line[LINE], copy[LINE];
   int steps = 0;

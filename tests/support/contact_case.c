@@ -88,12 +88,11 @@ static void fill_spd(contact_case *c, unsigned long long *seed) {
   int m = c->cp.m;
   double *G = zeros(m * m);
   for (int i = 0; i < m * m; ++i) G[i] = case_random(seed) - 0.5;
+  for (int i = 0; i < m; ++i) c->A[i + m * i] = 0.2;
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, m, m, 12.0 / m, G, m,
+              1.0, c->A, m);
   for (int i = 0; i < m; ++i)
-    for (int j = 0; j <= i; ++j) {
-      double sum = i == j ? 0.2 : 0.0;
-      for (int k = 0; k < m; ++k) sum += G[i + m * k] * G[j + m * k] * 12.0 / m;
-      c->A[i + m * j] = c->A[j + m * i] = sum;
-    }
+    for (int j = 0; j < i; ++j) c->A[j + m * i] = c->A[i + m * j];
   free(G);
 }
 

@@ -153,7 +153,7 @@ END_TEST
 /* The same by a product of midpoint rules. */
 static void triangle_by_sums(const mollifier *m, const double *a,
                              const double *x, double w[3]) {
-  enum { STEPS = 600 };
+  const int steps = unit_whole() ? 600 : 300;
   double n[3], area = 0.0;
   for (int c = 0; c < 3; ++c) {
     int d = (c + 1) % 3, e = (c + 2) % 3;
@@ -161,13 +161,13 @@ static void triangle_by_sums(const mollifier *m, const double *a,
            (a[3 + e] - a[e]) * (a[6 + d] - a[d]);
     area += 0.25 * n[c] * n[c];
   }
-  area = sqrt(area) / (STEPS * STEPS);
+  area = sqrt(area) / (steps * steps);
   memset(w, 0, 3 * sizeof *w);
-  for (int i = 0; i < STEPS; ++i)
-    for (int j = 0; j < 2 * (STEPS - i) - 1; ++j) {
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < 2 * (steps - i) - 1; ++j) {
       double s[3], r2 = 0.0, third = j % 2 ? 2.0 / 3 : 1.0 / 3;
-      s[1] = (i + third) / STEPS;
-      s[2] = (j / 2 + third) / STEPS;
+      s[1] = (i + third) / steps;
+      s[2] = (j / 2 + third) / steps;
       s[0] = 1.0 - s[1] - s[2];
       for (int c = 0; c < 3; ++c) {
         double y = s[0] * a[c] + s[1] * a[3 + c] + s[2] * a[6 + c];
@@ -327,13 +327,14 @@ static void expect_sound(const owned *o, const double *share, int k,
 }
 
 START_TEST(rows_are_symmetric_by_mass_and_keep_constants) {
+  const double ratio = unit_whole() ? 1.7 : 2.9;
   for (int k = 0; k < KERNEL_COUNT; ++k) {
-    owned o = line(60, 0.0, 1.0, 0.9), s = square(9, 0.7);
+    owned o = line(60, 0.0, 1.0, 0.9), s = square(unit_whole() ? 9 : 6, 0.7);
     double share[100] = {0.0};
     for (int f = 0; f < 60; ++f)
       for (int c = 0; c < 2; ++c)
         share[f + c] += 0.5 * (o.x[2 * f + 2] - o.x[2 * f]);
-    for (double radius = 0.01; radius < 2.0; radius *= 1.7)
+    for (double radius = 0.01; radius < 2.0; radius *= ratio)
       expect_sound(&o, share, k, radius);
     owned_free(&o);
     memset(share, 0, sizeof share);
@@ -376,10 +377,10 @@ END_TEST
 /* In the plane the edge of a half plane sees the kernel of the disc, whose
  * part beyond a line at distance s is a one-dimensional integral. */
 static double half_plane(const mollifier *m, double s) {
-  enum { STEPS = 400 };
-  double sum = 0.0, h = 2.0 * m->radius / STEPS;
-  for (int i = 0; i < STEPS; ++i)
-    for (int j = 0; j < STEPS; ++j) {
+  const int steps = unit_whole() ? 1000 : 400;
+  double sum = 0.0, h = 2.0 * m->radius / steps;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j) {
       double x = -m->radius + (i + 0.5) * h, y = -m->radius + (j + 0.5) * h;
       if (x > -s) sum += mollifier_value(m, x * x + y * y) * h * h;
     }
@@ -450,7 +451,8 @@ START_TEST(disc_clear_of_nodes_left_out_is_whole) {
   }
   for (int i = 0; i < NODES; ++i) clear[i] = left_out_sampled(&o, i);
   for (int k = 0; k < KERNEL_COUNT; ++k)
-    for (double radius = 0.2; radius < 0.3; radius += 0.04) {
+    for (double radius = 0.2; radius < 0.3;
+         radius += unit_whole() ? 0.02 : 0.06) {
       sparse_rows G = build(&o, (kernel)k, radius, 0, 0, NULL);
       for (int i = 0; i < o.p.n_node; ++i) {
         if (!o.active[i] || clear[i] < 1.03 * radius) continue;
@@ -740,13 +742,13 @@ END_TEST
 
 /* No entry jumps where the mass of a node no longer holds its pairs. */
 START_TEST(entries_are_continuous_in_the_radius) {
-  enum { STEPS = 1000 };
+  const int steps = unit_whole() ? 1000 : 300;
   owned o = square(3, 0.4);
   const int n = o.p.n_node;
   sparse_rows before = build(&o, KERNEL_BUMP, 0.4, 0, 0, NULL);
   double most = 0;
-  for (int k = 1; k <= STEPS; ++k) {
-    sparse_rows G = build(&o, KERNEL_BUMP, 0.4 + 0.5 * k / STEPS, 0, 0, NULL);
+  for (int k = 1; k <= steps; ++k) {
+    sparse_rows G = build(&o, KERNEL_BUMP, 0.4 + 0.0005 * k, 0, 0, NULL);
     for (int i = 0; i < n * n; ++i)
       most = fmax(most,
                   fabs(entry(&G, i / n, i % n) - entry(&before, i / n, i % n)));

@@ -187,6 +187,7 @@ END_TEST
 
 /* gmsh itself writes the other formats, from the very mesh it made. */
 static void check_formats(const char *geo) {
+  mesh_gmsh_load();
   static const char *const name[] = {"a22.msh", "b22.msh", "a41.msh",
                                      "b41.msh"};
   static char text[8192];
@@ -223,6 +224,7 @@ START_TEST(all_formats_give_the_same_mesh_3d) { check_formats(cubes_geo); }
 END_TEST
 
 START_TEST(meshing_twice_gives_the_same_bytes) {
+  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   const mesh_number n = {"N", 7.0};
@@ -268,6 +270,7 @@ END_TEST
 
 /* Sizes 0.05 in the quarter x, y < 0, 0.5 elsewhere, lengths scaled by 10. */
 START_TEST(sizes_reach_the_geometry) {
+  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   mesh_file_write(&f, "d.geo", disc_geo, strlen(disc_geo));
@@ -309,6 +312,7 @@ START_TEST(sizes_reach_the_geometry) {
 END_TEST
 
 START_TEST(scale_by_a_power_of_two_changes_no_digit) {
+  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   mesh_file_write(&f, "c.geo", cubes_geo, strlen(cubes_geo));
@@ -467,6 +471,7 @@ static const char small_msh[] =
 
 /* Parent and child go on counting: each request is refused on one side. */
 START_TEST(reader_gives_back_all_when_refused) {
+  mesh_gmsh_load();
   static const char merge[] = "Merge \"m.msh\";\n";
   mesh_file f;
   mesh_file_open(&f);

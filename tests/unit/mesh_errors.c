@@ -254,6 +254,7 @@ static void check_message(mesh_file *f, const bad_mesh *c) {
 }
 
 START_TEST(every_error_has_its_text_and_no_mesh) {
+  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   size_t before = memory_in_use();
@@ -273,6 +274,7 @@ START_TEST(every_error_has_its_text_and_no_mesh) {
 END_TEST
 
 START_TEST(every_remark_has_its_text_and_a_mesh) {
+  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   for (size_t i = 0; i < sizeof remarks / sizeof *remarks; ++i) {
@@ -432,6 +434,7 @@ END_TEST
 
 /* SystemCall runs a shell below gmsh: its parent is the reader. */
 START_TEST(reader_that_dies_is_told) {
+  mesh_gmsh_load();
   static const struct {
     const char *geo, *text;
     status answer;
@@ -469,6 +472,7 @@ static void on_alarm(int signal) { (void)signal; }
 /* Signals that the program handles must not break the reading, and what is
  * ignored by the program (SIGCHLD) must not lose the mesh. */
 START_TEST(signals_do_not_disturb) {
+  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   struct sigaction often = {.sa_handler = on_alarm}; /* no SA_RESTART */
@@ -542,14 +546,15 @@ START_TEST(want_of_memory_is_never_taken_for_a_bad_mesh) {
   char geo[192];
   mesh_file f;
   mesh_file_open(&f);
-  write_square(&f, "large.msh", 400);
+  write_square(&f, "large.msh", unit_whole() ? 400 : 200);
   snprintf(geo, sizeof geo, "Merge \"%s/large.msh\";\n", f.folder);
   mesh_file_write(&f, "large.geo", geo, strlen(geo));
   struct rlimit old;
   getrlimit(RLIMIT_AS, &old);
   int in_gmsh = 0;
   status answer = ERR_MEMORY;
-  for (rlim_t mb = 80; answer == ERR_MEMORY && mb < 2000; mb += 25) {
+  for (rlim_t mb = 80; answer == ERR_MEMORY && mb < 2000;
+       mb += unit_whole() ? 25 : 10) {
     struct rlimit less = {mb << 20, old.rlim_max};
     ck_assert_int_eq(setrlimit(RLIMIT_AS, &less), 0);
     mesh *m = mesh_file_read(&f, "large.geo", 1.0, 0, NULL);
@@ -568,6 +573,7 @@ END_TEST
 
 /* What gmsh prints does not reach the user. */
 START_TEST(nothing_is_printed) {
+  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   fflush(NULL);
@@ -628,6 +634,7 @@ END_TEST
 
 /* gmsh executes the options files of merged files, however they are named. */
 START_TEST(options_of_merged_files_are_refused) {
+  mesh_gmsh_load();
   static const char *const ways[] = {"Include \"in.geo\";", "Merge \"in.geo\";",
                                      "Merge StrCat(\"in\", \".geo\");"};
   mesh_file f;
