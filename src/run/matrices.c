@@ -33,6 +33,8 @@ done:
 status matrices_keep(matrices *m, archive *a, const char *group) {
   status st = OK;
   int there = m->solver != NULL;
+  if (!archive_reads(a) && !there && m->from != NULL)
+    return archive_pass_on(m->from, m->group, a);
   archive_enter(a, group);
   TRY(archive_ints(a, "solver", &there, 1));
   if (archive_reads(a) && there && m->solver == NULL) {

@@ -324,6 +324,7 @@ status tangent_keep(run *r, archive *a) {
     TRY(matrices_keep(m, a, "solver"));
     archive_leave(a);
   }
+  if (r->solving.known_key != RUN_NO_KEY) known = r->solving.known_key;
   TRY(keep_fresh(r, a));
   TRY(archive_reals(a, "known_key", &known, 1));
   if (archive_reads(a)) r->solving.known_key = known;

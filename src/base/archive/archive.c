@@ -82,12 +82,16 @@ static void full_name(const archive *a, const char *name,
   snprintf(text, ARCHIVE_NAME, "%s%s", a->group, name);
 }
 
-static archive_item *find(const archive *a, const char *name) {
-  char text[ARCHIVE_NAME];
-  full_name(a, name, text);
+static archive_item *find_whole(const archive *a, const char *text) {
   for (int i = 0; i < a->n; ++i)
     if (strcmp(a->item[i].name, text) == 0) return &a->item[i];
   return NULL;
+}
+
+static archive_item *find(const archive *a, const char *name) {
+  char text[ARCHIVE_NAME];
+  full_name(a, name, text);
+  return find_whole(a, text);
 }
 
 size_t archive_length(const archive *a, const char *name) {
@@ -141,6 +145,18 @@ static status pass(archive *a, const char *name, archive_kind kind, void *v,
   if (n == 0) return OK;
   return archive_reads(a) ? take(a, name, kind, v, n)
                           : put(a, name, kind, v, n);
+}
+
+status archive_pass_on(const archive *from, const char *group, archive *to) {
+  for (int k = 0; k < from->n; ++k) {
+    const archive_item *x = &from->item[k];
+    archive_item *i = NULL;
+    if (strncmp(x->name, group, strlen(group)) != 0) continue;
+    if (find_whole(to, x->name) != NULL) continue;
+    PASS(archive_add(to, x->name, x->kind, x->n, &i));
+    i->data = x->data;
+  }
+  return OK;
 }
 
 status archive_reals(archive *a, const char *name, double *v, size_t n) {

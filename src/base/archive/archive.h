@@ -31,6 +31,10 @@ void archive_leave(archive *a);
 /* The full name of the present group, to return to: "" at first. */
 const char *archive_group(const archive *a);
 void archive_go(archive *a, const char *group);
+/* All arrays of a group of an archive from a file into one to be filled, under
+ * the same names, but those it has; borrowed from it until archive_write.
+ * ERR_MEMORY. */
+status archive_pass_on(const archive *from, const char *group, archive *to);
 /* Length of an array of the present group in items of its kind; 0: it is not
  * there. */
 size_t archive_length(const archive *a, const char *name);

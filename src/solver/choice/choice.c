@@ -106,6 +106,8 @@ status contact_solver_keep(contact_solver *s, archive *a) {
     snprintf(s->group, sizeof s->group, "%s", archive_group(a));
     return OK;
   }
+  if (s->best_u == NULL && s->from != NULL)
+    return archive_pass_on(s->from, s->group, a);
   int there = 0;
   for (int i = 0; i <= N_SOLVER; ++i) {
     PASS(attempt_archive(s, i, a));
