@@ -117,6 +117,8 @@ help:
 	@echo "make bench-solvers  what each digit costs, for every solver"
 	@echo "make bench-auto   METHOD=AUTO against the best of the others"
 	@echo "make bench-peers  AUTO against the kernels of Siconos, if installed"
+	@echo "make manual       the manual as pages of HTML and man; needs pandoc"
+	@echo "make install      below PREFIX=/usr/local; DESTDIR=; make uninstall, deb"
 	@echo "make format       clang-format on all sources"
 	@echo "make clean        remove build/"
 
@@ -431,6 +433,75 @@ build/fuzz/%: tests/fuzz/%.c $(fuzz_lib)
 	@echo "  FUZZ $<"
 	$(Q)clang-14 $(fuzz_c) -fsanitize=fuzzer,address,undefined $^ $(LDLIBS) \
 	  -o $@
+
+# Chapters as pages; those that tables complete are printed by the program.
+pages_dir := build/manual
+chapters   = $(shell $(program) --manual | sed -n 's/^  \([a-z]*\) .*/\1/p')
+.PHONY: manual manual-run
+manual: deps
+	$(call install,$(call absent,pandoc))
+	$(Q)$(MAKE) --no-print-directory -j$(JOBS) manual-run
+
+manual-run: $(program)
+	$(Q)rm -rf $(pages_dir) && mkdir -p $(pages_dir)
+	$(Q)cp -R src/manual/pictures src/manual/manual.css $(pages_dir)
+	$(Q)tools/shell_pages man $(abspath $(program)) > $(pages_dir)/protis.1
+	$(Q)sed 's|(src/manual/|(|g' README.md > $(pages_dir)/index.md
+	$(Q)for c in $(chapters); do \
+	  $(program) --manual $$c > $(pages_dir)/$$c.md || exit 1; done
+	$(Q)for c in index $(chapters); do \
+	  { echo '[all chapters](index.html)'; echo; cat $(pages_dir)/$$c.md; } | \
+	  sed 's/\(([a-z]*\)\.md)/\1.html)/g' | \
+	  pandoc -f gfm -t html5 -s --toc --css manual.css --metadata title= \
+	    --metadata pagetitle="Protis: $$c" -o $(pages_dir)/$$c.html && \
+	  rm $(pages_dir)/$$c.md || exit 1; done
+	@echo "open $(pages_dir)/index.html"
+
+# The program with its manual page, the words that bash completes, examples and
+# tools. The manual itself is within the program, which must be built.
+PREFIX ?= /usr/local
+share  := $(DESTDIR)$(PREFIX)/share
+bash   := $(share)/bash-completion/completions
+shown  := batch compare deck_tools.py effects pictures plot plot_contact python \
+          report study
+.PHONY: install install-files uninstall deb
+install: all
+	$(Q)$(MAKE) --no-print-directory install-files
+
+install-files:
+	$(Q)install -D -m 755 $(program) $(DESTDIR)$(PREFIX)/bin/protis
+	$(Q)mkdir -p $(share)/man/man1 $(bash) $(share)/protis/tools
+	$(Q)tools/shell_pages man $(abspath $(program)) > $(share)/man/man1/protis.1
+	$(Q)tools/shell_pages completion $(abspath $(program)) > $(bash)/protis
+	$(Q)for f in input/*/*.inp input/*/*.geo; do \
+	  install -D -m 644 $$f $(share)/protis/examples/$${f#input/} || exit 1; done
+	$(Q)cd tools && cp -R $(shown) $(share)/protis/tools
+	$(Q)find $(share)/protis/tools -name __pycache__ -prune -exec rm -rf {} +
+	@echo "installed below $(DESTDIR)$(PREFIX)"
+
+uninstall:
+	$(Q)rm -rf $(DESTDIR)$(PREFIX)/bin/protis $(share)/man/man1/protis.1 \
+	  $(bash)/protis $(share)/protis
+
+# A package of Debian; what the program needs is asked of dpkg.
+deb_is  := build/deb/protis
+version  = $(shell $(program) --version | sed -n '1s/protis \([^ ]*\).*/\1/p')
+deb: all
+	$(Q)rm -rf $(deb_is) && mkdir -p $(deb_is)/DEBIAN
+	$(Q)$(MAKE) --no-print-directory install PREFIX=/usr \
+	  DESTDIR=$(abspath $(deb_is)) > /dev/null
+	$(Q)need=$$({ ldd $(program) | sed -n 's|.*=> .*/\([^ ]*\).*|\1|p'; \
+	  echo libgmsh.so.4.*; } | xargs -I '{}' \
+	  dpkg-query -S '*/$(shell $(CC) -print-multiarch)/{}' | \
+	  cut -d : -f 1 | sort -u | paste -s -d , -); \
+	  printf '%s\n' 'Package: protis' 'Version: $(version)' \
+	    "Architecture: $$(dpkg --print-architecture)" "Depends: $$need" \
+	    'Recommends: gnuplot-nox, $(subst $() ,$(comma) ,$(strip $(drawing)))' \
+	    'Maintainer: the authors of Protis <protis@localhost>' \
+	    'Description: quasistatic frictional contact of elastic bodies' \
+	    > $(deb_is)/DEBIAN/control
+	$(Q)dpkg-deb --root-owner-group --build $(deb_is) build/deb > /dev/null
+	@echo "built build/deb/protis_$(version)_$$(dpkg --print-architecture).deb"
 
 clean:
 	rm -rf build
