@@ -17,7 +17,7 @@ import xml.etree.ElementTree as tree
 sys.path.insert(0, "tools")
 import deck_tools
 import numpy as np
-from pictures import results
+from pictures import closed, results
 
 # Two blocks under given pressures, dragged: 20 on the wall x = 0, which moves
 # along y with mu = 0.4, 10 on the floor z = 0, which moves along -x with
@@ -212,6 +212,33 @@ class Gallery(unittest.TestCase):
             if folder.is_dir():
                 self.assertIn(folder.name + ".png", sizes)
                 self.assertIn(f"pictures/{folder.name}.png", chapter)
+
+
+class ClosedForms(unittest.TestCase):
+    """The curves of the pictures have the values of input/*/reference.txt."""
+
+    def test_contact(self):
+        line, zero = closed.Line(), np.zeros(1)
+        pressure, _, stick = closed.spence(line, 0.2, 0.98272, zero + 1e-9)
+        self.assertAlmostEqual(stick / 0.36039, 1, delta=3e-3)
+        self.assertAlmostEqual(pressure[0] / 2931.98, 1, delta=3e-4)
+        shear, c = closed.cattaneo(line, zero, 0.3, 0.5)
+        self.assertAlmostEqual(shear[0] / 238.149, 1, delta=1e-5)
+        self.assertAlmostEqual(c / 0.707107, 1, delta=1e-6)
+        pressure = closed.sliding(line, zero, 0.5)[0]
+        self.assertAlmostEqual(pressure / 2661.1747, 1, delta=1e-7)
+        self.assertAlmostEqual(closed.Sphere().p0 / 4688.3405, 1, delta=1e-7)
+        torque = closed.Torsion().torque(0.5)
+        self.assertAlmostEqual(torque / 67.473, 1, delta=1e-5)
+
+    def test_time(self):
+        line = closed.Line(P=1.0, E=1e3)
+        pressure = closed.lee_radok(line, 2.0, np.zeros(1), 10.0)[0]
+        self.assertAlmostEqual(pressure / 1.3732868, 1, delta=1e-4)
+        _, _, stress = closed.chaboche(5e-3, 10)
+        self.assertAlmostEqual(stress[-1] / 107.33080676, 1, delta=1e-3)
+        mass = closed.edge_mass(np.array([0, 0.25, 0.5, 1]))
+        np.testing.assert_allclose(mass, [0.5, 0.70274, 0.87703, 1], rtol=1e-3)
 
 
 class Refused(unittest.TestCase):

@@ -441,8 +441,8 @@ def draw(figure, axes, job, name=None, legend=True, **how):
     """The body in an axes, with its bar of colours and its legend."""
     flat = job.dimension == 2 and "turn" not in how
     name = name or default_field(job)
-    way = draw_2d if flat else draw_round if "turn" in how else draw_3d
-    norm, palette, scale = way(axes, job, name, **how)
+    method = draw_2d if flat else draw_round if "turn" in how else draw_3d
+    norm, palette, scale = method(axes, job, name, **how)
     if name:
         colour_bar(figure, axes, norm, palette, label_of(job, name), "max")
     if scale != 1:

@@ -59,14 +59,14 @@ def slip(line, x, mu, share):
 
 def loop(line, x, mu, share, weights):
     """Force and mean slip over one cycle between -share and share of mu P, by
-    the rule of Masing: on the way back a branch is twice the first one."""
+    the rule of Masing: after a reversal a branch is twice the first one."""
     def mean(s):
         return np.sum(weights * slip(line, x, mu, s)) / np.sum(weights)
 
-    way = np.linspace(0, share, 60)
-    first = np.array([mean(s) for s in way])
-    back = first[-1] - 2 * np.array([mean(s / 2) for s in 2 * way])
-    force, back_force = way, share - 2 * way
+    shares = np.linspace(0, share, 60)
+    first = np.array([mean(s) for s in shares])
+    back = first[-1] - 2 * np.array([mean(s / 2) for s in 2 * shares])
+    force, back_force = shares, share - 2 * shares
     forth, forth_force = -back, -back_force
     return (mu * line.P * np.concatenate([force, back_force, forth_force]),
             np.concatenate([first, back, forth]))

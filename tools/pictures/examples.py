@@ -1,5 +1,6 @@
 """The gallery: each example of input/ with its body, curve and closed form."""
 import collections
+import pathlib
 
 import numpy as np
 from matplotlib import pyplot
@@ -8,6 +9,8 @@ from . import BLUE, GREEN, GREY, RED, body, closed, legend_below
 
 Example = collections.namedtuple("Example", "name decks title draw view rows")
 EXAMPLES = {}
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+FOLDER = ROOT / ("input" if (ROOT / "input").is_dir() else "examples")
 
 DOTS = {"ls": "", "marker": "o", "ms": 3.2}
 FORM = {"lw": 1.8, "alpha": 0.75}
@@ -228,8 +231,8 @@ def mindlin_loop(job, above, below):
     u = np.array([b.columns["mean_u_t"][0] for b in blocks])
     force = np.array([b.columns["tangential"][0] for b in blocks])
     weight = np.r_[0.5, np.ones(len(x) - 2), 0.5]
-    exact, way = closed.loop(line, x, mu, 0.5, weight)
-    below.plot(1e6 * way, exact, color=BLUE, label="closed form", **FORM)
+    exact, moved = closed.loop(line, x, mu, 0.5, weight)
+    below.plot(1e6 * moved, exact, color=BLUE, label="closed form", **FORM)
     below.plot(1e6 * u, force, color=RED, label="Protis", **DOTS)
     label(below, "mean displacement of the contact, nm", "force, N/mm")
 
@@ -480,8 +483,10 @@ def relaxing_seal(job, axes):
 @example("tempered_strip", "Tempered glass strip: stresses left when cold",
          field="stress_xx", scale=1.0, width=0.8)
 def tempered_strip(job, axes):
-    y, s = np.loadtxt("input/tempered_strip/profile.txt", comments="#").T[:2]
-    axes.plot(y, s, color=BLUE, label="differential equations", **FORM)
+    profile = FOLDER / "tempered_strip/profile.txt"
+    if profile.is_file():  # not installed
+        y, s = np.loadtxt(profile, comments="#").T[:2]
+        axes.plot(y, s, color=BLUE, label="differential equations", **FORM)
     y, s = by(job, "y", "stress_xx", table="ELEMENTS")
     axes.plot(y, s, color=RED, label="Protis", **DOTS)
     axes.axhline(0, color=GREY, lw=0.8)

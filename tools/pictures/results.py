@@ -4,9 +4,14 @@ import functools
 import json
 import pathlib
 import re
+import sys
 
 import h5py
 import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent
+                       / "python"))
+import protis  # noqa: E402
 
 Block = collections.namedtuple(
     "Block", "step increment time table columns units")
@@ -37,36 +42,19 @@ class Missing(Exception):
 
 
 def read_blocks(path):
-    """All tables of a JOB.dat."""
-    blocks, rows, head, names, units = [], [], None, [], []
-
-    def close():
-        if head is None:
-            return
+    """[Block], all tables of a JOB.dat."""
+    found = []
+    for b in protis.read_blocks(path):
         columns = {}
-        for i, name in enumerate(names):
-            words = [r[i] for r in rows]
+        for i, name in enumerate(b["names"]):
+            words = [row[i] for row in b["rows"]]
             try:
                 columns[name] = np.array(words, float)
             except ValueError:
                 columns[name] = words
-        blocks.append(Block(*head, columns, dict(zip(names, units))))
-
-    with open(path, encoding="utf-8") as file:
-        for line in file:
-            words = line.split()
-            if line.startswith("# step "):
-                close()
-                rows = []
-                head = (int(words[2]), int(words[4]), float(words[6]),
-                        " ".join(words[8:]))
-            elif line.startswith("#") and head is not None:
-                names = [w.partition("[")[0] for w in words[1:]]
-                units = [w.partition("[")[2].rstrip("]") for w in words[1:]]
-            elif words and head is not None:
-                rows.append(words)
-    close()
-    return blocks
+        found.append(Block(b["step"], b["increment"], b["time"], b["table"],
+                           columns, dict(zip(b["names"], b["units"]))))
+    return found
 
 
 def cards(deck, name):
@@ -142,7 +130,7 @@ class Results:
 
     def tables(self, name):
         """All blocks of a table."""
-        found = [b for b in self.blocks if b.table.split()[0] == name]
+        found = [b for b in self.blocks if b.table == name]
         if not found:
             raise Missing(f"{self.file('dat')} has no table {name}: ask for it "
                           "with *PRINT")
