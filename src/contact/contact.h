@@ -147,6 +147,8 @@ double contact_bound(const contact_problem *cp, int dof);
 double contact_stick(const contact_problem *cp, int dof);
 /* 1: the node touches a second obstacle. */
 int contact_has_side(const contact_problem *cp, int node_id);
+/* Diagonal of A, or of W where that alone is known. */
+double contact_diagonal(const contact_problem *cp, int dof);
 /* y = M x, M[m*m] column major. */
 void contact_product(int m, const double *M, const double *x, double *y);
 /* Sliding limit of one node, N. */

@@ -9,8 +9,7 @@ enum { CHUNK = 64 }; /* rows and columns of a product kept on the stack */
 /* The larger, the smaller of two, NaN if one is. */
 double larger(double a, double b);
 double smaller(double a, double b);
-/* Diagonal of the matrix given; the largest of it. */
-double contact_diagonal(const contact_problem *cp, int dof);
+/* The largest diagonal entry. */
 double contact_largest_diagonal(const contact_problem *cp);
 /* Stiffness of a node along its normal and in its tangent plane, N/m; the
  * largest diagonal where it has none. */

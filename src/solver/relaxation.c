@@ -178,11 +178,10 @@ static void displacement_step(const relaxation *s, int node_id,
                               const local_problem *lp, const int *id,
                               const double *d, double *step) {
   const contact_problem *cp = s->cp;
-  size_t first = (size_t)(node_id * cp->dim), m = (size_t)cp->m;
   for (int k = 0; k < lp->dim; ++k) step[id[k]] = d[k];
   for (int k = 1; k < cp->dim; ++k) {
-    size_t dof = first + (size_t)k;
-    if (contact_held(cp, (int)dof)) step[k] = -s->r[dof] / cp->A[dof * m + dof];
+    const int dof = node_id * cp->dim + k;
+    if (contact_held(cp, dof)) step[k] = -s->r[dof] / contact_diagonal(cp, dof);
   }
 }
 
@@ -282,7 +281,7 @@ static int is_of(const contact_problem *cp, int node_id, int body_id) {
 static void add_unknown(const relaxation *s, int dof, const double *d,
                         flight *f) {
   const contact_problem *cp = s->cp;
-  double k = cp->A[(size_t)dof * (size_t)(cp->m + 1)];
+  double k = contact_diagonal(cp, dof);
   f->work += cp->f[dof] * d[dof];
   f->most = fmax(f->most, fabs(d[dof]));
   f->stiff = fmax(f->stiff, k * fabs(d[dof]));
@@ -373,7 +372,7 @@ static int drifts(relaxation *s, double *from) {
   for (size_t i = 0; i < m; ++i) {
     work += cp->f[i] * d[i];
     left = fmax(left, fabs(Ad[i]));
-    stiff = fmax(stiff, cp->A[i * m + i] * fabs(d[i]));
+    stiff = fmax(stiff, contact_diagonal(cp, (int)i) * fabs(d[i]));
     most = fmax(most, fabs(d[i]));
   }
   for (size_t i = 0; i < m; ++i) {

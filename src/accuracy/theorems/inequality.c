@@ -40,7 +40,7 @@ static double any(trial *s) {
 }
 
 static double diagonal(const contact_problem *cp, int dof) {
-  return cp->A[(size_t)dof * (size_t)(cp->m + 1)];
+  return contact_diagonal(cp, dof);
 }
 
 /* u_n, u_t without the initial penetration, which no test field can undo. */

@@ -60,7 +60,7 @@ void theorems_free(theorems *t) {
 static int same_matrix(const theorems *t, const contact_problem *cp) {
   if (t->diagonal == NULL || t->norm.m != cp->m || t->norm.A != cp->A) return 0;
   for (int i = 0; i < cp->m; ++i)
-    if (t->diagonal[i] != cp->A[(size_t)i * (size_t)(cp->m + 1)]) return 0;
+    if (t->diagonal[i] != contact_diagonal(cp, i)) return 0;
   return 1;
 }
 
@@ -69,8 +69,7 @@ static status know_matrix(theorems *t, const contact_problem *cp) {
   if (!t->fresh) return OK;
   forget_matrix(t);
   PASS_NEW(t->diagonal, cp->m);
-  for (int i = 0; i < cp->m; ++i)
-    t->diagonal[i] = cp->A[(size_t)i * (size_t)(cp->m + 1)];
+  for (int i = 0; i < cp->m; ++i) t->diagonal[i] = contact_diagonal(cp, i);
   return energy_norm_new(cp->m, cp->A, &t->norm);
 }
 

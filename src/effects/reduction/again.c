@@ -32,7 +32,7 @@ static double friction_force(const reduction *n, const state *s, int i,
   const int k = cp->dim * i;
   double held = 0.0;
   for (int a = 1; a < cp->dim; ++a)
-    held = fmax(held, cp->A[(size_t)(k + a) * (size_t)(cp->m + 1)]);
+    held = fmax(held, contact_diagonal(cp, k + a));
   return fmin(reduction_coefficient(n, s, i) * fmax(-s->contacts.rc[k], 0.0),
               held * way);
 }

@@ -85,7 +85,7 @@ static void test_balance(const start_input *in, const double *rc,
 static double normal_defect(const start_input *in, const double *rc, int i) {
   const contact_problem *cp = in->cp;
   size_t k = (size_t)in->surface->dim * (size_t)i;
-  double c = cp->A[(size_t)cp->dim * (size_t)i * ((size_t)cp->m + 1)];
+  double c = contact_diagonal(cp, cp->dim * i);
   if (in->given != NULL && in->given[i] >= 0.0)
     return fabs(rc[k] + in->given[i]);
   return fabs(fmax(rc[k], c * (in->uc[k] - cp->gap[i])));
@@ -98,7 +98,7 @@ static double side_defect(const contact_problem *cp, const double *uc,
   for (int a = 1; a < cp->dim; ++a) {
     size_t k = (size_t)(cp->dim * i + a);
     double bound = cp->side_gap[(cp->dim - 1) * i + a - 1];
-    double c = cp->A[k * ((size_t)cp->m + 1)], part = fabs(rc[k]);
+    double c = contact_diagonal(cp, (int)k), part = fabs(rc[k]);
     if (bound < HUGE_VAL) part = fabs(fmax(rc[k], c * (uc[k] - bound)));
     worst = fmax(worst, part);
   }

@@ -92,7 +92,8 @@ status anchor_make(const contact_problem *cp, anchor *an) {
   PASS_NEW(an->W, m * m);
   PASS_NEW(an->f, m);
   PASS(anchor_modes(cp, an));
-  for (size_t i = 0; i < m; ++i) an->spring += cp->A[i * (m + 1)] / (double)m;
+  for (size_t i = 0; i < m; ++i)
+    an->spring += contact_diagonal(cp, (int)i) / (double)m;
   an->spring *= SOFT / cp->n;
   return hold(cp, an);
 }

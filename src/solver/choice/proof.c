@@ -68,7 +68,7 @@ static double force_of(const contact_problem *cp, const double *v,
   contact_product(cp->m, cp->A, v, workspace);
   for (size_t i = 0, m = (size_t)cp->m; i < m; ++i) {
     force = fmax(force, fabs(workspace[i]));
-    size = fmax(size, cp->A[i * m + i] * fabs(v[i]));
+    size = fmax(size, contact_diagonal(cp, (int)i) * fabs(v[i]));
   }
   return force > 0.0 ? force / size : 0.0;
 }

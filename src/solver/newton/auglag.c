@@ -543,7 +543,7 @@ static void take_diagonal(const contact_problem *cp, double *diagonal) {
   int d = cp->dim;
   double largest = 0.0;
   for (size_t i = 0; i < m; ++i) {
-    diagonal[i] = cp->A[i * m + i];
+    diagonal[i] = contact_diagonal(cp, (int)i);
     largest = fmax(largest, diagonal[i]);
   }
   for (int i = 0; i < cp->n; ++i) {

@@ -210,7 +210,7 @@ static int turned(const newton_system *s, const pattern *p, int dof) {
   for (int k = node_id * tangents; k < (node_id + 1) * tangents; ++k)
     change = fmax(change, fabs(p->e[k] - s->base.e[k]));
   if (tangents == 1) return change != 0.0;
-  double stiffness = s->cp->A[(size_t)dof * (size_t)s->m + (size_t)dof];
+  double stiffness = contact_diagonal(s->cp, dof);
   return change > DRIFT || fabs(now - old) > DRIFT * (stiffness + old);
 }
 
@@ -476,7 +476,7 @@ static void set_known(newton_system *s, pattern *p, double *u, double *raw) {
     int known = 1;
     double to = u[dof];
     if (contact_held(cp, dof))
-      to = cp->f[dof] / cp->A[(size_t)dof * m + (size_t)dof];
+      to = cp->f[dof] / contact_diagonal(cp, dof);
     else if (p->closed[dof])
       to = contact_bound(cp, dof);
     else if (dof % cp->dim > 0 && p->mode[dof / cp->dim] == STICK)
@@ -550,8 +550,8 @@ static void move(const newton_system *s, double *u, double *raw) {
 static double force_size(const newton_system *s, const double *u) {
   double size = 0.0;
   for (size_t i = 0, m = (size_t)s->m; i < m; ++i)
-    size =
-        fmax(size, fmax(fabs(s->cp->f[i]), fabs(s->cp->A[i * m + i] * u[i])));
+    size = fmax(size, fmax(fabs(s->cp->f[i]),
+                           fabs(contact_diagonal(s->cp, (int)i) * u[i])));
   return s->power * size;
 }
 

@@ -60,11 +60,11 @@ static void lemke_set_base(lemke_run *s) {
   memset(w->reduced.base, 0, (size_t)cp->m * sizeof *w->reduced.base);
   if (!lemke_is_stiff(s)) return;
   for (int dof = 0; dof < cp->m; ++dof) {
-    size_t at = (size_t)dof * (size_t)cp->m + (size_t)dof;
     if (w->kind[dof] == IS_BOUND) w->reduced.base[dof] = contact_bound(cp, dof);
     if (w->kind[dof] == IS_FRICTION)
       w->reduced.base[dof] = contact_stick(cp, dof);
-    if (w->kind[dof] == IS_HELD) w->reduced.base[dof] = cp->f[dof] / cp->A[at];
+    if (w->kind[dof] == IS_HELD)
+      w->reduced.base[dof] = cp->f[dof] / contact_diagonal(cp, dof);
   }
   lemke_settle_free(s, 1, w->reduced.base);
 }
@@ -205,9 +205,8 @@ static int motion_is_free(lemke_run *s, double resistance) {
   double force = 0.0, size = 0.0, work = 0.0;
   lemke_respond(s, w->ray, 0, w->raw);
   for (int dof = 0; dof < cp->m; ++dof) {
-    size_t at = (size_t)dof * (size_t)cp->m + (size_t)dof;
     force = fmax(force, fabs(w->raw[dof]));
-    size = fmax(size, cp->A[at] * fabs(w->ray[dof]));
+    size = fmax(size, contact_diagonal(cp, dof) * fabs(w->ray[dof]));
     work += cp->f[dof] * w->ray[dof];
   }
   return force <= RAY_DEFECT * size && work > 0.0 &&
