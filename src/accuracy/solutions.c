@@ -143,8 +143,7 @@ static const char *const start_text[] = {
 static double reach(const contact_problem *cp) {
   double least = HUGE_VAL, scale = contact_scale(cp);
   if (cp->A == NULL) return FAR * scale;
-  for (int i = 0; i < cp->m; ++i)
-    least = fmin(least, cp->A[(size_t)i * (size_t)(cp->m + 1)]);
+  for (int i = 0; i < cp->m; ++i) least = fmin(least, contact_diagonal(cp, i));
   return least > 0.0 ? FAR * scale / least : 0.0;
 }
 

@@ -399,7 +399,7 @@ static int next_states(opened *o, const contact_problem *cp, double margin,
   *worst = 0.0;
   for (int i = 0; i < o->n; ++i) {
     size_t dof = (size_t)(i * o->dim);
-    double wrong = o->is_open[i] ? cp->A[dof * (size_t)cp->m + dof] * o->du[dof]
+    double wrong = o->is_open[i] ? contact_diagonal(cp, (int)dof) * o->du[dof]
                                  : o->r0[dof] + o->dr[dof];
     *worst = fmax(*worst, wrong);
     if (!(wrong > margin)) continue;
@@ -419,7 +419,7 @@ static void begin(opened *o, const contact_problem *cp, const double *u,
                   const double *r) {
   for (int i = 0; i < cp->n; ++i) {
     size_t dof = (size_t)(i * cp->dim);
-    double over = cp->A[dof * (size_t)cp->m + dof] * (u[dof] - cp->gap[i]);
+    double over = contact_diagonal(cp, (int)dof) * (u[dof] - cp->gap[i]);
     o->is_open[i] = !(r[dof] <= over) && !(r[dof] == 0.0 && u[dof] == 0.0);
   }
 }
