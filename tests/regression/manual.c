@@ -119,7 +119,8 @@ START_TEST(version_is_the_newest_of_the_changes) {
   char version[100], name[TEXT];
   job j = job_begin("version");
   char *changes = source("src/manual/changes.md"),
-       *readme = source("README.md");
+       *readme = source("README.md"),
+       *package = source("tools/python/pyproject.toml");
   const char *at = strstr(changes, "\n## ");
   ck_assert_int_eq(sscanf(at, "\n## %99s", version), 1);
   for (int i = 0; i < 2; ++i) {
@@ -129,6 +130,9 @@ START_TEST(version_is_the_newest_of_the_changes) {
   }
   snprintf(name, sizeof name, "Protis %s,", version);
   ck_assert_msg(strstr(readme, name) != NULL, "README.md: no '%s'", name);
+  snprintf(name, sizeof name, "\nversion = \"%s\"\n", version);
+  ck_assert_msg(strstr(package, name) != NULL, "pyproject.toml: no '%s'", name);
+  free(package);
   free(changes);
   free(readme);
   job_end(&j);
