@@ -63,30 +63,40 @@ static double mises(const view *v, int id, int part) {
   return sqrt(0.5 * (a * a + b * b + c * c) + 3 * shear);
 }
 
-/* Principal stress number part, the largest first: rotations after Jacobi. */
+/* Turn p and q of a symmetric matrix so that a[p][q] = 0 (Jacobi). */
+static void turn(double a[3][3], int p, int q) {
+  const int r = 3 - p - q;
+  const double half = (a[q][q] - a[p][p]) / 2, off = a[p][q];
+  const double t = off / (half + copysign(sqrt(half * half + off * off), half));
+  const double cosine = 1 / sqrt(1 + t * t), sine = t * cosine;
+  const double rp = a[r][p], rq = a[r][q];
+  a[p][p] -= t * off;
+  a[q][q] += t * off;
+  a[p][q] = a[q][p] = 0;
+  a[r][p] = a[p][r] = cosine * rp - sine * rq;
+  a[r][q] = a[q][r] = sine * rp + cosine * rq;
+}
+
+/* Principal stress number part, the largest first. */
 static double principal(const view *v, int id, int part) {
   const double *s = v->s->body.stress + at(v->m->ns, id, 0);
   const int solid = v->m->ns == 6;
-  double a[3][3] = {{s[0], s[3], solid ? s[5] : 0},
-                    {s[3], s[1], solid ? s[4] : 0},
-                    {solid ? s[5] : 0, solid ? s[4] : 0, s[2]}};
+  double a[3][3], scale = 0;
+  for (int k = 0; k < v->m->ns; ++k) scale = fmax(scale, fabs(s[k]));
+  if (!(scale > 0)) return s[0];
+  for (int k = 0; k < 3; ++k) a[k][k] = s[k] / scale;
+  a[0][1] = a[1][0] = s[3] / scale;
+  a[1][2] = a[2][1] = solid ? s[4] / scale : 0;
+  a[2][0] = a[0][2] = solid ? s[5] / scale : 0;
   for (int pass = 0; pass < 30; ++pass) {
-    const int p = pass % 3, q = (p + 1) % 3, r = 3 - p - q;
-    if (a[p][q] == 0) continue;
-    const double half = (a[q][q] - a[p][p]) / 2;
-    const double t = a[p][q] / (half + copysign(hypot(half, a[p][q]), half));
-    const double cosine = 1 / hypot(1, t), sine = t * cosine;
-    const double rp = a[r][p], rq = a[r][q];
-    a[p][p] -= t * a[p][q];
-    a[q][q] += t * a[p][q];
-    a[p][q] = a[q][p] = 0;
-    a[r][p] = a[p][r] = cosine * rp - sine * rq;
-    a[r][q] = a[q][r] = sine * rp + cosine * rq;
+    const int p = pass % 3, q = (p + 1) % 3;
+    if (fabs(a[p][q]) > 1e-17) turn(a, p, q);
   }
   const double most = fmax(fmax(a[0][0], a[1][1]), a[2][2]);
   const double least = fmin(fmin(a[0][0], a[1][1]), a[2][2]);
-  if (part == 1) return a[0][0] + a[1][1] + a[2][2] - most - least;
-  return part == 0 ? most : least;
+  if (part == 0) return scale * most;
+  if (part == 2) return scale * least;
+  return scale * (a[0][0] + a[1][1] + a[2][2] - most - least);
 }
 
 /* clang-format off */

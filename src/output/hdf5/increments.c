@@ -23,21 +23,22 @@ static status grow(hdf5_file *h, const state *s) {
   return hdf5_renew(h, rows, records);
 }
 
-static double part_value(const hdf5_field *f, const view *v, int id, int k) {
-  const column *c = f->part[k];
-  if (c == NULL) return 0;
-  if (!column_ready(c, v->s)) return NAN;
-  double value = c->value(v, id, c->part);
+static double ready_value(const column *c, const view *v, int id) {
+  const double value = c->value(v, id, c->part);
   return value == 0 ? 0.0 : value;
 }
 
-/* A contact node that is not in the surface now moves, but has no other value.
- */
-static double item_value(const hdf5_file *h, const hdf5_field *f, const view *v,
-                         int id, int k) {
-  if (f->of == PER_CONTACT_NODE)
-    id = f->part[0]->of == PER_NODE ? h->contact_node[id] : h->surface_id[id];
-  return id < 0 ? NAN : part_value(f, v, id, k);
+static double part_value(const hdf5_field *f, const view *v, int id, int k) {
+  const column *c = f->part[k];
+  if (c == NULL) return 0;
+  return column_ready(c, v->s) ? ready_value(c, v, id) : NAN;
+}
+
+/* The item of a column that stands in place id of its field: a contact node
+ * that is not in the surface now (-1) moves, but has no other value. */
+static int item_of(const hdf5_file *h, const hdf5_field *f, int id) {
+  if (f->of != PER_CONTACT_NODE) return id;
+  return f->part[0]->of == PER_NODE ? h->contact_node[id] : h->surface_id[id];
 }
 
 static off_t slot(off_t offset, int i) {
@@ -60,13 +61,19 @@ static status put_burst(hdf5_file *h, burst *b) {
 static status put_field(hdf5_file *h, const hdf5_field *f, const view *v,
                         off_t offset, burst *b) {
   const int items = hdf5_items(h, f);
-  for (int id = 0; id < items; ++id)
+  int ready[6];
+  for (int k = 0; k < f->n_part; ++k)
+    ready[k] = f->part[k] != NULL && column_ready(f->part[k], v->s);
+  for (int i = 0; i < items; ++i)
     for (int k = 0; k < f->n_part; ++k, offset = slot(offset, 1)) {
       if (b->n == CHUNK || slot(b->at, b->n) != offset) {
         PASS(put_burst(h, b));
         b->at = offset;
       }
-      b->value[b->n++] = item_value(h, f, v, id, k);
+      const int id = item_of(h, f, i);
+      double value = f->part[k] == NULL && id >= 0 ? 0 : NAN;
+      if (ready[k] && id >= 0) value = ready_value(f->part[k], v, id);
+      b->value[b->n++] = value;
     }
   return OK;
 }
