@@ -313,7 +313,9 @@ enum { MANUAL_INDENT = 20 };
 
 /* " in [0, 2]", or one side alone where no number passes the other. */
 static void print_range(const option *o, FILE *out) {
-  if (o->max < DBL_MAX)
+  if (o->max < DBL_MAX && o->min == DBL_MIN)
+    fprintf(out, " in ]0, %g]", o->max);
+  else if (o->max < DBL_MAX)
     fprintf(out, " in [%g, %g]", o->min, o->max);
   else if (o->min == DBL_MIN)
     fputs(" > 0", out);
