@@ -257,10 +257,12 @@ gallery browser-test:
 browser-run: $(program) $(pages)
 	$(Q)PROTIS=$(abspath $(program)) tools/run_tests $(pages)
 
-# The pictures of src/manual/gallery.md, the same bytes each time.
+# The pictures of src/manual/gallery.md, the same bytes each time; pages of the
+# examples in build/gallery.
 gallery-run: $(program)
 	$(Q)tools/plot example all -o build/gallery --pictures src/manual/pictures \
 	  --program $(program) 2> build/gallery.log || { cat build/gallery.log; exit 1; }
+	$(Q)for f in build/gallery/*.json; do tools/report $$f || exit 1; done
 
 # Memory refused, files that fail, kills: a slice of each in the tests. All of
 # it with random problems and decks in one table; POINTS: of each kind, by

@@ -94,12 +94,8 @@ class Walls(unittest.TestCase):
         cls.folder.cleanup()
 
     def check(self, job):
-        said = run(
-    "tools/plot_contact",
-    f"{job}.dat",
-    f"{job}.svg",
-    "walls",
-     "x")
+        said = run("tools/plot_contact", f"{job}.dat", f"{job}.svg",
+                   "walls", "x")
         tree.parse(f"{job}.svg")
         svg = pathlib.Path(f"{job}.svg").read_text(encoding="utf-8")
         found = re.findall(r"^(.*): largest pressure (\S+), shear ([^ ;]+)",

@@ -130,14 +130,8 @@ def line_of(contact, points):
 def obstacle_2d(axes, surface, normal, depth):
     """A line with ticks on the obstacle's side; depth: (x, y) of a tick."""
     axes.plot(*surface.T, color="#333333", lw=1.3, zorder=5)
-    along = np.r_[
-    0,
-    np.cumsum(
-        np.linalg.norm(
-            np.diff(
-                surface,
-                axis=0),
-                 axis=1))]
+    steps = np.linalg.norm(np.diff(surface, axis=0), axis=1)
+    along = np.r_[0, np.cumsum(steps)]
     at = np.arange(0.25, along[-1] / depth[0], 0.5) * depth[0]
     foot = np.array([np.interp(at, along, surface[:, k]) for k in (0, 1)]).T
     out = np.array([np.interp(at, along, normal[:, k]) for k in (0, 1)]).T
@@ -376,11 +370,8 @@ def draw_3d(axes, job, name=None, scale=None, elevation=None, azimuth=-60.0,
     axes.add_collection(shapes)
     for contact in job.contacts:
         place = points[contact.node] @ view.T
-        shown = in_sight(
-    points @ view.T,
-    faces,
-    place,
-     contact.normal @ view[2])
+        shown = in_sight(points @ view.T, faces, place,
+                         contact.normal @ view[2])
         marks(axes, contact, place[:, :2], shown,
               np.clip(60 / np.sqrt(len(place)), 1.2, 4))
     if zoom is not None:

@@ -60,11 +60,8 @@ def draw_line(axes, job, contact, abscissa=None):
             for sign in (1, -1):
                 axes.plot(s, sign * contact.limit[part], color=GREY, lw=1,
                           ls="--", label=label("± limit") if sign > 0 else None)
-        axes.plot(
-    s,
-    contact.pressure[part],
-    color=BLUE,
-     label=label("pressure"))
+        axes.plot(s, contact.pressure[part], color=BLUE,
+                  label=label("pressure"))
         if shorn:
             axes.plot(s, contact.slides[part], color=RED,
                       label=label("shear traction"))
@@ -192,9 +189,6 @@ def draw(job, title=None, abscissa=None, only=None):
     for panel in axes.flat[len(contacts):]:
         panel.axis("off")
     if title:
-        figure.suptitle(
-    textwrap.fill(
-        plain(title),
-        12 * wide + 40),
-         fontsize=12)
+        figure.suptitle(textwrap.fill(plain(title), 12 * wide + 40),
+                        fontsize=12)
     return figure, contacts

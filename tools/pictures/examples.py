@@ -196,12 +196,8 @@ def spence(job, axes):
     axes.plot(s, 5 * q, color=RED, label="Spence, 5 × shear", **FORM)
     x, found, shear = by(job, "x", "pressure", "traction_t")
     axes.plot(x, found, color=BLUE, label="Protis, pressure", **DOTS)
-    axes.plot(
-    x,
-    5 * np.abs(shear),
-    color=RED,
-    label="Protis, 5 × shear",
-     **DOTS)
+    axes.plot(x, 5 * np.abs(shear), color=RED, label="Protis, 5 × shear",
+              **DOTS)
     axes.axvline(c * a * line.a, color=GREY, lw=0.8, ls=":")
     axes.text(c * a * line.a + 0.004, 80, f"stick up to {c:.3f} a", color=GREY)
     axes.set_xlim(0, 0.26)
@@ -216,14 +212,8 @@ def mindlin_loop(job, above, below):
     s = np.linspace(-line.a, line.a, 400)
     q, _ = closed.cattaneo(line, s, mu, 0.5)
     x, p, shear = by(job, "x", "pressure", "traction_t")
-    above.plot(
-    s,
-    mu *
-    line.pressure(s),
-    color=GREY,
-    ls="--",
-    lw=1,
-     label="mu p")
+    above.plot(s, mu * line.pressure(s), color=GREY, ls="--", lw=1,
+               label="mu p")
     above.plot(s, q, color=RED, label="Cattaneo, shear", **FORM)
     above.plot(x, np.abs(shear), color=RED, label="Protis, shear", **DOTS)
     tractions(above)
@@ -294,11 +284,8 @@ def hild_triangle(job, above, below):
     lame = nu / ((1 + nu) * (1 - 2 * nu))
     beta = p0 * (mu - mu0) / (lame * (mu - np.sqrt((1 - nu) / nu)))
     x, p, q, u = by(job, "x", "pressure", "traction_t", "u_t")
-    above.axhline(
-    p0 - lame * beta,
-    color=BLUE,
-    label="closed form, both",
-     **FORM)
+    above.axhline(p0 - lame * beta, color=BLUE, label="closed form, both",
+                  **FORM)
     above.plot(x, p, "o", color=BLUE, ms=4, label="Protis, pressure")
     above.plot(x, np.abs(q), "s", mfc="none", ms=8, color=RED,
                label="Protis, shear")
@@ -341,12 +328,8 @@ def nonlocal_hertz(job, axes):
             for v in s]
     axes.plot(s + middle, mu * line.pressure(s), color=GREY, ls="--", lw=1,
               label="mu p (Hertz)")
-    axes.plot(
-    s + middle,
-    mu * np.array(mean),
-    color=RED,
-    label="mu R(p)",
-     **FORM)
+    axes.plot(s + middle, mu * np.array(mean), color=RED, label="mu R(p)",
+              **FORM)
     axes.plot(x, np.abs(q), color=RED, label="Protis", **DOTS)
     axes.set_xlim(-0.3, 0.3)
     label(axes, "x, mm", "shear traction, N/mm²")

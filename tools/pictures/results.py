@@ -239,8 +239,8 @@ class Results:
         limit = np.zeros(len(area))
         if self.has("limit", "contact"):
             limit = field("limit") / np.where(area > 0, area, 1)
-        shear, node = shears(
-    force, normal, slides), self.h5["contact/node"][...]
+        shear = shears(force, normal, slides)
+        node = self.h5["contact/node"][...]
         known = ~np.isnan(field("status"))  # supports hold the others
         numbers = self.h5["contact/contact_no"][...]
         asked = cards(self.deck, "CONTACT")
@@ -295,8 +295,8 @@ class Results:
             name = names[np.flatnonzero(mine)[0]]
             found.append(Contact(
                 name if name != "contact" else f"contact {no:.0f}",
-                points[mine],
-                none, none, none, normal[mine], table["gap"][mine],
+                points[mine], none, none, none, normal[mine],
+                table["gap"][mine],
                 table["pressure"][mine], shears(force, normal, slides)[mine],
                 (table.get("limit", zero) / area)[mine], status[mine],
                 slides[mine], unit_text(block.units["pressure"])))
