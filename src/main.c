@@ -68,9 +68,9 @@ done:
 
 /* Messages with a place have been printed; what is left is the record. */
 static int report(status st, const message_log *log, int unsettled) {
-  int told = log != NULL && message_count(log, ERROR) > 0 && st != ERR_MEMORY &&
-             st != ERR_INTERNAL;
-  if (st != OK && !told)
+  int reported = log != NULL && message_count(log, ERROR) > 0 &&
+                 st != ERR_MEMORY && st != ERR_INTERNAL;
+  if (st != OK && !reported)
     fprintf(stderr, "protis: %s%s\n",
             status_is_request(st) ? "" : "error: ", status_message());
   if (st == ERR_INTERNAL || st == ERR_MEMORY)

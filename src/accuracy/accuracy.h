@@ -11,11 +11,12 @@ typedef struct inverse_energy {
   void *ctx;
   /* *square = d' inv(M) d, d[m] */
   status (*square)(void *ctx, const double *d, double *square);
-  double condition; /* of M scaled to a unit diagonal, -; for the rounding    */
+  double condition;       /* of M scaled to a unit diagonal, -; for the
+                             rounding */
   const double *diagonal; /* [m] or NULL: the condition is that of a matrix with
-                             this diagonal, whose inverse holds inv(M)        */
-  int n_kernel; /* motions without energy: M is semidefinite              */
-  const double *kernel; /* [m*n_kernel], borrowed                             */
+                             this diagonal, whose inverse holds inv(M) */
+  int n_kernel;           /* motions without energy: M is semidefinite */
+  const double *kernel;   /* [m*n_kernel], borrowed */
   /* Compliance form: the same problem in stiffness form, borrowed, for the rate
    * of Coulomb friction; NULL: not known */
   const contact_problem *stiffness;

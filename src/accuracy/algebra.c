@@ -84,7 +84,7 @@ static int admissible(const contact_problem *cp, const pair *p) {
   return 1;
 }
 
-static const double NO_LEVER = 0x1p-44; /* -, condition that is rounding   */
+static const double NO_LEVER = 0x1p-44; /* -, condition that is rounding */
 
 /* y of G y = b in place of b[k]; 0: some motion has no force against it, or
  * only one with a lever arm of rounding. root[k], pivot[k] are workspace. */

@@ -33,10 +33,10 @@ static const double told_share = 0.01;
 typedef struct candidate {
   int node_id, pair_id;
   int left_out;
-  double normal[3]; /* [dim] sum of w n, then the unit normal               */
-  double held;      /* 1 - what supports leave of the normal's length       */
-  double area;      /* m2                                                   */
-  double gap;       /* at time 0, m                                         */
+  double normal[3]; /* [dim] sum of w n, then the unit normal */
+  double held;      /* 1 - what supports leave of the normal's length */
+  double area;      /* m2 */
+  double gap;       /* at time 0, m */
 } candidate;
 
 /* Messages given once per contact. */
@@ -47,21 +47,22 @@ typedef struct tally {
   /* first node and pair */
   int n_dependent, dependent_node, dependent_on;
   int deep_node;
-  double depth; /* deepest penetration, m                                   */
-  int turned_node; /* where the normals of body and obstacle differ most    */
-  double sine;     /* of the angle between them                             */
-  int held_node;   /* where supports hold most of the contact normal       */
-  double held;     /* 1 - the length that is left of it                       */
+  double depth;    /* deepest penetration, m */
+  int turned_node; /* where the normals of body and obstacle differ most */
+  double sine;     /* of the angle between them */
+  int held_node;   /* where supports hold most of the contact normal */
+  double held;     /* 1 - the length that is left of it */
 } tally;
 
 typedef struct builder {
   const surface_input *in;
   message_log *log;
   int dim, n;
-  unsigned mirrors; /* bit 2c, 2c+1: least, greatest x_c is a mirror plane  */
-  double low[3], high[3]; /* [dim] box of the mesh, m                       */
-  candidate *list; /* [n] by node, then by contact                          */
-  tally *tallies;  /* [n_pair]                                              */
+  unsigned mirrors;       /* bit 2c, 2c+1: least, greatest x_c is a mirror
+                             plane */
+  double low[3], high[3]; /* [dim] box of the mesh, m */
+  candidate *list;        /* [n] by node, then by contact */
+  tally *tallies;         /* [n_pair] */
 } builder;
 
 /* Position of a node as text for a message. */

@@ -53,8 +53,8 @@ EFFECT_ROWS(EFFECT_ROW)
 /* NULL ends. */
 extern const effect_ops *const effect_table[];
 
-/* Bits EFFECT_* of those that the model calls for. */
-unsigned effects_called_for(const model *m);
+/* Bits EFFECT_* of those that the model requires. */
+unsigned effects_required(const model *m);
 const char *effect_name(int bit);
 const effect_ops *effect_find(const char *name); /* or NULL */
 /* The effect whose column it is, or NULL. */

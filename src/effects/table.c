@@ -1,6 +1,6 @@
 /*
- * The rows of the effects, of all their files, and which of them a model calls
- * for.
+ * The rows of the effects, of all their files, and which of them a model
+ * requires.
  */
 #include "effects/rows.h"
 
@@ -9,11 +9,10 @@
 #define EFFECT_PLACE(name) &name##_effect,
 const effect_ops *const effect_table[] = {EFFECT_ROWS(EFFECT_PLACE) NULL};
 
-unsigned effects_called_for(const model *m) {
+unsigned effects_required(const model *m) {
   unsigned bits = 0;
   for (int k = 0; effect_table[k] != NULL; ++k)
-    if (effect_table[k]->bit != NO_BIT &&
-        effect_table[k]->called_for(m, NULL, 0))
+    if (effect_table[k]->bit != NO_BIT && effect_table[k]->required(m, NULL, 0))
       bits |= 1u << effect_table[k]->bit;
   return bits & ~(unsigned)(EFFECTS_WITHOUT);
 }

@@ -240,7 +240,7 @@ const step *facts_first_whole(const model *m) {
   return NULL;
 }
 
-int facts_neglects_friction(const model *m) {
+int facts_omits_friction(const model *m) {
   int any = 0;
   for (int i = 0; i < m->reduction.n; ++i)
     any |= m->reduction.row[i].bit == EFFECT_BIT_FRICTION &&

@@ -1,6 +1,6 @@
 /*
- * What the rows of the effects ask of the deck. "First" is in the order of the
- * deck, NULL if there is none.
+ * Queries of the rows of the effects about the deck. "First" is in the order of
+ * the deck, NULL if there is none.
  */
 #ifndef PROTIS_MODEL_FACTS_H
 #define PROTIS_MODEL_FACTS_H
@@ -11,16 +11,16 @@
 const friction_rule *facts_first_rule(const model *m,
                                       int (*is)(const friction_rule *rule),
                                       const contact **of);
-const contact *facts_first_given(const model *m); /* of *CONTACT FORCE        */
+const contact *facts_first_given(const model *m); /* of *CONTACT FORCE */
 const load *facts_first_body_load(const model *m);
 const load *facts_first_temperature(const model *m);
-/* A support that does work: it moves, or is taken away under load. */
+/* A support that does work: it moves, or is removed under load. */
 const load *facts_moving_support(const model *m);
 
 /* Step with a *PRINT of these tables, and where; with fields in JOB.h5. */
 const step *facts_first_print(const model *m, int tables, place *at);
 const step *facts_first_fields(const model *m);
-/* That shows, tries or judges the whole condensed problem. */
+/* That shows, tries or checks the whole condensed problem. */
 const step *facts_first_whole(const model *m);
 /* That "is"; what of *ACCURACY it may be. */
 const step *facts_first_step(const model *m, int (*is)(const step *s));
@@ -30,15 +30,15 @@ int facts_asks_theory(const step *s);
 
 /* Section whose material has an inelastic law. */
 const section *facts_first_inelastic(const model *m);
-int facts_has_inelastic(const model *m); /* 1: its strains may change       */
-int facts_has_expansion(const model *m); /* 1: a material in use has it       */
+int facts_has_inelastic(const model *m); /* 1: its strains may change */
+int facts_has_expansion(const model *m); /* 1: a material in use has it */
 /* Material whose law depends on temperature; whose moduli do. */
 const material *facts_first_warm_law(const model *m);
 const material *facts_first_warm_moduli(const model *m);
-int facts_has_warm_law(const model *m); /* 1: and temperatures are given   */
+int facts_has_warm_law(const model *m); /* 1: and temperatures are given */
 int facts_has_warm_moduli(const model *m);
 
-/* 1: *EFFECTS leaves friction out and asks what it would have changed. */
-int facts_neglects_friction(const model *m);
+/* 1: *EFFECTS leaves friction out and bounds what it would have changed. */
+int facts_omits_friction(const model *m);
 
 #endif

@@ -11,7 +11,7 @@
 
 enum { MAX_NODE = 4 };
 
-/* Time at which the value of a kept load counts. */
+/* Time at which the value of a load of an earlier step counts. */
 static double value_time(const load *l, double t) {
   return l->run == RUN_HELD ? l->before_t : t;
 }
@@ -40,7 +40,7 @@ double load_at_node(const load *l, const mesh *msh, const step *s, int node,
   return load_value(l, s, x, t);
 }
 
-/* Say where a value is not finite. */
+/* Report where a value is not finite. */
 static void report_value(const model *m, const mesh *msh, const load *l,
                          double t, int node, double value) {
   double x[3];
@@ -97,12 +97,12 @@ static void simplex_mass(int n, double measure, const double *r, double *M) {
     }
 }
 
-/* A face or an element and what a load does on it. */
+/* A face or an element and the load on it. */
 typedef struct patch {
-  int n, node[MAX_NODE]; /* its nodes                                         */
-  double measure;        /* length^(n-1), thickness included                  */
-  double direction[3];   /* of the load, unit length                          */
-  double factor;         /* density for gravity, else 1                       */
+  int n, node[MAX_NODE]; /* its nodes */
+  double measure;        /* length^(n-1), thickness included */
+  double direction[3];   /* of the load, unit length */
+  double factor;         /* density for gravity, else 1 */
 } patch;
 
 static status add_patch(const model *m, const mesh *msh, const load *l,
@@ -210,7 +210,7 @@ done:
   return st;
 }
 
-/* Share of the start that is left of a ramp without a value before. */
+/* Remaining share of the start value of a ramp without a value before. */
 static double start_share(const load *l, const step *s, double t) {
   if (l->run != RUN_RAMP || l->has_before || t >= s->start + s->total) return 0;
   return 1.0 - (t - s->start) / s->total;
@@ -282,7 +282,7 @@ status load_temperature_initial(const model *m, const mesh *msh, double *T) {
   return OK;
 }
 
-/* A temperature starts from the initial one, and OP=NEW leads back to it. */
+/* A temperature starts from the initial one, and OP=NEW returns to it. */
 static double temperature_of(const load *l, const mesh *msh, const step *s,
                              double t, int elem_id, double T0) {
   double now = elem_mean(&l->value, l->field, msh, elem_id, value_time(l, t));

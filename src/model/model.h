@@ -1,6 +1,6 @@
 /*
  * The model: everything the deck asks for, checked. Names and strings are
- * borrowed from the deck, which lives longer.
+ * borrowed from the deck, which must outlive it.
  */
 #ifndef PROTIS_MODEL_MODEL_H
 #define PROTIS_MODEL_MODEL_H
@@ -18,51 +18,52 @@
 typedef struct amplitude {
   const char *name;
   place at;
-  int used;       /* something refers to it                                  */
-  int total_time; /* its times are total (1) or step time (0)                */
+  int used;          /* something refers to it */
+  int total_time;    /* its times are total (1) or step time (0) */
   value_table table; /* s, -; arrays owned */
 } amplitude;
 
 typedef struct material {
   const char *name;
   place at;
-  int used; /* a section refers to it                                         */
-  int has_elastic;       /* its *ELASTIC was seen, valid or not               */
-  elastic_table elastic; /* n = 0: no valid *ELASTIC                          */
-  double C[36];          /* at the temperature 0, Pa                          */
-  double density;        /* kg/m3                                      */
+  int used;              /* a section refers to it */
+  int has_elastic;       /* its *ELASTIC was seen, valid or not */
+  elastic_table elastic; /* n = 0: no valid *ELASTIC */
+  double C[36];          /* at the temperature 0, Pa */
+  double density;        /* kg/m3 */
   int has_density;
   expansion expand;
-  int moduli;   /* of *ELASTIC: MODULI_..., -1: not said                      */
-  law_card law; /* ops NULL: elastic; owned                                   */
-  law_shift clock; /* *TRS; kind SHIFT_NONE: not given                        */
+  int moduli;      /* of *ELASTIC: MODULI_..., -1: not given */
+  law_card law;    /* ops NULL: elastic; owned */
+  law_shift clock; /* *TRS; kind SHIFT_NONE: not given */
   place clock_at;
-  const law_ops *law_aside; /* ops of the law while it is left out, or NULL   */
-  elastic_constants elastic_aside; /* of *ELASTIC while others stand for what
-                                      the law ends with                       */
-  double relaxed[36]; /* [ns*ns] e^i over the stress then, 1/Pa               */
-  int is_relaxed;     /* 1: they do                                           */
-  int is_still;       /* 1: the law is left out where model.still says so     */
-  int is_abaqus_prony; /* *VISCOELASTIC: long-term moduli if it is not said   */
+  const law_ops *law_aside; /* ops of the law while it is left out, or NULL */
+  /* of *ELASTIC while others represent the final state of the law */
+  elastic_constants elastic_aside;
+  double relaxed[36];  /* [ns*ns] e^i over the stress then, 1/Pa */
+  int is_relaxed;      /* 1: they do */
+  int is_still;        /* 1: the law is left out where model.still says
+                          so */
+  int is_abaqus_prony; /* *VISCOELASTIC: long-term moduli if not given */
 } material;
 enum { MODULI_LONG_TERM, MODULI_INSTANTANEOUS };
 
 typedef struct section {
   const char *elset, *material_name;
   place at, elset_at, material_at;
-  int kin;          /* kinematics; -1: not given                              */
-  double thickness; /* m                                                      */
-  int has_thickness; /* given, not the default                                */
-  int averaged;      /* FORMULATION=AVERAGED                                  */
+  int kin;           /* kinematics; -1: not given */
+  double thickness;  /* m */
+  int has_thickness; /* given, not the default */
+  int averaged;      /* FORMULATION=AVERAGED */
   int material_id, group_id;
 } section;
 
 /* One *FRICTION card: the law of a contact, until another takes its place. */
 typedef struct friction_rule {
-  const friction_ops *law; /* NULL: frictionless                              */
-  const friction_ops *aside; /* the law while it is left out, or NULL         */
-  friction_card card;   /* its value and options (owned)                   */
-  value_table position; /* TABLE= of the value; arrays owned               */
+  const friction_ops *law;   /* NULL: frictionless */
+  const friction_ops *aside; /* the law while it is left out, or NULL */
+  friction_card card;        /* its value and options (owned) */
+  value_table position;      /* TABLE= of the value; arrays owned */
   const char *amplitude_name;
   place at, value_at, amplitude_at;
 } friction_rule;
@@ -72,7 +73,7 @@ typedef struct friction_rule {
 typedef struct given_force {
   int given;
   quantity value;
-  value_table position; /* TABLE= of the value; arrays owned                  */
+  value_table position; /* TABLE= of the value; arrays owned */
   const char *amplitude_name;
   place at, value_at, amplitude_at;
 } given_force;
@@ -81,62 +82,66 @@ typedef struct contact {
   const char *name, *group, *obstacle_name;
   place at, group_at, obstacle_at;
   int obstacle_id, group_id;
-  int obstacle_normal;  /* 1: NORMAL=OBSTACLE; resolved from -1: not said */
-  int has_axis;         /* line AXIS, or that of ROTATE of the obstacle    */
-  int axis_of_obstacle; /* 1: of the obstacle, shifted with it             */
-  double axis_point[3], axis[3]; /* m, of unit length; for the torque        */
+  int obstacle_normal;           /* 1: NORMAL=OBSTACLE; resolved from -1: not
+                                    given */
+  int has_axis;                  /* line AXIS, or that of ROTATE of the
+                                    obstacle */
+  int axis_of_obstacle;          /* 1: of the obstacle, shifted with it */
+  double axis_point[3], axis[3]; /* m, of unit length; for the torque */
   place axis_at;
-  friction_rule friction; /* from the first step on                          */
+  friction_rule friction; /* from the first step on */
   given_force force;
 } contact;
 
 typedef enum {
-  LOAD_PRESSURE, /* P: force/length^2, pushes into the body                   */
-  LOAD_TRACTION, /* TX TY TZ: force/length^2                                  */
-  LOAD_BODY,     /* BX BY BZ: force/length^3                                  */
-  LOAD_GRAVITY,  /* GRAV: acceleration along direction[3]                     */
-  LOAD_POINT,    /* *CLOAD: force on each node of the group                   */
-  LOAD_TEMPERATURE, /* *TEMPERATURE of a group of elements                    */
-  LOAD_FIXING /* *BOUNDARY: prescribed displacement, length                */
+  LOAD_PRESSURE,    /* P: force/length^2, pushes into the body */
+  LOAD_TRACTION,    /* TX TY TZ: force/length^2 */
+  LOAD_BODY,        /* BX BY BZ: force/length^3 */
+  LOAD_GRAVITY,     /* GRAV: acceleration along direction[3] */
+  LOAD_POINT,       /* *CLOAD: force on each node of the group */
+  LOAD_TEMPERATURE, /* *TEMPERATURE of a group of elements */
+  LOAD_FIXING       /* *BOUNDARY: prescribed displacement, length */
 } load_kind;
 
 /* How the value of a load runs over a step. */
 typedef enum {
-  RUN_RAMP,   /* linear from "before" to "value" over the step                */
-  RUN_DIRECT, /* value at the time itself (amplitude, expression of t)        */
-  RUN_HELD    /* value at before_t: kept from a step before                   */
+  RUN_RAMP,   /* linear from "before" to "value" over the step */
+  RUN_DIRECT, /* value at the time itself (amplitude, expression of t) */
+  RUN_HELD    /* value at before_t: of an earlier step */
 } load_run;
 
 /* A load or prescribed displacement in force during one step. */
 typedef struct load {
-  int kind; /* load_kind                                                     */
-  int run;  /* load_run                                                      */
+  int kind; /* load_kind */
+  int run;  /* load_run */
   const char *group;
   int group_id;
-  int component; /* 0..dim-1: of TX.., BX.., *CLOAD, *BOUNDARY                */
-  double direction[3]; /* LOAD_GRAVITY, unit length                           */
+  int component;       /* 0..dim-1: of TX.., BX.., *CLOAD, *BOUNDARY */
+  double direction[3]; /* LOAD_GRAVITY, unit length */
   quantity value, before;
-  int has_before;  /* RUN_RAMP: starts from "before" at before_t, else from 0 */
-  double before_t; /* s, total time                                           */
-  const char *file, *before_file; /* *TEMPERATURE, FILE=: nodal field that the
-                                     value multiplies; NULL: 1                */
-  const double *field, *before_field; /* [n_node] borrowed from the model     */
+  int has_before;  /* RUN_RAMP: starts from "before" at before_t, else from
+                      0 */
+  double before_t; /* s, total time */
+  /* *TEMPERATURE, FILE=: nodal field that the value multiplies; NULL: 1 */
+  const char *file, *before_file;
+  /* [n_node] borrowed from the model */
+  const double *field, *before_field;
   place file_at;
   const char *amplitude_name;
-  int amplitude_id; /* -1: none                                               */
-  int removed;      /* ends: by OP=NEW; dropped after its ramp to zero        */
+  int amplitude_id; /* -1: none */
+  int removed;      /* ends: by OP=NEW; dropped after its ramp to zero */
   place amplitude_at;
   place at;
 } load;
 
-typedef struct nodal_field { /* values read from a file                      */
+typedef struct nodal_field { /* values read from a file */
   const char *file;
-  double *value; /* [n_node] owned                                            */
+  double *value; /* [n_node] owned */
 } nodal_field;
 
 typedef struct load_list {
   int n, cap;
-  load *item; /* [n] owned                                                    */
+  load *item; /* [n] owned */
 } load_list;
 
 typedef enum { STEP_NONE, STEP_STATIC, STEP_QUASISTATIC, STEP_VISCO } step_kind;
@@ -164,10 +169,10 @@ enum { PRINT_LIST(PRINT_BIT) };
 
 /* One line of *INITIAL CONDITIONS. */
 typedef struct initial {
-  int type; /* initial_type                                                  */
+  int type; /* initial_type */
   const char *group;
   int group_id;
-  int component; /* of a displacement, strain or internal variable, from 0    */
+  int component; /* of a displacement, strain or internal variable, from 0 */
   quantity value;
   place at;
 } initial;
@@ -182,33 +187,33 @@ typedef enum {
 /* *INITIAL CONDITIONS, TYPE=DISPLACEMENT: u_0, tested for compatibility. */
 typedef struct start_card {
   int given;
-  int relax;             /* 1: an incompatible start is relaxed, 0: refused   */
-  const char *file;      /* JOB.h5 of another run, or NULL                    */
-  const char *file_name; /* as the deck has it                                */
+  int relax;             /* 1: an incompatible start is relaxed, 0: refused */
+  const char *file;      /* JOB.h5 of another run, or NULL */
+  const char *file_name; /* as the deck has it */
   place at, file_at;
 } start_card;
 
 typedef struct time_points {
   const char *name;
-  int total_time; /* 0: counted from the start of each step                   */
+  int total_time; /* 0: counted from the start of each step */
   int n, used;
-  double *t; /* [n] ascending, s                                              */
+  double *t; /* [n] ascending, s */
   place at;
 } time_points;
 
-typedef struct print_request { /* one table of *PRINT                         */
-  int table;                   /* one bit of PRINT_*                          */
-  const char *group; /* nodes or elements of a group only; NULL: all          */
-  int group_id;      /* -1: all                                               */
-  int frequency;     /* every n-th increment and the last; 0: last only       */
-  const char *points_name;   /* NULL: frequency counts                        */
-  const time_points *points; /* the same, borrowed                            */
+typedef struct print_request { /* one table of *PRINT */
+  int table;                   /* one bit of PRINT_* */
+  const char *group;       /* nodes or elements of a group only; NULL: all */
+  int group_id;            /* -1: all */
+  int frequency;           /* every n-th increment and the last; 0: last only */
+  const char *points_name; /* NULL: frequency counts */
+  const time_points *points; /* the same, borrowed */
   place at, points_at;
 } print_request;
 
-typedef struct friction_change { /* *FRICTION in a step                       */
+typedef struct friction_change { /* *FRICTION in a step */
   int contact_id;
-  friction_rule rule; /* from the start of the step on                      */
+  friction_rule rule; /* from the start of the step on */
 } friction_change;
 
 /* CHECK= of *SOLVER */
@@ -228,7 +233,7 @@ typedef struct step {
   } visco;
   double start;                     /* total time, s */
   double dt, total, dt_min, dt_max; /* s */
-  load_list loads;  /* all in force, those kept from before included */
+  load_list loads;  /* all in force, those of earlier steps included */
   unsigned renewed; /* bit of each load_kind that OP=NEW ends */
   struct {
     int n, cap;
@@ -254,7 +259,7 @@ typedef struct step {
   struct {
     int given;
     place at;
-    int no_solver;     /* 1: the error of the solver is not asked for */
+    int no_solver;     /* 1: the error of the solver is not required */
     int mesh, time;    /* 1: their errors are */
     int time_balanced; /* 1: TIME=BALANCED */
     double time_share; /* -, of the error of the mesh */
@@ -277,12 +282,12 @@ enum {
   REFERENCE_SIZE
 };
 typedef struct reference_line {
-  const char *name; /* u_x, stress_xx, pressure, ...                          */
+  const char *name; /* u_x, stress_xx, pressure, ... */
   quantity value;
   place at;
 } reference_line;
 typedef struct closed_form {
-  int n; /* 0: none                                                           */
+  int n; /* 0: none */
   reference_line line[REFERENCE_SIZE];
   place at;
   /* Set by model_check. */
@@ -290,37 +295,37 @@ typedef struct closed_form {
   quantity value[REFERENCE_SIZE];
 } closed_form;
 
-typedef struct accuracy_target { /* *ACCURACY, TARGET=                       */
-  double percent;             /* of the energy norm; 0: none                  */
-  double max_cpu, max_memory; /* s, MB; 0: no limit                           */
+typedef struct accuracy_target { /* *ACCURACY, TARGET= */
+  double percent;                /* of the energy norm; 0: none */
+  double max_cpu, max_memory;    /* s, MB; 0: no limit */
   int max_passes;
 } accuracy_target;
 
-/* The card of an effect that the model knows no more of: its file does. */
+/* The card of an effect, interpreted by the file of the effect. */
 enum { EFFECT_VALUES = 4 };
 typedef struct effect_card {
   const char *keyword;
-  int contact_id; /* -1: all                                                  */
-  double value[EFFECT_VALUES]; /* in the order of its row of keywords         */
+  int contact_id;              /* -1: all */
+  double value[EFFECT_VALUES]; /* in the order of its row of keywords */
   place at;
 } effect_card;
 
 /* What *EFFECTS, MODE=AUTO leaves out, and what that would have changed. */
-typedef struct neglected {
-  int bit, id;   /* EFFECT_BIT_..., material of a law or -1                  */
-  char why[160]; /* what it was tried for                                    */
-  double bound;  /* -, of the energy norm of the solution, at most           */
-  double local;  /* -, stress in one element over the scale of stresses      */
+typedef struct omitted {
+  int bit, id;   /* EFFECT_BIT_..., material of a law or -1 */
+  char why[160]; /* reason of the trial */
+  double bound;  /* -, of the energy norm of the solution, at most */
+  double local;  /* -, stress in one element over the scale of stresses */
   double change; /* -, largest change of displacements and forces when an
-                    increment was solved again with it, over their largest    */
-  long checked;  /* increments                                               */
-  long again;    /* of them solved again                                     */
-  int some;      /* > 0: of the law at so many elements only, m->still       */
-  double time;   /* s, > 0: the law is at its end, which it nears by
-                    exp(-t/time)                                              */
-  int back;      /* 1: it matters, the run was made again with it            */
-  int lost;      /* 1: the run without it was not solved to its tolerance     */
-} neglected;
+                    increment was solved again with it, over their largest */
+  long checked;  /* increments */
+  long again;    /* of them solved again */
+  int some;      /* > 0: of the law at so many elements only, m->still */
+  double time;   /* s, > 0: the law is at its final state, approached by
+                    exp(-t/time) */
+  int back;      /* 1: it matters, the run was repeated with it */
+  int lost;      /* 1: the run without it was not solved to its tolerance */
+} omitted;
 enum { NEGLECT_MAX = 16 };
 
 typedef struct model {
@@ -350,7 +355,7 @@ typedef struct model {
   struct model_count {
     int amplitude, points, material, section, obstacle, contact, step, field,
         initial, effect_card;
-  } n, cap; /* of the arrays below; how many there is room for */
+  } n, cap; /* of the arrays below; allocated */
   struct {
     amplitude *amplitudes;
     time_points *points;
@@ -379,9 +384,9 @@ typedef struct model {
     double tol;         /* - */
     place at;
     int n;
-    neglected row[NEGLECT_MAX]; /* [n] */
-    unsigned char *still;       /* [n_elem] as material.is_still says; NULL:
-                                   nowhere, owned */
+    omitted row[NEGLECT_MAX]; /* [n] */
+    unsigned char *still;     /* [n_elem] as material.is_still says; NULL:
+                                 nowhere, owned */
   } reduction;
   effect_card *effect_cards; /* [n.effect_card] in the order of the deck */
   unsigned effects;          /* bits EFFECT_*, set by model_check */
@@ -390,11 +395,11 @@ typedef struct model {
   int *elem_section; /* [n_elem] section of each element */
 } model;
 
-typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
+typedef struct move { /* *OBSTACLE, AMPLITUDE= */
   const char *amplitude_name;
-  int used; /* a contact refers to it                                         */
-  place at, amplitude_at; /* of the card, the name                            */
-  place short_at; /* first geometry line with two numbers; file NULL: none    */
+  int used;               /* a contact refers to it */
+  place at, amplitude_at; /* of the card, the name */
+  place short_at; /* first geometry line with two numbers; file NULL: none */
   place move_at, rotate_at; /* of the lines MOVE, ROTATE */
 } move;
 
@@ -421,8 +426,8 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE=                                */
 /* clang-format on */
 #define EFFECT_BIT(name, text) EFFECT_BIT_##name,
 enum { EFFECT_LIST(EFFECT_BIT) EFFECT_COUNT };
-/* Bits of effects that a build knows nothing of: tools/effects_cost proves with
- * such builds that what is off costs nothing. */
+/* Bits of effects left out of a build: tools/effects_cost proves with such
+ * builds that effects that are off cost nothing. */
 #ifndef EFFECTS_WITHOUT
 #define EFFECTS_WITHOUT 0
 #endif
@@ -440,9 +445,9 @@ const friction_rule *friction_in_force(const model *m, int step_id,
 int rule_has_friction(const friction_rule *rule);
 /* 1 if the deck has such a card. */
 int has_card(const model *m, const char *name);
-/* 1 if some *PRINT asks for one of these tables (bits PRINT_*). */
+/* 1 if some *PRINT requires one of these tables (bits PRINT_*). */
 int model_prints(const model *m, int tables);
-int model_writes_fields(const model *m); /* 1: JOB.h5 is written             */
+int model_writes_fields(const model *m); /* 1: JOB.h5 is written */
 /* Increments of a step as the deck has them, at least 1. */
 double step_increments(const step *s);
 /* 1: an increment, -1 within one, is shown by "every n-th and the last; 0: the
@@ -467,11 +472,11 @@ const effect_card *model_effect_card(const model *m, const char *keyword,
 /* 1: its limit is an average over the surface. */
 int rule_has_average(const friction_rule *rule);
 /* 1: tangential unknowns are there for friction alone, which acts in all steps
- * on nodes that touch and against their displacement. */
+ * on touching nodes and against their displacement. */
 int model_rubs_locally(const model *m);
 
-/* Bits EFFECT_* of what the deck calls for: those who read a model hand it in
- * from above (effects_called_for of src/effects). */
+/* Bits EFFECT_* of what the deck requires: passed in by the caller
+ * (effects_required of src/effects). */
 typedef unsigned effect_finder(const model *m);
 /* m->corner_id. ERR_MEMORY. */
 status model_find_corner(model *m, const mesh *msh);
@@ -494,9 +499,9 @@ double load_at_node(const load *l, const mesh *msh, const step *s, int node,
 int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
                 double t);
 
-/* Prescribed displacements ud[dim*n_node] at t, written where fixed; errors
- * as load_forces. start[dim*n_node]: displacements at the start of the step,
- * from where a component that is fixed again is led to its value. */
+/* Prescribed displacements ud[dim*n_node] at t, written where fixed; errors as
+ * load_forces. start[dim*n_node]: displacements at the start of the step, from
+ * which a component that is fixed again moves to its value. */
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        const double *start, double *ud);
 /* Value of an initial condition in an element, mean of its nodes; ERR_DECK if

@@ -9,8 +9,8 @@
  *                   H = S, f, w = d; v is the displacement
  *   /solution       u, r [, v] if the increment reached its tolerance
  *
- * Only Coulomb friction of each node by itself has a place in this layout. A
- * prescribed tangential unknown has no force and no motion: q_T = 0 there.
+ * Only Coulomb friction of each node by itself fits this layout. A prescribed
+ * tangential unknown has no force and no motion: q_T = 0 there.
  */
 #include "base/file.h"
 #include "base/memory.h"
@@ -31,10 +31,10 @@ typedef struct written {
   const char *path;
   hid_t file;
   int local;
-  double *M;        /* [m*m] W or A, by rows, in the signs of FCLIB           */
-  double *q, *mu;   /* [m], [n]                                               */
-  int *start, *col; /* indices of the matrix                                  */
-  double *u, *r;    /* [m]                                                    */
+  double *M;        /* [m*m] W or A, by rows, in the signs of FCLIB */
+  double *q, *mu;   /* [m], [n] */
+  int *start, *col; /* indices of the matrix */
+  double *u, *r;    /* [m] */
 } written;
 
 static double sign_of(int dim, int dof) { return dof % dim == 0 ? -1.0 : 1.0; }

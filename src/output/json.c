@@ -1,5 +1,5 @@
 /*
- * JOB.json: the verdict and the figures of the run for programs.
+ * JOB.json: the outcome and the figures of the run for programs.
  */
 #include "base/memory.h"
 #include "effects/rows.h"
@@ -19,7 +19,7 @@ static void write_exit(json *w, const run_summary *run) {
   json_close(w, '}');
 }
 
-/* What is expected of an effect and what it took. */
+/* Expected and measured costs of an effect. */
 static void write_effect(json *w, const plan_row *r, double cpu,
                          const output_options *o) {
   stage_cost c = plan_cost(r);
@@ -53,12 +53,12 @@ static void write_effects(json *w, const job *j) {
   json_close(w, ']');
 }
 
-/* What *EFFECTS, MODE=AUTO left out or took back. */
-static void write_neglected(json *w, const model *m) {
+/* What *EFFECTS, MODE=AUTO left out or restored. */
+static void write_omitted(json *w, const model *m) {
   if (!m->reduction.is_auto) return;
   json_open(w, "left_out", '[');
   for (int i = 0; i < m->reduction.n; ++i) {
-    const neglected *n = &m->reduction.row[i];
+    const omitted *n = &m->reduction.row[i];
     json_open(w, NULL, '{');
     json_string(w, "effect", effect_name(n->bit));
     json_string(w, "why", n->why);
@@ -133,7 +133,7 @@ static void write_accuracy(json *w, const job *j) {
   json_close(w, '}');
 }
 
-/* A contact at the end of a step; the answer is what follows its values. */
+/* A contact at the end of a step; returns what follows its values. */
 static const double *write_contact(json *w, const model *m, int id,
                                    const double *value) {
   json_string(w, "contact", m->contacts[id].name);
@@ -380,7 +380,7 @@ static void write_all(FILE *f, const void *what) {
   write_exit(w, j->run);
   write_warnings(w, j->m->log);
   write_effects(w, j);
-  write_neglected(w, j->m);
+  write_omitted(w, j->m);
   write_sizes(w, j);
   write_accuracy(w, j);
   write_contacts(w, j);

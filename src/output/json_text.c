@@ -1,5 +1,5 @@
 /*
- * JSON as text: RFC 8259, UTF-8; what is no finite number is null.
+ * JSON as text: RFC 8259, UTF-8; numbers that are not finite are null.
  */
 #include "output/json_text.h"
 

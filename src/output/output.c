@@ -1,6 +1,6 @@
 /*
- * Opening and closing the files of a job: new ones, or those that a run goes on
- * with.
+ * Opening and closing the files of a job: new ones, or those that a run
+ * continues.
  */
 #include "output/open.h"
 
@@ -27,7 +27,7 @@ static void release(output *o) {
           o->reasons, o);
 }
 
-/* What an earlier run left must not be taken for a result of this one. */
+/* Files of an earlier run must not be taken for results of this one. */
 static status remove_old(const output *o, const char *suffix) {
   status st = OK;
   char *path = text_path(o->o.dir, o->m->name.job, suffix);
@@ -38,7 +38,7 @@ done:
   return st;
 }
 
-/* length: of the file to go on with; -1: a new one. */
+/* length: of the file to continue; -1: a new one. */
 static status open_text(const output *o, const char *suffix, long length,
                         text_file *t) {
   status st = OK;
@@ -133,7 +133,7 @@ done:
   return st;
 }
 
-/* The first failure is the one told; the files after it are closed as well. */
+/* The first failure is reported; the files after it are closed as well. */
 static void first_of(status *kept, char *message, size_t size, status st) {
   if (st == OK || *kept != OK) return;
   *kept = st;

@@ -14,24 +14,24 @@ typedef struct output output;
  * under whatever name. Before anything is touched. */
 status output_spare_inputs(const model *m, const char *dir);
 /* Open all files of the job: the text files, flushed line by line, and JOB.h5
- * with room for all increments foreseen. JOB.xdmf and JOB.json of an earlier
- * run, and its restart files, are removed. ERR_FILE names the file. The options
- * are copied, their strings borrowed. */
+ * with space for the estimated number of increments. JOB.xdmf and JOB.json of
+ * an earlier run, and its restart files, are removed. ERR_FILE names the file.
+ * The options are copied, their strings borrowed. */
 status output_open(const model *m, const mesh *msh, const output_options *o,
                    output **out);
 history_sink output_sink(output *o);
-/* What the files are gone on with from, into an archive that is written before
- * the next increment; all files are handed to the disk. */
+/* Restart data of the files, into an archive that is written before the next
+ * increment; all files are synchronised. */
 status output_keep(output *o, archive *a);
 /* The passes so far, for listing and JSON; forecast of a tenth of the error;
  * why the target is missed, or "". All borrowed until output_close. */
 void output_passes(output *o, double target, int n, const pass_row *rows,
                    const pass_row *forecast, const char *why);
 /*
- * Close with the verdict of the run; writes the closing tables and JOB.json,
- * frees o (NULL: nothing to do). The answer is the verdict of the whole: run
- * if it failed; else the failure of a file; else ERR_UNSETTLED if increments
- * missed their tolerance; else OK. The record keeps the message of run.
+ * Close with the outcome of the run; writes the closing tables and JOB.json,
+ * frees o (NULL: nothing to do). Returns the status of the whole: run if it
+ * failed; else the failure of a file; else ERR_UNSETTLED if increments did not
+ * converge to their tolerance; else OK. The record has the message of run.
  */
 status output_close(output *o, status run, int unsettled);
 

@@ -1,6 +1,6 @@
 /*
- * What history_run tells goes into the open files. JOB.sta is written last: an
- * increment that stands there stands in all files.
+ * The sink of history_run: writes into the open files. JOB.sta is written last:
+ * an increment in it is in all files.
  */
 #include "output/open.h"
 
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <time.h>
 
-enum { XDMF_PAUSE = 1 }; /* s                                    */
+enum { XDMF_PAUSE = 1 };               /* s */
 static const double XDMF_SHARE = 0.02; /* of the CPU time at most */
 
 /* Wall clock, s; only its differences count. */
@@ -21,7 +21,7 @@ static double clock_now(void) {
 }
 
 /* The text is written again each time, so not more than once in XDMF_PAUSE
- * seconds, and not above its share of the run but for the last time: the cost
+ * seconds, and not above its share of the run except the last time: the cost
  * stays small however long it grows. */
 status output_show_records(output *o, int all) {
   hdf5_shape shape;
@@ -39,8 +39,8 @@ status output_show_records(output *o, int all) {
   return OK;
 }
 
-/* Told again when a step has other supports. Of a restart the facts are those
- * told before, whose text is that of the same elimination. */
+/* Repeated when a step has other supports. After a restart the facts are those
+ * of before, with the same elimination. */
 static status sink_ready(void *ctx, const setup_facts *facts,
                          const contact_surface *surface) {
   output *o = ctx;
@@ -76,8 +76,8 @@ static status write_fields(output *o, const state *s) {
   return st;
 }
 
-/* The condensed problem, where asked for; of an attempt that failed without a
- * solution, replaced when the increment is mended. */
+/* The condensed problem, where required; that of a failed attempt without
+ * solution is replaced when the increment is solved. */
 static status write_condensed(output *o, const state *s) {
   status st = OK;
   const step *now = &o->m->steps[s->step_no - 1];

@@ -34,7 +34,7 @@ static const char *check_text(const state *s, char text[32]) {
 /*
  * OK (JUMP; AFTER_UNSETTLED: solved, but from a history that holds one that is
  * not), UNSETTLED (taken although it did not converge) or CUT, then the code of
- * what stopped the contact solver, BOUND if its error may be above 10 %, then
+ * the outcome of the contact solver, BOUND if its error may be above 10 %, then
  * words.
  */
 static void print_reason(const state *s, const char *why, FILE *f) {
@@ -54,13 +54,13 @@ static void print_reason(const state *s, const char *why, FILE *f) {
             check_text(s, check));
 }
 
-/* Error of the solver in %, "-": not asked for, or no bound. */
+/* Error of the solver in %, "-": not required, or no bound. */
 static const char *error_text(const state *s, char text[NUMBER_SIZE]) {
   if (!s->errors.error.asked || isnan(s->errors.error.relative)) return "-";
   return text_number(text, 100 * s->errors.error.relative, 1);
 }
 
-/* An estimate in %, "-": not asked for, or unknown. */
+/* An estimate in %, "-": not required, or unknown. */
 static const char *share_text(const error_share *e, char text[NUMBER_SIZE]) {
   if (!e->asked || isnan(e->relative)) return "-";
   return text_number(text, 100 * e->relative, 1);
@@ -142,7 +142,7 @@ void progress_show(const model *m, const state *s, double seconds, int done) {
 
 /* ---- the lines at the end ------------------------------------------------ */
 
-enum { MOST_SHOWN = 20 }; /* contacts                                        */
+enum { MOST_SHOWN = 20 }; /* contacts */
 
 /* The unit with a blank before it; nothing if *UNITS gives it no label. */
 static const char *unit_after(const char *unit, const model *m, char text[80]) {
@@ -182,7 +182,7 @@ static void close_contacts(const job *j, FILE *f) {
             last->count.slip, last->count.stick);
 }
 
-/* The worst of the estimates; "-": not asked for, or unknown. */
+/* The worst of the estimates; "-": not required, or unknown. */
 static void close_errors(const job *j, FILE *f) {
   static const char *const names[] = {"mesh", "steps", "solver"};
   budget_row rows[BUDGET_ROWS];

@@ -1,6 +1,6 @@
 /*
- * The summary of the run: what is remembered of each increment for the end of
- * the listing and JOB.json, kept in an archive and read back.
+ * The summary of the run: data of each increment for the end of the listing and
+ * JOB.json, saved in an archive and read back.
  */
 #include "output/open.h"
 
@@ -185,7 +185,7 @@ static status keep_setup(setup_facts *f, archive *a) {
   return archive_reals(a, "average_entries", &f->average_entries, 1);
 }
 
-/* What both ways have in common. */
+/* Common part of writing and reading. */
 static status keep_counts(output *o, archive *a, file_ends *ends) {
   run_summary *run = &o->run;
   PASS(archive_bytes(a, "ends", ends, sizeof *ends));
@@ -200,7 +200,7 @@ static status keep_counts(output *o, archive *a, file_ends *ends) {
   return archive_bytes(a, "tally", &run->tally, sizeof run->tally);
 }
 
-/* Of the steps so far, both ways. */
+/* The steps so far, written or read. */
 static status keep_ends(output *o, archive *a) {
   const int n = o->run.n_increment;
   const size_t steps = n > 0 ? (size_t)o->run.increments[n - 1].step_no : 0;

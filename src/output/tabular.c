@@ -1,12 +1,12 @@
 /*
- * JOB.dat: the tables asked for by *PRINT.
+ * JOB.dat: the tables required by *PRINT.
  *
  *   # step 1 increment 3 time 3.0000000000000000E-001 table CONTACT
  *   # node_no[-] x[mm] ...
  *     17 1.2500000000000000E+000 ...
  *
- * Blocks are parted by two empty lines (gnuplot: index). Rows stand in the
- * order of the numbers a user sees. Seventeen digits read back exactly.
+ * Blocks are separated by two empty lines (gnuplot: index). Rows are in the
+ * order of the user's numbers. Seventeen digits read back exactly.
  */
 #include "base/memory.h"
 #include "base/timer.h"
@@ -21,10 +21,10 @@ struct tabular {
   const model *m;
   const mesh *msh;
   text_file dat;
-  int n_block;           /* written so far                              */
-  int *node_order;       /* [n_node] ids by node_no                     */
-  int *elem_order;       /* [n_elem] ids by elem_no                     */
-  unsigned char *wanted; /* [items] rows of the current table           */
+  int n_block;           /* written so far */
+  int *node_order;       /* [n_node] ids by node_no */
+  int *elem_order;       /* [n_elem] ids by elem_no */
+  unsigned char *wanted; /* [items] rows of the current table */
 };
 
 /* clang-format off */

@@ -1,5 +1,5 @@
 /*
- * The run without some effects, watched, and what follows from it.
+ * The run without some effects, with its checks, and the decision.
  */
 #include "program/auto.h"
 
@@ -8,7 +8,7 @@
 typedef struct watcher {
   model *m;
   reduction *n;
-  int refuted; /* 1: the run was ended, a row does not hold                   */
+  int refuted; /* 1: the run was ended, a bound does not hold */
 } watcher;
 
 static status see_increment(void *ctx, const state *s) {

@@ -1,6 +1,6 @@
 /*
- * *EFFECTS, MODE=AUTO: a run without what seems not to matter, and the run with
- * it if that is not confirmed (effects/reduction/reduction.h).
+ * *EFFECTS, MODE=AUTO: a run without effects that seem not to matter, and the
+ * run with them if that is not confirmed (effects/reduction/reduction.h).
  */
 #ifndef PROTIS_AUTO_H
 #define PROTIS_AUTO_H

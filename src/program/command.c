@@ -1,5 +1,5 @@
 /*
- * The command line: options, their help, and what is asked without a job.
+ * The command line: options, their help, and queries without a job.
  */
 #include "program/command.h"
 
@@ -41,14 +41,15 @@ enum {
 /* clang-format off */
 static const char *const help_rows[][2] = {
   {"-o DIR", "folder of the results; default: where the deck is"},
-  {"-D NAME=VALUE", "set a *PARAMETER, wins over the deck; may be repeated"},
+  {"-D NAME=VALUE", "set a *PARAMETER, overrides the deck; may be repeated"},
   {"--check", "read and check everything, print sizes and plan, solve nothing"},
   {"--estimate-cost", "what finer meshes and smaller errors would cost"},
-  {"--threads N", "threads of the dense algebra, 1 if not said"},
-  {"--max-memory MB", "memory the run may take, in the place of what there is"},
-  {"--safe", "for decks of strangers: no .geo, only files below the deck"},
+  {"--threads N", "threads of the dense algebra, default 1"},
+  {"--max-memory MB", "memory the run may take, instead of the available "
+                      "memory"},
+  {"--safe", "for decks from outside: no .geo, only files below the deck"},
   {"--no-timing", "no CPU seconds in the files: equal runs give equal bytes"},
-  {"--restart", "go on with a run that was interrupted, from JOB.rst.h5"},
+  {"--restart", "continue an interrupted run, from JOB.rst.h5"},
   {"--table NAME[:last]", "a table of the finished job as csv, to stdout"},
   {"--format csv|tsv", "of --table"},
   {"--quiet", "on a terminal: neither progress line nor lines at the end"},
@@ -135,7 +136,7 @@ static int print_keywords(const char *card) {
   return mean("there is no card ", card, near);
 }
 
-/* Not one of the words that there are; the nearest, or where they stand. */
+/* Unknown word: the nearest one, or where they are listed. */
 static int unknown(const char *what, const char *word,
                    const char *(*next)(const void *ctx, int i),
                    const char *seek) {
@@ -207,7 +208,7 @@ static int unknown_option(const char *given) {
   return mean("there is no option ", given, near);
 }
 
-/* What is asked without a job: the exit code. */
+/* Queries without a job: the exit code. */
 static int answer(int what, const char *value, const char *given,
                   const char *next, const command *c) {
   switch (what) {
@@ -332,7 +333,7 @@ static const char *word_read(int argc, char **argv) {
 int command_read(int argc, char **argv, command *c, int *exit_code) {
   int what, code = -1;
   *c = (command){.commit = c->commit};
-  opterr = 0; /* told here                                                   */
+  opterr = 0; /* told here */
   c->defines = memory_new((size_t)argc, sizeof *c->defines);
   if (c->defines == NULL) code = no_memory();
   while (code < 0 &&
@@ -348,7 +349,7 @@ int command_read(int argc, char **argv, command *c, int *exit_code) {
 }
 
 /* More threads than cores wait for each other; where addresses are limited the
- * linear algebra waits for buffers of its threads for ever. */
+ * linear algebra would wait forever for buffers of its threads. */
 static void set_threads(int cores, command *c, message_log *log) {
   struct rlimit addresses;
   int asked = c->threads > 0 ? c->threads : 1;
@@ -363,7 +364,7 @@ static void set_threads(int cores, command *c, message_log *log) {
   blas_set_threads(c->threads);
 }
 
-/* What is said counts for the whole process, libraries included. */
+/* The settings hold for the whole process, libraries included. */
 static void set_memory(const limits *system, const command *c) {
   const char *who = c->max_memory > 0.0 ? "--max-memory" : system->who;
   double bytes = c->max_memory > 0.0 ? 1e6 * c->max_memory - limits_held()

@@ -7,24 +7,24 @@
 #include "base/message.h"
 
 typedef struct command {
-  const char *commit; /* of the sources; borrowed, set before command_read    */
-  char *deck_file;    /* owned                                              */
-  char *dir;          /* folder of the results; owned                       */
+  const char *commit; /* of the sources; borrowed, set before command_read */
+  char *deck_file;    /* owned */
+  char *dir;          /* folder of the results; owned */
   int n_define;
-  const char **defines; /* [n_define] NAME=VALUE; array owned                 */
+  const char **defines; /* [n_define] NAME=VALUE; array owned */
   int check_only, estimate_cost, quiet, no_timing, restart, safe;
-  const char *table; /* NAME[:last|:all] of a finished job; NULL: run it     */
-  int tabs;          /* of it: 1: tsv, 0: csv                                 */
-  int threads;       /* of the dense algebra; 0: not said                     */
-  double max_memory; /* MB the process may hold; 0: not said                  */
+  const char *table; /* NAME[:last|:all] of a finished job; NULL: run it */
+  int tabs;          /* of it: 1: tsv, 0: csv */
+  int threads;       /* of the dense algebra; 0: not given */
+  double max_memory; /* MB the process may hold; 0: not said */
 } command;
 
 /* Read it. 1: run *c. 0: all is done (help, version, lists) or the words are
- * wrong and told on stderr; end with *exit_code. */
+ * wrong, with a message on stderr; end with *exit_code. */
 int command_read(int argc, char **argv, command *c, int *exit_code);
-/* Bring it into force: threads, no more than there are cores (c->threads is
- * then their number), the memory that may be taken, and with --safe the folder
- * of the deck as the only one that is read. ERR_FILE: it cannot be opened. */
+/* Apply it: threads, no more than there are cores (c->threads is then their
+ * number), the memory that may be taken, and with --safe the folder of the deck
+ * as the only one that is read. ERR_FILE: it cannot be opened. */
 status command_apply(command *c, message_log *log);
 void command_free(command *c);
 

@@ -1,15 +1,15 @@
 /*
  * What *ACCURACY, TARGET= would cost, from a run on the mesh of the deck and
- * two on meshes that its errors ask for (space_sizes), some finer each.
+ * two on finer meshes from its errors (space_sizes).
  *
  * The error of the mesh goes like N^(-p) on such meshes, N unknowns, p from the
  * two. P1 has p = 1/dim; where an edge is so sharp that the mesh cannot follow
  * it, p is less, on uniform meshes down to half of that (stress like r^(-1/2));
- * p is kept between the two. The passes of target.c are gone through with it:
- * each aims at what is left of the target, makes (error/aim)^dim times the
- * unknowns, or the share of that which the fine run had, and reaches the error
- * of that mesh. In space, where the first errors tell little of the edges,
- * later passes also move unknowns to where they count: the same share holds for
+ * p is limited to this range. The passes of target.c are simulated with it:
+ * each aims at the remaining part of the target, makes (error/aim)^dim times
+ * the unknowns, or the share of that which the fine run had, and reaches the
+ * error of that mesh. In space, where the first errors do not resolve the
+ * edges, later passes also redistribute unknowns: the same share holds for
  * them, and the error falls from the one before by the order of the element
  * size.
  *
@@ -18,10 +18,10 @@
  * and 4/3 in space: nested dissection as measured with condense from 1e4 to 1e6
  * unknowns), dense work with the m contact unknowns, m^2.5 (between the
  * products and the factors of Newton's method, as measured from 100 to 8000), m
- * like a power of N found from the two runs. The run beside that tells the
- * error of the increments costs what these do. The rest is linear in N. All but
- * what is paid once a run goes with the number of increments, which grows like
- * their error is to fall.
+ * like a power of N found from the two runs. The shadow run for the error of
+ * the increments costs as much as these. The rest is linear in N. All costs but
+ * those paid once a run are proportional to the number of increments, which
+ * grows as their error is to fall.
  */
 #include "program/forecast.h"
 #include "effects/rows.h"
@@ -35,17 +35,18 @@
 #include <string.h>
 
 typedef struct trial {
-  double unknowns, contact;   /* of the body, of the contact   */
-  double energy, error, time; /* J, -, - at the largest energy                */
-  double cpu[STAGE_COUNT], bytes; /* s; at most held                         */
+  double unknowns, contact;       /* of the body, of the contact */
+  double energy, error, time;     /* J, -, - at the largest energy */
+  double cpu[STAGE_COUNT], bytes; /* s; at most held */
   const job_input *in;
-  double *eta; /* [n_elem] shares of the elements there, or NULL; borrowed    */
+  double *eta; /* [n_elem] shares of the elements there, or
+                  NULL; borrowed */
   int n_elem;
 } trial;
 
 static status see_sizes(void *ctx, int n_node) {
   const trial *t = ctx;
-  return job_foresee(t->in, n_node);
+  return job_expect(t->in, n_node);
 }
 
 static status see_ready(void *ctx, const setup_facts *facts,
@@ -70,12 +71,12 @@ static status see_increment(void *ctx, const state *s) {
   return OK;
 }
 
-/* One run whose results nobody writes; eta[n_elem] or NULL: shares of the
- * elements in its error. */
+/* One run without output; eta[n_elem] or NULL: shares of the elements in its
+ * error. */
 static status run_trial(job_input *in, trial *t, double *eta) {
   int unsettled = 0;
   const history_sink sink = {.ctx = t,
-                             .foresee = see_sizes,
+                             .expect = see_sizes,
                              .ready = see_ready,
                              .increment = see_increment};
   t->energy = -1.0;
@@ -113,29 +114,29 @@ static int is_of_run(int s) {
   }
 }
 
-/* As in target.c: what the increments may leave of the target, what the mesh is
- * aimed at, how far a pass goes. */
+/* As in target.c: the share of the increments in the target, the aim of the
+ * mesh, the limit of a pass. */
 static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, AIM = 0.93;
 static const double REACH = 8.0, FINEST = 0.25, FINEST_LAST = 0.1;
 static const double SHORTEST = 1.0 / 16;
 enum { MOST_PASSES = 20 };
 
 static const double MOST_UNKNOWNS = 1e9;
-static const double DENSE = 2.5; /* power of m                               */
+static const double DENSE = 2.5; /* power of m */
 
 typedef struct model_of_cost {
   int dim;
   trial deck, coarse, fine;
-  double order;   /* of the error in N                                        */
+  double order;   /* of the error in N */
   double contact; /* power of N that m is like */
-  double share;   /* of the unknowns that P1 would need, on the first mesh    */
+  double share;   /* of the unknowns that P1 would need, on the first mesh */
 } model_of_cost;
 
-/* Where a target leads, pass after pass. */
+/* Passes towards a target. */
 typedef struct course {
-  double unknowns, error, time; /* of the last pass                           */
-  double times;                 /* the increments of the deck                 */
-  double cpu;                   /* s, all passes                              */
+  double unknowns, error, time; /* of the last pass */
+  double times;                 /* the increments of the deck */
+  double cpu;                   /* s, all passes */
 } course;
 
 static double within(double least, double x, double most) {
@@ -167,8 +168,8 @@ static double growth(const model_of_cost *c, stage s, double ratio) {
   }
 }
 
-/* CPU seconds of the stages that the run beside goes through too. */
-static double of_run_beside(const model_of_cost *c, double ratio) {
+/* CPU seconds of the stages of the shadow run too. */
+static double of_shadow_run(const model_of_cost *c, double ratio) {
   static const stage shared[] = {STAGE_CONTACT, STAGE_RECOVERY, STAGE_INELASTIC,
                                  STAGE_STRESS};
   double sum = 0.0;
@@ -181,11 +182,11 @@ static double of_run_beside(const model_of_cost *c, double ratio) {
 static double cpu_at(const model_of_cost *c, double unknowns, double times) {
   const trial *b = &c->fine;
   double sum = 0.0, ratio = unknowns / b->unknowns;
-  double beside = of_run_beside(c, 1.0);
+  double shadow = of_shadow_run(c, 1.0);
   for (int i = 0; i < STAGE_COUNT; ++i) {
     double by = growth(c, (stage)i, ratio);
-    if (i == STAGE_TIME_ERROR && beside > 0.0)
-      by = of_run_beside(c, ratio) / beside;
+    if (i == STAGE_TIME_ERROR && shadow > 0.0)
+      by = of_shadow_run(c, ratio) / shadow;
     sum += b->cpu[i] * by * (is_of_run(i) ? 1.0 : times);
   }
   return sum;
@@ -251,7 +252,7 @@ static void print_row(const model_of_cost *c, double error) {
          there ? "  the mesh of the deck does" : "");
 }
 
-/* In space, where a digit is dear, the levels lie closer. */
+/* In 3-D, where a digit is expensive, the levels are closer. */
 static const double wanted_errors[] = {0.1,  0.07,  0.05, 0.03,
                                        0.01, 0.003, 0.001};
 enum { N_WANTED = sizeof wanted_errors / sizeof *wanted_errors };
@@ -267,7 +268,7 @@ static void print_table(const model_of_cost *c) {
       100 * c->deck.error, c->deck.unknowns, 100 * c->deck.time);
 }
 
-/* What the rows rest on. */
+/* Basis of the rows. */
 static void print_fit(const model_of_cost *c) {
   printf(
       "  error ~ unknowns^(-%.2f) (size^%.2f), fitted to %.3g %% with %.0f "
@@ -299,7 +300,7 @@ static double order_of(const model_of_cost *c, double full) {
   return within(0.5 * full, order, 1.1 * full);
 }
 
-/* What the three runs tell; wanted: the error the fine one was to have, -. */
+/* Results of the three runs; wanted: the error intended for the fine one, -. */
 static status fit(model_of_cost *c, double wanted) {
   const trial *a = &c->coarse, *b = &c->fine;
   double full = 1.0 / c->dim;

@@ -1,5 +1,5 @@
 /*
- * What protis tells without solving: version, lists, the check of a deck.
+ * Information without solving: version, lists, the check of a deck.
  */
 #include "program/inform.h"
 #include "effects/rows.h"
@@ -119,7 +119,7 @@ status inform_check(const model *m, const mesh *msh) {
   print_sizes(m, msh);
   PASS(print_memory(m, msh));
   PASS(print_plan(m, msh, 0));
-  /* Supports are only lost where *BOUNDARY, OP=NEW ends some. */
+  /* Supports are removed only where *BOUNDARY, OP=NEW ends some. */
   for (int i = 0; i < m->n.step; ++i)
     if (i == 0 || m->steps[i].renewed >> LOAD_FIXING & 1u)
       PASS(print_motions(m, msh, i));

@@ -56,7 +56,7 @@ done:
   return st;
 }
 
-/* A problem from a file in the place of a mesh. */
+/* A problem from a file instead of a mesh. */
 static status read_problem(model *m, exchange_problem **problem) {
   status st = OK;
   timer_enter(STAGE_PROBLEM);
@@ -65,7 +65,7 @@ static status read_problem(model *m, exchange_problem **problem) {
   timer_leave(STAGE_PROBLEM);
   if (st == OK)
     model_fit_problem(m, (*problem)->dim, (*problem)->cp.g0 != NULL,
-                      effects_called_for);
+                      effects_required);
   return st;
 }
 
@@ -85,13 +85,13 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
       in->msh = other->same;
     else
       TRY(read_mesh(other, in));
-    TRY(model_check(in->m, in->msh, effects_called_for));
+    TRY(model_check(in->m, in->msh, effects_required));
   }
 done:
   return st;
 }
 
-status job_foresee(const job_input *in, int n) {
+status job_expect(const job_input *in, int n) {
   plan_bytes b;
   PASS(plan_memory(in->m, in->msh, n, &b));
   return memory_require(b.factor + b.contact + b.rest, "the run");
@@ -112,17 +112,17 @@ void job_input_free(job_input *in) {
   *in = (job_input){0};
 }
 
-/* ---- the outputs, and who watches ---------------------------------------- */
+/* ---- the outputs and the observer ---------------------------------------- */
 
 typedef struct relay {
   history_sink to;        /* the outputs */
-  const job_watch *watch; /* or NULL                                          */
+  const job_watch *watch; /* or NULL */
   restart_writer restart;
 } relay;
 
-static status relay_foresee(void *ctx, int n_node) {
+static status relay_expect(void *ctx, int n_node) {
   const relay *r = ctx;
-  return job_foresee(r->restart.in, n_node);
+  return job_expect(r->restart.in, n_node);
 }
 
 static status relay_ready(void *ctx, const setup_facts *facts,
@@ -188,7 +188,7 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
                   &out));
   relay r = {output_sink(out), watch, {c, in, out, files}};
   history_sink sink = {.ctx = &r,
-                       .foresee = relay_foresee,
+                       .expect = relay_expect,
                        .ready = relay_ready,
                        .start = relay_start,
                        .increment = relay_increment,

@@ -11,48 +11,48 @@
 typedef struct job_input {
   deck *d;
   model *m;
-  mesh *msh;                 /* NULL: a problem from a file                   */
-  double library_cpu;        /* s, spent on loading what meshes               */
-  exchange_problem *problem; /* or NULL                                       */
+  mesh *msh;                 /* NULL: a problem from a file */
+  double library_cpu;        /* s, CPU time for loading the mesher */
+  exchange_problem *problem; /* or NULL */
   /* Of another pass than the first: the deck of that, to which the messages
    * refer, and the messages of its own. */
   deck *first;
   message_log *log;
-  char *closing; /* lines for the end on a terminal, or NULL; free()          */
+  char *closing; /* lines for the end on a terminal, or NULL; free() */
 } job_input;
 
 /* The mesh of another pass. */
 typedef struct job_mesh {
   const mesh *old; /* a .geo is meshed again with sizes as in mesh_source */
   const double *size;
-  mesh *same; /* or NULL: this mesh, taken over                              */
+  mesh *same; /* or NULL: this mesh, taken over */
 } job_mesh;
 
-/* Everything up to the first number that is solved for; NULL: the mesh of the
- * deck. What is there is freed by job_input_free, also after a failure. */
+/* Everything before the first solve; NULL: the mesh of the deck. What is there
+ * is freed by job_input_free, also after a failure. */
 status job_read(const command *c, const job_mesh *other, message_log *log,
                 job_input *in);
 void job_input_free(job_input *in);
 
-/* ERR_MEMORY: more than there is would be held with n contact nodes. */
-status job_foresee(const job_input *in, int n);
+/* ERR_MEMORY: n contact nodes would need more than the available memory. */
+status job_expect(const job_input *in, int n);
 
-int job_is_geo(const model *m); /* 1: the mesh is made by gmsh                */
+int job_is_geo(const model *m); /* 1: the mesh is made by gmsh */
 
-/* Who watches a pass. Any function may be NULL. */
+/* Observer of a pass. Any function may be NULL. */
 typedef struct job_watch {
   void *ctx;
-  /* What is not OK ends the pass with that status.                          */
+  /* Any status but OK ends the pass. */
   status (*increment)(void *ctx, const state *s);
   void (*ready)(void *ctx, const setup_facts *facts);
-  /* After the last increment, before the files are closed: what else to say
-   * there; the answer is the status of the run. */
+  /* After the last increment, before the files are closed: additional output;
+   * returns the status of the run. */
   status (*finished)(void *ctx, status run, output *out);
 } job_watch;
 
 /* Solve and write the results into the folder, which is there; watch may be
- * NULL. Only a pass that nobody watches writes restart files. from: the restart
- * file of the run to go on with, or NULL. *unsettled as history_run. */
+ * NULL. Only a pass without observer writes restart files. from: the restart
+ * file of the run to continue, or NULL. *unsettled as history_run. */
 status job_solve(const command *c, job_input *in, const job_watch *watch,
                  archive *from, int *unsettled);
 

@@ -1,4 +1,4 @@
-/* The lock of a job; the file holds the number of the process for people. */
+/* The lock of a job; the file shows the number of the process. */
 #include "program/lock.h"
 
 #include "base/memory.h"

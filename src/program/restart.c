@@ -1,4 +1,4 @@
-/* The restart file: who wrote it, and whether a deck may go on from it. */
+/* The restart file: its origin, and whether a deck may continue from it. */
 #include "program/restart.h"
 
 #include "base/memory.h"
@@ -17,7 +17,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* ---- who wrote it -------------------------------------------------------- */
+/* ---- origin -------------------------------------------------------- */
 
 typedef struct identity {
   char version[40], kernel[40];
@@ -67,7 +67,8 @@ done:
   return st;
 }
 
-/* ---- warnings told so far ------------------------------------------------ */
+/* ---- warnings reported so far
+ * ------------------------------------------------ */
 
 /* Number of a file of the deck, which another name may lead to, or -1. */
 static int file_no(const deck *d, const char *file) {
@@ -106,8 +107,8 @@ static const place *place_in_deck(const deck *d, const place *at) {
   return at;
 }
 
-/* What the run had told: what is told again is the same message. */
-static status tell_warnings(const job_input *in, archive *a) {
+/* Messages of the run so far, so that repeated ones are recognised. */
+static status report_warnings(const job_input *in, archive *a) {
   size_t n = archive_length(a, "warnings");
   OWNED char *text = NULL;
   char *end;
@@ -147,17 +148,17 @@ status restart_write(void *ctx, const run_memory *memory) {
   const restart_writer *w = ctx;
   archive *a = NULL;
   identity id;
-  char *path = NULL, *before = NULL, *text = NULL, *told = NULL;
+  char *path = NULL, *before = NULL, *text = NULL, *reported = NULL;
   TRY(file_names(w->c, w->in->m, &path, &before));
   TRY(echo_of(w->in->m, &text));
-  TRY(list_warnings(w->in, &told));
+  TRY(list_warnings(w->in, &reported));
   identify(w->c, w->in, &id);
   id.step_no = memory->step_no;
   TRY(archive_new(&a));
   if (w->c->no_timing) archive_leave_out_cpu(a);
   TRY(archive_bytes(a, "identity", &id, sizeof id));
   TRY(archive_bytes(a, "deck", text, strlen(text) + 1));
-  TRY(archive_bytes(a, "warnings", told, strlen(told)));
+  TRY(archive_bytes(a, "warnings", reported, strlen(reported)));
   TRY(archive_bytes(a, "files", w->files, strlen(w->files)));
   TRY(output_keep(w->out, a));
   TRY(memory->keep(memory->run, a));
@@ -165,7 +166,7 @@ status restart_write(void *ctx, const run_memory *memory) {
 done:
   archive_free(a);
   free(text);
-  free(told);
+  free(reported);
   RELEASE(path, before);
   return st;
 }
@@ -179,7 +180,7 @@ static status add_content(const char *name, const char *path, FILE *out) {
   uint64_t part[1024], bytes = 0, h = 14695981039346656037u;
   size_t n;
   FILE *f = input_stream(path, &why);
-  if (f == NULL) { /* who needs it tells, with its line                      */
+  if (f == NULL) { /* reported by the card that needs it, with its line */
     fprintf(out, ", FILE=%s, not read\n", name);
     goto done;
   }
@@ -271,8 +272,8 @@ static status compare_files(const char *was, const char *is, int step_no) {
 /* One card of an echo: "*NAME ... " up to the next one. */
 typedef struct echo_card {
   const char *text;
-  size_t length; /* 0: the end                                               */
-  int step_no;   /* 0: before the first step                                 */
+  size_t length; /* 0: the end */
+  int step_no;   /* 0: before the first step */
 } echo_card;
 
 /* Cards that start a line with a star; data lines never do. */
@@ -353,7 +354,7 @@ static status check_identity(const identity *was, const identity *is,
           was->no_timing ? "with" : "without");
   if (was->effects != is->effects)
     RAISE(ERR_DECK,
-          "--restart: the deck now calls for other effects (see --check) than "
+          "--restart: the deck now requires other effects (see --check) than "
           "the run was started with");
   if (was->threads != is->threads || strcmp(was->kernel, is->kernel) != 0)
     fprintf(stderr,
@@ -412,7 +413,7 @@ static status read_either(const char *path, const char *before, archive **a) {
   return status_fail(st, __func__, __LINE__, "--restart: %s", why);
 }
 
-/* A run that ended before its first increment leaves none. */
+/* A run that ended before its first increment has none. */
 static int is_none(const char *path, const char *before) {
   if (access(path, F_OK) == 0 || errno != ENOENT) return 0;
   if (access(before, F_OK) == 0 || errno != ENOENT) return 0;
@@ -444,7 +445,7 @@ status restart_read(const command *c, const job_input *in, archive **out) {
   if (is_none(path, before)) goto done;
   TRY(read_either(path, before, out));
   TRY(check_job(c, in, *out, path));
-  TRY(tell_warnings(in, *out));
+  TRY(report_warnings(in, *out));
 done:
   if (st != OK) {
     archive_free(*out);

@@ -3,12 +3,12 @@
  * that was not interrupted, bit for bit.
  *
  * All that an increment starts from is kept (run_keep): the last equilibrium,
- * slip so far, inelastic strains, the place in the grid of increments. What a
- * contact solver remembers from increment to increment (factors and what was
- * exchanged in them) is kept as well (contact_solver_keep), because a new
- * factor has other last digits; matrices, surfaces and averages are made again,
- * for they depend on the deck and the mesh alone. Of the files their lengths
- * are kept: what was written after the restart file is cut and written again.
+ * slip so far, inelastic strains, the place in the grid of increments. Data of
+ * the contact solver that persist from increment to increment (factors and
+ * exchanged rows) are saved as well (contact_solver_keep), because a new factor
+ * has other last digits; matrices, surfaces and averages are made again, for
+ * they depend on the deck and the mesh alone. Of the files their lengths are
+ * kept: what was written after the restart file is cut and written again.
  *
  * The last two are there: JOB.rst.h5, and JOB.rst.old.h5 in case the first
  * cannot be read.
@@ -18,12 +18,12 @@
 
 #include "program/job.h"
 
-/* What a run writes its restart file of. */
+/* Input of a restart file. */
 typedef struct restart_writer {
   const command *c;
   const job_input *in;
   output *out;
-  char *files; /* restart_files when the run was started                     */
+  char *files; /* restart_files when the run was started */
 } restart_writer;
 
 /* Contents of the files that the cards of the deck name; free it. ERR_FILE. */

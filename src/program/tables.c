@@ -11,25 +11,27 @@
 
 enum { WORDS = 80, NAME_SIZE = 160 };
 
-/* What a block of the table stands under. */
+/* Heading of a block of the table. */
 typedef struct heading {
   char step[16], increment[16], time[40], table[32], group[NAME_SIZE];
 } heading;
 
 typedef struct extract {
-  const char *path; /* of JOB.dat                                            */
-  char name[32];    /* of the table wanted                                   */
+  const char *path; /* of JOB.dat */
+  char name[32];    /* of the table wanted */
   char separator;
-  int last; /* 1: only what belongs to the time of the last block            */
+  int last; /* 1: only blocks of the time of the last
+               one */
   FILE *f;
-  char *line; /* of getline                                                  */
+  char *line; /* of getline */
   size_t size;
-  heading now, end; /* of the block read, of the last one wanted             */
+  heading now, end; /* of the block read, of the last one wanted */
   int n_word;
-  char *word[WORDS]; /* of the line; into it                                 */
+  char *word[WORDS]; /* of the line; into it */
   int n_column, n_place, grouped;
-  char column[WORDS][NAME_SIZE]; /* of all blocks                            */
-  int place[WORDS]; /* [n_place] of the words of the block in column; -1     */
+  char column[WORDS][NAME_SIZE]; /* of all blocks */
+  int place[WORDS];              /* [n_place] of the words of the block in
+                                    column; -1 */
 } extract;
 
 /* The columns that every row begins with, and what they are called in the
@@ -89,7 +91,7 @@ static void read_columns(extract *e) {
   }
 }
 
-/* Words with a comma or a quote stand in quotes (RFC 4180). */
+/* Words with a comma or a quote are quoted (RFC 4180). */
 static void put_word(const extract *e, const char *word, char before) {
   const int quoted = e->separator == ',' && strpbrk(word, ",\"") != NULL;
   if (before != '\0') putchar(before);
@@ -101,7 +103,7 @@ static void put_word(const extract *e, const char *word, char before) {
   if (quoted) putchar('"');
 }
 
-/* Which column stands in place k: the name of the contact goes first. */
+/* The column in place k: the name of the contact comes first. */
 static int shown_at(const extract *e, int k) {
   int first = 0;
   while (first < e->n_column && strcmp(e->column[first], "contact") != 0)
@@ -136,7 +138,7 @@ static void copy_row(extract *e) {
 
 /* All lines once: to know columns and end ("print" 0), or to print. */
 static void pass(extract *e, int print) {
-  int inside = 0; /* 1: before the names, 2: rows                           */
+  int inside = 0; /* 1: before the names, 2: rows */
   rewind(e->f);
   while (next_line(e))
     if (read_heading(e)) {
@@ -172,7 +174,7 @@ static status print_all(extract *e) {
   if (e->end.step[0] == '\0') {
     list_tables(e, there, sizeof there);
     RAISE(ERR_DECK,
-          "%s has no table %s; it has%s; *PRINT of the deck asks for others",
+          "%s has no table %s; it has%s; *PRINT of the deck requests others",
           e->path, e->name, there[0] != '\0' ? there : " none");
   }
   put_row(e, NULL);

@@ -1,9 +1,9 @@
 /*
  * A pass gives three errors in the same norm: mesh, increments, solver. The
- * next one changes only what has more than its share of the target: the mesh
- * to sizes that give it with the fewest elements (space_sizes), the
- * increments and the tolerance in proportion. The answer of a pass is taken
- * if the sum of the three is below the target.
+ * next one changes only errors above their share of the target: the mesh to
+ * sizes that give it with the fewest elements (space_sizes), the increments and
+ * the tolerance in proportion. The answer of a pass is taken if the sum of the
+ * three is below the target.
  *
  * Prices of a pass foreseen: the unknowns grow like error^(-dim) (P1: order 1
  * in the energy norm), the CPU seconds of the mesh like the unknowns, without
@@ -21,36 +21,40 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Shares of the target, -: what the mesh, the increments and the solver may
- * leave; the next pass aims at AIM of that. */
+/* Shares of the target, -: errors allowed to the mesh, the increments and the
+ * solver; the next pass aims at AIM of that. */
 static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, SOLVER_SHARE = 0.05;
 static const double AIM = 0.93;
-/* -, of the error, or a pass was in vain. */
+/* -, of the error, or a pass had no effect. */
 static const double LEAST_GAIN = 0.95;
-static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU       */
-static const double EXACT = 1e-10; /* -, errors of rounding alone             */
-static const double LEAST_TOL = 1e-14, SHORTEST = 1.0 / 16; /* -             */
+static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU */
+static const double EXACT = 1e-10; /* -, errors of rounding alone */
+static const double LEAST_TOL = 1e-14, SHORTEST = 1.0 / 16; /* - */
 
-/* What a pass is told by the increments, and what follows from it. */
+/* Data of a pass from its increments, and the decision. */
 typedef struct pass {
   const command *c;
   const accuracy_target *target;
   job_input *in;
   pass_row rows[MAX_PASS_ROWS], forecast;
-  int n;         /* rows, this pass included                             */
-  double energy; /* J, largest strain energy: the increment that counts   */
-  double mesh, time, solver; /* -, errors there                              */
-  double *eta;     /* [n_elem] shares of the elements there                 */
-  double unknowns; /* of this pass                                          */
-  double mesh_cpu, last_mesh_cpu; /* s, of meshing; of the pass before        */
-  double dt, tol; /* factors on the increments and tolerances of the deck  */
-  double cpu;     /* s, of the process when the pass began                 */
-  double meshed;  /* s, of that on meshes                                  */
-  int done;       /* 1: no other pass                                      */
-  char why[256];  /* the target is missed; "" if it is reached             */
+  int n;                          /* rows, this pass included */
+  double energy;                  /* J, largest strain energy: the increment
+                                     that counts */
+  double mesh, time, solver;      /* -, errors there */
+  double *eta;                    /* [n_elem] shares of the elements there */
+  double unknowns;                /* of this pass */
+  double mesh_cpu, last_mesh_cpu; /* s, of meshing; of the pass before */
+  double dt, tol;                 /* factors on the increments and tolerances of
+                                     the deck */
+  double cpu;                     /* s, of the process when the pass began */
+  double meshed;                  /* s, of that on meshes */
+  int done;                       /* 1: no other pass */
+  char why[256];                  /* the target is missed; "" if it is
+                                     reached */
 } pass;
 
-/* ---- watching ------------------------------------------------------------ */
+/* ---- observing
+ * ------------------------------------------------------------ */
 
 static void see_ready(void *ctx, const setup_facts *facts) {
   pass *p = ctx;
@@ -78,8 +82,8 @@ static void miss(pass *p, const char *why) {
   snprintf(p->why, sizeof p->why, "%s", why);
 }
 
-/* What the mesh may leave: all that the others do not, if they have no more
- * than their shares. */
+/* Error allowed to the mesh: the rest of the target, if the others are within
+ * their shares. */
 static double mesh_goal(const pass *p) {
   double goal = p->target->percent / 100.0;
   if (p->time > TIME_SHARE * goal || p->solver > SOLVER_SHARE * goal)
@@ -92,7 +96,7 @@ static double growth(const pass *p, double wanted) {
   return p->mesh > wanted ? pow(p->mesh / wanted, p->in->m->dim) : 1.0;
 }
 
-/* Foreseen CPU seconds of meshing that many times the unknowns: linear from
+/* Estimated CPU seconds of meshing that many times the unknowns: linear from
  * pass to pass, from the first on through zero. */
 static double price_of_mesh(const pass *p, double factor) {
   double last = p->n > 1 ? p->rows[p->n - 2].unknowns : 0.0;
@@ -105,14 +109,14 @@ static double price_of_mesh(const pass *p, double factor) {
   return p->mesh_cpu + slope * (factor - 1.0) * p->unknowns;
 }
 
-/* Foreseen CPU seconds of a run with that many times the unknowns. */
+/* Estimated CPU seconds of a run with that many times the unknowns. */
 static double price(const pass *p, double factor) {
   double power = p->in->m->dim == 2 ? GROWTH_2D : GROWTH_3D;
   double rest = p->rows[p->n - 1].cpu - p->mesh_cpu - p->in->library_cpu;
   return price_of_mesh(p, factor) + fmax(rest, 0.0) * pow(factor, power);
 }
 
-/* A limit that the next pass would pass. */
+/* A limit that the next pass would exceed. */
 static void check_limits(pass *p, double factor) {
   char text[200];
   const accuracy_target *t = p->target;
@@ -139,7 +143,7 @@ static void check_limits(pass *p, double factor) {
   }
 }
 
-/* What of the next pass is other; "" if nothing can be. */
+/* Changes of the next pass; "" if none is possible. */
 static void choose(pass *p, char *text, size_t size) {
   double goal = p->target->percent / 100.0;
   size_t used = 0;
@@ -201,7 +205,7 @@ static void decide(pass *p) {
 
 /* ---- one pass ------------------------------------------------------------ */
 
-static void tell_pass(const pass *p) {
+static void report_pass(const pass *p) {
   const pass_row *r = &p->rows[p->n - 1];
   if (p->c->quiet) return;
   if (p->n == 1)
@@ -237,7 +241,7 @@ static status see_finished(void *ctx, status st, output *out) {
                     .cpu = timer_cpu() - p->cpu};
   p->mesh_cpu = timer_cost(STAGE_MESH).cpu - p->meshed - p->in->library_cpu;
   decide(p);
-  tell_pass(p);
+  report_pass(p);
   p->forecast = next_digit(p);
   output_passes(out, p->target->percent, p->n, p->rows,
                 total(p) > EXACT ? &p->forecast : NULL, p->why);

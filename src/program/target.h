@@ -8,9 +8,9 @@
 #include "program/job.h"
 
 /*
- * Run the job again and again; *in holds the first pass, then the last. The
- * files are those of the last pass. ERR_UNSETTLED: the target is missed, the
- * record says why; the errors of job_solve.
+ * Repeat the job in passes; *in holds the first pass, then the last. The files
+ * are those of the last pass. ERR_UNSETTLED: the target is missed, the record
+ * says why; the errors of job_solve.
  */
 status target_reach(const command *c, job_input *in, int *unsettled);
 

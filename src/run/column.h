@@ -1,6 +1,6 @@
 /*
- * A column of the tables and fields: what it is called, where it stands and
- * the function that finds its value in an accepted increment.
+ * A column of the tables and fields: its name, its tables and the function that
+ * evaluates it in an accepted increment.
  */
 #ifndef PROTIS_RUN_COLUMN_H
 #define PROTIS_RUN_COLUMN_H
@@ -18,10 +18,10 @@ typedef enum {
 
 /* Scenes differ in dimension and in the names of the components. */
 enum {
-  SCENE_PLANE = 1, /* x, y                                                  */
-  SCENE_AXI = 2,   /* r, z                                                  */
-  SCENE_SOLID = 4, /* x, y, z                                               */
-  SCENE_LCP = 8,   /* a plain LCP from a file: rows                         */
+  SCENE_PLANE = 1, /* x, y */
+  SCENE_AXI = 2,   /* r, z */
+  SCENE_SOLID = 4, /* x, y, z */
+  SCENE_LCP = 8,   /* a plain LCP from a file: rows */
   SCENE_FLAT = SCENE_PLANE | SCENE_AXI,
   SCENE_ALL = SCENE_FLAT | SCENE_SOLID
 };
@@ -34,16 +34,16 @@ enum {
   NEEDS_SURFACE = 8,
   NEEDS_LIMIT = 16,
   NEEDS_TOTALS = 32,
-  NEEDS_PLACE = 64, /* a surface with coordinates, normals, areas           */
+  NEEDS_PLACE = 64, /* a surface with coordinates, normals, areas */
   NEEDS_DISTANCE = 128,
-  NEEDS_TORQUE = 256, /* some contact has an axis                           */
+  NEEDS_TORQUE = 256, /* some contact has an axis */
   NEEDS_ELEM_ERROR = 2048,
-  NEEDS_FLOW = 4096,  /* elements whose law flows                            */
-  NEEDS_ALPHA = 8192, /* that many internal variables                       */
-  NEEDS_SEVERAL = 16384 /* more than one contact                             */
+  NEEDS_FLOW = 4096,    /* elements whose law flows */
+  NEEDS_ALPHA = 8192,   /* that many internal variables */
+  NEEDS_SEVERAL = 16384 /* more than one contact */
 };
 
-/* What a value function sees. */
+/* Input of a value function. */
 typedef struct view {
   const model *m;
   const mesh *msh;
@@ -53,18 +53,19 @@ typedef struct view {
 typedef enum { AS_REAL, AS_COUNT, AS_WORD } column_form;
 
 typedef struct column {
-  const char *name; /* header of the table                                  */
-  const char *unit; /* "length", "force/length^2", "s", "-" for none        */
+  const char *name; /* header of the table */
+  const char *unit; /* "length", "force/length^2", "s", "-" for none */
   entity of;
   column_form form;
-  unsigned tables;   /* bits PRINT_* of the tables it stands in; 0: none    */
-  unsigned effects;  /* shown only if the model has them all                */
-  unsigned scenes;   /* bits SCENE_*                                        */
-  unsigned needs;    /* bits NEEDS_*                                        */
-  const char *field; /* dataset of JOB.h5; NULL: none (mesh data, words)    */
-  int part;          /* component: handed to value, place in the dataset    */
+  unsigned tables;   /* bits PRINT_* of its tables; 0: none */
+  unsigned effects;  /* shown only if the model has them all */
+  unsigned scenes;   /* bits SCENE_* */
+  unsigned needs;    /* bits NEEDS_* */
+  const char *field; /* dataset of JOB.h5; NULL: none (mesh data, words) */
+  int part;          /* component: handed to value, place in the dataset */
   double (*value)(const view *v, int id, int part);
-  const char *(*word)(const view *v, int id); /* AS_WORD; else NULL         */
+  /* AS_WORD; else NULL */
+  const char *(*word)(const view *v, int id);
   const char *help;
 } column;
 

@@ -1,8 +1,8 @@
 /*
- * What the rows of all tables of columns are written with; for the files that
- * hold such a table. Signs as in the manual: pressure p = -r_n/area >= 0,
- * forces are those of the obstacle on the body, so f_n = -r_n >= 0 presses, and
- * f_t is opposite to the slip.
+ * Macros for the rows of all tables of columns; for the files that hold such a
+ * table. Signs as in the manual: pressure p = -r_n/area >= 0, forces are those
+ * of the obstacle on the body, so f_n = -r_n >= 0 presses, and f_t is opposite
+ * to the slip.
  */
 #ifndef PROTIS_RUN_COLUMN_ROW_H
 #define PROTIS_RUN_COLUMN_ROW_H
@@ -28,7 +28,7 @@ static inline const char *status_word(unsigned k) {
 }
 
 /* clang-format off */
-/* Needs an effect, also in a build that knows nothing of it. */
+/* Needs an effect, also in a build without it. */
 #define ON(effect) (1u << EFFECT_BIT_##effect)
 #define C ON(CONTACT)
 #define F (ON(CONTACT) | ON(FRICTION))
@@ -40,7 +40,7 @@ static inline const char *status_word(unsigned k) {
 #define COLUMNS(table) ((int)(sizeof table / sizeof *table))
 /* A row: name, unit, entity and form, tables, effects, scenes, needs, field,
  * part, value, word, help. */
-/* Where the columns of the effects stand in the table of an entity. */
+/* Place of the columns of the effects in the table of an entity. */
 #define OF_EFFECTS {"", NULL, INC, 0, 0, 0, 0, NULL, 0, NULL, NULL, NULL}
 #define NO_COLUMN {NULL, NULL, INC, 0, 0, 0, 0, NULL, 0, NULL, NULL, NULL}
 /* clang-format on */

@@ -1,5 +1,5 @@
 /*
- * The hooks of the effects that are on, each under the stage of its row.
+ * The hooks of the active effects, each under the stage of its row.
  */
 #include "run/effect.h"
 
@@ -7,7 +7,7 @@
 
 int effect_is_on(const effect_ops *e, const model *m) {
   if (e->bit != NO_BIT) return (m->effects >> e->bit & 1u) != 0;
-  return e->called_for(m, NULL, 0);
+  return e->required(m, NULL, 0);
 }
 
 void *effect_state(const effect_list *list, const effect_ops *e) {
@@ -20,7 +20,7 @@ static void enter(const run *r, int k) {
   const effect_ops *e = r->effects.on[k].ops;
   const stage s = r->effects.on[k].stage;
   if (s == STAGE_NONE || e->inside) return;
-  if (e->beside)
+  if (e->shadow)
     timer_enter_whole(s);
   else
     timer_enter(s);

@@ -1,12 +1,12 @@
 /*
- * What a scene may call for beside equilibrium: an effect is one file of
+ * What a model may require besides equilibrium: an effect is one file of
  * src/effects and one row of effect_table. The run calls the hooks of the
- * effects that are on, in the order of the table:
+ * active effects, in the order of the table:
  *
  *   create -> (begin_step -> (pose -> solve -> found)* -> accept)* -> release
  *
- * What the model does not call for is not in the list: nothing of it is
- * allocated, called or counted. Its stage of the timer, its rows in the plan
+ * Effects that the model does not require are not in the list: nothing of them
+ * is allocated, called or counted. Its stage of the timer, its rows in the plan
  * and in COST OF THE EFFECTS, its part of the restart and its columns follow
  * from the row. Any hook may be NULL.
  */
@@ -18,8 +18,8 @@
 #include "run/column.h"
 
 struct run;
-typedef struct plan_sizes plan_sizes;   /* src/effects/plan/plan.h            */
-typedef struct effect_work effect_work; /* the same                           */
+typedef struct plan_sizes plan_sizes;   /* src/effects/plan/plan.h */
+typedef struct effect_work effect_work; /* the same */
 
 enum { EFFECT_STAGES = 7, NO_BIT = -1 };
 
@@ -32,7 +32,7 @@ typedef struct effect_hooks {
   int (*due)(const struct run *r);
   /* A step begins, its supports are checked: what is made of r->surface. */
   status (*prepare)(struct run *r, void *own);
-  /* What the listing is told before the first increment. */
+  /* Output to the listing before the first increment. */
   void (*describe)(const struct run *r, const void *own, setup_facts *f);
   /* T: r->step has a surface, a matrix, and a solver for its contact. */
   status (*begin_step)(struct run *r, void *own);
@@ -56,7 +56,7 @@ typedef struct effect_hooks {
    * *u may be put elsewhere. */
   status (*rewrite)(struct run *r, void *own, contact_problem *cp, double **u,
                     double *force);
-  /* The answer of what rewrite made of cp to the one of cp, into u, force. */
+  /* From the solution of the rewritten problem to that of cp, into u, force. */
   void (*restore)(struct run *r, void *own, contact_problem *cp, double *u,
                   double *force);
   /* T: r->now is an equilibrium; *again = 1: the problem has changed. */
@@ -64,15 +64,15 @@ typedef struct effect_hooks {
   /* T: the increment that ends at t has been solved and will be taken; r->now
    * may be solved again. */
   status (*examine)(struct run *r, void *own, double t);
-  /* T: the errors of r->now into r->errors, for good or at an attempt. */
+  /* T: the errors of r->now into r->errors, finally or at an attempt. */
   status (*estimate)(struct run *r, void *own);
   /* T: r->now is an increment of the run, r->old what it started from. */
   status (*accept)(struct run *r, void *own);
-  /* What the outputs show of it beside its columns. */
+  /* Its outputs besides its columns. */
   void (*show)(const void *own, state *s);
-  /* The run went through. */
+  /* The run is complete. */
   void (*end)(struct run *r, void *own);
-  /* The contact surface goes, and what is made of it. */
+  /* The contact surface is released, and what depends on it. */
   void (*forget)(struct run *r, void *own);
   /* Both ways, in a group of its own. */
   status (*keep)(struct run *r, void *own, archive *a);
@@ -86,42 +86,44 @@ typedef struct effect_hooks {
 
 typedef struct effect_ops {
   const char *name;
-  int bit; /* EFFECT_BIT_... that m->effects keeps the answer of called_for
-              under, for others that ask; or NO_BIT                           */
-  /* 1: the model calls for it; which card or fact does, or why none does, into
-   * why[size]; size 0: not wanted. */
-  int (*called_for)(const model *m, char *why, size_t size);
+  int bit; /* EFFECT_BIT_... of the result of required in m->effects, for other
+              files; or NO_BIT */
+  /* 1: the model requires it; the card or fact that does, or why none does,
+   * into why[size]; size 0: not needed. */
+  int (*required)(const model *m, char *why, size_t size);
   /* Work expected before anything is solved; NULL: none, no row in the plan.
    * ERR_MEMORY. */
-  status (*foreseen)(const plan_sizes *s, effect_work *work);
+  status (*expected)(const plan_sizes *s, effect_work *work);
   /* Of the hooks; 0: one of its name is made; STAGE_NONE: they are not timed.
    */
   stage own;
-  stage more[EFFECT_STAGES]; /* of run and outputs that count as it, 0 ends   */
-  const char *within; /* the effect that it is part of; no stage then         */
-  int beside; /* 1: stages entered inside a hook are part of it               */
-  int inside; /* 1: the hooks enter the stage themselves, where it has work   */
+  stage more[EFFECT_STAGES]; /* of run and outputs that count as it, 0 ends */
+  const char *within;        /* the effect that it is part of; no stage then */
+  int shadow;                /* 1: stages entered inside a hook are part of
+                                it */
+  int inside;                /* 1: the hooks enter the stage themselves, where
+                                it has work */
 
-  /* Why half the increments tell nothing of the error of the steps, where what
-   * it adds up over them has a part in it; NULL: none. */
+  /* Reason why increments of half the length give no error of the steps with
+   * this effect; NULL: they do. */
   const char *sums_up;
-  /* 1: contact nodes may be moved or pressed by it in ways that the loads and
-   * supports at the ends of a step do not tell. */
+  /* 1: it may move or load contact nodes independently of the loads and
+   * supports at the ends of a step. */
   int far;
 
   /* 1: gives the element strains without stress; NULL: none. */
   int (*strains)(const model *m, int elem_id);
 
   effect_hooks on;
-  const column *columns; /* [n_column]                                        */
+  const column *columns; /* [n_column] */
   int n_column;
-  int (*items)(const void *own); /* rows of its own table                   */
+  int (*items)(const void *own); /* rows of its own table */
 } effect_ops;
 
-/* The table of effects (src/effects/rows.h) is handed in from above. */
+/* The table of effects (src/effects/rows.h) is passed in by the caller. */
 int effect_is_on(const effect_ops *e, const model *m);
 
-/* The effects of a run that are on. */
+/* The active effects of a run. */
 enum { EFFECTS_MOST = 40 };
 typedef struct effect_list effect_list;
 struct effect_list {
@@ -130,7 +132,7 @@ struct effect_list {
     const effect_ops *ops;
     stage stage;
     void *state;
-    int borrowed; /* 1: of another run                                        */
+    int borrowed; /* 1: of another run */
   } on[EFFECTS_MOST];
 };
 /* NULL: not on. */

@@ -28,7 +28,7 @@ double *run_rows(const run *r, int k, double *v) {
   return r->problem.row[k];
 }
 
-/* The answer u, r of r->problem.cp: other forces are zero. */
+/* The solution u, r of r->problem.cp: other forces are zero. */
 static void put_rows(const run *r, const double *u, const double *force) {
   if (r->nodes.n_row == r->nodes.n_c) return;
   memset(r->now.rc, 0, (size_t)r->nodes.n_c * sizeof *r->now.rc);
@@ -66,7 +66,7 @@ static double residual_of(run *r, double *u, double *rc) {
 static void take_start(run *r) {
   size_t bytes = (size_t)r->nodes.n_c * sizeof *r->now.uc;
   const double *u = r->old.uc, *rc = r->old.rc;
-  if (r->solving.guess_u != NULL && !r->course.beside &&
+  if (r->solving.guess_u != NULL && !r->course.shadow &&
       residual_of(r, r->solving.guess_u, r->solving.guess_r) <
           residual_of(r, r->old.uc, r->old.rc)) {
     u = r->solving.guess_u;
@@ -83,16 +83,16 @@ static int is_open(const run *r, const double *uc) {
 }
 
 /*
- * A body in the air: the answer without contact forces, if its residual,
- * written to *residual, is not above that. The tolerance of a method, of
- * forces in the scale of the motion (contact_scale), would leave forces that
- * no contact carries.
+ * A body in free motion: the solution without contact forces, if its residual,
+ * written to *residual, is not above that. The tolerance of a method, relative
+ * to the scale of the motion (contact_scale), would leave spurious contact
+ * forces.
  */
 static status drop_reactions(const run *r, double *residual, double *u,
                              double *rc) {
   status st = OK;
   double *q = NULL, *zero = NULL;
-  if (r->course.beside || r->problem.given != NULL || condensed_floating(r->c))
+  if (r->course.shadow || r->problem.given != NULL || condensed_floating(r->c))
     goto done;
   NEW(q, r->nodes.n_row);
   NEW(zero, r->nodes.n_row);
@@ -111,8 +111,8 @@ done:
 /* r->problem.cp solved as the effects rewrite it, from r->old into r->now. */
 static status solve_contact(run *r) {
   const solver_listener listener = {r->sink->iteration, r->sink->ctx};
-  const solver_listener *told =
-      listener.step == NULL || r->course.beside ? NULL : &listener;
+  const solver_listener *reported =
+      listener.step == NULL || r->course.shadow ? NULL : &listener;
   contact_problem cp = r->problem.cp;
   take_start(r);
   double *own_u = run_rows(r, 0, r->now.uc), *u = own_u;
@@ -124,7 +124,8 @@ static status solve_contact(run *r) {
   PASS(effects_rewrite(r, &cp, &u, rc));
   timer_enter(STAGE_CONTACT);
   contact_solver_tolerance(r->solver, r->solving.tol);
-  status st = contact_solve(r->solver, &cp, told, u, rc, &r->solving.report);
+  status st =
+      contact_solve(r->solver, &cp, reported, u, rc, &r->solving.report);
   timer_leave(STAGE_CONTACT);
   PASS(st);
   r->problem.cp.bodies = contact_solver_bodies(r->solver, &cp);
@@ -246,7 +247,7 @@ done:
   return st;
 }
 
-/* With the contact nodes at hand; *iterations so far. */
+/* With the current contact nodes; *iterations so far. */
 static status solve_with_nodes(run *r, const double *F, int *iterations) {
   status st = OK;
   TRY(pose(r, F));

@@ -31,7 +31,7 @@ static void find_reactions(run *r, int known) {
   timer_leave(STAGE_REACTION);
 }
 
-/* Stresses that an output shows, or that only an error is told from. */
+/* Stresses that an output or an error estimate needs. */
 static void find_stresses(run *r, int shown) {
   stage s = r->step->accuracy.mesh ? STAGE_MESH_ERROR : STAGE_REFERENCE;
   if (shown) s = STAGE_STRESS;
@@ -44,7 +44,7 @@ double run_motion_over(const run *r, int k) {
   return (r->now.uc[k] - r->old.uc[k]) - (r->now.motion[k] - r->old.motion[k]);
 }
 
-/* What friction acts against: in a static problem the motion from the origin
+/* Motion that friction opposes: in a static problem the motion from the origin
  * (CPR98, P2), else that of the increment. */
 static double slip_of(const run *r, int k) {
   if (r->step->kind == STEP_STATIC && !r->course.relaxing)
@@ -146,7 +146,7 @@ static void find_torques(run *r) {
   }
 }
 
-/* What the springs of laws that elastic constants stand for hold, J: the part
+/* Energy of the springs of laws that elastic constants represent, J: the part
  * 1/2 sigma R sigma of their strain energy (model.h). */
 static status relaxed_energy(const run *r, double *kept) {
   status st = OK;

@@ -16,160 +16,172 @@
 
 /* One equilibrium: displacements, contact forces, loads, and its time. */
 typedef struct equilibrium {
-  double t;         /* s                                                      */
-  double *u;        /* [dim*n_node] m                                         */
-  double *F;        /* [dim*n_node] loads, N                                  */
-  double *reaction; /* [dim*n_node] forces of the supports, N                 */
-  double *uc, *rc;  /* [dim*n] contact frame, m, N                            */
-  double *motion;   /* [dim*n] way of the obstacles past the nodes since 0 s,
-                       added up over the increments, contact frame, m         */
-  double *temperature; /* [n_elem] or NULL: no thermal strain                 */
+  double t;            /* s */
+  double *u;           /* [dim*n_node] m */
+  double *F;           /* [dim*n_node] loads, N */
+  double *reaction;    /* [dim*n_node] forces of the supports, N */
+  double *uc, *rc;     /* [dim*n] contact frame, m, N */
+  double *motion;      /* [dim*n] displacement of the obstacles at the nodes
+                          since 0 s, summed over the increments, contact frame,
+                          m */
+  double *temperature; /* [n_elem] or NULL: no thermal strain */
   double
       *thermal; /* [ns*n] thermal strains of the elements of r->strains.eigen;
                    this and the next are empty where nothing but laws
-                   flows: the points have e^i and stress (visco.h)     */
-  double *e0, *sigma; /* [ns*n] all their strains without stress; Pa         */
-  double *elastic;    /* [ns*n] the rest; NULL: moduli stay                  */
+                   flows: the points have e^i and stress (visco.h) */
+  double *e0, *sigma; /* [ns*n] all their strains without stress;
+                         Pa */
+  double *elastic;    /* [ns*n] the rest; NULL: moduli stay */
   energies energy;
-  double peak_energy, peak_stress; /* J, of the strains, Pa; largest so far,
-                                      the stress where rounding was looked at */
-  double kept; /* J, of what elastic constants stand for                     */
+  double peak_energy, peak_stress; /* J, of the strains, Pa; largest so far, the
+                                      stress where rounding was looked at */
+  double kept;                     /* J, of laws that elastic constants
+                                      represent */
 } equilibrium;
 
-typedef struct beside beside; /* beside.c                                   */
-typedef struct visco visco; /* visco.h                                        */
+typedef struct shadow shadow; /* beside.c */
+typedef struct visco visco;   /* visco.h */
 
-/* A stiffness, condensed, and the contact solver that knows it. */
+/* A condensed stiffness with its contact solver. */
 typedef struct matrices {
-  double key; /* of the tangent (scheme.h); 0: none                          */
-  int exact;  /* the same                                                    */
-  long used;  /* when it was last used                                       */
+  double key; /* of the tangent (scheme.h); 0: none */
+  int exact;  /* the same */
+  long used;  /* when it was last used */
   stiffness *k;
   condensed *c;
-  contact_solver *solver; /* NULL until asked for                            */
-  archive *from;  /* borrowed: what the solver is to remember, or NULL */
-  char group[40]; /* in it                                           */
+  contact_solver *solver; /* NULL until needed */
+  archive *from;          /* borrowed: saved data of the solver, or NULL */
+  char group[40];         /* in it */
 } matrices;
 
-/* In the place of a key: no rate has been read; one that belongs to a matrix
- * that is no more; the matrix of tangents of one solve. */
+/* In the place of a key: no rate has been read; one of a released matrix; the
+ * matrix of tangents of one solve. */
 #define RUN_NO_KEY (-1.0)
 #define RUN_OTHER_KEY (-2.0)
 #define RUN_FRESH_KEY (-3.0)
 
-/* How far the run is: the next attempt. */
+/* Progress of the run: the next attempt. */
 typedef struct progress {
   int step_id, level, attempt, increment_no;
-  int cut; /* of "level", by attempts that failed: the rest is the stability of
-              an explicit integrator, which may need less later               */
-  long i, part; /* increment of the step's grid, piece of 2^level of it       */
-  double dt;    /* of an adaptive step, to be tried, s                        */
-  double error; /* of the increments before the step, sqrt(J)                 */
-  double residual; /* -, of the attempt before at the same increment          */
-  int last; /* 1: the increment at hand ends the step                       */
-  int violated; /* 1: and is not what the theorems say                      */
+  int cut;         /* of "level", by attempts that failed: the rest is the
+                      stability of an explicit integrator, which may need less
+                      later */
+  long i, part;    /* increment of the step's grid, piece of 2^level of it */
+  double dt;       /* of an adaptive step, to be tried, s */
+  double error;    /* of the increments before the step, sqrt(J) */
+  double residual; /* -, of the attempt before at the same increment */
+  int last;        /* 1: the current increment ends the step */
+  int violated;    /* 1: and violates the theorems */
 } progress;
 
 /* The contact nodes, and those of them that r->problem.cp has. */
 typedef struct contact_nodes {
-  int n, n_c;      /* contact nodes; dim*n                                    */
-  int rows, n_row; /* unknowns of a node in cp: 1 or dim; of all of them      */
-  contact_reach reach; /* the contact nodes of cp                             */
-  int n_told;          /* how many the output knows of                        */
+  int n, n_c;          /* contact nodes; dim*n */
+  int rows, n_row;     /* unknowns of a node in cp: 1 or dim; of all of them */
+  contact_reach reach; /* the contact nodes of cp */
+  int n_reported;      /* how many the output has */
 } contact_nodes;
 
 /* What the elements are made of. */
 typedef struct body_state {
   domain d;
-  moduli moduli; /* at the temperatures of r->now                             */
-  int stale;     /* 1: r->elastic was made with others                        */
-  long elastic_no; /* counts the matrices that r->elastic was                 */
-  unsigned char *fixed; /* [dim*n_node]                                       */
+  moduli moduli;        /* at the temperatures of r->now */
+  int stale;            /* 1: r->elastic was made with others */
+  long elastic_no;      /* counts the matrices that r->elastic was */
+  unsigned char *fixed; /* [dim*n_node] */
 } body_state;
 
 /* Elements with strains that have no stress. */
 typedef struct strain_state {
-  visco *visco;      /* NULL: no law flows                                */
-  eigenstrain eigen; /* e0 is that of the equilibrium at hand             */
-  int *elem;         /* [eigen.n]                                         */
+  visco *visco;               /* NULL: no law flows */
+  eigenstrain eigen;          /* e0 is that of the current equilibrium */
+  int *elem;                  /* [eigen.n] */
   const double *temperature0; /* [n_elem] before the first step, borrowed; NULL:
-                                 no thermal strain                            */
-  double *load; /* [dim*n_node] F with the forces of eigen, N        */
+                                 no thermal strain */
+  double *load;               /* [dim*n_node] F with the forces of eigen, N */
 } strain_state;
 
-/* What a contact surface is made from. */
+/* Input of a contact surface. */
 typedef struct contact_faces {
   surface_input input;
-  contact_pair *pairs;       /* [n_contact]                                  */
-  double *face_weight;       /* [n_face]                                     */
-  unsigned char *node_fixed; /* [n_node] bits                                */
+  contact_pair *pairs;       /* [n_contact] */
+  double *face_weight;       /* [n_face] */
+  unsigned char *node_fixed; /* [n_node] bits */
 } contact_faces;
 
 /* Contact problem of the increment. */
 typedef struct posed_problem {
-  double *f_load; /* [n_row] of f, without the motion of supports, N */
-  double *f, *gap, *side_gap; /* [n_row], [n], [n*(dim-1)]                    */
+  double *f_load;             /* [n_row] of f, without the motion of
+                                 supports, N */
+  double *f, *gap, *side_gap; /* [n_row], [n], [n*(dim-1)] */
   /* Borrowed from effects, NULL: no friction, no given force. */
-  double *ut0, *g0;     /* [n*(dim-1)] m, [n] N                               */
-  const sparse_rows *B; /* [n*n] -                                            */
-  const double *given;  /* [n] given normal forces, N; < 0: none              */
-  double *row[2]; /* [rows*n] room of run_rows, NULL where cp has all         */
-  reach_part part; /* what cp points to where it has not all nodes           */
+  double *ut0, *g0;     /* [n*(dim-1)] m, [n] N */
+  const sparse_rows *B; /* [n*n] - */
+  const double *given;  /* [n] given normal forces, N; < 0: none */
+  double *row[2];       /* [rows*n] workspace of run_rows, NULL where cp has
+                           all */
+  reach_part part;      /* data of cp where it does not have all nodes */
   contact_problem cp;
-  double *f_before; /* [n_row] condensed load of r->old, N                    */
-  int n_before;     /* its n_row                                              */
+  double *f_before; /* [n_row] condensed load of r->old, N */
+  int n_before;     /* its n_row */
 } posed_problem;
 
 typedef struct load_state {
-  double *start; /* [dim*n_node] displacements at the start of the step, m    */
-  double largest; /* N, at a node at the ends of the step                     */
-  double *ud;     /* [dim*n_node] prescribed displacements, m                 */
+  double *start;  /* [dim*n_node] displacements at the start of the step, m */
+  double largest; /* N, at a node at the ends of the step */
+  double *ud;     /* [dim*n_node] prescribed displacements, m */
 } load_state;
 
 /* What is derived from r->now (result.c). */
 typedef struct derived {
-  double *strain, *stress; /* [ns*n_elem] or NULL                         */
-  double *open_gap, *slip; /* [n], [n*(dim-1)]                            */
-  double *g; /* [n] limit, N; this and distance borrowed from friction        */
-  contact_status *contact; /* [n]                                         */
-  contact_total *totals;   /* [n_contact]                                 */
-  double *distance; /* [n] as in state; NULL: frictionless                    */
-  double *torque;   /* [n_contact] as in state, or NULL                       */
+  double *strain, *stress; /* [ns*n_elem] or NULL */
+  double *open_gap, *slip; /* [n], [n*(dim-1)] */
+  double *g;               /* [n] limit, N; this and distance borrowed from
+                              friction */
+  contact_status *contact; /* [n] */
+  contact_total *totals;   /* [n_contact] */
+  double *distance;        /* [n] as in state; NULL: frictionless */
+  double *torque;          /* [n_contact] as in state, or NULL */
 } derived;
 
-/* What is known of the errors of r->now. */
+/* Errors of r->now. */
 typedef struct error_state {
   error_bound error;
   rounding_loss rounding;
   error_share mesh_error, time_error;
-  const double *elem_error; /* [n_elem] borrowed, or NULL                    */
-  double left; /* -, of a body that was unloaded: what its errors count of the
-                  largest energy so far; 0: all of it is rounding            */
-  int judged; /* 1: the errors of mesh and solver are those of r->now         */
+  const double *elem_error; /* [n_elem] borrowed, or NULL */
+  double left;              /* -, of an unloaded body: share of the largest
+                               energy so far that its errors are relative to; 0:
+                               its state is rounding */
+  int evaluated;            /* 1: the errors of mesh and solver are those of
+                               r->now */
 } error_state;
 
 /* How the contact problem is solved. */
 typedef struct solving {
   solver_report report;
-  double tol; /* of the contact solver, in force, -                          */
+  double tol;                /* of the contact solver, in force, - */
   double *guess_u, *guess_r; /* [m] start values that may be nearer than those
-                                of r->old, borrowed; NULL: none               */
+                                of r->old, borrowed; NULL: none */
   known_rate rate;
-  double known_key; /* of the matrix that "rate" was read for, until in use   */
-  long matrix_no;   /* counts the matrices taken into use                    */
+  double known_key; /* of the matrix that "rate" was read for, until in
+                       use */
+  long matrix_no;   /* counts the matrices taken into use */
 } solving;
 
-/* What is counted, told and kept of the run. */
+/* Counters, messages and saved data of the run. */
 typedef struct course_state {
   int total_no, unsettled;
-  int missed; /* 1: the increment misses the tolerance of its step            */
-  int beside; /* 1: an increment of a finer path is solved, or a copy of the
-                 run: no step of the run                                      */
-  int relaxing;  /* the increment at hand leads the start to equilibrium */
-  int due, kept; /* a checkpoint is due; has just been made                   */
-  archive *from; /* borrowed: what the step in progress starts from, or NULL  */
-  stage_cost costs[STAGE_COUNT]; /* at the checkpoint                         */
-  char note[512]; /* what changed abruptly in the increment, "" or lines     */
+  int missed;    /* 1: the increment did not converge to the tolerance of its
+                    step */
+  int shadow;    /* 1: an increment of a finer path is solved, or a copy of the
+                    run: no step of the run */
+  int relaxing;  /* the current increment relaxes the start to equilibrium */
+  int due, kept; /* a checkpoint is due; has just been made */
+  archive *from; /* borrowed: what the step in progress starts from, or NULL */
+  /* at the checkpoint */
+  stage_cost costs[STAGE_COUNT];
+  char note[512]; /* what changed abruptly in the increment, "" or lines */
 } course_state;
 
 struct run {
@@ -177,17 +189,17 @@ struct run {
   const mesh *msh;
   const history_sink *sink;
   const step *step;
-  size_t n_dof; /* dim*n_node                                                 */
+  size_t n_dof; /* dim*n_node */
   body_state body;
   strain_state strains;
 
-  /* Contact surface and condensed stiffness: as long as "fixed" stays. */
+  /* Contact surface and condensed stiffness: while "fixed" is unchanged. */
   contact_faces faces;
   contact_surface *surface;
   contact_nodes nodes;
   matrices elastic;
-  condensed *c;           /* in use, borrowed from elastic or visco          */
-  contact_solver *solver; /* the same                                        */
+  condensed *c;           /* in use, borrowed from elastic or visco */
+  contact_solver *solver; /* the same */
   posed_problem problem;
   solving solving;
 
@@ -225,13 +237,13 @@ status effects_attempt(run *r, double t);
 status effects_solve(run *r, double t, int *made);
 status effects_estimate(run *r);
 void effects_end(run *r);
-status effects_found(run *r, int *again); /* *again = 0 before                */
+status effects_found(run *r, int *again); /* *again = 0 before */
 status effects_examine(run *r, double t);
 status effects_accept(run *r);
 void effects_forget(run *r);
 /* 1: one gives the element strains without stress. */
 int effects_strain(const run *r, int elem_id);
-int effects_reach_far(const run *r); /* 1: one is "far"                      */
+int effects_reach_far(const run *r); /* 1: one is "far" */
 void effects_show(const run *r, state *s);
 status effects_keep(run *r, archive *a);
 /* List of "from" for its copy; valid (release it) also after a failure. */
@@ -239,19 +251,19 @@ status effects_copy(const run *from, run *copy);
 void effects_release(run *r);
 
 /* matrices.c: use m for the next equilibria; its solver is made if there is
- * none, and r->elastic anew if temperatures have changed the moduli. */
+ * none, and r->elastic again if temperatures have changed the moduli. */
 status run_use(run *r, matrices *m);
-/* The elastic matrix of the moduli and of the nodes at hand. */
+/* The elastic matrix of the current moduli and nodes. */
 status run_renew_elastic(run *r);
-/* What the estimates know of the matrix in use. */
+/* Data of the estimates of the matrix in use. */
 void run_forget_estimates(run *r);
 void matrices_free(matrices *m);
-/* What the solver remembers, in a group of this name; reading: for the solver
+/* Saved data of the solver, in a group of this name; reading: for the solver
  * that is made next. */
 status matrices_keep(matrices *m, archive *a, const char *group);
 
-/* The contact nodes of r->problem.cp are those of r->nodes.reach; room for the
- * part of them and of their unknowns. */
+/* The contact nodes of r->problem.cp are those of r->nodes.reach; allocates
+ * their part and unknowns. */
 void run_take_nodes(run *r);
 status run_room_for_part(run *r);
 /* 1: a contact node that was left out of r->problem.cp is beyond its gap in
@@ -273,25 +285,25 @@ const double *run_elasticity(const run *r, int elem_id);
 void run_change_moduli(run *r);
 /* Components of them that an equilibrium has arrays for. */
 size_t strains_kept(const run *r);
-/* r->strains.eigen.e0 from the strains at hand. */
+/* r->strains.eigen.e0 from the current strains. */
 void strains_collect(run *r);
-/* The loads with the forces that the strains of r->now call for: r->now.F
- * itself if there are none. */
+/* The loads with the forces of the strains of r->now: r->now.F itself if there
+ * are none. */
 const double *strains_load(run *r);
 /* Stresses of these elements, and the work on their strains since r->old, J;
  * e->largest at least what the strains would store if they were held. */
 void strains_work(run *r, energies *e);
-double strains_energy(const run *r); /* of the stresses of r->now, J          */
+double strains_energy(const run *r); /* of the stresses of r->now, J */
 
 /* Inelastic strains. points.c: of the elements whose law flows. */
 status visco_new(run *r);
-void visco_free(visco *v); /* accepts NULL          */
+void visco_free(visco *v); /* accepts NULL */
 void visco_add_strains(const run *r,
-                       double *e0);      /* e0[ns*r->strains.eigen.n]     */
-void visco_show(const run *r, state *s); /* what the outputs see              */
+                       double *e0);      /* e0[ns*r->strains.eigen.n] */
+void visco_show(const run *r, state *s); /* view of the outputs */
 /* tangent.c */
-void visco_new_solvers(run *r); /* for a step with the same supports       */
-void visco_forget(run *r); /* matrices are made anew                          */
+void visco_new_solvers(run *r); /* for a step with the same supports */
+void visco_forget(run *r);      /* matrices are made again */
 /* visco.c, at the start of any step: the strains of r->now are those of r->old.
  */
 void visco_rest(run *r);
@@ -302,7 +314,7 @@ status visco_begin_step(run *r);
 status visco_advance(run *r, double t);
 /* The same with an estimate of the error of its strains over the largest
  * elastic strains so far: from the integrator, or from two steps of half the
- * length, made beside. */
+ * length, made in addition. */
 status visco_try(run *r, double t, double *error);
 /* Increments of 2^level pieces that an explicit integrator needs: the level
  * for a step dt from r->old; ERR_DECK if the deck forbids to cut it. */
@@ -336,17 +348,17 @@ status increment_begin(run *r, double t);
 status increment_equilibrium(run *r, const double *F);
 
 /* result.c: stresses, reactions, totals, energies of r->now as far as the
- * effects call for them and "due" says. */
+ * effects and "due" require. */
 status result_evaluate(run *r, int due);
 
-/* beside.c: the state at t within the increment made from r->old to r->now;
+/* shadow.c: the state at t within the increment made from r->old to r->now;
  * *out is new. Read its report. */
-status beside_at(run *r, double t, beside **out);
-run *beside_run(beside *b);
+status shadow_at(run *r, double t, shadow **out);
+run *shadow_run(shadow *b);
 /* what_if.solve of the increment in r->now. */
-status beside_with(void *run, const double *more, double *u, double *rc,
+status shadow_with(void *run, const double *more, double *u, double *rc,
                    int *solved);
-void beside_free(beside *b); /* accepts NULL                                 */
+void shadow_free(shadow *b); /* accepts NULL */
 
 /* Motion of a contact unknown against the obstacle in the increment, m. */
 double run_motion_over(const run *r, int k);

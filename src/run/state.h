@@ -1,6 +1,6 @@
 /*
- * What the loop over increments hands to the outputs: an accepted increment,
- * the facts before the first one, and who is told.
+ * Data of the loop over increments for the outputs: an accepted increment, the
+ * facts before the first one, and the sinks.
  */
 #ifndef PROTIS_RUN_STATE_H
 #define PROTIS_RUN_STATE_H
@@ -16,11 +16,12 @@
 
 /* Forces and moments of one contact: of the obstacle on the body. */
 typedef struct contact_total {
-  double force[3];  /* N, global components                                */
-  double moment[3]; /* N m, about the origin (2-D: moment[2] only)         */
-  double normal, tangential[2]; /* sums in the contact frame, N               */
-  double area; /* closed area, m2                                     */
-  double pressure, penetration; /* the largest of its nodes, Pa, m; >= 0      */
+  double force[3];              /* N, global components */
+  double moment[3];             /* N m, about the origin (2-D: moment[2]
+                                   only) */
+  double normal, tangential[2]; /* sums in the contact frame, N */
+  double area;                  /* closed area, m2 */
+  double pressure, penetration; /* the largest of its nodes, Pa, m; >= 0 */
   int n_open, n_slip, n_stick;
 } contact_total;
 
@@ -28,66 +29,70 @@ typedef struct contact_total {
  * the contact line in the order of the tangent t, in 3-D all of that kind. */
 typedef struct contact_zone {
   int contact_id;
-  int kind;      /* contact_status                                           */
-  int direction; /* sign of the slip along t; 0: none, no friction, 3-D      */
-  double from[2], to[2], length; /* ends between the nodes, m; 3-D: 0        */
-  double area; /* m2; times thickness, or around the axis                    */
+  int kind;                      /* contact_status */
+  int direction;                 /* sign of the slip along t; 0: none, no
+                                    friction, 3-D */
+  double from[2], to[2], length; /* ends between the nodes, m; 3-D: 0 */
+  double area;                   /* m2; times thickness, or around the axis */
 } contact_zone;
 
 typedef struct zone_list {
   int n, cap;
-  contact_zone *zone; /* [n] owned                                            */
+  contact_zone *zone; /* [n] owned */
 } zone_list;
 
 /* One contact as a loop of friction: force (in the totals) against motion. */
 typedef struct contact_loop {
-  double way[2];       /* mean way of the obstacle since time 0, tangents, m  */
-  double mean_u_t[2];  /* mean tangential displacement of the nodes, m        */
-  double angle;        /* of the obstacle, rad                                */
-  double friction;     /* J, dissipated so far, trapezoidal                  */
+  double way[2];       /* mean displacement of the obstacle since time 0,
+                          tangents, m */
+  double mean_u_t[2];  /* mean tangential displacement of the nodes, m */
+  double angle;        /* of the obstacle, rad */
+  double friction;     /* J, dissipated so far, trapezoidal */
   double friction_end; /* J, the same with the limits at the increments' end */
-  double start_end;    /* J, friction_end at the start of the step           */
+  double start_end;    /* J, friction_end at the start of the step */
 } contact_loop;
 
 typedef struct energies {
-  double strain;   /* J, now                                              */
-  double external; /* J, work of loads and prescribed displacements so far */
-  double friction; /* J, dissipated so far, trapezoidal                   */
-  double friction_end; /* J, dissipated so far, limit of the increment's end;
-                          a static problem starts it anew, from the origin  */
+  double strain;       /* J, now */
+  double external;     /* J, work of loads and prescribed displacements so
+                          far */
+  double friction;     /* J, dissipated so far, trapezoidal */
+  double friction_end; /* J, dissipated so far, limit of the increment's end; a
+                          static problem starts it again, from the origin */
   double normal;       /* J, work of the normal contact forces so far: moving
                           obstacles, and by the trapezoidal rule gaps that open
-                          or close within an increment                        */
-  double thermal;      /* J, work of the stresses on thermal strain so far    */
+                          or close within an increment */
+  double thermal;      /* J, work of the stresses on thermal strain so far */
   double inelastic;    /* J, work of the stresses on inelastic strain so far,
-                          trapezoidal                                         */
+                          trapezoidal */
   double dissipated;   /* J, of that lost so far by the law, in the quadrature
-                          of the integrator                                   */
-  double stored;       /* J, of that kept by internal variables, now          */
-  double start;   /* J, strain energy the run starts with                     */
-  double defect;  /* J, external + normal - friction - thermal - inelastic -
-                     (strain - start)                                         */
-  double largest; /* J, largest magnitude of the six so far: the scale of
-                     the defect, also once all is unloaded                    */
+                          of the integrator */
+  double stored;       /* J, of that stored by internal variables, now */
+  double start;        /* J, strain energy the run starts with */
+  double defect;       /* J, external + normal - friction - thermal - inelastic
+                          - (strain - start) */
+  double largest;      /* J, largest magnitude of the six so far: the scale of
+                          the defect, also once all is unloaded */
 } energies;
 
-/* How far the contact solver may be from the solution. */
+/* Bound of the error of the contact solver. */
 typedef struct error_bound {
   int asked;
-  double energy;   /* J, energy of the error at most; NAN: no bound           */
-  double relative; /* -, of the energy norm of the solution; NAN: no bound, or
-                      a solution without deformation                         */
-  double cpu;      /* s, spent so far on finding it                           */
-  double rate;     /* contraction of the sliding limit, -; 0: none            */
-  const char *why; /* there is no bound; or NULL                              */
-  double hidden;   /* -, of contact forces, by rounding of the motion         */
+  double energy;   /* J, energy of the error at most; NAN: no bound */
+  double relative; /* -, of the energy norm of the solution; NAN: no bound, or a
+                      solution without deformation */
+  double cpu;      /* s, CPU time for it so far */
+  double rate;     /* contraction of the sliding limit, -; 0: none */
+  const char *why; /* there is no bound; or NULL */
+  double hidden;   /* -, of contact forces, by rounding of the motion */
 } error_bound;
 
-/* What rounding has taken of an answer (run/history/rounding.c). */
+/* Rounding error of a solution (run/history/rounding.c). */
 typedef struct rounding_loss {
-  int found;   /* 0: not looked at, the condition is that of a plain mesh     */
-  double norm; /* sqrt(J), error in the energy norm                           */
-  double energy; /* -, the same over the norm of the answer */
+  int found;     /* 0: not evaluated, the condition number is that of a plain
+                    mesh */
+  double norm;   /* sqrt(J), error in the energy norm */
+  double energy; /* -, the same over the norm of the solution */
   double stress; /* -, error of the stresses over the largest */
   double u;      /* -, of the displacements over the largest */
 } rounding_loss;
@@ -95,129 +100,142 @@ typedef struct rounding_loss {
 /* An estimate of an error at the end of an increment. */
 typedef struct error_share {
   int asked;
-  double relative; /* -, of the energy norm of the solution; NAN: unknown     */
-  double cpu;      /* s, spent so far on estimating                           */
-  const char *why; /* why it is zero or unknown; or NULL                      */
+  double relative; /* -, of the energy norm of the solution; NAN: unknown */
+  double cpu;      /* s, CPU time for it so far */
+  const char *why; /* why it is zero or unknown; or NULL */
 } error_share;
 
 /* *SOLVER, TOL=BALANCED: where the solver stopped, and what that saved against
  * the tolerance of the default. */
 typedef struct balance_report {
   int asked;
-  double wanted; /* -, error of the solver that is enough; NAN: unknown       */
-  double tol;    /* -, residual asked for                                     */
-  int passes;    /* solves with ever smaller tolerances                       */
-  double saved_iterations, saved_cpu; /* about; s                             */
+  double wanted; /* -, error of the solver that is enough; NAN: unknown */
+  double tol;    /* -, residual required */
+  int passes;    /* solves with ever smaller tolerances */
+  /* about; s */
+  double saved_iterations, saved_cpu;
 } balance_report;
 
-/* The increment once more, with forces beside its loads. */
+/* The increment once more, with forces added to its loads. */
 typedef struct what_if {
   void *run;
   /* more[dim*n_node] N; u[dim*n_node] m, rc[dim*n] N of the contact frame;
-   * *solved 0: not to its tolerance. The run itself stays as it is. */
+   * *solved 0: not to its tolerance. The run itself is unchanged. */
   status (*solve)(void *run, const double *more, double *u, double *rc,
                   int *solved);
 } what_if;
 
-/* What is known of its errors. */
+/* Its errors. */
 typedef struct state_errors {
-  error_bound error; /* of the contact solver                                 */
-  int in_doubt;      /* 1: its bound is above 10 %                            */
-  int after_miss;    /* 1: its history holds an increment that is not settled */
+  error_bound error; /* of the contact solver */
+  int in_doubt;      /* 1: its bound is above 10 % */
+  int after_miss;    /* 1: its history holds an increment that is
+                        not settled */
   rounding_loss rounding;
-  error_share mesh_error, time_error; /* of the mesh, of the increments       */
-  const double *elem_error; /* [n_elem] share of each element in the error of
-                               the mesh, -, relative as that; or NULL         */
+  /* of the mesh, of the increments */
+  error_share mesh_error, time_error;
+  const double *elem_error; /* [n_elem] share of each element in the error
+                               of the mesh, -, relative as that; or NULL */
   balance_report balance;
-  true_error exact; /* against *REFERENCE                                     */
-  int jumps;        /* 1: no path of equilibria leads to this one             */
-  double jump_t;    /* s, where the equilibrium jumps then                    */
-  theorems_report theorems;      /* the theorems at work                      */
-  const solution_set *solutions; /* of CHECK=; NULL: not asked for            */
+  true_error exact;              /* against *REFERENCE */
+  int jumps;                     /* 1: no path of equilibria leads to this
+                                    one */
+  double jump_t;                 /* s, where the equilibrium jumps then */
+  theorems_report theorems;      /* the theorems at work */
+  const solution_set *solutions; /* of CHECK=; NULL: not asked for */
 } state_errors;
 
 typedef struct state_body {
-  const double *u;               /* [dim*n_node] m                            */
-  const double *strain, *stress; /* [ns*n_elem] -, Pa; NULL if no output asks */
-  const double *temperature; /* [n_elem] or NULL: no thermal strain           */
-  const flow *flow;          /* elements whose law flows; NULL: none          */
-  const int *flow_elem;      /* [flow->n] ascending                           */
-  const flow_state *inelastic; /* their strains and internal variables        */
-  const double *reaction; /* [dim*n_node] N, of the supports; 0 where free    */
+  const double *u; /* [dim*n_node] m */
+  const double *strain,
+      *stress;               /* [ns*n_elem] -, Pa; NULL if no output needs it */
+  const double *temperature; /* [n_elem] or NULL: no thermal strain */
+  const flow *flow;          /* elements whose law flows; NULL: none */
+  const int *flow_elem;      /* [flow->n] ascending */
+  const flow_state *inelastic; /* their strains and internal variables */
+  const double *reaction;      /* [dim*n_node] N, of the supports; 0 where
+                                  free */
 } state_body;
 
 typedef struct state_contacts {
-  const contact_problem *problem; /* what was solved; NULL: no contact, LCP   */
-  const contact_surface *surface; /* NULL: no contact. A problem from a file
-                                has numbers 1 to n and no geometry (x NULL) */
-  const double *uc, *rc;          /* [dim*n] contact frame, m, N              */
-  const double *gap;              /* [n] gap left open: gap0 - u_n, m         */
-  const double *slip;  /* [(dim-1)*n] slip of the increment, of a static
-                          problem from the origin, m                          */
-  const double *limit; /* [n] sliding limit g, N; NULL: frictionless          */
-  const contact_status *contact; /* [n]                                       */
-  const contact_total *totals;   /* [n_contact]                               */
-  const double *distance; /* [n] all slip so far, m; NULL: frictionless       */
-  const double *torque;   /* [n_contact] about its axis, N m; NULL: no axis   */
+  const contact_problem
+      *problem; /* the problem solved; NULL: no contact, LCP */
+  const contact_surface *surface; /* NULL: no contact. A problem from a file has
+                                     numbers 1 to n and no geometry (x NULL) */
+  const double *uc, *rc;          /* [dim*n] contact frame, m, N */
+  const double *gap;              /* [n] gap left open: gap0 - u_n, m */
+  const double *slip;             /* [(dim-1)*n] slip of the increment, of a
+                                     static problem from the origin, m */
+  const double *limit;            /* [n] sliding limit g, N; NULL:
+                                     frictionless */
+  const contact_status *contact;  /* [n] */
+  const contact_total *totals;    /* [n_contact] */
+  const double *distance;         /* [n] all slip so far, m; NULL:
+                                     frictionless */
+  const double *torque;           /* [n_contact] about its axis, N m; NULL: no
+                                     axis */
   int n_open, n_slip, n_stick;
 } state_contacts;
 
-/* One accepted increment. Arrays are borrowed and live until the next one. */
+/* One accepted increment. Arrays are borrowed and valid until the next one. */
 typedef struct state {
-  int step_no, increment_no; /* from 1, increments counted within the step    */
-  int total_no; /* increments since the start, from 1                         */
-  int attempt;  /* 1: not cut                                                 */
-  double t, dt; /* end of the increment, s                                    */
+  int step_no, increment_no; /* from 1, increments counted within the step */
+  int total_no;              /* increments since the start, from 1 */
+  int attempt;               /* 1: not cut */
+  double t, dt;              /* end of the increment, s */
   int end_of_step;
-  int within; /* 1: t is a time point within the increment                    */
+  int within; /* 1: t is a time point within the increment */
   state_body body;
   state_contacts contacts;
   state_errors errors;
-  const struct effect_list *effects; /* of the run, that are on; or NULL      */
+  /* of the run, that are on; or NULL */
+  const struct effect_list *effects;
   energies energy;
   solver_report report;
   const char *solver_log;
-  const char *note; /* whole lines about what jumps, "" or NULL: nothing      */
-  double cpu;       /* of this increment, s                                   */
-  int settled;      /* 1: reached its tolerance, and is not in doubt          */
-  what_if again;    /* until the next one                                     */
+  const char *note; /* whole lines about what jumps, "" or NULL:
+                       nothing */
+  double cpu;       /* of this increment, s */
+  int settled;      /* 1: converged to its tolerance, and is not in
+                       doubt */
+  what_if again;    /* until the next one */
 } state;
 
 /* Facts of the run before the first increment, for the listing. */
 typedef struct setup_facts {
   condense_info info;
-  double condition; /* -                                                   */
-  double digits;    /* that it leaves                                      */
-  int floating;     /* contact alone holds a body                          */
+  double condition; /* - */
+  double digits;    /* that it leaves */
+  int floating;     /* contact alone holds a body */
   int n_contact_node;
-  int n_left_out; /* of them, out of reach: no unknowns of the problem     */
-  double average_entries; /* of the nonlocal averages                         */
+  int n_left_out;         /* inactive ones: no unknowns of the problem */
+  double average_entries; /* of the nonlocal averages */
 } setup_facts;
 
 /* The state of a run, for an archive. */
 typedef struct run_memory {
   void *run;
   status (*keep)(void *run, archive *a);
-  int step_no; /* the one in progress, from 1                               */
+  int step_no; /* the one in progress, from 1 */
 } run_memory;
 
-/* Who is told what. Any function may be NULL. */
+/* Sinks of the run. Any function may be NULL. */
 typedef struct history_sink {
   void *ctx;
   /* Contact nodes that will be condensed, before anything is assembled. */
-  status (*foresee)(void *ctx, int n_node);
+  status (*expect)(void *ctx, int n_node);
   status (*ready)(void *ctx, const setup_facts *facts,
                   const contact_surface *surface);
   /* *INITIAL CONDITIONS, TYPE=DISPLACEMENT: u_0 and its defect. */
   status (*start)(void *ctx, const start_report *report);
   status (*increment)(void *ctx, const state *s);
-  /* A time of *TIME POINTS within the increment that is told next. */
+  /* A time of *TIME POINTS within the increment reported next. */
   status (*between)(void *ctx, const state *s);
-  void (*iteration)(void *ctx, const solver_step *s); /* for .cvg             */
-  /* An attempt that failed and is cut or given up. */
+  void (*iteration)(void *ctx, const solver_step *s); /* for .cvg */
+  /* An attempt that failed and is cut or abandoned. */
   status (*rejected)(void *ctx, const state *s, const char *why);
-  /* What the run can go on from, between two attempts: where *RESTART asks for
-   * it, and at an interruption. memory.keep names all its arrays. */
+  /* A state for a restart, between two attempts: where *RESTART asks for it,
+   * and at an interruption. memory.keep names all its arrays. */
   status (*checkpoint)(void *ctx, const run_memory *memory);
 } history_sink;
 

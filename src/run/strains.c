@@ -1,7 +1,7 @@
 /*
  * Strains that carry no stress, e0 = e_th of the temperature + e^i of the
- * inelastic laws, sigma = E (e - e0): kept for the elements that can have any,
- * and for them alone.
+ * inelastic laws, sigma = E (e - e0): stored only for the elements that can
+ * have any.
  */
 #include "base/memory.h"
 #include "base/timer.h"
@@ -24,12 +24,12 @@ const double *run_elasticity(const run *r, int elem_id) {
 
 size_t strains_kept(const run *r) {
   int all = r->strains.temperature0 != NULL;
-  for (int i = 0; i < r->m->n.initial; ++i) /* the first work is from zero    */
+  for (int i = 0; i < r->m->n.initial; ++i) /* the first work is from zero */
     all |= r->m->initial.lines[i].type == INITIAL_STRAIN;
   return all ? at(r, r->strains.eigen.n) : 0;
 }
 
-/* What is without stress is e^i alone, and the points have it. */
+/* The only strain without stress is e^i, which the points have. */
 static int is_flow(const run *r) {
   return r->strains.visco != NULL && strains_kept(r) == 0;
 }

@@ -1,6 +1,6 @@
 /*
- * Equilibria of the body with the linear laws that the implicit integrators
- * ask for: their matrices, of which the constant ones are kept, and loads.
+ * Equilibria of the body with the linear laws of the implicit integrators:
+ * their matrices, of which the constant ones are stored, and loads.
  */
 #include "base/memory.h"
 #include "base/timer.h"
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double TRACE = 0x1p-40; /* -, of the elasticity                  */
+static const double TRACE = 0x1p-40; /* -, of the elasticity */
 
 void visco_forget(run *r) {
   visco *v = r->strains.visco;
@@ -37,7 +37,7 @@ static status factor(const domain *d, matrices *m) {
   status st = OK;
   matrices keep = *m;
   matrices_free(m);
-  if (keep.c == NULL) { /* as it was before a restart                         */
+  if (keep.c == NULL) { /* as it was before a restart */
     m->from = keep.from;
     memcpy(m->group, keep.group, sizeof m->group);
   }
@@ -47,7 +47,7 @@ done:
   return st;
 }
 
-/* Those of before a restart anew, which are not counted again. */
+/* Those of before a restart again, without counting them. */
 static status factor_again(const domain *d, matrices *m) {
   stage_cost before[STAGE_COUNT] = {{0}};
   for (int i = 0; i < STAGE_COUNT; ++i)
@@ -80,10 +80,9 @@ done:
 }
 
 /* The matrices of v->E. A group that has relaxed within the step may be so soft
- * that the others rest on nothing, to rounding: it gets a trace of its
- * elasticity in the matrix, not in its stresses. What that makes of an answer
- * which depends on how soft it is, rounding_find sees as forces that are not in
- * balance. */
+ * that the others are free to rounding: it gets a small share of its elasticity
+ * in the matrix, not in its stresses. The error of that is found by
+ * rounding_find as a residual of equilibrium. */
 static status factor_constant(run *r, int again, const domain *d, matrices *m) {
   visco *v = r->strains.visco;
   const size_t square = visco_at(r, r->m->ns);
@@ -150,7 +149,7 @@ static int same_tangents(const run *r, const flow_tangent *law) {
                 square * (size_t)v->x.n * sizeof *v->E) == 0;
 }
 
-/* Tangents of this solve alone: what has been factored for them is kept. */
+/* Tangents of this solve alone: their symbolic factor is kept. */
 static status use_fresh(run *r, const flow_tangent *law) {
   status st = OK;
   visco *v = r->strains.visco;

@@ -1,8 +1,8 @@
 /*
- * Inelastic strains over an increment: what the integrators of
- * src/material/scheme ask of the body, their steps and what limits them
- * (CPR98 3.14-3.20: each stress of a given e^i is one contact problem, with the
- * slip counted from the last accepted increment).
+ * Inelastic strains over an increment: the equilibria that the integrators of
+ * src/material/scheme require, their steps and limits (CPR98 3.14-3.20: each
+ * stress of a given e^i is one contact problem, with the slip counted from the
+ * last accepted increment).
  */
 #include "run/visco.h"
 #include "base/memory.h"
@@ -35,8 +35,8 @@ static status begin(void *ctx, flow_state *s) {
   return st;
 }
 
-/* The iteration on stresses cannot settle below what contact leaves: neither is
- * loosened by TOL=BALANCED. */
+/* The iteration on stresses cannot converge below the residual of contact:
+ * neither is loosened by TOL=BALANCED. */
 static status linear(void *ctx, const flow_tangent *law, flow_state *s,
                      int *settled) {
   run *r = ctx;
@@ -51,8 +51,8 @@ static status linear(void *ctx, const flow_tangent *law, flow_state *s,
   return st;
 }
 
-/* Sums are known where they hold all that an increment adds up: not what was
- * there at the start, which counts from zero. */
+/* Sums are valid if they contain all contributions of an increment, except
+ * those at the start, which count from zero. */
 static status constant(void *ctx, const flow_tangent *law, const scheme_call *a,
                        int *settled) {
   run *r = ctx;
@@ -211,7 +211,7 @@ equilibrium start_point_use(run *r, const start_point *p) {
   return keep;
 }
 
-/* From r->now, which becomes the accepted state for the while, to t. */
+/* From r->now, which is temporarily the accepted state, to t. */
 static status second_half(run *r, double t) {
   status st = OK;
   visco *v = r->strains.visco;
@@ -228,19 +228,19 @@ done:
   return st;
 }
 
-/* Two halves into v->fine[ns*n]; r->solving.report tells if they were found. */
+/* Two halves into v->fine[ns*n]; r->solving.report says if they were found. */
 static status two_halves(run *r, double t) {
   status st = OK;
   visco *v = r->strains.visco;
   size_t n = visco_at(r, v->x.n);
   if (v->fine == NULL) NEW(v->fine, n);
-  r->course.beside = 1;
+  r->course.shadow = 1;
   TRY(advance(r, 0.5 * (r->old.t + t)));
   if (r->solving.report.outcome <= 0) goto done;
   TRY(second_half(r, t));
   memcpy(v->fine, v->now.ei, n * sizeof *v->fine);
 done:
-  r->course.beside = 0;
+  r->course.shadow = 0;
   return st;
 }
 
@@ -303,8 +303,8 @@ status visco_level(run *r, double dt, int *level) {
   timer_enter(STAGE_INELASTIC);
   TRY(flow_fastest(&v->x, &v->old, dt, &rate));
   *level = step_level(r->m, r->step, r->old.t, dt, rate,
-                      v->told != r->step && !flow_is_constant(&v->x));
-  v->told = r->step;
+                      v->reported != r->step && !flow_is_constant(&v->x));
+  v->reported = r->step;
   if (*level < 0)
     FAIL(ERR_DECK, "step %d: the increment is not stable", run_step_id(r) + 1);
 done:
@@ -370,7 +370,7 @@ done:
 status visco_keep(run *r, archive *a) {
   status st = OK;
   visco *v = r->strains.visco;
-  int told = v->told == r->step;
+  int reported = v->reported == r->step;
   TRY(visco_keep_flow(&v->x, &v->old, a, "old"));
   TRY(visco_keep_flow(&v->x, &v->now, a, "now"));
   TRY(archive_reals(a, "largest", &v->largest, 1));
@@ -378,10 +378,10 @@ status visco_keep(run *r, archive *a) {
   TRY(archive_bytes(a, "n_length", &v->n_length, sizeof v->n_length));
   TRY(archive_reals(a, "asked", &v->x.tally->asked, 1));
   TRY(archive_reals(a, "resting", &v->x.tally->resting, 1));
-  TRY(archive_ints(a, "told", &told, 1));
-  v->told = told ? r->step : NULL;
-  TRY(archive_ints(a, "told_locking", &v->told_locking, 1));
-  TRY(archive_ints(a, "told_stuck", &v->told_stuck, 1));
+  TRY(archive_ints(a, "told", &reported, 1));
+  v->reported = reported ? r->step : NULL;
+  TRY(archive_ints(a, "told_locking", &v->locking_reported, 1));
+  TRY(archive_ints(a, "told_stuck", &v->stuck_reported, 1));
   TRY(tangent_keep(r, a));
 done:
   return st;

@@ -11,47 +11,49 @@ enum { SLOTS = 4 };
 
 /* Points that are not averaged, over their volume (points.c). */
 typedef struct locking_sums {
-  double stress, strain; /* square of the deviators, J Pa, m3                 */
-  double growth;         /* m3, square of the inelastic change of volume      */
+  double stress, strain; /* square of the deviators, J Pa, m3 */
+  double growth;         /* m3, square of the inelastic change of volume */
 } locking_sums;
 
-/* What an increment and its end need of the points, found while a step of
- * constant laws is made. */
+/* Sums over the points for an increment and its end, computed during a step of
+ * constant laws. */
 typedef struct point_sums {
-  int known; /* 1: those of r->strains.visco->old and now, r->old and r->now */
-  double thermal, inelastic; /* J, work of the middle stress on the strains   */
-  double held;    /* J, what the strains would store if they were held        */
-  double strain;  /* J, energy of the stresses                                */
-  double stored;  /* J, kept by the laws                                      */
-  double elastic; /* m3, square of the elastic strains                        */
+  int known;                 /* 1: those of r->strains.visco->old and now,
+                                r->old and r->now */
+  double thermal, inelastic; /* J, work of the middle stress on the strains */
+  double held;               /* J, what the strains would store if they were
+                                held */
+  double strain;             /* J, energy of the stresses */
+  double stored;             /* J, stored by the laws */
+  double elastic;            /* m3, square of the elastic strains */
   locking_sums locking;
 } point_sums;
 
 struct visco {
   flow x;
   int *place; /* [x.n] of a point in r->strains.eigen */
-  int *elem;  /* [x.n]                                                       */
+  int *elem;  /* [x.n] */
   flow_state old, now;
-  flow_state middle; /* between two halves of a step                         */
-  double *fine;      /* [ns*x.n] e^i after them                              */
+  flow_state middle; /* between two halves of a step */
+  double *fine;      /* [ns*x.n] e^i after them */
   point_sums sums;
   scheme_work *work;
   scheme_result result;
-  matrices slot[SLOTS]; /* constant tangents; the last used are kept         */
-  matrices fresh;       /* a tangent of its own                              */
+  matrices slot[SLOTS]; /* constant tangents; the last used are kept */
+  matrices fresh;       /* a tangent of its own */
   long clock;
-  double length[SLOTS]; /* of the last different steps, s                     */
+  double length[SLOTS]; /* of the last different steps, s */
   unsigned n_length;
-  double *E; /* [ns*ns*(r->body.moduli.n + x.n)] of a tangent                */
-  double *stress;  /* [ns*r->strains.eigen.n] Pa  */
-  int E_is_fresh;  /* that of "fresh"                                    */
-  int *section_id; /* [n_elem] sections of their own for the points     */
-  kinematics *kin; /* [r->body.moduli.n + x.n]                               */
-  double *thickness; /* the same                                          */
-  double largest;    /* largest norm of the elastic strains so far        */
-  const step *told;  /* step whose ringing has been told                  */
-  int told_locking;  /* 1: P4016 has been told                            */
-  int told_stuck;    /* 1: P4017 has been told                            */
+  double *E;            /* [ns*ns*(r->body.moduli.n + x.n)] of a tangent */
+  double *stress;       /* [ns*r->strains.eigen.n] Pa */
+  int E_is_fresh;       /* that of "fresh" */
+  int *section_id;      /* [n_elem] sections of their own for the points */
+  kinematics *kin;      /* [r->body.moduli.n + x.n] */
+  double *thickness;    /* the same */
+  double largest;       /* largest norm of the elastic strains so far */
+  const step *reported; /* step whose ringing has been reported */
+  int locking_reported; /* 1: P4016 has been reported */
+  int stuck_reported;   /* 1: P4017 has been reported */
 };
 
 /* Where the components of item k start among [ns*n]. */
@@ -62,11 +64,11 @@ static inline size_t visco_at(const run *r, int k) {
 /* What an increment starts from, of the contact. */
 typedef struct start_point {
   double t;
-  double *uc, *rc, *motion; /* [m] m, N, m                                   */
+  double *uc, *rc, *motion; /* [m] m, N, m */
 } start_point;
 
-/* visco.c. Room; that of an equilibrium; r->old is at the point until what is
- * returned is put back. */
+/* visco.c. Workspace; that of an equilibrium; r->old is at the point until the
+ * returned state is restored. */
 status start_point_new(const run *r, start_point *p);
 void start_point_free(start_point *p);
 void start_point_copy(const run *r, const equilibrium *e, start_point *p);
@@ -88,7 +90,7 @@ typedef struct visco_part {
   int item, n_item, point, n_point;
 } visco_part;
 /* The next part of all items, from a part of zeros; 0 if there is none. Few
- * enough for the nearest memory; all at once where clusters average. */
+ * enough for the cache; all at once where clusters average. */
 int visco_next_part(const run *r, visco_part *p);
 /* v->now.e of the points from r->now.u: less the thermal strains. */
 void visco_part_strains(run *r, const visco_part *p);
@@ -97,7 +99,7 @@ status visco_part_sums(run *r, const visco_part *p);
 /* Warns, once, when v->now has crept until its elements lock. */
 void visco_warn_locking(run *r);
 /* points.c: the first increment that is taken though the law of an element has
- * found no state is told. */
+ * found no state is reported. */
 void visco_warn_stuck(run *r);
 
 /* tangent.c: equilibrium of r->now with the linear law of the points, with a
@@ -105,7 +107,7 @@ void visco_warn_stuck(run *r);
 status tangent_solve(run *r, const flow_tangent *law);
 /* The same for a step of constant laws, with v->sums. */
 status tangent_step(run *r, const flow_tangent *law, const scheme_call *a);
-/* The keys of the constant tangents, which are made anew when they are used,
+/* The keys of the constant tangents, which are made again when they are used,
  * and which of the matrices is in use. */
 status tangent_keep(run *r, archive *a);
 

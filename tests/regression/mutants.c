@@ -153,7 +153,7 @@ static status check_deck(const char *path, message_log *log, mesh *msh) {
   status st = deck_read(path, 0, NULL, log, &d);
   if (st == OK || st == ERR_DECK) st = model_from_deck(d, log, &m);
   if (st == OK && m->problem.file == NULL)
-    st = model_check(m, msh, effects_called_for);
+    st = model_check(m, msh, effects_required);
   if (st == OK && m->problem.file == NULL) {
     st = history_motions(m, msh, effect_table, 0, &n, &list);
     echo_nowhere(m);

@@ -162,7 +162,7 @@ START_TEST(incompatible_start_is_refused_with_its_defect) {
   } cases[] = {   /* The pressure of 10 is not there yet. */
                {"BODY, 2, \"-0.01*y\"\n",
                 STEP("*BOUNDARY\nTOP, 1\n*DSLOAD\nTOP, P, 10.\n"),
-                "not in balance with the loads", 2.5},
+                "not in equilibrium with the loads", 2.5},
                /* Stretched by 10 towards the top: the floor would pull. */
                {"BODY, 2, \"0.01*y\"\n",
                 STEP("*BOUNDARY\nTOP, 1\n*DSLOAD\nTOP, P, \"-10+0*t\"\n"),

@@ -21,7 +21,7 @@ void text_model_read(text_model *s, const char *text, mesh *msh) {
   ck_assert_int_eq(deck_read(name, 0, NULL, s->log, &s->d), OK);
   s->st = model_from_deck(s->d, s->log, &s->m);
   if (s->st == OK && msh != NULL)
-    s->st = model_check(s->m, msh, effects_called_for);
+    s->st = model_check(s->m, msh, effects_required);
   if (s->st != OK) message_print(s->log, stdout);
   unlink(name);
 }

@@ -217,7 +217,7 @@ START_TEST(every_refused_request_is_reported) {
     s.m = NULL;
     memory_refuse(k, 0);
     status st = model_from_deck(s.d, s.log, &s.m);
-    if (st == OK) st = model_check(s.m, s.msh, effects_called_for);
+    if (st == OK) st = model_check(s.m, s.msh, effects_required);
     done = st == OK;
     memory_refuse(0, 0);
     refused += st == ERR_MEMORY;

@@ -34,7 +34,6 @@ struct archive {
   archive_item *item; /* [n] in the order they were named */
 };
 
-
 /*
  * The seal of an archive, text before the bytes of HDF5:
  *   Protis restart, layout 3

@@ -2,7 +2,7 @@
  * Inelastic strain of materials with a law: which elements have it, and *VISCO
  * steps whose increments follow from the estimate of the error of the strains
  * (TOLERANCE=). The state of the elements and the equilibria that an integrator
- * asks for are those of the run (run/visco.h): states within an increment, the
+ * requires are those of the run (run/visco.h): states within an increment, the
  * error of the steps and theorem 3.2 need them too.
  */
 #include "base/timer.h"
@@ -16,7 +16,7 @@
 
 /* ---- increments with a tolerance ---------------------------------------- */
 
-static const double ROUNDING = 0x1p-48; /* -, of the time                     */
+static const double ROUNDING = 0x1p-48; /* -, of the time */
 
 /* The next increment after one of length dt with this error; implicit
  * integrators keep to halves and doubles, which they have factored. */
@@ -46,7 +46,7 @@ static double next_end(const run *r, double dt) {
                          : dt);
 }
 
-/* A body in the air, or hardly touching: its strains, and their error, are
+/* A body in free motion, or barely touching: its strains, and their error, are
  * rounding. */
 static int strains_are_rounding(run *r) {
   r->now.energy.strain = domain_strain_energy(&r->body.d, r->now.u);
@@ -136,7 +136,7 @@ static status expected(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static int calls_for_inelastic(const model *m, char *why, size_t size) {
+static int requires_inelastic(const model *m, char *why, size_t size) {
   const section *s = facts_first_inelastic(m);
   if (s == NULL) return plan_says(0, why, size, "no material has *INELASTIC");
   const law_card *law = &m->materials[s->material_id].law;
@@ -147,8 +147,8 @@ static int calls_for_inelastic(const model *m, char *why, size_t size) {
 
 const effect_ops inelastic_effect = {.name = "inelastic strain",
                                      .bit = EFFECT_BIT_INELASTIC,
-                                     .called_for = calls_for_inelastic,
-                                     .foreseen = expected,
+                                     .required = requires_inelastic,
+                                     .expected = expected,
                                      .own = STAGE_INELASTIC,
                                      .inside = 1,
                                      .far = 1,

@@ -52,7 +52,7 @@ done:
   return st;
 }
 
-static status judge_start(run *r, start_report *s) {
+static status check_start(run *r, start_report *s) {
   status st = OK;
   const start_card *asked = &r->m->initial.start;
   s->relaxed = s->n_bad > 0 && asked->relax;
@@ -126,7 +126,7 @@ static void release(void *self) {
 static status start(run *r, void *self) {
   if (run_step_id(r) > 0) return OK;
   PASS(test_start(r, self));
-  return judge_start(r, self);
+  return check_start(r, self);
 }
 
 /* ---- the row ------------------------------------------------------------ */
@@ -137,7 +137,7 @@ static status expected(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static int calls_for_start(const model *m, char *why, size_t size) {
+static int requires_start(const model *m, char *why, size_t size) {
   if (!m->initial.start.given)
     return plan_says(0, why, size, "no *INITIAL CONDITIONS, TYPE=DISPLACEMENT");
   return plan_says(1, why, size,
@@ -147,8 +147,8 @@ static int calls_for_start(const model *m, char *why, size_t size) {
 
 const effect_ops initial_state_effect = {.name = "initial state",
                                          .bit = EFFECT_BIT_START,
-                                         .called_for = calls_for_start,
-                                         .foreseen = expected,
+                                         .required = requires_start,
+                                         .expected = expected,
                                          .own = STAGE_START,
                                          .inside = 1,
                                          .far = 1,

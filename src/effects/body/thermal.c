@@ -78,7 +78,7 @@ static status expected(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static int calls_for_thermal(const model *m, char *why, size_t size) {
+static int requires_thermal(const model *m, char *why, size_t size) {
   const load *l = facts_first_temperature(m);
   if (facts_has_warm_law(m))
     return plan_says(
@@ -97,8 +97,8 @@ static int calls_for_thermal(const model *m, char *why, size_t size) {
 
 const effect_ops thermal_effect = {.name = "thermal strain",
                                    .bit = EFFECT_BIT_THERMAL,
-                                   .called_for = calls_for_thermal,
-                                   .foreseen = expected,
+                                   .required = requires_thermal,
+                                   .expected = expected,
                                    .own = STAGE_THERMAL,
                                    .far = 1,
                                    .strains = strains,

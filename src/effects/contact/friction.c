@@ -2,7 +2,7 @@
  * Friction: the sliding limit of an increment, from the friction law in force
  * on each contact, and where its value jumps in time; the position of stick,
  * which is the history of slip; all slip so far. Existence theory asks for mu
- * continuous in time (CPR98, 3.2); a jump is allowed and told.
+ * continuous in time (CPR98, 3.2); a jump is allowed and reported.
  *
  * Any increment may be cut, so that each is one of several: the position of
  * stick is always found from the last equilibrium.
@@ -20,11 +20,11 @@
 
 typedef struct friction {
   friction_limit limit;
-  int known;        /* 1: limit holds for all times of the step              */
-  double *stick;    /* [n*(dim-1)] m                                         */
-  double *g;        /* [n] limit of r->now, N                                */
-  double *distance; /* [n] all slip so far, m                                */
-  double *left;     /* [n_node] that of a surface that goes, m               */
+  int known;        /* 1: limit holds for all times of the step */
+  double *stick;    /* [n*(dim-1)] m */
+  double *g;        /* [n] limit of r->now, N */
+  double *distance; /* [n] all slip so far, m */
+  double *left;     /* [n_node] that of a released surface, m */
 } friction;
 
 const friction_limit *friction_limit_of(const run *r) {
@@ -33,7 +33,7 @@ const friction_limit *friction_limit_of(const run *r) {
 }
 
 enum { T_BIT = 8, HALVINGS = 40 };
-static const double jump_share = 1e-3; /* of the larger value: below, none    */
+static const double jump_share = 1e-3; /* of the larger value: below, none */
 
 static const friction_rule *rule_of(const run *r, int contact_id) {
   return friction_in_force(r->m, run_step_id(r), contact_id);
@@ -60,7 +60,7 @@ static double value_at(const run *r, const friction_rule *rule, int i,
 
 /* A change of value at a node, in time. */
 typedef struct jump {
-  int node_id; /* -1: none                                                   */
+  int node_id; /* -1: none */
   double t, from, to;
 } jump;
 
@@ -82,8 +82,8 @@ static jump largest_change(const run *r, int contact_id,
 }
 
 /*
- * Halve the time between the two ends towards the larger change: what is
- * continuous vanishes, a jump stays and is found.
+ * Halve the time between the two ends towards the larger change: a continuous
+ * change vanishes, a jump remains and is found.
  */
 static jump narrow(const run *r, const friction_rule *rule, jump j, double t0) {
   double t1 = j.t;
@@ -102,7 +102,7 @@ static jump narrow(const run *r, const friction_rule *rule, jump j, double t0) {
   return j;
 }
 
-static void tell(run *r, const friction_rule *rule, int contact_id, jump j) {
+static void notify(run *r, const friction_rule *rule, int contact_id, jump j) {
   size_t used = strlen(r->course.note);
   if (j.node_id < 0) return;
   snprintf(r->course.note + used, sizeof r->course.note - used,
@@ -111,8 +111,8 @@ static void tell(run *r, const friction_rule *rule, int contact_id, jump j) {
            j.to, r->surface->node_no[j.node_id]);
 }
 
-static void tell_law(run *r, const friction_rule *before,
-                     const friction_rule *now, int contact_id) {
+static void report_law(run *r, const friction_rule *before,
+                       const friction_rule *now, int contact_id) {
   size_t used = strlen(r->course.note);
   snprintf(r->course.note + used, sizeof r->course.note - used,
            "  friction of contact %s changes at t = %.9g from %s to %s\n",
@@ -130,12 +130,12 @@ static void note_change(run *r, int contact_id) {
       friction_in_force(r->m, step_id - 1, contact_id);
   if (now == before) return;
   if (now->law != before->law) {
-    tell_law(r, before, now, contact_id);
+    report_law(r, before, now, contact_id);
     return;
   }
   if (now->law == NULL || now->law->value_name == NULL) return;
-  tell(r, now, contact_id,
-       largest_change(r, contact_id, before, r->old.t, now, r->old.t));
+  notify(r, now, contact_id,
+         largest_change(r, contact_id, before, r->old.t, now, r->old.t));
 }
 
 /* Expressions of t may jump; tables and amplitudes of pairs cannot. */
@@ -149,7 +149,7 @@ static void note_jump(run *r, int contact_id, double t) {
   if (!varies || rule->law == NULL || rule->law->value_name == NULL) return;
   jump j = largest_change(r, contact_id, rule, r->old.t, rule, t);
   if (j.node_id >= 0) j = narrow(r, rule, j, r->old.t);
-  tell(r, rule, contact_id, j);
+  notify(r, rule, contact_id, j);
 }
 
 static void note_jumps(run *r, double t) {
@@ -254,7 +254,7 @@ static const load *holder(const run *r, int i, int a) {
 
 /*
  * Friction along t2 where t1 is made to move: the slip direction would depend
- * on the prescribed motion, which the condensed problem does not hold.
+ * on the prescribed motion, which the condensed problem does not contain.
  */
 static status check_held(const run *r, const friction *own, int i, int a,
                          double from, double to) {
@@ -266,10 +266,10 @@ static status check_held(const run *r, const friction *own, int i, int a,
     goto done;
   const load *l = holder(r, i, a);
   message_add(r->m->log, P4015, l == NULL ? &r->step->at : &l->at,
-              "contact node %zu is led in one tangential direction while "
-              "friction acts in the other",
+              "contact node %zu has one prescribed tangential displacement "
+              "while friction acts in the other direction",
               s->node_no[i]);
-  FAIL(ERR_DECK, "*BOUNDARY leads contact node %zu against friction",
+  FAIL(ERR_DECK, "*BOUNDARY moves contact node %zu against friction",
        s->node_no[i]);
 done:
   return st;
@@ -313,7 +313,7 @@ static status pose(run *r, void *self, double t) {
   return st;
 }
 
-/* Slip adds up while a node is closed. */
+/* Slip is summed while a node is closed. */
 static status add_distance(run *r, void *self) {
   friction *own = self;
   const stage history = history_of(r);
@@ -399,8 +399,8 @@ static void release(void *self) {
   memory_free(own);
 }
 
-/* A limit that holds for all times of the step is made now, so that what is
- * counted from here on is what the other run counts. */
+/* A limit that holds for all times of the step is made now, so that the costs
+ * counted from here on are those of the other run. */
 static status keep(run *r, void *self, archive *a) {
   friction *own = self;
   int known = own->known;
@@ -427,17 +427,17 @@ static status expected_history(const plan_sizes *s, effect_work *w) {
   return st;
 }
 
-static int calls_for_friction(const model *m, char *why, size_t size) {
-  return plan_calls_for_rule(m, rule_has_friction,
-                             m->n.contact == 0
-                                 ? "no *CONTACT card"
-                                 : "no *FRICTION card with a value above zero",
-                             why, size);
+static int requires_friction(const model *m, char *why, size_t size) {
+  return plan_requires_rule(m, rule_has_friction,
+                            m->n.contact == 0
+                                ? "no *CONTACT card"
+                                : "no *FRICTION card with a value above zero",
+                            why, size);
 }
 
 /* More than one increment: slip and load have a history. */
-static int calls_for_history(const model *m, char *why, size_t size) {
-  if (!calls_for_friction(m, NULL, 0))
+static int requires_history(const model *m, char *why, size_t size) {
+  if (!requires_friction(m, NULL, 0))
     return plan_says(0, why, size, "no friction");
   if (m->n.step == 0 ||
       (m->n.step == 1 && !(m->steps[0].dt < m->steps[0].total)))
@@ -448,8 +448,8 @@ static int calls_for_history(const model *m, char *why, size_t size) {
 
 const effect_ops friction_effect = {.name = "friction",
                                     .bit = EFFECT_BIT_FRICTION,
-                                    .called_for = calls_for_friction,
-                                    .foreseen = expected,
+                                    .required = requires_friction,
+                                    .expected = expected,
                                     .own = STAGE_LIMIT,
                                     .inside = 1,
                                     .on.create = friction_new,
@@ -464,6 +464,6 @@ const effect_ops friction_effect = {.name = "friction",
 /* Its hooks are those of friction. */
 const effect_ops slip_history_effect = {.name = "history of slip",
                                         .bit = EFFECT_BIT_HISTORY,
-                                        .called_for = calls_for_history,
-                                        .foreseen = expected_history,
+                                        .required = requires_history,
+                                        .expected = expected_history,
                                         .own = STAGE_HISTORY};

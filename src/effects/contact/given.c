@@ -1,7 +1,7 @@
 /*
  * *CONTACT FORCE: given normal forces in the place of unilateral contact
  * (CPR98, problem D3). The solver takes a problem without those normals; its
- * answer is brought back.
+ * solution is transformed back.
  */
 #include "base/memory.h"
 #include "contact/formulation.h"
@@ -14,11 +14,11 @@
 #include <string.h>
 
 typedef struct given_forces {
-  int n, *node;     /* [n] contact nodes with a given normal force           */
-  double *force;    /* [n] N, >= 0                                           */
-  double *all;      /* [r->nodes.n] the same, -1 where there is none         */
-  given_form *form; /* NULL until needed                                     */
-  long matrix_no;   /* of the run, that form is made of                      */
+  int n, *node;     /* [n] contact nodes with a given normal force */
+  double *force;    /* [n] N, >= 0 */
+  double *all;      /* [r->nodes.n] the same, -1 where there is none */
+  given_form *form; /* NULL until needed */
+  long matrix_no;   /* of the run, that form is made of */
 } given_forces;
 
 static const given_force *force_of(const run *r, int i) {
@@ -156,7 +156,7 @@ static status expected(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static int calls_for_given(const model *m, char *why, size_t size) {
+static int requires_given(const model *m, char *why, size_t size) {
   const contact *c = facts_first_given(m);
   if (c == NULL) return plan_says(0, why, size, "no *CONTACT FORCE card");
   return plan_says(1, why, size, "*CONTACT FORCE on contact %s, %s:%d", c->name,
@@ -165,8 +165,8 @@ static int calls_for_given(const model *m, char *why, size_t size) {
 
 const effect_ops given_forces_effect = {.name = "given contact forces",
                                         .bit = EFFECT_BIT_GIVEN,
-                                        .called_for = calls_for_given,
-                                        .foreseen = expected,
+                                        .required = requires_given,
+                                        .expected = expected,
                                         .own = STAGE_GIVEN,
                                         .inside = 1,
                                         .far = 1,

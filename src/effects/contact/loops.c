@@ -12,8 +12,8 @@
 
 #include "run/column_row.h"
 
-static int calls_for_loops(const model *m, char *why, size_t size) {
-  return plan_calls_for_table(m, PRINT_LOOP, "LOOP", why, size);
+static int requires_loops(const model *m, char *why, size_t size) {
+  return plan_requires_table(m, PRINT_LOOP, "LOOP", why, size);
 }
 
 static status expected(const plan_sizes *s, effect_work *w) {
@@ -97,11 +97,11 @@ static const column columns[] = {
 {"time", "time", LOOP, SCENE_ALL, 0, NULL, 0, loop_time, NULL,
  "end of the increment"},
 {"way", "length", LOOP, SCENE_FLAT, 0, NULL, 0, loop_way, NULL,
- "mean way of the obstacle past the nodes"},
+ "mean displacement of the obstacle at the nodes"},
 {"way_1", "length", LOOP, SCENE_SOLID, 0, NULL, 0, loop_way, NULL,
- "mean way of the obstacle past the nodes"},
+ "mean displacement of the obstacle at the nodes"},
 {"way_2", "length", LOOP, SCENE_SOLID, 0, NULL, 1, loop_way, NULL,
- "mean way of the obstacle past the nodes"},
+ "mean displacement of the obstacle at the nodes"},
 {"angle", "rad", LOOP, CART, NEEDS_TORQUE, NULL, 0, loop_angle,
  NULL, "angle of the obstacle"},
 {"mean_u_t", "length", LOOP, SCENE_FLAT, 0, NULL, 0, loop_u_t, NULL,
@@ -120,8 +120,8 @@ static const column columns[] = {
 
 const effect_ops loops_effect = {.name = "table of loops",
                                  .bit = NO_BIT,
-                                 .called_for = calls_for_loops,
-                                 .foreseen = expected,
+                                 .required = requires_loops,
+                                 .expected = expected,
                                  .own = STAGE_NONE,
                                  .more = {STAGE_TABLE_LOOP},
                                  .on.create = loops_new,

@@ -1,7 +1,7 @@
 /*
  * Nonlocal friction: the limit of a node from an average of the pressure around
  * it (CPR98, 2.7), and friction confined to the nodes that touch. Averages are
- * kept while surface and options stay.
+ * kept while surface and options are unchanged.
  */
 #include "effects/contact/friction.h"
 
@@ -14,21 +14,22 @@
 
 /* The average of one contact and the rule it was made for. */
 typedef struct friction_average {
-  const friction_rule *rule; /* NULL: none                                   */
-  sparse_rows rows;          /* [n*n] -                                      */
+  const friction_rule *rule; /* NULL: none */
+  sparse_rows rows;          /* [n*n] - */
 } friction_average;
 
 /* Rows of the limit that are switched off where the body does not touch. */
 typedef struct friction_zone {
-  unsigned char *off;      /* [n] no friction now; NULL: no law has a zone    */
-  unsigned char *returned; /* [n] put on again in this increment: once only  */
-  sparse_rows B;           /* start, col borrowed from the limit             */
-  int room;                /* entries of B.val                               */
+  unsigned char *off; /* [n] no friction now; NULL: no law has a zone */
+  unsigned char
+      *returned; /* [n] switched on again in this increment: once only */
+  sparse_rows B; /* start, col borrowed from the limit */
+  int room;      /* entries of B.val */
 } friction_zone;
 
 typedef struct nonlocal {
-  friction_average *average; /* [n_contact]                                  */
-  int borrowed;              /* 1: that of another state                     */
+  friction_average *average; /* [n_contact] */
+  int borrowed;              /* 1: that of another state */
   friction_zone zone;
 } nonlocal;
 
@@ -199,15 +200,15 @@ static status expected(const plan_sizes *s, effect_work *w) {
   return st;
 }
 
-static int calls_for_average(const model *m, char *why, size_t size) {
-  return plan_calls_for_rule(m, rule_has_average,
-                             "no friction law with an average", why, size);
+static int requires_average(const model *m, char *why, size_t size) {
+  return plan_requires_rule(m, rule_has_average,
+                            "no friction law with an average", why, size);
 }
 
 const effect_ops nonlocal_effect = {.name = "nonlocal average",
                                     .bit = EFFECT_BIT_NONLOCAL,
-                                    .called_for = calls_for_average,
-                                    .foreseen = expected,
+                                    .required = requires_average,
+                                    .expected = expected,
                                     .own = STAGE_NONLOCAL,
                                     .inside = 1,
                                     .on.create = nonlocal_new,

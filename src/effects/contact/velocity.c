@@ -9,9 +9,9 @@
 #include "run/run.h"
 
 typedef struct velocity {
-  velocity_form *form;    /* NULL until needed                               */
-  long matrix_no;         /* of the run, that form is made of                */
-  contact_problem before; /* what was rewritten last                         */
+  velocity_form *form;    /* NULL until needed */
+  long matrix_no;         /* of the run, that form is made of */
+  contact_problem before; /* what was rewritten last */
 } velocity;
 
 static status velocity_new(run *r, void **self) {
@@ -37,7 +37,8 @@ static void release(void *self) {
 }
 
 /* The last equilibrium, from which the increment and its slip are counted:
- * start values may be others. Normals with a given force stand apart, at 0. */
+ * start values may be others. Normals with a given force are uncoupled, at
+ * 0. */
 static void put_old(run *r, double *u_old) {
   const double *given = r->problem.given;
   run_take_rows(r, r->old.uc, u_old);
@@ -80,7 +81,7 @@ static status expected(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static int calls_for_velocity(const model *m, char *why, size_t size) {
+static int requires_velocity(const model *m, char *why, size_t size) {
   for (int i = 0; i < m->n.step; ++i) {
     if (m->steps[i].form != FORM_VELOCITY) continue;
     snprintf(why, size, "*QUASISTATIC, FORM=VELOCITY of %s:%d",
@@ -93,8 +94,8 @@ static int calls_for_velocity(const model *m, char *why, size_t size) {
 
 const effect_ops velocity_effect = {.name = "velocity form",
                                     .bit = NO_BIT,
-                                    .called_for = calls_for_velocity,
-                                    .foreseen = expected,
+                                    .required = requires_velocity,
+                                    .expected = expected,
                                     .own = STAGE_VELOCITY,
                                     .on.create = velocity_new,
                                     .on.due = due,

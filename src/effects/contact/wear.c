@@ -1,13 +1,13 @@
 /*
- * *WEAR: a body wears off where it slides on an obstacle (Archard 1953): depth
- * += k p |slip|, after each increment from its pressure p and slip, and the gap
- * is opened by it from the next one on. At a corner each obstacle wears off
- * along its own normal, the slip is that along both.
+ * *WEAR: a body wears where it slides on an obstacle (Archard 1953): depth += k
+ * p |slip|, after each increment from its pressure p and slip, and the gap is
+ * opened by it from the next one on. At a corner each obstacle wears off along
+ * its own normal, the slip is that along both.
  *
  * This is Euler's method for the pressures: with A the stiffness of the normals
- * of the nodes and D = k |slip|/area, the wear of an increment takes A D r of
- * the forces r away, and what is wrong in them is multiplied by I - A D: it
- * grows once an eigenvalue of A D is above 2, which is refused.
+ * of the nodes and D = k |slip|/area, the wear of an increment reduces the
+ * forces r by A D r, and their error is multiplied by I - A D: it grows once an
+ * eigenvalue of A D is above 2, which is refused.
  */
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
@@ -23,7 +23,7 @@
 /* depth[dim*n_node] of the mesh, along the normals of the rows of a contact
  * node, m. */
 
-static int calls_for_wear(const model *m, char *why, size_t size) {
+static int requires_wear(const model *m, char *why, size_t size) {
   const effect_card *c = model_effect_card(m, "WEAR", -1);
   if (c != NULL)
     snprintf(why, size, "*WEAR on contact %s, %s:%d",
@@ -136,8 +136,9 @@ static status wear_off(run *r, void *self) {
   TRY(overshoot(r, run_rows(r, 0, root), &factor));
   if (factor > 2.0)
     FAIL(ERR_DECK,
-         "step %d, time %g: the wear of an increment of dt = %g takes %.3g "
-         "times the forces of a node away, above 2 they grow without end: give "
+         "step %d, time %g: the wear of an increment of dt = %g reduces the "
+         "forces of a node by %.3g times their value, above 2 they grow "
+         "without bound: give "
          "increments of dt <= %.3g",
          run_step_id(r) + 1, r->now.t, r->now.t - r->old.t, factor,
          (r->now.t - r->old.t) / factor);
@@ -197,8 +198,8 @@ static const column columns[] = {
 
 const effect_ops wear_effect = {.name = "wear",
                                 .bit = NO_BIT,
-                                .called_for = calls_for_wear,
-                                .foreseen = expected,
+                                .required = requires_wear,
+                                .expected = expected,
                                 .sums_up =
                                     "wear of half the increments is not "
                                     "compared",

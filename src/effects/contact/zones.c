@@ -4,12 +4,12 @@
  * At the edge of a closed zone the pressure p goes to zero like the root of the
  * distance d (Hertz). At the edge of a zone of stick so does what is left of
  * the sliding limit, w = (g - |r_t|)/area, when a shear grows (Cattaneo,
- * Mindlin), but like d^(3/2) when the zone grows under a pressure (Spence).
- * So p^2, and w^2 or w^(2/3), are linear there: the squares are extended from
- * the last node of the zone to zero over its neighbour inside (in 3-D along the
+ * Mindlin), but like d^(3/2) when the zone grows under a pressure (Spence). So
+ * p^2, and w^2 or w^(2/3), are linear there: the squares are extended from the
+ * last node of the zone to zero over its neighbour inside (in 3-D along the
  * gradient over the faces inside). w^(2/3) stays linear over several elements:
- * a line of least squares takes the scatter of the nodes and of the increments
- * out; which of the two it is, the smaller misfit tells. Without a neighbour
+ * a line of least squares removes the scatter of the nodes and of the
+ * increments; the power with the smaller misfit is taken. Without a neighbour
  * inside, or with values that grow outwards, the end is put half way to the
  * next node.
  */
@@ -24,15 +24,15 @@
 
 #include "run/column_row.h"
 
-/* Nodes that a line is fitted through; more would see that it is a curve. */
+/* Nodes that a line is fitted through; with more the curvature matters. */
 enum { FIT_NODES = 8 };
 
 /* A set of contact nodes and the traction that vanishes at its edge. */
 typedef struct level {
-  unsigned char *in; /* [n]                                                  */
-  double *square;    /* [n] its square, Pa^2                                 */
-  double *slope;     /* [dim*n] 3-D: its gradient over the faces inside      */
-  double *weight;    /* [n] 3-D: area of these faces                         */
+  unsigned char *in; /* [n] */
+  double *square;    /* [n] its square, Pa^2 */
+  double *slope;     /* [dim*n] 3-D: its gradient over the faces inside */
+  double *weight;    /* [n] 3-D: area of these faces */
 } level;
 
 /* The contact nodes as a chain along the tangent t, plane and axisymmetric. */
@@ -40,10 +40,10 @@ typedef struct finder {
   run *r;
   zone_list *out;
   int dim;
-  int *index; /* [n_node] contact node of a mesh node, or -1       */
+  int *index; /* [n_node] contact node of a mesh node, or -1 */
   level closed, stick;
-  int *next, *next_face; /* [n] along the chain, -1: none                     */
-  int *before;           /* [n] the node before, -1: none                     */
+  int *next, *next_face; /* [n] along the chain, -1: none */
+  int *before;           /* [n] the node before, -1: none */
 } finder;
 
 static status level_new(int dim, int n, level *l) {
@@ -169,7 +169,7 @@ static void add_slopes(const finder *z, const mesh_group *group, level *l) {
   }
 }
 
-/* Part of the way from node i of the set to node j outside. */
+/* Part of the distance from node i of the set to node j outside. */
 static double face_reach(const finder *z, const level *l, int i, int j) {
   double way[3], fall = 0.0;
   if (l->weight[i] <= 0.0) return 0.5;
@@ -200,7 +200,8 @@ static int edge_nodes(const finder *z, const level *l, int i, int j,
 
 /* Where the square to a power extends to zero, as a line of least squares
  * through n nodes that go inwards: length from node[0] outwards, HUGE_VAL if it
- * does not fall. *misfit, in [0, 1], tells how far the nodes are from it. */
+ * does not fall. *misfit, in [0, 1], measures the distance of the nodes from
+ * it. */
 static double extend(const finder *z, const level *l, int n, const int *node,
                      double power, double *misfit) {
   double s[FIT_NODES] = {0}, y[FIT_NODES], ms = 0.0, my = 0.0;
@@ -296,7 +297,7 @@ done:
   return st;
 }
 
-/* ---- in the plane: a walk along the contact line --------------------------
+/* ---- in the plane: along the contact line --------------------------
  */
 
 /* Direction of the slip along t; 0 without friction or slip. */
@@ -306,7 +307,7 @@ static int slip_sign(const finder *z, int i) {
   return (rt < 0.0) - (rt > 0.0);
 }
 
-/* Part of the way from node i to the next one, j, where the zone ends. */
+/* Part of the distance from node i to the next one, j, where the zone ends. */
 static double zone_end(const finder *z, int i, int j) {
   const contact_status *kind = z->r->result.contact;
   const level *l = &z->closed;
@@ -322,7 +323,8 @@ static int same_zone(const finder *z, int i, int j) {
          slip_sign(z, i) == slip_sign(z, j);
 }
 
-/* Add the piece from part a to part b of the way from node i to the next. */
+/* Add the piece from part a to part b of the distance from node i to the
+ * next. */
 static void add_piece(const finder *z, int i, double a, double b,
                       contact_zone *zone) {
   double way[3];
@@ -349,8 +351,8 @@ static contact_zone zone_at(const finder *z, int contact_id, int i) {
                         .direction = slip_sign(z, i)};
 }
 
-/* The zone that begins with node j: half a piece before it, where the line is
- * a ring and another zone ends on the way from i, -1 at the end of a line. */
+/* The zone that begins with node j: half a piece before it, where the line is a
+ * ring and another zone ends between i and j, -1 at the end of a line. */
 static contact_zone first_zone(const finder *z, int contact_id, int i, int j) {
   contact_zone zone = zone_at(z, contact_id, j);
   if (i < 0 || same_zone(z, i, j)) {
@@ -439,8 +441,8 @@ done:
 /* ---- the row --------------------------------------------------------------
  */
 
-static int calls_for_zones(const model *m, char *why, size_t size) {
-  return plan_calls_for_table(m, PRINT_ZONES, "ZONES", why, size);
+static int requires_zones(const model *m, char *why, size_t size) {
+  return plan_requires_table(m, PRINT_ZONES, "ZONES", why, size);
 }
 
 static status expected(const plan_sizes *s, effect_work *w) {
@@ -467,7 +469,7 @@ static status zones_copy(const run *r, const void *of, run *copy, void **self) {
 }
 
 static int zones_due(const run *r) {
-  const int within = r->course.beside;
+  const int within = r->course.shadow;
   return r->nodes.n > 0 && table_is_due(r->step, PRINT_ZONES, r->now.t,
                                         within ? -1 : r->at.increment_no,
                                         within ? 0 : r->at.last);
@@ -538,8 +540,8 @@ static const column columns[] = {
 
 const effect_ops zones_effect = {.name = "table of zones",
                                  .bit = NO_BIT,
-                                 .called_for = calls_for_zones,
-                                 .foreseen = expected,
+                                 .required = requires_zones,
+                                 .expected = expected,
                                  .own = STAGE_ZONES,
                                  .more = {STAGE_TABLE_ZONES},
                                  .on.create = zones_new,

@@ -2,8 +2,9 @@
  * *SOLVER, TOL=BALANCED. The error of the contact solver need not be smaller
  * than a share of those of the mesh and of the increments. Both are measured in
  * the energy norm, while a solver stops at a residual: the ratio of the two is
- * learnt from the bounds at the increments before. An answer whose bound is
- * above the share is solved on, from where it is, with a smaller residual.
+ * estimated from the bounds at the increments before. If the bound of a
+ * solution is above the share, the solver continues from it to a smaller
+ * residual.
  *
  * An increment starts from the line through the last two equilibria if its
  * residual is lower than that of the last one: with few digits wanted it may be
@@ -23,19 +24,20 @@
 #include <string.h>
 
 enum { PASSES = 8 };
-static const double FIRST_TOL = 3e-2; /* -, before an error is known          */
-static const double MOST_TOL = 0.1;   /* -                                    */
-static const double SAFETY = 0.7;     /* -, of the share, for another pass    */
-static const double SHARPEST = 1e-3;  /* -, change of the residual in a pass  */
+static const double FIRST_TOL = 3e-2; /* -, before an error is known */
+static const double MOST_TOL = 0.1;   /* - */
+static const double SAFETY = 0.7;     /* -, of the share, for another pass */
+static const double SHARPEST = 1e-3;  /* -, change of the residual in a pass */
 
 typedef struct balance {
-  double mesh, time;   /* -, errors at the last increment; mesh 0: unknown    */
-  double per_residual; /* -, error of the solver over the residual            */
-  double per_digit;    /* iterations for a digit of the residual              */
-  double iterations, cpu; /* all so far; s                                    */
-  double t;               /* s, of the equilibrium before r->old              */
-  double *u, *rc, *guess_u, *guess_r; /* [m] of that; room                    */
-  int m, known; /* 1: u, rc are there                               */
+  double mesh, time;      /* -, errors at the last increment; mesh 0: unknown */
+  double per_residual;    /* -, error of the solver over the residual */
+  double per_digit;       /* iterations for a digit of the residual */
+  double iterations, cpu; /* all so far; s */
+  double t;               /* s, of the equilibrium before r->old */
+  /* [m] of that; room */
+  double *u, *rc, *guess_u, *guess_r;
+  int m, known; /* 1: u, rc are there */
   balance_report report;
 } balance;
 
@@ -90,7 +92,7 @@ static void guess(run *r, balance *b, double t) {
   r->solving.guess_r = b->guess_r;
 }
 
-/* The next solve goes on from r->now. */
+/* The next solve continues from r->now. */
 static void go_on(run *r, balance *b) {
   memcpy(b->guess_u, r->now.uc, (size_t)b->m * sizeof *b->guess_u);
   memcpy(b->guess_r, r->now.rc, (size_t)b->m * sizeof *b->guess_r);
@@ -102,7 +104,7 @@ static double wanted_error(const run *r, const balance *b) {
   return r->step->share * (b->mesh + b->time);
 }
 
-/* Residual to ask for: what gave that error before. */
+/* Residual required: the one that gave that error before. */
 static double wanted_tolerance(const run *r, const balance *b) {
   double tol = FIRST_TOL;
   if (b->mesh > 0.0 && b->per_residual > 0.0)
@@ -111,12 +113,12 @@ static double wanted_tolerance(const run *r, const balance *b) {
 }
 
 /* Errors of r->now: 1 if a lower residual is needed, *tol then. */
-static status judge(run *r, balance *b, double *tol, int *again) {
+static status check_increment(run *r, balance *b, double *tol, int *again) {
   status st = OK;
   double least = r->step->solver.tol,
          at = fmin(*tol, r->solving.report.residual);
   *again = 0;
-  TRY(estimate_judge(r));
+  TRY(estimate_evaluate(r));
   if (isfinite(r->errors.mesh_error.relative))
     b->mesh = r->errors.mesh_error.relative;
   double wanted = wanted_error(r, b), error = r->errors.error.relative;
@@ -146,7 +148,7 @@ static status solve(run *r, void *self, double t, int *made) {
     TRY(loop_solve_once(r, t));
     iterations += r->solving.report.iterations;
     if (r->solving.report.outcome <= 0) break;
-    TRY(judge(r, b, &tol, &again));
+    TRY(check_increment(r, b, &tol, &again));
     go_on(r, b);
   }
   r->solving.report.iterations = iterations;
@@ -157,7 +159,8 @@ done:
   return st;
 }
 
-/* ---- what is learnt ------------------------------------------------------ */
+/* ---- what is estimated
+ * ------------------------------------------------------ */
 
 static int ends_at_once(const solver_report *rep) {
   const char *family = solver_family(rep->solver);
@@ -229,7 +232,7 @@ static void show(const void *self, state *s) {
   s->errors.balance = ((const balance *)self)->report;
 }
 
-static int calls_for_balance(const model *m, char *why, size_t size) {
+static int requires_balance(const model *m, char *why, size_t size) {
   int any = 0;
   (void)why;
   (void)size;
@@ -239,7 +242,7 @@ static int calls_for_balance(const model *m, char *why, size_t size) {
 
 const effect_ops balance_effect = {.name = "balance",
                                    .bit = NO_BIT,
-                                   .called_for = calls_for_balance,
+                                   .required = requires_balance,
                                    .own = STAGE_NONE,
                                    .on.create = balance_new,
                                    .on.begin_step = begin_step,

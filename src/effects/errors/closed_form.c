@@ -10,7 +10,7 @@
 
 #include "run/column_row.h"
 
-static int calls_for_reference(const model *m, char *why, size_t size) {
+static int requires_reference(const model *m, char *why, size_t size) {
   if (m->accuracy.ref.n == 0)
     return plan_says(0, why, size, "no *REFERENCE card");
   return plan_says(1, why, size, "*REFERENCE, %s:%d",
@@ -77,8 +77,8 @@ static const column columns[] = {
 
 const effect_ops closed_form_effect = {.name = "closed form",
                                        .bit = EFFECT_BIT_REFERENCE,
-                                       .called_for = calls_for_reference,
-                                       .foreseen = expected,
+                                       .required = requires_reference,
+                                       .expected = expected,
                                        .own = STAGE_REFERENCE,
                                        .on.create = exact_new,
                                        .on.accept = find,

@@ -1,16 +1,16 @@
 /*
- * Whether an answer with friction is the only one (CHECK=), and whether a path
- * leads to it: for large friction neither is known.
+ * Whether a solution with friction is unique (CHECK=), and whether a continuous
+ * path leads to it: for large friction neither is known.
  *
  * Where the fixed point on the sliding limit contracts with rate k, the motion
  * of an increment is at most 1/(1 - k) times the change of its load, both in
  * the energy norm, and the states in between form a path. An increment that
- * moves by more, or in whose slip k is 1 or more, is looked into: states at
- * times in between are solved for, always in the middle of the part that moves
- * most. A part with the same statuses at both ends holds no jump. The motion of
- * a path falls with the length of the part, that of a jump does not. AUTO
- * solves, also where the method of the deck has missed the tolerance; nothing
- * is said of an increment that starts from a state far off.
+ * moves by more, or in whose slip k is 1 or more, is examined: states at times
+ * in between are solved, always in the middle of the part that moves most. A
+ * part with the same statuses at both ends holds no jump. The motion of a path
+ * falls with the length of the part, that of a jump does not. AUTO solves, also
+ * where the method of the deck did not converge; an increment that starts from
+ * a state far from equilibrium is not examined.
  */
 #include "base/memory.h"
 #include "effects/plan/plan.h"
@@ -22,19 +22,19 @@
 #include <string.h>
 
 typedef struct checked {
-  int asked;     /* 1: by CHECK= of the step                          */
-  int jumps;     /* 1: the equilibrium jumps in the increment        */
-  double jump_t; /* s, there                                         */
-  int lost;      /* 1: the last state is none of equilibrium, by far */
-  solution_set solutions; /* found by CHECK= in the increment                 */
+  int asked;              /* 1: by CHECK= of the step */
+  int jumps;              /* 1: the equilibrium jumps in the increment */
+  double jump_t;          /* s, there */
+  int lost;               /* 1: the last state is none of equilibrium, by far */
+  solution_set solutions; /* found by CHECK= in the increment */
 } checked;
 
 enum { DEPTH = 16, /* halvings of the increment */ POINTS = 80 };
-static const double SUSPECT = 2.0; /* -, motion over load                     */
-static const double LEFT = 0x1p-6; /* -, of the motion, in 2^-16 of the load  */
-static const double RATE = 0.98;   /* -, of a measured rate: it may be 1      */
-static const double NEAR = 1e-2;   /* -, residual of a state near the path    */
-static const double STILL = 0x1p-30; /* -, of the largest slip: none          */
+static const double SUSPECT = 2.0; /* -, motion over load */
+static const double LEFT = 0x1p-6; /* -, of the motion, in 2^-16 of the load */
+static const double RATE = 0.98;   /* -, of a measured rate: it may be 1 */
+static const double NEAR = 1e-2;   /* -, residual of a state near the path */
+static const double STILL = 0x1p-30; /* -, of the largest slip: none */
 
 /* |a - b|_A of contact displacements; room[2*n_c]. */
 static double distance(const run *r, const double *a, const double *b,
@@ -55,7 +55,7 @@ static status load_change(run *r, double *room, double *size) {
   for (int i = 0; i < r->nodes.n_row; ++i)
     room[i] = r->problem.f[i] - r->problem.f_before[i];
   if (r->body.moduli.n_own > 0 ||
-      r->problem.n_before != r->nodes.n_row) { /* other matrix       */
+      r->problem.n_before != r->nodes.n_row) { /* other matrix */
     const double *rc = run_rows(r, 1, r->old.rc);
     contact_product(r->nodes.n_row, r->problem.cp.A, run_rows(r, 0, r->old.uc),
                     room + r->nodes.n_c);
@@ -129,18 +129,18 @@ done:
 /* ---- states in between --------------------------------------------------- */
 
 typedef struct point {
-  double t;               /* s                                                */
-  double *u;              /* [n_c] m                                          */
+  double t;               /* s */
+  double *u;              /* [n_c] m */
   contact_status *status; /* [n] of the nodes of r->problem.cp */
-  double motion;          /* to the next point, energy norm                   */
+  double motion;          /* to the next point, energy norm */
 } point;
 
 typedef struct path {
   run *r;
   point p[POINTS];
   int n;
-  double shortest, least; /* part that is not halved, s; motion that counts   */
-  double *room;           /* [2*n_c]                                          */
+  double shortest, least; /* part that is not halved, s; motion that counts */
+  double *room;           /* [2*n_c] */
 } path;
 
 static void path_free(path *s) {
@@ -202,7 +202,7 @@ done:
   return st;
 }
 
-/* AUTO in the place of the method of the deck, so that the answer does not
+/* AUTO in the place of the method of the deck, so that the result does not
  * depend on it; *own: that of the deck. */
 static status lend_solver(run *r, contact_solver **own) {
   status st = OK;
@@ -288,8 +288,9 @@ done:
 /* ---- the row --------------------------------------------------------------
  */
 
-/* Jumps are looked for where friction makes a path of increments. */
-static int calls_for_check(const model *m, char *why, size_t size) {
+/* Jumps are searched where friction makes increments depend on their
+ * history. */
+static int requires_check(const model *m, char *why, size_t size) {
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     if (s->check == CHECK_NONE) continue;
@@ -358,8 +359,8 @@ static void release(void *self) {
 /* The hooks enter the stage themselves, where there is something to do. */
 const effect_ops second_solutions_effect = {.name = "second solutions, jumps",
                                             .bit = NO_BIT,
-                                            .called_for = calls_for_check,
-                                            .foreseen = products,
+                                            .required = requires_check,
+                                            .expected = products,
                                             .own = STAGE_NONE,
                                             .more = {STAGE_CHECK},
                                             .on.create = checked_new,

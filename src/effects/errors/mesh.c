@@ -12,9 +12,9 @@
 #include <math.h>
 
 typedef struct mesh_estimate {
-  space_recovery *recovery; /* NULL until the first estimate                 */
-  long elastic_no;          /* of the run, that it is made of                */
-  double *elem_error;       /* [n_elem] share of each element, -             */
+  space_recovery *recovery; /* NULL until the first estimate */
+  long elastic_no;          /* of the run, that it is made of */
+  double *elem_error;       /* [n_elem] share of each element, - */
 } mesh_estimate;
 
 static status estimate_new(run *r, void **self) {
@@ -64,8 +64,8 @@ static status estimate(run *r, void *self) {
   return OK;
 }
 
-/* The nodal averages are made now, so that what is counted from here on is what
- * the other run counts. */
+/* The nodal averages are made now, so that the costs counted from here on are
+ * those of the other run. */
 static status keep(run *r, void *self, archive *a) {
   int made = is_recovery_known(r, self);
   PASS(archive_ints(a, "recovery", &made, 1));
@@ -80,14 +80,14 @@ static status expected(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static int calls_for_mesh_error(const model *m, char *why, size_t size) {
-  return plan_calls_for_accuracy(m, "MESH", facts_asks_mesh_error, why, size);
+static int requires_mesh_error(const model *m, char *why, size_t size) {
+  return plan_requires_accuracy(m, "MESH", facts_asks_mesh_error, why, size);
 }
 
 const effect_ops mesh_error_effect = {.name = "error of mesh",
                                       .bit = EFFECT_BIT_MESH_ERROR,
-                                      .called_for = calls_for_mesh_error,
-                                      .foreseen = expected,
+                                      .required = requires_mesh_error,
+                                      .expected = expected,
                                       .own = STAGE_MESH_ERROR,
                                       .inside = 1,
                                       .on.create = estimate_new,

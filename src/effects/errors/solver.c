@@ -13,7 +13,7 @@
 #include <math.h>
 
 static const char weakly_held[] =
-    "supports hold a body by lever arms of next to nothing";
+    "supports hold a body by negligible lever arms";
 
 static status force_energy(void *ctx, const double *d, double *square) {
   return condensed_force_energy(ctx, d, square);
@@ -71,11 +71,11 @@ static status expected(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static int calls_for_bound(const model *m, char *why, size_t size) {
+static int requires_bound(const model *m, char *why, size_t size) {
   int any = 0;
   for (int i = 0; i < m->n.step; ++i) any |= !m->steps[i].accuracy.no_solver;
   if (m->problem.given && !m->steps[0].accuracy.given)
-    return plan_says(any, why, size, "no *ACCURACY card, which asks for it");
+    return plan_says(any, why, size, "no *ACCURACY card, which requires it");
   if (m->problem.given && any)
     return plan_says(1, why, size, "*ACCURACY, %s:%d",
                      PLACE(m->steps[0].accuracy.at));
@@ -87,8 +87,8 @@ static int calls_for_bound(const model *m, char *why, size_t size) {
 
 const effect_ops solver_error_effect = {.name = "error of solver",
                                         .bit = EFFECT_BIT_ESTIMATES,
-                                        .called_for = calls_for_bound,
-                                        .foreseen = expected,
+                                        .required = requires_bound,
+                                        .expected = expected,
                                         .own = STAGE_ESTIMATE,
                                         .inside = 1,
                                         .on.create = cpu_new,

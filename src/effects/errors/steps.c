@@ -1,18 +1,18 @@
 /*
  * Error of the steps: the path of slip and the inelastic strains depend on the
- * increments. Beside the run goes a second one of half the increments, contact
- * forces, slip and inelastic strains its own; the two meet at the end of each
- * increment, where the loads are the same.
+ * increments. A shadow run of half the increments has its own contact forces,
+ * slip and inelastic strains; the two meet at the end of each increment, where
+ * the loads are the same.
  *
  * Without inelastic strains their difference d has the energy d' A d of the
  * condensed stiffness. With them the stresses differ by E (B du - de^i), whose
- * energy counts against that of the stresses, and the strains by B du, against
- * the strains: at constant stress a body creeps all the same. The larger of the
- * two relative differences is told.
+ * energy is relative to that of the stresses, and the strains by B du, relative
+ * to the strains: at constant stress a body still creeps. The larger of the two
+ * relative differences is reported.
  *
  * The error of the run is that difference times 2^p/(2^p - 1) for an integrator
- * of order p (Richardson), where nothing rubs; zones of stick and slip that
- * grow lie between order 1 and 2: 5/3, or more for an integrator of order 1.
+ * of order p (Richardson), without friction; zones of stick and slip that grow
+ * lie between order 1 and 2: 5/3, or more for an integrator of order 1.
  */
 #include "base/memory.h"
 #include "base/timer.h"
@@ -25,29 +25,29 @@
 #include <math.h>
 #include <string.h>
 
-static const double EXTRAPOLATION = 5.0 / 3.0; /* -, of growing zones         */
-static const double STRAIGHT = 10.0; /* -, of the tolerance of the solver     */
+static const double EXTRAPOLATION = 5.0 / 3.0; /* -, of growing zones */
+static const double STRAIGHT = 10.0; /* -, of the tolerance of the solver */
 
 /* What an increment starts from, of one path. */
 typedef struct waypoint {
   start_point start;
-  flow_state flow; /* of the points whose law flows; empty: none              */
+  flow_state flow; /* of the points whose law flows; empty: none */
 } waypoint;
 
 typedef struct finer_path {
-  int lost; /* 1: it found no equilibrium                                   */
-  int measured; /* 1: "error" is that of the attempt                          */
-  double error; /* sqrt(J)                                                    */
-  int flows; /* 1: made in a *VISCO step                                     */
+  int lost;                 /* 1: it found no equilibrium */
+  int measured;             /* 1: "error" is that of the attempt */
+  double error;             /* sqrt(J) */
+  int flows;                /* 1: made in a *VISCO step */
   waypoint at, middle, end; /* accepted; of the attempt now made */
-  double *d, *Ad; /* [m] difference of the paths, m; N               */
-  double *u, *e0; /* [dim*n_node] m, [ns*eigen.n] at the end; NULL: no law
-                     flows */
+  double *d, *Ad;           /* [m] difference of the paths, m; N */
+  double *u, *e0;           /* [dim*n_node] m, [ns*eigen.n] at the end; NULL: no
+                               law flows */
 } finer_path;
 
 typedef struct paths {
-  finer_path *path;   /* NULL: none made                                     */
-  double before, now; /* sqrt(J), error of finished paths; of this one       */
+  finer_path *path;   /* NULL: none made */
+  double before, now; /* sqrt(J), error of finished paths; of this one */
 } paths;
 
 static status waypoint_new(const run *r, waypoint *w) {
@@ -125,12 +125,13 @@ static void restart(paths *own) {
   own->now = 0.0;
 }
 
-/* Only slip in increments and inelastic strains remember their path. */
+/* Only slip in increments and inelastic strains depend on their path. */
 static int path_exists(const run *r) {
   return effects_sum_up(r) == NULL && run_remembers(r);
 }
 
-/* Both halves of the increment that ends at t; lost where there is none. */
+/* Both halves of the increment that ends at t; lost where there is no
+ * equilibrium. */
 static status try_halves(run *r, finer_path *p, double t) {
   status st = OK;
   p->measured = 0;
@@ -154,14 +155,14 @@ static status try_path(run *r, void *self, double t) {
   double cpu = timer_cpu();
   if (!r->step->accuracy.time || !path_exists(r)) return OK;
   timer_enter_whole(STAGE_TIME_ERROR);
-  r->course.beside = 1;
+  r->course.shadow = 1;
   if (own->path != NULL && (own->path->at.start.t != r->old.t ||
                             own->path->flows != (r->step->kind == STEP_VISCO)))
     restart(own);
   if (own->path == NULL) TRY(path_new(r, &own->path));
   TRY(try_halves(r, own->path, t));
 done:
-  r->course.beside = 0;
+  r->course.shadow = 0;
   timer_leave(STAGE_TIME_ERROR);
   r->errors.time_error.cpu += timer_cpu() - cpu;
   return st;
@@ -239,7 +240,7 @@ static double measure(const run *r, paths *own) {
   return own->before + p->error;
 }
 
-/* The path at the end of an increment that is taken. */
+/* The path at the end of an accepted increment. */
 static void compare_path(const run *r, paths *own, error_share *e) {
   finer_path *p = own->path;
   if (p == NULL || (!p->lost && p->end.start.t != r->now.t)) {
@@ -296,7 +297,7 @@ static void forget(run *r, void *self) {
   restart(self);
 }
 
-/* What acts suddenly at the start of a *VISCO step is no part of a path. */
+/* Sudden loads at the start of a *VISCO step is no part of a path. */
 static status begin_step(run *r, void *self) {
   if (r->step->kind == STEP_VISCO && r->strains.visco != NULL) restart(self);
   return OK;
@@ -330,20 +331,20 @@ static status keep(run *r, void *self, archive *a) {
 
 /*
  * *ACCURACY, TIME=BALANCED: increments whose error is a share of that of the
- * mesh. The finer path tells at each time t of the step how far the
- * run is from one of half its increments. With B the share of the error of the
- * mesh at the end of the step, in the energy norm, an increment is taken if
+ * mesh. The finer path gives at each time t of the step the difference from
+ * increments of half the length. With B the share of the error of the mesh at
+ * the end of the step, in the energy norm, an increment is taken if
  *
  *   error(t) <= error at the start of the step + B sqrt((t - start)/total),
  *   or its own part of the error <= B dt/total:
  *
  * a contact that grows from a point makes most of its error at first, whatever
- * the increment. The norm of the solution at the end is foreseen from its
+ * the increment. The norm of the solution at the end is estimated from its
  * change in the increment. The next increment is that for which a part that
  * goes like dt^2 would meet the bound.
  */
-static const double SAFETY = 0.8, LONGER = 2.0, SHORTER = 0.25; /* -          */
-static const double ROUNDING = 0x1p-40; /* -, of the largest energy norm      */
+static const double SAFETY = 0.8, LONGER = 2.0, SHORTER = 0.25; /* - */
+static const double ROUNDING = 0x1p-40; /* -, of the largest energy norm */
 
 /* End of the next increment: not a sliver before the end of the step. */
 static double next_end(const run *r) {
@@ -385,7 +386,7 @@ static double next_length(const run *r, double dt, double part,
   return fmax(s->dt_min, fmin(dt * factor, s->dt_max));
 }
 
-/* The attempt is not taken: r->at.dt the next time. */
+/* The attempt is rejected: r->at.dt the next time. */
 static status refuse(run *r, paths *own, double tried, double dt,
                      const char *why) {
   status st = OK;
@@ -418,7 +419,7 @@ static status attempt_balanced(run *r, paths *own) {
     goto done;
   }
   if (outcome_is_fatal(r->solving.report.outcome)) TRY(loop_no_equilibrium(r));
-  if (!r->errors.judged) TRY(estimate_judge(r));
+  if (!r->errors.evaluated) TRY(estimate_evaluate(r));
   part = rounding_hides_strains(r) ? 0.0 : measure(r, own) - before;
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, part, allowed);
@@ -458,14 +459,14 @@ static status expected(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static int calls_for_time_error(const model *m, char *why, size_t size) {
-  return plan_calls_for_accuracy(m, "TIME", facts_asks_time_error, why, size);
+static int requires_time_error(const model *m, char *why, size_t size) {
+  return plan_requires_accuracy(m, "TIME", facts_asks_time_error, why, size);
 }
 
 const effect_ops time_error_effect = {.name = "error of steps",
                                       .bit = EFFECT_BIT_TIME_ERROR,
-                                      .called_for = calls_for_time_error,
-                                      .foreseen = expected,
+                                      .required = requires_time_error,
+                                      .expected = expected,
                                       .own = STAGE_TIME_ERROR,
                                       .inside = 1,
                                       .on.create = paths_new,

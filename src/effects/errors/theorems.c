@@ -1,9 +1,9 @@
 /*
  * The theorems of CPR98 at accepted increments (theorems.h). That of inelastic
- * strains (3.2) is looked at on the body with its contacts as they are, the
- * sliding limit and given normal forces being given (problem Q3): a change of
- * the stresses of the points changes their e^i by the law over the increment,
- * that is a load on the elastic body, whose motion changes the stresses again.
+ * strains (3.2) is evaluated on the body with its current contacts, the sliding
+ * limit and given normal forces being given (problem Q3): a change of the
+ * stresses of the points changes their e^i by the law over the increment, that
+ * is a load on the elastic body, whose motion changes the stresses again.
  */
 #include "base/memory.h"
 #include "effects/plan/plan.h"
@@ -37,7 +37,7 @@ static status largest_mu(const run *r, int contact_id, double *mu) {
   return OK;
 }
 
-/* The problem at hand with an answer; mu[n_contact], given[n] are new. */
+/* The current problem with a solution; mu[n_contact], given[n] are new. */
 static status theorems_scene_new(run *r, const equilibrium *e,
                                  theorems_scene *s, double **mu,
                                  unsigned char **given) {
@@ -65,15 +65,15 @@ done:
 
 typedef struct body_map {
   run *r;
-  matrices own; /* where those of the run are of other moduli           */
-  condensed *c; /* of the elastic body, borrowed                        */
+  matrices own; /* where those of the run are of other moduli */
+  condensed *c; /* of the elastic body, borrowed */
   frozen_problem problem;
   linear_contact *contact;
-  double *Q;          /* [ns*ns*n] of the points, 1/Pa                        */
-  double *e0, *sigma; /* [ns*eigen.n] de^i, -; ds, Pa                         */
-  double *F, *u;      /* [n_dof]                                              */
-  double *f, *du;     /* [m]                                                  */
-  int begun;          /* 0: e0 is there                                       */
+  double *Q;          /* [ns*ns*n] of the points, 1/Pa */
+  double *e0, *sigma; /* [ns*eigen.n] de^i, -; ds, Pa */
+  double *F, *u;      /* [n_dof] */
+  double *f, *du;     /* [m] */
+  int begun;          /* 0: e0 is there */
 } body_map;
 
 static status elastic_body(run *r, body_map *b) {
@@ -87,7 +87,8 @@ done:
   return st;
 }
 
-/* The contact of the elastic body with a given limit, as the answer has it. */
+/* The contact of the elastic body with a given limit, in the states of the
+ * solution. */
 static status linear_body(run *r, const unsigned char *given, body_map *b) {
   status st = OK;
   unsigned char *none = NULL;
@@ -236,10 +237,10 @@ static status see_start(run *r, void *own) { return see_theory(r, own, 1); }
 /* ---- the row --------------------------------------------------------------
  */
 
-static int calls_for_theorems(const model *m, char *why, size_t size) {
+static int requires_theorems(const model *m, char *why, size_t size) {
   if (facts_first_step(m, facts_asks_theory) != NULL && m->n.contact == 0)
     return plan_says(0, why, size, "no *CONTACT card");
-  return plan_calls_for_accuracy(m, "THEORY", facts_asks_theory, why, size);
+  return plan_requires_accuracy(m, "THEORY", facts_asks_theory, why, size);
 }
 
 static status expected(const plan_sizes *s, effect_work *w) {
@@ -277,10 +278,10 @@ static void release(void *self) {
 
 const effect_ops theorems_effect = {.name = "theory checks",
                                     .bit = EFFECT_BIT_THEORY,
-                                    .called_for = calls_for_theorems,
-                                    .foreseen = expected,
+                                    .required = requires_theorems,
+                                    .expected = expected,
                                     .own = STAGE_THEORY,
-                                    .beside = 1,
+                                    .shadow = 1,
                                     .on.create = checked_new,
                                     .on.due = due,
                                     .on.initial = see_start,

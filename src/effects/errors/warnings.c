@@ -1,7 +1,7 @@
 /*
- * What makes an answer doubtful though its equations are solved: strains that
- * are not small, elements turned inside out by the displacements, a contact
- * that no node ever touched. Each is told once a run.
+ * Warnings about a solution of the equations that may be meaningless: strains
+ * that are not small, elements turned inside out by the displacements, a
+ * contact that no node ever touched. Each is reported once a run.
  */
 #include "base/memory.h"
 #include "effects/rows.h"
@@ -12,22 +12,22 @@
 #include <string.h>
 
 typedef struct warnings {
-  int strain, folded; /* 1: told                                             */
-  int *touched;       /* [n_contact] 1: a node has touched                   */
+  int strain, folded; /* 1: told */
+  int *touched;       /* [n_contact] 1: a node has touched */
 } warnings;
 
-static const double LARGE = 0.05; /* -, strain                                */
+static const double LARGE = 0.05; /* -, strain */
 
 static const char *section_of(const run *r, int elem_id) {
   return r->m->sections[r->m->elem_section[elem_id]].elset;
 }
 
-static void warn_deformation(run *r, warnings *told) {
+static void warn_deformation(run *r, warnings *reported) {
   deformation x;
-  if (told->strain && told->folded) return;
+  if (reported->strain && reported->folded) return;
   domain_deformation(&r->body.d, r->now.u, &x);
-  if (!told->strain && x.strain > LARGE) {
-    told->strain = 1;
+  if (!reported->strain && x.strain > LARGE) {
+    reported->strain = 1;
     message_add(r->m->log, P4019, &r->step->at,
                 "step %d, increment %d, time %g: the strain of element %zu "
                 "(group %s) is %.3g %%; strains are taken as small",
@@ -35,8 +35,8 @@ static void warn_deformation(run *r, warnings *told) {
                 r->msh->elem_no[x.strain_elem], section_of(r, x.strain_elem),
                 100.0 * x.strain);
   }
-  if (!told->folded && x.volume <= 0.0) {
-    told->folded = 1;
+  if (!reported->folded && x.volume <= 0.0) {
+    reported->folded = 1;
     message_add(r->m->log, P4020, &r->step->at,
                 "step %d, increment %d, time %g: the displacements turn "
                 "element %zu (group %s) inside out",
@@ -45,13 +45,13 @@ static void warn_deformation(run *r, warnings *told) {
   }
 }
 
-/* Which contacts touch; the listing tells when one does that did not. */
-static void note_touches(run *r, warnings *told) {
+/* Which contacts touch; the listing reports the first contact. */
+static void note_touches(run *r, warnings *reported) {
   for (int i = 0; i < r->m->n.contact; ++i) {
     const contact_total *t = &r->result.totals[i];
     const size_t used = strlen(r->course.note);
-    if (told->touched[i] || t->n_slip + t->n_stick == 0) continue;
-    told->touched[i] = 1;
+    if (reported->touched[i] || t->n_slip + t->n_stick == 0) continue;
+    reported->touched[i] = 1;
     if (r->course.total_no > 1)
       snprintf(r->course.note + used, sizeof r->course.note - used,
                "  contact %s touches for the first time\n",
@@ -76,10 +76,10 @@ static double least_gap(const run *r, int contact_id) {
 
 /* Where an increment is not solved, what touched in it is not known. */
 static void end(run *r, void *self) {
-  const warnings *told = self;
+  const warnings *reported = self;
   for (int i = 0; i < r->m->n.contact && r->course.unsettled == 0; ++i) {
     const contact *c = &r->m->contacts[i];
-    if (told->touched[i] || c->force.given) continue;
+    if (reported->touched[i] || c->force.given) continue;
     message_add(r->m->log, P4021, &c->at,
                 "*CONTACT %s: no node touched obstacle %s in the run; the "
                 "least gap at its end is %.3g",
@@ -107,7 +107,7 @@ static status keep(run *r, void *self, archive *a) {
   return archive_ints(a, "touched", own->touched, (size_t)r->m->n.contact);
 }
 
-static int calls_for_warnings(const model *m, char *why, size_t size) {
+static int requires_warnings(const model *m, char *why, size_t size) {
   (void)why;
   (void)size;
   return !m->problem.given;
@@ -115,7 +115,7 @@ static int calls_for_warnings(const model *m, char *why, size_t size) {
 
 const effect_ops warnings_effect = {.name = "warnings",
                                     .bit = NO_BIT,
-                                    .called_for = calls_for_warnings,
+                                    .required = requires_warnings,
                                     .own = STAGE_NONE,
                                     .on.create = warnings_new,
                                     .on.accept = look,

@@ -1,6 +1,6 @@
 /*
- * What every body has, and the rows of effects that are part of other files of
- * the run: their expected work and their stages.
+ * Rows of every body, and of effects in other files of the run: their expected
+ * work and their stages.
  */
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
@@ -72,22 +72,22 @@ static status reactions(const plan_sizes *s, effect_work *w) {
   return s->msh == NULL ? OK : plan_held(s, &unknowns, &w->items);
 }
 
-/* ---- the cards that call for them ----------------------------------------
+/* ---- the cards that require them ----------------------------------------
  */
 
-static int calls_for_mesh(const model *m, char *why, size_t size) {
+static int requires_mesh(const model *m, char *why, size_t size) {
   return plan_says(!m->problem.given, why, size, "*MESH, %s:%d",
                    PLACE(m->mesh.at));
 }
 
-static int calls_for_contact(const model *m, char *why, size_t size) {
+static int requires_contact(const model *m, char *why, size_t size) {
   if (m->n.contact == 0) return plan_says(0, why, size, "no *CONTACT card");
   return plan_says(1, why, size, "*CONTACT, NAME=%s, %s:%d",
                    m->contacts[0].name, PLACE(m->contacts[0].at));
 }
 
-int plan_calls_for_rule(const model *m, int (*is)(const friction_rule *rule),
-                        const char *none, char *why, size_t size) {
+int plan_requires_rule(const model *m, int (*is)(const friction_rule *rule),
+                       const char *none, char *why, size_t size) {
   const contact *c = NULL;
   const friction_rule *rule = facts_first_rule(m, is, &c);
   if (rule == NULL) return plan_says(0, why, size, "%s", none);
@@ -96,16 +96,16 @@ int plan_calls_for_rule(const model *m, int (*is)(const friction_rule *rule),
 }
 
 /* The normals of a second obstacle are tangents of the first. */
-static int calls_for_tangents(const model *m, char *why, size_t size) {
+static int requires_tangents(const model *m, char *why, size_t size) {
   const step *s = facts_first_whole(m);
-  if (m->n.contact == 0 || friction_effect.called_for(m, NULL, 0))
-    return friction_effect.called_for(m, why, size);
+  if (m->n.contact == 0 || friction_effect.required(m, NULL, 0))
+    return friction_effect.required(m, why, size);
   if (m->corner_id >= 0)
     return plan_says(1, why, size, "contact %s meets another, %s:%d",
                      m->contacts[m->corner_id].name,
                      PLACE(m->contacts[m->corner_id].at));
-  if (s == NULL && facts_neglects_friction(m))
-    return plan_says(1, why, size, "friction left out is judged, %s:%d",
+  if (s == NULL && facts_omits_friction(m))
+    return plan_says(1, why, size, "friction left out is checked, %s:%d",
                      PLACE(m->reduction.at));
   if (s == NULL)
     return plan_says(0, why, size, "mu = 0: only normals are condensed");
@@ -119,14 +119,14 @@ static int calls_for_tangents(const model *m, char *why, size_t size) {
                    PLACE(s->accuracy.at));
 }
 
-static int calls_for_body(const model *m, char *why, size_t size) {
+static int requires_body(const model *m, char *why, size_t size) {
   const load *l = facts_first_body_load(m);
   if (l == NULL) return plan_says(0, why, size, "no *DLOAD card");
   return plan_says(1, why, size, "*DLOAD on group %s, %s:%d", l->group,
                    PLACE(l->at));
 }
 
-static int calls_for_output(const model *m, int table, char *why, size_t size) {
+static int requires_output(const model *m, int table, char *why, size_t size) {
   place at;
   if (facts_first_print(m, table, &at) != NULL)
     return plan_says(1, why, size, "*PRINT, %s:%d", PLACE(at));
@@ -135,21 +135,21 @@ static int calls_for_output(const model *m, int table, char *why, size_t size) {
   return plan_says(0, why, size, "no output asks for them");
 }
 
-static int calls_for_stress(const model *m, char *why, size_t size) {
-  return calls_for_output(m, PRINT_ELEMENTS, why, size);
+static int requires_stress(const model *m, char *why, size_t size) {
+  return requires_output(m, PRINT_ELEMENTS, why, size);
 }
 
 /* Reactions are computed when printed, or where a support does work. */
-static int calls_for_reaction(const model *m, char *why, size_t size) {
+static int requires_reaction(const model *m, char *why, size_t size) {
   const load *l = facts_moving_support(m);
-  if (l == NULL) return calls_for_output(m, PRINT_REACTIONS, why, size);
+  if (l == NULL) return requires_output(m, PRINT_REACTIONS, why, size);
   return plan_says(1, why, size,
-                   "work of the support %s, %s:%d, that moves or is let go",
+                   "work of the support %s, %s:%d, that moves or is released",
                    l->group, PLACE(l->at));
 }
 
-int plan_calls_for_accuracy(const model *m, const char *word,
-                            int (*is)(const step *s), char *why, size_t size) {
+int plan_requires_accuracy(const model *m, const char *word,
+                           int (*is)(const step *s), char *why, size_t size) {
   const step *s = facts_first_step(m, is);
   if (s == NULL) return plan_says(0, why, size, "no *ACCURACY, %s=YES", word);
   if (m->accuracy.target.percent > 0.0)
@@ -166,42 +166,42 @@ int plan_calls_for_accuracy(const model *m, const char *word,
 const effect_ops finite_elements_effect = {
     .name = "finite elements",
     .bit = EFFECT_BIT_MESH,
-    .called_for = calls_for_mesh,
-    .foreseen = elements,
+    .required = requires_mesh,
+    .expected = elements,
     .own = STAGE_ASSEMBLY,
     .more = {STAGE_ORDERING, STAGE_FACTOR, STAGE_LOAD, STAGE_RECOVERY,
              STAGE_ENERGY}};
 const effect_ops unilateral_contact_effect = {
     .name = "unilateral contact",
     .bit = EFFECT_BIT_CONTACT,
-    .called_for = calls_for_contact,
-    .foreseen = unilateral,
+    .required = requires_contact,
+    .expected = unilateral,
     .own = STAGE_CONTACT,
     .more = {STAGE_SURFACE, STAGE_CONDENSE, STAGE_PROBLEM}};
 const effect_ops tangents_effect = {
     .name = "tangential unknowns",
     .bit = EFFECT_BIT_TANGENTS,
-    .called_for = calls_for_tangents,
-    .foreseen = tangents,
+    .required = requires_tangents,
+    .expected = tangents,
     .own = STAGE_NONE,
     .within = "unilateral contact"};
 const effect_ops body_forces_effect = {
     .far = 1,
     .name = "body forces",
     .bit = EFFECT_BIT_BODY,
-    .called_for = calls_for_body,
-    .foreseen = body,
+    .required = requires_body,
+    .expected = body,
     .own = STAGE_BODY};
 const effect_ops stresses_effect = {
     .name = "stresses",
     .bit = EFFECT_BIT_STRESS,
-    .called_for = calls_for_stress,
-    .foreseen = stresses,
+    .required = requires_stress,
+    .expected = stresses,
     .own = STAGE_STRESS};
 const effect_ops reactions_effect = {
     .name = "reactions",
     .bit = EFFECT_BIT_REACTION,
-    .called_for = calls_for_reaction,
-    .foreseen = reactions,
+    .required = requires_reaction,
+    .expected = reactions,
     .own = STAGE_REACTION};
 /* clang-format on */

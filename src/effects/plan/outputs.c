@@ -1,12 +1,12 @@
 /*
- * Tables, fields and files: the cards that call for them, their expected work.
+ * Tables, fields and files: the cards that require them, their expected work.
  */
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 
 #include <math.h>
 
-static const double TEXT = 250.0; /* operations to write a number             */
+static const double TEXT = 250.0; /* operations to write a number */
 
 double plan_rows(const plan_sizes *s, int table, double items) {
   double most = 0.0;
@@ -26,8 +26,8 @@ effect_work plan_table(const plan_sizes *s, int table, double all) {
   return (effect_work){n, "rows", shown, shown * n * 10.0 * TEXT};
 }
 
-int plan_calls_for_table(const model *m, int table, const char *word, char *why,
-                         size_t size) {
+int plan_requires_table(const model *m, int table, const char *word, char *why,
+                        size_t size) {
   for (int i = 0; i < m->n.step; ++i)
     for (int q = 0; q < m->steps[i].print.n; ++q) {
       const print_request *p = &m->steps[i].print.requests[q];
@@ -57,14 +57,14 @@ TABLE_ROWS(nodes, PRINT_NODES, s->nodes)
 TABLE_ROWS(elements, PRINT_ELEMENTS, s->elements)
 TABLE_ROWS(energy, PRINT_ENERGY, 1.0)
 
-#define TABLE(row, text, table, word, expected, stage_)                \
-  static int calls_for_##row(const model *m, char *why, size_t size) { \
-    return plan_calls_for_table(m, table, word, why, size);            \
-  }                                                                    \
-  const effect_ops row##_effect = {.name = text,                       \
-                                   .bit = NO_BIT,                      \
-                                   .called_for = calls_for_##row,      \
-                                   .foreseen = expected,               \
+#define TABLE(row, text, table, word, rows_, stage_)                  \
+  static int requires_##row(const model *m, char *why, size_t size) { \
+    return plan_requires_table(m, table, word, why, size);            \
+  }                                                                   \
+  const effect_ops row##_effect = {.name = text,                      \
+                                   .bit = NO_BIT,                     \
+                                   .required = requires_##row,        \
+                                   .expected = rows_,                 \
                                    .own = stage_};
 TABLE(contact_table, "table of contact nodes", PRINT_CONTACT, "CONTACT",
       contact_rows, STAGE_TABLE_CONTACT)
@@ -79,7 +79,7 @@ TABLE(energy_table, "table of energies", PRINT_ENERGY, "ENERGY", energy_rows,
 TABLE(reactions_table, "table of reactions", PRINT_REACTIONS, "REACTIONS",
       held_rows, STAGE_TABLE_REACTIONS)
 
-static int calls_for_fields(const model *m, char *why, size_t size) {
+static int requires_fields(const model *m, char *why, size_t size) {
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     if (s->output.frequency < 0) continue;
@@ -93,7 +93,7 @@ static int calls_for_fields(const model *m, char *why, size_t size) {
   return 0;
 }
 
-static int calls_for_condensed(const model *m, char *why, size_t size) {
+static int requires_condensed(const model *m, char *why, size_t size) {
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     if (s->output.condensed < 0) continue;
@@ -104,7 +104,7 @@ static int calls_for_condensed(const model *m, char *why, size_t size) {
   return 0;
 }
 
-static int calls_for_restart(const model *m, char *why, size_t size) {
+static int requires_restart(const model *m, char *why, size_t size) {
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     if (s->restart.frequency < 0) continue;
@@ -115,7 +115,7 @@ static int calls_for_restart(const model *m, char *why, size_t size) {
   return 0;
 }
 
-static int calls_for_always(const model *m, char *why, size_t size) {
+static int requires_always(const model *m, char *why, size_t size) {
   (void)m;
   snprintf(why, size, "always");
   return 1;
@@ -149,25 +149,25 @@ static status listing(const plan_sizes *s, effect_work *w) {
 const effect_ops fields_effect = {
     .name = "fields in JOB.h5",
     .bit = NO_BIT,
-    .called_for = calls_for_fields,
-    .foreseen = fields,
+    .required = requires_fields,
+    .expected = fields,
     .own = STAGE_HDF5};
 const effect_ops condensed_problems_effect = {
     .name = "condensed problems",
     .bit = NO_BIT,
-    .called_for = calls_for_condensed,
-    .foreseen = condensed_problems,
+    .required = requires_condensed,
+    .expected = condensed_problems,
     .own = STAGE_FCLIB};
 const effect_ops restart_effect = {
     .name = "restart",
     .bit = NO_BIT,
-    .called_for = calls_for_restart,
-    .foreseen = restart,
+    .required = requires_restart,
+    .expected = restart,
     .own = STAGE_RESTART};
 const effect_ops listing_effect = {
     .name = "listing, .sta, .cvg",
     .bit = NO_BIT,
-    .called_for = calls_for_always,
-    .foreseen = listing,
+    .required = requires_always,
+    .expected = listing,
     .own = STAGE_LISTING};
 /* clang-format on */

@@ -1,5 +1,5 @@
 /*
- * The rows of the plan: the table of the effects, and what is on of them.
+ * The rows of the plan: the table of the effects, and which are active.
  */
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
@@ -18,8 +18,8 @@ int plan_says(int on, char *why, size_t size, const char *format, ...) {
   return on;
 }
 
-/* 1: *EFFECTS leaves out what the deck calls for. */
-static int is_neglected(const model *m, int bit) {
+/* 1: *EFFECTS leaves out an effect that the deck requires. */
+static int is_omitted(const model *m, int bit) {
   int any = 0;
   for (int i = 0; i < m->reduction.n; ++i)
     any |= m->reduction.row[i].bit == bit && !m->reduction.row[i].back;
@@ -43,15 +43,15 @@ static status row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
   const model *m = s->m;
   *r = (plan_row){
       .name = e->name, .on = effect_is_on(e, m), .within = e->within};
-  e->called_for(m, r->why, sizeof r->why);
+  e->required(m, r->why, sizeof r->why);
   if (e->bit != NO_BIT && m->problem.given)
     say_of_problem(m, e, r);
-  else if (e->bit != NO_BIT && is_neglected(m, e->bit))
+  else if (e->bit != NO_BIT && is_omitted(m, e->bit))
     plan_says(1, r->why, sizeof r->why,
               "left out by *EFFECTS, MODE=AUTO, %s:%d", PLACE(m->reduction.at));
   if (effect_stage(e) != STAGE_NONE) r->stages[r->n_stage++] = effect_stage(e);
   for (int k = 0; e->more[k] != 0; ++k) r->stages[r->n_stage++] = e->more[k];
-  status st = e->foreseen(s, &r->work);
+  status st = e->expected(s, &r->work);
   if (!r->on) r->work = (effect_work){.kind = r->work.kind};
   return st;
 }
@@ -115,7 +115,7 @@ status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
   TRY(plan_sizes_find(m, msh, n, &p->sizes));
   for (int k = 0; effect_table[k] != NULL; ++k) {
     plan_row r;
-    if (effect_table[k]->foreseen == NULL) continue;
+    if (effect_table[k]->expected == NULL) continue;
     TRY(row_of(&p->sizes, effect_table[k], &r));
     if (effect_table[k]->bit == EFFECT_BIT_INELASTIC)
       TRY(add_laws(m, msh, p, &capacity, &r));

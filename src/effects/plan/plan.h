@@ -14,44 +14,46 @@
 
 #include <stdio.h>
 
-/* What the expected work is told from, all known before anything is solved. */
+/* Input of the expected work, all known before anything is solved. */
 struct plan_sizes {
   const model *m;
-  const mesh *msh; /* NULL: a condensed problem from a file                  */
-  int dim, ns, is_flat; /* is_flat: plane or axisymmetric                     */
-  double nodes, elements, unknowns; /* unknowns: of the body                  */
-  double contact, tangents; /* nodes, tangential unknowns of the contact      */
-  double increments; /* of all steps as the deck has them; of a step with a
-                        tolerance at most ADAPTED                             */
-  double shown;      /* increments that any table or field shows              */
-  int flows_linearly; /* all laws have a constant Jacobian                    */
-  double equilibria; /* contact problems solved on the way                    */
-  double factors;    /* matrices factored                                     */
+  const mesh *msh;                  /* NULL: a condensed problem from a file */
+  int dim, ns, is_flat;             /* is_flat: plane or axisymmetric */
+  double nodes, elements, unknowns; /* unknowns: of the body */
+  double contact, tangents;         /* nodes, tangential unknowns of the
+                                       contact */
+  double increments;                /* of all steps as the deck has them; of a
+                                       step with a tolerance at most ADAPTED */
+  double shown;                     /* increments that any table or field
+                                       shows */
+  int flows_linearly;               /* all laws have a constant Jacobian */
+  double equilibria;                /* contact problems solved on the way */
+  double factors;                   /* matrices factored */
 };
 
 /* Expected of a row: operations of about a nanosecond of one core (sizes.c). */
 struct effect_work {
-  double items;     /* that it works on                                      */
-  const char *kind; /* "nodes", "elements", "unknowns", "rows"; NULL: none   */
-  double calls;     /* of its first stage; < 0: not foreseen                 */
+  double items;     /* that it works on */
+  const char *kind; /* "nodes", "elements", "unknowns", "rows"; NULL: none */
+  double calls;     /* of its first stage; < 0: not estimated */
   double operations;
 };
 
 typedef struct plan_row {
-  const char *name; /* of the effect                                          */
-  char of[80];      /* the group or law it is about, or ""                    */
+  const char *name; /* of the effect */
+  char of[80];      /* the group or law it is about, or "" */
   int on;
-  char why[240];    /* card with file:line, or the fact                      */
-  effect_work work; /* all zero: off                                         */
-  double share;     /* of the work of all rows, -                            */
-  int n_stage;      /* 0: part of another effect, named by "within"          */
-  stage stages[8];  /* whose costs are its own                               */
-  const char *within; /* or NULL                                              */
+  char why[240];      /* card with file:line, or the fact */
+  effect_work work;   /* all zero: off */
+  double share;       /* of the work of all rows, - */
+  int n_stage;        /* 0: part of another effect, named by "within" */
+  stage stages[8];    /* whose costs are its own */
+  const char *within; /* or NULL */
 } plan_row;
 
 typedef struct effect_plan {
   int n;
-  plan_row *rows; /* [n] owned                                                */
+  plan_row *rows; /* [n] owned */
   plan_sizes sizes;
 } effect_plan;
 
@@ -59,7 +61,7 @@ typedef struct effect_plan {
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out);
 void plan_free(effect_plan *p); /* accepts NULL */
 
-/* Bytes that a run holds at most beside the mesh, from the sizes alone; nodes:
+/* Bytes that a run holds at most besides the mesh, from the sizes alone; nodes:
  * of the contact that are condensed, or < 0: all. msh NULL: as in plan_new. */
 typedef struct plan_bytes {
   double factor, contact, rest;
@@ -69,11 +71,11 @@ status plan_memory(const model *m, const mesh *msh, double nodes,
 
 /* The plan as a table; lead before each line. */
 void plan_print(const effect_plan *p, const char *lead, FILE *f);
-/* After the run: calls, and with "cost" CPU seconds, share and bytes beside
- * what was expected. */
+/* After the run: calls, and with "cost" CPU seconds, share and bytes next to
+ * the expected ones. */
 void plan_print_cost(const effect_plan *p, int cost, FILE *f);
 
-/* What a row has cost so far: calls of its first stage, the rest of all. */
+/* Cost of a row so far: calls of its first stage, the rest of all. */
 stage_cost plan_cost(const plan_row *r);
 /* CPU seconds of all rows so far. */
 double plan_cpu(const effect_plan *p);
@@ -86,8 +88,8 @@ status plan_contact_nodes(const plan_sizes *s,
 status plan_rule_nodes(const plan_sizes *s,
                        int (*is)(const friction_rule *rule), double *n);
 /* The first rule that "is"; "none": there is no such rule. */
-int plan_calls_for_rule(const model *m, int (*is)(const friction_rule *rule),
-                        const char *none, char *why, size_t size);
+int plan_requires_rule(const model *m, int (*is)(const friction_rule *rule),
+                       const char *none, char *why, size_t size);
 /* Displacements that supports hold in the first step, and their nodes. */
 status plan_held(const plan_sizes *s, double *unknowns, double *nodes);
 /* Material of a section; one without anything if it has none. */
@@ -99,17 +101,17 @@ double plan_shown(const model *m, int table);
 /* "on", with the reason in why[size] as by snprintf. */
 int plan_says(int on, char *why, size_t size, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* An estimate of *ACCURACY that the first step that "is" calls for. */
-int plan_calls_for_accuracy(const model *m, const char *word,
-                            int (*is)(const step *s), char *why, size_t size);
+/* An estimate of *ACCURACY that the first step that "is" requires. */
+int plan_requires_accuracy(const model *m, const char *word,
+                           int (*is)(const step *s), char *why, size_t size);
 /* 1: some *PRINT has the table, called word there; where, into why[size]. */
-int plan_calls_for_table(const model *m, int table, const char *word, char *why,
-                         size_t size);
+int plan_requires_table(const model *m, int table, const char *word, char *why,
+                        size_t size);
 /* Rows of a table of "all": all of whose requests name a group, the largest. */
 double plan_rows(const plan_sizes *s, int table, double all);
 effect_work plan_table(const plan_sizes *s, int table, double all);
 double plan_contact_unknowns(const plan_sizes *s);
-double plan_element_work(const plan_sizes *s); /* a pass over one            */
+double plan_element_work(const plan_sizes *s); /* a pass over one */
 /* Condensed matrix of n unknowns, and the problems solved with it. */
 double plan_contact_work(const plan_sizes *s, double n);
 /* Of the factor of the stiffness: multiplications and additions; entries. */
@@ -118,10 +120,7 @@ double work_factor_entries(const plan_sizes *s);
 /* sizes.c: the increments, body and contact of a model; msh, n: plan_new. */
 status plan_sizes_find(const model *m, const mesh *msh, int n, plan_sizes *s);
 
-enum { PLAN_STEPS = 5 }; /* of Newton's method a problem               */
-enum {
-  PLAN_SPARSE = 4,
-  PLAN_DENSE = 10
-}; /* flops an operation                       */
+enum { PLAN_STEPS = 5 };                   /* of Newton's method a problem */
+enum { PLAN_SPARSE = 4, PLAN_DENSE = 10 }; /* flops an operation */
 
 #endif

@@ -1,5 +1,5 @@
 /*
- * The plan as text, and beside it what the run took.
+ * The plan as text, and the measured costs of the run.
  */
 #include "base/memory.h"
 #include "effects/plan/plan.h"
@@ -32,7 +32,7 @@ static void print_name(const plan_row *r, const char *lead, FILE *f) {
 
 void plan_print(const effect_plan *p, const char *lead, FILE *f) {
   fprintf(f, "%s%-26s %-3s %18s %7s  %s\n", lead, "effect", "", "size",
-          "cpu[%]", "called for by");
+          "cpu[%]", "required by");
   for (int i = 0; i < p->n; ++i) {
     const plan_row *r = &p->rows[i];
     char size[40] = "";

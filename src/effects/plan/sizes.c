@@ -1,6 +1,6 @@
 /*
- * What the expected work is told from: sizes of the body and of the contact,
- * increments, contact problems and matrices, before anything is solved.
+ * Input of the expected work: sizes of the body and of the contact, increments,
+ * contact problems and matrices, before anything is solved.
  *
  * An operation is about a nanosecond of one core: one multiplication and
  * addition of scattered data, PLAN_SPARSE of them in a supernode of the sparse
@@ -17,7 +17,7 @@
 
 #include <math.h>
 
-enum { ADAPTED = 50 }; /* increments of a step with a tolerance, at most      */
+enum { ADAPTED = 50 }; /* increments of a step with a tolerance, at most */
 
 static double increments_of(const step *s) {
   double n = step_increments(s);
@@ -188,8 +188,8 @@ done:
  * Above the peaks measured over the examples: the factor; the condensed matrix,
  * its factor and three matrices of a solver; OF_ELEMENT bytes for what
  * assembly, ordering and fields take; BUFFERS of the files. A law that flows
- * has a matrix of its own beside the elastic one, and the strains of the stages
- * of its steps.
+ * has a matrix in addition to the elastic one, and the strains of the stages of
+ * its steps.
  */
 status plan_memory(const model *m, const mesh *msh, double nodes,
                    plan_bytes *b) {

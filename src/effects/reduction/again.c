@@ -1,9 +1,9 @@
 /*
- * The increment solved once more with an effect that is left out, its strains
- * and forces as the state at hand calls for them: what it would change to first
- * order, in displacements, in the forces of the nodes and in their sums. The
- * bounds of measure.c speak of energies; a slender body may move far for little
- * energy, and friction may be a small part of the forces.
+ * The increment solved once more with an effect that is left out, with its
+ * strains and forces at the current state: its change to first order, in
+ * displacements, in the forces of the nodes and in their sums. The bounds of
+ * measure.c speak of energies; a slender body may move far for little energy,
+ * and friction may be a small part of the forces.
  */
 #include "effects/reduction/parts.h"
 
@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* Strains of the row of the elements it is about into n->strain. */
-static void take_strains(reduction *n, const neglected *row) {
+static void take_strains(reduction *n, const omitted *row) {
   const int ns = n->m->ns, heat = row->bit == EFFECT_BIT_THERMAL;
   const double *from = heat ? n->heat : n->flow.strain;
   for (int e = 0; e < n->msh->n_elem; ++e) {
@@ -24,8 +24,8 @@ static void take_strains(reduction *n, const neglected *row) {
   }
 }
 
-/* What friction at node i would do against a way: no more than its limit, nor
- * than what takes the node back alone, N. */
+/* Friction at node i against a displacement: at most its limit, and the force
+ * that returns the node alone, N. */
 static double friction_force(const reduction *n, const state *s, int i,
                              double way) {
   const contact_problem *cp = s->contacts.problem;
@@ -37,7 +37,7 @@ static double friction_force(const reduction *n, const state *s, int i,
               held * way);
 }
 
-/* Friction against the way of each node into n->force, N. */
+/* Friction against the displacement of each node into n->force, N. */
 static void take_friction(reduction *n, const state *s) {
   const contact_surface *c = s->contacts.surface;
   const int dim = n->msh->dim, sides = dim - 1;
@@ -54,7 +54,7 @@ static void take_friction(reduction *n, const state *s) {
   }
 }
 
-static void take_forces(reduction *n, const state *s, const neglected *row) {
+static void take_forces(reduction *n, const state *s, const omitted *row) {
   const eigenstrain x = {n->msh->n_elem, n->elem_id, n->strain};
   memset(n->force, 0,
          (size_t)(n->msh->dim * n->msh->n_node) * sizeof *n->force);
@@ -119,7 +119,7 @@ static void grow_scales(reduction *n, const state *s) {
 }
 
 status reduction_again(reduction *n, const state *s, int k, double bound,
-                       neglected *row) {
+                       omitted *row) {
   status st = OK;
   double *rc = NULL;
   int solved = 0;

@@ -1,9 +1,9 @@
 /*
- * What is worth a try: signs from the deck alone. The estimates of measure.c
- * decide afterwards, so that a wrong sign costs time and nothing else.
+ * Candidates for a trial: criteria from the deck alone. The estimates of
+ * measure.c decide afterwards, so that a wrong candidate costs only time.
  *
  *   nonlocal average   RADIUS below the shortest distance of two contact nodes:
- *                      each node then is its own average, the answer the same
+ *                      each node then is its own average, the solution the same
  *   thermal strain     alpha |T - T_I| below SHARE * TOL times the strain of
  *                      the loads
  *   inelastic strain   of a material: its rate under the largest load, over all
@@ -28,8 +28,8 @@ const double reduction_share = 0.1;
 
 /* ---- scales of the deck ------------------------------------------------- */
 
-/* Largest stress that pressures and prescribed displacements speak of, Pa; 0:
- * not known (expressions, forces). */
+/* Largest stress by pressures and prescribed displacements, Pa; 0: not known
+ * (expressions, forces). */
 double reduction_load_stress(const model *m, const mesh *msh, double young) {
   double most = 0.0;
   for (int i = 0; i < m->n.step; ++i)
@@ -58,10 +58,10 @@ int reduction_has_initial(const model *m) {
   return m->initial.start.given;
 }
 
-neglected *reduction_row(model *m, int bit, int id) {
+omitted *reduction_row(model *m, int bit, int id) {
   if (m->reduction.n == NEGLECT_MAX) return NULL;
-  neglected *row = &m->reduction.row[m->reduction.n++];
-  *row = (neglected){.bit = bit, .id = id};
+  omitted *row = &m->reduction.row[m->reduction.n++];
+  *row = (omitted){.bit = bit, .id = id};
   return row;
 }
 
@@ -83,7 +83,7 @@ static double largest_temperature(const model *m) {
 }
 
 /* *jumps 1: a *VISCO step starts with other temperatures than were there
- * before, to which a body that creeps answers at once, by an increment. */
+ * before, to which a body that creeps responds at once, by an increment. */
 static status find_jump(const model *m, const mesh *msh, int *jumps) {
   status st = OK;
   double *T0 = NULL, *before = NULL, *T = NULL;
@@ -139,10 +139,10 @@ static status try_thermal(model *m, const mesh *msh) {
     TRY(find_jump(m, msh, &jumps));
     if (jumps) goto done;
   }
-  neglected *row = reduction_row(m, EFFECT_BIT_THERMAL, -1);
+  omitted *row = reduction_row(m, EFFECT_BIT_THERMAL, -1);
   if (row == NULL) goto done;
-  snprintf(row->why, sizeof row->why,
-           "at most %.1e of the strain the loads make", worst);
+  snprintf(row->why, sizeof row->why, "at most %.1e of the strain of the loads",
+           worst);
 done:
   return st;
 }
@@ -204,7 +204,7 @@ static void try_average(model *m, const mesh *msh) {
       any = 1;
     }
   }
-  neglected *row = any ? reduction_row(m, EFFECT_BIT_NONLOCAL, -1) : NULL;
+  omitted *row = any ? reduction_row(m, EFFECT_BIT_NONLOCAL, -1) : NULL;
   if (row != NULL)
     snprintf(row->why, sizeof row->why,
              "RADIUS is below %.3g, the least distance of contact nodes: the "
@@ -274,7 +274,7 @@ static status try_friction(model *m, const mesh *msh) {
   if (!small && !has_no_coupling(m)) goto done;
   TRY(friction_holds(m, msh, &holds));
   if (holds) goto done;
-  neglected *row = reduction_row(m, EFFECT_BIT_FRICTION, -1);
+  omitted *row = reduction_row(m, EFFECT_BIT_FRICTION, -1);
   if (row == NULL) goto done;
   if (small)
     snprintf(row->why, sizeof row->why, "mu is at most %.1e", mu);
@@ -287,7 +287,7 @@ done:
 
 /* ---- all ---------------------------------------------------------------- */
 
-/* 1: what asks for the problem itself, not its answer, or moves on its own. */
+/* 1: needs the problem itself, not its solution, or moves on its own. */
 static int must_stay(const model *m) {
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];

@@ -1,6 +1,6 @@
 /*
- * Materials whose law is worth a try without: it flows too little, or it has
- * always reached its end, so that elastic constants stand in its place.
+ * Materials to try without their law: it flows too little, or it is always in
+ * its final state, so that elastic constants replace it.
  */
 #include "effects/reduction/parts.h"
 
@@ -16,7 +16,7 @@ static double visco_time(const model *m) {
 
 /* ---- inelastic strain --------------------------------------------------- */
 
-/* 1: the rate at the start tells nothing of later ones. */
+/* 1: the rate at the start does not bound later ones. */
 static int hardens(const law_point *p) {
   enum { NORTON_M = 2 };
   if (p->law->ops == &user_law) return 1;
@@ -68,7 +68,7 @@ static status try_small(model *m, const mesh *msh, int id, int *tried) {
                     &rate));
   double share = rate * visco_time(m) * young / stress;
   if (!(share <= reduction_share * m->reduction.tol)) goto done;
-  neglected *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
+  omitted *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
   if (row == NULL) goto done;
   *tried = 1;
   if (rate > 0.0)
@@ -83,11 +83,11 @@ done:
   return st;
 }
 
-/* ---- at its end -----------------------------------------------------------
+/* ---- final state -----------------------------------------------------------
  */
 
 /* The shortest increment if the law flows in all steps and the integrator damps
- * what is fast; else 0. */
+ * fast terms; else 0. */
 static double damped_increment(const model *m) {
   double least = HUGE_VAL;
   for (int i = 0; i < m->n.step; ++i) {
@@ -135,7 +135,7 @@ static status try_relaxed(model *m, int id) {
   TRY(relaxed_law(mat, SOLID_3D, R, &time));
   if (!(time > 0.0) || !(time <= reduction_share * m->reduction.tol * dt))
     goto done;
-  neglected *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
+  omitted *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
   if (row == NULL) goto done;
   row->time = time;
   relaxed_constants(&mat->elastic.set[0], R, &mat->elastic_aside);
@@ -143,7 +143,7 @@ static status try_relaxed(model *m, int id) {
                   &time));
   snprintf(row->why, sizeof row->why,
            "material %s: %s ends within %.3g, %.1e of an increment; E = %.6g, "
-           "nu = %.6g stand for it",
+           "nu = %.6g replace it",
            mat->name, mat->law.ops->name, time, time / dt,
            mat->elastic_aside.constant[0], mat->elastic_aside.constant[1]);
 done:

@@ -30,8 +30,7 @@ static void put_back(friction_rule *rule) {
   rule->aside = NULL;
 }
 
-/* The constants of *ELASTIC that are not in force take the place of those that
- * are. */
+/* Exchange the constants of *ELASTIC in force with the others. */
 static void change_constants(material *mat) {
   char text[256];
   const elastic_constants now = mat->elastic.set[0];
@@ -43,7 +42,7 @@ static void change_constants(material *mat) {
 
 void reduction_leave_out(model *m) {
   for (int i = 0; i < m->reduction.n; ++i) {
-    neglected *row = &m->reduction.row[i];
+    omitted *row = &m->reduction.row[i];
     if (row->back) continue;
     row->bound = row->local = row->change = 0.0;
     row->checked = row->again = 0;
@@ -56,7 +55,7 @@ void reduction_leave_out(model *m) {
     m->materials[row->id].law.ops = NULL;
     if (row->time > 0.0) change_constants(&m->materials[row->id]);
   }
-  m->effects = effects_called_for(m);
+  m->effects = effects_required(m);
   for (int i = 0; i < m->reduction.n; ++i)
     if (m->reduction.row[i].bit == EFFECT_BIT_THERMAL &&
         !m->reduction.row[i].back)
@@ -72,5 +71,5 @@ void reduction_restore(model *m) {
     mat->is_still = 0;
     if (mat->is_relaxed) change_constants(mat);
   }
-  m->effects = effects_called_for(m);
+  m->effects = effects_required(m);
 }

@@ -1,18 +1,16 @@
 /*
- * Bounds of what an effect left out would have changed, from the answer found
- * without it; a(.,.) is the energy of the body, |.| its norm.
+ * Bounds of the change by an effect left out, from the solution without it;
+ * a(.,.) is the energy of the body, |.| its norm.
  *
- *   thermal strain e    |du| <= |e|_E of the strain at hand; with friction,
- *                       which remembers, of all its changes added up (twice)
- *   inelastic strain    |du| <= |e^i|_E <= sum of dt times the larger of
- *                       |rate|_E at both ends, internal variables at their
- *                       start, and twice that for the stress it relieves
+ *   thermal strain e    |du| <= |e|_E of the current strain; with friction,
+ * which depends on the path, of all its changes summed (twice) inelastic strain
+ * |du| <= |e^i|_E <= sum of dt times the larger of |rate|_E at both ends,
+ * internal variables at their start, and twice that for the stress it relaxes
  *   law at its end      |du| <= |lag|_E of the strain that R sigma has grown by
  *                       and that has not crept yet, twice
- *   friction            both inequalities tested with each other's answer:
- *                       a(du, du) <= j(u) - j(u') <= sum g |slip| of the answer
- *                       without friction; square roots added up over the
- *                       increments, twice
+ *   friction both inequalities tested with the other solution:
+ *                       a(du, du) <= j(u) - j(u') <= sum g |slip| of the
+ * solution without friction; square roots added up over the increments, twice
  *
  * over |u| of the increment. "local" is the largest stress E e of an element
  * over the largest contact pressure, or stress where nothing touches.
@@ -110,7 +108,7 @@ const material *reduction_material(const reduction *n, int elem_id) {
   return &m->materials[m->sections[m->elem_section[elem_id]].material_id];
 }
 
-int reduction_is_about(const reduction *n, const neglected *row, int elem_id) {
+int reduction_is_about(const reduction *n, const omitted *row, int elem_id) {
   return reduction_material(n, elem_id) == &n->m->materials[row->id] &&
          (row->some == 0 || n->m->reduction.still[elem_id]);
 }
@@ -130,7 +128,7 @@ static double stress_scale(const reduction *n, const state *s) {
   return most;
 }
 
-/* a / b; nothing is no part of anything. */
+/* a / b; 0 if a is 0. */
 double reduction_part(double a, double b) {
   return a == 0.0 ? 0.0 : b > 0.0 ? a / b : HUGE_VAL;
 }
@@ -217,7 +215,7 @@ done:
  * which an implicit Euler step has exactly; not at all where the law does not
  * flow, nor where a load is applied at once (dt = 0).
  */
-static void measure_relaxed(reduction *n, const neglected *row, double dt,
+static void measure_relaxed(reduction *n, const omitted *row, double dt,
                             double *norm, double *stress) {
   const int ns = n->m->ns;
   const material *mat = &n->m->materials[row->id];
@@ -240,9 +238,9 @@ static void measure_relaxed(reduction *n, const neglected *row, double dt,
   *norm = SAFETY * sqrt(sum);
 }
 
-/* Rates of one material under the stresses at hand: their norm; n->stress of
+/* Rates of one material under the current stresses: their norm; n->stress of
  * its elements grows by dt. */
-static status add_rates(reduction *n, const state *s, const neglected *row,
+static status add_rates(reduction *n, const state *s, const omitted *row,
                         double dt, double *norm) {
   status st = OK;
   const material *mat = &n->m->materials[row->id];
@@ -285,7 +283,7 @@ done:
 static status measure_inelastic(reduction *n, const state *s, int k,
                                 double *norm, double *stress) {
   status st = OK;
-  const neglected *row = &n->m->reduction.row[k];
+  const omitted *row = &n->m->reduction.row[k];
   double now;
   int flows = n->m->steps[s->step_no - 1].kind == STEP_VISCO;
   if (row->time > 0.0) {
@@ -304,7 +302,7 @@ done:
   return st;
 }
 
-/* The rule that was taken out. */
+/* The rule that was left out. */
 double reduction_coefficient(const reduction *n, const state *s, int i) {
   const contact_surface *c = s->contacts.surface;
   const friction_rule *rule =
@@ -332,14 +330,14 @@ static void measure_friction(reduction *n, const state *s, double *sum,
   *norm = SAFETY * *sum;
 }
 
-status reduction_measure(reduction *n, const state *s, neglected *rows) {
+status reduction_measure(reduction *n, const state *s, omitted *rows) {
   status st = OK;
   double size = sqrt(2.0 * fmax(s->energy.strain, 0.0));
   TRY(reduction_stress(n, s));
   double scale = stress_scale(n, s);
   for (int k = 0; k < n->m->reduction.n; ++k) {
     double norm = 0.0, stress = 0.0;
-    neglected *row = &rows[k];
+    omitted *row = &rows[k];
     if (row->back) continue;
     if (row->bit == EFFECT_BIT_THERMAL)
       TRY(measure_thermal(n, s, &n->sum[k], &norm, &stress));
@@ -358,7 +356,7 @@ done:
   return st;
 }
 
-static int reduction_holds(const model *m, const neglected *row) {
+static int reduction_holds(const model *m, const omitted *row) {
   return row->checked > 0 && row->bound <= reduction_share * m->reduction.tol &&
          row->local <= m->reduction.tol &&
          row->change <= 0.5 * m->reduction.tol;
@@ -375,7 +373,7 @@ int reduction_refuted(const model *m) {
 int reduction_take_back(model *m, int all) {
   int n = 0;
   for (int k = 0; k < m->reduction.n; ++k) {
-    neglected *row = &m->reduction.row[k];
+    omitted *row = &m->reduction.row[k];
     if (row->back || (reduction_holds(m, row) && !all)) continue;
     row->back = 1;
     row->lost = all;

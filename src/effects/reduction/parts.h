@@ -1,5 +1,5 @@
 /*
- * What the bounds are summed up from, shared by the files of this folder only.
+ * Sums of the bounds, shared by the files of this folder only.
  */
 #ifndef PROTIS_REDUCTION_PARTS_H
 #define PROTIS_REDUCTION_PARTS_H
@@ -26,22 +26,22 @@ struct reduction {
   double *way;              /* [(dim-1)*n_node] all slip so far, m*/
   double sum[NEGLECT_MAX];  /* sqrt(J), of the row */
   double last[NEGLECT_MAX]; /* sqrt(J)/s, rate of the last increment */
-  double seen[NEGLECT_MAX]; /* -, bound at the last increment solved again    */
-  double tangential;        /* N, largest tangential force so far             */
-  double total;             /* N, largest of their sums so far                */
-  int *elem_id;   /* [n_elem] all                                            */
-  double *strain; /* [ns*n_elem] room                                        */
-  double *force, *u; /* [dim*n_node] room                                     */
+  double seen[NEGLECT_MAX]; /* -, bound at the last increment solved again */
+  double tangential;        /* N, largest tangential force so far */
+  double total;             /* N, largest of their sums so far */
+  int *elem_id;             /* [n_elem] all */
+  double *strain;           /* [ns*n_elem] room */
+  double *force, *u;        /* [dim*n_node] room */
 };
 
 /* choose.c: scales of the deck. */
-/* Largest stress that pressures and prescribed displacements speak of, Pa; 0:
- * not known (expressions, forces). */
+/* Largest stress by pressures and prescribed displacements, Pa; 0: not known
+ * (expressions, forces). */
 double reduction_load_stress(const model *m, const mesh *msh, double young);
 double reduction_young(const material *mat); /* Pa */
-int reduction_has_initial(const model *m); /* 1: of strains, displacements    */
-/* A new row; NULL: there is no room. */
-neglected *reduction_row(model *m, int bit, int id);
+int reduction_has_initial(const model *m);   /* 1: of strains, displacements */
+/* A new row; NULL: the table is full. */
+omitted *reduction_row(model *m, int bit, int id);
 /* laws.c: materials to try without their law. */
 status reduction_try_laws(model *m, const mesh *msh);
 
@@ -53,17 +53,17 @@ status reduction_try_threshold(model *m, const mesh *msh);
 
 const material *reduction_material(const reduction *n, int elem_id);
 /* 1: the row leaves out the law of that element. */
-int reduction_is_about(const reduction *n, const neglected *row, int elem_id);
+int reduction_is_about(const reduction *n, const omitted *row, int elem_id);
 /* Stresses of the run into n->sigma. */
 status reduction_stress(reduction *n, const state *s);
 /* Coefficient of the friction left out at contact node i. */
 double reduction_coefficient(const reduction *n, const state *s, int i);
-/* a / b; nothing is no part of anything. */
+/* a / b; 0 if a is 0. */
 double reduction_part(double a, double b);
 
 /* again.c: the increment with the effect of row k in force, where the row's
  * "bound" now has doubled since the last time or the step ends. */
 status reduction_again(reduction *n, const state *s, int k, double bound,
-                       neglected *row);
+                       omitted *row);
 
 #endif

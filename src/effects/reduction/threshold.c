@@ -1,10 +1,10 @@
 /*
  * Elements of a material with a threshold (its rate is exactly zero below) that
  * stay below it. A run of the elastic bodies over the same loads, in few
- * increments, shows where the stresses go; what stays below the threshold with
- * a margin there is tried without the law, since flow elsewhere moves stresses
- * about. Whether it held is seen in the run itself: the rate of the law at
- * these elements must be nothing, or add to the bound as any other.
+ * increments, gives the stresses; elements below the threshold with a margin
+ * are tried without the law, since flow elsewhere redistributes stresses. The
+ * run itself checks it: the rate of the law at these elements must be zero, or
+ * adds to the bound as any other.
  */
 #include "effects/reduction/parts.h"
 #include "effects/rows.h"
@@ -14,16 +14,16 @@
 #include <math.h>
 #include <string.h>
 
-static const double margin = 1.5; /* of stresses, -                           */
+static const double margin = 1.5; /* of stresses, - */
 enum {
   PIECES = 8,
   WORTH = 4
 }; /* increments of a step; the run has so many
-      times those of the elastic one           */
+      times those of the elastic one */
 
 typedef struct preview {
   reduction *n;
-  unsigned char *flows; /* [n_elem] 1: comes near its threshold               */
+  unsigned char *flows; /* [n_elem] 1: near its threshold */
   status st;
 } preview;
 
@@ -50,7 +50,7 @@ static double short_step(const step *s) {
   return fmax(s->dt, s->total / PIECES);
 }
 
-/* 1: the elastic run is short beside the other. */
+/* 1: the elastic run is short compared with the other. */
 static int is_worth_it(const model *m) {
   double few = 0.0, all = 0.0;
   int any = 0;
@@ -112,7 +112,7 @@ static void make_elastic(model *m) {
     m->materials[i].law.ops = NULL;
   }
   for (int i = 0; i < m->n.step; ++i) m->steps[i].dt = short_step(&m->steps[i]);
-  m->effects = effects_called_for(m);
+  m->effects = effects_required(m);
 }
 
 /* The elastic run; *seen 1 if it came to its end. */
@@ -147,7 +147,7 @@ static void add_rows(model *m, const mesh *msh, const unsigned char *flows) {
       m->reduction.still[e] = !flows[e];
       n += m->reduction.still[e];
     }
-    neglected *row = n > 0 ? reduction_row(m, EFFECT_BIT_INELASTIC, i) : NULL;
+    omitted *row = n > 0 ? reduction_row(m, EFFECT_BIT_INELASTIC, i) : NULL;
     if (row == NULL) continue;
     row->some = n < all ? n : 0;
     snprintf(row->why, sizeof row->why,

@@ -1,7 +1,7 @@
 /*
- * What the cards of a deck mean: a function for each that needs one, told by
- * the keyword table (model/keyword/keyword.h) what stands on the card. Errors
- * of the deck go to the log; a status is of memory.
+ * What the cards of a deck mean: a function for each that needs one, with the
+ * card as the keyword table (model/keyword/keyword.h) describes it. Errors of
+ * the deck go to the log; a status is of memory.
  */
 #ifndef PROTIS_CARDS_CARDS_H
 #define PROTIS_CARDS_CARDS_H
@@ -11,20 +11,22 @@
 /* State of reading a deck, card by card. */
 typedef struct reading {
   model *m;
-  const card *card;   /* the current card                                   */
-  const void *param;  /* its options, as the row's table says               */
-  const void *plugin; /* options of the law or solver it names, or NULL     */
+  const card *card;   /* the current card */
+  const void *param;  /* its options, as the row's table says */
+  const void *plugin; /* options of the law or solver it names, or NULL */
   size_t plugin_size;
-  int material_id; /* open *MATERIAL, or -1                              */
-  int misread;     /* a parameter of the card was refused                */
-  int lost;        /* a card or its lines were refused: what seems to be
-                      missing may be that one and is not reported        */
-  int in_step;     /* inside *STEP ... *END STEP                         */
-  const char *const *axisymmetric; /* names of variables, or NULL            */
-  int lost_material, lost_step; /* 1: a card that no keyword has the name of
-                                   seems to have opened one                  */
-  int (*is_lost)(const model *m, const char *name); /* 1: such a card has the
-                      name, its absence is not reported; NULL: there is none */
+  int material_id; /* open *MATERIAL, or -1 */
+  int misread;     /* a parameter of the card was refused */
+  int lost;        /* a card or its lines were refused: a missing item may be
+                      that one and is not reported */
+  int in_step;     /* inside *STEP ... *END STEP */
+  /* names of variables, or NULL */
+  const char *const *axisymmetric;
+  int lost_material,
+      lost_step; /* 1: an unknown card seems to have opened one */
+  /* 1: such a card has the name, its absence is not reported; NULL: there is
+   * none */
+  int (*is_lost)(const model *m, const char *name);
 } reading;
 
 /* Names of the variables of expressions if some *SOLID SECTION of the deck is
@@ -35,10 +37,10 @@ const char *const *axisymmetric_names(const deck *d);
 typedef struct plugin {
   const option *options;
   size_t size;
-  const char *parameter, *name; /* METHOD, newton; NULL: not known            */
+  const char *parameter, *name; /* METHOD, newton; NULL: not known */
 } plugin;
 
-enum { PARAM_SIZE = 512 }; /* room for the options of any row or plug-in      */
+enum { PARAM_SIZE = 512 }; /* space for the options of any row or plug-in */
 
 /* ---- options of the cards, for the rows of the keyword table ---- */
 
@@ -64,7 +66,7 @@ typedef struct inelastic_param {
   law_shift shift;
 } inelastic_param;
 typedef struct creep_param {
-  int law; /* CREEP_...                                                       */
+  int law; /* CREEP_... */
   law_shift shift;
 } creep_param;
 enum { CREEP_STRAIN, CREEP_TIME, CREEP_NORTON, CREEP_HYPERBOLIC };
@@ -106,7 +108,7 @@ typedef struct force_param {
   const char *contact, *amplitude;
   int table;
 } force_param;
-typedef struct effect_param { /* of an effect: CONTACT= and numbers           */
+typedef struct effect_param { /* of an effect: CONTACT= and numbers */
   const char *contact;
   double value[EFFECT_VALUES];
 } effect_param;
@@ -131,7 +133,7 @@ typedef struct load_param {
   int op;
 } load_param;
 typedef struct temperature_param {
-  load_param load; /* first: what all loads have                             */
+  load_param load; /* first: what all loads have */
   const char *file;
 } temperature_param;
 typedef struct solver_param {
@@ -139,7 +141,7 @@ typedef struct solver_param {
   double tol, share;
   int max_iter, limit_max_iter, check;
 } solver_param;
-enum { TIME_NO, TIME_YES, TIME_BALANCED }; /* TIME= of *ACCURACY              */
+enum { TIME_NO, TIME_YES, TIME_BALANCED }; /* TIME= of *ACCURACY */
 typedef struct accuracy_param {
   int mesh, time, max_passes;
   double target, max_cpu, max_memory, time_share;
@@ -181,7 +183,8 @@ plugin names_inelastic(const reading *r);
 status apply_creep(reading *r);
 status apply_viscoelastic(reading *r);
 status apply_trs(reading *r);
-/* Once all cards are read: the law of a material beside its elasticity. */
+/* Once all cards are read: the law of a material together with its
+ * elasticity. */
 status material_resolve_law(const model *m, material *mat);
 /* ---- initial.c ---- */
 status apply_initial(reading *r);
@@ -239,11 +242,11 @@ int same_word(const char *a, const char *b);
 /* Place of a parameter's value, or of the card. */
 const place *value_place(const reading *r, const char *parameter);
 /* Warn that a parameter, which is not its default, counts only with another. */
-void tell_idle(const reading *r, const char *name, const char *with);
+void report_idle(const reading *r, const char *name, const char *with);
 /* Report NAME= given twice; 1 if "old" has it. */
 int name_taken(const reading *r, const char *name, const char *old);
-/* Report a word that names nothing, with the nearest of those there are:
- * "text" is what is said before, as "there is no *MATERIAL, NAME=". */
+/* Report a word that names nothing, with the nearest of those there are: "text"
+ * precedes it, as "there is no *MATERIAL, NAME=". */
 void unknown_word(message_log *log, message_id id, const place *at,
                   const char *text, const char *word,
                   const char *(*next)(const void *ctx, int i), const void *ctx);

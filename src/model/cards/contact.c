@@ -125,7 +125,7 @@ static void note_short(const reading *r, int n_line, const obstacle *o) {
       of->short_at = line[i].at;
 }
 
-/* The lines before MOVE and ROTATE, as the shape wants them. */
+/* The lines before MOVE and ROTATE, as the shape requires them. */
 static void read_shape(const reading *r, int n_line, obstacle *o) {
   const record *line = r->card->records;
   static const char *const wanted[] = {
@@ -156,7 +156,7 @@ static void read_shape(const reading *r, int n_line, obstacle *o) {
   }
 }
 
-/* What only a cylinder or a sphere has. */
+/* Parameters of a cylinder or a sphere only. */
 static void check_round(const reading *r, const obstacle_param *p) {
   message_log *log = r->m->log;
   const parameter *radius = card_parameter(r->card, "RADIUS");
@@ -318,7 +318,8 @@ static status read_value(reading *r, const char *what, int variable,
 
 /* The rule a *FRICTION card fills: of the contact, or of the step for it; NULL
  * without memory, or *told after a message. */
-static friction_rule *new_rule(const reading *r, int contact_id, int *told) {
+static friction_rule *new_rule(const reading *r, int contact_id,
+                               int *reported) {
   status st = OK;
   contact *c = &r->m->contacts[contact_id];
   friction_rule *rule = &c->friction;
@@ -334,13 +335,13 @@ static friction_rule *new_rule(const reading *r, int contact_id, int *told) {
     s->friction.changes[s->friction.n].contact_id = contact_id;
     s->friction.n += old == NULL;
   }
-  *told = old != NULL;
+  *reported = old != NULL;
   if (old != NULL)
     message_add(r->m->log, P2032, &r->card->at,
                 "contact %s has its *FRICTION already, at line %d", c->name,
                 old->at.line_no);
 done:
-  return st != OK || *told ? NULL : rule;
+  return st != OK || *reported ? NULL : rule;
 }
 
 static status copy_options(const reading *r, const friction_ops *law,
@@ -358,10 +359,11 @@ status apply_friction(reading *r) {
   const card *c = r->card;
   const friction_ops *law = p->law == NULL ? NULL : friction_find(p->law);
   if (law == NULL || p->contact == NULL) return OK;
-  int told = 0, id = find_contact(r, p->contact);
+  int reported = 0, id = find_contact(r, p->contact);
   if (id < 0) return OK;
-  friction_rule *rule = new_rule(r, id, &told);
-  if (rule == NULL && !told) RAISE(ERR_MEMORY, "memory exhausted: *FRICTION");
+  friction_rule *rule = new_rule(r, id, &reported);
+  if (rule == NULL && !reported)
+    RAISE(ERR_MEMORY, "memory exhausted: *FRICTION");
   if (rule == NULL) return OK;
   rule->law = law;
   rule->amplitude_name = p->amplitude;

@@ -48,7 +48,7 @@ status apply_solver(reading *r) {
   s->solver.max_iter = p->max_iter;
   s->solver.limit_max_iter = p->limit_max_iter;
   s->check = p->check;
-  if (!s->balanced && p->share != 0.05) tell_idle(r, "SHARE", "TOL=BALANCED");
+  if (!s->balanced && p->share != 0.05) report_idle(r, "SHARE", "TOL=BALANCED");
   if (r->plugin == NULL) return OK;
   s->solver_param = memory_new(1, r->plugin_size);
   if (s->solver_param == NULL)
@@ -74,15 +74,15 @@ status apply_accuracy(reading *r) {
   s->accuracy.mesh |= s->accuracy.time_balanced;
   s->accuracy.theorems = p->theorems;
   if (!s->accuracy.time_balanced && p->time_share != 0.1)
-    tell_idle(r, "TIME_SHARE", "TIME=BALANCED");
+    report_idle(r, "TIME_SHARE", "TIME=BALANCED");
   if (p->target > 0.0) {
     r->m->accuracy.target =
         (accuracy_target){p->target, p->max_cpu, p->max_memory, p->max_passes};
     return OK;
   }
-  if (p->max_cpu > 0.0) tell_idle(r, "MAX_CPU", "TARGET=");
-  if (p->max_memory > 0.0) tell_idle(r, "MAX_MEMORY", "TARGET=");
-  if (p->max_passes != 8) tell_idle(r, "MAX_PASSES", "TARGET=");
+  if (p->max_cpu > 0.0) report_idle(r, "MAX_CPU", "TARGET=");
+  if (p->max_memory > 0.0) report_idle(r, "MAX_MEMORY", "TARGET=");
+  if (p->max_passes != 8) report_idle(r, "MAX_PASSES", "TARGET=");
   return OK;
 }
 
@@ -110,7 +110,7 @@ status apply_print(reading *r) {
                   "GROUP= counts for NODES, ELEMENTS and REACTIONS only");
   }
   if (p->points != NULL && p->frequency != 1)
-    tell_idle(r, "FREQUENCY", "no TIME POINTS=");
+    report_idle(r, "FREQUENCY", "no TIME POINTS=");
   if (!any && !r->misread)
     message_add(r->m->log, P2005, &r->card->at,
                 "*PRINT names no table:" PRINT_LIST(PRINT_WORD));
@@ -125,7 +125,7 @@ status apply_output(reading *r) {
   s->output.frequency = p->hdf5 ? p->frequency : -1;
   s->output.condensed = p->condensed == 1 ? p->frequency : -1;
   if (!p->hdf5 && p->condensed != 1 && p->frequency != 1)
-    tell_idle(r, "FREQUENCY", "HDF5=YES or CONDENSED=FCLIB");
+    report_idle(r, "FREQUENCY", "HDF5=YES or CONDENSED=FCLIB");
   return OK;
 }
 

@@ -45,7 +45,7 @@ const place *value_place(const reading *r, const char *name) {
   return p == NULL ? &r->card->at : &p->value.at;
 }
 
-void tell_idle(const reading *r, const char *name, const char *with) {
+void report_idle(const reading *r, const char *name, const char *with) {
   message_add(r->m->log, P2037, value_place(r, name),
               "*%s: %s= counts with %s only", r->card->name, name, with);
 }

@@ -1,5 +1,5 @@
 /*
- * Inelastic laws of a material, and the clock they run on.
+ * Inelastic laws of a material, and their time-temperature shift.
  */
 #include "model/cards/cards.h"
 
@@ -24,12 +24,12 @@ plugin names_inelastic(const reading *r) {
   return (plugin){NULL, 0, "LAW", NULL};
 }
 
-/* What the shift needs is there, and nothing that another one has. */
+/* The parameters of the shift are given, and none of another one. */
 static void check_shift(const reading *r, const law_ops *ops,
                         const law_shift *s) {
   static const struct {
     const char *name;
-    unsigned needed, known; /* bits 1 << shift_kind                           */
+    unsigned needed, known; /* bits 1 << shift_kind */
   } rows[] = {{"T_REF", 6, 6},
               {"C1", 2, 2},
               {"C2", 2, 2},
@@ -146,7 +146,7 @@ status apply_trs(reading *r) {
   return OK;
 }
 
-/* The clock of *TRS into the law it belongs to. */
+/* The shift of *TRS into the law it belongs to. */
 static void set_clock(const model *m, material *mat) {
   if (mat->clock.kind == SHIFT_NONE) return;
   if (mat->law.ops == NULL)

@@ -53,16 +53,16 @@ static int read_internal_line(const reading *r, const record *line,
 
 /* By initial_type. */
 static const struct {
-  const char *line; /* what a line holds                                      */
+  const char *line; /* what a line holds */
   int (*read)(const reading *r, const record *line, initial *c);
-  int starts; /* 1: FILE= and INCOMPATIBLE= count, lines need not be there    */
+  int starts; /* 1: FILE= and INCOMPATIBLE= count, lines need not be there */
 } initial_rows[] = {
     [INITIAL_TEMPERATURE] = {temperature_line, read_temperature_line, 0},
     [INITIAL_DISPLACEMENT] = {displacement_line, read_displacement_line, 1},
     [INITIAL_STRAIN] = {strain_line, read_strain_line, 0},
     [INITIAL_INTERNAL] = {internal_line, read_internal_line, 0}};
 
-/* What stands on the card beside TYPE=. */
+/* Parameters of the card besides TYPE=. */
 static status open_initial(reading *r) {
   const initial_param *p = r->param;
   model *m = r->m;

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* 0 as well for one that the card has been told about. */
+/* 0 also where an error was reported for the card. */
 static int known_amplitude(const reading *r, const char *name) {
   for (int i = 0; i < r->m->n.amplitude; ++i)
     if (name != NULL && same_word(name, r->m->time.amplitudes[i].name))
@@ -40,7 +40,7 @@ done:
   return st == OK ? &list->item[list->n - 1] : NULL;
 }
 
-/* Without data lines the card says OP=NEW and no more. */
+/* Without data lines the card has OP=NEW only. */
 static void renew(const reading *r, unsigned kinds, const char *expected) {
   const load_param *p = r->param;
   if (p->op == 1 && r->in_step) open_step(r)->renewed |= kinds;

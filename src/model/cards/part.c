@@ -197,6 +197,6 @@ status apply_effects(reading *r) {
   r->m->reduction.is_auto = p->mode;
   r->m->reduction.tol = p->tol;
   r->m->reduction.at = r->card->at;
-  if (!p->mode && p->tol != 1e-3) tell_idle(r, "TOL", "MODE=AUTO");
+  if (!p->mode && p->tol != 1e-3) report_idle(r, "TOL", "MODE=AUTO");
   return OK;
 }

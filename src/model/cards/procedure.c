@@ -108,15 +108,15 @@ static const char *scheme_name(const void *ctx, int i) {
   return scheme_list[i] == NULL ? NULL : scheme_list[i]->name;
 }
 
-/* THETA=, ITERATION= and SUBSTEPS= where they mean nothing; the defaults, which
- * the echo writes, say nothing. */
+/* THETA=, ITERATION= and SUBSTEPS= where they have no effect; the defaults,
+ * which the echo writes, are accepted. */
 static void check_visco(const reading *r, const scheme *s) {
   const visco_param *p = r->param;
   if (!s->has_theta && p->theta != 0.5)
     message_add(r->m->log, P2037, value_place(r, "THETA"),
                 "*VISCO: THETA= counts for INTEGRATOR=THETA only");
   if (s->limit == 0.0 && !s->has_theta && p->substeps)
-    tell_idle(r, "SUBSTEPS", "an explicit INTEGRATOR=");
+    report_idle(r, "SUBSTEPS", "an explicit INTEGRATOR=");
   if (s->limit > 0.0 && p->iteration != 0)
     message_add(r->m->log, P2037, value_place(r, "ITERATION"),
                 "*VISCO: INTEGRATOR=%s does not iterate", s->name);

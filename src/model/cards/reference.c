@@ -6,7 +6,7 @@
 /* clang-format off */
 static const struct {
   const char *name;
-  int plane, axisymmetric, solid; /* place in "value"; -1: none               */
+  int plane, axisymmetric, solid; /* place in "value"; -1: none */
 } components[] = {
   {"u_x", 0, -1, 0},  {"u_y", 1, -1, 1},  {"u_r", -1, 0, -1}, {"u_z", -1, 1, 2},
   {"stress_xx", 3, -1, 3},  {"stress_yy", 4, -1, 4},  {"stress_zz", 5, 4, 5},

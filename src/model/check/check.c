@@ -248,7 +248,7 @@ static void check_locking(const model *m) {
 
 /* The radius x of an axisymmetric model is not negative. */
 static void check_radius(const model *m, const mesh *msh) {
-  static const double rounding = 1e-9; /* of the size of the mesh            */
+  static const double rounding = 1e-9; /* of the size of the mesh */
   if (m->n.section == 0 || m->sections[0].kin != AXISYMMETRIC) return;
   for (int i = 0; i < msh->n_node; ++i) {
     const double *x = msh->x + (size_t)msh->dim * (size_t)i;

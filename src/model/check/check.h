@@ -19,10 +19,10 @@ int step_has_limit(const step *s);
 /*
  * What the fastest rate of the laws means for an increment dt of a *VISCO step
  * from t on: the level of 2^level pieces that keep it stable, > 0 with
- * SUBSTEPS=AUTO only; -1 after a message that it is not. "tell": say if parts
- * of the stress will ring.
+ * SUBSTEPS=AUTO only; -1 after a message that it is not. "notify": report if
+ * parts of the stress will ring.
  */
 int step_level(const model *m, const step *s, double t, double dt, double rate,
-               int tell);
+               int notify);
 
 #endif

@@ -13,8 +13,8 @@ int step_has_limit(const step *s) {
 }
 
 /* THETA < 1 turns the sign of what is much faster than dt at each step. */
-static void tell_ringing(const model *m, const step *s, double t, double dt,
-                         double rate) {
+static void report_ringing(const model *m, const step *s, double t, double dt,
+                           double rate) {
   double theta = s->visco.theta, z = rate * dt;
   if (s->visco.integrator->limit > 0.0 || (1.0 - theta) * z <= 1.0) return;
   message_add(m->log, P2051, &s->at,
@@ -26,13 +26,13 @@ static void tell_ringing(const model *m, const step *s, double t, double dt,
 }
 
 int step_level(const model *m, const step *s, double t, double dt, double rate,
-               int tell) {
+               int notify) {
   enum { DEEPEST = 30 };
   int level = 0;
   double limit = scheme_limit(s->visco.integrator, s->visco.theta) / rate;
   /* Ends of increments are sums: dt is known to the rounding of the time. */
   double rounding = 4e-16 * (fabs(t) + dt);
-  if (tell) tell_ringing(m, s, t, dt, rate);
+  if (notify) report_ringing(m, s, t, dt, rate);
   while (ldexp(dt, -level) > limit + rounding && level < DEEPEST) ++level;
   if (level == 0 || (s->visco.substeps && level < DEEPEST)) return level;
   message_add(m->log, P2050, &s->at,
@@ -108,7 +108,7 @@ static status keeps_volume(const section *s, const material *mat, int *answer) {
   const double size = 1e-3 * elastic.young;
   const double mean[6] = {size, size, size}, shear[6] = {0, 0, 0, size};
   p.ei = p.alpha = zero;
-  p.speed = 1.0; /* whatever the temperature                                  */
+  p.speed = 1.0; /* whatever the temperature */
   p.sigma = mean;
   law_rate(&p, ei_rate, alpha_rate);
   double swelling = fabs(tensor_trace(ei_rate));

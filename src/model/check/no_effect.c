@@ -1,5 +1,5 @@
 /*
- * What a deck says and what changes nothing: told, as it is seldom meant.
+ * Input without effect is reported, as it is seldom intended.
  */
 #include "model/check/parts.h"
 
@@ -12,7 +12,7 @@ static int feels_heat(const material *mat) {
           (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE));
 }
 
-/* What a material says of temperatures where there are none. */
+/* Data of a material over temperature where no temperature is given. */
 static void check_material(const model *m, const material *mat) {
   if (!mat->used || (m->effects & EFFECT_THERMAL)) return;
   if (mat->expand.given)
@@ -38,7 +38,7 @@ static void check_flow(const model *m, const step *s) {
               "*QUASISTATIC");
 }
 
-/* 1 if some element of a group does not stay as it is when heated. */
+/* 1 if some element of a group depends on the temperature. */
 static int group_feels_heat(const model *m, const mesh_group *g) {
   for (int k = 0; k < g->n_item; ++k) {
     const section *s = &m->sections[m->elem_section[g->item_id[k]]];
@@ -86,7 +86,7 @@ static const char *card_of(const load *l) {
 /* On the axis u_r = 0, or the hoop strain u_r/r is without limit. */
 static void check_axis(const model *m, const mesh *msh, const step *s,
                        const load *l) {
-  static const double rounding = 1e-9; /* of the size of the mesh            */
+  static const double rounding = 1e-9; /* of the size of the mesh */
   if (l->kind != LOAD_FIXING || l->component != 0 || l->group_id < 0) return;
   const mesh_group *g = &msh->group[l->group_id];
   for (int k = 0; k < g->n_node; ++k) {

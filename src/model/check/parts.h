@@ -32,7 +32,7 @@ status check_fields(model *m, const mesh *msh);
 /* ---- values.c ---- */
 
 /* Where each step begins and ends, what the expressions give is a number; in
- * between it is seen when it is needed. */
+ * between it is checked when needed. */
 void check_values(const model *m, const mesh *msh);
 /* Two groups that share nodes prescribe the same displacement there. */
 status check_agreement(const model *m, const mesh *msh, int step_id);
@@ -44,7 +44,7 @@ status check_visco(const model *m);
 
 /* ---- no_effect.c ---- */
 
-/* Warnings of what the deck says and what changes nothing. */
+/* Warnings of input without effect. */
 void check_no_effect(const model *m, const mesh *msh);
 
 /* ---- closed_form.c ---- */

@@ -188,7 +188,7 @@ static double step_time(const step *s, int end) {
 
 /* A value of a contact that must be at least zero, as the cards say it. */
 typedef struct contact_value {
-  const char *card, *name; /* "FRICTION", "mu"; NULL: there is none           */
+  const char *card, *name; /* "FRICTION", "mu"; NULL: there is none */
   const quantity *value;
   const place *at;
 } contact_value;
@@ -251,8 +251,8 @@ static int motion_finite(const model *m, int obstacle_id, double t) {
   return 0;
 }
 
-/* Contact acts along the normals of time 0: told at the first step end where a
- * plane has left them by more than a tenth. */
+/* Contact acts along the normals of time 0: reported at the first step end
+ * where a plane deviates from them by more than a tenth. */
 static void check_tilt(const model *m, int obstacle_id) {
   const obstacle *o = &m->obstacles[obstacle_id];
   for (int k = 0; k < m->n.step; ++k) {
@@ -291,14 +291,14 @@ status check_agreement(const model *m, const mesh *msh, int step_id) {
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     const mesh_group *g = &msh->group[l->group_id];
-    int told = 0;
+    int reported = 0;
     for (int k = 0; k < g->n_node && l->kind == LOAD_FIXING; ++k) {
       size_t node = (size_t)g->node_id[k];
       size_t dof = (size_t)msh->dim * node + (size_t)l->component;
       double value = load_at_node(l, msh, s, (int)node, step_time(s, 1));
       const load *first =
           owner[dof] > 0 ? &s->loads.item[owner[dof] - 1] : NULL;
-      if (first != NULL && value != ud[dof] && !told++)
+      if (first != NULL && value != ud[dof] && !reported++)
         message_add(m->log, P2038, &l->at,
                     "node %zu of group %s: component %d is %g here and %g on "
                     "line %d, group %s",

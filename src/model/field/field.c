@@ -18,7 +18,7 @@
  * FEW. */
 enum { FOREIGN = 8, FEW = 100000 };
 
-typedef struct pairs { /* as the file has them                                */
+typedef struct pairs { /* as the file has them */
   long n;
   long *node_no;
   double *value;
@@ -29,7 +29,7 @@ static void pairs_free(pairs *p) {
   *p = (pairs){0};
 }
 
-/* A count that stands on a line of its own. */
+/* A count on a line of its own. */
 static status read_count(scan *s, size_t *n) {
   PASS(scan_size(s, n));
   return scan_line(s);

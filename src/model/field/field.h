@@ -10,7 +10,7 @@
  * *value[n_node] is new (memory_free), NULL on failure. The file is a .msh of
  * gmsh (2.2 or 4.1, ASCII or binary) whose last $NodeData counts, or HDF5 with
  * the datasets /node_no and /temperature. Nodes go by their number in the mesh
- * file; numbers that the mesh has not are passed over. ERR_FILE: it cannot be
+ * file; numbers that the mesh does not have are skipped. ERR_FILE: it cannot be
  * read; ERR_DECK: no field of one component, a node of the mesh without value,
  * a value that is not finite.
  */

@@ -12,7 +12,7 @@
 
 enum { WIDTH = 78, TEXT = 512 };
 
-/* 1 if a text that is no expression must stand in quotes to be read back. */
+/* 1 if a text that is no expression must be quoted to be read back. */
 static int needs_quotes(const char *text) {
   size_t n = strlen(text);
   return strpbrk(text, ",=") != NULL || strstr(text, "**") != NULL ||
@@ -42,7 +42,7 @@ static void echo_option(const model *m, const card *c, const option *o,
   const parameter *given = card_parameter(c, o->name);
   int n = 0;
   option_write(o, param, value, sizeof value);
-  if (o->type == OPT_NAME) { /* of any length                                 */
+  if (o->type == OPT_NAME) { /* of any length */
     text = *(const char *const *)((const char *)param + o->offset);
     if (text == NULL || text[0] == '\0') return;
     if (given != NULL && strcmp(o->name, "FILE") == 0)
@@ -119,7 +119,7 @@ static int has_name(const char *text, const char *name) {
   return 0;
 }
 
-/* Values stand where the names stood, but for expressions and the .geo. */
+/* Names are replaced by their values, except in expressions and the .geo. */
 static void echo_symbols(const deck *d, const char *cards, FILE *out) {
   int any = 0;
   for (int i = 0; i < d->n_symbol; ++i) {

@@ -1,7 +1,7 @@
 /*
- * The table of deck keywords, and what runs over it: reading a deck, its echo,
- * the help. A card is one row of keyword_table; most rows need a function for
- * their data lines (model/cards/cards.h).
+ * The table of deck keywords and its users: reading a deck, its echo, the help.
+ * A card is one row of keyword_table; most rows need a function for their data
+ * lines (model/cards/cards.h).
  */
 #ifndef PROTIS_KEYWORD_KEYWORD_H
 #define PROTIS_KEYWORD_KEYWORD_H
@@ -10,29 +10,29 @@
 
 #include <stdio.h>
 
-/* Where a card may stand. */
+/* Where a card is allowed. */
 enum {
-  IN_MODEL = 1,    /* before the first *STEP                                  */
-  IN_MATERIAL = 2, /* after *MATERIAL, up to the next card of the model       */
-  IN_STEP = 4,     /* between *STEP and *END STEP                             */
-  LANGUAGE = 8     /* read by the deck reader; stands anywhere                */
+  IN_MODEL = 1,    /* before the first *STEP */
+  IN_MATERIAL = 2, /* after *MATERIAL, up to the next card of the model */
+  IN_STEP = 4,     /* between *STEP and *END STEP */
+  LANGUAGE = 8     /* read by the deck reader; allowed anywhere */
 };
 
 typedef struct keyword {
   const char *name;
-  unsigned where;        /* IN_... or LANGUAGE                               */
-  const option *options; /* of the struct of param_size bytes, or NULL       */
+  unsigned where;        /* IN_... or LANGUAGE */
+  const option *options; /* of the struct of param_size bytes, or NULL */
   size_t param_size;
   /* Options of what the card names; an unknown name goes to the log. */
   plugin (*names)(const reading *r);
-  status (*apply)(reading *r); /* ERR_MEMORY only: the rest goes to the log   */
-  int min_line, max_line; /* data lines; max -1: any number                   */
-  const char *data;       /* what the data lines hold                         */
+  status (*apply)(reading *r); /* ERR_MEMORY only: the rest goes to the log */
+  int min_line, max_line;      /* data lines; max -1: any number */
+  const char *data;            /* what the data lines hold */
   const char *help;
 } keyword;
 
-extern const keyword keyword_table[]; /* name NULL at the end                 */
-const keyword *keyword_find(const char *name); /* or NULL                     */
+extern const keyword keyword_table[];          /* name NULL at the end */
+const keyword *keyword_find(const char *name); /* or NULL */
 
 /* Read the parameters of r->card into param[row->param_size] and
  * plugin[PARAM_SIZE]; fills r->param and r->plugin. Errors go to the log. */
@@ -40,7 +40,7 @@ void keyword_parameters(const keyword *row, reading *r, void *param,
                         void *plugin_param);
 
 /*
- * Everything the deck says; names are compared with each other, not yet with
+ * The contents of the deck; names are compared with each other, not yet with
  * the mesh. Errors go to the log (ERR_DECK); *out is valid (free it) unless
  * ERR_MEMORY. The model borrows deck and log.
  */

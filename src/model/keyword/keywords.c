@@ -1,7 +1,7 @@
 /*
- * THE table of deck keywords: where a card may stand, its parameters, its
- * data lines. The parser, the range checks, --keywords, the echo of the deck
- * and the tests all run over it.
+ * THE table of deck keywords: where a card is allowed, its parameters, its data
+ * lines. The parser, the range checks, --keywords, the echo of the deck and the
+ * tests all run over it.
  */
 #include "model/keyword/keyword.h"
 
@@ -26,7 +26,7 @@ static const option problem_options[] = {
   OPTION_NAME(problem_param, file, "FILE", NULL,
               "FCLIB (HDF5) or a plain LCP (text), relative to the deck"),
   OPTION_CHOICE(problem_param, type, "TYPE", "FCLIB|LCP", OPTION_ABSENT,
-                "absent: told by the file itself"),
+                "absent: by the file itself"),
   OPTION_END};
 static const option name_options[] = {
   OPTION_NAME(name_param, name, "NAME", NULL, "name for other cards"),
@@ -38,14 +38,14 @@ static const option elastic_options[] = {
   OPTION_CHOICE(elastic_param, type, "TYPE", ELASTIC_WORDS, "ISO",
                 "symmetry of the material"),
   OPTION_CHOICE(elastic_param, moduli, "MODULI", "LONG TERM|INSTANTANEOUS",
-                OPTION_ABSENT, "beside a Prony series: after all terms have "
-                "relaxed, or at once; absent: LONG TERM with *VISCOELASTIC, "
+                OPTION_ABSENT,
+                "with a Prony series: after all terms have relaxed, or at "
+                "once; absent: LONG TERM with *VISCOELASTIC, "
                 "INSTANTANEOUS with *INELASTIC"),
   OPTION_END};
 #define SHIFT_ROWS(struct_)                                                   \
   OPTION_CHOICE(struct_, shift.kind, "SHIFT", SHIFT_WORDS, "NONE",            \
-                "how temperature T runs the clock: the rates are divided "    \
-                "by a"),                                                      \
+                "time-temperature shift: the rates are divided by a"),      \
   OPTION_REAL(struct_, shift.reference, "T_REF", -DBL_MAX, DBL_MAX,           \
               OPTION_ABSENT, "temperature", "where a = 1"),                   \
   OPTION_REAL(struct_, shift.c1, "C1", 0, DBL_MAX, OPTION_ABSENT, "-",        \
@@ -86,11 +86,12 @@ static const option initial_options[] = {
   OPTION_CHOICE(initial_param, type, "TYPE", INITIAL_WORDS, NULL,
                 "what the lines give"),
   OPTION_NAME(initial_param, file, "FILE", OPTION_ABSENT,
-              "of displacements: JOB.h5 of a run on the same mesh; its end is "
-              "the start, lines win over it"),
+              "of displacements: JOB.h5 of a run on the same mesh; its end "
+              "is the start, lines override it"),
   OPTION_CHOICE(initial_param, incompatible, "INCOMPATIBLE", "REFUSE|RELAX",
-                "REFUSE", "displacements out of equilibrium at time 0 (CPR98 "
-                "3.3): an error, or led to it as increment 0"),
+                "REFUSE", "displacements out of equilibrium at time 0 "
+                          "(CPR98 3.3): an error, or relaxed to it as "
+                          "increment 0"),
   OPTION_END};
 static const option section_options[] = {
   OPTION_NAME(section_param, elset, "ELSET", NULL, "group of elements"),
@@ -157,7 +158,7 @@ static const option points_options[] = {
   OPTION_END};
 static const option quasistatic_options[] = {
   OPTION_CHOICE(quasistatic_param, form, "FORM", STEP_FORMS, "DISPLACEMENT",
-                "unknown of an increment: N2 or N3 of CPR98, one answer"),
+                "unknown of an increment: N2 or N3 of CPR98, same solution"),
   OPTION_END};
 static const option visco_options[] = {
   OPTION_NAME(visco_param, integrator, "INTEGRATOR", NULL,
@@ -178,13 +179,13 @@ static const option load_options[] = {
   OPTION_NAME(load_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
               "course in time; absent: linear over the step"),
   OPTION_CHOICE(load_param, op, "OP", "MOD|NEW", "MOD",
-                "NEW ends what other steps left of this card"),
+                "NEW ends what earlier steps gave by this card"),
   OPTION_END};
 static const option temperature_options[] = {
   OPTION_NAME(temperature_param, load.amplitude, "AMPLITUDE", OPTION_ABSENT,
               "course in time; absent: linear over the step"),
   OPTION_CHOICE(temperature_param, load.op, "OP", "MOD|NEW", "MOD",
-                "NEW ends what other steps left of this card"),
+                "NEW ends what earlier steps gave by this card"),
   OPTION_NAME(temperature_param, file, "FILE", OPTION_ABSENT,
               "nodal field: .msh with $NodeData, or HDF5 with /node_no and "
               "/temperature; relative to the deck"),
@@ -209,8 +210,8 @@ static const option solver_options[] = {
   OPTION_END};
 static const option effects_options[] = {
   OPTION_CHOICE(effects_param, mode, "MODE", "CALLED|AUTO", "CALLED",
-                "CALLED: all that the deck calls for. AUTO: what is proved to "
-                "change the answer by less than TOL is left out"),
+                "CALLED: all that the deck requires. AUTO: what is proved "
+                "to change the solution by less than TOL is left out"),
   OPTION_REAL(effects_param, tol, "TOL", DBL_MIN, 0.1, "1e-3", "-",
               "for AUTO: of the energy norm and of the largest stress"),
   OPTION_END};
@@ -218,7 +219,8 @@ static const option accuracy_options[] = {
   OPTION_FLAG(accuracy_param, mesh, "MESH", "NO",
               "estimate of the error of the mesh, from recovered stresses"),
   OPTION_CHOICE(accuracy_param, time, "TIME", "NO|YES|BALANCED", "NO",
-                "estimate of the error of the increments, from half of them; "
+                "estimate of the error of the increments, from increments "
+                "of half the length; "
                 "BALANCED: increments whose error is a share of the mesh's"),
   OPTION_REAL(accuracy_param, time_share, "TIME_SHARE", 0.001, 1, "0.1", "-",
               "of the error of the mesh, with TIME=BALANCED"),
@@ -300,7 +302,7 @@ const keyword keyword_table[] = {
    "Prony series, the same as *INELASTIC, LAW=PRONY"},
   {"TRS", IN_MATERIAL, OPTIONS(trs), NULL, apply_trs, 1, 1,
    "T_REF, C1, C2",
-   "clock of the relaxation over the temperature, the same as SHIFT=WLF"},
+   "time-temperature shift of the relaxation, the same as SHIFT=WLF"},
   {"DENSITY", IN_MATERIAL, NO_OPTIONS, NULL, apply_density, 1, 1,
    "rho", "mass per volume, for GRAV"},
   {"EXPANSION", IN_MATERIAL, OPTIONS(expansion), NULL, apply_expansion, 1, ANY,
@@ -327,11 +329,11 @@ const keyword keyword_table[] = {
    apply_friction, 0, ANY,
    "mu or g: number, expression of x y z t, or pairs with TABLE=",
    "friction law of a contact; without it the contact is frictionless. In a "
-   "step it takes the place of the old one from there on, at once"},
+   "step it replaces the old one from there on, at once"},
   {"INITIAL CONDITIONS", IN_MODEL, OPTIONS(initial), NULL, apply_initial, 0,
    ANY, "TEMPERATURE group of elements, value. DISPLACEMENT group, dof, value. "
    "INELASTIC STRAIN group, component, value. INTERNAL group, number, value",
-   "state before the first step; what no line gives is zero"},
+   "state before the first step; values not given are zero"},
   {"CONTACT FORCE", IN_MODEL, OPTIONS(force), NULL, apply_contact_force, 0,
    ANY, "p >= 0, force/length^2: number, expression of x y z t, or pairs with "
    "TABLE=",
@@ -339,13 +341,13 @@ const keyword keyword_table[] = {
    "p times the area of the node; the node may leave or enter the obstacle"},
   {"WEAR", IN_MODEL, wear_options, sizeof(effect_param), NULL, apply_effect, 0,
    0, "",
-   "the body wears off where it slides: from increment to increment the gap "
+   "the body wears where it slides: from increment to increment the gap "
    "opens by COEFFICIENT times pressure times slip (Archard 1953)"},
   {"REFERENCE", IN_MODEL, NO_OPTIONS, NULL, apply_reference, 1, ANY,
    "u_x, u_y, u_z (all); stress_xx, _yy, _zz, _xy, _yz, _zx (all), in "
    "axisymmetry u_r, u_z, stress_rr, _zz, _tt, _rz; pressure: name, number or "
    "expression of x y z t",
-   "the solution in closed form: the true error stands beside the estimates"},
+   "the solution in closed form: the true error is shown with the estimates"},
   {"STEP", IN_MODEL, step_options, sizeof(name_param), NULL, apply_step, 0, 0,
    "", "opens a step; loads stay from step to step until changed"},
   {"STATIC", IN_STEP, NO_OPTIONS, NULL, apply_static, 0, 1,

@@ -8,10 +8,9 @@
 #include "model/keyword/keyword.h"
 
 /* resolve.c: names to ids once all cards are read, then steps.c. "lost": a card
- * was refused, what seems to be missing or unused is not reported. */
+ * was refused, missing or unused names are not reported. */
 status model_resolve(model *m, int lost);
-/* 1: a card that no keyword has the name of has NAME= this. */
+/* 1: an unknown card has NAME= this. */
 int name_is_lost(const model *m, const char *name);
-
 
 #endif

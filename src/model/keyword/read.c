@@ -7,9 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- decks with *CONDENSED PROBLEM: what may stand beside it ------------- */
+/* ---- decks with *CONDENSED PROBLEM: what is allowed with it ------------- */
 
-/* Cards that may stand beside *CONDENSED PROBLEM. */
+/* Cards allowed with *CONDENSED PROBLEM. */
 static int goes_with_problem(const char *name) {
   static const char *const names[] = {
       "HEADING", "PARAMETER", "INCLUDE",  "LEGACY", "UNITS",  "STEP",
@@ -54,8 +54,8 @@ static void check_problem_accuracy(const reading *r, step *s) {
     s->accuracy.no_solver = 1;
   else if (others)
     message_add(r->m->log, P2034, &s->accuracy.at,
-                "a condensed problem has no mesh: of *ACCURACY only SOLVER= "
-                "has a place beside it");
+                "a condensed problem has no mesh: of *ACCURACY only SOLVER= is "
+                "allowed with it");
 }
 
 /* problem.c: what a deck with *CONDENSED PROBLEM may hold; its one step and
@@ -123,7 +123,8 @@ static void unknown_parameter(reading *r, const parameter *p,
   unknown_word(r->m->log, P2003, &p->at, text, p->name, either_name, all);
 }
 
-/* Nothing is missing where something was not understood: it may be that. */
+/* A parameter is not reported as missing where another one was not
+ * understood. */
 static void report_missing(const reading *r, const option *table) {
   if (r->misread) return;
   for (const option *o = table; o != NULL && o->name != NULL; ++o)
@@ -227,7 +228,7 @@ static void unknown_card(reading *r) {
   const char *near = message_wanted(r->m->log, ERROR)
                          ? nearest_word(c->name, keyword_name, NULL)
                          : NULL;
-  place at = c->at; /* a file that is included may be no deck at all          */
+  place at = c->at; /* a file that is included may be no deck at all */
   at.hidden |= near == NULL && at.from != NULL;
   message_add(r->m->log, P1003, &at, "unknown card *%s%s%s%s", c->name,
               near == NULL ? "" : "; did you mean *", near == NULL ? "" : near,
@@ -272,7 +273,7 @@ static status name_job(model *m) {
   return OK;
 }
 
-/* What the deck lacks, at its end; not after a card was lost, which may be
+/* What the deck lacks, at its end; not after a card was refused, which may be
  * the one. */
 static void report_absent(const reading *r) {
   const model *m = r->m;
@@ -282,9 +283,9 @@ static void report_absent(const reading *r) {
   if (!m->mesh.given && !m->problem.given)
     message_add(m->log, P2015, &at, "the deck has no *MESH card");
   if (m->n.section == 0 && !m->problem.given)
-    message_add(m->log, P2016, &at,
-                "the deck has no *SOLID SECTION: nothing says what the "
-                "elements are made of");
+    message_add(
+        m->log, P2016, &at,
+        "the deck has no *SOLID SECTION: the elements have no material");
   if (m->n.step == 0 && !m->problem.given)
     message_add(m->log, P2017, &at, "the deck has no *STEP: nothing to solve");
   if (r->in_step)

@@ -98,7 +98,7 @@ static const value_table *total_amplitude(const model *m, const char *name,
 static void resolve_value(const model *m, const char *card_name,
                           quantity *value, const value_table *position,
                           const char *amplitude_name, const place *at) {
-  /* What holds them has reached its place: point into it now. */
+  /* Their owner is final: point into it now. */
   if (value->factor != NULL) value->factor = position;
   if (amplitude_name == NULL) return;
   const value_table *t = total_amplitude(m, amplitude_name, at);
@@ -158,7 +158,7 @@ static void resolve_contacts(model *m) {
   }
 }
 
-/* The ramp of motions that nothing else leads. */
+/* The ramp of motions without amplitude. */
 static status make_first_step(model *m) {
   value_table *t = &m->time.first_step;
   if (m->n.step == 0 || m->n.obstacle == 0) return OK;
@@ -217,7 +217,7 @@ static void warn_unused(const model *m) {
 /* ---- steps one after the other: their loads, with those that stay from the
  * steps before, their solver, tables and fields. */
 
-static const double CLOCK = 0x1p-42; /* -, least increment of the time        */
+static const double CLOCK = 0x1p-42; /* -, least increment of the time */
 
 static double step_end(const step *s) { return s->start + s->total; }
 
@@ -227,7 +227,7 @@ static int same_place(const load *a, const load *b) {
          strcmp(a->group, b->group) == 0;
 }
 
-/* Same thing said again: the new value replaces the old. */
+/* The same load again: the new value replaces the old. */
 static int same_load(const load *a, const load *b) {
   return same_place(a, b) &&
          memcmp(a->direction, b->direction, sizeof a->direction) == 0;
@@ -246,7 +246,7 @@ static void start_load(const model *m, const step *s, load *l) {
   if (quantity_variables(&l->value) & 8u) l->run = RUN_DIRECT;
 }
 
-/* How it goes on in the step after "old". */
+/* How it continues in the step after "old". */
 static load kept_load(const model *m, const step *old, const load *l) {
   load kept = *l;
   kept.has_before = 0;
@@ -259,7 +259,7 @@ static load kept_load(const model *m, const step *old, const load *l) {
   return kept;
 }
 
-/* Where a load that replaces "l" (or ends it) starts from. */
+/* Start value of a load that replaces "l" (or ends it). */
 static void set_before(load *now, const step *old, const load *l) {
   now->before = l->value;
   now->before_file = l->file;
@@ -313,7 +313,7 @@ static int same_value(const load *a, const load *b) {
          a->amplitude_name == b->amplitude_name;
 }
 
-/* Within one step the last card that says the same thing counts. */
+/* Within one step the last card of the same load counts. */
 static void drop_repeated(const model *m, load_list *own) {
   int n = 0;
   for (int i = 0; i < own->n; ++i) {
@@ -348,7 +348,7 @@ done:
 static const solver_choice default_solver = {
     .ops = NULL, .param = NULL, .tol = 1e-10, .limit_max_iter = 1000};
 
-/* TOL=BALANCED calls for the estimates it is balanced with. */
+/* TOL=BALANCED requires the estimates it is balanced with. */
 static void call_estimates(const model *m, step *s) {
   if (!s->balanced) return;
   if (m->problem.given && s->solver_at.file != NULL)
@@ -386,7 +386,7 @@ static status carry_choices(const step *old, step *s) {
   return OK;
 }
 
-/* Increments that the time of the step can tell apart. */
+/* Increments that the time of the step can resolve. */
 static void check_clock(const model *m, const step *s) {
   if (s->dt >= CLOCK * fabs(s->start)) return;
   message_add(m->log, P2020, &s->at,
@@ -396,8 +396,8 @@ static void check_clock(const model *m, const step *s) {
               s->dt, s->start, DBL_EPSILON * fabs(s->start));
 }
 
-/* steps.c: start, loads, solver and tables of each step, with what stays from
- * the one before. */
+/* steps.c: start, loads, solver and tables of each step, with what persists
+ * from the one before. */
 static status resolve_steps(model *m) {
   step before = {.solver = default_solver,
                  .loads = m->load.supports,
@@ -450,7 +450,7 @@ static const char *nearest_use(const model *m, const geo_text *g,
   return word != NULL ? word : nearest_word(s->typed, geo_name, g);
 }
 
-static void tell_unused(const model *m, const geo_text *g, const symbol *s) {
+static void report_unused(const model *m, const geo_text *g, const symbol *s) {
   const place line = {.file = "command line"};
   const char *near = nearest_use(m, g, s);
   message_add(m->log, P2042, s->at.file != NULL ? &s->at : &line,
@@ -472,7 +472,7 @@ static status check_symbols(const model *m) {
     symbol *s = &m->deck->symbols[i];
     s->in_geometry = geo_has(&g, s->typed);
     if (!s->used && !s->in_geometry && s->at.from == NULL)
-      tell_unused(m, &g, s);
+      report_unused(m, &g, s);
   }
 done:
   geo_free(&g);

@@ -38,7 +38,7 @@ typedef struct table {
   entity of;
   const column *col[64];
   int width[64];
-  int digits; /* after the point                                            */
+  int digits; /* after the point */
 } table;
 void table_choose(table *t, entity of, unsigned print_bit, const view *v,
                   int digits);

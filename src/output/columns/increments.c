@@ -69,11 +69,11 @@ const column increment_columns[] = {
 {"residual", "-", INC, 0, C, ANY, "residual", 0, residual, NULL,
  "residual of the contact problem"},
 {"mesh_error", "%", INC, 0, ON(MESH_ERROR), ANY, "mesh_error", 0, mesh_error,
- NULL, "estimate of the error of the mesh in the energy norm, of that of the "
- "solution; NaN: not asked for"},
+ NULL, "estimate of the error of the mesh in the energy norm, of that of "
+       "the solution; NaN: not required"},
 {"time_error", "%", INC, 0, ON(TIME_ERROR), ANY, "time_error", 0, time_error,
- NULL, "estimate of the error of the increments in that norm; NaN: not asked "
- "for, or unknown"},
+ NULL, "estimate of the error of the increments in that norm; NaN: not "
+       "required, or unknown"},
 OF_EFFECTS,
 {"solver_error", "%", INC, 0, C | ON(ESTIMATES), ANY, "solver_error", 0,
  bound_error, NULL, "bound of the error of the contact solver in the energy "
@@ -101,10 +101,10 @@ OF_EFFECTS,
  "work of the stresses on inelastic strains so far, trapezoidal"},
 {"viscous_dissipation", J, INC, PRINT_ENERGY, ON(INELASTIC), ANY,
  "viscous_dissipation", 0, dissipated, NULL,
- "lost of it by the laws so far, in the quadrature of the integrator"},
+ "dissipated of it by the laws so far, in the quadrature of the integrator"},
 {"inelastic_stored", J, INC, PRINT_ENERGY, ON(INELASTIC), ANY,
  "inelastic_stored", 0, inelastic_stored, NULL,
- "kept of it by the internal variables"},
+ "stored of it by the internal variables"},
 {"energy_defect", J, INC, PRINT_ENERGY, 0, ANY, "energy_defect", 0,
  energy_defect, NULL,
  "external + normal - friction - thermal - inelastic work - strain"},

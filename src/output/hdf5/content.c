@@ -1,6 +1,6 @@
 /*
- * What stands in JOB.h5 for good: mesh, contact surface, deck; and the fields
- * that the columns call for.
+ * Fixed contents of JOB.h5: mesh, contact surface, deck; and the fields of the
+ * columns.
  */
 #include "output/hdf5/file.h"
 
@@ -27,7 +27,7 @@ static const char *group_of(const column *c) {
 /* A column that shares its field with those before is its next component; the
  * fourth makes a symmetric tensor of them. */
 static void add_part(hdf5_field *f, const column *c) {
-  static const int order[] = {0, 3, 5, 1, 4, 2}; /* of xx yy zz xy yz zx      */
+  static const int order[] = {0, 3, 5, 1, 4, 2}; /* of xx yy zz xy yz zx */
   if (c->part > 2 && f->n_part == 3) {
     f->part[5] = f->part[2];
     f->part[3] = f->part[1];
@@ -116,7 +116,7 @@ static status add_group(hdf5_file *h, const mesh_group *g) {
   char name[100], path[200];
   link_name(name, sizeof name, g->name);
   snprintf(path, sizeof path, "/mesh/groups/%s/nodes", name);
-  if (path_known(h, path)) /* one name in two dimensions                     */
+  if (path_known(h, path)) /* one name in two dimensions */
     snprintf(name + strlen(name), sizeof name - strlen(name), "_%d", g->dim);
   snprintf(path, sizeof path, "/mesh/groups/%s/nodes", name);
   if (path_known(h, path)) return OK;

@@ -4,13 +4,12 @@
  *   /mesh      nodes, elements (ids from 0), node_no, elem_no, groups
  *   /contact   points, faces, ... and one group per field of the contact nodes
  *   /fields    time, total; one group per field of nodes and elements with
- *              one dataset per record (an increment whose fields were asked)
- *   /history   one row per increment, one dataset per column
- *   /totals    the same per contact
- *   /deck      the deck with all defaults
+ *              one dataset per record (an increment whose fields were
+ * requested) /history   one row per increment, one dataset per column /totals
+ * the same per contact /deck      the deck with all defaults
  *
- * More increments than foreseen (cut steps): a larger file takes its place. At
- * the end unused room is cut the same way.
+ * More increments than estimated (cut steps): a larger file replaces it. At the
+ * end unused space is cut the same way.
  */
 #include "output/hdf5/file.h"
 
@@ -79,7 +78,7 @@ static void release(hdf5_file *h) {
           h->path, h->aside, h);
 }
 
-/* The mesh may stay, what was copied for the first file goes. */
+/* The mesh is kept, the copies for the first file are freed. */
 static void drop_copies(hdf5_file *h) {
   for (int i = 0; i < h->n_fixed; ++i) {
     memory_free(h->fixed[i].own);
@@ -88,8 +87,8 @@ static void drop_copies(hdf5_file *h) {
   }
 }
 
-/* The file of the run that is gone on with: what it holds beyond "before" is
- * written again. */
+/* The file of the continued run: its contents beyond "before" are written
+ * again. */
 static status earlier_file(hdf5_file *h, const hdf5_count *before) {
   const char *why;
   h->fd = file_descriptor(AT_FDCWD, h->path, O_RDWR, &why);
@@ -135,7 +134,7 @@ status hdf5_open(const model *m, const mesh *msh, const output_options *o,
   hdf5_file *h = NULL;
   *out = NULL;
   if (!fields_asked(m)) return OK;
-  H5dont_atexit(); /* the exit handler crashes after a failed write          */
+  H5dont_atexit(); /* the exit handler crashes after a failed write */
   NEW(h, 1);
   h->fd = -1;
   h->m = m;
@@ -180,7 +179,7 @@ status hdf5_close(hdf5_file *h, int finished) {
   spare = h->n_row < h->now.n_row || h->n_record < h->now.n_record;
   if (finished && spare && h->n_row > 0 &&
       hdf5_renew(h, h->n_row, h->n_record) != OK)
-    status_clear(); /* no room for the copy: the file stays as it is         */
+    status_clear(); /* no space for the copy: the file is unchanged */
   if (fsync(h->fd) != 0) TRY(text_failed(h->path, "write", errno));
   if (close(h->fd) != 0) {
     h->fd = -1;

@@ -13,39 +13,39 @@ typedef struct hdf5_file hdf5_file;
  * increment in GROUP/NAME. */
 typedef struct hdf5_field {
   const char *name;
-  char group[200]; /* "/fields", "/contact", "/history", "/totals/NAME"      */
+  char group[200]; /* "/fields", "/contact", "/history", "/totals/NAME" */
   entity of;
-  int id;     /* of the contact for "/totals"                         */
-  int n_part; /* 1, 3 or 6: xx, xy, xz, yy, yz, zz                     */
-  const column *part[6]; /* NULL: zero                                      */
+  int id;                /* of the contact for "/totals" */
+  int n_part;            /* 1, 3 or 6: xx, xy, xz, yy, yz, zz */
+  const column *part[6]; /* NULL: zero */
 } hdf5_field;
 
-typedef struct hdf5_count { /* what has been written                         */
+typedef struct hdf5_count { /* what has been written */
   int rows, records;
 } hdf5_count;
-/* NULL in *out if no step asks for fields. before: go on with the file after
+/* NULL in *out if no step requires fields. before: continue the file after
  * these; NULL: a new one. */
 status hdf5_open(const model *m, const mesh *msh, const output_options *o,
                  const hdf5_count *before, hdf5_file **out);
-/* Hand everything to the disk; h NULL: nothing. */
+/* Synchronise; h NULL: nothing. */
 status hdf5_sync(hdf5_file *h, hdf5_count *n);
 /* The increment is in the file when this returns OK. */
 status hdf5_increment(hdf5_file *h, const state *s);
 /* Cut what was not used if "finished"; frees h; accepts NULL. */
 status hdf5_close(hdf5_file *h, int finished);
 
-typedef struct hdf5_shape { /* what JOB.xdmf has to know                      */
+typedef struct hdf5_shape { /* data for JOB.xdmf */
   const char *path;
   int n_node, n_elem, corners, n_contact_node, n_contact_face, face_corners;
   int n_field, n_record;
-  const hdf5_field *fields; /* [n_field]                                     */
-  const double *times;      /* [n_record]                                    */
+  const hdf5_field *fields; /* [n_field] */
+  const double *times;      /* [n_record] */
 } hdf5_shape;
 void hdf5_shape_of(const hdf5_file *h, hdf5_shape *shape);
 /* Name of record i (from 0) below GROUP/NAME. */
 void hdf5_record_name(char *text, size_t size, int i);
 
-/* JOB.xdmf; written aside and renamed. */
+/* JOB.xdmf; written to a temporary file and renamed. */
 status xdmf_write(const hdf5_shape *shape, const char *path);
 /* The last record of the body or of the contact alone, the same way; nothing if
  * there is none. */

@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-/* Room for what the rest of the run will need, and for half as many again as
- * there are, so that copying costs little on the whole. */
+/* Space for the rest of the run, and for half as many again as there are, so
+ * that copying costs little in total. */
 static status grow(hdf5_file *h, const state *s) {
   int rows, records;
   const step *now = &h->m->steps[s->step_no - 1];
@@ -35,7 +35,8 @@ static double part_value(const hdf5_field *f, const view *v, int id, int k) {
 }
 
 /* The item of a column that stands in place id of its field: a contact node
- * that is not in the surface now (-1) moves, but has no other value. */
+ * that is not in the surface now (-1) has displacements, but no other
+ * value. */
 static int item_of(const hdf5_file *h, const hdf5_field *f, int id) {
   if (f->of != PER_CONTACT_NODE) return id;
   return f->part[0]->of == PER_NODE ? h->contact_node[id] : h->surface_id[id];

@@ -1,6 +1,6 @@
 /*
- * The empty JOB.h5: groups, datasets, units; nothing but HDF5 calls. Each call
- * is checked: on a full disk H5Fflush fails and H5Fclose does not.
+ * The empty JOB.h5: groups, datasets, units; HDF5 calls only. Each call is
+ * checked: on a full disk H5Fflush fails and H5Fclose does not.
  */
 #include "output/hdf5/file.h"
 

@@ -21,15 +21,15 @@
 #include <unistd.h>
 
 enum {
-  EOF_PLACE = 40,     /* in the superblock: address behind the last byte      */
-  K_PLACE = 16,       /* half the symbols of a node, half the children of one
-                         of the tree; 2 bytes each                            */
-  SUPERBLOCK = 48,    /* bytes of it that are read                            */
-  HEADER_MOST = 4096, /* bytes of a header                                    */
-  LAYOUT = 0x08,      /* kinds of messages in a header                        */
+  EOF_PLACE = 40,     /* in the superblock: address behind the last byte */
+  K_PLACE = 16,       /* half the symbols of a node, half the children of one of
+                         the tree; 2 bytes each */
+  SUPERBLOCK = 48,    /* bytes of it that are read */
+  HEADER_MOST = 4096, /* bytes of a header */
+  LAYOUT = 0x08,      /* kinds of messages in a header */
   CONTINUED = 0x10,
   SYMBOL_TABLE = 0x11,
-  NAME = 16, /* bytes of a name in the heap                                   */
+  NAME = 16, /* bytes of a name in the heap */
   SYMBOL = 40,
   NODE_HEAD = 8,
   TREE_HEAD = 24,
@@ -37,18 +37,18 @@ enum {
 };
 static const uint64_t NOWHERE = UINT64_MAX, NO_FREE_BLOCK = 1;
 
-typedef struct stream { /* bytes written one after the other                 */
+typedef struct stream { /* bytes written one after the other */
   int fd;
   const char *path;
-  uint64_t at; /* address of part[0]                                         */
+  uint64_t at; /* address of part[0] */
   size_t used;
   unsigned char part[1 << 16];
 } stream;
 
-typedef struct places { /* where the parts of a group stand */
-  int n;            /* records                                              */
-  const int *order; /* [n] records in the order of their names              */
-  int per_node, per_tree; /* symbols, children                               */
+typedef struct places {   /* where the parts of a group stand */
+  int n;                  /* records */
+  const int *order;       /* [n] records in the order of their names */
+  int per_node, per_tree; /* symbols, children */
   uint64_t heap, header, node, tree, end;
   size_t header_size;
 } places;
@@ -165,7 +165,7 @@ static uint64_t name_place(int record_id) {
 }
 
 static status emit_names(stream *s, const places *p) {
-  PASS(emit_number(s, 8, 0)); /* the empty name                               */
+  PASS(emit_number(s, 8, 0)); /* the empty name */
   for (int i = 0; i < p->n; ++i) {
     char name[NAME] = "";
     hdf5_record_name(name, sizeof name, i);
@@ -210,9 +210,9 @@ static int parts(int n, int size) { return (n + size - 1) / size; }
 
 typedef struct tree_level {
   int level, n, n_child;
-  uint64_t at, child; /* the first node, the first child                   */
+  uint64_t at, child; /* the first node, the first child */
   size_t child_size;
-  int64_t span; /* names below a child                                        */
+  int64_t span; /* names below a child */
 } tree_level;
 
 /* Node i of a level. */

@@ -1,7 +1,7 @@
 /*
- * A new JOB.h5 under the old name, with other room: made aside, the data
- * copied, renamed over the first one, so that at any moment JOB.h5 holds every
- * increment told.
+ * A new JOB.h5 under the old name, of another size: made as a temporary file,
+ * the data copied, renamed over the first one, so that at any moment JOB.h5
+ * holds every reported increment.
  */
 #include "output/hdf5/file.h"
 

@@ -1,8 +1,8 @@
 /*
- * JOB.xdmf: XDMF 3 text that tells a viewer where the fields stand in JOB.h5,
- * named without folder. Two temporal collections: the contact surface and the
- * body; the body is the last one, as some readers take that one only. Data
- * items are whole datasets (hyperslabs are not read everywhere).
+ * JOB.xdmf: XDMF 3 text with the places of the fields in JOB.h5, named without
+ * folder. Two temporal collections: the contact surface and the body; the body
+ * is the last one, as some readers take that one only. Data items are whole
+ * datasets (hyperslabs are not read everywhere).
  *
  * JOB.body.xdmf, JOB.contact.xdmf: one grid of the last record, without time,
  * for readers that take nothing else (meshio.read).
@@ -19,8 +19,8 @@ enum { NAME = 1, TIME = 2 };
 typedef struct part {
   const char *name, *points, *cells, *topology;
   int n_point, n_cell, corners;
-  entity on_points, on_cells; /* fields shown on it; PER_INCREMENT: none     */
-  int alone; /* 1: without time                                              */
+  entity on_points, on_cells; /* fields shown on it; PER_INCREMENT: none */
+  int alone;                  /* 1: without time */
 } part;
 
 static void xml_text(FILE *f, const char *text) {
@@ -171,7 +171,7 @@ static const char head[] =
 typedef struct content {
   const hdf5_shape *shape;
   part surface, body;
-  char *surface_text, *body_text; /* of a record; the first may be NULL       */
+  char *surface_text, *body_text; /* of a record; the first may be NULL */
 } content;
 
 static void write_all(FILE *f, const void *what) {
@@ -197,7 +197,7 @@ done:
 }
 
 typedef struct snapshot {
-  const char *text; /* of any record                                         */
+  const char *text; /* of any record */
   int record_id;
 } snapshot;
 

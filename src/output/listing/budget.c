@@ -1,6 +1,6 @@
 /*
- * The budget of the errors: each with the stages whose work decides it, what it
- * cost, what stopping early saved, the passes towards a target.
+ * The budget of the errors: each with the stages that determine it, its cost,
+ * the saving by stopping early, the passes towards a target.
  */
 #include "base/timer.h"
 #include "output/listing/parts.h"

@@ -29,7 +29,7 @@ static void print_energies(const job *j, const view *v, FILE *f) {
   }
 }
 
-/* Where the condition gives reason to look. */
+/* Where the condition number requires it. */
 static void print_rounding(const state *s, FILE *f) {
   char norm[NUMBER_SIZE], stress[NUMBER_SIZE], u[NUMBER_SIZE];
   if (!s->errors.rounding.found) return;

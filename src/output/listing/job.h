@@ -1,6 +1,6 @@
 /*
- * What is told of a run, in the listing and in JOB.json: options, increments,
- * passes, sizes, error budget.
+ * Data of a run for the listing and JOB.json: options, increments, passes,
+ * sizes, error budget.
  */
 #ifndef PROTIS_LISTING_JOB_H
 #define PROTIS_LISTING_JOB_H
@@ -11,24 +11,26 @@
 #include "run/column.h"
 
 typedef struct output_options {
-  const char *dir; /* folder of the results; NULL or "": the current one */
-  int no_timing;   /* leave out the cost columns                         */
-  char **closing;  /* lines for the end on a terminal, for free(); or NULL */
-  int progress;    /* a line on the terminal, if stderr is one           */
-  const char *version; /* of the program, for the results; NULL: ""          */
-  const char *kernel;  /* BLAS kernel, for the results; NULL: ""             */
-  int threads;         /* threads of the run, for the results                */
-  archive *from; /* go on with the files of an earlier run; NULL: new ones    */
-  int n_problem; /* contacts of a *CONDENSED PROBLEM                          */
+  const char *dir;     /* folder of the results; NULL or "": the current one */
+  int no_timing;       /* leave out the cost columns */
+  char **closing;      /* lines for the end on a terminal, for free(); or
+                          NULL */
+  int progress;        /* a line on the terminal, if stderr is one */
+  const char *version; /* of the program, for the results; NULL: "" */
+  const char *kernel;  /* BLAS kernel, for the results; NULL: "" */
+  int threads;         /* threads of the run, for the results */
+  archive *from;       /* continue the files of an earlier run; NULL: new
+                          ones */
+  int n_problem;       /* contacts of a *CONDENSED PROBLEM */
 } output_options;
 
 /* A pass towards *ACCURACY, TARGET=. */
 enum { MAX_PASS_ROWS = 20 };
 typedef struct pass_row {
   double unknowns;
-  double mesh, time, solver, total; /* %, estimated errors                    */
-  double cpu;                       /* s, of the pass                         */
-  char change[80];                  /* what the next pass has changed, ""     */
+  double mesh, time, solver, total; /* %, estimated errors */
+  double cpu;                       /* s, of the pass */
+  char change[80];                  /* what the next pass has changed, "" */
 } pass_row;
 
 typedef struct increment_summary {
@@ -41,10 +43,10 @@ typedef struct increment_summary {
   double residual, defect;
   error_bound error;
   rounding_loss rounding;
-  int jumps; /* 1: the equilibrium jumps, at jump_t, s                     */
+  int jumps; /* 1: the equilibrium jumps, at jump_t, s */
   double jump_t;
-  int checked, n_solution;   /* by CHECK= of *SOLVER                          */
-  solution_facts *solutions; /* [n_solution] owned                            */
+  int checked, n_solution;   /* by CHECK= of *SOLVER */
+  solution_facts *solutions; /* [n_solution] owned */
   error_share mesh_error, time_error;
   true_error exact;
   balance_report balance;
@@ -52,8 +54,8 @@ typedef struct increment_summary {
 } increment_summary;
 
 typedef struct pass_table {
-  double target; /* %                                                         */
-  int n;         /* 0: no target                                              */
+  double target; /* % */
+  int n;         /* 0: no target */
   const pass_row *rows, *forecast;
   const char *why;
 } pass_table;
@@ -63,21 +65,22 @@ typedef struct run_summary {
   int facts_known;
   setup_facts facts;
   int n_increment, capacity, n_rejected, n_unsettled;
-  increment_summary *increments; /* [n_increment]                          */
-  double residual_worst, defect_worst; /* - ; the defect relative           */
-  double penetration_worst;            /* m, of all contact nodes           */
-  double *ends; /* [n_step * job_end_size] owned: see job_end_column        */
-  flow_tally tally; /* points with a threshold                              */
+  increment_summary *increments;       /* [n_increment] */
+  double residual_worst, defect_worst; /* - ; the defect relative */
+  double penetration_worst;            /* m, of all contact nodes */
+  double *ends;                        /* [n_step * job_end_size] owned: see
+                                          job_end_column */
+  flow_tally tally;                    /* points with a threshold */
   status verdict;
-  const char *message; /* of a failed run, or ""                            */
+  const char *message; /* of a failed run, or "" */
 } run_summary;
 
 /* One line of the error budget: what, its last and largest estimate, CPU
- * seconds of the stages whose work decides it, and of estimating it. */
+ * seconds of the stages that determine it, and of its estimate. */
 typedef struct budget_row {
   const char *name, *json;
-  double last, worst; /* %, of the energy norm; NAN: unknown                  */
-  double reached, estimated; /* s                                             */
+  double last, worst;        /* %, of the energy norm; NAN: unknown */
+  double reached, estimated; /* s */
 } budget_row;
 enum { BUDGET_ROWS = 4 };
 
@@ -95,12 +98,12 @@ typedef struct job {
 const column *job_end_column(const model *m, const column *c);
 /* Numbers of a step there. */
 size_t job_end_size(const model *m);
-/* The estimates asked for; how many rows. */
+/* The estimates required; number of rows. */
 int job_budget(const job *j, budget_row rows[BUDGET_ROWS]);
-/* What TOL=BALANCED saved in all increments that were asked. */
+/* Saving by TOL=BALANCED in all increments with an estimate. */
 typedef struct balance_sum {
   int asked;
-  double iterations, saved_iterations, saved_cpu; /* made; about; s           */
+  double iterations, saved_iterations, saved_cpu; /* made; about; s */
 } balance_sum;
 balance_sum job_balance(const job *j);
 /* Increments that dt of the deck would make in the steps with TIME=BALANCED; 0:
@@ -109,8 +112,8 @@ double job_increments_of_deck(const job *j, int *made);
 /* Sum of the estimates over the true error, last increment; NAN: unknown. */
 double job_effectivity(const job *j);
 
-/* Sizes of model and equations for listing and JSON, NULL ends; the answer
- * counts those of the model, which come first. */
+/* Sizes of model and equations for listing and JSON, NULL ends; returns the
+ * number of those of the model, which come first. */
 typedef struct size_row {
   const char *name;
   double value;

@@ -1,8 +1,8 @@
 /*
  * JOB.lst: the listing. Deck with defaults, model, effect plan, one block per
- * increment, accuracy and cost. No date, time of day or path stands in it; the
- * cost columns (CPU seconds and bytes, which depend on the length of names)
- * are left out on request, and then two runs give the same bytes.
+ * increment, accuracy and cost. It has no date, time of day or path; the cost
+ * columns (CPU seconds and bytes, which depend on the length of names) are left
+ * out on request, and then two runs give the same bytes.
  */
 #include "base/timer.h"
 #include "effects/rows.h"
@@ -61,10 +61,10 @@ static void print_model(const job *j, FILE *f) {
     }
 }
 
-/* What *EFFECTS, MODE=AUTO tries without, or had to take back. */
+/* Effects that *EFFECTS, MODE=AUTO leaves out, or had to restore. */
 static void print_left_out(const model *m, FILE *f) {
   for (int i = 0; i < m->reduction.n; ++i) {
-    const neglected *n = &m->reduction.row[i];
+    const omitted *n = &m->reduction.row[i];
     fprintf(f, "  %s %s: %s\n",
             n->back ? "not left out:" : "left out:", effect_name(n->bit),
             n->why);
@@ -84,10 +84,10 @@ static void print_left_out(const model *m, FILE *f) {
   }
 }
 
-/* The proof at the end: what would have changed at most. */
+/* The proof at the end: the bound of the change. */
 static void print_proof(const model *m, FILE *f) {
   for (int i = 0; i < m->reduction.n; ++i) {
-    const neglected *n = &m->reduction.row[i];
+    const omitted *n = &m->reduction.row[i];
     if (n->back) continue;
     fprintf(f,
             "  without %s: changes the answer by at most %.1e of the energy "

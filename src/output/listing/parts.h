@@ -1,7 +1,7 @@
 /*
  * The parts of the listing: an increment (increment.c), the solutions of CHECK=
  * (solutions.c), the theorems of THEORY= (theory.c), the budget of the errors
- * (budget.c). Each writes nothing where it was not asked for. Private to
+ * (budget.c). Each writes nothing where it is not required. Private to
  * src/output/listing.
  */
 #ifndef PROTIS_LISTING_PARTS_H
@@ -11,7 +11,7 @@
 
 #include <stdio.h>
 
-enum { DIGITS = 5 }; /* after the point                                       */
+enum { DIGITS = 5 }; /* after the point */
 
 /* ---- solutions.c ---- */
 /* The solutions that CHECK= found. */
@@ -22,7 +22,7 @@ void listing_solutions(const state *s, FILE *f);
 void listing_theory(const job *j, const state *s, FILE *f);
 
 /* ---- budget.c ---- */
-/* What was reached, what it cost, and what it cost to know it. */
+/* Errors reached, their cost, and the cost of the estimates. */
 void listing_budget(const job *j, FILE *f);
 /* The passes towards the target, and what a digit more would cost. */
 void listing_passes(const job *j, FILE *f);

@@ -1,5 +1,5 @@
 /*
- * CHECK= of *SOLVER: the solutions found, and who found them.
+ * CHECK= of *SOLVER: the solutions found, and the methods that found them.
  */
 #include "output/listing/parts.h"
 
@@ -41,7 +41,7 @@ static void print_values(const state *s, const solution *a, FILE *f) {
             text_number(text[3], a->r[2 * i + 1], 4));
 }
 
-/* What did not end with a solution. */
+/* Attempts that ended without a solution. */
 static void print_failures(const solution_set *set, FILE *f) {
   char text[NUMBER_SIZE];
   for (int k = 0; k < set->n_attempt; ++k) {
@@ -53,7 +53,7 @@ static void print_failures(const solution_set *set, FILE *f) {
   }
 }
 
-/* Who led to solution number i + 1: a line for each solver. */
+/* The attempts that found solution number i + 1: a line for each solver. */
 static void print_finders(const solution_set *set, int i, FILE *f) {
   const char *last = "";
   for (int k = 0; k < set->n_attempt; ++k) {

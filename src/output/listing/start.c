@@ -33,7 +33,7 @@ status listing_start(const job *j, const start_report *s, text_file *lst) {
           text_number(text, s->worst, DIGITS), unit);
   fprintf(f, "  %-24s %14s -\n", "defect, relative",
           text_number(text, s->ratio, DIGITS));
-  fprintf(f, "  %-24s %14d, above %s\n", "nodes out of balance", s->n_bad,
+  fprintf(f, "  %-24s %14d, above %s\n", "nodes out of equilibrium", s->n_bad,
           text_number(text, start_tolerance, 0));
   for (int k = 0; k < WORST_NODES && k < s->n_bad; ++k) {
     node = next_defect(s, j->msh->n_node, node);

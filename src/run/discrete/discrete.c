@@ -1,5 +1,5 @@
 /*
- * A problem from a file: one solve, told to the outputs as one increment. A
+ * A problem from a file: one solve, passed to the outputs as one increment. A
  * plain LCP goes to lcp_solve.
  */
 #include "run/discrete/discrete.h"
@@ -20,12 +20,13 @@ enum { LOG = 512 };
 typedef struct discrete {
   const step *step;
   const exchange_problem *p;
-  contact_problem cp; /* p->cp, with its bodies after the solve; dim 1: 0 */
+  contact_problem cp; /* p->cp, with its bodies after the solve; dim 1:
+                         0 */
   contact_bodies *bodies;
-  contact_surface surface; /* numbers only                                   */
-  double *u, *r;           /* [m] start and answer; LCP: w, z                */
-  double *gap, *slip, *g;  /* [n], [n*(dim-1)], [n]                          */
-  contact_status *contact; /* [n]                                            */
+  contact_surface surface; /* numbers only */
+  double *u, *r;           /* [m] start and solution; LCP: w, z */
+  double *gap, *slip, *g;  /* [n], [n*(dim-1)], [n] */
+  contact_status *contact; /* [n] */
   solver_report report;
   error_bound error;
   solution_set solutions;
@@ -77,7 +78,8 @@ done:
 }
 
 /* The bound by the inverse of the matrix given; where that is a definite
- * compliance with Coulomb friction, the stiffness A[m*m] is made for its rate.
+ * compliance with Coulomb friction, the stiffness A[m*m] is computed for its
+ * rate.
  */
 static status bound_error(const contact_problem *cp, dense_inverse *dense,
                           const double *u, const double *r,
@@ -180,7 +182,7 @@ done:
   return st;
 }
 
-/* ---- what the outputs are told --------------------------------------------
+/* ---- data of the outputs --------------------------------------------
  */
 
 static state state_of(const discrete *d) {
@@ -216,7 +218,7 @@ static state state_of(const discrete *d) {
   return s;
 }
 
-static status tell_ready(const discrete *d, const history_sink *sink) {
+static status report_ready(const discrete *d, const history_sink *sink) {
   const exchange_problem *p = d->p;
   setup_facts facts = {
       .info = {.unknowns = p->unknowns, .contact_unknowns = p->m},
@@ -228,8 +230,8 @@ static status tell_ready(const discrete *d, const history_sink *sink) {
   return sink->ready(sink->ctx, &facts, &d->surface);
 }
 
-static status tell_answer(discrete *d, const history_sink *sink, double cpu,
-                          int *unsettled) {
+static status report_solution(discrete *d, const history_sink *sink, double cpu,
+                              int *unsettled) {
   status st = OK;
   state s = state_of(d);
   const char *why = outcome_text(d->report.outcome);
@@ -259,7 +261,7 @@ status condensed_run(const model *m, const exchange_problem *p,
   double cpu = timer_cpu();
   *unsettled = 0;
   TRY(discrete_new(&d));
-  TRY(tell_ready(&d, sink));
+  TRY(report_ready(&d, sink));
   timer_enter(STAGE_CONTACT);
   st = p->dim == 1 ? solve_lcp(&d) : solve_contact(&d, sink);
   timer_leave(STAGE_CONTACT);
@@ -268,7 +270,7 @@ status condensed_run(const model *m, const exchange_problem *p,
     TRY(find_error(d.step, &d.cp, d.u, d.r, &d.error));
   if (p->dim > 1 && !outcome_is_fatal(d.report.outcome))
     TRY(check_problem(d.step, &d.cp, &d.report, d.u, d.r, &d.solutions));
-  TRY(tell_answer(&d, sink, cpu, unsettled));
+  TRY(report_solution(&d, sink, cpu, unsettled));
 done:
   discrete_free(&d);
   return st;

@@ -1,5 +1,5 @@
 /*
- * Problems that come without a mesh (*CONDENSED PROBLEM): one solve, told to
+ * Problems that come without a mesh (*CONDENSED PROBLEM): one solve, passed to
  * the outputs as one increment.
  */
 #ifndef PROTIS_DISCRETE_DISCRETE_H

@@ -16,16 +16,16 @@ static double next_point(const run *r, double after) {
 
 static status show(run *r, double t, int increment_no) {
   status st = OK;
-  beside *b = NULL;
-  TRY(beside_at(r, t, &b));
-  run *own = beside_run(b);
+  shadow *b = NULL;
+  TRY(shadow_at(r, t, &b));
+  run *own = shadow_run(b);
   TRY(effects_accept(own));
   if (own->solving.report.outcome <= 0) ++r->course.unsettled;
   state s = loop_state(own, 1, increment_no);
   s.within = 1;
   TRY(r->sink->between(r->sink->ctx, &s));
 done:
-  beside_free(b);
+  shadow_free(b);
   return st;
 }
 

@@ -1,7 +1,6 @@
 /*
- * What is asked about the answer of the contact solver at an accepted
- * increment: its errors, by the effects that estimate them, and what makes it
- * doubtful.
+ * Checks of the contact solution at an accepted increment: its errors, by the
+ * effects that estimate them, and reasons for doubt.
  */
 #include "base/memory.h"
 #include "base/timer.h"
@@ -13,8 +12,8 @@
 
 const char *const error_bound_indefinite =
     "the matrix is not symmetric and positive semidefinite";
-static const double DOUBT = 0.1;        /* -, relative error                  */
-static const double UNLOADED = 0x1p-60; /* -, of the largest energy           */
+static const double DOUBT = 0.1;        /* -, relative error */
+static const double UNLOADED = 0x1p-60; /* -, of the largest energy */
 void error_bound_set(const solver_error *found, double energy, error_bound *e) {
   *e = (error_bound){.asked = 1,
                      .energy = 0.5 * found->norm * found->norm,
@@ -30,9 +29,8 @@ int error_bound_doubts(const error_bound *e, double share) {
   return e->asked && e->why == NULL && share * e->relative > DOUBT;
 }
 
-/* Those of a body that has been unloaded, which is left with rounding alone,
- * count beside the largest energy so far; a body that is carried through the
- * air has none. */
+/* Those of an unloaded body, whose state is rounding, are relative to the
+ * largest energy so far; a body in free motion has none. */
 static void estimate_unloaded(run *r) {
   const energies *e = &r->now.energy;
   r->errors.left = 1.0;
@@ -49,17 +47,17 @@ static void estimate_unloaded(run *r) {
     r->errors.error.relative = sqrt(r->errors.error.energy / e->largest);
 }
 
-status estimate_judge(run *r) {
+status estimate_evaluate(run *r) {
   status st = OK;
   r->now.energy.strain = domain_strain_energy(&r->body.d, r->now.u);
   domain_stress(&r->body.d, r->now.u, NULL, r->result.stress);
   TRY(effects_estimate(r));
-  r->errors.judged = 1;
+  r->errors.evaluated = 1;
 done:
   return st;
 }
 
-/* The bound counts from the discrete solution, which rounding has missed. */
+/* The bound is relative to the exact discrete solution, without rounding. */
 static void add_rounding(run *r) {
   solver_error e = {.rate = r->errors.error.rate, .why = r->errors.error.why};
   double cpu = r->errors.error.cpu;
@@ -73,10 +71,10 @@ static void add_rounding(run *r) {
 status estimate_increment(run *r) {
   status st = OK;
   TRY(rounding_find(r));
-  if (!r->errors.judged) TRY(effects_estimate(r));
+  if (!r->errors.evaluated) TRY(effects_estimate(r));
   add_rounding(r);
   TRY(rounding_hidden(r, &r->errors.error.hidden));
-  r->errors.judged = 0;
+  r->errors.evaluated = 0;
   estimate_unloaded(r);
 done:
   return st;

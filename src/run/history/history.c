@@ -1,6 +1,6 @@
 /*
  * The loop over steps and increments: grid of a fixed increment, its cutting
- * with exact rollback, verdict of each increment, hand-over to the outputs.
+ * with exact rollback, outcome of each increment, outputs.
  */
 #include "accuracy/verdict.h"
 #include "run/history/loop.h"
@@ -38,7 +38,7 @@ static long increments_of(const step *s) {
   return (long)ceil(n);
 }
 
-/* 1: reached its tolerance, is not in doubt and violates no theorem. */
+/* 1: converged to its tolerance, is not in doubt and violates no theorem. */
 static int is_settled(const run *r) {
   return r->solving.report.outcome > 0 && !r->course.missed &&
          !r->at.violated &&
@@ -52,13 +52,13 @@ int run_remembers(const run *r) {
   return slips && kind == STEP_QUASISTATIC;
 }
 
-/* 1: what was missed before is in what this increment starts from. */
+/* 1: the start state of this increment contains one that did not converge. */
 static int is_after_miss(const run *r) {
   return r->course.unsettled > 0 &&
          (run_remembers(r) || effects_sum_up(r) != NULL);
 }
 
-/* What the outputs see of an increment. */
+/* View of an increment for the outputs. */
 state loop_state(run *r, int attempt, int increment_no) {
   const equilibrium *e = &r->now;
   state s = {
@@ -98,7 +98,7 @@ state loop_state(run *r, int attempt, int increment_no) {
       .settled = is_settled(r),
       .errors.in_doubt = error_bound_doubts(&r->errors.error, share_of_step(r)),
       .errors.after_miss = is_after_miss(r),
-      .again = {r, beside_with}};
+      .again = {r, shadow_with}};
   if (r->strains.visco != NULL) visco_show(r, &s);
   if (!(r->m->effects & EFFECT_STRESS)) s.body.stress = NULL;
   if (!(r->m->effects & EFFECT_REACTION)) s.body.reaction = NULL;
@@ -119,14 +119,14 @@ int table_is_due(const step *s, int tables, double t, int increment_no,
   return 0;
 }
 
-/* 1 if some output wants the stresses of this increment. */
+/* 1 if some output needs the stresses of this increment. */
 static int stress_is_due(const step *s, double t, int increment_no, int last) {
   int f = s->output.frequency;
   if (frequency_shows(f, increment_no, last)) return 1;
   return table_is_due(s, ~0, t, increment_no, last);
 }
 
-/* Where an increment that is taken missed its tolerance. */
+/* Where an accepted increment did not converge to its tolerance. */
 static status note_misfit(run *r) {
   status st = OK;
   char text[400];
@@ -147,12 +147,12 @@ done:
 static void note_nodes(run *r) {
   const int now = reach_count(&r->nodes.reach, r->nodes.n);
   size_t used = strlen(r->course.note);
-  if (r->nodes.n == 0 || now == r->nodes.n_told) return;
+  if (r->nodes.n == 0 || now == r->nodes.n_reported) return;
   snprintf(r->course.note + used, sizeof r->course.note - used,
-           "  contact nodes thought out of reach touch: solved again with %d "
-           "nodes, not %d, of %d\n",
-           now, r->nodes.n_told, r->nodes.n);
-  r->nodes.n_told = now;
+           "  inactive contact nodes touch: solved again with %d nodes, not "
+           "%d, of %d\n",
+           now, r->nodes.n_reported, r->nodes.n);
+  r->nodes.n_reported = now;
 }
 
 status loop_accept(run *r, int attempt, int increment_no, int last,
@@ -236,7 +236,7 @@ static status keep_all(void *run_, archive *a) { return run_keep(run_, a); }
 static status checkpoint(run *r) {
   status st = OK;
   const run_memory memory = {r, keep_all, r->at.step_id + 1};
-  int planned = r->course.due; /* others are no stage of the run that goes on */
+  int planned = r->course.due; /* others are no stage of the continued run */
   r->course.due = 0;
   if (r->sink->checkpoint == NULL) return OK;
   if (planned) timer_enter(STAGE_RESTART);
@@ -263,7 +263,7 @@ done:
   return st;
 }
 
-/* What is due where the run could go on from; ends it if that was asked for. */
+/* The checkpoint that is due between two attempts; ends the run on request. */
 status loop_pause(run *r) {
   status st = OK, why = interrupt_asked();
   r->course.kept = r->course.due;
@@ -282,12 +282,12 @@ status loop_solve_once(run *r, double t) {
 
 status loop_solve(run *r, double t) {
   int made = 0;
-  r->errors.judged = 0;
+  r->errors.evaluated = 0;
   PASS(effects_solve(r, t, &made));
   return made ? OK : loop_solve_once(r, t);
 }
 
-/* 1 if an attempt that found no equilibrium is made again in halves. */
+/* 1 if an attempt without equilibrium is repeated in halves. */
 static int can_cut(const run *r) {
   const step *s = r->step;
   int level = r->at.level + 1;
@@ -297,7 +297,7 @@ static int can_cut(const run *r) {
          r->solving.report.outcome != STOPPED_UNFIT;
 }
 
-/* The next piece of n increments has been taken. */
+/* The next piece of n increments was accepted. */
 static status accept_piece(run *r, long n, double cpu) {
   status st = OK;
   progress *p = &r->at;
@@ -334,7 +334,8 @@ done:
   return st;
 }
 
-/* One attempt at the next piece of n increments: taken, or cut into halves. */
+/* One attempt at the next piece of n increments: accepted, or cut into
+ * halves. */
 static status attempt_piece(run *r, long n) {
   status st = OK;
   progress *p = &r->at;

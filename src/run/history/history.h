@@ -7,11 +7,11 @@
 #include "run/effect.h"
 
 /*
- * Run all steps with those of the effects (a table that NULL ends) that the
- * model calls for. *unsettled counts the increments that missed their
- * tolerance at the smallest dt. Errors: ERR_SINGULAR (no equilibrium), those
- * of interrupt_asked, which ends the run between two attempts, those of the
- * sink, ERR_MEMORY.
+ * Run all steps with the effects (a table that NULL ends) that the model
+ * requires. *unsettled counts the increments that did not converge to their
+ * tolerance at the smallest dt. Errors: ERR_SINGULAR (no equilibrium), those of
+ * interrupt_asked, which ends the run between two attempts, those of the sink,
+ * ERR_MEMORY.
  */
 status history_run(const model *m, const mesh *msh,
                    const effect_ops *const *effects, const history_sink *sink,
@@ -23,9 +23,9 @@ status history_continue(const model *m, const mesh *msh,
                         const effect_ops *const *effects, archive *from,
                         const history_sink *sink, int *unsettled);
 
-/* The bound that is told, for a solution of that energy, J. */
+/* The reported bound, for a solution of that energy, J. */
 void error_bound_set(const solver_error *found, double energy, error_bound *e);
-/* Why there is none where the matrix has no inverse. */
+/* The reason where the matrix has no inverse. */
 /* 1: it, or what rounding hides of contact forces, is above 10 % of the energy
  * norm of an answer under full loads, of which "share" act now: an answer that
  * does not count as one. */
@@ -33,7 +33,7 @@ int error_bound_doubts(const error_bound *e, double share);
 extern const char *const error_bound_indefinite;
 
 /* Other solutions than (u, r), which a solver reports so, into *out, if the
- * step asks for them. ERR_DECK: CHECK=ALL is not possible. */
+ * step requires them. ERR_DECK: CHECK=ALL is not possible. */
 status check_problem(const step *s, const contact_problem *cp,
                      const solver_report *report, const double *u,
                      const double *r, solution_set *out);

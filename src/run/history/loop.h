@@ -7,24 +7,24 @@
 #include "run/history/history.h"
 #include "run/run.h"
 
-/* history.c: r->now is an increment of the run: judged, told, made r->old.
+/* history.c: r->now is an increment of the run: checked, reported, made r->old.
  *   attempt       1: not cut
  *   increment_no  within the step, from 1; 0: the start
  *   last          1: it ends the step
- *   cpu           of the process when it began, s                           */
+ *   cpu           of the process when it began, s */
 status loop_accept(run *r, int attempt, int increment_no, int last, double cpu);
-/* It is not: told with the reason. */
+/* It is not: reported with the reason. */
 status loop_reject(run *r, int attempt, int increment_no, const char *why);
-/* What the outputs see of r->now. */
+/* View of r->now for the outputs. */
 state loop_state(run *r, int attempt, int increment_no);
 /* 1 if one of these tables (bits PRINT_*) shows the increment that ends at t.
  */
 int table_is_due(const step *s, int tables, double t, int increment_no,
                  int last);
-/* 1 if a shorter increment may settle what this attempt at a chosen length did
- * not: the solver does not stagnate, or at a lower residual than before. */
+/* 1 if a shorter increment may converge where this attempt did not: the solver
+ * does not stagnate, or at a lower residual than before. */
 int loop_cut_helps(const run *r);
-/* Why there is none: ERR_SINGULAR. */
+/* Reports that there is no equilibrium: ERR_SINGULAR. */
 status loop_no_equilibrium(run *r);
 /* From r->old to r->now at t by the procedure of the step, or that of an
  * effect; the first alone. */
@@ -41,11 +41,11 @@ status dense_show(run *r, int increment_no);
 
 /* The loads now over the largest of the step, at most 1. */
 double share_of_step(const run *r);
-/* rounding.c: what rounding has taken of r->now, whose energies are known.
- * ERR_SINGULAR: it leaves no digit. */
+/* rounding.c: the rounding error of r->now, whose energies are known.
+ * ERR_SINGULAR: no correct digit. */
 status rounding_find(run *r);
-/* What rounding of the motion may hide of contact forces: contact_hidden, own
- * forces by the stresses next to the node. */
+/* Contact forces that may be below the rounding of the motion: contact_hidden,
+ * own forces by the stresses next to the node. */
 status rounding_hidden(const run *r, double *part);
 /* 1: the strains of the body are no more than the rounding of its motion. */
 int rounding_hides_strains(const run *r);
@@ -53,10 +53,10 @@ int rounding_hides_strains(const run *r);
  * they carry the load straight, and strains are rounding of both. */
 int rounding_is_all(const run *r);
 
-/* estimate.c: errors at r->now into r->errors.error, mesh_error, as asked for.
+/* estimate.c: errors at r->now into r->errors.error, mesh_error, as required.
  */
 status estimate_increment(run *r);
 /* Those of solver and mesh alone, from r->now.u; read r->errors.judged. */
-status estimate_judge(run *r);
+status estimate_evaluate(run *r);
 
 #endif

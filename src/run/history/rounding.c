@@ -1,16 +1,15 @@
 /*
- * What rounding has taken of an answer. Where the condition number is far above
- * that of a plain mesh, or where elastic strains are the difference of large
- * numbers, since inelastic strains or motions of the whole body are far above
- * them, the forces of the elements at
- * the answer are compared with loads and contact forces. With d what is missing
- * to equilibrium, the exact answer is w = inv(K) d away: its energy norm and
- * its stresses are those of the error. Beside laws that flow K is that of the
- * elastic body all the same: of all stresses that carry d, those of w have the
- * least energy. They are as rounded as the answer itself, and show so. Where
- * that leaves nothing, contact may hold the body better than its supports: w is
- * then found with the nodes at the obstacle held. An answer without one correct
- * digit ends the run; loads that grow from zero count as those they become.
+ * Rounding error of a solution. Where the condition number is far above that of
+ * a plain mesh, or where elastic strains are the difference of large numbers,
+ * since inelastic strains or motions of the whole body are far above them, the
+ * forces of the elements at the answer are compared with loads and contact
+ * forces. With d the residual of equilibrium, the error is w = inv(K) d: its
+ * energy norm and its stresses are those of the error. With laws that flow K is
+ * still that of the elastic body: of all stresses that carry d, those of w have
+ * the least energy. Where that error is total, contact may hold the body better
+ * than its supports: w is then found with the nodes at the obstacle held. A
+ * solution without a correct digit ends the run; loads that grow from zero
+ * count with their final size.
  */
 #include "base/memory.h"
 #include "base/sparse.h"
@@ -20,8 +19,8 @@
 #include <float.h>
 #include <math.h>
 
-static const double LAST_DIGIT = 0.1; /* -, an error that leaves none         */
-/* -, the same where the condition leaves none to the factor that measures */
+static const double LAST_DIGIT = 0.1; /* -, error without a correct digit */
+/* -, the same where the condition number makes the measuring factor useless */
 static const double IN_DOUBT = 0.01;
 /* -, displacements and forces in u and A u, by rounding */
 static const double CARRIED = 4 * DBL_EPSILON;
@@ -30,7 +29,7 @@ static const double FAR = 1e6;
 static const double REST =
     1e-8; /* -, what a solver leaves of forces, at most */
 
-/* share: of the answer in one that the loss counts against. */
+/* share: of the solution in one that the loss counts against. */
 static int leaves_none(const rounding_loss *loss, double share,
                        const condensed *c) {
   const double most = share * fmax(fmax(loss->energy, loss->stress), loss->u);
@@ -42,23 +41,23 @@ static status check(const run *r, double share, const condensed *c) {
   const rounding_loss *loss = &r->errors.rounding;
   if (!leaves_none(loss, share, c)) goto done;
   FAIL(ERR_SINGULAR,
-       "step %d, time %g: rounding leaves no digit of the answer: the energy "
+       "step %d, time %g: rounding leaves no correct digit: the energy "
        "norm is wrong by about %.1g of itself, stresses by %.1g and "
        "displacements by %.1g of the largest (condition %.1e); contrasts of "
-       "stiffness, slivers, nu near 1/2, supports that hardly hold, creep "
-       "strains and motions far above the elastic ones cost digits",
+       "stiffness, slivers, nu near 1/2, weak supports, creep strains and "
+       "motions far above the elastic ones lose digits",
        run_step_id(r) + 1, r->now.t, loss->energy, loss->stress, loss->u,
        condensed_condition(c));
 done:
   return st;
 }
 
-/* Arrays of a body whose answer is looked at. */
+/* Arrays of a body whose solution is checked. */
 typedef struct misfit {
   condensed *c;
   size_t n_stress;
-  double *stress;   /* [n_stress] of the answer, then of w alone, Pa          */
-  double *rest, *w; /* [n_dof] N; m                                           */
+  double *stress;   /* [n_stress] of the answer, then of w alone, Pa */
+  double *rest, *w; /* [n_dof] N; m */
 } misfit;
 
 static status misfit_new(const run *r, misfit *x) {
@@ -78,7 +77,7 @@ static void misfit_free(misfit *x) {
   memory_free(x->w);
 }
 
-/* The stresses of the displacement w alone, over those of the answer. */
+/* The stresses of the displacement w alone, over those of the solution. */
 static void compare_stresses(run *r, misfit *x) {
   domain plain = r->body.d;
   double wrong;
@@ -88,7 +87,7 @@ static void compare_stresses(run *r, misfit *x) {
   if (wrong > 0.0) r->errors.rounding.stress = wrong / r->now.peak_stress;
 }
 
-/* What is lost of the largest displacement, m. */
+/* Error of the largest displacement, m. */
 static double lost(const run *r) {
   return CARRIED * largest_entry(r->n_dof, r->now.u);
 }
@@ -100,7 +99,7 @@ int rounding_hides_strains(const run *r) {
 }
 
 /* 1: contact forces and supports carry the loads straight, and strains are no
- * more than the rounding of both, or what the solver leaves. */
+ * more than the rounding of both, or the residual of the solver. */
 static int forces_hide_strains(const run *r) {
   const double force = fmax(CARRIED, fmin(r->solving.tol, REST)) *
                        fmax(largest_entry(r->n_dof, r->now.F),
@@ -117,8 +116,8 @@ int rounding_is_all(const run *r) {
          rounding_hides_strains(r);
 }
 
-/* A body led through the air, without load and contact force: its stresses, of
- * which nothing but rounding is there, are no loss. */
+/* A body in free motion, without load and contact force: its stresses, which
+ * are rounding, are no loss. */
 static int moves_alone(const run *r) {
   if (rounding_is_all(r)) return 1;
   return r->errors.rounding.u < 1e-10 &&
@@ -126,7 +125,7 @@ static int moves_alone(const run *r) {
          largest_entry((size_t)r->nodes.n_c, r->now.rc) == 0.0;
 }
 
-/* What is missing to equilibrium but for contact forces. */
+/* Residual of equilibrium without contact forces. */
 static void find_rest(run *r, misfit *x) {
   domain_stress(&r->body.d, r->now.u, NULL, x->stress);
   domain_internal_force(&r->body.d, x->stress, x->rest);
@@ -135,7 +134,7 @@ static void find_rest(run *r, misfit *x) {
       fmax(r->now.peak_stress, largest_entry(x->n_stress, x->stress));
 }
 
-/* The loss that the way w to the exact answer means. */
+/* The loss by the error w of the displacements. */
 static void take_loss(run *r, misfit *x, double square) {
   r->errors.rounding = (rounding_loss){.found = 1, .norm = sqrt(square)};
   if (square > 0.0) {
@@ -160,8 +159,8 @@ static void find_held(const run *r, const contact_status *touch,
   }
 }
 
-/* Once more: contact holds the body where supports hardly do. */
-static status find_beside_contact(run *r, misfit *x) {
+/* Again with the body held by contact, where supports are weak. */
+static status find_adjacent_contact(run *r, misfit *x) {
   status st = OK;
   contact_status *touch = NULL;
   unsigned char *held = NULL;
@@ -180,8 +179,8 @@ done:
   return st;
 }
 
-/* The loads now over the largest of the step: what rounding takes does not grow
- * with them, so that it counts against those. */
+/* The loads now over the largest of the step: rounding errors do not grow with
+ * them and are relative to the largest. */
 double share_of_step(const run *r) {
   const double now = increment_free_load(r, r->now.F);
   return now < r->loads.largest ? now / r->loads.largest : 1.0;
@@ -197,7 +196,7 @@ static status find(run *r) {
   TRY(condensed_misfit(x.c, x.rest, run_rows(r, 1, r->now.rc), x.w, &square));
   take_loss(r, &x, square);
   if (leaves_none(&r->errors.rounding, 1.0, x.c) && r->nodes.n_row > 0)
-    TRY(find_beside_contact(r, &x));
+    TRY(find_adjacent_contact(r, &x));
   if (moves_alone(r)) r->errors.rounding = (rounding_loss){0};
   TRY(check(r, share, x.c));
 done:
@@ -205,7 +204,7 @@ done:
   return st;
 }
 
-/* A body led far to where rounding hides whether it touches. */
+/* A body moved so far that contact is decided by rounding. */
 static status check_touch(const run *r) {
   status st = OK;
   const double u = largest_entry(r->n_dof, r->now.u);
@@ -214,8 +213,8 @@ static status check_touch(const run *r) {
     const double gap = r->problem.gap[i] - r->now.uc[r->msh->dim * i];
     if (fabs(gap) <= 16 * DBL_EPSILON * u)
       FAIL(ERR_SINGULAR,
-           "step %d, time %g: rounding leaves no digit of the answer: after a "
-           "motion of %.1g a gap of %.1g may be open or closed; begin nearer "
+           "step %d, time %g: rounding leaves no correct digit: after a "
+           "motion of %.1g a gap of %.1g may be open or closed; start nearer "
            "to the obstacle",
            run_step_id(r) + 1, r->now.t, u, gap);
   }
@@ -223,7 +222,8 @@ done:
   return st;
 }
 
-/* Largest force times largest motion, J: at most what one of them has done. */
+/* Largest force times largest motion, J: an upper bound of the work of one of
+ * them. */
 static double farthest_work(const run *r) {
   return largest_entry(r->n_dof, r->now.u) *
          fmax(largest_entry(r->n_dof, r->now.F),

@@ -1,6 +1,6 @@
 /*
- * What comes before the increments of a step: what the effects have there, and
- * what a *VISCO step puts on suddenly.
+ * What comes before the increments of a step: hooks of the effects, and sudden
+ * loads of a *VISCO step.
  */
 #include "base/timer.h"
 #include "run/history/loop.h"
@@ -32,7 +32,7 @@ static int starts_smoothly(const run *r) {
          same_vector(strains_kept(r), r->now.e0, r->old.e0);
 }
 
-/* 1: a law flows, or would if *EFFECTS had not left it out. */
+/* 1: a law flows, or would without *EFFECTS. */
 static int has_law(const run *r) {
   int any = r->strains.visco != NULL;
   for (int i = 0; i < r->m->n.material; ++i)
@@ -41,8 +41,8 @@ static int has_law(const run *r) {
 }
 
 /*
- * The body answers at once to what is applied suddenly at the start of a *VISCO
- * step: an increment without length of its own.
+ * The body responds at once to what is applied suddenly at the start of a
+ * *VISCO step: an increment without length of its own.
  */
 static status start_visco(run *r, int *increment_no) {
   status st = OK;

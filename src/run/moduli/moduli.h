@@ -10,14 +10,15 @@
 #include "model/model.h"
 
 typedef struct moduli {
-  int n;           /* entries: sections, then the elements                    */
-  int n_own;       /* elements with an entry of their own                     */
-  int *elem_id;    /* [n_own] ascending                                       */
-  double *at;      /* [n_own] temperature of their entry                      */
-  int *section_id; /* [n_elem] entry of an element, or NULL: its section      */
-  int *origin;     /* [n] section of an entry                                 */
-  kinematics *kin; /* [n]                                                     */
-  double *thickness, *E, *C; /* [n] m, [ns*ns*n], [36*n] Pa                   */
+  int n;                     /* entries: sections, then the elements */
+  int n_own;                 /* elements with an entry of their own */
+  int *elem_id;              /* [n_own] ascending */
+  double *at;                /* [n_own] temperature of their entry */
+  int *section_id;           /* [n_elem] entry of an element, or NULL: its
+                                section */
+  int *origin;               /* [n] section of an entry */
+  kinematics *kin;           /* [n] */
+  double *thickness, *E, *C; /* [n] m, [ns*ns*n], [36*n] Pa */
 } moduli;
 
 /* At the temperatures T[n_elem]; T NULL: none is given, no element has an entry
@@ -25,7 +26,7 @@ typedef struct moduli {
  * elasticity; ERR_MEMORY. */
 status moduli_new(const model *m, const mesh *msh, const double *T,
                   moduli *out);
-void moduli_free(moduli *x); /* accepts all-zero                              */
+void moduli_free(moduli *x); /* accepts all-zero */
 /* To other temperatures; *changed = 1 if an entry is another one now, else it
  * stays. ERR_DECK likewise. */
 status moduli_heat(moduli *x, const model *m, const double *T, int *changed);

@@ -1,13 +1,13 @@
 /*
- * What a run goes on from: all that an increment starts from and the matrices
- * do not tell, into an archive and back.
+ * Restart data: the state an increment starts from that does not follow from
+ * the matrices, into an archive and back.
  */
 #include "run/setup/setup.h"
 
 #include "base/memory.h"
 #include "base/timer.h"
 
-/* The nodes of a run that goes on. */
+/* The nodes of a continued run. */
 static status keep_nodes(run *r, archive *a) {
   status st = OK;
   contact_reach x = r->nodes.reach;
@@ -97,7 +97,7 @@ static status keep_contact(run *r, archive *a) {
   TRY(archive_reals(a, "f_before", r->problem.f_before,
                     (size_t)r->nodes.n_row));
   r->problem.n_before = r->nodes.n_row;
-  r->nodes.n_told = reach_count(&r->nodes.reach, r->nodes.n);
+  r->nodes.n_reported = reach_count(&r->nodes.reach, r->nodes.n);
   TRY(keep_rate(r, a));
   TRY(matrices_keep(&r->elastic, a, "elastic"));
 done:

@@ -1,6 +1,6 @@
 /*
- * What a run keeps as long as the supports stay the same: contact surface, the
- * nodes of it within reach, condensed stiffness, solver.
+ * Data that persist while the supports are unchanged: contact surface, its
+ * active nodes, condensed stiffness, solver.
  */
 #include "run/setup/setup.h"
 
@@ -13,16 +13,16 @@
 /*
  * Contact nodes whose gap is wider than what the step can close are left out of
  * the condensed problem: they are free nodes of the interior, without force.
- * After each solution none of them may be beyond its gap; where one is, or
- * where no equilibrium was found, more nodes are taken and the problem is
- * solved again. The answer is thus that of all nodes; only its price depends on
- * the estimate of the reach.
+ * After each solution none of them may penetrate; otherwise, or where no
+ * equilibrium was found, more nodes are taken and the problem is solved again.
+ * The solution is thus that of all nodes; only its cost depends on the estimate
+ * of the distance.
  */
-enum { FEWEST = 16 };               /* contact nodes                         */
-static const double GENEROUS = 4.0; /* -, of what loads move a compact body  */
+enum { FEWEST = 16 };               /* contact nodes */
+static const double GENEROUS = 4.0; /* -, of what loads move a compact body */
 
 /* 1: no force on a node that does not touch, nothing but loads and supports
- * moves the body, and the problem at hand is that of all increments. */
+ * moves the body, and the current problem is that of all increments. */
 static int may_leave_out(const run *r, int n_motion) {
   const unsigned effects = r->m->effects;
   if ((effects & EFFECT_TANGENTS) &&
@@ -33,7 +33,7 @@ static int may_leave_out(const run *r, int n_motion) {
 }
 
 /* Least diagonal entry of the moduli, Pa, times the section's thickness or the
- * size of the mesh: a body of that size gives way by force over this, N/m. */
+ * size of the mesh: a body of that size deforms by force over this, N/m. */
 static double least_stiffness(const run *r) {
   const domain *d = &r->body.d;
   const int ns = d->ns, flat = d->mesh->dim == 2;
@@ -49,7 +49,7 @@ static double least_stiffness(const run *r) {
   return least;
 }
 
-/* Way of the contact nodes in the step, generously, m. */
+/* Upper estimate of the displacement of the contact nodes in the step, m. */
 static status find_reach(run *r) {
   status st = OK;
   double force = 0.0, way = 0.0, end = r->step->start + r->step->total;
@@ -65,7 +65,7 @@ done:
   return st;
 }
 
-/* The nodes within reach at the start or the end of the step. */
+/* The active nodes at the start or the end of the step. */
 static status choose_nodes(run *r, int n_motion) {
   status st = OK;
   double *gap = NULL;
@@ -122,8 +122,8 @@ done:
   return st;
 }
 
-/* The first load of the run that is in range, at the increments of its steps:
- * a step in which next to nothing is left, or not yet there, goes with it. */
+/* The first load of the run that is in range, at the increments of its steps: a
+ * step with almost no load is scaled with it. */
 static status find_load_of_run(run *r) {
   status st = OK;
   for (int k = 0; k < r->m->n.step; ++k) {
@@ -172,9 +172,9 @@ status run_prepare(run *r) {
     TRY(run_check_supports(r, &motions));
     TRY(choose_nodes(r, motions));
     r->problem.n_before = r->nodes.n_row;
-    r->nodes.n_told = reach_count(&r->nodes.reach, r->nodes.n);
-    if (r->sink->foresee != NULL)
-      TRY(r->sink->foresee(r->sink->ctx, r->nodes.n_told));
+    r->nodes.n_reported = reach_count(&r->nodes.reach, r->nodes.n);
+    if (r->sink->expect != NULL)
+      TRY(r->sink->expect(r->sink->ctx, r->nodes.n_reported));
     TRY(run_renew_elastic(r));
     r->c = r->elastic.c;
     fresh = 1;

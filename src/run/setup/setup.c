@@ -1,5 +1,5 @@
 /*
- * A run before its first step: arrays that stay as long as the run, from the
+ * A run before its first step: arrays that persist during the run, from the
  * model and the mesh.
  */
 #include "run/setup/setup.h"
@@ -29,8 +29,8 @@ static void free_equilibrium(equilibrium *e) {
   memory_free(e->sigma);
 }
 
-/* Clusters of the sections with FORMULATION=AVERAGED. What may change its
- * moduli is averaged as what flows. */
+/* Clusters of the sections with FORMULATION=AVERAGED. Sections with variable
+ * moduli are averaged like those that flow. */
 static status new_clusters(run *r) {
   status st = OK;
   const model *m = r->m;

@@ -14,10 +14,11 @@ void run_free(run *r);
  * solved: *list is new (memory_free), NULL if there are none. ERR_SINGULAR with
  * the list if nothing at all resists one. */
 status run_motions(run *r, int *n, free_motion **list);
-/* The same of the surface at hand; *n: those that contact alone holds. */
+/* The same of the current surface; *n: those that contact alone holds. */
 status run_check_supports(const run *r, int *n);
 
-/* surface.c: the surface of r->body.fixed, with what the old one knew; without.
+/* surface.c: the surface of r->body.fixed, with or without the state of the old
+ * one.
  */
 status run_build_surface(run *r);
 void run_free_surface(run *r);
@@ -25,8 +26,8 @@ void run_free_surface(run *r);
 /* prepare.c: surface, stiffness, condensed matrix and solver for r->step. */
 status run_prepare(run *r);
 
-/* keep.c: all that an increment starts from and the matrices do not tell, named
- * for an archive: kept, or, after run_prepare, filled. */
+/* keep.c: the state an increment starts from that does not follow from the
+ * matrices, to an archive, or, after run_prepare, from it. */
 status run_keep(run *r, archive *a);
 
 #endif

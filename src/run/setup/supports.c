@@ -1,5 +1,5 @@
 /*
- * Whether supports and contact hold every body, asked before anything is
+ * Whether supports and contact hold every body, checked before anything is
  * solved.
  */
 #include "run/setup/setup.h"

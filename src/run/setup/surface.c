@@ -1,5 +1,5 @@
 /*
- * The contact surface of a step: made anew where the supports change, with the
+ * The contact surface of a step: made again where the supports change, with the
  * forces and displacements of the old surface in the frames of the new one.
  */
 #include "run/setup/setup.h"
@@ -92,7 +92,7 @@ static void forces_to_global(const run *r, double *force) {
             s->frame[dim * dim * i + dim * a + c] * r->old.rc[dim * i + a];
 }
 
-/* A node that supports take out of the contact leaves its force to them. */
+/* The force of a node that supports take out of the contact goes to them. */
 static void leave_forces(run *r, double *force) {
   int dim = r->msh->dim;
   for (int i = 0; i < r->nodes.n; ++i)

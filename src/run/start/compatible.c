@@ -6,14 +6,14 @@
 #include <math.h>
 #include <string.h>
 
-/* A start from the end of another run carries its solver's tolerance; one from
- * expressions that equilibrium allows carries rounding. */
+/* A start from the end of another run contains its solver's tolerance; one from
+ * expressions in equilibrium contains rounding. */
 const double start_tolerance = 1e-6;
 
 const char *defect_text(defect_kind kind) {
   static const char *const text[] = {
-      "none", "not in balance with the loads",
-      "not at the place of its support", "unilateral condition not met",
+      "none", "not in equilibrium with the loads", "not at its support",
+      "unilateral condition not met",
       "tangential force above the sliding limit"};
   return text[kind];
 }

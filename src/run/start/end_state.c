@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double SAME_PLACE = 1e-9; /* -, of the size of the mesh          */
+static const double SAME_PLACE = 1e-9; /* -, of the size of the mesh */
 
 /* Items of a node in a dataset of n numbers: at least dim of them. */
 static status width_of(const hdf5_source *s, const char *name, long n,

@@ -19,40 +19,40 @@ extern const double start_tolerance;
 
 typedef enum {
   DEFECT_NONE,
-  DEFECT_INTERIOR, /* internal forces and loads do not balance               */
-  DEFECT_SUPPORT,  /* not where *BOUNDARY holds it                           */
-  DEFECT_NORMAL,   /* penetrates, pulls, or pushes across a gap               */
-  DEFECT_SLIDING   /* more tangential force than the sliding limit           */
+  DEFECT_INTERIOR, /* internal forces and loads do not balance */
+  DEFECT_SUPPORT,  /* not where *BOUNDARY holds it */
+  DEFECT_NORMAL,   /* penetrates, pulls, or pushes across a gap */
+  DEFECT_SLIDING   /* more tangential force than the sliding limit */
 } defect_kind;
 const char *defect_text(defect_kind kind);
 
 typedef struct start_input {
   const mesh *mesh;
-  const unsigned char *fixed;     /* [dim*n_node]                             */
+  const unsigned char *fixed;     /* [dim*n_node] */
   const double *u, *ud, *R;       /* [dim*n_node] m, prescribed m; K u - F, N */
   const double *stiffness;        /* [dim*n_node] force of a unit displacement
-                                     of a support, N/m                        */
-  const contact_surface *surface; /* NULL: no contact                         */
-  const contact_problem *cp;      /* of time 0, stick at u_0                  */
-  const double *uc;               /* [m] m                                    */
+                                     of a support, N/m */
+  const contact_surface *surface; /* NULL: no contact */
+  const contact_problem *cp;      /* of time 0, stick at u_0 */
+  const double *uc;               /* [m] m */
   const double *given;            /* [n] given normal force, N; < 0: none; NULL
-                                     all none                                 */
-  double load;                    /* largest force of loads and elements, N   */
+                                     all none */
+  double load;                    /* largest force of loads and elements, N */
 } start_input;
 
 typedef struct start_report {
-  double *defect;      /* [n_node] N                                          */
-  unsigned char *kind; /* [n_node] defect_kind                                */
-  double worst, scale; /* largest defect and force, N                         */
-  double ratio;        /* worst over scale, -                                 */
-  int node_id, n_bad;  /* of the worst; nodes above start_tolerance           */
-  int relaxed;         /* 1: replaced by the equilibrium of time 0            */
-  const char *source;  /* file it came from, or NULL                          */
-  double source_time;  /* s                                                   */
+  double *defect;      /* [n_node] N */
+  unsigned char *kind; /* [n_node] defect_kind */
+  double worst, scale; /* largest defect and force, N */
+  double ratio;        /* worst over scale, - */
+  int node_id, n_bad;  /* of the worst; nodes above start_tolerance */
+  int relaxed;         /* 1: replaced by the equilibrium of time 0 */
+  const char *source;  /* file it came from, or NULL */
+  double source_time;  /* s */
 } start_report;
 
 status start_report_new(const mesh *msh, start_report *report);
-void start_report_free(start_report *report); /* accepts all-zero             */
+void start_report_free(start_report *report); /* accepts all-zero */
 /* u_0 of the deck: the end of another run, then the lines; u[dim*n_node].
  * Errors in the log: ERR_FILE, ERR_DECK. */
 status start_displacements(const model *m, const mesh *msh, double *u,

@@ -46,7 +46,7 @@ enum {
   SHORTENINGS = 10   /* of one step */
 };
 
-static const double SPRING = 0x1p-36; /* -, of the diagonal                  */
+static const double SPRING = 0x1p-36; /* -, of the diagonal */
 
 typedef enum { OPEN, CLOSED } contact_state;
 
@@ -358,8 +358,8 @@ static outcome auglag_newton(auglag_run *s) {
 
 static const double RHO_UZAWA = 0x1p4; /* -, of diag A */
 static const double PROGRESS = 0.9; /* -, of the residual, in PATIENCE steps */
-static const double START_TOL = 1e-3; /* -, of pressures for a first limit   */
-static const double FLATTER = 0.5; /* -, slope that ends a search           */
+static const double START_TOL = 1e-3; /* -, of pressures for a first limit */
+static const double FLATTER = 0.5;    /* -, slope that ends a search */
 
 enum {
   INNER_STEPS = 60, /* Newton steps of one multiplier step */

@@ -36,8 +36,8 @@ typedef struct lemke_work {
                                   [n_free*n_kept] that times A_FK */
     double *base;              /* [m] u (r) at z = 0 */
     double *D;                 /* [n] scale of a node, power of two */
-    double *tame;              /* [n] factor of the rows with the limit,
-                                  power of two */
+    double *tame;              /* [n] factor of the rows with the limit, power
+                                  of two */
   } reduced;
   struct {
     int *normal, *slide, *n_slide; /* [n] variable of u_n; first SLIDE */

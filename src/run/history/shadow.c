@@ -1,16 +1,16 @@
 /*
- * A state within an increment that has been made: the inelastic strains there
- * by the rule of the integrator, and the equilibrium they call for under the
- * loads of that time, with the slip counted from where the increment started.
- * A copy of the run with arrays of its own solves it, the increment stays as it
- * is. What the copy shares is what result_evaluate finds anew.
+ * A state within a solved increment: the inelastic strains there by the rule of
+ * the integrator, and their equilibrium under the loads of that time, with the
+ * slip counted from the start of the increment. A shadow run, a copy of the run
+ * with arrays of its own, solves it; the increment is unchanged. Shared arrays
+ * are those that result_evaluate computes again.
  */
 #include "base/memory.h"
 #include "run/visco.h"
 
 #include <string.h>
 
-struct beside {
+struct shadow {
   run r;
   visco v;
 };
@@ -66,7 +66,7 @@ done:
   return st;
 }
 
-void beside_free(beside *b) {
+void shadow_free(shadow *b) {
   own_array list[OWN];
   if (b == NULL) return;
   list_own(&b->r, list);
@@ -96,7 +96,7 @@ done:
   return st;
 }
 
-static status own_points(const run *r, beside *b) {
+static status own_points(const run *r, shadow *b) {
   status st = OK;
   visco *v = &b->v;
   if (r->strains.visco == NULL) return OK;
@@ -113,14 +113,14 @@ done:
 }
 
 /* *out is valid (free it) also after a failure. */
-static status beside_new(const run *r, beside **out) {
+static status shadow_new(const run *r, shadow **out) {
   status st = OK;
-  beside *b = NULL;
+  shadow *b = NULL;
   NEW(b, 1);
   *out = b;
   run *own = &b->r;
   *own = *r;
-  own->course.beside = 1;
+  own->course.shadow = 1;
   own->c = r->elastic.c;
   own->solver = r->elastic.solver;
   own->solving.known_key = RUN_NO_KEY;
@@ -149,16 +149,16 @@ done:
   return st;
 }
 
-status beside_at(run *r, double t, beside **out) {
+status shadow_at(run *r, double t, shadow **out) {
   status st = OK;
   *out = NULL;
   timer_enter(STAGE_BETWEEN);
-  TRY(beside_new(r, out));
+  TRY(shadow_new(r, out));
   TRY(solve(r, &(*out)->r, t));
 done:
   timer_leave(STAGE_BETWEEN);
   if (st != OK) {
-    beside_free(*out);
+    shadow_free(*out);
     *out = NULL;
   }
   return st;
@@ -177,13 +177,13 @@ done:
   return st;
 }
 
-status beside_with(void *run_, const double *more, double *u, double *rc,
+status shadow_with(void *run_, const double *more, double *u, double *rc,
                    int *solved) {
   status st = OK;
   run *r = run_;
-  beside *b = NULL;
+  shadow *b = NULL;
   timer_enter(STAGE_BETWEEN);
-  TRY(beside_new(r, &b));
+  TRY(shadow_new(r, &b));
   TRY(solve_with(r, &b->r, more));
   *solved = b->r.solving.report.outcome > 0;
   memcpy(u, b->r.now.u, r->n_dof * sizeof *u);
@@ -191,8 +191,8 @@ status beside_with(void *run_, const double *more, double *u, double *rc,
     memcpy(rc, b->r.now.rc, (size_t)r->nodes.n_c * sizeof *rc);
 done:
   timer_leave(STAGE_BETWEEN);
-  beside_free(b);
+  shadow_free(b);
   return st;
 }
 
-run *beside_run(beside *b) { return &b->r; }
+run *shadow_run(shadow *b) { return &b->r; }
