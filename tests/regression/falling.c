@@ -119,7 +119,7 @@ START_TEST(no_load_at_all_ends_with_a_verdict) {
   job j;
   const fall f = {&wavy, 1.0, 1e-16, "", in_ten, held, "AUTO"};
   ck_assert_int_eq(run_fall(&j, &f), 6);
-  ck_assert_ptr_nonnull(strstr(j.errors, "rounding leaves no digit"));
+  ck_assert_ptr_nonnull(strstr(j.errors, "rounding leaves no correct digit"));
   job_end(&j);
 }
 END_TEST

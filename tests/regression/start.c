@@ -173,7 +173,7 @@ START_TEST(incompatible_start_is_refused_with_its_defect) {
                      "RIGHT, TY, \"5+0*t\"\nLEFT, TY, \"-5+0*t\"\n"),
                 "tangential force above the sliding limit", 0.25},
                {"", STEP("*BOUNDARY\nTOP, 1, 1, \"0.002+0*t\"\nTOP, 2\n"),
-                "not at the place of its support", 0},
+                "not at its support", 0},
                {"BODY, 2, -0.001\n", STEP("*BOUNDARY\nTOP, 1\n"),
                 "unilateral condition not met", 0}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {

@@ -141,11 +141,11 @@ const scene_row body_scenes[] = {
   {.name = "contrast 1e15", .hard = "no digit left", .verdict = 6,
    .mesh = "rect 6 8 1 1 layers", .change = WAVY_LAYERS, .flags = QUICK,
    .deck = LAYERS("1.E15", "*BOUNDARY\nLEFT, 1\n"),
-   .expect = "errors has rounding leaves no digit"},
+   .expect = "errors has rounding leaves no correct digit"},
   {.name = "contrast 1e15, lying", .hard = "no digit left", .verdict = 6,
    .mesh = "rect 6 8 1 1 layers", .change = WAVY_LAYERS,
    .deck = LAYERS("1.E15", ""),
-   .expect = "errors has rounding leaves no digit"},
+   .expect = "errors has rounding leaves no correct digit"},
   {.name = "averaged, contrast 1e15", .hard = "no digit left", .verdict = 6,
    .mesh = "rect 4 4 1 1 layers",
    .deck = "*MATERIAL, NAME=S\n*ELASTIC\n1., 0.\n*MATERIAL, NAME=H\n"
@@ -153,10 +153,10 @@ const scene_row body_scenes[] = {
      "FORMULATION=AVERAGED\n*SOLID SECTION, ELSET=HARD, MATERIAL=H, "
      "FORMULATION=AVERAGED\n" FLOOR("0.3") STATIC
      "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n" END,
-   .expect = "errors has rounding leaves no digit"},
+   .expect = "errors has rounding leaves no correct digit"},
   {.name = "needles of aspect 1e8", .hard = "no digit left", .verdict = 6,
    .mesh = "rect 6 6 1 1e8", .deck = PRESSED("0.3"),
-   .expect = "errors has rounding leaves no digit"},
+   .expect = "errors has rounding leaves no correct digit"},
   /* or that the stiffness is nearly singular, where the inverse is needed */
   {.name = "slivers, flat, aspect 1e8", .hard = "no digit left", .verdict = 6,
    .mesh = "rect 6 6 1e8 1", .deck = PRESSED("0.3"),

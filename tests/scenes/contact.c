@@ -62,7 +62,7 @@ const scene_row contact_scenes[] = {
   {.name = "gap of 2^40 sizes", .hard = "no digit of the strain is left",
    .mesh = "rect 4 4 1 1",
    .deck = LOWERED("1099511627776.", "0.5", "1099511627776.001"),
-   .verdict = 6, .expect = "errors has rounding leaves no digit"},
+   .verdict = 6, .expect = "errors has rounding leaves no correct digit"},
   {.name = "all open", .hard = "contact that plays no part",
    .mesh = "rect 4 4 1 1", .deck = HANGING("*STEP\n*STATIC\n"),
    .expect = "NODES u_y = -0.005*(1 - y) ~ 5e-15; CONTACT ^f_n = 0 ~ 5e-12;"

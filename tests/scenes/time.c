@@ -95,7 +95,7 @@ const scene_row time_scenes[] = {
    .expect = "ELEMENTS stress_yy = -1 ~ 0.03; lst has E-001 % of the largest"},
   {.name = "sinks by 1e16 elastic strains", .hard = "no digit left",
    .mesh = "rect 6 8 1 1 layers", .deck = SINKS("1.E16"), .flags = QUICK,
-   .verdict = 6, .expect = "errors has rounding leaves no digit"},
+   .verdict = 6, .expect = "errors has rounding leaves no correct digit"},
   {.name = "led to the touch by every integrator", .hard = "no stress at all",
    .mesh = "rect 3 3 1 1", .flags = QUICK | NO_LAWS,
    .deck = MAXWELL("2.") PLANE("C", "BOTTOM", "0., -0.125", "0., 1.")

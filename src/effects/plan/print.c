@@ -32,7 +32,7 @@ static void print_name(const plan_row *r, const char *lead, FILE *f) {
 
 void plan_print(const effect_plan *p, const char *lead, FILE *f) {
   fprintf(f, "%s%-26s %-3s %18s %7s  %s\n", lead, "effect", "", "size",
-          "cpu[%]", "required by");
+          "cpu[%]", "called for by");
   for (int i = 0; i < p->n; ++i) {
     const plan_row *r = &p->rows[i];
     char size[40] = "";
