@@ -80,7 +80,7 @@ static void same_answer(const job *a, const job *b, double tol) {
 static int notes(const job *j) {
   char *text = job_file(j, "lst");
   int n = 0;
-  for (char *at = text; (at = strstr(at, "inactive contact nodes touch")); ++at) ++n;
+  for (char *at = text; (at = strstr(at, "inactive contact nodes")); ++at) ++n;
   free(text);
   return n;
 }

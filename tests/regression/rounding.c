@@ -179,8 +179,8 @@ static void ck_told(job *j, int code) {
 
 static void ck_refused(job *j, int code) {
   ck_assert_msg(code == 6, "exit %d: %s", code, j->errors);
-  ck_assert_msg(strstr(j->errors, "rounding leaves no correct digit") != NULL, "%s",
-                j->errors);
+  ck_assert_msg(strstr(j->errors, "rounding leaves no correct digit") != NULL,
+                "%s", j->errors);
   job_end(j);
 }
 
