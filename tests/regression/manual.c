@@ -204,13 +204,14 @@ START_TEST(an_installed_program_works_and_is_removed) {
   const char *program = getenv("PROTIS");
   job j = job_begin("install");
   if (program == NULL) program = "build/release/protis";
-  const char *build = strstr(program, "build/") + strlen("build/");
+  const char *end = strrchr(program, '/'), *build = end;
+  while (build > program && build[-1] != '/') --build;
   ck_assert_ptr_nonnull(getcwd(cwd, sizeof cwd));
   for (int i = 0; i < 2; ++i) {
     snprintf(command, sizeof command,
              "d=$PWD && cd '%s' && MAKEFLAGS= make -s BUILD=%.*s PREFIX=/usr "
              "DESTDIR=$d/root %s",
-             cwd, (int)strcspn(build, "/"), build,
+             cwd, (int)(end - build), build,
              i == 0 ? "install-files" : "uninstall");
     expect(&j, command, 0);
     for (size_t k = 0; k < sizeof there / sizeof *there; ++k) {
