@@ -68,7 +68,7 @@ typedef enum {
 typedef struct stage_cost {
   long calls;   /* - */
   double cpu;   /* CPU time, s */
-  size_t bytes; /* asked for */
+  size_t bytes; /* requested */
 } stage_cost;
 
 void timer_enter(stage s);

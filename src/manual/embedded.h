@@ -8,10 +8,10 @@
 #include <stddef.h>
 
 typedef struct embedded_file {
-  const char *folder; /* where it stands: "manual", or name of the example   */
-  const char *name;   /* "deck.md"                                           */
-  const char *text;   /* ends with a NUL that does not count                 */
-  size_t size;        /* bytes                                               */
+  const char *folder; /* where it stands: "manual", or name of the example */
+  const char *name;   /* "deck.md" */
+  const char *text;   /* ends with a NUL that does not count */
+  size_t size;        /* bytes */
 } embedded_file;
 
 /* Folder after folder; folder NULL at the end. */

@@ -83,7 +83,7 @@ static void print_messages(FILE *out) {
 
 static const struct {
   const char *name, *file;
-  void (*more)(FILE *out); /* what follows the file, or NULL                 */
+  void (*more)(FILE *out); /* what follows the file, or NULL */
 } chapters[] = {{"tutorial", "tutorial.md", NULL},
                 {"deck", "deck.md", print_cards},
                 {"results", "results.md", print_columns},

@@ -1,5 +1,5 @@
 /*
- * The model: everything the deck asks for, checked. Names and strings are
+ * The model: the contents of the deck, checked. Names and strings are
  * borrowed from the deck, which must outlive it.
  */
 #ifndef PROTIS_MODEL_MODEL_H

@@ -5,7 +5,7 @@
  * the tolerance in proportion. The answer of a pass is taken if the sum of the
  * three is below the target.
  *
- * Prices of a pass foreseen: the unknowns grow like error^(-dim) (P1: order 1
+ * Estimated costs of a pass: the unknowns grow like error^(-dim) (P1: order 1
  * in the energy norm), the CPU seconds of the mesh like the unknowns, without
  * what gmsh costs to load, the rest like a power of them, 1.2 in the plane and
  * 1.75 in space, measured with the nested dissection of condense.

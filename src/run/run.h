@@ -39,7 +39,7 @@ typedef struct equilibrium {
                                       represent */
 } equilibrium;
 
-typedef struct shadow shadow; /* beside.c */
+typedef struct shadow shadow; /* shadow.c */
 typedef struct visco visco;   /* visco.h */
 
 /* A condensed stiffness with its contact solver. */

@@ -142,7 +142,7 @@ typedef struct state_errors {
                                     one */
   double jump_t;                 /* s, where the equilibrium jumps then */
   theorems_report theorems;      /* the theorems at work */
-  const solution_set *solutions; /* of CHECK=; NULL: not asked for */
+  const solution_set *solutions; /* of CHECK=; NULL: not required */
 } state_errors;
 
 typedef struct state_body {
@@ -234,7 +234,7 @@ typedef struct history_sink {
   void (*iteration)(void *ctx, const solver_step *s); /* for .cvg */
   /* An attempt that failed and is cut or abandoned. */
   status (*rejected)(void *ctx, const state *s, const char *why);
-  /* A state for a restart, between two attempts: where *RESTART asks for it,
+  /* A state for a restart, between two attempts: where *RESTART requires it,
    * and at an interruption. memory.keep names all its arrays. */
   status (*checkpoint)(void *ctx, const run_memory *memory);
 } history_sink;

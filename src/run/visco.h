@@ -1,6 +1,6 @@
 /*
  * Elements whose law flows, in the running state; shared by points.c,
- * tangent.c, visco.c, beside.c, path.c and src/run/history/theorems.c only.
+ * tangent.c, visco.c, shadow.c, path.c and src/run/history/theorems.c only.
  */
 #ifndef PROTIS_RUN_VISCO_H
 #define PROTIS_RUN_VISCO_H

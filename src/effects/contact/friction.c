@@ -1,7 +1,7 @@
 /*
  * Friction: the sliding limit of an increment, from the friction law in force
  * on each contact, and where its value jumps in time; the position of stick,
- * which is the history of slip; all slip so far. Existence theory asks for mu
+ * which is the history of slip; all slip so far. Existence theory requires mu
  * continuous in time (CPR98, 3.2); a jump is allowed and reported.
  *
  * Any increment may be cut, so that each is one of several: the position of

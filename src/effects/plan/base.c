@@ -132,7 +132,7 @@ static int requires_output(const model *m, int table, char *why, size_t size) {
     return plan_says(1, why, size, "*PRINT, %s:%d", PLACE(at));
   if (facts_first_fields(m) != NULL)
     return plan_says(1, why, size, "fields in JOB.h5, see below");
-  return plan_says(0, why, size, "no output asks for them");
+  return plan_says(0, why, size, "no output requires them");
 }
 
 static int requires_stress(const model *m, char *why, size_t size) {

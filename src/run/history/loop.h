@@ -56,7 +56,7 @@ int rounding_is_all(const run *r);
 /* estimate.c: errors at r->now into r->errors.error, mesh_error, as required.
  */
 status estimate_increment(run *r);
-/* Those of solver and mesh alone, from r->now.u; read r->errors.judged. */
+/* Those of solver and mesh alone, from r->now.u; read r->errors.evaluated. */
 status estimate_evaluate(run *r);
 
 #endif

@@ -16,7 +16,7 @@
 /*
  * Principal transform of a linear complementarity problem (lcp_solve.h): z_i
  * and w_i change places for a set of unknowns that grows by single ones with a
- * good pivot on the diagonal, or by pairs with two beside it.
+ * good pivot on the diagonal, or by pairs with two next to it.
  */
 
 static const double GOOD = 0x1p-7; /* -, of the largest entry of the row */
@@ -63,7 +63,7 @@ static int partner(int n, int i, unsigned *seed, const double *M,
   return found;
 }
 
-/* z_i, z_j with w_i, w_j by the entries beside the diagonal. */
+/* z_i, z_j with w_i, w_j by the entries next to the diagonal. */
 static void exchange_pair(int n, int i, int j, double *M, double *q,
                           double *row) {
   size_t ld = (size_t)n;
