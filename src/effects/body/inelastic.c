@@ -11,8 +11,10 @@
 #include "model/facts.h"
 #include "run/history/loop.h"
 #include "run/visco.h"
+#include "run/column_row.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* ---- increments with a tolerance ---------------------------------------- */
 
@@ -127,6 +129,89 @@ static status keep(run *r, void *self, archive *a) {
   return visco_keep(r, a);
 }
 
+/* ---- its columns ------------------------------------------------------- */
+
+static int compare_id(const void *a, const void *b) {
+  const int x = *(const int *)a, y = *(const int *)b;
+  return (x > y) - (x < y);
+}
+
+/* Point of an element whose law flows, or -1. */
+static int point_of(const view *v, int elem_id) {
+  const int *found =
+      bsearch(&elem_id, v->s->body.flow_elem, (size_t)v->s->body.flow->n,
+              sizeof elem_id, compare_id);
+  return found == NULL ? -1 : (int)(found - v->s->body.flow_elem);
+}
+
+/* Inelastic strain; 0 where no law flows. */
+static double inelastic(const view *v, int id, int part) {
+  int k = point_of(v, id);
+  return k < 0 ? 0 : v->s->body.inelastic->ei[at(v->m->ns, k, part)];
+}
+
+/* Internal variable; 0 where the law has fewer. */
+static double internal(const view *v, int id, int part) {
+  int k = point_of(v, id);
+  const size_t *start = v->s->body.flow->alpha_at;
+  if (k < 0 || start[k] + (size_t)part >= start[k + 1]) return 0;
+  return v->s->body.inelastic->alpha[start[k] + (size_t)part];
+}
+
+/* clang-format off */
+#define ELEM  PER_ELEMENT, AS_REAL
+#define FLOW(scenes) \
+  PRINT_ELEMENTS, ON(STRESS) | ON(INELASTIC), scenes, NEEDS_FLOW
+#define ALPHA \
+  PRINT_ELEMENTS, ON(STRESS) | ON(INELASTIC), SCENE_ALL, \
+  NEEDS_FLOW | NEEDS_ALPHA
+static const column columns[] = {
+{"ei_xx", "-", ELEM, FLOW(CART), "ei_xx", 0, inelastic, NULL,
+ "inelastic strain"},
+{"ei_yy", "-", ELEM, FLOW(CART), "ei_yy", 1, inelastic, NULL,
+ "inelastic strain"},
+{"ei_zz", "-", ELEM, FLOW(CART), "ei_zz", 2, inelastic, NULL,
+ "inelastic strain"},
+{"ei_xy", "-", ELEM, FLOW(CART), "ei_xy", 3, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"ei_yz", "-", ELEM, FLOW(SCENE_SOLID), "ei_yz", 4, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"ei_zx", "-", ELEM, FLOW(SCENE_SOLID), "ei_zx", 5, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"ei_rr", "-", ELEM, FLOW(SCENE_AXI), "ei_rr", 0, inelastic, NULL,
+ "inelastic strain"},
+{"ei_zz", "-", ELEM, FLOW(SCENE_AXI), "ei_zz", 1, inelastic, NULL,
+ "inelastic strain"},
+{"ei_tt", "-", ELEM, FLOW(SCENE_AXI), "ei_tt", 2, inelastic, NULL,
+ "inelastic strain"},
+{"ei_rz", "-", ELEM, FLOW(SCENE_AXI), "ei_rz", 3, inelastic, NULL,
+ "inelastic shear strain, engineering"},
+{"alpha_1", "-", ELEM, ALPHA, "alpha_1", 0, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_2", "-", ELEM, ALPHA, "alpha_2", 1, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_3", "-", ELEM, ALPHA, "alpha_3", 2, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_4", "-", ELEM, ALPHA, "alpha_4", 3, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_5", "-", ELEM, ALPHA, "alpha_5", 4, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_6", "-", ELEM, ALPHA, "alpha_6", 5, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_7", "-", ELEM, ALPHA, "alpha_7", 6, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_8", "-", ELEM, ALPHA, "alpha_8", 7, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_9", "-", ELEM, ALPHA, "alpha_9", 8, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_10", "-", ELEM, ALPHA, "alpha_10", 9, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_11", "-", ELEM, ALPHA, "alpha_11", 10, internal, NULL,
+ "internal variable of the law, in its unit"},
+{"alpha_12", "-", ELEM, ALPHA, "alpha_12", 11, internal, NULL,
+ "internal variable of the law, in its unit"}};
+/* clang-format on */
+
 /* ---- the row ------------------------------------------------------------ */
 
 static status expected(const plan_sizes *s, effect_work *w) {
@@ -153,6 +238,8 @@ const effect_ops inelastic_effect = {.name = "inelastic strain",
                                      .inside = 1,
                                      .far = 1,
                                      .strains = strains,
+                                     .columns = columns,
+                                     .n_column = COLUMNS(columns),
                                      .on.prepare = prepare,
                                      .on.make_step = adapt,
                                      .on.forget = forget,

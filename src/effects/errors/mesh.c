@@ -8,6 +8,7 @@
 #include "effects/rows.h"
 #include "model/facts.h"
 #include "run/run.h"
+#include "run/column_row.h"
 
 #include <math.h>
 
@@ -84,6 +85,17 @@ static int requires_mesh_error(const model *m, char *why, size_t size) {
   return plan_requires_accuracy(m, "MESH", facts_asks_mesh_error, why, size);
 }
 
+VALUE(mesh_error, v->s->errors.mesh_error.asked
+                      ? 100 * v->s->errors.mesh_error.relative
+                      : NAN)
+
+/* clang-format off */
+static const column columns[] = {
+{"mesh_error", "%", INC, 0, ON(MESH_ERROR), ANY, "mesh_error", 0, mesh_error,
+ NULL, "estimate of the error of the mesh in the energy norm, of that of the "
+ "solution; NaN: not required"}};
+/* clang-format on */
+
 const effect_ops mesh_error_effect = {.name = "error of mesh",
                                       .bit = EFFECT_BIT_MESH_ERROR,
                                       .required = requires_mesh_error,
@@ -93,4 +105,6 @@ const effect_ops mesh_error_effect = {.name = "error of mesh",
                                       .on.create = estimate_new,
                                       .on.estimate = estimate,
                                       .on.keep = keep,
-                                      .on.release = release};
+                                      .on.release = release,
+                                      .columns = columns,
+                                      .n_column = COLUMNS(columns)};

@@ -21,6 +21,7 @@
 #include "model/facts.h"
 #include "run/history/loop.h"
 #include "run/visco.h"
+#include "run/column_row.h"
 
 #include <math.h>
 #include <string.h>
@@ -463,6 +464,17 @@ static int requires_time_error(const model *m, char *why, size_t size) {
   return plan_requires_accuracy(m, "TIME", facts_asks_time_error, why, size);
 }
 
+VALUE(time_error, v->s->errors.time_error.asked
+                      ? 100 * v->s->errors.time_error.relative
+                      : NAN)
+
+/* clang-format off */
+static const column columns[] = {
+{"time_error", "%", INC, 0, ON(TIME_ERROR), ANY, "time_error", 0, time_error,
+ NULL, "estimate of the error of the increments in that norm; NaN: not "
+ "required, or unknown"}};
+/* clang-format on */
+
 const effect_ops time_error_effect = {.name = "error of steps",
                                       .bit = EFFECT_BIT_TIME_ERROR,
                                       .required = requires_time_error,
@@ -476,4 +488,6 @@ const effect_ops time_error_effect = {.name = "error of steps",
                                       .on.accept = compare,
                                       .on.forget = forget,
                                       .on.keep = keep,
-                                      .on.release = release};
+                                      .on.release = release,
+                                      .columns = columns,
+                                      .n_column = COLUMNS(columns)};

@@ -5,6 +5,7 @@
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "model/facts.h"
+#include "run/column_row.h"
 
 #include <math.h>
 
@@ -162,7 +163,23 @@ int plan_requires_accuracy(const model *m, const char *word,
                    PLACE(s->accuracy.at));
 }
 
+VALUE(reaction, v->s->body.reaction[at(v->msh->dim, id, part)])
+
 /* clang-format off */
+#define NODE  PER_NODE, AS_REAL
+#define REACT(scenes) PRINT_REACTIONS, ON(REACTION), scenes, NEEDS_REACTION
+static const column reaction_columns[] = {
+{"reaction_x", "force", NODE, REACT(CART), "reaction", 0,
+ reaction, NULL, "force of the support on the body"},
+{"reaction_r", "force", NODE, REACT(SCENE_AXI), "reaction", 0, reaction, NULL,
+ "force of the support on the body"},
+{"reaction_y", "force", NODE, REACT(CART), "reaction", 1,
+ reaction, NULL, "force of the support on the body"},
+{"reaction_z", "force", NODE, REACT(SCENE_AXI), "reaction", 1, reaction, NULL,
+ "force of the support on the body"},
+{"reaction_z", "force", NODE, REACT(SCENE_SOLID), "reaction", 2, reaction,
+ NULL, "force of the support on the body"}};
+
 const effect_ops finite_elements_effect = {
     .name = "finite elements",
     .bit = EFFECT_BIT_MESH,
@@ -203,5 +220,7 @@ const effect_ops reactions_effect = {
     .bit = EFFECT_BIT_REACTION,
     .required = requires_reaction,
     .expected = reactions,
-    .own = STAGE_REACTION};
+    .own = STAGE_REACTION,
+    .columns = reaction_columns,
+    .n_column = COLUMNS(reaction_columns)};
 /* clang-format on */

@@ -4,13 +4,11 @@
 #include "run/column_row.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Nodes */
 VALUE(node_no, v->msh->node_no[id])
 VALUE(node_x, v->msh->x[at(v->msh->dim, id, part)])
 VALUE(node_u, v->s->body.u[at(v->msh->dim, id, part)])
-VALUE(reaction, v->s->body.reaction[at(v->msh->dim, id, part)])
 
 /* Elements */
 VALUE(elem_no, v->msh->elem_no[id])
@@ -26,33 +24,6 @@ VALUE(elem_error, 100 * v->s->errors.elem_error[id])
 VALUE(temperature, v->s->body.temperature[id])
 VALUE(strain, v->s->body.strain[at(v->m->ns, id, part)])
 VALUE(stress, v->s->body.stress[at(v->m->ns, id, part)])
-
-static int compare_id(const void *a, const void *b) {
-  const int x = *(const int *)a, y = *(const int *)b;
-  return (x > y) - (x < y);
-}
-
-/* Point of an element whose law flows, or -1. */
-static int point_of(const view *v, int elem_id) {
-  const int *found =
-      bsearch(&elem_id, v->s->body.flow_elem, (size_t)v->s->body.flow->n,
-              sizeof elem_id, compare_id);
-  return found == NULL ? -1 : (int)(found - v->s->body.flow_elem);
-}
-
-/* Inelastic strain; 0 where no law flows. */
-static double inelastic(const view *v, int id, int part) {
-  int k = point_of(v, id);
-  return k < 0 ? 0 : v->s->body.inelastic->ei[at(v->m->ns, k, part)];
-}
-
-/* Internal variable; 0 where the law has fewer. */
-static double internal(const view *v, int id, int part) {
-  int k = point_of(v, id);
-  const size_t *start = v->s->body.flow->alpha_at;
-  if (k < 0 || start[k] + (size_t)part >= start[k + 1]) return 0;
-  return v->s->body.inelastic->alpha[start[k] + (size_t)part];
-}
 
 static double mises(const view *v, int id, int part) {
   const double *s = v->s->body.stress + at(v->m->ns, id, 0);
@@ -105,12 +76,6 @@ static double principal(const view *v, int id, int part) {
 #define NODES (PRINT_NODES | PRINT_REACTIONS)
 #define STRAIN(scenes) PRINT_ELEMENTS, ON(STRESS), scenes, NEEDS_STRAIN
 #define STRESS(scenes) PRINT_ELEMENTS, ON(STRESS), scenes, NEEDS_STRESS
-#define FLOW(scenes) \
-  PRINT_ELEMENTS, ON(STRESS) | ON(INELASTIC), scenes, NEEDS_FLOW
-#define ALPHA \
-  PRINT_ELEMENTS, ON(STRESS) | ON(INELASTIC), SCENE_ALL, \
-  NEEDS_FLOW | NEEDS_ALPHA
-#define REACT(scenes) PRINT_REACTIONS, ON(REACTION), scenes, NEEDS_REACTION
 const column node_columns[] = {
 {"node_no", "-", PER_NODE, AS_COUNT, NODES, 0, ANY, NULL, 0, node_no, NULL,
  "number in the mesh"},
@@ -134,16 +99,6 @@ const column node_columns[] = {
  "displacement"},
 {"u_z", "length", NODE, PRINT_NODES, 0, SCENE_SOLID, 0, "u", 2, node_u, NULL,
  "displacement"},
-{"reaction_x", "force", NODE, REACT(CART), "reaction", 0,
- reaction, NULL, "force of the support on the body"},
-{"reaction_r", "force", NODE, REACT(SCENE_AXI), "reaction", 0, reaction, NULL,
- "force of the support on the body"},
-{"reaction_y", "force", NODE, REACT(CART), "reaction", 1,
- reaction, NULL, "force of the support on the body"},
-{"reaction_z", "force", NODE, REACT(SCENE_AXI), "reaction", 1, reaction, NULL,
- "force of the support on the body"},
-{"reaction_z", "force", NODE, REACT(SCENE_SOLID), "reaction", 2, reaction,
- NULL, "force of the support on the body"},
 OF_EFFECTS,
 NO_COLUMN};
 /* clang-format on */
@@ -216,50 +171,6 @@ const column element_columns[] = {
  "principal_2", 1, principal, NULL, "second principal stress"},
 {"principal_3", PA, ELEM, 0, ON(STRESS), SCENE_ALL, NEEDS_STRESS,
  "principal_3", 2, principal, NULL, "least principal stress"},
-{"ei_xx", "-", ELEM, FLOW(CART), "ei_xx", 0, inelastic, NULL,
- "inelastic strain"},
-{"ei_yy", "-", ELEM, FLOW(CART), "ei_yy", 1, inelastic, NULL,
- "inelastic strain"},
-{"ei_zz", "-", ELEM, FLOW(CART), "ei_zz", 2, inelastic, NULL,
- "inelastic strain"},
-{"ei_xy", "-", ELEM, FLOW(CART), "ei_xy", 3, inelastic, NULL,
- "inelastic shear strain, engineering"},
-{"ei_yz", "-", ELEM, FLOW(SCENE_SOLID), "ei_yz", 4, inelastic, NULL,
- "inelastic shear strain, engineering"},
-{"ei_zx", "-", ELEM, FLOW(SCENE_SOLID), "ei_zx", 5, inelastic, NULL,
- "inelastic shear strain, engineering"},
-{"ei_rr", "-", ELEM, FLOW(SCENE_AXI), "ei_rr", 0, inelastic, NULL,
- "inelastic strain"},
-{"ei_zz", "-", ELEM, FLOW(SCENE_AXI), "ei_zz", 1, inelastic, NULL,
- "inelastic strain"},
-{"ei_tt", "-", ELEM, FLOW(SCENE_AXI), "ei_tt", 2, inelastic, NULL,
- "inelastic strain"},
-{"ei_rz", "-", ELEM, FLOW(SCENE_AXI), "ei_rz", 3, inelastic, NULL,
- "inelastic shear strain, engineering"},
-{"alpha_1", "-", ELEM, ALPHA, "alpha_1", 0, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_2", "-", ELEM, ALPHA, "alpha_2", 1, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_3", "-", ELEM, ALPHA, "alpha_3", 2, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_4", "-", ELEM, ALPHA, "alpha_4", 3, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_5", "-", ELEM, ALPHA, "alpha_5", 4, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_6", "-", ELEM, ALPHA, "alpha_6", 5, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_7", "-", ELEM, ALPHA, "alpha_7", 6, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_8", "-", ELEM, ALPHA, "alpha_8", 7, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_9", "-", ELEM, ALPHA, "alpha_9", 8, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_10", "-", ELEM, ALPHA, "alpha_10", 9, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_11", "-", ELEM, ALPHA, "alpha_11", 10, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_12", "-", ELEM, ALPHA, "alpha_12", 11, internal, NULL,
- "internal variable of the law, in its unit"},
 OF_EFFECTS,
 NO_COLUMN};
 /* clang-format on */

@@ -110,7 +110,8 @@ static unsigned if_there(const void *p, unsigned bits) {
 int column_ready(const column *c, const state *s) {
   const effect_ops *e = effect_of_column(c);
   unsigned have = 0;
-  if (e != NULL && effect_state(s->effects, e) == NULL) return 0;
+  if (e != NULL && e->on.create != NULL && effect_state(s->effects, e) == NULL)
+    return 0;
   have |= if_there(s->body.strain, NEEDS_STRAIN);
   have |= if_there(s->body.stress, NEEDS_STRESS);
   have |= if_there(s->body.reaction, NEEDS_REACTION);

@@ -18,12 +18,6 @@ VALUE(n_stick, v->s->contacts.n_stick)
 VALUE(iterations, v->s->report.iterations)
 VALUE(limit_updates, v->s->report.limit_updates)
 VALUE(residual, v->s->report.residual)
-VALUE(mesh_error, v->s->errors.mesh_error.asked
-                      ? 100 * v->s->errors.mesh_error.relative
-                      : NAN)
-VALUE(time_error, v->s->errors.time_error.asked
-                      ? 100 * v->s->errors.time_error.relative
-                      : NAN)
 VALUE(bound_error, 100 * v->s->errors.error.relative)
 VALUE(solver_error_energy, v->s->errors.error.energy)
 VALUE(contraction, v->s->errors.error.rate)
@@ -68,12 +62,6 @@ const column increment_columns[] = {
  NULL, "passes of the fixed point on the sliding limit"},
 {"residual", "-", INC, 0, C, ANY, "residual", 0, residual, NULL,
  "residual of the contact problem"},
-{"mesh_error", "%", INC, 0, ON(MESH_ERROR), ANY, "mesh_error", 0, mesh_error,
- NULL, "estimate of the error of the mesh in the energy norm, of that of "
-       "the solution; NaN: not required"},
-{"time_error", "%", INC, 0, ON(TIME_ERROR), ANY, "time_error", 0, time_error,
- NULL, "estimate of the error of the increments in that norm; NaN: not "
-       "required, or unknown"},
 OF_EFFECTS,
 {"solver_error", "%", INC, 0, C | ON(ESTIMATES), ANY, "solver_error", 0,
  bound_error, NULL, "bound of the error of the contact solver in the energy "
