@@ -191,9 +191,6 @@ static status pose_contact(run *r, double t) {
   timer_enter(STAGE_SURFACE);
   st = surface_gap(r->surface, &r->faces.input, t, r->problem.gap,
                    r->problem.side_gap);
-  memcpy(r->now.motion, r->old.motion,
-         (size_t)r->nodes.n_c * sizeof *r->now.motion);
-  surface_drift(r->surface, &r->faces.input, r->old.t, t, r->now.motion);
   timer_leave(STAGE_SURFACE);
   TRY(st);
   TRY(effects_pose(r, t));

@@ -41,14 +41,15 @@ static void find_stresses(run *r, int shown) {
 }
 
 double run_motion_over(const run *r, int k) {
-  return (r->now.uc[k] - r->old.uc[k]) - (r->now.motion[k] - r->old.motion[k]);
+  return (r->now.uc[k] - r->old.uc[k]) -
+         (run_drift(&r->now, k) - run_drift(&r->old, k));
 }
 
 /* Motion that friction opposes: in a static problem the motion from the origin
  * (CPR98, P2), else that of the increment. */
 static double slip_of(const run *r, int k) {
   if (r->step->kind == STEP_STATIC && !r->course.relaxing)
-    return r->now.uc[k] - r->now.motion[k];
+    return r->now.uc[k] - run_drift(&r->now, k);
   return run_motion_over(r, k);
 }
 

@@ -23,7 +23,7 @@ typedef struct equilibrium {
   double *uc, *rc;     /* [dim*n] contact frame, m, N */
   double *motion;      /* [dim*n] displacement of the obstacles at the nodes
                           since 0 s, summed over the increments, contact frame,
-                          m */
+                          m; NULL: none moves */
   double *temperature; /* [n_elem] or NULL: no thermal strain */
   double
       *thermal; /* [ns*n] thermal strains of the elements of r->strains.eigen;
@@ -360,6 +360,10 @@ status shadow_with(void *run, const double *more, double *u, double *rc,
                    int *solved);
 void shadow_free(shadow *b); /* accepts NULL */
 
+/* Displacement of the obstacle at a contact unknown since 0 s, m. */
+static inline double run_drift(const equilibrium *e, int k) {
+  return e->motion == NULL ? 0.0 : e->motion[k];
+}
 /* Motion of a contact unknown against the obstacle in the increment, m. */
 double run_motion_over(const run *r, int k);
 /* Energies of e as those the run starts with. */

@@ -182,7 +182,7 @@ status start_point_new(const run *r, start_point *p) {
   status st = OK;
   NEW(p->uc, r->nodes.n_c);
   NEW(p->rc, r->nodes.n_c);
-  NEW(p->motion, r->nodes.n_c);
+  if (r->old.motion != NULL) NEW(p->motion, r->nodes.n_c);
 done:
   return st;
 }
@@ -199,7 +199,7 @@ void start_point_copy(const run *r, const equilibrium *e, start_point *p) {
   if (r->nodes.n_c == 0) return;
   memcpy(p->uc, e->uc, bytes);
   memcpy(p->rc, e->rc, bytes);
-  memcpy(p->motion, e->motion, bytes);
+  if (p->motion != NULL) memcpy(p->motion, e->motion, bytes);
 }
 
 equilibrium start_point_use(run *r, const start_point *p) {

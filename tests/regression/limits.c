@@ -368,7 +368,7 @@ START_TEST(local_friction_pays_for_nothing_else) {
       "nonlocal average", "given contact forces",    "velocity form",
       "initial state",    "inelastic strains",       "thermal strains",
       "restart",          "zones of stick and slip", "second solutions, jumps",
-      "theorems"};
+      "theorems",         "moving obstacle"};
   job j = job_begin("greco");
   long bytes = 0;
   ck_assert_int_eq(job_run_deck(&j, "input/greco/greco", "-D N=8"), 0);

@@ -286,8 +286,8 @@ static status find_stick(run *r, const friction *own) {
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 1; a < dim; ++a) {
       int k = dim * i + a;
-      double from = fresh ? 0.0 : r->old.uc[k] - r->old.motion[k];
-      double stick = from + r->now.motion[k];
+      double from = fresh ? 0.0 : r->old.uc[k] - run_drift(&r->old, k);
+      double stick = from + run_drift(&r->now, k);
       if (r->surface->held[k]) {
         double to = held_value(r, i, a);
         PASS(check_held(r, own, i, a, stick, to));

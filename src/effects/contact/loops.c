@@ -61,7 +61,7 @@ static status find_loops(run *r, void *self) {
       weight += s->area[k];
       for (int a = 0; a < dim - 1; ++a) {
         int c = dim * k + a + 1;
-        l->way[a] += s->area[k] * (r->now.motion[c] - l->way[a]) / weight;
+        l->way[a] += s->area[k] * (run_drift(&r->now, c) - l->way[a]) / weight;
         l->mean_u_t[a] += s->area[k] * (r->now.uc[c] - l->mean_u_t[a]) / weight;
         if (s->side_id[(dim - 1) * k + a] >= 0) continue;
         double mean = 0.5 * (r->old.rc[c] + r->now.rc[c]);

@@ -51,7 +51,9 @@ static double distance(const run *r, const double *a, const double *b,
 static status load_change(run *r, double *room, double *size) {
   status st = OK;
   double square = 0.0;
-  *size = distance(r, r->now.motion, r->old.motion, room);
+  *size = r->now.motion == NULL
+              ? 0.0
+              : distance(r, r->now.motion, r->old.motion, room);
   for (int i = 0; i < r->nodes.n_row; ++i)
     room[i] = r->problem.f[i] - r->problem.f_before[i];
   if (r->body.moduli.n_own > 0 ||

@@ -310,7 +310,8 @@ static status keep_waypoint(const run *r, waypoint *w, archive *a) {
   TRY(archive_reals(a, "path_t", &w->start.t, 1));
   TRY(archive_reals(a, "path_uc", w->start.uc, m));
   TRY(archive_reals(a, "path_rc", w->start.rc, m));
-  TRY(archive_reals(a, "path_motion", w->start.motion, m));
+  TRY(archive_reals(a, "path_motion", w->start.motion,
+                    w->start.motion == NULL ? 0 : m));
   if (r->strains.visco != NULL)
     TRY(visco_keep_flow(&r->strains.visco->x, &w->flow, a, "path_flow"));
 done:

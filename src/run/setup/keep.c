@@ -41,7 +41,7 @@ static status keep_equilibrium(const run *r, equilibrium *e, archive *a) {
   TRY(archive_reals(a, "reaction", e->reaction, r->n_dof));
   TRY(archive_reals(a, "uc", e->uc, m));
   TRY(archive_reals(a, "rc", e->rc, m));
-  TRY(archive_reals(a, "motion", e->motion, m));
+  TRY(archive_reals(a, "motion", e->motion, e->motion == NULL ? 0 : m));
   TRY(archive_reals(a, "temperature", e->temperature, elements));
   TRY(archive_reals(a, "thermal", e->thermal, strains));
   TRY(archive_reals(a, "e0", e->e0, strains));

@@ -52,8 +52,6 @@ static status new_contact_arrays(run *r) {
   NEW(r->now.uc, r->nodes.n_c);
   NEW(r->old.rc, r->nodes.n_c);
   NEW(r->now.rc, r->nodes.n_c);
-  NEW(r->old.motion, r->nodes.n_c);
-  NEW(r->now.motion, r->nodes.n_c);
   NEW(r->result.open_gap, r->nodes.n);
   NEW(r->result.contact, r->nodes.n);
   if (r->nodes.rows > 1) NEW(r->problem.side_gap, tangents);
@@ -122,7 +120,6 @@ status run_build_surface(run *r) {
   leave_forces(r, force);
   TRY(surface_gap(r->surface, &r->faces.input, r->old.t, r->problem.gap,
                   r->problem.side_gap));
-  surface_drift(r->surface, &r->faces.input, 0.0, r->old.t, r->old.motion);
 done:
   memory_free(force);
   return st;

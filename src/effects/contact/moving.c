@@ -1,0 +1,56 @@
+/*
+ * Obstacles that move: what passes the contact nodes tangentially, and moves
+ * along their normals, since time 0 (contact/obstacle.h). The arrays are part
+ * of the two equilibria of the run; without a moving obstacle they are NULL.
+ */
+#include "base/memory.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "run/run.h"
+
+#include <string.h>
+
+/* Those of a new surface. */
+static status prepare(run *r, void *self) {
+  (void)self;
+  if (r->nodes.n_c == 0 || r->old.motion != NULL) return OK;
+  PASS_NEW(r->old.motion, r->nodes.n_c);
+  PASS_NEW(r->now.motion, r->nodes.n_c);
+  surface_drift(r->surface, &r->faces.input, 0.0, r->old.t, r->old.motion);
+  return OK;
+}
+
+static status pose(run *r, void *self, double t) {
+  (void)self;
+  memcpy(r->now.motion, r->old.motion,
+         (size_t)r->nodes.n_c * sizeof *r->now.motion);
+  surface_drift(r->surface, &r->faces.input, r->old.t, t, r->now.motion);
+  return OK;
+}
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  *w = (effect_work){s->contact, "nodes", s->equilibria,
+                     100.0 * s->equilibria * s->contact};
+  return OK;
+}
+
+static int requires_motion(const model *m, char *why, size_t size) {
+  for (int i = 0; i < m->n.contact; ++i) {
+    const int id = m->contacts[i].obstacle_id;
+    if (id < 0 || !obstacle_moves(&m->obstacles[id])) continue;
+    const move *of = &m->moves[id];
+    const place *at = &of->at;
+    if (of->rotate_at.file != NULL) at = &of->rotate_at;
+    if (of->move_at.file != NULL) at = &of->move_at;
+    return plan_says(1, why, size, "motion of *OBSTACLE, NAME=%s, %s:%d",
+                     m->obstacles[id].name, PLACE(*at));
+  }
+  return plan_says(0, why, size, "no *OBSTACLE moves");
+}
+
+const effect_ops moving_obstacle_effect = {.name = "moving obstacle",
+                                           .bit = NO_BIT,
+                                           .required = requires_motion,
+                                           .expected = expected,
+                                           .on.prepare = prepare,
+                                           .on.pose = pose};
