@@ -281,6 +281,42 @@ START_TEST(given_beside_a_zone_that_grows) {
 }
 END_TEST
 
+/* Moduli that fall to half over the increments: E = 1000 (1 - t/2). */
+START_TEST(slip_while_the_body_softens) {
+  static const char *const forms[] = {"", ", FORM=VELOCITY"};
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("soft");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(
+        &j, "soft.inp",
+        "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n"
+        "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0., 0.\n500., 0., 100.\n"
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+        "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+        "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+        "*CONTACT FORCE, CONTACT=C\n\"10*t\"\n"
+        "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+        "*STEP\n*QUASISTATIC%s\n0.5, 1.\n" DRAG(
+            "0.02*t",
+            "3*t") "*TEMPERATURE\nBODY, \"100*t\"\n*PRINT, CONTACT\n*END "
+                   "STEP\n",
+        forms[k]);
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    for (int i = 0; i < 2; ++i) {
+      const double t = 0.5 * (i + 1), E = 1000 * (1 - t / 2), p = 10 * t;
+      dat c = job_table(&j, "CONTACT", i);
+      for (int row = 0; row < c.n_row; ++row) {
+        ck_assert_double_eq_tol(dat_at(&c, row, "u_n"), -p / E, 1e-9);
+        ck_assert_double_eq_tol(dat_at(&c, row, "u_t"),
+                                0.02 * t - 0.3 * p / (E / 2), 1e-9);
+      }
+      dat_free(&c);
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Nothing but the given force and the load: the block would fly. */
 START_TEST(unheld_body_is_refused) {
   job j = job_begin("fly");
@@ -302,4 +338,5 @@ UNIT_MAIN("given force", slip_under_a_given_force_by_every_method,
           stick_under_a_given_force, given_force_without_friction,
           pressures_of_contact_given_back,
           slip_in_space_is_opposite_to_the_drag, given_beside_unilateral,
-          given_beside_a_zone_that_grows, unheld_body_is_refused)
+          given_beside_a_zone_that_grows, slip_while_the_body_softens,
+          unheld_body_is_refused)

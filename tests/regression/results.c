@@ -112,6 +112,9 @@ START_TEST(tables_are_read_by_other_programs) {
        "'f_n' nooutput; print sprintf('%d %.9g', STATS_records, STATS_sum)\" "
        "2>&1",
        "8 70\n"},
+      {"CONTACT --format tsv",
+       "head -n 1 | tr '\\t' '\\n' | sort | uniq -d | wc -l | tr -d ' '",
+       "0\n"},
       {"NODES", "sed 's/.*dat has/has/; s/ \\*PRINT.*//'",
        "has no table NODES; it has CONTACT TOTALS;\n"}};
   job j = two_contacts();

@@ -112,19 +112,21 @@ END_TEST
 
 /* Step 1 ends after two sweeps, step 2 is solved: from where it starts counts
  * for slip in increments, not for one static problem. */
-static void ck_after_a_miss(const char *step, int n_ok, int n) {
+static void ck_after_a_miss(const char *law, const char *friction,
+                            const char *step, int n_ok, int n) {
   job j = job_begin("block");
   job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "block.inp",
-            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
-            "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n*STEP\n"
-            "*STATIC\n*BOUNDARY\nTOP, 1, 1, 0.01\nTOP, 2, 2, -0.01\n"
-            "*SOLVER, METHOD=SOR, MAX_ITER=2\n*END STEP\n*STEP\n"
-            "%s\n*SOLVER, METHOD=AUTO\n*END STEP\n",
-            step);
+  job_write(
+      &j, "block.inp",
+      "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n%s"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+      "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=O\n%s*STEP\n"
+      "*STATIC\n*BOUNDARY\nTOP, 1, 1, 0.01\nTOP, 2, 2, %s\n"
+      "*SOLVER, METHOD=SOR, MAX_ITER=2\n*END STEP\n*STEP\n"
+      "%s\n*SOLVER, METHOD=AUTO\n*END STEP\n",
+      law, friction, friction[0] != '\0' ? "-0.01" : "\"0.02*(0.5 - x)\"",
+      step);
   ck_assert_int_eq(job_run(&j, ""), 1);
   char *sta = job_file(&j, "sta"), *lst = job_file(&j, "lst");
   char *json = job_file(&j, "json");
@@ -140,8 +142,11 @@ static void ck_after_a_miss(const char *step, int n_ok, int n) {
 }
 
 START_TEST(what_goes_on_from_a_miss_says_so) {
-  ck_after_a_miss("*QUASISTATIC\n0.5, 1.", 2, 2);
-  ck_after_a_miss("*STATIC", 1, 0);
+  static const char friction[] = "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n";
+  static const char law[] = "*INELASTIC, LAW=MAXWELL\n1.\n";
+  ck_after_a_miss("", friction, "*QUASISTATIC\n0.5, 1.", 2, 2);
+  ck_after_a_miss("", friction, "*STATIC", 1, 0);
+  ck_after_a_miss(law, "", "*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.", 2, 2);
 }
 END_TEST
 

@@ -182,7 +182,7 @@ START_TEST(coefficients_may_vary_in_time) {
 END_TEST
 
 /* Rate of e^i along x at t = 4 under 100 along x. */
-static double creep_rate(const char *cards) {
+static double creep_rate(const char *cards, double w, double dt) {
   static law_case c;
   double ei_rate[6], alpha_rate[LAW_ALPHA_MAX], value[VALUES];
   text_model s;
@@ -195,7 +195,8 @@ static double creep_rate(const char *cards) {
   p.value = value;
   p.t = 4;
   c.sigma[0] = 100;
-  c.alpha[0] = 0.25;
+  p.dt = dt;
+  c.alpha[0] = w;
   law_rate(&p, ei_rate, alpha_rate);
   law_case_free(&c);
   text_model_close(&s);
@@ -205,11 +206,14 @@ static double creep_rate(const char *cards) {
 /* The factor is 1E-9, 100 cubed 1e6; time hardening with 4^(-1/2) = 1/2. Strain
  * hardening keeps p squared, here 1/4: (1e-3)^2 over half of p = 1/2. */
 START_TEST(creep_cards_of_abaqus) {
-  near(creep_rate("*CREEP, LAW=TIME\n1E-9, 3., -0.5"), 5e-4);
-  near(creep_rate("*CREEP, LAW=NORTON\n1E-9, 3."), 1e-3);
-  near(creep_rate("*CREEP\n1E-9, 3., -0.5"), 1e-6 / 0.25);
-  near(creep_rate("*INELASTIC, LAW=NORTON, HARDENING=STRAIN\n1E-9, 3., -0.5"),
-       1e-6 / 0.25);
+  near(creep_rate("*CREEP, LAW=TIME\n1E-9, 3., -0.5", 0.25, 1), 5e-4);
+  near(creep_rate("*CREEP, LAW=NORTON\n1E-9, 3.", 0.25, 1), 1e-3);
+  near(creep_rate("*CREEP\n1E-9, 3., -0.5", 0.25, 1), 1e-6 / 0.25);
+  static const char strain[] =
+      "*INELASTIC, LAW=NORTON, HARDENING=STRAIN\n1E-9, 3., -0.5";
+  near(creep_rate(strain, 0.25, 1), 1e-6 / 0.25);
+  /* From p = 0: p = 2e-3 sqrt(t), its mean rate over 4. */
+  near(creep_rate(strain, 0, 4), 1e-3);
 }
 END_TEST
 

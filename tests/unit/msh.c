@@ -354,6 +354,40 @@ START_TEST(partitions_have_their_groups) {
 }
 END_TEST
 
+/* Tags behind the second are partitions; a group of negative number is that of
+ * turned elements; an entity may have several groups. */
+START_TEST(tags_choose_the_groups) {
+  static const char tagged[] =
+      MSH("3\n0 3 \"P\"\n1 2 \"SIDE\"\n2 1 \"BODY\"\n",
+          "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n",
+          "4\n7 2 5 1 5 2 3 4 1 2 3\n8 2 5 1 5 2 3 4 1 3 4\n"
+          "9 1 4 -2 6 1 3 1 2\n10 15 2 3 1 1\n");
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *plain = mesh_file_text(&f, "plain.msh", text_22);
+  mesh *m = mesh_file_text(&f, "tags.msh", tagged);
+  ck_assert_msg(m != NULL, "%s", f.messages);
+  const char *what;
+  ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
+  mesh_free(m);
+  char text[4096];
+  const char *at = strstr(text_41, "1 -2 0\n");
+  snprintf(text, sizeof text, "%.*s2 -2 3 0\n%s", (int)(at - text_41), text_41,
+           at + 7);
+  m = mesh_file_text(&f, "two.msh", text);
+  ck_assert_msg(m != NULL, "%s", f.messages);
+  int lines = 0;
+  for (int i = 0; i < m->n_group; ++i) {
+    lines += m->group[i].dim == 1;
+    if (m->group[i].dim == 1) ck_assert_int_eq(m->group[i].n_node, 2);
+  }
+  ck_assert_int_eq(lines, 2);
+  mesh_free(plain);
+  mesh_free(m);
+  mesh_file_close(&f);
+}
+END_TEST
+
 /* Correctly rounded, whatever the number of digits. */
 START_TEST(coordinates_are_the_nearest_doubles) {
   mesh_file f;
@@ -412,5 +446,6 @@ UNIT_MAIN("msh", all_variants_give_the_same_mesh, file_cut_anywhere_is_refused,
           file_without_a_line_or_with_one_twice_is_refused,
           counts_are_compared_with_the_file_first, damaged_bytes_take_no_memory,
           damage_is_told_with_its_line, what_is_no_mesh_is_passed_over,
-          partitions_have_their_groups, coordinates_are_the_nearest_doubles,
+          partitions_have_their_groups, tags_choose_the_groups,
+          coordinates_are_the_nearest_doubles,
           reader_gives_back_all_when_refused)
