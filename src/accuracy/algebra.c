@@ -87,7 +87,8 @@ static int admissible(const contact_problem *cp, const pair *p) {
 static const double NO_LEVER = 0x1p-44; /* -, condition that is rounding */
 
 /* y of G y = b in place of b[k]; 0: some motion has no force against it, or
- * only one with a lever arm of rounding. root[k], pivot[k] are workspace. */
+ * only one with a lever arm of rounding. root[5 k], pivot[2 k] are workspace.
+ */
 static int solve_balance(int k, double *G, double *b, double *root,
                          int *pivot) {
   double norm, condition = 0.0;
@@ -97,9 +98,10 @@ static int solve_balance(int k, double *G, double *b, double *root,
   }
   for (int c = 0; c < k; ++c)
     for (int a = 0; a < k; ++a) G[a + k * c] *= root[a] * root[c];
-  norm = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', k, k, G, k);
+  norm = LAPACKE_dlange_work(LAPACK_COL_MAJOR, '1', k, k, G, k, NULL);
   if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, k, k, G, k, pivot) != 0) return 0;
-  LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', k, G, k, norm, &condition);
+  LAPACKE_dgecon_work(LAPACK_COL_MAJOR, '1', k, G, k, norm, &condition,
+                      root + k, pivot + k);
   if (!(condition > NO_LEVER)) return 0;
   for (int a = 0; a < k; ++a) b[a] *= root[a];
   LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', k, 1, G, k, pivot, b, k);
@@ -120,8 +122,8 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
   PASS_NEW(Z, (size_t)m * (size_t)k);
   PASS_NEW(G, (size_t)k * (size_t)k);
   PASS_NEW(y, k);
-  PASS_NEW(root, k);
-  PASS_NEW(pivot, k);
+  PASS_NEW(root, 5 * k);
+  PASS_NEW(pivot, 2 * k);
   for (int c = 0; c < k; ++c) {
     double *z = Z + (size_t)m * (size_t)c;
     for (int dof = 0; dof < m; ++dof)

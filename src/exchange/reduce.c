@@ -324,13 +324,14 @@ status constraints_eliminate(const char *path, int m, const constraints *c,
                              double *W, double *q) {
   status st = OK;
   elimination a = {0};
-  lapack_int rank = 0;
+  lapack_int rank = 0, info;
   if (c->p == 0) goto done;
   TRY(elimination_new(m, c, &a));
-  if (LAPACKE_dgelsd(LAPACK_COL_MAJOR, c->p, c->p, m + 1, a.R, c->p, a.X, c->p,
-                     a.spread, REPEATED_RCOND, &rank) != 0)
-    FAIL(ERR_SINGULAR, "%s: the equality constraints cannot be eliminated",
-         path);
+  info = LAPACKE_dgelsd(LAPACK_COL_MAJOR, c->p, c->p, m + 1, a.R, c->p, a.X,
+                        c->p, a.spread, REPEATED_RCOND, &rank);
+  if (info != 0)
+    FAIL(info == LAPACK_WORK_MEMORY_ERROR ? ERR_MEMORY : ERR_SINGULAR,
+         "%s: the equality constraints cannot be eliminated", path);
   if (!(contradiction(m, c, &a) <= CONSISTENT))
     FAIL(ERR_SINGULAR,
          "%s: the equality constraints contradict one another: of %d only %d "

@@ -72,8 +72,9 @@ static double offset_of(const contact_problem *cp, int dof) {
   return cp->ut0 == NULL ? 0.0 : -cp->ut0[i * (cp->dim - 1) + k];
 }
 
-/* inv(A) in place of the copy of A, both triangles; 0: A is singular. */
-static int invert(int m, double *a) {
+/* inv(A) in place of the copy of A, both triangles; 0: A is singular.
+ * work[3 m], iwork[m]: workspace. */
+static int invert(int m, double *a, double *work, int *iwork) {
   double rcond = 0.0, norm = 0.0;
   size_t n = (size_t)m;
   if (m == 0) return 1;
@@ -83,7 +84,8 @@ static int invert(int m, double *a) {
     norm = fmax(norm, sum);
   }
   if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', m, a, m) != 0) return 0;
-  if (LAPACKE_dpocon(LAPACK_COL_MAJOR, 'U', m, a, m, norm, &rcond) != 0 ||
+  if (LAPACKE_dpocon_work(LAPACK_COL_MAJOR, 'U', m, a, m, norm, &rcond, work,
+                          iwork) != 0 ||
       !(rcond > 1e-13))
     return 0;
   if (LAPACKE_dpotri(LAPACK_COL_MAJOR, 'U', m, a, m) != 0) return 0;
@@ -109,6 +111,8 @@ static status make_matrix(written *f) {
   const contact_problem *cp = f->cp;
   size_t size = (size_t)cp->m * (size_t)cp->m;
   double *a = NULL;
+  OWNED double *work = NULL;
+  OWNED int *iwork = NULL;
   PASS_NEW(a, size);
   f->M = a;
   f->local = 1;
@@ -117,7 +121,9 @@ static status make_matrix(written *f) {
     return OK;
   }
   memcpy(a, cp->A, size * sizeof *a);
-  if (!cp->floating && invert(cp->m, a)) return OK;
+  PASS_NEW(work, 3 * (size_t)cp->m);
+  PASS_NEW(iwork, cp->m);
+  if (!cp->floating && invert(cp->m, a, work, iwork)) return OK;
   memcpy(a, cp->A, size * sizeof *a);
   f->local = 0;
   return OK;

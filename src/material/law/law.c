@@ -169,12 +169,12 @@ static status coupled_matrix(const law_point *p, int na, double *M) {
 /* The largest magnitude of an eigenvalue of M[n*n], which is destroyed. */
 static status spectral_radius(double *M, int n, double *radius) {
   OWNED double *re = NULL;
-  PASS_NEW(re, 2 * n);
+  PASS_NEW(re, 6 * n);
   for (int i = 0; i < n * n; ++i)
     if (!isfinite(M[i]))
       RAISE(ERR_SINGULAR, "derivative of an inelastic law is not a number");
-  if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, M, n, re, re + n, NULL, 1,
-                    NULL, 1) != 0)
+  if (LAPACKE_dgeev_work(LAPACK_COL_MAJOR, 'N', 'N', n, M, n, re, re + n, NULL,
+                         1, NULL, 1, re + 2 * n, 4 * n) != 0)
     RAISE(ERR_SINGULAR, "no eigenvalues of the rates of an inelastic law");
   *radius = 0;
   for (int i = 0; i < n; ++i) *radius = fmax(*radius, hypot(re[i], re[n + i]));

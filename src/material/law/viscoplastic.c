@@ -200,12 +200,13 @@ enum { BACK_MAX = 15 }; /* back stresses of the closed form */
 
 /* The largest magnitude of an eigenvalue of M[n*n], which is destroyed. */
 static double radius(double *M, int n) {
-  double re[BACK_MAX + 1], im[BACK_MAX + 1], largest = 0;
+  double re[BACK_MAX + 1], im[BACK_MAX + 1], work[4 * (BACK_MAX + 1)],
+      largest = 0;
   for (int i = 0; i < n * n; ++i)
     if (!isfinite(M[i])) return fabs(M[i]);
   if (n == 1) return fabs(M[0]);
-  if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, M, n, re, im, NULL, 1, NULL,
-                    1) != 0)
+  if (LAPACKE_dgeev_work(LAPACK_COL_MAJOR, 'N', 'N', n, M, n, re, im, NULL, 1,
+                         NULL, 1, work, 4 * n) != 0)
     return -1;
   for (int i = 0; i < n; ++i) largest = fmax(largest, hypot(re[i], im[i]));
   return largest;

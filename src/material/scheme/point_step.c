@@ -273,10 +273,11 @@ done:
 
 /* R[n*n] with R R = E, symmetric and positive semidefinite. */
 static int square_root(int n, const double *E, double *R) {
-  double V[36], w[6];
+  double V[36], w[6], work[36];
   memcpy(V, E, (size_t)(n * n) * sizeof *V);
   memset(R, 0, (size_t)(n * n) * sizeof *R);
-  if (LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'U', n, V, n, w) != 0) return 0;
+  if (LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'U', n, V, n, w, work, 36) != 0)
+    return 0;
   for (int q = 0; q < n; ++q)
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i)
@@ -287,12 +288,12 @@ static int square_root(int n, const double *E, double *R) {
 /* The largest singular value of R Q R. */
 static status energy_size(int n, const double *E, const double *Q,
                           double *size) {
-  double R[36], QR[36], N[36], w[6], unused[6];
+  double R[36], QR[36], N[36], w[6], work[36];
   int known = square_root(n, E, R);
   for (int j = 0; j < n; ++j) tensor_product(n, Q, R + n * j, QR + n * j);
   for (int j = 0; j < n; ++j) tensor_product(n, R, QR + n * j, N + n * j);
-  if (!known || LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, n, N, n, w, NULL,
-                               1, NULL, 1, unused) != 0)
+  if (!known || LAPACKE_dgesvd_work(LAPACK_COL_MAJOR, 'N', 'N', n, n, N, n, w,
+                                    NULL, 1, NULL, 1, work, 36) != 0)
     RAISE(ERR_SINGULAR, "the compliance of an inelastic law is no number");
   *size = w[0];
   return OK;
