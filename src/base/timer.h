@@ -19,13 +19,10 @@
   X(ORDERING,    "ordering and symbolic factor")           \
   X(FACTOR,      "factorisation")                          \
   X(CONDENSE,    "condensed stiffness")                    \
-  X(START,       "initial state")                          \
   X(LOAD,        "loads")                                  \
   X(BODY,        "body forces")                            \
   X(LIMIT,       "sliding limit")                          \
-  X(HISTORY,     "history of slip")                        \
   X(NONLOCAL,    "nonlocal average")                       \
-  X(GIVEN,       "given contact forces")                   \
   X(VELOCITY,    "velocity form")                          \
   X(CONTACT,     "contact solver")                         \
   X(RECOVERY,    "interior solves")                        \
@@ -56,8 +53,9 @@
   X(RESTART,     "restart")
 /* clang-format on */
 
-/* Those of the list, which every program has, and more that are named when
- * needed (timer_own_stage). */
+/* Those of the list, which files before the effects enter or whose rows have
+ * another name; then those of the other rows, named when needed
+ * (timer_own_stage). */
 #define STAGE_ENUM(name, text) STAGE_##name,
 typedef enum {
   STAGE_LIST(STAGE_ENUM) STAGE_LISTED,

@@ -78,7 +78,7 @@ done:
 static status test_start(run *r, start_report *s) {
   status st = OK;
   double *R = NULL, *diagonal = NULL, largest = 0.0;
-  timer_enter(STAGE_START);
+  timer_enter(effect_stage(&initial_state_effect));
   NEW(R, r->n_dof);
   NEW(diagonal, r->n_dof);
   TRY(increment_pose(r, 0.0));
@@ -97,7 +97,7 @@ static status test_start(run *r, start_report *s) {
   start_test(&in, r->old.rc, r->old.reaction, s);
   TRY(effects_initial(r));
 done:
-  timer_leave(STAGE_START);
+  timer_leave(effect_stage(&initial_state_effect));
   memory_free(R);
   memory_free(diagonal);
   return st;
@@ -111,10 +111,10 @@ static status report_new(run *r, void **self) {
   *self = own;
   if (r->course.from != NULL || (r->step != NULL && run_step_id(r) > 0))
     return OK;
-  timer_enter(STAGE_START);
+  timer_enter(effect_stage(&initial_state_effect));
   st = start_report_new(r->msh, own);
   if (st == OK) st = start_displacements(r->m, r->msh, r->old.u, own);
-  timer_leave(STAGE_START);
+  timer_leave(effect_stage(&initial_state_effect));
   return st;
 }
 
@@ -149,7 +149,6 @@ const effect_ops initial_state_effect = {.name = "initial state",
                                          .bit = EFFECT_BIT_START,
                                          .required = requires_start,
                                          .expected = expected,
-                                         .own = STAGE_START,
                                          .inside = 1,
                                          .far = 1,
                                          .on.create = report_new,

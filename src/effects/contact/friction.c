@@ -300,7 +300,9 @@ static status find_stick(run *r, const friction *own) {
 
 /* The stage of the history, where there is one. */
 static stage history_of(const run *r) {
-  return effect_is_on(&slip_history_effect, r->m) ? STAGE_HISTORY : STAGE_NONE;
+  return effect_is_on(&slip_history_effect, r->m)
+             ? effect_stage(&slip_history_effect)
+             : STAGE_NONE;
 }
 
 static status pose(run *r, void *self, double t) {
@@ -465,5 +467,4 @@ const effect_ops friction_effect = {.name = "friction",
 const effect_ops slip_history_effect = {.name = "history of slip",
                                         .bit = EFFECT_BIT_HISTORY,
                                         .required = requires_history,
-                                        .expected = expected_history,
-                                        .own = STAGE_HISTORY};
+                                        .expected = expected_history};

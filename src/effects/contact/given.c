@@ -124,7 +124,7 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
   given_forces *own = self;
   contact_problem before = *cp;
   if (own->n == 0) return OK;
-  timer_enter(STAGE_GIVEN);
+  timer_enter(effect_stage(&given_forces_effect));
   if (own->matrix_no != r->solving.matrix_no) {
     given_form_free(own->form);
     own->form = NULL;
@@ -134,7 +134,7 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
   TRY(given_form_set(own->form, &before, own->force, r->msh->size, *u, force,
                      cp));
 done:
-  timer_leave(STAGE_GIVEN);
+  timer_leave(effect_stage(&given_forces_effect));
   return st;
 }
 
@@ -167,7 +167,6 @@ const effect_ops given_forces_effect = {.name = "given contact forces",
                                         .bit = EFFECT_BIT_GIVEN,
                                         .required = requires_given,
                                         .expected = expected,
-                                        .own = STAGE_GIVEN,
                                         .inside = 1,
                                         .far = 1,
                                         .on.create = given_new,
