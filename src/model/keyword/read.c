@@ -110,14 +110,16 @@ static void read_parameter(reading *r, const option *row, const parameter *p,
               "*%s, %s: %s", r->card->name, p->name, why);
 }
 
-/* A name that no row has: not reported after a law or method that is not
+/* A name that no row has: not reported with a law or method that is not
  * known, whose option it may be. */
 static void unknown_parameter(reading *r, const parameter *p,
                               const two_tables *all, const plugin *named) {
   char text[256], of[128] = "";
   r->misread = 1;
-  if (named->parameter != NULL && named->name == NULL) return;
-  if (named->parameter != NULL)
+  if (named->parameter != NULL && named->name == NULL &&
+      card_parameter(r->card, named->parameter) != NULL)
+    return;
+  if (named->name != NULL)
     snprintf(of, sizeof of, ", %s=%.80s", named->parameter, named->name);
   snprintf(text, sizeof text, "*%.80s%s has no parameter ", r->card->name, of);
   unknown_word(r->m->log, P2003, &p->at, text, p->name, either_name, all);
