@@ -403,8 +403,11 @@
   X(4008, ERROR, "contact node without outward normal",                      \
     "The faces around the node cancel, as at the tip of a fin without "      \
     "thickness. Leave them out of the contact group.")                       \
-  X(4009, ERROR, "sphere off the axis of symmetry",                          \
-    "In an axisymmetric model the centre of a sphere is on the axis, r = 0.")  \
+  X(4009, ERROR, "sphere off the axis of symmetry, or ring on it",           \
+    "In an axisymmetric model a SPHERE has its centre on the axis, r = 0; a "  \
+    "CYLINDER is a ring, whose circle has its centre at r > 0. A shaft of "    \
+    "radius R is a PLANE through (R, 0) with the normal (1, 0), a bore one "   \
+    "with (-1, 0).")                                                           \
   X(4010, ERROR, "contact without a node",                                   \
     "The body cannot touch the obstacle: check the group, where the "        \
     "obstacle is, that the normal of a plane points towards the body, and "  \

@@ -120,9 +120,17 @@ static int check_group(const builder *b, const contact_pair *p) {
   return 0;
 }
 
+/* The circle of a sphere has its centre on the axis, that of a ring not. */
 static void check_axis(const builder *b, const contact_pair *p) {
   const obstacle *o = p->support;
-  if (b->in->axisymmetric && o->shape == OBSTACLE_SPHERE && o->point[0] != 0)
+  if (!b->in->axisymmetric) return;
+  if (o->shape == OBSTACLE_CYLINDER && o->point[0] == 0)
+    message_add(b->log, P4009, &p->at,
+                "*CONTACT %s: the circle of cylinder %s has its centre on the "
+                "axis of symmetry, where it is a SPHERE; a shaft is a PLANE "
+                "with the normal (1, 0)",
+                p->name, o->name);
+  if (o->shape == OBSTACLE_SPHERE && o->point[0] != 0)
     message_add(b->log, P4009, &p->at,
                 "*CONTACT %s: centre of sphere %s at r = %g, expected 0",
                 p->name, o->name, o->point[0]);
