@@ -8,6 +8,7 @@
 #include "model/keyword/keyword.h"
 
 #include <string.h>
+#include <strings.h>
 
 const embedded_file *embedded_find(const char *folder, const char *name) {
   for (const embedded_file *f = embedded_files; f->folder != NULL; ++f)
@@ -117,7 +118,7 @@ int manual_print(const char *chapter, FILE *out) {
   if (chapter == NULL) fputs("protis --manual CHAPTER, one of\n", out);
   for (int i = 0; i < CHAPTERS; ++i) {
     if (chapter == NULL) print_title(i, out);
-    if (chapter == NULL || strcmp(chapter, chapters[i].name) != 0) continue;
+    if (chapter == NULL || strcasecmp(chapter, chapters[i].name) != 0) continue;
     fputs(embedded_find("manual", chapters[i].file)->text, out);
     if (chapters[i].more != NULL) chapters[i].more(out);
     return 1;
