@@ -18,8 +18,10 @@ FILES = ("MESH", "INCLUDE", "CONDENSED PROBLEM", "TEMPERATURE",
 
 
 def fail(text):
-    """End with a message that begins with the name of the tool."""
-    sys.exit(f"{sys.argv[0].rsplit('/', 1)[-1]}: {text}")
+    """End with exit code 2 and a message that begins with the name of the
+    tool."""
+    print(f"{sys.argv[0].rsplit('/', 1)[-1]}: {text}", file=sys.stderr)
+    sys.exit(2)
 
 
 def default_program():

@@ -188,6 +188,22 @@ class Results(unittest.TestCase):
         third = subprocess.run(words, capture_output=True, text=True,
                                check=False)
         self.assertEqual((third.returncode, third.stdout), (1, ""))
+        self.assertIn("1 of 3 runs did not end with 0", third.stderr)
+
+    def test_batch_repeats_what_a_signal_ended(self):
+        words = [sys.executable, "tools/batch", str(DECK), "-o",
+                 str(self.dir), "--", "-DN=4"]
+        for code in (0, -9, 143):
+            done = subprocess.run(words, capture_output=True, text=True,
+                                  check=False)
+            self.assertEqual(json.loads(done.stdout)["exit"], 0)
+            lines = self.dir / "batch.jsonl"
+            lines.write_text(lines.read_text().replace(
+                '"exit": 0', f'"exit": {code or -15}'))
+
+    def test_batch_tells_a_deck_that_is_not_there(self):
+        code, said = tool("batch", self.dir / "none.inp", "-o", self.dir)
+        self.assertEqual(code, 2, said)
 
     def test_study_tells_a_response(self):
         code, said = tool("study", DECK, "--response", "TOTALS.force_x",
