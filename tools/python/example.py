@@ -12,7 +12,10 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import protis  # noqa: E402
 
-DECK = pathlib.Path(__file__).resolve().parents[2] / "input/greco/greco.inp"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DECK = next((d for d in (ROOT / "input/greco/greco.inp",
+                         ROOT / "examples/greco/greco.inp") if d.is_file()),
+            "greco.inp")  # of the sources, installed, protis --example greco
 DRAW = """set terminal pngcairo size 800,480 font 'sans,11'
 set output '{picture}'
 set datafile separator ','
