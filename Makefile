@@ -484,6 +484,9 @@ install-files:
 uninstall:
 	$(Q)rm -rf $(DESTDIR)$(PREFIX)/bin/protis $(share)/man/man1/protis.1 \
 	  $(bash)/protis $(share)/protis
+	$(Q)cd $(DESTDIR)$(PREFIX) 2> /dev/null || exit 0; for d in share/man/man1 \
+	  $(patsubst $(DESTDIR)$(PREFIX)/%,%,$(bash)) bin; do \
+	  [ ! -d $$d ] || rmdir -p --ignore-fail-on-non-empty $$d; done
 
 # A package of Debian; what the program needs is asked of dpkg.
 deb_is  := build/deb/protis
