@@ -130,13 +130,14 @@ static int at_random(unsigned long *row, int all) {
 }
 
 /* Killed, gone on with, killed again until a run comes to its end, which one
- * without kills does in the end; NULL or what is wrong. */
+ * without kills does in the end; NULL or what is wrong. The first kill is not
+ * among the last eighth of the changes: a quicker run makes fewer. */
 static const char *chain(const job *whole, job *j, unsigned long row,
                          int changes, int *kills) {
   enum { LONGEST = 40 };
   const char *wrong = NULL;
   job_clear(j);
-  int code = run(j, nothing, at_random(&row, changes), NULL);
+  int code = run(j, nothing, at_random(&row, changes - changes / 8), NULL);
   for (*kills = 0; code == KILLED && wrong == NULL; ++*kills) {
     wrong = after_kill(j, code);
     int at = *kills < LONGEST ? at_random(&row, changes) : 0;
