@@ -21,11 +21,14 @@ def time_label(job):
 def over_time(job, table, names, title=None):
     """Columns of the first row of each block of a table."""
     time, *values = job.over_time(table, *names)
-    units = job.tables(table)[0].units
+    first = job.tables(table)[0]
+    units = first.units
+    contacts = first.columns.get("contact", [])
+    of = f" of {contacts[0]}" if len(set(contacts)) > 1 else ""
     figure, axes = new(7.5, 4.4)
     axes = axes[0, 0]
     for k, (name, value) in enumerate(zip(names, values)):
-        axes.plot(time, value, "o-", color=COLOURS[k % 6], label=name)
+        axes.plot(time, value, "o-", color=COLOURS[k % 6], label=name + of)
     axes.set_xlabel(time_label(job))
     shown = {units[n] for n in names}
     axes.set_ylabel(", ".join(sorted(shown)))
