@@ -453,10 +453,11 @@ static void say(const builder *b, int pair_id) {
         p->name, p->support->name, 1.0 - t->held,
         describe(m, t->held_node).text);
   if (t->n_corner > 0)
-    message_add(b->log, P4005, &p->at,
-                "*CONTACT %s: %d nodes touch a second obstacle and have no "
-                "friction, the first is %s",
-                p->name, t->n_corner, describe(m, t->corner_node).text);
+    message_add(
+        b->log, P4005, &p->at,
+        "*CONTACT %s: %d node(s) may touch a second obstacle and have no "
+        "friction, the first is %s",
+        p->name, t->n_corner, describe(m, t->corner_node).text);
   if (t->n_dependent > 0)
     message_add(b->log, P4006, &p->at,
                 "*CONTACT %s: its normal depends on that of *CONTACT %s at %d "
