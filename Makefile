@@ -140,7 +140,8 @@ deps-browser: deps
 deps:
 	$(call install,$(missing))
 ifeq ($(dpkg),)
-	@none=; for h in $(headers); do \
+	@none=; pkg-config --version > /dev/null 2>&1 || none=' pkg-config'; \
+	for h in $(headers); do \
 	  echo "#include <$$h>" | $(CC) $(CPPFLAGS) -E - \
 	    > /dev/null 2>&1 || none="$$none $$h"; done; \
 	[ -z "$$none" ] || { echo "missing:$$none; install the libraries they" \
