@@ -220,6 +220,7 @@ static outcome check(passes *p, double tol, const double *r, solver_report *rep,
     p->lowest = rep->residual;
     p->since = 0;
   }
+  if (inner == STOPPED_ITERATIONS && p->since > 0) return inner;
   if (p->steady >= DRIFT && p->since >= DRIFT && drifts(p, r))
     return STOPPED_RAY;
   if (p->since <= PATIENCE) return RUNNING;
