@@ -111,6 +111,7 @@ static void make_model(made_up *run, int n_increment) {
   run->foot = (contact){.name = "FOOT",
                         .group = "BOTTOM",
                         .obstacle_name = "FLOOR",
+                        .obstacle_id = -1, /* the model has no obstacles */
                         .has_axis = 1,
                         .group_id = group_id(run->msh, "BOTTOM")};
   run->body =
