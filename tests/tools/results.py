@@ -252,6 +252,8 @@ class Results(unittest.TestCase):
             self.assertEqual(frame.attrs["units"]["x"], "mm")
 
     def test_errors_of_the_program_are_exceptions(self):
+        with self.assertRaisesRegex(protis.Error, "none.json: no results"):
+            protis.Job(self.dir / "none")
         with self.assertRaises(protis.Error) as caught:
             protis.run(DECK, NIX=1)
         self.assertEqual(caught.exception.code, 2)

@@ -80,7 +80,9 @@ class Results:
         self.base, self.name, self.at = path, path.name, at
         if not any(self.file(s).is_file() for s in ("json", "dat", "h5")):
             raise Missing(f"{path}: no results of a run: neither "
-                          f"{self.name}.json nor .dat nor .h5")
+                          f"{self.name}.json nor .dat nor .h5" + (
+                              f"; {self.file('lst')} says why"
+                              if self.file("lst").is_file() else ""))
 
     def file(self, suffix):
         return self.base.with_name(f"{self.name}.{suffix}")

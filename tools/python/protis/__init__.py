@@ -207,7 +207,12 @@ class Job:
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
-        self.info = json.loads(self.file("json").read_text(encoding="utf-8"))
+        try:
+            text = self.file("json").read_text(encoding="utf-8")
+        except OSError as problem:
+            raise Error(4, f"{self.file('json')}: no results of a run: "
+                           f"{problem.strerror}") from None
+        self.info = json.loads(text)
 
     def file(self, suffix):
         """JOB.suffix"""
