@@ -163,6 +163,34 @@ START_TEST(secants_over_the_temperature) {
 }
 END_TEST
 
+/* Temperatures that are never the same: each element counts from its own, also
+ * where the first elements do not expand. All of HARD gains 50 degrees. */
+START_TEST(each_element_counts_from_its_own_temperature) {
+  job j = job_begin("thermal");
+  job_copy(&j, "tests/regression/mesh/layers.geo");
+  job_write(&j, "thermal.inp",
+            "*PARAMETER\nN = 4\n*MESH, FILE=layers.geo\n*MATERIAL, NAME=COLD\n"
+            "*ELASTIC\n2.E5, 0.\n*MATERIAL, NAME=M\n*ELASTIC\n2.E5, 0.\n"
+            "*EXPANSION, TYPE=ORTHO\n0., 1.2E-5, 0.\n"
+            "*SOLID SECTION, ELSET=SOFT, MATERIAL=COLD\n"
+            "*SOLID SECTION, ELSET=HARD, MATERIAL=M\n"
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE\n"
+            "SOFT, \"300*x\"\nHARD, \"100*x + 70*y\"\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n*TEMPERATURE\n"
+            "SOFT, 7.\nHARD, \"50 + 100*x + 70*y\"\n*PRINT, ELEMENTS\n"
+            "*END STEP\n");
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  all_equal(&j, "stress_yy", 0.0, 240.0);
+  dat d = job_table(&j, "ELEMENTS", -1);
+  for (int i = 0; i < d.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&d, i, "strain_yy"),
+                            dat_at(&d, i, "y") > 0.5 ? 6e-4 : 0.0, 1e-14);
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
 /* From 10 to 30 in a step of 1 by default, then with an amplitude to 60 and
  * back, kept in the step that says nothing. */
 START_TEST(temperatures_run_through_the_steps) {
@@ -460,6 +488,7 @@ END_TEST
 
 UNIT_MAIN("thermal", bar_between_contacts, held_on_all_sides,
           free_expansion_has_no_stress, secants_over_the_temperature,
+          each_element_counts_from_its_own_temperature,
           temperatures_run_through_the_steps,
           cylinder_with_a_logarithmic_profile, strip_with_a_parabolic_profile,
           temperatures_from_a_file, damaged_fields_are_refused,

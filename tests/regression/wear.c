@@ -74,6 +74,39 @@ START_TEST(depth_under_a_belt) {
 }
 END_TEST
 
+/* Archard at a corner: floor and wall each lose k F s of their own force,
+ * pressed with 3 and 1, where the belt passes along both by 1. The block rubs
+ * on each by half of what the other presses it together, F/E, before. */
+START_TEST(each_side_of_a_corner_wears_by_its_own_force) {
+  job j = job_begin("block");
+  job_copy(&j, "tests/regression/mesh/cube.geo");
+  job_write(&j, "block.inp",
+            "*PARAMETER\nN = 2\n*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*AMPLITUDE, NAME=RUN, TIME=TOTAL TIME\n0, 0, 1, 0, 2, 1\n"
+            "*OBSTACLE, NAME=BELT, TYPE=PLANE, AMPLITUDE=RUN\n0, 0, 0\n"
+            "0, 0, 1\nMOVE, 0, 1, 0\n"
+            "*OBSTACLE, NAME=SIDE, TYPE=PLANE, AMPLITUDE=RUN\n0, 0, 0\n"
+            "1, 0, 0\nMOVE, 0, 1, 0\n"
+            "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=BELT\n"
+            "*CONTACT, NAME=WALL, GROUP=LEFT, OBSTACLE=SIDE\n" WORN
+            "*WEAR, CONTACT=WALL, COEFFICIENT=1.E-4\n"
+            "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nFRONT, 2\n"
+            "*DSLOAD\nTOP, P, 3.\nRIGHT, P, 1.\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n1., 1.\n*PRINT, TOTALS, CONTACT\n"
+            "*END STEP\n");
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "TOTALS", -1);
+  for (int i = 0; i < 2; ++i)
+    ck_assert_double_eq_tol(dat_at(&t, i, "worn_volume"),
+                            1e-4 * (i == 0 ? 3 * (1 + 0.5e-3) : 1 + 1.5e-3),
+                            1e-12);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* All of the block slips against friction: wear as the work of the normal
  * forces, whatever the pressures; stopped and gone on with. */
 START_TEST(volume_with_friction_and_restart) {
@@ -187,6 +220,7 @@ int main(void) {
   TCase *tests = tcase_create("wear");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, depth_under_a_belt, 0, 2);
+  tcase_add_test(tests, each_side_of_a_corner_wears_by_its_own_force);
   tcase_add_test(tests, volume_with_friction_and_restart);
   tcase_add_test(tests, increments_too_long_are_refused);
   tcase_add_test(tests, nothing_without_the_card);
