@@ -157,6 +157,33 @@ START_TEST(static_problem_slips_from_the_origin) {
 }
 END_TEST
 
+/* The way slipped is the sum of the slips of all increments that touch, also
+ * where the supports change and the contact surface is made again. */
+START_TEST(slip_distance_goes_on_with_other_supports) {
+  job j = run_cards(
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=F, LAW=COULOMB\n0.4\n"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 2, 2, -0.01\n"
+      "TOP, 1, 1, 0.02\n*PRINT, CONTACT\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY, OP=NEW\nTOP, 1, 1, 0.03\n"
+      "*DSLOAD\nTOP, P, 10.\n*END STEP\n",
+      0);
+  double way[32] = {0};
+  for (int k = 0; k < 4; ++k) {
+    dat c = job_table(&j, "CONTACT", k);
+    ck_assert_int_le(c.n_row, 32);
+    for (int i = 0; i < c.n_row; ++i) {
+      if (dat_at(&c, i, "pressure") > 0) way[i] += fabs(dat_at(&c, i, "slip"));
+      ck_assert_double_eq_tol(dat_at(&c, i, "slip_distance"), way[i], 1e-12);
+    }
+    if (k == 1) ck_assert_double_ge(way[1], 0.005);
+    dat_free(&c);
+  }
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(same_contact_twice_is_refused) {
   job j = run_cards(
       "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
@@ -208,4 +235,5 @@ UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
           corner_forces_belong_to_their_contacts,
           supports_of_contact_nodes_balance, support_takes_over_from_contact,
           balance_is_that_of_the_largest_work,
+          slip_distance_goes_on_with_other_supports,
           static_problem_slips_from_the_origin, same_contact_twice_is_refused)
