@@ -408,8 +408,11 @@ static void set_node(builder *b, contact_surface *s, int n_kept,
   s->node_id[i] = c->node_id;
   s->node_no[i] = m->node_no[c->node_id];
   s->contact_id[i] = c->pair_id;
-  for (int k = 0; k < dim - 1; ++k)
-    s->side_id[i * (dim - 1) + k] = k + 1 < n_kept ? kept[k + 1]->pair_id : -1;
+  for (int k = 0; k < dim - 1; ++k) {
+    const candidate *side = k + 1 < n_kept ? kept[k + 1] : NULL;
+    s->side_id[i * (dim - 1) + k] = side != NULL ? side->pair_id : -1;
+    s->side_area[i * (dim - 1) + k] = side != NULL ? side->area : 0.0;
+  }
   for (int k = 0; k < dim; ++k)
     s->x[dim * i + k] = m->x[(size_t)dim * (size_t)c->node_id + (size_t)k];
   s->area[i] = c->area;
@@ -480,6 +483,7 @@ static status surface_new(int dim, int n, contact_surface **out) {
   NEW(s->node_no, n);
   NEW(s->contact_id, n);
   NEW(s->side_id, n * (dim - 1));
+  NEW(s->side_area, n * (dim - 1));
   NEW(s->x, n * dim);
   NEW(s->area, n);
   NEW(s->frame, n * dim * dim);
@@ -579,5 +583,5 @@ void surface_drift(const contact_surface *s, const surface_input *in, double t0,
 void surface_free(contact_surface *s) {
   if (s == NULL) return;
   RELEASE(s->node_id, s->node_no, s->contact_id, s->side_id, s->x, s->area,
-          s->frame, s->basis, s->gap0, s->held, s);
+          s->side_area, s->frame, s->basis, s->gap0, s->held, s);
 }

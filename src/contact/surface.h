@@ -19,6 +19,7 @@ typedef struct contact_surface {
   double *area;        /* [n] tributary area (integral of the P1 function over
                           the faces of contact_id), m2; 2-D: times thickness;
                           axisymmetric: whole turn */
+  double *side_area;   /* [n*(dim-1)] the same of side_id, 0 where it is -1 */
   double *frame;       /* [dim*dim*n] rows n, t1[, t2]: a = frame u; orthonormal
                           except where side_id >= 0 (then that row is the normal
                           of the second obstacle) */

@@ -397,12 +397,12 @@ START_TEST(parallel_normals_on_two_obstacles_are_an_error) {
 }
 END_TEST
 
-/* Corner of a cube on three obstacles, edges on two. */
+/* Corner of a box on three obstacles, edges on two, each with its area. */
 START_TEST(cube_corner_stands_on_three_obstacles) {
   scene c;
   scene_init(&c, 3);
   int o = add_node(&c, 0, 0, 0), x = add_node(&c, 1, 0, 0);
-  int y = add_node(&c, 0, 1, 0), z = add_node(&c, 0, 0, 1);
+  int y = add_node(&c, 0, 1, 0), z = add_node(&c, 0, 0, 0.5);
   add_face(&c, o, z, y);
   add_face(&c, o, x, z);
   add_face(&c, o, y, x);
@@ -419,7 +419,8 @@ START_TEST(cube_corner_stands_on_three_obstacles) {
   ck_assert_int_eq(c.s->side_id[2 * x], 2);
   ck_assert_int_eq(c.s->side_id[2 * x + 1], -1);
   ck_assert_double_eq(fabs(c.s->frame[9 * x + 6]), 1);
-  ck_assert_double_eq_tol(c.s->area[0], 0.5 / 3, 1e-16);
+  ck_assert_double_eq_tol(c.s->area[0], 0.25 / 3, 1e-16);
+  ck_assert_double_eq_tol(c.s->side_area[1], 0.5 / 3, 1e-16);
   scene_free(&c);
 }
 END_TEST

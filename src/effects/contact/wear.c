@@ -66,6 +66,11 @@ static int normal_of(const contact_surface *s, int i, int a) {
   return a == 0 ? s->contact_id[i] : s->side_id[(s->dim - 1) * i + a - 1];
 }
 
+/* Tributary area of that normal, m2. */
+static double area_of(const contact_surface *s, int i, int a) {
+  return a == 0 ? s->area[i] : s->side_area[(s->dim - 1) * i + a - 1];
+}
+
 static status open_gaps(run *r, void *self, double t) {
   const double *depth = self;
   const int dim = r->msh->dim;
@@ -123,12 +128,13 @@ static status wear_off(run *r, void *self) {
   NEW(root, r->nodes.n_c);
   for (int i = 0; i < r->nodes.n; ++i) {
     const double slip = slip_of(r, i);
-    for (int a = 0; a < dim && s->area[i] > 0.0; ++a) {
+    for (int a = 0; a < dim; ++a) {
       const int id = normal_of(s, i, a), k = dim * i + a;
       const effect_card *c =
           id < 0 ? NULL : model_effect_card(r->m, "WEAR", id);
       if (c == NULL || !(r->now.rc[k] < 0.0)) continue;
-      const double per_force = c->value[0] * slip / s->area[i];
+      if (!(area_of(s, i, a) > 0.0)) continue;
+      const double per_force = c->value[0] * slip / area_of(s, i, a);
       depth[dim * s->node_id[i] + a] -= per_force * r->now.rc[k];
       root[k] = sqrt(per_force);
     }
@@ -166,7 +172,7 @@ static double volume_of(const view *v, int i, int contact_id) {
   for (int a = 0; a < s->dim; ++a) {
     const int id = normal_of(s, i, a);
     if (id >= 0 && (contact_id < 0 || id == contact_id))
-      sum += s->area[i] * depth_of(v, i, a);
+      sum += area_of(s, i, a) * depth_of(v, i, a);
   }
   return sum;
 }
