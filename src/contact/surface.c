@@ -582,6 +582,7 @@ void surface_drift(const contact_surface *s, const surface_input *in, double t0,
 
 void surface_free(contact_surface *s) {
   if (s == NULL) return;
-  RELEASE(s->node_id, s->node_no, s->contact_id, s->side_id, s->x, s->area,
-          s->side_area, s->frame, s->basis, s->gap0, s->held, s);
+  if (s->master != NULL) links_release(s->master);
+  RELEASE(s->master, s->node_id, s->node_no, s->contact_id, s->side_id, s->x,
+          s->area, s->side_area, s->frame, s->basis, s->gap0, s->held, s);
 }

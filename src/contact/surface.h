@@ -5,6 +5,7 @@
 #ifndef PROTIS_CONTACT_SURFACE_H
 #define PROTIS_CONTACT_SURFACE_H
 
+#include "contact/links.h"
 #include "contact/obstacle.h"
 #include "mesh/mesh.h"
 
@@ -27,6 +28,8 @@ typedef struct contact_surface {
   double *gap0;        /* [n] gap along the normal at time 0, m */
   unsigned char *held; /* [dim*n] 1: this contact unknown is prescribed by
                         *BOUNDARY (never the normal one) */
+  node_links *master;  /* row q: contact node q, whose unknowns are relative to
+                          the master surface of a pair; NULL: no pair */
 } contact_surface;
 
 /* A *CONTACT as the surface sees it. */

@@ -43,6 +43,7 @@ typedef struct domain {
   /* Elements whose change of volume is averaged, as strains and stresses here
    * always are; NULL: none. Its means are overwritten. */
   cluster_set *cluster;
+  const tie_set *ties; /* NULL: none */
   int rows;      /* contact unknowns of a node that are condensed, the normal
                     first: 1 (its tangents count in the interior) or dim; 0:
                     dim */
