@@ -580,6 +580,75 @@ void surface_drift(const contact_surface *s, const surface_input *in, double t0,
       row_drift(s, in->pairs, i, k, times, &motion[s->dim * i + k]);
 }
 
+void surface_relative(const contact_surface *s, const double *u, double *w) {
+  const int dim = s->dim;
+  const node_links *l = s->master;
+  for (int q = 0; q < s->n; ++q)
+    for (int a = 0; a < dim; ++a) {
+      const double *row = &s->frame[dim * (dim * q + a)];
+      double sum = dot(dim, row, u + (size_t)dim * (size_t)s->node_id[q]);
+      for (size_t e = l == NULL ? 0 : l->start[q];
+           l != NULL && e < l->start[q + 1]; ++e)
+        sum -= l->part[(size_t)dim * e + (size_t)a] *
+               dot(dim, row, u + (size_t)dim * (size_t)l->master[e]);
+      w[dim * q + a] = sum;
+    }
+}
+
+static void add_scaled(int dim, double factor, const double *v, double *to) {
+  for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
+}
+
+void surface_spread(const contact_surface *s, double factor, const double *r,
+                    double *F) {
+  const int dim = s->dim;
+  const node_links *l = s->master;
+  for (int q = 0; q < s->n; ++q)
+    for (int a = 0; a < dim; ++a) {
+      const double *row = &s->frame[dim * (dim * q + a)];
+      const double force = factor * r[dim * q + a];
+      add_scaled(dim, force, row, F + (size_t)dim * (size_t)s->node_id[q]);
+      for (size_t e = l == NULL ? 0 : l->start[q];
+           l != NULL && e < l->start[q + 1]; ++e)
+        add_scaled(dim, -force * l->part[(size_t)dim * e + (size_t)a], row,
+                   F + (size_t)dim * (size_t)l->master[e]);
+    }
+}
+
+/* r += basis' F; the largest addition. */
+static double add_forces(const contact_surface *s, const double *F, double *r) {
+  const int dim = s->dim;
+  double most = 0;
+  for (int q = 0; q < s->n; ++q)
+    for (int a = 0; a < dim; ++a) {
+      const double more = dot(dim, &s->basis[dim * (dim * q + a)],
+                              F + (size_t)dim * (size_t)s->node_id[q]);
+      r[dim * q + a] += more;
+      most = fmax(most, fabs(more));
+    }
+  return most;
+}
+
+/* Slave nodes that are masters of other pairs have the forces of those too:
+ * each pass finds those of the next pair in a chain. */
+status surface_forces(const contact_surface *s, int n_node, const double *F,
+                      double *r) {
+  enum { LONGEST = 100 };
+  const size_t n = (size_t)s->dim * (size_t)n_node;
+  OWNED double *rest = NULL;
+  memset(r, 0, (size_t)(s->dim * s->n) * sizeof *r);
+  const double first = add_forces(s, F, r);
+  double more = first;
+  if (s->master == NULL) return OK;
+  PASS_NEW(rest, n);
+  for (int k = 0; k < LONGEST && more > rounding * first; ++k) {
+    memcpy(rest, F, n * sizeof *rest);
+    surface_spread(s, -1, r, rest);
+    more = add_forces(s, rest, r);
+  }
+  return OK;
+}
+
 void surface_free(contact_surface *s) {
   if (s == NULL) return;
   if (s->master != NULL) links_release(s->master);

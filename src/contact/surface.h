@@ -80,6 +80,17 @@ status surface_gap(const contact_surface *s, const surface_input *in, double t,
  * t0 to t (obstacle_drift) in the contact frame, m. */
 void surface_drift(const contact_surface *s, const surface_input *in, double t0,
                    double t, double *motion);
+/* w[dim*n], the contact unknowns of the displacements u[dim*n_node]: relative
+ * to the masters of pairs. */
+void surface_relative(const contact_surface *s, const double *u, double *w);
+/* F[dim*n_node] += factor times the forces r[dim*n] dual to those, on
+ * both sides of pairs: r'w = F'u. */
+void surface_spread(const contact_surface *s, double factor, const double *r,
+                    double *F);
+/* The forces r[dim*n] that surface_spread brings to F[dim*n_node] at the
+ * contact nodes. ERR_MEMORY. */
+status surface_forces(const contact_surface *s, int n_node, const double *F,
+                      double *r);
 /* 1 if node i touches a second obstacle: it has no friction. */
 int surface_is_corner(const contact_surface *s, int i);
 void surface_free(contact_surface *s); /* accepts NULL */

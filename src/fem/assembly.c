@@ -35,14 +35,44 @@ static status add_rows(node_graph *g, int j, int n_more, const int *node) {
   return OK;
 }
 
+/* The same with the nodes that those move with. */
+static status add_moved_rows(node_graph *g, int j, int n, const int *node) {
+  const coupling *c = g->k->moved;
+  PASS(add_rows(g, j, n, node));
+  for (int a = 0; c != NULL && a < n; ++a) {
+    const int row = c->of[node[a]];
+    for (size_t t = row < 0 ? 0 : c->start[row];
+         row >= 0 && t < c->start[row + 1]; ++t)
+      PASS(add_rows(g, j, 1, &c->part[t].node));
+  }
+  return OK;
+}
+
 /* Nodes of an element, or of the cluster it belongs to, couple. */
 static status add_element_rows(node_graph *g, const domain *d, int j, int e) {
   const int per = d->mesh->dim + 1;
   const cluster_set *c = d->cluster;
   if (c == NULL || c->of[e] < 0)
-    return add_rows(g, j, per, d->mesh->elem + (size_t)per * (size_t)e);
+    return add_moved_rows(g, j, per, d->mesh->elem + (size_t)per * (size_t)e);
   const int q = c->of[e];
-  return add_rows(g, j, c->first[q + 1] - c->first[q], c->node + c->first[q]);
+  return add_moved_rows(g, j, c->first[q + 1] - c->first[q],
+                        c->node + c->first[q]);
+}
+
+/* The rows whose nodes move with node j: nodes[start[j] .. start[j+1]). */
+static status find_followers(const coupling *c, size_t **start, int **node) {
+  size_t *s = NULL;
+  int *list = NULL;
+  PASS_NEW(s, c->n_node + 2);
+  *start = s;
+  PASS_NEW(list, c->start[c->n]);
+  *node = list;
+  for (size_t t = 0; t < c->start[c->n]; ++t) ++s[c->part[t].node + 2];
+  for (int i = 0; i < c->n_node; ++i) s[i + 2] += s[i + 1];
+  for (int q = 0; q < c->n; ++q)
+    for (size_t t = c->start[q]; t < c->start[q + 1]; ++t)
+      list[s[c->part[t].node + 1]++] = c->node[q];
+  return OK;
 }
 
 static status find_graph(const domain *d, stiffness *k) {
@@ -50,9 +80,10 @@ static status find_graph(const domain *d, stiffness *k) {
   const mesh *m = d->mesh;
   node_graph g = {.k = k,
                   .capacity = (size_t)m->n_node * (m->dim == 2 ? 5 : 9)};
-  size_t *from = NULL;
-  int *elem = NULL;
+  size_t *from = NULL, *first = NULL;
+  int *elem = NULL, *follower = NULL;
   TRY(mesh_node_elements(m, &from, &elem));
+  if (k->moved != NULL) TRY(find_followers(k->moved, &first, &follower));
   NEW(g.seen, m->n_node);
   NEW(k->start, m->n_node + 1);
   NEW(k->row, g.capacity);
@@ -60,10 +91,14 @@ static status find_graph(const domain *d, stiffness *k) {
     TRY(add_rows(&g, j, 1, &j)); /* the diagonal first */
     for (size_t q = from[j]; q < from[j + 1]; ++q)
       TRY(add_element_rows(&g, d, j, elem[q]));
+    for (size_t t = first == NULL ? 0 : first[j];
+         first != NULL && t < first[j + 1]; ++t)
+      for (size_t q = from[follower[t]]; q < from[follower[t] + 1]; ++q)
+        TRY(add_element_rows(&g, d, j, elem[q]));
     k->start[j + 1] = g.n;
   }
 done:
-  RELEASE(from, elem, g.seen);
+  RELEASE(from, elem, g.seen, first, follower);
   return st;
 }
 
@@ -94,6 +129,68 @@ static void add_block(stiffness *k, int i, int j, const double *b) {
       for (int r = 0; r < dim; ++r) to[dim * r + c] += b[dim * c + r];
 }
 
+/* t = X' b Y; NULL: unit matrix. */
+static void turn_both(int dim, const double *X, const double *Y,
+                      const double *b, double *t) {
+  double half[9];
+  for (int s = 0; s < dim; ++s)
+    for (int r = 0; r < dim; ++r) {
+      half[dim * s + r] = Y == NULL ? b[dim * s + r] : 0;
+      for (int q = 0; Y != NULL && q < dim; ++q)
+        half[dim * s + r] += b[dim * q + r] * Y[dim * s + q];
+    }
+  for (int s = 0; s < dim; ++s)
+    for (int r = 0; r < dim; ++r) {
+      t[dim * s + r] = X == NULL ? half[dim * s + r] : 0;
+      for (int q = 0; X != NULL && q < dim; ++q)
+        t[dim * s + r] += X[dim * r + q] * half[dim * s + q];
+    }
+}
+
+/* A node (p = 0) and those it moves with. */
+static int part_of(const coupling *c, int node, size_t p, const double **X) {
+  if (p == 0) {
+    *X = NULL;
+    return node;
+  }
+  const coupled_part *x = &c->part[c->start[c->of[node]] + p - 1];
+  *X = x->block;
+  return x->node;
+}
+
+static size_t parts_of(const coupling *c, int node) {
+  const int row = c->of[node];
+  return row < 0 ? 1 : 1 + c->start[row + 1] - c->start[row];
+}
+
+/* T'b T of the block of nodes i and j, the lower triangle. */
+static void add_moved(stiffness *k, int i, int j, const double *b) {
+  const coupling *c = k->moved;
+  const int dim = k->dim;
+  const size_t n_i = parts_of(c, i), n_j = parts_of(c, j);
+  for (size_t p = 0; p < n_i; ++p)
+    for (size_t q = 0; q < (i == j ? p + 1 : n_j); ++q) {
+      const double *X, *Y;
+      double t[9], across[9];
+      const int to_i = part_of(c, i, p, &X), to_j = part_of(c, j, q, &Y);
+      turn_both(dim, X, Y, b, t);
+      add_block(k, to_i, to_j, t);
+      if (to_i != to_j || i == j) continue;
+      for (int s = 0; s < dim; ++s)
+        for (int r = 0; r < dim; ++r) across[dim * s + r] = t[dim * r + s];
+      add_block(k, to_i, to_j, across);
+    }
+}
+
+/* The block of two nodes as the unknowns have it. */
+static void put_block(stiffness *k, int i, int j, const double *b) {
+  const coupling *c = k->moved;
+  if (c == NULL || (c->of[i] < 0 && c->of[j] < 0))
+    add_block(k, i, j, b);
+  else
+    add_moved(k, i, j, b);
+}
+
 static status add_elements(const domain *d, stiffness *k) {
   const int dim = k->dim, nb = dim * dim;
   double blocks[10 * 9];
@@ -104,7 +201,7 @@ static status add_elements(const domain *d, stiffness *k) {
     element_stiffness(d, e, blocks);
     const double *b = blocks;
     for (int a = 0; a <= dim; ++a)
-      for (int c = 0; c <= a; ++c, b += nb) add_block(k, v[a], v[c], b);
+      for (int c = 0; c <= a; ++c, b += nb) put_block(k, v[a], v[c], b);
   }
   return OK;
 }
@@ -153,7 +250,7 @@ static void add_cluster(const domain *d, int q, cluster_rows *x, stiffness *k) {
         for (int r = 0; r < dim; ++r)
           block[dim * s + r] = x->r[dim * a + r] * x->t[dim * b + s] +
                                x->t[dim * a + r] * x->r[dim * b + s];
-      add_block(k, node[a], node[b], block);
+      put_block(k, node[a], node[b], block);
     }
 }
 
@@ -202,6 +299,18 @@ int contact_row(const stiffness *k, int i, int c) {
   return k->first_row[i] >= 0 && c < k->rows ? k->first_row[i] + c : -1;
 }
 
+/* The rows of the condensed matrix. */
+static status number_rows(const domain *d, stiffness *k) {
+  const contact_surface *s = d->surface;
+  PASS_NEW(k->first_row, k->n_node);
+  for (int i = 0; i < k->n_node; ++i) k->first_row[i] = -1;
+  const int n = s == NULL ? 0 : d->in != NULL ? d->n_in : s->n;
+  for (int q = 0; q < n; ++q)
+    k->first_row[s->node_id[d->in != NULL ? d->in[q] : q]] = k->rows * q;
+  k->n_row = k->rows * n;
+  return OK;
+}
+
 /* Which components are unknown; contact nodes from the surface. */
 static status mark_unknowns(const domain *d, stiffness *k) {
   const int dim = k->dim, all = (1 << dim) - 1;
@@ -215,6 +324,8 @@ static status mark_unknowns(const domain *d, stiffness *k) {
       if (d->fixed[(size_t)dim * (size_t)i + (size_t)c])
         k->free[i] &= (unsigned char)~(1 << c);
   }
+  for (int q = 0; d->ties != NULL && q < d->ties->n; ++q)
+    k->free[d->ties->node_id[q]] = 0;
   for (int q = 0; s != NULL && q < s->n; ++q) {
     const int i = s->node_id[q];
     k->contact[i] = q;
@@ -222,13 +333,7 @@ static status mark_unknowns(const domain *d, stiffness *k) {
     for (int c = 0; c < dim; ++c)
       if (s->held[dim * q + c]) k->free[i] &= (unsigned char)~(1 << c);
   }
-  PASS_NEW(k->first_row, k->n_node);
-  for (int i = 0; i < k->n_node; ++i) k->first_row[i] = -1;
-  const int n = s == NULL ? 0 : d->in != NULL ? d->n_in : s->n;
-  for (int q = 0; q < n; ++q)
-    k->first_row[s->node_id[d->in != NULL ? d->in[q] : q]] = k->rows * q;
-  k->n_row = k->rows * n;
-  return OK;
+  return number_rows(d, k);
 }
 
 /* Contact nodes count in their frame. */
@@ -276,6 +381,7 @@ status stiffness_assemble(const domain *d, stiffness **out) {
   k->dim = d->mesh->dim;
   k->rows = d->rows > 0 ? d->rows : k->dim;
   k->n_node = d->mesh->n_node;
+  TRY(coupling_new(d, &k->moved));
   TRY(find_graph(d, k));
   TRY(add_elements(d, k));
   TRY(add_clusters(d, k));
@@ -294,6 +400,7 @@ done:
 
 void stiffness_free(stiffness *k) {
   if (k == NULL) return;
+  coupling_free(k->moved);
   RELEASE(k->start, k->row, k->block, k->free, k->contact, k->first_row,
           k->coupling, k->coupling_column, k);
 }

@@ -292,7 +292,7 @@ static int set_prescribed(condensed *c, const double *ud) {
       if (ud == NULL || (k->free[i] >> a & 1)) continue;
       const double *u = ud + (size_t)dim * (size_t)i;
       if (k->contact[i] < 0) {
-        p[a] = u[a];
+        p[a] = fixed[a] ? u[a] : 0;
       } else {
         const double *row =
             c->d.surface->frame + dim * (dim * k->contact[i] + a);
@@ -305,17 +305,19 @@ static int set_prescribed(condensed *c, const double *ud) {
   return any;
 }
 
-/* Forces in local components: contact nodes turn by their basis. */
+/* Forces at the unknowns: what acts on a node acts on those it moves with, and
+ * contact nodes turn by their basis. */
 static void set_load(condensed *c, const double *F) {
   const int dim = c->k->dim;
   memcpy(c->load, F, (size_t)dim * (size_t)c->k->n_node * sizeof *F);
+  if (c->k->moved != NULL) coupling_load(c->k->moved, c->load);
   for (int q = 0; q < c->n_contact; ++q) {
-    const size_t at = (size_t)dim * (size_t)c->d.surface->node_id[q];
+    double *v = c->load + (size_t)dim * (size_t)c->d.surface->node_id[q], f[3];
     const double *T = c->d.surface->basis + dim * dim * q;
+    memcpy(f, v, (size_t)dim * sizeof *f);
     for (int a = 0; a < dim; ++a) {
-      c->load[at + (size_t)a] = 0;
-      for (int b = 0; b < dim; ++b)
-        c->load[at + (size_t)a] += T[dim * a + b] * F[at + (size_t)b];
+      v[a] = 0;
+      for (int b = 0; b < dim; ++b) v[a] += T[dim * a + b] * f[b];
     }
   }
 }
@@ -348,7 +350,8 @@ static status forward(condensed *c, double *f_c) {
   return OK;
 }
 
-/* Contact nodes of a displacement from their frame to global components. */
+/* Displacements from the unknowns: contact nodes from their frame to global
+ * components, relative ones with those of their masters. */
 static void to_global(const condensed *c, double *u) {
   const int dim = c->k->dim;
   for (int q = 0; q < c->n_contact; ++q) {
@@ -360,6 +363,7 @@ static void to_global(const condensed *c, double *u) {
       for (int s = 0; s < dim; ++s) v[r] += T[dim * s + r] * a[s];
     }
   }
+  if (c->k->moved != NULL) coupling_move(c->k->moved, u);
 }
 
 /* Interior displacements from the stored forward solve. */

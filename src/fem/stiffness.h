@@ -5,7 +5,7 @@
 #ifndef PROTIS_FEM_STIFFNESS_H
 #define PROTIS_FEM_STIFFNESS_H
 
-#include "fem/fem.h"
+#include "fem/coupling.h"
 
 struct stiffness {
   int dim, n_node;
@@ -21,6 +21,7 @@ struct stiffness {
   size_t *coupling;     /* [n_coupling] blocks next to a prescribed component */
   int *coupling_column; /* [n_coupling] their columns */
   size_t n_coupling;
+  coupling *moved; /* nodes that move with others, NULL: none */
 };
 
 /* Row of the condensed matrix of component c of node i, -1: of the interior. */

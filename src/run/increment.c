@@ -39,22 +39,20 @@ static void put_rows(const run *r, const double *u, const double *force) {
 }
 
 /* Displacements of the contact nodes that were found with the interior. */
-static void take_interior(const run *r) {
-  const contact_surface *s = r->surface;
+static status take_interior(const run *r) {
+  OWNED double *w = NULL;
   int dim = r->msh->dim, next = 0;
-  if (r->nodes.n_row == r->nodes.n_c) return;
+  if (r->nodes.n_row == r->nodes.n_c) return OK;
+  PASS_NEW(w, r->nodes.n_c);
+  surface_relative(r->surface, r->now.u, w);
   for (int i = 0; i < r->nodes.n; ++i) {
     int is_in = r->nodes.reach.in == NULL ||
                 (next < r->nodes.reach.n_in && r->nodes.reach.in[next] == i);
     next += is_in;
-    for (int a = is_in ? r->nodes.rows : 0; a < dim; ++a) {
-      double sum = 0.0;
-      for (int c = 0; c < dim; ++c)
-        sum += s->frame[dim * (dim * i + a) + c] *
-               r->now.u[dim * s->node_id[i] + c];
-      r->now.uc[dim * i + a] = sum;
-    }
+    for (int a = is_in ? r->nodes.rows : 0; a < dim; ++a)
+      r->now.uc[dim * i + a] = w[dim * i + a];
   }
+  return OK;
 }
 
 static double residual_of(run *r, double *u, double *rc) {
@@ -257,7 +255,7 @@ static status solve_with_nodes(run *r, const double *F, int *iterations) {
     if (!again) break;
   }
   TRY(condense_recover(r->c, run_rows(r, 0, r->now.uc), r->now.u));
-  take_interior(r);
+  TRY(take_interior(r));
 done:
   return st;
 }

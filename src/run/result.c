@@ -12,22 +12,16 @@
 /* Reactions: internal forces less loads less contact forces, where fixed.
  * known: r->result.stress is that of r->now already. */
 static void find_reactions(run *r, int known) {
-  int dim = r->msh->dim;
+  double *reaction = r->now.reaction;
   timer_enter(STAGE_REACTION);
   if (!known)
     domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
-  domain_internal_force(&r->body.d, r->result.stress, r->now.reaction);
+  domain_internal_force(&r->body.d, r->result.stress, reaction);
   for (size_t i = 0; i < r->n_dof; ++i)
-    r->now.reaction[i] =
-        r->body.fixed[i] ? r->now.reaction[i] - r->now.F[i] : 0.0;
-  for (int i = 0; i < r->nodes.n; ++i)
-    for (int c = 0; c < dim; ++c) {
-      size_t dof = (size_t)(dim * r->surface->node_id[i] + c);
-      if (!r->body.fixed[dof]) continue;
-      for (int a = 0; a < dim; ++a)
-        r->now.reaction[dof] -= r->surface->frame[dim * dim * i + dim * a + c] *
-                                r->now.rc[dim * i + a];
-    }
+    reaction[i] = r->body.fixed[i] ? reaction[i] - r->now.F[i] : 0.0;
+  if (r->nodes.n > 0) surface_spread(r->surface, -1.0, r->now.rc, reaction);
+  for (size_t i = 0; i < r->n_dof; ++i)
+    if (!r->body.fixed[i]) reaction[i] = 0.0;
   timer_leave(STAGE_REACTION);
 }
 

@@ -94,7 +94,7 @@ static status test_start(run *r, start_report *s) {
                           .uc = r->old.uc,
                           .given = r->problem.given,
                           .load = largest};
-  start_test(&in, r->old.rc, r->old.reaction, s);
+  TRY(start_test(&in, r->old.rc, r->old.reaction, s));
   TRY(effects_initial(r));
 done:
   timer_leave(effect_stage(&initial_state_effect));

@@ -60,49 +60,30 @@ done:
   return st;
 }
 
-/* a = frame u, and the forces dual to it: r = basis' force (equal for an
- * orthonormal frame). Brings the old state into the frames of a new surface. */
-static void old_state_to_frames(run *r, const double *force) {
-  const contact_surface *s = r->surface;
-  int dim = s->dim;
-  for (int i = 0; i < s->n; ++i)
-    for (int a = 0; a < dim; ++a) {
-      double u = 0.0, rc = 0.0;
-      for (int c = 0; c < dim; ++c) {
-        size_t dof = (size_t)(dim * s->node_id[i] + c);
-        u += s->frame[dim * dim * i + dim * a + c] * r->old.u[dof];
-        rc += s->basis[dim * dim * i + dim * a + c] * force[dof];
-      }
-      r->old.uc[dim * i + a] = u;
-      r->old.rc[dim * i + a] = rc;
-    }
-}
-
-/* Contact forces of the old surface in global components, [dim*n_node]. */
-static void forces_to_global(const run *r, double *force) {
-  const contact_surface *s = r->surface;
-  if (s == NULL) return;
-  int dim = s->dim;
-  for (int i = 0; i < s->n; ++i)
-    for (int c = 0; c < dim; ++c)
-      for (int a = 0; a < dim; ++a)
-        force[dim * s->node_id[i] + c] +=
-            s->frame[dim * dim * i + dim * a + c] * r->old.rc[dim * i + a];
-}
-
 /* The force of a node that supports take out of the contact goes to them. */
 static void leave_forces(run *r, double *force) {
   int dim = r->msh->dim;
+  if (r->surface->master != NULL)
+    surface_spread(r->surface, -1.0, r->old.rc, force);
   for (int i = 0; i < r->nodes.n; ++i)
     for (int c = 0; c < dim; ++c) force[dim * r->surface->node_id[i] + c] = 0.0;
   for (size_t k = 0; k < r->n_dof; ++k) r->old.reaction[k] += force[k];
+}
+
+/* Brings the old state into the frames of a new surface: u_c = frame u, and the
+ * forces dual to it, r = basis' force (equal for an orthonormal frame). */
+static status old_state_to_frames(run *r, double *force) {
+  surface_relative(r->surface, r->old.u, r->old.uc);
+  PASS(surface_forces(r->surface, r->msh->n_node, force, r->old.rc));
+  leave_forces(r, force);
+  return OK;
 }
 
 status run_build_surface(run *r) {
   status st = OK;
   double *force = NULL;
   NEW(force, r->n_dof);
-  forces_to_global(r, force);
+  if (r->surface != NULL) surface_spread(r->surface, 1.0, r->old.rc, force);
   run_free_surface(r);
   timer_enter(STAGE_SURFACE);
   node_bits(r);
@@ -116,8 +97,7 @@ status run_build_surface(run *r) {
   r->nodes.n_row = r->nodes.rows * r->nodes.n;
   TRY(new_contact_arrays(r));
   TRY(run_room_for_part(r));
-  old_state_to_frames(r, force);
-  leave_forces(r, force);
+  TRY(old_state_to_frames(r, force));
   TRY(surface_gap(r->surface, &r->faces.input, r->old.t, r->problem.gap,
                   r->problem.side_gap));
 done:

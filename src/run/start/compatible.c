@@ -3,6 +3,8 @@
  */
 #include "run/start/start.h"
 
+#include "base/memory.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -45,17 +47,12 @@ static void add_defect(start_report *report, int node_id, double size,
 
 /* Contact forces of the start: r = basis' (K u - F); a held unknown has none,
  * its force is the support's. */
-static void find_contact_forces(const start_input *in, double *rc) {
+static status find_contact_forces(const start_input *in, double *rc) {
   const contact_surface *s = in->surface;
-  int dim = s->dim;
-  for (int i = 0; i < s->n; ++i)
-    for (int a = 0; a < dim; ++a) {
-      double r = 0.0;
-      for (int c = 0; c < dim; ++c)
-        r += s->basis[dim * dim * i + dim * a + c] *
-             in->R[dim * s->node_id[i] + c];
-      rc[dim * i + a] = s->held[dim * i + a] ? 0.0 : r;
-    }
+  PASS(surface_forces(s, in->mesh->n_node, in->R, rc));
+  for (int k = 0; k < s->dim * s->n; ++k)
+    if (s->held[k]) rc[k] = 0.0;
+  return OK;
 }
 
 /* Remainder of K u - F at each component: free ones must have none. */
@@ -64,11 +61,7 @@ static void test_balance(const start_input *in, const double *rc,
   int dim = in->mesh->dim;
   size_t n_dof = (size_t)dim * (size_t)in->mesh->n_node;
   memcpy(reaction, in->R, n_dof * sizeof *reaction);
-  for (int i = 0; in->surface != NULL && i < in->surface->n; ++i)
-    for (int c = 0; c < dim; ++c)
-      for (int a = 0; a < dim; ++a)
-        reaction[dim * in->surface->node_id[i] + c] -=
-            in->surface->frame[dim * dim * i + dim * a + c] * rc[dim * i + a];
+  if (in->surface != NULL) surface_spread(in->surface, -1.0, rc, reaction);
   for (size_t k = 0; k < n_dof; ++k) {
     int node_id = (int)(k / (size_t)dim);
     if (in->fixed[k]) {
@@ -128,10 +121,10 @@ static void test_contact(const start_input *in, const double *rc,
   }
 }
 
-void start_test(const start_input *in, double *rc, double *reaction,
-                start_report *report) {
+status start_test(const start_input *in, double *rc, double *reaction,
+                  start_report *report) {
   int n = in->mesh->n_node;
-  if (in->surface != NULL) find_contact_forces(in, rc);
+  if (in->surface != NULL) PASS(find_contact_forces(in, rc));
   test_balance(in, rc, reaction, report);
   if (in->surface != NULL) test_contact(in, rc, report);
   report->scale = in->load;
@@ -144,4 +137,5 @@ void start_test(const start_input *in, double *rc, double *reaction,
   report->ratio = report->scale > 0.0 ? report->worst / report->scale : 0.0;
   for (int i = 0; i < n; ++i)
     report->n_bad += report->defect[i] > start_tolerance * report->scale;
+  return OK;
 }

@@ -62,7 +62,7 @@ void start_stiffness(const domain *d, double *diagonal);
 /* Compatibility: fills rc[m] with the contact forces of the start (N),
  * reaction[dim*n_node] with those of the supports, and the report, whose arrays
  * are there. Either array is NULL without contact or use. */
-void start_test(const start_input *in, double *rc, double *reaction,
+status start_test(const start_input *in, double *rc, double *reaction,
                 start_report *report);
 
 #endif
