@@ -18,7 +18,8 @@ static const char *const results[] = {
     "xdmf",          "xdmf.tmp",     "json",
     "json.tmp",      "rst.h5",       "lock",
     "rst.h5.tmp",    "rst.old.h5",   "body.xdmf",
-    "body.xdmf.tmp", "contact.xdmf", "contact.xdmf.tmp"};
+    "body.xdmf.tmp", "contact.xdmf", "contact.xdmf.tmp",
+    "rst.inc"};
 
 static const char middle[] = "_condensed_";
 

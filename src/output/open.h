@@ -6,6 +6,23 @@
 
 #include "output/writers.h"
 
+#include <stdint.h>
+
+/* The end of JOB.rst.inc: bytes, and a checksum of all of them. */
+typedef struct saved_end {
+  long length;
+  uint64_t checksum;
+} saved_end;
+
+/* The summaries of the increments in that file (saved.c). */
+typedef struct saved_increments {
+  text_file file;
+  int n; /* increments in it */
+  saved_end end;
+  char *read; /* what stood in it when the run went on: reasons in
+                 run.increments point into it */
+} saved_increments;
+
 struct output {
   const model *m;
   const mesh *msh;
@@ -24,11 +41,7 @@ struct output {
   int n_done;                /* increments since then */
   int quiet;                 /* 1: the first facts stand in the listing
                                 already */
-  increment_summary *kept;   /* [n_increment] of output_keep */
-  solution_facts *facts;     /* all their solutions */
-  char *whys;                /* lines: their reasons */
-  char *reasons;             /* of the restart file: some of run.increments
-                                point to them */
+  saved_increments saved;
 };
 
 job job_of(const output *o); /* borrows from o */
@@ -40,12 +53,19 @@ status output_show_records(output *o, int all);
 /* Lengths of the text files, bytes, -1: there is none; rows of JOB.h5. */
 typedef struct file_ends {
   long lst, sta, cvg, dat;
+  saved_end increments;
   int has_h5;
   hdf5_count h5;
 } file_ends;
 
 /* summary.c: an increment that has ended. */
 status output_remember(output *o, const state *s);
+/* saved.c: append the summaries of all increments since the last call to
+ * JOB.rst.inc, which the first call makes, and synchronise it. ERR_FILE. */
+status saved_append(output *o, saved_end *end);
+/* o->run.increments from a file with that beginning; what follows is cut.
+ * ERR_FILE: it is damaged. */
+status saved_read(output *o, const saved_end *end);
 /* Data saved by output_keep, and the ends of the files then. */
 status output_read(output *o, archive *a, file_ends *ends);
 

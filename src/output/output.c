@@ -23,8 +23,7 @@ static void release(output *o) {
     RELEASE(o->run.increments[i].solutions,
             (void *)o->run.increments[i].theorems.contacts);
   }
-  RELEASE(o->run.ends, o->run.increments, o->kept, o->facts, o->whys,
-          o->reasons, o);
+  RELEASE(o->run.ends, o->run.increments, o->saved.read, o);
 }
 
 /* Files of an earlier run must not be taken for results of this one. */
@@ -63,9 +62,9 @@ static status open_hdf5(output *o, const hdf5_count *before) {
 
 static status open_new(output *o) {
   job j = job_of(o);
-  static const char *const old[] = {"h5",          "xdmf",   "json",
-                                    "body.xdmf",   "rst.h5", "rst.old.h5",
-                                    "contact.xdmf"};
+  static const char *const old[] = {"h5",           "xdmf",   "json",
+                                    "body.xdmf",    "rst.h5", "rst.old.h5",
+                                    "contact.xdmf", "rst.inc"};
   PASS(open_text(o, "lst", -1, &o->lst));
   PASS(open_text(o, "sta", -1, &o->sta));
   PASS(open_text(o, "cvg", -1, &o->cvg));
@@ -124,6 +123,7 @@ status output_open(const model *m, const mesh *msh, const output_options *opt,
   *out = o;
 done:
   if (st != OK && o != NULL) {
+    text_close(&o->saved.file);
     text_close(&o->lst);
     text_close(&o->sta);
     text_close(&o->cvg);
@@ -190,6 +190,7 @@ status output_close(output *o, status run, int unsettled) {
   first_of(&kept, message, sizeof message, write_last(o));
   first_of(&kept, message, sizeof message, hdf5_close(o->h5, kept == OK));
   first_of(&kept, message, sizeof message, tabular_close(o->dat));
+  first_of(&kept, message, sizeof message, text_close(&o->saved.file));
   first_of(&kept, message, sizeof message, text_close(&o->cvg));
   first_of(&kept, message, sizeof message, text_close(&o->sta));
   o->run.message = message;

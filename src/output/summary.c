@@ -1,6 +1,6 @@
 /*
  * The summary of the run: data of each increment for the end of the listing and
- * JOB.json, saved in an archive and read back.
+ * JOB.json, saved for a restart and read back.
  */
 #include "output/open.h"
 
@@ -102,70 +102,6 @@ status output_remember(output *o, const state *s) {
   return OK;
 }
 
-/* Number of a reason among the lines of o->whys, from 1; a new one is added;
- * 0: no reason. */
-static size_t why_no(output *o, size_t *used, const char *why) {
-  size_t no = 1, length = why == NULL ? 0 : strlen(why);
-  if (why == NULL) return 0;
-  for (char *line = o->whys; *line != '\0'; ++no) {
-    char *end = strchr(line, '\n');
-    if ((size_t)(end - line) == length && memcmp(line, why, length) == 0)
-      return no;
-    line = end + 1;
-  }
-  memcpy(o->whys + *used, why, length);
-  o->whys[*used + length] = '\n';
-  *used += length + 1;
-  return no;
-}
-
-static size_t room_for(const char *why) {
-  return why == NULL ? 0 : strlen(why) + 1;
-}
-
-/* A pointer in a file: the number of what it points to. */
-static const char *as_pointer(size_t no) { return (const char *)no; }
-
-/* They differ from run to run. */
-static void leave_out_cpu(increment_summary *s) {
-  s->error.cpu = s->mesh_error.cpu = s->time_error.cpu = 0.0;
-  s->exact.cpu = s->balance.saved_cpu = 0.0;
-}
-
-/* The increments with numbers in the place of pointers. */
-static status copy_increments(output *o, size_t *used, int *n_fact) {
-  const run_summary *run = &o->run;
-  size_t room = 1;
-  RELEASE(o->kept, o->facts, o->whys);
-  o->kept = NULL;
-  o->facts = NULL;
-  o->whys = NULL;
-  for (int i = 0; i < run->n_increment; ++i) {
-    const increment_summary *s = &run->increments[i];
-    room += room_for(s->error.why) + room_for(s->mesh_error.why) +
-            room_for(s->time_error.why);
-    *n_fact += s->n_solution;
-  }
-  PASS_NEW(o->kept, run->n_increment);
-  PASS_NEW(o->facts, *n_fact);
-  PASS_NEW(o->whys, room);
-  *n_fact = 0;
-  for (int i = 0; i < run->n_increment; ++i) {
-    increment_summary *s = &o->kept[i];
-    *s = run->increments[i];
-    s->error.why = as_pointer(why_no(o, used, s->error.why));
-    s->mesh_error.why = as_pointer(why_no(o, used, s->mesh_error.why));
-    s->time_error.why = as_pointer(why_no(o, used, s->time_error.why));
-    for (int k = 0; k < s->n_solution; ++k)
-      o->facts[(*n_fact)++] = s->solutions[k];
-    s->solutions = NULL;
-    s->theorems =
-        (theorems_report){0}; /* such a run starts again (restart.c) */
-    if (o->o.no_timing) leave_out_cpu(s);
-  }
-  return OK;
-}
-
 /* All but the name of the ordering. */
 static status keep_setup(setup_facts *f, archive *a) {
   condense_info *i = &f->info;
@@ -208,17 +144,6 @@ static status keep_ends(output *o, archive *a) {
                        steps * job_end_size(o->m));
 }
 
-static status keep_increments(output *o, archive *a) {
-  size_t used = 0, n = (size_t)o->run.n_increment;
-  int n_fact = 0;
-  PASS(copy_increments(o, &used, &n_fact));
-  PASS(archive_bytes(a, "summary", o->kept, n * sizeof *o->kept));
-  PASS(keep_ends(o, a));
-  PASS(archive_bytes(a, "whys", o->whys, used));
-  return archive_bytes(a, "solutions", o->facts,
-                       (size_t)n_fact * sizeof *o->facts);
-}
-
 status output_keep(output *o, archive *a) {
   status st = OK;
   file_ends ends;
@@ -230,58 +155,16 @@ status output_keep(output *o, archive *a) {
   TRY(tabular_sync(o->dat, &ends.dat));
   ends.has_h5 = o->h5 != NULL;
   TRY(hdf5_sync(o->h5, &ends.h5));
+  TRY(saved_append(o, &ends.increments));
   TRY(keep_counts(o, a, &ends));
-  TRY(keep_increments(o, a));
+  TRY(keep_ends(o, a));
 done:
   archive_leave(a);
   return st;
 }
 
-/* The reason of a number; the lines are ended by NUL here. */
-static const char *why_of(const output *o, const char *as_number) {
-  size_t no = (size_t)as_number;
-  const char *line = o->reasons;
-  if (no == 0 || line == NULL) return NULL;
-  for (; no > 1 && *line != '\0'; --no) line += strlen(line) + 1;
-  return line;
-}
-
-static status read_reasons(output *o, archive *a) {
-  size_t n = archive_length(a, "whys");
-  if (n == 0) return OK;
-  PASS_NEW(o->reasons, n + 1);
-  PASS(archive_bytes(a, "whys", o->reasons, n));
-  for (size_t i = 0; i < n; ++i)
-    if (o->reasons[i] == '\n') o->reasons[i] = '\0';
-  return OK;
-}
-
-static status read_increments(output *o, archive *a) {
-  run_summary *run = &o->run;
-  size_t n = (size_t)run->n_increment, n_fact = 0, next = 0;
-  PASS_NEW(run->increments, n);
-  run->capacity = run->n_increment;
-  PASS(archive_bytes(a, "summary", run->increments,
-                     n * sizeof *run->increments));
-  PASS(keep_ends(o, a));
-  PASS(read_reasons(o, a));
-  n_fact = archive_length(a, "solutions") / sizeof *o->facts;
-  PASS_NEW(o->facts, n_fact);
-  PASS(archive_bytes(a, "solutions", o->facts, n_fact * sizeof *o->facts));
-  for (size_t i = 0; i < n; ++i) {
-    increment_summary *s = &run->increments[i];
-    s->error.why = why_of(o, s->error.why);
-    s->mesh_error.why = why_of(o, s->mesh_error.why);
-    s->time_error.why = why_of(o, s->time_error.why);
-    if (s->n_solution <= 0) continue;
-    PASS_NEW(s->solutions, s->n_solution);
-    for (int k = 0; k < s->n_solution && next < n_fact; ++k)
-      s->solutions[k] = o->facts[next++];
-  }
-  return OK;
-}
-
 status output_read(output *o, archive *a, file_ends *ends) {
   PASS(keep_counts(o, a, ends));
-  return read_increments(o, a);
+  PASS(saved_read(o, &ends->increments));
+  return keep_ends(o, a);
 }

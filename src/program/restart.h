@@ -8,7 +8,9 @@
  * exchanged rows) are saved as well (contact_solver_keep), because a new factor
  * has other last digits; matrices, surfaces and averages are made again, for
  * they depend on the deck and the mesh alone. Of the files their lengths are
- * kept: what was written after the restart file is cut and written again.
+ * kept: what was written after the restart file is cut and written again. One
+ * of them, JOB.rst.inc, has the summaries of the increments for the end of the
+ * run.
  *
  * The last two are there: JOB.rst.h5, and JOB.rst.old.h5 in case the first
  * cannot be read.

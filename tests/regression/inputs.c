@@ -88,13 +88,11 @@ static void refused(job *j, int reader, const char *name) {
 
 START_TEST(results_named_like_inputs_are_refused) {
   static const char *const names[] = {
-      "job.lst",        "job.dat",
-      "job.cvg",        "job.h5",
-      "job.h5.tmp",     "job.xdmf",
-      "job.json",       "job.xdmf.tmp",
-      "job.json.tmp",   "job.rst.h5",
-      "job.lock",       "job.rst.h5.tmp",
-      "job.rst.old.h5", "job_condensed_00007.h5"};
+      "job.lst",        "job.dat",      "job.cvg",
+      "job.h5",         "job.h5.tmp",   "job.xdmf",
+      "job.json",       "job.xdmf.tmp", "job.json.tmp",
+      "job.rst.h5",     "job.lock",     "job.rst.h5.tmp",
+      "job.rst.old.h5", "job.rst.inc",  "job_condensed_00007.h5"};
   for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
     int reader = (int)k % READERS;
     job j = begin();

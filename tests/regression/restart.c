@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const char *const nothing[] = {NULL, NULL};
 
@@ -318,8 +319,34 @@ START_TEST(restart_files_are_equal) {
   ck_assert_int_eq(job_run(&b, "--no-timing"), 0);
   ck_assert_msg(same_bytes(&a, &b, "rst.h5"), "rst.h5");
   ck_assert_msg(same_bytes(&a, &b, "rst.old.h5"), "rst.old.h5");
+  ck_assert_msg(same_bytes(&a, &b, "rst.inc"), "rst.inc");
   job_end(&a);
   job_end(&b);
+}
+END_TEST
+
+/* Bytes of a result. */
+static long bytes_of(const job *j, const char *suffix) {
+  char path[200];
+  struct stat of;
+  snprintf(path, sizeof path, "%s/%s.%s", j->dir, j->name, suffix);
+  ck_assert_msg(stat(path, &of) == 0, "%s", path);
+  return (long)of.st_size;
+}
+
+/* What is written at each increment does not grow with their number. */
+START_TEST(restart_file_does_not_grow) {
+  long whole[2], added[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = small_flat(0.4, "*RESTART\n", "SOR");
+    if (k == 1) edit(&j, "0.25, 1.", "0.01, 1.");
+    ck_assert_int_eq(job_run(&j, "--no-timing"), 0);
+    whole[k] = bytes_of(&j, "rst.h5");
+    added[k] = bytes_of(&j, "rst.inc");
+    job_end(&j);
+  }
+  ck_assert_int_eq(whole[1], whole[0]);
+  ck_assert_int_gt(added[1], 4 * added[0]);
 }
 END_TEST
 
@@ -438,6 +465,10 @@ START_TEST(damaged_files_are_refused) {
   ck_assert_ptr_nonnull(strstr(j.errors, "warning"));
   ck_assert_ptr_nonnull(strstr(j.errors, "rst.old.h5"));
   same_files(&whole, &j, "from the file before");
+  damage(&j, "rst.inc");
+  refused(&j, 4, "rst.inc is damaged");
+  job_write(&j, "block.rst.inc", "short");
+  refused(&j, 4, "rst.inc is shorter");
   damage(&j, "rst.h5");
   damage(&j, "rst.old.h5");
   refused(&j, 4, "damaged");
@@ -455,5 +486,6 @@ UNIT_MAIN("restart", what_is_read_is_written_again,
           adapted_increments_go_on, killed_twice_goes_on,
           chosen_tolerance_goes_on, known_rate_goes_on,
           largest_loads_and_energies_go_on, run_without_a_file_begins_anew,
-          files_are_in_the_seal, restart_files_are_equal, some_jobs_start_anew,
+          files_are_in_the_seal, restart_files_are_equal,
+          restart_file_does_not_grow, some_jobs_start_anew,
           damaged_files_are_refused)
