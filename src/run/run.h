@@ -153,6 +153,8 @@ typedef struct error_state {
   double left;              /* -, of an unloaded body: share of the largest
                                energy so far that its errors are relative to; 0:
                                its state is rounding */
+  int strained;             /* 1: supports of r->now strain a body, looked at
+                               where motions are far above strains */
   int evaluated;            /* 1: the errors of mesh and solver are those of
                                r->now */
 } error_state;

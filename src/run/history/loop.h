@@ -41,6 +41,9 @@ status dense_show(run *r, int increment_no);
 
 /* The loads now over the largest of the step, at most 1. */
 double share_of_step(const run *r);
+/* strained.c: 1: the supports of a body strain it, 0: those of each body move
+ * rigidly, to the rounding of the data. ERR_MEMORY. */
+status supports_strain(const run *r, int *strained);
 /* rounding.c: the rounding error of r->now, whose energies are known.
  * ERR_SINGULAR: no correct digit. */
 status rounding_find(run *r);
@@ -49,8 +52,9 @@ status rounding_find(run *r);
 status rounding_hidden(const run *r, double *part);
 /* 1: the strains of the body are no more than the rounding of its motion. */
 int rounding_hides_strains(const run *r);
-/* 1: no load acts on it either, and contact forces are no more than that; or
- * they carry the load straight, and strains are rounding of both. */
+/* 1: no load acts on it either, contact forces are no more than that, and its
+ * supports do not strain it; or contact carries the load straight, and strains
+ * are rounding of both or left by the solver. After rounding_find. */
 int rounding_is_all(const run *r);
 
 /* estimate.c: errors at r->now into r->errors.error, mesh_error, as required.

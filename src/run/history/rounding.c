@@ -24,10 +24,9 @@ static const double LAST_DIGIT = 0.1; /* -, error without a correct digit */
 static const double IN_DOUBT = 0.01;
 /* -, displacements and forces in u and A u, by rounding */
 static const double CARRIED = 4 * DBL_EPSILON;
-/* -, work of creep, or forces times motion, over the strain energy */
+/* -, work of creep over the strain energy; motion of the body, or forces that
+ * contact carries at once, over those of the strains */
 static const double FAR = 1e6;
-static const double REST =
-    1e-8; /* -, what a solver leaves of forces, at most */
 
 /* share: of the solution in one that the loss counts against. */
 static int leaves_none(const rounding_loss *loss, double share,
@@ -58,6 +57,7 @@ typedef struct misfit {
   size_t n_stress;
   double *stress;   /* [n_stress] of the answer, then of w alone, Pa */
   double *rest, *w; /* [n_dof] N; m */
+  double *rc;       /* [m of the contact problem] contact forces, N */
 } misfit;
 
 static status misfit_new(const run *r, misfit *x) {
@@ -67,6 +67,7 @@ static status misfit_new(const run *r, misfit *x) {
   NEW(x->stress, x->n_stress);
   NEW(x->rest, r->n_dof);
   NEW(x->w, r->n_dof);
+  NEW(x->rc, r->problem.cp.m);
 done:
   return st;
 }
@@ -75,6 +76,7 @@ static void misfit_free(misfit *x) {
   memory_free(x->stress);
   memory_free(x->rest);
   memory_free(x->w);
+  memory_free(x->rc);
 }
 
 /* The stresses of the displacement w alone, over those of the solution. */
@@ -98,31 +100,35 @@ int rounding_hides_strains(const run *r) {
          r->msh->n_node * condensed_stiffest(r->c) * u * u;
 }
 
+static double largest_force(const run *r) {
+  return fmax(largest_entry(r->n_dof, r->now.F),
+              largest_entry((size_t)r->nodes.n_c, r->now.rc));
+}
+
 /* 1: contact forces and supports carry the loads straight, and strains are no
- * more than the rounding of both, or the residual of the solver. */
+ * more than the rounding of both, or than what the solver has left at the
+ * contact nodes. */
 static int forces_hide_strains(const run *r) {
-  const double force = fmax(CARRIED, fmin(r->solving.tol, REST)) *
-                       fmax(largest_entry(r->n_dof, r->now.F),
-                            largest_entry((size_t)r->nodes.n_c, r->now.rc));
+  const double force = largest_force(r), rounding = CARRIED * force,
+               left = r->solving.report.residual * force;
   return r->now.energy.strain <=
-         r->msh->n_node * force * force / condensed_stiffest(r->c);
+         (r->msh->n_node * rounding * rounding + r->nodes.n * left * left) /
+             condensed_stiffest(r->c);
+}
+
+/* 1: no force acts on the body, and its supports do not strain it. */
+static int moves_alone(const run *r) {
+  return !r->errors.strained && increment_free_load(r, r->now.F) == 0.0 &&
+         largest_entry((size_t)r->nodes.n_c, r->now.rc) == 0.0;
 }
 
 int rounding_is_all(const run *r) {
   if (forces_hide_strains(r)) return 1;
-  if (increment_free_load(r, r->now.F) > 0.0) return 0;
+  if (r->strains.eigen.n == 0 && moves_alone(r)) return 1;
+  if (r->errors.strained || increment_free_load(r, r->now.F) > 0.0) return 0;
   return largest_entry((size_t)r->nodes.n_c, r->now.rc) <=
              condensed_stiffest(r->c) * lost(r) &&
          rounding_hides_strains(r);
-}
-
-/* A body in free motion, without load and contact force: its stresses, which
- * are rounding, are no loss. */
-static int moves_alone(const run *r) {
-  if (rounding_is_all(r)) return 1;
-  return r->errors.rounding.u < 1e-10 &&
-         increment_free_load(r, r->now.F) == 0.0 &&
-         largest_entry((size_t)r->nodes.n_c, r->now.rc) == 0.0;
 }
 
 /* Residual of equilibrium without contact forces. */
@@ -132,6 +138,24 @@ static void find_rest(run *r, misfit *x) {
   for (size_t i = 0; i < r->n_dof; ++i) x->rest[i] = r->now.F[i] - x->rest[i];
   r->now.peak_stress =
       fmax(r->now.peak_stress, largest_entry(x->n_stress, x->stress));
+}
+
+/* The contact forces of the answer. Where they differ from those of its
+ * displacements by more than rounding, the solver has left that, and the latter
+ * are taken. */
+static status find_forces(const run *r, misfit *x) {
+  const contact_problem *cp = &r->problem.cp;
+  const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);
+  OWNED double *raw = NULL, *rounding = NULL;
+  PASS_NEW(raw, cp->m);
+  PASS_NEW(rounding, cp->n);
+  contact_product(cp->m, cp->A, u, raw);
+  contact_roundings(cp, u, rc, rounding);
+  for (int q = 0; q < cp->m; ++q) {
+    const double by_u = raw[q] - cp->f[q];
+    x->rc[q] = fabs(rc[q] - by_u) > rounding[q / cp->dim] ? by_u : rc[q];
+  }
+  return OK;
 }
 
 /* The loss by the error w of the displacements. */
@@ -170,8 +194,7 @@ static status find_adjacent_contact(run *r, misfit *x) {
   contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
                    run_rows(r, 1, r->now.rc), touch);
   find_held(r, touch, held);
-  TRY(condensed_misfit_held(x->c, x->rest, run_rows(r, 1, r->now.rc), held,
-                            x->w, &square));
+  TRY(condensed_misfit_held(x->c, x->rest, x->rc, held, x->w, &square));
   if (square < HUGE_VAL) take_loss(r, x, square);
 done:
   memory_free(touch);
@@ -186,6 +209,17 @@ double share_of_step(const run *r) {
   return now < r->loads.largest ? now / r->loads.largest : 1.0;
 }
 
+/* Where strains are rounding alone they are no loss, nor are displacements
+ * right to the tolerance of the solver, or those that contact takes from the
+ * loads at once. */
+static void forget_strains(run *r) {
+  rounding_loss *loss = &r->errors.rounding;
+  const int right = loss->u <= r->solving.tol;
+  if (!rounding_is_all(r) && !(right && moves_alone(r))) return;
+  loss->energy = loss->stress = loss->norm = 0.0;
+  if (right || forces_hide_strains(r)) *loss = (rounding_loss){0};
+}
+
 static status find(run *r) {
   status st = OK;
   misfit x = {0};
@@ -193,11 +227,12 @@ static status find(run *r) {
   double square = 0.0;
   TRY(misfit_new(r, &x));
   find_rest(r, &x);
-  TRY(condensed_misfit(x.c, x.rest, run_rows(r, 1, r->now.rc), x.w, &square));
+  TRY(find_forces(r, &x));
+  TRY(condensed_misfit(x.c, x.rest, x.rc, x.w, &square));
   take_loss(r, &x, square);
   if (leaves_none(&r->errors.rounding, 1.0, x.c) && r->nodes.n_row > 0)
     TRY(find_adjacent_contact(r, &x));
-  if (moves_alone(r)) r->errors.rounding = (rounding_loss){0};
+  forget_strains(r);
   TRY(check(r, share, x.c));
 done:
   misfit_free(&x);
@@ -222,12 +257,12 @@ done:
   return st;
 }
 
-/* Largest force times largest motion, J: an upper bound of the work of one of
- * them. */
+/* What the motion would store as a strain of the stiffest element, or the
+ * forces there, whichever is larger, J. */
 static double farthest_work(const run *r) {
-  return largest_entry(r->n_dof, r->now.u) *
-         fmax(largest_entry(r->n_dof, r->now.F),
-              largest_entry((size_t)r->nodes.n_c, r->now.rc));
+  const double k = condensed_stiffest(r->c), force = largest_force(r),
+               u = largest_entry(r->n_dof, r->now.u);
+  return fmax(k * u * u, k > 0.0 ? force / k * force : 0.0);
 }
 
 /* Largest stress next to each contact node times its area, own[n], N. */
@@ -276,17 +311,19 @@ done:
 static int is_doubtful(const run *r) {
   const double far = FAR * r->now.peak_energy;
   if (condensed_costs_digits(r->c)) return 1;
-  return fabs(r->now.energy.inelastic) > far || farthest_work(r) > far;
+  return fabs(r->now.energy.inelastic) > far || farthest_work(r) > FAR * far;
 }
 
 status rounding_find(run *r) {
   status st = OK;
   r->errors.rounding = (rounding_loss){0};
+  r->errors.strained = 0;
   r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
   r->now.peak_stress = r->old.peak_stress;
   if (r->solving.report.outcome <= 0) return OK;
   TRY(check_touch(r));
   if (!is_doubtful(r)) return OK;
+  TRY(supports_strain(r, &r->errors.strained));
   timer_enter(STAGE_RECOVERY);
   st = find(r);
   timer_leave(STAGE_RECOVERY);
