@@ -5,7 +5,7 @@
 #ifndef PROTIS_CONTACT_SURFACE_H
 #define PROTIS_CONTACT_SURFACE_H
 
-#include "contact/links.h"
+#include "contact/mortar/links.h"
 #include "contact/obstacle.h"
 #include "mesh/mesh.h"
 

@@ -118,14 +118,39 @@ static int is_near(int dim, const double *box, const double *x, double r) {
   return sum < r * r;
 }
 
-int box_tree_near(const box_tree *t, const double *x, double r, int *found) {
+static int is_along(int dim, const double *box, const box_beam *beam) {
+  for (int k = 0; k < beam->n_slab; ++k) {
+    double least = 0.0, most = 0.0;
+    for (int c = 0; c < dim; ++c) {
+      const double a = beam->axis[k][c];
+      least += a * box[a > 0 ? c : dim + c];
+      most += a * box[a > 0 ? dim + c : c];
+    }
+    if (least > beam->high[k] || most < beam->low[k]) return 0;
+  }
+  return 1;
+}
+
+/* What is searched for: a ball, or a beam if it is not NULL. */
+typedef struct query {
+  const double *x;
+  double r;
+  const box_beam *beam;
+} query;
+
+static int is_wanted(int dim, const double *box, const query *q) {
+  return q->beam != NULL ? is_along(dim, box, q->beam)
+                         : is_near(dim, box, q->x, q->r);
+}
+
+static int search(const box_tree *t, const query *q, int *found) {
   size_t size = 2 * (size_t)t->dim;
   range open[DEEPEST + 2];
   int n_open = 0, n = 0;
   if (t->n > 0) open[n_open++] = (range){0, 0, t->n};
   while (n_open > 0) {
     range a = open[--n_open];
-    if (!is_near(t->dim, t->box + size * a.node, x, r)) continue;
+    if (!is_wanted(t->dim, t->box + size * a.node, q)) continue;
     if (a.count > LEAF) {
       int half = a.count / 2;
       open[n_open++] = (range){2 * a.node + 1, a.first, half};
@@ -134,8 +159,16 @@ int box_tree_near(const box_tree *t, const double *x, double r, int *found) {
     }
     for (int i = 0; i < a.count; ++i) {
       int item = t->item[a.first + i];
-      if (is_near(t->dim, t->of + size * (size_t)item, x, r)) found[n++] = item;
+      if (is_wanted(t->dim, t->of + size * (size_t)item, q)) found[n++] = item;
     }
   }
   return n;
+}
+
+int box_tree_near(const box_tree *t, const double *x, double r, int *found) {
+  return search(t, &(query){.x = x, .r = r}, found);
+}
+
+int box_tree_along(const box_tree *t, const box_beam *beam, int *found) {
+  return search(t, &(query){.beam = beam}, found);
 }

@@ -1,7 +1,6 @@
 /*
- * Search for the items (faces, edges, points) near a point: a balanced tree of
- * bounding boxes, which serves items of any size. Inside src/contact/average
- * only.
+ * Search for the items (faces, edges, points) near a point or along a line: a
+ * balanced tree of bounding boxes, which serves items of any size.
  */
 #ifndef PROTIS_AVERAGE_BOX_TREE_H
 #define PROTIS_AVERAGE_BOX_TREE_H
@@ -21,5 +20,16 @@ status box_tree_new(int dim, int n, int corners, const double *x,
 void box_tree_free(box_tree *t); /* accepts all-zero */
 /* The items whose boxes are nearer than r to x: found[n], their number. */
 int box_tree_near(const box_tree *t, const double *x, double r, int *found);
+
+/* The points y with low <= axis.y <= high for each of n_slab directions: a
+ * prism along one direction if the others span the plane across it. */
+typedef struct box_beam {
+  int n_slab; /* up to 3 */
+  double axis[3][3];
+  double low[3], high[3]; /* length times that of the axis */
+} box_beam;
+
+/* The items whose boxes meet each slab: found[n], their number. */
+int box_tree_along(const box_tree *t, const box_beam *beam, int *found);
 
 #endif

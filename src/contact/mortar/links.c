@@ -1,4 +1,4 @@
-#include "contact/links.h"
+#include "contact/mortar/links.h"
 
 #include "base/memory.h"
 

@@ -6,8 +6,8 @@
  * a component sum to 1, or all are 0: then w_c = F_c . u(node).
  * Mortar method with dual basis: Wohlmuth, Acta Numerica 20 (2011).
  */
-#ifndef PROTIS_CONTACT_LINKS_H
-#define PROTIS_CONTACT_LINKS_H
+#ifndef PROTIS_MORTAR_LINKS_H
+#define PROTIS_MORTAR_LINKS_H
 
 #include <stddef.h>
 

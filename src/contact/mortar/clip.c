@@ -1,0 +1,202 @@
+/*
+ * A convex polygon is cut by one line after another (Sutherland, Hodgman, Comm.
+ * ACM 17, 1974) and parted into triangles from its first corner.
+ */
+#include "contact/mortar/clip.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST = 8 }; /* corners of a polygon */
+
+typedef struct polygon {
+  int n;
+  double at[MOST][2];
+} polygon;
+
+static double dot(int dim, const double *a, const double *b) {
+  double sum = 0.0;
+  for (int c = 0; c < dim; ++c) sum += a[c] * b[c];
+  return sum;
+}
+
+static void cross(const double *a, const double *b, double *c) {
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Twice the area of a, b, c in the plane, > 0 if counterclockwise. */
+static double turn(const double *a, const double *b, const double *c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+static double *node_place(int dim, const double *x, int node, double *at) {
+  memcpy(at, x + (size_t)dim * (size_t)node, (size_t)dim * sizeof *at);
+  return at;
+}
+
+/* Coordinates of x in the plane. */
+static void into_plane(const facet *f, const double *x, double *y) {
+  double d[3];
+  for (int c = 0; c < f->dim; ++c) d[c] = x[c] - f->origin[c];
+  for (int a = 0; a < f->dim - 1; ++a) y[a] = dot(f->dim, f->axis[a], d);
+}
+
+static int scale_to_unit(int dim, double *v) {
+  const double length = sqrt(dot(dim, v, v));
+  for (int c = 0; c < dim; ++c) v[c] /= length;
+  return length > 0 ? 0 : -1;
+}
+
+/* Frame from the edges u, v of a triangle. */
+static int frame_of_triangle(facet *f, const double *u, const double *v) {
+  static const double flat = 1e-14; /* area over the square of the longest edge:
+                                       rounding */
+  double w[3];
+  cross(u, v, f->normal);
+  for (int c = 0; c < 3; ++c) w[c] = v[c] - u[c];
+  const double longest = fmax(fmax(dot(3, u, u), dot(3, v, v)), dot(3, w, w));
+  f->measure = 0.5 * sqrt(dot(3, f->normal, f->normal));
+  if (!(f->measure > flat * longest)) return -1;
+  memcpy(f->axis[0], u, sizeof w);
+  if (scale_to_unit(3, f->axis[0]) != 0) return -1;
+  if (scale_to_unit(3, f->normal) != 0) return -1;
+  cross(f->normal, f->axis[0], f->axis[1]);
+  return 0;
+}
+
+int facet_set(int dim, const int *node, const double *x, facet *f) {
+  double p[3], edge[2][3];
+  f->dim = dim;
+  node_place(dim, x, node[0], f->origin);
+  for (int k = 1; k < dim; ++k) {
+    node_place(dim, x, node[k], p);
+    for (int c = 0; c < dim; ++c) edge[k - 1][c] = p[c] - f->origin[c];
+  }
+  if (dim == 2) {
+    f->measure = hypot(edge[0][0], edge[0][1]);
+    if (!(f->measure > 0)) return -1;
+    for (int c = 0; c < 2; ++c) f->axis[0][c] = edge[0][c] / f->measure;
+    f->normal[0] = f->axis[0][1];
+    f->normal[1] = -f->axis[0][0];
+  } else if (frame_of_triangle(f, edge[0], edge[1]) != 0) {
+    return -1;
+  }
+  for (int k = 0; k < dim; ++k)
+    into_plane(f, node_place(dim, x, node[k], p), f->in_plane.at[k]);
+  return 0;
+}
+
+void facet_project(const facet *f, const int *node, const double *x,
+                   shadow *s) {
+  for (int k = 0; k < f->dim; ++k) {
+    double p[3];
+    into_plane(f, node_place(f->dim, x, node[k], p), s->in_plane.at[k]);
+    for (int c = 0; c < f->dim; ++c) p[c] -= f->origin[c];
+    s->height[k] = dot(f->dim, f->normal, p);
+  }
+  s->measure = cell_measure(f->dim, &s->in_plane);
+}
+
+double cell_measure(int dim, const cell *c) {
+  return dim == 2 ? fabs(c->at[1][0] - c->at[0][0])
+                  : 0.5 * fabs(turn(c->at[0], c->at[1], c->at[2]));
+}
+
+void cell_functions(int dim, const cell *c, const double *y, double *phi) {
+  if (dim == 2) {
+    const double length = c->at[1][0] - c->at[0][0];
+    phi[0] = (c->at[1][0] - y[0]) / length;
+    phi[1] = (y[0] - c->at[0][0]) / length;
+    return;
+  }
+  const double twice = turn(c->at[0], c->at[1], c->at[2]);
+  for (int k = 0; k < 3; ++k)
+    phi[k] = turn(c->at[(k + 1) % 3], c->at[(k + 2) % 3], y) / twice;
+}
+
+/* Split p by the line a, b: what lies to its left, to its right. */
+static void split(const polygon *p, const double *a, const double *b,
+                  polygon *left, polygon *right) {
+  left->n = right->n = 0;
+  for (int i = 0; i < p->n; ++i) {
+    const double *v = p->at[i], *w = p->at[(i + 1) % p->n];
+    const double dv = turn(a, b, v), dw = turn(a, b, w);
+    if (dv >= 0) memcpy(left->at[left->n++], v, sizeof left->at[0]);
+    if (dv <= 0) memcpy(right->at[right->n++], v, sizeof right->at[0]);
+    if ((dv > 0 && dw < 0) || (dv < 0 && dw > 0)) {
+      const double s = dv / (dv - dw);
+      double *l = left->at[left->n++], *r = right->at[right->n++];
+      for (int c = 0; c < 2; ++c) l[c] = r[c] = v[c] + s * (w[c] - v[c]);
+    }
+  }
+}
+
+static int triangles_of(const polygon *p, cell *out) {
+  for (int i = 2; i < p->n; ++i) {
+    memcpy(out[i - 2].at[0], p->at[0], sizeof p->at[0]);
+    memcpy(out[i - 2].at[1], p->at[i - 1], sizeof p->at[0]);
+    memcpy(out[i - 2].at[2], p->at[i], sizeof p->at[0]);
+  }
+  return p->n > 2 ? p->n - 2 : 0;
+}
+
+static polygon polygon_of(const cell *c) {
+  polygon p = {.n = 3};
+  memcpy(p.at, c->at, sizeof c->at);
+  return p;
+}
+
+/* Corners a, b of side k of b so that the cell is on its left. */
+static void side_of(const cell *c, int k, const double **a, const double **b) {
+  const int next = (k + 1) % 3;
+  const int is_left = turn(c->at[0], c->at[1], c->at[2]) > 0;
+  *a = c->at[is_left ? k : next];
+  *b = c->at[is_left ? next : k];
+}
+
+static int add_segment(double low, double high, cell *out) {
+  if (!(high > low)) return 0;
+  out->at[0][0] = low;
+  out->at[1][0] = high;
+  return 1;
+}
+
+static double low_end(const cell *c) { return fmin(c->at[0][0], c->at[1][0]); }
+
+static double high_end(const cell *c) { return fmax(c->at[0][0], c->at[1][0]); }
+
+int cell_common(int dim, const cell *a, const cell *b, cell *out) {
+  if (dim == 2)
+    return add_segment(fmax(low_end(a), low_end(b)),
+                       fmin(high_end(a), high_end(b)), out);
+  polygon p = polygon_of(a), rest;
+  for (int k = 0; k < 3 && p.n > 2; ++k) {
+    const double *from, *to;
+    polygon left;
+    side_of(b, k, &from, &to);
+    split(&p, from, to, &left, &rest);
+    p = left;
+  }
+  return triangles_of(&p, out);
+}
+
+int cell_without(int dim, const cell *a, const cell *b, cell *out) {
+  int n = 0;
+  if (dim == 2) {
+    n += add_segment(low_end(a), fmin(high_end(a), low_end(b)), out);
+    n += add_segment(fmax(low_end(a), high_end(b)), high_end(a), out + n);
+    return n;
+  }
+  polygon p = polygon_of(a), rest;
+  for (int k = 0; k < 3 && p.n > 2; ++k) {
+    const double *from, *to;
+    polygon left;
+    side_of(b, k, &from, &to);
+    split(&p, from, to, &left, &rest);
+    n += triangles_of(&rest, out + n);
+    p = left;
+  }
+  return n;
+}

@@ -1,0 +1,45 @@
+/*
+ * One slave face in its plane, master faces projected into it, and what both
+ * have in common. Inside src/contact/mortar only.
+ */
+#ifndef PROTIS_MORTAR_CLIP_H
+#define PROTIS_MORTAR_CLIP_H
+
+/* A segment or triangle in the plane of the slave face; 2-D: at[.][0] alone. */
+typedef struct cell {
+  double at[3][2]; /* corners, m */
+} cell;
+
+/* A face with a frame: the axes span its plane. */
+typedef struct facet {
+  int dim;
+  double origin[3], normal[3];
+  double axis[2][3]; /* [dim-1] */
+  cell in_plane;     /* counterclockwise seen against the normal */
+  double measure;    /* length or area, m, m2 */
+} facet;
+
+/* A face projected along the normal of a facet. */
+typedef struct shadow {
+  cell in_plane;
+  double height[3]; /* of its corners above the plane, m */
+  double measure;   /* of the projection */
+} shadow;
+
+/* Two triangles have at most 6 corners in common; what is left of one without
+ * the other is three pieces of at most 5. */
+enum { CLIP_CELLS = 4, CLIP_REST = 9 };
+
+/* node[dim] of a face, x[dim*n_node]. 0; -1: the corners are (nearly) on one
+ * line, or one point. */
+int facet_set(int dim, const int *node, const double *x, facet *f);
+void facet_project(const facet *f, const int *node, const double *x, shadow *s);
+double cell_measure(int dim, const cell *c);
+/* The values at y of the P1 functions of a cell that is not degenerate. */
+void cell_functions(int dim, const cell *c, const double *y, double *phi);
+/* What two cells have in common as cells; their number. */
+int cell_common(int dim, const cell *a, const cell *b, cell *out);
+/* What is left of a without b; the number of cells. */
+int cell_without(int dim, const cell *a, const cell *b, cell *out);
+
+#endif

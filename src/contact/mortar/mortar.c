@@ -1,0 +1,564 @@
+/*
+ * The integrals face by face; then the faces of each node are put together. A
+ * node turns out to be hardly covered when all faces are done: its faces are
+ * done again without it.
+ */
+#include "contact/mortar/mortar.h"
+
+#include "base/memory.h"
+#include "contact/mortar/dual.h"
+#include "contact/mortar/partner.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Least part of its area that gives a node a multiplier, - . */
+static const double scant = 0.01;
+
+enum { CARRIES = 0, NO_SLAVE, DROPPED, SCANT, UNCOVERED };
+
+/* int psi_j phi of one node, for the nodes j of a slave face. */
+typedef struct entry {
+  int node;
+  double part[3]; /* [dim] m2 */
+} entry;
+
+typedef struct link {
+  int master;
+  double part; /* - */
+} link;
+
+/* What one slave face gives. */
+typedef struct face_part {
+  size_t first, end; /* entries */
+  double normal[3];
+  double size;     /* m */
+  double rounding; /* relative size of rounding, - */
+  double share[3]; /* [dim] int phi_j over the whole face, m2 */
+  double d[3];     /* [dim] over the covered part, m2 */
+  double masters;  /* int size of the master faces, m3 */
+} face_part;
+
+typedef struct builder {
+  const mortar_input *in;
+  partner_search search;
+  unsigned char *state; /* [n_node] of the enum */
+  face_part *face;      /* [n_slave] */
+  entry *entries;
+  int n_entry, entry_capacity;
+  sample *points;
+  int n_point, point_capacity;
+  int *slot;      /* [n_node] -1, or place among the entries of a face or row */
+  double *normal; /* [dim*n_node] of the masters and dropped nodes */
+  size_t *start;  /* [n_node+1] slave faces of a node: .. */
+  int *around;    /* .. places in the list */
+  link *links;    /* of all rows */
+  int n_link, link_capacity;
+  mortar *out;
+} builder;
+
+static const int *nodes_of(const builder *b, int face) {
+  return b->in->mesh->face + (size_t)b->in->mesh->dim * (size_t)face;
+}
+
+static const double *place_of(const builder *b, int node) {
+  return b->in->x + (size_t)b->in->mesh->dim * (size_t)node;
+}
+
+/* Weight of the area of a slave face where its P1 functions are phi. */
+static double thickness(const builder *b, int face, const double *phi) {
+  const double w = b->in->face_weight[face];
+  if (!b->in->axisymmetric) return w;
+  const int *node = nodes_of(b, face);
+  return 2 * acos(-1.0) * w *
+         (phi[0] * place_of(b, node[0])[0] + phi[1] * place_of(b, node[1])[0]);
+}
+
+/* Rules exact for degree 3 on a segment, 2 on a triangle. */
+static void rule_point(int dim, int k, double *bary) {
+  if (dim == 2) {
+    const double a = 0.5 - 0.5 / sqrt(3.0);
+    bary[k] = 1 - a;
+    bary[1 - k] = a;
+    return;
+  }
+  for (int i = 0; i < 3; ++i) bary[i] = i == k ? 2.0 / 3 : 1.0 / 6;
+}
+
+static double face_size(int dim, double measure) {
+  return dim == 2 ? measure : sqrt(measure);
+}
+
+/* Quadrature of one cell; the reference of the offsets is ref. */
+static status add_points(builder *b, int face, const facet *f, int of,
+                         const cell *c, const double *ref) {
+  const int dim = f->dim;
+  const cell *other = &b->search.list[of].s.in_plane;
+  for (int k = 0; k < dim; ++k) {
+    sample s = {.weight = cell_measure(dim, c) / dim};
+    double bary[3], at[2] = {0, 0};
+    rule_point(dim, k, bary);
+    for (int i = 0; i < dim; ++i)
+      for (int a = 0; a < dim - 1; ++a) {
+        s.offset[a] += bary[i] * (c->at[i][a] - ref[a]);
+        at[a] += bary[i] * c->at[i][a];
+      }
+    cell_functions(dim, &f->in_plane, at, s.phi);
+    s.partner = of;
+    cell_functions(dim, other, at, s.other);
+    s.weight *= thickness(b, face, s.phi);
+    if (!(s.weight > 0)) continue;
+    PASS_GROW(b->points, b->n_point, b->point_capacity);
+    b->points[b->n_point++] = s;
+  }
+  return OK;
+}
+
+/* Points of all cells of a face; corner: its nodes less the reference. */
+static status set_points(builder *b, int face, const facet *f, cell *corner) {
+  const partner_search *s = &b->search;
+  const double *ref = NULL;
+  b->n_point = 0;
+  for (int i = 0; i < s->n; ++i) {
+    const partner *p = &s->list[i];
+    for (int k = p->first; k < p->first + p->n; ++k) {
+      if (ref == NULL) ref = s->cells[k].at[0];
+      PASS(add_points(b, face, f, i, &s->cells[k], ref));
+    }
+  }
+  *corner = f->in_plane;
+  for (int k = 0; k < f->dim && ref != NULL; ++k)
+    for (int a = 0; a < f->dim - 1; ++a) corner->at[k][a] -= ref[a];
+  return OK;
+}
+
+static status entry_of(builder *b, const face_part *part, int node,
+                       entry **out) {
+  if (b->slot[node] < (int)part->first) {
+    PASS_GROW(b->entries, b->n_entry, b->entry_capacity);
+    b->slot[node] = b->n_entry;
+    b->entries[b->n_entry++] = (entry){.node = node};
+  }
+  *out = &b->entries[b->slot[node]];
+  return OK;
+}
+
+/* Nodes without multiplier are in P among the masters. */
+static status add_dropped(builder *b, int face, face_part *part,
+                          const int *kept) {
+  const int dim = b->in->mesh->dim;
+  const int *node = nodes_of(b, face);
+  for (int z = 0; z < dim; ++z) {
+    entry *e;
+    if (kept[z]) continue;
+    PASS(entry_of(b, part, node[z], &e));
+    for (int k = 0; k < b->n_point; ++k)
+      for (int j = 0; j < dim; ++j)
+        e->part[j] -=
+            b->points[k].weight * b->points[k].psi[j] * b->points[k].phi[z];
+  }
+  return OK;
+}
+
+static status add_masters(builder *b, face_part *part) {
+  const int dim = b->in->mesh->dim;
+  for (int k = 0; k < b->n_point; ++k) {
+    const sample *p = &b->points[k];
+    const partner *m = &b->search.list[p->partner];
+    const int *node = nodes_of(b, m->face);
+    part->masters += p->weight * face_size(dim, m->size);
+    for (int l = 0; l < dim; ++l) {
+      entry *e;
+      PASS(entry_of(b, part, node[l], &e));
+      for (int j = 0; j < dim; ++j)
+        e->part[j] += p->weight * p->psi[j] * p->other[l];
+    }
+  }
+  return OK;
+}
+
+static int set_kept(const builder *b, int face, int *kept) {
+  const int *node = nodes_of(b, face);
+  int n = 0;
+  for (int k = 0; k < b->in->mesh->dim; ++k)
+    n += kept[k] = b->state[node[k]] == CARRIES;
+  return n;
+}
+
+/* int phi_j over the whole face. */
+static void set_shares(const builder *b, int face, const facet *f,
+                       double *share) {
+  const int dim = f->dim;
+  memset(share, 0, 3 * sizeof *share);
+  for (int k = 0; k < dim; ++k) {
+    double phi[3];
+    rule_point(dim, k, phi);
+    const double w = f->measure / dim * thickness(b, face, phi);
+    for (int j = 0; j < dim; ++j) share[j] += w * phi[j];
+  }
+}
+
+/* The integrals of slave face number i. */
+static status do_face(builder *b, int i) {
+  const int face = b->in->slave[i];
+  face_part *part = &b->face[i];
+  facet f;
+  cell corner;
+  int kept[3];
+  memset(part, 0, sizeof *part);
+  part->first = part->end = (size_t)b->n_entry;
+  if (facet_set(b->in->mesh->dim, nodes_of(b, face), b->in->x, &f) != 0)
+    return OK;
+  memcpy(part->normal, f.normal, sizeof part->normal);
+  part->size = face_size(f.dim, f.measure);
+  part->rounding = partner_rounding(&b->search, &f);
+  set_shares(b, face, &f, part->share);
+  PASS(partner_find(&b->search, face, &f));
+  PASS(set_points(b, face, &f, &corner));
+  const int n_kept = set_kept(b, face, kept);
+  if (b->n_point == 0) return OK;
+  dual_basis(f.dim, &corner, kept, b->n_point, b->points, part->d);
+  if (n_kept == 0) return OK;
+  PASS(add_masters(b, part));
+  PASS(add_dropped(b, face, part, kept));
+  part->end = (size_t)b->n_entry;
+  return OK;
+}
+
+/* Slave faces round each node. */
+static status set_around(builder *b) {
+  const mortar_input *in = b->in;
+  const int dim = in->mesh->dim, n = in->n_slave * dim;
+  PASS_NEW(b->start, in->mesh->n_node + 2);
+  PASS_NEW(b->around, n);
+  for (int i = 0; i < n; ++i)
+    ++b->start[nodes_of(b, in->slave[i / dim])[i % dim] + 2];
+  for (int i = 0; i < in->mesh->n_node; ++i) b->start[i + 2] += b->start[i + 1];
+  for (int i = 0; i < n; ++i)
+    b->around[b->start[nodes_of(b, in->slave[i / dim])[i % dim] + 1]++] =
+        i / dim;
+  return OK;
+}
+
+static void set_states(builder *b) {
+  const mortar_input *in = b->in;
+  const int dim = in->mesh->dim;
+  for (int i = 0; i < in->mesh->n_node; ++i) {
+    const int is_slave = b->start[i + 1] > b->start[i];
+    const int is_dropped = in->dropped != NULL && in->dropped[i];
+    b->state[i] = !is_slave ? NO_SLAVE : is_dropped ? DROPPED : CARRIES;
+  }
+  for (int i = 0; i < in->n_master * dim; ++i) {
+    const int node = nodes_of(b, in->master[i / dim])[i % dim];
+    if (b->state[node] == CARRIES) b->state[node] = DROPPED;
+  }
+}
+
+/* Place of a node among those of a slave face. */
+static int corner_of(const builder *b, int i, int node) {
+  const int *v = nodes_of(b, b->in->slave[i]);
+  int k = 0;
+  while (v[k] != node) ++k;
+  return k;
+}
+
+/* D of a node, and what it were if all were covered. */
+static double node_area(const builder *b, int node, double *whole) {
+  double sum = 0.0;
+  *whole = 0.0;
+  for (size_t a = b->start[node]; a < b->start[node + 1]; ++a) {
+    const face_part *f = &b->face[b->around[a]];
+    const int k = corner_of(b, b->around[a], node);
+    sum += f->d[k];
+    *whole += f->share[k];
+  }
+  return sum;
+}
+
+/* Nodes without enough area; n_redo: those that faces are to do without. */
+static void leave_out(builder *b) {
+  mortar *m = b->out;
+  m->scant_node = -1;
+  for (int i = 0; i < b->in->mesh->n_node; ++i) {
+    double whole;
+    m->n_dropped += b->state[i] == DROPPED;
+    if (b->state[i] != CARRIES) continue;
+    const double area = node_area(b, i, &whole);
+    if (area >= scant * whole && area > 0) {
+      ++m->n;
+      continue;
+    }
+    b->state[i] = area > 0 ? SCANT : UNCOVERED;
+    m->n_uncovered += area > 0 ? 0 : 1;
+    m->n_scant += area > 0 ? 1 : 0;
+    if (area > 0) m->scant_node = i;
+  }
+}
+
+static status do_faces(builder *b) {
+  const int dim = b->in->mesh->dim;
+  for (int i = 0; i < b->in->n_slave; ++i) PASS(do_face(b, i));
+  leave_out(b);
+  for (int i = 0; i < b->in->n_slave; ++i) {
+    const int *node = nodes_of(b, b->in->slave[i]);
+    int redo = 0;
+    for (int k = 0; k < dim; ++k) redo |= b->state[node[k]] == SCANT;
+    if (redo) PASS(do_face(b, i));
+  }
+  b->out->clips = b->search.clips;
+  return OK;
+}
+
+/* ---- normals ------------------------------------------------------------- */
+
+static void add_scaled(int dim, double factor, const double *v, double *to) {
+  for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
+}
+
+static void make_unit(int dim, double *v) {
+  double square = 0.0;
+  for (int c = 0; c < dim; ++c) square += v[c] * v[c];
+  for (int c = 0; c < dim && square > 0; ++c) v[c] /= sqrt(square);
+}
+
+/* Normals at the nodes of the masters; where a node of the slave stands in for
+ * a master, the opposite of its own. */
+static status set_node_normals(builder *b) {
+  const mortar_input *in = b->in;
+  const int dim = in->mesh->dim;
+  const size_t n = (size_t)in->mesh->n_node;
+  PASS_NEW(b->normal, (size_t)dim * n);
+  for (int i = 0; i < in->n_master * dim; ++i) {
+    const facet *f = &b->search.master[i / dim];
+    const int node = nodes_of(b, in->master[i / dim])[i % dim];
+    b->slot[node] = 0;
+    if (f->measure > 0)
+      add_scaled(dim, f->measure, f->normal,
+                 b->normal + (size_t)dim * (size_t)node);
+  }
+  for (int i = 0; i < in->n_slave * dim; ++i) {
+    const int node = nodes_of(b, in->slave[i / dim])[i % dim];
+    const face_part *f = &b->face[i / dim];
+    if (b->slot[node] != 0)
+      add_scaled(dim, -f->share[i % dim], f->normal,
+                 b->normal + (size_t)dim * (size_t)node);
+  }
+  for (size_t i = 0; i < n; ++i) make_unit(dim, b->normal + (size_t)dim * i);
+  return OK;
+}
+
+static void set_normal(builder *b, int q) {
+  const int dim = b->in->mesh->dim, node = b->out->node_id[q];
+  const node_links *l = &b->out->to;
+  double *normal = b->out->normal + (size_t)dim * (size_t)q;
+  double other[3] = {0};
+  for (size_t a = b->start[node]; a < b->start[node + 1]; ++a) {
+    const face_part *f = &b->face[b->around[a]];
+    add_scaled(dim, f->d[corner_of(b, b->around[a], node)], f->normal, normal);
+  }
+  make_unit(dim, normal);
+  if (b->in->slave_normal) return;
+  for (size_t e = l->start[q]; e < l->start[q + 1]; ++e)
+    add_scaled(dim, l->part[(size_t)dim * e],
+               b->normal + (size_t)dim * (size_t)l->master[e], other);
+  make_unit(dim, other);
+  add_scaled(dim, -1, other, normal);
+  make_unit(dim, normal);
+}
+
+/* ---- rows ---------------------------------------------------------------- */
+
+static int by_node(const void *a, const void *b) {
+  const int p = ((const entry *)a)->node, q = ((const entry *)b)->node;
+  return (p > q) - (p < q);
+}
+
+/* Entries of a node from all its faces, in row[]; part[0] is P. */
+static int gather(builder *b, int node, double area, entry *row,
+                  double *rounding) {
+  int n = 0;
+  *rounding = 0.0;
+  for (size_t a = b->start[node]; a < b->start[node + 1]; ++a) {
+    const face_part *f = &b->face[b->around[a]];
+    const int k = corner_of(b, b->around[a], node);
+    *rounding = fmax(*rounding, f->rounding);
+    for (size_t e = f->first; e < f->end; ++e) {
+      int *slot = &b->slot[b->entries[e].node];
+      if (*slot < 0) {
+        *slot = n;
+        row[n++] = (entry){.node = b->entries[e].node};
+      }
+      row[*slot].part[0] += b->entries[e].part[k] / area;
+    }
+  }
+  for (int i = 0; i < n; ++i) b->slot[row[i].node] = -1;
+  return n;
+}
+
+/* Parts that are only rounding go to the largest one. Returns what is left. */
+static int leave_rounding(entry *row, int n, double rounding) {
+  int most = 0, left = 0;
+  double lost = 0.0;
+  for (int i = 1; i < n; ++i)
+    if (fabs(row[i].part[0]) > fabs(row[most].part[0])) most = i;
+  for (int i = 0; i < n; ++i)
+    if (fabs(row[i].part[0]) <= rounding) lost += row[i].part[0];
+  row[most].part[0] += lost;
+  for (int i = 0; i < n; ++i)
+    if (fabs(row[i].part[0]) > rounding) row[left++] = row[i];
+  return left;
+}
+
+static size_t longest_row(const builder *b) {
+  size_t most = 0;
+  for (int i = 0; i < b->in->mesh->n_node; ++i) {
+    size_t n = 0;
+    for (size_t a = b->start[i]; a < b->start[i + 1]; ++a)
+      n += b->face[b->around[a]].end - b->face[b->around[a]].first;
+    if (n > most) most = n;
+  }
+  return most;
+}
+
+/* Row of one node, into links. */
+static status add_row(builder *b, int q, entry *row) {
+  mortar *m = b->out;
+  const int node = m->node_id[q];
+  double whole, rounding;
+  m->area[q] = node_area(b, node, &whole);
+  int n = gather(b, node, m->area[q], row, &rounding);
+  n = leave_rounding(row, n, rounding);
+  qsort(row, (size_t)n, sizeof *row, by_node);
+  for (int i = 0; i < n; ++i) {
+    PASS_GROW(b->links, b->n_link, b->link_capacity);
+    b->links[b->n_link++] = (link){row[i].node, row[i].part[0]};
+  }
+  m->to.start[q + 1] = (size_t)b->n_link;
+  return OK;
+}
+
+static status add_rows(builder *b) {
+  OWNED entry *row = NULL;
+  PASS_NEW(row, longest_row(b));
+  for (int q = 0; q < b->out->n; ++q) PASS(add_row(b, q, row));
+  return OK;
+}
+
+static status set_links(builder *b) {
+  node_links *l = &b->out->to;
+  const size_t dim = (size_t)l->dim;
+  PASS_NEW(l->master, b->n_link);
+  PASS_NEW(l->part, dim * (size_t)b->n_link);
+  for (size_t e = 0; e < (size_t)b->n_link; ++e) {
+    l->master[e] = b->links[e].master;
+    for (size_t c = 0; c < dim; ++c) l->part[dim * e + c] = b->links[e].part;
+  }
+  return OK;
+}
+
+static void set_gap(builder *b, int q) {
+  const int dim = b->in->mesh->dim;
+  const node_links *l = &b->out->to;
+  const double *x = place_of(b, b->out->node_id[q]);
+  double *gap = b->out->gap + (size_t)dim * (size_t)q;
+  for (size_t e = l->start[q]; e < l->start[q + 1]; ++e)
+    for (int c = 0; c < dim; ++c)
+      gap[c] +=
+          l->part[(size_t)dim * e] * (place_of(b, l->master[e])[c] - x[c]);
+}
+
+static status set_nodes(builder *b) {
+  mortar *m = b->out;
+  const int dim = b->in->mesh->dim;
+  int n = 0;
+  m->to.dim = dim;
+  m->to.n = m->n;
+  PASS_NEW(m->node_id, m->n);
+  PASS_NEW(m->area, m->n);
+  PASS_NEW(m->normal, dim * m->n);
+  PASS_NEW(m->gap, dim * m->n);
+  PASS_NEW(m->to.start, m->n + 1);
+  for (int i = 0; i < b->in->mesh->n_node; ++i)
+    if (b->state[i] == CARRIES) m->node_id[n++] = i;
+  PASS(add_rows(b));
+  PASS(set_links(b));
+  PASS(set_node_normals(b));
+  for (int q = 0; q < m->n; ++q) {
+    set_gap(b, q);
+    set_normal(b, q);
+  }
+  return OK;
+}
+
+/* Area of a master face, m2. */
+static double master_area(const builder *b, int i) {
+  double share[3], sum = 0.0;
+  const facet *f = &b->search.master[i];
+  if (!(f->measure > 0)) return 0;
+  set_shares(b, b->in->master[i], f, share);
+  for (int k = 0; k < f->dim; ++k) sum += share[k];
+  return sum;
+}
+
+/* What messages need. */
+static void sum_up(builder *b) {
+  const int dim = b->in->mesh->dim;
+  mortar *m = b->out;
+  double masters = 0.0, slaves = 0.0;
+  for (int i = 0; i < b->in->n_slave; ++i) {
+    const face_part *f = &b->face[i];
+    double area = 0.0;
+    for (int k = 0; k < dim; ++k) {
+      m->slave_area += f->share[k];
+      area += f->d[k];
+    }
+    m->covered += area;
+    m->n_bare += area > 0 && f->end == f->first;
+    masters += f->masters;
+    slaves += f->end > f->first ? area * f->size : 0;
+  }
+  for (int i = 0; i < b->in->n_master; ++i) m->master_area += master_area(b, i);
+  m->size_ratio = slaves > 0 ? masters / slaves : 0;
+}
+
+static status builder_new(const mortar_input *in, builder *b) {
+  const size_t n = (size_t)in->mesh->n_node;
+  *b = (builder){.in = in};
+  PASS_NEW(b->out, 1);
+  PASS_NEW(b->state, n);
+  PASS_NEW(b->face, in->n_slave);
+  PASS_NEW(b->slot, n);
+  for (size_t i = 0; i < n; ++i) b->slot[i] = -1;
+  PASS(set_around(b));
+  set_states(b);
+  return partner_search_new(in, &b->search);
+}
+
+static void builder_release(builder *b) {
+  partner_search_release(&b->search);
+  mortar_free(b->out);
+  RELEASE(b->state, b->face, b->entries, b->points, b->slot, b->normal,
+          b->start, b->around, b->links);
+}
+
+status mortar_couple(const mortar_input *in, mortar **out) {
+  status st = OK;
+  builder b;
+  TRY(builder_new(in, &b));
+  TRY(do_faces(&b));
+  for (int i = 0; i < in->mesh->n_node; ++i) b.slot[i] = -1;
+  TRY(set_nodes(&b));
+  sum_up(&b);
+  *out = b.out;
+  b.out = NULL;
+done:
+  builder_release(&b);
+  return st;
+}
+
+void mortar_free(mortar *m) {
+  if (m == NULL) return;
+  links_release(&m->to);
+  RELEASE(m->node_id, m->area, m->normal, m->gap, m);
+}

@@ -1,0 +1,46 @@
+/*
+ * The partners of a slave face among the master faces, and the parts of it that
+ * each covers (the rule stands in mortar.h). Inside src/contact/mortar only.
+ */
+#ifndef PROTIS_MORTAR_PARTNER_H
+#define PROTIS_MORTAR_PARTNER_H
+
+#include "contact/average/box_tree.h"
+#include "contact/mortar/clip.h"
+#include "contact/mortar/mortar.h"
+
+typedef struct partner {
+  int face;        /* id in the mesh */
+  int of;          /* place in the list of masters */
+  shadow s;        /* in the plane of the slave face */
+  double size;     /* area of the face, m2 */
+  double distance; /* along the normal, at the middle of the covered part, m */
+  int first, n;    /* cells */
+} partner;
+
+typedef struct partner_search {
+  const mortar_input *in;
+  box_tree tree;  /* of the masters */
+  double reach;   /* extent of the larger surface, m */
+  double largest; /* largest coordinate, m */
+  facet *master;  /* [n_master], measure 0: degenerate */
+  int *found;     /* [n_master] */
+  int *group;     /* [n_node] -1, workspace */
+  partner *list;  /* [n] of the current slave face */
+  int n, capacity;
+  cell *cells; /* [n_cell] */
+  int n_cell, cell_capacity;
+  cell *rest; /* workspace */
+  int rest_capacity;
+  long clips;
+} partner_search;
+
+status partner_search_new(const mortar_input *in, partner_search *s);
+void partner_search_release(partner_search *s); /* accepts all-zero */
+/* Relative size of what is only rounding of the coordinates in the plane of f,
+ * of the size of f, - . */
+double partner_rounding(const partner_search *s, const facet *f);
+/* list and cells of this slave face. */
+status partner_find(partner_search *s, int face, const facet *f);
+
+#endif
