@@ -2,7 +2,6 @@
  * values: closed forms, and sums over dense regular points that share nothing
  * with the quadrature of the program. */
 #include "contact/average/average.h"
-#include "contact/average/box_tree.h"
 #include "contact/average/face.h"
 #include "base/memory.h"
 #include "support/unit.h"
@@ -705,40 +704,7 @@ START_TEST(factors_of_two_change_no_bit) {
 }
 END_TEST
 
-/* ---- search, memory ---------------------------------------------------- */
-
-START_TEST(search_finds_what_is_near) {
-  enum { N = 300 };
-  double x[6 * N];
-  int found[N];
-  unsigned seed = 3;
-  for (int i = 0; i < 6 * N; ++i) {
-    seed = seed * 1103515245u + 12345u;
-    x[i] = (seed >> 16) / 65536.0 + (i / 6 % 7 == 0 ? i % 3 : 0);
-  }
-  for (int n = 0; n <= N; n += n < 12 ? 1 : 48) {
-    box_tree t;
-    ck_assert_int_eq(box_tree_new(3, n, 2, x, &t), OK);
-    for (int q = 0; q < 50; ++q) {
-      const double *p = x + 6 * (q * 5 % N);
-      double r = 0.02 * q;
-      int count = box_tree_near(&t, p, r, found), expected = 0;
-      for (int i = 0; i < n; ++i) {
-        double sum = 0.0;
-        for (int c = 0; c < 3; ++c) {
-          double a = fmin(x[6 * i + c], x[6 * i + 3 + c]);
-          double b = fmax(x[6 * i + c], x[6 * i + 3 + c]);
-          double d = fmax(fmax(a - p[c], p[c] - b), 0.0);
-          sum += d * d;
-        }
-        expected += sum < r * r;
-      }
-      ck_assert_int_eq(count, expected);
-    }
-    box_tree_free(&t);
-  }
-}
-END_TEST
+/* ---- radius, memory ---------------------------------------------------- */
 
 /* No entry jumps where the mass of a node no longer holds its pairs. */
 START_TEST(entries_are_continuous_in_the_radius) {
@@ -796,5 +762,5 @@ UNIT_MAIN("average", bump_has_the_constants_of_the_literature,
           geodesic_distance_unbends_the_line, closed_line_has_no_edge,
           mirrors_stand_for_the_other_half,
           quarter_of_a_square_has_no_edge_at_its_mirrors,
-          factors_of_two_change_no_bit, search_finds_what_is_near,
-          entries_are_continuous_in_the_radius, refused_memory_is_given_back)
+          factors_of_two_change_no_bit, entries_are_continuous_in_the_radius,
+          refused_memory_is_given_back)

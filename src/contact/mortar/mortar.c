@@ -53,7 +53,8 @@ typedef struct builder {
   double *normal; /* [dim*n_node] of the masters and dropped nodes */
   size_t *start;  /* [n_node+1] slave faces of a node: .. */
   int *around;    /* .. places in the list */
-  link *links;    /* of all rows */
+  unsigned char *met; /* [mesh->n_face] 1: partner of a slave face */
+  link *links;        /* of all rows */
   int n_link, link_capacity;
   mortar *out;
 } builder;
@@ -167,6 +168,7 @@ static status add_masters(builder *b, face_part *part) {
     const sample *p = &b->points[k];
     const partner *m = &b->search.list[p->partner];
     const int *node = nodes_of(b, m->face);
+    b->met[m->face] = 1;
     part->masters += p->weight * face_size(dim, m->size);
     for (int l = 0; l < dim; ++l) {
       entry *e;
@@ -322,8 +324,9 @@ static void make_unit(int dim, double *v) {
   for (int c = 0; c < dim && square > 0; ++c) v[c] /= sqrt(square);
 }
 
-/* Normals at the nodes of the masters; where a node of the slave stands in for
- * a master, the opposite of its own. */
+/* Normals at the nodes of the masters, from the faces that are partners (not
+ * the sides at an edge of the body); where a node of the slave is in P, the
+ * opposite of its own. */
 static status set_node_normals(builder *b) {
   const mortar_input *in = b->in;
   const int dim = in->mesh->dim;
@@ -333,7 +336,7 @@ static status set_node_normals(builder *b) {
     const facet *f = &b->search.master[i / dim];
     const int node = nodes_of(b, in->master[i / dim])[i % dim];
     b->slot[node] = 0;
-    if (f->measure > 0)
+    if (b->met[in->master[i / dim]])
       add_scaled(dim, f->measure, f->normal,
                  b->normal + (size_t)dim * (size_t)node);
   }
@@ -528,6 +531,7 @@ static status builder_new(const mortar_input *in, builder *b) {
   PASS_NEW(b->out, 1);
   PASS_NEW(b->state, n);
   PASS_NEW(b->face, in->n_slave);
+  PASS_NEW(b->met, in->mesh->n_face);
   PASS_NEW(b->slot, n);
   for (size_t i = 0; i < n; ++i) b->slot[i] = -1;
   PASS(set_around(b));
@@ -538,7 +542,7 @@ static status builder_new(const mortar_input *in, builder *b) {
 static void builder_release(builder *b) {
   partner_search_release(&b->search);
   mortar_free(b->out);
-  RELEASE(b->state, b->face, b->entries, b->points, b->slot, b->normal,
+  RELEASE(b->state, b->face, b->met, b->entries, b->points, b->slot, b->normal,
           b->start, b->around, b->links);
 }
 

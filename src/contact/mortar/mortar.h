@@ -9,12 +9,15 @@
  * also where only a part is covered (Cichosz, Bischoff, CMAME 200 (2011)), and
  *   D_j = int phi_j,   P_jl = int psi_j phi_l / D_j,   sum_l P_jl = 1.
  *
- * The partner of a point of the slave is the nearest master face along the line
- * through the point in the direction of the slave's normal, on either side of
- * it, of those
- *  - that face the slave: the product of the unit normals is below 0 (by more
- *    than rounding), and the face is not the slave face itself;
- *  - that are not farther away than the larger surface is wide.
+ * The partner of a point of the slave is the nearest face on the line through
+ * the point in the direction of the slave's normal, on either side of it, if
+ * that is a face of the master that opposes the slave face: the product of the
+ * unit normals is below 0 by more than rounding. Other faces hide what is
+ * behind them on their side: those of the master that do not oppose, and those
+ * of the slave but for the face itself and its neighbours. So the back of a
+ * thin body or the far side of a ring is no partner, provided that the groups
+ * hold the faces in between. Nothing is a partner beyond the diagonal of the
+ * box round the larger surface.
  *
  * A node carries no multiplier if the caller says so, if both surfaces have it,
  * or if less than 1 % of its area is covered. On the faces around it the

@@ -1,7 +1,8 @@
 /*
  * Two partners of one component (joined through nodes) do not hide each other:
- * their projections have one sense. Where the partners are not joined, or cover
- * more than there is, each loses what nearer ones cover.
+ * their projections have one sense. Where the partners are not joined, cover
+ * more than there is, or are hidden by others, each loses what is covered by
+ * nearer ones.
  */
 #include "contact/mortar/partner.h"
 
@@ -40,35 +41,40 @@ static double extent(const mortar_input *in, int n, const int *face,
   return sqrt(sum);
 }
 
-static status plant(partner_search *s) {
-  const mortar_input *in = s->in;
+static status plant(const mortar_input *in, int n, const int *face,
+                    box_tree *out) {
   const int dim = in->mesh->dim;
+  const size_t size = (size_t)dim * (size_t)dim;
   OWNED double *corner = NULL;
-  PASS_NEW(corner, (size_t)(dim * dim) * (size_t)in->n_master);
-  for (int i = 0; i < in->n_master; ++i) {
-    const int *node = face_nodes(in, in->master[i]);
-    double *at = corner + (size_t)(dim * dim) * (size_t)i;
+  PASS_NEW(corner, size * (size_t)n);
+  for (int i = 0; i < n; ++i)
     for (int k = 0; k < dim; ++k)
-      memcpy(at + dim * k, place_of(in, node[k]), (size_t)dim * sizeof *at);
-    if (facet_set(dim, node, in->x, &s->master[i]) != 0)
-      s->master[i].measure = 0;
-  }
-  return box_tree_new(dim, in->n_master, dim, corner, &s->tree);
+      memcpy(corner + size * (size_t)i + dim * k,
+             place_of(in, face_nodes(in, face[i])[k]),
+             (size_t)dim * sizeof *corner);
+  return box_tree_new(dim, n, dim, corner, out);
 }
 
 status partner_search_new(const mortar_input *in, partner_search *s) {
+  const int n = in->n_master > in->n_slave ? in->n_master : in->n_slave;
   *s = (partner_search){.in = in};
   PASS_NEW(s->master, in->n_master);
-  PASS_NEW(s->found, in->n_master);
+  PASS_NEW(s->found, n);
   PASS_NEW(s->group, in->mesh->n_node);
   for (int i = 0; i < in->mesh->n_node; ++i) s->group[i] = -1;
+  for (int i = 0; i < in->n_master; ++i)
+    if (facet_set(in->mesh->dim, face_nodes(in, in->master[i]), in->x,
+                  &s->master[i]) != 0)
+      s->master[i].measure = 0;
   s->reach = fmax(extent(in, in->n_slave, in->slave, &s->largest),
                   extent(in, in->n_master, in->master, &s->largest));
-  return plant(s);
+  PASS(plant(in, in->n_master, in->master, &s->masters));
+  return plant(in, in->n_slave, in->slave, &s->slaves);
 }
 
 void partner_search_release(partner_search *s) {
-  box_tree_free(&s->tree);
+  box_tree_free(&s->masters);
+  box_tree_free(&s->slaves);
   RELEASE(s->master, s->found, s->group, s->list, s->cells, s->rest);
   *s = (partner_search){0};
 }
@@ -78,8 +84,8 @@ double partner_rounding(const partner_search *s, const facet *f) {
   return 32 * DBL_EPSILON * (1 + s->largest / size);
 }
 
-/* The prism over f as far as partners are looked for. */
-static box_beam beam_of(const partner_search *s, const facet *f) {
+/* The prism over f between two heights. */
+static box_beam beam_of(const facet *f, double low, double high) {
   const int dim = f->dim;
   box_beam b = {.n_slab = dim};
   for (int a = 0; a < dim; ++a) {
@@ -89,8 +95,8 @@ static box_beam beam_of(const partner_search *s, const facet *f) {
       b.axis[a][c] = axis[c];
       base += axis[c] * f->origin[c];
     }
-    b.low[a] = a < dim - 1 ? HUGE_VAL : base - s->reach;
-    b.high[a] = a < dim - 1 ? -HUGE_VAL : base + s->reach;
+    b.low[a] = a < dim - 1 ? HUGE_VAL : base + low;
+    b.high[a] = a < dim - 1 ? -HUGE_VAL : base + high;
     for (int k = 0; k < dim && a < dim - 1; ++k) {
       b.low[a] = fmin(b.low[a], base + f->in_plane.at[k][a]);
       b.high[a] = fmax(b.high[a], base + f->in_plane.at[k][a]);
@@ -127,13 +133,10 @@ static double cells_measure(int dim, int n, const cell *cells) {
   return sum;
 }
 
-/* Clip with one master; a partner if something is in common. */
-static status try_master(partner_search *s, const facet *f, int of) {
+/* Clip with one face; it joins the list if something is in common. */
+static status try_face(partner_search *s, const facet *f, partner p) {
   const int dim = f->dim;
-  const facet *m = &s->master[of];
-  partner p = {.face = s->in->master[of], .of = of, .size = m->measure};
   cell common[CLIP_CELLS];
-  if (!(m->measure > 0) || !faces_oppose(f, m)) return OK;
   facet_project(f, face_nodes(s->in, p.face), s->in->x, &p.s);
   ++s->clips;
   p.n = cell_common(dim, &f->in_plane, &p.s.in_plane, common);
@@ -145,29 +148,29 @@ static status try_master(partner_search *s, const facet *f, int of) {
     PASS_GROW(s->cells, s->n_cell, s->cell_capacity);
     s->cells[s->n_cell++] = common[i];
   }
-  p.distance = fabs(middle_height(dim, &p, s->cells));
-  if (p.distance > s->reach) return OK;
+  p.height = middle_height(dim, &p, s->cells);
+  if (fabs(p.height) > s->reach) return OK;
   PASS_GROW(s->list, s->n, s->capacity);
   s->list[s->n++] = p;
   return OK;
 }
 
 static int root(partner *list, int i) {
-  while (list[i].of != i) i = list[i].of = list[list[i].of].of;
+  while (list[i].group != i) i = list[i].group = list[list[i].group].group;
   return i;
 }
 
-/* 1: the partners are joined through nodes. Uses "of" of the partners. */
+/* 1: the partners are joined through nodes. */
 static int are_joined(partner_search *s, int dim) {
   int n_group = s->n;
-  for (int i = 0; i < s->n; ++i) s->list[i].of = i;
+  for (int i = 0; i < s->n; ++i) s->list[i].group = i;
   for (int i = 0; i < s->n * dim; ++i) {
     const int node = face_nodes(s->in, s->list[i / dim].face)[i % dim];
     const int a = root(s->list, i / dim);
     if (s->group[node] < 0) s->group[node] = a;
     const int b = root(s->list, s->group[node]);
     if (a == b) continue;
-    s->list[a].of = b;
+    s->list[a].group = b;
     --n_group;
   }
   for (int i = 0; i < s->n * dim; ++i)
@@ -181,9 +184,17 @@ static int share_node(int dim, const int *a, const int *b) {
   return 0;
 }
 
+/* Order of nearness, m. Bodies do not overlap by more than half of the slave's
+ * thickness: its back counts at half the distance. */
+static double distance(const partner *p) {
+  const int is_back = p->hides == HIDING_SLAVE && p->height < 0;
+  return (is_back ? 0.5 : 1) * fabs(p->height);
+}
+
 static int by_distance(const void *a, const void *b) {
   const partner *p = a, *q = b;
-  if (p->distance != q->distance) return p->distance < q->distance ? -1 : 1;
+  const double near = distance(p), far = distance(q);
+  if (near != far) return near < far ? -1 : 1;
   return (p->face > q->face) - (p->face < q->face);
 }
 
@@ -209,11 +220,18 @@ static status take_out(partner_search *s, int dim, int first,
   return OK;
 }
 
+/* 1: q, which is nearer, may hide a part of partner p. */
+static int may_hide(const partner_search *s, int dim, const partner *q,
+                    const partner *p) {
+  if (q->hides) return (q->height < 0) == (p->height < 0);
+  return !share_node(dim, face_nodes(s->in, p->face),
+                     face_nodes(s->in, q->face));
+}
+
 /* The cells of partner i less what those before it in the list cover. */
 static status uncover(partner_search *s, const facet *f, int i) {
   const int dim = f->dim;
   partner *p = &s->list[i];
-  const int *node = face_nodes(s->in, p->face);
   const int first = s->n_cell;
   const double negligible =
       partner_rounding(s, f) * fmin(f->measure, p->s.measure);
@@ -224,7 +242,7 @@ static status uncover(partner_search *s, const facet *f, int i) {
   for (int k = 0; k < i && s->n_cell > first; ++k) {
     cell common[CLIP_CELLS];
     const partner *q = &s->list[k];
-    if (share_node(dim, node, face_nodes(s->in, q->face))) continue;
+    if (!may_hide(s, dim, q, p)) continue;
     const int n = cell_common(dim, &p->s.in_plane, &q->s.in_plane, common);
     if (cells_measure(dim, n, common) > negligible)
       PASS(take_out(s, dim, first, q, negligible));
@@ -234,23 +252,89 @@ static status uncover(partner_search *s, const facet *f, int i) {
   return OK;
 }
 
-/* Of partners one behind the other only the nearest is left. */
-static status leave_nearest(partner_search *s, const facet *f) {
+/* Take the faces that hide none of the partners from the list: those farther
+ * than all partners on their side. */
+static void leave_hiding(partner_search *s) {
+  double farthest[2] = {-1, -1};
+  int n = 0;
+  for (int i = 0; i < s->n; ++i) {
+    double *side = &farthest[s->list[i].height < 0];
+    if (!s->list[i].hides) *side = fmax(*side, fabs(s->list[i].height));
+  }
+  for (int i = 0; i < s->n; ++i) {
+    const partner *p = &s->list[i];
+    if (!p->hides || distance(p) < farthest[p->height < 0]) s->list[n++] = *p;
+  }
+  s->n = n;
+}
+
+/* 1: no part is covered twice or hidden. */
+static int is_single(partner_search *s, const facet *f) {
   double covered = 0.0;
-  for (int i = 0; i < s->n; ++i)
+  for (int i = 0; i < s->n; ++i) {
+    if (s->list[i].hides) return 0;
     covered += cells_measure(f->dim, s->list[i].n, s->cells + s->list[i].first);
-  const double most = f->measure * (1 + s->n * partner_rounding(s, f));
-  if (are_joined(s, f->dim) && covered <= most) return OK;
+  }
+  return covered <= f->measure * (1 + s->n * partner_rounding(s, f)) &&
+         are_joined(s, f->dim);
+}
+
+/* Of faces one behind the other only the nearest is left. */
+static status leave_nearest(partner_search *s, const facet *f) {
+  int n = 0;
   qsort(s->list, (size_t)s->n, sizeof *s->list, by_distance);
-  for (int i = 1; i < s->n; ++i) PASS(uncover(s, f, i));
+  for (int i = 1; i < s->n; ++i)
+    if (!s->list[i].hides) PASS(uncover(s, f, i));
+  for (int i = 0; i < s->n; ++i)
+    if (!s->list[i].hides && s->list[i].n > 0) s->list[n++] = s->list[i];
+  s->n = n;
+  return OK;
+}
+
+/* Masters in the prism over f, those that oppose it and the others. */
+static status add_masters(partner_search *s, int face, const facet *f) {
+  const box_beam beam = beam_of(f, -s->reach, s->reach);
+  const int n = box_tree_along(&s->masters, &beam, s->found);
+  for (int i = 0; i < n; ++i) {
+    const facet *m = &s->master[s->found[i]];
+    const partner p = {.face = s->in->master[s->found[i]],
+                       .hides = faces_oppose(f, m) ? PARTNER : HIDING_MASTER,
+                       .size = m->measure};
+    if (m->measure > 0 && p.face != face) PASS(try_face(s, f, p));
+  }
+  return OK;
+}
+
+static int is_listed(const partner_search *s, int n, int face) {
+  for (int i = 0; i < n; ++i)
+    if (s->list[i].face == face) return 1;
+  return 0;
+}
+
+/* Other faces of the slave that stand between f and its partners. */
+static status add_slaves(partner_search *s, int face, const facet *f) {
+  const int dim = f->dim, n_master = s->n;
+  const int *node = face_nodes(s->in, face);
+  double low = 0.0, high = 0.0;
+  for (int i = 0; i < s->n; ++i) {
+    low = fmin(low, s->list[i].height);
+    high = fmax(high, s->list[i].height);
+  }
+  const box_beam beam = beam_of(f, 2 * low, high);
+  const int n = box_tree_along(&s->slaves, &beam, s->found);
+  for (int i = 0; i < n; ++i) {
+    const partner p = {.face = s->in->slave[s->found[i]],
+                       .hides = HIDING_SLAVE};
+    if (share_node(dim, node, face_nodes(s->in, p.face))) continue;
+    if (!is_listed(s, n_master, p.face)) PASS(try_face(s, f, p));
+  }
   return OK;
 }
 
 status partner_find(partner_search *s, int face, const facet *f) {
-  const box_beam beam = beam_of(s, f);
-  const int n = box_tree_along(&s->tree, &beam, s->found);
   s->n = s->n_cell = 0;
-  for (int i = 0; i < n; ++i)
-    if (s->in->master[s->found[i]] != face) PASS(try_master(s, f, s->found[i]));
-  return s->n > 1 ? leave_nearest(s, f) : OK;
+  PASS(add_masters(s, face, f));
+  if (s->n > 0) PASS(add_slaves(s, face, f));
+  leave_hiding(s);
+  return is_single(s, f) ? OK : leave_nearest(s, f);
 }

@@ -9,22 +9,27 @@
 #include "contact/mortar/clip.h"
 #include "contact/mortar/mortar.h"
 
+/* A face over or below the slave face: a partner, or one that hides what is
+ * behind it, a master that does not oppose or a face of the slave. */
+enum { PARTNER = 0, HIDING_MASTER, HIDING_SLAVE };
+
 typedef struct partner {
-  int face;        /* id in the mesh */
-  int of;          /* place in the list of masters */
-  shadow s;        /* in the plane of the slave face */
-  double size;     /* area of the face, m2 */
-  double distance; /* along the normal, at the middle of the covered part, m */
-  int first, n;    /* cells */
+  int face;      /* id in the mesh */
+  int group;     /* workspace */
+  int hides;     /* of the enum */
+  shadow s;      /* in the plane of the slave face */
+  double size;   /* area of the face, m2 */
+  double height; /* along the normal, at the middle of the covered part, m */
+  int first, n;  /* cells */
 } partner;
 
 typedef struct partner_search {
   const mortar_input *in;
-  box_tree tree;  /* of the masters */
+  box_tree masters, slaves;
   double reach;   /* extent of the larger surface, m */
   double largest; /* largest coordinate, m */
   facet *master;  /* [n_master], measure 0: degenerate */
-  int *found;     /* [n_master] */
+  int *found;     /* [n_master or n_slave] */
   int *group;     /* [n_node] -1, workspace */
   partner *list;  /* [n] of the current slave face */
   int n, capacity;
