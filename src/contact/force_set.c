@@ -10,6 +10,7 @@
 
 enum { SHARPENINGS = 4 };         /* of the bound of the spectrum */
 static const double SPARSE = 0.1; /* -, share of entries that are not zero */
+static const double NOTHING = 0x1p-40; /* -, diagonal over its column */
 
 void force_set_free(force_set *s) {
   if (s == NULL) return;
@@ -18,12 +19,16 @@ void force_set_free(force_set *s) {
   memory_free(s);
 }
 
-/* D: 1/W_ii, equal in the tangents of a node so that discs stay discs. */
+/* D: 1/W_ii, equal in the tangents of a node so that discs stay discs; of the
+ * largest where W_ii is nothing beside the other entries of its column: bodies
+ * may differ by any power of ten. */
 static void scaling(const contact_problem *cp, double *D) {
   int d = cp->dim;
+  const size_t m = (size_t)cp->m;
   double largest = 0.0;
-  for (size_t i = 0; i < (size_t)cp->m; ++i) {
-    D[i] = cp->W[i * (size_t)cp->m + i];
+  for (size_t i = 0; i < m; ++i) {
+    const double *column = cp->W + i * m;
+    D[i] = column[i] > NOTHING * largest_entry(m, column) ? column[i] : 0.0;
     largest = fmax(largest, D[i]);
   }
   for (int i = 0; i < cp->n; ++i) {
@@ -32,8 +37,7 @@ static void scaling(const contact_problem *cp, double *D) {
     for (int k = 1; k < d; ++k)
       if (!contact_held(cp, i * d + k)) D[i * d + k] = mean;
   }
-  for (int i = 0; i < cp->m; ++i)
-    D[i] = 1.0 / (D[i] > 0x1p-40 * largest ? D[i] : largest);
+  for (int i = 0; i < cp->m; ++i) D[i] = 1.0 / (D[i] > 0.0 ? D[i] : largest);
 }
 
 /* Upper bound of the spectrum of D W by steps of the power method on |D W|

@@ -1,12 +1,15 @@
 /*
  * Units: the same scene in other units gives the same answer; powers of two in
- * the forces or the lengths leave every bit.
+ * the forces or the lengths leave every bit. Bodies of one scene may differ by
+ * any power of ten.
  */
+#include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Half block pressed from above and from the side, mu = 1, in four increments:
@@ -196,7 +199,64 @@ START_TEST(a_pulse_that_decays_to_next_to_nothing_is_a_load) {
 }
 END_TEST
 
+/* Two blocks that contact alone holds, the second "ratio" times as stiff and
+ * loaded "load" times as much: by 1 downwards, 0.2 to the side. */
+static job run_two(const char *method, double ratio, double load) {
+  const mesh_change as_it_is = {.map = {NULL}};
+  char path[100];
+  int *number = NULL;
+  job j = job_begin("two");
+  snprintf(path, sizeof path, "%s/two.msh", j.dir);
+  FILE *f = fopen(path, "w");
+  ck_assert_ptr_nonnull(f);
+  ck_assert_int_eq(scene_mesh_write(f, "rect 3 3 1 1 + rect 3 3 1 1 at 2 0",
+                                    &as_it_is, &number),
+                   1);
+  fclose(f);
+  free(number);
+  job_write(&j, "two.inp",
+            "*MESH, FILE=two.msh\n*MATERIAL, NAME=S\n*ELASTIC\n1000., 0.3\n"
+            "*MATERIAL, NAME=H\n*ELASTIC\n%.17g, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=S\n"
+            "*SOLID SECTION, ELSET=BODY2, MATERIAL=H\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*CONTACT, NAME=C2, GROUP=BOTTOM2, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.5\n"
+            "*FRICTION, CONTACT=C2, LAW=COULOMB\n0.5\n*STEP\n*STATIC\n"
+            "*DSLOAD\nTOP, P, 1.\nTOP2, P, %.17g\nLEFT, TX, 0.2\n"
+            "LEFT2, TX, %.17g\n*SOLVER, METHOD=%s\n*PRINT, TOTALS\n"
+            "*END STEP\n",
+            1000 * ratio, load, 0.2 * load, method);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "%s, %g: exit %d: %s", method, ratio, code,
+                j.errors);
+  return j;
+}
+
+START_TEST(two_bodies_of_any_ratio) {
+  static const char *const all[] = {"AUTO",   "NEWTON",   "LEMKE",
+                                    "SOR",    "AITKEN",   "PCG",
+                                    "AUGLAG", "LAGRANGE", "PROXIMAL"};
+  static const double ratios[] = {1e6, 1e9, 1e12, 1e-9};
+  for (size_t m = 0; m < sizeof all / sizeof *all; ++m)
+    for (int k = 0; k < 8; ++k) {
+      const double ratio = ratios[k / 2], load = k % 2 == 0 ? 1.0 : ratio;
+      job j = run_two(all[m], ratio, load);
+      dat t = job_table(&j, "TOTALS", -1);
+      for (int c = 0; c < 2; ++c) {
+        const double of = c == 0 ? 1.0 : load;
+        ck_assert_double_eq_tol(dat_at(&t, c, "normal"), of, 1e-8 * of);
+        ck_assert_double_eq_tol(dat_at(&t, c, "force_x"), -0.2 * of, 1e-8 * of);
+      }
+      dat_free(&t);
+      job_end(&j);
+    }
+}
+END_TEST
+
 UNIT_MAIN("scale", five_units_of_length, powers_of_two_leave_every_bit,
           loads_of_any_size, equal_runs_give_equal_bytes,
           forces_beyond_the_range_are_refused,
-          a_pulse_that_decays_to_next_to_nothing_is_a_load)
+          a_pulse_that_decays_to_next_to_nothing_is_a_load,
+          two_bodies_of_any_ratio)

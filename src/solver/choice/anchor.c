@@ -17,13 +17,14 @@ enum {
   PATIENCE = 20 /* passes without a lower residual */
 };
 static const double NULL_PIVOT = 0x1p-44; /* -, times m: of the largest pivot */
+static const double ROUNDING = 0x1p-48;   /* -, times m: of the mean diagonal */
 static const double SOFT = 0x1p-5;        /* -, k of the mean diagonal over n */
 static const double FINEST = 0.1;   /* -, of the tolerance: enough for a pass */
 static const double PROGRESS = 0.9; /* -, a lower residual */
 static const double STEADY = 0x1p-7; /* -, of a step of a drift */
 
 void anchor_free(anchor *an) {
-  RELEASE(an->R, an->A, an->W, an->f, an->a, an->step);
+  RELEASE(an->R, an->spring, an->A, an->W, an->f, an->a, an->step);
   *an = (anchor){0};
 }
 
@@ -41,17 +42,43 @@ static void orthonormalise(int m, int n, double *R) {
   }
 }
 
+/* stiffness[m]: the mean diagonal of the body; of all bodies where it is
+ * rounding, as that of a free body with one contact node. */
+static status find_stiffness(const contact_problem *cp, double *stiffness) {
+  const contact_bodies *b = cp->bodies;
+  OWNED double *sum = NULL;
+  OWNED int *count = NULL;
+  double all = 0.0;
+  PASS_NEW(sum, b == NULL ? 1 : b->n);
+  PASS_NEW(count, b == NULL ? 1 : b->n);
+  for (int i = 0; i < cp->m; ++i) {
+    const int of = b == NULL ? 0 : b->of[i / cp->dim];
+    sum[of] += contact_diagonal(cp, i) / cp->m;
+    all += contact_diagonal(cp, i) / cp->m;
+    ++count[of];
+  }
+  for (int i = 0; i < cp->m; ++i) {
+    const int of = b == NULL ? 0 : b->of[i / cp->dim];
+    const double own = sum[of] * cp->m / count[of];
+    stiffness[i] = own > cp->m * ROUNDING * all ? own : all;
+  }
+  return OK;
+}
+
 status anchor_modes(const contact_problem *cp, anchor *an) {
   OWNED int *pivot = NULL;
   int m = cp->m, rank = 0;
-  OWNED double *work = NULL, *L = NULL;
-  double power = dense_power(m, cp->A);
-  size_t size = (size_t)m * (size_t)m;
+  OWNED double *work = NULL, *L = NULL, *scale = NULL;
+  const size_t size = (size_t)m * (size_t)m;
   if (an->R != NULL) return OK;
   PASS_NEW(pivot, m);
   PASS_NEW(work, 2 * m);
+  PASS_NEW(scale, m);
   PASS_NEW(L, size);
-  for (size_t i = 0; i < size; ++i) L[i] = power * cp->A[i];
+  memcpy(L, cp->A, size * sizeof *L);
+  /* Pivots of a soft body are no rounding of those of a stiff one. */
+  PASS(find_stiffness(cp, work));
+  form_apply_scale(m, form_scale(m, work, scale), scale, L);
   LAPACKE_dpstrf_work(LAPACK_COL_MAJOR, 'L', m, L, m, pivot, &rank,
                       m * NULL_PIVOT, work);
   an->n_mode = m - rank;
@@ -59,6 +86,7 @@ status anchor_modes(const contact_problem *cp, anchor *an) {
   PASS_NEW(an->a, an->n_mode);
   PASS_NEW(an->step, an->n_mode);
   dense_null(m, rank, L, pivot, work, an->R);
+  for (int i = 0; i < m * an->n_mode; ++i) an->R[i] *= scale[i % m];
   orthonormalise(m, an->n_mode, an->R);
   return OK;
 }
@@ -67,20 +95,36 @@ status anchor_modes(const contact_problem *cp, anchor *an) {
 static status hold(const contact_problem *cp, anchor *an) {
   status st = OK;
   dense d = {0};
-  int m = cp->m;
+  int m = cp->m, good = 0;
   size_t size = (size_t)m * (size_t)m;
   TRY(dense_new(m, &d));
   memcpy(an->A, cp->A, size * sizeof *an->A);
   for (int k = 0; k < an->n_mode; ++k) {
     const double *v = an->R + (size_t)k * (size_t)m;
-    cblas_dger(CblasColMajor, m, m, an->spring, v, 1, v, 1, an->A, m);
+    cblas_dger(CblasColMajor, m, m, an->spring[k], v, 1, v, 1, an->A, m);
   }
   memcpy(d.a, an->A, size * sizeof *d.a);
-  an->missing = !form_invert(m, &d);
+  TRY(form_invert(m, &d, &good));
+  an->missing = !good;
   memcpy(an->W, d.a, size * sizeof *d.a);
 done:
   dense_free(&d);
   return st;
+}
+
+/* Of each motion by the stiffness of the bodies that it moves, which may differ
+ * by powers of ten. */
+static status choose_springs(const contact_problem *cp, anchor *an) {
+  OWNED double *stiffness = NULL;
+  PASS_NEW(stiffness, cp->m);
+  PASS_NEW(an->spring, an->n_mode);
+  PASS(find_stiffness(cp, stiffness));
+  for (int k = 0; k < an->n_mode; ++k) {
+    const double *v = an->R + (size_t)k * (size_t)cp->m;
+    for (int i = 0; i < cp->m; ++i) an->spring[k] += v[i] * v[i] * stiffness[i];
+    an->spring[k] *= SOFT / cp->n;
+  }
+  return OK;
 }
 
 status anchor_make(const contact_problem *cp, anchor *an) {
@@ -92,9 +136,7 @@ status anchor_make(const contact_problem *cp, anchor *an) {
   PASS_NEW(an->W, m * m);
   PASS_NEW(an->f, m);
   PASS(anchor_modes(cp, an));
-  for (size_t i = 0; i < m; ++i)
-    an->spring += contact_diagonal(cp, (int)i) / (double)m;
-  an->spring *= SOFT / cp->n;
+  PASS(choose_springs(cp, an));
   return hold(cp, an);
 }
 
@@ -178,8 +220,8 @@ static void follow(passes *p, const double *u) {
 static double carried(const passes *p) {
   double sum = 0.0;
   for (int k = 0; k < p->an->n_mode; ++k)
-    sum += p->an->step[k] * p->an->step[k];
-  return sum > 0.0 ? p->an->spring * sqrt(sum * p->cp->m) / p->load : 0.0;
+    sum += pow(p->an->spring[k] * p->an->step[k], 2);
+  return sum > 0.0 ? sqrt(sum * p->cp->m) / p->load : 0.0;
 }
 
 /* Largest work of friction against the last move, N m. */
@@ -233,7 +275,7 @@ static contact_problem anchored(const passes *p) {
   contact_problem own = *p->cp;
   memcpy(an->f, p->cp->f, (size_t)own.m * sizeof *an->f);
   for (int k = 0; k < an->n_mode; ++k)
-    cblas_daxpy(own.m, an->spring * p->an->a[k],
+    cblas_daxpy(own.m, an->spring[k] * p->an->a[k],
                 an->R + (size_t)k * (size_t)own.m, 1, an->f, 1);
   own.A = an->A;
   own.W = an->W;

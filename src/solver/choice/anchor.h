@@ -2,9 +2,9 @@
  * A body that contact alone holds, for solvers that need the compliance.
  *
  * The null vectors R of its stiffness, orthonormal, are motions of the whole
- * body. Springs of stiffness k on them make a problem any solver takes,
+ * body. Springs of stiffnesses k on them make a problem any solver takes,
  *
- *   A_s = A + k R R',   f_s = f + k R a,
+ *   A_s = A + R k R',   f_s = f + R k a,
  *
  * and the place a they are fixed at follows the body, a <- R'u, until they
  * carry nothing: R'(f + r) = k (R'u - a) = 0. These are the multipliers of the
@@ -19,12 +19,12 @@
 #include "solver/solver.h"
 
 typedef struct anchor {
-  int missing;   /* 1: the null vectors could not be found */
-  int n_mode;    /* of them */
-  double *R;     /* [m*n_mode] - */
-  double spring; /* k, N/m */
-  double *A, *W; /* [m*m] A_s and its inverse */
-  double *f;     /* [m] f_s, N */
+  int missing;    /* 1: the null vectors could not be found */
+  int n_mode;     /* of them */
+  double *R;      /* [m*n_mode] - */
+  double *spring; /* [n_mode] k, N/m */
+  double *A, *W;  /* [m*m] A_s and its inverse */
+  double *f;      /* [m] f_s, N */
   double *a,
       *step; /* [n_mode] place of the springs, last move of the body, m */
 } anchor;

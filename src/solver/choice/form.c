@@ -13,27 +13,45 @@
 /* ---- Contact without friction from the closed state --------------------- */
 
 static const double SYMMETRIC = 0x1p-40; /* -, of the largest diagonal */
+static const double NOISE = 0x1p-48; /* -, times m: of it, may be rounding */
 static const double OWN_SHARE = 0.5; /* of the tolerance, in the normal form */
 
-static void multiply(size_t size, double a, double *M) {
-  for (size_t i = 0; i < size; ++i) M[i] *= a;
+double form_scale(int m, const double *diagonal, double *scale) {
+  double largest = 0.0;
+  int first = 0;
+  for (int i = 0; i < m; ++i) largest = fmax(largest, diagonal[i]);
+  frexp(largest, &first);
+  for (int i = 0; i < m; ++i) {
+    int power = 0;
+    frexp(fmax(diagonal[i], m * NOISE * largest), &power);
+    scale[i] = ldexp(1.0, (first - power) / 2);
+  }
+  return ldexp(1.0, -first);
 }
 
-int form_invert(int m, dense *d) {
-  size_t size = (size_t)m * (size_t)m;
-  double power = dense_power(m, d->a);
+void form_apply_scale(int m, double power, const double *scale, double *M) {
+  const size_t n = (size_t)m;
+  for (size_t j = 0; j < n; ++j)
+    for (size_t i = 0; i < n; ++i) M[i + n * j] *= power * scale[i] * scale[j];
+}
+
+status form_invert(int m, dense *d, int *good) {
+  OWNED double *scale = NULL;
+  PASS_NEW(scale, m);
   d->n = m;
+  for (int i = 0; i < m; ++i) d->work[i] = d->a[(size_t)i * (size_t)(m + 1)];
+  const double power = form_scale(m, d->work, scale);
   d->full = !dense_is_symmetric(m, d->a, SYMMETRIC / power);
-  multiply(size, power, d->a);
-  if (!dense_factor(d, 1) || !dense_invert(d)) return 0;
-  multiply(size, power, d->a);
-  return 1;
+  form_apply_scale(m, power, scale, d->a);
+  *good = dense_factor(d, 1) && dense_invert(d);
+  if (*good) form_apply_scale(m, power, scale, d->a);
+  return OK;
 }
 
 status other_form_make(const contact_problem *cp, other_form *o) {
   status st = OK;
   dense d = {0};
-  int m = cp->m;
+  int m = cp->m, good = 0;
   const double *M = cp->A != NULL ? cp->A : cp->W;
   if (o->matrix != NULL || o->missing) goto done;
   o->missing = cp->floating;
@@ -41,7 +59,8 @@ status other_form_make(const contact_problem *cp, other_form *o) {
   NEW(o->load, m);
   TRY(dense_new(m, &d));
   memcpy(d.a, M, (size_t)m * (size_t)m * sizeof *M);
-  o->missing = !form_invert(m, &d);
+  TRY(form_invert(m, &d, &good));
+  o->missing = !good;
   if (o->missing) goto done;
   o->matrix = d.a;
   d.a = NULL;

@@ -15,8 +15,15 @@
 #include "solver/newton/dense.h"
 #include "solver/solver.h"
 
-/* inv(M) in place of d->a = M[m*m]; 0: singular to rounding, M is lost. */
-int form_invert(int m, dense *d);
+/* Powers of two, one of them returned, that bring the diagonal of p S M S near
+ * one, S = diag(scale[m]), but for what may be rounding of the largest; a
+ * factor of M that is a power of two changes p alone. */
+double form_scale(int m, const double *diagonal, double *scale);
+/* M <- p S M S */
+void form_apply_scale(int m, double power, const double *scale, double *M);
+/* inv(M) in place of d->a = M[m*m], scaled so; *good 0: singular to rounding, M
+ * is lost. */
+status form_invert(int m, dense *d, int *good);
 
 typedef struct other_form {
   double *matrix; /* [m*m] inverse of the one given, or NULL */
