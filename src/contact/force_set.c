@@ -19,8 +19,8 @@ void force_set_free(force_set *s) {
   memory_free(s);
 }
 
-/* D: 1/W_ii, equal in the tangents of a node so that discs stay discs; of the
- * largest where W_ii is nothing beside the other entries of its column: bodies
+/* D: 1/W_ii, equal in the tangents of a node, so that discs stay discs; of the
+ * largest where W_ii is rounding of the other entries of its column: bodies
  * may differ by any power of ten. */
 static void scaling(const contact_problem *cp, double *D) {
   int d = cp->dim;
