@@ -162,7 +162,7 @@
     "Names of physical groups keep their case; protis JOB --check lists "    \
     "them.")                                                                 \
   X(2022, ERROR, "group of the wrong dimension",                             \
-    "Sections need elements, contacts and surface loads need faces.")        \
+    "Sections need elements; contacts, cracks, surface loads need faces.")     \
   X(2023, ERROR, "elements without a section, or with two",                  \
     "Every element of the mesh belongs to exactly one *SOLID SECTION.")      \
   X(2024, ERROR, "kinematics do not fit the mesh",                           \
@@ -376,7 +376,27 @@
     "(OpenCASCADE) or Coherence Mesh; to the .geo.")                         \
   X(3043, WARNING, "bodies that overlap",                                    \
     "Two bodies fill the same place. Bodies do not touch each other in "     \
-    "the computation: each is computed as if it were alone.")
+    "the computation: each is computed as if it were alone.")                \
+  X(3050, ERROR, "face of a crack on the boundary",                          \
+    "A crack opens faces with an element on both sides. Remove the curves "  \
+    "(2-D) or surfaces (3-D) on the boundary of the body from the group.")   \
+  X(3051, ERROR, "face of two cracks",                                       \
+    "Each curve (2-D) or surface (3-D) belongs to one crack. Groups of "     \
+    "different cracks may cross each other, but not cover each other.")      \
+  X(3052, ERROR, "crack that opens no node",                                 \
+    "The front of a crack stays closed; all nodes of the group are on it. "  \
+    "Mesh the crack with several elements from one end to the other.")       \
+  X(3053, ERROR, "crack surface that has one side only",                     \
+    "A walk over the surface ends on the other side, as on the strip of "    \
+    "Moebius, so that no lip can be told from the other. Make two cracks "   \
+    "of it.")                                                                \
+  X(3054, WARNING, "faces of a crack that stay closed",                      \
+    "All nodes of these faces are on the front, which does not open: the "   \
+    "front is behind them. Refine the mesh there.")                          \
+  X(3055, NOTE, "group of nodes on a crack",                                 \
+    "The group gets the nodes of all sides of the crack: a support holds, "  \
+    "and a concentrated load acts on each of them. To hold or load one "     \
+    "side, name a group of curves (2-D) or surfaces (3-D).")
 
 #define MESSAGE_LIST_CONTACT(X)                                              \
   X(4001, ERROR, "contact group is not made of boundary faces",              \

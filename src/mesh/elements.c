@@ -144,11 +144,6 @@ static void swap(int *a, int *b) {
   *b = t;
 }
 
-static void sort_corners(int *v, int n) {
-  for (int i = 1; i < n; ++i)
-    for (int j = i; j > 0 && v[j - 1] > v[j]; --j) swap(&v[j - 1], &v[j]);
-}
-
 /* Turn every element to positive orientation; flat ones are reported. */
 static status orient(builder *b) {
   mesh *m = b->m;
@@ -206,7 +201,7 @@ static void fill_keys(builder *b, size_t *no, uint64_t *key, int *id) {
   for (int e = 0; e < b->n_top; ++e) {
     int *v = b->corner + (size_t)n * (size_t)e;
     for (int k = 0; k < n; ++k) v[k] = b->node_id[v[k]];
-    sort_corners(v, n);
+    sort_few(n, v);
     key[e] = (uint64_t)v[0] << 32 | (uint64_t)v[1];
     id[e] = e;
   }

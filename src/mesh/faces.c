@@ -22,15 +22,6 @@ static void release(face_list *f) {
   RELEASE(f->low, f->no, f->start, f->corner, f->example);
 }
 
-static void sort_corners(int *v, int n) {
-  for (int i = 1; i < n; ++i)
-    for (int j = i; j > 0 && v[j - 1] > v[j]; --j) {
-      int t = v[j];
-      v[j] = v[j - 1];
-      v[j - 1] = t;
-    }
-}
-
 /* By the third corner, then by place in the file; the key holds two. */
 static int by_corners(const void *ctx, int a, int b) {
   const face_list *f = ctx;
@@ -81,7 +72,7 @@ static status gather(builder *b, face_list *f, faults *bad) {
   }
   for (int j = 0; j < b->n_low; ++j) {
     int *v = f->low + dim * (size_t)j;
-    sort_corners(v, f->dim);
+    sort_few(f->dim, v);
     if (v[0] < 0) note_missing(b, j, bad);
   }
   return OK;
@@ -157,7 +148,7 @@ static void meet(mesh *m, face_list *f, int elem, int side) {
   int low = outward[dim == 2 && outward[1] < outward[0]];
   if (f->start[low] == f->start[low + 1]) return;
   memcpy(v, outward, dim * sizeof *v);
-  sort_corners(v, f->dim);
+  sort_few(f->dim, v);
   int face = find_face(f, v);
   if (face < 0) return;
   if (m->face_elem[face] >= 0) {

@@ -16,7 +16,7 @@ void mesh_free(mesh *m) {
   for (int i = 0; i < m->n_group && m->group != NULL; ++i) {
     RELEASE((void *)m->group[i].name, m->group[i].item_id, m->group[i].node_id);
   }
-  RELEASE(m->group, m->x, m->node_no, m->elem, m->elem_no, m->face,
+  RELEASE(m->group, m->x, m->node_no, m->origin, m->elem, m->elem_no, m->face,
           m->face_elem, m->face_other, m);
 }
 

@@ -95,3 +95,12 @@ status sort_ids(int n, int *id) {
   for (int i = 0; i < n; ++i) key[i] = (uint64_t)id[i];
   return sort_by_key(n, key, id, NULL, NULL);
 }
+
+void sort_few(int n, int *v) {
+  for (int i = 1; i < n; ++i)
+    for (int j = i; j > 0 && v[j - 1] > v[j]; --j) {
+      int t = v[j];
+      v[j] = v[j - 1];
+      v[j - 1] = t;
+    }
+}

@@ -17,5 +17,7 @@ status sort_by_key(int n, uint64_t *key, int *id, sort_compare *compare,
                    const void *ctx);
 /* Sort plain ids, all >= 0. */
 status sort_ids(int n, int *id);
+/* Sort a few numbers, as the nodes of an element. */
+void sort_few(int n, int *v);
 
 #endif

@@ -1,0 +1,63 @@
+/*
+ * Opening a mesh along cracks, groups of faces inside the bodies (2-D: lines,
+ * 3-D: triangles).
+ *
+ * The elements round a node fall into fans, connected through faces that
+ * contain the node and belong to no crack. One fan keeps the node, every other
+ * one gets a copy: a node with one fan is a tip (2-D) or on the front (3-D) and
+ * stays as it is; kinks have two fans, branches three, crossings four, the
+ * mouth at the surface two. A cut through a body makes two bodies of it.
+ *
+ * Each face becomes two lips, boundary faces with opposite normals. "Plus" is
+ * the lip of the body above, towards the end of the last axis (2-D: y, 3-D: z)
+ * in which the normal of the crack, on average, has a part. That holds for each
+ * piece of the crack up to branches; in a closed one (all parts are zero) minus
+ * is the side of face_elem of its first face.
+ */
+#ifndef PROTIS_MESH_CRACK_CRACK_H
+#define PROTIS_MESH_CRACK_CRACK_H
+
+#include "mesh/mesh.h"
+
+typedef struct mesh_cut { /* a crack to be opened */
+  const mesh_group *group;
+  const place *at; /* for messages */
+} mesh_cut;
+
+/* An opened crack. Its front: tips (2-D) or chains of nodes (3-D), each along
+ * e3 = e1 x e2, with e1 the direction of growth and e2 the normal from minus to
+ * plus; a closed chain ends with its first node. */
+typedef struct mesh_crack {
+  int n;            /* faces that are open */
+  int *plus;        /* [n] face id of the lip above; face_elem: its element */
+  int *minus;       /* [n] face id of the lip below */
+  int n_front;      /* tips or chains */
+  int *front_start; /* [n_front+1] */
+  int *front_node;  /* [front_start[n_front]] */
+  int *front_face;  /* [front_start[n_front]] face (0 .. n-1) of the crack at
+                       the tip, or along the edge to the next node; -1: last
+                       node of a chain */
+} mesh_crack;
+
+/*
+ * Open all cracks of a mesh at once, so that they may meet and cross.
+ *
+ * Copies stand behind the other nodes; mesh->origin names what they are copies
+ * of. Of a group NAME the lips make the groups NAME+ and NAME-, and NAME gets
+ * both. Other groups: elements and faces keep their ids, a face stays that of
+ * face_elem; groups of points (3-D: curves) get all copies, said by P3055.
+ * Faces with all nodes on the front stay closed and leave the group (P3054).
+ *
+ *   m       in,out  after a failure only to be freed
+ *   n, cut  in      [n]
+ *   crack   out     [n] mesh_crack_free each, also after a failure
+ *
+ * ERR_MESH with errors in the log: P2022, P3012, P3050 to P3053. ERR_MEMORY.
+ * Cost: a few passes over the mesh, else linear in the elements round the
+ * cracks.
+ */
+status mesh_open(mesh *m, int n, const mesh_cut *cut, message_log *log,
+                 mesh_crack *crack);
+void mesh_crack_free(mesh_crack *c); /* accepts all-zero */
+
+#endif
