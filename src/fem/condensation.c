@@ -26,11 +26,10 @@ static const double weak_arm = 1e-8;
 struct condensed {
   const stiffness *k; /* borrowed */
   domain d;           /* arrays borrowed */
-  int n_contact, m, n_body, n_motion;
+  int n_contact, m, n_body;
   double *A; /* [m*m] */
   body_factor *body;
-  free_motion *motion;   /* those that only contact holds */
-  rigid_set rigid;       /* the same as vectors */
+  rigid_motions rigid;   /* those that only contact holds */
   unsigned char *pinned; /* [m] contact unknowns with a spring in the factor;
                             NULL: no body needs one */
   int just_held;         /* 1: the springs hold those motions and nothing
@@ -94,14 +93,18 @@ static status order_body(condensed *c, const graph *g, int n, int *list,
                      &c->ordering);
 }
 
-/* A body nothing holds: name it and the motion. */
-static status check_support(const condensed *c) {
-  for (int q = 0; q < c->n_motion; ++q)
-    if (c->motion[q].held_by == HELD_BY_NOTHING)
+/* The motions that only contact holds: c->rigid. A body nothing holds: name it
+ * and the motion. */
+static status find_motions(condensed *c) {
+  OWNED free_motion *list = NULL;
+  int n = 0;
+  PASS(support_motions(&c->d, &n, &list, &c->rigid));
+  for (int q = 0; q < n; ++q)
+    if (list[q].held_by == HELD_BY_NOTHING)
       RAISE(ERR_SINGULAR,
             "body %d (with element %zu) is not held: free %s. Neither "
             "*BOUNDARY nor contact resists it",
-            c->motion[q].body_id + 1, c->motion[q].elem_no, c->motion[q].text);
+            list[q].body_id + 1, list[q].elem_no, list[q].text);
   return OK;
 }
 
@@ -115,32 +118,25 @@ static status name_body(const condensed *c, const body_factor *f, status code) {
   return OK;
 }
 
-/* Springs on the contact unknowns of bodies that contact alone holds: as many
- * as the motions of the body, on all if they are not exactly known. */
-static status pin_bodies(condensed *c, const unsigned char *floating) {
+/* Springs on contact unknowns of sets of bodies that contact alone holds: as
+ * many as the motions of the set, on all if they are not exactly known. */
+static status pin_sets(condensed *c) {
   const stiffness *k = c->k;
-  const size_t rows = (size_t)k->rows;
-  int known = 0;
   c->just_held = 1;
-  if (c->n_motion == 0) return OK;
+  if (c->rigid.n_set == 0) return OK;
   PASS(rigid_orthonormalise(k, &c->d, &c->rigid));
   PASS_NEW(c->pinned, c->m);
-  for (int i = 0; i < k->n_node; ++i)
-    if (floating[i] && k->first_row[i] >= 0)
-      memset(c->pinned + k->first_row[i], 1, rows);
-  for (int t = 0; t < c->rigid.n_body; ++t) {
-    const rigid_body *b = &c->rigid.body[t];
-    int motions = 0;
-    for (int j = 0; j < c->n_motion; ++j)
-      motions += c->motion[j].body_id == b->id;
-    if (motions != b->k) continue;
-    known += motions;
-    for (int j = 0; j < b->n_node; ++j)
-      if (k->first_row[b->node[j]] >= 0)
-        memset(c->pinned + k->first_row[b->node[j]], 0, rows);
-    PASS(rigid_pin(&c->rigid, b, c->pinned));
+  for (int t = 0; t < c->rigid.n_set; ++t) {
+    const rigid_set *s = &c->rigid.set[t];
+    if (s->k == s->n_motion) {
+      PASS(rigid_pin(&c->rigid, s, c->pinned));
+      continue;
+    }
+    c->just_held = 0;
+    for (int j = 0; j < s->n_node; ++j)
+      if (k->first_row[s->node[j]] >= 0)
+        memset(c->pinned + k->first_row[s->node[j]], 1, (size_t)k->rows);
   }
-  c->just_held = known == c->n_motion;
   return OK;
 }
 
@@ -239,7 +235,6 @@ done:
 status condense(const stiffness *k, const domain *d, condensed **out) {
   status st = OK;
   condensed *c = NULL;
-  unsigned char *floating = NULL;
   memory_count_suitesparse();
   NEW(c, 1);
   NEW(c->cm, 1);
@@ -250,17 +245,14 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   c->n_contact = d->surface != NULL ? d->surface->n : 0;
   c->m = k->n_row;
   c->ordering = "natural";
-  NEW(floating, k->n_node);
   NEW(c->load, (size_t)k->dim * (size_t)k->n_node);
   NEW(c->prescribed, (size_t)k->dim * (size_t)k->n_node);
-  TRY(support_motions(d, &c->n_motion, &c->motion, floating, &c->rigid));
-  TRY(check_support(c));
-  TRY(pin_bodies(c, floating));
+  TRY(find_motions(c));
+  TRY(pin_sets(c));
   TRY(factor_bodies(c));
   TRY(form_matrix(c));
   TRY(estimate_condition(c));
 done:
-  memory_free(floating);
   if (st != OK) {
     condensed_free(c);
     c = NULL;
@@ -274,7 +266,7 @@ void condensed_free(condensed *c) {
   for (int q = 0; c->body != NULL && q < c->n_body; ++q)
     body_factor_release(&c->body[q], c->cm);
   if (c->cm != NULL) cholmod_l_finish(c->cm);
-  RELEASE(c->cm, c->A, c->body, c->motion);
+  RELEASE(c->cm, c->A, c->body);
   rigid_release(&c->rigid);
   RELEASE(c->pinned, c->load, c->prescribed, c->F, c->rest, c);
 }
@@ -539,7 +531,7 @@ done:
 
 const double *condensed_matrix(const condensed *c) { return c->A; }
 
-int condensed_floating(const condensed *c) { return c->n_motion > 0; }
+int condensed_floating(const condensed *c) { return c->rigid.n_set > 0; }
 
 double condensed_stiffest(const condensed *c) {
   const stiffness *k = c->k;

@@ -72,14 +72,20 @@ typedef enum {
 } motion_hold;
 
 typedef struct free_motion {
-  int body_id; /* connected set of elements, from 0 in element order */
+  int set_id;  /* bodies joined by pairs and ties: the first of them */
+  int body_id; /* connected set of elements, from 0 in element order; the one
+                  that moves most */
   motion_hold held_by;
   size_t elem_no; /* an element of the body, number in the mesh file */
   char text[160]; /* "translation along x", "rotation about (1, 2)" */
 } free_motion;
 
-/* The free motions of all bodies without solving anything, HELD_BY_NOTHING
- * first in each body; *list is new (memory_free), NULL if there are none. */
+/*
+ * The free motions of all bodies without solving anything, HELD_BY_NOTHING
+ * first in each set of bodies that pairs and ties join; *list is new
+ * (memory_free), NULL if there are none. Joined surfaces count as touching: no
+ * gap between them resists a turn of the set.
+ */
 status domain_free_motions(const domain *d, int *n, free_motion **list);
 
 /*

@@ -4,62 +4,76 @@
  * of the loads, R_c' f_c = R' F. Springs and factor violate both by rounding,
  * which a contrast of stiffness in the body magnifies. Private to src/fem.
  *
- * R: displacement of all unknowns in the motions, R_c: of the contact ones.
+ * R: displacement of all unknowns in the motions, R_c: of the contact ones,
+ * which are relative displacements at pairs (contact/mortar/links.h).
  */
 #ifndef PROTIS_FEM_RIGID_H
 #define PROTIS_FEM_RIGID_H
 
+#include "fem/pieces/modes.h"
 #include "fem/stiffness.h"
 
-/* Motion of a piece: u(x) = t + w x p, p = (x - centre)/size, as rotations and
- * translations (2-D: w, tx, ty; axisymmetric: ty; 3-D: wx, wy, wz, tx, ..). */
-typedef struct rigid_modes {
-  int dim, modes; /* coefficients per piece: 3, 1 or 6 */
-  double centre[3], size;
-} rigid_modes;
+/* One component of a node: direction . (u(node) - sum part u(master)). */
+typedef struct component {
+  int node, c;
+  double direction[3];
+  const node_links *links; /* its masters: row "row"; NULL: none */
+  int row;
+} component;
 
-/* Coefficients of the displacement along "direction" at x: row[modes]. */
-void rigid_row(const rigid_modes *r, const double *x, const double *direction,
-               double *row);
+/* Component c of node i, contact node q or -1: in the frame of q, relative
+ * where q is. */
+component node_component(const domain *d, int i, int q, int c);
+/* Terms of the sum: the node, then its masters. */
+int component_terms(const component *x);
+/* Node of term t, and its factor; 0: no such term in this component. */
+double component_term(const component *x, int t, int *node);
 
-typedef struct rigid_body {
-  int id; /* as in free_motion */
-  rigid_modes at;
-  int n, k;           /* coefficients (all pieces); free motions */
-  double *Y;          /* [n*k] the motions */
-  int n_node;         /* nodes of the body */
-  int *node, *column; /* [n_node], and the first coefficient of its piece */
-  double *load;       /* [n] resultants of the pieces */
-  int first;          /* of its columns in Q */
-} rigid_body;
-
+/* Bodies joined by pairs and ties (sets.h) with motions that supports, hinges
+ * and ties leave. */
 typedef struct rigid_set {
-  int n_body, capacity;
-  rigid_body *body;
-  int m, k;  /* contact unknowns; motions of all bodies */
-  double *Q; /* [m*k] R_c of orthonormal motions */
+  int n;           /* coefficients: those of its pieces one after the other */
+  int n_motion, k; /* motions left; those left to rounding */
+  double *Y;       /* [n*k] the latter */
+  int *owner;      /* [n] body of a coefficient */
+  int n_node;      /* nodes with unknowns that move with it: its own, and */
+  int *node;       /* nodes at rest that have masters in it */
+  double *load;    /* [n] resultants of the pieces */
+  int first;       /* of its columns in Q */
 } rigid_set;
 
-/* domain_free_motions, and floating[n_node] (or NULL): 1 on the nodes of
- * bodies with such motions. r (or NULL): all-zero before, filled with them in
- * coefficients (support.c), those free to rounding. */
-status support_motions(const domain *d, int *n, free_motion **list,
-                       unsigned char *floating, rigid_set *r);
+typedef struct rigid_motions {
+  rigid_modes *at; /* [n_body] */
+  int *body;       /* [n_node] body of a node, -1 */
+  int *column;     /* [n_node] first coefficient of its piece in those of the
+                      set, -1: at rest */
+  int n_body, n_set, capacity;
+  rigid_set *set;
+  int m, k;  /* contact unknowns; motions of all sets */
+  double *Q; /* [m*k] R_c of orthonormal motions */
+} rigid_motions;
 
-void rigid_release(rigid_set *r); /* accepts an all-zero object */
+/* domain_free_motions. r (or NULL): all-zero before, filled with the sets that
+ * have some. */
+status support_motions(const domain *d, int *n, free_motion **list,
+                       rigid_motions *r);
+
+void rigid_release(rigid_motions *r); /* accepts an all-zero object */
 /* Choose the motions Y so that their R_c is orthonormal, and store it. */
-status rigid_orthonormalise(const stiffness *k, const domain *d, rigid_set *r);
-/* Contact unknowns to hold a body, as many as its motions and as independent as
+status rigid_orthonormalise(const stiffness *k, const domain *d,
+                            rigid_motions *r);
+/* Contact unknowns to hold a set, as many as its motions and as independent as
  * possible: pinned[m] set to 1. */
-status rigid_pin(const rigid_set *r, const rigid_body *b,
+status rigid_pin(const rigid_motions *r, const rigid_set *s,
                  unsigned char *pinned);
 /* A <- (I - Q Q') A (I - Q Q'), symmetric to the last bit; upper triangle
  * read. */
-status rigid_project(const rigid_set *r, double *A);
-/* Gather R' load for rigid_balance: load[dim*n_node] in local components. */
-void rigid_loads(const stiffness *k, const domain *d, rigid_set *r,
+status rigid_project(const rigid_motions *r, double *A);
+/* Gather R' F for rigid_balance: load[dim*n_node] forces at the unknowns, T'F
+ * (coupling.h) in local components. */
+void rigid_loads(const stiffness *k, const domain *d, rigid_motions *r,
                  const double *load);
-/* f_c += Q (R' load - Q' f_c). */
-void rigid_balance(const rigid_set *r, double *f_c);
+/* f_c += Q (R' F - Q' f_c). */
+void rigid_balance(const rigid_motions *r, double *f_c);
 
 #endif

@@ -1,269 +1,474 @@
 /*
- * Rigid motions that the prescribed components leave to each body.
+ * Rigid motions that the prescribed components leave to each set of bodies.
  *
  * A motion is a vector of rotations and translations per rigid piece (rigid.h).
- * Every prescribed component, every hinge between pieces and, in turn, every
- * contact normal and tangent is one linear condition on it. The conditions are
- * gathered by Givens rotations in a triangle whose null space (singular values
- * below rank_limit of the largest) is what stays free.
+ * Every prescribed component, every hinge between pieces, every tied node and,
+ * in turn, every contact normal and tangent is one linear condition on the
+ * pieces that it meets. The conditions are gathered by Givens rotations in a
+ * triangle whose null space (singular values below rank_limit of the largest)
+ * is what stays free.
+ *
+ * Bodies that supports and ties hold are at rest and leave the sets.
  */
 #include "base/memory.h"
-#include "fem/pieces.h"
+#include "fem/pieces/pieces.h"
 #include "fem/rigid.h"
 
+#include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Lever arms below this part of the body's size give no support. */
 static const double rank_limit = 1e-8;
 /* Motions below this part strain nothing: they are free to rounding. */
 static const double exact_limit = 1e-12;
-/* Bodies with more rigid pieces are taken as one rigid piece. */
-enum { MAX_PIECES = 16, MAX_COLUMNS = 6 * MAX_PIECES };
 
-typedef struct body {
-  const domain *d;
-  const pieces *p;
-  const int *contact;                   /* [n_node] contact node or -1 */
-  int id, first_piece, n_piece, joined; /* joined: pieces count as one */
-  int n;                                /* columns: motions of all pieces */
-  int n_node;
-  const int *node; /* [n_node] of this body */
-  rigid_modes at;
-} body;
+/* What joins bodies. */
+typedef enum { NOTHING, TIES, TIES_AND_PAIRS } joint;
 
-typedef struct triangle { /* upper, row major */
-  int n;
-  double r[MAX_COLUMNS * MAX_COLUMNS];
+/* Sets of bodies that move with each other. A motion of a set has the
+ * coefficients of the pieces of its bodies, one after the other. */
+typedef struct body_sets {
+  const domain *d; /* borrowed */
+  pieces p;
+  int *first_piece;   /* [n_body+1] */
+  rigid_modes *at;    /* [n_body] about its own centre */
+  int *body;          /* [n_node] body of a node, -1: of no element */
+  int *contact, *tie; /* [n_node] contact node, row of the ties; -1 */
+  int *set;           /* [n_body] first body of its set, -1: at rest */
+  int *column;        /* [n_body] its first coefficient in those of the set */
+  int *n;            /* [n_body] coefficients of the set with this first body */
+  int *start, *node; /* [n_body+1] nodes of that set: its own, and nodes at
+                        rest that have masters in it, ascending */
+} body_sets;
+
+static void sets_release(body_sets *s) {
+  pieces_release(&s->p);
+  RELEASE(s->first_piece, s->at, s->body, s->contact, s->tie, s->set, s->column,
+          s->n, s->start, s->node);
+  *s = (body_sets){0};
+}
+
+/* Pieces of the bodies in their order. */
+static void find_pieces(body_sets *s) {
+  const pieces *p = &s->p;
+  for (int q = 0; q < p->n_piece; ++q) ++s->first_piece[p->body[q] + 1];
+  for (int b = 0; b < p->n_body; ++b)
+    s->first_piece[b + 1] += s->first_piece[b];
+}
+
+static void find_nodes(body_sets *s) {
+  const domain *d = s->d;
+  const pieces *p = &s->p;
+  for (int i = 0; i < d->mesh->n_node; ++i) {
+    s->contact[i] = s->tie[i] = s->body[i] = -1;
+    if (p->start[i] < p->start[i + 1])
+      s->body[i] = p->body[p->piece[p->elem[p->start[i]]]];
+  }
+  for (int q = 0; d->surface != NULL && q < d->surface->n; ++q)
+    s->contact[d->surface->node_id[q]] = q;
+  for (int q = 0; d->ties != NULL && q < d->ties->n; ++q)
+    s->tie[d->ties->node_id[q]] = q;
+}
+
+/* Centre and extent of the nodes of each body; low, high[3*n_body]. */
+static void measure_bodies(body_sets *s, double *low, double *high) {
+  const mesh *m = s->d->mesh;
+  const int n = s->p.n_body;
+  for (int k = 0; k < 3 * n; ++k) {
+    low[k] = HUGE_VAL;
+    high[k] = -HUGE_VAL;
+  }
+  for (int i = 0; i < m->n_node; ++i)
+    for (int c = 0; c < m->dim && s->body[i] >= 0; ++c) {
+      const double x = m->x[(size_t)m->dim * (size_t)i + (size_t)c];
+      const int at = 3 * s->body[i] + c;
+      low[at] = fmin(low[at], x);
+      high[at] = fmax(high[at], x);
+    }
+  for (int b = 0; b < n; ++b) {
+    rigid_modes *r = &s->at[b];
+    const int section = s->d->section_id[s->p.piece_elem[s->first_piece[b]]];
+    r->dim = m->dim;
+    r->modes = m->dim == 3 ? 6 : s->d->kin[section] == AXISYMMETRIC ? 1 : 3;
+    for (int c = 0; c < m->dim; ++c) {
+      r->centre[c] = 0.5 * (low[3 * b + c] + high[3 * b + c]);
+      r->size = fmax(r->size, high[3 * b + c] - low[3 * b + c]);
+    }
+  }
+}
+
+/* Bodies and pieces, each body a set. Fails with s empty. */
+static status sets_find(const domain *d, body_sets *s) {
+  status st = OK;
+  double *box = NULL;
+  const int n_node = d->mesh->n_node;
+  *s = (body_sets){.d = d};
+  TRY(pieces_find(d->mesh, &s->p));
+  const int n_body = s->p.n_body;
+  NEW(s->first_piece, n_body + 1);
+  NEW(s->at, n_body);
+  NEW(s->body, n_node);
+  NEW(s->contact, n_node);
+  NEW(s->tie, n_node);
+  NEW(s->set, n_body);
+  NEW(s->column, n_body);
+  NEW(s->n, n_body);
+  NEW(s->start, n_body + 2);
+  NEW(s->node, n_node);
+  NEW(box, 6 * n_body);
+  find_pieces(s);
+  find_nodes(s);
+  measure_bodies(s, box, box + 3 * n_body);
+  for (int b = 0; b < n_body; ++b) s->set[b] = b;
+done:
+  memory_free(box);
+  if (st != OK) sets_release(s);
+  return st;
+}
+
+/* 1: some nodes move with others. */
+static int sets_linked(const body_sets *s) {
+  const domain *d = s->d;
+  return d->ties != NULL || (d->surface != NULL && d->surface->master != NULL);
+}
+
+/* Component c of node i, relative where the node moves with others. */
+static component sets_component(const body_sets *s, int i, int c) {
+  component x = node_component(s->d, i, s->contact[i], c);
+  if (s->tie[i] >= 0) {
+    x.links = &s->d->ties->to;
+    x.row = s->tie[i];
+  }
+  return x;
+}
+
+/* Set of a node, -1: at rest. */
+static int set_of(body_sets *s, int i) {
+  const int b = s->body[i];
+  return b < 0 || s->set[b] < 0 ? -1 : set_root(s->set, b);
+}
+
+/* Join (or not) the sets that a node meets; that of the node or else one of its
+ * masters, -1: all are at rest. */
+static int join_round(body_sets *s, int i, int join) {
+  int id = -1, node;
+  for (int c = 0; c < s->d->mesh->dim; ++c) {
+    const component x = sets_component(s, i, c);
+    const int n = component_terms(&x);
+    for (int t = 0; t < n; ++t) {
+      if (component_term(&x, t, &node) == 0) continue;
+      const int other = set_of(s, node);
+      if (join && id >= 0 && other >= 0) set_unite(s->set, id, other);
+      if (id < 0) id = other;
+    }
+  }
+  return id;
+}
+
+/* Nodes by set: a count, then the list. */
+static void list_nodes(body_sets *s) {
+  const int n_node = s->d->mesh->n_node, n_body = s->p.n_body;
+  memset(s->start, 0, (size_t)(n_body + 2) * sizeof *s->start);
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int i = 0; i < n_node; ++i) {
+      const int id = join_round(s, i, 0);
+      if (id < 0) continue;
+      if (pass == 0)
+        ++s->start[id + 2];
+      else
+        s->node[s->start[id + 1]++] = i;
+    }
+    for (int b = 0; pass == 0 && b < n_body; ++b)
+      s->start[b + 2] += s->start[b + 1];
+  }
+}
+
+/* Coefficients of a body: the pieces of a turned one move alike. */
+static int sets_columns(const body_sets *s, int b) {
+  const int modes = s->at[b].modes;
+  return modes == 1 ? 1 : modes * (s->first_piece[b + 1] - s->first_piece[b]);
+}
+
+/* Join the sets of bodies that are not at rest, number their coefficients and
+ * list their nodes. */
+static void sets_join(body_sets *s, joint by) {
+  const int n_body = s->p.n_body;
+  for (int i = 0; i < s->d->mesh->n_node; ++i)
+    if ((by >= TIES && s->tie[i] >= 0) ||
+        (by == TIES_AND_PAIRS && s->contact[i] >= 0))
+      join_round(s, i, 1);
+  memset(s->n, 0, (size_t)n_body * sizeof *s->n);
+  for (int b = 0; b < n_body; ++b) {
+    if (s->set[b] < 0) continue;
+    const int id = s->set[b] = set_root(s->set, b);
+    s->column[b] = s->n[id];
+    s->n[id] += sets_columns(s, b);
+  }
+  list_nodes(s);
+}
+
+/* The bodies of the sets with rest[n_body] 1 are at rest; sets_join before the
+ * next use. */
+static void sets_rest(body_sets *s, const unsigned char *rest) {
+  for (int b = 0; b < s->p.n_body; ++b)
+    if (s->set[b] >= 0 && rest[s->set[b]]) s->set[b] = -1;
+}
+
+/* First coefficient of the piece of an element, -1: at rest. */
+static int sets_elem_column(const body_sets *s, int elem_id) {
+  const int piece = s->p.piece[elem_id], b = s->p.body[piece];
+  const int modes = s->at[b].modes;
+  if (s->set[b] < 0) return -1;
+  return s->column[b] + (modes == 1 ? 0 : modes * (piece - s->first_piece[b]));
+}
+
+static int sets_node_column(const body_sets *s, int i) {
+  return s->body[i] < 0 ? -1 : sets_elem_column(s, s->p.elem[s->p.start[i]]);
+}
+
+/* Conditions on the coefficients of one set, upper triangle, row major. */
+typedef struct triangle {
+  const body_sets *s;
+  int id;       /* of the set */
+  int closed;   /* 1: joined surfaces touch. A turn of them all strains nothing
+                   then, whatever the gaps between them */
+  int n, n_row; /* coefficients; conditions */
+  double *r;    /* [n*n] */
+  int *end;     /* [n] row k of r is zero from end[k] on */
+  int *owner;   /* [n] body of a coefficient */
+  double *row;  /* [n] the next condition, zero but from "first" to "last" */
+  int first, last;
+  double most; /* the largest term of an entry of it */
 } triangle;
 
-/* One more condition: rotate the row into the triangle; row is destroyed. */
-static void add_row(triangle *t, double *row) {
-  for (int k = 0; k < t->n; ++k) {
+/* Orthonormal motions Z[n*rank] up to rank_limit; the last "exact" ones up to
+ * exact_limit. */
+typedef struct null_basis {
+  int rank, exact;
+  double *Z;
+} null_basis;
+
+static status triangle_new(const body_sets *s, int id, int closed,
+                           triangle *t) {
+  const int n = s->n[id];
+  *t = (triangle){.s = s, .id = id, .closed = closed, .n = n, .first = n};
+  PASS_NEW(t->r, (size_t)n * (size_t)n);
+  PASS_NEW(t->end, n);
+  PASS_NEW(t->owner, n);
+  PASS_NEW(t->row, n);
+  for (int b = id, k = 0; k < n; ++b)
+    for (int a = s->set[b] == id ? sets_columns(s, b) : 0; a > 0; --a)
+      t->owner[k++] = b;
+  return OK;
+}
+
+static void triangle_release(triangle *t) {
+  RELEASE(t->r, t->end, t->owner, t->row);
+}
+
+/* Is the next condition more than rounding? A pair within one piece has none.
+ */
+static int is_condition(const triangle *t) {
+  double most = 0;
+  for (int k = t->first; k < t->last; ++k) most = fmax(most, fabs(t->row[k]));
+  return most > exact_limit * t->most;
+}
+
+/* Rotate the next condition into the triangle. */
+static void add_row(triangle *t) {
+  double *row = t->row;
+  const int adds = is_condition(t);
+  t->n_row += adds;
+  for (int k = t->first; adds && k < t->last; ++k) {
     double *r = t->r + (size_t)k * (size_t)t->n;
     if (row[k] == 0) continue;
     const double h = hypot(r[k], row[k]), c = r[k] / h, s = row[k] / h;
-    for (int j = k; j < t->n; ++j) {
+    if (t->end[k] > t->last) t->last = t->end[k];
+    t->end[k] = t->last;
+    for (int j = k; j < t->last; ++j) {
       const double a = r[j], b = row[j];
       r[j] = c * a + s * b;
       row[j] = c * b - s * a;
     }
   }
+  for (int k = t->first; k < t->last; ++k) row[k] = 0;
+  t->first = t->n;
+  t->last = 0;
+  t->most = 0;
 }
 
-/* Coefficients of the displacement along "direction" at a node in the motion
- * of one piece. */
-static void motion_row(const body *b, int node, const double *direction,
-                       double *row) {
-  const mesh *m = b->d->mesh;
-  rigid_row(&b->at, m->x + (size_t)m->dim * (size_t)node, direction, row);
+/* To the next condition: factor times the displacement along "direction" at
+ * node x in the motion of a piece of body b with this first coefficient. */
+static void add_term(triangle *t, int b, int column, int x, double factor,
+                     const double *direction) {
+  const mesh *m = t->s->d->mesh;
+  const rigid_modes *at = &t->s->at[b];
+  double row[6];
+  modes_row(at, m->x + (size_t)m->dim * (size_t)x, direction, row);
+  for (int a = 0; a < at->modes; ++a) {
+    t->row[column + a] += factor * row[a];
+    t->most = fmax(t->most, fabs(factor * row[a]));
+  }
+  if (column < t->first) t->first = column;
+  if (column + at->modes > t->last) t->last = column + at->modes;
 }
 
-static int column_of(const body *b, int elem_id) {
-  return b->joined ? 0 : b->at.modes * (b->p->piece[elem_id] - b->first_piece);
+/* 1: the component does not move with bodies of other sets. */
+static int is_within(const triangle *t, const component *x) {
+  const int n = component_terms(x);
+  int node;
+  for (int k = 0; k < n; ++k) {
+    const double factor = component_term(x, k, &node);
+    const int id = t->s->set[t->s->body[node]];
+    if (factor != 0 && id >= 0 && id != t->id) return 0;
+  }
+  return 1;
 }
 
-static void add_condition(const body *b, int node, const double *direction,
-                          triangle *t) {
-  double row[MAX_COLUMNS] = {0};
-  motion_row(b, node, direction,
-             row + column_of(b, b->p->elem[b->p->start[node]]));
-  add_row(t, row);
+static void add_condition(triangle *t, int i, int c) {
+  const component x = sets_component(t->s, i, c);
+  const int n = is_within(t, &x) ? component_terms(&x) : 0;
+  int node;
+  for (int k = 0; k < n; ++k) {
+    const double factor = component_term(&x, k, &node);
+    const int column = sets_node_column(t->s, node);
+    if (factor != 0 && column >= 0)
+      add_term(t, t->s->body[node], column, t->closed ? i : node, factor,
+               x.direction);
+  }
+  add_row(t);
 }
 
 /* Pieces that meet at a node move it alike. */
-static void add_hinges(const body *b, int node, triangle *t) {
-  const pieces *p = b->p;
-  const int dim = b->d->mesh->dim,
-            first = column_of(b, p->elem[p->start[node]]);
-  for (size_t q = p->start[node] + 1; q < p->start[node + 1]; ++q) {
-    const int other = column_of(b, p->elem[q]);
-    if (other == first) continue;
-    for (int c = 0; c < dim; ++c) {
-      double row[MAX_COLUMNS] = {0}, direction[3] = {0};
+static void add_hinges(triangle *t, int i) {
+  const body_sets *s = t->s;
+  const pieces *p = &s->p;
+  const int first = sets_node_column(s, i);
+  for (size_t q = p->start[i] + 1; q < p->start[i + 1]; ++q) {
+    const int other = sets_elem_column(s, p->elem[q]);
+    for (int c = 0; c < s->d->mesh->dim && other != first; ++c) {
+      double direction[3] = {0};
       direction[c] = 1;
-      motion_row(b, node, direction, row + first);
-      motion_row(b, node, direction, row + other);
-      for (int k = 0; k < b->at.modes; ++k) row[other + k] = -row[other + k];
-      add_row(t, row);
+      add_term(t, s->body[i], first, i, 1, direction);
+      add_term(t, s->body[i], other, i, -1, direction);
+      add_row(t);
     }
   }
 }
 
-static void add_supports(const body *b, triangle *t) {
-  const domain *d = b->d;
-  const int dim = d->mesh->dim;
-  for (int k = 0; k < b->n_node; ++k) {
-    const int i = b->node[k], q = b->contact[i];
-    if (!b->joined && b->n_piece > 1) add_hinges(b, i, t);
-    for (int c = 0; c < dim; ++c) {
-      double direction[3] = {0};
-      for (int j = 0; j < dim; ++j)
-        direction[j] =
-            q < 0 ? j == c : d->surface->frame[dim * (dim * q + c) + j];
-      if (q < 0 ? d->fixed[(size_t)dim * (size_t)i + (size_t)c]
-                : d->surface->held[dim * q + c])
-        add_condition(b, i, direction, t);
+/* Is component c of node i prescribed? Tied ones are, relative to masters. */
+static int is_prescribed(const body_sets *s, int i, int c) {
+  const domain *d = s->d;
+  const int dim = d->mesh->dim, q = s->contact[i];
+  return q >= 0
+             ? d->surface->held[dim * q + c]
+             : s->tie[i] >= 0 || d->fixed[(size_t)dim * (size_t)i + (size_t)c];
+}
+
+static void add_supports(triangle *t) {
+  const body_sets *s = t->s;
+  for (int k = s->start[t->id]; k < s->start[t->id + 1]; ++k) {
+    const int i = s->node[k];
+    if (s->set[s->body[i]] >= 0) add_hinges(t, i);
+    for (int c = 0; c < s->d->mesh->dim; ++c)
+      if (is_prescribed(s, i, c)) add_condition(t, i, c);
+  }
+}
+
+/* Contact unknowns that are one-sided normals, or the other ones. */
+static void add_contact(triangle *t, int normals) {
+  const body_sets *s = t->s;
+  const contact_surface *f = s->d->surface;
+  for (int k = s->start[t->id]; k < s->start[t->id + 1]; ++k) {
+    const int i = s->node[k], q = s->contact[i];
+    for (int c = 0; q >= 0 && c < f->dim; ++c) {
+      const int one_sided = c == 0 || f->side_id[(f->dim - 1) * q + c - 1] >= 0;
+      if (!f->held[f->dim * q + c] && one_sided == normals)
+        add_condition(t, i, c);
     }
   }
 }
 
-/* Contact unknowns that are normals of an obstacle, or the other ones. */
-static void add_contact(const body *b, int normals, triangle *t) {
-  const contact_surface *s = b->d->surface;
-  if (s == NULL) return;
-  for (int k = 0; k < b->n_node; ++k) {
-    const int q = b->contact[b->node[k]];
-    if (q < 0) continue;
-    for (int c = 0; c < s->dim; ++c) {
-      const int one_sided = c == 0 || s->side_id[(s->dim - 1) * q + c - 1] >= 0;
-      double direction[3] = {0};
-      if (s->held[s->dim * q + c] || one_sided != normals) continue;
-      memcpy(direction, s->frame + s->dim * (s->dim * q + c),
-             (size_t)s->dim * sizeof *direction);
-      add_condition(b, s->node_id[q], direction, t);
-    }
-  }
-}
-
-/* Orthonormal null space of the triangle, singular values up to a part "limit"
- * of the largest: rows of Z; its dimension. */
-static status null_space(const triangle *t, double limit, double *Z,
-                         int *rank) {
+/* 1: surely no singular value below rank_limit of the largest. The square of
+ * their least ratio is not below the product of the reciprocal condition
+ * numbers in the 1-norm and the infinity norm, whose estimates may miss by a
+ * factor. */
+static status is_regular(const triangle *t, int *regular) {
+  enum { MISSED = 10 };
   const int n = t->n;
-  OWNED double *a = NULL, *u = NULL, *work = NULL;
-  double s[MAX_COLUMNS], none;
-  PASS_NEW(a, n * n);
-  PASS_NEW(u, n * n);
+  OWNED double *work = NULL;
+  OWNED lapack_int *number = NULL;
+  double one, infinity;
+  PASS_NEW(work, 3 * n);
+  PASS_NEW(number, n);
+  if (LAPACKE_dtrcon_work(LAPACK_COL_MAJOR, '1', 'L', 'N', n, t->r, n, &one,
+                          work, number) != 0 ||
+      LAPACKE_dtrcon_work(LAPACK_COL_MAJOR, 'I', 'L', 'N', n, t->r, n,
+                          &infinity, work, number) != 0)
+    RAISE(ERR_INTERNAL, "condition of the supports not found");
+  *regular = sqrt(one * infinity) > MISSED * rank_limit;
+  return OK;
+}
+
+/* Null space of the triangle: the left singular vectors of its transpose, in
+ * column major order. Z stays NULL if there is none. */
+static status find_null_space(const triangle *t, double *u, null_basis *z) {
+  const int n = t->n;
+  OWNED double *a = NULL, *s = NULL, *work = NULL;
+  double none;
+  PASS_NEW(a, (size_t)n * (size_t)n);
+  PASS_NEW(s, n);
   PASS_NEW(work, 16 * n);
-  /* The transpose in column major order: its left vectors are wanted. */
-  memcpy(a, t->r, (size_t)(n * n) * sizeof *a);
+  memcpy(a, t->r, (size_t)n * (size_t)n * sizeof *a);
   if (LAPACKE_dgesvd_work(LAPACK_COL_MAJOR, 'A', 'N', n, n, a, n, s, u, n,
                           &none, 1, work, 16 * n) != 0)
     RAISE(ERR_INTERNAL, "singular values of the supports not found");
-  *rank = 0;
   for (int k = 0; k < n; ++k) {
-    if (s[0] > 0 && s[k] > limit * s[0]) continue;
-    memcpy(Z + (size_t)(*rank)++ * (size_t)n, u + (size_t)k * (size_t)n,
-           (size_t)n * sizeof *Z);
+    z->rank += !(s[k] > rank_limit * s[0]);
+    z->exact += !(s[k] > exact_limit * s[0]);
   }
+  memmove(u, u + (size_t)(n - z->rank) * (size_t)n,
+          (size_t)z->rank * (size_t)n * sizeof *u);
+  return OK;
+}
+
+static status null_space(const triangle *t, null_basis *z) {
+  const int n = t->n;
+  int regular = 0;
+  *z = (null_basis){0};
+  if (t->n_row >= n) PASS(is_regular(t, &regular));
+  if (regular) return OK;
+  PASS_NEW(z->Z, (size_t)n * (size_t)n);
+  if (t->n_row > 0) return find_null_space(t, z->Z, z);
+  z->rank = z->exact = n;
+  for (int k = 0; k < n; ++k) z->Z[(size_t)k * (size_t)(n + 1)] = 1;
   return OK;
 }
 
 /* Reduced row echelon form, so that motions come out along the axes. */
-static void reduce_rows(int n_row, int n, double *Z) {
-  int done = 0;
-  for (int col = 0; col < n && done < n_row; ++col) {
-    int best = done;
-    for (int i = done; i < n_row; ++i)
+static void reduce_rows(size_t n_row, size_t n, double *Z) {
+  size_t done = 0;
+  for (size_t col = 0; col < n && done < n_row; ++col) {
+    size_t best = done;
+    for (size_t i = done; i < n_row; ++i)
       if (fabs(Z[i * n + col]) > fabs(Z[best * n + col])) best = i;
     if (fabs(Z[best * n + col]) < 1e-6) continue;
-    for (int j = 0; j < n; ++j) {
+    for (size_t j = 0; j < n; ++j) {
       const double v = Z[best * n + j];
       Z[best * n + j] = Z[done * n + j];
       Z[done * n + j] = v;
     }
     const double pivot = Z[done * n + col];
-    for (int j = 0; j < n; ++j) Z[done * n + j] /= pivot;
-    for (int i = 0; i < n_row; ++i) {
+    for (size_t j = 0; j < n; ++j) Z[done * n + j] /= pivot;
+    for (size_t i = 0; i < n_row; ++i) {
       const double factor = Z[i * n + col];
       if (i == done || factor == 0) continue;
-      for (int j = 0; j < n; ++j) Z[i * n + j] -= factor * Z[done * n + j];
+      for (size_t j = 0; j < n; ++j) Z[i * n + j] -= factor * Z[done * n + j];
     }
     ++done;
   }
-}
-
-/* "x" or "(0.6, 0.8, 0)" for a direction; "(1, 2)" for a point. */
-static void write_vector(int dim, const double *v, int direction, char *text,
-                         size_t size) {
-  double most = 0, norm = 0;
-  int at = 0, single = direction;
-  for (int c = 0; c < dim; ++c) {
-    norm += v[c] * v[c];
-    if (fabs(v[c]) > most) {
-      most = fabs(v[c]);
-      at = c;
-    }
-  }
-  for (int c = 0; c < dim; ++c)
-    if (c != at && fabs(v[c]) > 1e-6 * most) single = 0;
-  if (single) {
-    snprintf(text, size, "%c", "xyz"[at]);
-    return;
-  }
-  size_t used = 0;
-  for (int c = 0; c < dim && used < size; ++c)
-    used += (size_t)snprintf(text + used, size - used, "%s%.6g",
-                             c == 0 ? "(" : ", ",
-                             direction ? v[c] / sqrt(norm) : v[c]);
-  if (used < size) snprintf(text + used, size - used, ")");
-}
-
-/* A coordinate of the body from one relative to its centre and size. */
-static double to_coordinate(const body *b, int c, double relative) {
-  const double x = b->at.centre[c] + b->at.size * relative;
-  return fabs(x) < 1e-9 * b->at.size ? 0 : x;
-}
-
-static void write_rotation_3d(const body *b, const double *w, const double *t,
-                              char *text, size_t size) {
-  char axis[64], through[64];
-  double ww = 0, tw = 0, point[3];
-  for (int c = 0; c < 3; ++c) {
-    ww += w[c] * w[c];
-    tw += t[c] * w[c];
-  }
-  for (int c = 0; c < 3; ++c) {
-    const int i = (c + 1) % 3, j = (c + 2) % 3;
-    point[c] = to_coordinate(b, c, (w[i] * t[j] - w[j] * t[i]) / ww);
-  }
-  write_vector(3, w, 1, axis, sizeof axis);
-  write_vector(3, point, 0, through, sizeof through);
-  snprintf(text, size, "%s about %s through %s",
-           fabs(tw) > 1e-6 * ww ? "screw motion" : "rotation", axis, through);
-}
-
-/* Name the motion v of one piece. */
-static void write_motion(const body *b, const double *v, char *text,
-                         size_t size) {
-  const int dim = b->d->mesh->dim;
-  char vector[64];
-  if (b->at.modes == 1) {
-    snprintf(text, size, "translation along y");
-  } else if (dim == 2 && fabs(v[0]) > 1e-6 * hypot(v[1], v[2])) {
-    const double point[2] = {to_coordinate(b, 0, -v[2] / v[0]),
-                             to_coordinate(b, 1, v[1] / v[0])};
-    write_vector(2, point, 0, vector, sizeof vector);
-    snprintf(text, size, "rotation about %s", vector);
-  } else if (dim == 3 &&
-             v[0] * v[0] + v[1] * v[1] + v[2] * v[2] >
-                 1e-12 * (v[3] * v[3] + v[4] * v[4] + v[5] * v[5])) {
-    write_rotation_3d(b, v, v + 3, text, size);
-  } else {
-    write_vector(dim, v + (dim == 2 ? 1 : 3), 1, vector, sizeof vector);
-    snprintf(text, size, "translation along %s", vector);
-  }
-}
-
-static void describe(const body *b, const double *z, free_motion *f) {
-  int most = 0;
-  double largest = -1;
-  for (int q = 0; q < (b->joined ? 1 : b->n_piece); ++q) {
-    double norm = 0;
-    for (int k = 0; k < b->at.modes; ++k)
-      norm += z[b->at.modes * q + k] * z[b->at.modes * q + k];
-    if (norm > largest * (1 + 1e-6)) {
-      largest = norm;
-      most = q;
-    }
-  }
-  const mesh *m = b->d->mesh;
-  f->body_id = b->id;
-  f->elem_no = m->elem_no[b->p->piece_elem[b->first_piece + most]];
-  write_motion(b, z + b->at.modes * most, f->text, sizeof f->text);
 }
 
 typedef struct motion_list {
@@ -271,171 +476,202 @@ typedef struct motion_list {
   free_motion *item;
 } motion_list;
 
-static int turns(const body *b, const double *z) {
-  const int rotations = b->at.modes == 6 ? 3 : b->at.modes == 3 ? 1 : 0;
+/* Modes of the piece with a coefficient. */
+static int modes_at(const triangle *t, int k) {
+  return t->s->at[t->owner[k]].modes;
+}
+
+/* Name the motion z by the piece that moves most. */
+static void describe(const triangle *t, const double *z, free_motion *f) {
+  const body_sets *s = t->s;
+  double largest = -1;
+  int most = 0;
+  for (int k = 0; k < t->n; k += modes_at(t, k)) {
+    const double norm = cblas_ddot(modes_at(t, k), z + k, 1, z + k, 1);
+    if (!(norm > largest * (1 + 1e-6))) continue;
+    largest = norm;
+    most = k;
+  }
+  const int b = t->owner[most];
+  const int piece = s->first_piece[b] + (most - s->column[b]) / s->at[b].modes;
+  f->set_id = t->id;
+  f->body_id = b;
+  f->elem_no = s->d->mesh->elem_no[s->p.piece_elem[piece]];
+  modes_text(&s->at[b], z + most, f->text, sizeof f->text);
+}
+
+static int turns(const triangle *t, const double *z) {
   double most = 0;
-  for (int k = 0; k < b->n; ++k)
-    if (k % b->at.modes < rotations) most = fmax(most, fabs(z[k]));
+  for (int k = 0; k < t->n; k += modes_at(t, k))
+    for (int a = 0; a < modes_at(t, k) / 2; ++a) /* 3-D: 3, 2-D: 1 */
+      most = fmax(most, fabs(z[k + a]));
   return most > 1e-6;
 }
 
-/* Add z to the orthonormal rows of "known" unless it depends on them. */
-static int is_new_motion(int n, const double *z, double *known, int *n_known) {
-  double rest[MAX_COLUMNS], norm = 0, left = 0;
+/* Motions of one set, as they are found. */
+typedef struct finder {
+  triangle t;
+  null_basis of[HELD_BY_CONTACT + 1]; /* what is left without that and less */
+  double *known;                      /* [n*n] orthonormal rows */
+  double *rest, *part;                /* [n] */
+  int n_known;
+} finder;
+
+/* Add z to the known rows unless it depends on them. */
+static int is_new_motion(finder *f, const double *z) {
+  const int n = f->t.n, m = f->n_known;
+  double *rest = f->rest;
   memcpy(rest, z, (size_t)n * sizeof *rest);
-  for (int j = 0; j < n; ++j) norm += rest[j] * rest[j];
-  for (int pass = 0; pass < 2; ++pass)
-    for (int q = 0; q < *n_known; ++q) {
-      double dot = 0;
-      for (int j = 0; j < n; ++j) dot += known[q * n + j] * rest[j];
-      for (int j = 0; j < n; ++j) rest[j] -= dot * known[q * n + j];
-    }
-  for (int j = 0; j < n; ++j) left += rest[j] * rest[j];
-  if (!(left > 1e-12 * norm)) return 0;
-  for (int j = 0; j < n; ++j) known[*n_known * n + j] = rest[j] / sqrt(left);
-  ++*n_known;
+  for (int pass = 0; pass < 2; ++pass) {
+    cblas_dgemv(CblasColMajor, CblasTrans, n, m, 1, f->known, n, rest, 1, 0,
+                f->part, 1);
+    cblas_dgemv(CblasColMajor, CblasNoTrans, n, m, -1, f->known, n, f->part, 1,
+                1, rest, 1);
+  }
+  const double left = cblas_ddot(n, rest, 1, rest, 1);
+  if (!(left > 1e-12 * cblas_ddot(n, z, 1, z, 1))) return 0;
+  cblas_dscal(n, 1 / sqrt(left), rest, 1);
+  memcpy(f->known + (size_t)m * (size_t)n, rest, (size_t)n * sizeof *rest);
+  ++f->n_known;
   return 1;
 }
 
-/* Append the motions of Z[n_row*n] that are new, translations first. */
-static status append_motions(const body *b, motion_hold hold, int n_row,
-                             double *Z, double *known, int *n_known,
-                             motion_list *list) {
-  status st = OK;
-  reduce_rows(n_row, b->n, Z);
+/* Append the motions of a null space that are new, translations first. */
+static status append_motions(finder *f, motion_hold hold, motion_list *list) {
+  const null_basis *of = &f->of[hold];
+  const size_t n = (size_t)f->t.n;
+  reduce_rows((size_t)of->rank, n, of->Z);
   for (int rotation = 0; rotation < 2; ++rotation)
-    for (int i = 0; i < n_row; ++i) {
-      const double *z = Z + i * b->n;
-      if (turns(b, z) != rotation || !is_new_motion(b->n, z, known, n_known))
-        continue;
-      GROW(list->item, list->n, list->capacity);
+    for (int i = 0; i < of->rank; ++i) {
+      const double *z = of->Z + (size_t)i * n;
+      if (turns(&f->t, z) != rotation || !is_new_motion(f, z)) continue;
+      PASS_GROW(list->item, list->n, list->capacity);
       list->item[list->n].held_by = hold;
-      describe(b, z, &list->item[list->n++]);
+      describe(&f->t, z, &list->item[list->n++]);
     }
-done:
-  return st;
-}
-
-/* Store what the supports in t leave free to rounding. */
-static status keep_motions(const body *b, const triangle *t, rigid_set *r) {
-  int rank = 0;
-  OWNED double *Z = NULL;
-  PASS_NEW(Z, b->n * b->n);
-  PASS(null_space(t, exact_limit, Z, &rank));
-  if (rank == 0) return OK;
-  PASS_GROW(r->body, r->n_body, r->capacity);
-  rigid_body *to = &r->body[r->n_body++];
-  *to = (rigid_body){
-      .id = b->id, .at = b->at, .n = b->n, .k = rank, .n_node = b->n_node};
-  PASS_NEW(to->node, b->n_node);
-  PASS_NEW(to->column, b->n_node);
-  memcpy(to->node, b->node, (size_t)b->n_node * sizeof *to->node);
-  for (int i = 0; i < b->n_node; ++i)
-    to->column[i] = column_of(b, b->p->elem[b->p->start[b->node[i]]]);
-  to->Y = Z;
-  Z = NULL;
   return OK;
 }
 
-static status body_motions(const body *b, motion_list *list, rigid_set *r) {
+static status add_set(const triangle *t, const null_basis *z,
+                      rigid_motions *r) {
+  const body_sets *s = t->s;
+  const int *node = s->node + s->start[t->id];
+  const size_t n = (size_t)t->n;
+  PASS_GROW(r->set, r->n_set, r->capacity);
+  rigid_set *to = &r->set[r->n_set++];
+  *to = (rigid_set){.n = t->n,
+                    .n_motion = z->rank,
+                    .k = z->exact,
+                    .n_node = s->start[t->id + 1] - s->start[t->id]};
+  PASS_NEW(to->Y, n * (size_t)to->k);
+  PASS_NEW(to->owner, n);
+  PASS_NEW(to->node, to->n_node);
+  memcpy(to->Y, z->Z + n * (size_t)(z->rank - z->exact),
+         n * (size_t)to->k * sizeof *to->Y);
+  memcpy(to->owner, t->owner, n * sizeof *to->owner);
+  memcpy(to->node, node, (size_t)to->n_node * sizeof *node);
+  return OK;
+}
+
+/* Store what supports, hinges and ties leave, the gaps of ties counted: their
+ * masters pull where they are. */
+static status keep_motions(const finder *f, rigid_motions *r) {
   status st = OK;
-  triangle *t = NULL;
-  double *Z[3] = {NULL, NULL, NULL}, *known = NULL;
-  int rank[3], n_known = 0;
-  NEW(t, 1);
-  NEW(known, b->n * b->n);
-  t->n = b->n;
-  add_supports(b, t);
-  if (r != NULL) TRY(keep_motions(b, t, r));
-  for (int hold = HELD_BY_CONTACT; hold >= HELD_BY_NOTHING; --hold) {
-    NEW(Z[hold], b->n * b->n);
-    TRY(null_space(t, rank_limit, Z[hold], &rank[hold]));
-    if (hold > HELD_BY_NOTHING) add_contact(b, hold == HELD_BY_CONTACT, t);
-  }
+  triangle t = {0};
+  null_basis z = {0};
+  if (f->t.s->d->ties == NULL)
+    return add_set(&f->t, &f->of[HELD_BY_CONTACT], r);
+  TRY(triangle_new(f->t.s, f->t.id, 0, &t));
+  add_supports(&t);
+  TRY(null_space(&t, &z));
+  if (z.rank > 0) TRY(add_set(&t, &z, r));
+done:
+  triangle_release(&t);
+  memory_free(z.Z);
+  return st;
+}
+
+static status set_motions(const body_sets *s, int id, motion_list *list,
+                          rigid_motions *r) {
+  status st = OK;
+  finder f = {0};
+  TRY(triangle_new(s, id, 1, &f.t));
+  const int n = f.t.n;
+  add_supports(&f.t);
+  TRY(null_space(&f.t, &f.of[HELD_BY_CONTACT]));
+  if (f.of[HELD_BY_CONTACT].rank == 0) goto done;
+  if (r != NULL) TRY(keep_motions(&f, r));
+  add_contact(&f.t, 1);
+  TRY(null_space(&f.t, &f.of[HELD_BY_FRICTION]));
+  add_contact(&f.t, 0);
+  TRY(null_space(&f.t, &f.of[HELD_BY_NOTHING]));
+  NEW(f.known, (size_t)n * (size_t)n);
+  NEW(f.rest, n);
+  NEW(f.part, n);
   for (int hold = HELD_BY_NOTHING; hold <= HELD_BY_CONTACT; ++hold)
-    TRY(append_motions(b, (motion_hold)hold, rank[hold], Z[hold], known,
-                       &n_known, list));
+    TRY(append_motions(&f, (motion_hold)hold, list));
 done:
-  RELEASE(t, known);
-  for (int i = 0; i < 3; ++i) memory_free(Z[i]);
+  triangle_release(&f.t);
+  for (int i = 0; i <= HELD_BY_CONTACT; ++i) memory_free(f.of[i].Z);
+  RELEASE(f.known, f.rest, f.part);
   return st;
 }
 
-/* Centre and extent of the nodes of the body. */
-static void measure_body(body *b) {
-  const mesh *m = b->d->mesh;
-  double low[3], high[3];
-  for (int i = 0; i < b->n_node; ++i) {
-    const double *x = m->x + (size_t)m->dim * (size_t)b->node[i];
-    for (int c = 0; c < m->dim; ++c) {
-      if (i == 0 || x[c] < low[c]) low[c] = x[c];
-      if (i == 0 || x[c] > high[c]) high[c] = x[c];
-    }
-  }
-  for (int c = 0; c < m->dim; ++c) {
-    b->at.centre[c] = 0.5 * (low[c] + high[c]);
-    b->at.size = fmax(b->at.size, high[c] - low[c]);
-  }
-}
-
-/* Nodes sorted by body: node[start[b] .. start[b+1]). */
-static status nodes_by_body(const mesh *m, const pieces *p, int **start,
-                            int **node) {
+/* 1: supports, hinges and ties leave the set no motion. */
+static status is_at_rest(const body_sets *s, int id, unsigned char *rest) {
   status st = OK;
-  int *s = NULL, *list = NULL;
-  NEW(s, p->n_body + 2);
-  NEW(list, m->n_node);
-  for (int pass = 0; pass < 2; ++pass) {
-    for (int i = 0; i < m->n_node; ++i) {
-      if (p->start[i] == p->start[i + 1]) continue;
-      const int b = p->body[p->piece[p->elem[p->start[i]]]];
-      if (pass == 0)
-        ++s[b + 2];
-      else
-        list[s[b + 1]++] = i;
-    }
-    for (int b = 0; pass == 0 && b < p->n_body; ++b) s[b + 2] += s[b + 1];
-  }
+  triangle t = {0};
+  null_basis z = {0};
+  TRY(triangle_new(s, id, 1, &t));
+  add_supports(&t);
+  TRY(null_space(&t, &z));
+  *rest = z.rank == 0;
 done:
-  *start = s;
-  *node = list;
+  triangle_release(&t);
+  memory_free(z.Z);
   return st;
+}
+
+/* Bodies that their supports hold leave first, then those tied to them. */
+static status drop_bodies_at_rest(body_sets *s) {
+  OWNED unsigned char *rest = NULL;
+  PASS_NEW(rest, s->p.n_body);
+  for (int by = NOTHING; by <= TIES; ++by) {
+    sets_join(s, (joint)by);
+    for (int id = 0; id < s->p.n_body; ++id)
+      if (s->set[id] == id) PASS(is_at_rest(s, id, &rest[id]));
+    sets_rest(s, rest);
+  }
+  return OK;
+}
+
+/* What rigid.c needs of the bodies. */
+static status keep_places(const body_sets *s, rigid_motions *r) {
+  const size_t n_body = (size_t)s->p.n_body;
+  const int n_node = s->d->mesh->n_node;
+  r->n_body = s->p.n_body;
+  PASS_NEW(r->at, n_body);
+  PASS_NEW(r->body, n_node);
+  PASS_NEW(r->column, n_node);
+  memcpy(r->at, s->at, n_body * sizeof *r->at);
+  memcpy(r->body, s->body, (size_t)n_node * sizeof *r->body);
+  for (int i = 0; i < n_node; ++i) r->column[i] = sets_node_column(s, i);
+  return OK;
 }
 
 status support_motions(const domain *d, int *n, free_motion **list,
-                       unsigned char *floating, rigid_set *r) {
+                       rigid_motions *r) {
   status st = OK;
-  const mesh *m = d->mesh;
-  pieces p = {0};
+  body_sets s = {0};
   motion_list found = {0};
-  int *contact = NULL, *start = NULL, *node = NULL;
-  NEW(contact, m->n_node);
-  TRY(pieces_find(m, &p));
-  TRY(nodes_by_body(m, &p, &start, &node));
-  for (int i = 0; i < m->n_node; ++i) contact[i] = -1;
-  for (int q = 0; d->surface != NULL && q < d->surface->n; ++q)
-    contact[d->surface->node_id[q]] = q;
-  for (int q = 0; q < p.n_piece;) {
-    body b = {.d = d, .p = &p, .contact = contact, .id = p.body[q]};
-    b.first_piece = q;
-    while (q < p.n_piece && p.body[q] == b.id) ++q;
-    b.n_piece = q - b.first_piece;
-    b.n_node = start[b.id + 1] - start[b.id];
-    b.node = node + start[b.id];
-    const int section = d->section_id[p.piece_elem[b.first_piece]];
-    b.at.dim = m->dim;
-    b.at.modes = m->dim == 3 ? 6 : d->kin[section] == AXISYMMETRIC ? 1 : 3;
-    b.joined = b.n_piece > MAX_PIECES || b.at.modes == 1;
-    b.n = b.at.modes * (b.joined ? 1 : b.n_piece);
-    measure_body(&b);
-    const int before = found.n;
-    TRY(body_motions(&b, &found, r));
-    for (int i = 0; floating != NULL && i < b.n_node; ++i)
-      floating[b.node[i]] = found.n > before;
-  }
+  TRY(sets_find(d, &s));
+  if (sets_linked(&s)) TRY(drop_bodies_at_rest(&s));
+  sets_join(&s, TIES_AND_PAIRS);
+  if (r != NULL) TRY(keep_places(&s, r));
+  for (int id = 0; id < s.p.n_body; ++id)
+    if (s.set[id] == id) TRY(set_motions(&s, id, &found, r));
 done:
-  pieces_release(&p);
-  RELEASE(contact, start, node);
+  sets_release(&s);
   if (st != OK) {
     memory_free(found.item);
     found = (motion_list){0};
@@ -446,5 +682,5 @@ done:
 }
 
 status domain_free_motions(const domain *d, int *n, free_motion **list) {
-  return support_motions(d, n, list, NULL, NULL);
+  return support_motions(d, n, list, NULL);
 }

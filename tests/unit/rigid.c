@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "fem/fem.h"
 #include "support/scene.h"
+#include "support/stack.h"
 #include "support/unit.h"
 
 #include <math.h>
@@ -16,6 +17,8 @@ typedef struct layers {
   kinematics kin[2];
   int n_motion;
   void (*motion)(const double *x, int k, double *u);
+  stack *blocks;       /* has s; NULL: one body */
+  int set[STACK_MOST]; /* motions 3*set .. +2 move these blocks; -1: none do */
 } layers;
 
 static void plane_motion(const double *x, int k, double *u) {
@@ -148,8 +151,50 @@ static void brick(layers *l, double contrast) {
   two_moduli(l, contrast, (double[]){0.2, 0, 1, 1});
 }
 
+static void stacked(layers *l, const char *joints, const int *cells,
+                    const int *set, double contrast) {
+  l->blocks = stack_new(joints, cells, 0);
+  l->s = l->blocks->s;
+  memcpy(l->set, set, (size_t)l->blocks->n_block * sizeof *set);
+  l->motion = plane_motion;
+  l->n_motion = 0;
+  for (int b = 0; b < l->blocks->n_block; ++b)
+    if (3 * (set[b] + 1) > l->n_motion) l->n_motion = 3 * (set[b] + 1);
+  if (set[0] < 0)
+    for (int c = 0; c < 2; ++c) stack_fix(l->blocks, c);
+  two_moduli(l, contrast, (double[]){0, 1, 1});
+}
+
+/* On a supported body, which is the master; the slave. */
+static void upper_slave(layers *l, double contrast) {
+  stacked(l, "-P", (int[]){3, 4}, (int[]){-1, 0}, contrast);
+}
+
+static void lower_slave(layers *l, double contrast) {
+  stacked(l, "-M", (int[]){3, 4}, (int[]){-1, 0}, contrast);
+}
+
+/* A pair above a contact, another tied to it, a third on that. */
+static void tower(layers *l, double contrast) {
+  stacked(l, "OPTP", (int[]){3, 3, 2, 4}, (int[]){0, 1, 1, 2}, contrast);
+}
+
+/* A master of two slaves is between. */
+static void sandwich(layers *l, double contrast) {
+  stacked(l, "OMP", (int[]){4, 3, 5}, (int[]){0, 1, 2}, contrast);
+}
+
+/* A gap that varies: tied nodes follow a turn of the lower body, where they
+ * are above it, by different displacements, which strain the upper one. */
+static void gap_of_a_tie(layers *l, double contrast) {
+  stacked(l, "OT", (int[]){3, 4}, (int[]){0, 0}, contrast);
+  l->s->m->x[2 * l->blocks->first[1] + 1] += 1.0 / 16;
+  l->n_motion = 2;
+}
+
 static void (*const scenes[])(layers *, double) = {
-    column, block, stiff_foot, disc, hinged, small_foot, brick};
+    column, block,       stiff_foot,  disc,  hinged,   small_foot,
+    brick,  upper_slave, lower_slave, tower, sandwich, gap_of_a_tie};
 static const double contrasts[] = {1, 1e6, 1e8};
 enum { SCENES = sizeof scenes / sizeof *scenes, CASES = 3 * SCENES };
 
@@ -160,36 +205,51 @@ static void solve(const layers *l, stiffness **k, condensed **c) {
   ck_assert_msg(condense(*k, &l->s->d, c) == OK, "%s", status_message());
 }
 
+static void drop(layers *l) {
+  if (l->blocks != NULL)
+    stack_free(l->blocks);
+  else
+    scene_free(l->s);
+}
+
 static void end(layers *l, stiffness *k, condensed *c) {
   condensed_free(c);
   stiffness_free(k);
-  scene_free(l->s);
+  drop(l);
+}
+
+/* Displacements of motion "mode": u[dim*n_node]. */
+static void displace(const layers *l, int mode, double *u) {
+  const mesh *m = l->s->m;
+  for (int i = 0, b = 0; i < m->n_node; ++i) {
+    while (l->blocks != NULL && i >= l->blocks->first[b + 1]) ++b;
+    if (l->blocks == NULL || l->set[b] == mode / 3)
+      l->motion(m->x + m->dim * i, l->blocks == NULL ? mode : mode % 3,
+                u + m->dim * i);
+  }
 }
 
 /* Contact components of motion "mode", 0 where held. */
 static void contact_part(const layers *l, int mode, double *v) {
   const contact_surface *s = &l->s->surface;
-  const int dim = l->s->m->dim;
-  for (int q = 0; q < s->n; ++q) {
-    double u[3];
-    l->motion(s->x + dim * q, mode, u);
-    for (int r = 0; r < dim; ++r) {
-      v[dim * q + r] = 0;
-      for (int c = 0; c < dim && !s->held[dim * q + r]; ++c)
-        v[dim * q + r] += s->frame[dim * (dim * q + r) + c] * u[c];
-    }
-  }
+  double *u = get((size_t)(s->dim * l->s->m->n_node));
+  displace(l, mode, u);
+  surface_relative(s, u, v);
+  for (int i = 0; i < s->dim * s->n; ++i)
+    if (s->held[i]) v[i] = 0;
+  free(u);
 }
 
 START_TEST(rigid_motion_needs_no_force) {
-  layers l;
+  layers l = {0};
   stiffness *k;
   condensed *c;
   scenes[_i / 3](&l, contrasts[_i % 3]);
   solve(&l, &k, &c);
   const size_t m = (size_t)(l.s->m->dim * l.s->surface.n);
-  const double *A = condensed_matrix(c);
+  const double *A = condensed_matrix(c), *kernel;
   double *v = get(m);
+  ck_assert_int_eq(condensed_kernel(c, &kernel), l.n_motion);
   for (int mode = 0; mode < l.n_motion; ++mode) {
     double worst = 0, most = 0, arm = 0;
     contact_part(&l, mode, v);
@@ -215,7 +275,7 @@ END_TEST
 /* Resultants and moments of loads at all nodes, with prescribed displacements
  * that move nothing rigidly. */
 START_TEST(condensed_load_has_the_resultants_of_the_load) {
-  layers l;
+  layers l = {0};
   stiffness *k;
   condensed *c;
   scenes[_i / 3](&l, contrasts[_i % 3]);
@@ -223,7 +283,7 @@ START_TEST(condensed_load_has_the_resultants_of_the_load) {
   const int dim = l.s->m->dim;
   const size_t N = (size_t)(dim * l.s->m->n_node);
   const size_t m = (size_t)(dim * l.s->surface.n);
-  double *F = get(N), *ud = get(N), *f = get(m), *v = get(m);
+  double *F = get(N), *ud = get(N), *u = get(N), *f = get(m), *v = get(m);
   unsigned seed = 11;
   for (size_t i = 0; i < N; ++i) F[i] = l.s->fixed[i] ? 0 : scene_random(&seed);
   for (size_t i = 0; i < N; ++i) ud[i] = scene_random(&seed);
@@ -237,17 +297,16 @@ START_TEST(condensed_load_has_the_resultants_of_the_load) {
         forces += fabs(f[i]);
         arm = fmax(arm, fabs(v[i]));
       }
-      for (int i = 0; i < l.s->m->n_node; ++i) {
-        double u[3];
-        l.motion(l.s->m->x + dim * i, mode, u);
-        for (int r = 0; r < dim; ++r) given += u[r] * F[dim * i + r];
-      }
+      memset(u, 0, N * sizeof *u);
+      displace(&l, mode, u);
+      for (size_t i = 0; i < N; ++i) given += u[i] * F[i];
       ck_assert_msg(fabs(kept - given) <= 1e-15 * arm * forces,
                     "motion %d: %.17g for %.17g", mode, kept, given);
     }
   }
   free(F);
   free(ud);
+  free(u);
   free(f);
   free(v);
   end(&l, k, c);
@@ -256,7 +315,7 @@ END_TEST
 
 /* Diagonal of A and f for lengths times 2^power, stiffness per length kept. */
 static void scaled(void (*make)(layers *, double), int power, double *out) {
-  layers l;
+  layers l = {0};
   stiffness *k;
   condensed *c;
   make(&l, 1e6);
@@ -293,7 +352,7 @@ END_TEST
 
 /* A motion that a support resists, however little, stays a force. */
 START_TEST(supported_body_keeps_its_stiffness) {
-  layers l;
+  layers l = {0};
   stiffness *k;
   condensed *c;
   block(&l, 1e6);
@@ -413,7 +472,7 @@ static status whole_way(const scene *s, double *work) {
 }
 
 START_TEST(every_refused_request_is_survived) {
-  layers l;
+  layers l = {0};
   scenes[_i](&l, 1e8);
   double *work = get(3 * (size_t)(l.s->m->dim * l.s->m->n_node));
   const size_t before = memory_in_use();
@@ -429,7 +488,7 @@ START_TEST(every_refused_request_is_survived) {
     if (memory_requests() - seen < r) break;
   }
   free(work);
-  scene_free(l.s);
+  drop(&l);
 }
 END_TEST
 

@@ -1,7 +1,8 @@
-/* src/fem/support.c, pieces.c: free motions by name and by what holds them. */
+/* src/fem/support.c, pieces: free motions by name and by what holds them. */
 #include "base/memory.h"
 #include "fem/fem.h"
 #include "support/scene.h"
+#include "support/stack.h"
 #include "support/unit.h"
 
 #include <math.h>
@@ -267,9 +268,242 @@ START_TEST(piece_on_a_hinge_is_found) {
 }
 END_TEST
 
+/* Squares joined at corners along a diagonal. */
+static scene *chain(int n) {
+  mesh *one = make_grid_2d((int[]){1, 1}, (double[]){1, 1});
+  mesh *m = make_grid_2d((int[]){1, 1}, (double[]){1, 1});
+  for (int b = 1; b < n; ++b) {
+    mesh *more = grid_join(m, one, (double[]){b, b});
+    for (int k = 3 * m->n_elem; k < 3 * more->n_elem; ++k)
+      if (more->elem[k] == 4 * b) more->elem[k] = 4 * b - 1;
+    mesh_free(m);
+    m = more;
+  }
+  mesh_free(one);
+  return scene_new(m, PLANE_STRAIN, 1);
+}
+
+/* Each piece turns on its own. A pin at the far end takes a turn away where it
+ * is in line with all hinges (it resists along the line at most in the second
+ * order), else two. */
+START_TEST(chain_of_pieces_turns_at_every_hinge) {
+  enum { PIECES = 20 };
+  static const int pin[] = {-1, 4 * PIECES - 1, 4 * PIECES - 2};
+  scene *s = chain(PIECES);
+  free_motion *list;
+  int n;
+  for (int c = 0; c < 2; ++c) {
+    scene_fix_node(s, 0, c);
+    scene_fix_node(s, 1, c);
+    if (_i > 0) scene_fix_node(s, pin[_i], c);
+  }
+  ck_assert_int_eq(domain_free_motions(&s->d, &n, &list), OK);
+  ck_assert_int_eq(n, PIECES - 1 - _i);
+  for (int i = 0; i < n; ++i) {
+    ck_assert_int_eq(list[i].held_by, HELD_BY_NOTHING);
+    ck_assert_int_eq(list[i].body_id, 0);
+  }
+  memory_free(list);
+  scene_free(s);
+}
+END_TEST
+
+typedef struct joined {
+  motion_hold held_by;
+  int set_id, body_id;
+  const char *text;
+} joined;
+
+static void joined_motions_are(const stack *k, const joined *list) {
+  free_motion *found;
+  int n, wanted = 0;
+  while (list[wanted].text != NULL) ++wanted;
+  ck_assert_int_eq(domain_free_motions(&k->s->d, &n, &found), OK);
+  for (int i = 0; i < n && i < wanted; ++i) {
+    ck_assert_str_eq(found[i].text, list[i].text);
+    ck_assert_int_eq(found[i].held_by, list[i].held_by);
+    ck_assert_int_eq(found[i].set_id, list[i].set_id);
+    ck_assert_int_eq(found[i].body_id, list[i].body_id);
+  }
+  ck_assert_int_eq(n, wanted);
+  memory_free(found);
+}
+
+/* Sides that match and others; either side is the slave. */
+static const int sides[][3] = {{3, 3, 3}, {2, 3, 4}, {5, 2, 3}};
+
+START_TEST(pair_with_a_supported_body_holds_like_an_obstacle) {
+  static const char *const joints[] = {"-P", "-M"};
+  stack *k = stack_new(joints[_i % 2], sides[_i / 2], 0);
+  stack_fix(k, 0);
+  stack_fix(k, 1);
+  joined_motions_are(k, (joined[]){{FRICTION, 1, 1, "translation along x"},
+                                   {CONTACT, 1, 1, "translation along y"},
+                                   {CONTACT, 1, 1, "rotation about (0.5, 1.5)"},
+                                   {NOTHING, 0, 0, NULL}});
+  stack_free(k);
+}
+END_TEST
+
+/* Nothing resists what both do together, whatever the gap between them. */
+START_TEST(pair_of_free_bodies_moves_as_one) {
+  static const char *const joints[] = {"-P", "-M"};
+  for (int gap = 0; gap < 2; ++gap) {
+    stack *k = stack_new(joints[_i % 2], sides[_i / 2], gap / 64.0);
+    free_motion *list;
+    int n, of[3] = {0};
+    ck_assert_int_eq(domain_free_motions(&k->s->d, &n, &list), OK);
+    ck_assert_int_eq(n, 6);
+    for (int i = 0; i < n; ++i) {
+      ck_assert_int_eq(list[i].set_id, 0);
+      ++of[list[i].held_by];
+    }
+    ck_assert_int_eq(of[HELD_BY_NOTHING], 3);
+    ck_assert_int_eq(of[HELD_BY_FRICTION], 1);
+    ck_assert_int_eq(of[HELD_BY_CONTACT], 2);
+    ck_assert_str_eq(list[0].text, "translation along x");
+    ck_assert_str_eq(list[1].text, "translation along y");
+    /* about the centre of the first, so that the second moves more */
+    ck_assert_str_eq(list[2].text, "rotation about (0.5, 0.5)");
+    ck_assert_int_eq(list[2].body_id, 1);
+    memory_free(list);
+    stack_free(k);
+  }
+}
+END_TEST
+
+/* Two cubes whose nodes match, the lower one held. */
+START_TEST(cube_on_a_cube_is_held_like_on_the_ground) {
+  enum { N = 9 };
+  mesh *a = make_grid_3d((int[]){2, 2, 2}, (double[]){2, 2, 2});
+  scene *s = scene_new(grid_join(a, a, (double[]){0, 0, 2}), SOLID_3D, 1);
+  size_t start[N + 1];
+  int master[N];
+  double part[3 * N];
+  node_links to = {3, N, start, master, part};
+  for (int i = 0; i < N; ++i) {
+    for (int c = 0; c < 3; ++c) scene_fix_node(s, i, c);
+    s->m->group[0].node_id[i] = a->n_node + i;
+    start[i] = (size_t)i;
+    master[i] = a->n_node - N + i;
+  }
+  start[N] = N;
+  for (int i = 0; i < 3 * N; ++i) part[i] = 1;
+  s->m->group[0].n_node = N;
+  scene_contact(s, "BODY", (double[]){0, 0, -1}, 0);
+  s->surface.master = &to;
+  motions_are(s, (expected[]){{FRICTION, "translation along x"},
+                              {FRICTION, "translation along y"},
+                              {FRICTION, "rotation about z through (1, 1, 3)"},
+                              {CONTACT, "translation along z"},
+                              {CONTACT, "rotation about x through (1, 1, 3)"},
+                              {CONTACT, "rotation about y through (1, 1, 3)"},
+                              {NOTHING, NULL}});
+  mesh_free(a);
+  scene_free(s);
+}
+END_TEST
+
+/* As of the lips of a crack; the parts sum to 1 but for rounding. */
+START_TEST(pair_within_a_body_holds_nothing) {
+  enum { N = 4 };
+  scene *s = square();
+  size_t start[N + 1];
+  int master[3 * N];
+  double part[6 * N];
+  node_links to = {2, N, start, master, part};
+  scene_contact(s, "BOTTOM", (double[]){0, -1}, 0);
+  for (int q = 0; q <= N; ++q) start[q] = 3 * (size_t)q;
+  for (int e = 0; e < 3 * N; ++e) {
+    master[e] = s->m->n_node - 1 - e % 3;
+    part[2 * e] = part[2 * e + 1] = (double[]){0.7, 0.2, 0.1}[e % 3];
+  }
+  s->surface.master = &to;
+  motions_are(s, (expected[]){{NOTHING, "translation along x"},
+                              {NOTHING, "translation along y"},
+                              {NOTHING, "rotation about (1.5, 1)"},
+                              {NOTHING, NULL}});
+  scene_free(s);
+}
+END_TEST
+
+START_TEST(bodies_of_a_pair_on_rollers_slide_together) {
+  stack *k = stack_new("-P", sides[_i], 0);
+  stack_fix(k, 1);
+  joined_motions_are(k, (joined[]){{NOTHING, 0, 0, "translation along x"},
+                                   {FRICTION, 0, 0, "translation along x"},
+                                   {CONTACT, 0, 1, "translation along y"},
+                                   {CONTACT, 0, 1, "rotation about (0.5, 1.5)"},
+                                   {NOTHING, 0, 0, NULL}});
+  stack_free(k);
+}
+END_TEST
+
+START_TEST(tied_body_is_held_with_its_partner) {
+  for (int gap = 0; gap < 2; ++gap) {
+    stack *k = stack_new("-TT", sides[_i], gap / 64.0);
+    joined_motions_are(k,
+                       (joined[]){{NOTHING, 0, 0, "translation along x"},
+                                  {NOTHING, 0, 0, "translation along y"},
+                                  {NOTHING, 0, 2, "rotation about (0.5, 0.5)"},
+                                  {NOTHING, 0, 0, NULL}});
+    stack_fix(k, 0);
+    stack_fix(k, 1);
+    joined_motions_are(k, (joined[]){{NOTHING, 0, 0, NULL}});
+    stack_free(k);
+  }
+}
+END_TEST
+
+START_TEST(body_on_a_tied_one_that_is_held_is_a_set_alone) {
+  stack *k = stack_new("-TP", sides[_i], 0);
+  stack_fix(k, 0);
+  stack_fix(k, 1);
+  joined_motions_are(k, (joined[]){{FRICTION, 2, 2, "translation along x"},
+                                   {CONTACT, 2, 2, "translation along y"},
+                                   {CONTACT, 2, 2, "rotation about (0.5, 2.5)"},
+                                   {NOTHING, 0, 0, NULL}});
+  stack_free(k);
+}
+END_TEST
+
+START_TEST(stack_of_three_is_one_set_held_by_contact) {
+  stack *k = stack_new("OPP", sides[_i], 0);
+  joined_motions_are(k, (joined[]){{FRICTION, 0, 0, "translation along x"},
+                                   {FRICTION, 0, 1, "translation along x"},
+                                   {FRICTION, 0, 2, "translation along x"},
+                                   {CONTACT, 0, 0, "translation along y"},
+                                   {CONTACT, 0, 1, "translation along y"},
+                                   {CONTACT, 0, 2, "translation along y"},
+                                   {CONTACT, 0, 0, "rotation about (0.5, 0.5)"},
+                                   {CONTACT, 0, 1, "rotation about (0.5, 1.5)"},
+                                   {CONTACT, 0, 2, "rotation about (0.5, 2.5)"},
+                                   {NOTHING, 0, 0, NULL}});
+  stack_free(k);
+}
+END_TEST
+
+/* The body in the middle has nothing but its neighbours. */
+START_TEST(body_without_a_joint_below_is_named) {
+  stack *k = stack_new("O-P", sides[_i], 0.25);
+  free_motion *list;
+  int n;
+  stack_fix(k, 0);
+  for (int q = 0; q <= k->cells[0]; ++q) k->s->surface.held[2 * q + 1] = 1;
+  ck_assert_int_eq(domain_free_motions(&k->s->d, &n, &list), OK);
+  ck_assert_int_eq(n, 2 + 6);
+  for (int i = 0; i < n; ++i) {
+    ck_assert_int_eq(list[i].set_id, i < 2 ? 0 : 1);
+    ck_assert_int_eq(list[i].held_by == HELD_BY_NOTHING, i >= 2 && i < 5);
+  }
+  memory_free(list);
+  stack_free(k);
+}
+END_TEST
+
 START_TEST(every_refused_request_is_survived) {
-  scene *s = cube();
-  scene_contact(s, "FRONT", (double[]){0, 0, -1}, 0);
+  stack *k = stack_new("OTP", sides[1], 0);
+  scene *s = k->s;
   const size_t before = memory_in_use();
   for (long r = 1;; ++r) {
     free_motion *list;
@@ -284,18 +518,40 @@ START_TEST(every_refused_request_is_survived) {
     ck_assert_uint_eq(memory_in_use(), before);
     if (!reached) break;
   }
-  scene_free(s);
+  stack_free(k);
 }
 END_TEST
 
-UNIT_MAIN("support", free_square_has_three_motions,
-          pinned_square_turns_about_the_pin, square_on_rollers_slides,
-          lying_square_is_held_by_contact_and_friction,
-          one_contact_node_lets_the_body_turn_about_it,
-          cap_in_a_socket_turns_by_its_centre,
-          second_obstacle_counts_as_contact_not_friction,
-          turned_body_moves_along_its_axis, cube_on_an_edge_turns_about_it,
-          lying_cube_has_three_motions_of_friction_and_three_of_contact,
-          thread_lets_the_body_screw, units_of_length_change_nothing,
-          second_body_is_named, piece_on_a_hinge_is_found,
-          every_refused_request_is_survived)
+int main(void) {
+  TCase *tests = tcase_create("support");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_test(tests, free_square_has_three_motions);
+  tcase_add_test(tests, pinned_square_turns_about_the_pin);
+  tcase_add_test(tests, square_on_rollers_slides);
+  tcase_add_test(tests, lying_square_is_held_by_contact_and_friction);
+  tcase_add_test(tests, one_contact_node_lets_the_body_turn_about_it);
+  tcase_add_test(tests, cap_in_a_socket_turns_by_its_centre);
+  tcase_add_test(tests, second_obstacle_counts_as_contact_not_friction);
+  tcase_add_test(tests, turned_body_moves_along_its_axis);
+  tcase_add_test(tests, cube_on_an_edge_turns_about_it);
+  tcase_add_test(tests,
+                 lying_cube_has_three_motions_of_friction_and_three_of_contact);
+  tcase_add_test(tests, thread_lets_the_body_screw);
+  tcase_add_test(tests, units_of_length_change_nothing);
+  tcase_add_test(tests, second_body_is_named);
+  tcase_add_test(tests, piece_on_a_hinge_is_found);
+  tcase_add_loop_test(tests, chain_of_pieces_turns_at_every_hinge, 0, 3);
+  tcase_add_loop_test(tests, pair_with_a_supported_body_holds_like_an_obstacle,
+                      0, 6);
+  tcase_add_loop_test(tests, pair_of_free_bodies_moves_as_one, 0, 6);
+  tcase_add_test(tests, cube_on_a_cube_is_held_like_on_the_ground);
+  tcase_add_test(tests, pair_within_a_body_holds_nothing);
+  tcase_add_loop_test(tests, bodies_of_a_pair_on_rollers_slide_together, 0, 3);
+  tcase_add_loop_test(tests, tied_body_is_held_with_its_partner, 0, 3);
+  tcase_add_loop_test(tests, body_on_a_tied_one_that_is_held_is_a_set_alone, 0,
+                      3);
+  tcase_add_loop_test(tests, stack_of_three_is_one_set_held_by_contact, 0, 3);
+  tcase_add_loop_test(tests, body_without_a_joint_below_is_named, 0, 3);
+  tcase_add_test(tests, every_refused_request_is_survived);
+  return unit_run("support", tests);
+}
