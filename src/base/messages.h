@@ -271,7 +271,11 @@
   X(2059, WARNING, "displacement off the axis of symmetry",                  \
     "A point of the axis cannot move along the radius: the strain u_r/r "    \
     "would have no limit, and what is found depends on the mesh. Hold u_r "  \
-    "at zero there.")
+    "at zero there.")                                                        \
+  X(2060, ERROR, "surfaces of a pair with common faces",                     \
+    "A *CONTACT PAIR or a *TIE is between two surfaces: physical groups of "  \
+    "the mesh without a common face. For the lips of a crack give each lip a " \
+    "group of its own.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \
@@ -486,7 +490,17 @@
     "others alone, and its contact force is that of the normal without the " \
     "held component: the rest is in the reaction. Where that is not meant, " \
     "hold the body away from the contact, or turn the axes so that the "     \
-    "obstacle lies along them.")
+    "obstacle lies along them.")                                             \
+  X(4023, ERROR, "surfaces of a pair that do not face each other",           \
+    "No face of the one surface meets a face of the other along its normal: " \
+    "check the groups, and the places of the bodies in the mesh. Bodies that " \
+    "only come to face each other by large motions are not treated.")        \
+  X(4024, WARNING, "master much coarser than the slave",                     \
+    "The nodes of the slave show the faces of the master: pressures scatter. " \
+    "Choose the other side with SLAVE=, or refine the master.")              \
+  X(4025, WARNING, "nodes of a tie without partner",                         \
+    "They are not tied: the master surface ends before them, or does not "   \
+    "face them. Choose the other side with SLAVE=, or extend the group.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

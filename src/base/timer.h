@@ -14,6 +14,7 @@
   X(MESH,        "mesh")                                   \
   X(PROBLEM,     "condensed problem from a file")          \
   X(SURFACE,     "contact surface")                        \
+  X(COUPLING,    "coupling of surfaces")                   \
   X(CLUSTER,     "clusters of elements")                   \
   X(ASSEMBLY,    "stiffness assembly")                     \
   X(ORDERING,    "ordering and symbolic factor")           \

@@ -7,7 +7,7 @@
  * Candidates of one node are merged (one obstacle, smooth surface) or become
  * the rows of one frame (a corner on two obstacles).
  */
-#include "contact/surface.h"
+#include "contact/pair.h"
 
 #include "base/memory.h"
 #include "contact/frame.h"
@@ -15,9 +15,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Part of the unit normal that must be left when the fixed components are
- * taken out of it. */
-static const double fixed_sine = 1e-3;
 /* Normals of two contacts on one obstacle nearer than this (45 degrees) are
  * one smooth surface. */
 static const double smooth_cosine = 0.70710678;
@@ -32,6 +29,7 @@ static const double told_share = 0.01;
 
 typedef struct candidate {
   int node_id, pair_id;
+  int row; /* of a pair: in its coupling */
   int left_out;
   double normal[3]; /* [dim] sum of w n, then the unit normal */
   double held;      /* 1 - what supports leave of the normal's length */
@@ -63,6 +61,7 @@ typedef struct builder {
   double low[3], high[3]; /* [dim] box of the mesh, m */
   candidate *list;        /* [n] by node, then by contact */
   tally *tallies;         /* [n_pair] */
+  pair_links links;       /* room for the masters of the surface */
 } builder;
 
 /* Position of a node as text for a message. */
@@ -79,6 +78,15 @@ static node_text describe(const mesh *m, int node_id) {
   else
     snprintf(d.text, sizeof d.text, "node %zu at (%g, %g, %g)",
              m->node_no[node_id], x[0], x[1], x[2]);
+  return d;
+}
+
+/* What a contact is with. */
+static node_text partner(const contact_pair *p) {
+  node_text d;
+  snprintf(d.text, sizeof d.text, "%s %s",
+           p->support != NULL ? "obstacle" : "surface",
+           p->support != NULL ? p->support->name : p->master->name);
   return d;
 }
 
@@ -160,6 +168,19 @@ static void add_faces(const builder *b, int pair_id, candidate *first,
   }
 }
 
+/* The nodes that the coupling of a pair has. */
+static int add_coupled(const builder *b, int pair_id, candidate *first) {
+  const mortar *m = b->in->pairs[pair_id].coupled;
+  for (int q = 0; q < m->n; ++q) {
+    candidate *c = &first[q];
+    *c = (candidate){.node_id = m->node_id[q], .pair_id = pair_id, .row = q};
+    c->area = m->area[q];
+    for (int d = 0; d < b->dim; ++d)
+      c->normal[d] = c->area * m->normal[b->dim * q + d];
+  }
+  return m->n;
+}
+
 /* Order by node; the contacts of a node keep their order. */
 static status sort_candidates(builder *b) {
   int n_node = b->in->mesh->n_node;
@@ -186,6 +207,10 @@ static status collect(builder *b) {
   for (int p = 0; p < in->n_pair; ++p) n += in->pairs[p].group->n_node;
   PASS_NEW(b->list, n);
   for (int p = 0; p < in->n_pair; ++p) {
+    if (in->pairs[p].support == NULL) {
+      b->n += add_coupled(b, p, &b->list[b->n]);
+      continue;
+    }
     check_axis(b, &in->pairs[p]);
     if (check_group(b, &in->pairs[p]) != 0) continue;
     add_faces(b, p, &b->list[b->n], index);
@@ -207,7 +232,8 @@ static int is_smooth(const builder *b, const candidate *x, const candidate *y) {
   double cosine = dot(b->dim, x->normal, y->normal) /
                   sqrt(dot(b->dim, x->normal, x->normal) *
                        dot(b->dim, y->normal, y->normal));
-  return p[x->pair_id].support == p[y->pair_id].support &&
+  return p[x->pair_id].support != NULL &&
+         p[x->pair_id].support == p[y->pair_id].support &&
          cosine > smooth_cosine;
 }
 
@@ -234,7 +260,7 @@ static int take_obstacle_normal(const builder *b, candidate *c) {
   obstacle_normal(b->in->pairs[c->pair_id].support, b->dim,
                   &m->x[(size_t)b->dim * (size_t)c->node_id], c->normal);
   return dot(b->dim, body, c->normal) >=
-         -fixed_sine * sqrt(dot(b->dim, body, body));
+         -PAIR_FIXED_SINE * sqrt(dot(b->dim, body, body));
 }
 
 /* Nodes of the mesh in the plane x_c = at, a node that is not held in it: -1.
@@ -296,7 +322,7 @@ static void orient(builder *b, candidate *c) {
   unsigned fixed = b->in->fixed[c->node_id];
   double left = frame_project(b->dim, fixed, c->normal);
   if (!at_mirror(b, c->node_id)) c->held = 1.0 - left;
-  if (left > fixed_sine) return;
+  if (left > PAIR_FIXED_SINE) return;
   c->left_out = 1;
   if (t->n_fixed++ == 0) t->fixed_node = c->node_id;
 }
@@ -314,7 +340,7 @@ static void compare_normals(const builder *b, const candidate *c) {
   tally *t = &b->tallies[c->pair_id];
   const double *x = &b->in->mesh->x[(size_t)b->dim * (size_t)c->node_id];
   double n[3], square = 0;
-  if (!obstacle_normal(p->support, b->dim, x, n)) {
+  if (p->support == NULL || !obstacle_normal(p->support, b->dim, x, n)) {
     note_held(b, c, c->held);
     return;
   }
@@ -336,7 +362,11 @@ static void measure(builder *b, candidate *c) {
   const contact_pair *p = &b->in->pairs[c->pair_id];
   tally *t = &b->tallies[c->pair_id];
   const double *x = &m->x[(size_t)b->dim * (size_t)c->node_id];
-  c->gap = obstacle_gap(p->support, b->dim, x, c->normal, 0);
+  if (p->support == NULL)
+    c->gap =
+        dot(b->dim, p->coupled->gap + (size_t)(b->dim * c->row), c->normal);
+  else
+    c->gap = obstacle_gap(p->support, b->dim, x, c->normal, 0);
   if (isnan(c->gap) || c->gap == -HUGE_VAL) {
     message_add(b->log, P4007, &p->at, "*CONTACT %s: gap is %s at %s, time 0",
                 p->name, isnan(c->gap) ? "not a number" : "-inf",
@@ -400,8 +430,22 @@ static void note_corner(builder *b, int n_kept, const candidate *const *kept) {
     t->corner_node = kept[0]->node_id;
 }
 
-static void set_node(builder *b, contact_surface *s, int n_kept,
-                     const candidate *const *kept) {
+/* What the rows of a node are relative to. */
+static status couple_node(builder *b, contact_surface *s, int i, int n_kept,
+                          const candidate *const *kept) {
+  const int dim = b->dim;
+  pair_row rows[3];
+  if (s->master == NULL) return OK;
+  for (int k = 0; k < n_kept; ++k) {
+    const contact_pair *p = &b->in->pairs[kept[k]->pair_id];
+    rows[k] = (pair_row){p->support == NULL ? p->coupled : NULL, kept[k]->row};
+    if (rows[k].of != NULL) s->apart[dim * i + k] = kept[k]->gap;
+  }
+  return pair_add_row(s, i, n_kept, rows, &b->links);
+}
+
+static status set_node(builder *b, contact_surface *s, int n_kept,
+                       const candidate *const *kept) {
   const mesh *m = b->in->mesh;
   int dim = b->dim, i = s->n++;
   const candidate *c = kept[0];
@@ -418,6 +462,7 @@ static void set_node(builder *b, contact_surface *s, int n_kept,
   s->area[i] = c->area;
   s->gap0[i] = c->gap;
   if (!set_frame(b, s, i, n_kept, kept)) note_corner(b, n_kept, kept);
+  return couple_node(b, s, i, n_kept < dim ? n_kept : dim, kept);
 }
 
 static void say(const builder *b, int pair_id) {
@@ -437,9 +482,9 @@ static void say(const builder *b, int pair_id) {
                 p->name, t->n_unreached, p->support->name);
   if (t->depth > rounding * m->size)
     message_add(b->log, P4004, &p->at,
-                "*CONTACT %s: deepest penetration of obstacle %s is %.4g, %.2g "
-                "of the size of the mesh, at %s",
-                p->name, p->support->name, t->depth, t->depth / m->size,
+                "*CONTACT %s: deepest penetration of %s is %.4g, %.2g of the "
+                "size of the mesh, at %s",
+                p->name, partner(p).text, t->depth, t->depth / m->size,
                 describe(m, t->deep_node).text);
   if (t->sine > told_sine)
     message_add(b->log, P4018, &p->at,
@@ -451,9 +496,9 @@ static void say(const builder *b, int pair_id) {
   if (t->held > told_share)
     message_add(
         b->log, P4022, &p->at,
-        "*CONTACT %s: supports hold a part of the normal at obstacle "
-        "%s: only %.3g of a contact force acts, also for friction, at %s",
-        p->name, p->support->name, 1.0 - t->held,
+        "*CONTACT %s: supports hold a part of the normal at %s: only %.3g of "
+        "a contact force acts, also for friction, at %s",
+        p->name, partner(p).text, 1.0 - t->held,
         describe(m, t->held_node).text);
   if (t->n_corner > 0)
     message_add(
@@ -470,11 +515,17 @@ static void say(const builder *b, int pair_id) {
                 describe(m, t->dependent_node).text);
   if (t->n_kept == 0)
     message_add(b->log, P4010, &p->at,
-                "*CONTACT %s: no node of group %s can touch obstacle %s",
-                p->name, p->group->name, p->support->name);
+                "*CONTACT %s: no node of group %s can touch %s", p->name,
+                p->group->name, partner(p).text);
 }
 
-static status surface_new(int dim, int n, contact_surface **out) {
+static int has_pair(const surface_input *in) {
+  int any = 0;
+  for (int p = 0; p < in->n_pair; ++p) any |= in->pairs[p].support == NULL;
+  return any;
+}
+
+static status surface_new(int dim, int n, int pairs, contact_surface **out) {
   status st = OK;
   contact_surface *s = NULL;
   NEW(s, 1);
@@ -490,6 +541,12 @@ static status surface_new(int dim, int n, contact_surface **out) {
   NEW(s->basis, n * dim * dim);
   NEW(s->gap0, n);
   NEW(s->held, n * dim);
+  if (pairs) {
+    NEW(s->apart, n * dim);
+    NEW(s->master, 1);
+    s->master->dim = dim;
+    NEW(s->master->start, n + 1);
+  }
   *out = s;
   s = NULL;
 done:
@@ -505,13 +562,13 @@ status surface_build(const surface_input *in, message_log *log,
   *out = NULL;
   TRY(collect(&b));
   find_mirrors(&b);
-  TRY(surface_new(b.dim, b.n, &s));
+  TRY(surface_new(b.dim, b.n, has_pair(in), &s));
   for (int first = 0, end; first < b.n; first = end) {
     const candidate *kept[3];
     for (end = first + 1; end < b.n; ++end)
       if (b.list[end].node_id != b.list[first].node_id) break;
     int n_kept = gather(&b, first, end, kept);
-    if (n_kept > 0) set_node(&b, s, n_kept, kept);
+    if (n_kept > 0) TRY(set_node(&b, s, n_kept, kept));
   }
   for (int p = 0; p < in->n_pair; ++p) say(&b, p);
   TRY(message_status(log, ERR_DECK));
@@ -532,8 +589,11 @@ int surface_is_corner(const contact_surface *s, int i) {
 static status row_gap(const contact_surface *s, const contact_pair *p, int i,
                       int k, double t, double reach, double *gap) {
   int dim = s->dim;
-  *gap = obstacle_gap(p->support, dim, &s->x[dim * i],
-                      &s->frame[dim * dim * i + dim * k], t);
+  if (p->support == NULL)
+    *gap = s->apart[dim * i + k] + pair_change(p, dim, &s->x[dim * i], t);
+  else
+    *gap = obstacle_gap(p->support, dim, &s->x[dim * i],
+                        &s->frame[dim * dim * i + dim * k], t);
   if (isnan(*gap) || *gap == -HUGE_VAL)
     RAISE(ERR_DECK, "%s:%d: *CONTACT %s: gap is %g at node %zu, time %g",
           p->at.file != NULL ? p->at.file : "", p->at.line_no, p->name, *gap,
@@ -566,7 +626,7 @@ static void row_drift(const contact_surface *s, const contact_pair *pairs,
   const obstacle *o = pairs[side >= 0 ? side : s->contact_id[i]].support;
   const double *frame = &s->frame[dim * dim * i], *row = frame + dim * k;
   double drift[3];
-  if (!obstacle_moves(o)) return;
+  if (o == NULL || !obstacle_moves(o)) return;
   obstacle_drift(o, dim, &s->x[dim * i], side >= 0 ? row : frame, times[0],
                  times[1], drift);
   *motion += dot(dim, row, drift);
@@ -652,6 +712,7 @@ status surface_forces(const contact_surface *s, int n_node, const double *F,
 void surface_free(contact_surface *s) {
   if (s == NULL) return;
   if (s->master != NULL) links_release(s->master);
-  RELEASE(s->master, s->node_id, s->node_no, s->contact_id, s->side_id, s->x,
-          s->area, s->side_area, s->frame, s->basis, s->gap0, s->held, s);
+  RELEASE(s->master, s->apart, s->node_id, s->node_no, s->contact_id,
+          s->side_id, s->x, s->area, s->side_area, s->frame, s->basis, s->gap0,
+          s->held, s);
 }

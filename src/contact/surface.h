@@ -5,7 +5,7 @@
 #ifndef PROTIS_CONTACT_SURFACE_H
 #define PROTIS_CONTACT_SURFACE_H
 
-#include "contact/mortar/links.h"
+#include "contact/mortar/mortar.h"
 #include "contact/obstacle.h"
 #include "mesh/mesh.h"
 
@@ -30,13 +30,21 @@ typedef struct contact_surface {
                         *BOUNDARY (never the normal one) */
   node_links *master;  /* row q: contact node q, whose unknowns are relative to
                           the master surface of a pair; NULL: no pair */
+  double *apart;       /* [dim*n] gap to the master along the rows that are
+                          normals of pairs, at time 0, m; NULL: no pair */
 } contact_surface;
 
-/* A *CONTACT as the surface sees it. */
+/* A *CONTACT or *CONTACT PAIR as the surface sees it. */
 typedef struct contact_pair {
   const char *name;
-  const mesh_group *group;
-  const obstacle *support;
+  const mesh_group *group;  /* of a pair: the slave */
+  const obstacle *support;  /* NULL: a pair */
+  const mesh_group *master; /* of a pair */
+  int slave_normal;         /* 1: n is that of the slave, not the mean of both
+                               surfaces */
+  const quantity *change;   /* added to the gap of a pair, m, or NULL */
+  double change_sign;       /* -1: it is an interference */
+  mortar *coupled;     /* of a pair, by pairs_couple; owned by the caller */
   int friction;        /* 1: its law has a sliding limit (for a warning only) */
   int obstacle_normal; /* 1: n is that of the obstacle, not of the body */
   place at;
@@ -46,18 +54,26 @@ typedef struct contact_pair {
 typedef struct surface_input {
   const mesh *mesh;
   int n_pair;
-  const contact_pair *pairs;  /* [n_pair] */
+  contact_pair *pairs;        /* [n_pair] */
   const unsigned char *fixed; /* [n_node] */
   const double *face_weight;  /* [n_face] thickness; 1 in 3-D */
   int axisymmetric;
 } surface_input;
 
 /*
- * Build it. The normal of a node is the sum of the normals of its faces in the
- * group weighted with its share of their area (the gradient of the volume), or
- * that of the obstacle at that place (obstacle_normal, where the shape has
- * one), taken orthogonal to the components that are fixed there; those become
- * tangents, flagged in held.
+ * pair.c: the coupling of each pair under the supports of the input, without
+ * the slave nodes that supports hold along the normal, and those that an
+ * earlier pair has with (nearly) the same normal. ERR_DECK with errors in the
+ * log: surfaces that do not face each other; ERR_MEMORY.
+ */
+status pairs_couple(const surface_input *in, message_log *log);
+void pairs_release(const surface_input *in); /* frees the couplings */
+/*
+ * Build it, once pairs are coupled. The normal of a node is the sum of the
+ * normals of its faces in the group weighted with its share of their area (the
+ * gradient of the volume), or that of the obstacle at that place
+ * (obstacle_normal, where the shape has one), taken orthogonal to the
+ * components that are fixed there; those become tangents, flagged in held.
  *
  * Left out, with a message: nodes fixed in the normal direction, nodes
  * that an obstacle at rest cannot reach along the normal.  A node in the groups

@@ -12,6 +12,7 @@
 #define EFFECT_ROWS(X)   \
   X(finite_elements)     \
   X(unilateral_contact)  \
+  X(pairs)               \
   X(moving_obstacle)     \
   X(friction)            \
   X(tangents)            \

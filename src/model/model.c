@@ -84,8 +84,8 @@ void model_free(model *m) {
     elastic_table_free(&m->materials[i].elastic);
   }
   RELEASE(m->time.amplitudes, m->time.points, m->materials, m->sections,
-          m->obstacles, m->moves, m->contacts, m->steps, m->reduction.still,
-          m->elem_section, m->name.job, m->effect_cards, m);
+          m->obstacles, m->moves, m->contacts, m->ties, m->steps,
+          m->reduction.still, m->elem_section, m->name.job, m->effect_cards, m);
 }
 
 void model_fit_problem(model *m, int dim, int friction, effect_finder *find) {

@@ -78,10 +78,41 @@ typedef struct given_force {
   place at, value_at, amplitude_at;
 } given_force;
 
+/* Two surfaces of the mesh, of *CONTACT PAIR or *TIE. */
+typedef struct surface_pair {
+  const char *group[2];
+  place group_at[2];
+  int choice;              /* SLAVE=: SLAVE_... */
+  int slave_id, master_id; /* groups; -1: not known */
+  int slave;               /* 0 or 1: which of the two is the slave */
+  int adjust;              /* 1: slave nodes are moved onto the master */
+  char why[64];            /* reason of the choice */
+} surface_pair;
+#define SLAVE_WORDS "AUTO|FIRST|SECOND"
+enum { SLAVE_AUTO, SLAVE_FIRST, SLAVE_SECOND };
+
+/* CLEARANCE or INTERFERENCE: added to the gap of a pair or taken off. */
+typedef struct gap_change {
+  int given, interferes;
+  quantity value; /* m */
+  const char *amplitude_name;
+  place at, amplitude_at;
+} gap_change;
+
+typedef struct tie {
+  const char *name;
+  place at;
+  surface_pair pair;
+} tie;
+
 typedef struct contact {
-  const char *name, *group, *obstacle_name;
+  const char *name, *group, *obstacle_name; /* of a pair slave, master */
   place at, group_at, obstacle_at;
   int obstacle_id, group_id;
+  int is_pair; /* 1: *CONTACT PAIR, without obstacle */
+  surface_pair pair;
+  gap_change change;             /* of a pair */
+  int slave_normal;              /* 1: NORMAL=SLAVE of a pair */
   int obstacle_normal;           /* 1: NORMAL=OBSTACLE; resolved from -1: not
                                     given */
   int has_axis;                  /* line AXIS, or that of ROTATE of the
@@ -353,8 +384,8 @@ typedef struct model {
     const char *length, *force, *time; /* labels or NULL */
   } unit;
   struct model_count {
-    int amplitude, points, material, section, obstacle, contact, step, field,
-        initial, effect_card;
+    int amplitude, points, material, section, obstacle, contact, tie, step,
+        field, initial, effect_card;
   } n, cap; /* of the arrays below; allocated */
   struct {
     amplitude *amplitudes;
@@ -366,6 +397,7 @@ typedef struct model {
   obstacle *obstacles;
   struct move *moves; /* [n.obstacle] amplitude names of the obstacles */
   contact *contacts;
+  tie *ties;
   struct {
     load_list supports;  /* *BOUNDARY before the first step */
     nodal_field *fields; /* [n.field] of all FILE= of *TEMPERATURE */

@@ -104,6 +104,7 @@ static int is_of_run(int s) {
     case STAGE_DECK:
     case STAGE_MESH:
     case STAGE_SURFACE:
+    case STAGE_COUPLING:
     case STAGE_ASSEMBLY:
     case STAGE_ORDERING:
     case STAGE_FACTOR:

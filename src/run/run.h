@@ -89,6 +89,7 @@ typedef struct body_state {
   int stale;            /* 1: r->elastic was made with others */
   long elastic_no;      /* counts the matrices that r->elastic was */
   unsigned char *fixed; /* [dim*n_node] */
+  tie_set ties;         /* of d, all-zero without *TIE */
 } body_state;
 
 /* Elements with strains that have no stress. */

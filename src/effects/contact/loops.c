@@ -55,7 +55,8 @@ static status find_loops(run *r, void *self) {
     double weight = 0.0;
     memset(l->way, 0, sizeof l->way);
     memset(l->mean_u_t, 0, sizeof l->mean_u_t);
-    l->angle = obstacle_angle(r->faces.pairs[i].support, r->now.t);
+    if (r->faces.pairs[i].support != NULL)
+      l->angle = obstacle_angle(r->faces.pairs[i].support, r->now.t);
     for (int k = 0; k < r->nodes.n; ++k) {
       if (s->contact_id[k] != i) continue;
       weight += s->area[k];

@@ -81,9 +81,10 @@ static void end(run *r, void *self) {
     const contact *c = &r->m->contacts[i];
     if (reported->touched[i] || c->force.given) continue;
     message_add(r->m->log, P4021, &c->at,
-                "*CONTACT %s: no node touched obstacle %s in the run; the "
-                "least gap at its end is %.3g",
-                c->name, c->obstacle_name, least_gap(r, i));
+                "*CONTACT %s: no node touched %s %s in the run; the least gap "
+                "at its end is %.3g",
+                c->name, c->is_pair ? "surface" : "obstacle", c->obstacle_name,
+                least_gap(r, i));
   }
 }
 

@@ -83,8 +83,9 @@ static int requires_mesh(const model *m, char *why, size_t size) {
 
 static int requires_contact(const model *m, char *why, size_t size) {
   if (m->n.contact == 0) return plan_says(0, why, size, "no *CONTACT card");
-  return plan_says(1, why, size, "*CONTACT, NAME=%s, %s:%d",
-                   m->contacts[0].name, PLACE(m->contacts[0].at));
+  return plan_says(1, why, size, "*CONTACT%s, NAME=%s, %s:%d",
+                   m->contacts[0].is_pair ? " PAIR" : "", m->contacts[0].name,
+                   PLACE(m->contacts[0].at));
 }
 
 int plan_requires_rule(const model *m, int (*is)(const friction_rule *rule),

@@ -100,6 +100,14 @@ typedef struct contact_param {
   const char *name, *group, *obstacle;
   int normal;
 } contact_param;
+typedef struct pair_param {
+  const char *name, *amplitude;
+  int slave, adjust, normal, type;
+} pair_param;
+typedef struct tie_param {
+  const char *name;
+  int slave, adjust;
+} tie_param;
 typedef struct friction_param {
   const char *contact, *law, *amplitude;
   int table;
@@ -201,6 +209,8 @@ status apply_contact_force(reading *r);
 /* Of any effect whose options are effect_param. */
 status apply_effect(reading *r);
 plugin names_law(const reading *r);
+status apply_contact_pair(reading *r);
+status apply_tie(reading *r);
 /* ---- procedure.c ---- */
 status apply_step(reading *r);
 status apply_end_step(reading *r);

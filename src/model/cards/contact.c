@@ -206,13 +206,13 @@ status apply_obstacle(reading *r) {
 }
 
 /* AXIS, x, y or AXIS, x, y, z, ax, ay, az */
-static void read_torque_axis(const reading *r, contact *c) {
-  const record *line = r->card->records;
+static void read_torque_axis(const reading *r, const record *line, contact *c) {
   int n = line->n_field;
   if (!starts_with(line, "AXIS") || (n != 3 && n != 7)) {
     message_add(r->m->log, P2009, &line->at,
-                "this line of *CONTACT is not: AXIS, x, y or AXIS, x, y, z, "
-                "ax, ay, az");
+                "this line of *%s is not: AXIS, x, y or AXIS, x, y, z, ax, ay, "
+                "az",
+                r->card->name);
     return;
   }
   c->axis_at = line->at;
@@ -236,9 +236,101 @@ status apply_contact(reading *r) {
       card_parameter(r->card, "NORMAL") == NULL ? -1 : p->normal;
   c->obstacle_id = -1;
   c->group_id = -1;
-  if (r->card->n_record > 0) read_torque_axis(r, c);
+  if (r->card->n_record > 0) read_torque_axis(r, r->card->records, c);
   return OK;
 }
+
+/* ---- two surfaces of the mesh ------------------------------------------- */
+
+/* The line with the two surfaces. */
+static void read_surfaces(const reading *r, int choice, int adjust,
+                          surface_pair *p) {
+  const record *line = r->card->records;
+  *p = (surface_pair){.group = {"", ""},
+                      .choice = choice,
+                      .adjust = adjust,
+                      .slave_id = -1,
+                      .master_id = -1};
+  p->group_at[0] = p->group_at[1] = r->card->at;
+  if (r->card->n_record == 0 ||
+      record_fields(r, line, 2, 2, "surface, surface") != 0)
+    return;
+  for (int k = 0; k < 2; ++k) {
+    p->group[k] = line->fields[k].text;
+    p->group_at[k] = line->fields[k].at;
+  }
+}
+
+/* CLEARANCE, value or INTERFERENCE, value */
+static void read_change(const reading *r, const record *line, gap_change *c) {
+  const int interferes = starts_with(line, "INTERFERENCE");
+  if (c->given) {
+    message_add(r->m->log, P2008, &line->at,
+                "*CONTACT PAIR has two lines CLEARANCE or INTERFERENCE");
+    return;
+  }
+  if (record_fields(r, line, 2, 2, "CLEARANCE or INTERFERENCE, value") != 0 ||
+      field_quantity(r, &line->fields[1], &c->value) != 0)
+    return;
+  c->given = 1;
+  c->interferes = interferes;
+  c->at = line->fields[1].at;
+}
+
+static void read_lines(const reading *r, contact *c) {
+  for (int i = 1; i < r->card->n_record; ++i) {
+    const record *line = &r->card->records[i];
+    if (starts_with(line, "CLEARANCE") || starts_with(line, "INTERFERENCE"))
+      read_change(r, line, &c->change);
+    else if (starts_with(line, "AXIS"))
+      read_torque_axis(r, line, c);
+    else
+      message_add(r->m->log, P2009, &line->at,
+                  "this line of *CONTACT PAIR is not CLEARANCE, INTERFERENCE "
+                  "or AXIS");
+  }
+}
+
+status apply_contact_pair(reading *r) {
+  const pair_param *p = r->param;
+  model *m = r->m;
+  for (int i = 0; i < m->n.contact; ++i)
+    name_taken(r, p->name, m->contacts[i].name);
+  PASS_GROW(m->contacts, m->n.contact, m->cap.contact);
+  contact *c = &m->contacts[m->n.contact++];
+  c->name = p->name == NULL ? "" : p->name;
+  c->at = r->card->at;
+  c->obstacle_id = c->group_id = -1;
+  c->is_pair = 1;
+  c->slave_normal = p->normal;
+  read_surfaces(r, p->slave, p->adjust, &c->pair);
+  c->group = c->pair.group[0];
+  c->group_at = c->pair.group_at[0];
+  c->obstacle_name = c->pair.group[1];
+  c->obstacle_at = c->pair.group_at[1];
+  c->change.amplitude_name = p->amplitude;
+  c->change.amplitude_at = *value_place(r, "AMPLITUDE");
+  read_lines(r, c);
+  if (p->amplitude != NULL && !c->change.given)
+    message_add(m->log, P2007, &c->at,
+                "*CONTACT PAIR: AMPLITUDE= needs a line CLEARANCE or "
+                "INTERFERENCE");
+  return OK;
+}
+
+status apply_tie(reading *r) {
+  const tie_param *p = r->param;
+  model *m = r->m;
+  for (int i = 0; i < m->n.tie; ++i) name_taken(r, p->name, m->ties[i].name);
+  PASS_GROW(m->ties, m->n.tie, m->cap.tie);
+  tie *t = &m->ties[m->n.tie++];
+  t->name = p->name == NULL ? "" : p->name;
+  t->at = r->card->at;
+  read_surfaces(r, p->slave, p->adjust, &t->pair);
+  return OK;
+}
+
+/* ---- what a contact has -------------------------------------------------- */
 
 static const char *law_name(const void *ctx, int i) {
   (void)ctx;

@@ -166,6 +166,10 @@ static void check_obstacle_fields(const model *m, const mesh *msh, int id) {
 static void check_contacts(model *m, const mesh *msh) {
   for (int i = 0; i < m->n.contact; ++i) {
     contact *c = &m->contacts[i];
+    if (c->is_pair) {
+      check_torque_axis(m, msh->dim, c);
+      continue;
+    }
     c->group_id = check_group_of(m, msh, c->group, msh->dim - 1, &c->group_at);
     check_twice(m, i);
     if (c->obstacle_id < 0) continue;
@@ -318,6 +322,7 @@ status model_check(model *m, const mesh *msh, effect_finder *find) {
   check_laws(m);
   check_initials(m, msh);
   check_steps(m, msh);
+  PASS(check_pairs(m, msh));
   PASS(check_fields(m, msh));
   check_reference(m);
   PASS(model_find_corner(m, msh));

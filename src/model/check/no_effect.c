@@ -139,6 +139,14 @@ static void check_friction(const model *m, const mesh *msh,
                 rule->law->value_name);
 }
 
+static void check_contact(const model *m, const mesh *msh, const contact *c) {
+  check_friction(m, msh, &c->friction);
+  if (c->force.given)
+    check_z(m, msh, &c->force.value, "CONTACT FORCE", &c->force.value_at);
+  if (c->change.given)
+    check_z(m, msh, &c->change.value, "CONTACT PAIR", &c->change.at);
+}
+
 static void check_wear(const model *m, const step *s) {
   const effect_card *wear = model_effect_card(m, "WEAR", -1);
   if (wear != NULL && s->accuracy.time_balanced)
@@ -161,12 +169,7 @@ void check_no_effect(const model *m, const mesh *msh) {
     if (m->initial.lines[i].type == INITIAL_TEMPERATURE)
       check_heat(m, msh, "INITIAL CONDITIONS", m->initial.lines[i].group_id,
                  &m->initial.lines[i].at);
-  for (int i = 0; i < m->n.contact; ++i) {
-    const contact *c = &m->contacts[i];
-    check_friction(m, msh, &c->friction);
-    if (c->force.given)
-      check_z(m, msh, &c->force.value, "CONTACT FORCE", &c->force.value_at);
-  }
+  for (int i = 0; i < m->n.contact; ++i) check_contact(m, msh, &m->contacts[i]);
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     check_flow(m, s);

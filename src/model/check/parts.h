@@ -18,7 +18,11 @@ int check_group(const model *m, const mesh *msh, const char *name,
 int check_group_of(const model *m, const mesh *msh, const char *name, int dim,
                    const place *at);
 
-/* ---- contacts.c ---- */
+/* ---- pairs.c ---- */
+
+/* Surfaces of *CONTACT PAIR and *TIE, and their slaves. After check_steps.
+ * ERR_MEMORY. */
+status check_pairs(model *m, const mesh *msh);
 
 /* ---- loads.c ---- */
 

@@ -217,7 +217,7 @@ static int contact_finite(const model *m, const mesh *msh, const contact *c,
 
 static void check_contact_values(const model *m, const mesh *msh, int id) {
   const contact *c = &m->contacts[id];
-  int good = 1, fine = 1;
+  int good = 1, fine = 1, sound = 1;
   for (int k = 0; k < m->n.step; ++k) {
     double t = step_time(&m->steps[k], 1);
     const friction_rule *rule = friction_in_force(m, k, id);
@@ -227,7 +227,13 @@ static void check_contact_values(const model *m, const mesh *msh, int id) {
     contact_value force = {"CONTACT FORCE", c->force.given ? "p" : NULL,
                            &c->force.value, &c->force.value_at};
     good = good && contact_finite(m, msh, c, friction, t);
+    contact_value change = {"CONTACT PAIR",
+                            !c->change.given       ? NULL
+                            : c->change.interferes ? "INTERFERENCE"
+                                                   : "CLEARANCE",
+                            &c->change.value, &c->change.at};
     fine = fine && contact_finite(m, msh, c, force, t);
+    sound = sound && contact_finite(m, msh, c, change, t);
   }
 }
 

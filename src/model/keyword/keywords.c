@@ -124,6 +124,31 @@ static const option contact_options[] = {
                 OPTION_ABSENT, "whose normal counts; absent: that of a PLANE, "
                 "else that of the body"),
   OPTION_END};
+static const option pair_options[] = {
+  OPTION_NAME(pair_param, name, "NAME", NULL, "name for *FRICTION"),
+  OPTION_CHOICE(pair_param, slave, "SLAVE", SLAVE_WORDS, "AUTO",
+                "which surface has the contact nodes; AUTO: the softer from a "
+                "ratio of 3 on, else the coarser"),
+  OPTION_CHOICE(pair_param, normal, "NORMAL", "MEAN|SLAVE", "MEAN",
+                "MEAN: of both surfaces"),
+  OPTION_CHOICE(pair_param, adjust, "ADJUST", "NO|YES", "NO",
+                "YES: nodes of the slave are moved onto the master before the "
+                "run, without strain"),
+  OPTION_CHOICE(pair_param, type, "TYPE", "SURFACE TO SURFACE",
+                "SURFACE TO SURFACE", "mortar method; there is no other"),
+  OPTION_NAME(pair_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
+              "factor on CLEARANCE or INTERFERENCE in total time, whatever its "
+              "TIME="),
+  OPTION_END};
+static const option tie_options[] = {
+  OPTION_NAME(tie_param, name, "NAME", NULL, "name for messages"),
+  OPTION_CHOICE(tie_param, slave, "SLAVE", SLAVE_WORDS, "AUTO",
+                "whose nodes move with the other; AUTO: the softer from a "
+                "ratio of 3 on, else the coarser"),
+  OPTION_CHOICE(tie_param, adjust, "ADJUST", "NO|YES", "NO",
+                "YES: nodes of the slave are moved onto the master before the "
+                "run, without strain"),
+  OPTION_END};
 static const option friction_options[] = {
   OPTION_NAME(friction_param, contact, "CONTACT", NULL, "name of a *CONTACT"),
   OPTION_NAME(friction_param, law, "LAW", NULL, "protis --list friction"),
@@ -325,6 +350,13 @@ const keyword keyword_table[] = {
   {"CONTACT", IN_MODEL, OPTIONS(contact), NULL, apply_contact, 0, 1,
    "[AXIS, x, y (along z) or AXIS, x, y, z, ax, ay, az: of the torque]",
    "unilateral contact of Gamma_3 with an obstacle"},
+  {"CONTACT PAIR", IN_MODEL, OPTIONS(pair), NULL, apply_contact_pair, 1, 3,
+   "surface, surface; then CLEARANCE, value or INTERFERENCE, value; AXIS as in "
+   "*CONTACT",
+   "unilateral contact of two bodies, or of two surfaces of one: groups of "
+   "faces whose meshes need not match"},
+  {"TIE", IN_MODEL, OPTIONS(tie), NULL, apply_tie, 1, 1, "surface, surface",
+   "joins two surfaces whose meshes need not match"},
   {"FRICTION", IN_MODEL | IN_STEP, OPTIONS(friction), names_law,
    apply_friction, 0, ANY,
    "mu or g: number, expression of x y z t, or pairs with TABLE=",

@@ -141,7 +141,7 @@ static void resolve_contacts(model *m) {
     contact *c = &m->contacts[i];
     resolve_friction(m, &c->friction);
     resolve_force(m, &c->force);
-    if (c->obstacle_name[0] == '\0') continue;
+    if (c->is_pair || c->obstacle_name[0] == '\0') continue;
     c->obstacle_id = find_known(m, c->obstacle_name, "OBSTACLE", obstacle_at,
                                 &c->obstacle_at);
     if (c->obstacle_id < 0) continue;
@@ -158,10 +158,17 @@ static void resolve_contacts(model *m) {
   }
 }
 
+/* 1: something may move without amplitude. */
+static int has_moves(const model *m) {
+  int any = m->n.obstacle > 0;
+  for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].change.given;
+  return any;
+}
+
 /* The ramp of motions without amplitude. */
 static status make_first_step(model *m) {
   value_table *t = &m->time.first_step;
-  if (m->n.step == 0 || m->n.obstacle == 0) return OK;
+  if (m->n.step == 0 || !has_moves(m)) return OK;
   PASS_NEW(t->at, 2);
   PASS_NEW(t->value, 2);
   t->variable = TABLE_T;
@@ -180,6 +187,15 @@ static void lead(const model *m, const value_table *t, quantity *q) {
     q->factor = &m->time.first_step;
 }
 
+/* An interference is a motion, a clearance is there from the start. */
+static void resolve_change(const model *m, gap_change *c) {
+  const value_table *t = NULL;
+  if (!c->given) return;
+  if (c->amplitude_name != NULL)
+    t = total_amplitude(m, c->amplitude_name, &c->amplitude_at);
+  if (t != NULL || c->interferes) lead(m, t, &c->value);
+}
+
 static status resolve_moves(model *m) {
   PASS(make_first_step(m));
   for (int i = 0; i < m->n.obstacle; ++i) {
@@ -190,6 +206,8 @@ static status resolve_moves(model *m) {
     for (int k = 0; k < 3; ++k) lead(m, t, &m->obstacles[i].motion[k]);
     lead(m, t, &m->obstacles[i].angle);
   }
+  for (int i = 0; i < m->n.contact; ++i)
+    resolve_change(m, &m->contacts[i].change);
   return OK;
 }
 

@@ -8,9 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-static const stage mesh_stages[] = {STAGE_MESH,     STAGE_SURFACE,
-                                    STAGE_ASSEMBLY, STAGE_ORDERING,
-                                    STAGE_FACTOR,   STAGE_CONDENSE};
+static const stage mesh_stages[] = {
+    STAGE_MESH,     STAGE_SURFACE, STAGE_COUPLING, STAGE_ASSEMBLY,
+    STAGE_ORDERING, STAGE_FACTOR,  STAGE_CONDENSE};
 
 static const stage time_stages[] = {
     STAGE_LOAD,   STAGE_LIMIT,  STAGE_NONLOCAL,  STAGE_VELOCITY, STAGE_RECOVERY,

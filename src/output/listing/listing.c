@@ -36,6 +36,12 @@ static const char *law_text(const friction_rule *rule) {
   return rule->law != NULL ? rule->law->name : "none";
 }
 
+static void print_pair(const surface_pair *p, const char *what,
+                       const char *name, const mesh *msh, FILE *f) {
+  fprintf(f, "  %-8s %-20s slave %s (%s), master %s", what, name,
+          msh->group[p->slave_id].name, p->why, msh->group[p->master_id].name);
+}
+
 static void print_model(const job *j, FILE *f) {
   const model *m = j->m;
   for (int i = 0; i < j->msh->n_group; ++i) {
@@ -49,8 +55,16 @@ static void print_model(const job *j, FILE *f) {
             m->sections[i].averaged ? ", volume averaged" : "");
   for (int i = 0; i < m->n.contact; ++i) {
     const contact *c = &m->contacts[i];
-    fprintf(f, "  contact  %-20s group %s, obstacle %s, friction %s\n", c->name,
-            c->group, c->obstacle_name, law_text(&c->friction));
+    if (c->is_pair)
+      print_pair(&c->pair, "contact", c->name, j->msh, f);
+    else
+      fprintf(f, "  contact  %-20s group %s, obstacle %s", c->name, c->group,
+              c->obstacle_name);
+    fprintf(f, ", friction %s\n", law_text(&c->friction));
+  }
+  for (int i = 0; i < m->n.tie; ++i) {
+    print_pair(&m->ties[i].pair, "tie", m->ties[i].name, j->msh, f);
+    fputc('\n', f);
   }
   for (int i = 0; i < m->n.step; ++i)
     for (int k = 0; k < m->steps[i].friction.n; ++k) {

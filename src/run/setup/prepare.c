@@ -164,6 +164,7 @@ status run_prepare(run *r) {
   known_rate_forget(&r->solving.rate);
   if (r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0) {
     memcpy(r->body.fixed, fixed, r->n_dof);
+    TRY(run_build_ties(r));
     if (r->m->effects & EFFECT_CONTACT)
       TRY(run_build_surface(r));
     else

@@ -57,30 +57,47 @@ done:
   return st;
 }
 
+/* Thickness of the elements at the faces. */
+static status new_face_weights(run *r) {
+  PASS_NEW(r->faces.face_weight, r->msh->n_face);
+  for (int i = 0; i < r->msh->n_face; ++i)
+    r->faces.face_weight[i] =
+        r->m->sections[r->m->elem_section[r->msh->face_elem[i]]].thickness;
+  return OK;
+}
+
+/* What a contact is with: an obstacle, or another surface. */
+static void set_partner(const run *r, const contact *c, contact_pair *p) {
+  if (!c->is_pair) {
+    p->support = &r->m->obstacles[c->obstacle_id];
+    p->obstacle_normal = c->obstacle_normal;
+    return;
+  }
+  p->master = &r->msh->group[c->pair.master_id];
+  p->slave_normal = c->slave_normal;
+  p->change = c->change.given ? &c->change.value : NULL;
+  p->change_sign = c->change.interferes ? -1.0 : 1.0;
+}
+
 static status new_pairs(run *r) {
   status st = OK;
   const model *m = r->m;
   const mesh *msh = r->msh;
   NEW(r->faces.pairs, m->n.contact);
   NEW(r->faces.node_fixed, msh->n_node);
-  NEW(r->faces.face_weight, msh->n_face);
   NEW(r->result.totals, m->n.contact);
   if (model_has_axis(m)) NEW(r->result.torque, m->n.contact);
   for (int i = 0; i < m->n.contact; ++i) {
     const contact *c = &m->contacts[i];
     r->faces.pairs[i].name = c->name;
     r->faces.pairs[i].group = &msh->group[c->group_id];
-    r->faces.pairs[i].support = &m->obstacles[c->obstacle_id];
     for (int k = 0; k < m->n.step; ++k) {
       const friction_ops *law = friction_in_force(m, k, i)->law;
       r->faces.pairs[i].friction |= law != NULL && law->value_name != NULL;
     }
-    r->faces.pairs[i].obstacle_normal = c->obstacle_normal;
+    set_partner(r, c, &r->faces.pairs[i]);
     r->faces.pairs[i].at = c->at;
   }
-  for (int i = 0; i < msh->n_face; ++i)
-    r->faces.face_weight[i] =
-        m->sections[m->elem_section[msh->face_elem[i]]].thickness;
   r->faces.input.mesh = msh;
   r->faces.input.n_pair = m->n.contact;
   r->faces.input.pairs = r->faces.pairs;
@@ -105,6 +122,8 @@ status run_new(run *r, const effect_ops *const *effects) {
   TRY(effects_create(r, effects));
   TRY(strains_new(r));
   TRY(new_clusters(r));
+  if ((r->m->effects & EFFECT_CONTACT) || r->m->n.tie > 0)
+    TRY(new_face_weights(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
   if (r->m->effects &
       (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR | EFFECT_REFERENCE))
@@ -117,6 +136,7 @@ done:
 
 void run_free(run *r) {
   run_free_surface(r);
+  run_free_ties(r);
   effects_release(r);
   free_equilibrium(&r->old);
   free_equilibrium(&r->now);

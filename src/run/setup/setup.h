@@ -23,6 +23,10 @@ status run_check_supports(const run *r, int *n);
 status run_build_surface(run *r);
 void run_free_surface(run *r);
 
+/* ties.c: the nodes of *TIE under r->body.fixed, before the surface. */
+status run_build_ties(run *r);
+void run_free_ties(run *r);
+
 /* prepare.c: surface, stiffness, condensed matrix and solver for r->step. */
 status run_prepare(run *r);
 

@@ -14,6 +14,14 @@ static const char *body_name(const run *r, size_t elem_no) {
   return "?";
 }
 
+/* 1: a group has faces of a body. */
+static int is_at(const mesh *msh, int group_id, const int *body, int body_id) {
+  const mesh_group *g = &msh->group[group_id];
+  for (int k = 0; k < g->n_item; ++k)
+    if (body[msh->face_elem[g->item_id[k]]] == body_id) return 1;
+  return 0;
+}
+
 /* 1 if a contact with friction acts on the body of an element. */
 static status has_body_friction(const run *r, int elem_id, int *answer) {
   status st = OK;
@@ -25,10 +33,10 @@ static status has_body_friction(const run *r, int elem_id, int *answer) {
   TRY(mesh_bodies(msh, &n, body));
   for (int i = 0; i < m->n.contact; ++i) {
     const contact *c = &m->contacts[i];
-    const mesh_group *g = &msh->group[c->group_id];
     if (!rule_has_friction(friction_in_force(m, run_step_id(r), i))) continue;
-    for (int k = 0; k < g->n_item; ++k)
-      *answer |= body[msh->face_elem[g->item_id[k]]] == body[elem_id];
+    *answer |=
+        is_at(msh, c->group_id, body, body[elem_id]) ||
+        (c->is_pair && is_at(msh, c->pair.master_id, body, body[elem_id]));
   }
 done:
   memory_free(body);
@@ -86,6 +94,7 @@ done:
 status run_motions(run *r, int *n, free_motion **list) {
   status st = OK;
   load_fixed(r->m, r->msh, r->step, r->body.fixed);
+  TRY(run_build_ties(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(run_build_surface(r));
   r->body.d.surface = r->surface;
   TRY(domain_free_motions(&r->body.d, n, list));

@@ -39,6 +39,24 @@ static void node_bits(run *r) {
       bits |= (unsigned)(r->body.fixed[dim * i + c] != 0) << c;
     r->faces.node_fixed[i] = (unsigned char)bits;
   }
+  /* A tied node moves with others, wholly. */
+  for (int q = 0; q < r->body.ties.n; ++q)
+    r->faces.node_fixed[r->body.ties.node_id[q]] = (unsigned char)0xff;
+}
+
+/* Pairs of this run are coupled for the surface alone. */
+static status build(run *r) {
+  status st = OK;
+  int any = 0;
+  for (int i = 0; i < r->m->n.contact; ++i) any |= r->m->contacts[i].is_pair;
+  if (any) {
+    timer_enter(STAGE_COUPLING);
+    st = pairs_couple(&r->faces.input, r->m->log);
+    timer_leave(STAGE_COUPLING);
+  }
+  if (st == OK) st = surface_build(&r->faces.input, r->m->log, &r->surface);
+  pairs_release(&r->faces.input);
+  return st;
 }
 
 static status new_contact_arrays(run *r) {
@@ -87,7 +105,7 @@ status run_build_surface(run *r) {
   run_free_surface(r);
   timer_enter(STAGE_SURFACE);
   node_bits(r);
-  st = surface_build(&r->faces.input, r->m->log, &r->surface);
+  st = build(r);
   timer_leave(STAGE_SURFACE);
   TRY(st);
   r->nodes.n = r->surface->n;

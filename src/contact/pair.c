@@ -1,0 +1,188 @@
+#include "contact/pair.h"
+
+#include "base/memory.h"
+#include "contact/frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- couplings ---------------------------------------------------------- */
+
+static int is_pair(const contact_pair *p) { return p->support == NULL; }
+
+/* 1: supports hold node q of the coupling along its normal. */
+static int is_held(const surface_input *in, const mortar *m, int q) {
+  const int dim = in->mesh->dim;
+  double n[3];
+  memcpy(n, m->normal + (size_t)dim * (size_t)q, (size_t)dim * sizeof *n);
+  return !(frame_project(dim, in->fixed[m->node_id[q]], n) > PAIR_FIXED_SINE);
+}
+
+/* 1: the normals of two nodes are too near to each other for one frame. */
+static int is_dependent(int dim, const double *a, const double *b) {
+  double frame[9];
+  unsigned char held[3] = {0};
+  memcpy(frame, a, (size_t)dim * sizeof *frame);
+  memcpy(frame + dim, b, (size_t)dim * sizeof *frame);
+  return frame_complete(dim, 2, 0, frame, held) < 0;
+}
+
+static int by_number(const void *a, const void *b) {
+  const int x = *(const int *)a, y = *(const int *)b;
+  return (x > y) - (x < y);
+}
+
+/* 1: an earlier pair has node q with (nearly) the same normal. */
+static int is_taken(const surface_input *in, int pair_id, int q) {
+  const int dim = in->mesh->dim;
+  const mortar *m = in->pairs[pair_id].coupled;
+  for (int p = 0; p < pair_id; ++p) {
+    const mortar *old = in->pairs[p].coupled;
+    if (old == NULL) continue;
+    const int *at = bsearch(&m->node_id[q], old->node_id, (size_t)old->n,
+                            sizeof *old->node_id, by_number);
+    if (at != NULL && is_dependent(dim, old->normal + dim * (at - old->node_id),
+                                   m->normal + dim * q))
+      return 1;
+  }
+  return 0;
+}
+
+static status couple(const surface_input *in, const contact_pair *p,
+                     const unsigned char *dropped, mortar **out) {
+  const mortar_input of = {.mesh = in->mesh,
+                           .n_slave = p->group->n_item,
+                           .n_master = p->master->n_item,
+                           .slave = p->group->item_id,
+                           .master = p->master->item_id,
+                           .x = in->mesh->x,
+                           .face_weight = in->face_weight,
+                           .axisymmetric = in->axisymmetric,
+                           .slave_normal = p->slave_normal,
+                           .dropped = dropped};
+  mortar_free(*out);
+  *out = NULL;
+  return mortar_couple(&of, out);
+}
+
+/* Couple without nodes that cannot carry a multiplier, until all can. */
+static status couple_kept(const surface_input *in, int pair_id, int *n_held) {
+  contact_pair *p = &in->pairs[pair_id];
+  OWNED unsigned char *dropped = NULL;
+  int more = 1;
+  PASS_NEW(dropped, in->mesh->n_node);
+  *n_held = 0;
+  while (more > 0) {
+    more = 0;
+    PASS(couple(in, p, dropped, &p->coupled));
+    for (int q = 0; q < p->coupled->n; ++q) {
+      const int held = is_held(in, p->coupled, q);
+      if (!held && !is_taken(in, pair_id, q)) continue;
+      dropped[p->coupled->node_id[q]] = 1;
+      *n_held += held;
+      ++more;
+    }
+  }
+  return OK;
+}
+
+/* 1: the normals of the slave differ. */
+static int is_curved(int dim, const mortar *m) {
+  for (int q = 1; q < m->n; ++q)
+    for (int c = 0; c < dim; ++c)
+      if (fabs(m->normal[dim * q + c] - m->normal[c]) > PAIR_FIXED_SINE)
+        return 1;
+  return 0;
+}
+
+static void tell(const surface_input *in, const contact_pair *p, int n_held,
+                 message_log *log) {
+  enum { CURVED = 2, FLAT = 4 };
+  const mortar *m = p->coupled;
+  if (n_held > 0)
+    message_add(log, P4002, &p->at,
+                "*CONTACT PAIR %s: nodes of group %s are also fixed in the "
+                "normal direction, or tied, and left out of contact: %d",
+                p->name, p->group->name, n_held);
+  if (m->n == 0 && m->covered == 0.0)
+    message_add(log, P4023, &p->at,
+                "*CONTACT PAIR %s: no face of %s meets a face of %s along its "
+                "normal",
+                p->name, p->group->name, p->master->name);
+  else if (m->n == 0)
+    message_add(log, P4010, &p->at,
+                "*CONTACT PAIR %s: no node of group %s can touch surface %s",
+                p->name, p->group->name, p->master->name);
+  if (m->n > 0 && m->size_ratio > (is_curved(in->mesh->dim, m) ? CURVED : FLAT))
+    message_add(log, P4024, &p->at,
+                "*CONTACT PAIR %s: the faces of the master %s are %.2g times "
+                "those of the slave %s",
+                p->name, p->master->name, m->size_ratio, p->group->name);
+}
+
+status pairs_couple(const surface_input *in, message_log *log) {
+  for (int p = 0; p < in->n_pair; ++p) {
+    int n_held = 0;
+    if (!is_pair(&in->pairs[p])) continue;
+    PASS(couple_kept(in, p, &n_held));
+    tell(in, &in->pairs[p], n_held, log);
+  }
+  return message_status(log, ERR_DECK);
+}
+
+void pairs_release(const surface_input *in) {
+  for (int p = 0; p < in->n_pair; ++p) {
+    mortar_free(in->pairs[p].coupled);
+    in->pairs[p].coupled = NULL;
+  }
+}
+
+/* ---- rows of the surface ------------------------------------------------ */
+
+/* Which normal of the node component c is relative to as: -1 none. */
+static int source_of(const contact_surface *s, int i, int n, int c) {
+  if (c < n) return c;
+  return n > 1 || s->held[s->dim * i + c] ? -1 : 0;
+}
+
+/* The place of a master in the row that starts at "first", new if need be. */
+static status place_of(node_links *l, int first, int master, pair_links *room,
+                       int *at) {
+  for (*at = first; *at < room->n; ++*at)
+    if (l->master[*at] == master) return OK;
+  PASS_GROW(l->master, room->n, room->capacity);
+  for (int c = 0; c < l->dim; ++c) {
+    PASS_GROW(l->part, room->n_part, room->part_capacity);
+    l->part[room->n_part++] = 0.0;
+  }
+  l->master[room->n++] = master;
+  return OK;
+}
+
+status pair_add_row(contact_surface *s, int i, int n, const pair_row *rows,
+                    pair_links *room) {
+  node_links *l = s->master;
+  const int dim = s->dim, first = room->n;
+  for (int k = 0; k < n; ++k) {
+    const node_links *to = rows[k].of == NULL ? NULL : &rows[k].of->to;
+    for (size_t e = to == NULL ? 0 : to->start[rows[k].row];
+         to != NULL && e < to->start[rows[k].row + 1]; ++e) {
+      int at;
+      PASS(place_of(l, first, to->master[e], room, &at));
+      for (int c = 0; c < dim; ++c)
+        if (source_of(s, i, n, c) == k)
+          l->part[dim * at + c] = to->part[(size_t)dim * e];
+    }
+  }
+  l->n = i + 1;
+  l->start[i + 1] = (size_t)room->n;
+  return OK;
+}
+
+double pair_change(const contact_pair *p, int dim, const double *x, double t) {
+  double at[3] = {0.0, 0.0, 0.0};
+  if (p->change == NULL) return 0.0;
+  memcpy(at, x, (size_t)dim * sizeof *at);
+  return p->change_sign * quantity_value(p->change, at, t);
+}

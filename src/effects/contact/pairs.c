@@ -1,0 +1,160 @@
+/*
+ * Bodies in contact with each other, or tied: the coupling of their surfaces
+ * (src/contact/mortar), nodal forces of the contact on both sides, and the
+ * moment that is left of the forces on both sides. They act at places a gap
+ * apart; only where a tangential force crosses a gap is there a moment.
+ */
+#include "base/memory.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "run/run.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "run/column_row.h"
+
+typedef struct pair_forces {
+  int dim;
+  double *force;  /* [dim*n_node] of the contact on the bodies, N */
+  double *moment; /* [n_contact] left by both sides, N m */
+} pair_forces;
+
+static int requires_pairs(const model *m, char *why, size_t size) {
+  for (int i = 0; i < m->n.contact; ++i)
+    if (m->contacts[i].is_pair)
+      return plan_says(1, why, size, "*CONTACT PAIR, NAME=%s, %s:%d",
+                       m->contacts[i].name, PLACE(m->contacts[i].at));
+  if (m->n.tie > 0)
+    return plan_says(1, why, size, "*TIE, NAME=%s, %s:%d", m->ties[0].name,
+                     PLACE(m->ties[0].at));
+  return plan_says(0, why, size, "no *CONTACT PAIR, no *TIE");
+}
+
+/* Faces of a group that two surfaces search for partners. */
+static double faces_of(const plan_sizes *s, const surface_pair *p) {
+  return s->msh->group[p->slave_id].n_item + s->msh->group[p->master_id].n_item;
+}
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  double n = 0.0;
+  for (int i = 0; i < s->m->n.contact; ++i)
+    if (s->m->contacts[i].is_pair) n += faces_of(s, &s->m->contacts[i].pair);
+  for (int i = 0; i < s->m->n.tie; ++i) n += faces_of(s, &s->m->ties[i].pair);
+  *w = (effect_work){n, "faces", 1.0, n * (s->is_flat ? 2e3 : 2e4)};
+  return OK;
+}
+
+static status pairs_new(run *r, void **self) {
+  pair_forces *own = NULL;
+  PASS_NEW(own, 1);
+  *self = own;
+  own->dim = r->msh->dim;
+  PASS_NEW(own->force, r->n_dof);
+  PASS_NEW(own->moment, r->m->n.contact);
+  return OK;
+}
+
+static status pairs_copy(const run *r, const void *of, run *copy, void **self) {
+  (void)of;
+  (void)copy;
+  return pairs_new((run *)r, self);
+}
+
+static void release(void *self) {
+  pair_forces *own = self;
+  if (own != NULL) RELEASE(own->force, own->moment);
+  memory_free(own);
+}
+
+/* Arm of row a of contact node i, from its master's place to its own, m. */
+static void find_arm(const run *r, int i, int a, double *arm) {
+  const contact_surface *s = r->surface;
+  const node_links *l = s->master;
+  const int dim = s->dim;
+  double whole = 0.0;
+  memset(arm, 0, 3 * sizeof *arm);
+  for (size_t e = l->start[i]; e < l->start[i + 1]; ++e) {
+    const double part = l->part[(size_t)dim * e + (size_t)a];
+    whole += part;
+    for (int c = 0; c < dim; ++c)
+      arm[c] -=
+          part * r->msh->x[(size_t)dim * (size_t)l->master[e] + (size_t)c];
+  }
+  for (int c = 0; c < dim; ++c)
+    arm[c] = whole == 0.0 ? 0.0 : arm[c] + s->x[dim * i + c];
+}
+
+/* The moment of the forces of one row on both sides. */
+static void add_moment(const run *r, int i, int a, double *moment) {
+  const contact_surface *s = r->surface;
+  const int dim = s->dim;
+  double arm[3], f[3] = {0.0, 0.0, 0.0};
+  find_arm(r, i, a, arm);
+  for (int c = 0; c < dim; ++c)
+    f[c] = s->frame[dim * (dim * i + a) + c] * r->now.rc[dim * i + a];
+  for (int c = 0; c < 3; ++c) {
+    const int j = (c + 1) % 3, k = (c + 2) % 3;
+    moment[c] += arm[j] * f[k] - arm[k] * f[j];
+  }
+}
+
+static status find_forces(run *r, void *self) {
+  pair_forces *own = self;
+  const contact_surface *s = r->surface;
+  if (r->nodes.n == 0 || s->master == NULL) return OK;
+  memset(own->force, 0, r->n_dof * sizeof *own->force);
+  surface_spread(s, 1.0, r->now.rc, own->force);
+  for (int id = 0; id < r->m->n.contact; ++id) {
+    double moment[3] = {0.0, 0.0, 0.0};
+    for (int i = 0; i < r->nodes.n; ++i)
+      for (int a = 0; a < s->dim; ++a) {
+        const int side = a > 0 ? s->side_id[i * (s->dim - 1) + a - 1] : -1;
+        if ((side >= 0 ? side : s->contact_id[i]) == id)
+          add_moment(r, i, a, moment);
+      }
+    own->moment[id] = sqrt(moment[0] * moment[0] + moment[1] * moment[1] +
+                           moment[2] * moment[2]);
+  }
+  return OK;
+}
+
+static const pair_forces *forces_of(const view *v) {
+  return effect_state(v->s->effects, &pairs_effect);
+}
+
+VALUE(contact_force, forces_of(v)->force[at(v->msh->dim, id, part)])
+VALUE(moment_left, forces_of(v)->moment[id])
+
+/* clang-format off */
+#define NODE PER_NODE, AS_REAL, PRINT_NODES, C
+static const char on_both[] = "nodal force of the contacts on the body, on "
+                              "both sides of pairs";
+static const column columns[] = {
+{"contact_x", "force", NODE, CART, 0, "contact_force", 0, contact_force, NULL,
+ on_both},
+{"contact_r", "force", NODE, SCENE_AXI, 0, "contact_force", 0, contact_force,
+ NULL, on_both},
+{"contact_y", "force", NODE, CART, 0, "contact_force", 1, contact_force, NULL,
+ on_both},
+{"contact_z", "force", NODE, SCENE_AXI, 0, "contact_force", 1, contact_force,
+ NULL, on_both},
+{"contact_z", "force", NODE, SCENE_SOLID, 0, "contact_force", 2, contact_force,
+ NULL, on_both},
+{"moment_of_both", J, PER_CONTACT, AS_REAL, PRINT_TOTALS, C, SCENE_ALL,
+ NEEDS_TOTALS, "moment_of_both", 0, moment_left, NULL,
+ "moment left by the forces on both sides of a pair: tangential forces across "
+ "a gap"}};
+/* clang-format on */
+
+const effect_ops pairs_effect = {.name = "bodies in contact",
+                                 .bit = NO_BIT,
+                                 .required = requires_pairs,
+                                 .expected = expected,
+                                 .own = STAGE_COUPLING,
+                                 .on.create = pairs_new,
+                                 .on.accept = find_forces,
+                                 .on.copy = pairs_copy,
+                                 .on.release = release,
+                                 .columns = columns,
+                                 .n_column = COLUMNS(columns)};
