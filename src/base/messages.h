@@ -500,7 +500,10 @@
     "Choose the other side with SLAVE=, or refine the master.")              \
   X(4025, WARNING, "nodes of a tie without partner",                         \
     "They are not tied: the master surface ends before them, or does not "   \
-    "face them. Choose the other side with SLAVE=, or extend the group.")
+    "face them. Choose the other side with SLAVE=, or extend the group.")    \
+  X(4026, ERROR, "ADJUST=YES turns elements inside out",                     \
+    "The surfaces are further apart than the elements at the slave: place "  \
+    "the bodies nearer to each other, or leave ADJUST=YES out.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

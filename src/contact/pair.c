@@ -49,17 +49,18 @@ static int is_taken(const surface_input *in, int pair_id, int q) {
   return 0;
 }
 
-static status couple(const surface_input *in, const contact_pair *p,
-                     const unsigned char *dropped, mortar **out) {
+status surfaces_couple(const surface_input *in, const mesh_group *slave,
+                       const mesh_group *master, int slave_normal,
+                       const unsigned char *dropped, mortar **out) {
   const mortar_input of = {.mesh = in->mesh,
-                           .n_slave = p->group->n_item,
-                           .n_master = p->master->n_item,
-                           .slave = p->group->item_id,
-                           .master = p->master->item_id,
+                           .n_slave = slave->n_item,
+                           .n_master = master->n_item,
+                           .slave = slave->item_id,
+                           .master = master->item_id,
                            .x = in->mesh->x,
                            .face_weight = in->face_weight,
                            .axisymmetric = in->axisymmetric,
-                           .slave_normal = p->slave_normal,
+                           .slave_normal = slave_normal,
                            .dropped = dropped};
   mortar_free(*out);
   *out = NULL;
@@ -75,7 +76,8 @@ static status couple_kept(const surface_input *in, int pair_id, int *n_held) {
   *n_held = 0;
   while (more > 0) {
     more = 0;
-    PASS(couple(in, p, dropped, &p->coupled));
+    PASS(surfaces_couple(in, p->group, p->master, p->slave_normal, dropped,
+                         &p->coupled));
     for (int q = 0; q < p->coupled->n; ++q) {
       const int held = is_held(in, p->coupled, q);
       if (!held && !is_taken(in, pair_id, q)) continue;

@@ -60,6 +60,11 @@ typedef struct surface_input {
   int axisymmetric;
 } surface_input;
 
+/* pair.c: the coupling of two surfaces without the nodes of dropped[n_node]
+ * (or NULL): *out, NULL or an old one that is freed. ERR_MEMORY. */
+status surfaces_couple(const surface_input *in, const mesh_group *slave,
+                       const mesh_group *master, int slave_normal,
+                       const unsigned char *dropped, mortar **out);
 /*
  * pair.c: the coupling of each pair under the supports of the input, without
  * the slave nodes that supports hold along the normal, and those that an

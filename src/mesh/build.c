@@ -203,6 +203,7 @@ status mesh_read_gmsh(const mesh_source *source, const place *at,
     TRY(read_geo(source, head, at, log, &raw));
   else
     TRY(read_msh(source, head, at, log, &raw));
+  raw->meets = source->meets;
   TRY(build_mesh(raw, source->scale, at, log, out));
 done:
   raw_free(raw);

@@ -57,6 +57,7 @@ typedef struct mesh_source {
    * an earlier mesh of it, length; both NULL: the sizes of the .geo. */
   const mesh *old;
   const double *size; /* [old->n_node] */
+  int meets; /* 1: its bodies meet, no warning where they touch or overlap */
 } mesh_source;
 
 /* 1: the file is a .geo, a program that gmsh runs; 0: it is read as data. */

@@ -269,7 +269,7 @@ status nodes_coincident(builder *b) {
     message_add(b->log, P3041, b->at,
                 "%d node(s) lie on another node of the same body: %s", slit.n,
                 slit.text);
-  if (touch.n > 0)
+  if (touch.n > 0 && !b->raw->meets)
     message_add(b->log, P3042, b->at,
                 "%d node(s) lie on a node of another body: %s", touch.n,
                 touch.text);

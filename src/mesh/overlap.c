@@ -445,7 +445,7 @@ static status check_skins(const builder *b, const side_list *sides) {
   for (int i = 0; i < sides->n; ++i) is_skin[sides->id[i] / (m->dim + 1)] = 1;
   TRY(check_skin(&s, is_skin));
   TRY(check_inside(&s, sides, is_skin));
-  if (s.other.n > 0)
+  if (s.other.n > 0 && !b->raw->meets)
     message_add(b->log, P3043, b->at, "elements of two bodies overlap: %s",
                 s.other.text);
   if (s.same.n > 0)

@@ -230,6 +230,12 @@ done:
   return st;
 }
 
+int model_has_pairs(const model *m) {
+  int any = m->n.tie > 0;
+  for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].is_pair;
+  return any;
+}
+
 const step *facts_first_whole(const model *m) {
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];

@@ -85,6 +85,7 @@ typedef struct surface_pair {
   int choice;              /* SLAVE=: SLAVE_... */
   int slave_id, master_id; /* groups; -1: not known */
   int slave;               /* 0 or 1: which of the two is the slave */
+  double moved;            /* by ADJUST=YES at most, m */
   int adjust;              /* 1: slave nodes are moved onto the master */
   char why[64];            /* reason of the choice */
 } surface_pair;
@@ -494,6 +495,8 @@ int print_shows(const print_request *p, const step *s, double t,
  * rounding; HUGE_VAL: none. */
 double print_next(const print_request *p, const step *s, double after,
                   double before);
+/* 1: *CONTACT PAIR or *TIE: surfaces of the mesh meet. */
+int model_has_pairs(const model *m);
 /* 1 if some contact has an axis for its torque. */
 int model_has_axis(const model *m);
 /* 1: the law of an element counts. */

@@ -12,6 +12,7 @@
 #include "model/keyword/keyword.h"
 #include "effects/plan/plan.h"
 #include "program/restart.h"
+#include "run/setup/setup.h"
 #include "base/system/input.h"
 
 #include <stdlib.h>
@@ -48,7 +49,8 @@ static status read_mesh(const job_mesh *other, job_input *in) {
                                     .n_number = n,
                                     .numbers = numbers,
                                     .old = other != NULL ? other->old : NULL,
-                                    .size = other != NULL ? other->size : NULL},
+                                    .size = other != NULL ? other->size : NULL,
+                                    .meets = model_has_pairs(m)},
                      &m->mesh.at, m->log, &in->msh);
   timer_leave(STAGE_MESH);
 done:
@@ -86,6 +88,7 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
     else
       TRY(read_mesh(other, in));
     TRY(model_check(in->m, in->msh, effects_required));
+    TRY(setup_adjust(in->m, in->msh));
   }
 done:
   return st;

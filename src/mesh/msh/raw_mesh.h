@@ -37,6 +37,7 @@ typedef struct raw_mesh {
   int n_entity[4]; /* geometric entities by dimension */
   size_t n_loose;  /* elements of the highest dimension of the groups that are
                       in no group */
+  int meets;       /* as in mesh_source */
 } raw_mesh;
 
 void raw_free(raw_mesh *raw); /* accepts NULL */

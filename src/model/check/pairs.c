@@ -149,9 +149,7 @@ static status check_contact_pair(model *m, const mesh *msh,
 
 status check_pairs(model *m, const mesh *msh) {
   OWNED unsigned char *fixed = NULL;
-  int any = m->n.tie > 0;
-  for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].is_pair;
-  if (!any) return OK;
+  if (!model_has_pairs(m)) return OK;
   PASS_NEW(fixed, (size_t)msh->dim * (size_t)msh->n_node);
   if (!is_lost(m) && m->n.step > 0) load_fixed(m, msh, &m->steps[0], fixed);
   for (int i = 0; i < m->n.contact; ++i)

@@ -158,17 +158,10 @@ static void resolve_contacts(model *m) {
   }
 }
 
-/* 1: something may move without amplitude. */
-static int has_moves(const model *m) {
-  int any = m->n.obstacle > 0;
-  for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].change.given;
-  return any;
-}
-
 /* The ramp of motions without amplitude. */
 static status make_first_step(model *m) {
   value_table *t = &m->time.first_step;
-  if (m->n.step == 0 || !has_moves(m)) return OK;
+  if (m->n.step == 0 || (m->n.obstacle == 0 && !model_has_pairs(m))) return OK;
   PASS_NEW(t->at, 2);
   PASS_NEW(t->value, 2);
   t->variable = TABLE_T;

@@ -40,6 +40,7 @@ static void print_pair(const surface_pair *p, const char *what,
                        const char *name, const mesh *msh, FILE *f) {
   fprintf(f, "  %-8s %-20s slave %s (%s), master %s", what, name,
           msh->group[p->slave_id].name, p->why, msh->group[p->master_id].name);
+  if (p->adjust) fprintf(f, ", nodes moved by up to %.3g", p->moved);
 }
 
 static void print_model(const job *j, FILE *f) {

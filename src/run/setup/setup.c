@@ -57,12 +57,19 @@ done:
   return st;
 }
 
-/* Thickness of the elements at the faces. */
-static status new_face_weights(run *r) {
-  PASS_NEW(r->faces.face_weight, r->msh->n_face);
-  for (int i = 0; i < r->msh->n_face; ++i)
-    r->faces.face_weight[i] =
-        r->m->sections[r->m->elem_section[r->msh->face_elem[i]]].thickness;
+status setup_face_weights(const model *m, const mesh *msh, double **weight) {
+  PASS_NEW(*weight, msh->n_face);
+  for (int i = 0; i < msh->n_face; ++i)
+    (*weight)[i] = m->sections[m->elem_section[msh->face_elem[i]]].thickness;
+  return OK;
+}
+
+/* What contact and ties know of the faces. */
+static status new_faces(run *r) {
+  PASS(setup_face_weights(r->m, r->msh, &r->faces.face_weight));
+  r->faces.input.mesh = r->msh;
+  r->faces.input.face_weight = r->faces.face_weight;
+  r->faces.input.axisymmetric = r->m->sections[0].kin == AXISYMMETRIC;
   return OK;
 }
 
@@ -98,12 +105,9 @@ static status new_pairs(run *r) {
     set_partner(r, c, &r->faces.pairs[i]);
     r->faces.pairs[i].at = c->at;
   }
-  r->faces.input.mesh = msh;
   r->faces.input.n_pair = m->n.contact;
   r->faces.input.pairs = r->faces.pairs;
   r->faces.input.fixed = r->faces.node_fixed;
-  r->faces.input.face_weight = r->faces.face_weight;
-  r->faces.input.axisymmetric = m->sections[0].kin == AXISYMMETRIC;
 done:
   return st;
 }
@@ -122,8 +126,7 @@ status run_new(run *r, const effect_ops *const *effects) {
   TRY(effects_create(r, effects));
   TRY(strains_new(r));
   TRY(new_clusters(r));
-  if ((r->m->effects & EFFECT_CONTACT) || r->m->n.tie > 0)
-    TRY(new_face_weights(r));
+  if ((r->m->effects & EFFECT_CONTACT) || r->m->n.tie > 0) TRY(new_faces(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
   if (r->m->effects &
       (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR | EFFECT_REFERENCE))

@@ -6,7 +6,14 @@
 
 #include "run/run.h"
 
+/* adjust.c: moves the slave nodes of the pairs and ties with ADJUST=YES. Before
+ * the run. ERR_DECK with an error in the log: an element is turned inside out;
+ * ERR_MEMORY. */
+status setup_adjust(model *m, mesh *msh);
+
 /* setup.c */
+/* weight[n_face], new: thickness of the elements at the faces, m. */
+status setup_face_weights(const model *m, const mesh *msh, double **weight);
 status run_new(run *r, const effect_ops *const *effects);
 void run_free(run *r);
 

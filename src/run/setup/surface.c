@@ -47,9 +47,7 @@ static void node_bits(run *r) {
 /* Pairs of this run are coupled for the surface alone. */
 static status build(run *r) {
   status st = OK;
-  int any = 0;
-  for (int i = 0; i < r->m->n.contact; ++i) any |= r->m->contacts[i].is_pair;
-  if (any) {
+  if (model_has_pairs(r->m)) {
     timer_enter(STAGE_COUPLING);
     st = pairs_couple(&r->faces.input, r->m->log);
     timer_leave(STAGE_COUPLING);

@@ -29,18 +29,7 @@ static status couple(const run *r, const tie *t, const unsigned char *dropped,
                      mortar **out) {
   const mesh_group *slave = &r->msh->group[t->pair.slave_id],
                    *master = &r->msh->group[t->pair.master_id];
-  const mortar_input in = {
-      .mesh = r->msh,
-      .n_slave = slave->n_item,
-      .n_master = master->n_item,
-      .slave = slave->item_id,
-      .master = master->item_id,
-      .x = r->msh->x,
-      .face_weight = r->faces.face_weight,
-      .axisymmetric = r->m->sections[0].kin == AXISYMMETRIC,
-      .slave_normal = 1,
-      .dropped = dropped};
-  PASS(mortar_couple(&in, out));
+  PASS(surfaces_couple(&r->faces.input, slave, master, 1, dropped, out));
   if ((*out)->n == 0)
     message_add(r->m->log, P4023, &t->at,
                 "*TIE %s: no face of %s meets a face of %s along its normal",

@@ -1,0 +1,75 @@
+/*
+ * ADJUST=YES: slave nodes are moved onto the master before the run. The gap
+ * vector of a node follows from the normals, which follow from the places: a
+ * few passes leave a moment of about 1e-9 of tangential forces.
+ */
+#include "run/setup/setup.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { PASSES = 3 };
+
+/* The places once the slave of a pair is on its master, into x[dim*n_node]. */
+static status move_slave(const surface_input *in, surface_pair *p, double *x) {
+  const mesh *msh = in->mesh;
+  const int dim = msh->dim;
+  mortar *m = NULL;
+  PASS(surfaces_couple(in, &msh->group[p->slave_id], &msh->group[p->master_id],
+                       0, NULL, &m));
+  memcpy(x, msh->x, (size_t)dim * (size_t)msh->n_node * sizeof *x);
+  for (int q = 0; q < m->n; ++q)
+    for (int c = 0; c < dim; ++c) {
+      const double d = m->gap[dim * q + c];
+      x[(size_t)dim * (size_t)m->node_id[q] + (size_t)c] += d;
+      p->moved = fmax(p->moved, fabs(d));
+    }
+  mortar_free(m);
+  return OK;
+}
+
+/* ERR_DECK with an error in the log: an element has no volume left. */
+static status check_elements(const model *m, const mesh *msh,
+                             const surface_pair *p) {
+  for (int e = 0; e < msh->n_elem; ++e) {
+    if (mesh_elem_measure(msh, e) > 0.0) continue;
+    message_add(m->log, P4026, &p->group_at[0],
+                "ADJUST=YES turns element %zu inside out: surfaces %s and %s "
+                "are up to %.3g apart",
+                msh->elem_no[e], p->group[0], p->group[1], p->moved);
+    break;
+  }
+  return message_status(m->log, ERR_DECK);
+}
+
+static status adjust(const model *m, const surface_input *in, surface_pair *p,
+                     mesh *msh) {
+  OWNED double *x = NULL;
+  const size_t n = (size_t)msh->dim * (size_t)msh->n_node;
+  if (!p->adjust) return OK;
+  PASS_NEW(x, n);
+  for (int pass = 0; pass < PASSES; ++pass) {
+    PASS(move_slave(in, p, x));
+    memcpy(msh->x, x, n * sizeof *x);
+  }
+  return check_elements(m, msh, p);
+}
+
+status setup_adjust(model *m, mesh *msh) {
+  int any = 0;
+  for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].pair.adjust;
+  for (int i = 0; i < m->n.tie; ++i) any |= m->ties[i].pair.adjust;
+  if (!any) return OK;
+  OWNED double *weight = NULL;
+  surface_input in = {.mesh = msh,
+                      .axisymmetric = m->sections[0].kin == AXISYMMETRIC};
+  PASS(setup_face_weights(m, msh, &weight));
+  in.face_weight = weight;
+  for (int i = 0; i < m->n.tie; ++i)
+    PASS(adjust(m, &in, &m->ties[i].pair, msh));
+  for (int i = 0; i < m->n.contact; ++i)
+    PASS(adjust(m, &in, &m->contacts[i].pair, msh));
+  return OK;
+}
