@@ -465,6 +465,19 @@ static status set_node(builder *b, contact_surface *s, int n_kept,
   return couple_node(b, s, i, n_kept < dim ? n_kept : dim, kept);
 }
 
+/* A depth of penetration that is told, m: facets of curved surfaces enter each
+ * other. */
+static double told_depth(const builder *b, const contact_pair *p) {
+  static const double sagitta = 0.05;
+  const mesh *m = b->in->mesh;
+  double mean = 0.0, normal[3];
+  if (p->support != NULL) return rounding * m->size;
+  for (int k = 0; k < p->group->n_item; ++k)
+    mean +=
+        mesh_face_normal(m, p->group->item_id[k], normal) / p->group->n_item;
+  return sagitta * (b->dim == 2 ? mean : sqrt(mean));
+}
+
 static void say(const builder *b, int pair_id) {
   const contact_pair *p = &b->in->pairs[pair_id];
   const tally *t = &b->tallies[pair_id];
@@ -480,7 +493,7 @@ static void say(const builder *b, int pair_id) {
                 "*CONTACT %s: %d nodes cannot reach obstacle %s along their "
                 "normal and are left out",
                 p->name, t->n_unreached, p->support->name);
-  if (t->depth > rounding * m->size)
+  if (t->depth > told_depth(b, p))
     message_add(b->log, P4004, &p->at,
                 "*CONTACT %s: deepest penetration of %s is %.4g, %.2g of the "
                 "size of the mesh, at %s",

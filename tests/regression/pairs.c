@@ -1,0 +1,400 @@
+/*
+ * Bodies against each other: patch tests through meshes that do not match,
+ * ties, a held master against the rigid plane, chains of bodies, interference,
+ * and what is refused.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Two blocks of pair.geo or pair3.geo: E and nu of both, cards of the contact,
+ * supports, loads. */
+typedef struct scene {
+  const char *geo, *numbers, *type;
+  double E[2], nu;
+  const char *joint, *supports, *loads;
+} scene;
+
+static job run_scene(const scene *s, const char *words) {
+  job j = job_begin("pair");
+  char path[80];
+  snprintf(path, sizeof path, "tests/regression/mesh/%s.geo", s->geo);
+  job_copy(&j, path);
+  job_write(&j, "pair.inp",
+            "*PARAMETER\n%s\n*MESH, FILE=%s.geo\n"
+            "*MATERIAL, NAME=A\n*ELASTIC\n%.17g, %.17g\n"
+            "*MATERIAL, NAME=B\n*ELASTIC\n%.17g, %.17g\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=A%s\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=B%s\n%s"
+            "*STEP\n*STATIC\n*BOUNDARY\n%s*DSLOAD\n%s"
+            "*SOLVER, TOL=1E-13\n"
+            "*PRINT, NODES, ELEMENTS, ENERGY%s\n*END STEP\n",
+            s->numbers, s->geo, s->E[0], s->nu, s->E[1], s->nu, s->type,
+            s->type, s->joint, s->supports, s->loads,
+            strstr(s->joint, "*CONTACT") != NULL ? ", CONTACT, TOTALS" : "");
+  int code = job_run(&j, words);
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+#define PAIR "*CONTACT PAIR, NAME=P\nUNDER, OVER\n"
+#define STICK PAIR "*FRICTION, CONTACT=P, LAW=COULOMB\n0.5\n"
+#define TIE "*TIE, NAME=P\nUNDER, OVER\n"
+/* Pressed by 3 along y, or by 3 and sheared by 1 in axes turned by 30 degrees:
+ * c = 0.866, s = 0.5; traction (-s p' + c t, c p' + s t) with p' = -3, t = 1 on
+ * top, t times (-s, c) and against it on the sides. */
+#define PRESSED "TOP, P, 3.\n"
+#define TURNED                                                      \
+  "TOP, TX, 2.3660254037844388\nTOP, TY, -2.0980762113533160\n"     \
+  "RIGHT, TX, -0.5\nRIGHT, TY, 0.8660254037844386\nLEFT, TX, 0.5\n" \
+  "LEFT, TY, -0.8660254037844386\n"
+#define ROLLERS "BOTTOM, 2\nLEFT, 1\n"
+
+static const scene patches[] = {
+    {"pair", "N = 4", ", TYPE=CPE3", {1e3, 1e3}, 0.3, PAIR, ROLLERS, PRESSED},
+    {"pair",
+     "N = 7\nM = 4",
+     ", TYPE=CPS3",
+     {1e3, 1e3},
+     0.3,
+     PAIR,
+     ROLLERS,
+     PRESSED},
+    {"pair",
+     "N = 3\nM = 31",
+     ", TYPE=CAX3",
+     {1e3, 1e3},
+     0.3,
+     PAIR,
+     ROLLERS,
+     PRESSED},
+    {"pair",
+     "N = 5\nA = 30",
+     ", TYPE=CPE3",
+     {1e3, 2e3},
+     0,
+     STICK,
+     "BOTTOM, 1, 2\n",
+     TURNED},
+    {"pair", "N = 5", ", TYPE=CPE3", {1e6, 1}, 0, PAIR, ROLLERS, PRESSED},
+    {"pair", "N = 5", ", TYPE=CPE3", {1e3, 1e3}, 0.3, TIE, ROLLERS, PRESSED},
+    {"pair",
+     "N = 5\nA = 30",
+     ", TYPE=CPE3",
+     {1e3, 2e3},
+     0,
+     TIE,
+     "BOTTOM, 1, 2\n",
+     TURNED},
+    {"pair3",
+     "N = 2\nM = 3.1",
+     "",
+     {1e3, 1e3},
+     0.3,
+     PAIR,
+     "BOTTOM, 3\nLEFT, 1\nFRONT, 2\n",
+     PRESSED},
+    {"pair3",
+     "N = 3\nM = 2",
+     "",
+     {1e3, 2e3},
+     0,
+     STICK,
+     "BOTTOM, 1, 3\n",
+     "TOP, P, 3.\nTOP, TX, 1.\nRIGHT, TZ, 1.\nLEFT, TZ, -1.\n"},
+    {"pair3",
+     "N = 3\nM = 2",
+     "",
+     {1e3, 2e3},
+     0,
+     TIE,
+     "BOTTOM, 1, 3\n",
+     "TOP, P, 3.\nTOP, TX, 1.\nRIGHT, TZ, 1.\nLEFT, TZ, -1.\n"}};
+
+/* Stress of the patch: [0] for names, [1] values. */
+static void check_stress(const scene *s, const job *j) {
+  dat e = job_table(j, "ELEMENTS", -1);
+  const int solid = strcmp(s->geo, "pair3") == 0;
+  const int axi = strstr(s->type, "CAX3") != NULL;
+  const int turned = s->loads[strlen("TOP, ")] == 'T';
+  const int sheared = turned || strstr(s->loads, "TZ") != NULL;
+  double normal = -3, shear = sheared ? 1 : 0;
+  if (turned) { /* sigma = -3 n n + (n t + t n), n = (-s, c), t = (c, s) */
+    const double c = sqrt(0.75), q = 0.5;
+    normal = -3 * c * c + 2 * c * q;
+    shear = 3 * c * q + (c * c - q * q);
+  }
+  const char *const along = solid ? "stress_zz"
+                            : axi ? "stress_zz"
+                                  : "stress_yy";
+  const char *const across = solid ? "stress_zx"
+                             : axi ? "stress_rz"
+                                   : "stress_xy";
+  for (int i = 0; i < e.n_row; ++i) {
+    ck_assert_double_eq_tol(dat_at(&e, i, along), normal, 1e-10 * 3);
+    ck_assert_double_eq_tol(dat_at(&e, i, across), shear, 1e-10 * 3);
+  }
+  dat_free(&e);
+}
+
+START_TEST(patch) {
+  const scene *s = &patches[_i];
+  job j = run_scene(s, "--no-timing");
+  check_stress(s, &j);
+  dat e = job_table(&j, "ENERGY", -1);
+  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect")),
+                      1e-12 * dat_at(&e, 0, "external_work"));
+  dat_free(&e);
+  if (strstr(s->joint, "*CONTACT") != NULL) {
+    dat n = job_table(&j, "NODES", -1), t = job_table(&j, "TOTALS", -1);
+    static const char *const names[] = {"contact_x", "contact_y", "contact_z",
+                                        "contact_r"};
+    for (int k = 0; k < 4; ++k)
+      if (dat_has(&n, names[k]))
+        ck_assert_double_le(fabs(dat_sum(&n, names[k])), 1e-12 * 3 * 4);
+    ck_assert_double_le(dat_at(&t, 0, "moment_of_both"), 1e-10 * 3);
+    dat_free(&n);
+    dat_free(&t);
+  }
+  job_end(&j);
+}
+END_TEST
+
+/* ---- a held master is the rigid plane -------------------------------------
+ */
+
+/* A block pressed on one side more than on the other, then passed by a plane
+ * or by a held block that moves as it does. */
+static void run_block(job *j, int pair, const char *cards, const char *solver) {
+  *j = job_begin(pair ? "held" : "plane");
+  job_copy(j, "tests/regression/mesh/pair.geo");
+  job_write(j, pair ? "held.inp" : "plane.inp",
+            "*PARAMETER\nN = 3\nM = 8\n*MESH, FILE=pair.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M, TYPE=CPE3\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M, TYPE=CPE3\n"
+            "*AMPLITUDE, NAME=RUN, TIME=TOTAL TIME\n0, 0, 1, 0, 2, 1\n%s%s"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLOWER, 1, 2\nTOP, 1\n"
+            "*DSLOAD\nTOP, P, \"1 + 4*x\"\n%s*PRINT, CONTACT, TOTALS, ENERGY\n"
+            "*END STEP\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nLOWER, 1, 1, 0.004\n"
+            "*END STEP\n",
+            pair ? "*CONTACT PAIR, NAME=P\nUNDER, OVER\n"
+                 : "*OBSTACLE, NAME=O, TYPE=PLANE, AMPLITUDE=RUN\n0, 1\n0, 1\n"
+                   "MOVE, 0.004, 0\n*CONTACT, NAME=P, GROUP=OVER, OBSTACLE=O\n",
+            cards, solver);
+  int code = job_run(j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j->errors);
+}
+
+static void check_same(const job *a, const job *b, double tol) {
+  static const char *const names[] = {"f_n", "f_t", "gap"};
+  for (int k = 0; k < 6; ++k) {
+    dat x = job_table(a, "CONTACT", k), y = job_table(b, "CONTACT", k);
+    ck_assert_int_eq(x.n_row, y.n_row);
+    for (int i = 0; i < x.n_row; ++i) {
+      for (int c = 0; c < 3; ++c)
+        ck_assert_double_eq_tol(dat_at(&x, i, names[c]),
+                                dat_at(&y, i, names[c]), tol);
+      ck_assert_double_eq(dat_at(&x, i, "status"), dat_at(&y, i, "status"));
+    }
+    dat_free(&x);
+    dat_free(&y);
+  }
+}
+
+START_TEST(held_master_is_a_plane) {
+  static const char *const laws[] = {
+      "",
+      "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n",
+      "*FRICTION, CONTACT=P, LAW=TRESCA\n0.5\n",
+      "*FRICTION, CONTACT=P, LAW=NONLOCAL, RADIUS=0.3\n0.3\n",
+      "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n"
+      "*CONTACT FORCE, CONTACT=P\n2.\n*BOUNDARY\nTOP, 2\n",
+      "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n"
+      "*WEAR, CONTACT=P, COEFFICIENT=1.E-3\n"};
+  job pair, plane;
+  run_block(&pair, 1, laws[_i], "*SOLVER, TOL=1E-13\n");
+  run_block(&plane, 0, laws[_i], "*SOLVER, TOL=1E-13\n");
+  check_same(&pair, &plane, 1e-9);
+  job_end(&pair);
+  job_end(&plane);
+}
+END_TEST
+
+/* ---- methods ------------------------------------------------------------- */
+
+static const char *const methods[] = {"LEMKE",  "SOR",      "AITKEN",
+                                      "PCG",    "LAGRANGE", "AUGLAG",
+                                      "NEWTON", "PROXIMAL", "AUTO"};
+
+/* A block narrower than the other, pressed and pushed, both elastic: the edges
+ * slip, nodes beyond them have no partner; in space all of it. */
+static job run_punch(const char *method, int solid) {
+  job j = job_begin("punch");
+  job_copy(&j, solid ? "tests/regression/mesh/pair3.geo"
+                     : "tests/regression/mesh/pair.geo");
+  job_write(&j, "punch.inp",
+            "*PARAMETER\n%s\n*MESH, FILE=%s.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
+            "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nBOTTOM, 1, %d\n*DSLOAD\n"
+            "TOP, P, \"3 + 2*x\"\nTOP, TX, 0.5\n"
+            "*SOLVER, METHOD=%s, TOL=1E-10\n"
+            "*PRINT, CONTACT, TOTALS\n*END STEP\n",
+            solid ? "N = 2\nM = 3" : "N = 8\nM = 7\nC = 0.3",
+            solid ? "pair3" : "pair", solid ? 3 : 2, method);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "%s: exit %d: %s", method, code, j.errors);
+  return j;
+}
+
+START_TEST(all_methods_agree) {
+  const int solid = _i / 9;
+  job a = run_punch(methods[_i % 9], solid), b = run_punch("NEWTON", solid);
+  dat x = job_table(&a, "CONTACT", -1), y = job_table(&b, "CONTACT", -1);
+  int n_slip = 0;
+  for (int i = 0; i < x.n_row; ++i) {
+    ck_assert_double_eq_tol(dat_at(&x, i, "f_n"), dat_at(&y, i, "f_n"), 1e-7);
+    n_slip += dat_at(&x, i, "status") == 1;
+  }
+  ck_assert_int_gt(n_slip, 0);
+  ck_assert_int_lt(n_slip, x.n_row);
+  dat t = job_table(&a, "TOTALS", -1);
+  const double width = solid ? 1 : 0.4;
+  ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), 4 * width, 1e-7);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), 0.5 * width, 1e-7);
+  dat_free(&t);
+  dat_free(&x);
+  dat_free(&y);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
+/* ---- bodies that pairs alone hold ----------------------------------------
+ */
+
+/* A block on an incline of the slope 0.1, pushed up by F times its weight: it
+ * moves from F = (0.1 + mu)/(1 - 0.1 mu) on (NAFEMS CGS-4). */
+static int push_up(job *j, double factor) {
+  const double mu = 0.3, F = factor * (0.1 + mu) / (1 - 0.1 * mu);
+  *j = job_begin("wedge");
+  job_copy(j, "tests/regression/mesh/pair.geo");
+  job_write(j, "wedge.inp",
+            "*PARAMETER\nN = 5\nM = 3\nA = \"atan(0.1)*180/pi\"\n"
+            "*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n" PAIR
+            "*FRICTION, CONTACT=P, LAW=COULOMB\n%.17g\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\n*DLOAD\n"
+            "UPPER, BX, %.17g\nUPPER, BY, -1.\n*PRINT, TOTALS\n*END STEP\n",
+            mu, F);
+  return job_run(j, "--no-timing");
+}
+
+START_TEST(wedge_moves_at_its_limit) {
+  job below, above;
+  ck_assert_int_eq(push_up(&below, 0.999), 0);
+  ck_assert_int_eq(push_up(&above, 1.001), 6);
+  ck_assert_ptr_nonnull(strstr(above.errors, "no equilibrium"));
+  job_end(&below);
+  job_end(&above);
+}
+END_TEST
+
+/* Blocks of 1 x 1 and the weight 1 on each other, the top one pushed by Q: it
+ * slides from mu on, all others carry more. */
+static int push_stack(job *j, double Q) {
+  *j = job_begin("stack");
+  job_copy(j, "tests/regression/mesh/stack.geo");
+  job_write(j, "stack.inp",
+            "*MESH, FILE=stack.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
+            "*SOLID SECTION, ELSET=BLOCKS, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0, 0\n0, 1\n"
+            "*CONTACT, NAME=P0, GROUP=BOTTOM 1, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=P0, LAW=COULOMB\n0.3\n");
+  FILE *f;
+  char path[128];
+  snprintf(path, sizeof path, "%s/stack.inp", j->dir);
+  f = fopen(path, "a");
+  for (int k = 1; k < 5; ++k)
+    fprintf(f,
+            "*CONTACT PAIR, NAME=P%d\nTOP %d, BOTTOM %d\n"
+            "*FRICTION, CONTACT=P%d, LAW=COULOMB\n0.3\n",
+            k, k, k + 1, k);
+  fprintf(f,
+          "*STEP\n*STATIC\n*DLOAD\nBLOCKS, BY, -1.\nBLOCK 5, BX, %.17g\n"
+          "*PRINT, TOTALS\n*END STEP\n",
+          Q);
+  fclose(f);
+  return job_run(j, "--no-timing");
+}
+
+START_TEST(stack_stands_by_contact_alone) {
+  job j;
+  ck_assert_int_eq(push_stack(&j, 0.299), 0);
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_int_eq(t.n_row, 5);
+  for (int k = 0; k < 5; ++k) {
+    ck_assert_double_eq_tol(dat_at(&t, k, "normal"), 5 - k, 1e-9);
+    ck_assert_double_eq_tol(fabs(dat_at(&t, k, "force_x")), 0.299, 1e-9);
+  }
+  dat_free(&t);
+  job_end(&j);
+  ck_assert_int_eq(push_stack(&j, 0.301), 6);
+  job_end(&j);
+}
+END_TEST
+
+/* ---- what is refused ------------------------------------------------------
+ */
+
+START_TEST(bad_pairs_are_told) {
+  static const struct {
+    const char *cards, *message;
+    int code;
+  } cases[] = {
+      {"*CONTACT PAIR, NAME=P\nOVER, OVER\n", "P2060", 2},
+      {"*TIE, NAME=P\nOVER, OVER\n", "P2060", 2},
+      {"*CONTACT PAIR, NAME=P\nTOP, BOTTOM\n", "P4023", 2},
+      {"*TIE, NAME=P\nTOP, BOTTOM\n", "P4023", 2},
+      {"*CONTACT PAIR, NAME=P\nUNDER, AND\n", "P2021", 2},
+      {"*CONTACT PAIR, NAME=P\nUNDER\n", "P2009", 2},
+      {"*CONTACT PAIR, NAME=P, AMPLITUDE=A\nUNDER, OVER\n", "P2007", 2},
+      {"*CONTACT PAIR, NAME=P\nUNDER, OVER\nCLEARANCE, -1.\n", "P2041", 2},
+      {PAIR "*CONTACT PAIR, NAME=Q\nOVER, UNDER\n", "P2011", 2},
+      {"*CONTACT PAIR, NAME=P\nUNDER, OVER\nCLEARANCE, 1.\n", "P4021", 0}};
+  job j = job_begin("bad");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "bad.inp",
+            "*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n%s"
+            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1, 2\n"
+            "*DLOAD\nUPPER, BY, -1.\n*PRINT, TOTALS\n*END STEP\n",
+            cases[_i].cards);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(
+      code == cases[_i].code && strstr(j.errors, cases[_i].message) != NULL,
+      "exit %d: %s", code, j.errors);
+  job_end(&j);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("pairs");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, patch, 0, sizeof patches / sizeof *patches);
+  tcase_add_loop_test(tests, held_master_is_a_plane, 0, 6);
+  tcase_add_loop_test(tests, all_methods_agree, 0, 18);
+  tcase_add_test(tests, wedge_moves_at_its_limit);
+  tcase_add_test(tests, stack_stands_by_contact_alone);
+  tcase_add_loop_test(tests, bad_pairs_are_told, 0, 10);
+  return unit_run("pairs", tests);
+}
