@@ -22,6 +22,22 @@ typedef struct mesh_group {
   int *node_id; /* [n_node] ascending */
 } mesh_group;
 
+/* A crack along which the mesh was opened (mesh/crack/crack.h). Its front: tips
+ * (2-D) or chains of nodes (3-D), each along e3 = e1 x e2, with e1 the
+ * direction of growth and e2 the normal from minus to plus; a closed chain ends
+ * with its first node. */
+typedef struct mesh_crack {
+  int n;            /* faces that are open */
+  int *plus;        /* [n] face id of the lip above; face_elem: its element */
+  int *minus;       /* [n] face id of the lip below */
+  int n_front;      /* tips or chains */
+  int *front_start; /* [n_front+1] */
+  int *front_node;  /* [front_start[n_front]] */
+  int *front_face;  /* [front_start[n_front]] face (0 .. n-1) of the crack at
+                       the tip, or along the edge to the next node; -1: last
+                       node of a chain */
+} mesh_crack;
+
 typedef struct mesh {
   int dim; /* 2 or 3 */
   int n_node, n_elem, n_face, n_group;
@@ -38,6 +54,8 @@ typedef struct mesh {
   int *face_elem;    /* [n_face] the element the face bounds */
   int *face_other;   /* [n_face] the element behind it, -1 on the boundary */
   mesh_group *group; /* [n_group] */
+  int n_crack;
+  mesh_crack *crack; /* [n_crack] */
   double z;          /* of the plane of a 2-D mesh, length */
   double size;       /* largest extent of the bounding box, length */
 } mesh;
@@ -72,6 +90,7 @@ status mesh_read_gmsh(const mesh_source *source, const place *at,
  * reported. */
 void mesh_gmsh_load(void);
 void mesh_free(mesh *m);
+void mesh_crack_free(mesh_crack *c); /* accepts all-zero */
 
 const mesh_group *mesh_find_group(const mesh *m,
                                   const char *name); /* or NULL */

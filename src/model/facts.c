@@ -230,6 +230,11 @@ done:
   return st;
 }
 
+const char *contact_card(const contact *c) {
+  if (c->is_crack) return "*CRACK";
+  return c->is_pair ? "*CONTACT PAIR" : "*CONTACT";
+}
+
 int model_has_pairs(const model *m) {
   int any = m->n.tie > 0;
   for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].is_pair;

@@ -106,11 +106,20 @@ typedef struct tie {
   surface_pair pair;
 } tie;
 
+/* *CRACK: a group of inner faces that is opened; its lips are a pair. */
+typedef struct crack {
+  const char *name, *group;
+  place at, group_at;
+  int contact_id;
+  char *lip[2]; /* names of the groups of its lips, owned */
+} crack;
+
 typedef struct contact {
   const char *name, *group, *obstacle_name; /* of a pair slave, master */
   place at, group_at, obstacle_at;
   int obstacle_id, group_id;
-  int is_pair; /* 1: *CONTACT PAIR, without obstacle */
+  int is_crack; /* 1: the pair is that of *CRACK */
+  int is_pair;  /* 1: *CONTACT PAIR or *CRACK, without obstacle */
   surface_pair pair;
   gap_change change;             /* of a pair */
   int slave_normal;              /* 1: NORMAL=SLAVE of a pair */
@@ -385,8 +394,8 @@ typedef struct model {
     const char *length, *force, *time; /* labels or NULL */
   } unit;
   struct model_count {
-    int amplitude, points, material, section, obstacle, contact, tie, step,
-        field, initial, effect_card;
+    int amplitude, points, material, section, obstacle, contact, tie, crack,
+        step, field, initial, effect_card;
   } n, cap; /* of the arrays below; allocated */
   struct {
     amplitude *amplitudes;
@@ -399,6 +408,7 @@ typedef struct model {
   struct move *moves; /* [n.obstacle] amplitude names of the obstacles */
   contact *contacts;
   tie *ties;
+  crack *cracks; /* in the order of mesh->crack */
   struct {
     load_list supports;  /* *BOUNDARY before the first step */
     nodal_field *fields; /* [n.field] of all FILE= of *TEMPERATURE */
@@ -476,6 +486,8 @@ const friction_rule *friction_in_force(const model *m, int step_id,
                                        int contact_id);
 /* A friction value that is zero everywhere and always is no friction. */
 int rule_has_friction(const friction_rule *rule);
+/* "*CONTACT", "*CONTACT PAIR" or "*CRACK" */
+const char *contact_card(const contact *c);
 /* 1 if the deck has such a card. */
 int has_card(const model *m, const char *name);
 /* 1 if some *PRINT requires one of these tables (bits PRINT_*). */

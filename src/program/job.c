@@ -43,15 +43,14 @@ static status read_mesh(const job_mesh *other, job_input *in) {
   timer_enter(STAGE_MESH);
   if (m->accuracy.target.percent > 0.0 && job_is_geo(m)) mesh_gmsh_load();
   in->library_cpu = timer_cpu() - cpu;
-  st =
-      mesh_read_gmsh(&(mesh_source){.file = m->mesh.file,
-                                    .scale = m->mesh.scale,
-                                    .n_number = n,
-                                    .numbers = numbers,
-                                    .old = other != NULL ? other->old : NULL,
-                                    .size = other != NULL ? other->size : NULL,
-                                    .meets = model_has_pairs(m)},
-                     &m->mesh.at, m->log, &in->msh);
+  st = mesh_read_gmsh(&(mesh_source){.file = m->mesh.file,
+                                     .scale = m->mesh.scale,
+                                     .n_number = n,
+                                     .numbers = numbers,
+                                     .old = other != NULL ? other->old : NULL,
+                                     .size = other != NULL ? other->size : NULL,
+                                     .meets = model_has_pairs(m)},
+                      &m->mesh.at, m->log, &in->msh);
   timer_leave(STAGE_MESH);
 done:
   memory_free(numbers);
@@ -87,6 +86,7 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
       in->msh = other->same;
     else
       TRY(read_mesh(other, in));
+    TRY(model_open_cracks(in->m, in->msh));
     TRY(model_check(in->m, in->msh, effects_required));
     TRY(setup_adjust(in->m, in->msh));
   }

@@ -23,8 +23,9 @@ typedef struct pair_forces {
 static int requires_pairs(const model *m, char *why, size_t size) {
   for (int i = 0; i < m->n.contact; ++i)
     if (m->contacts[i].is_pair)
-      return plan_says(1, why, size, "*CONTACT PAIR, NAME=%s, %s:%d",
-                       m->contacts[i].name, PLACE(m->contacts[i].at));
+      return plan_says(1, why, size, "%s, NAME=%s, %s:%d",
+                       contact_card(&m->contacts[i]), m->contacts[i].name,
+                       PLACE(m->contacts[i].at));
   if (m->n.tie > 0)
     return plan_says(1, why, size, "*TIE, NAME=%s, %s:%d", m->ties[0].name,
                      PLACE(m->ties[0].at));

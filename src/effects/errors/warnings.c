@@ -79,7 +79,7 @@ static void end(run *r, void *self) {
   const warnings *reported = self;
   for (int i = 0; i < r->m->n.contact && r->course.unsettled == 0; ++i) {
     const contact *c = &r->m->contacts[i];
-    if (reported->touched[i] || c->force.given) continue;
+    if (reported->touched[i] || c->force.given || c->is_crack) continue;
     message_add(r->m->log, P4021, &c->at,
                 "*CONTACT %s: no node touched %s %s in the run; the least gap "
                 "at its end is %.3g",

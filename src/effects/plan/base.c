@@ -83,8 +83,8 @@ static int requires_mesh(const model *m, char *why, size_t size) {
 
 static int requires_contact(const model *m, char *why, size_t size) {
   if (m->n.contact == 0) return plan_says(0, why, size, "no *CONTACT card");
-  return plan_says(1, why, size, "*CONTACT%s, NAME=%s, %s:%d",
-                   m->contacts[0].is_pair ? " PAIR" : "", m->contacts[0].name,
+  return plan_says(1, why, size, "%s, NAME=%s, %s:%d",
+                   contact_card(&m->contacts[0]), m->contacts[0].name,
                    PLACE(m->contacts[0].at));
 }
 

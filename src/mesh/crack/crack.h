@@ -24,21 +24,6 @@ typedef struct mesh_cut { /* a crack to be opened */
   const place *at; /* for messages */
 } mesh_cut;
 
-/* An opened crack. Its front: tips (2-D) or chains of nodes (3-D), each along
- * e3 = e1 x e2, with e1 the direction of growth and e2 the normal from minus to
- * plus; a closed chain ends with its first node. */
-typedef struct mesh_crack {
-  int n;            /* faces that are open */
-  int *plus;        /* [n] face id of the lip above; face_elem: its element */
-  int *minus;       /* [n] face id of the lip below */
-  int n_front;      /* tips or chains */
-  int *front_start; /* [n_front+1] */
-  int *front_node;  /* [front_start[n_front]] */
-  int *front_face;  /* [front_start[n_front]] face (0 .. n-1) of the crack at
-                       the tip, or along the edge to the next node; -1: last
-                       node of a chain */
-} mesh_crack;
-
 /*
  * Open all cracks of a mesh at once, so that they may meet and cross.
  *
@@ -58,6 +43,5 @@ typedef struct mesh_crack {
  */
 status mesh_open(mesh *m, int n, const mesh_cut *cut, message_log *log,
                  mesh_crack *crack);
-void mesh_crack_free(mesh_crack *c); /* accepts all-zero */
 
 #endif

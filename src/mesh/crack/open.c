@@ -9,11 +9,6 @@
 
 #include <string.h>
 
-void mesh_crack_free(mesh_crack *c) {
-  RELEASE(c->plus, c->minus, c->front_start, c->front_node, c->front_face);
-  *c = (mesh_crack){0};
-}
-
 static void release(opening *o) {
   RELEASE(o->group_id, o->first, o->face, o->lip, o->sign, o->on_crack, o->elem,
           o->place, o->across, o->node, o->copy_of);

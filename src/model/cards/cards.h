@@ -104,6 +104,9 @@ typedef struct pair_param {
   const char *name, *amplitude;
   int slave, adjust, normal, type;
 } pair_param;
+typedef struct crack_param {
+  const char *name, *group;
+} crack_param;
 typedef struct tie_param {
   const char *name;
   int slave, adjust;
@@ -211,6 +214,7 @@ status apply_effect(reading *r);
 plugin names_law(const reading *r);
 status apply_contact_pair(reading *r);
 status apply_tie(reading *r);
+status apply_crack(reading *r);
 /* ---- procedure.c ---- */
 status apply_step(reading *r);
 status apply_end_step(reading *r);

@@ -219,23 +219,30 @@ static void read_torque_axis(const reading *r, const record *line, contact *c) {
   c->has_axis = read_axis(r, line, n == 7, c->axis_point, c->axis) == 0;
 }
 
-status apply_contact(reading *r) {
-  const contact_param *p = r->param;
+/* The next contact, with its name. */
+static status new_contact(const reading *r, const char *name, contact **out) {
   model *m = r->m;
   for (int i = 0; i < m->n.contact; ++i)
-    name_taken(r, p->name, m->contacts[i].name);
+    name_taken(r, name, m->contacts[i].name);
   PASS_GROW(m->contacts, m->n.contact, m->cap.contact);
   contact *c = &m->contacts[m->n.contact++];
-  c->name = p->name == NULL ? "" : p->name;
+  c->name = name == NULL ? "" : name;
+  c->at = r->card->at;
+  c->obstacle_id = c->group_id = -1;
+  *out = c;
+  return OK;
+}
+
+status apply_contact(reading *r) {
+  const contact_param *p = r->param;
+  contact *c = NULL;
+  PASS(new_contact(r, p->name, &c));
   c->group = p->group == NULL ? "" : p->group;
   c->obstacle_name = p->obstacle == NULL ? "" : p->obstacle;
-  c->at = r->card->at;
   c->group_at = *value_place(r, "GROUP");
   c->obstacle_at = *value_place(r, "OBSTACLE");
   c->obstacle_normal =
       card_parameter(r->card, "NORMAL") == NULL ? -1 : p->normal;
-  c->obstacle_id = -1;
-  c->group_id = -1;
   if (r->card->n_record > 0) read_torque_axis(r, r->card->records, c);
   return OK;
 }
@@ -294,13 +301,8 @@ static void read_lines(const reading *r, contact *c) {
 status apply_contact_pair(reading *r) {
   const pair_param *p = r->param;
   model *m = r->m;
-  for (int i = 0; i < m->n.contact; ++i)
-    name_taken(r, p->name, m->contacts[i].name);
-  PASS_GROW(m->contacts, m->n.contact, m->cap.contact);
-  contact *c = &m->contacts[m->n.contact++];
-  c->name = p->name == NULL ? "" : p->name;
-  c->at = r->card->at;
-  c->obstacle_id = c->group_id = -1;
+  contact *c = NULL;
+  PASS(new_contact(r, p->name, &c));
   c->is_pair = 1;
   c->slave_normal = p->normal;
   read_surfaces(r, p->slave, p->adjust, &c->pair);
@@ -327,6 +329,44 @@ status apply_tie(reading *r) {
   t->name = p->name == NULL ? "" : p->name;
   t->at = r->card->at;
   read_surfaces(r, p->slave, p->adjust, &t->pair);
+  return OK;
+}
+
+/* The name of the group of a lip; NULL without memory. */
+static char *lip_name(const char *group, char sign) {
+  const size_t n = strlen(group);
+  char *name = memory_new(n + 2, 1);
+  if (name == NULL) return NULL;
+  memcpy(name, group, n);
+  name[n] = sign;
+  return name;
+}
+
+status apply_crack(reading *r) {
+  const crack_param *p = r->param;
+  model *m = r->m;
+  contact *c = NULL;
+  PASS(new_contact(r, p->name, &c));
+  PASS_GROW(m->cracks, m->n.crack, m->cap.crack);
+  crack *k = &m->cracks[m->n.crack++];
+  k->name = c->name;
+  k->group = p->group == NULL ? "" : p->group;
+  k->at = c->at;
+  k->group_at = *value_place(r, "GROUP");
+  k->contact_id = m->n.contact - 1;
+  k->lip[0] = lip_name(k->group, '-');
+  k->lip[1] = lip_name(k->group, '+');
+  if (k->lip[0] == NULL || k->lip[1] == NULL)
+    RAISE(ERR_MEMORY, "memory exhausted: *CRACK");
+  c->is_pair = c->is_crack = 1;
+  c->pair = (surface_pair){.slave_id = -1, .master_id = -1};
+  for (int i = 0; i < 2; ++i) {
+    c->pair.group[i] = k->group[0] == '\0' ? "" : k->lip[i];
+    c->pair.group_at[i] = k->group_at;
+  }
+  c->group = c->pair.group[0];
+  c->obstacle_name = c->pair.group[1];
+  c->group_at = c->obstacle_at = k->group_at;
   return OK;
 }
 

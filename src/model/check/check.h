@@ -10,6 +10,10 @@
  * the effects. Errors go to the log: ERR_DECK or ERR_MESH. */
 status model_check(model *m, const mesh *msh, effect_finder *find);
 
+/* Open the mesh along the cracks, once, before model_check: their lips are
+ * groups then. ERR_DECK, ERR_MESH with errors in the log; ERR_MEMORY. */
+status model_open_cracks(model *m, mesh *msh);
+
 /* Relative error of displacements to expect of P1 elements that lock at nu, n
  * of them across a wall. */
 double model_locking_error(double nu, int n);

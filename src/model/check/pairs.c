@@ -3,6 +3,7 @@
  * common face, and which of them is the slave.
  */
 #include "base/memory.h"
+#include "mesh/crack/crack.h"
 #include "model/check/parts.h"
 
 #include <math.h>
@@ -145,6 +146,22 @@ static status check_contact_pair(model *m, const mesh *msh,
   c->obstacle_name = msh->group[c->pair.master_id].name;
   check_twice(m, id);
   return OK;
+}
+
+status model_open_cracks(model *m, mesh *msh) {
+  const int n = m->n.crack;
+  OWNED mesh_cut *cut = NULL;
+  if (n == 0 || msh->n_crack > 0) return OK;
+  PASS_NEW(cut, n);
+  for (int i = 0; i < n; ++i) {
+    crack *k = &m->cracks[i];
+    const int id = check_group(m, msh, k->group, &k->group_at);
+    if (id < 0) return message_status(m->log, ERR_DECK);
+    cut[i] = (mesh_cut){&msh->group[id], &k->at};
+  }
+  PASS_NEW(msh->crack, n);
+  msh->n_crack = n;
+  return mesh_open(msh, n, cut, m->log, msh->crack);
 }
 
 status check_pairs(model *m, const mesh *msh) {

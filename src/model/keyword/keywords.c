@@ -140,6 +140,11 @@ static const option pair_options[] = {
               "factor on CLEARANCE or INTERFERENCE in total time, whatever its "
               "TIME="),
   OPTION_END};
+static const option crack_options[] = {
+  OPTION_NAME(crack_param, name, "NAME", NULL, "name for *FRICTION"),
+  OPTION_NAME(crack_param, group, "GROUP", NULL,
+              "faces inside the body (2-D: curves), which open"),
+  OPTION_END};
 static const option tie_options[] = {
   OPTION_NAME(tie_param, name, "NAME", NULL, "name for messages"),
   OPTION_CHOICE(tie_param, slave, "SLAVE", SLAVE_WORDS, "AUTO",
@@ -355,6 +360,9 @@ const keyword keyword_table[] = {
    "*CONTACT",
    "unilateral contact of two bodies, or of two surfaces of one: groups of "
    "faces whose meshes need not match"},
+  {"CRACK", IN_MODEL, OPTIONS(crack), NULL, apply_crack, 0, 0, "",
+   "opens the mesh along a group; its lips, the groups NAME+ and NAME-, are a "
+   "contact pair"},
   {"TIE", IN_MODEL, OPTIONS(tie), NULL, apply_tie, 1, 1, "surface, surface",
    "joins two surfaces whose meshes need not match"},
   {"FRICTION", IN_MODEL | IN_STEP, OPTIONS(friction), names_law,

@@ -22,40 +22,32 @@ static int is_at(const mesh *msh, int group_id, const int *body, int body_id) {
   return 0;
 }
 
-/* 1 if a contact with friction acts on the body of an element. */
-static status has_body_friction(const run *r, int elem_id, int *answer) {
-  status st = OK;
+/* 1 if a contact with friction acts on the body of an element; any contact,
+ * where pairs and ties may join the bodies. */
+static status has_friction(const run *r, size_t elem_no, int *answer) {
   const model *m = r->m;
   const mesh *msh = r->msh;
-  int *body = NULL, n = 0;
+  OWNED int *body = NULL;
+  int n = 0, e = 0;
   *answer = 0;
-  NEW(body, msh->n_elem);
-  TRY(mesh_bodies(msh, &n, body));
-  for (int i = 0; i < m->n.contact; ++i) {
-    const contact *c = &m->contacts[i];
-    if (!rule_has_friction(friction_in_force(m, run_step_id(r), i))) continue;
-    *answer |=
-        is_at(msh, c->group_id, body, body[elem_id]) ||
-        (c->is_pair && is_at(msh, c->pair.master_id, body, body[elem_id]));
-  }
-done:
-  memory_free(body);
-  return st;
+  PASS_NEW(body, msh->n_elem);
+  PASS(mesh_bodies(msh, &n, body));
+  while (msh->elem_no[e] != elem_no) ++e;
+  for (int i = 0; i < m->n.contact; ++i)
+    if (rule_has_friction(friction_in_force(m, run_step_id(r), i)))
+      *answer |= model_has_pairs(m) ||
+                 is_at(msh, m->contacts[i].group_id, body, body[e]);
+  return OK;
 }
 
 /* 1 if nothing resists: no contact there, or tangential contact of a body
  * without friction. */
 static status is_unheld(const run *r, const free_motion *f, int *unheld) {
-  status st = OK;
   int friction = 0;
-  *unheld = f->held_by == HELD_BY_NOTHING;
-  if (f->held_by != HELD_BY_FRICTION) goto done;
-  for (int e = 0; e < r->msh->n_elem; ++e)
-    if (r->msh->elem_no[e] == f->elem_no)
-      TRY(has_body_friction(r, e, &friction));
-  *unheld = !friction;
-done:
-  return st;
+  if (f->held_by == HELD_BY_FRICTION)
+    PASS(has_friction(r, f->elem_no, &friction));
+  *unheld = f->held_by != HELD_BY_CONTACT && !friction;
+  return OK;
 }
 
 /* Motions that nothing resists go to the log and are ERR_SINGULAR. */
