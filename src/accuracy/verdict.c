@@ -141,7 +141,7 @@ static status add_moving(const words *w, const verdict_scene *s,
   add(w, "nothing stops a motion in which contact");
   if (opening > 0) {
     add_nodes(w, s->surface, open);
-    add(w, opening == 1 ? " leaves the obstacle" : " leave the obstacle");
+    add(w, opening == 1 ? " separates" : " separate");
   }
   int before = opening;
   for (int i = 0; i < s->cp->n; ++i)

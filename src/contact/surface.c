@@ -672,20 +672,22 @@ static void add_scaled(int dim, double factor, const double *v, double *to) {
   for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
 }
 
-void surface_spread(const contact_surface *s, double factor, const double *r,
-                    double *F) {
+void surface_spread_row(const contact_surface *s, int q, int a, double force,
+                        double *F) {
   const int dim = s->dim;
   const node_links *l = s->master;
-  for (int q = 0; q < s->n; ++q)
-    for (int a = 0; a < dim; ++a) {
-      const double *row = &s->frame[dim * (dim * q + a)];
-      const double force = factor * r[dim * q + a];
-      add_scaled(dim, force, row, F + (size_t)dim * (size_t)s->node_id[q]);
-      for (size_t e = l == NULL ? 0 : l->start[q];
-           l != NULL && e < l->start[q + 1]; ++e)
-        add_scaled(dim, -force * l->part[(size_t)dim * e + (size_t)a], row,
-                   F + (size_t)dim * (size_t)l->master[e]);
-    }
+  const double *row = &s->frame[dim * (dim * q + a)];
+  add_scaled(dim, force, row, F + (size_t)dim * (size_t)s->node_id[q]);
+  for (size_t e = l == NULL ? 0 : l->start[q]; l != NULL && e < l->start[q + 1];
+       ++e)
+    add_scaled(dim, -force * l->part[(size_t)dim * e + (size_t)a], row,
+               F + (size_t)dim * (size_t)l->master[e]);
+}
+
+void surface_spread(const contact_surface *s, double factor, const double *r,
+                    double *F) {
+  for (int k = 0; k < s->dim * s->n; ++k)
+    surface_spread_row(s, k / s->dim, k % s->dim, factor * r[k], F);
 }
 
 /* r += basis' F; the largest addition. */

@@ -108,6 +108,9 @@ void surface_relative(const contact_surface *s, const double *u, double *w);
  * both sides of pairs: r'w = F'u. */
 void surface_spread(const contact_surface *s, double factor, const double *r,
                     double *F);
+/* The same of row a of contact node q alone. */
+void surface_spread_row(const contact_surface *s, int q, int a, double force,
+                        double *F);
 /* The forces r[dim*n] that surface_spread brings to F[dim*n_node] at the
  * contact nodes. ERR_MEMORY. */
 status surface_forces(const contact_surface *s, int n_node, const double *F,

@@ -40,17 +40,14 @@ static double friction_force(const reduction *n, const state *s, int i,
 /* Friction against the displacement of each node into n->force, N. */
 static void take_friction(reduction *n, const state *s) {
   const contact_surface *c = s->contacts.surface;
-  const int dim = n->msh->dim, sides = dim - 1;
+  const int sides = n->msh->dim - 1;
   for (int i = 0; c != NULL && i < c->n; ++i) {
     const double *way = n->way + sides * c->node_id[i];
     const double length = sides == 2 ? hypot(way[0], way[1]) : fabs(way[0]);
     if (!(length > 0.0)) continue;
     const double force = friction_force(n, s, i, length);
     for (int a = 0; a < sides; ++a)
-      for (int k = 0; k < dim; ++k)
-        n->force[dim * c->node_id[i] + k] -=
-            force * way[a] / length *
-            c->frame[dim * dim * i + dim * (a + 1) + k];
+      surface_spread_row(c, i, a + 1, -(force * way[a] / length), n->force);
   }
 }
 
