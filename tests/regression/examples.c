@@ -45,7 +45,7 @@ static int find_row(const dat *d, const char *row) {
   char name[32];
   double at;
   if (strcmp(row, "first") == 0) return 0;
-  ck_assert_int_eq(sscanf(row, "%31[a-z]=%lf", name, &at), 2);
+  ck_assert_int_eq(sscanf(row, "%31[a-z_]=%lf", name, &at), 2);
   return dat_row_near(d, name, at);
 }
 

@@ -350,26 +350,31 @@ static job run_punch(const char *method, int solid) {
   return j;
 }
 
-START_TEST(all_methods_agree) {
-  const int solid = _i / 9;
-  job a = run_punch(methods[_i % 9], solid), b = run_punch("NEWTON", solid);
-  dat x = job_table(&a, "CONTACT", -1), y = job_table(&b, "CONTACT", -1);
+static void check_method(const char *method, int solid, const dat *y) {
+  job j = run_punch(method, solid);
+  dat x = job_table(&j, "CONTACT", -1), t = job_table(&j, "TOTALS", -1);
+  const double width = solid ? 1 : 0.4;
   int n_slip = 0;
   for (int i = 0; i < x.n_row; ++i) {
-    ck_assert_double_eq_tol(dat_at(&x, i, "f_n"), dat_at(&y, i, "f_n"), 1e-7);
+    ck_assert_double_eq_tol(dat_at(&x, i, "f_n"), dat_at(y, i, "f_n"), 1e-7);
     n_slip += dat_at(&x, i, "status") == 1;
   }
   ck_assert_int_gt(n_slip, 0);
   ck_assert_int_lt(n_slip, x.n_row);
-  dat t = job_table(&a, "TOTALS", -1);
-  const double width = solid ? 1 : 0.4;
   ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), 4 * width, 1e-7);
   ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), 0.5 * width, 1e-7);
   dat_free(&t);
   dat_free(&x);
+  job_end(&j);
+}
+
+START_TEST(all_methods_agree) {
+  job j = run_punch("NEWTON", _i);
+  dat y = job_table(&j, "CONTACT", -1);
+  for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k)
+    check_method(methods[k], _i, &y);
   dat_free(&y);
-  job_end(&a);
-  job_end(&b);
+  job_end(&j);
 }
 END_TEST
 
@@ -465,7 +470,13 @@ START_TEST(bad_pairs_are_told) {
       {"*CONTACT PAIR, NAME=P, AMPLITUDE=A\nUNDER, OVER\n", "P2007", 2},
       {"*CONTACT PAIR, NAME=P\nUNDER, OVER\nCLEARANCE, -1.\n", "P2041", 2},
       {PAIR "*CONTACT PAIR, NAME=Q\nOVER, UNDER\n", "P2011", 2},
-      {"*CONTACT PAIR, NAME=P\nUNDER, OVER\nCLEARANCE, 1.\n", "P4021", 0}};
+      {"*CONTACT PAIR, NAME=P\nUNDER, OVER\nCLEARANCE, 1.\n", "P4021", 0},
+      {"*PARAMETER\nN = 20\nM = 2\n*CONTACT PAIR, NAME=P, SLAVE=FIRST\n"
+       "UNDER, OVER\n",
+       "P4024", 0},
+      {"*PARAMETER\nC = 0.3\n*TIE, NAME=P, SLAVE=FIRST\nUNDER, OVER\n", "P4025",
+       0},
+      {"*CONTACT PAIR, NAME=P, ADJUST=YES\nLEFT, RIGHT\n", "P4026", 2}};
   job j = job_begin("bad");
   job_copy(&j, "tests/regression/mesh/pair.geo");
   job_write(&j, "bad.inp",
@@ -490,9 +501,9 @@ int main(void) {
   tcase_add_loop_test(tests, held_master_is_a_plane, 0, 6);
   tcase_add_test(tests, restart_is_bit_for_bit);
   tcase_add_loop_test(tests, interference_and_clearance, 0, 4);
-  tcase_add_loop_test(tests, all_methods_agree, 0, 18);
+  tcase_add_loop_test(tests, all_methods_agree, 0, 2);
   tcase_add_test(tests, wedge_moves_at_its_limit);
   tcase_add_test(tests, stack_stands_by_contact_alone);
-  tcase_add_loop_test(tests, bad_pairs_are_told, 0, 10);
+  tcase_add_loop_test(tests, bad_pairs_are_told, 0, 13);
   return unit_run("pairs", tests);
 }

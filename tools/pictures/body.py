@@ -147,7 +147,7 @@ def pressure_2d(axes, foot, out, share):
     axes.fill(*np.concatenate([foot, tip[::-1]]).T, color=BLUE, alpha=0.25,
               lw=0,
               zorder=3)
-    near = np.convolve(share > 0, [1, 1, 1], "same") > 0
+    near = np.convolve(share > 0, [1, 1, 1])[1:-1] > 0
     tip[~near] = np.nan
     axes.plot(*tip.T, color=BLUE, lw=1.2, zorder=6)
 
@@ -172,6 +172,8 @@ def contact_2d(axes, job, scale, spans):
         normal = contact.normal[:, :2]
         faced = points + scale * contact.gap[:, None] * normal
         for part in line_of(contact, contact.points):
+            if job.has("contact_force"):  # bodies face each other
+                continue
             obstacle_2d(axes, faced[part], normal[part], 0.034 * spans)
             if most > 0:
                 pressure_2d(axes, faced[part], 0.2 * spans * normal[part],
@@ -439,5 +441,6 @@ def draw(figure, axes, job, name=None, legend=True, **how):
     if scale != 1:
         axes.set_title(f"displacements × {scale:g}", loc="left")
     if legend:
-        legend_below(axes, handles=keys(axes, job, flat))
+        alone = flat and not job.has("contact_force")
+        legend_below(axes, handles=keys(axes, job, alone))
     return scale

@@ -355,6 +355,62 @@ def brake_pad(job, above, below):
     label(below, "time, s", "worn volume, mm³/mm")
 
 
+# ---- bodies against each other -----------------------------------------
+
+@example("roller", "Steel roller on aluminium; two rollers, pressed and pushed",
+         "roller/roller", "roller/two_rollers", rows=2,
+         window=((-16, 16), (-14, 14)), inset=(0.68, 0.02, 0.32, 0.32))
+def roller(one, two, above, below):
+    E = 2 / (1 / 70e3 + 1 / 210e3)  # of a plane that is rigid
+    line, s = closed.Line(50.0, 35e3, E / 2), np.linspace(-6.3, 6.3, 400)
+    x, p = by(one, "x", "pressure")
+    above.plot(s, line.pressure(s), color=BLUE, label="Hertz", **FORM)
+    above.plot(x, p, color=RED, label="Protis", **DOTS)
+    above.set_xlim(-8, 8)
+    tractions(above)
+    line, s = closed.Line(4.0, 10.0, 100.0), np.linspace(-0.69, 0.69, 500)
+    x, p, q = by(two, "x", "pressure", "traction_t")
+    below.plot(s, 0.2 * line.pressure(s), color=GREY, ls="--", lw=1,
+               label="mu times the pressure (Hertz)")
+    below.plot(s, closed.cattaneo(line, s, 0.2, 0.468)[0], color=BLUE,
+               label="shear (Cattaneo, Mindlin)", **FORM)
+    below.plot(x, np.abs(q), color=RED, label="Protis", **DOTS)
+    below.set_xlim(-0.9, 0.9)
+    tractions(below, "")
+
+
+@example("press_fit", "Press fit: ring of 32 faces in a hub of 45, plane stress",
+         field="stress_yy", scale=100.0)
+def press_fit(job, axes):
+    x, y, p = by(job, "x", "y", "pressure")
+    axes.axhline(63, color=BLUE, label="Lamé", **FORM)
+    axes.plot(np.degrees(np.arctan2(y, x)), p, color=RED, label="Protis",
+              **DOTS)
+    label(axes, "angle, degrees", "pressure at the seat, N/mm²")
+    axes.set_ylim(60, 66)
+
+
+@example("arch", "Arch of ten voussoirs, a little thicker than it must be",
+         field="stress_yy", width=1.2)
+def arch(job, axes):
+    c = job.table("CONTACT")
+    angle = np.degrees(np.arctan2(c["y"], c["x"]))
+    depth = np.hypot(c["x"], c["y"])
+    shares = {}
+    for a, r, f in zip(np.round(angle, 3), depth, c["f_n"]):
+        w = shares.setdefault(a, [0.0, 0.0])
+        w[0] += f
+        w[1] += f * r
+    found = np.array([(a, m / f) for a, (f, m) in sorted(shares.items())])
+    for r, text in ((1 - 0.109 / 2, "intrados"), (1 + 0.109 / 2, "extrados")):
+        axes.axhline(r, color=GREY, lw=1)
+        axes.text(90, r, text, va="bottom" if r > 1 else "top", ha="center")
+    axes.plot(*found.T, color=RED, label="thrust at the joints", marker="o",
+              ms=4)
+    label(axes, "angle, degrees", "radius")
+    axes.set_ylim(0.93, 1.07)
+
+
 # ---- materials ---------------------------------------------------------
 
 @example("creep_block", "Maxwell block on a rough floor: creep, relaxation",

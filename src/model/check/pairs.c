@@ -157,7 +157,7 @@ status model_open_cracks(model *m, mesh *msh) {
     crack *k = &m->cracks[i];
     const int id = check_group(m, msh, k->group, &k->group_at);
     if (id < 0) return message_status(m->log, ERR_DECK);
-    cut[i] = (mesh_cut){&msh->group[id], &k->at};
+    cut[i] = (mesh_cut){&msh->group[id], &k->group_at};
   }
   PASS_NEW(msh->crack, n);
   msh->n_crack = n;
