@@ -157,6 +157,17 @@ START_TEST(increments_stay_stable) {
 }
 END_TEST
 
+/* Half of the length, and half again, until it is within the limit of Euler's
+ * method, 2 tau = 4: no shorter. */
+START_TEST(increments_are_as_long_as_is_stable) {
+  job j = run_deck("", HELD,
+                   "*VISCO, INTEGRATOR=EULER, TOLERANCE=1.\n12., 48.\n", 0);
+  const accepted found = accepted_of(&j);
+  ck_assert_double_eq_tol(found.dt, 3, 1e-12);
+  job_end(&j);
+}
+END_TEST
+
 /*
  * Relaxation times from 1e-11 to 1e19 s in one body, whose held stress falls as
  * E e (1 - sum g (1 - exp(-t/tau))): increments grow with what is left to
@@ -198,6 +209,7 @@ int main(void) {
   tcase_add_loop_test(tests, strains_of_other_steps_count, 0, 2);
   tcase_add_test(tests, missed_tolerance_is_told);
   tcase_add_test(tests, increments_stay_stable);
+  tcase_add_test(tests, increments_are_as_long_as_is_stable);
   tcase_add_loop_test(tests, increments_grow_over_thirty_decades, 0, 2);
   return unit_run("adaptive", tests);
 }

@@ -176,6 +176,38 @@ START_TEST(both_forms_agree_from_other_starts) {
 }
 END_TEST
 
+/* The lower of two blocks is let go in the second step: its nodes at the wall
+ * join those of the upper one. */
+static job run_wall(const char *form) {
+  job j = job_begin("wall");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "wall.inp",
+            "*PARAMETER\nN = 8\nM = 2\n*MESH, FILE=pair.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+            "*OBSTACLE, NAME=W, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=LEFT, OBSTACLE=W\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+            "*STEP\n*QUASISTATIC, FORM=%s\n0.5, 1.\n*BOUNDARY\nLOWER, 1, 2\n"
+            "TOP, 2\n*DSLOAD\nRIGHT, P, 5.\nRIGHT, TY, 1.\n*PRINT, NODES\n"
+            "*END STEP\n*STEP\n*QUASISTATIC, FORM=%s\n0.5, 1.\n"
+            "*BOUNDARY, OP=NEW\nBOTTOM, 2\nTOP, 2\n*DSLOAD\nRIGHT, TY, 2.\n"
+            "*END STEP\n",
+            form, form);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "%s: exit %d: %s", form, code, j.errors);
+  return j;
+}
+
+START_TEST(both_forms_agree_when_contact_nodes_join) {
+  job a = run_wall("DISPLACEMENT"), b = run_wall("VELOCITY");
+  compare_nodes(&a, &b, 4, 1e-8);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
 /* A load that grows in proportion: one static problem, or increments. */
 START_TEST(proportional_load_needs_no_path) {
   static const char loads[] = "*DSLOAD\nTOP, P, 5.\nLEFT, P, 15.\n";
@@ -203,4 +235,6 @@ END_TEST
 
 UNIT_MAIN("forms", both_forms_agree_on_every_example,
           both_forms_agree_with_every_method,
-          both_forms_agree_from_other_starts, proportional_load_needs_no_path)
+          both_forms_agree_from_other_starts,
+          both_forms_agree_when_contact_nodes_join,
+          proportional_load_needs_no_path)

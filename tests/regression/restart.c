@@ -178,6 +178,24 @@ START_TEST(chosen_tolerance_goes_on) {
 }
 END_TEST
 
+/* The path beside the run goes on with the motion of the obstacle there. */
+START_TEST(path_on_a_moving_obstacle_goes_on) {
+  int changes, all;
+  job both[2];
+  for (int k = 0; k < 2; ++k) {
+    both[k] = small_flat(0.4, "", "SOR\n*ACCURACY, TIME=YES");
+    edit(&both[k], "TYPE=CONFORMING",
+         "TYPE=PLANE\n0., 0.\n0., 1.\nMOVE, \"1e-3*t^2\", 0.");
+  }
+  ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
+  ck_assert_int_eq(run_until(&both[1], nothing, all / 2, SIGINT, &changes),
+                   130);
+  goes_on(&both[1], 0, "moving");
+  same_files(&both[0], &both[1], "moving");
+  for (int k = 0; k < 2; ++k) job_end(&both[k]);
+}
+END_TEST
+
 /* A load that grows from next to nothing and falls again, far below what moves
  * the block to the floor: rounding counts against the largest load of the step,
  * and energies and stresses against the largest so far. */
@@ -484,8 +502,8 @@ END_TEST
 UNIT_MAIN("restart", what_is_read_is_written_again,
           changed_decks_are_refused_by_card, later_steps_may_change,
           adapted_increments_go_on, killed_twice_goes_on,
-          chosen_tolerance_goes_on, known_rate_goes_on,
-          largest_loads_and_energies_go_on, run_without_a_file_begins_anew,
-          files_are_in_the_seal, restart_files_are_equal,
-          restart_file_does_not_grow, some_jobs_start_anew,
-          damaged_files_are_refused)
+          chosen_tolerance_goes_on, path_on_a_moving_obstacle_goes_on,
+          known_rate_goes_on, largest_loads_and_energies_go_on,
+          run_without_a_file_begins_anew, files_are_in_the_seal,
+          restart_files_are_equal, restart_file_does_not_grow,
+          some_jobs_start_anew, damaged_files_are_refused)

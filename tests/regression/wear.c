@@ -35,7 +35,10 @@ static int run_block(job *j, const char *geo, const char *type, const char *way,
             geo, type[0] != '\0' ? ", TYPE=" : "", type, solid ? ", 0" : "",
             solid ? "0, 1" : "1", way, cards, solid ? "FRONT, 2\n" : "",
             strstr(cards, "*WEAR") != NULL ? ", WEAR" : "",
-            strstr(cards, "*WEAR") != NULL ? ", WEAR" : "");
+            strstr(cards, "*TIME") != NULL
+                ? ", WEAR\n*PRINT, WEAR, TIME POINTS=T"
+            : strstr(cards, "*WEAR") != NULL ? ", WEAR"
+                                             : "");
   return job_run(j, words);
 }
 
@@ -77,6 +80,21 @@ END_TEST
 /* Archard at a corner: floor and wall each lose k F s of their own force,
  * pressed with 3 and 1, where the belt passes along both by 1. The block rubs
  * on each by half of what the other presses it together, F/E, before. */
+/* Within the fifth increment of the belt: what four and a half have worn. */
+START_TEST(depth_at_a_time_point_counts_from_the_start) {
+  job j = job_begin("block");
+  ck_assert_int_eq(run_block(&j, "square", "CPE3", "10, 0",
+                             WORN "*TIME POINTS, NAME=T\n4.5\n", ""),
+                   0);
+  dat w = job_table(&j, "WEAR", 1 + 4);
+  ck_assert_int_gt(w.n_row, 2);
+  for (int i = 0; i < w.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&w, i, "depth"), 1e-4 * 3 * 4.5, 1e-12);
+  dat_free(&w);
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(each_side_of_a_corner_wears_by_its_own_force) {
   job j = job_begin("block");
   job_copy(&j, "tests/regression/mesh/cube.geo");
@@ -220,6 +238,7 @@ int main(void) {
   TCase *tests = tcase_create("wear");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, depth_under_a_belt, 0, 2);
+  tcase_add_test(tests, depth_at_a_time_point_counts_from_the_start);
   tcase_add_test(tests, each_side_of_a_corner_wears_by_its_own_force);
   tcase_add_test(tests, volume_with_friction_and_restart);
   tcase_add_test(tests, increments_too_long_are_refused);

@@ -10,7 +10,7 @@
 
 typedef struct velocity {
   velocity_form *form;    /* NULL until needed */
-  long matrix_no;         /* of the run, that form is made of */
+  int m;                  /* unknowns that form is made for */
   contact_problem before; /* what was rewritten last */
 } velocity;
 
@@ -51,11 +51,11 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
   velocity *own = self;
   (void)force;
   own->before = *cp;
-  if (own->matrix_no != r->solving.matrix_no) {
+  if (own->m != cp->m) { /* other nodes, by the supports or within reach */
     velocity_form_free(own->form);
     own->form = NULL;
   }
-  own->matrix_no = r->solving.matrix_no;
+  own->m = cp->m;
   if (own->form == NULL) PASS(velocity_form_new(cp, &own->form));
   put_old(r, velocity_form_old(own->form));
   velocity_form_set(own->form, &own->before, cp, u);
