@@ -1,0 +1,408 @@
+/* src/contact/pair.c: which nodes of two surfaces are in a pair, what the rows
+ * of the contact surface are relative to, messages. Surfaces without bodies. */
+#include "contact/surface.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST = 200, GROUPS = 8, PAIRS = 3 };
+
+typedef struct scene {
+  mesh m;
+  double x[3 * MOST], weight[MOST];
+  size_t node_no[MOST];
+  int face[3 * MOST], other[MOST], item[GROUPS][MOST], node[GROUPS][MOST];
+  unsigned char fixed[MOST];
+  mesh_group group[GROUPS];
+  contact_pair pair[PAIRS];
+  obstacle wall;
+  surface_input in;
+  message_log *log;
+  contact_surface *s;
+} scene;
+
+static void scene_init(scene *c, int dim) {
+  memset(c, 0, sizeof *c);
+  c->m = (mesh){.dim = dim,
+                .x = c->x,
+                .node_no = c->node_no,
+                .face = c->face,
+                .face_other = c->other,
+                .group = c->group,
+                .size = 1};
+  c->in = (surface_input){.mesh = &c->m,
+                          .pairs = c->pair,
+                          .fixed = c->fixed,
+                          .face_weight = c->weight};
+  c->wall = (obstacle){.name = "WALL", .shape = OBSTACLE_CONFORMING};
+  ck_assert_int_eq(message_log_new(&c->log), OK);
+}
+
+static void scene_free(scene *c) {
+  pairs_release(&c->in);
+  surface_free(c->s);
+  message_log_free(c->log);
+}
+
+/* The node at a place, new if there is none. */
+static int node_at(scene *c, const double *at) {
+  const int dim = c->m.dim;
+  for (int i = 0; i < c->m.n_node; ++i) {
+    double far = 0;
+    for (int k = 0; k < dim; ++k) far += fabs(c->x[dim * i + k] - at[k]);
+    if (far < 1e-9) return i;
+  }
+  ck_assert_int_lt(c->m.n_node, MOST);
+  memcpy(c->x + dim * c->m.n_node, at, (size_t)dim * sizeof *at);
+  c->node_no[c->m.n_node] = (size_t)c->m.n_node + 1;
+  return c->m.n_node++;
+}
+
+static void add_face(scene *c, const int *v) {
+  const int f = c->m.n_face++;
+  ck_assert_int_lt(f, MOST);
+  memcpy(c->face + c->m.dim * f, v, (size_t)c->m.dim * sizeof *v);
+  c->other[f] = -1;
+  c->weight[f] = 1;
+}
+
+/* n edges; the body is on the left of the way from a to b. */
+static void add_line(scene *c, int n, const double *a, const double *b) {
+  int v[2] = {node_at(c, a), 0};
+  for (int i = 1; i <= n; ++i) {
+    const double s = (double)i / n;
+    v[1] = node_at(
+        c, (double[]){(1 - s) * a[0] + s * b[0], (1 - s) * a[1] + s * b[1]});
+    add_face(c, v);
+    v[0] = v[1];
+  }
+}
+
+/* n x n squares of two triangles on the sides a, b; normal a x b. */
+static void add_square(scene *c, int n, const double *at, const double *a,
+                       const double *b) {
+  for (int k = 0; k < n * n; ++k) {
+    int v[4];
+    for (int q = 0; q < 4; ++q) {
+      const double s = (double)(k % n + (q == 1 || q == 2)) / n;
+      const double t = (double)(k / n + q / 2) / n;
+      double x[3];
+      for (int d = 0; d < 3; ++d) x[d] = at[d] + s * a[d] + t * b[d];
+      v[q] = node_at(c, x);
+    }
+    add_face(c, (int[]){v[0], v[1], v[2]});
+    add_face(c, (int[]){v[0], v[2], v[3]});
+  }
+}
+
+/* The faces since "first" as a group. */
+static mesh_group *group_from(scene *c, const char *name, int first) {
+  const int id = c->m.n_group++;
+  mesh_group *g = &c->group[id];
+  char used[MOST] = {0};
+  ck_assert_int_lt(id, GROUPS);
+  *g = (mesh_group){.name = name, .dim = c->m.dim - 1};
+  g->item_id = c->item[id];
+  g->node_id = c->node[id];
+  for (int f = first; f < c->m.n_face; ++f) {
+    g->item_id[g->n_item++] = f;
+    for (int k = 0; k < c->m.dim; ++k) used[c->face[c->m.dim * f + k]] = 1;
+  }
+  for (int i = 0; i < c->m.n_node; ++i)
+    if (used[i]) g->node_id[g->n_node++] = i;
+  return g;
+}
+
+/* master NULL: the wall. */
+static contact_pair *add_pair(scene *c, const mesh_group *slave,
+                              const mesh_group *master) {
+  contact_pair *p = &c->pair[c->in.n_pair++];
+  *p = (contact_pair){.name = "P",
+                      .group = slave,
+                      .master = master,
+                      .support = master == NULL ? &c->wall : NULL};
+  return p;
+}
+
+static status build(scene *c) {
+  const status st = pairs_couple(&c->in, c->log);
+  return st != OK ? st : surface_build(&c->in, c->log, &c->s);
+}
+
+static double noise(unsigned *seed) {
+  *seed = *seed * 1103515245u + 12345u;
+  return ((*seed >> 8) & 0xffff) / 65535.0 - 0.5;
+}
+
+/* 1: the messages hold the text. */
+static int said(const scene *c, const char *text) {
+  char all[4096] = "";
+  FILE *out = fmemopen(all, sizeof all - 1, "w");
+  message_print(c->log, out);
+  fclose(out);
+  return strstr(all, text) != NULL;
+}
+
+/* The sum of the parts of component k of contact node q: 1, or 0 of none. */
+static double part_sum(const scene *c, int q, int k) {
+  const node_links *l = c->s->master;
+  double sum = 0;
+  for (size_t e = l->start[q]; e < l->start[q + 1]; ++e)
+    sum += l->part[(size_t)l->dim * e + (size_t)k];
+  return sum;
+}
+
+/* ---- nodes --------------------------------------------------------------- */
+
+/* Pairs side by side: a common node is of the earlier one. The displacements
+ * (x, 2 x) move all alike. */
+START_TEST(node_of_two_pairs_is_of_the_first) {
+  scene c;
+  scene_init(&c, 2);
+  for (int p = 0; p < 3; ++p) {
+    int first = c.m.n_face;
+    add_line(&c, 3, (double[]){p, 0}, (double[]){p + 1, 0});
+    const mesh_group *slave = group_from(&c, "SLAVE", first);
+    first = c.m.n_face;
+    add_line(&c, 4, (double[]){p + 1, -0.1}, (double[]){p, -0.1});
+    add_pair(&c, slave, group_from(&c, "MASTER", first));
+  }
+  ck_assert_int_eq(build(&c), OK);
+  ck_assert_int_eq(c.s->n, 10);
+  double u[2 * MOST], w[2 * MOST];
+  for (int i = 0; i < c.m.n_node; ++i)
+    for (int k = 0; k < 2; ++k) u[2 * i + k] = (k + 1) * c.x[2 * i];
+  surface_relative(c.s, u, w);
+  for (int q = 0; q < 10; ++q) {
+    ck_assert_int_eq(c.s->side_id[q], -1);
+    ck_assert_int_eq(c.s->contact_id[q],
+                     (int)fmax(0, ceil(c.s->x[2 * q] - 1.001)));
+    for (int k = 0; k < 2; ++k) {
+      ck_assert_double_eq_tol(part_sum(&c, q, k), 1, 1e-13);
+      ck_assert_double_eq_tol(w[2 * q + k], 0, 1e-13);
+    }
+  }
+  for (int p = 1; p < 3; ++p) ck_assert_int_eq(c.pair[p].coupled->n, 3);
+  scene_free(&c);
+}
+END_TEST
+
+/* The normal that counts is that of the common node, at the other end of a bent
+ * slave. */
+START_TEST(normals_are_compared_where_the_pairs_meet) {
+  scene c;
+  scene_init(&c, 2);
+  add_line(&c, 4, (double[]){0, 1}, (double[]){0, 0});
+  add_line(&c, 4, (double[]){0, 0}, (double[]){1, 0});
+  const mesh_group *bent = group_from(&c, "BENT", 0);
+  add_line(&c, 3, (double[]){-0.1, 0}, (double[]){-0.1, 1});
+  add_line(&c, 3, (double[]){1, -0.1}, (double[]){0, -0.1});
+  add_pair(&c, bent, group_from(&c, "ROUND", 8));
+  add_line(&c, 4, (double[]){1, 0}, (double[]){2, 0});
+  const mesh_group *flat = group_from(&c, "FLAT", 14);
+  add_line(&c, 3, (double[]){2, -0.1}, (double[]){1, -0.1});
+  add_pair(&c, flat, group_from(&c, "BELOW", 18));
+  ck_assert_int_eq(build(&c), OK);
+  ck_assert_int_eq(c.pair[1].coupled->n, 4);
+  for (int q = 0; q < c.s->n; ++q) ck_assert_int_eq(c.s->side_id[q], -1);
+  scene_free(&c);
+}
+END_TEST
+
+/* Four edges on three. */
+static void flat_pair(scene *c) {
+  scene_init(c, 2);
+  add_line(c, 4, (double[]){0, 0}, (double[]){1, 0});
+  const mesh_group *slave = group_from(c, "SLAVE", 0);
+  add_line(c, 3, (double[]){1, -0.1}, (double[]){0, -0.1});
+  add_pair(c, slave, group_from(c, "MASTER", 4));
+}
+
+START_TEST(nodes_held_along_the_normal_are_left_to_their_neighbours) {
+  scene c;
+  flat_pair(&c);
+  c.fixed[0] = c.fixed[4] = 2;
+  ck_assert_int_eq(build(&c), OK);
+  ck_assert(said(&c, "P4002"));
+  ck_assert(said(&c, "left out of contact: 2"));
+  ck_assert_int_eq(c.pair[0].coupled->n, 3);
+  ck_assert_int_eq(c.s->n, 3);
+  double area = 0;
+  for (int q = 0; q < 3; ++q) {
+    ck_assert_int_eq(c.s->node_id[q], q + 1);
+    ck_assert_double_eq_tol(part_sum(&c, q, 0), 1, 1e-14);
+    area += c.s->area[q];
+  }
+  ck_assert_double_eq_tol(area, 0.75, 1e-14); /* less their own shares */
+  ck_assert_int_eq(c.pair[0].coupled->n_dropped, 2);
+  scene_free(&c);
+}
+END_TEST
+
+/* ---- rows ---------------------------------------------------------------- */
+
+START_TEST(held_tangent_is_relative_to_none) {
+  scene c;
+  flat_pair(&c);
+  c.fixed[0] = 1;
+  ck_assert_int_eq(build(&c), OK);
+  ck_assert_int_eq(c.s->n, 5);
+  for (int q = 0; q < 5; ++q) {
+    ck_assert_int_eq(c.s->held[2 * q + 1], q == 0);
+    ck_assert_double_eq_tol(part_sum(&c, q, 0), 1, 1e-14);
+    ck_assert_double_eq_tol(part_sum(&c, q, 1), q != 0, 1e-14);
+  }
+  scene_free(&c);
+}
+END_TEST
+
+/* Forces on both sides do the work of the relative displacements, and are found
+ * again from their sums at the nodes. */
+static void check_forces(const contact_surface *s, int n_node) {
+  double u[3 * MOST], w[3 * MOST], r[3 * MOST], F[3 * MOST] = {0};
+  double again[3 * MOST], work = 0;
+  const int n = s->dim * s->n;
+  unsigned seed = 1;
+  for (int i = 0; i < s->dim * n_node; ++i) u[i] = noise(&seed);
+  for (int i = 0; i < n; ++i) r[i] = noise(&seed);
+  surface_relative(s, u, w);
+  surface_spread(s, 1, r, F);
+  for (int i = 0; i < s->dim * n_node; ++i) work -= F[i] * u[i];
+  for (int i = 0; i < n; ++i) work += r[i] * w[i];
+  ck_assert_double_eq_tol(work, 0, 1e-13);
+  ck_assert_int_eq(surface_forces(s, n_node, F, again), OK);
+  for (int i = 0; i < n; ++i) ck_assert_double_eq_tol(again[i], r[i], 1e-13);
+}
+
+/* The edge of a floor and a leaning wall: each normal has its own partner, the
+ * tangent along the edge none. */
+START_TEST(rows_at_an_edge_are_relative_to_their_own_partner) {
+  static const double ex[3] = {1, 0, 0}, ey[3] = {0, 1, 0};
+  static const double lean[3] = {-0.3, 0, 1};
+  static const double floor[3] = {1, 2, 3}, wall[3] = {4, 5, 6};
+  const double length = sqrt(1.09);
+  const int with_wall = _i;
+  scene c;
+  scene_init(&c, 3);
+  add_square(&c, 2, (double[]){0, 0, 0}, ey, ex);
+  const mesh_group *below = group_from(&c, "BELOW", 0);
+  add_square(&c, 2, (double[]){0, 0, 0}, lean, ey);
+  const mesh_group *side = group_from(&c, "SIDE", 8);
+  const int n_slave = c.m.n_node;
+  add_square(&c, 3, (double[]){0, 0, -0.1}, ex, ey);
+  add_pair(&c, below, group_from(&c, "FLOOR", 16));
+  const int n_floor = c.m.n_node;
+  add_square(&c, 3, (double[]){-0.2, 0, 0}, ey, lean);
+  const mesh_group *beside = group_from(&c, "WALL", 34);
+  add_pair(&c, side, with_wall ? beside : NULL);
+  ck_assert_int_eq(build(&c), OK);
+  double u[3 * MOST] = {0}, w[3 * MOST];
+  for (int i = n_slave; i < c.m.n_node; ++i)
+    memcpy(u + 3 * i, i < n_floor ? floor : wall, sizeof floor);
+  surface_relative(c.s, u, w);
+  int n_edge = 0;
+  for (int q = 0; q < c.s->n; ++q) {
+    if (c.s->side_id[2 * q] < 0) continue;
+    ++n_edge;
+    ck_assert_double_eq_tol(part_sum(&c, q, 0), 1, 1e-14);
+    ck_assert_double_eq_tol(part_sum(&c, q, 1), with_wall, 1e-14);
+    ck_assert_double_eq_tol(part_sum(&c, q, 2), 0, 1e-14);
+    ck_assert_double_eq_tol(w[3 * q], 3, 1e-13);
+    ck_assert_double_eq_tol(w[3 * q + 1],
+                            with_wall ? (4 + 0.3 * 6) / length : 0, 1e-13);
+    ck_assert_double_eq_tol(w[3 * q + 2], 0, 1e-13);
+    ck_assert_double_eq_tol(c.s->apart[3 * q], 0.1, 1e-14);
+    ck_assert_double_eq_tol(c.s->apart[3 * q + 1], with_wall ? 0.2 / length : 0,
+                            1e-14);
+  }
+  ck_assert_int_eq(n_edge, 3);
+  check_forces(c.s, c.m.n_node);
+  scene_free(&c);
+}
+END_TEST
+
+START_TEST(normal_is_the_mean_or_that_of_the_slave) {
+  const double slope = 0.1, angle = _i ? atan(slope) : 0.5 * atan(slope);
+  scene c;
+  scene_init(&c, 2);
+  add_line(&c, 4, (double[]){0, 0.1}, (double[]){1, 0.1 + slope});
+  const mesh_group *slave = group_from(&c, "SLAVE", 0);
+  add_line(&c, 5, (double[]){1.1, 0}, (double[]){-0.1, 0});
+  add_pair(&c, slave, group_from(&c, "MASTER", 4))->slave_normal = _i;
+  ck_assert_int_eq(build(&c), OK);
+  ck_assert_int_eq(c.s->n, 5);
+  for (int q = 0; q < 5; ++q) {
+    ck_assert_double_eq_tol(c.s->frame[4 * q], sin(angle), 1e-14);
+    ck_assert_double_eq_tol(c.s->frame[4 * q + 1], -cos(angle), 1e-14);
+  }
+  scene_free(&c);
+}
+END_TEST
+
+/* ---- messages ------------------------------------------------------------ */
+
+/* n edges on one; in two that meet at an angle where the slave is curved. */
+START_TEST(coarse_masters_are_told) {
+  static const struct {
+    int n;
+    double bend;
+    int told;
+  } cases[] = {{3, 0, 0}, {5, 0, 1}, {3, 0.1, 1}, {1, 0.1, 0}};
+  scene c;
+  scene_init(&c, 2);
+  const double y = cases[_i].bend;
+  add_line(&c, cases[_i].n, (double[]){0, y}, (double[]){1, 0});
+  add_line(&c, cases[_i].n, (double[]){1, 0}, (double[]){2, y});
+  const mesh_group *slave = group_from(&c, "SLAVE", 0);
+  const int first = c.m.n_face;
+  add_line(&c, 1, (double[]){2, y - 0.1}, (double[]){1, -0.1});
+  add_line(&c, 1, (double[]){1, -0.1}, (double[]){0, y - 0.1});
+  add_pair(&c, slave, group_from(&c, "MASTER", first));
+  ck_assert_int_eq(build(&c), OK);
+  ck_assert_int_eq(said(&c, "P4024"), cases[_i].told);
+  scene_free(&c);
+}
+END_TEST
+
+START_TEST(surfaces_that_do_not_meet_are_an_error) {
+  scene c;
+  scene_init(&c, 2);
+  add_line(&c, 4, (double[]){0, 0}, (double[]){1, 0});
+  const mesh_group *slave = group_from(&c, "SLAVE", 0);
+  add_line(&c, 3, (double[]){3, -0.1}, (double[]){2, -0.1});
+  add_pair(&c, slave, group_from(&c, "MASTER", 4));
+  ck_assert_int_eq(build(&c), ERR_DECK);
+  ck_assert(said(&c, "P4023"));
+  scene_free(&c);
+}
+END_TEST
+
+START_TEST(pair_whose_nodes_are_all_held_is_an_error) {
+  scene c;
+  flat_pair(&c);
+  memset(c.fixed, 2, 5);
+  ck_assert_int_eq(build(&c), ERR_DECK);
+  ck_assert(said(&c, "P4010"));
+  ck_assert(!said(&c, "P4023"));
+  scene_free(&c);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("pair");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_test(tests, node_of_two_pairs_is_of_the_first);
+  tcase_add_test(tests, normals_are_compared_where_the_pairs_meet);
+  tcase_add_test(tests,
+                 nodes_held_along_the_normal_are_left_to_their_neighbours);
+  tcase_add_test(tests, held_tangent_is_relative_to_none);
+  tcase_add_loop_test(tests, rows_at_an_edge_are_relative_to_their_own_partner,
+                      0, 2);
+  tcase_add_loop_test(tests, normal_is_the_mean_or_that_of_the_slave, 0, 2);
+  tcase_add_loop_test(tests, coarse_masters_are_told, 0, 4);
+  tcase_add_test(tests, surfaces_that_do_not_meet_are_an_error);
+  tcase_add_test(tests, pair_whose_nodes_are_all_held_is_an_error);
+  return unit_run("pair", tests);
+}
