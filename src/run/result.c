@@ -9,7 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Reactions: internal forces less loads less contact forces, where fixed.
+/* Reactions: internal forces less loads less contact forces, where fixed; those
+ * of tied nodes act on their masters.
  * known: r->result.stress is that of r->now already. */
 static void find_reactions(run *r, int known) {
   double *reaction = r->now.reaction;
@@ -17,9 +18,9 @@ static void find_reactions(run *r, int known) {
   if (!known)
     domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
   domain_internal_force(&r->body.d, r->result.stress, reaction);
-  for (size_t i = 0; i < r->n_dof; ++i)
-    reaction[i] = r->body.fixed[i] ? reaction[i] - r->now.F[i] : 0.0;
+  for (size_t i = 0; i < r->n_dof; ++i) reaction[i] -= r->now.F[i];
   if (r->nodes.n > 0) surface_spread(r->surface, -1.0, r->now.rc, reaction);
+  if (r->body.ties.n > 0) stiffness_share(r->elastic.k, reaction);
   for (size_t i = 0; i < r->n_dof; ++i)
     if (!r->body.fixed[i]) reaction[i] = 0.0;
   timer_leave(STAGE_REACTION);

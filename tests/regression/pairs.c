@@ -10,6 +10,7 @@
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Two blocks of pair.geo or pair3.geo: E and nu of both, cards of the contact,
@@ -118,6 +119,23 @@ static const scene patches[] = {
      TIE,
      "BOTTOM, 1, 3\n",
      "TOP, P, 3.\nTOP, TX, 1.\nRIGHT, TZ, 1.\nLEFT, TZ, -1.\n"},
+    /* nodes whose supports hold both components */
+    {"pair",
+     "N = 5",
+     ", TYPE=CPE3",
+     {1e3, 1e3},
+     0,
+     PAIR,
+     "BOTTOM, 2\nLEFT, 1\nLEFT, 2, 2, \"-0.003*y\"\n",
+     PRESSED},
+    {"pair",
+     "N = 5",
+     ", TYPE=CPE3",
+     {1e3, 1e3},
+     0,
+     TIE,
+     "BOTTOM, 2\nLEFT, 1\nLEFT, 2, 2, \"-0.003*y\"\n",
+     PRESSED},
     /* nodes of a pair and an obstacle; a symmetry plane and friction */
     {"pair",
      "N = 4",
@@ -199,6 +217,137 @@ START_TEST(patch) {
     dat_free(&n);
     dat_free(&t);
   }
+  job_end(&j);
+}
+END_TEST
+
+/* ---- ties -----------------------------------------------------------------
+ */
+
+/* The component that a support holds is its own: the upper block is carried
+ * sideways, without shear. */
+START_TEST(supports_hold_components_of_tied_nodes) {
+  const scene s = {"pair",
+                   "N = 5\nM = 4",
+                   ", TYPE=CPE3",
+                   {1e3, 2e3},
+                   0,
+                   "*TIE, NAME=P, SLAVE=SECOND\nUNDER, OVER\n",
+                   "BOTTOM, 1, 2\nOVER, 1, 1, 0.001\n",
+                   PRESSED};
+  job j = run_scene(&s, "--no-timing");
+  check_stress(&s, &j);
+  dat n = job_table(&j, "NODES", -1);
+  ck_assert_double_eq_tol(dat_max(&n, "u_x"), 0.001, 1e-15);
+  /* below, above and with the nodes of both: 6 by 6, 5 by 5 at least */
+  ck_assert_double_ge(dat_sum(&n, "u_x"), 25 * 0.001 - 1e-12);
+  dat_free(&n);
+  job_end(&j);
+}
+END_TEST
+
+/* The supports of a body carry what is tied to it: a block of 1 x 1 pressed by
+ * 3 and moved by (0.01, 0.02). */
+START_TEST(reactions_of_a_tied_body_are_at_its_master) {
+  const scene s = {"pair",
+                   "N = 3\nM = 5",
+                   ", TYPE=CPE3",
+                   {1e3, 1e3},
+                   0.3,
+                   "*TIE, NAME=P, SLAVE=SECOND\nUNDER, OVER\n",
+                   "LOWER, 1, 1, 0.01\nLOWER, 2, 2, 0.02\n",
+                   "TOP, P, 3.\nTOP, TX, 1.\n*PRINT, REACTIONS\n"};
+  job j = run_scene(&s, "--no-timing");
+  dat n = job_table(&j, "REACTIONS", -1), e = job_table(&j, "ENERGY", -1);
+  ck_assert_double_eq_tol(dat_sum(&n, "reaction_x"), -1, 1e-12);
+  ck_assert_double_eq_tol(dat_sum(&n, "reaction_y"), 3, 1e-12);
+  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect")),
+                      1e-12 * dat_at(&e, 0, "strain_energy"));
+  dat_free(&n);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
+/* A block with one above and one beside it under pressure from all sides, the
+ * nodes of their common edge in two ties. */
+START_TEST(node_of_two_ties_is_of_the_first) {
+  static const char *const ties[] = {
+      "*TIE, NAME=P, SLAVE=FIRST\nUP, ABOVE\n",
+      "*TIE, NAME=Q, SLAVE=FIRST\nASIDE, BESIDE\n"};
+  job j = job_begin("corner");
+  job_copy(&j, "tests/regression/mesh/corner.geo");
+  job_write(&j, "corner.inp",
+            "*MESH, FILE=corner.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n%s%s*STEP\n"
+            "*STATIC\n*BOUNDARY\nBOTTOM, 2\nRIGHT, 1\n*DSLOAD\n"
+            "OUTSIDE, P, 3.\n*SOLVER, TOL=1E-13\n*PRINT, ELEMENTS\n*END STEP\n",
+            ties[_i], ties[1 - _i]);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat e = job_table(&j, "ELEMENTS", -1);
+  for (int i = 0; i < e.n_row; ++i) {
+    ck_assert_double_eq_tol(dat_at(&e, i, "stress_xx"), -3, 3e-10);
+    ck_assert_double_eq_tol(dat_at(&e, i, "stress_yy"), -3, 3e-10);
+    ck_assert_double_eq_tol(dat_at(&e, i, "stress_xy"), 0, 3e-10);
+  }
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
+/* ---- which side is the slave ----------------------------------------------
+ */
+
+START_TEST(slave_is_chosen) {
+  static const struct {
+    const char *numbers;
+    double E[2];
+    const char *card, *supports, *told;
+  } cases[] = {
+      {"N = 4\nM = 5", {1, 1}, "", ROLLERS, "slave UNDER (coarser)"},
+      {"N = 5\nM = 4", {1, 1}, "", ROLLERS, "slave OVER (coarser)"},
+      {"N = 4\nM = 4", {1, 1}, "", ROLLERS, "slave UNDER (of equal size"},
+      {"N = 5\nM = 4", {1, 2.9}, "", ROLLERS, "slave OVER (coarser)"},
+      {"N = 5\nM = 4", {1, 3.1}, "", ROLLERS, "slave UNDER (softer)"},
+      {"N = 4\nM = 5", {2.9, 1}, "", ROLLERS, "slave UNDER (coarser)"},
+      {"N = 4\nM = 5", {3.1, 1}, "", ROLLERS, "slave OVER (softer)"},
+      {"N = 4\nM = 5",
+       {1, 9},
+       "",
+       "LOWER, 1, 2\nTOP, 1\n",
+       "slave OVER (the other is held)"},
+      {"N = 5\nM = 4",
+       {9, 1},
+       "",
+       "UPPER, 1, 2\nBOTTOM, 1, 2\n",
+       "slave UNDER (the other is held)"},
+      {"N = 4\nM = 5",
+       {1, 9},
+       ", SLAVE=SECOND",
+       ROLLERS,
+       "slave OVER (by SLAVE=)"},
+      {"N = 5\nM = 4",
+       {9, 1},
+       ", SLAVE=FIRST",
+       ROLLERS,
+       "slave UNDER (by SLAVE=)"}};
+  char joint[80];
+  snprintf(joint, sizeof joint, "*%s, NAME=P%s\nUNDER, OVER\n",
+           _i % 2 ? "TIE" : "CONTACT PAIR", cases[_i / 2].card);
+  const scene s = {"pair",
+                   cases[_i / 2].numbers,
+                   ", TYPE=CPE3",
+                   {cases[_i / 2].E[0], cases[_i / 2].E[1]},
+                   0.3,
+                   joint,
+                   cases[_i / 2].supports,
+                   "TOP, P, 1e-3\n"};
+  job j = run_scene(&s, "--no-timing");
+  char *text = job_file(&j, "lst");
+  ck_assert_msg(strstr(text, cases[_i / 2].told) != NULL, "%s: %s",
+                cases[_i / 2].told, strstr(text, "slave"));
+  free(text);
   job_end(&j);
 }
 END_TEST
@@ -470,13 +619,17 @@ START_TEST(bad_pairs_are_told) {
       {"*CONTACT PAIR, NAME=P, AMPLITUDE=A\nUNDER, OVER\n", "P2007", 2},
       {"*CONTACT PAIR, NAME=P\nUNDER, OVER\nCLEARANCE, -1.\n", "P2041", 2},
       {PAIR "*CONTACT PAIR, NAME=Q\nOVER, UNDER\n", "P2011", 2},
+      {PAIR "*CONTACT PAIR, NAME=Q, SLAVE=FIRST\nOVER, UNDER\n", "P2011", 2},
       {"*CONTACT PAIR, NAME=P\nUNDER, OVER\nCLEARANCE, 1.\n", "P4021", 0},
       {"*PARAMETER\nN = 20\nM = 2\n*CONTACT PAIR, NAME=P, SLAVE=FIRST\n"
        "UNDER, OVER\n",
        "P4024", 0},
       {"*PARAMETER\nC = 0.3\n*TIE, NAME=P, SLAVE=FIRST\nUNDER, OVER\n", "P4025",
        0},
-      {"*CONTACT PAIR, NAME=P, ADJUST=YES\nLEFT, RIGHT\n", "P4026", 2}};
+      {"*CONTACT PAIR, NAME=P, ADJUST=YES\nLEFT, RIGHT\n", "are up to 1 apart",
+       2},
+      {"*CONTACT PAIR, NAME=P, ADJUST=YES\nRIGHT, LEFT\n", "are up to 1 apart",
+       2}};
   job j = job_begin("bad");
   job_copy(&j, "tests/regression/mesh/pair.geo");
   job_write(&j, "bad.inp",
@@ -498,12 +651,16 @@ int main(void) {
   TCase *tests = tcase_create("pairs");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, patch, 0, sizeof patches / sizeof *patches);
+  tcase_add_test(tests, supports_hold_components_of_tied_nodes);
+  tcase_add_test(tests, reactions_of_a_tied_body_are_at_its_master);
+  tcase_add_loop_test(tests, node_of_two_ties_is_of_the_first, 0, 2);
+  tcase_add_loop_test(tests, slave_is_chosen, 0, 22);
   tcase_add_loop_test(tests, held_master_is_a_plane, 0, 6);
   tcase_add_test(tests, restart_is_bit_for_bit);
   tcase_add_loop_test(tests, interference_and_clearance, 0, 4);
   tcase_add_loop_test(tests, all_methods_agree, 0, 2);
   tcase_add_test(tests, wedge_moves_at_its_limit);
   tcase_add_test(tests, stack_stands_by_contact_alone);
-  tcase_add_loop_test(tests, bad_pairs_are_told, 0, 13);
+  tcase_add_loop_test(tests, bad_pairs_are_told, 0, 15);
   return unit_run("pairs", tests);
 }

@@ -62,6 +62,17 @@ static int on_diagonal(const mesh *m, const int *v) {
 }
 TAKE(forked_mouth, on_diagonal(m, v) || IN(0, 4) TO(3, 4))
 
+/* Half a square upright, from the end of the front of a corner on; both fronts
+ * start there. */
+static int on_half(const mesh *m, const int *v) {
+  for (int i = 0; i < 3; ++i) {
+    const double *x = m->x + 3 * v[i];
+    if (x[1] != 3 || x[2] - 3 < x[0]) return 0;
+  }
+  return 1;
+}
+TAKE(two_starts, corner(m, v) || on_half(m, v))
+
 static mesh *grid(int dim) {
   mesh *m = dim == 2 ? make_grid_2d((const int[]){8, 8}, (const double[]){8, 8})
                      : make_grid_3d((const int[]){6, 6, 6},
@@ -321,6 +332,7 @@ static const crack_case crack_cases[] = {
     {"plane", 3, plane, 72, 49, 0, 0, 2, 2},
     {"planes that cross", 3, crossed, 60, 12 + 3 * 3, 4, 32, 1, 4},
     {"branch in three parts", 3, three_parts, 108, 49 + 21 + 7, 0, 0, 3, 3},
+    {"fronts from one node", 3, two_starts, 27, 15, 2, 11, 1, 2},
     {"bent square", 3, bent, 30, 9, 1, 15, 1, 2}};
 enum { N_CRACK_CASE = sizeof crack_cases / sizeof *crack_cases };
 

@@ -142,6 +142,19 @@ static void small_foot(layers *l, double contrast) {
   two_moduli(l, contrast, (double[]){0, 1, 0.5});
 }
 
+/* A single contact node. */
+static void one_foot(layers *l, double contrast) {
+  mesh *m = make_grid_2d((int[]){5, 5}, (double[]){1, 1});
+  m->group[0].n_node = 1;
+  m->group[0].node_id[0] = 3;
+  l->s = scene_new(m, PLANE_STRAIN, 1);
+  for (int j = 0; j < 6; ++j) scene_fix_node(l->s, 6 * j, 0);
+  scene_contact(l->s, "BODY", (double[]){0, -1}, 0);
+  l->n_motion = 1;
+  l->motion = lift;
+  two_moduli(l, contrast, (double[]){0, 1, 0.5});
+}
+
 static void brick(layers *l, double contrast) {
   l->s = scene_new(make_grid_3d((int[]){3, 4, 4}, (double[]){1, 1.2, 2}),
                    SOLID_3D, 5);
@@ -193,7 +206,7 @@ static void gap_of_a_tie(layers *l, double contrast) {
 }
 
 static void (*const scenes[])(layers *, double) = {
-    column, block,       stiff_foot,  disc,  hinged,   small_foot,
+    column, block,       stiff_foot,  disc,  hinged,   small_foot,  one_foot,
     brick,  upper_slave, lower_slave, tower, sandwich, gap_of_a_tie};
 static const double contrasts[] = {1, 1e6, 1e8};
 enum { SCENES = sizeof scenes / sizeof *scenes, CASES = 3 * SCENES };

@@ -1,12 +1,16 @@
 // Two blocks on each other: [0, 1] x [0, 1], N segments an edge, and
-// [C, 1 - C] x [1, 2], M segments, turned about (0, 0) by A degrees.
-DefineConstant[ N = 4, M = 7, A = 0, C = 0 ];
+// [C, 1 - C] x [1, 2], M segments, its lower left corner higher by L; turned
+// about (0, 0) by A degrees.
+DefineConstant[ N = 4, M = 7, A = 0, C = 0, L = 0 ];
 c = Cos(A * Pi / 180);
 s = Sin(A * Pi / 180);
 Macro Square
   For i In {0 : 3}
     px = (i == 0 || i == 3) ? x0 : x1;
     py = (i < 2) ? y0 : y0 + 1;
+    If (i == 0)
+      py = py + lift;
+    EndIf
     Point(k + i) = {c * px - s * py, s * px + c * py, 0, 1 / n};
   EndFor
   For i In {0 : 3}
@@ -16,9 +20,9 @@ Macro Square
   Curve Loop(k) = {k, k + 1, k + 2, k + 3};
   Plane Surface(k) = {k};
 Return
-k = 1; n = N; x0 = 0; x1 = 1; y0 = 0;
+k = 1; n = N; x0 = 0; x1 = 1; y0 = 0; lift = 0;
 Call Square;
-k = 11; n = M; x0 = C; x1 = 1 - C; y0 = 1;
+k = 11; n = M; x0 = C; x1 = 1 - C; y0 = 1; lift = L;
 Call Square;
 Physical Curve("BOTTOM") = {1};
 Physical Curve("RIGHT") = {2, 12};

@@ -1,0 +1,233 @@
+/* src/contact/mortar/partner.c: which faces of two surfaces meet, where several
+ * are one behind the other. */
+#include "support/two_surfaces.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A circle of n edges; outward: the body is inside. */
+static void add_circle(pair *p, int of_slave, int n, double r, double turn,
+                       int outward) {
+  const int first = p->m.n_node;
+  const double pi = acos(-1.0);
+  for (int i = 0; i < n; ++i)
+    two_add_node(p, r * cos(2 * pi * i / n + turn),
+                 r * sin(2 * pi * i / n + turn), 0);
+  for (int i = 0; i < n; ++i) {
+    const int a = first + i, b = first + (i + 1) % n;
+    two_add_face(p, of_slave, outward ? (int[]){a, b} : (int[]){b, a});
+  }
+}
+
+/* The masters of each node are near to it. */
+static void check_near(const pair *p, const mortar *m, double far) {
+  const int dim = p->m.dim;
+  for (int q = 0; q < m->n; ++q)
+    for (size_t e = m->to.start[q]; e < m->to.start[q + 1]; ++e) {
+      const double *a = p->m.x + dim * m->node_id[q];
+      const double *b = p->m.x + dim * m->to.master[e];
+      double sum = 0;
+      for (int c = 0; c < dim; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
+      ck_assert_double_le(sqrt(sum), far);
+    }
+}
+
+/* Rings r = 1..1.2 and 1.25..1.5 with both surfaces in the groups, either one
+ * as the slave: the inner surface of the inner ring has no partner. */
+START_TEST(rings_have_no_partner_on_the_far_side) {
+  for (int inner = 0; inner < 2; ++inner) {
+    pair p = two_new(2);
+    add_circle(&p, inner, 60, 1, 0, 0);
+    add_circle(&p, inner, 60, 1.2, 0, 1);
+    add_circle(&p, !inner, 71, 1.25, 0.02, 0);
+    add_circle(&p, !inner, 71, 1.5, 0, 1);
+    mortar *m = two_couple(&p);
+    ck_assert_int_eq(m->n, inner ? 60 : 71);
+    check_near(&p, m, 0.3);
+    for (int q = 0; q < m->n; ++q) {
+      const double *x = p.m.x + 2 * m->node_id[q], *n = m->normal + 2 * q;
+      const double r = hypot(x[0], x[1]), way = inner ? 1 : -1;
+      ck_assert_double_eq_tol(r, inner ? 1.2 : 1.25, 1e-12);
+      for (int c = 0; c < 2; ++c)
+        ck_assert_double_eq_tol(n[c], way * x[c] / r, 2e-3);
+      /* 0.05 but for the heights of the chords */
+      ck_assert_double_eq_tol(n[0] * m->gap[2 * q] + n[1] * m->gap[2 * q + 1],
+                              0.05, 4e-3);
+    }
+    mortar_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
+/* The outline of a plate x0..x1, y0..y1 in n by 1 edges. */
+static void add_plate(pair *p, int of_slave, int n, const double *box) {
+  const int first = p->m.n_node;
+  for (int i = 0; i <= n; ++i)
+    two_add_node(p, box[0] + (box[1] - box[0]) * i / n, box[2], 0);
+  for (int i = n; i >= 0; --i)
+    two_add_node(p, box[0] + (box[1] - box[0]) * i / n, box[3], 0);
+  for (int i = 0; i < 2 * n + 2; ++i)
+    two_add_face(p, of_slave,
+                 (int[]){first + i, first + (i + 1) % (2 * n + 2)});
+}
+
+/* A stack of thin plates, thinner than their faces are long, the second from
+ * below as slave; it overhangs. */
+START_TEST(plates_see_the_next_plate_and_not_what_is_behind) {
+  pair p = two_new(2);
+  add_plate(&p, 1, 7, (double[]){0, 2, 1.10, 1.15});
+  add_plate(&p, 0, 6, (double[]){0, 1, 1.00, 1.05});
+  add_plate(&p, 0, 5, (double[]){0, 2, 1.20, 1.25});
+  add_plate(&p, 0, 4, (double[]){0, 2, 1.30, 1.35});
+  mortar *m = two_couple(&p);
+  ck_assert_double_eq_tol(m->covered, 3, 1e-12);
+  for (int q = 0; q < m->n; ++q) {
+    const int top = m->node_id[q] >= 8;
+    ck_assert_double_eq_tol(m->gap[2 * q + 1], top ? 0.05 : -0.05, 1e-13);
+    ck_assert_double_eq_tol(m->normal[2 * q + 1], top ? 1 : -1, 1e-13);
+  }
+  mortar_free(m);
+  two_free(&p);
+}
+END_TEST
+
+/* Masters one behind the other in space: the nearer, smaller one hides the
+ * middle of the other. */
+START_TEST(the_nearest_of_two_masters_is_the_partner) {
+  pair p = two_new(3);
+  two_add_square(&p, 1, 3, 0, 1, 0);
+  two_add_square(&p, 0, 4, 0, 1, 0);
+  for (int i = 16; i < p.m.n_node; ++i) p.m.x[3 * i + 2] = -0.4;
+  const int first = p.m.n_node;
+  two_add_square(&p, 0, 2, 0.2, 0.7, 0);
+  for (int i = first; i < p.m.n_node; ++i) p.m.x[3 * i + 2] = -0.1;
+  mortar *m = two_couple(&p);
+  double sum = 0;
+  ck_assert_int_eq(m->n, 16);
+  ck_assert_double_eq_tol(m->covered, 1, 1e-13);
+  for (int q = 0; q < 16; ++q) {
+    sum += m->area[q] * m->gap[3 * q + 2];
+    ck_assert_double_eq_tol(two_part_sum(m, q), 1, 1e-13);
+  }
+  ck_assert_double_eq_tol(sum, -0.4 * 0.75 - 0.1 * 0.25, 1e-13);
+  mortar_free(m);
+  two_free(&p);
+}
+END_TEST
+
+/* An overlap of the bodies, here of several faces, is a negative gap. Their
+ * sides, level or not, are no partners of each other. */
+START_TEST(overlapping_bodies_are_partners) {
+  for (int k = 0; k < 3; ++k) {
+    const double by = 0.003 * (k - 1);
+    pair p = two_new(2);
+    add_plate(&p, 1, 40, (double[]){0, 1, -0.1, 1});
+    add_plate(&p, 0, 50, (double[]){by, 1 - by, -1, 0});
+    mortar *m = two_couple(&p);
+    ck_assert_double_eq_tol(m->covered, k == 2 ? 0.994 : 1, 1e-13);
+    for (int q = 0; q < m->n; ++q) {
+      ck_assert_int_le(m->node_id[q], 40);
+      ck_assert_double_eq_tol(m->gap[2 * q + 1], 0.1, 1e-13);
+      ck_assert_double_eq_tol(m->normal[2 * q + 1], -1, 1e-13);
+    }
+    mortar_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
+START_TEST(surfaces_with_nothing_in_common_have_no_rows) {
+  pair away = two_new(2), same = two_new(2), far = two_new(2);
+  two_add_line(&away, 1, 3, 0, 1, 0);
+  two_add_line(&away, 0, 3, 1, 2, 0); /* they meet at a point */
+  two_add_line(&same, 1, 3, 0, 1, 0);
+  two_add_line(&same, 1, 3, 0, 1, 0); /* normals alike */
+  same.in.n_slave = 3;
+  same.in.n_master = 3;
+  for (int i = 0; i < 3; ++i) same.master[i] = 3 + i;
+  two_add_line(&far, 1, 3, 0, 1, 0);
+  two_add_line(&far, 0, 3, 0, 1, 0);
+  for (int i = 4; i < 8; ++i) far.m.x[2 * i + 1] = -1.1;
+  pair *all[3] = {&away, &same, &far};
+  for (int i = 0; i < 3; ++i) {
+    mortar *m = two_couple(all[i]);
+    ck_assert_int_eq(m->n, 0);
+    ck_assert_int_eq(m->n_uncovered, 4);
+    ck_assert_uint_eq(m->to.start[0], 0);
+    ck_assert_double_eq(m->covered, 0);
+    ck_assert_double_eq(m->size_ratio, 0);
+    mortar_free(m);
+    two_free(all[i]);
+  }
+}
+END_TEST
+
+/* Two masters that are not joined, one before the other: together they cover
+ * less than the slave. */
+START_TEST(masters_apart_hide_each_other) {
+  pair p = two_new(2);
+  two_add_line(&p, 1, 1, 0, 1, 0);
+  for (int k = 0; k < 2; ++k) {
+    const int first = p.m.n_node;
+    two_add_line(&p, 0, 1, 0.3, 0.7, 0);
+    for (int i = first; i < p.m.n_node; ++i)
+      p.m.x[2 * i + 1] = k == 0 ? -0.3 : -0.1;
+  }
+  mortar *m = two_couple(&p);
+  ck_assert_int_eq(m->n, 2);
+  ck_assert_double_eq_tol(m->covered, 0.4, 1e-15);
+  for (int q = 0; q < 2; ++q)
+    ck_assert_double_eq_tol(m->gap[2 * q + 1], -0.1, 1e-14);
+  mortar_free(m);
+  two_free(&p);
+}
+END_TEST
+
+/* Nothing is a partner beyond the diagonal of the master, 1.02 long. */
+START_TEST(partners_are_within_the_extent_of_the_surfaces) {
+  for (int above = 0; above < 2; ++above) {
+    pair p = two_new(2);
+    const double slope = 0.2, middle = hypot(1, slope) * (above ? 1.01 : 0.99);
+    two_add_line(&p, 1, 1, 0, 1, 0);
+    two_add_line(&p, 0, 1, 0, 1, 0);
+    for (int i = 2; i < 4; ++i)
+      p.m.x[2 * i + 1] = -middle + slope * (0.5 - p.m.x[2 * i]);
+    mortar *m = two_couple(&p);
+    ck_assert_double_eq_tol(m->covered, !above, 1e-15);
+    mortar_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
+/* A master inside a plate of thickness 0.15 is the partner of its lower side
+ * down to half of it. */
+START_TEST(bodies_overlap_by_half_the_slave) {
+  for (int above = 0; above < 2; ++above) {
+    pair p = two_new(2);
+    const double depth = 0.075 * (above ? 1.01 : 0.99);
+    add_plate(&p, 1, 8, (double[]){0, 1, 0, 0.15});
+    add_plate(&p, 0, 5, (double[]){-0.5, 1.5, depth - 1, depth});
+    mortar *m = two_couple(&p);
+    double below = 0;
+    for (int q = 0; q < m->n; ++q)
+      if (m->node_id[q] > 0 && m->node_id[q] < 8 &&
+          m->normal[2 * q + 1] < -0.99)
+        below += m->area[q];
+    ck_assert_double_eq_tol(below, above ? 0 : 7.0 / 8, 1e-13);
+    mortar_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
+UNIT_MAIN("mortar_partner", rings_have_no_partner_on_the_far_side,
+          plates_see_the_next_plate_and_not_what_is_behind,
+          the_nearest_of_two_masters_is_the_partner,
+          overlapping_bodies_are_partners,
+          surfaces_with_nothing_in_common_have_no_rows,
+          masters_apart_hide_each_other,
+          partners_are_within_the_extent_of_the_surfaces,
+          bodies_overlap_by_half_the_slave)
