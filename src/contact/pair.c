@@ -162,6 +162,17 @@ static status place_of(node_links *l, int first, int master, pair_links *room,
   return OK;
 }
 
+/* Resultant of row c: of its coupling, or of a force at the node. */
+static void set_resultant(contact_surface *s, int i, int c,
+                          const pair_row *row) {
+  const int dim = s->dim, k = dim * i + c;
+  const mortar *of = row == NULL ? NULL : row->of;
+  s->share[k] = of == NULL ? 1.0 : of->share[row->row];
+  memcpy(s->lever + dim * k,
+         of == NULL ? s->x + dim * i : of->lever + dim * row->row,
+         (size_t)dim * sizeof *s->lever);
+}
+
 status pair_add_row(contact_surface *s, int i, int n, const pair_row *rows,
                     pair_links *room) {
   node_links *l = s->master;
@@ -176,6 +187,10 @@ status pair_add_row(contact_surface *s, int i, int n, const pair_row *rows,
         if (source_of(s, i, n, c) == k)
           l->part[dim * at + c] = to->part[(size_t)dim * e];
     }
+  }
+  for (int c = 0; c < dim; ++c) {
+    const int k = source_of(s, i, n, c);
+    set_resultant(s, i, c, k < 0 ? NULL : &rows[k]);
   }
   l->n = i + 1;
   l->start[i + 1] = (size_t)room->n;

@@ -556,6 +556,8 @@ static status surface_new(int dim, int n, int pairs, contact_surface **out) {
   NEW(s->held, n * dim);
   if (pairs) {
     NEW(s->apart, n * dim);
+    NEW(s->share, n * dim);
+    NEW(s->lever, n * dim * dim);
     NEW(s->master, 1);
     s->master->dim = dim;
     NEW(s->master->start, n + 1);
@@ -727,7 +729,7 @@ status surface_forces(const contact_surface *s, int n_node, const double *F,
 void surface_free(contact_surface *s) {
   if (s == NULL) return;
   if (s->master != NULL) links_release(s->master);
-  RELEASE(s->master, s->apart, s->node_id, s->node_no, s->contact_id,
-          s->side_id, s->x, s->area, s->side_area, s->frame, s->basis, s->gap0,
-          s->held, s);
+  RELEASE(s->master, s->apart, s->share, s->lever, s->node_id, s->node_no,
+          s->contact_id, s->side_id, s->x, s->area, s->side_area, s->frame,
+          s->basis, s->gap0, s->held, s);
 }

@@ -30,6 +30,11 @@ typedef struct contact_surface {
                         *BOUNDARY (never the normal one) */
   node_links *master;  /* row q: contact node q, whose unknowns are relative to
                           the master surface of a pair; NULL: no pair */
+  double *share;       /* [dim*n] resultant on the body of a unit force in a row
+                          (a slave node carries for neighbours without a
+                          multiplier), -; NULL: no pair */
+  double *lever;       /* [dim*dim*n] sum of its forces times their places, as
+                          frame, m; NULL: no pair */
   double *apart;       /* [dim*n] gap to the master along the rows that are
                           normals of pairs, at time 0, m; NULL: no pair */
 } contact_surface;

@@ -49,8 +49,29 @@ static void check_rows(const pair *p, const mortar *m, double far) {
   }
 }
 
-/* Plane surfaces that cover each other: sum_j P_jl D_j = int phi_l, the forces
- * of a constant pressure on the master. */
+/* Plane surfaces that cover each other, a constant pressure: its resultant on
+ * the slave, and its moment about the origin, are those of the master's area.
+ */
+static void check_resultant(const pair *p, const mortar *m) {
+  const int dim = p->m.dim;
+  double area = 0, first[3] = {0};
+  for (int q = 0; q < m->n; ++q) {
+    area += m->area[q] * m->share[q];
+    for (int c = 0; c < dim; ++c)
+      first[c] += m->area[q] * m->lever[dim * q + c];
+  }
+  for (int i = 0; i < p->in.n_master; ++i) {
+    const int face = p->master[i];
+    area -= face_area(p, face);
+    for (int k = 0; k < dim * dim; ++k)
+      first[k % dim] -= face_area(p, face) / dim *
+                        p->m.x[dim * p->m.face[dim * face + k / dim] + k % dim];
+  }
+  ck_assert_double_eq_tol(area, 0, 1e-13);
+  for (int c = 0; c < dim; ++c) ck_assert_double_eq_tol(first[c], 0, 1e-13);
+}
+
+/* The same: sum_j P_jl D_j = int phi_l, the forces on the master. */
 static void check_forces(const pair *p, const mortar *m, int first_master) {
   const int dim = p->m.dim;
   double *force = calloc((size_t)p->m.n_node, sizeof *force);
@@ -64,6 +85,7 @@ static void check_forces(const pair *p, const mortar *m, int first_master) {
   for (int i = first_master; i < p->m.n_node; ++i)
     ck_assert_double_eq_tol(force[i], 0, 1e-14);
   free(force);
+  check_resultant(p, m);
 }
 
 static pair plane_pair(int dim, int n_slave, int n_master, double jitter) {
@@ -277,6 +299,9 @@ START_TEST(dropped_nodes_leave_their_part_to_the_neighbours) {
   ck_assert_double_eq_tol(part_of(m, 1, 2), -0.5, 1e-15);
   check_rows(&p, m, 1e-14);
   check_line_forces(&p, m, 0, 2);
+  ck_assert_double_eq(m->share[0], 1);
+  ck_assert_double_eq_tol(m->share[1], 1.5, 1e-15);
+  ck_assert_double_eq_tol(m->lever[2], 1 + 0.5 * 2, 1e-15);
   mortar_free(m);
   p.dropped[0] = p.dropped[1] = 1;
   m = two_couple(&p);

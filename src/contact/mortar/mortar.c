@@ -38,6 +38,8 @@ typedef struct face_part {
   double share[3]; /* [dim] int phi_j over the whole face, m2 */
   double d[3];     /* [dim] over the covered part, m2 */
   double masters;  /* int size of the master faces, m3 */
+  double more[3];  /* [dim] int psi_j phi of the nodes without multiplier, m2 */
+  double lever[9]; /* [dim*dim] the same times their places, m3 */
 } face_part;
 
 typedef struct builder {
@@ -58,6 +60,10 @@ typedef struct builder {
   int n_link, link_capacity;
   mortar *out;
 } builder;
+
+static void add_scaled(int dim, double factor, const double *v, double *to) {
+  for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
+}
 
 static const int *nodes_of(const builder *b, int face) {
   return b->in->mesh->face + (size_t)b->in->mesh->dim * (size_t)face;
@@ -154,10 +160,14 @@ static status add_dropped(builder *b, int face, face_part *part,
     entry *e;
     if (kept[z]) continue;
     PASS(entry_of(b, part, node[z], &e));
-    for (int k = 0; k < b->n_point; ++k)
-      for (int j = 0; j < dim; ++j)
-        e->part[j] -=
-            b->points[k].weight * b->points[k].psi[j] * b->points[k].phi[z];
+    for (int j = 0; j < dim; ++j) {
+      double sum = 0.0;
+      for (int k = 0; k < b->n_point; ++k)
+        sum += b->points[k].weight * b->points[k].psi[j] * b->points[k].phi[z];
+      e->part[j] -= sum;
+      part->more[j] += sum;
+      add_scaled(dim, sum, place_of(b, node[z]), part->lever + dim * j);
+    }
   }
   return OK;
 }
@@ -314,10 +324,6 @@ static status do_faces(builder *b) {
 
 /* ---- normals ------------------------------------------------------------- */
 
-static void add_scaled(int dim, double factor, const double *v, double *to) {
-  for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
-}
-
 static void make_unit(int dim, double *v) {
   double square = 0.0;
   for (int c = 0; c < dim; ++c) square += v[c] * v[c];
@@ -424,6 +430,22 @@ static size_t longest_row(const builder *b) {
   return most;
 }
 
+/* What the slave gets of the multiplier of a node: D_j at the node, and what
+ * it carries for neighbours without a multiplier. */
+static void set_resultant(builder *b, int q) {
+  mortar *m = b->out;
+  const int dim = b->in->mesh->dim, node = m->node_id[q];
+  double *lever = m->lever + (size_t)dim * (size_t)q;
+  m->share[q] = 1.0;
+  add_scaled(dim, 1.0, place_of(b, node), lever);
+  for (size_t a = b->start[node]; a < b->start[node + 1]; ++a) {
+    const face_part *f = &b->face[b->around[a]];
+    const int k = corner_of(b, b->around[a], node);
+    m->share[q] += f->more[k] / m->area[q];
+    add_scaled(dim, 1.0 / m->area[q], f->lever + dim * k, lever);
+  }
+}
+
 /* Row of one node, into links. */
 static status add_row(builder *b, int q, entry *row) {
   mortar *m = b->out;
@@ -479,6 +501,8 @@ static status set_nodes(builder *b) {
   m->to.n = m->n;
   PASS_NEW(m->node_id, m->n);
   PASS_NEW(m->area, m->n);
+  PASS_NEW(m->share, m->n);
+  PASS_NEW(m->lever, dim * m->n);
   PASS_NEW(m->normal, dim * m->n);
   PASS_NEW(m->gap, dim * m->n);
   PASS_NEW(m->to.start, m->n + 1);
@@ -490,6 +514,7 @@ static status set_nodes(builder *b) {
   for (int q = 0; q < m->n; ++q) {
     set_gap(b, q);
     set_normal(b, q);
+    set_resultant(b, q);
   }
   return OK;
 }
@@ -564,5 +589,5 @@ done:
 void mortar_free(mortar *m) {
   if (m == NULL) return;
   links_release(&m->to);
-  RELEASE(m->node_id, m->area, m->normal, m->gap, m);
+  RELEASE(m->node_id, m->area, m->share, m->lever, m->normal, m->gap, m);
 }

@@ -18,7 +18,7 @@ typedef struct pair_card {
 /* From this ratio of the moduli on the softer surface is the slave: a stiff
  * slave that the pair alone holds costs digits. */
 static const double stiff_ratio = 3.0;
-/* Sizes that differ less are equal. */
+/* Sizes and moduli that differ less are equal. */
 static const double rounding = 1e-9;
 
 /* Mean over the faces of a group. */
@@ -59,7 +59,7 @@ static void choose(const model *m, const mesh *msh, const unsigned char *fixed,
   } else if (f[0].held != f[1].held) {
     p->slave = f[0].held;
     why = "the other is held";
-  } else if (ratio >= stiff_ratio || ratio <= 1.0 / stiff_ratio) {
+  } else if (fmax(ratio, 1.0 / ratio) >= stiff_ratio * (1.0 - rounding)) {
     p->slave = ratio < 1.0;
     why = "softer";
   } else if (fabs(f[1].size - f[0].size) > rounding * f[0].size) {
