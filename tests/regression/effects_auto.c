@@ -270,41 +270,71 @@ START_TEST(bound_of_friction_is_that_of_the_work_at_its_nodes) {
 }
 END_TEST
 
+/* Strips pressed down by 0.01, some of them warm. */
+typedef struct strips {
+  double nu, shear;
+  const char *friction, *warm; /* card with its line; group, temperature */
+} strips;
+
+static job run_strips(const strips *s, int automatic) {
+  job j = job_begin("strips");
+  job_copy(&j, "tests/regression/mesh/strips.geo");
+  job_write(&j, "strips.inp",
+            "*PARAMETER\nN = 5\n*MESH, FILE=strips.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., %.17g\n*EXPANSION\n1.2E-5\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s%s*STEP\n*STATIC\n"
+            "*BOUNDARY\nTOP, 1, 1, %.17g\nTOP, 2, 2, -0.01\n*TEMPERATURE\n"
+            "%s\n*PRINT, CONTACT\n*END STEP\n",
+            s->nu, s->friction, automatic ? "*EFFECTS, MODE=AUTO\n" : "",
+            s->shear, s->warm);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
 /* The middle strip of five gets warm: the change is that of the forces of its
  * nodes over the largest force, the others keep theirs. */
 START_TEST(change_is_that_of_the_nodes_it_changes_most) {
-  dat c[2];
-  double told = NAN, stress = NAN, largest = 0, most = 0;
-  for (int k = 0; k < 2; ++k) {
-    job j = job_begin("strips");
-    job_copy(&j, "tests/regression/mesh/strips.geo");
-    job_write(&j, "strips.inp",
-              "*PARAMETER\nN = 5\n*MESH, FILE=strips.geo\n*MATERIAL, NAME=M\n"
-              "*ELASTIC\n1000., 0.\n*EXPANSION\n1.2E-5\n"
-              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s*STEP\n*STATIC\n"
-              "*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.01\n*TEMPERATURE\n"
-              "MIDDLE, 0.05\n*PRINT, CONTACT\n*END STEP\n",
-              k == 0 ? "" : "*EFFECTS, MODE=AUTO\n");
-    int code = job_run(&j, "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-    c[k] = job_table(&j, "CONTACT", -1);
-    if (k == 1) told = job_told(&j, "change");
-    if (k == 1) stress = job_told(&j, "stress");
-    job_end(&j);
-  }
-  for (int i = 0; i < c[1].n_row; ++i) {
-    double with = dat_at(&c[0], i, "f_n"), without = dat_at(&c[1], i, "f_n");
-    most = fmax(most, fabs(with - without));
-    largest = fmax(largest, without);
+  const strips s = {0, 0, "", "MIDDLE, 0.05"};
+  job a = run_strips(&s, 0), b = run_strips(&s, 1);
+  dat with = job_table(&a, "CONTACT", -1),
+      without = job_table(&b, "CONTACT", -1);
+  double largest = 0, most = 0;
+  for (int i = 0; i < without.n_row; ++i) {
+    most =
+        fmax(most, fabs(dat_at(&with, i, "f_n") - dat_at(&without, i, "f_n")));
+    largest = fmax(largest, dat_at(&without, i, "f_n"));
   }
   ck_assert_double_gt(most, 0);
-  ck_assert_double_eq_tol(told / (most / largest), 1, 1e-3);
+  ck_assert_double_eq_tol(job_told(&b, "change") / (most / largest), 1, 1e-3);
   /* E alpha T over the pressure, E u */
-  ck_assert_double_eq_tol(stress / (1.2e-5 * 0.05 / 0.01), 1, 1e-6);
-  dat_free(&c[0]);
-  dat_free(&c[1]);
+  ck_assert_double_eq_tol(job_told(&b, "stress") / (1.2e-5 * 0.05 / 0.01), 1,
+                          1e-6);
+  dat_free(&with);
+  dat_free(&without);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
+/* Friction of both halves is opposite: its sum, of a slight shear, changes by
+ * more than the friction of any node. */
+START_TEST(change_is_that_of_the_sum_of_friction) {
+  const strips s = {0.3, 1e-4, "*FRICTION, CONTACT=C, LAW=COULOMB\n0.9\n",
+                    "LAST, 0.005"};
+  job a = run_strips(&s, 0), b = run_strips(&s, 1);
+  dat with = job_table(&a, "CONTACT", -1),
+      without = job_table(&b, "CONTACT", -1);
+  const double sum = dat_sum(&without, "f_t");
+  const double change = fabs(dat_sum(&with, "f_t") - sum) / fabs(sum);
+  ck_assert_double_gt(change, 1e-5);
+  ck_assert_double_eq_tol(job_told(&b, "change") / change, 1, 1e-3);
+  dat_free(&with);
+  dat_free(&without);
+  job_end(&a);
+  job_end(&b);
 }
 END_TEST
 
@@ -352,4 +382,5 @@ UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
           average_within_an_element_is_local, friction_without_slip_is_left_out,
           bound_of_friction_is_that_of_the_work_at_its_nodes,
           change_is_that_of_the_nodes_it_changes_most,
+          change_is_that_of_the_sum_of_friction,
           nothing_is_left_out_unless_asked, random_scenes_agree)

@@ -312,6 +312,31 @@ static void closing(double gap, const char *heat, double expected) {
   job_end(&j);
 }
 
+/* Temperature x in plane strain: u = (1 + nu) alpha (x^2 - y^2, 2 x y)/2 has no
+ * stress in the plane. Without compressibility the pressures must not take the
+ * differences within a cluster for strain. */
+START_TEST(linear_temperature_leaves_averaged_bodies_free) {
+  static const double nu[] = {0.3, 0.45, 0.499, 0.4999};
+  char steps[240];
+  snprintf(steps, sizeof steps,
+           STEP("*BOUNDARY\nBOTTOM, 2\n"
+                "LEFT, 1, 1, \"-0.6E-5*(1 + %g)*y^2\"\n"
+                "*TEMPERATURE\nBODY, \"x\"\n"),
+           nu[_i]);
+  scene s = {"square.geo", "N = 8", nu[_i], ALPHA, "CPE3, FORMULATION=AVERAGED",
+             "",           steps};
+  job j = run_scene(&s);
+  dat d = job_table(&j, "ELEMENTS", -1);
+  for (int i = 0; i < d.n_row; ++i) { /* of E alpha, an eighth each element */
+    ck_assert_double_eq_tol(dat_at(&d, i, "stress_xx"), 0, 0.1 * 2.4);
+    ck_assert_double_eq_tol(dat_at(&d, i, "stress_yy"), 0, 0.1 * 2.4);
+  }
+  dat_free(&d);
+  balanced(&j);
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(heat_closes_the_gap) {
   closing(1e-3, HEAT(100.), -40.0);
   closing(1e-3, "*TEMPERATURE\nBODY, \"1e-3/1.2e-5\"\n", 0.0);
@@ -486,11 +511,23 @@ START_TEST(costs_nothing_when_not_called) {
 }
 END_TEST
 
-UNIT_MAIN("thermal", bar_between_contacts, held_on_all_sides,
-          free_expansion_has_no_stress, secants_over_the_temperature,
-          each_element_counts_from_its_own_temperature,
-          temperatures_run_through_the_steps,
-          cylinder_with_a_logarithmic_profile, strip_with_a_parabolic_profile,
-          temperatures_from_a_file, damaged_fields_are_refused,
-          heat_closes_the_gap, penetration_at_the_start,
-          costs_nothing_when_not_called)
+int main(void) {
+  TCase *tests = tcase_create("thermal");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_test(tests, bar_between_contacts);
+  tcase_add_test(tests, held_on_all_sides);
+  tcase_add_test(tests, free_expansion_has_no_stress);
+  tcase_add_test(tests, secants_over_the_temperature);
+  tcase_add_test(tests, each_element_counts_from_its_own_temperature);
+  tcase_add_test(tests, temperatures_run_through_the_steps);
+  tcase_add_test(tests, cylinder_with_a_logarithmic_profile);
+  tcase_add_test(tests, strip_with_a_parabolic_profile);
+  tcase_add_test(tests, temperatures_from_a_file);
+  tcase_add_test(tests, damaged_fields_are_refused);
+  tcase_add_test(tests, heat_closes_the_gap);
+  tcase_add_test(tests, penetration_at_the_start);
+  tcase_add_test(tests, costs_nothing_when_not_called);
+  tcase_add_loop_test(tests, linear_temperature_leaves_averaged_bodies_free, 0,
+                      4);
+  return unit_run("thermal", tests);
+}
