@@ -157,6 +157,28 @@ START_TEST(increments_stay_stable) {
 }
 END_TEST
 
+/* A strain that grows from nothing: what counts as rounding is that of the end
+ * of an increment, so the first errs as others do. Relaxation time 2, E = 1000:
+ * E (1 - exp(-t/2)) 1e-3. */
+START_TEST(strains_from_nothing_count) {
+  const square_case s = {STEEL,
+                         PROPORTIONAL,
+                         "CPS3",
+                         "",
+                         SYMMETRY,
+                         "*VISCO, INTEGRATOR=EULER, TOLERANCE=1E-3\n2., 2.\n"
+                         "*BOUNDARY\nTOP, 2, 2, 1.E-3\n"};
+  job j = square_run(&s, 0);
+  const accepted found = accepted_of(&j);
+  dat d = job_table(&j, "ELEMENTS", -1);
+  ck_assert_int_ge(found.attempt, 2);
+  ck_assert_double_le(found.dt, 0.5);
+  ck_assert_double_eq_tol(dat_at(&d, 0, "stress_yy"), 1 - exp(-1), 0.02);
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
 /* Half of the length, and half again, until it is within the limit of Euler's
  * method, 2 tau = 4: no shorter. */
 START_TEST(increments_are_as_long_as_is_stable) {
@@ -209,6 +231,7 @@ int main(void) {
   tcase_add_loop_test(tests, strains_of_other_steps_count, 0, 2);
   tcase_add_test(tests, missed_tolerance_is_told);
   tcase_add_test(tests, increments_stay_stable);
+  tcase_add_test(tests, strains_from_nothing_count);
   tcase_add_test(tests, increments_are_as_long_as_is_stable);
   tcase_add_loop_test(tests, increments_grow_over_thirty_decades, 0, 2);
   return unit_run("adaptive", tests);

@@ -470,6 +470,53 @@ START_TEST(interference_and_clearance) {
 }
 END_TEST
 
+/* The seat of a ring, facets within those of the bore, is moved by up to 0.03:
+ * what is left of the gap, but for a clearance of 1, is a thousandth of it. */
+START_TEST(adjusted_nodes_are_on_the_master) {
+  job j = job_begin("seat");
+  job_copy(&j, "input/press_fit/press_fit.geo");
+  job_write(&j, "seat.inp",
+            "*PARAMETER\nN = 8\nM = 11\n*MESH, FILE=press_fit.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=RING, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=HUB, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=P, ADJUST=YES\nSEAT, BORE\nCLEARANCE, 1.\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nFLAT X, 1\nFLAT Y, 2\n"
+            "*PRINT, CONTACT\n*END STEP\n");
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat c = job_table(&j, "CONTACT", -1);
+  ck_assert_int_eq(c.n_row, 9);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&c, i, "gap"), 1, 3e-5);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+/* A wedge between the bodies, closed by their interference: the moment that is
+ * left, of forces along the mean of both normals, is that of the pair alone,
+ * also at the corner that touches the wall first. */
+START_TEST(moment_of_both_sides_is_that_of_the_pair) {
+  const scene s = {"pair",
+                   "N = 4\nM = 6\nL = 0.02",
+                   ", TYPE=CPE3",
+                   {1e3, 1e3},
+                   0.3,
+                   WALL("") "*CONTACT PAIR, NAME=P\nUNDER, OVER\n"
+                            "INTERFERENCE, 0.03\n",
+                   "BOTTOM, 2\n",
+                   "TOP, P, 3.\nRIGHT, P, 1.\n"};
+  job j = run_scene(&s, "--no-timing");
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_int_eq(t.n_row, 2);
+  ck_assert_double_eq(dat_at(&t, 0, "moment_of_both"), 0);
+  ck_assert_double_gt(dat_at(&t, 1, "moment_of_both"), 1e-5);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* ---- methods ------------------------------------------------------------- */
 
 static const char *const methods[] = {"LEMKE",  "SOR",      "AITKEN",
@@ -658,6 +705,8 @@ int main(void) {
   tcase_add_loop_test(tests, held_master_is_a_plane, 0, 6);
   tcase_add_test(tests, restart_is_bit_for_bit);
   tcase_add_loop_test(tests, interference_and_clearance, 0, 4);
+  tcase_add_test(tests, adjusted_nodes_are_on_the_master);
+  tcase_add_test(tests, moment_of_both_sides_is_that_of_the_pair);
   tcase_add_loop_test(tests, all_methods_agree, 0, 2);
   tcase_add_test(tests, wedge_moves_at_its_limit);
   tcase_add_test(tests, stack_stands_by_contact_alone);
