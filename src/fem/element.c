@@ -21,55 +21,18 @@ typedef struct element_shape {
 
 static const double two_pi = 6.283185307179586476925286766559;
 
-static void triangle_shape(const domain *d, int elem_id, element_shape *s) {
-  const int *v = d->mesh->elem + 3 * elem_id;
-  const double *p[3];
-  for (int a = 0; a < 3; ++a) p[a] = d->mesh->x + 2 * v[a];
-  const double two_area = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
-                          (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);
-  for (int a = 0; a < 3; ++a) {
-    const double *q = p[(a + 1) % 3], *r = p[(a + 2) % 3];
-    s->grad[2 * a] = (q[1] - r[1]) / two_area;
-    s->grad[2 * a + 1] = (r[0] - q[0]) / two_area;
-  }
-  const int section = d->section_id[elem_id];
-  s->weight = 0.5 * two_area * d->thickness[section];
-  s->hoop = 0;
-  if (d->kin[section] == AXISYMMETRIC) {
-    const double three_r = p[0][0] + p[1][0] + p[2][0];
-    s->hoop = 1 / three_r;
-    s->weight *= two_pi * (three_r / 3);
-  }
-}
-
-static void cross(const double *a, const double *b, double *c) {
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static void tetrahedron_shape(const domain *d, int elem_id, element_shape *s) {
-  const int *v = d->mesh->elem + 4 * elem_id;
-  const double *p0 = d->mesh->x + 3 * v[0];
-  double e[3][3];
-  for (int k = 0; k < 3; ++k)
-    for (int c = 0; c < 3; ++c) e[k][c] = d->mesh->x[3 * v[k + 1] + c] - p0[c];
-  double *g = s->grad;
-  cross(e[1], e[2], g + 3);
-  cross(e[2], e[0], g + 6);
-  cross(e[0], e[1], g + 9);
-  const double six_volume = e[0][0] * g[3] + e[0][1] * g[4] + e[0][2] * g[5];
-  for (int i = 3; i < 12; ++i) g[i] /= six_volume;
-  for (int c = 0; c < 3; ++c) g[c] = -(g[3 + c] + g[6 + c] + g[9 + c]);
-  s->hoop = 0;
-  s->weight = six_volume / 6 * d->thickness[d->section_id[elem_id]];
-}
-
 static void shape_at(const domain *d, int elem_id, element_shape *s) {
-  if (d->mesh->dim == 2)
-    triangle_shape(d, elem_id, s);
-  else
-    tetrahedron_shape(d, elem_id, s);
+  const mesh *m = d->mesh;
+  const int section = d->section_id[elem_id];
+  const double determinant = mesh_elem_gradients(m, elem_id, s->grad);
+  s->weight = (m->dim == 2 ? 0.5 * determinant : determinant / 6) *
+              d->thickness[section];
+  s->hoop = 0;
+  if (d->kin[section] != AXISYMMETRIC) return;
+  const int *v = m->elem + 3 * elem_id;
+  const double three_r = m->x[2 * v[0]] + m->x[2 * v[1]] + m->x[2 * v[2]];
+  s->hoop = 1 / three_r;
+  s->weight *= two_pi * (three_r / 3);
 }
 
 /* E B_b of one vertex, columns of ns: the stress of its unit displacements. */

@@ -82,6 +82,32 @@ double mesh_elem_measure(const mesh *m, int elem_id) {
   return (ab[0] * c[0] + ab[1] * c[1] + ab[2] * c[2]) / 6.0;
 }
 
+double mesh_elem_gradients(const mesh *m, int elem_id, double *g) {
+  const size_t n = (size_t)m->dim + 1;
+  const int *v = m->elem + n * (size_t)elem_id;
+  double e[3][3];
+  if (m->dim == 2) {
+    const double *p[3];
+    for (int a = 0; a < 3; ++a) p[a] = m->x + 2 * (size_t)v[a];
+    const double two_area = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
+                            (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);
+    for (int a = 0; a < 3; ++a) {
+      const double *q = p[(a + 1) % 3], *r = p[(a + 2) % 3];
+      g[2 * a] = (q[1] - r[1]) / two_area;
+      g[2 * a + 1] = (r[0] - q[0]) / two_area;
+    }
+    return two_area;
+  }
+  for (int k = 0; k < 3; ++k) difference(m, v[0], v[k + 1], e[k]);
+  cross(e[1], e[2], g + 3);
+  cross(e[2], e[0], g + 6);
+  cross(e[0], e[1], g + 9);
+  const double six_volume = e[0][0] * g[3] + e[0][1] * g[4] + e[0][2] * g[5];
+  for (int i = 3; i < 12; ++i) g[i] /= six_volume;
+  for (int c = 0; c < 3; ++c) g[c] = -(g[3 + c] + g[6 + c] + g[9 + c]);
+  return six_volume;
+}
+
 /* Root of a node in the forest of bodies; the path is halved on each search. */
 int forest_root(int *parent, int i) {
   while (parent[i] != i) {

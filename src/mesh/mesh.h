@@ -101,6 +101,9 @@ const char *mesh_nearest_group(const mesh *m, const char *name);
 double mesh_face_normal(const mesh *m, int face_id, double *normal);
 /* Area or volume of an element, > 0, length^dim. */
 double mesh_elem_measure(const mesh *m, int elem_id);
+/* Gradients g[dim*(dim+1)] of its P1 functions, 1/length, one after the other;
+ * returns twice the area or six times the volume. */
+double mesh_elem_gradients(const mesh *m, int elem_id, double *g);
 /* Bodies: connected sets of elements. body[n_elem] 0..n_body-1. */
 status mesh_bodies(const mesh *m, int *n_body, int *body);
 /* Elements round each node: elem[start[i] .. start[i+1]). Both are new. */

@@ -1,0 +1,352 @@
+/*
+ * The domain integrals of fracture.h: elements, lips, and the length of front.
+ */
+#include "fracture/parts.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Size of the domains over the radius. In 3-D a domain is a tube, whose radius
+ * and half length are the sides of a right angle. */
+static const double domain_size[DOMAINS] = {1.0, 0.8, 0.6};
+static const double tube_radius = 0.8, tube_length = 0.6;
+/* r1 over r2. */
+static const double inner_part = 0.5;
+/* Contact tractions scatter within so many elements from the front, or in that
+ * part of the radius if it is less: a line through the others up to "smooth"
+ * elements away stands for them. */
+static const double scattering = 3, scattering_part = 0.25, smooth = 9;
+
+typedef struct corner {
+  double x[3];
+  double q[DOMAINS], Q[DOMAINS][3]; /* virtual growth, global components */
+  double traction[3];               /* in the frame of its place */
+} corner;
+
+/* Sums for a line over the distance behind the front. */
+typedef struct trend {
+  double n, x, xx, t[3], xt[3];
+} trend;
+
+typedef struct work {
+  const fracture *f; /* after gather_elements */
+  const mesh *m;
+  const mesh_crack *crack;
+  const fracture_state *state;
+  const fracture_point *p;
+  const elasticity *x;
+  integrals *sum;
+  double scatter; /* distance from the front in which tractions scatter, m */
+  trend side[2];  /* of the lips below and above */
+  /* The current element or face */
+  int n, above; /* corners; 1: a lip with the body above it */
+  corner at[4];
+  double measure;
+  double stress[3][3], slope[3][3]; /* and du_i/dx_l, global */
+} work;
+
+/* ---- elements and faces -------------------------------------------------- */
+
+static void set_growth(const work *w, corner *c) {
+  local at;
+  locate(w->p, c->x, &at);
+  const double r = hypot(at.x[0], at.x[1]);
+  for (int k = 0; k < DOMAINS; ++k) {
+    const double size = domain_size[k] * w->p->radius;
+    const double outer = w->m->dim == 3 ? tube_radius * size : size;
+    double q = fmin(1, (outer - r) / (outer * (1 - inner_part)));
+    if (w->m->dim == 3) q *= fmax(0, 1 - fabs(at.s) / (tube_length * size));
+    c->q[k] = fmax(0, q);
+    for (int i = 0; i < 3; ++i) c->Q[k][i] = c->q[k] * at.axis[i];
+  }
+}
+
+/* Corners with their growth; 0: it is zero at all. */
+static int set_corners(work *w, int n, const int *node) {
+  int grows = 0, near = 0;
+  for (int k = 0; k < n; ++k) near |= w->f->node_seen[node[k]] == w->f->mark;
+  if (!near) return 0;
+  w->n = n;
+  for (int k = 0; k < n; ++k) {
+    place_of(w->m, node[k], w->at[k].x);
+    set_growth(w, &w->at[k]);
+    for (int i = 0; i < DOMAINS; ++i) grows |= w->at[k].q[i] > 0;
+  }
+  return grows;
+}
+
+/* Stress and displacement gradient of an element; g: gradients of its P1
+ * functions. Returns its measure. */
+static double set_fields(work *w, int elem, double g[12]) {
+  static const int voigt[2][3][3] = {{{0, 3, -1}, {3, 1, -1}, {-1, -1, 2}},
+                                     {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}};
+  const int dim = w->m->dim;
+  const int *v = w->m->elem + (size_t)(dim + 1) * (size_t)elem;
+  const double *sigma = w->state->sigma + (size_t)(2 * dim) * (size_t)elem;
+  const double determinant = mesh_elem_gradients(w->m, elem, g);
+  memset(w->slope, 0, sizeof w->slope);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int at = voigt[dim - 2][i][j];
+      w->stress[i][j] = at < 0 ? 0 : sigma[at];
+    }
+  for (int k = 0; k <= dim; ++k) {
+    const double *u = w->state->u + (size_t)dim * (size_t)v[k];
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j) w->slope[i][j] += u[i] * g[dim * k + j];
+  }
+  return determinant / (dim == 2 ? 2 : 6);
+}
+
+static void place_at(const work *w, const double *phi, local *at) {
+  double x[3] = {0, 0, 0};
+  for (int k = 0; k < w->n; ++k)
+    for (int c = 0; c < 3; ++c) x[c] += phi[k] * w->at[k].x[c];
+  locate(w->p, x, at);
+}
+
+/* Q of a domain in the frame of the place. */
+static void growth_at(const work *w, const double *phi, const local *at,
+                      int domain, double Q[3]) {
+  double sum[3] = {0, 0, 0};
+  for (int k = 0; k < w->n; ++k)
+    for (int c = 0; c < 3; ++c) sum[c] += phi[k] * w->at[k].Q[domain][c];
+  field_turn_vector(at, sum, Q);
+}
+
+static void growth_slope(const work *w, const double *g, const local *at,
+                         int domain, field_tensor *out) {
+  const int dim = w->m->dim;
+  double sum[3][3] = {{0}};
+  for (int k = 0; k <= dim; ++k)
+    for (int l = 0; l < dim; ++l)
+      for (int j = 0; j < dim; ++j)
+        sum[l][j] += w->at[k].Q[domain][l] * g[dim * k + j];
+  field_turn(at, sum, out);
+}
+
+/* (sig_ij X_ij,l + saux_ij,j u_i,l) Q_l */
+static double lack(const field_tensor *s, const field_tensor *d,
+                   const auxiliary *x, const double *Q) {
+  double sum = field_product(s, &x->X) * Q[0];
+  for (int l = 0; l < 3; ++l)
+    for (int i = 0; i < 3; ++i) sum += x->div[i] * d->of[i][l] * Q[l];
+  return sum;
+}
+
+/* The fields are constant in an element, and the auxiliary ones at its centroid
+ * are as accurate. */
+static void add_element(work *w, int elem) {
+  static const double centre[2][4] = {{1.0 / 3, 1.0 / 3, 1.0 / 3, 0},
+                                      {0.25, 0.25, 0.25, 0.25}};
+  const double *phi = centre[w->m->dim - 2];
+  const int n = w->m->dim + 1;
+  double g[12], Q[DOMAINS][3];
+  field_tensor s, d, grow[DOMAINS], P;
+  local at;
+  if (!set_corners(w, n, w->m->elem + (size_t)n * (size_t)elem)) return;
+  w->measure = set_fields(w, elem, g);
+  place_at(w, phi, &at);
+  field_turn(&at, w->stress, &s);
+  field_turn(&at, w->slope, &d);
+  energy_flux(&s, &d, &P);
+  for (int k = 0; k < DOMAINS; ++k) {
+    growth_at(w, phi, &at, k, Q[k]);
+    growth_slope(w, g, &at, k, &grow[k]);
+    w->sum->I[k][MODES] += w->measure * field_product(&P, &grow[k]);
+  }
+  for (int mode = 0; mode < MODES && w->x->G > 0; ++mode) {
+    auxiliary x;
+    auxiliary_set(w->x, &at, mode, &x);
+    interaction_flux(&s, &d, &x, &P);
+    for (int k = 0; k < DOMAINS; ++k)
+      w->sum->I[k][mode] +=
+          w->measure * (field_product(&P, &grow[k]) + lack(&s, &d, &x, Q[k]));
+  }
+}
+
+/* ---- lips ---------------------------------------------------------------- */
+
+/* The given traction at a node in the frame of its place. */
+static void traction_of(const work *w, int node, const local *at, double t[3]) {
+  const size_t dim = (size_t)w->m->dim;
+  double given[3] = {0, 0, 0};
+  memcpy(given, w->state->traction + dim * (size_t)node, dim * sizeof *given);
+  field_turn_vector(at, given, t);
+}
+
+/* Corners of lip number i, the plus lips first, and on which side its body is;
+ * returns its face id, -1: it is in no domain. */
+static int set_lip(work *w, int i) {
+  const mesh_crack *c = w->crack;
+  const int face = i < c->n ? c->plus[i] : c->minus[i - c->n];
+  double normal[3] = {0, 0, 0}, up = 0;
+  if (!set_corners(w, w->m->dim, w->m->face + w->m->dim * face)) return -1;
+  w->measure = mesh_face_normal(w->m, face, normal);
+  for (int k = 0; k < 3; ++k) up += normal[k] * w->p->frame[3 + k];
+  w->above = up < 0;
+  return face;
+}
+
+static void add_to_trend(trend *to, double x, const double t[3]) {
+  to->n += 1;
+  to->x += x;
+  to->xx += x * x;
+  for (int c = 0; c < 3; ++c) {
+    to->t[c] += t[c];
+    to->xt[c] += x * t[c];
+  }
+}
+
+/* Lines through the tractions that do not scatter, on each side. */
+static void find_trends(work *w) {
+  const int dim = w->m->dim;
+  w->scatter = fmin(scattering * w->p->size, scattering_part * w->p->radius);
+  for (int i = 0; i < 2 * w->crack->n; ++i) {
+    const int face = set_lip(w, i);
+    for (int k = 0; k < dim && face >= 0; ++k) {
+      local at;
+      double t[3];
+      locate(w->p, w->at[k].x, &at);
+      if (-at.x[0] < w->scatter || -at.x[0] > smooth * w->p->size) continue;
+      traction_of(w, w->m->face[dim * face + k], &at, t);
+      add_to_trend(&w->side[w->above], -at.x[0], t);
+    }
+  }
+}
+
+/* The line at x; the mean where the places do not spread enough for one. */
+static void trend_at(const trend *of, double x, double scatter, double t[3]) {
+  const double spread = of->n * of->xx - of->x * of->x;
+  const int is_line = 4 * spread > of->n * of->n * scatter * scatter;
+  for (int c = 0; c < 3; ++c) {
+    const double slope =
+        is_line ? (of->n * of->xt[c] - of->x * of->t[c]) / spread : 0;
+    t[c] = (of->t[c] + slope * (of->n * x - of->x)) / of->n;
+  }
+}
+
+/* Traction at a corner, given or from the line; returns how far it is behind
+ * the front. */
+static double set_traction(work *w, corner *c, int node) {
+  const trend *of = &w->side[w->above];
+  local at;
+  locate(w->p, c->x, &at);
+  const double behind = -at.x[0];
+  if (behind < w->scatter && of->n > 0)
+    trend_at(of, behind, w->scatter, c->traction);
+  else
+    traction_of(w, node, &at, c->traction);
+  return behind;
+}
+
+static void add_lip_point(work *w, const rule_point *point) {
+  const double part = point->part * w->measure;
+  double t[3] = {0, 0, 0}, Q[3];
+  field_tensor d[MODES + 1] = {0};
+  local at;
+  place_at(w, point->phi, &at);
+  at.x[0] = -fabs(at.x[0]);
+  at.x[1] = w->above ? 0.0 : -0.0;
+  for (int k = 0; k < w->n; ++k)
+    for (int c = 0; c < 3; ++c) t[c] += point->phi[k] * w->at[k].traction[c];
+  for (int mode = 0; mode < MODES && w->x->G > 0; ++mode) {
+    auxiliary x;
+    auxiliary_set(w->x, &at, mode, &x);
+    d[mode] = x.d;
+  }
+  field_turn(&at, w->slope, &d[MODES]);
+  for (int k = 0; k < DOMAINS; ++k) {
+    growth_at(w, point->phi, &at, k, Q);
+    for (int mode = 0; mode <= MODES; ++mode)
+      for (int i = 0; i < 3; ++i)
+        for (int l = 0; l < 3; ++l)
+          w->sum->I[k][mode] -= part * t[i] * d[mode].of[i][l] * Q[l];
+  }
+}
+
+static void add_lips(work *w) {
+  const mesh *m = w->m;
+  find_trends(w);
+  for (int i = 0; i < 2 * w->crack->n; ++i) {
+    const int face = set_lip(w, i);
+    double g[12], behind[3];
+    rule_point rule[RULE_MOST];
+    if (face < 0) continue;
+    for (int k = 0; k < m->dim; ++k)
+      behind[k] = set_traction(w, &w->at[k], m->face[m->dim * face + k]);
+    set_fields(w, m->face_elem[face], g);
+    const int n = lip_rule(m->dim - 1, behind, rule);
+    for (int k = 0; k < n; ++k) add_lip_point(w, &rule[k]);
+  }
+}
+
+/* ---- a point ------------------------------------------------------------- */
+
+static int is_near(const fracture *f, int node, const fracture_point *p) {
+  double x[3], square = 0;
+  place_of(f->body.mesh, node, x);
+  for (int k = 0; k < 3; ++k)
+    square += (x[k] - p->origin[k]) * (x[k] - p->origin[k]);
+  return square < p->radius * p->radius;
+}
+
+/* Nodes of an element that are new and near go to the list. */
+static int list_nodes(fracture *f, int elem, const fracture_point *p, int n) {
+  const mesh *m = f->body.mesh;
+  const int *v = m->elem + (size_t)(m->dim + 1) * (size_t)elem;
+  for (int c = 0; c <= m->dim; ++c) {
+    if (f->node_seen[v[c]] == f->mark || !is_near(f, v[c], p)) continue;
+    f->node_seen[v[c]] = f->mark;
+    f->node_list[n++] = v[c];
+  }
+  return n;
+}
+
+/* All elements with a node within the radius, from the point on. */
+static int gather_elements(fracture *f, const fracture_point *p) {
+  int n_elem = 0, n_node = 0;
+  ++f->mark;
+  f->node_list[n_node++] = p->node;
+  f->node_seen[p->node] = f->mark;
+  for (int i = 0; i < n_node; ++i) {
+    const size_t *at = f->start + f->node_list[i];
+    for (size_t k = at[0]; k < at[1]; ++k) {
+      const int e = f->elem[k];
+      if (f->elem_seen[e] == f->mark) continue;
+      f->elem_seen[e] = f->mark;
+      f->elem_list[n_elem++] = e;
+      n_node = list_nodes(f, e, p, n_node);
+    }
+  }
+  return n_elem;
+}
+
+/* int q ds over the edges of the front. */
+static void measure_front(work *w, int n) {
+  const mesh_crack *c = w->crack;
+  for (int k = 0; k < DOMAINS; ++k) w->sum->length[k] = w->m->dim == 2;
+  for (int i = 0; w->m->dim == 3 && i < n; ++i) {
+    if (c->front_face[i] < 0 || !set_corners(w, 2, c->front_node + i)) continue;
+    double square = 0;
+    for (int k = 0; k < 3; ++k)
+      square +=
+          (w->at[1].x[k] - w->at[0].x[k]) * (w->at[1].x[k] - w->at[0].x[k]);
+    for (int k = 0; k < DOMAINS; ++k)
+      w->sum->length[k] += sqrt(square) * (w->at[0].q[k] + w->at[1].q[k]) / 2;
+  }
+}
+
+void integrals_find(fracture *f, const fracture_state *s,
+                    const fracture_point *p, const elasticity *x,
+                    integrals *out) {
+  work w = {.f = f, .m = f->body.mesh, .crack = f->body.crack, .p = p};
+  memset(out, 0, sizeof *out);
+  w.state = s;
+  w.x = x;
+  w.sum = out;
+  const int n = gather_elements(f, p);
+  for (int i = 0; i < n; ++i) add_element(&w, f->elem_list[i]);
+  if (s->traction != NULL) add_lips(&w);
+  measure_front(&w, f->n);
+}

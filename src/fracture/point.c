@@ -1,0 +1,290 @@
+/*
+ * The points of a front: frames, curvature, and how far the crack is straight,
+ * alone and in one material.
+ */
+#include "fracture/parts.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A node of a lip that is behind the front is where the crack is straight if
+ * its height over the distance and the turn of its normal are below this, -. */
+static const double straight = 0.02;
+/* A domain spans at least so many elements, -. */
+static const double fewest = 2.0;
+
+/* 1: the same elastic constants. */
+static int same_material(const fracture_material *a,
+                         const fracture_material *b) {
+  return a->E == b->E && a->nu == b->nu && a->plane_stress == b->plane_stress;
+}
+
+static double dot(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double *a, const double *b, double *c) {
+  for (int k = 0; k < 3; ++k)
+    c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static void scale_to_one(double *a) {
+  const double length = sqrt(dot(a, a));
+  for (int k = 0; k < 3; ++k) a[k] /= length;
+}
+
+static double distance(const mesh *m, int a, int b) {
+  double x[3], y[3];
+  place_of(m, a, x);
+  place_of(m, b, y);
+  for (int k = 0; k < 3; ++k) x[k] -= y[k];
+  return sqrt(dot(x, x));
+}
+
+/* ---- what ends a domain -------------------------------------------------- */
+
+typedef struct obstacles {
+  int n;
+  int *node;      /* [n] on the boundary, lips too, or between materials */
+  double *normal; /* [3*n] mean outward normal of the boundary; 0: inside */
+  char *mixed;    /* [n_node] 1: elements of different materials meet there */
+} obstacles;
+
+static void release(obstacles *o) { RELEASE(o->node, o->normal, o->mixed); }
+
+/* int grad phi dV = int phi n dS: zero inside, and at the front, where both
+ * lips cancel. sum[4*n_node]: it and, as a measure of rounding, the sum of the
+ * lengths. */
+static void add_normals(const mesh *m, double *sum) {
+  for (int e = 0; e < m->n_elem; ++e) {
+    const int *v = m->elem + (size_t)(m->dim + 1) * (size_t)e;
+    double g[12];
+    const double w = mesh_elem_gradients(m, e, g);
+    for (int a = 0; a <= m->dim; ++a) {
+      double *to = sum + 4 * (size_t)v[a], square = 0;
+      for (int c = 0; c < m->dim; ++c) {
+        to[c] += w * g[m->dim * a + c];
+        square += w * g[m->dim * a + c] * w * g[m->dim * a + c];
+      }
+      to[3] += sqrt(square);
+    }
+  }
+}
+
+static status find_mixed(const fracture_body *b, obstacles *o) {
+  const mesh *m = b->mesh;
+  OWNED int *of = NULL;
+  PASS_NEW(of, m->n_node);
+  PASS_NEW(o->mixed, m->n_node);
+  for (int i = 0; i < m->n_node; ++i) of[i] = -1;
+  for (int e = 0; e < m->n_elem; ++e)
+    for (int a = 0; a <= m->dim; ++a) {
+      int node = m->elem[(size_t)(m->dim + 1) * (size_t)e + (size_t)a];
+      int here = b->section_id[e];
+      if (of[node] < 0) of[node] = here;
+      if (!same_material(&b->material[of[node]], &b->material[here]))
+        o->mixed[node] = 1;
+    }
+  return OK;
+}
+
+static status find_obstacles(const fracture_body *b, obstacles *o) {
+  static const double rounding = 1e-6;
+  const mesh *m = b->mesh;
+  OWNED double *sum = NULL;
+  int n = 0;
+  PASS_NEW(sum, 4 * (size_t)m->n_node);
+  add_normals(m, sum);
+  PASS(find_mixed(b, o));
+  for (int i = 0; i < m->n_node; ++i) {
+    double *at = sum + 4 * (size_t)i, length = sqrt(dot(at, at));
+    const double part = length > rounding * at[3] ? 1 / length : 0;
+    for (int k = 0; k < 3; ++k) at[k] *= part;
+    o->n += o->mixed[i] || part > 0;
+  }
+  PASS_NEW(o->node, o->n);
+  PASS_NEW(o->normal, 3 * o->n);
+  for (int i = 0; i < m->n_node; ++i) {
+    const double *at = sum + 4 * (size_t)i;
+    if (!o->mixed[i] && dot(at, at) == 0) continue;
+    memcpy(o->normal + 3 * n, at, 3 * sizeof *at);
+    o->node[n++] = i;
+  }
+  return OK;
+}
+
+/* On the lips behind the point, in the plane of the crack there. */
+static int on_crack(const fracture_point *p, const double *x,
+                    const double *normal, double away) {
+  local at;
+  double side[3];
+  locate(p, x, &at);
+  cross(normal, p->frame + 3, side);
+  return at.x[0] < away / 2 && fabs(at.x[1]) <= straight * away &&
+         sqrt(dot(side, side)) <= straight;
+}
+
+/* A point between two materials has no others. */
+static int ends_domain(const obstacles *o, int i, const fracture_point *p,
+                       const double *x, double away) {
+  const double *normal = o->normal + 3 * i;
+  if (o->mixed[o->node[i]] && p->section >= 0) return 1;
+  return dot(normal, normal) > 0 && !on_crack(p, x, normal, away);
+}
+
+/* Distance of the nearest obstacle, at most "radius". */
+static double free_radius(const mesh *m, const obstacles *o,
+                          const fracture_point *p, double radius) {
+  for (int i = 0; i < o->n; ++i) {
+    const double away = distance(m, o->node[i], p->node);
+    double x[3];
+    if (away >= radius) continue;
+    place_of(m, o->node[i], x);
+    if (ends_domain(o, i, p, x, away)) radius = away;
+  }
+  return radius;
+}
+
+/* Half the distance of other tips, or of parts of the front that run elsewhere,
+ * at most "radius". */
+static double half_way(const fracture *f, const fracture_point *p,
+                       double radius) {
+  const mesh *m = f->body.mesh;
+  for (int i = 0; i < f->n; ++i) {
+    const fracture_point *other = &f->point[i];
+    if (other->node == p->node) continue;
+    if (m->dim == 3 && dot(other->frame + 6, p->frame + 6) > 0.5) continue;
+    radius = fmin(radius, distance(m, other->node, p->node) / 2);
+  }
+  return radius;
+}
+
+/* ---- the points ---------------------------------------------------------- */
+
+/* Mean length of the edges at the node; its section, -1 if they differ. */
+static void look_round(const fracture *f, fracture_point *p) {
+  const fracture_body *b = &f->body;
+  const mesh *m = b->mesh;
+  const int first = f->elem[f->start[p->node]];
+  double sum = 0;
+  p->section = b->section_id[first];
+  for (size_t k = f->start[p->node]; k < f->start[p->node + 1]; ++k) {
+    const int e = f->elem[k];
+    const int *v = m->elem + (size_t)(m->dim + 1) * (size_t)e;
+    for (int a = 0; a <= m->dim; ++a) sum += distance(m, v[a], p->node);
+    if (!same_material(&b->material[b->section_id[e]],
+                       &b->material[b->section_id[first]]))
+      p->section = -1;
+  }
+  p->size = sum / (double)(f->start[p->node + 1] - f->start[p->node]) / m->dim;
+}
+
+/* From the other node of the last face to the tip. */
+static void set_frame_2d(const fracture *f, int i) {
+  const mesh *m = f->body.mesh;
+  const mesh_crack *c = f->body.crack;
+  fracture_point *p = &f->point[i];
+  const int *v = m->face + 2 * (size_t)c->plus[c->front_face[i]];
+  double x[3];
+  place_of(m, v[0] == p->node ? v[1] : v[0], x);
+  for (int k = 0; k < 3; ++k) p->frame[k] = p->origin[k] - x[k];
+  scale_to_one(p->frame);
+  p->frame[3] = -p->frame[1];
+  p->frame[4] = p->frame[0];
+  p->frame[8] = 1;
+}
+
+/* Positions in front_node of the neighbours "step" away along the chain; -1:
+ * beyond its end. */
+static int along(const mesh_crack *c, int chain, int i, int step) {
+  const int from = c->front_start[chain], last = c->front_start[chain + 1] - 1;
+  const int n = last - from, to = i + step;
+  if (to >= from && to <= last) return to;
+  if (c->front_node[from] != c->front_node[last] || n < 1) return -1;
+  return from + ((to - from) % n + n) % n;
+}
+
+static void add_normal(const fracture *f, int face, double *sum) {
+  double normal[3];
+  const double area =
+      mesh_face_normal(f->body.mesh, f->body.crack->minus[face], normal);
+  for (int k = 0; k < 3; ++k) sum[k] += area * normal[k];
+}
+
+/* y1 = c y3 - k/2 y3^2 through two neighbours on both sides, by least squares:
+ * turns the frame by c and gives the curvature k. */
+static void fit_circle(const fracture *f, int chain, int i) {
+  const mesh *m = f->body.mesh;
+  fracture_point *p = &f->point[i];
+  double s2 = 0, s3 = 0, s4 = 0, r1 = 0, r2 = 0;
+  for (int step = -2; step <= 2; ++step) {
+    const int j = along(f->body.crack, chain, i, step);
+    double x[3];
+    if (j < 0 || step == 0) continue;
+    place_of(m, f->body.crack->front_node[j], x);
+    for (int k = 0; k < 3; ++k) x[k] -= p->origin[k];
+    const double y1 = dot(x, p->frame), y3 = dot(x, p->frame + 6);
+    s2 += y3 * y3;
+    s3 += y3 * y3 * y3;
+    s4 += y3 * y3 * y3 * y3;
+    r1 += y3 * y1;
+    r2 += y3 * y3 * y1;
+  }
+  const double determinant = s2 * s4 - s3 * s3;
+  if (!(determinant > 1e-6 * s2 * s4)) return;
+  const double c = (r1 * s4 - r2 * s3) / determinant;
+  p->curvature = -2 * (r2 * s2 - r1 * s3) / determinant;
+  for (int k = 0; k < 3; ++k) p->frame[6 + k] += c * p->frame[k];
+  scale_to_one(p->frame + 6);
+  cross(p->frame + 3, p->frame + 6, p->frame);
+}
+
+static void set_frame_3d(const fracture *f, int chain, int i) {
+  const mesh *m = f->body.mesh;
+  const mesh_crack *c = f->body.crack;
+  fracture_point *p = &f->point[i];
+  double *e1 = p->frame, *e2 = e1 + 3, *e3 = e1 + 6, x[3];
+  const int before = along(c, chain, i, -1), after = along(c, chain, i, 1);
+  place_of(m, c->front_node[before < 0 ? i : before], x);
+  place_of(m, c->front_node[after < 0 ? i : after], e3);
+  for (int k = 0; k < 3; ++k) e3[k] -= x[k];
+  scale_to_one(e3);
+  if (before >= 0) add_normal(f, c->front_face[before], e2);
+  if (after >= 0) add_normal(f, c->front_face[after - 1], e2);
+  const double part = dot(e2, e3);
+  for (int k = 0; k < 3; ++k) e2[k] -= part * e3[k];
+  scale_to_one(e2);
+  cross(e2, e3, e1);
+  fit_circle(f, chain, i);
+}
+
+status points_find(fracture *f) {
+  status st = OK;
+  const mesh *m = f->body.mesh;
+  const mesh_crack *c = f->body.crack;
+  obstacles o = {0};
+  TRY(find_obstacles(&f->body, &o));
+  for (int chain = 0; chain < c->n_front; ++chain)
+    for (int i = c->front_start[chain]; i < c->front_start[chain + 1]; ++i) {
+      fracture_point *p = &f->point[i];
+      p->node = c->front_node[i];
+      place_of(m, p->node, p->origin);
+      look_round(f, p);
+      if (m->dim == 2)
+        set_frame_2d(f, i);
+      else
+        set_frame_3d(f, chain, i);
+    }
+  for (int i = 0; i < f->n; ++i) {
+    fracture_point *p = &f->point[i];
+    double most = p->curvature != 0 ? 0.5 / fabs(p->curvature) : m->size;
+    p->radius = half_way(f, p, fmin(most, m->size));
+    p->radius = free_radius(m, &o, p, p->radius);
+    if (p->radius < fewest * p->size) p->radius = 0;
+  }
+done:
+  release(&o);
+  return st;
+}
