@@ -503,7 +503,12 @@
     "face them. Choose the other side with SLAVE=, or extend the group.")    \
   X(4026, ERROR, "ADJUST=YES turns elements inside out",                     \
     "The surfaces are further apart than the elements at the slave: place "  \
-    "the bodies nearer to each other, or leave ADJUST=YES out.")
+    "the bodies nearer to each other, or leave ADJUST=YES out.")               \
+  X(4027, ERROR, "pairs that move with each other in a circle",              \
+    "A slave node follows the nodes of its master. Where bodies meet at one "  \
+    "corner, each the slave of the next, no node of the corner is left that "  \
+    "the others follow: give one of the pairs the other side as slave, with "  \
+    "SLAVE=FIRST or SECOND.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

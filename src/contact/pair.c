@@ -4,6 +4,7 @@
 #include "contact/frame.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -202,4 +203,82 @@ double pair_change(const contact_pair *p, int dim, const double *x, double t) {
   if (p->change == NULL) return 0.0;
   memcpy(at, x, (size_t)dim * sizeof *at);
   return p->change_sign * quantity_value(p->change, at, t);
+}
+
+/* ---- circles --------------------------------------------------------------
+ * Nodes all of whose masters have their place are done, from pass to pass; who
+ * waits for ever waits for a node of a circle.
+ */
+
+typedef struct finder {
+  const contact_surface *s;
+  const surface_input *in;
+  int *row;            /* [n_node] contact node, -1: none */
+  unsigned char *done; /* [s->n] */
+} finder;
+
+/* A master of contact node q, itself a contact node, that is not done; -1. */
+static int waits_for(const finder *f, int q) {
+  const node_links *l = f->s->master;
+  for (size_t e = l->start[q]; e < l->start[q + 1]; ++e) {
+    const int k = f->row[l->master[e]];
+    if (k >= 0 && !f->done[k]) return k;
+  }
+  return -1;
+}
+
+/* A node on a circle, -1: there is none. */
+static int find_node(finder *f) {
+  int left, before = -1;
+  do {
+    left = 0;
+    for (int q = 0; q < f->s->n; ++q) {
+      f->done[q] |= waits_for(f, q) < 0;
+      left += !f->done[q];
+    }
+    if (left == before) break;
+    before = left;
+  } while (left > 0);
+  int q = 0;
+  if (left == 0) return -1;
+  while (f->done[q]) ++q;
+  for (int k = 0; k < f->s->n; ++k) q = waits_for(f, q);
+  return q;
+}
+
+/* The pairs of contact node q that the text lacks. */
+static void add_names(const finder *f, int q, char *text, size_t size) {
+  const contact_surface *s = f->s;
+  for (int k = 0; k < s->dim; ++k) {
+    const int id =
+        k == 0 ? s->contact_id[q] : s->side_id[(s->dim - 1) * q + k - 1];
+    char name[80];
+    if (id < 0 || f->in->pairs[id].support != NULL) continue;
+    snprintf(name, sizeof name, ", %s of line %d", f->in->pairs[id].name,
+             f->in->pairs[id].at.line_no);
+    if (strstr(text, name) == NULL && strlen(text) + strlen(name) < size)
+      strcat(text, name);
+  }
+}
+
+status pairs_check_circles(const contact_surface *s, const surface_input *in,
+                           message_log *log) {
+  OWNED int *row = NULL;
+  OWNED unsigned char *done = NULL;
+  char text[480] = "";
+  if (s->master == NULL) return OK;
+  PASS_NEW(row, in->mesh->n_node);
+  PASS_NEW(done, s->n);
+  for (int i = 0; i < in->mesh->n_node; ++i) row[i] = -1;
+  for (int q = 0; q < s->n; ++q) row[s->node_id[q]] = q;
+  finder f = {s, in, row, done};
+  const int first = find_node(&f);
+  if (first < 0) return OK;
+  for (int q = first, k = 0; k == 0 || q != first; q = waits_for(&f, q), ++k)
+    add_names(&f, q, text, sizeof text);
+  message_add(log, P4027, &in->pairs[s->contact_id[first]].at,
+              "nodes of the slaves move with each other in a circle, node %zu "
+              "among them: pairs %s; give one of them the other slave (SLAVE=)",
+              s->node_no[first], text + 2);
+  return message_status(log, ERR_DECK);
 }

@@ -27,6 +27,10 @@ typedef struct pair_links {
  * those that supports hold, and those at corners, to none. ERR_MEMORY. */
 status pair_add_row(contact_surface *s, int i, int n, const pair_row *rows,
                     pair_links *room);
+/* ERR_DECK with an error in the log if slave nodes of pairs move with
+ * each other in a circle; ERR_MEMORY. */
+status pairs_check_circles(const contact_surface *s, const surface_input *in,
+                           message_log *log);
 /* What CLEARANCE or INTERFERENCE adds to the gap at x[dim] and t, m. */
 double pair_change(const contact_pair *p, int dim, const double *x, double t);
 

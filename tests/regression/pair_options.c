@@ -1,0 +1,281 @@
+/*
+ * Bodies against each other under all that a deck may ask for: forms,
+ * integrators, laws, estimates, targets, reduction, files of condensed
+ * problems; bodies between others, corners where pairs meet.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double value(const job *j, const char *kind, int k, const char *name) {
+  dat t = job_table(j, kind, k);
+  const double v = dat_at(&t, 0, name);
+  dat_free(&t);
+  return v;
+}
+
+/* ---- one scene, all options ----------------------------------------------
+ */
+
+typedef struct option {
+  const char *law, *step, *cards, *in_step;
+} option;
+
+/* A block pressed on another and pushed to the right, the upper one narrower;
+ * law: cards of the material, LAW=... of friction. */
+static int press(job *j, const option *o) {
+  *j = job_begin("press");
+  job_copy(j, "tests/regression/mesh/pair.geo");
+  job_write(j, "press.inp",
+            "*PARAMETER\nN = 8\nM = 7\nC = 0.2\n*MESH, FILE=pair.geo\n"
+            "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.3\n%s"
+            "*MATERIAL, NAME=B\n*ELASTIC\n1500, 0.25\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=A\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=B\n"
+            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
+            "*FRICTION, CONTACT=P, LAW=%s*STEP\n%s"
+            "*BOUNDARY\nBOTTOM, 1, 2\n"
+            "*DSLOAD\nTOP, P, \"3 + 2*x\"\nTOP, TX, 0.4\n%s"
+            "*PRINT, CONTACT, TOTALS, ENERGY\n*END STEP\n",
+            o->cards, o->law, o->step, o->in_step);
+  return job_run(j, "");
+}
+
+#define COULOMB "COULOMB\n0.3\n"
+#define INCREMENTS "*QUASISTATIC\n0.5, 1.\n"
+#define MAXWELL "*INELASTIC, LAW=MAXWELL\n2.\n"
+#define VISCO(by) "*VISCO, INTEGRATOR=" by "\n0.25, 1.\n"
+
+static const option options[] = {
+    {COULOMB, INCREMENTS, "", ""},
+    {COULOMB, "*STATIC\n", "", ""},
+    {COULOMB, "*QUASISTATIC, FORM=VELOCITY\n0.5, 1.\n", "", ""},
+    {"TRESCA\n1.\n", INCREMENTS, "", ""},
+    {"NONLOCAL, RADIUS=0.5\n0.3\n", INCREMENTS, "", ""},
+    {COULOMB, VISCO("EULER"), MAXWELL, ""},
+    {COULOMB, VISCO("HEUN"), MAXWELL, ""},
+    {COULOMB, VISCO("RK4"), MAXWELL, ""},
+    {COULOMB, VISCO("MIDPOINT"), MAXWELL, ""},
+    {COULOMB, VISCO("BACKWARD"), MAXWELL, ""},
+    {COULOMB, VISCO("EXPONENTIAL"), MAXWELL, ""},
+    {COULOMB, VISCO("THETA, THETA=0.6"), MAXWELL, ""},
+    {COULOMB, VISCO("MIDPOINT, TOLERANCE=1.E-3"), MAXWELL, ""},
+    {COULOMB, VISCO("BACKWARD"), "*INELASTIC, LAW=NORTON\n1.E-6, 3\n", ""},
+    {COULOMB, INCREMENTS, "", "*EFFECTS, MODE=AUTO\n"},
+    {COULOMB, INCREMENTS, "", "*ACCURACY, MESH=YES, TIME=YES, THEORY=YES\n"},
+    {COULOMB, INCREMENTS, "", "*ACCURACY, TARGET=8\n"}};
+
+/* The contact carries the loads 2.4 and 0.24 of the upper block, energies
+ * balance. */
+START_TEST(loads_and_energies_balance) {
+  job j;
+  const int code = press(&j, &options[_i]);
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "normal"), 2.4, 1e-8);
+  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "force_x"), 0.24, 1e-8);
+  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "force_y"), -2.4, 1e-8);
+  /* 3 + 2 x over [0.2, 0.8], 0.4 at y = 2 */
+  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "moment_z"),
+                          -(0.9 + 0.336) - 2 * 0.24, 1e-8);
+  ck_assert_double_le(fabs(value(&j, "ENERGY", -1, "energy_defect_relative")),
+                      1e-10);
+  job_end(&j);
+}
+END_TEST
+
+/* Given normal forces do not balance the loads: who holds the bodies does. */
+START_TEST(given_forces_need_supports) {
+  job j;
+  option o = {COULOMB "*CONTACT FORCE, CONTACT=P\n4.\n", INCREMENTS, "", ""};
+  ck_assert_int_eq(press(&j, &o), 6);
+  ck_assert_ptr_nonnull(strstr(j.errors, "nothing holds the body"));
+  job_end(&j);
+  o.in_step = "*BOUNDARY\nTOP, 2\n";
+  ck_assert_int_eq(press(&j, &o), 0);
+  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "normal"), 4 * 0.6, 1e-12);
+  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "force_x"), 0.24, 1e-9);
+  job_end(&j);
+}
+END_TEST
+
+/* ---- condensed problems in files ----------------------------------------- */
+
+static int by_value(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* A column in ascending order; caller frees. */
+static double *sorted(const job *j, const char *name, int *n) {
+  dat t = job_table(j, "CONTACT", -1);
+  double *v = calloc((size_t)t.n_row, sizeof *v);
+  *n = t.n_row;
+  for (int i = 0; i < t.n_row; ++i) v[i] = dat_at(&t, i, name);
+  qsort(v, (size_t)t.n_row, sizeof *v, by_value);
+  dat_free(&t);
+  return v;
+}
+
+/* What the file of the last increment holds has the same forces. */
+START_TEST(condensed_problem_has_the_same_forces) {
+  static const char *const names[] = {"f_n", "f_t", "gap"};
+  const option o = {COULOMB, INCREMENTS, "",
+                    "*OUTPUT, CONDENSED=FCLIB\n*SOLVER, TOL=1E-13\n"};
+  job j;
+  double *mesh_forces[3];
+  int n[3], m;
+  ck_assert_int_eq(press(&j, &o), 0);
+  for (int k = 0; k < 3; ++k) mesh_forces[k] = sorted(&j, names[k], &n[k]);
+  snprintf(j.name, sizeof j.name, "again");
+  job_write(&j, "again.inp",
+            "*CONDENSED PROBLEM, FILE=press_condensed_00002.h5\n*STEP\n"
+            "*STATIC\n*SOLVER, TOL=1E-13\n*PRINT, CONTACT\n*END STEP\n");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  for (int k = 0; k < 3; ++k) {
+    double *v = sorted(&j, names[k], &m);
+    ck_assert_int_eq(m, n[k]);
+    for (int i = 0; i < m; ++i)
+      ck_assert_double_eq_tol(v[i], mesh_forces[k][i], 1e-11);
+    free(v);
+    free(mesh_forces[k]);
+  }
+  job_end(&j);
+}
+END_TEST
+
+/* ---- estimates ----------------------------------------------------------- */
+
+#define SAME(group)                               \
+  group ", 1, 1, \"A*sin(x)*cos(y - 1)\"\n" group \
+        ", 2, 2, \"A*cos(x)*sin(y - 1)\"\n"
+#define FORCE(group)                                \
+  group ", BX, \"2*E*A*sin(x)*cos(y - 1)\"\n" group \
+        ", BY, \"2*E*A*cos(x)*sin(y - 1)\"\n"
+
+/* nu = 0, u = A (sin x cos(y - 1), cos x sin(y - 1)): at y = 1 no shear, the
+ * pressure -E A cos x. Estimated over true error near 1, both with the first
+ * order. */
+START_TEST(error_of_the_mesh_is_estimated) {
+  static const char *const words[] = {"-D N=8 -D M=11", "-D N=16 -D M=12",
+                                      "-D N=16 -D M=22"};
+  double is[3];
+  for (int k = 0; k < 3; ++k) {
+    job j = job_begin("smooth");
+    job_copy(&j, "tests/regression/mesh/pair.geo");
+    job_write(&j, "smooth.inp",
+              "*PARAMETER\nA = -0.01\nE = 1000.\n*MESH, FILE=pair.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n<E>, 0\n"
+              "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+              "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+              "*CONTACT PAIR, NAME=P\nUNDER, OVER\n"
+              "*REFERENCE\nu_x, \"A*sin(x)*cos(y - 1)\"\n"
+              "u_y, \"A*cos(x)*sin(y - 1)\"\npressure, \"-E*A*cos(x)\"\n"
+              "*STEP\n*STATIC\n*BOUNDARY\n" SAME("LEFT") SAME("RIGHT")
+                  SAME("TOP") SAME("BOTTOM") "*DLOAD\n" FORCE("LOWER")
+                      FORCE("UPPER") "*ACCURACY, MESH=YES\n*END STEP\n");
+    ck_assert_msg(job_run(&j, words[k]) == 0, "%s", j.errors);
+    is[k] = job_told(&j, "true_error_percent");
+    const double ratio = job_told(&j, "mesh_error_percent") / is[k];
+    ck_assert_msg(ratio > 0.9 && ratio < 1.1, "effectivity %g", ratio);
+    job_end(&j);
+  }
+  ck_assert_double_eq_tol(is[2] / is[0], 0.5, 0.05);
+}
+END_TEST
+
+/* ---- many bodies --------------------------------------------------------- */
+
+/* Two blocks between base and roof, pressed from above by 3 and together by 1,
+ * with friction 0.3 in five pairs. */
+static int press_four(job *j, const char *pairs) {
+  *j = job_begin("corner");
+  job_copy(j, "tests/regression/mesh/corner.geo");
+  job_write(j, "corner.inp",
+            "*MESH, FILE=corner.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODIES, MATERIAL=M\n%s"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nFLOOR, 1, 2\n*DSLOAD\n"
+            "TOP, P, 3.\nLEFT OUT, P, 1.\nRIGHT OUT, P, 1.\n"
+            "*PRINT, TOTALS, NODES, ENERGY\n*END STEP\n",
+            pairs);
+  return job_run(j, "");
+}
+
+#define FIVE(name, groups, options)                                            \
+  "*CONTACT PAIR, NAME=" name options "\n" groups "\n*FRICTION, CONTACT=" name \
+  ", LAW=COULOMB\n0.3\n"
+
+/* The base is slave of two pairs side by side, the roof too; the blocks are
+ * masters of all; or slaves below and master above; or one pair for both. Each
+ * body is in equilibrium. */
+START_TEST(bodies_between_others_balance) {
+  static const char *const pairs[] = {
+      FIVE("A", "BASE, LEFT DOWN", "") FIVE("B", "BASE, RIGHT DOWN", "")
+          FIVE("C", "LEFT UP, ROOF", "") FIVE("D", "RIGHT UP, ROOF", "")
+              FIVE("E", "LEFT IN, RIGHT IN", ""),
+      FIVE("A", "LEFT DOWN, BASE", ", SLAVE=FIRST")
+          FIVE("B", "RIGHT DOWN, BASE", ", SLAVE=FIRST")
+              FIVE("C", "ROOF, LEFT UP", ", SLAVE=FIRST")
+                  FIVE("D", "ROOF, RIGHT UP", ", SLAVE=FIRST")
+                      FIVE("E", "LEFT IN, RIGHT IN", ""),
+      FIVE("A", "DOWN, BASE", "") FIVE("C", "LEFT UP, ROOF", ", SLAVE=FIRST")
+          FIVE("D", "RIGHT UP, ROOF", ", SLAVE=SECOND")
+              FIVE("E", "LEFT IN, RIGHT IN", ", SLAVE=FIRST")};
+  job j;
+  const int code = press_four(&j, pairs[_i]);
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat n = job_table(&j, "NODES", -1), t = job_table(&j, "TOTALS", -1);
+  double up = 0;
+  for (int k = 0; k < t.n_row; ++k) /* all but the last stand upright */
+    if (k < t.n_row - 1) up += dat_at(&t, k, "normal");
+  ck_assert_double_eq_tol(up, 2 * 6, 1e-9);
+  for (int k = 0; k < 2; ++k)
+    ck_assert_double_eq_tol(dat_sum(&n, k == 0 ? "contact_x" : "contact_y"), 0,
+                            1e-11);
+  ck_assert_double_le(fabs(value(&j, "ENERGY", -1, "energy_defect_relative")),
+                      1e-10);
+  dat_free(&n);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* At (1, 2) the roof, the right and the left block follow each other. */
+START_TEST(circle_of_slaves_names_its_pairs) {
+  static const char *const last[] = {
+      FIVE("E", "RIGHT IN, LEFT IN", ", SLAVE=FIRST"),
+      FIVE("E", "RIGHT IN, LEFT IN", ", SLAVE=SECOND")};
+  static const char rest[] = FIVE("C", "LEFT UP, ROOF", ", SLAVE=FIRST")
+      FIVE("D", "ROOF, RIGHT UP", ", SLAVE=FIRST") FIVE("A", "BASE, DOWN", "");
+  for (int k = 0; k < 2; ++k) {
+    job j;
+    char pairs[800];
+    snprintf(pairs, sizeof pairs, "%s%s", rest, last[k]);
+    const int code = press_four(&j, pairs);
+    ck_assert_msg(code == (k == 0 ? 2 : 0), "exit %d: %s", code, j.errors);
+    ck_assert_int_eq(strstr(j.errors, "P4027") != NULL, k == 0);
+    static const char *const told[] = {"C of line 6", "D of line 10",
+                                       "E of line 18"};
+    for (int i = 0; i < 3 && k == 0; ++i)
+      ck_assert_msg(strstr(j.errors, told[i]) != NULL, "%s", j.errors);
+    ck_assert_int_eq(strstr(j.errors, "A of line") != NULL, 0);
+    job_end(&j);
+  }
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("pair_options");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, loads_and_energies_balance, 0,
+                      sizeof options / sizeof *options);
+  tcase_add_test(tests, given_forces_need_supports);
+  tcase_add_test(tests, condensed_problem_has_the_same_forces);
+  tcase_add_test(tests, error_of_the_mesh_is_estimated);
+  tcase_add_loop_test(tests, bodies_between_others_balance, 0, 3);
+  tcase_add_test(tests, circle_of_slaves_names_its_pairs);
+  return unit_run("pair_options", tests);
+}
