@@ -192,10 +192,10 @@ END_TEST
 /* Two blocks between base and roof, pressed from above by 3 and together by 1,
  * with friction 0.3 in five pairs. */
 static int press_four(job *j, const char *pairs) {
-  *j = job_begin("corner");
-  job_copy(j, "tests/regression/mesh/corner.geo");
-  job_write(j, "corner.inp",
-            "*MESH, FILE=corner.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+  *j = job_begin("four");
+  job_copy(j, "tests/regression/mesh/four.geo");
+  job_write(j, "four.inp",
+            "*MESH, FILE=four.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
             "*SOLID SECTION, ELSET=BODIES, MATERIAL=M\n%s"
             "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nFLOOR, 1, 2\n*DSLOAD\n"
             "TOP, P, 3.\nLEFT OUT, P, 1.\nRIGHT OUT, P, 1.\n"
