@@ -398,10 +398,6 @@ done:
   return st;
 }
 
-void stiffness_share(const stiffness *k, double *F) {
-  if (k->moved != NULL) coupling_load(k->moved, F);
-}
-
 void stiffness_free(stiffness *k) {
   if (k == NULL) return;
   coupling_free(k->moved);

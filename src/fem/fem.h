@@ -63,8 +63,6 @@ typedef struct condensed condensed; /* factor and condensed matrix */
  * ERR_MESH: an element beyond the axis or without volume. ERR_MEMORY. */
 status stiffness_assemble(const domain *d, stiffness **out);
 void stiffness_free(stiffness *k); /* accepts NULL */
-/* What acts on nodes that move with others acts on those: F[dim*n_node]. */
-void stiffness_share(const stiffness *k, double *F);
 
 /* What resists a rigid motion that *BOUNDARY leaves free. */
 typedef enum {

@@ -20,7 +20,7 @@ static void find_reactions(run *r, int known) {
   domain_internal_force(&r->body.d, r->result.stress, reaction);
   for (size_t i = 0; i < r->n_dof; ++i) reaction[i] -= r->now.F[i];
   if (r->nodes.n > 0) surface_spread(r->surface, -1.0, r->now.rc, reaction);
-  if (r->body.ties.n > 0) stiffness_share(r->elastic.k, reaction);
+  ties_share(&r->body.ties, reaction);
   for (size_t i = 0; i < r->n_dof; ++i)
     if (!r->body.fixed[i]) reaction[i] = 0.0;
   timer_leave(STAGE_REACTION);

@@ -269,6 +269,33 @@ START_TEST(reactions_of_a_tied_body_are_at_its_master) {
 }
 END_TEST
 
+/* Given as the solution of the tied bodies they are the start, with a contact
+ * and without. */
+START_TEST(initial_displacements_of_tied_bodies_are_compatible) {
+  job j = job_begin("start");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "start.inp",
+            "*PARAMETER\nN = 4\nM = 6\n*MESH, FILE=pair.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+            "*TIE, NAME=P\nUNDER, OVER\n%s"
+            "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n"
+            "LOWER, 2, \"-0.003*y\"\nUPPER, 2, \"-0.003*y\"\n"
+            "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nBOTTOM, 1, 2\n"
+            "*DSLOAD\nTOP, P, \"3 + 0*t\"\n*PRINT, NODES\n*END STEP\n",
+            _i ? WALL("") : "");
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat n = job_table(&j, "NODES", -1);
+  for (int i = 0; i < n.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&n, i, "u_y"), -3e-3 * dat_at(&n, i, "y"),
+                            1e-14);
+  dat_free(&n);
+  job_end(&j);
+}
+END_TEST
+
 /* A block with one above and one beside it under pressure from all sides, the
  * nodes of their common edge in two ties. */
 START_TEST(node_of_two_ties_is_of_the_first) {
@@ -700,6 +727,8 @@ int main(void) {
   tcase_add_loop_test(tests, patch, 0, sizeof patches / sizeof *patches);
   tcase_add_test(tests, supports_hold_components_of_tied_nodes);
   tcase_add_test(tests, reactions_of_a_tied_body_are_at_its_master);
+  tcase_add_loop_test(
+      tests, initial_displacements_of_tied_bodies_are_compatible, 0, 2);
   tcase_add_loop_test(tests, node_of_two_ties_is_of_the_first, 0, 2);
   tcase_add_loop_test(tests, slave_is_chosen, 0, 22);
   tcase_add_loop_test(tests, held_master_is_a_plane, 0, 6);

@@ -152,6 +152,31 @@ START_TEST(loads_do_the_same_work_on_the_unknowns) {
 }
 END_TEST
 
+/* Against the basis: the same at all others, nothing left at tied nodes but
+ * where a support holds a component. */
+START_TEST(tied_nodes_pass_on_what_acts_on_them) {
+  linked l;
+  coupling *c;
+  linked_new(&l, 2 + _i, NULL, ties);
+  const size_t n = dofs(&l), dim = (size_t)(2 + _i);
+  const size_t held = dim * 4 + 1; /* the first tied node, of three masters */
+  for (size_t e = 0; e < 3; ++e) l.part[1][dim * e + 1] = 0;
+  double *F = randoms(&l, n), *to = calloc(n, sizeof *to);
+  memcpy(to, F, n * sizeof *to);
+  ck_assert_int_eq(coupling_new(&l.s->d, &c), OK);
+  coupling_load(c, to);
+  ties_share(&l.ties, F);
+  for (size_t i = 0; i < n; ++i) {
+    const int tied = c->of[i / dim] >= 0 && i != held;
+    ck_assert_double_eq_tol(F[i], tied ? 0 : to[i], 1e-14);
+  }
+  coupling_free(c);
+  free(to);
+  free(F);
+  scene_free(l.s);
+}
+END_TEST
+
 /* a'K b of the lower triangle. */
 static double form(const stiffness *k, const double *a, const double *b) {
   const int dim = k->dim;
@@ -239,6 +264,7 @@ int main(void) {
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, displacements_are_relative_to_the_masters, 0, 4);
   tcase_add_loop_test(tests, loads_do_the_same_work_on_the_unknowns, 0, 4);
+  tcase_add_loop_test(tests, tied_nodes_pass_on_what_acts_on_them, 0, 2);
   tcase_add_loop_test(tests, stiffness_does_the_same_work_on_the_unknowns, 0,
                       4);
   tcase_add_test(tests, nodes_that_move_with_each_other_are_an_error);

@@ -27,5 +27,8 @@ typedef struct tie_set {
 } tie_set;
 
 void links_release(node_links *l); /* accepts all-zero */
+/* What acts on tied nodes goes to their masters, but for components of
+ * supports: F[dim*n_node]. No node may be tied to itself, by any way. */
+void ties_share(const tie_set *t, double *F);
 
 #endif

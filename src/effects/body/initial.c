@@ -83,6 +83,7 @@ static status test_start(run *r, start_report *s) {
   NEW(diagonal, r->n_dof);
   TRY(increment_pose(r, 0.0));
   TRY(start_forces(r, R, diagonal, &largest));
+  ties_share(&r->body.ties, R);
   const start_input in = {.mesh = r->msh,
                           .fixed = r->body.fixed,
                           .u = r->old.u,
@@ -90,6 +91,7 @@ static status test_start(run *r, start_report *s) {
                           .R = R,
                           .stiffness = diagonal,
                           .surface = r->nodes.n > 0 ? r->surface : NULL,
+                          .ties = r->body.d.ties,
                           .cp = &r->problem.cp,
                           .uc = r->old.uc,
                           .given = r->problem.given,

@@ -62,6 +62,7 @@ static void test_balance(const start_input *in, const double *rc,
   size_t n_dof = (size_t)dim * (size_t)in->mesh->n_node;
   memcpy(reaction, in->R, n_dof * sizeof *reaction);
   if (in->surface != NULL) surface_spread(in->surface, -1.0, rc, reaction);
+  if (in->ties != NULL) ties_share(in->ties, reaction);
   for (size_t k = 0; k < n_dof; ++k) {
     int node_id = (int)(k / (size_t)dim);
     if (in->fixed[k]) {

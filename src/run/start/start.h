@@ -33,6 +33,7 @@ typedef struct start_input {
   const double *stiffness;        /* [dim*n_node] force of a unit displacement
                                      of a support, N/m */
   const contact_surface *surface; /* NULL: no contact */
+  const tie_set *ties;            /* NULL: none; R is that of their masters */
   const contact_problem *cp;      /* of time 0, stick at u_0 */
   const double *uc;               /* [m] m */
   const double *given;            /* [n] given normal force, N; < 0: none; NULL
@@ -63,6 +64,6 @@ void start_stiffness(const domain *d, double *diagonal);
  * reaction[dim*n_node] with those of the supports, and the report, whose arrays
  * are there. Either array is NULL without contact or use. */
 status start_test(const start_input *in, double *rc, double *reaction,
-                start_report *report);
+                  start_report *report);
 
 #endif
