@@ -213,7 +213,11 @@ START_TEST(patch) {
       if (dat_has(&n, names[k]))
         ck_assert_double_eq_tol(dat_sum(&n, names[k]), wall && k == 0 ? 2 : 0,
                                 1e-12 * 3 * 4);
-    ck_assert_double_le(dat_at(&t, 0, "moment_of_both"), 1e-10 * 3);
+    /* once around the axis moments cancel */
+    ck_assert_int_eq(dat_has(&t, "moment_of_both"),
+                     strstr(s->type, "CAX3") == NULL);
+    if (dat_has(&t, "moment_of_both"))
+      ck_assert_double_le(dat_at(&t, 0, "moment_of_both"), 1e-10 * 3);
     dat_free(&n);
     dat_free(&t);
   }

@@ -142,7 +142,7 @@ static const column columns[] = {
  NULL, on_both},
 {"contact_z", "force", NODE, SCENE_SOLID, 0, "contact_force", 2, contact_force,
  NULL, on_both},
-{"moment_of_both", J, PER_CONTACT, AS_REAL, PRINT_TOTALS, C, SCENE_ALL,
+{"moment_of_both", J, PER_CONTACT, AS_REAL, PRINT_TOTALS, C, CART,
  NEEDS_TOTALS, "moment_of_both", 0, moment_left, NULL,
  "moment left by the forces on both sides of a pair: tangential forces across "
  "a gap"}};
