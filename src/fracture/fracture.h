@@ -50,9 +50,10 @@ typedef struct fracture_state { /* borrowed */
   const double *u;              /* [dim*n_node] m */
   const double *sigma; /* [ns*n_elem] Pa; ns = 4: xx, yy, zz, xy; 6: xx, yy,
                           zz, xy, yz, zx */
-  /* [dim*n_node] on the body, at nodes of the lips, Pa; NULL: none. Next to the
-   * front, within 3 elements, contact pressures scatter: a line through those
-   * of the next 6 stands for them. */
+  /* [dim*n_node] on the body, at nodes of the lips, Pa; NULL: none. Within 4
+   * elements (a quarter of the radius, if that is less) of the front contact
+   * pressures scatter: a line through those up to 16 elements away stands for
+   * them. */
   const double *traction;
 } fracture_state;
 

@@ -15,7 +15,7 @@ static const double inner_part = 0.5;
 /* Contact tractions scatter within so many elements from the front, or in that
  * part of the radius if it is less: a line through the others up to "smooth"
  * elements away stands for them. */
-static const double scattering = 3, scattering_part = 0.25, smooth = 9;
+static const double scattering = 4, scattering_part = 0.25, smooth = 16;
 
 typedef struct corner {
   double x[3];
