@@ -503,12 +503,18 @@
     "face them. Choose the other side with SLAVE=, or extend the group.")    \
   X(4026, ERROR, "ADJUST=YES turns elements inside out",                     \
     "The surfaces are further apart than the elements at the slave: place "  \
-    "the bodies nearer to each other, or leave ADJUST=YES out.")               \
+    "the bodies nearer to each other, or leave ADJUST=YES out.")             \
   X(4027, ERROR, "pairs that move with each other in a circle",              \
     "A slave node follows the nodes of its master. Where bodies meet at one "  \
     "corner, each the slave of the next, no node of the corner is left that "  \
     "the others follow: give one of the pairs the other side as slave, with "  \
-    "SLAVE=FIRST or SECOND.")
+    "SLAVE=FIRST or SECOND.")                                                 \
+  X(4028, WARNING, "crack that ends between two materials",                  \
+    "The stress oscillates there: it has no stress intensity factors. The "  \
+    "table SIF gives the energy release rate alone.")                        \
+  X(4029, WARNING, "no space for the domain of a stress intensity factor",   \
+    "The factors come from rings of elements round the tip. Refine the mesh " \
+    "there, so that several elements are between it and what is near.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

@@ -49,6 +49,8 @@
   X(TABLE_REACTIONS, "table of reactions")                 \
   X(TABLE_ZONES,     "table of zones")                     \
   X(TABLE_LOOP,      "table of loops")                     \
+  X(TABLE_WEAR,      "table of wear")                      \
+  X(TABLE_SIF,       "table of stress intensity factors")  \
   X(HDF5,        "HDF5 output")                            \
   X(FCLIB,       "condensed problems to files")            \
   X(RESTART,     "restart")

@@ -12,6 +12,11 @@
 
 static int is_pair(const contact_pair *p) { return p->support == NULL; }
 
+/* 1: the pair is coupled where the bodies are now. */
+static int is_moved(const surface_input *in, const contact_pair *p) {
+  return p->update && in->u != NULL;
+}
+
 /* 1: supports hold node q of the coupling along its normal. */
 static int is_held(const surface_input *in, const mortar *m, int q) {
   const int dim = in->mesh->dim;
@@ -50,15 +55,16 @@ static int is_taken(const surface_input *in, int pair_id, int q) {
   return 0;
 }
 
-status surfaces_couple(const surface_input *in, const mesh_group *slave,
-                       const mesh_group *master, int slave_normal,
-                       const unsigned char *dropped, mortar **out) {
+status surfaces_couple(const surface_input *in, const double *x,
+                       const mesh_group *slave, const mesh_group *master,
+                       int slave_normal, const unsigned char *dropped,
+                       mortar **out) {
   const mortar_input of = {.mesh = in->mesh,
                            .n_slave = slave->n_item,
                            .n_master = master->n_item,
                            .slave = slave->item_id,
                            .master = master->item_id,
-                           .x = in->mesh->x,
+                           .x = x,
                            .face_weight = in->face_weight,
                            .axisymmetric = in->axisymmetric,
                            .slave_normal = slave_normal,
@@ -71,13 +77,18 @@ status surfaces_couple(const surface_input *in, const mesh_group *slave,
 /* Couple without nodes that cannot carry a multiplier, until all can. */
 static status couple_kept(const surface_input *in, int pair_id, int *n_held) {
   contact_pair *p = &in->pairs[pair_id];
+  const size_t n = (size_t)in->mesh->dim * (size_t)in->mesh->n_node;
   OWNED unsigned char *dropped = NULL;
+  OWNED double *x = NULL;
   int more = 1;
+  PASS_NEW(x, n);
+  for (size_t k = 0; k < n; ++k)
+    x[k] = in->mesh->x[k] + (is_moved(in, p) ? in->u[k] : 0.0);
   PASS_NEW(dropped, in->mesh->n_node);
   *n_held = 0;
   while (more > 0) {
     more = 0;
-    PASS(surfaces_couple(in, p->group, p->master, p->slave_normal, dropped,
+    PASS(surfaces_couple(in, x, p->group, p->master, p->slave_normal, dropped,
                          &p->coupled));
     for (int q = 0; q < p->coupled->n; ++q) {
       const int held = is_held(in, p->coupled, q);
@@ -196,6 +207,24 @@ status pair_add_row(contact_surface *s, int i, int n, const pair_row *rows,
   l->n = i + 1;
   l->start[i + 1] = (size_t)room->n;
   return OK;
+}
+
+/* The gap that was measured at x + u is that of time 0 and what the bodies have
+ * moved since, along n. */
+double pair_gap(const surface_input *in, const contact_pair *p, int row,
+                const double *n) {
+  const mortar *m = p->coupled;
+  const size_t dim = (size_t)in->mesh->dim;
+  const int moved = is_moved(in, p);
+  double gap = 0.0;
+  for (size_t c = 0; c < dim; ++c) {
+    double apart = m->gap[dim * (size_t)row + c];
+    if (moved) apart += in->u[dim * (size_t)m->node_id[row] + c];
+    for (size_t e = m->to.start[row]; moved && e < m->to.start[row + 1]; ++e)
+      apart -= m->to.part[dim * e] * in->u[dim * (size_t)m->to.master[e] + c];
+    gap += apart * n[c];
+  }
+  return gap;
 }
 
 double pair_change(const contact_pair *p, int dim, const double *x, double t) {

@@ -31,6 +31,9 @@ status pair_add_row(contact_surface *s, int i, int n, const pair_row *rows,
  * each other in a circle; ERR_MEMORY. */
 status pairs_check_circles(const contact_surface *s, const surface_input *in,
                            message_log *log);
+/* Gap of a row of the coupling along n[dim], at time 0, m. */
+double pair_gap(const surface_input *in, const contact_pair *p, int row,
+                const double *n);
 /* What CLEARANCE or INTERFERENCE adds to the gap at x[dim] and t, m. */
 double pair_change(const contact_pair *p, int dim, const double *x, double t);
 

@@ -363,8 +363,7 @@ static void measure(builder *b, candidate *c) {
   tally *t = &b->tallies[c->pair_id];
   const double *x = &m->x[(size_t)b->dim * (size_t)c->node_id];
   if (p->support == NULL)
-    c->gap =
-        dot(b->dim, p->coupled->gap + (size_t)(b->dim * c->row), c->normal);
+    c->gap = pair_gap(b->in, p, c->row, c->normal);
   else
     c->gap = obstacle_gap(p->support, b->dim, x, c->normal, 0);
   if (isnan(c->gap) || c->gap == -HUGE_VAL) {

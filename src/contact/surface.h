@@ -49,6 +49,7 @@ typedef struct contact_pair {
                                surfaces */
   const quantity *change;   /* added to the gap of a pair, m, or NULL */
   double change_sign;       /* -1: it is an interference */
+  int update;               /* 1: of a pair, coupled at the places x + u */
   mortar *coupled;     /* of a pair, by pairs_couple; owned by the caller */
   int friction;        /* 1: its law has a sliding limit (for a warning only) */
   int obstacle_normal; /* 1: n is that of the obstacle, not of the body */
@@ -62,14 +63,18 @@ typedef struct surface_input {
   contact_pair *pairs;        /* [n_pair] */
   const unsigned char *fixed; /* [n_node] */
   const double *face_weight;  /* [n_face] thickness; 1 in 3-D */
+  const double *u; /* [dim*n_node] displacements for pairs with update, m; NULL:
+                      none yet */
   int axisymmetric;
 } surface_input;
 
-/* pair.c: the coupling of two surfaces without the nodes of dropped[n_node]
- * (or NULL): *out, NULL or an old one that is freed. ERR_MEMORY. */
-status surfaces_couple(const surface_input *in, const mesh_group *slave,
-                       const mesh_group *master, int slave_normal,
-                       const unsigned char *dropped, mortar **out);
+/* pair.c: the coupling of two surfaces at the places x[dim*n_node], without the
+ * nodes of dropped[n_node] (or NULL): *out, NULL or an old one that is freed.
+ * ERR_MEMORY. */
+status surfaces_couple(const surface_input *in, const double *x,
+                       const mesh_group *slave, const mesh_group *master,
+                       int slave_normal, const unsigned char *dropped,
+                       mortar **out);
 /*
  * pair.c: the coupling of each pair under the supports of the input, without
  * the slave nodes that supports hold along the normal, and those that an

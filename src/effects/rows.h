@@ -41,6 +41,7 @@
   X(reactions_table)     \
   X(zones)               \
   X(loops)               \
+  X(cracks)              \
   X(fields)              \
   X(condensed_problems)  \
   X(restart)             \

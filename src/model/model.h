@@ -122,6 +122,7 @@ typedef struct contact {
   int is_pair;  /* 1: *CONTACT PAIR or *CRACK, without obstacle */
   surface_pair pair;
   gap_change change;             /* of a pair */
+  int update;                    /* 1: UPDATE=STEP of a pair */
   int slave_normal;              /* 1: NORMAL=SLAVE of a pair */
   int obstacle_normal;           /* 1: NORMAL=OBSTACLE; resolved from -1: not
                                     given */
@@ -201,7 +202,8 @@ typedef enum { FORM_DISPLACEMENT, FORM_VELOCITY } step_form;
   X(REACTIONS, "forces of supports")                                  \
   X(ZONES,     "zones of stick, slip, separation with their ends")    \
   X(LOOP,      "force and motion per contact: loops of friction")     \
-  X(WEAR,      "depth and volume worn off at the nodes of *WEAR")
+  X(WEAR,      "depth and volume worn off at the nodes of *WEAR")     \
+  X(SIF,       "stress intensity factors at the fronts of *CRACK")
 /* clang-format on */
 #define PRINT_NUMBER(name, help) PRINT_NUMBER_##name,
 enum { PRINT_LIST(PRINT_NUMBER) PRINT_COUNT };

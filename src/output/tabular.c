@@ -38,6 +38,7 @@ static const struct { int bit; entity of; const char *name; } kinds[] = {
   {PRINT_ZONES,     PER_ZONE,         "ZONES"},
   {PRINT_LOOP,      PER_CONTACT,      "LOOP"},
   {PRINT_WEAR,      PER_CONTACT_NODE, "WEAR"},
+  {PRINT_SIF,       PER_TIP,          "SIF"},
 };
 /* clang-format on */
 

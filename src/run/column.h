@@ -13,7 +13,8 @@ typedef enum {
   PER_CONTACT,
   PER_NODE,
   PER_ELEMENT,
-  PER_ZONE
+  PER_ZONE,
+  PER_TIP
 } entity;
 
 /* Scenes differ in dimension and in the names of the components. */

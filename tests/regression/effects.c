@@ -212,7 +212,8 @@ START_TEST(every_effect_is_called_for) {
        "*CONTACT FORCE, CONTACT=TOP\n50.\n"
        "*WEAR, CONTACT=TOP, COEFFICIENT=1.E-9\n",
        ""},
-      {"*CONTACT PAIR, NAME=SIDES\nLEFT, SYMMETRY\nCLEARANCE, 1000.\n", ""}};
+      {"*CONTACT PAIR, NAME=SIDES\nLEFT, SYMMETRY\nCLEARANCE, 1000.\n",
+       "*PRINT, SIF\n"}};
   enum { DECKS = sizeof decks / sizeof *decks };
   job j[DECKS];
   for (int k = 0; k < DECKS; ++k) j[k] = block(decks[k][0], decks[k][1], "");

@@ -276,8 +276,9 @@ static int chosen(const scene_row *s, int quick) {
 }
 
 int scenes_list(int quick, const scene_row *row[SCENES]) {
-  static const scene_row *const family[] = {
-      friction_scenes, contact_scenes, body_scenes, number_scenes, time_scenes};
+  static const scene_row *const family[] = {friction_scenes, contact_scenes,
+                                            pair_scenes,     body_scenes,
+                                            number_scenes,   time_scenes};
   int n = 0;
   for (size_t f = 0; f < sizeof family / sizeof *family; ++f)
     for (const scene_row *s = family[f]; s->name != NULL; ++s)

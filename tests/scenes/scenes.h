@@ -39,8 +39,8 @@ typedef struct scene_row {
 } scene_row;
 
 /* A family ends with a row without a name. */
-extern const scene_row friction_scenes[], contact_scenes[], body_scenes[],
-    number_scenes[], time_scenes[];
+extern const scene_row friction_scenes[], contact_scenes[], pair_scenes[],
+    body_scenes[], number_scenes[], time_scenes[];
 
 enum { SCENES = 500, SCENE_DECK = 9000 };
 

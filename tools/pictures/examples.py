@@ -411,6 +411,26 @@ def arch(job, axes):
     axes.set_ylim(0.93, 1.07)
 
 
+@example("crack", "Closed crack with friction, and one closed in part",
+         "crack/crack", "crack/partly_closed", rows=2,
+         window=((-1.6, 1.6), (-1.6, 1.6)), inset=(0.7, 0.0, 0.3, 0.3))
+def crack(closed_one, partly, above, below):
+    def slipped(x):
+        return 4 * 0.91 / 1e3 * 0.35801 * closed.root(1 - x ** 2)
+
+    x, y, s = by(closed_one, "x", "y", "slip")
+    along, line = np.copysign(np.hypot(x, y), x), np.linspace(-1, 1, 300)
+    above.plot(line, 1e3 * slipped(line), color=BLUE, label="closed form",
+               **FORM)
+    above.plot(along, 1e3 * np.abs(s), color=RED, label="Protis", **DOTS)
+    label(above, "along the crack", "slip, 10$^{-3}$")
+    x, p, gap = by(partly, "x", "pressure", "gap")
+    below.plot(x, 1e3 * gap, color=RED, label="opening, 10$^{-3}$", **DOTS)
+    below.plot(x, p, color=BLUE, label="pressure", **DOTS)
+    below.axvline(-1 / 3, color=GREY, ls="--", lw=1, label="x = -1/3 (Bui)")
+    label(below, "x", "closed in part")
+
+
 # ---- materials ---------------------------------------------------------
 
 @example("creep_block", "Maxwell block on a rough floor: creep, relaxation",

@@ -209,6 +209,7 @@ const effect_ops wear_effect = {.name = "wear",
                                 .sums_up =
                                     "wear of half the increments is not "
                                     "compared",
+                                .more = {STAGE_TABLE_WEAR},
                                 .on.create = wear_new,
                                 .on.pose = open_gaps,
                                 .on.accept = wear_off,

@@ -102,7 +102,7 @@ typedef struct contact_param {
 } contact_param;
 typedef struct pair_param {
   const char *name, *amplitude;
-  int slave, adjust, normal, type;
+  int slave, adjust, normal, type, update;
 } pair_param;
 typedef struct crack_param {
   const char *name, *group;

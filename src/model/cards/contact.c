@@ -305,6 +305,7 @@ status apply_contact_pair(reading *r) {
   PASS(new_contact(r, p->name, &c));
   c->is_pair = 1;
   c->slave_normal = p->normal;
+  c->update = p->update;
   read_surfaces(r, p->slave, p->adjust, &c->pair);
   c->group = c->pair.group[0];
   c->group_at = c->pair.group_at[0];

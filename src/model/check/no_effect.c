@@ -147,7 +147,7 @@ static void check_contact(const model *m, const mesh *msh, const contact *c) {
     check_z(m, msh, &c->change.value, "CONTACT PAIR", &c->change.at);
 }
 
-static void check_wear(const model *m, const step *s) {
+static void check_tables(const model *m, const step *s) {
   const effect_card *wear = model_effect_card(m, "WEAR", -1);
   if (wear != NULL && s->accuracy.time_balanced)
     message_add(m->log, P2058, &s->accuracy.at,
@@ -159,6 +159,9 @@ static void check_wear(const model *m, const step *s) {
         model_effect_card(m, "WEAR", -1) == NULL)
       message_add(m->log, P2058, &s->print.requests[k].at,
                   "*PRINT, WEAR: no contact has *WEAR");
+    else if (s->print.requests[k].table == PRINT_SIF && m->n.crack == 0)
+      message_add(m->log, P2058, &s->print.requests[k].at,
+                  "*PRINT, SIF: there is no *CRACK");
 }
 
 void check_no_effect(const model *m, const mesh *msh) {
@@ -173,7 +176,7 @@ void check_no_effect(const model *m, const mesh *msh) {
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     check_flow(m, s);
-    check_wear(m, s);
+    check_tables(m, s);
     for (int k = 0; k < s->friction.n; ++k)
       check_friction(m, msh, &s->friction.changes[k].rule);
     for (int k = 0; k < s->loads.n; ++k) {

@@ -134,6 +134,9 @@ static const option pair_options[] = {
   OPTION_CHOICE(pair_param, adjust, "ADJUST", "NO|YES", "NO",
                 "YES: nodes of the slave are moved onto the master before the "
                 "run, without strain"),
+  OPTION_CHOICE(pair_param, update, "UPDATE", "NO|STEP", "NO",
+                "STEP: partners are found again at the start of each step, at "
+                "the places the bodies have come to"),
   OPTION_CHOICE(pair_param, type, "TYPE", "SURFACE TO SURFACE",
                 "SURFACE TO SURFACE", "mortar method; there is no other"),
   OPTION_NAME(pair_param, amplitude, "AMPLITUDE", OPTION_ABSENT,

@@ -127,6 +127,13 @@ done:
   return st;
 }
 
+status run_keep_start(run *r, archive *a) {
+  archive_enter(a, "run");
+  status st = archive_reals(a, "start", r->loads.start, r->n_dof);
+  archive_leave(a);
+  return st;
+}
+
 status run_keep(run *r, archive *a) {
   status st = OK;
   archive_enter(a, "run");

@@ -154,30 +154,55 @@ done:
   return st;
 }
 
+/* 1: pairs are coupled again at the start of the step. */
+static int updates_pairs(const run *r) {
+  int any = 0;
+  for (int i = 0; i < r->m->n.contact; ++i) any |= r->m->contacts[i].update;
+  return any && run_step_id(r) > 0;
+}
+
+/* Surface and matrices for r->body.fixed. */
+static status make_matrices(run *r) {
+  int motions = 0;
+  PASS(run_build_ties(r));
+  if (r->m->effects & EFFECT_CONTACT)
+    PASS(run_build_surface(r));
+  else
+    run_free_surface(r);
+  r->body.d.surface = r->surface;
+  PASS(run_check_supports(r, &motions));
+  PASS(choose_nodes(r, motions));
+  r->problem.n_before = r->nodes.n_row;
+  r->nodes.n_reported = reach_count(&r->nodes.reach, r->nodes.n);
+  if (r->sink->expect != NULL)
+    PASS(r->sink->expect(r->sink->ctx, r->nodes.n_reported));
+  PASS(run_renew_elastic(r));
+  r->c = r->elastic.c;
+  return OK;
+}
+
+/* Pairs are coupled at the displacements that the step starts from: those of
+ * the archive where the run goes on within it. */
+static status take_places(run *r) {
+  if (!updates_pairs(r)) return OK;
+  if (r->course.from != NULL) PASS(run_keep_start(r, r->course.from));
+  r->faces.input.u = r->loads.start;
+  return OK;
+}
+
 status run_prepare(run *r) {
   status st = OK;
-  int fresh = 0, motions = 0;
+  int fresh = 0;
   unsigned char *fixed = NULL;
   NEW(fixed, r->n_dof);
   load_fixed(r->m, r->msh, r->step, fixed);
   memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
   known_rate_forget(&r->solving.rate);
-  if (r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0) {
+  TRY(take_places(r));
+  if (r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0 ||
+      updates_pairs(r)) {
     memcpy(r->body.fixed, fixed, r->n_dof);
-    TRY(run_build_ties(r));
-    if (r->m->effects & EFFECT_CONTACT)
-      TRY(run_build_surface(r));
-    else
-      run_free_surface(r);
-    r->body.d.surface = r->surface;
-    TRY(run_check_supports(r, &motions));
-    TRY(choose_nodes(r, motions));
-    r->problem.n_before = r->nodes.n_row;
-    r->nodes.n_reported = reach_count(&r->nodes.reach, r->nodes.n);
-    if (r->sink->expect != NULL)
-      TRY(r->sink->expect(r->sink->ctx, r->nodes.n_reported));
-    TRY(run_renew_elastic(r));
-    r->c = r->elastic.c;
+    TRY(make_matrices(r));
     fresh = 1;
   }
   TRY(find_load(r));

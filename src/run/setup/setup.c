@@ -82,6 +82,7 @@ static void set_partner(const run *r, const contact *c, contact_pair *p) {
   }
   p->master = &r->msh->group[c->pair.master_id];
   p->slave_normal = c->slave_normal;
+  p->update = c->update;
   p->change = c->change.given ? &c->change.value : NULL;
   p->change_sign = c->change.interferes ? -1.0 : 1.0;
 }

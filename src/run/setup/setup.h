@@ -40,5 +40,7 @@ status run_prepare(run *r);
 /* keep.c: the state an increment starts from that does not follow from the
  * matrices, to an archive, or, after run_prepare, from it. */
 status run_keep(run *r, archive *a);
+/* r->loads.start alone. */
+status run_keep_start(run *r, archive *a);
 
 #endif

@@ -29,7 +29,8 @@ static status couple(const run *r, const tie *t, const unsigned char *dropped,
                      mortar **out) {
   const mesh_group *slave = &r->msh->group[t->pair.slave_id],
                    *master = &r->msh->group[t->pair.master_id];
-  PASS(surfaces_couple(&r->faces.input, slave, master, 1, dropped, out));
+  PASS(surfaces_couple(&r->faces.input, r->msh->x, slave, master, 1, dropped,
+                       out));
   if ((*out)->n == 0)
     message_add(r->m->log, P4023, &t->at,
                 "*TIE %s: no face of %s meets a face of %s along its normal",

@@ -1,0 +1,350 @@
+/*
+ * Stress intensity factors of the cracks (src/fracture): at the tips, in space
+ * at the nodes of the fronts, by domain integrals, and at tips also from the
+ * opening and sliding of the lips behind them (Williams 1957), a check that is
+ * good to some percent.
+ */
+#include "base/memory.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
+#include "fracture/fracture.h"
+#include "model/facts.h"
+#include "run/history/loop.h"
+#include "run/run.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MODES = 3 };
+
+/* A row of the table. */
+typedef struct tip {
+  int crack_id, point;
+  fracture_factors found;
+  double jump[2]; /* K_I, K_II of the lips behind it, Pa m^(1/2) */
+} tip;
+
+typedef struct crack_state {
+  int n_crack;
+  fracture **of;                /* [n_crack] */
+  fracture_material *materials; /* [n_section] */
+  int n;
+  tip *tips;        /* [n] */
+  int flows;        /* 1: a law flows somewhere */
+  double *elastic;  /* [dim*n_node] displacements of an elastic body under the
+                       same forces, m; NULL: none flows */
+  double *sigma;    /* [ns*n_elem] Pa */
+  double *traction; /* [dim*n_node] on the lips, Pa */
+  double *area;     /* [n_node] of the lips, m2 */
+} crack_state;
+
+/* ---- what stays ---------------------------------------------------------- */
+
+/* Elastic constants of the sections; not those of anisotropic ones. */
+static status new_materials(const run *r, crack_state *own) {
+  const model *m = r->m;
+  PASS_NEW(own->materials, m->n.section);
+  for (int i = 0; i < m->n.section; ++i) {
+    const elastic_table *e = &m->materials[m->sections[i].material_id].elastic;
+    fracture_material *to = &own->materials[i];
+    to->plane_stress = m->sections[i].kin == PLANE_STRESS;
+    if (e->type != ELASTIC_ISO || e->n == 0) continue;
+    to->E = e->set[0].constant[0];
+    to->nu = e->set[0].constant[1];
+  }
+  return OK;
+}
+
+/* Half of each lip face to its nodes (a third in space). */
+static void add_areas(const run *r, int n, const int *face, double *area) {
+  const mesh *m = r->msh;
+  double normal[3];
+  for (int i = 0; i < n; ++i) {
+    const section *s =
+        &r->m->sections[r->m->elem_section[m->face_elem[face[i]]]];
+    const double measure = mesh_face_normal(m, face[i], normal) * s->thickness;
+    for (int k = 0; k < m->dim; ++k)
+      area[m->face[m->dim * face[i] + k]] += measure / m->dim;
+  }
+}
+
+/* Points of a front without factors, and why. */
+static void tell_points(const run *r, int id, const fracture *f) {
+  const crack *c = &r->m->cracks[id];
+  const int n = fracture_count(f);
+  const fracture_point *p = fracture_points(f);
+  int two = 0, crowded = 0, two_at = 0, crowded_at = 0;
+  for (int i = 0; i < n; ++i) {
+    if (p[i].section < 0 && two++ == 0) two_at = p[i].node;
+    if (!(p[i].radius > 0.0) && crowded++ == 0) crowded_at = p[i].node;
+  }
+  if (two > 0)
+    message_add(r->m->log, P4028, &c->at,
+                "*CRACK %s ends between two materials at %d of %d nodes, the "
+                "first is %zu: no stress intensity factors there, the energy "
+                "release rate alone",
+                c->name, two, n, r->msh->node_no[two_at]);
+  if (crowded > 0)
+    message_add(r->m->log, P4029, &c->at,
+                "*CRACK %s: %d of %d nodes of its front are nearer than two "
+                "elements to another boundary, kink or crack, the first is "
+                "%zu: no factors there",
+                c->name, crowded, n, r->msh->node_no[crowded_at]);
+}
+
+static status new_cracks(run *r, crack_state *own) {
+  const mesh *m = r->msh;
+  PASS_NEW(own->of, m->n_crack);
+  own->n_crack = m->n_crack;
+  for (int i = 0; i < m->n_crack; ++i) {
+    const mesh_crack *c = &m->crack[i];
+    const fracture_body body = {m, c, r->m->elem_section, own->materials};
+    PASS(fracture_new(&body, &own->of[i]));
+    own->n += fracture_count(own->of[i]);
+    add_areas(r, c->n, c->plus, own->area);
+    add_areas(r, c->n, c->minus, own->area);
+  }
+  PASS_NEW(own->tips, own->n);
+  for (int i = 0, n = 0; i < m->n_crack; ++i)
+    for (int k = 0; k < fracture_count(own->of[i]); ++k)
+      own->tips[n++] = (tip){.crack_id = i, .point = k};
+  for (int i = 0; i < m->n_crack; ++i) tell_points(r, i, own->of[i]);
+  return OK;
+}
+
+static status cracks_new(run *r, void **self) {
+  crack_state *own = NULL;
+  PASS_NEW(own, 1);
+  *self = own;
+  PASS_NEW(own->sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  PASS_NEW(own->traction, r->n_dof);
+  PASS_NEW(own->area, r->msh->n_node);
+  own->flows = facts_has_inelastic(r->m);
+  if (own->flows) PASS_NEW(own->elastic, r->n_dof);
+  PASS(new_materials(r, own));
+  return new_cracks(r, own);
+}
+
+static status cracks_copy(const run *r, const void *of, run *copy,
+                          void **self) {
+  (void)of;
+  (void)copy;
+  return cracks_new((run *)r, self);
+}
+
+static void release(void *self) {
+  crack_state *own = self;
+  if (own == NULL) return;
+  for (int i = 0; own->of != NULL && i < own->n_crack; ++i)
+    fracture_free(own->of[i]);
+  RELEASE(own->of, own->elastic, own->tips, own->materials, own->sigma,
+          own->traction, own->area);
+  memory_free(own);
+}
+
+/* ---- an increment -------------------------------------------------------- */
+
+/* Contact forces and loads at the lips over their areas. */
+static void find_tractions(const run *r, crack_state *own) {
+  const mesh *m = r->msh;
+  memcpy(own->traction, r->now.F, r->n_dof * sizeof *own->traction);
+  if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, own->traction);
+  for (int i = 0; i < m->n_node; ++i)
+    for (int c = 0; c < m->dim; ++c)
+      own->traction[m->dim * i + c] *=
+          own->area[i] > 0.0 ? 1.0 / own->area[i] : 0.0;
+}
+
+/* Sums of a line K + slope * distance by least squares. */
+typedef struct fit {
+  double n, x, xx, y, xy;
+} fit;
+
+static double fit_at_zero(const fit *f) {
+  const double det = f->n * f->xx - f->x * f->x;
+  return f->n < 2.0 || !(det > 0.0) ? NAN : (f->xx * f->y - f->x * f->xy) / det;
+}
+
+/* K of one node behind the tip at the distance x: a jump d of the lips is 8
+ * K/E' sqrt(x/(2 pi)). */
+static void add_jump(fit *f, double x, double jump, double modulus) {
+  const double K = modulus / 8.0 * jump * sqrt(2.0 * acos(-1.0) / x);
+  *f = (fit){f->n + 1.0, f->x + x, f->xx + x * x, f->y + K, f->xy + x * K};
+}
+
+/* From the nodes within half of the largest domain, but for those next to the
+ * tip. */
+static void find_jumps(const run *r, const crack_state *own, tip *t) {
+  enum { NEAR = 2 };
+  const fracture_point *p = &fracture_points(own->of[t->crack_id])[t->point];
+  const contact_surface *s = r->surface;
+  fit found[2] = {{.n = 0.0}, {.n = 0.0}};
+  t->jump[0] = t->jump[1] = NAN;
+  if (r->msh->dim == 3 || p->section < 0) return;
+  const fracture_material *mat = &own->materials[p->section];
+  const double modulus =
+      mat->plane_stress ? mat->E : mat->E / (1.0 - mat->nu * mat->nu);
+  for (int i = 0; i < r->nodes.n; ++i) {
+    if (s->contact_id[i] != r->m->cracks[t->crack_id].contact_id) continue;
+    const double d[2] = {s->x[2 * i] - p->origin[0],
+                         s->x[2 * i + 1] - p->origin[1]};
+    const double x = hypot(d[0], d[1]);
+    if (x < NEAR * p->size || x > p->radius / 2.0) continue;
+    for (int k = 0; k < 2; ++k) { /* opening along e2, sliding along e1 */
+      const double *e = &p->frame[k == 0 ? 3 : 0];
+      double jump = 0.0, side = 0.0;
+      for (int a = 0; a < 2; ++a) {
+        const double *row = &s->frame[4 * i + 2 * a];
+        jump += r->now.uc[2 * i + a] * (row[0] * e[0] + row[1] * e[1]);
+      }
+      side = s->frame[4 * i] * p->frame[3] + s->frame[4 * i + 1] * p->frame[4];
+      add_jump(&found[k], x, side > 0.0 ? -jump : jump, modulus);
+    }
+  }
+  for (int k = 0; k < 2; ++k) t->jump[k] = fit_at_zero(&found[k]);
+}
+
+/* What creeps keeps the stresses of an elastic body: the integrals take its
+ * displacements under the same loads and contact forces. NAN where supports
+ * move, or contact alone holds a body: those are not forces. */
+static status find_elastic(const run *r, double *u) {
+  OWNED double *f = NULL, *uc = NULL;
+  condensed *c = r->elastic.c;
+  const int n = r->nodes.n_row;
+  if (condensed_floating(c) || largest_entry(r->n_dof, r->loads.ud) > 0.0) {
+    for (size_t k = 0; k < r->n_dof; ++k) u[k] = NAN;
+    return OK;
+  }
+  PASS_NEW(f, n);
+  PASS_NEW(uc, n);
+  PASS(condense_load(c, r->now.F, NULL, f));
+  run_take_rows(r, r->now.rc, uc);
+  for (int k = 0; k < n; ++k) f[k] += uc[k];
+  if (n > 0) PASS(condensed_untouched(c, f, uc));
+  return condense_recover(c, uc, u);
+}
+
+static status find_factors(run *r, void *self) {
+  crack_state *own = self;
+  OWNED fracture_factors *found = NULL;
+  PASS_NEW(found, own->n);
+  domain_stress(&r->body.d, r->now.u, NULL, own->sigma);
+  find_tractions(r, own);
+  if (own->flows) PASS(find_elastic(r, own->elastic));
+  const fracture_state s = {own->flows ? own->elastic : r->now.u, own->sigma,
+                            own->traction};
+  for (int i = 0, n = 0; i < r->msh->n_crack; ++i) {
+    fracture_find(own->of[i], &s, found + n);
+    n += fracture_count(own->of[i]);
+  }
+  for (int i = 0; i < own->n; ++i) {
+    own->tips[i].found = found[i];
+    find_jumps(r, own, &own->tips[i]);
+  }
+  return OK;
+}
+
+/* ---- the row ------------------------------------------------------------- */
+
+static int requires_factors(const model *m, char *why, size_t size) {
+  return plan_requires_table(m, PRINT_SIF, "SIF", why, size);
+}
+
+static status expected(const plan_sizes *s, effect_work *w) {
+  const double shown = plan_shown(s->m, PRINT_SIF);
+  *w = (effect_work){s->elements, "elements", shown,
+                     shown * s->elements * plan_element_work(s)};
+  return OK;
+}
+
+static int factors_due(const run *r) {
+  const int within = r->course.shadow;
+  return table_is_due(r->step, PRINT_SIF, r->now.t,
+                      within ? -1 : r->at.increment_no,
+                      within ? 0 : r->at.last);
+}
+
+static int tips_items(const void *self) {
+  return ((const crack_state *)self)->n;
+}
+
+static const tip *tip_of(const view *v, int id) {
+  const crack_state *own = effect_state(v->s->effects, &cracks_effect);
+  return &own->tips[id];
+}
+
+static const fracture_point *point_of(const view *v, int id) {
+  const crack_state *own = effect_state(v->s->effects, &cracks_effect);
+  const tip *t = &own->tips[id];
+  return &fracture_points(own->of[t->crack_id])[t->point];
+}
+
+static double tip_rate(const view *v, int id, int part) {
+  const fracture_factors *f = &tip_of(v, id)->found;
+  return part == 0 ? f->J : f->J_scatter;
+}
+
+#include "run/column_row.h"
+
+VALUE(crack_no, tip_of(v, id)->crack_id + 1)
+VALUE(tip_node, v->msh->node_no[point_of(v, id)->node])
+VALUE(tip_x, point_of(v, id)->origin[part])
+VALUE(tip_K, tip_of(v, id)->found.K[part])
+VALUE(tip_scatter, tip_of(v, id)->found.K_scatter[part])
+VALUE(tip_jump, tip_of(v, id)->jump[part])
+VALUE(tip_radius, point_of(v, id)->radius)
+
+static const char *crack_word(const view *v, int id) {
+  return v->m->cracks[tip_of(v, id)->crack_id].name;
+}
+
+/* clang-format off */
+#define TIP PER_TIP, AS_REAL, PRINT_SIF, 0
+#define STRESS_ROOT "force/length^1.5"
+static const char scatter_help[] = "half of what the domains differ by: no "
+                                   "bound of its error";
+static const column columns[] = {
+{"crack", "-", PER_TIP, AS_WORD, PRINT_SIF, 0, SCENE_ALL, 0, NULL, 0, crack_no,
+ crack_word, "name of the *CRACK"},
+{"node_no", "-", PER_TIP, AS_COUNT, PRINT_SIF, 0, SCENE_ALL, 0, NULL, 0,
+ tip_node, NULL, "node of the tip, in space of the front"},
+{"x", "length", TIP, CART, 0, NULL, 0, tip_x, NULL, "its coordinate"},
+{"y", "length", TIP, CART, 0, NULL, 1, tip_x, NULL, "its coordinate"},
+{"z", "length", TIP, SCENE_SOLID, 0, NULL, 2, tip_x, NULL, "its coordinate"},
+{"K_I", STRESS_ROOT, TIP, CART, 0, NULL, 0, tip_K, NULL,
+ "stress intensity factor, opening"},
+{"K_II", STRESS_ROOT, TIP, CART, 0, NULL, 1, tip_K, NULL,
+ "the same, sliding; > 0: the plus lip moves ahead"},
+{"K_III", STRESS_ROOT, TIP, SCENE_SOLID, 0, NULL, 2, tip_K, NULL,
+ "the same, tearing"},
+{"G", "force/length", TIP, CART, 0, NULL, 0, tip_rate, NULL,
+ "energy release rate"},
+{"K_I_scatter", STRESS_ROOT, TIP, CART, 0, NULL, 0, tip_scatter, NULL,
+ scatter_help},
+{"K_II_scatter", STRESS_ROOT, TIP, CART, 0, NULL, 1, tip_scatter, NULL,
+ scatter_help},
+{"K_III_scatter", STRESS_ROOT, TIP, SCENE_SOLID, 0, NULL, 2, tip_scatter, NULL,
+ scatter_help},
+{"G_scatter", "force/length", TIP, CART, 0, NULL, 1, tip_rate, NULL,
+ scatter_help},
+{"K_I_jump", STRESS_ROOT, TIP, SCENE_PLANE, 0, NULL, 0, tip_jump, NULL,
+ "from the opening of the lips, a check"},
+{"K_II_jump", STRESS_ROOT, TIP, SCENE_PLANE, 0, NULL, 1, tip_jump, NULL,
+ "from the sliding of the lips, a check"},
+{"radius", "length", TIP, CART, 0, NULL, 0, tip_radius, NULL,
+ "of the largest domain"}};
+/* clang-format on */
+
+const effect_ops cracks_effect = {.name = "stress intensity factors",
+                                  .bit = NO_BIT,
+                                  .required = requires_factors,
+                                  .expected = expected,
+                                  .more = {STAGE_TABLE_SIF},
+                                  .on.create = cracks_new,
+                                  .on.due = factors_due,
+                                  .on.accept = find_factors,
+                                  .on.copy = cracks_copy,
+                                  .on.release = release,
+                                  .columns = columns,
+                                  .n_column = COLUMNS(columns),
+                                  .items = tips_items};

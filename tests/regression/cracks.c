@@ -1,0 +1,216 @@
+/*
+ * *CRACK and the table SIF against closed forms: plates with open, closed and
+ * partly closed cracks, an edge crack, a disc in space, a cut through a body,
+ * lips that stick as if there were no crack.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979324;
+
+/* A deck on a mesh of input/crack or of tests/regression/mesh: what stands
+ * behind *CRACK, supports, loads. */
+static job run_crack(const char *geo, const char *numbers, const char *cards,
+                     const char *supports, const char *loads) {
+  job j = job_begin("crack");
+  char path[80];
+  const int plate = strcmp(geo, "crack") == 0;
+  snprintf(path, sizeof path, "%s/%s.geo",
+           plate ? "input/crack" : "tests/regression/mesh", geo);
+  job_copy(&j, path);
+  job_write(&j, "crack.inp",
+            "*PARAMETER\n%s\n*MESH, FILE=%s.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=%s, MATERIAL=M\n"
+            "*CRACK, NAME=C, GROUP=%s\n%s*STEP\n*STATIC\n*BOUNDARY\n%s"
+            "*DSLOAD\n%s*PRINT, CONTACT, SIF, TOTALS, ENERGY, NODES\n"
+            "*OUTPUT, HDF5=NO\n*END STEP\n",
+            numbers, geo, strcmp(geo, "penny") == 0 ? "BALL" : "PLATE",
+            strcmp(geo, "penny") == 0 ? "DISC" : "LINE", cards, supports,
+            loads);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+#define HELD "PIN, 1, 2\nEND, 2\n"
+#define PULLED "TOP, P, -1.\nBOTTOM, P, -1.\n"
+
+/* K = sqrt(pi a) of an open crack in a plate, 1.1215 of that at an edge; G =
+ * K^2 (1 - nu^2)/E, and both within the scatter of the domains of each other.
+ */
+START_TEST(open_cracks) {
+  static const struct {
+    const char *geo, *supports;
+    double K, tolerance;
+  } cases[] = {{"crack", HELD, 1.7725, 0.006},
+               {"edge", "PIN, 1, 2\nEND, 1\n", 1.9878, 0.006}};
+  job j = run_crack(cases[_i].geo, _i == 0 ? "N = 50\nANGLE = 0." : "N = 50",
+                    "", cases[_i].supports, PULLED);
+  dat t = job_table(&j, "SIF", -1);
+  ck_assert_int_eq(t.n_row, _i == 0 ? 2 : 1);
+  for (int i = 0; i < t.n_row; ++i) {
+    const double K = dat_at(&t, i, "K_I");
+    ck_assert_double_eq_tol(K, cases[_i].K, cases[_i].tolerance * cases[_i].K);
+    ck_assert_double_le(fabs(dat_at(&t, i, "K_II")), 2e-3 * K);
+    ck_assert_double_eq_tol(dat_at(&t, i, "G"), K * K * 0.91 / 1000,
+                            1e-2 * K * K * 0.91 / 1000);
+    ck_assert_double_eq_tol(dat_at(&t, i, "K_I_jump"), K, 0.08 * K);
+    ck_assert_double_le(dat_at(&t, i, "K_I_scatter"), 2e-3 * K);
+  }
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* The plate turned: K_II changes its sign with the shear. Pressed along x a
+ * crack under the angle b is closed, K_II = (tau - mu sigma) sqrt(pi); with
+ * much friction it sticks, and nothing is there. */
+START_TEST(closed_cracks) {
+  static const struct {
+    double angle, mu;
+  } cases[] = {{30, 0.3}, {-30, 0.3}, {30, 2}};
+  char numbers[40], cards[80];
+  const double b = cases[_i].angle * pi / 180, mu = cases[_i].mu;
+  const double sigma = sin(b) * sin(b), tau = sin(b) * cos(b);
+  const double K = fmax(fabs(tau) - mu * sigma, 0) * sqrt(pi);
+  snprintf(numbers, sizeof numbers, "N = 50\nANGLE = %g", cases[_i].angle);
+  snprintf(cards, sizeof cards, "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n", mu);
+  job j =
+      run_crack("crack", numbers, cards, HELD, "RIGHT, P, 1.\nLEFT, P, 1.\n");
+  dat t = job_table(&j, "SIF", -1);
+  for (int i = 0; i < t.n_row; ++i) {
+    ck_assert_double_eq_tol(dat_at(&t, i, "K_II"), tau > 0 ? K : -K, 0.0064);
+    ck_assert_double_le(fabs(dat_at(&t, i, "K_I")), 0.0064);
+  }
+  if (K == 0) { /* sticks: the stresses are those of the whole plate */
+    dat c = job_table(&j, "CONTACT", -1);
+    for (int i = 0; i < c.n_row; ++i) {
+      ck_assert_double_eq_tol(dat_at(&c, i, "slip"), 0, 1e-12);
+      ck_assert_double_eq(dat_at(&c, i, "status"), 2);
+    }
+    ck_assert_double_le(dat_max(&t, "K_II"), 1e-3);
+    dat_free(&c);
+  }
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* Bui: lips loaded by the pressure x are closed up to -1/3. */
+START_TEST(crack_closed_in_part) {
+  job j = run_crack("crack", "N = 50\nANGLE = 0.", "", HELD,
+                    "LINE+, P, \"x\"\nLINE-, P, \"x\"\n");
+  dat t = job_table(&j, "SIF", -1), c = job_table(&j, "CONTACT", -1);
+  const int tip = dat_row_near(&t, "x", 1);
+  ck_assert_double_eq_tol(dat_at(&t, tip, "K_I"), 0.96480, 0.005 * 0.96480);
+  ck_assert_double_le(fabs(dat_at(&t, 1 - tip, "K_I")), 0.005);
+  double last = -1, first = 1;
+  for (int i = 0; i < c.n_row; ++i) {
+    const double x = dat_at(&c, i, "x");
+    if (dat_at(&c, i, "status") == 0)
+      first = fmin(first, x);
+    else
+      last = fmax(last, x);
+  }
+  ck_assert_double_lt(last, first);
+  ck_assert_double_le(last, -1.0 / 3 + 0.05);
+  ck_assert_double_ge(first, -1.0 / 3 - 0.05);
+  dat_free(&t);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+/* Unit disc in a ball, pressed apart: K_I = 2/sqrt(pi). The coarse elements
+ * make it too small. */
+START_TEST(disc_in_space) {
+  job j = run_crack("penny", "N = 16", "", "SKIN, 1, 3\n",
+                    "DISC+, P, 1.\nDISC-, P, 1.\n");
+  dat t = job_table(&j, "SIF", -1);
+  double sum = 0, worst = 0;
+  int n = 0;
+  for (int i = 0; i < t.n_row; ++i) {
+    const double K = dat_at(&t, i, "K_I");
+    if (isnan(K)) continue;
+    sum += K;
+    ++n;
+    worst = fmax(worst, hypot(dat_at(&t, i, "K_II"), dat_at(&t, i, "K_III")));
+    ck_assert_double_eq_tol(
+        hypot(hypot(dat_at(&t, i, "x"), dat_at(&t, i, "y")), 0), 1, 1e-9);
+  }
+  ck_assert_int_gt(n, t.n_row / 2);
+  ck_assert_double_eq_tol(sum / n, 2 / sqrt(pi), 0.08 * 2 / sqrt(pi));
+  ck_assert_double_lt(sum / n, 2 / sqrt(pi));
+  ck_assert_double_le(worst, 0.03);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* A Maxwell body under a held load: K stays, the lips open by 1 + t/tau. */
+START_TEST(crack_in_a_body_that_creeps) {
+  job j = job_begin("creep");
+  job_copy(&j, "input/crack/crack.geo");
+  job_write(&j, "creep.inp",
+            "*PARAMETER\nN = 20\nANGLE = 0.\n*MESH, FILE=crack.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*INELASTIC, LAW=MAXWELL, TYPE=PROPORTIONAL\n2.\n"
+            "*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n"
+            "*CRACK, NAME=C, GROUP=LINE\n"
+            "*STEP\n*STATIC\n*BOUNDARY\n" HELD "*DSLOAD\n" PULLED
+            "*PRINT, CONTACT, SIF\n*OUTPUT, HDF5=NO\n*END STEP\n"
+            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1., 4.\n*END STEP\n");
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat k0 = job_table(&j, "SIF", 0), k1 = job_table(&j, "SIF", -1),
+      c0 = job_table(&j, "CONTACT", 0), c1 = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < k0.n_row; ++i) {
+    ck_assert_double_eq_tol(dat_at(&k1, i, "K_I"), dat_at(&k0, i, "K_I"), 1e-9);
+    ck_assert_double_eq_tol(dat_at(&k0, i, "K_I"), sqrt(pi), 0.01 * sqrt(pi));
+  }
+  for (int i = 0; i < c0.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&c1, i, "gap"), 3 * dat_at(&c0, i, "gap"),
+                            1e-9 * dat_at(&c1, i, "gap"));
+  dat_free(&k0);
+  dat_free(&k1);
+  dat_free(&c0);
+  dat_free(&c1);
+  job_end(&j);
+}
+END_TEST
+
+/* A crack is no pair of its own kind: the lips are equal and opposite, and the
+ * energies balance with loads on them. */
+START_TEST(lips_balance) {
+  job j = run_crack("crack", "N = 20\nANGLE = 40.",
+                    "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n", HELD,
+                    "RIGHT, P, 1.\nLEFT, P, 1.\nLINE+, TX, \"0.1*x\"\n");
+  dat n = job_table(&j, "NODES", -1), e = job_table(&j, "ENERGY", -1),
+      t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_le(fabs(dat_sum(&n, "contact_x")), 1e-12);
+  ck_assert_double_le(fabs(dat_sum(&n, "contact_y")), 1e-12);
+  ck_assert_double_gt(dat_at(&t, 0, "normal"), 0.5);
+  ck_assert_double_le(dat_at(&t, 0, "moment_of_both"), 1e-12);
+  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect")),
+                      1e-12 * dat_at(&e, 0, "external_work"));
+  dat_free(&n);
+  dat_free(&e);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("cracks");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, open_cracks, 0, 2);
+  tcase_add_loop_test(tests, closed_cracks, 0, 3);
+  tcase_add_test(tests, crack_closed_in_part);
+  tcase_add_test(tests, disc_in_space);
+  tcase_add_test(tests, crack_in_a_body_that_creeps);
+  tcase_add_test(tests, lips_balance);
+  return unit_run("cracks", tests);
+}

@@ -1,0 +1,31 @@
+// Plate [0, W] x [-W, W] with a crack from (0, 0) to (1, 0), segments of the
+// length 1/N at its tip.
+DefineConstant[ W = 100, N = 40, GROWTH = 0.12 ];
+Point(1) = {0, -W, 0};
+Point(2) = {W, -W, 0};
+Point(3) = {W, W, 0};
+Point(4) = {0, W, 0};
+Point(5) = {0, 0, 0};
+Point(6) = {1, 0, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 5};
+Line(5) = {5, 1};
+Line(6) = {5, 6};
+Curve Loop(1) = {1 ... 5};
+Plane Surface(1) = {1};
+Curve{6} In Surface{1};
+Field[1] = Distance;
+Field[1].PointsList = {6};
+Field[2] = MathEval;
+Field[2].F = Sprintf("%g + %g * F1", 1 / N, GROWTH);
+Background Field = 2;
+Mesh.MeshSizeExtendFromBoundary = 0;
+Mesh.MeshSizeFromPoints = 0;
+Physical Surface("PLATE") = {1};
+Physical Curve("LINE") = {6};
+Physical Curve("BOTTOM") = {1};
+Physical Curve("TOP") = {3};
+Physical Point("PIN") = {2};
+Physical Point("END") = {3};
