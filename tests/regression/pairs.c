@@ -525,6 +525,25 @@ START_TEST(adjusted_nodes_are_on_the_master) {
 }
 END_TEST
 
+/* The seat of a tie is moved as that of a pair. */
+START_TEST(adjusted_nodes_are_tied) {
+  job j = job_begin("tied");
+  job_copy(&j, "input/press_fit/press_fit.geo");
+  job_write(&j, "tied.inp",
+            "*PARAMETER\nN = 8\nM = 11\n*MESH, FILE=press_fit.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=RING, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=HUB, MATERIAL=M\n"
+            "*TIE, NAME=P, ADJUST=YES\nSEAT, BORE\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nFLAT X, 1\nFLAT Y, 2\n*PRINT, NODES\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, "--no-timing"), 0);
+  char *text = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(strstr(text, "nodes moved by up to 0.0302"));
+  free(text);
+  job_end(&j);
+}
+END_TEST
+
 /* A wedge between the bodies, closed by their interference: the moment that is
  * left, of forces along the mean of both normals, is that of the pair alone,
  * also at the corner that touches the wall first. */
@@ -739,6 +758,7 @@ int main(void) {
   tcase_add_test(tests, restart_is_bit_for_bit);
   tcase_add_loop_test(tests, interference_and_clearance, 0, 4);
   tcase_add_test(tests, adjusted_nodes_are_on_the_master);
+  tcase_add_test(tests, adjusted_nodes_are_tied);
   tcase_add_test(tests, moment_of_both_sides_is_that_of_the_pair);
   tcase_add_loop_test(tests, all_methods_agree, 0, 2);
   tcase_add_test(tests, wedge_moves_at_its_limit);
