@@ -514,7 +514,11 @@
     "table SIF gives the energy release rate alone.")                        \
   X(4029, WARNING, "no space for the domain of a stress intensity factor",   \
     "The factors come from rings of elements round the tip. Refine the mesh " \
-    "there, so that several elements are between it and what is near.")
+    "there, so that several elements are between it and what is near.")      \
+  X(4030, WARNING, "interference as small as the gaps of facets",            \
+    "Two meshes of one curved surface have facets at different places: they " \
+    "are apart here and enter each other there by about h^2/8R, which adds "  \
+    "to the interference. ADJUST=YES on *CONTACT PAIR takes it away.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

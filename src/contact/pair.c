@@ -110,29 +110,58 @@ static int is_curved(int dim, const mortar *m) {
   return 0;
 }
 
+/* The largest distance along the normals that facets leave, m. */
+static double facet_gap(int dim, const mortar *m) {
+  double most = 0.0;
+  for (int q = 0; q < m->n; ++q) {
+    double gap = 0.0;
+    for (int c = 0; c < dim; ++c)
+      gap += m->gap[dim * q + c] * m->normal[dim * q + c];
+    most = fmax(most, fabs(gap));
+  }
+  return most;
+}
+
+/* A fit of curved surfaces whose facets are as far apart as it is tight. */
+static void tell_facets(const surface_input *in, const contact_pair *p,
+                        message_log *log) {
+  static const double share = 0.1;
+  const double gap = facet_gap(in->mesh->dim, p->coupled);
+  if (p->change == NULL || p->change_sign > 0.0 || p->change->formula != NULL ||
+      !is_curved(in->mesh->dim, p->coupled) ||
+      !(gap > share * p->change->number))
+    return;
+  message_add(
+      log, P4030, &p->at,
+      "%s %s: the facets of the surfaces are up to %.3g apart, the "
+      "interference is %.3g: ADJUST=YES moves the slave onto the master",
+      p->card, p->name, gap, p->change->number);
+}
+
 static void tell(const surface_input *in, const contact_pair *p, int n_held,
                  message_log *log) {
   enum { CURVED = 2, FLAT = 4 };
   const mortar *m = p->coupled;
   if (n_held > 0)
     message_add(log, P4002, &p->at,
-                "*CONTACT PAIR %s: nodes of group %s are also fixed in the "
+                "%s %s: nodes of group %s are also fixed in the "
                 "normal direction, or tied, and left out of contact: %d",
-                p->name, p->group->name, n_held);
+                p->card, p->name, p->group->name, n_held);
   if (m->n == 0 && m->covered == 0.0)
     message_add(log, P4023, &p->at,
-                "*CONTACT PAIR %s: no face of %s meets a face of %s along its "
+                "%s %s: no face of %s meets a face of %s along its "
                 "normal",
-                p->name, p->group->name, p->master->name);
+                p->card, p->name, p->group->name, p->master->name);
   else if (m->n == 0)
     message_add(log, P4010, &p->at,
-                "*CONTACT PAIR %s: no node of group %s can touch surface %s",
+                "%s %s: no node of group %s can touch surface %s", p->card,
                 p->name, p->group->name, p->master->name);
   if (m->n > 0 && m->size_ratio > (is_curved(in->mesh->dim, m) ? CURVED : FLAT))
     message_add(log, P4024, &p->at,
-                "*CONTACT PAIR %s: the faces of the master %s are %.2g times "
+                "%s %s: the faces of the master %s are %.2g times "
                 "those of the slave %s",
-                p->name, p->master->name, m->size_ratio, p->group->name);
+                p->card, p->name, p->master->name, m->size_ratio,
+                p->group->name);
 }
 
 status pairs_couple(const surface_input *in, message_log *log) {
@@ -141,6 +170,7 @@ status pairs_couple(const surface_input *in, message_log *log) {
     if (!is_pair(&in->pairs[p])) continue;
     PASS(couple_kept(in, p, &n_held));
     tell(in, &in->pairs[p], n_held, log);
+    tell_facets(in, &in->pairs[p], log);
   }
   return message_status(log, ERR_DECK);
 }

@@ -309,8 +309,8 @@ static void orient(builder *b, candidate *c) {
   const contact_pair *p = &b->in->pairs[c->pair_id];
   tally *t = &b->tallies[c->pair_id];
   if (!(sqrt(dot(b->dim, c->normal, c->normal)) > rounding * c->area)) {
-    message_add(b->log, P4008, &p->at, "*CONTACT %s: no outward normal at %s",
-                p->name, describe(b->in->mesh, c->node_id).text);
+    message_add(b->log, P4008, &p->at, "%s %s: no outward normal at %s",
+                p->card, p->name, describe(b->in->mesh, c->node_id).text);
     c->left_out = 1;
     return;
   }
@@ -367,8 +367,8 @@ static void measure(builder *b, candidate *c) {
   else
     c->gap = obstacle_gap(p->support, b->dim, x, c->normal, 0);
   if (isnan(c->gap) || c->gap == -HUGE_VAL) {
-    message_add(b->log, P4007, &p->at, "*CONTACT %s: gap is %s at %s, time 0",
-                p->name, isnan(c->gap) ? "not a number" : "-inf",
+    message_add(b->log, P4007, &p->at, "%s %s: gap is %s at %s, time 0",
+                p->card, p->name, isnan(c->gap) ? "not a number" : "-inf",
                 describe(m, c->node_id).text);
     c->left_out = 1;
   } else if (c->gap == HUGE_VAL) {
@@ -494,9 +494,9 @@ static void say(const builder *b, int pair_id) {
                 p->name, t->n_unreached, p->support->name);
   if (t->depth > told_depth(b, p))
     message_add(b->log, P4004, &p->at,
-                "*CONTACT %s: deepest penetration of %s is %.4g, %.2g of the "
+                "%s %s: deepest penetration of %s is %.4g, %.2g of the "
                 "size of the mesh, at %s",
-                p->name, partner(p).text, t->depth, t->depth / m->size,
+                p->card, p->name, partner(p).text, t->depth, t->depth / m->size,
                 describe(m, t->deep_node).text);
   if (t->sine > told_sine)
     message_add(b->log, P4018, &p->at,
@@ -506,28 +506,28 @@ static void say(const builder *b, int pair_id) {
                 p->name, p->support->name, asin(fmin(t->sine, 1)),
                 describe(m, t->turned_node).text);
   if (t->held > told_share)
-    message_add(
-        b->log, P4022, &p->at,
-        "*CONTACT %s: supports hold a part of the normal at %s: only %.3g of "
-        "a contact force acts, also for friction, at %s",
-        p->name, partner(p).text, 1.0 - t->held,
-        describe(m, t->held_node).text);
+    message_add(b->log, P4022, &p->at,
+                "%s %s: supports hold a part of the normal at %s: only %.3g of "
+                "a contact force acts, also for friction, at %s",
+                p->card, p->name, partner(p).text, 1.0 - t->held,
+                describe(m, t->held_node).text);
   if (t->n_corner > 0)
-    message_add(
-        b->log, P4005, &p->at,
-        "*CONTACT %s: %d node(s) may touch a second obstacle and have no "
-        "friction, the first is %s",
-        p->name, t->n_corner, describe(m, t->corner_node).text);
+    message_add(b->log, P4005, &p->at,
+                "%s %s: %d node(s) may touch a second obstacle and have no "
+                "friction, the first is %s",
+                p->card, p->name, t->n_corner,
+                describe(m, t->corner_node).text);
   if (t->n_dependent > 0)
     message_add(b->log, P4006, &p->at,
-                "*CONTACT %s: its normal depends on that of *CONTACT %s at %d "
+                "%s %s: its normal depends on that of %s %s at %d "
                 "node%s, the first is %s",
-                p->name, b->in->pairs[t->dependent_on].name, t->n_dependent,
+                p->card, p->name, b->in->pairs[t->dependent_on].card,
+                b->in->pairs[t->dependent_on].name, t->n_dependent,
                 t->n_dependent == 1 ? "" : "s",
                 describe(m, t->dependent_node).text);
   if (t->n_kept == 0)
     message_add(b->log, P4010, &p->at,
-                "*CONTACT %s: no node of group %s can touch %s", p->name,
+                "%s %s: no node of group %s can touch %s", p->card, p->name,
                 p->group->name, partner(p).text);
 }
 

@@ -41,7 +41,7 @@ typedef struct contact_surface {
 
 /* A *CONTACT or *CONTACT PAIR as the surface sees it. */
 typedef struct contact_pair {
-  const char *name;
+  const char *card, *name;  /* card: "*CONTACT", "*CONTACT PAIR" or "*CRACK" */
   const mesh_group *group;  /* of a pair: the slave */
   const obstacle *support;  /* NULL: a pair */
   const mesh_group *master; /* of a pair */

@@ -204,6 +204,7 @@ status mesh_read_gmsh(const mesh_source *source, const place *at,
   else
     TRY(read_msh(source, head, at, log, &raw));
   raw->meets = source->meets;
+  raw->made = mesh_is_program(source->file);
   TRY(build_mesh(raw, source->scale, at, log, out));
 done:
   raw_free(raw);

@@ -224,7 +224,7 @@ status nodes_order(builder *b) {
   PASS(sort_by_key(m->n_node, key, id, by_coordinates, &(tie){b->raw}));
   PASS(store_nodes(b, id));
   size_t unused = b->raw->n_node - (size_t)m->n_node;
-  if (unused > 0)
+  if (unused > 0 && !b->raw->made)
     message_add(b->log, P3040, b->at,
                 "%zu node(s) of the file are in no element", unused);
   return OK;

@@ -520,6 +520,10 @@ START_TEST(adjusted_nodes_are_on_the_master) {
   ck_assert_int_eq(c.n_row, 9);
   for (int i = 0; i < c.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&c, i, "gap"), 1, 3e-5);
+  for (int i = 0; i < c.n_row; ++i) { /* planes of symmetry stay */
+    const double x = dat_at(&c, i, "x"), y = dat_at(&c, i, "y");
+    ck_assert(fmin(x, y) == 0 || fmin(x, y) > 1);
+  }
   dat_free(&c);
   job_end(&j);
 }
@@ -540,6 +544,27 @@ START_TEST(adjusted_nodes_are_tied) {
   char *text = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(text, "nodes moved by up to 0.0302"));
   free(text);
+  job_end(&j);
+}
+END_TEST
+
+/* Facets of two meshes of one seat are 2e-3 apart: of an interference of 0.02
+ * that is told, of 0.2 not. */
+START_TEST(facets_in_a_fit_are_told) {
+  const double fit[] = {0.02, 0.2};
+  job j = job_begin("seat");
+  job_copy(&j, "input/press_fit/press_fit.geo");
+  job_write(&j, "seat.inp",
+            "*PARAMETER\nN = 32\nM = 45\n*MESH, FILE=press_fit.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=RING, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=HUB, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=P\nSEAT, BORE\nINTERFERENCE, %g\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nFLAT X, 1\nFLAT Y, 2\n"
+            "*PRINT, CONTACT\n*END STEP\n",
+            fit[_i]);
+  ck_assert_int_eq(job_run(&j, "--no-timing"), 0);
+  ck_assert_int_eq(strstr(j.errors, "P4030") != NULL, _i == 0);
   job_end(&j);
 }
 END_TEST
@@ -759,6 +784,7 @@ int main(void) {
   tcase_add_loop_test(tests, interference_and_clearance, 0, 4);
   tcase_add_test(tests, adjusted_nodes_are_on_the_master);
   tcase_add_test(tests, adjusted_nodes_are_tied);
+  tcase_add_loop_test(tests, facets_in_a_fit_are_told, 0, 2);
   tcase_add_test(tests, moment_of_both_sides_is_that_of_the_pair);
   tcase_add_loop_test(tests, all_methods_agree, 0, 2);
   tcase_add_test(tests, wedge_moves_at_its_limit);

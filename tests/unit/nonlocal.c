@@ -182,7 +182,8 @@ static void scene_open(scene *c, mesh *m, double thickness, int axisymmetric) {
   c->weight = calloc((size_t)m->n_face, sizeof *c->weight);
   for (int i = 0; i < m->n_face; ++i) c->weight[i] = thickness;
   c->support = (obstacle){.name = "FLOOR", .shape = OBSTACLE_CONFORMING};
-  c->pair = (contact_pair){.name = "FOOT",
+  c->pair = (contact_pair){.card = "*CONTACT",
+                           .name = "FOOT",
                            .group = mesh_find_group(m, "BOTTOM"),
                            .support = &c->support};
   c->in = (surface_input){.mesh = m,

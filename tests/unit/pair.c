@@ -119,7 +119,8 @@ static mesh_group *group_from(scene *c, const char *name, int first) {
 static contact_pair *add_pair(scene *c, const mesh_group *slave,
                               const mesh_group *master) {
   contact_pair *p = &c->pair[c->in.n_pair++];
-  *p = (contact_pair){.name = "P",
+  *p = (contact_pair){.card = "*CONTACT PAIR",
+                      .name = "P",
                       .group = slave,
                       .master = master,
                       .support = master == NULL ? &c->wall : NULL};

@@ -87,8 +87,8 @@ static void add_contact(scene *c, const char *name, int from, int to) {
     if (used[i]) g->node_id[g->n_node++] = i;
   c->m.n_group = p + 1;
   c->support[p] = (obstacle){.name = "SUPPORT", .shape = OBSTACLE_CONFORMING};
-  c->pair[p] =
-      (contact_pair){.name = name, .group = g, .support = &c->support[p]};
+  c->pair[p] = (contact_pair){
+      .card = "*CONTACT", .name = name, .group = g, .support = &c->support[p]};
 }
 
 static status build(scene *c) { return surface_build(&c->in, c->log, &c->s); }

@@ -81,10 +81,10 @@ static void end(run *r, void *self) {
     const contact *c = &r->m->contacts[i];
     if (reported->touched[i] || c->force.given || c->is_crack) continue;
     message_add(r->m->log, P4021, &c->at,
-                "*CONTACT %s: no node touched %s %s in the run; the least gap "
-                "at its end is %.3g",
-                c->name, c->is_pair ? "surface" : "obstacle", c->obstacle_name,
-                least_gap(r, i));
+                "%s %s: no node touched %s %s in the run; the least gap at its "
+                "end is %.3g",
+                contact_card(c), c->name, c->is_pair ? "surface" : "obstacle",
+                c->obstacle_name, least_gap(r, i));
   }
 }
 

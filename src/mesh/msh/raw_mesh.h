@@ -38,6 +38,7 @@ typedef struct raw_mesh {
   size_t n_loose;  /* elements of the highest dimension of the groups that are
                       in no group */
   int meets;       /* as in mesh_source */
+  int made;        /* 1: by gmsh from a .geo: centres of arcs are nodes of it */
 } raw_mesh;
 
 void raw_free(raw_mesh *raw); /* accepts NULL */

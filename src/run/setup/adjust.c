@@ -12,7 +12,8 @@
 
 enum { PASSES = 3 };
 
-/* The places once the slave of a pair is on its master, into x[dim*n_node]. */
+/* The places once the slave of a pair is on its master, into x[dim*n_node]:
+ * what the first step fixes, as on a plane of symmetry, stays. */
 static status move_slave(const surface_input *in, surface_pair *p, double *x) {
   const mesh *msh = in->mesh;
   const int dim = msh->dim;
@@ -22,8 +23,10 @@ static status move_slave(const surface_input *in, surface_pair *p, double *x) {
   memcpy(x, msh->x, (size_t)dim * (size_t)msh->n_node * sizeof *x);
   for (int q = 0; q < m->n; ++q)
     for (int c = 0; c < dim; ++c) {
-      const double d = m->gap[dim * q + c];
-      x[(size_t)dim * (size_t)m->node_id[q] + (size_t)c] += d;
+      const size_t k = (size_t)dim * (size_t)m->node_id[q] + (size_t)c;
+      const int held = in->fixed[m->node_id[q]] >> c & 1;
+      const double d = held ? 0.0 : m->gap[dim * q + c];
+      x[k] += d;
       p->moved = fmax(p->moved, fabs(d));
     }
   mortar_free(m);
@@ -57,16 +60,31 @@ static status adjust(const model *m, const surface_input *in, surface_pair *p,
   return check_elements(m, msh, p);
 }
 
+/* bits[n_node]: the components that the first step fixes. */
+static status find_fixed(const model *m, const mesh *msh, unsigned char *bits) {
+  OWNED unsigned char *fixed = NULL;
+  PASS_NEW(fixed, (size_t)msh->dim * (size_t)msh->n_node);
+  load_fixed(m, msh, &m->steps[0], fixed);
+  for (int i = 0; i < msh->n_node; ++i)
+    for (int c = 0; c < msh->dim; ++c)
+      bits[i] |= (unsigned char)((fixed[msh->dim * i + c] != 0) << c);
+  return OK;
+}
+
 status setup_adjust(model *m, mesh *msh) {
   int any = 0;
   for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].pair.adjust;
   for (int i = 0; i < m->n.tie; ++i) any |= m->ties[i].pair.adjust;
   if (!any) return OK;
   OWNED double *weight = NULL;
+  OWNED unsigned char *fixed = NULL;
   surface_input in = {.mesh = msh,
                       .axisymmetric = m->sections[0].kin == AXISYMMETRIC};
   PASS(setup_face_weights(m, msh, &weight));
   in.face_weight = weight;
+  PASS_NEW(fixed, msh->n_node);
+  if (m->n.step > 0) PASS(find_fixed(m, msh, fixed));
+  in.fixed = fixed;
   for (int i = 0; i < m->n.tie; ++i)
     PASS(adjust(m, &in, &m->ties[i].pair, msh));
   for (int i = 0; i < m->n.contact; ++i)

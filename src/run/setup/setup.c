@@ -97,6 +97,7 @@ static status new_pairs(run *r) {
   if (model_has_axis(m)) NEW(r->result.torque, m->n.contact);
   for (int i = 0; i < m->n.contact; ++i) {
     const contact *c = &m->contacts[i];
+    r->faces.pairs[i].card = contact_card(c);
     r->faces.pairs[i].name = c->name;
     r->faces.pairs[i].group = &msh->group[c->group_id];
     for (int k = 0; k < m->n.step; ++k) {
