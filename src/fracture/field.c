@@ -87,8 +87,8 @@ void interaction_flux(const field_tensor *s, const field_tensor *d,
   add_flux(&x->s, d, P);
 }
 
-void energy_flux(const field_tensor *s, const field_tensor *d,
+void energy_flux(const field_tensor *s, const field_tensor *d, double share,
                  field_tensor *P) {
-  start_flux(field_product(s, d) / 2, P);
+  start_flux(field_product(s, d) * share, P);
   add_flux(s, d, P);
 }

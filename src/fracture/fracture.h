@@ -55,6 +55,9 @@ typedef struct fracture_state { /* borrowed */
    * pressures scatter: a line through those up to 16 elements away stands for
    * them. */
   const double *traction;
+  double share; /* of sigma:strain in J: 1/2; with u the rate of displacements
+                   and strains that grow by the power n of the stress n/(n+1),
+                   and J is C(t), W/m2 */
 } fracture_state;
 
 typedef struct fracture_point { /* a tip, or a node of the front */

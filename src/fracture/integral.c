@@ -149,7 +149,7 @@ static void add_element(work *w, int elem) {
   place_at(w, phi, &at);
   field_turn(&at, w->stress, &s);
   field_turn(&at, w->slope, &d);
-  energy_flux(&s, &d, &P);
+  energy_flux(&s, &d, w->state->share, &P);
   for (int k = 0; k < DOMAINS; ++k) {
     growth_at(w, phi, &at, k, Q[k]);
     growth_slope(w, g, &at, k, &grow[k]);

@@ -73,7 +73,8 @@ void auxiliary_set(const elasticity *x, const local *at, int mode,
 /* P of fracture.h, from stress and displacement gradient. */
 void interaction_flux(const field_tensor *s, const field_tensor *d,
                       const auxiliary *x, field_tensor *P);
-void energy_flux(const field_tensor *s, const field_tensor *d, field_tensor *P);
+void energy_flux(const field_tensor *s, const field_tensor *d, double share,
+                 field_tensor *P);
 
 /* ---- integrals ----------------------------------------------------------- */
 

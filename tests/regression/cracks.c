@@ -186,6 +186,47 @@ START_TEST(beam_on_three_points) {
 }
 END_TEST
 
+/* Twice the load in a quarter of the time has twice the stresses where the rate
+ * of creep is the cube of the stress: C(t) is 2^4 times as large. Steady creep
+ * under tension across a crack in an infinite plate: pi sqrt(n) q A q^n, q =
+ * sqrt(3)/2 (He, Hutchinson, J. Appl. Mech. 48 (1981), to some percent). */
+static job run_norton(double load, double total) {
+  job j = job_begin("norton");
+  job_copy(&j, "input/crack/crack.geo");
+  job_write(&j, "norton.inp",
+            "*PARAMETER\nN = 20\nANGLE = 0.\n*MESH, FILE=crack.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*INELASTIC, LAW=NORTON\n1.E-6, 3.\n"
+            "*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n"
+            "*CRACK, NAME=C, GROUP=LINE\n"
+            "*STEP\n*STATIC\n*BOUNDARY\n" HELD
+            "*DSLOAD\nTOP, P, %g\nBOTTOM, P, %g\n"
+            "*PRINT, SIF\n*OUTPUT, HDF5=NO\n*END STEP\n"
+            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n%g, %g\n*END STEP\n",
+            -load, -load, total / 8, total);
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+START_TEST(rate_integral_of_power_law_creep) {
+  const double steady = pi * sqrt(3.0) * 1e-6 * pow(0.75, 2);
+  job one = run_norton(1, 4000), two = run_norton(2, 1000);
+  dat x = job_table(&one, "SIF", -1), y = job_table(&two, "SIF", -1);
+  for (int i = 0; i < x.n_row; ++i) {
+    const double C = dat_at(&x, i, "C_t");
+    ck_assert_double_gt(C, 0);
+    ck_assert_double_eq_tol(dat_at(&y, i, "C_t"), 16 * C, 16e-6 * C);
+    ck_assert_double_le(dat_at(&x, i, "C_t_scatter"), 0.03 * C);
+    ck_assert_double_eq_tol(C, steady, 0.08 * steady);
+  }
+  dat_free(&x);
+  dat_free(&y);
+  job_end(&one);
+  job_end(&two);
+}
+END_TEST
+
 /* Under a held load K stays, and the lips open as a bar would grow: E = 1000,
  * 4 s. */
 START_TEST(crack_in_a_body_that_creeps) {
@@ -214,6 +255,11 @@ START_TEST(crack_in_a_body_that_creeps) {
   for (int i = 0; i < k0.n_row; ++i) {
     ck_assert_double_eq_tol(dat_at(&k1, i, "K_I"), dat_at(&k0, i, "K_I"), 1e-9);
     ck_assert_double_eq_tol(dat_at(&k0, i, "K_I"), sqrt(pi), 0.01 * sqrt(pi));
+    /* the rates of a Maxwell body are its elastic fields over tau */
+    ck_assert(isnan(dat_at(&k0, i, "C_t")));
+    if (_i == 0)
+      ck_assert_double_eq_tol(dat_at(&k1, i, "C_t"), dat_at(&k0, i, "G") / 2,
+                              1e-6 * dat_at(&k0, i, "G"));
   }
   for (int i = 0; i < c0.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&c1, i, "gap"),
@@ -256,6 +302,7 @@ int main(void) {
   tcase_add_test(tests, crack_closed_in_part);
   tcase_add_test(tests, disc_in_space);
   tcase_add_loop_test(tests, beam_on_three_points, 0, 2);
+  tcase_add_test(tests, rate_integral_of_power_law_creep);
   tcase_add_loop_test(tests, crack_in_a_body_that_creeps, 0, 3);
   tcase_add_test(tests, lips_balance);
   return unit_run("cracks", tests);

@@ -21,7 +21,8 @@ enum { MODES = 3 };
 typedef struct tip {
   int crack_id, point;
   fracture_factors found;
-  double jump[2]; /* K_I, K_II of the lips behind it, Pa m^(1/2) */
+  double creep, creep_scatter; /* C(t), W/m2; NAN: nothing creeps there */
+  double jump[2];              /* K_I, K_II of the lips behind it, Pa m^(1/2) */
 } tip;
 
 typedef struct crack_state {
@@ -31,6 +32,7 @@ typedef struct crack_state {
   int n;
   tip *tips;        /* [n] */
   int flows;        /* 1: a law flows somewhere */
+  double *rate;     /* [dim*n_node] of the displacements, m/s, or NULL */
   double *elastic;  /* [dim*n_node] displacements of an elastic body under the
                        same forces, m; NULL: none flows */
   double *sigma;    /* [ns*n_elem] Pa */
@@ -121,6 +123,7 @@ static status cracks_new(run *r, void **self) {
   PASS_NEW(own->area, r->msh->n_node);
   own->flows = facts_has_inelastic(r->m);
   if (own->flows) PASS_NEW(own->elastic, r->n_dof);
+  if (own->flows) PASS_NEW(own->rate, r->n_dof);
   PASS(new_materials(r, own));
   return new_cracks(r, own);
 }
@@ -137,8 +140,8 @@ static void release(void *self) {
   if (own == NULL) return;
   for (int i = 0; own->of != NULL && i < own->n_crack; ++i)
     fracture_free(own->of[i]);
-  RELEASE(own->of, own->elastic, own->tips, own->materials, own->sigma,
-          own->traction, own->area);
+  RELEASE(own->of, own->elastic, own->rate, own->tips, own->materials,
+          own->sigma, own->traction, own->area);
   memory_free(own);
 }
 
@@ -224,6 +227,44 @@ static status find_elastic(const run *r, double *u) {
   return condense_recover(c, uc, u);
 }
 
+/* The power of the stress with which the material of a tip creeps; NAN: no
+ * power law. */
+static double exponent_of(const run *r, const fracture_point *p) {
+  enum { NORTON_N = 1 };
+  if (p->section < 0) return NAN;
+  const law_card *law =
+      &r->m->materials[r->m->sections[p->section].material_id].law;
+  if (law->ops == NULL) return NAN;
+  if (law->ops->linear) return 1.0;
+  return strcmp(law->ops->name, "NORTON") == 0 ? law->value[NORTON_N].number
+                                               : NAN;
+}
+
+/* C(t) by the rates of the increment. */
+static status find_creep(const run *r, crack_state *own) {
+  OWNED fracture_factors *found = NULL;
+  const double dt = r->now.t - r->old.t;
+  fracture_state s = {own->rate, own->sigma, own->traction, 0.5};
+  for (int i = 0; i < own->n; ++i)
+    own->tips[i].creep = own->tips[i].creep_scatter = NAN;
+  if (!own->flows || r->step->kind != STEP_VISCO || !(dt > 0.0)) return OK;
+  PASS_NEW(found, own->n);
+  for (size_t k = 0; k < r->n_dof; ++k)
+    own->rate[k] = (r->now.u[k] - r->old.u[k]) / dt;
+  for (int i = 0; i < own->n; ++i) {
+    tip *t = &own->tips[i];
+    fracture *f = own->of[t->crack_id];
+    const double n = exponent_of(r, &fracture_points(f)[t->point]);
+    if (t->point == 0 || s.share != n / (n + 1.0)) {
+      s.share = n / (n + 1.0);
+      fracture_find(f, &s, found);
+    }
+    if (!isnan(n)) t->creep = found[t->point].J;
+    if (!isnan(n)) t->creep_scatter = found[t->point].J_scatter;
+  }
+  return OK;
+}
+
 static status find_factors(run *r, void *self) {
   crack_state *own = self;
   OWNED fracture_factors *found = NULL;
@@ -232,7 +273,7 @@ static status find_factors(run *r, void *self) {
   find_tractions(r, own);
   if (own->flows) PASS(find_elastic(r, own->elastic));
   const fracture_state s = {own->flows ? own->elastic : r->now.u, own->sigma,
-                            own->traction};
+                            own->traction, 0.5};
   for (int i = 0, n = 0; i < r->msh->n_crack; ++i) {
     fracture_find(own->of[i], &s, found + n);
     n += fracture_count(own->of[i]);
@@ -241,7 +282,7 @@ static status find_factors(run *r, void *self) {
     own->tips[i].found = found[i];
     find_jumps(r, own, &own->tips[i]);
   }
-  return OK;
+  return find_creep(r, own);
 }
 
 /* ---- the row ------------------------------------------------------------- */
@@ -282,6 +323,11 @@ static const fracture_point *point_of(const view *v, int id) {
 static double tip_rate(const view *v, int id, int part) {
   const fracture_factors *f = &tip_of(v, id)->found;
   return part == 0 ? f->J : f->J_scatter;
+}
+
+static double tip_creep(const view *v, int id, int part) {
+  const tip *t = tip_of(v, id);
+  return part == 0 ? t->creep : t->creep_scatter;
 }
 
 #include "run/column_row.h"
@@ -327,6 +373,11 @@ static const column columns[] = {
  scatter_help},
 {"G_scatter", "force/length", TIP, CART, 0, NULL, 1, tip_rate, NULL,
  scatter_help},
+{"C_t", "force/length/time", PER_TIP, AS_REAL, PRINT_SIF, ON(INELASTIC), CART,
+ 0, NULL, 0, tip_creep, NULL, "C(t), the integral of G with the rates of the "
+ "increment: in *VISCO steps, of laws linear in the stress and of NORTON"},
+{"C_t_scatter", "force/length/time", PER_TIP, AS_REAL, PRINT_SIF,
+ ON(INELASTIC), CART, 0, NULL, 1, tip_creep, NULL, scatter_help},
 {"K_I_jump", STRESS_ROOT, TIP, SCENE_PLANE, 0, NULL, 0, tip_jump, NULL,
  "from the opening of the lips, a check"},
 {"K_II_jump", STRESS_ROOT, TIP, SCENE_PLANE, 0, NULL, 1, tip_jump, NULL,
