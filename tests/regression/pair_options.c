@@ -267,6 +267,36 @@ START_TEST(circle_of_slaves_names_its_pairs) {
 }
 END_TEST
 
+/* A dovetail pulled by 0.8 is held by both claws along the normals (3, 1) of
+ * its sides: N = 0.8/(2/sqrt(10)) each. Pushed, nothing holds it. */
+static int load_dovetail(job *j, double traction) {
+  *j = job_begin("dovetail");
+  job_copy(j, "tests/regression/mesh/dovetail.geo");
+  job_write(j, "dovetail.inp",
+            "*MESH, FILE=dovetail.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E4, 0.3\n"
+            "*SOLID SECTION, ELSET=BODIES, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=L\nLEFT, LEFT CLAW\n"
+            "*CONTACT PAIR, NAME=R\nRIGHT, RIGHT CLAW\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nWALLS, 1, 2\n*DSLOAD\nTOP, TY, %g\n"
+            "*PRINT, TOTALS\n*END STEP\n",
+            traction);
+  return job_run(j, "--no-timing");
+}
+
+START_TEST(dovetail_holds_one_way) {
+  job pulled, pushed;
+  ck_assert_int_eq(load_dovetail(&pulled, 1), 0);
+  ck_assert_int_eq(load_dovetail(&pushed, -1), 6);
+  ck_assert_ptr_nonnull(strstr(pushed.errors, "no equilibrium"));
+  dat t = job_table(&pulled, "TOTALS", -1);
+  for (int i = 0; i < 2; ++i)
+    ck_assert_double_eq_tol(dat_at(&t, i, "normal"), 0.4 * sqrt(10.0), 1e-9);
+  dat_free(&t);
+  job_end(&pulled);
+  job_end(&pushed);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("pair_options");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -277,5 +307,6 @@ int main(void) {
   tcase_add_test(tests, error_of_the_mesh_is_estimated);
   tcase_add_loop_test(tests, bodies_between_others_balance, 0, 3);
   tcase_add_test(tests, circle_of_slaves_names_its_pairs);
+  tcase_add_test(tests, dovetail_holds_one_way);
   return unit_run("pair_options", tests);
 }
