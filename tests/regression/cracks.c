@@ -150,6 +150,31 @@ START_TEST(disc_in_space) {
 }
 END_TEST
 
+/* The same disc sheared along x by 1: K_II = 4 cos(f)/(sqrt(pi) (2 - nu)),
+ * K_III = 4 (1 - nu) sin(f)/(sqrt(pi) (2 - nu)) at the angle f, to a sign. */
+START_TEST(sheared_disc_in_space) {
+  const double nu = 0.3, whole = 4 / (sqrt(pi) * (2 - nu));
+  job j = run_crack("penny", "N = 16", "", "SKIN, 1, 3\n",
+                    "DISC+, TX, 1.\nDISC-, TX, -1.\n");
+  dat t = job_table(&j, "SIF", -1);
+  double two = 0, three = 0, cc = 0, ss = 0, one = 0;
+  for (int i = 0; i < t.n_row; ++i) {
+    const double c = dat_at(&t, i, "x"), s = dat_at(&t, i, "y");
+    if (isnan(dat_at(&t, i, "K_I"))) continue;
+    two += c * dat_at(&t, i, "K_II");
+    three += s * dat_at(&t, i, "K_III");
+    one = fmax(one, fabs(dat_at(&t, i, "K_I")));
+    cc += c * c;
+    ss += s * s;
+  }
+  ck_assert_double_eq_tol(fabs(two) / cc, whole, 0.1 * whole);
+  ck_assert_double_eq_tol(fabs(three) / ss, (1 - nu) * whole, 0.1 * whole);
+  ck_assert_double_le(one, 0.05 * whole);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* Beam on two supports 4 W apart, crack W/2 (ASTM E399: 2.66 P S/W^1.5): linear
  * elements of W/80 at the tip are 3 % short of it in bending. With two
  * materials that meet at the tip there is no K, but an energy release rate. */
@@ -301,6 +326,7 @@ int main(void) {
   tcase_add_loop_test(tests, closed_cracks, 0, 3);
   tcase_add_test(tests, crack_closed_in_part);
   tcase_add_test(tests, disc_in_space);
+  tcase_add_test(tests, sheared_disc_in_space);
   tcase_add_loop_test(tests, beam_on_three_points, 0, 2);
   tcase_add_test(tests, rate_integral_of_power_law_creep);
   tcase_add_loop_test(tests, crack_in_a_body_that_creeps, 0, 3);
