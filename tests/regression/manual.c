@@ -210,29 +210,29 @@ START_TEST(an_installed_program_works_and_is_removed) {
   for (int i = 0; i < 2; ++i) {
     snprintf(command, sizeof command,
              "d=$PWD && cd '%s' && MAKEFLAGS= make -s BUILD=%.*s PREFIX=/usr "
-             "DESTDIR=$d/root %s",
+             "DESTDIR=$d/staged %s",
              cwd, (int)(end - build), build,
              i == 0 ? "install-files" : "uninstall");
     expect(&j, command, 0);
     for (size_t k = 0; k < sizeof there / sizeof *there; ++k) {
-      snprintf(command, sizeof command, "test %s -e root/%s", i == 0 ? "" : "!",
-               there[k]);
+      snprintf(command, sizeof command, "test %s -e staged/%s",
+               i == 0 ? "" : "!", there[k]);
       expect(&j, command, 0);
     }
     if (i == 1) break;
     expect(&j,
-           "PATH=$PWD/root/usr/bin:$PATH && protis --example greco && "
+           "PATH=$PWD/staged/usr/bin:$PATH && protis --example greco && "
            "protis greco --quiet && cmp greco.inp "
-           "root/usr/share/protis/examples/greco/greco.inp && "
-           "root/usr/share/protis/tools/compare greco.dat greco.dat",
+           "staged/usr/share/protis/examples/greco/greco.inp && "
+           "staged/usr/share/protis/tools/compare greco.dat greco.dat",
            0);
     expect(&j,
-           "bash -c '. root/usr/share/bash-completion/completions/protis && "
+           "bash -c '. staged/usr/share/bash-completion/completions/protis && "
            "COMP_WORDS=(protis --keywords SOLID) COMP_CWORD=2 && _protis && "
            "test \"${COMPREPLY[0]}\" = \"SOLID SECTION\"'",
            0);
   }
-  expect(&j, "test -z \"$(find root -type f)\"", 0);
+  expect(&j, "test -z \"$(find staged -type f)\"", 0);
   job_end(&j);
 }
 END_TEST
