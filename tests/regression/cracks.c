@@ -243,12 +243,40 @@ START_TEST(rate_integral_of_power_law_creep) {
     ck_assert_double_gt(C, 0);
     ck_assert_double_eq_tol(dat_at(&y, i, "C_t"), 16 * C, 16e-6 * C);
     ck_assert_double_le(dat_at(&x, i, "C_t_scatter"), 0.03 * C);
+    ck_assert(isnan(dat_at(&x, i, "K_I")) && isnan(dat_at(&x, i, "G")));
     ck_assert_double_eq_tol(C, steady, 0.08 * steady);
   }
   dat_free(&x);
   dat_free(&y);
   job_end(&one);
   job_end(&two);
+}
+END_TEST
+
+/* Heat that is the same everywhere adds nothing to K; with heat that varies
+ * there is none. */
+START_TEST(crack_in_a_warm_body) {
+  job j = job_begin("warm");
+  job_copy(&j, "input/crack/crack.geo");
+  job_write(&j, "warm.inp",
+            "*PARAMETER\nN = 20\nANGLE = 0.\n*MESH, FILE=crack.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n*EXPANSION\n1.E-5\n"
+            "*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n"
+            "*CRACK, NAME=C, GROUP=LINE\n"
+            "*STEP\n*STATIC\n*BOUNDARY\n" HELD "*DSLOAD\n" PULLED
+            "*TEMPERATURE\nPLATE, %s\n*PRINT, SIF\n*OUTPUT, HDF5=NO\n"
+            "*END STEP\n",
+            _i == 0 ? "50." : "\"50 + x^2\"");
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "SIF", -1);
+  for (int i = 0; i < t.n_row; ++i)
+    if (_i == 0)
+      ck_assert_double_eq_tol(dat_at(&t, i, "K_I"), sqrt(pi), 0.02);
+    else
+      ck_assert(isnan(dat_at(&t, i, "K_I")));
+  dat_free(&t);
+  job_end(&j);
 }
 END_TEST
 
@@ -328,6 +356,7 @@ int main(void) {
   tcase_add_test(tests, disc_in_space);
   tcase_add_test(tests, sheared_disc_in_space);
   tcase_add_loop_test(tests, beam_on_three_points, 0, 2);
+  tcase_add_loop_test(tests, crack_in_a_warm_body, 0, 2);
   tcase_add_test(tests, rate_integral_of_power_law_creep);
   tcase_add_loop_test(tests, crack_in_a_body_that_creeps, 0, 3);
   tcase_add_test(tests, lips_balance);

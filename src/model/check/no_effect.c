@@ -162,6 +162,10 @@ static void check_tables(const model *m, const step *s) {
     else if (s->print.requests[k].table == PRINT_SIF && m->n.crack == 0)
       message_add(m->log, P2058, &s->print.requests[k].at,
                   "*PRINT, SIF: there is no *CRACK");
+    else if (s->print.requests[k].table == PRINT_SIF &&
+             m->sections[0].kin == AXISYMMETRIC)
+      message_add(m->log, P2058, &s->print.requests[k].at,
+                  "*PRINT, SIF: there are no factors of axisymmetric bodies");
 }
 
 void check_no_effect(const model *m, const mesh *msh) {
