@@ -125,6 +125,16 @@ START_TEST(jump_of_an_expression_is_told) {
 }
 END_TEST
 
+/* A course that comes to zero at the end of an increment has no jump. */
+START_TEST(course_down_to_zero_is_no_jump) {
+  job j = run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n\"0.4*(2 - t)\"\n",
+                   "4*(2 - t)", "*END STEP\n");
+  for (int i = 1; i <= 4; ++i) check_slip(&j, i, 1 + 0.25 * i, 0.4 - 0.1 * i);
+  ck_assert(!listing_has(&j, "jumps at"));
+  job_end(&j);
+}
+END_TEST
+
 /* Another card in a step counts from there on, in later steps too. */
 START_TEST(friction_card_in_a_step_takes_over) {
   job j = run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n0.8\n", "2+0*t",
@@ -223,5 +233,5 @@ END_TEST
 
 UNIT_MAIN("friction in time", mu_of_time_in_every_way,
           constant_amplitude_and_motion, jump_of_an_expression_is_told,
-          friction_card_in_a_step_takes_over, contraction_is_that_of_the_card,
-          mu_is_zero_in_places, mu_by_group)
+          course_down_to_zero_is_no_jump, friction_card_in_a_step_takes_over,
+          contraction_is_that_of_the_card, mu_is_zero_in_places, mu_by_group)

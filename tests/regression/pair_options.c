@@ -297,6 +297,55 @@ START_TEST(dovetail_holds_one_way) {
 }
 END_TEST
 
+/* ---- slave of two materials -----------------------------------------------
+ */
+
+/* A block of two materials with a face each under one with a face, twice as
+ * long: from three times the mean of their moduli on the softer is the slave.
+ */
+START_TEST(modulus_of_a_surface_is_the_mean_of_its_faces) {
+  static const struct {
+    double left, right;
+    const char *told;
+  } cases[] = {{1, 5.2, "OVER (softer)"},    {5.2, 1, "OVER (softer)"},
+               {1, 4.8, "OVER (coarser)"},   {4.8, 1, "OVER (coarser)"},
+               {0.1, 0.5, "UNDER (softer)"}, {0.5, 0.1, "UNDER (softer)"}};
+  job j = job_begin("mean");
+  job_write(&j, "mean.msh",
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+            "$PhysicalNames\n6\n1 1 \"BOTTOM\"\n"
+            "1 2 \"UNDER\"\n1 3 \"OVER\"\n2 4 \"LEFT\"\n"
+            "2 5 \"RIGHT\"\n2 6 \"UPPER\"\n"
+            "$EndPhysicalNames\n$Nodes\n10\n"
+            "1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n"
+            "6 2 1 0\n7 0 1 0\n8 2 1 0\n9 2 2 0\n10 0 2 0\n"
+            "$EndNodes\n$Elements\n11\n"
+            "1 1 2 1 1 1 2\n2 1 2 1 1 2 3\n"
+            "3 1 2 2 2 6 5\n4 1 2 2 2 5 4\n5 1 2 3 3 7 8\n"
+            "6 2 2 4 4 1 2 5\n7 2 2 4 4 1 5 4\n"
+            "8 2 2 5 5 2 3 6\n9 2 2 5 5 2 6 5\n"
+            "10 2 2 6 6 7 8 9\n11 2 2 6 6 7 9 10\n"
+            "$EndElements\n");
+  job_write(&j, "mean.inp",
+            "*MESH, FILE=mean.msh\n*MATERIAL, NAME=L\n*ELASTIC\n%g, 0\n"
+            "*MATERIAL, NAME=R\n*ELASTIC\n%g, 0\n"
+            "*MATERIAL, NAME=U\n*ELASTIC\n1., 0\n"
+            "*SOLID SECTION, ELSET=LEFT, MATERIAL=L\n"
+            "*SOLID SECTION, ELSET=RIGHT, MATERIAL=R\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=U\n"
+            "*CONTACT PAIR, NAME=P\nUNDER, OVER\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nBOTTOM, 1, 2\nUPPER, 1\n*DLOAD\nUPPER, BY, -1e-3\n"
+            "*END STEP\n",
+            cases[_i].left, cases[_i].right);
+  ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
+  char *text = job_file(&j, "lst");
+  ck_assert_msg(strstr(text, cases[_i].told) != NULL, "%s: %.60s",
+                cases[_i].told, strstr(text, "slave"));
+  free(text);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("pair_options");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -308,5 +357,7 @@ int main(void) {
   tcase_add_loop_test(tests, bodies_between_others_balance, 0, 3);
   tcase_add_test(tests, circle_of_slaves_names_its_pairs);
   tcase_add_test(tests, dovetail_holds_one_way);
+  tcase_add_loop_test(tests, modulus_of_a_surface_is_the_mean_of_its_faces, 0,
+                      6);
   return unit_run("pair_options", tests);
 }

@@ -86,6 +86,7 @@ static jump largest_change(const run *r, int contact_id,
  * change vanishes, a jump remains and is found.
  */
 static jump narrow(const run *r, const friction_rule *rule, jump j, double t0) {
+  const double least = jump_share * fmax(j.from, j.to);
   double t1 = j.t;
   for (int k = 0; k < HALVINGS; ++k) {
     double t = 0.5 * (t0 + t1), value = value_at(r, rule, j.node_id, t);
@@ -98,7 +99,7 @@ static jump narrow(const run *r, const friction_rule *rule, jump j, double t0) {
     }
   }
   j.t = t1;
-  if (!(fabs(j.to - j.from) > jump_share * fmax(j.from, j.to))) j.node_id = -1;
+  if (!(fabs(j.to - j.from) > least)) j.node_id = -1;
   return j;
 }
 
