@@ -73,6 +73,7 @@ const scene_row contact_scenes[] = {
    .expect = "NODES u_y = -0.005*(1 - y) ~ 5e-11; CONTACT ^f_n = 0 ~ 5e-8;"
      "NODES u_x = 0 ~ 5e-11"},
   {.name = "all closed, 10000 contact nodes", .hard = "3.2 GB, ties",
+   .flags = LARGE,
    .mesh = "rect 9999 1 9999 1", .deck = MATERIAL("1000.", "0.")
      FLOOR("0.5") "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\n"
      "TOP, P, 10.\n" END,
