@@ -14,8 +14,8 @@
 enum {
   QUICK = 1, /* part of the short run                                     */
   MAY_REFUSE = 2, /* AUTO too may end with exit 1 or 6 */
-  NO_LAWS = 4, /* no unilateral contact: its laws are not tested           */
-  LARGE = 8    /* minutes each time: not with all kinds of outputs         */
+  NO_LAWS = 4,    /* no unilateral contact: its laws are not tested           */
+  LARGE = 8       /* minutes each time: not with all kinds of outputs         */
 };
 
 /* Another way to put the same scene, and what it does to the answer. */
