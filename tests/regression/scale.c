@@ -234,10 +234,11 @@ static job run_two(const char *method, double ratio, double load) {
   return j;
 }
 
+static const char *const all[] = {"AUTO",   "NEWTON",   "LEMKE",
+                                  "SOR",    "AITKEN",   "PCG",
+                                  "AUGLAG", "LAGRANGE", "PROXIMAL"};
+
 START_TEST(two_bodies_of_any_ratio) {
-  static const char *const all[] = {"AUTO",   "NEWTON",   "LEMKE",
-                                    "SOR",    "AITKEN",   "PCG",
-                                    "AUGLAG", "LAGRANGE", "PROXIMAL"};
   static const double ratios[] = {1e6, 1e9, 1e12, 1e-9};
   for (size_t m = 0; m < sizeof all / sizeof *all; ++m)
     for (int k = 0; k < 8; ++k) {
@@ -255,8 +256,43 @@ START_TEST(two_bodies_of_any_ratio) {
 }
 END_TEST
 
-UNIT_MAIN("scale", five_units_of_length, powers_of_two_leave_every_bit,
-          loads_of_any_size, equal_runs_give_equal_bytes,
-          forces_beyond_the_range_are_refused,
-          a_pulse_that_decays_to_next_to_nothing_is_a_load,
-          two_bodies_of_any_ratio)
+/* A block pressed by 1 on a floor that passes below it. */
+START_TEST(floor_that_travels_far) {
+  static const double way[] = {1.0, 1e4, 1e6, 1e8};
+  for (size_t m = 0; m < sizeof all / sizeof *all; ++m) {
+    job j = job_begin("belt");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "belt.inp",
+              "*PARAMETER\nN = 3\n*MESH, FILE=square.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+              "MOVE, %.17g, 0.\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+              "0.5, 1.\n*BOUNDARY\nTOP, 1\n*DSLOAD\nTOP, P, 1.\n"
+              "*SOLVER, METHOD=%s\n*PRINT, TOTALS\n*END STEP\n",
+              way[_i], all[m]);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "%s, %g: exit %d", all[m], way[_i], code);
+    dat t = job_table(&j, "TOTALS", -1);
+    ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), 1.0, 1e-8);
+    ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), 0.3, 1e-8);
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("scale");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_test(tests, five_units_of_length);
+  tcase_add_test(tests, powers_of_two_leave_every_bit);
+  tcase_add_test(tests, loads_of_any_size);
+  tcase_add_test(tests, equal_runs_give_equal_bytes);
+  tcase_add_test(tests, forces_beyond_the_range_are_refused);
+  tcase_add_test(tests, a_pulse_that_decays_to_next_to_nothing_is_a_load);
+  tcase_add_test(tests, two_bodies_of_any_ratio);
+  tcase_add_loop_test(tests, floor_that_travels_far, 0, 4);
+  return unit_run("scale", tests);
+}

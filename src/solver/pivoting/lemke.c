@@ -315,7 +315,7 @@ static void lemke_release(void *work) {
 }
 
 static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
-  for (int i = 0; i < N_CORRECTOR && cp->dim == 3; ++i) {
+  for (int i = 0; i < N_CORRECTOR; ++i) {
     const solver_ops *ops = correctors[i];
     if ((ops->handles & NEEDS_STIFFNESS) && cp->A == NULL) continue;
     char *param = NULL;
@@ -366,15 +366,14 @@ done:
   return st;
 }
 
-/* The outcome; from the state of the polygon to that of the disc by a solver
- * with the exact disc. */
+/* The outcome; from the state of a polygon to that of the disc, and from
+ * rounding where obstacles travel far, by a solver of the problem itself. */
 static status correct(lemke_run *s, double *u, double *r, solver_report *rep) {
   lemke_work *w = s->w;
   size_t bytes = (size_t)s->cp->m * sizeof *u;
   rep->residual = contact_residual(s->cp, u, r);
   if (rep->residual <= s->control->tol) return OK;
   rep->outcome = STOPPED_STAGNATION;
-  if (!w->has_facets) return OK;
   memcpy(w->best_u, u, bytes);
   memcpy(w->best_r, r, bytes);
   for (int i = 0; i < N_CORRECTOR && rep->outcome != CONVERGED; ++i) {
@@ -466,9 +465,10 @@ const solver_ops lemke_solver = {
     "into stick to the real load, one change of state a pivot. It never\n"
     "cycles, has a solution for every friction coefficient if the body is\n"
     "supported; a body held by contact alone ends in equilibrium or in a\n"
-    "motion that proves there is none. In 3-D the cone has FACETS facets; the\n"
-    "state is then corrected to the exact cone by NEWTON or SOR. For up to\n"
-    "some hundred contact nodes, and where other methods disagree or fail.",
+    "motion that proves there is none. In 3-D the cone has FACETS facets. A\n"
+    "state that misses the tolerance, as that of facets does, is corrected by\n"
+    "NEWTON or SOR. For up to some hundred contact nodes, and where other\n"
+    "methods disagree or fail.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
   .param_size = sizeof(lemke),
   .options = lemke_options,

@@ -47,7 +47,6 @@ static void add_directions(lemke_work *w, int node_id, int dof, int tangents) {
   const double full = 2.0 * acos(-1.0);
   w->node.slide[node_id] = w->reduced.n_var;
   w->node.n_slide[node_id] = count;
-  if (tangents == 2) w->has_facets = 1;
   for (int j = 0; j < count; ++j) {
     int half = j % (count / 2);
     double sign = j < count / 2 ? 1.0 : -1.0, angle = full * half / count;
@@ -63,7 +62,7 @@ static void add_directions(lemke_work *w, int node_id, int dof, int tangents) {
 void lemke_list_variables(lemke_run *s) {
   lemke_work *w = s->w;
   int dim = s->cp->dim;
-  w->reduced.n_var = w->has_facets = 0;
+  w->reduced.n_var = 0;
   for (int i = 0; i < s->cp->n; ++i) w->node.n_slide[i] = 0;
   for (int i = 0; i < w->reduced.n_kept; ++i) {
     int dof = w->reduced.kept[i], node_id = dof / dim;

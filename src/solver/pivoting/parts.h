@@ -47,7 +47,7 @@ typedef struct lemke_work {
   double *v, *t;                  /* [m] */
   double *ray;                    /* [m] motion of the last ray */
   double *best_u, *best_r, *work; /* [m], [m], [4m] */
-  int has_ray, has_facets;
+  int has_ray;
   int *pivot, *kind;      /* [m] */
   variable *var;          /* [n_var] */
   double *q, *d, *z, *dz; /* [n_var] */
