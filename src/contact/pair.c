@@ -241,8 +241,8 @@ status pair_add_row(contact_surface *s, int i, int n, const pair_row *rows,
 
 /* The gap that was measured at x + u is that of time 0 and what the bodies have
  * moved since, along n. */
-double pair_gap(const surface_input *in, const contact_pair *p, int row,
-                const double *n) {
+double pair_apart(const surface_input *in, const contact_pair *p, int row,
+                  const double *n) {
   const mortar *m = p->coupled;
   const size_t dim = (size_t)in->mesh->dim;
   const int moved = is_moved(in, p);
@@ -257,12 +257,26 @@ double pair_gap(const surface_input *in, const contact_pair *p, int row,
   return gap;
 }
 
-double pair_change(const contact_pair *p, int dim, const double *x, double t) {
-  double at[3] = {0.0, 0.0, 0.0};
-  if (p->change == NULL) return 0.0;
-  memcpy(at, x, (size_t)dim * sizeof *at);
-  return p->change_sign * quantity_value(p->change, at, t);
+/* With what CLEARANCE or INTERFERENCE adds. */
+static double gap_at(const surface_row *at, double t) {
+  const contact_pair *p = at->of;
+  double x[3] = {0.0, 0.0, 0.0};
+  if (p->change == NULL) return at->apart;
+  memcpy(x, at->x, (size_t)at->dim * sizeof *x);
+  return at->apart + p->change_sign * quantity_value(p->change, x, t);
 }
+
+static int no_normal(const surface_row *at, double *n) {
+  (void)at, (void)n;
+  return 0;
+}
+
+static int stays(const contact_pair *p) {
+  (void)p;
+  return 0;
+}
+
+const partner_ops pair_partner = {"surface", gap_at, no_normal, stays, NULL};
 
 /* ---- circles --------------------------------------------------------------
  * Nodes all of whose masters have their place are done, from pass to pass; who

@@ -32,9 +32,27 @@ status pair_add_row(contact_surface *s, int i, int n, const pair_row *rows,
 status pairs_check_circles(const contact_surface *s, const surface_input *in,
                            message_log *log);
 /* Gap of a row of the coupling along n[dim], at time 0, m. */
-double pair_gap(const surface_input *in, const contact_pair *p, int row,
-                const double *n);
-/* What CLEARANCE or INTERFERENCE adds to the gap at x[dim] and t, m. */
-double pair_change(const contact_pair *p, int dim, const double *x, double t);
+double pair_apart(const surface_input *in, const contact_pair *p, int row,
+                  const double *n);
+
+/* A row of the frame of a contact node. */
+typedef struct surface_row {
+  const contact_pair *of;
+  int dim;
+  const double *x, *normal; /* [dim] place of the node, m; direction */
+  double apart;             /* gap of a pair at time 0, m */
+} surface_row;
+
+/* What a contact is with: an obstacle (surface.c) or the master of a pair. */
+typedef struct partner_ops {
+  const char *kind;                               /* as messages name it */
+  double (*gap)(const surface_row *at, double t); /* m */
+  /* n[dim] of its own at x; 0, and n as it was: it has none. */
+  int (*normal)(const surface_row *at, double *n);
+  int (*moves)(const contact_pair *p); /* 1: its gap can change with time */
+  /* d[3] from t0 to t, m; NULL: it does not move. */
+  void (*drift)(const surface_row *at, double t0, double t, double *d);
+} partner_ops;
+extern const partner_ops pair_partner;
 
 #endif

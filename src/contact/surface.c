@@ -81,13 +81,46 @@ static node_text describe(const mesh *m, int node_id) {
   return d;
 }
 
+static double gap_of_obstacle(const surface_row *at, double t) {
+  return obstacle_gap(at->of->support, at->dim, at->x, at->normal, t);
+}
+
+static int normal_of_obstacle(const surface_row *at, double *n) {
+  return obstacle_normal(at->of->support, at->dim, at->x, n);
+}
+
+static int obstacle_of_moves(const contact_pair *p) {
+  return obstacle_moves(p->support);
+}
+
+static void drift_of_obstacle(const surface_row *at, double t0, double t,
+                              double *d) {
+  obstacle_drift(at->of->support, at->dim, at->x, at->normal, t0, t, d);
+}
+
+static const partner_ops obstacle_partner = {
+    "obstacle", gap_of_obstacle, normal_of_obstacle, obstacle_of_moves,
+    drift_of_obstacle};
+
+static const partner_ops *partner_of(const contact_pair *p) {
+  return p->support != NULL ? &obstacle_partner : &pair_partner;
+}
+
 /* What a contact is with. */
 static node_text partner(const contact_pair *p) {
   node_text d;
-  snprintf(d.text, sizeof d.text, "%s %s",
-           p->support != NULL ? "obstacle" : "surface",
+  snprintf(d.text, sizeof d.text, "%s %s", partner_of(p)->kind,
            p->support != NULL ? p->support->name : p->master->name);
   return d;
+}
+
+/* The row of a candidate along its normal. */
+static surface_row row_of(const builder *b, const candidate *c) {
+  return (surface_row){
+      .of = &b->in->pairs[c->pair_id],
+      .dim = b->dim,
+      .x = &b->in->mesh->x[(size_t)b->dim * (size_t)c->node_id],
+      .normal = c->normal};
 }
 
 /* Integrals w[dim] of the P1 functions of the nodes of a face, times thickness
@@ -207,7 +240,7 @@ static status collect(builder *b) {
   for (int p = 0; p < in->n_pair; ++p) n += in->pairs[p].group->n_node;
   PASS_NEW(b->list, n);
   for (int p = 0; p < in->n_pair; ++p) {
-    if (in->pairs[p].support == NULL) {
+    if (in->pairs[p].coupled != NULL) {
       b->n += add_coupled(b, p, &b->list[b->n]);
       continue;
     }
@@ -254,11 +287,10 @@ static void merge_smooth(builder *b, int first, int end) {
 /* The normal of the obstacle instead of that of the body; 0 where the body
  * faces away from the obstacle. */
 static int take_obstacle_normal(const builder *b, candidate *c) {
-  const mesh *m = b->in->mesh;
+  const surface_row at = row_of(b, c);
   double body[3];
   memcpy(body, c->normal, sizeof body);
-  obstacle_normal(b->in->pairs[c->pair_id].support, b->dim,
-                  &m->x[(size_t)b->dim * (size_t)c->node_id], c->normal);
+  partner_of(at.of)->normal(&at, c->normal);
   return dot(b->dim, body, c->normal) >=
          -PAIR_FIXED_SINE * sqrt(dot(b->dim, body, body));
 }
@@ -338,9 +370,9 @@ static void note_held(const builder *b, const candidate *c, double held) {
 static void compare_normals(const builder *b, const candidate *c) {
   const contact_pair *p = &b->in->pairs[c->pair_id];
   tally *t = &b->tallies[c->pair_id];
-  const double *x = &b->in->mesh->x[(size_t)b->dim * (size_t)c->node_id];
+  const surface_row at = row_of(b, c);
   double n[3], square = 0;
-  if (p->support == NULL || !obstacle_normal(p->support, b->dim, x, n)) {
+  if (!partner_of(p)->normal(&at, n)) {
     note_held(b, c, c->held);
     return;
   }
@@ -361,18 +393,17 @@ static void measure(builder *b, candidate *c) {
   const mesh *m = b->in->mesh;
   const contact_pair *p = &b->in->pairs[c->pair_id];
   tally *t = &b->tallies[c->pair_id];
-  const double *x = &m->x[(size_t)b->dim * (size_t)c->node_id];
-  if (p->support == NULL)
-    c->gap = pair_gap(b->in, p, c->row, c->normal);
-  else
-    c->gap = obstacle_gap(p->support, b->dim, x, c->normal, 0);
+  const partner_ops *with = partner_of(p);
+  const surface_row at = row_of(b, c);
+  c->gap = p->coupled != NULL ? pair_apart(b->in, p, c->row, c->normal)
+                              : with->gap(&at, 0);
   if (isnan(c->gap) || c->gap == -HUGE_VAL) {
     message_add(b->log, P4007, &p->at, "%s %s: gap is %s at %s, time 0",
                 p->card, p->name, isnan(c->gap) ? "not a number" : "-inf",
                 describe(m, c->node_id).text);
     c->left_out = 1;
   } else if (c->gap == HUGE_VAL) {
-    if (obstacle_moves(p->support)) {
+    if (with->moves(p)) {
       c->gap = m->size;
     } else {
       c->left_out = 1;
@@ -437,7 +468,7 @@ static status couple_node(builder *b, contact_surface *s, int i, int n_kept,
   if (s->master == NULL) return OK;
   for (int k = 0; k < n_kept; ++k) {
     const contact_pair *p = &b->in->pairs[kept[k]->pair_id];
-    rows[k] = (pair_row){p->support == NULL ? p->coupled : NULL, kept[k]->row};
+    rows[k] = (pair_row){p->coupled, kept[k]->row};
     if (rows[k].of != NULL) s->apart[dim * i + k] = kept[k]->gap;
   }
   return pair_add_row(s, i, n_kept, rows, &b->links);
@@ -533,7 +564,7 @@ static void say(const builder *b, int pair_id) {
 
 static int has_pair(const surface_input *in) {
   int any = 0;
-  for (int p = 0; p < in->n_pair; ++p) any |= in->pairs[p].support == NULL;
+  for (int p = 0; p < in->n_pair; ++p) any |= in->pairs[p].coupled != NULL;
   return any;
 }
 
@@ -604,11 +635,10 @@ int surface_is_corner(const contact_surface *s, int i) {
 static status row_gap(const contact_surface *s, const contact_pair *p, int i,
                       int k, double t, double reach, double *gap) {
   int dim = s->dim;
-  if (p->support == NULL)
-    *gap = s->apart[dim * i + k] + pair_change(p, dim, &s->x[dim * i], t);
-  else
-    *gap = obstacle_gap(p->support, dim, &s->x[dim * i],
-                        &s->frame[dim * dim * i + dim * k], t);
+  const surface_row at = {p, dim, &s->x[dim * i],
+                          &s->frame[dim * dim * i + dim * k],
+                          s->apart == NULL ? 0.0 : s->apart[dim * i + k]};
+  *gap = partner_of(p)->gap(&at, t);
   if (isnan(*gap) || *gap == -HUGE_VAL)
     RAISE(ERR_DECK, "%s:%d: *CONTACT %s: gap is %g at node %zu, time %g",
           p->at.file != NULL ? p->at.file : "", p->at.line_no, p->name, *gap,
@@ -638,12 +668,12 @@ static void row_drift(const contact_surface *s, const contact_pair *pairs,
                       int i, int k, const double times[2], double *motion) {
   int dim = s->dim;
   int side = k > 0 ? s->side_id[i * (dim - 1) + k - 1] : -1;
-  const obstacle *o = pairs[side >= 0 ? side : s->contact_id[i]].support;
+  const contact_pair *p = &pairs[side >= 0 ? side : s->contact_id[i]];
   const double *frame = &s->frame[dim * dim * i], *row = frame + dim * k;
   double drift[3];
-  if (o == NULL || !obstacle_moves(o)) return;
-  obstacle_drift(o, dim, &s->x[dim * i], side >= 0 ? row : frame, times[0],
-                 times[1], drift);
+  if (!partner_of(p)->moves(p)) return;
+  const surface_row at = {p, dim, &s->x[dim * i], side >= 0 ? row : frame, 0};
+  partner_of(p)->drift(&at, times[0], times[1], drift);
   *motion += dot(dim, row, drift);
 }
 
