@@ -214,14 +214,14 @@ int facts_asks_theory(const step *s) { return s->accuracy.theorems; }
 status model_find_corner(model *m, const mesh *msh) {
   status st = OK;
   int *of = NULL;
-  m->corner_id = -1;
+  m->mesh.corner_id = -1;
   NEW(of, msh->n_node);
   for (int i = 0; i < m->n.contact; ++i) {
     if (m->contacts[i].group_id < 0) continue;
     const mesh_group *g = &msh->group[m->contacts[i].group_id];
     for (int k = 0; k < g->n_node; ++k) {
       int *owner = &of[g->node_id[k]];
-      if (*owner > 0 && *owner != i + 1) m->corner_id = i;
+      if (*owner > 0 && *owner != i + 1) m->mesh.corner_id = i;
       *owner = i + 1;
     }
   }
@@ -260,7 +260,7 @@ int facts_omits_friction(const model *m) {
 }
 
 int model_rubs_locally(const model *m) {
-  int local = m->corner_id < 0 && facts_first_whole(m) == NULL;
+  int local = m->mesh.corner_id < 0 && facts_first_whole(m) == NULL;
   for (int i = 0; i < m->n.step; ++i) {
     local = local && m->steps[i].form == FORM_DISPLACEMENT;
     for (int k = 0; k < m->n.contact; ++k) {

@@ -80,14 +80,15 @@ void model_free(model *m) {
   for (int i = 0; i < m->n.field; ++i) memory_free(m->load.fields[i].value);
   memory_free(m->load.fields);
   for (int i = 0; i < m->n.crack; ++i)
-    RELEASE(m->cracks[i].lip[0], m->cracks[i].lip[1]);
+    RELEASE(m->mesh.cracks[i].lip[0], m->mesh.cracks[i].lip[1]);
   for (int i = 0; i < m->n.material; ++i) {
     law_card_free(&m->materials[i].law);
     elastic_table_free(&m->materials[i].elastic);
   }
   RELEASE(m->time.amplitudes, m->time.points, m->materials, m->sections,
-          m->obstacles, m->moves, m->contacts, m->ties, m->cracks, m->steps,
-          m->reduction.still, m->elem_section, m->name.job, m->effect_cards, m);
+          m->obstacles, m->moves, m->contacts, m->ties, m->mesh.cracks,
+          m->steps, m->reduction.still, m->elem_section, m->name.job,
+          m->effect_cards, m);
 }
 
 void model_fit_problem(model *m, int dim, int friction, effect_finder *find) {

@@ -383,6 +383,8 @@ typedef struct model {
     double scale;
     place at;
     int given;
+    crack *cracks; /* [n.crack] in the order of mesh->crack */
+    int corner_id; /* a contact with nodes of another one before it, or -1 */
   } mesh;
   struct { /* *CONDENSED PROBLEM, in the place of a mesh */
     const char *file;
@@ -410,7 +412,6 @@ typedef struct model {
   struct move *moves; /* [n.obstacle] amplitude names of the obstacles */
   contact *contacts;
   tie *ties;
-  crack *cracks; /* in the order of mesh->crack */
   struct {
     load_list supports;  /* *BOUNDARY before the first step */
     nodal_field *fields; /* [n.field] of all FILE= of *TEMPERATURE */
@@ -435,9 +436,8 @@ typedef struct model {
   } reduction;
   effect_card *effect_cards; /* [n.effect_card] in the order of the deck */
   unsigned effects;          /* bits EFFECT_*, set by model_check */
-  int corner_id;     /* a contact with nodes of another one before it, or -1 */
-  int dim, ns;       /* from the mesh */
-  int *elem_section; /* [n_elem] section of each element */
+  int dim, ns;               /* from the mesh */
+  int *elem_section;         /* [n_elem] section of each element */
 } model;
 
 typedef struct move { /* *OBSTACLE, AMPLITUDE= */
@@ -527,7 +527,7 @@ int model_rubs_locally(const model *m);
 /* Bits EFFECT_* of what the deck requires: passed in by the caller
  * (effects_required of src/effects). */
 typedef unsigned effect_finder(const model *m);
-/* m->corner_id. ERR_MEMORY. */
+/* m->mesh.corner_id. ERR_MEMORY. */
 status model_find_corner(model *m, const mesh *msh);
 /* In the place of model_check for a deck with *CONDENSED PROBLEM, once it is
  * read: dimension (1: LCP), 1 if it has friction. */

@@ -72,7 +72,7 @@ static void add_areas(const run *r, int n, const int *face, double *area) {
 
 /* Points of a front without factors, and why. */
 static void tell_points(const run *r, int id, const fracture *f) {
-  const crack *c = &r->m->cracks[id];
+  const crack *c = &r->m->mesh.cracks[id];
   const int n = fracture_count(f);
   const fracture_point *p = fracture_points(f);
   int two = 0, crowded = 0, two_at = 0, crowded_at = 0;
@@ -189,7 +189,7 @@ static void find_jumps(const run *r, const crack_state *own, tip *t) {
   const double modulus =
       mat->plane_stress ? mat->E : mat->E / (1.0 - mat->nu * mat->nu);
   for (int i = 0; i < r->nodes.n; ++i) {
-    if (s->contact_id[i] != r->m->cracks[t->crack_id].contact_id) continue;
+    if (s->contact_id[i] != r->m->mesh.cracks[t->crack_id].contact_id) continue;
     const double d[2] = {s->x[2 * i] - p->origin[0],
                          s->x[2 * i + 1] - p->origin[1]};
     const double x = hypot(d[0], d[1]);
@@ -363,7 +363,7 @@ VALUE(tip_jump, tip_of(v, id)->jump[part])
 VALUE(tip_radius, point_of(v, id)->radius)
 
 static const char *crack_word(const view *v, int id) {
-  return v->m->cracks[tip_of(v, id)->crack_id].name;
+  return v->m->mesh.cracks[tip_of(v, id)->crack_id].name;
 }
 
 /* clang-format off */

@@ -102,10 +102,10 @@ static int requires_tangents(const model *m, char *why, size_t size) {
   const step *s = facts_first_whole(m);
   if (m->n.contact == 0 || friction_effect.required(m, NULL, 0))
     return friction_effect.required(m, why, size);
-  if (m->corner_id >= 0)
+  if (m->mesh.corner_id >= 0)
     return plan_says(1, why, size, "contact %s meets another, %s:%d",
-                     m->contacts[m->corner_id].name,
-                     PLACE(m->contacts[m->corner_id].at));
+                     m->contacts[m->mesh.corner_id].name,
+                     PLACE(m->contacts[m->mesh.corner_id].at));
   if (s == NULL && facts_omits_friction(m))
     return plan_says(1, why, size, "friction left out is checked, %s:%d",
                      PLACE(m->reduction.at));

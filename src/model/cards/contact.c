@@ -348,8 +348,8 @@ status apply_crack(reading *r) {
   model *m = r->m;
   contact *c = NULL;
   PASS(new_contact(r, p->name, &c));
-  PASS_GROW(m->cracks, m->n.crack, m->cap.crack);
-  crack *k = &m->cracks[m->n.crack++];
+  PASS_GROW(m->mesh.cracks, m->n.crack, m->cap.crack);
+  crack *k = &m->mesh.cracks[m->n.crack++];
   k->name = c->name;
   k->group = p->group == NULL ? "" : p->group;
   k->at = c->at;

@@ -154,7 +154,7 @@ status model_open_cracks(model *m, mesh *msh) {
   if (n == 0 || msh->n_crack > 0) return OK;
   PASS_NEW(cut, n);
   for (int i = 0; i < n; ++i) {
-    crack *k = &m->cracks[i];
+    crack *k = &m->mesh.cracks[i];
     const int id = check_group(m, msh, k->group, &k->group_at);
     if (id < 0) return message_status(m->log, ERR_DECK);
     cut[i] = (mesh_cut){&msh->group[id], &k->group_at};
