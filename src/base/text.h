@@ -14,7 +14,7 @@ typedef struct text_file {
   char *path; /* owned */
 } text_file;
 
-/* DIR/NAME.SUFFIX, new (memory_free), NULL without memory. */
+/* file.c: DIR/NAME.SUFFIX, new (memory_free), NULL without memory. */
 char *text_path(const char *dir, const char *name, const char *suffix);
 /* Open for writing; by_line: each line is flushed when it ends. */
 status text_open(text_file *t, const char *path, int by_line);

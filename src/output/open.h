@@ -44,10 +44,10 @@ struct output {
   saved_increments saved;
 };
 
-job job_of(const output *o); /* borrows from o */
-
-/* sink.c: JOB.xdmf with the records so far; "all": even if it was written just
- * before. */
+/* sink.c: what the writers take, borrowed from o. */
+job job_of(const output *o);
+/* JOB.xdmf with the records so far; "all": even if it was written just before.
+ */
 status output_show_records(output *o, int all);
 
 /* Lengths of the text files, bytes, -1: there is none; rows of JOB.h5. */

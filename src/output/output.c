@@ -12,10 +12,6 @@
 #include <string.h>
 #include <unistd.h>
 
-job job_of(const output *o) {
-  return (job){o->m, o->msh, &o->o, &o->run, o->plan};
-}
-
 static void release(output *o) {
   plan_free(o->plan);
   RELEASE(o->json, o->xdmf);

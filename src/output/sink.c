@@ -13,6 +13,10 @@
 enum { XDMF_PAUSE = 1 };               /* s */
 static const double XDMF_SHARE = 0.02; /* of the CPU time at most */
 
+job job_of(const output *o) {
+  return (job){o->m, o->msh, &o->o, &o->run, o->plan};
+}
+
 /* Wall clock, s; only its differences count. */
 static double clock_now(void) {
   struct timespec now;

@@ -163,7 +163,7 @@ static void set_problem(run *r) {
           largest_entry(r->n_dof, r->loads.ud) > 0.0 ? r->problem.f_load : NULL,
       .gap = r->problem.gap,
       .ut0 = r->problem.ut0,
-      .g0 = r->problem.g0,
+      .g0 = r->problem.limit == NULL ? NULL : r->problem.limit->g0,
       .B = r->problem.B,
       .side_gap = all && has_side_gap(r->surface) ? r->problem.side_gap : NULL,
       .held = all && has_held(r->surface) ? r->surface->held : NULL,

@@ -9,6 +9,18 @@
 
 int run_step_id(const run *r) { return (int)(r->step - r->m->steps); }
 
+const material *run_material(const run *r, int elem_id) {
+  const model *m = r->m;
+  return &m->materials[m->sections[m->elem_section[elem_id]].material_id];
+}
+
+const double *run_elasticity(const run *r, int elem_id) {
+  const int ns = r->m->ns;
+  return r->body.moduli.E +
+         (size_t)(ns * ns) *
+             (size_t)moduli_entry(&r->body.moduli, r->m, elem_id);
+}
+
 void matrices_free(matrices *m) {
   contact_solver_free(m->solver);
   condensed_free(m->c);

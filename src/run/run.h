@@ -116,12 +116,13 @@ typedef struct posed_problem {
                                  supports, N */
   double *f, *gap, *side_gap; /* [n_row], [n], [n*(dim-1)] */
   /* Borrowed from effects, NULL: no friction, no given force. */
-  double *ut0, *g0;     /* [n*(dim-1)] m, [n] N */
-  const sparse_rows *B; /* [n*n] - */
-  const double *given;  /* [n] given normal forces, N; < 0: none */
-  double *row[2];       /* [rows*n] workspace of run_rows, NULL where cp has
-                           all */
-  reach_part part;      /* data of cp where it does not have all nodes */
+  double *ut0;                 /* [n*(dim-1)] m */
+  const friction_limit *limit; /* of the time posed last */
+  const sparse_rows *B;        /* [n*n] -, of limit, or in its place */
+  const double *given;         /* [n] given normal forces, N; < 0: none */
+  double *row[2];  /* [rows*n] workspace of run_rows, NULL where cp has
+                      all */
+  reach_part part; /* data of cp where it does not have all nodes */
   contact_problem cp;
   double *f_before; /* [n_row] condensed load of r->old, N */
   int n_before;     /* its n_row */
@@ -256,6 +257,9 @@ void effects_release(run *r);
 /* matrices.c: use m for the next equilibria; its solver is made if there is
  * none, and r->elastic again if temperatures have changed the moduli. */
 status run_use(run *r, matrices *m);
+const material *run_material(const run *r, int elem_id);
+/* E[ns*ns] of an element at the temperatures of r->now, Pa. */
+const double *run_elasticity(const run *r, int elem_id);
 /* The elastic matrix of the current moduli and nodes. */
 status run_renew_elastic(run *r);
 /* Data of the estimates of the matrix in use. */
@@ -278,14 +282,9 @@ status run_add_nodes(run *r);
 /* A matrix and a solver for the nodes that r->nodes.reach now has. */
 status run_renew_nodes(run *r);
 
-/* strains.c: elasticity of the elements, strains that carry no stress. */
+/* strains.c: strains that carry no stress. */
 status strains_new(run *r);
 void strains_free(run *r);
-const material *run_material(const run *r, int elem_id);
-/* E[ns*ns] of an element at the temperatures of r->now, Pa. */
-const double *run_elasticity(const run *r, int elem_id);
-/* The moduli of elements are others: the matrices are made again. */
-void run_change_moduli(run *r);
 /* Components of them that an equilibrium has arrays for. */
 size_t strains_kept(const run *r);
 /* r->strains.eigen.e0 from the current strains. */
@@ -305,6 +304,8 @@ void visco_add_strains(const run *r,
                        double *e0);      /* e0[ns*r->strains.eigen.n] */
 void visco_show(const run *r, state *s); /* view of the outputs */
 /* tangent.c */
+/* The moduli of elements are others: the matrices are made again. */
+void run_change_moduli(run *r);
 void visco_new_solvers(run *r); /* for a step with the same supports */
 void visco_forget(run *r);      /* matrices are made again */
 /* visco.c, at the start of any step: the strains of r->now are those of r->old.

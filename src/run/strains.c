@@ -12,16 +12,6 @@
 
 static size_t at(const run *r, int k) { return (size_t)r->m->ns * (size_t)k; }
 
-const material *run_material(const run *r, int elem_id) {
-  const model *m = r->m;
-  return &m->materials[m->sections[m->elem_section[elem_id]].material_id];
-}
-
-const double *run_elasticity(const run *r, int elem_id) {
-  return r->body.moduli.E +
-         at(r, r->m->ns * moduli_entry(&r->body.moduli, r->m, elem_id));
-}
-
 size_t strains_kept(const run *r) {
   int all = r->strains.temperature0 != NULL;
   for (int i = 0; i < r->m->n.initial; ++i) /* the first work is from zero */
@@ -49,13 +39,6 @@ static status new_strains(const run *r, equilibrium *e) {
   if (r->body.moduli.n_own > 0) NEW(e->elastic, n);
 done:
   return st;
-}
-
-void run_change_moduli(run *r) {
-  visco_forget(r);
-  run_forget_estimates(r);
-  r->body.stale = 1;
-  if (r->c != r->elastic.c) r->c = NULL;
 }
 
 static status list_elements(run *r) {

@@ -331,3 +331,10 @@ status tangent_keep(run *r, archive *a) {
 done:
   return st;
 }
+
+void run_change_moduli(run *r) {
+  visco_forget(r);
+  run_forget_estimates(r);
+  r->body.stale = 1;
+  if (r->c != r->elastic.c) r->c = NULL;
+}

@@ -27,11 +27,6 @@ typedef struct friction {
   double *left;     /* [n_node] that of a released surface, m */
 } friction;
 
-const friction_limit *friction_limit_of(const run *r) {
-  const friction *own = effect_state(&r->effects, &friction_effect);
-  return &own->limit;
-}
-
 enum { T_BIT = 8, HALVINGS = 40 };
 static const double jump_share = 1e-3; /* of the larger value: below, none */
 
@@ -203,7 +198,7 @@ done:
 static status update_limit(run *r, friction *own, double t) {
   note_jumps(r, t);
   if (!own->known) PASS(find_limit(r, own, t));
-  r->problem.g0 = own->limit.g0;
+  r->problem.limit = &own->limit;
   r->problem.B = own->limit.B.start == NULL ? NULL : &own->limit.B;
   return OK;
 }

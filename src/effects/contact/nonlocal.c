@@ -107,7 +107,7 @@ static status zone_fit(const run *r, const sparse_rows *B, friction_zone *z) {
 /* At the start of an increment those that touched, all if none did. */
 static status zone_start(run *r, void *self, double t) {
   friction_zone *z = &((nonlocal *)self)->zone;
-  const friction_limit *limit = friction_limit_of(r);
+  const friction_limit *limit = r->problem.limit;
   int dim = r->msh->dim, touched = 0;
   (void)t;
   if (limit->in_zone == NULL) {
@@ -136,7 +136,7 @@ static int is_open(const run *r, int i) {
 /* After a solution of r->problem.cp, whose B is that of the zone. */
 static status follow_zone(run *r, void *self, int *again) {
   friction_zone *z = &((nonlocal *)self)->zone;
-  const friction_limit *limit = friction_limit_of(r);
+  const friction_limit *limit = r->problem.limit;
   int changes = 0;
   if (z->off == NULL || r->solving.report.outcome <= 0) return OK;
   contact_classify(&r->problem.cp, r->now.uc, r->now.rc, r->result.contact);

@@ -24,47 +24,6 @@
 #include <math.h>
 #include <string.h>
 
-const double reduction_share = 0.1;
-
-/* ---- scales of the deck ------------------------------------------------- */
-
-/* Largest stress by pressures and prescribed displacements, Pa; 0: not known
- * (expressions, forces). */
-double reduction_load_stress(const model *m, const mesh *msh, double young) {
-  double most = 0.0;
-  for (int i = 0; i < m->n.step; ++i)
-    for (int k = 0; k < m->steps[i].loads.n; ++k) {
-      const load *l = &m->steps[i].loads.item[k];
-      double value = fabs(l->value.number);
-      if (l->kind == LOAD_TEMPERATURE) continue;
-      if (l->value.formula != NULL || l->kind == LOAD_POINT ||
-          l->kind == LOAD_BODY || l->kind == LOAD_GRAVITY)
-        return 0.0;
-      if (l->kind == LOAD_FIXING) value *= young / msh->size;
-      most = fmax(most, value);
-    }
-  return most;
-}
-
-double reduction_young(const material *mat) {
-  double C = 0.0;
-  for (int i = 0; i < 3; ++i) C = fmax(C, mat->C[7 * i]);
-  return C;
-}
-
-int reduction_has_initial(const model *m) {
-  for (int i = 0; i < m->n.initial; ++i)
-    if (m->initial.lines[i].type != INITIAL_TEMPERATURE) return 1;
-  return m->initial.start.given;
-}
-
-omitted *reduction_row(model *m, int bit, int id) {
-  if (m->reduction.n == NEGLECT_MAX) return NULL;
-  omitted *row = &m->reduction.row[m->reduction.n++];
-  *row = (omitted){.bit = bit, .id = id};
-  return row;
-}
-
 /* ---- thermal strain ----------------------------------------------------- */
 
 /* Largest temperature the deck gives as a number; HUGE_VAL: by other means. */

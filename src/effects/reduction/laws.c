@@ -47,13 +47,6 @@ done:
   return st;
 }
 
-/* Kinematics of the first section of a material, or -1. */
-int reduction_kinematics(const model *m, int material_id) {
-  for (int i = 0; i < m->n.section; ++i)
-    if (m->sections[i].material_id == material_id) return m->sections[i].kin;
-  return -1;
-}
-
 /* ---- below what matters -------------------------------------------------- */
 
 /* *tried: 1 if there is a row. */

@@ -103,16 +103,6 @@ void reduction_free(reduction *n) {
   memory_free(n);
 }
 
-const material *reduction_material(const reduction *n, int elem_id) {
-  const model *m = n->m;
-  return &m->materials[m->sections[m->elem_section[elem_id]].material_id];
-}
-
-int reduction_is_about(const reduction *n, const omitted *row, int elem_id) {
-  return reduction_material(n, elem_id) == &n->m->materials[row->id] &&
-         (row->some == 0 || n->m->reduction.still[elem_id]);
-}
-
 /* ---- scales ------------------------------------------------------------- */
 
 /* Largest contact pressure, or stress of an element, Pa. */
@@ -126,11 +116,6 @@ static double stress_scale(const reduction *n, const state *s) {
   if (most > 0.0) return most;
   for (size_t i = 0; i < size; ++i) most = fmax(most, fabs(n->sigma[i]));
   return most;
-}
-
-/* a / b; 0 if a is 0. */
-double reduction_part(double a, double b) {
-  return a == 0.0 ? 0.0 : b > 0.0 ? a / b : HUGE_VAL;
 }
 
 /* e' E e of a strain; its largest stress into *stress. */
@@ -300,17 +285,6 @@ static status measure_inelastic(reduction *n, const state *s, int k,
       *stress = fmax(*stress, SAFETY * n->flow.stress[e]);
 done:
   return st;
-}
-
-/* The rule that was left out. */
-double reduction_coefficient(const reduction *n, const state *s, int i) {
-  const contact_surface *c = s->contacts.surface;
-  const friction_rule *rule =
-      friction_in_force(n->m, s->step_no - 1, c->contact_id[i]);
-  double x[3] = {0.0, 0.0, 0.0};
-  if (rule->aside == NULL) return 0.0;
-  for (int k = 0; k < c->dim; ++k) x[k] = c->x[c->dim * i + k];
-  return quantity_value(&rule->card.value, x, s->t);
 }
 
 static void measure_friction(reduction *n, const state *s, double *sum,

@@ -34,32 +34,31 @@ struct reduction {
   double *force, *u;        /* [dim*n_node] room */
 };
 
-/* choose.c: scales of the deck. */
-/* Largest stress by pressures and prescribed displacements, Pa; 0: not known
- * (expressions, forces). */
+/* scales.c. Largest stress by pressures and prescribed displacements, Pa; 0:
+ * not known (expressions, forces). */
 double reduction_load_stress(const model *m, const mesh *msh, double young);
 double reduction_young(const material *mat); /* Pa */
 int reduction_has_initial(const model *m);   /* 1: of strains, displacements */
 /* A new row; NULL: the table is full. */
 omitted *reduction_row(model *m, int bit, int id);
-/* laws.c: materials to try without their law. */
-status reduction_try_laws(model *m, const mesh *msh);
-
+/* Kinematics of the first section of a material, or -1. */
 int reduction_kinematics(const model *m, int material_id);
 /* Increments of a step if each has dt. */
 double reduction_increments(const step *s, double dt);
-/* threshold.c: elements that stay below the threshold of their law. */
-status reduction_try_threshold(model *m, const mesh *msh);
-
+/* a / b; 0 if a is 0. */
+double reduction_part(double a, double b);
 const material *reduction_material(const reduction *n, int elem_id);
 /* 1: the row leaves out the law of that element. */
 int reduction_is_about(const reduction *n, const omitted *row, int elem_id);
-/* Stresses of the run into n->sigma. */
-status reduction_stress(reduction *n, const state *s);
 /* Coefficient of the friction left out at contact node i. */
 double reduction_coefficient(const reduction *n, const state *s, int i);
-/* a / b; 0 if a is 0. */
-double reduction_part(double a, double b);
+
+/* laws.c: materials to try without their law. */
+status reduction_try_laws(model *m, const mesh *msh);
+/* threshold.c: elements that stay below the threshold of their law. */
+status reduction_try_threshold(model *m, const mesh *msh);
+/* measure.c: stresses of the run into n->sigma. */
+status reduction_stress(reduction *n, const state *s);
 
 /* again.c: the increment with the effect of row k in force, where the row's
  * "bound" now has doubled since the last time or the step ends. */

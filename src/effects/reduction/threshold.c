@@ -42,10 +42,6 @@ static int has_threshold(const model *m, int id) {
          reduction_kinematics(m, id) >= 0 && !is_tried(m, id);
 }
 
-double reduction_increments(const step *s, double dt) {
-  return s->kind == STEP_STATIC ? 1.0 : ceil(s->total / dt);
-}
-
 static double short_step(const step *s) {
   return fmax(s->dt, s->total / PIECES);
 }

@@ -1,6 +1,6 @@
 /*
  * Groups of an opened mesh: their nodes, the groups of the lips, and the faces
- * of the crack in its own group.
+ * of the crack in its own group; the errors that are found in faces.
  */
 #include "mesh/crack/opening.h"
 #include "mesh/sort.h"
@@ -9,6 +9,21 @@
 
 #include <stdio.h>
 #include <string.h>
+
+status opening_check(const opening *o) {
+  int n = message_count(o->log, ERROR) - o->errors;
+  if (n > 0) RAISE(ERR_MESH, "the cracks are not valid: %d error(s)", n);
+  return OK;
+}
+
+void opening_note(const opening *o, int face_id, faults *bad) {
+  const mesh *m = o->m;
+  const int *v = face_nodes(m, face_id);
+  double x[3] = {0.0, 0.0, 0.0};
+  for (int i = 0; i < m->dim; ++i)
+    for (int k = 0; k < m->dim; ++k) x[k] += node_x(m, v[i])[k] / m->dim;
+  fault_at(bad, m->dim, m->elem_no[m->face_elem[face_id]], x);
+}
 
 typedef struct filling {
   char *mark; /* [n_node] all 0 between two groups */

@@ -14,21 +14,6 @@ static void release(opening *o) {
           o->place, o->across, o->node, o->copy_of);
 }
 
-status opening_check(const opening *o) {
-  int n = message_count(o->log, ERROR) - o->errors;
-  if (n > 0) RAISE(ERR_MESH, "the cracks are not valid: %d error(s)", n);
-  return OK;
-}
-
-void opening_note(const opening *o, int face_id, faults *bad) {
-  const mesh *m = o->m;
-  const int *v = face_nodes(m, face_id);
-  double x[3] = {0.0, 0.0, 0.0};
-  for (int i = 0; i < m->dim; ++i)
-    for (int k = 0; k < m->dim; ++k) x[k] += node_x(m, v[i])[k] / m->dim;
-  fault_at(bad, m->dim, m->elem_no[m->face_elem[face_id]], x);
-}
-
 /* ---- the faces ----------------------------------------------------------- */
 
 /* owner[n_face] of the mesh: the crack of a face, counted from 1. */

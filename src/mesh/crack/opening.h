@@ -47,7 +47,7 @@ static inline const double *node_x(const mesh *m, int node) {
   return m->x + (ptrdiff_t)m->dim * node;
 }
 
-/* ERR_MESH if errors were added to the log since the start. */
+/* groups.c: ERR_MESH if errors were added to the log since the start. */
 status opening_check(const opening *o);
 /* Add element and centre of a face to a message. */
 void opening_note(const opening *o, int face_id, faults *bad);

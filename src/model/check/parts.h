@@ -9,7 +9,7 @@
 
 #include "model/check/check.h"
 
-/* ---- groups.c ---- */
+/* ---- values.c ---- */
 
 /* Id of a group, or -1 and an error with the nearest name. */
 int check_group(const model *m, const mesh *msh, const char *name,

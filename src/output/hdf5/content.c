@@ -11,6 +11,32 @@
 #include <stdlib.h>
 #include <string.h>
 
+int hdf5_is_history(const hdf5_field *f) {
+  return f->of == PER_INCREMENT || f->of == PER_CONTACT;
+}
+
+int hdf5_items(const hdf5_file *h, const hdf5_field *f) {
+  switch (f->of) {
+    case PER_NODE:
+      return h->msh->n_node;
+    case PER_ELEMENT:
+      return h->msh->n_elem;
+    case PER_CONTACT_NODE:
+      return h->n_contact_node;
+    default:
+      return 1;
+  }
+}
+
+void hdf5_record_name(char *text, size_t size, int i) {
+  snprintf(text, size, "%05d", i + 1);
+}
+
+size_t fixed_bytes(const fixed_data *d) {
+  static const size_t size[] = {sizeof(double), sizeof(int), sizeof(size_t), 1};
+  return size[d->type] * (size_t)d->rows * (size_t)d->columns;
+}
+
 /* A name as a link of HDF5: "/" parts groups and "." is the group itself. */
 static void link_name(char *text, size_t size, const char *name) {
   snprintf(text, size, "%s", name);

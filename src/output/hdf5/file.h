@@ -68,21 +68,18 @@ struct hdf5_file {
   double *times;                 /* [n_record] */
 };
 
-/* The times stand in "/history/time". */
-int hdf5_is_history(const hdf5_field *f);
-/* Items of a field in one record; 1 for histories. */
-int hdf5_items(const hdf5_file *h, const hdf5_field *f);
-size_t fixed_bytes(const fixed_data *d);
 /* From step first_id on, plus "extra" increments of the step before it. */
 void hdf5_forecast(const model *m, int first_id, double extra, int *n_row,
                    int *n_record);
 
 /* content.c: fixed data and fields, into h. */
 status hdf5_content(hdf5_file *h);
+/* The times stand in "/history/time". */
+int hdf5_is_history(const hdf5_field *f);
+/* Items of a field in one record; 1 for histories. */
+int hdf5_items(const hdf5_file *h, const hdf5_field *f);
+size_t fixed_bytes(const fixed_data *d);
 
-/* renew.c: all of it at an offset of the file "path". */
-status hdf5_put(int fd, const char *path, const void *data, size_t bytes,
-                off_t offset);
 /* The field "/history/time". */
 int hdf5_time_field(const hdf5_file *h);
 /* The file with space for rows and records, and with its former contents. */
@@ -92,7 +89,10 @@ status hdf5_renew(hdf5_file *h, int n_row, int n_record);
  * gets the offsets. */
 status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
                         hdf5_layout *l);
-/* records.c: records 2 to n > 1 of all groups and their offsets; the file is
+/* records.c: all of data at an offset of the file "path". */
+status hdf5_put(int fd, const char *path, const void *data, size_t bytes,
+                off_t offset);
+/* Records 2 to n > 1 of all groups and their offsets; the file is
  * closed. ERR_FILE, ERR_MEMORY. */
 status hdf5_records_make(const char *path, int n, int n_group,
                          const record_group *groups);

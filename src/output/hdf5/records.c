@@ -101,6 +101,21 @@ static status go_to(stream *s, uint64_t at) {
   return st;
 }
 
+status hdf5_put(int fd, const char *path, const void *data, size_t bytes,
+                off_t offset) {
+  const char *at = data;
+  while (bytes > 0) {
+    errno = 0;
+    ssize_t n = pwrite(fd, at, bytes, offset);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return text_failed(path, "write", n < 0 ? errno : ENOSPC);
+    at += n;
+    offset += n;
+    bytes -= (size_t)n;
+  }
+  return OK;
+}
+
 /* ---- headers ------------------------------------------------------------- */
 
 /* Place of the message of that kind among those in chunk[n], or 0. */

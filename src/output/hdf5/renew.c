@@ -16,21 +16,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-status hdf5_put(int fd, const char *path, const void *data, size_t bytes,
-                off_t offset) {
-  const char *at = data;
-  while (bytes > 0) {
-    errno = 0;
-    ssize_t n = pwrite(fd, at, bytes, offset);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return text_failed(path, "write", n < 0 ? errno : ENOSPC);
-    at += n;
-    offset += n;
-    bytes -= (size_t)n;
-  }
-  return OK;
-}
-
 static status copy(const hdf5_file *h, off_t from, int fd, off_t to,
                    size_t bytes) {
   char chunk[CHUNK * 8];

@@ -58,8 +58,8 @@ static int is_after_miss(const run *r) {
          (run_remembers(r) || effects_sum_up(r) != NULL);
 }
 
-/* View of an increment for the outputs. */
-state loop_state(run *r, int attempt, int increment_no) {
+/* View of r->now for the outputs. */
+static state loop_state(run *r, int attempt, int increment_no) {
   const equilibrium *e = &r->now;
   state s = {
       .step_no = run_step_id(r) + 1,
@@ -118,6 +118,45 @@ int table_is_due(const step *s, int tables, double t, int increment_no,
       return 1;
   return 0;
 }
+
+/* ---- tables at time points that no increment ends at -------------------- */
+
+/* The first time point of a table after "after" within the increment. */
+static double next_point(const run *r, double after) {
+  double next = HUGE_VAL;
+  for (int i = 0; i < r->step->print.n; ++i)
+    next = fmin(next, print_next(&r->step->print.requests[i], r->step, after,
+                                 r->now.t));
+  return next;
+}
+
+static status show_within(run *r, double t, int increment_no) {
+  status st = OK;
+  shadow *b = NULL;
+  TRY(shadow_at(r, t, &b));
+  run *own = shadow_run(b);
+  TRY(effects_accept(own));
+  if (own->solving.report.outcome <= 0) ++r->course.unsettled;
+  state s = loop_state(own, 1, increment_no);
+  s.within = 1;
+  TRY(r->sink->between(r->sink->ctx, &s));
+done:
+  shadow_free(b);
+  return st;
+}
+
+static status dense_show(run *r, int increment_no) {
+  status st = OK;
+  double t = next_point(r, r->old.t);
+  if (r->sink->between == NULL || r->step->kind == STEP_STATIC) return OK;
+  for (; isfinite(t); t = next_point(r, t))
+    TRY(show_within(r, t, increment_no));
+done:
+  return st;
+}
+
+/* ---- an increment is accepted or rejected ---------------------------------
+ */
 
 /* 1 if some output needs the stresses of this increment. */
 static int stress_is_due(const step *s, double t, int increment_no, int last) {
@@ -225,6 +264,73 @@ status loop_no_equilibrium(run *r) {
        tried[0] == '\0' ? "" : "tried ",
        tried[0] == '\0' ? outcome_text(r->solving.report.outcome) : tried,
        r->old.t);
+done:
+  return st;
+}
+
+/* ---- before the increments of a step: effects, sudden loads of *VISCO -----
+ */
+
+/* 1 if a is b to rounding. */
+static int same_vector(size_t n, const double *a, const double *b) {
+  double largest = 0.0, worst = 0.0;
+  for (size_t i = 0; i < n; ++i) {
+    largest = fmax(largest, fmax(fabs(a[i]), fabs(b[i])));
+    worst = fmax(worst, fabs(a[i] - b[i]));
+  }
+  return worst <= 1e-12 * largest;
+}
+
+/* 1 if nothing acts at the start of the step that did not act before. */
+static int starts_smoothly(const run *r) {
+  if (r->course.total_no == 0 && r->nodes.n > 0) return 0;
+  for (size_t i = 0; i < r->n_dof; ++i)
+    if (r->body.fixed[i] &&
+        fabs(r->loads.ud[i] - r->old.u[i]) > 1e-12 * fabs(r->loads.ud[i]))
+      return 0;
+  if (r->body.moduli.n_own > 0 &&
+      !same_vector((size_t)r->msh->n_elem, r->now.temperature,
+                   r->old.temperature))
+    return 0;
+  return same_vector(r->n_dof, r->now.F, r->old.F) &&
+         same_vector(strains_kept(r), r->now.e0, r->old.e0);
+}
+
+/* 1: a law flows, or would without *EFFECTS. */
+static int has_law(const run *r) {
+  int any = r->strains.visco != NULL;
+  for (int i = 0; i < r->m->n.material; ++i)
+    any |= r->m->materials[i].law_aside != NULL;
+  return any;
+}
+
+/*
+ * The body responds at once to what is applied suddenly at the start of a
+ * *VISCO step: an increment without length of its own.
+ */
+static status start_visco(run *r, int *increment_no) {
+  status st = OK;
+  double cpu = timer_cpu();
+  if (r->step->kind != STEP_VISCO) return OK;
+  if (!has_law(r)) return OK;
+  TRY(increment_begin(r, r->step->start));
+  if (!starts_smoothly(r)) {
+    TRY(increment_solve(r, r->step->start));
+    if (outcome_is_fatal(r->solving.report.outcome))
+      TRY(loop_no_equilibrium(r));
+    if (!same_vector(r->n_dof, r->now.u, r->old.u))
+      TRY(loop_accept(r, 1, ++*increment_no, 0, cpu));
+  }
+  TRY(visco_begin_step(r));
+done:
+  return st;
+}
+
+static status start_step(run *r) {
+  status st = OK;
+  visco_rest(r);
+  TRY(effects_start(r));
+  TRY(start_visco(r, &r->at.increment_no));
 done:
   return st;
 }

@@ -15,8 +15,6 @@
 status loop_accept(run *r, int attempt, int increment_no, int last, double cpu);
 /* It is not: reported with the reason. */
 status loop_reject(run *r, int attempt, int increment_no, const char *why);
-/* View of r->now for the outputs. */
-state loop_state(run *r, int attempt, int increment_no);
 /* 1 if one of these tables (bits PRINT_*) shows the increment that ends at t.
  */
 int table_is_due(const step *s, int tables, double t, int increment_no,
@@ -32,12 +30,6 @@ status loop_solve(run *r, double t);
 status loop_solve_once(run *r, double t);
 /* Between two attempts: the checkpoint that is due; ends the run if asked. */
 status loop_pause(run *r);
-
-/* start.c: what comes before the increments of a step. */
-status start_step(run *r);
-
-/* dense.c: tables at time points within the increment r->old to r->now. */
-status dense_show(run *r, int increment_no);
 
 /* The loads now over the largest of the step, at most 1. */
 double share_of_step(const run *r);
