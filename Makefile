@@ -314,11 +314,11 @@ stability: $(program) $(stab) $(whole) scenes
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) PROTIS_PROBLEMS=$(PROBLEMS) \
 	  PROTIS_SEED=$(SEED) tools/run_tests $(filter-out $(program) $(scenes) scenes,$^)
 
-layers:
-	$(Q)tools/check_layers src
+layers: $(objects)
+	$(Q)tools/check_layers src $(objects)
 
 style:
-	$(Q)tools/test_checks build/test_checks
+	$(Q)CC="$(CC)" tools/test_checks build/test_checks
 	$(Q)tools/check_style src tests
 
 bench-run: $(program) $(bench)
