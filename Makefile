@@ -88,7 +88,7 @@ support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c \
               tests/scenes/*.c tests/decks/*.c))
 
 .PHONY: all help deps demo test check unit regression stability layers style \
-        format bench bench-solvers bench-auto clean
+        format bench bench-solvers bench-auto bench-fclib clean
 .DEFAULT_GOAL := all
 .SECONDARY:
 
@@ -116,6 +116,7 @@ help:
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
 	@echo "make bench-solvers  what each digit costs, for every solver"
 	@echo "make bench-auto   METHOD=AUTO against the best of the others"
+	@echo "make bench-fclib  the same on problems from files, DIR=FOLDER"
 	@echo "make bench-peers  AUTO against the kernels of Siconos, if installed"
 	@echo "make manual       the manual as pages of HTML and man; needs pandoc"
 	@echo "make install      below PREFIX=/usr/local; DESTDIR=; make uninstall, deb"
@@ -322,7 +323,7 @@ style:
 	$(Q)tools/check_style src tests
 
 bench-run: $(program) $(bench)
-	$(Q)for b in $(filter-out %/auto,$(bench)); do $$b || exit 1; done
+	$(Q)for b in $(filter-out %/auto %/fclib,$(bench)); do $$b || exit 1; done
 
 # Programs of tests/verify print tables: found and expected.
 .PHONY: verify
@@ -381,6 +382,12 @@ bench-solvers: $(out)/tests/bench/solvers
 
 bench-auto: $(out)/tests/bench/auto
 	$(Q)$<
+
+# Problems from files, of a folder: DIR=.
+bench-fclib: $(out)/tests/bench/fclib
+	@test -n "$(DIR)" || { echo "bench-fclib: DIR= a folder of FCLIB files" \
+	  >&2; exit 1; }
+	$(Q)$< $(sort $(wildcard $(DIR)/*.hdf5 $(DIR)/*.h5))
 
 # Against another library, which nothing else needs.
 SICONOS ?= /usr/include/siconos

@@ -1,10 +1,12 @@
 /*
- * A sparse matrix by rows, and a vector that has all entries.
+ * Sparse matrices, by rows and by square blocks, and a vector that has all
+ * entries.
  */
 #ifndef PROTIS_BASE_SPARSE_H
 #define PROTIS_BASE_SPARSE_H
 
 #include "base/memory.h"
+#include "base/status.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -23,6 +25,42 @@ static inline void sparse_free(sparse_rows *rows) {
   memory_free(rows->val);
   *rows = (sparse_rows){0};
 }
+
+/*
+ * A square matrix of dim*dim blocks by columns of blocks. With the place (a, b)
+ * there is (b, a), and all (a, a), zero or not.
+ */
+typedef struct sparse_blocks {
+  int dim, n;  /* 1 to 3; blocks in a row */
+  int *start;  /* [n+1] of each column of blocks */
+  int *row;    /* [start[n]] row of the block, ascending in a column */
+  int *mate;   /* [start[n]] place of the block across the diagonal */
+  int *own;    /* [n] place of the block on it */
+  double *val; /* [start[n]*dim*dim] the blocks, column major */
+} sparse_blocks;
+
+/* From entries in any order; those of one place add up, zeros are left out. */
+status sparse_blocks_new(int dim, int n, long entries, const int *row,
+                         const int *col, const double *val,
+                         sparse_blocks **out);
+void sparse_blocks_free(sparse_blocks *b); /* accepts NULL */
+/* The block (i, i), [dim*dim]. */
+static inline const double *sparse_blocks_own(const sparse_blocks *b, int i) {
+  return b->val + (size_t)b->own[i] * (size_t)(b->dim * b->dim);
+}
+/* y += B e x, e the column j of blocks: x[dim], y[dim*n]. */
+void sparse_blocks_add(const sparse_blocks *b, int j, const double *x,
+                       double *y);
+/* y = B x; y[dim*n] = |B| x. */
+void sparse_blocks_product(const sparse_blocks *b, const double *x, double *y);
+void sparse_blocks_bound(const sparse_blocks *b, const double *x, double *y);
+/* y[dim] = row i of blocks of B x. */
+void sparse_blocks_row(const sparse_blocks *b, int i, const double *x,
+                       double *y);
+/* The rows of the entries that are not zero. */
+status sparse_blocks_rows(const sparse_blocks *b, sparse_rows *rows);
+/* All entries into M[m*m], m = dim*n, column major. */
+void sparse_blocks_dense(const sparse_blocks *b, double *M);
 
 /* Largest |v_i| of v[n]; 0 for n = 0. NaN is passed over. */
 static inline double largest_entry(size_t n, const double *v) {

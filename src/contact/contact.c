@@ -8,6 +8,7 @@
 
 #include <cblas.h>
 #include <math.h>
+#include <string.h>
 
 static const double ROUNDING_FLOOR = 0x1p-14; /* -, contact_scale */
 
@@ -31,8 +32,56 @@ void contact_product(int m, const double *M, const double *x, double *y) {
   cblas_dgemv(CblasColMajor, CblasNoTrans, m, m, 1.0, M, m, x, 1, 0.0, y, 1);
 }
 
+static const double *matrix_of(const contact_problem *cp) {
+  return cp->A != NULL ? cp->A : cp->W;
+}
+
+void contact_apply(const contact_problem *cp, const double *x, double *y) {
+  if (cp->blocks != NULL)
+    sparse_blocks_product(cp->blocks, x, y);
+  else
+    contact_product(cp->m, matrix_of(cp), x, y);
+}
+
+void contact_add_columns(const contact_problem *cp, int node_id,
+                         const double *x, double *y) {
+  if (cp->blocks != NULL)
+    sparse_blocks_add(cp->blocks, node_id, x, y);
+  else
+    cblas_dgemv(CblasColMajor, CblasNoTrans, cp->m, cp->dim, 1.0,
+                matrix_of(cp) + (size_t)(node_id * cp->dim) * (size_t)cp->m,
+                cp->m, x, 1, 1.0, y, 1);
+}
+
+void contact_column(const contact_problem *cp, int dof, double *column) {
+  double e[3] = {0.0, 0.0, 0.0};
+  e[dof % cp->dim] = 1.0;
+  memset(column, 0, (size_t)cp->m * sizeof *column);
+  contact_add_columns(cp, dof / cp->dim, e, column);
+}
+
+void contact_block(const contact_problem *cp, int node_id, double *block) {
+  const int d = cp->dim;
+  const size_t m = (size_t)cp->m, first = (size_t)(node_id * d) * (m + 1);
+  if (cp->blocks != NULL) {
+    memcpy(block, sparse_blocks_own(cp->blocks, node_id),
+           (size_t)(d * d) * sizeof *block);
+    return;
+  }
+  for (int j = 0; j < d; ++j)
+    memcpy(block + d * j, matrix_of(cp) + first + m * (size_t)j,
+           (size_t)d * sizeof *block);
+}
+
+void contact_dense(const contact_problem *cp, double *M) {
+  if (cp->blocks != NULL)
+    sparse_blocks_dense(cp->blocks, M);
+  else
+    memcpy(M, matrix_of(cp), (size_t)cp->m * (size_t)cp->m * sizeof *M);
+}
+
 void contact_reaction(const contact_problem *cp, const double *u, double *r) {
-  contact_product(cp->m, cp->A, u, r);
+  contact_apply(cp, u, r);
   for (int i = 0; i < cp->m; ++i) r[i] -= cp->f[i];
 }
 
@@ -71,8 +120,10 @@ double contact_stick(const contact_problem *cp, int dof) {
 /* ---- stiffness of a node ----------------------------------------------- */
 
 double contact_diagonal(const contact_problem *cp, int dof) {
-  const double *M = cp->A != NULL ? cp->A : cp->W;
-  return M[(size_t)dof * (size_t)cp->m + (size_t)dof];
+  const int k = dof % cp->dim;
+  if (cp->blocks != NULL)
+    return sparse_blocks_own(cp->blocks, dof / cp->dim)[k + k * cp->dim];
+  return matrix_of(cp)[(size_t)dof * (size_t)cp->m + (size_t)dof];
 }
 
 double contact_largest_diagonal(const contact_problem *cp) {

@@ -34,13 +34,15 @@ typedef struct contact_bodies {
 } contact_bodies;
 
 typedef struct contact_problem {
-  int dim, n, m;          /* 2 or 3; contact nodes; m = dim*n unknowns */
-  const double *A;        /* [m*m] condensed stiffness, N/m, symmetric,
-                             positive (semi)definite; NULL: only the
-                             compliance is known */
-  const double *W;        /* [m*m] compliance, m/N; NULL until needed. Given
-                             alone (A NULL) it may be semidefinite and slightly
-                             unsymmetric */
+  int dim, n, m;   /* 2 or 3; contact nodes; m = dim*n unknowns */
+  const double *A; /* [m*m] condensed stiffness, N/m, symmetric,
+                      positive (semi)definite; NULL: only the
+                      compliance is known */
+  const double *W; /* [m*m] compliance, m/N; NULL until needed. Given
+                      alone (A NULL) it may be semidefinite and slightly
+                      unsymmetric */
+  const sparse_blocks *blocks; /* the compliance in the place of W where most
+                                  of it is zero (then A, W are NULL); NULL */
   const double *f;        /* [m] condensed load, N; with A NULL: q = W f, m */
   const double *f_load;   /* [m] f without the motion of supports, N; NULL: f */
   const double *gap;      /* [n] normal gap of the undeformed body, m */
@@ -70,6 +72,17 @@ typedef enum { CONTACT_OPEN, CONTACT_SLIP, CONTACT_STICK } contact_status;
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out);
 void contact_bodies_free(contact_bodies *b); /* accepts NULL */
 
+/* y[m] = A x, or W x where that alone is known. */
+void contact_apply(const contact_problem *cp, const double *x, double *y);
+/* y[m] += A e x, or W e x, e the columns of a node, x[dim]. */
+void contact_add_columns(const contact_problem *cp, int node_id,
+                         const double *x, double *y);
+/* A column of A or W. column[m] */
+void contact_column(const contact_problem *cp, int dof, double *column);
+/* The block of a node on the diagonal of A or W, block[dim*dim]. */
+void contact_block(const contact_problem *cp, int node_id, double *block);
+/* All of A or W into M[m*m]. */
+void contact_dense(const contact_problem *cp, double *M);
 /* r = A u - f, N. r[m]. Stiffness form only. */
 void contact_reaction(const contact_problem *cp, const double *u, double *r);
 /* g[n] = max(0, g0 + B p) of the normal forces r[m], N. */

@@ -19,16 +19,28 @@ void force_set_free(force_set *s) {
   memory_free(s);
 }
 
+static double largest_of_column(const contact_problem *cp, int dof) {
+  const sparse_blocks *b = cp->blocks;
+  const size_t d = (size_t)cp->dim, m = (size_t)cp->m;
+  double most = 0.0;
+  if (b == NULL) return largest_entry(m, cp->W + m * (size_t)dof);
+  for (int k = b->start[dof / cp->dim]; k < b->start[dof / cp->dim + 1]; ++k)
+    most = fmax(
+        most, largest_entry(d, b->val + d * (d * (size_t)k + (size_t)dof % d)));
+  return most;
+}
+
 /* D: 1/W_ii, equal in the tangents of a node, so that discs stay discs; of the
  * largest where W_ii is rounding of the other entries of its column: bodies
  * may differ by any power of ten. */
 static void scaling(const contact_problem *cp, double *D) {
   int d = cp->dim;
-  const size_t m = (size_t)cp->m;
   double largest = 0.0;
-  for (size_t i = 0; i < m; ++i) {
-    const double *column = cp->W + i * m;
-    D[i] = column[i] > NOTHING * largest_entry(m, column) ? column[i] : 0.0;
+  for (int i = 0; i < cp->m; ++i) {
+    const double own = cp->blocks != NULL
+                           ? contact_diagonal(cp, i)
+                           : cp->W[(size_t)i * (size_t)(cp->m + 1)];
+    D[i] = own > NOTHING * largest_of_column(cp, i) ? own : 0.0;
     largest = fmax(largest, D[i]);
   }
   for (int i = 0; i < cp->n; ++i) {
@@ -49,8 +61,9 @@ static double spectrum_bound(const contact_problem *cp, const double *D,
   for (size_t i = 0; i < m; ++i) v[i] = 1.0;
   for (int k = 0; k < SHARPENINGS; ++k) {
     double ratio = 0.0;
-    memset(z, 0, m * sizeof *z);
-    for (size_t j = 0; j < m; ++j)
+    if (cp->blocks != NULL) sparse_blocks_bound(cp->blocks, v, z);
+    if (cp->blocks == NULL) memset(z, 0, m * sizeof *z);
+    for (size_t j = 0; j < m && cp->blocks == NULL; ++j)
       for (size_t i = 0; i < m; ++i) z[i] += fabs(cp->W[i + m * j]) * v[j];
     for (size_t i = 0; i < m; ++i) {
       z[i] *= D[i];
@@ -79,6 +92,7 @@ static size_t entries(const contact_problem *cp) {
 }
 
 status compliance_rows(const contact_problem *cp, sparse_rows *rows) {
+  if (cp->blocks != NULL) return sparse_blocks_rows(cp->blocks, rows);
   size_t m = (size_t)cp->m, count = entries(cp);
   OWNED int *at = NULL;
   PASS_NEW(at, m);
@@ -115,9 +129,9 @@ status force_set_new(const contact_problem *cp, force_set **out) {
   NEW(s->load, cp->m);
   NEW(s->defect, cp->m);
   NEW(v, 2 * cp->m);
-  s->symmetric = is_symmetric(cp->m, cp->W);
+  s->symmetric = cp->blocks == NULL && is_symmetric(cp->m, cp->W);
   scaling(cp, s->D);
-  if ((double)entries(cp) <= SPARSE * cp->m * cp->m)
+  if (cp->blocks != NULL || (double)entries(cp) <= SPARSE * cp->m * cp->m)
     TRY(compliance_rows(cp, &s->rows));
   s->step = 1.0 / spectrum_bound(cp, s->D, v, v + cp->m);
   *out = s;

@@ -24,22 +24,19 @@ void contact_bodies_free(contact_bodies *b) {
   RELEASE(b->of, b->size, b);
 }
 
-static const double *matrix_of(const contact_problem *cp) {
-  return cp->A != NULL ? cp->A : cp->W;
-}
-
 /* Root of the largest diagonal entry of a node. */
 static double root_of(const contact_problem *cp, int node_id) {
   double most = 0.0;
   for (int i = node_id * cp->dim; i < (node_id + 1) * cp->dim; ++i)
-    most = fmax(most, matrix_of(cp)[(size_t)i * (size_t)(cp->m + 1)]);
+    most = fmax(most, contact_diagonal(cp, i));
   return sqrt(most);
 }
 
 /* 1: an entry of columns a and rows b is above "least". */
 static int joined(const contact_problem *cp, int a, int b, double least) {
   for (int j = a * cp->dim; j < (a + 1) * cp->dim; ++j) {
-    const double *column = matrix_of(cp) + (size_t)j * (size_t)cp->m;
+    const double *column =
+        (cp->A != NULL ? cp->A : cp->W) + (size_t)j * (size_t)cp->m;
     for (int i = b * cp->dim; i < (b + 1) * cp->dim; ++i)
       if (fabs(column[i]) > least) return 1;
   }
@@ -68,6 +65,34 @@ static void find_bodies(const contact_problem *cp, const double *root,
   }
 }
 
+/* The same of sparse blocks, all at places that are joined. */
+static void find_sparse_bodies(const contact_problem *cp, const double *root,
+                               int *list, contact_bodies *b) {
+  const sparse_blocks *W = cp->blocks;
+  const size_t size = (size_t)(cp->dim * cp->dim);
+  for (int i = 0; i < cp->n; ++i) b->of[i] = -1;
+  for (int first = 0; first < cp->n; ++first) {
+    int found = 0;
+    if (b->of[first] >= 0) continue;
+    b->of[first] = b->n;
+    list[found++] = first;
+    while (found > 0) {
+      const int a = list[--found];
+      for (int k = W->start[a]; k < W->start[a + 1]; ++k) {
+        const int other = W->row[k];
+        const double most =
+            fmax(largest_entry(size, W->val + size * (size_t)k),
+                 largest_entry(size, W->val + size * (size_t)W->mate[k]));
+        if (b->of[other] >= 0 || !(most > JOINED * root[a] * root[other]))
+          continue;
+        b->of[other] = b->n;
+        list[found++] = other;
+      }
+    }
+    ++b->n;
+  }
+}
+
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
   status st = OK;
   contact_bodies *b = NULL;
@@ -78,7 +103,10 @@ status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
   NEW(root, cp->n);
   NEW(list, cp->n);
   for (int i = 0; i < cp->n; ++i) root[i] = root_of(cp, i);
-  find_bodies(cp, root, list, b);
+  if (cp->blocks != NULL)
+    find_sparse_bodies(cp, root, list, b);
+  else
+    find_bodies(cp, root, list, b);
   NEW(b->size, b->n);
   *out = b;
   b = NULL;
@@ -316,6 +344,14 @@ static void equation_rows(const measure *x, int first, int rows, double *d) {
                *y = cp->A != NULL ? x->r : x->u;
   double sign = cp->A != NULL ? 1.0 : -1.0;
   for (int i = 0; i < rows; ++i) d[i] = y[first + i] + sign * cp->f[first + i];
+  if (cp->blocks != NULL) {
+    for (int i = 0; i < rows; i += cp->dim) {
+      double own[3];
+      sparse_blocks_row(cp->blocks, (first + i) / cp->dim, v, own);
+      for (int k = 0; k < cp->dim; ++k) d[i + k] = own[k] - d[i + k];
+    }
+    return;
+  }
   cblas_dgemv(CblasColMajor, CblasNoTrans, rows, cp->m, 1.0, M + first, cp->m,
               v, 1, -1.0, d, 1);
 }

@@ -182,6 +182,7 @@ done:
 
 void exchange_free(exchange_problem *p) {
   if (p == NULL) return;
+  sparse_blocks_free(p->blocks);
   RELEASE(p->matrix, p->load, p->gap, p->ut0, p->g0, p->B.start, p->B.col,
           p->B.val, p);
 }

@@ -30,16 +30,18 @@ typedef enum {
 } exchange_type;
 
 typedef struct exchange_problem {
-  int dim;            /* 2 or 3; 1: a plain LCP */
-  int n, m;           /* contacts; unknowns dim*n */
-  int unknowns;       /* n of M of a global problem; else m */
-  const char *form;   /* "FCLIB, local", ... for the listing */
-  contact_problem cp; /* dim 2 or 3; borrows the arrays below */
-  double *matrix;     /* [m*m] W (A if the global M is singular); LCP: M */
-  double *load;       /* [m] W f (f); LCP: q */
-  double *gap, *ut0;  /* [n], [n*(dim-1)] */
-  double *g0;         /* [n] zero */
-  sparse_rows B;      /* diagonal, mu */
+  int dim;               /* 2 or 3; 1: a plain LCP */
+  int n, m;              /* contacts; unknowns dim*n */
+  int unknowns;          /* n of M of a global problem; else m */
+  const char *form;      /* "FCLIB, local", ... for the listing */
+  contact_problem cp;    /* dim 2 or 3; borrows the arrays below */
+  double *matrix;        /* [m*m] W (A if the global M is singular); LCP: M;
+                            NULL: W in blocks */
+  sparse_blocks *blocks; /* W where most of it is zero; or NULL */
+  double *load;          /* [m] W f (f); LCP: q */
+  double *gap, *ut0;     /* [n], [n*(dim-1)] */
+  double *g0;            /* [n] zero */
+  sparse_rows B;         /* diagonal, mu */
 } exchange_problem;
 
 /*

@@ -12,15 +12,15 @@
 #define LOCAL "/fclib_local"
 #define GLOBAL "/fclib_global"
 
+static const double SPARSE_SHARE = 0.5; /* -, of the blocks, and of entries */
+
 /* ---- what both kinds have --------------------------------------------------
  */
 
 static double sign_of(int dim, int dof) { return dof % dim == 0 ? -1.0 : 1.0; }
 
 static status new_arrays(exchange_problem *p) {
-  size_t m = (size_t)p->m;
-  PASS_NEW(p->matrix, m * m);
-  PASS_NEW(p->load, m);
+  PASS_NEW(p->load, p->m);
   PASS_NEW(p->gap, p->n);
   PASS_NEW(p->ut0, (size_t)p->n * (size_t)(p->dim - 1));
   PASS_NEW(p->g0, p->n);
@@ -41,12 +41,20 @@ static status set_size(const hdf5_source *s, const char *root, int m,
   if (m % p->dim != 0)
     RAISE(ERR_DECK, "%s: %s has %d unknowns, no multiple of spacedim = %d",
           s->path, root, m, p->dim);
-  if (m > MOST_UNKNOWNS)
-    RAISE(ERR_DECK, "%s: %s has %d unknowns; at most %d can be solved", s->path,
-          root, m, (int)MOST_UNKNOWNS);
-  PASS(require_problem_memory(m));
   p->m = m;
   p->n = m / p->dim;
+  return OK;
+}
+
+/* A matrix of all entries, zero. */
+static status new_matrix(const hdf5_source *s, const char *root,
+                         exchange_problem *p) {
+  const size_t m = (size_t)p->m;
+  if (p->m > MOST_UNKNOWNS)
+    RAISE(ERR_DECK, "%s: %s has %d unknowns; at most %d can be solved", s->path,
+          root, p->m, (int)MOST_UNKNOWNS);
+  PASS(require_problem_memory(p->m));
+  PASS_NEW(p->matrix, m * m);
   return OK;
 }
 
@@ -92,12 +100,58 @@ static status refuse_group(const hdf5_source *s, const char *name,
 
 /* W, q of FCLIB into the signs of contact.h, in place. */
 static void turn_signs(const exchange_problem *p) {
-  for (int j = 0; j < p->m; ++j) {
-    p->load[j] *= sign_of(p->dim, j);
+  const sparse_blocks *b = p->blocks;
+  const int d = p->dim;
+  for (int j = 0; j < p->m; ++j) p->load[j] *= sign_of(d, j);
+  for (int j = 0; p->matrix != NULL && j < p->m; ++j)
     for (int i = 0; i < p->m; ++i)
       p->matrix[(size_t)i + (size_t)p->m * (size_t)j] *=
-          sign_of(p->dim, i) * sign_of(p->dim, j);
+          sign_of(d, i) * sign_of(d, j);
+  for (int k = 0; b != NULL && k < b->start[p->n]; ++k)
+    for (int e = 0; e < d * d; ++e)
+      b->val[(size_t)k * (size_t)(d * d) + (size_t)e] *=
+          sign_of(d, e % d) * sign_of(d, e / d);
+}
+
+/* 1: so few of "all" that sparse products are faster. */
+static int are_few(double count, double all) {
+  return count <= SPARSE_SHARE * all * all;
+}
+
+/* W into p->blocks, or NULL: too many are not zero. */
+static status take_blocks(exchange_problem *p, const triplets *W) {
+  if (p->n == 0 || !are_few((double)W->n, p->m)) return OK;
+  PASS(sparse_blocks_new(p->dim, p->n, W->n, W->row, W->column, W->value,
+                         &p->blocks));
+  if (are_few(p->blocks->start[p->n], p->n)) return OK;
+  sparse_blocks_free(p->blocks);
+  p->blocks = NULL;
+  return OK;
+}
+
+/* W in blocks, where most of it is zero, in the place of the matrix. */
+static status thin_out(exchange_problem *p) {
+  const size_t m = (size_t)p->m;
+  long n = 0;
+  for (size_t k = 0; k < m * m; ++k) n += p->matrix[k] != 0.0;
+  OWNED int *row = NULL, *column = NULL;
+  OWNED double *value = NULL;
+  if (!are_few((double)n, p->m)) return OK;
+  PASS_NEW(row, n);
+  PASS_NEW(column, n);
+  PASS_NEW(value, n);
+  triplets W = {p->m, p->m, 0, row, column, value};
+  for (size_t k = 0; k < m * m; ++k) {
+    if (p->matrix[k] == 0.0) continue;
+    row[W.n] = (int)(k % m);
+    column[W.n] = (int)(k / m);
+    value[W.n++] = p->matrix[k];
   }
+  PASS(take_blocks(p, &W));
+  if (p->blocks == NULL) return OK;
+  memory_free(p->matrix);
+  p->matrix = NULL;
+  return OK;
 }
 
 static void set_problem(exchange_problem *p, int stiffness, int floating) {
@@ -106,6 +160,7 @@ static void set_problem(exchange_problem *p, int stiffness, int floating) {
   p->cp.m = p->m;
   p->cp.A = stiffness ? p->matrix : NULL;
   p->cp.W = stiffness ? NULL : p->matrix;
+  p->cp.blocks = p->blocks;
   p->cp.f = p->load;
   p->cp.gap = p->gap;
   p->cp.floating = floating;
@@ -163,10 +218,14 @@ static status read_local(const hdf5_source *s, exchange_problem *p) {
   TRY(new_arrays(p));
   TRY(read_vector(s, LOCAL "/vectors/q", p->m, &q));
   TRY(read_friction(s, LOCAL "/vectors/mu", p));
-  triplets_dense(&W, p->matrix);
   memcpy(p->load, q, (size_t)p->m * sizeof *q);
   TRY(read_constraints(s, p->m, &c));
-  TRY(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
+  if (c.p == 0) TRY(take_blocks(p, &W));
+  if (p->blocks == NULL) {
+    TRY(new_matrix(s, LOCAL, p));
+    triplets_dense(&W, p->matrix);
+    TRY(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
+  }
   turn_signs(p);
   p->unknowns = p->m + c.p;
   set_problem(p, 0, 0);
@@ -385,6 +444,7 @@ static status condense_global(const hdf5_source *s, global *g,
     memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
     PASS(reduce_any(s->path, &g->M, &g->H, g->f, p->matrix, p->load));
   }
+  if (!taken) PASS(thin_out(p));
   turn_signs(p);
   if (taken) set_origin(p, g->w);
   set_problem(p, taken, taken);
@@ -398,6 +458,7 @@ static status read_global(const hdf5_source *s, exchange_problem *p) {
   TRY(triplets_size(s, GLOBAL "/H", &g.H));
   TRY(set_size(s, GLOBAL, g.H.columns, p));
   TRY(read_matrices(s, &g));
+  TRY(new_matrix(s, GLOBAL, p));
   TRY(new_arrays(p));
   TRY(read_vector(s, GLOBAL "/vectors/f", g.M.rows, &g.f));
   TRY(read_vector(s, GLOBAL "/vectors/w", p->m, &g.w));

@@ -117,7 +117,7 @@ static status make_matrix(written *f) {
   f->M = a;
   f->local = 1;
   if (cp->A == NULL) {
-    memcpy(a, cp->W, size * sizeof *a);
+    contact_dense(cp, a);
     return OK;
   }
   memcpy(a, cp->A, size * sizeof *a);

@@ -77,7 +77,6 @@ static status aitken_setup(const contact_problem *cp, const void *par,
                            void **work) {
   status st = OK;
   aitken_work *w = NULL;
-  const double *M = cp->A != NULL ? cp->A : cp->W;
   size_t m = (size_t)cp->m;
   (void)par;
   NEW(w, 1);
@@ -91,7 +90,7 @@ static status aitken_setup(const contact_problem *cp, const void *par,
   NEW(w->dx, m * DEPTH);
   NEW(w->dy, m * DEPTH);
   NEW(w->df, m * DEPTH);
-  for (size_t i = 0; i < m; ++i) w->diagonal[i] = M[i * m + i];
+  for (int i = 0; i < cp->m; ++i) w->diagonal[i] = contact_diagonal(cp, i);
   *work = w;
   w = NULL;
 done:
@@ -317,7 +316,8 @@ const solver_ops aitken_solver = {
     "Costs one product with the matrix a sweep. Choose it when only the\n"
     "compliance is known or is singular, when the direct methods fail, or for\n"
     "a few digits of a very large problem.",
-  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
+  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
+             SPARSE_COMPLIANCE,
   .param_size = sizeof(aitken),
   .options = aitken_options,
   .setup = aitken_setup,

@@ -452,7 +452,8 @@ const solver_ops pcg_solver = {
     "holds is held by soft springs on its rigid motions, which follow it\n"
     "until they carry nothing. A step costs two products. Choose it for large\n"
     "problems with many increments on one matrix and small friction.",
-  .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
+  .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE |
+             SPARSE_COMPLIANCE,
   .param_size = sizeof(pcg),
   .options = pcg_options,
   .setup = pcg_setup,

@@ -18,12 +18,13 @@ static const double ROUNDING = 0x1p-46; /* -, of stiffness times distance */
 struct node_blocks {
   double *K;               /* [dim*dim*n] stiffness of each node, N/m */
   local_state *state;      /* [n] state found at the last visit */
+  double *weight;          /* [m] diagonal of the matrix */
   double *step, *strained; /* [m] of a sweep, m; A times it, N */
 };
 
 void node_blocks_free(node_blocks *b) {
   if (b == NULL) return;
-  RELEASE(b->K, b->state, b->step, b->strained, b);
+  RELEASE(b->K, b->state, b->weight, b->step, b->strained, b);
 }
 
 /* Inverse of a d*d block by elimination without pivoting: the block is positive
@@ -72,23 +73,21 @@ static void lift_block(int d, const double *block, double lift, double *K) {
 status node_blocks_new(const contact_problem *cp, node_blocks **out) {
   status st = OK;
   node_blocks *b = NULL;
-  const double *M = cp->A != NULL ? cp->A : cp->W;
   int d = cp->dim;
   NEW(b, 1);
   NEW(b->K, cp->n * d * d);
   NEW(b->state, cp->n);
+  NEW(b->weight, cp->m);
   NEW(b->step, cp->m);
   NEW(b->strained, cp->m);
   double lift = 0.0;
-  for (size_t i = 0; i < (size_t)cp->m; ++i)
-    lift = fmax(lift, M[i * (size_t)cp->m + i]);
+  for (int i = 0; i < cp->m; ++i) {
+    b->weight[i] = contact_diagonal(cp, i);
+    lift = fmax(lift, b->weight[i]);
+  }
   for (int node_id = 0; node_id < cp->n; ++node_id) {
     double block[9], *K = b->K + node_id * d * d;
-    size_t first = (size_t)(node_id * d);
-    for (int j = 0; j < d; ++j)
-      for (int i = 0; i < d; ++i)
-        block[i + d * j] =
-            M[first + (size_t)i + (first + (size_t)j) * (size_t)cp->m];
+    contact_block(cp, node_id, block);
     if (cp->A != NULL)
       lift_block(d, block, lift, K);
     else
@@ -210,20 +209,17 @@ static void node_step(relaxation *s, int node_id, double *step) {
 
 static void visit(relaxation *s, int node_id) {
   const contact_problem *cp = s->cp;
-  const double *M = cp->A != NULL ? cp->A : cp->W;
   double *unknown = cp->A != NULL ? s->u : s->r, step[3] = {0.0, 0.0, 0.0};
-  size_t first = (size_t)(node_id * cp->dim), m = (size_t)cp->m;
-  int moved = 0;
+  int first = node_id * cp->dim, moved = 0;
   node_step(s, node_id, step);
   for (int k = 0; k < cp->dim; ++k) {
-    double weight = M[(first + (size_t)k) * m + first + (size_t)k];
+    double weight = s->blocks->weight[first + k];
     moved = moved || step[k] != 0.0;
-    unknown[first + (size_t)k] += step[k];
+    unknown[first + k] += step[k];
     s->change += weight * step[k] * step[k];
   }
   if (moved)
-    cblas_dgemv(CblasColMajor, CblasNoTrans, cp->m, cp->dim, 1.0, M + first * m,
-                cp->m, step, 1, 1.0, cp->A != NULL ? s->r : s->u, 1);
+    contact_add_columns(cp, node_id, step, cp->A != NULL ? s->r : s->u);
 }
 
 void relaxation_sweep(relaxation *s, int backward) {
@@ -248,7 +244,7 @@ void relaxation_refresh(const relaxation *s) {
     contact_reaction(s->cp, s->u, s->r);
     return;
   }
-  contact_product(s->cp->m, s->cp->W, s->r, s->u);
+  contact_apply(s->cp, s->r, s->u);
   for (int i = 0; i < s->cp->m; ++i) s->u[i] += s->cp->f[i];
 }
 

@@ -54,9 +54,10 @@ enum {
   SOLVES_3D = 4,
   NEEDS_STIFFNESS = 8,
   NEEDS_COMPLIANCE = 16,
-  SOLVES_FLOATING = 32,   /* works with a semidefinite A */
-  REGULAR_COMPLIANCE = 64 /* instead of the stiffness a compliance that has an
-                             inverse, which need not be made */
+  SOLVES_FLOATING = 32,    /* works with a semidefinite A */
+  REGULAR_COMPLIANCE = 64, /* instead of the stiffness a compliance that has an
+                              inverse, which need not be made */
+  SPARSE_COMPLIANCE = 128  /* the compliance in blocks */
 };
 
 typedef struct solver_ops {

@@ -257,7 +257,8 @@ const solver_ops sor_solver = {
     "with the matrix a sweep, and many sweeps: choose it when the direct\n"
     "methods fail, when only the compliance is known or is singular, or for a\n"
     "few digits of a large problem.",
-  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
+  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
+             SPARSE_COMPLIANCE,
   .param_size = sizeof(sor),
   .options = sor_options,
   .setup = sor_setup,

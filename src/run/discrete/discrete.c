@@ -14,14 +14,19 @@
 #include <string.h>
 #include <strings.h>
 
-enum { LOG = 512 };
+enum {
+  LOG = 512,
+  MOST_WHOLE = 2000 /* unknowns: all of a sparse compliance is inverted */
+};
 
 /* One solve with all its arrays. */
 typedef struct discrete {
   const step *step;
   const exchange_problem *p;
-  contact_problem cp; /* p->cp, with its bodies after the solve; dim 1:
-                         0 */
+  contact_problem cp;    /* p->cp, with its bodies after the solve; dim 1:
+                            0 */
+  contact_problem whole; /* the same with all of the matrix */
+  double *full;          /* [m*m] of a compliance in blocks, or NULL */
   contact_bodies *bodies;
   contact_surface surface; /* numbers only */
   double *u, *r;           /* [m] start and solution; LCP: w, z */
@@ -58,6 +63,7 @@ static void discrete_free(discrete *d) {
   memory_free(d->slip);
   memory_free(d->g);
   memory_free(d->contact);
+  memory_free(d->full);
   contact_bodies_free(d->bodies);
   solution_set_free(&d->solutions);
 }
@@ -69,7 +75,7 @@ static status condensed_energy(const contact_problem *cp, const double *u,
   double *y = NULL;
   const double *x = cp->A != NULL ? u : r;
   NEW(y, cp->m);
-  contact_product(cp->m, cp->A != NULL ? cp->A : cp->W, x, y);
+  contact_apply(cp, x, y);
   *energy = 0.0;
   for (int i = 0; i < cp->m; ++i) *energy += 0.5 * x[i] * y[i];
 done:
@@ -101,6 +107,21 @@ done:
   return st;
 }
 
+/* Of a compliance in blocks all of it, for the bound and the checks. */
+static status fill_up(discrete *d) {
+  const size_t m = (size_t)d->p->m;
+  const int bound = !d->step->accuracy.no_solver && d->p->m <= MOST_WHOLE;
+  d->whole = d->cp;
+  if (d->cp.blocks == NULL || (!bound && d->step->check == CHECK_NONE))
+    return OK;
+  PASS(memory_require((double)(m * m * sizeof *d->full), "the compliance"));
+  PASS_NEW(d->full, m * m);
+  contact_dense(&d->cp, d->full);
+  d->whole.W = d->full;
+  d->whole.blocks = NULL;
+  return OK;
+}
+
 static status find_error(const step *s, const contact_problem *cp,
                          const double *u, const double *r, error_bound *e) {
   status st = OK;
@@ -111,7 +132,10 @@ static status find_error(const step *s, const contact_problem *cp,
   if (cp->m == 0 || s->accuracy.no_solver) return OK;
   timer_enter(STAGE_ESTIMATE);
   TRY(condensed_energy(cp, u, r, &energy));
-  TRY(dense_inverse_new(cp->m, cp->A != NULL ? cp->A : cp->W, &dense));
+  if (cp->blocks != NULL)
+    found.why = "its inverse would need all of a large sparse matrix";
+  else
+    TRY(dense_inverse_new(cp->m, cp->A != NULL ? cp->A : cp->W, &dense));
   if (dense != NULL) TRY(bound_error(cp, dense, u, r, &found));
   const double hidden = e->hidden;
   error_bound_set(&found, energy, e);
@@ -266,10 +290,11 @@ status condensed_run(const model *m, const exchange_problem *p,
   st = p->dim == 1 ? solve_lcp(&d) : solve_contact(&d, sink);
   timer_leave(STAGE_CONTACT);
   TRY(st);
-  if (p->dim > 1 && !outcome_is_fatal(d.report.outcome))
-    TRY(find_error(d.step, &d.cp, d.u, d.r, &d.error));
-  if (p->dim > 1 && !outcome_is_fatal(d.report.outcome))
-    TRY(check_problem(d.step, &d.cp, &d.report, d.u, d.r, &d.solutions));
+  if (p->dim > 1 && !outcome_is_fatal(d.report.outcome)) {
+    TRY(fill_up(&d));
+    TRY(find_error(d.step, &d.whole, d.u, d.r, &d.error));
+    TRY(check_problem(d.step, &d.whole, &d.report, d.u, d.r, &d.solutions));
+  }
   TRY(report_solution(&d, sink, cpu, unsettled));
 done:
   discrete_free(&d);

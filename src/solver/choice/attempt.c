@@ -71,6 +71,21 @@ static int lacks_stiffness(const contact_solver *s, const contact_problem *cp,
   return (ops->handles & NEEDS_STIFFNESS) && cp->A == NULL && !does;
 }
 
+/* All of a compliance given in blocks, for the others. */
+static status fill_up(contact_solver *s, contact_problem *cp) {
+  const size_t m = (size_t)cp->m;
+  if (cp->blocks == NULL) return OK;
+  if (s->full == NULL) {
+    PASS(memory_require((double)(m * m * sizeof *s->full),
+                        "the compliance of a method that needs all of it"));
+    PASS_NEW(s->full, m * m);
+    contact_dense(cp, s->full);
+  }
+  cp->W = s->full;
+  cp->blocks = NULL;
+  return OK;
+}
+
 /* The problem in a form the solver can use; NULL, or why there is none. */
 static status suit(contact_solver *s, const contact_problem *cp,
                    const solver_ops *ops, contact_problem *out,
@@ -79,7 +94,8 @@ static status suit(contact_solver *s, const contact_problem *cp,
   *out = *cp;
   *why = NULL;
   int stiffness = lacks_stiffness(s, cp, ops);
-  int compliance = (ops->handles & NEEDS_COMPLIANCE) && cp->W == NULL;
+  int compliance =
+      (ops->handles & NEEDS_COMPLIANCE) && cp->W == NULL && cp->blocks == NULL;
   if (cp->dim == 3 && !(ops->handles & SOLVES_3D)) {
     *why = "solves problems in the plane only";
     goto done;
@@ -88,7 +104,10 @@ static status suit(contact_solver *s, const contact_problem *cp,
     TRY(suit_by_springs(s, cp, out, why));
     goto done;
   }
-  if (!stiffness && !compliance) goto done;
+  if (!stiffness && !compliance) {
+    if (!(ops->handles & SPARSE_COMPLIANCE)) TRY(fill_up(s, out));
+    goto done;
+  }
   TRY(other_form_make(cp, &s->other));
   if (s->other.matrix == NULL && stiffness) {
     *why = "needs the stiffness, but the compliance is singular";
@@ -97,6 +116,7 @@ static status suit(contact_solver *s, const contact_problem *cp,
   } else if (stiffness) {
     contact_product(cp->m, s->other.matrix, cp->f, s->other.load);
     out->A = s->other.matrix;
+    out->blocks = NULL;
     out->f = s->other.load;
   } else {
     out->W = s->other.matrix;

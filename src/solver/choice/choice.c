@@ -50,9 +50,10 @@ static void forget_factors(contact_solver *s) {
   anchor_free(&s->held);
   contact_bodies_free(s->bodies);
   s->bodies = NULL;
-  RELEASE(s->best_u, s->best_r);
-  s->best_u = s->best_r = NULL;
+  RELEASE(s->best_u, s->best_r, s->full);
+  s->best_u = s->best_r = s->full = NULL;
   s->A = s->W = NULL;
+  s->blocks = NULL;
   s->m = s->n = -1;
   s->from = NULL;
 }
@@ -70,8 +71,8 @@ void contact_solver_tolerance(contact_solver *s, double tol) {
 const char *contact_solver_log(const contact_solver *s) { return s->log; }
 
 static int fits(const contact_solver *s, const contact_problem *cp) {
-  return s->A == cp->A && s->W == cp->W && s->m == cp->m && s->n == cp->n &&
-         s->best_u != NULL;
+  return s->A == cp->A && s->W == cp->W && s->blocks == cp->blocks &&
+         s->m == cp->m && s->n == cp->n && s->best_u != NULL;
 }
 
 static status fit(contact_solver *s, const contact_problem *cp) {
@@ -91,6 +92,7 @@ static status fit(contact_solver *s, const contact_problem *cp) {
   NEW(s->best_r, cp->m);
   s->A = cp->A;
   s->W = cp->W;
+  s->blocks = cp->blocks;
   s->m = cp->m;
   s->n = cp->n;
 done:

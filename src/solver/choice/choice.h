@@ -18,6 +18,7 @@ struct contact_solver {
   char log[LOG_SIZE];
   /* What belongs to one matrix. */
   const double *A, *W; /* of the last problem, borrowed */
+  const sparse_blocks *blocks;
   int m, n;
   void *work[N_SOLVER + 1]; /* of solver_list, last of a solver that is not in
                                it; NULL: not set up */
@@ -27,6 +28,7 @@ struct contact_solver {
   friction_path *path;
   int path_capacity; /* entries of B allocated */
   other_form other;
+  double *full;       /* [m*m] of the blocks, or NULL */
   int inverse_wanted; /* 1: the compliance alone did not suffice */
   anchor held;        /* springs for a body that contact alone holds */
   normal_form normal;

@@ -52,13 +52,12 @@ status other_form_make(const contact_problem *cp, other_form *o) {
   status st = OK;
   dense d = {0};
   int m = cp->m, good = 0;
-  const double *M = cp->A != NULL ? cp->A : cp->W;
   if (o->matrix != NULL || o->missing) goto done;
   o->missing = cp->floating;
   if (o->missing) goto done;
   NEW(o->load, m);
   TRY(dense_new(m, &d));
-  memcpy(d.a, M, (size_t)m * (size_t)m * sizeof *M);
+  contact_dense(cp, d.a);
   TRY(form_invert(m, &d, &good));
   o->missing = !good;
   if (o->missing) goto done;

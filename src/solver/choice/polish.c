@@ -13,12 +13,9 @@ enum { SWEEPS = 20 };
  * the scale: 1, or m/N where the compliance is given. */
 static double tangent_stiffness(const contact_problem *cp, int node_id,
                                 double *unit) {
-  const double *M = cp->A != NULL ? cp->A : cp->W;
   double sum = 0.0;
-  for (int k = 1; k < cp->dim; ++k) {
-    size_t dof = (size_t)(node_id * cp->dim + k);
-    sum += M[dof * (size_t)cp->m + dof] / (cp->dim - 1);
-  }
+  for (int k = 1; k < cp->dim; ++k)
+    sum += contact_diagonal(cp, node_id * cp->dim + k) / (cp->dim - 1);
   *unit = cp->A != NULL ? 1.0 : sum;
   return cp->A != NULL ? sum : sum > 0.0 ? 1.0 / sum : 0.0;
 }
@@ -56,8 +53,7 @@ double slip_misdirection(const contact_problem *cp, const double *u,
  * pressed. */
 static double distance_to_bound(const contact_problem *cp, const double *u,
                                 const double *r, int dof) {
-  const double *M = cp->A != NULL ? cp->A : cp->W;
-  double own = M[(size_t)dof * (size_t)(cp->m + 1)];
+  double own = contact_diagonal(cp, dof);
   double c = cp->A != NULL ? own : 1.0 / own, bound = contact_bound(cp, dof);
   if (bound == HUGE_VAL || !(own > 0.0)) return 0.0;
   return r[dof] - c * (u[dof] - bound) < 0.0 ? bound - u[dof] : 0.0;

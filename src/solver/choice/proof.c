@@ -86,12 +86,13 @@ static int motion_is_proof(const contact_problem *cp, const double *v,
   return work - held_by_limit(cp, slip) > MARGIN * terms;
 }
 
-/* v = W'l with the sum of |terms| of its largest entry. */
-static double respond(const contact_problem *cp, const double *l, double *v) {
+/* v = W'l with the sum of |terms| of its largest entry; column[m]: work. */
+static double respond(const contact_problem *cp, const double *l, double *v,
+                      double *column) {
   double most = 0.0;
   for (size_t j = 0, m = (size_t)cp->m; j < m; ++j) {
-    const double *column = cp->W + j * m;
     double terms = 0.0;
+    contact_column(cp, (int)j, column);
     v[j] = 0.0;
     for (size_t i = 0; i < m; ++i) {
       v[j] += column[i] * l[i];
@@ -112,8 +113,8 @@ static int forces_are_proof(const contact_problem *cp, const double *l,
     work += l[dof] * (cp->f[dof] - bound);
     terms += l[dof] * (fabs(cp->f[dof]) + fabs(bound));
   }
-  double size = respond(cp, l, v);
   double *slip = c + cp->m;
+  double size = respond(cp, l, v, c);
   if (!(largest_growth(cp, v, c, slip) <= ROUNDING * cp->m * size)) return 0;
   return work - held_by_limit(cp, slip) > MARGIN * terms;
 }
@@ -272,10 +273,11 @@ static status find_forces(const contact_problem *cp, int *proved) {
   PASS_NEW(y, n);
   PASS_NEW(l, m);
   PASS_NEW(work, 3 * m);
-  for (int j = 0; j < n; ++j)
+  for (int j = 0; j < n; ++j) {
+    contact_column(cp, id[j], work);
     for (int i = 0; i < n; ++i)
-      M[(size_t)i + (size_t)n * (size_t)j] =
-          cp->W[(size_t)id[i] + m * (size_t)id[j]];
+      M[(size_t)i + (size_t)n * (size_t)j] = work[id[i]];
+  }
   for (int i = 0; i < n; ++i) q[i] = contact_bound(cp, id[i]) - cp->f[id[i]];
   PASS(lcp_lemke(n, M, q, 0, y, &rep));
   if (rep.outcome != STOPPED_RAY) return OK;

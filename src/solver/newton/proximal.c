@@ -607,7 +607,8 @@ const solver_ops proximal_solver = {
     "A step is a dense factorisation, a pass 2 to 20 steps. Choose it for\n"
     "problems from files where the sweeps and PCG do not reach the tolerance;\n"
     "for a body on its contact surface NEWTON is faster.",
-  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE,
+  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE |
+             SPARSE_COMPLIANCE,
   .param_size = 0,
   .options = proximal_options,
   .setup = proximal_setup,
