@@ -62,6 +62,8 @@ const char *effect_name(int bit);
 const effect_ops *effect_find(const char *name); /* or NULL */
 /* The effect whose column it is, or NULL. */
 const effect_ops *effect_of_column(const column *c);
+/* The effect whose table it is, PRINT_*. */
+const effect_ops *effect_of_table(int bit);
 stage effect_stage(const effect_ops *e);
 
 #endif

@@ -37,6 +37,12 @@ const effect_ops *effect_of_column(const column *c) {
   return NULL;
 }
 
+const effect_ops *effect_of_table(int bit) {
+  int k = 0;
+  while (effect_table[k]->table.bit != bit) ++k;
+  return effect_table[k];
+}
+
 stage effect_stage(const effect_ops *e) {
   int k = 0;
   if (e->own != 0) return e->own;

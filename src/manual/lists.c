@@ -120,7 +120,7 @@ static void list_table(const char *name, const char *help, unsigned bit,
                        FILE *out) {
   fprintf(out, "%s: %s\n", name, help);
   for (const column *c = column_next(NULL); c != NULL; c = column_next(c))
-    if (bit == 0 ? c->tables == 0 : (c->tables & bit) != 0)
+    if (bit == 0 ? (c->tables & COLUMN_TABLES) == 0 : (c->tables & bit) != 0)
       print_column(c, out);
 }
 

@@ -89,11 +89,6 @@ const step *facts_first_print(const model *m, int table, place *at) {
   return NULL;
 }
 
-int model_prints(const model *m, int tables) {
-  place at;
-  return facts_first_print(m, tables, &at) != NULL;
-}
-
 int model_has_axis(const model *m) {
   int any = 0;
   for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].has_axis;

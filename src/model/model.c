@@ -42,6 +42,14 @@ int frequency_shows(int frequency, int increment_no, int last) {
          (frequency > 0 && increment_no >= 0 && increment_no % frequency == 0);
 }
 
+const char *print_word(int table) {
+#define PRINT_WORD(name, help) #name,
+  static const char *const words[] = {PRINT_LIST(PRINT_WORD)};
+  int k = 0;
+  while (1 << k != table) ++k;
+  return words[k];
+}
+
 int print_shows(const print_request *p, const step *s, double t,
                 int increment_no, int last) {
   const time_points *q = p->points;

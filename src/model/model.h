@@ -492,14 +492,14 @@ int rule_has_friction(const friction_rule *rule);
 const char *contact_card(const contact *c);
 /* 1 if the deck has such a card. */
 int has_card(const model *m, const char *name);
-/* 1 if some *PRINT requires one of these tables (bits PRINT_*). */
-int model_prints(const model *m, int tables);
 int model_writes_fields(const model *m); /* 1: JOB.h5 is written */
 /* Increments of a step as the deck has them, at least 1. */
 double step_increments(const step *s);
 /* 1: an increment, -1 within one, is shown by "every n-th and the last; 0: the
  * last"; negative: none. */
 int frequency_shows(int frequency, int increment_no, int last);
+/* The name of a table, PRINT_*. */
+const char *print_word(int table);
 /* 1 if a table shows the increment that ends at t: its number within the step,
  * -1 if t is within one, 1 if it is the last; of time points the times alone
  * count. */

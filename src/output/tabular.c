@@ -10,6 +10,7 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
+#include "effects/rows.h"
 #include "output/writers.h"
 
 #include <stdlib.h>
@@ -26,27 +27,6 @@ struct tabular {
   int *elem_order;       /* [n_elem] ids by elem_no */
   unsigned char *wanted; /* [items] rows of the current table */
 };
-
-/* clang-format off */
-static const struct { int bit; entity of; const char *name; } kinds[] = {
-  {PRINT_CONTACT,   PER_CONTACT_NODE, "CONTACT"},
-  {PRINT_TOTALS,    PER_CONTACT,      "TOTALS"},
-  {PRINT_NODES,     PER_NODE,         "NODES"},
-  {PRINT_ELEMENTS,  PER_ELEMENT,      "ELEMENTS"},
-  {PRINT_ENERGY,    PER_INCREMENT,    "ENERGY"},
-  {PRINT_REACTIONS, PER_NODE,         "REACTIONS"},
-  {PRINT_ZONES,     PER_ZONE,         "ZONES"},
-  {PRINT_LOOP,      PER_CONTACT,      "LOOP"},
-  {PRINT_WEAR,      PER_CONTACT_NODE, "WEAR"},
-  {PRINT_SIF,       PER_TIP,          "SIF"},
-};
-/* clang-format on */
-
-static int kind_of(int table_bit) {
-  int k = 0;
-  while (kinds[k].bit != table_bit) ++k;
-  return k;
-}
 
 static const mesh_group *request_group(const mesh *msh,
                                        const print_request *p) {
@@ -135,16 +115,14 @@ static status contact_rows(const table *columns, tabular *t, const view *v,
 static status table_rows(const table *columns, tabular *t, const view *v,
                          const print_request *p) {
   const step *now = &t->m->steps[v->s->step_no - 1];
-  switch (p->table) {
-    case PRINT_CONTACT:
-    case PRINT_WEAR:
+  switch (columns->of) {
+    case PER_CONTACT_NODE:
       return contact_rows(columns, t, v, request_group(t->msh, p));
-    case PRINT_NODES:
-    case PRINT_REACTIONS:
+    case PER_NODE:
       choose_nodes(t, p, now);
       ordered_rows(columns, t, v, t->msh->n_node, t->node_order);
       return OK;
-    case PRINT_ELEMENTS:
+    case PER_ELEMENT:
       choose_elements(t, p);
       ordered_rows(columns, t, v, t->msh->n_elem, t->elem_order);
       return OK;
@@ -157,13 +135,13 @@ static status table_rows(const table *columns, tabular *t, const view *v,
 }
 
 static status write_table(tabular *t, const view *v, const print_request *p) {
-  int k = kind_of(p->table);
   char number[NUMBER_SIZE];
   table columns;
-  table_choose(&columns, kinds[k].of, (unsigned)p->table, v, DIGITS);
+  table_choose(&columns, effect_of_table(p->table)->table.of,
+               (unsigned)p->table, v, DIGITS);
   fprintf(t->dat.f, "%s# step %d increment %d time %s table %s%s%s\n",
           t->n_block++ > 0 ? "\n\n" : "", v->s->step_no, v->s->increment_no,
-          text_number(number, v->s->t, DIGITS), kinds[k].name,
+          text_number(number, v->s->t, DIGITS), print_word(p->table),
           p->group != NULL ? " group " : "", p->group != NULL ? p->group : "");
   table_header(&columns, t->m, "#", t->dat.f);
   PASS(table_rows(&columns, t, v, p));
@@ -171,7 +149,7 @@ static status write_table(tabular *t, const view *v, const print_request *p) {
 }
 
 static status write_timed(tabular *t, const view *v, const print_request *p) {
-  stage s = (stage)(STAGE_TABLE_CONTACT + kind_of(p->table));
+  const stage s = effect_of_table(p->table)->table.shown;
   timer_enter(s);
   status st = write_table(t, v, p);
   timer_leave(s);

@@ -53,12 +53,16 @@ typedef struct view {
 
 typedef enum { AS_REAL, AS_COUNT, AS_WORD } column_form;
 
+/* Of "tables": bits of PRINT_*; above them the place of an effect's column. */
+enum { COLUMN_PLACE = 24, COLUMN_TABLES = (1 << COLUMN_PLACE) - 1 };
+
 typedef struct column {
   const char *name; /* header of the table */
   const char *unit; /* "length", "force/length^2", "s", "-" for none */
   entity of;
   column_form form;
-  unsigned tables;   /* bits PRINT_* of its tables; 0: none */
+  unsigned tables;   /* bits PRINT_* of its tables; 0: none; and AT of
+                        column_row.h */
   unsigned effects;  /* shown only if the model has them all */
   unsigned scenes;   /* bits SCENE_* */
   unsigned needs;    /* bits NEEDS_* */

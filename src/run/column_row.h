@@ -40,8 +40,10 @@ static inline const char *status_word(unsigned k) {
 #define COLUMNS(table) ((int)(sizeof table / sizeof *table))
 /* A row: name, unit, entity and form, tables, effects, scenes, needs, field,
  * part, value, word, help. */
-/* Place of the columns of the effects in the table of an entity. */
-#define OF_EFFECTS {"", NULL, INC, 0, 0, 0, 0, NULL, 0, NULL, NULL, NULL}
+/* Place k, from 0, of the columns of the effects in the list of an entity; AT
+ * with the tables of a column of an effect: where it stands, else place 0. */
+#define OF_EFFECTS(k) {"", NULL, INC, 0, 0, 0, 0, NULL, k, NULL, NULL, NULL}
+#define AT(k) ((unsigned)(k) << COLUMN_PLACE)
 #define NO_COLUMN {NULL, NULL, INC, 0, 0, 0, 0, NULL, 0, NULL, NULL, NULL}
 /* clang-format on */
 

@@ -115,8 +115,15 @@ typedef struct effect_ops {
   int (*strains)(const model *m, int elem_id);
 
   effect_hooks on;
+  struct {       /* *PRINT, of its own; all-zero: none */
+    int bit;     /* PRINT_* */
+    entity of;   /* its rows */
+    stage shown; /* when it is written */
+  } table;
   const column *columns; /* [n_column] */
   int n_column;
+  int of_state; /* 1: they read struct state alone, also of *CONDENSED PROBLEM,
+                   which makes no effects */
   int (*items)(const void *own); /* rows of its own table */
 } effect_ops;
 

@@ -158,6 +158,10 @@ static double internal(const view *v, int id, int part) {
   return v->s->body.inelastic->alpha[start[k] + (size_t)part];
 }
 
+VALUE(inelastic_work, v->s->energy.inelastic)
+VALUE(dissipated, v->s->energy.dissipated)
+VALUE(inelastic_stored, v->s->energy.stored)
+
 /* clang-format off */
 #define ELEM  PER_ELEMENT, AS_REAL
 #define FLOW(scenes) \
@@ -209,7 +213,16 @@ static const column columns[] = {
 {"alpha_11", "-", ELEM, ALPHA, "alpha_11", 10, internal, NULL,
  "internal variable of the law, in its unit"},
 {"alpha_12", "-", ELEM, ALPHA, "alpha_12", 11, internal, NULL,
- "internal variable of the law, in its unit"}};
+ "internal variable of the law, in its unit"},
+{"inelastic_work", J, INC, PRINT_ENERGY | AT(5), ON(INELASTIC), ANY,
+ "inelastic_work", 0, inelastic_work, NULL,
+ "work of the stresses on inelastic strains so far, trapezoidal"},
+{"viscous_dissipation", J, INC, PRINT_ENERGY | AT(5), ON(INELASTIC), ANY,
+ "viscous_dissipation", 0, dissipated, NULL,
+ "dissipated of it by the laws so far, in the quadrature of the integrator"},
+{"inelastic_stored", J, INC, PRINT_ENERGY | AT(5), ON(INELASTIC), ANY,
+ "inelastic_stored", 0, inelastic_stored, NULL,
+ "stored of it by the internal variables"}};
 /* clang-format on */
 
 /* ---- the row ------------------------------------------------------------ */

@@ -7,6 +7,7 @@
 #include "effects/rows.h"
 #include "model/facts.h"
 #include "run/run.h"
+#include "run/column_row.h"
 
 /* *T: [n_elem] before the first step. */
 static status temperatures_new(run *r, void **T) {
@@ -95,6 +96,15 @@ static int requires_thermal(const model *m, char *why, size_t size) {
                    PLACE(l->at));
 }
 
+VALUE(thermal_work, v->s->energy.thermal)
+
+/* clang-format off */
+static const column columns[] = {
+{"thermal_work", J, INC, PRINT_ENERGY | AT(4), ON(THERMAL), ANY,
+ "thermal_work", 0, thermal_work, NULL,
+ "work of the stresses on thermal strains so far"}};
+/* clang-format on */
+
 const effect_ops thermal_effect = {.name = "thermal strain",
                                    .bit = EFFECT_BIT_THERMAL,
                                    .required = requires_thermal,
@@ -102,6 +112,9 @@ const effect_ops thermal_effect = {.name = "thermal strain",
                                    .own = STAGE_THERMAL,
                                    .far = 1,
                                    .strains = strains,
+                                   .columns = columns,
+                                   .n_column = COLUMNS(columns),
+                                   .of_state = 1,
                                    .on.create = temperatures_new,
                                    .on.load = heat,
                                    .on.release = memory_free};

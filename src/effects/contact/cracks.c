@@ -310,7 +310,7 @@ static status find_factors(run *r, void *self) {
 /* ---- the row ------------------------------------------------------------- */
 
 static int requires_factors(const model *m, char *why, size_t size) {
-  return plan_requires_table(m, PRINT_SIF, "SIF", why, size);
+  return plan_requires_table(m, PRINT_SIF, why, size);
 }
 
 static status expected(const plan_sizes *s, effect_work *w) {
@@ -408,16 +408,17 @@ static const column columns[] = {
  "of the largest domain"}};
 /* clang-format on */
 
-const effect_ops cracks_effect = {.name = "stress intensity factors",
-                                  .bit = NO_BIT,
-                                  .required = requires_factors,
-                                  .expected = expected,
-                                  .more = {STAGE_TABLE_SIF},
-                                  .on.create = cracks_new,
-                                  .on.due = factors_due,
-                                  .on.accept = find_factors,
-                                  .on.copy = cracks_copy,
-                                  .on.release = release,
-                                  .columns = columns,
-                                  .n_column = COLUMNS(columns),
-                                  .items = tips_items};
+const effect_ops cracks_effect = {
+    .name = "stress intensity factors",
+    .bit = NO_BIT,
+    .required = requires_factors,
+    .expected = expected,
+    .table = {PRINT_SIF, PER_TIP, STAGE_TABLE_SIF},
+    .on.create = cracks_new,
+    .on.due = factors_due,
+    .on.accept = find_factors,
+    .on.copy = cracks_copy,
+    .on.release = release,
+    .columns = columns,
+    .n_column = COLUMNS(columns),
+    .items = tips_items};

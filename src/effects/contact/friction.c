@@ -13,6 +13,7 @@
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "model/facts.h"
+#include "run/column_row.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -444,12 +445,105 @@ static int requires_history(const model *m, char *why, size_t size) {
                    PLACE(m->steps[0].at));
 }
 
+/* ---- columns ------------------------------------------------------------ */
+
+#define SURFACE (v->s->contacts.surface)
+VALUE(limit_updates, v->s->report.limit_updates)
+VALUE(friction_work, v->s->energy.friction)
+VALUE(friction_end, v->s->energy.friction_end)
+VALUE(contact_slip, v->s->contacts.slip[at(SURFACE->dim - 1, id, part)])
+VALUE(slip_distance, v->s->contacts.distance[id])
+VALUE(sliding_limit, v->s->contacts.limit[id])
+
+/* The slip in global components. */
+static double contact_slide(const view *v, int id, int part) {
+  int dim = SURFACE->dim;
+  const double *frame = SURFACE->frame + at(dim * dim, id, 0);
+  const double *slip = v->s->contacts.slip + at(dim - 1, id, 0);
+  double sum = 0;
+  for (int k = 1; k < dim; ++k) sum += frame[dim * k + part] * slip[k - 1];
+  return sum;
+}
+
+/* Unit vector of the slip, global components; 0 where the node does not slip */
+static double slip_direction(const view *v, int id, int part) {
+  int dim = SURFACE->dim;
+  const double *frame = SURFACE->frame + at(dim * dim, id, 0);
+  const double *slip = v->s->contacts.slip + at(dim - 1, id, 0);
+  double sum = frame[dim + part] * slip[0], length = fabs(slip[0]);
+  if (dim == 3) {
+    sum += frame[2 * dim + part] * slip[1];
+    length = hypot(slip[0], slip[1]);
+  }
+  if (v->s->contacts.contact[id] != CONTACT_SLIP || !(length > 0)) return 0;
+  return sum / length;
+}
+
+/* clang-format off */
+#define CON   PER_CONTACT_NODE, AS_REAL
+#define SLIDES(scenes) PRINT_CONTACT | AT(2), F, scenes, NEEDS_PLACE
+static const column columns[] = {
+{"limit_updates", "-", PER_INCREMENT, AS_COUNT, AT(1), F, ANY,
+ "limit_updates", 0, limit_updates, NULL,
+ "passes of the fixed point on the sliding limit"},
+{"friction_work", J, INC, PRINT_ENERGY | AT(3), F, ANY, "friction_work", 0,
+ friction_work, NULL, "dissipated by friction so far, trapezoidal"},
+{"friction_work_end", J, INC, PRINT_ENERGY | AT(3), F, ANY,
+ "friction_work_end", 0, friction_end, NULL,
+ "the same with the forces at the end of increments"},
+{"slip", "length", CON, PRINT_CONTACT | AT(1), F, SCENE_FLAT, NEEDS_SURFACE,
+ "slip", 0, contact_slip, NULL,
+ "slip of the increment; *STATIC: from the origin"},
+{"slip_1", "length", CON, PRINT_CONTACT | AT(1), F, SCENE_SOLID, NEEDS_SURFACE,
+ "slip_1", 0, contact_slip, NULL,
+ "slip of the increment; *STATIC: from the origin"},
+{"slip_2", "length", CON, PRINT_CONTACT | AT(1), F, SCENE_SOLID, NEEDS_SURFACE,
+ "slip_2", 1, contact_slip, NULL,
+ "slip of the increment; *STATIC: from the origin"},
+{"slip_distance", "length", CON, PRINT_CONTACT | AT(1), F, SCENE_ALL,
+ NEEDS_DISTANCE, "slip_distance", 0, slip_distance, NULL,
+ "length of all slip so far"},
+{"slip_x", "length", CON, AT(2), F, CART, NEEDS_PLACE,
+ "slip_vector", 0, contact_slide,
+ NULL, "slip of the increment in global components"},
+{"slip_r", "length", CON, AT(2), F, SCENE_AXI, NEEDS_PLACE,
+ "slip_vector", 0, contact_slide,
+ NULL, "slip of the increment in global components"},
+{"slip_y", "length", CON, AT(2), F, CART, NEEDS_PLACE,
+ "slip_vector", 1, contact_slide,
+ NULL, "slip of the increment in global components"},
+{"slip_z", "length", CON, AT(2), F, SCENE_AXI, NEEDS_PLACE,
+ "slip_vector", 1, contact_slide,
+ NULL, "slip of the increment in global components"},
+{"slip_z", "length", CON, AT(2), F, SCENE_SOLID, NEEDS_PLACE,
+ "slip_vector", 2, contact_slide,
+ NULL, "slip of the increment in global components"},
+{"slip_dir_x", "-", CON, SLIDES(CART), NULL, 0, slip_direction, NULL,
+ "direction of the slip, 0 where there is none"},
+{"slip_dir_r", "-", CON, SLIDES(SCENE_AXI), NULL, 0, slip_direction, NULL,
+ "direction of the slip, 0 where there is none"},
+{"slip_dir_y", "-", CON, SLIDES(CART), NULL, 1, slip_direction, NULL,
+ "direction of the slip, 0 where there is none"},
+{"slip_dir_z", "-", CON, SLIDES(SCENE_AXI), NULL, 1, slip_direction, NULL,
+ "direction of the slip, 0 where there is none"},
+{"slip_dir_z", "-", CON, SLIDES(SCENE_SOLID), NULL, 2, slip_direction, NULL,
+ "direction of the slip, 0 where there is none"},
+{"limit", "force", CON, PRINT_CONTACT | AT(2), F, SCENE_ALL,
+ NEEDS_SURFACE | NEEDS_LIMIT, "limit", 0, sliding_limit, NULL,
+ "sliding limit"}};
+/* clang-format on */
+
+/* ---- the rows ----------------------------------------------------------- */
+
 const effect_ops friction_effect = {.name = "friction",
                                     .bit = EFFECT_BIT_FRICTION,
                                     .required = requires_friction,
                                     .expected = expected,
                                     .own = STAGE_LIMIT,
                                     .inside = 1,
+                                    .columns = columns,
+                                    .n_column = COLUMNS(columns),
+                                    .of_state = 1,
                                     .on.create = friction_new,
                                     .on.prepare = prepare,
                                     .on.pose = pose,

@@ -13,7 +13,7 @@
 #include "run/column_row.h"
 
 static int requires_loops(const model *m, char *why, size_t size) {
-  return plan_requires_table(m, PRINT_LOOP, "LOOP", why, size);
+  return plan_requires_table(m, PRINT_LOOP, why, size);
 }
 
 static status expected(const plan_sizes *s, effect_work *w) {
@@ -119,17 +119,18 @@ static const column columns[] = {
  "friction_work_end since the step began: the area of a loop that closes"}};
 /* clang-format on */
 
-const effect_ops loops_effect = {.name = "table of loops",
-                                 .bit = NO_BIT,
-                                 .required = requires_loops,
-                                 .expected = expected,
-                                 .own = STAGE_NONE,
-                                 .more = {STAGE_TABLE_LOOP},
-                                 .on.create = loops_new,
-                                 .on.begin_step = begin_step,
-                                 .on.accept = find_loops,
-                                 .on.keep = keep,
-                                 .on.copy = loops_copy,
-                                 .on.release = memory_free,
-                                 .columns = columns,
-                                 .n_column = COLUMNS(columns)};
+const effect_ops loops_effect = {
+    .name = "table of loops",
+    .bit = NO_BIT,
+    .required = requires_loops,
+    .expected = expected,
+    .own = STAGE_NONE,
+    .table = {PRINT_LOOP, PER_CONTACT, STAGE_TABLE_LOOP},
+    .on.create = loops_new,
+    .on.begin_step = begin_step,
+    .on.accept = find_loops,
+    .on.keep = keep,
+    .on.copy = loops_copy,
+    .on.release = memory_free,
+    .columns = columns,
+    .n_column = COLUMNS(columns)};

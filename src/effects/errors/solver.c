@@ -9,6 +9,7 @@
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "run/history/loop.h"
+#include "run/column_row.h"
 
 #include <math.h>
 
@@ -85,12 +86,31 @@ static int requires_bound(const model *m, char *why, size_t size) {
   return plan_says(1, why, size, "default; *ACCURACY, SOLVER=NO leaves it out");
 }
 
+VALUE(bound_error, 100 * v->s->errors.error.relative)
+VALUE(solver_error_energy, v->s->errors.error.energy)
+VALUE(contraction, v->s->errors.error.rate)
+
+/* clang-format off */
+static const column columns[] = {
+{"solver_error", "%", INC, AT(2), C | ON(ESTIMATES), ANY, "solver_error", 0,
+ bound_error, NULL, "bound of the error of the contact solver in the energy "
+ "norm, of that of the solution; NaN: no bound"},
+{"solver_error_energy", J, INC, AT(2), C | ON(ESTIMATES), ANY,
+ "solver_error_energy", 0, solver_error_energy, NULL,
+ "bound of the energy of that error"},
+{"contraction", "-", INC, AT(2), F | ON(ESTIMATES), ANY, "contraction", 0,
+ contraction, NULL, "rate of the fixed point on the sliding limit"}};
+/* clang-format on */
+
 const effect_ops solver_error_effect = {.name = "error of solver",
                                         .bit = EFFECT_BIT_ESTIMATES,
                                         .required = requires_bound,
                                         .expected = expected,
                                         .own = STAGE_ESTIMATE,
                                         .inside = 1,
+                                        .columns = columns,
+                                        .n_column = COLUMNS(columns),
+                                        .of_state = 1,
                                         .on.create = cpu_new,
                                         .on.estimate = estimate,
                                         .on.release = memory_free};

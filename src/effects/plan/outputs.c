@@ -26,16 +26,15 @@ effect_work plan_table(const plan_sizes *s, int table, double all) {
   return (effect_work){n, "rows", shown, shown * n * 10.0 * TEXT};
 }
 
-int plan_requires_table(const model *m, int table, const char *word, char *why,
-                        size_t size) {
+int plan_requires_table(const model *m, int table, char *why, size_t size) {
   for (int i = 0; i < m->n.step; ++i)
     for (int q = 0; q < m->steps[i].print.n; ++q) {
       const print_request *p = &m->steps[i].print.requests[q];
       if (p->table != table) continue;
-      snprintf(why, size, "*PRINT, %s, %s:%d", word, PLACE(p->at));
+      snprintf(why, size, "*PRINT, %s, %s:%d", print_word(table), PLACE(p->at));
       return 1;
     }
-  snprintf(why, size, "no *PRINT, %s", word);
+  snprintf(why, size, "no *PRINT, %s", print_word(table));
   return 0;
 }
 
@@ -57,26 +56,27 @@ TABLE_ROWS(nodes, PRINT_NODES, s->nodes)
 TABLE_ROWS(elements, PRINT_ELEMENTS, s->elements)
 TABLE_ROWS(energy, PRINT_ENERGY, 1.0)
 
-#define TABLE(row, text, table, word, rows_, stage_)                  \
+#define TABLE(row, text, bit_, of_, rows_, stage_)                    \
   static int requires_##row(const model *m, char *why, size_t size) { \
-    return plan_requires_table(m, table, word, why, size);            \
+    return plan_requires_table(m, bit_, why, size);                   \
   }                                                                   \
   const effect_ops row##_effect = {.name = text,                      \
                                    .bit = NO_BIT,                     \
                                    .required = requires_##row,        \
                                    .expected = rows_,                 \
-                                   .own = stage_};
-TABLE(contact_table, "table of contact nodes", PRINT_CONTACT, "CONTACT",
+                                   .own = stage_,                     \
+                                   .table = {bit_, of_, stage_}};
+TABLE(contact_table, "table of contact nodes", PRINT_CONTACT, PER_CONTACT_NODE,
       contact_rows, STAGE_TABLE_CONTACT)
-TABLE(totals_table, "table of resultants", PRINT_TOTALS, "TOTALS", totals_rows,
-      STAGE_TABLE_TOTALS)
-TABLE(nodes_table, "table of nodes", PRINT_NODES, "NODES", nodes_rows,
+TABLE(totals_table, "table of resultants", PRINT_TOTALS, PER_CONTACT,
+      totals_rows, STAGE_TABLE_TOTALS)
+TABLE(nodes_table, "table of nodes", PRINT_NODES, PER_NODE, nodes_rows,
       STAGE_TABLE_NODES)
-TABLE(elements_table, "table of elements", PRINT_ELEMENTS, "ELEMENTS",
+TABLE(elements_table, "table of elements", PRINT_ELEMENTS, PER_ELEMENT,
       elements_rows, STAGE_TABLE_ELEMENTS)
-TABLE(energy_table, "table of energies", PRINT_ENERGY, "ENERGY", energy_rows,
-      STAGE_TABLE_ENERGY)
-TABLE(reactions_table, "table of reactions", PRINT_REACTIONS, "REACTIONS",
+TABLE(energy_table, "table of energies", PRINT_ENERGY, PER_INCREMENT,
+      energy_rows, STAGE_TABLE_ENERGY)
+TABLE(reactions_table, "table of reactions", PRINT_REACTIONS, PER_NODE,
       held_rows, STAGE_TABLE_REACTIONS)
 
 static int requires_fields(const model *m, char *why, size_t size) {

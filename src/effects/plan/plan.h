@@ -104,9 +104,8 @@ int plan_says(int on, char *why, size_t size, const char *format, ...)
 /* An estimate of *ACCURACY that the first step that "is" requires. */
 int plan_requires_accuracy(const model *m, const char *word,
                            int (*is)(const step *s), char *why, size_t size);
-/* 1: some *PRINT has the table, called word there; where, into why[size]. */
-int plan_requires_table(const model *m, int table, const char *word, char *why,
-                        size_t size);
+/* 1: some *PRINT has the table; where, into why[size]. */
+int plan_requires_table(const model *m, int table, char *why, size_t size);
 /* Rows of a table of "all": all of whose requests name a group, the largest. */
 double plan_rows(const plan_sizes *s, int table, double all);
 effect_work plan_table(const plan_sizes *s, int table, double all);

@@ -99,7 +99,7 @@ const column node_columns[] = {
  "displacement"},
 {"u_z", "length", NODE, PRINT_NODES, 0, SCENE_SOLID, 0, "u", 2, node_u, NULL,
  "displacement"},
-OF_EFFECTS,
+OF_EFFECTS(0),
 NO_COLUMN};
 /* clang-format on */
 
@@ -171,6 +171,6 @@ const column element_columns[] = {
  "principal_2", 1, principal, NULL, "second principal stress"},
 {"principal_3", PA, ELEM, 0, ON(STRESS), SCENE_ALL, NEEDS_STRESS,
  "principal_3", 2, principal, NULL, "least principal stress"},
-OF_EFFECTS,
+OF_EFFECTS(0),
 NO_COLUMN};
 /* clang-format on */

@@ -10,8 +10,8 @@
 
 extern const column increment_columns[], node_columns[], element_columns[],
     contact_node_columns[], contact_columns[];
-static const column zone_columns[] = {OF_EFFECTS, NO_COLUMN};
-static const column tip_columns[] = {OF_EFFECTS, NO_COLUMN};
+static const column zone_columns[] = {OF_EFFECTS(0), NO_COLUMN};
+static const column tip_columns[] = {OF_EFFECTS(0), NO_COLUMN};
 
 static const struct {
   entity of;
@@ -31,21 +31,26 @@ static int part_of(entity of) {
   return k;
 }
 
-/* The place of the effects in the table of an entity. */
-static const column *place_of_effects(entity of) {
+/* A place of the effects in the list of an entity. */
+static const column *place_of_effects(entity of, int nth) {
   const column *c = parts[part_of(of)].column;
-  while (c->name[0] != '\0') ++c;
+  while (c->name[0] != '\0' || c->part != nth) ++c;
   return c;
 }
 
-/* The first column of an entity from number k of effect number e on, or what
- * follows the place of the effects. */
-static const column *next_of_effects(entity of, int e, int k) {
+static int place_of(const column *c) {
+  return (int)(c->tables >> COLUMN_PLACE);
+}
+
+/* The first column of an entity at a place from number k of effect number e on,
+ * or what follows the place. */
+static const column *next_of_effects(entity of, int nth, int e, int k) {
   for (; effect_table[e] != NULL; ++e, k = 0)
-    for (; k < effect_table[e]->n_column; ++k)
-      if (effect_table[e]->columns[k].of == of)
-        return &effect_table[e]->columns[k];
-  return place_of_effects(of) + 1;
+    for (; k < effect_table[e]->n_column; ++k) {
+      const column *c = &effect_table[e]->columns[k];
+      if (c->of == of && place_of(c) == nth) return c;
+    }
+  return place_of_effects(of, nth) + 1;
 }
 
 const column *column_next(const column *c) {
@@ -55,11 +60,11 @@ const column *column_next(const column *c) {
   if (owner != NULL) {
     int e = 0;
     while (effect_table[e] != owner) ++e;
-    next = next_of_effects(of, e, (int)(next - owner->columns));
+    next = next_of_effects(of, place_of(c), e, (int)(next - owner->columns));
   }
   while (next->name == NULL || next->name[0] == '\0') {
     if (next->name != NULL) {
-      next = next_of_effects(of, 0, 0);
+      next = next_of_effects(of, next->part, 0, 0);
     } else {
       int k = part_of(of) + 1;
       if (k == N_PART) return NULL;
@@ -112,7 +117,8 @@ static unsigned if_there(const void *p, unsigned bits) {
 int column_ready(const column *c, const state *s) {
   const effect_ops *e = effect_of_column(c);
   unsigned have = 0;
-  if (e != NULL && e->on.create != NULL && effect_state(s->effects, e) == NULL)
+  if (e != NULL && e->on.create != NULL && !e->of_state &&
+      effect_state(s->effects, e) == NULL)
     return 0;
   have |= if_there(s->body.strain, NEEDS_STRAIN);
   have |= if_there(s->body.stress, NEEDS_STRESS);

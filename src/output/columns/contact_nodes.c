@@ -28,8 +28,6 @@ static int is_side(const view *v, int id, int part) {
 VALUE(contact_f_t, is_side(v, id, part)
                        ? 0
                        : v->s->contacts.rc[at(SURFACE->dim, id, part + 1)])
-VALUE(contact_slip, v->s->contacts.slip[at(SURFACE->dim - 1, id, part)])
-VALUE(sliding_limit, v->s->contacts.limit[id])
 VALUE(contact_normal, SURFACE->frame[at(SURFACE->dim * SURFACE->dim, id, part)])
 VALUE(contact_area, SURFACE->area[id])
 VALUE(contact_state, v->s->contacts.contact[id])
@@ -61,34 +59,8 @@ static double contact_pull(const view *v, int id, int part) {
   return per_area(v, id, contact_force(v, id, part));
 }
 
-/* The slip in global components. */
-static double contact_slide(const view *v, int id, int part) {
-  int dim = SURFACE->dim;
-  const double *frame = SURFACE->frame + at(dim * dim, id, 0);
-  const double *slip = v->s->contacts.slip + at(dim - 1, id, 0);
-  double sum = 0;
-  for (int k = 1; k < dim; ++k) sum += frame[dim * k + part] * slip[k - 1];
-  return sum;
-}
-
 static const char *contact_word(const view *v, int id) {
   return status_word(v->s->contacts.contact[id]);
-}
-
-VALUE(slip_distance, v->s->contacts.distance[id])
-
-/* Unit vector of the slip, global components; 0 where the node does not slip */
-static double slip_direction(const view *v, int id, int part) {
-  int dim = SURFACE->dim;
-  const double *frame = SURFACE->frame + at(dim * dim, id, 0);
-  const double *slip = v->s->contacts.slip + at(dim - 1, id, 0);
-  double sum = frame[dim + part] * slip[0], length = fabs(slip[0]);
-  if (dim == 3) {
-    sum += frame[2 * dim + part] * slip[1];
-    length = hypot(slip[0], slip[1]);
-  }
-  if (v->s->contacts.contact[id] != CONTACT_SLIP || !(length > 0)) return 0;
-  return sum / length;
 }
 
 /* clang-format off */
@@ -96,7 +68,6 @@ static double slip_direction(const view *v, int id, int part) {
 #define SUR SCENE_ALL, NEEDS_SURFACE
 #define PLACED SCENE_ALL, NEEDS_PLACE
 #define PLACES PRINT_CONTACT | PRINT_WEAR
-#define SLIDES(scenes) PRINT_CONTACT, F, scenes, NEEDS_PLACE
 const column contact_node_columns[] = {
 {"node_no", "-", PER_CONTACT_NODE, AS_COUNT, PLACES, C, SUR, NULL, 0,
  contact_node_no, NULL, "number in the mesh"},
@@ -163,17 +134,7 @@ const column contact_node_columns[] = {
 {"traction_t2", PA, CON, PRINT_CONTACT, C, SCENE_SOLID, NEEDS_PLACE,
  "traction_t2", 1, contact_traction, NULL,
  "tangential force over tributary area"},
-{"slip", "length", CON, PRINT_CONTACT, F, SCENE_FLAT, NEEDS_SURFACE, "slip",
- 0, contact_slip, NULL,
- "slip of the increment; *STATIC: from the origin"},
-{"slip_1", "length", CON, PRINT_CONTACT, F, SCENE_SOLID, NEEDS_SURFACE,
- "slip_1", 0, contact_slip, NULL,
- "slip of the increment; *STATIC: from the origin"},
-{"slip_2", "length", CON, PRINT_CONTACT, F, SCENE_SOLID, NEEDS_SURFACE,
- "slip_2", 1, contact_slip, NULL,
- "slip of the increment; *STATIC: from the origin"},
-{"slip_distance", "length", CON, PRINT_CONTACT, F, SCENE_ALL, NEEDS_DISTANCE,
- "slip_distance", 0, slip_distance, NULL, "length of all slip so far"},
+OF_EFFECTS(1),
 {"traction_x", PA, CON, 0, C, CART, NEEDS_PLACE, "traction", 0, contact_pull,
  NULL, "force of the obstacle over tributary area"},
 {"traction_r", PA, CON, 0, C, SCENE_AXI, NEEDS_PLACE,
@@ -187,34 +148,7 @@ const column contact_node_columns[] = {
 {"traction_z", PA, CON, 0, C, SCENE_SOLID, NEEDS_PLACE,
  "traction", 2, contact_pull,
  NULL, "force of the obstacle over tributary area"},
-{"slip_x", "length", CON, 0, F, CART, NEEDS_PLACE,
- "slip_vector", 0, contact_slide,
- NULL, "slip of the increment in global components"},
-{"slip_r", "length", CON, 0, F, SCENE_AXI, NEEDS_PLACE,
- "slip_vector", 0, contact_slide,
- NULL, "slip of the increment in global components"},
-{"slip_y", "length", CON, 0, F, CART, NEEDS_PLACE,
- "slip_vector", 1, contact_slide,
- NULL, "slip of the increment in global components"},
-{"slip_z", "length", CON, 0, F, SCENE_AXI, NEEDS_PLACE,
- "slip_vector", 1, contact_slide,
- NULL, "slip of the increment in global components"},
-{"slip_z", "length", CON, 0, F, SCENE_SOLID, NEEDS_PLACE,
- "slip_vector", 2, contact_slide,
- NULL, "slip of the increment in global components"},
-{"slip_dir_x", "-", CON, SLIDES(CART), NULL, 0, slip_direction, NULL,
- "direction of the slip, 0 where there is none"},
-{"slip_dir_r", "-", CON, SLIDES(SCENE_AXI), NULL, 0, slip_direction, NULL,
- "direction of the slip, 0 where there is none"},
-{"slip_dir_y", "-", CON, SLIDES(CART), NULL, 1, slip_direction, NULL,
- "direction of the slip, 0 where there is none"},
-{"slip_dir_z", "-", CON, SLIDES(SCENE_AXI), NULL, 1, slip_direction, NULL,
- "direction of the slip, 0 where there is none"},
-{"slip_dir_z", "-", CON, SLIDES(SCENE_SOLID), NULL, 2, slip_direction, NULL,
- "direction of the slip, 0 where there is none"},
-{"limit", "force", CON, PRINT_CONTACT, F, SCENE_ALL,
- NEEDS_SURFACE | NEEDS_LIMIT, "limit", 0, sliding_limit, NULL,
- "sliding limit"},
+OF_EFFECTS(2),
 {"status", "-", PER_CONTACT_NODE, AS_WORD, PRINT_CONTACT, C, SUR, "status", 0,
  contact_state, contact_word, "OPEN, SLIP, STICK; as number 0, 1, 2"},
 {"contact_no", "-", PER_CONTACT_NODE, AS_COUNT, PRINT_CONTACT, C, SCENE_ALL,
@@ -227,7 +161,7 @@ const column contact_node_columns[] = {
  NULL, "unknown of w = q + M z"},
 {"w", "-", CON, PRINT_CONTACT, C, SCENE_LCP, NEEDS_SURFACE, NULL, 0, lcp_w,
  NULL, "q + M z"},
-OF_EFFECTS,
+OF_EFFECTS(0),
 {"contact", "-", PER_CONTACT_NODE, AS_WORD, PLACES, C, PLACED, NULL, 0,
  contact_no, contact_name, "name of the *CONTACT"},
 NO_COLUMN};

@@ -55,7 +55,7 @@ const column contact_columns[] = {
 {"torque", J, PER_CONTACT, AS_REAL, PRINT_TOTALS | PRINT_LOOP, C, CART,
  NEEDS_TORQUE, "torque", 0, total_torque, NULL,
  "torque of the obstacle on the body about the axis of the contact"},
-OF_EFFECTS,
+OF_EFFECTS(0),
 {"closed_area", "length^2", TOT, TOTAL(SCENE_ALL), "closed_area", 0,
  total_area, NULL, "tributary area of the closed nodes"},
 {"open", "-", TOT_N, TOTAL(SCENE_ALL), "open", 0, total_open, NULL,
