@@ -115,6 +115,7 @@ struct space_recovery {
   int *patch, *stamp; /* [n_elem] elements of a patch; mark of the last patch */
   int *seen;          /* [n_node] mark of the last patch */
   int last;           /* mark */
+  double *centroid;   /* [dim*n_elem] m */
   double *recovered;  /* [ns*n_node] of the current region, Pa */
 };
 
@@ -172,6 +173,15 @@ static void list_neighbours(space_recovery *s) {
   s->start[0] = 0;
 }
 
+static void find_centroids(const mesh *m, double *x) {
+  for (int e = 0; e < m->n_elem; ++e)
+    for (int c = 0; c < m->dim; ++c, ++x) {
+      for (int a = 0; a <= m->dim; ++a)
+        *x += m->x[m->dim * m->elem[(m->dim + 1) * e + a] + c];
+      *x /= m->dim + 1;
+    }
+}
+
 status space_recovery_new(const domain *d, space_recovery **out) {
   status st = OK;
   space_recovery *s = NULL;
@@ -189,6 +199,8 @@ status space_recovery_new(const domain *d, space_recovery **out) {
   NEW(s->stamp, m->n_elem);
   NEW(s->seen, m->n_node);
   NEW(s->recovered, (size_t)d->ns * (size_t)m->n_node);
+  NEW(s->centroid, m->dim * m->n_elem);
+  find_centroids(m, s->centroid);
   find_regions(s);
   list_neighbours(s);
   *out = s;
@@ -202,7 +214,7 @@ done:
 void space_recovery_free(space_recovery *s) {
   if (s == NULL) return;
   RELEASE(s->region, s->compliance, s->start, s->elem, s->patch, s->stamp,
-          s->seen, s->recovered, s);
+          s->seen, s->recovered, s->centroid, s);
 }
 
 /* ---- patches ------------------------------------------------------------- */
@@ -252,45 +264,40 @@ static int gather(space_recovery *s, int node, int region) {
 
 /* ---- the fit ------------------------------------------------------------- */
 
-static void centroid(const mesh *m, int elem_id, double *x) {
-  for (int c = 0; c < m->dim; ++c) {
-    x[c] = 0.0;
-    for (int a = 0; a <= m->dim; ++a)
-      x[c] += m->x[m->dim * m->elem[(m->dim + 1) * elem_id + a] + c];
-    x[c] /= m->dim + 1;
-  }
-}
-
 /* Half the extent of the patch round the node, length. */
 static double patch_size(const space_recovery *s, int node, int n) {
   const mesh *m = s->d->mesh;
-  double size = 0.0, x[3];
+  double size = 0.0;
   for (int k = 0; k < n; ++k) {
-    centroid(m, s->patch[k], x);
-    for (int c = 0; c < m->dim; ++c)
-      size = fmax(size, fabs(x[c] - m->x[m->dim * node + c]));
+    const double *x = s->centroid + m->dim * s->patch[k];
+    for (int c = 0; c < m->dim; ++c) {
+      double far = fabs(x[c] - m->x[m->dim * node + c]);
+      if (far > size) size = far;
+    }
   }
   return size;
 }
 
-/* Normal equations of the fit; the first coefficient is the value at the node.
- * G[p*p], rhs[p*ns] column major. */
-static void normal_equations(const space_recovery *s, int node, int n,
-                             const double *sigma, double *G, double *rhs) {
+/* Basis of the fit at element k of the patch, of the given size. */
+static void basis_at(const space_recovery *s, int node, int k, double size,
+                     double *basis) {
   const mesh *m = s->d->mesh;
-  int p = m->dim + 1, ns = s->d->ns;
-  double size = patch_size(s, node, n), basis[MAX_BASIS] = {1.0}, x[3];
+  const double *x = s->centroid + m->dim * s->patch[k];
+  basis[0] = 1.0;
+  for (int c = 0; c < m->dim; ++c)
+    basis[c + 1] = (x[c] - m->x[m->dim * node + c]) / size;
+}
+
+/* Matrix of the normal equations of the fit, the lower triangle: G[p*p]. */
+static void normal_equations(const space_recovery *s, int node, int n,
+                             double size, double *G) {
+  const int p = s->d->mesh->dim + 1;
+  double basis[MAX_BASIS];
   memset(G, 0, (size_t)(p * p) * sizeof *G);
-  memset(rhs, 0, (size_t)(p * ns) * sizeof *rhs);
   for (int k = 0; k < n; ++k) {
-    const double *t = sigma + (size_t)ns * (size_t)s->patch[k];
-    centroid(m, s->patch[k], x);
-    for (int c = 0; c < m->dim; ++c)
-      basis[c + 1] = (x[c] - m->x[m->dim * node + c]) / size;
-    for (int j = 0; j < p; ++j) {
+    basis_at(s, node, k, size, basis);
+    for (int j = 0; j < p; ++j)
       for (int i = j; i < p; ++i) G[i + p * j] += basis[i] * basis[j];
-      for (int i = 0; i < ns; ++i) rhs[j + p * i] += basis[j] * t[i];
-    }
   }
 }
 
@@ -320,71 +327,97 @@ static void value_weights(int p, const double *L, double *g) {
   }
 }
 
-/* Stress at the node from its patch of n elements; the mean if the fit is not
- * determined. value[ns]. */
-static void fit(const space_recovery *s, int node, int n, const double *sigma,
-                double *value) {
-  int p = s->d->mesh->dim + 1, ns = s->d->ns;
-  double G[MAX_BASIS * MAX_BASIS], L[MAX_BASIS * MAX_BASIS], g[MAX_BASIS];
-  double rhs[MAX_BASIS * MAX_NS];
-  normal_equations(s, node, n, sigma, G, rhs);
-  for (int i = 0; i < ns; ++i) value[i] = rhs[p * i] / n;
-  if (n <= p || !factor(p, G, L)) return;
-  value_weights(p, L, g);
-  for (int i = 0; i < ns; ++i) {
-    value[i] = 0.0;
-    for (int j = 0; j < p; ++j) value[i] += g[j] * rhs[j + p * i];
+/* Values at the node of nq fields from its patch of n elements; the mean if the
+ * fit is not determined. q[nq*n_elem], value[nq]. */
+static void fit(const space_recovery *s, int node, int n, int nq,
+                const double *q, double *value) {
+  const int p = s->d->mesh->dim + 1;
+  const double size = patch_size(s, node, n);
+  double G[MAX_BASIS * MAX_BASIS], L[MAX_BASIS * MAX_BASIS];
+  double g[MAX_BASIS] = {1.0 / n}, basis[MAX_BASIS];
+  normal_equations(s, node, n, size, G);
+  if (n > p && factor(p, G, L)) value_weights(p, L, g);
+  for (int i = 0; i < nq; ++i) value[i] = 0.0;
+  for (int k = 0; k < n; ++k) {
+    const double *t = q + (size_t)nq * (size_t)s->patch[k];
+    double weight = 0.0;
+    basis_at(s, node, k, size, basis);
+    for (int j = 0; j < p; ++j) weight += g[j] * basis[j];
+    for (int i = 0; i < nq; ++i) value[i] += weight * t[i];
+  }
+}
+
+int space_regions(const space_recovery *s) { return s->n_region; }
+
+int space_region(const space_recovery *s, int elem_id) {
+  return s->region[s->d->section_id[elem_id]];
+}
+
+void space_recover(space_recovery *s, int region, int nq, const double *q,
+                   double *value) {
+  for (int i = 0; i < s->d->mesh->n_node; ++i) {
+    const int n = gather(s, i, region);
+    if (n > 0) fit(s, i, n, nq, q, value + (size_t)nq * (size_t)i);
   }
 }
 
 /* ---- the estimate -------------------------------------------------------- */
 
-static double energy_product(int ns, const double *S, const double *t) {
+static double energy_product(int ns, const double *S, const double *a,
+                             const double *b) {
   double sum = 0.0;
   for (int j = 0; j < ns; ++j)
-    for (int i = 0; i < ns; ++i) sum += t[i] * S[i + ns * j] * t[j];
+    for (int i = 0; i < ns; ++i) sum += a[i] * S[i + ns * j] * b[j];
   return sum;
 }
 
-/* eta^2 of one element, J. */
-static double element_error(const space_recovery *s, int elem_id,
-                            const double *sigma) {
+static const double *compliance_of(const space_recovery *s, int elem_id) {
+  return s->compliance +
+         (size_t)(s->d->ns * s->d->ns) * (size_t)s->d->section_id[elem_id];
+}
+
+double space_product(const space_recovery *s, int elem_id,
+                     const space_field *a, const space_field *b) {
   const mesh *m = s->d->mesh;
-  int ns = s->d->ns, vertices = m->dim + 1;
-  const double *S =
-      s->compliance + (size_t)(ns * ns) * (size_t)s->d->section_id[elem_id];
-  double total[MAX_NS] = {0.0}, d[MAX_NS], sum = 0.0;
-  for (int a = 0; a < vertices; ++a) {
-    const double *r =
-        s->recovered + (size_t)ns * (size_t)m->elem[vertices * elem_id + a];
+  const int ns = s->d->ns, vertices = m->dim + 1;
+  const size_t own = (size_t)ns * (size_t)elem_id;
+  const double *S = compliance_of(s, elem_id);
+  double all_a[MAX_NS] = {0.0}, all_b[MAX_NS] = {0.0}, sum = 0.0;
+  for (int k = 0; k < vertices; ++k) {
+    const size_t at = (size_t)ns * (size_t)m->elem[vertices * elem_id + k];
+    double da[MAX_NS], db[MAX_NS];
     for (int i = 0; i < ns; ++i) {
-      d[i] = r[i] - sigma[i];
-      total[i] += d[i];
+      da[i] = a->node[at + (size_t)i] - a->element[own + (size_t)i];
+      db[i] = b->node[at + (size_t)i] - b->element[own + (size_t)i];
+      all_a[i] += da[i];
+      all_b[i] += db[i];
     }
-    sum += energy_product(ns, S, d);
+    sum += energy_product(ns, S, da, db);
   }
-  sum += energy_product(ns, S, total);
+  sum += energy_product(ns, S, all_a, all_b);
   return element_weight(s->d, elem_id) / (vertices * (vertices + 1)) * sum;
+}
+
+status space_moduli(space_recovery *s) {
+  const int square = s->d->ns * s->d->ns;
+  for (int i = 0; i < s->n_section; ++i)
+    PASS(space_compliance(s->d, i, s->compliance + square * i));
+  return OK;
 }
 
 /* Squares of error and norm of one region added to out; eta or NULL. */
 static void add_region(space_recovery *s, int region, const double *sigma,
                        double *eta, space_error *out) {
   const domain *d = s->d;
-  size_t ns = (size_t)d->ns;
-  for (int i = 0; i < d->mesh->n_node; ++i) {
-    int n = gather(s, i, region);
-    if (n > 0) fit(s, i, n, sigma, s->recovered + ns * (size_t)i);
-  }
+  const space_field own = {sigma, s->recovered};
+  space_recover(s, region, d->ns, sigma, s->recovered);
   for (int e = 0; e < d->mesh->n_elem; ++e) {
-    const double *t = sigma + ns * (size_t)e;
-    if (s->region[d->section_id[e]] != region) continue;
-    double square = element_error(s, e, t);
+    const double *t = sigma + (size_t)d->ns * (size_t)e;
+    if (space_region(s, e) != region) continue;
+    double square = space_product(s, e, &own, &own);
     out->error += square;
-    out->norm +=
-        element_weight(d, e) *
-        energy_product(d->ns,
-                       s->compliance + ns * ns * (size_t)d->section_id[e], t);
+    out->norm += element_weight(d, e) *
+                 energy_product(d->ns, compliance_of(s, e), t, t);
     if (eta != NULL) eta[e] = sqrt(fmax(square, 0.0));
   }
 }
@@ -392,11 +425,9 @@ static void add_region(space_recovery *s, int region, const double *sigma,
 status space_estimate(space_recovery *s, const double *sigma, double *eta,
                       space_error *out) {
   status st = OK;
-  const int square = s->d->ns * s->d->ns;
   *out = (space_error){0.0, 0.0, 0.0};
   timer_enter(STAGE_MESH_ERROR);
-  for (int i = 0; i < s->n_section; ++i)
-    TRY(space_compliance(s->d, i, s->compliance + square * i));
+  TRY(space_moduli(s));
   for (int region = 0; region < s->n_region; ++region)
     add_region(s, region, sigma, eta, out);
   double total = out->error + out->norm;

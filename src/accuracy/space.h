@@ -36,6 +36,24 @@ void space_recovery_free(space_recovery *s); /* accepts NULL */
 status space_estimate(space_recovery *s, const double *sigma, double *eta,
                       space_error *out);
 
+/* For other errors by the same patches. Sets of sections of one material, which
+ * an element belongs to; nodal values value[nq*n_node] recovered from
+ * q[nq*n_elem] at the nodes of one. */
+int space_regions(const space_recovery *s);
+int space_region(const space_recovery *s, int elem_id);
+void space_recover(space_recovery *s, int region, int nq, const double *q,
+                   double *value);
+/* A stress and what is recovered from it in the region of an element: [ns] per
+ * element and node, Pa. */
+typedef struct space_field {
+  const double *element, *node;
+} space_field;
+/* The moduli of the domain now, for the products; ERR_INTERNAL as above. */
+status space_moduli(space_recovery *s);
+/* Integral of d_a' inv(E) d_b over an element, d recovered less own, J. */
+double space_product(const space_recovery *s, int elem_id, const space_field *a,
+                     const space_field *b);
+
 /*
  * Lengths size[n_node] of the elements of the next mesh for which |u - u_h| is
  * to become "target" with the fewest elements, from eta[n_elem], both sqrt(J).

@@ -262,6 +262,10 @@ typedef struct friction_change { /* *FRICTION in a step */
 /* CHECK= of *SOLVER */
 typedef enum { CHECK_NONE, CHECK_SOLVERS, CHECK_ALL } solution_check;
 
+/* MESH= of *ACCURACY, as the words stand there: at every increment; at the last
+ * of the step. */
+typedef enum { MESH_ERROR_NO, MESH_ERROR_YES, MESH_ERROR_END } mesh_error_at;
+
 typedef struct step {
   const char *name;
   place at;
@@ -303,7 +307,8 @@ typedef struct step {
     int given;
     place at;
     int no_solver;     /* 1: the error of the solver is not required */
-    int mesh, time;    /* 1: their errors are */
+    int mesh;          /* mesh_error_at: where its error is */
+    int time;          /* 1: the error of the steps is */
     int time_balanced; /* 1: TIME=BALANCED */
     double time_share; /* -, of the error of the mesh */
     int theorems;      /* 1: the theorems of CPR98 are checked */
@@ -424,6 +429,9 @@ typedef struct model {
   struct {
     accuracy_target target;
     closed_form ref;
+    double mesh_price; /* -, expected share of the run, for which the error of
+                          the mesh that no card requires is left out; 0: it is
+                          not */
   } accuracy;
   struct {              /* *EFFECTS */
     int given, is_auto; /* is_auto: MODE=AUTO */

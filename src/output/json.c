@@ -123,6 +123,9 @@ static void write_accuracy(json *w, const job *j) {
   json_real(w, "residual_worst", run->residual_worst);
   write_budget(w, j);
   write_saved(w, j);
+  char advice[ADVICE_SIZE];
+  job_advice(j, advice, sizeof advice);
+  if (advice[0] != '\0') json_string(w, "improve_next", advice);
   if (j->m->effects & EFFECT_REFERENCE)
     json_real(w, "effectivity", job_effectivity(j));
   if (j->m->n.contact > 0)

@@ -196,6 +196,9 @@ static void close_errors(const job *j, FILE *f) {
     fprintf(f, isnan(worst) ? "-" : "%.2g %%", worst);
   }
   fputs(" of the energy norm\n", f);
+  char advice[ADVICE_SIZE];
+  job_advice(j, advice, sizeof advice);
+  if (advice[0] != '\0') fprintf(f, "%-9s %s\n", "next", advice);
 }
 
 void closing_lines(const job *j, const char *files, FILE *f) {

@@ -83,8 +83,10 @@ static status run_trial(job_input *in, trial *t, double *eta) {
   t->in = in;
   t->eta = eta;
   t->n_elem = in->msh->n_elem;
-  for (int i = 0; i < in->m->n.step; ++i)
-    in->m->steps[i].accuracy.mesh = in->m->steps[i].accuracy.time = 1;
+  for (int i = 0; i < in->m->n.step; ++i) {
+    in->m->steps[i].accuracy.mesh = MESH_ERROR_YES;
+    in->m->steps[i].accuracy.time = 1;
+  }
   in->m->effects |= EFFECT_MESH_ERROR | EFFECT_TIME_ERROR;
   PASS(history_run(in->m, in->msh, effect_table, &sink, &unsettled));
   t->bytes = (double)memory_peak();

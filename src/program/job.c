@@ -88,6 +88,7 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
       TRY(read_mesh(other, in));
     TRY(model_open_cracks(in->m, in->msh));
     TRY(model_check(in->m, in->msh, effects_required));
+    TRY(plan_leave_out(in->m, in->msh));
     TRY(setup_adjust(in->m, in->msh));
   }
 done:

@@ -28,7 +28,7 @@ static void find_reactions(run *r, int known) {
 
 /* Stresses that an output or an error estimate needs. */
 static void find_stresses(run *r, int shown) {
-  stage s = r->step->accuracy.mesh ? STAGE_MESH_ERROR : STAGE_REFERENCE;
+  stage s = run_finds_mesh_error(r) ? STAGE_MESH_ERROR : STAGE_REFERENCE;
   if (shown) s = STAGE_STRESS;
   timer_enter(s);
   domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
@@ -228,7 +228,7 @@ status result_evaluate(run *r, int due) {
   status st = OK;
   unsigned effects = r->m->effects;
   int shown = (effects & EFFECT_STRESS) && due;
-  int needed = r->step->accuracy.mesh || r->m->accuracy.ref.has_stress;
+  int needed = run_finds_mesh_error(r) || r->m->accuracy.ref.has_stress;
   if (shown || (needed && !(effects & EFFECT_REACTION)))
     find_stresses(r, shown);
   if (effects & EFFECT_REACTION) find_reactions(r, shown);

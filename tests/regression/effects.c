@@ -30,7 +30,7 @@ static job block(const char *model, const char *step, const char *words) {
   return j;
 }
 
-static const char bare[] = "*ACCURACY, SOLVER=NO\n*OUTPUT, HDF5=NO\n";
+static const char bare[] = "*ACCURACY, SOLVER=NO, MESH=NO\n*OUTPUT, HDF5=NO\n";
 
 /* The line of an effect below a heading of the listing; caller frees. */
 static char *effect_line(const job *j, const char *heading,

@@ -159,8 +159,10 @@ START_TEST(run_on_a_terminal_ends_with_what_matters) {
       "RIGHT, OUTER force_x 0, force_y 8, open 0, slip 1, stick 0\r\n",
       "worst     residual ",
       ", penetration ",
-      "error     mesh -, steps -, solver ",
+      "error     mesh ",
+      " %, steps 0 %, solver ",
       " % of the energy norm\r\n",
+      "next      the mesh: half the length of the elements gives about ",
       "cost      ",
       " MB of arrays\r\n"};
   job j = two_contacts();

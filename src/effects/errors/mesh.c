@@ -1,5 +1,5 @@
 /*
- * *ACCURACY, MESH=YES: the error of the mesh by recovered stresses, of the body
+ * *ACCURACY, MESH=: the error of the mesh by recovered stresses, of the body
  * and of each element.
  */
 #include "base/memory.h"
@@ -52,8 +52,8 @@ static status estimate(run *r, void *self) {
   mesh_estimate *own = self;
   double cpu = timer_cpu();
   space_error found;
-  r->errors.mesh_error.asked = r->step->accuracy.mesh;
-  if (!r->step->accuracy.mesh) return OK;
+  r->errors.mesh_error.asked = run_finds_mesh_error(r);
+  if (!r->errors.mesh_error.asked) return OK;
   PASS(recover(r, own));
   PASS(
       space_estimate(own->recovery, r->result.stress, own->elem_error, &found));
@@ -76,13 +76,34 @@ static status keep(run *r, void *self, archive *a) {
 /* ---- the row ------------------------------------------------------------ */
 
 static status expected(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){s->elements, "elements", 1.0 + s->increments,
-                     s->increments * s->elements * 9.0 * plan_element_work(s)};
+  const double passes = s->is_flat ? 3.0 : 6.0;
+  double n = 0.0;
+  for (int i = 0; i < s->m->n.step; ++i) {
+    const step *p = &s->m->steps[i];
+    if (p->accuracy.mesh == MESH_ERROR_YES) n += plan_increments(p);
+    n += p->accuracy.mesh == MESH_ERROR_END;
+  }
+  *w = (effect_work){s->elements, "elements", 1.0 + n,
+                     n * s->elements * passes * plan_element_work(s)};
   return OK;
 }
 
+static int is_at_each_increment(const step *s) {
+  return s->accuracy.mesh == MESH_ERROR_YES;
+}
+
 static int requires_mesh_error(const model *m, char *why, size_t size) {
-  return plan_requires_accuracy(m, "MESH", facts_asks_mesh_error, why, size);
+  if (facts_first_step(m, is_at_each_increment) != NULL)
+    return plan_requires_accuracy(m, "MESH", is_at_each_increment, why, size);
+  if (m->accuracy.mesh_price > 0.0)
+    return plan_says(0, why, size,
+                     "foreseen %.0f %% of the run, above %.0f %%: *ACCURACY, "
+                     "MESH=YES or a longer run",
+                     100 * m->accuracy.mesh_price, 100 * PLAN_CHEAP);
+  if (facts_first_step(m, facts_asks_mesh_error) != NULL)
+    return plan_says(1, why, size,
+                     "default, end of step; *ACCURACY, MESH=NO leaves it out");
+  return plan_says(0, why, size, "*ACCURACY, MESH=NO");
 }
 
 VALUE(mesh_error, v->s->errors.mesh_error.asked

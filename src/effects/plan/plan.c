@@ -3,6 +3,7 @@
  */
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "model/facts.h"
 
 #include "base/memory.h"
 
@@ -130,6 +131,26 @@ status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
 done:
   plan_free(p);
   return st;
+}
+
+static int is_default(const step *s) {
+  return s->accuracy.mesh == MESH_ERROR_END;
+}
+
+status plan_leave_out(model *m, const mesh *msh) {
+  effect_plan *p = NULL;
+  if (facts_first_step(m, is_default) == NULL) return OK;
+  PASS(plan_new(m, msh, 0, &p));
+  double share = 0.0;
+  for (int i = 0; i < p->n; ++i)
+    if (p->rows[i].name == mesh_error_effect.name) share = p->rows[i].share;
+  plan_free(p);
+  if (share <= PLAN_CHEAP) return OK;
+  m->accuracy.mesh_price = share;
+  for (int i = 0; i < m->n.step; ++i)
+    if (is_default(&m->steps[i])) m->steps[i].accuracy.mesh = MESH_ERROR_NO;
+  m->effects = effects_required(m);
+  return OK;
 }
 
 void plan_free(effect_plan *p) {

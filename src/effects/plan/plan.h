@@ -60,6 +60,10 @@ typedef struct effect_plan {
 /* msh NULL: a condensed problem from a file, of n contacts. *out is new. */
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out);
 void plan_free(effect_plan *p); /* accepts NULL */
+/* After model_check: the error of the mesh that no card requires is left out
+ * where it is expected to take more than PLAN_CHEAP of the run. */
+#define PLAN_CHEAP 0.05
+status plan_leave_out(model *m, const mesh *msh);
 
 /* Bytes that a run holds at most besides the mesh, from the sizes alone; nodes:
  * of the contact that are condensed, or < 0: all. msh NULL: as in plan_new. */
@@ -80,7 +84,9 @@ stage_cost plan_cost(const plan_row *r);
 /* CPU seconds of all rows so far. */
 double plan_cpu(const effect_plan *p);
 
-/* sizes.c, for the rows. Nodes that a set of contacts has, each once; "is"
+/* sizes.c, for the rows. Increments of a step, as in plan_sizes. */
+double plan_increments(const step *s);
+/* Nodes that a set of contacts has, each once; "is"
  * NULL: all contacts. */
 status plan_contact_nodes(const plan_sizes *s,
                           int (*is)(const friction_rule *rule), double *n);

@@ -67,11 +67,12 @@ status apply_accuracy(reading *r) {
   s->accuracy.given = 1;
   s->accuracy.at = r->card->at;
   s->accuracy.no_solver = !p->solver;
-  s->accuracy.mesh = p->mesh || p->target > 0.0;
+  s->accuracy.mesh = p->mesh;
   s->accuracy.time = p->time > 0 || p->target > 0.0;
   s->accuracy.time_balanced = p->time == TIME_BALANCED;
   s->accuracy.time_share = p->time_share;
-  s->accuracy.mesh |= s->accuracy.time_balanced;
+  if (s->accuracy.time_balanced || p->target > 0.0)
+    s->accuracy.mesh = MESH_ERROR_YES;
   s->accuracy.theorems = p->theorems;
   if (!s->accuracy.time_balanced && p->time_share != 0.1)
     report_idle(r, "TIME_SHARE", "TIME=BALANCED");

@@ -249,8 +249,9 @@ static const option effects_options[] = {
               "for AUTO: of the energy norm and of the largest stress"),
   OPTION_END};
 static const option accuracy_options[] = {
-  OPTION_FLAG(accuracy_param, mesh, "MESH", "NO",
-              "estimate of the error of the mesh, from recovered stresses"),
+  OPTION_CHOICE(accuracy_param, mesh, "MESH", "NO|YES|END", "END",
+                "estimate of the error of the mesh, from recovered stresses: "
+                "at each increment, or the last of the step"),
   OPTION_CHOICE(accuracy_param, time, "TIME", "NO|YES|BALANCED", "NO",
                 "estimate of the error of the increments, from increments "
                 "of half the length; "

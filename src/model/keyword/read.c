@@ -48,14 +48,15 @@ static void check_problem_tables(const reading *r, const step *s) {
 /* The bound of the error factors the matrix, which costs more than many
  * solutions: only on request. */
 static void check_problem_accuracy(const reading *r, step *s) {
-  int others = s->accuracy.mesh || s->accuracy.time || s->accuracy.theorems ||
-               r->m->accuracy.target.percent > 0.0;
+  int others = s->accuracy.mesh == MESH_ERROR_YES || s->accuracy.time ||
+               s->accuracy.theorems || r->m->accuracy.target.percent > 0.0;
   if (!s->accuracy.given)
     s->accuracy.no_solver = 1;
   else if (others)
     message_add(r->m->log, P2034, &s->accuracy.at,
                 "a condensed problem has no mesh: of *ACCURACY only SOLVER= is "
                 "allowed with it");
+  s->accuracy.mesh = MESH_ERROR_NO;
 }
 
 /* problem.c: what a deck with *CONDENSED PROBLEM may hold; its one step and

@@ -365,7 +365,7 @@ static void call_estimates(const model *m, step *s) {
   if (m->problem.given && s->solver_at.file != NULL)
     message_add(m->log, P2037, &s->solver_at,
                 "*SOLVER, TOL=BALANCED needs a mesh, whose error counts");
-  s->accuracy.mesh |= m->n.contact > 0;
+  if (m->n.contact > 0) s->accuracy.mesh = MESH_ERROR_YES;
   s->accuracy.no_solver = 0;
 }
 
@@ -414,6 +414,7 @@ static status resolve_steps(model *m) {
                  .loads = m->load.supports,
                  .output.frequency = 1,
                  .output.condensed = -1,
+                 .accuracy.mesh = MESH_ERROR_END,
                  .restart.frequency = -1};
   for (int i = 0; i < before.loads.n; ++i)
     start_load(m, &before, &before.loads.item[i]);

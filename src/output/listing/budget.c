@@ -75,6 +75,12 @@ static const struct {
   {"true, by *REFERENCE", "true", true_share, NULL, 0}};
 /* clang-format on */
 
+/* 1: the steps make no error, whoever asked. */
+static int is_zero(const job *j, share_of *const *of) {
+  return *of == time_share && j->run->n_increment > 0 && !j->m->problem.given &&
+         !job_path_counts(j->m);
+}
+
 int job_budget(const job *j, budget_row rows[BUDGET_ROWS]) {
   int n = 0;
   for (int k = 0; k < BUDGET_ROWS; ++k) {
@@ -82,7 +88,8 @@ int job_budget(const job *j, budget_row rows[BUDGET_ROWS]) {
         .name = budget_table[k].name,
         .json = budget_table[k].json,
         .reached = cpu_of(budget_table[k].stages, budget_table[k].n_stage)};
-    n += collect(j->run, budget_table[k].of, &rows[n]);
+    n += collect(j->run, budget_table[k].of, &rows[n]) ||
+         is_zero(j, &budget_table[k].of);
     if (n == BUDGET_ROWS) break;
   }
   return n;
@@ -143,6 +150,17 @@ static void print_saved(const job *j, FILE *f) {
   fputs(" (to residual 1E-10)\n", f);
 }
 
+/* A line for each of its parts. */
+static void print_advice(const job *j, FILE *f) {
+  char advice[ADVICE_SIZE], *at = advice, *end;
+  job_advice(j, advice, sizeof advice);
+  if (advice[0] == '\0') return;
+  fputs("  improve next: ", f);
+  for (; (end = strstr(at, "; ")) != NULL; at = end + 2)
+    fprintf(f, "%.*s;\n    ", (int)(end - at), at);
+  fprintf(f, "%s\n", at);
+}
+
 void listing_budget(const job *j, FILE *f) {
   char last[NUMBER_SIZE], worst[NUMBER_SIZE];
   budget_row rows[BUDGET_ROWS];
@@ -166,6 +184,7 @@ void listing_budget(const job *j, FILE *f) {
   if (!isnan(effectivity))
     fprintf(f, "  estimated over true error: %.2f\n", effectivity);
   print_saved(j, f);
+  print_advice(j, f);
 }
 
 static void print_pass(const job *j, int no, const pass_row *r, FILE *f) {

@@ -98,7 +98,13 @@ typedef struct job {
 const column *job_end_column(const model *m, const column *c);
 /* Numbers of a step there. */
 size_t job_end_size(const model *m);
-/* The estimates required; number of rows. */
+/* advice.c: 1: the error of the steps may be other than zero. */
+int job_path_counts(const model *m);
+/* One sentence: the error to improve next, and what that costs; "": none is
+ * known. */
+enum { ADVICE_SIZE = 320 };
+void job_advice(const job *j, char *text, size_t size);
+/* The estimates there are; number of rows. */
 int job_budget(const job *j, budget_row rows[BUDGET_ROWS]);
 /* Saving by TOL=BALANCED in all increments with an estimate. */
 typedef struct balance_sum {

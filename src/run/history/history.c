@@ -52,6 +52,11 @@ int run_remembers(const run *r) {
   return slips && kind == STEP_QUASISTATIC;
 }
 
+int run_finds_mesh_error(const run *r) {
+  const int at = r->step->accuracy.mesh;
+  return at == MESH_ERROR_YES || (at == MESH_ERROR_END && r->at.last);
+}
+
 /* 1: the start state of this increment contains one that did not converge. */
 static int is_after_miss(const run *r) {
   return r->course.unsettled > 0 &&
@@ -199,9 +204,9 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   status st = OK;
   TRY(dense_show(r, increment_no));
   ++r->course.total_no;
+  r->at.last = last;
   TRY(result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
   TRY(estimate_increment(r));
-  r->at.last = last;
   r->at.violated = 0;
   note_nodes(r);
   TRY(effects_accept(r));
