@@ -162,7 +162,6 @@ START_TEST(run_on_a_terminal_ends_with_what_matters) {
       "error     mesh ",
       " %, steps 0 %, solver ",
       " % of the energy norm\r\n",
-      "next      the mesh: half the length of the elements gives about ",
       "cost      ",
       " MB of arrays\r\n"};
   job j = two_contacts();

@@ -96,10 +96,11 @@ static int requires_mesh_error(const model *m, char *why, size_t size) {
   if (facts_first_step(m, is_at_each_increment) != NULL)
     return plan_requires_accuracy(m, "MESH", is_at_each_increment, why, size);
   if (m->accuracy.mesh_price > 0.0)
-    return plan_says(0, why, size,
-                     "foreseen %.0f %% of the run, above %.0f %%: *ACCURACY, "
-                     "MESH=YES or a longer run",
-                     100 * m->accuracy.mesh_price, 100 * PLAN_CHEAP);
+    return plan_says(
+        0, why, size,
+        "foreseen %.0f %% of the run, more than %.0f %%; *ACCURACY, "
+        "MESH=YES requires it",
+        100 * m->accuracy.mesh_price, 100 * PLAN_CHEAP);
   if (facts_first_step(m, facts_asks_mesh_error) != NULL)
     return plan_says(1, why, size,
                      "default, end of step; *ACCURACY, MESH=NO leaves it out");
