@@ -132,6 +132,61 @@ START_TEST(integrals_of_a_quadratic_field) {
 }
 END_TEST
 
+/* Strains of all components, each with a rotation, given at all nodes: the
+ * closed form F times as large. */
+static const struct {
+  const char *geo, *type, *cards, *supports;
+} sheared[] = {
+    {"square.geo", "CPE3",
+     "u_x, \"F*1E-3*(x + 2*y)\"\nu_y, \"F*1E-3*(4*x - y)\"\n"
+     "stress_xx, \"F\"\nstress_yy, \"-F\"\nstress_zz, 0\n"
+     "stress_xy, \"3*F\"\n",
+     "BODY, 1, 1, \"1E-3*(x + 2*y)\"\nBODY, 2, 2, \"1E-3*(4*x - y)\"\n"},
+    {"square.geo", "CAX3",
+     "u_r, \"F*1E-3*x\"\nu_z, \"F*1E-3*(4*x - y)\"\n"
+     "stress_rr, \"F\"\nstress_zz, \"-F\"\nstress_tt, \"F\"\n"
+     "stress_rz, \"2*F\"\n",
+     "BODY, 1, 1, \"1E-3*x\"\nBODY, 2, 2, \"1E-3*(4*x - y)\"\n"},
+    {"cube.geo", NULL,
+     "u_x, \"F*1E-3*(x + 2*y - 3*z)\"\nu_y, \"F*1E-3*(4*x - y + 5*z)\"\n"
+     "u_z, \"F*1E-3*(2*z + y - 6*x)\"\n"
+     "stress_xx, \"F\"\nstress_yy, \"-F\"\nstress_zz, \"2*F\"\n"
+     "stress_xy, \"3*F\"\nstress_yz, \"3*F\"\nstress_zx, \"-4.5*F\"\n",
+     "BODY, 1, 1, \"1E-3*(x + 2*y - 3*z)\"\n"
+     "BODY, 2, 2, \"1E-3*(4*x - y + 5*z)\"\n"
+     "BODY, 3, 3, \"1E-3*(2*z + y - 6*x)\"\n"}};
+
+static void check_sheared(int id, int stress, const char *factor,
+                          double error) {
+  job j = job_begin("truth");
+  char path[80], type[20] = "", cards[400], *rest;
+  snprintf(path, sizeof path, "tests/regression/mesh/%s", sheared[id].geo);
+  job_copy(&j, path);
+  if (sheared[id].type != NULL)
+    snprintf(type, sizeof type, ", TYPE=%s", sheared[id].type);
+  snprintf(cards, sizeof cards, "%s", sheared[id].cards);
+  rest = strstr(cards, "stress");
+  job_write(&j, "truth.inp",
+            "*PARAMETER\nF = %s\nN = 2\n*MESH, FILE=%s\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
+            "*REFERENCE\n%.*s*STEP\n*STATIC\n*BOUNDARY\n%s*END STEP\n",
+            factor, sheared[id].geo, type,
+            stress ? (int)strlen(rest) : (int)(rest - cards),
+            stress ? rest : cards, sheared[id].supports);
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  ck_assert_double_eq_tol(0.01 * job_told(&j, norms[0]), error, 1e-8);
+  ck_assert_double_eq_tol(0.01 * job_told(&j, norms[1 + stress]), error, 1e-8);
+  job_end(&j);
+}
+
+START_TEST(all_strains_have_the_error_of_their_factor) {
+  for (int k = 0; k < 6; ++k) {
+    check_sheared(k / 2, k % 2, "1", 0.0);
+    check_sheared(k / 2, k % 2, "1.25", 0.2);
+  }
+}
+END_TEST
+
 /* Both layers are stretched to the stress 1; the closed form says 2 of the
  * upper one, which is three times as thick, and as much of its displacement. */
 START_TEST(thick_parts_count_more) {
@@ -193,6 +248,7 @@ START_TEST(value_that_is_not_finite_is_an_error) {
 END_TEST
 
 UNIT_MAIN("reference", uniform_stress_has_the_error_of_its_factor,
-          integrals_of_a_quadratic_field, thick_parts_count_more,
+          integrals_of_a_quadratic_field,
+          all_strains_have_the_error_of_their_factor, thick_parts_count_more,
           estimate_beside_the_true_error_of_hertz,
           value_that_is_not_finite_is_an_error)

@@ -74,8 +74,9 @@ static int hangs_together(const mesh *m, const cluster_set *c, int k) {
   return count == n;
 }
 
+/* Sections are strips, or scattered elements that touch at their corners. */
 START_TEST(clusters_part_their_sections_and_hang_together) {
-  const kinematics kin = averaged_kinematics[_i];
+  const kinematics kin = averaged_kinematics[_i / 2];
   scene *s = scene_new(grid(kin, 6), kin, 1);
   const mesh *m = s->m;
   const double share[] = {1, 0, 0.5};
@@ -83,7 +84,7 @@ START_TEST(clusters_part_their_sections_and_hang_together) {
   cluster_set *c;
   for (int e = 0; e < m->n_elem; ++e) {
     const double x = m->x[m->dim * m->elem[per * e]];
-    s->section_id[e] = x < 0.3 ? 0 : x < 0.6 ? 1 : 2;
+    s->section_id[e] = _i % 2 ? e % 3 : x < 0.3 ? 0 : x < 0.6 ? 1 : 2;
   }
   const cluster_input in = {m, 0, 3, s->section_id, share};
   ck_assert_int_eq(cluster_new(&in, &c), OK);
@@ -100,7 +101,7 @@ START_TEST(clusters_part_their_sections_and_hang_together) {
     }
     ck_assert_double_eq_tol(weight, 1, 1e-14);
     ck_assert_double_eq(c->share[k], share[section]);
-    ck_assert(hangs_together(m, c, k));
+    ck_assert(_i % 2 || hangs_together(m, c, k));
   }
   cluster_free(c);
   scene_free(s);
@@ -325,7 +326,7 @@ int main(void) {
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_test(tests, no_clusters_where_the_option_does_nothing);
   tcase_add_loop_test(tests, clusters_part_their_sections_and_hang_together, 0,
-                      KINDS);
+                      2 * KINDS);
   tcase_add_loop_test(tests, uniform_strain_is_reproduced_at_4999, 0,
                       2 * KINDS);
   tcase_add_loop_test(tests, forces_energy_and_stiffness_agree, 0, 2 * KINDS);

@@ -202,6 +202,25 @@ START_TEST(factor_bounds_what_friction_can_do) {
 }
 END_TEST
 
+/* A node with a limit of its own, one with mu; the first is the softer. */
+START_TEST(tangent_counts_given_limits_if_told) {
+  contact_case c = case_new(2, 2, 0.3);
+  theorems_contact with = {0}, without = {0};
+  energy_norm e;
+  const double diagonal[] = {2, 0.5, 2, 4};
+  for (int k = 0; k < 4; ++k) c.A[5 * k] = diagonal[k];
+  c.B->val[0] = 0.0;
+  c.g0[0] = 1.0;
+  ck_assert_int_eq(energy_norm_new(4, c.A, &e), OK);
+  ck_assert_int_eq(friction_constants(&c.cp, &e, 1, &with), OK);
+  ck_assert_int_eq(friction_constants(&c.cp, &e, 0, &without), OK);
+  ck_assert_double_eq_tol(with.tangent, 2.0, 1e-12);
+  ck_assert_double_eq_tol(without.tangent, 0.25, 1e-12);
+  energy_norm_free(&e);
+  case_free(&c);
+}
+END_TEST
+
 /* ---- bounds ------------------------------------------------------------- */
 
 static void scale_friction(contact_case *c, double factor) {
@@ -395,6 +414,7 @@ UNIT_MAIN("theory", largest_eigenvalues_are_those_of_closed_forms,
           triangle_has_its_constants,
           above_the_critical_mu_it_does_not_contract,
           factor_bounds_what_friction_can_do,
+          tangent_counts_given_limits_if_told,
           bounds_hold_under_the_guaranteed_limit,
           wrong_answers_violate_the_bounds, inequality_tells_wrong_states,
           inequality_of_no_number_is_not_met,
