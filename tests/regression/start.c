@@ -238,6 +238,40 @@ START_TEST(incompatible_start_is_relaxed) {
 }
 END_TEST
 
+/* Carried aside and into the floor as a whole, then held in its place without
+ * load: no method needs forces, nor a step. */
+START_TEST(start_without_load_is_relaxed_to_rest) {
+  static const char *const all[] = {"AUTO",   "NEWTON",   "LEMKE",
+                                    "SOR",    "AITKEN",   "PCG",
+                                    "AUGLAG", "LAGRANGE", "PROXIMAL"};
+  for (size_t m = 0; m < sizeof all / sizeof *all; ++m) {
+    job j = job_begin("rest");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "rest.inp",
+              "*PARAMETER\nN = 5\n*MESH, FILE=square.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.385\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=F, LAW=COULOMB\n0.4\n"
+              "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, INCOMPATIBLE=RELAX\n"
+              "BODY, 1, 7E-4\nBODY, 2, -8E-4\n*STEP\n*QUASISTATIC\n0.5, 1.\n"
+              "*BOUNDARY\nLEFT, 1, 1, \"0*t\"\nTOP, 2, 2, \"-0.01*t\"\n"
+              "*SOLVER, METHOD=%s\n" PRINT,
+              all[m]);
+    const int code = job_run(&j, "--no-timing");
+    ck_assert_msg(code == 0, "%s: exit %d: %s", all[m], code, j.errors);
+    dat u = job_table(&j, "NODES", 0), c = job_table(&j, "CONTACT", 0);
+    ck_assert(dat_max(&u, "u_r") == 0 && dat_max(&u, "u_z") == 0);
+    ck_assert(dat_max(&c, "f_n") == 0 && dat_max(&c, "f_t") == 0);
+    dat_free(&u);
+    dat_free(&c);
+    ck_assert(listing_has(&j, "iterations 0,"));
+    job_end(&j);
+  }
+}
+END_TEST
+
 #define DRAG(u) "*BOUNDARY\nTOP, 1, 1, " u "\n"
 
 /* Dragged one way and back: in one run of two steps, and in two runs, the
@@ -350,5 +384,6 @@ END_TEST
 UNIT_MAIN("start", compatible_start_goes_on, start_remembers_where_the_foot_is,
           given_force_goes_on, walls_of_a_corner_have_gaps_of_their_own,
           incompatible_start_is_refused_with_its_defect,
-          incompatible_start_is_relaxed, end_of_a_run_is_a_start,
-          end_of_a_long_run_is_a_start, wrong_files_are_refused)
+          incompatible_start_is_relaxed, start_without_load_is_relaxed_to_rest,
+          end_of_a_run_is_a_start, end_of_a_long_run_is_a_start,
+          wrong_files_are_refused)

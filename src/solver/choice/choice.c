@@ -119,11 +119,17 @@ status contact_solver_keep(contact_solver *s, archive *a) {
   return normal_form_keep(&s->normal, a);
 }
 
-/* 1: a compliance whose nodes do not reach their obstacles without forces. */
-static int stays_clear(const contact_problem *cp) {
-  if (cp->A != NULL) return 0;
-  for (int dof = 0; dof < cp->m; ++dof)
-    if (cp->f[dof] > contact_bound(cp, dof)) return 0;
+/* 1: no force is needed: of a compliance whose nodes do not reach their
+ * obstacles, or of a stiffness without load that nothing pressed before, r. */
+static int needs_no_force(const contact_problem *cp, const double *r) {
+  for (int dof = 0; dof < cp->m; ++dof) {
+    const double *load = cp->f + dof;
+    if ((cp->A != NULL ? 0.0 : *load) > contact_bound(cp, dof)) return 0;
+    if (cp->A == NULL) continue;
+    if (*load != 0.0) return 0;
+    if (r[dof] < 0.0 && contact_bound(cp, dof) < HUGE_VAL) return 0;
+    if (contact_held(cp, dof) && contact_stick(cp, dof) != 0.0) return 0;
+  }
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i)
     if (cp->g0[i] > 0.0) return 0;
   return 1;
@@ -138,14 +144,10 @@ static int known_answer(const contact_solver *s, const contact_problem *cp,
   if (cp->m == 0) return 1;
   rep->residual = contact_residual_at(cp, scale, u, r);
   if (rep->residual <= tol) return 1;
-  if (stays_clear(cp)) {
-    cold_start(cp, u, r);
-    rep->residual = contact_residual_at(cp, scale, u, r);
-    return rep->residual <= tol;
-  }
-  if (scale == 0.0) {
-    memset(u, 0, (size_t)cp->m * sizeof *u);
+  if (scale == 0.0 || needs_no_force(cp, r)) {
     memset(r, 0, (size_t)cp->m * sizeof *r);
+    memset(u, 0, (size_t)cp->m * sizeof *u);
+    if (cp->A == NULL) memcpy(u, cp->f, (size_t)cp->m * sizeof *u);
     rep->residual = contact_residual_at(cp, scale, u, r);
     return rep->residual <= tol;
   }
