@@ -140,6 +140,14 @@ START_TEST(saved_iterations_are_those_of_the_default) {
   double told = figure(&j, "balanced_saved_iterations");
   double is = iterations(&exact) - iterations(&j);
   ck_assert_msg(told > 0.5 * is && told < 1.5 * is, "told %g, is %g", told, is);
+  /* each takes as long as one that was made, as far as clocks tell */
+  char *json = job_file(&j, "json");
+  const char *stage = strstr(json, "\"stage\": \"contact solver\"");
+  ck_assert_ptr_nonnull(stage);
+  const double spent = atof(strstr(stage, "\"cpu\": ") + strlen("\"cpu\": "));
+  ck_assert_double_lt(figure(&j, "balanced_saved_cpu"),
+                      3 * spent * told / iterations(&j));
+  free(json);
   char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "stopping balanced with the other errors"));
   const char *last = NULL, *next = lst;

@@ -131,6 +131,25 @@ START_TEST(small_thermal_strain_is_left_out) {
 }
 END_TEST
 
+/* A support that moves the top by 0.5 strains the block, 40 long and 30 high,
+ * by 0.5/40; heat by 1.2e-9. */
+START_TEST(strain_of_a_moved_support_is_over_the_size) {
+  const scene s = {"*EXPANSION\n1.2D-5\n",
+                   coulomb,
+                   "*BOUNDARY\nTOP, 2, 2, -0.5\n*TEMPERATURE\nBODY, 1.D-4\n",
+                   "*EFFECTS, MODE=AUTO\n",
+                   0.2,
+                   NULL};
+  job j = run_scene(&s);
+  char *text = job_file(&j, "lst"), *at = strstr(text, "left out: thermal");
+  ck_assert_ptr_nonnull(at);
+  ck_assert_ptr_nonnull(at = strstr(at, "at most "));
+  ck_assert_double_eq_tol(strtod(at + 8, NULL), 9.6e-8, 1e-15);
+  free(text);
+  job_end(&j);
+}
+END_TEST
+
 /* Without lateral contraction heat alone makes the block rub: little beside
  * the pressure, all of the friction. */
 START_TEST(heat_that_makes_all_friction_stays) {
@@ -376,6 +395,7 @@ START_TEST(random_scenes_agree) {
 END_TEST
 
 UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
+          strain_of_a_moved_support_is_over_the_size,
           heat_that_makes_all_friction_stays, slow_relaxation_is_left_out,
           law_at_its_end_is_left_out, elements_below_the_threshold_are_left_out,
           law_below_its_threshold_is_left_out,

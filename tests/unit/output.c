@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/timer.h"
+#include "output/writers.h"
 #include "support/made_up.h"
 #include "support/unit.h"
 
@@ -506,6 +507,40 @@ START_TEST(output_changes_nothing_it_is_given) {
 END_TEST
 
 /* stderr is a file here, as in a batch job. */
+/* What is left takes as long an increment as what is done. */
+START_TEST(progress_foresees_the_time_left) {
+  static const struct {
+    double seconds;
+    int done;
+    const char *told;
+  } cases[] = {{30.0, 3, "increment 3 of 10, 70 s left"},
+               {3000.0, 30, "increment 3 of 10, 12 min left"},
+               {10800.0, 3, "increment 3 of 10, 7 h left"}};
+  step only = {.total = 10.0};
+  const model m = {.n.step = 1, .steps = &only};
+  const state s = {
+      .t = 3.0, .dt = 1.0, .step_no = 1, .increment_no = 3, .total_no = 3};
+  char dir[64], path[80];
+  folder_new(dir);
+  snprintf(path, sizeof path, "%s/errors", dir);
+  fflush(stderr);
+  int kept = dup(STDERR_FILENO);
+  FILE *errors = fopen(path, "w");
+  dup2(fileno(errors), STDERR_FILENO);
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k)
+    progress_show(&m, &s, cases[k].seconds, cases[k].done);
+  dup2(kept, STDERR_FILENO);
+  close(kept);
+  fclose(errors);
+  char *text = folder_file(dir, "errors", NULL), *at = text;
+  for (size_t k = 0; k < sizeof cases / sizeof *cases && at != NULL; ++k)
+    at = strstr(at, cases[k].told);
+  ck_assert_msg(at != NULL, "%s", text);
+  free(text);
+  folder_remove(dir);
+}
+END_TEST
+
 START_TEST(no_progress_line_where_there_is_no_terminal) {
   char dir[64], path[80];
   folder_new(dir);
@@ -594,5 +629,5 @@ UNIT_MAIN("output", two_runs_give_the_same_bytes,
           full_disk_of_any_text_file_is_told_and_the_others_are_kept,
           files_made_aside_are_told, folder_that_cannot_be_written_is_told,
           every_refused_request_is_told_and_leaves_nothing,
-          output_changes_nothing_it_is_given,
+          output_changes_nothing_it_is_given, progress_foresees_the_time_left,
           no_progress_line_where_there_is_no_terminal)
