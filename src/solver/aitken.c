@@ -46,6 +46,7 @@ enum {
   DEPTH = 12,     /* differences of Anderson's mixing */
   PLAIN = 6,      /* sweeps from one step of Aitken to the next */
   REFRESH = 64,   /* sweeps from one product to the next */
+  UNSEEN = 8,     /* sweeps of few products without a check of the residual */
   PATIENCE = 400, /* sweeps without a lower residual before a remedy */
   OFTEN = 20      /* one old pattern in so many sweeps is a cycle */
 };
@@ -60,7 +61,7 @@ typedef struct aitken_work {
   double *x, *y;             /* [m] G of the sweep before, and its Y */
   double *defect;            /* [m] F of the sweep before, then of this one */
   double *diagonal;          /* [m] of the matrix */
-  double *dx, *dy, *df;      /* [m*DEPTH] differences, a ring */
+  double *dx, *dy, *df;      /* [m*depth] differences, a ring */
   double gram[DEPTH][DEPTH]; /* (dF_i . dF_j)_D by place in the ring */
 } aitken_work;
 
@@ -77,8 +78,9 @@ static status aitken_setup(const contact_problem *cp, const void *par,
                            void **work) {
   status st = OK;
   aitken_work *w = NULL;
+  const aitken *p = par;
   size_t m = (size_t)cp->m;
-  (void)par;
+  size_t depth = p->acceleration == BY_ANDERSON ? DEPTH : 1;
   NEW(w, 1);
   TRY(node_blocks_new(cp, &w->blocks));
   TRY(best_iterate_new(cp->m, &w->best));
@@ -87,9 +89,9 @@ static status aitken_setup(const contact_problem *cp, const void *par,
   NEW(w->y, m);
   NEW(w->defect, m);
   NEW(w->diagonal, m);
-  NEW(w->dx, m * DEPTH);
-  NEW(w->dy, m * DEPTH);
-  NEW(w->df, m * DEPTH);
+  NEW(w->dx, m * depth);
+  NEW(w->dy, m * depth);
+  NEW(w->df, m * depth);
   for (int i = 0; i < cp->m; ++i) w->diagonal[i] = contact_diagonal(cp, i);
   *work = w;
   w = NULL;
@@ -110,6 +112,8 @@ typedef struct run {
   double moved;     /* |F|^2 of the sweep before */
   double mark;      /* residual at the last progress */
   int since, cures; /* sweeps since; remedies tried */
+  int checked;      /* sweep of the last check of the residual */
+  double per_move;  /* residual over the size of the sweep there */
   int circling;     /* of these sweeps those that left an old pattern */
   state_watch watch;
   int symmetric; /* every other sweep backward */
@@ -238,6 +242,14 @@ static void steer(run *s, int k) {
   }
 }
 
+/* 1: the residual is worked out: a sweep of sparse blocks costs less than that,
+ * which is left out until the size of the sweeps promises an answer. */
+static int is_checked(const run *s, int k, int limit, double tol) {
+  const relaxation *z = &s->sweep;
+  if (z->cp->blocks == NULL || k == limit || k - s->checked >= UNSEEN) return 1;
+  return s->checked == 0 || !(s->per_move * sqrt(z->change) > tol);
+}
+
 static outcome sweeps(run *s, const solver_control *control,
                       solver_report *rep) {
   relaxation *z = &s->sweep;
@@ -248,7 +260,15 @@ static outcome sweeps(run *s, const solver_control *control,
     if (k % REFRESH == 1) relaxation_refresh(z);
     memcpy(s->w->before, s->x, (size_t)s->m * sizeof *s->x);
     relaxation_sweep(z, s->symmetric && k % 2 == 0);
+    ++s->since;
+    if (!is_checked(s, k, limit, control->tol)) {
+      s->circling += state_watch_returns(&s->watch, z);
+      steer(s, k);
+      continue;
+    }
     double residual = contact_mismatch(z->cp, scale, z->u, z->r, NULL);
+    s->checked = k;
+    s->per_move = residual / sqrt(z->change);
     if (residual <= control->tol) {
       relaxation_refresh(z);
       residual = contact_mismatch(z->cp, scale, z->u, z->r, NULL);
@@ -258,7 +278,8 @@ static outcome sweeps(run *s, const solver_control *control,
     solver_report_states(control, "aitken", k, residual, z->turned, cycle);
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= control->tol) return CONVERGED;
-    ++s->since;
+    if (!solver_promises(control->promise, k, residual, control->tol))
+      return STOPPED_ITERATIONS;
     s->circling += cycle;
     if (residual < PROGRESS * s->mark) {
       s->mark = residual;

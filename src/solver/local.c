@@ -265,7 +265,7 @@ local_state local_solve(const local_problem *lp, local_state before, double *d,
   int frictionless = lp->g0 == 0.0 && lp->mu == 0.0;
   double best = HUGE_VAL;
   double force =
-      hypot(lp->b[0], size_of(lp, lp->b)) + fabs(lp->K[0] * lp->at[0]);
+      fabs(lp->b[0]) + size_of(lp, lp->b) + fabs(lp->K[0] * lp->at[0]);
   local_state found = before;
   for (int i = 0; i < 3; ++i) {
     candidate c = {.violation = 0.0};

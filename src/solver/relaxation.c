@@ -184,6 +184,18 @@ static void displacement_step(const relaxation *s, int node_id,
   }
 }
 
+/* 1: an open node without force that stays so: nothing moves. */
+static int rests(const relaxation *s, int node_id) {
+  const contact_problem *cp = s->cp;
+  const int first = node_id * cp->dim;
+  if (cp->A != NULL || s->blocks->state[node_id] != LOCAL_OPEN ||
+      s->u[first] > cp->gap[node_id] || cp->side_gap != NULL)
+    return 0;
+  for (int k = 0; k < cp->dim; ++k)
+    if (s->r[first + k] != 0.0) return 0;
+  return contact_node_limit(cp, s->r, node_id) == 0.0;
+}
+
 /* Solve the node; step[dim]: change of its displacement (of its force in
  * compliance form). */
 static void node_step(relaxation *s, int node_id, double *step) {
@@ -211,6 +223,7 @@ static void visit(relaxation *s, int node_id) {
   const contact_problem *cp = s->cp;
   double *unknown = cp->A != NULL ? s->u : s->r, step[3] = {0.0, 0.0, 0.0};
   int first = node_id * cp->dim, moved = 0;
+  if (rests(s, node_id)) return;
   node_step(s, node_id, step);
   for (int k = 0; k < cp->dim; ++k) {
     double weight = s->blocks->weight[first + k];

@@ -30,6 +30,17 @@ void solver_report_step(const solver_control *control, const char *solver,
   solver_report_states(control, solver, iteration, residual, -1, 0);
 }
 
+int solver_promises(sweep_promise *p, int k, double residual, double tol) {
+  if (p == NULL) return 1;
+  if (!(p->best > 0.0 && p->best < residual)) p->best = residual;
+  if (k - p->from < p->every) return 1;
+  const double fall = p->before > 0.0 ? log(p->before / p->best) : HUGE_VAL;
+  const double left = log(p->best / tol) / fall * (k - p->from);
+  p->before = p->best;
+  p->from = k;
+  return k + left <= p->most;
+}
+
 status best_iterate_new(int m, best_iterate *best) {
   best->residual = HUGE_VAL;
   PASS_NEW(best->u, m);

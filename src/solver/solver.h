@@ -36,6 +36,17 @@ typedef struct solver_listener {
   void *ctx;
 } solver_listener;
 
+/* Sweeps go on while their rate, observed over "every" of them, predicts the
+ * answer within "most". */
+typedef struct sweep_promise {
+  int every;
+  double most;
+  int from;            /* sweep of the last look */
+  double before, best; /* lowest residual there, now; 0: none yet */
+} sweep_promise;
+/* After sweep k: 1: go on. p NULL: always. */
+int solver_promises(sweep_promise *p, int k, double residual, double tol);
+
 /* Control parameters of every solver, besides its own options. */
 typedef struct solver_control {
   double tol;                      /* wanted contact_residual, - */
@@ -45,6 +56,7 @@ typedef struct solver_control {
   int no_restart;                  /* 1: stop rather than start again from
                                       another guess */
   int limit_update;                /* pass now running, for the listener */
+  sweep_promise *promise;          /* of sweeps; or NULL */
   const solver_listener *listener; /* or NULL */
 } solver_control;
 

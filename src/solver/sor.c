@@ -197,6 +197,8 @@ static outcome sweeps(relaxation *s, course *c, const solver_control *control,
     c->turned = c->returns = 0;
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= control->tol) return CONVERGED;
+    if (!solver_promises(control->promise, k, residual, control->tol))
+      return STOPPED_ITERATIONS;
     steer(s, c, k);
     if (c->since <= PATIENCE) continue;
     int circles = 2 * c->circling > c->since;

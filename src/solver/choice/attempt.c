@@ -177,13 +177,14 @@ static status drive_anchored(void *ctx, const contact_problem *cp,
   return drive_one(x->s, cp, x->a, control, u, r, rep);
 }
 
-/* 1: a method found the compliance, or its part for a guess of the states,
- * singular: the inverse decides which. */
+/* 1: the method chosen found the compliance, or its part for a guess of the
+ * states, singular: the inverse decides which. AUTO has others. */
 static int wants_inverse(contact_solver *s, const contact_problem *cp,
                          const attempt *a, const solver_report *rep) {
   int row = row_of(a->ops);
-  if (rep->outcome != STOPPED_SINGULAR || cp->A != NULL ||
-      !(a->ops->handles & REGULAR_COMPLIANCE) || s->inverse_wanted)
+  if (s->choice.ops == NULL || rep->outcome != STOPPED_SINGULAR ||
+      cp->A != NULL || !(a->ops->handles & REGULAR_COMPLIANCE) ||
+      s->inverse_wanted)
     return 0;
   a->ops->release(s->work[row]);
   s->work[row] = NULL;
@@ -243,7 +244,8 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
   solver_control control = {.tol = s->choice.tol,
                             .max_iter = a->max_iter,
                             .limit_max_iter = s->choice.limit_max_iter,
-                            .listener = listener};
+                            .listener = listener,
+                            .promise = a->promise};
   *rep = (solver_report){.outcome = STOPPED_UNFIT};
   TRY(suit(s, cp, a->ops, &own, &why));
   if (why != NULL) {

@@ -23,8 +23,20 @@
  * many in some hundred iterations, the others rarely: then PROXIMAL, in some
  * ten to a thousand steps, and PCG without the short limit.
  *
- * After the first each method of the chain starts cold, on the same problem,
- * with a limit of iterations that bounds its cost (allowance).
+ * Compliance in sparse blocks: the operations of each method are estimated from
+ * the unknowns m, the contacts n and the entries e of the blocks,
+ *
+ *   a sweep         4 e + 100 dim^2 n
+ *   PROXIMAL       16 steps of 500 e (a sparse factor)
+ *   PCG           800 steps of 3 e + 650 n
+ *
+ * (counts and factors measured on the public problems of FCLIB). Sweeps of
+ * AITKEN go first, no more of them than the cheapest of the others costs, while
+ * their rate predicts the solution within 1.5 times that. The others follow in
+ * the order of their cost, then the methods with longer limits.
+ *
+ * A method that is not "warm" starts cold, on the same problem. Each has a
+ * limit of iterations that bounds its cost (allowance).
  */
 #include "solver/choice/choice.h"
 
@@ -46,7 +58,11 @@ const char auto_help[] =
   "(*CONDENSED PROBLEM) such sweeps go first in 3-D, while their rate\n"
   "predicts the solution at less cost than NEWTON; then the same chain with\n"
   "such sweeps, PCG, PROXIMAL, PCG with more iterations and LAGRANGE before\n"
-  "SOR, for compliances that are singular. The first starts from the last\n"
+  "SOR, for compliances that are singular. A compliance most of which is zero\n"
+  "(contacts of many bodies) is kept in sparse blocks: sweeps of AITKEN go\n"
+  "first, as many as cost what PROXIMAL or PCG is estimated to cost, while\n"
+  "their rate predicts the solution; then these two, the cheaper first, and\n"
+  "the others. The first starts from the last\n"
   "increment, the others cold; each has a limit of iterations that bounds\n"
   "its cost, or MAX_ITER if that is less. A result is accepted only by the\n"
   "residual of the given problem; the listing says which methods were tried,\n"
@@ -57,6 +73,8 @@ const char auto_help[] =
 enum {
   WARM_STEPS = 3,      /* of NEWTON before the normal form is made */
   ROUND = 10,          /* sweeps from one check of their rate to the next */
+  SPARSE_ROUND = 32,   /* the same of sparse blocks */
+  MOST_FULL = 5000,    /* m of a sparse compliance of which all is made */
   SWEEP_SHARE = 4,     /* m over it: sweeps that cost less than an inverse */
   STEPS = 6,           /* of NEWTON, compared with the cost of sweeps */
   LEAST_ROUNDS = 3,    /* least number for a trial */
@@ -70,42 +88,123 @@ enum {
   MOST_SWEEPS = 20000
 };
 
-/* The order of the methods, their loops, and where they apply. */
-static const struct {
+static const double LENIENT = 1.5; /* sweeps foreseen over those allowed */
+
+/* A method, its loop, and where it applies. */
+typedef struct link {
   const solver_ops *ops;
   drive how;
   int compliance; /* 1: only where no stiffness is given, -1: where one is */
   int factors;    /* 1: an iteration costs a factorisation, else a product */
   int most;       /* iterations, 0: as many as the cost allows */
-} auto_chain[] = {{&newton_solver, PLAIN, 0, 1, 0},
-                  {&newton_solver, ALONG_PATH, 0, 1, 0},
-                  {&sor_solver, WHILE_PROMISING, 1, 0, 0},
-                  {&pcg_solver, PLAIN, 1, 0, 1000},
-                  {&proximal_solver, PLAIN, 1, 1, 0},
-                  {&pcg_solver, PLAIN, 1, 0, 0},
-                  {&lagrange_solver, PLAIN, 1, 0, 0},
-                  {&sor_solver, PLAIN, 0, 0, 0},
-                  {&lemke_solver, PLAIN, 0, 0, 0},
-                  {&proximal_solver, PLAIN, -1, 1, 0}};
+  int warm;       /* 1: starts where the method before it ended */
+} link;
+
+enum { BY_NEWTON = -1 /* as many sweeps as NEWTON costs */ };
+static const link dense_chain[] = {
+    {&sor_solver, WHILE_PROMISING, 1, 0, BY_NEWTON, 1},
+    {&newton_solver, PLAIN, 0, 1, 0, 1},
+    {&newton_solver, ALONG_PATH, 0, 1, 0, 0},
+    {&sor_solver, WHILE_PROMISING, 1, 0, 0, 0},
+    {&pcg_solver, PLAIN, 1, 0, 1000, 0},
+    {&proximal_solver, PLAIN, 1, 1, 0, 0},
+    {&pcg_solver, PLAIN, 1, 0, 0, 0},
+    {&lagrange_solver, PLAIN, 1, 0, 0, 0},
+    {&sor_solver, PLAIN, 0, 0, 0, 0},
+    {&lemke_solver, PLAIN, 0, 0, 0, 0},
+    {&proximal_solver, PLAIN, -1, 1, 0, 0}};
+
+/* The first SORTED after the sweeps are put in the order of their cost. */
+static const link sparse_chain[] = {
+    {&aitken_solver, WHILE_PROMISING, 1, 0, 0, 1},
+    {&proximal_solver, PLAIN, 1, 1, 512, 0},
+    {&pcg_solver, PLAIN, 1, 0, 1000, 0},
+    {&newton_solver, PLAIN, 1, 1, 0, 0},
+    {&newton_solver, ALONG_PATH, 1, 1, 0, 0},
+    {&proximal_solver, PLAIN, 1, 1, 0, 0},
+    {&pcg_solver, PLAIN, 1, 0, 0, 0},
+    {&lagrange_solver, PLAIN, 1, 0, 0, 0},
+    {&aitken_solver, PLAIN, 1, 0, 0, 0},
+    {&sor_solver, PLAIN, 1, 0, 0, 0},
+    {&lemke_solver, PLAIN, 1, 0, 0, 0}};
+enum {
+  N_DENSE = sizeof dense_chain / sizeof *dense_chain,
+  N_SPARSE = sizeof sparse_chain / sizeof *sparse_chain,
+  MOST_LINKS = N_DENSE > N_SPARSE ? N_DENSE : N_SPARSE,
+  SORTED = 2
+};
+
+/* ---- cost of a method on sparse blocks, operations ----------------------- */
+
+static double entries_of(const contact_problem *cp) {
+  return (double)cp->blocks->start[cp->n] * cp->dim * cp->dim;
+}
+
+static double sweep_cost(const contact_problem *cp) {
+  return 4.0 * entries_of(cp) + 100.0 * cp->dim * cp->dim * cp->n;
+}
+
+static double cost_of(const contact_problem *cp, const solver_ops *ops) {
+  const double e = entries_of(cp);
+  if (ops == &proximal_solver) return 16.0 * 500.0 * e;
+  return 800.0 * (3.0 * e + 650.0 * cp->n);
+}
+
+/* The methods in their order, order[MOST_LINKS]; their number. */
+static int order_links(const contact_problem *cp, const link **order) {
+  const int sparse = cp->blocks != NULL, n = sparse ? N_SPARSE : N_DENSE;
+  for (int i = 0; i < n; ++i)
+    order[i] = sparse ? &sparse_chain[i] : &dense_chain[i];
+  for (int i = 2; sparse && i <= SORTED; ++i) {
+    const link *one = order[i];
+    int k = i;
+    for (; k > 1 && cost_of(cp, order[k - 1]->ops) > cost_of(cp, one->ops); --k)
+      order[k] = order[k - 1];
+    order[k] = one;
+  }
+  return n;
+}
+
+/* Sweeps at the cost of NEWTON for the forces of the nodes that would penetrate
+ * without forces, all slipping. */
+static int sweeps_of_newton(const contact_problem *cp) {
+  double n = 0.0, m = cp->m;
+  for (int i = 0; i < cp->n; ++i) n += cp->f[i * cp->dim] > cp->gap[i];
+  n *= cp->dim - 1;
+  double most = STEPS * 2.0 / 3.0 * n * n * n / (READ * 2.0 * m * m);
+  return most < LEAST_ROUNDS * ROUND ? 0 : (int)most;
+}
+
+/* Sweeps at the cost of the cheapest other method. */
+static int sweeps_of_others(const contact_problem *cp) {
+  double least = HUGE_VAL;
+  for (int i = 1; i <= SORTED; ++i)
+    least = fmin(least, cost_of(cp, sparse_chain[i].ops));
+  return (int)fmin(least / sweep_cost(cp), MOST_SWEEPS);
+}
+
+/* Of the sweeps that are watched. */
+static int sweeps_allowed(const contact_problem *cp, const link *l) {
+  if (cp->blocks != NULL) return sweeps_of_others(cp);
+  return l->most == BY_NEWTON ? sweeps_of_newton(cp) : cp->m / SWEEP_SHARE;
+}
 
 /* Limit of the iterations of a method: such that its cost is at most that of a
  * problem with FULL_SIZE unknowns, but at least LEAST. For a body held by
  * contact alone the last method is limited, as there may be no solution. */
 static int allowance(const contact_solver *s, const contact_problem *cp,
-                     int i) {
+                     const link *l) {
   double size = fmax(1.0, (double)cp->m / FULL_SIZE);
-  int factors = auto_chain[i].factors;
-  int promising = auto_chain[i].how == WHILE_PROMISING;
-  double most = factors ? MOST_FACTORS / (size * size * size)
-                        : MOST_SWEEPS / (size * size);
-  int own = (int)fmax(most, factors ? LEAST_FACTORS : LEAST_SWEEPS);
-  int asked = s->choice.max_iter, limit = auto_chain[i].most;
-  if (auto_chain[i].compliance < 0 && cp->floating) {
+  double most = l->factors ? MOST_FACTORS / (size * size * size)
+                           : MOST_SWEEPS / (size * size);
+  int own = (int)fmax(most, l->factors ? LEAST_FACTORS : LEAST_SWEEPS);
+  int asked = s->choice.max_iter;
+  if (l->compliance < 0 && cp->floating) {
     size = fmax(1.0, (double)cp->m / SMALL_SIZE);
     own = (int)fmax(MOST_SWEEPS / (size * size * size), LEAST_FACTORS);
   }
-  if (limit > 0 && limit < own) own = limit;
-  if (promising) own = cp->m / SWEEP_SHARE;
+  if (l->most > 0 && l->most < own) own = l->most;
+  if (l->how == WHILE_PROMISING) own = sweeps_allowed(cp, l);
   return asked > 0 && asked < own ? asked : own;
 }
 
@@ -145,12 +244,15 @@ static int sweeps_fit(const contact_problem *cp) {
 }
 
 /* 1 if a method of the chain does not apply: a friction path without Coulomb
- * friction, a method for problems of which only the compliance is known. */
-static int is_skipped(const contact_problem *cp, int i) {
-  if (auto_chain[i].how == ALONG_PATH && cp->B == NULL) return 1;
-  if (auto_chain[i].how == WHILE_PROMISING && !sweeps_fit(cp)) return 1;
-  if (auto_chain[i].compliance < 0) return cp->A == NULL;
-  return auto_chain[i].compliance && cp->A != NULL;
+ * friction, a method for problems of which only the compliance is known, or one
+ * that needs all of a large sparse one. */
+static int is_skipped(const contact_problem *cp, const link *l) {
+  if (l->how == ALONG_PATH && cp->B == NULL) return 1;
+  if (cp->blocks != NULL)
+    return cp->m > MOST_FULL && !(l->ops->handles & SPARSE_COMPLIANCE);
+  if (l->how == WHILE_PROMISING && !sweeps_fit(cp)) return 1;
+  if (l->compliance < 0) return cp->A == NULL;
+  return l->compliance && cp->A != NULL;
 }
 
 /* 1 if no other method is needed: a solution or a proof. */
@@ -169,46 +271,11 @@ static status short_try(contact_solver *s, const contact_problem *cp,
   status st = OK;
   int asked = s->choice.max_iter;
   attempt a = {ops, s->param, PLAIN,
-               asked > 0 && asked < iterations ? asked : iterations};
+               asked > 0 && asked < iterations ? asked : iterations, NULL};
   memset(s->param, 0, s->param_size);
   option_defaults(ops->options, s->param);
   TRY(attempt_run(s, cp, &a, listener, to->u, to->r, to->rep));
   attempt_check(s, cp, to->u, to->r, to->rep);
-done:
-  return st;
-}
-
-/* Sweeps at the cost of NEWTON for the forces of the nodes that would penetrate
- * without forces, all slipping. */
-static int sweeps_of_newton(const contact_problem *cp) {
-  double n = 0.0, m = cp->m;
-  for (int i = 0; i < cp->n; ++i) n += cp->f[i * cp->dim] > cp->gap[i];
-  n *= cp->dim - 1;
-  double most = STEPS * 2.0 / 3.0 * n * n * n / (READ * 2.0 * m * m);
-  return most < LEAST_ROUNDS * ROUND ? 0 : (int)most;
-}
-
-/* Sweeps of SOR on a compliance, while the rate of the last round predicts the
- * solution within "most". rep->outcome CONVERGED: solved. */
-static status promising_sweeps(contact_solver *s, const contact_problem *cp,
-                               int most, const solver_listener *listener,
-                               const answer *to) {
-  status st = OK;
-  int made = 0;
-  double before = HUGE_VAL;
-  solver_report *rep = to->rep;
-  *rep = (solver_report){.outcome = STOPPED_UNFIT};
-  while (made + ROUND <= most) {
-    TRY(short_try(s, cp, &sor_solver, ROUND, listener, to));
-    made += rep->iterations;
-    double rate = rep->residual / before, left = s->choice.tol / rep->residual;
-    rep->iterations = made;
-    if (rep->outcome != STOPPED_ITERATIONS) break;
-    int known = before < HUGE_VAL;
-    if (known && !(rate < 1.0 && made + ROUND * log(left) / log(rate) <= most))
-      break;
-    before = rep->residual;
-  }
 done:
   return st;
 }
@@ -226,7 +293,7 @@ static status solve_normal(contact_solver *s, const contact_problem *cp,
   status st = OK;
   int before = 0;
   solver_control control = {.tol = s->choice.tol,
-                            .max_iter = allowance(s, cp, 0),
+                            .max_iter = allowance(s, cp, &dense_chain[1]),
                             .listener = listener};
   *done_well = 0;
   if (!normal_form_applies(cp)) goto done;
@@ -254,26 +321,32 @@ done:
   return st;
 }
 
-/* One method of the chain; its outcome in rep. */
-static status run_link(contact_solver *s, const contact_problem *cp, int i,
-                       const solver_listener *listener, double *u, double *r,
-                       solver_report *rep) {
+/* One method of the chain; its outcome in rep. "first": no other has run. */
+static status run_link(contact_solver *s, const contact_problem *cp,
+                       const link *l, int first,
+                       const solver_listener *listener, const answer *to) {
   status st = OK;
-  attempt a = {auto_chain[i].ops, s->param, auto_chain[i].how,
-               allowance(s, cp, i)};
+  solver_report *rep = to->rep;
+  attempt a = {l->ops, s->param, l->how, allowance(s, cp, l), NULL};
+  sweep_promise promise = {
+      .every = cp->blocks != NULL ? SPARSE_ROUND : ROUND,
+      .most = (cp->blocks != NULL ? LENIENT : 1.0) * a.max_iter};
+  *rep = (solver_report){.outcome = STOPPED_UNFIT, .solver = l->ops->name};
+  if (l->how == WHILE_PROMISING) {
+    if (a.max_iter == 0) goto done;
+    a.promise = &promise;
+  }
   memset(s->param, 0, s->param_size);
   option_defaults(a.ops->options, s->param);
-  if (i > 0) cold_start(cp, u, r);
+  if (!l->warm) cold_start(cp, to->u, to->r);
   /* With a nearly singular stiffness its start forces are too large. */
-  if (a.ops == &proximal_solver) memset(r, 0, (size_t)cp->m * sizeof *r);
-  if (a.how == WHILE_PROMISING)
-    TRY(promising_sweeps(s, cp, a.max_iter, listener, &(answer){u, r, rep}));
-  else
-    TRY(attempt_run(s, cp, &a, listener, u, r, rep));
-  if (rep->outcome != STOPPED_UNFIT) attempt_check(s, cp, u, r, rep);
+  if (a.ops == &proximal_solver)
+    memset(to->r, 0, (size_t)cp->m * sizeof *to->r);
+  TRY(attempt_run(s, cp, &a, listener, to->u, to->r, rep));
+  if (rep->outcome != STOPPED_UNFIT) attempt_check(s, cp, to->u, to->r, rep);
   if (cp->floating || rep->outcome == STOPPED_RAY)
     TRY(attempt_prove(s, cp, rep));
-  if (i > 0 || rep->outcome != CONVERGED) note(s, rep, &a);
+  if (!first || rep->outcome != CONVERGED) note(s, rep, &a);
 done:
   return st;
 }
@@ -293,23 +366,20 @@ status auto_solve(contact_solver *s, const contact_problem *cp,
                   solver_report *rep) {
   status st = OK;
   size_t bytes = (size_t)cp->m * sizeof *u;
-  int n = (int)(sizeof auto_chain / sizeof *auto_chain), iterations = 0;
-  int solved = 0;
+  const link *order[MOST_LINKS];
+  const answer to = {u, r, rep};
+  int n = order_links(cp, order), iterations = 0, first = 1, solved = 0;
   solver_report best = {.outcome = RUNNING};
   TRY(solve_normal(s, cp, listener, u, r, rep, &solved));
-  if (!solved && sweeps_fit(cp)) {
-    TRY(promising_sweeps(s, cp, sweeps_of_newton(cp), listener,
-                         &(answer){u, r, rep}));
-    solved = rep->outcome == CONVERGED;
-  }
   if (!solved) {
-    TRY(coarse_sweeps(s, cp, listener, &(answer){u, r, rep}));
+    TRY(coarse_sweeps(s, cp, listener, &to));
     solved = rep->outcome == CONVERGED;
   }
   for (int i = 0; i < n && !solved; ++i) {
-    if (is_skipped(cp, i)) continue;
-    TRY(run_link(s, cp, i, listener, u, r, rep));
+    if (is_skipped(cp, order[i])) continue;
+    TRY(run_link(s, cp, order[i], first, listener, &to));
     iterations += rep->iterations;
+    first = first && rep->outcome == STOPPED_UNFIT && s->log[0] == '\0';
     if (best.outcome == RUNNING || rep->outcome == CONVERGED ||
         says_more(cp, rep, &best)) {
       best = *rep;

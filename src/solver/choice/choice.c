@@ -189,7 +189,8 @@ static status solve_apart(contact_solver *s, const contact_problem *cp,
   if (s->choice.ops == NULL) {
     TRY(auto_solve(s, cp, listener, u, r, rep));
   } else {
-    attempt a = {s->choice.ops, s->choice.param, PLAIN, s->choice.max_iter};
+    attempt a = {s->choice.ops, s->choice.param, PLAIN, s->choice.max_iter,
+                 NULL};
     TRY(attempt_run(s, cp, &a, listener, u, r, rep));
     attempt_check(s, cp, u, r, rep);
     TRY(attempt_prove(s, cp, rep));

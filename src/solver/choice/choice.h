@@ -49,7 +49,8 @@ typedef struct attempt {
   const solver_ops *ops;
   const void *param;
   drive how;
-  int max_iter; /* 0: the solver's own limit */
+  int max_iter;           /* 0: the solver's own limit */
+  sweep_promise *promise; /* of sweeps; or NULL */
 } attempt;
 
 /* Save or read the data of the workspace of a row of solver_list. */

@@ -49,6 +49,8 @@ struct step_matrix {
   const sparse_rows *W;           /* the one or the other */
   int *place;                     /* [m] in the system, -1: eliminated */
   double *line;                   /* [m] the current row */
+  int n_touched, *touched;        /* [m] its entries */
+  unsigned char *is_touched;      /* [m] */
   const double *d;                /* [m] borrowed */
   double *rhs, *x;                /* [m] */
   double *full;                   /* [m*m] rows of the system, one after the
@@ -66,7 +68,8 @@ static void step_matrix_free(step_matrix *s) {
   if (s == NULL) return;
   sparse_free(&s->own);
   sparse_free(&s->rows);
-  void *const blocks[] = {s->place, s->line, s->rhs, s->x, s->full, s->pivot};
+  void *const blocks[] = {s->place, s->line, s->touched, s->is_touched,
+                          s->rhs,   s->x,    s->full,    s->pivot};
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
     memory_free(blocks[k]);
   memory_free(s);
@@ -83,6 +86,8 @@ static status step_matrix_new(const contact_problem *cp, const force_set *set,
   s->W = &set->rows;
   NEW(s->place, m);
   NEW(s->line, m);
+  NEW(s->touched, m);
+  NEW(s->is_touched, m);
   NEW(s->rhs, m);
   NEW(s->x, m);
   memory_count_suitesparse();
@@ -112,22 +117,37 @@ static void step_matrix_begin(step_matrix *s, const unsigned char *acts,
   for (int i = 0; i < s->m; ++i) s->place[i] = acts[i] ? s->k++ : -1;
 }
 
-/* Into the current row: share times row j of W; value in column j. */
+/* Into the current row: value in column j; share times row j of W. */
+static void step_matrix_add(step_matrix *s, int j, double value) {
+  s->line[j] += value;
+  if (s->is_touched[j]) return;
+  s->is_touched[j] = 1;
+  s->touched[s->n_touched++] = j;
+}
+
 static void step_matrix_add_row(step_matrix *s, int j, double share) {
   const sparse_rows *W = s->W;
   for (int k = W->start[j]; k < W->start[j + 1]; ++k)
-    s->line[W->col[k]] += share * W->val[k];
+    step_matrix_add(s, W->col[k], share * W->val[k]);
 }
 
-static void step_matrix_add(step_matrix *s, int j, double value) {
-  s->line[j] += value;
+/* The entries of the current row in ascending order; the rows of W that they
+ * come from ascend. */
+static void sort_touched(step_matrix *s) {
+  for (int a = 1; a < s->n_touched; ++a) {
+    int j = s->touched[a], b = a;
+    for (; b > 0 && s->touched[b - 1] > j; --b)
+      s->touched[b] = s->touched[b - 1];
+    s->touched[b] = j;
+  }
 }
 
 /* Contribution of the eliminated unknowns to the right side; their entries of
  * the line are cleared. */
 static double take_out(step_matrix *s, int i) {
   double rhs = s->d[i];
-  for (int j = 0; j < s->m; ++j) {
+  for (int a = 0; a < s->n_touched; ++a) {
+    const int j = s->touched[a];
     if (s->place[j] >= 0) continue;
     rhs -= s->line[j] * s->d[j];
     s->line[j] = 0.0;
@@ -137,7 +157,8 @@ static double take_out(step_matrix *s, int i) {
 
 static status put_sparse(step_matrix *s, int row) {
   int n = s->rows.start[row];
-  for (int j = 0; j < s->m; ++j) {
+  for (int a = 0; a < s->n_touched; ++a) {
+    const int j = s->touched[a];
     if (s->line[j] == 0.0) continue;
     PASS_GROW(s->rows.col, n, s->col_capacity);
     PASS_GROW(s->rows.val, n, s->val_capacity);
@@ -153,16 +174,23 @@ static status put_sparse(step_matrix *s, int row) {
 static status step_matrix_put(step_matrix *s, int i) {
   status st = OK;
   int row = s->place[i];
+  sort_touched(s);
   s->rhs[row] = take_out(s, i);
   if (is_sparse(s)) {
     TRY(put_sparse(s, row));
     goto done;
   }
   double *to = s->full + (size_t)row * (size_t)s->k;
-  for (int j = 0; j < s->m; ++j)
-    if (s->place[j] >= 0) to[s->place[j]] = s->line[j];
+  memset(to, 0, (size_t)s->k * sizeof *to);
+  for (int a = 0; a < s->n_touched; ++a)
+    if (s->place[s->touched[a]] >= 0)
+      to[s->place[s->touched[a]]] = s->line[s->touched[a]];
 done:
-  memset(s->line, 0, (size_t)s->m * sizeof *s->line);
+  for (int a = 0; a < s->n_touched; ++a) {
+    s->line[s->touched[a]] = 0.0;
+    s->is_touched[s->touched[a]] = 0;
+  }
+  s->n_touched = 0;
   return st;
 }
 
