@@ -1,14 +1,14 @@
 /*
  * METHOD=AUTO against every row of the solver table on problems from files.
  *
- *   fclib [-t TOL] [-r REPEATS] [-s SECONDS] [-m METHOD] FILE...
+ *   fclib [-t TOL] [-r REPEATS] [-s SECONDS] FILE...
  *
  * A line for each file and method: CPU of the solver alone, median of repeated
  * runs from zero in a process of their own that ends after SECONDS, data ready;
  * the natural map of the forces found, worked out here from the matrix and the
  * load alone, over the largest force or load; the ratio to the fastest row of
  * the table; what AUTO tried. At the end the geometric mean and the largest of
- * AUTO's ratios. -m: that method alone.
+ * AUTO's ratios.
  */
 #include "exchange/exchange.h"
 #include "fem/fem.h"
@@ -38,8 +38,7 @@ typedef struct result {
 static struct bench {
   double tol, seconds;
   int repeats;
-  const char *method; /* NULL: all                                           */
-  double sum, worst;  /* of log(AUTO/best); largest ratio                    */
+  double sum, worst; /* of log(AUTO/best); largest ratio                    */
   int counted, failed;
 } bench;
 
@@ -179,7 +178,7 @@ static void problem(const char *name, const contact_problem *cp) {
   double best = HUGE_VAL;
   const char *at = strrchr(name, '/');
   int n = 0;
-  for (; solver_list[n] != NULL && bench.method == NULL; ++n) {
+  for (; solver_list[n] != NULL; ++n) {
     rows[n] = apart(cp, solver_list[n]);
     if (rows[n].outcome == CONVERGED) best = fmin(best, rows[n].cpu);
   }
@@ -213,7 +212,6 @@ int main(int argc, char **argv) {
   for (; at + 1 < argc && argv[at][0] == '-'; at += 2) {
     if (argv[at][1] == 't') bench.tol = atof(argv[at + 1]);
     if (argv[at][1] == 's') bench.seconds = atof(argv[at + 1]);
-    if (argv[at][1] == 'm') bench.method = argv[at + 1];
     if (argv[at][1] == 'r') bench.repeats = atoi(argv[at + 1]);
   }
   if (bench.repeats < 1 || bench.repeats > MAX_REPEATS)

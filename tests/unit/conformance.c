@@ -3,8 +3,11 @@
  * (PROTIS_PROBLEMS: another number; PROTIS_SEED: another thousand), of 1 to 300
  * nodes in two and three dimensions, friction from 0 to 2, a part of them
  * degenerate. Whoever claims an answer must have one by a check of its own;
- * small plane problems are answered by trying all states of all nodes.
+ * small plane problems are answered by trying all states of all nodes. Problems
+ * of many bodies, with a sparse compliance that may be singular or badly
+ * scaled, have a planted answer and a natural map of their own.
  */
+#include "support/planted.h"
 #include "support/points.h"
 #include "support/solver_rows.h"
 #include "support/state_list.h"
@@ -259,4 +262,55 @@ START_TEST(every_row_is_right_or_says_so) {
 }
 END_TEST
 
-UNIT_LOOP("conformance", every_row_is_right_or_says_so, SLICES)
+/* ---- sparse compliances ---------------------------------------------------
+ */
+
+/* 1: solved; a claim is right. */
+static int solves_planted(const solver_ops *ops, const planted *p, int k) {
+  double param[PARAM_SIZE / sizeof(double)] = {0.0};
+  solver_choice choice = {.ops = ops, .param = param, .tol = TOL_SOFT};
+  contact_solver *s = NULL;
+  solver_report rep;
+  if (ops != NULL) option_defaults(ops->options, param);
+  memset(p->r, 0, sizeof *p->r * (size_t)p->cp.m);
+  memcpy(p->u, p->q, sizeof *p->u * (size_t)p->cp.m);
+  ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+  ck_assert_int_eq(contact_solve(s, &p->cp, NULL, p->u, p->r, &rep), OK);
+  contact_solver_free(s);
+  if (rep.outcome != CONVERGED) return 0;
+  double map = planted_map(p, p->u, p->r);
+  ck_assert_msg(map <= CLAIM * TOL_SOFT, "%s: planted %d: natural map %g",
+                row_name(ops), k, map);
+  return 1;
+}
+
+START_TEST(planted_answer_of_many_bodies_is_found) {
+  static const int sizes[] = {6, 24, 45, 90};
+  static const double mus[] = {0.1, 0.3, 0.7};
+  int solved[MOST_ROWS] = {0}, tried = 0;
+  const solver_ops *ops;
+  for (int k = _i; k < asked("PROTIS_PROBLEMS", 300) / 6;
+       k += SLICES, ++tried) {
+    planted p = planted_new((planted_kind)(k % 3), 2 + k / 3 % 2, sizes[k % 4],
+                            mus[k / 2 % 3], (unsigned long long)k);
+    ck_assert_double_le(planted_map(&p, p.u, p.r), 1e-12);
+    for (int i = 0; solver_row(i, &ops); ++i)
+      if (ops == NULL || k % 4 < 2 || (ops->handles & SPARSE_COMPLIANCE))
+        solved[i] += solves_planted(ops, &p, k);
+    planted_free(&p);
+  }
+  for (int i = 0; solver_row(i, &ops); ++i)
+    if (ops == NULL || ops == &proximal_solver)
+      ck_assert_msg(solved[i] == tried, "%s: %d of %d", row_name(ops),
+                    solved[i], tried);
+  points_end(&(points){.kind = "planted problems of bodies", .tried = tried});
+}
+END_TEST
+
+int main(void) {
+  TCase *all = tcase_create("conformance");
+  tcase_set_timeout(all, 10 * UNIT_SECONDS);
+  tcase_add_loop_test(all, every_row_is_right_or_says_so, 0, SLICES);
+  tcase_add_loop_test(all, planted_answer_of_many_bodies_is_found, 0, SLICES);
+  return unit_run("conformance", all);
+}
