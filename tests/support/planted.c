@@ -17,7 +17,8 @@ static double *numbers(int n) {
 static void fill_compliance(planted *p, planted_kind kind,
                             unsigned long long *seed) {
   int d = p->cp.dim, m = p->cp.m, f = d == 2 ? 3 : 6;
-  int per = kind == PLANTED_REGULAR ? 1 : 3, bodies = p->cp.n / per + 2;
+  int per = kind == PLANTED_REGULAR ? 1 : kind == PLANTED_CROWDED ? p->cp.n : 3;
+  int bodies = p->cp.n / per + 2;
   double *H = numbers(m * bodies * f);
   for (int b = 0; b < bodies; ++b) {
     double mass = kind == PLANTED_SCALED ? pow(10.0, 8.0 * case_random(seed))

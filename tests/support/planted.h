@@ -7,7 +7,12 @@
 
 #include "contact/contact.h"
 
-typedef enum { PLANTED_REGULAR, PLANTED_SINGULAR, PLANTED_SCALED } planted_kind;
+typedef enum {
+  PLANTED_REGULAR,
+  PLANTED_SINGULAR,
+  PLANTED_SCALED,
+  PLANTED_CROWDED /* all contacts between two bodies: no block is zero        */
+} planted_kind;
 
 /* n contacts between neighbours in a row of bodies, W = H inv(M) H' with fewer
  * columns than rows but for PLANTED_REGULAR; masses over 8 decades with

@@ -1,6 +1,7 @@
 /* METHOD=AUTO, forms of a problem, what is kept from problem to problem. */
 #include "solver/choice/form.h"
 #include "solver/solver.h"
+#include "support/planted.h"
 #include "support/contact_case.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
@@ -235,10 +236,78 @@ START_TEST(limit_holds_for_all_attempts_together) {
 }
 END_TEST
 
+/* The log of AUTO with so many iterations for each method. */
+static void tried(const contact_problem *cp, double *u, double *r, int most,
+                  outcome *end, char text[512]) {
+  solver_choice choice = {.tol = 1e-10, .max_iter = most};
+  contact_solver *s = NULL;
+  solver_report rep;
+  memset(r, 0, sizeof *r * (size_t)cp->m);
+  memcpy(u, cp->f, sizeof *u * (size_t)cp->m);
+  ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+  ck_assert_int_eq(contact_solve(s, cp, NULL, u, r, &rep), OK);
+  snprintf(text, 512, "%s", contact_solver_log(s));
+  contact_solver_free(s);
+  *end = rep.outcome;
+}
+
+/* The first methods that were tried are these. */
+static void expect_order(const char *text, const char *const names[]) {
+  const char *at = text;
+  for (int i = 0; names[i] != NULL; ++i) {
+    size_t length = strlen(names[i]);
+    ck_assert_msg(strncmp(at, names[i], length) == 0 && at[length] == ':',
+                  "%s is not in its place: %s", names[i], text);
+    at = strstr(at, ", ");
+    at = at == NULL ? "" : at + 2;
+  }
+}
+
+START_TEST(sparse_methods_come_in_the_order_of_their_cost) {
+  static const struct {
+    planted_kind kind;
+    const char *names[5];
+  } cases[] = {
+      {PLANTED_SINGULAR, {"aitken", "proximal", "pcg", "newton", NULL}},
+      {PLANTED_CROWDED, {"aitken", "pcg", "proximal", "newton", NULL}}};
+  for (int k = 0; k < 2; ++k) {
+    char text[512];
+    outcome end;
+    planted p = planted_new(cases[k].kind, 3, 30, 0.3, 1);
+    tried(&p.cp, p.u, p.r, 1, &end, text);
+    ck_assert_int_lt(end, 0);
+    expect_order(text, cases[k].names);
+    planted_free(&p);
+  }
+}
+END_TEST
+
+/* Sweeps end where their rate promises no answer, and are told. */
+START_TEST(sweeps_without_promise_are_left_and_told) {
+  int left = 0;
+  for (unsigned long long k = 0; k < 8; ++k) {
+    char text[512];
+    outcome end;
+    int made = 0, allowed = 0;
+    planted p = planted_new(PLANTED_SCALED, 3, 45, 0.7, k);
+    tried(&p.cp, p.u, p.r, 0, &end, text);
+    ck_assert_int_eq(end, CONVERGED);
+    ck_assert_double_le(planted_map(&p, p.u, p.r), 1e-8);
+    if (sscanf(text, "aitken: limit of iterations (%d of %d allowed)", &made,
+               &allowed) == 2)
+      left += made < allowed;
+    planted_free(&p);
+  }
+  ck_assert_int_ge(left, 2);
+}
+END_TEST
+
 UNIT_MAIN("choice", frictionless_problems_are_solved_in_both_forms,
           what_is_kept_changes_no_answer,
           opened_nodes_are_kept_and_change_no_answer,
           unfit_method_is_named_with_the_reason,
           tolerance_is_met_in_the_form_given,
           last_method_solves_what_the_others_leave,
-          limit_holds_for_all_attempts_together)
+          limit_holds_for_all_attempts_together,
+          sparse_methods_come_in_the_order_of_their_cost,
+          sweeps_without_promise_are_left_and_told)

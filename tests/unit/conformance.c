@@ -291,8 +291,9 @@ START_TEST(planted_answer_of_many_bodies_is_found) {
   const solver_ops *ops;
   for (int k = _i; k < asked("PROTIS_PROBLEMS", 300) / 6;
        k += SLICES, ++tried) {
-    planted p = planted_new((planted_kind)(k % 3), 2 + k / 3 % 2, sizes[k % 4],
-                            mus[k / 2 % 3], (unsigned long long)k);
+    planted p =
+        planted_new((planted_kind)((k + k / SLICES) % 4), 2 + k / 3 % 2,
+                    sizes[k % 4], mus[k / 2 % 3], (unsigned long long)k);
     ck_assert_double_le(planted_map(&p, p.u, p.r), 1e-12);
     for (int i = 0; solver_row(i, &ops); ++i)
       if (ops == NULL || k % 4 < 2 || (ops->handles & SPARSE_COMPLIANCE))

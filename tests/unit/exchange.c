@@ -65,6 +65,8 @@ static void check_local(const exchange_problem *p, int dim, int n,
                         const double *W, const double *q, const double *mu,
                         double tol) {
   int m = dim * n;
+  double *have = calloc((size_t)(m * m), sizeof *have);
+  contact_dense(&p->cp, have);
   ck_assert_int_eq(p->dim, dim);
   ck_assert_int_eq(p->n, n);
   ck_assert_ptr_null(p->cp.A);
@@ -73,9 +75,10 @@ static void check_local(const exchange_problem *p, int dim, int n,
     ck_assert_double_eq_tol(p->cp.f[j], s * q[j], tol);
     for (int i = 0; i < m; ++i) {
       double t = i % dim == 0 ? -s : s;
-      ck_assert_double_eq_tol(p->cp.W[i + m * j], t * W[i + m * j], tol);
+      ck_assert_double_eq_tol(have[i + m * j], t * W[i + m * j], tol);
     }
   }
+  free(have);
   for (int i = 0; i < n; ++i) {
     ck_assert_double_eq(p->cp.B->val[i], mu[i]);
     ck_assert_double_eq(p->cp.gap[i], 0.0);
@@ -83,6 +86,40 @@ static void check_local(const exchange_problem *p, int dim, int n,
 }
 
 static const int stores[] = {STORE_TRIPLET, STORE_COLUMNS, STORE_ROWS};
+
+/* Three of 16 blocks off the diagonal, unsymmetric. */
+static void few_blocks(int dim, double *W, unsigned long long *seed) {
+  int m = 4 * dim;
+  random_matrix(m * m, W, seed);
+  for (int j = 0; j < m; ++j)
+    for (int i = 0; i < m; ++i) {
+      int a = i / dim, b = j / dim;
+      int there = a == b || (a == 2 && b == 0) || (a + b == 4 && a * b == 3);
+      if (!there) W[i + m * j] = 0.0;
+    }
+}
+
+START_TEST(compliance_of_few_blocks_is_kept_in_them) {
+  enter();
+  for (int dim = 2; dim <= 3; ++dim) {
+    unsigned long long seed = 5;
+    double W[144], q[12], mu[4] = {0.5, 0.0, 1.5, 0.3};
+    random_matrix(12, q, &seed);
+    for (int few = 0; few < 2; ++few) {
+      few_blocks(dim, W, &seed);
+      if (!few) random_matrix(16 * dim * dim, W, &seed);
+      fclib_local(path, STORE_ROWS, dim, 4, W, q, mu);
+      answer a = read_as(EXCHANGE_FCLIB);
+      ck_assert_msg(a.st == OK, "%s", a.text);
+      ck_assert_int_eq(a.p->cp.blocks != NULL, few);
+      ck_assert_int_eq(a.p->cp.W == NULL, few);
+      check_local(a.p, dim, 4, W, q, mu, 1e-15);
+      exchange_free(a.p);
+    }
+  }
+  leave();
+}
+END_TEST
 
 /* An unsymmetric matrix with zeros, so that rows and columns are told apart. */
 START_TEST(every_storage_gives_the_same_problem) {
@@ -709,6 +746,7 @@ START_TEST(every_refused_request_is_reported) {
 END_TEST
 
 UNIT_MAIN("exchange", every_storage_gives_the_same_problem,
+          compliance_of_few_blocks_is_kept_in_them,
           global_problem_is_its_local_condensation,
           unsymmetric_mass_is_eliminated_too,
           singular_mass_that_contact_does_not_hold_is_refused,
