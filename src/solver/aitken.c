@@ -47,6 +47,7 @@ enum {
   PLAIN = 6,      /* sweeps from one step of Aitken to the next */
   REFRESH = 64,   /* sweeps from one product to the next */
   UNSEEN = 8,     /* sweeps of few products without a check of the residual */
+  FIRST = 3,      /* of them that is checked */
   PATIENCE = 400, /* sweeps without a lower residual before a remedy */
   OFTEN = 20      /* one old pattern in so many sweeps is a cycle */
 };
@@ -247,7 +248,8 @@ static void steer(run *s, int k) {
 static int is_checked(const run *s, int k, int limit, double tol) {
   const relaxation *z = &s->sweep;
   if (z->cp->blocks == NULL || k == limit || k - s->checked >= UNSEEN) return 1;
-  return s->checked == 0 || !(s->per_move * sqrt(z->change) > tol);
+  if (s->checked == 0) return k == FIRST;
+  return !(s->per_move * sqrt(z->change) > tol);
 }
 
 static outcome sweeps(run *s, const solver_control *control,

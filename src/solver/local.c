@@ -90,10 +90,11 @@ static double slip_excess(const disc_problem *dp, double nu, double *q,
   return size - (g > 0.0 ? g : 0.0);
 }
 
-/* The root of slip_excess by Newton steps from stick (nu = 0, where Tresca
- * friction makes them monotone), kept inside a bracket. */
-static void slip_disc(const disc_problem *dp, double *s) {
-  double low = 0.0, high = HUGE_VAL, nu = 0.0, q[2], slope;
+/* The root of slip_excess by Newton steps from nu, of the last visit or of
+ * stick (0, where Tresca friction makes them monotone), kept inside a
+ * bracket. */
+static void slip_disc(const disc_problem *dp, double nu, double *s) {
+  double low = 0.0, high = HUGE_VAL, q[2], slope;
   double start = 1.0 / (dp->S[0] + dp->S[3]);
   for (int k = 0; k < ROOT_STEPS; ++k) {
     double excess = slip_excess(dp, nu, q, &slope);
@@ -154,7 +155,9 @@ static int disc_solve(const disc_problem *dp, double *d, double *t) {
   if (dp->n == 1) {
     slip_line(dp, held.c[0], d);
   } else {
-    slip_disc(&held, s);
+    double flexibility =
+        hypot(dp->at[0], dp->at[1]) / hypot(dp->c[0], dp->c[1]);
+    slip_disc(&held, flexibility < HUGE_VAL ? flexibility : 0.0, s);
     slip_step(dp, s, d);
   }
   for (int i = 0; i < dp->n; ++i) {

@@ -16,8 +16,9 @@ static const double SOFT = 0x1p-20;     /* -, of the stiffness: none */
 static const double ROUNDING = 0x1p-46; /* -, of stiffness times distance */
 
 struct node_blocks {
-  double *K;               /* [dim*dim*n] stiffness of each node, N/m */
-  local_state *state;      /* [n] state found at the last visit */
+  double *K;          /* [dim*dim*n] stiffness of each node, N/m */
+  local_state *state; /* [n] state found at the last visit */
+  int plain; /* 1: forces are unknown, limits follow the node's own pressure */
   double *weight;          /* [m] diagonal of the matrix */
   double *step, *strained; /* [m] of a sweep, m; A times it, N */
 };
@@ -193,6 +194,7 @@ static int rests(const relaxation *s, int node_id) {
     return 0;
   for (int k = 0; k < cp->dim; ++k)
     if (s->r[first + k] != 0.0) return 0;
+  if (s->blocks->plain) return cp->g0 == NULL || cp->g0[node_id] <= 0.0;
   return contact_node_limit(cp, s->r, node_id) == 0.0;
 }
 
@@ -219,12 +221,39 @@ static void node_step(relaxation *s, int node_id, double *step) {
   for (int k = 0; k < lp.dim; ++k) step[id[k]] = r[k] - force[k];
 }
 
+/* The same where the blocks are plain. */
+static void plain_step(relaxation *s, int node_id, double *step) {
+  const contact_problem *cp = s->cp;
+  const int d = cp->dim, first = node_id * d;
+  const double *r = s->r + first, *u = s->u + first;
+  const double *K = s->blocks->K + first * d;
+  const double *ut0 = cp->ut0 == NULL ? NULL : cp->ut0 + node_id * (d - 1) - 1;
+  local_problem lp = {.dim = d};
+  double to[3], force[3];
+  for (int k = 0; k < d * d; ++k) lp.K[k] = K[k];
+  for (int k = 0; k < d; ++k) {
+    lp.b[k] = -r[k];
+    lp.at[k] = k == 0 ? u[0] - cp->gap[node_id] : u[k] - (ut0 ? ut0[k] : 0.0);
+  }
+  lp.g0 = cp->g0 == NULL ? 0.0 : cp->g0[node_id];
+  lp.mu = cp->B == NULL ? 0.0 : cp->B->val[node_id];
+  local_state before = s->blocks->state[node_id];
+  local_state now = local_solve(&lp, before, to, force);
+  s->blocks->state[node_id] = now;
+  s->turned += now != before;
+  if (now == before) relax_forces(s, &lp, r, force);
+  for (int k = 0; k < d; ++k) step[k] = force[k] - r[k];
+}
+
 static void visit(relaxation *s, int node_id) {
   const contact_problem *cp = s->cp;
   double *unknown = cp->A != NULL ? s->u : s->r, step[3] = {0.0, 0.0, 0.0};
   int first = node_id * cp->dim, moved = 0;
   if (rests(s, node_id)) return;
-  node_step(s, node_id, step);
+  if (s->blocks->plain)
+    plain_step(s, node_id, step);
+  else
+    node_step(s, node_id, step);
   for (int k = 0; k < cp->dim; ++k) {
     double weight = s->blocks->weight[first + k];
     moved = moved || step[k] != 0.0;
@@ -261,8 +290,18 @@ void relaxation_refresh(const relaxation *s) {
   for (int i = 0; i < s->cp->m; ++i) s->u[i] += s->cp->f[i];
 }
 
+/* 1: plain_step does. */
+static int is_plain(const contact_problem *cp) {
+  const sparse_rows *B = cp->B;
+  if (cp->A != NULL || cp->held != NULL || cp->side_gap != NULL) return 0;
+  for (int i = 0; i < cp->n && B != NULL; ++i)
+    if (B->start[i + 1] != i + 1 || B->col[i] != i) return 0;
+  return 1;
+}
+
 void relaxation_start(const relaxation *s) {
   const contact_problem *cp = s->cp;
+  s->blocks->plain = is_plain(cp);
   for (int i = 0; i < cp->n; ++i) {
     int first = i * cp->dim;
     double slip = 0.0;
