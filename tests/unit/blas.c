@@ -1,10 +1,13 @@
-/* src/fem/blas.c: a lesser kernel is replaced once, the user's choice stays. */
+/* src/fem/blas.c: a lesser kernel is replaced once, the user's choice stays;
+ * threads of the environment do not count. */
 #include "fem/fem.h"
 #include "support/unit.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+
+int openblas_get_num_threads(void);
 
 /* This program runs itself in one of the roles below and reads what it says:
  * "forget": the library was loaded with the kernel of the environment, which
@@ -13,7 +16,8 @@ static int play(const char *role, char **argv) {
   if (strcmp(role, "forget") == 0 && !blas_kernel_changed())
     unsetenv("OPENBLAS_CORETYPE");
   blas_choose_kernel(argv);
-  printf("%s %d %s\n", blas_kernel(), blas_kernel_changed(), argv[1]);
+  printf("%s %d %s %d\n", blas_kernel(), blas_kernel_changed(), argv[1],
+         openblas_get_num_threads());
   return 0;
 }
 
@@ -22,7 +26,8 @@ static void run_self(const char *role, char *answer, int size) {
   const ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
   ck_assert_int_gt((int)n, 0);
   path[n] = '\0';
-  snprintf(command, sizeof command, "OPENBLAS_CORETYPE=Prescott '%s' %s", path,
+  snprintf(command, sizeof command,
+           "OPENBLAS_NUM_THREADS=2 OPENBLAS_CORETYPE=Prescott '%s' %s", path,
            role);
   FILE *pipe = popen(command, "r");
   ck_assert_ptr_nonnull(pipe);
@@ -33,10 +38,10 @@ static void run_self(const char *role, char *answer, int size) {
 static const char *best(void) {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
-    return "SkylakeX 1 forget\n";
-  if (__builtin_cpu_supports("avx2")) return "Haswell 1 forget\n";
+    return "SkylakeX 1 forget 1\n";
+  if (__builtin_cpu_supports("avx2")) return "Haswell 1 forget 1\n";
 #endif
-  return "Prescott 0 forget\n";
+  return "Prescott 0 forget 1\n";
 }
 
 START_TEST(lesser_kernel_is_replaced_by_the_best_the_processor_runs) {
@@ -49,7 +54,7 @@ END_TEST
 START_TEST(kernel_the_user_asked_for_stays) {
   char answer[100];
   run_self("keep", answer, sizeof answer);
-  ck_assert_str_eq(answer, "Prescott 0 keep\n");
+  ck_assert_str_eq(answer, "Prescott 0 keep 1\n");
 }
 END_TEST
 
