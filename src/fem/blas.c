@@ -89,9 +89,10 @@ void blas_set_threads(int n) {
   limit_openmp(n >= OMP_THREADS ? 1 : 0);
 }
 
-/* A product that is large enough to be made in the buffer of the thread. */
+/* A product that is large enough to be made in the buffer of the thread: of up
+ * to 100 rows the kernels for AVX-512 make without. */
 static void take_buffer(void) {
-  enum { SIDE = 64 };
+  enum { SIDE = 128 };
   double a[SIDE * SIDE] = {0}, b[SIDE * SIDE];
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, SIDE, SIDE, SIDE, 1.0,
               a, SIDE, a, SIDE, 0.0, b, SIDE);

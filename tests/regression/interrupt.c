@@ -4,6 +4,7 @@
  * name. A run of many increments is watched through its JOB.sta, so that
  * nothing depends on time.
  */
+#include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -368,25 +369,63 @@ START_TEST(closed_streams_are_no_matter) {
 }
 END_TEST
 
+/* With so many bytes of addresses and a minute. */
+static int finish_within(const job *j, rlim_t bytes, const char *threads) {
+  char deck[200];
+  snprintf(deck, sizeof deck, "%s/%s", j->dir, j->name);
+  pid_t pid = fork();
+  ck_assert_int_ge(pid, 0);
+  if (pid > 0) return finish(pid);
+  into(j, "stderr.txt", STDERR_FILENO);
+  into(j, "stdout.txt", STDOUT_FILENO);
+  signal(SIGALRM, SIG_DFL);
+  alarm(UNIT_SECONDS / 10);
+  setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
+  execl(program(), program(), deck, "--threads", threads, (char *)NULL);
+  _exit(99);
+}
+
 /* Too few addresses for the linear algebra: told, and not waited for. */
 START_TEST(few_addresses_are_told) {
   job j = block(2);
-  char deck[200];
-  snprintf(deck, sizeof deck, "%s/%s", j.dir, j.name);
-  pid_t pid = fork();
-  ck_assert_int_ge(pid, 0);
-  if (pid == 0) {
-    const rlim_t bytes = (rlim_t)150 << 20;
-    into(&j, "stderr.txt", STDERR_FILENO);
-    alarm(UNIT_SECONDS / 10);
-    setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
-    execl(program(), program(), deck, (char *)NULL);
-    _exit(99);
-  }
-  ck_assert_int_eq(finish(pid), 5);
+  ck_assert_int_eq(finish_within(&j, (rlim_t)150 << 20, "1"), 5);
   char *errors = errors_of(&j);
   ck_assert_ptr_nonnull(strstr(errors, "ulimit -v"));
   free(errors);
+  job_end(&j);
+}
+END_TEST
+
+/* Enough to start, not enough for a body of 14,641 nodes, or just enough. */
+START_TEST(few_addresses_are_not_waited_for) {
+  const mesh_change as_it_is = {.map = {NULL}};
+  int *number = NULL, refused = 0;
+  char path[100];
+  job j = job_begin("block");
+  snprintf(path, sizeof path, "%s/block.msh", j.dir);
+  FILE *f = fopen(path, "w");
+  ck_assert_ptr_nonnull(f);
+  ck_assert_int_eq(scene_mesh_write(f, "rect 120 120 1 1", &as_it_is, &number),
+                   1);
+  fclose(f);
+  free(number);
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.4\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nTOP, 1, 1, 0.002\nTOP, 2, 2, -0.01\n"
+            "*OUTPUT, HDF5=NO\n*END STEP\n");
+  for (rlim_t kb = 168000; kb < 200000; kb += 2000) {
+    const int code = finish_within(&j, kb << 10, "1");
+    char *errors = errors_of(&j);
+    ck_assert_msg(code == 0 || code == 5, "%d kB: exit %d: %s", (int)kb, code,
+                  errors);
+    free(errors);
+    refused += code == 5;
+  }
+  ck_assert_int_gt(refused, 0);
   job_end(&j);
 }
 END_TEST
@@ -405,21 +444,7 @@ START_TEST(few_addresses_leave_one_thread) {
             "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
             "*BOUNDARY\nFOOT, 1, 2\n*DLOAD\nBODY, BY, -1.\n*END STEP\n");
-  char deck[200];
-  snprintf(deck, sizeof deck, "%s/%s", j.dir, j.name);
-  pid_t pid = fork();
-  ck_assert_int_ge(pid, 0);
-  if (pid == 0) {
-    const rlim_t bytes = (rlim_t)240 << 20;
-    into(&j, "stderr.txt", STDERR_FILENO);
-    into(&j, "stdout.txt", STDOUT_FILENO);
-    signal(SIGALRM, SIG_DFL);
-    alarm(UNIT_SECONDS / 10);
-    setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
-    execl(program(), program(), deck, "--threads", "2", (char *)NULL);
-    _exit(99);
-  }
-  int code = finish(pid);
+  int code = finish_within(&j, (rlim_t)240 << 20, "2");
   char *errors = errors_of(&j);
   ck_assert_msg(code == 0, "exit %d: %s", code, errors);
   ck_assert_ptr_nonnull(strstr(errors, "P5020"));
@@ -447,9 +472,9 @@ END_TEST
 
 UNIT_MAIN("interrupt", file_system_without_locks_is_no_matter,
           deck_may_begin_with_a_dash, few_addresses_are_told,
-          few_addresses_leave_one_thread, closed_streams_are_no_matter,
-          signals_end_after_an_increment, signals_come_together,
-          ignored_signals_stay_ignored, earlier_file_stays,
-          file_ends_after_an_increment, second_signal_ends_at_once,
-          file_size_limit_is_a_failed_write, second_job_of_the_name_is_refused,
-          other_file_of_that_name_stays)
+          few_addresses_are_not_waited_for, few_addresses_leave_one_thread,
+          closed_streams_are_no_matter, signals_end_after_an_increment,
+          signals_come_together, ignored_signals_stay_ignored,
+          earlier_file_stays, file_ends_after_an_increment,
+          second_signal_ends_at_once, file_size_limit_is_a_failed_write,
+          second_job_of_the_name_is_refused, other_file_of_that_name_stays)
