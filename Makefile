@@ -81,7 +81,8 @@ verify_c := $(wildcard tests/verify/*.c)
 verify   := $(verify_c:%.c=$(out)/%)
 tort_c   := $(wildcard tests/torture/*.c)
 tort     := $(tort_c:%.c=$(out)/%)
-preload  := $(out)/tests/preload/refuse.so $(out)/tests/preload/mesh.so
+mesher   := $(out)/tests/preload/mesher
+preload  := $(out)/tests/preload/refuse.so $(mesher) $(out)/tests/preload/mesh.so
 # The sanitiser of addresses wants to be loaded first.
 kept     := $(if $(filter asan,$(BUILD)),,$(lastword $(preload)))
 support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c \
@@ -236,7 +237,7 @@ check: unit regression tool-tests torture-slice layers style
 unit: $(unit)
 	$(Q)JOBS=$(JOBS) tools/run_tests $^
 
-regression: $(program) $(kept) $(regr)
+regression: $(program) $(mesher) $(kept) $(regr)
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) \
 	  PROTIS_MESH=$(abspath $(kept)) tools/run_tests $(regr)
 

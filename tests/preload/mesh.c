@@ -7,9 +7,10 @@
  *              gmsh: its numbers and options, name and text of the .geo
  *
  * What is asked is found by a process forked where libgmsh would be loaded. It
- * gets the calls below in its place, and either gives out a kept stream or ends
- * with the name under which one may be kept. Files that reach beyond their text
- * and meshes by sizes are always made by gmsh.
+ * gets the calls below in its place, and either gives out a kept stream, which
+ * mesher.c may have to make, or ends with the name under which one may be kept.
+ * Files that reach beyond their text and meshes by sizes are always made by the
+ * program's own gmsh.
  */
 #define _GNU_SOURCE
 #include "mesh.h"
@@ -21,6 +22,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -70,8 +73,14 @@ static void mix(const void *data, size_t n) {
     key = (key ^ *p) * 1099511628211u;
 }
 
+static int n_word;
+static char **word;
+static const char *geo;
+
 void gmshInitialize(int argc, char **argv, int ignored, int *error) {
   (void)ignored;
+  n_word = argc;
+  word = argv;
   for (int i = 1; i < argc; ++i) mix(argv[i], strlen(argv[i]) + 1);
   *error = 0;
 }
@@ -84,12 +93,35 @@ void gmshOptionSetNumber(const char *name, double value, int *error) {
   *error = 0;
 }
 
+/* The stream made by mesher.c, if it is there: the words of its request. */
+static void have_made(const char *name) {
+  static char text[1 << 16], *end = text;
+  char *const last = text + sizeof text;
+  struct sockaddr_un at = {.sun_family = AF_UNIX};
+  const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+  if (snprintf(at.sun_path, sizeof at.sun_path, "%s/socket", kept) >=
+          (int)sizeof at.sun_path ||
+      connect(fd, (struct sockaddr *)&at, sizeof at) != 0 ||
+      getcwd(end + 17, 4096) == NULL)
+    return;
+  snprintf(end, 17, "%s", strrchr(name, '/') + 1);
+  end += 17;
+  end += strlen(end) + 1;
+  end += snprintf(end, (size_t)(last - end), "%s", geo) + 1;
+  for (int i = 1; i < n_word; ++i)
+    if (i % 3 != 1 && end < last)
+      end += snprintf(end, (size_t)(last - end), "%s", word[i]) + 1;
+  if (end < last && send(fd, text, (size_t)(end - text), MSG_NOSIGNAL) > 0)
+    if (recv(fd, text, 1, 0) < 0) leave(1);
+}
+
 void gmshOpen(const char *name, int *error) {
   static const char *const beyond[] = {"Include", "Merge",   "Shape", "Get",
                                        "System",  "Current", "Print", "Exit"};
   static char text[1 << 16];
   const char *slash = strrchr(name, '/');
   FILE *f = fopen(name, "rb");
+  geo = name;
   size_t n = f == NULL ? sizeof text : fread(text, 1, sizeof text - 1, f);
   may_keep = n < sizeof text - 1 && memchr(text, '\0', n) == NULL;
   for (size_t i = 0; may_keep && i < sizeof beyond / sizeof *beyond; ++i)
@@ -107,6 +139,7 @@ void gmshModelGetPhysicalGroups(void) {
   ssize_t n;
   if (!may_keep) leave(1);
   name_stream(name, "");
+  if (access(name, R_OK) != 0) have_made(name);
   int from = open(name, O_RDONLY | O_CLOEXEC), to = sink;
   sink = -1;
   if (from < 0) leave(write(answer, &key, sizeof key) != sizeof key);

@@ -1,0 +1,85 @@
+/*
+ * Makes meshes for the programs under test: libgmsh is loaded once for all of
+ * them, which costs more than most meshes. Each is made in a process of its own
+ * by the reader's own code, into the file that mesh.c asks for.
+ * usage: mesher FOLDER     listens at FOLDER/socket until its parent ends
+ *
+ * A request: the words key, folder of the program, file, then name and value of
+ * each number, each ended by a zero byte. The answer: one byte, the file
+ * FOLDER/key is there or will not be.
+ */
+#include "mesh/raw.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { MOST = 1 << 16, NUMBERS = 100, HEAD = 3 };
+
+/* The words of the request; their number, 0: it is none. */
+static int receive(int fd, char text[MOST], char *words[HEAD + 2 * NUMBERS]) {
+  const ssize_t got = recv(fd, text, MOST, 0);
+  int n = 0;
+  if (got < 2 || text[got - 1] != '\0') return 0;
+  for (char *at = text; at < text + got; at += strlen(at) + 1) {
+    if (n == HEAD + 2 * NUMBERS) return 0;
+    words[n++] = at;
+  }
+  return n >= HEAD && (n - HEAD) % 2 == 0 ? n : 0;
+}
+
+static void make(const char *part, int n, char *const *words) {
+  mesh_number numbers[NUMBERS];
+  mesh_source source = {
+      .file = words[2], .scale = 1.0, .n_number = (n - HEAD) / 2};
+  source.numbers = numbers;
+  for (int i = 0; i < source.n_number; ++i)
+    numbers[i] = (mesh_number){words[HEAD + 2 * i],
+                               strtod(words[HEAD + 2 * i + 1], NULL)};
+  const int to = open(part, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  const int nothing = open("/dev/null", O_WRONLY);
+  if (to < 0 || nothing < 0 || chdir(words[1]) != 0) _exit(1);
+  child_run(&(raw_request){&source, 0}, getppid(), to, nothing);
+}
+
+static void serve(const char *folder, int fd) {
+  static char text[MOST], *words[HEAD + 2 * NUMBERS];
+  char part[4300], whole[4200];
+  int code = 1, n = receive(fd, text, words);
+  if (n > 0) {
+    snprintf(whole, sizeof whole, "%s/%s", folder, words[0]);
+    snprintf(part, sizeof part, "%s.%d", whole, (int)getpid());
+    const pid_t pid = fork();
+    if (pid == 0) make(part, n, words);
+    if (pid > 0 && waitpid(pid, &code, 0) == pid && code == 0)
+      rename(part, whole);
+    else
+      unlink(part);
+  }
+  send(fd, "", 1, MSG_NOSIGNAL);
+  _exit(0);
+}
+
+int main(int argc, char **argv) {
+  struct sockaddr_un at = {.sun_family = AF_UNIX};
+  const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+  if (argc != 2 || fd < 0) return 1;
+  snprintf(at.sun_path, sizeof at.sun_path, "%s/socket", argv[1]);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  mesh_gmsh_load();
+  if (bind(fd, (struct sockaddr *)&at, sizeof at) != 0 || listen(fd, 16) != 0)
+    return 1;
+  for (;;) {
+    const int one = accept(fd, NULL, NULL);
+    if (one < 0) continue;
+    if (fork() == 0) serve(argv[1], one);
+    close(one);
+    while (waitpid(-1, NULL, WNOHANG) > 0) continue;
+  }
+}
