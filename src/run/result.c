@@ -9,6 +9,11 @@
 #include <math.h>
 #include <string.h>
 
+int run_finds_mesh_error(const run *r) {
+  const int at = r->step->accuracy.mesh;
+  return at == MESH_ERROR_YES || (at == MESH_ERROR_END && r->at.last);
+}
+
 /* Reactions: internal forces less loads less contact forces, where fixed; those
  * of tied nodes act on their masters.
  * known: r->result.stress is that of r->now already. */

@@ -7,8 +7,7 @@
  * output grow less. Increments of half the length have half the error or less.
  */
 #include "base/timer.h"
-#include "effects/rows.h"
-#include "output/listing/job.h"
+#include "output/listing/parts.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -17,15 +16,6 @@
 static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU */
 static const double EXACT = 1e-3; /* -, of the others: far more than needed */
 static const double WORTH = 0.05; /* -, of the CPU */
-
-int job_path_counts(const model *m) {
-  const unsigned path = EFFECT_HISTORY | EFFECT_INELASTIC;
-  int sums = 0;
-  for (int k = 0; effect_table[k] != NULL; ++k)
-    sums |=
-        effect_table[k]->sums_up != NULL && effect_is_on(effect_table[k], m);
-  return sums || (m->effects & path) != 0;
-}
 
 /* The row of that name: its last error, %, NAN: none or unknown. */
 static double last_of(const budget_row *rows, int n, const char *name) {
@@ -94,4 +84,14 @@ void job_advice(const job *j, char *text, size_t size) {
                     text, size, used);
   if (isnan(in_steps) && job_path_counts(j->m))
     add(text, size, used, "; of the steps no error is known without TIME=YES");
+}
+
+void listing_advice(const job *j, FILE *f) {
+  char advice[ADVICE_SIZE], *at = advice, *end;
+  job_advice(j, advice, sizeof advice);
+  if (advice[0] == '\0') return;
+  fputs("  improve next: ", f);
+  for (; (end = strstr(at, "; ")) != NULL; at = end + 2)
+    fprintf(f, "%.*s;\n    ", (int)(end - at), at);
+  fprintf(f, "%s\n", at);
 }

@@ -3,6 +3,7 @@
  * the saving by stopping early, the passes towards a target.
  */
 #include "base/timer.h"
+#include "effects/rows.h"
 #include "output/listing/parts.h"
 
 #include <math.h>
@@ -47,6 +48,15 @@ static error_share true_share(const increment_summary *i) {
 static error_share solver_share(const increment_summary *i) {
   const error_bound *e = &i->error;
   return (error_share){e->asked, e->relative, e->cpu, e->why};
+}
+
+int job_path_counts(const model *m) {
+  const unsigned path = EFFECT_HISTORY | EFFECT_INELASTIC;
+  int sums = 0;
+  for (int k = 0; effect_table[k] != NULL; ++k)
+    sums |=
+        effect_table[k]->sums_up != NULL && effect_is_on(effect_table[k], m);
+  return sums || (m->effects & path) != 0;
 }
 
 /* Last and largest of the increments that were asked; 0 if none was. */
@@ -150,17 +160,6 @@ static void print_saved(const job *j, FILE *f) {
   fputs(" (to residual 1E-10)\n", f);
 }
 
-/* A line for each of its parts. */
-static void print_advice(const job *j, FILE *f) {
-  char advice[ADVICE_SIZE], *at = advice, *end;
-  job_advice(j, advice, sizeof advice);
-  if (advice[0] == '\0') return;
-  fputs("  improve next: ", f);
-  for (; (end = strstr(at, "; ")) != NULL; at = end + 2)
-    fprintf(f, "%.*s;\n    ", (int)(end - at), at);
-  fprintf(f, "%s\n", at);
-}
-
 void listing_budget(const job *j, FILE *f) {
   char last[NUMBER_SIZE], worst[NUMBER_SIZE];
   budget_row rows[BUDGET_ROWS];
@@ -184,7 +183,6 @@ void listing_budget(const job *j, FILE *f) {
   if (!isnan(effectivity))
     fprintf(f, "  estimated over true error: %.2f\n", effectivity);
   print_saved(j, f);
-  print_advice(j, f);
 }
 
 static void print_pass(const job *j, int no, const pass_row *r, FILE *f) {

@@ -27,4 +27,8 @@ void listing_budget(const job *j, FILE *f);
 /* The passes towards the target, and what a digit more would cost. */
 void listing_passes(const job *j, FILE *f);
 
+/* ---- advice.c ---- */
+/* job_advice, a line for each of its parts. */
+void listing_advice(const job *j, FILE *f);
+
 #endif

@@ -52,11 +52,6 @@ int run_remembers(const run *r) {
   return slips && kind == STEP_QUASISTATIC;
 }
 
-int run_finds_mesh_error(const run *r) {
-  const int at = r->step->accuracy.mesh;
-  return at == MESH_ERROR_YES || (at == MESH_ERROR_END && r->at.last);
-}
-
 /* 1: the start state of this increment contains one that did not converge. */
 static int is_after_miss(const run *r) {
   return r->course.unsettled > 0 &&
