@@ -296,6 +296,21 @@ static void check_balance(const job *j, int dim, int k, const node *p, int n,
   dat_free(&d);
 }
 
+/* The line of an increment in JOB.sta counts the nodes. */
+static void check_counts(const job *j, int k, const node *p, int n) {
+  char *sta = job_file(j, "sta"), *line = sta;
+  int told[3], count[3] = {0};
+  for (int i = 0; i <= k && line != NULL; ++i)
+    if ((line = strchr(line, '\n')) != NULL) ++line;
+  ck_assert_ptr_nonnull(line);
+  ck_assert_int_eq(
+      sscanf(line, "%*d %*d %*d %*s %*s %d %d %d", told, told + 1, told + 2),
+      3);
+  for (int i = 0; i < n; ++i) ++count[(int)p[i].status];
+  for (int c = 0; c < 3; ++c) ck_assert_int_eq(told[c], count[c]);
+  free(sta);
+}
+
 START_TEST(results_are_those_of_the_nodes) {
   const int dim = 2 + _i;
   static node nodes[INCREMENTS + 1][NODES];
@@ -319,6 +334,7 @@ START_TEST(results_are_those_of_the_nodes) {
     check_loop(&j, dim, k - 1, p, n, area, &sum);
     check_balance(&j, dim, k - 1, p, n, scale);
     check_zones(&j, dim, k - 1);
+    check_counts(&j, k - 1, p, n);
     for (int i = 0; i < n; ++i) {
       check_node(dim, &p[i], sum.distance[i], scale);
       seen[(int)p[i].status] += 1;

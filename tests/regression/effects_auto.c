@@ -183,6 +183,9 @@ START_TEST(law_at_its_end_is_left_out) {
                       0.2,
                       NULL};
   scene series = fast, sudden = fast, slow = fast, fluid = fast;
+  scene just = fast, beyond = fast; /* tried up to 2.5e-5 of time */
+  just.material = "*INELASTIC, LAW=ZENER\n65.D3, 1.6\n";
+  beyond.material = "*INELASTIC, LAW=ZENER\n65.D3, 1.65\n";
   series.material = "*INELASTIC, LAW=PRONY\n0.3, 0.2, 1.D-6\n0.4, 0., 1.D-9\n";
   sudden.loads =
       "LEFT, P, 20.\n*TEMPERATURE\nBODY, 0.\n*DSLOAD, AMPLITUDE=ON\n"
@@ -191,6 +194,8 @@ START_TEST(law_at_its_end_is_left_out) {
   fluid.material = "*INELASTIC, LAW=MAXWELL\n1.D-6\n";
   compare(&fast, "inelastic strain", 1, 1e-3);
   compare(&series, "inelastic strain", 1, 1e-3);
+  compare(&just, "inelastic strain", -1, 1e-12);
+  stays(&beyond, "inelastic strain");
   compare(&sudden, "inelastic strain", -1, 1e-12);
   stays(&slow, "inelastic strain");
   stays(&fluid, "inelastic strain");
@@ -248,9 +253,15 @@ START_TEST(friction_without_slip_is_left_out) {
   scene pushed = still, expands = still;
   pushed.loads = "LEFT, P, 20.\n";
   expands.nu = 0.2;
+  /* tried for a sum of mu over the increments of up to 4e-8 */
+  scene small = expands, twice = expands;
+  small.law = "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.9E-8\n";
+  twice.law = "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.1E-8\n";
   compare(&still, "friction", 1, 1e-12);
   compare(&pushed, "friction", -1, 1e-12);
   stays(&expands, "friction");
+  compare(&small, "friction", -1, 1e-12);
+  stays(&twice, "friction");
 }
 END_TEST
 
