@@ -376,8 +376,8 @@ static const double *compliance_of(const space_recovery *s, int elem_id) {
          (size_t)(s->d->ns * s->d->ns) * (size_t)s->d->section_id[elem_id];
 }
 
-double space_product(const space_recovery *s, int elem_id,
-                     const space_field *a, const space_field *b) {
+double space_product(const space_recovery *s, int elem_id, const space_field *a,
+                     const space_field *b) {
   const mesh *m = s->d->mesh;
   const int ns = s->d->ns, vertices = m->dim + 1;
   const size_t own = (size_t)ns * (size_t)elem_id;
@@ -416,8 +416,8 @@ static void add_region(space_recovery *s, int region, const double *sigma,
     if (space_region(s, e) != region) continue;
     double square = space_product(s, e, &own, &own);
     out->error += square;
-    out->norm += element_weight(d, e) *
-                 energy_product(d->ns, compliance_of(s, e), t, t);
+    out->norm +=
+        element_weight(d, e) * energy_product(d->ns, compliance_of(s, e), t, t);
     if (eta != NULL) eta[e] = sqrt(fmax(square, 0.0));
   }
 }

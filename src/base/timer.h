@@ -51,6 +51,7 @@
   X(TABLE_LOOP,      "table of loops")                     \
   X(TABLE_WEAR,      "table of wear")                      \
   X(TABLE_SIF,       "table of stress intensity factors")  \
+  X(TABLE_GOALS,     "table of goals")                     \
   X(HDF5,        "HDF5 output")                            \
   X(FCLIB,       "condensed problems to files")            \
   X(RESTART,     "restart")

@@ -33,6 +33,7 @@
   X(time_error)          \
   X(solver_error)        \
   X(closed_form)         \
+  X(goals)               \
   X(contact_table)       \
   X(totals_table)        \
   X(nodes_table)         \

@@ -266,3 +266,12 @@ int model_rubs_locally(const model *m) {
   }
   return local;
 }
+
+const char *goal_unit(const goal_card *g) {
+  static const char *const units[] = {
+      [GOAL_FORCE] = "force",           [GOAL_PRESSURE] = "force/length^2",
+      [GOAL_WIDTH] = "length",          [GOAL_DISPLACEMENT] = "length",
+      [GOAL_STRESS] = "force/length^2", [GOAL_ENERGY] = "force*length",
+      [GOAL_FRICTION] = "force*length"};
+  return units[g->quantity];
+}

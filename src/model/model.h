@@ -203,7 +203,8 @@ typedef enum { FORM_DISPLACEMENT, FORM_VELOCITY } step_form;
   X(ZONES,     "zones of stick, slip, separation with their ends")    \
   X(LOOP,      "force and motion per contact: loops of friction")     \
   X(WEAR,      "depth and volume worn off at the nodes of *WEAR")     \
-  X(SIF,       "stress intensity factors at the fronts of *CRACK")
+  X(SIF,       "stress intensity factors at the fronts of *CRACK")    \
+  X(GOALS,     "quantities of *GOAL and their errors")
 /* clang-format on */
 #define PRINT_NUMBER(name, help) PRINT_NUMBER_##name,
 enum { PRINT_LIST(PRINT_NUMBER) PRINT_COUNT };
@@ -349,6 +350,34 @@ typedef struct accuracy_target { /* *ACCURACY, TARGET= */
   int max_passes;
 } accuracy_target;
 
+/* *GOAL: a quantity whose error the user wants to know. */
+typedef enum {
+  GOAL_FORCE,
+  GOAL_PRESSURE,
+  GOAL_WIDTH,
+  GOAL_DISPLACEMENT,
+  GOAL_STRESS,
+  GOAL_ENERGY,
+  GOAL_FRICTION
+} goal_quantity;
+#define GOAL_QUANTITIES \
+  "FORCE|PRESSURE|WIDTH|DISPLACEMENT|STRESS|ENERGY|FRICTION WORK"
+/* Of COMPONENT=: 1 to 3 are global ones, from 0. */
+enum { GOAL_NORMAL = 3, GOAL_TANGENT, GOAL_TENSOR };
+#define GOAL_COMPONENTS "1|2|3|NORMAL|TANGENT|XX|YY|ZZ|XY|YZ|ZX"
+typedef struct goal_card {
+  const char *name;
+  goal_quantity quantity;
+  int contact_id;    /* -1: none */
+  const char *group; /* or NULL */
+  int group_id, node_id; /* set by model_check; -1: none */
+  int component;
+  double radius; /* of the mean of a pressure, m; 0: chosen */
+  int has_point;
+  double point[3]; /* m */
+  place at, group_at, point_at;
+} goal_card;
+
 /* The card of an effect, interpreted by the file of the effect. */
 enum { EFFECT_VALUES = 4 };
 typedef struct effect_card {
@@ -404,7 +433,7 @@ typedef struct model {
   } unit;
   struct model_count {
     int amplitude, points, material, section, obstacle, contact, tie, crack,
-        step, field, initial, effect_card;
+        step, field, initial, effect_card, goal;
   } n, cap; /* of the arrays below; allocated */
   struct {
     amplitude *amplitudes;
@@ -442,6 +471,7 @@ typedef struct model {
     unsigned char *still;     /* [n_elem] as material.is_still says; NULL:
                                  nowhere, owned */
   } reduction;
+  goal_card *goals;               /* [n.goal] in the order of the deck */
   effect_card *effect_cards; /* [n.effect_card] in the order of the deck */
   unsigned effects;          /* bits EFFECT_*, set by model_check */
   int dim, ns;               /* from the mesh */
@@ -521,6 +551,8 @@ double print_next(const print_request *p, const step *s, double after,
 int model_has_pairs(const model *m);
 /* 1 if some contact has an axis for its torque. */
 int model_has_axis(const model *m);
+/* "force", "length", ... */
+const char *goal_unit(const goal_card *g);
 /* 1: the law of an element counts. */
 int model_flows(const model *m, int elem_id);
 /* The last of an effect's cards for a contact, -1: for any; NULL: none. */

@@ -165,6 +165,29 @@ static void write_contacts(json *w, const job *j) {
   json_close(w, ']');
 }
 
+/* Those of the last increment. */
+static void write_goals(json *w, const job *j) {
+  char unit[64];
+  if (j->m->n.goal == 0 || job_goal(j, 0) == NULL) return;
+  json_open(w, "goals", '[');
+  for (int i = 0; i < j->m->n.goal; ++i) {
+    const goal_result *g = job_goal(j, i);
+    json_open(w, NULL, '{');
+    json_string(w, "goal", j->m->goals[i].name);
+    json_string(w, "unit", job_goal_unit(j->m, i, unit, sizeof unit));
+    json_real(w, "value", g->value);
+    json_real(w, "error", g->error);
+    json_real(w, "corrected", g->value + g->error);
+    json_real(w, "band", g->band);
+    json_real(w, "solver_error", g->solver);
+    json_real(w, "contact_ends_percent", 100 * g->ends);
+    json_string(w, "verdict", goal_verdict_word(g->verdict));
+    if (!j->o->no_timing) json_real(w, "cpu", g->cpu);
+    json_close(w, '}');
+  }
+  json_close(w, ']');
+}
+
 static void write_pass(json *w, const output_options *o, const pass_row *r) {
   json_open(w, NULL, '{');
   json_count(w, "unknowns", r->unknowns);
@@ -386,6 +409,7 @@ static void write_all(FILE *f, const void *what) {
   write_omitted(w, j->m);
   write_sizes(w, j);
   write_accuracy(w, j);
+  write_goals(w, j);
   write_contacts(w, j);
   write_passes(w, j);
   write_cost(w, j->o);

@@ -19,7 +19,7 @@ static void release(output *o) {
     RELEASE(o->run.increments[i].solutions,
             (void *)o->run.increments[i].theorems.contacts);
   }
-  RELEASE(o->run.ends, o->run.increments, o->saved.read, o);
+  RELEASE(o->run.ends, o->run.goals, o->run.increments, o->saved.read, o);
 }
 
 /* Files of an earlier run must not be taken for results of this one. */
@@ -114,6 +114,7 @@ status output_open(const model *m, const mesh *msh, const output_options *opt,
   o->run.message = "";
   o->progress = opt->progress && isatty(STDERR_FILENO);
   NEW(o->run.ends, (size_t)m->n.step * job_end_size(m));
+  if (m->n.goal > 0) NEW(o->run.goals, m->n.step * m->n.goal);
   TRY(plan_new(m, m->problem.given ? NULL : msh, opt->n_problem, &o->plan));
   TRY(open_all(o));
   *out = o;

@@ -182,6 +182,19 @@ static void close_contacts(const job *j, FILE *f) {
             last->count.slip, last->count.stick);
 }
 
+static void close_goals(const job *j, FILE *f) {
+  char unit[80];
+  for (int i = 0; i < j->m->n.goal && job_goal(j, i) != NULL; ++i) {
+    const goal_result *g = job_goal(j, i);
+    fprintf(f, "%-9s %.7g %s", j->m->goals[i].name, g->value,
+            job_goal_unit(j->m, i, unit, sizeof unit));
+    if (!isnan(g->error))
+      fprintf(f, ", error %.2g: %.7g within %.1g", g->error,
+              g->value + g->error, g->band);
+    fprintf(f, ", %s\n", goal_verdict_text(g->verdict));
+  }
+}
+
 /* The worst of the estimates; "-": not required, or unknown. */
 static void close_errors(const job *j, FILE *f) {
   static const char *const names[] = {"mesh", "steps", "solver"};
@@ -213,6 +226,7 @@ void closing_lines(const job *j, const char *files, FILE *f) {
     fprintf(f, "%-9s residual %.1e, penetration %.2g%s\n", "worst",
             run->residual_worst, run->penetration_worst,
             unit_after("length", j->m, unit));
+    close_goals(j, f);
     close_errors(j, f);
   }
   fprintf(f, "%-9s %.2f s CPU, %.1f MB of arrays\n", "cost", timer_cpu(),

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* The larger; NaN wins, so that it is seen. */
@@ -98,6 +99,9 @@ status output_remember(output *o, const state *s) {
   PASS(remember_solutions(s->errors.solutions, i));
   PASS(remember_theory(&s->errors.theorems, i));
   remember_contacts(o, s);
+  if (s->errors.goals != NULL)
+    memcpy(run->goals + (size_t)((s->step_no - 1) * s->errors.n_goal),
+           s->errors.goals, (size_t)s->errors.n_goal * sizeof *run->goals);
   if (!s->settled) ++run->n_unsettled;
   return OK;
 }
@@ -136,12 +140,29 @@ static status keep_counts(output *o, archive *a, file_ends *ends) {
   return archive_bytes(a, "tally", &run->tally, sizeof run->tally);
 }
 
+/* Without seconds, which differ from run to run. */
+static status keep_goals(output *o, archive *a, size_t steps) {
+  const size_t n = steps * (size_t)o->m->n.goal;
+  for (size_t i = 0; i < n; ++i) {
+    goal_result *g = &o->run.goals[i];
+    const double cpu = g->cpu;
+    char name[32];
+    snprintf(name, sizeof name, "goal%zu", i);
+    g->cpu = 0.0;
+    status st = archive_bytes(a, name, g, sizeof *g);
+    g->cpu = cpu;
+    if (st != OK) return st;
+  }
+  return OK;
+}
+
 /* The steps so far, written or read. */
 static status keep_ends(output *o, archive *a) {
   const int n = o->run.n_increment;
   const size_t steps = n > 0 ? (size_t)o->run.increments[n - 1].step_no : 0;
-  return archive_reals(a, "contact_ends", o->run.ends,
-                       steps * job_end_size(o->m));
+  PASS(archive_reals(a, "contact_ends", o->run.ends,
+                     steps * job_end_size(o->m)));
+  return keep_goals(o, a, steps);
 }
 
 status output_keep(output *o, archive *a) {

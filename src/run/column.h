@@ -14,7 +14,8 @@ typedef enum {
   PER_NODE,
   PER_ELEMENT,
   PER_ZONE,
-  PER_TIP
+  PER_TIP,
+  PER_GOAL
 } entity;
 
 /* Scenes differ in dimension and in the names of the components. */

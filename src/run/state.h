@@ -6,6 +6,7 @@
 #define PROTIS_RUN_STATE_H
 
 #include "accuracy/accuracy.h"
+#include "accuracy/goal/goal.h"
 #include "accuracy/solutions.h"
 #include "fem/fem.h"
 #include "model/model.h"
@@ -136,6 +137,8 @@ typedef struct state_errors {
   error_share mesh_error, time_error;
   const double *elem_error; /* [n_elem] share of each element in the error
                                of the mesh, -, relative as that; or NULL */
+  int n_goal;
+  const goal_result *goals; /* [n_goal] of *GOAL; NULL: none */
   balance_report balance;
   true_error exact;              /* against *REFERENCE */
   int jumps;                     /* 1: no path of equilibria leads to this

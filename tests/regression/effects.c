@@ -210,6 +210,7 @@ START_TEST(every_effect_is_called_for) {
        "*OBSTACLE, NAME=LID, TYPE=CONFORMING\nMOVE, \"t\", 0.\n"
        "*CONTACT, NAME=TOP, GROUP=TOP, OBSTACLE=LID\n"
        "*CONTACT FORCE, CONTACT=TOP\n50.\n"
+       "*GOAL, NAME=E, QUANTITY=ENERGY\n"
        "*WEAR, CONTACT=TOP, COEFFICIENT=1.E-9\n",
        ""},
       {"*CONTACT PAIR, NAME=SIDES\nLEFT, SYMMETRY\nCLEARANCE, 1000.\n",

@@ -158,6 +158,11 @@ typedef struct accuracy_param {
   double target, max_cpu, max_memory, time_share;
   int solver, theorems;
 } accuracy_param;
+typedef struct goal_param {
+  int quantity, component;
+  const char *name, *contact, *group;
+  double radius;
+} goal_param;
 typedef struct effects_param {
   int mode;
   double tol;
@@ -201,6 +206,7 @@ status material_resolve_law(const model *m, material *mat);
 status apply_initial(reading *r);
 /* ---- reference.c ---- */
 status apply_reference(reading *r);
+status apply_goal(reading *r);
 /* Place of a component of *REFERENCE in "value", -1: there is none of that name
  * in such a model. */
 int reference_place(const char *name, int dim, int axisymmetric);
@@ -211,6 +217,8 @@ status apply_friction(reading *r);
 status apply_contact_force(reading *r);
 /* Of any effect whose options are effect_param. */
 status apply_effect(reading *r);
+/* Id of a contact, or -1 and the error that this card names none. */
+int find_contact(const reading *r, const char *name);
 plugin names_law(const reading *r);
 status apply_contact_pair(reading *r);
 status apply_tie(reading *r);

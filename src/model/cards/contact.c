@@ -396,8 +396,7 @@ static const char *contact_name(const void *ctx, int i) {
   return i < m->n.contact ? m->contacts[i].name : NULL;
 }
 
-/* Id of a contact, or -1 and the error that this card names none. */
-static int find_contact(const reading *r, const char *name) {
+int find_contact(const reading *r, const char *name) {
   char text[80];
   for (int i = 0; i < r->m->n.contact; ++i)
     if (same_word(name, r->m->contacts[i].name)) return i;

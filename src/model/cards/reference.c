@@ -1,7 +1,12 @@
 /*
- * *REFERENCE: the components of a closed form.
+ * *REFERENCE: the components of a closed form. *GOAL: a quantity whose error is
+ * wanted.
  */
+#include "base/memory.h"
 #include "model/cards/cards.h"
+
+#include <float.h>
+#include <string.h>
 
 /* clang-format off */
 static const struct {
@@ -62,5 +67,95 @@ status apply_reference(reading *r) {
     if (ref->n < REFERENCE_SIZE)
       ref->line[ref->n++] = (reference_line){f[0].text, value, f[0].at};
   }
+  return OK;
+}
+
+/* ---- *GOAL --------------------------------------------------------------- */
+
+/* What a quantity takes, as bits. */
+enum { ON_CONTACT = 1, IN_GROUP = 2, AT_POINT = 4, HAS_RADIUS = 8 };
+static const struct {
+  const char *word;
+  int takes, least, most; /* components, from 0; most < 0: none */
+} quantities[] = {
+    [GOAL_FORCE] = {"FORCE", ON_CONTACT, 0, GOAL_TANGENT},
+    [GOAL_PRESSURE] = {"PRESSURE", ON_CONTACT | AT_POINT | HAS_RADIUS, 0, -1},
+    [GOAL_WIDTH] = {"WIDTH", ON_CONTACT, 0, -1},
+    [GOAL_DISPLACEMENT] = {"DISPLACEMENT", IN_GROUP | AT_POINT, 0, 2},
+    [GOAL_STRESS] = {"STRESS", IN_GROUP, GOAL_TENSOR, GOAL_TENSOR + 5},
+    [GOAL_ENERGY] = {"ENERGY", 0, 0, -1},
+    [GOAL_FRICTION] = {"FRICTION WORK", 0, 0, -1}};
+
+static int is_given(const reading *r, const char *name) {
+  return card_parameter(r->card, name) != NULL;
+}
+
+/* A parameter that the quantity takes and lacks, or does not take. */
+static void check_parameter(const reading *r, const goal_card *g,
+                            const char *name, int takes, int needs) {
+  const char *word = quantities[g->quantity].word;
+  if (needs && !is_given(r, name))
+    message_add(r->m->log, P2007, &r->card->at,
+                "*GOAL, QUANTITY=%s needs %s=", word, name);
+  if (!takes && is_given(r, name))
+    message_add(r->m->log, P2037, value_place(r, name),
+                "*GOAL: %s= counts not with QUANTITY=%s", name, word);
+}
+
+static void check_component(const reading *r, goal_card *g) {
+  const int least = quantities[g->quantity].least;
+  const int most = quantities[g->quantity].most;
+  check_parameter(r, g, "COMPONENT", most >= 0,
+                  most >= 0 && g->quantity != GOAL_FORCE);
+  if (!is_given(r, "COMPONENT")) {
+    g->component = GOAL_NORMAL;
+    return;
+  }
+  if (most >= 0 && (g->component < least || g->component > most))
+    message_add(r->m->log, P2010, value_place(r, "COMPONENT"),
+                "*GOAL, QUANTITY=%s has no such component",
+                quantities[g->quantity].word);
+}
+
+static void read_point(const reading *r, goal_card *g) {
+  const record *line = r->card->records;
+  g->has_point = r->card->n_record > 0;
+  if (!g->has_point) return;
+  g->point_at = line->at;
+  if (!(quantities[g->quantity].takes & AT_POINT))
+    message_add(r->m->log, P2037, &line->at,
+                "*GOAL: a point counts with PRESSURE and DISPLACEMENT only");
+  if (record_fields(r, line, 2, 3, "x, y[, z]") != 0) return;
+  for (int k = 0; k < line->n_field; ++k)
+    if (field_real(r, &line->fields[k], -DBL_MAX, DBL_MAX, "a coordinate",
+                   &g->point[k]) != 0)
+      return;
+}
+
+status apply_goal(reading *r) {
+  const goal_param *p = r->param;
+  model *m = r->m;
+  if (r->misread || p->name == NULL || !is_given(r, "QUANTITY")) return OK;
+  for (int i = 0; i < m->n.goal; ++i) name_taken(r, p->name, m->goals[i].name);
+  PASS_GROW(m->goals, m->n.goal, m->cap.goal);
+  goal_card *g = &m->goals[m->n.goal++];
+  *g = (goal_card){.name = p->name,
+                   .quantity = (goal_quantity)p->quantity,
+                   .contact_id = -1,
+                   .group = p->group,
+                   .group_id = -1,
+                   .node_id = -1,
+                   .component = p->component,
+                   .radius = p->radius,
+                   .at = r->card->at,
+                   .group_at = *value_place(r, "GROUP")};
+  const int takes = quantities[g->quantity].takes;
+  read_point(r, g);
+  check_parameter(r, g, "CONTACT", takes & ON_CONTACT, takes & ON_CONTACT);
+  check_parameter(r, g, "GROUP", takes & IN_GROUP,
+                  (takes & IN_GROUP) && !(takes & AT_POINT && g->has_point));
+  check_parameter(r, g, "RADIUS", takes & HAS_RADIUS, 0);
+  check_component(r, g);
+  if (p->contact != NULL) g->contact_id = find_contact(r, p->contact);
   return OK;
 }

@@ -289,6 +289,7 @@ status model_check(model *m, const mesh *msh, effect_finder *find) {
   PASS(check_pairs(m, msh));
   PASS(check_fields(m, msh));
   check_reference(m);
+  check_goals(m, msh);
   PASS(model_find_corner(m, msh));
   m->effects = find(m);
   check_moduli(m);

@@ -159,6 +159,9 @@ static void check_tables(const model *m, const step *s) {
         model_effect_card(m, "WEAR", -1) == NULL)
       message_add(m->log, P2058, &s->print.requests[k].at,
                   "*PRINT, WEAR: no contact has *WEAR");
+    else if (s->print.requests[k].table == PRINT_GOALS && m->n.goal == 0)
+      message_add(m->log, P2058, &s->print.requests[k].at,
+                  "*PRINT, GOALS: there is no *GOAL");
     else if (s->print.requests[k].table == PRINT_SIF && m->n.crack == 0)
       message_add(m->log, P2058, &s->print.requests[k].at,
                   "*PRINT, SIF: there is no *CRACK");

@@ -1,7 +1,7 @@
 /*
  * The parts of model_check: groups and contacts (contacts.c), loads and initial
  * conditions (loads.c), values of expressions (values.c), increments against
- * the laws (increments.c), the closed form (closed_form.c). Errors go to the
+ * the laws (increments.c), the goals (goals.c). Errors go to the
  * log; a status is of memory. Private to src/model/check.
  */
 #ifndef PROTIS_CHECK_PARTS_H
@@ -51,6 +51,9 @@ status check_visco(const model *m);
 /* Warnings of input without effect. */
 void check_no_effect(const model *m, const mesh *msh);
 
-/* ---- closed_form.c ---- */
+/* ---- goals.c ---- */
+
+/* Their groups and points. */
+void check_goals(model *m, const mesh *msh);
 
 #endif

@@ -248,6 +248,22 @@ static const option effects_options[] = {
   OPTION_REAL(effects_param, tol, "TOL", DBL_MIN, 0.1, "1e-3", "-",
               "for AUTO: of the energy norm and of the largest stress"),
   OPTION_END};
+static const option goal_options[] = {
+  OPTION_CHOICE(goal_param, quantity, "QUANTITY", GOAL_QUANTITIES, NULL,
+                "what is wanted; PRESSURE: the largest, or that at a point; "
+                "WIDTH: of the closed zone; STRESS: mean of a group"),
+  OPTION_NAME(goal_param, name, "NAME", NULL, "name in the results"),
+  OPTION_NAME(goal_param, contact, "CONTACT", OPTION_ABSENT,
+              "of FORCE, PRESSURE, WIDTH: name of a *CONTACT"),
+  OPTION_NAME(goal_param, group, "GROUP", OPTION_ABSENT,
+              "of STRESS: elements; of DISPLACEMENT: nodes, whose mean it is"),
+  OPTION_CHOICE(goal_param, component, "COMPONENT", GOAL_COMPONENTS,
+                OPTION_ABSENT,
+                "of FORCE (NORMAL if absent), DISPLACEMENT and STRESS"),
+  OPTION_REAL(goal_param, radius, "RADIUS", DBL_MIN, DBL_MAX, OPTION_ABSENT,
+              "length", "of the mean that PRESSURE is; half the half width of "
+              "the zone if absent"),
+  OPTION_END};
 static const option accuracy_options[] = {
   OPTION_CHOICE(accuracy_param, mesh, "MESH", "NO|YES|END", "END",
                 "estimate of the error of the mesh, from recovered stresses: "
@@ -423,6 +439,9 @@ const keyword keyword_table[] = {
    "", "method for the contact problem and its options"},
   {"ACCURACY", IN_STEP, OPTIONS(accuracy), NULL, apply_accuracy, 0, 0,
    "", "error estimates"},
+  {"GOAL", IN_MODEL, OPTIONS(goal), NULL, apply_goal, 0, 1,
+   "[x, y[, z]] of PRESSURE or DISPLACEMENT",
+   "a quantity whose value, error by the mesh and its band are wanted"},
   {"EFFECTS", IN_MODEL | IN_STEP, OPTIONS(effects), NULL, apply_effects, 0, 0,
    "", "which effects of the deck are simulated; for all steps"},
   {"PRINT", IN_STEP, OPTIONS(print), NULL, apply_print, 0, 0,

@@ -12,6 +12,7 @@ extern const column increment_columns[], node_columns[], element_columns[],
     contact_node_columns[], contact_columns[];
 static const column zone_columns[] = {OF_EFFECTS(0), NO_COLUMN};
 static const column tip_columns[] = {OF_EFFECTS(0), NO_COLUMN};
+static const column goal_columns[] = {OF_EFFECTS(0), NO_COLUMN};
 
 static const struct {
   entity of;
@@ -22,6 +23,7 @@ static const struct {
              {PER_CONTACT_NODE, contact_node_columns},
              {PER_ZONE, zone_columns},
              {PER_TIP, tip_columns},
+             {PER_GOAL, goal_columns},
              {PER_CONTACT, contact_columns}};
 enum { N_PART = sizeof parts / sizeof *parts };
 
@@ -148,6 +150,7 @@ int column_items(const column *c, const view *v) {
       return v->m->n.contact;
     case PER_ZONE:
     case PER_TIP:
+    case PER_GOAL:
       return e->items(effect_state(v->s->effects, e));
     default:
       return 1;

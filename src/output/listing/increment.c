@@ -180,6 +180,7 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
   print_share("mesh", &s->errors.mesh_error, lst->f);
   print_share("steps", &s->errors.time_error, lst->f);
   print_truth(s, lst->f);
+  listing_goals_now(j, s, lst->f);
   if (!j->m->problem.given) print_energies(j, &v, lst->f);
   return text_check(lst);
 }

@@ -70,6 +70,8 @@ typedef struct run_summary {
   double penetration_worst;            /* m, of all contact nodes */
   double *ends;                        /* [n_step * job_end_size] owned: see
                                           job_end_column */
+  goal_result *goals;                  /* [n_step*n_goal] owned: at the last
+                                          increment so far of each step */
   flow_tally tally;                    /* points with a threshold */
   status verdict;
   const char *message; /* of a failed run, or "" */
@@ -98,6 +100,10 @@ typedef struct job {
 const column *job_end_column(const model *m, const column *c);
 /* Numbers of a step there. */
 size_t job_end_size(const model *m);
+/* goals.c: goal "id" at the last increment so far of the last step that has
+ * one; NULL: none. Its unit with the labels of the deck. */
+const goal_result *job_goal(const job *j, int id);
+const char *job_goal_unit(const model *m, int id, char *text, size_t size);
 /* advice.c: 1: the error of the steps may be other than zero. */
 int job_path_counts(const model *m);
 /* One sentence: the error to improve next, and what that costs; "": none is

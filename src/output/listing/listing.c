@@ -194,6 +194,7 @@ status listing_verdict(const job *j, text_file *lst) {
   heading(f, "ACCURACY");
   print_accuracy(j, f);
   listing_budget(j, f);
+  listing_goals(j, f);
   listing_advice(j, f);
   listing_passes(j, f);
   heading(f, "COST");

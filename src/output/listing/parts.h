@@ -24,6 +24,10 @@ void listing_theory(const job *j, const state *s, FILE *f);
 /* ---- budget.c ---- */
 /* Errors reached, their cost, and the cost of the estimates. */
 void listing_budget(const job *j, FILE *f);
+/* ---- goals.c ---- */
+/* Those of an increment; at the end of the listing. */
+void listing_goals_now(const job *j, const state *s, FILE *f);
+void listing_goals(const job *j, FILE *f);
 /* The passes towards the target, and what a digit more would cost. */
 void listing_passes(const job *j, FILE *f);
 

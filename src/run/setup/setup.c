@@ -130,8 +130,9 @@ status run_new(run *r, const effect_ops *const *effects) {
   TRY(new_clusters(r));
   if ((r->m->effects & EFFECT_CONTACT) || r->m->n.tie > 0) TRY(new_faces(r));
   if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
-  if (r->m->effects &
-      (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR | EFFECT_REFERENCE))
+  if (r->m->n.goal > 0 ||
+      (r->m->effects & (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR |
+                        EFFECT_REFERENCE)) != 0)
     NEW(r->result.stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   if (r->m->effects & EFFECT_STRESS)
     NEW(r->result.strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);

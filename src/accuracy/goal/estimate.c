@@ -1,0 +1,270 @@
+/*
+ * The error of a goal by the mesh (goal.h). With the contact as it is and the
+ * edges of the contact surface where the gap is curved,
+ *
+ *   J(u) - J(u_h) = residual of the adjoint at u - u_h,
+ *
+ * and u - u_h is taken in the bubbles of the edges. The adjoint is singular
+ * where the contact ends and u is not: recovering the adjoint instead is worse.
+ *
+ * An element has the bubble of an edge with the integral of its gradient
+ * 4 (grad la + grad lb)/(dim + 1) times its volume.
+ */
+#include "accuracy/goal/goal.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct goal_estimator {
+  goal_solution s;
+  space_recovery *recovery; /* borrowed */
+  int n_region;
+  double **gradient; /* [n_region][dim*dim*n_node] recovered of u, - */
+  double **stress;   /* [n_region][ns*n_node] recovered of u, Pa */
+  double *own;       /* [n_elem] |e_u|^2, J */
+  double *sigma_y;   /* [ns*n_elem] of the adjoint; workspace */
+  double *node_y;    /* [ns*n_node] recovered; workspace */
+};
+
+void goal_estimator_free(goal_estimator *e) {
+  if (e == NULL) return;
+  for (int k = 0; k < e->n_region; ++k) {
+    if (e->gradient != NULL) memory_free(e->gradient[k]);
+    if (e->stress != NULL) memory_free(e->stress[k]);
+  }
+  RELEASE(e->gradient, e->stress, e->own, e->sigma_y, e->node_y, e);
+}
+
+/* q[dim*dim*n_elem]: du_c/dx_k at c*dim + k. */
+static void gradients(const mesh *m, const double *u, double *q) {
+  const int dim = m->dim;
+  double g[12];
+  for (int e = 0; e < m->n_elem; ++e, q += dim * dim) {
+    mesh_elem_gradients(m, e, g);
+    for (int a = 0; a <= dim; ++a) {
+      const double *v = u + (size_t)dim * (size_t)m->elem[(dim + 1) * e + a];
+      for (int c = 0; c < dim; ++c)
+        for (int k = 0; k < dim; ++k) q[c * dim + k] += v[c] * g[dim * a + k];
+    }
+  }
+}
+
+/* What belongs to u in one region. */
+static status recover_region(goal_estimator *e, int region, const double *q) {
+  const mesh *m = e->s.d->mesh;
+  const int ns = e->s.d->ns, n = m->dim * m->dim;
+  PASS_NEW(e->gradient[region], (size_t)n * (size_t)m->n_node);
+  PASS_NEW(e->stress[region], (size_t)ns * (size_t)m->n_node);
+  space_recover(e->recovery, region, n, q, e->gradient[region]);
+  space_recover(e->recovery, region, ns, e->s.sigma, e->stress[region]);
+  const space_field f = {e->s.sigma, e->stress[region]};
+  for (int k = 0; k < m->n_elem; ++k)
+    if (space_region(e->recovery, k) == region)
+      e->own[k] = space_product(e->recovery, k, &f, &f);
+  return OK;
+}
+
+status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
+                          goal_estimator **out) {
+  status st = OK;
+  const mesh *m = s->d->mesh;
+  goal_estimator *e = NULL;
+  double *q = NULL;
+  *out = NULL;
+  NEW(e, 1);
+  e->s = *s;
+  e->recovery = recovery;
+  NEW(q, (size_t)(m->dim * m->dim) * (size_t)m->n_elem);
+  gradients(m, s->u, q);
+  e->n_region = space_regions(recovery);
+  NEW(e->gradient, e->n_region);
+  NEW(e->stress, e->n_region);
+  NEW(e->own, m->n_elem);
+  NEW(e->sigma_y, (size_t)s->d->ns * (size_t)m->n_elem);
+  NEW(e->node_y, (size_t)s->d->ns * (size_t)m->n_node);
+  TRY(space_moduli(recovery));
+  for (int k = 0; k < e->n_region; ++k) TRY(recover_region(e, k, q));
+  *out = e;
+  e = NULL;
+done:
+  memory_free(q);
+  goal_estimator_free(e);
+  return st;
+}
+
+/* ---- what it is worth ---------------------------------------------------- */
+
+/* Measured on plane scenes with known goals: the estimate is within a factor of
+ * 2 in 91 % of all cases below TRUSTED, and the true value in the band in 91 to
+ * 95 % whatever the share. */
+static const double TRUSTED = 0.03; /* -, share of the contact ends */
+static const double LEFT = 0.05;    /* -, of the sum of magnitudes */
+static const double BAND = 0.1;     /* -, the same */
+
+static const struct {
+  const char *word, *text;
+} verdicts[] = {
+    [GOAL_RELIABLE] = {"reliable", "reliable"},
+    [GOAL_CONTACT_END] = {"contact_end", "not reliable: contact end"},
+    [GOAL_FEW_NODES] = {"few_nodes", "not reliable: few contact nodes"},
+    [GOAL_CANCELS] = {"cancels", "not reliable: errors cancel"},
+    [GOAL_NO_HISTORY] = {"no_history",
+                         "without history: errors of earlier "
+                         "increments are not in it"},
+    [GOAL_NOT_COVERED] = {"not_covered", "no estimate: not covered"},
+    [GOAL_NO_PEAK] = {"no_peak",
+                      "none: the largest pressure is at an edge, "
+                      "where it may be infinite"},
+    [GOAL_NO_END] = {"no_end",
+                     "none: the contact reaches the end of its "
+                     "surface"},
+    [GOAL_NO_ZONE] = {"no_zone", "none: too few closed nodes"}};
+
+const char *goal_verdict_word(goal_verdict v) { return verdicts[v].word; }
+const char *goal_verdict_text(goal_verdict v) { return verdicts[v].text; }
+
+goal_result goal_judge(const goal_estimate *e, int n_closed) {
+  enum { FEW = 3 };
+  goal_result r = {.error = e->error,
+                   .band = BAND * e->magnitude + e->ends,
+                   .ends = e->product > 0.0 ? e->ends / e->product : 0.0};
+  if (n_closed > 0 && n_closed <= FEW)
+    r.verdict = GOAL_FEW_NODES;
+  else if (r.ends >= TRUSTED)
+    r.verdict = GOAL_CONTACT_END;
+  else if (fabs(e->error) < LEFT * e->magnitude)
+    r.verdict = GOAL_CANCELS;
+  return r;
+}
+
+double goal_estimator_energy(const goal_estimator *e) {
+  double sum = 0.0;
+  for (int k = 0; k < e->s.d->mesh->n_elem; ++k) sum += e->own[k];
+  return sum;
+}
+
+/* ---- an edge of an element ----------------------------------------------- */
+
+static int by_nodes(const void *a_, const void *b_) {
+  const contact_edge *a = a_, *b = b_;
+  if (a->a != b->a) return a->a < b->a ? -1 : 1;
+  return (a->b > b->b) - (a->b < b->b);
+}
+
+static const contact_edge *find_edge(const goal_solution *s, int a, int b) {
+  const contact_edge key = {.a = a < b ? a : b, .b = a < b ? b : a};
+  if (s->n_edge == 0) return NULL;
+  return bsearch(&key, s->edge, (size_t)s->n_edge, sizeof key, by_nodes);
+}
+
+/* d[dim] on a closed edge: along n that of the gap, across it 0 on stick. */
+static void hold(const contact_edge *c, int dim, double *d) {
+  double along = 0.0;
+  for (int k = 0; k < dim; ++k) along += c->n[k] * d[k];
+  for (int k = 0; k < dim; ++k)
+    d[k] = c->excess * c->n[k] + (c->stuck ? 0.0 : d[k] - along * c->n[k]);
+}
+
+/* The part of u in the bubble of the edge from node a to b, in a region. */
+static void bubble_of(const goal_estimator *e, int region, int a, int b,
+                      double *d) {
+  const goal_solution *s = &e->s;
+  const int dim = s->d->mesh->dim, n = dim * dim;
+  const double *xa = s->d->mesh->x + dim * a, *xb = s->d->mesh->x + dim * b;
+  const double *ga = e->gradient[region] + (size_t)n * (size_t)a;
+  const double *gb = e->gradient[region] + (size_t)n * (size_t)b;
+  for (int c = 0; c < dim; ++c) {
+    d[c] = 0.0;
+    for (int k = 0; k < dim; ++k)
+      d[c] += (ga[c * dim + k] - gb[c * dim + k]) * (xb[k] - xa[k]) / 8.0;
+  }
+  const contact_edge *contact = find_edge(s, a, b);
+  if (contact != NULL && contact->closed) hold(contact, dim, d);
+  for (int c = 0; c < dim; ++c)
+    if (s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c]) d[c] = 0.0;
+}
+
+/* Row c of a stress in Voigt's components times a vector. */
+static double traction(int dim, const double *t, int c, const double *v) {
+  static const int plane[2][2] = {{0, 3}, {3, 1}};
+  static const int space[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+  double sum = 0.0;
+  for (int k = 0; k < dim; ++k)
+    sum += t[dim == 2 ? plane[c][k] : space[c][k]] * v[k];
+  return sum;
+}
+
+/* Mean radius of an element, m. */
+static double radius_of(const mesh *m, int elem_id) {
+  const int *v = m->elem + 3 * elem_id;
+  return (m->x[2 * v[0]] + m->x[2 * v[1]] + m->x[2 * v[2]]) / 3.0;
+}
+
+/* Sum of R d over the edges of an element; t[ns] is tau - sigma(y) there. */
+static double edges_of(const goal_estimator *e, int elem_id, const double *t) {
+  const domain *d = e->s.d;
+  const mesh *m = d->mesh;
+  const int dim = m->dim, *v = m->elem + (dim + 1) * elem_id;
+  const int region = space_region(e->recovery, elem_id);
+  const int axi = d->kin[d->section_id[elem_id]] == AXISYMMETRIC;
+  const double w = element_weight(d, elem_id);
+  double g[12], grad[3], part[3], sum = 0.0;
+  mesh_elem_gradients(m, elem_id, g);
+  for (int a = 0; a < dim; ++a)
+    for (int b = a + 1; b <= dim; ++b) {
+      bubble_of(e, region, v[a], v[b], part);
+      for (int k = 0; k < dim; ++k)
+        grad[k] = 4.0 / (dim + 1) * (g[dim * a + k] + g[dim * b + k]);
+      for (int c = 0; c < dim; ++c)
+        sum += w * traction(dim, t, c, grad) * part[c];
+      if (axi) sum += w * t[2] * part[0] / (3.0 * radius_of(m, elem_id));
+    }
+  return sum;
+}
+
+/* ---- the sums ------------------------------------------------------------ */
+
+static int is_at_end(const goal_estimator *e, int elem_id) {
+  const mesh *m = e->s.d->mesh;
+  int any = 0;
+  for (int a = 0; a <= m->dim; ++a)
+    any |= e->s.ends[m->elem[(m->dim + 1) * elem_id + a]];
+  return any;
+}
+
+static void add_element(goal_estimator *e, int elem_id, const double *tau,
+                        double *share, goal_estimate *out) {
+  const size_t ns = (size_t)e->s.d->ns, at = ns * (size_t)elem_id;
+  const int region = space_region(e->recovery, elem_id);
+  const space_field u = {e->s.sigma, e->stress[region]};
+  const space_field y = {e->sigma_y, e->node_y};
+  double t[6];
+  for (size_t k = 0; k < ns; ++k)
+    t[k] = (tau != NULL ? tau[at + k] : 0.0) - e->sigma_y[at + k];
+  const double square = space_product(e->recovery, elem_id, &y, &y);
+  const double both = sqrt(fmax(e->own[elem_id] * square, 0.0));
+  out->error += edges_of(e, elem_id, t);
+  out->magnitude += fabs(space_product(e->recovery, elem_id, &u, &y));
+  out->product += both;
+  if (is_at_end(e, elem_id)) out->ends += both;
+  if (share != NULL) share[elem_id] = both;
+}
+
+status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
+                          double *share, goal_estimate *out) {
+  domain d = *e->s.d;
+  const mesh *m = d.mesh;
+  d.eigen = NULL;
+  *out = (goal_estimate){0.0, 0.0, 0.0, 0.0};
+  domain_stress(&d, y, NULL, e->sigma_y);
+  for (int region = 0; region < e->n_region; ++region) {
+    space_recover(e->recovery, region, d.ns, e->sigma_y, e->node_y);
+    for (int k = 0; k < m->n_elem; ++k)
+      if (space_region(e->recovery, k) == region)
+        add_element(e, k, tau, share, out);
+  }
+  return OK;
+}

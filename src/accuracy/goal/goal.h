@@ -1,0 +1,113 @@
+/*
+ * Errors of goals: what a quantity J of the solution, a force, a peak, a
+ * displacement, is in error by the mesh and by the contact solver, with its
+ * sign (Becker, Rannacher 2001, Acta Numerica 10, 1-102; Blum, Suttmeier 2000,
+ * Calcolo 37, 65-77, for contact). The adjoint is that of the contact problem
+ * linearised at its solution, with the unsymmetric rows of Coulomb's law.
+ */
+#ifndef PROTIS_ACCURACY_GOAL_H
+#define PROTIS_ACCURACY_GOAL_H
+
+#include "accuracy/space.h"
+#include "contact/contact.h"
+
+/* What an estimate is worth. */
+typedef enum {
+  GOAL_RELIABLE,
+  GOAL_CONTACT_END, /* the mesh is too coarse where the contact ends */
+  GOAL_FEW_NODES,   /* three closed nodes or less */
+  GOAL_CANCELS,     /* parts of opposite sign, of which little is left */
+  GOAL_NO_HISTORY,  /* errors of the increments before are not in it */
+  GOAL_NOT_COVERED, /* by the estimate; the value stands */
+  GOAL_NO_PEAK,     /* the largest pressure is at an edge: it may be infinite */
+  GOAL_NO_END,      /* the contact reaches the end of its surface */
+  GOAL_NO_ZONE      /* nothing is closed, or too few nodes */
+} goal_verdict;
+const char *goal_verdict_word(goal_verdict v); /* one word */
+const char *goal_verdict_text(goal_verdict v);
+
+/* A goal and its errors, in its unit; NAN: none. */
+typedef struct goal_result {
+  double value;  /* J_h */
+  double error;  /* signed, of the mesh: J less J_h */
+  double solver; /* the same of the contact solver */
+  double band;   /* half of it, round value + error */
+  double ends;   /* -, share of elements where the contact ends */
+  double cpu;    /* s, CPU time for it so far */
+  goal_verdict verdict;
+} goal_result;
+typedef struct goal_estimate {
+  double error;     /* J of the solution less J_h, of the mesh, unit of J */
+  double magnitude; /* sum of the magnitudes of the parts of elements */
+  double product;   /* sum over the elements of |e_u| |e_y| */
+  double ends;      /* the same where the contact ends */
+} goal_estimate;
+/* The result of an estimate but for value, solver and cpu; n_closed: nodes. */
+goal_result goal_judge(const goal_estimate *e, int n_closed);
+
+/* ---- adjoint.c ----------------------------------------------------------- */
+
+/*
+ * The linearised problem of (u, r): nodes closed, stuck and sliding remain so.
+ * On the free unknowns F it is M du_F = df_F,
+ *
+ *   M = A_FF + e B A_nF + kappa (I - e e')   (the last two on slip),
+ *
+ * e the direction of the friction force, kappa = g/|slip| in 3-D. With j and
+ * psi the derivatives of J by displacements and contact forces,
+ *
+ *   M' w = (j + A psi)_F,   y = w - psi,   w_n = B' (e.w_t) on closed nodes.
+ */
+typedef struct contact_adjoint contact_adjoint;
+/* *out is new; NULL if the matrix is singular. cp, u, r [m] are borrowed; cp
+ * has its matrix. ERR_MEMORY. */
+status contact_adjoint_new(const contact_problem *cp, const double *u,
+                           const double *r, contact_adjoint **out);
+void contact_adjoint_free(contact_adjoint *a); /* accepts NULL */
+/* y[m] of j[m], psi[m]; psi counts where a force can change. *solver: J of the
+ * discrete solution less J of (u, r), to first order. */
+void contact_adjoint_solve(contact_adjoint *a, const double *j,
+                           const double *psi, double *y, double *solver);
+
+/* ---- estimate.c ---------------------------------------------------------- */
+
+/* An edge of the contact surface, node ids a < b. */
+typedef struct contact_edge {
+  int a, b;
+  int closed, stuck; /* both ends are */
+  double n[3];       /* unit normal, the mean of its ends */
+  double excess;     /* gap in its middle less the mean of its ends, m */
+} contact_edge;
+
+/* The solution. All is borrowed. */
+typedef struct goal_solution {
+  const domain *d;
+  const double *u;     /* [dim*n_node] m */
+  const double *sigma; /* [ns*n_elem] Pa */
+  int n_edge;
+  const contact_edge *edge;  /* [n_edge] sorted by a, b */
+  const unsigned char *ends; /* [n_node] 1: the contact changes its status next
+                                to it */
+} goal_solution;
+
+typedef struct goal_estimator goal_estimator;
+/* Recovers what belongs to the solution; s and all in it are borrowed until
+ * goal_estimator_free. ERR_MEMORY, ERR_INTERNAL as space_estimate. */
+status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
+                          goal_estimator **out);
+void goal_estimator_free(goal_estimator *e);           /* accepts NULL */
+double goal_estimator_energy(const goal_estimator *e); /* |e_u|^2, J */
+/*
+ * The error by the adjoint y[dim*n_node] of a J with the derivative integral of
+ * tau : e(v), tau[ns*n_elem] (or NULL: zero), besides values at nodes:
+ *
+ *   sum over edges of R d,   R = integral of (tau - sigma(y)) : e(b),
+ *
+ * b = 4 la lb the bubble of the edge and d the part of u in it, from recovered
+ * gradients; on closed edges d_n is that of the gap, and d_t = 0 where they
+ * stick. share[n_elem] or NULL: |e_u| |e_y| of each element.
+ */
+status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
+                          double *share, goal_estimate *out);
+
+#endif

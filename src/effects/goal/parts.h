@@ -1,0 +1,49 @@
+/*
+ * The parts of the goals: quantities as functions of displacements and contact
+ * forces (quantity.c), those of a pressure (pressure.c), the contact surface as
+ * the estimate sees it (surface.c). Private to src/effects/goal.
+ */
+#ifndef PROTIS_EFFECTS_GOAL_PARTS_H
+#define PROTIS_EFFECTS_GOAL_PARTS_H
+
+#include "accuracy/goal/goal.h"
+#include "run/run.h"
+
+/* A quantity J at r->now, with its derivatives. */
+typedef struct goal_form {
+  double value;
+  double *load; /* [dim*n_node] by displacements of nodes, global components */
+  double *rows; /* [dim*n] by contact unknowns */
+  double *psi;  /* [dim*n] by contact forces, contact frame */
+  double *tau;  /* [ns*n_elem] by strains, per volume */
+  int has_tau;
+  int is_square;    /* 1: the energy, whose error has a quadratic part too */
+  double curved;    /* contact forces times what psi is between the nodes more
+                       than at them */
+  goal_verdict why; /* GOAL_RELIABLE: it has a value */
+} goal_form;
+
+status goal_form_new(const run *r, goal_form *f);
+void goal_form_free(goal_form *f); /* accepts all-zero */
+/* quantity.c: *f of a goal. ERR_MEMORY. */
+status goal_form_set(const run *r, const goal_card *g, goal_form *f);
+/* pressure.c: the mean of a pressure round a point; the width of a zone. */
+status goal_set_pressure(const run *r, const goal_card *g, goal_form *f);
+status goal_set_width(const run *r, const goal_card *g, goal_form *f);
+
+/* surface.c */
+typedef struct goal_surface {
+  int n_edge;
+  contact_edge *edge;  /* [n_edge] sorted */
+  unsigned char *ends; /* [n_node] */
+  int n_closed;        /* closed nodes */
+} goal_surface;
+status goal_surface_new(const run *r, goal_surface *s);
+void goal_surface_free(goal_surface *s); /* accepts all-zero */
+/* where[n_node]: contact node of a mesh node, or -1; new. */
+status goal_places(const run *r, int **where);
+/* 1: node i of the surface stands on a plane of symmetry along tangent a, or on
+ * the axis. */
+int goal_is_mirrored(const run *r, int i);
+
+#endif

@@ -1,0 +1,483 @@
+/*
+ * Goals of a pressure, as linear functions of the normal contact forces.
+ *
+ * The pressure at a point is a mean over the radius rho, t = distance/rho,
+ *
+ *   w = 105/(64 rho) (1 - 3 t^2) (1 - t^2)^2       on a line,
+ *   w = 8/(pi rho^2) (1 - 5/2 t^2) (1 - t^2)^2     on a disc,
+ *
+ * which are 1 over all and 0 times t^2: the error for a smooth pressure is of
+ * the order rho^4 (Hertz, rho half the half width: 2.6e-4 of the peak). A line
+ * where the contact is one, and a disc in space and, within rho of it, on the
+ * axis. What is beyond
+ * a plane of symmetry is on the other side of it.
+ *
+ * The width of a zone is that of the pressure c sqrt(a - x) at its end,
+ *
+ *   a = x0 + 7/4 N2/N1,   Nk = integral of p (x - x0)^k over x > x0,
+ *
+ * with x0 at three quarters from the middle to a (Hertz: .0016 a too much).
+ */
+#include "base/memory.h"
+#include "effects/goal/parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* The derivative of J by a normal force at x. */
+typedef struct weight {
+  double (*at)(const struct weight *w, const double *x);
+  int dim, axi;
+  double thickness;
+  double origin[3], t[3]; /* m; unit tangent of a line */
+  double radius;          /* m */
+  double factor;          /* of a disc: 2 for each plane of symmetry */
+  double mirror[2];       /* planes of symmetry along a line, m; HUGE_VAL */
+  double x0, N1, N2;      /* m, N, N m: of an end */
+  double sign;            /* of the side of the end */
+  int n;                  /* closed nodes beyond x0 */
+} weight;
+
+/* Coordinate along the line, m. */
+static double along(const weight *w, const double *x) {
+  double s = 0.0;
+  for (int c = 0; c < w->dim; ++c) s += (x[c] - w->origin[c]) * w->t[c];
+  return s;
+}
+
+/* From a force to one of unit thickness, or of unit length round the axis. */
+static double per_length(const weight *w, const double *x) {
+  return w->axi ? 1.0 / (2.0 * PI * x[0]) : 1.0 / w->thickness;
+}
+
+static double line_weight(double s, double radius) {
+  const double t = s / radius, q = 1.0 - t * t;
+  return q > 0.0 ? 105.0 / 64.0 / radius * (1.0 - 3.0 * t * t) * q * q : 0.0;
+}
+
+static double on_line(const weight *w, const double *x) {
+  const double s = along(w, x);
+  double sum = line_weight(s, w->radius);
+  for (int k = 0; k < 2; ++k)
+    if (isfinite(w->mirror[k]))
+      sum += line_weight(2.0 * w->mirror[k] - s, w->radius);
+  return sum > 0.0 || sum < 0.0 ? -sum * per_length(w, x) : 0.0;
+}
+
+static double on_disc(const weight *w, const double *x) {
+  double square = 0.0;
+  for (int c = 0; c < w->dim; ++c)
+    square += (x[c] - w->origin[c]) * (x[c] - w->origin[c]);
+  const double t2 = square / (w->radius * w->radius), q = 1.0 - t2;
+  if (!(q > 0.0)) return 0.0;
+  return -w->factor * 8.0 / (PI * w->radius * w->radius) * (1.0 - 2.5 * t2) *
+         q * q;
+}
+
+static double at_end(const weight *w, const double *x) {
+  const double L = w->sign * (along(w, x) - w->x0);
+  if (!(L > 0.0)) return 0.0;
+  return -1.75 * (L * L / w->N1 - L * w->N2 / (w->N1 * w->N1)) *
+         per_length(w, x);
+}
+
+/* ---- sums over the surface ----------------------------------------------- */
+
+static int is_on(const run *r, const goal_card *g, int q) {
+  return r->surface->contact_id[q] == g->contact_id;
+}
+
+/* Adds to psi; J of the linear function. */
+static double add_nodes(const run *r, const goal_card *g, const weight *w,
+                        double *psi) {
+  const int dim = w->dim;
+  double sum = 0.0;
+  for (int q = 0; q < r->nodes.n; ++q) {
+    if (!is_on(r, g, q)) continue;
+    const double v = w->at(w, r->surface->x + dim * q);
+    psi[dim * q] += v;
+    sum += v * r->now.rc[dim * q];
+  }
+  return sum;
+}
+
+/* Points and weights of a face, barycentric: Gauss on a line, of degree 5 in a
+ * triangle. */
+enum { POINTS_2D = 3, POINTS_3D = 7 };
+static const double line_rule[POINTS_2D][3] = {
+    {0.11270166537925831, 0.88729833462074169, 5.0 / 18.0},
+    {0.5, 0.5, 8.0 / 18.0},
+    {0.88729833462074169, 0.11270166537925831, 5.0 / 18.0}};
+#define FAR_A 0.79742698535308732
+#define FAR_B 0.10128650732345634
+#define NEAR_A 0.05971587178976982
+#define NEAR_B 0.47014206410511509
+#define FAR_W 0.12593918054482715
+#define NEAR_W 0.13239415278850618
+static const double face_rule[POINTS_3D][4] = {
+    {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 0.225},
+    {FAR_A, FAR_B, FAR_B, FAR_W},
+    {FAR_B, FAR_A, FAR_B, FAR_W},
+    {FAR_B, FAR_B, FAR_A, FAR_W},
+    {NEAR_A, NEAR_B, NEAR_B, NEAR_W},
+    {NEAR_B, NEAR_A, NEAR_B, NEAR_W},
+    {NEAR_B, NEAR_B, NEAR_A, NEAR_W}};
+
+/* Integral over a face between contact nodes q[dim] of the traction times the
+ * weight less its P1 function. */
+static double face_rest(const run *r, const weight *w, const int *q,
+                        double measure) {
+  const contact_surface *s = r->surface;
+  const int dim = w->dim, n = dim == 3 ? POINTS_3D : POINTS_2D;
+  double sum = 0.0;
+  for (int p = 0; p < n; ++p) {
+    const double *b = dim == 3 ? face_rule[p] : line_rule[p];
+    double x[3] = {0.0}, traction = 0.0, linear = 0.0;
+    for (int k = 0; k < dim; ++k) {
+      const double *at = s->x + dim * q[k];
+      for (int c = 0; c < dim; ++c) x[c] += b[k] * at[c];
+      traction += b[k] * r->now.rc[dim * q[k]] / s->area[q[k]];
+      linear += b[k] * w->at(w, at);
+    }
+    const double turn = w->axi ? 2.0 * PI * x[0] : w->thickness;
+    sum += b[dim] * measure * turn * traction * (w->at(w, x) - linear);
+  }
+  return sum;
+}
+
+static status add_faces(const run *r, const goal_card *g, const weight *w,
+                        double *sum) {
+  const mesh *m = r->msh;
+  const mesh_group *of = &m->group[r->m->contacts[g->contact_id].group_id];
+  OWNED int *where = NULL;
+  double normal[3];
+  PASS(goal_places(r, &where));
+  for (int k = 0; k < of->n_item; ++k) {
+    const int *v = m->face + m->dim * of->item_id[k];
+    int q[3] = {0}, all = 1;
+    for (int a = 0; a < m->dim; ++a) {
+      q[a] = where[v[a]];
+      all = all && q[a] >= 0 && r->surface->area[q[a]] > 0.0;
+    }
+    if (!all) continue;
+    *sum += face_rest(r, w, q, mesh_face_normal(m, of->item_id[k], normal));
+  }
+  return OK;
+}
+
+/* ---- the zone ------------------------------------------------------------ */
+
+static double pressure_of(const run *r, int q) {
+  const double area = r->surface->area[q];
+  return area > 0.0 ? -r->now.rc[r->msh->dim * q] / area : 0.0;
+}
+
+/* How many planes of symmetry a node stands on. */
+static int mirrors_of(const run *r, int q) {
+  const int dim = r->msh->dim;
+  int n = 0;
+  for (int a = 1; a < dim; ++a) n += r->surface->held[dim * q + a];
+  return n > 0 ? n : goal_is_mirrored(r, q);
+}
+
+/* Contact node nearest to the point of the goal, or that of the largest
+ * pressure, by a small margin one in a plane of symmetry; -1: nothing is
+ * closed. */
+static int peak_of(const run *r, const goal_card *g) {
+  static const double margin = 0.01; /* -, for each plane */
+  const int dim = r->msh->dim;
+  int best = -1;
+  double most = 0.0;
+  for (int q = 0; q < r->nodes.n; ++q) {
+    double d = 0.0;
+    double value = pressure_of(r, q) * (1.0 + margin * mirrors_of(r, q));
+    if (!is_on(r, g, q)) continue;
+    for (int c = 0; g->has_point && c < dim; ++c)
+      d = hypot(d, r->surface->x[dim * q + c] - g->point[c]);
+    if (g->has_point) value = 1.0 / (d + 1e-12 * r->msh->size);
+    if (value <= most) continue;
+    most = value;
+    best = q;
+  }
+  return best;
+}
+
+/* The contact nodes of a plane contact in the order along it. */
+typedef struct line {
+  int n, peak; /* peak: place of the peak */
+  int *node;   /* [n] */
+  double *s;   /* [n] m, from the peak */
+} line;
+
+typedef struct placed {
+  double s;
+  int q;
+} placed;
+
+static int by_place(const void *a_, const void *b_) {
+  const placed *a = a_, *b = b_;
+  return (a->s > b->s) - (a->s < b->s);
+}
+
+static void line_free(line *l) { RELEASE(l->node, l->s); }
+
+static status line_new(const run *r, const goal_card *g, const weight *w,
+                       int peak, line *l) {
+  status st = OK;
+  placed *all = NULL;
+  NEW(all, r->nodes.n);
+  NEW(l->node, r->nodes.n);
+  NEW(l->s, r->nodes.n);
+  for (int q = 0; q < r->nodes.n; ++q)
+    if (is_on(r, g, q))
+      all[l->n++] = (placed){along(w, r->surface->x + w->dim * q), q};
+  qsort(all, (size_t)l->n, sizeof *all, by_place);
+  for (int k = 0; k < l->n; ++k) {
+    l->node[k] = all[k].q;
+    l->s[k] = all[k].s;
+    if (all[k].q == peak) l->peak = k;
+  }
+done:
+  memory_free(all);
+  return st;
+}
+
+static int is_closed(const run *r, const line *l, int k) {
+  return k >= 0 && k < l->n && r->result.contact[l->node[k]] != CONTACT_OPEN;
+}
+
+/* First and last closed node of the zone that holds the peak. */
+static void zone_of(const run *r, const line *l, int *first, int *last) {
+  *first = *last = l->peak;
+  while (is_closed(r, l, *first - 1)) --*first;
+  while (is_closed(r, l, *last + 1)) ++*last;
+}
+
+/* Frame and place of a weight at a contact node. */
+static weight weight_at(const run *r, const goal_card *g, int q) {
+  const contact_surface *s = r->surface;
+  const int dim = s->dim;
+  const mesh_group *of = &r->msh->group[r->m->contacts[g->contact_id].group_id];
+  weight w = {.dim = dim,
+              .axi = r->faces.input.axisymmetric,
+              .factor = 1.0,
+              .thickness = r->faces.face_weight[of->item_id[0]]};
+  for (int c = 0; c < dim; ++c) {
+    w.origin[c] = s->x[dim * q + c];
+    w.t[c] = s->frame[dim * dim * q + dim + c];
+  }
+  return w;
+}
+
+/* ---- the pressure at a point --------------------------------------------- */
+
+/* The top of the parabola through the peak and its neighbours. */
+static void refine_peak(const run *r, const line *l, weight *w) {
+  const int k = l->peak;
+  const double a = l->s[k - 1], b = l->s[k + 1];
+  const double p = pressure_of(r, l->node[k]);
+  const double pa = pressure_of(r, l->node[k - 1]) - p;
+  const double pb = pressure_of(r, l->node[k + 1]) - p;
+  const double bend = (pb / b - pa / a) / (b - a), slope = pa / a - bend * a;
+  if (!(bend < 0.0)) return;
+  const double s = fmin(fmax(-0.5 * slope / bend, a), b);
+  for (int c = 0; c < w->dim; ++c) w->origin[c] += s * w->t[c];
+}
+
+/* Planes of symmetry at the ends of the line. */
+static void set_mirrors(const run *r, const line *l, weight *w) {
+  const int end[2] = {0, l->n - 1};
+  for (int k = 0; k < 2; ++k)
+    w->mirror[k] =
+        goal_is_mirrored(r, l->node[end[k]]) ? l->s[end[k]] : HUGE_VAL;
+}
+
+/* Half the half width of a zone, m. */
+static double half_of(const run *r, const line *l, int first, int last) {
+  const int half =
+      goal_is_mirrored(r, l->node[first]) || goal_is_mirrored(r, l->node[last]);
+  return (half ? 0.5 : 0.25) * (l->s[last] - l->s[first]);
+}
+
+/* Where the largest pressure may be infinite there is no peak. */
+static status place_on_line(const run *r, const goal_card *g, int peak,
+                            weight *w, goal_form *f) {
+  line l = {0};
+  int first, last;
+  PASS(line_new(r, g, w, peak, &l));
+  const int mirrored = goal_is_mirrored(r, peak);
+  const int at_border = l.peak == 0 || l.peak == l.n - 1;
+  zone_of(r, &l, &first, &last);
+  w->radius = g->radius > 0.0 ? g->radius : half_of(r, &l, first, last);
+  if (at_border && !mirrored)
+    f->why = GOAL_NO_PEAK;
+  else if (last - first < 2)
+    f->why = GOAL_NO_ZONE;
+  else if (!at_border && !g->has_point)
+    refine_peak(r, &l, w);
+  if (g->has_point)
+    for (int c = 0; c < w->dim; ++c) w->origin[c] = g->point[c];
+  const double moved = along(w, r->surface->x + w->dim * peak);
+  for (int k = 0; k < l.n; ++k) l.s[k] += moved;
+  set_mirrors(r, &l, w);
+  w->at = on_line;
+  if (w->axi && w->origin[0] < w->radius) {
+    w->origin[0] = 0.0;
+    w->at = on_disc;
+  }
+  line_free(&l);
+  return OK;
+}
+
+/* 1: a node at the border of its group, and on no plane of symmetry. */
+static status is_at_border(const run *r, const goal_card *g, int q, int *is) {
+  const mesh *m = r->msh;
+  const mesh_group *of = &m->group[r->m->contacts[g->contact_id].group_id];
+  const int at = r->surface->node_id[q];
+  OWNED int *seen = NULL;
+  PASS_NEW(seen, m->n_node);
+  for (int k = 0; k < of->n_item; ++k) {
+    const int *v = m->face + 3 * of->item_id[k];
+    for (int a = 0; a < 3; ++a)
+      if (v[a] == at) {
+        ++seen[v[(a + 1) % 3]];
+        ++seen[v[(a + 2) % 3]];
+      }
+  }
+  *is = 0;
+  for (int i = 0; i < m->n_node; ++i) *is |= seen[i] == 1;
+  *is = *is && !goal_is_mirrored(r, q);
+  return OK;
+}
+
+static status place_on_disc(const run *r, const goal_card *g, int peak,
+                            weight *w, goal_form *f) {
+  int border = 0, closed = 0;
+  double area = 0.0;
+  PASS(is_at_border(r, g, peak, &border));
+  for (int a = 1; a < 3; ++a)
+    if (r->surface->held[3 * peak + a]) w->factor *= 2.0;
+  for (int q = 0; q < r->nodes.n; ++q)
+    if (is_on(r, g, q) && r->result.contact[q] != CONTACT_OPEN) {
+      area += r->surface->area[q];
+      ++closed;
+    }
+  if (border) f->why = GOAL_NO_PEAK;
+  if (closed < 6) f->why = GOAL_NO_ZONE;
+  w->radius = g->radius > 0.0 ? g->radius : 0.5 * sqrt(w->factor * area / PI);
+  w->at = on_disc;
+  if (g->has_point) memcpy(w->origin, g->point, sizeof w->origin);
+  return OK;
+}
+
+status goal_set_pressure(const run *r, const goal_card *g, goal_form *f) {
+  const int peak = peak_of(r, g);
+  f->value = NAN;
+  if (peak < 0) {
+    f->why = GOAL_NO_ZONE;
+    return OK;
+  }
+  weight w = weight_at(r, g, peak);
+  if (w.dim == 2)
+    PASS(place_on_line(r, g, peak, &w, f));
+  else
+    PASS(place_on_disc(r, g, peak, &w, f));
+  if (f->why != GOAL_RELIABLE) return OK;
+  f->value = add_nodes(r, g, &w, f->psi);
+  return add_faces(r, g, &w, &f->curved);
+}
+
+/* ---- the width of a zone ------------------------------------------------- */
+
+/* w->N1, N2 for x0; returns the end along the line, m. */
+static double end_for(const run *r, const line *l, weight *w, double x0) {
+  w->x0 = x0;
+  w->N1 = w->N2 = 0.0;
+  w->n = 0;
+  for (int k = 0; k < l->n; ++k) {
+    const double *x = r->surface->x + 2 * l->node[k];
+    const double L = w->sign * (l->s[k] - x0);
+    if (!(L > 0.0)) continue;
+    const double p = -r->now.rc[2 * l->node[k]] * per_length(w, x);
+    w->n += p > 0.0;
+    w->N1 += p * L;
+    w->N2 += p * L * L;
+  }
+  return x0 + w->sign * 1.75 * w->N2 / w->N1;
+}
+
+/* The two ends of a zone, 0 before and 1 after it. */
+typedef struct zone_ends {
+  weight w[2];
+  int mirrored[2];
+  double at[2]; /* m, along the line */
+} zone_ends;
+
+/* The ends for x0 that follows from them. */
+static void find_ends(const run *r, const line *l, zone_ends *z) {
+  enum { PASSES = 12 };
+  for (int pass = 0; pass < PASSES; ++pass) {
+    const double middle = z->mirrored[0]   ? z->at[0]
+                          : z->mirrored[1] ? z->at[1]
+                                           : 0.5 * (z->at[0] + z->at[1]);
+    for (int k = 0; k < 2; ++k)
+      if (!z->mirrored[k])
+        z->at[k] = end_for(r, l, &z->w[k], middle + 0.75 * (z->at[k] - middle));
+  }
+}
+
+/* End k of the zone from its last closed node; 0: at the end of the surface. */
+static int start_end(const run *r, const line *l, int k, int at,
+                     const weight *w, zone_ends *z) {
+  const int border = at == 0 || at == l->n - 1;
+  z->w[k] = *w;
+  z->w[k].at = at_end;
+  z->w[k].sign = k == 0 ? -1.0 : 1.0;
+  z->at[k] = l->s[at];
+  z->mirrored[k] = border && goal_is_mirrored(r, l->node[at]);
+  return z->mirrored[k] || !border;
+}
+
+static status set_ends(const run *r, const goal_card *g, const line *l,
+                       const weight *w, goal_form *f) {
+  enum { LEAST = 2 };
+  int end[2];
+  zone_ends z;
+  zone_of(r, l, &end[0], &end[1]);
+  if (end[1] - end[0] <= LEAST) f->why = GOAL_NO_ZONE;
+  for (int k = 0; k < 2; ++k)
+    if (!start_end(r, l, k, end[k], w, &z)) f->why = GOAL_NO_END;
+  if (f->why != GOAL_RELIABLE) return OK;
+  find_ends(r, l, &z);
+  f->value = z.at[1] - z.at[0];
+  for (int k = 0; k < 2; ++k) {
+    if (z.mirrored[k]) continue;
+    if (z.w[k].n < LEAST) {
+      f->value = NAN;
+      f->why = GOAL_NO_ZONE;
+      return OK;
+    }
+    add_nodes(r, g, &z.w[k], f->psi);
+    PASS(add_faces(r, g, &z.w[k], &f->curved));
+  }
+  return OK;
+}
+
+status goal_set_width(const run *r, const goal_card *g, goal_form *f) {
+  status st = OK;
+  line l = {0};
+  const int peak = peak_of(r, g);
+  f->value = NAN;
+  if (r->msh->dim == 3) f->why = GOAL_NOT_COVERED;
+  if (peak < 0) f->why = GOAL_NO_ZONE;
+  if (f->why != GOAL_RELIABLE) return OK;
+  const weight w = weight_at(r, g, peak);
+  TRY(line_new(r, g, &w, peak, &l));
+  TRY(set_ends(r, g, &l, &w, f));
+done:
+  line_free(&l);
+  return st;
+}

@@ -1,0 +1,127 @@
+/*
+ * The quantities of *GOAL and their derivatives; those of a pressure are in
+ * pressure.c.
+ */
+#include "base/memory.h"
+#include "effects/goal/parts.h"
+
+#include <string.h>
+
+status goal_form_new(const run *r, goal_form *f) {
+  PASS_NEW(f->load, r->n_dof);
+  PASS_NEW(f->rows, r->nodes.n_c);
+  PASS_NEW(f->psi, r->nodes.n_c);
+  PASS_NEW(f->tau, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  return OK;
+}
+
+void goal_form_free(goal_form *f) {
+  RELEASE(f->load, f->rows, f->psi, f->tau);
+  *f = (goal_form){0};
+}
+
+static void clear(const run *r, goal_form *f) {
+  const size_t n_c = (size_t)r->nodes.n_c;
+  memset(f->load, 0, r->n_dof * sizeof *f->load);
+  memset(f->rows, 0, n_c * sizeof *f->rows);
+  memset(f->psi, 0, n_c * sizeof *f->psi);
+  memset(f->tau, 0, (size_t)r->m->ns * (size_t)r->msh->n_elem * sizeof *f->tau);
+  f->value = f->curved = 0.0;
+  f->has_tau = f->is_square = 0;
+  f->why = GOAL_RELIABLE;
+}
+
+/* ---- forces -------------------------------------------------------------- */
+
+/* Part of row a of contact node i in the force. */
+static double share_of(const run *r, const goal_card *g, int i, int a) {
+  const contact_surface *s = r->surface;
+  const int dim = s->dim;
+  const int side = a > 0 ? s->side_id[(dim - 1) * i + a - 1] : -1;
+  if ((side >= 0 ? side : s->contact_id[i]) != g->contact_id) return 0.0;
+  if (g->component == GOAL_NORMAL) return a == 0 || side >= 0 ? -1.0 : 0.0;
+  if (g->component == GOAL_TANGENT) return a == 1 && side < 0 ? 1.0 : 0.0;
+  return s->frame[dim * dim * i + dim * a + g->component];
+}
+
+static status set_force(const run *r, const goal_card *g, goal_form *f) {
+  const int dim = r->msh->dim;
+  for (int i = 0; i < r->nodes.n; ++i)
+    for (int a = 0; a < dim; ++a) {
+      f->psi[dim * i + a] = share_of(r, g, i, a);
+      f->value += f->psi[dim * i + a] * r->now.rc[dim * i + a];
+    }
+  return OK;
+}
+
+/* Dissipated so far, by the limits at the ends of the increments; its
+ * derivative that of the last one. */
+static status set_friction(const run *r, const goal_card *g, goal_form *f) {
+  const contact_surface *s = r->surface;
+  const int dim = r->msh->dim;
+  (void)g;
+  f->value = r->now.energy.friction_end;
+  for (int i = 0; i < r->nodes.n; ++i)
+    for (int a = 1; a < dim; ++a) {
+      const int k = (dim - 1) * i + a - 1;
+      if (s->side_id[k] >= 0) continue;
+      f->rows[dim * i + a] = -r->now.rc[dim * i + a];
+      f->psi[dim * i + a] = -r->result.slip[k];
+    }
+  return OK;
+}
+
+/* ---- displacements, stresses --------------------------------------------- */
+
+static status set_displacement(const run *r, const goal_card *g, goal_form *f) {
+  const mesh *m = r->msh;
+  const mesh_group *of = g->node_id < 0 ? &m->group[g->group_id] : NULL;
+  const int n = of == NULL ? 1 : of->n_node;
+  for (int k = 0; k < n; ++k) {
+    const int at =
+        m->dim * (of == NULL ? g->node_id : of->node_id[k]) + g->component;
+    f->load[at] = 1.0 / n;
+    f->value += r->now.u[at] / n;
+  }
+  return OK;
+}
+
+static status set_stress(const run *r, const goal_card *g, goal_form *f) {
+  const domain *d = &r->body.d;
+  const mesh_group *of = &r->msh->group[g->group_id];
+  const size_t ns = (size_t)d->ns, c = (size_t)(g->component - GOAL_TENSOR);
+  double whole = 0.0;
+  for (int k = 0; k < of->n_item; ++k)
+    whole += element_weight(d, of->item_id[k]);
+  for (int k = 0; k < of->n_item; ++k) {
+    const size_t e = (size_t)of->item_id[k];
+    const double *E = d->E + ns * ns * (size_t)d->section_id[e];
+    f->value +=
+        element_weight(d, (int)e) / whole * r->result.stress[ns * e + c];
+    for (size_t i = 0; i < ns; ++i) f->tau[ns * e + i] = E[ns * i + c] / whole;
+  }
+  f->has_tau = 1;
+  return OK;
+}
+
+static status set_energy(const run *r, const goal_card *g, goal_form *f) {
+  (void)g;
+  f->value = r->now.energy.strain;
+  f->has_tau = f->is_square = 1;
+  memcpy(f->tau, r->result.stress,
+         (size_t)r->m->ns * (size_t)r->msh->n_elem * sizeof *f->tau);
+  return OK;
+}
+
+status goal_form_set(const run *r, const goal_card *g, goal_form *f) {
+  static status (*const set[])(const run *r, const goal_card *g,
+                               goal_form *f) = {
+      [GOAL_FORCE] = set_force,      [GOAL_PRESSURE] = goal_set_pressure,
+      [GOAL_WIDTH] = goal_set_width, [GOAL_DISPLACEMENT] = set_displacement,
+      [GOAL_STRESS] = set_stress,    [GOAL_ENERGY] = set_energy,
+      [GOAL_FRICTION] = set_friction};
+  clear(r, f);
+  PASS(set[g->quantity](r, g, f));
+  if (f->has_tau) domain_internal_force(&r->body.d, f->tau, f->load);
+  return OK;
+}

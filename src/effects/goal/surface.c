@@ -1,0 +1,132 @@
+/*
+ * Edges of the contact surface: closed, stuck, curved; where its status
+ * changes.
+ */
+#include "base/memory.h"
+#include "effects/goal/parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double SMOOTH = 0.5; /* -, sine of the turn of a curved surface */
+
+status goal_places(const run *r, int **where) {
+  PASS_NEW(*where, r->msh->n_node);
+  for (int i = 0; i < r->msh->n_node; ++i) (*where)[i] = -1;
+  for (int q = 0; q < r->nodes.n; ++q) (*where)[r->surface->node_id[q]] = q;
+  return OK;
+}
+
+int goal_is_mirrored(const run *r, int i) {
+  const int dim = r->msh->dim;
+  int any = r->faces.input.axisymmetric &&
+            r->surface->x[dim * i] <= 1e-9 * r->msh->size;
+  for (int a = 1; a < dim; ++a) any |= r->surface->held[dim * i + a];
+  return any;
+}
+
+/* How far the surface of the body, smooth, is beyond the middle of an edge, m:
+ * half the chord times half the turn of its normals. */
+static double bulge(const run *r, const int *q) {
+  const contact_surface *s = r->surface;
+  const int dim = s->dim;
+  const contact_pair *p = &r->faces.pairs[s->contact_id[q[0]]];
+  double along = 0.0, chord = 0.0;
+  if (p->obstacle_normal || p->support->shape == OBSTACLE_CONFORMING)
+    return 0.0;
+  for (int c = 0; c < dim; ++c) {
+    const double d = s->x[dim * q[1] + c] - s->x[dim * q[0] + c];
+    const double *n[2] = {s->frame + dim * dim * q[0],
+                          s->frame + dim * dim * q[1]};
+    along += (n[1][c] - n[0][c]) * d;
+    chord = hypot(chord, d);
+  }
+  return fabs(along) <= SMOOTH * chord ? along / 8.0 : 0.0;
+}
+
+/* Normal and gap in the middle of an edge between contact nodes q[2]. */
+static void set_middle(const run *r, const int *q, contact_edge *e) {
+  const contact_surface *s = r->surface;
+  const contact_pair *p = &r->faces.pairs[s->contact_id[q[0]]];
+  const int dim = s->dim;
+  double x[3] = {0.0}, size = 0.0;
+  for (int c = 0; c < dim; ++c) {
+    x[c] = 0.5 * (s->x[dim * q[0] + c] + s->x[dim * q[1] + c]);
+    e->n[c] = s->frame[dim * dim * q[0] + c] + s->frame[dim * dim * q[1] + c];
+    size = hypot(size, e->n[c]);
+  }
+  for (int c = 0; c < dim; ++c) e->n[c] /= size;
+  if (p->support == NULL) return;
+  if (p->obstacle_normal) obstacle_normal(p->support, dim, x, e->n);
+  e->excess = obstacle_gap(p->support, dim, x, e->n, r->now.t) -
+              0.5 * (r->problem.gap[q[0]] + r->problem.gap[q[1]]) - bulge(r, q);
+  if (!isfinite(e->excess)) e->excess = 0.0;
+}
+
+/* OPEN, STICK, or the sense of the slip. */
+static int state_of(const run *r, int q) {
+  const int k = r->msh->dim - 1;
+  if (r->result.contact[q] != CONTACT_SLIP) return (int)r->result.contact[q];
+  return k == 1 && r->result.slip[q] < 0.0 ? -1 : CONTACT_SLIP;
+}
+
+static void add_edge(const run *r, int i, int j, const int *where,
+                     goal_surface *s) {
+  const int q[2] = {where[i], where[j]};
+  if (q[0] < 0 || q[1] < 0) return;
+  contact_edge e = {.a = i < j ? i : j, .b = i < j ? j : i};
+  const contact_status a = r->result.contact[q[0]], b = r->result.contact[q[1]];
+  e.closed = a != CONTACT_OPEN && b != CONTACT_OPEN;
+  e.stuck = a == CONTACT_STICK && b == CONTACT_STICK;
+  if (e.closed) set_middle(r, q, &e);
+  if (state_of(r, q[0]) != state_of(r, q[1])) s->ends[i] = s->ends[j] = 1;
+  s->edge[s->n_edge++] = e;
+}
+
+static int by_nodes(const void *a_, const void *b_) {
+  const contact_edge *a = a_, *b = b_;
+  if (a->a != b->a) return a->a < b->a ? -1 : 1;
+  return (a->b > b->b) - (a->b < b->b);
+}
+
+/* Each edge once. */
+static void sort_edges(goal_surface *s) {
+  int n = 0;
+  if (s->n_edge == 0) return;
+  qsort(s->edge, (size_t)s->n_edge, sizeof *s->edge, by_nodes);
+  for (int k = 0; k < s->n_edge; ++k)
+    if (n == 0 || by_nodes(&s->edge[n - 1], &s->edge[k]) != 0)
+      s->edge[n++] = s->edge[k];
+  s->n_edge = n;
+}
+
+status goal_surface_new(const run *r, goal_surface *s) {
+  status st = OK;
+  const mesh *m = r->msh;
+  const int dim = m->dim;
+  int *where = NULL, n = 0;
+  NEW(s->ends, m->n_node);
+  TRY(goal_places(r, &where));
+  for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
+    n += m->group[r->m->contacts[k].group_id].n_item;
+  NEW(s->edge, n * (dim == 3 ? 3 : 1));
+  for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k) {
+    const mesh_group *g = &m->group[r->m->contacts[k].group_id];
+    for (int i = 0; i < g->n_item; ++i) {
+      const int *v = m->face + dim * g->item_id[i];
+      for (int a = 0; a < dim; ++a)
+        for (int b = a + 1; b < dim; ++b) add_edge(r, v[a], v[b], where, s);
+    }
+  }
+  sort_edges(s);
+  for (int q = 0; q < r->nodes.n; ++q)
+    s->n_closed += r->result.contact[q] != CONTACT_OPEN;
+done:
+  memory_free(where);
+  return st;
+}
+
+void goal_surface_free(goal_surface *s) {
+  RELEASE(s->edge, s->ends);
+  *s = (goal_surface){0};
+}

@@ -1,0 +1,200 @@
+/*
+ * *GOAL: values and estimates against closed forms (Hertz's half plane cut out
+ * with its tractions; the axisymmetric and the whole sphere; a bar) and against
+ * a block on a rough floor whose force is known from meshes of 54,000 nodes.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A row of the table GOALS, the last one of the job. */
+typedef struct told {
+  double value, error, band, ends;
+} told;
+
+static told told_of(const job *j, int row) {
+  dat t = job_table(j, "GOALS", -1);
+  const told g = {dat_at(&t, row, "value"), dat_at(&t, row, "error"),
+                  dat_at(&t, row, "band"), dat_at(&t, row, "contact_ends")};
+  if (!isnan(g.error))
+    ck_assert_double_eq_tol(dat_at(&t, row, "corrected"), g.value + g.error,
+                            1e-12 * fabs(g.value));
+  dat_free(&t);
+  return g;
+}
+
+/* The verdict of a row, in JSON; caller frees. */
+static int has_verdict(const job *j, const char *goal, const char *word) {
+  char wanted[80], *json = job_file(j, "json"), *at, *end;
+  snprintf(wanted, sizeof wanted, "\"goal\": \"%s\"", goal);
+  at = strstr(json, wanted);
+  ck_assert_msg(at != NULL, "no %s", wanted);
+  end = strchr(at, '}');
+  *end = '\0';
+  snprintf(wanted, sizeof wanted, "\"verdict\": \"%s\"", word);
+  const int has = strstr(at, wanted) != NULL;
+  free(json);
+  return has;
+}
+
+/* The estimate is that part of the true error; the truth is in "wide" bands. */
+static void check_goal(const job *j, int row, double exact, double least,
+                       double most, double wide) {
+  const told g = told_of(j, row);
+  const double ratio = g.error / (exact - g.value);
+  ck_assert_msg(ratio > least && ratio < most,
+                "goal %d: %.9g, exact %.9g, estimate %g is %g of the error",
+                row, g.value, exact, g.error, ratio);
+  ck_assert_msg(fabs(exact - g.value - g.error) <= wide * g.band,
+                "goal %d: %g off, band %g", row, exact - g.value - g.error,
+                g.band);
+}
+
+/* The deck of an example with cards before its first step and *PRINT, GOALS in
+ * it. */
+static job with_goals(const char *deck, const char *cards, const char *words) {
+  const char *name = strrchr(deck, '/') + 1;
+  char path[200], file[80];
+  job j = job_begin(name);
+  job_copy_meshes(&j, deck);
+  snprintf(path, sizeof path, "%s.inp", deck);
+  FILE *f = fopen(path, "r");
+  ck_assert_ptr_nonnull(f);
+  char *text = calloc(20000, 1);
+  ck_assert_uint_gt(fread(text, 1, 19999, f), 0);
+  fclose(f);
+  char *at = strstr(text, "\n*STEP"), *end = strstr(text, "\n*END STEP");
+  ck_assert(at != NULL && end != NULL);
+  snprintf(file, sizeof file, "%s.inp", name);
+  job_write(&j, file, "%.*s\n%s%.*s\n*PRINT, GOALS%s", (int)(at - text), text,
+            cards, (int)(end - at - 1), at + 1, end);
+  free(text);
+  const int code = job_run(&j, words);
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+static const char hertz_goals[] =
+    "*PARAMETER\nHALF = \"A/2\"\nL = \"SIZE*A\"\n"
+    "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=LINE, RADIUS=<HALF>\n0., 0.\n"
+    "*GOAL, NAME=TOP, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., <L>\n"
+    "*GOAL, NAME=SIDE, QUANTITY=DISPLACEMENT, COMPONENT=1\n<L>, 0.\n"
+    "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=LINE\n"
+    "*GOAL, NAME=MOST, QUANTITY=PRESSURE, CONTACT=LINE\n";
+
+/* A mesh fine at the contact: the closed forms of the half plane for these
+ * means, and for the displacements of the corners of the block. */
+START_TEST(goals_of_the_half_plane_of_hertz) {
+  static const double a = 0.2348908547, p0 = 2710.278943;
+  const double length = a * p0 * 200.0 / 210e3;
+  job j = with_goals("input/hertz_line/hertz_exact", hertz_goals, "-D N=16");
+  check_goal(&j, 1, -0.00857071821 * length, 0.7, 1.4, 1.0);
+  check_goal(&j, 2, -0.00204203522 * length, 0.7, 1.4, 1.0);
+  check_goal(&j, 0, 1.00026235 * p0, 0.2, 2.0, 1.0);
+  check_goal(&j, 3, 1.00157562 * a, 0.5, 2.5, 1.0);
+  ck_assert(has_verdict(&j, "WIDE", "contact_end"));
+  const told peak = told_of(&j, 0), most = told_of(&j, 4);
+  ck_assert_double_eq_tol(most.value, peak.value, 1e-3 * p0);
+  job_end(&j);
+}
+END_TEST
+
+/* The unsymmetric rows: the force of a contact that slips in part. */
+START_TEST(friction_force_of_the_block) {
+  job j = job_begin("side");
+  job_copy(&j, "input/greco/greco.geo");
+  job_write(&j, "side.inp",
+            "*PARAMETER\nN = 64\nSTRUCTURED = 0\n*MESH, FILE=greco.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.\n"
+            "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=1\n"
+            "*GOAL, NAME=UY, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 40.\n"
+            "*GOAL, NAME=PRESSED, QUANTITY=FORCE, CONTACT=FOOT\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\n"
+            "TOP, P, 50.\nLEFT, P, 150.\n*PRINT, GOALS, TOTALS\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  check_goal(&j, 0, -1405.346, 0.6, 1.6, 1.0);
+  check_goal(&j, 1, -2.27666e-4, 0.5, 2.0, 1.5);
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_eq_tol(told_of(&j, 0).value, dat_at(&t, 0, "force_x"), 1e-9);
+  ck_assert_double_eq_tol(told_of(&j, 2).value, dat_at(&t, 0, "normal"), 1e-9);
+  dat_free(&t);
+  /* Equilibrium gives the normal force whatever the mesh. */
+  ck_assert_double_lt(fabs(told_of(&j, 2).error), 1e-9);
+  ck_assert(has_verdict(&j, "PRESSED", "reliable"));
+  job_end(&j);
+}
+END_TEST
+
+/* On the axis, and in space: 3 P/(2 pi a^2), a = (3 P R/(4 E*))^(1/3). */
+START_TEST(peak_and_width_of_the_sphere) {
+  static const char goals[] =
+      "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=POLE\n"
+      "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=POLE\n";
+  job j = with_goals("input/hertz_sphere/hertz_sphere", goals, "-D NC=16");
+  check_goal(&j, 0, 4688.3, 0.7, 1.5, 1.0);
+  check_goal(&j, 1, 1.0016 * 0.31913, 0.5, 2.0, 1.0);
+  job_end(&j);
+  j = with_goals("input/hertz_sphere/hertz_sphere_3d", goals, "");
+  check_goal(&j, 0, 4688.3, 0.5, 2.0, 1.0);
+  ck_assert(isnan(told_of(&j, 1).value));
+  ck_assert(has_verdict(&j, "WIDE", "not_covered"));
+  job_end(&j);
+}
+END_TEST
+
+/* A bar under its weight, held at its foot: the displacement of a node is exact
+ * (closed form at the top rho g L^2/(2 E)), the energy is not: per area it is
+ * (rho g)^2 L^3/(6 E), less by its error in the energy norm. */
+START_TEST(energy_of_a_bar_under_its_weight) {
+  job j = job_begin("bar");
+  job_copy(&j, "input/greco/greco.geo");
+  job_write(&j, "bar.inp",
+            "*PARAMETER\nN = 8\nSTRUCTURED = 1\n*MESH, FILE=greco.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+            "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=2\n"
+            "*GOAL, NAME=E, QUANTITY=ENERGY\n"
+            "*GOAL, NAME=S, QUANTITY=STRESS, GROUP=BODY, COMPONENT=YY\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nCONTACT, 1, 2, 0.\nSYMMETRY, 1, 1, 0.\n"
+            "LEFT, 1, 1, 0.\n*DLOAD\nBODY, BY, -1.\n*PRINT, GOALS\n"
+            "*END STEP\n");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  check_goal(&j, 1, 40.0 * 40.0 * 40.0 * 40.0 / 6000.0, 0.8, 1.2, 10.0);
+  const told u = told_of(&j, 0), s = told_of(&j, 2);
+  ck_assert_double_eq_tol(u.value + u.error, -40.0 * 40.0 / 2000.0, 2e-3 * 0.8);
+  ck_assert_double_eq_tol(s.value + s.error, -20.0, 0.02);
+  job_end(&j);
+}
+END_TEST
+
+/* What the estimate does not cover has its value and says so. */
+START_TEST(goals_that_are_not_covered_say_so) {
+  job j = with_goals("input/greco/greco",
+                     "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, "
+                     "COMPONENT=1\n*GOAL, NAME=WORK, QUANTITY=FRICTION WORK\n",
+                     "-D N=8");
+  ck_assert(has_verdict(&j, "GRIP", "no_history"));
+  ck_assert(isfinite(told_of(&j, 1).error));
+  job_end(&j);
+  j = with_goals("input/creep_block/creep_block",
+                 "*GOAL, NAME=E, QUANTITY=ENERGY\n", "-D N=8");
+  ck_assert(has_verdict(&j, "E", "not_covered"));
+  ck_assert(isfinite(told_of(&j, 0).value) && isnan(told_of(&j, 0).error));
+  char *lst = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(strstr(lst, "no estimate: not covered"));
+  free(lst);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
+          friction_force_of_the_block, peak_and_width_of_the_sphere,
+          energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so)
