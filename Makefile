@@ -93,6 +93,13 @@ support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c \
 .DEFAULT_GOAL := all
 .SECONDARY:
 
+# These start make once more: with other goals one after the other, or both
+# would make the same files.
+again    := all demo test bench bench-peers gallery browser-test
+ifneq ($(and $(filter $(again),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
+.NOTPARALLEL:
+endif
+
 all: deps
 	$(Q)$(MAKE) --no-print-directory -j$(JOBS) $(program)
 
