@@ -1,7 +1,7 @@
 /*
  * Bodies against each other: patch tests through meshes that do not match,
- * ties, a held master against the rigid plane, chains of bodies, interference,
- * and what is refused.
+ * ties, a held master against the rigid plane, interference, and what is
+ * refused.
  */
 #include "support/job.h"
 #include "support/traced.h"
@@ -592,138 +592,6 @@ START_TEST(moment_of_both_sides_is_that_of_the_pair) {
 }
 END_TEST
 
-/* ---- methods ------------------------------------------------------------- */
-
-static const char *const methods[] = {"LEMKE",  "SOR",      "AITKEN",
-                                      "PCG",    "LAGRANGE", "AUGLAG",
-                                      "NEWTON", "PROXIMAL", "AUTO"};
-
-/* A block narrower than the other, pressed and pushed, both elastic: the edges
- * slip, nodes beyond them have no partner; in space all of it. */
-static job run_punch(const char *method, int solid) {
-  job j = job_begin("punch");
-  job_copy(&j, solid ? "tests/regression/mesh/pair3.geo"
-                     : "tests/regression/mesh/pair.geo");
-  job_write(&j, "punch.inp",
-            "*PARAMETER\n%s\n*MESH, FILE=%s.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
-            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
-            "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n"
-            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nBOTTOM, 1, %d\n*DSLOAD\n"
-            "TOP, P, \"3 + 2*x\"\nTOP, TX, 0.5\n"
-            "*SOLVER, METHOD=%s, TOL=1E-10\n"
-            "*PRINT, CONTACT, TOTALS\n*END STEP\n",
-            solid ? "N = 2\nM = 3" : "N = 8\nM = 7\nC = 0.3",
-            solid ? "pair3" : "pair", solid ? 3 : 2, method);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "%s: exit %d: %s", method, code, j.errors);
-  return j;
-}
-
-static void check_method(const char *method, int solid, const dat *y) {
-  job j = run_punch(method, solid);
-  dat x = job_table(&j, "CONTACT", -1), t = job_table(&j, "TOTALS", -1);
-  const double width = solid ? 1 : 0.4;
-  int n_slip = 0;
-  for (int i = 0; i < x.n_row; ++i) {
-    ck_assert_double_eq_tol(dat_at(&x, i, "f_n"), dat_at(y, i, "f_n"), 1e-7);
-    n_slip += dat_at(&x, i, "status") == 1;
-  }
-  ck_assert_int_gt(n_slip, 0);
-  ck_assert_int_lt(n_slip, x.n_row);
-  ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), 4 * width, 1e-7);
-  ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), 0.5 * width, 1e-7);
-  dat_free(&t);
-  dat_free(&x);
-  job_end(&j);
-}
-
-START_TEST(all_methods_agree) {
-  job j = run_punch("NEWTON", _i);
-  dat y = job_table(&j, "CONTACT", -1);
-  for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k)
-    check_method(methods[k], _i, &y);
-  dat_free(&y);
-  job_end(&j);
-}
-END_TEST
-
-/* ---- bodies that pairs alone hold ----------------------------------------
- */
-
-/* A block on an incline of the slope 0.1, pushed up by F times its weight: it
- * moves from F = (0.1 + mu)/(1 - 0.1 mu) on (NAFEMS CGS-4). */
-static int push_up(job *j, double factor) {
-  const double mu = 0.3, F = factor * (0.1 + mu) / (1 - 0.1 * mu);
-  *j = job_begin("wedge");
-  job_copy(j, "tests/regression/mesh/pair.geo");
-  job_write(j, "wedge.inp",
-            "*PARAMETER\nN = 5\nM = 3\nA = \"atan(0.1)*180/pi\"\n"
-            "*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n" PAIR
-            "*FRICTION, CONTACT=P, LAW=COULOMB\n%.17g\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\n*DLOAD\n"
-            "UPPER, BX, %.17g\nUPPER, BY, -1.\n*PRINT, TOTALS\n*END STEP\n",
-            mu, F);
-  return job_run(j, "--no-timing");
-}
-
-START_TEST(wedge_moves_at_its_limit) {
-  job below, above;
-  ck_assert_int_eq(push_up(&below, 0.999), 0);
-  ck_assert_int_eq(push_up(&above, 1.001), 6);
-  ck_assert_ptr_nonnull(strstr(above.errors, "no equilibrium"));
-  job_end(&below);
-  job_end(&above);
-}
-END_TEST
-
-/* Blocks of 1 x 1 and the weight 1 on each other, the top one pushed by Q: it
- * slides from mu on, all others carry more. */
-static int push_stack(job *j, double Q) {
-  *j = job_begin("stack");
-  job_copy(j, "tests/regression/mesh/stack.geo");
-  job_write(j, "stack.inp",
-            "*MESH, FILE=stack.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
-            "*SOLID SECTION, ELSET=BLOCKS, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0, 0\n0, 1\n"
-            "*CONTACT, NAME=P0, GROUP=BOTTOM 1, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=P0, LAW=COULOMB\n0.3\n");
-  FILE *f;
-  char path[128];
-  snprintf(path, sizeof path, "%s/stack.inp", j->dir);
-  f = fopen(path, "a");
-  for (int k = 1; k < 5; ++k)
-    fprintf(f,
-            "*CONTACT PAIR, NAME=P%d\nTOP %d, BOTTOM %d\n"
-            "*FRICTION, CONTACT=P%d, LAW=COULOMB\n0.3\n",
-            k, k, k + 1, k);
-  fprintf(f,
-          "*STEP\n*STATIC\n*DLOAD\nBLOCKS, BY, -1.\nBLOCK 5, BX, %.17g\n"
-          "*PRINT, TOTALS\n*END STEP\n",
-          Q);
-  fclose(f);
-  return job_run(j, "--no-timing");
-}
-
-START_TEST(stack_stands_by_contact_alone) {
-  job j;
-  ck_assert_int_eq(push_stack(&j, 0.299), 0);
-  dat t = job_table(&j, "TOTALS", -1);
-  ck_assert_int_eq(t.n_row, 5);
-  for (int k = 0; k < 5; ++k) {
-    ck_assert_double_eq_tol(dat_at(&t, k, "normal"), 5 - k, 1e-9);
-    ck_assert_double_eq_tol(fabs(dat_at(&t, k, "force_x")), 0.299, 1e-9);
-  }
-  dat_free(&t);
-  job_end(&j);
-  ck_assert_int_eq(push_stack(&j, 0.301), 6);
-  job_end(&j);
-}
-END_TEST
-
 /* ---- what is refused ------------------------------------------------------
  */
 
@@ -786,9 +654,6 @@ int main(void) {
   tcase_add_test(tests, adjusted_nodes_are_tied);
   tcase_add_loop_test(tests, facets_in_a_fit_are_told, 0, 2);
   tcase_add_test(tests, moment_of_both_sides_is_that_of_the_pair);
-  tcase_add_loop_test(tests, all_methods_agree, 0, 2);
-  tcase_add_test(tests, wedge_moves_at_its_limit);
-  tcase_add_test(tests, stack_stands_by_contact_alone);
   tcase_add_loop_test(tests, bad_pairs_are_told, 0, 15);
   return unit_run("pairs", tests);
 }
