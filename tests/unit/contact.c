@@ -1,5 +1,6 @@
 /* src/contact/contact.c */
 #include "contact/contact.h"
+#include "support/planted.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
 
@@ -351,7 +352,36 @@ START_TEST(unlike_nodes_of_a_body_are_measured_apart) {
 }
 END_TEST
 
-UNIT_MAIN("contact", residual_is_zero_for_solved_node,
+/* Bodies and residual of any u, r from the blocks and from all entries. */
+START_TEST(blocks_give_the_residual_of_all_entries) {
+  for (int k = 0; k < 12; ++k) {
+    unsigned long long seed = 31u + (unsigned)k;
+    planted p = planted_new((planted_kind)(k % 4), 2 + k / 4 % 2, 9, 0.4, seed);
+    contact_problem all = p.cp;
+    contact_bodies *one = NULL, *two = NULL;
+    all.W = p.W;
+    all.blocks = NULL;
+    ck_assert_int_eq(contact_bodies_new(&p.cp, &one), OK);
+    ck_assert_int_eq(contact_bodies_new(&all, &two), OK);
+    ck_assert_int_eq(one->n, two->n);
+    for (int i = 0; i < p.cp.n; ++i)
+      for (int j = 0; j < i; ++j)
+        ck_assert((one->of[i] == one->of[j]) == (two->of[i] == two->of[j]));
+    for (int i = 0; i < p.cp.m; ++i)
+      p.u[i] += (k % 3 == 0 ? 0.0 : case_random(&seed)) * p.W[0];
+    double have = contact_residual(&p.cp, p.u, p.r);
+    double want = contact_residual(&all, p.u, p.r);
+    ck_assert_double_le(fabs(have - want), 1e-12 * fmax(1.0, want));
+    ck_assert((want > 1e-6) == (k % 3 > 0));
+    contact_bodies_free(one);
+    contact_bodies_free(two);
+    planted_free(&p);
+  }
+}
+END_TEST
+
+UNIT_MAIN("contact", blocks_give_the_residual_of_all_entries,
+          residual_is_zero_for_solved_node,
           each_broken_condition_shows_by_its_size,
           weak_body_is_judged_by_its_own_loads, scale_is_of_the_problem,
           scale_is_above_rounding_of_loads_and_of_the_way,

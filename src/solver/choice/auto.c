@@ -24,7 +24,7 @@
  * ten to a thousand steps, and PCG without the short limit.
  *
  * Compliance in sparse blocks: the operations of each method are estimated from
- * the unknowns m, the contacts n and the entries e of the blocks,
+ * the contacts n and the entries e of the blocks,
  *
  *   a sweep         4 e + 100 dim^2 n
  *   PROXIMAL       16 steps of 500 e (a sparse factor)
