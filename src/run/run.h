@@ -151,7 +151,7 @@ typedef struct error_state {
   error_bound error;
   rounding_loss rounding;
   error_share mesh_error, time_error;
-  const double *elem_error; /* [n_elem] borrowed, or NULL */
+  double *elem_error; /* [n_elem] borrowed, or NULL */
   double left;              /* -, of an unloaded body: share of the largest
                                energy so far that its errors are relative to; 0:
                                its state is rounding */

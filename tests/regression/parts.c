@@ -93,7 +93,8 @@ START_TEST(error_of_an_unloaded_body_is_over_the_largest) {
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
             "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 1E-10\n*STEP\n"
             "*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nSYMMETRY, 1\nCONTACT, 1, 2\n"
-            "*DSLOAD\nTOP, P, 50., A\n*ACCURACY, MESH=YES\n*END STEP\n");
+            "*DSLOAD\nTOP, P, 50., A\n*ACCURACY, MESH=YES\n*PRINT, ELEMENTS\n"
+            "*END STEP\n");
   run(&j);
   errors_of(&j, 1, full);
   errors_of(&j, 2, left);
@@ -103,6 +104,14 @@ START_TEST(error_of_an_unloaded_body_is_over_the_largest) {
                           0.06);
   ck_assert_double_eq_tol(job_told(&j, "mesh_error_percent") / left[0], 1,
                           0.06);
+  for (int k = 0; k < 2; ++k) {
+    dat e = job_table(&j, "ELEMENTS", k);
+    double square = 0;
+    for (int i = 0; i < e.n_row; ++i)
+      square += pow(dat_at(&e, i, "mesh_error"), 2);
+    ck_assert_double_eq_tol(sqrt(square) / (k == 0 ? full : left)[0], 1, 0.06);
+    dat_free(&e);
+  }
   job_end(&j);
 }
 END_TEST

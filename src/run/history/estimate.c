@@ -29,20 +29,27 @@ int error_bound_doubts(const error_bound *e, double share) {
   return e->asked && e->why == NULL && share * e->relative > DOUBT;
 }
 
+static void take_left(run *r, double left) {
+  double *whole = &r->errors.mesh_error.relative, *part = r->errors.elem_error;
+  r->errors.left = left;
+  *whole = left > 0.0 ? left * *whole : 0.0;
+  for (int e = 0; r->errors.mesh_error.asked && e < r->msh->n_elem; ++e)
+    part[e] = left > 0.0 ? left * part[e] : 0.0;
+}
+
 /* Those of an unloaded body, whose state is rounding, are relative to the
  * largest energy so far; a body in free motion has none. */
 static void estimate_unloaded(run *r) {
   const energies *e = &r->now.energy;
   r->errors.left = 1.0;
   if (rounding_is_all(r)) {
-    r->errors.mesh_error.relative = r->errors.left = 0.0;
+    take_left(r, 0.0);
     if (r->errors.error.why == NULL) r->errors.error.relative = 0.0;
     r->errors.error.hidden = 0.0;
     return;
   }
   if (!(e->strain < UNLOADED * e->largest)) return;
-  r->errors.left = sqrt(fmax(e->strain, 0.0) / e->largest);
-  r->errors.mesh_error.relative *= r->errors.left;
+  take_left(r, sqrt(fmax(e->strain, 0.0) / e->largest));
   if (r->errors.error.asked && r->errors.error.why == NULL)
     r->errors.error.relative = sqrt(r->errors.error.energy / e->largest);
 }
