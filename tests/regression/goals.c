@@ -164,10 +164,14 @@ START_TEST(energy_of_a_bar_under_its_weight) {
             "*GOAL, NAME=S, QUANTITY=STRESS, GROUP=BODY, COMPONENT=YY\n"
             "*STEP\n*STATIC\n*BOUNDARY\nCONTACT, 1, 2, 0.\nSYMMETRY, 1, 1, 0.\n"
             "LEFT, 1, 1, 0.\n*DLOAD\nBODY, BY, -1.\n*PRINT, GOALS\n"
+            "*ACCURACY, MESH=NO\n"
             "*END STEP\n");
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   check_goal(&j, 1, 40.0 * 40.0 * 40.0 * 40.0 / 6000.0, 0.8, 1.2, 10.0);
+  long bytes;
+  ck_assert_int_eq(job_stage(&j, "error of mesh", &bytes), 0);
+  ck_assert_int_eq(job_stage(&j, "errors of goals", &bytes), 1);
   const told u = told_of(&j, 0), s = told_of(&j, 2);
   ck_assert_double_eq_tol(u.value + u.error, -40.0 * 40.0 / 2000.0, 2e-3 * 0.8);
   ck_assert_double_eq_tol(s.value + s.error, -20.0, 0.02);

@@ -236,7 +236,7 @@ static int is_at_end(const goal_estimator *e, int elem_id) {
 }
 
 static void add_element(goal_estimator *e, int elem_id, const double *tau,
-                        double *share, goal_estimate *out) {
+                        goal_estimate *out) {
   const size_t ns = (size_t)e->s.d->ns, at = ns * (size_t)elem_id;
   const int region = space_region(e->recovery, elem_id);
   const space_field u = {e->s.sigma, e->stress[region]};
@@ -250,11 +250,10 @@ static void add_element(goal_estimator *e, int elem_id, const double *tau,
   out->magnitude += fabs(space_product(e->recovery, elem_id, &u, &y));
   out->product += both;
   if (is_at_end(e, elem_id)) out->ends += both;
-  if (share != NULL) share[elem_id] = both;
 }
 
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
-                          double *share, goal_estimate *out) {
+                          goal_estimate *out) {
   domain d = *e->s.d;
   const mesh *m = d.mesh;
   d.eigen = NULL;
@@ -263,8 +262,7 @@ status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
   for (int region = 0; region < e->n_region; ++region) {
     space_recover(e->recovery, region, d.ns, e->sigma_y, e->node_y);
     for (int k = 0; k < m->n_elem; ++k)
-      if (space_region(e->recovery, k) == region)
-        add_element(e, k, tau, share, out);
+      if (space_region(e->recovery, k) == region) add_element(e, k, tau, out);
   }
   return OK;
 }

@@ -44,7 +44,10 @@ static status recover(const run *r, mesh_estimate *own) {
   space_recovery_free(own->recovery);
   own->recovery = NULL;
   own->elastic_no = r->body.elastic_no;
-  return space_recovery_new(&r->body.d, &own->recovery);
+  timer_enter(STAGE_MESH_ERROR);
+  status st = space_recovery_new(&r->body.d, &own->recovery);
+  timer_leave(STAGE_MESH_ERROR);
+  return st;
 }
 
 /* From r->result.stress. */
@@ -55,8 +58,11 @@ static status estimate(run *r, void *self) {
   r->errors.mesh_error.asked = run_finds_mesh_error(r);
   if (!r->errors.mesh_error.asked) return OK;
   PASS(recover(r, own));
-  PASS(
-      space_estimate(own->recovery, r->result.stress, own->elem_error, &found));
+  timer_enter(STAGE_MESH_ERROR);
+  status st =
+      space_estimate(own->recovery, r->result.stress, own->elem_error, &found);
+  timer_leave(STAGE_MESH_ERROR);
+  if (st != OK) return st;
   r->errors.mesh_error.relative = found.relative;
   double whole = hypot(found.norm, found.error);
   for (int e = 0; e < r->msh->n_elem; ++e)

@@ -123,8 +123,7 @@ static status estimate(run *r, shared *s, goal_result *out) {
   goal_estimate e;
   double solver;
   PASS(solve(r, s, &solver));
-  PASS(goal_estimate_find(s->estimator, s->y, f->has_tau ? f->tau : NULL, NULL,
-                          &e));
+  PASS(goal_estimate_find(s->estimator, s->y, f->has_tau ? f->tau : NULL, &e));
   e.error += f->curved;
   e.magnitude += fabs(f->curved);
   if (f->is_square) e.error += 0.5 * goal_estimator_energy(s->estimator);

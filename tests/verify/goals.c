@@ -1,0 +1,159 @@
+/*
+ * Goals: estimate over true error, on uniform meshes and on those of TARGET.
+ * Hertz's half plane cut out with its tractions, the sphere of Hertz on the
+ * axis and in space: closed forms of the means that the goals are; the block
+ * that slips in part: values of a mesh of 54,000 nodes made for all of its
+ * goals by another program. Expected of all rows: the truth in the band in 4 of
+ * 5, and the sum nearer to it than the value in 4 of 5; of rows called
+ * reliable: a factor within [0.5, 2] in 9 of 10.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { GOALS = 5 };
+typedef struct scene {
+  const char *deck, *cards, *target; /* of *ACCURACY, "": none */
+  int n[4];                          /* of the parameter, 0 ends */
+  const char *parameter;
+  const char *name[GOALS];
+  double exact[GOALS];
+} scene;
+
+#define A_H 0.2348908547
+#define P_H 2710.278943
+#define L_H (A_H * P_H * 200.0 / 210e3)
+#define HERTZ                                                          \
+  "*PARAMETER\nHALF = \"A/2\"\nL = \"SIZE*A\"\n"                       \
+  "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=LINE, RADIUS=<HALF>\n" \
+  "0., 0.\n*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=LINE\n"           \
+  "*GOAL, NAME=TOP, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., <L>\n"     \
+  "*GOAL, NAME=SIDE, QUANTITY=DISPLACEMENT, COMPONENT=1\n<L>, 0.\n"
+#define SPHERE                                          \
+  "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=POLE\n" \
+  "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=POLE\n"
+#define BLOCK                                                     \
+  "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=1\n" \
+  "*GOAL, NAME=UX, QUANTITY=DISPLACEMENT, COMPONENT=1\n0., 0.\n"  \
+  "*GOAL, NAME=UY, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 40.\n"
+#define HERTZ_NAMES \
+  { "PEAK", "WIDE", "TOP", "SIDE" }
+#define HERTZ_EXACT                                           \
+  {                                                           \
+    1.00026235 * P_H, 1.00157562 * A_H, -0.00857071821 * L_H, \
+        -0.00204203522 * L_H                                  \
+  }
+
+/* clang-format off */
+static const scene scenes[] = {
+  {"input/hertz_line/hertz_exact", HERTZ, "", {8, 16, 32}, "N", HERTZ_NAMES,
+   HERTZ_EXACT},
+  {"input/hertz_line/hertz_exact", HERTZ, "TARGET=2 %", {4}, "N", HERTZ_NAMES,
+   HERTZ_EXACT},
+  {"input/hertz_line/hertz_exact", HERTZ, "TARGET=1 %", {4}, "N", HERTZ_NAMES,
+   HERTZ_EXACT},
+  {"input/hertz_sphere/hertz_sphere", SPHERE, "", {8, 16, 32}, "NC",
+   {"PEAK", "WIDE"}, {4688.3, 1.0016 * 0.31913}},
+  {"input/hertz_sphere/hertz_sphere_3d", SPHERE, "", {0}, NULL, {"PEAK"},
+   {4688.3}},
+  {"block", BLOCK, "", {16, 32, 64, 128}, "N", {"GRIP", "UX", "UY"},
+   {-1405.346, 0.02860321, -2.27666e-4}},
+  {"block", BLOCK, "TARGET=1 %", {16}, "N", {"GRIP", "UX", "UY"},
+   {-1405.346, 0.02860321, -2.27666e-4}}};
+/* clang-format on */
+
+static struct { int all, banded, nearer, trusted, good; } sums;
+
+static char *deck_text(const char *deck) {
+  char path[200], *text = calloc(20000, 1);
+  snprintf(path, sizeof path, "%s.inp", deck);
+  FILE *f = fopen(path, "r");
+  ck_assert_ptr_nonnull(f);
+  ck_assert_uint_gt(fread(text, 1, 19999, f), 0);
+  fclose(f);
+  return text;
+}
+
+/* The static block with 150 N/mm^2 on its side. */
+static char *block_text(void) {
+  char *text = deck_text("input/greco/greco_static");
+  char *at = strstr(text, "LEFT, P, 100.");
+  ck_assert_ptr_nonnull(at);
+  memcpy(at, "LEFT, P, 150.", 13);
+  return text;
+}
+
+/* The deck with the goals, and its *ACCURACY with TARGET= if there is one. */
+static job run_scene(const scene *s, int n) {
+  const int block = strcmp(s->deck, "block") == 0;
+  char *text = block ? block_text() : deck_text(s->deck), words[40] = "";
+  job j = job_begin("goals");
+  job_copy_meshes(&j, block ? "input/greco/greco_static" : s->deck);
+  char *at = strstr(text, "\n*STEP"), *end = strstr(text, "\n*END STEP");
+  char *old = strstr(text, "*ACCURACY, MESH=YES");
+  ck_assert(at != NULL && end != NULL);
+  if (old != NULL) memcpy(old, "**                 ", 19);
+  job_write(&j, "goals.inp", "%.*s\n%s%.*s\n%s%s\n*PRINT, GOALS%s",
+            (int)(at - text), text, s->cards, (int)(end - at - 1), at + 1,
+            s->target[0] != '\0' ? "*ACCURACY, " : "**", s->target, end);
+  free(text);
+  if (n > 0) snprintf(words, sizeof words, "-D %s=%d", s->parameter, n);
+  const int code = job_run(&j, words);
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+static void report(const scene *s, int n, const job *j, int goal) {
+  char wanted[80], *json = job_file(j, "json"), *at;
+  dat t = job_table(j, "GOALS", -1);
+  const double value = dat_at(&t, goal, "value"), exact = s->exact[goal];
+  const double told = dat_at(&t, goal, "error"), is = exact - value;
+  const double band = dat_at(&t, goal, "band"), ratio = told / is;
+  snprintf(wanted, sizeof wanted, "\"goal\": \"%s\"", s->name[goal]);
+  at = strstr(json, wanted);
+  ck_assert_ptr_nonnull(at);
+  *strchr(at, '}') = '\0';
+  const int trusted = strstr(at, "\"reliable\"") != NULL;
+  const int banded = fabs(is - told) <= band;
+  printf("%-14s %-11s %4d %8.0f %-5s %10.2e %10.2e %7.2f %9.1e %5.1f %s%s\n",
+         strrchr(s->deck, '/') != NULL ? strrchr(s->deck, '/') + 1 : s->deck,
+         s->target, n, job_told(j, "unknowns"), s->name[goal], is / exact,
+         told / exact, ratio, band / fabs(exact),
+         dat_at(&t, goal, "contact_ends"), trusted ? "reliable " : "",
+         banded ? "" : "outside");
+  fflush(stdout);
+  ++sums.all;
+  sums.banded += banded;
+  sums.nearer += fabs(is - told) < fabs(is);
+  sums.trusted += trusted;
+  sums.good += trusted && ratio > 0.5 && ratio < 2.0;
+  dat_free(&t);
+  free(json);
+}
+
+START_TEST(estimates_of_goals_are_near_the_errors) {
+  printf("\ngoals: relative to the exact value; ratio: estimate over error\n");
+  printf("%-14s %-11s %4s %8s %-5s %10s %10s %7s %9s %5s\n", "scene", "mesh",
+         "n", "unknowns", "goal", "error", "estimate", "ratio", "band",
+         "ends%");
+  for (size_t k = 0; k < sizeof scenes / sizeof *scenes; ++k)
+    for (int i = 0; i < 4 && (i == 0 || scenes[k].n[i] > 0); ++i) {
+      job j = run_scene(&scenes[k], scenes[k].n[i]);
+      for (int g = 0; g < GOALS && scenes[k].name[g] != NULL; ++g)
+        report(&scenes[k], scenes[k].n[i], &j, g);
+      job_end(&j);
+    }
+  printf(
+      "%d rows: truth in the band %d, sum nearer %d; reliable %d, of them "
+      "within a factor of 2 %d\n",
+      sums.all, sums.banded, sums.nearer, sums.trusted, sums.good);
+  ck_assert_int_ge(5 * sums.banded, 4 * sums.all);
+  ck_assert_int_ge(5 * sums.nearer, 4 * sums.all);
+  ck_assert_int_ge(10 * sums.good, 9 * sums.trusted);
+}
+END_TEST
+
+UNIT_MAIN("goals", estimates_of_goals_are_near_the_errors)
