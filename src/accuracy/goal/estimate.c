@@ -38,12 +38,16 @@ void goal_estimator_free(goal_estimator *e) {
   RELEASE(e->gradient, e->stress, e->own, e->sigma_y, e->node_y, e);
 }
 
-/* q[dim*dim*n_elem]: du_c/dx_k at c*dim + k. */
-static void gradients(const mesh *m, const double *u, double *q) {
-  const int dim = m->dim;
+/* q[(dim*dim+ns)*n_elem]: du_c/dx_k at c*dim + k, and the stresses. */
+static void gradients(const goal_solution *s, double *q) {
+  const mesh *m = s->d->mesh;
+  const int dim = m->dim, ns = s->d->ns;
+  const double *u = s->u;
   double g[12];
-  for (int e = 0; e < m->n_elem; ++e, q += dim * dim) {
+  for (int e = 0; e < m->n_elem; ++e, q += dim * dim + ns) {
     mesh_elem_gradients(m, e, g);
+    memcpy(q + dim * dim, s->sigma + (size_t)ns * (size_t)e,
+           (size_t)ns * sizeof *q);
     for (int a = 0; a <= dim; ++a) {
       const double *v = u + (size_t)dim * (size_t)m->elem[(dim + 1) * e + a];
       for (int c = 0; c < dim; ++c)
@@ -52,14 +56,19 @@ static void gradients(const mesh *m, const double *u, double *q) {
   }
 }
 
-/* What belongs to u in one region. */
-static status recover_region(goal_estimator *e, int region, const double *q) {
+/* What belongs to u in one region; q[(dim*dim+ns)*n_elem] gradients and
+ * stresses, node[(dim*dim+ns)*n_node] workspace. */
+static status recover_region(goal_estimator *e, int region, const double *q,
+                             double *node) {
   const mesh *m = e->s.d->mesh;
-  const int ns = e->s.d->ns, n = m->dim * m->dim;
-  PASS_NEW(e->gradient[region], (size_t)n * (size_t)m->n_node);
-  PASS_NEW(e->stress[region], (size_t)ns * (size_t)m->n_node);
-  space_recover(e->recovery, region, n, q, e->gradient[region]);
-  space_recover(e->recovery, region, ns, e->s.sigma, e->stress[region]);
+  const size_t ns = (size_t)e->s.d->ns, n = (size_t)(m->dim * m->dim);
+  PASS_NEW(e->gradient[region], n * (size_t)m->n_node);
+  PASS_NEW(e->stress[region], ns * (size_t)m->n_node);
+  space_recover(e->recovery, region, (int)(n + ns), q, node);
+  for (size_t i = 0; i < (size_t)m->n_node; ++i, node += n + ns) {
+    memcpy(e->gradient[region] + n * i, node, n * sizeof *node);
+    memcpy(e->stress[region] + ns * i, node + n, ns * sizeof *node);
+  }
   const space_field f = {e->s.sigma, e->stress[region]};
   for (int k = 0; k < m->n_elem; ++k)
     if (space_region(e->recovery, k) == region)
@@ -72,13 +81,15 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   status st = OK;
   const mesh *m = s->d->mesh;
   goal_estimator *e = NULL;
-  double *q = NULL;
+  double *q = NULL, *node = NULL;
+  const size_t both = (size_t)(m->dim * m->dim + s->d->ns);
   *out = NULL;
   NEW(e, 1);
   e->s = *s;
   e->recovery = recovery;
-  NEW(q, (size_t)(m->dim * m->dim) * (size_t)m->n_elem);
-  gradients(m, s->u, q);
+  NEW(q, both * (size_t)m->n_elem);
+  NEW(node, both * (size_t)m->n_node);
+  gradients(s, q);
   e->n_region = space_regions(recovery);
   NEW(e->gradient, e->n_region);
   NEW(e->stress, e->n_region);
@@ -86,11 +97,11 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   NEW(e->sigma_y, (size_t)s->d->ns * (size_t)m->n_elem);
   NEW(e->node_y, (size_t)s->d->ns * (size_t)m->n_node);
   TRY(space_moduli(recovery));
-  for (int k = 0; k < e->n_region; ++k) TRY(recover_region(e, k, q));
+  for (int k = 0; k < e->n_region; ++k) TRY(recover_region(e, k, q, node));
   *out = e;
   e = NULL;
 done:
-  memory_free(q);
+  RELEASE(q, node);
   goal_estimator_free(e);
   return st;
 }

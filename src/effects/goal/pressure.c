@@ -305,9 +305,10 @@ static double half_of(const run *r, const line *l, int first, int last) {
 /* Where the largest pressure may be infinite there is no peak. */
 static status place_on_line(const run *r, const goal_card *g, int peak,
                             weight *w, goal_form *f) {
+  status st = OK;
   line l = {0};
   int first, last;
-  PASS(line_new(r, g, w, peak, &l));
+  TRY(line_new(r, g, w, peak, &l));
   const int mirrored = goal_is_mirrored(r, peak);
   const int at_border = l.peak == 0 || l.peak == l.n - 1;
   zone_of(r, &l, &first, &last);
@@ -328,8 +329,9 @@ static status place_on_line(const run *r, const goal_card *g, int peak,
     w->origin[0] = 0.0;
     w->at = on_disc;
   }
+done:
   line_free(&l);
-  return OK;
+  return st;
 }
 
 /* 1: a node at the border of its group, and on no plane of symmetry. */
