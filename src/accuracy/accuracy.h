@@ -79,7 +79,7 @@ status linear_contact_new(const contact_problem *cp, const double *u,
                           const double *r, linear_contact **out);
 void linear_contact_free(linear_contact *c); /* accepts NULL */
 /* du[m] of a change df[m] of the load, N. */
-void linear_contact_move(linear_contact *c, const double *df, double *du);
+status linear_contact_move(linear_contact *c, const double *df, double *du);
 
 /* inverse_energy of a dense matrix M[m*m] by its Cholesky factor, for problems
  * without another inverse. *out is new (dense_inverse_free), NULL if M is not

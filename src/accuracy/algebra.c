@@ -145,10 +145,6 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
   return OK;
 }
 
-static const double *matrix_of(const contact_problem *cp) {
-  return cp->A != NULL ? cp->A : cp->W;
-}
-
 /* ---- the admissible pair ------------------------------------------------ */
 
 status pair_new(int n, int m, pair *p) {
@@ -206,25 +202,25 @@ void pair_set(const contact_problem *cp, const double *u, const double *r,
 
 /* d = M x - load - y, x the unknown multiplied by M. */
 static void pair_defect(const contact_problem *cp, pair *p) {
-  const double *x = cp->A != NULL ? p->v : p->q;
-  contact_product(cp->m, matrix_of(cp), x, p->d);
+  const double *x = contact_has_stiffness(cp) ? p->v : p->q;
+  contact_apply(cp, x, p->d);
   for (int i = 0; i < cp->m; ++i)
-    p->d[i] = cp->A != NULL ? p->d[i] - cp->f[i] - p->q[i]
-                            : p->v[i] - p->d[i] - cp->f[i];
+    p->d[i] = contact_has_stiffness(cp) ? p->d[i] - cp->f[i] - p->q[i]
+                                        : p->v[i] - p->d[i] - cp->f[i];
 }
 
 /* |u - v|_A or |r - q|_W. */
 static double pair_distance(const contact_problem *cp, const double *u,
                             const double *r, pair *p, double *move) {
-  const double *from = cp->A != NULL ? u : r;
-  const double *to = cp->A != NULL ? p->v : p->q;
+  const double *from = contact_has_stiffness(cp) ? u : r;
+  const double *to = contact_has_stiffness(cp) ? p->v : p->q;
   int moved = 0;
   for (int i = 0; i < cp->m; ++i) {
     move[i] = from[i] - to[i];
     moved = moved || move[i] != 0.0;
   }
   if (!moved) return 0.0;
-  contact_product(cp->m, matrix_of(cp), move, p->t);
+  contact_apply(cp, move, p->t);
   return sqrt(fmax(0.0, cblas_ddot(cp->m, move, 1, p->t, 1)));
 }
 
@@ -238,13 +234,20 @@ static const double NO_PIVOT = 0x1p-44; /* -, of the largest diagonal */
  */
 static double pair_rounding(const contact_problem *cp,
                             const inverse_energy *inverse, pair *p) {
-  const double *M = matrix_of(cp), *x = cp->A != NULL ? p->v : p->q;
+  const double *M = contact_matrix(cp);
+  const double *x = contact_has_stiffness(cp) ? p->v : p->q;
   double sum = 0.0, unit = 0.5 * DBL_EPSILON * (2.0 + sqrt(cp->m)), least = 0.0;
   for (int i = 0; i < cp->m && inverse->n_kernel > 0; ++i)
     least = fmax(least, NO_PIVOT * contact_diagonal(cp, i));
   for (int i = 0; i < cp->m; ++i)
-    p->t[i] = fabs(cp->f[i]) + fabs(cp->A != NULL ? p->q[i] : p->v[i]);
-  for (int j = 0; j < cp->m; ++j) {
+    p->t[i] =
+        fabs(cp->f[i]) + fabs(contact_has_stiffness(cp) ? p->q[i] : p->v[i]);
+  if (cp->op != NULL) { /* room[m..] is free between two products */
+    double *size = cp->op->room + cp->m;
+    cp->op->apply_sizes(cp->op->ctx, x, cp->op->room, size);
+    for (int i = 0; i < cp->m; ++i) p->t[i] += size[i];
+  }
+  for (int j = 0; cp->op == NULL && j < cp->m; ++j) {
     const double *column = M + (size_t)j * (size_t)cp->m;
     double size = fabs(x[j]);
     for (int i = 0; size > 0.0 && i < cp->m; ++i)
@@ -270,7 +273,7 @@ static status find_rate(const contact_problem *cp,
                         const contact_problem *stiffness, const double *u,
                         const double *r, known_rate *known, solver_error *e) {
   status st = OK;
-  const contact_problem *of = cp->A != NULL ? cp : stiffness;
+  const contact_problem *of = contact_has_stiffness(cp) ? cp : stiffness;
   if (cp->B == NULL) goto done;
   if (of == NULL) {
     no_bound(e, "Coulomb friction, and the compliance is singular");

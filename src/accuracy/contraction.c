@@ -32,6 +32,10 @@ typedef struct linear_map {
   double *P;                    /* [n_free*n_closed] columns of A of their
                                    normal unknowns */
   double *dg;                   /* [n] N */
+  /* Where the stiffness is an operator, in the place of K and P: */
+  unsigned char *known;  /* [m] */
+  double *added;         /* [dim*m] known_rows.added */
+  double *b, *full, *Ax; /* [m] right side; x at all unknowns; A x, N */
 } linear_map;
 
 int accuracy_rubs(const contact_problem *cp, int dof) {
@@ -49,7 +53,7 @@ node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id) {
       ++counted;
     }
   t = counted > 0 ? t / counted : n;
-  if (cp->A != NULL) return (node_stiffness){n, t};
+  if (contact_has_stiffness(cp)) return (node_stiffness){n, t};
   return (node_stiffness){1.0 / n, 1.0 / t};
 }
 
@@ -63,12 +67,18 @@ static status map_new(const contact_problem *cp, linear_map *s) {
   PASS_NEW(s->kappa, cp->n);
   PASS_NEW(s->x, cp->m);
   PASS_NEW(s->dg, cp->n);
+  if (cp->op == NULL) return OK;
+  PASS_NEW(s->known, cp->m);
+  PASS_NEW(s->added, cp->dim * cp->m);
+  PASS_NEW(s->b, cp->m);
+  PASS_NEW(s->full, cp->m);
+  PASS_NEW(s->Ax, cp->m);
   return OK;
 }
 
 static void map_free(linear_map *s) {
   RELEASE(s->free_id, s->place, s->closed, s->slip, s->e, s->kappa, s->K, s->x,
-          s->P, s->dg);
+          s->P, s->dg, s->known, s->added, s->b, s->full, s->Ax);
 }
 
 /* Direction and turning stiffness of a node that friction acts on. */
@@ -126,22 +136,54 @@ static void add_turning(linear_map *s) {
     for (int a = 1; s->slip[i] && a < cp->dim; ++a)
       for (int b = 1; b < cp->dim; ++b) {
         int ia = i * cp->dim + a, ib = i * cp->dim + b;
-        if (s->place[ia] < 0 || s->place[ib] < 0) continue;
-        s->K[(size_t)s->place[ia] + ld * (size_t)s->place[ib]] +=
+        double part =
             s->kappa[i] * ((a == b ? 1.0 : 0.0) - s->e[ia] * s->e[ib]);
+        if (s->added != NULL) s->added[cp->dim * ia + b] = part;
+        if (s->added != NULL || s->place[ia] < 0 || s->place[ib] < 0) continue;
+        s->K[(size_t)s->place[ia] + ld * (size_t)s->place[ib]] += part;
       }
 }
 
-/* 0: not positive definite. */
-static int factor(linear_map *s) {
+/* Factor of the operator; it keeps one, so again before each use. */
+static status set_rows(linear_map *s, int *good) {
+  const contact_operator *op = s->cp->op;
+  const known_rows rows = {s->known, s->added};
+  int singular = 0;
+  for (int i = 0; i < s->cp->m; ++i) s->known[i] = s->place[i] < 0;
+  if (s->cp->dim == 3) add_turning(s);
+  PASS(op->set_rows(op->ctx, &rows, &singular));
+  *good = !singular;
+  return OK;
+}
+
+/* K and its factor; *good 0: not positive definite. */
+static status factor(linear_map *s, int *good) {
+  if (s->cp->op != NULL) return set_rows(s, good);
   size_t ld = (size_t)s->n_free, m = (size_t)s->cp->m;
+  PASS_NEW(s->K, ld * ld);
   for (size_t j = 0; j < ld; ++j) {
     const double *column = s->cp->A + m * (size_t)s->free_id[j];
     for (size_t i = j; i < ld; ++i) s->K[i + ld * j] = column[s->free_id[i]];
   }
   if (s->cp->dim == 3) add_turning(s);
-  return LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', s->n_free, s->K,
-                             s->n_free) == 0;
+  *good = ld == 0 || LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', s->n_free, s->K,
+                                         s->n_free) == 0;
+  return OK;
+}
+
+/* x[n_free] = inv(K) x by the operator, A x too; returns x' K x. */
+static double solve(linear_map *s) {
+  const contact_operator *op = s->cp->op;
+  double energy = 0.0;
+  memset(s->full, 0, (size_t)s->cp->m * sizeof *s->full);
+  memset(s->b, 0, (size_t)s->cp->m * sizeof *s->b);
+  for (int a = 0; a < s->n_free; ++a) s->b[s->free_id[a]] = s->x[a];
+  op->solve(op->ctx, s->b, s->full, s->Ax);
+  for (int a = 0; a < s->n_free; ++a) {
+    energy += s->x[a] * s->full[s->free_id[a]];
+    s->x[a] = s->full[s->free_id[a]];
+  }
+  return fmax(energy, 0.0);
 }
 
 /* x = inv(K) e dg; the energy x' K x. */
@@ -153,6 +195,7 @@ static double move(linear_map *s) {
     int rubs = dof % cp->dim > 0 && s->slip[i];
     s->x[a] = rubs ? s->e[dof] * s->dg[i] : 0.0;
   }
+  if (cp->op != NULL) return solve(s);
   LAPACKE_dtrtrs_work(LAPACK_COL_MAJOR, 'L', 'N', 'N', s->n_free, 1, s->K,
                       s->n_free, s->x, s->n_free);
   for (int a = 0; a < s->n_free; ++a) energy += s->x[a] * s->x[a];
@@ -161,7 +204,9 @@ static double move(linear_map *s) {
   return energy;
 }
 
-static void gather_columns(linear_map *s) {
+static status gather_columns(linear_map *s) {
+  if (s->cp->op != NULL) return OK;
+  PASS_NEW(s->P, (size_t)s->n_free * (size_t)s->n_closed);
   double *to = s->P;
   for (int i = 0; i < s->cp->n; ++i) {
     if (!s->closed[i]) continue;
@@ -169,11 +214,17 @@ static void gather_columns(linear_map *s) {
         s->cp->A + (size_t)(i * s->cp->dim) * (size_t)s->cp->m;
     for (int a = 0; a < s->n_free; ++a) *to++ = column[s->free_id[a]];
   }
+  return OK;
 }
 
 /* Changes of the normal forces, N; dn[n], 0 at open nodes. */
 static void push(const linear_map *s, double *dn) {
   int c = s->n_closed;
+  if (s->cp->op != NULL) {
+    for (int i = 0; i < s->cp->n; ++i)
+      dn[i] = s->closed[i] ? s->Ax[i * s->cp->dim] : 0.0;
+    return;
+  }
   if (c > 0)
     cblas_dgemv(CblasColMajor, CblasTrans, s->n_free, c, 1.0, s->P, s->n_free,
                 s->x, 1, 0.0, dn, 1);
@@ -203,14 +254,14 @@ static void first_change(linear_map *s, const double *r) {
 static status measure(linear_map *s, const double *r, double *rate) {
   OWNED double *dn = NULL;
   double last;
+  int good = 0;
   *rate = 0.0;
   if (s->n_slip == 0) return OK;
   PASS_NEW(dn, s->cp->n);
-  PASS_NEW(s->K, (size_t)s->n_free * (size_t)s->n_free);
   *rate = HUGE_VAL;
-  if (!factor(s)) return OK;
-  PASS_NEW(s->P, (size_t)s->n_free * (size_t)s->n_closed);
-  gather_columns(s);
+  PASS(factor(s, &good));
+  if (!good) return OK;
+  PASS(gather_columns(s));
   *rate = 0.0;
   first_change(s, r);
   last = move(s);
@@ -276,6 +327,7 @@ static status measure_limit(linear_map *s, const double *r, double *rate) {
   for (int k = 1; k <= LONG_RUN && last > 0.0; ++k) {
     for (int i = 0; i < s->cp->n; ++i) s->dg[i] /= sqrt(last);
     for (int a = 0; a < s->n_free; ++a) s->x[a] /= sqrt(last);
+    for (int i = 0; s->Ax != NULL && i < s->cp->m; ++i) s->Ax[i] /= sqrt(last);
     change_limit(s, dn);
     last = move(s);
     if (k > LONG_RUN - AVERAGED) grown += 0.5 * log(last);
@@ -332,13 +384,14 @@ status linear_contact_new(const contact_problem *cp, const double *u,
                           const double *r, linear_contact **out) {
   status st = OK;
   linear_contact *c = NULL;
+  int good = 0;
   *out = NULL;
   NEW(c, 1);
   linear_map *s = &c->map;
   TRY(map_new(cp, s));
   set_state(s, u, r);
-  NEW(s->K, (size_t)s->n_free * (size_t)s->n_free);
-  if (s->n_free > 0 && !factor(s)) goto done;
+  TRY(factor(s, &good));
+  if (!good) goto done;
   *out = c;
   c = NULL;
 done:
@@ -346,12 +399,18 @@ done:
   return st;
 }
 
-void linear_contact_move(linear_contact *c, const double *df, double *du) {
+status linear_contact_move(linear_contact *c, const double *df, double *du) {
   linear_map *s = &c->map;
+  int good = 0;
   for (int a = 0; a < s->n_free; ++a) s->x[a] = df[s->free_id[a]];
-  if (s->n_free > 0)
+  if (s->cp->op != NULL) {
+    PASS(set_rows(s, &good));
+    solve(s);
+  } else if (s->n_free > 0) {
     LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', s->n_free, 1, s->K, s->n_free,
                         s->x, s->n_free);
+  }
   for (int k = 0; k < s->cp->m; ++k)
     du[k] = s->place[k] >= 0 ? s->x[s->place[k]] : 0.0;
+  return OK;
 }

@@ -366,7 +366,7 @@ static status check_size(const contact_problem *cp) {
           "all statuses can be tried for up to %d contact nodes in 2-D, the "
           "problem has %d in %d-D",
           ENUMERATED_NODES, cp->n, cp->dim);
-  if (cp->A == NULL)
+  if (!contact_has_stiffness(cp))
     RAISE(ERR_DECK,
           "all statuses can be tried where the stiffness is known; "
           "of this problem only the compliance is");

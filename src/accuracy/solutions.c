@@ -46,13 +46,13 @@ void solution_set_free(solution_set *s) {
 static double energy(const contact_problem *cp, const double *a,
                      const double *b, double *t) {
   for (int i = 0; i < cp->m; ++i) t[i] = b == NULL ? a[i] : a[i] - b[i];
-  contact_product(cp->m, cp->A != NULL ? cp->A : cp->W, t, t + cp->m);
+  contact_apply(cp, t, t + cp->m);
   return fmax(0.0, cblas_ddot(cp->m, t, 1, t + cp->m, 1));
 }
 
 /* Energy of an unknown that moves (is pushed) by the scale of the problem. */
 static double unit_energy(const contact_problem *cp) {
-  const double *M = cp->A != NULL ? cp->A : cp->W;
+  const double *M = contact_matrix(cp);
   double scale = contact_scale(cp), most = 0.0;
   for (int i = 0; i < cp->m; ++i)
     most = fmax(most, M[(size_t)i * (size_t)(cp->m + 1)]);
@@ -107,7 +107,7 @@ done:
 
 status solution_set_add(const contact_problem *cp, double tol, const double *u,
                         const double *r, solution_set *s, int *no) {
-  const double *x = cp->A != NULL ? u : r;
+  const double *x = contact_has_stiffness(cp) ? u : r;
   double distance = 0.0;
   *no = 0;
   s->n = cp->n;
@@ -115,15 +115,17 @@ status solution_set_add(const contact_problem *cp, double tol, const double *u,
   if (!(contact_residual(cp, u, r) <= tol)) return OK;
   for (int i = 0; i < s->n_found; ++i) {
     const solution *old = &s->found[i];
-    PASS(find_distance(cp, x, cp->A != NULL ? old->u : old->r, &distance));
+    PASS(find_distance(cp, x, contact_has_stiffness(cp) ? old->u : old->r,
+                       &distance));
     if (distance > SAME) continue;
     ++s->found[i].facts.patterns;
     *no = i + 1;
     return OK;
   }
   if (s->n_found > 0)
-    PASS(find_distance(cp, x, cp->A != NULL ? s->found[0].u : s->found[0].r,
-                       &distance));
+    PASS(find_distance(
+        cp, x, contact_has_stiffness(cp) ? s->found[0].u : s->found[0].r,
+        &distance));
   PASS_GROW(s->found, s->n_found, s->cap_found);
   PASS(copy_solution(cp, u, r, &s->found[s->n_found]));
   s->found[s->n_found].facts.distance = distance;
@@ -142,7 +144,7 @@ static const char *const start_text[] = {
 /* Displacement of the size that the forces of the problem cause, m. */
 static double reach(const contact_problem *cp) {
   double least = HUGE_VAL, scale = contact_scale(cp);
-  if (cp->A == NULL) return FAR * scale;
+  if (!contact_has_stiffness(cp)) return FAR * scale;
   for (int i = 0; i < cp->m; ++i) least = fmin(least, contact_diagonal(cp, i));
   return least > 0.0 ? FAR * scale / least : 0.0;
 }
@@ -154,7 +156,8 @@ static double direction_of(start kind) {
 
 static void set_start(const contact_problem *cp, start kind, double *u,
                       double *r) {
-  double far = reach(cp), force = cp->A == NULL ? 0.0 : contact_scale(cp);
+  double far = reach(cp),
+         force = !contact_has_stiffness(cp) ? 0.0 : contact_scale(cp);
   int open = kind == OPEN_START;
   for (int i = 0; i < cp->n; ++i) {
     int first = i * cp->dim;

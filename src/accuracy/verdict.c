@@ -101,7 +101,7 @@ static status find_motion(const contact_problem *cp, double *v, outcome *end) {
   void *work = NULL;
   double *u = NULL, *r = NULL;
   *end = RUNNING;
-  if (lemke == NULL || cp->A == NULL || cp->n > LARGEST) goto done;
+  if (lemke == NULL || !contact_has_stiffness(cp) || cp->n > LARGEST) goto done;
   NEW(u, cp->m);
   NEW(r, cp->m);
   option_defaults(lemke->options, param);

@@ -275,7 +275,11 @@
   X(2060, ERROR, "surfaces of a pair with common faces",                     \
     "A *CONTACT PAIR or a *TIE is between two surfaces: physical groups of "  \
     "the mesh without a common face. For the lips of a crack give each lip a " \
-    "group of its own.")
+    "group of its own.")                                                     \
+  X(2061, ERROR, "condensed stiffness without entries",                      \
+    "With STIFFNESS=FACTOR of *SOLVER the matrix is known by its products "  \
+    "alone. What is named needs its entries: write STIFFNESS=DENSE or AUTO, " \
+    "or leave that out; protis --list solvers says which methods do.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

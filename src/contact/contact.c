@@ -32,15 +32,21 @@ void contact_product(int m, const double *M, const double *x, double *y) {
   cblas_dgemv(CblasColMajor, CblasNoTrans, m, m, 1.0, M, m, x, 1, 0.0, y, 1);
 }
 
-static const double *matrix_of(const contact_problem *cp) {
-  return cp->A != NULL ? cp->A : cp->W;
+int contact_has_stiffness(const contact_problem *cp) {
+  return cp->A != NULL || cp->op != NULL;
+}
+
+const double *contact_matrix(const contact_problem *cp) {
+  return contact_has_stiffness(cp) ? cp->A : cp->W;
 }
 
 void contact_apply(const contact_problem *cp, const double *x, double *y) {
-  if (cp->blocks != NULL)
+  if (cp->op != NULL)
+    cp->op->apply(cp->op->ctx, x, y);
+  else if (cp->blocks != NULL)
     sparse_blocks_product(cp->blocks, x, y);
   else
-    contact_product(cp->m, matrix_of(cp), x, y);
+    contact_product(cp->m, contact_matrix(cp), x, y);
 }
 
 void contact_add_columns(const contact_problem *cp, int node_id,
@@ -48,9 +54,10 @@ void contact_add_columns(const contact_problem *cp, int node_id,
   if (cp->blocks != NULL)
     sparse_blocks_add(cp->blocks, node_id, x, y);
   else
-    cblas_dgemv(CblasColMajor, CblasNoTrans, cp->m, cp->dim, 1.0,
-                matrix_of(cp) + (size_t)(node_id * cp->dim) * (size_t)cp->m,
-                cp->m, x, 1, 1.0, y, 1);
+    cblas_dgemv(
+        CblasColMajor, CblasNoTrans, cp->m, cp->dim, 1.0,
+        contact_matrix(cp) + (size_t)(node_id * cp->dim) * (size_t)cp->m, cp->m,
+        x, 1, 1.0, y, 1);
 }
 
 void contact_column(const contact_problem *cp, int dof, double *column) {
@@ -69,7 +76,7 @@ void contact_block(const contact_problem *cp, int node_id, double *block) {
     return;
   }
   for (int j = 0; j < d; ++j)
-    memcpy(block + d * j, matrix_of(cp) + first + m * (size_t)j,
+    memcpy(block + d * j, contact_matrix(cp) + first + m * (size_t)j,
            (size_t)d * sizeof *block);
 }
 
@@ -77,7 +84,7 @@ void contact_dense(const contact_problem *cp, double *M) {
   if (cp->blocks != NULL)
     sparse_blocks_dense(cp->blocks, M);
   else
-    memcpy(M, matrix_of(cp), (size_t)cp->m * (size_t)cp->m * sizeof *M);
+    memcpy(M, contact_matrix(cp), (size_t)cp->m * (size_t)cp->m * sizeof *M);
 }
 
 void contact_reaction(const contact_problem *cp, const double *u, double *r) {
@@ -121,9 +128,10 @@ double contact_stick(const contact_problem *cp, int dof) {
 
 double contact_diagonal(const contact_problem *cp, int dof) {
   const int k = dof % cp->dim;
+  if (cp->op != NULL) return cp->op->diagonal[dof];
   if (cp->blocks != NULL)
     return sparse_blocks_own(cp->blocks, dof / cp->dim)[k + k * cp->dim];
-  return matrix_of(cp)[(size_t)dof * (size_t)cp->m + (size_t)dof];
+  return contact_matrix(cp)[(size_t)dof * (size_t)cp->m + (size_t)dof];
 }
 
 double contact_largest_diagonal(const contact_problem *cp) {
@@ -146,7 +154,7 @@ node_step contact_step(const contact_problem *cp, int node_id,
   if (!(largest_diagonal > 0.0)) largest_diagonal = 1.0;
   if (!(n > 0.0)) n = largest_diagonal;
   if (!(t > 0.0)) t = largest_diagonal;
-  if (cp->A != NULL) return (node_step){n, t};
+  if (contact_has_stiffness(cp)) return (node_step){n, t};
   return (node_step){1.0 / n, 1.0 / t};
 }
 
@@ -159,6 +167,16 @@ static double reference_position(const contact_problem *cp, int dof,
   double bound = contact_bound(cp, dof);
   if (dof % cp->dim > 0 && !(bound < HUGE_VAL)) return contact_stick(cp, dof);
   return closed ? bound : fmin(bound, 0.0);
+}
+
+/* Largest |f - A d| of all rows, N. */
+static double load_of_operator(const contact_problem *cp, int closed) {
+  double worst = 0.0, *d = cp->op->room, *Ad = cp->op->room + cp->m;
+  for (int i = 0; i < cp->m; ++i) d[i] = reference_position(cp, i, closed);
+  contact_apply(cp, d, Ad);
+  for (int i = 0; i < cp->m; ++i)
+    if (!contact_held(cp, i)) worst = larger(worst, fabs(cp->f[i] - Ad[i]));
+  return worst;
 }
 
 /* Largest |f - A d| over the rows from first, rows <= CHUNK, N. */
@@ -190,7 +208,8 @@ static double force_scale(const contact_problem *cp, int closed) {
       terms = larger(terms, fabs(cp->f[i]) + fabs(contact_diagonal(cp, i) * d));
   }
   if (!(terms < HUGE_VAL)) return terms;
-  for (int i = 0; i < cp->m; i += CHUNK)
+  if (cp->op != NULL) load = load_of_operator(cp, closed);
+  for (int i = 0; cp->op == NULL && i < cp->m; i += CHUNK)
     load = larger(
         load,
         load_of_rows(cp, i, cp->m - i < CHUNK ? cp->m - i : CHUNK, closed));
@@ -217,7 +236,7 @@ static double displacement_scale(const contact_problem *cp) {
 }
 
 double contact_scale(const contact_problem *cp) {
-  if (cp->A == NULL) return displacement_scale(cp);
+  if (!contact_has_stiffness(cp)) return displacement_scale(cp);
   double scale = force_scale(cp, 0);
   if (any_gap(cp)) {
     double closed = force_scale(cp, 1);

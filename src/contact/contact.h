@@ -16,6 +16,7 @@
 
 #include "base/sparse.h"
 #include "base/status.h"
+#include "contact/operator.h"
 
 /* Nodes that the matrix joins, through others too, are of one body. */
 typedef struct body_size {
@@ -34,15 +35,16 @@ typedef struct contact_bodies {
 } contact_bodies;
 
 typedef struct contact_problem {
-  int dim, n, m;   /* 2 or 3; contact nodes; m = dim*n unknowns */
-  const double *A; /* [m*m] condensed stiffness, N/m, symmetric,
-                      positive (semi)definite; NULL: only the
-                      compliance is known */
-  const double *W; /* [m*m] compliance, m/N; NULL until needed. Given
-                      alone (A NULL) it may be semidefinite and slightly
-                      unsymmetric */
-  const sparse_blocks *blocks; /* the compliance in the place of W where most
-                                  of it is zero (then A, W are NULL); NULL */
+  int dim, n, m; /* 2 or 3; contact nodes; m = dim*n unknowns */
+  /* [m*m] condensed stiffness, N/m, symmetric, positive (semi)definite; NULL:
+   * given as op, or only the compliance is known. */
+  const double *A;
+  const contact_operator *op; /* in the place of A, or NULL */
+  /* [m*m] compliance, m/N; NULL until needed. Given alone (A, op NULL) it may
+   * be semidefinite and slightly unsymmetric. */
+  const double *W;
+  /* The compliance in the place of W where most of it is zero, or NULL. */
+  const sparse_blocks *blocks;
   const double *f;        /* [m] condensed load, N; with A NULL: q = W f, m */
   const double *f_load;   /* [m] f without the motion of supports, N; NULL: f */
   const double *gap;      /* [n] normal gap of the undeformed body, m */
@@ -67,6 +69,11 @@ typedef struct contact_problem {
 } contact_problem;
 
 typedef enum { CONTACT_OPEN, CONTACT_SLIP, CONTACT_STICK } contact_status;
+
+/* 1: the problem is in displacements, A u = f + r; 0: in forces. */
+int contact_has_stiffness(const contact_problem *cp);
+/* A, or W where that alone is known; NULL if the stiffness is an operator. */
+const double *contact_matrix(const contact_problem *cp);
 
 /* The parts of a problem that its matrix couples weakly or not at all. */
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out);
@@ -160,7 +167,8 @@ double contact_bound(const contact_problem *cp, int dof);
 double contact_stick(const contact_problem *cp, int dof);
 /* 1: the node touches a second obstacle. */
 int contact_has_side(const contact_problem *cp, int node_id);
-/* Diagonal of A, or of W where that alone is known. */
+/* Diagonal of A (of an operator: of the stiffness it is condensed from), or of
+ * W where that alone is known. */
 double contact_diagonal(const contact_problem *cp, int dof);
 /* y = M x, M[m*m] column major. */
 void contact_product(int m, const double *M, const double *x, double *y);

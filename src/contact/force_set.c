@@ -165,7 +165,7 @@ void force_set_product(const force_set *s, const double *r, double *u) {
 
 void force_set_displacement(const force_set *s, const double *r, double *u) {
   const contact_problem *cp = s->cp;
-  if (cp->A == NULL) {
+  if (!contact_has_stiffness(cp)) {
     force_set_product(s, r, u);
     cblas_daxpy(cp->m, 1.0, cp->f, 1, u, 1);
     return;

@@ -85,7 +85,7 @@ static void set_stick(velocity_form *v, const contact_problem *cp) {
 
 void velocity_form_set(velocity_form *v, const contact_problem *cp,
                        contact_problem *out, double **u) {
-  contact_product(cp->m, cp->A, v->u_old, v->R);
+  contact_apply(cp, v->u_old, v->R);
   for (int k = 0; k < cp->m; ++k) v->R[k] = cp->f[k] - v->R[k];
   set_bounds(v, cp);
   if (cp->ut0 != NULL) set_stick(v, cp);

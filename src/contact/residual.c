@@ -13,6 +13,7 @@
 #include <cblas.h>
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* ---- Parts of the contact problem that its matrix does not join (contact.h).
  */
@@ -35,8 +36,7 @@ static double root_of(const contact_problem *cp, int node_id) {
 /* 1: an entry of columns a and rows b is above "least". */
 static int joined(const contact_problem *cp, int a, int b, double least) {
   for (int j = a * cp->dim; j < (a + 1) * cp->dim; ++j) {
-    const double *column =
-        (cp->A != NULL ? cp->A : cp->W) + (size_t)j * (size_t)cp->m;
+    const double *column = contact_matrix(cp) + (size_t)j * (size_t)cp->m;
     for (int i = b * cp->dim; i < (b + 1) * cp->dim; ++i)
       if (fabs(column[i]) > least) return 1;
   }
@@ -100,13 +100,18 @@ status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
   int *list = NULL;
   NEW(b, 1);
   NEW(b->of, cp->n);
-  NEW(root, cp->n);
-  NEW(list, cp->n);
-  for (int i = 0; i < cp->n; ++i) root[i] = root_of(cp, i);
-  if (cp->blocks != NULL)
-    find_sparse_bodies(cp, root, list, b);
-  else
-    find_bodies(cp, root, list, b);
+  if (cp->op != NULL) {
+    b->n = cp->op->n_body;
+    memcpy(b->of, cp->op->body, (size_t)cp->n * sizeof *b->of);
+  } else {
+    NEW(root, cp->n);
+    NEW(list, cp->n);
+    for (int i = 0; i < cp->n; ++i) root[i] = root_of(cp, i);
+    if (cp->blocks != NULL)
+      find_sparse_bodies(cp, root, list, b);
+    else
+      find_bodies(cp, root, list, b);
+  }
   NEW(b->size, b->n);
   *out = b;
   b = NULL;
@@ -205,7 +210,7 @@ static double largest_of(int n, const double *v) {
 static double reach_of(const measure *x, int node_id, double k) {
   const contact_problem *cp = x->cp;
   double force = 0.0, position = 0.0;
-  if (cp->A == NULL) return LEVER * x->scale * sqrt(k);
+  if (!contact_has_stiffness(cp)) return LEVER * x->scale * sqrt(k);
   if (!cp->floating) return HUGE_VAL;
   for (int i = node_id * cp->dim; i < (node_id + 1) * cp->dim; ++i) {
     double bound = contact_bound(cp, i), stick = contact_stick(cp, i);
@@ -221,7 +226,7 @@ static double load_of(const contact_problem *cp, int node_id,
   const double *load = cp->f_load != NULL ? cp->f_load : cp->f;
   int first = node_id * cp->dim;
   double most = 0.0;
-  if (cp->A == NULL)
+  if (!contact_has_stiffness(cp))
     return node->c.n * larger(0.0, cp->f[first] - cp->gap[node_id]);
   for (int k = 0; k < cp->dim; ++k)
     if (!contact_held(cp, first + k))
@@ -231,11 +236,12 @@ static double load_of(const contact_problem *cp, int node_id,
 
 static void add_node(measure *x, int node_id) {
   const contact_problem *cp = x->cp;
-  const double *v = (cp->A != NULL ? x->u : x->r) + node_id * cp->dim;
+  const double *v =
+      (contact_has_stiffness(cp) ? x->u : x->r) + node_id * cp->dim;
   body_size *b = body_of(x, node_id);
   measured node;
   project(x, node_id, &node);
-  double root = cp->A != NULL ? sqrt(node.k) : 1.0 / sqrt(node.k);
+  double root = contact_has_stiffness(cp) ? sqrt(node.k) : 1.0 / sqrt(node.k);
   double force =
       larger(fabs(node.q[0]), contact_length(cp->dim - 1, node.q + 1));
   double load = load_of(cp, node_id, &node);
@@ -269,7 +275,7 @@ static double load_to_come(const measure *x, const body_size *b) {
 /* Forces that a part of a node, of stiffness c, is compared with. */
 static double forces_of(const measure *x, const measured *node,
                         const body_size *b, double c) {
-  double most = x->cp->A != NULL ? x->scale : c * x->scale;
+  double most = contact_has_stiffness(x->cp) ? x->scale : c * x->scale;
   double own = smaller(larger(b->load, b->contact), node->k * b->displacement);
   return smaller(most, own);
 }
@@ -277,7 +283,9 @@ static double forces_of(const measure *x, const measured *node,
 /* Scale of them: not below rounding. */
 static double scale_of(const measure *x, const body_size *b,
                        const measured *node, double c) {
-  double least = x->cp->A != NULL ? larger(load_to_come(x, b), b->fallen) : 0.0;
+  double least = contact_has_stiffness(x->cp)
+                     ? larger(load_to_come(x, b), b->fallen)
+                     : 0.0;
   least = larger(FLOOR * least, LEAST / ROUNDING * node->rounding);
   return larger(forces_of(x, node, b, c), least);
 }
@@ -288,11 +296,11 @@ static void measure_node(measure *x, int node_id, measured *node) {
   body_size *b = body_of(x, node_id);
   project(x, node_id, node);
   double terms = largest_of(cp->dim, cp->f + first);
-  if (cp->A == NULL)
+  if (!contact_has_stiffness(cp))
     terms = node->k * (terms + largest_of(cp->dim, x->u + first));
   double carried = smaller(b->carried, b->reach);
   node->rounding = ROUNDING * (terms + sqrt(node->k) * carried);
-  if (b->carried > b->reach && cp->A != NULL)
+  if (b->carried > b->reach && contact_has_stiffness(cp))
     node->drift = DBL_EPSILON * sqrt(node->k) * b->carried;
   node->normal = scale_of(x, b, node, node->c.n);
   node->slide = scale_of(x, b, node, node->c.t);
@@ -330,20 +338,25 @@ static double equation_of(const measure *x, const measured *node,
   double worst = 0.0;
   for (int k = 0; k < x->cp->dim; ++k) {
     double c = k == 0 ? node->c.n : node->c.t;
-    double e = x->cp->A != NULL ? fabs(d[k]) : c * fabs(d[k]);
+    double e = contact_has_stiffness(x->cp) ? fabs(d[k]) : c * fabs(d[k]);
     worst = larger(worst, beyond(node, e, k == 0 ? node->normal : node->slide));
   }
   return worst;
 }
 
-/* d[rows] = A u - f - r, or W r + q - u, from row "first". */
+/* d[rows] = A u - f - r, or W r + q - u, from row "first"; A u of an operator
+ * is in its room. */
 static void equation_rows(const measure *x, int first, int rows, double *d) {
   const contact_problem *cp = x->cp;
-  const double *M = cp->A != NULL ? cp->A : cp->W;
-  const double *v = cp->A != NULL ? x->u : x->r,
-               *y = cp->A != NULL ? x->r : x->u;
-  double sign = cp->A != NULL ? 1.0 : -1.0;
+  const double *M = contact_matrix(cp);
+  const double *v = contact_has_stiffness(cp) ? x->u : x->r,
+               *y = contact_has_stiffness(cp) ? x->r : x->u;
+  double sign = contact_has_stiffness(cp) ? 1.0 : -1.0;
   for (int i = 0; i < rows; ++i) d[i] = y[first + i] + sign * cp->f[first + i];
+  if (cp->op != NULL) {
+    for (int i = 0; i < rows; ++i) d[i] = cp->op->room[first + i] - d[i];
+    return;
+  }
   if (cp->blocks != NULL) {
     for (int i = 0; i < rows; i += cp->dim) {
       double own[3];
@@ -361,6 +374,7 @@ double contact_residual_at(const contact_problem *cp, double scale,
   measure x;
   double worst = 0.0, d[3 * CHUNK];
   measure_set(cp, scale, u, r, &x);
+  if (cp->op != NULL) contact_apply(cp, u, cp->op->room);
   for (int first = 0; first < cp->n; first += CHUNK) {
     int count = cp->n - first < CHUNK ? cp->n - first : CHUNK;
     equation_rows(&x, first * cp->dim, count * cp->dim, d);
@@ -388,7 +402,7 @@ double contact_residual(const contact_problem *cp, const double *u,
 double contact_mismatch(const contact_problem *cp, double scale,
                         const double *u, const double *r, const double *raw) {
   measure x;
-  const double *of = cp->A != NULL ? r : u;
+  const double *of = contact_has_stiffness(cp) ? r : u;
   double worst = 0.0, d[3];
   measure_set(cp, scale, u, r, &x);
   for (int i = 0; i < cp->n; ++i) {

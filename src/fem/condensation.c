@@ -8,8 +8,10 @@
 #include "base/timer.h"
 #include "fem/element.h"
 #include "fem/factor.h"
+#include "fem/operator.h"
 #include "fem/rigid.h"
 
+#include <cblas.h>
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
@@ -27,7 +29,8 @@ struct condensed {
   const stiffness *k; /* borrowed */
   domain d;           /* arrays borrowed */
   int n_contact, m, n_body;
-  double *A; /* [m*m] */
+  double *A;               /* [m*m], NULL: not formed */
+  sparse_operator *sparse; /* in its place and that of the bodies, or NULL */
   body_factor *body;
   rigid_motions rigid;   /* those that only contact holds */
   unsigned char *pinned; /* [m] contact unknowns with a spring in the factor;
@@ -190,6 +193,26 @@ static int is_held(const condensed *c, int row) {
   return c->d.surface->held[k->dim * contact_of(c, row) + row % k->rows];
 }
 
+/* The factors of the whole matrix: one of each body, or the operator's. */
+static int n_factor(const condensed *c) {
+  return c->sparse != NULL ? 1 : c->n_body;
+}
+
+static body_factor *factor_at(const condensed *c, int q) {
+  return c->sparse != NULL ? &c->sparse->f : &c->body[q];
+}
+
+/* Stiffness in the row of a held unknown, N/m. */
+static double held_stiffness(const condensed *c, int q) {
+  return c->sparse != NULL ? c->sparse->seen.diagonal[q]
+                           : c->A[(size_t)q * (size_t)(c->m + 1)];
+}
+
+/* The factor is that of all rows. */
+static status want_all_rows(const condensed *c) {
+  return c->sparse != NULL ? sparse_operator_all_rows(c->sparse) : OK;
+}
+
 /* Rows of prescribed contact unknowns: the largest diagonal entry among the
  * unknowns of the node, or of A. */
 static void fill_held(condensed *c) {
@@ -211,8 +234,8 @@ static void fill_held(condensed *c) {
 static status estimate_condition(condensed *c) {
   double condition = 0;
   c->condition = c->just_held ? 1 : 1 / (weak_arm * weak_arm);
-  for (int q = 0; q < c->n_body; ++q) {
-    PASS(body_factor_condition(c->k, &c->body[q], c->cm, &condition));
+  for (int q = 0; q < n_factor(c); ++q) {
+    PASS(body_factor_condition(c->k, factor_at(c, q), c->cm, &condition));
     c->condition = fmax(c->condition, condition);
   }
   return OK;
@@ -232,6 +255,52 @@ done:
   return st;
 }
 
+/* Body of each row of A by connected sets, of[m/rows]; counts them. */
+static status find_bodies(condensed *c, int *of) {
+  status st = OK;
+  const stiffness *k = c->k;
+  graph g = {0};
+  int *list = NULL;
+  unsigned char *seen = NULL;
+  NEW(list, k->n_node);
+  NEW(seen, k->n_node);
+  TRY(graph_of_unknowns(k, &g));
+  for (int i = 0; i < k->n_node; ++i) {
+    if (k->free[i] == 0 || seen[i]) continue;
+    const int n = connected_set(&g, i, seen, list);
+    for (int q = 0; q < n; ++q)
+      if (k->first_row[list[q]] >= 0)
+        of[k->first_row[list[q]] / k->rows] = c->n_body;
+    ++c->n_body;
+  }
+done:
+  graph_release(&g);
+  RELEASE(list, seen);
+  return st;
+}
+
+/* The whole matrix in the place of those of the bodies. */
+static status make_operator(condensed *c) {
+  const stiffness *k = c->k;
+  OWNED int *body = NULL;
+  OWNED unsigned char *held = NULL;
+  PASS_NEW(body, c->m);
+  PASS_NEW(held, c->m);
+  PASS(find_bodies(c, body));
+  for (int q = 0; q < c->m; ++q) held[q] = (unsigned char)is_held(c, q);
+  const operator_data data = {.k = k,
+                              .x = c->d.mesh->x,
+                              .order = c->d.order,
+                              .held = held,
+                              .body = body,
+                              .n_body = c->n_body,
+                              .pinned = c->pinned,
+                              .rigid = &c->rigid,
+                              .cm = c->cm};
+  status st = sparse_operator_new(&data, &c->ordering, &c->sparse);
+  return st == OK ? OK : name_body(c, &c->sparse->f, st);
+}
+
 status condense(const stiffness *k, const domain *d, condensed **out) {
   status st = OK;
   condensed *c = NULL;
@@ -249,8 +318,12 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   NEW(c->prescribed, (size_t)k->dim * (size_t)k->n_node);
   TRY(find_motions(c));
   TRY(pin_sets(c));
-  TRY(factor_bodies(c));
-  TRY(form_matrix(c));
+  if (d->sparse && c->m > 0) {
+    TRY(make_operator(c));
+  } else {
+    TRY(factor_bodies(c));
+    TRY(form_matrix(c));
+  }
   TRY(estimate_condition(c));
 done:
   if (st != OK) {
@@ -265,6 +338,7 @@ void condensed_free(condensed *c) {
   if (c == NULL) return;
   for (int q = 0; c->body != NULL && q < c->n_body; ++q)
     body_factor_release(&c->body[q], c->cm);
+  sparse_operator_free(c->sparse);
   if (c->cm != NULL) cholmod_l_finish(c->cm);
   RELEASE(c->cm, c->A, c->body);
   rigid_release(&c->rigid);
@@ -335,9 +409,9 @@ static void move_prescribed(condensed *c) {
 static status forward(condensed *c, double *f_c) {
   for (int q = 0; q < c->m; ++q)
     if (is_held(c, q))
-      f_c[q] = c->A[(size_t)q * (size_t)(c->m + 1)] *
-               c->prescribed[component_of(c, q)];
-  for (int q = 0; q < c->n_body; ++q)
+      f_c[q] = held_stiffness(c, q) * c->prescribed[component_of(c, q)];
+  if (c->sparse != NULL) sparse_operator_forward(c->sparse, c->load, f_c);
+  for (int q = 0; c->sparse == NULL && q < c->n_body; ++q)
     PASS(body_factor_forward(&c->body[q], c->load, f_c, c->cm));
   return OK;
 }
@@ -362,7 +436,8 @@ static void to_global(const condensed *c, double *u) {
 static status back(const condensed *c, const double *u_c, double *u) {
   memcpy(u, c->prescribed,
          (size_t)c->k->dim * (size_t)c->k->n_node * sizeof *u);
-  for (int q = 0; q < c->n_body; ++q)
+  if (c->sparse != NULL) sparse_operator_back(c->sparse, u_c, u);
+  for (int q = 0; c->sparse == NULL && q < c->n_body; ++q)
     PASS(body_factor_back(&c->body[q], u_c, u, c->cm));
   to_global(c, u);
   return OK;
@@ -382,7 +457,8 @@ static status refine(condensed *c, double *u) {
   for (int pass = 0; pass < PASSES; ++pass) {
     set_residual(c, u);
     memset(more, 0, n * sizeof *more);
-    for (int q = 0; q < c->n_body; ++q)
+    if (c->sparse != NULL) sparse_operator_interior(c->sparse, c->load, more);
+    for (int q = 0; c->sparse == NULL && q < c->n_body; ++q)
       PASS(body_factor_interior(&c->body[q], c->load, more, c->cm));
     to_global(c, more);
     for (size_t i = 0; i < n; ++i) u[i] += more[i];
@@ -410,7 +486,7 @@ static status refine_load(condensed *c, const double *F, double *f_c) {
 
 int condensed_costs_digits(const condensed *c) {
   long n = 0;
-  for (int q = 0; q < c->n_body; ++q) n += c->body[q].n;
+  for (int q = 0; q < n_factor(c); ++q) n += factor_at(c, q)->n;
   return condensed_condition(c) > refine_excess * (double)n;
 }
 
@@ -439,29 +515,41 @@ done:
   return st;
 }
 
+/* u[m] = inv(A) f by the factors of the whole matrix; *square += u.f of those
+ * that are not held. */
+static status solve_rows(const condensed *c, const double *f, double *u,
+                         double *square) {
+  const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
+  OWNED double *load = NULL, *w = NULL;
+  PASS_NEW(load, n);
+  PASS_NEW(w, n);
+  for (int q = 0; q < c->m; ++q)
+    if (!is_held(c, q)) load[component_of(c, q)] = f[q];
+  PASS(want_all_rows(c));
+  for (int q = 0; q < n_factor(c); ++q)
+    PASS(body_factor_solve(factor_at(c, q), load, w, square, c->cm));
+  for (int q = 0; q < c->m; ++q)
+    u[q] = is_held(c, q) ? f[q] / held_stiffness(c, q) : w[component_of(c, q)];
+  return OK;
+}
+
 status condensed_force_energy(condensed *c, const double *d, double *square) {
   *square = 0;
-  for (int q = 0; q < c->n_body; ++q)
+  if (c->sparse != NULL) {
+    OWNED double *u = NULL;
+    PASS_NEW(u, c->m);
+    PASS(solve_rows(c, d, u, square));
+  }
+  for (int q = 0; c->sparse == NULL && q < c->n_body; ++q)
     if (c->body[q].nc > 0) PASS(body_factor_energy(&c->body[q], d, square));
   for (int q = 0; q < c->m; ++q)
-    if (is_held(c, q))
-      *square += d[q] * (d[q] / c->A[(size_t)q * (size_t)(c->m + 1)]);
+    if (is_held(c, q)) *square += d[q] * (d[q] / held_stiffness(c, q));
   return OK;
 }
 
 status condensed_untouched(condensed *c, const double *f, double *u) {
-  const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
-  OWNED double *load = NULL, *w = NULL;
   double square = 0;
-  PASS_NEW(load, n);
-  PASS_NEW(w, n);
-  for (int q = 0; q < c->m; ++q) load[component_of(c, q)] = f[q];
-  for (int q = 0; q < c->n_body; ++q)
-    PASS(body_factor_solve(&c->body[q], load, w, &square, c->cm));
-  for (int q = 0; q < c->m; ++q)
-    u[q] = is_held(c, q) ? f[q] / c->A[(size_t)q * (size_t)(c->m + 1)]
-                         : w[component_of(c, q)];
-  return OK;
+  return solve_rows(c, f, u, &square);
 }
 
 status condensed_misfit(condensed *c, const double *rest, const double *rc,
@@ -471,9 +559,25 @@ status condensed_misfit(condensed *c, const double *rest, const double *rc,
   memset(w, 0, (size_t)k->dim * (size_t)k->n_node * sizeof *w);
   set_load(c, rest);
   for (int q = 0; q < c->m; ++q) c->load[component_of(c, q)] += rc[q];
-  for (int q = 0; q < c->n_body; ++q)
-    PASS(body_factor_solve(&c->body[q], c->load, w, square, c->cm));
+  PASS(want_all_rows(c));
+  for (int q = 0; q < n_factor(c); ++q)
+    PASS(body_factor_solve(factor_at(c, q), c->load, w, square, c->cm));
   to_global(c, w);
+  return OK;
+}
+
+/* The same by the operator. */
+static status solve_sparse(const condensed *c, const unsigned char *held,
+                           const double *f, double *u, int *good) {
+  const contact_operator *op = &c->sparse->seen;
+  const known_rows rows = {.known = held};
+  OWNED double *Au = NULL;
+  int singular = 0;
+  PASS_NEW(Au, c->m);
+  PASS(op->set_rows(op->ctx, &rows, &singular));
+  *good = !singular;
+  memset(u, 0, (size_t)c->m * sizeof *u);
+  if (*good) op->solve(op->ctx, f, u, Au);
   return OK;
 }
 
@@ -484,6 +588,7 @@ static status solve_open(const condensed *c, const unsigned char *held,
   OWNED double *A = NULL, *x = NULL;
   OWNED int *open = NULL;
   int n = 0;
+  if (c->sparse != NULL) return solve_sparse(c, held, f, u, good);
   PASS_NEW(open, c->m);
   for (int q = 0; q < c->m; ++q) {
     u[q] = 0;
@@ -531,6 +636,19 @@ done:
 
 const double *condensed_matrix(const condensed *c) { return c->A; }
 
+const contact_operator *condensed_operator(const condensed *c) {
+  return c->sparse != NULL ? &c->sparse->seen : NULL;
+}
+
+void condensed_product(const condensed *c, const double *u, double *Au) {
+  const contact_operator *op = condensed_operator(c);
+  if (op != NULL)
+    op->apply(op->ctx, u, Au);
+  else if (c->m > 0)
+    cblas_dgemv(CblasColMajor, CblasNoTrans, c->m, c->m, 1, c->A, c->m, u, 1, 0,
+                Au, 1);
+}
+
 int condensed_floating(const condensed *c) { return c->rigid.n_set > 0; }
 
 double condensed_stiffest(const condensed *c) {
@@ -554,8 +672,8 @@ void condensed_diagonal(const condensed *c, double *diagonal) {
   for (int q = 0; q < c->m; ++q) {
     const size_t at = component_of(c, q);
     const double *block = c->k->block + dim * dim * c->k->start[at / dim];
-    diagonal[q] = is_held(c, q) ? c->A[(size_t)q * (size_t)(c->m + 1)]
-                                : block[at % dim * (dim + 1)];
+    diagonal[q] =
+        is_held(c, q) ? held_stiffness(c, q) : block[at % dim * (dim + 1)];
   }
 }
 
@@ -568,14 +686,15 @@ double condensed_digits(const condensed *c) {
 condense_info condensed_info(const condensed *c) {
   condense_info info = {
       .bodies = c->n_body, .contact_unknowns = c->m, .ordering = c->ordering};
-  for (int q = 0; q < c->n_body; ++q) {
-    const body_factor *f = &c->body[q];
+  for (int q = 0; q < n_factor(c); ++q) {
+    const body_factor *f = factor_at(c, q);
     info.unknowns += f->n;
     info.factor_entries += (long)f->L->xsize;
     info.flops += f->flops;
     info.bytes +=
         f->L->xsize * sizeof(double) + f->L->ssize * sizeof(SuiteSparse_long);
   }
-  info.bytes += (size_t)c->m * (size_t)c->m * sizeof(double);
+  if (c->A != NULL) info.bytes += (size_t)c->m * (size_t)c->m * sizeof(double);
+  if (c->sparse != NULL) info.bytes *= 2; /* the interior's too */
   return info;
 }

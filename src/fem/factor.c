@@ -26,7 +26,7 @@ void body_factor_number(const stiffness *k, body_factor *f, long *number) {
     for (int t = 0; t < k->dim; ++t) {
       const int c = last ? k->dim - 1 - t : t;
       long *at = &number[(size_t)k->dim * (size_t)i + (size_t)c];
-      if ((contact_row(k, i, c) >= 0) != last) continue;
+      if (!f->whole && (contact_row(k, i, c) >= 0) != last) continue;
       *at = k->free[i] >> c & 1 ? n++ : -1;
       if (last && *at >= 0) ++f->nc;
     }
@@ -71,6 +71,24 @@ typedef struct columns { /* lower triangle under construction */
   double *value;
 } columns;
 
+/* 1: entry (r, c) of block (i, j) is left out: a row or column is known. */
+static int is_left_out(const columns *w, int i, int r, int j, int c) {
+  const unsigned char *known = w->f->known;
+  const int a = contact_row(w->k, i, r), b = contact_row(w->k, j, c);
+  if (known == NULL || a == b) return 0;
+  return (a >= 0 && known[a]) || (b >= 0 && known[b]);
+}
+
+/* What is added to entry (r, c) of the diagonal block of node i, scaled. */
+static double addition(const columns *w, int i, int r, int c) {
+  const double *added = w->f->added;
+  const int a = contact_row(w->k, i, r), b = contact_row(w->k, i, c);
+  double sum = 0;
+  if (r == c) sum = body_factor_spring(w->k, w->f, (long)w->k->dim * i + c);
+  if (added == NULL || a < 0 || b < 0) return sum;
+  return sum + w->scale * added[w->k->rows * a + b % w->k->rows];
+}
+
 /* Entries of block p = (i, j) of the lower node graph: counted in start (row
  * NULL) or stored at start[column]++. */
 static void put_block(columns *w, size_t p, int i, int j) {
@@ -90,8 +108,8 @@ static void put_block(columns *w, size_t p, int i, int j) {
       const SuiteSparse_long at = w->start[col]++;
       w->row[at] = ni[r] < nj[c] ? nj[c] : ni[r];
       w->value[at] = w->scale * b[dim * c + r];
-      if (i == j && r == c)
-        w->value[at] += body_factor_spring(w->k, w->f, (long)dim * i + c);
+      if (i == j) w->value[at] += addition(w, i, r, c);
+      if (is_left_out(w, i, r, j, c)) w->value[at] = 0;
     }
   }
 }
@@ -104,8 +122,7 @@ static void put_blocks(columns *w) {
   }
 }
 
-/* Scaled lower triangle of the body in elimination order, new. */
-static status body_matrix(const stiffness *k, const body_factor *f,
+status body_factor_matrix(const stiffness *k, const body_factor *f,
                           const long *number, cholmod_common *cm,
                           cholmod_sparse **out) {
   status st = OK;
@@ -202,26 +219,65 @@ static status locate(const stiffness *k, const long *number, body_factor *f) {
   return OK;
 }
 
+/* Symbolic factor of a, the exponent known. */
+static status place_unknowns(const stiffness *k, const long *number,
+                             cholmod_sparse *a, cholmod_common *cm,
+                             body_factor *f) {
+  PASS(analyse(a, cm, f));
+  PASS(locate(k, number, f));
+  f->y = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
+  f->work = cholmod_l_zeros(f->L->maxesize + 1, 1, CHOLMOD_REAL, cm);
+  if (f->y == NULL || f->work == NULL)
+    RAISE(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
+  return OK;
+}
+
+static status set_exponent(const stiffness *k, body_factor *f) {
+  const double most = largest_diagonal(k, f);
+  if (!(most > 0 && isfinite(most)))
+    RAISE(ERR_SINGULAR, "stiffness is zero or not a number");
+  frexp(most, &f->exponent);
+  return OK;
+}
+
+status body_factor_analyse(const stiffness *k, const long *number,
+                           cholmod_common *cm, body_factor *f) {
+  status st = OK;
+  cholmod_sparse *a = NULL;
+  timer_enter(STAGE_ORDERING);
+  TRY(set_exponent(k, f));
+  TRY(body_factor_matrix(k, f, number, cm, &a));
+  TRY(place_unknowns(k, number, a, cm, f));
+done:
+  cholmod_l_free_sparse(&a, cm);
+  timer_leave(STAGE_ORDERING);
+  return st;
+}
+
+status body_factor_renew(const stiffness *k, const long *number,
+                         cholmod_common *cm, body_factor *f) {
+  status st = OK;
+  cholmod_sparse *a = NULL;
+  timer_enter(STAGE_FACTOR);
+  TRY(body_factor_matrix(k, f, number, cm, &a));
+  TRY(factorise(k, number, a, cm, f));
+done:
+  cholmod_l_free_sparse(&a, cm);
+  timer_leave(STAGE_FACTOR);
+  return st;
+}
+
 status body_factor_build(const stiffness *k, const long *number,
                          cholmod_common *cm, body_factor *f) {
   status st = OK;
   cholmod_sparse *a = NULL;
   timer_enter(STAGE_ORDERING);
-  const double most = largest_diagonal(k, f);
-  if (!(most > 0 && isfinite(most)))
-    FAIL(ERR_SINGULAR, "stiffness is zero or not a number");
-  frexp(most, &f->exponent);
-  TRY(body_matrix(k, f, number, cm, &a));
-  TRY(analyse(a, cm, f));
+  TRY(set_exponent(k, f));
+  TRY(body_factor_matrix(k, f, number, cm, &a));
+  TRY(place_unknowns(k, number, a, cm, f));
   timer_enter(STAGE_FACTOR);
   st = factorise(k, number, a, cm, f);
   timer_leave(STAGE_FACTOR);
-  TRY(st);
-  TRY(locate(k, number, f));
-  f->y = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
-  f->work = cholmod_l_zeros(f->L->maxesize + 1, 1, CHOLMOD_REAL, cm);
-  if (f->y == NULL || f->work == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
 done:
   cholmod_l_free_sparse(&a, cm);
   timer_leave(STAGE_ORDERING);
@@ -351,6 +407,30 @@ status body_factor_forward(body_factor *f, const double *load, double *f_c,
   return OK;
 }
 
+void body_factor_plain_solve(const body_factor *f, cholmod_factor *L, double *v,
+                             cholmod_common *cm) {
+  const double scale = ldexp(1, -f->exponent);
+  double *x = f->y->x;
+  for (long p = 0; p < f->n; ++p) x[p] = scale * v[f->unknown[p]];
+  /* They fail only for arguments that do not fit. */
+  cholmod_l_super_lsolve(L, f->y, f->work, cm);
+  cholmod_l_super_ltsolve(L, f->y, f->work, cm);
+  for (long p = 0; p < f->n; ++p) v[f->unknown[p]] = x[p];
+}
+
+double body_factor_least_pivot(const stiffness *k, const body_factor *f) {
+  double least = 1;
+  long super = 0;
+  for (long p = 0; p < f->n; ++p) {
+    const double pivot = column_at(f->L, p, &super).value[0];
+    const int node = (int)(f->unknown[p] / k->dim);
+    const double own =
+        ldexp(diagonal(k, node, (int)(f->unknown[p] % k->dim)), -f->exponent);
+    least = fmin(least, pivot * (pivot / own));
+  }
+  return least;
+}
+
 status body_factor_back(const body_factor *f, const double *u_c, double *u,
                         cholmod_common *cm) {
   status st = OK;
@@ -438,4 +518,105 @@ status body_factor_solve(const body_factor *f, const double *d, double *w,
 done:
   cholmod_l_free_dense(&z, cm);
   return st;
+}
+
+/* ---- condition
+ * ----------------------------------------------------------------
+ *
+ * Condition number of a factored body, its unknowns scaled to a unit diagonal:
+ * that of inv(D) K inv(D), D^2 the diagonal. The rounding of a Cholesky factor
+ * does not depend on such a scaling, so that contrasts of stiffness count only
+ * where digits are lost. Two steps of inverse iteration and the largest row
+ * sum: an estimate, a few times too large or too small.
+ */
+
+/* D of the scaled matrix at the unknowns: root[dim*n_node], 1 elsewhere. */
+static void fill_roots(const stiffness *k, const body_factor *f, double *root) {
+  const int dim = k->dim;
+  const double scale = ldexp(1, -f->exponent);
+  for (int q = 0; q < f->n_node; ++q) {
+    const int i = f->node[q];
+    const double *b = k->block + (size_t)(dim * dim) * k->start[i];
+    for (int c = 0; c < dim; ++c) {
+      const double spring = body_factor_spring(k, f, (long)dim * i + c);
+      root[(size_t)dim * (size_t)i + (size_t)c] =
+          k->free[i] >> c & 1 ? sqrt(scale * b[c * (dim + 1)] + spring) : 1;
+    }
+  }
+}
+
+/* Add the magnitudes of the scaled block p = (i, j) to the sums of its rows and
+ * columns. */
+static void add_magnitudes(const stiffness *k, size_t p, int j,
+                           const double *root, double *sum) {
+  const int dim = k->dim, i = k->row[p];
+  const double *b = k->block + (size_t)(dim * dim) * p;
+  for (int c = 0; c < dim; ++c)
+    for (int r = 0; r < dim; ++r) {
+      const size_t row = (size_t)dim * (size_t)i + (size_t)r;
+      const size_t col = (size_t)dim * (size_t)j + (size_t)c;
+      if (!(k->free[i] >> r & 1) || !(k->free[j] >> c & 1)) continue;
+      if (row == col) continue;
+      const double v = fabs(b[dim * c + r]) / (root[row] * root[col]);
+      sum[row] += v;
+      if (i != j) sum[col] += v;
+    }
+}
+
+/* Largest sum of magnitudes in a row; sum[dim*n_node] is zero before. */
+static double largest_row_sum(const stiffness *k, const body_factor *f,
+                              const double *root, double *sum) {
+  const double scale = ldexp(1, -f->exponent);
+  double most = 0;
+  for (int q = 0; q < f->n_own; ++q) {
+    const int j = f->node[q];
+    for (size_t p = k->start[j]; p < k->start[j + 1]; ++p)
+      if (k->free[k->row[p]] != 0) add_magnitudes(k, p, j, root, sum);
+  }
+  for (long p = 0; p < f->n; ++p) most = fmax(most, sum[f->unknown[p]]);
+  return 1 + scale * most;
+}
+
+static double norm(long n, const double *v) {
+  double sum = 0;
+  for (long i = 0; i < n; ++i) sum += v[i] * v[i];
+  return sqrt(sum);
+}
+
+/* *growth = |D inv(K) D| by inverse iteration from a vector of ones with a
+ * ripple. */
+static status inverse_norm(const body_factor *f, const double *root,
+                           cholmod_common *cm, double *growth) {
+  enum { PASSES = 2 };
+  status st = OK;
+  cholmod_dense *v = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
+  if (v == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: condition of %ld unknowns", f->n);
+  double *x = v->x;
+  for (long p = 0; p < f->n; ++p) x[p] = 1 + 0.25 * (double)(f->unknown[p] % 7);
+  for (int pass = 0; pass < PASSES; ++pass) {
+    const double size = norm(f->n, x);
+    for (long p = 0; p < f->n; ++p) x[p] *= root[f->unknown[p]] / size;
+    if (!cholmod_l_super_lsolve(f->L, v, f->work, cm) ||
+        !cholmod_l_super_ltsolve(f->L, v, f->work, cm))
+      FAIL(ERR_INTERNAL, "solve of %ld unknowns failed", f->n);
+    for (long p = 0; p < f->n; ++p) x[p] *= root[f->unknown[p]];
+    *growth = norm(f->n, x);
+  }
+done:
+  cholmod_l_free_dense(&v, cm);
+  return st;
+}
+
+status body_factor_condition(const stiffness *k, const body_factor *f,
+                             cholmod_common *cm, double *condition) {
+  const size_t n = (size_t)k->dim * (size_t)k->n_node;
+  OWNED double *sum = NULL, *root = NULL;
+  double growth = 0;
+  PASS_NEW(sum, n);
+  PASS_NEW(root, n);
+  fill_roots(k, f, root);
+  PASS(inverse_norm(f, root, cm, &growth));
+  *condition = largest_row_sum(k, f, root, sum) * growth;
+  return OK;
 }

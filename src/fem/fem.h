@@ -10,6 +10,7 @@
 #define PROTIS_FEM_FEM_H
 
 #include "fem/cluster/cluster.h"
+#include "contact/operator.h"
 #include "contact/surface.h"
 #include "material/material.h"
 #include "mesh/mesh.h"
@@ -21,6 +22,14 @@ typedef struct eigenstrain {
   const int *elem_id; /* [n] ascending */
   const double *e0;   /* [ns*n] -; NULL: 0 (eigen_stress) */
 } eigenstrain;
+
+/* Nodes with unknowns in the order of a factor of the whole stiffness, and what
+ * that takes. */
+typedef struct whole_order {
+  int n, *node;     /* [n], owned */
+  const char *name; /* of the method */
+  double flops, entries;
+} whole_order;
 
 /* What the elements are made of. */
 typedef struct domain {
@@ -44,9 +53,11 @@ typedef struct domain {
    * always are; NULL: none. Its means are overwritten. */
   cluster_set *cluster;
   const tie_set *ties; /* NULL: none */
-  int rows;      /* contact unknowns of a node that are condensed, the normal
-                    first: 1 (its tangents count in the interior) or dim; 0:
-                    dim */
+  int rows;   /* contact unknowns of a node that are condensed, the normal
+                 first: 1 (its tangents count in the interior) or dim; 0:
+                 dim */
+  int sparse; /* 1: the condensed matrix is not formed: an operator */
+  const whole_order *order; /* for it, borrowed; NULL: not known */
   int n_in;      /* contact nodes that are condensed; the others are interior */
   const int *in; /* [n_in] ascending; NULL: all */
 } domain;
@@ -63,6 +74,10 @@ typedef struct condensed condensed; /* factor and condensed matrix */
  * ERR_MESH: an element beyond the axis or without volume. ERR_MEMORY. */
 status stiffness_assemble(const domain *d, stiffness **out);
 void stiffness_free(stiffness *k); /* accepts NULL */
+
+/* Order of all nodes with unknowns, contact or not; x[dim*n_node]. o->node is
+ * new (memory_free). ERR_MEMORY. */
+status stiffness_order(const stiffness *k, const double *x, whole_order *o);
 
 /* What resists a rigid motion that *BOUNDARY leaves free. */
 typedef enum {
@@ -99,7 +114,10 @@ status domain_free_motions(const domain *d, int *n, free_motion **list);
  */
 status condense(const stiffness *k, const domain *d, condensed **out);
 void condensed_free(condensed *c);
-const double *condensed_matrix(const condensed *c); /* A [m*m] */
+/* A [m*m], NULL: d->sparse; then the operator, else NULL. */
+const double *condensed_matrix(const condensed *c);
+const contact_operator *condensed_operator(const condensed *c);
+void condensed_product(const condensed *c, const double *u, double *Au);
 int condensed_floating(
     const condensed *c); /* 1: a body is held by contact alone */
 double condensed_stiffest(const condensed *c); /* largest entry of K, N/m */

@@ -206,6 +206,15 @@ int facts_asks_mesh_error(const step *s) { return s->accuracy.mesh; }
 int facts_asks_time_error(const step *s) { return s->accuracy.time; }
 int facts_asks_theory(const step *s) { return s->accuracy.theorems; }
 
+const char *facts_reads_entries(const model *m, const step *s) {
+  if (s->solver.ops != NULL && !(s->solver.ops->handles & BY_OPERATOR))
+    return "the METHOD of *SOLVER";
+  if (s->check != CHECK_NONE) return "CHECK of *SOLVER";
+  if (s->accuracy.theorems) return "THEORY of *ACCURACY";
+  if (s->output.condensed >= 0) return "CONDENSED of *OUTPUT";
+  return m->effects & EFFECT_GIVEN ? "*CONTACT FORCE" : NULL;
+}
+
 status model_find_corner(model *m, const mesh *msh) {
   status st = OK;
   int *of = NULL;

@@ -27,6 +27,9 @@ const step *facts_first_step(const model *m, int (*is)(const step *s));
 int facts_asks_mesh_error(const step *s);
 int facts_asks_time_error(const step *s);
 int facts_asks_theory(const step *s);
+/* What in the step needs the entries of the condensed stiffness; NULL: nothing
+ * does. */
+const char *facts_reads_entries(const model *m, const step *s);
 
 /* Section whose material has an inelastic law. */
 const section *facts_first_inelastic(const model *m);

@@ -134,7 +134,7 @@ static status make_vectors(written *f) {
   const contact_problem *cp = f->cp;
   PASS_NEW(f->q, cp->m);
   PASS_NEW(f->mu, cp->n);
-  if (f->local && cp->A == NULL)
+  if (f->local && !contact_has_stiffness(cp))
     memcpy(f->q, cp->f, (size_t)cp->m * sizeof *f->q);
   else if (f->local)
     contact_product(cp->m, f->M, cp->f, f->q);

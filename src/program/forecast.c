@@ -44,9 +44,9 @@ typedef struct trial {
   int n_elem;
 } trial;
 
-static status see_sizes(void *ctx, int n_node) {
+static status see_sizes(void *ctx, int n_node, const stiffness_choice *choice) {
   const trial *t = ctx;
-  return job_expect(t->in, n_node);
+  return job_expect(t->in, n_node, choice);
 }
 
 static status see_ready(void *ctx, const setup_facts *facts,

@@ -74,10 +74,26 @@ done:
   return st;
 }
 
+/* How the contact is solved, and what the other way would take. */
+static void print_choice(const stiffness_choice *c) {
+  const stiffness_row *rows[] = {&c->dense, &c->factor};
+  static const char *const names[] = {"DENSE", "FACTOR"};
+  if (c->dense.bytes == 0.0) return;
+  for (int k = 0; k < 2; ++k) {
+    printf("stiffness %-6s %s %.2g s, %.1f MB", names[k],
+           k == 1 && !c->exact ? "at least" : "about", rows[k]->seconds,
+           rows[k]->bytes / 1e6);
+    printf(c->sparse == k ? ": taken, %s\n" : "\n", c->why);
+  }
+}
+
 static status print_memory(const model *m, const mesh *msh) {
   const double mega = 1e6;
   plan_bytes b;
-  PASS(plan_memory(m, msh, -1.0, &b));
+  stiffness_choice choice;
+  PASS(history_stiffness(m, msh, effect_table, &choice));
+  print_choice(&choice);
+  PASS(plan_memory(m, msh, -1.0, &choice, &b));
   double all = b.factor + b.contact + b.rest, left = memory_left();
   printf(
       "memory    about %.1f MB for the factor, %.1f MB for the contact, "

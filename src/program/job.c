@@ -95,9 +95,9 @@ done:
   return st;
 }
 
-status job_expect(const job_input *in, int n) {
+status job_expect(const job_input *in, int n, const stiffness_choice *choice) {
   plan_bytes b;
-  PASS(plan_memory(in->m, in->msh, n, &b));
+  PASS(plan_memory(in->m, in->msh, n, choice, &b));
   return memory_require(b.factor + b.contact + b.rest, "the run");
 }
 
@@ -124,9 +124,10 @@ typedef struct relay {
   restart_writer restart;
 } relay;
 
-static status relay_expect(void *ctx, int n_node) {
+static status relay_expect(void *ctx, int n_node,
+                           const stiffness_choice *choice) {
   const relay *r = ctx;
-  return job_expect(r->restart.in, n_node);
+  return job_expect(r->restart.in, n_node, choice);
 }
 
 static status relay_ready(void *ctx, const setup_facts *facts,

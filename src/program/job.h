@@ -35,7 +35,7 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
 void job_input_free(job_input *in);
 
 /* ERR_MEMORY: n contact nodes would need more than the available memory. */
-status job_expect(const job_input *in, int n);
+status job_expect(const job_input *in, int n, const stiffness_choice *choice);
 
 int job_is_geo(const model *m); /* 1: the mesh is made by gmsh */
 

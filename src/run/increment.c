@@ -158,6 +158,7 @@ static void set_problem(run *r) {
       .n = reach_count(&r->nodes.reach, r->nodes.n),
       .m = r->nodes.n_row,
       .A = condensed_matrix(r->c),
+      .op = condensed_operator(r->c),
       .f = r->problem.f,
       .f_load =
           largest_entry(r->n_dof, r->loads.ud) > 0.0 ? r->problem.f_load : NULL,

@@ -85,11 +85,13 @@ typedef struct contact_nodes {
 /* What the elements are made of. */
 typedef struct body_state {
   domain d;
-  moduli moduli;        /* at the temperatures of r->now */
-  int stale;            /* 1: r->elastic was made with others */
-  long elastic_no;      /* counts the matrices that r->elastic was */
-  unsigned char *fixed; /* [dim*n_node] */
-  tie_set ties;         /* of d, all-zero without *TIE */
+  moduli moduli;           /* at the temperatures of r->now */
+  int stale;               /* 1: r->elastic was made with others */
+  long elastic_no;         /* counts the matrices that r->elastic was */
+  unsigned char *fixed;    /* [dim*n_node] */
+  tie_set ties;            /* of d, all-zero without *TIE */
+  whole_order order;       /* of d, all-zero unless STIFFNESS=FACTOR */
+  stiffness_choice choice; /* of the step */
 } body_state;
 
 /* Elements with strains that have no stress. */

@@ -204,8 +204,21 @@ typedef struct state {
   what_if again;    /* until the next one */
 } state;
 
+/* How the contact solver knows the condensed stiffness. */
+typedef struct stiffness_row {
+  double seconds, bytes; /* foreseen */
+} stiffness_row;
+typedef struct stiffness_choice {
+  int sparse;                  /* 1: FACTOR, 0: DENSE */
+  int exact;                   /* 1: the row of FACTOR is by its order, else it
+                                  takes at least that */
+  stiffness_row dense, factor; /* all-zero: no contact */
+  char why[100];
+} stiffness_choice;
+
 /* Facts of the run before the first increment, for the listing. */
 typedef struct setup_facts {
+  stiffness_choice choice;
   condense_info info;
   double condition; /* - */
   double digits;    /* that it leaves */
@@ -226,7 +239,7 @@ typedef struct run_memory {
 typedef struct history_sink {
   void *ctx;
   /* Contact nodes that will be condensed, before anything is assembled. */
-  status (*expect)(void *ctx, int n_node);
+  status (*expect)(void *ctx, int n_node, const stiffness_choice *choice);
   status (*ready)(void *ctx, const setup_facts *facts,
                   const contact_surface *surface);
   /* *INITIAL CONDITIONS, TYPE=DISPLACEMENT: u_0 and its defect. */

@@ -422,7 +422,7 @@ static status pcg_solve(const contact_problem *cp, const void *par, void *work,
            .r = r,
            .scale = contact_scale(cp),
            .mark = HUGE_VAL,
-           .by_face = cp->A != NULL && p->preconditioner == BY_FACE,
+           .by_face = contact_has_stiffness(cp) && p->preconditioner == BY_FACE,
            .limit = control->max_iter > 0 ? control->max_iter : STEPS};
   *rep = (solver_report){.outcome = RUNNING};
   w->best.residual = HUGE_VAL;

@@ -89,7 +89,7 @@ status node_blocks_new(const contact_problem *cp, node_blocks **out) {
   for (int node_id = 0; node_id < cp->n; ++node_id) {
     double block[9], *K = b->K + node_id * d * d;
     contact_block(cp, node_id, block);
-    if (cp->A != NULL)
+    if (contact_has_stiffness(cp))
       lift_block(d, block, lift, K);
     else
       invert_block(d, block, lift, K);
@@ -189,7 +189,7 @@ static void displacement_step(const relaxation *s, int node_id,
 static int rests(const relaxation *s, int node_id) {
   const contact_problem *cp = s->cp;
   const int first = node_id * cp->dim;
-  if (cp->A != NULL || s->blocks->state[node_id] != LOCAL_OPEN ||
+  if (contact_has_stiffness(cp) || s->blocks->state[node_id] != LOCAL_OPEN ||
       s->u[first] > cp->gap[node_id] || cp->side_gap != NULL)
     return 0;
   for (int k = 0; k < cp->dim; ++k)
@@ -210,7 +210,7 @@ static void node_step(relaxation *s, int node_id, double *step) {
   local_state now = local_solve(&lp, before, d, r);
   s->blocks->state[node_id] = now;
   s->turned += now != before;
-  if (cp->A != NULL) {
+  if (contact_has_stiffness(cp)) {
     if (now == before) relax(s, &lp, now, d);
     displacement_step(s, node_id, &lp, id, d, step);
     return;
@@ -247,7 +247,8 @@ static void plain_step(relaxation *s, int node_id, double *step) {
 
 static void visit(relaxation *s, int node_id) {
   const contact_problem *cp = s->cp;
-  double *unknown = cp->A != NULL ? s->u : s->r, step[3] = {0.0, 0.0, 0.0};
+  double *unknown = contact_has_stiffness(cp) ? s->u : s->r,
+         step[3] = {0.0, 0.0, 0.0};
   int first = node_id * cp->dim, moved = 0;
   if (rests(s, node_id)) return;
   if (s->blocks->plain)
@@ -261,7 +262,8 @@ static void visit(relaxation *s, int node_id) {
     s->change += weight * step[k] * step[k];
   }
   if (moved)
-    contact_add_columns(cp, node_id, step, cp->A != NULL ? s->r : s->u);
+    contact_add_columns(cp, node_id, step,
+                        contact_has_stiffness(cp) ? s->r : s->u);
 }
 
 void relaxation_sweep(relaxation *s, int backward) {
@@ -282,7 +284,7 @@ int state_watch_returns(state_watch *w, const relaxation *s) {
 }
 
 void relaxation_refresh(const relaxation *s) {
-  if (s->cp->A != NULL) {
+  if (contact_has_stiffness(s->cp)) {
     contact_reaction(s->cp, s->u, s->r);
     return;
   }
@@ -391,7 +393,7 @@ int relaxation_fly(relaxation *s, const double *from) {
   const contact_problem *cp = s->cp;
   int bodies = cp->bodies == NULL ? 1 : cp->bodies->n, most = 0;
   double *d = s->blocks->step;
-  if (!cp->floating || cp->A == NULL || s->turned > 0) return 0;
+  if (!cp->floating || !contact_has_stiffness(cp) || s->turned > 0) return 0;
   for (int i = 0; i < cp->m; ++i) d[i] = s->u[i] - from[i];
   contact_product(cp->m, cp->A, d, s->blocks->strained);
   for (int b = 0; b < bodies; ++b) {
@@ -411,7 +413,7 @@ static int drifts(relaxation *s, double *from) {
   double *d = s->u, *Ad = s->r, work = 0.0, stiff = 0.0, left = 0.0;
   double most = 0.0;
   int falls = 0;
-  if (!cp->floating || cp->A == NULL) return 0;
+  if (!cp->floating || !contact_has_stiffness(cp)) return 0;
   memcpy(from, s->u, m * sizeof *from);
   s->omega = 1.0;
   for (int k = 0; k < DRIFT_SWEEPS; ++k) relaxation_sweep(s, 0);

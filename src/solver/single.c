@@ -31,8 +31,9 @@ static void set_problem(single *s) {
   int m = s->m = cp->m;
   for (int i = 0; i < m; ++i) {
     for (int j = 0; j < m; ++j) {
-      s->P[i + m * j] = cp->A != NULL ? cp->A[i + m * j] : i == j;
-      s->Q[i + m * j] = cp->A != NULL ? -(i == j) : -cp->W[i + m * j];
+      s->P[i + m * j] = contact_has_stiffness(cp) ? cp->A[i + m * j] : i == j;
+      s->Q[i + m * j] =
+          contact_has_stiffness(cp) ? -(i == j) : -cp->W[i + m * j];
     }
     s->c[i] = cp->f[i];
   }
@@ -56,7 +57,8 @@ static void check(single *s, const double *u, const double *r) {
   contact_classify(s->cp, u, r, &state);
   int like = state == s->start;
   for (int i = 0; i < s->m; ++i)
-    apart = hypot(apart, s->cp->A != NULL ? u[i] - s->u0[i] : r[i] - s->r0[i]);
+    apart = hypot(apart, contact_has_stiffness(s->cp) ? u[i] - s->u0[i]
+                                                      : r[i] - s->r0[i]);
   if (like < s->like || (like == s->like && !(apart < s->distance))) return;
   s->like = like;
   memcpy(s->u, u, (size_t)s->m * sizeof *u);

@@ -69,7 +69,8 @@ enum {
   SOLVES_FLOATING = 32,    /* works with a semidefinite A */
   REGULAR_COMPLIANCE = 64, /* instead of the stiffness a compliance that has an
                               inverse, which need not be made */
-  SPARSE_COMPLIANCE = 128  /* the compliance in blocks */
+  SPARSE_COMPLIANCE = 128, /* the compliance in blocks */
+  BY_OPERATOR = 256 /* works by products and solves (contact/operator.h) */
 };
 
 typedef struct solver_ops {
@@ -130,6 +131,14 @@ void solver_keep_best(best_iterate *best, int m, double residual,
 /* Copy it to u, r if there is one. */
 void solver_take_best(const best_iterate *best, int m, double *u, double *r);
 
+/* How the solver knows the condensed stiffness: by the foreseen cost, its
+ * entries, or products and solves (contact/operator.h). */
+typedef enum {
+  STIFFNESS_AUTO,
+  STIFFNESS_DENSE,
+  STIFFNESS_FACTOR
+} stiffness_kind;
+
 /* The choice of the deck: one solver, or AUTO (ops NULL). */
 typedef struct solver_choice {
   const solver_ops *ops; /* NULL: AUTO */
@@ -137,6 +146,8 @@ typedef struct solver_choice {
   double tol;            /* - */
   int max_iter;          /* of the solver; 0: its own limit */
   int limit_max_iter;    /* passes of the fixed point */
+  int stiffness;         /* stiffness_kind */
+  double max_memory;     /* MB that STIFFNESS=AUTO keeps below; 0: not said */
 } solver_choice;
 
 /* Workspace that persists while A is unchanged. */

@@ -229,7 +229,7 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
               .before = w->before,
               .mark = HUGE_VAL,
               .order = p->sweep,
-              .chosen = cp->A != NULL && !(p->omega > 0.0)};
+              .chosen = contact_has_stiffness(cp) && !(p->omega > 0.0)};
   *rep = (solver_report){.outcome = RUNNING};
   relaxation_start(&s);
   rep->outcome = sweeps(&s, &c, control, rep);

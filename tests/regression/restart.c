@@ -196,6 +196,21 @@ START_TEST(path_on_a_moving_obstacle_goes_on) {
 }
 END_TEST
 
+/* A stiffness that is an operator: its factors are made again. */
+START_TEST(factor_goes_on) {
+  int changes, all;
+  job both[2];
+  for (int k = 0; k < 2; ++k)
+    both[k] = small_flat(0.4, "", "AUTO, STIFFNESS=FACTOR");
+  ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
+  ck_assert_int_eq(run_until(&both[1], nothing, all / 2, SIGINT, &changes),
+                   130);
+  goes_on(&both[1], 0, "factor");
+  same_files(&both[0], &both[1], "factor");
+  for (int k = 0; k < 2; ++k) job_end(&both[k]);
+}
+END_TEST
+
 /* A load that grows from next to nothing and falls again, far below what moves
  * the block to the floor: rounding counts against the largest load of the step,
  * and energies and stresses against the largest so far. */
@@ -505,5 +520,5 @@ UNIT_MAIN("restart", what_is_read_is_written_again,
           chosen_tolerance_goes_on, path_on_a_moving_obstacle_goes_on,
           known_rate_goes_on, largest_loads_and_energies_go_on,
           run_without_a_file_begins_anew, files_are_in_the_seal,
-          restart_files_are_equal, restart_file_does_not_grow,
+          restart_files_are_equal, factor_goes_on, restart_file_does_not_grow,
           some_jobs_start_anew, damaged_files_are_refused)

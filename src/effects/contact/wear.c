@@ -110,7 +110,7 @@ static status overshoot(const run *r, const double *root, double *largest) {
   for (int i = 0; i < m; ++i) norm = hypot(norm, y[i] = root[i]);
   for (int k = 0; k < PRODUCTS && norm > 0.0; ++k) {
     for (int i = 0; i < m; ++i) x[i] = root[i] * y[i] / norm;
-    contact_product(m, cp->A, x, y);
+    contact_apply(cp, x, y);
     norm = 0.0;
     for (int i = 0; i < m; ++i) norm = hypot(norm, y[i] *= root[i]);
     *largest = norm;

@@ -42,7 +42,7 @@ static double distance(const run *r, const double *a, const double *b,
   double sum = 0.0;
   for (int i = 0; i < r->nodes.n_c; ++i) room[i] = a[i] - b[i];
   const double *d = run_rows(r, 0, room);
-  contact_product(r->nodes.n_row, r->problem.cp.A, d, room + r->nodes.n_c);
+  contact_apply(&r->problem.cp, d, room + r->nodes.n_c);
   for (int i = 0; i < r->nodes.n_row; ++i) sum += d[i] * room[r->nodes.n_c + i];
   return sqrt(fmax(sum, 0.0));
 }
@@ -59,8 +59,8 @@ static status load_change(run *r, double *room, double *size) {
   if (r->body.moduli.n_own > 0 ||
       r->problem.n_before != r->nodes.n_row) { /* other matrix */
     const double *rc = run_rows(r, 1, r->old.rc);
-    contact_product(r->nodes.n_row, r->problem.cp.A, run_rows(r, 0, r->old.uc),
-                    room + r->nodes.n_c);
+    contact_apply(&r->problem.cp, run_rows(r, 0, r->old.uc),
+                  room + r->nodes.n_c);
     for (int i = 0; i < r->nodes.n_row; ++i)
       room[i] = r->problem.f[i] + rc[i] - room[r->nodes.n_c + i];
   }

@@ -175,7 +175,7 @@ static double condensed_difference(const run *r, finer_path *p) {
   double square = 0.0;
   for (int k = 0; k < r->nodes.n_c; ++k)
     p->d[k] = r->now.uc[k] - p->end.start.uc[k];
-  contact_product(r->nodes.n_c, condensed_matrix(r->c), p->d, p->Ad);
+  condensed_product(r->c, p->d, p->Ad);
   for (int k = 0; k < r->nodes.n_c; ++k) square += p->d[k] * p->Ad[k];
   return sqrt(fmax(square, 0.0));
 }

@@ -96,6 +96,7 @@ static status linear_body(run *r, const unsigned char *given, body_map *b) {
   NEW(none, r->nodes.n);
   TRY(elastic_body(r, b));
   cp.A = condensed_matrix(b->c);
+  cp.op = condensed_operator(b->c);
   TRY(frozen_new(&cp, r->now.rc, none, given, &b->problem));
   TRY(linear_contact_new(&b->problem.cp, r->now.uc, b->problem.r, &b->contact));
 done:
@@ -161,7 +162,7 @@ static status answer_of_body(void *ctx, double *size) {
   memset(b->F, 0, r->n_dof * sizeof *b->F);
   eigen_force(&r->body.d, &x, b->F);
   TRY(condense_load(b->c, b->F, NULL, b->f));
-  linear_contact_move(b->contact, b->f, b->du);
+  TRY(linear_contact_move(b->contact, b->f, b->du));
   TRY(condense_recover(b->c, b->du, b->u));
   double *elastic = v->stress;
   eigen_stress(&r->body.d, &x, b->u, elastic, b->sigma);

@@ -66,12 +66,13 @@ void plan_free(effect_plan *p); /* accepts NULL */
 status plan_leave_out(model *m, const mesh *msh);
 
 /* Bytes that a run holds at most besides the mesh, from the sizes alone; nodes:
- * of the contact that are condensed, or < 0: all. msh NULL: as in plan_new. */
+ * of the contact that are condensed, or < 0: all; choice NULL: DENSE. msh NULL:
+ * as in plan_new. */
 typedef struct plan_bytes {
   double factor, contact, rest;
 } plan_bytes;
 status plan_memory(const model *m, const mesh *msh, double nodes,
-                   plan_bytes *b);
+                   const stiffness_choice *choice, plan_bytes *b);
 
 /* The plan as a table; lead before each line. */
 void plan_print(const effect_plan *p, const char *lead, FILE *f);

@@ -192,7 +192,7 @@ done:
  * its steps.
  */
 status plan_memory(const model *m, const mesh *msh, double nodes,
-                   plan_bytes *b) {
+                   const stiffness_choice *choice, plan_bytes *b) {
   enum { MATRICES = 5, OF_ELEMENT = 500, STAGES = 24, BUFFERS = 2000000 };
   status st = OK;
   plan_sizes s;
@@ -202,6 +202,10 @@ status plan_memory(const model *m, const mesh *msh, double nodes,
   double sets = s.factors > 1.0 ? 2.0 : 1.0;
   b->factor = sets * real * work_factor_entries(&s);
   b->contact = sets * MATRICES * real * dofs * dofs;
+  if (choice != NULL && choice->sparse) {
+    b->factor = sets * choice->factor.bytes;
+    b->contact = 0.0;
+  }
   b->rest = BUFFERS + s.elements * OF_ELEMENT;
   if (m->effects & EFFECT_INELASTIC)
     b->rest += s.elements * STAGES * real * s.ns;

@@ -150,7 +150,8 @@ typedef struct temperature_param {
 typedef struct solver_param {
   const char *method;
   double tol, share;
-  int max_iter, limit_max_iter, check;
+  int max_iter, limit_max_iter, check, stiffness;
+  double max_memory;
 } solver_param;
 enum { TIME_NO, TIME_YES, TIME_BALANCED }; /* TIME= of *ACCURACY */
 typedef struct accuracy_param {

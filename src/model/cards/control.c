@@ -47,6 +47,10 @@ status apply_solver(reading *r) {
   s->solver.tol = s->balanced ? TOL_DEFAULT : p->tol;
   s->solver.max_iter = p->max_iter;
   s->solver.limit_max_iter = p->limit_max_iter;
+  s->solver.stiffness = p->stiffness;
+  s->solver.max_memory = p->max_memory;
+  if (p->stiffness != STIFFNESS_AUTO && p->max_memory > 0.0)
+    report_idle(r, "MAX_MEMORY", "STIFFNESS=AUTO");
   s->check = p->check;
   if (!s->balanced && p->share != 0.05) report_idle(r, "SHARE", "TOL=BALANCED");
   if (r->plugin == NULL) return OK;

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"
+#include "model/facts.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -275,6 +276,20 @@ static void check_moduli(const model *m) {
   }
 }
 
+/* STIFFNESS=FACTOR next to what needs the entries of the matrix. */
+static void check_entries(const model *m) {
+  for (int i = 0; i < m->n.step; ++i) {
+    const step *s = &m->steps[i];
+    const char *reads = facts_reads_entries(m, s);
+    if (s->solver.stiffness != STIFFNESS_FACTOR || reads == NULL) continue;
+    message_add(m->log, P2061, &s->solver_at,
+                "*SOLVER, STIFFNESS=FACTOR: %s needs the entries of the "
+                "condensed stiffness",
+                reads);
+    return;
+  }
+}
+
 status model_check(model *m, const mesh *msh, effect_finder *find) {
   m->dim = msh->dim;
   m->ns = msh->dim == 3 ? 6 : 4;
@@ -293,6 +308,7 @@ status model_check(model *m, const mesh *msh, effect_finder *find) {
   PASS(model_find_corner(m, msh));
   m->effects = find(m);
   check_moduli(m);
+  check_entries(m);
   PASS(message_status(m->log, ERR_DECK));
   check_values(m, msh);
   check_no_effect(m, msh);

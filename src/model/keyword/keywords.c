@@ -240,6 +240,13 @@ static const option solver_options[] = {
                 "look for second solutions: YES with solvers of all families "
                 "from several starts; ALL by all combinations of statuses, up "
                 "to 10 contact nodes in 2-D"),
+  OPTION_CHOICE(solver_param, stiffness, "STIFFNESS", "AUTO|DENSE|FACTOR",
+                "AUTO",
+                "DENSE: the condensed matrix is formed; FACTOR: it is known by "
+                "solves with the sparse matrix of the body; AUTO: the cheaper "
+                "as foreseen (--check prints both)"),
+  OPTION_REAL(solver_param, max_memory, "MAX_MEMORY", 0, 1e12, "0", "MB",
+              "that STIFFNESS=AUTO keeps below; 0: 80 % of the memory"),
   OPTION_END};
 static const option effects_options[] = {
   OPTION_CHOICE(effects_param, mode, "MODE", "CALLED|AUTO", "CALLED",

@@ -140,6 +140,9 @@ status listing_ready(const job *j, text_file *lst) {
   print_sizes(j, 1, lst->f);
   if (facts->info.ordering != NULL)
     fprintf(lst->f, "  %-18s %14s\n", "ordering", facts->info.ordering);
+  if (facts->choice.dense.bytes > 0.0)
+    fprintf(lst->f, "  %-18s %14s  %s\n", "stiffness",
+            facts->choice.sparse ? "FACTOR" : "DENSE", facts->choice.why);
   if (!isnan(facts->condition))
     fprintf(lst->f, "  %-18s %14s\n", "condition",
             text_number(text, facts->condition, 1));

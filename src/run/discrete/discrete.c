@@ -73,7 +73,7 @@ static status condensed_energy(const contact_problem *cp, const double *u,
                                const double *r, double *energy) {
   status st = OK;
   double *y = NULL;
-  const double *x = cp->A != NULL ? u : r;
+  const double *x = contact_has_stiffness(cp) ? u : r;
   NEW(y, cp->m);
   contact_apply(cp, x, y);
   *energy = 0.0;
@@ -95,7 +95,7 @@ static status bound_error(const contact_problem *cp, dense_inverse *dense,
   contact_problem stiff = *cp;
   double *A = NULL;
   int made = 0;
-  if (cp->A == NULL && cp->B != NULL) {
+  if (!contact_has_stiffness(cp) && cp->B != NULL) {
     NEW(A, (size_t)cp->m * (size_t)cp->m);
     dense_inverse_fill(dense, A, &made);
     stiff.A = A;
@@ -135,7 +135,7 @@ static status find_error(const step *s, const contact_problem *cp,
   if (cp->blocks != NULL)
     found.why = "its inverse would need all of a large sparse matrix";
   else
-    TRY(dense_inverse_new(cp->m, cp->A != NULL ? cp->A : cp->W, &dense));
+    TRY(dense_inverse_new(cp->m, contact_matrix(cp), &dense));
   if (dense != NULL) TRY(bound_error(cp, dense, u, r, &found));
   const double hidden = e->hidden;
   error_bound_set(&found, energy, e);
@@ -156,7 +156,8 @@ static status solve_contact(discrete *d, const history_sink *sink) {
   const solver_listener listener = {sink->iteration, sink->ctx};
   TRY(contact_bodies_new(cp, &d->bodies));
   cp->bodies = d->bodies;
-  if (cp->A == NULL) memcpy(d->u, cp->f, (size_t)cp->m * sizeof *d->u);
+  if (!contact_has_stiffness(cp))
+    memcpy(d->u, cp->f, (size_t)cp->m * sizeof *d->u);
   TRY(contact_solver_new(&d->step->solver, &solver));
   TRY(contact_solve(solver, cp, listener.step == NULL ? NULL : &listener, d->u,
                     d->r, &d->report));

@@ -536,6 +536,24 @@ status history_run(const model *m, const mesh *msh,
   return history_continue(m, msh, effects, NULL, sink, unsettled);
 }
 
+status history_stiffness(const model *m, const mesh *msh,
+                         const effect_ops *const *effects,
+                         stiffness_choice *choice) {
+  status st = OK;
+  static const history_sink nobody;
+  run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[0]};
+  *choice = (stiffness_choice){0};
+  TRY(run_new(&r, effects));
+  load_fixed(m, msh, r.step, r.body.fixed);
+  TRY(run_build_ties(&r));
+  if (m->effects & EFFECT_CONTACT) TRY(run_build_surface(&r));
+  r.body.d.surface = r.surface;
+  TRY(run_choose_stiffness(&r, choice));
+done:
+  run_free(&r);
+  return st;
+}
+
 status history_motions(const model *m, const mesh *msh,
                        const effect_ops *const *effects, int step_id, int *n,
                        free_motion **list) {

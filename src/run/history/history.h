@@ -38,6 +38,11 @@ status check_problem(const step *s, const contact_problem *cp,
                      const solver_report *report, const double *u,
                      const double *r, solution_set *out);
 
+/* How the first step would know the condensed stiffness, nothing solved. */
+status history_stiffness(const model *m, const mesh *msh,
+                         const effect_ops *const *effects,
+                         stiffness_choice *choice);
+
 /* Rigid motions that the supports of a step leave free, nothing solved: *list
  * is new (memory_free), NULL if there are none. ERR_SINGULAR with the list if
  * nothing at all resists one; the log tells which. */

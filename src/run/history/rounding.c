@@ -149,7 +149,7 @@ static status find_forces(const run *r, misfit *x) {
   OWNED double *raw = NULL, *rounding = NULL;
   PASS_NEW(raw, cp->m);
   PASS_NEW(rounding, cp->n);
-  contact_product(cp->m, cp->A, u, raw);
+  contact_apply(cp, u, raw);
   contact_roundings(cp, u, rc, rounding);
   for (int q = 0; q < cp->m; ++q) {
     const double by_u = raw[q] - cp->f[q];

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/timer.h"
+#include "model/facts.h"
 
 #include <math.h>
 #include <string.h>
@@ -89,6 +90,7 @@ done:
 static status report_ready(run *r) {
   if (r->sink->ready == NULL) return OK;
   setup_facts facts = {
+      .choice = r->body.choice,
       .info = condensed_info(r->c),
       .condition = condensed_condition(r->c),
       .digits = condensed_digits(r->c),
@@ -174,8 +176,10 @@ static status make_matrices(run *r) {
   PASS(choose_nodes(r, motions));
   r->problem.n_before = r->nodes.n_row;
   r->nodes.n_reported = reach_count(&r->nodes.reach, r->nodes.n);
+  PASS(run_choose_stiffness(r, &r->body.choice));
+  r->body.d.sparse = r->body.choice.sparse;
   if (r->sink->expect != NULL)
-    PASS(r->sink->expect(r->sink->ctx, r->nodes.n_reported));
+    PASS(r->sink->expect(r->sink->ctx, r->nodes.n_reported, &r->body.choice));
   PASS(run_renew_elastic(r));
   r->c = r->elastic.c;
   return OK;
@@ -190,6 +194,15 @@ static status take_places(run *r) {
   return OK;
 }
 
+/* 1: the *SOLVER of the step needs another kind of stiffness. */
+static int asks_for_other(const run *r) {
+  const int asked = r->step->solver.stiffness;
+  const int entries = facts_reads_entries(r->m, r->step) != NULL;
+  if (r->nodes.n_row == 0) return 0;
+  if (r->body.d.sparse) return asked == STIFFNESS_DENSE || entries;
+  return asked == STIFFNESS_FACTOR;
+}
+
 status run_prepare(run *r) {
   status st = OK;
   int fresh = 0;
@@ -200,7 +213,7 @@ status run_prepare(run *r) {
   known_rate_forget(&r->solving.rate);
   TRY(take_places(r));
   if (r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0 ||
-      updates_pairs(r)) {
+      updates_pairs(r) || asks_for_other(r)) {
     memcpy(r->body.fixed, fixed, r->n_dof);
     TRY(make_matrices(r));
     fresh = 1;

@@ -143,6 +143,7 @@ done:
 void run_free(run *r) {
   run_free_surface(r);
   run_free_ties(r);
+  memory_free(r->body.order.node);
   effects_release(r);
   free_equilibrium(&r->old);
   free_equilibrium(&r->now);

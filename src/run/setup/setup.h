@@ -34,6 +34,10 @@ void run_free_surface(run *r);
 status run_build_ties(run *r);
 void run_free_ties(run *r);
 
+/* stiffness.c: how the solver of r->step knows the condensed stiffness, and
+ * r->body.order for it. ERR_MEMORY. */
+status run_choose_stiffness(run *r, stiffness_choice *c);
+
 /* prepare.c: surface, stiffness, condensed matrix and solver for r->step. */
 status run_prepare(run *r);
 

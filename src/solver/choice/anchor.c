@@ -65,12 +65,24 @@ static status find_stiffness(const contact_problem *cp, double *stiffness) {
   return OK;
 }
 
+/* The motions that the operator knows. */
+static status known_modes(const contact_problem *cp, anchor *an) {
+  const size_t size = (size_t)cp->m * (size_t)cp->op->n_kernel;
+  an->n_mode = cp->op->n_kernel;
+  PASS_NEW(an->R, size);
+  PASS_NEW(an->a, an->n_mode);
+  PASS_NEW(an->step, an->n_mode);
+  if (size > 0) memcpy(an->R, cp->op->kernel, size * sizeof *an->R);
+  return OK;
+}
+
 status anchor_modes(const contact_problem *cp, anchor *an) {
   OWNED int *pivot = NULL;
   int m = cp->m, rank = 0;
   OWNED double *work = NULL, *L = NULL, *scale = NULL;
   const size_t size = (size_t)m * (size_t)m;
   if (an->R != NULL) return OK;
+  if (cp->op != NULL) return known_modes(cp, an);
   PASS_NEW(pivot, m);
   PASS_NEW(work, 2 * m);
   PASS_NEW(scale, m);

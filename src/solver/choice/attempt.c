@@ -68,7 +68,8 @@ static status suit_by_springs(contact_solver *s, const contact_problem *cp,
 static int lacks_stiffness(const contact_solver *s, const contact_problem *cp,
                            const solver_ops *ops) {
   int does = (ops->handles & REGULAR_COMPLIANCE) && !s->inverse_wanted;
-  return (ops->handles & NEEDS_STIFFNESS) && cp->A == NULL && !does;
+  return (ops->handles & NEEDS_STIFFNESS) && !contact_has_stiffness(cp) &&
+         !does;
 }
 
 /* All of a compliance given in blocks, for the others. */
@@ -86,6 +87,15 @@ static status fill_up(contact_solver *s, contact_problem *cp) {
   return OK;
 }
 
+/* Why the solver cannot take the problem in any form, or NULL. */
+static const char *unfit(const contact_problem *cp, const solver_ops *ops) {
+  if (cp->op != NULL && !(ops->handles & BY_OPERATOR))
+    return "needs the entries of the condensed stiffness (STIFFNESS=DENSE)";
+  if (cp->dim == 3 && !(ops->handles & SOLVES_3D))
+    return "solves problems in the plane only";
+  return NULL;
+}
+
 /* The problem in a form the solver can use; NULL, or why there is none. */
 static status suit(contact_solver *s, const contact_problem *cp,
                    const solver_ops *ops, contact_problem *out,
@@ -96,10 +106,8 @@ static status suit(contact_solver *s, const contact_problem *cp,
   int stiffness = lacks_stiffness(s, cp, ops);
   int compliance =
       (ops->handles & NEEDS_COMPLIANCE) && cp->W == NULL && cp->blocks == NULL;
-  if (cp->dim == 3 && !(ops->handles & SOLVES_3D)) {
-    *why = "solves problems in the plane only";
-    goto done;
-  }
+  *why = unfit(cp, ops);
+  if (*why != NULL) goto done;
   if (cp->floating && !(ops->handles & SOLVES_FLOATING)) {
     TRY(suit_by_springs(s, cp, out, why));
     goto done;
@@ -183,7 +191,7 @@ static int wants_inverse(contact_solver *s, const contact_problem *cp,
                          const attempt *a, const solver_report *rep) {
   int row = row_of(a->ops);
   if (s->choice.ops == NULL || rep->outcome != STOPPED_SINGULAR ||
-      cp->A != NULL || !(a->ops->handles & REGULAR_COMPLIANCE) ||
+      contact_has_stiffness(cp) || !(a->ops->handles & REGULAR_COMPLIANCE) ||
       s->inverse_wanted)
     return 0;
   a->ops->release(s->work[row]);
@@ -215,7 +223,8 @@ static status drive_until_met(drive_call *x, const contact_problem *own,
     TRY(drive_form(x, own, &control, u, r, rep));
     made += rep->iterations;
     rep->iterations = made;
-    if (x->given->A != NULL || own->A == NULL || rep->outcome != CONVERGED)
+    if (contact_has_stiffness(x->given) || !contact_has_stiffness(own) ||
+        rep->outcome != CONVERGED)
       break;
     double residual = contact_residual(x->given, u, r);
     if (!(residual > tol)) break;
@@ -299,7 +308,7 @@ status attempt_prove(contact_solver *s, const contact_problem *cp,
 
 /* Cold start: stick, no penetration; r = A u - f. */
 void cold_start(const contact_problem *cp, double *u, double *r) {
-  if (cp->A == NULL) {
+  if (!contact_has_stiffness(cp)) {
     memset(r, 0, (size_t)cp->m * sizeof *r);
     memcpy(u, cp->f, (size_t)cp->m * sizeof *u);
     return;

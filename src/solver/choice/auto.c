@@ -227,7 +227,7 @@ static void note(contact_solver *s, const solver_report *rep,
  * not apply less. */
 static int weight(const contact_problem *cp, outcome o) {
   if (o == STOPPED_UNFIT) return -1;
-  return o == STOPPED_SINGULAR && cp->A != NULL;
+  return o == STOPPED_SINGULAR && contact_has_stiffness(cp);
 }
 
 /* The more significant of two failures: singular, then the lower residual. */
@@ -240,19 +240,20 @@ static int says_more(const contact_problem *cp, const solver_report *a,
 
 /* 1: sweeps may be fast. */
 static int sweeps_fit(const contact_problem *cp) {
-  return cp->A == NULL && cp->dim == 3 && cp->B != NULL;
+  return !contact_has_stiffness(cp) && cp->dim == 3 && cp->B != NULL;
 }
 
 /* 1 if a method of the chain does not apply: a friction path without Coulomb
  * friction, a method for problems of which only the compliance is known, or one
- * that needs all of a large sparse one. */
+ * that needs all of a large sparse one, or entries that are not there. */
 static int is_skipped(const contact_problem *cp, const link *l) {
   if (l->how == ALONG_PATH && cp->B == NULL) return 1;
+  if (cp->op != NULL && !(l->ops->handles & BY_OPERATOR)) return 1;
   if (cp->blocks != NULL)
     return cp->m > MOST_FULL && !(l->ops->handles & SPARSE_COMPLIANCE);
   if (l->how == WHILE_PROMISING && !sweeps_fit(cp)) return 1;
-  if (l->compliance < 0) return cp->A == NULL;
-  return l->compliance && cp->A != NULL;
+  if (l->compliance < 0) return !contact_has_stiffness(cp);
+  return l->compliance && contact_has_stiffness(cp);
 }
 
 /* 1 if no other method is needed: a solution or a proof. */

@@ -54,6 +54,7 @@ static void forget_factors(contact_solver *s) {
   s->best_u = s->best_r = s->full = NULL;
   s->A = s->W = NULL;
   s->blocks = NULL;
+  s->op = NULL;
   s->m = s->n = -1;
   s->from = NULL;
 }
@@ -71,8 +72,9 @@ void contact_solver_tolerance(contact_solver *s, double tol) {
 const char *contact_solver_log(const contact_solver *s) { return s->log; }
 
 static int fits(const contact_solver *s, const contact_problem *cp) {
-  return s->A == cp->A && s->W == cp->W && s->blocks == cp->blocks &&
-         s->m == cp->m && s->n == cp->n && s->best_u != NULL;
+  return s->A == cp->A && s->op == cp->op && s->W == cp->W &&
+         s->blocks == cp->blocks && s->m == cp->m && s->n == cp->n &&
+         s->best_u != NULL;
 }
 
 static status fit(contact_solver *s, const contact_problem *cp) {
@@ -91,6 +93,7 @@ static status fit(contact_solver *s, const contact_problem *cp) {
   NEW(s->best_u, cp->m);
   NEW(s->best_r, cp->m);
   s->A = cp->A;
+  s->op = cp->op;
   s->W = cp->W;
   s->blocks = cp->blocks;
   s->m = cp->m;
@@ -122,10 +125,11 @@ status contact_solver_keep(contact_solver *s, archive *a) {
 /* 1: no force is needed: of a compliance whose nodes do not reach their
  * obstacles, or of a stiffness without load that nothing pressed before, r. */
 static int needs_no_force(const contact_problem *cp, const double *r) {
+  const int stiffness = contact_has_stiffness(cp);
   for (int dof = 0; dof < cp->m; ++dof) {
     const double *load = cp->f + dof;
-    if ((cp->A != NULL ? 0.0 : *load) > contact_bound(cp, dof)) return 0;
-    if (cp->A == NULL) continue;
+    if ((stiffness ? 0.0 : *load) > contact_bound(cp, dof)) return 0;
+    if (!stiffness) continue;
     if (*load != 0.0) return 0;
     if (r[dof] < 0.0 && contact_bound(cp, dof) < HUGE_VAL) return 0;
     if (contact_held(cp, dof) && contact_stick(cp, dof) != 0.0) return 0;
@@ -147,7 +151,7 @@ static int known_answer(const contact_solver *s, const contact_problem *cp,
   if (scale == 0.0 || needs_no_force(cp, r)) {
     memset(r, 0, (size_t)cp->m * sizeof *r);
     memset(u, 0, (size_t)cp->m * sizeof *u);
-    if (cp->A == NULL) memcpy(u, cp->f, (size_t)cp->m * sizeof *u);
+    if (!contact_has_stiffness(cp)) memcpy(u, cp->f, (size_t)cp->m * sizeof *u);
     rep->residual = contact_residual_at(cp, scale, u, r);
     return rep->residual <= tol;
   }

@@ -19,6 +19,7 @@ struct contact_solver {
   /* What belongs to one matrix. */
   const double *A, *W; /* of the last problem, borrowed */
   const sparse_blocks *blocks;
+  const contact_operator *op;
   int m, n;
   void *work[N_SOLVER + 1]; /* of solver_list, last of a solver that is not in
                                it; NULL: not set up */

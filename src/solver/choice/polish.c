@@ -16,8 +16,8 @@ static double tangent_stiffness(const contact_problem *cp, int node_id,
   double sum = 0.0;
   for (int k = 1; k < cp->dim; ++k)
     sum += contact_diagonal(cp, node_id * cp->dim + k) / (cp->dim - 1);
-  *unit = cp->A != NULL ? 1.0 : sum;
-  return cp->A != NULL ? sum : sum > 0.0 ? 1.0 / sum : 0.0;
+  *unit = contact_has_stiffness(cp) ? 1.0 : sum;
+  return contact_has_stiffness(cp) ? sum : sum > 0.0 ? 1.0 / sum : 0.0;
 }
 
 /* Of one node, N. */
@@ -54,7 +54,8 @@ double slip_misdirection(const contact_problem *cp, const double *u,
 static double distance_to_bound(const contact_problem *cp, const double *u,
                                 const double *r, int dof) {
   double own = contact_diagonal(cp, dof);
-  double c = cp->A != NULL ? own : 1.0 / own, bound = contact_bound(cp, dof);
+  double c = contact_has_stiffness(cp) ? own : 1.0 / own,
+         bound = contact_bound(cp, dof);
   if (bound == HUGE_VAL || !(own > 0.0)) return 0.0;
   return r[dof] - c * (u[dof] - bound) < 0.0 ? bound - u[dof] : 0.0;
 }
@@ -87,9 +88,9 @@ static int touch(const contact_problem *cp, const double *u, const double *r,
   for (int i = 0; i < cp->m; ++i) changed |= move[i] != 0.0;
   if (!changed) return 0;
   memcpy(s, r, (size_t)cp->m * sizeof *s);
-  if (cp->A != NULL) contact_product(cp->m, cp->A, move, v);
+  if (contact_has_stiffness(cp)) contact_apply(cp, move, v);
   for (int i = 0; i < cp->m; ++i) {
-    if (cp->A != NULL && move[i] != 0.0) s[i] += v[i];
+    if (contact_has_stiffness(cp) && move[i] != 0.0) s[i] += v[i];
     v[i] = u[i] + move[i];
   }
   return 1;
@@ -118,7 +119,7 @@ status polish_slip(const contact_problem *cp, double tol, int most, double *u,
   size_t bytes = (size_t)cp->m * sizeof *u;
   double least = slip_misdirection(cp, u, r);
   *sweeps = 0;
-  if (!(least > tol) || most <= 0) goto done;
+  if (!(least > tol) || most <= 0 || cp->op != NULL) goto done;
   NEW(s.u, cp->m);
   NEW(s.r, cp->m);
   TRY(node_blocks_new(cp, &s.blocks));

@@ -65,7 +65,7 @@ static double largest_growth(const contact_problem *cp, const double *v,
 static double force_of(const contact_problem *cp, const double *v,
                        double *workspace) {
   double force = 0.0, size = 0.0;
-  contact_product(cp->m, cp->A, v, workspace);
+  contact_apply(cp, v, workspace);
   for (size_t i = 0, m = (size_t)cp->m; i < m; ++i) {
     force = fmax(force, fabs(workspace[i]));
     size = fmax(size, contact_diagonal(cp, (int)i) * fabs(v[i]));
@@ -120,8 +120,8 @@ static int forces_are_proof(const contact_problem *cp, const double *l,
 }
 
 int proof_holds(const contact_problem *cp, const double *v, double *workspace) {
-  return cp->A != NULL ? motion_is_proof(cp, v, workspace)
-                       : forces_are_proof(cp, v, workspace);
+  return contact_has_stiffness(cp) ? motion_is_proof(cp, v, workspace)
+                                   : forces_are_proof(cp, v, workspace);
 }
 
 /* ---- stiffness: forces nearest to balance --------------------------------
@@ -289,7 +289,7 @@ static status find_forces(const contact_problem *cp, int *proved) {
 status proof_find(const contact_problem *cp, anchor *an, int *proved) {
   *proved = 0;
   if (cp->m == 0) return OK;
-  if (cp->A == NULL) {
+  if (!contact_has_stiffness(cp)) {
     PASS(find_forces(cp, proved));
   } else if (cp->floating) {
     PASS(anchor_modes(cp, an));

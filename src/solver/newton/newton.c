@@ -24,6 +24,7 @@
  */
 #include "base/memory.h"
 #include "solver/newton/compliance.h"
+#include "solver/newton/operated.h"
 #include "solver/newton/states.h"
 #include "solver/local.h"
 #include "solver/single.h"
@@ -57,8 +58,9 @@ static const uint64_t DICE_START = 88172645463325252u;
 
 typedef struct newton_work {
   states states;
-  newton_system *system;         /* NULL: only the compliance is known */
-  compliance_system *compliance; /* or NULL */
+  newton_system *system;         /* where A is known, else NULL */
+  operated_system *operated;     /* where it is an operator, else NULL */
+  compliance_system *compliance; /* where only W is known, else NULL */
   node_blocks *blocks;
   best_iterate best;
   uint64_t seen[HISTORY]; /* hashes of the patterns of the attempt */
@@ -69,6 +71,7 @@ static void newton_release(void *work) {
   if (w == NULL) return;
   states_free(&w->states);
   newton_system_free(w->system);
+  operated_system_free(w->operated);
   compliance_system_free(w->compliance);
   node_blocks_free(w->blocks);
   best_iterate_free(&w->best);
@@ -82,11 +85,13 @@ static status newton_setup(const contact_problem *cp, const void *par,
   (void)par;
   NEW(w, 1);
   TRY(states_new(cp, &w->states));
-  if (cp->A != NULL)
+  if (cp->op != NULL)
+    TRY(operated_system_new(cp, &w->operated));
+  else if (cp->A != NULL)
     TRY(newton_system_new(cp, &w->system));
   else
     TRY(compliance_system_new(cp, &w->compliance));
-  TRY(node_blocks_new(cp, &w->blocks));
+  if (cp->op == NULL) TRY(node_blocks_new(cp, &w->blocks));
   TRY(best_iterate_new(cp->m, &w->best));
   *work = w;
   w = NULL;
@@ -101,9 +106,10 @@ typedef struct run {
   states *st;
   const solver_control *control;
   double *u, *r;
-  double scale; /* contact_scale, N (m) */
-  int steps;    /* made so far */
-  int singular; /* the last system needed springs */
+  double scale;  /* contact_scale, N (m) */
+  int steps;     /* made so far */
+  int singular;  /* the last system needed springs */
+  status failed; /* of a step, ERR_MEMORY: the method ends */
 } run;
 
 static double residual_of(const run *s) {
@@ -153,19 +159,24 @@ static int stuck(course *c, double residual) {
 /* raw from u, or r. */
 static void set_raw(const run *s) {
   const contact_problem *cp = s->cp;
-  if (cp->A != NULL)
+  if (contact_has_stiffness(cp))
     contact_reaction(cp, s->u, s->st->raw);
   else
     compliance_displace(cp, s->r, s->st->raw);
 }
 
-/* A step under the guess; 1: the system is singular. */
-static int step(const run *s) {
+/* A step under the guess; s->singular 1: the system is. */
+static status step(run *s) {
   states *st = s->st;
-  if (s->cp->A == NULL)
-    return compliance_system_step(s->w->compliance, s->cp, &st->guess, s->r,
-                                  st->raw);
-  return newton_system_step(s->w->system, &st->guess, s->u, st->raw);
+  const newton_work *w = s->w;
+  if (w->operated != NULL)
+    return operated_system_step(w->operated, s->cp, &st->guess, s->u, st->raw,
+                                &s->singular);
+  s->singular = w->system != NULL
+                    ? newton_system_step(w->system, &st->guess, s->u, st->raw)
+                    : compliance_system_step(w->compliance, s->cp, &st->guess,
+                                             s->r, st->raw);
+  return OK;
 }
 
 /* 1: springs carry part of the load, less with each step. */
@@ -175,13 +186,19 @@ static int settles(const run *s, course *c, double residual) {
   return c->changes == 0 && s->singular && residual < SETTLING * before;
 }
 
+/* 1: the last step was not exact, the next is. */
+static int may_refresh(const newton_work *w) {
+  return newton_system_refresh(w->system) ||
+         operated_system_refresh(w->operated);
+}
+
 /* RUNNING, or why the attempt ends without a solution. In the plane a repeated
  * pattern is a cycle; in 3-D directions change while the states stay. */
 static outcome verdict(const run *s, course *c, double residual) {
   int all = s->st->dice == 0, full = all && !s->st->careful;
   int still = stuck(c, residual), plane = s->cp->dim < 3;
   if (c->changes == 0 && (plane || (full && still))) {
-    if (newton_system_refresh(s->w->system)) return RUNNING;
+    if (may_refresh(s->w)) return RUNNING;
     return s->singular ? STOPPED_RAY : STOPPED_STAGNATION;
   }
   if (all && c->cycle && (plane || still)) return STOPPED_CYCLE;
@@ -208,9 +225,10 @@ static outcome attempt(run *s, int limit) {
   int m = s->cp->m;
   for (c.at = 0; goes_on(s, &c, limit); ++c.at) {
     c.cycle = met_before(s, c.at);
-    s->singular = step(s);
+    s->failed = step(s);
+    if (s->failed != OK) return STOPPED_NAN;
     ++s->steps;
-    if (s->singular && s->cp->A == NULL) return STOPPED_SINGULAR;
+    if (s->singular && !contact_has_stiffness(s->cp)) return STOPPED_SINGULAR;
     double residual = residual_of(s);
     if (isnan(residual)) return STOPPED_NAN;
     solver_keep_best(&s->w->best, m, residual, s->u, s->r);
@@ -261,9 +279,11 @@ static outcome newton_run(run *s, const newton *p) {
   states_all_stick(s->st);
   if (states_hash(s->st) != begun) o = first = attempt(s, limit);
   if (final(s, o)) return o;
-  relax(s);
-  o = attempt(s, limit);
-  if (final(s, o)) return o;
+  if (s->w->blocks != NULL) {
+    relax(s);
+    o = attempt(s, limit);
+    if (final(s, o)) return o;
+  }
   return_to_best(s);
   s->st->dice = DICE_START;
   o = attempt(s, many);
@@ -286,7 +306,9 @@ static void begin(run *s) {
   memset(s->st->guess.closed, 0, (size_t)cp->m);
   memset(s->st->guess.mode, FREE, (size_t)cp->n);
   set_raw(s);
-  if (cp->A != NULL)
+  if (s->w->operated != NULL)
+    operated_system_fit(s->w->operated);
+  else if (s->w->system != NULL)
     newton_system_fit(s->w->system, cp);
   else
     memcpy(s->u, s->st->raw, (size_t)cp->m * sizeof *s->u);
@@ -301,12 +323,13 @@ static status newton_solve(const contact_problem *cp, const void *par,
       .cp = cp, .w = w, .st = &w->states, .control = control, .u = u, .r = r};
   *rep = (solver_report){.outcome = CONVERGED, .iterations = 1};
   begin(&s);
-  if (cp->n == 1 &&
+  if (cp->n == 1 && cp->op == NULL &&
       single_solve(cp, s.scale, control->tol, u, r, &rep->residual)) {
     solver_report_step(control, "newton", 1, rep->residual);
     return OK;
   }
   rep->outcome = newton_run(&s, par);
+  PASS(s.failed);
   if (rep->outcome != CONVERGED && used_up(&s))
     rep->outcome = STOPPED_ITERATIONS;
   rep->iterations = s.steps;
@@ -341,7 +364,7 @@ const solver_ops newton_solver = {
     "nodes; no inverse is made, but the compliance must have one. The first\n"
     "choice for all but very large problems and large friction.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
-             REGULAR_COMPLIANCE | SOLVES_FLOATING,
+             REGULAR_COMPLIANCE | SOLVES_FLOATING | BY_OPERATOR,
   .param_size = sizeof(newton),
   .options = newton_options,
   .setup = newton_setup,

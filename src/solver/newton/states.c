@@ -11,22 +11,20 @@ static const double WARM_SLIP = 0x1p-20; /* -, of g: counts as slipping at the
 
 /* Of each unknown alone, and the mean over a tangent plane. */
 static void set_stiffness(const contact_problem *cp, states *s) {
-  size_t m = (size_t)cp->m;
-  const double *M = cp->A != NULL ? cp->A : cp->W;
   double largest = 0.0;
-  for (size_t i = 0; i < m; ++i) largest = fmax(largest, M[i * m + i]);
-  for (size_t i = 0; i < m; ++i) {
-    double d = M[i * m + i];
-    s->k[i] = cp->A != NULL ? d : 1.0 / (d > 0.0 ? d : largest);
+  for (int i = 0; i < cp->m; ++i)
+    largest = fmax(largest, contact_diagonal(cp, i));
+  for (int i = 0; i < cp->m; ++i) {
+    double d = contact_diagonal(cp, i);
+    s->k[i] = contact_has_stiffness(cp) ? d : 1.0 / (d > 0.0 ? d : largest);
   }
   for (int i = 0; i < cp->n; ++i) {
     double sum = 0.0;
-    for (int k = 1; k < cp->dim; ++k) {
-      size_t dof = (size_t)(i * cp->dim + k);
-      sum += M[dof * m + dof];
-    }
+    for (int k = 1; k < cp->dim; ++k)
+      sum += contact_diagonal(cp, i * cp->dim + k);
     sum /= cp->dim > 1 ? cp->dim - 1 : 1;
-    s->c[i] = cp->A != NULL ? sum : 1.0 / (sum > 0.0 ? sum : largest);
+    s->c[i] =
+        contact_has_stiffness(cp) ? sum : 1.0 / (sum > 0.0 ? sum : largest);
   }
 }
 
@@ -86,7 +84,7 @@ static void clean_displacement(const states *s) {
 
 void states_clean(const states *s) {
   const contact_problem *cp = s->cp;
-  if (cp->A == NULL) {
+  if (!contact_has_stiffness(cp)) {
     clean_displacement(s);
     return;
   }
@@ -214,7 +212,7 @@ static int next_bounds(states *s, int node_id, int fresh, int changes) {
 int states_next(states *s, int fresh) {
   const contact_problem *cp = s->cp;
   int changes = 0, bonded = fresh && unloaded(s);
-  if (bonded && cp->A == NULL) {
+  if (bonded && !contact_has_stiffness(cp)) {
     presume_pressure(s);
     bonded = 0;
   }

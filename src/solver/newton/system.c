@@ -466,29 +466,43 @@ void newton_slip(const contact_problem *cp, const double *u, int node_id,
 
 /* ---- right side ---------------------------------------------------------- */
 
-/* The known unknowns into u, raw following; the free ones are listed. */
-static void set_known(newton_system *s, pattern *p, double *u, double *raw) {
-  const contact_problem *cp = s->cp;
-  size_t m = (size_t)cp->m;
+/* Value of a known unknown of the guess, m. */
+static double known_value(const contact_problem *cp, const pattern *p,
+                          int dof) {
+  if (contact_held(cp, dof)) return cp->f[dof] / contact_diagonal(cp, dof);
+  return p->closed[dof] ? contact_bound(cp, dof) : contact_stick(cp, dof);
+}
+
+static int is_known(const contact_problem *cp, const pattern *p, int dof) {
+  return contact_held(cp, dof) || p->closed[dof] ||
+         (dof % cp->dim > 0 && p->mode[dof / cp->dim] == STICK);
+}
+
+int newton_list_known(const contact_problem *cp, pattern *p, const double *u,
+                      double *du) {
   int moved = 0;
   p->n_free = 0;
   for (int dof = 0; dof < cp->m; ++dof) {
-    int known = 1;
-    double to = u[dof];
-    if (contact_held(cp, dof))
-      to = cp->f[dof] / contact_diagonal(cp, dof);
-    else if (p->closed[dof])
-      to = contact_bound(cp, dof);
-    else if (dof % cp->dim > 0 && p->mode[dof / cp->dim] == STICK)
-      to = contact_stick(cp, dof);
-    else
-      known = 0;
+    const int known = is_known(cp, p, dof);
     p->place[dof] = known ? -1 : p->n_free;
     if (!known) p->free_id[p->n_free++] = dof;
-    s->du[dof] = to - u[dof];
-    moved += s->du[dof] != 0.0;
-    u[dof] = to;
+    du[dof] = known ? known_value(cp, p, dof) - u[dof] : 0.0;
+    moved += du[dof] != 0.0;
   }
+  return moved;
+}
+
+void newton_take_known(const contact_problem *cp, const pattern *p, double *u) {
+  for (int dof = 0; dof < cp->m; ++dof)
+    if (p->place[dof] < 0) u[dof] = known_value(cp, p, dof);
+}
+
+/* The known unknowns into u, raw following. */
+static void set_known(newton_system *s, pattern *p, double *u, double *raw) {
+  const contact_problem *cp = s->cp;
+  const size_t m = (size_t)cp->m;
+  int moved = newton_list_known(cp, p, u, s->du);
+  newton_take_known(cp, p, u);
   if (SHARE * moved > cp->m) {
     contact_reaction(cp, u, raw);
     return;
@@ -510,15 +524,12 @@ static double linear_limit(const contact_problem *cp, const pattern *p,
   return g;
 }
 
-/* b, times power: minus the residual of each free row at the present u. Returns
- * the largest. */
-static double load(newton_system *s, const pattern *p, const double *u,
-                   const double *raw) {
-  const contact_problem *cp = s->cp;
+double newton_load(const contact_problem *cp, const pattern *p, double power,
+                   const double *u, const double *raw, double *b) {
   int dim = cp->dim;
   double largest = 0.0;
   for (int dof = 0; dof < cp->m; ++dof)
-    s->b[dof] = p->place[dof] < 0 ? 0.0 : -raw[dof];
+    b[dof] = p->place[dof] < 0 ? 0.0 : -raw[dof];
   for (int node_id = 0; node_id < cp->n; ++node_id) {
     if (p->mode[node_id] != SLIP) continue;
     const double *e = p->e + node_id * (dim - 1);
@@ -528,12 +539,12 @@ static double load(newton_system *s, const pattern *p, const double *u,
     for (int k = 0; k < dim - 1; ++k) {
       int dof = node_id * dim + 1 + k;
       if (p->place[dof] < 0) continue;
-      s->b[dof] += g * e[k] - p->kappa[node_id] * (slip[k] - along * e[k]);
+      b[dof] += g * e[k] - p->kappa[node_id] * (slip[k] - along * e[k]);
     }
   }
   for (int dof = 0; dof < cp->m; ++dof) {
-    s->b[dof] *= s->power;
-    if (!(fabs(s->b[dof]) <= largest)) largest = fabs(s->b[dof]);
+    b[dof] *= power;
+    if (!(fabs(b[dof]) <= largest)) largest = fabs(b[dof]);
   }
   return largest;
 }
@@ -560,11 +571,12 @@ static int try_update(newton_system *s, const pattern *p, double before,
                       double *u, double *raw) {
   if (!newton_exchange(s, p)) return 0;
   move(s, u, raw);
-  double left = load(s, p, u, raw), may = s->cp->dim == 3 ? CHORD : DEFECT;
+  double left = newton_load(s->cp, p, s->power, u, raw, s->b),
+         may = s->cp->dim == 3 ? CHORD : DEFECT;
   if (left <= may * before + ROUNDING * force_size(s, u)) return 1;
   cblas_daxpy(s->m, -1.0, s->du, 1, u, 1);
   contact_reaction(s->cp, u, raw);
-  load(s, p, u, raw);
+  newton_load(s->cp, p, s->power, u, raw, s->b);
   return 0;
 }
 
@@ -618,7 +630,7 @@ int newton_system_step(newton_system *s, pattern *p, double *u, double *raw) {
   if (p->n_free == 0) return 0;
   if (s->symmetric < 0)
     s->symmetric = dense_is_symmetric(s->m, cp->A, SYMMETRIC / s->power);
-  double before = load(s, p, u, raw);
+  double before = newton_load(s->cp, p, s->power, u, raw, s->b);
   double cost = s->has_base ? newton_list_changes(s, p) : HUGE_VAL;
   if (s->spent + cost <= newton_cost(p->n_free, newton_needs_lu(s, p))) {
     s->spent += cost;

@@ -53,6 +53,16 @@ status newton_system_keep(newton_system *s, archive *a);
  * next. Accepts NULL. */
 int newton_system_refresh(newton_system *s);
 
+/* The known unknowns of the guess and the free ones are listed; du[m]: what
+ * takes u to the known values. Returns how many it moves. */
+int newton_list_known(const contact_problem *cp, pattern *p, const double *u,
+                      double *du);
+/* They are put into u. */
+void newton_take_known(const contact_problem *cp, const pattern *p, double *u);
+/* b[m], times power: minus the residual of each free row at the present u.
+ * Returns the largest. */
+double newton_load(const contact_problem *cp, const pattern *p, double power,
+                   const double *u, const double *raw, double *b);
 /* Slip of a node in the directions friction acts in, slip[2], m. */
 void newton_slip(const contact_problem *cp, const double *u, int node_id,
                  double *slip);

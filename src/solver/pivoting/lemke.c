@@ -317,7 +317,8 @@ static void lemke_release(void *work) {
 static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
   for (int i = 0; i < N_CORRECTOR; ++i) {
     const solver_ops *ops = correctors[i];
-    if ((ops->handles & NEEDS_STIFFNESS) && cp->A == NULL) continue;
+    if ((ops->handles & NEEDS_STIFFNESS) && !contact_has_stiffness(cp))
+      continue;
     char *param = NULL;
     PASS_NEW(param, ops->param_size + 1);
     w->corrector.param[i] = param;
@@ -357,7 +358,8 @@ static status lemke_setup(const contact_problem *cp, const void *par,
   NEW(w->reduced.D, cp->n);
   NEW(w->reduced.tame, cp->n);
   NEW(w->var, n_var);
-  TRY(lcp_new(n_var, cp->A != NULL ? cp->m : cp->m + 2 * cp->n, &w->lcp));
+  TRY(lcp_new(n_var, contact_has_stiffness(cp) ? cp->m : cp->m + 2 * cp->n,
+              &w->lcp));
   TRY(set_up_correctors(cp, w));
   *work = w;
   w = NULL;
@@ -425,7 +427,7 @@ static status lemke_solve(const contact_problem *cp, const void *par,
                           double *r, solver_report *rep) {
   status st = OK;
   lemke_work *w = work;
-  lemke_run s = {cp, w, control, cp->A != NULL ? cp->A : cp->W};
+  lemke_run s = {cp, w, control, contact_matrix(cp)};
   (void)par;
   *rep = (solver_report){.outcome = STOPPED_SINGULAR};
   w->has_ray = 0;

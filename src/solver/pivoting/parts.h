@@ -66,7 +66,7 @@ typedef struct lemke_run {
 
 /* 1: stiffness form; 0: compliance form. */
 static inline int lemke_is_stiff(const lemke_run *s) {
-  return s->cp->A != NULL;
+  return contact_has_stiffness(s->cp);
 }
 
 /* ---- matrix.c ---- */

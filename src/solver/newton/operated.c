@@ -1,0 +1,256 @@
+/* A step by the operator (operated.h). */
+#include "solver/newton/operated.h"
+
+#include "base/memory.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+  DIRECTIONS = 60, /* of GMRES, without a new start */
+  REPEATS = 3      /* steps on the same rows that may still mend one */
+};
+/* What GMRES may leave of the right side, -: few digits while more than a share
+ * of the rows still change. */
+static const double ROUGH = 1e-3, ENOUGH = 1e-6, FEW = 1e-3;
+static const double SPRING = 0x1p-36;    /* -, of the diagonal */
+static const double EXHAUSTED = 0x1p-50; /* -, a direction of rounding */
+
+struct operated_system {
+  int m;
+  double power;         /* of two: the diagonal times it is of order 1 */
+  double *b, *x, *Ax;   /* [m] */
+  double *added;        /* [dim*m] known_rows.added */
+  unsigned char *known; /* [m] of the last step */
+  int repeated;         /* steps on the same rows before the last one */
+  int bent;             /* 1: it had friction that follows pressure */
+  int stepped;          /* 1: there was a last step */
+  double enough;        /* -, of the right side, left by GMRES */
+  struct {
+    int capacity;   /* columns that there is room for */
+    int n;          /* made */
+    double *V;      /* [m*capacity] orthonormal right sides */
+    double *X, *AX; /* [m*capacity] their solutions, A times them */
+    double *H;      /* [(DIRECTIONS+1)*DIRECTIONS] Hessenberg, then its R */
+    double *c, *s;  /* [DIRECTIONS] rotations */
+    double *g;      /* [DIRECTIONS+1] */
+  } krylov;
+};
+
+void operated_system_free(operated_system *s) {
+  if (s == NULL) return;
+  RELEASE(s->b, s->x, s->Ax, s->added, s->known, s->krylov.V, s->krylov.X,
+          s->krylov.AX, s->krylov.H, s->krylov.c, s->krylov.s, s->krylov.g, s);
+}
+
+static double power_of(const contact_problem *cp) {
+  double largest = 0.0;
+  int exponent = 0;
+  for (int i = 0; i < cp->m; ++i)
+    largest = fmax(largest, contact_diagonal(cp, i));
+  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
+  return ldexp(1.0, -exponent);
+}
+
+status operated_system_new(const contact_problem *cp, operated_system **out) {
+  status st = OK;
+  operated_system *s = NULL;
+  const size_t m = (size_t)cp->m;
+  NEW(s, 1);
+  s->m = cp->m;
+  s->power = power_of(cp);
+  NEW(s->b, m);
+  NEW(s->x, m);
+  NEW(s->Ax, m);
+  NEW(s->added, (size_t)cp->dim * m);
+  NEW(s->known, m);
+  NEW(s->krylov.H, (DIRECTIONS + 1) * DIRECTIONS);
+  NEW(s->krylov.c, DIRECTIONS);
+  NEW(s->krylov.s, DIRECTIONS);
+  NEW(s->krylov.g, DIRECTIONS + 1);
+  *out = s;
+  s = NULL;
+done:
+  operated_system_free(s);
+  return st;
+}
+
+void operated_system_fit(operated_system *s) { s->stepped = 0; }
+
+/* ---- friction that follows pressure ---------------------------------------
+ */
+
+/* y += N x: in the rows of the slipping nodes e (B (A x)_n) of the closed ones;
+ * returns 1 if there is any. */
+static int add_friction(const contact_problem *cp, const pattern *p,
+                        const double *Ax, double *y) {
+  const sparse_rows *B = cp->B;
+  int any = 0, tangents = cp->dim - 1;
+  for (int i = 0; B != NULL && i < cp->n; ++i) {
+    double sum = 0.0;
+    if (p->mode[i] != SLIP) continue;
+    for (int k = B->start[i]; k < B->start[i + 1]; ++k) {
+      int dof = B->col[k] * cp->dim;
+      if (!p->closed[dof] || B->val[k] == 0.0) continue;
+      sum += B->val[k] * Ax[dof];
+      any = 1;
+    }
+    for (int k = 0; k < tangents; ++k) {
+      int dof = i * cp->dim + 1 + k;
+      if (p->place[dof] >= 0) y[dof] += p->e[i * tangents + k] * sum;
+    }
+  }
+  return any;
+}
+
+/* ---- GMRES ----------------------------------------------------------------
+ */
+
+/* Room for another direction. */
+static status grow(operated_system *s) {
+  const size_t m = (size_t)s->m, have = (size_t)s->krylov.capacity;
+  const size_t want = have + 8;
+  double **of[] = {&s->krylov.V, &s->krylov.X, &s->krylov.AX};
+  if (s->krylov.n + 1 < s->krylov.capacity) return OK;
+  for (int k = 0; k < 3; ++k) {
+    double *more = NULL;
+    PASS_NEW(more, m * want);
+    if (have > 0) memcpy(more, *of[k], m * have * sizeof *more);
+    memory_free(*of[k]);
+    *of[k] = more;
+  }
+  s->krylov.capacity = (int)want;
+  return OK;
+}
+
+/* w orthogonal to v[0..j]; column j of H. */
+static void orthogonalise(operated_system *s, int j, double *w) {
+  double *h = s->krylov.H + (size_t)j * (DIRECTIONS + 1);
+  memset(h, 0, (DIRECTIONS + 1) * sizeof *h);
+  for (int i = 0; i <= j; ++i) {
+    const double *v = s->krylov.V + (size_t)s->m * (size_t)i;
+    h[i] = cblas_ddot(s->m, v, 1, w, 1);
+    cblas_daxpy(s->m, -h[i], v, 1, w, 1);
+  }
+  h[j + 1] = cblas_dnrm2(s->m, w, 1);
+}
+
+/* The rotations so far and a new one on column j; what is left of the right
+ * side. */
+static double rotate(operated_system *s, int j) {
+  double *h = s->krylov.H + (size_t)j * (DIRECTIONS + 1);
+  double *g = s->krylov.g;
+  for (int i = 0; i < j; ++i)
+    cblas_drot(1, h + i, 1, h + i + 1, 1, s->krylov.c[i], s->krylov.s[i]);
+  double a = h[j], b = h[j + 1];
+  cblas_drotg(&a, &b, s->krylov.c + j, s->krylov.s + j);
+  h[j] = a;
+  h[j + 1] = g[j + 1] = 0.0;
+  cblas_drot(1, g + j, 1, g + j + 1, 1, s->krylov.c[j], s->krylov.s[j]);
+  return fabs(g[j + 1]);
+}
+
+/* The combination of the directions that leaves least is added to x, Ax. */
+static void combine(operated_system *s) {
+  const int n = s->krylov.n;
+  cblas_dtrsv(CblasColMajor, CblasUpper, CblasNoTrans, CblasNonUnit, n,
+              s->krylov.H, DIRECTIONS + 1, s->krylov.g, 1);
+  cblas_dgemv(CblasColMajor, CblasNoTrans, s->m, n, 1.0, s->krylov.X, s->m,
+              s->krylov.g, 1, 1.0, s->x, 1);
+  cblas_dgemv(CblasColMajor, CblasNoTrans, s->m, n, 1.0, s->krylov.AX, s->m,
+              s->krylov.g, 1, 1.0, s->Ax, 1);
+}
+
+/* (x, Ax), which solves the symmetric part for the right side b of size
+ * "size", becomes the step: what the friction of x leaves is solved for. */
+static status gmres(operated_system *s, const contact_problem *cp,
+                    const pattern *p, double size) {
+  const size_t m = (size_t)s->m;
+  double left;
+  s->krylov.n = 0;
+  PASS(grow(s));
+  double *v = s->krylov.V;
+  memset(v, 0, m * sizeof *v);
+  add_friction(cp, p, s->Ax, v);
+  left = cblas_dnrm2(s->m, v, 1);
+  memset(s->krylov.g, 0, (DIRECTIONS + 1) * sizeof *s->krylov.g);
+  if (!(left > s->enough * size)) return OK;
+  s->krylov.g[0] = -left;
+  for (size_t i = 0; i < m; ++i) v[i] /= left;
+  for (double next = 1.0; left > s->enough * size && next > EXHAUSTED &&
+                          s->krylov.n < DIRECTIONS;) {
+    PASS(grow(s));
+    const size_t at = m * (size_t)s->krylov.n;
+    double *w = s->krylov.V + at + m, *x = s->krylov.X + at;
+    memset(x, 0, m * sizeof *x);
+    cp->op->solve(cp->op->ctx, s->krylov.V + at, x, s->krylov.AX + at);
+    memcpy(w, s->krylov.V + at, m * sizeof *w);
+    add_friction(cp, p, s->krylov.AX + at, w);
+    orthogonalise(s, s->krylov.n, w);
+    next = cblas_dnrm2(s->m, w, 1);
+    left = rotate(s, s->krylov.n++);
+    for (size_t i = 0; i < m && next > EXHAUSTED; ++i) w[i] /= next;
+  }
+  combine(s);
+  return OK;
+}
+
+/* ---- a step ---------------------------------------------------------------
+ */
+
+/* The rows of the guess; spring: share of the diagonal. */
+static status set_rows(operated_system *s, const contact_problem *cp,
+                       const pattern *p, double spring, int *singular) {
+  const size_t dim = (size_t)cp->dim;
+  const known_rows rows = {s->known, s->added};
+  int changed = s->stepped ? 0 : s->m;
+  memset(s->added, 0, dim * (size_t)s->m * sizeof *s->added);
+  for (int i = 0; i < s->m; ++i) {
+    const unsigned char now = p->place[i] < 0;
+    changed += s->known[i] != now;
+    s->known[i] = now;
+    s->added[dim * (size_t)i + (size_t)i % dim] =
+        spring * contact_diagonal(cp, i);
+  }
+  for (int i = 0; dim == 3 && i < cp->n; ++i) {
+    const double *e = p->e + 2 * i;
+    if (p->mode[i] != SLIP) continue;
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b)
+        s->added[9 * i + 3 * (1 + a) + 1 + b] +=
+            p->kappa[i] * ((a == b) - e[a] * e[b]);
+  }
+  s->repeated = changed > 0 ? 0 : s->repeated + 1;
+  s->enough = changed > FEW * s->m ? ROUGH : ENOUGH;
+  return cp->op->set_rows(cp->op->ctx, &rows, singular);
+}
+
+status operated_system_step(operated_system *s, const contact_problem *cp,
+                            pattern *p, double *u, double *raw, int *singular) {
+  int held = 0;
+  *singular = 0;
+  newton_list_known(cp, p, u, s->x);
+  newton_load(cp, p, s->power, u, raw, s->b);
+  PASS(set_rows(s, cp, p, 0.0, singular));
+  if (*singular) PASS(set_rows(s, cp, p, SPRING, &held));
+  s->stepped = 1;
+  cblas_dscal(s->m, s->power, s->x, 1);
+  cp->op->solve(cp->op->ctx, s->b, s->x, s->Ax);
+  memset(s->added, 0, (size_t)s->m * sizeof *s->added);
+  s->bent = add_friction(cp, p, s->Ax, s->added);
+  const double size = cblas_dnrm2(s->m, s->b, 1);
+  if (s->bent) PASS(gmres(s, cp, p, size));
+  cblas_daxpy(s->m, 1.0 / s->power, s->x, 1, u, 1);
+  newton_take_known(cp, p, u);
+  /* Steps from afar leave their rounding in a sum. */
+  if (s->repeated > 0)
+    contact_reaction(cp, u, raw);
+  else
+    cblas_daxpy(s->m, 1.0 / s->power, s->Ax, 1, raw, 1);
+  return OK;
+}
+
+int operated_system_refresh(operated_system *s) {
+  return s != NULL && s->repeated < REPEATS;
+}

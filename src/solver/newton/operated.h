@@ -1,0 +1,25 @@
+/*
+ * The linear system of one step of Newton's method (system.h) where the
+ * stiffness is an operator. The symmetric part of its matrix, without the
+ * friction that follows pressure, is factored for the rows of the guess; GMRES
+ * (Saad, Schultz 1986) preconditioned by it from the right adds the friction,
+ * which has rows at the slipping nodes only.
+ */
+#ifndef PROTIS_NEWTON_OPERATED_H
+#define PROTIS_NEWTON_OPERATED_H
+
+#include "solver/newton/system.h"
+
+typedef struct operated_system operated_system;
+status operated_system_new(const contact_problem *cp, operated_system **out);
+void operated_system_free(operated_system *s); /* accepts NULL */
+/* No step before on the same rows. */
+void operated_system_fit(operated_system *s);
+/* newton_system_step. *singular 1: weak springs held the body. ERR_MEMORY. */
+status operated_system_step(operated_system *s, const contact_problem *cp,
+                            pattern *p, double *u, double *raw, int *singular);
+/* 1: another step on the same rows may mend the last, which was solved to a few
+ * digits. Accepts NULL. */
+int operated_system_refresh(operated_system *s);
+
+#endif

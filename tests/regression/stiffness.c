@@ -1,0 +1,171 @@
+/*
+ * STIFFNESS= of *SOLVER: the condensed matrix by its entries (DENSE) or by
+ * products and solves (FACTOR) gives the same answers; AUTO takes the cheaper.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DENSE "*SOLVER, STIFFNESS=DENSE, TOL=1E-12\n"
+#define FACTOR "*SOLVER, STIFFNESS=FACTOR, TOL=1E-12\n"
+
+/* Decks of all kinds: friction in the plane and in space, pairs, inelastic
+ * strains, bodies that contact alone holds, averages. */
+static const struct {
+  const char *deck, *words;
+} decks[] = {
+    {"input/greco/greco", "-D N=16"},
+    {"input/block_shear_3d/block_shear_3d", "-D N=4"},
+    {"input/creep_block/creep_block", ""},
+    {"input/lying_block/lying_block_3d", ""},
+    {"input/press_fit/press_fit", ""},
+    {"input/arch/arch", ""},
+    {"input/nonlocal_slider/nonlocal_slider", ""},
+};
+enum { DECKS = sizeof decks / sizeof *decks };
+
+/* Largest difference of the column in the last table, over its largest or
+ * "size". */
+static double apart(const dat *a, const dat *b, const char *name,
+                    double *size) {
+  double most = 0, worst = 0;
+  for (int i = 0; i < a->n_row; ++i) {
+    most = fmax(most, fabs(dat_at(a, i, name)));
+    worst = fmax(worst, fabs(dat_at(a, i, name) - dat_at(b, i, name)));
+  }
+  *size = fmax(*size, most);
+  return *size > 0 ? worst / *size : worst;
+}
+
+START_TEST(both_kinds_give_the_same_forces) {
+  job a = job_begin("dense"), b = job_begin("factor");
+  const char *deck = decks[_i].deck, *words = decks[_i].words;
+  double force = 0, u = 0;
+  int changes = 0;
+  ck_assert_int_eq(job_run_with(&a, deck, DENSE, 0, words), 0);
+  ck_assert_int_eq(job_run_with(&b, deck, FACTOR, 0, words), 0);
+  dat t = job_table(&a, "CONTACT", -1), s = job_table(&b, "CONTACT", -1);
+  ck_assert_int_eq(t.n_row, s.n_row);
+  ck_assert_double_le(apart(&t, &s, "f_n", &force), 1e-9);
+  ck_assert_double_le(apart(&t, &s, "u_n", &u), 1e-9);
+  if (dat_has(&t, "f_t"))
+    ck_assert_double_le(apart(&t, &s, "f_t", &force), 1e-9);
+  if (dat_has(&t, "f_t1"))
+    ck_assert_double_le(apart(&t, &s, "f_t1", &force), 1e-9);
+  for (int i = 0; i < t.n_row; ++i)
+    changes += dat_at(&t, i, "status") != dat_at(&s, i, "status");
+  ck_assert_int_eq(changes, 0);
+  char *listing = job_file(&b, "lst");
+  ck_assert_ptr_nonnull(strstr(listing, "FACTOR  STIFFNESS of *SOLVER"));
+  free(listing);
+  dat_free(&t);
+  dat_free(&s);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
+/* "--check" prints both rows; the kind it marks as taken. */
+static const char *taken(const job *j) {
+  const char *dense = strstr(j->text, "stiffness DENSE");
+  const char *factor = strstr(j->text, "stiffness FACTOR");
+  ck_assert_ptr_nonnull(dense);
+  ck_assert_ptr_nonnull(factor);
+  const char *mark = strstr(dense, ": taken, ");
+  ck_assert_ptr_nonnull(mark);
+  ck_assert_ptr_null(strstr(mark + 1, ": taken, "));
+  return mark < factor ? "DENSE" : "FACTOR";
+}
+
+static const char *choice(const char *cards, const char *words) {
+  char line[80];
+  job j = job_begin("choice");
+  const char *deck = "input/greco/greco";
+  snprintf(line, sizeof line, "--check %s", words);
+  ck_assert_int_eq(job_run_with(&j, deck, cards, 0, line), 0);
+  const char *kind = taken(&j);
+  job_end(&j);
+  return kind;
+}
+
+/* Few contact nodes: DENSE, unless the deck says otherwise. */
+START_TEST(kind_is_chosen_by_cost) {
+  ck_assert_str_eq(choice("", "-D N=64"), "DENSE");
+  ck_assert_str_eq(choice("*SOLVER, STIFFNESS=FACTOR\n", "-D N=64"), "FACTOR");
+  ck_assert_str_eq(choice("*SOLVER, METHOD=SOR\n", "-D N=64"), "DENSE");
+  ck_assert_str_eq(choice("*SOLVER, CHECK=YES\n", "-D N=64"), "DENSE");
+}
+END_TEST
+
+/* A strip, all of whose lower side touches: FACTOR, and the forces of DENSE. */
+/* A strip of so many cells, all of whose lower side touches. */
+static job strip(int cells, const char *solver) {
+  job j = job_begin("strip");
+  job_write(&j, "strip.geo",
+            "// a row of cells\nPoint(1) = {0, 0, 0};\n"
+            "b[] = Extrude {1, 0, 0} { Point{1}; Layers{%d}; };\n"
+            "s[] = Extrude {0, 0.01, 0} { Line{b[1]}; Layers{3}; };\n"
+            "Physical Curve(\"BOTTOM\") = {b[1]};\n"
+            "Physical Curve(\"TOP\") = {s[0]};\n"
+            "Physical Surface(\"BODY\") = {s[1]};\n",
+            cells);
+  job_write(&j, "strip.inp",
+            "*MESH, FILE=strip.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"1e-5*(1 - cos(40*x))\"\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nTOP, 1, 1, 2e-5\nTOP, 2, 2, -5e-5\n"
+            "*SOLVER, %s\n*PRINT, CONTACT\n*OUTPUT, HDF5=NO\n*END STEP\n",
+            solver);
+  return j;
+}
+
+/* One that is dearer, where the other does not fit. */
+START_TEST(kind_is_chosen_by_memory) {
+  static const char *const kinds[] = {"DENSE", "FACTOR"};
+  for (int k = 0; k < 2; ++k) {
+    job j = strip(300, k == 0 ? "STIFFNESS=AUTO" : "MAX_MEMORY=10");
+    ck_assert_int_eq(job_run(&j, "--check"), 0);
+    ck_assert_str_eq(taken(&j), kinds[k]);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* FACTOR, and the forces of DENSE. */
+START_TEST(contact_of_most_of_the_body_is_not_condensed) {
+  static const char *const kinds[] = {"STIFFNESS=AUTO", "STIFFNESS=DENSE"};
+  job j[2];
+  for (int k = 0; k < 2; ++k) {
+    j[k] = strip(600, kinds[k]);
+    ck_assert_int_eq(job_run(&j[k], ""), 0);
+    char *listing = job_file(&j[k], "lst");
+    ck_assert_ptr_nonnull(strstr(
+        listing, k == 0 ? "FACTOR  it is foreseen" : "DENSE  STIFFNESS of"));
+    free(listing);
+  }
+  dat a = job_table(&j[0], "CONTACT", 0), b = job_table(&j[1], "CONTACT", 0);
+  double force = 0;
+  ck_assert_int_eq(a.n_row, 601);
+  ck_assert_double_le(apart(&a, &b, "f_n", &force), 1e-9);
+  ck_assert_double_le(apart(&a, &b, "f_t", &force), 1e-9);
+  for (int k = 0; k < 2; ++k) job_end(&j[k]);
+  dat_free(&a);
+  dat_free(&b);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("stiffness");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, both_kinds_give_the_same_forces, 0, DECKS);
+  tcase_add_test(tests, kind_is_chosen_by_cost);
+  tcase_add_test(tests, kind_is_chosen_by_memory);
+  tcase_add_test(tests, contact_of_most_of_the_body_is_not_condensed);
+  return unit_run("stiffness", tests);
+}

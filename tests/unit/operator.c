@@ -1,0 +1,403 @@
+/* src/fem: the condensed stiffness as an operator, against its entries. */
+#include "base/memory.h"
+#include "fem/fem.h"
+#include "support/scene.h"
+#include "support/unit.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+static scene *plain_2d(void) {
+  scene *s = scene_new(make_grid_2d((int[]){6, 4}, (double[]){1.5, 1}),
+                       PLANE_STRAIN, 7);
+  scene_contact(s, "BOTTOM", (double[]){0, -1}, 0);
+  scene_fix(s, "TOP", 0);
+  scene_fix(s, "TOP", 1);
+  return s;
+}
+
+/* The foot of the symmetry line is a contact node held along x. */
+static scene *held_2d(void) {
+  scene *s = scene_new(make_grid_2d((int[]){5, 4}, (double[]){1.5, 1}),
+                       PLANE_STRESS, 7);
+  scene_contact(s, "BOTTOM", (double[]){0, -1}, 0);
+  scene_fix(s, "LEFT", 0);
+  scene_fix_node(s, s->m->n_node - 1, 1);
+  s->surface.held[1] = 1;
+  return s;
+}
+
+static scene *normals_only(void) {
+  scene *s = plain_2d();
+  s->d.rows = 1;
+  return s;
+}
+
+static scene *two_bodies(void) {
+  mesh *a = make_grid_2d((int[]){3, 3}, (double[]){1, 1});
+  mesh *b = grid_join(a, a, (double[]){2, 0.25});
+  scene *s = scene_new(b, PLANE_STRAIN, 2);
+  const int contact[] = {1, 2, 17, 18, 19}; /* feet of both */
+  b->group[0].n_node = 5;
+  memcpy(b->group[0].node_id, contact, sizeof contact);
+  scene_contact(s, "BODY", (double[]){0, -1}, 0);
+  for (int c = 0; c < 2; ++c) {
+    scene_fix_node(s, 12, c);
+    scene_fix_node(s, 15, c);
+  }
+  scene_fix_node(s, 16, 0);
+  mesh_free(a);
+  return s;
+}
+
+static scene *oblique_3d(void) {
+  scene *s = scene_new(make_grid_3d((int[]){3, 2, 3}, (double[]){1, 1, 2}),
+                       SOLID_3D, 5);
+  scene_contact(s, "FRONT", (double[]){0, 0.6, -0.8}, 0.4);
+  for (int c = 0; c < 3; ++c) scene_fix(s, "BACK", c);
+  return s;
+}
+
+static scene *floating_3d(void) {
+  scene *s = scene_new(make_grid_3d((int[]){3, 2, 2}, (double[]){1, 1, 2}),
+                       SOLID_3D, 5);
+  scene_contact(s, "FRONT", (double[]){0, 0, -1}, 0);
+  return s;
+}
+
+static scene *(*const scenes[])(void) = {plain_2d,   held_2d,    normals_only,
+                                         oblique_3d, two_bodies, floating_3d};
+enum {
+  SCENES = sizeof scenes / sizeof *scenes,
+  FLOATING = SCENES - 1,
+  HELD = SCENES - 2 /* those that supports hold */
+};
+
+/* A scene, its condensed matrix, and the same as an operator. */
+typedef struct both {
+  scene *s;
+  stiffness *k;
+  condensed *dense, *sparse;
+  const contact_operator *op;
+  const double *A; /* [m*m] */
+  int m, dim;      /* dim: unknowns of a contact node */
+  size_t n;        /* components of all nodes */
+  double size;     /* largest entry of A */
+} both;
+
+static both both_new(int i) {
+  both b = {.s = scenes[i]()};
+  domain d = b.s->d;
+  ck_assert_int_eq(stiffness_assemble(&d, &b.k), OK);
+  ck_assert_int_eq(condense(b.k, &d, &b.dense), OK);
+  d.sparse = 1;
+  ck_assert_int_eq(condense(b.k, &d, &b.sparse), OK);
+  b.op = condensed_operator(b.sparse);
+  b.A = condensed_matrix(b.dense);
+  ck_assert_ptr_nonnull(b.op);
+  ck_assert_ptr_null(condensed_matrix(b.sparse));
+  ck_assert_ptr_null(condensed_operator(b.dense));
+  b.dim = d.rows > 0 ? d.rows : b.s->m->dim;
+  b.m = b.dim * b.s->surface.n;
+  b.n = (size_t)(b.s->m->dim * b.s->m->n_node);
+  for (int q = 0; q < b.m * b.m; ++q) b.size = fmax(b.size, fabs(b.A[q]));
+  return b;
+}
+
+static void both_free(both *b) {
+  condensed_free(b->dense);
+  condensed_free(b->sparse);
+  stiffness_free(b->k);
+  scene_free(b->s);
+}
+
+static double *get(size_t n) { return calloc(n + 1, sizeof(double)); }
+
+static double *numbers(size_t n, unsigned seed) {
+  double *v = get(n);
+  for (size_t i = 0; i < n; ++i) v[i] = scene_random(&seed);
+  return v;
+}
+
+static int is_held(const both *b, int row) {
+  return b->s->surface.held[b->s->m->dim * (row / b->dim) + row % b->dim];
+}
+
+static void same(size_t n, const double *a, const double *b, double tol) {
+  for (size_t i = 0; i < n; ++i) ck_assert_double_eq_tol(a[i], b[i], tol);
+}
+
+/* Columns of A; the magnitudes are not below the sum. */
+START_TEST(products_have_the_entries) {
+  both b = both_new(_i);
+  const size_t m = (size_t)b.m;
+  double *e = get(m), *column = get(m), *again = get(m), *size = get(m);
+  for (size_t j = 0; j < m; ++j) {
+    e[j] = 1;
+    b.op->apply(b.op->ctx, e, column);
+    b.op->apply_sizes(b.op->ctx, e, again, size);
+    for (size_t i = 0; i < m; ++i) {
+      ck_assert(column[i] == again[i]);
+      ck_assert_double_ge(size[i] * (1 + 1e-12) + 1e-12 * b.size,
+                          fabs(column[i]));
+      if (is_held(&b, (int)i) && i == j) continue; /* any stiffness */
+      ck_assert_double_eq_tol(column[i], b.A[i + m * j], 1e-13 * b.size);
+    }
+    if (!is_held(&b, (int)j))
+      ck_assert_double_ge(b.op->diagonal[j], b.A[j * (m + 1)] * (1 - 1e-12));
+    e[j] = 0;
+  }
+  free(e);
+  free(column);
+  free(again);
+  free(size);
+  both_free(&b);
+}
+END_TEST
+
+/* (A + added) x = b at the free rows, x given at the others, by LAPACK. */
+static void dense_solve(const both *b, const unsigned char *known,
+                        const double *added, const double *rhs, double *x) {
+  const size_t m = (size_t)b->m, dim = (size_t)b->dim;
+  double *M = get(m * m), *y = get(m);
+  for (size_t j = 0; j < m; ++j)
+    for (size_t i = 0; i < m; ++i)
+      if (!known[i] && !known[j]) M[i + m * j] = b->A[i + m * j];
+  for (size_t i = 0; i < m; ++i) {
+    for (size_t k = 0; k < dim; ++k) {
+      const size_t j = i / dim * dim + k;
+      if (!known[i] && !known[j]) M[i + m * j] += added[dim * i + k];
+    }
+    y[i] = rhs[i];
+    for (size_t j = 0; j < m; ++j)
+      if (known[j]) y[i] -= b->A[i + m * j] * x[j];
+    if (!known[i]) continue;
+    M[i * (m + 1)] = 1;
+    y[i] = x[i];
+  }
+  ck_assert_int_eq(
+      LAPACKE_dposv(LAPACK_COL_MAJOR, 'L', b->m, 1, M, b->m, y, b->m), 0);
+  memcpy(x, y, m * sizeof *x);
+  free(M);
+  free(y);
+}
+
+/* Stiffness at the free tangents of each node. */
+static void add_turning(const both *b, const unsigned char *known,
+                        double *added) {
+  const size_t m = (size_t)b->m, dim = (size_t)b->dim;
+  for (size_t i = 0; i < m; i += dim)
+    for (size_t r = 1; r < dim; ++r)
+      for (size_t c = 1; c < dim; ++c)
+        if (!known[i + r] && !known[i + c])
+          added[dim * (i + r) + c] = b->size * (r == c ? 1.5 : 0.4);
+}
+
+/* Several guesses of the states, one after the other, the first again. */
+START_TEST(solves_under_known_rows_are_those_of_the_entries) {
+  both b = both_new(_i);
+  const size_t m = (size_t)b.m, dim = (size_t)b.dim;
+  double *x = get(m), *y = get(m), *Ax = get(m), *added = get(dim * m);
+  unsigned char *known = memory_new(m, 1);
+  for (int k = 0; k < 4; ++k) {
+    const int every = k == 3 ? 2 : k + 2;
+    unsigned seed = 11;
+    double *rhs = numbers(m, 7), *Ay = get(m);
+    int singular = 1;
+    for (size_t i = 0; i < m; ++i) {
+      known[i] =
+          (int)(i / dim) % every == 0 || i / dim == 2 || is_held(&b, (int)i);
+      x[i] = y[i] = known[i] && !is_held(&b, (int)i) ? scene_random(&seed) : 0;
+    }
+    memset(added, 0, dim * m * sizeof *added);
+    if (k > 0) add_turning(&b, known, added);
+    const known_rows rows = {known, added};
+    ck_assert_int_eq(b.op->set_rows(b.op->ctx, &rows, &singular), OK);
+    ck_assert_int_eq(singular, 0);
+    b.op->solve(b.op->ctx, rhs, x, Ax);
+    dense_solve(&b, known, added, rhs, y);
+    same(m, x, y, 1e-11);
+    b.op->apply(b.op->ctx, y, Ay);
+    same(m, Ax, Ay, 1e-11 * b.size);
+    free(rhs);
+    free(Ay);
+  }
+  free(x);
+  free(y);
+  free(Ax);
+  free(added);
+  memory_free(known);
+  both_free(&b);
+}
+END_TEST
+
+/* With too few rows known the body may move: said, not solved. */
+START_TEST(rows_that_leave_a_motion_are_singular) {
+  both b = both_new(FLOATING);
+  unsigned char *known = memory_new((size_t)b.m, 1);
+  const known_rows rows = {known, NULL};
+  int singular = 0;
+  for (int i = 0; i < b.m; i += 3) known[i] = 1; /* all normals */
+  ck_assert_int_eq(b.op->set_rows(b.op->ctx, &rows, &singular), OK);
+  ck_assert_int_eq(singular, 1);
+  known[1] = known[2] = known[b.m - 1] = known[b.m - 2] = 1;
+  ck_assert_int_eq(b.op->set_rows(b.op->ctx, &rows, &singular), OK);
+  ck_assert_int_eq(singular, 0);
+  ck_assert_int_eq(b.op->n_kernel, 6);
+  memory_free(known);
+  both_free(&b);
+}
+END_TEST
+
+/* Loads, recovery, energies and errors by both. */
+START_TEST(loads_and_recovery_are_the_same) {
+  both b = both_new(_i);
+  const size_t n = b.n, m = (size_t)b.m;
+  double *F = numbers(n, 3), *ud = numbers(n, 4), *uc = numbers(m, 5);
+  double *f[2] = {get(m), get(m)}, *u[2] = {get(n), get(n)};
+  condensed *c[2] = {b.dense, b.sparse};
+  for (int k = 0; k < 2; ++k) {
+    ck_assert_int_eq(condense_load(c[k], F, ud, f[k]), OK);
+    ck_assert_int_eq(condense_recover(c[k], uc, u[k]), OK);
+  }
+  for (size_t i = 0; i < m; ++i)
+    if (!is_held(&b, (int)i))
+      ck_assert_double_eq_tol(f[0][i], f[1][i], 1e-12 * b.size);
+  same(n, u[0], u[1], 1e-12);
+  ck_assert_int_eq(condensed_floating(b.sparse), condensed_floating(b.dense));
+  const double apart =
+      condensed_condition(b.sparse) / condensed_condition(b.dense);
+  ck_assert(apart > 0.3 && apart < 3);
+  free(F);
+  free(ud);
+  free(uc);
+  for (int k = 0; k < 2; ++k) {
+    free(f[k]);
+    free(u[k]);
+  }
+  both_free(&b);
+}
+END_TEST
+
+/* Of bodies that supports hold: inv(A) d, its energy, errors of a residual. */
+START_TEST(energies_and_errors_are_the_same) {
+  both b = both_new(_i);
+  const size_t n = b.n, m = (size_t)b.m;
+  double *rest = numbers(n, 3), *d = numbers(m, 5), square[2][3];
+  double *u[2] = {get(m), get(m)}, *w[2] = {get(n), get(n)},
+         *v[2] = {get(n), get(n)};
+  unsigned char *held = memory_new(m, 1);
+  condensed *c[2] = {b.dense, b.sparse};
+  for (size_t i = 0; i < m; ++i) {
+    held[i] = i % 3 == 0 || is_held(&b, (int)i);
+    if (is_held(&b, (int)i)) d[i] = 0;
+  }
+  for (int k = 0; k < 2; ++k) {
+    ck_assert_int_eq(condensed_force_energy(c[k], d, &square[k][0]), OK);
+    ck_assert_int_eq(condensed_untouched(c[k], d, u[k]), OK);
+    ck_assert_int_eq(condensed_misfit(c[k], rest, d, w[k], &square[k][1]), OK);
+    ck_assert_int_eq(
+        condensed_misfit_held(c[k], rest, d, held, v[k], &square[k][2]), OK);
+  }
+  same(m, u[0], u[1], 1e-11);
+  same(n, w[0], w[1], 1e-11);
+  same(n, v[0], v[1], 1e-11);
+  for (int q = 0; q < 3; ++q)
+    ck_assert_double_eq_tol(square[0][q] / square[1][q], 1, 1e-11);
+  free(rest);
+  free(d);
+  for (int k = 0; k < 2; ++k) {
+    free(u[k]);
+    free(w[k]);
+    free(v[k]);
+  }
+  memory_free(held);
+  both_free(&b);
+}
+END_TEST
+
+/* A power of two in the moduli leaves every bit of a solve. */
+START_TEST(power_of_two_in_the_moduli_leaves_every_bit) {
+  double *found[2] = {NULL, NULL};
+  for (int k = 0; k < 2; ++k) {
+    scene *s = oblique_3d();
+    stiffness *K = NULL;
+    condensed *c = NULL;
+    int singular;
+    for (int i = 0; i < 36; ++i) s->E[i] = ldexp(s->E[i], 40 * k);
+    s->d.sparse = 1;
+    ck_assert_int_eq(stiffness_assemble(&s->d, &K), OK);
+    ck_assert_int_eq(condense(K, &s->d, &c), OK);
+    const contact_operator *op = condensed_operator(c);
+    const size_t m = (size_t)(3 * s->surface.n);
+    unsigned char *known = memory_new(m, 1);
+    const known_rows rows = {known, NULL};
+    double *rhs = numbers(m, 9), *Ax = get(m);
+    known[0] = known[4] = 1;
+    for (size_t i = 0; i < m; ++i) rhs[i] = ldexp(rhs[i], 40 * k);
+    found[k] = get(m);
+    ck_assert_int_eq(op->set_rows(op->ctx, &rows, &singular), OK);
+    op->solve(op->ctx, rhs, found[k], Ax);
+    if (k == 1) ck_assert(memcmp(found[0], found[1], m * sizeof *rhs) == 0);
+    free(rhs);
+    free(Ax);
+    memory_free(known);
+    condensed_free(c);
+    stiffness_free(K);
+    scene_free(s);
+  }
+  free(found[0]);
+  free(found[1]);
+}
+END_TEST
+
+static status whole_way(const scene *s) {
+  stiffness *k = NULL;
+  condensed *c = NULL;
+  domain d = s->d;
+  const size_t n = (size_t)(s->m->dim * s->m->n_node);
+  double *work = get(3 * n);
+  d.sparse = 1;
+  status st = stiffness_assemble(&d, &k);
+  if (st == OK) st = condense(k, &d, &c);
+  if (st == OK) st = condense_load(c, work, NULL, work + n);
+  if (st == OK) st = condense_recover(c, work + n, work + 2 * n);
+  condensed_free(c);
+  stiffness_free(k);
+  free(work);
+  return st;
+}
+
+/* The solver may do without a block: nothing differs then. */
+START_TEST(every_refused_request_is_survived) {
+  scene *s = oblique_3d();
+  const size_t before = memory_in_use();
+  long r = 0, made;
+  do {
+    const long seen = memory_requests();
+    memory_refuse(r + 1, r % 2 == 0);
+    const status st = whole_way(s);
+    memory_refuse(0, 0);
+    made = memory_requests() - seen;
+    if (st != OK) ck_assert_int_eq(st, ERR_MEMORY);
+    ck_assert_uint_eq(memory_in_use(), before);
+  } while (made > r++);
+  ck_assert_int_eq(whole_way(s), OK);
+  scene_free(s);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("operator");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, products_have_the_entries, 0, SCENES);
+  tcase_add_loop_test(tests, solves_under_known_rows_are_those_of_the_entries,
+                      0, SCENES);
+  tcase_add_test(tests, rows_that_leave_a_motion_are_singular);
+  tcase_add_loop_test(tests, loads_and_recovery_are_the_same, 0, SCENES);
+  tcase_add_loop_test(tests, energies_and_errors_are_the_same, 0, HELD);
+  tcase_add_test(tests, power_of_two_in_the_moduli_leaves_every_bit);
+  tcase_add_test(tests, every_refused_request_is_survived);
+  return unit_run("operator", tests);
+}
