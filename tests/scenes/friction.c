@@ -42,8 +42,7 @@
 /* The triangle of Hild with one element: uniform strain, all its base slides;
  * unique below mu = 3. */
 #define HILD(mu) \
-  "*PARAMETER\nLAMBDA = 0.1/(1.1*0.8)\nG = 0.5/1.1\n"                 \
-  "TXX = -0.02400456223855\nTYY = -0.00158113883008\n"                \
+  "*PARAMETER\nTXX = -0.02400456223855\nTYY = -0.00158113883008\n"  \
   MATERIAL("1.", "0.1")                                               \
   "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"                   \
   "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O, NORMAL=OBSTACLE\n"       \
