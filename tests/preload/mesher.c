@@ -48,6 +48,17 @@ static void make(const char *part, int n, char *const *words) {
   child_run(&(raw_request){&source, 0}, getppid(), to, nothing);
 }
 
+/* 1: the stream has a mesh. What fails is left to the program, whose messages
+ * name the file as it was given. */
+static int is_mesh(const char *path) {
+  wire_head last = {0};
+  const int fd = open(path, O_RDONLY);
+  const int there = fd >= 0 && lseek(fd, -(off_t)sizeof last, SEEK_END) >= 0 &&
+                    read(fd, &last, sizeof last) == sizeof last;
+  if (fd >= 0) close(fd);
+  return there && last.magic == WIRE_MAGIC && last.kind == WIRE_END;
+}
+
 static void serve(const char *folder, int fd) {
   static char text[MOST], *words[HEAD + 2 * NUMBERS];
   char part[4300], whole[4200];
@@ -57,7 +68,7 @@ static void serve(const char *folder, int fd) {
     snprintf(part, sizeof part, "%s.%d", whole, (int)getpid());
     const pid_t pid = fork();
     if (pid == 0) make(part, n, words);
-    if (pid > 0 && waitpid(pid, &code, 0) == pid && code == 0)
+    if (pid > 0 && waitpid(pid, &code, 0) == pid && code == 0 && is_mesh(part))
       rename(part, whole);
     else
       unlink(part);
