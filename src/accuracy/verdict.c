@@ -99,14 +99,21 @@ static status find_motion(const contact_problem *cp, double *v, outcome *end) {
   const solver_control control = {.tol = 1e-8};
   solver_report rep = {.outcome = RUNNING};
   void *work = NULL;
-  double *u = NULL, *r = NULL;
+  double *u = NULL, *r = NULL, *A = NULL;
   *end = RUNNING;
   if (lemke == NULL || !contact_has_stiffness(cp) || cp->n > LARGEST) goto done;
+  contact_problem own = *cp;
+  if (cp->op != NULL) {
+    NEW(A, (size_t)cp->m * (size_t)cp->m);
+    contact_dense(cp, A);
+    own.A = A;
+    own.op = NULL;
+  }
   NEW(u, cp->m);
   NEW(r, cp->m);
   option_defaults(lemke->options, param);
-  TRY(lemke->setup(cp, param, &work));
-  TRY(lemke->solve(cp, param, work, &control, u, r, &rep));
+  TRY(lemke->setup(&own, param, &work));
+  TRY(lemke->solve(&own, param, work, &control, u, r, &rep));
   *end = rep.outcome;
   const double *ray = lemke_ray(work);
   if (rep.outcome == STOPPED_RAY && ray != NULL)
@@ -115,7 +122,7 @@ static status find_motion(const contact_problem *cp, double *v, outcome *end) {
     *end = STOPPED_STAGNATION;
 done:
   if (work != NULL) lemke->release(work);
-  RELEASE(u, r);
+  RELEASE(u, r, A);
   return st;
 }
 

@@ -80,8 +80,25 @@ void contact_block(const contact_problem *cp, int node_id, double *block) {
            (size_t)d * sizeof *block);
 }
 
+/* Column by column; symmetric to the last bit. */
+static void form_entries(const contact_problem *cp, double *M) {
+  const size_t m = (size_t)cp->m;
+  double *e = cp->op->room;
+  memset(e, 0, m * sizeof *e);
+  for (size_t j = 0; j < m; ++j) {
+    e[j] = 1.0;
+    contact_apply(cp, e, M + m * j);
+    e[j] = 0.0;
+  }
+  for (size_t j = 0; j < m; ++j)
+    for (size_t i = 0; i < j; ++i)
+      M[i + m * j] = M[j + m * i] = 0.5 * (M[i + m * j] + M[j + m * i]);
+}
+
 void contact_dense(const contact_problem *cp, double *M) {
-  if (cp->blocks != NULL)
+  if (cp->op != NULL)
+    form_entries(cp, M);
+  else if (cp->blocks != NULL)
     sparse_blocks_dense(cp->blocks, M);
   else
     memcpy(M, contact_matrix(cp), (size_t)cp->m * (size_t)cp->m * sizeof *M);

@@ -88,7 +88,7 @@ void contact_add_columns(const contact_problem *cp, int node_id,
 void contact_column(const contact_problem *cp, int dof, double *column);
 /* The block of a node on the diagonal of A or W, block[dim*dim]. */
 void contact_block(const contact_problem *cp, int node_id, double *block);
-/* All of A or W into M[m*m]. */
+/* All of A or W into M[m*m]; of an operator by m products. */
 void contact_dense(const contact_problem *cp, double *M);
 /* r = A u - f, N. r[m]. Stiffness form only. */
 void contact_reaction(const contact_problem *cp, const double *u, double *r);

@@ -235,9 +235,9 @@ status stiffness_order(const stiffness *k, const double *x, whole_order *o) {
   for (int i = 0; i < k->n_node; ++i)
     if (k->free[i] != 0) o->node[o->n++] = i;
   TRY(order_nodes(&g, k->dim, x, o->n, o->node, &cm, &o->name));
-  TRY(order_flops(&g, o->n, o->node, &cm, &o->flops, &o->entries));
+  TRY(order_flops(&g, o->n, o->node, &cm, &o->flops));
   o->flops *= dim * dim * dim;
-  o->entries *= dim * dim;
+  o->entries = cm.lnz * dim * dim;
 done:
   timer_leave(STAGE_ORDERING);
   graph_release(&g);

@@ -310,7 +310,7 @@ status order_by(order_method method, const graph *g, int dim, const double *x,
 }
 
 status order_flops(const graph *g, int n, const int *node, cholmod_common *cm,
-                   double *flops, double *entries) {
+                   double *flops) {
   status st = OK;
   cholmod_sparse *a = NULL;
   SuiteSparse_long *w = NULL;
@@ -323,7 +323,6 @@ status order_flops(const graph *g, int n, const int *node, cholmod_common *cm,
                                   w + 5 * size, cm))
     FAIL(ERR_MEMORY, "memory exhausted: count of %d nodes", n);
   *flops = cm->fl;
-  if (entries != NULL) *entries = cm->lnz;
 done:
   cholmod_l_free_sparse(&a, cm);
   memory_free(w);
@@ -338,8 +337,8 @@ static status compare_with_metis(const graph *g, int n, int *node,
   PASS_NEW(other, n);
   memcpy(other, node, (size_t)n * sizeof *node);
   PASS(order_by_pattern(ORDER_METIS, g, n, other, cm));
-  PASS(order_flops(g, n, node, cm, &cuts, NULL));
-  PASS(order_flops(g, n, other, cm, &metis, NULL));
+  PASS(order_flops(g, n, node, cm, &cuts));
+  PASS(order_flops(g, n, other, cm, &metis));
   if (metis < cuts) {
     memcpy(node, other, (size_t)n * sizeof *node);
     *name = "METIS";

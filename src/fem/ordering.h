@@ -24,10 +24,10 @@ typedef enum { ORDER_CUTS, ORDER_METIS, ORDER_AMD } order_method;
 /* Order node[0..n) in place by one method. */
 status order_by(order_method method, const graph *g, int dim, const double *x,
                 int n, int *node, cholmod_common *cm);
-/* Operations of a Cholesky factor in that order, one unknown per node; entries
- * of the factor too unless NULL. */
+/* Operations of a Cholesky factor in that order, one unknown per node; its
+ * entries are in cm->lnz. */
 status order_flops(const graph *g, int n, const int *node, cholmod_common *cm,
-                   double *flops, double *entries);
+                   double *flops);
 /*
  * Order node[0..n) in place (the interior of one body); neighbours outside the
  * list are ignored. x[dim*g->n] coordinates. "name" says which order was taken.

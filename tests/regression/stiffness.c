@@ -160,10 +160,23 @@ START_TEST(contact_of_most_of_the_body_is_not_condensed) {
 }
 END_TEST
 
+/* No equilibrium: the verdict of DENSE, and its words. */
+START_TEST(verdicts_are_the_same) {
+  job a = job_begin("dense"), b = job_begin("factor");
+  const char *deck = "input/arch/arch", *thin = "-D H=0.1";
+  ck_assert_int_eq(job_run_with(&a, deck, DENSE, 0, thin), 6);
+  ck_assert_int_eq(job_run_with(&b, deck, FACTOR, 0, thin), 6);
+  ck_assert_str_eq(a.errors, b.errors);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("stiffness");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, both_kinds_give_the_same_forces, 0, DECKS);
+  tcase_add_test(tests, verdicts_are_the_same);
   tcase_add_test(tests, kind_is_chosen_by_cost);
   tcase_add_test(tests, kind_is_chosen_by_memory);
   tcase_add_test(tests, contact_of_most_of_the_body_is_not_condensed);

@@ -27,6 +27,7 @@ static int make_columns(column *c) {
   c[n++] = (column){"AUT", "AUTO", "", 0};
   for (int i = 0; solver_list[i] != NULL; ++i, ++n)
     snprintf(c[n].solver, sizeof c->solver, "%s", solver_list[i]->name);
+  c[n++] = (column){"Fac", "AUTO, STIFFNESS=FACTOR", "", 0};
   c[n++] = (column){"Vel", "AUTO", "", 1};
   for (int i = 0; scheme_list[i] != NULL; ++i, ++n) {
     snprintf(c[n].solver, sizeof c->solver, "AUTO");

@@ -87,10 +87,27 @@ static status fill_up(contact_solver *s, contact_problem *cp) {
   return OK;
 }
 
+/* The entries of a stiffness that is an operator, for a method that needs them:
+ * where the others have failed. */
+static status form_entries(contact_solver *s, contact_problem *cp,
+                           const solver_ops *ops, const char **why) {
+  const double m = cp->m;
+  if (cp->op == NULL || (ops->handles & BY_OPERATOR)) return OK;
+  if (s->full == NULL && m * m * sizeof *s->full > memory_left()) {
+    *why = "needs the entries of the condensed stiffness, which do not fit";
+    return OK;
+  }
+  if (s->full == NULL) {
+    PASS_NEW(s->full, (size_t)cp->m * (size_t)cp->m);
+    contact_dense(cp, s->full);
+  }
+  cp->A = s->full;
+  cp->op = NULL;
+  return OK;
+}
+
 /* Why the solver cannot take the problem in any form, or NULL. */
 static const char *unfit(const contact_problem *cp, const solver_ops *ops) {
-  if (cp->op != NULL && !(ops->handles & BY_OPERATOR))
-    return "needs the entries of the condensed stiffness (STIFFNESS=DENSE)";
   if (cp->dim == 3 && !(ops->handles & SOLVES_3D))
     return "solves problems in the plane only";
   return NULL;
@@ -101,13 +118,15 @@ static status suit(contact_solver *s, const contact_problem *cp,
                    const solver_ops *ops, contact_problem *out,
                    const char **why) {
   status st = OK;
+  contact_problem formed = *cp;
+  *why = unfit(cp, ops);
+  if (*why == NULL) TRY(form_entries(s, &formed, ops, why));
+  cp = &formed;
   *out = *cp;
-  *why = NULL;
+  if (*why != NULL) goto done;
   int stiffness = lacks_stiffness(s, cp, ops);
   int compliance =
       (ops->handles & NEEDS_COMPLIANCE) && cp->W == NULL && cp->blocks == NULL;
-  *why = unfit(cp, ops);
-  if (*why != NULL) goto done;
   if (cp->floating && !(ops->handles & SOLVES_FLOATING)) {
     TRY(suit_by_springs(s, cp, out, why));
     goto done;

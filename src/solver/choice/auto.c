@@ -245,10 +245,9 @@ static int sweeps_fit(const contact_problem *cp) {
 
 /* 1 if a method of the chain does not apply: a friction path without Coulomb
  * friction, a method for problems of which only the compliance is known, or one
- * that needs all of a large sparse one, or entries that are not there. */
+ * that needs all of a large sparse one. */
 static int is_skipped(const contact_problem *cp, const link *l) {
   if (l->how == ALONG_PATH && cp->B == NULL) return 1;
-  if (cp->op != NULL && !(l->ops->handles & BY_OPERATOR)) return 1;
   if (cp->blocks != NULL)
     return cp->m > MOST_FULL && !(l->ops->handles & SPARSE_COMPLIANCE);
   if (l->how == WHILE_PROMISING && !sweeps_fit(cp)) return 1;
