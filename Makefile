@@ -89,7 +89,7 @@ support  := $(patsubst %.c,$(out)/%.o,$(wildcard tests/support/*.c \
               tests/scenes/*.c tests/decks/*.c))
 
 .PHONY: all help deps demo test check unit regression stability layers style \
-        format bench bench-solvers bench-auto bench-fclib clean
+        format bench bench-big bench-solvers bench-auto bench-fclib clean
 .DEFAULT_GOAL := all
 .SECONDARY:
 
@@ -122,6 +122,7 @@ help:
 	@echo "make study        error against CPU seconds: four pictures"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
+	@echo "make bench-big    large contacts, minutes and gigabytes"
 	@echo "make bench-solvers  what each digit costs, for every solver"
 	@echo "make bench-auto   METHOD=AUTO against the best of the others"
 	@echo "make bench-fclib  the same on problems from files, DIR=FOLDER"
@@ -385,6 +386,8 @@ study: $(program)
 	  --vary RHO=0.02,0.05,0.1 --error CONTACT.traction_t --reference own \
 	  --title "sliding cylinder, nonlocal friction of radius RHO"
 
+bench-big: $(program) $(out)/tests/bench/size
+	$(Q)BIG=1 PROTIS=$(abspath $(program)) $(out)/tests/bench/size
 bench-solvers: $(out)/tests/bench/solvers
 	$(Q)$<
 

@@ -19,9 +19,9 @@ static void must_be_refused(const job *j, int code, const char *whose) {
 START_TEST(limit_by_hand_is_obeyed) {
   static const char deck[] = "input/block_shear_3d/block_shear_3d";
   job j = job_begin("block_shear_3d");
-  must_be_refused(&j, job_run_deck(&j, deck, "-D N=16 --max-memory 40"),
+  must_be_refused(&j, job_run_deck(&j, deck, "-D N=16 --max-memory 10"),
                   "--max-memory leaves ");
-  ck_assert_int_eq(job_run_deck(&j, deck, "-D N=16 --max-memory 40 --check"),
+  ck_assert_int_eq(job_run_deck(&j, deck, "-D N=16 --max-memory 10 --check"),
                    0);
   ck_assert_ptr_nonnull(strstr(j.text, "the run would be refused"));
   ck_assert_int_eq(job_run_deck(&j, deck, "-D N=4 --max-memory 400"), 0);

@@ -13,18 +13,18 @@
 #include <stdio.h>
 
 enum {
-  COLD = 12,    /* steps of NEWTON of the first problem */
+  COLD = 14,    /* steps of NEWTON of the first problem */
   WARM = 5,     /* of one that starts from the last */
   SOLVES = 7,   /* of a step of FACTOR */
   OTHERS = 3,   /* factors of an increment besides: errors, rounding */
   MATRICES = 5, /* of the size of the condensed one, that DENSE holds at most */
-  VECTORS = 300 /* bytes of an unknown of the body */
+  VECTORS = 600 /* bytes of an unknown of the body */
 };
 static const double DENSE_COLD = 1e-10; /* s, times m^3: the first problem */
 static const double DENSE_WARM = 3e-11; /* s, times m^3: one more */
-static const double FLOP = 3e-11;       /* s, of a sparse factor */
+static const double FLOP = 1e-11;       /* s, of a sparse factor */
 static const double ENTRY = 2.5e-8;     /* s, of its entries */
-static const double READ = 2e-9;        /* s, of an entry in a solve */
+static const double READ = 3e-9;        /* s, of an entry in a solve */
 static const double FLAT_FILL = 25.0, SPATIAL_FILL = 150.0;
 /* -, least entries of the factor over unknowns */
 static const double SHARE = 0.8; /* -, of the memory there is */

@@ -1,0 +1,198 @@
+/*
+ * Large contacts: both kinds of stiffness, CPU seconds and memory of whole runs
+ * next to what --check foresees.
+ *
+ * BIG in the environment adds the rows that take minutes or gigabytes.
+ *
+ * Strips whose cells double in size away from a rough floor, and cubes, pressed
+ * and sheared, from a cold start, mu = 0.3.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+typedef struct bench_case {
+  int dim, cells; /* at the contact, along an edge */
+  int dense;      /* 1: DENSE too */
+  int large;      /* 1: only with BIG */
+} bench_case;
+
+static const bench_case cases[] = {
+    {2, 512, 1, 0},   {2, 1024, 1, 0}, {2, 2048, 1, 0}, {2, 4096, 0, 0},
+    {2, 32768, 0, 1}, {3, 12, 1, 0},   {3, 20, 1, 0},   {3, 33, 1, 1}};
+
+enum { LEAST = 8 };
+
+/* ---- meshes ----------------------------------------------------------------
+ */
+
+typedef struct row {
+  int first, n; /* first node, cells */
+  double y;
+} row;
+
+/* Rows of nodes of a strip: two of cells of one size, then one that joins two
+ * cells of it to each of the next. */
+static int strip_rows(int cells, row *r) {
+  int n = 0, node = 0, size = cells;
+  double y = 0;
+  r[n++] = (row){0, size, 0};
+  while (y < 0.999) {
+    int halve = size > LEAST && n % 3 == 0;
+    node += r[n - 1].n + 1;
+    y += (halve ? 1.5 : 1.0) / size;
+    if (halve) size /= 2;
+    if (size <= LEAST && y > 1) y = 1;
+    r[n++] = (row){node, size, y};
+  }
+  return n;
+}
+
+static void triangle(FILE *f, int *no, int a, int b, int c) {
+  fprintf(f, "%d 2 2 1 1 %d %d %d\n", ++*no, a + 1, b + 1, c + 1);
+}
+
+/* Triangles between two rows; returns how many; f NULL: counts. */
+static int between(FILE *f, int *no, const row *a, const row *b) {
+  if (f == NULL) return a->n == b->n ? 2 * a->n : 3 * b->n;
+  for (int i = 0; i < b->n; ++i) {
+    int p = a->first + (a->n == b->n ? i : 2 * i), q = b->first + i;
+    if (a->n == b->n) {
+      triangle(f, no, p, p + 1, q + 1);
+      triangle(f, no, p, q + 1, q);
+    } else {
+      triangle(f, no, p, p + 1, q);
+      triangle(f, no, p + 1, q + 1, q);
+      triangle(f, no, p + 1, p + 2, q + 1);
+    }
+  }
+  return 0;
+}
+
+static void write_strip(FILE *f, int cells) {
+  row *r = calloc(200, sizeof *r);
+  int n = strip_rows(cells, r), no = 0, elements = cells + r[n - 1].n;
+  fprintf(f,
+          "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n"
+          "1 2 \"BOTTOM\"\n1 3 \"TOP\"\n2 1 \"BODY\"\n$EndPhysicalNames\n"
+          "$Nodes\n%d\n",
+          r[n - 1].first + r[n - 1].n + 1);
+  for (int k = 0; k < n; ++k)
+    for (int i = 0; i <= r[k].n; ++i)
+      fprintf(f, "%d %.17g %.17g 0\n", r[k].first + i + 1, (double)i / r[k].n,
+              r[k].y);
+  for (int k = 1; k < n; ++k) elements += between(NULL, NULL, r + k - 1, r + k);
+  fprintf(f, "$EndNodes\n$Elements\n%d\n", elements);
+  for (int i = 0; i < cells; ++i)
+    fprintf(f, "%d 1 2 2 2 %d %d\n", ++no, i + 1, i + 2);
+  for (int i = 0, at = r[n - 1].first; i < r[n - 1].n; ++i)
+    fprintf(f, "%d 1 2 3 3 %d %d\n", ++no, at + i + 1, at + i + 2);
+  for (int k = 1; k < n; ++k) between(f, &no, r + k - 1, r + k);
+  fprintf(f, "$EndElements\n");
+  free(r);
+}
+
+static void write_cube(FILE *f, int cells) {
+  fprintf(f,
+          "Point(1) = {0, 0, 0};\n"
+          "l[] = Extrude {1, 0, 0} { Point{1}; Layers{%d}; };\n"
+          "s[] = Extrude {0, 1, 0} { Line{l[1]}; Layers{%d}; };\n"
+          "v[] = Extrude {0, 0, 1} { Surface{s[1]}; Layers{%d}; };\n"
+          "Physical Surface(\"BOTTOM\") = {s[1]};\n"
+          "Physical Surface(\"TOP\") = {v[0]};\n"
+          "Physical Volume(\"BODY\") = {v[1]};\n",
+          cells, cells, cells);
+}
+
+/* ---- runs
+ * -------------------------------------------------------------------- */
+
+static job make_job(const bench_case *c, const char *kind) {
+  job j = job_begin("size");
+  char path[100];
+  const char *file = c->dim == 2 ? "size.msh" : "size.geo";
+  snprintf(path, sizeof path, "%s/%s", j.dir, file);
+  FILE *f = fopen(path, "w");
+  if (c->dim == 2)
+    write_strip(f, c->cells);
+  else
+    write_cube(f, c->cells);
+  fclose(f);
+  job_write(&j, "size.inp",
+            "*MESH, FILE=%s\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n"
+            "\"0.002*(1 + cos(6.283*%s + 1)%s) + 0.001*(1 + cos(31.4*x))\"\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nTOP, 1, 1, 0.0015\n%sTOP, %d, %d, -0.004\n"
+            "*SOLVER, STIFFNESS=%s\n*ACCURACY, SOLVER=NO, MESH=NO\n"
+            "*OUTPUT, HDF5=NO\n*END STEP\n",
+            file, "x", c->dim == 3 ? "*cos(6.283*y)" : "",
+            c->dim == 3 ? "TOP, 2, 2, 0.\n" : "", c->dim, c->dim, kind);
+  return j;
+}
+
+/* Seconds and megabytes of the process; 0: it failed. */
+static int run(const job *j, double *cpu, double *mega) {
+  char deck[100];
+  const char *program = getenv("PROTIS");
+  struct rusage used;
+  int state;
+  snprintf(deck, sizeof deck, "%s/size.inp", j->dir);
+  if (program == NULL) program = "build/release/protis";
+  const pid_t child = fork();
+  if (child == 0) {
+    execl(program, program, deck, "--quiet", (char *)NULL);
+    _exit(127);
+  }
+  wait4(child, &state, 0, &used);
+  *cpu = (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+         1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+  *mega = (double)used.ru_maxrss / 1024;
+  return WIFEXITED(state) && WEXITSTATUS(state) == 0;
+}
+
+/* What --check foresees of a kind, s and MB. */
+static void foreseen(job *j, const char *kind, double *cpu, double *mega) {
+  char key[40];
+  *cpu = *mega = 0;
+  if (job_run(j, "--check") != 0) return;
+  snprintf(key, sizeof key, "stiffness %s", kind);
+  const char *at = strstr(j->text, key);
+  if (at == NULL) return;
+  at += strcspn(at, "0123456789");
+  sscanf(at, "%lf s, %lf MB", cpu, mega);
+}
+
+static void row_of(const bench_case *c, const char *kind) {
+  double cpu, mega, cpu_before, mega_before;
+  job j = make_job(c, kind);
+  foreseen(&j, kind, &cpu_before, &mega_before);
+  if (run(&j, &cpu, &mega))
+    printf("%d-D %6d %-7s %9.2f %9.1f %12.2g %12.1f\n", c->dim, c->cells, kind,
+           cpu, mega, cpu_before, mega_before);
+  else
+    printf("%d-D %6d %-7s failed\n", c->dim, c->cells, kind);
+  fflush(stdout);
+  job_end(&j);
+}
+
+START_TEST(both_kinds_of_stiffness) {
+  const int all = getenv("BIG") != NULL;
+  puts("mesh  cells kind        cpu[s]   mem[MB]  foreseen[s] foreseen[MB]");
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+    if (cases[i].large && !all) continue;
+    row_of(&cases[i], "FACTOR");
+    if (cases[i].dense) row_of(&cases[i], "DENSE");
+  }
+}
+END_TEST
+
+UNIT_MAIN("size", both_kinds_of_stiffness)
