@@ -96,7 +96,7 @@ void model_free(model *m) {
   RELEASE(m->time.amplitudes, m->time.points, m->materials, m->sections,
           m->obstacles, m->moves, m->contacts, m->ties, m->mesh.cracks,
           m->steps, m->reduction.still, m->elem_section, m->name.job,
-          m->effect_cards, m->goals, m);
+          m->effect_cards, m->accuracy.goals, m);
 }
 
 void model_fit_problem(model *m, int dim, int friction, effect_finder *find) {

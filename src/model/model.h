@@ -368,8 +368,8 @@ enum { GOAL_NORMAL = 3, GOAL_TANGENT, GOAL_TENSOR };
 typedef struct goal_card {
   const char *name;
   goal_quantity quantity;
-  int contact_id;    /* -1: none */
-  const char *group; /* or NULL */
+  int contact_id;        /* -1: none */
+  const char *group;     /* or NULL */
   int group_id, node_id; /* set by model_check; -1: none */
   int component;
   double radius; /* of the mean of a pressure, m; 0: chosen */
@@ -458,6 +458,7 @@ typedef struct model {
   struct {
     accuracy_target target;
     closed_form ref;
+    goal_card *goals;  /* [n.goal] in the order of the deck */
     double mesh_price; /* -, expected share of the run, for which the error of
                           the mesh that no card requires is left out; 0: it is
                           not */
@@ -471,7 +472,6 @@ typedef struct model {
     unsigned char *still;     /* [n_elem] as material.is_still says; NULL:
                                  nowhere, owned */
   } reduction;
-  goal_card *goals;               /* [n.goal] in the order of the deck */
   effect_card *effect_cards; /* [n.effect_card] in the order of the deck */
   unsigned effects;          /* bits EFFECT_*, set by model_check */
   int dim, ns;               /* from the mesh */

@@ -173,7 +173,7 @@ static void write_goals(json *w, const job *j) {
   for (int i = 0; i < j->m->n.goal; ++i) {
     const goal_result *g = job_goal(j, i);
     json_open(w, NULL, '{');
-    json_string(w, "goal", j->m->goals[i].name);
+    json_string(w, "goal", j->m->accuracy.goals[i].name);
     json_string(w, "unit", job_goal_unit(j->m, i, unit, sizeof unit));
     json_real(w, "value", g->value);
     json_real(w, "error", g->error);

@@ -186,7 +186,7 @@ static void close_goals(const job *j, FILE *f) {
   char unit[80];
   for (int i = 0; i < j->m->n.goal && job_goal(j, i) != NULL; ++i) {
     const goal_result *g = job_goal(j, i);
-    fprintf(f, "%-9s %.7g %s", j->m->goals[i].name, g->value,
+    fprintf(f, "%-9s %.7g %s", j->m->accuracy.goals[i].name, g->value,
             job_goal_unit(j->m, i, unit, sizeof unit));
     if (!isnan(g->error))
       fprintf(f, ", error %.2g: %.7g within %.1g", g->error,

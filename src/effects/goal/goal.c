@@ -137,7 +137,7 @@ static status estimate(run *r, shared *s, goal_result *out) {
 }
 
 static status find_goal(run *r, shared *s, int id, goal_result *out) {
-  PASS(goal_form_set(r, &r->m->goals[id], &s->form));
+  PASS(goal_form_set(r, &r->m->accuracy.goals[id], &s->form));
   *out =
       (goal_result){s->form.value, NAN, NAN, NAN, NAN, out->cpu, s->form.why};
   if (s->form.why != GOAL_RELIABLE) return OK;
@@ -187,8 +187,8 @@ static status expected(const plan_sizes *s, effect_work *w) {
 
 static int requires_goals(const model *m, char *why, size_t size) {
   if (m->n.goal == 0) return plan_says(0, why, size, "no *GOAL card");
-  return plan_says(1, why, size, "*GOAL, NAME=%s, %s:%d", m->goals[0].name,
-                   PLACE(m->goals[0].at));
+  return plan_says(1, why, size, "*GOAL, NAME=%s, %s:%d",
+                   m->accuracy.goals[0].name, PLACE(m->accuracy.goals[0].at));
 }
 
 static int goal_items(const void *self) {
@@ -210,11 +210,11 @@ VALUE(goal_solver, result_of(v, id)->solver)
 VALUE(goal_ends, 100 * result_of(v, id)->ends)
 
 static const char *goal_name(const view *v, int id) {
-  return v->m->goals[id].name;
+  return v->m->accuracy.goals[id].name;
 }
 
 static const char *goal_unit_word(const view *v, int id) {
-  return goal_unit(&v->m->goals[id]);
+  return goal_unit(&v->m->accuracy.goals[id]);
 }
 
 static const char *goal_word(const view *v, int id) {

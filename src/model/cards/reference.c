@@ -136,9 +136,10 @@ status apply_goal(reading *r) {
   const goal_param *p = r->param;
   model *m = r->m;
   if (r->misread || p->name == NULL || !is_given(r, "QUANTITY")) return OK;
-  for (int i = 0; i < m->n.goal; ++i) name_taken(r, p->name, m->goals[i].name);
-  PASS_GROW(m->goals, m->n.goal, m->cap.goal);
-  goal_card *g = &m->goals[m->n.goal++];
+  for (int i = 0; i < m->n.goal; ++i)
+    name_taken(r, p->name, m->accuracy.goals[i].name);
+  PASS_GROW(m->accuracy.goals, m->n.goal, m->cap.goal);
+  goal_card *g = &m->accuracy.goals[m->n.goal++];
   *g = (goal_card){.name = p->name,
                    .quantity = (goal_quantity)p->quantity,
                    .contact_id = -1,

@@ -49,5 +49,5 @@ static void check_goal(const model *m, const mesh *msh, goal_card *g) {
 }
 
 void check_goals(model *m, const mesh *msh) {
-  for (int i = 0; i < m->n.goal; ++i) check_goal(m, msh, &m->goals[i]);
+  for (int i = 0; i < m->n.goal; ++i) check_goal(m, msh, &m->accuracy.goals[i]);
 }

@@ -8,7 +8,7 @@
 #include <math.h>
 
 const char *job_goal_unit(const model *m, int id, char *text, size_t size) {
-  column_unit(goal_unit(&m->goals[id]), m, text, size);
+  column_unit(goal_unit(&m->accuracy.goals[id]), m, text, size);
   return text;
 }
 
@@ -23,7 +23,7 @@ static void print_goal(const job *j, int id, const goal_result *g, int cost,
                        FILE *f) {
   char value[NUMBER_SIZE], error[NUMBER_SIZE], band[NUMBER_SIZE];
   char corrected[NUMBER_SIZE], solver[NUMBER_SIZE], unit[64];
-  fprintf(f, "  %-16s %14s", j->m->goals[id].name,
+  fprintf(f, "  %-16s %14s", j->m->accuracy.goals[id].name,
           text_number(value, g->value, 6));
   if (!isnan(g->error))
     fprintf(f, " %12s %14s %10s %10s %6.2g", text_number(error, g->error, 3),

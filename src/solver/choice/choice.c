@@ -52,10 +52,7 @@ static void forget_factors(contact_solver *s) {
   s->bodies = NULL;
   RELEASE(s->best_u, s->best_r, s->full);
   s->best_u = s->best_r = s->full = NULL;
-  s->A = s->W = NULL;
-  s->blocks = NULL;
-  s->op = NULL;
-  s->m = s->n = -1;
+  s->last = (contact_problem){0};
   s->from = NULL;
 }
 
@@ -72,8 +69,9 @@ void contact_solver_tolerance(contact_solver *s, double tol) {
 const char *contact_solver_log(const contact_solver *s) { return s->log; }
 
 static int fits(const contact_solver *s, const contact_problem *cp) {
-  return s->A == cp->A && s->op == cp->op && s->W == cp->W &&
-         s->blocks == cp->blocks && s->m == cp->m && s->n == cp->n &&
+  const contact_problem *of = &s->last;
+  return of->A == cp->A && of->op == cp->op && of->W == cp->W &&
+         of->blocks == cp->blocks && of->m == cp->m && of->n == cp->n &&
          s->best_u != NULL;
 }
 
@@ -92,12 +90,7 @@ static status fit(contact_solver *s, const contact_problem *cp) {
   TRY(contact_bodies_new(cp, &s->bodies));
   NEW(s->best_u, cp->m);
   NEW(s->best_r, cp->m);
-  s->A = cp->A;
-  s->op = cp->op;
-  s->W = cp->W;
-  s->blocks = cp->blocks;
-  s->m = cp->m;
-  s->n = cp->n;
+  s->last = *cp;
 done:
   return st;
 }

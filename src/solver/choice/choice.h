@@ -17,10 +17,7 @@ struct contact_solver {
   solver_choice choice;
   char log[LOG_SIZE];
   /* What belongs to one matrix. */
-  const double *A, *W; /* of the last problem, borrowed */
-  const sparse_blocks *blocks;
-  const contact_operator *op;
-  int m, n;
+  contact_problem last;     /* whose matrix it is; borrowed, all-zero: none */
   void *work[N_SOLVER + 1]; /* of solver_list, last of a solver that is not in
                                it; NULL: not set up */
   void *param;              /* defaults of the current method of the chain */
