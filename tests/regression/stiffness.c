@@ -59,9 +59,12 @@ START_TEST(both_kinds_give_the_same_forces) {
   for (int i = 0; i < t.n_row; ++i)
     changes += dat_at(&t, i, "status") != dat_at(&s, i, "status");
   ck_assert_int_eq(changes, 0);
-  if (_i < 2)
+  if (_i < 2) {
     ck_assert_double_eq_tol(job_told(&a, "contraction"),
                             job_told(&b, "contraction"), 1e-9);
+    ck_assert_double_le(job_told(&b, "iterations"),
+                        job_told(&a, "iterations") + 2);
+  }
   char *listing = job_file(&b, "lst");
   ck_assert_ptr_nonnull(strstr(listing, "FACTOR  STIFFNESS of *SOLVER"));
   free(listing);
@@ -135,6 +138,8 @@ START_TEST(kind_is_chosen_by_memory) {
     job j = strip(300, k == 0 ? "STIFFNESS=AUTO" : "MAX_MEMORY=10");
     ck_assert_int_eq(job_run(&j, "--check"), 0);
     ck_assert_str_eq(taken(&j), kinds[k]);
+    ck_assert((strstr(j.text, "needs more memory than there is") != NULL) ==
+              (k == 1));
     job_end(&j);
   }
 }

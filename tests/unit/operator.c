@@ -194,14 +194,14 @@ static void add_turning(const both *b, const unsigned char *known,
           added[dim * (i + r) + c] = b->size * (r == c ? 1.5 : 0.4);
 }
 
-/* Several guesses of the states, one after the other, the first again. */
+/* Several guesses of the states, one after the other. */
 START_TEST(solves_under_known_rows_are_those_of_the_entries) {
   both b = both_new(_i);
   const size_t m = (size_t)b.m, dim = (size_t)b.dim;
   double *x = get(m), *y = get(m), *Ax = get(m), *added = get(dim * m);
   unsigned char *known = memory_new(m, 1);
   for (int k = 0; k < 4; ++k) {
-    const int every = k == 3 ? 2 : k + 2;
+    const int every = k == 0 ? 2 : k + 1; /* 2 twice: other "added" */
     unsigned seed = 11;
     double *rhs = numbers(m, 7), *Ay = get(m);
     int singular = 1;

@@ -13,7 +13,7 @@ enum {
 };
 /* What GMRES may leave of the right side, -: few digits while more than a share
  * of the rows still change. */
-static const double ROUGH = 1e-3, ENOUGH = 1e-6, FEW = 1e-3;
+static const double ROUGH = 1e-3, ENOUGH = 1e-10, FEW = 1e-3;
 static const double SPRING = 0x1p-36;    /* -, of the diagonal */
 static const double EXHAUSTED = 0x1p-50; /* -, a direction of rounding */
 
