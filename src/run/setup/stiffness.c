@@ -17,7 +17,6 @@ enum {
   WARM = 5,     /* of one that starts from the last */
   SOLVES = 7,   /* of a step of FACTOR */
   OTHERS = 3,   /* factors of an increment besides: errors, rounding */
-  MATRICES = 5, /* of the size of the condensed one, that DENSE holds at most */
   VECTORS = 600 /* bytes of an unknown of the body */
 };
 static const double DENSE_COLD = 1e-10; /* s, times m^3: the first problem */
@@ -25,6 +24,8 @@ static const double DENSE_WARM = 3e-11; /* s, times m^3: one more */
 static const double FLOP = 1e-11;       /* s, of a sparse factor */
 static const double ENTRY = 2.5e-8;     /* s, of its entries */
 static const double READ = 3e-9;        /* s, of an entry in a solve */
+static const double MATRICES = 3.5;     /* of the size of the condensed one,
+                                           that DENSE holds at most */
 static const double FLAT_FILL = 25.0, SPATIAL_FILL = 150.0;
 /* -, least entries of the factor over unknowns */
 static const double SHARE = 0.8; /* -, of the memory there is */
@@ -49,13 +50,18 @@ static double unknowns_of(const run *r) {
   return n;
 }
 
-/* The row of DENSE, and of FACTOR what it takes at least. */
+/* The row of DENSE, its factor as of a compact body, and of FACTOR what it
+ * takes at least. */
 static void bound(const run *r, stiffness_choice *c) {
   const double m = r->nodes.n_row, problems = problems_of(r);
   const double n = unknowns_of(r);
   const double fill = r->msh->dim == 2 ? FLAT_FILL : SPATIAL_FILL;
-  c->dense.seconds = (DENSE_COLD + DENSE_WARM * (problems - 1.0)) * m * m * m;
-  c->dense.bytes = MATRICES * m * m * sizeof(double);
+  const double entries =
+      r->msh->dim == 2 ? 7.0 * n * log2(n + 2.0) : 25.0 * n * cbrt(n);
+  const double flops = r->msh->dim == 2 ? 60.0 * pow(n, 1.5) : 28.0 * n * n;
+  c->dense.seconds = (DENSE_COLD + DENSE_WARM * (problems - 1.0)) * m * m * m +
+                     ENTRY * entries + FLOP * flops;
+  c->dense.bytes = (MATRICES * m * m + entries) * sizeof(double);
   c->factor.seconds = factor_seconds(problems, 0.0, fill * n);
   c->factor.bytes = n * (2.0 * fill * sizeof(double) + VECTORS);
 }
