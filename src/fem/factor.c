@@ -219,11 +219,15 @@ static status locate(const stiffness *k, const long *number, body_factor *f) {
   return OK;
 }
 
-/* Symbolic factor of a, the exponent known. */
-static status place_unknowns(const stiffness *k, const long *number,
-                             cholmod_sparse *a, cholmod_common *cm,
-                             body_factor *f) {
-  PASS(analyse(a, cm, f));
+/* The matrix, its symbolic factor and the places of the unknowns in that. */
+static status begin(const stiffness *k, const long *number, cholmod_common *cm,
+                    body_factor *f, cholmod_sparse **a) {
+  const double most = largest_diagonal(k, f);
+  if (!(most > 0 && isfinite(most)))
+    RAISE(ERR_SINGULAR, "stiffness is zero or not a number");
+  frexp(most, &f->exponent);
+  PASS(body_factor_matrix(k, f, number, cm, a));
+  PASS(analyse(*a, cm, f));
   PASS(locate(k, number, f));
   f->y = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
   f->work = cholmod_l_zeros(f->L->maxesize + 1, 1, CHOLMOD_REAL, cm);
@@ -232,23 +236,11 @@ static status place_unknowns(const stiffness *k, const long *number,
   return OK;
 }
 
-static status set_exponent(const stiffness *k, body_factor *f) {
-  const double most = largest_diagonal(k, f);
-  if (!(most > 0 && isfinite(most)))
-    RAISE(ERR_SINGULAR, "stiffness is zero or not a number");
-  frexp(most, &f->exponent);
-  return OK;
-}
-
 status body_factor_analyse(const stiffness *k, const long *number,
                            cholmod_common *cm, body_factor *f) {
-  status st = OK;
   cholmod_sparse *a = NULL;
   timer_enter(STAGE_ORDERING);
-  TRY(set_exponent(k, f));
-  TRY(body_factor_matrix(k, f, number, cm, &a));
-  TRY(place_unknowns(k, number, a, cm, f));
-done:
+  status st = begin(k, number, cm, f, &a);
   cholmod_l_free_sparse(&a, cm);
   timer_leave(STAGE_ORDERING);
   return st;
@@ -272,9 +264,7 @@ status body_factor_build(const stiffness *k, const long *number,
   status st = OK;
   cholmod_sparse *a = NULL;
   timer_enter(STAGE_ORDERING);
-  TRY(set_exponent(k, f));
-  TRY(body_factor_matrix(k, f, number, cm, &a));
-  TRY(place_unknowns(k, number, a, cm, f));
+  TRY(begin(k, number, cm, f, &a));
   timer_enter(STAGE_FACTOR);
   st = factorise(k, number, a, cm, f);
   timer_leave(STAGE_FACTOR);

@@ -6,7 +6,6 @@
 
 #include "base/memory.h"
 #include "base/timer.h"
-#include "model/facts.h"
 
 #include <math.h>
 #include <string.h>
@@ -194,15 +193,6 @@ static status take_places(run *r) {
   return OK;
 }
 
-/* 1: the *SOLVER of the step needs another kind of stiffness. */
-static int asks_for_other(const run *r) {
-  const int asked = r->step->solver.stiffness;
-  const int entries = facts_reads_entries(r->m, r->step) != NULL;
-  if (r->nodes.n_row == 0) return 0;
-  if (r->body.d.sparse) return asked == STIFFNESS_DENSE || entries;
-  return asked == STIFFNESS_FACTOR;
-}
-
 status run_prepare(run *r) {
   status st = OK;
   int fresh = 0;
@@ -213,7 +203,7 @@ status run_prepare(run *r) {
   known_rate_forget(&r->solving.rate);
   TRY(take_places(r));
   if (r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0 ||
-      updates_pairs(r) || asks_for_other(r)) {
+      updates_pairs(r) || run_asks_for_other_stiffness(r)) {
     memcpy(r->body.fixed, fixed, r->n_dof);
     TRY(make_matrices(r));
     fresh = 1;

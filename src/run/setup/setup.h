@@ -37,6 +37,8 @@ void run_free_ties(run *r);
 /* stiffness.c: how the solver of r->step knows the condensed stiffness, and
  * r->body.order for it. ERR_MEMORY. */
 status run_choose_stiffness(run *r, stiffness_choice *c);
+/* 1: the *SOLVER of r->step may choose another than the step before it. */
+int run_asks_for_other_stiffness(const run *r);
 
 /* prepare.c: surface, stiffness, condensed matrix and solver for r->step. */
 status run_prepare(run *r);

@@ -66,13 +66,17 @@ static void bound(const run *r, stiffness_choice *c) {
   c->factor.bytes = n * (2.0 * fill * sizeof(double) + VECTORS);
 }
 
+static void forget_order(run *r) {
+  memory_free(r->body.order.node);
+  r->body.order = (whole_order){0};
+  r->body.d.order = NULL;
+}
+
 /* The row of FACTOR, from its order. */
 static status find_factor(run *r, stiffness_choice *c) {
   status st = OK;
   stiffness *k = NULL;
   whole_order *o = &r->body.order;
-  memory_free(o->node);
-  *o = (whole_order){0};
   TRY(stiffness_assemble(&r->body.d, &k));
   TRY(stiffness_order(k, r->msh->x, o));
   r->body.d.order = o;
@@ -107,7 +111,7 @@ status run_choose_stiffness(run *r, stiffness_choice *c) {
   const double given = 1e6 * s->max_memory, left = SHARE * memory_left();
   const double most = given > 0.0 ? fmin(given, left) : left;
   *c = (stiffness_choice){0};
-  r->body.d.order = NULL;
+  forget_order(r);
   if (r->nodes.n_row == 0) return OK;
   bound(r, c);
   const char *reads = facts_reads_entries(r->m, r->step);
@@ -123,5 +127,23 @@ status run_choose_stiffness(run *r, stiffness_choice *c) {
   if (c->dense.seconds > c->factor.seconds || c->dense.bytes > most)
     PASS(find_factor(r, c));
   compare(c, most);
+  if (!c->sparse) forget_order(r);
   return OK;
+}
+
+/* Those of the step before are not taken over where they might be others: a
+ * restart within the step makes them anew. */
+int run_asks_for_other_stiffness(const run *r) {
+  const solver_choice *s = &r->step->solver, *old = &r->step[-1].solver;
+  const stiffness_choice *c = &r->body.choice;
+  if (r->step == r->m->steps || r->nodes.n_row == 0) return 0;
+  const int reads = facts_reads_entries(r->m, r->step) != NULL;
+  const int read = facts_reads_entries(r->m, r->step - 1) != NULL;
+  if (s->stiffness == old->stiffness && s->max_memory == old->max_memory &&
+      reads == read)
+    return 0;
+  if (s->stiffness == STIFFNESS_FACTOR) return !c->sparse;
+  if (s->stiffness == STIFFNESS_DENSE || reads) return c->sparse;
+  return c->sparse || s->max_memory > 0.0 ||
+         c->dense.seconds > c->factor.seconds;
 }

@@ -175,6 +175,7 @@ static status gmres(operated_system *s, const contact_problem *cp,
   add_friction(cp, p, s->Ax, v);
   left = cblas_dnrm2(s->m, v, 1);
   memset(s->krylov.g, 0, (DIRECTIONS + 1) * sizeof *s->krylov.g);
+  size = fmax(size, left); /* a body that known rows alone move has no load */
   if (!(left > s->enough * size)) return OK;
   s->krylov.g[0] = -left;
   for (size_t i = 0; i < m; ++i) v[i] /= left;
