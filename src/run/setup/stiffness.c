@@ -131,12 +131,12 @@ status run_choose_stiffness(run *r, stiffness_choice *c) {
   return OK;
 }
 
-/* Those of the step before are not taken over where they might be others: a
- * restart within the step makes them anew. */
+/* Matrices of the step before stay only where a new choice would be the same: a
+ * restart within the step makes that choice. */
 int run_asks_for_other_stiffness(const run *r) {
-  const solver_choice *s = &r->step->solver, *old = &r->step[-1].solver;
   const stiffness_choice *c = &r->body.choice;
   if (r->step == r->m->steps || r->nodes.n_row == 0) return 0;
+  const solver_choice *s = &r->step->solver, *old = &r->step[-1].solver;
   const int reads = facts_reads_entries(r->m, r->step) != NULL;
   const int read = facts_reads_entries(r->m, r->step - 1) != NULL;
   if (s->stiffness == old->stiffness && s->max_memory == old->max_memory &&
