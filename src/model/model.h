@@ -459,6 +459,8 @@ typedef struct model {
     accuracy_target target;
     closed_form ref;
     goal_card *goals;  /* [n.goal] in the order of the deck */
+    int goal_products; /* 1: their shares of the elements are kept, for sizes of
+                          a mesh */
     double mesh_price; /* -, expected share of the run, for which the error of
                           the mesh that no card requires is left out; 0: it is
                           not */

@@ -138,7 +138,11 @@ typedef struct state_errors {
   const double *elem_error; /* [n_elem] share of each element in the error
                                of the mesh, -, relative as that; or NULL */
   int n_goal;
-  const goal_result *goals; /* [n_goal] of *GOAL; NULL: none */
+  const goal_result *goals;    /* [n_goal] of *GOAL; NULL: none */
+  const double *goal_products; /* [n_goal*n_elem] of each element: product of
+                                  its errors of the solution and of the adjoint,
+                                  unit of the goal; zero: no estimate; or NULL
+                                */
   balance_report balance;
   true_error exact;              /* against *REFERENCE */
   int jumps;                     /* 1: no path of equilibria leads to this

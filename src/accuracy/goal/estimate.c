@@ -246,8 +246,9 @@ static int is_at_end(const goal_estimator *e, int elem_id) {
   return any;
 }
 
-static void add_element(goal_estimator *e, int elem_id, const double *tau,
-                        goal_estimate *out) {
+/* Returns |e_u| |e_y| of the element. */
+static double add_element(goal_estimator *e, int elem_id, const double *tau,
+                          goal_estimate *out) {
   const size_t ns = (size_t)e->s.d->ns, at = ns * (size_t)elem_id;
   const int region = space_region(e->recovery, elem_id);
   const space_field u = {e->s.sigma, e->stress[region]};
@@ -261,10 +262,11 @@ static void add_element(goal_estimator *e, int elem_id, const double *tau,
   out->magnitude += fabs(space_product(e->recovery, elem_id, &u, &y));
   out->product += both;
   if (is_at_end(e, elem_id)) out->ends += both;
+  return both;
 }
 
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
-                          goal_estimate *out) {
+                          double *product, goal_estimate *out) {
   domain d = *e->s.d;
   const mesh *m = d.mesh;
   d.eigen = NULL;
@@ -272,8 +274,11 @@ status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
   domain_stress(&d, y, NULL, e->sigma_y);
   for (int region = 0; region < e->n_region; ++region) {
     space_recover(e->recovery, region, d.ns, e->sigma_y, e->node_y);
-    for (int k = 0; k < m->n_elem; ++k)
-      if (space_region(e->recovery, k) == region) add_element(e, k, tau, out);
+    for (int k = 0; k < m->n_elem; ++k) {
+      if (space_region(e->recovery, k) != region) continue;
+      const double both = add_element(e, k, tau, out);
+      if (product != NULL) product[k] = both;
+    }
   }
   return OK;
 }

@@ -105,9 +105,9 @@ double goal_estimator_energy(const goal_estimator *e); /* |e_u|^2, J */
  *
  * b = 4 la lb the bubble of the edge and d the part of u in it, from recovered
  * gradients; on closed edges d_n is that of the gap, and d_t = 0 where they
- * stick.
+ * stick. product[n_elem] or NULL: the share of each element in out->product.
  */
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
-                          goal_estimate *out);
+                          double *product, goal_estimate *out);
 
 #endif

@@ -18,6 +18,7 @@ static const double ROUNDING = 1e-12; /* -, of the value: no error at all */
 typedef struct goal_state {
   int n;
   goal_result *result;      /* [n] */
+  double *product;          /* [n*n_elem] of goal_estimate_find, or NULL */
   space_recovery *recovery; /* NULL until the first estimate */
   long elastic_no;          /* of the run, that it is made of */
 } goal_state;
@@ -28,6 +29,8 @@ static status goals_new(run *r, void **self) {
   *self = own;
   own->n = r->m->n.goal;
   PASS_NEW(own->result, own->n);
+  if (r->m->accuracy.goal_products)
+    PASS_NEW(own->product, (size_t)own->n * (size_t)r->msh->n_elem);
   return OK;
 }
 
@@ -35,8 +38,7 @@ static void release(void *self) {
   goal_state *own = self;
   if (own == NULL) return;
   space_recovery_free(own->recovery);
-  memory_free(own->result);
-  memory_free(own);
+  RELEASE(own->result, own->product, own);
 }
 
 /* ---- what the estimate covers -------------------------------------------- */
@@ -117,13 +119,15 @@ static status solve(run *r, shared *s, double *solver) {
   return condense_recover(r->c, s->y_c, s->y);
 }
 
-static status estimate(run *r, shared *s, goal_result *out) {
+/* product[n_elem] or NULL */
+static status estimate(run *r, shared *s, double *product, goal_result *out) {
   const goal_form *f = &s->form;
   const double value = f->value, cpu = out->cpu;
   goal_estimate e;
   double solver;
   PASS(solve(r, s, &solver));
-  PASS(goal_estimate_find(s->estimator, s->y, f->has_tau ? f->tau : NULL, &e));
+  PASS(goal_estimate_find(s->estimator, s->y, f->has_tau ? f->tau : NULL,
+                          product, &e));
   e.error += f->curved;
   e.magnitude += fabs(f->curved);
   if (f->is_square) e.error += 0.5 * goal_estimator_energy(s->estimator);
@@ -136,7 +140,11 @@ static status estimate(run *r, shared *s, goal_result *out) {
   return OK;
 }
 
-static status find_goal(run *r, shared *s, int id, goal_result *out) {
+static status find_goal(run *r, shared *s, int id, goal_state *own) {
+  const size_t n = (size_t)r->msh->n_elem;
+  goal_result *out = &own->result[id];
+  double *product = own->product != NULL ? own->product + n * (size_t)id : NULL;
+  if (product != NULL) memset(product, 0, n * sizeof *product);
   PASS(goal_form_set(r, &r->m->accuracy.goals[id], &s->form));
   *out =
       (goal_result){s->form.value, NAN, NAN, NAN, NAN, out->cpu, s->form.why};
@@ -144,7 +152,7 @@ static status find_goal(run *r, shared *s, int id, goal_result *out) {
   out->verdict = GOAL_NOT_COVERED;
   if (s->estimator == NULL || (r->nodes.n_row > 0 && s->adjoint == NULL))
     return OK;
-  return estimate(r, s, out);
+  return estimate(r, s, product, out);
 }
 
 /* The time that all share counts with the first. */
@@ -157,7 +165,7 @@ static status find_goals(run *r, void *self) {
   domain_stress(&r->body.d, r->now.u, NULL, r->result.stress);
   if (is_covered(r)) TRY(prepare(r, own, &s));
   for (int k = 0; k < own->n; ++k) {
-    TRY(find_goal(r, &s, k, &own->result[k]));
+    TRY(find_goal(r, &s, k, own));
     own->result[k].cpu += timer_cpu() - cpu;
     cpu = timer_cpu();
   }
@@ -170,6 +178,7 @@ static void show(const void *self, state *s) {
   const goal_state *own = self;
   s->errors.n_goal = own->n;
   s->errors.goals = own->result;
+  s->errors.goal_products = own->product;
 }
 
 /* ---- the row ------------------------------------------------------------- */
